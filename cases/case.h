@@ -1,0 +1,70 @@
+/* The case file: key table, reader, and the settings of every stage in SI units. */
+#ifndef CASES_CASE_H
+#define CASES_CASE_H
+
+#include <stdbool.h>
+#include <stdio.h>
+
+#include "fem/load.h"
+#include "fem/material.h"
+#include "mesh/blade.h"
+#include "mesh/publish.h"
+#include "mesh/status.h"
+#include "mhb/settings.h"
+
+enum { CASE_MAX_PROBES = 32, CASE_NAME = 64 };
+
+typedef enum { CASE_MESH = 1, CASE_MODAL = 2, CASE_MHB = 4, CASE_POST = 8 } case_stage;
+
+typedef struct {
+  char   name[CASE_NAME];
+  double at[3]; /* m, mesh axes */
+} case_probe;
+
+typedef struct {
+  char *path;   /* as given */
+  char *folder; /* of path, "." if none; outputs and relative input files live here */
+  char *text;   /* verbatim */
+  char *name;
+
+  bool       has_mesh;  /* block mesh present (needed unless modal.file) */
+  char      *mesh_file; /* resolved path of mesh.file, or NULL: parametric blade */
+  mesh_blade blade;
+
+  fem_material material;
+  int          blades;
+  double       speed; /* rad/s */
+  mesh_axis    axis;
+
+  int    modes;
+  double damping;
+  char  *modal_file; /* resolved path of modal.file, or NULL */
+
+  int        engine_order;
+  fem_load   load;
+  int        n_probes;
+  case_probe probe[CASE_MAX_PROBES];
+
+  int          points; /* contact patches; 0 = all */
+  mhb_settings mhb;
+} case_file;
+
+/* Read and check a case file. All errors of the file are printed to errors at once, each as
+ * "file:line:col: error: key: text" with the source line and a caret; returns SHB_ERR_INPUT (SHB_ERR_IO if it
+ * cannot be opened). stages: bit mask of case_stage that will run; a stage's required keys are only required then. */
+shb_status case_read(const char *path, int stages, FILE *errors, case_file *out);
+void       case_free(case_file *file);
+
+/* folder/NAME + suffix, e.g. ".modal.h5"; malloc'ed. */
+char *case_output(const case_file *file, const char *suffix);
+/* mesh_file or NAME.msh; modal_file or NAME.modal.h5 (malloc'ed). */
+char *case_mesh_path(const case_file *file);
+char *case_modal_path(const case_file *file);
+
+/* "key = value" lines in SI, sorted as in the key table, of every key that stage depends on; malloc'ed. */
+char *case_settings(const case_file *file, case_stage stage);
+
+/* Every key with unit, range, default and help. */
+void case_print_keys(FILE *out);
+
+#endif

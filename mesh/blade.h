@@ -1,0 +1,40 @@
+/* The parametric shrouded blade: root block, lofted airfoil, tip shroud with Z-notch contact faces. */
+#ifndef MESH_BLADE_H
+#define MESH_BLADE_H
+
+#include "mesh/axes.h"
+#include "mesh/progress.h"
+#include "mesh/publish.h"
+#include "mesh/status.h"
+
+enum { MESH_MAX_SECTIONS = 16 };
+
+/* Airfoil section at a radius; lengths in m, twist in rad (stagger of the chord from the axial direction,
+ * positive turning the trailing edge towards +tangential). */
+typedef struct {
+  double radius, chord, thickness, camber, twist;
+} mesh_section;
+
+typedef struct {
+  int       blades;   /* N; sector angle 2 pi/N */
+  mesh_axis axis;     /* engine axis */
+  double    psi, phi; /* orientation of the contact plane, rad, paper's eq. 2 */
+  double    root_length, root_width,
+      root_height;         /* axial, tangential, radial, m; below the first section */
+  int          n_sections; /* at least 2, radii increasing */
+  mesh_section section[MESH_MAX_SECTIONS];
+  double       shroud_length;    /* axial, m */
+  double       shroud_thickness; /* radial, m; the shroud sits on the last section */
+  double       shroud_contact; /* length of the contact face along u, m; the middle leg of the Z */
+  double       size;           /* element size, m */
+  double       shroud_size;    /* element size in the shroud, m (0: as size) */
+} mesh_blade;
+
+/* Mesh the blade (second order) and publish it as a gmsh 4.1 file with the groups root, contact_right,
+ * contact_left, load and a $Comments section that holds the provenance.
+ * Errors: SHB_ERR_INPUT for a geometry that cannot be built (what is wrong in the case's words) or inverted
+ * elements (tags named); SHB_ERR_IO when the file cannot be written. Nothing is left behind on failure. */
+shb_status mesh_blade_write(const mesh_blade *blade, const char *path,
+                            const shb_provenance *provenance, shb_progress *progress);
+
+#endif

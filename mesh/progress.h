@@ -1,0 +1,36 @@
+/* One progress line on stderr, rewritten in place, only when stderr is a terminal and not --quiet; and the
+ * flag that SIGINT or SIGTERM sets. */
+#ifndef MESH_PROGRESS_H
+#define MESH_PROGRESS_H
+
+#include <stdbool.h>
+
+typedef struct {
+  bool        quiet;    /* --quiet: no line, no summary */
+  bool        verbose;  /* --verbose: phase times on stderr, terminal or not */
+  bool        terminal; /* stderr is a terminal */
+  const char *stage;    /* "mesh", "modal", "mhb", "post" */
+  double      started;  /* shb_seconds() at start of the stage */
+  double      shown;    /* shb_seconds() of the last line drawn */
+} shb_progress;
+
+double shb_seconds(void); /* monotonic clock, s */
+
+shb_progress shb_progress_start(const char *stage, bool quiet, bool verbose);
+
+/* Draw "stage  42 %  text" (at most 10 times a second). percent < 0: unknown. NULL progress: nothing. */
+void shb_progress_show(shb_progress *progress, double percent, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+/* Erase the line (call before other output to stderr, and at the end). */
+void shb_progress_clear(shb_progress *progress);
+
+/* With --verbose: a lasting line "stage: text" on stderr. */
+void shb_progress_note(shb_progress *progress, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+/* Install handlers for SIGINT and SIGTERM once; then ask whether one came. */
+void shb_interrupt_catch(void);
+bool shb_interrupted(void);
+
+#endif

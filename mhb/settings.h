@@ -1,0 +1,29 @@
+/* What the harmonic balance is asked to do: contact parameters and sweep. Plain data, SI. */
+#ifndef MHB_SETTINGS_H
+#define MHB_SETTINGS_H
+
+#include <stdbool.h>
+
+typedef enum { MHB_EQUILIBRIUM, MHB_INTERFERENCE } mhb_preload;
+
+enum { MHB_MAX_PRELOADS = 256 };
+
+typedef struct {
+  bool        to_ground;
+  int         engine_order, blades; /* inter-blade phase 2 pi E/N, eq. 16 */
+  bool        has_psi, has_phi;     /* given in the case; else from the modal file's normals */
+  double      psi, phi;             /* rad */
+  double      mu, kv;               /* -, N/m: totals of the interface */
+  double      ku[3];                /* kuu, kuw, kww, N/m */
+  mhb_preload preload;
+  int         n_preloads;
+  double      n0[MHB_MAX_PRELOADS]; /* N */
+  double      frequency[2];         /* Hz, first < second */
+  int         harmonics;            /* m >= 1 */
+  int         subharmonics;         /* nu >= 1: fundamental is omega/nu */
+  double      scale;                /* multiplies the excitation */
+  double      tolerance;            /* relative accuracy asked of the contact law, default 1e-8 */
+  int         max_points;           /* a branch ends (with a reason) beyond this, default 2000 */
+} mhb_settings;
+
+#endif

@@ -1,0 +1,43 @@
+/* The modal model of one blade and its file: all that the harmonic balance needs to know of the structure.
+ *
+ * Cylindrical axes (tangential x, axial y, radial z) at contact and probe nodes. Contact dofs are ordered
+ * c = (side * n_pairs + pair) * 3 + axis, side 0 right, 1 left; n_contact = 3 n_pairs * (has_left ? 2 : 1).
+ * Optional parts are NULL. Free of PETSc. */
+#ifndef MODAL_MODEL_H
+#define MODAL_MODEL_H
+
+#include <complex.h>
+#include <stdbool.h>
+
+#include "modal/h5.h"
+
+typedef struct {
+  int     n_modes, n_pairs, n_probes, n_load; /* n_load = K: load harmonics 0..K */
+  bool    has_left;                           /* false: contact to ground */
+  double *frequency;                          /* [m] Hz */
+  double *damping_ratio;                      /* [m] */
+  double *right, *left;                       /* [pair][3][m] kg^-1/2 */
+  double *residual_flexibility;               /* [n_contact][n_contact] m/N, or NULL */
+  double *residual_inertia;    /* [n_contact][n_contact] m s2/N, or NULL: coefficient of omega^2 */
+  double complex *modal_force; /* [K+1][m] N kg^-1/2 */
+  double complex *load_residual;          /* /load/residual_response [K+1][n_contact] m, or NULL */
+  char          **probe_name;             /* [q] */
+  double         *probe;                  /* [q][3][m] kg^-1/2 */
+  double         *probe_contact_residual; /* [3 q][n_contact] m/N, or NULL */
+  double complex *probe_load_residual;    /* [K+1][3 q] m, or NULL */
+  double         *normal;        /* [pair][3] v axis in the pair's cylindrical axes, or NULL */
+  double         *area;          /* [pair] m2, or NULL */
+  double         *mode_residual; /* [m] relative eigen residual, or NULL */
+} modal_model;
+
+/* Write the datasets of the DESIGN of the modal file into an open file (attributes format and provenance included). */
+shb_status modal_model_write(hid_t file, const modal_model *model,
+                             const shb_provenance *provenance);
+
+/* Read and check a modal file, whoever wrote it. Errors: SHB_ERR_IO missing / not HDF5 / truncated; SHB_ERR_INPUT
+ * foreign format, missing dataset, wrong shape, non-finite, frequency <= 0 or descending, damping outside [0, 1). */
+shb_status modal_model_read(const char *path, modal_model *model);
+
+void modal_model_free(modal_model *model);
+
+#endif
