@@ -1,0 +1,72 @@
+#include "cases/command.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* Whether usage mentions option as a whole word. */
+static bool mentions(const char *usage, const char *option) {
+  size_t n = strlen(option);
+  for (const char *at = usage; (at = strstr(at, option)) != NULL; at += n)
+    if (!strchr("abcdefghijklmnopqrstuvwxyz-", at[n]) || at[n] == '\0') return true;
+  return false;
+}
+
+static bool set_flag(const char *word, command_options *out) {
+  if (strcmp(word, "--quiet") == 0) {
+    out->quiet = true;
+  } else if (strcmp(word, "--verbose") == 0) {
+    out->verbose = true;
+  } else if (strcmp(word, "--force") == 0) {
+    out->force = true;
+  } else {
+    return false;
+  }
+  return true;
+}
+
+static int refuse(const char *what, const char *word) {
+  fprintf(stderr, "shroudhb: error: %s%s%s%s; see --help\n", what, word ? " '" : "",
+          word ? word : "", word ? "'" : "");
+  return SHB_ERR_INPUT;
+}
+
+int command_parse(int argc, char **argv, const char *usage, command_options *out) {
+  *out         = (command_options){0};
+  bool options = true;
+  for (int i = 1; i < argc; i++) {
+    const char *word = argv[i];
+    if (options && strcmp(word, "--") == 0) {
+      options = false;
+    } else if (options && strcmp(word, "--help") == 0) {
+      fputs(usage, stdout);
+      return SHB_OK;
+    } else if (options && strcmp(word, "--version") == 0) {
+      printf("shroudhb %s\n", shb_revision());
+      return SHB_OK;
+    } else if (options && set_flag(word, out)) {
+      continue;
+    } else if (options && strncmp(word, "--", 2) == 0 && mentions(usage, word)) {
+      if (out->mode) return refuse("one mode at a time; unexpected", word);
+      out->mode = word + 2;
+    } else if (options && word[0] == '-' && word[1] != '\0') {
+      return refuse("unknown option", word);
+    } else {
+      if (out->path) return refuse("one file is enough; unexpected", word);
+      out->path = word;
+    }
+  }
+  if (!out->path) return refuse("no file given", NULL);
+  return -1;
+}
+
+int command_finish(shb_status status) {
+  if (status != SHB_OK && shb_message()[0] != '\0')
+    fprintf(stderr, "shroudhb: %s: %s\n", status == SHB_NOT_CONVERGED ? "warning" : "error",
+            shb_message());
+  return (int)status;
+}
+
+shb_provenance command_provenance(const case_file *file, char *settings, const char *name) {
+  return (shb_provenance){
+      .case_path = file->path, .case_text = file->text, .settings = settings, .command = name};
+}
