@@ -1,0 +1,185 @@
+#include "mhb/fourier.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+void mhb_to_real(int m, const double complex *A, double *a) {
+  a[0] = creal(A[0]);
+  for (int k = 1; k <= m; k++) {
+    a[2 * k - 1] = creal(A[k]);
+    a[2 * k]     = cimag(A[k]);
+  }
+}
+
+void mhb_to_complex(int m, const double *a, double complex *A) {
+  A[0] = a[0];
+  for (int k = 1; k <= m; k++) A[k] = CMPLX(a[2 * k - 1], a[2 * k]);
+}
+
+void mhb_basis(int m, double t, double *basis, double *slope) {
+  double c1 = cos(t), s1 = sin(t), c = 1, s = 0;
+  basis[0] = 1;
+  if (slope) slope[0] = 0;
+  for (int k = 1; k <= m; k++) {
+    double next = c * c1 - s * s1;
+    s           = s * c1 + c * s1;
+    c           = next;
+
+    basis[2 * k - 1] = c;
+    basis[2 * k]     = -s;
+    if (!slope) continue;
+    slope[2 * k - 1] = -k * s;
+    slope[2 * k]     = -k * c;
+  }
+}
+
+void mhb_basis_integral(int n, double t0, double t1, double *integral) {
+  /* int cos kt = (2/k) cos(k mid) sin(k half): no cancellation on short intervals */
+  double mid = .5 * (t0 + t1), half = .5 * (t1 - t0);
+  double c1 = cos(mid), s1 = sin(mid), c = 1, s = 0;
+  double p1 = cos(half), q1 = sin(half), p = 1, q = 0;
+  integral[0] += t1 - t0;
+  for (int k = 1; k <= n; k++) {
+    double next = c * c1 - s * s1;
+    s           = s * c1 + c * s1;
+    c           = next;
+    next        = p * p1 - q * q1;
+    q           = q * p1 + p * q1;
+    p           = next;
+    integral[2 * k - 1] += 2 * c * q / k;
+    integral[2 * k] -= 2 * s * q / k;
+  }
+}
+
+/* integral of cos kt and sin kt for any sign of k, out of the integrals of the basis */
+static inline double cos_integral(const double *integral, int k) {
+  return k == 0 ? integral[0] : integral[2 * abs(k) - 1];
+}
+
+static inline double sin_integral(const double *integral, int k) {
+  return k == 0 ? 0 : k > 0 ? -integral[2 * k] : integral[-2 * k];
+}
+
+void mhb_basis_product(int p, int q, const double *integral, double *product, int ld) {
+  for (int j = 0; j <= 2 * q; j++) product[j] = integral[j];
+  for (int i = 1; i <= p; i++) {
+    double *row_c = product + (size_t)(2 * i - 1) * (size_t)ld, *row_s = row_c + ld;
+    row_c[0] = integral[2 * i - 1];
+    row_s[0] = integral[2 * i];
+    for (int k = 1; k <= q; k++) {
+      double cd = cos_integral(integral, i - k), cs = cos_integral(integral, i + k);
+      double sd = sin_integral(integral, i - k), ss = sin_integral(integral, i + k);
+      row_c[2 * k - 1] = .5 * (cd + cs);  /* cos i cos k */
+      row_c[2 * k]     = .5 * (sd - ss);  /* -cos i sin k */
+      row_s[2 * k - 1] = -.5 * (sd + ss); /* -sin i cos k */
+      row_s[2 * k]     = .5 * (cd - cs);  /* sin i sin k */
+    }
+  }
+}
+
+static int grid_size(int m) {
+  int n = 64;
+  while (n < 8 * (m + 1)) n *= 2;
+  return n;
+}
+
+shb_status mhb_signals_create(int m, mhb_signals *signals) {
+  memset(signals, 0, sizeof *signals);
+  int    n = grid_size(m), half = n / 2 + 1;
+  size_t grid          = (size_t)n;
+  signals->m           = m;
+  signals->n_grid      = n;
+  signals->coefficient = calloc(3 * (size_t)mhb_real_size(m), sizeof(double));
+  signals->value       = calloc(3 * grid, sizeof(double));
+  signals->slope       = calloc(3 * grid, sizeof(double));
+  signals->spectrum    = fftw_alloc_complex(6 * (size_t)half);
+  signals->samples     = fftw_alloc_real(6 * grid);
+  if (signals->coefficient && signals->value && signals->slope && signals->spectrum &&
+      signals->samples) {
+    signals->plan =
+        fftw_plan_many_dft_c2r(1, &n, 6, signals->spectrum, NULL, 1, half, signals->samples, NULL,
+                               1, n, FFTW_ESTIMATE | FFTW_DESTROY_INPUT);
+  }
+  if (signals->plan) return SHB_OK;
+  mhb_signals_destroy(signals);
+  SHB_FAIL(SHB_ERR_IO, "out of memory for %d harmonics", m);
+}
+
+void mhb_signals_destroy(mhb_signals *signals) {
+  if (!signals) return;
+  if (signals->plan) fftw_destroy_plan(signals->plan);
+  fftw_free(signals->spectrum);
+  fftw_free(signals->samples);
+  free(signals->coefficient);
+  free(signals->value);
+  free(signals->slope);
+  memset(signals, 0, sizeof *signals);
+}
+
+static void set_bounds(mhb_signals *signals, int i, const double *a) {
+  double *bound = signals->bound[i];
+  bound[0]      = fabs(a[0]);
+  for (int j = 1; j < 5; j++) bound[j] = 0;
+  for (int k = 1; k <= signals->m; k++) {
+    double size = hypot(a[2 * k - 1], a[2 * k]);
+    for (int j = 0; j < 5; j++, size *= k) bound[j] += size;
+  }
+}
+
+void mhb_signals_set(mhb_signals *signals, const double *const a[3]) {
+  int m = signals->m, n = signals->n_grid, half = n / 2 + 1;
+  memset(signals->spectrum, 0, sizeof(fftw_complex) * 6 * (size_t)half);
+  for (int i = 0; i < 3; i++) {
+    fftw_complex *X = signals->spectrum + (size_t)i * (size_t)half, *dX = X + 3 * (size_t)half;
+    X[0] = a[i][0];
+    for (int k = 1; k <= m; k++) {
+      X[k]  = .5 * CMPLX(a[i][2 * k - 1], a[i][2 * k]);
+      dX[k] = k * CMPLX(-cimag(X[k]), creal(X[k]));
+    }
+    set_bounds(signals, i, a[i]);
+    for (int j = 0; j < mhb_real_size(m); j++) signals->coefficient[3 * j + i] = a[i][j];
+  }
+  fftw_execute(signals->plan);
+  for (int s = 0; s < n; s++) {
+    for (int i = 0; i < 3; i++) {
+      signals->value[3 * s + i] = signals->samples[i * n + s];
+      signals->slope[3 * s + i] = signals->samples[(i + 3) * n + s];
+    }
+  }
+}
+
+void mhb_signals_at(const mhb_signals *signals, double t, double y[3], double dy[3],
+                    double ddy[3]) {
+  double        c1 = cos(t), s1 = sin(t), c = 1, s = 0;
+  const double *a = signals->coefficient;
+  for (int i = 0; i < 3; i++) {
+    y[i]  = a[i];
+    dy[i] = 0;
+    if (ddy) ddy[i] = 0;
+  }
+  for (int k = 1; k <= signals->m; k++) {
+    double next = c * c1 - s * s1;
+    s           = s * c1 + c * s1;
+    c           = next;
+    a += k == 1 ? 3 : 6;
+    for (int i = 0; i < 3; i++) {
+      double even = a[i] * c - a[i + 3] * s;
+      y[i] += even;
+      dy[i] -= k * (a[i] * s + a[i + 3] * c);
+      if (ddy) ddy[i] -= (double)k * k * even;
+    }
+  }
+}
+
+void mhb_signals_with(const mhb_signals *signals, const double *basis, const double *basis_slope,
+                      double y[3], double dy[3]) {
+  const double *a = signals->coefficient;
+  for (int i = 0; i < 3; i++) y[i] = dy[i] = 0;
+  for (int j = 0; j < mhb_real_size(signals->m); j++, a += 3) {
+    for (int i = 0; i < 3; i++) {
+      y[i] += a[i] * basis[j];
+      dy[i] += a[i] * basis_slope[j];
+    }
+  }
+}

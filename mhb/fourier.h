@@ -1,0 +1,59 @@
+/* Trigonometric polynomials in real form, on a grid (FFTW) and at a point.
+ *
+ * A signal of m harmonics, x(t) = Re sum_{k=0..m} A_k exp(jkt), is held by 2m+1 real coefficients
+ *   a[0] = Re A_0,  a[2k-1] = Re A_k,  a[2k] = Im A_k     on the basis   1,  cos kt,  -sin kt,
+ * so that x = sum_i a[i] b_i(t) for motion and force alike. t is the phase, one period is 2 pi. */
+#ifndef MHB_FOURIER_H
+#define MHB_FOURIER_H
+
+#include <complex.h>
+#include <fftw3.h>
+
+#include "mesh/status.h"
+
+/* Number of real coefficients of m harmonics. */
+static inline int mhb_real_size(int m) {
+  return 2 * m + 1;
+}
+
+void mhb_to_real(int m, const double complex *A, double *a);
+void mhb_to_complex(int m, const double *a, double complex *A);
+
+/* basis[2m+1] at t; slope[2m+1] its derivative by t (may be NULL). */
+void mhb_basis(int m, double t, double *basis, double *slope);
+
+/* integral[0..2 n] over [t0, t1] of the basis up to harmonic n, added to what is there. */
+void mhb_basis_integral(int n, double t0, double t1, double *integral);
+
+/* integral over a set of intervals of b_i b_j, from the integrals of the basis up to harmonic p + q:
+ * product[i * ld + j], i < 2p+1, j < 2q+1 (Toeplitz + Hankel). */
+void mhb_basis_product(int p, int q, const double *integral, double *product, int ld);
+
+/* Three signals of up to m harmonics: values and slopes on a grid of n_grid points, evaluation anywhere. */
+typedef struct {
+  int           m;
+  int           n_grid;
+  double       *coefficient; /* [2m+1][3] */
+  double       *value;       /* [n_grid][3], t = 2 pi i/n_grid */
+  double       *slope;       /* [n_grid][3] */
+  double        bound[3][5]; /* [signal][j] = sum_k k^j |A_k| >= |d^j x/dt^j| */
+  fftw_complex *spectrum;    /* [6][n_grid/2 + 1] */
+  double       *samples;     /* [6][n_grid] */
+  fftw_plan     plan;
+} mhb_signals;
+
+/* FFTW plans are made here and only here. Not thread safe (FFTW's planner). SHB_ERR_IO: no memory. */
+shb_status mhb_signals_create(int m, mhb_signals *signals);
+void       mhb_signals_destroy(mhb_signals *signals);
+
+/* Take the coefficients a[signal][2m+1]; fill grid and bounds. O(n_grid log n_grid). */
+void mhb_signals_set(mhb_signals *signals, const double *const a[3]);
+
+/* Values, first and (unless NULL) second derivatives at t. O(m). */
+void mhb_signals_at(const mhb_signals *signals, double t, double y[3], double dy[3], double ddy[3]);
+
+/* The same sums when the basis at t is at hand. */
+void mhb_signals_with(const mhb_signals *signals, const double *basis, const double *basis_slope,
+                      double y[3], double dy[3]);
+
+#endif

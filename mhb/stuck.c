@@ -1,0 +1,200 @@
+#include "mhb/stuck.h"
+
+#include <float.h>
+#include <math.h>
+
+static const double TWO_PI = 6.283185307179586476925;
+
+/* |c + f| <= r at time t */
+typedef struct {
+  double f[2], r, t;
+} disc;
+
+enum { EXTRA = 48 };
+
+typedef struct {
+  const mhb_signals *signals;
+  double             mu, scale;
+  disc               extra[EXTRA]; /* refined times */
+  int                n_extra;
+} discs;
+
+static disc disc_of(const discs *set, double t, const double v[3]) {
+  const double *mean = set->signals->coefficient;
+  disc          d    = {.f = {v[1] - mean[1], v[2] - mean[2]}, .r = set->mu * v[0], .t = t};
+  return d;
+}
+
+static disc disc_at(const discs *set, int i) {
+  int n = set->signals->n_grid;
+  if (i >= n) return set->extra[i - n];
+  return disc_of(set, TWO_PI * i / n, set->signals->value + 3 * i);
+}
+
+static double violation(const disc *d, const double c[2]) {
+  return hypot(c[0] + d->f[0], c[1] + d->f[1]) - d->r;
+}
+
+/* Nearest point to the origin in one disc; in two discs: on both circles. 0 if the circles do not meet. */
+static void nearest_in(const disc *d, double c[2]) {
+  double size = hypot(d->f[0], d->f[1]);
+  double move = size > d->r ? 1 - d->r / size : 0;
+  c[0]        = -d->f[0] * move;
+  c[1]        = -d->f[1] * move;
+}
+
+static int on_both(const disc *a, const disc *b, double c[2]) {
+  double dx = a->f[0] - b->f[0], dy = a->f[1] - b->f[1], d = hypot(dx, dy);
+  if (d == 0 || d > a->r + b->r) return 0;
+  double along = (d * d + a->r * a->r - b->r * b->r) / (2 * d), h2 = a->r * a->r - along * along;
+  if (h2 < 0) return 0; /* one inside the other */
+  double h = sqrt(h2), ex = dx / d, ey = dy / d;
+  double px = -a->f[0] + along * ex, py = -a->f[1] + along * ey; /* from centre -f_a towards -f_b */
+  double sign = (-ey * px + ex * py) > 0 ? -1 : 1;
+  c[0]        = px - sign * h * ey;
+  c[1]        = py + sign * h * ex;
+  return 1;
+}
+
+/* Smallest c in the intersection of up to three discs; basis <- the active ones. 0: empty. */
+static int smallest_in(const disc d[3], int n, double slack, double c[2], int basis[2], int *size) {
+  for (int i = 0; i < n; i++) {
+    nearest_in(&d[i], c);
+    int inside = 1;
+    for (int j = 0; j < n; j++) inside &= j == i || violation(&d[j], c) <= slack;
+    if (!inside) continue;
+    basis[0] = i;
+    *size    = 1;
+    return 1;
+  }
+  double best = INFINITY, trial[2];
+  for (int i = 0; i < n; i++) {
+    for (int j = i + 1; j < n; j++) {
+      int other = 3 - i - j;
+      if (!on_both(&d[i], &d[j], trial)) continue;
+      if (n == 3 && violation(&d[other], trial) > slack) continue;
+      double norm = hypot(trial[0], trial[1]);
+      if (norm >= best) continue;
+      best     = norm;
+      c[0]     = trial[0];
+      c[1]     = trial[1];
+      basis[0] = i;
+      basis[1] = j;
+      *size    = 2;
+    }
+  }
+  return best < INFINITY;
+}
+
+/* Index of the worst violated disc and its violation. */
+static int worst_disc(const discs *set, const double c[2], double *worst) {
+  int total = set->signals->n_grid + set->n_extra, at = 0;
+  *worst = -INFINITY;
+  for (int i = 0; i < total; i++) {
+    disc   d = disc_at(set, i);
+    double v = violation(&d, c);
+    if (v <= *worst) continue;
+    *worst = v;
+    at     = i;
+  }
+  return at;
+}
+
+/* The discs known so far: add the worst violated one until none is. |c| grows at every step. */
+static int solve_known(const discs *set, mhb_stuck *stuck, disc active[3], int *n_active) {
+  double slack = 1e-13 * set->scale, worst;
+  for (int i = 0; i < 400; i++) {
+    int at = worst_disc(set, stuck->c, &worst);
+    if (worst <= slack) return 1;
+    active[*n_active] = disc_at(set, at);
+    int basis[2], size;
+    if (!smallest_in(active, *n_active + 1, slack, stuck->c, basis, &size)) return 0;
+    disc kept[2] = {active[basis[0]], active[size == 2 ? basis[1] : basis[0]]};
+    active[0]    = kept[0];
+    active[1]    = kept[1];
+    *n_active    = size;
+  }
+  return 1;
+}
+
+/* Local maximum of |c + f|^2 - r^2 near t by Newton on its slope. */
+static double refine(const discs *set, const double c[2], double t, double width) {
+  double start = t, mu2 = set->mu * set->mu;
+  for (int i = 0; i < 30; i++) {
+    double v[3], dv[3], ddv[3];
+    mhb_signals_at(set->signals, t, v, dv, ddv);
+    disc   d = disc_of(set, t, v);
+    double a = c[0] + d.f[0], b = c[1] + d.f[1];
+    double slope  = a * dv[1] + b * dv[2] - mu2 * v[0] * dv[0];
+    double second = a * ddv[1] + b * ddv[2] + dv[1] * dv[1] + dv[2] * dv[2] -
+                    mu2 * (v[0] * ddv[0] + dv[0] * dv[0]);
+    double step = second < 0 ? -slope / second : copysign(.25 * width, slope);
+    step        = fmax(-width, fmin(width, step));
+    t           = fmax(start - width, fmin(start + width, t + step));
+    if (fabs(step) < 1e-14) break;
+  }
+  return t;
+}
+
+/* Add refined times of local maxima that violate; the number added. */
+static int add_violated(discs *set, const double c[2]) {
+  int    n = set->signals->n_grid, added = 0;
+  double width = TWO_PI / n;
+  for (int i = 0; i < n && set->n_extra < EXTRA; i++) {
+    disc left = disc_at(set, (i + n - 1) % n), mid = disc_at(set, i),
+         right  = disc_at(set, (i + 1) % n);
+    double here = violation(&mid, c);
+    if (here < violation(&left, c) || here < violation(&right, c)) continue;
+    double v[3], dv[3], t = refine(set, c, mid.t, width);
+    mhb_signals_at(set->signals, t, v, dv, NULL);
+    disc d = disc_of(set, t, v);
+    if (violation(&d, c) <= 2e-13 * set->scale) continue;
+    set->extra[set->n_extra++] = d;
+    added++;
+  }
+  return added;
+}
+
+void mhb_stuck_solve(const mhb_signals *signals, double mu, mhb_stuck *stuck) {
+  discs set       = {.signals = signals, .mu = mu};
+  set.scale       = signals->bound[1][0] + signals->bound[2][0] + DBL_MIN;
+  disc active[3]  = {{{0}, 0, 0}};
+  int  n_active   = 0;
+  stuck->c[0]     = 0;
+  stuck->c[1]     = 0;
+  stuck->feasible = solve_known(&set, stuck, active, &n_active);
+  for (int i = 0; i < 12 && stuck->feasible; i++) {
+    if (!add_violated(&set, stuck->c)) break;
+    stuck->feasible = solve_known(&set, stuck, active, &n_active);
+  }
+  stuck->n_active = n_active;
+  for (int i = 0; i < n_active; i++) stuck->time[i] = active[i].t;
+}
+
+/* One active disc: c = -f (1 - r/|f|). Two: (c + f_i).dc = r_i dr_i - (c + f_i).df_i. The active time itself drops
+ * out: the constraint is stationary there. */
+void mhb_stuck_derivative(const mhb_signals *signals, double mu, const mhb_stuck *stuck,
+                          const double dn[2], const double dx[2][2], double dc[2]) {
+  discs set = {.signals = signals, .mu = mu};
+  dc[0] = dc[1] = 0;
+  double row[2][2], rhs[2], v[3], dv[3];
+  for (int i = 0; i < stuck->n_active; i++) {
+    mhb_signals_at(signals, stuck->time[i], v, dv, NULL);
+    disc   d    = disc_of(&set, stuck->time[i], v);
+    double size = hypot(d.f[0], d.f[1]), e[2] = {d.f[0] / size, d.f[1] / size};
+    if (stuck->n_active == 1) {
+      double radial = e[0] * dx[i][0] + e[1] * dx[i][1], ratio = d.r / size;
+      for (int k = 0; k < 2; k++)
+        dc[k] = -(1 - ratio) * dx[i][k] - ratio * radial * e[k] + mu * dn[i] * e[k];
+      return;
+    }
+    for (int k = 0; k < 2; k++) row[i][k] = stuck->c[k] + d.f[k];
+    rhs[i] = d.r * mu * dn[i] - row[i][0] * dx[i][0] - row[i][1] * dx[i][1];
+  }
+  if (stuck->n_active < 2) return;
+  double det   = row[0][0] * row[1][1] - row[0][1] * row[1][0];
+  double small = 1e-8 * (hypot(row[0][0], row[0][1]) * hypot(row[1][0], row[1][1]));
+  if (fabs(det) < small) det = copysign(small, det); /* tangent discs: the derivative is capped */
+  dc[0] = (rhs[0] * row[1][1] - rhs[1] * row[0][1]) / det;
+  dc[1] = (row[0][0] * rhs[1] - row[1][0] * rhs[0]) / det;
+}

@@ -1,0 +1,1 @@
+shb_test(mhb contact fast shb_contact)
