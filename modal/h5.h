@@ -26,12 +26,15 @@ typedef struct {
 
 size_t h5_count(h5_shape shape); /* number of elements */
 
-/* Create a file (truncating); open one read-only. Errors: SHB_ERR_IO, with a text that tells missing,
- * not HDF5, truncated apart. */
+/* Create a file (truncating); open one read-only. A created file is built in memory and reaches the disk in
+ * h5_close. Errors: SHB_ERR_IO, with a text that tells missing, unreadable, not HDF5, truncated apart. */
 shb_status h5_create(const char *path, hid_t *file);
 shb_status h5_open(const char *path, hid_t *file);
-/* Flush, close; SHB_ERR_IO if anything could not be written (a full disk). */
+/* Write a created file to the disk; close. SHB_ERR_IO if it could not be written whole (a full disk): it is
+ * then removed. The handle is closed in any case; a negative one does nothing. */
 shb_status h5_close(hid_t file);
+/* Close without writing and remove a created file: for the way out after an error. */
+void h5_abandon(hid_t file);
 
 /* Write path below at (groups in between are created). */
 shb_status h5_write_double(hid_t at, const char *path, h5_shape shape, const double *data,
