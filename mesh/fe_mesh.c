@@ -1,0 +1,74 @@
+#include "mesh/fe_mesh.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+const char *mesh_set_name(mesh_set_id id) {
+  static const char *const name[MESH_N_SETS] = {"root", "contact_right", "contact_left", "load"};
+  return name[id];
+}
+
+/* Tangential component of the summed area normals of a set (corner triangles), m2. */
+static double facing(const mesh_fe *mesh, const mesh_face_set *set, mesh_axis axis) {
+  double sum = 0;
+  for (int f = 0; f < set->n; f++) {
+    const double *x[3];
+    double        a[3], b[3], centre[3], axes[3][3];
+    for (int c = 0; c < 3; c++) x[c] = mesh->coordinates + 3 * (size_t)set->nodes[6 * f + c];
+    for (int d = 0; d < 3; d++) {
+      a[d]      = x[1][d] - x[0][d];
+      b[d]      = x[2][d] - x[0][d];
+      centre[d] = (x[0][d] + x[1][d] + x[2][d]) / 3;
+    }
+    mesh_axes_at(axis, centre, axes);
+    double normal[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
+                        a[0] * b[1] - a[1] * b[0]};
+    for (int d = 0; d < 3; d++) sum += 0.5 * normal[d] * axes[0][d];
+  }
+  return sum;
+}
+
+shb_status mesh_fe_orient(mesh_fe *mesh, mesh_axis axis) {
+  mesh_face_set *right = &mesh->set[MESH_CONTACT_RIGHT], *left = &mesh->set[MESH_CONTACT_LEFT];
+  if (!right->n || !left->n) return SHB_OK;
+  double r = facing(mesh, right, axis), l = facing(mesh, left, axis);
+  SHB_CHECK(
+      r * l<0, SHB_ERR_INPUT,
+              "groups contact_right and contact_left both face the %s side of the blade about the "
+              "engine axis; one must face each neighbour",
+              r + l> 0
+          ? "right"
+          : "left");
+  if (r < 0) {
+    mesh_face_set swap = *right;
+    *right             = *left;
+    *left              = swap;
+  }
+  return SHB_OK;
+}
+
+int mesh_fe_nearest(const mesh_fe *mesh, const double point[3]) {
+  int    nearest = 0;
+  double best    = INFINITY;
+  for (int i = 0; i < mesh->n_nodes; i++) {
+    const double *x = mesh->coordinates + 3 * (size_t)i;
+    double        d[3];
+    for (int k = 0; k < 3; k++) d[k] = x[k] - point[k];
+    double distance = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+    if (distance < best) {
+      best    = distance;
+      nearest = i;
+    }
+  }
+  return nearest;
+}
+
+void mesh_fe_free(mesh_fe *mesh) {
+  free(mesh->coordinates);
+  free(mesh->connectivity);
+  free(mesh->node_tag);
+  free(mesh->element_tag);
+  for (int s = 0; s < MESH_N_SETS; s++) free(mesh->set[s].nodes);
+  memset(mesh, 0, sizeof *mesh);
+}

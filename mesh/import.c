@@ -1,0 +1,232 @@
+#include "mesh/import.h"
+
+#include <gmshc.h>
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "mesh/faces.h"
+#include "mesh/kernel.h"
+
+enum { GMSH_TET4 = 4, GMSH_TRI6 = 9, GMSH_TET10 = 11 };
+
+/* gmsh's nodes, found by tag. */
+typedef struct {
+  size_t  n;
+  size_t *tag;    /* [n] */
+  double *xyz;    /* [n][3] m */
+  size_t *by_tag; /* [n][2] tag, place in tag[]; ascending */
+  int    *index;  /* [n] index in the mesh, -1: unused */
+} node_table;
+
+static int by_first(const void *a, const void *b) {
+  size_t p = *(const size_t *)a, q = *(const size_t *)b;
+  return (p > q) - (p < q);
+}
+
+static void table_free(node_table *table) {
+  gmshFree(table->tag);
+  gmshFree(table->xyz);
+  free(table->by_tag);
+  free(table->index);
+}
+
+static shb_status table_fill(const char *name, node_table *table) {
+  double *unused = NULL;
+  size_t  n_xyz = 0, n_unused = 0;
+  GMSH_TRY(name, gmshModelMeshGetNodes(&table->tag, &table->n, &table->xyz, &n_xyz, &unused,
+                                       &n_unused, -1, -1, 0, 0, &ierr));
+  gmshFree(unused);
+  SHB_CHECK(table->n > 0 && n_xyz == 3 * table->n, SHB_ERR_INPUT, "%s: no nodes", name);
+  SHB_CHECK(table->n < INT_MAX / 10, SHB_ERR_INPUT, "%s: %zu nodes are too many", name, table->n);
+  table->by_tag = malloc(2 * table->n * sizeof *table->by_tag);
+  table->index  = malloc(table->n * sizeof *table->index);
+  SHB_CHECK(table->by_tag && table->index, SHB_ERR_IO, "%s: no memory for its nodes", name);
+  for (size_t i = 0; i < table->n; i++) {
+    table->by_tag[2 * i]     = table->tag[i];
+    table->by_tag[2 * i + 1] = i;
+    table->index[i]          = -1;
+  }
+  qsort(table->by_tag, table->n, 2 * sizeof *table->by_tag, by_first);
+  return SHB_OK;
+}
+
+/* Place of a tag in the table, or n. */
+static size_t table_find(const node_table *table, size_t tag) {
+  const size_t *found = bsearch(&tag, table->by_tag, table->n, 2 * sizeof *table->by_tag, by_first);
+  return found ? found[1] : table->n;
+}
+
+static shb_status check_types(const char *name) {
+  int   *types = NULL;
+  size_t n     = 0;
+  int    odd   = 0;
+  GMSH_TRY(name, gmshModelMeshGetElementTypes(&types, &n, 3, -1, &ierr));
+  for (size_t i = 0; i < n; i++)
+    if (types[i] != GMSH_TET10) odd = types[i];
+  gmshFree(types);
+  SHB_CHECK(
+      n > 0, SHB_ERR_INPUT,
+      "%s: no volume elements; a mesh of ten-node tetrahedra is needed (with physical groups, "
+      "the body must be in one too)",
+      name);
+  SHB_CHECK(odd != GMSH_TET4, SHB_ERR_INPUT,
+            "%s: linear (four-node) tetrahedra; second order is needed (ten nodes: gmsh -order 2)",
+            name);
+  SHB_CHECK(odd == 0, SHB_ERR_INPUT,
+            "%s: volume elements of gmsh type %d; only ten-node tetrahedra (type 11) are supported",
+            name, odd);
+  return SHB_OK;
+}
+
+/* connectivity[i] = place in the table for now; marks the nodes used. */
+static shb_status take_connectivity(const char *name, node_table *table, const size_t *tags,
+                                    const size_t *nodes, mesh_fe *mesh) {
+  for (size_t i = 0; i < 10 * (size_t)mesh->n_elements; i++) {
+    size_t place = table_find(table, nodes[i]);
+    SHB_CHECK(place < table->n, SHB_ERR_INPUT, "%s: element %zu uses node %zu, which is absent",
+              name, tags[i / 10], nodes[i]);
+    mesh->connectivity[i] = (int)place;
+    table->index[place]   = 0;
+  }
+  for (int e = 0; e < mesh->n_elements; e++) mesh->element_tag[e] = (long)tags[e];
+  return SHB_OK;
+}
+
+/* Number the used nodes by ascending tag and copy them. */
+static shb_status take_nodes(const char *name, node_table *table, mesh_fe *mesh) {
+  mesh->n_nodes = 0;
+  for (size_t i = 0; i < table->n; i++) {
+    size_t place = table->by_tag[2 * i + 1];
+    if (table->index[place] >= 0) table->index[place] = mesh->n_nodes++;
+  }
+  mesh->coordinates = malloc(3 * (size_t)mesh->n_nodes * sizeof *mesh->coordinates);
+  mesh->node_tag    = malloc((size_t)mesh->n_nodes * sizeof *mesh->node_tag);
+  SHB_CHECK(mesh->coordinates && mesh->node_tag, SHB_ERR_IO, "%s: no memory for its nodes", name);
+  for (size_t i = 0; i < table->n; i++) {
+    int at = table->index[i];
+    if (at < 0) continue;
+    memcpy(mesh->coordinates + 3 * (size_t)at, table->xyz + 3 * i, 3 * sizeof(double));
+    mesh->node_tag[at] = (long)table->tag[i];
+  }
+  for (size_t i = 0; i < 10 * (size_t)mesh->n_elements; i++)
+    mesh->connectivity[i] = table->index[mesh->connectivity[i]];
+  return SHB_OK;
+}
+
+static shb_status take_volume(const char *name, node_table *table, mesh_fe *mesh) {
+  size_t *tags = NULL, *nodes = NULL, n = 0, n_nodes = 0;
+  GMSH_TRY(name, gmshModelMeshGetElementsByType(GMSH_TET10, &tags, &n, &nodes, &n_nodes, -1, 0, 1,
+                                                &ierr));
+  shb_status status = SHB_OK;
+  if (n < INT_MAX / 10 && n_nodes == 10 * n) {
+    mesh->n_elements   = (int)n;
+    mesh->connectivity = malloc(10 * n * sizeof *mesh->connectivity);
+    mesh->element_tag  = malloc(n * sizeof *mesh->element_tag);
+    if (mesh->connectivity && mesh->element_tag) {
+      status = take_connectivity(name, table, tags, nodes, mesh);
+    } else {
+      status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "%s: no memory for its elements", name);
+    }
+  } else {
+    status = shb_fail(SHB_ERR_INPUT, __FILE__, __LINE__, "%s: %zu elements are too many", name, n);
+  }
+  gmshFree(tags);
+  gmshFree(nodes);
+  if (status == SHB_OK) status = take_nodes(name, table, mesh);
+  return status;
+}
+
+/* Append n faces, given by node tags, to a set. */
+static shb_status append_faces(const char *name, const node_table *table, const size_t *nodes,
+                               size_t n, mesh_fe *mesh, mesh_set_id id) {
+  mesh_face_set *set  = &mesh->set[id];
+  int           *grow = realloc(set->nodes, 6 * ((size_t)set->n + n + 1) * sizeof *grow);
+  SHB_CHECK(grow, SHB_ERR_IO, "%s: no memory for its groups", name);
+  set->nodes = grow;
+  for (size_t i = 0; i < 6 * n; i++) {
+    size_t place = table_find(table, nodes[i]);
+    SHB_CHECK(place < table->n && table->index[place] >= 0, SHB_ERR_INPUT,
+              "%s: group %s: node %zu belongs to no tetrahedron", name, mesh_set_name(id),
+              nodes[i]);
+    grow[6 * (size_t)set->n + i] = table->index[place];
+  }
+  set->n += (int)n;
+  return SHB_OK;
+}
+
+static shb_status take_surface(const char *name, const node_table *table, int entity, mesh_fe *mesh,
+                               mesh_set_id id) {
+  int   *types   = NULL;
+  size_t n_types = 0;
+  int    odd     = 0;
+  GMSH_TRY(name, gmshModelMeshGetElementTypes(&types, &n_types, 2, entity, &ierr));
+  for (size_t i = 0; i < n_types; i++)
+    if (types[i] != GMSH_TRI6) odd = types[i];
+  gmshFree(types);
+  SHB_CHECK(odd == 0, SHB_ERR_INPUT,
+            "%s: group %s holds faces of gmsh type %d; only six-node triangles (type 9) are "
+            "supported",
+            name, mesh_set_name(id), odd);
+  if (n_types == 0) return SHB_OK;
+  size_t *tags = NULL, *nodes = NULL, n = 0, n_nodes = 0;
+  GMSH_TRY(name, gmshModelMeshGetElementsByType(GMSH_TRI6, &tags, &n, &nodes, &n_nodes, entity, 0,
+                                                1, &ierr));
+  shb_status status = append_faces(name, table, nodes, n, mesh, id);
+  gmshFree(tags);
+  gmshFree(nodes);
+  return status;
+}
+
+/* Which of our sets a physical surface is; MESH_N_SETS if none. */
+static shb_status which_set(const char *name, int group, mesh_set_id *id) {
+  char *label = NULL;
+  GMSH_TRY(name, gmshModelGetPhysicalName(2, group, &label, &ierr));
+  *id = MESH_ROOT;
+  while (*id < MESH_N_SETS && (!label || strcmp(label, mesh_set_name(*id)) != 0)) ++*id;
+  gmshFree(label);
+  return SHB_OK;
+}
+
+static shb_status take_group(const char *name, const node_table *table, int group, mesh_fe *mesh) {
+  mesh_set_id id = MESH_ROOT;
+  SHB_TRY(which_set(name, group, &id));
+  if (id == MESH_N_SETS) return SHB_OK;
+  int   *entities = NULL;
+  size_t n        = 0;
+  GMSH_TRY(name, gmshModelGetEntitiesForPhysicalGroup(2, group, &entities, &n, &ierr));
+  shb_status status = SHB_OK;
+  for (size_t i = 0; i < n && status == SHB_OK; i++)
+    status = take_surface(name, table, entities[i], mesh, id);
+  gmshFree(entities);
+  return status;
+}
+
+static shb_status take_groups(const char *name, const node_table *table, mesh_fe *mesh) {
+  int   *groups = NULL;
+  size_t n      = 0;
+  GMSH_TRY(name, gmshModelGetPhysicalGroups(&groups, &n, 2, &ierr));
+  shb_status status = SHB_OK;
+  for (size_t i = 0; i + 1 < n && status == SHB_OK; i += 2)
+    status = take_group(name, table, groups[i + 1], mesh);
+  gmshFree(groups);
+  SHB_TRY(status);
+  SHB_CHECK(mesh->set[MESH_ROOT].n > 0, SHB_ERR_INPUT,
+            "%s: group root is absent or empty; a physical surface named root says which faces are "
+            "clamped",
+            name);
+  return SHB_OK;
+}
+
+shb_status mesh_import(const char *name, mesh_fe *mesh) {
+  memset(mesh, 0, sizeof *mesh);
+  node_table table  = {0};
+  shb_status status = check_types(name);
+  if (status == SHB_OK) status = table_fill(name, &table);
+  if (status == SHB_OK) status = take_volume(name, &table, mesh);
+  if (status == SHB_OK) status = take_groups(name, &table, mesh);
+  if (status == SHB_OK) status = mesh_faces_orient(mesh, name);
+  table_free(&table);
+  if (status != SHB_OK) mesh_fe_free(mesh);
+  return status;
+}

@@ -1,0 +1,84 @@
+/* Reading a gmsh .msh file. */
+#define _GNU_SOURCE /* memmem */
+#include <errno.h>
+#include <gmshc.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "mesh/fe_mesh.h"
+#include "mesh/import.h"
+#include "mesh/kernel.h"
+#include "mesh/tet10.h"
+
+/* First line $MeshFormat (comments may come before it), then version 2.2 or 4.1. gmsh takes anything else
+ * for a script of its own language, so it must not see a file that fails here. */
+static shb_status check_head(FILE *file, const char *path) {
+  char line[256] = "";
+  bool comment   = false;
+  while (fgets(line, sizeof line, file)) {
+    if (strncmp(line, "$Comments", 9) == 0) comment = true;
+    if (!comment && strspn(line, " \t\r\n") != strlen(line)) break;
+    if (strncmp(line, "$EndComments", 12) == 0) comment = false;
+  }
+  double version = 0;
+  SHB_CHECK(strncmp(line, "$MeshFormat", 11) == 0 && fgets(line, sizeof line, file) &&
+                sscanf(line, "%lf", &version) == 1,
+            SHB_ERR_INPUT, "%s: not a gmsh mesh file (it does not begin with $MeshFormat)", path);
+  SHB_CHECK(version == 2.2 || version == 4.1, SHB_ERR_INPUT,
+            "%s: mesh format %g; 2.2 or 4.1 is needed (gmsh -format msh41)", path, version);
+  return SHB_OK;
+}
+
+/* Is mark anywhere in the file? Blocks overlap by the mark's length. */
+static bool holds(FILE *file, const char *mark) {
+  enum { BLOCK = 1 << 18 };
+  size_t length = strlen(mark), kept = 0;
+  char  *buffer = malloc(BLOCK + 64);
+  bool   found  = false;
+  rewind(file);
+  for (size_t n; buffer && !found && (n = fread(buffer + kept, 1, BLOCK, file)) > 0;) {
+    n += kept;
+    found = memmem(buffer, n, mark, length) != NULL;
+    kept  = n < length ? n : length;
+    memmove(buffer, buffer + n - kept, kept);
+  }
+  free(buffer);
+  return found;
+}
+
+static shb_status check_file(const char *path) {
+  FILE *file = fopen(path, "rb");
+  SHB_CHECK(file, SHB_ERR_IO, "%s: cannot be read: %s", path, strerror(errno));
+  shb_status status = check_head(file, path);
+  if (status == SHB_OK && !holds(file, "$EndNodes"))
+    status = shb_fail(SHB_ERR_INPUT, __FILE__, __LINE__,
+                      "%s: cut short or without nodes (no $EndNodes)", path);
+  if (status == SHB_OK && !holds(file, "$EndElements"))
+    status = shb_fail(SHB_ERR_INPUT, __FILE__, __LINE__,
+                      "%s: cut short or without elements (no $EndElements)", path);
+  fclose(file);
+  return status;
+}
+
+static shb_status open_and_import(const char *path, mesh_fe *mesh) {
+  GMSH_TRY(path, gmshMerge(path, &ierr));
+  SHB_TRY(mesh_import(path, mesh));
+  shb_status status = mesh_tet10_check(mesh, path);
+  if (status != SHB_OK) mesh_fe_free(mesh);
+  return status;
+}
+
+shb_status mesh_fe_read(const char *path, mesh_fe *mesh) {
+  memset(mesh, 0, sizeof *mesh);
+  size_t length = strlen(path);
+  SHB_CHECK(length > 4 && strcmp(path + length - 4, ".msh") == 0, SHB_ERR_INPUT,
+            "%s: not a gmsh mesh file; its name must end in .msh", path);
+  SHB_TRY(check_file(path));
+  mesh_kernel kernel;
+  SHB_TRY(mesh_kernel_open(&kernel));
+  shb_status status = open_and_import(path, mesh);
+  mesh_kernel_close(&kernel);
+  return status;
+}
