@@ -1,0 +1,207 @@
+#include "fem/assemble.h"
+
+#include <string.h>
+
+#include "fem/partition.h"
+
+/* Elements around each block row of this rank: element[start[r - first]] .. element[start[r - first + 1] - 1]. */
+typedef struct {
+  int *start, *element;
+} incidence;
+
+static void find_free(const mesh_fe *mesh, bool *is_free) {
+  const mesh_face_set *root = &mesh->set[MESH_ROOT];
+  for (int i = 0; i < mesh->n_nodes; i++) is_free[i] = true;
+  for (int i = 0; i < 6 * root->n; i++) is_free[root->nodes[i]] = false;
+}
+
+/* Free nodes get block rows rank by rank, in mesh order inside a rank. */
+static PetscErrorCode number_nodes(const mesh_fe *mesh, fem_system *system) {
+  bool     *is_free;
+  int      *rank_of, rank, n_ranks;
+  PetscInt *next;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(system->comm, &rank));
+  PetscCallMPI(MPI_Comm_size(system->comm, &n_ranks));
+  PetscCall(PetscMalloc3(mesh->n_nodes, &is_free, mesh->n_nodes, &rank_of, n_ranks + 1, &next));
+  find_free(mesh, is_free);
+  PetscCall(fem_partition(mesh, is_free, n_ranks, rank_of));
+  PetscCall(PetscArrayzero(next, n_ranks + 1));
+  for (int i = 0; i < mesh->n_nodes; i++)
+    if (is_free[i]) next[rank_of[i] + 1]++;
+  for (int r = 0; r < n_ranks; r++) next[r + 1] += next[r];
+  system->n_free = next[n_ranks];
+  system->first  = next[rank];
+  system->last   = next[rank + 1];
+  PetscCall(PetscMalloc1(mesh->n_nodes, &system->row));
+  for (int i = 0; i < mesh->n_nodes; i++) system->row[i] = is_free[i] ? next[rank_of[i]]++ : -1;
+  PetscCall(PetscFree3(is_free, rank_of, next));
+  PetscFunctionReturn(0);
+}
+
+static bool is_own(const fem_system *system, PetscInt row) {
+  return row >= system->first && row < system->last;
+}
+
+static PetscErrorCode find_incidence(const mesh_fe *mesh, const fem_system *system,
+                                     incidence *around) {
+  const int n_own = (int)(system->last - system->first), n = 10 * mesh->n_elements;
+  int      *next;
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(n_own + 1, &around->start));
+  for (int i = 0; i < n; i++) {
+    PetscInt row = system->row[mesh->connectivity[i]];
+    if (is_own(system, row)) around->start[row - system->first + 1]++;
+  }
+  for (int r = 0; r < n_own; r++) around->start[r + 1] += around->start[r];
+  PetscCall(PetscMalloc1(around->start[n_own], &around->element));
+  PetscCall(PetscMalloc1(n_own, &next));
+  PetscCall(PetscArraycpy(next, around->start, n_own));
+  for (int i = 0; i < n; i++) {
+    PetscInt row = system->row[mesh->connectivity[i]];
+    if (is_own(system, row)) around->element[next[row - system->first]++] = i / 10;
+  }
+  PetscCall(PetscFree(next));
+  PetscFunctionReturn(0);
+}
+
+/* Exact numbers of blocks a row, upper triangle: diagonal (own columns) and off-diagonal part. */
+static PetscErrorCode count_blocks(const mesh_fe *mesh, const fem_system *system,
+                                   const incidence *around, PetscInt *diagonal,
+                                   PetscInt *off_diagonal) {
+  PetscInt *seen; /* last row in which this column was counted, plus 1 */
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(system->n_free, &seen));
+  for (PetscInt row = system->first; row < system->last; row++) {
+    PetscInt r      = row - system->first;
+    diagonal[r]     = 0;
+    off_diagonal[r] = 0;
+    for (int k = around->start[r]; k < around->start[r + 1]; k++)
+      for (int i = 0; i < 10; i++) {
+        PetscInt column = system->row[mesh->connectivity[10 * around->element[k] + i]];
+        if (column < row || seen[column] == row + 1) continue;
+        seen[column] = row + 1;
+        if (column < system->last)
+          diagonal[r]++;
+        else
+          off_diagonal[r]++;
+      }
+  }
+  PetscCall(PetscFree(seen));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode create_matrix(const fem_system *system, const PetscInt *diagonal,
+                                    const PetscInt *off_diagonal, Mat *A) {
+  const PetscInt n_own = 3 * (system->last - system->first), n = 3 * system->n_free;
+  PetscFunctionBeginUser;
+  PetscCall(MatCreate(system->comm, A));
+  PetscCall(MatSetSizes(*A, n_own, n_own, n, n));
+  PetscCall(MatSetType(*A, MATSBAIJ));
+  PetscCall(MatSeqSBAIJSetPreallocation(*A, 3, 0, diagonal));
+  PetscCall(MatMPISBAIJSetPreallocation(*A, 3, 0, diagonal, 0, off_diagonal));
+  PetscCall(MatSetOption(*A, MAT_IGNORE_LOWER_TRIANGULAR, PETSC_TRUE));
+  PetscCall(MatSetOption(*A, MAT_NO_OFF_PROC_ENTRIES, PETSC_TRUE));
+  PetscCall(MatSetOption(*A, MAT_SPD, PETSC_TRUE));
+  PetscFunctionReturn(0);
+}
+
+/* rows: block row where it is ours, else -1 (ignored by PETSc); columns: block row, -1 clamped. */
+static bool element_rows(const mesh_fe *mesh, const fem_system *system, int element,
+                         PetscInt rows[10], PetscInt columns[10]) {
+  bool touches = false;
+  for (int i = 0; i < 10; i++) {
+    columns[i] = system->row[mesh->connectivity[10 * element + i]];
+    rows[i]    = is_own(system, columns[i]) ? columns[i] : -1;
+    touches    = touches || rows[i] >= 0;
+  }
+  return touches;
+}
+
+static PetscErrorCode add_elements(const mesh_fe *mesh, const fem_material *material,
+                                   const fem_tet10 *element, const fem_system *system) {
+  PetscFunctionBeginUser;
+  for (int e = 0; e < mesh->n_elements; e++) {
+    PetscInt rows[10], columns[10];
+    double   x[10][3], K[30][30], m[10][10], M[30][30] = {{0}};
+    if (!element_rows(mesh, system, e, rows, columns)) continue;
+    for (int i = 0; i < 10; i++)
+      memcpy(x[i], mesh->coordinates + 3 * (size_t)mesh->connectivity[10 * e + i], sizeof x[i]);
+    fem_tet10_stiffness(element, material, x, K);
+    fem_tet10_mass(element, material->rho, x, m);
+    for (int i = 0; i < 10; i++)
+      for (int j = 0; j < 10; j++)
+        for (int d = 0; d < 3; d++) M[3 * i + d][3 * j + d] = m[i][j];
+    PetscCall(MatSetValuesBlocked(system->K, 10, rows, 10, columns, &K[0][0], ADD_VALUES));
+    PetscCall(MatSetValuesBlocked(system->M, 10, rows, 10, columns, &M[0][0], ADD_VALUES));
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode finish(Mat A) {
+  PetscFunctionBeginUser;
+  PetscCall(MatAssemblyBegin(A, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(A, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode fem_system_create(MPI_Comm comm, const mesh_fe *mesh, const fem_material *material,
+                                 fem_mass_rule mass, fem_system *system) {
+  fem_tet10 *element;
+  incidence  around;
+  PetscInt  *diagonal, *off_diagonal;
+
+  PetscFunctionBeginUser;
+  memset(system, 0, sizeof *system);
+  system->comm    = comm;
+  system->n_nodes = mesh->n_nodes;
+  PetscCall(number_nodes(mesh, system));
+  const PetscInt n_own = system->last - system->first;
+  PetscCall(find_incidence(mesh, system, &around));
+  PetscCall(PetscMalloc2(n_own, &diagonal, n_own, &off_diagonal));
+  PetscCall(count_blocks(mesh, system, &around, diagonal, off_diagonal));
+  PetscCall(create_matrix(system, diagonal, off_diagonal, &system->K));
+  PetscCall(create_matrix(system, diagonal, off_diagonal, &system->M));
+  PetscCall(PetscFree2(diagonal, off_diagonal));
+  PetscCall(PetscFree(around.start));
+  PetscCall(PetscFree(around.element));
+  PetscCall(PetscNew(&element));
+  PetscCall(fem_tet10_create(mass, element));
+  PetscCall(add_elements(mesh, material, element, system));
+  PetscCall(PetscFree(element));
+  PetscCall(finish(system->K));
+  PetscCall(finish(system->M));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode fem_system_gather(const fem_system *system, Vec x, double *nodal) {
+  Vec                all;
+  VecScatter         scatter;
+  const PetscScalar *value;
+  int                rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(system->comm, &rank));
+  PetscCall(VecScatterCreateToZero(x, &scatter, &all));
+  PetscCall(VecScatterBegin(scatter, x, all, INSERT_VALUES, SCATTER_FORWARD));
+  PetscCall(VecScatterEnd(scatter, x, all, INSERT_VALUES, SCATTER_FORWARD));
+  if (rank == 0) {
+    PetscCall(VecGetArrayRead(all, &value));
+    for (int i = 0; i < system->n_nodes; i++)
+      for (int d = 0; d < 3; d++)
+        nodal[3 * (size_t)i + d] = system->row[i] < 0 ? 0 : value[3 * system->row[i] + d];
+    PetscCall(VecRestoreArrayRead(all, &value));
+  }
+  PetscCall(VecScatterDestroy(&scatter));
+  PetscCall(VecDestroy(&all));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode fem_system_destroy(fem_system *system) {
+  PetscFunctionBeginUser;
+  PetscCall(MatDestroy(&system->K));
+  PetscCall(MatDestroy(&system->M));
+  PetscCall(PetscFree(system->row));
+  PetscFunctionReturn(0);
+}

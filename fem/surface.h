@@ -1,0 +1,27 @@
+/* Integrals over six-node faces: nodal areas, and the nodal forces of a load. */
+#ifndef FEM_SURFACE_H
+#define FEM_SURFACE_H
+
+#include "fem/load.h"
+#include "fem/quadrature.h"
+#include "mesh/fe_mesh.h"
+
+/* Integrals of one face.
+ *   x       in   [6][3] m
+ *   area    out  [6]    integral of N_i dA, m2 (zero at the corners of a flat straight-sided face)
+ *   normal  out  [6][3] integral of N_i n dA, m2, n the outward unit normal */
+void fem_tri6_integrate(const fem_tri_rule *rule, const double x[6][3], double area[6],
+                        double normal[6][3]);
+
+/* Coordinates of face f of a set. */
+void fem_face_coordinates(const mesh_fe *mesh, const mesh_face_set *set, int face, double x[6][3]);
+
+/* Consistent nodal forces of the load's spatial pattern (before the factors of its harmonics).
+ *   fallback  in   point where a force acts whose load->has_at is false (the first probe); NULL: none
+ *   force     out  [n_nodes][3] N, mesh axes
+ * Pressure p acts as the traction -p n, n outward: positive pushes into the surface.
+ * Errors: SHB_ERR_INPUT if the group load is needed and missing, or a force has no place. */
+shb_status fem_load_pattern(const mesh_fe *mesh, const fem_load *load, const double *fallback,
+                            double *force);
+
+#endif

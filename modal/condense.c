@@ -1,0 +1,175 @@
+#include "modal/condense.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "fem/fault.h"
+
+enum { BATCH = 32 }; /* right-hand sides a solve: beyond this MUMPS gains nothing, memory grows */
+
+static const double two_pi = 6.28318530717958647692;
+
+/* Matrices of one batch, and where its columns go. */
+typedef struct {
+  const fem_system         *system;
+  const modal_eigen        *eigen;
+  const modal_condensation *to;
+  Mat                       B, X, Y;         /* [3 n_free][batch] */
+  double                   *contact, *probe; /* [dof][batch] samples of X */
+} workspace;
+
+static shb_status allocate(const modal_condensation *to, int n_modes, modal_model *model) {
+  const size_t m = (size_t)n_modes, pairs = (size_t)to->n_pairs, nc = (size_t)to->contact.n;
+  const size_t q3 = (size_t)to->probe.n, k = (size_t)to->excitation->n_harmonics + 1;
+  model->n_modes                = n_modes;
+  model->n_pairs                = to->n_pairs;
+  model->has_left               = to->has_left;
+  model->n_probes               = to->probe.n / 3;
+  model->n_load                 = to->excitation->n_harmonics;
+  model->frequency              = calloc(m, sizeof(double));
+  model->damping_ratio          = calloc(m, sizeof(double));
+  model->mode_residual          = calloc(m, sizeof(double));
+  model->right                  = calloc(3 * pairs * m, sizeof(double));
+  model->left                   = to->has_left ? calloc(3 * pairs * m, sizeof(double)) : NULL;
+  model->residual_flexibility   = calloc(nc * nc, sizeof(double));
+  model->residual_inertia       = calloc(nc * nc, sizeof(double));
+  model->modal_force            = calloc(k * m, sizeof(double complex));
+  model->load_residual          = calloc(k * nc, sizeof(double complex));
+  model->probe                  = calloc(q3 * m + 1, sizeof(double));
+  model->probe_contact_residual = calloc(q3 * nc + 1, sizeof(double));
+  model->probe_load_residual    = calloc(k * q3 + 1, sizeof(double complex));
+  SHB_CHECK(model->frequency && model->damping_ratio && model->mode_residual && model->right &&
+                (model->left || !to->has_left) && model->residual_flexibility &&
+                model->residual_inertia && model->modal_force && model->load_residual &&
+                model->probe && model->probe_contact_residual && model->probe_load_residual,
+            SHB_ERR_IO, "out of memory for a modal model of %zu contact dofs", nc);
+  return SHB_OK;
+}
+
+static PetscErrorCode fill_shapes(const workspace *w, modal_model *model) {
+  const modal_condensation *to = w->to;
+  const int                 m = w->eigen->n, nc = to->contact.n;
+  double                   *shape, *force;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2((size_t)nc * (size_t)m, &shape, m, &force));
+  PetscCall(modal_dofs_sample(&to->contact, w->system, w->eigen->phi, m, m, shape));
+  PetscCall(modal_dofs_sample(&to->probe, w->system, w->eigen->phi, m, m, model->probe));
+  PetscCall(modal_dofs_sample(&to->load, w->system, w->eigen->phi, m, m, force));
+  size_t side = 3 * (size_t)to->n_pairs * (size_t)m;
+  memcpy(model->right, shape, side * sizeof(double));
+  if (to->has_left) memcpy(model->left, shape + side, side * sizeof(double));
+  for (int k = 0; k <= model->n_load; k++)
+    for (int i = 0; i < m; i++)
+      model->modal_force[k * m + i] = to->excitation->factor[k] * force[i];
+  for (int i = 0; i < m; i++) {
+    model->frequency[i]     = sqrt(w->eigen->lambda[i]) / two_pi;
+    model->damping_ratio[i] = to->damping;
+    model->mode_residual[i] = w->eigen->residual[i];
+  }
+  PetscCall(PetscFree2(shape, force));
+  PetscFunctionReturn(0);
+}
+
+/* X = P K^-1 B, sampled at contact and probe dofs. */
+static PetscErrorCode solve_batch(workspace *w) {
+  PetscFunctionBeginUser;
+  PetscCall(modal_eigen_inverse(w->eigen, w->B, w->X));
+  PetscCall(modal_eigen_remove(w->system, w->eigen, w->X));
+  PetscCall(modal_dofs_sample(&w->to->contact, w->system, w->X, BATCH, BATCH, w->contact));
+  PetscCall(modal_dofs_sample(&w->to->probe, w->system, w->X, BATCH, BATCH, w->probe));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode contact_batch(workspace *w, int first, int count, modal_model *model) {
+  const size_t nc = (size_t)w->to->contact.n;
+  PetscFunctionBeginUser;
+  PetscCall(modal_dofs_spread(&w->to->contact, w->system, first, count, w->B));
+  PetscCall(solve_batch(w));
+  for (size_t r = 0; r < nc; r++)
+    for (int c = 0; c < count; c++)
+      model->residual_flexibility[r * nc + (size_t)(first + c)] = w->contact[r * BATCH + (size_t)c];
+  for (int r = 0; r < w->to->probe.n; r++)
+    for (int c = 0; c < count; c++)
+      model->probe_contact_residual[(size_t)r * nc + (size_t)(first + c)] = w->probe[r * BATCH + c];
+  PetscCall(modal_mass_multiply(w->system, w->X, w->B));
+  PetscCall(modal_eigen_inverse(w->eigen, w->B, w->Y));
+  PetscCall(modal_eigen_remove(w->system, w->eigen, w->Y));
+  PetscCall(modal_dofs_sample(&w->to->contact, w->system, w->Y, BATCH, BATCH, w->contact));
+  for (size_t r = 0; r < nc; r++)
+    for (int c = 0; c < count; c++)
+      model->residual_inertia[r * nc + (size_t)(first + c)] = w->contact[r * BATCH + (size_t)c];
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode load_batch(workspace *w, modal_model *model) {
+  const int nc = w->to->contact.n, q3 = w->to->probe.n;
+  PetscFunctionBeginUser;
+  PetscCall(modal_dofs_spread(&w->to->load, w->system, 0, 1, w->B));
+  PetscCall(solve_batch(w));
+  for (int k = 0; k <= model->n_load; k++) {
+    double complex factor = w->to->excitation->factor[k];
+    for (int c = 0; c < nc; c++) model->load_residual[k * nc + c] = factor * w->contact[c * BATCH];
+    for (int c = 0; c < q3; c++)
+      model->probe_load_residual[k * q3 + c] = factor * w->probe[c * BATCH];
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Equal up to rounding; the balance relies on it. */
+static void symmetrise(double *a, size_t n) {
+  for (size_t i = 0; i < n; i++)
+    for (size_t j = 0; j < i; j++) a[i * n + j] = a[j * n + i] = (a[i * n + j] + a[j * n + i]) / 2;
+}
+
+static PetscErrorCode create_workspace(workspace *w) {
+  PetscFunctionBeginUser;
+  PetscCall(modal_dense_create(w->system, BATCH, &w->B));
+  PetscCall(modal_dense_create(w->system, BATCH, &w->X));
+  PetscCall(modal_dense_create(w->system, BATCH, &w->Y));
+  PetscCall(PetscMalloc2((size_t)w->to->contact.n * BATCH, &w->contact,
+                         (size_t)w->to->probe.n * BATCH, &w->probe));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode destroy_workspace(workspace *w) {
+  PetscFunctionBeginUser;
+  PetscCall(MatDestroy(&w->B));
+  PetscCall(MatDestroy(&w->X));
+  PetscCall(MatDestroy(&w->Y));
+  PetscCall(PetscFree2(w->contact, w->probe));
+  PetscFunctionReturn(0);
+}
+
+static shb_status fill(workspace *w, shb_progress *progress, modal_model *model) {
+  const int nc = w->to->contact.n;
+  FEM_PETSC(create_workspace(w));
+  FEM_PETSC(fill_shapes(w, model));
+  for (int first = 0; first < nc; first += BATCH) {
+    int count = nc - first < BATCH ? nc - first : BATCH, stop = shb_interrupted();
+    MPI_Allreduce(MPI_IN_PLACE, &stop, 1, MPI_INT, MPI_MAX, w->system->comm);
+    SHB_CHECK(!stop, SHB_INTERRUPTED, "interrupted");
+    shb_progress_show(progress, 80 + 15. * first / nc, "residuals: contact dof %d of %d", first,
+                      nc);
+    FEM_PETSC(contact_batch(w, first, count, model));
+  }
+  FEM_PETSC(load_batch(w, model));
+  symmetrise(model->residual_flexibility, (size_t)nc);
+  symmetrise(model->residual_inertia, (size_t)nc);
+  return SHB_OK;
+}
+
+shb_status modal_condense(const fem_system *system, const modal_eigen *eigen,
+                          const modal_condensation *to, shb_progress *progress,
+                          modal_model *model) {
+  double    started = shb_seconds();
+  workspace w       = {.system = system, .eigen = eigen, .to = to};
+  memset(model, 0, sizeof *model);
+  SHB_TRY(allocate(to, eigen->n, model));
+  shb_status status = fill(&w, progress, model);
+  FEM_PETSC(destroy_workspace(&w));
+  shb_progress_note(progress, "residuals of %d contact dofs in %.2f s", to->contact.n,
+                    shb_seconds() - started);
+  return status;
+}

@@ -1,0 +1,50 @@
+/* Lowest modes of K phi = lambda M phi by SLEPc: Krylov-Schur, shift-invert, MUMPS Cholesky. */
+#ifndef MODAL_EIGEN_H
+#define MODAL_EIGEN_H
+
+#include <slepceps.h>
+
+#include "fem/assemble.h"
+#include "mesh/progress.h"
+
+typedef struct {
+  int           modes;     /* wanted, >= 1 */
+  double        shift;     /* rad2/s2: 0 for a clamped body, below 0 for a free one */
+  double        tolerance; /* of the eigensolver; 0: 1e-10 */
+  shb_progress *progress;  /* or NULL */
+} modal_eigen_settings;
+
+typedef struct {
+  int     n;
+  double *lambda; /* [n] rad2/s2, ascending */
+  double *
+      residual; /* [n] |phi - (lambda - shift) (K - shift M)^-1 M phi| in the M norm, |phi| = 1: an eigenvalue
+                       lies within that relative distance of lambda - shift. (The plain residual |K phi - lambda M phi| is
+                       drowned by rounding of the stiffest directions.) */
+  Mat phi;    /* dense [3 n_free][n], phi^T M phi = 1; sign fixed by the mesh, not by the solver */
+  Mat m_phi;  /* M phi, same layout */
+  Mat factor; /* of K - shift M, for further solves; lives as long as eps */
+  EPS eps;
+} modal_eigen;
+
+/* Solve. Needs SLEPc initialised. Takes options (-eps_..., -st_mat_mumps_icntl_...) from PETSc's data base.
+ * Errors: PETSC_ERR_USER_INPUT more modes than dofs, K singular; PETSC_ERR_NOT_CONVERGED; PETSC_ERR_MEM.
+ * If shb_interrupted(), stops early with eigen->n = 0 and no error. */
+PetscErrorCode modal_eigen_solve(const fem_system *system, const modal_eigen_settings *settings,
+                                 modal_eigen *eigen);
+
+/* X = (K - shift M)^-1 B, all columns at once. */
+PetscErrorCode modal_eigen_inverse(const modal_eigen *eigen, Mat B, Mat X);
+
+/* Y = M X, column by column. */
+PetscErrorCode modal_mass_multiply(const fem_system *system, Mat X, Mat Y);
+
+/* X -= phi phi^T M X: take the modes out of every column. */
+PetscErrorCode modal_eigen_remove(const fem_system *system, const modal_eigen *eigen, Mat X);
+
+/* A dense matrix of n columns, distributed like the system's vectors. */
+PetscErrorCode modal_dense_create(const fem_system *system, int n, Mat *X);
+
+PetscErrorCode modal_eigen_destroy(modal_eigen *eigen); /* also on a zeroed struct */
+
+#endif

@@ -1,0 +1,96 @@
+#include "modal/export.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "modal/receptance.h"
+
+enum { SAMPLES = 201, MAX_BYTES = 64 << 20 };
+
+shb_status modal_export_mesh(hid_t file, const mesh_fe *mesh) {
+  SHB_TRY(h5_write_double(file, "mesh/nodes", H5_SHAPE((hsize_t)mesh->n_nodes, 3),
+                          mesh->coordinates, "m", "node coordinates"));
+  SHB_TRY(h5_write_int(file, "mesh/connectivity", H5_SHAPE((hsize_t)mesh->n_elements, 10),
+                       mesh->connectivity, "-",
+                       "nodes of each 10-node tetrahedron, from 0, gmsh order"));
+  for (int s = 0; s < MESH_N_SETS; s++) {
+    char path[64];
+    if (mesh->set[s].n == 0) continue;
+    snprintf(path, sizeof path, "mesh/sets/%s", mesh_set_name((mesh_set_id)s));
+    SHB_TRY(h5_write_int(file, path, H5_SHAPE((hsize_t)mesh->set[s].n, 6), mesh->set[s].nodes, "-",
+                         "nodes of each 6-node face, outward"));
+  }
+  return SHB_OK;
+}
+
+shb_status modal_export_shapes(hid_t file, int n_modes, int n_nodes, const double *shape) {
+  SHB_TRY(h5_write_double(file, "modes/shape", H5_SHAPE((hsize_t)n_modes, (hsize_t)n_nodes, 3),
+                          shape, "kg^-1/2",
+                          "mass-normalised mode shapes at every node, mesh axes (x, y, z)"));
+  return h5_attach_scale(file, "modes/shape", 0, "modes/frequency");
+}
+
+shb_status modal_export_contact(hid_t file, const modal_interface *interface) {
+  const size_t pairs = (size_t)interface->n_pairs;
+  const int    n = interface->start[interface->n_pairs], sides = interface->has_left ? 2 : 1;
+  int         *nodes       = malloc(3 * (size_t)n * sizeof *nodes + 1);
+  double      *coordinates = malloc(6 * pairs * sizeof *coordinates + 1);
+  shb_status   status      = SHB_OK;
+  if (!nodes || !coordinates)
+    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for the contact patches");
+  for (int p = 0; status == SHB_OK && p < interface->n_pairs; p++)
+    for (int e = interface->start[p]; e < interface->start[p + 1]; e++) {
+      nodes[3 * e]     = p;
+      nodes[3 * e + 1] = interface->node[0][e];
+      nodes[3 * e + 2] = interface->has_left ? interface->node[1][e] : -1;
+    }
+  for (int side = 0; status == SHB_OK && side < sides; side++)
+    memcpy(coordinates + 3 * pairs * (size_t)side, interface->centroid[side],
+           3 * pairs * sizeof *coordinates);
+  if (status == SHB_OK)
+    status = h5_write_int(file, "contact/nodes", H5_SHAPE((hsize_t)n, 3), nodes, "-",
+                          "patch, right node, left node (-1: ground) of each entry");
+  if (status == SHB_OK)
+    status = h5_write_double(file, "contact/weight", H5_SHAPE((hsize_t)n), interface->weight, "-",
+                             "share of each entry in its patch's mean displacement");
+  if (status == SHB_OK)
+    status =
+        h5_write_double(file, "contact/coordinates", H5_SHAPE((hsize_t)sides, (hsize_t)pairs, 3),
+                        coordinates, "m", "centroids of the patches, right then left, mesh axes");
+  free(nodes);
+  free(coordinates);
+  return status;
+}
+
+static shb_status write_receptance(hid_t file, const modal_model *model, double top, int n,
+                                   double *frequency, double complex *value) {
+  for (int f = 0; f < SAMPLES; f++) {
+    frequency[f] = top * f / (SAMPLES - 1);
+    modal_receptance(model, 6.28318530717958647692 * frequency[f],
+                     value + (size_t)f * (size_t)n * (size_t)n);
+  }
+  SHB_TRY(h5_write_double(file, "receptance/frequency", H5_SHAPE(SAMPLES), frequency, "Hz",
+                          "frequency"));
+  SHB_TRY(h5_write_complex(file, "receptance/contact", H5_SHAPE(SAMPLES, (hsize_t)n, (hsize_t)n),
+                           value, "m/N",
+                           "receptance of the contact dofs (right then left, pair, axis), damped, "
+                           "with residual terms"));
+  return h5_attach_scale(file, "receptance/contact", 0, "receptance/frequency");
+}
+
+shb_status modal_export_receptance(hid_t file, const modal_model *model, double band) {
+  const int    n     = 3 * model->n_pairs * (model->has_left ? 2 : 1);
+  const size_t count = (size_t)SAMPLES * (size_t)n * (size_t)n;
+  if (count * sizeof(double complex) > MAX_BYTES) return SHB_OK;
+  double          top       = 1.2 * (band > 0 ? band : model->frequency[model->n_modes - 1]);
+  double         *frequency = malloc(SAMPLES * sizeof *frequency);
+  double complex *value     = malloc(count * sizeof *value + 1);
+  shb_status      status    = SHB_OK;
+  if (!frequency || !value)
+    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for the receptance");
+  if (status == SHB_OK) status = write_receptance(file, model, top, n, frequency, value);
+  free(frequency);
+  free(value);
+  return status;
+}

@@ -1,0 +1,29 @@
+/* What our own modal stage adds to the modal file beside the model: mesh, full mode shapes, contact patches, a
+ * sampled receptance, and a VTKHDF group that lets ParaView open the file as it is. */
+#ifndef MODAL_EXPORT_H
+#define MODAL_EXPORT_H
+
+#include "mesh/fe_mesh.h"
+#include "modal/interface.h"
+#include "modal/model.h"
+
+/* Writes /mesh/{nodes [n][3], connectivity [e][10], sets/NAME [f][6]}. */
+shb_status modal_export_mesh(hid_t file, const mesh_fe *mesh);
+
+/* Writes /modes/shape [m][n][3], mesh axes, clamped nodes zero. */
+shb_status modal_export_shapes(hid_t file, int n_modes, int n_nodes, const double *shape);
+
+/* Writes /contact/nodes [entry][3] (pair, right node, left node or -1), /contact/weight [entry] and
+ * /contact/coordinates [side][pair][3]. */
+shb_status modal_export_contact(hid_t file, const modal_interface *interface);
+
+/* Writes /receptance/frequency [201] Hz, 0 to 1.2 band, and /receptance/contact [201][n_contact][n_contact];
+ * nothing when that would exceed 64 MB. */
+shb_status modal_export_receptance(hid_t file, const modal_model *model, double band);
+
+/* Writes /VTKHDF, an UnstructuredGrid of quadratic tetrahedra whose points are a link to /mesh/nodes and whose point
+ * data mode_001, ... are views of /modes/shape, which must be there.
+ * Source: VTKHDF file format, version 1.0. */
+shb_status modal_export_vtk(hid_t file, const mesh_fe *mesh, int n_modes);
+
+#endif

@@ -1,0 +1,31 @@
+#include "modal/receptance.h"
+
+#include <string.h>
+
+static const double *shape_of(const modal_model *model, int dof) {
+  const int side = 3 * model->n_pairs;
+  return dof < side ? model->right + (size_t)dof * (size_t)model->n_modes
+                    : model->left + (size_t)(dof - side) * (size_t)model->n_modes;
+}
+
+static double complex modal_sum(const modal_model *model, double omega, const double *p,
+                                const double *l) {
+  double complex sum = 0;
+  for (int i = 0; i < model->n_modes; i++) {
+    double w = 6.28318530717958647692 * model->frequency[i];
+    sum += p[i] * l[i] / (w * w - omega * omega + 2 * I * model->damping_ratio[i] * w * omega);
+  }
+  return sum;
+}
+
+void modal_receptance(const modal_model *model, double omega, double complex *receptance) {
+  const int n = 3 * model->n_pairs * (model->has_left ? 2 : 1);
+  for (int p = 0; p < n; p++)
+    for (int l = 0; l <= p; l++) {
+      size_t         at    = (size_t)p * (size_t)n + (size_t)l;
+      double complex value = modal_sum(model, omega, shape_of(model, p), shape_of(model, l));
+      if (model->residual_flexibility) value += model->residual_flexibility[at];
+      if (model->residual_inertia) value += omega * omega * model->residual_inertia[at];
+      receptance[at] = receptance[(size_t)l * (size_t)n + (size_t)p] = value;
+    }
+}

@@ -1,0 +1,13 @@
+/* Receptance of the contact dofs of a modal model, for inspection and tests. Free of PETSc. */
+#ifndef MODAL_RECEPTANCE_H
+#define MODAL_RECEPTANCE_H
+
+#include "modal/model.h"
+
+/* r_pl(w) = sum_i phi_ip phi_il / (w_i^2 - w^2 + 2 j zeta_i w_i w) + R_pl + w^2 I_pl.
+ *   omega       in   rad/s
+ *   receptance  out  [n_contact][n_contact] m/N, order of the contact dofs
+ * Source: Chen, Yang, Menq 1999, eqs. 19-20; plus the residual terms R, I of the modes left out. */
+void modal_receptance(const modal_model *model, double omega, double complex *receptance);
+
+#endif

@@ -1,0 +1,216 @@
+#include "modal/stage.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "fem/clamp.h"
+#include "fem/fault.h"
+#include "fem/partition.h"
+#include "fem/surface.h"
+#include "modal/condense.h"
+#include "modal/export.h"
+
+/* The worst status of all ranks; collective. */
+static shb_status agree(MPI_Comm comm, shb_status status) {
+  int mine = status, worst = status;
+  MPI_Allreduce(&mine, &worst, 1, MPI_INT, MPI_MAX, comm);
+  if (worst != SHB_OK && mine == SHB_OK) SHB_FAIL((shb_status)worst, "another rank failed");
+  return (shb_status)worst;
+}
+
+static shb_status check(const mesh_fe *mesh, const modal_settings *settings) {
+  SHB_CHECK(settings->speed == 0, SHB_ERR_INPUT,
+            "rotor.speed: %.6g rad/s given, but centrifugal stiffening is not modelled; set 0 rpm",
+            settings->speed);
+  return fem_clamp_check(mesh);
+}
+
+/* The load's pattern as one dof: its work on the displacement. */
+static shb_status load_dof(const mesh_fe *mesh, const modal_settings *settings, modal_dofs *dofs) {
+  double *force = malloc(3 * (size_t)mesh->n_nodes * sizeof *force + 1);
+  SHB_CHECK(force, SHB_ERR_IO, "out of memory for the load");
+  const double *fallback = settings->n_probes > 0 ? settings->probe[0].at : NULL;
+  shb_status    status   = fem_load_pattern(mesh, &settings->load, fallback, force);
+  if (status == SHB_OK) status = modal_dofs_add_field(dofs, mesh->n_nodes, force);
+  free(force);
+  return status;
+}
+
+/* Three dofs a probe: its nearest node in that node's cylindrical axes. */
+static shb_status probe_dofs(const mesh_fe *mesh, const modal_settings *settings,
+                             modal_dofs *dofs) {
+  const double one = 1;
+  for (int q = 0; q < settings->n_probes; q++) {
+    double axes[3][3];
+    int    node = mesh_fe_nearest(mesh, settings->probe[q].at);
+    mesh_axes_at(settings->axis, mesh->coordinates + 3 * (size_t)node, axes);
+    SHB_CHECK(axes[2][0] == axes[2][0], SHB_ERR_INPUT,
+              "probe.%s: its nearest node lies on the engine axis; check rotor.axis",
+              settings->probe[q].name);
+    for (int a = 0; a < 3; a++) SHB_TRY(modal_dofs_add(dofs, 1, &node, &one, axes[a]));
+  }
+  return SHB_OK;
+}
+
+static shb_status name_probes(const modal_settings *settings, modal_model *model) {
+  model->probe_name = calloc((size_t)settings->n_probes + 1, sizeof *model->probe_name);
+  SHB_CHECK(model->probe_name, SHB_ERR_IO, "out of memory for the probes");
+  for (int q = 0; q < settings->n_probes; q++) {
+    model->probe_name[q] = strdup(settings->probe[q].name);
+    SHB_CHECK(model->probe_name[q], SHB_ERR_IO, "out of memory for the probes");
+  }
+  return SHB_OK;
+}
+
+static shb_status copy_patches(const modal_interface *interface, modal_model *model) {
+  const size_t n = (size_t)interface->n_pairs;
+  model->normal  = malloc(3 * n * sizeof(double));
+  model->area    = malloc(n * sizeof(double));
+  SHB_CHECK(model->normal && model->area, SHB_ERR_IO, "out of memory for the contact patches");
+  memcpy(model->normal, interface->normal, 3 * n * sizeof(double));
+  memcpy(model->area, interface->area, n * sizeof(double));
+  return SHB_OK;
+}
+
+/* What can be wrong with the input is found here, before any time is spent. */
+static shb_status prepare(const mesh_fe *mesh, const modal_settings *settings,
+                          modal_interface *interface, modal_condensation *to) {
+  SHB_TRY(check(mesh, settings));
+  SHB_TRY(modal_interface_create(mesh, settings->axis, settings->blades, settings->to_ground,
+                                 settings->points, interface));
+  SHB_TRY(modal_interface_check(interface, settings->psi, settings->phi));
+  to->n_pairs    = interface->n_pairs;
+  to->has_left   = interface->has_left;
+  to->excitation = &settings->load;
+  to->damping    = settings->damping;
+  SHB_TRY(modal_interface_dofs(interface, &to->contact));
+  SHB_TRY(probe_dofs(mesh, settings, &to->probe));
+  return load_dof(mesh, settings, &to->load);
+}
+
+static shb_status solve(MPI_Comm comm, const mesh_fe *mesh, const modal_settings *settings,
+                        const modal_condensation *to, shb_progress *progress,
+                        modal_result *result) {
+  double               started = shb_seconds();
+  modal_eigen_settings eigen   = {.modes = settings->modes, .progress = progress};
+  shb_progress_show(progress, 5, "assembling %d elements", mesh->n_elements);
+  FEM_PETSC(fem_system_create(comm, mesh, &settings->material, FEM_MASS_EXACT, &result->system));
+  shb_progress_note(progress, "assembled %d elements, %d dofs in %.2f s", mesh->n_elements,
+                    (int)(3 * result->system.n_free), shb_seconds() - started);
+  FEM_PETSC(modal_eigen_solve(&result->system, &eigen, &result->eigen));
+  SHB_CHECK(result->eigen.n > 0, SHB_INTERRUPTED, "interrupted");
+  SHB_TRY(modal_condense(&result->system, &result->eigen, to, progress, &result->model));
+  SHB_TRY(name_probes(settings, &result->model));
+  return copy_patches(&result->interface, &result->model);
+}
+
+shb_status modal_solve(MPI_Comm comm, const mesh_fe *mesh, const modal_settings *settings,
+                       shb_progress *progress, modal_result *result) {
+  modal_condensation to = {0};
+  memset(result, 0, sizeof *result);
+  shb_status status = agree(comm, prepare(mesh, settings, &result->interface, &to));
+  if (status == SHB_OK) status = solve(comm, mesh, settings, &to, progress, result);
+  modal_dofs_free(&to.contact);
+  modal_dofs_free(&to.probe);
+  modal_dofs_free(&to.load);
+  return status;
+}
+
+void modal_result_free(modal_result *result) {
+  modal_model_free(&result->model);
+  modal_interface_free(&result->interface);
+  (void)modal_eigen_destroy(&result->eigen);
+  (void)fem_system_destroy(&result->system);
+  memset(result, 0, sizeof *result);
+}
+
+/* All mode shapes on rank 0, [m][n_nodes][3]; NULL elsewhere. Free with free. */
+static shb_status gather_shapes(const modal_result *result, int rank, double **shape) {
+  const size_t stride = 3 * (size_t)result->system.n_nodes;
+  *shape = rank == 0 ? malloc((size_t)result->eigen.n * stride * sizeof **shape) : NULL;
+  SHB_TRY(agree(result->system.comm,
+                rank == 0 && !*shape
+                    ? shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for the mode shapes")
+                    : SHB_OK));
+  for (int i = 0; i < result->eigen.n; i++) {
+    Vec phi;
+    FEM_PETSC(MatDenseGetColumnVecRead(result->eigen.phi, i, &phi));
+    FEM_PETSC(
+        fem_system_gather(&result->system, phi, rank == 0 ? *shape + (size_t)i * stride : NULL));
+    FEM_PETSC(MatDenseRestoreColumnVecRead(result->eigen.phi, i, &phi));
+  }
+  return SHB_OK;
+}
+
+static shb_status write_all(hid_t file, const mesh_fe *mesh, const modal_result *result,
+                            const double *shape, double band, const shb_provenance *provenance) {
+  SHB_TRY(modal_model_write(file, &result->model, provenance));
+  SHB_TRY(modal_export_mesh(file, mesh));
+  SHB_TRY(modal_export_shapes(file, result->model.n_modes, mesh->n_nodes, shape));
+  SHB_TRY(modal_export_contact(file, &result->interface));
+  SHB_TRY(modal_export_receptance(file, &result->model, band));
+  return modal_export_vtk(file, mesh, result->model.n_modes);
+}
+
+static shb_status publish(const char *path, const mesh_fe *mesh, const modal_result *result,
+                          const double *shape, double band, const shb_provenance *provenance) {
+  char *temporary = shb_publish_temporary(path);
+  SHB_CHECK(temporary, SHB_ERR_IO, "out of memory");
+  hid_t      file   = -1;
+  shb_status status = h5_create(temporary, &file);
+  if (status == SHB_OK) {
+    status            = write_all(file, mesh, result, shape, band, provenance);
+    shb_status closed = h5_close(file);
+    if (status == SHB_OK) status = closed;
+    if (status == SHB_OK)
+      status = shb_publish(temporary, path);
+    else
+      remove(temporary);
+  }
+  free(temporary);
+  return status;
+}
+
+static shb_status read_mesh(const char *path, const modal_settings *settings, mesh_fe *mesh) {
+  SHB_TRY(mesh_fe_read(path, mesh));
+  if (mesh->set[MESH_CONTACT_RIGHT].n == 0 || mesh->set[MESH_CONTACT_LEFT].n == 0) return SHB_OK;
+  return mesh_fe_orient(mesh, settings->axis);
+}
+
+static shb_status run(MPI_Comm comm, int rank, const char *out_path, const mesh_fe *mesh,
+                      const modal_settings *settings, const shb_provenance *provenance,
+                      shb_progress *progress) {
+  modal_result result;
+  double      *shape  = NULL;
+  shb_status   status = modal_solve(comm, mesh, settings, progress, &result);
+  double       begun  = shb_seconds();
+  if (status == SHB_OK) status = gather_shapes(&result, rank, &shape);
+  if (status == SHB_OK) {
+    shb_progress_show(progress, 96, "writing %s", out_path);
+    shb_status mine =
+        rank != 0 ? SHB_OK : publish(out_path, mesh, &result, shape, settings->band, provenance);
+    status = agree(comm, mine);
+    shb_progress_note(progress, "wrote %s in %.2f s", out_path, shb_seconds() - begun);
+  }
+  free(shape);
+  modal_result_free(&result);
+  return status;
+}
+
+shb_status modal_stage(MPI_Comm comm, const char *mesh_path, const char *out_path,
+                       const modal_settings *settings, const shb_provenance *provenance,
+                       shb_progress *progress) {
+  int     rank;
+  mesh_fe mesh = {0};
+  MPI_Comm_rank(comm, &rank);
+  double started = shb_seconds();
+  shb_progress_show(progress, 0, "reading %s", mesh_path);
+  shb_status status = agree(comm, rank == 0 ? read_mesh(mesh_path, settings, &mesh) : SHB_OK);
+  if (status == SHB_OK) status = fem_fault_status(fem_mesh_broadcast(comm, &mesh));
+  shb_progress_note(progress, "read %d nodes, %d elements in %.2f s", mesh.n_nodes, mesh.n_elements,
+                    shb_seconds() - started);
+  if (status == SHB_OK) status = run(comm, rank, out_path, &mesh, settings, provenance, progress);
+  mesh_fe_free(&mesh);
+  shb_progress_clear(progress);
+  return status;
+}

@@ -1,0 +1,57 @@
+/* The modal stage: from a mesh and a few settings to the modal model and its file. */
+#ifndef MODAL_STAGE_H
+#define MODAL_STAGE_H
+
+#include "fem/assemble.h"
+#include "fem/load.h"
+#include "fem/material.h"
+#include "mesh/progress.h"
+#include "mesh/publish.h"
+#include "modal/eigen.h"
+#include "modal/interface.h"
+#include "modal/model.h"
+
+typedef struct {
+  const char *name;
+  double      at[3]; /* m, mesh axes */
+} modal_probe;
+
+typedef struct {
+  fem_material       material;
+  mesh_axis          axis;
+  int                blades;
+  double             speed; /* rad/s */
+  int                modes;
+  double             damping; /* damping ratio of every mode */
+  fem_load           load;
+  int                n_probes;
+  const modal_probe *probe;
+  bool               to_ground;
+  int                points;    /* contact patches, 0: one a node */
+  const double      *psi, *phi; /* rad, to be checked against the faces; NULL: not given */
+  double             band;      /* Hz, top of the band of interest; 0: the highest mode */
+} modal_settings;
+
+/* All that the stage computed. model is the same on every rank. */
+typedef struct {
+  fem_system      system;
+  modal_eigen     eigen;
+  modal_interface interface;
+  modal_model     model;
+} modal_result;
+
+/* Assemble, solve, condense. Collective; mesh the same on every rank, sets oriented (mesh_fe_orient).
+ * Errors: SHB_ERR_INPUT missing groups, wrong angles, too many modes or patches, a part that is not clamped,
+ * speed other than 0; SHB_NOT_CONVERGED; SHB_ERR_IO no memory; SHB_INTERRUPTED. */
+shb_status modal_solve(MPI_Comm comm, const mesh_fe *mesh, const modal_settings *settings,
+                       shb_progress *progress, modal_result *result);
+
+void modal_result_free(modal_result *result); /* also on a zeroed struct */
+
+/* The whole stage: rank 0 reads mesh_path, all solve, rank 0 publishes out_path (untouched on failure).
+ * On failure the text is at least on rank 0. */
+shb_status modal_stage(MPI_Comm comm, const char *mesh_path, const char *out_path,
+                       const modal_settings *settings, const shb_provenance *provenance,
+                       shb_progress *progress);
+
+#endif

@@ -1,0 +1,121 @@
+/* The VTKHDF group of the modal file: raw HDF5, since the format prescribes types that h5.h does not write. */
+#include <hdf5.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "modal/export.h"
+
+enum { VTK_QUADRATIC_TETRA = 24 };
+
+/* gmsh's 10-node tetrahedron ends with the middles of edges 23, 13; VTK's with 13, 23. */
+static const int vtk_order[10] = {0, 1, 2, 3, 4, 5, 6, 7, 9, 8};
+
+static shb_status failed(const char *what) {
+  SHB_FAIL(SHB_ERR_IO, "VTKHDF/%s cannot be written", what);
+}
+
+static shb_status write_array(hid_t group, const char *name, hid_t type, hsize_t n,
+                              const void *data) {
+  hid_t  space = H5Screate_simple(1, &n, NULL);
+  hid_t  set   = H5Dcreate2(group, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  herr_t error = set < 0 ? -1 : H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data);
+  if (set >= 0) H5Dclose(set);
+  H5Sclose(space);
+  return error < 0 ? failed(name) : SHB_OK;
+}
+
+static shb_status write_count(hid_t group, const char *name, long long count) {
+  return write_array(group, name, H5T_NATIVE_LLONG, 1, &count);
+}
+
+/* Version 1.0; Type must be a string of fixed length, ASCII. */
+static shb_status write_header(hid_t group) {
+  static const char kind[]     = "UnstructuredGrid";
+  const long long   version[2] = {1, 0};
+  hsize_t           two        = 2;
+  hid_t             space = H5Screate_simple(1, &two, NULL), scalar = H5Screate(H5S_SCALAR);
+  hid_t             text = H5Tcopy(H5T_C_S1);
+  H5Tset_size(text, sizeof kind - 1);
+  H5Tset_strpad(text, H5T_STR_NULLPAD);
+  hid_t  number = H5Acreate2(group, "Version", H5T_NATIVE_LLONG, space, H5P_DEFAULT, H5P_DEFAULT);
+  hid_t  type   = H5Acreate2(group, "Type", text, scalar, H5P_DEFAULT, H5P_DEFAULT);
+  herr_t error  = number < 0 || type < 0 || H5Awrite(number, H5T_NATIVE_LLONG, version) < 0 ||
+                 H5Awrite(type, text, kind) < 0;
+  if (number >= 0) H5Aclose(number);
+  if (type >= 0) H5Aclose(type);
+  H5Tclose(text);
+  H5Sclose(space);
+  H5Sclose(scalar);
+  return error ? failed("Version") : SHB_OK;
+}
+
+static shb_status write_cells(hid_t group, const mesh_fe *mesh) {
+  const size_t   n            = (size_t)mesh->n_elements;
+  long long     *connectivity = malloc(10 * n * sizeof *connectivity + 1);
+  long long     *offset       = malloc((n + 1) * sizeof *offset);
+  unsigned char *type         = malloc(n + 1);
+  shb_status     status       = connectivity && offset && type ? SHB_OK : failed("Connectivity");
+  for (size_t e = 0; status == SHB_OK && e <= n; e++) {
+    offset[e] = (long long)(10 * e);
+    if (e == n) break;
+    type[e] = VTK_QUADRATIC_TETRA;
+    for (size_t i = 0; i < 10; i++)
+      connectivity[10 * e + i] = mesh->connectivity[10 * e + (size_t)vtk_order[i]];
+  }
+  if (status == SHB_OK)
+    status = write_array(group, "Connectivity", H5T_NATIVE_LLONG, 10 * n, connectivity);
+  if (status == SHB_OK) status = write_array(group, "Offsets", H5T_NATIVE_LLONG, n + 1, offset);
+  if (status == SHB_OK) status = write_array(group, "Types", H5T_NATIVE_UCHAR, n, type);
+  free(connectivity);
+  free(offset);
+  free(type);
+  return status;
+}
+
+/* mode [n][3] as a view of /modes/shape[mode] in the same file: nothing is stored twice. */
+static shb_status write_view(hid_t data, int mode, hsize_t n_modes, hsize_t n_nodes) {
+  char    name[32];
+  hsize_t view[2] = {n_nodes, 3}, source[3] = {n_modes, n_nodes, 3};
+  hsize_t start[3] = {(hsize_t)mode, 0, 0}, count[3] = {1, n_nodes, 3};
+  hid_t   to = H5Screate_simple(2, view, NULL), from = H5Screate_simple(3, source, NULL);
+  hid_t   layout = H5Pcreate(H5P_DATASET_CREATE), set = -1;
+  snprintf(name, sizeof name, "mode_%03d", mode + 1);
+  if (H5Sselect_hyperslab(from, H5S_SELECT_SET, start, NULL, count, NULL) >= 0 &&
+      H5Pset_virtual(layout, to, ".", "/modes/shape", from) >= 0)
+    set = H5Dcreate2(data, name, H5T_NATIVE_DOUBLE, to, H5P_DEFAULT, layout, H5P_DEFAULT);
+  shb_status status = set < 0 ? failed(name) : SHB_OK;
+  if (set >= 0) H5Dclose(set);
+  H5Pclose(layout);
+  H5Sclose(from);
+  H5Sclose(to);
+  return status;
+}
+
+static shb_status write_point_data(hid_t group, int n_modes, int n_nodes) {
+  hid_t data = H5Gcreate2(group, "PointData", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  if (data < 0) return failed("PointData");
+  shb_status status = SHB_OK;
+  for (int i = 0; status == SHB_OK && i < n_modes; i++)
+    status = write_view(data, i, (hsize_t)n_modes, (hsize_t)n_nodes);
+  H5Gclose(data);
+  return status;
+}
+
+static shb_status write_group(hid_t group, const mesh_fe *mesh, int n_modes) {
+  SHB_TRY(write_header(group));
+  SHB_TRY(write_count(group, "NumberOfPoints", mesh->n_nodes));
+  SHB_TRY(write_count(group, "NumberOfCells", mesh->n_elements));
+  SHB_TRY(write_count(group, "NumberOfConnectivityIds", 10LL * mesh->n_elements));
+  if (H5Lcreate_soft("/mesh/nodes", group, "Points", H5P_DEFAULT, H5P_DEFAULT) < 0)
+    return failed("Points");
+  SHB_TRY(write_cells(group, mesh));
+  return write_point_data(group, n_modes, mesh->n_nodes);
+}
+
+shb_status modal_export_vtk(hid_t file, const mesh_fe *mesh, int n_modes) {
+  hid_t group = H5Gcreate2(file, "VTKHDF", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  if (group < 0) return failed("");
+  shb_status status = write_group(group, mesh, n_modes);
+  H5Gclose(group);
+  return status;
+}
