@@ -1,0 +1,464 @@
+#include "mhb/response.h"
+
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "modal/h5.h"
+
+static const char response_format[] = "shroudhb response";
+enum { RESPONSE_VERSION = 1, FIRST_POINTS = 64, MAX_COUNT = 100000 };
+
+/* ---------------------------------------------------------------- one array of a branch
+ * The table drives growing, writing and reading. dims: the dimensions after [point], one letter each:
+ * p pair, q probe, 3 shroud axes, x cylindrical axes, s contact state, k harmonic 0..m. */
+typedef enum { DOUBLE, COMPLEX, INT } number;
+
+typedef struct {
+  const char *name, *dims;
+  number      kind;
+  size_t      offset; /* of the pointer in mhb_branch */
+  const char *units, *long_name;
+} field;
+
+#define AT(member) offsetof(mhb_branch, member)
+static const field fields[] = {
+    {"frequency", "", DOUBLE, AT(frequency), "Hz", "frequency of the excitation's first harmonic"},
+    {"n0", "", DOUBLE, AT(n0), "N", "normal preload, total of the interface; negative: a gap"},
+    {"motion", "p3k", COMPLEX, AT(motion), "m",
+     "relative motion at the contact along v, u, w; harmonics"},
+    {"force", "p3k", COMPLEX, AT(force), "N",
+     "contact force on the blade along v, u, w; harmonics. Where the contact neither slips nor "
+     "opens "
+     "the mean friction is not determined by the physics: by convention the smallest admissible"},
+    {"probe", "qxk", COMPLEX, AT(probe), "m",
+     "displacement of the probes, tangential, axial, radial; harmonics"},
+    {"stable", "", INT, AT(stable), "-", "stability: 1 stable, 0 unstable, -1 not known"},
+    {"special", "", INT, AT(special), "-",
+     "0 ordinary point, 1 fold, 2 peak of the first harmonic of a probe or contact motion"},
+    {"state", "ps", DOUBLE, AT(state), "-", "share of the period stuck, slipping, open"},
+    {"dissipation", "p", DOUBLE, AT(dissipation), "J", "energy lost by friction in a period"},
+    {"iterations", "", INT, AT(iterations), "-", "Newton iterations"},
+    {"seconds", "", DOUBLE, AT(seconds), "s", "time spent on the point"},
+    {"error/newton", "", DOUBLE, AT(error_newton), "-",
+     "estimated error from the Newton residual, relative to the motion"},
+    {"error/truncation", "", DOUBLE, AT(error_truncation), "-",
+     "estimated error from the harmonics left out, relative to the motion"},
+    {"error/sampling", "", DOUBLE, AT(error_sampling), "-",
+     "estimated error of the contact force's harmonics, relative to the motion"},
+    {"error/modal", "", DOUBLE, AT(error_modal), "-",
+     "estimated error from the modes left out, relative to the motion"},
+};
+enum { N_FIELDS = sizeof fields / sizeof *fields };
+
+static const char *const kind_name[] = {"nonlinear", "open", "stuck"};
+enum { N_KINDS = sizeof kind_name / sizeof *kind_name };
+
+static size_t bytes_of(number kind) {
+  return kind == COMPLEX ? sizeof(double complex) : kind == DOUBLE ? sizeof(double) : sizeof(int);
+}
+
+static hsize_t size_of(const mhb_response *response, char letter) {
+  switch (letter) {
+    case 'p':
+      return (hsize_t)response->n_pairs;
+    case 'q':
+      return (hsize_t)response->n_probes;
+    case 'k':
+      return (hsize_t)response->n_harmonics + 1;
+    default:
+      return 3;
+  }
+}
+
+static const char *scale_of(char letter) {
+  switch (letter) {
+    case 'p':
+      return "/pair";
+    case 'q':
+      return "/probe/name";
+    case 'k':
+      return "/harmonic";
+    case '3':
+      return "/shroud_axis";
+    case 'x':
+      return "/axis";
+    default:
+      return "/contact_state";
+  }
+}
+
+static h5_shape shape_of(const mhb_response *response, const field *f, int n_points) {
+  h5_shape shape = {.rank = 1 + (int)strlen(f->dims), .dim = {(hsize_t)n_points}};
+  for (int i = 1; i < shape.rank; i++) shape.dim[i] = size_of(response, f->dims[i - 1]);
+  return shape;
+}
+
+/* Values a point. */
+static size_t width_of(const mhb_response *response, const field *f) {
+  return h5_count(shape_of(response, f, 1));
+}
+
+/* Without probes there is no probe array, in memory or in the file. */
+static bool is_kept(const mhb_response *response, const field *f) {
+  return width_of(response, f) > 0;
+}
+
+static void *get(const mhb_branch *branch, const field *f) {
+  void *data;
+  memcpy(&data, (const char *)branch + f->offset, sizeof data);
+  return data;
+}
+
+static void set(mhb_branch *branch, const field *f, void *data) {
+  memcpy((char *)branch + f->offset, &data, sizeof data);
+}
+
+/* ---------------------------------------------------------------- life cycle */
+
+mhb_response *mhb_response_create(int n_pairs, int n_probes, int n_harmonics) {
+  if (n_pairs < 0 || n_probes < 0 || n_harmonics < 0) return NULL;
+  mhb_response *response = calloc(1, sizeof *response);
+  if (!response) return NULL;
+  response->n_pairs      = n_pairs;
+  response->n_probes     = n_probes;
+  response->n_harmonics  = n_harmonics;
+  response->subharmonics = 1;
+  response->probe_name   = calloc((size_t)n_probes + 1, sizeof *response->probe_name);
+  if (response->probe_name) return response;
+  free(response);
+  return NULL;
+}
+
+static void free_branch(mhb_branch *branch) {
+  for (int i = 0; i < N_FIELDS; i++) free(get(branch, &fields[i]));
+  free(branch->reason);
+}
+
+void mhb_response_destroy(mhb_response *response) {
+  if (!response) return;
+  for (int i = 0; i < response->n_branches; i++) free_branch(&response->branch[i]);
+  for (int i = 0; i < response->n_probes; i++) free(response->probe_name[i]);
+  free(response->branch);
+  free(response->probe_name);
+  free(response->mode_frequency);
+  free(response->mode_damping);
+  free(response->mode_residual);
+  free(response);
+}
+
+shb_status mhb_response_branch(mhb_response *response, mhb_branch_kind kind, int *index) {
+  if (response->n_branches == response->capacity) {
+    int         capacity = response->capacity ? 2 * response->capacity : 8;
+    mhb_branch *branch   = realloc(response->branch, (size_t)capacity * sizeof *branch);
+    SHB_CHECK(branch, SHB_ERR_IO, "no memory for %d response branches", capacity);
+    response->branch   = branch;
+    response->capacity = capacity;
+  }
+  response->branch[response->n_branches] = (mhb_branch){.kind = kind};
+  *index                                 = response->n_branches++;
+  return SHB_OK;
+}
+
+/* Arrays grown before one fails stay valid: capacity counts what all have. */
+static shb_status grow(const mhb_response *response, mhb_branch *branch) {
+  int capacity = branch->capacity ? 2 * branch->capacity : FIRST_POINTS;
+  for (int i = 0; i < N_FIELDS; i++) {
+    if (!is_kept(response, &fields[i])) continue;
+    size_t row  = width_of(response, &fields[i]) * bytes_of(fields[i].kind);
+    void  *data = realloc(get(branch, &fields[i]), (size_t)capacity * row);
+    SHB_CHECK(data, SHB_ERR_IO, "no memory for %d response points", capacity);
+    set(branch, &fields[i], data);
+  }
+  branch->capacity = capacity;
+  return SHB_OK;
+}
+
+shb_status mhb_response_point(mhb_response *response, int branch, int *point) {
+  mhb_branch *b = &response->branch[branch];
+  if (b->n_points == b->capacity) SHB_TRY(grow(response, b));
+  for (int i = 0; i < N_FIELDS; i++) {
+    if (!is_kept(response, &fields[i])) continue;
+    size_t row = width_of(response, &fields[i]) * bytes_of(fields[i].kind);
+    memset((char *)get(b, &fields[i]) + (size_t)b->n_points * row, 0, row);
+  }
+  *point = b->n_points++;
+  return SHB_OK;
+}
+
+/* ---------------------------------------------------------------- writing */
+
+static shb_status write_counter(hid_t file, const char *path, hsize_t n, const char *long_name) {
+  int *count = malloc((n ? n : 1) * sizeof *count);
+  SHB_CHECK(count, SHB_ERR_IO, "no memory to write %s", path);
+  for (hsize_t i = 0; i < n; i++) count[i] = (int)i;
+  shb_status status = h5_write_int(file, path, H5_SHAPE(n), count, "-", long_name);
+  free(count);
+  return status;
+}
+
+static shb_status write_probe_names(hid_t file, const mhb_response *response) {
+  if (response->n_probes == 0) return SHB_OK;
+  const char **name = calloc((size_t)response->n_probes, sizeof *name);
+  SHB_CHECK(name, SHB_ERR_IO, "no memory to write /probe/name");
+  for (int i = 0; i < response->n_probes; i++)
+    name[i] = response->probe_name[i] ? response->probe_name[i] : "";
+  shb_status status =
+      h5_write_strings(file, "/probe/name", response->n_probes, name, "name of the probe");
+  free(name);
+  return status;
+}
+
+static shb_status write_scales(hid_t file, const mhb_response *response) {
+  static const char *const shroud[] = {"v", "u", "w"}, *const state[] = {"stuck", "slip", "open"},
+                           *const axis[] = {"tangential", "axial", "radial"};
+  SHB_TRY(h5_write_strings(file, "/shroud_axis", 3, shroud, "shroud axes: normal v, sliding u, w"));
+  SHB_TRY(h5_write_strings(file, "/axis", 3, axis, "cylindrical axes about the engine axis"));
+  SHB_TRY(h5_write_strings(file, "/contact_state", 3, state, "contact state"));
+  SHB_TRY(write_counter(file, "/pair", size_of(response, 'p'), "contact pair, from 0"));
+  SHB_TRY(write_counter(file, "/harmonic", size_of(response, 'k'),
+                        "harmonic k of omega / subharmonics; x(t) = Re sum_k A_k exp(j k omega t / "
+                        "subharmonics)"));
+  return write_probe_names(file, response);
+}
+
+static shb_status write_root(hid_t file, const mhb_response *response) {
+  SHB_TRY(h5_write_attribute_int(file, "/", "branches", response->n_branches));
+  SHB_TRY(h5_write_attribute_int(file, "/", "engine_order", response->engine_order));
+  SHB_TRY(h5_write_attribute_int(file, "/", "blades", response->blades));
+  SHB_TRY(h5_write_attribute_int(file, "/", "subharmonics", response->subharmonics));
+  SHB_TRY(h5_write_attribute_double(file, "/", "psi", response->psi));
+  SHB_TRY(h5_write_attribute_double(file, "/", "phi", response->phi));
+  SHB_TRY(h5_write_attribute_text(file, "/", "angle_units", "rad"));
+  SHB_TRY(write_scales(file, response));
+  if (response->n_modes == 0) return SHB_OK;
+  const h5_shape modes = H5_SHAPE((hsize_t)response->n_modes);
+  SHB_TRY(h5_write_double(file, "/modes/frequency", modes, response->mode_frequency, "Hz",
+                          "undamped natural frequency of the free blade"));
+  SHB_TRY(h5_write_double(file, "/modes/damping_ratio", modes, response->mode_damping, "-",
+                          "modal damping ratio"));
+  SHB_TRY(h5_attach_scale(file, "/modes/damping_ratio", 0, "/modes/frequency"));
+  if (!response->mode_residual) return SHB_OK;
+  SHB_TRY(h5_write_double(file, "/modes/residual", modes, response->mode_residual, "-",
+                          "relative residual of the eigenpair"));
+  return h5_attach_scale(file, "/modes/residual", 0, "/modes/frequency");
+}
+
+static shb_status write_field(hid_t group, const mhb_response *response, const mhb_branch *branch,
+                              const field *f) {
+  const h5_shape shape = shape_of(response, f, branch->n_points);
+  const void    *data  = get(branch, f);
+  switch (f->kind) {
+    case DOUBLE:
+      SHB_TRY(h5_write_double(group, f->name, shape, data, f->units, f->long_name));
+      break;
+    case COMPLEX:
+      SHB_TRY(h5_write_complex(group, f->name, shape, data, f->units, f->long_name));
+      break;
+    case INT:
+      SHB_TRY(h5_write_int(group, f->name, shape, data, f->units, f->long_name));
+      break;
+  }
+  if (f == fields) return SHB_OK; /* the frequency is the scale */
+  SHB_TRY(h5_attach_scale(group, f->name, 0, fields[0].name));
+  for (int i = 1; i < shape.rank; i++)
+    SHB_TRY(h5_attach_scale(group, f->name, i, scale_of(f->dims[i - 1])));
+  return SHB_OK;
+}
+
+static shb_status fill_branch(hid_t group, const mhb_response *response, const mhb_branch *branch) {
+  SHB_TRY(h5_write_attribute_text(group, ".", "kind", kind_name[branch->kind]));
+  SHB_TRY(h5_write_attribute_text(group, ".", "reason", branch->reason));
+  SHB_TRY(h5_write_attribute_int(group, ".", "complete", branch->complete));
+  for (int i = 0; i < N_FIELDS; i++)
+    if (is_kept(response, &fields[i])) SHB_TRY(write_field(group, response, branch, &fields[i]));
+  return SHB_OK;
+}
+
+static shb_status write_branch(hid_t file, const mhb_response *response, int index) {
+  char name[32];
+  snprintf(name, sizeof name, "/branch_%d", index);
+  hid_t group = H5Gcreate2(file, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  SHB_CHECK(group >= 0, SHB_ERR_IO, "%s of the response cannot be written", name);
+  shb_status status = fill_branch(group, response, &response->branch[index]);
+  H5Gclose(group);
+  return status;
+}
+
+static shb_status write_parts(hid_t file, const mhb_response *response,
+                              const shb_provenance *provenance) {
+  SHB_TRY(h5_write_provenance(file, response_format, RESPONSE_VERSION, provenance));
+  SHB_TRY(write_root(file, response));
+  for (int i = 0; i < response->n_branches; i++) SHB_TRY(write_branch(file, response, i));
+  return SHB_OK;
+}
+
+static shb_status write_file(const mhb_response *response, const char *temporary,
+                             const shb_provenance *provenance) {
+  hid_t file;
+  SHB_TRY(h5_create(temporary, &file));
+  shb_status status = write_parts(file, response, provenance);
+  if (status == SHB_OK) return h5_close(file);
+  h5_abandon(file);
+  return status;
+}
+
+shb_status mhb_response_write(const mhb_response *response, const char *path,
+                              const shb_provenance *provenance) {
+  char *temporary = shb_publish_temporary(path);
+  SHB_CHECK(temporary, SHB_ERR_IO, "%s: no memory", path);
+  shb_status status = write_file(response, temporary, provenance);
+  if (status == SHB_OK) status = shb_publish(temporary, path);
+  free(temporary);
+  return status;
+}
+
+/* ---------------------------------------------------------------- reading */
+
+static shb_status read_sizes(hid_t file, const char *path, int *n_pairs, int *n_harmonics) {
+  h5_shape pair, harmonic;
+  SHB_TRY(h5_shape_of(file, "/pair", &pair));
+  SHB_TRY(h5_shape_of(file, "/harmonic", &harmonic));
+  SHB_CHECK(pair.rank == 1 && pair.dim[0] <= MAX_COUNT && harmonic.rank == 1 &&
+                harmonic.dim[0] >= 1 && harmonic.dim[0] <= MAX_COUNT,
+            SHB_ERR_INPUT, "%s: /pair and /harmonic must be lists of at most %d", path, MAX_COUNT);
+  *n_pairs     = (int)pair.dim[0];
+  *n_harmonics = (int)harmonic.dim[0] - 1;
+  return SHB_OK;
+}
+
+static shb_status read_modes(hid_t file, mhb_response *response) {
+  if (!h5_exists(file, "/modes")) return SHB_OK;
+  h5_shape modes = H5_SHAPE(0);
+  SHB_TRY(h5_read_double(file, "/modes/frequency", &modes, &response->mode_frequency));
+  SHB_TRY(h5_read_double(file, "/modes/damping_ratio", &modes, &response->mode_damping));
+  if (h5_exists(file, "/modes/residual"))
+    SHB_TRY(h5_read_double(file, "/modes/residual", &modes, &response->mode_residual));
+  response->n_modes = (int)modes.dim[0];
+  return SHB_OK;
+}
+
+/* Sizes, probe names and root attributes. */
+static shb_status read_root(hid_t file, const char *path, mhb_response **out) {
+  int    n_pairs = 0, n_harmonics = 0, n_probes = 0;
+  char **name = NULL;
+  SHB_TRY(read_sizes(file, path, &n_pairs, &n_harmonics));
+  if (h5_exists(file, "/probe")) SHB_TRY(h5_read_strings(file, "/probe/name", &n_probes, &name));
+  mhb_response *response = *out = mhb_response_create(n_pairs, n_probes, n_harmonics);
+  for (int i = 0; i < n_probes && !response; i++) free(name[i]);
+  for (int i = 0; i < n_probes && response; i++) response->probe_name[i] = name[i];
+  free(name);
+  SHB_CHECK(response, SHB_ERR_IO, "%s: no memory", path);
+  SHB_TRY(h5_read_attribute_int(file, "/", "engine_order", 0, &response->engine_order));
+  SHB_TRY(h5_read_attribute_int(file, "/", "blades", 0, &response->blades));
+  SHB_TRY(h5_read_attribute_int(file, "/", "subharmonics", 1, &response->subharmonics));
+  SHB_TRY(h5_read_attribute_double(file, "/", "psi", 0, &response->psi));
+  SHB_TRY(h5_read_attribute_double(file, "/", "phi", 0, &response->phi));
+  SHB_CHECK(response->subharmonics >= 1, SHB_ERR_INPUT,
+            "%s: subharmonics is %d; 1 or more is wanted", path, response->subharmonics);
+  return read_modes(file, response);
+}
+
+static shb_status read_field(hid_t group, const mhb_response *response, mhb_branch *branch,
+                             const field *f) {
+  h5_shape        shape    = shape_of(response, f, branch->n_points);
+  double         *real     = NULL;
+  double complex *complex_ = NULL;
+  int            *whole    = NULL;
+  switch (f->kind) {
+    case DOUBLE:
+      SHB_TRY(h5_read_double(group, f->name, &shape, &real));
+      set(branch, f, real);
+      break;
+    case COMPLEX:
+      SHB_TRY(h5_read_complex(group, f->name, &shape, &complex_));
+      set(branch, f, complex_);
+      break;
+    case INT:
+      SHB_TRY(h5_read_int(group, f->name, &shape, &whole));
+      set(branch, f, whole);
+      break;
+  }
+  return SHB_OK;
+}
+
+static shb_status read_kind(hid_t group, const char *path, int index, mhb_branch *branch) {
+  char *text = NULL;
+  SHB_TRY(h5_read_attribute_text(group, ".", "kind", &text));
+  int kind = 0;
+  while (text && kind < N_KINDS && strcmp(text, kind_name[kind]) != 0) kind++;
+  bool known = text && kind < N_KINDS;
+  free(text);
+  SHB_CHECK(known, SHB_ERR_INPUT, "%s: /branch_%d: attribute kind must be nonlinear, open or stuck",
+            path, index);
+  branch->kind = (mhb_branch_kind)kind;
+  return SHB_OK;
+}
+
+static shb_status check_points(const char *path, int index, const mhb_branch *branch) {
+  for (int i = 0; i < branch->n_points; i++) {
+    SHB_CHECK(branch->frequency[i] > 0, SHB_ERR_INPUT,
+              "%s: /branch_%d/frequency: value %d (from 0) is %g Hz; all must be positive", path,
+              index, i, branch->frequency[i]);
+    SHB_CHECK(branch->stable[i] >= -1 && branch->stable[i] <= 1, SHB_ERR_INPUT,
+              "%s: /branch_%d/stable: value %d (from 0) is %d; 1, 0 or -1 is wanted", path, index,
+              i, branch->stable[i]);
+    SHB_CHECK(branch->special[i] >= 0 && branch->special[i] <= 2, SHB_ERR_INPUT,
+              "%s: /branch_%d/special: value %d (from 0) is %d; 0, 1 or 2 is wanted", path, index,
+              i, branch->special[i]);
+  }
+  return SHB_OK;
+}
+
+static shb_status fill_from(hid_t group, const char *path, int index, mhb_response *response) {
+  mhb_branch *branch = &response->branch[index];
+  int         complete;
+  SHB_TRY(read_kind(group, path, index, branch));
+  SHB_TRY(h5_read_attribute_text(group, ".", "reason", &branch->reason));
+  SHB_TRY(h5_read_attribute_int(group, ".", "complete", 0, &complete));
+  branch->complete = complete != 0;
+  h5_shape points;
+  SHB_TRY(h5_shape_of(group, fields[0].name, &points));
+  SHB_CHECK(points.rank == 1, SHB_ERR_INPUT, "%s: /branch_%d/frequency must be a list", path,
+            index);
+  branch->n_points = branch->capacity = (int)points.dim[0];
+  for (int i = 0; i < N_FIELDS; i++)
+    if (is_kept(response, &fields[i])) SHB_TRY(read_field(group, response, branch, &fields[i]));
+  return check_points(path, index, branch);
+}
+
+static shb_status read_branch(hid_t file, const char *path, mhb_response *response) {
+  char name[32];
+  int  index;
+  SHB_TRY(mhb_response_branch(response, MHB_BRANCH_NONLINEAR, &index));
+  snprintf(name, sizeof name, "/branch_%d", index);
+  SHB_CHECK(h5_exists(file, name), SHB_ERR_INPUT, "%s: %s is missing", path, name);
+  hid_t group = H5Gopen2(file, name, H5P_DEFAULT);
+  SHB_CHECK(group >= 0, SHB_ERR_INPUT, "%s: %s is not a readable group", path, name);
+  shb_status status = fill_from(group, path, index, response);
+  H5Gclose(group);
+  return status;
+}
+
+static shb_status read_parts(hid_t file, const char *path, mhb_response **response) {
+  int n_branches = -1;
+  SHB_TRY(h5_check_format(file, response_format, RESPONSE_VERSION));
+  SHB_TRY(read_root(file, path, response));
+  SHB_TRY(h5_read_attribute_int(file, "/", "branches", -1, &n_branches));
+  SHB_CHECK(n_branches >= 0, SHB_ERR_INPUT, "%s: the root attribute branches is missing", path);
+  for (int i = 0; i < n_branches; i++) SHB_TRY(read_branch(file, path, *response));
+  return SHB_OK;
+}
+
+shb_status mhb_response_read(const char *path, mhb_response **response) {
+  *response = NULL;
+  hid_t file;
+  SHB_TRY(h5_open(path, &file));
+  shb_status status = read_parts(file, path, response);
+  h5_close(file);
+  if (status == SHB_OK) return SHB_OK;
+  mhb_response_destroy(*response);
+  *response = NULL;
+  return status;
+}
