@@ -1,0 +1,286 @@
+#include "mesh/blade.h"
+
+#include <errno.h>
+#include <gmshc.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "mesh/airfoil.h"
+#include "mesh/fe_mesh.h"
+#include "mesh/frame.h"
+#include "mesh/groups.h"
+#include "mesh/import.h"
+#include "mesh/kernel.h"
+#include "mesh/provenance.h"
+#include "mesh/shroud.h"
+#include "mesh/tet10.h"
+
+static const char *const who = "mesh.blade";
+
+static shb_status check_root(const mesh_blade *blade) {
+  const struct {
+    const char *key;
+    double      value;
+  } size[] = {
+      {"length", blade->root_length}, {"width", blade->root_width}, {"height", blade->root_height}};
+  for (int i = 0; i < 3; i++)
+    SHB_CHECK(size[i].value > 0 && isfinite(size[i].value), SHB_ERR_INPUT,
+              "mesh.blade.root.%s: %g mm; it must be positive", size[i].key, 1e3 * size[i].value);
+  double top = blade->section[0].radius, bottom = top - blade->root_height;
+  SHB_CHECK(bottom > 0, SHB_ERR_INPUT,
+            "mesh.blade.root.height: %g mm reaches the engine axis from the first section at %g mm",
+            1e3 * blade->root_height, 1e3 * top);
+  double pitch = 2 * bottom * tan(M_PI / blade->blades);
+  SHB_CHECK(blade->root_width <= pitch, SHB_ERR_INPUT,
+            "mesh.blade.root.width: %g mm is wider than the sector at the root's bottom, %.4g mm "
+            "with rotor.blades %d",
+            1e3 * blade->root_width, 1e3 * pitch, blade->blades);
+  return SHB_OK;
+}
+
+/* The block must hold the airfoil's foot, with 2 % to spare all round. */
+static shb_status check_foot(const mesh_blade *blade) {
+  double radius[2] = {blade->section[0].radius, mesh_airfoil_begin(blade)}, reach[2] = {0, 0};
+  for (int k = 0; k < 2; k++) {
+    mesh_section section = mesh_airfoil_at(blade, radius[k]);
+    mesh_outline outline;
+    mesh_airfoil_outline(&section, &outline);
+    for (int i = 0; i < MESH_AIRFOIL_POINTS; i++)
+      for (int d = 0; d < 2; d++) {
+        reach[d] = fmax(reach[d], fabs(outline.suction[i][d]));
+        reach[d] = fmax(reach[d], fabs(outline.pressure[i][d]));
+      }
+  }
+  SHB_CHECK(reach[1] <= 0.49 * blade->root_length, SHB_ERR_INPUT,
+            "mesh.blade.root.length: %g mm does not hold the first section; give at least %.4g mm",
+            1e3 * blade->root_length, 1e3 * reach[1] / 0.49);
+  SHB_CHECK(reach[0] <= 0.49 * blade->root_width, SHB_ERR_INPUT,
+            "mesh.blade.root.width: %g mm does not hold the first section; give at least %.4g mm",
+            1e3 * blade->root_width, 1e3 * reach[0] / 0.49);
+  return SHB_OK;
+}
+
+static shb_status check_size(const mesh_blade *blade) {
+  enum { MOST = 3000000 };
+  SHB_CHECK(blade->size > 0 && isfinite(blade->size), SHB_ERR_INPUT,
+            "mesh.blade.size: %g mm; it must be positive", 1e3 * blade->size);
+  SHB_CHECK(blade->shroud_size >= 0 && isfinite(blade->shroud_size), SHB_ERR_INPUT,
+            "mesh.blade.shroud_size: %g mm; it must be positive (0: as mesh.blade.size)",
+            1e3 * blade->shroud_size);
+  /* 12 nodes a cube of the size: about 8.5 tetrahedra, 1.4 nodes each */
+  double volume = blade->root_length * blade->root_width * blade->root_height;
+  for (int i = 1; i < blade->n_sections; i++) {
+    const mesh_section *a = &blade->section[i - 1], *b = &blade->section[i];
+    volume += 0.7 * (b->radius - a->radius) * a->chord * a->thickness;
+  }
+  double nodes = 12 * volume / pow(blade->size, 3);
+  SHB_CHECK(nodes < MOST, SHB_ERR_INPUT,
+            "mesh.blade.size: %g mm would give about %.2g nodes; give at least %.2g mm",
+            1e3 * blade->size, nodes, 1e3 * cbrt(12 * volume / MOST));
+  double ring = blade->shroud_length * blade->shroud_thickness * 2 * M_PI / blade->blades *
+                (blade->section[blade->n_sections - 1].radius + blade->shroud_thickness / 2);
+  nodes = blade->shroud_size > 0 ? 12 * ring / pow(blade->shroud_size, 3) : 0;
+  SHB_CHECK(nodes < MOST, SHB_ERR_INPUT,
+            "mesh.blade.shroud_size: %g mm would give about %.2g nodes; give at least %.2g mm",
+            1e3 * blade->shroud_size, nodes, 1e3 * cbrt(12 * ring / MOST));
+  return SHB_OK;
+}
+
+static shb_status check(const mesh_blade *blade) {
+  SHB_TRY(mesh_airfoil_check(blade));
+  SHB_TRY(mesh_shroud_check(blade));
+  SHB_TRY(check_root(blade));
+  SHB_TRY(check_foot(blade));
+  return check_size(blade);
+}
+
+static shb_status build_root(const mesh_blade *blade, const mesh_frame *frame, int *volume) {
+  double l = blade->root_length / 2, w = blade->root_width / 2, top = blade->section[0].radius;
+  double own[2][3] = {{-w, -l, top - blade->root_height}, {w, l, top}}, at[2][3], low[3], span[3];
+  for (int i = 0; i < 2; i++) mesh_frame_out(frame, own[i], at[i]);
+  for (int d = 0; d < 3; d++) {
+    low[d]  = fmin(at[0][d], at[1][d]);
+    span[d] = fabs(at[1][d] - at[0][d]);
+  }
+  GMSH_TRY("mesh.blade.root", *volume = gmshModelOccAddBox(low[0], low[1], low[2], span[0], span[1],
+                                                           span[2], -1, &ierr));
+  return SHB_OK;
+}
+
+/* Join airfoil, root and the shroud's legs into one volume. */
+static shb_status fuse(int airfoil, int root, const int shroud[MESH_SHROUD_LEGS], int *volume) {
+  int    object[2] = {3, airfoil}, tools[2 * MESH_SHROUD_LEGS + 2] = {3, root};
+  int   *made = NULL, **map = NULL;
+  size_t n_made = 0, *n_map = NULL, nn_map = 0;
+  for (int i = 0; i < MESH_SHROUD_LEGS; i++) {
+    tools[2 * i + 2] = 3;
+    tools[2 * i + 3] = shroud[i];
+  }
+  GMSH_TRY(who, gmshModelOccFuse(object, 2, tools, 2 * MESH_SHROUD_LEGS + 2, &made, &n_made, &map,
+                                 &n_map, &nn_map, -1, 1, 1, &ierr));
+  int solids = 0;
+  for (size_t i = 0; i + 1 < n_made; i += 2) {
+    if (made[i] != 3) continue;
+    *volume = made[i + 1];
+    solids++;
+  }
+  gmshFree(made);
+  for (size_t i = 0; i < nn_map; i++) gmshFree(map[i]);
+  gmshFree(map);
+  gmshFree(n_map);
+  SHB_CHECK(solids == 1, SHB_ERR_INPUT,
+            "mesh.blade: root, airfoil and shroud do not join into one solid (%d found)", solids);
+  return SHB_OK;
+}
+
+static shb_status build(const mesh_blade *blade, const mesh_frame *frame) {
+  int airfoil = 0, root = 0, shroud[MESH_SHROUD_LEGS], volume = 0;
+  SHB_TRY(mesh_airfoil_build(blade, frame, &airfoil));
+  SHB_TRY(build_root(blade, frame, &root));
+  SHB_TRY(mesh_shroud_build(blade, frame, shroud));
+  SHB_TRY(fuse(airfoil, root, shroud, &volume));
+  GMSH_TRY(who, gmshModelOccSynchronize(&ierr));
+  return mesh_groups_set(blade, frame, volume);
+}
+
+/* What the size callback needs. */
+typedef struct {
+  const mesh_blade *blade;
+  double            radial[3]; /* unit vector of the stacking line */
+} sizing;
+
+/* size on the airfoil and root, shroud_size from the shroud's underside up, linear over 4 sizes between.
+ * Along the stacking line, not the radius: for a shroud side and its copy this differs by the sector's
+ * turn, but gmsh copies the periodic side's mesh. */
+static double element_size(int dim, int tag, double x, double y, double z, void *data) {
+  (void)dim;
+  (void)tag;
+  const sizing     *s     = data;
+  const mesh_blade *blade = s->blade;
+  if (!(blade->shroud_size > 0)) return blade->size;
+  double radial = x * s->radial[0] + y * s->radial[1] + z * s->radial[2];
+  double from   = blade->section[blade->n_sections - 1].radius - 4 * blade->size;
+  double share  = fmin(1, fmax(0, (radial - from) / (4 * blade->size)));
+  return blade->size + share * (blade->shroud_size - blade->size);
+}
+
+static shb_status set_options(void) {
+  static const struct {
+    const char *name;
+    double      value;
+  } option[] = {{"Mesh.MeshSizeExtendFromBoundary", 0},
+                {"Mesh.MeshSizeFromPoints", 0},
+                {"Mesh.MeshSizeFromCurvature", 0},
+                {"Mesh.Algorithm", 6},   /* frontal Delaunay */
+                {"Mesh.Algorithm3D", 1}, /* Delaunay */
+                {"Mesh.Optimize", 1},
+                {"Mesh.OptimizeNetgen", 1},
+                {"Mesh.RandomSeed", 1}, /* same case, same mesh */
+                {"Mesh.MshFileVersion", 4.1},
+                {"Mesh.Binary", 0},
+                {"Mesh.SaveAll", 0},
+                /* joining faces that lie on one surface would merge the legs of a straight Z */
+                {"Geometry.OCCUnionUnify", 0}};
+  for (size_t i = 0; i < sizeof option / sizeof *option; i++)
+    GMSH_TRY(who, gmshOptionSetNumber(option[i].name, option[i].value, &ierr));
+  return SHB_OK;
+}
+
+/* Copy gmsh's model, and see that no element is inverted and that the contact faces match. */
+static shb_status verify(const mesh_blade *blade, mesh_fe *mesh) {
+  int pairs = 0, *right = NULL, *left = NULL;
+  SHB_TRY(mesh_import(who, mesh));
+  shb_status status = mesh_tet10_check(mesh, who);
+  if (status == SHB_OK)
+    status = mesh_fe_match(mesh, blade->axis, blade->blades, &pairs, &right, &left);
+  free(right);
+  free(left);
+  if (status != SHB_OK) mesh_fe_free(mesh);
+  return status;
+}
+
+static shb_status mesh_volume(const mesh_blade *blade, const mesh_frame *frame,
+                              shb_progress *progress) {
+  sizing s = {.blade = blade};
+  mesh_axis_stacking(frame->axis, s.radial);
+  GMSH_TRY(who, gmshModelMeshSetSizeCallback(element_size, &s, &ierr));
+  for (int dimension = 1; dimension <= 3; dimension++) {
+    shb_progress_show(progress, 25 * dimension, "meshing %s",
+                      (const char *[]){"curves", "faces", "the volume"}[dimension - 1]);
+    GMSH_TRY(who, gmshModelMeshGenerate(dimension, &ierr));
+    SHB_CHECK(!shb_interrupted(), SHB_INTERRUPTED, "interrupted while meshing; nothing written");
+  }
+  GMSH_TRY(who, gmshModelMeshRemoveSizeCallback(&ierr));
+  GMSH_TRY(who, gmshModelMeshSetOrder(2, &ierr));
+  return SHB_OK;
+}
+
+/* Curved sides can invert elements at thin edges: let gmsh move mid-side nodes, then look again. */
+static shb_status straighten(const mesh_blade *blade, mesh_fe *mesh, shb_progress *progress) {
+  shb_status status = verify(blade, mesh);
+  if (status != SHB_ERR_INPUT) return status;
+  shb_progress_note(progress, "%s; optimising", shb_message());
+  GMSH_TRY(who, gmshModelMeshOptimize("HighOrder", 0, 1, NULL, 0, &ierr));
+  return verify(blade, mesh);
+}
+
+static shb_status write_model(const char *path, const shb_provenance *provenance) {
+  char *temporary = shb_publish_temporary(path);
+  char *whole     = temporary ? malloc(strlen(temporary) + 8) : NULL;
+  if (!whole) {
+    free(temporary);
+    SHB_FAIL(SHB_ERR_IO, "%s: no memory to write it", path);
+  }
+  sprintf(whole, "%s.msh", temporary); /* gmsh goes by the ending */
+  free(temporary);
+  shb_status status = SHB_OK;
+  FILE      *file   = fopen(whole, "wb");
+  if (!file) {
+    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "%s: cannot be written: %s", path,
+                      strerror(errno));
+  } else {
+    int ierr = 0;
+    fclose(file);
+    gmshWrite(whole, &ierr);
+    if (ierr) status = mesh_kernel_fail(SHB_ERR_IO, __FILE__, __LINE__, path);
+    if (status == SHB_OK) status = mesh_provenance_append(whole, provenance);
+    if (status == SHB_OK) status = shb_publish(whole, path);
+    if (status != SHB_OK) unlink(whole);
+  }
+  free(whole);
+  return status;
+}
+
+static shb_status make(const mesh_blade *blade, const char *path, const shb_provenance *provenance,
+                       shb_progress *progress) {
+  mesh_frame frame = mesh_frame_at(blade->axis);
+  mesh_fe    mesh  = {0};
+  double     start = shb_seconds();
+  SHB_TRY(set_options());
+  shb_progress_show(progress, 0, "building the solid");
+  SHB_TRY(build(blade, &frame));
+  double built = shb_seconds();
+  shb_progress_note(progress, "solid %.2f s", built - start);
+  SHB_CHECK(!shb_interrupted(), SHB_INTERRUPTED, "interrupted while meshing; nothing written");
+  SHB_TRY(mesh_volume(blade, &frame, progress));
+  SHB_TRY(straighten(blade, &mesh, progress));
+  shb_progress_note(progress, "mesh %.2f s: %d nodes, %d elements, %d contact faces a side",
+                    shb_seconds() - built, mesh.n_nodes, mesh.n_elements,
+                    mesh.set[MESH_CONTACT_RIGHT].n);
+  mesh_fe_free(&mesh);
+  return write_model(path, provenance);
+}
+
+shb_status mesh_blade_write(const mesh_blade *blade, const char *path,
+                            const shb_provenance *provenance, shb_progress *progress) {
+  SHB_TRY(check(blade));
+  mesh_kernel kernel;
+  SHB_TRY(mesh_kernel_open(&kernel));
+  shb_status status = make(blade, path, provenance, progress);
+  mesh_kernel_close(&kernel);
+  shb_progress_clear(progress);
+  return status;
+}

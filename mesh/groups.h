@@ -1,0 +1,13 @@
+/* The fused blade's faces found again, named, and tied left to right. */
+#ifndef MESH_GROUPS_H
+#define MESH_GROUPS_H
+
+#include "mesh/blade.h"
+#include "mesh/frame.h"
+
+/* Name the physical groups root, contact_right, contact_left, load and body on gmsh's current model (one
+ * volume), and make each leg of the shroud's right side a periodic copy of the left one.
+ * SHB_ERR_INPUT if a face is not found exactly once: the parts of the blade cut into each other. */
+shb_status mesh_groups_set(const mesh_blade *blade, const mesh_frame *frame, int volume);
+
+#endif
