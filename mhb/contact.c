@@ -578,14 +578,20 @@ static void finish_stuck(mhb_contact *c, const mhb_stuck *stuck, int derivative)
   }
 }
 
+/* Always closed: n is linear in v, and a huge preload must not drown it. */
+static void normal_force_closed(const mhb_contact *c, const mhb_law *law, const double *v,
+                                double *force, double *jacobian) {
+  for (int i = 0; i < c->nb; i++) {
+    force[i] = law->kv * v[i];
+    if (jacobian) jacobian[(size_t)i * 3 * (size_t)c->nb + (size_t)i] = law->kv;
+  }
+  force[0] += law->n0 - law->balance;
+}
+
 /* Normal load: the harmonics of n over the closed intervals. */
-static void normal_force(mhb_contact *c, double *force, double *jacobian) {
+static void normal_force(mhb_contact *c, const mhb_law *law, double *force, double *jacobian) {
   int nb = c->nb, nf = c->nf, sums = mhb_real_size(c->H + c->m);
   memset(c->piece, 0, sizeof(double) * (size_t)sums);
-  if (c->closed.always_closed) {
-    mhb_basis_integral(c->H + c->m, 0, TWO_PI, c->piece);
-    for (int i = 1; i < sums; i++) c->piece[i] = 0;
-  }
   for (int i = 0; i < c->closed.n; i++)
     mhb_basis_integral(c->H + c->m, c->closed.closing[i], c->closed.opening[i], c->piece);
   mhb_basis_product(c->H, c->m, c->piece, c->product, nb);
@@ -598,6 +604,7 @@ static void normal_force(mhb_contact *c, double *force, double *jacobian) {
     double *row = jacobian + (size_t)i * 3 * (size_t)nb;
     for (int j = 0; j < nb; j++) row[j] = c->scale * c->kv * q * S[j];
   }
+  force[0] -= law->balance;
 }
 
 /* Loop integral of f.s' dt: pi sum_k k (Im F_k Re S_k - Re F_k Im S_k) for x = Re X_k exp(jkt). */
@@ -650,7 +657,7 @@ void mhb_contact_force(mhb_contact *c, const mhb_law *law, const double *motion,
   memset(force, 0, sizeof(double) * size);
   if (jacobian) memset(jacobian, 0, sizeof(double) * size * 3 * (size_t)nb);
   c->info = info;
-  if (!set_signals(c, law, motion)) {
+  if (!set_signals(c, law, motion)) { /* at rest, without preload */
     info->share[MHB_SEPARATE] = 1;
     return;
   }
@@ -667,7 +674,11 @@ void mhb_contact_force(mhb_contact *c, const mhb_law *law, const double *motion,
     double       *row  = jacobian + (size_t)(nf + i) * 3 * (size_t)nb;
     for (int j = 0; j < 3 * nb; j++) row[j] = c->scale * from[j];
   }
-  normal_force(c, force, jacobian);
+  if (c->closed.always_closed) {
+    normal_force_closed(c, law, motion, force, jacobian);
+  } else {
+    normal_force(c, law, force, jacobian);
+  }
   info->slip_work *= c->scale;
   info->dissipation = loop_work(c, motion, force);
 }

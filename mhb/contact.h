@@ -21,6 +21,8 @@ typedef struct {
   double kv;    /* normal stiffness, N/m, >= 0 */
   double ku[3]; /* kuu, kuw, kww, N/m; positive definite */
   double n0;    /* preload, N; negative: initial gap -n0/kv */
+  double
+      balance; /* subtracted from the mean of n, N: max(n0, 0) for a preload stated at equilibrium, else 0 */
 } mhb_law;
 
 enum { MHB_MAX_TRANSITIONS = 512 };
@@ -50,7 +52,7 @@ typedef struct mhb_contact mhb_contact; /* workspace: FFTW plans and all arrays;
 shb_status mhb_contact_create(int m, int H, double tolerance, mhb_contact **contact);
 void       mhb_contact_destroy(mhb_contact *contact);
 
-/* Force harmonics (n, fu, fw), before any preload is subtracted.
+/* Force harmonics (n - balance, fu, fw).
  *   motion    in   [3][2m+1], m
  *   force     out  [3][2H+1], N
  *   jacobian  out  d force / d motion, [3 (2H+1)][3 (2m+1)] row-major, N/m, or NULL. Where slip just begins the derivative

@@ -430,7 +430,7 @@ static shb_status fill_from(hid_t group, const char *path, int index, mhb_respon
 
 static shb_status read_branch(hid_t file, const char *path, mhb_response *response) {
   char name[32];
-  int  index;
+  int  index = 0;
   SHB_TRY(mhb_response_branch(response, MHB_BRANCH_NONLINEAR, &index));
   snprintf(name, sizeof name, "/branch_%d", index);
   SHB_CHECK(h5_exists(file, name), SHB_ERR_INPUT, "%s: %s is missing", path, name);

@@ -1,0 +1,58 @@
+/* A first solution without a guess. */
+#include <math.h>
+#include <string.h>
+
+#include "mhb/follow.h"
+
+enum { MAX_STAGES = 200 };
+
+/* Natural continuation of the preload from one whose linear limit x solves, to the one asked for. */
+static mhb_reason homotopy(mhb_newton *newton, mhb_residual *b, double omega, double tolerance,
+                           double from, double *x) {
+  double     to = b->n0, part = 0, step = .25;
+  double     kept[b->n];
+  mhb_reason reason = MHB_MAX_ITERATIONS;
+  for (int i = 0; i < MAX_STAGES && part < 1 && step > 1e-5; i++) {
+    double next = fmin(1, part + step);
+    int    iterations;
+    memcpy(kept, x, sizeof kept);
+    mhb_residual_preload(b, from + next * (to - from));
+    reason = mhb_newton_solve(newton, b, omega, tolerance, x, &iterations);
+    if (reason == MHB_CONVERGED) {
+      part = next;
+      step *= iterations < 6 ? 2 : 1;
+    } else {
+      memcpy(x, kept, sizeof kept);
+      step *= .4;
+    }
+  }
+  mhb_residual_preload(b, to);
+  return part >= 1 ? MHB_CONVERGED : reason;
+}
+
+/* A preload beyond which the linear limit holds: no motion of size x can open it, or close it. */
+static double far_preload(const mhb_residual *b, const double *x, int stuck) {
+  double size = mhb_norm(x, b->n), mu = fmax(b->settings->mu, 1e-6);
+  double friction = (fabs(b->settings->ku[0]) + fabs(b->settings->ku[2])) / mu;
+  double reach    = 4 * size * (b->settings->kv + (stuck ? friction : 0)) + fabs(b->n0);
+  return stuck ? reach : -reach;
+}
+
+mhb_reason mhb_first_solution(mhb_newton *newton, mhb_residual *b, double omega, double tolerance,
+                              double *x, int *iterations) {
+  mhb_reason reason   = MHB_MAX_ITERATIONS;
+  double     n0       = b->n0;
+  int        order[2] = {n0 > 0, n0 <= 0}; /* the likelier limit first */
+  for (int i = 0; i < 2; i++) {
+    if (mhb_residual_linear(b, omega, order[i], x) != SHB_OK) continue;
+    reason = mhb_newton_solve(newton, b, omega, tolerance, x, iterations);
+    if (reason == MHB_CONVERGED) return reason;
+  }
+  memset(x, 0, sizeof(double) * (size_t)b->n);
+  reason = mhb_newton_solve(newton, b, omega, tolerance, x, iterations);
+  for (int i = 0; i < 2 && reason != MHB_CONVERGED; i++) {
+    if (mhb_residual_linear(b, omega, order[i], x) != SHB_OK) continue;
+    reason = homotopy(newton, b, omega, tolerance, far_preload(b, x, order[i]), x);
+  }
+  return reason;
+}

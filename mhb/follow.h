@@ -1,0 +1,33 @@
+/* One branch of the response: followed over the frequency range at one preload, folds and peaks located, each point
+ * recorded with its forces, states and error estimates. */
+#ifndef MHB_FOLLOW_H
+#define MHB_FOLLOW_H
+
+#include <stdbool.h>
+
+#include "mhb/path.h"
+#include "mhb/response.h"
+
+/* special of mhb_branch */
+enum { MHB_ORDINARY, MHB_FOLD, MHB_PEAK };
+
+/* Called after every recorded point; the one place where threads meet. Returns false to stop (interrupted). */
+typedef struct mhb_monitor mhb_monitor;
+struct mhb_monitor {
+  bool (*point)(mhb_monitor *monitor, int branch, const mhb_path_point *point);
+  void (*lock)(mhb_monitor *monitor, bool locked);
+};
+
+/* Follow the branch at the residual's preload from the low to the high end of the range. Never fails for want of
+ * convergence: the branch then ends with its reason. Errors: SHB_ERR_IO no memory. */
+shb_status mhb_follow(mhb_residual *residual, mhb_response *response, int branch,
+                      mhb_monitor *monitor);
+
+/* The open or stuck limit, sampled until linear interpolation of every output is within .2 % of its maximum. */
+shb_status mhb_follow_linear(mhb_residual *residual, mhb_response *response, int branch);
+
+/* A solution at omega from nothing: the open and stuck limits, zero, then homotopy in the preload from both sides. */
+mhb_reason mhb_first_solution(mhb_newton *newton, mhb_residual *residual, double omega,
+                              double tolerance, double *x, int *iterations);
+
+#endif

@@ -1,0 +1,93 @@
+#include "mhb/newton.h"
+
+#include <float.h>
+#include <lapacke.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MAX_ITERATIONS = 40, MAX_HALVINGS = 8 };
+
+const char *mhb_reason_text(mhb_reason reason) {
+  switch (reason) {
+    case MHB_CONVERGED:
+      return "converged";
+    case MHB_NO_DESCENT:
+      return "Newton found no decrease of the residual";
+    case MHB_MAX_ITERATIONS:
+      return "Newton did not converge";
+    default:
+      return "the Jacobian is singular";
+  }
+}
+
+double mhb_norm(const double *x, int n) {
+  double top = 0, sum = 0;
+  for (int i = 0; i < n; i++) top = fmax(top, fabs(x[i]));
+  if (!(top > 0)) return top;
+  for (int i = 0; i < n; i++) sum += (x[i] / top) * (x[i] / top);
+  return top * sqrt(sum);
+}
+
+shb_status mhb_newton_create(int n, mhb_newton **out) {
+  mhb_newton *w = calloc(1, sizeof *w);
+  SHB_CHECK(w, SHB_ERR_IO, "out of memory");
+  size_t one  = (size_t)n + 1;
+  w->n        = n;
+  w->jacobian = malloc(sizeof(double) * (size_t)n * (size_t)n);
+  w->bordered = malloc(sizeof(double) * one * one);
+  w->r        = malloc(sizeof(double) * one);
+  w->step     = malloc(sizeof(double) * one);
+  w->trial    = malloc(sizeof(double) * one);
+  w->slope    = malloc(sizeof(double) * one);
+  w->pivot    = malloc(sizeof(int) * one);
+  if (!(w->jacobian && w->bordered && w->r && w->step && w->trial && w->slope && w->pivot)) {
+    mhb_newton_destroy(w);
+    SHB_FAIL(SHB_ERR_IO, "out of memory for %d unknowns", n);
+  }
+  *out = w;
+  return SHB_OK;
+}
+
+void mhb_newton_destroy(mhb_newton *w) {
+  if (!w) return;
+  free(w->jacobian);
+  free(w->bordered);
+  free(w->r);
+  free(w->step);
+  free(w->trial);
+  free(w->slope);
+  free(w->pivot);
+  free(w);
+}
+
+/* Halve the step until |r| falls; leaves r and Jacobian at the new x. */
+static int line_search(mhb_newton *w, mhb_residual *b, double omega, double *x, double *size) {
+  int n = w->n;
+  memcpy(w->trial, x, sizeof(double) * (size_t)n);
+  double before = *size, fraction = 1;
+  for (int i = 0; i < MAX_HALVINGS; i++, fraction *= .5) {
+    for (int j = 0; j < n; j++) x[j] = w->trial[j] - fraction * w->step[j];
+    mhb_residual_evaluate(b, x, omega, w->r, w->jacobian, NULL);
+    *size = mhb_norm(w->r, n);
+    if (*size < (1 - .1 * fraction) * before) return 1;
+  }
+  return 0;
+}
+
+mhb_reason mhb_newton_solve(mhb_newton *w, mhb_residual *b, double omega, double tolerance,
+                            double *x, int *iterations) {
+  int n = w->n;
+  mhb_residual_evaluate(b, x, omega, w->r, w->jacobian, NULL);
+  double size = mhb_norm(w->r, n);
+  for (*iterations = 0; *iterations < MAX_ITERATIONS; ++*iterations) {
+    if (size <= tolerance * fmax(mhb_norm(x, n), DBL_MIN)) return MHB_CONVERGED;
+    memcpy(w->step, w->r, sizeof(double) * (size_t)n);
+    if (LAPACKE_dgesv(LAPACK_COL_MAJOR, n, 1, w->jacobian, n, w->pivot, w->step, n) != 0)
+      return MHB_SINGULAR;
+    if (!line_search(w, b, omega, x, &size))
+      return size <= 100 * tolerance * mhb_norm(x, n) ? MHB_CONVERGED
+                                                      : MHB_NO_DESCENT; /* rounding */
+  }
+  return MHB_MAX_ITERATIONS;
+}

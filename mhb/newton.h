@@ -1,0 +1,35 @@
+/* Newton's method on the balance of harmonics at a fixed frequency, with a line search. */
+#ifndef MHB_NEWTON_H
+#define MHB_NEWTON_H
+
+#include "mhb/residual.h"
+
+/* Why it stopped: > 0 converged. */
+typedef enum {
+  MHB_CONVERGED      = 1,
+  MHB_NO_DESCENT     = -1, /* the line search found no decrease */
+  MHB_MAX_ITERATIONS = -2,
+  MHB_SINGULAR       = -3
+} mhb_reason;
+
+const char *mhb_reason_text(mhb_reason reason);
+
+/* Arrays for systems of n unknowns, made once. */
+typedef struct {
+  int     n;
+  double *jacobian;                 /* [n][n] column-major */
+  double *bordered;                 /* [n+1][n+1] column-major */
+  double *r, *step, *trial, *slope; /* [n+1] */
+  int    *pivot;                    /* [n+1] */
+} mhb_newton;
+
+shb_status mhb_newton_create(int n, mhb_newton **newton);
+void       mhb_newton_destroy(mhb_newton *newton);
+
+/* Solve r(x, omega) = 0 from x: |r| <= tolerance max(|x|, floor). *iterations counts Newton steps. */
+mhb_reason mhb_newton_solve(mhb_newton *newton, mhb_residual *residual, double omega,
+                            double tolerance, double *x, int *iterations);
+
+double mhb_norm(const double *x, int n);
+
+#endif

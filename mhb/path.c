@@ -1,0 +1,294 @@
+#include "mhb/path.h"
+
+#include <float.h>
+#include <lapacke.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Settings that did not stall on stiff and on kinked curves. */
+static const double FIRST_STEP = .02, LONGEST_STEP = .1, LARGEST_ANGLE = .35, SHORTEST_STEP = 1e-4;
+static const double STAGNANT  = 1e-8;
+static const double KINK_STEP = .02, KINK_RATIO = .7;
+enum { MAX_CORRECTIONS = 12, WANTED_CORRECTIONS = 5 };
+
+static int point_create(mhb_path_point *point, int n) {
+  point->x       = calloc((size_t)n, sizeof(double));
+  point->tangent = calloc((size_t)n + 1, sizeof(double));
+  return point->x && point->tangent;
+}
+
+static void point_free(mhb_path_point *point) {
+  free(point->x);
+  free(point->tangent);
+}
+
+shb_status mhb_path_create(mhb_residual *residual, double low, double high, mhb_path **out) {
+  mhb_path *path = calloc(1, sizeof *path);
+  SHB_CHECK(path, SHB_ERR_IO, "out of memory");
+  int n           = residual->n;
+  path->residual  = residual;
+  path->n         = n;
+  path->low       = low;
+  path->high      = high;
+  path->longest   = LONGEST_STEP;
+  path->tolerance = 1e-10;
+  path->chord     = calloc((size_t)n + 1, sizeof(double));
+  int ok          = path->chord && point_create(&path->now, n) && point_create(&path->next, n) &&
+           point_create(&path->probe, n) && mhb_newton_create(n, &path->newton) == SHB_OK;
+  if (!ok) {
+    mhb_path_destroy(path);
+    SHB_FAIL(SHB_ERR_IO, "out of memory for a path of %d unknowns", n);
+  }
+  *out = path;
+  return SHB_OK;
+}
+
+void mhb_path_destroy(mhb_path *path) {
+  if (!path) return;
+  point_free(&path->now);
+  point_free(&path->next);
+  point_free(&path->probe);
+  mhb_newton_destroy(path->newton);
+  free(path->chord);
+  free(path);
+}
+
+static double span(const mhb_path *path) {
+  return path->high - path->low;
+}
+
+/* Length unit of x: the size of the current point. */
+static double unit(const mhb_path *path) {
+  double size = mhb_norm(path->now.x, path->n);
+  return size > 0 ? size : 1;
+}
+
+/* Inner product of two (dx, domega) in y. */
+static double inner(const mhb_path *path, double scale, const double *a, const double *b) {
+  double sum = a[path->n] * b[path->n] / (span(path) * span(path));
+  for (int i = 0; i < path->n; i++) sum += (a[i] / scale) * (b[i] / scale);
+  return sum;
+}
+
+/* Factor [J, r_omega; normal] in scaled columns; 0 if singular. */
+static int factor_bordered(const mhb_path *path, double scale, const double *normal) {
+  mhb_newton *w = path->newton;
+  int         n = path->n, one = n + 1;
+  double      sp = span(path);
+  for (int j = 0; j < n; j++) {
+    memcpy(w->bordered + (size_t)j * (size_t)one, w->jacobian + (size_t)j * (size_t)n,
+           sizeof(double) * (size_t)n);
+    w->bordered[(size_t)j * (size_t)one + (size_t)n] = normal[j] / scale;
+  }
+  double *last = w->bordered + (size_t)n * (size_t)one;
+  for (int i = 0; i < n; i++) last[i] = w->slope[i] * sp / scale;
+  last[n] = normal[n] / sp;
+  return LAPACKE_dgetrf(LAPACK_COL_MAJOR, one, one, w->bordered, one, w->pivot) == 0;
+}
+
+static int solve_bordered(const mhb_path *path, double *rhs) {
+  mhb_newton *w   = path->newton;
+  int         one = path->n + 1;
+  return LAPACKE_dgetrs(LAPACK_COL_MAJOR, 'N', one, 1, w->bordered, one, w->pivot, rhs, one) == 0;
+}
+
+static void evaluate(mhb_path *path, const mhb_path_point *point) {
+  mhb_newton *w = path->newton;
+  mhb_residual_evaluate(path->residual, point->x, point->omega, w->r, w->jacobian, w->slope);
+}
+
+/* Newton in the plane normal.(y - point at entry) = 0; clip bounds a correction. 1: converged, workspace at point. */
+static int correct(mhb_path *path, const double *normal, double clip, mhb_path_point *point) {
+  mhb_newton *w     = path->newton;
+  int         n     = path->n;
+  double      scale = unit(path), sp = span(path), before = INFINITY;
+  for (point->iterations = 0; point->iterations <= MAX_CORRECTIONS; point->iterations++) {
+    evaluate(path, point);
+    double size     = mhb_norm(point->x, n);
+    point->residual = mhb_norm(w->r, n) / (size > 0 ? size : 1);
+    if (!isfinite(point->residual)) return 0;
+    if (point->residual <= path->tolerance) return 1;
+    if (point->residual < STAGNANT && point->residual > .5 * before) return 1; /* rounding */
+    before = point->residual;
+    if (point->iterations == MAX_CORRECTIONS || !factor_bordered(path, scale, normal)) return 0;
+    for (int i = 0; i < n; i++) w->step[i] = -w->r[i] / scale;
+    w->step[n] = 0; /* every iterate stays in the plane */
+    if (!solve_bordered(path, w->step)) return 0;
+    double length = mhb_norm(w->step, n + 1), cut = length > clip ? clip / length : 1;
+    for (int i = 0; i < n; i++) point->x[i] += cut * scale * w->step[i];
+    point->omega += cut * sp * w->step[n];
+    if (!(point->omega > 0)) return 0;
+  }
+  return 0;
+}
+
+/* Tangent at a point the workspace is at: [J r_omega; along] t = [0; 1], scaled to unit length. */
+static int set_tangent(mhb_path *path, const double *along, mhb_path_point *point) {
+  mhb_newton *w     = path->newton;
+  int         n     = path->n;
+  double      scale = unit(path);
+  if (!factor_bordered(path, scale, along)) return 0;
+  memset(w->step, 0, sizeof(double) * ((size_t)n + 1));
+  w->step[n] = 1;
+  if (!solve_bordered(path, w->step)) return 0;
+  double length = mhb_norm(w->step, n + 1);
+  if (!(length > 0) || !isfinite(length)) return 0;
+  for (int i = 0; i < n; i++) point->tangent[i] = w->step[i] / length * scale;
+  point->tangent[n] = w->step[n] / length * span(path);
+  return 1;
+}
+
+mhb_reason mhb_path_start(mhb_path *path, const double *x, double omega, int direction) {
+  memcpy(path->now.x, x, sizeof(double) * (size_t)path->n);
+  path->now.omega   = omega;
+  path->step        = FIRST_STEP;
+  mhb_reason reason = mhb_newton_solve(path->newton, path->residual, omega, path->tolerance,
+                                       path->now.x, &path->now.iterations);
+  if (reason != MHB_CONVERGED) return reason;
+  evaluate(path, &path->now);
+  double size        = mhb_norm(path->now.x, path->n);
+  path->now.residual = mhb_norm(path->newton->r, path->n) / (size > 0 ? size : 1);
+  double *along      = path->chord;
+  memset(along, 0, sizeof(double) * (size_t)path->n);
+  along[path->n] = direction * span(path);
+  return set_tangent(path, along, &path->now) ? MHB_CONVERGED : MHB_SINGULAR;
+}
+
+/* next <- now + ds tangent, corrected. */
+static int attempt(mhb_path *path, double ds) {
+  for (int i = 0; i < path->n; i++) path->next.x[i] = path->now.x[i] + ds * path->now.tangent[i];
+  path->next.omega = path->now.omega + ds * path->now.tangent[path->n];
+  return correct(path, path->now.tangent, 2 * ds, &path->next) &&
+         set_tangent(path, path->now.tangent, &path->next);
+}
+
+static double angle_between(const mhb_path *path) {
+  double scale = unit(path), *a = path->now.tangent, *b = path->next.tangent;
+  double length = sqrt(inner(path, scale, a, a) * inner(path, scale, b, b));
+  double cosine = inner(path, scale, a, b) / length;
+  return acos(fmax(-1, fmin(1, cosine)));
+}
+
+/* Where small steps fail (the square-root zone at slip onset), larger ones pass. */
+static int last_resort(mhb_path *path) {
+  const double larger[] = {3e-3, 1e-2, 3e-2, .1};
+  for (int i = 0; i < 4; i++) {
+    if (!attempt(path, larger[i])) continue;
+    path->step = larger[i];
+    return 1;
+  }
+  return 0;
+}
+
+static int find_next(mhb_path *path) {
+  double refused = INFINITY; /* angle at twice this step */
+  while (path->step >= SHORTEST_STEP) {
+    double ds = path->step;
+    if (!attempt(path, ds)) {
+      path->step *= .3;
+      refused = INFINITY;
+      continue;
+    }
+    double angle = angle_between(path);
+    int    kink  = angle > KINK_RATIO * refused && ds <= KINK_STEP;
+    if (angle > LARGEST_ANGLE && !kink) {
+      refused    = angle;
+      path->step = .5 * ds;
+      continue;
+    }
+    double by_work  = (double)WANTED_CORRECTIONS / fmax(1, path->next.iterations);
+    double by_angle = kink ? 1 : .6 * LARGEST_ANGLE / fmax(angle, 1e-12);
+    path->step = fmin(path->longest, ds * fmin(fmax(.5, fmin(2, by_work)), fmax(.3, by_angle)));
+    path->step = fmax(path->step, 2 * SHORTEST_STEP);
+    return 1;
+  }
+  return last_resort(path);
+}
+
+/* next went past an end of the range: solve on the end itself, from the chord. */
+static int settle_on(mhb_path *path, double omega) {
+  double part = (omega - path->now.omega) / (path->next.omega - path->now.omega);
+  double axis[path->n + 1];
+  memset(axis, 0, sizeof(double) * (size_t)path->n);
+  axis[path->n] = span(path);
+  for (int i = 0; i < path->n; i++)
+    path->next.x[i] = path->now.x[i] + part * (path->next.x[i] - path->now.x[i]);
+  path->next.omega = omega;
+  int ok =
+      correct(path, axis, .5, &path->next) && set_tangent(path, path->now.tangent, &path->next);
+  path->next.omega = omega;
+  return ok;
+}
+
+mhb_path_outcome mhb_path_step(mhb_path *path) {
+  for (int tries = 0; tries < 4; tries++) {
+    if (!find_next(path)) break;
+    double slack = 1e-12 * path->high;
+    int above = path->next.omega > path->high + slack, below = path->next.omega < path->low - slack;
+    if (!above && !below) return MHB_PATH_ON;
+    if (settle_on(path, above ? path->high : path->low))
+      return above ? MHB_PATH_AT_END : MHB_PATH_AT_START;
+    path->step = fmax(SHORTEST_STEP, .2 * path->step);
+  }
+  return MHB_PATH_STALLED;
+}
+
+void mhb_path_advance(mhb_path *path) {
+  mhb_path_point old = path->now;
+  path->now          = path->next;
+  path->next         = old;
+}
+
+/* probe <- the solution in the plane across the chord at fraction s. In the square-root zone of slip onset the plane's
+ * Newton can fail; the damped one at fixed frequency then stands in. */
+static int at_fraction(mhb_path *path, double s) {
+  mhb_path_point *probe = &path->probe;
+  for (int tries = 0; tries < 2; tries++) {
+    for (int i = 0; i < path->n; i++) probe->x[i] = path->now.x[i] + s * path->chord[i];
+    probe->omega = path->now.omega + s * path->chord[path->n];
+    int ok       = tries == 0
+                       ? correct(path, path->chord, 1, probe)
+                       : mhb_newton_solve(path->newton, path->residual, probe->omega, path->tolerance,
+                                          probe->x, &probe->iterations) == MHB_CONVERGED;
+    if (!ok) continue;
+    if (tries) evaluate(path, probe);
+    if (set_tangent(path, path->chord, probe)) return 1;
+  }
+  return 0;
+}
+
+int mhb_path_locate(mhb_path *path, mhb_path_indicator indicator, void *context, double at_now,
+                    double at_next, double *fraction) {
+  for (int i = 0; i < path->n; i++) path->chord[i] = path->next.x[i] - path->now.x[i];
+  path->chord[path->n] = path->next.omega - path->now.omega;
+  double lo = 0, hi = 1, flo = at_now, fhi = at_next;
+  double wide = fabs(path->chord[path->n]) / path->now.omega;
+  int    side = 0;
+  for (int i = 0; i < 40; i++) {
+    double s = (lo * fhi - hi * flo) / (fhi - flo);
+    if (i % 4 == 3 || !(s > lo && s < hi)) s = .5 * (lo + hi);
+    if (!at_fraction(path, s)) {
+      *fraction = lo; /* a kink: the bracket's good side is as near as can be had */
+      return i > 2 && (hi - lo) * wide < 1e-4 && at_fraction(path, lo);
+    }
+    double f  = indicator(path, &path->probe, context);
+    *fraction = s;
+    if (f == 0) return 1;
+    int    low_side = (f > 0) == (flo > 0);
+    double moved    = low_side ? s - lo : hi - s;
+    if (low_side) {
+      lo  = s;
+      flo = f;
+      if (side > 0) fhi *= .5;
+    } else {
+      hi  = s;
+      fhi = f;
+      if (side < 0) flo *= .5;
+    }
+    side        = low_side ? 1 : -1;
+    double left = fmin(hi - lo, moved);
+    if (left < 1e-9 || (i > 2 && left * wide < 1e-9 && left < 1e-4)) return 1;
+  }
+  return 1;
+}

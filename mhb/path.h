@@ -1,0 +1,55 @@
+/* Pseudo-arclength continuation of r(x, omega) = 0 through folds.
+ *
+ * Arclength is measured in y = [x/|x_current|, omega/span]. A tangent predictor, then Newton in the plane normal to
+ * it; the step follows the number of iterations and the angle between tangents. The law is only piecewise smooth: an
+ * angle that halving the step hardly lessens is a kink of the curve, not curvature, and is accepted. */
+#ifndef MHB_PATH_H
+#define MHB_PATH_H
+
+#include "mhb/newton.h"
+
+typedef struct {
+  double *x;       /* [n] m */
+  double  omega;   /* rad/s */
+  double *tangent; /* [n+1] d(x, omega) along the path, unit length in y */
+  int     iterations;
+  double  residual;          /* |r|/|x| */
+  double  truncation, modal; /* relative error estimates, see mhb_residual_errors */
+} mhb_path_point;
+
+typedef struct {
+  mhb_residual  *residual;
+  mhb_newton    *newton;
+  int            n;
+  double         low, high; /* rad/s, range */
+  double         step, longest;
+  double         tolerance;
+  mhb_path_point now, next, probe; /* probe: scratch for located points */
+  double        *chord;            /* [n+1] */
+} mhb_path;
+
+typedef enum { MHB_PATH_ON, MHB_PATH_AT_END, MHB_PATH_AT_START, MHB_PATH_STALLED } mhb_path_outcome;
+
+shb_status mhb_path_create(mhb_residual *residual, double low, double high, mhb_path **path);
+void       mhb_path_destroy(mhb_path *path);
+
+/* Begin at a solution x at omega, towards rising (+1) or falling (-1) frequency. */
+mhb_reason mhb_path_start(mhb_path *path, const double *x, double omega, int direction);
+
+/* One step: path->next becomes the new point, path->now stays the old one. AT_END, AT_START: next lies exactly on the
+ * range's high or low end. The residual's workspace is left at next. */
+mhb_path_outcome mhb_path_step(mhb_path *path);
+
+/* now <- next */
+void mhb_path_advance(mhb_path *path);
+
+/* A scalar that is followed along the path at a point just corrected; its sign change marks an event. */
+typedef double (*mhb_path_indicator)(const mhb_path *path, const mhb_path_point *point,
+                                     void *context);
+
+/* Locate the sign change of indicator between now and next, into path->probe. Illinois with planes across the chord,
+ * never Newton on a function that jumps at kinks. 1: found, to 1e-9 of the chord or 1e-8 of omega. */
+int mhb_path_locate(mhb_path *path, mhb_path_indicator indicator, void *context, double at_now,
+                    double at_next, double *fraction);
+
+#endif

@@ -1,0 +1,314 @@
+#include "mhb/receptance.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double PI = 3.14159265358979323846;
+
+/* Columns v, u, w of eq. 2. */
+static void shroud_axes(double psi, double phi, double T0[3][3]) {
+  double cs = cos(psi), ss = sin(psi), cf = cos(phi), sf = sin(phi);
+  double T[3][3] = {{cs * cf, -ss, cs * sf}, {ss * cf, cs, ss * sf}, {-sf, 0, cf}};
+  memcpy(T0, T, sizeof T);
+}
+
+/* Axes of each pair: from its own normal where the file has one, else psi and phi of the case (0 if not given). */
+static shb_status set_axes(mhb_receptance *r, const mhb_settings *s) {
+  const modal_model *model = r->model;
+  double(*T0)[3][3]        = (double(*)[3][3])r->T0;
+  double mean[3]           = {0, 0, 0};
+  for (int a = 0; a < model->n_pairs; a++) {
+    double psi = s->has_psi ? s->psi : 0, phi = s->has_phi ? s->phi : 0;
+    if (model->normal) {
+      const double *v = model->normal + 3 * a;
+      psi             = atan2(v[1], v[0]);
+      phi             = -atan2(v[2], hypot(v[0], v[1]));
+    }
+    shroud_axes(psi, phi, T0[a]);
+    for (int i = 0; i < 3; i++) mean[i] += r->share[a] * T0[a][i][0];
+  }
+  r->psi        = atan2(mean[1], mean[0]);
+  r->phi        = -atan2(mean[2], hypot(mean[0], mean[1]));
+  double degree = 180 / PI;
+  SHB_CHECK(!s->has_psi || fabs(remainder(r->psi - s->psi, 2 * PI)) * degree <= 1, SHB_ERR_INPUT,
+            "contact.psi is %.2f deg, but the contact faces of the modal file stand at %.2f deg",
+            s->psi * degree, r->psi * degree);
+  SHB_CHECK(!s->has_phi || fabs(remainder(r->phi - s->phi, 2 * PI)) * degree <= 1, SHB_ERR_INPUT,
+            "contact.phi is %.2f deg, but the contact faces of the modal file stand at %.2f deg",
+            s->phi * degree, r->phi * degree);
+  return SHB_OK;
+}
+
+static void set_shares(mhb_receptance *r) {
+  const modal_model *model = r->model;
+  double             total = 0;
+  for (int a = 0; a < model->n_pairs; a++) total += model->area ? model->area[a] : 1;
+  for (int a = 0; a < model->n_pairs; a++) r->share[a] = (model->area ? model->area[a] : 1) / total;
+}
+
+/* Row (a, c) of T: the weights of contact dof (side, b, axis) are nonzero for b = a only. */
+static double complex transform(const mhb_receptance *r, int row, int side, int axis,
+                                double complex phase) {
+  double weight = r->T0[(row / 3) * 9 + axis * 3 + row % 3];
+  return side ? -phase * weight : weight;
+}
+
+/* out[n] = T_k x for a vector over contact dofs with stride. */
+static void relative(const mhb_receptance *r, double complex phase, int sides,
+                     const double complex *x, int stride, double complex *out, int out_stride) {
+  for (int row = 0; row < r->n; row++) {
+    double complex sum = 0;
+    for (int side = 0; side < sides; side++)
+      for (int axis = 0; axis < 3; axis++)
+        sum += transform(r, row, side, axis, phase) *
+               x[(size_t)(side * r->n + (row / 3) * 3 + axis) * (size_t)stride];
+    out[row * out_stride] = sum;
+  }
+}
+
+/* T R T^H */
+static void condensed(const mhb_receptance *r, double complex phase, int sides, int nc,
+                      const double *matrix, double complex *scratch, double complex *out) {
+  double complex *column = scratch + (size_t)nc * (size_t)r->n; /* [nc] */
+  for (int j = 0; j < nc; j++) {                                /* scratch[j][n] = T R e_j */
+    for (int i = 0; i < nc; i++) column[i] = matrix[(size_t)i * (size_t)nc + (size_t)j];
+    relative(r, phase, sides, column, 1, scratch + (size_t)j * (size_t)r->n, 1);
+  }
+  for (int i = 0; i < r->n; i++) { /* conj(T (T R)^H) */
+    for (int j = 0; j < nc; j++) column[j] = conj(scratch[(size_t)j * (size_t)r->n + (size_t)i]);
+    double complex row[r->n];
+    relative(r, phase, sides, column, 1, row, 1);
+    for (int j = 0; j < r->n; j++) out[(size_t)i * (size_t)r->n + (size_t)j] = conj(row[j]);
+  }
+}
+
+static void set_modes(mhb_receptance *r, int k, double complex phase, int sides) {
+  const modal_model *model = r->model;
+  int                m     = r->n_modes;
+  double complex    *B     = r->B + (size_t)k * (size_t)r->n * (size_t)m;
+  for (int row = 0; row < r->n; row++) {
+    for (int i = 0; i < m; i++) {
+      double complex sum = 0;
+      for (int axis = 0; axis < 3; axis++) {
+        size_t at = ((size_t)(row / 3) * 3 + (size_t)axis) * (size_t)m + (size_t)i;
+        sum += transform(r, row, 0, axis, phase) * model->right[at];
+        if (sides == 2) sum += transform(r, row, 1, axis, phase) * model->left[at];
+      }
+      B[(size_t)row * (size_t)m + (size_t)i] = sum;
+    }
+  }
+}
+
+/* Load harmonic h drives harmonic nu h. */
+static void set_load(mhb_receptance *r, int k, double complex phase, int sides, double scale) {
+  const modal_model *model = r->model;
+  int                h = k / r->nu, nc = 3 * model->n_pairs * (model->has_left ? 2 : 1);
+  if (k % r->nu || h > model->n_load) return;
+  for (int i = 0; i < r->n_modes; i++)
+    r->F[k * r->n_modes + i] = scale * model->modal_force[h * r->n_modes + i];
+  if (r->load) {
+    double complex *load = r->load + (size_t)k * (size_t)r->n;
+    relative(r, phase, sides, model->load_residual + (size_t)h * (size_t)nc, 1, load, 1);
+    for (int i = 0; i < r->n; i++) load[i] *= scale;
+  }
+  int q = 3 * model->n_probes;
+  for (int i = 0; r->probe_load && i < q; i++)
+    r->probe_load[k * q + i] = scale * model->probe_load_residual[h * q + i];
+}
+
+/* Probe motion per contact force p: residual matrix times T^H. */
+static void set_probe(mhb_receptance *r, int k, double complex phase, int sides, int nc) {
+  int q = 3 * r->model->n_probes;
+  for (int i = 0; i < q; i++) {
+    double complex column[nc],
+        *row = r->probe_contact + ((size_t)k * (size_t)q + (size_t)i) * (size_t)r->n;
+    for (int j = 0; j < nc; j++)
+      column[j] = r->model->probe_contact_residual[(size_t)i * (size_t)nc + (size_t)j];
+    relative(r, phase, sides, column, 1, row, 1);
+    for (int j = 0; j < r->n; j++) row[j] = conj(row[j]);
+  }
+}
+
+static int allocate(mhb_receptance *r) {
+  const modal_model *model = r->model;
+  size_t             n = (size_t)r->n, m = (size_t)r->n_modes, K = (size_t)r->n_harmonics + 1;
+  size_t             q = 3 * (size_t)model->n_probes, pairs = (size_t)model->n_pairs;
+  r->T0     = calloc(9 * pairs, sizeof(double));
+  r->share  = calloc(pairs, sizeof(double));
+  r->B      = calloc(K * n * m, sizeof(double complex));
+  r->F      = calloc(K * m, sizeof(double complex));
+  r->lambda = calloc(K * m, sizeof(double complex));
+  r->R      = calloc(K * n * n, sizeof(double complex));
+  r->free   = calloc(K * n, sizeof(double complex));
+  int ok    = r->T0 && r->share && r->B && r->F && r->lambda && r->R && r->free;
+  if (model->load_residual) ok &= (r->load = calloc(K * n, sizeof(double complex))) != NULL;
+  if (model->residual_flexibility)
+    ok &= (r->flexibility = calloc(K * n * n, sizeof(double complex))) != NULL;
+  if (model->residual_inertia)
+    ok &= (r->inertia = calloc(K * n * n, sizeof(double complex))) != NULL;
+  if (model->probe_load_residual && q)
+    ok &= (r->probe_load = calloc(K * q, sizeof(double complex))) != NULL;
+  if (model->probe_contact_residual && q)
+    ok &= (r->probe_contact = calloc(K * q * n, sizeof(double complex))) != NULL;
+  return ok;
+}
+
+shb_status mhb_receptance_create(const modal_model *model, const mhb_settings *settings,
+                                 int n_harmonics, mhb_receptance **out) {
+  SHB_CHECK(settings->to_ground || model->has_left, SHB_ERR_INPUT,
+            "contact.to is neighbour, but the modal file has no /contact/left; set it to ground");
+  mhb_receptance *r = calloc(1, sizeof *r);
+  int nc = 3 * model->n_pairs * (model->has_left ? 2 : 1), sides = settings->to_ground ? 1 : 2;
+  double complex *scratch =
+      calloc((size_t)nc * (size_t)(3 * model->n_pairs + 1), sizeof(double complex));
+  int ok = r && scratch;
+  if (ok) {
+    r->model       = model;
+    r->n           = 3 * model->n_pairs;
+    r->n_modes     = model->n_modes;
+    r->n_harmonics = n_harmonics;
+    r->nu          = settings->subharmonics;
+    ok             = allocate(r);
+  }
+  shb_status status = SHB_OK;
+  if (!ok) status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for the receptance");
+  if (ok) {
+    set_shares(r);
+    status = set_axes(r, settings);
+  }
+  if (status != SHB_OK) {
+    free(scratch);
+    mhb_receptance_destroy(r);
+    return status;
+  }
+  double step =
+      settings->to_ground ? 0 : 2 * PI * settings->engine_order / settings->blades / r->nu;
+  size_t square = (size_t)r->n * (size_t)r->n;
+  for (int k = 0; k <= n_harmonics; k++) {
+    double complex phase = cexp(-I * fmod(k * step, 2 * PI));
+    set_modes(r, k, phase, sides);
+    set_load(r, k, phase, sides, settings->scale);
+    if (r->flexibility)
+      condensed(r, phase, sides, nc, model->residual_flexibility, scratch,
+                r->flexibility + (size_t)k * square);
+    if (r->inertia)
+      condensed(r, phase, sides, nc, model->residual_inertia, scratch,
+                r->inertia + (size_t)k * square);
+    if (r->probe_contact) set_probe(r, k, phase, sides, nc);
+  }
+  free(scratch);
+  *out = r;
+  return SHB_OK;
+}
+
+void mhb_receptance_destroy(mhb_receptance *r) {
+  if (!r) return;
+  free(r->T0);
+  free(r->share);
+  free(r->B);
+  free(r->F);
+  free(r->load);
+  free(r->flexibility);
+  free(r->inertia);
+  free(r->probe_load);
+  free(r->probe_contact);
+  free(r->lambda);
+  free(r->R);
+  free(r->free);
+  free(r);
+}
+
+static void harmonic_at(mhb_receptance *r, int k) {
+  int             n = r->n, m = r->n_modes;
+  size_t          square = (size_t)n * (size_t)n;
+  double          w      = k * r->omega / r->nu;
+  double complex *lambda = r->lambda + k * m, *R = r->R + (size_t)k * square, *u = r->free + k * n;
+  const double complex *B = r->B + (size_t)k * (size_t)n * (size_t)m, *F = r->F + k * m;
+  for (int i = 0; i < m; i++) {
+    double wi = 2 * PI * r->model->frequency[i];
+    lambda[i] = 1 / (wi * wi - w * w + 2 * I * r->model->damping_ratio[i] * wi * w);
+  }
+  for (int a = 0; a < n; a++) {
+    const double complex *Ba = B + (size_t)a * (size_t)m;
+    double complex        La[m];
+    u[a] = r->load ? r->load[k * n + a] : 0;
+    for (int i = 0; i < m; i++) {
+      La[i] = Ba[i] * lambda[i];
+      u[a] += La[i] * F[i];
+    }
+    for (int b = 0; b < n; b++) {
+      const double complex *Bb = B + (size_t)b * (size_t)m;
+      size_t                at = (size_t)a * (size_t)n + (size_t)b, from = (size_t)k * square + at;
+      double complex        sum = r->flexibility ? r->flexibility[from] : 0;
+      if (r->inertia) sum += w * w * r->inertia[from];
+      for (int i = 0; i < m; i++) sum += La[i] * conj(Bb[i]);
+      R[at] = sum;
+    }
+  }
+}
+
+void mhb_receptance_at(mhb_receptance *r, double omega, int top) {
+  r->omega = omega;
+  for (int k = 0; k <= top; k++) harmonic_at(r, k);
+}
+
+/* Modal amplitudes before L: F - B^H p. */
+static double complex modal_drive(const mhb_receptance *r, int k, const double complex *p, int i,
+                                  int with_load) {
+  const double complex *B = r->B + (size_t)k * (size_t)r->n * (size_t)r->n_modes;
+  double complex        a = with_load ? r->F[k * r->n_modes + i] : 0;
+  for (int row = 0; row < r->n; row++) a -= conj(B[row * r->n_modes + i]) * p[row];
+  return a;
+}
+
+/* dL/d omega = L^2 (2 k^2 w - 2 j zeta w_i k), k counted in the excitation frequency. */
+static double complex lambda_slope(const mhb_receptance *r, int k, int i) {
+  double         kk = (double)k / r->nu, wi = 2 * PI * r->model->frequency[i];
+  double complex L = r->lambda[k * r->n_modes + i];
+  return L * L * (2 * kk * kk * r->omega - 2 * I * r->model->damping_ratio[i] * wi * kk);
+}
+
+void mhb_receptance_slope(const mhb_receptance *r, int k, const double complex *p,
+                          double complex *slope) {
+  int                   n = r->n, m = r->n_modes;
+  double                kk = (double)k / r->nu;
+  const double complex *B  = r->B + (size_t)k * (size_t)n * (size_t)m;
+  for (int a = 0; a < n; a++) {
+    slope[a] = 0;
+    for (int b = 0; r->inertia && b < n; b++)
+      slope[a] -= 2 * kk * kk * r->omega *
+                  r->inertia[((size_t)k * (size_t)n + (size_t)a) * (size_t)n + (size_t)b] * p[b];
+  }
+  for (int i = 0; i < m; i++) {
+    double complex a = lambda_slope(r, k, i) * modal_drive(r, k, p, i, 1);
+    for (int row = 0; row < n; row++) slope[row] += B[row * m + i] * a;
+  }
+}
+
+void mhb_receptance_probe_change(const mhb_receptance *r, int k, const double complex *p,
+                                 const double complex *dp, double d_omega, double complex *change) {
+  int q = 3 * r->model->n_probes, m = r->n_modes;
+  for (int s = 0; s < q; s++) {
+    change[s] = 0;
+    for (int b = 0; r->probe_contact && b < r->n; b++)
+      change[s] -=
+          r->probe_contact[((size_t)k * (size_t)q + (size_t)s) * (size_t)r->n + (size_t)b] * dp[b];
+  }
+  for (int i = 0; i < m; i++) {
+    double complex a = r->lambda[k * m + i] * modal_drive(r, k, dp, i, 0);
+    if (d_omega != 0) a += d_omega * lambda_slope(r, k, i) * modal_drive(r, k, p, i, 1);
+    for (int s = 0; s < q; s++) change[s] += r->model->probe[s * m + i] * a;
+  }
+}
+
+void mhb_receptance_probe(const mhb_receptance *r, int k, const double complex *p,
+                          double complex *motion) {
+  int q = 3 * r->model->n_probes, m = r->n_modes;
+  mhb_receptance_probe_change(r, k, p, p, 0, motion);
+  for (int s = 0; s < q; s++) {
+    for (int i = 0; i < m; i++)
+      motion[s] += r->model->probe[s * m + i] * r->lambda[k * m + i] * r->F[k * m + i];
+    if (r->probe_load) motion[s] += r->probe_load[k * q + s];
+  }
+}

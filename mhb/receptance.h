@@ -1,0 +1,57 @@
+/* The blade as the contact sees it: receptance between relative motions at the contact pairs (eqs. 19-27, 34-35).
+ *
+ * Harmonic k of the fundamental omega/nu. For pair a with axes T0 (columns v, u, w; eq. 2) and inter-blade phase
+ * e_k = exp(-j k phi/nu), phi = 2 pi E/N (eq. 16; no left side to ground):
+ *   B_k[3a + c][i] = T0^T (right - e_k left)                              relative motion of mode i
+ *   L_i  = 1/(w_i^2 - (k w)^2 + 2 j zeta_i w_i k w)                       eq. 20
+ *   R_k  = B L B^H + T (R + (k w)^2 R2) T^H                               eqs. 34, 35, with residual terms
+ *   u_k  = B L F_k + T x_load,k - R_k p_k                                 eq. 33
+ * Motions are [3 pairs] in the order pair, (v, u, w). Everything that does not depend on omega is made once. */
+#ifndef MHB_RECEPTANCE_H
+#define MHB_RECEPTANCE_H
+
+#include <complex.h>
+
+#include "mesh/status.h"
+#include "mhb/settings.h"
+#include "modal/model.h"
+
+typedef struct {
+  const modal_model *model;
+  int                n, n_modes, n_harmonics, nu; /* n = 3 pairs; harmonics 0..n_harmonics */
+  double            *T0;       /* [pair][3][3], columns v, u, w in (tangential, axial, radial) */
+  double             psi, phi; /* rad, mean over the pairs */
+  double            *share;    /* [pair] area share, sums to 1 */
+  double complex    *B;        /* [k][n][modes] */
+  double complex    *F;        /* [k][modes] modal force, scaled */
+  double complex    *load;     /* [k][n] residual response to the load, or NULL */
+  double complex    *flexibility, *inertia;      /* [k][n][n], or NULL */
+  double complex    *probe_load, *probe_contact; /* [k][3 q], [k][3 q][n], or NULL */
+  double             omega;                      /* rad/s, of mhb_receptance_at */
+  double complex    *lambda;                     /* [k][modes] */
+  double complex    *R;                          /* [k][n][n] */
+  double complex    *free;                       /* [k][n] response without contact */
+} mhb_receptance;
+
+/* Errors: SHB_ERR_INPUT psi, phi do not agree with the file's normals within a degree, load harmonic above n_harmonics
+ * ignored, to neighbour without /contact/left; SHB_ERR_IO no memory. The model must outlive the receptance. */
+shb_status mhb_receptance_create(const modal_model *model, const mhb_settings *settings,
+                                 int n_harmonics, mhb_receptance **receptance);
+void       mhb_receptance_destroy(mhb_receptance *receptance);
+
+/* lambda, R and free at the excitation frequency omega (rad/s), harmonics 0..top. */
+void mhb_receptance_at(mhb_receptance *receptance, double omega, int top);
+
+/* d/d omega of harmonic k of [free - R p] at fixed p[n]. */
+void mhb_receptance_slope(const mhb_receptance *receptance, int k, const double complex *p,
+                          double complex *slope);
+
+/* Motion of the probes [3 q] at harmonic k under contact force p[n] (both at the omega of the last call). */
+void mhb_receptance_probe(const mhb_receptance *receptance, int k, const double complex *p,
+                          double complex *motion);
+
+/* Its change with p by dp and omega by d_omega. */
+void mhb_receptance_probe_change(const mhb_receptance *receptance, int k, const double complex *p,
+                                 const double complex *dp, double d_omega, double complex *change);
+
+#endif

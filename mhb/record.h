@@ -1,0 +1,17 @@
+/* Putting a solution into the response: motion, force, probes, states, error estimates. */
+#ifndef MHB_RECORD_H
+#define MHB_RECORD_H
+
+#include "mhb/follow.h"
+
+/* Append the solution the residual was just evaluated at. */
+shb_status mhb_record(mhb_response *response, int branch, mhb_residual *residual,
+                      const mhb_path_point *point, int special, double seconds);
+
+/* Number of outputs whose peaks are followed: every probe, and v, u, w of the first two pairs. */
+int mhb_outputs(const mhb_residual *residual);
+
+/* d a^2/ds of output o along the tangent of a point just corrected; a = amplitude of the excitation's harmonic. */
+double mhb_output_slope(const mhb_path *path, const mhb_path_point *point, int o);
+
+#endif

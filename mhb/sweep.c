@@ -1,0 +1,183 @@
+#include "mhb/sweep.h"
+
+#include <math.h>
+#include <omp.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "mhb/follow.h"
+
+static const double PI = 3.14159265358979323846, PUBLISH_EVERY = 10;
+
+/* What the threads share: all of it touched under the lock only. */
+typedef struct {
+  mhb_monitor           base; /* first: the callbacks get it back */
+  const mhb_settings   *settings;
+  mhb_response         *response;
+  const char           *path;
+  const shb_provenance *provenance;
+  shb_progress         *progress;
+  omp_lock_t            mutex;
+  double               *done; /* [preload] share of the range covered */
+  double                published;
+  shb_status            status; /* first failure of publishing */
+} sweep;
+
+static void lock(mhb_monitor *monitor, bool locked) {
+  sweep *s = (sweep *)monitor;
+  if (locked) {
+    omp_set_lock(&s->mutex);
+  } else {
+    omp_unset_lock(&s->mutex);
+  }
+}
+
+static shb_status publish(sweep *s) {
+  s->published = shb_seconds();
+  return s->path ? mhb_response_write(s->response, s->path, s->provenance) : SHB_OK;
+}
+
+static bool point(mhb_monitor *monitor, int branch, const mhb_path_point *at) {
+  sweep              *s       = (sweep *)monitor;
+  const mhb_settings *c       = s->settings;
+  int                 preload = branch - 2;
+  double              hz = at->omega / (2 * PI), total = 0;
+  s->done[preload] = (hz - c->frequency[0]) / (c->frequency[1] - c->frequency[0]);
+  for (int i = 0; i < c->n_preloads; i++) total += s->done[i];
+  const mhb_branch     *b = &s->response->branch[branch];
+  int                   K = s->response->n_harmonics + 1;
+  const double complex *u =
+      b->motion + (size_t)(b->n_points - 1) * 3 * (size_t)s->response->n_pairs * (size_t)K;
+  double amplitude = sqrt(pow(cabs(u[1]), 2) + pow(cabs(u[K + 1]), 2) + pow(cabs(u[2 * K + 1]), 2));
+  shb_progress_show(s->progress, 100 * total / c->n_preloads,
+                    "n0 %-8.4g N  point %-4d  %8.3f Hz  %.3e m", b->n0[b->n_points - 1],
+                    b->n_points, hz, amplitude);
+  if (s->path && shb_seconds() - s->published > PUBLISH_EVERY && s->status == SHB_OK)
+    s->status = publish(s);
+  return !shb_interrupted() && s->status == SHB_OK;
+}
+
+static shb_status describe(mhb_response *response, const modal_model *model,
+                           const mhb_settings *settings) {
+  size_t m                 = (size_t)model->n_modes;
+  response->n_modes        = model->n_modes;
+  response->subharmonics   = settings->subharmonics;
+  response->engine_order   = settings->engine_order;
+  response->blades         = settings->blades;
+  response->mode_frequency = malloc(sizeof(double) * m);
+  response->mode_damping   = malloc(sizeof(double) * m);
+  SHB_CHECK(response->mode_frequency && response->mode_damping, SHB_ERR_IO, "out of memory");
+  memcpy(response->mode_frequency, model->frequency, sizeof(double) * m);
+  memcpy(response->mode_damping, model->damping_ratio, sizeof(double) * m);
+  if (model->mode_residual) {
+    response->mode_residual = malloc(sizeof(double) * m);
+    SHB_CHECK(response->mode_residual, SHB_ERR_IO, "out of memory");
+    memcpy(response->mode_residual, model->mode_residual, sizeof(double) * m);
+  }
+  for (int q = 0; q < model->n_probes; q++) {
+    free(response->probe_name[q]);
+    response->probe_name[q] = strdup(model->probe_name[q]);
+    SHB_CHECK(response->probe_name[q], SHB_ERR_IO, "out of memory");
+  }
+  return SHB_OK;
+}
+
+static shb_status linear_limits(const modal_model *model, const mhb_settings *settings,
+                                mhb_response *response) {
+  mhb_residual *residual = NULL;
+  SHB_TRY(mhb_residual_create(model, settings, &residual));
+  response->psi = residual->receptance->psi;
+  response->phi = residual->receptance->phi;
+  double most   = settings->n0[0];
+  for (int i = 1; i < settings->n_preloads; i++) most = fmax(most, settings->n0[i]);
+  mhb_residual_preload(residual, most);
+  shb_status status = SHB_OK;
+  for (int stuck = 0; stuck < 2 && status == SHB_OK; stuck++) {
+    int branch;
+    status = mhb_response_branch(response, stuck ? MHB_BRANCH_STUCK : MHB_BRANCH_OPEN, &branch);
+    if (status == SHB_OK) status = mhb_follow_linear(residual, response, branch);
+  }
+  mhb_residual_destroy(residual);
+  return status;
+}
+
+/* One preload on this thread. */
+static shb_status one_preload(sweep *s, const modal_model *model, int i) {
+  mhb_residual *residual = NULL;
+  lock(&s->base, true); /* FFTW's planner */
+  shb_status status = mhb_residual_create(model, s->settings, &residual);
+  lock(&s->base, false);
+  if (status != SHB_OK) return status;
+  mhb_residual_preload(residual, s->settings->n0[i]);
+  status = mhb_follow(residual, s->response, 2 + i, &s->base);
+  lock(&s->base, true);
+  s->done[i] = 1;
+  mhb_residual_destroy(residual);
+  lock(&s->base, false);
+  return status;
+}
+
+static shb_status all_preloads(sweep *s, const modal_model *model) {
+  int        n     = s->settings->n_preloads;
+  shb_status first = SHB_OK;
+  for (int i = 0; i < n; i++) {
+    int branch;
+    SHB_TRY(mhb_response_branch(s->response, MHB_BRANCH_NONLINEAR, &branch));
+  }
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int i = 0; i < n; i++) {
+    if (shb_interrupted()) continue;
+    char       text[512];
+    shb_status status = one_preload(s, model, i);
+    snprintf(text, sizeof text, "%s", shb_message());
+    lock(&s->base, true);
+    if (status != SHB_OK && first == SHB_OK) { /* messages are per thread: carry this one over */
+      first     = status;
+      s->status = shb_fail(status, __FILE__, __LINE__, "%s", text);
+    }
+    lock(&s->base, false);
+  }
+  return first != SHB_OK ? first : s->status;
+}
+
+static shb_status outcome(const mhb_response *response) {
+  for (int i = 0; i < response->n_branches; i++) {
+    const mhb_branch *branch = &response->branch[i];
+    if (branch->complete) continue;
+    return shb_fail(
+        SHB_NOT_CONVERGED, __FILE__, __LINE__, "branch %d (n0 = %g N) did not cover the range: %s",
+        i, branch->n_points ? branch->n0[0] : 0., branch->reason ? branch->reason : "not started");
+  }
+  return SHB_OK;
+}
+
+shb_status mhb_sweep(const modal_model *model, const mhb_settings *settings, const char *path,
+                     const shb_provenance *provenance, shb_progress *progress, mhb_response **out) {
+  *out       = NULL;
+  sweep s    = {.base       = {.point = point, .lock = lock},
+                .settings   = settings,
+                .path       = path,
+                .provenance = provenance,
+                .progress   = progress,
+                .published  = shb_seconds()};
+  s.response = mhb_response_create(model->n_pairs, model->n_probes, settings->harmonics);
+  s.done     = calloc((size_t)settings->n_preloads, sizeof(double));
+  shb_status status =
+      s.response && s.done ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  if (status == SHB_OK) status = describe(s.response, model, settings);
+  if (status == SHB_OK) status = linear_limits(model, settings, s.response);
+  omp_init_lock(&s.mutex);
+  if (status == SHB_OK) status = all_preloads(&s, model);
+  if (status == SHB_OK) status = publish(&s);
+  omp_destroy_lock(&s.mutex);
+  free(s.done);
+  if (status != SHB_OK) {
+    mhb_response_destroy(s.response);
+    return status;
+  }
+  *out = s.response;
+  if (shb_interrupted())
+    return shb_fail(SHB_INTERRUPTED, __FILE__, __LINE__,
+                    "interrupted; the points so far are saved");
+  return outcome(s.response);
+}

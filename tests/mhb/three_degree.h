@@ -1,0 +1,14 @@
+/* Small modal models with known answers. */
+#ifndef TESTS_MHB_THREE_DEGREE_H
+#define TESTS_MHB_THREE_DEGREE_H
+
+#include "modal/model.h"
+
+/* M = I, K = [1 .2 .1; .2 1.3 .15; .1 .15 1.6], C = .02 K, F = (.04, .06, .03) cos wt; contact to ground along the
+ * degrees of freedom (v, u, w); the probe is the contact point. */
+void three_degree_model(modal_model *model);
+
+/* m = k = 1, damping ratio zeta; one direction (0 v, 1 u) meets the contact, force F cos wt on it. */
+void one_degree_model(double zeta, int direction, double force, modal_model *model);
+
+#endif
