@@ -1,0 +1,108 @@
+#include "cases/case.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "cases/checks.h"
+#include "cases/issues.h"
+#include "cases/reader.h"
+#include "cases/yaml.h"
+
+static char *folder_of(const char *path) {
+  const char *slash = strrchr(path, '/');
+  if (!slash) return strdup(".");
+  return strndup(path, slash == path ? 1 : (size_t)(slash - path));
+}
+
+/* The file's name without its ending; for case.yaml the name of its folder, which tells more. */
+static char *default_name(const char *path, const char *folder) {
+  const char *leaf = strrchr(path, '/');
+  leaf             = leaf ? leaf + 1 : path;
+  const char *dot  = strrchr(leaf, '.');
+  size_t      n    = dot && dot != leaf ? (size_t)(dot - leaf) : strlen(leaf);
+  if (n != 4 || strncmp(leaf, "case", 4) != 0) return strndup(leaf, n);
+  char       *full = realpath(folder, NULL);
+  const char *last = full ? strrchr(full, '/') : NULL;
+  char       *name = last && last[1] ? strdup(last + 1) : strndup(leaf, n);
+  free(full);
+  return name;
+}
+
+/* Copies of a value for those who look for it elsewhere. */
+static void share(case_reader *r) {
+  case_file *file        = r->file;
+  file->mhb.has_psi      = case_reader_given(r, "contact.psi") != NULL;
+  file->mhb.has_phi      = case_reader_given(r, "contact.phi") != NULL;
+  file->mhb.engine_order = file->engine_order;
+  file->mhb.blades       = file->blades;
+  file->blade.blades     = file->blades;
+  file->blade.axis       = file->axis;
+  file->blade.psi        = file->mhb.has_psi ? file->mhb.psi : 0;
+  file->blade.phi        = file->mhb.has_phi ? file->mhb.phi : 0;
+}
+
+/* Returns true if an input file named in the case cannot be read. */
+static bool read_document(case_issues *issues, int stages, case_file *out) {
+  case_node *root = case_document_parse(issues);
+  if (!root && issues->n > 0) return false; /* not YAML: nothing more can be said */
+  case_reader reader = {.issues = issues, .keys = case_key_table(), .file = out};
+  case_reader_walk(&reader, root);
+  bool lost = false;
+  if (root && root->kind == CASE_MAPPING) {
+    share(&reader);
+    case_check_alternatives(&reader, stages);
+    case_reader_require(&reader, stages);
+    lost = case_check_values(&reader, stages);
+  }
+  case_document_free(root);
+  return lost;
+}
+
+shb_status case_read(const char *path, int stages, FILE *errors, case_file *out) {
+  *out          = (case_file){0};
+  size_t length = 0;
+  SHB_TRY(case_text_read(path, &out->text, &length));
+  out->path   = strdup(path);
+  out->folder = folder_of(path);
+  out->name   = out->path && out->folder ? default_name(path, out->folder) : NULL;
+  if (!out->name) {
+    case_free(out);
+    SHB_FAIL(SHB_ERR_IO, "%s: out of memory", path);
+  }
+  case_issues issues = case_issues_start(path, out->text, length);
+  bool        lost   = read_document(&issues, stages, out);
+  int         n      = issues.n;
+  case_issues_print(&issues, errors);
+  case_issues_free(&issues);
+  if (n == 0) return SHB_OK;
+  case_free(out);
+  /* all is said: no text for the closing line. A lone file that cannot be read is not the case file's fault. */
+  return shb_fail(lost && n == 1 ? SHB_ERR_IO : SHB_ERR_INPUT, __FILE__, __LINE__, "%s", "");
+}
+
+void case_free(case_file *file) {
+  free(file->path);
+  free(file->folder);
+  free(file->text);
+  free(file->name);
+  free(file->mesh_file);
+  free(file->modal_file);
+  *file = (case_file){0};
+}
+
+char *case_output(const case_file *file, const char *suffix) {
+  bool   here = strcmp(file->folder, ".") == 0;
+  size_t size = strlen(file->folder) + strlen(file->name) + strlen(suffix) + 2;
+  char  *path = malloc(size);
+  if (path)
+    snprintf(path, size, "%s%s%s%s", here ? "" : file->folder, here ? "" : "/", file->name, suffix);
+  return path;
+}
+
+char *case_mesh_path(const case_file *file) {
+  return file->mesh_file ? strdup(file->mesh_file) : case_output(file, ".msh");
+}
+
+char *case_modal_path(const case_file *file) {
+  return file->modal_file ? strdup(file->modal_file) : case_output(file, ".modal.h5");
+}

@@ -1,0 +1,144 @@
+#include "cases/checks.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static bool has_block(const case_reader *r, const char *path) {
+  for (int i = 0; i < r->n_blocks; i++)
+    if (strcmp(r->block[i].path, path) == 0) return true;
+  return false;
+}
+
+static void check_mesh(case_reader *r, int stages) {
+  bool file = case_reader_given(r, "mesh.file") != NULL, blade = has_block(r, "mesh.blade");
+  r->file->has_mesh = has_block(r, "mesh");
+  if (file && blade)
+    case_reader_issue(r, "mesh.blade", "give either mesh.blade or mesh.file, not both");
+  bool needed = stages & (CASE_MESH | CASE_MODAL) && !r->file->modal_file;
+  if (needed && !file && !blade)
+    case_reader_issue(r, "mesh", "missing; expected {blade: ...} or {file: NAME.msh}");
+}
+
+static void check_load(case_reader *r) {
+  static const char *const names[] = {"excitation.pressure", "excitation.traction",
+                                      "excitation.force"};
+  fem_load                *load    = &r->file->load;
+  int                      given   = 0;
+  for (int i = 0; i < 3; i++) {
+    if (!case_reader_given(r, names[i]) && !has_block(r, names[i])) continue;
+    if (given++ == 0) {
+      load->kind = (fem_load_kind)i;
+    } else {
+      case_reader_issue(r, names[i], "give only one of pressure, traction and force");
+    }
+  }
+  bool own     = !r->file->modal_file;
+  bool vector  = case_reader_given(r, "excitation.force.vector") != NULL;
+  load->has_at = case_reader_given(r, "excitation.force.at") != NULL;
+  bool lost    = own && load->kind == FEM_LOAD_FORCE && vector && !load->has_at;
+  if (lost && r->file->n_probes == 0 && case_reader_good(r, "probe"))
+    case_reader_issue(r, "excitation.force.vector",
+                      "has no place to act: give excitation.force.at, or a probe");
+}
+
+/* Nothing would move. */
+static void check_load_size(case_reader *r) {
+  static const char *const names[] = {"excitation.pressure", "excitation.traction",
+                                      "excitation.force.vector"};
+  const fem_load          *load    = &r->file->load;
+  double                   one[3]  = {load->pressure, 0, 0};
+  const double            *value[] = {one, load->traction, load->force};
+  const char              *name    = names[load->kind];
+  const double            *v       = value[load->kind];
+  if (!r->file->modal_file && case_reader_given(r, name) && case_reader_good(r, name) &&
+      v[0] == 0 && v[1] == 0 && v[2] == 0)
+    case_reader_issue(r, name, "is 0; nothing would move");
+}
+
+void case_check_alternatives(case_reader *r, int stages) {
+  check_mesh(r, stages);
+  check_load(r);
+}
+
+static void check_sections(case_reader *r) {
+  static const char path[] = "mesh.blade.sections";
+  const mesh_blade *blade  = &r->file->blade;
+  const case_node  *node   = case_reader_given(r, path);
+  for (int i = 0; node && case_reader_good(r, path) && i < blade->n_sections; i++) {
+    const mesh_section *s     = &blade->section[i];
+    const case_node    *place = &node->child[i];
+    char                full[CASE_PATH];
+    case_path(full, "%s[%d]", path, i);
+    if (i > 0 && s->radius <= s[-1].radius)
+      case_issue_add(r->issues, place->line, place->column, full,
+                     "radius is %g m, must be above that of the section before, %g m", s->radius,
+                     s[-1].radius);
+    if (s->thickness >= s->chord)
+      case_issue_add(r->issues, place->line, place->column, full,
+                     "thickness is %g m, must be below the chord, %g m", s->thickness, s->chord);
+    if (s->camber >= s->chord / 2 || s->camber <= -s->chord / 2)
+      case_issue_add(r->issues, place->line, place->column, full,
+                     "camber is %g m, must be below half the chord, %g m", s->camber, s->chord / 2);
+  }
+  double height = blade->root_height;
+  if (node && case_reader_good(r, path) && case_reader_good(r, "mesh.blade.root.height") &&
+      height >= blade->section[0].radius)
+    case_reader_issue(r, "mesh.blade.root.height",
+                      "is %g m, must be below the radius of the first section, %g m", height,
+                      blade->section[0].radius);
+}
+
+static void check_sizes(case_reader *r) {
+  const mesh_blade *blade = &r->file->blade;
+  if (case_reader_good(r, "mesh.blade.size") && case_reader_good(r, "mesh.blade.shroud_size") &&
+      blade->shroud_size > blade->size)
+    case_reader_issue(r, "mesh.blade.shroud_size", "is %g m, must not be above size, %g m",
+                      blade->shroud_size, blade->size);
+}
+
+static void check_harmonics(case_reader *r, int stages) {
+  const case_file *file = r->file;
+  bool good = case_reader_good(r, "excitation.harmonics") && case_reader_good(r, "mhb.harmonics");
+  if (file->modal_file || !good || !(stages & CASE_MHB)) return;
+  if (file->load.n_harmonics > file->mhb.harmonics)
+    case_reader_issue(r, "excitation.harmonics",
+                      "harmonic %d would be left out: mhb.harmonics is %d, must be %d at least",
+                      file->load.n_harmonics, file->mhb.harmonics, file->load.n_harmonics);
+}
+
+/* An input file that cannot be read; true if so. */
+static bool check_file(case_reader *r, const char *key, const char *path) {
+  if (!path || !case_reader_good(r, key)) return false;
+  struct stat info;
+  int         fd  = open(path, O_RDONLY | O_NONBLOCK);
+  int         why = fd < 0 ? errno : 0;
+  if (fd >= 0 && fstat(fd, &info) == 0 && S_ISDIR(info.st_mode)) why = EISDIR;
+  if (fd >= 0) close(fd);
+  if (why) case_reader_issue(r, key, "%s: cannot be read: %s", path, strerror(why));
+  return why != 0;
+}
+
+static void check_extension(case_reader *r) {
+  const char *path = r->file->mesh_file;
+  size_t      n    = path ? strlen(path) : 0;
+  if (path && case_reader_good(r, "mesh.file") && (n < 4 || strcmp(path + n - 4, ".msh") != 0))
+    case_reader_issue(r, "mesh.file", "'%s' is not a gmsh .msh file", case_key_leaf(path));
+}
+
+bool case_check_values(case_reader *r, int stages) {
+  case_file *file = r->file;
+  bool       own = !file->modal_file, lost = false;
+  if (own && !file->mesh_file) {
+    check_sections(r);
+    check_sizes(r);
+  }
+  check_load_size(r);
+  check_harmonics(r, stages);
+  if (own) check_extension(r);
+  if (own && stages & (CASE_MESH | CASE_MODAL)) lost = check_file(r, "mesh.file", file->mesh_file);
+  if (!own && stages & CASE_MHB) lost = check_file(r, "modal.file", file->modal_file);
+  return lost;
+}

@@ -1,0 +1,114 @@
+/* The settings of a stage, key by key in SI: what decides whether a stage must run again. */
+#include <complex.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cases/value.h"
+
+static void print_numbers(FILE *out, int n, const double *value) {
+  for (int i = 0; i < n; i++) fprintf(out, "%s%.17g", i ? " " : "", value[i]);
+}
+
+static void print_word(FILE *out, const char *words, int index) {
+  for (; index > 0; index--) words = strchr(words, ' ') + 1;
+  fprintf(out, "%.*s", (int)strcspn(words, " "), words);
+}
+
+/* A path as in the case file: the settings do not depend on where the program is started. */
+static const char *inside(const case_file *file, const char *path) {
+  size_t n = strlen(file->folder);
+  return strncmp(path, file->folder, n) == 0 && path[n] == '/' ? path + n + 1 : path;
+}
+
+static void print_sections(FILE *out, const mesh_blade *blade) {
+  case_keys keys = case_key_table();
+  for (int s = 0; s < blade->n_sections; s++) {
+    const char *base = (const char *)&blade->section[s];
+    for (int i = 0; i < keys.n; i++) {
+      const char *inner = strstr(keys.key[i].path, "[].");
+      if (!inner) continue;
+      fprintf(out, "mesh.blade.sections[%d].%s = %.17g\n", s, inner + 3,
+              *(const double *)(base + keys.key[i].at));
+    }
+  }
+}
+
+static void print_factors(FILE *out, const char *path, const fem_load *load) {
+  for (int k = 0; k <= load->n_harmonics; k++)
+    if (load->factor[k] != 0)
+      fprintf(out, "%s.%d = %.17g %.17g\n", path, k, creal(load->factor[k]),
+              cimag(load->factor[k]));
+}
+
+static void print_probes(FILE *out, const char *path, const case_file *file) {
+  for (int i = 0; i < file->n_probes; i++) {
+    fprintf(out, "%s.%s = ", path, file->probe[i].name);
+    print_numbers(out, 3, file->probe[i].at);
+    fputc('\n', out);
+  }
+}
+
+static void print_scalar(FILE *out, const case_key *key, const case_file *file) {
+  const void *slot = (const char *)file + key->at;
+  switch (key->type) {
+    case CASE_INTEGER:
+    case CASE_COUNT:
+      fprintf(out, "%d", *(const int *)slot);
+      break;
+    case CASE_CHOICE:
+      print_word(out, key->words, *(const int *)slot);
+      break;
+    case CASE_SWITCH:
+      print_word(out, key->words, *(const bool *)slot);
+      break;
+    case CASE_WORD:
+      fputs(*(char *const *)slot, out);
+      break;
+    case CASE_FILE_NAME:
+      fputs(inside(file, *(char *const *)slot), out);
+      break;
+    case CASE_PRELOADS:
+      print_numbers(out, file->mhb.n_preloads, slot);
+      break;
+    case CASE_INTERVAL:
+      print_numbers(out, 2, slot);
+      break;
+    case CASE_VECTOR:
+    case CASE_STIFFNESS:
+      print_numbers(out, 3, slot);
+      break;
+    default:
+      print_numbers(out, 1, slot);
+  }
+}
+
+void case_value_print(FILE *out, const case_key *key, const case_file *file) {
+  if (strstr(key->path, "[].")) return; /* printed by its list */
+  if (key->type == CASE_SECTIONS) {
+    print_sections(out, &file->blade);
+  } else if (key->type == CASE_FACTORS) {
+    print_factors(out, key->path, &file->load);
+  } else if (key->type == CASE_PROBES) {
+    print_probes(out, key->path, file);
+  } else {
+    fprintf(out, "%s = ", key->path);
+    print_scalar(out, key, file);
+    fputc('\n', out);
+  }
+}
+
+char *case_settings(const case_file *file, case_stage stage) {
+  char  *text = NULL;
+  size_t size = 0;
+  FILE  *out  = open_memstream(&text, &size);
+  if (!out) return NULL;
+  case_keys keys = case_key_table();
+  for (int i = 0; i < keys.n; i++)
+    if ((keys.key[i].stages & (int)stage) && case_key_applies(&keys.key[i], file))
+      case_value_print(out, &keys.key[i], file);
+  if (fclose(out) != 0) {
+    free(text);
+    return NULL;
+  }
+  return text;
+}

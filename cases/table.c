@@ -1,0 +1,155 @@
+/* The rows of the key table. */
+#include "cases/keys.h"
+
+#define AT(member) .at = offsetof(case_file, member)
+#define SECTION(member) .at = offsetof(mesh_section, member)
+#define COUNT(array) ((int)(sizeof(array) / sizeof *(array)))
+
+enum { MOST_HARMONICS = 200 };
+
+/* Angles in the range column are rad: 1.5708 is 90 deg. */
+#define RIGHT_ANGLE 1.5707963267948966
+
+/* clang-format off */
+static const case_key table[] = {
+    {"name", CASE_WORD, "", AT(name), .stages = CASE_POST,
+     .help = "name of the output files; default: the file's name, or its folder's for case.yaml"},
+
+    {"mesh.file", CASE_FILE_NAME, "", AT(mesh_file), .stages = CASE_MODAL, .when = CASE_IF_MESH_FILE,
+     .help = "gmsh .msh file with the groups root, contact_right, contact_left, load; instead of blade"},
+    {"mesh.blade.root.length", CASE_NUMBER, "m", 0, 100, true, .required = true, AT(blade.root_length), .stages = CASE_MESH, .when = CASE_IF_BLADE,
+     .help = "root block, axial"},
+    {"mesh.blade.root.width", CASE_NUMBER, "m", 0, 100, true, .required = true, AT(blade.root_width), .stages = CASE_MESH, .when = CASE_IF_BLADE,
+     .help = "root block, tangential"},
+    {"mesh.blade.root.height", CASE_NUMBER, "m", 0, 100, true, .required = true, AT(blade.root_height), .stages = CASE_MESH, .when = CASE_IF_BLADE,
+     .help = "root block, radial, below the first section"},
+    {"mesh.blade.sections", CASE_SECTIONS, "", .required = true, AT(blade.section), .stages = CASE_MESH, .when = CASE_IF_BLADE,
+     .help = "airfoil sections, 2 to 16, radius increasing: a list of {radius, chord, thickness, camber, twist}"},
+    {"mesh.blade.sections[].radius", CASE_NUMBER, "m", 0, 100, true, .required = true, SECTION(radius), .stages = CASE_MESH,
+     .help = "distance from the engine axis"},
+    {"mesh.blade.sections[].chord", CASE_NUMBER, "m", 0, 100, true, .required = true, SECTION(chord), .stages = CASE_MESH,
+     .help = "chord length"},
+    {"mesh.blade.sections[].thickness", CASE_NUMBER, "m", 0, 100, true, .required = true, SECTION(thickness), .stages = CASE_MESH,
+     .help = "greatest thickness, less than the chord"},
+    {"mesh.blade.sections[].camber", CASE_NUMBER, "m", -100, 100, .fallback = "0 m", SECTION(camber), .stages = CASE_MESH,
+     .help = "height of the mean line over the chord, less than half the chord"},
+    {"mesh.blade.sections[].twist", CASE_NUMBER, "rad", -RIGHT_ANGLE, RIGHT_ANGLE, true, true, .fallback = "0 deg", SECTION(twist), .stages = CASE_MESH,
+     .help = "stagger from the axial direction, trailing edge towards rotation"},
+    {"mesh.blade.shroud.length", CASE_NUMBER, "m", 0, 100, true, .required = true, AT(blade.shroud_length), .stages = CASE_MESH, .when = CASE_IF_BLADE,
+     .help = "shroud, axial"},
+    {"mesh.blade.shroud.thickness", CASE_NUMBER, "m", 0, 100, true, .required = true, AT(blade.shroud_thickness), .stages = CASE_MESH, .when = CASE_IF_BLADE,
+     .help = "shroud, radial; it sits on the last section"},
+    {"mesh.blade.shroud.contact", CASE_NUMBER, "m", 0, 100, true, .required = true, AT(blade.shroud_contact), .stages = CASE_MESH, .when = CASE_IF_BLADE,
+     .help = "length of the contact face, the middle leg of the Z"},
+    {"mesh.blade.size", CASE_NUMBER, "m", 0, 100, true, .required = true, AT(blade.size), .stages = CASE_MESH, .when = CASE_IF_BLADE,
+     .help = "element size"},
+    {"mesh.blade.shroud_size", CASE_NUMBER, "m", 0, 100, .fallback = "0 m", AT(blade.shroud_size), .stages = CASE_MESH, .when = CASE_IF_BLADE,
+     .help = "element size in the shroud; 0: as size"},
+
+    {"material.E", CASE_NUMBER, "Pa", 1e6, 1e14, .required = true, AT(material.E), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
+     .help = "Young's modulus"},
+    {"material.nu", CASE_NUMBER, "", -1, 0.5, true, true, .required = true, AT(material.nu), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
+     .help = "Poisson's ratio"},
+    {"material.rho", CASE_NUMBER, "kg/m3", 10, 1e5, .required = true, AT(material.rho), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
+     .help = "density"},
+
+    {"rotor.blades", CASE_INTEGER, "", 2, 1000, .required = true, AT(blades), .stages = CASE_MESH | CASE_MODAL | CASE_MHB, .when = CASE_IF_SECTOR,
+     .help = "number of blades; the sector angle is 360 deg / blades"},
+    {"rotor.speed", CASE_NUMBER, "rad/s", 0, 1e5, .fallback = "0 rpm", AT(speed), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
+     .help = "rotation speed"},
+    {"rotor.axis", CASE_CHOICE, "", .words = "x y z -x -y -z", .fallback = "x", AT(axis), .stages = CASE_MESH | CASE_MODAL, .when = CASE_IF_OWN_MODES,
+     .help = "engine axis, through the origin"},
+
+    {"modal.modes", CASE_INTEGER, "", 1, 1000, .fallback = "20", AT(modes), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
+     .help = "modes kept; what is left out goes into the residual flexibility"},
+    {"modal.damping", CASE_NUMBER, "", 0, 1, .below = true, .required = true, AT(damping), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
+     .help = "damping ratio of every mode"},
+    {"modal.file", CASE_FILE_NAME, "", AT(modal_file), .stages = CASE_MHB, .when = CASE_IF_MODAL_FILE,
+     .help = "modal file to use; mesh, material, rotor.speed and the load are then not needed"},
+
+    {"excitation.engine_order", CASE_INTEGER, "", 0, 10000, .required = true, AT(engine_order), .stages = CASE_MHB, .when = CASE_IF_NEIGHBOUR,
+     .help = "engine order E; the inter-blade phase is 2 pi E / blades"},
+    {"excitation.pressure", CASE_NUMBER, "Pa", -1e12, 1e12, .required = true, .instead = "traction or force", AT(load.pressure), .stages = CASE_MODAL, .when = CASE_IF_PRESSURE,
+     .help = "on the group load, into the surface; one of pressure, traction, force"},
+    {"excitation.traction", CASE_VECTOR, "Pa", -1e12, 1e12, .required = true, AT(load.traction), .stages = CASE_MODAL, .when = CASE_IF_TRACTION,
+     .help = "on the group load, along a direction in mesh axes"},
+    {"excitation.force.at", CASE_VECTOR, "m", -1e3, 1e3, AT(load.at), .stages = CASE_MODAL, .when = CASE_IF_FORCE_AT,
+     .help = "where the force acts: the node nearest to it; default: the first probe"},
+    {"excitation.force.vector", CASE_VECTOR, "N", -1e12, 1e12, .required = true, AT(load.force), .stages = CASE_MODAL, .when = CASE_IF_FORCE,
+     .help = "force in mesh axes"},
+    {"excitation.harmonics", CASE_FACTORS, "", .fallback = "{1: [1, 0 deg]}", AT(load.factor), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
+     .help = "factor and phase of the load a harmonic: {k: [factor, phase]}, k from 0 to 64"},
+
+    {"probe", CASE_PROBES, "m", -1e3, 1e3, .fallback = "{}", AT(probe), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
+     .help = "nodes to watch, at most 32: {name: [x, y, z]}, the nearest node to each"},
+
+    {"contact.to", CASE_SWITCH, "", .words = "neighbour ground", .fallback = "neighbour", AT(mhb.to_ground), .stages = CASE_MODAL | CASE_MHB,
+     .help = "what the right contact face meets"},
+    {"contact.psi", CASE_NUMBER, "rad", -RIGHT_ANGLE, RIGHT_ANGLE, true, true, AT(mhb.psi), .stages = CASE_MESH | CASE_MODAL | CASE_MHB, .when = CASE_IF_PSI,
+     .help = "shroud angle; default: from the faces (parametric blade: 0)"},
+    {"contact.phi", CASE_NUMBER, "rad", -RIGHT_ANGLE, RIGHT_ANGLE, true, true, AT(mhb.phi), .stages = CASE_MESH | CASE_MODAL | CASE_MHB, .when = CASE_IF_PHI,
+     .help = "inclination of the contact face; default: from the faces (parametric blade: 0)"},
+    {"contact.points", CASE_COUNT, "", 1, 100000, .fallback = "1", AT(points), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
+     .help = "patches of the contact face, or all: one a node"},
+    {"contact.mu", CASE_NUMBER, "", 0, 10, .required = true, AT(mhb.mu), .stages = CASE_MHB,
+     .help = "friction coefficient"},
+    {"contact.ku", CASE_STIFFNESS, "N/m", 0, 1e15, true, .required = true, AT(mhb.ku), .stages = CASE_MHB,
+     .help = "tangential stiffness of the interface: a number or [kuu, kuw, kww]"},
+    {"contact.kv", CASE_NUMBER, "N/m", 0, 1e15, .required = true, AT(mhb.kv), .stages = CASE_MHB,
+     .help = "normal stiffness of the interface"},
+    {"contact.n0", CASE_PRELOADS, "N", -1e12, 1e12, .required = true, AT(mhb.n0), .stages = CASE_MHB,
+     .help = "normal preload, negative for a gap of -n0/kv: a number, a list, or {from, to, points}"},
+    {"contact.preload", CASE_CHOICE, "", .words = "equilibrium interference", .fallback = "equilibrium", AT(mhb.preload), .stages = CASE_MHB,
+     .help = "n0 is the load at rest, or an interference that also deflects the blade"},
+
+    {"mhb.frequency", CASE_INTERVAL, "Hz", 0, 1e9, true, .required = true, AT(mhb.frequency), .stages = CASE_MHB,
+     .help = "range of the sweep: [from, to]"},
+    {"mhb.harmonics", CASE_INTEGER, "", 1, MOST_HARMONICS, .fallback = "3", AT(mhb.harmonics), .stages = CASE_MHB,
+     .help = "harmonics of the balance"},
+    {"mhb.subharmonics", CASE_INTEGER, "", 1, 16, .fallback = "1", AT(mhb.subharmonics), .stages = CASE_MHB,
+     .help = "order nu: the fundamental is the excitation frequency / nu"},
+    {"mhb.scale", CASE_NUMBER, "", 0, 1e12, true, .fallback = "1", AT(mhb.scale), .stages = CASE_MHB,
+     .help = "multiplies the excitation"},
+    {"mhb.tolerance", CASE_NUMBER, "", 1e-14, 1e-2, .fallback = "1e-8", AT(mhb.tolerance), .stages = CASE_MHB,
+     .help = "relative accuracy asked of the contact law"},
+    {"mhb.max_points", CASE_INTEGER, "", 10, 1000000, .fallback = "2000", AT(mhb.max_points), .stages = CASE_MHB,
+     .help = "points after which a branch ends"},
+};
+/* clang-format on */
+
+case_keys case_key_table(void) {
+  return (case_keys){COUNT(table), table};
+}
+
+bool case_key_applies(const case_key *key, const case_file *file) {
+  bool own = !file->modal_file, blade = own && !file->mesh_file;
+  switch (key->when) {
+    case CASE_IF_BLADE:
+      return blade;
+    case CASE_IF_MESH_FILE:
+      return own && file->mesh_file;
+    case CASE_IF_OWN_MODES:
+      return own;
+    case CASE_IF_MODAL_FILE:
+      return !own;
+    case CASE_IF_NEIGHBOUR:
+      return !file->mhb.to_ground;
+    case CASE_IF_SECTOR:
+      return blade || !file->mhb.to_ground;
+    case CASE_IF_PSI:
+      return file->mhb.has_psi;
+    case CASE_IF_PHI:
+      return file->mhb.has_phi;
+    case CASE_IF_PRESSURE:
+      return own && file->load.kind == FEM_LOAD_PRESSURE;
+    case CASE_IF_TRACTION:
+      return own && file->load.kind == FEM_LOAD_TRACTION;
+    case CASE_IF_FORCE:
+      return own && file->load.kind == FEM_LOAD_FORCE;
+    case CASE_IF_FORCE_AT:
+      return own && file->load.kind == FEM_LOAD_FORCE && file->load.has_at;
+    case CASE_ALWAYS:
+      return true;
+  }
+  return true;
+}
