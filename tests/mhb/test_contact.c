@@ -67,7 +67,7 @@ static double largest(const evaluation *e) {
 
 static void one_direction(void **state) {
   (void)state;
-  evaluation e = {.law = {.4, 5e5, {1e6, 0, 1e6}, 100}};
+  evaluation e = {.law = {.mu = .4, .kv = 5e5, .ku = {1e6, 0, 1e6}, .n0 = 100}};
   set(&e, 1, 1, 2e-4, 0);
   evaluate(&e, 0);
   double A = 2e-4, k = 1e6, S = 40, th = acos(1 - 2 * S / (k * A));
@@ -84,7 +84,7 @@ static void one_direction(void **state) {
 static void normal_force_of_opening_contact(void **state) {
   (void)state;
   double     kv = 3e5, B = 2.385e-4, n0 = 31.7, al = -n0 / (kv * B), tc = acos(al);
-  evaluation e = {.law = {.3, kv, {1e6, 0, 1e6}, n0}};
+  evaluation e = {.law = {.mu = .3, .kv = kv, .ku = {1e6, 0, 1e6}, .n0 = n0}};
   set(&e, 0, 1, B, 0);
   evaluate(&e, 0);
   assert_near(e.force[0][0], kv * B / PI * (sin(tc) - al * tc), 1e-10 * kv * B);
@@ -101,7 +101,7 @@ static void normal_force_of_opening_contact(void **state) {
 static void circle(void **state) {
   (void)state;
   double     R = 1e-4, k = 1e6, S = 40, s = S / (k * R);
-  evaluation e = {.law = {.4, 5e5, {k, 0, k}, 100}};
+  evaluation e = {.law = {.mu = .4, .kv = 5e5, .ku = {k, 0, k}, .n0 = 100}};
   set(&e, 1, 1, R, 0);
   set(&e, 2, 1, R, -PI / 2);
   evaluate(&e, 0);
@@ -114,7 +114,7 @@ static void circle(void **state) {
 
 static void in_phase_normal_load(void **state) {
   (void)state;
-  evaluation e = {.law = {.4, 5e5, {1e6, 0, 1e6}, 100}};
+  evaluation e = {.law = {.mu = .4, .kv = 5e5, .ku = {1e6, 0, 1e6}, .n0 = 100}};
   set(&e, 1, 1, 2e-4, 0);
   set(&e, 0, 1, 1e-4, 0);
   evaluate(&e, 0);
@@ -136,7 +136,7 @@ static void in_phase_normal_load(void **state) {
 
 static void quadrature_normal_load(void **state) {
   (void)state;
-  evaluation e = {.law = {.4, 5e5, {1e6, 0, 1e6}, 100}};
+  evaluation e = {.law = {.mu = .4, .kv = 5e5, .ku = {1e6, 0, 1e6}, .n0 = 100}};
   set(&e, 1, 1, 2e-4, 0);
   set(&e, 0, 1, 1e-4, -PI / 2);
   evaluate(&e, 0);
@@ -160,7 +160,7 @@ enum { SUITE = 12 };
 
 static const char *suite(int i, evaluation *e) {
   memset(e, 0, sizeof *e);
-  e->law = (mhb_law){.4, 5e5, {1e6, 0, 1e6}, 100};
+  e->law = (mhb_law){.mu = .4, .kv = 5e5, .ku = {1e6, 0, 1e6}, .n0 = 100};
   set(e, 1, 1, 2e-4, .3);
   switch (i) {
     case 0:
@@ -385,7 +385,7 @@ static void units_do_not_matter(void **state) {
 
 static void stuck_and_open_are_linear(void **state) {
   (void)state;
-  evaluation e = {.law = {.4, 5e5, {1e6, 2e5, .7e6}, 1000}};
+  evaluation e = {.law = {.mu = .4, .kv = 5e5, .ku = {1e6, 2e5, .7e6}, .n0 = 1000}};
   set(&e, 0, 0, 1e-5, 0);
   set(&e, 0, 1, 1e-4, 0);
   set(&e, 1, 0, 4e-5, 0);
@@ -413,7 +413,7 @@ static void continuous_through_onset(void **state) {
   for (int i = 0; i <= 4000; i++) {
     double a = (.15 + .1e-3 * i) * 1e-4;
     memset(&e, 0, sizeof e);
-    e.law = (mhb_law){.4, 5e5, {1e6, 0, 1e6}, 100};
+    e.law = (mhb_law){.mu = .4, .kv = 5e5, .ku = {1e6, 0, 1e6}, .n0 = 100};
     set(&e, 1, 1, 2 * a, .3);
     set(&e, 0, 1, a, .5);
     set(&e, 2, 1, .5 * a, 1);
@@ -464,7 +464,7 @@ static void random_cases_are_sane(void **state) {
 
 static void zero_motion_and_zero_friction(void **state) {
   (void)state;
-  evaluation e = {.law = {.4, 5e5, {1e6, 0, 1e6}, 100}};
+  evaluation e = {.law = {.mu = .4, .kv = 5e5, .ku = {1e6, 0, 1e6}, .n0 = 100}};
   evaluate(&e, 1);
   assert_near(e.force[0][0], 100, 1e-12);
   assert_near(e.jacobian[(NF + 1) * 3 * NB + NB + 1], 1e6, 1e-3);

@@ -1,0 +1,117 @@
+/* shroudhb-mhb: the harmonic balance of a case, or the contact law for a prescribed motion. Starts no MPI. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cases/case.h"
+#include "cases/command.h"
+#include "cases/contact.h"
+#include "mesh/progress.h"
+#include "mhb/sweep.h"
+#include "modal/model.h"
+
+static const char usage[] =
+    "usage: shroudhb-mhb [--quiet] [--verbose] [--force] CASE.yaml\n"
+    "       shroudhb-mhb --contact MOTION.yaml\n"
+    "\n"
+    "Solves the multi-harmonic balance of CASE.yaml on its modal file and writes "
+    "NAME.response.h5;\n"
+    "does nothing if that file is up to date (unless --force). With --contact: prints the force\n"
+    "harmonics, transitions and energy for a prescribed relative motion.\n";
+
+/* All that the response depends on: the keys of the stage and the modal file's contents. malloc'ed. */
+static shb_status settings_text(const case_file *file, const char *modal, char **text) {
+  char  fingerprint[17];
+  char *keys = NULL;
+  SHB_TRY(shb_fingerprint(modal, fingerprint));
+  keys = case_settings(file, CASE_MHB);
+  SHB_CHECK(keys, SHB_ERR_IO, "out of memory");
+  size_t size = strlen(keys) + 64;
+  *text       = malloc(size);
+  if (*text) snprintf(*text, size, "%smodal.fingerprint = %s\n", keys, fingerprint);
+  free(keys);
+  SHB_CHECK(*text, SHB_ERR_IO, "out of memory");
+  return SHB_OK;
+}
+
+/* Whether path holds the finished answer to these settings. */
+static bool up_to_date(const char *path, const char *settings) {
+  hid_t file;
+  char *found = NULL;
+  if (h5_open(path, &file) != SHB_OK) return false;
+  bool same = h5_read_attribute_text(file, "/", "settings", &found) == SHB_OK && found &&
+              strcmp(found, settings) == 0;
+  free(found);
+  h5_close(file);
+  mhb_response *response = NULL;
+  same                   = same && mhb_response_read(path, &response) == SHB_OK;
+  for (int i = 0; same && i < response->n_branches; i++) same = response->branch[i].complete;
+  mhb_response_destroy(response);
+  return same;
+}
+
+static void summarise(shb_progress *progress, const mhb_response *response) {
+  long   points = 0, iterations = 0;
+  double seconds = 0;
+  for (int i = 0; i < response->n_branches; i++) {
+    const mhb_branch *b = &response->branch[i];
+    if (b->kind != MHB_BRANCH_NONLINEAR) continue;
+    points += b->n_points;
+    for (int p = 0; p < b->n_points; p++) {
+      iterations += b->iterations[p];
+      seconds += b->seconds[p];
+    }
+  }
+  shb_progress_note(progress, "%ld points, %.1f Newton steps and %.3f ms a point", points,
+                    points ? (double)iterations / (double)points : 0.,
+                    points ? 1e3 * seconds / (double)points : 0.);
+}
+
+static shb_status solve(const case_file *file, const char *modal, char *settings,
+                        const char *output, shb_progress *progress) {
+  modal_model    model;
+  mhb_response  *response   = NULL;
+  shb_provenance provenance = command_provenance(file, settings, "shroudhb-mhb");
+  SHB_TRY(modal_model_read(modal, &model));
+  shb_status status = mhb_sweep(&model, &file->mhb, output, &provenance, progress, &response);
+  shb_progress_clear(progress);
+  if (response) summarise(progress, response);
+  shb_progress_note(progress, "%.2f s in all", shb_seconds() - progress->started);
+  mhb_response_destroy(response);
+  modal_model_free(&model);
+  return status;
+}
+
+static shb_status run(const case_file *file, const command_options *options) {
+  shb_progress progress = shb_progress_start("mhb", options->quiet, options->verbose);
+  char        *modal = case_modal_path(file), *output = case_output(file, ".response.h5");
+  char        *settings = NULL;
+  shb_status   status =
+      modal && output ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  if (status == SHB_OK) status = settings_text(file, modal, &settings);
+  if (status == SHB_OK) {
+    if (!options->force && up_to_date(output, settings)) {
+      shb_progress_note(&progress, "%s is up to date", output);
+    } else {
+      status = solve(file, modal, settings, output, &progress);
+    }
+  }
+  free(modal);
+  free(output);
+  free(settings);
+  return status;
+}
+
+int main(int argc, char **argv) {
+  command_options options;
+  int             code = command_parse(argc, argv, usage, &options);
+  if (code >= 0) return code;
+  if (options.mode && strcmp(options.mode, "contact") == 0)
+    return command_finish(contact_command(options.path, stdout));
+  case_file file;
+  if ((code = case_read(options.path, CASE_MHB, stderr, &file)) != SHB_OK) return code;
+  shb_interrupt_catch();
+  shb_status status = run(&file, &options);
+  case_free(&file);
+  return command_finish(status);
+}
