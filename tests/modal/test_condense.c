@@ -1,0 +1,321 @@
+/* Condensed model against direct solutions of the whole body. */
+#include <lapacke.h>
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "fem/surface.h"
+#include "modal/receptance.h"
+#include "modal/session.h"
+#include "modal/stage.h"
+#include "tests/fem/support.h"
+
+enum { BLADES = 23 };
+
+static const double size[3] = {.04, 1, .12}, inner = .1, zeta = .003, two_pi = 6.283185307179586;
+static const modal_probe probe[2] = {{"tip", {.04, .0, .22}}, {"middle", {0, .01, .16}}};
+
+static modal_settings default_settings(int points) {
+  return (modal_settings){
+      .material = steel,
+      .axis     = MESH_AXIS_X,
+      .blades   = BLADES,
+      .modes    = 20,
+      .damping  = zeta,
+      .load     = {.kind        = FEM_LOAD_PRESSURE,
+                   .pressure    = 2385,
+                   .n_harmonics = 2,
+                   .factor      = {.3, 1, -.2 + .1 * I}},
+      .n_probes = 2,
+      .probe    = probe,
+      .points   = points,
+  };
+}
+
+static modal_result solve(const mesh_fe *mesh, const modal_settings *settings) {
+  modal_result result;
+  if (modal_solve(PETSC_COMM_SELF, mesh, settings, NULL, &result) != SHB_OK)
+    fail_msg("%s", shb_message());
+  return result;
+}
+
+/* The whole matrix, column by column. */
+static double *dense_of(Mat A, int n) {
+  double *full = malloc((size_t)n * (size_t)n * sizeof *full);
+  Vec     unit, column;
+  assert_int_equal(MatCreateVecs(A, &unit, &column), 0);
+  for (int j = 0; j < n; j++) {
+    const PetscScalar *value;
+    assert_int_equal(VecZeroEntries(unit), 0);
+    assert_int_equal(VecSetValue(unit, j, 1, INSERT_VALUES), 0);
+    assert_int_equal(VecAssemblyBegin(unit), 0);
+    assert_int_equal(VecAssemblyEnd(unit), 0);
+    assert_int_equal(MatMult(A, unit, column), 0);
+    assert_int_equal(VecGetArrayRead(column, &value), 0);
+    memcpy(full + (size_t)n * (size_t)j, value, (size_t)n * sizeof *full);
+    assert_int_equal(VecRestoreArrayRead(column, &value), 0);
+  }
+  VecDestroy(&unit);
+  VecDestroy(&column);
+  return full;
+}
+
+/* Everything of the body as dense arrays: the independent witness. Column-major. */
+typedef struct {
+  int     n, n_dofs; /* order, condensed dofs (contact, probes, load) */
+  double *K, *M, *C, *B;
+} body;
+
+/* C = sum 2 zeta w_i M phi phi^T M: each retained mode damped, the rest not. */
+static double *modal_damping(const modal_eigen *eigen, int n) {
+  double            *C = calloc((size_t)n * (size_t)n, sizeof *C);
+  const PetscScalar *m_phi;
+  assert_int_equal(MatDenseGetArrayRead(eigen->m_phi, &m_phi), 0);
+  for (int i = 0; i < eigen->n; i++) {
+    const double *v = m_phi + (size_t)i * (size_t)n, c = 2 * zeta * sqrt(eigen->lambda[i]);
+    for (int a = 0; a < n; a++)
+      for (int b = 0; b < n; b++) C[(size_t)a * (size_t)n + (size_t)b] += c * v[a] * v[b];
+  }
+  assert_int_equal(MatDenseRestoreArrayRead(eigen->m_phi, &m_phi), 0);
+  return C;
+}
+
+/* b_c written out from the interface, the probes and the load's own nodal forces. */
+static double *condensed_dofs(const mesh_fe *mesh, const modal_settings *settings,
+                              const modal_result *result, int n, int n_dofs) {
+  double                *B    = calloc((size_t)n * (size_t)n_dofs, sizeof *B);
+  const modal_interface *face = &result->interface;
+  const PetscInt        *row  = result->system.row;
+  int                    c    = 0;
+  for (int side = 0; side <= (int)face->has_left; side++)
+    for (int p = 0; p < face->n_pairs; p++)
+      for (int a = 0; a < 3; a++, c++)
+        for (int e = face->start[p]; e < face->start[p + 1]; e++) {
+          PetscInt r = row[face->node[side][e]];
+          for (int d = 0; d < 3 && r >= 0; d++)
+            B[(size_t)n * (size_t)c + (size_t)(3 * r + d)] +=
+                face->weight[e] * face->axes[side][p][a][d];
+        }
+  for (int q = 0; q < settings->n_probes; q++) {
+    double axes[3][3];
+    int    node = mesh_fe_nearest(mesh, settings->probe[q].at);
+    mesh_axes_at(settings->axis, mesh->coordinates + 3 * node, axes);
+    for (int a = 0; a < 3; a++, c++)
+      for (int d = 0; d < 3; d++)
+        B[(size_t)n * (size_t)c + (size_t)(3 * row[node] + d)] = axes[a][d];
+  }
+  double *force = malloc(3 * (size_t)mesh->n_nodes * sizeof *force);
+  assert_int_equal(fem_load_pattern(mesh, &settings->load, NULL, force), SHB_OK);
+  for (int i = 0; i < mesh->n_nodes; i++)
+    for (int d = 0; d < 3 && row[i] >= 0; d++)
+      B[(size_t)n * (size_t)c + (size_t)(3 * row[i] + d)] = force[3 * i + d];
+  free(force);
+  assert_int_equal(c + 1, n_dofs);
+  return B;
+}
+
+static body create_body(const mesh_fe *mesh, const modal_settings *settings,
+                        const modal_result *result) {
+  int contact = 3 * result->model.n_pairs * (result->model.has_left ? 2 : 1);
+  int n = (int)(3 * result->system.n_free), n_dofs = contact + 3 * settings->n_probes + 1;
+  return (body){n,
+                n_dofs,
+                dense_of(result->system.K, n),
+                dense_of(result->system.M, n),
+                modal_damping(&result->eigen, n),
+                condensed_dofs(mesh, settings, result, n, n_dofs)};
+}
+
+static void free_body(body *b) {
+  free(b->K);
+  free(b->M);
+  free(b->C);
+  free(b->B);
+}
+
+/* B^T (K - w^2 M + j w C)^-1 B, [n_dofs][n_dofs]; free with free. */
+static double complex *direct(const body *b, double omega) {
+  const size_t    n = (size_t)b->n, m = (size_t)b->n_dofs;
+  double complex *A = malloc(n * n * sizeof *A), *X = malloc(n * m * sizeof *X);
+  double complex *r     = calloc(m * m, sizeof *r);
+  lapack_int     *pivot = malloc(n * sizeof *pivot);
+  for (size_t i = 0; i < n * n; i++) A[i] = b->K[i] - omega * omega * b->M[i] + I * omega * b->C[i];
+  for (size_t i = 0; i < n * m; i++) X[i] = b->B[i];
+  assert_int_equal(LAPACKE_zgesv(LAPACK_COL_MAJOR, b->n, b->n_dofs, A, b->n, pivot, X, b->n), 0);
+  for (size_t p = 0; p < m; p++)
+    for (size_t l = 0; l < m; l++)
+      for (size_t i = 0; i < n; i++) r[p * m + l] += b->B[n * p + i] * X[n * l + i];
+  free(A);
+  free(X);
+  free(pivot);
+  return r;
+}
+
+/* Relative Frobenius distance of the leading nc x nc block. */
+static double distance(const double complex *a, const double complex *b, int nc, int stride) {
+  double off = 0, norm = 0;
+  for (int p = 0; p < nc; p++)
+    for (int l = 0; l < nc; l++) {
+      double complex x = a[p * nc + l], y = b[p * stride + l];
+      off += creal((x - y) * conj(x - y));
+      norm += creal(y * conj(y));
+    }
+  return sqrt(off / norm);
+}
+
+/* Below the first mode, between the second and the third, and near the third. */
+static void receptance_matches_a_direct_solve(void **state) {
+  (void)state;
+  const int      cells[3] = {2, 2, 4};
+  mesh_fe        mesh     = make_sector(size, inner, BLADES, cells);
+  modal_settings settings = default_settings(2);
+  modal_result   result   = solve(&mesh, &settings);
+  body           whole    = create_body(&mesh, &settings, &result);
+  const double  *f        = result.model.frequency;
+  const double   test[3]  = {.4 * f[0], (f[1] + f[2]) / 2, 1.01 * f[2]};
+  const int      nc       = 12;
+  for (int i = 0; i < 3; i++) {
+    double complex *exact = direct(&whole, two_pi * test[i]);
+    double complex  model[12 * 12], plain[12 * 12];
+    modal_receptance(&result.model, two_pi * test[i], model);
+    modal_model bare          = result.model;
+    bare.residual_flexibility = bare.residual_inertia = NULL;
+    modal_receptance(&bare, two_pi * test[i], plain);
+    print_message("%.0f Hz (modes 1 and 20: %.0f, %.0f): error %.2e, modes alone %.2e\n", test[i],
+                  f[0], f[19], distance(model, exact, nc, whole.n_dofs),
+                  distance(plain, exact, nc, whole.n_dofs));
+    check_below(distance(model, exact, nc, whole.n_dofs), 1e-6, "receptance");
+    free(exact);
+  }
+  free_body(&whole);
+  modal_result_free(&result);
+  mesh_fe_free(&mesh);
+}
+
+/* At w = 0 every part is exact: contact, load and probes. */
+static void static_response_is_exact(void **state) {
+  (void)state;
+  const int          cells[3] = {2, 2, 4}, nc = 12;
+  mesh_fe            mesh     = make_sector(size, inner, BLADES, cells);
+  modal_settings     settings = default_settings(2);
+  modal_result       result   = solve(&mesh, &settings);
+  const modal_model *model    = &result.model;
+  body               whole    = create_body(&mesh, &settings, &result);
+  double complex    *exact    = direct(&whole, 0), contact[12 * 12];
+  const int          m = model->n_modes, load = whole.n_dofs - 1;
+  modal_receptance(model, 0, contact);
+  check_below(distance(contact, exact, nc, whole.n_dofs), 1e-10, "static receptance");
+  for (int k = 0; k <= 2; k++)
+    for (int c = 0; c < nc; c++) {
+      const double  *shape = c < 6 ? model->right + c * m : model->left + (c - 6) * m;
+      double complex u     = model->load_residual[k * nc + c];
+      for (int i = 0; i < m; i++)
+        u += shape[i] * model->modal_force[k * m + i] / pow(two_pi * model->frequency[i], 2);
+      double complex wanted = settings.load.factor[k] * exact[c * whole.n_dofs + load];
+      check_below(cabs(u - wanted), 1e-9 * cabs(exact[2 * whole.n_dofs + load]), "contact, load");
+    }
+  for (int q = 0; q < 6; q++) {
+    double complex u = model->probe_load_residual[6 + q];
+    for (int i = 0; i < m; i++)
+      u += model->probe[q * m + i] * model->modal_force[m + i] /
+           pow(two_pi * model->frequency[i], 2);
+    check_below(cabs(u - exact[(nc + q) * whole.n_dofs + load]),
+                1e-9 * cabs(exact[(nc + 2) * whole.n_dofs + load]), "probe, load");
+    for (int c = 0; c < nc; c++) {
+      const double *shape = c < 6 ? model->right + c * m : model->left + (c - 6) * m;
+      u                   = model->probe_contact_residual[q * nc + c];
+      for (int i = 0; i < m; i++)
+        u += model->probe[q * m + i] * shape[i] / pow(two_pi * model->frequency[i], 2);
+      check_below(cabs(u - exact[(nc + q) * whole.n_dofs + c]),
+                  1e-9 * cabs(exact[nc * whole.n_dofs]), "probe, contact");
+    }
+  }
+  free(exact);
+  free_body(&whole);
+  modal_result_free(&result);
+  mesh_fe_free(&mesh);
+}
+
+/* Patches are finer divisions of the same face: the area-weighted mean of their flexibilities is the whole's. */
+static void patches_add_up_to_the_face(void **state) {
+  (void)state;
+  const int cells[3] = {2, 2, 4}, points[3] = {4, 7, 0};
+  mesh_fe   mesh     = make_sector(size, inner, BLADES, cells);
+  double    whole[3] = {0};
+  for (int i = -1; i < 3; i++) {
+    modal_settings     settings = default_settings(i < 0 ? 1 : points[i]);
+    modal_result       result   = solve(&mesh, &settings);
+    const modal_model *model    = &result.model;
+    const int          m        = model->n_modes;
+    /* mean tangential, axial and radial motion in mode 1: all axes of one face are parallel */
+    for (int a = 0; a < 3; a++) {
+      double mean = 0;
+      for (int p = 0; p < model->n_pairs; p++)
+        mean += model->area[p] / result.interface.total_area * model->right[(3 * p + a) * m];
+      if (i < 0)
+        whole[a] = mean;
+      else
+        check_close(mean, whole[a], 1e-8, "mean motion of the face");
+    }
+    modal_result_free(&result);
+  }
+  mesh_fe_free(&mesh);
+}
+
+/* Spread over the face's area, the flexibility has a limit: differences between meshes fall (not with the order of
+ * smooth solutions: the face ends at the clamped edge, which is singular). */
+static void receptance_converges_with_the_mesh(void **state) {
+  (void)state;
+  double flexibility[4];
+  for (int level = 0; level < 4; level++) {
+    const int      n        = 1 << level;
+    const int      cells[3] = {n, n, 2 * n};
+    mesh_fe        mesh     = make_sector(size, inner, BLADES, cells);
+    modal_settings settings = default_settings(1);
+    double complex r[36];
+    modal_result   result = solve(&mesh, &settings);
+    modal_receptance(&result.model, .5 * two_pi * result.model.frequency[0], r);
+    flexibility[level] = cabs(r[0]);
+    modal_result_free(&result);
+    mesh_fe_free(&mesh);
+  }
+  double change[3];
+  for (int i = 0; i < 3; i++) change[i] = fabs(flexibility[i + 1] / flexibility[i] - 1);
+  print_message("receptance of the face, change from mesh to mesh: %.2e %.2e %.2e\n", change[0],
+                change[1], change[2]);
+  assert_true(change[1] < change[0] / 2 && change[2] < change[1] / 2);
+  check_below(change[2], 2e-2, "last change");
+}
+
+static void speed_is_refused(void **state) {
+  (void)state;
+  const int      cells[3] = {1, 1, 2};
+  mesh_fe        mesh     = make_sector(size, inner, BLADES, cells);
+  modal_settings settings = default_settings(1);
+  modal_result   result;
+  settings.speed = 314.159;
+  assert_int_equal(modal_solve(PETSC_COMM_SELF, &mesh, &settings, NULL, &result), SHB_ERR_INPUT);
+  assert_non_null(strstr(shb_message(), "rotor.speed"));
+  modal_result_free(&result);
+  mesh_fe_free(&mesh);
+}
+
+int main(int argc, char **argv) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(receptance_matches_a_direct_solve),
+      cmocka_unit_test(static_response_is_exact),
+      cmocka_unit_test(patches_add_up_to_the_face),
+      cmocka_unit_test(receptance_converges_with_the_mesh),
+      cmocka_unit_test(speed_is_refused),
+  };
+  modal_session session;
+  if (modal_session_start(&argc, &argv, &session) != SHB_OK) return 1;
+  int failures = cmocka_run_group_tests(tests, NULL, NULL);
+  modal_session_end(&session, SHB_OK);
+  return failures;
+}
