@@ -154,10 +154,11 @@ shb_status mesh_airfoil_build(const mesh_blade *blade, const mesh_frame *frame, 
   for (int i = 0; i < blade->n_sections; i++)
     SHB_TRY(add_wire(&blade->section[i], frame, &wires[n++]));
   SHB_TRY(add_wire(&above, frame, &wires[n++]));
+  enum { DEGREE = 3 }; /* along the radius; more makes the joining three times slower */
   int   *made   = NULL;
   size_t n_made = 0;
   GMSH_TRY("mesh.blade.sections",
-           gmshModelOccAddThruSections(wires, (size_t)n, &made, &n_made, -1, 1, 0, -1, &ierr));
+           gmshModelOccAddThruSections(wires, (size_t)n, &made, &n_made, -1, 1, 0, DEGREE, &ierr));
   bool solid = n_made == 2 && made[0] == 3;
   *volume    = solid ? made[1] : 0;
   gmshFree(made);

@@ -12,7 +12,7 @@
 #include "mesh/blade.h"
 #include "mesh/frame.h"
 
-enum { MESH_AIRFOIL_POINTS = 21 };
+enum { MESH_AIRFOIL_POINTS = 13 };
 
 /* Points from leading to trailing edge (shared), in own coordinates (tangential, axial, radial), m. */
 typedef struct {

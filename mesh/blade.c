@@ -182,6 +182,8 @@ static shb_status set_options(void) {
                 {"Mesh.MshFileVersion", 4.1},
                 {"Mesh.Binary", 0},
                 {"Mesh.SaveAll", 0},
+                /* 15 times faster placing of mid-side nodes on the lofted surface */
+                {"Geometry.OCCUseGenericClosestPoint", 1},
                 /* joining faces that lie on one surface would merge the legs of a straight Z */
                 {"Geometry.OCCUnionUnify", 0}};
   for (size_t i = 0; i < sizeof option / sizeof *option; i++)
@@ -189,17 +191,17 @@ static shb_status set_options(void) {
   return SHB_OK;
 }
 
-/* Copy gmsh's model, and see that no element is inverted and that the contact faces match. */
-static shb_status verify(const mesh_blade *blade, mesh_fe *mesh) {
-  int pairs = 0, *right = NULL, *left = NULL;
-  SHB_TRY(mesh_import(who, mesh));
-  shb_status status = mesh_tet10_check(mesh, who);
-  if (status == SHB_OK)
-    status = mesh_fe_match(mesh, blade->axis, blade->blades, &pairs, &right, &left);
-  free(right);
-  free(left);
-  if (status != SHB_OK) mesh_fe_free(mesh);
-  return status;
+/* gmsh can give up on a volume without an error. */
+static shb_status check_filled(const mesh_blade *blade) {
+  int   *types = NULL;
+  size_t n     = 0;
+  GMSH_TRY(who, gmshModelMeshGetElementTypes(&types, &n, 3, -1, &ierr));
+  gmshFree(types);
+  SHB_CHECK(n > 0, SHB_ERR_INPUT,
+            "mesh.blade.size: gmsh cannot fill the blade with tetrahedra of %g mm: faces cross at "
+            "thin or strongly curved places; give a smaller size",
+            1e3 * blade->size);
+  return SHB_OK;
 }
 
 static shb_status mesh_volume(const mesh_blade *blade, const mesh_frame *frame,
@@ -214,17 +216,43 @@ static shb_status mesh_volume(const mesh_blade *blade, const mesh_frame *frame,
     SHB_CHECK(!shb_interrupted(), SHB_INTERRUPTED, "interrupted while meshing; nothing written");
   }
   GMSH_TRY(who, gmshModelMeshRemoveSizeCallback(&ierr));
+  SHB_TRY(check_filled(blade));
   GMSH_TRY(who, gmshModelMeshSetOrder(2, &ierr));
   return SHB_OK;
 }
 
-/* Curved sides can invert elements at thin edges: let gmsh move mid-side nodes, then look again. */
-static shb_status straighten(const mesh_blade *blade, mesh_fe *mesh, shb_progress *progress) {
-  shb_status status = verify(blade, mesh);
-  if (status != SHB_ERR_INPUT) return status;
-  shb_progress_note(progress, "%s; optimising", shb_message());
-  GMSH_TRY(who, gmshModelMeshOptimize("HighOrder", 0, 1, NULL, 0, &ierr));
-  return verify(blade, mesh);
+/* Hand the moved nodes back to gmsh. */
+static shb_status move_nodes(const mesh_fe *mesh, const char *moved) {
+  for (int i = 0; i < mesh->n_nodes; i++)
+    if (moved[i])
+      GMSH_TRY(who, gmshModelMeshSetNode((size_t)mesh->node_tag[i],
+                                         mesh->coordinates + 3 * (size_t)i, 3, NULL, 0, &ierr));
+  return SHB_OK;
+}
+
+/* Curved edges can invert a few elements where the airfoil is thin: those edges are made straight, at the cost
+ * of their sag. More than 1 % of them means that the mesh does not resolve the blade: an error. */
+static shb_status straighten(mesh_fe *mesh, shb_progress *progress) {
+  int bad = mesh_tet10_inverted(mesh);
+  if (bad == 0 || bad > mesh->n_elements / 100) return mesh_tet10_check(mesh, "mesh.blade.size");
+  char *moved = calloc((size_t)mesh->n_nodes, 1);
+  SHB_CHECK(moved, SHB_ERR_IO, "no memory to straighten elements");
+  mesh_tet10_straighten(mesh, moved);
+  shb_progress_note(progress, "%d inverted elements straightened", bad);
+  shb_status status = mesh_tet10_check(mesh, "mesh.blade.size");
+  if (status == SHB_OK) status = move_nodes(mesh, moved);
+  free(moved);
+  return status;
+}
+
+/* The mesh as it will be read: no element inverted, contact faces matching. */
+static shb_status verify(const mesh_blade *blade, mesh_fe *mesh, shb_progress *progress) {
+  int pairs = 0, *right = NULL, *left = NULL;
+  SHB_TRY(straighten(mesh, progress));
+  SHB_TRY(mesh_fe_match(mesh, blade->axis, blade->blades, &pairs, &right, &left));
+  free(right);
+  free(left);
+  return SHB_OK;
 }
 
 static shb_status write_model(const char *path, const shb_provenance *provenance) {
@@ -266,11 +294,13 @@ static shb_status make(const mesh_blade *blade, const char *path, const shb_prov
   shb_progress_note(progress, "solid %.2f s", built - start);
   SHB_CHECK(!shb_interrupted(), SHB_INTERRUPTED, "interrupted while meshing; nothing written");
   SHB_TRY(mesh_volume(blade, &frame, progress));
-  SHB_TRY(straighten(blade, &mesh, progress));
+  SHB_TRY(mesh_import(who, &mesh));
+  shb_status status = verify(blade, &mesh, progress);
   shb_progress_note(progress, "mesh %.2f s: %d nodes, %d elements, %d contact faces a side",
                     shb_seconds() - built, mesh.n_nodes, mesh.n_elements,
                     mesh.set[MESH_CONTACT_RIGHT].n);
   mesh_fe_free(&mesh);
+  SHB_TRY(status);
   return write_model(path, provenance);
 }
 

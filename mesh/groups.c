@@ -14,18 +14,20 @@ typedef struct {
   int    tag;
   double centre[3]; /* of mass, own coordinates, m */
   double low, high; /* radial extent, m */
+  double width;     /* tangential extent, m */
 } face;
 
 static shb_status measure(const mesh_frame *frame, face *f) {
-  double at[3], low[3], high[3], own[3];
+  double at[3], low[3], high[3], from[3], to[3];
   GMSH_TRY("mesh.blade", gmshModelOccGetCenterOfMass(2, f->tag, &at[0], &at[1], &at[2], &ierr));
   GMSH_TRY("mesh.blade", gmshModelGetBoundingBox(2, f->tag, &low[0], &low[1], &low[2], &high[0],
                                                  &high[1], &high[2], &ierr));
   mesh_frame_own(frame, at, f->centre);
-  mesh_frame_own(frame, low, own); /* the stacking line is a positive mesh axis */
-  f->low = own[2];
-  mesh_frame_own(frame, high, own);
-  f->high = own[2];
+  mesh_frame_own(frame, low, from);
+  mesh_frame_own(frame, high, to);
+  f->low   = from[2]; /* the stacking line is a positive mesh axis */
+  f->high  = to[2];
+  f->width = fabs(to[0] - from[0]);
   return SHB_OK;
 }
 
@@ -76,7 +78,13 @@ static shb_status distance_to(const mesh_frame *frame, int tag, const double own
   return SHB_OK;
 }
 
-/* Of the two faces that span root to shroud, the one through the first section's pressure side. */
+static double greatest_chord(const mesh_blade *blade) {
+  double chord = 0;
+  for (int i = 0; i < blade->n_sections; i++) chord = fmax(chord, blade->section[i].chord);
+  return chord;
+}
+
+/* Of the two faces that span root to shroud (a wide shroud's may too), the one through the first section's pressure side. */
 static shb_status find_pressure(const mesh_blade *blade, const mesh_frame *frame, const face *faces,
                                 int n, int *tag) {
   double       bottom = blade->section[0].radius;
@@ -87,6 +95,7 @@ static shb_status find_pressure(const mesh_blade *blade, const mesh_frame *frame
   for (int i = 0; i < n; i++) {
     double edge = 0.1 * (top - bottom), gap = 0;
     if (faces[i].low > bottom + edge || faces[i].high < top - edge) continue;
+    if (faces[i].width > 2 * greatest_chord(blade)) continue;
     SHB_TRY(distance_to(frame, faces[i].tag, outline.pressure[MESH_AIRFOIL_POINTS / 2], &gap));
     if (gap < best) {
       best = gap;

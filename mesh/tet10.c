@@ -55,6 +55,40 @@ double mesh_tet10_jacobian(const mesh_fe *mesh, int element) {
   return least(mesh, element, dN);
 }
 
+int mesh_tet10_inverted(const mesh_fe *mesh) {
+  double dN[POINTS][10][3];
+  int    bad = 0;
+  points(dN);
+  for (int e = 0; e < mesh->n_elements; e++) bad += !(least(mesh, e, dN) > 0);
+  return bad;
+}
+
+/* Straighten the six edges of an element; number of nodes that moved. */
+static int straighten_edges(mesh_fe *mesh, int element, char *moved) {
+  const int *node = mesh->connectivity + 10 * (size_t)element;
+  int        n    = 0;
+  for (int e = 0; e < 6; e++) {
+    const double *a = mesh->coordinates + 3 * (size_t)node[mesh_tet10_edge[e][0]];
+    const double *b = mesh->coordinates + 3 * (size_t)node[mesh_tet10_edge[e][1]];
+    double       *m = mesh->coordinates + 3 * (size_t)node[4 + e];
+    if (moved[node[4 + e]]) continue;
+    for (int d = 0; d < 3; d++) m[d] = (a[d] + b[d]) / 2;
+    moved[node[4 + e]] = 1;
+    n++;
+  }
+  return n;
+}
+
+void mesh_tet10_straighten(mesh_fe *mesh, char *moved) {
+  double dN[POINTS][10][3];
+  points(dN);
+  for (int again = 1; again;) {
+    again = 0;
+    for (int e = 0; e < mesh->n_elements; e++)
+      if (!(least(mesh, e, dN) > 0)) again += straighten_edges(mesh, e, moved);
+  }
+}
+
 shb_status mesh_tet10_check(const mesh_fe *mesh, const char *name) {
   double dN[POINTS][10][3];
   points(dN);
