@@ -84,16 +84,24 @@ hid_t h5_text_type(void) {
   return type;
 }
 
-/* Closing the file closes every object left open in it. */
+/* Closing the file closes every object left open in it. The format of HDF5 1.8: the one before it ends an
+ * attribute at 64 kB, and with it the list of datasets that a dimension scale labels, at 4085. */
 static hid_t access_list(bool in_memory) {
   hid_t list = H5Pcreate(H5P_FILE_ACCESS);
   if (list < 0) return list;
   if (H5Pset_fclose_degree(list, H5F_CLOSE_STRONG) < 0 ||
-      (in_memory && H5Pset_fapl_core(list, GROWTH, 0) < 0)) {
+      (in_memory && (H5Pset_fapl_core(list, GROWTH, 0) < 0 ||
+                     H5Pset_libver_bounds(list, H5F_LIBVER_V18, H5F_LIBVER_V18) < 0))) {
     H5Pclose(list);
     return -1;
   }
   return list;
+}
+
+/* Never a device such as /dev/null. */
+static void remove_file(const char *path) {
+  struct stat info;
+  if (lstat(path, &info) == 0 && S_ISREG(info.st_mode)) unlink(path);
 }
 
 static shb_status write_failed(const char *path, int why) {
@@ -118,7 +126,7 @@ shb_status h5_create(const char *path, hid_t *file) {
       char reason[H5_LABEL];
       h5_reason(reason, sizeof reason);
       H5Pclose(list);
-      unlink(path);
+      remove_file(path);
       SHB_FAIL(SHB_ERR_IO, "%s: cannot be created: %s", path, reason);
     }
     H5Pclose(list);
@@ -138,15 +146,22 @@ static shb_status open_failed(const char *path) {
   SHB_FAIL(SHB_ERR_IO, "%s: is damaged or truncated (%s); write or copy it again", path, reason);
 }
 
+static shb_status check_readable(const char *path) {
+  struct stat info;
+  int         fd = open(path, O_RDONLY | O_NONBLOCK); /* not to wait for a pipe's writer */
+  SHB_CHECK(fd >= 0, SHB_ERR_IO, "%s: cannot be opened: %s", path, strerror(errno));
+  bool known = fstat(fd, &info) == 0;
+  close(fd);
+  SHB_CHECK(known && S_ISREG(info.st_mode), SHB_ERR_IO, "%s: is not a file", path);
+  SHB_CHECK(info.st_size > 0, SHB_ERR_IO, "%s: is empty, not an HDF5 file", path);
+  SHB_CHECK(H5Fis_hdf5(path) > 0, SHB_ERR_IO, "%s: is not an HDF5 file", path);
+  return SHB_OK;
+}
+
 shb_status h5_open(const char *path, hid_t *file) {
   *file = H5I_INVALID_HID;
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
-  struct stat info;
-  SHB_CHECK(stat(path, &info) == 0, SHB_ERR_IO, "%s: cannot be opened: %s", path, strerror(errno));
-  SHB_CHECK(S_ISREG(info.st_mode), SHB_ERR_IO, "%s: is not a file", path);
-  SHB_CHECK(access(path, R_OK) == 0, SHB_ERR_IO, "%s: cannot be opened: %s", path, strerror(errno));
-  SHB_CHECK(info.st_size > 0, SHB_ERR_IO, "%s: is empty, not an HDF5 file", path);
-  SHB_CHECK(H5Fis_hdf5(path) > 0, SHB_ERR_IO, "%s: is not an HDF5 file", path);
+  SHB_TRY(check_readable(path));
   hid_t list = access_list(false);
   SHB_CHECK(list >= 0, SHB_ERR_IO, "%s: cannot be opened: HDF5 failed to start", path);
   *file             = H5Fopen(path, H5F_ACC_RDONLY, list);
@@ -172,7 +187,7 @@ static int write_all(const char *path, const char *data, size_t size) {
     }
   }
   if (close(fd) != 0 && !why) why = errno;
-  if (why) unlink(path);
+  if (why) remove_file(path);
   return why;
 }
 
@@ -205,5 +220,5 @@ void h5_abandon(hid_t file) {
   bool     ours   = H5Fget_name(file, path, sizeof path) > 0 && H5Fget_intent(file, &intent) >= 0 &&
               (intent & H5F_ACC_RDWR);
   H5Fclose(file);
-  if (ours) unlink(path);
+  if (ours) remove_file(path);
 }

@@ -312,7 +312,7 @@ static char **split_variable(char *const *raw, int n) {
 /* Text of either kind; the character set of memory must be the file's (HDF5 does not convert). */
 static shb_status read_text(const source *from, hid_t stored, int n, char ***text) {
   bool  variable = H5Tis_variable_str(stored) > 0;
-  hid_t type     = h5_text_type();
+  hid_t type     = variable ? h5_text_type() : H5Tcopy(H5T_C_S1);
   if (type >= 0 && (H5Tset_cset(type, H5Tget_cset(stored)) < 0 ||
                     (!variable && H5Tset_size(type, H5Tget_size(stored) + 1) < 0))) {
     H5Tclose(type);

@@ -2,6 +2,7 @@ shb_test(modal h5 fast shb_model)
 
 shb_test(modal eigen slow tests_fem shb_modal)
 shb_test(modal interface fast tests_fem shb_modal)
+shb_test(modal stage fast tests_fem shb_modal)
 shb_test(modal condense slow tests_fem shb_modal PkgConfig::LAPACKE)
 
 # The same program on 1, 2 and 3 ranks.
