@@ -83,7 +83,7 @@ static void list_block(case_keys keys, const char *block, char *text, size_t siz
 
 bool case_key_nearest(case_keys keys, const char *block, const char *word, char *best) {
   char part[CASE_LONGEST_WORD];
-  int  least = 2 + (int)strlen(word) / 3;
+  int  least = strlen(word) < 6 ? 2 : 1 + (int)strlen(word) / 3;
   best[0]    = '\0';
   for (int i = 0; i < keys.n; i++) {
     if (!next_part(keys.key[i].path, block, part)) continue;

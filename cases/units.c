@@ -141,8 +141,8 @@ static void not_a_number(const char *text, const char *unit, char why[CASE_WHY])
       return;
     }
   }
-  snprintf(why, CASE_WHY, "'%.80s' is not a number; expected %s%s%s", text,
-           *unit ? "a number in " : "a number", unit, *unit ? " or with a unit" : "");
+  snprintf(why, CASE_WHY, "'%.80s' is not a number; expected %s%s", text,
+           *unit ? "a number in " : "a number", unit);
 }
 
 /* mantissa * 10^power through one decimal conversion, so that prefixes do not round. */
