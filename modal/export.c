@@ -63,33 +63,41 @@ shb_status modal_export_contact(hid_t file, const modal_interface *interface) {
   return status;
 }
 
-static shb_status write_receptance(hid_t file, const modal_model *model, double top, int n,
-                                   double *frequency, double complex *value) {
-  for (int f = 0; f < SAMPLES; f++) {
-    frequency[f] = top * f / (SAMPLES - 1);
-    modal_receptance(model, 6.28318530717958647692 * frequency[f],
-                     value + (size_t)f * (size_t)n * (size_t)n);
-  }
-  SHB_TRY(h5_write_double(file, "receptance/frequency", H5_SHAPE(SAMPLES), frequency, "Hz",
-                          "frequency"));
-  SHB_TRY(h5_write_complex(file, "receptance/contact", H5_SHAPE(SAMPLES, (hsize_t)n, (hsize_t)n),
-                           value, "m/N",
-                           "receptance of the contact dofs (right then left, pair, axis), damped, "
-                           "with residual terms"));
-  return h5_attach_scale(file, "receptance/contact", 0, "receptance/frequency");
+static int compare(const void *a, const void *b) {
+  const double *p = a, *q = b;
+  return (*p > *q) - (*p < *q);
 }
 
-shb_status modal_export_receptance(hid_t file, const modal_model *model, double band) {
+static shb_status write_receptance(hid_t file, const modal_model *model, int n, double *frequency,
+                                   double complex *value) {
+  const int    m = model->n_modes, count = SAMPLES + m;
+  const double top = 1.1 * model->frequency[m - 1];
+  for (int f = 0; f < SAMPLES; f++) frequency[f] = top * f / (SAMPLES - 1);
+  memcpy(frequency + SAMPLES, model->frequency, (size_t)m * sizeof *frequency);
+  qsort(frequency, (size_t)count, sizeof *frequency, compare);
+  for (int f = 0; f < count; f++)
+    modal_receptance(model, 6.28318530717958647692 * frequency[f],
+                     value + (size_t)f * (size_t)n * (size_t)n);
+  SHB_TRY(h5_write_double(file, "receptance/frequency", H5_SHAPE((hsize_t)count), frequency, "Hz",
+                          "frequency"));
+  SHB_TRY(h5_write_complex(file, "receptance/contact",
+                           H5_SHAPE((hsize_t)count, (hsize_t)n, (hsize_t)n), value, "m/N",
+                           "receptance of the contact dofs, damped, with residual terms"));
+  SHB_TRY(h5_attach_scale(file, "receptance/contact", 0, "receptance/frequency"));
+  SHB_TRY(h5_attach_scale(file, "receptance/contact", 1, "contact/dof"));
+  return h5_attach_scale(file, "receptance/contact", 2, "contact/dof");
+}
+
+shb_status modal_export_receptance(hid_t file, const modal_model *model) {
   const int    n     = 3 * model->n_pairs * (model->has_left ? 2 : 1);
-  const size_t count = (size_t)SAMPLES * (size_t)n * (size_t)n;
+  const size_t steps = (size_t)(SAMPLES + model->n_modes), count = steps * (size_t)n * (size_t)n;
   if (count * sizeof(double complex) > MAX_BYTES) return SHB_OK;
-  double          top       = 1.2 * (band > 0 ? band : model->frequency[model->n_modes - 1]);
-  double         *frequency = malloc(SAMPLES * sizeof *frequency);
+  double         *frequency = malloc(steps * sizeof *frequency);
   double complex *value     = malloc(count * sizeof *value + 1);
   shb_status      status    = SHB_OK;
   if (!frequency || !value)
     status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for the receptance");
-  if (status == SHB_OK) status = write_receptance(file, model, top, n, frequency, value);
+  if (status == SHB_OK) status = write_receptance(file, model, n, frequency, value);
   free(frequency);
   free(value);
   return status;

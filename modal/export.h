@@ -17,9 +17,9 @@ shb_status modal_export_shapes(hid_t file, int n_modes, int n_nodes, const doubl
  * /contact/coordinates [side][pair][3]. */
 shb_status modal_export_contact(hid_t file, const modal_interface *interface);
 
-/* Writes /receptance/frequency [201] Hz, 0 to 1.2 band, and /receptance/contact [201][n_contact][n_contact];
- * nothing when that would exceed 64 MB. */
-shb_status modal_export_receptance(hid_t file, const modal_model *model, double band);
+/* Writes /receptance/frequency [201 + m] Hz, even steps from 0 to 1.1 times the highest mode and the modes' own, and
+ * /receptance/contact [201 + m][n_contact][n_contact]; nothing when that would exceed 64 MB. */
+shb_status modal_export_receptance(hid_t file, const modal_model *model);
 
 /* Writes /VTKHDF, an UnstructuredGrid of quadratic tetrahedra whose points are a link to /mesh/nodes and whose point
  * data mode_001, ... are views of /modes/shape, which must be there.

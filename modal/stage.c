@@ -143,23 +143,23 @@ static shb_status gather_shapes(const modal_result *result, int rank, double **s
 }
 
 static shb_status write_all(hid_t file, const mesh_fe *mesh, const modal_result *result,
-                            const double *shape, double band, const shb_provenance *provenance) {
+                            const double *shape, const shb_provenance *provenance) {
   SHB_TRY(modal_model_write(file, &result->model, provenance));
   SHB_TRY(modal_export_mesh(file, mesh));
   SHB_TRY(modal_export_shapes(file, result->model.n_modes, mesh->n_nodes, shape));
   SHB_TRY(modal_export_contact(file, &result->interface));
-  SHB_TRY(modal_export_receptance(file, &result->model, band));
+  SHB_TRY(modal_export_receptance(file, &result->model));
   return modal_export_vtk(file, mesh, result->model.n_modes);
 }
 
 static shb_status publish(const char *path, const mesh_fe *mesh, const modal_result *result,
-                          const double *shape, double band, const shb_provenance *provenance) {
+                          const double *shape, const shb_provenance *provenance) {
   char *temporary = shb_publish_temporary(path);
   SHB_CHECK(temporary, SHB_ERR_IO, "out of memory");
   hid_t      file   = -1;
   shb_status status = h5_create(temporary, &file);
   if (status == SHB_OK) {
-    status            = write_all(file, mesh, result, shape, band, provenance);
+    status            = write_all(file, mesh, result, shape, provenance);
     shb_status closed = h5_close(file);
     if (status == SHB_OK) status = closed;
     if (status == SHB_OK)
@@ -187,9 +187,8 @@ static shb_status run(MPI_Comm comm, int rank, const char *out_path, const mesh_
   if (status == SHB_OK) status = gather_shapes(&result, rank, &shape);
   if (status == SHB_OK) {
     shb_progress_show(progress, 96, "writing %s", out_path);
-    shb_status mine =
-        rank != 0 ? SHB_OK : publish(out_path, mesh, &result, shape, settings->band, provenance);
-    status = agree(comm, mine);
+    shb_status mine = rank != 0 ? SHB_OK : publish(out_path, mesh, &result, shape, provenance);
+    status          = agree(comm, mine);
     shb_progress_note(progress, "wrote %s in %.2f s", out_path, shb_seconds() - begun);
   }
   free(shape);

@@ -29,7 +29,6 @@ typedef struct {
   bool               to_ground;
   int                points;    /* contact patches, 0: one a node */
   const double      *psi, *phi; /* rad, to be checked against the faces; NULL: not given */
-  double             band;      /* Hz, top of the band of interest; 0: the highest mode */
 } modal_settings;
 
 /* All that the stage computed. model is the same on every rank. */

@@ -91,8 +91,10 @@ static shb_status write_view(hid_t data, int mode, hsize_t n_modes, hsize_t n_no
   return status;
 }
 
-static shb_status write_point_data(hid_t group, int n_modes, int n_nodes) {
-  hid_t data = H5Gcreate2(group, "PointData", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+static shb_status write_point_data(hid_t file, int n_modes, int n_nodes) {
+  /* views came with HDF5 1.10; files are made for 1.8 otherwise */
+  if (H5Fset_libver_bounds(file, H5F_LIBVER_V18, H5F_LIBVER_LATEST) < 0) return failed("PointData");
+  hid_t data = H5Gcreate2(file, "VTKHDF/PointData", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
   if (data < 0) return failed("PointData");
   shb_status status = SHB_OK;
   for (int i = 0; status == SHB_OK && i < n_modes; i++)
@@ -101,21 +103,48 @@ static shb_status write_point_data(hid_t group, int n_modes, int n_nodes) {
   return status;
 }
 
-static shb_status write_group(hid_t group, const mesh_fe *mesh, int n_modes) {
+static shb_status describe_one(hid_t group, const char *path, const char *units,
+                               const char *long_name) {
+  SHB_TRY(h5_write_attribute_text(group, path, "units", units));
+  return h5_write_attribute_text(group, path, "long_name", long_name);
+}
+
+/* Points is a link: /mesh/nodes describes itself. */
+static shb_status describe(hid_t group, int n_modes) {
+  static const char *const text[][2] = {
+      {"NumberOfPoints", "nodes"},
+      {"NumberOfCells", "elements"},
+      {"NumberOfConnectivityIds", "entries of Connectivity"},
+      {"Connectivity", "nodes of each quadratic tetrahedron, from 0, VTK order"},
+      {"Offsets", "start of each element in Connectivity"},
+      {"Types", "VTK cell types"},
+  };
+  for (size_t i = 0; i < sizeof text / sizeof *text; i++)
+    SHB_TRY(describe_one(group, text[i][0], "-", text[i][1]));
+  for (int i = 0; i < n_modes; i++) {
+    char path[48];
+    snprintf(path, sizeof path, "PointData/mode_%03d", i + 1);
+    SHB_TRY(describe_one(group, path, "kg^-1/2", "mode shape, a view of /modes/shape"));
+  }
+  return SHB_OK;
+}
+
+static shb_status write_group(hid_t group, const mesh_fe *mesh) {
   SHB_TRY(write_header(group));
   SHB_TRY(write_count(group, "NumberOfPoints", mesh->n_nodes));
   SHB_TRY(write_count(group, "NumberOfCells", mesh->n_elements));
   SHB_TRY(write_count(group, "NumberOfConnectivityIds", 10LL * mesh->n_elements));
   if (H5Lcreate_soft("/mesh/nodes", group, "Points", H5P_DEFAULT, H5P_DEFAULT) < 0)
     return failed("Points");
-  SHB_TRY(write_cells(group, mesh));
-  return write_point_data(group, n_modes, mesh->n_nodes);
+  return write_cells(group, mesh);
 }
 
 shb_status modal_export_vtk(hid_t file, const mesh_fe *mesh, int n_modes) {
   hid_t group = H5Gcreate2(file, "VTKHDF", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
   if (group < 0) return failed("");
-  shb_status status = write_group(group, mesh, n_modes);
+  shb_status status = write_group(group, mesh);
+  if (status == SHB_OK) status = write_point_data(file, n_modes, mesh->n_nodes);
+  if (status == SHB_OK) status = describe(group, n_modes);
   H5Gclose(group);
   return status;
 }

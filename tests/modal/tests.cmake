@@ -14,3 +14,4 @@ foreach(ranks 1 2 3)
   set_tests_properties(modal.ranks_${ranks} PROPERTIES LABELS fast TIMEOUT 600 PROCESSORS 2
     ENVIRONMENT "OMPI_ALLOW_RUN_AS_ROOT=1;OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1")
 endforeach()
+shb_test(modal model fast shb_model)

@@ -1,0 +1,206 @@
+/* The whole stage: a mesh file in, a complete modal file out; nothing touched when it fails. */
+#include <math.h>
+
+#include "fem/surface.h"
+#include "modal/receptance.h"
+#include "modal/session.h"
+#include "modal/stage.h"
+#include "tests/fem/support.h"
+#include "tests/mesh/box.h"
+#include "tests/modal/files.h"
+
+enum { BLADES = 23 };
+
+static const double      size[3] = {.04, 1, .12}, inner = .1;
+static const int         cells[3] = {2, 2, 4};
+static const modal_probe probe[2] = {{"tip", {.04, .0, .22}}, {"middle", {0, .01, .16}}};
+
+static modal_settings default_settings(void) {
+  return (modal_settings){
+      .material = steel,
+      .axis     = MESH_AXIS_X,
+      .blades   = BLADES,
+      .modes    = 8,
+      .damping  = .002,
+      .load     = {.kind = FEM_LOAD_PRESSURE, .pressure = 200, .n_harmonics = 1, .factor = {0, 1}},
+      .n_probes = 2,
+      .probe    = probe,
+      .points   = 2,
+  };
+}
+
+static const shb_provenance provenance = {"case.yaml", "name: case\n", "modal.modes = 8\n",
+                                          "shroudhb-modal"};
+
+/* Write the sector as a .msh, with the two sides exchanged if swap: the stage must turn them round. */
+static void write_mesh(const char *path, bool swap) {
+  mesh_fe mesh = make_sector(size, inner, BLADES, cells);
+  if (swap) {
+    mesh_face_set right          = mesh.set[MESH_CONTACT_RIGHT];
+    mesh.set[MESH_CONTACT_RIGHT] = mesh.set[MESH_CONTACT_LEFT];
+    mesh.set[MESH_CONTACT_LEFT]  = right;
+  }
+  assert_int_equal(box_write(&mesh, path), SHB_OK);
+  mesh_fe_free(&mesh);
+}
+
+static void file_is_complete(void **state) {
+  (void)state;
+  modal_settings settings = default_settings();
+  modal_model    model;
+  char           mesh[512], out[512];
+  snprintf(mesh, sizeof mesh, "%s", scratch("sector.msh"));
+  snprintf(out, sizeof out, "%s", scratch("sector.modal.h5"));
+  write_mesh(mesh, false);
+  assert_ok(modal_stage(PETSC_COMM_WORLD, mesh, out, &settings, &provenance, NULL));
+  assert_int_equal(files_in_scratch(), 2); /* no temporary left */
+  assert_ok(modal_model_read(out, &model));
+  assert_int_equal(model.n_modes, 8);
+  assert_int_equal(model.n_pairs, 2);
+  assert_true(model.has_left);
+  assert_int_equal(model.n_probes, 2);
+  assert_int_equal(model.n_load, 1);
+  assert_string_equal(model.probe_name[1], "middle");
+  assert_true(model.residual_flexibility && model.residual_inertia && model.load_residual);
+  assert_true(model.probe_contact_residual && model.probe_load_residual && model.normal);
+  for (int i = 0; i < 8; i++) check_below(model.mode_residual[i], 1e-9, "mode residual");
+  modal_model_free(&model);
+  assert_true(assert_described(out) >= 30);
+}
+
+/* /VTKHDF: what ParaView reads; mode_00i is /modes/shape[i]. */
+static void vtk_group_shows_the_modes(void **state) {
+  (void)state;
+  hid_t    file;
+  h5_shape all = {3, {8, 0, 3}}, one = {2, {0, 3}}, nodes = {2, {0, 3}}, points = {2, {0, 3}};
+  h5_shape cells_shape = {2, {0, 10}}, flat = {1, {0}}, types = {1, {0}};
+  double  *shape, *mode, *coordinates, *linked;
+  int     *gmsh, *vtk, *type;
+  char    *text;
+  assert_ok(h5_open(scratch("sector.modal.h5"), &file));
+  assert_ok(h5_read_double(file, "/modes/shape", &all, &shape));
+  assert_ok(h5_read_double(file, "/VTKHDF/PointData/mode_003", &one, &mode));
+  assert_ok(h5_read_double(file, "/mesh/nodes", &nodes, &coordinates));
+  assert_ok(h5_read_double(file, "/VTKHDF/Points", &points, &linked));
+  assert_int_equal(one.dim[0], all.dim[1]);
+  assert_int_equal(points.dim[0], all.dim[1]);
+  double largest = 0;
+  for (size_t i = 0; i < 3 * one.dim[0]; i++) {
+    assert_true(mode[i] == shape[2 * 3 * one.dim[0] + i]);
+    assert_true(coordinates[i] == linked[i]);
+    largest = fmax(largest, fabs(mode[i]));
+  }
+  assert_true(largest > .1);
+  assert_ok(h5_read_int(file, "/mesh/connectivity", &cells_shape, &gmsh));
+  assert_ok(h5_read_int(file, "/VTKHDF/Connectivity", &flat, &vtk));
+  assert_ok(h5_read_int(file, "/VTKHDF/Types", &types, &type));
+  assert_int_equal(flat.dim[0], 10 * cells_shape.dim[0]);
+  assert_int_equal(types.dim[0], cells_shape.dim[0]);
+  for (size_t e = 0; e < cells_shape.dim[0]; e++) {
+    assert_int_equal(type[e], 24);
+    for (size_t i = 0; i < 8; i++) assert_int_equal(vtk[10 * e + i], gmsh[10 * e + i]);
+    assert_int_equal(vtk[10 * e + 8], gmsh[10 * e + 9]);
+    assert_int_equal(vtk[10 * e + 9], gmsh[10 * e + 8]);
+  }
+  assert_ok(h5_read_attribute_text(file, "/VTKHDF", "Type", &text));
+  assert_string_equal(text, "UnstructuredGrid");
+  free(text);
+  assert_ok(h5_close(file));
+  free(shape), free(mode), free(coordinates), free(linked), free(gmsh), free(vtk), free(type);
+}
+
+/* The sampled receptance is the model's own. */
+static void receptance_is_sampled(void **state) {
+  (void)state;
+  hid_t           file;
+  h5_shape        steps = {1, {0}}, shape = {3, {0, 12, 12}};
+  double         *frequency;
+  double complex *value, at[12 * 12];
+  modal_model     model;
+  assert_ok(modal_model_read(scratch("sector.modal.h5"), &model));
+  assert_ok(h5_open(scratch("sector.modal.h5"), &file));
+  assert_ok(h5_read_double(file, "/receptance/frequency", &steps, &frequency));
+  assert_ok(h5_read_complex(file, "/receptance/contact", &shape, &value));
+  assert_ok(h5_close(file));
+  assert_int_equal(steps.dim[0], 201 + 8);
+  assert_true(frequency[0] == 0 && frequency[208] > model.frequency[7]);
+  modal_receptance(&model, 6.283185307179586 * frequency[77], at);
+  for (int i = 0; i < 144; i++)
+    check_below(cabs(value[77 * 144 + i] - at[i]), 1e-12 * cabs(at[0]), "sampled receptance");
+  free(frequency);
+  free(value);
+  modal_model_free(&model);
+}
+
+/* Sides named the other way round give the same model. */
+static void sides_are_turned_round(void **state) {
+  (void)state;
+  modal_settings settings = default_settings();
+  modal_model    a, b;
+  write_mesh(scratch("swapped.msh"), true);
+  assert_ok(modal_stage(PETSC_COMM_WORLD, scratch("swapped.msh"), scratch("swapped.modal.h5"),
+                        &settings, &provenance, NULL));
+  assert_ok(modal_model_read(scratch("sector.modal.h5"), &a));
+  assert_ok(modal_model_read(scratch("swapped.modal.h5"), &b));
+  for (int i = 0; i < 2 * 3 * 8; i++) {
+    check_below(a.right[i] - b.right[i], 1e-6, "right shape");
+    check_below(a.left[i] - b.left[i], 1e-6, "left shape");
+  }
+  modal_model_free(&a);
+  modal_model_free(&b);
+  unlink(scratch("swapped.msh"));
+  unlink(scratch("swapped.modal.h5"));
+}
+
+static void refused(const modal_settings *settings, const char *mesh, shb_status code,
+                    const char *text) {
+  char before[17], after[17], out[512];
+  snprintf(out, sizeof out, "%s", scratch("sector.modal.h5"));
+  assert_ok(shb_fingerprint(out, before));
+  assert_refused(modal_stage(PETSC_COMM_WORLD, scratch(mesh), out, settings, &provenance, NULL),
+                 code, text);
+  assert_ok(shb_fingerprint(out, after));
+  assert_string_equal(before, after);
+  assert_int_equal(files_in_scratch(), 2);
+}
+
+static void failures_leave_the_file_alone(void **state) {
+  (void)state;
+  const double   psi      = .6;
+  modal_settings settings = default_settings();
+  refused(&settings, "missing.msh", SHB_ERR_IO, "missing.msh");
+  settings.speed = 314;
+  refused(&settings, "sector.msh", SHB_ERR_INPUT, "rotor.speed");
+  settings        = default_settings();
+  settings.blades = 24;
+  refused(&settings, "sector.msh", SHB_ERR_INPUT, "contact");
+  settings     = default_settings();
+  settings.psi = &psi;
+  refused(&settings, "sector.msh", SHB_ERR_INPUT, "contact.psi: 34.38 deg given");
+  settings        = default_settings();
+  settings.points = 17;
+  refused(&settings, "sector.msh", SHB_ERR_INPUT, "17 patches");
+  settings       = default_settings();
+  settings.modes = 100000;
+  refused(&settings, "sector.msh", SHB_ERR_INPUT, "modal.modes: 100000");
+  settings           = default_settings();
+  settings.load.kind = FEM_LOAD_FORCE;
+  settings.n_probes  = 0;
+  refused(&settings, "sector.msh", SHB_ERR_INPUT, "excitation.force");
+}
+
+int main(int argc, char **argv) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(file_is_complete),
+      cmocka_unit_test(vtk_group_shows_the_modes),
+      cmocka_unit_test(receptance_is_sampled),
+      cmocka_unit_test(sides_are_turned_round),
+      cmocka_unit_test(failures_leave_the_file_alone),
+  };
+  modal_session session;
+  if (modal_session_start(&argc, &argv, &session) != SHB_OK) return 1;
+  int failures  = cmocka_run_group_tests(tests, scratch_make, scratch_remove);
+  session.fault = false;
+  modal_session_end(&session, SHB_OK);
+  return failures;
+}
