@@ -1,0 +1,99 @@
+/* shroudhb-mesh: mesh the parametric blade of a case, or check the mesh file that it names. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cases/case.h"
+#include "cases/command.h"
+#include "mesh/blade.h"
+#include "mesh/fe_mesh.h"
+#include "mesh/progress.h"
+#include "mesh/provenance.h"
+
+static const char usage[] =
+    "usage: shroudhb-mesh [--quiet] [--verbose] [--force] CASE.yaml\n"
+    "\n"
+    "Meshes the blade of mesh.blade with gmsh (ten-node tetrahedra) and writes NAME.msh with the\n"
+    "groups root, contact_right, contact_left and load; does nothing if that file is up to date\n"
+    "(unless --force). With mesh.file instead: checks that mesh's elements, groups and contact "
+    "faces.\n";
+
+static shb_status check_contact(const case_file *file, mesh_fe *mesh, int *pairs) {
+  int *right = NULL, *left = NULL;
+  if (file->mhb.to_ground) {
+    SHB_CHECK(mesh->set[MESH_CONTACT_RIGHT].n, SHB_ERR_INPUT,
+              "group contact_right is absent or empty; contact to ground needs it");
+    return SHB_OK;
+  }
+  SHB_TRY(mesh_fe_orient(mesh, file->axis));
+  SHB_TRY(mesh_fe_match(mesh, file->axis, file->blades, pairs, &right, &left));
+  free(right);
+  free(left);
+  return SHB_OK;
+}
+
+/* The mesh brought by the case: readable, whole, and fit for its contact. */
+static shb_status check_file(const case_file *file, shb_progress *progress) {
+  mesh_fe mesh;
+  int     pairs = 0;
+  SHB_TRY(mesh_fe_read(file->mesh_file, &mesh));
+  shb_status status = check_contact(file, &mesh, &pairs);
+  if (status != SHB_OK)
+    status = shb_fail(status, __FILE__, __LINE__, "%s: %s", file->mesh_file, shb_message());
+  if (status == SHB_OK)
+    shb_progress_note(progress,
+                      "%s is sound: %d nodes, %d elements, %d contact node pairs, %d load faces",
+                      file->mesh_file, mesh.n_nodes, mesh.n_elements, pairs, mesh.set[MESH_LOAD].n);
+  mesh_fe_free(&mesh);
+  return status;
+}
+
+static bool up_to_date(const char *path, const char *settings) {
+  char *found = NULL;
+  if (access(path, R_OK) != 0 || mesh_settings_read(path, &found) != SHB_OK) return false;
+  bool same = strcmp(found, settings) == 0;
+  free(found);
+  return same;
+}
+
+static shb_status make(const case_file *file, const command_options *options,
+                       shb_progress *progress) {
+  char      *output = case_output(file, ".msh"), *settings = case_settings(file, CASE_MESH);
+  shb_status status = SHB_OK;
+  if (!output || !settings) {
+    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  } else if (!options->force && up_to_date(output, settings)) {
+    shb_progress_note(progress, "%s is up to date", output);
+  } else {
+    shb_provenance provenance = command_provenance(file, settings, "shroudhb-mesh");
+    status                    = mesh_blade_write(&file->blade, output, &provenance, progress);
+  }
+  free(output);
+  free(settings);
+  return status;
+}
+
+static shb_status run(const case_file *file, const command_options *options) {
+  shb_progress progress = shb_progress_start("mesh", options->quiet, options->verbose);
+  if (file->modal_file) {
+    shb_progress_note(&progress, "modal.file is given: nothing to mesh");
+    return SHB_OK;
+  }
+  shb_status status =
+      file->mesh_file ? check_file(file, &progress) : make(file, options, &progress);
+  shb_progress_note(&progress, "%.2f s in all", shb_seconds() - progress.started);
+  return status;
+}
+
+int main(int argc, char **argv) {
+  command_options options;
+  case_file       file;
+  int             code = command_parse(argc, argv, usage, &options);
+  if (code >= 0) return code;
+  if ((code = case_read(options.path, CASE_MESH, stderr, &file)) != SHB_OK) return code;
+  shb_interrupt_catch();
+  shb_status status = run(&file, &options);
+  case_free(&file);
+  return command_finish(status);
+}
