@@ -1,0 +1,49 @@
+# Debian packages that shroudhb needs, and how they come onto the machine. Sourced by quickstart.sh, tests/run.sh
+# and .ci/run; defines functions only. POSIX sh.
+
+packages_build="gcc cmake ninja-build pkg-config git
+libgmsh-dev libpetsc-real-dev libslepc-real-dev libhdf5-openmpi-dev libfftw3-dev
+liblapacke-dev libopenblas-dev libyaml-dev libcmocka-dev openmpi-bin"
+
+# the tests also look at files with other people's eyes
+packages_test="hdf5-tools python3-h5py"
+
+# packages_missing NAME...: those that are not installed, on one line
+packages_missing() {
+  for package in "$@"; do
+    dpkg-query -W -f='${db:Status-Status}\n' "$package" 2>/dev/null | grep -qx installed || printf '%s ' "$package"
+  done
+}
+
+# packages_install NAME...: install those that are missing. As an ordinary user who may not, says which they are
+# and returns 1. Touches neither the network nor the package lists when nothing is missing.
+packages_install() {
+  command -v dpkg-query >/dev/null || {
+    echo "shroudhb: this script installs Debian packages; on another system install the like of: $*" >&2
+    return 1
+  }
+  packages_wanted=$(packages_missing "$@")
+  [ -n "$packages_wanted" ] || return 0
+  packages_sudo=
+  if [ "$(id -u)" -ne 0 ]; then
+    packages_sudo='sudo -n'
+    if [ -t 0 ] && [ -z "${CI:-}" ]; then packages_sudo=sudo; fi # may ask for a password
+    if ! command -v sudo >/dev/null || ! $packages_sudo true 2>/dev/null; then
+      echo "shroudhb: these packages are missing, and installing them needs root or sudo:" >&2
+      echo "  apt-get install $packages_wanted" >&2
+      return 1
+    fi
+  fi
+  echo "installing: $packages_wanted"
+  $packages_sudo env DEBIAN_FRONTEND=noninteractive apt-get -qq update </dev/null &&
+    $packages_sudo env DEBIAN_FRONTEND=noninteractive apt-get -qq -y --no-install-recommends install \
+      $packages_wanted </dev/null >/dev/null || {
+    echo "shroudhb: apt-get could not install: $packages_wanted" >&2
+    return 1
+  }
+}
+
+# packages_build_release: configure and build in build/release of the current folder
+packages_build_release() {
+  cmake --preset release -Wno-dev >/dev/null && cmake --build --preset release
+}
