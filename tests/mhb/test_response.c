@@ -1,0 +1,350 @@
+/* The response file: exact round trip, growth, publishing that never harms an earlier result, faults by name. */
+#include <math.h>
+#include <signal.h>
+#include <sys/resource.h>
+
+#include "mesh/progress.h"
+#include "mhb/response.h"
+#include "tests/modal/files.h"
+
+#include <hdf5_hl.h>
+
+enum { PAIRS = 2, PROBES = 2, M = 3, K = M + 1 };
+
+static const shb_provenance from = {"case.yaml", "name: x\n", "mu = 0.3\n", "shroudhb-mhb"};
+
+static double value(int branch, int point, int array, int i) {
+  return sin(1 + 3.7 * branch + .31 * point + 17.3 * array + 2.385 * i);
+}
+
+static void fill_waves(double complex *to, int n, int branch, int point, int array) {
+  for (int i = 0; i < n; i++)
+    to[i] = value(branch, point, array, i) + I * value(branch, point, array + 1, i);
+}
+
+static void fill_point(mhb_response *response, int branch) {
+  int point;
+  assert_ok(mhb_response_point(response, branch, &point));
+  mhb_branch *b       = &response->branch[branch];
+  const int   contact = response->n_pairs * 3 * K, probes = response->n_probes * 3 * K;
+  b->frequency[point] = 90 + .01 * point;
+  b->n0[point]        = 100;
+  fill_waves(b->motion + point * contact, contact, branch, point, 1);
+  fill_waves(b->force + point * contact, contact, branch, point, 3);
+  if (probes) fill_waves(b->probe + point * probes, probes, branch, point, 5);
+  b->stable[point]  = point % 3 - 1;
+  b->special[point] = point % 3;
+  for (int i = 0; i < response->n_pairs * 3; i++)
+    b->state[point * response->n_pairs * 3 + i] = fabs(value(branch, point, 7, i));
+  for (int i = 0; i < response->n_pairs; i++)
+    b->dissipation[point * response->n_pairs + i] = value(branch, point, 8, i);
+  b->iterations[point]       = point % 7;
+  b->seconds[point]          = 1e-3 * point;
+  b->error_newton[point]     = 1e-12 * point;
+  b->error_truncation[point] = 1e-5 * point;
+  b->error_sampling[point]   = 1e-9 * point;
+  b->error_modal[point]      = 1e-4 * point;
+}
+
+static double *list(int n, double step) {
+  double *out = malloc((size_t)n * sizeof *out);
+  assert_non_null(out);
+  for (int i = 0; i < n; i++) out[i] = step * (i + 1);
+  return out;
+}
+
+static mhb_response *sample(int n_probes, int points) {
+  mhb_response *response = mhb_response_create(PAIRS, n_probes, M);
+  assert_non_null(response);
+  for (int i = 0; i < n_probes; i++) response->probe_name[i] = strdup(i ? "root" : "tip \xcf\x88");
+  response->engine_order   = 5;
+  response->blades         = 40;
+  response->psi            = .61;
+  response->phi            = -.2;
+  response->subharmonics   = 2;
+  response->n_modes        = 3;
+  response->mode_frequency = list(3, 103.25);
+  response->mode_damping   = list(3, .002);
+  response->mode_residual  = list(3, 1e-11);
+  for (int i = 0; i < 3; i++) {
+    int branch;
+    assert_ok(mhb_response_branch(response, (mhb_branch_kind)i, &branch));
+    assert_int_equal(branch, i);
+    for (int j = 0; j < (i == 1 ? 0 : points); j++) fill_point(response, i); /* the second: empty */
+  }
+  response->branch[0].reason   = strdup("end of range");
+  response->branch[0].complete = true;
+  response->branch[2].reason   = strdup("the step became too small at 98.2 Hz");
+  return response;
+}
+
+#define assert_same(a, b, member, count) \
+  assert_memory_equal((a)->member, (b)->member, (size_t)(count) * sizeof *(a)->member)
+
+static void assert_same_branch(const mhb_response *response, const mhb_branch *a,
+                               const mhb_branch *b) {
+  const int n = a->n_points, contact = n * PAIRS * 3 * K;
+  assert_int_equal(a->kind, b->kind);
+  assert_int_equal(a->complete, b->complete);
+  assert_string_equal(a->reason ? a->reason : "", b->reason);
+  assert_int_equal(n, b->n_points);
+  if (n == 0) return;
+  assert_same(a, b, frequency, n);
+  assert_same(a, b, n0, n);
+  assert_same(a, b, motion, contact);
+  assert_same(a, b, force, contact);
+  if (response->n_probes) assert_same(a, b, probe, n * response->n_probes * 3 * K);
+  assert_same(a, b, stable, n);
+  assert_same(a, b, special, n);
+  assert_same(a, b, state, n * PAIRS * 3);
+  assert_same(a, b, dissipation, n * PAIRS);
+  assert_same(a, b, iterations, n);
+  assert_same(a, b, seconds, n);
+  assert_same(a, b, error_newton, n);
+  assert_same(a, b, error_truncation, n);
+  assert_same(a, b, error_sampling, n);
+  assert_same(a, b, error_modal, n);
+}
+
+static void round_trip(int n_probes, int points) {
+  mhb_response *wrote = sample(n_probes, points), *read;
+  assert_ok(mhb_response_write(wrote, scratch("trip.h5"), &from));
+  assert_ok(mhb_response_read(scratch("trip.h5"), &read));
+  assert_int_equal(read->n_pairs, PAIRS);
+  assert_int_equal(read->n_probes, n_probes);
+  assert_int_equal(read->n_harmonics, M);
+  assert_int_equal(read->subharmonics, 2);
+  assert_int_equal(read->engine_order, 5);
+  assert_int_equal(read->blades, 40);
+  assert_true(read->psi == .61 && read->phi == -.2);
+  assert_int_equal(read->n_modes, 3);
+  assert_same(wrote, read, mode_frequency, 3);
+  assert_same(wrote, read, mode_damping, 3);
+  assert_same(wrote, read, mode_residual, 3);
+  for (int i = 0; i < n_probes; i++) assert_string_equal(wrote->probe_name[i], read->probe_name[i]);
+  assert_int_equal(read->n_branches, 3);
+  for (int i = 0; i < 3; i++) assert_same_branch(wrote, &wrote->branch[i], &read->branch[i]);
+  mhb_response_destroy(wrote);
+  mhb_response_destroy(read);
+}
+
+static void test_round_trip(void **state) {
+  (void)state;
+  round_trip(PROBES, 7);
+  round_trip(0, 7);
+  round_trip(PROBES, 0);
+}
+
+/* A file read back can be continued. */
+static void test_growth(void **state) {
+  (void)state;
+  mhb_response *response = sample(PROBES, 70), *read;
+  mhb_branch   *b        = &response->branch[0];
+  int           point;
+  assert_ok(mhb_response_point(response, 0, &point));
+  assert_int_equal(point, 70);
+  b = &response->branch[0];
+  for (int i = 0; i < PAIRS * 3 * K; i++) assert_true(b->motion[point * PAIRS * 3 * K + i] == 0);
+  assert_true(b->frequency[point] == 0 && b->stable[point] == 0 && b->seconds[point] == 0);
+  b->n_points--; /* taken back, and asked for again: zeroed again */
+  b->seconds[point] = 3;
+  assert_ok(mhb_response_point(response, 0, &point));
+  assert_true(response->branch[0].seconds[point] == 0);
+  response->branch[0].frequency[point] = 1;
+  assert_ok(mhb_response_write(response, scratch("grow.h5"), &from));
+  assert_ok(mhb_response_read(scratch("grow.h5"), &read));
+  fill_point(read, 0);
+  assert_int_equal(read->branch[0].n_points, 72);
+  assert_true(read->branch[0].frequency[69] == response->branch[0].frequency[69]);
+  mhb_response_destroy(read);
+  mhb_response_destroy(response);
+}
+
+static void test_described(void **state) {
+  (void)state;
+  mhb_response *response = sample(PROBES, 5);
+  assert_ok(mhb_response_write(response, scratch("described.h5"), &from));
+  assert_int_equal(assert_described(scratch("described.h5")), 3 * 15 + 3 + 6);
+  hid_t file;
+  char *text;
+  assert_ok(h5_open(scratch("described.h5"), &file));
+  assert_ok(h5_check_format(file, "shroudhb response", 1));
+  assert_ok(h5_read_attribute_text(file, "/branch_2", "reason", &text));
+  assert_string_equal(text, response->branch[2].reason);
+  free(text);
+  assert_ok(h5_read_attribute_text(file, "/", "settings", &text));
+  assert_string_equal(text, from.settings);
+  free(text);
+  hid_t motion    = H5Dopen2(file, "/branch_0/motion", H5P_DEFAULT);
+  hid_t frequency = H5Dopen2(file, "/branch_0/frequency", H5P_DEFAULT);
+  assert_int_equal(H5DSis_attached(motion, frequency, 0), 1);
+  for (unsigned i = 1; i < 4; i++) assert_int_equal(H5DSget_num_scales(motion, i), 1);
+  H5Dclose(motion);
+  H5Dclose(frequency);
+  assert_ok(h5_close(file));
+  mhb_response_destroy(response);
+}
+
+static shb_status read_only(const char *path) {
+  mhb_response *response;
+  shb_status    status = mhb_response_read(path, &response);
+  if (status == SHB_OK) mhb_response_destroy(response);
+  if (status != SHB_OK) assert_null(response);
+  return status;
+}
+
+static void test_truncated(void **state) {
+  (void)state;
+  mhb_response *response = sample(PROBES, 3);
+  assert_ok(mhb_response_write(response, scratch("whole.h5"), &from));
+  assert_prefixes_refused(scratch("whole.h5"), 211, read_only);
+  mhb_response_destroy(response);
+}
+
+/* Dataset path replaced by values of a shape (NULL: removed); the reader must say text. */
+typedef struct {
+  const char *path;
+  h5_shape    shape;
+  double      fill;
+  const char *text;
+} fault;
+
+static void check_fault(const fault *f) {
+  double data[200];
+  for (int i = 0; i < 200; i++) data[i] = f->fill;
+  hid_t file = H5Fopen(scratch("fault.h5"), H5F_ACC_RDWR, H5P_DEFAULT);
+  assert_true(file >= 0 && H5Ldelete(file, f->path, H5P_DEFAULT) >= 0);
+  if (f->shape.rank) assert_ok(h5_write_double(file, f->path, f->shape, data, "-", "replaced"));
+  H5Fclose(file);
+  assert_refused(read_only(scratch("fault.h5")), SHB_ERR_INPUT, f->text);
+}
+
+static void test_faults(void **state) {
+  (void)state;
+  static const fault faults[] = {
+      {"/pair", {0}, 0, "/pair is missing"},
+      {"/harmonic", {2, {2, 2}}, 1, "/pair and /harmonic must be lists"},
+      {"/branch_1", {0}, 0, "/branch_1 is missing"},
+      {"/branch_2", {1, {3}}, 0, "/branch_2 is not a readable group"},
+      {"/branch_0/frequency", {0}, 0, "/branch_0/frequency is missing"},
+      {"/branch_0/frequency", {1, {5}}, -1, "/branch_0/frequency: value 0 (from 0) is -1 Hz"},
+      {"/branch_0/frequency", {1, {4}}, 1, "/branch_0/n0 has shape [5] where [4] is wanted"},
+      {"/branch_0/frequency", {2, {5, 1}}, 1, "/branch_0/frequency must be a list"},
+      {"/branch_0/motion", {4, {5, 2, 3, 3}}, 1, "where [5, 2, 3, 4] is wanted"},
+      {"/branch_0/motion", {4, {5, 2, 3, 4}}, NAN, "/branch_0/motion: the value at [0, 0, 0, 0]"},
+      {"/branch_2/stable", {1, {5}}, 2, "/branch_2/stable: value 0 (from 0) is 2; 1, 0 or -1"},
+      {"/branch_2/stable", {1, {5}}, .5, "/branch_2/stable holds 0.5 where whole numbers"},
+      {"/branch_2/special", {1, {5}}, 3, "/branch_2/special: value 0 (from 0) is 3"},
+      {"/branch_2/error/modal", {0}, 0, "/branch_2/error/modal is missing"},
+      {"/branch_2/state", {3, {5, 3, 2}}, 0, "has shape [5, 3, 2] where [5, 2, 3] is wanted"},
+      {"/probe/name", {0}, 0, "/probe/name is missing"},
+      {"/modes/damping_ratio", {1, {2}}, 0, "has shape [2] where [3] is wanted"},
+  };
+  mhb_response *response = sample(PROBES, 5);
+  for (size_t i = 0; i < sizeof faults / sizeof *faults; i++) {
+    assert_ok(mhb_response_write(response, scratch("fault.h5"), &from));
+    check_fault(&faults[i]);
+  }
+  mhb_response_destroy(response);
+}
+
+static void test_attribute_faults(void **state) {
+  (void)state;
+  static const struct {
+    const char *group, *name, *value, *text;
+  } wrong[] = {{"/", "format", "shroudhb modal model", "is a \"shroudhb modal model\" file"},
+               {"/branch_0", "kind", "linear", "kind must be nonlinear, open or stuck"},
+               {"/branch_0", "complete", "yes", "/branch_0: attribute complete must be a number"},
+               {"/", "psi", "35 deg", "attribute psi must be a number"},
+               {"/", "branches", NULL, "attribute branches is missing"},
+               {"/branch_0", "kind", NULL, "kind must be nonlinear"}};
+  mhb_response *response = sample(PROBES, 5);
+  for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+    assert_ok(mhb_response_write(response, scratch("wrong.h5"), &from));
+    hid_t file = H5Fopen(scratch("wrong.h5"), H5F_ACC_RDWR, H5P_DEFAULT);
+    if (wrong[i].value) {
+      assert_ok(h5_write_attribute_text(file, wrong[i].group, wrong[i].name, wrong[i].value));
+    } else {
+      assert_true(H5Adelete_by_name(file, wrong[i].group, wrong[i].name, H5P_DEFAULT) >= 0);
+    }
+    H5Fclose(file);
+    assert_refused(read_only(scratch("wrong.h5")), SHB_ERR_INPUT, wrong[i].text);
+  }
+  mhb_response_destroy(response);
+}
+
+/* A write that fails leaves the earlier result and no temporary file. */
+static void test_earlier_result_untouched(void **state) {
+  (void)state;
+  mhb_response *response = sample(PROBES, 5), *large = sample(PROBES, 500);
+  size_t        size, size_after;
+  assert_ok(mhb_response_write(response, scratch("kept.h5"), &from));
+  char *before = slurp(scratch("kept.h5"), &size);
+  int   files  = files_in_scratch();
+  assert_refused(mhb_response_write(large, scratch("no/kept.h5"), &from), SHB_ERR_IO,
+                 "no/kept.h5: cannot be written: No such file");
+  struct rlimit limit, tight;
+  void (*handler)(int) = signal(SIGXFSZ, SIG_IGN);
+  getrlimit(RLIMIT_FSIZE, &limit);
+  tight          = limit;
+  tight.rlim_cur = 100000;
+  setrlimit(RLIMIT_FSIZE, &tight);
+  shb_status status = mhb_response_write(large, scratch("kept.h5"), &from);
+  setrlimit(RLIMIT_FSIZE, &limit);
+  signal(SIGXFSZ, handler);
+  assert_int_equal(status, SHB_ERR_IO);
+  assert_non_null(strstr(shb_message(), "kept.h5: cannot be written: File too large; the earlier"));
+  char *after = slurp(scratch("kept.h5"), &size_after);
+  assert_int_equal(size, size_after);
+  assert_memory_equal(before, after, size);
+  assert_int_equal(files_in_scratch(), files);
+  assert_ok(mhb_response_write(large, scratch("kept.h5"), &from)); /* and then it works */
+  free(before);
+  free(after);
+  mhb_response_destroy(response);
+  mhb_response_destroy(large);
+}
+
+/* Published every ten seconds of a run: 5000 points, and 300 branches, must cost far less than one of them. */
+static void test_quick(void **state) {
+  (void)state;
+  mhb_response *long_ = sample(PROBES, 2500), *many = sample(PROBES, 1);
+  for (int i = 0, branch; i < 300; i++) {
+    assert_ok(mhb_response_branch(many, MHB_BRANCH_NONLINEAR, &branch));
+    fill_point(many, branch);
+  }
+  double start = shb_seconds();
+  assert_ok(mhb_response_write(long_, scratch("long.h5"), &from));
+  double middle = shb_seconds();
+  assert_ok(mhb_response_write(many, scratch("many.h5"), &from));
+  double end = shb_seconds();
+  printf("5000 points %.1f ms, 303 branches %.1f ms\n", 1e3 * (middle - start),
+         1e3 * (end - middle));
+  assert_true(middle - start < 2 && end - middle < 5); /* a slow disk's fsync included */
+  assert_ok(read_only(scratch("many.h5")));
+  mhb_response_destroy(long_);
+  mhb_response_destroy(many);
+}
+
+static void test_create(void **state) {
+  (void)state;
+  assert_null(mhb_response_create(-1, 0, 1));
+  assert_null(mhb_response_create(1, -1, 1));
+  assert_null(mhb_response_create(1, 0, -1));
+  mhb_response_destroy(NULL);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_round_trip),
+      cmocka_unit_test(test_growth),
+      cmocka_unit_test(test_described),
+      cmocka_unit_test(test_truncated),
+      cmocka_unit_test(test_faults),
+      cmocka_unit_test(test_attribute_faults),
+      cmocka_unit_test(test_earlier_result_untouched),
+      cmocka_unit_test(test_quick),
+      cmocka_unit_test(test_create),
+  };
+  return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
+}
