@@ -60,6 +60,21 @@ static double jacobian(const double x[10][3], const double gradient[10][3], doub
   return det;
 }
 
+const fem_tet_rule *fem_tet10_stiffness_rule(const fem_tet10 *element, const double x[10][3]) {
+  return fem_tet10_is_straight(x) ? &element->straight : &element->curved;
+}
+
+double fem_tet10_gradient(const fem_tet_rule *rule, int point, const double x[10][3],
+                          double g[10][3]) {
+  const double(*reference)[3] = rule->gradient[point];
+  double inverse[3][3], det = jacobian(x, reference, inverse);
+  for (int i = 0; i < 10; i++)
+    for (int d = 0; d < 3; d++)
+      g[i][d] = inverse[d][0] * reference[i][0] + inverse[d][1] * reference[i][1] +
+                inverse[d][2] * reference[i][2];
+  return det;
+}
+
 /* B^T D B of nodes i, j for an isotropic D is lambda g_i g_j^T + mu g_j g_i^T + mu (g_i . g_j) I. */
 static void add_point(double lambda, double mu, const double g[10][3], double K[30][30]) {
   for (int i = 0; i < 10; i++)
@@ -75,17 +90,12 @@ static void add_point(double lambda, double mu, const double g[10][3], double K[
 
 void fem_tet10_stiffness(const fem_tet10 *element, const fem_material *material,
                          const double x[10][3], double K[30][30]) {
-  const fem_tet_rule *rule = fem_tet10_is_straight(x) ? &element->straight : &element->curved;
+  const fem_tet_rule *rule = fem_tet10_stiffness_rule(element, x);
   double              mu = material->E / (2 * (1 + material->nu)), nu = material->nu;
   double              lambda = 2 * mu * nu / (1 - 2 * nu);
   memset(K, 0, 900 * sizeof(double));
   for (int p = 0; p < rule->n; p++) {
-    double inverse[3][3], g[10][3];
-    double volume = jacobian(x, rule->gradient[p], inverse) * rule->weight[p];
-    for (int i = 0; i < 10; i++)
-      for (int d = 0; d < 3; d++)
-        g[i][d] = inverse[d][0] * rule->gradient[p][i][0] +
-                  inverse[d][1] * rule->gradient[p][i][1] + inverse[d][2] * rule->gradient[p][i][2];
+    double g[10][3], volume = rule->weight[p] * fem_tet10_gradient(rule, p, x, g);
     add_point(lambda * volume, mu * volume, g, K);
   }
   for (int i = 0; i < 30; i++)

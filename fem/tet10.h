@@ -26,6 +26,13 @@ PetscErrorCode fem_tet10_create(fem_mass_rule mass, fem_tet10 *element);
 /* Do all mid-side nodes lie in the middle of their edges (to 1e-9 of the edge)? Then J is constant. */
 bool fem_tet10_is_straight(const double x[10][3]);
 
+/* The rule that the stiffness of this element uses. */
+const fem_tet_rule *fem_tet10_stiffness_rule(const fem_tet10 *element, const double x[10][3]);
+
+/* g[i][d] = dN_i / dx_d at a point of the rule; returns det J. */
+double fem_tet10_gradient(const fem_tet_rule *rule, int point, const double x[10][3],
+                          double g[10][3]);
+
 /* K = integral of B^T D B, isotropic; rows and columns 3 node + axis.  x in m, K in N/m. */
 void fem_tet10_stiffness(const fem_tet10 *element, const fem_material *material,
                          const double x[10][3], double K[30][30]);

@@ -10,6 +10,7 @@
 
 #include "fem/assemble.h"
 #include "fem/clamp.h"
+#include "fem/energy.h"
 #include "fem/partition.h"
 #include "tests/fem/support.h"
 #include "tests/mesh/box.h"
@@ -106,6 +107,42 @@ static void mass_and_inertia_are_exact(void **state) {
   mesh_fe_free(&mesh);
 }
 
+/* Energy from the strains is u^T K u; of a rigid motion it is nothing, where u^T K u is rounding. */
+static void strain_energy_is_the_quadratic_form(void **state) {
+  (void)state;
+  mesh_fe    mesh    = free_body();
+  fem_tet10 *element = malloc(sizeof *element);
+  double    *u       = malloc(3 * (size_t)mesh.n_nodes * sizeof *u), product;
+  fem_system system;
+  Vec        x, f;
+  assert_int_equal(fem_tet10_create(FEM_MASS_EXACT, element), 0);
+  assert_int_equal(fem_system_create(PETSC_COMM_SELF, &mesh, &steel, FEM_MASS_EXACT, &system), 0);
+  assert_int_equal(MatCreateVecs(system.K, &x, &f), 0);
+  for (int i = 0; i < mesh.n_nodes; i++)
+    for (int d = 0; d < 3; d++) {
+      u[3 * i + d] = sin(2.7 * i + 1.3 * d);
+      assert_int_equal(VecSetValue(x, 3 * system.row[i] + d, u[3 * i + d], INSERT_VALUES), 0);
+    }
+  assert_int_equal(VecAssemblyBegin(x), 0);
+  assert_int_equal(VecAssemblyEnd(x), 0);
+  assert_int_equal(MatMult(system.K, x, f), 0);
+  assert_int_equal(VecDot(x, f, &product), 0);
+  check_close(fem_strain_energy(&mesh, &steel, element, u), product, 1e-12, "energy");
+  for (int i = 0; i < mesh.n_nodes; i++) {
+    const double *at = mesh.coordinates + 3 * i;
+    u[3 * i]         = 1 - 3 * at[1];
+    u[3 * i + 1]     = 2 + 3 * at[0];
+    u[3 * i + 2]     = 3;
+  }
+  check_below(fem_strain_energy(&mesh, &steel, element, u), 1e-25 * product, "rigid energy");
+  VecDestroy(&x);
+  VecDestroy(&f);
+  fem_system_destroy(&system);
+  mesh_fe_free(&mesh);
+  free(element);
+  free(u);
+}
+
 static void clamped_nodes_are_left_out_and_storage_is_exact(void **state) {
   (void)state;
   mesh_fe    mesh = make_box(size, cells);
@@ -181,6 +218,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(patch_test),
       cmocka_unit_test(mass_and_inertia_are_exact),
+      cmocka_unit_test(strain_energy_is_the_quadratic_form),
       cmocka_unit_test(clamped_nodes_are_left_out_and_storage_is_exact),
       cmocka_unit_test(partition_is_balanced),
       cmocka_unit_test(floating_part_is_named),

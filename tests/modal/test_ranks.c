@@ -41,7 +41,7 @@ static void world_equals_one_rank(void **state) {
   assert_int_equal(modal_solve(PETSC_COMM_SELF, &mesh, &settings, NULL, &one), SHB_OK);
   assert_int_equal(modal_solve(PETSC_COMM_WORLD, &mesh, &settings, NULL, &all), SHB_OK);
   for (int i = 0; i < settings.modes; i++) {
-    check_close(all.model.frequency[i], one.model.frequency[i], 1e-9, "frequency");
+    check_close(all.model.frequency[i], one.model.frequency[i], 1e-11, "frequency");
     check_below(all.model.mode_residual[i], 1e-9, "residual of a mode");
   }
   for (int i = 0; i < 9 * settings.modes; i++)                           /* signs included */
