@@ -1,20 +1,16 @@
 #include "mesh/blade.h"
 
-#include <errno.h>
 #include <gmshc.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
 
 #include "mesh/airfoil.h"
+#include "mesh/export.h"
 #include "mesh/fe_mesh.h"
 #include "mesh/frame.h"
 #include "mesh/groups.h"
 #include "mesh/import.h"
 #include "mesh/kernel.h"
-#include "mesh/provenance.h"
 #include "mesh/shroud.h"
 #include "mesh/tet10.h"
 
@@ -136,6 +132,19 @@ static shb_status fuse(int airfoil, int root, const int shroud[MESH_SHROUD_LEGS]
   return SHB_OK;
 }
 
+/* Drop the points and curves that the parts were drawn with: whatever bounds nothing. */
+static shb_status prune(void) {
+  for (int dimension = 2; dimension >= 0; dimension--) {
+    int   *tags = NULL, fault = 0;
+    size_t n = 0;
+    GMSH_TRY(who, gmshModelGetEntities(&tags, &n, dimension, &ierr));
+    gmshModelRemoveEntities(tags, n, 0, &fault); /* keeps those on the boundary of others */
+    gmshFree(tags);
+    if (fault) return mesh_kernel_fail(SHB_ERR_INPUT, __FILE__, __LINE__, who);
+  }
+  return SHB_OK;
+}
+
 static shb_status build(const mesh_blade *blade, const mesh_frame *frame) {
   int airfoil = 0, root = 0, shroud[MESH_SHROUD_LEGS], volume = 0;
   SHB_TRY(mesh_airfoil_build(blade, frame, &airfoil));
@@ -143,6 +152,7 @@ static shb_status build(const mesh_blade *blade, const mesh_frame *frame) {
   SHB_TRY(mesh_shroud_build(blade, frame, shroud));
   SHB_TRY(fuse(airfoil, root, shroud, &volume));
   GMSH_TRY(who, gmshModelOccSynchronize(&ierr));
+  SHB_TRY(prune());
   return mesh_groups_set(blade, frame, volume);
 }
 
@@ -255,33 +265,6 @@ static shb_status verify(const mesh_blade *blade, mesh_fe *mesh, shb_progress *p
   return SHB_OK;
 }
 
-static shb_status write_model(const char *path, const shb_provenance *provenance) {
-  char *temporary = shb_publish_temporary(path);
-  char *whole     = temporary ? malloc(strlen(temporary) + 8) : NULL;
-  if (!whole) {
-    free(temporary);
-    SHB_FAIL(SHB_ERR_IO, "%s: no memory to write it", path);
-  }
-  sprintf(whole, "%s.msh", temporary); /* gmsh goes by the ending */
-  free(temporary);
-  shb_status status = SHB_OK;
-  FILE      *file   = fopen(whole, "wb");
-  if (!file) {
-    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "%s: cannot be written: %s", path,
-                      strerror(errno));
-  } else {
-    int ierr = 0;
-    fclose(file);
-    gmshWrite(whole, &ierr);
-    if (ierr) status = mesh_kernel_fail(SHB_ERR_IO, __FILE__, __LINE__, path);
-    if (status == SHB_OK) status = mesh_provenance_append(whole, provenance);
-    if (status == SHB_OK) status = shb_publish(whole, path);
-    if (status != SHB_OK) unlink(whole);
-  }
-  free(whole);
-  return status;
-}
-
 static shb_status make(const mesh_blade *blade, const char *path, const shb_provenance *provenance,
                        shb_progress *progress) {
   mesh_frame frame = mesh_frame_at(blade->axis);
@@ -301,7 +284,7 @@ static shb_status make(const mesh_blade *blade, const char *path, const shb_prov
                     mesh.set[MESH_CONTACT_RIGHT].n);
   mesh_fe_free(&mesh);
   SHB_TRY(status);
-  return write_model(path, provenance);
+  return mesh_export(path, provenance);
 }
 
 shb_status mesh_blade_write(const mesh_blade *blade, const char *path,
