@@ -99,14 +99,19 @@ static void check_sizes(case_reader *r) {
                       blade->shroud_size, blade->size);
 }
 
+/* Harmonic k of the load drives harmonic k nu of the balance, whose fundamental is omega / nu. */
 static void check_harmonics(case_reader *r, int stages) {
   const case_file *file = r->file;
-  bool good = case_reader_good(r, "excitation.harmonics") && case_reader_good(r, "mhb.harmonics");
+  bool good = case_reader_good(r, "excitation.harmonics") && case_reader_good(r, "mhb.harmonics") &&
+              case_reader_good(r, "mhb.subharmonics");
   if (file->modal_file || !good || !(stages & CASE_MHB)) return;
-  if (file->load.n_harmonics > file->mhb.harmonics)
-    case_reader_issue(r, "excitation.harmonics",
-                      "harmonic %d would be left out: mhb.harmonics is %d, must be %d at least",
-                      file->load.n_harmonics, file->mhb.harmonics, file->load.n_harmonics);
+  int k = file->load.n_harmonics, needed = k * file->mhb.subharmonics;
+  if (needed > file->mhb.harmonics)
+    case_reader_issue(
+        r, "excitation.harmonics",
+        "harmonic %d would be left out: mhb.harmonics is %d, must be %d at least (times "
+        "mhb.subharmonics)",
+        k, file->mhb.harmonics, needed);
 }
 
 /* An input file that cannot be read; true if so. */

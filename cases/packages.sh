@@ -1,7 +1,8 @@
+# shellcheck shell=sh disable=SC2034
 # Debian packages that shroudhb needs, and how they come onto the machine. Sourced by quickstart.sh, tests/run.sh
 # and .ci/run; defines functions only. POSIX sh.
 
-packages_build="gcc cmake ninja-build pkg-config git
+packages_build="gcc libc6-dev cmake ninja-build pkg-config git
 libgmsh-dev libpetsc-real-dev libslepc-real-dev libhdf5-openmpi-dev libfftw3-dev
 liblapacke-dev libopenblas-dev libyaml-dev libcmocka-dev openmpi-bin"
 
@@ -35,12 +36,13 @@ packages_install() {
     fi
   fi
   echo "installing: $packages_wanted"
-  $packages_sudo env DEBIAN_FRONTEND=noninteractive apt-get -qq update </dev/null &&
-    $packages_sudo env DEBIAN_FRONTEND=noninteractive apt-get -qq -y --no-install-recommends install \
-      $packages_wanted </dev/null >/dev/null || {
+  # shellcheck disable=SC2086
+  if ! $packages_sudo env DEBIAN_FRONTEND=noninteractive apt-get -qq update </dev/null ||
+    ! $packages_sudo env DEBIAN_FRONTEND=noninteractive apt-get -qq -y --no-install-recommends install \
+      $packages_wanted </dev/null >/dev/null; then
     echo "shroudhb: apt-get could not install: $packages_wanted" >&2
     return 1
-  }
+  fi
 }
 
 # packages_build_release: configure and build in build/release of the current folder

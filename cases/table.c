@@ -105,7 +105,7 @@ static const case_key table[] = {
     {"mhb.frequency", CASE_INTERVAL, "Hz", 0, 1e9, true, .required = true, AT(mhb.frequency), .stages = CASE_MHB,
      .help = "range of the sweep: [from, to]"},
     {"mhb.harmonics", CASE_INTEGER, "", 1, MOST_HARMONICS, .fallback = "3", AT(mhb.harmonics), .stages = CASE_MHB,
-     .help = "harmonics of the balance"},
+     .help = "harmonics of the balance, counted in the fundamental"},
     {"mhb.subharmonics", CASE_INTEGER, "", 1, 16, .fallback = "1", AT(mhb.subharmonics), .stages = CASE_MHB,
      .help = "order nu: the fundamental is the excitation frequency / nu"},
     {"mhb.scale", CASE_NUMBER, "", 0, 1e12, true, .fallback = "1", AT(mhb.scale), .stages = CASE_MHB,

@@ -42,7 +42,7 @@ static const char whole[] =
     "  preload: interference\n"                                                            /* 28 */
     "mhb:\n"                                                                               /* 29 */
     "  frequency: [90 Hz, 0.12 kHz]\n"                                                     /* 30 */
-    "  harmonics: 5\n"                                                                     /* 31 */
+    "  harmonics: 7\n"                                                                     /* 31 */
     "  subharmonics: 2\n"                                                                  /* 32 */
     "  scale: 1.3\n"                                                                       /* 33 */
     "  tolerance: 2e-9\n"                                                                  /* 34 */

@@ -80,7 +80,7 @@ static void every_value_arrives(void **state) {
   assert_int_equal(m->n_preloads, 3);
   assert_true(m->n0[0] == -20 && m->n0[1] == 0 && m->n0[2] == 300);
   assert_true(m->frequency[0] == 90 && m->frequency[1] == 120);
-  assert_true(m->harmonics == 5 && m->subharmonics == 2 && m->scale == 1.3);
+  assert_true(m->harmonics == 7 && m->subharmonics == 2 && m->scale == 1.3);
   assert_true(m->tolerance == 2e-9 && m->max_points == 777);
   char *output = case_output(&f, ".modal.h5"), wanted[2 * SCRATCH_PATH];
   snprintf(wanted, sizeof wanted, "%s/odd_blade.modal.h5", folder);

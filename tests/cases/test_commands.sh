@@ -165,7 +165,7 @@ rm "$work/dir/good.html" "$work/dir/good.csv"
 stage mhb "trap 'echo caught >>\"$work/log\"; exit 130' TERM; echo ready >>'$work/log'; while :; do sleep 0.05; done"
 (cd "$work/dir" && exec "$work/bin/shroudhb" run good.yaml) >"$work/out" 2>"$work/err" &
 pid=$!
-for i in $(seq 100); do
+for _ in $(seq 100); do
   grep -q ready "$work/log" && break
   sleep 0.05
 done
