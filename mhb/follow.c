@@ -122,6 +122,21 @@ static const char *run(follower *f, int max_points, shb_status *status) {
   return "interrupted";
 }
 
+/* A pair of folds that spans less than 1e-5 of the frequency is no jump that anyone could observe: not marked. */
+static void drop_hairlines(mhb_branch *branch) {
+  int last = -1;
+  for (int i = 0; i < branch->n_points; i++) {
+    if (branch->special[i] != MHB_FOLD) continue;
+    double width = last < 0 ? INFINITY : fabs(branch->frequency[i] - branch->frequency[last]);
+    if (width < 1e-5 * branch->frequency[i]) {
+      branch->special[i] = branch->special[last] = MHB_ORDINARY;
+      last                                       = -1;
+    } else {
+      last = i;
+    }
+  }
+}
+
 /* Which parts of the branch are stable by the parity of folds passed: exact for fold bifurcations, blind to others. */
 static void mark_stability(mhb_branch *branch) {
   int stable = 1;
@@ -138,6 +153,7 @@ static shb_status finish(follower *f, const char *reason) {
   free(branch->reason);
   branch->reason   = strdup(reason);
   branch->complete = strcmp(reason, "end of range") == 0;
+  drop_hairlines(branch);
   mark_stability(branch);
   if (!branch->reason) status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   f->monitor->lock(f->monitor, false);

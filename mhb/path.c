@@ -8,9 +8,9 @@
 
 /* Settings that did not stall on stiff and on kinked curves. */
 static const double FIRST_STEP = .02, LONGEST_STEP = .1, LARGEST_ANGLE = .35, SHORTEST_STEP = 1e-4;
-static const double STAGNANT  = 1e-8;
+static const double STAGNANT = 1e-8, NEAR = .3;
 static const double KINK_STEP = .02, KINK_RATIO = .7;
-enum { MAX_CORRECTIONS = 12, WANTED_CORRECTIONS = 5 };
+enum { MAX_CORRECTIONS = 12, WANTED_CORRECTIONS = 5, MAX_HALVINGS = 3 };
 
 static int point_create(mhb_path_point *point, int n) {
   point->x       = calloc((size_t)n, sizeof(double));
@@ -98,16 +98,33 @@ static void evaluate(mhb_path *path, const mhb_path_point *point) {
   mhb_residual_evaluate(path->residual, point->x, point->omega, w->r, w->jacobian, w->slope);
 }
 
+/* point += fraction of the scaled step in the workspace */
+static void move(const mhb_path *path, double fraction, double scale, mhb_path_point *point) {
+  const double *step = path->newton->step;
+  for (int i = 0; i < path->n; i++) point->x[i] += fraction * scale * step[i];
+  point->omega += fraction * span(path) * step[path->n];
+}
+
+/* Evaluate at point; halve the last move (cut) while the residual grows. 0: not finite. */
+static int evaluate_damped(mhb_path *path, double before, double cut, double scale,
+                           mhb_path_point *point) {
+  for (int halvings = 0;; halvings++) {
+    evaluate(path, point);
+    double size     = mhb_norm(point->x, path->n);
+    point->residual = mhb_norm(path->newton->r, path->n) / (size > 0 ? size : 1);
+    if (point->residual <= before || halvings == MAX_HALVINGS) return isfinite(point->residual);
+    cut *= .5;
+    move(path, -cut, scale, point);
+  }
+}
+
 /* Newton in the plane normal.(y - point at entry) = 0; clip bounds a correction. 1: converged, workspace at point. */
 static int correct(mhb_path *path, const double *normal, double clip, mhb_path_point *point) {
   mhb_newton *w     = path->newton;
   int         n     = path->n;
-  double      scale = unit(path), sp = span(path), before = INFINITY;
+  double      scale = unit(path), before = INFINITY, cut = 0;
   for (point->iterations = 0; point->iterations <= MAX_CORRECTIONS; point->iterations++) {
-    evaluate(path, point);
-    double size     = mhb_norm(point->x, n);
-    point->residual = mhb_norm(w->r, n) / (size > 0 ? size : 1);
-    if (!isfinite(point->residual)) return 0;
+    if (!evaluate_damped(path, before, cut, scale, point)) return 0;
     if (point->residual <= path->tolerance) return 1;
     if (point->residual < STAGNANT && point->residual > .5 * before) return 1; /* rounding */
     before = point->residual;
@@ -115,9 +132,9 @@ static int correct(mhb_path *path, const double *normal, double clip, mhb_path_p
     for (int i = 0; i < n; i++) w->step[i] = -w->r[i] / scale;
     w->step[n] = 0; /* every iterate stays in the plane */
     if (!solve_bordered(path, w->step)) return 0;
-    double length = mhb_norm(w->step, n + 1), cut = length > clip ? clip / length : 1;
-    for (int i = 0; i < n; i++) point->x[i] += cut * scale * w->step[i];
-    point->omega += cut * sp * w->step[n];
+    double length = mhb_norm(w->step, n + 1);
+    cut           = length > clip ? clip / length : 1;
+    move(path, cut, scale, point);
     if (!(point->omega > 0)) return 0;
   }
   return 0;
@@ -170,12 +187,44 @@ static double angle_between(const mhb_path *path) {
   return acos(fmax(-1, fmin(1, cosine)));
 }
 
-/* Where small steps fail (the square-root zone at slip onset), larger ones pass. */
+/* next <- a solution at fixed omega, Newton damped, from a guess that may be far; kept if it is near now. */
+static int attempt_from(mhb_path *path, double omega, const double *guess) {
+  mhb_path_point *next = &path->next;
+  size_t          size = sizeof(double) * (size_t)path->n;
+  memcpy(next->x, guess, size);
+  next->omega = omega;
+  if (mhb_newton_solve(path->newton, path->residual, omega, path->tolerance, next->x,
+                       &next->iterations) != MHB_CONVERGED)
+    return 0;
+  evaluate(path, next);
+  double scale = unit(path), far = 0;
+  next->residual = mhb_norm(path->newton->r, path->n) / scale;
+  for (int i = 0; i < path->n; i++) far = fmax(far, fabs(next->x[i] - path->now.x[i]) / scale);
+  memset(path->chord, 0, size); /* onwards in frequency */
+  path->chord[path->n] = omega - path->now.omega;
+  return far < NEAR && set_tangent(path, path->chord, next);
+}
+
+/* Where small steps fail (the square-root zone at slip onset), larger ones pass; else the damped Newton at a fixed
+ * frequency further on, from the old point and from the linear limits. */
 static int last_resort(mhb_path *path) {
-  const double larger[] = {3e-3, 1e-2, 3e-2, .1};
+  const double larger[] = {3e-3, 1e-2, 3e-2, .1}, further[] = {1e-4, 5e-4, 2e-3, 1e-2};
   for (int i = 0; i < 4; i++) {
     if (!attempt(path, larger[i])) continue;
     path->step = larger[i];
+    return 1;
+  }
+  double guess[path->n], forward = copysign(span(path), path->now.tangent[path->n]);
+  for (int i = 0; i < 12; i++) {
+    double omega = path->now.omega + forward * further[i / 3];
+    int    stuck = i % 3 - 1; /* -1: the old point */
+    if (stuck < 0) {
+      memcpy(guess, path->now.x, sizeof guess);
+    } else if (mhb_residual_linear(path->residual, omega, stuck, guess) != SHB_OK) {
+      continue;
+    }
+    if (!attempt_from(path, omega, guess)) continue;
+    path->step = FIRST_STEP;
     return 1;
   }
   return 0;
