@@ -15,3 +15,13 @@ foreach(ranks 1 2 3)
     ENVIRONMENT "OMPI_ALLOW_RUN_AS_ROOT=1;OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1")
 endforeach()
 shb_test(modal model fast shb_model)
+
+# Between programs; skipped where python3 has no h5py. Debian's python3 comes first: it is the one with h5py.
+find_program(SHROUDHB_PYTHON NAMES python3 HINTS /usr/bin)
+if(SHROUDHB_PYTHON)
+  add_executable(test_modal_python modal/test_python.c)
+  target_link_libraries(test_modal_python PRIVATE shb_model PkgConfig::CMOCKA m)
+  add_test(NAME modal.python COMMAND test_modal_python ${SHROUDHB_PYTHON}
+    ${CMAKE_CURRENT_SOURCE_DIR}/modal/foreign.py ${PROJECT_SOURCE_DIR}/cases/bring_your_own/write_modal.py)
+  set_tests_properties(modal.python PROPERTIES LABELS fast TIMEOUT 120 SKIP_RETURN_CODE 77)
+endif()
