@@ -12,6 +12,7 @@ static const double two_pi = 6.28318530717958647692;
 
 /* Matrices of one batch, and where its columns go. */
 typedef struct {
+  int                       batch; /* columns */
   const fem_system         *system;
   const modal_eigen        *eigen;
   const modal_condensation *to;
@@ -77,29 +78,30 @@ static PetscErrorCode solve_batch(workspace *w) {
   PetscFunctionBeginUser;
   PetscCall(modal_eigen_inverse(w->eigen, w->B, w->X));
   PetscCall(modal_eigen_remove(w->system, w->eigen, w->X));
-  PetscCall(modal_dofs_sample(&w->to->contact, w->system, w->X, BATCH, BATCH, w->contact));
-  PetscCall(modal_dofs_sample(&w->to->probe, w->system, w->X, BATCH, BATCH, w->probe));
+  PetscCall(modal_dofs_sample(&w->to->contact, w->system, w->X, w->batch, w->batch, w->contact));
+  PetscCall(modal_dofs_sample(&w->to->probe, w->system, w->X, w->batch, w->batch, w->probe));
   PetscFunctionReturn(0);
 }
 
 static PetscErrorCode contact_batch(workspace *w, int first, int count, modal_model *model) {
-  const size_t nc = (size_t)w->to->contact.n;
+  const size_t nc = (size_t)w->to->contact.n, batch = (size_t)w->batch;
   PetscFunctionBeginUser;
   PetscCall(modal_dofs_spread(&w->to->contact, w->system, first, count, w->B));
   PetscCall(solve_batch(w));
   for (size_t r = 0; r < nc; r++)
     for (int c = 0; c < count; c++)
-      model->residual_flexibility[r * nc + (size_t)(first + c)] = w->contact[r * BATCH + (size_t)c];
+      model->residual_flexibility[r * nc + (size_t)(first + c)] = w->contact[r * batch + (size_t)c];
   for (int r = 0; r < w->to->probe.n; r++)
     for (int c = 0; c < count; c++)
-      model->probe_contact_residual[(size_t)r * nc + (size_t)(first + c)] = w->probe[r * BATCH + c];
+      model->probe_contact_residual[(size_t)r * nc + (size_t)(first + c)] =
+          w->probe[(size_t)r * batch + (size_t)c];
   PetscCall(modal_mass_multiply(w->system, w->X, w->B));
   PetscCall(modal_eigen_inverse(w->eigen, w->B, w->Y));
   PetscCall(modal_eigen_remove(w->system, w->eigen, w->Y));
-  PetscCall(modal_dofs_sample(&w->to->contact, w->system, w->Y, BATCH, BATCH, w->contact));
+  PetscCall(modal_dofs_sample(&w->to->contact, w->system, w->Y, w->batch, w->batch, w->contact));
   for (size_t r = 0; r < nc; r++)
     for (int c = 0; c < count; c++)
-      model->residual_inertia[r * nc + (size_t)(first + c)] = w->contact[r * BATCH + (size_t)c];
+      model->residual_inertia[r * nc + (size_t)(first + c)] = w->contact[r * batch + (size_t)c];
   PetscFunctionReturn(0);
 }
 
@@ -110,9 +112,8 @@ static PetscErrorCode load_batch(workspace *w, modal_model *model) {
   PetscCall(solve_batch(w));
   for (int k = 0; k <= model->n_load; k++) {
     double complex factor = w->to->excitation->factor[k];
-    for (int c = 0; c < nc; c++) model->load_residual[k * nc + c] = factor * w->contact[c * BATCH];
-    for (int c = 0; c < q3; c++)
-      model->probe_load_residual[k * q3 + c] = factor * w->probe[c * BATCH];
+    for (int c = 0; c < nc; c++) model->load_residual[k * nc + c] = factor * w->contact[c];
+    for (int c = 0; c < q3; c++) model->probe_load_residual[k * q3 + c] = factor * w->probe[c];
   }
   PetscFunctionReturn(0);
 }
@@ -123,13 +124,14 @@ static void symmetrise(double *a, size_t n) {
     for (size_t j = 0; j < i; j++) a[i * n + j] = a[j * n + i] = (a[i * n + j] + a[j * n + i]) / 2;
 }
 
-static PetscErrorCode create_workspace(workspace *w) {
+static PetscErrorCode create_workspace(workspace *w, int batch) {
   PetscFunctionBeginUser;
-  PetscCall(modal_dense_create(w->system, BATCH, &w->B));
-  PetscCall(modal_dense_create(w->system, BATCH, &w->X));
-  PetscCall(modal_dense_create(w->system, BATCH, &w->Y));
-  PetscCall(PetscMalloc2((size_t)w->to->contact.n * BATCH, &w->contact,
-                         (size_t)w->to->probe.n * BATCH, &w->probe));
+  w->batch = batch;
+  PetscCall(modal_dense_create(w->system, batch, &w->B));
+  PetscCall(modal_dense_create(w->system, batch, &w->X));
+  PetscCall(modal_dense_create(w->system, batch, &w->Y));
+  PetscCall(PetscMalloc2((size_t)w->to->contact.n * (size_t)batch, &w->contact,
+                         (size_t)w->to->probe.n * (size_t)batch, &w->probe));
   PetscFunctionReturn(0);
 }
 
@@ -143,17 +145,19 @@ static PetscErrorCode destroy_workspace(workspace *w) {
 }
 
 static shb_status fill(workspace *w, shb_progress *progress, modal_model *model) {
-  const int nc = w->to->contact.n;
-  FEM_PETSC(create_workspace(w));
+  const int nc = w->to->contact.n, batch = nc < BATCH ? nc : BATCH;
+  FEM_PETSC(create_workspace(w, batch));
   FEM_PETSC(fill_shapes(w, model));
-  for (int first = 0; first < nc; first += BATCH) {
-    int count = nc - first < BATCH ? nc - first : BATCH, stop = shb_interrupted();
+  for (int first = 0; first < nc; first += batch) {
+    int count = nc - first < batch ? nc - first : batch, stop = shb_interrupted();
     MPI_Allreduce(MPI_IN_PLACE, &stop, 1, MPI_INT, MPI_MAX, w->system->comm);
     SHB_CHECK(!stop, SHB_INTERRUPTED, "interrupted");
     shb_progress_show(progress, 80 + 15. * first / nc, "residuals: contact dof %d of %d", first,
                       nc);
     FEM_PETSC(contact_batch(w, first, count, model));
   }
+  FEM_PETSC(destroy_workspace(w));
+  FEM_PETSC(create_workspace(w, 1));
   FEM_PETSC(load_batch(w, model));
   symmetrise(model->residual_flexibility, (size_t)nc);
   symmetrise(model->residual_inertia, (size_t)nc);
