@@ -13,6 +13,13 @@
 
 static const double TWO_PI = 6.283185307179586476925;
 
+/* Compiled for wide vectors too, chosen at run time. */
+#if defined(__x86_64__) && defined(__gnu_linux__) && !defined(__SANITIZE_ADDRESS__)
+#define HOT __attribute__((target_clones("arch=haswell", "default")))
+#else
+#define HOT
+#endif
+
 /* Columns of the derivative: v, u, w coefficients, then the two components of the slider at the start of the lap. */
 enum { SLIDER = 2 };
 
@@ -33,7 +40,7 @@ struct mhb_contact {
   double           *Z;           /* [2][columns] derivative of the slider while stuck */
   double           *T;           /* [columns] derivative of theta while slipping */
   double           *node_T;      /* [MHB_NODES][columns] */
-  double           *node_R;      /* [3][MHB_NODES] factors of the right-hand side */
+  double           *row;         /* [columns] of one node */
   double           *stick;       /* [2(H+m)+1] integrals of the basis over stick pieces */
   double           *piece;       /* the same, one piece */
   double           *product;     /* [nf][nb] */
@@ -69,7 +76,7 @@ shb_status mhb_contact_create(int m, int H, double tolerance, mhb_contact **out)
                 {&c->Z, 2 * columns},
                 {&c->T, columns},
                 {&c->node_T, MHB_NODES * columns},
-                {&c->node_R, 3 * MHB_NODES},
+                {&c->row, columns},
                 {&c->stick, sums},
                 {&c->piece, sums},
                 {&c->product, nf * nb},
@@ -91,7 +98,7 @@ shb_status mhb_contact_create(int m, int H, double tolerance, mhb_contact **out)
 void mhb_contact_destroy(mhb_contact *c) {
   if (!c) return;
   double *arrays[] = {c->scaled, c->f,           c->J,          c->Z,     c->T,
-                      c->node_T, c->node_R,      c->stick,      c->piece, c->product,
+                      c->node_T, c->row,         c->stick,      c->piece, c->product,
                       c->basis0, c->panel.basis, c->panel.slope};
   for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; i++) free(arrays[i]);
   mhb_signals_destroy(&c->signals);
@@ -133,7 +140,7 @@ static void set_slip(mhb_contact *c, const mhb_law *law) {
                             .mu        = law->mu,
                             .harmonics = c->H,
                             .longest   = fmin(.35, 5. / (c->H + c->m)) * finer,
-                            .tail      = .1 * pow(c->tolerance, .75)};
+                            .tolerance = .1 * c->tolerance};
   memcpy(c->slip.K, c->K, sizeof c->K);
 }
 
@@ -249,7 +256,7 @@ static void columns_through_panel(mhb_contact *c) {
   }
   mhb_panel_solve(p, ones);
   node_factors(c, r_slope, r_value);
-  double end[MHB_NODES], *r = c->node_R;
+  double end[MHB_NODES], r[MHB_NODES];
   for (int l = 0; l < MHB_NODES; l++) end[l] = p->h * c->rule.weight[l];
   for (int j = c->first; j < c->last; j++) {
     int    kind = j / c->nb, i = j - kind * c->nb;
@@ -289,22 +296,29 @@ static void add_stick(mhb_contact *c, double t0, double t1, const double z[2], i
   c->info->share[MHB_STICK] += (t1 - t0) / TWO_PI;
 }
 
-/* delta f at a node, columns, times weight: into row[2][columns] of scratch, then rank-one updates. */
+/* J[i][j] += b[i] y[j]: the hot loop of the derivative. */
+HOT static void rank_one(int rows, int first, int last, int stride, const double *b,
+                         const double *y, double *J) {
+  for (int i = 0; i < rows; i++) {
+    double *row = J + (size_t)i * (size_t)stride, factor = b[i];
+    for (int j = first; j < last; j++) row[j] += factor * y[j];
+  }
+}
+
+/* delta f = mu (dn e + n q dtheta) at a node times weight, added to the derivative of the integrals. */
 static void add_node_derivative(mhb_contact *c, int l, double weight) {
   const mhb_panel *p  = &c->panel;
   double           mu = c->slip.mu, co = cos(p->theta[l]), si = sin(p->theta[l]);
-  double          *theta = c->node_T + (size_t)l * (size_t)c->columns;
+  const double    *theta = c->node_T + (size_t)l * (size_t)c->columns;
   const double    *basis = p->basis + (size_t)l * (size_t)c->nf;
   double           turn = weight * mu * p->y[l][0], load = weight * mu * c->kv;
   int              v_end = c->last < c->nb ? c->last : c->nb;
   for (int k = 0; k < 2; k++) {
     double across = turn * (k ? co : -si), along = load * (k ? si : co);
-    for (int i = 0; i < c->nf; i++) {
-      double *row = c->J + (size_t)(k * c->nf + i) * (size_t)c->columns;
-      double  a = basis[i] * across, b = basis[i] * along;
-      for (int j = c->first; j < c->last; j++) row[j] += a * theta[j];
-      for (int j = c->first; j < v_end; j++) row[j] += b * basis[j];
-    }
+    for (int j = c->first; j < c->last; j++) c->row[j] = across * theta[j];
+    for (int j = c->first; j < v_end; j++) c->row[j] += along * basis[j];
+    rank_one(c->nf, c->first, c->last, c->columns, basis, c->row,
+             c->J + (size_t)(k * c->nf) * (size_t)c->columns);
   }
 }
 

@@ -21,7 +21,7 @@ typedef struct {
   double node[MHB_NODES], weight[MHB_NODES];
   double A[MHB_NODES][MHB_NODES];        /* int_0^{c_i} l_j */
   double lagrange[MHB_NODES][MHB_NODES]; /* l_j = sum_k lagrange[j][k] s^k */
-  double tail[MHB_NODES];                /* weights of the highest Legendre coefficient */
+  double tail[3][MHB_NODES]; /* weights of the Legendre coefficients of degree 1, 2 and 6 */
 } mhb_collocation;
 
 void mhb_collocation_create(mhb_collocation *rule);
@@ -34,7 +34,7 @@ typedef struct {
   double                 mu;
   int                    harmonics; /* highest one the basis at the nodes is needed for */
   double                 longest;   /* panel, rad */
-  double                 tail;      /* bound on the tail coefficient, force units */
+  double                 tolerance; /* bound on a panel's error, force units */
 } mhb_slip;
 
 /* One panel of slip. basis, slope: [node][2 harmonics + 1], the caller's memory. */
@@ -45,7 +45,7 @@ typedef struct {
   double  matrix[MHB_NODES][MHB_NODES]; /* LU of I - h A diag(F_theta) */
   int     pivot[MHB_NODES];
   double *basis, *slope;
-  double  error; /* tail coefficient times panel, force units: this panel's accuracy indicator */
+  double  error; /* estimate for this panel, force units; see panel_error in slip.c */
 } mhb_panel;
 
 typedef enum { MHB_SLIP_ON, MHB_SLIP_ENDS, MHB_SLIP_AT_LIMIT, MHB_SLIP_LOST } mhb_slip_outcome;
