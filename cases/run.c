@@ -64,7 +64,12 @@ static shb_status run_stage(const char *stage, const command_options *options,
   return status;
 }
 
-/* *code: of the first stage that failed, else 3 if one did not converge everywhere, else 0. */
+/* A response that did not converge everywhere is still worth a report; modes that did not are no result. */
+static bool goes_on(int stage, int code) {
+  return code == SHB_OK || (code == SHB_NOT_CONVERGED && strcmp(stage_name[stage], "mhb") == 0);
+}
+
+/* *code: of the stage that ended the run, else 3 if the response did not converge everywhere, else 0. */
 static shb_status run_stages(const case_file *file, const command_options *options, int *code,
                              child_result result[N_STAGES]) {
   *code = SHB_OK;
@@ -72,7 +77,7 @@ static shb_status run_stages(const case_file *file, const command_options *optio
     SHB_TRY(run_stage(stage_name[i], options, &result[i]));
     if (result[i].code == SHB_OK) continue;
     *code = result[i].code;
-    if (*code != SHB_NOT_CONVERGED) return SHB_OK;
+    if (!goes_on(i, *code)) return SHB_OK;
   }
   return SHB_OK;
 }
@@ -84,7 +89,8 @@ shb_status run_case(const command_options *options) {
   child_result result[N_STAGES] = {{0}};
   shb_status   status           = run_stages(&file, options, &code, result);
   if (options->verbose && !options->quiet) print_times(result);
-  bool done = status == SHB_OK && (code == SHB_OK || code == SHB_NOT_CONVERGED);
+  bool done = status == SHB_OK && result[N_STAGES - 1].seconds > 0 &&
+              (code == SHB_OK || code == SHB_NOT_CONVERGED);
   if (done && !options->quiet) print_results(&file, code);
   case_free(&file);
   if (status != SHB_OK) return status;

@@ -30,7 +30,7 @@ typedef struct {
   double         *mode_residual; /* [m] relative eigen residual, or NULL */
 } modal_model;
 
-/* Write the datasets of the DESIGN of the modal file into an open file (attributes format and provenance included). */
+/* Write the datasets of docs/files.md into an open file (attributes format and provenance included). */
 shb_status modal_model_write(hid_t file, const modal_model *model,
                              const shb_provenance *provenance);
 
