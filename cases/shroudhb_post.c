@@ -1,0 +1,66 @@
+/* shroudhb-post: the report of a case from its response file, or what an HDF5 file holds. Starts no MPI. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cases/case.h"
+#include "cases/command.h"
+#include "mesh/progress.h"
+#include "postproc/inspect.h"
+#include "postproc/publish.h"
+
+static const char usage[] =
+    "usage: shroudhb-post [--quiet] [--verbose] CASE.yaml\n"
+    "       shroudhb-post --inspect [--verbose] FILE.h5\n"
+    "\n"
+    "Makes NAME.html (report), NAME.csv (every point) and NAME.svg (picture) from "
+    "NAME.response.h5.\n"
+    "With --inspect: what an HDF5 file holds; --verbose unfolds everything, case text and settings "
+    "too.\n";
+
+static shb_status inspect(const command_options *options) {
+  bool        terminal = isatty(STDOUT_FILENO) && !getenv("NO_COLOR");
+  post_buffer text     = {0};
+  shb_status  status   = post_inspect(
+         options->path, (post_tree_style){.colour = terminal, .verbose = options->verbose}, &text);
+  bool written = !text.text || fwrite(text.text, 1, text.length, stdout) == text.length;
+  written      = fflush(stdout) == 0 && written;
+  post_buffer_free(&text);
+  if (status == SHB_OK && !written) SHB_FAIL(SHB_ERR_IO, "standard output cannot be written");
+  return status;
+}
+
+static shb_status publish(const case_file *file, const command_options *options) {
+  shb_progress progress = shb_progress_start("post", options->quiet, options->verbose);
+  char        *response = case_output(file, ".response.h5"), *html = case_output(file, ".html");
+  char        *csv = case_output(file, ".csv"), *svg = case_output(file, ".svg"), *summary = NULL;
+  shb_status   status;
+  if (response && html && csv && svg) {
+    const post_job job = {file->name, response, html, csv, svg};
+    status             = post_publish(&job, &progress, &summary);
+  } else {
+    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  }
+  if (status == SHB_OK && !options->quiet)
+    printf("%s%s%s\n", html, summary ? ": " : "", summary ? summary : "");
+  free(summary);
+  free(response);
+  free(html);
+  free(csv);
+  free(svg);
+  return status;
+}
+
+int main(int argc, char **argv) {
+  command_options options;
+  int             code = command_parse(argc, argv, usage, &options);
+  if (code >= 0) return code;
+  if (options.mode && strcmp(options.mode, "inspect") == 0)
+    return command_finish(inspect(&options));
+  case_file file;
+  if ((code = case_read(options.path, CASE_POST, stderr, &file)) != SHB_OK) return code;
+  shb_status status = publish(&file, &options);
+  case_free(&file);
+  return command_finish(status);
+}

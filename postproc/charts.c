@@ -1,0 +1,379 @@
+#include "postproc/charts.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "postproc/plot.h"
+#include "postproc/unit.h"
+
+enum { SHOWN_HARMONICS = 8 };
+
+/* "tip motion, first harmonic, µm" */
+static void amplitude_label(const post_study *study, const char *unit, char out[256]) {
+  char place[128];
+  post_place_name(study->response, study->primary, place);
+  snprintf(out, 256, "%s %s, first harmonic, %s", place, post_axis_name(study->primary), unit);
+}
+
+/* Least and greatest of the groups' highest peaks. */
+static void peak_range(const post_study *study, double range[2]) {
+  const post_tracking *t = &study->tracking;
+  range[0]               = INFINITY;
+  range[1]               = 0;
+  for (int i = 0; i < t->n + 2; i++) {
+    double a = i < t->n    ? t->point[i].amplitude
+               : i == t->n ? t->open.amplitude
+                           : t->stuck.amplitude;
+    if (!(a > 0)) continue;
+    range[0] = fmin(range[0], a);
+    range[1] = fmax(range[1], a);
+  }
+}
+
+bool post_wants_log(const post_study *study) {
+  double range[2];
+  peak_range(study, range);
+  return range[1] > 6 * range[0];
+}
+
+static plot_axis amplitude_axis(const post_study *study, double unit, const char *label) {
+  if (!post_wants_log(study))
+    return (plot_axis){0, study->largest > 0 ? 1.06 * study->largest : unit, false, unit, label};
+  double least = INFINITY;
+  for (int b = 0; b < study->response->n_branches; b++)
+    for (int p = 0; p < study->response->branch[b].n_points; p++) {
+      double a = study->curve[b].amplitude[p];
+      if (a > 0) least = fmin(least, a);
+    }
+  return (plot_axis){fmax(least / 1.2, 1e-4 * study->largest), 1.4 * study->largest, true, unit,
+                     label};
+}
+
+static void group_classes(const post_group *group, char out[40]) {
+  if (group->kind == MHB_BRANCH_OPEN)
+    strcpy(out, "limit open");
+  else if (group->kind == MHB_BRANCH_STUCK)
+    strcpy(out, "limit stuck");
+  else if (group->rank < 0)
+    strcpy(out, "varying");
+  else
+    snprintf(out, 40, "c%d", group->rank);
+}
+
+/* One branch: a piece that touches an unstable point is dotted; folds are small triangles. */
+static void draw_branch(const post_study *study, const post_plot *plot, int b) {
+  const mhb_branch *branch = &study->response->branch[b];
+  const post_curve *c      = &study->curve[b];
+  int               n      = branch->n_points;
+  char              group[40], classes[64];
+  bool             *stable = malloc((size_t)(n > 0 ? n : 1) * 2 * sizeof *stable);
+  if (!stable) {
+    plot->out->failed = true;
+    return;
+  }
+  bool *unstable = stable + n;
+  for (int i = 0; i < n; i++) {
+    unstable[i] = branch->stable[i] == 0 || (i > 0 && branch->stable[i - 1] == 0);
+    stable[i]   = !unstable[i];
+  }
+  group_classes(&study->group[c->group], group);
+  snprintf(classes, sizeof classes, "line %s", group);
+  plot_line(plot, classes, n, branch->frequency, c->amplitude, stable);
+  snprintf(classes, sizeof classes, "line unstable %s", group);
+  plot_line(plot, classes, n, branch->frequency, c->amplitude, unstable);
+  free(stable);
+  snprintf(classes, sizeof classes, "dot %s", group);
+  if (n == 1) plot_dot(plot, classes, branch->frequency[0], c->amplitude[0], 3);
+  snprintf(classes, sizeof classes, "fold %s", group);
+  for (int i = 0; i < c->n_folds; i++)
+    plot_dot(plot, classes, c->fold[i].frequency, c->fold[i].amplitude, 2.6);
+}
+
+static void draw_curves(const post_study *study, const post_plot *plot) {
+  for (int pass = 0; pass < 2; pass++) /* limits below */
+    for (int b = 0; b < study->response->n_branches; b++)
+      if ((study->response->branch[b].kind == MHB_BRANCH_NONLINEAR) == (pass == 1))
+        draw_branch(study, plot, b);
+  const double            move[2] = {0, -7};
+  const post_track_point *open = &study->tracking.open, *stuck = &study->tracking.stuck;
+  if (open->amplitude > 0)
+    plot_text(plot, "mark open", open->frequency, open->amplitude, move, "middle", "open");
+  if (stuck->amplitude > 0)
+    plot_text(plot, "mark stuck", stuck->frequency, stuck->amplitude, move, "middle", "stuck");
+}
+
+static plot_axis frequency_axis(const post_study *study, const char *label) {
+  double lo = study->frequency[0], hi = study->frequency[1];
+  return hi > lo ? (plot_axis){lo, hi, false, 1, label} : plot_axis_around(lo, hi, false, 1, label);
+}
+
+void post_draw_response(const post_study *study, post_plot *plot) {
+  char      label[256];
+  post_unit unit = post_unit_length(study->largest);
+  amplitude_label(study, unit.name, label);
+  plot->y = amplitude_axis(study, unit.scale, label);
+  plot->x = frequency_axis(study, "frequency, Hz");
+  plot_frame(plot);
+  draw_curves(study, plot);
+}
+
+static void describe(const post_study *study, char out[256]) {
+  snprintf(out, 256,
+           "Amplitude against frequency, %d curves; solid: nonlinear, one colour a preload; "
+           "dashed: the linear "
+           "limits; dotted: unstable. The same numbers are in the tables and in the CSV file.",
+           study->response->n_branches);
+}
+
+void post_chart_response(const post_study *study, const char *case_name, post_buffer *out) {
+  char title[256], text[256];
+  snprintf(title, sizeof title, "Forced response of %s", case_name);
+  describe(study, text);
+  plot_svg_open(out, "response", 1100, 540, title, text);
+  post_plot plot = {
+      .out = out, .id = "response", .left = 60, .top = 34, .width = 1020, .height = 456};
+  post_draw_response(study, &plot);
+  plot_svg_close(out);
+}
+
+int post_chosen_branch(const post_study *study) {
+  const post_tracking *t = &study->tracking;
+  if (t->best >= 0) return t->point[t->best].branch;
+  for (int b = 0; b < study->response->n_branches; b++)
+    if (study->response->branch[b].kind == MHB_BRANCH_NONLINEAR &&
+        study->response->branch[b].n_points > 0)
+      return b;
+  return -1;
+}
+
+static plot_axis preload_axis(const post_tracking *t, double unit, const char *label) {
+  double lo = t->point[0].n0, hi = t->point[t->n - 1].n0;
+  return plot_axis_around(lo, hi, lo > 0 && hi >= 8 * lo, unit, label);
+}
+
+/* The limits' level with its name at one end. */
+static void draw_level(const post_plot *plot, double value, bool open) {
+  if (!isfinite(value)) return;
+  const double move[2] = {open ? 6 : -6, -5};
+  plot_level(plot, open ? "line limit open" : "line limit stuck", value);
+  plot_text(plot, open ? "mark open" : "mark stuck", open ? plot->x.lo : plot->x.hi, value, move,
+            open ? "start" : "end", open ? "open" : "stuck");
+}
+
+/* All the lesser peaks of the preloads, faint; the highest ones joined. */
+static void draw_track(const post_study *study, const post_plot *plot, bool frequency) {
+  const post_tracking *t = &study->tracking;
+  draw_level(plot, frequency ? t->open.frequency : t->open.amplitude, true);
+  draw_level(plot, frequency ? t->stuck.frequency : t->stuck.amplitude, false);
+  for (int b = 0; b < study->response->n_branches; b++) {
+    const post_group *group = &study->group[study->curve[b].group];
+    for (int i = 0; group->rank >= 0 && i < study->curve[b].n_peaks; i++) {
+      const post_peak *peak = &study->curve[b].peak[i];
+      plot_dot(plot, "lesser", group->n0, frequency ? peak->frequency : peak->amplitude, 2.4);
+    }
+  }
+  double *x = calloc((size_t)t->n, 2 * sizeof *x), *y = x ? x + t->n : NULL;
+  if (!x) {
+    plot->out->failed = true;
+    return;
+  }
+  for (int i = 0; i < t->n; i++) {
+    x[i] = t->point[i].n0;
+    y[i] = frequency ? t->point[i].frequency : t->point[i].amplitude;
+  }
+  plot_line(plot, "line track", t->n, x, y, NULL);
+  for (int i = 0; i < t->n; i++) {
+    char classes[40];
+    snprintf(classes, sizeof classes, "%s c%d", t->point[i].edge ? "ring" : "dot", i);
+    plot_dot(plot, classes, x[i], y[i], i == t->best ? 5.5 : 4);
+  }
+  free(x);
+}
+
+void post_chart_tracking(const post_study *study, post_buffer *out) {
+  const post_tracking *t = &study->tracking;
+  if (t->n < 2) return;
+  char      label[64], optimum[96], number[POST_NUMBER];
+  double    range[2], low = INFINITY, high = -INFINITY;
+  post_unit unit  = post_unit_length(study->largest);
+  post_unit force = post_unit_force(fmax(fabs(t->point[0].n0), fabs(t->point[t->n - 1].n0)));
+  peak_range(study, range);
+  for (int i = 0; i < t->n + 2; i++) {
+    double f = i < t->n    ? t->point[i].frequency
+               : i == t->n ? t->open.frequency
+                           : t->stuck.frequency;
+    low      = fmin(low, f);
+    high     = fmax(high, f);
+  }
+  plot_svg_open(
+      out, "tracking", 1100, 600, "Highest peak against preload",
+      "Above: amplitude of the highest peak; below: its frequency. Dashed: linear limits.");
+  snprintf(label, sizeof label, "highest peak, %s", unit.name);
+  post_plot above = {
+      .out = out, .id = "tracking-a", .left = 60, .top = 34, .width = 1020, .height = 280};
+  above.x = preload_axis(t, force.scale, NULL);
+  above.y = post_wants_log(study) ? plot_axis_around(range[0], range[1], true, unit.scale, label)
+                                  : (plot_axis){0, 1.1 * range[1], false, unit.scale, label};
+  plot_frame(&above);
+  draw_track(study, &above, false);
+  const post_track_point *best = &t->point[t->best];
+  snprintf(optimum, sizeof optimum, "lowest: %s", post_measure(number, best->n0, force, 3));
+  plot_text(&above, "mark strong", best->n0, best->amplitude, (const double[2]){0, 21}, "middle",
+            optimum);
+  char preload[64];
+  snprintf(preload, sizeof preload, "preload n₀, %s", force.name);
+  post_plot below = {
+      .out = out, .id = "tracking-f", .left = 60, .top = 374, .width = 1020, .height = 170};
+  below.x       = above.x;
+  below.x.label = preload;
+  below.y       = plot_axis_around(low, high, false, 1, "its frequency, Hz");
+  plot_frame(&below);
+  draw_track(study, &below, true);
+  plot_svg_close(out);
+}
+
+/* Names of the preloads under the bars, as many as fit. */
+static void draw_categories(const post_plot *plot, const post_tracking *t) {
+  int every = 1 + (t->n - 1) / 12;
+  for (int i = 0; i < t->n; i += every) {
+    char number[POST_NUMBER];
+    post_put(plot->out,
+             "<text class=\"tick\" x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\">%s</text>\n",
+             plot_x(plot, i), plot->top + plot->height + 17, post_plain(number, t->point[i].n0, 4));
+  }
+  post_put(plot->out,
+           "<text class=\"axis\" x=\"%.1f\" y=\"%.1f\" text-anchor=\"end\">preload n₀, N</text>\n",
+           plot->left + plot->width, plot->top + plot->height + 36);
+}
+
+static void draw_state_bars(const post_study *study, const post_plot *shares,
+                            const post_plot *energy) {
+  static const char *const classes[] = {"state stick", "state slip", "state gap"};
+  const post_tracking     *t         = &study->tracking;
+  for (int i = 0; i < t->n; i++) {
+    const mhb_branch *branch = &study->response->branch[t->point[i].branch];
+    double            below = 0, x[2] = {i - 0.36, i + 0.36};
+    for (int s = 0; s < 3; s++) {
+      double share = post_state(study->response, branch, t->point[i].point, s);
+      plot_bar(shares, classes[s], x, (const double[2]){below, below + share});
+      below += share;
+    }
+    char   colour[40];
+    double spent = post_dissipation(study->response, branch, t->point[i].point);
+    snprintf(colour, sizeof colour, "bar c%d", i);
+    plot_bar(energy, colour, x, (const double[2]){0, spent});
+  }
+}
+
+void post_chart_state(const post_study *study, post_buffer *out) {
+  const post_tracking *t = &study->tracking;
+  if (t->n < 1 || study->response->n_pairs < 1) return;
+  double most = 0;
+  for (int i = 0; i < t->n; i++)
+    most =
+        fmax(most, post_dissipation(study->response, &study->response->branch[t->point[i].branch],
+                                    t->point[i].point));
+  post_unit unit = post_unit_energy(most);
+  char      label[64];
+  snprintf(label, sizeof label, "dissipated a cycle, %s", unit.name);
+  plot_svg_open(
+      out, "state", 540, 470, "Contact at the highest peak, by preload",
+      "Above: share of the period stuck, slipping, open (mean of the contacts). Below: energy "
+      "dissipated a cycle (all contacts).");
+  post_plot shares = {
+      .out = out, .id = "state-s", .left = 60, .top = 34, .width = 464, .height = 180};
+  post_plot energy = {
+      .out = out, .id = "state-d", .left = 60, .top = 266, .width = 464, .height = 150};
+  shares.x = energy.x = (plot_axis){-0.6, t->n - 0.4, false, 1, NULL};
+  shares.y            = (plot_axis){0, 1, false, 0.01, "share of the period, %"};
+  energy.y      = (plot_axis){0, most > 0 ? 1.08 * most : unit.scale, false, unit.scale, label};
+  shares.x.unit = energy.x.unit = 0; /* categories: no ticks */
+  plot_frame(&shares);
+  plot_frame(&energy);
+  draw_state_bars(study, &shares, &energy);
+  draw_categories(&energy, t);
+  plot_svg_close(out);
+}
+
+void post_chart_along(const post_study *study, int b, post_buffer *out) {
+  static const char *const classes[] = {"line stick", "line slip", "line gap"};
+  const mhb_branch        *branch    = &study->response->branch[b];
+  int                      n         = branch->n_points;
+  if (n < 1 || study->response->n_pairs < 1) return;
+  double *y = calloc((size_t)n, 4 * sizeof *y), most = 0;
+  if (!y) {
+    out->failed = true;
+    return;
+  }
+  for (int i = 0; i < n; i++) {
+    for (int s = 0; s < 3; s++) y[s * n + i] = post_state(study->response, branch, i, s);
+    y[3 * n + i] = post_dissipation(study->response, branch, i);
+    most         = fmax(most, y[3 * n + i]);
+  }
+  post_unit unit = post_unit_energy(most);
+  char      label[64];
+  snprintf(label, sizeof label, "dissipated a cycle, %s", unit.name);
+  plot_svg_open(out, "along", 540, 470, "Contact along one curve",
+                "Above: share of the period stuck, slipping, open against frequency. Below: energy "
+                "dissipated a cycle.");
+  post_plot shares = {
+      .out = out, .id = "along-s", .left = 60, .top = 34, .width = 464, .height = 180};
+  post_plot energy = {
+      .out = out, .id = "along-d", .left = 60, .top = 266, .width = 464, .height = 150};
+  shares.x = energy.x = frequency_axis(study, NULL);
+  energy.x.label      = "frequency, Hz";
+  shares.y            = (plot_axis){-0.02, 1.02, false, 0.01, "share of the period, %"};
+  energy.y = (plot_axis){0, most > 0 ? 1.08 * most : unit.scale, false, unit.scale, label};
+  plot_frame(&shares);
+  plot_frame(&energy);
+  for (int s = 0; s < 3; s++) plot_line(&shares, classes[s], n, branch->frequency, y + s * n, NULL);
+  char group[40], line[64];
+  group_classes(&study->group[study->curve[b].group], group);
+  snprintf(line, sizeof line, "line %s", group);
+  plot_line(&energy, line, n, branch->frequency, y + 3 * n, NULL);
+  free(y);
+  plot_svg_close(out);
+}
+
+void post_chart_harmonics(const post_study *study, int b, post_buffer *out) {
+  const mhb_response *response = study->response;
+  const mhb_branch   *branch   = &response->branch[b];
+  int                 n = branch->n_points, m = response->n_harmonics;
+  if (m >= SHOWN_HARMONICS) m = SHOWN_HARMONICS - 1;
+  double *y = calloc((size_t)n * (size_t)(m + 1), sizeof *y), most = 0;
+  if (!y) {
+    out->failed = true;
+    return;
+  }
+  for (int k = 0; k <= m; k++)
+    for (int i = 0; i < n; i++) {
+      y[k * n + i] = post_amplitude(response, branch, i, study->primary, k);
+      most         = fmax(most, y[k * n + i]);
+    }
+  post_unit unit = post_unit_length(most);
+  char      label[160], place[128];
+  post_place_name(response, study->primary, place);
+  snprintf(label, sizeof label, "%s, amplitude of each harmonic, %s", place, unit.name);
+  if (!(most > 0)) most = unit.scale;
+  plot_svg_open(out, "harmonics", 1100, 360, "Harmonics along one curve",
+                "Amplitude of each harmonic of the motion against frequency, logarithmic.");
+  post_plot plot = {
+      .out = out, .id = "harmonics", .left = 60, .top = 34, .width = 980, .height = 272};
+  plot.x = frequency_axis(study, "frequency, Hz");
+  plot.y = (plot_axis){1e-6 * most, 2 * most, true, unit.scale, label};
+  plot_frame(&plot);
+  for (int k = 0; k <= m; k++) {
+    char classes[32], name[16];
+    snprintf(classes, sizeof classes, "line h%d", k);
+    plot_line(&plot, classes, n, branch->frequency, y + k * n, NULL);
+    snprintf(classes, sizeof classes, "mark h%d", k);
+    snprintf(name, sizeof name, "k = %d", k);
+    if (n > 0 && y[k * n + n - 1] > plot.y.lo)
+      plot_text(&plot, classes, branch->frequency[n - 1], y[k * n + n - 1], (const double[2]){6, 4},
+                "start", name);
+  }
+  free(y);
+  plot_svg_close(out);
+}

@@ -1,0 +1,108 @@
+#include "postproc/csv.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "postproc/output.h"
+
+static void put_text(post_buffer *out, const char *text) {
+  if (!strpbrk(text, ",\"\r\n")) {
+    post_put(out, "%s", text);
+    return;
+  }
+  post_put(out, "\"");
+  for (const char *c = text; *c; c++) post_put(out, *c == '"' ? "\"\"" : "%c", *c);
+  post_put(out, "\"");
+}
+
+static void put_number(post_buffer *out, double value) {
+  post_put(out, isfinite(value) ? ",%.12g" : ",", value);
+}
+
+/* ",PLACE_SUFFIX" */
+static void put_name(post_buffer *out, const char *place, const char *part, const char *suffix) {
+  char name[256];
+  snprintf(name, sizeof name, "%s%s%s", place, part, suffix);
+  post_put(out, ",");
+  put_text(out, name);
+}
+
+static void place_names(post_buffer *out, const char *place, const char *const axis[3]) {
+  for (int i = 0; i < 3; i++) {
+    put_name(out, place, axis[i], "_amplitude_m");
+    put_name(out, place, axis[i], "_phase_deg");
+    put_name(out, place, axis[i], "_peak_to_peak_m");
+  }
+  put_name(out, place, "_motion", "_amplitude_m");
+  put_name(out, place, "_motion", "_peak_to_peak_m");
+}
+
+static void put_header(const mhb_response *response, post_buffer *out) {
+  static const char *const probe[3]   = {"_tangential", "_axial", "_radial"};
+  static const char *const contact[3] = {"_v", "_u", "_w"};
+  post_put(out, "branch,kind,n0_N,frequency_Hz");
+  for (int q = 0; q < response->n_probes; q++) place_names(out, response->probe_name[q], probe);
+  for (int p = 0; p < response->n_pairs; p++) {
+    char place[32] = "contact";
+    if (response->n_pairs > 1) snprintf(place, sizeof place, "contact%d", p + 1);
+    place_names(out, place, contact);
+    put_name(out, place, "_stuck", "");
+    put_name(out, place, "_slipping", "");
+    put_name(out, place, "_open", "");
+    put_name(out, place, "_dissipation_J", "");
+  }
+  post_put(out,
+           ",stable,special,iterations,seconds,error_newton,error_truncation,error_sampling,"
+           "error_modal\r\n");
+}
+
+/* The columns of one place from its harmonics, [3][m + 1]. */
+static void put_place(const mhb_response *response, const double complex *a, post_buffer *out) {
+  int m = response->n_harmonics, first = post_first_harmonic(response);
+  for (int i = 0; i < 3; i++) {
+    const double complex *axis = a + i * (m + 1);
+    put_number(out, cabs(axis[first]));
+    put_number(out, carg(axis[first]) * 180 / M_PI);
+    put_number(out, post_peak_to_peak(1, m, axis));
+  }
+  put_number(out, post_ellipse(3, a + first, m + 1));
+  put_number(out, post_peak_to_peak(3, m, a));
+}
+
+static void put_quality(const mhb_branch *branch, int point, post_buffer *out) {
+  int         special = branch->special[point];
+  const char *what    = special == 1 ? "fold" : special == 2 ? "peak" : "";
+  post_put(out, branch->stable[point] < 0 ? "," : ",%d", branch->stable[point]);
+  post_put(out, ",%s,%d", what, branch->iterations[point]);
+  put_number(out, branch->seconds[point]);
+  put_number(out, branch->error_newton[point]);
+  put_number(out, branch->error_truncation[point]);
+  put_number(out, branch->error_sampling[point]);
+  put_number(out, branch->error_modal[point]);
+  post_put(out, "\r\n");
+}
+
+static void put_point(const mhb_response *response, int b, int point, post_buffer *out) {
+  static const char *const kind[] = {"nonlinear", "open", "stuck"};
+  const mhb_branch        *branch = &response->branch[b];
+  size_t                   m1 = (size_t)response->n_harmonics + 1, i = (size_t)point;
+  size_t                   pairs = (size_t)response->n_pairs, probes = (size_t)response->n_probes;
+  post_put(out, "%d,%s", b, kind[branch->kind]);
+  put_number(out, branch->kind == MHB_BRANCH_NONLINEAR ? branch->n0[point] : NAN);
+  put_number(out, branch->frequency[point]);
+  for (size_t q = 0; q < probes; q++)
+    put_place(response, branch->probe + (i * probes + q) * 3 * m1, out);
+  for (size_t p = 0; p < pairs; p++) {
+    put_place(response, branch->motion + (i * pairs + p) * 3 * m1, out);
+    for (size_t s = 0; s < 3; s++) put_number(out, branch->state[(i * pairs + p) * 3 + s]);
+    put_number(out, branch->dissipation[i * pairs + p]);
+  }
+  put_quality(branch, point, out);
+}
+
+void post_csv(const mhb_response *response, post_buffer *out) {
+  put_header(response, out);
+  for (int b = 0; b < response->n_branches; b++)
+    for (int p = 0; p < response->branch[b].n_points; p++) put_point(response, b, p, out);
+}

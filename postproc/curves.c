@@ -1,0 +1,231 @@
+#include "postproc/curves.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static const double RIPPLE = 0.02; /* of the peak's height */
+
+/* One curve with the scales that make its arclength dimensionless. */
+typedef struct {
+  int           n;
+  const double *f, *a;
+  double        f_span, a_span;
+} curve;
+
+static double span(int n, const double *x) {
+  double lo = INFINITY, hi = -INFINITY;
+  for (int i = 0; i < n; i++) {
+    lo = fmin(lo, x[i]);
+    hi = fmax(hi, x[i]);
+  }
+  return hi > lo ? hi - lo : 1;
+}
+
+static curve curve_of(int n, const double *f, const double *a) {
+  return (curve){n, f, a, span(n, f), span(n, a)};
+}
+
+static double chord(const curve *c, int i, int j) {
+  return hypot((c->f[j] - c->f[i]) / c->f_span, (c->a[j] - c->a[i]) / c->a_span);
+}
+
+/* Parabola through (s[i], y[i]): its divided differences, y = y0 + d1 (s - s0) + d2 (s - s0)(s - s1). */
+static void differences(const double s[3], const double y[3], double d[2]) {
+  double first = (y[1] - y[0]) / (s[1] - s[0]), second = (y[2] - y[1]) / (s[2] - s[1]);
+  d[0] = first;
+  d[1] = (second - first) / (s[2] - s[0]);
+}
+
+static double parabola(const double s[3], const double y[3], double at) {
+  double d[2];
+  differences(s, y, d);
+  return y[0] + (at - s[0]) * (d[0] + (at - s[1]) * d[1]);
+}
+
+/* Where the parabola is flat; s[1] if it is a line or flat outside the three points. */
+static double vertex(const double s[3], const double y[3]) {
+  double d[2];
+  differences(s, y, d);
+  double at = (s[0] + s[1]) / 2 - d[0] / (2 * d[1]);
+  return at >= s[0] && at <= s[2] ? at : s[1];
+}
+
+/* Arclength at i - 1, i, i + 1 with s[1] = 0; false at an end of the curve or where points coincide. */
+static bool three_points(const curve *c, int i, double s[3]) {
+  if (i <= 0 || i >= c->n - 1) return false;
+  s[0] = -chord(c, i - 1, i);
+  s[1] = 0;
+  s[2] = chord(c, i, i + 1);
+  return s[0] < 0 && s[2] > 0;
+}
+
+static void refine_peak(const curve *c, int i, post_peak *peak) {
+  double s[3];
+  peak->frequency = c->f[i];
+  peak->amplitude = c->a[i];
+  if (!three_points(c, i, s)) return;
+  double q[3];
+  bool   inverse = c->a[i - 1] > 0 && c->a[i + 1] > 0;
+  for (int k = 0; k < 3; k++) {
+    double a = c->a[i - 1 + k] / c->a[i];
+    q[k]     = inverse ? -1 / (a * a) : a;
+  }
+  double at = vertex(s, q), top = parabola(s, q, at);
+  peak->frequency = parabola(s, c->f + i - 1, at);
+  if (top != 0) peak->amplitude = c->a[i] * (inverse ? 1 / sqrt(-top) : top);
+}
+
+/* Frequency where the amplitude falls to level going from the peak in direction step; NAN if it does not before
+ * the curve ends, rises above the peak, or turns back in frequency. Linear in 1/a^2 between two points. */
+static double crossing(const curve *c, const post_peak *peak, int step, double level) {
+  double from = peak->frequency, sign = 0;
+  for (int i = peak->point; i + step >= 0 && i + step < c->n; i += step) {
+    double f0 = c->f[i], f1 = c->f[i + step], a0 = c->a[i], a1 = c->a[i + step];
+    if (i == peak->point) { /* the refined peak lies within a point of here */
+      f0 = from;
+      a0 = peak->amplitude;
+      if (a1 >= a0) return NAN;
+    }
+    if (sign == 0) sign = f1 > from ? 1 : -1;
+    if (sign * (f1 - f0) < 0) return NAN;
+    if (a1 > peak->amplitude) return NAN;
+    if (a1 <= level) {
+      if (a1 <= 0 || a0 <= 0) return f1;
+      double q0 = 1 / (a0 * a0), q1 = 1 / (a1 * a1), q = 1 / (level * level);
+      return f0 + (f1 - f0) * (q - q0) / (q1 - q0);
+    }
+  }
+  return NAN;
+}
+
+static void measure_bandwidth(const curve *c, post_peak *peak) {
+  double level  = peak->amplitude / M_SQRT2;
+  double before = crossing(c, peak, -1, level), after = crossing(c, peak, 1, level);
+  peak->bandwidth = fabs(after - before);
+  /* both sides must lie on their own side of the peak, or there is a fold in between */
+  if (!((after - peak->frequency) * (before - peak->frequency) < 0)) peak->bandwidth = NAN;
+  peak->damping = peak->bandwidth / (2 * peak->frequency);
+}
+
+/* Height above the deeper of the two valleys that part it from anything higher. */
+static double prominence(const curve *c, int i) {
+  double deeper = c->a[i];
+  for (int step = -1; step <= 1; step += 2) {
+    double valley = c->a[i];
+    for (int j = i + step; j >= 0 && j < c->n && c->a[j] <= c->a[i]; j += step)
+      valley = fmin(valley, c->a[j]);
+    deeper = step < 0 ? valley : fmax(deeper, valley);
+  }
+  return c->a[i] - deeper;
+}
+
+/* Rises to i and, after any run of equal values, falls. */
+static bool is_maximum(const curve *c, int i) {
+  if (i <= 0 || i >= c->n - 1 || !(c->a[i] > c->a[i - 1])) return false;
+  int j = i + 1;
+  while (j < c->n - 1 && c->a[j] == c->a[i]) j++;
+  return c->a[j] < c->a[i] && prominence(c, i) >= RIPPLE * c->a[i];
+}
+
+/* Index of the largest value if it is at an end, else -1. */
+static int edge_point(const curve *c) {
+  int top = 0;
+  for (int i = 1; i < c->n; i++)
+    if (c->a[i] > c->a[top]) top = i;
+  bool at_end = c->n > 0 && c->a[top] > 0 && (top == 0 || c->a[top] == c->a[c->n - 1]);
+  return at_end ? top : -1;
+}
+
+shb_status post_find_peaks(int n, const double *frequency, const double *amplitude,
+                           post_peak **peaks, int *n_peaks) {
+  curve c    = curve_of(n, frequency, amplitude);
+  int   edge = edge_point(&c), count = 0;
+  *peaks   = NULL;
+  *n_peaks = 0;
+  for (int i = 0; i < n; i++) count += i == edge || is_maximum(&c, i);
+  if (count == 0) return SHB_OK;
+  post_peak *out = calloc((size_t)count, sizeof *out);
+  SHB_CHECK(out, SHB_ERR_IO, "not enough memory for %d peaks", count);
+  for (int i = 0, p = 0; i < n; i++) {
+    if (i != edge && !is_maximum(&c, i)) continue;
+    out[p].point = i;
+    out[p].edge  = i == edge;
+    if (i == edge) {
+      out[p].frequency = frequency[i];
+      out[p].amplitude = amplitude[i];
+      out[p].bandwidth = out[p].damping = NAN;
+    } else {
+      refine_peak(&c, i, &out[p]);
+      measure_bandwidth(&c, &out[p]);
+    }
+    p++;
+  }
+  *peaks   = out;
+  *n_peaks = count;
+  return SHB_OK;
+}
+
+/* Direction in which the frequency leaves point i going by step, 0 at the end of the curve. */
+static int leaving(const curve *c, int i, int step) {
+  for (int j = i + step; j >= 0 && j < c->n; j += step)
+    if (c->f[j] != c->f[i]) return c->f[j] > c->f[i] ? 1 : -1;
+  return 0;
+}
+
+/* +1 the frequency is a maximum at i, -1 a minimum, 0 neither; of a run of equal values only the first counts. */
+static int turning(const curve *c, int i) {
+  if (i <= 0 || i >= c->n - 1 || c->f[i] == c->f[i - 1]) return 0;
+  int before = leaving(c, i, -1), after = leaving(c, i, 1);
+  return before == after ? -before : 0;
+}
+
+static void refine_fold(const curve *c, int i, post_fold *fold) {
+  double s[3];
+  fold->frequency = c->f[i];
+  fold->amplitude = c->a[i];
+  if (!three_points(c, i, s)) return;
+  double at       = vertex(s, c->f + i - 1);
+  fold->frequency = parabola(s, c->f + i - 1, at);
+  fold->amplitude = parabola(s, c->a + i - 1, at);
+}
+
+/* A flagged point i, or a turning point with no flag on either side of it (rounding may move the turn by one). */
+static bool is_fold(const curve *c, const int *special, int i) {
+  if (special && special[i] == 1) return true;
+  if (!turning(c, i)) return false;
+  return !special || (special[i - 1] != 1 && special[i + 1] != 1);
+}
+
+static post_fold fold_at(const curve *c, const int *special, int i) {
+  post_fold fold    = {c->f[i], c->a[i], i, false};
+  bool      flagged = special && special[i] == 1;
+  int       turn    = turning(c, i);
+  if (!flagged) refine_fold(c, i, &fold);
+  for (int j = i - 1; turn == 0 && j <= i + 1; j += 2) turn = turning(c, j);
+  fold.upper = turn > 0;
+  return fold;
+}
+
+shb_status post_find_folds(int n, const double *frequency, const double *amplitude,
+                           const int *special, post_fold **folds, int *n_folds) {
+  curve c     = curve_of(n, frequency, amplitude);
+  int   count = 0;
+  *folds      = NULL;
+  *n_folds    = 0;
+  for (int i = 0; i < n; i++) count += is_fold(&c, special, i);
+  if (count == 0) return SHB_OK;
+  post_fold *out = calloc((size_t)count, sizeof *out);
+  SHB_CHECK(out, SHB_ERR_IO, "not enough memory for %d folds", count);
+  for (int i = 0, p = 0; i < n; i++)
+    if (is_fold(&c, special, i)) out[p++] = fold_at(&c, special, i);
+  *folds   = out;
+  *n_folds = count;
+  return SHB_OK;
+}
+
+int post_highest(int n_peaks, const post_peak *peaks) {
+  int best = n_peaks > 0 ? 0 : -1;
+  for (int i = 1; i < n_peaks; i++)
+    if (peaks[i].amplitude > peaks[best].amplitude) best = i;
+  return best;
+}

@@ -1,0 +1,232 @@
+#include "postproc/findings.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "postproc/unit.h"
+
+static const post_unit HERTZ = {"Hz", 1}, NEWTON = {"N", 1};
+
+/* ---------------------------------------------------------------- key figures */
+
+static void put_figure(post_buffer *out, const char *label, const char *value, const char *note) {
+  post_put(out, "<div class=\"figure\"><dt>%s</dt><dd><b>%s</b><span>%s</span></dd></div>\n", label,
+           value, note);
+}
+
+static void put_peak_figure(post_buffer *out, const char *label, const post_track_point *p) {
+  char a[POST_NUMBER], f[POST_NUMBER], note[160];
+  if (!(p->amplitude > 0)) return;
+  snprintf(note, sizeof note, "at %s%s", post_measure(f, p->frequency, HERTZ, 5),
+           p->edge ? ", the edge of the range" : "");
+  put_figure(out, label, post_measure(a, p->amplitude, post_unit_length(p->amplitude), 3), note);
+}
+
+/* The lower of the two limits' peaks; NAN if neither was computed. */
+static double lower_limit(const post_tracking *t) {
+  return fmin(t->open.amplitude, t->stuck.amplitude);
+}
+
+void post_figures(const post_study *study, post_buffer *out) {
+  const post_tracking *t = &study->tracking;
+  post_put(out, "<dl class=\"figures\">\n");
+  put_peak_figure(out, "Peak, shrouds open", &t->open);
+  put_peak_figure(out, "Peak, shrouds stuck", &t->stuck);
+  if (t->best >= 0) {
+    const post_track_point *best = &t->point[t->best];
+    char                    label[160], n0[POST_NUMBER], percent[POST_NUMBER];
+    snprintf(label, sizeof label, "Lowest peak, n₀ = %s", post_plain(n0, best->n0, 5));
+    strcat(label, "\u00a0N");
+    put_peak_figure(out, label, best);
+    double gain = 1 - best->amplitude / lower_limit(t);
+    if (isfinite(gain))
+      put_figure(out, gain >= 0 ? "Reduction" : "Increase", post_percent(percent, fabs(gain)),
+                 "against the lower of open and stuck");
+  }
+  post_put(out, "</dl>\n");
+}
+
+/* ---------------------------------------------------------------- sentences */
+
+static void put_optimum(const post_study *study, post_buffer *out) {
+  const post_tracking *t = &study->tracking;
+  char                 n0[POST_NUMBER], a[POST_NUMBER], f[POST_NUMBER], percent[POST_NUMBER];
+  if (t->best < 0) {
+    post_put(out, "<li>No nonlinear curve was computed: these are the linear limits alone.</li>\n");
+    return;
+  }
+  const post_track_point *best = &t->point[t->best];
+  post_put(out, "<li><b>%s</b> of the %d preloads computed gives the lowest peak, %s at %s",
+           post_measure(n0, best->n0, NEWTON, 3), t->n,
+           post_measure(a, best->amplitude, post_unit_length(best->amplitude), 3),
+           post_measure(f, best->frequency, HERTZ, 5));
+  const char *joint = ": ";
+  for (int i = 0; i < 2; i++) {
+    double ratio = best->amplitude / (i ? t->stuck : t->open).amplitude;
+    if (!isfinite(ratio)) continue;
+    post_put(out, "%s%s %s %s", joint, post_percent(percent, fabs(1 - ratio)),
+             ratio <= 1 ? "below" : "above", i ? "stuck" : "open");
+    joint = ", ";
+  }
+  post_put(out, ".");
+  if (isfinite(t->optimum_n0))
+    post_put(out,
+             " The optimum lies between %s and %s; a parabola through the three puts it near %s.",
+             post_plain(n0, t->bracket[0], 5), post_measure(a, t->bracket[1], NEWTON, 3),
+             post_measure(f, t->optimum_n0, NEWTON, 2));
+  else if (t->n > 1)
+    post_put(out, " It is the %s preload computed: the optimum may lie beyond it.",
+             t->best == 0 ? "lowest" : "highest");
+  post_put(out, "</li>\n");
+}
+
+static void put_shift(const post_study *study, post_buffer *out) {
+  const post_tracking *t = &study->tracking;
+  char                 from[POST_NUMBER], to[POST_NUMBER], n0[POST_NUMBER], n1[POST_NUMBER];
+  double               limits = t->stuck.frequency - t->open.frequency;
+  if (t->n > 1) {
+    const post_track_point *a = &t->point[0], *b = &t->point[t->n - 1];
+    post_put(out, "<li>From %s to %s of preload the highest peak moves from %s to %s",
+             post_plain(n0, a->n0, 5), post_measure(n1, b->n0, NEWTON, 3),
+             post_plain(from, a->frequency, 5), post_measure(to, b->frequency, HERTZ, 5));
+    if (isfinite(limits))
+      post_put(out, " (open to stuck: %+.3g\u00a0Hz, %+.2g\u00a0%%)", limits,
+               100 * limits / t->open.frequency);
+    post_put(out, ".</li>\n");
+  } else if (isfinite(limits)) {
+    post_put(out, "<li>Sticking shrouds move the highest peak from %s to %s.</li>\n",
+             post_plain(from, t->open.frequency, 5),
+             post_measure(to, t->stuck.frequency, HERTZ, 5));
+  }
+}
+
+/* Groups whose curves turn back, with the span of frequencies between their folds. */
+static void put_folds(const post_study *study, post_buffer *out) {
+  int folds = 0;
+  for (int b = 0; b < study->response->n_branches; b++) folds += study->curve[b].n_folds;
+  if (folds == 0) {
+    if (study->tracking.n > 0) post_put(out, "<li>No curve folds: no jumps in this range.</li>\n");
+    return;
+  }
+  post_put(out, "<li><b>Jumps.</b> Folds on ");
+  int shown = 0;
+  for (int g = 0; g < study->n_groups; g++) {
+    double lo = INFINITY, hi = -INFINITY;
+    for (int b = 0; b < study->response->n_branches; b++)
+      for (int i = 0; study->curve[b].group == g && i < study->curve[b].n_folds; i++) {
+        lo = fmin(lo, study->curve[b].fold[i].frequency);
+        hi = fmax(hi, study->curve[b].fold[i].frequency);
+      }
+    if (!(lo <= hi) || shown++ >= 6) continue;
+    char name[64], from[POST_NUMBER], to[POST_NUMBER];
+    post_group_name(&study->group[g], name);
+    post_put(out, "%s%s (%s", shown > 1 ? "; " : "", name, post_plain(from, lo, 6));
+    post_put(out, hi > lo ? " to %s)" : "%s)",
+             hi > lo ? post_measure(to, hi, HERTZ, 6) : "\u00a0Hz");
+  }
+  if (shown > 6) post_put(out, " and %d more", shown - 6);
+  post_put(out,
+           ". In between several answers exist at one frequency, and a slow sweep jumps from one "
+           "to another.</li>\n");
+}
+
+static void put_stability(const post_study *study, post_buffer *out) {
+  int unstable = 0, unknown = 0, total = 0;
+  for (int b = 0; b < study->response->n_branches; b++) {
+    const mhb_branch *branch = &study->response->branch[b];
+    for (int p = 0; branch->kind == MHB_BRANCH_NONLINEAR && p < branch->n_points; p++) {
+      total++;
+      unstable += branch->stable[p] == 0;
+      unknown += branch->stable[p] < 0;
+    }
+  }
+  if (total == 0) return;
+  if (unknown == total)
+    post_put(
+        out,
+        "<li>Stability was not computed; between the folds of a curve it is usually lost.</li>\n");
+  else if (unstable > 0)
+    post_put(out,
+             "<li>%d of %d points are unstable (dotted): a machine does not stay there.</li>\n",
+             unstable, total);
+}
+
+static void put_edges(const post_study *study, post_buffer *out) {
+  const post_tracking *t     = &study->tracking;
+  int                  edges = t->open.edge + t->stuck.edge;
+  for (int i = 0; i < t->n; i++) edges += t->point[i].edge;
+  if (edges == 0) return;
+  post_put(out,
+           "<li class=\"caution\">On %d curve%s the largest value is at the edge of the frequency "
+           "range: the "
+           "true peak may lie outside. Widen <code>mhb.frequency</code>.</li>\n",
+           edges, edges > 1 ? "s" : "");
+}
+
+static void put_incomplete(const post_study *study, post_buffer *out) {
+  for (int b = 0; b < study->response->n_branches; b++) {
+    const mhb_branch *branch = &study->response->branch[b];
+    char              name[64], f[POST_NUMBER];
+    if (branch->complete) continue;
+    post_group_name(&study->group[study->curve[b].group], name);
+    post_put(out, "<li class=\"caution\"><b>Not complete:</b> %s (curve %d)", name, b);
+    if (branch->n_points > 0)
+      post_put(out, " stopped at %s after %d points",
+               post_measure(f, branch->frequency[branch->n_points - 1], HERTZ, 6),
+               branch->n_points);
+    post_put(out, ": ");
+    post_put_escaped(out, branch->reason && *branch->reason ? branch->reason : "no reason given");
+    post_put(out, ".</li>\n");
+  }
+}
+
+static void put_accuracy(const post_study *study, post_buffer *out) {
+  double worst = NAN, at_peak = NAN;
+  for (int b = 0; b < study->response->n_branches; b++)
+    for (int p = 0; p < study->response->branch[b].n_points; p++)
+      worst = fmax(worst, post_error(&study->response->branch[b], p));
+  for (int i = 0; i < study->tracking.n; i++) {
+    const post_track_point *p = &study->tracking.point[i];
+    at_peak = fmax(at_peak, post_error(&study->response->branch[p->branch], p->point));
+  }
+  if (!(worst > 0)) return;
+  char a[POST_NUMBER], b[POST_NUMBER];
+  post_put(out, "<li>Estimated error of the harmonic balance: at most %s anywhere",
+           post_percent(a, worst));
+  if (at_peak > 0) post_put(out, ", %s at the peaks", post_percent(b, at_peak));
+  post_put(out, ".</li>\n");
+}
+
+void post_findings(const post_study *study, post_buffer *out) {
+  post_put(out, "<ul class=\"findings\">\n");
+  put_incomplete(study, out);
+  put_edges(study, out);
+  put_optimum(study, out);
+  put_shift(study, out);
+  put_folds(study, out);
+  put_stability(study, out);
+  put_accuracy(study, out);
+  post_put(out, "</ul>\n");
+}
+
+/* ---------------------------------------------------------------- terminal */
+
+static void put_brief(post_buffer *out, const char *name, const post_track_point *p) {
+  char a[POST_NUMBER], f[POST_NUMBER];
+  if (!(p->amplitude > 0)) return;
+  post_put(out, "%s%s peak %s at %s", out->length ? "; " : "", name,
+           post_measure(a, p->amplitude, post_unit_length(p->amplitude), 3),
+           post_measure(f, p->frequency, HERTZ, 5));
+}
+
+void post_summary(const post_study *study, post_buffer *out) {
+  const post_tracking *t = &study->tracking;
+  put_brief(out, "open", &t->open);
+  put_brief(out, "stuck", &t->stuck);
+  if (t->best < 0) return;
+  char name[96], n0[POST_NUMBER];
+  snprintf(name, sizeof name, "lowest (n0 = %s)",
+           post_measure(n0, t->point[t->best].n0, NEWTON, 3));
+  put_brief(out, name, &t->point[t->best]);
+}

@@ -1,0 +1,21 @@
+/* The numbers behind the page's interactive charts, as JSON for its script.
+ *
+ * Members: groups [{name, kind, n0, rank}], branches [{group, n, complete, reason, data}], outputs [{place, axis,
+ * quantity, row, track, peaks, folds}], spectra [{place, row, n}], rows, chosen, log, frequency [lo, hi].
+ *   data      base64 of float32 [rows][n]; rows 0..7: frequency Hz, shares stuck, slipping, open, dissipation J,
+ *             error estimate, stable, special; then what outputs and spectra (harmonics 0..n-1) point to, in m
+ *   track     a preload each: [group, n0, amplitude, frequency, edge, stuck, slipping, open, dissipation]
+ *   peaks, folds   [group, frequency, amplitude] */
+#ifndef POSTPROC_PAGE_DATA_H
+#define POSTPROC_PAGE_DATA_H
+
+#include "postproc/buffer.h"
+#include "postproc/study.h"
+
+/* At most about 2.3 MB: axes, harmonics and places are left out, in this order and to be told to the reader, when
+ * they do not fit; beyond some 30 000 points ordinary points between the special ones are thinned.
+ *   left_out  out  number of columns left out
+ * Errors: SHB_ERR_IO (no memory). */
+shb_status post_page_data(const post_study *study, int chosen, post_buffer *out, int *left_out);
+
+#endif

@@ -1,0 +1,64 @@
+#include "postproc/publish.h"
+
+#include <stdlib.h>
+
+#include "postproc/csv.h"
+#include "postproc/findings.h"
+#include "postproc/picture.h"
+#include "postproc/report.h"
+
+typedef struct {
+  mhb_response *response;
+  post_source   source;
+  post_study   *study;
+  post_buffer   html, csv, svg;
+} work;
+
+static shb_status compose(const post_job *job, shb_progress *progress, work *w) {
+  double started = shb_seconds();
+  shb_progress_show(progress, 0, "reading %s", job->response);
+  SHB_TRY(mhb_response_read(job->response, &w->response));
+  SHB_TRY(post_source_open(job->response, &w->source));
+  SHB_TRY(post_study_create(w->response, &w->study));
+  shb_progress_note(progress, "read %d points on %d curves in %.2f s", w->study->n_points,
+                    w->response->n_branches, shb_seconds() - started);
+  started = shb_seconds();
+  shb_progress_show(progress, 30, "page");
+  SHB_TRY(post_report(w->study, &w->source, job->case_name, &w->html));
+  shb_progress_note(progress, "page, %.1f MB, in %.2f s", 1e-6 * (double)w->html.length,
+                    shb_seconds() - started);
+  started = shb_seconds();
+  shb_progress_show(progress, 70, "table");
+  post_csv(w->response, &w->csv);
+  post_picture(w->study, job->case_name, &w->svg);
+  shb_progress_note(progress, "table, %.1f MB, and picture in %.2f s", 1e-6 * (double)w->csv.length,
+                    shb_seconds() - started);
+  bool failed = w->html.failed || w->csv.failed || w->svg.failed;
+  SHB_CHECK(!failed, SHB_ERR_IO, "%s: not enough memory for its report", job->response);
+  return SHB_OK;
+}
+
+static shb_status write_all(const post_job *job, const work *w) {
+  SHB_TRY(post_buffer_publish(&w->csv, job->csv));
+  SHB_TRY(post_buffer_publish(&w->svg, job->svg));
+  return post_buffer_publish(&w->html, job->html);
+}
+
+shb_status post_publish(const post_job *job, shb_progress *progress, char **summary) {
+  work       w      = {0};
+  shb_status status = compose(job, progress, &w);
+  if (status == SHB_OK) status = write_all(job, &w);
+  if (status == SHB_OK && summary) {
+    post_buffer text = {0};
+    post_summary(w.study, &text);
+    *summary = text.text; /* NULL when there is nothing to say */
+  }
+  shb_progress_clear(progress);
+  post_study_destroy(w.study);
+  post_source_free(&w.source);
+  mhb_response_destroy(w.response);
+  post_buffer_free(&w.html);
+  post_buffer_free(&w.csv);
+  post_buffer_free(&w.svg);
+  return status;
+}

@@ -1,0 +1,18 @@
+/* The stage: from NAME.response.h5 to NAME.html, NAME.csv and NAME.svg. */
+#ifndef POSTPROC_PUBLISH_H
+#define POSTPROC_PUBLISH_H
+
+#include "mesh/progress.h"
+#include "mesh/status.h"
+
+typedef struct {
+  const char *case_name;        /* title of the page */
+  const char *response;         /* file to read */
+  const char *html, *csv, *svg; /* files to write, each whole or not at all */
+} post_job;
+
+/* Nothing is written unless all three could be composed. summary: malloc'ed line for the terminal, may be NULL.
+ * Errors: as mhb_response_read; SHB_ERR_INPUT no point; SHB_ERR_IO. */
+shb_status post_publish(const post_job *job, shb_progress *progress, char **summary);
+
+#endif

@@ -1,0 +1,84 @@
+#include "postproc/unit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static post_unit choose(const post_unit *unit, int n, double largest, int usual) {
+  largest = fabs(largest);
+  if (!isfinite(largest) || largest == 0) return unit[usual];
+  for (int i = 0; i < n; i++)
+    if (largest >= 0.9995 * unit[i].scale) return unit[i];
+  return unit[n - 1];
+}
+
+post_unit post_unit_length(double largest) {
+  static const post_unit unit[] = {
+      {"m", 1}, {"mm", 1e-3}, {"µm", 1e-6}, {"nm", 1e-9}, {"pm", 1e-12}};
+  return choose(unit, 5, largest, 2);
+}
+
+post_unit post_unit_force(double largest) {
+  static const post_unit unit[] = {{"MN", 1e6}, {"kN", 1e3}, {"N", 1}};
+  return choose(unit, 3, fabs(largest) >= 1e4 ? largest : 1, 2);
+}
+
+post_unit post_unit_energy(double largest) {
+  static const post_unit unit[] = {{"kJ", 1e3}, {"J", 1}, {"mJ", 1e-3}, {"µJ", 1e-6}, {"nJ", 1e-9}};
+  return choose(unit, 5, largest, 2);
+}
+
+/* "1.2e-05" -> "1.2×10⁻⁵", "-3" -> "−3", "12." -> "12" */
+static void typeset(const char *plain, char out[POST_NUMBER]) {
+  static const char *const super[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+  size_t                   used = 0;
+  const char              *c    = plain;
+  if (*c == '-') {
+    used += (size_t)snprintf(out, POST_NUMBER, "−");
+    c++;
+  }
+  for (; *c && *c != 'e'; c++)
+    if (*c != '.' || (c[1] >= '0' && c[1] <= '9')) out[used++] = *c;
+  out[used] = '\0';
+  if (*c != 'e') return;
+  int power = atoi(c + 1);
+  used += (size_t)snprintf(out + used, POST_NUMBER - used, "×10%s", power < 0 ? "⁻" : "");
+  char digits[16];
+  snprintf(digits, sizeof digits, "%d", abs(power));
+  for (const char *d = digits; *d; d++)
+    used += (size_t)snprintf(out + used, POST_NUMBER - used, "%s", super[*d - '0']);
+}
+
+static char *format(char out[POST_NUMBER], double value, int digits, const char *how) {
+  if (!isfinite(value)) return strcpy(out, "–");
+  char plain[40];
+  snprintf(plain, sizeof plain, how, digits > 15 ? 15 : digits, value == 0 ? 0.0 : value);
+  typeset(plain, out);
+  return out;
+}
+
+char *post_number(char out[POST_NUMBER], double value, int digits) {
+  return format(out, value, digits, value == 0 ? "%.*g" : "%#.*g");
+}
+
+char *post_plain(char out[POST_NUMBER], double value, int digits) {
+  return format(out, value, digits, "%.*g");
+}
+
+char *post_measure(char out[POST_NUMBER], double value, post_unit unit, int digits) {
+  post_number(out, value / unit.scale, digits);
+  if (!isfinite(value)) return out;
+  size_t used = strlen(out);
+  snprintf(out + used, POST_NUMBER - used, "\u00a0%s", unit.name);
+  return out;
+}
+
+char *post_percent(char out[POST_NUMBER], double ratio) {
+  if (!isfinite(ratio)) return strcpy(out, "–");
+  post_plain(out, 100 * ratio, 2);
+  if (fabs(ratio) >= 0.995) snprintf(out, POST_NUMBER, "%.0f", 100 * ratio);
+  size_t used = strlen(out);
+  snprintf(out + used, POST_NUMBER - used, "\u00a0%%");
+  return out;
+}
