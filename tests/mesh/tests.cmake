@@ -4,3 +4,15 @@ target_link_libraries(tests_box PUBLIC shb_mesh)
 
 shb_test(mesh fe_mesh fast tests_box)
 shb_test(mesh blade fast shb_mesh)
+
+if(TARGET shb_case)
+  shb_test(mesh scene fast shb_case shb_mesh)
+  target_compile_definitions(test_mesh_scene PRIVATE
+    SCENE="${PROJECT_SOURCE_DIR}/cases/z_notch_blade/case.yaml")
+endif()
+if(TARGET shroudhb-mesh)
+  add_test(NAME mesh.command
+    COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/mesh/test_command.sh $<TARGET_FILE:shroudhb-mesh>
+            ${PROJECT_SOURCE_DIR}/cases/z_notch_blade/case.yaml)
+  set_tests_properties(mesh.command PROPERTIES LABELS fast TIMEOUT 120)
+endif()

@@ -1,0 +1,113 @@
+#!/bin/sh
+# shroudhb-mesh: meshes once, skips when up to date, checks brought meshes, exit codes, one line a fault.
+# usage: test_command.sh PATH_OF_SHROUDHB_MESH CASE.yaml
+set -u
+program=$1
+scene=$2
+work=$(mktemp -d) || exit 1
+trap 'rm -rf "$work"' EXIT
+failed=0
+export HOME="$work/home" # gmsh must leave it alone (its FLTK makes an empty preferences file)
+mkdir "$work/home" "$work/dir"
+cp "$scene" "$work/dir/case.yaml"
+mesh=$work/dir/z_notch_blade.msh
+
+fail() {
+  echo "FAILED: $*"
+  failed=$((failed + 1))
+}
+
+run() { # CODE WORD...
+  expected=$1
+  shift
+  (cd "$work/dir" && "$program" "$@") >"$work/out" 2>"$work/err" </dev/null
+  code=$?
+  [ "$code" -eq "$expected" ] || {
+    fail "shroudhb-mesh $*: exit code $code, expected $expected"
+    cat "$work/out" "$work/err"
+  }
+}
+
+says() { # TEXT
+  grep -qF -e "$1" "$work/err" || {
+    fail "no '$1' in:"
+    cat "$work/err"
+  }
+}
+
+lines() { # COUNT
+  [ "$(wc -l <"$work/err")" -eq "$1" ] || {
+    fail "expected $1 lines:"
+    cat "$work/err"
+  }
+}
+
+inode() {
+  ls -i "$mesh" | cut -d' ' -f1
+}
+
+# A small case that names a mesh file.
+bring() { # FILE
+  sed -e '/^mesh:/,/^material:/{/^material:/!d}' "$scene" >"$work/dir/brought.yaml"
+  printf 'mesh: {file: %s}\n' "$1" >>"$work/dir/brought.yaml"
+}
+
+run 0 --quiet case.yaml
+lines 0
+[ -s "$mesh" ] || fail "no mesh written"
+cp "$mesh" "$work/first.msh"
+first=$(inode)
+
+run 0 --verbose case.yaml
+says "is up to date"
+[ "$(inode)" = "$first" ] || fail "an up-to-date mesh was written again"
+
+run 0 --quiet --force case.yaml
+cmp -s "$mesh" "$work/first.msh" || fail "the same case gave another mesh"
+
+sed -i 's/mu: 0.3/mu: 0.4/' "$work/dir/case.yaml"
+run 0 --verbose case.yaml
+says "is up to date"
+
+sed -i 's/psi: 35 deg/psi: 30 deg/' "$work/dir/case.yaml"
+run 0 --verbose case.yaml
+cmp -s "$mesh" "$work/first.msh" && fail "a change of psi was not seen"
+
+cp "$mesh" "$work/second.msh"
+sed -i 's/contact: 24 mm/contact: 70 mm/' "$work/dir/case.yaml"
+run 2 case.yaml
+lines 1
+says "shroudhb: error: mesh.blade.shroud.contact: 70 mm is too long"
+cmp -s "$mesh" "$work/second.msh" || fail "a refused case touched the earlier mesh"
+
+cp "$work/first.msh" "$work/dir/own.msh"
+bring own.msh
+run 0 --verbose brought.yaml
+says "is sound"
+sed -i 's/blades: 40/blades: 41/' "$work/dir/brought.yaml"
+run 2 brought.yaml
+lines 1
+says "own.msh: contact faces do not match"
+
+sed -i 's/"contact_left"/"somewhere"/' "$work/dir/own.msh"
+bring own.msh
+run 2 brought.yaml
+lines 1
+says "group contact_left is absent"
+
+head -c 100000 "$work/first.msh" >"$work/dir/own.msh"
+run 2 brought.yaml
+lines 1
+says "own.msh: cut short"
+
+rm "$work/dir/own.msh"
+run 4 brought.yaml
+says "own.msh: cannot be read: No such file"
+
+left=$(ls -A "$work/home" | grep -v -e '^.fltk$')
+[ -z "$left" ] || fail "something was written to HOME: $left"
+left=$(ls -A "$work/dir" | grep -v -e '^case.yaml$' -e '^brought.yaml$' -e '^z_notch_blade.msh$')
+[ -z "$left" ] || fail "left behind: $left"
+
+[ "$failed" -eq 0 ] || exit 1
+echo "shroudhb-mesh: all checks passed"
