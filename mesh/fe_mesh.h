@@ -37,7 +37,8 @@ const char *mesh_set_name(mesh_set_id id);
 
 /* Read a gmsh .msh file (2.2 or 4.1) with those physical groups. Only nodes that an element uses are kept.
  * Errors: SHB_ERR_IO unreadable; SHB_ERR_INPUT not tet10, no volume elements, group root absent or empty,
- * inverted elements (det J <= 0 at a quadrature or corner point; the first five tags are named). */
+ * inverted elements (det J <= 0 at a quadrature or corner point; the first five tags are named), a group's
+ * face not on the surface of the body. */
 shb_status mesh_fe_read(const char *path, mesh_fe *mesh);
 
 /* Which left node lies on each right node after rotating the left face by the sector angle 2 pi/blades.
@@ -47,7 +48,8 @@ shb_status mesh_fe_match(const mesh_fe *mesh, mesh_axis axis, int blades, int *n
                          int **right_nodes, int **left_nodes);
 
 /* Swap contact_right and contact_left if the outward normal of contact_right has a negative tangential
- * component (right is the side whose normal has a positive one). Errors: SHB_ERR_INPUT if both point alike. */
+ * component (right is the side whose normal has a positive one); nothing if either group is empty.
+ * Errors: SHB_ERR_INPUT if both point alike. */
 shb_status mesh_fe_orient(mesh_fe *mesh, mesh_axis axis);
 
 /* Index of the node nearest to point. */
