@@ -8,3 +8,11 @@ endforeach()
 add_test(NAME cases.commands
   COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/cases/test_commands.sh $<TARGET_FILE:shroudhb>)
 set_tests_properties(cases.commands PROPERTIES LABELS fast TIMEOUT 120)
+
+if(TARGET shroudhb-post)
+  shb_test(cases z_notch slow shb_response)
+  target_sources(test_cases_z_notch PRIVATE cases/scratch.c)
+  target_compile_definitions(test_cases_z_notch PRIVATE
+    SHROUDHB="$<TARGET_FILE:shroudhb>" SCENE="${PROJECT_SOURCE_DIR}/cases/z_notch_blade/case.yaml")
+  add_dependencies(test_cases_z_notch shroudhb shroudhb-mesh shroudhb-modal shroudhb-mhb shroudhb-post)
+endif()

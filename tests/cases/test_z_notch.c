@@ -1,0 +1,172 @@
+/* The shipped scene from end to end: the numbers of its README, re-runs that do nothing, memory. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+
+#include <cmocka.h>
+
+#include "mhb/follow.h"
+#include "mhb/response.h"
+#include "tests/cases/scratch.h"
+
+static char          folder[SCRATCH_PATH];
+static mhb_response *response;
+
+#define assert_within(value, wanted, relative)                                       \
+  do {                                                                               \
+    double v_ = (value), w_ = (wanted);                                              \
+    if (!(fabs(v_ - w_) <= (relative)*fabs(w_)))                                     \
+      fail_msg("%s = %.6g, not %.6g (%.2g off)", #value, v_, w_, fabs(v_ / w_ - 1)); \
+  } while (0)
+
+static char *path_of(const char *suffix) {
+  static char path[SCRATCH_PATH + 64];
+  snprintf(path, sizeof path, "%s/z_notch_blade%s", folder, suffix);
+  return path;
+}
+
+static int run(void) {
+  char command[4 * SCRATCH_PATH];
+  snprintf(command, sizeof command, "'%s' run --quiet '%s/case.yaml'", SHROUDHB, folder);
+  return system(command);
+}
+
+static int run_scene(void **state) {
+  (void)state;
+  char command[4 * SCRATCH_PATH];
+  scratch_create(folder);
+  snprintf(command, sizeof command, "cp '%s' '%s/case.yaml'", SCENE, folder);
+  if (system(command) != 0 || run() != 0) return 1;
+  return mhb_response_read(path_of(".response.h5"), &response) != SHB_OK;
+}
+
+static int clean(void **state) {
+  (void)state;
+  mhb_response_destroy(response);
+  scratch_remove(folder);
+  return 0;
+}
+
+/* Amplitude of the probe's first harmonic over its three axes, m. */
+static double amplitude(const mhb_branch *b, int point) {
+  int    K   = response->n_harmonics + 1;
+  double sum = 0;
+  for (int axis = 0; axis < 3; axis++)
+    sum += pow(cabs(b->probe[(size_t)((point * 3 + axis) * K + 1)]), 2);
+  return sqrt(sum);
+}
+
+static double peak(const mhb_branch *b, double *frequency) {
+  *frequency = 0;
+  double top = 0;
+  for (int i = 0; i < b->n_points; i++) {
+    if (amplitude(b, i) <= top) continue;
+    top        = amplitude(b, i);
+    *frequency = b->frequency[i];
+  }
+  return top;
+}
+
+static const mhb_branch *branch_of(mhb_branch_kind kind, double n0) {
+  for (int i = 0; i < response->n_branches; i++) {
+    const mhb_branch *b = &response->branch[i];
+    if (b->kind == kind && (kind != MHB_BRANCH_NONLINEAR || fabs(b->n0[0] - n0) < 1e-9)) return b;
+  }
+  fail_msg("no branch of kind %d at %g N", (int)kind, n0);
+  return NULL;
+}
+
+static void frequency_shifts_from_open_to_stuck(void **state) {
+  (void)state;
+  double open, stuck;
+  assert_within(peak(branch_of(MHB_BRANCH_OPEN, 0), &open), 5.93e-3, .01);
+  assert_within(peak(branch_of(MHB_BRANCH_STUCK, 0), &stuck), 2.846e-3, .01);
+  assert_within(open, 116.07, 2e-3);
+  assert_within(stuck, 243.98, 2e-3);
+}
+
+static void peaks_against_preload_have_an_optimum(void **state) {
+  (void)state;
+  static const double rows[][3] = {{-250, 5.477e-4, 121.74}, {10, 3.720e-5, 213.63},
+                                   {15, 3.768e-5, 215.57},   {25, 4.714e-5, 234.63},
+                                   {50, 8.387e-5, 239.67},   {100, 1.582e-4, 242.14},
+                                   {250, 3.787e-4, 243.39},  {1000, 1.439e-3, 243.96}};
+  for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+    double            frequency;
+    const mhb_branch *b = branch_of(MHB_BRANCH_NONLINEAR, rows[i][0]);
+    assert_true(b->complete);
+    assert_within(peak(b, &frequency), rows[i][1], .02);
+    assert_within(frequency, rows[i][2], 3e-3);
+  }
+}
+
+static int folds(const mhb_branch *b, double *list) {
+  int n = 0;
+  for (int i = 0; i < b->n_points; i++)
+    if (b->special[i] == MHB_FOLD && n < 8) list[n++] = b->frequency[i];
+  return n;
+}
+
+/* Preload: the upper fold is passed first and the lower lies below it. Gap: the peak leans right. */
+static void softening_and_hardening_jump(void **state) {
+  (void)state;
+  double list[8];
+  assert_int_equal(folds(branch_of(MHB_BRANCH_NONLINEAR, 25), list), 2);
+  assert_within(list[0], 223.32, 3e-3);
+  assert_within(list[1], 221.79, 3e-3);
+  assert_int_equal(folds(branch_of(MHB_BRANCH_NONLINEAR, -250), list), 2);
+  assert_within(list[0], 121.92, 3e-3);
+  assert_within(list[1], 119.22, 3e-3);
+}
+
+static void every_point_balances(void **state) {
+  (void)state;
+  for (int i = 0; i < response->n_branches; i++) {
+    const mhb_branch *b = &response->branch[i];
+    for (int p = 0; p < b->n_points; p++) {
+      assert_true(b->error_newton[p] < 1e-8);
+      assert_true(b->error_modal[p] < 1e-6);
+      assert_true(b->dissipation[p] > -1e-12);
+    }
+  }
+}
+
+static void results_are_there_and_a_second_run_leaves_them(void **state) {
+  (void)state;
+  static const char *const suffix[] = {".msh", ".modal.h5", ".response.h5"};
+  struct stat              before[3], after;
+  assert_int_equal(stat(path_of(".html"), &after), 0);
+  assert_int_equal(stat(path_of(".csv"), &after), 0);
+  assert_int_equal(stat(path_of(".svg"), &after), 0);
+  for (int i = 0; i < 3; i++) assert_int_equal(stat(path_of(suffix[i]), &before[i]), 0);
+  assert_int_equal(run(), 0);
+  for (int i = 0; i < 3; i++) {
+    assert_int_equal(stat(path_of(suffix[i]), &after), 0);
+    assert_true(after.st_ino == before[i].st_ino && after.st_mtime == before[i].st_mtime);
+  }
+}
+
+static void memory_stays_below_two_gigabytes(void **state) {
+  (void)state;
+  struct rusage usage;
+  getrusage(RUSAGE_CHILDREN, &usage);
+  assert_true(usage.ru_maxrss > 0 && usage.ru_maxrss < 2L * 1024 * 1024);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(frequency_shifts_from_open_to_stuck),
+      cmocka_unit_test(peaks_against_preload_have_an_optimum),
+      cmocka_unit_test(softening_and_hardening_jump),
+      cmocka_unit_test(every_point_balances),
+      cmocka_unit_test(results_are_there_and_a_second_run_leaves_them),
+      cmocka_unit_test(memory_stays_below_two_gigabytes),
+  };
+  return cmocka_run_group_tests(tests, run_scene, clean);
+}
