@@ -1,4 +1,5 @@
 /* shroudhb-mhb: the harmonic balance of a case, or the contact law for a prescribed motion. Starts no MPI. */
+#include <cblas.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -111,6 +112,7 @@ int main(int argc, char **argv) {
   case_file file;
   if ((code = case_read(options.path, CASE_MHB, stderr, &file)) != SHB_OK) return code;
   shb_interrupt_catch();
+  openblas_set_num_threads(1); /* threads go to the preloads; the systems are small */
   shb_status status = run(&file, &options);
   case_free(&file);
   return command_finish(status);

@@ -71,6 +71,7 @@ void shb_interrupt_catch(void) {
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, NULL);
   sigaction(SIGTERM, &action, NULL);
+  signal(SIGXFSZ, SIG_IGN); /* a file size limit shall fail the write, not kill the process */
 }
 
 bool shb_interrupted(void) {

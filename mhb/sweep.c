@@ -151,9 +151,23 @@ static shb_status outcome(const mhb_response *response) {
   return SHB_OK;
 }
 
+/* A load harmonic that the balance has no room for would vanish without a word. */
+static shb_status check_load(const modal_model *model, const mhb_settings *settings) {
+  for (int h = settings->harmonics / settings->subharmonics + 1; h <= model->n_load; h++) {
+    double size = 0;
+    for (int i = 0; i < model->n_modes; i++)
+      size += cabs(model->modal_force[h * model->n_modes + i]);
+    SHB_CHECK(size == 0, SHB_ERR_INPUT,
+              "the modal file's load has harmonic %d, which needs mhb.harmonics of %d or more", h,
+              h * settings->subharmonics);
+  }
+  return SHB_OK;
+}
+
 shb_status mhb_sweep(const modal_model *model, const mhb_settings *settings, const char *path,
                      const shb_provenance *provenance, shb_progress *progress, mhb_response **out) {
-  *out       = NULL;
+  *out = NULL;
+  SHB_TRY(check_load(model, settings));
   sweep s    = {.base       = {.point = point, .lock = lock},
                 .settings   = settings,
                 .path       = path,
