@@ -580,13 +580,17 @@ static void finish_stuck(mhb_contact *c, const mhb_stuck *stuck, int derivative)
     c->f[k * nf] = stuck->c[k];
   }
   if (!derivative || stuck->n_active == 0) return;
-  double basis[2][mhb_real_size(c->m)];
-  for (int a = 0; a < stuck->n_active; a++) mhb_basis(c->m, stuck->time[a], basis[a], NULL);
+  double basis[2][mhb_real_size(c->m)], rate[2][mhb_real_size(c->m)];
+  for (int a = 0; a < stuck->n_active; a++) mhb_basis(c->m, stuck->time[a], basis[a], rate[a]);
   for (int j = 0; j < 3 * nb; j++) {
-    double dx[2][2] = {{0}}, dn[2] = {0}, dc[2];
-    for (int a = 0; a < stuck->n_active; a++) column_change(c, basis[a], j, dx[a], &dn[a]);
-    if (j == nb || j == 2 * nb) memset(dx, 0, sizeof dx); /* the mean of s does not enter */
-    mhb_stuck_derivative(&c->signals, c->slip.mu, stuck, dn, (const double(*)[2])dx, dc);
+    double value[2][3] = {{0}}, slope[2][3] = {{0}}, dc[2];
+    for (int a = 0; a < stuck->n_active; a++) {
+      if (j == nb || j == 2 * nb) break; /* the mean of s does not enter */
+      column_change(c, basis[a], j, &value[a][1], &value[a][0]);
+      column_change(c, rate[a], j, &slope[a][1], &slope[a][0]);
+    }
+    mhb_stuck_derivative(&c->signals, c->slip.mu, stuck, (const double(*)[3])value,
+                         (const double(*)[3])slope, dc);
     c->J[j]                                           = dc[0];
     c->J[(size_t)nf * (size_t)c->columns + (size_t)j] = dc[1];
   }

@@ -144,7 +144,8 @@ void mhb_residual_evaluate(mhb_residual *b, const double *x, double omega, doubl
   if (jacobian) assemble_jacobian(b, jacobian);
 }
 
-/* Stuck: (I + R_k S) u_k = free_k - R_k s0, S = diag(kv, Ku), s0 the unbalanced preload at k = 0. */
+/* Stuck: (I + R_k S) u_k = free_k - R_k s0, S = diag(kv, Ku), s0 the unbalanced preload at k = 0. The mean friction is
+ * zero there (stuck.h: the smallest admissible one), so that S_0 = diag(kv, 0). */
 static shb_status linear_harmonic(const mhb_residual *b, int k, int stuck, double complex *u) {
   int                   n = 3 * b->n_pairs;
   const double complex *R = b->receptance->R + (size_t)k * (size_t)n * (size_t)n;
@@ -156,8 +157,8 @@ static shb_status linear_harmonic(const mhb_residual *b, int k, int stuck, doubl
     for (int pair = 0; pair < b->n_pairs; pair++) {
       const mhb_law        *law  = &b->law[pair];
       const double complex *r    = R + (size_t)i * (size_t)n + 3 * pair;
-      double complex        s[3] = {r[0] * law->kv, r[1] * law->ku[0] + r[2] * law->ku[1],
-                                    r[1] * law->ku[1] + r[2] * law->ku[2]};
+      double complex        s[3] = {r[0] * law->kv, k ? r[1] * law->ku[0] + r[2] * law->ku[1] : 0,
+                             k ? r[1] * law->ku[1] + r[2] * law->ku[2] : 0};
       for (int c = 0; c < 3; c++)
         A[(size_t)(3 * pair + c) * (size_t)n + (size_t)i] = s[c] + (i == 3 * pair + c);
       if (k == 0) u[i] -= r[0] * (fmax(law->n0, 0) - law->balance);
@@ -181,8 +182,9 @@ shb_status mhb_residual_linear(mhb_residual *b, double omega, int stuck, double 
       const mhb_law        *law = &b->law[a];
       const double complex *u   = b->uk + 3 * a;
       b->pk[3 * a]              = law->kv * u[0] + (k == 0 ? fmax(law->n0, 0) - law->balance : 0);
-      b->pk[3 * a + 1]          = law->ku[0] * u[1] + law->ku[1] * u[2];
-      b->pk[3 * a + 2]          = law->ku[1] * u[1] + law->ku[2] * u[2];
+      if (k == 0) continue;
+      b->pk[3 * a + 1] = law->ku[0] * u[1] + law->ku[1] * u[2];
+      b->pk[3 * a + 2] = law->ku[1] * u[1] + law->ku[2] * u[2];
     }
     store(b, b->p, k, b->pk);
   }

@@ -155,6 +155,37 @@ static int add_violated(discs *set, const double c[2]) {
   return added;
 }
 
+/* What the one-disc solution does with time: the slope g of |f| - r, its own slope, and q.f'. */
+typedef struct {
+  double e[2], size, r, slope, bending, across;
+} summit;
+
+static summit summit_at(const discs *set, double t) {
+  double v[3], dv[3], ddv[3], mu = set->mu;
+  mhb_signals_at(set->signals, t, v, dv, ddv);
+  disc   d  = disc_of(set, t, v);
+  summit s  = {.size = hypot(d.f[0], d.f[1]), .r = d.r};
+  s.e[0]    = d.f[0] / s.size;
+  s.e[1]    = d.f[1] / s.size;
+  s.across  = s.e[0] * dv[2] - s.e[1] * dv[1];
+  s.slope   = s.e[0] * dv[1] + s.e[1] * dv[2] - mu * dv[0];
+  s.bending = s.e[0] * ddv[1] + s.e[1] * ddv[2] - mu * ddv[0] + s.across * s.across / s.size;
+  return s;
+}
+
+/* |c| is stationary in the time of one active disc, its direction is not: Newton on g. */
+static void sharpen(const discs *set, mhb_stuck *stuck) {
+  summit s = summit_at(set, stuck->time[0]);
+  for (int i = 0; i < 6 && s.bending < 0; i++) {
+    double step = -s.slope / s.bending;
+    if (fabs(step) > 1e-3) return;
+    stuck->time[0] += step;
+    s = summit_at(set, stuck->time[0]);
+    if (fabs(step) < 1e-15) break;
+  }
+  for (int k = 0; k < 2; k++) stuck->c[k] = -s.e[k] * fmax(0, s.size - s.r);
+}
+
 void mhb_stuck_solve(const mhb_signals *signals, double mu, mhb_stuck *stuck) {
   discs set       = {.signals = signals, .mu = mu};
   set.scale       = signals->bound[1][0] + signals->bound[2][0] + DBL_MIN;
@@ -169,32 +200,46 @@ void mhb_stuck_solve(const mhb_signals *signals, double mu, mhb_stuck *stuck) {
   }
   stuck->n_active = n_active;
   for (int i = 0; i < n_active; i++) stuck->time[i] = active[i].t;
+  int merge = n_active == 2 && fabs(remainder(active[0].t - active[1].t, TWO_PI)) < 1e-4;
+  if (merge) stuck->n_active = 1; /* two cuts at one summit */
+  if (stuck->feasible && stuck->n_active == 1) sharpen(&set, stuck);
 }
 
-/* One active disc: c = -f (1 - r/|f|). Two: (c + f_i).dc = r_i dr_i - (c + f_i).df_i. The active time itself drops
- * out: the constraint is stationary there. */
-void mhb_stuck_derivative(const mhb_signals *signals, double mu, const mhb_stuck *stuck,
-                          const double dn[2], const double dx[2][2], double dc[2]) {
-  discs set = {.signals = signals, .mu = mu};
-  dc[0] = dc[1] = 0;
+/* One active disc, c = -e (|f| - r) with e = f/|f| at the time of the largest |f| - r, which moves by dt:
+ *   g = e.f' - mu n' = 0,   g' dt = -(e.df' - mu dn' + (q.df)(q.f')/|f|),   g' = e.f'' - mu n'' + (q.f')^2/|f| < 0. */
+static void one_disc(const discs *set, double t, const double value[3], const double slope[3],
+                     double dc[2]) {
+  summit        s = summit_at(set, t);
+  const double *e = s.e, mu = set->mu;
+  double        radial = e[0] * value[1] + e[1] * value[2] - mu * value[0];
+  double        turn   = e[0] * value[2] - e[1] * value[1];
+  double moved = e[0] * slope[1] + e[1] * slope[2] - mu * slope[0] + turn * s.across / s.size;
+  double aside = -(1 - s.r / s.size) * (turn - (s.bending < 0 ? s.across * moved / s.bending : 0));
+  dc[0]        = -radial * e[0] - aside * e[1];
+  dc[1]        = -radial * e[1] + aside * e[0];
+}
+
+/* Two: (c + f_i).dc = r_i dr_i - (c + f_i).df_i; the times drop out, for each constraint is stationary at its own. */
+static void two_discs(const discs *set, const mhb_stuck *stuck, const double value[2][3],
+                      double dc[2]) {
   double row[2][2], rhs[2], v[3], dv[3];
-  for (int i = 0; i < stuck->n_active; i++) {
-    mhb_signals_at(signals, stuck->time[i], v, dv, NULL);
-    disc   d    = disc_of(&set, stuck->time[i], v);
-    double size = hypot(d.f[0], d.f[1]), e[2] = {d.f[0] / size, d.f[1] / size};
-    if (stuck->n_active == 1) {
-      double radial = e[0] * dx[i][0] + e[1] * dx[i][1], ratio = d.r / size;
-      for (int k = 0; k < 2; k++)
-        dc[k] = -(1 - ratio) * dx[i][k] - ratio * radial * e[k] + mu * dn[i] * e[k];
-      return;
-    }
+  for (int i = 0; i < 2; i++) {
+    mhb_signals_at(set->signals, stuck->time[i], v, dv, NULL);
+    disc d = disc_of(set, stuck->time[i], v);
     for (int k = 0; k < 2; k++) row[i][k] = stuck->c[k] + d.f[k];
-    rhs[i] = d.r * mu * dn[i] - row[i][0] * dx[i][0] - row[i][1] * dx[i][1];
+    rhs[i] = d.r * set->mu * value[i][0] - row[i][0] * value[i][1] - row[i][1] * value[i][2];
   }
-  if (stuck->n_active < 2) return;
   double det   = row[0][0] * row[1][1] - row[0][1] * row[1][0];
   double small = 1e-8 * (hypot(row[0][0], row[0][1]) * hypot(row[1][0], row[1][1]));
   if (fabs(det) < small) det = copysign(small, det); /* tangent discs: the derivative is capped */
   dc[0] = (rhs[0] * row[1][1] - rhs[1] * row[0][1]) / det;
   dc[1] = (row[0][0] * rhs[1] - row[1][0] * rhs[0]) / det;
+}
+
+void mhb_stuck_derivative(const mhb_signals *signals, double mu, const mhb_stuck *stuck,
+                          const double value[2][3], const double slope[2][3], double dc[2]) {
+  discs set = {.signals = signals, .mu = mu};
+  dc[0] = dc[1] = 0;
+  if (stuck->n_active == 1) one_disc(&set, stuck->time[0], value[0], slope[0], dc);
+  if (stuck->n_active == 2) two_discs(&set, stuck, value, dc);
 }

@@ -21,10 +21,10 @@ typedef struct {
 /* signals: (n, x_1, x_2) with n > 0 throughout. */
 void mhb_stuck_solve(const mhb_signals *signals, double mu, mhb_stuck *stuck);
 
-/* dc/d(motion): for each column j of a basis change (dn_j, dx_j) at the active times.
- *   dn, dx1, dx2  in  [n_active] values of the column at time[i] (dx without its mean)
+/* dc/d(motion): for each column j of a basis change its values and slopes (dn, dx_1, dx_2) at the active times.
+ *   value, slope  in  [n_active] of the column at time[i] (dx without its mean)
  *   dc            out the column's change of c */
 void mhb_stuck_derivative(const mhb_signals *signals, double mu, const mhb_stuck *stuck,
-                          const double dn[2], const double dx[2][2], double dc[2]);
+                          const double value[2][3], const double slope[2][3], double dc[2]);
 
 #endif

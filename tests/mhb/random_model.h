@@ -1,0 +1,25 @@
+/* Modal models with random shapes, and settings to go with them: what an identity must hold for. */
+#ifndef TESTS_MHB_RANDOM_MODEL_H
+#define TESTS_MHB_RANDOM_MODEL_H
+
+#include "mhb/settings.h"
+#include "modal/model.h"
+
+/* Parts of a model that are there. */
+enum {
+  WITH_LEFT     = 1,
+  WITH_RESIDUAL = 2, /* flexibility, inertia, and those of load and probes */
+  WITH_NORMALS  = 4, /* each pair a few degrees off (35, 10) deg */
+  WITH_AREAS    = 8
+};
+
+/* Uniform in (-1, 1) from a seed that it moves on. */
+double random_unit(unsigned long long *seed);
+
+/* 6 modes of .8 to 2.3 rad/s, damping ratio .01 to .03; 2 probes; load harmonics 0 (real), 1, 2. */
+void random_model(int n_pairs, int parts, unsigned long long seed, modal_model *model);
+
+/* Neighbour, 6 blades, engine order 1, mu .4, kv .8, skew ku, preload at equilibrium, n0 .3. */
+mhb_settings random_settings(int harmonics);
+
+#endif
