@@ -58,9 +58,10 @@ int main(int argc, char **argv) {
   if (code >= 0) return code;
   if (options.mode && strcmp(options.mode, "inspect") == 0)
     return command_finish(inspect(&options));
-  case_file file;
-  if ((code = case_read(options.path, CASE_POST, stderr, &file)) != SHB_OK) return code;
-  shb_status status = publish(&file, &options);
+  case_file  file;
+  shb_status status = case_read(options.path, CASE_POST, stderr, &file);
+  if (status != SHB_OK) return command_finish(status);
+  status = publish(&file, &options);
   case_free(&file);
   return command_finish(status);
 }

@@ -214,8 +214,9 @@ void post_chart_tracking(const post_study *study, post_buffer *out) {
   post_plot above = {
       .out = out, .id = "tracking-a", .left = 60, .top = 34, .width = 1020, .height = 280};
   above.x = preload_axis(t, force.scale, NULL);
-  above.y = post_wants_log(study) ? plot_axis_around(range[0], range[1], true, unit.scale, label)
-                                  : (plot_axis){0, 1.1 * range[1], false, unit.scale, label};
+  above.y = post_wants_log(study)
+                ? (plot_axis){range[0] / 1.4, 1.2 * range[1], true, unit.scale, label}
+                : (plot_axis){0, 1.1 * range[1], false, unit.scale, label};
   plot_frame(&above);
   draw_track(study, &above, false);
   const post_track_point *best = &t->point[t->best];
@@ -337,12 +338,35 @@ void post_chart_along(const post_study *study, int b, post_buffer *out) {
   plot_svg_close(out);
 }
 
+/* "k = 1" at the end of each curve, y [m + 1][n_points]; one that would cover another moves down. */
+static void name_harmonics(const post_plot *plot, int m, const mhb_branch *branch,
+                           const double *y) {
+  int    n = branch->n_points, used = 0;
+  double taken[SHOWN_HARMONICS];
+  for (int k = 0; k <= m; k++) {
+    double end = y[k * n + n - 1], at = plot_y(plot, end) + 4;
+    char   classes[16], name[16];
+    if (end <= plot->y.lo) continue;
+    for (int i = 0; i < used; i++)
+      if (fabs(taken[i] - at) < 14) {
+        at += 14;
+        i = -1;
+      }
+    taken[used++] = at;
+    snprintf(classes, sizeof classes, "mark h%d", k);
+    snprintf(name, sizeof name, "k = %d", k);
+    const double move[2] = {6, at - plot_y(plot, end)};
+    plot_text(plot, classes, branch->frequency[n - 1], end, move, "start", name);
+  }
+}
+
 void post_chart_harmonics(const post_study *study, int b, post_buffer *out) {
   const mhb_response *response = study->response;
   const mhb_branch   *branch   = &response->branch[b];
   int                 n = branch->n_points, m = response->n_harmonics;
+  if (n < 1) return;
   if (m >= SHOWN_HARMONICS) m = SHOWN_HARMONICS - 1;
-  double *y = calloc((size_t)n * (size_t)(m + 1), sizeof *y), most = 0;
+  double *y = calloc((size_t)n * (size_t)(m + 1), sizeof *y), most = 0, least = INFINITY;
   if (!y) {
     out->failed = true;
     return;
@@ -351,29 +375,26 @@ void post_chart_harmonics(const post_study *study, int b, post_buffer *out) {
     for (int i = 0; i < n; i++) {
       y[k * n + i] = post_amplitude(response, branch, i, study->primary, k);
       most         = fmax(most, y[k * n + i]);
+      if (y[k * n + i] > 0) least = fmin(least, y[k * n + i]);
     }
   post_unit unit = post_unit_length(most);
   char      label[160], place[128];
   post_place_name(response, study->primary, place);
   snprintf(label, sizeof label, "%s, amplitude of each harmonic, %s", place, unit.name);
-  if (!(most > 0)) most = unit.scale;
+  if (!(most > 0)) most = least = unit.scale;
   plot_svg_open(out, "harmonics", 1100, 360, "Harmonics along one curve",
                 "Amplitude of each harmonic of the motion against frequency, logarithmic.");
   post_plot plot = {
       .out = out, .id = "harmonics", .left = 60, .top = 34, .width = 980, .height = 272};
   plot.x = frequency_axis(study, "frequency, Hz");
-  plot.y = (plot_axis){1e-6 * most, 2 * most, true, unit.scale, label};
+  plot.y = (plot_axis){fmax(1e-6 * most, least / 2), 2 * most, true, unit.scale, label};
   plot_frame(&plot);
   for (int k = 0; k <= m; k++) {
-    char classes[32], name[16];
+    char classes[16];
     snprintf(classes, sizeof classes, "line h%d", k);
     plot_line(&plot, classes, n, branch->frequency, y + k * n, NULL);
-    snprintf(classes, sizeof classes, "mark h%d", k);
-    snprintf(name, sizeof name, "k = %d", k);
-    if (n > 0 && y[k * n + n - 1] > plot.y.lo)
-      plot_text(&plot, classes, branch->frequency[n - 1], y[k * n + n - 1], (const double[2]){6, 4},
-                "start", name);
   }
+  name_harmonics(&plot, m, branch, y);
   free(y);
   plot_svg_close(out);
 }

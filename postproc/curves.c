@@ -50,29 +50,39 @@ static double vertex(const double s[3], const double y[3]) {
   return at >= s[0] && at <= s[2] ? at : s[1];
 }
 
-/* Arclength at i - 1, i, i + 1 with s[1] = 0; false at an end of the curve or where points coincide. */
-static bool three_points(const curve *c, int i, double s[3]) {
+/* Abscissa of the parabola through i - 1, i, i + 1, s[1] = 0: the other coordinate x where it runs one way and not too
+ * unevenly, which near a resonance or a smooth fold is exact to third order; else arclength. False at an end of the curve
+ * or where points coincide. */
+static bool three_points(const curve *c, int i, const double *x, double s[3]) {
   if (i <= 0 || i >= c->n - 1) return false;
+  double before = x[i] - x[i - 1], after = x[i + 1] - x[i], ratio = after / before;
   s[0] = -chord(c, i - 1, i);
   s[1] = 0;
   s[2] = chord(c, i, i + 1);
+  if (before != 0 && ratio > 0.1 && ratio < 10) {
+    s[0] = -fabs(before);
+    s[2] = fabs(after);
+  }
   return s[0] < 0 && s[2] > 0;
 }
 
 static void refine_peak(const curve *c, int i, post_peak *peak) {
-  double s[3];
+  double s[3], a[3], q[3];
   peak->frequency = c->f[i];
   peak->amplitude = c->a[i];
-  if (!three_points(c, i, s)) return;
-  double q[3];
-  bool   inverse = c->a[i - 1] > 0 && c->a[i + 1] > 0;
+  if (!three_points(c, i, c->f, s)) return;
   for (int k = 0; k < 3; k++) {
-    double a = c->a[i - 1 + k] / c->a[i];
-    q[k]     = inverse ? -1 / (a * a) : a;
+    a[k] = c->a[i - 1 + k] / c->a[i];
+    q[k] = -1 / fmax(a[k] * a[k], 1e-30);
   }
   double at = vertex(s, q), top = parabola(s, q, at);
+  bool   resonant = top <= -0.7; /* else the points are too few or too uneven for 1/a^2 */
+  if (!resonant) {
+    at  = vertex(s, a);
+    top = parabola(s, a, at);
+  }
   peak->frequency = parabola(s, c->f + i - 1, at);
-  if (top != 0) peak->amplitude = c->a[i] * (inverse ? 1 / sqrt(-top) : top);
+  peak->amplitude = c->a[i] * fmax(1, resonant ? 1 / sqrt(-top) : top);
 }
 
 /* Frequency where the amplitude falls to level going from the peak in direction step; NAN if it does not before
@@ -183,7 +193,7 @@ static void refine_fold(const curve *c, int i, post_fold *fold) {
   double s[3];
   fold->frequency = c->f[i];
   fold->amplitude = c->a[i];
-  if (!three_points(c, i, s)) return;
+  if (!three_points(c, i, c->a, s)) return;
   double at       = vertex(s, c->f + i - 1);
   fold->frequency = parabola(s, c->f + i - 1, at);
   fold->amplitude = parabola(s, c->a + i - 1, at);

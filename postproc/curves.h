@@ -26,14 +26,15 @@ typedef struct {
  * neighbouring valley), plus the edge peak if the largest value of all is at an end.
  *   frequency, amplitude  in   [n], amplitude >= 0
  *   peaks, n_peaks        out  malloc'ed, NULL if none
- * A peak is the vertex of the parabola of 1/amplitude^2 (exact near a resonance) through three points in arclength:
- * the amplitude's error falls with the third power or better of the spacing, the frequency's with the second.
+ * A peak is the vertex of the parabola of 1/amplitude^2 (exact near a resonance) through three points, over frequency,
+ * or over arclength where the frequency turns: the amplitude's error falls with the third power or better of the
+ * spacing, the frequency's with the second or better.
  * Errors: SHB_ERR_IO (no memory). */
 shb_status post_find_peaks(int n, const double *frequency, const double *amplitude,
                            post_peak **peaks, int *n_peaks);
 
 /* Turning points of the frequency, in order, found by its change of direction or by special[i] == 1 (may be NULL);
- * refined by a parabola in arclength unless flagged (a flagged point was located by the solver). */
+ * refined by a parabola over amplitude, or arclength, unless flagged (a flagged point was located by the solver). */
 shb_status post_find_folds(int n, const double *frequency, const double *amplitude,
                            const int *special, post_fold **folds, int *n_folds);
 

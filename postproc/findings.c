@@ -8,6 +8,12 @@
 
 static const post_unit HERTZ = {"Hz", 1}, NEWTON = {"N", 1};
 
+static char *preload(char out[POST_NUMBER], double n0) {
+  post_plain(out, n0, 6);
+  strcat(out, "\u00a0N");
+  return out;
+}
+
 /* ---------------------------------------------------------------- key figures */
 
 static void put_figure(post_buffer *out, const char *label, const char *value, const char *note) {
@@ -36,13 +42,12 @@ void post_figures(const post_study *study, post_buffer *out) {
   if (t->best >= 0) {
     const post_track_point *best = &t->point[t->best];
     char                    label[160], n0[POST_NUMBER], percent[POST_NUMBER];
-    snprintf(label, sizeof label, "Lowest peak, n₀ = %s", post_plain(n0, best->n0, 5));
-    strcat(label, "\u00a0N");
+    snprintf(label, sizeof label, "Lowest peak, n₀ = %s", preload(n0, best->n0));
     put_peak_figure(out, label, best);
     double gain = 1 - best->amplitude / lower_limit(t);
     if (isfinite(gain))
       put_figure(out, gain >= 0 ? "Reduction" : "Increase", post_percent(percent, fabs(gain)),
-                 "against the lower of open and stuck");
+                 "against the better linear limit");
   }
   post_put(out, "</dl>\n");
 }
@@ -53,12 +58,16 @@ static void put_optimum(const post_study *study, post_buffer *out) {
   const post_tracking *t = &study->tracking;
   char                 n0[POST_NUMBER], a[POST_NUMBER], f[POST_NUMBER], percent[POST_NUMBER];
   if (t->best < 0) {
-    post_put(out, "<li>No nonlinear curve was computed: these are the linear limits alone.</li>\n");
+    post_put(out, study->largest > 0
+                      ? "<li>No nonlinear curve was computed at one preload: there is no "
+                        "peak to compare.</li>\n"
+                      : "<li>Nothing moves: every amplitude is zero. Check the "
+                        "excitation.</li>\n");
     return;
   }
   const post_track_point *best = &t->point[t->best];
   post_put(out, "<li><b>%s</b> of the %d preloads computed gives the lowest peak, %s at %s",
-           post_measure(n0, best->n0, NEWTON, 3), t->n,
+           preload(n0, best->n0), t->n,
            post_measure(a, best->amplitude, post_unit_length(best->amplitude), 3),
            post_measure(f, best->frequency, HERTZ, 5));
   const char *joint = ": ";
@@ -69,15 +78,17 @@ static void put_optimum(const post_study *study, post_buffer *out) {
              ratio <= 1 ? "below" : "above", i ? "stuck" : "open");
     joint = ", ";
   }
-  post_put(out, ".");
-  if (isfinite(t->optimum_n0))
-    post_put(out,
-             " The optimum lies between %s and %s; a parabola through the three puts it near %s.",
-             post_plain(n0, t->bracket[0], 5), post_measure(a, t->bracket[1], NEWTON, 3),
-             post_measure(f, t->optimum_n0, NEWTON, 2));
+  post_put(out, "%s.", best->complete ? "" : " (but its curve is not complete)");
+  if (isfinite(t->bracket[0]) && isfinite(t->bracket[1]))
+    post_put(out, " The optimum lies between %s and %s", post_plain(n0, t->bracket[0], 6),
+             preload(a, t->bracket[1]));
   else if (t->n > 1)
     post_put(out, " It is the %s preload computed: the optimum may lie beyond it.",
              t->best == 0 ? "lowest" : "highest");
+  if (isfinite(t->optimum_n0))
+    post_put(out, "; a parabola through these three puts it near %s",
+             post_measure(f, t->optimum_n0, NEWTON, 2));
+  if (isfinite(t->bracket[0]) && isfinite(t->bracket[1])) post_put(out, ".");
   post_put(out, "</li>\n");
 }
 
@@ -85,18 +96,21 @@ static void put_shift(const post_study *study, post_buffer *out) {
   const post_tracking *t = &study->tracking;
   char                 from[POST_NUMBER], to[POST_NUMBER], n0[POST_NUMBER], n1[POST_NUMBER];
   double               limits = t->stuck.frequency - t->open.frequency;
-  if (t->n > 1) {
-    const post_track_point *a = &t->point[0], *b = &t->point[t->n - 1];
+  int                  first = 0, last = t->n - 1; /* a value at the edge of the range is no peak */
+  while (first < t->n && t->point[first].edge) first++;
+  while (last > first && t->point[last].edge) last--;
+  if (last > first) {
+    const post_track_point *a = &t->point[first], *b = &t->point[last];
     post_put(out, "<li>From %s to %s of preload the highest peak moves from %s to %s",
-             post_plain(n0, a->n0, 5), post_measure(n1, b->n0, NEWTON, 3),
-             post_plain(from, a->frequency, 5), post_measure(to, b->frequency, HERTZ, 5));
+             post_plain(n0, a->n0, 5), preload(n1, b->n0), post_number(from, a->frequency, 5),
+             post_measure(to, b->frequency, HERTZ, 5));
     if (isfinite(limits))
       post_put(out, " (open to stuck: %+.3g\u00a0Hz, %+.2g\u00a0%%)", limits,
                100 * limits / t->open.frequency);
     post_put(out, ".</li>\n");
   } else if (isfinite(limits)) {
     post_put(out, "<li>Sticking shrouds move the highest peak from %s to %s.</li>\n",
-             post_plain(from, t->open.frequency, 5),
+             post_number(from, t->open.frequency, 5),
              post_measure(to, t->stuck.frequency, HERTZ, 5));
   }
 }
@@ -153,9 +167,9 @@ static void put_stability(const post_study *study, post_buffer *out) {
 }
 
 static void put_edges(const post_study *study, post_buffer *out) {
-  const post_tracking *t     = &study->tracking;
-  int                  edges = t->open.edge + t->stuck.edge;
-  for (int i = 0; i < t->n; i++) edges += t->point[i].edge;
+  const post_tracking *t = &study->tracking;
+  int edges = (t->open.edge && t->open.complete) + (t->stuck.edge && t->stuck.complete);
+  for (int i = 0; i < t->n; i++) edges += t->point[i].edge && t->point[i].complete;
   if (edges == 0) return;
   post_put(out,
            "<li class=\"caution\">On %d curve%s the largest value is at the edge of the frequency "
@@ -226,7 +240,6 @@ void post_summary(const post_study *study, post_buffer *out) {
   put_brief(out, "stuck", &t->stuck);
   if (t->best < 0) return;
   char name[96], n0[POST_NUMBER];
-  snprintf(name, sizeof name, "lowest (n0 = %s)",
-           post_measure(n0, t->point[t->best].n0, NEWTON, 3));
+  snprintf(name, sizeof name, "lowest (n0 = %s)", preload(n0, t->point[t->best].n0));
   put_brief(out, name, &t->point[t->best]);
 }

@@ -28,7 +28,7 @@ function number(value, digits, keep = true) {
     const mantissa = (value / 10 ** power).toFixed(Math.max(digits - 1, 0));
     text = (keep ? mantissa : String(+mantissa)) + "×10" + superscript(power);
   } else {
-    text = value.toFixed(Math.max(0, digits - 1 - power));
+    text = (+value.toPrecision(digits)).toFixed(Math.max(0, digits - 1 - power));
     if (!keep) text = String(+text);
   }
   return text.replace("-", "−");
@@ -103,6 +103,7 @@ class Panel {
     this.svg += `<path class="base" d="M${left} ${bottom}H${right}"/>`;
   }
   line(classes, xs, ys, piece) {
+    if (xs.length === 1 && !piece) this.dot(classes, xs[0], ys[0], 2);
     let d = "", at = -1, px = NaN, py = NaN, lastX = NaN, lastY = NaN;
     for (let i = 0; i < xs.length; i++) {
       const x = this.x(xs[i]), y = this.y(ys[i]);
@@ -197,7 +198,7 @@ function readout(b, i) {
   const u = unit(LENGTH, a);
   const rows = [["frequency", number(b.f[i], 6) + NBSP + "Hz"], [state.output.quantity, number(a / u[1], 4) + NBSP + u[0]]];
   if (g.kind === "nonlinear") {
-    if (Number.isFinite(shares[0])) rows.push(["stuck · slipping · open", shares.map(s => number(100 * s, s >= 0.995 ? 3 : 2, false)).join(" · ") + NBSP + "%"], ["dissipated", number(energy / e[1], 3) + NBSP + e[0]]);
+    if (Number.isFinite(shares[0])) rows.push(["stuck · slipping · open", shares.map(s => (100 * s).toFixed(s > 0 && s < 0.0995 ? 1 : 0)).join(" · ") + NBSP + "%"], ["dissipated", number(energy / e[1], 3) + NBSP + e[0]]);
     rows.push(["stability", stable === 1 ? "stable" : stable === 0 ? "unstable" : "not known"]);
     if (error > 0) rows.push(["error estimate", percent(error)]);
   }
@@ -242,8 +243,9 @@ function nearest(px, py) {
 /* ---------------------------------------------------------------- tracking */
 const T = {group: 0, n0: 1, a: 2, f: 3, edge: 4, stick: 5, slip: 6, gap: 7, energy: 8};
 function bestOf(track) {
-  let best = 0;
-  track.forEach((t, i) => { if (t[T.a] < track[best][T.a]) best = i; });
+  let best = -1;
+  for (const edges of [false, true]) /* one at the edge of the range only if there is no other */
+    if (best < 0) track.forEach((t, i) => { if ((edges || !t[T.edge]) && (best < 0 || t[T.a] < track[best][T.a])) best = i; });
   return best;
 }
 function drawTracking() {
@@ -254,7 +256,7 @@ function drawTracking() {
   const pick = (k, l) => [...track.map(t => t[k]), ...o.limits.map(t => t[l])].filter(v => Number.isFinite(v) && v > 0);
   const amps = extent(pick(T.a, 2)), freqs = extent(pick(T.f, 1)), u = unit(LENGTH, amps[1]);
   const x = around(forces[0], forces[1], log);
-  const y = state.log ? around(amps[0], amps[1], true) : {lo: 0, hi: 1.1 * amps[1], log: false};
+  const y = state.log && amps[0] > 0 ? {lo: amps[0] / 1.4, hi: amps[1] * 1.2, log: true} : {lo: 0, hi: 1.1 * amps[1], log: false};
   const above = new Panel("tracking-a", {left: 60, top: 34, width: width - 80, height: 280}, axis(x, fu[1], null), axis(y, u[1], `highest peak, ${o.place} ${o.axis}, ${o.quantity}, ${u[0]}`));
   const below = new Panel("tracking-f", {left: 60, top: 374, width: width - 80, height: 170}, axis(x, fu[1], "preload n₀, " + fu[0]), axis(around(freqs[0], freqs[1], false), 1, "its frequency, Hz"));
   const best = bestOf(track);
@@ -307,11 +309,14 @@ function drawHarmonics() {
   const s = D.spectra.find(e => e.place === state.output.place);
   if (!s) { show("harmonics", 60, [], `<text x="0" y="30">The harmonics of ${escape(state.output.place)} are not in this page; the response file has them.</text>`); return; }
   const b = D.branches[state.branch], shown = Math.min(s.n, 8), width = widthOf("harmonics");
-  let most = 0;
-  for (let k = 0; k < shown; k++) most = Math.max(most, extent(b.row(s.row + k))[1]);
+  let most = 0, least = Infinity;
+  for (let k = 0; k < shown; k++) {
+    const a = b.row(s.row + k).filter(v => v > 0), [lo, hi] = extent(a);
+    if (a.length) { most = Math.max(most, hi); least = Math.min(least, lo); }
+  }
   const u = unit(LENGTH, most);
-  if (!(most > 0)) most = u[1];
-  const p = new Panel("harmonics", {left: 60, top: 34, width: width - 120, height: 272}, axis(fullRange(), 1, "frequency, Hz"), axis({lo: 1e-6 * most, hi: 2 * most, log: true}, u[1], `${s.place}, amplitude of each harmonic, ${u[0]}`));
+  if (!(most > 0)) most = least = u[1];
+  const p = new Panel("harmonics", {left: 60, top: 34, width: width - 120, height: 272}, axis(fullRange(), 1, "frequency, Hz"), axis({lo: Math.max(1e-6 * most, least / 2), hi: 2 * most, log: true}, u[1], `${s.place}, amplitude of each harmonic, ${u[0]}`));
   const used = [];
   for (let k = 0; k < shown; k++) {
     const a = b.row(s.row + k);

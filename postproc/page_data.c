@@ -6,7 +6,7 @@
 #include "postproc/charts.h"
 
 enum {
-  BUDGET        = 420000,
+  BUDGET        = 400000,
   FIXED_ROWS    = 8,
   LEAST_ROWS    = 12,
   MAX_COLUMNS   = 256,

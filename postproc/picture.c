@@ -20,7 +20,8 @@ static void put_style(const post_study *study, post_buffer *out) {
       ".unstable{stroke-dasharray:.1 4.5}.limit{color:#6b7480;stroke-width:1.5;stroke-linecap:butt}"
       ".line.open{stroke-dasharray:9 5}.line.stuck{stroke-dasharray:4 4}"
       ".dot{fill:currentColor}.fold{fill:#fff;stroke:currentColor;stroke-width:1.4}"
-      ".varying{color:#0b6e75}.mark{font-style:italic;paint-order:stroke;stroke:#fff;stroke-width:"
+      ".varying{color:#0b6e75}.plain{color:#56606c}.mark{font-style:italic;paint-order:stroke;"
+      "stroke:#fff;stroke-width:"
       "4px}");
   for (int i = 0; i < study->n_ranks; i++) {
     char colour[8];
@@ -48,10 +49,12 @@ static void put_legend(const post_study *study, post_buffer *out) {
   for (int g = 0; g < study->n_groups; g++) {
     const post_group *group = &study->group[g];
     char              number[POST_NUMBER], classes[40];
+    if (group->empty) continue;
     if (group->rank >= 0) {
       snprintf(classes, sizeof classes, "c%d", group->rank);
-      post_measure(number, group->n0, (post_unit){"N", 1}, 4);
-      put_entry(out, y, classes, number);
+      char text[POST_NUMBER + 8];
+      snprintf(text, sizeof text, "%s\u00a0N", post_plain(number, group->n0, 5));
+      put_entry(out, y, classes, text);
     } else if (group->kind == MHB_BRANCH_NONLINEAR) {
       put_entry(out, y, "varying", "varying");
     } else {
@@ -60,7 +63,7 @@ static void put_legend(const post_study *study, post_buffer *out) {
     }
     y += step;
   }
-  if (unstable) put_entry(out, y, "unstable limit", "unstable");
+  if (unstable) put_entry(out, y, "unstable plain", "unstable");
 }
 
 void post_picture(const post_study *study, const char *case_name, post_buffer *out) {

@@ -148,8 +148,8 @@ static void draw_piece(const post_plot *plot, const char *classes, const double 
                        const double to[2], pen *p) {
   if (!p->any)
     post_put(plot->out, "<path class=\"%s\" clip-path=\"url(#%s-clip)\" d=\"", classes, plot->id);
-  if (p->at < 0) post_put(plot->out, "M%.2f %.2f", from[0], from[1]);
-  post_put(plot->out, "L%.2f %.2f", to[0], to[1]);
+  if (p->at < 0) post_put(plot->out, "M%.1f %.1f", from[0], from[1]);
+  post_put(plot->out, "L%.1f %.1f", to[0], to[1]);
   p->any = true;
   p->x   = to[0];
   p->y   = to[1];
@@ -157,6 +157,7 @@ static void draw_piece(const post_plot *plot, const char *classes, const double 
 
 void plot_line(const post_plot *plot, const char *classes, int n, const double *x, const double *y,
                const bool *piece) {
+  if (n == 1 && !piece) plot_dot(plot, classes, x[0], y[0], 2);
   double from[2] = {NAN, NAN};
   pen    p       = {NAN, NAN, -1, false};
   for (int i = 0; i < n; i++) {
@@ -166,7 +167,7 @@ void plot_line(const post_plot *plot, const char *classes, int n, const double *
       p.at = -1;
     } else {
       bool more = i + 1 < n && (!piece || piece[i + 1]);
-      bool near = p.at >= 0 && hypot(to[0] - p.x, to[1] - p.y) < 0.25;
+      bool near = p.at >= 0 && hypot(to[0] - p.x, to[1] - p.y) < 0.4;
       if (!near || !more) draw_piece(plot, classes, from, to, &p);
       p.at = i;
     }

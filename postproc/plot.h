@@ -44,7 +44,8 @@ void plot_svg_close(post_buffer *out);
 
 void plot_frame(const post_plot *plot); /* grid, ticks, labels, clip path */
 /* Curve through [n] points; piece i joins points i - 1 and i and is drawn where piece[i] (NULL: everywhere). Values
- * that are not finite, or not positive on a log axis, part it. Points within a quarter of a pixel are merged. */
+ * that are not finite, or not positive on a log axis, part it. Points within 0.4 px are merged.
+ * A curve of one point is a small circle. */
 void plot_line(const post_plot *plot, const char *classes, int n, const double *x, const double *y,
                const bool *piece);
 /* Rectangle between two corners in data units. */

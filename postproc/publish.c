@@ -1,5 +1,6 @@
 #include "postproc/publish.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 
 #include "postproc/csv.h"
@@ -14,12 +15,21 @@ typedef struct {
   post_buffer   html, csv, svg;
 } work;
 
+/* The study's complaint with the file's name before it. */
+static shb_status make_study(const post_job *job, work *w) {
+  shb_status status = post_study_create(w->response, &w->study);
+  if (status != SHB_ERR_INPUT) return status;
+  char why[256];
+  snprintf(why, sizeof why, "%s", shb_message());
+  SHB_FAIL(status, "%s: %s", job->response, why);
+}
+
 static shb_status compose(const post_job *job, shb_progress *progress, work *w) {
   double started = shb_seconds();
   shb_progress_show(progress, 0, "reading %s", job->response);
   SHB_TRY(mhb_response_read(job->response, &w->response));
   SHB_TRY(post_source_open(job->response, &w->source));
-  SHB_TRY(post_study_create(w->response, &w->study));
+  SHB_TRY(make_study(job, w));
   shb_progress_note(progress, "read %d points on %d curves in %.2f s", w->study->n_points,
                     w->response->n_branches, shb_seconds() - started);
   started = shb_seconds();

@@ -110,7 +110,8 @@ static void put_key(const post_group *group, int index, post_buffer *out) {
 static void put_keys(const post_study *study, post_buffer *out) {
   post_put(out, "<ul class=\"keys\" aria-label=\"Curves shown\">\n<li class=\"lead\">%s</li>\n",
            study->n_ranks > 0 ? "Preload n₀" : "Curves");
-  for (int g = 0; g < study->n_groups; g++) put_key(&study->group[g], g, out);
+  for (int g = 0; g < study->n_groups; g++)
+    if (!study->group[g].empty) put_key(&study->group[g], g, out);
   post_put(out, "</ul>\n");
 }
 
@@ -174,11 +175,10 @@ static void put_details(const post_study *study, int chosen, post_buffer *out) {
   char name[64];
   post_group_name(&study->group[study->curve[chosen].group], name);
   post_put(out,
-           "<section>\n<h2>Contact and harmonics</h2>\n<p class=\"note\">Along the curve of %s to "
-           "begin with: the one with "
-           "the lowest peak.</p>\n<div class=\"tools\"><label>Curve<select "
-           "id=\"curve\"></select></label></div>\n",
-           name);
+           "<section>\n<h2>Contact and harmonics</h2>\n<p class=\"note\">To begin with along the "
+           "curve of %s%s.</p>\n"
+           "<div class=\"tools\"><label>Curve<select id=\"curve\"></select></label></div>\n",
+           name, study->tracking.best >= 0 ? ", the one with the lowest peak" : "");
   put_contact(study, chosen, out);
   post_put(out,
            "<div class=\"card\"><figure><h3>Harmonics along the curve</h3><div class=\"chart\">\n");

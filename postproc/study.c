@@ -38,7 +38,7 @@ void post_group_name(const post_group *group, char out[64]) {
   else if (group->kind == MHB_BRANCH_STUCK)
     strcpy(out, "stuck");
   else if (isnan(group->n0))
-    strcpy(out, "n₀ varying");
+    strcpy(out, group->empty ? "no point" : "n₀ varying");
   else
     snprintf(out, 64, "n₀ = %s\u00a0N", post_plain(number, group->n0, 6));
 }
@@ -53,7 +53,7 @@ static double branch_n0(const mhb_branch *branch) {
 }
 
 static bool same_group(const post_group *a, const post_group *b) {
-  if (a->kind != b->kind) return false;
+  if (a->kind != b->kind || (a->empty != b->empty && a->kind == MHB_BRANCH_NONLINEAR)) return false;
   if (isnan(a->n0) || isnan(b->n0)) return isnan(a->n0) && isnan(b->n0);
   return fabs(a->n0 - b->n0) <= 1e-9 * fmax(fabs(a->n0), fabs(b->n0));
 }
@@ -63,6 +63,7 @@ static int order_groups(const void *left, const void *right) {
   const post_group *a = left, *b = right;
   if (a->kind != b->kind) return (int)a->kind - (int)b->kind;
   if (isnan(a->n0) || isnan(b->n0)) return (int)isnan(a->n0) - (int)isnan(b->n0);
+  if (isnan(a->n0)) return (int)a->empty - (int)b->empty;
   return (a->n0 > b->n0) - (a->n0 < b->n0);
 }
 
@@ -77,7 +78,7 @@ static void make_groups(post_study *study) {
   for (int pass = 0; pass < 2; pass++) {
     for (int b = 0; b < response->n_branches; b++) {
       const mhb_branch *branch = &response->branch[b];
-      post_group        wanted = {branch->kind, branch_n0(branch), -1};
+      post_group        wanted = {branch->kind, branch->n_points == 0, branch_n0(branch), -1};
       int               at     = find_group(study, &wanted);
       if (at < 0) study->group[at = study->n_groups++] = wanted;
       study->curve[b].group = at; /* right in the second pass, when the groups are sorted */
@@ -138,14 +139,18 @@ static shb_status track_group(const post_study *study, int group, double *const 
 static void find_optimum(post_tracking *t) {
   t->best       = -1;
   t->bracket[0] = t->bracket[1] = t->optimum_n0 = t->optimum_amplitude = NAN;
-  for (int i = 0; i < t->n; i++)
-    if (t->best < 0 || t->point[i].amplitude < t->point[t->best].amplitude) t->best = i;
+  for (int edges = 0; edges <= 1 && t->best < 0; edges++)
+    for (int i = 0; i < t->n; i++) {
+      bool lower = t->best < 0 || t->point[i].amplitude < t->point[t->best].amplitude;
+      if (lower && (edges || !t->point[i].edge)) t->best = i;
+    }
   if (t->best > 0) t->bracket[0] = t->point[t->best - 1].n0;
   if (t->best >= 0 && t->best < t->n - 1) t->bracket[1] = t->point[t->best + 1].n0;
   if (isnan(t->bracket[0]) || isnan(t->bracket[1])) return;
-  const post_track_point *p     = &t->point[t->best - 1];
-  bool                    log_x = p[0].n0 > 0;
-  double                  x[3], y[3];
+  const post_track_point *p = &t->point[t->best - 1];
+  if (p[0].edge || p[1].edge || p[2].edge) return;
+  bool   log_x = p[0].n0 > 0;
+  double x[3], y[3];
   for (int i = 0; i < 3; i++) {
     x[i] = log_x ? log(p[i].n0) : p[i].n0;
     y[i] = log(p[i].amplitude);

@@ -12,7 +12,8 @@
 /* Curves of one preload (nonlinear), or one linear limit. */
 typedef struct {
   mhb_branch_kind kind;
-  double          n0; /* N; NAN for the limits and for branches along which it varies */
+  bool            empty; /* its branches hold no point, so that n0 is not known */
+  double          n0;    /* N; NAN for the limits and for branches along which it varies */
   int rank; /* 0.. among the nonlinear groups, ascending n0; the colour index. -1 for the limits */
 } post_group;
 
@@ -30,10 +31,10 @@ typedef struct {
   int               n; /* preloads with a constant, known n0 and at least one point, ascending */
   post_track_point *point;       /* [n] */
   post_track_point  open, stuck; /* the limits; amplitude NAN if not computed */
-  int               best;        /* index of the lowest peak, -1 if n = 0 */
-  double            bracket[2];  /* n0 of the neighbours of best, N; NAN at an end */
+  int    best; /* the lowest peak; one at the edge of the range only if all are; -1 if n = 0 */
+  double bracket[2]; /* n0 of the neighbours of best, N; NAN at an end */
   /* parabola through best and its neighbours, log amplitude over n0 (over log n0 when all are positive); NAN unless
-   * best has both neighbours */
+   * best has both neighbours and none of the three is at the edge of the range */
   double optimum_n0, optimum_amplitude;
 } post_tracking;
 

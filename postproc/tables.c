@@ -28,7 +28,10 @@ static void put_peak_row(const post_study *study, int b, const post_peak *peak, 
                          post_buffer *out) {
   char number[POST_NUMBER];
   put_curve_cell(study, b, out);
-  put_cell(out, peak->edge ? "edge of range" : "peak");
+  post_put(out, "<td class=\"words\">%s</td>",
+           !peak->edge                           ? "peak"
+           : study->response->branch[b].complete ? "edge of range"
+                                                 : "end of curve");
   put_cell(out, post_number(number, peak->frequency, 6));
   put_cell(out, post_number(number, peak->amplitude / unit.scale, 4));
   put_cell(out, post_number(number, peak->bandwidth, 3));
@@ -40,7 +43,7 @@ static void put_fold_row(const post_study *study, int b, const post_fold *fold, 
                          post_buffer *out) {
   char number[POST_NUMBER];
   put_curve_cell(study, b, out);
-  put_cell(out, fold->upper ? "fold, sweeping up" : "fold, sweeping down");
+  post_put(out, "<td class=\"words\">fold, sweeping %s</td>", fold->upper ? "up" : "down");
   put_cell(out, post_number(number, fold->frequency, 6));
   put_cell(out, post_number(number, fold->amplitude / unit.scale, 4));
   post_put(out, "<td></td><td></td></tr>\n");
@@ -56,7 +59,8 @@ void post_table_peaks(const post_study *study, post_buffer *out) {
       out,
       " %s, first harmonic. Damping is that of a linear resonance as wide at half power; "
       "&ldquo;–&rdquo; where the curve does not fall that far on both sides.</caption>\n<thead><tr>"
-      "<th scope=\"col\">Curve</th><th scope=\"col\">What</th><th scope=\"col\">Frequency, Hz</th>"
+      "<th scope=\"col\">Curve</th><th scope=\"col\" class=\"words\">What</th><th "
+      "scope=\"col\">Frequency, Hz</th>"
       "<th scope=\"col\">Amplitude, %s</th><th scope=\"col\">Half-power width, Hz</th>"
       "<th scope=\"col\">Equivalent damping</th></tr></thead>\n<tbody>\n",
       post_axis_name(study->primary), unit.name);
@@ -124,7 +128,7 @@ void post_table_quality(const post_study *study, post_buffer *out) {
       "<th scope=\"col\">Newton</th><th scope=\"col\">Truncation</th><th "
       "scope=\"col\">Sampling</th>"
       "<th scope=\"col\">Modal</th><th scope=\"col\">Verdict</th><th "
-      "scope=\"col\">Ended</th></tr></thead>"
+      "scope=\"col\" class=\"words\">Ended</th></tr></thead>"
       "\n<tbody>\n");
   for (int g = 0; g < study->n_groups; g++)
     for (int b = 0; b < study->response->n_branches; b++)

@@ -1,6 +1,7 @@
 #include "postproc/unit.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -50,20 +51,33 @@ static void typeset(const char *plain, char out[POST_NUMBER]) {
     used += (size_t)snprintf(out + used, POST_NUMBER - used, "%s", super[*d - '0']);
 }
 
-static char *format(char out[POST_NUMBER], double value, int digits, const char *how) {
+/* value rounded to digits: plainly from 1e-4 up to a million (or all digits, if more), else with a power of ten. */
+static char *format(char out[POST_NUMBER], double value, int digits, bool zeros) {
   if (!isfinite(value)) return strcpy(out, "–");
-  char plain[40];
-  snprintf(plain, sizeof plain, how, digits > 15 ? 15 : digits, value == 0 ? 0.0 : value);
+  if (value == 0) return strcpy(out, "0");
+  char plain[48];
+  if (digits > 15) digits = 15;
+  snprintf(plain, sizeof plain, "%.*e", digits - 1, value);
+  int  power = atoi(strchr(plain, 'e') + 1), decimals = digits - 1 - power;
+  bool as_power = power < -4 || power >= (digits > 6 ? digits : 6);
+  if (!as_power)
+    snprintf(plain, sizeof plain, "%.*f", decimals > 0 ? decimals : 0, strtod(plain, NULL));
+  else if (!zeros)
+    snprintf(plain, sizeof plain, "%.*g", digits, value);
+  if (!zeros && !as_power && strchr(plain, '.')) {
+    char *end = plain + strlen(plain);
+    while (end[-1] == '0') *--end = '\0';
+  }
   typeset(plain, out);
   return out;
 }
 
 char *post_number(char out[POST_NUMBER], double value, int digits) {
-  return format(out, value, digits, value == 0 ? "%.*g" : "%#.*g");
+  return format(out, value, digits, true);
 }
 
 char *post_plain(char out[POST_NUMBER], double value, int digits) {
-  return format(out, value, digits, "%.*g");
+  return format(out, value, digits, false);
 }
 
 char *post_measure(char out[POST_NUMBER], double value, post_unit unit, int digits) {
