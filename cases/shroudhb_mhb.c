@@ -113,6 +113,7 @@ int main(int argc, char **argv) {
   if ((code = case_read(options.path, CASE_MHB, stderr, &file)) != SHB_OK) return code;
   shb_interrupt_catch();
   openblas_set_num_threads(1); /* threads go to the preloads; the systems are small */
+  file.mhb.resume   = !options.force;
   shb_status status = run(&file, &options);
   case_free(&file);
   return command_finish(status);

@@ -24,6 +24,7 @@ typedef struct {
   double      scale;                /* multiplies the excitation */
   double      tolerance;            /* relative accuracy asked of the contact law, default 1e-8 */
   int         max_points;           /* a branch ends (with a reason) beyond this, default 2000 */
+  bool        resume; /* take over what an interrupted run of equal settings finished */
 } mhb_settings;
 
 #endif

@@ -7,7 +7,7 @@
 
 #include "mhb/follow.h"
 
-static const double PI = 3.14159265358979323846, PUBLISH_EVERY = 10;
+static const double PI = 3.14159265358979323846, PUBLISH_EVERY = 10, BRANCH_END_EVERY = 1; /* s */
 
 /* What the threads share: all of it touched under the lock only. */
 typedef struct {
@@ -112,9 +112,32 @@ static shb_status one_preload(sweep *s, const modal_model *model, int i) {
   status = mhb_follow(residual, s->response, 2 + i, &s->base);
   lock(&s->base, true);
   s->done[i] = 1;
+  if (status == SHB_OK && s->path && shb_seconds() - s->published > BRANCH_END_EVERY)
+    status = publish(s);
   mhb_residual_destroy(residual);
   lock(&s->base, false);
   return status;
+}
+
+/* Take over the branches that an interrupted run of the same settings finished. */
+static void resume(sweep *s) {
+  hid_t         file;
+  char         *settings = NULL;
+  mhb_response *old      = NULL;
+  if (!s->path || h5_open(s->path, &file) != SHB_OK) return;
+  bool same = h5_read_attribute_text(file, "/", "settings", &settings) == SHB_OK && settings &&
+              strcmp(settings, s->provenance->settings) == 0;
+  h5_close(file);
+  free(settings);
+  if (!same || mhb_response_read(s->path, &old) != SHB_OK) return;
+  for (int i = 2; i < s->response->n_branches && i < old->n_branches; i++) {
+    if (!old->branch[i].complete) continue;
+    mhb_branch fresh       = s->response->branch[i];
+    s->response->branch[i] = old->branch[i];
+    old->branch[i]         = fresh;
+    s->done[i - 2]         = 1;
+  }
+  mhb_response_destroy(old);
 }
 
 static shb_status all_preloads(sweep *s, const modal_model *model) {
@@ -124,9 +147,10 @@ static shb_status all_preloads(sweep *s, const modal_model *model) {
     int branch;
     SHB_TRY(mhb_response_branch(s->response, MHB_BRANCH_NONLINEAR, &branch));
   }
+  if (s->settings->resume) resume(s);
 #pragma omp parallel for schedule(dynamic, 1)
   for (int i = 0; i < n; i++) {
-    if (shb_interrupted()) continue;
+    if (shb_interrupted() || s->response->branch[2 + i].complete) continue;
     char       text[512];
     shb_status status = one_preload(s, model, i);
     snprintf(text, sizeof text, "%s", shb_message());

@@ -8,8 +8,8 @@
 #include "mhb/settings.h"
 #include "modal/model.h"
 
-/* Solve and, unless path is NULL, publish to path: at branch ends, every 10 s, at the end, and when interrupted.
- * Branches that an earlier file of the same settings holds complete are not computed again.
+/* Solve and, unless path is NULL, publish to path: at branch ends (once a second at most), every 10 s, at the end, and when interrupted.
+ * settings->resume: branches that an earlier file of the same settings holds complete are not computed again.
  *   response  out  the caller destroys it (NULL on error)
  * Returns SHB_OK; SHB_NOT_CONVERGED if a branch ended before the range was covered; SHB_INTERRUPTED; SHB_ERR_*. */
 shb_status mhb_sweep(const modal_model *model, const mhb_settings *settings, const char *path,
