@@ -40,15 +40,15 @@ bool post_wants_log(const post_study *study) {
 
 static plot_axis amplitude_axis(const post_study *study, double unit, const char *label) {
   if (!post_wants_log(study))
-    return (plot_axis){0, study->largest > 0 ? 1.06 * study->largest : unit, false, unit, label};
+    return (plot_axis){0, study->largest > 0 ? 1.06 * study->largest : unit, false, 0, unit, label};
   double least = INFINITY;
   for (int b = 0; b < study->response->n_branches; b++)
     for (int p = 0; p < study->response->branch[b].n_points; p++) {
       double a = study->curve[b].amplitude[p];
       if (a > 0) least = fmin(least, a);
     }
-  return (plot_axis){fmax(least / 1.2, 1e-4 * study->largest), 1.4 * study->largest, true, unit,
-                     label};
+  return (plot_axis){
+      fmax(least / 1.2, 1e-4 * study->largest), 1.4 * study->largest, true, 0, unit, label};
 }
 
 static void group_classes(const post_group *group, char out[40]) {
@@ -106,7 +106,8 @@ static void draw_curves(const post_study *study, const post_plot *plot) {
 
 static plot_axis frequency_axis(const post_study *study, const char *label) {
   double lo = study->frequency[0], hi = study->frequency[1];
-  return hi > lo ? (plot_axis){lo, hi, false, 1, label} : plot_axis_around(lo, hi, false, 1, label);
+  return hi > lo ? (plot_axis){lo, hi, false, 0, 1, label}
+                 : plot_axis_around(lo, hi, false, 1, label);
 }
 
 void post_draw_response(const post_study *study, post_plot *plot) {
@@ -148,9 +149,21 @@ int post_chosen_branch(const post_study *study) {
   return -1;
 }
 
+/* Logarithmic over decades; with gaps (n0 < 0) among them, of both signs about the smallest. */
 static plot_axis preload_axis(const post_tracking *t, double unit, const char *label) {
-  double lo = t->point[0].n0, hi = t->point[t->n - 1].n0;
-  return plot_axis_around(lo, hi, lo > 0 && hi >= 8 * lo, unit, label);
+  double lo = t->point[0].n0, hi = t->point[t->n - 1].n0, least = INFINITY;
+  for (int i = 0; i < t->n; i++)
+    if (t->point[i].n0 != 0) least = fmin(least, fabs(t->point[i].n0));
+  bool wide = fmax(fabs(lo), fabs(hi)) >= 8 * least;
+  if (wide && lo <= 0) return plot_axis_signed(lo, hi, least, unit, label);
+  return plot_axis_around(lo, hi, wide, unit, label);
+}
+
+/* Room below for the words under the lowest peak. */
+static plot_axis peak_axis(const double range[2], bool log_scale, double unit, const char *label) {
+  if (!log_scale) return (plot_axis){0, 1.1 * range[1], false, 0, unit, label};
+  double air = 1.15 * pow(range[1] / range[0], 0.14);
+  return (plot_axis){range[0] / air, 1.2 * range[1], true, 0, unit, label};
 }
 
 /* The limits' level with its name at one end. */
@@ -214,13 +227,12 @@ void post_chart_tracking(const post_study *study, post_buffer *out) {
   post_plot above = {
       .out = out, .id = "tracking-a", .left = 60, .top = 34, .width = 1020, .height = 280};
   above.x = preload_axis(t, force.scale, NULL);
-  above.y = post_wants_log(study)
-                ? (plot_axis){range[0] / 1.4, 1.2 * range[1], true, unit.scale, label}
-                : (plot_axis){0, 1.1 * range[1], false, unit.scale, label};
+  above.y = peak_axis(range, post_wants_log(study), unit.scale, label);
   plot_frame(&above);
   draw_track(study, &above, false);
   const post_track_point *best = &t->point[t->best];
-  snprintf(optimum, sizeof optimum, "lowest: %s", post_measure(number, best->n0, force, 3));
+  snprintf(optimum, sizeof optimum, "lowest: %s\u00a0%s",
+           post_plain(number, best->n0 / force.scale, 4), force.name);
   plot_text(&above, "mark strong", best->n0, best->amplitude, (const double[2]){0, 21}, "middle",
             optimum);
   char preload[64];
@@ -287,9 +299,9 @@ void post_chart_state(const post_study *study, post_buffer *out) {
       .out = out, .id = "state-s", .left = 60, .top = 34, .width = 464, .height = 180};
   post_plot energy = {
       .out = out, .id = "state-d", .left = 60, .top = 266, .width = 464, .height = 150};
-  shares.x = energy.x = (plot_axis){-0.6, t->n - 0.4, false, 1, NULL};
-  shares.y            = (plot_axis){0, 1, false, 0.01, "share of the period, %"};
-  energy.y      = (plot_axis){0, most > 0 ? 1.08 * most : unit.scale, false, unit.scale, label};
+  shares.x = energy.x = (plot_axis){-0.6, t->n - 0.4, false, 0, 1, NULL};
+  shares.y            = (plot_axis){0, 1, false, 0, 0.01, "share of the period, %"};
+  energy.y      = (plot_axis){0, most > 0 ? 1.08 * most : unit.scale, false, 0, unit.scale, label};
   shares.x.unit = energy.x.unit = 0; /* categories: no ticks */
   plot_frame(&shares);
   plot_frame(&energy);
@@ -325,8 +337,8 @@ void post_chart_along(const post_study *study, int b, post_buffer *out) {
       .out = out, .id = "along-d", .left = 60, .top = 266, .width = 464, .height = 150};
   shares.x = energy.x = frequency_axis(study, NULL);
   energy.x.label      = "frequency, Hz";
-  shares.y            = (plot_axis){-0.02, 1.02, false, 0.01, "share of the period, %"};
-  energy.y = (plot_axis){0, most > 0 ? 1.08 * most : unit.scale, false, unit.scale, label};
+  shares.y            = (plot_axis){-0.02, 1.02, false, 0, 0.01, "share of the period, %"};
+  energy.y = (plot_axis){0, most > 0 ? 1.08 * most : unit.scale, false, 0, unit.scale, label};
   plot_frame(&shares);
   plot_frame(&energy);
   for (int s = 0; s < 3; s++) plot_line(&shares, classes[s], n, branch->frequency, y + s * n, NULL);
@@ -387,7 +399,7 @@ void post_chart_harmonics(const post_study *study, int b, post_buffer *out) {
   post_plot plot = {
       .out = out, .id = "harmonics", .left = 60, .top = 34, .width = 980, .height = 272};
   plot.x = frequency_axis(study, "frequency, Hz");
-  plot.y = (plot_axis){fmax(1e-6 * most, least / 2), 2 * most, true, unit.scale, label};
+  plot.y = (plot_axis){fmax(1e-6 * most, least / 2), 2 * most, true, 0, unit.scale, label};
   plot_frame(&plot);
   for (int k = 0; k <= m; k++) {
     char classes[16];

@@ -105,8 +105,9 @@ static void put_shift(const post_study *study, post_buffer *out) {
              post_plain(n0, a->n0, 5), preload(n1, b->n0), post_number(from, a->frequency, 5),
              post_measure(to, b->frequency, HERTZ, 5));
     if (isfinite(limits))
-      post_put(out, " (open to stuck: %+.3g\u00a0Hz, %+.2g\u00a0%%)", limits,
-               100 * limits / t->open.frequency);
+      post_put(out, " (open to stuck: %s by %s, %s)", limits >= 0 ? "up" : "down",
+               post_measure(from, fabs(limits), HERTZ, 3),
+               post_percent(to, fabs(limits) / t->open.frequency));
     post_put(out, ".</li>\n");
   } else if (isfinite(limits)) {
     post_put(out, "<li>Sticking shrouds move the highest peak from %s to %s.</li>\n",
@@ -115,34 +116,51 @@ static void put_shift(const post_study *study, post_buffer *out) {
   }
 }
 
-/* Groups whose curves turn back, with the span of frequencies between their folds. */
+/* Folds 2i and 2i + 1 along a curve and the frequencies between them; false if there is no such pair or it is too narrow
+ * for a jump to be seen (20 ppm). */
+static bool fold_span(const post_curve *c, int i, double span[2]) {
+  if (2 * i >= c->n_folds) return false;
+  double one = c->fold[2 * i].frequency;
+  double two = 2 * i + 1 < c->n_folds ? c->fold[2 * i + 1].frequency : one;
+  span[0]    = fmin(one, two);
+  span[1]    = fmax(one, two);
+  return one == two || span[1] - span[0] > 2e-5 * span[1];
+}
+
+/* " (103.81 to 103.96, 212.2 to 213.7 Hz)" of a group's curves; returns how many (out NULL: only counts). */
+static int put_spans(const post_study *study, int g, post_buffer *out) {
+  int spans = 0;
+  for (int b = 0; b < study->response->n_branches; b++) {
+    const post_curve *c = &study->curve[b];
+    for (int i = 0; c->group == g && 2 * i < c->n_folds; i++) {
+      double span[2];
+      char   from[POST_NUMBER], to[POST_NUMBER];
+      if (!fold_span(c, i, span) || ++spans > 4 || !out) continue;
+      post_put(out, "%s%s", spans > 1 ? ", " : " (", post_number(from, span[0], 6));
+      if (span[1] > span[0]) post_put(out, " to %s", post_number(to, span[1], 6));
+    }
+  }
+  if (out && spans > 4) post_put(out, ", …");
+  if (out && spans > 0) post_put(out, "\u00a0Hz)");
+  return spans;
+}
+
 static void put_folds(const post_study *study, post_buffer *out) {
-  int folds = 0;
-  for (int b = 0; b < study->response->n_branches; b++) folds += study->curve[b].n_folds;
-  if (folds == 0) {
-    if (study->tracking.n > 0) post_put(out, "<li>No curve folds: no jumps in this range.</li>\n");
-    return;
-  }
-  post_put(out, "<li><b>Jumps.</b> Folds on ");
-  int shown = 0;
+  int groups = 0;
   for (int g = 0; g < study->n_groups; g++) {
-    double lo = INFINITY, hi = -INFINITY;
-    for (int b = 0; b < study->response->n_branches; b++)
-      for (int i = 0; study->curve[b].group == g && i < study->curve[b].n_folds; i++) {
-        lo = fmin(lo, study->curve[b].fold[i].frequency);
-        hi = fmax(hi, study->curve[b].fold[i].frequency);
-      }
-    if (!(lo <= hi) || shown++ >= 6) continue;
-    char name[64], from[POST_NUMBER], to[POST_NUMBER];
+    char name[64];
+    if (put_spans(study, g, NULL) == 0 || ++groups > 6) continue;
     post_group_name(&study->group[g], name);
-    post_put(out, "%s%s (%s", shown > 1 ? "; " : "", name, post_plain(from, lo, 6));
-    post_put(out, hi > lo ? " to %s)" : "%s)",
-             hi > lo ? post_measure(to, hi, HERTZ, 6) : "\u00a0Hz");
+    post_put(out, "%s%s", groups > 1 ? "; " : "<li><b>Jumps.</b> Folds on ", name);
+    put_spans(study, g, out);
   }
-  if (shown > 6) post_put(out, " and %d more", shown - 6);
-  post_put(out,
-           ". In between several answers exist at one frequency, and a slow sweep jumps from one "
-           "to another.</li>\n");
+  if (groups > 6) post_put(out, "; and %d more", groups - 6);
+  if (groups > 0)
+    post_put(out,
+             ". In between several answers exist at one frequency, and a slow sweep jumps from one "
+             "to another.</li>\n");
+  else if (study->tracking.n > 0)
+    post_put(out, "<li>No curve folds visibly: no jumps in this range.</li>\n");
 }
 
 static void put_stability(const post_study *study, post_buffer *out) {

@@ -60,6 +60,25 @@ function logTicks(lo, hi, wanted) {
     }
   return ticks;
 }
+function signedTicks(a, wanted) {
+  const lowest = Math.floor(Math.log10(a.knee / a.unit)), highest = Math.ceil(Math.log10(Math.max(Math.abs(a.lo), Math.abs(a.hi)) / a.unit));
+  const ticks = a.lo <= 0 && a.hi >= 0 ? [0] : [];
+  for (const sign of [1, -1]) {
+    let last = Panel.place(a, 0);
+    for (let i = 0; i < 3 * (highest - lowest + 1); i++) {
+      const t = sign * [1, 2, 5][i % 3] * 10 ** (lowest + Math.floor(i / 3)), at = Panel.place(a, t * a.unit);
+      if (at < 0 || at > 1 || Math.abs(at - last) < 0.7 / wanted) continue;
+      ticks.push(t);
+      last = at;
+    }
+  }
+  return ticks;
+}
+/* asinh(value / knee): both signs over decades */
+function signed(lo, hi, knee) {
+  const a = Math.asinh(lo / knee), b = Math.asinh(hi / knee), air = 0.04 * (b - a);
+  return {lo: knee * Math.sinh(a - air), hi: knee * Math.sinh(b + air), log: false, knee};
+}
 function around(lo, hi, log) {
   if (!(lo <= hi)) [lo, hi] = [0, 1];
   log = log && lo > 0;
@@ -79,12 +98,13 @@ class Panel {
     this.frame();
   }
   static place(a, v) {
+    if (a.knee) return (Math.asinh(v / a.knee) - Math.asinh(a.lo / a.knee)) / (Math.asinh(a.hi / a.knee) - Math.asinh(a.lo / a.knee));
     return a.log ? (v > 0 ? Math.log(v / a.lo) / Math.log(a.hi / a.lo) : NaN) : (v - a.lo) / (a.hi - a.lo);
   }
   x(v) { return this.box.left + this.box.width * Panel.place(this.ax, v); }
   y(v) { return Math.max(-9e3, Math.min(9e3, this.box.top + this.box.height * (1 - Panel.place(this.ay, v)))); }
   value(px) { const a = this.ax, t = (px - this.box.left) / this.box.width; return a.log ? a.lo * (a.hi / a.lo) ** t : a.lo + t * (a.hi - a.lo); }
-  ticks(a, wanted) { return a.unit > 0 ? (a.log ? logTicks : linearTicks)(a.lo / a.unit, a.hi / a.unit, wanted) : []; }
+  ticks(a, wanted) { return a.knee ? signedTicks(a, wanted) : a.unit > 0 ? (a.log ? logTicks : linearTicks)(a.lo / a.unit, a.hi / a.unit, wanted) : []; }
   frame() {
     const {left, top, width, height} = this.box, bottom = top + height, right = left + width;
     this.svg += `<clipPath id="${this.id}-clip"><rect x="${left}" y="${top}" width="${width}" height="${height}"/></clipPath>`;
@@ -252,11 +272,12 @@ function drawTracking() {
   const o = state.output, track = o.track;
   if (!$("tracking") || track.length < 2) return;
   const width = widthOf("tracking"), forces = extent(track, t => t[T.n0]), big = Math.max(...forces.map(Math.abs)) >= 1e4;
-  const fu = big ? ["kN", 1e3] : ["N", 1], log = forces[0] > 0 && forces[1] >= 8 * forces[0];
+  const fu = big ? ["kN", 1e3] : ["N", 1], least = Math.min(...track.map(t => Math.abs(t[T.n0])).filter(v => v > 0));
+  const wide = Math.max(...forces.map(Math.abs)) >= 8 * least;
   const pick = (k, l) => [...track.map(t => t[k]), ...o.limits.map(t => t[l])].filter(v => Number.isFinite(v) && v > 0);
   const amps = extent(pick(T.a, 2)), freqs = extent(pick(T.f, 1)), u = unit(LENGTH, amps[1]);
-  const x = around(forces[0], forces[1], log);
-  const y = state.log && amps[0] > 0 ? {lo: amps[0] / 1.4, hi: amps[1] * 1.2, log: true} : {lo: 0, hi: 1.1 * amps[1], log: false};
+  const x = wide && forces[0] <= 0 ? signed(forces[0], forces[1], least) : around(forces[0], forces[1], wide);
+  const y = state.log && amps[0] > 0 ? {lo: amps[0] / (1.15 * (amps[1] / amps[0]) ** 0.14), hi: amps[1] * 1.2, log: true} : {lo: 0, hi: 1.1 * amps[1], log: false};
   const above = new Panel("tracking-a", {left: 60, top: 34, width: width - 80, height: 280}, axis(x, fu[1], null), axis(y, u[1], `highest peak, ${o.place} ${o.axis}, ${o.quantity}, ${u[0]}`));
   const below = new Panel("tracking-f", {left: 60, top: 374, width: width - 80, height: 170}, axis(x, fu[1], "preload n₀, " + fu[0]), axis(around(freqs[0], freqs[1], false), 1, "its frequency, Hz"));
   const best = bestOf(track);

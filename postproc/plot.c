@@ -1,6 +1,7 @@
 #include "postproc/plot.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "postproc/unit.h"
@@ -32,10 +33,37 @@ static int log_ticks(double lo, double hi, int wanted, double ticks[PLOT_MAX_TIC
   return n;
 }
 
+static double place(const plot_axis *axis, double value) {
+  if (axis->knee > 0) {
+    double lo = asinh(axis->lo / axis->knee), hi = asinh(axis->hi / axis->knee);
+    return (asinh(value / axis->knee) - lo) / (hi - lo);
+  }
+  if (!axis->log) return (value - axis->lo) / (axis->hi - axis->lo);
+  return value > 0 ? log(value / axis->lo) / log(axis->hi / axis->lo) : NAN;
+}
+
+/* 0, then outwards on either side 1, 2, 5 of each decade from the knee on, less those too near the one before. */
+static int signed_ticks(const plot_axis *axis, int wanted, double ticks[PLOT_MAX_TICKS]) {
+  static const double step[] = {1, 2, 5};
+  int                 lowest = (int)floor(log10(axis->knee / axis->unit)), n = 0;
+  int                 highest = (int)ceil(log10(fmax(fabs(axis->lo), fabs(axis->hi)) / axis->unit));
+  if (axis->lo <= 0 && axis->hi >= 0) ticks[n++] = 0;
+  for (int sign = 1; sign >= -1; sign -= 2) {
+    double last = place(axis, 0);
+    for (int i = 0; i < 3 * (highest - lowest + 1) && n < PLOT_MAX_TICKS; i++) {
+      double t = sign * step[i % 3] * pow(10, lowest + i / 3), at = place(axis, t * axis->unit);
+      if (at < 0 || at > 1 || fabs(at - last) < 0.7 / wanted) continue;
+      ticks[n++] = t;
+      last       = at;
+    }
+  }
+  return n;
+}
+
 int plot_ticks(const plot_axis *axis, int wanted, double ticks[PLOT_MAX_TICKS]) {
-  if (!(axis->unit > 0)) return 0;
+  if (!(axis->unit > 0) || !(axis->hi > axis->lo)) return 0;
   double lo = axis->lo / axis->unit, hi = axis->hi / axis->unit;
-  if (!(hi > lo)) return 0;
+  if (axis->knee > 0) return signed_ticks(axis, wanted, ticks);
   return axis->log ? log_ticks(lo, hi, wanted, ticks) : linear_ticks(lo, hi, wanted, ticks);
 }
 
@@ -48,13 +76,17 @@ plot_axis plot_axis_around(double lo, double hi, bool log_scale, double unit, co
     hi += extent;
   }
   double air = log_axis ? 0.04 * log(hi / lo) : 0.04 * (hi - lo);
-  return (plot_axis){log_axis ? lo * exp(-air) : lo - air, log_axis ? hi * exp(air) : hi + air,
-                     log_axis, unit, label};
+  return (plot_axis){log_axis ? lo * exp(-air) : lo - air,
+                     log_axis ? hi * exp(air) : hi + air,
+                     log_axis,
+                     0,
+                     unit,
+                     label};
 }
 
-static double place(const plot_axis *axis, double value) {
-  if (!axis->log) return (value - axis->lo) / (axis->hi - axis->lo);
-  return value > 0 ? log(value / axis->lo) / log(axis->hi / axis->lo) : NAN;
+plot_axis plot_axis_signed(double lo, double hi, double knee, double unit, const char *label) {
+  double a = asinh(lo / knee), b = asinh(hi / knee), air = 0.04 * (b - a);
+  return (plot_axis){knee * sinh(a - air), knee * sinh(b + air), false, knee, unit, label};
 }
 
 /* Beyond a screen or two outside the area nothing can be seen: keep numbers short. */

@@ -12,6 +12,7 @@
 typedef struct {
   double lo, hi; /* data range */
   bool   log;
+  double knee; /* > 0: place by asinh(value / knee), for both signs over decades */
   double unit; /* ticks read value / unit; 0: no ticks */
   const char
       *label; /* "frequency, Hz" (escaped when printed); NULL: neither label nor tick labels */
@@ -31,8 +32,11 @@ enum { PLOT_MAX_TICKS = 24 };
  * 2, 5 between when there are few). Returns how many. */
 int plot_ticks(const plot_axis *axis, int wanted, double ticks[PLOT_MAX_TICKS]);
 
-/* Range that holds [lo, hi] with a little air; a range without extent is widened. */
+/* Range that holds [lo, hi] with a little air; one without extent is widened. log_scale is not heeded where lo <= 0. */
 plot_axis plot_axis_around(double lo, double hi, bool log, double unit, const char *label);
+
+/* The same by asinh. */
+plot_axis plot_axis_signed(double lo, double hi, double knee, double unit, const char *label);
 
 double plot_x(const post_plot *plot, double x); /* px; NAN where a log axis has no place for it */
 double plot_y(const post_plot *plot, double y);

@@ -38,6 +38,11 @@ static void put_head(const post_study *study, const char *case_name, post_buffer
   post_put(out, "}\n</style>\n</head>\n");
 }
 
+/* Rounded to a thousandth, so that rounding errors of an angle read 0. */
+static double degrees(double angle) {
+  return round(angle * 180e3 / M_PI) / 1e3;
+}
+
 static void put_lede(const post_study *study, const post_source *source, post_buffer *out) {
   const mhb_response *r = study->response;
   char                lo[POST_NUMBER], hi[POST_NUMBER], deg[POST_NUMBER];
@@ -51,8 +56,8 @@ static void put_lede(const post_study *study, const post_source *source, post_bu
   post_put(out, ", %d harmonic%s", r->n_harmonics, r->n_harmonics == 1 ? "" : "s");
   if (r->subharmonics > 1) post_put(out, " of ω/%d", r->subharmonics);
   post_put(out, ", %d contact%s", r->n_pairs, r->n_pairs == 1 ? "" : "s");
-  post_put(out, ", ψ\u00a0=\u00a0%s°", post_plain(deg, r->psi * 180 / M_PI, 3));
-  post_put(out, ", φ\u00a0=\u00a0%s°", post_plain(deg, r->phi * 180 / M_PI, 3));
+  post_put(out, ", ψ\u00a0=\u00a0%s°", post_plain(deg, degrees(r->psi), 3));
+  post_put(out, ", φ\u00a0=\u00a0%s°", post_plain(deg, degrees(r->phi), 3));
   if (*source->created) {
     post_put(out, ". Computed ");
     post_put_escaped(out, source->created);

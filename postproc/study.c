@@ -155,6 +155,8 @@ static void find_optimum(post_tracking *t) {
     x[i] = log_x ? log(p[i].n0) : p[i].n0;
     y[i] = log(p[i].amplitude);
   }
+  double evenness = (x[2] - x[1]) / (x[1] - x[0]);
+  if (evenness < 0.25 || evenness > 4) return;
   double d1            = (y[1] - y[0]) / (x[1] - x[0]),
          d2            = ((y[2] - y[1]) / (x[2] - x[1]) - d1) / (x[2] - x[0]);
   double at            = d2 > 0 ? (x[0] + x[1]) / 2 - d1 / (2 * d2) : x[1];

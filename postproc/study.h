@@ -34,7 +34,7 @@ typedef struct {
   int    best; /* the lowest peak; one at the edge of the range only if all are; -1 if n = 0 */
   double bracket[2]; /* n0 of the neighbours of best, N; NAN at an end */
   /* parabola through best and its neighbours, log amplitude over n0 (over log n0 when all are positive); NAN unless
-   * best has both neighbours and none of the three is at the edge of the range */
+   * best has both neighbours and none of the three is at the edge of the range nor four times as far as the other */
   double optimum_n0, optimum_amplitude;
 } post_tracking;
 

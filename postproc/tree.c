@@ -109,19 +109,26 @@ static void all_attributes(hid_t object, char *out, size_t size) {
   H5Aiterate2(object, H5_INDEX_NAME, H5_ITER_INC, NULL, add_attribute, &room);
 }
 
+/* What a dimension scale counts, from its path: /probe/name counts probes, /modes/frequency modes, /branch_3/frequency
+ * points; else its own name. */
+static const char *counted_by(char *path) {
+  char *slash = strrchr(path, '/');
+  if (!slash) return path;
+  const char *own = slash + 1;
+  *slash          = '\0';
+  const char *up = strrchr(path, '/'), *parent = up ? up + 1 : path;
+  if (strcmp(own, "name") == 0 && *parent) return parent;
+  if (strcmp(own, "frequency") == 0 && strcmp(parent, "modes") == 0) return "mode";
+  if (strcmp(own, "frequency") == 0 && strncmp(parent, "branch_", 7) == 0) return "point";
+  return own;
+}
+
 static herr_t scale_name(hid_t dataset, unsigned dim, hid_t scale, void *data) {
   (void)dataset, (void)dim;
   text_room *room       = data;
   char       path[NAME] = "";
-  if (H5Iget_name(scale, path, sizeof path) > 0) {
-    const char *slash = strrchr(path, '/');
-    snprintf(room->out, room->size, "%s", slash ? slash + 1 : path);
-    if (strcmp(room->out, "name") == 0 && slash && slash != path) { /* /probe/name: say probe */
-      *strrchr(path, '/') = '\0';
-      slash               = strrchr(path, '/');
-      snprintf(room->out, room->size, "%s", slash ? slash + 1 : path);
-    }
-  }
+  if (H5Iget_name(scale, path, sizeof path) > 0)
+    snprintf(room->out, room->size, "%s", counted_by(path));
   return 1;
 }
 
@@ -254,6 +261,21 @@ static void walk_member(walk *w, hid_t group, const char *name, const char *lead
   H5Oclose(object);
 }
 
+static bool is_dataset(hid_t group, const char *name) {
+  H5O_info_t info;
+  return H5Oexists_by_name(group, name, H5P_DEFAULT) > 0 &&
+         H5Oget_info_by_name(group, name, &info, H5P_DEFAULT) >= 0 && info.type == H5O_TYPE_DATASET;
+}
+
+/* How many datasets from names[i] on lie inside a numbered series, its first and last left out. */
+static int inner_series(hid_t group, char **names, int n, int i) {
+  int count = 0;
+  while (i > 0 && i + count < n - 1 && same_series(names[i - 1], names[i + count]) &&
+         same_series(names[i - 1], names[i + count + 1]) && is_dataset(group, names[i + count]))
+    count++;
+  return count;
+}
+
 static void walk_group(walk *w, hid_t group, const char *lead, int depth) {
   int    n;
   char **names = link_names(group, &n);
@@ -262,6 +284,14 @@ static void walk_group(walk *w, hid_t group, const char *lead, int depth) {
     bool last = i == n - 1;
     snprintf(own, sizeof own, "%s%s", lead, last ? "└─ " : "├─ ");
     snprintf(below, sizeof below, "%s%s", lead, last ? "   " : "│  ");
+    int   skipped = w->style.verbose ? 0 : inner_series(group, names, n, i);
+    line *l       = skipped > 1 ? new_line(w) : NULL;
+    if (l) {
+      snprintf(l->lead, sizeof l->lead, "%s", own);
+      snprintf(l->name, sizeof l->name, "⋮ %d more", skipped);
+      i += skipped - 1;
+      continue;
+    }
     bool folded = !w->style.verbose && i > 0 && same_series(names[i - 1], names[i]);
     walk_member(w, group, names[i], (const char *[2]){own, below}, depth, folded);
   }
@@ -287,13 +317,26 @@ static void put_column(post_buffer *out, const char *text, int columns) {
   post_put(out, "%s%*s", text, larger(0, columns - width(text)), "");
 }
 
-static void put_line(const line *l, const int columns[5], bool colour, post_buffer *out) {
+/* The whole text, or its first 72 characters. */
+static void put_about(const line *l, post_tree_style style, post_buffer *out) {
+  size_t n     = 0;
+  int    shown = 0;
+  for (; l->about[n] && (style.verbose || shown < 72); n++)
+    shown += ((unsigned char)l->about[n] & 0xc0) != 0x80;
+  while (((unsigned char)l->about[n] & 0xc0) == 0x80) n++; /* whole characters */
+  post_put(out, "%s%.*s%s%s", style.colour ? "\033[2m" : "", (int)n, l->about,
+           l->about[n] ? "…" : "", style.colour ? "\033[0m" : "");
+}
+
+static void put_line(const line *l, const int columns[5], post_tree_style style, post_buffer *out) {
+  bool        colour = style.colour;
   const char *dim = colour ? "\033[2m" : "", *bold = colour ? "\033[1m" : "",
              *off = colour ? "\033[0m" : "";
   post_put(out, "%s%s%s%s%s%s%s", dim, l->lead, off, l->group ? bold : "", l->name,
            l->group ? "/" : "", l->group ? off : "");
   if (!*l->type) {
-    if (*l->about) post_put(out, "  %s%s%s", dim, l->about, off);
+    post_put(out, *l->about ? "  " : "");
+    if (*l->about) put_about(l, style, out);
     post_put(out, "\n");
     return;
   }
@@ -303,7 +346,8 @@ static void put_line(const line *l, const int columns[5], bool colour, post_buff
     put_column(out, cell[i], columns[i + 1]);
     post_put(out, "  ");
   }
-  post_put(out, "%s%s%s\n", dim, l->about, off);
+  if (*l->about) put_about(l, style, out);
+  post_put(out, "\n");
 }
 
 static void put_lines(const walk *w, post_buffer *out) {
@@ -318,8 +362,8 @@ static void put_lines(const walk *w, post_buffer *out) {
     columns[4] = larger(columns[4], width(l->units));
   }
   for (int i = 1; i < 5; i++)
-    if (columns[i] > 44) columns[i] = 44;
-  for (int i = 0; i < w->n_lines; i++) put_line(&w->lines[i], columns, w->style.colour, out);
+    if (columns[i] > 60) columns[i] = 60;
+  for (int i = 0; i < w->n_lines; i++) put_line(&w->lines[i], columns, w->style, out);
 }
 
 shb_status post_tree(hid_t file, post_tree_style style, post_buffer *out) {

@@ -56,7 +56,8 @@ static void response(void **state) {
       "2 lines (--verbose",
       "kind: nonlinear",
       "reason: no convergence",
-      "[frequency 240, pair 1, contact_state 3]",
+      "[point 240, pair 1, contact_state 3]",
+      "[mode 8]",
       "103.6 … 2548",
       "v, u, w",
       "share of the period stuck, slipping, open",
@@ -156,6 +157,11 @@ static void foreign(void **state) {
   assert_true(H5Lcreate_soft("/nowhere", group, "broken", H5P_DEFAULT, H5P_DEFAULT) >= 0);
   assert_true(H5Lcreate_external("other.h5", "/x", group, "outside", H5P_DEFAULT, H5P_DEFAULT) >=
               0);
+  for (int i = 0; i < 12; i++) {
+    char name[16];
+    snprintf(name, sizeof name, "s_%d", i);
+    write_raw(group, name, H5T_NATIVE_INT, 1, (const hsize_t[]){1}, &i);
+  }
   H5Gclose(group);
   H5Fclose(file);
   char                    *text    = inspect("f.h5", PLAIN, SHB_OK);
@@ -170,7 +176,9 @@ static void foreign(void **state) {
                                       "uint8",
                                       "→ /odd\n",
                                       "→ /nowhere (missing)",
-                                      "→ /x in file other.h5"};
+                                      "→ /x in file other.h5",
+                                      "⋮ 10 more",
+                                      "s_11"};
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) assert_has(text, parts[i]);
   assert_true(strlen(text) < 4000); /* the loop is not walked */
   free(text);

@@ -4,25 +4,35 @@
 static void ticks(void **state) {
   (void)state;
   double    t[PLOT_MAX_TICKS];
-  plot_axis linear = {89.7, 121.3, false, 1, "f"};
+  plot_axis linear = {89.7, 121.3, false, 0, 1, "f"};
   int       n      = plot_ticks(&linear, 6, t);
   assert_int_equal(n, 4); /* 90 100 110 120: the next finer step, 5, would give 7 */
   assert_near(t[0], 90, 1e-12);
   assert_near(t[3], 120, 1e-12);
-  plot_axis micro = {0, 2.385e-4, false, 1e-6, "a"};
+  plot_axis micro = {0, 2.385e-4, false, 0, 1e-6, "a"};
   n               = plot_ticks(&micro, 5, t);
   assert_int_equal(n, 5); /* 0 50 ... 200 */
   assert_near(t[4], 200, 1e-9);
-  plot_axis wide = {3e-6, 2e3, true, 1, "a"};
+  plot_axis wide = {3e-6, 2e3, true, 0, 1, "a"};
   n              = plot_ticks(&wide, 10, t);
   assert_int_equal(n, 9); /* 1e-5 ... 1e3 */
   for (int i = 1; i < n; i++) assert_near(t[i] / t[i - 1], 10, 1e-9);
-  plot_axis decade = {0.9, 11, true, 1, "a"};
+  plot_axis decade = {0.9, 11, true, 0, 1, "a"};
   n                = plot_ticks(&decade, 6, t);
   assert_int_equal(n, 4); /* 1 2 5 10 */
   assert_near(t[2], 5, 1e-12);
-  assert_int_equal(plot_ticks(&(plot_axis){0, 1, false, 0, NULL}, 5, t), 0);
-  assert_int_equal(plot_ticks(&(plot_axis){2, 2, false, 1, NULL}, 5, t), 0);
+  plot_axis gap = plot_axis_signed(-250, 1000, 10, 1, "n0"); /* both signs over decades */
+  n             = plot_ticks(&gap, 8, t);
+  assert_true(n >= 5 && n <= 12);
+  assert_near(t[0], 0, 0);
+  for (int i = 1; i < n; i++) { /* 1, 2 or 5 of a decade */
+    double mantissa = fabs(t[i]) / pow(10, floor(log10(fabs(t[i])) + 1e-9));
+    assert_true(fabs(mantissa - 1) < 1e-9 || fabs(mantissa - 2) < 1e-9 ||
+                fabs(mantissa - 5) < 1e-9);
+    assert_true(t[i] >= gap.lo && t[i] <= gap.hi);
+  }
+  assert_int_equal(plot_ticks(&(plot_axis){0, 1, false, 0, 0, NULL}, 5, t), 0);
+  assert_int_equal(plot_ticks(&(plot_axis){2, 2, false, 0, 1, NULL}, 5, t), 0);
 }
 
 static void ranges(void **state) {
@@ -39,7 +49,7 @@ static void ranges(void **state) {
 
 static post_plot area(post_buffer *b, bool log) {
   return (post_plot){
-      b, "p", 10, 20, 100, 200, {0, 10, false, 1, NULL}, {log ? 1 : 0, 100, log, 1, NULL}};
+      b, "p", 10, 20, 100, 200, {0, 10, false, 0, 1, NULL}, {log ? 1 : 0, 100, log, 0, 1, NULL}};
 }
 
 static void places(void **state) {
@@ -52,6 +62,10 @@ static void places(void **state) {
   assert_true(isnan(plot_y(&p, -1)));
   assert_true(isnan(plot_x(&p, NAN)));
   assert_true(fabs(plot_x(&p, 1e30)) < 1e4);
+  p.x = (plot_axis){-100, 100, false, 1, 1, NULL}; /* odd about the middle, asinh */
+  assert_near(plot_x(&p, 0), 60, 1e-12);
+  assert_near(plot_x(&p, 7) - 60, 50 * asinh(7) / asinh(100), 1e-12);
+  assert_near(plot_x(&p, -7) - 60, -50 * asinh(7) / asinh(100), 1e-12);
 }
 
 static int count(const char *text, char c) {

@@ -139,6 +139,33 @@ static void errors(void **state) {
   mhb_response_destroy(r);
 }
 
+/* Two folds a millionth apart are in the tables but no jump; a pair of its own is named by its own span. */
+static void jumps(void **state) {
+  (void)state;
+  mhb_response *r = small();
+  post_study   *study;
+  post_buffer   text = {0};
+  assert_ok(post_study_create(r, &study));
+  for (int b = 0; b < r->n_branches; b++) study->curve[b].n_folds = 0;
+  post_curve *c = &study->curve[3];
+  free(c->fold);
+  c->fold              = calloc(4, sizeof *c->fold);
+  c->n_folds           = 4;
+  c->fold[0].frequency = 103.9;
+  c->fold[1].frequency = 103.25;
+  c->fold[2].frequency = 121.5;
+  c->fold[3].frequency = 121.5 + 1e-6;
+  post_findings(study, &text);
+  assert_has(text.text, "n₀ = 20\u00a0N (103.250 to 103.900\u00a0Hz). In between");
+  post_buffer_free(&text);
+  c->fold[1].frequency = 103.9 - 1e-6;
+  post_findings(study, &text);
+  assert_has(text.text, "No curve folds visibly");
+  post_buffer_free(&text);
+  post_study_destroy(study);
+  mhb_response_destroy(r);
+}
+
 /* What the page says agrees with the numbers. */
 static void words(void **state) {
   (void)state;
@@ -165,6 +192,7 @@ static void words(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(groups),  cmocka_unit_test(tracking),
                                      cmocka_unit_test(optimum), cmocka_unit_test(incomplete),
-                                     cmocka_unit_test(errors),  cmocka_unit_test(words)};
+                                     cmocka_unit_test(errors),  cmocka_unit_test(jumps),
+                                     cmocka_unit_test(words)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
