@@ -27,7 +27,8 @@ static mhb_reason homotopy(mhb_newton *newton, mhb_residual *b, double omega, do
     }
   }
   mhb_residual_preload(b, to);
-  return part >= 1 ? MHB_CONVERGED : reason;
+  if (part >= 1) return MHB_CONVERGED;
+  return reason == MHB_CONVERGED ? MHB_MAX_ITERATIONS : reason; /* out of stages on the way */
 }
 
 /* A preload beyond which the linear limit holds: no motion of size x can open it, or close it. */

@@ -24,7 +24,9 @@ const char *mhb_reason_text(mhb_reason reason) {
 double mhb_norm(const double *x, int n) {
   double top = 0, sum = 0;
   for (int i = 0; i < n; i++) top = fmax(top, fabs(x[i]));
-  if (!(top > 0)) return top;
+  for (int i = 0; i < n && top == 0; i++) /* fmax passes over NaN */
+    if (isnan(x[i])) return NAN;
+  if (top == 0) return 0;
   for (int i = 0; i < n; i++) sum += (x[i] / top) * (x[i] / top);
   return top * sqrt(sum);
 }

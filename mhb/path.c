@@ -10,7 +10,7 @@
 static const double FIRST_STEP = .02, LONGEST_STEP = .1, LARGEST_ANGLE = .35, SHORTEST_STEP = 1e-4;
 static const double STAGNANT = 1e-8, NEAR = .3;
 static const double KINK_STEP = .02, KINK_RATIO = .7;
-enum { MAX_CORRECTIONS = 12, WANTED_CORRECTIONS = 5, MAX_HALVINGS = 3 };
+enum { MAX_CORRECTIONS = 12, WANTED_CORRECTIONS = 5, MAX_HALVINGS = 3, LASTING = 10 };
 
 static int point_create(mhb_path_point *point, int n) {
   point->x       = calloc((size_t)n, sizeof(double));
@@ -140,6 +140,17 @@ static int correct(mhb_path *path, const double *normal, double clip, mhb_path_p
   return 0;
 }
 
+/* Sign of the determinant of the factored bordered matrix. */
+static int determinant_sign(const mhb_newton *w) {
+  size_t one  = (size_t)w->n + 1;
+  int    sign = 1;
+  for (size_t i = 0; i < one; i++) {
+    if (w->bordered[i * one + i] < 0) sign = -sign;
+    if (w->pivot[i] != (int)i + 1) sign = -sign;
+  }
+  return sign;
+}
+
 /* Tangent at a point the workspace is at: [J r_omega; along] t = [0; 1], scaled to unit length. */
 static int set_tangent(mhb_path *path, const double *along, mhb_path_point *point) {
   mhb_newton *w     = path->newton;
@@ -152,7 +163,8 @@ static int set_tangent(mhb_path *path, const double *along, mhb_path_point *poin
   double length = mhb_norm(w->step, n + 1);
   if (!(length > 0) || !isfinite(length)) return 0;
   for (int i = 0; i < n; i++) point->tangent[i] = w->step[i] / length * scale;
-  point->tangent[n] = w->step[n] / length * span(path);
+  point->tangent[n]  = w->step[n] / length * span(path);
+  point->orientation = determinant_sign(w);
   return 1;
 }
 
@@ -169,7 +181,10 @@ mhb_reason mhb_path_start(mhb_path *path, const double *x, double omega, int dir
   double *along      = path->chord;
   memset(along, 0, sizeof(double) * (size_t)path->n);
   along[path->n] = direction * span(path);
-  return set_tangent(path, along, &path->now) ? MHB_CONVERGED : MHB_SINGULAR;
+  if (!set_tangent(path, along, &path->now)) return MHB_SINGULAR;
+  path->orientation = path->now.orientation;
+  path->against     = 0;
+  return MHB_CONVERGED;
 }
 
 /* next <- now + ds tangent, corrected. */
@@ -205,25 +220,39 @@ static int attempt_from(mhb_path *path, double omega, const double *guess) {
   return far < NEAR && set_tangent(path, path->chord, next);
 }
 
+/* The path goes on through next, rather than back along what was passed. */
+static int goes_on(const mhb_path *path) {
+  return path->next.orientation == path->orientation;
+}
+
+/* A bifurcation turns the orientation for good; the square-root zone of slip onset for a few points only. */
+static void note_orientation(mhb_path *path) {
+  path->against = path->next.orientation == path->orientation ? 0 : path->against + 1;
+  if (path->against < LASTING) return;
+  path->orientation = path->next.orientation;
+  path->against     = 0;
+}
+
 /* Where small steps fail (the square-root zone at slip onset), larger ones pass; else the damped Newton at a fixed
- * frequency further on, from the old point and from the linear limits. */
+ * frequency further on, then further back (a cusp), from the old point and from the linear limits. */
 static int last_resort(mhb_path *path) {
   const double larger[] = {3e-3, 1e-2, 3e-2, .1}, further[] = {1e-4, 5e-4, 2e-3, 1e-2};
   for (int i = 0; i < 4; i++) {
-    if (!attempt(path, larger[i])) continue;
+    if (!attempt(path, larger[i]) || !goes_on(path)) continue;
     path->step = larger[i];
     return 1;
   }
   double guess[path->n], forward = copysign(span(path), path->now.tangent[path->n]);
-  for (int i = 0; i < 12; i++) {
-    double omega = path->now.omega + forward * further[i / 3];
+  for (int i = 0; i < 24; i++) {
+    double omega = path->now.omega + (i < 12 ? forward : -forward) * further[i / 3 % 4];
     int    stuck = i % 3 - 1; /* -1: the old point */
+    if (omega < path->low || omega > path->high) continue;
     if (stuck < 0) {
       memcpy(guess, path->now.x, sizeof guess);
     } else if (mhb_residual_linear(path->residual, omega, stuck, guess) != SHB_OK) {
       continue;
     }
-    if (!attempt_from(path, omega, guess)) continue;
+    if (!attempt_from(path, omega, guess) || !goes_on(path)) continue;
     path->step = FIRST_STEP;
     return 1;
   }
@@ -250,6 +279,7 @@ static int find_next(mhb_path *path) {
     double by_angle = kink ? 1 : .6 * LARGEST_ANGLE / fmax(angle, 1e-12);
     path->step = fmin(path->longest, ds * fmin(fmax(.5, fmin(2, by_work)), fmax(.3, by_angle)));
     path->step = fmax(path->step, 2 * SHORTEST_STEP);
+    note_orientation(path);
     return 1;
   }
   return last_resort(path);

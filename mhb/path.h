@@ -12,18 +12,20 @@ typedef struct {
   double *x;       /* [n] m */
   double  omega;   /* rad/s */
   double *tangent; /* [n+1] d(x, omega) along the path, unit length in y */
-  int     iterations;
-  double  residual;          /* |r|/|x| */
-  double  truncation, modal; /* relative error estimates, see mhb_residual_errors */
+  int orientation; /* sign of det [J r_omega; tangent]: the same all along a path, but for bifurcations */
+  int    iterations;
+  double residual;          /* |r|/|x| */
+  double truncation, modal; /* relative error estimates, see mhb_residual_errors */
 } mhb_path_point;
 
 typedef struct {
-  mhb_residual  *residual;
-  mhb_newton    *newton;
-  int            n;
-  double         low, high; /* rad/s, range */
-  double         step, longest;
-  double         tolerance;
+  mhb_residual *residual;
+  mhb_newton   *newton;
+  int           n;
+  double        low, high; /* rad/s, range */
+  double        step, longest;
+  double        tolerance;
+  int orientation, against;        /* of the path; ordinary steps in a row that had the other one */
   mhb_path_point now, next, probe; /* probe: scratch for located points */
   double        *chord;            /* [n+1] */
 } mhb_path;

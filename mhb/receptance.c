@@ -154,10 +154,23 @@ static int allocate(mhb_receptance *r) {
   return ok;
 }
 
+/* Inter-blade phase of the fundamental omega/nu. A neighbour lags by phi and any whole number l of periods,
+ * (2 pi/nu)(E/N + l); around the ring that closes if nu divides E + N l. NAN: for no l. */
+static double wave_step(const mhb_settings *s) {
+  for (int l = 0; l < s->subharmonics; l++)
+    if ((s->engine_order + (long)s->blades * l) % s->subharmonics == 0)
+      return 2 * PI / s->subharmonics * ((double)s->engine_order / s->blades + l);
+  return NAN;
+}
+
 shb_status mhb_receptance_create(const modal_model *model, const mhb_settings *settings,
                                  int n_harmonics, mhb_receptance **out) {
   SHB_CHECK(settings->to_ground || model->has_left, SHB_ERR_INPUT,
             "contact.to is neighbour, but the modal file has no /contact/left; set it to ground");
+  SHB_CHECK(settings->to_ground || isfinite(wave_step(settings)), SHB_ERR_INPUT,
+            "mhb.subharmonics is %d, but a wave of that many periods does not close around %d "
+            "blades at engine order %d; set it to 1",
+            settings->subharmonics, settings->blades, settings->engine_order);
   mhb_receptance *r = calloc(1, sizeof *r);
   int nc = 3 * model->n_pairs * (model->has_left ? 2 : 1), sides = settings->to_ground ? 1 : 2;
   double complex *scratch =
@@ -182,8 +195,7 @@ shb_status mhb_receptance_create(const modal_model *model, const mhb_settings *s
     mhb_receptance_destroy(r);
     return status;
   }
-  double step =
-      settings->to_ground ? 0 : 2 * PI * settings->engine_order / settings->blades / r->nu;
+  double step   = settings->to_ground ? 0 : wave_step(settings);
   size_t square = (size_t)r->n * (size_t)r->n;
   for (int k = 0; k <= n_harmonics; k++) {
     double complex phase = cexp(-I * fmod(k * step, 2 * PI));

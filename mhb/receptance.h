@@ -1,7 +1,8 @@
 /* The blade as the contact sees it: receptance between relative motions at the contact pairs (eqs. 19-27, 34-35).
  *
  * Harmonic k of the fundamental omega/nu. For pair a with axes T0 (columns v, u, w; eq. 2) and inter-blade phase
- * e_k = exp(-j k phi/nu), phi = 2 pi E/N (eq. 16; no left side to ground):
+ * e_k = exp(-j k phi/nu), phi = 2 pi E/N + 2 pi l (eq. 16; l = 0 for nu = 1, else the least for which the wave of nu periods
+ * closes around the ring; no left side to ground):
  *   B_k[3a + c][i] = T0^T (right - e_k left)                              relative motion of mode i
  *   L_i  = 1/(w_i^2 - (k w)^2 + 2 j zeta_i w_i k w)                       eq. 20
  *   R_k  = B L B^H + T (R + (k w)^2 R2) T^H                               eqs. 34, 35, with residual terms
@@ -34,7 +35,8 @@ typedef struct {
 } mhb_receptance;
 
 /* Errors: SHB_ERR_INPUT psi, phi do not agree with the file's normals within a degree, load harmonic above n_harmonics
- * ignored, to neighbour without /contact/left; SHB_ERR_IO no memory. The model must outlive the receptance. */
+ * ignored, to neighbour without /contact/left, subharmonics
+ * that do not close around the ring; SHB_ERR_IO no memory. The model must outlive the receptance. */
 shb_status mhb_receptance_create(const modal_model *model, const mhb_settings *settings,
                                  int n_harmonics, mhb_receptance **receptance);
 void       mhb_receptance_destroy(mhb_receptance *receptance);

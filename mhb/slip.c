@@ -214,43 +214,67 @@ static double gamma_end(const mhb_slip *slip, const mhb_panel *panel, double *sl
   return mhb_slip_gamma(slip, &d, dy);
 }
 
+/* gamma at the nodes and at the panel's end. */
+static void gamma_at_nodes(const mhb_slip *slip, const mhb_panel *panel, double *s, double *g) {
+  double unused;
+  for (int i = 0; i < MHB_NODES; i++) {
+    mhb_direction d = mhb_slip_direction(slip->K, panel->theta[i]);
+    g[i]            = mhb_slip_gamma(slip, &d, panel->dy[i]);
+    s[i]            = slip->rule->node[i];
+  }
+  g[MHB_NODES] = gamma_end(slip, panel, &unused);
+  s[MHB_NODES] = 1;
+}
+
+/* A short stick between two nodes: the lowest point of gamma about node i, if it is below zero there. */
+static int dips(const mhb_slip *slip, const mhb_panel *panel, const double *s, const double *g,
+                int i, double *at, double *value) {
+  if (!(g[i] < g[i - 1] && g[i] <= g[i + 1])) return 0;
+  double left  = (g[i] - g[i - 1]) / (s[i] - s[i - 1]),
+         right = (g[i + 1] - g[i]) / (s[i + 1] - s[i]);
+  double bend  = (right - left) / (s[i + 1] - s[i - 1]);
+  double there = left + bend * (s[i] - s[i - 1]); /* slope at node i of the parabola */
+  if (g[i] - .25 * there * there / bend > .5 * g[i]) return 0;
+  *at    = s[i] - .5 * there / bend;
+  *value = gamma_at(slip, panel, *at);
+  return *value < 0;
+}
+
 /* Fraction of the panel at which gamma first turns negative; > 1 if it does not. */
 static double slip_end(const mhb_slip *slip, const mhb_panel *panel) {
-  double lo = 0, glo = 0, hi = 2, ghi = 0;
+  double lo = 0, glo = 0, hi = 2, ghi = 0, s[MHB_NODES + 1], g[MHB_NODES + 1];
+  gamma_at_nodes(slip, panel, s, g);
   for (int i = 0; i <= MHB_NODES && hi > 1; i++) {
-    double g, unused;
-    if (i < MHB_NODES) {
-      mhb_direction d = mhb_slip_direction(slip->K, panel->theta[i]);
-      g               = mhb_slip_gamma(slip, &d, panel->dy[i]);
-    } else {
-      g = gamma_end(slip, panel, &unused);
+    double at, value;
+    if (g[i] >= 0 && i > 0 && i < MHB_NODES && dips(slip, panel, s, g, i, &at, &value)) {
+      hi  = at;
+      ghi = value;
+      if (at < s[i]) continue; /* from the node before */
+    } else if (g[i] < 0) {
+      hi  = s[i];
+      ghi = g[i];
+      continue;
     }
-    double s = i < MHB_NODES ? slip->rule->node[i] : 1;
-    if (g < 0) {
-      hi  = s;
-      ghi = g;
-    } else {
-      lo  = s;
-      glo = g;
-    }
+    lo  = s[i];
+    glo = g[i];
   }
   if (hi > 1) return hi;
   if (lo == 0) glo = gamma_at(slip, panel, 0);
   if (glo <= 0) return 0;
   for (int i = 0; i < 60 && hi - lo > 1e-9; i++) { /* Illinois */
-    double s = (lo * ghi - hi * glo) / (ghi - glo);
-    if (!(s > lo && s < hi)) s = .5 * (lo + hi);
-    double g = gamma_at(slip, panel, s);
-    if (g < 0) {
-      hi  = s;
-      ghi = g;
+    double at = (lo * ghi - hi * glo) / (ghi - glo);
+    if (!(at > lo && at < hi)) at = .5 * (lo + hi);
+    double value = gamma_at(slip, panel, at);
+    if (value < 0) {
+      hi  = at;
+      ghi = value;
       glo *= i ? .5 : 1;
     } else {
-      lo  = s;
-      glo = g;
+      lo  = at;
+      glo = value;
       ghi *= i ? .5 : 1;
     }
-    if (fabs(g) < 1e-15) break;
+    if (fabs(value) < 1e-15) break;
   }
   return .5 * (lo + hi);
 }

@@ -20,7 +20,8 @@ typedef struct {
   omp_lock_t            mutex;
   double               *done; /* [preload] share of the range covered */
   double                published;
-  shb_status            status; /* first failure of publishing */
+  shb_status            status; /* first failure, and its text: messages are per thread */
+  char                  fault[512];
 } sweep;
 
 static void lock(mhb_monitor *monitor, bool locked) {
@@ -35,6 +36,13 @@ static void lock(mhb_monitor *monitor, bool locked) {
 static shb_status publish(sweep *s) {
   s->published = shb_seconds();
   return s->path ? mhb_response_write(s->response, s->path, s->provenance) : SHB_OK;
+}
+
+/* Keep the first failure of any thread, under the lock. */
+static void note_failure(sweep *s, shb_status status) {
+  if (status == SHB_OK || s->status != SHB_OK) return;
+  s->status = status;
+  snprintf(s->fault, sizeof s->fault, "%s", shb_message());
 }
 
 static bool point(mhb_monitor *monitor, int branch, const mhb_path_point *at) {
@@ -53,7 +61,7 @@ static bool point(mhb_monitor *monitor, int branch, const mhb_path_point *at) {
                     "n0 %-8.4g N  point %-4d  %8.3f Hz  %.3e m", b->n0[b->n_points - 1],
                     b->n_points, hz, amplitude);
   if (s->path && shb_seconds() - s->published > PUBLISH_EVERY && s->status == SHB_OK)
-    s->status = publish(s);
+    note_failure(s, publish(s));
   return !shb_interrupted() && s->status == SHB_OK;
 }
 
@@ -141,8 +149,7 @@ static void resume(sweep *s) {
 }
 
 static shb_status all_preloads(sweep *s, const modal_model *model) {
-  int        n     = s->settings->n_preloads;
-  shb_status first = SHB_OK;
+  int n = s->settings->n_preloads;
   for (int i = 0; i < n; i++) {
     int branch;
     SHB_TRY(mhb_response_branch(s->response, MHB_BRANCH_NONLINEAR, &branch));
@@ -151,17 +158,13 @@ static shb_status all_preloads(sweep *s, const modal_model *model) {
 #pragma omp parallel for schedule(dynamic, 1)
   for (int i = 0; i < n; i++) {
     if (shb_interrupted() || s->response->branch[2 + i].complete) continue;
-    char       text[512];
     shb_status status = one_preload(s, model, i);
-    snprintf(text, sizeof text, "%s", shb_message());
     lock(&s->base, true);
-    if (status != SHB_OK && first == SHB_OK) { /* messages are per thread: carry this one over */
-      first     = status;
-      s->status = shb_fail(status, __FILE__, __LINE__, "%s", text);
-    }
+    note_failure(s, status);
     lock(&s->base, false);
   }
-  return first != SHB_OK ? first : s->status;
+  if (s->status != SHB_OK) return shb_fail(s->status, __FILE__, __LINE__, "%s", s->fault);
+  return SHB_OK;
 }
 
 static shb_status outcome(const mhb_response *response) {

@@ -299,6 +299,32 @@ static void slopes_are_derivatives(void **state) {
   }
 }
 
+/* Subharmonics of order 2 at engine order 1: on 5 blades the neighbour lags by phi + 2 pi, so that 5 blades make 12 pi, on
+ * 6 blades no lag closes. */
+static void subharmonics_close_around_the_ring(void **state) {
+  (void)state;
+  modal_model     model;
+  mhb_receptance *r;
+  mhb_settings    s = random_settings(3);
+  random_model(1, WITH_LEFT, 4, &model);
+  s.subharmonics = 2;
+  assert_int_equal(mhb_receptance_create(&model, &s, 3, &r), SHB_ERR_INPUT);
+  assert_non_null(strstr(shb_message(), "mhb.subharmonics"));
+  s.to_ground = true;
+  assert_int_equal(mhb_receptance_create(&model, &s, 3, &r), SHB_OK);
+  mhb_receptance_destroy(r);
+  s.to_ground = false;
+  s.blades    = 5;
+  assert_int_equal(mhb_receptance_create(&model, &s, 3, &r), SHB_OK);
+  for (int k = 0; k <= 3; k++) { /* v of mode 0: right - e_k left, psi = phi = 0 */
+    double complex e = (model.right[0] - r->B[k * r->n * r->n_modes]) / model.left[0];
+    assert_true(cabs(cpow(e, 5) - 1) < 1e-12);
+    if (k == 2) assert_true(cabs(e - cexp(-I * 2 * PI / 5)) < 1e-12); /* eq. 25 */
+  }
+  mhb_receptance_destroy(r);
+  modal_model_free(&model);
+}
+
 static void expect_refusal(const modal_model *model, const mhb_settings *s, const char *wanted) {
   mhb_receptance *r = NULL;
   assert_int_equal(mhb_receptance_create(model, s, 3, &r), SHB_ERR_INPUT);
@@ -341,6 +367,7 @@ int main(void) {
       cmocka_unit_test(condensation_is_the_dense_sum),
       cmocka_unit_test(receptance_is_reciprocal_and_passive),
       cmocka_unit_test(slopes_are_derivatives),
+      cmocka_unit_test(subharmonics_close_around_the_ring),
       cmocka_unit_test(faults_are_named),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
