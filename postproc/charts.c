@@ -357,7 +357,7 @@ static void name_harmonics(const post_plot *plot, int m, const mhb_branch *branc
   double taken[SHOWN_HARMONICS];
   for (int k = 0; k <= m; k++) {
     double end = y[k * n + n - 1], at = plot_y(plot, end) + 4;
-    char   classes[16], name[16];
+    char   classes[24], name[24];
     if (end <= plot->y.lo) continue;
     for (int i = 0; i < used; i++)
       if (fabs(taken[i] - at) < 14) {
@@ -402,7 +402,7 @@ void post_chart_harmonics(const post_study *study, int b, post_buffer *out) {
   plot.y = (plot_axis){fmax(1e-6 * most, least / 2), 2 * most, true, 0, unit.scale, label};
   plot_frame(&plot);
   for (int k = 0; k <= m; k++) {
-    char classes[16];
+    char classes[24];
     snprintf(classes, sizeof classes, "line h%d", k);
     plot_line(&plot, classes, n, branch->frequency, y + k * n, NULL);
   }
