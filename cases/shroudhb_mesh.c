@@ -91,9 +91,10 @@ int main(int argc, char **argv) {
   case_file       file;
   int             code = command_parse(argc, argv, usage, &options);
   if (code >= 0) return code;
-  if ((code = case_read(options.path, CASE_MESH, stderr, &file)) != SHB_OK) return code;
+  shb_status status = case_read(options.path, CASE_MESH, stderr, &file);
+  if (status != SHB_OK) return command_finish(status);
   shb_interrupt_catch();
-  shb_status status = run(&file, &options);
+  status = run(&file, &options);
   case_free(&file);
   return command_finish(status);
 }

@@ -109,12 +109,13 @@ int main(int argc, char **argv) {
   if (code >= 0) return code;
   if (options.mode && strcmp(options.mode, "contact") == 0)
     return command_finish(contact_command(options.path, stdout));
-  case_file file;
-  if ((code = case_read(options.path, CASE_MHB, stderr, &file)) != SHB_OK) return code;
+  case_file  file;
+  shb_status status = case_read(options.path, CASE_MHB, stderr, &file);
+  if (status != SHB_OK) return command_finish(status);
   shb_interrupt_catch();
   openblas_set_num_threads(1); /* threads go to the preloads; the systems are small */
-  file.mhb.resume   = !options.force;
-  shb_status status = run(&file, &options);
+  file.mhb.resume = !options.force;
+  status          = run(&file, &options);
   case_free(&file);
   return command_finish(status);
 }

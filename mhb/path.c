@@ -98,6 +98,13 @@ static void evaluate(mhb_path *path, const mhb_path_point *point) {
   mhb_residual_evaluate(path->residual, point->x, point->omega, w->r, w->jacobian, w->slope);
 }
 
+/* Evaluate, and note the relative residual. */
+static void measure(mhb_path *path, mhb_path_point *point) {
+  evaluate(path, point);
+  double size     = mhb_norm(point->x, path->n);
+  point->residual = mhb_norm(path->newton->r, path->n) / (size > 0 ? size : 1);
+}
+
 /* point += fraction of the scaled step in the workspace */
 static void move(const mhb_path *path, double fraction, double scale, mhb_path_point *point) {
   const double *step = path->newton->step;
@@ -109,9 +116,7 @@ static void move(const mhb_path *path, double fraction, double scale, mhb_path_p
 static int evaluate_damped(mhb_path *path, double before, double cut, double scale,
                            mhb_path_point *point) {
   for (int halvings = 0;; halvings++) {
-    evaluate(path, point);
-    double size     = mhb_norm(point->x, path->n);
-    point->residual = mhb_norm(path->newton->r, path->n) / (size > 0 ? size : 1);
+    measure(path, point);
     if (point->residual <= before || halvings == MAX_HALVINGS) return isfinite(point->residual);
     cut *= .5;
     move(path, -cut, scale, point);
@@ -175,10 +180,8 @@ mhb_reason mhb_path_start(mhb_path *path, const double *x, double omega, int dir
   mhb_reason reason = mhb_newton_solve(path->newton, path->residual, omega, path->tolerance,
                                        path->now.x, &path->now.iterations);
   if (reason != MHB_CONVERGED) return reason;
-  evaluate(path, &path->now);
-  double size        = mhb_norm(path->now.x, path->n);
-  path->now.residual = mhb_norm(path->newton->r, path->n) / (size > 0 ? size : 1);
-  double *along      = path->chord;
+  measure(path, &path->now);
+  double *along = path->chord;
   memset(along, 0, sizeof(double) * (size_t)path->n);
   along[path->n] = direction * span(path);
   if (!set_tangent(path, along, &path->now)) return MHB_SINGULAR;
@@ -211,9 +214,8 @@ static int attempt_from(mhb_path *path, double omega, const double *guess) {
   if (mhb_newton_solve(path->newton, path->residual, omega, path->tolerance, next->x,
                        &next->iterations) != MHB_CONVERGED)
     return 0;
-  evaluate(path, next);
+  measure(path, next);
   double scale = unit(path), far = 0;
-  next->residual = mhb_norm(path->newton->r, path->n) / scale;
   for (int i = 0; i < path->n; i++) far = fmax(far, fabs(next->x[i] - path->now.x[i]) / scale);
   memset(path->chord, 0, size); /* onwards in frequency */
   path->chord[path->n] = omega - path->now.omega;
@@ -331,7 +333,7 @@ static int at_fraction(mhb_path *path, double s) {
                        : mhb_newton_solve(path->newton, path->residual, probe->omega, path->tolerance,
                                           probe->x, &probe->iterations) == MHB_CONVERGED;
     if (!ok) continue;
-    if (tries) evaluate(path, probe);
+    if (tries) measure(path, probe);
     if (set_tangent(path, path->chord, probe)) return 1;
   }
   return 0;
