@@ -3,7 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const double RIPPLE = 0.02; /* of the peak's height */
+static const double RIPPLE   = 0.02; /* of the peak's height */
+static const double HAIRLINE = 1e-5; /* of the frequency, as the solver has it */
 
 /* One curve with the scales that make its arclength dimensionless. */
 typedef struct {
@@ -216,6 +217,20 @@ static post_fold fold_at(const curve *c, const int *special, int i) {
   return fold;
 }
 
+/* Drop neighbouring pairs between which no jump could be seen; the number kept. */
+static int drop_hairlines(post_fold *fold, int n) {
+  int kept = 0;
+  for (int i = 0; i < n; i++) {
+    double before = kept ? fold[kept - 1].frequency : INFINITY;
+    if (fabs(fold[i].frequency - before) < HAIRLINE * fold[i].frequency) {
+      kept--;
+    } else {
+      fold[kept++] = fold[i];
+    }
+  }
+  return kept;
+}
+
 shb_status post_find_folds(int n, const double *frequency, const double *amplitude,
                            const int *special, post_fold **folds, int *n_folds) {
   curve c     = curve_of(n, frequency, amplitude);
@@ -229,7 +244,7 @@ shb_status post_find_folds(int n, const double *frequency, const double *amplitu
   for (int i = 0, p = 0; i < n; i++)
     if (is_fold(&c, special, i)) out[p++] = fold_at(&c, special, i);
   *folds   = out;
-  *n_folds = count;
+  *n_folds = drop_hairlines(out, count);
   return SHB_OK;
 }
 

@@ -34,7 +34,8 @@ shb_status post_find_peaks(int n, const double *frequency, const double *amplitu
                            post_peak **peaks, int *n_peaks);
 
 /* Turning points of the frequency, in order, found by its change of direction or by special[i] == 1 (may be NULL);
- * refined by a parabola over amplitude, or arclength, unless flagged (a flagged point was located by the solver). */
+ * refined by a parabola over amplitude, or arclength, unless flagged (a flagged point was located by the solver).
+ * Pairs less than 1e-5 of the frequency apart are left out: no jump could be seen there. */
 shb_status post_find_folds(int n, const double *frequency, const double *amplitude,
                            const int *special, post_fold **folds, int *n_folds);
 

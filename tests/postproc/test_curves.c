@@ -179,6 +179,19 @@ static void edge(void **state) {
   assert_int_equal(post_highest(0, NULL), -1);
 }
 
+/* A fold pair a millionth apart is left out, wider ones stay. */
+static void hairlines_are_no_folds(void **state) {
+  (void)state;
+  double     f[]        = {100, 105, 110, 110 - 1e-4, 115, 120, 118, 125};
+  double     a[]        = {1, 2, 3, 3.01, 4, 5, 6, 7};
+  int        special[8] = {0}, n;
+  post_fold *folds;
+  assert_int_equal(post_find_folds(8, f, a, special, &folds, &n), SHB_OK);
+  assert_int_equal(n, 2);
+  assert_true(folds[0].frequency > 117 && folds[1].frequency > 117);
+  free(folds);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(resonance), cmocka_unit_test(order),
                                      cmocka_unit_test(folds),     cmocka_unit_test(flagged),
