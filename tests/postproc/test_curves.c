@@ -193,8 +193,12 @@ static void hairlines_are_no_folds(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(resonance), cmocka_unit_test(order),
-                                     cmocka_unit_test(folds),     cmocka_unit_test(flagged),
-                                     cmocka_unit_test(cases),     cmocka_unit_test(edge)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(resonance),
+                                     cmocka_unit_test(order),
+                                     cmocka_unit_test(folds),
+                                     cmocka_unit_test(flagged),
+                                     cmocka_unit_test(cases),
+                                     cmocka_unit_test(edge),
+                                     cmocka_unit_test(hairlines_are_no_folds)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
