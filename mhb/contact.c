@@ -115,8 +115,8 @@ static int set_signals(mhb_contact *c, const mhb_law *law, const double *motion)
     load += law->kv * fabs(v[i]);
     friction += hypot(law->ku[0] * u[i] + law->ku[1] * w[i], law->ku[1] * u[i] + law->ku[2] * w[i]);
   }
-  c->scale = fmax(load, friction);
-  if (!(c->scale > 0)) return 0;
+  c->scale = load + friction < INFINITY ? fmax(load, friction) : NAN;
+  if (!(c->scale > 1e-290)) return 0; /* its inverse would overflow */
   double one = 1 / c->scale, *n = c->scaled, *x1 = n + c->nb, *x2 = x1 + c->nb;
   c->kv      = law->kv * one;
   c->K[0][0] = law->ku[0] * one;
@@ -717,8 +717,10 @@ void mhb_contact_force(mhb_contact *c, const mhb_law *law, const double *motion,
   memset(force, 0, sizeof(double) * size);
   if (jacobian) memset(jacobian, 0, sizeof(double) * size * 3 * (size_t)nb);
   c->info = info;
-  if (!set_signals(c, law, motion)) { /* at rest, without preload */
+  if (!set_signals(c, law, motion)) { /* at rest, without preload; or not a number */
     info->share[MHB_SEPARATE] = 1;
+    info->lost                = isnan(c->scale);
+    for (size_t i = 0; info->lost && i < size; i++) force[i] = NAN;
     return;
   }
   set_slip(c, law);

@@ -57,7 +57,7 @@ void       mhb_contact_destroy(mhb_contact *contact);
  *   force     out  [3][2H+1], N
  *   jacobian  out  d force / d motion, [3 (2H+1)][3 (2m+1)] row-major, N/m, or NULL. Where slip just begins the derivative
  *                  of the periodic slider is unbounded: det(I - DP) is held above 1e-7.
- * Never fails: a periodicity not reached shows in info->lost and info->error. */
+ * Never fails: a periodicity not reached shows in info->lost and info->error; a motion that is not finite gives NaN. */
 void mhb_contact_force(mhb_contact *contact, const mhb_law *law, const double *motion,
                        double *force, double *jacobian, mhb_contact_info *info);
 

@@ -162,6 +162,28 @@ static void a_norm_tells_what_is_not_a_number(void **state) {
   assert_below(fabs(mhb_norm(big, 2) / 5e200 - 1), 1e-15);
 }
 
+/* A motion that overflowed must come back as such, soon. */
+static void a_motion_that_is_no_number_ends(void **state) {
+  (void)state;
+  static const double bad[] = {NAN, INFINITY, -INFINITY, 1e308};
+  modal_model         model;
+  three_degree_model(&model);
+  mhb_settings  s = ground(.3, 3, .8, 1.7);
+  mhb_residual *residual;
+  assert_int_equal(mhb_residual_create(&model, &s, &residual), SHB_OK);
+  mhb_residual_preload(residual, .3);
+  double x[residual->n], r[residual->n];
+  for (int i = 0; i < residual->n; i++)
+    for (int k = 0; k < 4; k++) {
+      for (int j = 0; j < residual->n; j++) x[j] = .3 / (1 + j % 7);
+      x[i] = bad[k];
+      mhb_residual_evaluate(residual, x, 1.1, r, NULL, NULL);
+      assert_false(isfinite(mhb_norm(r, residual->n)) && k < 3);
+    }
+  mhb_residual_destroy(residual);
+  modal_model_free(&model);
+}
+
 /* No excitation, no resonance, no damping: nothing special. */
 static void dull_ranges_are_covered(void **state) {
   (void)state;
@@ -423,6 +445,7 @@ int main(void) {
       cmocka_unit_test(a_branch_cut_short_says_why),
       cmocka_unit_test(no_solution_is_an_outcome),
       cmocka_unit_test(a_norm_tells_what_is_not_a_number),
+      cmocka_unit_test(a_motion_that_is_no_number_ends),
       cmocka_unit_test(dull_ranges_are_covered),
       cmocka_unit_test(without_excitation_all_is_still),
       cmocka_unit_test(preloads_about_zero_agree),
