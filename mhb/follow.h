@@ -23,7 +23,7 @@ struct mhb_monitor {
 shb_status mhb_follow(mhb_residual *residual, mhb_response *response, int branch,
                       mhb_monitor *monitor);
 
-/* The open or stuck limit, sampled until linear interpolation of every output is within .2 % of its maximum. */
+/* The open or stuck limit, sampled until linear interpolation of every output is within .2 % of its local value. */
 shb_status mhb_follow_linear(mhb_residual *residual, mhb_response *response, int branch);
 
 /* A solution at omega from nothing: the open and stuck limits, zero, then homotopy in the preload from both sides. */

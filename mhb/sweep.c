@@ -34,8 +34,9 @@ static void lock(mhb_monitor *monitor, bool locked) {
 }
 
 static shb_status publish(sweep *s) {
-  s->published = shb_seconds();
-  return s->path ? mhb_response_write(s->response, s->path, s->provenance) : SHB_OK;
+  shb_status status = s->path ? mhb_response_write(s->response, s->path, s->provenance) : SHB_OK;
+  s->published      = shb_seconds();
+  return status;
 }
 
 /* Keep the first failure of any thread, under the lock. */
