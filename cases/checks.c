@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <math.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -42,6 +43,19 @@ static void check_load(case_reader *r) {
   if (lost && r->file->n_probes == 0 && case_reader_good(r, "probe"))
     case_reader_issue(r, "excitation.force.vector",
                       "has no place to act: give excitation.force.at, or a probe");
+}
+
+/* What a parametric blade cannot be. */
+static void check_blade(case_reader *r, int stages) {
+  const mesh_blade *blade  = &r->file->blade;
+  double            degree = 180 / 3.14159265358979323846;
+  if (r->file->modal_file || !(stages & CASE_MESH) || !has_block(r, "mesh.blade")) return;
+  if (case_reader_good(r, "contact.psi") && fabs(blade->psi) * degree > 70)
+    case_reader_issue(r, "contact.psi", "a parametric blade needs -70 to 70 deg");
+  if (case_reader_good(r, "contact.phi") && fabs(blade->phi) * degree > 45)
+    case_reader_issue(r, "contact.phi", "a parametric blade needs -45 to 45 deg");
+  if (case_reader_good(r, "rotor.blades") && blade->blades == 2)
+    case_reader_issue(r, "rotor.blades", "a parametric blade needs 3 or more");
 }
 
 /* Nothing would move. */
@@ -141,6 +155,7 @@ bool case_check_values(case_reader *r, int stages) {
     check_sizes(r);
   }
   check_load_size(r);
+  check_blade(r, stages);
   check_harmonics(r, stages);
   if (own) check_extension(r);
   if (own && stages & (CASE_MESH | CASE_MODAL)) lost = check_file(r, "mesh.file", file->mesh_file);

@@ -61,6 +61,7 @@ int main(int argc, char **argv) {
   case_file  file;
   shb_status status = case_read(options.path, CASE_POST, stderr, &file);
   if (status != SHB_OK) return command_finish(status);
+  shb_interrupt_catch(); /* a fraction of a second: finish rather than leave a temporary file */
   status = publish(&file, &options);
   case_free(&file);
   return command_finish(status);

@@ -3,8 +3,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const double RIPPLE   = 0.02; /* of the peak's height */
-static const double HAIRLINE = 1e-5; /* of the frequency, as the solver has it */
+static const double RIPPLE       = 0.02; /* of the peak's height */
+static const double LARGEST_GAIN = 1.05; /* of a refined peak over its highest point */
+static const double HAIRLINE     = 1e-5; /* of the frequency, as the solver has it */
 
 /* One curve with the scales that make its arclength dimensionless. */
 typedef struct {
@@ -71,7 +72,7 @@ static void refine_peak(const curve *c, int i, post_peak *peak) {
   double s[3], a[3], q[3];
   peak->frequency = c->f[i];
   peak->amplitude = c->a[i];
-  if (!three_points(c, i, c->f, s)) return;
+  if (!three_points(c, i, c->f, s) || s[2] > -10 * s[0] || -s[0] > 10 * s[2]) return;
   for (int k = 0; k < 3; k++) {
     a[k] = c->a[i - 1 + k] / c->a[i];
     q[k] = -1 / fmax(a[k] * a[k], 1e-30);
@@ -82,8 +83,13 @@ static void refine_peak(const curve *c, int i, post_peak *peak) {
     at  = vertex(s, a);
     top = parabola(s, a, at);
   }
-  peak->frequency = parabola(s, c->f + i - 1, at);
-  peak->amplitude = c->a[i] * fmax(1, resonant ? 1 / sqrt(-top) : top);
+  double gain = fmax(1, resonant ? 1 / sqrt(-top) : top), f = parabola(s, c->f + i - 1, at);
+  double low  = fmin(c->f[i], fmin(c->f[i - 1], c->f[i + 1]));
+  double high = fmax(c->f[i], fmax(c->f[i - 1], c->f[i + 1]));
+  if (f < low || f > high || gain > LARGEST_GAIN)
+    return; /* too coarse to tell more than the point itself */
+  peak->frequency = f;
+  peak->amplitude = c->a[i] * gain;
 }
 
 /* Frequency where the amplitude falls to level going from the peak in direction step; NAN if it does not before
