@@ -1,6 +1,7 @@
 #include "mhb/follow.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -18,8 +19,16 @@ typedef struct {
   mhb_monitor  *monitor;
   int           n_outputs;
   double       *before, *after; /* [outputs] slopes of the amplitudes at now and next */
+  double       *x;              /* [n] a first solution */
   double        clock;
+  double        farthest;       /* rad/s, highest frequency reached */
+  int           crawling, gaps; /* tiny steps in a row; places jumped over */
+  char          first_gap[96];
 } follower;
+
+/* A path whose steps stay below CRAWL this often is as good as stalled. */
+static const double CRAWL = 2e-3;
+enum { MAX_CRAWL = 150, MAX_GAPS = 8 };
 
 static double fold_indicator(const mhb_path *path, const mhb_path_point *point, void *context) {
   (void)context;
@@ -96,30 +105,88 @@ static void revisit(follower *f, const mhb_path_point *point) {
   mhb_residual_evaluate(f->residual, point->x, point->omega, w->r, w->jacobian, NULL);
 }
 
-static const char *run(follower *f, int max_points, shb_status *status) {
-  mhb_path *path  = f->path;
-  bool      go_on = true;
+/* Start, or start again, from a solution at omega. */
+static shb_status begin(follower *f, double omega, bool *found, bool *go_on) {
+  mhb_path  *path = f->path;
+  int        iterations;
+  mhb_reason reason =
+      mhb_first_solution(path->newton, f->residual, omega, path->tolerance, f->x, &iterations);
+  if (reason == MHB_CONVERGED) reason = mhb_path_start(path, f->x, omega, 1);
+  *found = reason == MHB_CONVERGED;
+  if (!*found) return SHB_OK;
+  f->farthest = fmax(f->farthest, omega);
+  f->crawling = 0;
   revisit(f, &path->now);
   slopes(f, &path->now, f->before);
-  *status = record(f, &path->now, MHB_ORDINARY, &go_on);
-  while (*status == SHB_OK && go_on) {
-    if (f->response->branch[f->branch].n_points >= max_points) return "mhb.max_points reached";
-    mhb_path_outcome outcome = mhb_path_step(path);
-    if (outcome == MHB_PATH_STALLED) return "no step converged";
+  return record(f, &path->now, MHB_ORDINARY, go_on);
+}
+
+/* The curve goes on beyond a place that cannot be passed; the reason will tell. */
+static shb_status skip(follower *f, const char *why, bool *found, bool *go_on) {
+  static const double further[] = {1e-3, 3e-3, 1e-2, 3e-2, .1};
+  double              from = f->farthest, span = f->path->high - f->path->low;
+  *found = false;
+  if (f->gaps == 0)
+    snprintf(f->first_gap, sizeof f->first_gap, "%s at %.6g Hz", why, from / (2 * PI));
+  if (f->gaps++ == MAX_GAPS) return SHB_OK;
+  for (int i = 0; i < 5 && !*found; i++) {
+    double omega = from + further[i] * span;
+    if (omega >= f->path->high) break;
+    SHB_TRY(begin(f, omega, found, go_on));
+  }
+  return SHB_OK;
+}
+
+/* Why the path cannot be followed from here; NULL: it can. */
+static const char *obstacle(follower *f, mhb_path_outcome outcome) {
+  f->crawling = f->path->step < CRAWL ? f->crawling + 1 : 0;
+  if (outcome == MHB_PATH_STALLED) return "no step converged";
+  if (outcome == MHB_PATH_AT_START) return "turned back to the start of the range";
+  return f->crawling > MAX_CRAWL ? "the steps stayed tiny" : NULL;
+}
+
+/* One step and what lies on it; *end is set to the reason when the branch is done. */
+static shb_status step(follower *f, bool *go_on, const char **end) {
+  mhb_path        *path    = f->path;
+  mhb_path_outcome outcome = mhb_path_step(path);
+  bool             found   = true;
+  if (outcome != MHB_PATH_STALLED) {
     revisit(f, &path->next);
     slopes(f, &path->next, f->after);
-    *status = record_events(f, &go_on);
-    if (*status != SHB_OK || !go_on) break;
+    SHB_TRY(record_events(f, go_on));
+    if (!*go_on) return SHB_OK;
     revisit(f, &path->next);
-    *status = record(f, &path->next, MHB_ORDINARY, &go_on);
-    if (outcome == MHB_PATH_AT_END) return "end of range";
-    if (outcome == MHB_PATH_AT_START) return "turned back to the start of the range";
-    mhb_path_advance(path);
-    double *swap = f->before;
-    f->before    = f->after;
-    f->after     = swap;
+    SHB_TRY(record(f, &path->next, MHB_ORDINARY, go_on));
+    f->farthest = fmax(f->farthest, path->next.omega);
   }
-  return "interrupted";
+  if (outcome == MHB_PATH_AT_END) *end = "end of range";
+  if (*end || !*go_on) return SHB_OK;
+  const char *why = obstacle(f, outcome);
+  if (why) {
+    SHB_TRY(skip(f, why, &found, go_on));
+    if (!found) *end = why;
+    return SHB_OK;
+  }
+  mhb_path_advance(path);
+  double *swap = f->before;
+  f->before    = f->after;
+  f->after     = swap;
+  return SHB_OK;
+}
+
+static const char *run(follower *f, int max_points, shb_status *status) {
+  bool        go_on = true, found;
+  const char *end   = NULL;
+  *status           = begin(f, f->path->low, &found, &go_on);
+  if (*status == SHB_OK && !found) {
+    *status = skip(f, "no first solution", &found, &go_on);
+    if (*status == SHB_OK && !found) return "no first solution";
+  }
+  while (*status == SHB_OK && go_on && !end) {
+    if (f->response->branch[f->branch].n_points >= max_points) return "mhb.max_points reached";
+    *status = step(f, &go_on, &end);
+  }
+  return go_on ? end : "interrupted";
 }
 
 /* A pair of folds that spans less than 1e-5 of the frequency is no jump that anyone could observe: not marked. */
@@ -147,36 +214,22 @@ static void mark_stability(mhb_branch *branch) {
 }
 
 static shb_status finish(follower *f, const char *reason) {
+  char text[256];
+  snprintf(text, sizeof text, "%s", reason);
+  if (f->gaps > 0)
+    snprintf(text, sizeof text, "%s, with %d gap%s: %s", reason, f->gaps, f->gaps > 1 ? "s" : "",
+             f->first_gap);
   shb_status status = SHB_OK;
   f->monitor->lock(f->monitor, true);
   mhb_branch *branch = &f->response->branch[f->branch];
   free(branch->reason);
-  branch->reason   = strdup(reason);
-  branch->complete = strcmp(reason, "end of range") == 0;
+  branch->reason   = strdup(text);
+  branch->complete = strcmp(text, "end of range") == 0;
   drop_hairlines(branch);
   mark_stability(branch);
   if (!branch->reason) status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   f->monitor->lock(f->monitor, false);
   return status;
-}
-
-static shb_status follow_from(follower *f, double *x) {
-  const mhb_settings *s   = f->residual->settings;
-  double              low = 2 * PI * s->frequency[0];
-  int                 iterations;
-  mhb_reason          reason =
-      mhb_first_solution(f->path->newton, f->residual, low, f->path->tolerance, x, &iterations);
-  if (reason == MHB_CONVERGED) reason = mhb_path_start(f->path, x, low, 1);
-  if (reason != MHB_CONVERGED) {
-    char text[128];
-    snprintf(text, sizeof text, "no first solution at %g Hz: %s", s->frequency[0],
-             mhb_reason_text(reason));
-    return finish(f, text);
-  }
-  shb_status  status;
-  const char *why = run(f, s->max_points, &status);
-  SHB_TRY(status);
-  return finish(f, why);
 }
 
 shb_status mhb_follow(mhb_residual *residual, mhb_response *response, int branch,
@@ -187,16 +240,23 @@ shb_status mhb_follow(mhb_residual *residual, mhb_response *response, int branch
                            .branch    = branch,
                            .monitor   = monitor,
                            .n_outputs = mhb_outputs(residual),
-                           .clock     = shb_seconds()};
+                           .clock     = shb_seconds(),
+                           .farthest  = 2 * PI * s->frequency[0]};
   SHB_TRY(mhb_path_create(residual, 2 * PI * s->frequency[0], 2 * PI * s->frequency[1], &f.path));
   size_t outputs    = (size_t)f.n_outputs + 1;
   f.before          = calloc(outputs, sizeof(double));
   f.after           = calloc(outputs, sizeof(double));
-  double    *x      = calloc((size_t)residual->n, sizeof(double));
-  shb_status status = f.before && f.after && x ? follow_from(&f, x) : SHB_ERR_IO;
+  f.x               = calloc((size_t)residual->n, sizeof(double));
+  shb_status status = SHB_ERR_IO;
+  if (f.before && f.after && f.x) {
+    const char *why = run(&f, s->max_points, &status);
+    if (status == SHB_OK) status = finish(&f, why);
+  } else {
+    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  }
   free(f.before);
   free(f.after);
-  free(x);
+  free(f.x);
   mhb_path_destroy(f.path);
   return status;
 }
