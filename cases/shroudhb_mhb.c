@@ -7,6 +7,7 @@
 #include "cases/case.h"
 #include "cases/command.h"
 #include "cases/contact.h"
+#include "cases/stale.h"
 #include "mesh/progress.h"
 #include "mhb/sweep.h"
 #include "modal/model.h"
@@ -89,6 +90,7 @@ static shb_status run(const case_file *file, const command_options *options) {
   char        *settings = NULL;
   shb_status   status =
       modal && output ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  if (status == SHB_OK && !file->modal_file) stale_warn(file, CASE_MODAL, modal);
   if (status == SHB_OK) status = settings_text(file, modal, &settings);
   if (status == SHB_OK) {
     if (!options->force && up_to_date(output, settings)) {

@@ -152,6 +152,18 @@ static void results_are_there_and_a_second_run_leaves_them(void **state) {
   }
 }
 
+/* A single stage warns when the file it reads was made from another case. */
+static void a_stale_file_is_told(void **state) {
+  (void)state;
+  char command[8 * SCRATCH_PATH];
+  snprintf(
+      command, sizeof command,
+      "cd '%s' && sed -i 's/10 N, 15 N/11 N, 15 N/' case.yaml && '%s' post --quiet case.yaml 2>&1"
+      " | grep -q 'response.h5 was made from other settings'",
+      folder, SHROUDHB);
+  assert_int_equal(system(command), 0);
+}
+
 static void memory_stays_below_two_gigabytes(void **state) {
   (void)state;
   struct rusage usage;
@@ -166,6 +178,7 @@ int main(void) {
       cmocka_unit_test(softening_and_hardening_jump),
       cmocka_unit_test(every_point_balances),
       cmocka_unit_test(results_are_there_and_a_second_run_leaves_them),
+      cmocka_unit_test(a_stale_file_is_told),
       cmocka_unit_test(memory_stays_below_two_gigabytes),
   };
   return cmocka_run_group_tests(tests, run_scene, clean);
