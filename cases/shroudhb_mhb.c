@@ -7,7 +7,7 @@
 #include "cases/case.h"
 #include "cases/command.h"
 #include "cases/contact.h"
-#include "cases/stale.h"
+#include "cases/fresh.h"
 #include "mesh/progress.h"
 #include "mhb/sweep.h"
 #include "modal/model.h"
@@ -21,30 +21,9 @@ static const char usage[] =
     "does nothing if that file is up to date (unless --force). With --contact: prints the force\n"
     "harmonics, transitions and energy for a prescribed relative motion.\n";
 
-/* All that the response depends on: the keys of the stage and the modal file's contents. malloc'ed. */
-static shb_status settings_text(const case_file *file, const char *modal, char **text) {
-  char  fingerprint[17];
-  char *keys = NULL;
-  SHB_TRY(shb_fingerprint(modal, fingerprint));
-  keys = case_settings(file, CASE_MHB);
-  SHB_CHECK(keys, SHB_ERR_IO, "out of memory");
-  size_t size = strlen(keys) + 64;
-  *text       = malloc(size);
-  if (*text) snprintf(*text, size, "%smodal.fingerprint = %s\n", keys, fingerprint);
-  free(keys);
-  SHB_CHECK(*text, SHB_ERR_IO, "out of memory");
-  return SHB_OK;
-}
-
 /* Whether path holds the finished answer to these settings. */
 static bool up_to_date(const char *path, const char *settings) {
-  hid_t file;
-  char *found = NULL;
-  if (h5_open(path, &file) != SHB_OK) return false;
-  bool same = h5_read_attribute_text(file, "/", "settings", &found) == SHB_OK && found &&
-              strcmp(found, settings) == 0;
-  free(found);
-  h5_close(file);
+  bool          same     = fresh_equal(path, settings);
   mhb_response *response = NULL;
   same                   = same && mhb_response_read(path, &response) == SHB_OK;
   for (int i = 0; same && i < response->n_branches; i++) same = response->branch[i].complete;
@@ -90,8 +69,8 @@ static shb_status run(const case_file *file, const command_options *options) {
   char        *settings = NULL;
   shb_status   status =
       modal && output ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  if (status == SHB_OK && !file->modal_file) stale_warn(file, CASE_MODAL, modal);
-  if (status == SHB_OK) status = settings_text(file, modal, &settings);
+  if (status == SHB_OK && !file->modal_file) fresh_warn(file, CASE_MODAL, modal);
+  if (status == SHB_OK) status = fresh_settings(file, CASE_MHB, modal, &settings);
   if (status == SHB_OK) {
     if (!options->force && up_to_date(output, settings)) {
       shb_progress_note(&progress, "%s is up to date", output);

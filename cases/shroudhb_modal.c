@@ -7,6 +7,7 @@
 
 #include "cases/case.h"
 #include "cases/command.h"
+#include "cases/fresh.h"
 #include "modal/session.h"
 #include "modal/stage.h"
 
@@ -75,31 +76,6 @@ static int parse(const words *line, command_options *options, case_file *file) {
   return code;
 }
 
-/* All that the modal file depends on: the keys of the stage and the mesh's contents. malloc'ed. */
-static shb_status settings_text(const case_file *file, const char *mesh, char **text) {
-  char fingerprint[17];
-  SHB_TRY(shb_fingerprint(mesh, fingerprint));
-  char *keys = case_settings(file, CASE_MODAL);
-  SHB_CHECK(keys, SHB_ERR_IO, "out of memory");
-  size_t size = strlen(keys) + 64;
-  *text       = malloc(size);
-  if (*text) snprintf(*text, size, "%smesh.fingerprint = %s\n", keys, fingerprint);
-  free(keys);
-  SHB_CHECK(*text, SHB_ERR_IO, "out of memory");
-  return SHB_OK;
-}
-
-static bool up_to_date(const char *path, const char *settings) {
-  hid_t file;
-  char *found = NULL;
-  if (h5_open(path, &file) != SHB_OK) return false;
-  bool same = h5_read_attribute_text(file, "/", "settings", &found) == SHB_OK && found &&
-              strcmp(found, settings) == 0;
-  free(found);
-  h5_close(file);
-  return same;
-}
-
 static modal_settings stage_settings(const case_file *file, modal_probe probe[CASE_MAX_PROBES]) {
   const mhb_settings *mhb = &file->mhb;
   for (int q = 0; q < file->n_probes; q++) {
@@ -130,8 +106,8 @@ static shb_status decide(const case_file *file, bool force, const char *mesh, co
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
   *settings = NULL;
   if (rank == 0) {
-    answer[0] = settings_text(file, mesh, settings);
-    answer[1] = answer[0] == SHB_OK && !force && up_to_date(output, *settings);
+    answer[0] = fresh_settings(file, CASE_MODAL, mesh, settings);
+    answer[1] = answer[0] == SHB_OK && !force && fresh_equal(output, *settings);
   }
   MPI_Bcast(answer, 2, MPI_INT, 0, PETSC_COMM_WORLD);
   *skip = answer[1];

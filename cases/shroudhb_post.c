@@ -6,7 +6,7 @@
 
 #include "cases/case.h"
 #include "cases/command.h"
-#include "cases/stale.h"
+#include "cases/fresh.h"
 #include "mesh/progress.h"
 #include "postproc/inspect.h"
 #include "postproc/publish.h"
@@ -38,7 +38,7 @@ static shb_status publish(const case_file *file, const command_options *options)
   char        *csv = case_output(file, ".csv"), *svg = case_output(file, ".svg"), *summary = NULL;
   shb_status   status;
   if (response && html && csv && svg) {
-    stale_warn(file, CASE_MHB, response);
+    fresh_warn(file, CASE_MHB, response);
     const post_job job = {file->name, response, html, csv, svg};
     status             = post_publish(&job, &progress, &summary);
   } else {

@@ -189,15 +189,6 @@ shb_status mhb_response_point(mhb_response *response, int branch, int *point) {
 
 /* ---------------------------------------------------------------- writing */
 
-static shb_status write_counter(hid_t file, const char *path, hsize_t n, const char *long_name) {
-  int *count = malloc((n ? n : 1) * sizeof *count);
-  SHB_CHECK(count, SHB_ERR_IO, "no memory to write %s", path);
-  for (hsize_t i = 0; i < n; i++) count[i] = (int)i;
-  shb_status status = h5_write_int(file, path, H5_SHAPE(n), count, "-", long_name);
-  free(count);
-  return status;
-}
-
 static shb_status write_probe_names(hid_t file, const mhb_response *response) {
   if (response->n_probes == 0) return SHB_OK;
   const char **name = calloc((size_t)response->n_probes, sizeof *name);
@@ -216,10 +207,11 @@ static shb_status write_scales(hid_t file, const mhb_response *response) {
   SHB_TRY(h5_write_strings(file, "/shroud_axis", 3, shroud, "shroud axes: normal v, sliding u, w"));
   SHB_TRY(h5_write_strings(file, "/axis", 3, axis, "cylindrical axes about the engine axis"));
   SHB_TRY(h5_write_strings(file, "/contact_state", 3, state, "contact state"));
-  SHB_TRY(write_counter(file, "/pair", size_of(response, 'p'), "contact pair, from 0"));
-  SHB_TRY(write_counter(file, "/harmonic", size_of(response, 'k'),
-                        "harmonic k of omega / subharmonics; x(t) = Re sum_k A_k exp(j k omega t / "
-                        "subharmonics)"));
+  SHB_TRY(h5_write_counter(file, "/pair", size_of(response, 'p'), "contact pair, from 0"));
+  SHB_TRY(
+      h5_write_counter(file, "/harmonic", size_of(response, 'k'),
+                       "harmonic k of omega / subharmonics; x(t) = Re sum_k A_k exp(j k omega t / "
+                       "subharmonics)"));
   return write_probe_names(file, response);
 }
 

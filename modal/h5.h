@@ -43,6 +43,8 @@ shb_status h5_write_complex(hid_t at, const char *path, h5_shape shape, const do
                             const char *units, const char *long_name);
 shb_status h5_write_int(hid_t at, const char *path, h5_shape shape, const int *data,
                         const char *units, const char *long_name);
+/* The numbers 0..n-1: a dimension scale that carries no data of its own. */
+shb_status h5_write_counter(hid_t at, const char *path, hsize_t n, const char *long_name);
 shb_status h5_write_strings(hid_t at, const char *path, int n, const char *const *text,
                             const char *long_name);
 shb_status h5_write_attribute_text(hid_t at, const char *path, const char *name, const char *text);

@@ -93,3 +93,12 @@ shb_status h5_attach_scale(hid_t at, const char *path, int dim, const char *scal
   if (scale >= 0) H5Dclose(scale);
   return status;
 }
+
+shb_status h5_write_counter(hid_t file, const char *path, hsize_t n, const char *long_name) {
+  int *count = malloc((n ? n : 1) * sizeof *count);
+  SHB_CHECK(count, SHB_ERR_IO, "no memory to write %s", path);
+  for (hsize_t i = 0; i < n; i++) count[i] = (int)i;
+  shb_status status = h5_write_int(file, path, H5_SHAPE(n), count, "-", long_name);
+  free(count);
+  return status;
+}

@@ -66,30 +66,21 @@ static h5_shape shape_from(const modal_model *model, const char *dims) {
   return shape;
 }
 
-static shb_status write_counter(hid_t file, const char *path, hsize_t n, const char *long_name) {
-  int *count = malloc((n ? n : 1) * sizeof *count);
-  SHB_CHECK(count, SHB_ERR_IO, "no memory to write %s", path);
-  for (hsize_t i = 0; i < n; i++) count[i] = (int)i;
-  shb_status status = h5_write_int(file, path, H5_SHAPE(n), count, "-", long_name);
-  free(count);
-  return status;
-}
-
 /* The dimension scales that carry no data of their own. */
 static shb_status write_scales(hid_t file, const modal_model *model) {
   static const char *const axis[] = {"tangential", "axial", "radial"};
   SHB_TRY(h5_write_strings(file, "/axis", 3, axis, "cylindrical axes about the engine axis"));
-  SHB_TRY(write_counter(file, "/contact/pair", size_of(model, 'p'), "contact pair, from 0"));
-  SHB_TRY(write_counter(file, "/contact/dof", size_of(model, 'c'),
-                        "contact degree of freedom: (side * pairs + pair) * 3 + axis, side 0 "
-                        "right, 1 left"));
-  SHB_TRY(write_counter(file, "/load/harmonic", size_of(model, 'k'),
-                        "harmonic of the excitation, from 0"));
+  SHB_TRY(h5_write_counter(file, "/contact/pair", size_of(model, 'p'), "contact pair, from 0"));
+  SHB_TRY(h5_write_counter(file, "/contact/dof", size_of(model, 'c'),
+                           "contact degree of freedom: (side * pairs + pair) * 3 + axis, side 0 "
+                           "right, 1 left"));
+  SHB_TRY(h5_write_counter(file, "/load/harmonic", size_of(model, 'k'),
+                           "harmonic of the excitation, from 0"));
   if (model->n_probes == 0) return SHB_OK;
   SHB_TRY(h5_write_strings(file, "/probe/name", model->n_probes,
                            (const char *const *)model->probe_name, "name of the probe"));
-  return write_counter(file, "/probe/dof", size_of(model, 'Q'),
-                       "probe degree of freedom: probe * 3 + axis");
+  return h5_write_counter(file, "/probe/dof", size_of(model, 'Q'),
+                          "probe degree of freedom: probe * 3 + axis");
 }
 
 static shb_status write_entry(hid_t file, const modal_model *model, const entry *e) {

@@ -1,0 +1,19 @@
+/* Whether a stage's file still fits the case: a stage runs again only when its settings text changed. */
+#ifndef CASES_FRESH_H
+#define CASES_FRESH_H
+
+#include <stdbool.h>
+
+#include "cases/case.h"
+
+/* All that the output of stage depends on: its keys and the contents of its input file. malloc'ed *text. SHB_ERR_IO. */
+shb_status fresh_settings(const case_file *file, case_stage stage, const char *input, char **text);
+
+/* Whether the HDF5 file at path was made from these settings. */
+bool fresh_equal(const char *path, const char *settings);
+
+/* One warning line on stderr if the HDF5 file at path was made from other keys of stage than the case has now.
+ * Files that cannot be read are left to whoever needs them. */
+void fresh_warn(const case_file *file, case_stage stage, const char *path);
+
+#endif
