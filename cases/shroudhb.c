@@ -45,8 +45,16 @@ static int replace_by(char **argv) {
   return SHB_ERR_IO;
 }
 
-/* argv[0] is the command; the program "shroudhb-STAGE [mode]" gets the rest. */
-static int become(const char *stage, char *mode, int argc, char **argv) {
+/* HDF5's reader can crash on files whose bytes were damaged in place: watch, and say so. */
+static int watch(char **argv) {
+  child_result result;
+  if (child_run(argv, &result) == SHB_OK) return result.code;
+  fprintf(stderr, "shroudhb: error: %s; the file may be damaged\n", shb_message());
+  return SHB_ERR_IO;
+}
+
+/* argv[0] is the command; the program "shroudhb-STAGE [mode]" gets the rest. end: how it is run. */
+static int become(const char *stage, char *mode, int argc, char **argv, int (*end)(char **)) {
   char name[64];
   snprintf(name, sizeof name, "shroudhb-%s", stage);
   char **words = calloc((size_t)argc + 2, sizeof *words);
@@ -56,7 +64,7 @@ static int become(const char *stage, char *mode, int argc, char **argv) {
     words[n++] = path;
     if (mode) words[n++] = mode;
     for (int i = 1; i < argc; i++) words[n++] = argv[i];
-    code = replace_by(words);
+    code = end(words);
   } else {
     fputs("shroudhb: error: out of memory\n", stderr);
   }
@@ -66,19 +74,19 @@ static int become(const char *stage, char *mode, int argc, char **argv) {
 }
 
 static int stage_main(const char *name, int argc, char **argv) {
-  return become(name, NULL, argc, argv);
+  return become(name, NULL, argc, argv, replace_by);
 }
 
 static int inspect_main(const char *name, int argc, char **argv) {
   (void)name;
   char mode[] = "--inspect";
-  return become("post", mode, argc, argv);
+  return become("post", mode, argc, argv, watch);
 }
 
 static int contact_main(const char *name, int argc, char **argv) {
   (void)name;
   char mode[] = "--contact";
-  return become("mhb", mode, argc, argv);
+  return become("mhb", mode, argc, argv, replace_by);
 }
 
 static int keys_main(const char *name, int argc, char **argv) {
