@@ -45,3 +45,32 @@ void one_degree_model(double zeta, int direction, double force, modal_model *mod
   model->right[direction] = model->probe[direction] = 1;
   model->modal_force[1]                             = force;
 }
+
+/* Roots of cos x cosh x = -1. */
+static double cantilever_root(int r) {
+  double x = (r - .5) * PI;
+  for (int i = 0; i < 50; i++) {
+    double f = cos(x) + 1 / cosh(x), slope = -sin(x) - tanh(x) / cosh(x);
+    x -= f / slope;
+  }
+  return x;
+}
+
+void tip_contact_beam_model(double force, modal_model *model) {
+  const double L = .2, b = .04, h = .01, E = 210e9, rho = 7800, angle = 40 * PI / 180;
+  int          flap = 1, edge = 1;
+  allocate(model, 20);
+  for (int i = 0; i < 20; i++) { /* in order of frequency */
+    double x = cantilever_root(flap), y = cantilever_root(edge);
+    double wf      = x * x * sqrt(E * h * h / (12 * rho)) / (L * L);
+    double we      = y * y * sqrt(E * b * b / (12 * rho)) / (L * L);
+    int    is_flap = edge > 10 || (flap <= 10 && wf <= we), r = is_flap ? flap++ : edge++;
+    double tip                 = 2 * (r % 2 ? 1 : -1) / sqrt(rho * b * h * L);
+    model->frequency[i]        = (is_flap ? wf : we) / (2 * PI);
+    model->damping_ratio[i]    = .002;
+    model->right[i]            = tip * (is_flap ? sin(angle) : cos(angle));  /* v */
+    model->right[20 + i]       = tip * (is_flap ? cos(angle) : -sin(angle)); /* u */
+    model->modal_force[20 + i] = is_flap ? tip * force : 0;
+    for (int c = 0; c < 3; c++) model->probe[20 * c + i] = model->right[20 * c + i];
+  }
+}
