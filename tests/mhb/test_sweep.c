@@ -311,6 +311,34 @@ static void linear_limits_are_met(void **state) {
   modal_model_free(&model);
 }
 
+/* High friction and light preload: slip onset next to opening, the hardest place to pass. A curve either covers the range or
+ * goes on beyond a gap that its reason names; it never ends on the way. */
+static void curves_go_on_beyond_a_gap(void **state) {
+  (void)state;
+  modal_model model;
+  three_degree_model(&model);
+  mhb_settings s = ground(8, .8, .5, .05, 5);
+  s.n_preloads   = 4;
+  memcpy(s.n0, (double[4]){.05, .1, .2, .4}, 4 * sizeof(double));
+  s.frequency[0] = .8 / (2 * PI);
+  s.frequency[1] = 1.7 / (2 * PI);
+  mhb_response *r;
+  shb_status    status = mhb_sweep(&model, &s, NULL, NULL, NULL, &r);
+  int           gaps   = 0;
+  for (int i = 2; i < r->n_branches; i++) {
+    const mhb_branch *b = &r->branch[i];
+    print_message("n0 %.2f: %d points, %s\n", b->n0[0], b->n_points, b->reason);
+    assert_near(b->frequency[b->n_points - 1], s.frequency[1], 1e-9);
+    assert_true(b->complete == (strcmp(b->reason, "end of range") == 0));
+    if (!b->complete) assert_non_null(strstr(b->reason, "gap"));
+    gaps += !b->complete;
+    for (int p = 0; p < b->n_points; p++) assert_true(b->error_newton[p] < 1e-7);
+  }
+  assert_int_equal(status, gaps ? SHB_NOT_CONVERGED : SHB_OK);
+  mhb_response_destroy(r);
+  modal_model_free(&model);
+}
+
 static void nothing_happens_without_excitation(void **state) {
   (void)state;
   modal_model model;
@@ -332,6 +360,7 @@ int main(void) {
       cmocka_unit_test(friction_oscillator_from_a_cold_start),
       cmocka_unit_test(tip_contact_beam),
       cmocka_unit_test(linear_limits_are_met),
+      cmocka_unit_test(curves_go_on_beyond_a_gap),
       cmocka_unit_test(nothing_happens_without_excitation),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
