@@ -83,6 +83,13 @@ static int list_events(const follower *f, event *list) {
   return n;
 }
 
+/* Leave the residual's workspace at a point that was corrected earlier. */
+static void revisit(follower *f, const mhb_path_point *point) {
+  mhb_newton *w = f->path->newton;
+  mhb_residual_evaluate(f->residual, point->x, point->omega, w->r, w->jacobian, NULL);
+}
+
+/* Leaves the residual's workspace at next, as mhb_path_step did. */
 static shb_status record_events(follower *f, bool *go_on) {
   event list[MAX_EVENTS];
   int   n = list_events(f, list), last = f->path->n;
@@ -96,13 +103,8 @@ static shb_status record_events(follower *f, bool *go_on) {
       continue;
     SHB_TRY(record(f, &f->path->probe, list[i].special, go_on));
   }
+  if (n > 0) revisit(f, &f->path->next);
   return SHB_OK;
-}
-
-/* Leave the residual's workspace at a point that was corrected earlier. */
-static void revisit(follower *f, const mhb_path_point *point) {
-  mhb_newton *w = f->path->newton;
-  mhb_residual_evaluate(f->residual, point->x, point->omega, w->r, w->jacobian, NULL);
 }
 
 /* Start, or start again, from a solution at omega. */
@@ -116,7 +118,6 @@ static shb_status begin(follower *f, double omega, bool *found, bool *go_on) {
   if (!*found) return SHB_OK;
   f->farthest = fmax(f->farthest, omega);
   f->crawling = 0;
-  revisit(f, &path->now);
   slopes(f, &path->now, f->before);
   return record(f, &path->now, MHB_ORDINARY, go_on);
 }
@@ -151,11 +152,9 @@ static shb_status step(follower *f, bool *go_on, const char **end) {
   mhb_path_outcome outcome = mhb_path_step(path);
   bool             found   = true;
   if (outcome != MHB_PATH_STALLED) {
-    revisit(f, &path->next);
     slopes(f, &path->next, f->after);
     SHB_TRY(record_events(f, go_on));
     if (!*go_on) return SHB_OK;
-    revisit(f, &path->next);
     SHB_TRY(record(f, &path->next, MHB_ORDINARY, go_on));
     f->farthest = fmax(f->farthest, path->next.omega);
   }

@@ -35,7 +35,7 @@ typedef enum { MHB_PATH_ON, MHB_PATH_AT_END, MHB_PATH_AT_START, MHB_PATH_STALLED
 shb_status mhb_path_create(mhb_residual *residual, double low, double high, mhb_path **path);
 void       mhb_path_destroy(mhb_path *path);
 
-/* Begin at a solution x at omega, towards rising (+1) or falling (-1) frequency. */
+/* Begin at a solution x at omega, towards rising (+1) or falling (-1) frequency. Leaves the residual there. */
 mhb_reason mhb_path_start(mhb_path *path, const double *x, double omega, int direction);
 
 /* One step: path->next becomes the new point, path->now stays the old one. AT_END, AT_START: next lies exactly on the

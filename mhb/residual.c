@@ -121,7 +121,6 @@ void mhb_residual_evaluate(mhb_residual *b, const double *x, double omega, doubl
                            double *jacobian, double *slope) {
   int    n3    = 3 * b->n_pairs;
   size_t block = 3 * (size_t)b->nb;
-  b->evaluations++;
   mhb_receptance_at(b->receptance, omega, b->m);
   for (int a = 0; a < b->n_pairs; a++) {
     mhb_contact_force(b->contact, &b->law[a], x + (size_t)a * block, b->p + (size_t)a * block,

@@ -23,7 +23,6 @@ typedef struct {
   double             *wide_p;            /* [3][2(2m)+1] one pair */
   double complex     *pk, *uk;           /* [3 pairs] one harmonic */
   double complex     *tail;              /* [m][3 pairs] force harmonics m+1..2m */
-  long                evaluations;
 } mhb_residual;
 
 shb_status mhb_residual_create(const modal_model *model, const mhb_settings *settings,
