@@ -16,6 +16,7 @@
 #include "mhb/follow.h"
 #include "mhb/sweep.h"
 #include "tests/mhb/random_model.h"
+#include "tests/mhb/solution.h"
 #include "tests/mhb/three_degree.h"
 
 static const double PI = 3.14159265358979323846;
@@ -226,20 +227,6 @@ static void without_excitation_all_is_still(void **state) {
 
 /* ---------------------------------------------------------------- what must not change the answer */
 
-/* Motion of the solution at omega, 1 pair or more. */
-static void solve(const modal_model *model, const mhb_settings *s, double omega, double *x) {
-  mhb_residual *residual;
-  mhb_newton   *newton;
-  int           iterations;
-  assert_int_equal(mhb_residual_create(model, s, &residual), SHB_OK);
-  assert_int_equal(mhb_newton_create(residual->n, &newton), SHB_OK);
-  mhb_residual_preload(residual, s->n0[0]);
-  assert_int_equal(mhb_first_solution(newton, residual, omega, 1e-12, x, &iterations),
-                   MHB_CONVERGED);
-  mhb_newton_destroy(newton);
-  mhb_residual_destroy(residual);
-}
-
 enum { M = 5, UNKNOWNS = 3 * (2 * M + 1) };
 
 static double difference(const double *a, const double *b, int n) {
@@ -257,7 +244,7 @@ static void preloads_about_zero_agree(void **state) {
     double              x[3][UNKNOWNS];
     for (int i = 0; i < 3; i++) {
       mhb_settings s = ground(n0[i], M, .8, 1.7);
-      solve(&model, &s, omega[w], x[i]);
+      cold_solution(&model, &s, omega[w], 1e-12, x[i]);
     }
     print_message("at %.2f: %.1e %.1e\n", omega[w], difference(x[0], x[1], UNKNOWNS),
                   difference(x[0], x[2], UNKNOWNS));
@@ -275,15 +262,15 @@ static void extreme_friction(void **state) {
   mhb_settings s = ground(.2, M, .8, 1.7);
   double       x[2][UNKNOWNS];
   s.mu = 0;
-  solve(&model, &s, 1.1, x[0]);
+  cold_solution(&model, &s, 1.1, 1e-12, x[0]);
   s.ku[0] = s.ku[2] = 7;
-  solve(&model, &s, 1.1, x[1]);
+  cold_solution(&model, &s, 1.1, 1e-12, x[1]);
   assert_below(difference(x[0], x[1], UNKNOWNS), 1e-10);
   s    = ground(.2, M, .8, 1.7);
   s.mu = 1e6;
-  solve(&model, &s, 1.1, x[0]);
+  cold_solution(&model, &s, 1.1, 1e-12, x[0]);
   s.mu = 2e6;
-  solve(&model, &s, 1.1, x[1]);
+  cold_solution(&model, &s, 1.1, 1e-12, x[1]);
   print_message("mu 1e6 and 2e6: %.1e\n", difference(x[0], x[1], UNKNOWNS));
   assert_below(difference(x[0], x[1], UNKNOWNS), 1e-4);
   for (int i = 0; i < 2; i++) {

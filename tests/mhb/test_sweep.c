@@ -12,6 +12,7 @@
 #include "mhb/follow.h"
 #include "mhb/fourier.h"
 #include "mhb/sweep.h"
+#include "tests/mhb/solution.h"
 #include "tests/mhb/three_degree.h"
 
 static const double PI = 3.14159265358979323846;
@@ -40,20 +41,12 @@ static mhb_settings ground(double mu, double kv, double ku, double n0, int harmo
 }
 
 /* First harmonics of v, u, w at w rad/s. */
-static void solve_at(const modal_model *model, mhb_settings *s, double w, double amplitude[3]) {
-  mhb_residual *residual;
-  mhb_newton   *newton;
-  int           iterations;
-  assert_int_equal(mhb_residual_create(model, s, &residual), SHB_OK);
-  assert_int_equal(mhb_newton_create(residual->n, &newton), SHB_OK);
-  mhb_residual_preload(residual, s->n0[0]);
-  double *x = calloc((size_t)residual->n, sizeof(double));
-  assert_int_equal(mhb_first_solution(newton, residual, w, 1e-11, x, &iterations), MHB_CONVERGED);
-  for (int c = 0; c < 3; c++)
-    amplitude[c] = hypot(x[c * residual->nb + 1], x[c * residual->nb + 2]);
-  free(x);
-  mhb_newton_destroy(newton);
-  mhb_residual_destroy(residual);
+static void solve_at(const modal_model *model, const mhb_settings *s, double w,
+                     double amplitude[3]) {
+  int    nb = mhb_real_size(s->harmonics);
+  double x[3 * nb];
+  cold_solution(model, s, w, 1e-11, x);
+  for (int c = 0; c < 3; c++) amplitude[c] = hypot(x[c * nb + 1], x[c * nb + 2]);
 }
 
 static void amplitudes_of_time_integration(void **state) {
@@ -220,23 +213,15 @@ static void one_degree_with_jumps(void **state) {
 
 /* Largest displacement of u over a period. */
 static double peak_amplitude(const mhb_settings *s, const modal_model *model, double w) {
-  mhb_residual *residual;
-  mhb_newton   *newton;
-  int           iterations;
-  assert_int_equal(mhb_residual_create(model, s, &residual), SHB_OK);
-  assert_int_equal(mhb_newton_create(residual->n, &newton), SHB_OK);
-  mhb_residual_preload(residual, s->n0[0]);
-  double *x = calloc((size_t)residual->n, sizeof(double)), basis[2 * 64 + 1], top = 0;
-  assert_int_equal(mhb_first_solution(newton, residual, w, 1e-11, x, &iterations), MHB_CONVERGED);
+  int    nb = mhb_real_size(s->harmonics);
+  double x[3 * nb], basis[nb], top = 0;
+  cold_solution(model, s, w, 1e-11, x);
   for (int i = 0; i < 20000; i++) {
     double sum = 0;
-    mhb_basis(residual->m, 2 * PI * i / 20000, basis, NULL);
-    for (int j = 0; j < residual->nb; j++) sum += basis[j] * x[residual->nb + j];
+    mhb_basis(s->harmonics, 2 * PI * i / 20000, basis, NULL);
+    for (int j = 0; j < nb; j++) sum += basis[j] * x[nb + j];
     top = fmax(top, fabs(sum));
   }
-  free(x);
-  mhb_newton_destroy(newton);
-  mhb_residual_destroy(residual);
   return top;
 }
 

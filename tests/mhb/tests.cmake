@@ -1,12 +1,12 @@
 shb_test(mhb contact fast shb_contact)
 shb_test(mhb sweep fast shb_mhb)
-target_sources(test_mhb_sweep PRIVATE mhb/three_degree.c)
+target_sources(test_mhb_sweep PRIVATE mhb/solution.c mhb/three_degree.c)
 shb_test(mhb receptance fast shb_mhb)
 target_sources(test_mhb_receptance PRIVATE mhb/random_model.c)
 shb_test(mhb residual fast shb_mhb)
 target_sources(test_mhb_residual PRIVATE mhb/random_model.c)
 shb_test(mhb path fast shb_mhb)
-target_sources(test_mhb_path PRIVATE mhb/random_model.c mhb/three_degree.c)
+target_sources(test_mhb_path PRIVATE mhb/random_model.c mhb/solution.c mhb/three_degree.c)
 shb_test(mhb response fast shb_response)
 
 # The example of cases/bring_your_own; skipped where python3 has no h5py.
