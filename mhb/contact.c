@@ -8,6 +8,7 @@
 
 #include "mhb/events.h"
 #include "mhb/fourier.h"
+#include "mhb/pieces.h"
 #include "mhb/slip.h"
 #include "mhb/stuck.h"
 
@@ -48,6 +49,8 @@ struct mhb_contact {
   int               first, last; /* columns in use: [first, last) */
   int               record;      /* this lap's force is wanted */
   mhb_contact_info *info;
+  mhb_pieces        pieces; /* of the recorded lap, for a trace */
+  double           *traced; /* [3][nf] force of a trace */
 };
 
 /* The slider at a time of the lap. */
@@ -81,26 +84,30 @@ shb_status mhb_contact_create(int m, int H, double tolerance, mhb_contact **out)
                 {&c->piece, sums},
                 {&c->product, nf * nb},
                 {&c->basis0, 2 * nb},
+                {&c->traced, 3 * nf},
                 {&c->panel.basis, MHB_NODES * nf},
                 {&c->panel.slope, MHB_NODES * nf}};
   int ok     = mhb_signals_create(m, &c->signals) == SHB_OK;
   for (size_t i = 0; i < sizeof wanted / sizeof wanted[0]; i++)
     ok &= (*wanted[i].array = calloc(wanted[i].size, sizeof(double))) != NULL;
+  mhb_collocation_create(&c->rule);
+  ok &= mhb_pieces_create(&c->rule, &c->pieces) == SHB_OK;
   if (!ok) {
     mhb_contact_destroy(c);
     SHB_FAIL(SHB_ERR_IO, "out of memory for a contact of %d harmonics", m);
   }
-  mhb_collocation_create(&c->rule);
-  *out = c;
+  c->pieces.signals = &c->signals;
+  *out              = c;
   return SHB_OK;
 }
 
 void mhb_contact_destroy(mhb_contact *c) {
   if (!c) return;
-  double *arrays[] = {c->scaled, c->f,           c->J,          c->Z,     c->T,
-                      c->node_T, c->node_f,      c->stick,      c->piece, c->product,
-                      c->basis0, c->panel.basis, c->panel.slope};
+  double *arrays[] = {c->scaled, c->f,      c->J,           c->Z,          c->T,
+                      c->node_T, c->node_f, c->stick,       c->piece,      c->product,
+                      c->basis0, c->traced, c->panel.basis, c->panel.slope};
   for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; i++) free(arrays[i]);
+  mhb_pieces_destroy(&c->pieces);
   mhb_signals_destroy(&c->signals);
   free(c);
 }
@@ -280,6 +287,7 @@ static void columns_through_panel(mhb_contact *c) {
 
 static void add_stick(mhb_contact *c, double t0, double t1, const double z[2], int derivative) {
   if (!c->record || t1 <= t0) return;
+  mhb_pieces_stick(&c->pieces, t0, z);
   int sums = mhb_real_size(c->H + c->m);
   memset(c->piece, 0, sizeof(double) * (size_t)sums);
   mhb_basis_integral(c->H + c->m, t0, t1, c->piece);
@@ -333,6 +341,7 @@ static void add_panel_derivative(mhb_contact *c) {
 static void add_slip(mhb_contact *c, int derivative) {
   const mhb_panel *p = &c->panel;
   if (!c->record || p->h <= 0) return;
+  mhb_pieces_slip(&c->pieces, p);
   double mu = c->slip.mu;
   for (int l = 0; l < MHB_NODES; l++) {
     double        weight = p->h * c->rule.weight[l], limit = mu * p->y[l][0];
@@ -432,6 +441,7 @@ static int run_openings(mhb_contact *c, int derivative) {
     note_transition(c, s.t, s.state);
     ok &= run_closed(c, &s, c->closed.opening[i], 1, derivative);
     note_transition(c, c->closed.opening[i], MHB_SEPARATE);
+    mhb_pieces_open(&c->pieces, c->closed.opening[i]);
     open -= (c->closed.opening[i] - c->closed.closing[i]) / TWO_PI;
   }
   c->info->share[MHB_SEPARATE] = fmax(0, open);
@@ -551,6 +561,7 @@ static double record_lap(mhb_contact *c, double z[2], int derivative) {
   memset(c->stick, 0, sizeof(double) * (size_t)mhb_real_size(c->H + c->m));
   memset(c->info->share, 0, sizeof c->info->share);
   c->info->slip_work = c->info->error = c->info->n_transitions = 0;
+  c->pieces.n                                                  = 0;
   c->record                                                    = 1;
   c->first                                                     = derivative ? 0 : at;
   int ok                                                       = run_lap(c, z, P, 1);
@@ -579,6 +590,9 @@ static int run_closed_slipping(mhb_contact *c, const mhb_stuck *stuck, int deriv
     left    = record_lap(c, z, derivative);
     if (left >= 0 && left < CLOSE) break;
   }
+  /* a trace shows the lap itself: repeat it until it needs no correction */
+  for (int tries = 0; c->pieces.on && left > 1e-12 && tries < 8; tries++)
+    left = record_lap(c, z, derivative);
   if (derivative) eliminate_slider(c);
   c->info->error += left < 0 ? 1 : reached ? left * left : left;
   return left >= 0 && left < 1e-6;
@@ -612,6 +626,8 @@ static void finish_stuck(mhb_contact *c, const mhb_stuck *stuck, int derivative)
   int nb = c->nb, nf = c->nf;
   c->info->share[MHB_STICK] = 1;
   c->info->undetermined     = 1;
+  mhb_pieces_stick(&c->pieces, 0,
+                   (double[2]){c->scaled[nb] - stuck->c[0], c->scaled[2 * nb] - stuck->c[1]});
   for (int k = 0; k < 2; k++) {
     for (int i = 1; i < nb; i++) {
       c->f[k * nf + i] = c->scaled[(1 + k) * nb + i];
@@ -678,6 +694,21 @@ static double loop_work(const mhb_contact *c, const double *motion, const double
   return .5 * TWO_PI * sum;
 }
 
+/* mu = 0: slip wherever it is closed. */
+static void without_friction(mhb_contact *c) {
+  double closed = c->closed.always_closed;
+  if (closed > 0) mhb_pieces_frictionless(&c->pieces, 0);
+  for (int i = 0; i < c->closed.n; i++) {
+    closed += (c->closed.opening[i] - c->closed.closing[i]) / TWO_PI;
+    note_transition(c, c->closed.closing[i], MHB_SLIDE);
+    mhb_pieces_frictionless(&c->pieces, c->closed.closing[i]);
+    note_transition(c, c->closed.opening[i], MHB_SEPARATE);
+    mhb_pieces_open(&c->pieces, c->closed.opening[i]);
+  }
+  c->info->share[MHB_SLIDE]    = closed;
+  c->info->share[MHB_SEPARATE] = 1 - closed;
+}
+
 static void friction_force(mhb_contact *c, int derivative) {
   mhb_stuck stuck = {0};
   c->record       = 1;
@@ -688,11 +719,7 @@ static void friction_force(mhb_contact *c, int derivative) {
     return;
   }
   if (c->slip.mu == 0) {
-    double closed = c->closed.always_closed;
-    for (int i = 0; i < c->closed.n; i++)
-      closed += (c->closed.opening[i] - c->closed.closing[i]) / TWO_PI;
-    c->info->share[MHB_SLIDE]    = closed;
-    c->info->share[MHB_SEPARATE] = 1 - closed;
+    without_friction(c);
     return;
   }
   int ok;
@@ -744,4 +771,16 @@ void mhb_contact_force(mhb_contact *c, const mhb_law *law, const double *motion,
   }
   info->slip_work *= c->scale;
   info->dissipation = loop_work(c, motion, force);
+}
+
+const mhb_pieces *mhb_contact_pieces(mhb_contact *c, const mhb_law *law, const double *motion,
+                                     mhb_contact_info *info) {
+  c->pieces.n = c->pieces.full = 0;
+  c->pieces.on                 = 1;
+  mhb_contact_force(c, law, motion, c->traced, NULL, info);
+  c->pieces.on    = 0;
+  c->pieces.mu    = law->mu;
+  c->pieces.scale = c->scale;
+  info->lost |= c->pieces.full;
+  return &c->pieces;
 }
