@@ -47,7 +47,7 @@ static shb_status evaluate(const case_motion *given, FILE *out) {
   int    m = given->n_harmonics > 0 ? given->n_harmonics : 1, H = m > HARMONICS ? m : HARMONICS;
   size_t nb = (size_t)mhb_real_size(m), nf = (size_t)mhb_real_size(H);
   mhb_contact *contact = NULL;
-  SHB_TRY(mhb_contact_create(m, H, 1e-10, &contact));
+  SHB_TRY(mhb_contact_create(m, H, given->contact.tolerance, &contact));
   double *motion = calloc(3 * nb, sizeof(double)), *force = calloc(3 * nf, sizeof(double));
   mhb_contact_info *info   = calloc(1, sizeof *info);
   shb_status        status = SHB_OK;

@@ -116,6 +116,11 @@ void case_key_suggest(case_keys keys, const char *block, const char *word, char 
   }
 }
 
+const char *case_key_moved(const char *path) {
+  bool tolerance = strcmp(path, "mhb.tolerance") == 0;
+  return tolerance ? "use contact.accuracy: fast, balanced, exact or a number" : NULL;
+}
+
 void case_key_range(const case_key *key, char *text, size_t size) {
   text[0] = '\0';
   if (key->least == 0 && key->most == 0) return;
@@ -128,15 +133,22 @@ void case_key_range(const case_key *key, char *text, size_t size) {
 }
 
 static const char *type_name(const case_key *key) {
-  static const char *const names[CASE_N_TYPES] = {
-      [CASE_NUMBER] = "number",        [CASE_INTEGER] = "integer",
-      [CASE_COUNT] = "integer or all", [CASE_CHOICE] = "word",
-      [CASE_SWITCH] = "word",          [CASE_WORD] = "word",
-      [CASE_FILE_NAME] = "file",       [CASE_VECTOR] = "[x, y, z]",
-      [CASE_INTERVAL] = "[from, to]",  [CASE_STIFFNESS] = "number or list",
-      [CASE_PRELOADS] = "number(s)",   [CASE_FACTORS] = "mapping",
-      [CASE_PROBES] = "mapping",       [CASE_SECTIONS] = "list",
-      [CASE_SIGNAL] = "list"};
+  static const char *const names[CASE_N_TYPES] = {[CASE_NUMBER]    = "number",
+                                                  [CASE_INTEGER]   = "integer",
+                                                  [CASE_COUNT]     = "integer or all",
+                                                  [CASE_CHOICE]    = "word",
+                                                  [CASE_SWITCH]    = "word",
+                                                  [CASE_ACCURACY]  = "word or number",
+                                                  [CASE_WORD]      = "word",
+                                                  [CASE_FILE_NAME] = "file",
+                                                  [CASE_VECTOR]    = "[x, y, z]",
+                                                  [CASE_INTERVAL]  = "[from, to]",
+                                                  [CASE_STIFFNESS] = "number or list",
+                                                  [CASE_PRELOADS]  = "number(s)",
+                                                  [CASE_FACTORS]   = "mapping",
+                                                  [CASE_PROBES]    = "mapping",
+                                                  [CASE_SECTIONS]  = "list",
+                                                  [CASE_SIGNAL]    = "list"};
   return names[key->type];
 }
 

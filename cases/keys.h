@@ -16,6 +16,7 @@ typedef enum {
   CASE_COUNT,     /* integer or "all": int, 0 for all */
   CASE_CHOICE,    /* one of words: enum of int size, the place in words */
   CASE_SWITCH,    /* one of two words: bool, true for the second */
+  CASE_ACCURACY,  /* one of words, or a number: double */
   CASE_WORD,      /* safe file name: char * */
   CASE_FILE_NAME, /* path, relative to the case file: char * */
   CASE_VECTOR,    /* [x, y, z]: double[3] */
@@ -52,7 +53,7 @@ typedef struct {
   const char    *unit;         /* SI; "" without a dimension */
   double         least, most;  /* range; both 0: any */
   bool           above, below; /* least, most themselves are excluded */
-  const char    *words;        /* CASE_CHOICE, CASE_SWITCH: separated by spaces */
+  const char    *words;        /* CASE_CHOICE, CASE_SWITCH, CASE_ACCURACY: separated by spaces */
   const char    *fallback;     /* default, as YAML text; NULL: none */
   bool           required;     /* by its stages, when it applies */
   int            stages;       /* case_stage mask: whose result depends on it */
@@ -88,6 +89,9 @@ bool case_key_nearest(case_keys keys, const char *block, const char *word, char 
 /* What to say of an unknown word in a block ("" for the top): "; did you mean 'mu'?", where the key belongs, or
  * what the block knows. */
 void case_key_suggest(case_keys keys, const char *block, const char *word, char *text, size_t size);
+
+/* Where a key of an earlier version went: "use contact.accuracy: ..."; NULL if path never was one. */
+const char *case_key_moved(const char *path);
 
 /* Edits (insert, delete, replace, swap neighbours; case ignored) that turn a into b. */
 int case_edit_distance(const char *a, const char *b);

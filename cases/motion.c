@@ -12,12 +12,14 @@ static const case_key signal_rows[] = {
     {"motion.w", CASE_SIGNAL, "m", .required = true, .stages = CASE_MHB},
 };
 
-/* The contact rows of the case file's table, and the motion's. */
+/* The contact rows of the case file's table, and the motion's. One evaluation is cheap: as accurate as can be. */
 static case_keys motion_table(case_key row[CASE_MAX_KEYS]) {
   case_keys all = case_key_table();
   int       n   = 0;
   for (int i = 0; i < all.n && n < CASE_MAX_KEYS - 3; i++)
     if (strncmp(all.key[i].path, "contact.", strlen("contact.")) == 0) row[n++] = all.key[i];
+  for (int i = 0; i < n; i++)
+    if (row[i].type == CASE_ACCURACY) row[i].fallback = "1e-13";
   for (int i = 0; i < 3; i++) row[n++] = signal_rows[i];
   return (case_keys){n, row};
 }

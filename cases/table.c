@@ -101,6 +101,8 @@ static const case_key table[] = {
      .help = "normal preload, negative for a gap of -n0/kv: a number, a list, or {from, to, points}"},
     {"contact.preload", CASE_CHOICE, "", .words = "equilibrium interference", .fallback = "equilibrium", AT(mhb.preload), .stages = CASE_MHB,
      .help = "n0 is the load at rest, or an interference that also deflects the blade"},
+    {"contact.accuracy", CASE_ACCURACY, "", 1e-14, 1e-2, .words = "fast balanced exact", .fallback = "exact", AT(mhb.tolerance), .stages = CASE_MHB,
+     .help = "relative tolerance of the contact law: fast 1e-3, balanced 1e-5, exact 1e-8, or a number, 1e-14 to 0.01"},
 
     {"mhb.frequency", CASE_INTERVAL, "Hz", 0, 1e9, true, .required = true, AT(mhb.frequency), .stages = CASE_MHB,
      .help = "range of the sweep: [from, to]"},
@@ -110,8 +112,6 @@ static const case_key table[] = {
      .help = "order nu: the fundamental is the excitation frequency / nu"},
     {"mhb.scale", CASE_NUMBER, "", 0, 1e12, .fallback = "1", AT(mhb.scale), .stages = CASE_MHB,
      .help = "multiplies the excitation"},
-    {"mhb.tolerance", CASE_NUMBER, "", 1e-14, 1e-2, .fallback = "1e-8", AT(mhb.tolerance), .stages = CASE_MHB,
-     .help = "relative accuracy asked of the contact law"},
     {"mhb.max_points", CASE_INTEGER, "", 10, 1000000, .fallback = "2000", AT(mhb.max_points), .stages = CASE_MHB,
      .help = "points after which a branch ends"},
 };

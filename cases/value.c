@@ -22,6 +22,7 @@ void case_value_expected(const case_key *key, char *text, size_t size) {
       [CASE_COUNT]     = "a whole number or all",
       [CASE_CHOICE]    = "one of",
       [CASE_SWITCH]    = "one of",
+      [CASE_ACCURACY]  = "a number or one of",
       [CASE_WORD]      = "a name",
       [CASE_FILE_NAME] = "a file name",
       [CASE_VECTOR]    = "[x, y, z]",
@@ -142,6 +143,17 @@ static bool read_choice(const context *c, const case_node *node, void *slot) {
 static bool read_switch(const context *c, const case_node *node, void *slot) {
   int index = choose(c, node);
   if (index >= 0) *(bool *)slot = index == 1;
+  return index >= 0;
+}
+
+/* The words' tolerances, in the order of the row's words; what begins like a number is one. */
+static bool read_accuracy(const context *c, const case_node *node, void *slot) {
+  static const double tolerance[] = {1e-3, 1e-5, 1e-8};
+
+  const char *text = node->kind == CASE_SCALAR ? node->text : "";
+  if (text[0] && strchr("+-.0123456789", text[0])) return number_at(c, c->path, node, slot);
+  int index = choose(c, node);
+  if (index >= 0) *(double *)slot = tolerance[index];
   return index >= 0;
 }
 
@@ -403,11 +415,12 @@ bool case_value_read(case_issues *issues, const case_key *key, const char *path,
   static bool (*const readers[CASE_N_TYPES])(const context *, const case_node *, void *) = {
       [CASE_NUMBER] = read_number,       [CASE_INTEGER] = read_integer,
       [CASE_COUNT] = read_count,         [CASE_CHOICE] = read_choice,
-      [CASE_SWITCH] = read_switch,       [CASE_WORD] = read_word,
-      [CASE_FILE_NAME] = read_file_name, [CASE_VECTOR] = read_vector,
-      [CASE_INTERVAL] = read_interval,   [CASE_STIFFNESS] = read_stiffness,
-      [CASE_PRELOADS] = read_preloads,   [CASE_FACTORS] = read_factors,
-      [CASE_PROBES] = read_probes,       [CASE_SIGNAL] = read_signal};
+      [CASE_SWITCH] = read_switch,       [CASE_ACCURACY] = read_accuracy,
+      [CASE_WORD] = read_word,           [CASE_FILE_NAME] = read_file_name,
+      [CASE_VECTOR] = read_vector,       [CASE_INTERVAL] = read_interval,
+      [CASE_STIFFNESS] = read_stiffness, [CASE_PRELOADS] = read_preloads,
+      [CASE_FACTORS] = read_factors,     [CASE_PROBES] = read_probes,
+      [CASE_SIGNAL] = read_signal};
   const context c = {.issues = issues, .key = key, .path = path, .file = file};
   return readers[key->type](&c, node, slot);
 }

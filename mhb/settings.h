@@ -22,7 +22,7 @@ typedef struct {
   int         harmonics;            /* m >= 1 */
   int         subharmonics;         /* nu >= 1: fundamental is omega/nu */
   double      scale;                /* multiplies the excitation */
-  double      tolerance;            /* relative accuracy asked of the contact law, default 1e-8 */
+  double      tolerance;            /* of the contact law, relative to its largest force */
   int         max_points;           /* a branch ends (with a reason) beyond this, default 2000 */
   bool        resume; /* take over what an interrupted run of equal settings finished */
 } mhb_settings;

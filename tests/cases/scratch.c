@@ -40,12 +40,12 @@ static const char whole[] =
     "  kv: 0.8 MN/m\n"                                                                     /* 26 */
     "  n0: [-20 N, 0, 0.3 kN]\n"                                                           /* 27 */
     "  preload: interference\n"                                                            /* 28 */
-    "mhb:\n"                                                                               /* 29 */
-    "  frequency: [90 Hz, 0.12 kHz]\n"                                                     /* 30 */
-    "  harmonics: 7\n"                                                                     /* 31 */
-    "  subharmonics: 2\n"                                                                  /* 32 */
-    "  scale: 1.3\n"                                                                       /* 33 */
-    "  tolerance: 2e-9\n"                                                                  /* 34 */
+    "  accuracy: 2e-9\n"                                                                   /* 29 */
+    "mhb:\n"                                                                               /* 30 */
+    "  frequency: [90 Hz, 0.12 kHz]\n"                                                     /* 31 */
+    "  harmonics: 7\n"                                                                     /* 32 */
+    "  subharmonics: 2\n"                                                                  /* 33 */
+    "  scale: 1.3\n"                                                                       /* 34 */
     "  max_points: 777\n";                                                                 /* 35 */
 
 void scratch_create(char folder[SCRATCH_PATH]) {

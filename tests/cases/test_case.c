@@ -92,6 +92,26 @@ static void every_value_arrives(void **state) {
   scratch_remove(folder);
 }
 
+static void accuracy_in_words(void **state) {
+  (void)state;
+  static const struct {
+    const char *text;
+    double      tolerance;
+  } rows[] = {{"fast", 1e-3}, {"balanced", 1e-5}, {"exact", 1e-8}, {"1e-14", 1e-14}, {"0.01", .01}};
+  char folder[SCRATCH_PATH], *said;
+  scratch_create(folder);
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    char     *text = scratch_case("2e-9", rows[i].text);
+    case_file f;
+    assert_int_equal(read_text(folder, "c.yaml", text, &f, &said), SHB_OK);
+    assert_true(f.mhb.tolerance == rows[i].tolerance);
+    case_free(&f);
+    free(said);
+    free(text);
+  }
+  scratch_remove(folder);
+}
+
 static const char least[] =
     "modal: {file: sub/other.modal.h5}\n"
     "contact: {to: ground, mu: 0.4, ku: 0.5, kv: 0.8, n0: {from: -0.2, to: 1, points: 4}}\n"
@@ -272,12 +292,10 @@ static void one_byte_wrong(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(every_value_arrives),
-                                     cmocka_unit_test(a_modal_file_needs_little),
-                                     cmocka_unit_test(stages_ask_for_their_own),
-                                     cmocka_unit_test(forces_and_tractions),
-                                     cmocka_unit_test(line_ends_and_marks),
-                                     cmocka_unit_test(truncated_anywhere),
-                                     cmocka_unit_test(one_byte_wrong)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(every_value_arrives),       cmocka_unit_test(accuracy_in_words),
+      cmocka_unit_test(a_modal_file_needs_little), cmocka_unit_test(stages_ask_for_their_own),
+      cmocka_unit_test(forces_and_tractions),      cmocka_unit_test(line_ends_and_marks),
+      cmocka_unit_test(truncated_anywhere),        cmocka_unit_test(one_byte_wrong)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

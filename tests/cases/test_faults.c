@@ -66,20 +66,24 @@ static void keys_and_kinds(void **state) {
        "c.yaml:19:1: error: contact.n0: missing; expected a number, a list "
        "or {from, to, points} in N",
        1},
+      {"  scale: 1.3", "  tolerance: 1e-8",
+       "c.yaml:34:3: error: mhb.tolerance: no longer a key; use contact.accuracy: fast, balanced, "
+       "exact or a number",
+       1},
       {"  scale: 1.3", "  damping: 1.3",
-       "c.yaml:33:3: error: mhb.damping: unknown key; did you mean "
+       "c.yaml:34:3: error: mhb.damping: unknown key; did you mean "
        "'modal.damping'?",
        1},
       {"  scale: 1.3", "  zzzzzz: 1.3",
-       "c.yaml:33:3: error: mhb.zzzzzz: unknown key; known here: frequency, "
-       "harmonics, subharmonics, scale, tolerance, max_points",
+       "c.yaml:34:3: error: mhb.zzzzzz: unknown key; known here: frequency, "
+       "harmonics, subharmonics, scale, max_points",
        1},
       {"  scale: 1.3", "  mhb.scale: 1.3",
-       "c.yaml:33:3: error: mhb.mhb.scale: unknown key; known here: "
-       "frequency, harmonics, subharmonics, scale, tolerance, max_points",
+       "c.yaml:34:3: error: mhb.mhb.scale: unknown key; known here: "
+       "frequency, harmonics, subharmonics, scale, max_points",
        1},
       {"  scale: 1.3", "  [a, b]: 1.3",
-       "c.yaml:33:3: error: mhb.?: a key must be a word, not a list", 1},
+       "c.yaml:34:3: error: mhb.?: a key must be a word, not a list", 1},
       {"excitation:", "exitation:",
        "c.yaml:14:1: error: exitation: unknown key; did you mean 'excitation'?", 1},
       {"camber", "chamber",
@@ -91,11 +95,11 @@ static void keys_and_kinds(void **state) {
        "number in m",
        1},
       {"  subharmonics: 2", "  mu: 2\n  mu: 3",
-       "c.yaml:32:3: error: mhb.mu: unknown key; did you mean "
+       "c.yaml:33:3: error: mhb.mu: unknown key; did you mean "
        "'contact.mu'?",
        2},
       {"  scale: 1.3", "  harmonics: 3",
-       "c.yaml:33:3: error: mhb.harmonics: given twice; first on line 31", 1},
+       "c.yaml:34:3: error: mhb.harmonics: given twice; first on line 32", 1},
       {"0.31\n", "\n", "c.yaml:24:6: error: contact.mu: has no value; expected a number", 1},
       {"0.31\n", "~\n", "c.yaml:24:7: error: contact.mu: has no value; expected a number", 1},
       {"0.31\n", "[0.3]\n", "c.yaml:24:7: error: contact.mu: is a list; expected a number", 1},
@@ -155,7 +159,7 @@ static void numbers_and_ranges(void **state) {
        "c.yaml:12:17: error: rotor.blades: '37.5' is not a whole number", 1},
       {"blades: 37", "blades: 1", "c.yaml:12:17: error: rotor.blades: is 1, must be 2 to 1000", 1},
       {"harmonics: 7", "harmonics: auto",
-       "c.yaml:31:14: error: mhb.harmonics: auto is not available; give a "
+       "c.yaml:32:14: error: mhb.harmonics: auto is not available; give a "
        "number",
        1},
       {"points: 4", "points: 0", "c.yaml:23:11: error: contact.points: is 0, must be 1 to 100000",
@@ -163,13 +167,13 @@ static void numbers_and_ranges(void **state) {
       {"points: 4", "points: some",
        "c.yaml:23:11: error: contact.points: 'some' is not a whole number", 1},
       {"[90 Hz, 0.12 kHz]", "[90 Hz]",
-       "c.yaml:30:14: error: mhb.frequency: has 1 numbers, expected 2", 1},
+       "c.yaml:31:14: error: mhb.frequency: has 1 numbers, expected 2", 1},
       {"[90 Hz, 0.12 kHz]", "[90 Hz, 0.08 kHz]",
-       "c.yaml:30:14: error: mhb.frequency: goes from 90 to 80 Hz; "
+       "c.yaml:31:14: error: mhb.frequency: goes from 90 to 80 Hz; "
        "the second must be above the first",
        1},
       {"[90 Hz, 0.12 kHz]", "[0, 0.08 kHz]",
-       "c.yaml:30:15: error: mhb.frequency[0]: is 0 Hz, must be above 0 "
+       "c.yaml:31:15: error: mhb.frequency[0]: is 0 Hz, must be above 0 "
        "to 1e+09 Hz",
        1},
       {"-70 kN/m", "0.6 MN/m",
@@ -185,6 +189,32 @@ static void numbers_and_ranges(void **state) {
       {"[-20 N, 0, 0.3 kN]", "[-20 N, 0, 3 m]",
        "c.yaml:27:18: error: contact.n0[2]: '3 m' has unit m, "
        "expected N",
+       1},
+      {"2e-9", "exakt",
+       "c.yaml:29:13: error: contact.accuracy: 'exakt' is not known; expected a number or one of "
+       "fast, balanced, exact",
+       1},
+      {"2e-9", "1e-8 N",
+       "c.yaml:29:13: error: contact.accuracy: '1e-8 N' has unit N, expected a number without a "
+       "unit",
+       1},
+      {"2e-9", "0.011", "c.yaml:29:13: error: contact.accuracy: is 0.011, must be 1e-14 to 0.01",
+       1},
+      {"2e-9", "-1e-9", "c.yaml:29:13: error: contact.accuracy: is -1e-09, must be 1e-14 to 0.01",
+       1},
+      {"2e-9", "1e-15", "c.yaml:29:13: error: contact.accuracy: is 1e-15, must be 1e-14 to 0.01",
+       1},
+      {"2e-9", "nan",
+       "c.yaml:29:13: error: contact.accuracy: 'nan' is not known; expected a number or one of "
+       "fast, balanced, exact",
+       1},
+      {"2e-9", "",
+       "c.yaml:29:12: error: contact.accuracy: has no value; expected a number or one of fast, "
+       "balanced, exact",
+       1},
+      {"2e-9", "[fast, exact]",
+       "c.yaml:29:13: error: contact.accuracy: is a list; expected a number or one of fast, "
+       "balanced, exact",
        1},
       {"[-20 N, 0, 0.3 kN]", "[]",
        "c.yaml:27:7: error: contact.n0: 0 preloads; there may be 1 to 256", 1},
@@ -307,8 +337,8 @@ static void not_yaml(void **state) {
   static const fault rows[] = {
       {"  mu: 0.31", "\tmu: 0.31", "c.yaml:24:1: error: a tab; YAML indents with spaces", 1},
       {"[90 Hz, 0.12 kHz]", "[90 Hz, 0.12 kHz",
-       "c.yaml:31:12: error: not valid YAML: did not find expected ',' "
-       "or ']' (while parsing a flow sequence, begun on line 30)",
+       "c.yaml:32:12: error: not valid YAML: did not find expected ',' "
+       "or ']' (while parsing a flow sequence, begun on line 31)",
        1},
       {"mu: 0.31", "mu: \x01",
        "c.yaml:24:7: error: not UTF-8 text: control characters are not allowed", 1},
@@ -321,7 +351,7 @@ static void not_yaml(void **state) {
       {"mu: 0.31", "mu: !!float 0.31",
        "c.yaml:24:7: error: contact.mu: tags (!...) are not supported", 1},
       {"  scale: 1.3", "---",
-       "c.yaml:33:1: error: a second document begins here; one file holds one case", 1}};
+       "c.yaml:34:1: error: a second document begins here; one file holds one case", 1}};
   check_faults(rows, COUNT(rows));
 }
 
@@ -401,7 +431,7 @@ static void all_at_once(void **state) {
       "c.yaml:24:7: error: contact.mu: '0,3' is not a number; write 0.3 with a decimal point\n"
       "      mu: 0,3\n"
       "          ^\n"
-      "c.yaml:30:22: error: mhb.frequency[1]: '0.12 kHx': unknown unit 'kHx'; expected Hz\n"
+      "c.yaml:31:22: error: mhb.frequency[1]: '0.12 kHx': unknown unit 'kHx'; expected Hz\n"
       "      frequency: [90 Hz, 0.12 kHx]\n"
       "                         ^\n"
       "4 errors\n");

@@ -30,7 +30,9 @@ static void rows_are_sound(void **state) {
     if (!case_quantity(text, key->unit, &value, why)) fail_msg("%s: %s", key->path, why);
     assert_true(value == 1);
     /* the key's block stays together */
-    assert_true((key->type == CASE_CHOICE || key->type == CASE_SWITCH) == (key->words != NULL));
+    bool worded =
+        key->type == CASE_CHOICE || key->type == CASE_SWITCH || key->type == CASE_ACCURACY;
+    assert_true(worded == (key->words != NULL));
   }
 }
 
@@ -79,6 +81,8 @@ static void the_manual_lists_every_key(void **state) {
     assert_non_null(strstr(text, keys.key[i].help));
   }
   assert_non_null(strstr(text, "neighbour|ground"));
+  assert_non_null(
+      strstr(text, "\ncontact.accuracy                word or number -      fast|balanced|exact "));
   assert_non_null(strstr(text, "above -1 and below 0.5"));
   free(text);
 }

@@ -41,10 +41,24 @@ static void reads_signals(void **state) {
   assert_true(m.contact.mu == 0.4 && m.contact.ku[0] == 1e6 && m.contact.ku[1] == 0);
   assert_true(m.contact.kv == 5e5 && m.contact.n_preloads == 1 && m.contact.n0[0] == 100);
   assert_int_equal(m.contact.preload, MHB_EQUILIBRIUM);
+  assert_true(m.contact.tolerance == 1e-13); /* tighter than a case's */
   assert_int_equal(m.n_harmonics, 2);
   const double complex expected[9] = {
       3e-6, 1e-4 * (sqrt(3) / 2 + I / 2), 0, 0, -2e-4 * I, -7e-6, 0, 0, 0};
   for (int i = 0; i < 9; i++) assert_true(cabs(m.motion[i] - expected[i]) < 1e-19);
+  case_motion_free(&m);
+  free(said);
+}
+
+static void takes_accuracy(void **state) {
+  (void)state;
+  char       *said;
+  case_motion m;
+  assert_int_equal(read_text("contact: {mu: 0.4, ku: 1, kv: 1, n0: 1, accuracy: fast}\n"
+                             "motion: {v: [], u: [], w: []}\n",
+                             &m, &said),
+                   SHB_OK);
+  assert_true(m.contact.tolerance == 1e-3);
   case_motion_free(&m);
   free(said);
 }
@@ -95,8 +109,8 @@ static void too_many_harmonics(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(reads_signals),
-                                     cmocka_unit_test(tells_faults),
-                                     cmocka_unit_test(too_many_harmonics)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(reads_signals), cmocka_unit_test(takes_accuracy),
+      cmocka_unit_test(tells_faults), cmocka_unit_test(too_many_harmonics)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

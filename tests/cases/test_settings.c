@@ -75,6 +75,8 @@ static void only_what_matters(void **state) {
               {"subharmonics: 2", "subharmonics: 1", CASE_MHB},
               {"scale: 1.3", "scale: 1.4", CASE_MHB},
               {"2e-9", "1e-9", CASE_MHB},
+              {"2e-9", "fast", CASE_MHB},
+              {"2e-9", "0.002e-6", 0},
               {"777", "778", CASE_MHB}};
   char *before[N_STAGES], *after[N_STAGES];
   settings_of(NULL, NULL, before);
@@ -106,11 +108,11 @@ static void the_text_itself(void **state) {
                       "contact.kv = 800000\n"
                       "contact.n0 = -20 0 300\n"
                       "contact.preload = interference\n"
+                      "contact.accuracy = 2.0000000000000001e-09\n"
                       "mhb.frequency = 90 120\n"
                       "mhb.harmonics = 7\n"
                       "mhb.subharmonics = 2\n"
                       "mhb.scale = 1.3\n"
-                      "mhb.tolerance = 2.0000000000000001e-09\n"
                       "mhb.max_points = 777\n");
   assert_non_null(
       strstr(settings[0], "mesh.blade.sections[1].thickness = 0.0028999999999999998\n"));
