@@ -1,4 +1,6 @@
 shb_test(mhb contact fast shb_contact)
+shb_test(mhb reference fast)
+target_sources(test_mhb_reference PRIVATE mhb/reference.c mhb/series.c mhb/suite.c)
 shb_test(mhb trace fast shb_contact)
 shb_test(mhb sweep fast shb_mhb)
 target_sources(test_mhb_sweep PRIVATE mhb/solution.c mhb/three_degree.c)
