@@ -38,10 +38,15 @@ static sample sample_at(const event_function *f, double t) {
 
 /* Grid point i (any integer; the grid is periodic). */
 static sample sample_grid(const event_function *f, int i) {
-  int    n   = f->signals->n_grid;
-  sample s   = {.t = TWO_PI * i / n};
-  int    mod = 3 * (((i % n) + n) % n);
-  combine(f, f->signals->value + mod, f->signals->slope + mod, &s);
+  int    n  = f->signals->n_grid;
+  sample s  = {.t = TWO_PI * i / n};
+  int    at = ((i % n) + n) % n;
+  double v[3], dv[3];
+  for (int k = 0; k < 3; k++) {
+    v[k]  = f->signals->value[k][at];
+    dv[k] = f->signals->slope[k][at];
+  }
+  combine(f, v, dv, &s);
   return s;
 }
 
@@ -97,6 +102,38 @@ static int first_crossing(const event_function *f, double sign, sample a, sample
   return first_crossing(f, sign, a, mid, root) || first_crossing(f, sign, mid, b, root);
 }
 
+/* y and y' on eight grid points from i on. */
+MHB_INLINE void grid_lanes(const event_function *f, int i, mhb_lanes *y, mhb_lanes *dy) {
+  const mhb_signals *s = f->signals;
+  mhb_lanes          n = lanes_load(s->value[0] + i), dn = lanes_load(s->slope[0] + i);
+  *y  = n;
+  *dy = dn;
+  if (f->is_load) return;
+  mhb_lanes a = lanes_load(s->value[1] + i) - f->z[0], b = lanes_load(s->value[2] + i) - f->z[1];
+  double    mu2 = f->mu * f->mu;
+  *y            = a * a + b * b - mu2 * n * n;
+  *dy = 2 * (a * lanes_load(s->slope[1] + i) + b * lanes_load(s->slope[2] + i) - mu2 * n * dn);
+}
+
+/* First of the cells [from, to) whose hull does not keep to the side of sign; to if all do. Cells are grid cells, any
+ * integer; eight are looked at together. */
+MHB_HOT static int next_suspect(const event_function *f, double sign, int from, int to) {
+  int    n = f->signals->n_grid;
+  double h = TWO_PI / n, third = sign * h / 3, slack = h * h * h * h * f->bound4 / 384;
+  for (int i = from; i < to;) {
+    int       base = (i % n + n) % n / MHB_LANES * MHB_LANES, skip = (i % n + n) % n - base;
+    mhb_lanes y, dy, y1, dy1;
+    grid_lanes(f, base, &y, &dy);
+    grid_lanes(f, base + 1, &y1, &dy1);
+    mhb_lanes      least = lanes_min(lanes_min(sign * y, sign * y1),
+                                     lanes_min(sign * y + third * dy, sign * y1 - third * dy1));
+    mhb_lanes_bits clear = least > slack;
+    for (int l = skip; l < MHB_LANES && i < to; l++, i++)
+      if (!clear[l]) return i;
+  }
+  return to;
+}
+
 void mhb_closed_intervals(const mhb_signals *signals, mhb_closed *closed) {
   event_function f     = {.signals = signals, .is_load = 1, .bound4 = signals->bound[0][4]};
   double         slack = 8 * DBL_EPSILON * signals->bound[0][0];
@@ -113,8 +150,8 @@ void mhb_closed_intervals(const mhb_signals *signals, mhb_closed *closed) {
   int    n = signals->n_grid, first = 0, crossings = 0;
   double negative = 0;
   for (int i = 0; i < n; i++) { /* begin where the contact is open beyond doubt, if anywhere */
-    if (signals->value[3 * i] < negative) {
-      negative = signals->value[3 * i];
+    if (signals->value[0][i] < negative) {
+      negative = signals->value[0][i];
       first    = i;
     }
   }
@@ -122,6 +159,9 @@ void mhb_closed_intervals(const mhb_signals *signals, mhb_closed *closed) {
   double sign       = a.y < 0 ? -1 : 1; /* -1: look for a closing */
   int    began_open = a.y < 0;
   for (int i = first; i < first + n; i++) {
+    int clear = next_suspect(&f, sign, i, first + n);
+    if (clear == first + n) break;
+    if (clear > i) a = sample_grid(&f, i = clear);
     sample b = sample_grid(&f, i + 1), from = a;
     double root;
     while (crossings < 2 * MHB_MAX_OPENINGS && first_crossing(&f, sign, from, b, &root)) {
@@ -192,12 +232,14 @@ double mhb_slip_onset(const mhb_signals *signals, double mu, const double z[2], 
   if (a.t >= to) return to + 1;
   if (a.y > 0) return a.t;
   double cell = TWO_PI / signals->n_grid;
-  int    i    = (int)floor(a.t / cell) + 1;
+  int    i = (int)floor(a.t / cell) + 1, last = (int)floor(to / cell);
   for (double root; a.t < to; i++) {
     sample b = cell * i < to ? sample_grid(&f, i) : sample_at(&f, to);
     if (b.t <= a.t) continue;
     if (first_crossing(&f, -1, a, b, &root)) return root;
-    a = b;
+    a         = b;
+    int clear = i < last ? next_suspect(&f, -1, i, last) : i;
+    if (clear > i) a = sample_grid(&f, i = clear);
   }
   return to + 1;
 }

@@ -86,20 +86,22 @@ static int grid_size(int m) {
 
 shb_status mhb_signals_create(int m, mhb_signals *signals) {
   memset(signals, 0, sizeof *signals);
-  int    n = grid_size(m), half = n / 2 + 1;
-  size_t grid          = (size_t)n;
+  int    n = grid_size(m), half = n / 2 + 1, room = n + MHB_LANES;
+  size_t size          = 3 * (size_t)mhb_real_size(m);
   signals->m           = m;
   signals->n_grid      = n;
-  signals->coefficient = calloc(3 * (size_t)mhb_real_size(m), sizeof(double));
-  signals->value       = calloc(3 * grid, sizeof(double));
-  signals->slope       = calloc(3 * grid, sizeof(double));
+  signals->coefficient = calloc(size, sizeof(double));
+  signals->rate        = calloc(size, sizeof(double));
   signals->spectrum    = fftw_alloc_complex(6 * (size_t)half);
-  signals->samples     = fftw_alloc_real(6 * grid);
-  if (signals->coefficient && signals->value && signals->slope && signals->spectrum &&
-      signals->samples) {
+  signals->samples     = fftw_alloc_real(6 * (size_t)room);
+  if (signals->coefficient && signals->rate && signals->spectrum && signals->samples) {
     signals->plan =
         fftw_plan_many_dft_c2r(1, &n, 6, signals->spectrum, NULL, 1, half, signals->samples, NULL,
-                               1, n, FFTW_ESTIMATE | FFTW_DESTROY_INPUT);
+                               1, room, FFTW_ESTIMATE | FFTW_DESTROY_INPUT);
+  }
+  for (int i = 0; i < 3; i++) {
+    signals->value[i] = signals->samples + i * room;
+    signals->slope[i] = signals->samples + (i + 3) * room;
   }
   if (signals->plan) return SHB_OK;
   mhb_signals_destroy(signals);
@@ -112,8 +114,7 @@ void mhb_signals_destroy(mhb_signals *signals) {
   fftw_free(signals->spectrum);
   fftw_free(signals->samples);
   free(signals->coefficient);
-  free(signals->value);
-  free(signals->slope);
+  free(signals->rate);
   memset(signals, 0, sizeof *signals);
 }
 
@@ -121,31 +122,43 @@ static void set_bounds(mhb_signals *signals, int i, const double *a) {
   double *bound = signals->bound[i];
   bound[0]      = fabs(a[0]);
   for (int j = 1; j < 5; j++) bound[j] = 0;
-  for (int k = 1; k <= signals->m; k++) {
-    double size = hypot(a[2 * k - 1], a[2 * k]);
+  for (int k = 1; k <= signals->used; k++) {
+    double size = sqrt(a[2 * k - 1] * a[2 * k - 1] + a[2 * k] * a[2 * k]);
     for (int j = 0; j < 5; j++, size *= k) bound[j] += size;
   }
 }
 
+static int highest_harmonic(int m, const double *const a[3]) {
+  for (int k = m; k > 0; k--)
+    for (int i = 0; i < 3; i++)
+      if (a[i][2 * k - 1] != 0 || a[i][2 * k] != 0) return k;
+  return 0;
+}
+
 void mhb_signals_set(mhb_signals *signals, const double *const a[3]) {
   int m = signals->m, n = signals->n_grid, half = n / 2 + 1;
+  signals->used = highest_harmonic(m, a);
   memset(signals->spectrum, 0, sizeof(fftw_complex) * 6 * (size_t)half);
   for (int i = 0; i < 3; i++) {
     fftw_complex *X = signals->spectrum + (size_t)i * (size_t)half, *dX = X + 3 * (size_t)half;
-    X[0] = a[i][0];
-    for (int k = 1; k <= m; k++) {
-      X[k]  = .5 * CMPLX(a[i][2 * k - 1], a[i][2 * k]);
-      dX[k] = k * CMPLX(-cimag(X[k]), creal(X[k]));
+    double       *coefficient = signals->coefficient + i, *rate = signals->rate + i;
+    X[0]           = a[i][0];
+    coefficient[0] = a[i][0];
+    for (int k = 1; k <= signals->used; k++) {
+      double even = a[i][2 * k - 1], odd = a[i][2 * k];
+      X[k]                   = CMPLX(.5 * even, .5 * odd);
+      dX[k]                  = CMPLX(-.5 * k * odd, .5 * k * even);
+      coefficient[6 * k - 3] = even;
+      coefficient[6 * k]     = odd;
+      rate[6 * k - 3]        = k * even;
+      rate[6 * k]            = k * odd;
     }
     set_bounds(signals, i, a[i]);
-    for (int j = 0; j < mhb_real_size(m); j++) signals->coefficient[3 * j + i] = a[i][j];
   }
   fftw_execute(signals->plan);
-  for (int s = 0; s < n; s++) {
-    for (int i = 0; i < 3; i++) {
-      signals->value[3 * s + i] = signals->samples[i * n + s];
-      signals->slope[3 * s + i] = signals->samples[(i + 3) * n + s];
-    }
+  for (int i = 0; i < 3; i++) {
+    memcpy(signals->value[i] + n, signals->value[i], sizeof(double) * MHB_LANES);
+    memcpy(signals->slope[i] + n, signals->slope[i], sizeof(double) * MHB_LANES);
   }
 }
 
@@ -158,7 +171,7 @@ void mhb_signals_at(const mhb_signals *signals, double t, double y[3], double dy
     dy[i] = 0;
     if (ddy) ddy[i] = 0;
   }
-  for (int k = 1; k <= signals->m; k++) {
+  for (int k = 1; k <= signals->used; k++) {
     double next = c * c1 - s * s1;
     s           = s * c1 + c * s1;
     c           = next;
@@ -168,18 +181,6 @@ void mhb_signals_at(const mhb_signals *signals, double t, double y[3], double dy
       y[i] += even;
       dy[i] -= k * (a[i] * s + a[i + 3] * c);
       if (ddy) ddy[i] -= (double)k * k * even;
-    }
-  }
-}
-
-void mhb_signals_with(const mhb_signals *signals, const double *basis, const double *basis_slope,
-                      double y[3], double dy[3]) {
-  const double *a = signals->coefficient;
-  for (int i = 0; i < 3; i++) y[i] = dy[i] = 0;
-  for (int j = 0; j < mhb_real_size(signals->m); j++, a += 3) {
-    for (int i = 0; i < 3; i++) {
-      y[i] += a[i] * basis[j];
-      dy[i] += a[i] * basis_slope[j];
     }
   }
 }

@@ -10,6 +10,7 @@
 #include <fftw3.h>
 
 #include "mesh/status.h"
+#include "mhb/lanes.h"
 
 /* Number of real coefficients of m harmonics. */
 static inline int mhb_real_size(int m) {
@@ -31,14 +32,16 @@ void mhb_basis_product(int p, int q, const double *integral, double *product, in
 
 /* Three signals of up to m harmonics: values and slopes on a grid of n_grid points, evaluation anywhere. */
 typedef struct {
-  int           m;
-  int           n_grid;
-  double       *coefficient; /* [2m+1][3] */
-  double       *value;       /* [n_grid][3], t = 2 pi i/n_grid */
-  double       *slope;       /* [n_grid][3] */
-  double        bound[3][5]; /* [signal][j] = sum_k k^j |A_k| >= |d^j x/dt^j| */
-  fftw_complex *spectrum;    /* [6][n_grid/2 + 1] */
-  double       *samples;     /* [6][n_grid] */
+  int     m;
+  int     used;        /* highest harmonic that is not zero */
+  int     n_grid;      /* a multiple of MHB_LANES */
+  double *coefficient; /* [2m+1][3] */
+  double *rate;        /* [2m+1][3], k times that of the same harmonic */
+  double *value[3]; /* [n_grid + MHB_LANES], t = 2 pi i/n_grid, going on periodically at the end */
+  double *slope[3]; /* the same */
+  double  bound[3][5];    /* [signal][j] = sum_k k^j |A_k| >= |d^j x/dt^j| */
+  fftw_complex *spectrum; /* [6][n_grid/2 + 1] */
+  double       *samples;  /* [6][n_grid + MHB_LANES]: value, slope */
   fftw_plan     plan;
 } mhb_signals;
 
@@ -52,8 +55,26 @@ void mhb_signals_set(mhb_signals *signals, const double *const a[3]);
 /* Values, first and (unless NULL) second derivatives at t. O(m). */
 void mhb_signals_at(const mhb_signals *signals, double t, double y[3], double dy[3], double ddy[3]);
 
-/* The same sums when the basis at t is at hand. */
-void mhb_signals_with(const mhb_signals *signals, const double *basis, const double *basis_slope,
-                      double y[3], double dy[3]);
+/* Values and slopes at eight phases, given by their cosine and sine. */
+MHB_INLINE void mhb_signals_at_lanes(const mhb_signals *signals, mhb_lanes cosine, mhb_lanes sine,
+                                     mhb_lanes y[3], mhb_lanes dy[3]) {
+  const double *a = signals->coefficient, *b = signals->rate;
+  mhb_lanes     c = lanes_all(1), s = lanes_all(0);
+  for (int i = 0; i < 3; i++) {
+    y[i]  = lanes_all(a[i]);
+    dy[i] = lanes_all(0);
+  }
+  a += 3;
+  b += 3;
+  for (int k = 1; k <= signals->used; k++, a += 6, b += 6) {
+    mhb_lanes next = c * cosine - s * sine;
+    s              = s * cosine + c * sine;
+    c              = next;
+    for (int i = 0; i < 3; i++) {
+      y[i] += a[i] * c - a[i + 3] * s;
+      dy[i] -= b[i] * s + b[i + 3] * c;
+    }
+  }
+}
 
 #endif

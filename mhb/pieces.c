@@ -49,7 +49,7 @@ void mhb_pieces_slip(mhb_pieces *pieces, const mhb_panel *panel) {
   if (!piece) return;
   piece->h        = panel->h;
   piece->theta[0] = panel->theta0;
-  memcpy(piece->theta + 1, panel->theta, sizeof panel->theta);
+  lanes_store(piece->theta + 1, panel->theta);
 }
 
 void mhb_pieces_open(mhb_pieces *pieces, double t0) {

@@ -1,8 +1,8 @@
 #include "mhb/slip.h"
 
 #include <float.h>
-#include <math.h>
-#include <string.h>
+
+/* ---- the rule ---- */
 
 /* Legendre polynomial of degree n and its derivative at x. */
 static double legendre(int n, double x, double *slope) {
@@ -36,25 +36,51 @@ static double lagrange_integral(const double *c, double s) {
   return sum * s;
 }
 
+static double binomial(int n, int k) {
+  double b = 1;
+  for (int i = 1; i <= k; i++) b *= (double)(n - k + i) / i;
+  return b;
+}
+
+/* Column j of the tables: what a value of one at node j and zero elsewhere means. */
+static void table_column(mhb_collocation *rule, const double *node, const double *weight, int j) {
+  enum { FIT = 5 };
+  const int degree[3] = {1, 2, MHB_NODES - 1};
+  double    c[MHB_NODES], x = 2 * node[j] - 1;
+  lagrange_monomials(node, j, c);
+  rule->end[j] = 0;
+  for (int i = 0; i < MHB_NODES; i++) {
+    rule->A[j][i]        = lagrange_integral(c, node[i]);
+    rule->monomial[j][i] = c[i];
+    rule->end[j] += c[i];
+    double bernstein = 0,
+           ahead = 0; /* s^k = sum_i C(i,k)/C(7,k) B_i;  P_k(2s-1) = sum C(k,i)C(k+i,i) (s-1)^i */
+    for (int k = 0; k <= i; k++) bernstein += binomial(i, k) / binomial(MHB_NODES - 1, k) * c[k];
+    for (int k = i; k <= FIT; k++)
+      ahead += (2 * k + 1) * weight[j] * legendre(k, x, NULL) * binomial(k, i) * binomial(k + i, i);
+    rule->bernstein[j][i] = bernstein;
+    rule->ahead[j][i]     = ahead;
+  }
+  for (int k = 0; k < 3; k++)
+    rule->tail[k][j] = (2 * degree[k] + 1) * weight[j] * legendre(degree[k], x, NULL);
+}
+
 void mhb_collocation_create(mhb_collocation *rule) {
   const double pi = 3.141592653589793238463;
+  double       node[MHB_NODES], weight[MHB_NODES];
   for (int i = 0; i < MHB_NODES; i++) {
     double x = -cos(pi * (i + .75) / (MHB_NODES + .5)), slope = 1;
     for (int k = 0; k < 20; k++) x -= legendre(MHB_NODES, x, &slope) / slope;
     legendre(MHB_NODES, x, &slope);
-    rule->node[i]   = .5 * (1 + x);
-    rule->weight[i] = 1 / ((1 - x * x) * slope * slope);
+    node[i]   = .5 * (1 + x);
+    weight[i] = 1 / ((1 - x * x) * slope * slope);
   }
-  for (int j = 0; j < MHB_NODES; j++) {
-    lagrange_monomials(rule->node, j, rule->lagrange[j]);
-    for (int i = 0; i < MHB_NODES; i++)
-      rule->A[i][j] = lagrange_integral(rule->lagrange[j], rule->node[i]);
-    const int degree[3] = {1, 2, MHB_NODES - 1};
-    for (int k = 0; k < 3; k++)
-      rule->tail[k][j] =
-          (2 * degree[k] + 1) * rule->weight[j] * legendre(degree[k], 2 * rule->node[j] - 1, NULL);
-  }
+  rule->node   = lanes_load(node);
+  rule->weight = lanes_load(weight);
+  for (int j = 0; j < MHB_NODES; j++) table_column(rule, node, weight, j);
 }
+
+/* ---- the equation ---- */
 
 mhb_direction mhb_slip_direction(const double (*K)[2], double theta) {
   mhb_direction d;
@@ -75,270 +101,308 @@ double mhb_slip_gamma(const mhb_slip *slip, const mhb_direction *d, const double
   return d->e[0] * dy[1] + d->e[1] * dy[2] - slip->mu * dy[0];
 }
 
-/* F and F_theta */
-static void rate(const mhb_slip *slip, double theta, const double y[3], const double dy[3],
-                 double *F, double *F_theta) {
-  mhb_direction d     = mhb_slip_direction(slip->K, theta);
-  double        gamma = mhb_slip_gamma(slip, &d, dy), limit = slip->mu * y[0];
-  double        along = d.e[0] * dy[1] + d.e[1] * dy[2], across = d.q[0] * dy[1] + d.q[1] * dy[2];
-  *F       = (across - d.beta * gamma) / limit;
-  *F_theta = -(along + d.beta * across + gamma * d.beta_theta) / limit;
+/* F, F_theta, gamma, beta at the nodes from theta, with over = 1/(mu n). */
+MHB_INLINE void rate(const mhb_slip *slip, mhb_lanes over, mhb_panel *p) {
+  mhb_lanes c, s;
+  lanes_cos_sin(p->theta, &c, &s);
+  mhb_lanes along = c * p->dy[1] + s * p->dy[2], across = c * p->dy[2] - s * p->dy[1];
+  p->e[0]  = c;
+  p->e[1]  = s;
+  p->gamma = along - slip->mu * p->dy[0];
+  if (slip->half == 0 && slip->skew == 0) {
+    p->F       = across * over;
+    p->F_theta = -along * over;
+    p->beta    = lanes_all(0);
+    p->eKe     = lanes_all(slip->mean);
+    return;
+  }
+  mhb_lanes c2 = c * c - s * s, s2 = 2 * c * s, turn = slip->half * c2 + slip->skew * s2;
+  p->eKe               = slip->mean + turn;
+  p->beta              = (slip->skew * c2 - slip->half * s2) / p->eKe;
+  mhb_lanes beta_theta = -2 * turn / p->eKe - 2 * p->beta * p->beta;
+  p->F                 = (across - p->beta * p->gamma) * over;
+  p->F_theta           = -(along + p->beta * across + p->gamma * beta_theta) * over;
 }
 
-static int factorize(mhb_panel *panel) {
-  double(*M)[MHB_NODES] = panel->matrix;
+/* sum_j table[j] x[j] */
+MHB_INLINE mhb_lanes apply(const mhb_lanes table[MHB_NODES], mhb_lanes x) {
+  mhb_lanes even = table[0] * lanes_pick(x, 0), odd = table[1] * lanes_pick(x, 1);
+#pragma GCC unroll 8
+  for (int j = 2; j < MHB_NODES; j += 2) {
+    even += table[j] * lanes_pick(x, j);
+    odd += table[j + 1] * lanes_pick(x, j + 1);
+  }
+  return even + odd;
+}
+
+static const mhb_lanes UNIT[MHB_NODES] = {{1, 0, 0, 0, 0, 0, 0, 0}, {0, 1, 0, 0, 0, 0, 0, 0},
+                                          {0, 0, 1, 0, 0, 0, 0, 0}, {0, 0, 0, 1, 0, 0, 0, 0},
+                                          {0, 0, 0, 0, 1, 0, 0, 0}, {0, 0, 0, 0, 0, 1, 0, 0},
+                                          {0, 0, 0, 0, 0, 0, 1, 0}, {0, 0, 0, 0, 0, 0, 0, 1}};
+
+/* The inverse of M = I - h A diag(F_theta), by columns: Gauss-Jordan in place on the transpose, whose rows are columns of
+ * M. No pivoting: A of Gauss is positive on the diagonal and F_theta <= 0 where slip is stiff. 0: a pivot vanishes. */
+MHB_INLINE int invert(const mhb_collocation *rule, mhb_panel *p) {
+  mhb_lanes M[MHB_NODES], scale = -p->h * p->F_theta, pivots = lanes_all(0);
+#pragma GCC unroll 8
+  for (int j = 0; j < MHB_NODES; j++) M[j] = UNIT[j] + rule->A[j] * lanes_pick(scale, j);
+#pragma GCC unroll 8
   for (int k = 0; k < MHB_NODES; k++) {
-    int p = k;
-    for (int i = k + 1; i < MHB_NODES; i++)
-      if (fabs(M[i][k]) > fabs(M[p][k])) p = i;
-    panel->pivot[k] = p;
-    if (!(fabs(M[p][k]) > 1e-300)) return 0;
-    for (int j = 0; p != k && j < MHB_NODES; j++) {
-      double swap = M[k][j];
-      M[k][j]     = M[p][j];
-      M[p][j]     = swap;
-    }
-    double inverse = 1 / M[k][k];
-    for (int i = k + 1; i < MHB_NODES; i++) {
-      double l = M[i][k] *= inverse;
-      for (int j = k + 1; j < MHB_NODES; j++) M[i][j] -= l * M[k][j];
-    }
+    mhb_lanes pivot = lanes_pick(M[k], k);
+    M[k]            = (M[k] + UNIT[k] * (1 - pivot)) / pivot;
+    pivots += UNIT[k] * pivot;
+    mhb_lanes row = M[k] + UNIT[k];
+#pragma GCC unroll 8
+    for (int i = 0; i < MHB_NODES; i++)
+      if (i != k) M[i] -= row * lanes_pick(M[i], k);
   }
-  return 1;
+#pragma GCC unroll 8
+  for (int j = 0; j < MHB_NODES; j++) p->inverse[j] = M[j];
+  return lanes_bottom(lanes_abs(pivots)) > .02;
 }
 
-void mhb_panel_solve(const mhb_panel *panel, double rhs[MHB_NODES]) {
-  const double(*M)[MHB_NODES] = panel->matrix;
-  for (int k = 0; k < MHB_NODES; k++) {
-    double swap          = rhs[panel->pivot[k]];
-    rhs[panel->pivot[k]] = rhs[k];
-    rhs[k]               = swap;
-  }
-  for (int i = 0; i < MHB_NODES; i++)
-    for (int j = 0; j < i; j++) rhs[i] -= M[i][j] * rhs[j];
-  for (int i = MHB_NODES - 1; i >= 0; i--) {
-    for (int j = i + 1; j < MHB_NODES; j++) rhs[i] -= M[i][j] * rhs[j];
-    rhs[i] /= M[i][i];
-  }
-}
-
-static void place_nodes(const mhb_slip *slip, double t, double h, mhb_panel *panel) {
-  size_t stride = (size_t)mhb_real_size(slip->harmonics);
-  panel->t0     = t;
-  panel->h      = h;
-  for (int i = 0; i < MHB_NODES; i++) {
-    double *basis = panel->basis + (size_t)i * stride, *slope = panel->slope + (size_t)i * stride;
-    panel->t[i] = t + h * slip->rule->node[i];
-    mhb_basis(slip->harmonics, panel->t[i], basis, slope);
-    mhb_signals_with(slip->signals, basis, slope, panel->y[i], panel->dy[i]);
-  }
+MHB_INLINE void place_nodes(const mhb_slip *slip, double t, double h, mhb_panel *p) {
+  double middle = t + .5 * h, c0 = cos(middle), s0 = sin(middle);
+  /* cos and sin of the offset from the middle, |x| <= .6 */
+  mhb_lanes x = h * (slip->rule->node - .5), z = x * x;
+  mhb_lanes s =
+      x * (1 - z / 6 * (1 - z / 20 * (1 - z / 42 * (1 - z / 72 * (1 - z / 110 * (1 - z / 156))))));
+  mhb_lanes c =
+      1 -
+      z / 2 *
+          (1 - z / 12 * (1 - z / 30 * (1 - z / 56 * (1 - z / 90 * (1 - z / 132 * (1 - z / 182))))));
+  p->t0     = t;
+  p->h      = h;
+  p->frozen = 0;
+  p->cosine = c0 * c - s0 * s;
+  p->sine   = s0 * c + c0 * s;
+  mhb_signals_at_lanes(slip->signals, p->cosine, p->sine, p->y, p->dy);
 }
 
 /* Accuracy of a panel from the Legendre coefficients a_k of th'. Where they fall as r^k, the superconvergent values (the
- * end, the integrals of the force) err by about a_6 r^8; with r^4 = a_6/a_2 that is a_6 (a_6/a_2)^2. Where they fall
- * slowly (the singular end at an opening) the ratio is near one and the estimate is a_6 itself. Exponent 1.5: caution. */
-static double panel_error(const mhb_slip *slip, const mhb_panel *panel) {
-  double a[3] = {0, 0, 0}, load = 0;
-  for (int i = 0; i < MHB_NODES; i++) {
-    for (int k = 0; k < 3; k++) a[k] += slip->rule->tail[k][i] * panel->F[i];
-    load = fmax(load, panel->y[i][0]);
+ * end, the integrals of the force) err by about a_7 r^9; with r^5 = a_7/a_2 that is a_7 (a_7/a_2)^1.8. Where they fall
+ * slowly (the singular end at an opening) the ratio is near one and the estimate is a_7 itself. Exponent 1.5: caution. */
+MHB_INLINE double panel_error(const mhb_slip *slip, const mhb_panel *p) {
+  const mhb_lanes *tail  = slip->rule->tail;
+  double           high  = fabs(lanes_sum(tail[2] * p->F));
+  double           low   = fabs(lanes_sum(tail[0] * p->F)) + fabs(lanes_sum(tail[1] * p->F));
+  double           ratio = high < low ? high / low : 1;
+  return high * ratio * sqrt(ratio) * p->h * slip->mu * lanes_top(p->y[0]);
+}
+
+/* Newton on the collocation equations from theta, the matrix kept while it converges well; 1 if converged. */
+MHB_INLINE int collocate(const mhb_slip *slip, mhb_panel *p) {
+  const mhb_collocation *rule   = slip->rule;
+  mhb_lanes              over   = 1 / (slip->mu * p->y[0]);
+  double                 before = INFINITY, left = INFINITY, enough = .03 * slip->tolerance;
+  int                    fresh = 0;
+  for (int i = 0; left > enough; i++) {
+    rate(slip, over, p);
+    if (i == 16) return 0;
+    if (!fresh && !invert(rule, p)) return 0;
+    mhb_lanes step = apply(p->inverse, p->theta0 + p->h * apply(rule->A, p->F) - p->theta);
+    double    size = lanes_top(lanes_abs(step));
+    if (!(size < 4) || (i > 5 && size > .5 * before && size > 1e-7)) return 0;
+    p->theta += step;
+    p->F +=
+        p->F_theta *
+        step; /* what is left is quadratic in the last step, or its product with the one before */
+    left  = size * fmin(1, fresh ? size / before : size);
+    fresh = size < .1 * before || i == 0; /* as good a matrix as any */
+    if (size > .05) fresh = 0;
+    before = size;
+    if (size < 1e-14) break;
   }
-  double high = fabs(a[2]), low = fabs(a[0]) + fabs(a[1]);
-  double ratio = high < low ? high / low : 1;
-  return high * ratio * sqrt(ratio) * panel->h * slip->mu * load;
+  rate(slip, over, p);
+  if (slip->linearized && !invert(rule, p)) return 0;
+  p->theta1 = p->theta0 + p->h * lanes_sum(rule->weight * p->F);
+  p->error  = panel_error(slip, p);
+  return isfinite(p->theta1);
 }
 
-/* Start from the slope at the end of the panel before, if there is one. */
-static void predict(const mhb_slip *slip, double slope, mhb_panel *panel) {
-  for (int i = 0; i < MHB_NODES; i++)
-    panel->theta[i] = panel->theta0 + slope * panel->h * slip->rule->node[i];
+/* ---- a panel's prediction and its end ---- */
+
+/* th' beyond the end of the panel before, in powers of (t - t0). */
+typedef struct {
+  double power[6];
+} forecast;
+
+MHB_HOT static void forecast_from(const mhb_slip *slip, const mhb_panel *p, double t,
+                                  forecast *ahead) {
+  memset(ahead, 0, sizeof *ahead);
+  if (!(p->h > 0) || p->t0 + p->h != t) return;
+  mhb_lanes c     = apply(slip->rule->ahead, p->F);
+  double    scale = 1;
+  for (int k = 0; k < 6; k++, scale /= p->h) ahead->power[k] = c[k] * scale;
 }
 
-/* I - h A diag(F_theta), and the residual of the collocation equations. */
-static void linearize(const mhb_collocation *rule, mhb_panel *panel, double rhs[MHB_NODES]) {
-  double h = panel->h;
-  for (int i = 0; i < MHB_NODES; i++) {
-    double sum = 0;
-    for (int j = 0; j < MHB_NODES; j++) {
-      sum += rule->A[i][j] * panel->F[j];
-      panel->matrix[i][j] = (i == j) - h * rule->A[i][j] * panel->F_theta[j];
+MHB_INLINE void predict(const mhb_slip *slip, const forecast *ahead, double h, mhb_panel *p) {
+  mhb_lanes x = h * slip->rule->node, sum = lanes_all(0);
+  for (int k = 5; k >= 0; k--) sum = sum * x + ahead->power[k] / (k + 1);
+  p->theta = p->theta0 + sum * x;
+}
+
+/* The interpolant of th' over the first fraction of the panel: theta there. */
+MHB_INLINE void shorten_theta(const mhb_slip *slip, double fraction, mhb_panel *p) {
+  mhb_lanes c = apply(slip->rule->monomial, p->F), x = fraction * slip->rule->node;
+  mhb_lanes sum = lanes_all(0);
+  for (int k = MHB_NODES - 1; k >= 0; k--) sum = sum * x + c[k] / (k + 1);
+  p->theta = p->theta0 + p->h * sum * x;
+}
+
+/* A panel of length h from (t, theta). 1 if Newton converged. */
+MHB_HOT static int solve_panel(const mhb_slip *slip, const forecast *ahead, double t, double h,
+                               double theta, mhb_panel *p) {
+  p->theta0 = theta;
+  place_nodes(slip, t, h, p);
+  predict(slip, ahead, h, p);
+  return collocate(slip, p);
+}
+
+/* The first fraction of a panel that is solved. */
+MHB_HOT static int solve_part(const mhb_slip *slip, double fraction, mhb_panel *p) {
+  shorten_theta(slip, fraction, p);
+  place_nodes(slip, p->t0, fraction * p->h, p);
+  return collocate(slip, p);
+}
+
+/* gamma over the panel as a polynomial of the fraction: powers c. */
+MHB_HOT static void gamma_powers(const mhb_slip *slip, const mhb_panel *p, double *c) {
+  lanes_store(c, apply(slip->rule->monomial, p->gamma));
+}
+
+/* Its Bernstein coefficients b, with a bound on their rounding. 0: it stays above zero throughout. */
+MHB_HOT static int gamma_falls(const mhb_slip *slip, const mhb_panel *p, double *b, double *slack) {
+  mhb_lanes hull = apply(slip->rule->bernstein, p->gamma);
+  *slack         = 1e-13 * lanes_top(lanes_abs(hull));
+  lanes_store(b, hull);
+  return lanes_bottom(hull) < -*slack;
+}
+
+static double polynomial(const double *c, double x, double *slope) {
+  double y = 0, dy = 0;
+  for (int k = MHB_NODES - 1; k >= 0; k--) {
+    dy = dy * x + y;
+    y  = y * x + c[k];
+  }
+  *slope = dy;
+  return y;
+}
+
+/* Root in [lo, hi] of the polynomial c that falls from positive to negative there: safeguarded Newton. */
+static double falling_root(const double *c, double lo, double hi) {
+  double x = .5 * (lo + hi), slope;
+  for (int i = 0; i < 60; i++) {
+    double y = polynomial(c, x, &slope);
+    if (y > 0) {
+      lo = x;
+    } else {
+      hi = x;
     }
-    rhs[i] = panel->theta0 + h * sum - panel->theta[i];
+    double next = x - y / slope;
+    if (!(next > lo && next < hi)) next = .5 * (lo + hi);
+    double moved = fabs(next - x);
+    x            = next;
+    if (moved < 1e-9) break; /* Newton: rounding now */
   }
+  return x;
 }
 
-/* Newton on the collocation equations from theta; 1 if converged. The factors left are those of the last step. */
-static int collocate(const mhb_slip *slip, mhb_panel *panel) {
-  double change = INFINITY, before = INFINITY;
-  for (int iteration = 0; change > 1e-7; iteration++) {
-    double rhs[MHB_NODES];
-    for (int i = 0; i < MHB_NODES; i++)
-      rate(slip, panel->theta[i], panel->y[i], panel->dy[i], &panel->F[i], &panel->F_theta[i]);
-    linearize(slip->rule, panel, rhs);
-    if (iteration == 14 || !factorize(panel)) return 0;
-    mhb_panel_solve(panel, rhs);
-    change = 0;
-    for (int i = 0; i < MHB_NODES; i++) {
-      panel->theta[i] += rhs[i];
-      panel->F[i] += panel->F_theta[i] * rhs[i]; /* what is left is quadratic in the last step */
-      change = fmax(change, fabs(rhs[i]));
-    }
-    if (!(change < 4) || (iteration > 4 && change > .5 * before && change > 1e-7)) return 0;
-    before = change;
-  }
-  panel->theta1 = panel->theta0;
-  for (int i = 0; i < MHB_NODES; i++)
-    panel->theta1 += panel->h * slip->rule->weight[i] * panel->F[i];
-  panel->error = panel_error(slip, panel);
-  return isfinite(panel->theta1);
-}
-
-/* gamma on the collocation polynomial at fraction s of the panel. */
-static double gamma_at(const mhb_slip *slip, const mhb_panel *panel, double s) {
-  double theta = panel->theta0, y[3], dy[3];
-  for (int j = 0; j < MHB_NODES; j++)
-    theta += panel->h * panel->F[j] * lagrange_integral(slip->rule->lagrange[j], s);
-  mhb_signals_at(slip->signals, panel->t0 + panel->h * s, y, dy, NULL);
-  mhb_direction d = mhb_slip_direction(slip->K, theta);
-  return mhb_slip_gamma(slip, &d, dy);
-}
-
-/* gamma and its total derivative at the panel's end. */
-static double gamma_end(const mhb_slip *slip, const mhb_panel *panel, double *slope) {
-  double y[3], dy[3], ddy[3], F, F_theta;
-  mhb_signals_at(slip->signals, panel->t0 + panel->h, y, dy, ddy);
-  mhb_direction d = mhb_slip_direction(slip->K, panel->theta1);
-  rate(slip, panel->theta1, y, dy, &F, &F_theta);
-  *slope =
-      d.e[0] * ddy[1] + d.e[1] * ddy[2] - slip->mu * ddy[0] + F * (d.q[0] * dy[1] + d.q[1] * dy[2]);
-  return mhb_slip_gamma(slip, &d, dy);
-}
-
-/* gamma at the nodes and at the panel's end. */
-static void gamma_at_nodes(const mhb_slip *slip, const mhb_panel *panel, double *s, double *g) {
-  double unused;
+/* First root in (lo, hi) of the polynomial c, of Bernstein coefficients b there, from above; 2: none. It stays in the
+ * hull of its coefficients, and has no more roots than they change sign. */
+static double first_fall(const double *c, const double *b, double lo, double hi, double slack,
+                         int depth) {
+  int changes = 0, sign = 1, low = 0;
   for (int i = 0; i < MHB_NODES; i++) {
-    mhb_direction d = mhb_slip_direction(slip->K, panel->theta[i]);
-    g[i]            = mhb_slip_gamma(slip, &d, panel->dy[i]);
-    s[i]            = slip->rule->node[i];
+    int now = b[i] < -slack ? -1 : b[i] > slack ? 1 : sign;
+    low |= now < 0;
+    changes += now != sign;
+    sign = now;
   }
-  g[MHB_NODES] = gamma_end(slip, panel, &unused);
-  s[MHB_NODES] = 1;
-}
-
-/* A short stick between two nodes: the lowest point of gamma about node i, if it is below zero there. */
-static int dips(const mhb_slip *slip, const mhb_panel *panel, const double *s, const double *g,
-                int i, double *at, double *value) {
-  if (!(g[i] < g[i - 1] && g[i] <= g[i + 1])) return 0;
-  double left  = (g[i] - g[i - 1]) / (s[i] - s[i - 1]),
-         right = (g[i + 1] - g[i]) / (s[i + 1] - s[i]);
-  double bend  = (right - left) / (s[i + 1] - s[i - 1]);
-  double there = left + bend * (s[i] - s[i - 1]); /* slope at node i of the parabola */
-  if (g[i] - .25 * there * there / bend > .5 * g[i]) return 0;
-  *at    = s[i] - .5 * there / bend;
-  *value = gamma_at(slip, panel, *at);
-  return *value < 0;
+  if (!low) return 2;
+  if (changes == 1) return falling_root(c, lo, hi);
+  if (depth == 30) return b[MHB_NODES - 1] < 0 ? hi : 2;
+  double left[MHB_NODES], right[MHB_NODES]; /* de Casteljau */
+  memcpy(right, b, sizeof right);
+  for (int k = 0; k < MHB_NODES; k++) {
+    left[k] = right[0];
+    for (int i = 0; i + k + 1 < MHB_NODES; i++) right[i] = .5 * (right[i] + right[i + 1]);
+  }
+  double middle = .5 * (lo + hi), root = first_fall(c, left, lo, middle, slack, depth + 1);
+  return root <= 1 ? root : first_fall(c, right, middle, hi, slack, depth + 1);
 }
 
 /* Fraction of the panel at which gamma first turns negative; > 1 if it does not. */
-static double slip_end(const mhb_slip *slip, const mhb_panel *panel) {
-  double lo = 0, glo = 0, hi = 2, ghi = 0, s[MHB_NODES + 1], g[MHB_NODES + 1];
-  gamma_at_nodes(slip, panel, s, g);
-  for (int i = 0; i <= MHB_NODES && hi > 1; i++) {
-    double at, value;
-    if (g[i] >= 0 && i > 0 && i < MHB_NODES && dips(slip, panel, s, g, i, &at, &value)) {
-      hi  = at;
-      ghi = value;
-      if (at < s[i]) continue; /* from the node before */
-    } else if (g[i] < 0) {
-      hi  = s[i];
-      ghi = g[i];
-      continue;
-    }
-    lo  = s[i];
-    glo = g[i];
-  }
-  if (hi > 1) return hi;
-  if (lo == 0) glo = gamma_at(slip, panel, 0);
-  if (glo <= 0) return 0;
-  for (int i = 0; i < 60 && hi - lo > 1e-9; i++) { /* Illinois */
-    double at = (lo * ghi - hi * glo) / (ghi - glo);
-    if (!(at > lo && at < hi)) at = .5 * (lo + hi);
-    double value = gamma_at(slip, panel, at);
-    if (value < 0) {
-      hi  = at;
-      ghi = value;
-      glo *= i ? .5 : 1;
-    } else {
-      lo  = at;
-      glo = value;
-      ghi *= i ? .5 : 1;
-    }
-    if (fabs(value) < 1e-15) break;
-  }
-  return .5 * (lo + hi);
+static double slip_end(const mhb_slip *slip, const mhb_panel *p) {
+  double c[MHB_NODES], hull[MHB_NODES], slack;
+  if (!gamma_falls(slip, p, hull, &slack)) return 2;
+  gamma_powers(slip, p, c);
+  if (p->gamma[0] < 0 && hull[0] <= slack) return 0;
+  if (hull[0] < 0) hull[0] = 0; /* begins at gamma = 0 */
+  return first_fall(c, hull, 0, 1, slack, 0);
 }
 
 /* Shorten the panel until gamma = 0 at its very end. */
-static mhb_slip_outcome settle_end(const mhb_slip *slip, double fraction, mhb_panel *panel) {
-  double whole = panel->h, h = fraction * whole;
+static mhb_slip_outcome settle_end(const mhb_slip *slip, double fraction, mhb_panel *p) {
+  double close = fmax(1e-12, .01 * slip->tolerance), whole = p->h;
   for (int i = 0; i < 8; i++) {
-    if (h < 1e-12) {
-      panel->h      = 0;
-      panel->theta1 = panel->theta0;
+    double c[MHB_NODES], slope;
+    if (fraction * p->h < 1e-12) {
+      p->h      = 0;
+      p->theta1 = p->theta0;
       return MHB_SLIP_ENDS;
     }
-    double slope = panel->F[0];
-    place_nodes(slip, panel->t0, h, panel);
-    predict(slip, slope, panel);
-    if (!collocate(slip, panel)) return MHB_SLIP_LOST;
-    double change, gamma = gamma_end(slip, panel, &change), step = -gamma / change;
-    if (!isfinite(step) || fabs(step) < 2e-14 * (1 + panel->t0) || fabs(step) > .5 * h) break;
-    if (i > 0 && fabs(step) < 1e-11) break; /* Newton: quadratically below rounding now */
-    h = fmin(whole, h + step);
+    if (!solve_part(slip, fraction, p)) return MHB_SLIP_LOST;
+    gamma_powers(slip, p, c);
+    double step = -polynomial(c, 1, &slope) / slope;
+    if (!(fabs(step * p->h) > close) || fabs(step) > .5) break;
+    fraction = fmin(1 + step, whole / p->h);
   }
   return MHB_SLIP_ENDS;
 }
 
 /* The last sliver before an opening: the direction is held, the force there is of second order in its length. */
-static void freeze(const mhb_slip *slip, double t, double h, double theta, mhb_panel *panel) {
-  place_nodes(slip, t, h, panel);
-  memset(panel->matrix, 0, sizeof panel->matrix);
-  for (int i = 0; i < MHB_NODES; i++) {
-    panel->theta[i]     = theta;
-    panel->F[i]         = 0;
-    panel->F_theta[i]   = 0;
-    panel->matrix[i][i] = 1;
-    panel->pivot[i]     = i;
+MHB_HOT static void freeze(const mhb_slip *slip, double t, double h, double theta, mhb_panel *p) {
+  place_nodes(slip, t, h, p);
+  p->theta = lanes_all(theta);
+  rate(slip, 1 / (slip->mu * p->y[0]), p);
+  p->F = p->F_theta = lanes_all(0);
+  p->theta0 = p->theta1 = theta;
+  for (int j = 0; j < MHB_NODES; j++) {
+    p->inverse[j]    = lanes_all(0);
+    p->inverse[j][j] = 1;
   }
-  panel->theta0 = panel->theta1 = theta;
-  panel->error                  = 0;
+  p->error  = 0;
+  p->frozen = 1;
 }
 
-static const double SLIVER = 1e-7, SHORTEST = 1e-9;
+static const double SHORTEST = 1e-9;
 
 mhb_slip_outcome mhb_slip_panel(const mhb_slip *slip, double t, double theta, double limit,
                                 int opening, double *suggested, mhb_panel *panel) {
-  double left = limit - t, slope = panel->t0 + panel->h == t ? panel->F[MHB_NODES - 1] : 0;
-  if (opening && left < SLIVER) {
+  double left = limit - t;
+  if (opening && left < slip->sliver) {
     freeze(slip, t, left, theta, panel);
     return MHB_SLIP_AT_LIMIT;
   }
-  double h  = fmin(*suggested, opening ? .8 * left : left);
-  int    ok = 0;
-  while (!ok) {
-    panel->theta0 = theta;
-    place_nodes(slip, t, h, panel);
-    predict(slip, slope, panel);
-    ok = collocate(slip, panel) && (panel->error < slip->tolerance || h < 1e-4);
-    if (ok) break;
-    h *= .5;
-    slope = 0;
+  forecast ahead;
+  forecast_from(slip, panel, t, &ahead);
+  double h = opening ? fmin(*suggested, .8 * left) : left / ceil(left / *suggested - 1e-9);
+  for (;;) {
+    double shrink = .5;
+    if (solve_panel(slip, &ahead, t, h, theta, panel)) {
+      if (panel->error < slip->tolerance || h < 1e-4) break;
+      shrink = fmax(.25, .9 * pow(slip->tolerance / panel->error, 1. / 16));
+    } else {
+      memset(&ahead, 0, sizeof ahead);
+    }
+    h *= shrink;
     if (h < SHORTEST) return MHB_SLIP_LOST;
   }
-  int at_limit = !opening && h >= left * (1 - 1e-15);
-  *suggested   = fmin(slip->longest, 2 * h);
-  double end   = slip_end(slip, panel);
+  int    at_limit = !opening && h >= left * (1 - 1e-15);
+  double room     = slip->tolerance / fmax(panel->error, 1e-30);
+  *suggested      = fmin(slip->longest, room > 100 ? 1.5 * h : h);
+  double end      = slip_end(slip, panel);
   if (end <= 1) return settle_end(slip, end, panel);
   return at_limit ? MHB_SLIP_AT_LIMIT : MHB_SLIP_ON;
 }
@@ -359,10 +423,11 @@ void mhb_slip_return(const double (*K)[2], double a, const double x[2], double d
       sum += di[j] * di[j];
       slope -= 2 * di[j] * di[j] * k[j] / (a + lambda * k[j]);
     }
-    double step = (1 - sum) / slope; /* Newton on the sum */
-    if (!(fabs(step) > 1e-16 * high)) break;
-    lambda = fmin(high, fmax(low, lambda + step));
-    if (fabs(step) < 1e-15 * lambda) break;
+    if (fabs(1 - sum) < 1e-15) break;
+    double step = (1 - sum) / slope,
+           next = fmin(high, fmax(low, lambda + step)); /* Newton on the sum */
+    if (!(fabs(next - lambda) > 1e-16 * high)) break;
+    lambda = next;
   }
   double norm = hypot(di[0], di[1]);
   if (!(norm > 0)) {

@@ -4,24 +4,29 @@
  * gamma = e.x' - mu n' (the slip rate is gamma/(mu n eKe), so slip ends at gamma = 0, eq. 10), eq. 9 becomes
  *   th' = F(t, th) = [q.x' - beta gamma]/(mu n),
  *   F_th = -[e.x' + beta q.x' + gamma beta']/(mu n),   beta' = (qKq - eKe)/eKe - 2 beta^2.
- * For Ku = k I, beta = 0. Seven-point Gauss collocation (order 14 at the panel's end, A-stable, never evaluated at n = 0),
+ * For Ku = k I, beta = 0. Eight-point Gauss collocation (order 16 at the panel's end, A-stable, never evaluated at n = 0),
  * solved by Newton; the same nodes serve as the quadrature of the force. Panels shrink geometrically towards an
  * opening, where th has a singular point.
  *
- * Everything here is in units of one force scale; K enters by its shape alone. */
+ * Everything here is in units of one force scale; K enters by its shape alone. The eight nodes are the eight lanes. */
 #ifndef MHB_SLIP_H
 #define MHB_SLIP_H
 
 #include "mhb/fourier.h"
+#include "mhb/lanes.h"
 
-enum { MHB_NODES = 7 };
+enum { MHB_NODES = MHB_LANES };
 
-/* Gauss points on [0, 1] and what collocation needs of them. */
+/* Gauss points on [0, 1] and what collocation needs of them. Tables that multiply values at the nodes are stored by
+ * columns: sum_j table[j] * value[j]. */
 typedef struct {
-  double node[MHB_NODES], weight[MHB_NODES];
-  double A[MHB_NODES][MHB_NODES];        /* int_0^{c_i} l_j */
-  double lagrange[MHB_NODES][MHB_NODES]; /* l_j = sum_k lagrange[j][k] s^k */
-  double tail[3][MHB_NODES]; /* weights of the Legendre coefficients of degree 1, 2 and 6 */
+  mhb_lanes node, weight;
+  mhb_lanes A[MHB_NODES];         /* A[j][i] = int_0^{c_i} l_j */
+  mhb_lanes monomial[MHB_NODES];  /* coefficients of 1, s, ... s^7 of the interpolant */
+  mhb_lanes ahead[MHB_NODES];     /* coefficients of (s - 1)^k of the fit of degree 5 */
+  mhb_lanes bernstein[MHB_NODES]; /* Bernstein coefficients of the interpolant, degree 7 */
+  mhb_lanes end;                  /* weights of the interpolant's value at s = 1 */
+  mhb_lanes tail[3];              /* weights of the Legendre coefficients of degree 1, 2 and 7 */
 } mhb_collocation;
 
 void mhb_collocation_create(mhb_collocation *rule);
@@ -31,33 +36,33 @@ typedef struct {
   const mhb_signals     *signals; /* (n, x_1, x_2) */
   const mhb_collocation *rule;
   double                 K[2][2];
+  double                 mean, half, skew; /* K = mean I + [half skew; skew -half] */
   double                 mu;
-  int                    harmonics; /* highest one the basis at the nodes is needed for */
-  double                 longest;   /* panel, rad */
+  double                 longest;   /* panel, rad; at most 1.2 */
   double                 tolerance; /* bound on a panel's error, force units */
+  double                 sliver;    /* rad before an opening over which the direction is held */
+  int linearized; /* F_theta and inverse are wanted at the solution, not near it */
 } mhb_slip;
 
-/* One panel of slip. basis, slope: [node][2 harmonics + 1], the caller's memory. */
+/* One panel of slip. */
 typedef struct {
-  double  t0, h, theta0, theta1;
-  double  t[MHB_NODES], theta[MHB_NODES], F[MHB_NODES], F_theta[MHB_NODES];
-  double  y[MHB_NODES][3], dy[MHB_NODES][3];
-  double  matrix[MHB_NODES][MHB_NODES]; /* LU of I - h A diag(F_theta) */
-  int     pivot[MHB_NODES];
-  double *basis, *slope;
-  double  error; /* estimate for this panel, force units; see panel_error in slip.c */
+  double    t0, h, theta0, theta1;
+  int       frozen;       /* the last sliver before an opening: theta is held */
+  double    error;        /* estimate for this panel, force units; see panel_error in slip.c */
+  mhb_lanes cosine, sine; /* of the phase at the nodes */
+  mhb_lanes theta, e[2];  /* direction of the friction */
+  mhb_lanes F, F_theta, gamma, eKe, beta;
+  mhb_lanes y[3], dy[3];
+  mhb_lanes inverse[MHB_NODES]; /* columns of (I - h A diag(F_theta))^-1 */
 } mhb_panel;
 
 typedef enum { MHB_SLIP_ON, MHB_SLIP_ENDS, MHB_SLIP_AT_LIMIT, MHB_SLIP_LOST } mhb_slip_outcome;
 
 /* Advance from (t, theta) by one panel, at most to limit. opening: n = 0 at limit. *suggested: panel length to try,
- * updated. ENDS: the slip rate is zero at the panel's end (panel->h may be 0: it ended at once). LOST: Newton failed
- * at the shortest panel. */
+ * updated. The panel that is overwritten serves as the prediction if it ends at t. ENDS: the slip rate is zero at the
+ * panel's end (panel->h may be 0: it ended at once). LOST: Newton failed at the shortest panel. */
 mhb_slip_outcome mhb_slip_panel(const mhb_slip *slip, double t, double theta, double limit,
                                 int opening, double *suggested, mhb_panel *panel);
-
-/* panel->matrix solved in place for one right-hand side. */
-void mhb_panel_solve(const mhb_panel *panel, double rhs[MHB_NODES]);
 
 /* Directional quantities at theta. */
 typedef struct {

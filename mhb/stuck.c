@@ -28,7 +28,8 @@ static disc disc_of(const discs *set, double t, const double v[3]) {
 static disc disc_at(const discs *set, int i) {
   int n = set->signals->n_grid;
   if (i >= n) return set->extra[i - n];
-  return disc_of(set, TWO_PI * i / n, set->signals->value + 3 * i);
+  double *const *value = set->signals->value;
+  return disc_of(set, TWO_PI * i / n, (double[3]){value[0][i], value[1][i], value[2][i]});
 }
 
 static double violation(const disc *d, const double c[2]) {
@@ -86,13 +87,34 @@ static int smallest_in(const disc d[3], int n, double slack, double c[2], int ba
   return best < INFINITY;
 }
 
-/* Index of the worst violated disc and its violation. */
+/* The largest violation on the grid, to a factor of sqrt 2: |c + f| - r = (|c + f|^2 - r^2)/(|c + f| + r), with the
+ * 1-norm in the denominator. */
+MHB_HOT static int worst_on_grid(const discs *set, const double c[2]) {
+  const mhb_signals *s = set->signals;
+  double a0 = c[0] - s->coefficient[1], b0 = c[1] - s->coefficient[2], mu2 = set->mu * set->mu;
+  double worst = -INFINITY;
+  int    at    = 0;
+  for (int i = 0; i < s->n_grid; i += MHB_LANES) {
+    mhb_lanes n = lanes_load(s->value[0] + i), a = lanes_load(s->value[1] + i) + a0,
+              b    = lanes_load(s->value[2] + i) + b0;
+    mhb_lanes size = lanes_abs(a) + lanes_abs(b) + lanes_abs(n) * set->mu + DBL_MIN;
+    mhb_lanes v    = (a * a + b * b - mu2 * n * n) / size;
+    double    top  = lanes_top(v);
+    if (!(top > worst)) continue;
+    worst = top;
+    for (int l = 0; l < MHB_LANES; l++)
+      if (v[l] == top) at = i + l;
+  }
+  return at;
+}
+
+/* Index of a disc that is violated, the worst one of the grid or of the refined times, and its violation. */
 static int worst_disc(const discs *set, const double c[2], double *worst) {
-  int total = set->signals->n_grid + set->n_extra, at = 0;
-  *worst = -INFINITY;
-  for (int i = 0; i < total; i++) {
-    disc   d = disc_at(set, i);
-    double v = violation(&d, c);
+  int  n = set->signals->n_grid, at = worst_on_grid(set, c);
+  disc d = disc_at(set, at);
+  *worst = violation(&d, c);
+  for (int i = n; i < n + set->n_extra; i++) {
+    double v = violation(&set->extra[i - n], c);
     if (v <= *worst) continue;
     *worst = v;
     at     = i;

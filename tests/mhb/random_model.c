@@ -102,7 +102,7 @@ mhb_settings random_settings(int harmonics) {
                     .harmonics    = harmonics,
                     .subharmonics = 1,
                     .scale        = 1,
-                    .tolerance    = 1e-8,
+                    .tolerance    = 1e-12, /* differences magnify what it leaves */
                     .max_points   = 2000};
   return s;
 }

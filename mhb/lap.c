@@ -1,0 +1,260 @@
+/* The slider through one period: stick, slip and what follows each; the periodic slider. */
+#include <math.h>
+#include <string.h>
+
+#include "mhb/workspace.h"
+
+static const double TWO_PI = 6.283185307179586476925;
+
+/* The slider at a time of the lap. */
+typedef struct {
+  mhb_state state;
+  double    t, z[2], theta;
+} slider;
+
+void mhb_note_transition(mhb_contact *c, double t, mhb_state state) {
+  mhb_contact_info *info = c->info;
+  if (!c->record || info->n_transitions == MHB_MAX_TRANSITIONS) return;
+  double phase = t / TWO_PI;
+  info->transition[info->n_transitions++] =
+      (mhb_transition){.phase = phase - floor(phase), .state = (int)state};
+}
+
+/* ---- pieces ---- */
+
+static void add_stick(mhb_contact *c, double t0, double t1, const double z[2]) {
+  if (!c->record || t1 <= t0) return;
+  mhb_pieces_stick(&c->pieces, t0, z);
+  int sums = mhb_real_size(c->H + c->m);
+  memset(c->piece, 0, sizeof(double) * (size_t)sums);
+  mhb_basis_integral(c->H + (c->columns == MHB_ALL_COLUMNS ? c->m : c->signals.used), t0, t1,
+                     c->piece);
+  for (int i = 0; i < sums; i++) c->stick[i] += c->piece[i];
+  for (int k = 0; k < 2; k++)
+    for (int i = 0; i < c->nf; i++) c->f[k * c->nf + i] -= z[k] * c->piece[i];
+  mhb_columns_stick(c);
+  c->info->share[MHB_STICK] += (t1 - t0) / TWO_PI;
+}
+
+static void add_slip(mhb_contact *c) {
+  const mhb_panel *p = &c->panel;
+  if (p->h <= 0) return;
+  mhb_columns_panel(c);
+  if (!c->record) return;
+  mhb_pieces_slip(&c->pieces, p);
+  /* the power of slip is lambda |f|^2 = gamma mu n/eKe */
+  mhb_lanes power = c->rule.weight * p->gamma * p->y[0] / p->eKe;
+  c->info->slip_work += p->h * c->slip.mu * lanes_sum(power);
+  c->info->share[MHB_SLIDE] += p->h / TWO_PI;
+  c->info->error += p->error;
+}
+
+enum { MAX_EVENTS = 400, MAX_PANELS = 5000 };
+
+/* Stick until the friction limit is reached or the interval ends. */
+static void run_stick(mhb_contact *c, slider *s, double end) {
+  double onset = mhb_slip_onset(&c->signals, c->slip.mu, s->z, s->t, end);
+  int    slips = onset <= end;
+  double until = slips ? onset : end;
+  add_stick(c, s->t, until, s->z);
+  s->t = until;
+  if (!slips) return;
+  double y[3], dy[3];
+  mhb_signals_at(&c->signals, until, y, dy, NULL);
+  s->theta = atan2(y[2] - s->z[1], y[1] - s->z[0]);
+  s->state = MHB_SLIDE;
+  mhb_note_transition(c, until, MHB_SLIDE);
+  mhb_columns_stick_to_slip(c, until, s->theta, y[0]);
+}
+
+/* Slip until its rate is zero or the interval ends. 0: a panel was lost. */
+static int run_slip(mhb_contact *c, slider *s, double end, int opening) {
+  double           suggested = c->slip.longest;
+  mhb_slip_outcome outcome   = MHB_SLIP_ON;
+  for (int panels = 0; outcome == MHB_SLIP_ON; panels++) {
+    if (panels == MAX_PANELS) return 0;
+    outcome = mhb_slip_panel(&c->slip, s->t, s->theta, end, opening, &suggested, &c->panel);
+    if (outcome == MHB_SLIP_LOST) return 0;
+    add_slip(c);
+    s->t     = c->panel.t0 + c->panel.h;
+    s->theta = c->panel.theta1;
+  }
+  if (outcome == MHB_SLIP_AT_LIMIT) {
+    s->t = end;
+    return 1;
+  }
+  double y[3], dy[3];
+  mhb_signals_at(&c->signals, s->t, y, dy, NULL);
+  double limit = c->slip.mu * y[0];
+  s->z[0]      = y[1] - limit * cos(s->theta);
+  s->z[1]      = y[2] - limit * sin(s->theta);
+  s->state     = MHB_STICK;
+  mhb_note_transition(c, s->t, MHB_STICK);
+  mhb_columns_slip_to_stick(c, s->t, s->theta, y[0]);
+  return 1;
+}
+
+static int run_closed(mhb_contact *c, slider *s, double end, int opening) {
+  c->panel.h = 0; /* nothing to predict from */
+  for (int events = 0; s->t < end; events++) {
+    if (events > MAX_EVENTS) return 0;
+    if (s->state == MHB_STICK) {
+      run_stick(c, s, end);
+    } else if (!run_slip(c, s, end, opening)) {
+      return 0;
+    }
+  }
+  return 1;
+}
+
+/* How long and how accurate panels are. A lap whose force is wanted must resolve the highest harmonic too: the
+ * quadrature of exp(j k t) over a panel errs by (8!)^4/(17 (16!)^3) (kh)^16 of its length. */
+static void set_panels(mhb_contact *c, double tolerance) {
+  double reach      = pow(.1 * tolerance / 1.7e-23, 1. / 16);
+  c->slip.longest   = fmin(1.2, reach / ((c->record ? c->H : 0) + 2 * c->content + 1));
+  c->slip.tolerance = .1 * tolerance;
+  c->slip.sliver    = fmax(1e-7, .1 * sqrt(tolerance));
+}
+
+/* ---- the contact opens: every closing is a fresh start (eqs. 13-15) ---- */
+
+int mhb_lap_openings(mhb_contact *c) {
+  int    ok   = 1;
+  double open = 1;
+  mhb_columns_clear(c);
+  c->record         = 1;
+  c->memory.slipped = 1; /* there is no slider at the start of the lap to remember */
+  set_panels(c, c->tolerance);
+  for (int i = 0; i < c->closed.n; i++) {
+    slider s = {.t = c->closed.closing[i]};
+    double y[3], dy[3], d[2];
+    mhb_signals_at(&c->signals, s.t, y, dy, NULL);
+    double pull = hypot(dy[1], dy[2]), limit = c->slip.mu * dy[0];
+    s.z[0]  = y[1];
+    s.z[1]  = y[2];
+    s.state = pull < limit ? MHB_STICK : MHB_SLIDE;
+    if (s.state == MHB_SLIDE) {
+      mhb_slip_return(c->K, limit, dy + 1, d);
+      s.theta = atan2(d[1], d[0]);
+    }
+    mhb_columns_closing(c, s.t, s.state, s.theta);
+    mhb_note_transition(c, s.t, s.state);
+    ok &= run_closed(c, &s, c->closed.opening[i], 1);
+    mhb_note_transition(c, c->closed.opening[i], MHB_SEPARATE);
+    mhb_pieces_open(&c->pieces, c->closed.opening[i]);
+    open -= (c->closed.opening[i] - c->closed.closing[i]) / TWO_PI;
+  }
+  c->info->share[MHB_SEPARATE] = fmax(0, open);
+  return ok;
+}
+
+/* ---- always closed and slipping: periodic slider ---- */
+
+enum { MAX_LAPS = 100, MAX_RECORDS = 5 };
+
+/* One lap from slider z0; P(z0) and, in the columns, its derivative. 0: a panel was lost. */
+static int run_lap(mhb_contact *c, const double z0[2], double P[2]) {
+  slider s = {.state = MHB_STICK, .t = 0, .z = {z0[0], z0[1]}};
+  double y[3], dy[3];
+  mhb_signals_at(&c->signals, 0, y, dy, NULL);
+  double f[2] = {y[1] - z0[0], y[2] - z0[1]}, limit = c->slip.mu * y[0], size = hypot(f[0], f[1]);
+  mhb_columns_clear(c);
+  if (size >= limit * (1 - 1e-12)) { /* begins on the circle: project, slip if it pulls outwards */
+    double d[2], over[2] = {f[0] / limit, f[1] / limit};
+    mhb_slip_return(c->K, 1, over, d);
+    s.theta            = atan2(d[1], d[0]);
+    mhb_direction at   = mhb_slip_direction(c->K, s.theta);
+    int           pull = mhb_slip_gamma(&c->slip, &at, dy) > 0;
+    if (pull || size > limit) mhb_columns_stick_to_slip(c, 0, s.theta, y[0]);
+    if (!pull && size > limit) mhb_columns_slip_to_stick(c, 0, s.theta, y[0]);
+    if (pull) s.state = MHB_SLIDE;
+    if (!pull && size > limit)
+      for (int k = 0; k < 2; k++) s.z[k] = y[1 + k] - limit * d[k];
+  }
+  mhb_state began = s.state;
+  int       ok    = run_closed(c, &s, TWO_PI, 0);
+  if (s.state != began) mhb_note_transition(c, 0, began);
+  if (s.state == MHB_SLIDE) {
+    P[0] = y[1] - limit * cos(s.theta);
+    P[1] = y[2] - limit * sin(s.theta);
+    mhb_columns_slip_to_stick(c, 0, s.theta, y[0]);
+  } else {
+    P[0] = s.z[0];
+    P[1] = s.z[1];
+  }
+  return ok;
+}
+
+/* Newton on P(z) = z; a plain lap, which never expands, where Newton does not gain. Each lap is as accurate as the step
+ * it is taken for deserves. Ends when what a step leaves is below enough: its square, times the gain of the lap, for a lap
+ * that forgets its start bends little too. 0: not reached. */
+static int close_slider(mhb_contact *c, double enough, double z[2]) {
+  double before = INFINITY, length = .2, P[2], step[2];
+  int    plain = 0, newton = 0;
+  c->record  = 0;
+  c->columns = MHB_SLIDER_COLUMN;
+  for (; c->info->laps < MAX_LAPS; c->info->laps++) {
+    set_panels(c, fmax(enough, fmin(1e-2, .3 * length * length)));
+    if (!run_lap(c, z, P)) return 0;
+    double r[2] = {P[0] - z[0], P[1] - z[1]}, size = hypot(r[0], r[1]);
+    if (newton && size > .9 * before) plain = 2;
+    before = size;
+    newton = !plain;
+    if (plain) {
+      plain--;
+      z[0] = P[0];
+      z[1] = P[1];
+      continue;
+    }
+    mhb_columns_close(c, r, step);
+    length     = hypot(step[0], step[1]);
+    double cut = length > 2 ? 2 / length : 1;
+    z[0] += cut * step[0];
+    z[1] += cut * step[1];
+    if (length * length * fmin(1, mhb_columns_gain(c)) < enough) {
+      c->info->laps++;
+      return 1;
+    }
+  }
+  return 0;
+}
+
+/* The lap whose force is wanted, from z. The last Newton step is taken on the force, not by another lap:
+ * f += (df/dz) dz, dz = (I - DP)^-1 (P(z) - z). Returns |dz|; negative: the lap was lost. */
+static double record_lap(mhb_contact *c, mhb_columns_mode columns, double z[2]) {
+  double P[2], dz[2];
+  size_t nf  = (size_t)c->nf;
+  c->record  = 1;
+  c->columns = columns;
+  mhb_sums_clear(c);
+  set_panels(c, c->tolerance);
+  int ok = run_lap(c, z, P);
+  mhb_columns_close(c, (double[2]){P[0] - z[0], P[1] - z[1]}, dz);
+  mhb_sums_collect(c);
+  double along = c->memory.v[0] * dz[0] + c->memory.v[1] * dz[1];
+  for (int k = 0; k < 2; k++) {
+    for (size_t i = 0; i < nf; i++)
+      c->f[(size_t)k * nf + i] += c->f_slider[(size_t)k * nf + i] * along - c->first[i] * dz[k];
+    z[k] += dz[k];
+    c->info->slip_work += c->memory.onset[k] * dz[k];
+  }
+  c->info->slip_work += c->memory.work * along;
+  return ok ? hypot(dz[0], dz[1]) : -1;
+}
+
+int mhb_lap_closed(mhb_contact *c, const double guess[2]) {
+  mhb_columns_mode wanted  = c->columns == MHB_ALL_COLUMNS ? MHB_ALL_COLUMNS : MHB_SLIDER_COLUMN;
+  double           z[2]    = {guess[0], guess[1]}, left;
+  double           enough  = wanted == MHB_ALL_COLUMNS ? c->tolerance : .1 * sqrt(c->tolerance);
+  int              reached = close_slider(c, enough, z);
+  for (int tries = 0;; tries++) {
+    left = record_lap(c, wanted, z);
+    if (left < 0 || tries == MAX_RECORDS) break;
+    /* a trace shows the lap itself: repeat it until it needs no correction */
+    if (left < (c->pieces.on ? 1e-12 : 10 * enough)) break;
+  }
+  int close = left >= 0 && left < 10 * enough;
+  if (wanted == MHB_ALL_COLUMNS) mhb_columns_eliminate_slider(c);
+  c->info->error += left < 0 ? 1 : reached ? left * left : left;
+  return close;
+}
