@@ -45,6 +45,11 @@ int command_parse(int argc, char **argv, const char *usage, command_options *out
       return SHB_OK;
     } else if (options && set_flag(word, out)) {
       continue;
+    } else if (options && strcmp(word, "--svg") == 0 && mentions(usage, word)) {
+      if (i + 1 == argc || argv[i + 1][0] == '-' || argv[i + 1][0] == '\0')
+        return refuse("--svg needs the name of a file to write", NULL);
+      if (out->svg) return refuse("one --svg is enough; unexpected", argv[i + 1]);
+      out->svg = argv[++i];
     } else if (options && strncmp(word, "--", 2) == 0 && mentions(usage, word)) {
       if (out->mode) return refuse("one mode at a time; unexpected", word);
       out->mode = word + 2;

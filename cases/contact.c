@@ -1,10 +1,14 @@
 #include "cases/contact.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
+#include "cases/loops.h"
 #include "cases/motion.h"
+#include "cases/period.h"
 #include "mhb/contact.h"
 #include "mhb/fourier.h"
 
@@ -43,44 +47,88 @@ static int by_phase(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-static shb_status evaluate(const case_motion *given, FILE *out) {
-  int    m = given->n_harmonics > 0 ? given->n_harmonics : 1, H = m > HARMONICS ? m : HARMONICS;
-  size_t nb = (size_t)mhb_real_size(m), nf = (size_t)mhb_real_size(H);
-  mhb_contact *contact = NULL;
-  SHB_TRY(mhb_contact_create(m, H, given->contact.tolerance, &contact));
-  double *motion = calloc(3 * nb, sizeof(double)), *force = calloc(3 * nf, sizeof(double));
-  mhb_contact_info *info   = calloc(1, sizeof *info);
-  shb_status        status = SHB_OK;
-  if (motion && force && info) {
-    const mhb_settings *s   = &given->contact;
-    mhb_law             law = {.mu = s->mu, .kv = s->kv, .n0 = s->n0[0]};
-    memcpy(law.ku, s->ku, sizeof law.ku);
-    for (size_t i = 0; i < 3; i++)
-      mhb_to_real(given->n_harmonics, given->motion + i * (size_t)(given->n_harmonics + 1),
-                  motion + i * nb);
-    mhb_contact_force(contact, &law, motion, force, NULL, info);
-    qsort(info->transition, (size_t)info->n_transitions, sizeof info->transition[0], by_phase);
-    print(out, H, force, info);
-    if (info->lost)
-      status =
-          shb_fail(SHB_NOT_CONVERGED, __FILE__, __LINE__,
-                   "the periodic slider was not reached to tolerance (error %.1e)", info->error);
-  } else {
-    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  }
-  free(motion);
-  free(force);
-  free(info);
-  mhb_contact_destroy(contact);
+/* One motion and the contact's answer. */
+typedef struct {
+  int               m, H;
+  mhb_law           law;
+  mhb_contact      *contact;
+  double           *motion, *force; /* [3][2m+1], [3][2H+1] */
+  mhb_contact_info *info;
+} evaluation;
+
+static void evaluation_free(evaluation *e) {
+  free(e->motion);
+  free(e->force);
+  free(e->info);
+  mhb_contact_destroy(e->contact);
+}
+
+static shb_status evaluate(const case_motion *given, evaluation *e) {
+  const mhb_settings *s = &given->contact;
+  *e                    = (evaluation){.m   = given->n_harmonics > 0 ? given->n_harmonics : 1,
+                                       .law = {.mu = s->mu, .kv = s->kv, .n0 = s->n0[0]}};
+  e->H                  = e->m > HARMONICS ? e->m : HARMONICS;
+  size_t nb = (size_t)mhb_real_size(e->m), nf = (size_t)mhb_real_size(e->H);
+  SHB_TRY(mhb_contact_create(e->m, e->H, s->tolerance, &e->contact));
+  e->motion = calloc(3 * nb, sizeof(double));
+  e->force  = calloc(3 * nf, sizeof(double));
+  e->info   = calloc(1, sizeof *e->info);
+  SHB_CHECK(e->motion && e->force && e->info, SHB_ERR_IO, "out of memory");
+  memcpy(e->law.ku, s->ku, sizeof e->law.ku);
+  for (size_t i = 0; i < 3; i++)
+    mhb_to_real(given->n_harmonics, given->motion + i * (size_t)(given->n_harmonics + 1),
+                e->motion + i * nb);
+  mhb_contact_force(e->contact, &e->law, e->motion, e->force, NULL, e->info);
+  qsort(e->info->transition, (size_t)e->info->n_transitions, sizeof e->info->transition[0],
+        by_phase);
+  return SHB_OK;
+}
+
+/* The file's name without folder and .yaml: malloc'ed, NULL when out of memory. */
+static char *title(const char *path) {
+  const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path,
+             *dot = strrchr(name, '.');
+  return dot && dot > name ? strndup(name, (size_t)(dot - name)) : strdup(name);
+}
+
+static shb_status draw(const char *path, const char *svg, const evaluation *e) {
+  contact_period period;
+  SHB_TRY(period_create(e->contact, &e->law, e->m, e->motion, e->info, &period));
+  char       *name = title(path);
+  post_buffer out  = {0};
+  loops_draw(
+      &(loops_view){.name = name ? name : "", .law = &e->law, .info = e->info, .period = &period},
+      &out);
+  shb_status status = post_buffer_publish(&out, svg);
+  post_buffer_free(&out);
+  free(name);
+  period_free(&period);
   return status;
 }
 
-shb_status contact_command(const char *path, FILE *out) {
+static shb_status answer(const char *path, const char *svg, const evaluation *e, FILE *out) {
+  print(out, e->H, e->force, e->info);
+  SHB_CHECK(fflush(out) == 0 && !ferror(out), SHB_ERR_IO, "the result cannot be written");
+  if (svg) SHB_TRY(draw(path, svg, e));
+  SHB_CHECK(!e->info->lost, SHB_NOT_CONVERGED,
+            "the periodic slider was not reached to tolerance (error %.1e)", e->info->error);
+  return SHB_OK;
+}
+
+static bool same_file(const char *a, const char *b) {
+  struct stat x, y;
+  return stat(a, &x) == 0 && stat(b, &y) == 0 && x.st_dev == y.st_dev && x.st_ino == y.st_ino;
+}
+
+shb_status contact_command(const char *path, const char *svg, FILE *out) {
+  SHB_CHECK(!svg || !same_file(path, svg), SHB_ERR_INPUT,
+            "--svg %s would overwrite the motion file; name another file", svg);
   case_motion given;
   SHB_TRY(case_motion_read(path, stderr, &given));
-  shb_status status = evaluate(&given, out);
+  evaluation e;
+  shb_status status = evaluate(&given, &e);
+  if (status == SHB_OK) status = answer(path, svg, &e, out);
+  evaluation_free(&e);
   case_motion_free(&given);
-  if (status == SHB_OK && (fflush(out) != 0 || ferror(out)))
-    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "the result cannot be written");
   return status;
 }

@@ -1,4 +1,4 @@
-/* `shroudhb contact`: the contact law for a prescribed periodic motion, as YAML. */
+/* `shroudhb contact`: the contact law for a prescribed periodic motion, as YAML and as a picture. */
 #ifndef CASES_CONTACT_H
 #define CASES_CONTACT_H
 
@@ -11,7 +11,9 @@
  *   transitions: [[phase in 0..1, stick | slip | open], ...]
  *   dissipation: J a cycle
  *   mean_friction: determined | undetermined
- * n is the normal load itself, preload included. Errors are printed by the reader. */
-shb_status contact_command(const char *path, FILE *out);
+ * n is the normal load itself, preload included. svg: draw it there too (loops.h), whole or not at all; NULL: no picture.
+ * Errors are printed by the reader. SHB_ERR_INPUT also where svg is the file that is read; SHB_NOT_CONVERGED where the
+ * periodic slider was not reached (all is printed and drawn). */
+shb_status contact_command(const char *path, const char *svg, FILE *out);
 
 #endif

@@ -25,7 +25,7 @@ static const char usage[] =
     "  check CASE.yaml    check a case file, run nothing\n"
     "  keys               every key of a case file: unit, range, default, meaning\n"
     "  inspect FILE.h5    what a modal or response file holds\n"
-    "  contact FILE.yaml  contact forces for a prescribed motion\n"
+    "  contact FILE.yaml  contact forces for a prescribed motion; --svg OUT.svg draws the loops\n"
     "\n"
     "  --quiet    no progress, no summary       --verbose  time and memory of every stage\n"
     "  --force    run though up to date         --help, --version\n"
@@ -103,10 +103,18 @@ static int keys_main(const char *name, int argc, char **argv) {
   return fflush(stdout) == 0 ? SHB_OK : SHB_ERR_IO;
 }
 
+/* The options of commands that draw nothing. */
+static int parse(int argc, char **argv, command_options *options) {
+  int code = command_parse(argc, argv, usage, options);
+  if (code >= 0 || !options->svg) return code;
+  fprintf(stderr, "shroudhb: error: --svg goes with contact, not with %s; see --help\n", argv[0]);
+  return SHB_ERR_INPUT;
+}
+
 static int check_main(const char *name, int argc, char **argv) {
   (void)name;
   command_options options;
-  int             code = command_parse(argc, argv, usage, &options);
+  int             code = parse(argc, argv, &options);
   if (code >= 0) return code;
   case_file  file;
   shb_status status = case_read(options.path, RUN_ALL, stderr, &file);
@@ -118,7 +126,7 @@ static int check_main(const char *name, int argc, char **argv) {
 static int run_main(const char *name, int argc, char **argv) {
   (void)name;
   command_options options;
-  int             code = command_parse(argc, argv, usage, &options);
+  int             code = parse(argc, argv, &options);
   if (code >= 0) return code;
   return command_finish(run_case(&options));
 }

@@ -14,12 +14,14 @@
 
 static const char usage[] =
     "usage: shroudhb-mhb [--quiet] [--verbose] [--force] CASE.yaml\n"
-    "       shroudhb-mhb --contact MOTION.yaml\n"
+    "       shroudhb-mhb --contact MOTION.yaml [--svg OUT.svg]\n"
     "\n"
     "Solves the multi-harmonic balance of CASE.yaml on its modal file and writes "
     "NAME.response.h5;\n"
     "does nothing if that file is up to date (unless --force). With --contact: prints the force\n"
-    "harmonics, transitions and energy for a prescribed relative motion.\n";
+    "harmonics, transitions and energy for a prescribed relative motion; with --svg also draws "
+    "its\n"
+    "hysteresis loops, friction path and states.\n";
 
 /* Whether path holds the finished answer to these settings. */
 static bool up_to_date(const char *path, const char *settings) {
@@ -89,7 +91,11 @@ int main(int argc, char **argv) {
   int             code = command_parse(argc, argv, usage, &options);
   if (code >= 0) return code;
   if (options.mode && strcmp(options.mode, "contact") == 0)
-    return command_finish(contact_command(options.path, stdout));
+    return command_finish(contact_command(options.path, options.svg, stdout));
+  if (options.svg) {
+    fputs("shroudhb: error: --svg goes with --contact; see --help\n", stderr);
+    return SHB_ERR_INPUT;
+  }
   case_file  file;
   shb_status status = case_read(options.path, CASE_MHB, stderr, &file);
   if (status != SHB_OK) return command_finish(status);

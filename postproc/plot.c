@@ -11,11 +11,18 @@ static double round_step(double extent, int wanted) {
   return power * (mantissa <= 1.0001 ? 1 : mantissa <= 2.0001 ? 2 : mantissa <= 5.0001 ? 5 : 10);
 }
 
-static int linear_ticks(double lo, double hi, int wanted, double ticks[PLOT_MAX_TICKS]) {
-  double step = round_step(hi - lo, wanted);
-  int    n    = 0;
+static int even_ticks(double lo, double hi, double step, double ticks[PLOT_MAX_TICKS]) {
+  int n = 0;
   for (double k = ceil(lo / step - 1e-9); k * step <= hi + 1e-9 * step && n < PLOT_MAX_TICKS; k++)
     ticks[n++] = k * step;
+  return n;
+}
+
+/* A step may be rounded up past the range, leaving a lone tick that tells no scale: then the next finer ones. */
+static int linear_ticks(double lo, double hi, int wanted, double ticks[PLOT_MAX_TICKS]) {
+  int n = 0, least = wanted < 3 ? wanted : 3;
+  for (int w = wanted; n < least && w <= 3 * wanted; w++)
+    n = even_ticks(lo, hi, round_step(hi - lo, w), ticks);
   return n;
 }
 

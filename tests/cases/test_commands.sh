@@ -132,6 +132,10 @@ called ''
 run 0 modal --verbose good.yaml; called 'modal --verbose good.yaml;'
 run 0 inspect x.h5; called 'post --inspect x.h5;'
 run 0 contact x.yaml; called 'mhb --contact x.yaml;'
+run 0 contact x.yaml --svg x.svg; called 'mhb --contact x.yaml --svg x.svg;'
+run 2 check good.yaml --svg x.svg; says err '--svg goes with contact, not with check'
+run 2 run --svg x.svg good.yaml; says err '--svg goes with contact, not with run'
+called ''
 
 # codes
 stage modal 'exit 2'

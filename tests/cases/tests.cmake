@@ -9,6 +9,12 @@ add_test(NAME cases.commands
   COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/cases/test_commands.sh $<TARGET_FILE:shroudhb>)
 set_tests_properties(cases.commands PROPERTIES LABELS fast TIMEOUT 120)
 
+shb_test(cases loops fast shb_loops)
+add_test(NAME cases.contact
+  COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/cases/test_contact.sh $<TARGET_FILE:shroudhb-mhb>
+          ${PROJECT_SOURCE_DIR}/cases/prescribed_motion "${SHROUDHB_PYTHON}")
+set_tests_properties(cases.contact PROPERTIES LABELS fast TIMEOUT 120)
+
 if(TARGET shroudhb-post)
   shb_test(cases z_notch slow shb_response)
   target_sources(test_cases_z_notch PRIVATE cases/scratch.c)

@@ -9,6 +9,10 @@ static void ticks(void **state) {
   assert_int_equal(n, 4); /* 90 100 110 120: the next finer step, 5, would give 7 */
   assert_near(t[0], 90, 1e-12);
   assert_near(t[3], 120, 1e-12);
+  plot_axis unlucky = {-43.2, 43.2, false, 0, 1, "f"}; /* the step for 4, 50, would leave 0 alone */
+  n                 = plot_ticks(&unlucky, 4, t);
+  assert_int_equal(n, 5); /* -40 -20 ... 40 */
+  assert_near(t[0], -40, 1e-12);
   plot_axis micro = {0, 2.385e-4, false, 0, 1e-6, "a"};
   n               = plot_ticks(&micro, 5, t);
   assert_int_equal(n, 5); /* 0 50 ... 200 */
