@@ -76,8 +76,7 @@ void mhb_columns_slip_to_stick(mhb_contact *c, double t, double theta, double n)
 }
 
 /* Stick: z = x(t), dz = dx + x' dt with dt = -dn/n'. Slip: the regular solution
- *   dtheta = [(q - beta e).dx' + mu beta dn' - mu theta' dn]/D,   D = e.x' + beta q.x' + gamma beta',
- *   theta' = [q.x'' - beta (e.x'' - mu n'')]/(mu n' + D). */
+ *   dtheta = [(q - beta e).dx' + mu beta dn' - mu theta' dn]/D with theta', D of slip.h. */
 void mhb_columns_closing(mhb_contact *c, double t, mhb_state state, double theta) {
   if (c->columns == MHB_NO_COLUMNS) return;
   double y[3], dy[3], ddy[3], mu = c->slip.mu;
@@ -90,12 +89,10 @@ void mhb_columns_closing(mhb_contact *c, double t, mhb_state state, double theta
     }
     return;
   }
-  mhb_direction d      = mhb_slip_direction(c->K, theta);
-  double        gamma  = mhb_slip_gamma(&c->slip, &d, dy);
-  double        across = d.q[0] * dy[1] + d.q[1] * dy[2], along = d.e[0] * dy[1] + d.e[1] * dy[2];
-  double        D    = along + d.beta * across + gamma * d.beta_theta;
-  double        g[2] = {d.q[0] - d.beta * d.e[0], d.q[1] - d.beta * d.e[1]};
-  double        rate = (g[0] * ddy[1] + g[1] * ddy[2] + d.beta * mu * ddy[0]) / (mu * dy[0] + D);
+  double        D;
+  mhb_direction d        = mhb_slip_direction(c->K, theta);
+  double        rate     = mhb_slip_closing_rate(&c->slip, &d, dy, ddy, &D);
+  double        g[2]     = {d.q[0] - d.beta * d.e[0], d.q[1] - d.beta * d.e[1]};
   double        value[3] = {-mu * rate * c->kv / D, 0, 0};
   double        slope[3] = {mu * d.beta * c->kv / D, (g[0] * c->K[0][0] + g[1] * c->K[1][0]) / D,
                             (g[0] * c->K[0][1] + g[1] * c->K[1][1]) / D};
@@ -196,40 +193,45 @@ MHB_INLINE void columns_through(const mhb_contact *c) {
     hA[q] *= p->h;
   }
   for (int j = 0; j < c->stride; j += MHB_LANES) {
-    mhb_lanes r[MHB_NODES], T = lanes_load(c->T + j), sum = T;
-    for (int q = 0; q < MHB_NODES; q++) r[q] = lanes_load(c->drive + q * c->stride + j);
+    mhb_lanes T = lanes_load(c->T + j), sum = T, value[MHB_NODES];
+#pragma GCC unroll 8
+    for (int l = 0; l < MHB_NODES; l++) value[l] = ones[l] * T;
+#pragma GCC unroll 8
+    for (int q = 0; q < MHB_NODES; q++) {
+      mhb_lanes r = lanes_load(c->drive + q * c->stride + j);
+      sum += end[q] * r;
+#pragma GCC unroll 8
+      for (int l = 0; l < MHB_NODES; l++) value[l] += hA[q][l] * r;
+    }
+#pragma GCC unroll 8
     for (int l = 0; l < MHB_NODES; l++) {
-      mhb_lanes value = ones[l] * T, more = hA[0][l] * r[0];
-      for (int q = 1; q < MHB_NODES; q++) more += hA[q][l] * r[q];
-      value += more;
-      lanes_store(c->node_T + l * c->stride + j, value);
-      sum += end[l] * (p->F_theta[l] * value + r[l]);
+      lanes_store(c->node_T + l * c->stride + j, value[l]);
+      sum += end[l] * p->F_theta[l] * value[l];
     }
     lanes_store(c->T + j, sum);
   }
 }
 
-/* J[row][j] += sum_l b[row][l] y[l][j]: the hot loop of the derivative, four rows together. */
+/* J[row][j] += sum_l b[row][l] y[l][j], some rows together. */
+MHB_INLINE void add_rows(int rows, int stride, const mhb_lanes *b, const double *y, double *J) {
+  for (int j = 0; j < stride; j += MHB_LANES) {
+    mhb_lanes sum[6];
+    for (int r = 0; r < rows; r++) sum[r] = lanes_load(J + r * stride + j);
+#pragma GCC unroll 8
+    for (int l = 0; l < MHB_NODES; l++) {
+      mhb_lanes column = lanes_load(y + l * stride + j);
+      for (int r = 0; r < rows; r++) sum[r] += b[r][l] * column;
+    }
+    for (int r = 0; r < rows; r++) lanes_store(J + r * stride + j, sum[r]);
+  }
+}
+
+/* The hot loop of the derivative. Six rows hide the latency of a multiplication, two and one make up the rest. */
 MHB_INLINE void add_outer(int rows, int stride, const mhb_lanes *b, const double *y, double *J) {
   int row = 0;
-  for (; row + 4 <= rows; row += 4) {
-    for (int j = 0; j < stride; j += MHB_LANES) {
-      mhb_lanes sum[4];
-      for (int r = 0; r < 4; r++) sum[r] = lanes_load(J + (row + r) * stride + j);
-      for (int l = 0; l < MHB_NODES; l++) {
-        mhb_lanes column = lanes_load(y + l * stride + j);
-        for (int r = 0; r < 4; r++) sum[r] += b[row + r][l] * column;
-      }
-      for (int r = 0; r < 4; r++) lanes_store(J + (row + r) * stride + j, sum[r]);
-    }
-  }
-  for (; row < rows; row++) {
-    for (int j = 0; j < stride; j += MHB_LANES) {
-      mhb_lanes sum = lanes_load(J + row * stride + j);
-      for (int l = 0; l < MHB_NODES; l++) sum += b[row][l] * lanes_load(y + l * stride + j);
-      lanes_store(J + row * stride + j, sum);
-    }
-  }
+  for (; row + 6 <= rows; row += 6) add_rows(6, stride, b + row, y, J + row * stride);
+  for (; row + 2 <= rows; row += 2) add_rows(2, stride, b + row, y, J + row * stride);
+  for (; row < rows; row++) add_rows(1, stride, b + row, y, J + row * stride);
 }
 
 MHB_HOT static void add_derivative(const mhb_contact *c) {
@@ -294,7 +296,7 @@ void mhb_columns_close(const mhb_contact *c, const double r[2], double dz[2]) {
   for (int k = 0; k < 2; k++) dz[k] = r[k] + c->Z[k][c->slider] * part;
 }
 
-void mhb_columns_eliminate_slider(mhb_contact *c) {
+MHB_HOT static void eliminate(mhb_contact *c) {
   const double *v = c->memory.v, det = closure(c);
   for (int j = 0; j < c->slider; j++) {
     double G[2] = {c->Z[0][j], c->Z[1][j]}, part = (v[0] * G[0] + v[1] * G[1]) / det;
@@ -308,4 +310,8 @@ void mhb_columns_eliminate_slider(mhb_contact *c) {
       for (int j = 0; j < c->slider; j++) row[j] += a * c->Z[k][j] + b * c->T[j];
     }
   }
+}
+
+void mhb_columns_eliminate_slider(mhb_contact *c) {
+  eliminate(c);
 }

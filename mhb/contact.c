@@ -85,7 +85,7 @@ static int set_signals(mhb_contact *c, const mhb_law *law, const double *motion)
   for (int i = 0; i < c->nb; i++) {
     load += law->kv * fabs(v[i]);
     double x1 = law->ku[0] * u[i] + law->ku[1] * w[i], x2 = law->ku[1] * u[i] + law->ku[2] * w[i];
-    friction += hypot(x1, x2);
+    friction += sqrt(x1 * x1 + x2 * x2);
   }
   c->scale = load + friction < INFINITY ? fmax(load, friction) : NAN;
   if (!(c->scale > 1e-290)) return 0; /* its inverse would overflow */
@@ -161,7 +161,7 @@ void mhb_sums_collect(mhb_contact *c) {
 /* ---- assembly ---- */
 
 /* What the load does to slip at a fixed direction: J += integrals of mu kv e b_i b_j. */
-static void finish_load(mhb_contact *c) {
+MHB_HOT static void finish_load(mhb_contact *c) {
   int nb = c->nb, nf = c->nf, sums = mhb_real_size(c->H + c->m);
   for (int k = 0; k < 2; k++) {
     for (int i = 0; i < sums; i++) c->piece[i] = lanes_sum(c->load[2 * i + k]);
@@ -174,7 +174,7 @@ static void finish_load(mhb_contact *c) {
 }
 
 /* f += Ku s over the stick pieces; scale to Fourier coefficients. */
-static void finish_friction(mhb_contact *c) {
+MHB_HOT static void finish_friction(mhb_contact *c) {
   int nb = c->nb, nf = c->nf, all = c->columns == MHB_ALL_COLUMNS;
   int used = all ? nb : mhb_real_size(c->signals.used);
   if (all) finish_load(c);

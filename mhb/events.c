@@ -58,10 +58,21 @@ static double max4(double a, double b, double c, double d) {
   return fmax(fmax(a, b), fmax(c, d));
 }
 
+/* Root of the cubic Hermite interpolant in a bracket with one sign change. */
+static double cubic_root(const sample *lo, const sample *hi) {
+  double h = hi->t - lo->t, a = h * lo->dy, b = h * hi->dy, rise = hi->y - lo->y;
+  double c2 = 3 * rise - 2 * a - b, c3 = a + b - 2 * rise, s = -lo->y / rise;
+  for (int i = 0; i < 4; i++) {
+    double slope = a + s * (2 * c2 + 3 * c3 * s);
+    s -= (lo->y + s * (a + s * (c2 + s * c3))) / slope;
+  }
+  return s > 0 && s < 1 ? lo->t + h * s : lo->t - h * lo->y / rise;
+}
+
 /* Safeguarded Newton in a bracket with one sign change. */
 static double polish(const event_function *f, sample lo, sample hi) {
   int    rising = hi.y > lo.y;
-  double t      = lo.t - lo.y * (hi.t - lo.t) / (hi.y - lo.y);
+  double t      = cubic_root(&lo, &hi);
   for (int i = 0; i < 60; i++) {
     sample s = sample_at(f, t);
     if ((s.y > 0) == rising) {
@@ -69,9 +80,11 @@ static double polish(const event_function *f, sample lo, sample hi) {
     } else {
       lo = s;
     }
-    double next = s.t - s.y / s.dy;
-    if (fabs(next - t) < 4 * DBL_EPSILON * (1 + fabs(t)) || hi.t - lo.t < 1e-15) break;
-    t = next >= lo.t && next <= hi.t ? next : .5 * (lo.t + hi.t);
+    double next   = s.t - s.y / s.dy;
+    int    inside = next >= lo.t && next <= hi.t, close = fabs(next - t) < 1e-8;
+    if (hi.t - lo.t < 1e-15) break;
+    t = inside ? next : .5 * (lo.t + hi.t);
+    if (inside && close) break; /* what is left is of the square */
   }
   return t;
 }

@@ -64,6 +64,7 @@ static void run_stick(mhb_contact *c, slider *s, double end) {
   s->theta = atan2(y[2] - s->z[1], y[1] - s->z[0]);
   s->state = MHB_SLIDE;
   mhb_note_transition(c, until, MHB_SLIDE);
+  c->slip.begins = mhb_slip_rate(&c->slip, s->theta, y, dy);
   mhb_columns_stick_to_slip(c, until, s->theta, y[0]);
 }
 
@@ -110,8 +111,8 @@ static int run_closed(mhb_contact *c, slider *s, double end, int opening) {
 /* How long and how accurate panels are. A lap whose force is wanted must resolve the highest harmonic too: the
  * quadrature of exp(j k t) over a panel errs by (8!)^4/(17 (16!)^3) (kh)^16 of its length. */
 static void set_panels(mhb_contact *c, double tolerance) {
-  double reach      = pow(.1 * tolerance / 1.7e-23, 1. / 16);
-  c->slip.longest   = fmin(1.2, reach / ((c->record ? c->H : 0) + 2 * c->content + 1));
+  double reach      = sqrt(sqrt(sqrt(sqrt(.1 * tolerance / 1.7e-23))));
+  c->slip.longest   = fmin(1.5, reach / ((c->record ? c->H : 0) + 2 * c->content + 1));
   c->slip.tolerance = .1 * tolerance;
   c->slip.sliver    = fmax(1e-7, .1 * sqrt(tolerance));
 }
@@ -127,15 +128,17 @@ int mhb_lap_openings(mhb_contact *c) {
   set_panels(c, c->tolerance);
   for (int i = 0; i < c->closed.n; i++) {
     slider s = {.t = c->closed.closing[i]};
-    double y[3], dy[3], d[2];
-    mhb_signals_at(&c->signals, s.t, y, dy, NULL);
+    double y[3], dy[3], ddy[3], d[2], D;
+    mhb_signals_at(&c->signals, s.t, y, dy, ddy);
     double pull = hypot(dy[1], dy[2]), limit = c->slip.mu * dy[0];
     s.z[0]  = y[1];
     s.z[1]  = y[2];
     s.state = pull < limit ? MHB_STICK : MHB_SLIDE;
     if (s.state == MHB_SLIDE) {
       mhb_slip_return(c->K, limit, dy + 1, d);
-      s.theta = atan2(d[1], d[0]);
+      s.theta          = atan2(d[1], d[0]);
+      mhb_direction at = mhb_slip_direction(c->K, s.theta);
+      c->slip.begins   = mhb_slip_closing_rate(&c->slip, &at, dy, ddy, &D);
     }
     mhb_columns_closing(c, s.t, s.state, s.theta);
     mhb_note_transition(c, s.t, s.state);
@@ -168,6 +171,7 @@ static int run_lap(mhb_contact *c, const double z0[2], double P[2]) {
     if (pull || size > limit) mhb_columns_stick_to_slip(c, 0, s.theta, y[0]);
     if (!pull && size > limit) mhb_columns_slip_to_stick(c, 0, s.theta, y[0]);
     if (pull) s.state = MHB_SLIDE;
+    if (pull) c->slip.begins = mhb_slip_rate(&c->slip, s.theta, y, dy);
     if (!pull && size > limit)
       for (int k = 0; k < 2; k++) s.z[k] = y[1 + k] - limit * d[k];
   }

@@ -162,20 +162,10 @@ MHB_INLINE int invert(const mhb_collocation *rule, mhb_panel *p) {
 }
 
 MHB_INLINE void place_nodes(const mhb_slip *slip, double t, double h, mhb_panel *p) {
-  double middle = t + .5 * h, c0 = cos(middle), s0 = sin(middle);
-  /* cos and sin of the offset from the middle, |x| <= .6 */
-  mhb_lanes x = h * (slip->rule->node - .5), z = x * x;
-  mhb_lanes s =
-      x * (1 - z / 6 * (1 - z / 20 * (1 - z / 42 * (1 - z / 72 * (1 - z / 110 * (1 - z / 156))))));
-  mhb_lanes c =
-      1 -
-      z / 2 *
-          (1 - z / 12 * (1 - z / 30 * (1 - z / 56 * (1 - z / 90 * (1 - z / 132 * (1 - z / 182))))));
   p->t0     = t;
   p->h      = h;
   p->frozen = 0;
-  p->cosine = c0 * c - s0 * s;
-  p->sine   = s0 * c + c0 * s;
+  lanes_cos_sin(t + h * slip->rule->node, &p->cosine, &p->sine);
   mhb_signals_at_lanes(slip->signals, p->cosine, p->sine, p->y, p->dy);
 }
 
@@ -190,18 +180,29 @@ MHB_INLINE double panel_error(const mhb_slip *slip, const mhb_panel *p) {
   return high * ratio * sqrt(ratio) * p->h * slip->mu * lanes_top(p->y[0]);
 }
 
+/* e and gamma after the last small step of theta, to its third power, K = k I. */
+MHB_INLINE void turn(mhb_panel *p, mhb_lanes step) {
+  mhb_lanes along  = p->e[0] * p->dy[1] + p->e[1] * p->dy[2],
+            across = p->e[0] * p->dy[2] - p->e[1] * p->dy[1];
+  mhb_lanes c = 1 - .5 * step * step, e0 = p->e[0];
+  p->gamma += step * across + (c - 1) * along;
+  p->e[0] = c * e0 - step * p->e[1];
+  p->e[1] = c * p->e[1] + step * e0;
+}
+
 /* Newton on the collocation equations from theta, the matrix kept while it converges well; 1 if converged. */
 MHB_INLINE int collocate(const mhb_slip *slip, mhb_panel *p) {
   const mhb_collocation *rule   = slip->rule;
   mhb_lanes              over   = 1 / (slip->mu * p->y[0]);
   double                 before = INFINITY, left = INFINITY, enough = .03 * slip->tolerance;
   int                    fresh = 0;
+  mhb_lanes              step  = lanes_all(0);
   for (int i = 0; left > enough; i++) {
     rate(slip, over, p);
     if (i == 16) return 0;
     if (!fresh && !invert(rule, p)) return 0;
-    mhb_lanes step = apply(p->inverse, p->theta0 + p->h * apply(rule->A, p->F) - p->theta);
-    double    size = lanes_top(lanes_abs(step));
+    step        = apply(p->inverse, p->theta0 + p->h * apply(rule->A, p->F) - p->theta);
+    double size = lanes_top(lanes_abs(step));
     if (!(size < 4) || (i > 5 && size > .5 * before && size > 1e-7)) return 0;
     p->theta += step;
     p->F +=
@@ -213,8 +214,13 @@ MHB_INLINE int collocate(const mhb_slip *slip, mhb_panel *p) {
     before = size;
     if (size < 1e-14) break;
   }
-  rate(slip, over, p);
-  if (slip->linearized && !invert(rule, p)) return 0;
+  if (slip->linearized || before * before * before > slip->tolerance || slip->half != 0 ||
+      slip->skew != 0) {
+    rate(slip, over, p);
+    if (slip->linearized && !invert(rule, p)) return 0;
+  } else {
+    turn(p, step);
+  }
   p->theta1 = p->theta0 + p->h * lanes_sum(rule->weight * p->F);
   p->error  = panel_error(slip, p);
   return isfinite(p->theta1);
@@ -230,7 +236,10 @@ typedef struct {
 MHB_HOT static void forecast_from(const mhb_slip *slip, const mhb_panel *p, double t,
                                   forecast *ahead) {
   memset(ahead, 0, sizeof *ahead);
-  if (!(p->h > 0) || p->t0 + p->h != t) return;
+  if (!(p->h > 0) || p->t0 + p->h != t) {
+    ahead->power[0] = slip->begins;
+    return;
+  }
   mhb_lanes c     = apply(slip->rule->ahead, p->F);
   double    scale = 1;
   for (int k = 0; k < 6; k++, scale /= p->h) ahead->power[k] = c[k] * scale;
@@ -289,9 +298,9 @@ static double polynomial(const double *c, double x, double *slope) {
   return y;
 }
 
-/* Root in [lo, hi] of the polynomial c that falls from positive to negative there: safeguarded Newton. */
-static double falling_root(const double *c, double lo, double hi) {
-  double x = .5 * (lo + hi), slope;
+/* Root in [lo, hi] of the polynomial c that falls from positive to negative there: safeguarded Newton from x. */
+static double falling_root(const double *c, double lo, double hi, double x) {
+  double slope;
   for (int i = 0; i < 60; i++) {
     double y = polynomial(c, x, &slope);
     if (y > 0) {
@@ -312,15 +321,17 @@ static double falling_root(const double *c, double lo, double hi) {
  * hull of its coefficients, and has no more roots than they change sign. */
 static double first_fall(const double *c, const double *b, double lo, double hi, double slack,
                          int depth) {
-  int changes = 0, sign = 1, low = 0;
+  int    changes = 0, sign = 1, low = 0;
+  double cross = .5; /* of the control polygon */
   for (int i = 0; i < MHB_NODES; i++) {
     int now = b[i] < -slack ? -1 : b[i] > slack ? 1 : sign;
+    if (now < 0 && !low && i > 0) cross = (i - b[i] / (b[i] - b[i - 1])) / (MHB_NODES - 1);
     low |= now < 0;
     changes += now != sign;
     sign = now;
   }
   if (!low) return 2;
-  if (changes == 1) return falling_root(c, lo, hi);
+  if (changes == 1) return falling_root(c, lo, hi, lo + cross * (hi - lo));
   if (depth == 30) return b[MHB_NODES - 1] < 0 ? hi : 2;
   double left[MHB_NODES], right[MHB_NODES]; /* de Casteljau */
   memcpy(right, b, sizeof right);
@@ -407,8 +418,23 @@ mhb_slip_outcome mhb_slip_panel(const mhb_slip *slip, double t, double theta, do
   return at_limit ? MHB_SLIP_AT_LIMIT : MHB_SLIP_ON;
 }
 
+double mhb_slip_closing_rate(const mhb_slip *slip, const mhb_direction *d, const double dy[3],
+                             const double ddy[3], double *D) {
+  double g[2]   = {d->q[0] - d->beta * d->e[0], d->q[1] - d->beta * d->e[1]};
+  double across = d->q[0] * dy[1] + d->q[1] * dy[2], along = d->e[0] * dy[1] + d->e[1] * dy[2];
+  *D          = along + d->beta * across + mhb_slip_gamma(slip, d, dy) * d->beta_theta;
+  double turn = g[0] * ddy[1] + g[1] * ddy[2] + d->beta * slip->mu * ddy[0];
+  return turn / (slip->mu * dy[0] + *D);
+}
+
 /* In the eigenbasis of K: sum_i (x_i/(a + lambda k_i))^2 = 1, lambda >= 0; decreasing and convex in lambda, so Newton
  * from below is monotone. */
+double mhb_slip_rate(const mhb_slip *slip, double theta, const double y[3], const double dy[3]) {
+  mhb_direction d      = mhb_slip_direction(slip->K, theta);
+  double        across = d.q[0] * dy[1] + d.q[1] * dy[2];
+  return (across - d.beta * mhb_slip_gamma(slip, &d, dy)) / (slip->mu * y[0]);
+}
+
 void mhb_slip_return(const double (*K)[2], double a, const double x[2], double d[2]) {
   double mean = .5 * (K[0][0] + K[1][1]), half = .5 * (K[0][0] - K[1][1]);
   double radius = hypot(half, K[0][1]), angle = .5 * atan2(K[0][1], half);

@@ -38,10 +38,11 @@ typedef struct {
   double                 K[2][2];
   double                 mean, half, skew; /* K = mean I + [half skew; skew -half] */
   double                 mu;
-  double                 longest;   /* panel, rad; at most 1.2 */
+  double                 longest;   /* panel, rad; at most 1.5 */
   double                 tolerance; /* bound on a panel's error, force units */
   double                 sliver;    /* rad before an opening over which the direction is held */
-  int linearized; /* F_theta and inverse are wanted at the solution, not near it */
+  double                 begins; /* th' where slip begins: the prediction of a run's first panel */
+  int linearized;                /* F_theta and inverse are wanted at the solution, not near it */
 } mhb_slip;
 
 /* One panel of slip. */
@@ -73,6 +74,14 @@ mhb_direction mhb_slip_direction(const double (*K)[2], double theta);
 
 /* gamma = e.x' - mu n' */
 double mhb_slip_gamma(const mhb_slip *slip, const mhb_direction *d, const double dy[3]);
+
+/* th' = F */
+double mhb_slip_rate(const mhb_slip *slip, double theta, const double y[3], const double dy[3]);
+
+/* The same at a closing, n = 0 < n', where slip begins in direction d: the regular solution
+ * th' = [q.x'' - beta (e.x'' - mu n'')]/(mu n' + D), D = e.x' + beta q.x' + gamma beta'. */
+double mhb_slip_closing_rate(const mhb_slip *slip, const mhb_direction *d, const double dy[3],
+                             const double ddy[3], double *D);
 
 /* Unit vector d with (a I + lambda K) d = x for some lambda >= 0 (|x| >= |a|): the direction in which slip begins
  * when the contact closes (a = mu n', x = x'; eq. 15 for Ku = k I), or the return of x to the unit circle (a = 1). */
