@@ -76,9 +76,10 @@ static double direction_at(const mhb_pieces *pieces, const mhb_piece *piece, dou
   return piece->theta[0] + sum / total;
 }
 
-/* The last piece that has begun at t; t is lifted by a period before the first. */
+/* The last piece that has begun at t; t is lifted by periods to the first (the lap of a contact that opens begins at a
+ * closing, which may be one period on). */
 static const mhb_piece *find(const mhb_pieces *pieces, double *t) {
-  if (*t < pieces->piece[0].t0) *t += TWO_PI;
+  while (*t < pieces->piece[0].t0) *t += TWO_PI;
   int low = 0, high = pieces->n;
   while (high - low > 1) {
     int middle = low + (high - low) / 2;

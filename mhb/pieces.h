@@ -1,7 +1,7 @@
 /* The contact over one period as a list of smooth pieces, for looking at it (trace.h); kept only when asked for.
  *
- * Each piece holds until the next begins; the first begins in [0, 2 pi), the last ends one period after that. In units
- * of the force scale:
+ * Each piece holds until the next begins; the last ends one period after the first begins. In units of the force
+ * scale:
  *   stick  f = x - z
  *   slip   f = mu n (cos th, sin th), th the collocation polynomial of a panel: through its start and its nodes
  *   open   f = 0 */

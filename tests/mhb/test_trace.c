@@ -281,6 +281,60 @@ static void continuous_throughout(void **state) {
   }
 }
 
+static unsigned long seed = 777;
+
+static double uniform(void) {
+  seed = seed * 6364136223846793005ul + 1442695040888963407ul;
+  return (double)(seed >> 11) / 9007199254740992.;
+}
+
+static void put_random(scene *s) {
+  double k = pow(10, 4 * uniform()), r = pow(10, 4 * uniform() - 2);
+  *s = (scene){.name = "random", .law = {.mu = pow(10, 4 * uniform() - 2), .ku = {k, 0, k * r}}};
+  s->law.kv = k * pow(10, 4 * uniform() - 2);
+  if (uniform() < .5) s->law.ku[1] = (1.8 * uniform() - .9) * k * sqrt(r);
+  int top = 1 + (int)(M * uniform());
+  for (int a = 0; a < 3; a++)
+    for (int h = 0; h <= top; h++) set(s, a, h, uniform() / (1 + h * h), 2 * PI * uniform());
+  s->law.n0 = s->law.kv * (3 * uniform() - 1);
+}
+
+/* What the law's tolerance is relative to: the largest force in sight. */
+static double force_scale(const scene *s) {
+  const double *ku = s->law.ku, *v = s->motion[0], *u = s->motion[1], *w = s->motion[2];
+  double        load = fabs(s->law.n0), friction = 0;
+  for (int j = 0; j < NB; j++) {
+    load += s->law.kv * fabs(v[j]);
+    friction += hypot(ku[0] * u[j] + ku[1] * w[j], ku[1] * u[j] + ku[2] * w[j]);
+  }
+  return fmax(load, friction);
+}
+
+/* Wherever the lap begins and whatever it meets: periodic, within the limit, states as long as told. */
+static void random_motions(void **state) {
+  (void)state;
+  enum { N = 401 };
+  for (int i = 0; i < 3000; i++) {
+    scene s;
+    put_random(&s);
+    for (int l = 0; l < N; l++) sample[l].phase = (double)l / (N - 1);
+    mhb_contact_trace(workspace, &s.law, &s.motion[0][0], N, sample, &s.info);
+    if (s.info.lost) continue; /* told, and bounded by test_contact */
+    double scale = force_scale(&s), share[3] = {0};
+    for (int l = 0; l < N; l++) {
+      double size = hypot(sample[l].f[0], sample[l].f[1]);
+      if (size > s.law.mu * sample[l].n + 1e-12 * scale)
+        fail_msg("motion %d at %g: |f| = %g, mu n = %g", i, sample[l].phase, size,
+                 s.law.mu * sample[l].n);
+      if (l > 0) share[sample[l].state] += 1. / (N - 1);
+    }
+    for (int a = 0; a < 3; a++)
+      assert_true(fabs(component(&sample[0], a) - component(&sample[N - 1], a)) <= 1e-9 * scale);
+    for (int k = 0; k < 3; k++)
+      assert_true(fabs(share[k] - s.info.share[k]) <= (1. + s.info.n_transitions) / (N - 1));
+  }
+}
+
 static void hostile_input(void **state) {
   (void)state;
   scene s;
@@ -300,9 +354,13 @@ static void hostile_input(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(harmonics_at_second_order), cmocka_unit_test(harmonics_and_work_by_pieces),
-      cmocka_unit_test(within_the_friction_limit), cmocka_unit_test(continuous_across_transitions),
-      cmocka_unit_test(continuous_throughout),     cmocka_unit_test(hostile_input),
+      cmocka_unit_test(harmonics_at_second_order),
+      cmocka_unit_test(harmonics_and_work_by_pieces),
+      cmocka_unit_test(within_the_friction_limit),
+      cmocka_unit_test(continuous_across_transitions),
+      cmocka_unit_test(continuous_throughout),
+      cmocka_unit_test(random_motions),
+      cmocka_unit_test(hostile_input),
   };
   return cmocka_run_group_tests(tests, make_workspace, free_workspace);
 }
