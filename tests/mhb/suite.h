@@ -12,6 +12,8 @@ typedef struct {
   const char *name;
   mhb_law     law;
   double      motion[3][SUITE_WIDTH]; /* (v, u, w), real form (mhb/fourier.h), m */
+  double
+      room; /* change of any coefficient, m, that switches nothing; 0: at a switch, to rounding's reach */
 } suite_motion;
 
 int suite_size(void);
