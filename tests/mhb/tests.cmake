@@ -19,6 +19,14 @@ target_sources(test_mhb_residual PRIVATE mhb/random_model.c)
 shb_test(mhb path fast shb_mhb)
 target_sources(test_mhb_path PRIVATE mhb/random_model.c mhb/solution.c mhb/three_degree.c)
 shb_test(mhb response fast shb_response)
+shb_test(mhb multipliers fast shb_mhb)
+target_sources(test_mhb_multipliers PRIVATE mhb/disturbed.c mhb/periodic.c mhb/three_degree.c)
+shb_test(mhb stability fast shb_mhb)
+target_sources(test_mhb_stability PRIVATE mhb/disturbed.c mhb/periodic.c mhb/random_model.c mhb/three_degree.c)
+target_link_options(test_mhb_stability PRIVATE
+  LINKER:--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=aligned_alloc)
+shb_test(mhb monodromy slow shb_mhb)
+target_sources(test_mhb_monodromy PRIVATE mhb/disturbed.c mhb/periodic.c mhb/random_model.c mhb/three_degree.c)
 
 # The example of cases/bring_your_own; skipped where python3 has no h5py.
 find_program(SHROUDHB_PYTHON NAMES python3 HINTS /usr/bin)

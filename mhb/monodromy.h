@@ -1,0 +1,35 @@
+/* The monodromy matrix of a periodic solution: what one period makes of a small disturbance of (q, q', friction).
+ *
+ * Sub-steps (variation.h) are split at the transitions of every contact; the law is linearised at their middles
+ * (tangent.h, passage.h). States that are carried: q and q' of every mode and blade, and at the start two frictions for a
+ * contact that sticks but does not stay so, one for a contact that slips. */
+#ifndef MHB_MONODROMY_H
+#define MHB_MONODROMY_H
+
+#include "mhb/passage.h"
+
+typedef struct {
+  const mhb_structure *structure;
+  const mhb_timetable *timetable;
+  mhb_variation       *variation;
+  mhb_passage         *passage;
+  int                  substeps;   /* a period of the fundamental */
+  int                 *column;     /* [contact] its first friction state */
+  double              *u, *matrix; /* [3 contacts], [.][.] the start with residual flexibility */
+  int                 *pivot;      /* [3 contacts] */
+  int                  n;          /* states */
+  double              *M, *power, *product; /* [n][n] column-major */
+} mhb_monodromy;
+
+/* SHB_ERR_IO: no memory. Structure, timetable and contact must outlive it. */
+shb_status mhb_monodromy_create(const mhb_structure *structure, const mhb_timetable *timetable,
+                                mhb_contact *contact, int m, int substeps,
+                                mhb_monodromy **monodromy);
+void       mhb_monodromy_destroy(mhb_monodromy *monodromy);
+
+/* M for a solution and the timetable set from it, with substeps * refinement (1 or 2) sub-steps; omega: of the fundamental.
+ * NULL, or why not. */
+const char *mhb_monodromy_set(mhb_monodromy *monodromy, const mhb_solution *solution, double omega,
+                              int refinement);
+
+#endif

@@ -1,0 +1,202 @@
+#include "mhb/stability.h"
+
+#include <lapacke.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "mhb/exponents.h"
+
+static const double TWO_PI = 6.283185307179586476925;
+static const double MARGIN = 1e-3;
+enum { MAX_STATES = 600 };
+
+struct mhb_stability {
+  mhb_structure   structure; /* all modes */
+  mhb_structure   reduced;   /* those that are integrated */
+  mhb_timetable   timetable;
+  mhb_exponents   exponents;
+  mhb_contact    *contact;
+  mhb_monodromy  *monodromy; /* NULL: too many states even with one mode */
+  int             nu, max_states, room;
+  int            *state;   /* [pair] */
+  double         *re, *im; /* [states] */
+  double         *work;    /* [room] of dgeev */
+  double complex *multiplier;
+};
+
+/* Modes a blade that max_states leaves room for. */
+static int affordable(const mhb_stability *s) {
+  int left = s->max_states - 2 * s->structure.contacts, a_mode = 2 * s->structure.blades;
+  int most = left > 0 ? left / a_mode : 0;
+  return most < s->structure.modes ? most : s->structure.modes;
+}
+
+static shb_status fill(mhb_stability *s, const mhb_receptance *receptance,
+                       const mhb_settings *settings, int substeps) {
+  SHB_TRY(mhb_structure_create(receptance, settings, receptance->n_modes, &s->structure));
+  const mhb_structure *whole = &s->structure;
+  int m = settings->harmonics, all = 2 * (whole->modes * whole->blades + whole->contacts);
+  SHB_TRY(mhb_timetable_create(whole->blades, whole->pairs, whole->wave, &s->timetable));
+  SHB_TRY(mhb_exponents_create(whole, &s->exponents));
+  SHB_TRY(mhb_contact_create(m, m, settings->tolerance, &s->contact));
+  if (affordable(s) > 0) {
+    SHB_TRY(mhb_structure_create(receptance, settings, affordable(s), &s->reduced));
+    SHB_TRY(
+        mhb_monodromy_create(&s->reduced, &s->timetable, s->contact, m, substeps, &s->monodromy));
+  }
+  s->nu         = settings->subharmonics;
+  s->room       = 8 * all;
+  s->state      = calloc((size_t)whole->pairs, sizeof(int));
+  s->re         = calloc((size_t)all, sizeof(double));
+  s->im         = calloc((size_t)all, sizeof(double));
+  s->work       = calloc((size_t)s->room, sizeof(double));
+  s->multiplier = calloc((size_t)all, sizeof(double complex));
+  SHB_CHECK(s->state && s->re && s->im && s->work && s->multiplier, SHB_ERR_IO,
+            "out of memory for the stability of %d states", all);
+  return SHB_OK;
+}
+
+shb_status mhb_stability_create(const mhb_receptance *receptance, const mhb_settings *settings,
+                                int substeps, int max_states, mhb_stability **out) {
+  SHB_CHECK(substeps >= 1, SHB_ERR_INPUT, "stability needs at least one sub-step a period, not %d",
+            substeps);
+  mhb_stability *s = calloc(1, sizeof *s);
+  SHB_CHECK(s, SHB_ERR_IO, "out of memory");
+  s->max_states     = max_states > 0 ? max_states : MAX_STATES;
+  shb_status status = fill(s, receptance, settings, substeps);
+  if (status != SHB_OK) {
+    mhb_stability_destroy(s);
+    return status;
+  }
+  *out = s;
+  return SHB_OK;
+}
+
+void mhb_stability_destroy(mhb_stability *s) {
+  if (!s) return;
+  mhb_monodromy_destroy(s->monodromy);
+  mhb_contact_destroy(s->contact);
+  mhb_exponents_destroy(&s->exponents);
+  mhb_timetable_destroy(&s->timetable);
+  mhb_structure_destroy(&s->reduced);
+  mhb_structure_destroy(&s->structure);
+  free(s->state);
+  free(s->re);
+  free(s->im);
+  free(s->work);
+  free(s->multiplier);
+  free(s);
+}
+
+/* By falling modulus; conjugates have equal ones, and an insertion sort keeps their order. */
+static void sort(int n, double complex *x) {
+  for (int i = 1; i < n; i++) {
+    double complex z    = x[i];
+    double         size = cabs(z);
+    int            j    = i;
+    for (; j > 0 && cabs(x[j - 1]) < size; j--) x[j] = x[j - 1];
+    x[j] = z;
+  }
+}
+
+static void take(mhb_stability *s, int n, mhb_multipliers *out) {
+  sort(n, s->multiplier);
+  out->n          = n;
+  out->multiplier = s->multiplier;
+  out->largest    = n ? cabs(s->multiplier[0]) : 0;
+  if (n == 0 || cimag(s->multiplier[0]) != 0) {
+    out->crossing = MHB_THROUGH_PAIR;
+  } else {
+    out->crossing = creal(s->multiplier[0]) > 0 ? MHB_THROUGH_PLUS_ONE : MHB_THROUGH_MINUS_ONE;
+  }
+}
+
+/* Nothing slips, opens or closes. */
+static int is_linear(const mhb_stability *s, const mhb_solution *solution) {
+  for (int a = 0; a < s->structure.pairs; a++)
+    if (!s->timetable.permanent[a] ||
+        (s->timetable.state[a] == MHB_SLIDE && solution->law[a].mu > 0))
+      return 0;
+  return 1;
+}
+
+static const char *linear(mhb_stability *s, const mhb_solution *solution, double period,
+                          mhb_multipliers *out) {
+  mhb_exponents *x = &s->exponents;
+  for (int a = 0; a < s->structure.pairs; a++) s->state[a] = s->timetable.state[a];
+  if (!mhb_exponents_set(x, s->state, solution->law)) return "the eigensolver failed";
+  for (int i = 0; i < x->n; i++) s->multiplier[i] = cexp(x->exponent[i] * period);
+  out->modes = s->structure.modes;
+  take(s, x->n, out);
+  return NULL;
+}
+
+static const char *integrated(mhb_stability *s, const mhb_solution *solution, double omega,
+                              int refinement, mhb_multipliers *out) {
+  mhb_monodromy *d   = s->monodromy;
+  const char    *why = mhb_monodromy_set(d, solution, omega, refinement);
+  if (why) return why;
+  for (int i = 0; i < d->n * d->n; i++)
+    if (!isfinite(d->M[i])) return "the disturbances overflow";
+  if (LAPACKE_dgeev_work(LAPACK_COL_MAJOR, 'N', 'N', d->n, d->M, d->n, s->re, s->im, NULL, 1, NULL,
+                         1, s->work, s->room) != 0)
+    return "the eigensolver failed";
+  for (int i = 0; i < d->n; i++) s->multiplier[i] = CMPLX(s->re[i], s->im[i]);
+  out->modes = s->reduced.modes;
+  take(s, d->n, out);
+  return NULL;
+}
+
+/* Slip, opening, closing: refined only where the answer hangs on it. */
+static const char *nonlinear(mhb_stability *s, const mhb_solution *solution, double omega,
+                             mhb_multipliers *out) {
+  if (!s->monodromy) return "more states than max_states";
+  const char *why = integrated(s, solution, omega, 1, out);
+  if (why || out->largest <= 1 + MARGIN) return why;
+  double coarse = out->largest;
+  why           = integrated(s, solution, omega, 2, out);
+  out->change   = fabs(out->largest - coarse);
+  return why;
+}
+
+/* What was left out: ones of contacts that always stick, zeros of those that forget. */
+static void count_left_out(const mhb_stability *s, const mhb_solution *solution,
+                           mhb_multipliers *out) {
+  const mhb_timetable *t = &s->timetable;
+  for (int j = 0; j < s->structure.contacts; j++) {
+    double mu = solution->law[j % s->structure.pairs].mu;
+    if (mu == 0 || (t->permanent[j] && t->state[j] == MHB_SEPARATE)) continue;
+    if (t->permanent[j] && t->state[j] == MHB_STICK) {
+      out->n_stuck += 2;
+    } else {
+      out->n_zero += 2 - mhb_friction_states(t->state[j], t->permanent[j], mu);
+    }
+  }
+}
+
+static void judge(mhb_multipliers *out) {
+  double beyond = 1 + fmax(MARGIN, out->change);
+  for (int i = 0; i < out->n; i++) out->n_unstable += cabs(out->multiplier[i]) > beyond;
+  if (out->reason) {
+    out->verdict = MHB_UNDECIDED;
+  } else if (out->largest > beyond) {
+    out->verdict = MHB_UNSTABLE;
+  } else {
+    out->verdict = out->largest > 1 ? MHB_MARGINAL : MHB_STABLE;
+  }
+}
+
+void mhb_stability_evaluate(mhb_stability *s, const mhb_solution *solution, mhb_multipliers *out) {
+  double omega = solution->omega / s->nu;
+  *out         = (mhb_multipliers){.change = -1};
+  if (!mhb_timetable_set(&s->timetable, solution->info)) {
+    out->reason = "the contact law lost its way, or has too many transitions";
+  } else if (is_linear(s, solution)) {
+    out->reason = linear(s, solution, TWO_PI / omega, out);
+  } else {
+    out->reason = nonlinear(s, solution, omega, out);
+  }
+  if (!out->reason) count_left_out(s, solution, out);
+  judge(out);
+}
