@@ -77,25 +77,29 @@ static void relative_flexibility(mhb_exponents *x, double complex step) {
         x->R[r * n3 + c] += phase * s->flexibility[(size_t)r * (size_t)n + (size_t)(b * n3 + c)];
 }
 
+/* Row r of contact a of K [R B], K its stiffness; element c of n3 + modes. */
+static double complex stiffness_row(const mhb_exponents *x, const double K[3], int a, int c) {
+  int            n3 = 3 * x->structure->pairs, m = x->structure->modes;
+  double complex sum = 0;
+  for (int k = 0; k < 3; k++) {
+    int row = 3 * a + k;
+    sum += K[k] * (c < n3 ? x->R[row * n3 + c] : x->left[row * m + c - n3]);
+  }
+  return sum;
+}
+
 /* Column-major: S[0..n3) = I + diag R, S[n3..) = diag B  ->  S B in the second part. 0: singular. */
 static int contact_stiffness(mhb_exponents *x) {
-  const mhb_structure *s  = x->structure;
-  int                  n3 = 3 * s->pairs, m = s->modes;
-  for (int a = 0; a < s->pairs; a++) {
-    double K[3][3];
-    stiffness(x->state[a], &x->law[a], K);
-    for (int r = 0; r < 3; r++) {
-      for (int c = 0; c < n3 + m; c++) {
-        double complex sum = c == 3 * a + r;
-        for (int k = 0; k < 3; k++)
-          sum +=
-              K[r][k] * (c < n3 ? x->R[(3 * a + k) * n3 + c] : x->left[(3 * a + k) * m + c - n3]);
-        x->S[(size_t)c * (size_t)n3 + (size_t)(3 * a + r)] = sum;
-      }
-    }
+  int    n3 = 3 * x->structure->pairs, m = x->structure->modes;
+  size_t rows = (size_t)n3;
+  double K[3][3];
+  for (int row = 0; row < n3; row++) {
+    stiffness(x->state[row / 3], &x->law[row / 3], K);
+    for (int c = 0; c < n3 + m; c++)
+      x->S[(size_t)c * rows + (size_t)row] = (c == row) + stiffness_row(x, K[row % 3], row / 3, c);
   }
-  return LAPACKE_zgesv_work(LAPACK_COL_MAJOR, n3, m, x->S, n3, x->pivot,
-                            x->S + (size_t)n3 * (size_t)n3, n3) == 0;
+  return LAPACKE_zgesv_work(LAPACK_COL_MAJOR, n3, m, x->S, n3, x->pivot, x->S + rows * rows, n3) ==
+         0;
 }
 
 static int nodal_diameter(mhb_exponents *x, int d) {
@@ -125,7 +129,7 @@ static int same(const mhb_exponents *x, const int *state, const mhb_law *law) {
   for (int a = 0; a < x->structure->pairs; a++) {
     const mhb_law *old = &x->law[a];
     if (state[a] != x->state[a] || law[a].kv != old->kv || (law[a].mu == 0) != (old->mu == 0) ||
-        memcmp(law[a].ku, old->ku, sizeof old->ku) != 0)
+        law[a].ku[0] != old->ku[0] || law[a].ku[1] != old->ku[1] || law[a].ku[2] != old->ku[2])
       return 0;
   }
   return 1;

@@ -62,25 +62,31 @@ static int pair_of(const mhb_passage *d, int contact) {
 
 /* ---- the periodic motion ---- */
 
-/* w_k = u_k + R_k p_k; the force of blade b lags by k b phi. */
+/* Harmonic k of (R p)_r of blade 0; the force of blade b lags by k b phi. */
+static double complex flexed(const mhb_passage *d, int k, int r) {
+  const mhb_structure *s = d->structure;
+  size_t               n = 3 * (size_t)s->contacts, n3 = 3 * (size_t)s->pairs, nb = (size_t)d->nb;
+  double complex       sum = 0;
+  for (size_t c = 0; c < n; c++) {
+    const double  *a  = d->solution->p + c % n3 * nb;
+    double complex pk = k ? CMPLX(a[2 * k - 1], a[2 * k]) : a[0];
+    double lag = TWO_PI * (double)((long)k * (long)(c / n3) * s->wave % s->blades) / s->blades;
+    sum += s->flexibility[(size_t)r * n + c] * pk * cexp(-I * lag);
+  }
+  return sum;
+}
+
+/* w = u + R p */
 static void free_of_flexibility(mhb_passage *d) {
-  const mhb_structure *s  = d->structure;
-  int                  n3 = 3 * s->pairs, nb = d->nb;
-  size_t               n = 3 * (size_t)s->contacts;
-  memcpy(d->motion, d->solution->x, sizeof(double) * (size_t)(n3 * nb));
-  for (int k = 0; s->flexibility && k <= d->m; k++) {
-    for (int r = 0; r < n3; r++) {
-      double complex sum = 0;
-      for (size_t c = 0; c < n; c++) {
-        int            b   = (int)(c / (size_t)n3);
-        const double  *a   = d->solution->p + (size_t)(c % (size_t)n3) * (size_t)nb;
-        double complex pk  = k ? CMPLX(a[2 * k - 1], a[2 * k]) : a[0];
-        double         lag = TWO_PI * (double)((long)k * b * s->wave % s->blades) / s->blades;
-        sum += s->flexibility[(size_t)r * n + c] * pk * cexp(-I * lag);
-      }
-      double *w = d->motion + r * nb;
-      w[k ? 2 * k - 1 : 0] += creal(sum);
-      if (k) w[2 * k] += cimag(sum);
+  int n3 = 3 * d->structure->pairs, nb = d->nb;
+  memcpy(d->motion, d->solution->x, sizeof(double) * (size_t)n3 * (size_t)nb);
+  if (!d->structure->flexibility) return;
+  for (int r = 0; r < n3; r++) {
+    double *w = d->motion + (size_t)r * (size_t)nb;
+    for (int k = 0; k <= d->m; k++) {
+      double complex more = flexed(d, k, r);
+      w[k ? 2 * k - 1 : 0] += creal(more);
+      if (k) w[2 * k] += cimag(more);
     }
   }
 }
@@ -118,24 +124,25 @@ static int slips(const mhb_touch *touch) {
 
 /* ---- rates with residual flexibility: p' = (I + G R)^-1 G w',  u' = w' - R p' ---- */
 
+/* Rows of contact j of I + G R, and of G w'. */
+static void rate_rows(mhb_passage *d, int j, double at, double *rate) {
+  int    n = 3 * d->structure->contacts;
+  double G[3][3], w[3];
+  mhb_tangent_rate(&d->touch[j], G);
+  motion_rate(d, d->motion, j, at, w);
+  for (int r = 0; r < 3; r++) {
+    const double *R   = d->structure->flexibility + (size_t)(3 * j) * (size_t)n;
+    double       *row = d->matrix + (size_t)(3 * j + r) * (size_t)n;
+    rate[3 * j + r]   = G[r][0] * w[0] + G[r][1] * w[1] + G[r][2] * w[2];
+    for (int c = 0; c < n; c++)
+      row[c] = (c == 3 * j + r) + G[r][0] * R[c] + G[r][1] * R[n + c] + G[r][2] * R[2 * n + c];
+  }
+}
+
 /* I + G R, factorized; and p' into rate[n]. 0: singular. */
 static int force_rates(mhb_passage *d, double at, double *rate) {
-  const mhb_structure *s = d->structure;
-  int                  n = 3 * s->contacts;
-  for (int j = 0; j < s->contacts; j++) {
-    double G[3][3], w[3];
-    mhb_tangent_rate(&d->touch[j], G);
-    motion_rate(d, d->motion, j, at, w);
-    for (int r = 0; r < 3; r++) {
-      double *row     = d->matrix + (size_t)(3 * j + r) * (size_t)n;
-      rate[3 * j + r] = G[r][0] * w[0] + G[r][1] * w[1] + G[r][2] * w[2];
-      for (int c = 0; c < n; c++) {
-        row[c] = c == 3 * j + r;
-        for (int k = 0; k < 3; k++)
-          row[c] += G[r][k] * s->flexibility[(size_t)(3 * j + k) * (size_t)n + (size_t)c];
-      }
-    }
-  }
+  int n = 3 * d->structure->contacts;
+  for (int j = 0; j < d->structure->contacts; j++) rate_rows(d, j, at, rate);
   if (!mhb_lu(n, d->matrix, d->pivot)) return 0;
   mhb_lu_solve(n, d->matrix, d->pivot, rate);
   return 1;
