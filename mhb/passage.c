@@ -197,7 +197,7 @@ int mhb_passage_trace(mhb_passage *d) {
     const double *x = d->solution->x + (size_t)(3 * a) * (size_t)d->nb;
     mhb_contact_trace(d->contact, &d->solution->law[a], x, d->count[a],
                       d->sample + (size_t)a * (size_t)d->room, &d->info);
-    if (d->info.lost) return 0;
+    if (!mhb_timetable_usable(&d->info)) return 0;
   }
   return 1;
 }

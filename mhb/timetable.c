@@ -7,6 +7,9 @@
 /* Events closer than this, in periods, are of one time. */
 static const double CLOSE = 1e-12;
 
+/* A contact that missed its tolerance by little still has its transitions in the right places. */
+static const double TOO_FAR = 1e-5;
+
 static int common_divisor(int a, int b) {
   while (b) {
     int rest = a % b;
@@ -130,9 +133,13 @@ static int list_events(mhb_timetable *t, const mhb_contact_info *info) {
   return 1;
 }
 
+int mhb_timetable_usable(const mhb_contact_info *info) {
+  return (!info->lost || info->error <= TOO_FAR) && info->n_transitions < MHB_MAX_TRANSITIONS;
+}
+
 int mhb_timetable_set(mhb_timetable *t, const mhb_contact_info *info) {
   for (int a = 0; a < t->pairs; a++)
-    if (info[a].lost || info[a].n_transitions >= MHB_MAX_TRANSITIONS) return 0;
+    if (!mhb_timetable_usable(&info[a])) return 0;
   choose_start(t, info);
   for (int j = 0; j < t->blades * t->pairs; j++) {
     const mhb_contact_info *of = &info[j % t->pairs];

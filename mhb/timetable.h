@@ -29,8 +29,11 @@ typedef struct {
 shb_status mhb_timetable_create(int blades, int pairs, int wave, mhb_timetable *timetable);
 void       mhb_timetable_destroy(mhb_timetable *timetable);
 
+/* Whether the law was evaluated well enough: not lost, or its error below 1e-5 of the force scale; transitions complete. */
+int mhb_timetable_usable(const mhb_contact_info *info);
+
 /* From the transitions of the pairs, info[pair]. The start lies right after the event that leaves the fewest friction
- * states. 0: more events than there is room for, or a contact that was lost. */
+ * states. 0: more events than there is room for, or a contact not usable. */
 int mhb_timetable_set(mhb_timetable *timetable, const mhb_contact_info *info);
 
 /* Phase of contact j's own blade at a phase after the start, in [0, 1). */

@@ -281,6 +281,8 @@ static void limits(void **state) {
   assert_non_null(strstr(out.reason, "max_states"));
   mhb_stability_destroy(stability);
   p.residual->info[0].lost = 1;
+  assert_int_equal(periodic_multipliers(&p, N, full).verdict, whole.verdict);
+  p.residual->info[0].error = 1e-3;
   assert_int_equal(periodic_multipliers(&p, N, full).verdict, MHB_UNDECIDED);
   assert_int_equal(mhb_stability_create(r, &s, 0, 0, &stability), SHB_ERR_INPUT);
   assert_non_null(strstr(shb_message(), "sub-step"));
