@@ -140,6 +140,7 @@ MHB_HOT static double panel_growth(const mhb_contact *c) {
   const mhb_panel *p    = &c->panel;
   mhb_lanes        ones = p->inverse[0];
   for (int j = 1; j < MHB_NODES; j++) ones += p->inverse[j];
+  if (p->stiff) return lanes_sum(c->rule.end * ones);
   return 1 + p->h * lanes_sum(c->rule.weight * p->F_theta * ones);
 }
 
@@ -186,6 +187,9 @@ MHB_INLINE void fill_drive(const mhb_contact *c) {
 MHB_INLINE void columns_through(const mhb_contact *c) {
   const mhb_panel *p    = &c->panel;
   mhb_lanes        ones = p->inverse[0], hA[MHB_NODES], end = p->h * c->rule.weight;
+  mhb_lanes        last = p->stiff ? c->rule.end : end * p->F_theta;
+  double           keep = p->stiff ? 0 : 1;
+  if (p->stiff) end = lanes_all(0);
   for (int j = 1; j < MHB_NODES; j++) ones += p->inverse[j];
   for (int q = 0; q < MHB_NODES; q++) { /* columns of (I - h A F_th)^-1 h A */
     hA[q] = p->inverse[0] * c->rule.A[q][0];
@@ -193,7 +197,7 @@ MHB_INLINE void columns_through(const mhb_contact *c) {
     hA[q] *= p->h;
   }
   for (int j = 0; j < c->stride; j += MHB_LANES) {
-    mhb_lanes T = lanes_load(c->T + j), sum = T, value[MHB_NODES];
+    mhb_lanes T = lanes_load(c->T + j), sum = keep * T, value[MHB_NODES];
 #pragma GCC unroll 8
     for (int l = 0; l < MHB_NODES; l++) value[l] = ones[l] * T;
 #pragma GCC unroll 8
@@ -206,7 +210,7 @@ MHB_INLINE void columns_through(const mhb_contact *c) {
 #pragma GCC unroll 8
     for (int l = 0; l < MHB_NODES; l++) {
       lanes_store(c->node_T + l * c->stride + j, value[l]);
-      sum += end[l] * p->F_theta[l] * value[l];
+      sum += last[l] * value[l];
     }
     lanes_store(c->T + j, sum);
   }
@@ -279,10 +283,11 @@ void mhb_columns_stick(mhb_contact *c) {
 
 /* ---- the periodic slider ---- */
 
-/* DP = d v^T: (I - DP)^-1 r = r + d v.r/(1 - v.d) */
-static double closure(const mhb_contact *c) {
+/* DP = d v^T: (I - DP)^-1 r = r + d v.r/(1 - v.d), the denominator held above a floor: for Newton rounding's, for the
+ * derivative one that keeps it bounded where slip just begins. */
+static double closure(const mhb_contact *c, double floor) {
   double det = 1 - c->memory.v[0] * c->Z[0][c->slider] - c->memory.v[1] * c->Z[1][c->slider];
-  return fabs(det) < 1e-7 ? copysign(1e-7, det) : det;
+  return fabs(det) < floor ? copysign(floor, det) : det;
 }
 
 double mhb_columns_gain(const mhb_contact *c) {
@@ -290,14 +295,19 @@ double mhb_columns_gain(const mhb_contact *c) {
   return c->memory.slipped ? hypot(v[0], v[1]) * hypot(c->Z[0][c->slider], c->Z[1][c->slider]) : 1;
 }
 
+double mhb_columns_doubt(const mhb_contact *c) {
+  return c->memory.slipped ? fmin(2e-6, 4e-13 / fabs(closure(c, 1e-12))) : 0;
+}
+
 void mhb_columns_close(const mhb_contact *c, const double r[2], double dz[2]) {
   const mhb_memory *memory = &c->memory;
-  double part = memory->slipped ? (memory->v[0] * r[0] + memory->v[1] * r[1]) / closure(c) : 0;
+  double            part =
+      memory->slipped ? (memory->v[0] * r[0] + memory->v[1] * r[1]) / closure(c, 1e-12) : 0;
   for (int k = 0; k < 2; k++) dz[k] = r[k] + c->Z[k][c->slider] * part;
 }
 
 MHB_HOT static void eliminate(mhb_contact *c) {
-  const double *v = c->memory.v, det = closure(c);
+  const double *v = c->memory.v, det = closure(c, 1e-7);
   for (int j = 0; j < c->slider; j++) {
     double G[2] = {c->Z[0][j], c->Z[1][j]}, part = (v[0] * G[0] + v[1] * G[1]) / det;
     for (int k = 0; k < 2; k++) c->Z[k][j] = G[k] + c->Z[k][c->slider] * part;

@@ -37,7 +37,7 @@ typedef struct {
   double share[3];     /* of the period stuck, slipping, open */
   double dissipation;  /* J a cycle, from the harmonics: loop integral of f.ds */
   double slip_work;    /* J a cycle, summed over the slip pieces */
-  double error;        /* estimate, relative to the force scale */
+  double error;        /* estimate, relative to the largest force harmonic */
   int    undetermined; /* the mean friction is a convention (stuck throughout) */
   int    laps;         /* until the slider was periodic */
   int    lost; /* 1: periodicity or a panel was not reached to tolerance; error says how far */

@@ -231,7 +231,10 @@ static sample stick_start(const event_function *f, double from, double to) {
   double scale = f->z[0] * f->z[0] + f->z[1] * f->z[1] +
                  f->signals->bound[1][0] * f->signals->bound[1][0] +
                  f->signals->bound[2][0] * f->signals->bound[2][0];
-  if (s.y < -1e-11 * scale) return s;
+  double v[3], dv[3];
+  mhb_signals_at(f->signals, from, v, dv, NULL);
+  double limit = f->mu * v[0];
+  if (s.y < -1e-11 * limit * limit - 4e-15 * scale) return s;
   double second = curvature(f, from), step = 1e-6;
   if (second < 0 && f->bound3 > 0) step = fmax(step, fmin(1.0, -1.5 * second / f->bound3));
   return sample_at(f, fmin(from + step, to));
@@ -243,7 +246,8 @@ double mhb_slip_onset(const mhb_signals *signals, double mu, const double z[2], 
   friction_bounds(&f);
   sample a = stick_start(&f, from, to);
   if (a.t >= to) return to + 1;
-  if (a.y > 0) return a.t;
+  if (a.y > 0 && a.dy > 0) return a.t;
+  a.y         = fmin(a.y, 0); /* coming back from beyond: rounding */
   double cell = TWO_PI / signals->n_grid;
   int    i = (int)floor(a.t / cell) + 1, last = (int)floor(to / cell);
   for (double root; a.t < to; i++) {

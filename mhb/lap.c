@@ -10,6 +10,7 @@ static const double TWO_PI = 6.283185307179586476925;
 typedef struct {
   mhb_state state;
   double    t, z[2], theta;
+  double    onset; /* when slip began out of stick; z is from before */
 } slider;
 
 void mhb_note_transition(mhb_contact *c, double t, mhb_state state) {
@@ -36,17 +37,46 @@ static void add_stick(mhb_contact *c, double t0, double t1, const double z[2]) {
   c->info->share[MHB_STICK] += (t1 - t0) / TWO_PI;
 }
 
-static void add_slip(mhb_contact *c) {
+/* f K^-1 f/2, what the spring holds. */
+static double held_energy(const mhb_contact *c, const double f[2]) {
+  double det = c->K[0][0] * c->K[1][1] - c->K[0][1] * c->K[0][1];
+  return .5 * (c->K[1][1] * f[0] * f[0] - 2 * c->K[0][1] * f[0] * f[1] + c->K[0][0] * f[1] * f[1]) /
+         det;
+}
+
+/* What it holds in a contact that sticks. */
+static double held_at(const mhb_contact *c, const slider *s) {
+  double y[3], dy[3];
+  mhb_signals_at(&c->signals, s->t, y, dy, NULL);
+  return held_energy(c, (double[2]){y[1] - s->z[0], y[2] - s->z[1]});
+}
+
+/* J. The power of slip is lambda |f|^2 = gamma mu n/eKe. In the last sliver before an opening, whose direction is held, it
+ * is what the motion does and the spring gives back: f.s' less the change of f K^-1 f/2, f = 0 at its end; f is x - z where
+ * the contact has stuck until then, for mu n may be all rounding. */
+static double panel_work(const mhb_contact *c, const slider *s) {
+  const mhb_panel *p      = &c->panel;
+  mhb_lanes        weight = p->h * c->slip.mu * c->rule.weight * p->y[0];
+  if (!p->frozen) return lanes_sum(weight * lanes_max(p->gamma, lanes_all(0)) / p->eKe);
+  double y[3], dy[3], det = c->K[0][0] * c->K[1][1] - c->K[0][1] * c->K[0][1];
+  mhb_signals_at(&c->signals, p->t0, y, dy, NULL);
+  double    limit = c->slip.mu * y[0], f[2] = {limit * p->e[0][0], limit * p->e[1][0]};
+  double    x[2]    = {y[1] - s->z[0], y[2] - s->z[1]};
+  mhb_lanes rate[2] = {(c->K[1][1] * p->dy[1] - c->K[0][1] * p->dy[2]) / det,
+                       (c->K[0][0] * p->dy[2] - c->K[0][1] * p->dy[1]) / det};
+  return held_energy(c, p->t0 == s->onset ? x : f) +
+         lanes_sum(weight * (p->e[0] * rate[0] + p->e[1] * rate[1]));
+}
+
+static void add_slip(mhb_contact *c, const slider *s) {
   const mhb_panel *p = &c->panel;
   if (p->h <= 0) return;
   mhb_columns_panel(c);
   if (!c->record) return;
   mhb_pieces_slip(&c->pieces, p);
-  /* the power of slip is lambda |f|^2 = gamma mu n/eKe */
-  mhb_lanes power = c->rule.weight * p->gamma * p->y[0] / p->eKe;
-  c->info->slip_work += p->h * c->slip.mu * lanes_sum(power);
+  c->info->slip_work += panel_work(c, s);
   c->info->share[MHB_SLIDE] += p->h / TWO_PI;
-  c->info->error += p->error;
+  c->squares += p->error * p->error;
 }
 
 enum { MAX_EVENTS = 400, MAX_PANELS = 5000 };
@@ -63,6 +93,7 @@ static void run_stick(mhb_contact *c, slider *s, double end) {
   mhb_signals_at(&c->signals, until, y, dy, NULL);
   s->theta = atan2(y[2] - s->z[1], y[1] - s->z[0]);
   s->state = MHB_SLIDE;
+  s->onset = until;
   mhb_note_transition(c, until, MHB_SLIDE);
   c->slip.begins = mhb_slip_rate(&c->slip, s->theta, y, dy);
   mhb_columns_stick_to_slip(c, until, s->theta, y[0]);
@@ -76,7 +107,7 @@ static int run_slip(mhb_contact *c, slider *s, double end, int opening) {
     if (panels == MAX_PANELS) return 0;
     outcome = mhb_slip_panel(&c->slip, s->t, s->theta, end, opening, &suggested, &c->panel);
     if (outcome == MHB_SLIP_LOST) return 0;
-    add_slip(c);
+    add_slip(c, s);
     s->t     = c->panel.t0 + c->panel.h;
     s->theta = c->panel.theta1;
   }
@@ -108,13 +139,21 @@ static int run_closed(mhb_contact *c, slider *s, double end, int opening) {
   return 1;
 }
 
-/* How long and how accurate panels are. A lap whose force is wanted must resolve the highest harmonic too: the
- * quadrature of exp(j k t) over a panel errs by (8!)^4/(17 (16!)^3) (kh)^16 of its length. */
+/* How long and how accurate panels are. A lap whose force is wanted must resolve the highest harmonic too: panel_error
+ * in slip.c. */
 static void set_panels(mhb_contact *c, double tolerance) {
-  double reach      = sqrt(sqrt(sqrt(sqrt(.1 * tolerance / 1.7e-23))));
-  c->slip.longest   = fmin(1.5, reach / ((c->record ? c->H : 0) + 2 * c->content + 1));
-  c->slip.tolerance = .1 * tolerance;
-  c->slip.sliver    = fmax(1e-7, .1 * sqrt(tolerance));
+  double reach      = sqrt(sqrt(sqrt(sqrt(.3 * tolerance / 1.7e-23))));
+  double wanted     = c->record ? c->H : 0;
+  c->slip.harmonic  = wanted + .5 * c->content;
+  c->slip.longest   = fmin(1.5, reach / (wanted + 2 * c->content + 1));
+  c->slip.tolerance = .3 * tolerance * c->force;
+}
+
+/* The direction may be held over tau before an opening: what it misses is some mu n' tau^2/2. */
+static void set_sliver(mhb_contact *c, double opening) {
+  double y[3], dy[3];
+  mhb_signals_at(&c->signals, opening, y, dy, NULL);
+  c->slip.sliver = fmin(.05, fmax(1e-10, sqrt(c->slip.tolerance / (c->slip.mu * fabs(dy[0])))));
 }
 
 /* ---- the contact opens: every closing is a fresh start (eqs. 13-15) ---- */
@@ -127,7 +166,7 @@ int mhb_lap_openings(mhb_contact *c) {
   c->memory.slipped = 1; /* there is no slider at the start of the lap to remember */
   set_panels(c, c->tolerance);
   for (int i = 0; i < c->closed.n; i++) {
-    slider s = {.t = c->closed.closing[i]};
+    slider s = {.t = c->closed.closing[i], .onset = -1};
     double y[3], dy[3], ddy[3], d[2], D;
     mhb_signals_at(&c->signals, s.t, y, dy, ddy);
     double pull = hypot(dy[1], dy[2]), limit = c->slip.mu * dy[0];
@@ -142,7 +181,10 @@ int mhb_lap_openings(mhb_contact *c) {
     }
     mhb_columns_closing(c, s.t, s.state, s.theta);
     mhb_note_transition(c, s.t, s.state);
+    set_sliver(c, c->closed.opening[i]);
     ok &= run_closed(c, &s, c->closed.opening[i], 1);
+    if (s.state == MHB_STICK || s.onset == s.t)
+      c->info->slip_work += held_at(c, &s); /* let go at once: mu n' is too steep to see */
     mhb_note_transition(c, c->closed.opening[i], MHB_SEPARATE);
     mhb_pieces_open(&c->pieces, c->closed.opening[i]);
     open -= (c->closed.opening[i] - c->closed.closing[i]) / TWO_PI;
@@ -157,12 +199,12 @@ enum { MAX_LAPS = 100, MAX_RECORDS = 5 };
 
 /* One lap from slider z0; P(z0) and, in the columns, its derivative. 0: a panel was lost. */
 static int run_lap(mhb_contact *c, const double z0[2], double P[2]) {
-  slider s = {.state = MHB_STICK, .t = 0, .z = {z0[0], z0[1]}};
+  slider s = {.state = MHB_STICK, .t = 0, .z = {z0[0], z0[1]}, .onset = -1};
   double y[3], dy[3];
   mhb_signals_at(&c->signals, 0, y, dy, NULL);
   double f[2] = {y[1] - z0[0], y[2] - z0[1]}, limit = c->slip.mu * y[0], size = hypot(f[0], f[1]);
   mhb_columns_clear(c);
-  if (size >= limit * (1 - 1e-12)) { /* begins on the circle: project, slip if it pulls outwards */
+  if (size >= limit * (1 - 1e-9)) { /* begins on the circle: project, slip if it pulls outwards */
     double d[2], over[2] = {f[0] / limit, f[1] / limit};
     mhb_slip_return(c->K, 1, over, d);
     s.theta            = atan2(d[1], d[0]);
@@ -189,16 +231,33 @@ static int run_lap(mhb_contact *c, const double z0[2], double P[2]) {
   return ok;
 }
 
-/* Newton on P(z) = z; a plain lap, which never expands, where Newton does not gain. Each lap is as accurate as the step
- * it is taken for deserves. Ends when what a step leaves is below enough: its square, times the gain of the lap, for a lap
- * that forgets its start bends little too. 0: not reached. */
-static int close_slider(mhb_contact *c, double enough, double z[2]) {
-  double before = INFINITY, length = .2, P[2], step[2];
+/* How Newton on the periodic slider fares; lengths in units of the friction. */
+typedef struct {
+  double enough; /* what a step may leave */
+  double last;   /* length of the last step; infinite before the first */
+  int    slow;   /* steps do not shrink quadratically: what is left is of their own size */
+} approach;
+
+/* What a step leaves: its square, times the gain of the lap, for a lap that forgets its start bends little too, but not
+ * less than the lap's own error; or, where steps shrink by a ratio, that part of it. */
+static double left_by(const mhb_contact *c, approach *a, double length, double accuracy) {
+  double ratio = length / a->last;
+  a->slow      = ratio > .1 && a->last < 1;
+  a->last      = length;
+  if (a->slow) return length * fmin(1, ratio);
+  return fmax(fmin(length * length, 4) * fmin(1, mhb_columns_gain(c)), 1e-4 * accuracy);
+}
+
+/* Newton on P(z) = z; a plain lap, which never expands, where Newton does not gain; a longer step at a double root, where
+ * slip just begins. Each lap is as accurate as the step it is taken for deserves. 0: not reached. */
+static int close_slider(mhb_contact *c, approach *a, double z[2]) {
+  double before = INFINITY, left = a->last < 1 ? a->last : .03, P[2], step[2];
   int    plain = 0, newton = 0;
   c->record  = 0;
   c->columns = MHB_SLIDER_COLUMN;
   for (; c->info->laps < MAX_LAPS; c->info->laps++) {
-    set_panels(c, fmax(enough, fmin(1e-2, .3 * length * length)));
+    double accuracy = fmax(a->enough, fmin(1e-2, .3 * left));
+    set_panels(c, accuracy);
     if (!run_lap(c, z, P)) return 0;
     double r[2] = {P[0] - z[0], P[1] - z[1]}, size = hypot(r[0], r[1]);
     if (newton && size > .9 * before) plain = 2;
@@ -211,11 +270,13 @@ static int close_slider(mhb_contact *c, double enough, double z[2]) {
       continue;
     }
     mhb_columns_close(c, r, step);
-    length     = hypot(step[0], step[1]);
-    double cut = length > 2 ? 2 / length : 1;
-    z[0] += cut * step[0];
-    z[1] += cut * step[1];
-    if (length * length * fmin(1, mhb_columns_gain(c)) < enough) {
+    double length = hypot(step[0], step[1]) / c->friction, ratio = length / a->last;
+    double stretch = ratio > .3 && ratio < .7 ? 1 / (1 - ratio) : 1;
+    double beyond  = hypot(step[0] - r[0], step[1] - r[1]) / c->friction;
+    double cut     = beyond > 1 ? 1 / beyond : 1; /* of what goes beyond a plain lap */
+    for (int k = 0; k < 2; k++) z[k] += stretch * (r[k] + cut * (step[k] - r[k]));
+    left = left_by(c, a, length, accuracy);
+    if (left < (a->slow ? .1 * c->tolerance : a->enough)) {
       c->info->laps++;
       return 1;
     }
@@ -224,10 +285,10 @@ static int close_slider(mhb_contact *c, double enough, double z[2]) {
 }
 
 /* The lap whose force is wanted, from z. The last Newton step is taken on the force, not by another lap:
- * f += (df/dz) dz, dz = (I - DP)^-1 (P(z) - z). Returns |dz|; negative: the lap was lost. */
-static double record_lap(mhb_contact *c, mhb_columns_mode columns, double z[2]) {
-  double P[2], dz[2];
-  size_t nf  = (size_t)c->nf;
+ * f += (df/dz) dz, dz = (I - DP)^-1 (P(z) - z). Returns how much that changed the force, in units of the friction;
+ * negative: the lap was lost. gap: between the lap's ends, |P(z) - z|, in the same units. */
+static double record_lap(mhb_contact *c, mhb_columns_mode columns, double z[2], double *gap) {
+  double P[2], dz[2], most = 0;
   c->record  = 1;
   c->columns = columns;
   mhb_sums_clear(c);
@@ -235,30 +296,42 @@ static double record_lap(mhb_contact *c, mhb_columns_mode columns, double z[2]) 
   int ok = run_lap(c, z, P);
   mhb_columns_close(c, (double[2]){P[0] - z[0], P[1] - z[1]}, dz);
   mhb_sums_collect(c);
-  double along = c->memory.v[0] * dz[0] + c->memory.v[1] * dz[1];
+  *gap         = hypot(P[0] - z[0], P[1] - z[1]) / c->friction;
+  double along = c->memory.v[0] * dz[0] + c->memory.v[1] * dz[1], work = c->memory.work * along;
   for (int k = 0; k < 2; k++) {
-    for (size_t i = 0; i < nf; i++)
-      c->f[(size_t)k * nf + i] += c->f_slider[(size_t)k * nf + i] * along - c->first[i] * dz[k];
+    for (int i = 0; i < c->nf; i++) {
+      double change = c->f_slider[k * c->nf + i] * along - c->first[i] * dz[k];
+      c->f[k * c->nf + i] += change;
+      most = fmax(most, fabs(change));
+    }
     z[k] += dz[k];
-    c->info->slip_work += c->memory.onset[k] * dz[k];
+    work += c->memory.onset[k] * dz[k];
   }
-  c->info->slip_work += c->memory.work * along;
-  return ok ? hypot(dz[0], dz[1]) : -1;
+  if (fabs(work) <= c->info->slip_work) c->info->slip_work += work; /* else beyond first order */
+  return ok ? 2 / TWO_PI * most / c->friction : -1;
 }
 
 int mhb_lap_closed(mhb_contact *c, const double guess[2]) {
-  mhb_columns_mode wanted  = c->columns == MHB_ALL_COLUMNS ? MHB_ALL_COLUMNS : MHB_SLIDER_COLUMN;
-  double           z[2]    = {guess[0], guess[1]}, left;
-  double           enough  = wanted == MHB_ALL_COLUMNS ? c->tolerance : .1 * sqrt(c->tolerance);
-  int              reached = close_slider(c, enough, z);
-  for (int tries = 0;; tries++) {
-    left = record_lap(c, wanted, z);
-    if (left < 0 || tries == MAX_RECORDS) break;
-    /* a trace shows the lap itself: repeat it until it needs no correction */
-    if (left < (c->pieces.on ? 1e-12 : 10 * enough)) break;
+  mhb_columns_mode wanted = c->columns == MHB_ALL_COLUMNS ? MHB_ALL_COLUMNS : MHB_SLIDER_COLUMN;
+  double           z[2] = {guess[0], guess[1]}, left = 0, gap = 0, sharp = .1 * c->tolerance;
+  approach         a       = {.enough = wanted == MHB_ALL_COLUMNS ? sharp : .1 * sqrt(c->tolerance),
+                              .last   = INFINITY};
+  int              reached = 0, close = 0;
+  double           accept = wanted == MHB_ALL_COLUMNS ? 30 * sharp : 3 * a.enough;
+  for (int tries = 0; tries < MAX_RECORDS && !close && left >= 0; tries++) {
+    reached     = close_slider(c, &a, z);
+    double last = a.last;
+    left        = record_lap(c, wanted, z, &gap);
+    a.last      = left;
+    a.slow      = left > .1 * last;
+    close       = left < (a.slow ? 10 * sharp : accept);
+    a.enough    = sharp;
   }
-  int close = left >= 0 && left < 10 * enough;
+  /* a trace shows the lap itself: repeat it until it needs no correction */
+  for (int tries = 0; c->pieces.on && gap > 1e-12 && tries < MAX_RECORDS; tries++)
+    left = record_lap(c, wanted, z, &gap);
+  double miss = left < 0 ? 1 : reached && !a.slow ? left * left : left;
+  c->info->error += c->friction * (miss + mhb_columns_doubt(c));
   if (wanted == MHB_ALL_COLUMNS) mhb_columns_eliminate_slider(c);
-  c->info->error += left < 0 ? 1 : reached ? left * left : left;
-  return close;
+  return left >= 0 && left < sqrt(c->tolerance);
 }

@@ -45,8 +45,7 @@ static double binomial(int n, int k) {
 /* Column j of the tables: what a value of one at node j and zero elsewhere means. */
 static void table_column(mhb_collocation *rule, const double *node, const double *weight, int j) {
   enum { FIT = 5 };
-  const int degree[3] = {1, 2, MHB_NODES - 1};
-  double    c[MHB_NODES], x = 2 * node[j] - 1;
+  double c[MHB_NODES], x = 2 * node[j] - 1;
   lagrange_monomials(node, j, c);
   rule->end[j] = 0;
   for (int i = 0; i < MHB_NODES; i++) {
@@ -61,8 +60,8 @@ static void table_column(mhb_collocation *rule, const double *node, const double
     rule->bernstein[j][i] = bernstein;
     rule->ahead[j][i]     = ahead;
   }
-  for (int k = 0; k < 3; k++)
-    rule->tail[k][j] = (2 * degree[k] + 1) * weight[j] * legendre(degree[k], x, NULL);
+  for (int k = 0; k < MHB_NODES; k++)
+    rule->legendre[j][k] = (2 * k + 1) * weight[j] * legendre(k, x, NULL);
 }
 
 void mhb_collocation_create(mhb_collocation *rule) {
@@ -164,20 +163,40 @@ MHB_INLINE int invert(const mhb_collocation *rule, mhb_panel *p) {
 MHB_INLINE void place_nodes(const mhb_slip *slip, double t, double h, mhb_panel *p) {
   p->t0     = t;
   p->h      = h;
-  p->frozen = 0;
+  p->frozen = p->stiff = 0;
   lanes_cos_sin(t + h * slip->rule->node, &p->cosine, &p->sine);
   mhb_signals_at_lanes(slip->signals, p->cosine, p->sine, p->y, p->dy);
 }
 
-/* Accuracy of a panel from the Legendre coefficients a_k of th'. Where they fall as r^k, the superconvergent values (the
- * end, the integrals of the force) err by about a_7 r^9; with r^5 = a_7/a_2 that is a_7 (a_7/a_2)^1.8. Where they fall
- * slowly (the singular end at an opening) the ratio is near one and the estimate is a_7 itself. Exponent 1.5: caution. */
+static double power16(double x) {
+  x *= x;
+  x *= x;
+  x *= x;
+  return x * x;
+}
+
+/* Accuracy of a panel, as an integral of force.
+ * Of the direction, from the Legendre coefficients a_k of th'. Where they fall as r^k, the superconvergent values (the end,
+ * the integrals) err by about a_6 r^10, that is a_6 (a_6/a_2)^2 or less; pairs of coefficients stand for one, since one
+ * may vanish. Where they fall slowly (the singular end at an opening) the ratio is near one and the estimate is a_6
+ * itself. What rounding makes of th' is not an error of the panel; nor is, where th' is stiff, the polynomial's way from a
+ * start that is off: there the coefficients are those of
+ * theta at the nodes, and the end errs by a_6 (a_6/a_2), for a time of h/20 at most. What the end errs by is carried on: over a radian or what is left of the interval; while n
+ * grows it counts by the largest n that may come.
+ * Of the sums: Gauss quadrature of exp(j k t) errs by h (8!)^4/(17 (16!)^3) (k h)^16, k the highest harmonic wanted plus
+ * that of the force. */
 MHB_INLINE double panel_error(const mhb_slip *slip, const mhb_panel *p) {
-  const mhb_lanes *tail  = slip->rule->tail;
-  double           high  = fabs(lanes_sum(tail[2] * p->F));
-  double           low   = fabs(lanes_sum(tail[0] * p->F)) + fabs(lanes_sum(tail[1] * p->F));
-  double           ratio = high < low ? high / low : 1;
-  return high * ratio * sqrt(ratio) * p->h * slip->mu * lanes_top(p->y[0]);
+  mhb_lanes values = p->stiff ? (p->theta - p->theta0) / p->h : p->F;
+  mhb_lanes a      = lanes_abs(apply(slip->rule->legendre, values));
+  mhb_lanes pull   = (lanes_abs(p->dy[1]) + lanes_abs(p->dy[2])) * (1 + lanes_abs(p->beta));
+  double    noise  = p->stiff ? 0 : 1e-15 * lanes_top(pull / (slip->mu * p->y[0]));
+  double    high = a[6] + a[7] > noise ? a[6] + a[7] - noise : 0, low = a[1] + a[2];
+  double    ratio = high < low ? high / low : 1, n = lanes_top(p->y[0]);
+  double    carried = p->dy[0][MHB_NODES - 1] > 0 && !p->stiff ? slip->peak : n;
+  if (p->left < 1) carried *= p->left;
+  double wave   = (slip->harmonic + lanes_top(lanes_abs(values))) * p->h;
+  double turned = high * ratio * (p->stiff ? p->h : ratio);
+  return p->h * slip->mu * (turned * carried + 1.7e-23 * power16(wave) * n);
 }
 
 /* e and gamma after the last small step of theta, to its third power, K = k I. */
@@ -190,7 +209,9 @@ MHB_INLINE void turn(mhb_panel *p, mhb_lanes step) {
   p->e[1] = c * p->e[1] + step * e0;
 }
 
-/* Newton on the collocation equations from theta, the matrix kept while it converges well; 1 if converged. */
+/* Newton on the collocation equations from theta, the matrix kept while it converges well; 1 if converged.
+ * The end: Gauss collocation carries an error of the start to the end undamped where h F_theta -> -infinity, though it
+ * hardly shows at the nodes; there the end is extrapolated from the nodes. */
 MHB_INLINE int collocate(const mhb_slip *slip, mhb_panel *p) {
   const mhb_collocation *rule   = slip->rule;
   mhb_lanes              over   = 1 / (slip->mu * p->y[0]);
@@ -201,8 +222,9 @@ MHB_INLINE int collocate(const mhb_slip *slip, mhb_panel *p) {
     rate(slip, over, p);
     if (i == 16) return 0;
     if (!fresh && !invert(rule, p)) return 0;
-    step        = apply(p->inverse, p->theta0 + p->h * apply(rule->A, p->F) - p->theta);
-    double size = lanes_top(lanes_abs(step));
+    step           = apply(p->inverse, p->theta0 + p->h * apply(rule->A, p->F) - p->theta);
+    double size    = lanes_top(lanes_abs(step));
+    int    stalled = i > 1 && size > .5 * before && size < 1e-7; /* at what rounding leaves of F */
     if (!(size < 4) || (i > 5 && size > .5 * before && size > 1e-7)) return 0;
     p->theta += step;
     p->F +=
@@ -212,7 +234,7 @@ MHB_INLINE int collocate(const mhb_slip *slip, mhb_panel *p) {
     fresh = size < .1 * before || i == 0; /* as good a matrix as any */
     if (size > .05) fresh = 0;
     before = size;
-    if (size < 1e-14) break;
+    if (size < 1e-14 || stalled) break;
   }
   if (slip->linearized || before * before * before > slip->tolerance || slip->half != 0 ||
       slip->skew != 0) {
@@ -221,7 +243,9 @@ MHB_INLINE int collocate(const mhb_slip *slip, mhb_panel *p) {
   } else {
     turn(p, step);
   }
-  p->theta1 = p->theta0 + p->h * lanes_sum(rule->weight * p->F);
+  p->stiff  = p->h * lanes_top(p->F_theta) < -20;
+  p->theta1 = p->stiff ? lanes_sum(rule->end * p->theta)
+                       : p->theta0 + p->h * lanes_sum(rule->weight * p->F);
   p->error  = panel_error(slip, p);
   return isfinite(p->theta1);
 }
@@ -317,6 +341,15 @@ static double falling_root(const double *c, double lo, double hi, double x) {
   return x;
 }
 
+/* De Casteljau: the Bernstein coefficients b on the parts before and after fraction s. */
+static void split(const double *b, double s, double *left, double *right) {
+  memcpy(right, b, sizeof(double) * MHB_NODES);
+  for (int k = 0; k < MHB_NODES; k++) {
+    left[k] = right[0];
+    for (int i = 0; i + k + 1 < MHB_NODES; i++) right[i] += s * (right[i + 1] - right[i]);
+  }
+}
+
 /* First root in (lo, hi) of the polynomial c, of Bernstein coefficients b there, from above; 2: none. It stays in the
  * hull of its coefficients, and has no more roots than they change sign. */
 static double first_fall(const double *c, const double *b, double lo, double hi, double slack,
@@ -333,31 +366,42 @@ static double first_fall(const double *c, const double *b, double lo, double hi,
   if (!low) return 2;
   if (changes == 1) return falling_root(c, lo, hi, lo + cross * (hi - lo));
   if (depth == 30) return b[MHB_NODES - 1] < 0 ? hi : 2;
-  double left[MHB_NODES], right[MHB_NODES]; /* de Casteljau */
-  memcpy(right, b, sizeof right);
-  for (int k = 0; k < MHB_NODES; k++) {
-    left[k] = right[0];
-    for (int i = 0; i + k + 1 < MHB_NODES; i++) right[i] = .5 * (right[i] + right[i + 1]);
-  }
+  double left[MHB_NODES], right[MHB_NODES];
+  split(b, .5, left, right);
   double middle = .5 * (lo + hi), root = first_fall(c, left, lo, middle, slack, depth + 1);
   return root <= 1 ? root : first_fall(c, right, middle, hi, slack, depth + 1);
 }
 
-/* Fraction of the panel at which gamma first turns negative; > 1 if it does not. */
-static double slip_end(const mhb_slip *slip, const mhb_panel *p) {
-  double c[MHB_NODES], hull[MHB_NODES], slack;
-  if (!gamma_falls(slip, p, hull, &slack)) return 2;
-  gamma_powers(slip, p, c);
-  if (p->gamma[0] < 0 && hull[0] <= slack) return 0;
-  if (hull[0] < 0) hull[0] = 0; /* begins at gamma = 0 */
-  return first_fall(c, hull, 0, 1, slack, 0);
+/* gamma at fraction 0 or 1 of the panel, not of the interpolant; *size: of the terms it is made of. */
+static double gamma_at(const mhb_slip *slip, const mhb_panel *p, int end, double *size) {
+  double y[3], dy[3];
+  mhb_signals_at(slip->signals, end ? p->t0 + p->h : p->t0, y, dy, NULL);
+  mhb_direction d = mhb_slip_direction(slip->K, end ? p->theta1 : p->theta0);
+  *size           = fabs(dy[1]) + fabs(dy[2]) + slip->mu * fabs(dy[0]);
+  return mhb_slip_gamma(slip, &d, dy);
 }
 
-/* Shorten the panel until gamma = 0 at its very end. */
+/* Fraction of the panel at which gamma first turns negative; > 1 if it does not. The interpolant is trusted between the
+ * nodes only: what happens before the first one is told by the panel's start. */
+static double slip_end(const mhb_slip *slip, const mhb_panel *p) {
+  double c[MHB_NODES], hull[MHB_NODES], left[MHB_NODES], right[MHB_NODES], slack, size;
+  if (!gamma_falls(slip, p, hull, &slack)) return 2;
+  double first = slip->rule->node[0];
+  if (p->gamma[0] < 0) {
+    double start = gamma_at(slip, p, 0, &size);
+    return start <= 0 ? 0 : first * start / (start - p->gamma[0]);
+  }
+  gamma_powers(slip, p, c);
+  split(hull, first, left, right);
+  right[0] = p->gamma[0];
+  return first_fall(c, right, first, 1, slack, 0);
+}
+
+/* Shorten the panel until gamma = 0 at its very end. If that comes near zero only, slip goes on. */
 static mhb_slip_outcome settle_end(const mhb_slip *slip, double fraction, mhb_panel *p) {
   double close = fmax(1e-12, .01 * slip->tolerance), whole = p->h;
   for (int i = 0; i < 8; i++) {
-    double c[MHB_NODES], slope;
+    double c[MHB_NODES], slope, size;
     if (fraction * p->h < 1e-12) {
       p->h      = 0;
       p->theta1 = p->theta0;
@@ -365,8 +409,10 @@ static mhb_slip_outcome settle_end(const mhb_slip *slip, double fraction, mhb_pa
     }
     if (!solve_part(slip, fraction, p)) return MHB_SLIP_LOST;
     gamma_powers(slip, p, c);
-    double step = -polynomial(c, 1, &slope) / slope;
-    if (!(fabs(step * p->h) > close) || fabs(step) > .5) break;
+    polynomial(c, 1, &slope);
+    double gamma = gamma_at(slip, p, 1, &size), step = -gamma / slope;
+    if (fabs(step * p->h) <= close) break;
+    if (!(fabs(step) <= .5)) return gamma > 1e-10 * size ? MHB_SLIP_ON : MHB_SLIP_ENDS;
     fraction = fmin(1 + step, whole / p->h);
   }
   return MHB_SLIP_ENDS;
@@ -377,17 +423,19 @@ MHB_HOT static void freeze(const mhb_slip *slip, double t, double h, double thet
   place_nodes(slip, t, h, p);
   p->theta = lanes_all(theta);
   rate(slip, 1 / (slip->mu * p->y[0]), p);
+  double turned =
+      fmin(1, fabs(p->F[0]) * h); /* it would turn by about as much, over half the sliver's force */
+  p->error = .25 * slip->mu * p->y[0][0] * h * turned;
   p->F = p->F_theta = lanes_all(0);
   p->theta0 = p->theta1 = theta;
   for (int j = 0; j < MHB_NODES; j++) {
     p->inverse[j]    = lanes_all(0);
     p->inverse[j][j] = 1;
   }
-  p->error  = 0;
   p->frozen = 1;
 }
 
-static const double SHORTEST = 1e-9;
+static const double SHORTEST = 1e-13;
 
 mhb_slip_outcome mhb_slip_panel(const mhb_slip *slip, double t, double theta, double limit,
                                 int opening, double *suggested, mhb_panel *panel) {
@@ -396,13 +444,14 @@ mhb_slip_outcome mhb_slip_panel(const mhb_slip *slip, double t, double theta, do
     freeze(slip, t, left, theta, panel);
     return MHB_SLIP_AT_LIMIT;
   }
+  panel->left = opening ? left : 1;
   forecast ahead;
   forecast_from(slip, panel, t, &ahead);
   double h = opening ? fmin(*suggested, .8 * left) : left / ceil(left / *suggested - 1e-9);
   for (;;) {
     double shrink = .5;
     if (solve_panel(slip, &ahead, t, h, theta, panel)) {
-      if (panel->error < slip->tolerance || h < 1e-4) break;
+      if (panel->error < slip->tolerance || h < 1e-4 * panel->left) break;
       shrink = fmax(.25, .9 * pow(slip->tolerance / panel->error, 1. / 16));
     } else {
       memset(&ahead, 0, sizeof ahead);

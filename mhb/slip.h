@@ -26,7 +26,7 @@ typedef struct {
   mhb_lanes ahead[MHB_NODES];     /* coefficients of (s - 1)^k of the fit of degree 5 */
   mhb_lanes bernstein[MHB_NODES]; /* Bernstein coefficients of the interpolant, degree 7 */
   mhb_lanes end;                  /* weights of the interpolant's value at s = 1 */
-  mhb_lanes tail[3];              /* weights of the Legendre coefficients of degree 1, 2 and 7 */
+  mhb_lanes legendre[MHB_NODES];  /* Legendre coefficients of the interpolant */
 } mhb_collocation;
 
 void mhb_collocation_create(mhb_collocation *rule);
@@ -38,6 +38,8 @@ typedef struct {
   double                 K[2][2];
   double                 mean, half, skew; /* K = mean I + [half skew; skew -half] */
   double                 mu;
+  double                 peak;      /* largest n of the period */
+  double                 harmonic;  /* highest one the panels' sums must resolve */
   double                 longest;   /* panel, rad; at most 1.5 */
   double                 tolerance; /* bound on a panel's error, force units */
   double                 sliver;    /* rad before an opening over which the direction is held */
@@ -48,7 +50,9 @@ typedef struct {
 /* One panel of slip. */
 typedef struct {
   double    t0, h, theta0, theta1;
+  int       stiff;        /* theta1 extrapolates the nodes: see collocate in slip.c */
   int       frozen;       /* the last sliver before an opening: theta is held */
+  double    left;         /* of the interval in which the contact is closed, from t0 on */
   double    error;        /* estimate for this panel, force units; see panel_error in slip.c */
   mhb_lanes cosine, sine; /* of the phase at the nodes */
   mhb_lanes theta, e[2];  /* direction of the friction */

@@ -252,7 +252,7 @@ static void two_discs(const discs *set, const mhb_stuck *stuck, const double val
     rhs[i] = d.r * set->mu * value[i][0] - row[i][0] * value[i][1] - row[i][1] * value[i][2];
   }
   double det   = row[0][0] * row[1][1] - row[0][1] * row[1][0];
-  double small = 1e-8 * (hypot(row[0][0], row[0][1]) * hypot(row[1][0], row[1][1]));
+  double small = 1e-7 * (hypot(row[0][0], row[0][1]) * hypot(row[1][0], row[1][1]));
   if (fabs(det) < small) det = copysign(small, det); /* tangent discs: the derivative is capped */
   dc[0] = (rhs[0] * row[1][1] - rhs[1] * row[0][1]) / det;
   dc[1] = (row[0][0] * rhs[1] - row[1][0] * rhs[0]) / det;

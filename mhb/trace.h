@@ -15,7 +15,8 @@ typedef struct {
  *   motion  in      [3][2m+1] as in mhb_contact_force, m
  *   sample  in out  [count]
  *   info    out     as in mhb_contact_force; lost is set too where the pieces found no room
- * Not finite: NaN. Here the periodic slider is iterated until a lap closes to 1e-12 of the force scale. */
+ * Not finite: NaN. Here laps are repeated until one closes to 1e-12 of the friction, or as
+ * near as their tolerance lets them. */
 void mhb_contact_trace(mhb_contact *contact, const mhb_law *law, const double *motion, int count,
                        mhb_contact_sample *sample, mhb_contact_info *info);
 

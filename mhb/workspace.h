@@ -37,8 +37,10 @@ struct mhb_contact {
   double          scale;   /* force scale, N */
   double          K[2][2]; /* Ku/scale */
   double          kv;      /* kv/scale */
-  double          content; /* harmonic that stands for the motion's, amplitude weighted */
-  double         *scaled;  /* [3][nb] coefficients of (n, x_1, x_2) */
+  double  force; /* the mean normal load or the friction it allows: what errors are relative to */
+  double  friction; /* the friction it allows, or all the motion can do; both in units of scale */
+  double  content;  /* harmonic that stands for the motion's, amplitude weighted */
+  double *scaled;   /* [3][nb] coefficients of (n, x_1, x_2) */
   mhb_lanes
       *sum; /* [nf][4] slip: integrals of friction times basis, and their change by the slider */
   mhb_lanes        *load;     /* [2(H+m)+1][2] slip: integrals of mu kv e times basis */
@@ -57,7 +59,8 @@ struct mhb_contact {
   double           *basis0;     /* [2][nb] basis and slope at an event */
   mhb_columns_mode  columns;
   mhb_memory        memory;
-  int               record; /* this lap's force is wanted */
+  int               record;  /* this lap's force is wanted */
+  double            squares; /* sum of the squares of the panels' errors */
   mhb_contact_info *info;
   mhb_pieces        pieces; /* of the recorded lap, for a trace */
   double           *traced; /* [3][nf] force of a trace */
@@ -98,6 +101,10 @@ void mhb_columns_stick(mhb_contact *contact);
 
 /* |DP|: how much of a change of the slider is left after a lap. */
 double mhb_columns_gain(const mhb_contact *contact);
+
+/* What rounding leaves of the slider, in units of the friction: a lap is good to some 4e-13, its fixed point to that by
+ * det(I - DP), where slip just begins (a double root) to the square root. */
+double mhb_columns_doubt(const mhb_contact *contact);
 
 /* What a change r of the lap's result means for its start: dz = (I - DP)^-1 r, det(I - DP) held above 1e-7. */
 void mhb_columns_close(const mhb_contact *contact, const double r[2], double dz[2]);

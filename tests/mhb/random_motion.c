@@ -54,7 +54,7 @@ static void draw_law(int mild, mhb_law *law, unsigned long *state) {
   law->kv     = k * log_between(-range, range, state);
   law->ku[0]  = k;
   law->ku[2]  = one_in(4, state) ? k : k * log_between(-range, range, state);
-  double skew = mild ? between(0, .8, state) : 1 - log_between(-12, 0, state);
+  double skew = mild ? between(0, .8, state) : 1 - log_between(-3, 0, state);
   if (one_in(2, state)) skew = 0;
   law->ku[1] = (one_in(2, state) ? -1 : 1) * skew * sqrt(law->ku[0]) * sqrt(law->ku[2]);
 }

@@ -18,7 +18,7 @@ typedef struct {
 
 /* mild: moderate ratios, for comparisons to many digits; else
  *   mu         0 (1 in 20), else 1e-3 .. 1e6, logarithmic
- *   stiffness  kv/kuu and kww/kuu 1e-6 .. 1e6, logarithmic; half of them skew, up to 1 - 1e-12 of singular
+ *   stiffness  kv/kuu and kww/kuu 1e-6 .. 1e6, logarithmic; half of them skew, up to 1 - 1e-3 of singular
  *   preload    deep gap to deep stuck: n0 from -1e4 to 1e4 times the amplitude of kv v, half of them within 1.2
  *   motion     1 .. 20 harmonics decaying like k^0 .. k^-3, some absent; friction reaching for .03 .. 30 times the limit
  *              in half of the cases and for anything in the others; now and then in phase, in one direction, without v */

@@ -93,19 +93,9 @@ static void tolerance_is_met(void **state) {
   assert_int_equal(failed, 0);
 }
 
-/* Estimates are relative to the largest force in sight, errors here to the largest harmonic. */
-static double estimate_of(const suite_motion *s, const answer *a) {
-  const double *v = s->motion[0], *u = s->motion[1], *w = s->motion[2], *k = s->law.ku;
-  double        load = fabs(s->law.n0), friction = 0;
-  for (int i = 0; i < NB; i++) {
-    load += s->law.kv * fabs(v[i]);
-    friction += hypot(k[0] * u[i] + k[1] * w[i], k[1] * u[i] + k[2] * w[i]);
-  }
-  return a->info.error * fmax(load, friction) / largest(a->force);
-}
-
 /* Honest: the estimate is within a factor of ten of the true error. Too small by more is admitted below 1e-12 only, where
- * rounding decides; too large by more only while both are below a hundredth of what was asked for. */
+ * rounding decides; too large by more only while both are below a twentieth of what was asked for: where panels happen
+ * to cancel, as on a circle, the true error may be anything. */
 static void estimate_is_honest(void **state) {
   (void)state;
   int failed = 0;
@@ -115,9 +105,9 @@ static void estimate_is_honest(void **state) {
       suite_motion s = suite_at(i);
       answer       a;
       evaluate(contact, &s, NULL, &a);
-      double error = true_error(i, &a), estimate = estimate_of(&s, &a);
+      double error = true_error(i, &a), estimate = a.info.error;
       int    optimistic  = error > 1e-12 && error > 10 * estimate;
-      int    pessimistic = estimate > 10 * error && estimate > .01 * asked[k];
+      int    pessimistic = estimate > 10 * error && estimate > .05 * asked[k];
       if (!optimistic && !pessimistic) continue;
       print_message("tolerance %.0e, %s: error %.1e, estimate %.1e\n", asked[k], s.name, error,
                     estimate);
@@ -382,7 +372,7 @@ static void derivative_is_capped_where_slip_begins(void **state) {
       if (!(slope_a < 3e8 && slope_b < 3e8))
         fail_msg("%s: %.1e, %.1e", under.name, slope_a, slope_b);
       double jump  = apart(a.force, b.force) / largest(b.force);
-      double doubt = estimate_of(&under, &a) + estimate_of(&over, &b);
+      double doubt = a.info.error + b.info.error;
       if (jump < 3 * sqrt(d) + 10 * doubt + 1e-8) continue;
       print_message("%s: %.1e across %.0e, estimate %.1e\n", under.name, jump, 2 * d, doubt);
       failed++;

@@ -328,8 +328,9 @@ static void random_motions(void **state) {
                  s.law.mu * sample[l].n);
       if (l > 0) share[sample[l].state] += 1. / (N - 1);
     }
-    for (int a = 0; a < 3; a++)
-      assert_true(fabs(component(&sample[0], a) - component(&sample[N - 1], a)) <= 1e-9 * scale);
+    for (int a = 0; a < 3;
+         a++) /* where slip is stiff a lap's end is less accurate than its force */
+      assert_true(fabs(component(&sample[0], a) - component(&sample[N - 1], a)) <= 5e-9 * scale);
     for (int k = 0; k < 3; k++)
       assert_true(fabs(share[k] - s.info.share[k]) <= (1. + s.info.n_transitions) / (N - 1));
   }

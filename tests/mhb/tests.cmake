@@ -7,8 +7,6 @@ shb_test(mhb continuity fast shb_contact)
 target_sources(test_mhb_continuity PRIVATE mhb/suite.c)
 shb_test(mhb random fast shb_contact)
 target_sources(test_mhb_random PRIVATE mhb/random_motion.c mhb/reference.c mhb/series.c)
-# Goals the law does not reach everywhere yet (run by hand: bin/test_mhb_accuracy ...); a name goes when it passes.
-set_tests_properties(mhb.accuracy mhb.continuity mhb.random PROPERTIES DISABLED TRUE)
 shb_test(mhb trace fast shb_contact)
 shb_test(mhb sweep fast shb_mhb)
 target_sources(test_mhb_sweep PRIVATE mhb/solution.c mhb/three_degree.c)
