@@ -158,6 +158,23 @@ static double refine(const discs *set, const double c[2], double t, double width
   return t;
 }
 
+/* The best of some points about a local maximum of the grid: where n nearly touches zero the summit is narrower than a
+ * cell. */
+static double scan(const discs *set, const double c[2], double t, double width) {
+  enum { POINTS = 3 };
+  double best = -INFINITY, at = t;
+  for (int i = -POINTS; i <= POINTS; i++) {
+    double v[3], dv[3], here = t + width * i / (POINTS + 1);
+    mhb_signals_at(set->signals, here, v, dv, NULL);
+    disc   d = disc_of(set, here, v);
+    double g = violation(&d, c);
+    if (g <= best) continue;
+    best = g;
+    at   = here;
+  }
+  return at;
+}
+
 /* Add refined times of local maxima that violate; the number added. */
 static int add_violated(discs *set, const double c[2]) {
   int    n = set->signals->n_grid, added = 0;
@@ -167,7 +184,7 @@ static int add_violated(discs *set, const double c[2]) {
          right  = disc_at(set, (i + 1) % n);
     double here = violation(&mid, c);
     if (here < violation(&left, c) || here < violation(&right, c)) continue;
-    double v[3], dv[3], t = refine(set, c, mid.t, width);
+    double v[3], dv[3], t = refine(set, c, scan(set, c, mid.t, width), .5 * width);
     mhb_signals_at(set->signals, t, v, dv, NULL);
     disc d = disc_of(set, t, v);
     if (violation(&d, c) <= 2e-13 * set->scale) continue;
@@ -208,13 +225,25 @@ static void sharpen(const discs *set, mhb_stuck *stuck) {
   for (int k = 0; k < 2; k++) stuck->c[k] = -s.e[k] * fmax(0, s.size - s.r);
 }
 
+/* The mean over time of |f + c| <= mu n, f of zero mean, is |c| <= mu mean n: where |f| > mu (n + mean n) no c will do. */
+MHB_HOT static int hopeless(const mhb_signals *s, double mu) {
+  const double *mean = s->coefficient;
+  mhb_lanes     most = lanes_all(-INFINITY);
+  for (int i = 0; i < s->n_grid; i += MHB_LANES) {
+    mhb_lanes a = lanes_load(s->value[1] + i) - mean[1], b = lanes_load(s->value[2] + i) - mean[2];
+    mhb_lanes r = mu * (lanes_load(s->value[0] + i) + mean[0]);
+    most        = lanes_max(most, a * a + b * b - 1.0001 * r * r);
+  }
+  return lanes_top(most) > 0;
+}
+
 void mhb_stuck_solve(const mhb_signals *signals, double mu, mhb_stuck *stuck) {
+  *stuck = (mhb_stuck){0};
+  if (hopeless(signals, mu)) return;
   discs set       = {.signals = signals, .mu = mu};
   set.scale       = signals->bound[1][0] + signals->bound[2][0] + DBL_MIN;
   disc active[3]  = {{{0}, 0, 0}};
   int  n_active   = 0;
-  stuck->c[0]     = 0;
-  stuck->c[1]     = 0;
   stuck->feasible = solve_known(&set, stuck, active, &n_active);
   for (int i = 0; i < 12 && stuck->feasible; i++) {
     if (!add_violated(&set, stuck->c)) break;
