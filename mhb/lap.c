@@ -142,11 +142,11 @@ static int run_closed(mhb_contact *c, slider *s, double end, int opening) {
 /* How long and how accurate panels are. A lap whose force is wanted must resolve the highest harmonic too: panel_error
  * in slip.c. */
 static void set_panels(mhb_contact *c, double tolerance) {
-  double reach      = sqrt(sqrt(sqrt(sqrt(.3 * tolerance / 1.7e-23))));
+  double reach      = sqrt(sqrt(sqrt(sqrt(.2 * tolerance / 1.7e-23))));
   double wanted     = c->record ? c->H : 0;
   c->slip.harmonic  = wanted + .5 * c->content;
   c->slip.longest   = fmin(1.5, reach / (wanted + 2 * c->content + 1));
-  c->slip.tolerance = .3 * tolerance * c->force;
+  c->slip.tolerance = .2 * tolerance * c->force;
 }
 
 /* The direction may be held over tau before an opening: what it misses is some mu n' tau^2/2. */
@@ -286,8 +286,10 @@ static int close_slider(mhb_contact *c, approach *a, double z[2]) {
 
 /* The lap whose force is wanted, from z. The last Newton step is taken on the force, not by another lap:
  * f += (df/dz) dz, dz = (I - DP)^-1 (P(z) - z). Returns how much that changed the force, in units of the friction;
- * negative: the lap was lost. gap: between the lap's ends, |P(z) - z|, in the same units. */
-static double record_lap(mhb_contact *c, mhb_columns_mode columns, double z[2], double *gap) {
+ * negative: the lap was lost. gap: between the lap's ends, |P(z) - z|, step: |dz|, in the
+ * same units. */
+static double record_lap(mhb_contact *c, mhb_columns_mode columns, double z[2], double *gap,
+                         double *step) {
   double P[2], dz[2], most = 0;
   c->record  = 1;
   c->columns = columns;
@@ -297,6 +299,7 @@ static double record_lap(mhb_contact *c, mhb_columns_mode columns, double z[2], 
   mhb_columns_close(c, (double[2]){P[0] - z[0], P[1] - z[1]}, dz);
   mhb_sums_collect(c);
   *gap         = hypot(P[0] - z[0], P[1] - z[1]) / c->friction;
+  *step        = hypot(dz[0], dz[1]) / c->friction;
   double along = c->memory.v[0] * dz[0] + c->memory.v[1] * dz[1], work = c->memory.work * along;
   for (int k = 0; k < 2; k++) {
     for (int i = 0; i < c->nf; i++) {
@@ -313,24 +316,24 @@ static double record_lap(mhb_contact *c, mhb_columns_mode columns, double z[2], 
 
 int mhb_lap_closed(mhb_contact *c, const double guess[2]) {
   mhb_columns_mode wanted = c->columns == MHB_ALL_COLUMNS ? MHB_ALL_COLUMNS : MHB_SLIDER_COLUMN;
-  double           z[2] = {guess[0], guess[1]}, left = 0, gap = 0, sharp = .1 * c->tolerance;
-  approach         a       = {.enough = wanted == MHB_ALL_COLUMNS ? sharp : .1 * sqrt(c->tolerance),
-                              .last   = INFINITY};
-  int              reached = 0, close = 0;
-  double           accept = wanted == MHB_ALL_COLUMNS ? 30 * sharp : 3 * a.enough;
+  double   z[2] = {guess[0], guess[1]}, left = 0, gap = 0, step = 0, sharp = .1 * c->tolerance;
+  approach a       = {.enough = wanted == MHB_ALL_COLUMNS ? sharp : .1 * sqrt(c->tolerance),
+                      .last   = INFINITY};
+  int      reached = 0, close = 0;
+  double   accept = wanted == MHB_ALL_COLUMNS ? 30 * sharp : 3 * a.enough;
   for (int tries = 0; tries < MAX_RECORDS && !close && left >= 0; tries++) {
     reached     = close_slider(c, &a, z);
     double last = a.last;
-    left        = record_lap(c, wanted, z, &gap);
+    left        = record_lap(c, wanted, z, &gap, &step);
     a.last      = left;
     a.slow      = left > .1 * last;
-    close       = left < (a.slow ? 10 * sharp : accept);
+    close       = left < (a.slow ? 10 * sharp : accept) && step * step < c->tolerance;
     a.enough    = sharp;
   }
   /* a trace shows the lap itself: repeat it until it needs no correction */
   for (int tries = 0; c->pieces.on && gap > 1e-12 && tries < MAX_RECORDS; tries++)
-    left = record_lap(c, wanted, z, &gap);
-  double miss = left < 0 ? 1 : reached && !a.slow ? left * left : left;
+    left = record_lap(c, wanted, z, &gap, &step);
+  double miss = left < 0 ? 1 : reached && !a.slow ? fmax(left * left, step * step) : left;
   c->info->error += c->friction * (miss + mhb_columns_doubt(c));
   if (wanted == MHB_ALL_COLUMNS) mhb_columns_eliminate_slider(c);
   return left >= 0 && left < sqrt(c->tolerance);

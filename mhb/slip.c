@@ -215,7 +215,7 @@ MHB_INLINE void turn(mhb_panel *p, mhb_lanes step) {
 MHB_INLINE int collocate(const mhb_slip *slip, mhb_panel *p) {
   const mhb_collocation *rule   = slip->rule;
   mhb_lanes              over   = 1 / (slip->mu * p->y[0]);
-  double                 before = INFINITY, left = INFINITY, enough = .03 * slip->tolerance;
+  double                 before = INFINITY, left = INFINITY, enough = .3 * slip->tolerance;
   int                    fresh = 0;
   mhb_lanes              step  = lanes_all(0);
   for (int i = 0; left > enough; i++) {
