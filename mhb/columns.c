@@ -296,7 +296,7 @@ double mhb_columns_gain(const mhb_contact *c) {
 }
 
 double mhb_columns_doubt(const mhb_contact *c) {
-  return c->memory.slipped ? fmin(2e-6, 4e-13 / fabs(closure(c, 1e-12))) : 0;
+  return c->memory.slipped ? fmin(4e-6, 4e-13 / fabs(closure(c, 1e-12))) : 0;
 }
 
 void mhb_columns_close(const mhb_contact *c, const double r[2], double dz[2]) {
