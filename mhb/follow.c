@@ -7,23 +7,25 @@
 
 #include "mesh/progress.h"
 #include "mhb/record.h"
+#include "mhb/truncation.h"
 
 static const double PI = 3.14159265358979323846;
 
 /* A branch under way. */
 typedef struct {
-  mhb_residual *residual;
-  mhb_path     *path;
-  mhb_response *response;
-  int           branch;
-  mhb_monitor  *monitor;
-  int           n_outputs;
-  double       *before, *after; /* [outputs] slopes of the amplitudes at now and next */
-  double       *x;              /* [n] a first solution */
-  double        clock;
-  double        farthest;       /* rad/s, highest frequency reached */
-  int           crawling, gaps; /* tiny steps in a row; places jumped over */
-  char          first_gap[96];
+  mhb_residual   *residual;
+  mhb_path       *path;
+  mhb_truncation *truncation;
+  mhb_response   *response;
+  int             branch;
+  mhb_monitor    *monitor;
+  int             n_outputs;
+  double         *before, *after; /* [outputs] slopes of the amplitudes at now and next */
+  double         *x;              /* [n] a first solution */
+  double          clock;
+  double          farthest;       /* rad/s, highest frequency reached */
+  int             crawling, gaps; /* tiny steps in a row; places jumped over */
+  char            first_gap[96];
 } follower;
 
 /* A path whose steps stay below CRAWL this often is as good as stalled. */
@@ -41,8 +43,9 @@ static double peak_indicator(const mhb_path *path, const mhb_path_point *point, 
 
 /* Record a point; false: stop. */
 static shb_status record(follower *f, mhb_path_point *point, int special, bool *go_on) {
-  mhb_residual_errors(f->residual, point->x, point->omega, &point->truncation, &point->modal);
-  double now = shb_seconds();
+  point->truncation = mhb_truncation_error(f->truncation, point->x, point->omega);
+  point->modal      = mhb_modal_error(f->residual, point->x);
+  double now        = shb_seconds();
   f->monitor->lock(f->monitor, true);
   shb_status status =
       mhb_record(f->response, f->branch, f->residual, point, special, now - f->clock);
@@ -231,31 +234,47 @@ static shb_status finish(follower *f, const char *reason) {
   return status;
 }
 
+/* What a branch needs, all made before the first point; on failure the caller destroys what is there. */
+static shb_status create(follower *f) {
+  const double *range   = f->residual->settings->frequency;
+  size_t        outputs = (size_t)f->n_outputs + 1;
+  SHB_TRY(mhb_path_create(f->residual, 2 * PI * range[0], 2 * PI * range[1], &f->path));
+  f->monitor->lock(f->monitor, true); /* FFTW's planner */
+  shb_status status = mhb_truncation_create(f->residual, &f->truncation);
+  f->monitor->lock(f->monitor, false);
+  SHB_TRY(status);
+  f->before = calloc(outputs, sizeof(double));
+  f->after  = calloc(outputs, sizeof(double));
+  f->x      = calloc((size_t)f->residual->n, sizeof(double));
+  SHB_CHECK(f->before && f->after && f->x, SHB_ERR_IO, "out of memory");
+  return SHB_OK;
+}
+
+static void destroy(follower *f) {
+  f->monitor->lock(f->monitor, true);
+  mhb_truncation_destroy(f->truncation);
+  f->monitor->lock(f->monitor, false);
+  mhb_path_destroy(f->path);
+  free(f->before);
+  free(f->after);
+  free(f->x);
+}
+
 shb_status mhb_follow(mhb_residual *residual, mhb_response *response, int branch,
                       mhb_monitor *monitor) {
-  const mhb_settings *s = residual->settings;
-  follower            f = {.residual  = residual,
-                           .response  = response,
-                           .branch    = branch,
-                           .monitor   = monitor,
-                           .n_outputs = mhb_outputs(residual),
-                           .clock     = shb_seconds(),
-                           .farthest  = 2 * PI * s->frequency[0]};
-  SHB_TRY(mhb_path_create(residual, 2 * PI * s->frequency[0], 2 * PI * s->frequency[1], &f.path));
-  size_t outputs    = (size_t)f.n_outputs + 1;
-  f.before          = calloc(outputs, sizeof(double));
-  f.after           = calloc(outputs, sizeof(double));
-  f.x               = calloc((size_t)residual->n, sizeof(double));
-  shb_status status = SHB_ERR_IO;
-  if (f.before && f.after && f.x) {
+  const mhb_settings *s      = residual->settings;
+  follower            f      = {.residual  = residual,
+                                .response  = response,
+                                .branch    = branch,
+                                .monitor   = monitor,
+                                .n_outputs = mhb_outputs(residual),
+                                .clock     = shb_seconds(),
+                                .farthest  = 2 * PI * s->frequency[0]};
+  shb_status          status = create(&f);
+  if (status == SHB_OK) {
     const char *why = run(&f, s->max_points, &status);
     if (status == SHB_OK) status = finish(&f, why);
-  } else {
-    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   }
-  free(f.before);
-  free(f.after);
-  free(f.x);
-  mhb_path_destroy(f.path);
+  destroy(&f);
   return status;
 }

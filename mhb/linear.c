@@ -6,6 +6,7 @@
 #include "mesh/progress.h"
 #include "mhb/follow.h"
 #include "mhb/record.h"
+#include "mhb/truncation.h"
 
 static const double PI = 3.14159265358979323846, TOLERANCE = 2e-3;
 
@@ -47,8 +48,7 @@ static shb_status record(sampler *s, double omega) {
     info->share[s->stuck ? MHB_STICK : MHB_SEPARATE] = 1;
   }
   mhb_path_point point = {.x = s->x, .omega = omega};
-  double         truncation;
-  mhb_residual_errors(s->residual, s->x, omega, &truncation, &point.modal);
+  point.modal          = mhb_modal_error(s->residual, s->x);
   SHB_TRY(mhb_record(s->response, s->branch, s->residual, &point, MHB_ORDINARY,
                      shb_seconds() - started));
   mhb_branch *branch                   = &s->response->branch[s->branch];

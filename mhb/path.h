@@ -15,7 +15,7 @@ typedef struct {
   int orientation; /* sign of det [J r_omega; tangent]: the same all along a path, but for bifurcations */
   int    iterations;
   double residual;          /* |r|/|x| */
-  double truncation, modal; /* relative error estimates, see mhb_residual_errors */
+  double truncation, modal; /* relative error estimates, see truncation.h */
 } mhb_path_point;
 
 typedef struct {

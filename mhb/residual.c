@@ -22,16 +22,13 @@ shb_status mhb_residual_create(const modal_model *model, const mhb_settings *set
   b->info           = calloc(pairs, sizeof *b->info);
   b->p              = calloc((size_t)b->n, sizeof(double));
   b->dp             = calloc(pairs * block * block, sizeof(double));
-  b->wide_p         = calloc(3 * (size_t)mhb_real_size(2 * m), sizeof(double));
   b->pk             = calloc(3 * pairs, sizeof(double complex));
   b->uk             = calloc(3 * pairs, sizeof(double complex));
-  b->tail           = calloc(3 * pairs * (size_t)m, sizeof(double complex));
   shb_status status = SHB_OK;
-  if (!(b->law && b->info && b->p && b->dp && b->wide_p && b->pk && b->uk && b->tail))
+  if (!(b->law && b->info && b->p && b->dp && b->pk && b->uk))
     status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for %d unknowns", b->n);
-  if (status == SHB_OK) status = mhb_receptance_create(model, settings, 2 * m, &b->receptance);
+  if (status == SHB_OK) status = mhb_receptance_create(model, settings, m, &b->receptance);
   if (status == SHB_OK) status = mhb_contact_create(m, m, settings->tolerance, &b->contact);
-  if (status == SHB_OK) status = mhb_contact_create(m, 2 * m, settings->tolerance, &b->wide);
   if (status != SHB_OK) {
     mhb_residual_destroy(b);
     return status;
@@ -44,15 +41,12 @@ void mhb_residual_destroy(mhb_residual *b) {
   if (!b) return;
   mhb_receptance_destroy(b->receptance);
   mhb_contact_destroy(b->contact);
-  mhb_contact_destroy(b->wide);
   free(b->law);
   free(b->info);
   free(b->p);
   free(b->dp);
-  free(b->wide_p);
   free(b->pk);
   free(b->uk);
-  free(b->tail);
   free(b);
 }
 
@@ -188,64 +182,6 @@ shb_status mhb_residual_linear(mhb_residual *b, double omega, int stuck, double 
     store(b, b->p, k, b->pk);
   }
   return SHB_OK;
-}
-
-/* Frobenius-like size of a harmonic's share in |x|. */
-static double square(const double complex *u, int n) {
-  double sum = 0;
-  for (int i = 0; i < n; i++) sum += creal(u[i]) * creal(u[i]) + cimag(u[i]) * cimag(u[i]);
-  return sum;
-}
-
-/* Motion by the terms of the residual series that the model does not hold: the last one held times
- * (k w/w_m)^2. */
-static double modal_term(const mhb_residual *b, int k, const double complex *p) {
-  const mhb_receptance *r    = b->receptance;
-  int                   n    = r->n;
-  double                w    = k * r->omega / r->nu;
-  double                top  = 2 * 3.14159265358979 * r->model->frequency[r->n_modes - 1],
-         ratio               = w * w / (top * top);
-  const double complex *last = r->inertia ? r->inertia : r->flexibility;
-  double                sum = 0, held = r->inertia ? w * w : 1;
-  for (int i = 0; i < n; i++) {
-    double complex u = 0;
-    for (int j = 0; j < n; j++)
-      u += held * last[((size_t)k * (size_t)n + (size_t)i) * (size_t)n + (size_t)j] * p[j];
-    sum += square(&u, 1);
-  }
-  return sum * ratio * ratio;
-}
-
-void mhb_residual_errors(mhb_residual *b, const double *x, double omega, double *truncation,
-                         double *modal) {
-  int              n3 = 3 * b->n_pairs, m = b->m, wide = mhb_real_size(2 * m);
-  size_t           block = 3 * (size_t)b->nb;
-  double           size = 0, missing = 0, unheld = 0;
-  mhb_contact_info info;
-  for (int i = 0; i < b->n; i++) size += x[i] * x[i];
-  mhb_receptance_at(b->receptance, omega, 2 * m);
-  for (int a = 0; a < b->n_pairs; a++) {
-    mhb_contact_force(b->wide, &b->law[a], x + (size_t)a * block, b->wide_p, NULL, &info);
-    for (int c = 0; c < 3; c++)
-      for (int k = m + 1; k <= 2 * m; k++)
-        b->tail[(k - m - 1) * n3 + 3 * a + c] =
-            CMPLX(b->wide_p[c * wide + 2 * k - 1], b->wide_p[c * wide + 2 * k]);
-  }
-  for (int k = m + 1; k <= 2 * m; k++) {
-    const double complex *R = b->receptance->R + (size_t)k * (size_t)n3 * (size_t)n3;
-    for (int i = 0; i < n3; i++) {
-      b->uk[i] = -b->receptance->free[k * n3 + i];
-      for (int j = 0; j < n3; j++)
-        b->uk[i] += R[(size_t)i * (size_t)n3 + (size_t)j] * b->tail[(k - m - 1) * n3 + j];
-    }
-    missing += square(b->uk, n3);
-  }
-  for (int k = 0; k <= m && b->receptance->flexibility; k++) {
-    harmonic(b, b->p, k, b->pk);
-    unheld += modal_term(b, k, b->pk);
-  }
-  *truncation = size > 0 ? sqrt(missing / size) : 0;
-  *modal      = !b->receptance->flexibility ? -1 : size > 0 ? sqrt(unheld / size) : 0;
 }
 
 void mhb_residual_force(const mhb_residual *b, int k, double complex *p) {

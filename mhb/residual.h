@@ -11,18 +11,15 @@
 
 typedef struct {
   const mhb_settings *settings;
-  mhb_receptance     *receptance;        /* harmonics 0..2m */
+  mhb_receptance     *receptance;        /* harmonics 0..m */
   mhb_contact        *contact;           /* forces to harmonic m */
-  mhb_contact        *wide;              /* forces to harmonic 2m, for the truncation estimate */
   mhb_law            *law;               /* [pair] shares of the interface */
   mhb_contact_info   *info;              /* [pair] of the last evaluation */
   int                 m, n_pairs, nb, n; /* nb = 2m+1, n = 3 pairs nb unknowns */
   double              n0;                /* total preload, N */
   double             *p;                 /* [n] force in real form, as x */
   double             *dp;                /* [pair][3 nb][3 nb] */
-  double             *wide_p;            /* [3][2(2m)+1] one pair */
   double complex     *pk, *uk;           /* [3 pairs] one harmonic */
-  double complex     *tail;              /* [m][3 pairs] force harmonics m+1..2m */
 } mhb_residual;
 
 shb_status mhb_residual_create(const modal_model *model, const mhb_settings *settings,
@@ -41,12 +38,6 @@ void mhb_residual_evaluate(mhb_residual *residual, const double *x, double omega
 
 /* Linear limits at omega: harmonics of the relative motion with the contact open everywhere, or stuck everywhere. */
 shb_status mhb_residual_linear(mhb_residual *residual, double omega, int stuck, double *x);
-
-/* Estimates at a solution just evaluated at (x, omega), relative to |x|:
- * truncation: the motion that force harmonics m+1..2m would cause (first order; feedback into the low ones is left out)
- * modal: the next term of the residual series, -1 if the file holds no residual flexibility. */
-void mhb_residual_errors(mhb_residual *residual, const double *x, double omega, double *truncation,
-                         double *modal);
 
 /* Forces of the last evaluation as complex harmonic k of all pairs. */
 void mhb_residual_force(const mhb_residual *residual, int k, double complex *p);
