@@ -38,7 +38,11 @@ MHB_INLINE void lanes_store(double *x, mhb_lanes y) {
 
 /* Lane i in all lanes; i a constant after unrolling. */
 MHB_INLINE mhb_lanes lanes_pick(mhb_lanes x, int i) {
+#ifdef __clang__
+  return lanes_all(x[i]);
+#else
   return __builtin_shuffle(x, (mhb_lanes_bits){i, i, i, i, i, i, i, i});
+#endif
 }
 
 MHB_INLINE double lanes_sum(mhb_lanes x) {

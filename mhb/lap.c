@@ -286,8 +286,7 @@ static int close_slider(mhb_contact *c, approach *a, double z[2]) {
 
 /* The lap whose force is wanted, from z. The last Newton step is taken on the force, not by another lap:
  * f += (df/dz) dz, dz = (I - DP)^-1 (P(z) - z). Returns how much that changed the force, in units of the friction;
- * negative: the lap was lost. gap: between the lap's ends, |P(z) - z|, step: |dz|, in the
- * same units. */
+ * negative: the lap was lost. gap: between the lap's ends, |P(z) - z|, step: |dz|, in the same units. */
 static double record_lap(mhb_contact *c, mhb_columns_mode columns, double z[2], double *gap,
                          double *step) {
   double P[2], dz[2], most = 0;
