@@ -15,7 +15,8 @@ typedef long long mhb_lanes_bits __attribute__((vector_size(64)));
 
 #define MHB_INLINE static inline __attribute__((always_inline))
 
-#if defined(__x86_64__) && defined(__gnu_linux__) && !defined(__SANITIZE_ADDRESS__)
+#if defined(__x86_64__) && defined(__gnu_linux__) && !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__clang__)
 #define MHB_HOT __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
 #else
 #define MHB_HOT
