@@ -1,0 +1,342 @@
+/* The harmonic balance: seconds against error, and how the cost grows with harmonics and contact pairs.
+ *
+ *   bench_response            the tables
+ *   bench_response --quick    errors only, in a second or so
+ *   bench_response --pairs N  the row of N pairs alone
+ *
+ * Beam: the tip-contact beam (tests/mhb/three_degree.h), one row a force and number of harmonics: the whole sweep 215-320 Hz, the
+ * median of a point, and the error of the located peak against H = 31. Then the three accuracies of the contact law, and the
+ * growth with pairs (shroud_face.h), each row in a process of its own so that its memory can be told. Goals carry verdicts; the
+ * exit code tells of errors only, for times depend on the machine. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "mesh/progress.h"
+#include "mhb/follow.h"
+#include "shroud_face.h"
+#include "tests/mhb/three_degree.h"
+
+static const double PI = 3.14159265358979323846;
+
+enum { REPEATS = 3, MAX_POINTS = 4000 };
+
+/* One sweep of the beam. */
+typedef struct {
+  double seconds, ms, evaluations; /* whole branch; median point; Newton steps + 1, mean */
+  double peak, at;                 /* m, Hz: highest first harmonic of u */
+  int    points, peaks, folds, complete;
+} sweep_row;
+
+static int ascending(const void *a, const void *b) {
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+static double median(const double *t, int n) {
+  static double sorted[MAX_POINTS];
+  memcpy(sorted, t, sizeof(double) * (size_t)n);
+  qsort(sorted, (size_t)n, sizeof *sorted, ascending);
+  return n ? sorted[n / 2] : NAN;
+}
+
+static void no_lock(mhb_monitor *monitor, bool locked) {
+  (void)monitor;
+  (void)locked;
+}
+
+static bool go_on(mhb_monitor *monitor, int branch, const mhb_path_point *point) {
+  (void)monitor;
+  (void)branch;
+  (void)point;
+  return true;
+}
+
+static sweep_row read_branch(const mhb_branch *b, int K) {
+  sweep_row row = {
+      .points = b->n_points, .complete = b->complete, .ms = 1e3 * median(b->seconds, b->n_points)};
+  for (int i = 0; i < b->n_points; i++) {
+    row.evaluations += (b->iterations[i] + 1.) / b->n_points;
+    row.peaks += b->special[i] == MHB_PEAK;
+    row.folds += b->special[i] == MHB_FOLD;
+    double a = cabs(b->motion[((size_t)i * 3 + 1) * (size_t)K + 1]);
+    if (a <= row.peak) continue;
+    row.peak = a;
+    row.at   = b->frequency[i];
+  }
+  return row;
+}
+
+static mhb_settings beam_settings(int harmonics, double tolerance) {
+  mhb_settings s = shroud_face_settings(harmonics);
+  s.n0[0]        = 100;
+  s.tolerance    = tolerance;
+  return s;
+}
+
+static shb_status sweep_once(const modal_model *model, const mhb_settings *s, sweep_row *row) {
+  mhb_monitor   monitor = {.point = go_on, .lock = no_lock};
+  mhb_residual *residual;
+  int           branch;
+  SHB_TRY(mhb_residual_create(model, s, &residual));
+  mhb_residual_preload(residual, s->n0[0]);
+  mhb_response *response = mhb_response_create(1, model->n_probes, s->harmonics);
+  shb_status    status   = mhb_response_branch(response, MHB_BRANCH_NONLINEAR, &branch);
+  double        started  = shb_seconds();
+  if (status == SHB_OK) status = mhb_follow(residual, response, branch, &monitor);
+  double seconds = shb_seconds() - started;
+  if (status == SHB_OK) *row = read_branch(&response->branch[branch], s->harmonics + 1);
+  row->seconds = seconds;
+  mhb_response_destroy(response);
+  mhb_residual_destroy(residual);
+  return status;
+}
+
+/* Median over repeats, by the seconds of the sweep. */
+static shb_status sweep_beam(double force, int harmonics, double tolerance, int repeats,
+                             sweep_row *row) {
+  sweep_row    all[REPEATS];
+  modal_model  model;
+  mhb_settings s = beam_settings(harmonics, tolerance);
+  tip_contact_beam_model(force, &model);
+  shb_status status = SHB_OK;
+  for (int i = 0; i < repeats && status == SHB_OK; i++) status = sweep_once(&model, &s, &all[i]);
+  modal_model_free(&model);
+  SHB_TRY(status);
+  *row = all[0];
+  double seconds[REPEATS], ms[REPEATS];
+  for (int i = 0; i < repeats; i++) {
+    seconds[i] = all[i].seconds;
+    ms[i]      = all[i].ms;
+  }
+  row->seconds = median(seconds, repeats);
+  row->ms      = median(ms, repeats);
+  return SHB_OK;
+}
+
+/* ---------------------------------------------------------------- goals */
+
+static int verdict(const char *what, double value, double bound) {
+  int holds = value <= bound;
+  printf("%-52s %10.3g <= %-7g %s\n", what, value, bound, holds ? "PASS" : "FAIL");
+  return !holds;
+}
+
+/* Least-squares slope of log y against log x. */
+static double exponent(int n, const double *x, const double *y) {
+  double sx = 0, sy = 0, sxx = 0, sxy = 0;
+  for (int i = 0; i < n; i++) {
+    double u = log(x[i]), v = log(y[i]);
+    sx += u;
+    sy += v;
+    sxx += u * u;
+    sxy += u * v;
+  }
+  return (n * sxy - sx * sy) / (n * sxx - sx * sx);
+}
+
+/* ---------------------------------------------------------------- harmonics */
+
+enum { LADDER = 5 };
+static const int ladder[LADDER] = {1, 3, 7, 15, 31};
+
+static void print_sweep(double force, int harmonics, const char *accuracy, const sweep_row *row,
+                        double error) {
+  printf("%4g %3d %-9s %7d %5d %5d %6.1f %9.4f %9.4f %12.6e %10.4f %9.1e\n", force, harmonics,
+         accuracy, row->points, row->peaks, row->folds, row->evaluations, row->ms, row->seconds,
+         row->peak, row->at, error);
+  fflush(stdout);
+}
+
+static void print_heads(void) {
+  printf("\n%4s %3s %-9s %7s %5s %5s %6s %9s %9s %12s %10s %9s\n", "F", "H", "accuracy", "points",
+         "peaks", "folds", "evals", "ms/point", "s/sweep", "peak m", "at Hz", "error");
+}
+
+/* *failed counts errors that are too large, never times. */
+static shb_status bench_harmonics(double force, int *failed) {
+  sweep_row row[LADDER];
+  double    H[LADDER], ms[LADDER];
+  for (int i = LADDER - 1; i >= 0; i--) {
+    SHB_TRY(sweep_beam(force, ladder[i], 1e-8, REPEATS, &row[i]));
+    H[i]  = ladder[i];
+    ms[i] = row[i].ms;
+  }
+  print_heads();
+  for (int i = 0; i < LADDER; i++)
+    print_sweep(force, ladder[i], "exact", &row[i], fabs(row[i].peak / row[LADDER - 1].peak - 1));
+  printf("\n");
+  *failed +=
+      verdict("H = 7: error of the peak", fabs(row[2].peak / row[LADDER - 1].peak - 1), 2e-4);
+  verdict("H = 3: ms a point", ms[1], .2);
+  verdict("H = 7: ms a point", ms[2], .5);
+  verdict("H = 15: ms a point", ms[3], 2);
+  verdict("H = 7: s a sweep", row[2].seconds, .3);
+  verdict("cost a point ~ H^e: e over 1..31", exponent(LADDER, H, ms), 1.5);
+  verdict("                    e over 7..31", exponent(LADDER - 2, H + 2, ms + 2), 1.5);
+  return SHB_OK;
+}
+
+static shb_status bench_accuracies(double force, int repeats, int *failed) {
+  static const struct {
+    const char *name;
+    double      tolerance;
+  } accuracy[] = {{"exact", 1e-8}, {"balanced", 1e-5}, {"fast", 1e-3}};
+  sweep_row row[3];
+  print_heads();
+  for (int i = 0; i < 3; i++) {
+    SHB_TRY(sweep_beam(force, 7, accuracy[i].tolerance, repeats, &row[i]));
+    double error = fabs(row[i].peak / row[0].peak - 1);
+    print_sweep(force, 7, accuracy[i].name, &row[i], error);
+    *failed += !row[i].complete || row[i].folds != row[0].folds || error > accuracy[i].tolerance;
+  }
+  return SHB_OK;
+}
+
+/* ---------------------------------------------------------------- pairs */
+
+enum { STEPS = 8 };
+
+typedef struct {
+  double ms, first;         /* median step; seconds to the first solution */
+  double residual;          /* worst of the points */
+  int pairs, moving, steps; /* pairs that slip or open for a part of the period at the last point */
+} pairs_row;
+
+static int count_moving(const mhb_residual *b) {
+  int n = 0;
+  for (int a = 0; a < b->n_pairs; a++)
+    n += b->info[a].share[MHB_STICK] < 1 && b->info[a].share[MHB_SEPARATE] < 1;
+  return n;
+}
+
+/* Some short steps from 255 Hz on, up the flank of the resonance. */
+static shb_status walk(mhb_path *path, mhb_residual *b, double *x, pairs_row *row) {
+  int    iterations;
+  double started = shb_seconds(), omega = 2 * PI * 255, ms[STEPS];
+  SHB_CHECK(
+      mhb_first_solution(path->newton, b, omega, path->tolerance, x, &iterations) == MHB_CONVERGED,
+      SHB_NOT_CONVERGED, "no first solution of %d pairs", b->n_pairs);
+  SHB_CHECK(mhb_path_start(path, x, omega, 1) == MHB_CONVERGED, SHB_NOT_CONVERGED,
+            "no start for %d pairs", b->n_pairs);
+  row->first    = shb_seconds() - started;
+  path->longest = .01;
+  for (row->steps = 0; row->steps < STEPS; row->steps++) {
+    started = shb_seconds();
+    SHB_CHECK(mhb_path_step(path) == MHB_PATH_ON, SHB_NOT_CONVERGED, "step %d of %d pairs failed",
+              row->steps, b->n_pairs);
+    ms[row->steps] = 1e3 * (shb_seconds() - started);
+    row->residual  = fmax(row->residual, path->next.residual);
+    mhb_path_advance(path);
+  }
+  row->ms     = median(ms, STEPS);
+  row->moving = count_moving(b);
+  return SHB_OK;
+}
+
+static shb_status run_pairs(int pairs, int harmonics, pairs_row *row) {
+  modal_model   model;
+  mhb_settings  s = shroud_face_settings(harmonics);
+  mhb_residual *b;
+  mhb_path     *path;
+  shroud_face_model(pairs, 150, &model);
+  SHB_TRY(mhb_residual_create(&model, &s, &b));
+  mhb_residual_preload(b, s.n0[0]);
+  SHB_TRY(mhb_path_create(b, 2 * PI * 215, 2 * PI * 320, &path));
+  *row              = (pairs_row){.pairs = pairs};
+  double    *x      = calloc((size_t)b->n, sizeof(double));
+  shb_status status = walk(path, b, x, row);
+  free(x);
+  mhb_path_destroy(path);
+  mhb_residual_destroy(b);
+  modal_model_free(&model);
+  return status;
+}
+
+/* In a child, whose largest memory is its own. */
+static shb_status fork_pairs(int pairs, pairs_row *row, double *megabytes) {
+  int           ends[2], state;
+  struct rusage usage;
+  SHB_CHECK(pipe(ends) == 0, SHB_ERR_IO, "no pipe");
+  fflush(stdout);
+  pid_t child = fork();
+  SHB_CHECK(child >= 0, SHB_ERR_IO, "no process");
+  if (child == 0) {
+    close(ends[0]);
+    shb_status status = run_pairs(pairs, 7, row);
+    if (status != SHB_OK) fprintf(stderr, "bench_response: %s\n", shb_message());
+    if (status == SHB_OK && write(ends[1], row, sizeof *row) != (ssize_t)sizeof *row)
+      status = SHB_ERR_IO;
+    _exit(status);
+  }
+  close(ends[1]);
+  ssize_t got = read(ends[0], row, sizeof *row);
+  close(ends[0]);
+  wait4(child, &state, 0, &usage);
+  *megabytes = (double)usage.ru_maxrss / 1024;
+  SHB_CHECK(got == (ssize_t)sizeof *row && state == 0, SHB_NOT_CONVERGED, "%d pairs: no result",
+            pairs);
+  return SHB_OK;
+}
+
+static shb_status bench_pairs(const int *pairs, int n, int *failed) {
+  double count[8], ms[8], megabytes[8];
+  printf("\n%6s %7s %9s %10s %9s %9s %9s\n", "pairs", "moving", "unknowns", "s/point", "first s",
+         "MB", "residual");
+  for (int i = 0; i < n; i++) {
+    pairs_row row = {0};
+    SHB_TRY(fork_pairs(pairs[i], &row, &megabytes[i]));
+    count[i] = pairs[i];
+    ms[i]    = row.ms;
+    printf("%6d %7d %9d %10.5f %9.3f %9.1f %9.1e\n", pairs[i], row.moving, 45 * pairs[i],
+           1e-3 * row.ms, row.first, megabytes[i], row.residual);
+    fflush(stdout);
+    *failed += !(row.residual <= 1e-8);
+  }
+  if (n > 1)
+    printf("seconds a point ~ pairs^e, e = %.2f; memory %.2f\n", exponent(n, count, ms),
+           exponent(n, count, megabytes));
+  return SHB_OK;
+}
+
+/* ---------------------------------------------------------------- */
+
+static shb_status quick(int *failed) {
+  static const int pairs[] = {1, 4};
+  return bench_accuracies(8, 1, failed) == SHB_OK ? bench_pairs(pairs, 2, failed)
+                                                  : SHB_NOT_CONVERGED;
+}
+
+static shb_status everything(int *failed) {
+  static const int pairs[] = {1, 10, 50, 200};
+  SHB_TRY(bench_harmonics(8, failed));
+  SHB_TRY(bench_harmonics(20, failed));
+  SHB_TRY(bench_accuracies(8, REPEATS, failed));
+  SHB_TRY(bench_accuracies(20, REPEATS, failed));
+  return bench_pairs(pairs, 4, failed);
+}
+
+int main(int argc, char **argv) {
+  int        failed = 0, pairs = argc == 3 && !strcmp(argv[1], "--pairs") ? atoi(argv[2]) : 0;
+  shb_status status;
+  if (argc == 1) {
+    status = everything(&failed);
+  } else if (argc == 2 && !strcmp(argv[1], "--quick")) {
+    status = quick(&failed);
+  } else if (pairs > 0) {
+    status = bench_pairs(&pairs, 1, &failed);
+  } else {
+    fprintf(stderr, "bench_response: usage: bench_response [--quick | --pairs N]\n");
+    return SHB_ERR_INPUT;
+  }
+  if (status != SHB_OK) {
+    fprintf(stderr, "bench_response: %s\n", shb_message());
+    return status;
+  }
+  printf("\n%d verdicts on errors failed\n", failed);
+  return failed != 0;
+}
