@@ -1,24 +1,50 @@
 /* What a solution of m harmonics leaves out: the harmonics m+1..2m, and modes.
  *
- * The solution u of m harmonics is put into the balance of 2m. There its residual r no longer vanishes; the motion that
- * the forces m+1..2m cause, |r|/|u|, is the first-order estimate: their feedback into the low harmonics is left out. */
+ * The solution u of m harmonics is put into the balance of 2m, where its residual r no longer vanishes. One Newton step
+ * there, delta = -(I + R J)^-1 r, is the estimate of the error at this frequency, and u + delta a good start for more
+ * harmonics. |r| alone (first order) leaves out the feedback into the low harmonics and is up to fifteen times too small.
+ *
+ * A harmonic beyond 2m can meet a resonance. Those are estimated one by one, u_k = -(I + R_k D)^-1 r_k, with D the stiffness
+ * of the contact at harmonic 2m; where they are not small, r is evaluated anew with them before the Newton step. */
 #ifndef MHB_TRUNCATION_H
 #define MHB_TRUNCATION_H
 
 #include "mhb/residual.h"
 
+/* Beyond this many unknowns of the doubled balance the estimate is of first order. */
+enum { MHB_MAX_DOUBLED = 600 };
+
+/* Harmonics looked at: four times those of the solution, within these. */
+enum { MHB_LEAST_LOOKED_AT = 12, MHB_MOST_LOOKED_AT = 64 };
+
+/* How an estimate was made. */
+typedef enum {
+  MHB_TRUNCATION_NONE, /* nothing is left out: open or stuck throughout, all pairs */
+  MHB_TRUNCATION_FIRST_ORDER,
+  MHB_TRUNCATION_NEWTON
+} mhb_truncation_kind;
+
 typedef struct {
   const mhb_residual *narrow;
-  mhb_settings        settings; /* of the doubled balance */
-  mhb_residual       *doubled;  /* harmonics 0..2m */
-  double             *x, *r;    /* [doubled->n] */
+  mhb_settings        settings, beyond_settings;
+  mhb_residual       *doubled; /* harmonics 0..2m */
+  mhb_residual       *beyond;  /* all harmonics looked at, or NULL: first order only */
+  double             *x,
+      *step; /* [doubled->n] the solution, zero beyond m; delta of the last estimate, or -r, or zero */
+  double             *jacobian; /* [n][n] of the doubled balance */
+  int                *pivot;
+  double             *far_x, *far_r; /* [beyond->n] */
+  double complex     *A, *u;         /* [3 pairs][3 pairs], [3 pairs] of one harmonic */
+  double              far;           /* |u_k|, k > 2m, of the last estimate */
+  mhb_truncation_kind kind;          /* of the last estimate */
 } mhb_truncation;
 
 /* Not thread safe (FFTW's planner). The residual must outlive it. Errors: as mhb_residual_create. */
 shb_status mhb_truncation_create(const mhb_residual *residual, mhb_truncation **truncation);
 void       mhb_truncation_destroy(mhb_truncation *truncation);
 
-/* Estimated error of the solution x[n] at omega (rad/s) from the harmonics left out, relative to |x|. */
+/* Estimated error of the solution x[n] that the residual was just evaluated at (omega in rad/s), from the harmonics left
+ * out, relative to |x|. First order also where the Newton step does not exist (a fold). */
 double mhb_truncation_error(mhb_truncation *truncation, const double *x, double omega);
 
 /* Estimated error from the modes left out of the solution that the residual was just evaluated at, relative to |x|: the
