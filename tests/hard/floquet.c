@@ -1,0 +1,66 @@
+#include "tests/hard/floquet.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+#include "mhb/residual.h"
+#include "tests/hard/verdict.h"
+#include "tests/mhb/periodic.h"
+
+static const double PI = 3.14159265358979323846;
+
+static floquet summary(const mhb_multipliers *m) {
+  return (floquet){m->verdict, m->crossing, m->n_unstable, m->largest};
+}
+
+void floquet_branch(const modal_model *model, const mhb_settings *s, const mhb_response *r,
+                    const mhb_branch *branch, int substeps, floquet *out) {
+  mhb_residual   *b;
+  mhb_stability  *stability;
+  mhb_multipliers m;
+  assert_int_equal(mhb_residual_create(model, s, &b), SHB_OK);
+  assert_int_equal(mhb_stability_create(b->receptance, s, substeps, 0, &stability), SHB_OK);
+  double x[b->n], unused[b->n];
+  for (int i = 0; i < branch->n_points; i++) {
+    double omega = 2 * PI * branch->frequency[i];
+    mhb_residual_preload(b, branch->n0[i]);
+    point_of(r, branch, i, 0, x);
+    mhb_residual_evaluate(b, x, omega, unused, NULL, NULL);
+    mhb_solution solution = {omega, b->law, b->info, x, b->p};
+    mhb_stability_evaluate(stability, &solution, &m);
+    out[i] = summary(&m);
+  }
+  mhb_stability_destroy(stability);
+  mhb_residual_destroy(b);
+}
+
+double floquet_crossing(const modal_model *model, const mhb_settings *s, const mhb_response *r,
+                        const mhb_branch *branch, int i, int substeps) {
+  double         lo = 0, hi = 1, ends[2], omega = 0;
+  double         x[3 * r->n_pairs * (2 * r->n_harmonics + 1)];
+  double complex mu[64];
+  double         from = 2 * PI * branch->frequency[i], to = 2 * PI * branch->frequency[i + 1];
+  for (int k = -2; k < 30; k++) {
+    double   at = k == -2 ? 0 : k == -1 ? 1 : .5 * (lo + hi);
+    periodic p;
+    omega = (1 - at) * from + at * to;
+    point_of(r, branch, i, at, x);
+    periodic_create(model, s, omega, x, &p);
+    double beyond = periodic_multipliers(&p, substeps, mu).largest - 1;
+    periodic_destroy(&p);
+    if (k < 0) {
+      ends[k + 2] = beyond;
+    } else if ((beyond > 0) == (ends[0] > 0)) {
+      lo = at;
+    } else {
+      hi = at;
+    }
+  }
+  return omega;
+}

@@ -1,0 +1,29 @@
+#include "tests/hard/power.h"
+
+#include <complex.h>
+#include <math.h>
+
+static const double PI = 3.14159265358979323846;
+
+/* q_k = L_k (F_k - B_k^H p_k). Work of F on q in a cycle: pi k Im(F conj q); of the damper c = 2 zeta w: pi c k^2 w_1 |q|^2. */
+power power_of(const mhb_residual *b, double omega) {
+  const mhb_receptance *r = b->receptance;
+  int                   m = r->n_modes, n3 = r->n;
+  double                w1  = omega / r->nu;
+  power                 out = {0, 0, 0};
+  for (int k = 1; k <= b->m; k++) {
+    double complex p[n3];
+    mhb_residual_force(b, k, p);
+    for (int i = 0; i < m; i++) {
+      const double complex *B = r->B + (size_t)k * (size_t)(n3 * m);
+      double complex        F = r->F[k * m + i], q = F;
+      for (int row = 0; row < n3; row++) q -= conj(B[row * m + i]) * p[row];
+      q *= r->lambda[k * m + i];
+      double w = 2 * PI * r->model->frequency[i];
+      out.input += PI * k * cimag(F * conj(q));
+      out.damping += PI * 2 * r->model->damping_ratio[i] * w * k * k * w1 * pow(cabs(q), 2);
+    }
+  }
+  for (int a = 0; a < b->n_pairs; a++) out.friction += b->info[a].slip_work;
+  return out;
+}
