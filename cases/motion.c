@@ -1,5 +1,6 @@
 #include "cases/motion.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -24,6 +25,9 @@ static case_keys motion_table(case_key row[CASE_MAX_KEYS]) {
   return (case_keys){n, row};
 }
 
+/* m; far beyond any blade, and far from what overflows. */
+static const double LARGEST = 1e6;
+
 static void read_signal(case_reader *r, const char *path, double complex *signal) {
   const case_node *list = case_reader_given(r, path);
   if (!list || list->kind != CASE_SEQUENCE) return;
@@ -35,8 +39,12 @@ static void read_signal(case_reader *r, const char *path, double complex *signal
     char   inner[CASE_PATH];
     double polar[2];
     case_path(inner, "%s[%d]", path, k);
-    if (case_value_polar(r->issues, inner, &list->child[k], "m", polar))
+    if (!case_value_polar(r->issues, inner, &list->child[k], "m", polar)) continue;
+    if (fabs(polar[0]) <= LARGEST) {
       signal[k] = polar[0] * cexp(I * polar[1]);
+    } else {
+      case_reader_issue(r, inner, "is %g m; amplitudes go up to %g m", polar[0], LARGEST);
+    }
   }
 }
 

@@ -86,6 +86,10 @@ static int inspect_main(const char *name, int argc, char **argv) {
 static int contact_main(const char *name, int argc, char **argv) {
   (void)name;
   char mode[] = "--contact";
+  if (argc > 1 && strcmp(argv[1], "--help") == 0) {
+    fputs(usage, stdout);
+    return SHB_OK;
+  }
   return become("mhb", mode, argc, argv, replace_by);
 }
 

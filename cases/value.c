@@ -329,8 +329,12 @@ bool case_value_polar(case_issues *issues, const char *path, const case_node *no
   char          inner[CASE_PATH];
   polar[0] = polar[1] = 0;
   if (node->kind == CASE_SCALAR) return number_at(&c, path, node, &polar[0]);
-  if (node->kind != CASE_SEQUENCE || node->n != 2)
-    return refuse_kind(&c, path, node, "[amplitude, phase]");
+  if (node->kind != CASE_SEQUENCE) return refuse_kind(&c, path, node, "[amplitude, phase]");
+  if (node->n != 2) {
+    case_issue_add(issues, node->line, node->column, path,
+                   "has %d values; expected [amplitude, phase]", node->n);
+    return false;
+  }
   case_path(inner, "%s[0]", path);
   bool good = number_at(&c, inner, &node->child[0], &polar[0]);
   case_path(inner, "%s[1]", path);

@@ -3,12 +3,15 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <inttypes.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 char *shb_publish_temporary(const char *path) {
+  signal(SIGXFSZ, SIG_IGN); /* a limit on file sizes is then an error like a full disk */
   size_t size = strlen(path) + 32;
   char  *name = malloc(size);
   if (name) snprintf(name, size, "%s.tmp.%ld", path, (long)getpid());
@@ -38,7 +41,18 @@ static void sync_folder(const char *path) {
   free(folder);
 }
 
+/* Renaming onto a device, a pipe or a link would take its place. */
+static int takes_a_file(const char *path) {
+  struct stat about;
+  return lstat(path, &about) != 0 || S_ISREG(about.st_mode) || S_ISDIR(about.st_mode);
+}
+
 shb_status shb_publish(const char *temporary, const char *path) {
+  if (!takes_a_file(path)) {
+    unlink(temporary);
+    SHB_FAIL(SHB_ERR_IO, "%s: is a link, a device or a pipe, not a file that can be replaced",
+             path);
+  }
   if (sync_path(temporary, O_RDWR) != 0 || rename(temporary, path) != 0) {
     int why = errno;
     unlink(temporary);

@@ -342,6 +342,7 @@ static void friction_force(mhb_contact *c) {
   }
   finish_friction(c);
   c->info->lost = !ok;
+  if (!ok) c->info->error = fmax(c->info->error, c->closed.always_closed ? 0 : TWO_PI * c->force);
   if (!ok || c->info->laps > 20) drop_friction(c);
 }
 

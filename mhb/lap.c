@@ -16,9 +16,9 @@ typedef struct {
 void mhb_note_transition(mhb_contact *c, double t, mhb_state state) {
   mhb_contact_info *info = c->info;
   if (!c->record || info->n_transitions == MHB_MAX_TRANSITIONS) return;
-  double phase = t / TWO_PI;
+  double phase = t / TWO_PI + 1e-14; /* the end of the period is its beginning */
   info->transition[info->n_transitions++] =
-      (mhb_transition){.phase = phase - floor(phase), .state = (int)state};
+      (mhb_transition){.phase = fmax(0, phase - floor(phase) - 1e-14), .state = (int)state};
 }
 
 /* ---- pieces ---- */
@@ -332,7 +332,9 @@ int mhb_lap_closed(mhb_contact *c, const double guess[2]) {
   /* a trace shows the lap itself: repeat it until it needs no correction */
   for (int tries = 0; c->pieces.on && gap > 1e-12 && tries < MAX_RECORDS; tries++)
     left = record_lap(c, wanted, z, &gap, &step);
-  double miss = left < 0 ? 1 : reached && !a.slow ? fmax(left * left, step * step) : left;
+  double miss = left < 0             ? TWO_PI * c->force / c->friction
+                : reached && !a.slow ? fmax(left * left, step * step)
+                                     : left;
   c->info->error += c->friction * (miss + mhb_columns_doubt(c));
   if (wanted == MHB_ALL_COLUMNS) mhb_columns_eliminate_slider(c);
   return left >= 0 && left < sqrt(c->tolerance);
