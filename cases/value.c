@@ -332,7 +332,7 @@ bool case_value_polar(case_issues *issues, const char *path, const case_node *no
   if (node->kind != CASE_SEQUENCE) return refuse_kind(&c, path, node, "[amplitude, phase]");
   if (node->n != 2) {
     case_issue_add(issues, node->line, node->column, path,
-                   "has %d values; expected [amplitude, phase]", node->n);
+                   "has %d value%s; expected [amplitude, phase]", node->n, node->n == 1 ? "" : "s");
     return false;
   }
   case_path(inner, "%s[0]", path);

@@ -239,7 +239,7 @@ static void numbers_and_ranges(void **state) {
        "is given twice",
        1},
       {"[0.21, 90 deg]", "[0.21]",
-       "c.yaml:17:33: error: excitation.harmonics.3: is a list; expected "
+       "c.yaml:17:33: error: excitation.harmonics.3: has 1 value; expected "
        "[amplitude, phase]",
        1},
       {"[0.21, 90 deg]", "[0.21, 90 Hz]",
