@@ -39,8 +39,9 @@ static double far_preload(const mhb_residual *b, const double *x, int stuck) {
   return stuck ? reach : -reach;
 }
 
-mhb_reason mhb_first_solution(mhb_newton *newton, mhb_residual *b, double omega, double tolerance,
-                              double *x, int *iterations) {
+/* By Newton's method at omega alone. */
+static mhb_reason solve_here(mhb_newton *newton, mhb_residual *b, double omega, double tolerance,
+                             double *x, int *iterations) {
   mhb_reason reason   = MHB_MAX_ITERATIONS;
   double     n0       = b->n0;
   int        order[2] = {n0 > 0, n0 <= 0}; /* the likelier limit first */
@@ -54,6 +55,37 @@ mhb_reason mhb_first_solution(mhb_newton *newton, mhb_residual *b, double omega,
   for (int i = 0; i < 2 && reason != MHB_CONVERGED; i++) {
     if (mhb_residual_linear(b, omega, order[i], x) != SHB_OK) continue;
     reason = homotopy(newton, b, omega, tolerance, far_preload(b, x, order[i]), x);
+  }
+  return reason;
+}
+
+/* Along the path from a solution x at `from` to one at `to`. */
+static int follow_to(mhb_residual *b, double from, double to, double *x) {
+  mhb_path        *path;
+  mhb_path_outcome outcome = MHB_PATH_STALLED,
+                   wanted  = to > from ? MHB_PATH_AT_END : MHB_PATH_AT_START;
+  if (mhb_path_create(b, fmin(from, to), fmax(from, to), &path) != SHB_OK) return 0;
+  if (mhb_path_start(path, x, from, to > from ? 1 : -1) == MHB_CONVERGED) outcome = MHB_PATH_ON;
+  for (int i = 0; i < MAX_STAGES && outcome == MHB_PATH_ON; i++) {
+    outcome = mhb_path_step(path);
+    if (outcome != MHB_PATH_ON && outcome != MHB_PATH_STALLED && outcome != wanted)
+      outcome = mhb_path_outside(path, outcome);
+    mhb_path_advance(path);
+  }
+  memcpy(x, path->now.x, sizeof(double) * (size_t)b->n);
+  mhb_path_destroy(path);
+  return outcome == wanted;
+}
+
+mhb_reason mhb_first_solution(mhb_newton *newton, mhb_residual *b, double omega, double tolerance,
+                              double *x, int *iterations) {
+  static const double elsewhere[] = {.98, 1.02, .95, 1.05, .9, 1.1, .8, .6};
+  mhb_reason          reason      = solve_here(newton, b, omega, tolerance, x, iterations);
+  for (int i = 0; i < 8 && reason != MHB_CONVERGED; i++) {
+    double from = elsewhere[i] * omega;
+    if (solve_here(newton, b, from, tolerance, x, iterations) != MHB_CONVERGED) continue;
+    if (!follow_to(b, from, omega, x)) continue;
+    reason = mhb_newton_solve(newton, b, omega, tolerance, x, iterations);
   }
   return reason;
 }

@@ -145,7 +145,11 @@ static shb_status skip(follower *f, const char *why, bool *found, bool *go_on) {
 static const char *obstacle(follower *f, mhb_path_outcome outcome) {
   f->crawling = f->path->step < CRAWL ? f->crawling + 1 : 0;
   if (outcome == MHB_PATH_STALLED) return "no step converged";
-  if (outcome == MHB_PATH_AT_START) return "turned back to the start of the range";
+  if (outcome == MHB_PATH_AT_START) {
+    if (mhb_path_outside(f->path, outcome) != MHB_PATH_ON)
+      return "turned back to the start of the range";
+    slopes(f, &f->path->next, f->after);
+  }
   return f->crawling > MAX_CRAWL ? "the steps stayed tiny" : NULL;
 }
 

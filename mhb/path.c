@@ -10,7 +10,14 @@
 static const double FIRST_STEP = .02, LONGEST_STEP = .1, LARGEST_ANGLE = .35, SHORTEST_STEP = 1e-4;
 static const double STAGNANT = 1e-8, NEAR = .3;
 static const double KINK_STEP = .02, KINK_RATIO = .7;
-enum { MAX_CORRECTIONS = 12, WANTED_CORRECTIONS = 5, MAX_HALVINGS = 3, LASTING = 10 };
+static const double OUTSIDE = .2;
+enum {
+  MAX_CORRECTIONS    = 12,
+  WANTED_CORRECTIONS = 5,
+  MAX_HALVINGS       = 3,
+  LASTING            = 10,
+  MAX_OUTSIDE        = 1000
+};
 
 static int point_create(mhb_path_point *point, int n) {
   point->x       = calloc((size_t)n, sizeof(double));
@@ -31,6 +38,7 @@ shb_status mhb_path_create(mhb_residual *residual, double low, double high, mhb_
   path->n         = n;
   path->low       = low;
   path->high      = high;
+  path->span      = high - low;
   path->longest   = LONGEST_STEP;
   path->tolerance = 1e-10;
   path->chord     = calloc((size_t)n + 1, sizeof(double));
@@ -55,7 +63,7 @@ void mhb_path_destroy(mhb_path *path) {
 }
 
 static double span(const mhb_path *path) {
-  return path->high - path->low;
+  return path->span;
 }
 
 /* Length unit of x: the size of the current point. */
@@ -235,6 +243,33 @@ static void note_orientation(mhb_path *path) {
   path->against     = 0;
 }
 
+/* Past a kink the path may leave in any direction, even back in frequency. Its tangent is that of the law at a place ahead,
+ * taken in the sense that keeps the orientation, as in the continuation of piecewise linear maps. */
+static int attempt_across(mhb_path *path, double ahead, double ds) {
+  mhb_path_point *now = &path->now, *next = &path->next;
+  int             one = path->n + 1;
+  for (int i = 0; i < path->n; i++) next->x[i] = now->x[i] + ahead * now->tangent[i];
+  next->omega = now->omega + ahead * now->tangent[path->n];
+  evaluate(path, next);
+  if (!set_tangent(path, now->tangent, next)) return 0;
+  double sense = goes_on(path) ? 1 : -1;
+  for (int i = 0; i < one; i++) path->chord[i] = sense * next->tangent[i];
+  for (int i = 0; i < path->n; i++) next->x[i] = now->x[i] + ds * path->chord[i];
+  next->omega = now->omega + ds * path->chord[path->n];
+  return correct(path, path->chord, 2 * ds, next) && set_tangent(path, path->chord, next) &&
+         goes_on(path);
+}
+
+static int across_kink(mhb_path *path) {
+  static const double ahead[] = {1e-4, 1e-3, 1e-2}, step[] = {1e-3, 3e-3, 1e-2, 3e-4, 1e-4};
+  for (int i = 0; i < 15; i++) {
+    if (!attempt_across(path, ahead[i % 3], step[i / 3])) continue;
+    path->step = step[i / 3];
+    return 1;
+  }
+  return 0;
+}
+
 /* Where small steps fail (the square-root zone at slip onset), larger ones pass; else the damped Newton at a fixed
  * frequency further on, then further back (a cusp), from the old point and from the linear limits. */
 static int last_resort(mhb_path *path) {
@@ -261,11 +296,28 @@ static int last_resort(mhb_path *path) {
   return 0;
 }
 
+/* Nothing keeps the orientation: a bifurcation, or the zone of slip onset where it cannot be trusted. */
+static int turned(mhb_path *path) {
+  static const double step[] = {1e-3, 3e-3, 1e-2, 3e-4};
+  for (int i = 0; i < 4; i++) {
+    if (!attempt(path, step[i]) || angle_between(path) > LARGEST_ANGLE) continue;
+    path->step = step[i];
+    note_orientation(path);
+    return 1;
+  }
+  return 0;
+}
+
 static int find_next(mhb_path *path) {
   double refused = INFINITY; /* angle at twice this step */
   while (path->step >= SHORTEST_STEP) {
     double ds = path->step;
     if (!attempt(path, ds)) {
+      path->step *= .3;
+      refused = INFINITY;
+      continue;
+    }
+    if (!goes_on(path) && path->against == 0) {
       path->step *= .3;
       refused = INFINITY;
       continue;
@@ -284,7 +336,7 @@ static int find_next(mhb_path *path) {
     note_orientation(path);
     return 1;
   }
-  return last_resort(path);
+  return across_kink(path) || last_resort(path) || turned(path);
 }
 
 /* next went past an end of the range: solve on the end itself, from the chord. */
@@ -313,6 +365,29 @@ mhb_path_outcome mhb_path_step(mhb_path *path) {
     path->step = fmax(SHORTEST_STEP, .2 * path->step);
   }
   return MHB_PATH_STALLED;
+}
+
+/* next has come back to the end of the range: set it on the end, heading inwards. */
+static int back_at(mhb_path *path, double end, int inwards) {
+  if (inwards * (path->next.omega - end) < 0) return 0;
+  return settle_on(path, end) && inwards * path->next.tangent[path->n] > 0;
+}
+
+mhb_path_outcome mhb_path_outside(mhb_path *path, mhb_path_outcome outcome) {
+  double           low = path->low, high = path->high;
+  int              inwards = outcome == MHB_PATH_AT_START ? 1 : -1;
+  mhb_path_outcome way     = MHB_PATH_ON;
+  path->low                = inwards > 0 ? OUTSIDE * low : low;
+  path->high               = inwards > 0 ? high : high / OUTSIDE;
+  for (int i = 0; i < MAX_OUTSIDE && way == MHB_PATH_ON; i++) {
+    mhb_path_advance(path);
+    way = mhb_path_step(path);
+    if (way == MHB_PATH_ON && back_at(path, inwards > 0 ? low : high, inwards)) break;
+    if (i == MAX_OUTSIDE - 1) way = MHB_PATH_STALLED;
+  }
+  path->low  = low;
+  path->high = high;
+  return way == MHB_PATH_ON ? MHB_PATH_ON : MHB_PATH_STALLED;
 }
 
 void mhb_path_advance(mhb_path *path) {

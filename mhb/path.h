@@ -23,6 +23,7 @@ typedef struct {
   mhb_newton   *newton;
   int           n;
   double        low, high; /* rad/s, range */
+  double        span;      /* rad/s, unit of omega */
   double        step, longest;
   double        tolerance;
   int orientation, against;        /* of the path; ordinary steps in a row that had the other one */
@@ -41,6 +42,10 @@ mhb_reason mhb_path_start(mhb_path *path, const double *x, double omega, int dir
 /* One step: path->next becomes the new point, path->now stays the old one. AT_END, AT_START: next lies exactly on the
  * range's high or low end. The residual's workspace is left at next. */
 mhb_path_outcome mhb_path_step(mhb_path *path);
+
+/* next lies on the end of the range that outcome (AT_START, AT_END) tells: go on outside the range until the path comes back
+ * to that end. ON: next is there, heading inwards; STALLED: it does not come back. */
+mhb_path_outcome mhb_path_outside(mhb_path *path, mhb_path_outcome outcome);
 
 /* now <- next */
 void mhb_path_advance(mhb_path *path);
