@@ -1,7 +1,6 @@
 #include "mhb/newton.h"
 
 #include <float.h>
-#include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -37,13 +36,12 @@ shb_status mhb_newton_create(int n, mhb_newton **out) {
   size_t one  = (size_t)n + 1;
   w->n        = n;
   w->jacobian = malloc(sizeof(double) * (size_t)n * (size_t)n);
-  w->bordered = malloc(sizeof(double) * one * one);
   w->r        = malloc(sizeof(double) * one);
   w->step     = malloc(sizeof(double) * one);
   w->trial    = malloc(sizeof(double) * one);
   w->slope    = malloc(sizeof(double) * one);
-  w->pivot    = malloc(sizeof(int) * one);
-  if (!(w->jacobian && w->bordered && w->r && w->step && w->trial && w->slope && w->pivot)) {
+  w->row      = malloc(sizeof(double) * one);
+  if (!(w->jacobian && w->r && w->step && w->trial && w->slope && w->row)) {
     mhb_newton_destroy(w);
     SHB_FAIL(SHB_ERR_IO, "out of memory for %d unknowns", n);
   }
@@ -54,23 +52,31 @@ shb_status mhb_newton_create(int n, mhb_newton **out) {
 void mhb_newton_destroy(mhb_newton *w) {
   if (!w) return;
   free(w->jacobian);
-  free(w->bordered);
   free(w->r);
   free(w->step);
   free(w->trial);
   free(w->slope);
-  free(w->pivot);
+  free(w->row);
+  mhb_condensed_destroy(w->system);
   free(w);
 }
 
-/* Halve the step until |r| falls; leaves r and Jacobian at the new x. */
+shb_status mhb_newton_bind(mhb_newton *w, const mhb_residual *b) {
+  const mhb_condensed *s = w->system;
+  if (s && s->b == b && s->m == b->m && s->n_pairs == b->n_pairs) return SHB_OK;
+  mhb_condensed_destroy(w->system);
+  w->system = NULL;
+  return mhb_condensed_create(b, &w->system);
+}
+
+/* Halve the step until |r| falls; leaves r and derivatives at the new x. */
 static int line_search(mhb_newton *w, mhb_residual *b, double omega, double *x, double *size) {
   int n = w->n;
   memcpy(w->trial, x, sizeof(double) * (size_t)n);
   double before = *size, fraction = 1;
   for (int i = 0; i < MAX_HALVINGS; i++, fraction *= .5) {
     for (int j = 0; j < n; j++) x[j] = w->trial[j] - fraction * w->step[j];
-    mhb_residual_evaluate(b, x, omega, w->r, w->jacobian, NULL);
+    mhb_residual_derive(b, x, omega, w->r, NULL);
     *size = mhb_norm(w->r, n);
     if (*size < (1 - .1 * fraction) * before) return 1;
   }
@@ -80,12 +86,13 @@ static int line_search(mhb_newton *w, mhb_residual *b, double omega, double *x, 
 mhb_reason mhb_newton_solve(mhb_newton *w, mhb_residual *b, double omega, double tolerance,
                             double *x, int *iterations) {
   int n = w->n;
-  mhb_residual_evaluate(b, x, omega, w->r, w->jacobian, NULL);
+  if (mhb_newton_bind(w, b) != SHB_OK) return MHB_SINGULAR;
+  mhb_residual_derive(b, x, omega, w->r, NULL);
   double size = mhb_norm(w->r, n);
   for (*iterations = 0; *iterations < MAX_ITERATIONS; ++*iterations) {
     if (size <= tolerance * fmax(mhb_norm(x, n), DBL_MIN)) return MHB_CONVERGED;
     memcpy(w->step, w->r, sizeof(double) * (size_t)n);
-    if (LAPACKE_dgesv(LAPACK_COL_MAJOR, n, 1, w->jacobian, n, w->pivot, w->step, n) != 0)
+    if (!mhb_condensed_factor(w->system, NULL, NULL) || !mhb_condensed_solve(w->system, w->step))
       return MHB_SINGULAR;
     if (!line_search(w, b, omega, x, &size))
       return size <= 100 * tolerance * mhb_norm(x, n) ? MHB_CONVERGED

@@ -2,7 +2,7 @@
 #ifndef MHB_NEWTON_H
 #define MHB_NEWTON_H
 
-#include "mhb/residual.h"
+#include "mhb/condensed.h"
 
 /* Why it stopped: > 0 converged. */
 typedef enum {
@@ -16,15 +16,17 @@ const char *mhb_reason_text(mhb_reason reason);
 
 /* Arrays for systems of n unknowns, made once. */
 typedef struct {
-  int     n;
-  double *jacobian;                 /* [n][n] column-major */
-  double *bordered;                 /* [n+1][n+1] column-major */
-  double *r, *step, *trial, *slope; /* [n+1] */
-  int    *pivot;                    /* [n+1] */
+  int            n;
+  mhb_condensed *system;                         /* of the residual last bound; NULL before */
+  double        *jacobian;                       /* [n][n] column-major */
+  double        *r, *step, *trial, *slope, *row; /* [n+1] */
 } mhb_newton;
 
 shb_status mhb_newton_create(int n, mhb_newton **newton);
 void       mhb_newton_destroy(mhb_newton *newton);
+
+/* Make the linear system of a residual of n unknowns, unless it is there. SHB_ERR_IO: no memory. */
+shb_status mhb_newton_bind(mhb_newton *newton, const mhb_residual *residual);
 
 /* Solve r(x, omega) = 0 from x: |r| <= tolerance max(|x|, floor). *iterations counts Newton steps. */
 mhb_reason mhb_newton_solve(mhb_newton *newton, mhb_residual *residual, double omega,

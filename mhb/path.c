@@ -1,7 +1,6 @@
 #include "mhb/path.h"
 
 #include <float.h>
-#include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -43,7 +42,8 @@ shb_status mhb_path_create(mhb_residual *residual, double low, double high, mhb_
   path->tolerance = 1e-10;
   path->chord     = calloc((size_t)n + 1, sizeof(double));
   int ok          = path->chord && point_create(&path->now, n) && point_create(&path->next, n) &&
-           point_create(&path->probe, n) && mhb_newton_create(n, &path->newton) == SHB_OK;
+           point_create(&path->probe, n) && mhb_newton_create(n, &path->newton) == SHB_OK &&
+           mhb_newton_bind(path->newton, residual) == SHB_OK;
   if (!ok) {
     mhb_path_destroy(path);
     SHB_FAIL(SHB_ERR_IO, "out of memory for a path of %d unknowns", n);
@@ -81,29 +81,22 @@ static double inner(const mhb_path *path, double scale, const double *a, const d
 
 /* Factor [J, r_omega; normal] in scaled columns; 0 if singular. */
 static int factor_bordered(const mhb_path *path, double scale, const double *normal) {
-  mhb_newton *w = path->newton;
-  int         n = path->n, one = n + 1;
+  mhb_newton *w  = path->newton;
+  int         n  = path->n;
   double      sp = span(path);
-  for (int j = 0; j < n; j++) {
-    memcpy(w->bordered + (size_t)j * (size_t)one, w->jacobian + (size_t)j * (size_t)n,
-           sizeof(double) * (size_t)n);
-    w->bordered[(size_t)j * (size_t)one + (size_t)n] = normal[j] / scale;
-  }
-  double *last = w->bordered + (size_t)n * (size_t)one;
-  for (int i = 0; i < n; i++) last[i] = w->slope[i] * sp / scale;
-  last[n] = normal[n] / sp;
-  return LAPACKE_dgetrf(LAPACK_COL_MAJOR, one, one, w->bordered, one, w->pivot) == 0;
+  for (int i = 0; i < n; i++) w->row[i] = normal[i] / scale;
+  for (int i = 0; i < n; i++) w->trial[i] = w->slope[i] * sp / scale;
+  w->row[n] = w->trial[n] = normal[n] / sp;
+  return mhb_condensed_factor(w->system, w->trial, w->row);
 }
 
 static int solve_bordered(const mhb_path *path, double *rhs) {
-  mhb_newton *w   = path->newton;
-  int         one = path->n + 1;
-  return LAPACKE_dgetrs(LAPACK_COL_MAJOR, 'N', one, 1, w->bordered, one, w->pivot, rhs, one) == 0;
+  return mhb_condensed_solve(path->newton->system, rhs);
 }
 
 static void evaluate(mhb_path *path, const mhb_path_point *point) {
   mhb_newton *w = path->newton;
-  mhb_residual_evaluate(path->residual, point->x, point->omega, w->r, w->jacobian, w->slope);
+  mhb_residual_derive(path->residual, point->x, point->omega, w->r, w->slope);
 }
 
 /* Evaluate, and note the relative residual. */
@@ -153,17 +146,6 @@ static int correct(mhb_path *path, const double *normal, double clip, mhb_path_p
   return 0;
 }
 
-/* Sign of the determinant of the factored bordered matrix. */
-static int determinant_sign(const mhb_newton *w) {
-  size_t one  = (size_t)w->n + 1;
-  int    sign = 1;
-  for (size_t i = 0; i < one; i++) {
-    if (w->bordered[i * one + i] < 0) sign = -sign;
-    if (w->pivot[i] != (int)i + 1) sign = -sign;
-  }
-  return sign;
-}
-
 /* Tangent at a point the workspace is at: [J r_omega; along] t = [0; 1], scaled to unit length. */
 static int set_tangent(mhb_path *path, const double *along, mhb_path_point *point) {
   mhb_newton *w     = path->newton;
@@ -177,7 +159,7 @@ static int set_tangent(mhb_path *path, const double *along, mhb_path_point *poin
   if (!(length > 0) || !isfinite(length)) return 0;
   for (int i = 0; i < n; i++) point->tangent[i] = w->step[i] / length * scale;
   point->tangent[n]  = w->step[n] / length * span(path);
-  point->orientation = determinant_sign(w);
+  point->orientation = mhb_condensed_sign(w->system);
   return 1;
 }
 

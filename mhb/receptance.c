@@ -1,10 +1,16 @@
 #include "mhb/receptance.h"
 
+#include <cblas.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "mhb/lanes.h"
+
 static const double PI = 3.14159265358979323846;
+
+/* From this many relative motions on, products of matrices are left to BLAS. */
+enum { WORTH_BLAS = 12 };
 
 /* Columns v, u, w of eq. 2. */
 static void shroud_axes(double psi, double phi, double T0[3][3]) {
@@ -117,6 +123,22 @@ static void set_load(mhb_receptance *r, int k, double complex phase, int sides, 
     r->probe_load[k * q + i] = scale * model->probe_load_residual[h * q + i];
 }
 
+static double *part(const mhb_receptance *r, int k, int imaginary) {
+  return r->parts + (size_t)(2 * k + imaginary) * ((size_t)r->n + 1) * (size_t)r->n_modes;
+}
+
+/* B and F by real and imaginary parts. */
+static void set_parts(mhb_receptance *r, int k) {
+  size_t                m = (size_t)r->n_modes, nm = (size_t)r->n * m;
+  double               *re = part(r, k, 0), *im = part(r, k, 1);
+  const double complex *B = r->B + (size_t)k * nm, *F = r->F + (size_t)k * m;
+  for (size_t i = 0; i < nm + m; i++) {
+    double complex z = i < nm ? B[i] : F[i - nm];
+    re[i]            = creal(z);
+    im[i]            = cimag(z);
+  }
+}
+
 /* Probe motion per contact force p: residual matrix times T^H. */
 static void set_probe(mhb_receptance *r, int k, double complex phase, int sides, int nc) {
   int q = 3 * r->model->n_probes;
@@ -134,14 +156,18 @@ static int allocate(mhb_receptance *r) {
   const modal_model *model = r->model;
   size_t             n = (size_t)r->n, m = (size_t)r->n_modes, K = (size_t)r->n_harmonics + 1;
   size_t             q = 3 * (size_t)model->n_probes, pairs = (size_t)model->n_pairs;
-  r->T0     = calloc(9 * pairs, sizeof(double));
-  r->share  = calloc(pairs, sizeof(double));
-  r->B      = calloc(K * n * m, sizeof(double complex));
-  r->F      = calloc(K * m, sizeof(double complex));
-  r->lambda = calloc(K * m, sizeof(double complex));
-  r->R      = calloc(K * n * n, sizeof(double complex));
-  r->free   = calloc(K * n, sizeof(double complex));
-  int ok    = r->T0 && r->share && r->B && r->F && r->lambda && r->R && r->free;
+  r->T0      = calloc(9 * pairs, sizeof(double));
+  r->share   = calloc(pairs, sizeof(double));
+  r->B       = calloc(K * n * m, sizeof(double complex));
+  r->F       = calloc(K * m, sizeof(double complex));
+  r->parts   = calloc(K * 2 * (n + 1) * m, sizeof(double));
+  r->scratch = calloc(4 * m, sizeof(double));
+  r->BL      = calloc(n * m, sizeof(double complex));
+  r->lambda  = calloc(K * m, sizeof(double complex));
+  r->R       = calloc(K * n * n, sizeof(double complex));
+  r->free    = calloc(K * n, sizeof(double complex));
+  int ok     = r->T0 && r->share && r->B && r->F && r->parts && r->scratch && r->BL && r->lambda &&
+           r->R && r->free;
   if (model->load_residual) ok &= (r->load = calloc(K * n, sizeof(double complex))) != NULL;
   if (model->residual_flexibility)
     ok &= (r->flexibility = calloc(K * n * n, sizeof(double complex))) != NULL;
@@ -201,6 +227,7 @@ shb_status mhb_receptance_create(const modal_model *model, const mhb_settings *s
     double complex phase = cexp(-I * fmod(k * step, 2 * PI));
     set_modes(r, k, phase, sides);
     set_load(r, k, phase, sides, settings->scale);
+    set_parts(r, k);
     if (r->flexibility)
       condensed(r, phase, sides, nc, model->residual_flexibility, scratch,
                 r->flexibility + (size_t)k * square);
@@ -225,39 +252,79 @@ void mhb_receptance_destroy(mhb_receptance *r) {
   free(r->inertia);
   free(r->probe_load);
   free(r->probe_contact);
+  free(r->parts);
+  free(r->scratch);
+  free(r->BL);
   free(r->lambda);
   free(r->R);
   free(r->free);
   free(r);
 }
 
+/* 1/(w_i^2 - w^2 + 2 j zeta_i w_i w) */
+MHB_HOT static void set_lambda(const mhb_receptance *r, double w, double *restrict re,
+                               double *restrict im) {
+  const double *restrict hz = r->model->frequency, *restrict zeta = r->model->damping_ratio;
+  for (int i = 0; i < r->n_modes; i++) {
+    double wi = 2 * PI * hz[i], a = wi * wi - w * w, b = 2 * zeta[i] * wi * w, size = a * a + b * b;
+    re[i] = a / size;
+    im[i] = -b / size;
+  }
+}
+
+/* sum_i (xr + j xi) (yr +- j yi), + or - as sign says */
+MHB_INLINE double complex product(int m, const double *xr, const double *xi, const double *yr,
+                                  const double *yi, double sign) {
+  double re = 0, im = 0;
+#pragma omp simd reduction(+ : re, im)
+  for (int i = 0; i < m; i++) {
+    re += xr[i] * yr[i] - sign * xi[i] * yi[i];
+    im += xi[i] * yr[i] + sign * xr[i] * yi[i];
+  }
+  return CMPLX(re, im);
+}
+
+/* One row of R += B L B^H, and of the free motion: y = row of B L. */
+MHB_HOT static void modal_row(const mhb_receptance *r, int k, const double *yr, const double *yi,
+                              double complex *R, double complex *u) {
+  int           m = r->n_modes, n = r->n;
+  const double *re = part(r, k, 0), *im = part(r, k, 1);
+  for (int b = 0; b < n && n < WORTH_BLAS; b++)
+    R[b] += product(m, yr, yi, re + b * m, im + b * m, -1);
+  *u += product(m, yr, yi, re + n * m, im + n * m, 1);
+}
+
+/* The residual terms: R + w^2 R2. */
+static void residual_terms(const mhb_receptance *r, int k, double w, double complex *R) {
+  size_t                square = (size_t)r->n * (size_t)r->n, from = (size_t)k * square;
+  const double complex *stiff = r->flexibility, *heavy = r->inertia;
+  for (size_t i = 0; i < square; i++) R[i] = stiff ? stiff[from + i] : 0;
+  for (size_t i = 0; heavy && i < square; i++)
+    R[i] = CMPLX(creal(R[i]) + w * w * creal(heavy[from + i]),
+                 cimag(R[i]) + w * w * cimag(heavy[from + i]));
+}
+
 static void harmonic_at(mhb_receptance *r, int k) {
   int             n = r->n, m = r->n_modes;
-  size_t          square = (size_t)n * (size_t)n;
-  double          w      = k * r->omega / r->nu;
-  double complex *lambda = r->lambda + k * m, *R = r->R + (size_t)k * square, *u = r->free + k * n;
-  const double complex *B = r->B + (size_t)k * (size_t)n * (size_t)m, *F = r->F + k * m;
-  for (int i = 0; i < m; i++) {
-    double wi = 2 * PI * r->model->frequency[i];
-    lambda[i] = 1 / (wi * wi - w * w + 2 * I * r->model->damping_ratio[i] * wi * w);
-  }
-  for (int a = 0; a < n; a++) {
-    const double complex *Ba = B + (size_t)a * (size_t)m;
-    double complex        La[m];
-    u[a] = r->load ? r->load[k * n + a] : 0;
+  double          w = k * r->omega / r->nu, *L = r->scratch, *y = L + 2 * m;
+  double complex *R = r->R + (size_t)k * (size_t)n * (size_t)n, *u = r->free + k * n;
+  const double   *re = part(r, k, 0), *im = part(r, k, 1);
+  double complex *all = r->BL, one = 1;
+  set_lambda(r, w, L, L + m);
+  for (int i = 0; i < m; i++) r->lambda[k * m + i] = CMPLX(L[i], L[m + i]);
+  residual_terms(r, k, w, R);
+  for (int a = 0; a < n; a++, re += m, im += m) {
     for (int i = 0; i < m; i++) {
-      La[i] = Ba[i] * lambda[i];
-      u[a] += La[i] * F[i];
+      y[i]     = re[i] * L[i] - im[i] * L[m + i];
+      y[m + i] = re[i] * L[m + i] + im[i] * L[i];
+      if (n >= WORTH_BLAS) all[a * m + i] = CMPLX(y[i], y[m + i]);
     }
-    for (int b = 0; b < n; b++) {
-      const double complex *Bb = B + (size_t)b * (size_t)m;
-      size_t                at = (size_t)a * (size_t)n + (size_t)b, from = (size_t)k * square + at;
-      double complex        sum = r->flexibility ? r->flexibility[from] : 0;
-      if (r->inertia) sum += w * w * r->inertia[from];
-      for (int i = 0; i < m; i++) sum += La[i] * conj(Bb[i]);
-      R[at] = sum;
-    }
+    u[a] = r->load ? r->load[k * n + a] : 0;
+    modal_row(r, k, y, y + m, R + (size_t)a * (size_t)n, &u[a]);
   }
+  if (n >= WORTH_BLAS)
+    cblas_zgemm(CblasRowMajor, CblasNoTrans, CblasConjTrans, n, n, m, &one, all, m,
+                r->B + (size_t)k * (size_t)n * (size_t)m, m, &one, R, n);
 }
 
 void mhb_receptance_at(mhb_receptance *r, double omega, int top) {
@@ -281,20 +348,53 @@ static double complex lambda_slope(const mhb_receptance *r, int k, int i) {
   return L * L * (2 * kk * kk * r->omega - 2 * I * r->model->damping_ratio[i] * wi * kk);
 }
 
+/* y = dL/d omega (F - B^H p) by modes. */
+MHB_HOT static void slope_drive(const mhb_receptance *r, int k, const double complex *p,
+                                double *restrict yr, double *restrict yi) {
+  int    m = r->n_modes, n = r->n;
+  double kk = (double)k / r->nu, spring = 2 * kk * kk * r->omega;
+  const double *restrict re = part(r, k, 0), *restrict im = part(r, k, 1);
+  memcpy(yr, re + n * m, sizeof(double) * (size_t)m);
+  memcpy(yi, im + n * m, sizeof(double) * (size_t)m);
+  for (int b = 0; b < n; b++, re += m, im += m) {
+    double pr = creal(p[b]), pi = cimag(p[b]);
+    for (int i = 0; i < m; i++) {
+      yr[i] -= re[i] * pr + im[i] * pi;
+      yi[i] -= re[i] * pi - im[i] * pr;
+    }
+  }
+  const double complex *lambda = r->lambda + k * m;
+  for (int i = 0; i < m; i++) {
+    double a = creal(lambda[i]), b = cimag(lambda[i]);
+    double sr = a * a - b * b, si = 2 * a * b;
+    double loss = -4 * PI * r->model->damping_ratio[i] * r->model->frequency[i] * kk;
+    double dr = sr * spring - si * loss, di = si * spring + sr * loss, x = yr[i];
+    yr[i] = dr * x - di * yi[i];
+    yi[i] = dr * yi[i] + di * x;
+  }
+}
+
+MHB_HOT static void modal_sums(const mhb_receptance *r, int k, const double *yr, const double *yi,
+                               double complex *out) {
+  int           m  = r->n_modes;
+  const double *re = part(r, k, 0), *im = part(r, k, 1);
+  for (int a = 0; a < r->n; a++, re += m, im += m) out[a] = product(m, yr, yi, re, im, 1);
+}
+
 void mhb_receptance_slope(const mhb_receptance *r, int k, const double complex *p,
                           double complex *slope) {
-  int                   n = r->n, m = r->n_modes;
-  double                kk = (double)k / r->nu;
-  const double complex *B  = r->B + (size_t)k * (size_t)n * (size_t)m;
-  for (int a = 0; a < n; a++) {
-    slope[a] = 0;
-    for (int b = 0; r->inertia && b < n; b++)
-      slope[a] -= 2 * kk * kk * r->omega *
-                  r->inertia[((size_t)k * (size_t)n + (size_t)a) * (size_t)n + (size_t)b] * p[b];
-  }
-  for (int i = 0; i < m; i++) {
-    double complex a = lambda_slope(r, k, i) * modal_drive(r, k, p, i, 1);
-    for (int row = 0; row < n; row++) slope[row] += B[row * m + i] * a;
+  int    n  = r->n;
+  double kk = (double)k / r->nu, yr[r->n_modes], yi[r->n_modes];
+  slope_drive(r, k, p, yr, yi);
+  modal_sums(r, k, yr, yi, slope);
+  for (int a = 0; r->inertia && a < n; a++) {
+    const double complex *row = r->inertia + ((size_t)k * (size_t)n + (size_t)a) * (size_t)n;
+    double                re = 0, im = 0, weight = 2 * kk * kk * r->omega;
+    for (int b = 0; b < n; b++) {
+      re += creal(row[b]) * creal(p[b]) - cimag(row[b]) * cimag(p[b]);
+      im += creal(row[b]) * cimag(p[b]) + cimag(row[b]) * creal(p[b]);
+    }
+    slope[a] = CMPLX(creal(slope[a]) - weight * re, cimag(slope[a]) - weight * im);
   }
 }
 

@@ -25,7 +25,10 @@ typedef struct {
   double            *share;    /* [pair] area share, sums to 1 */
   double complex    *B;        /* [k][n][modes] */
   double complex    *F;        /* [k][modes] modal force, scaled */
-  double complex    *load;     /* [k][n] residual response to the load, or NULL */
+  double            *parts; /* [k][2 (re, im)][n + 1][modes] B, then F: for the loops over modes */
+  double            *scratch;                    /* [4][modes] */
+  double complex    *BL;                         /* [n][modes] B L of one harmonic */
+  double complex    *load;                       /* [k][n] residual response to the load, or NULL */
   double complex    *flexibility, *inertia;      /* [k][n][n], or NULL */
   double complex    *probe_load, *probe_contact; /* [k][3 q], [k][3 q][n], or NULL */
   double             omega;                      /* rad/s, of mhb_receptance_at */

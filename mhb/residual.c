@@ -2,10 +2,27 @@
 
 #include <lapacke.h>
 #include <math.h>
+#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "mhb/fourier.h"
+#include "mhb/lanes.h"
+
+/* Fewer pairs than this are not worth a team of threads. */
+enum { WORTH_THREADS = 8 };
+
+/* One workspace a thread; where threads are busy already (one a branch) just one. */
+static shb_status create_contacts(mhb_residual *b) {
+  int threads  = omp_in_parallel() || b->n_pairs < WORTH_THREADS ? 1 : omp_get_max_threads();
+  b->contacts  = calloc((size_t)threads, sizeof *b->contacts);
+  b->n_threads = threads;
+  SHB_CHECK(b->contacts, SHB_ERR_IO, "out of memory");
+  for (int i = 0; i < threads; i++)
+    SHB_TRY(mhb_contact_create(b->m, b->m, b->settings->tolerance, &b->contacts[i]));
+  b->contact = b->contacts[0];
+  return SHB_OK;
+}
 
 shb_status mhb_residual_create(const modal_model *model, const mhb_settings *settings,
                                mhb_residual **out) {
@@ -20,15 +37,16 @@ shb_status mhb_residual_create(const modal_model *model, const mhb_settings *set
   size_t pairs = (size_t)b->n_pairs, block = 3 * (size_t)b->nb;
   b->law            = calloc(pairs, sizeof *b->law);
   b->info           = calloc(pairs, sizeof *b->info);
+  b->kind           = calloc(pairs, sizeof *b->kind);
   b->p              = calloc((size_t)b->n, sizeof(double));
   b->dp             = calloc(pairs * block * block, sizeof(double));
   b->pk             = calloc(3 * pairs, sizeof(double complex));
   b->uk             = calloc(3 * pairs, sizeof(double complex));
   shb_status status = SHB_OK;
-  if (!(b->law && b->info && b->p && b->dp && b->pk && b->uk))
+  if (!(b->law && b->info && b->kind && b->p && b->dp && b->pk && b->uk))
     status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for %d unknowns", b->n);
   if (status == SHB_OK) status = mhb_receptance_create(model, settings, m, &b->receptance);
-  if (status == SHB_OK) status = mhb_contact_create(m, m, settings->tolerance, &b->contact);
+  if (status == SHB_OK) status = create_contacts(b);
   if (status != SHB_OK) {
     mhb_residual_destroy(b);
     return status;
@@ -40,7 +58,9 @@ shb_status mhb_residual_create(const modal_model *model, const mhb_settings *set
 void mhb_residual_destroy(mhb_residual *b) {
   if (!b) return;
   mhb_receptance_destroy(b->receptance);
-  mhb_contact_destroy(b->contact);
+  for (int i = 0; b->contacts && i < b->n_threads; i++) mhb_contact_destroy(b->contacts[i]);
+  free(b->contacts);
+  free(b->kind);
   free(b->law);
   free(b->info);
   free(b->p);
@@ -53,6 +73,7 @@ void mhb_residual_destroy(mhb_residual *b) {
 void mhb_residual_preload(mhb_residual *b, double n0) {
   const mhb_settings *s = b->settings;
   b->n0                 = n0;
+  b->n_laws++;
   for (int a = 0; a < b->n_pairs; a++) {
     double share = b->receptance->share[a];
     b->law[a]    = (mhb_law){.mu = s->mu, .kv = share * s->kv, .n0 = share * n0};
@@ -81,52 +102,118 @@ static void store(const mhb_residual *b, double *x, int k, const double complex 
   }
 }
 
-/* J += R_k dp_k for row (harmonic k, dof row) and the columns of pair b: two real rows at once. */
-static void jacobian_rows(const mhb_residual *b, int k, int row, int pair, double *jacobian) {
-  int                   block = 3 * b->nb, n3 = 3 * b->n_pairs;
-  const double complex *R  = b->receptance->R + ((size_t)k * (size_t)n3 + (size_t)row) * (size_t)n3;
-  const double         *dp = b->dp + (size_t)pair * (size_t)block * (size_t)block;
-  int                   re = row * b->nb + (k ? 2 * k - 1 : 0);
-  for (int c = 0; c < 3; c++) {
-    double        x = creal(R[3 * pair + c]), y = cimag(R[3 * pair + c]);
-    const double *dre = dp + (size_t)(c * b->nb + (k ? 2 * k - 1 : 0)) * (size_t)block;
-    const double *dim = dre + block;
-    double       *J   = jacobian + (size_t)pair * (size_t)block * (size_t)b->n + re;
-    for (int j = 0; j < block; j++, J += b->n) {
-      if (k == 0) {
-        J[0] += x * dre[j];
-      } else {
-        J[0] += x * dre[j] - y * dim[j];
-        J[1] += y * dre[j] + x * dim[j];
+MHB_HOT static void combine(int block, const double *d, size_t stride, const double complex R[3],
+                            double *restrict re, double *restrict im) {
+  const double *d0 = d, *d1 = d + stride, *d2 = d1 + stride;
+  const double *e0 = d0 + block, *e1 = d1 + block, *e2 = d2 + block;
+  double        x0 = creal(R[0]), x1 = creal(R[1]), x2 = creal(R[2]);
+  double        y0 = cimag(R[0]), y1 = cimag(R[1]), y2 = cimag(R[2]);
+  for (int j = 0; j < block; j++) {
+    re[j] += x0 * d0[j] - y0 * e0[j] + x1 * d1[j] - y1 * e1[j] + x2 * d2[j] - y2 * e2[j];
+    im[j] += y0 * d0[j] + x0 * e0[j] + y1 * d1[j] + x1 * e1[j] + y2 * d2[j] + x2 * e2[j];
+  }
+}
+
+void mhb_residual_combine(const mhb_residual *b, const double complex R[3], int pair, int k,
+                          double *re, double *im) {
+  int           block  = 3 * b->nb;
+  size_t        stride = (size_t)b->nb * (size_t)block;
+  const double *d      = b->dp + (size_t)pair * 3 * stride + (k ? 2 * k - 1 : 0) * block;
+  if (k) {
+    combine(block, d, stride, R, re, im);
+    return;
+  }
+  for (int j = 0; j < block; j++)
+    re[j] += creal(R[0]) * d[j] + creal(R[1]) * d[stride + (size_t)j] +
+             creal(R[2]) * d[2 * stride + (size_t)j];
+}
+
+/* Columns of one pair of I + R dp, from rows. */
+static void assemble_columns(const mhb_residual *b, int pair, double *jacobian) {
+  int    block = 3 * b->nb, n3 = 3 * b->n_pairs;
+  size_t n = (size_t)b->n, first = (size_t)pair * (size_t)block;
+  double re[block], im[block];
+  for (int row = 0; row < n3; row++)
+    for (int k = 0; k <= b->m; k++) {
+      const double complex *R =
+          b->receptance->R + ((size_t)k * (size_t)n3 + (size_t)row) * (size_t)n3 + 3 * pair;
+      double *J = jacobian + first * n + row * b->nb + (k ? 2 * k - 1 : 0);
+      memset(re, 0, sizeof re);
+      memset(im, 0, sizeof im);
+      mhb_residual_combine(b, R, pair, k, re, im);
+      for (size_t j = 0; j < (size_t)block; j++) {
+        J[j * n] = re[j];
+        if (k) J[j * n + 1] = im[j];
       }
     }
+  for (size_t i = first; i < first + (size_t)block; i++) jacobian[i * n + i] += 1;
+}
+
+static mhb_pair_kind kind_of(const mhb_residual *b, int a) {
+  const mhb_contact_info *info = &b->info[a];
+  const double           *p    = b->p + 3 * (size_t)a * (size_t)b->nb;
+  if (info->share[MHB_SEPARATE] == 1 && !info->lost) return MHB_PAIR_OPEN;
+  int still = info->share[MHB_STICK] == 1 && info->undetermined;
+  return still && p[b->nb] == 0 && p[2 * b->nb] == 0 ? MHB_PAIR_STUCK : MHB_PAIR_MOVING;
+}
+
+/* The derivative of a pair that is stuck or open, from the law itself: the same to the last bit however it was found. */
+static void linear_derivative(const mhb_residual *b, int a) {
+  const mhb_law *law = &b->law[a];
+  size_t         nb = (size_t)b->nb, block = 3 * nb;
+  double        *d = b->dp + (size_t)a * block * block;
+  memset(d, 0, sizeof(double) * block * block);
+  if (b->kind[a] == MHB_PAIR_OPEN) return;
+  for (size_t i = 0; i < nb; i++) d[i * block + i] = law->kv;
+  for (size_t i = 1; i < nb; i++) {
+    double *u = d + (nb + i) * block, *w = d + (2 * nb + i) * block;
+    u[nb + i]     = law->ku[0];
+    u[2 * nb + i] = law->ku[1];
+    w[nb + i]     = law->ku[1];
+    w[2 * nb + i] = law->ku[2];
   }
 }
 
-static void assemble_jacobian(const mhb_residual *b, double *jacobian) {
-  memset(jacobian, 0, sizeof(double) * (size_t)b->n * (size_t)b->n);
-  for (int i = 0; i < b->n; i++) jacobian[(size_t)i * (size_t)b->n + (size_t)i] = 1;
-  for (int pair = 0; pair < b->n_pairs; pair++)
-    for (int row = 0; row < 3 * b->n_pairs; row++)
-      for (int k = 0; k <= b->m; k++) jacobian_rows(b, k, row, pair, jacobian);
+/* A pair that was stuck or open will mostly be so again: then its derivative need not be worked out. */
+static void evaluate_pair(mhb_residual *b, mhb_contact *contact, const double *x, int a,
+                          int derivative) {
+  size_t  block = 3 * (size_t)b->nb, at = (size_t)a * block;
+  double *dp = b->dp + at * block;
+  if (!derivative || b->kind[a] != MHB_PAIR_MOVING) {
+    mhb_contact_force(contact, &b->law[a], x + at, b->p + at, NULL, &b->info[a]);
+    if (!derivative) return;
+    b->kind[a] = kind_of(b, a);
+  }
+  if (b->kind[a] == MHB_PAIR_MOVING) {
+    mhb_contact_force(contact, &b->law[a], x + at, b->p + at, dp, &b->info[a]);
+    b->kind[a] = kind_of(b, a);
+  }
+  if (b->kind[a] != MHB_PAIR_MOVING) linear_derivative(b, a);
 }
 
-void mhb_residual_evaluate(mhb_residual *b, const double *x, double omega, double *r,
-                           double *jacobian, double *slope) {
-  int    n3    = 3 * b->n_pairs;
-  size_t block = 3 * (size_t)b->nb;
+static void evaluate_pairs(mhb_residual *b, const double *x, int derivative) {
+#pragma omp parallel for schedule(dynamic, 1) num_threads(b->n_threads) if (b->n_threads > 1)
+  for (int a = 0; a < b->n_pairs; a++)
+    evaluate_pair(b, b->contacts[omp_get_thread_num()], x, a, derivative);
+}
+
+static void evaluate(mhb_residual *b, const double *x, double omega, int derivative, double *r,
+                     double *slope) {
+  int n3 = 3 * b->n_pairs;
   mhb_receptance_at(b->receptance, omega, b->m);
-  for (int a = 0; a < b->n_pairs; a++) {
-    mhb_contact_force(b->contact, &b->law[a], x + (size_t)a * block, b->p + (size_t)a * block,
-                      jacobian ? b->dp + (size_t)a * block * block : NULL, &b->info[a]);
-  }
+  evaluate_pairs(b, x, derivative);
   for (int k = 0; k <= b->m; k++) {
     const double complex *R = b->receptance->R + (size_t)k * (size_t)n3 * (size_t)n3;
     harmonic(b, b->p, k, b->pk);
     harmonic(b, x, k, b->uk);
-    for (int i = 0; i < n3; i++) {
-      b->uk[i] -= b->receptance->free[k * n3 + i];
-      for (int j = 0; j < n3; j++) b->uk[i] += R[(size_t)i * (size_t)n3 + (size_t)j] * b->pk[j];
+    for (int i = 0; i < n3; i++, R += n3) {
+      double complex u  = b->uk[i] - b->receptance->free[k * n3 + i];
+      double         re = creal(u), im = cimag(u);
+      for (int j = 0; j < n3; j++) {
+        re += creal(R[j]) * creal(b->pk[j]) - cimag(R[j]) * cimag(b->pk[j]);
+        im += creal(R[j]) * cimag(b->pk[j]) + cimag(R[j]) * creal(b->pk[j]);
+      }
+      b->uk[i] = CMPLX(re, im);
     }
     store(b, r, k, b->uk);
     if (!slope) continue;
@@ -134,7 +221,16 @@ void mhb_residual_evaluate(mhb_residual *b, const double *x, double omega, doubl
     for (int i = 0; i < n3; i++) b->uk[i] = -b->uk[i];
     store(b, slope, k, b->uk);
   }
-  if (jacobian) assemble_jacobian(b, jacobian);
+}
+
+void mhb_residual_derive(mhb_residual *b, const double *x, double omega, double *r, double *slope) {
+  evaluate(b, x, omega, 1, r, slope);
+}
+
+void mhb_residual_evaluate(mhb_residual *b, const double *x, double omega, double *r,
+                           double *jacobian, double *slope) {
+  evaluate(b, x, omega, jacobian != NULL, r, slope);
+  for (int pair = 0; jacobian && pair < b->n_pairs; pair++) assemble_columns(b, pair, jacobian);
 }
 
 /* Stuck: (I + R_k S) u_k = free_k - R_k s0, S = diag(kv, Ku), s0 the unbalanced preload at k = 0. The mean friction is

@@ -9,16 +9,27 @@
 #include "mhb/receptance.h"
 #include "mhb/settings.h"
 
+/* What a pair did over the period, as far as its derivative is concerned. */
+typedef enum {
+  MHB_PAIR_MOVING, /* slips or opens for a part of it; or its mean friction is not free */
+  MHB_PAIR_STUCK,  /* dp_k/du_k = diag(kv, Ku), for k = 0 diag(kv, 0) */
+  MHB_PAIR_OPEN    /* dp/du = 0 */
+} mhb_pair_kind;
+
 typedef struct {
   const mhb_settings *settings;
-  mhb_receptance     *receptance;        /* harmonics 0..m */
-  mhb_contact        *contact;           /* forces to harmonic m */
+  mhb_receptance     *receptance; /* harmonics 0..m */
+  mhb_contact        *contact;    /* forces to harmonic m: that of thread 0 */
+  mhb_contact       **contacts;   /* [thread] */
+  int                 n_threads;
   mhb_law            *law;               /* [pair] shares of the interface */
   mhb_contact_info   *info;              /* [pair] of the last evaluation */
   int                 m, n_pairs, nb, n; /* nb = 2m+1, n = 3 pairs nb unknowns */
   double              n0;                /* total preload, N */
   double             *p;                 /* [n] force in real form, as x */
   double             *dp;                /* [pair][3 nb][3 nb] */
+  mhb_pair_kind      *kind;              /* [pair] of the last evaluation with derivatives */
+  int                 n_laws;            /* counts changes of law */
   double complex     *pk, *uk;           /* [3 pairs] one harmonic */
 } mhb_residual;
 
@@ -28,6 +39,15 @@ void       mhb_residual_destroy(mhb_residual *residual);
 
 /* Preload of the interface, N: shared out to the pairs. */
 void mhb_residual_preload(mhb_residual *residual, double n0);
+
+/* As below, and always the derivatives dp and the kinds; the Jacobian is left to mhb/condensed. */
+void mhb_residual_derive(mhb_residual *residual, const double *x, double omega, double *r,
+                         double *slope);
+
+/* Two real rows, dp of harmonic k of a pair times the complex row R[3] over its axes:
+ *   re, im  inout  [3 nb] += Re, Im of sum_c R[c] dp[c, k]; im is untouched for k = 0 */
+void mhb_residual_combine(const mhb_residual *residual, const double complex R[3], int pair, int k,
+                          double *re, double *im);
 
 /* Evaluate at (x, omega rad/s).
  *   r        out  [n] m

@@ -15,8 +15,7 @@ static void spread_shapes(int n, modal_model *model) {
   for (int a = 0; a < n; a++) {
     double y = n > 1 ? 2. * a / (n - 1) - 1 : 0, rocking = .3 + pow(y, 8) + .02 * y;
     for (int c = 0; c < 3; c++)
-      for (int i = 0; i < m; i++)
-        face[(3 * a + c) * m + i] = rocking * model->right[c * m + i];
+      for (int i = 0; i < m; i++) face[(3 * a + c) * m + i] = rocking * model->right[c * m + i];
   }
   free(model->right);
   model->right = face;
