@@ -114,6 +114,8 @@ static const case_key table[] = {
      .help = "multiplies the excitation"},
     {"mhb.max_points", CASE_INTEGER, "", 10, 1000000, .fallback = "2000", AT(mhb.max_points), .stages = CASE_MHB,
      .help = "points after which a branch ends"},
+    {"mhb.stability", CASE_CHOICE, "", .words = "auto always never", .fallback = "auto", AT(mhb.stability), .stages = CASE_MHB,
+     .help = "Floquet multipliers: at every point where that is cheap, else at a few a curve; at every point; at none"},
 };
 /* clang-format on */
 

@@ -135,6 +135,12 @@ static int same(const mhb_exponents *x, const int *state, const mhb_law *law) {
   return 1;
 }
 
+/* By falling real part: the multipliers then come by falling modulus at any period. */
+static int by_growth(const void *a, const void *b) {
+  double x = creal(*(const double complex *)a), y = creal(*(const double complex *)b);
+  return (x < y) - (x > y);
+}
+
 int mhb_exponents_set(mhb_exponents *x, const int *state, const mhb_law *law) {
   const mhb_structure *s = x->structure;
   if (x->known && same(x, state, law)) return 1;
@@ -142,5 +148,6 @@ int mhb_exponents_set(mhb_exponents *x, const int *state, const mhb_law *law) {
   memcpy(x->law, law, sizeof *law * (size_t)s->pairs);
   x->known = 1;
   for (int d = 0; d < s->blades; d++) x->known &= nodal_diameter(x, d);
+  qsort(x->exponent, (size_t)x->n, sizeof *x->exponent, by_growth);
   return x->known;
 }

@@ -6,13 +6,19 @@
 #include <string.h>
 
 #include "mesh/progress.h"
+#include "mhb/judge.h"
 #include "mhb/record.h"
 #include "mhb/truncation.h"
 
 static const double PI = 3.14159265358979323846;
 
+/* A path whose steps stay below CRAWL this often is as good as stalled. */
+static const double CRAWL = 2e-3;
+enum { MAX_CRAWL = 150, MAX_GAPS = 8, MAX_BEGINS = 64 };
+
 /* A branch under way. */
 typedef struct {
+  mhb_judge_host  host; /* first: the callbacks get it back */
   mhb_residual   *residual;
   mhb_path       *path;
   mhb_truncation *truncation;
@@ -26,11 +32,9 @@ typedef struct {
   double          farthest;       /* rad/s, highest frequency reached */
   int             crawling, gaps; /* tiny steps in a row; places jumped over */
   char            first_gap[96];
+  int             first[MAX_BEGINS], n_first; /* where the curve begins, and begins anew */
+  mhb_judge      *judge;                      /* NULL: stability by folds */
 } follower;
-
-/* A path whose steps stay below CRAWL this often is as good as stalled. */
-static const double CRAWL = 2e-3;
-enum { MAX_CRAWL = 150, MAX_GAPS = 8 };
 
 static double fold_indicator(const mhb_path *path, const mhb_path_point *point, void *context) {
   (void)context;
@@ -110,6 +114,11 @@ static shb_status record_events(follower *f, bool *go_on) {
   return SHB_OK;
 }
 
+/* The point recorded next does not follow the one before along the curve. */
+static void begin_anew(follower *f) {
+  if (f->n_first < MAX_BEGINS) f->first[f->n_first++] = f->response->branch[f->branch].n_points;
+}
+
 /* Start, or start again, from a solution at omega. */
 static shb_status begin(follower *f, double omega, bool *found, bool *go_on) {
   mhb_path  *path = f->path;
@@ -121,6 +130,7 @@ static shb_status begin(follower *f, double omega, bool *found, bool *go_on) {
   if (!*found) return SHB_OK;
   f->farthest = fmax(f->farthest, omega);
   f->crawling = 0;
+  begin_anew(f);
   slopes(f, &path->now, f->before);
   return record(f, &path->now, MHB_ORDINARY, go_on);
 }
@@ -149,6 +159,7 @@ static const char *obstacle(follower *f, mhb_path_outcome outcome) {
     if (mhb_path_outside(f->path, outcome) != MHB_PATH_ON)
       return "turned back to the start of the range";
     slopes(f, &f->path->next, f->after);
+    begin_anew(f);
   }
   return f->crawling > MAX_CRAWL ? "the steps stayed tiny" : NULL;
 }
@@ -210,17 +221,46 @@ static void drop_hairlines(mhb_branch *branch) {
   }
 }
 
-/* Which parts of the branch are stable by the parity of folds passed: exact for fold bifurcations, blind to others. */
-static void mark_stability(mhb_branch *branch) {
-  int stable = 1;
-  for (int i = 0; i < branch->n_points; i++) {
-    branch->stable[i] = stable;
-    if (branch->special[i] == MHB_FOLD) stable = !stable;
-  }
+static shb_status insert(mhb_judge_host *host, mhb_path_point *point, int special, int at) {
+  follower *f       = (follower *)host;
+  point->truncation = mhb_truncation_error(f->truncation, point->x, point->omega);
+  point->modal      = mhb_modal_error(f->residual, point->x);
+  host->lock(host, true);
+  shb_status status = mhb_record(f->response, f->branch, f->residual, point, special, 0);
+  if (status == SHB_OK) mhb_response_place(f->response, f->branch, at);
+  host->lock(host, false);
+  return status;
+}
+
+static void lock_judge(mhb_judge_host *host, bool locked) {
+  follower *f = (follower *)host;
+  f->monitor->lock(f->monitor, locked);
+}
+
+static bool judged(mhb_judge_host *host, double omega) {
+  follower      *f     = (follower *)host;
+  mhb_path_point point = {.omega = omega};
+  return f->monitor->point(f->monitor, f->branch, &point);
+}
+
+/* Before the branch counts as complete: an interrupted run takes complete branches over as they are. */
+static shb_status judge(follower *f, const char **reason) {
+  bool finished = true;
+  f->monitor->lock(f->monitor, true);
+  drop_hairlines(&f->response->branch[f->branch]);
+  mhb_judge_by_folds(&f->response->branch[f->branch]);
+  f->monitor->lock(f->monitor, false);
+  if (!f->judge || strcmp(*reason, "interrupted") == 0) return SHB_OK;
+  f->host           = (mhb_judge_host){.insert = insert, .lock = lock_judge, .point = judged};
+  shb_status status = mhb_judge_branch(f->judge, f->path, f->response, f->branch, f->first,
+                                       f->n_first, &f->host, &finished);
+  if (!finished) *reason = "interrupted";
+  return status;
 }
 
 static shb_status finish(follower *f, const char *reason) {
   char text[256];
+  SHB_TRY(judge(f, &reason));
   snprintf(text, sizeof text, "%s", reason);
   if (f->gaps > 0)
     snprintf(text, sizeof text, "%s, with %d gap%s: %s", reason, f->gaps, f->gaps > 1 ? "s" : "",
@@ -231,8 +271,6 @@ static shb_status finish(follower *f, const char *reason) {
   free(branch->reason);
   branch->reason   = strdup(text);
   branch->complete = strcmp(text, "end of range") == 0;
-  drop_hairlines(branch);
-  mark_stability(branch);
   if (!branch->reason) status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   f->monitor->lock(f->monitor, false);
   return status;
@@ -245,6 +283,8 @@ static shb_status create(follower *f) {
   SHB_TRY(mhb_path_create(f->residual, 2 * PI * range[0], 2 * PI * range[1], &f->path));
   f->monitor->lock(f->monitor, true); /* FFTW's planner */
   shb_status status = mhb_truncation_create(f->residual, &f->truncation);
+  if (status == SHB_OK && f->residual->settings->stability != MHB_STABILITY_NEVER)
+    status = mhb_judge_create(f->residual, &f->judge);
   f->monitor->lock(f->monitor, false);
   SHB_TRY(status);
   f->before = calloc(outputs, sizeof(double));
@@ -257,6 +297,7 @@ static shb_status create(follower *f) {
 static void destroy(follower *f) {
   f->monitor->lock(f->monitor, true);
   mhb_truncation_destroy(f->truncation);
+  mhb_judge_destroy(f->judge);
   f->monitor->lock(f->monitor, false);
   mhb_path_destroy(f->path);
   free(f->before);

@@ -8,9 +8,6 @@
 #include "mhb/path.h"
 #include "mhb/response.h"
 
-/* special of mhb_branch */
-enum { MHB_ORDINARY, MHB_FOLD, MHB_PEAK };
-
 /* Called after every recorded point; the one place where threads meet. Returns false to stop (interrupted). */
 typedef struct mhb_monitor mhb_monitor;
 struct mhb_monitor {

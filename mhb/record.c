@@ -42,6 +42,7 @@ shb_status mhb_record(mhb_response *response, int index, mhb_residual *b,
   branch->frequency[at]    = point->omega / (2 * PI);
   branch->n0[at]           = b->n0;
   branch->special[at]      = special;
+  branch->stable[at]       = -1; /* until the branch is judged */
   branch->iterations[at]   = point->iterations;
   branch->seconds[at]      = seconds;
   branch->error_newton[at] = point->residual;

@@ -12,7 +12,7 @@ enum { RESPONSE_VERSION = 1, FIRST_POINTS = 64, MAX_COUNT = 100000 };
 
 /* ---------------------------------------------------------------- one array of a branch
  * The table drives growing, writing and reading. dims: the dimensions after [point], one letter each:
- * p pair, q probe, 3 shroud axes, x cylindrical axes, s contact state, k harmonic 0..m. */
+ * p pair, q probe, 3 shroud axes, x cylindrical axes, s contact state, k harmonic 0..m, f multiplier. */
 typedef enum { DOUBLE, COMPLEX, INT } number;
 
 typedef struct {
@@ -36,7 +36,8 @@ static const field fields[] = {
      "displacement of the probes, tangential, axial, radial; harmonics"},
     {"stable", "", INT, AT(stable), "-", "stability: 1 stable, 0 unstable, -1 not known"},
     {"special", "", INT, AT(special), "-",
-     "0 ordinary point, 1 fold, 2 peak of the first harmonic of a probe or contact motion"},
+     "0 ordinary point, 1 fold, 2 peak of the first harmonic of a probe or contact motion, 3 flip "
+     "(period doubling), 4 Neimark-Sacker point"},
     {"state", "ps", DOUBLE, AT(state), "-", "share of the period stuck, slipping, open"},
     {"dissipation", "p", DOUBLE, AT(dissipation), "J", "energy lost by friction in a period"},
     {"iterations", "", INT, AT(iterations), "-", "Newton iterations"},
@@ -49,8 +50,18 @@ static const field fields[] = {
      "estimated error of the contact force's harmonics, relative to the motion"},
     {"error/modal", "", DOUBLE, AT(error_modal), "-",
      "estimated error from the modes left out, relative to the motion"},
+    /* the last N_LATER: of nonlinear branches only; files of earlier versions lack them */
+    {"judged", "", INT, AT(judged), "-",
+     "what stable rests on: 1 the Floquet multipliers; else the parity of folds passed since such "
+     "a "
+     "point, because the multipliers were 0 not computed, 2 marginal, 3 undecided"},
+    {"loss", "", INT, AT(loss), "-",
+     "how stability was lost: 0 it was not, 1 fold (a multiplier beyond +1), 2 flip (beyond -1), 3 "
+     "Neimark-Sacker (a pair)"},
+    {"multipliers", "f", COMPLEX, AT(multipliers), "-",
+     "largest Floquet multipliers by falling modulus; 0: not computed, or there are no more"},
 };
-enum { N_FIELDS = sizeof fields / sizeof *fields };
+enum { N_FIELDS = sizeof fields / sizeof *fields, N_LATER = 3 };
 
 static const char *const kind_name[] = {"nonlinear", "open", "stuck"};
 enum { N_KINDS = sizeof kind_name / sizeof *kind_name };
@@ -67,6 +78,8 @@ static hsize_t size_of(const mhb_response *response, char letter) {
       return (hsize_t)response->n_probes;
     case 'k':
       return (hsize_t)response->n_harmonics + 1;
+    case 'f':
+      return (hsize_t)response->n_multipliers;
     default:
       return 3;
   }
@@ -80,6 +93,8 @@ static const char *scale_of(char letter) {
       return "/probe/name";
     case 'k':
       return "/harmonic";
+    case 'f':
+      return "/multiplier";
     case '3':
       return "/shroud_axis";
     case 'x':
@@ -100,9 +115,13 @@ static size_t width_of(const mhb_response *response, const field *f) {
   return h5_count(shape_of(response, f, 1));
 }
 
+static bool is_later(const field *f) {
+  return f - fields >= N_FIELDS - N_LATER;
+}
+
 /* Without probes there is no probe array, in memory or in the file. */
-static bool is_kept(const mhb_response *response, const field *f) {
-  return width_of(response, f) > 0;
+static bool is_kept(const mhb_response *response, const mhb_branch *branch, const field *f) {
+  return width_of(response, f) > 0 && (branch->kind == MHB_BRANCH_NONLINEAR || !is_later(f));
 }
 
 static void *get(const mhb_branch *branch, const field *f) {
@@ -165,7 +184,7 @@ shb_status mhb_response_branch(mhb_response *response, mhb_branch_kind kind, int
 static shb_status grow(const mhb_response *response, mhb_branch *branch) {
   int capacity = branch->capacity ? 2 * branch->capacity : FIRST_POINTS;
   for (int i = 0; i < N_FIELDS; i++) {
-    if (!is_kept(response, &fields[i])) continue;
+    if (!is_kept(response, branch, &fields[i])) continue;
     size_t row  = width_of(response, &fields[i]) * bytes_of(fields[i].kind);
     void  *data = realloc(get(branch, &fields[i]), (size_t)capacity * row);
     SHB_CHECK(data, SHB_ERR_IO, "no memory for %d response points", capacity);
@@ -179,12 +198,30 @@ shb_status mhb_response_point(mhb_response *response, int branch, int *point) {
   mhb_branch *b = &response->branch[branch];
   if (b->n_points == b->capacity) SHB_TRY(grow(response, b));
   for (int i = 0; i < N_FIELDS; i++) {
-    if (!is_kept(response, &fields[i])) continue;
+    if (!is_kept(response, b, &fields[i])) continue;
     size_t row = width_of(response, &fields[i]) * bytes_of(fields[i].kind);
     memset((char *)get(b, &fields[i]) + (size_t)b->n_points * row, 0, row);
   }
   *point = b->n_points++;
   return SHB_OK;
+}
+
+/* The last of n rows goes to place at, byte by byte: no room is needed. */
+static void rotate(char *data, size_t row, size_t at, size_t n) {
+  for (size_t i = n - 1; i > at; i--)
+    for (size_t k = 0; k < row; k++) {
+      char swap               = data[i * row + k];
+      data[i * row + k]       = data[(i - 1) * row + k];
+      data[(i - 1) * row + k] = swap;
+    }
+}
+
+void mhb_response_place(mhb_response *response, int branch, int at) {
+  mhb_branch *b = &response->branch[branch];
+  for (int i = 0; i < N_FIELDS; i++)
+    if (is_kept(response, b, &fields[i]))
+      rotate(get(b, &fields[i]), width_of(response, &fields[i]) * bytes_of(fields[i].kind),
+             (size_t)at, (size_t)b->n_points);
 }
 
 /* ---------------------------------------------------------------- writing */
@@ -212,6 +249,9 @@ static shb_status write_scales(hid_t file, const mhb_response *response) {
       h5_write_counter(file, "/harmonic", size_of(response, 'k'),
                        "harmonic k of omega / subharmonics; x(t) = Re sum_k A_k exp(j k omega t / "
                        "subharmonics)"));
+  if (response->n_multipliers > 0)
+    SHB_TRY(h5_write_counter(file, "/multiplier", size_of(response, 'f'),
+                             "Floquet multiplier, by falling modulus"));
   return write_probe_names(file, response);
 }
 
@@ -264,7 +304,8 @@ static shb_status fill_branch(hid_t group, const mhb_response *response, const m
   SHB_TRY(h5_write_attribute_text(group, ".", "reason", branch->reason));
   SHB_TRY(h5_write_attribute_int(group, ".", "complete", branch->complete));
   for (int i = 0; i < N_FIELDS; i++)
-    if (is_kept(response, &fields[i])) SHB_TRY(write_field(group, response, branch, &fields[i]));
+    if (is_kept(response, branch, &fields[i]))
+      SHB_TRY(write_field(group, response, branch, &fields[i]));
   return SHB_OK;
 }
 
@@ -331,6 +372,17 @@ static shb_status read_modes(hid_t file, mhb_response *response) {
   return SHB_OK;
 }
 
+/* Files of earlier versions have none. */
+static shb_status read_multipliers(hid_t file, const char *path, mhb_response *response) {
+  h5_shape shape;
+  if (!h5_exists(file, "/multiplier")) return SHB_OK;
+  SHB_TRY(h5_shape_of(file, "/multiplier", &shape));
+  SHB_CHECK(shape.rank == 1 && shape.dim[0] <= MAX_COUNT, SHB_ERR_INPUT,
+            "%s: /multiplier must be a list of at most %d", path, MAX_COUNT);
+  response->n_multipliers = (int)shape.dim[0];
+  return SHB_OK;
+}
+
 /* Sizes, probe names and root attributes. */
 static shb_status read_root(hid_t file, const char *path, mhb_response **out) {
   int    n_pairs = 0, n_harmonics = 0, n_probes = 0;
@@ -349,6 +401,7 @@ static shb_status read_root(hid_t file, const char *path, mhb_response **out) {
   SHB_TRY(h5_read_attribute_double(file, "/", "phi", 0, &response->phi));
   SHB_CHECK(response->subharmonics >= 1, SHB_ERR_INPUT,
             "%s: subharmonics is %d; 1 or more is wanted", path, response->subharmonics);
+  SHB_TRY(read_multipliers(file, path, response));
   return read_modes(file, response);
 }
 
@@ -358,6 +411,12 @@ static shb_status read_field(hid_t group, const mhb_response *response, mhb_bran
   double         *real     = NULL;
   double complex *complex_ = NULL;
   int            *whole    = NULL;
+  if (is_later(f) && !h5_exists(group, f->name)) { /* an earlier version's file: not known */
+    void *none = calloc(h5_count(shape) + 1, bytes_of(f->kind));
+    SHB_CHECK(none, SHB_ERR_IO, "no memory for %d response points", branch->n_points);
+    set(branch, f, none);
+    return SHB_OK;
+  }
   switch (f->kind) {
     case DOUBLE:
       SHB_TRY(h5_read_double(group, f->name, &shape, &real));
@@ -388,19 +447,26 @@ static shb_status read_kind(hid_t group, const char *path, int index, mhb_branch
   return SHB_OK;
 }
 
+/* All values of a list of codes within their range. */
+static shb_status check_codes(const char *path, int index, const char *name, int n, const int *code,
+                              int least, int most, const char *wanted) {
+  for (int i = 0; code && i < n; i++)
+    SHB_CHECK(code[i] >= least && code[i] <= most, SHB_ERR_INPUT,
+              "%s: /branch_%d/%s: value %d (from 0) is %d; %s is wanted", path, index, name, i,
+              code[i], wanted);
+  return SHB_OK;
+}
+
 static shb_status check_points(const char *path, int index, const mhb_branch *branch) {
-  for (int i = 0; i < branch->n_points; i++) {
+  int n = branch->n_points;
+  for (int i = 0; i < n; i++)
     SHB_CHECK(branch->frequency[i] > 0, SHB_ERR_INPUT,
               "%s: /branch_%d/frequency: value %d (from 0) is %g Hz; all must be positive", path,
               index, i, branch->frequency[i]);
-    SHB_CHECK(branch->stable[i] >= -1 && branch->stable[i] <= 1, SHB_ERR_INPUT,
-              "%s: /branch_%d/stable: value %d (from 0) is %d; 1, 0 or -1 is wanted", path, index,
-              i, branch->stable[i]);
-    SHB_CHECK(branch->special[i] >= 0 && branch->special[i] <= 2, SHB_ERR_INPUT,
-              "%s: /branch_%d/special: value %d (from 0) is %d; 0, 1 or 2 is wanted", path, index,
-              i, branch->special[i]);
-  }
-  return SHB_OK;
+  SHB_TRY(check_codes(path, index, "stable", n, branch->stable, -1, 1, "1, 0 or -1"));
+  SHB_TRY(check_codes(path, index, "special", n, branch->special, 0, MHB_N_SPECIALS - 1, "0 to 4"));
+  SHB_TRY(check_codes(path, index, "judged", n, branch->judged, 0, MHB_N_JUDGED - 1, "0 to 3"));
+  return check_codes(path, index, "loss", n, branch->loss, 0, MHB_N_LOSSES - 1, "0 to 3");
 }
 
 static shb_status fill_from(hid_t group, const char *path, int index, mhb_response *response) {
@@ -416,7 +482,8 @@ static shb_status fill_from(hid_t group, const char *path, int index, mhb_respon
             index);
   branch->n_points = branch->capacity = (int)points.dim[0];
   for (int i = 0; i < N_FIELDS; i++)
-    if (is_kept(response, &fields[i])) SHB_TRY(read_field(group, response, branch, &fields[i]));
+    if (is_kept(response, branch, &fields[i]))
+      SHB_TRY(read_field(group, response, branch, &fields[i]));
   return check_points(path, index, branch);
 }
 

@@ -10,6 +10,21 @@
 
 typedef enum { MHB_BRANCH_NONLINEAR, MHB_BRANCH_OPEN, MHB_BRANCH_STUCK } mhb_branch_kind;
 
+/* special of mhb_branch; the last two: where a multiplier leaves or enters the unit circle at -1, or a pair does */
+enum { MHB_ORDINARY, MHB_FOLD, MHB_PEAK, MHB_FLIP, MHB_NEIMARK_SACKER, MHB_N_SPECIALS };
+
+/* judged of mhb_branch: what stable rests on. Parity: of the folds passed since a point judged by its multipliers. */
+enum {
+  MHB_BY_FOLDS,           /* parity: multipliers were not computed */
+  MHB_BY_MULTIPLIERS,     /* all inside the unit circle, or some well outside */
+  MHB_MARGINAL_BY_FOLDS,  /* the largest is at 1 within what can be told: parity */
+  MHB_UNDECIDED_BY_FOLDS, /* multipliers could not be computed: parity */
+  MHB_N_JUDGED
+};
+
+/* loss of mhb_branch: what made an unstable point so. */
+enum { MHB_NO_LOSS, MHB_LOSS_FOLD, MHB_LOSS_FLIP, MHB_LOSS_NEIMARK_SACKER, MHB_N_LOSSES };
+
 /* One curve. Array layouts: motion, force [point][pair][3 (v,u,w)][k = 0..m]; probe [point][probe][3 (tangential,
  * axial, radial)][k]; state [point][pair][3 (stuck, slipping, open)]; signals x(t) = Re sum_k A_k exp(j k w t). */
 typedef struct {
@@ -21,8 +36,12 @@ typedef struct {
   double         *n0;        /* [point] N, total of the interface */
   double complex *motion, *force, *probe;
   int            *stable; /* [point] 1 stable, 0 unstable, -1 not known */
-  int *
-      special; /* [point] 0 ordinary, 1 fold, 2 peak (of any probe or contact motion, first harmonic) */
+  int *special; /* [point] MHB_ORDINARY ...; peak: of any probe or contact motion, first harmonic */
+  /* nonlinear branches only */
+  int *judged; /* [point] MHB_BY_FOLDS ... */
+  int *loss;   /* [point] MHB_NO_LOSS ... */
+  double complex     *
+      multipliers; /* [point][n_multipliers] the largest, by falling modulus; 0: not computed, or no more */
   double *state;
   double *dissipation; /* [point][pair] J a cycle */
   int    *iterations;  /* [point] */
@@ -35,6 +54,7 @@ typedef struct {
   int         n_pairs, n_probes, n_harmonics, subharmonics, n_branches, capacity;
   char      **probe_name;
   mhb_branch *branch;
+  int         n_multipliers; /* kept a point; 0: none, set before the first point */
   /* copied from the modal model for the report */
   int     n_modes;
   double *mode_frequency, *mode_damping, *mode_residual; /* [m]; mode_residual may be NULL */
@@ -49,6 +69,8 @@ void          mhb_response_destroy(mhb_response *response);
 shb_status mhb_response_branch(mhb_response *response, mhb_branch_kind kind, int *index);
 /* Make room for one more point (zeroed) and return its index through *point; branch arrays may move. */
 shb_status mhb_response_point(mhb_response *response, int branch, int *point);
+/* Move the last point of a branch to place at; those from there on move up by one. */
+void mhb_response_place(mhb_response *response, int branch, int at);
 
 /* Publish (temporary, fsync, rename) / read back with full checks. */
 shb_status mhb_response_write(const mhb_response *response, const char *path,

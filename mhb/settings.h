@@ -6,25 +6,29 @@
 
 typedef enum { MHB_EQUILIBRIUM, MHB_INTERFERENCE } mhb_preload;
 
+/* Multipliers: where they cost little and at a few points elsewhere; at every point; not at all. */
+typedef enum { MHB_STABILITY_AUTO, MHB_STABILITY_ALWAYS, MHB_STABILITY_NEVER } mhb_stability_when;
+
 enum { MHB_MAX_PRELOADS = 256 };
 
 typedef struct {
-  bool        to_ground;
-  int         engine_order, blades; /* inter-blade phase 2 pi E/N, eq. 16 */
-  bool        has_psi, has_phi;     /* given in the case; else from the modal file's normals */
-  double      psi, phi;             /* rad */
-  double      mu, kv;               /* -, N/m: totals of the interface */
-  double      ku[3];                /* kuu, kuw, kww, N/m */
-  mhb_preload preload;
-  int         n_preloads;
-  double      n0[MHB_MAX_PRELOADS]; /* N */
-  double      frequency[2];         /* Hz, first < second */
-  int         harmonics;            /* m >= 1 */
-  int         subharmonics;         /* nu >= 1: fundamental is omega/nu */
-  double      scale;                /* multiplies the excitation */
-  double      tolerance;            /* of the contact law, relative to its largest force */
-  int         max_points;           /* a branch ends (with a reason) beyond this, default 2000 */
-  bool        resume; /* take over what an interrupted run of equal settings finished */
+  bool               to_ground;
+  int                engine_order, blades; /* inter-blade phase 2 pi E/N, eq. 16 */
+  bool               has_psi, has_phi; /* given in the case; else from the modal file's normals */
+  double             psi, phi;         /* rad */
+  double             mu, kv;           /* -, N/m: totals of the interface */
+  double             ku[3];            /* kuu, kuw, kww, N/m */
+  mhb_preload        preload;
+  int                n_preloads;
+  double             n0[MHB_MAX_PRELOADS]; /* N */
+  double             frequency[2];         /* Hz, first < second */
+  int                harmonics;            /* m >= 1 */
+  int                subharmonics;         /* nu >= 1: fundamental is omega/nu */
+  double             scale;                /* multiplies the excitation */
+  double             tolerance;            /* of the contact law, relative to its largest force */
+  int                max_points; /* a branch ends (with a reason) beyond this, default 2000 */
+  mhb_stability_when stability;  /* which points are judged by their multipliers */
+  bool               resume;     /* take over what an interrupted run of equal settings finished */
 } mhb_settings;
 
 #endif

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "mhb/follow.h"
+#include "mhb/judge.h"
 
 static const double PI = 3.14159265358979323846, PUBLISH_EVERY = 10, BRANCH_END_EVERY = 1; /* s */
 
@@ -73,6 +74,7 @@ static shb_status describe(mhb_response *response, const modal_model *model,
   response->subharmonics   = settings->subharmonics;
   response->engine_order   = settings->engine_order;
   response->blades         = settings->blades;
+  response->n_multipliers  = settings->stability == MHB_STABILITY_NEVER ? 0 : MHB_JUDGE_MULTIPLIERS;
   response->mode_frequency = malloc(sizeof(double) * m);
   response->mode_damping   = malloc(sizeof(double) * m);
   SHB_CHECK(response->mode_frequency && response->mode_damping, SHB_ERR_IO, "out of memory");
@@ -139,7 +141,8 @@ static void resume(sweep *s) {
   h5_close(file);
   free(settings);
   if (!same || mhb_response_read(s->path, &old) != SHB_OK) return;
-  for (int i = 2; i < s->response->n_branches && i < old->n_branches; i++) {
+  bool fits = old->n_multipliers == s->response->n_multipliers;
+  for (int i = 2; fits && i < s->response->n_branches && i < old->n_branches; i++) {
     if (!old->branch[i].complete) continue;
     mhb_branch fresh       = s->response->branch[i];
     s->response->branch[i] = old->branch[i];

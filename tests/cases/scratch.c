@@ -46,7 +46,8 @@ static const char whole[] =
     "  harmonics: 7\n"                                                                     /* 32 */
     "  subharmonics: 2\n"                                                                  /* 33 */
     "  scale: 1.3\n"                                                                       /* 34 */
-    "  max_points: 777\n";                                                                 /* 35 */
+    "  max_points: 777\n"                                                                  /* 35 */
+    "  stability: always\n";                                                               /* 36 */
 
 void scratch_create(char folder[SCRATCH_PATH]) {
   const char *base = getenv("TMPDIR");

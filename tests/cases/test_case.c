@@ -82,6 +82,7 @@ static void every_value_arrives(void **state) {
   assert_true(m->frequency[0] == 90 && m->frequency[1] == 120);
   assert_true(m->harmonics == 7 && m->subharmonics == 2 && m->scale == 1.3);
   assert_true(m->tolerance == 2e-9 && m->max_points == 777);
+  assert_int_equal(m->stability, MHB_STABILITY_ALWAYS);
   char *output = case_output(&f, ".modal.h5"), wanted[2 * SCRATCH_PATH];
   snprintf(wanted, sizeof wanted, "%s/odd_blade.modal.h5", folder);
   assert_string_equal(output, wanted);
@@ -142,6 +143,7 @@ static void a_modal_file_needs_little(void **state) {
   /* defaults */
   assert_true(f.mhb.harmonics == 3 && f.mhb.subharmonics == 1 && f.mhb.scale == 1);
   assert_true(f.mhb.tolerance == 1e-8 && f.mhb.max_points == 2000 && f.points == 1);
+  assert_int_equal(f.mhb.stability, MHB_STABILITY_AUTO);
   assert_true(f.mhb.preload == MHB_EQUILIBRIUM && f.load.factor[1] == 1 && f.load.n_harmonics == 1);
   case_free(&f);
   free(said);

@@ -113,7 +113,8 @@ static void the_text_itself(void **state) {
                       "mhb.harmonics = 7\n"
                       "mhb.subharmonics = 2\n"
                       "mhb.scale = 1.3\n"
-                      "mhb.max_points = 777\n");
+                      "mhb.max_points = 777\n"
+                      "mhb.stability = always\n");
   assert_non_null(
       strstr(settings[0], "mesh.blade.sections[1].thickness = 0.0028999999999999998\n"));
   assert_non_null(strstr(settings[0], "contact.psi = 0.61086523819801"));

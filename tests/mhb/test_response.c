@@ -9,7 +9,7 @@
 
 #include <hdf5_hl.h>
 
-enum { PAIRS = 2, PROBES = 2, M = 3, K = M + 1 };
+enum { PAIRS = 2, PROBES = 2, M = 3, K = M + 1, MULTIPLIERS = 4 };
 
 static const shb_provenance from = {"case.yaml", "name: x\n", "mu = 0.3\n", "shroudhb-mhb"};
 
@@ -34,6 +34,11 @@ static void fill_point(mhb_response *response, int branch) {
   if (probes) fill_waves(b->probe + point * probes, probes, branch, point, 5);
   b->stable[point]  = point % 3 - 1;
   b->special[point] = point % 3;
+  if (b->kind == MHB_BRANCH_NONLINEAR) {
+    b->judged[point] = point % 4;
+    b->loss[point]   = (point + 1) % 4;
+    fill_waves(b->multipliers + point * MULTIPLIERS, MULTIPLIERS, branch, point, 9);
+  }
   for (int i = 0; i < response->n_pairs * 3; i++)
     b->state[point * response->n_pairs * 3 + i] = fabs(value(branch, point, 7, i));
   for (int i = 0; i < response->n_pairs; i++)
@@ -62,6 +67,7 @@ static mhb_response *sample(int n_probes, int points) {
   response->psi            = .61;
   response->phi            = -.2;
   response->subharmonics   = 2;
+  response->n_multipliers  = MULTIPLIERS;
   response->n_modes        = 3;
   response->mode_frequency = list(3, 103.25);
   response->mode_damping   = list(3, .002);
@@ -96,6 +102,13 @@ static void assert_same_branch(const mhb_response *response, const mhb_branch *a
   if (response->n_probes) assert_same(a, b, probe, n * response->n_probes * 3 * K);
   assert_same(a, b, stable, n);
   assert_same(a, b, special, n);
+  if (a->kind == MHB_BRANCH_NONLINEAR) {
+    assert_same(a, b, judged, n);
+    assert_same(a, b, loss, n);
+    assert_same(a, b, multipliers, n * MULTIPLIERS);
+  } else {
+    assert_true(!b->judged && !b->loss && !b->multipliers);
+  }
   assert_same(a, b, state, n * PAIRS * 3);
   assert_same(a, b, dissipation, n * PAIRS);
   assert_same(a, b, iterations, n);
@@ -118,6 +131,7 @@ static void round_trip(int n_probes, int points) {
   assert_int_equal(read->blades, 40);
   assert_true(read->psi == .61 && read->phi == -.2);
   assert_int_equal(read->n_modes, 3);
+  assert_int_equal(read->n_multipliers, MULTIPLIERS);
   assert_same(wrote, read, mode_frequency, 3);
   assert_same(wrote, read, mode_damping, 3);
   assert_same(wrote, read, mode_residual, 3);
@@ -160,11 +174,64 @@ static void test_growth(void **state) {
   mhb_response_destroy(response);
 }
 
+/* The last point moved to another place takes all it holds along. */
+static void test_placed(void **state) {
+  (void)state;
+  mhb_response *response = sample(PROBES, 9), *wanted = sample(PROBES, 9);
+  mhb_branch   *a = &response->branch[0], *b = &wanted->branch[0];
+  const int     contact = PAIRS * 3 * K;
+  mhb_response_place(response, 0, 8); /* where it is */
+  assert_same_branch(response, a, b);
+  mhb_response_place(response, 0, 3);
+  assert_int_equal(a->n_points, 9);
+  for (int i = 0; i < 9; i++) {
+    int source = i < 3 ? i : i == 3 ? 8 : i - 1;
+    assert_true(a->frequency[i] == b->frequency[source]);
+    assert_int_equal(a->loss[i], b->loss[source]);
+    assert_memory_equal(a->motion + i * contact, b->motion + source * contact,
+                        (size_t)contact * sizeof *a->motion);
+    assert_memory_equal(a->multipliers + i * MULTIPLIERS, b->multipliers + source * MULTIPLIERS,
+                        MULTIPLIERS * sizeof *a->multipliers);
+  }
+  mhb_response_destroy(response);
+  mhb_response_destroy(wanted);
+}
+
+/* A file of a version that knew no multipliers is read, and can be written and continued. */
+static void test_earlier_version(void **state) {
+  (void)state;
+  static const char *const missing[] = {"/branch_0/judged", "/branch_0/loss",
+                                        "/branch_0/multipliers", "/multiplier"};
+  mhb_response            *wrote     = sample(PROBES, 5), *read;
+  assert_ok(mhb_response_write(wrote, scratch("earlier.h5"), &from));
+  hid_t file = H5Fopen(scratch("earlier.h5"), H5F_ACC_RDWR, H5P_DEFAULT);
+  assert_true(file >= 0);
+  for (int i = 0; i < 4; i++) assert_true(H5Ldelete(file, missing[i], H5P_DEFAULT) >= 0);
+  H5Fclose(file);
+  assert_ok(mhb_response_read(scratch("earlier.h5"), &read));
+  assert_int_equal(read->n_multipliers, 0);
+  assert_null(read->branch[0].multipliers);
+  for (int i = 0; i < 5; i++) {
+    assert_int_equal(read->branch[0].judged[i], MHB_BY_FOLDS);
+    assert_int_equal(read->branch[0].loss[i], MHB_NO_LOSS);
+    assert_int_equal(read->branch[0].stable[i], wrote->branch[0].stable[i]);
+  }
+  int point;
+  assert_ok(mhb_response_point(read, 0, &point));
+  read->branch[0].frequency[point] = 1;
+  assert_ok(mhb_response_write(read, scratch("earlier2.h5"), &from));
+  mhb_response_destroy(read);
+  assert_ok(mhb_response_read(scratch("earlier2.h5"), &read));
+  assert_int_equal(read->branch[0].n_points, 6);
+  mhb_response_destroy(read);
+  mhb_response_destroy(wrote);
+}
+
 static void test_described(void **state) {
   (void)state;
   mhb_response *response = sample(PROBES, 5);
   assert_ok(mhb_response_write(response, scratch("described.h5"), &from));
-  assert_int_equal(assert_described(scratch("described.h5")), 3 * 15 + 3 + 6);
+  assert_int_equal(assert_described(scratch("described.h5")), 3 * 15 + 3 + 3 + 7);
   hid_t file;
   char *text;
   assert_ok(h5_open(scratch("described.h5"), &file));
@@ -234,7 +301,11 @@ static void test_faults(void **state) {
       {"/branch_0/motion", {4, {5, 2, 3, 4}}, NAN, "/branch_0/motion: the value at [0, 0, 0, 0]"},
       {"/branch_2/stable", {1, {5}}, 2, "/branch_2/stable: value 0 (from 0) is 2; 1, 0 or -1"},
       {"/branch_2/stable", {1, {5}}, .5, "/branch_2/stable holds 0.5 where whole numbers"},
-      {"/branch_2/special", {1, {5}}, 3, "/branch_2/special: value 0 (from 0) is 3"},
+      {"/branch_2/special", {1, {5}}, 5, "/branch_2/special: value 0 (from 0) is 5; 0 to 4"},
+      {"/branch_0/judged", {1, {5}}, 4, "/branch_0/judged: value 0 (from 0) is 4; 0 to 3"},
+      {"/branch_0/loss", {1, {5}}, -1, "/branch_0/loss: value 0 (from 0) is -1; 0 to 3"},
+      {"/branch_0/multipliers", {2, {5, 3}}, 1, "where [5, 4] is wanted"},
+      {"/multiplier", {2, {2, 2}}, 1, "/multiplier must be a list"},
       {"/branch_2/error/modal", {0}, 0, "/branch_2/error/modal is missing"},
       {"/branch_2/state", {3, {5, 3, 2}}, 0, "has shape [5, 3, 2] where [5, 2, 3] is wanted"},
       {"/probe/name", {0}, 0, "/probe/name is missing"},
@@ -338,6 +409,8 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_round_trip),
       cmocka_unit_test(test_growth),
+      cmocka_unit_test(test_placed),
+      cmocka_unit_test(test_earlier_version),
       cmocka_unit_test(test_described),
       cmocka_unit_test(test_truncated),
       cmocka_unit_test(test_faults),

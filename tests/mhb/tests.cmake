@@ -29,6 +29,8 @@ shb_test(mhb stability fast shb_mhb)
 target_sources(test_mhb_stability PRIVATE mhb/disturbed.c mhb/periodic.c mhb/random_model.c mhb/three_degree.c)
 target_link_options(test_mhb_stability PRIVATE
   LINKER:--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=aligned_alloc)
+shb_test(mhb judge fast shb_mhb)
+target_sources(test_mhb_judge PRIVATE mhb/periodic.c mhb/random_model.c mhb/three_degree.c)
 shb_test(mhb hill fast shb_mhb)
 target_sources(test_mhb_hill PRIVATE mhb/periodic.c mhb/random_model.c mhb/three_degree.c)
 shb_test(mhb monodromy slow shb_mhb)
