@@ -93,7 +93,7 @@ static int list_events(const follower *f, event *list) {
 /* Leave the residual's workspace at a point that was corrected earlier. */
 static void revisit(follower *f, const mhb_path_point *point) {
   mhb_newton *w = f->path->newton;
-  mhb_residual_evaluate(f->residual, point->x, point->omega, w->r, w->jacobian, NULL);
+  mhb_residual_derive(f->residual, point->x, point->omega, w->r, NULL);
 }
 
 /* Leaves the residual's workspace at next, as mhb_path_step did. */

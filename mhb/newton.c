@@ -33,15 +33,14 @@ double mhb_norm(const double *x, int n) {
 shb_status mhb_newton_create(int n, mhb_newton **out) {
   mhb_newton *w = calloc(1, sizeof *w);
   SHB_CHECK(w, SHB_ERR_IO, "out of memory");
-  size_t one  = (size_t)n + 1;
-  w->n        = n;
-  w->jacobian = malloc(sizeof(double) * (size_t)n * (size_t)n);
-  w->r        = malloc(sizeof(double) * one);
-  w->step     = malloc(sizeof(double) * one);
-  w->trial    = malloc(sizeof(double) * one);
-  w->slope    = malloc(sizeof(double) * one);
-  w->row      = malloc(sizeof(double) * one);
-  if (!(w->jacobian && w->r && w->step && w->trial && w->slope && w->row)) {
+  size_t one = (size_t)n + 1;
+  w->n       = n;
+  w->r       = malloc(sizeof(double) * one);
+  w->step    = malloc(sizeof(double) * one);
+  w->trial   = malloc(sizeof(double) * one);
+  w->slope   = malloc(sizeof(double) * one);
+  w->row     = malloc(sizeof(double) * one);
+  if (!(w->r && w->step && w->trial && w->slope && w->row)) {
     mhb_newton_destroy(w);
     SHB_FAIL(SHB_ERR_IO, "out of memory for %d unknowns", n);
   }
@@ -51,7 +50,6 @@ shb_status mhb_newton_create(int n, mhb_newton **out) {
 
 void mhb_newton_destroy(mhb_newton *w) {
   if (!w) return;
-  free(w->jacobian);
   free(w->r);
   free(w->step);
   free(w->trial);

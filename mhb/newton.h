@@ -18,7 +18,6 @@ const char *mhb_reason_text(mhb_reason reason);
 typedef struct {
   int            n;
   mhb_condensed *system;                         /* of the residual last bound; NULL before */
-  double        *jacobian;                       /* [n][n] column-major */
   double        *r, *step, *trial, *slope, *row; /* [n+1] */
 } mhb_newton;
 

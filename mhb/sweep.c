@@ -159,7 +159,7 @@ static shb_status all_preloads(sweep *s, const modal_model *model) {
     SHB_TRY(mhb_response_branch(s->response, MHB_BRANCH_NONLINEAR, &branch));
   }
   if (s->settings->resume) resume(s);
-#pragma omp parallel for schedule(dynamic, 1)
+#pragma omp parallel for schedule(dynamic, 1) if (n > 1) /* else the threads go to the pairs */
   for (int i = 0; i < n; i++) {
     if (shb_interrupted() || s->response->branch[2 + i].complete) continue;
     shb_status status = one_preload(s, model, i);

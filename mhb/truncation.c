@@ -21,22 +21,20 @@ static int most(int a, int b) {
 /* What the Newton step and the harmonics beyond 2m need. */
 static shb_status create_newton(mhb_truncation *t) {
   const modal_model *model = t->narrow->receptance->model;
-  size_t             n = (size_t)t->doubled->n, n3 = 3 * (size_t)t->narrow->n_pairs;
-  int                m = t->narrow->m;
-  t->beyond_settings   = t->settings;
+  size_t             n3    = 3 * (size_t)t->narrow->n_pairs;
+  int                m     = t->narrow->m;
+  t->beyond_settings       = t->settings;
   t->beyond_settings.harmonics =
       most(2 * m, least(most(4 * m, MHB_LEAST_LOOKED_AT), MHB_MOST_LOOKED_AT));
   SHB_TRY(mhb_residual_create(model, &t->beyond_settings, &t->beyond));
-  size_t far  = (size_t)t->beyond->n;
-  t->jacobian = malloc(sizeof(double) * n * n);
-  t->pivot    = calloc(n, sizeof(int));
-  t->far_x    = calloc(far, sizeof(double));
-  t->far_r    = calloc(far, sizeof(double));
-  t->A        = calloc(n3 * n3, sizeof(double complex));
-  t->u        = calloc(n3, sizeof(double complex));
-  SHB_CHECK(t->jacobian && t->pivot && t->far_x && t->far_r && t->A && t->u, SHB_ERR_IO,
-            "out of memory for %zu unknowns", n);
-  return SHB_OK;
+  size_t far = (size_t)t->beyond->n;
+  t->far_x   = calloc(far, sizeof(double));
+  t->far_r   = calloc(far, sizeof(double));
+  t->A       = calloc(n3 * n3, sizeof(double complex));
+  t->u       = calloc(n3, sizeof(double complex));
+  SHB_CHECK(t->far_x && t->far_r && t->A && t->u, SHB_ERR_IO, "out of memory for %zu unknowns",
+            far);
+  return mhb_condensed_create(t->doubled, &t->system);
 }
 
 shb_status mhb_truncation_create(const mhb_residual *residual, mhb_truncation **out) {
@@ -66,8 +64,7 @@ void mhb_truncation_destroy(mhb_truncation *t) {
   mhb_residual_destroy(t->beyond);
   free(t->x);
   free(t->step);
-  free(t->jacobian);
-  free(t->pivot);
+  mhb_condensed_destroy(t->system);
   free(t->far_x);
   free(t->far_r);
   free(t->A);
@@ -140,26 +137,24 @@ static double look_beyond(mhb_truncation *t, double omega) {
   return sqrt(sum);
 }
 
-static void solve(const mhb_truncation *t) {
-  int n = t->doubled->n;
-  LAPACKE_dgetrs(LAPACK_COL_MAJOR, 'N', n, 1, t->jacobian, n, t->pivot, t->step, n);
-}
-
 /* step <- -r, then the Newton step where there is room for it and it exists. */
 static mhb_truncation_kind set_step(mhb_truncation *t, double omega) {
   mhb_residual *b = t->doubled;
   int           n = b->n;
-  mhb_residual_evaluate(b, t->x, omega, t->step, t->jacobian, NULL);
+  if (t->system) {
+    mhb_residual_derive(b, t->x, omega, t->step, NULL);
+  } else {
+    mhb_residual_evaluate(b, t->x, omega, t->step, NULL, NULL);
+  }
   for (int i = 0; i < n; i++) t->step[i] = -t->step[i];
-  if (!t->jacobian || LAPACKE_dgetrf(LAPACK_COL_MAJOR, n, n, t->jacobian, n, t->pivot) != 0)
-    return MHB_TRUNCATION_FIRST_ORDER;
-  solve(t);
+  if (!t->system || !mhb_condensed_factor(t->system, NULL, NULL)) return MHB_TRUNCATION_FIRST_ORDER;
+  mhb_condensed_solve(t->system, t->step);
   t->far = look_beyond(t, omega);
   if (t->far <= NEGLIGIBLE * mhb_norm(t->step, n)) return MHB_TRUNCATION_NEWTON;
   mhb_residual_evaluate(t->beyond, t->far_x, omega, t->far_r, NULL, NULL);
   copy_rows(3 * b->n_pairs, t->far_r, t->beyond->nb, t->step, b->nb);
   for (int i = 0; i < n; i++) t->step[i] = -t->step[i];
-  solve(t);
+  mhb_condensed_solve(t->system, t->step);
   return MHB_TRUNCATION_NEWTON;
 }
 

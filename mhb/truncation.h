@@ -9,7 +9,7 @@
 #ifndef MHB_TRUNCATION_H
 #define MHB_TRUNCATION_H
 
-#include "mhb/residual.h"
+#include "mhb/condensed.h"
 
 /* Beyond this many unknowns of the doubled balance the estimate is of first order. */
 enum { MHB_MAX_DOUBLED = 600 };
@@ -31,8 +31,7 @@ typedef struct {
   mhb_residual       *beyond;  /* all harmonics looked at, or NULL: first order only */
   double             *x,
       *step; /* [doubled->n] the solution, zero beyond m; delta of the last estimate, or -r, or zero */
-  double             *jacobian; /* [n][n] of the doubled balance */
-  int                *pivot;
+  mhb_condensed      *system;        /* of the doubled balance, or NULL */
   double             *far_x, *far_r; /* [beyond->n] */
   double complex     *A, *u;         /* [3 pairs][3 pairs], [3 pairs] of one harmonic */
   double              far;           /* |u_k|, k > 2m, of the last estimate */

@@ -3,6 +3,7 @@
  *   bench_response            the tables
  *   bench_response --quick    errors only, in a second or so
  *   bench_response --pairs N  the row of N pairs alone
+ *   bench_response --harmonics H  the beam's rows of H harmonics alone, against themselves
  *
  * Beam: the tip-contact beam (tests/mhb/three_degree.h), one row a force and number of harmonics: the whole sweep 215-320 Hz, the
  * median of a point, and the error of the located peak against H = 31. Then the three accuracies of the contact law, and the
@@ -27,8 +28,11 @@ enum { REPEATS = 3, MAX_POINTS = 4000 };
 
 /* One sweep of the beam. */
 typedef struct {
-  double seconds, ms, evaluations; /* whole branch; median point; Newton steps + 1, mean */
-  double peak, at;                 /* m, Hz: highest first harmonic of u */
+  double seconds, ms,
+      evaluations; /* whole branch; median point with its error estimates; Newton steps + 1, mean */
+  double solver,
+      linear; /* ms a step of the path alone, median; and the same of steps in the stuck or open range */
+  double peak, at; /* m, Hz: highest first harmonic of u */
   int    points, peaks, folds, complete;
 } sweep_row;
 
@@ -96,6 +100,47 @@ static shb_status sweep_once(const modal_model *model, const mhb_settings *s, sw
   return status;
 }
 
+static int moves(const mhb_residual *b) {
+  int n = 0;
+  for (int a = 0; a < b->n_pairs; a++)
+    n += b->info[a].share[MHB_STICK] < 1 && b->info[a].share[MHB_SEPARATE] < 1;
+  return n;
+}
+
+/* The same path without records, events and estimates. */
+static shb_status time_steps(const modal_model *model, const mhb_settings *s, sweep_row *row) {
+  static double moving[MAX_POINTS], linear[MAX_POINTS];
+  mhb_residual *b;
+  mhb_path     *path;
+  int           iterations, n[2] = {0, 0};
+  double        low = 2 * PI * s->frequency[0];
+  SHB_TRY(mhb_residual_create(model, s, &b));
+  mhb_residual_preload(b, s->n0[0]);
+  SHB_TRY(mhb_path_create(b, low, 2 * PI * s->frequency[1], &path));
+  double          *x       = calloc((size_t)b->n, sizeof(double));
+  mhb_path_outcome outcome = MHB_PATH_STALLED;
+  if (mhb_first_solution(path->newton, b, low, path->tolerance, x, &iterations) == MHB_CONVERGED &&
+      mhb_path_start(path, x, low, 1) == MHB_CONVERGED)
+    outcome = MHB_PATH_ON;
+  while (outcome == MHB_PATH_ON && n[0] + n[1] < MAX_POINTS) {
+    double started = shb_seconds();
+    outcome        = mhb_path_step(path);
+    double ms      = 1e3 * (shb_seconds() - started);
+    if (moves(b))
+      moving[n[0]++] = ms;
+    else
+      linear[n[1]++] = ms;
+    mhb_path_advance(path);
+  }
+  row->solver = median(moving, n[0]);
+  row->linear = median(linear, n[1]);
+  free(x);
+  mhb_path_destroy(path);
+  mhb_residual_destroy(b);
+  SHB_CHECK(outcome == MHB_PATH_AT_END, SHB_NOT_CONVERGED, "the path of the beam was lost");
+  return SHB_OK;
+}
+
 /* Median over repeats, by the seconds of the sweep. */
 static shb_status sweep_beam(double force, int harmonics, double tolerance, int repeats,
                              sweep_row *row) {
@@ -105,6 +150,7 @@ static shb_status sweep_beam(double force, int harmonics, double tolerance, int 
   tip_contact_beam_model(force, &model);
   shb_status status = SHB_OK;
   for (int i = 0; i < repeats && status == SHB_OK; i++) status = sweep_once(&model, &s, &all[i]);
+  if (status == SHB_OK) status = time_steps(&model, &s, &all[0]);
   modal_model_free(&model);
   SHB_TRY(status);
   *row = all[0];
@@ -146,25 +192,28 @@ static const int ladder[LADDER] = {1, 3, 7, 15, 31};
 
 static void print_sweep(double force, int harmonics, const char *accuracy, const sweep_row *row,
                         double error) {
-  printf("%4g %3d %-9s %7d %5d %5d %6.1f %9.4f %9.4f %12.6e %10.4f %9.1e\n", force, harmonics,
-         accuracy, row->points, row->peaks, row->folds, row->evaluations, row->ms, row->seconds,
-         row->peak, row->at, error);
+  printf("%4g %3d %-9s %7d %5d %5d %6.1f ", force, harmonics, accuracy, row->points, row->peaks,
+         row->folds, row->evaluations);
+  printf("%9.4f %9.4f %9.4f %9.4f %12.6e %10.4f %9.1e\n", row->solver, row->linear, row->ms,
+         row->seconds, row->peak, row->at, error);
   fflush(stdout);
 }
 
 static void print_heads(void) {
-  printf("\n%4s %3s %-9s %7s %5s %5s %6s %9s %9s %12s %10s %9s\n", "F", "H", "accuracy", "points",
-         "peaks", "folds", "evals", "ms/point", "s/sweep", "peak m", "at Hz", "error");
+  printf("\n%4s %3s %-9s %7s %5s %5s %6s %9s %9s %9s %9s %12s %10s %9s\n", "F", "H", "accuracy",
+         "points", "peaks", "folds", "evals", "solver ms", "linear ms", "ms/point", "s/sweep",
+         "peak m", "at Hz", "error");
 }
 
 /* *failed counts errors that are too large, never times. */
 static shb_status bench_harmonics(double force, int *failed) {
   sweep_row row[LADDER];
-  double    H[LADDER], ms[LADDER];
+  double    H[LADDER], ms[LADDER], all[LADDER];
   for (int i = LADDER - 1; i >= 0; i--) {
     SHB_TRY(sweep_beam(force, ladder[i], 1e-8, REPEATS, &row[i]));
-    H[i]  = ladder[i];
-    ms[i] = row[i].ms;
+    H[i]   = ladder[i];
+    all[i] = row[i].ms;
+    ms[i]  = row[i].solver;
   }
   print_heads();
   for (int i = 0; i < LADDER; i++)
@@ -176,8 +225,10 @@ static shb_status bench_harmonics(double force, int *failed) {
   verdict("H = 7: ms a point", ms[2], .5);
   verdict("H = 15: ms a point", ms[3], 2);
   verdict("H = 7: s a sweep", row[2].seconds, .3);
+  verdict("linear points, H = 7: ms", row[2].linear, .02);
   verdict("cost a point ~ H^e: e over 1..31", exponent(LADDER, H, ms), 1.5);
   verdict("                    e over 7..31", exponent(LADDER - 2, H + 2, ms + 2), 1.5);
+  verdict("with error estimates: e over 1..31", exponent(LADDER, H, all), 1.5);
   return SHB_OK;
 }
 
@@ -207,13 +258,6 @@ typedef struct {
   int pairs, moving, steps; /* pairs that slip or open for a part of the period at the last point */
 } pairs_row;
 
-static int count_moving(const mhb_residual *b) {
-  int n = 0;
-  for (int a = 0; a < b->n_pairs; a++)
-    n += b->info[a].share[MHB_STICK] < 1 && b->info[a].share[MHB_SEPARATE] < 1;
-  return n;
-}
-
 /* Some short steps from 255 Hz on, up the flank of the resonance. */
 static shb_status walk(mhb_path *path, mhb_residual *b, double *x, pairs_row *row) {
   int    iterations;
@@ -234,7 +278,7 @@ static shb_status walk(mhb_path *path, mhb_residual *b, double *x, pairs_row *ro
     mhb_path_advance(path);
   }
   row->ms     = median(ms, STEPS);
-  row->moving = count_moving(b);
+  row->moving = moves(b);
   return SHB_OK;
 }
 
@@ -311,6 +355,18 @@ static shb_status quick(int *failed) {
                                                   : SHB_NOT_CONVERGED;
 }
 
+/* For a profiler. */
+static shb_status one_rung(int harmonics) {
+  static const double force[] = {8, 20};
+  print_heads();
+  for (int i = 0; i < 2; i++) {
+    sweep_row row;
+    SHB_TRY(sweep_beam(force[i], harmonics, 1e-8, REPEATS, &row));
+    print_sweep(force[i], harmonics, "exact", &row, 0);
+  }
+  return SHB_OK;
+}
+
 static shb_status everything(int *failed) {
   static const int pairs[] = {1, 10, 50, 200};
   SHB_TRY(bench_harmonics(8, failed));
@@ -322,6 +378,7 @@ static shb_status everything(int *failed) {
 
 int main(int argc, char **argv) {
   int        failed = 0, pairs = argc == 3 && !strcmp(argv[1], "--pairs") ? atoi(argv[2]) : 0;
+  int        harmonics = argc == 3 && !strcmp(argv[1], "--harmonics") ? atoi(argv[2]) : 0;
   shb_status status;
   if (argc == 1) {
     status = everything(&failed);
@@ -329,8 +386,11 @@ int main(int argc, char **argv) {
     status = quick(&failed);
   } else if (pairs > 0) {
     status = bench_pairs(&pairs, 1, &failed);
+  } else if (harmonics > 0) {
+    status = one_rung(harmonics);
   } else {
-    fprintf(stderr, "bench_response: usage: bench_response [--quick | --pairs N]\n");
+    fprintf(stderr,
+            "bench_response: usage: bench_response [--quick | --pairs N | --harmonics H]\n");
     return SHB_ERR_INPUT;
   }
   if (status != SHB_OK) {
