@@ -7,7 +7,7 @@
 #include <string.h>
 
 /* Below this many stuck unknowns the harmonics are not shared out to threads. */
-enum { WORTH_THREADS = 48 };
+enum { WORTH_THREADS = 72 };
 
 static const double complex ONE = 1, MINUS = -1;
 
@@ -274,36 +274,47 @@ static void open_demand(mhb_condensed *s, int k) {
   }
 }
 
+/* conj(reach^H t_L + R_OM^H t_O), negative, for the axes of moving pair j. */
+static void row_weight(const mhb_condensed *s, int k, int j, double complex weight[3]) {
+  int                   nl = 3 * s->n_stuck;
+  size_t                at = (size_t)k * rows_of(s);
+  const double complex *t = s->t + at, *q = s->q + at + 3 * s->moving[j];
+  for (int c = 0; c < 3; c++) {
+    const double complex *reach = s->reach + at * rows_of(s) + (size_t)(3 * j + c) * (size_t)nl;
+    double complex        w     = q[c];
+    for (int i = 0; i < nl; i++) w += conj(reach[i]) * t[3 * s->stuck[i / 3] + i % 3];
+    weight[c] = -conj(w);
+  }
+}
+
+/* t_L <- t_L - S R_OL^H t_O */
+static void demand_of_stuck(mhb_condensed *s, int k) {
+  double complex *t = s->t + (size_t)k * rows_of(s), *q = s->q + (size_t)k * rows_of(s), force[3];
+  for (int i = 0; i < s->n_stuck; i++) {
+    int a = s->stuck[i];
+    spring(&s->b->law[a], k, q + 3 * a, force);
+    for (int c = 0; c < 3; c++) t[3 * a + c] -= force[c];
+  }
+}
+
 /* The last row: t_M - (reach^H t_L + R_OM^H t_O)^H D, where t_L becomes t_L - S R_OL^H t_O. */
 static void border_row(mhb_condensed *s, double corner) {
-  int     nl = 3 * s->n_stuck, nm = 3 * s->n_moving, block = 3 * s->b->nb;
-  double *last = s->dense + (size_t)(s->size - 1) * (size_t)s->size, nothing[block];
+  int     block = 3 * s->b->nb;
+  double *last  = s->dense + (size_t)(s->size - 1) * (size_t)s->size, nothing[block];
   for (int i = 0; i < s->n_moving; i++)
     memcpy(last + i * block, s->y + s->moving[i] * block, sizeof(double) * (size_t)block);
   for (int k = 0; k <= s->b->m; k++) {
-    size_t                at    = (size_t)k * rows_of(s);
-    const double complex *reach = s->reach + at * rows_of(s);
-    double complex       *t = s->t + at, *q = s->q + at, weight[3];
+    const double complex *t = s->t + (size_t)k * rows_of(s), *c = s->c + (size_t)k * rows_of(s);
+    double complex        weight[3];
     open_demand(s, k);
-    for (int i = 0; i < s->n_stuck; i++) {
-      int a = s->stuck[i];
-      spring(&s->b->law[a], k, q + 3 * a, weight);
-      for (int c = 0; c < 3; c++) t[3 * a + c] -= weight[c];
-    }
+    demand_of_stuck(s, k);
     for (int j = 0; j < s->n_moving; j++) {
-      for (int c = 0; c < 3; c++) {
-        double complex w = q[3 * s->moving[j] + c];
-        for (int i = 0; i < nl; i++)
-          w += conj(reach[(3 * j + c) * nl + i]) * t[3 * s->stuck[i / 3] + i % 3];
-        weight[c] = -conj(w);
-      }
+      row_weight(s, k, j, weight);
       mhb_residual_combine(s->b, weight, s->moving[j], k, last + j * block, nothing);
     }
     for (int row = 0; row < (int)rows_of(s); row++)
-      if (s->b->kind[row / 3] != MHB_PAIR_MOVING)
-        corner -= real_product(t[row], s->c[at + (size_t)row]);
+      if (s->b->kind[row / 3] != MHB_PAIR_MOVING) corner -= real_product(t[row], c[row]);
   }
-  (void)nm;
   last[s->size - 1] = corner;
 }
 

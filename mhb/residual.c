@@ -10,7 +10,7 @@
 #include "mhb/lanes.h"
 
 /* Fewer pairs than this are not worth a team of threads. */
-enum { WORTH_THREADS = 8 };
+enum { WORTH_THREADS = 24 };
 
 /* One workspace a thread; where threads are busy already (one a branch) just one. */
 static shb_status create_contacts(mhb_residual *b) {
@@ -197,28 +197,34 @@ static void evaluate_pairs(mhb_residual *b, const double *x, int derivative) {
     evaluate_pair(b, b->contacts[omp_get_thread_num()], x, a, derivative);
 }
 
+/* uk <- uk - free + R_k pk */
+static void balance(const mhb_residual *b, int k) {
+  int                   n3   = 3 * b->n_pairs;
+  const double complex *R    = b->receptance->R + (size_t)k * (size_t)n3 * (size_t)n3;
+  const double complex *free = b->receptance->free + k * n3;
+  for (int i = 0; i < n3; i++, R += n3) {
+    double complex u  = b->uk[i] - free[i];
+    double         re = creal(u), im = cimag(u);
+    for (int j = 0; j < n3; j++) {
+      re += creal(R[j]) * creal(b->pk[j]) - cimag(R[j]) * cimag(b->pk[j]);
+      im += creal(R[j]) * cimag(b->pk[j]) + cimag(R[j]) * creal(b->pk[j]);
+    }
+    b->uk[i] = CMPLX(re, im);
+  }
+}
+
 static void evaluate(mhb_residual *b, const double *x, double omega, int derivative, double *r,
                      double *slope) {
-  int n3 = 3 * b->n_pairs;
   mhb_receptance_at(b->receptance, omega, b->m);
   evaluate_pairs(b, x, derivative);
   for (int k = 0; k <= b->m; k++) {
-    const double complex *R = b->receptance->R + (size_t)k * (size_t)n3 * (size_t)n3;
     harmonic(b, b->p, k, b->pk);
     harmonic(b, x, k, b->uk);
-    for (int i = 0; i < n3; i++, R += n3) {
-      double complex u  = b->uk[i] - b->receptance->free[k * n3 + i];
-      double         re = creal(u), im = cimag(u);
-      for (int j = 0; j < n3; j++) {
-        re += creal(R[j]) * creal(b->pk[j]) - cimag(R[j]) * cimag(b->pk[j]);
-        im += creal(R[j]) * cimag(b->pk[j]) + cimag(R[j]) * creal(b->pk[j]);
-      }
-      b->uk[i] = CMPLX(re, im);
-    }
+    balance(b, k);
     store(b, r, k, b->uk);
     if (!slope) continue;
     mhb_receptance_slope(b->receptance, k, b->pk, b->uk);
-    for (int i = 0; i < n3; i++) b->uk[i] = -b->uk[i];
+    for (int i = 0; i < 3 * b->n_pairs; i++) b->uk[i] = -b->uk[i];
     store(b, slope, k, b->uk);
   }
 }

@@ -60,7 +60,7 @@ void *__wrap_aligned_alloc(size_t alignment, size_t size) {
 
 /* ---------------------------------------------------------------- the same solution */
 
-enum { PAIRS = 20, M = 3, N = 3 * PAIRS * (2 * M + 1) };
+enum { PAIRS = 30, M = 2, N = 3 * PAIRS * (2 * M + 1) };
 
 /* Kinds of the pairs: m moving, s stuck, o open. */
 static mhb_residual *mixed_residual(const modal_model *model, const mhb_settings *s,
