@@ -62,7 +62,8 @@ static void group_classes(const post_group *group, char out[40]) {
     snprintf(out, 40, "c%d", group->rank);
 }
 
-/* One branch: a piece that touches an unstable point is dotted; folds are small triangles. */
+/* One branch: a piece that touches an unstable point is dotted; folds are small circles, flips and Neimark-Sacker
+ * points full ones. */
 static void draw_branch(const post_study *study, const post_plot *plot, int b) {
   const mhb_branch *branch = &study->response->branch[b];
   const post_curve *c      = &study->curve[b];
@@ -89,6 +90,10 @@ static void draw_branch(const post_study *study, const post_plot *plot, int b) {
   snprintf(classes, sizeof classes, "fold %s", group);
   for (int i = 0; i < c->n_folds; i++)
     plot_dot(plot, classes, c->fold[i].frequency, c->fold[i].amplitude, 2.6);
+  snprintf(classes, sizeof classes, "turn %s", group);
+  for (int i = 0; i < n; i++)
+    if (branch->special[i] == MHB_FLIP || branch->special[i] == MHB_NEIMARK_SACKER)
+      plot_dot(plot, classes, branch->frequency[i], c->amplitude[i], 2.6);
 }
 
 static void draw_curves(const post_study *study, const post_plot *plot) {

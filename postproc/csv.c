@@ -53,7 +53,8 @@ static void put_header(const mhb_response *response, post_buffer *out) {
     put_name(out, place, "_dissipation_J", "");
   }
   post_put(out,
-           ",stable,special,iterations,seconds,error_newton,error_truncation,error_sampling,"
+           ",stable,special,judged,loss,largest_multiplier,iterations,seconds,error_newton,error_"
+           "truncation,error_sampling,"
            "error_modal\r\n");
 }
 
@@ -70,11 +71,29 @@ static void put_place(const mhb_response *response, const double complex *a, pos
   put_number(out, post_peak_to_peak(3, m, a));
 }
 
-static void put_quality(const mhb_branch *branch, int point, post_buffer *out) {
-  int         special = branch->special[point];
-  const char *what    = special == 1 ? "fold" : special == 2 ? "peak" : "";
+/* What stable rests on, what was lost, the largest multiplier; nothing for the linear limits. */
+static void put_stability(const mhb_response *response, const mhb_branch *branch, int point,
+                          post_buffer *out) {
+  static const char *const judged[] = {"folds", "multipliers", "marginal", "undecided"};
+  static const char *const loss[]   = {"", "fold", "flip", "Neimark-Sacker"};
+  int                      kept     = response->n_multipliers;
+  if (branch->kind != MHB_BRANCH_NONLINEAR) {
+    post_put(out, ",,,");
+    return;
+  }
+  int  how      = branch->judged[point];
+  bool computed = kept > 0 && (how == MHB_BY_MULTIPLIERS || how == MHB_MARGINAL_BY_FOLDS);
+  post_put(out, ",%s,%s", judged[how], loss[branch->loss[point]]);
+  put_number(out, computed ? cabs(branch->multipliers[(size_t)point * (size_t)kept]) : NAN);
+}
+
+static void put_quality(const mhb_response *response, const mhb_branch *branch, int point,
+                        post_buffer *out) {
+  static const char *const special[] = {"", "fold", "peak", "flip", "Neimark-Sacker"};
   post_put(out, branch->stable[point] < 0 ? "," : ",%d", branch->stable[point]);
-  post_put(out, ",%s,%d", what, branch->iterations[point]);
+  post_put(out, ",%s", special[branch->special[point]]);
+  put_stability(response, branch, point, out);
+  post_put(out, ",%d", branch->iterations[point]);
   put_number(out, branch->seconds[point]);
   put_number(out, branch->error_newton[point]);
   put_number(out, branch->error_truncation[point]);
@@ -98,7 +117,7 @@ static void put_point(const mhb_response *response, int b, int point, post_buffe
     for (size_t s = 0; s < 3; s++) put_number(out, branch->state[(i * pairs + p) * 3 + s]);
     put_number(out, branch->dissipation[i * pairs + p]);
   }
-  put_quality(branch, point, out);
+  put_quality(response, branch, point, out);
 }
 
 void post_csv(const mhb_response *response, post_buffer *out) {

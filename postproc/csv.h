@@ -8,7 +8,9 @@
 /* Columns: branch, kind, n0_N, frequency_Hz; for each probe axis NAME_tangential_amplitude_m, _phase_deg (first
  * harmonic), _peak_to_peak_m, and NAME_motion_amplitude_m, NAME_motion_peak_to_peak_m; for each contact (contact,
  * or contact1, contact2, ...) the same with v, u, w, then _stuck, _slipping, _open (shares of the period) and
- * _dissipation_J; stable (1, 0, empty: not known), special (fold, peak, empty), iterations, seconds, error_newton, _truncation, _sampling,
+ * _dissipation_J; stable (1, 0, empty: not known), special (fold, peak, flip, Neimark-Sacker, empty);
+ * what stable rests on: judged (multipliers; marginal, undecided, folds: parity of folds), loss (fold, flip, Neimark-Sacker, empty),
+ * largest_multiplier (modulus; empty where none was computed); iterations, seconds, error_newton, _truncation, _sampling,
  * _modal. Numbers as %.12g, phase of Re a e^{jwt} in degrees; a number that is not finite is left empty. */
 void post_csv(const mhb_response *response, post_buffer *out);
 

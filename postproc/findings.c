@@ -163,6 +163,37 @@ static void put_folds(const post_study *study, post_buffer *out) {
     post_put(out, "<li>No curve folds visibly: no jumps in this range.</li>\n");
 }
 
+/* What the multipliers told beyond the folds. */
+static void put_multipliers(const post_study *study, post_buffer *out) {
+  int judged = 0, total = 0, curves = 0, lost[MHB_N_LOSSES] = {0};
+  for (int b = 0; b < study->response->n_branches; b++) {
+    const mhb_branch *branch = &study->response->branch[b];
+    int               before = lost[MHB_LOSS_FLIP] + lost[MHB_LOSS_NEIMARK_SACKER];
+    for (int p = 0; branch->kind == MHB_BRANCH_NONLINEAR && p < branch->n_points; p++) {
+      total++;
+      judged += branch->judged[p] != MHB_BY_FOLDS;
+      lost[branch->loss[p]]++;
+    }
+    curves += lost[MHB_LOSS_FLIP] + lost[MHB_LOSS_NEIMARK_SACKER] > before;
+  }
+  if (curves > 0)
+    post_put(
+        out,
+        "<li><b>Motion that does not repeat.</b> On %d curve%s a part is unstable other than by a "
+        "fold: %d points by period doubling (flip), %d by a modulation (Neimark-Sacker). The "
+        "motion "
+        "there settles on another one, of several periods or modulated.</li>\n",
+        curves, curves > 1 ? "s" : "", lost[MHB_LOSS_FLIP], lost[MHB_LOSS_NEIMARK_SACKER]);
+  if (judged > 0 && judged < total)
+    post_put(
+        out,
+        "<li>Floquet multipliers were computed at %d of %d points; the others are taken to be as "
+        "the last of these before them along the curve, but for folds in between. "
+        "<code>mhb.stability: "
+        "always</code> computes all.</li>\n",
+        judged, total);
+}
+
 static void put_stability(const post_study *study, post_buffer *out) {
   int unstable = 0, unknown = 0, total = 0;
   for (int b = 0; b < study->response->n_branches; b++) {
@@ -182,6 +213,7 @@ static void put_stability(const post_study *study, post_buffer *out) {
     post_put(out,
              "<li>%d of %d points are unstable (dotted): a machine does not stay there.</li>\n",
              unstable, total);
+  put_multipliers(study, out);
 }
 
 static void put_edges(const post_study *study, post_buffer *out) {

@@ -202,6 +202,7 @@ function drawResponse() {
     main.line("line " + classes, b.f, a, k => !unstable(k));
     main.line("line unstable " + classes, b.f, a, unstable);
     if (b.n === 1) main.dot("dot " + classes, b.f[0], a[0], 3);
+    b.row(ROW.special).forEach((special, k) => { if (special > 2) main.dot("turn " + classes, b.f[k], a[k], 2.6); });
   }
   for (const [g, f, a] of o.folds) if (!hidden.has(g)) main.dot("fold " + classOf(D.groups[g]), f, a, 2.6);
   for (const [g, f, a] of o.limits) if (!hidden.has(g)) main.text("mark " + D.groups[g].kind, f, a, 0, -7, "middle", D.groups[g].kind);
@@ -222,7 +223,7 @@ function readout(b, i) {
     rows.push(["stability", stable === 1 ? "stable" : stable === 0 ? "unstable" : "not known"]);
     if (error > 0) rows.push(["error estimate", percent(error)]);
   }
-  const special = b.row(ROW.special)[i], what = special === 1 ? ", fold" : special === 2 ? ", peak" : "";
+  const special = b.row(ROW.special)[i], what = ["", ", fold", ", peak", ", flip (period doubling)", ", Neimark-Sacker point"][special] || "";
   return {title: (g.kind === "nonlinear" ? g.name : "linear limit, " + g.name) + what, rows, shares: g.kind === "nonlinear" && Number.isFinite(shares[0]) ? shares : null};
 }
 function drawHover() {

@@ -20,6 +20,7 @@ static void put_style(const post_study *study, post_buffer *out) {
       ".unstable{stroke-dasharray:.1 4.5}.limit{color:#6b7480;stroke-width:1.5;stroke-linecap:butt}"
       ".line.open{stroke-dasharray:9 5}.line.stuck{stroke-dasharray:4 4}"
       ".dot{fill:currentColor}.fold{fill:#fff;stroke:currentColor;stroke-width:1.4}"
+      ".turn{fill:currentColor;stroke:#fff;stroke-width:.8}"
       ".varying{color:#0b6e75}.plain{color:#56606c}.mark{font-style:italic;paint-order:stroke;"
       "stroke:#fff;stroke-width:"
       "4px}");

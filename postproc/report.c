@@ -130,7 +130,7 @@ static void put_main(const post_study *study, const char *case_name, post_buffer
   post_put(
       out,
       "<figcaption class=\"note\">Solid: stable, or stability not known. Dotted: unstable. Small "
-      "circles: folds. "
+      "circles: folds; full ones: flips (period doubling) and Neimark-Sacker points. "
       "Dashed: the linear limits, contact open (long) and stuck (short). Amplitude of the first "
       "harmonic: the largest displacement it reaches in a cycle.</figcaption>\n"
       "<p class=\"hint\">Point at a curve to read it, click it to see its contact and harmonics "

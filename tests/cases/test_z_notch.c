@@ -1,7 +1,9 @@
 /* The shipped scene from end to end: the numbers of its README, re-runs that do nothing, memory. */
+#include <complex.h>
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -137,6 +139,27 @@ static void every_point_balances(void **state) {
   }
 }
 
+/* Forty blades: a few points of each curve by multipliers, and all where nothing slips; these are stable. */
+static void some_points_are_judged(void **state) {
+  (void)state;
+  int slipping = 0;
+  assert_int_equal(response->n_multipliers, 8);
+  for (int i = 2; i < response->n_branches; i++) {
+    const mhb_branch *b = &response->branch[i];
+    for (int p = 0; p < b->n_points; p++) {
+      const double *share  = b->state + 3 * p;
+      bool          linear = share[0] >= 1 || share[2] >= 1;
+      double        size   = cabs(b->multipliers[8 * p]);
+      assert_true(b->stable[p] == 0 || b->stable[p] == 1);
+      assert_true((b->judged[p] == MHB_BY_FOLDS) == (size == 0));
+      if (b->judged[p] == MHB_BY_MULTIPLIERS) assert_int_equal(b->stable[p], size < 1.0005);
+      if (linear) assert_true(b->judged[p] == MHB_BY_MULTIPLIERS && b->stable[p] == 1 && size < 1);
+      slipping += !linear && b->judged[p] != MHB_BY_FOLDS;
+    }
+  }
+  assert_true(slipping >= 16);
+}
+
 static void results_are_there_and_a_second_run_leaves_them(void **state) {
   (void)state;
   static const char *const suffix[] = {".msh", ".modal.h5", ".response.h5"};
@@ -177,6 +200,7 @@ int main(void) {
       cmocka_unit_test(peaks_against_preload_have_an_optimum),
       cmocka_unit_test(softening_and_hardening_jump),
       cmocka_unit_test(every_point_balances),
+      cmocka_unit_test(some_points_are_judged),
       cmocka_unit_test(results_are_there_and_a_second_run_leaves_them),
       cmocka_unit_test(a_stale_file_is_told),
       cmocka_unit_test(memory_stays_below_two_gigabytes),

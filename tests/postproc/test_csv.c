@@ -82,9 +82,16 @@ static void whole(void **state) {
   r->branch[2].error_modal[0] = NAN;
   r->branch[2].stable[0]      = -1;
   r->branch[2].special[0]     = 1;
+  r->n_multipliers            = 2;
+  for (int b = 2; b < r->n_branches; b++)
+    r->branch[b].multipliers = calloc((size_t)r->branch[b].n_points * 2, sizeof(double complex));
+  r->branch[3].special[5]      = MHB_NEIMARK_SACKER;
+  r->branch[3].judged[5]       = MHB_BY_MULTIPLIERS;
+  r->branch[3].loss[5]         = MHB_LOSS_NEIMARK_SACKER;
+  r->branch[3].multipliers[10] = CMPLX(.3, 1.4);
   post_csv(r, &text);
   const char *at = record(text.text, names, name, &n);
-  assert_int_equal(n, 4 + 2 * 11 + 15 + 8);
+  assert_int_equal(n, 4 + 2 * 11 + 15 + 11);
   for (int b = 0; b < r->n_branches; b++)
     for (int p = 0; p < r->branch[b].n_points; p++, rows++) {
       at = record(at, room, cell, &m);
@@ -102,6 +109,17 @@ static void whole(void **state) {
         assert_string_equal(cell[column(name, n, "error_modal")], "");
         assert_string_equal(cell[column(name, n, "stable")], "");
         assert_string_equal(cell[column(name, n, "special")], "fold");
+      }
+      bool turn = b == 3 && p == 5;
+      assert_string_equal(cell[column(name, n, "judged")], !nonlinear ? ""
+                                                           : turn     ? "multipliers"
+                                                                      : "folds");
+      assert_string_equal(cell[column(name, n, "loss")], turn ? "Neimark-Sacker" : "");
+      if (turn) {
+        assert_string_equal(cell[column(name, n, "special")], "Neimark-Sacker");
+        assert_near(value(cell[column(name, n, "largest_multiplier")]), hypot(.3, 1.4), 1e-11);
+      } else {
+        assert_string_equal(cell[column(name, n, "largest_multiplier")], "");
       }
     }
   assert_null(record(at, room, cell, &m));
@@ -123,7 +141,7 @@ static void many_contacts(void **state) {
   assert_non_null(r);
   post_csv(r, &text);
   record(text.text, names, name, &n);
-  assert_int_equal(n, 4 + 3 * 15 + 8);
+  assert_int_equal(n, 4 + 3 * 15 + 11);
   column(name, n, "contact3_w_peak_to_peak_m");
   post_buffer_free(&text);
   mhb_response_destroy(r);

@@ -126,6 +126,38 @@ static void usual(void **state) {
   free(html);
 }
 
+/* Flips and Neimark-Sacker points are drawn, told, and told apart from folds; how many points were judged is said. */
+static void turns(void **state) {
+  (void)state;
+  fixture_options o      = fixture_usual();
+  char           *before = page(&o, "scene");
+  mhb_response   *r      = fixture_response(&o);
+  post_study     *study;
+  post_buffer     html = {0};
+  post_source     s    = source();
+  assert_has_not(before, "does not repeat");
+  assert_has_not(before, "class=\"turn");
+  assert_has_not(before, "Floquet multipliers were computed");
+  free(before);
+  for (int i = 10; i < 15; i++) {
+    r->branch[3].stable[i] = 0;
+    r->branch[3].judged[i] = MHB_BY_MULTIPLIERS;
+    r->branch[3].loss[i]   = i < 12 ? MHB_LOSS_FLIP : MHB_LOSS_NEIMARK_SACKER;
+  }
+  r->branch[3].special[10] = MHB_FLIP;
+  r->branch[3].special[14] = MHB_NEIMARK_SACKER;
+  assert_ok(post_study_create(r, &study));
+  assert_ok(post_report(study, &s, "scene", &html));
+  check_tags(html.text);
+  assert_has(html.text, "On 1 curve a part");
+  assert_has(html.text, "2 points by period doubling (flip), 3 by a modulation");
+  assert_has(html.text, "multipliers were computed at 5 of 1560 points");
+  assert_int_equal(count(html.text, "class=\"turn"), 2);
+  post_study_destroy(study);
+  mhb_response_destroy(r);
+  free(html.text);
+}
+
 /* Text of the case, of names and of reasons stays text. */
 static void escaping(void **state) {
   (void)state;
@@ -291,6 +323,6 @@ int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(usual),         cmocka_unit_test(escaping),
                                      cmocka_unit_test(data),          cmocka_unit_test(odd),
                                      cmocka_unit_test(not_estimated), cmocka_unit_test(size),
-                                     cmocka_unit_test(picture)};
+                                     cmocka_unit_test(picture),       cmocka_unit_test(turns)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
