@@ -41,8 +41,10 @@ shb_status mhb_path_create(mhb_residual *residual, double low, double high, mhb_
   path->longest   = LONGEST_STEP;
   path->tolerance = 1e-10;
   path->chord     = calloc((size_t)n + 1, sizeof(double));
-  int ok          = path->chord && point_create(&path->now, n) && point_create(&path->next, n) &&
-           point_create(&path->probe, n) && mhb_newton_create(n, &path->newton) == SHB_OK &&
+  for (int i = 0; i < 2; i++) path->bracket[i] = calloc((size_t)n + 1, sizeof(double));
+  int ok = path->chord && path->bracket[0] && path->bracket[1] && point_create(&path->now, n) &&
+           point_create(&path->next, n) && point_create(&path->probe, n) &&
+           mhb_newton_create(n, &path->newton) == SHB_OK &&
            mhb_newton_bind(path->newton, residual) == SHB_OK;
   if (!ok) {
     mhb_path_destroy(path);
@@ -59,6 +61,7 @@ void mhb_path_destroy(mhb_path *path) {
   point_free(&path->probe);
   mhb_newton_destroy(path->newton);
   free(path->chord);
+  for (int i = 0; i < 2; i++) free(path->bracket[i]);
   free(path);
 }
 
@@ -378,22 +381,53 @@ void mhb_path_advance(mhb_path *path) {
   path->next         = old;
 }
 
+/* Which guess at fraction s, between the solved ends lo and hi of a bracket: the line between them, or one end, shifted. */
+static void guess_at(const mhb_path *path, double s, double lo, double hi, int which,
+                     mhb_path_point *probe) {
+  const double *a = path->bracket[0], *b = path->bracket[1];
+  double        part = which == 0 ? (s - lo) / (hi - lo) : which - 1;
+  double        rest = which == 0 ? 0 : which == 1 ? s - lo : s - hi;
+  for (int i = 0; i <= path->n; i++) {
+    double y = a[i] + part * (b[i] - a[i]) + rest * path->chord[i];
+    if (i < path->n)
+      probe->x[i] = y;
+    else
+      probe->omega = y;
+  }
+}
+
 /* probe <- the solution in the plane across the chord at fraction s. In the square-root zone of slip onset the plane's
- * Newton can fail; the damped one at fixed frequency then stands in. */
-static int at_fraction(mhb_path *path, double s) {
+ * Newton can fail; the damped one at fixed frequency then stands in. What rounding stopped is taken if nothing is better. */
+static int at_fraction(mhb_path *path, double s, double lo, double hi) {
   mhb_path_point *probe = &path->probe;
-  for (int tries = 0; tries < 2; tries++) {
-    for (int i = 0; i < path->n; i++) probe->x[i] = path->now.x[i] + s * path->chord[i];
-    probe->omega = path->now.omega + s * path->chord[path->n];
-    int ok       = tries == 0
-                       ? correct(path, path->chord, 1, probe)
-                       : mhb_newton_solve(path->newton, path->residual, probe->omega, path->tolerance,
-                                          probe->x, &probe->iterations) == MHB_CONVERGED;
+  for (int i = 0; i < 8; i++) {
+    int tries = i % 4;
+    guess_at(path, s, lo, hi, tries % 3, probe);
+    int ok = tries < 3
+                 ? correct(path, path->chord, 1, probe)
+                 : mhb_newton_solve(path->newton, path->residual, probe->omega, path->tolerance,
+                                    probe->x, &probe->iterations) == MHB_CONVERGED;
     if (!ok) continue;
-    if (tries) measure(path, probe);
+    if (tries == 3) measure(path, probe);
+    if (probe->residual > (i < 4 ? path->tolerance : 1e-9)) continue;
     if (set_tangent(path, path->chord, probe)) return 1;
   }
   return 0;
+}
+
+/* Somewhere in the bracket, at *s if that can be. */
+static int somewhere(mhb_path *path, double lo, double hi, double *s) {
+  static const double other[] = {.5, .2, .8, .05, .95};
+  for (int i = -1; i < 5; i++) {
+    if (i >= 0) *s = lo + other[i] * (hi - lo);
+    if (at_fraction(path, *s, lo, hi)) return 1;
+  }
+  return 0;
+}
+
+static void set_bracket(mhb_path *path, int side, const mhb_path_point *point) {
+  memcpy(path->bracket[side], point->x, sizeof(double) * (size_t)path->n);
+  path->bracket[side][path->n] = point->omega;
 }
 
 int mhb_path_locate(mhb_path *path, mhb_path_indicator indicator, void *context, double at_now,
@@ -403,18 +437,21 @@ int mhb_path_locate(mhb_path *path, mhb_path_indicator indicator, void *context,
   double lo = 0, hi = 1, flo = at_now, fhi = at_next;
   double wide = fabs(path->chord[path->n]) / path->now.omega;
   int    side = 0;
+  set_bracket(path, 0, &path->now);
+  set_bracket(path, 1, &path->next);
   for (int i = 0; i < 40; i++) {
     double s = (lo * fhi - hi * flo) / (fhi - flo);
     if (i % 4 == 3 || !(s > lo && s < hi)) s = .5 * (lo + hi);
-    if (!at_fraction(path, s)) {
+    if (!somewhere(path, lo, hi, &s)) {
       *fraction = lo; /* a kink: the bracket's good side is as near as can be had */
-      return i > 2 && (hi - lo) * wide < 1e-4 && at_fraction(path, lo);
+      return i > 2 && (hi - lo) * wide < 1e-4 && at_fraction(path, lo, lo, hi);
     }
     double f  = indicator(path, &path->probe, context);
     *fraction = s;
     if (f == 0) return 1;
-    int    low_side = (f > 0) == (flo > 0);
-    double moved    = low_side ? s - lo : hi - s;
+    int low_side = (f > 0) == (flo > 0);
+    set_bracket(path, low_side ? 0 : 1, &path->probe);
+    double moved = low_side ? s - lo : hi - s;
     if (low_side) {
       lo  = s;
       flo = f;
@@ -426,7 +463,7 @@ int mhb_path_locate(mhb_path *path, mhb_path_indicator indicator, void *context,
     }
     side        = low_side ? 1 : -1;
     double left = fmin(hi - lo, moved);
-    if (left < 1e-9 || (i > 2 && left * wide < 1e-9 && left < 1e-4)) return 1;
+    if (left < 1e-9 || (i > 2 && left * wide < 1e-10 && left < 1e-4)) return 1;
   }
   return 1;
 }

@@ -29,6 +29,7 @@ typedef struct {
   int orientation, against;        /* of the path; ordinary steps in a row that had the other one */
   mhb_path_point now, next, probe; /* probe: scratch for located points */
   double        *chord;            /* [n+1] */
+  double        *bracket[2];       /* [n+1] x and omega on both sides of a point being located */
 } mhb_path;
 
 typedef enum { MHB_PATH_ON, MHB_PATH_AT_END, MHB_PATH_AT_START, MHB_PATH_STALLED } mhb_path_outcome;

@@ -55,7 +55,8 @@ static void compare(modal_model *model, mhb_settings *s, double from, double to,
   int K = 3 * r[0]->n_pairs * (r[0]->n_harmonics + 1);
   for (int i = 0; i < n; i++) {
     worst[0] = fmax(worst[0], fabs(a->frequency[i] / b->frequency[i] - 1));
-    worst[1] = fmax(worst[1], fabs(f[0][i].largest - f[1][i].largest));
+    if (a->special[i] == MHB_ORDINARY) /* a located one may be a kink */
+      worst[1] = fmax(worst[1], fabs(f[0][i].largest - f[1][i].largest));
   }
   for (int i = 0; i < n * K; i++) {
     size = fmax(size, cabs(a->motion[i]));

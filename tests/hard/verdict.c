@@ -91,3 +91,11 @@ int special_near(const mhb_branch *b, int special, double w) {
   }
   return best;
 }
+
+int distinct(const mhb_branch *b, int i, int step) {
+  int k = i + step;
+  while (k > 0 && k + 1 < b->n_points && fabs(b->frequency[k] / b->frequency[i] - 1) < 1e-7 &&
+         b->special[k] != 0)
+    k += step;
+  return k;
+}

@@ -26,6 +26,9 @@ void point_of(const mhb_response *r, const mhb_branch *b, int i, double share, d
 /* Amplitude of harmonic k of component c (v, u, w) of the first pair. */
 double harmonic_of(const mhb_response *r, const mhb_branch *b, int point, int c, int k);
 
+/* The next point before (step -1) or after (1) i that is not a located one all but the same as i. */
+int distinct(const mhb_branch *b, int i, int step);
+
 int count_special(const mhb_branch *b, int special);
 
 /* Angular frequency of the special point nearest to w, and its index; -1 if there is none. */
