@@ -113,6 +113,16 @@ static void check_sizes(case_reader *r) {
                       blade->shroud_size, blade->size);
 }
 
+/* A tolerance of the motion is what auto works for, and means nothing else. */
+static void check_tolerance(case_reader *r) {
+  if (!case_reader_good(r, "mhb.harmonics") || r->file->mhb.harmonics == 0) return;
+  r->file->mhb.motion_tolerance = 0;
+  if (case_reader_given(r, "mhb.tolerance"))
+    case_reader_issue(r, "mhb.tolerance",
+                      "only says something with mhb.harmonics: auto; the accuracy of the contact "
+                      "law is contact.accuracy");
+}
+
 /* Harmonic k of the load drives harmonic k nu of the balance, whose fundamental is omega / nu. */
 static void check_harmonics(case_reader *r, int stages) {
   const case_file *file = r->file;
@@ -120,7 +130,7 @@ static void check_harmonics(case_reader *r, int stages) {
               case_reader_good(r, "mhb.subharmonics");
   if (file->modal_file || !good || !(stages & CASE_MHB)) return;
   int k = file->load.n_harmonics, needed = k * file->mhb.subharmonics;
-  if (needed > file->mhb.harmonics)
+  if (file->mhb.harmonics > 0 && needed > file->mhb.harmonics)
     case_reader_issue(
         r, "excitation.harmonics",
         "harmonic %d would be left out: mhb.harmonics is %d, must be %d at least (times "
@@ -157,6 +167,7 @@ bool case_check_values(case_reader *r, int stages) {
   check_load_size(r);
   check_blade(r, stages);
   check_harmonics(r, stages);
+  check_tolerance(r);
   if (own) check_extension(r);
   if (own && stages & (CASE_MESH | CASE_MODAL)) lost = check_file(r, "mesh.file", file->mesh_file);
   if (!own && stages & CASE_MHB) lost = check_file(r, "modal.file", file->modal_file);

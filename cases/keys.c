@@ -116,11 +116,6 @@ void case_key_suggest(case_keys keys, const char *block, const char *word, char 
   }
 }
 
-const char *case_key_moved(const char *path) {
-  bool tolerance = strcmp(path, "mhb.tolerance") == 0;
-  return tolerance ? "use contact.accuracy: fast, balanced, exact or a number" : NULL;
-}
-
 void case_key_range(const case_key *key, char *text, size_t size) {
   text[0] = '\0';
   if (key->least == 0 && key->most == 0) return;
@@ -136,6 +131,7 @@ static const char *type_name(const case_key *key) {
   static const char *const names[CASE_N_TYPES] = {[CASE_NUMBER]    = "number",
                                                   [CASE_INTEGER]   = "integer",
                                                   [CASE_COUNT]     = "integer or all",
+                                                  [CASE_AUTO]      = "integer or auto",
                                                   [CASE_CHOICE]    = "word",
                                                   [CASE_SWITCH]    = "word",
                                                   [CASE_ACCURACY]  = "word or number",

@@ -14,6 +14,7 @@ typedef enum {
   CASE_NUMBER,    /* number with a unit: double */
   CASE_INTEGER,   /* int */
   CASE_COUNT,     /* integer or "all": int, 0 for all */
+  CASE_AUTO,      /* integer or "auto": int, 0 for auto */
   CASE_CHOICE,    /* one of words: enum of int size, the place in words */
   CASE_SWITCH,    /* one of two words: bool, true for the second */
   CASE_ACCURACY,  /* one of words, or a number: double */
@@ -44,7 +45,8 @@ typedef enum {
   CASE_IF_PRESSURE,   /* excitation by pressure (not modal.file), and so on */
   CASE_IF_TRACTION,
   CASE_IF_FORCE,
-  CASE_IF_FORCE_AT /* excitation by force with a place of its own */
+  CASE_IF_FORCE_AT, /* excitation by force with a place of its own */
+  CASE_IF_AUTO      /* harmonics: auto */
 } case_condition;
 
 typedef struct {
@@ -89,9 +91,6 @@ bool case_key_nearest(case_keys keys, const char *block, const char *word, char 
 /* What to say of an unknown word in a block ("" for the top): "; did you mean 'mu'?", where the key belongs, or
  * what the block knows. */
 void case_key_suggest(case_keys keys, const char *block, const char *word, char *text, size_t size);
-
-/* Where a key of an earlier version went: "use contact.accuracy: ..."; NULL if path never was one. */
-const char *case_key_moved(const char *path);
 
 /* Edits (insert, delete, replace, swap neighbours; case ignored) that turn a into b. */
 int case_edit_distance(const char *a, const char *b);

@@ -76,12 +76,7 @@ static bool is_section_row(const case_key *key) {
 static void walk(case_reader *r, const case_node *map, const char *path);
 
 static void refuse_key(case_reader *r, const char *block, const char *path, const case_node *node) {
-  char        hint[512];
-  const char *moved = case_key_moved(path);
-  if (moved) {
-    case_issue_add(r->issues, node->key_line, node->key_column, path, "no longer a key; %s", moved);
-    return;
-  }
+  char hint[512];
   case_key_suggest(r->keys, block, node->key, hint, sizeof hint);
   case_issue_add(r->issues, node->key_line, node->key_column, path, "unknown key%s", hint);
 }

@@ -139,8 +139,12 @@ void run_describe(const case_file *file, FILE *out) {
   }
   fprintf(out, ", mu %g\n", mhb->mu);
   describe_preloads(mhb, out);
-  fprintf(out, "  sweep     %g to %g Hz, %d harmonic%s\n", mhb->frequency[0], mhb->frequency[1],
-          mhb->harmonics, mhb->harmonics == 1 ? "" : "s");
+  fprintf(out, "  sweep     %g to %g Hz, ", mhb->frequency[0], mhb->frequency[1]);
+  if (mhb->harmonics == 0) {
+    fprintf(out, "harmonics as a tolerance of %g needs\n", mhb->motion_tolerance);
+  } else {
+    fprintf(out, "%d harmonic%s\n", mhb->harmonics, mhb->harmonics == 1 ? "" : "s");
+  }
   char *path = case_output(file, ".html");
   fprintf(out, "  report    %s\n", path ? path : file->name);
   free(path);

@@ -106,8 +106,10 @@ static const case_key table[] = {
 
     {"mhb.frequency", CASE_INTERVAL, "Hz", 0, 1e9, true, .required = true, AT(mhb.frequency), .stages = CASE_MHB,
      .help = "range of the sweep: [from, to]"},
-    {"mhb.harmonics", CASE_INTEGER, "", 1, MOST_HARMONICS, .fallback = "3", AT(mhb.harmonics), .stages = CASE_MHB,
-     .help = "harmonics of the balance, counted in the fundamental"},
+    {"mhb.harmonics", CASE_AUTO, "", 1, MOST_HARMONICS, .fallback = "3", AT(mhb.harmonics), .stages = CASE_MHB,
+     .help = "harmonics of the balance, counted in the fundamental; auto: chosen at each point by mhb.tolerance, at most 31"},
+    {"mhb.tolerance", CASE_NUMBER, "", 1e-8, 0.1, .fallback = "1e-4", AT(mhb.motion_tolerance), .stages = CASE_MHB, .when = CASE_IF_AUTO,
+     .help = "with harmonics: auto, the relative error of the motion that the harmonics left out may cause"},
     {"mhb.subharmonics", CASE_INTEGER, "", 1, 16, .fallback = "1", AT(mhb.subharmonics), .stages = CASE_MHB,
      .help = "order nu: the fundamental is the excitation frequency / nu"},
     {"mhb.scale", CASE_NUMBER, "", 0, 1e12, .fallback = "1", AT(mhb.scale), .stages = CASE_MHB,
@@ -150,6 +152,8 @@ bool case_key_applies(const case_key *key, const case_file *file) {
       return own && file->load.kind == FEM_LOAD_FORCE;
     case CASE_IF_FORCE_AT:
       return own && file->load.kind == FEM_LOAD_FORCE && file->load.has_at;
+    case CASE_IF_AUTO:
+      return file->mhb.harmonics == 0;
     case CASE_ALWAYS:
       return true;
   }

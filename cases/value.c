@@ -20,6 +20,7 @@ void case_value_expected(const case_key *key, char *text, size_t size) {
       [CASE_NUMBER]    = "a number",
       [CASE_INTEGER]   = "a whole number",
       [CASE_COUNT]     = "a whole number or all",
+      [CASE_AUTO]      = "a whole number or auto",
       [CASE_CHOICE]    = "one of",
       [CASE_SWITCH]    = "one of",
       [CASE_ACCURACY]  = "a number or one of",
@@ -103,10 +104,12 @@ static bool read_integer(const context *c, const case_node *node, void *slot) {
   return check_range(c, c->path, node, *(int *)slot);
 }
 
+/* A whole number, or the word that stands for 0. */
 static bool read_count(const context *c, const case_node *node, void *slot) {
-  bool all = node->kind == CASE_SCALAR && strcmp(node->text, "all") == 0;
-  if (all) *(int *)slot = 0;
-  return all || read_integer(c, node, slot);
+  const char *word = c->key->type == CASE_AUTO ? "auto" : "all";
+  bool        zero = node->kind == CASE_SCALAR && strcmp(node->text, word) == 0;
+  if (zero) *(int *)slot = 0;
+  return zero || read_integer(c, node, slot);
 }
 
 /* Place of text in words separated by spaces, or -1. */
@@ -424,7 +427,7 @@ bool case_value_read(case_issues *issues, const case_key *key, const char *path,
       [CASE_VECTOR] = read_vector,       [CASE_INTERVAL] = read_interval,
       [CASE_STIFFNESS] = read_stiffness, [CASE_PRELOADS] = read_preloads,
       [CASE_FACTORS] = read_factors,     [CASE_PROBES] = read_probes,
-      [CASE_SIGNAL] = read_signal};
+      [CASE_SIGNAL] = read_signal,       [CASE_AUTO] = read_count};
   const context c = {.issues = issues, .key = key, .path = path, .file = file};
   return readers[key->type](&c, node, slot);
 }

@@ -6,9 +6,9 @@
 #include <string.h>
 
 #include "mesh/progress.h"
+#include "mhb/harmonics.h"
 #include "mhb/judge.h"
 #include "mhb/record.h"
-#include "mhb/truncation.h"
 
 static const double PI = 3.14159265358979323846;
 
@@ -18,22 +18,22 @@ enum { MAX_CRAWL = 150, MAX_GAPS = 8, MAX_BEGINS = 64 };
 
 /* A branch under way. */
 typedef struct {
-  mhb_judge_host  host; /* first: the callbacks get it back */
-  mhb_residual   *residual;
-  mhb_path       *path;
-  mhb_truncation *truncation;
-  mhb_response   *response;
-  int             branch;
-  mhb_monitor    *monitor;
-  int             n_outputs;
-  double         *before, *after; /* [outputs] slopes of the amplitudes at now and next */
-  double         *x;              /* [n] a first solution */
-  double          clock;
-  double          farthest;       /* rad/s, highest frequency reached */
-  int             crawling, gaps; /* tiny steps in a row; places jumped over */
-  char            first_gap[96];
-  int             first[MAX_BEGINS], n_first; /* where the curve begins, and begins anew */
-  mhb_judge      *judge;                      /* NULL: stability by folds */
+  mhb_judge_host host; /* first: the callbacks get it back */
+  mhb_harmonics *harmonics;
+  mhb_residual  *residual; /* of the rung in use, as the path */
+  mhb_path      *path;
+  mhb_response  *response;
+  int            branch;
+  mhb_monitor   *monitor;
+  int            n_outputs;
+  double        *before, *after; /* [outputs] slopes of the amplitudes at now and next */
+  double        *x;              /* [n] a first solution */
+  double         clock;
+  double         farthest;       /* rad/s, highest frequency reached */
+  int            crawling, gaps; /* tiny steps in a row; places jumped over */
+  char           first_gap[96];
+  int            first[MAX_BEGINS], n_first; /* where the curve begins, and begins anew */
+  mhb_judge     *judge;                      /* NULL: stability by folds */
 } follower;
 
 static double fold_indicator(const mhb_path *path, const mhb_path_point *point, void *context) {
@@ -45,11 +45,9 @@ static double peak_indicator(const mhb_path *path, const mhb_path_point *point, 
   return mhb_output_slope(path, point, *(const int *)context);
 }
 
-/* Record a point; false: stop. */
+/* Record a point whose errors are estimated; false: stop. */
 static shb_status record(follower *f, mhb_path_point *point, int special, bool *go_on) {
-  point->truncation = mhb_truncation_error(f->truncation, point->x, point->omega);
-  point->modal      = mhb_modal_error(f->residual, point->x);
-  double now        = shb_seconds();
+  double now = shb_seconds();
   f->monitor->lock(f->monitor, true);
   shb_status status =
       mhb_record(f->response, f->branch, f->residual, point, special, now - f->clock);
@@ -108,6 +106,7 @@ static shb_status record_events(follower *f, bool *go_on) {
     if (!mhb_path_locate(f->path, fold ? fold_indicator : peak_indicator, &list[i].output, lo, hi,
                          &at))
       continue;
+    mhb_harmonics_errors(f->harmonics, &f->path->probe);
     SHB_TRY(record(f, &f->path->probe, list[i].special, go_on));
   }
   if (n > 0) revisit(f, &f->path->next);
@@ -117,6 +116,47 @@ static shb_status record_events(follower *f, bool *go_on) {
 /* The point recorded next does not follow the one before along the curve. */
 static void begin_anew(follower *f) {
   if (f->n_first < MAX_BEGINS) f->first[f->n_first++] = f->response->branch[f->branch].n_points;
+}
+
+static void use_rung(follower *f) {
+  f->residual = mhb_harmonics_rung(f->harmonics)->residual;
+  f->path     = mhb_harmonics_rung(f->harmonics)->path;
+}
+
+/* Go on from now with another number of harmonics. *moved: 0 if that cannot be. */
+static shb_status move(follower *f, int rung, int step, int *moved) {
+  f->monitor->lock(f->monitor, true); /* FFTW's planner */
+  shb_status status = mhb_harmonics_make(f->harmonics, rung);
+  f->monitor->lock(f->monitor, false);
+  SHB_TRY(status);
+  *moved = mhb_harmonics_move(f->harmonics, rung, step) == MHB_CONVERGED;
+  if (!*moved) return SHB_OK;
+  use_rung(f);
+  slopes(f, &f->path->now, f->before);
+  return SHB_OK;
+}
+
+/* A step at a number of harmonics that suffices at its end: where it does not, the step is taken anew from now, with more.
+ * The errors of next are estimated. */
+static shb_status sufficient_step(follower *f, mhb_path_outcome *outcome) {
+  for (int moved = 1;;) {
+    *outcome = mhb_path_step(f->path);
+    if (*outcome == MHB_PATH_STALLED) return SHB_OK;
+    mhb_harmonics_estimate(f->harmonics, &f->path->next);
+    int higher = mhb_harmonics_higher(f->harmonics);
+    if (higher < 0 || !moved) return SHB_OK;
+    SHB_TRY(move(f, higher, 0, &moved));
+  }
+}
+
+/* The start of a curve: now at a number of harmonics that suffices, errors estimated. */
+static shb_status sufficient_start(follower *f) {
+  for (int moved = 1;;) {
+    mhb_harmonics_estimate(f->harmonics, &f->path->now);
+    int higher = mhb_harmonics_higher(f->harmonics);
+    if (higher < 0 || !moved) return SHB_OK;
+    SHB_TRY(move(f, higher, 1, &moved));
+  }
 }
 
 /* Start, or start again, from a solution at omega. */
@@ -132,7 +172,8 @@ static shb_status begin(follower *f, double omega, bool *found, bool *go_on) {
   f->crawling = 0;
   begin_anew(f);
   slopes(f, &path->now, f->before);
-  return record(f, &path->now, MHB_ORDINARY, go_on);
+  SHB_TRY(sufficient_start(f));
+  return record(f, &f->path->now, MHB_ORDINARY, go_on);
 }
 
 /* The curve goes on beyond a place that cannot be passed; the reason will tell. */
@@ -166,9 +207,10 @@ static const char *obstacle(follower *f, mhb_path_outcome outcome) {
 
 /* One step and what lies on it; *end is set to the reason when the branch is done. */
 static shb_status step(follower *f, bool *go_on, const char **end) {
-  mhb_path        *path    = f->path;
-  mhb_path_outcome outcome = mhb_path_step(path);
-  bool             found   = true;
+  mhb_path_outcome outcome;
+  bool             found = true;
+  SHB_TRY(sufficient_step(f, &outcome));
+  mhb_path *path = f->path;
   if (outcome != MHB_PATH_STALLED) {
     slopes(f, &path->next, f->after);
     SHB_TRY(record_events(f, go_on));
@@ -188,7 +230,8 @@ static shb_status step(follower *f, bool *go_on, const char **end) {
   double *swap = f->before;
   f->before    = f->after;
   f->after     = swap;
-  return SHB_OK;
+  int lower    = mhb_harmonics_lower(f->harmonics), moved;
+  return lower < 0 ? SHB_OK : move(f, lower, 0, &moved);
 }
 
 static const char *run(follower *f, int max_points, shb_status *status) {
@@ -222,9 +265,8 @@ static void drop_hairlines(mhb_branch *branch) {
 }
 
 static shb_status insert(mhb_judge_host *host, mhb_path_point *point, int special, int at) {
-  follower *f       = (follower *)host;
-  point->truncation = mhb_truncation_error(f->truncation, point->x, point->omega);
-  point->modal      = mhb_modal_error(f->residual, point->x);
+  follower *f = (follower *)host;
+  mhb_harmonics_errors(f->harmonics, point);
   host->lock(host, true);
   shb_status status = mhb_record(f->response, f->branch, f->residual, point, special, 0);
   if (status == SHB_OK) mhb_response_place(f->response, f->branch, at);
@@ -250,7 +292,15 @@ static shb_status judge(follower *f, const char **reason) {
   drop_hairlines(&f->response->branch[f->branch]);
   mhb_judge_by_folds(&f->response->branch[f->branch]);
   f->monitor->lock(f->monitor, false);
-  if (!f->judge || strcmp(*reason, "interrupted") == 0) return SHB_OK;
+  if (f->residual->settings->stability == MHB_STABILITY_NEVER ||
+      strcmp(*reason, "interrupted") == 0)
+    return SHB_OK;
+  f->harmonics->at = f->harmonics->highest; /* no point has more */
+  use_rung(f);
+  f->monitor->lock(f->monitor, true); /* FFTW's planner */
+  shb_status made = mhb_judge_create(f->residual, &f->judge);
+  f->monitor->lock(f->monitor, false);
+  SHB_TRY(made);
   f->host           = (mhb_judge_host){.insert = insert, .lock = lock_judge, .point = judged};
   shb_status status = mhb_judge_branch(f->judge, f->path, f->response, f->branch, f->first,
                                        f->n_first, &f->host, &finished);
@@ -278,28 +328,24 @@ static shb_status finish(follower *f, const char *reason) {
 
 /* What a branch needs, all made before the first point; on failure the caller destroys what is there. */
 static shb_status create(follower *f) {
-  const double *range   = f->residual->settings->frequency;
-  size_t        outputs = (size_t)f->n_outputs + 1;
-  SHB_TRY(mhb_path_create(f->residual, 2 * PI * range[0], 2 * PI * range[1], &f->path));
+  size_t outputs = (size_t)f->n_outputs + 1;
   f->monitor->lock(f->monitor, true); /* FFTW's planner */
-  shb_status status = mhb_truncation_create(f->residual, &f->truncation);
-  if (status == SHB_OK && f->residual->settings->stability != MHB_STABILITY_NEVER)
-    status = mhb_judge_create(f->residual, &f->judge);
+  shb_status status = mhb_harmonics_create(f->residual, &f->harmonics);
   f->monitor->lock(f->monitor, false);
   SHB_TRY(status);
+  use_rung(f);
   f->before = calloc(outputs, sizeof(double));
   f->after  = calloc(outputs, sizeof(double));
-  f->x      = calloc((size_t)f->residual->n, sizeof(double));
+  f->x      = calloc((size_t)mhb_harmonics_most_unknowns(f->harmonics), sizeof(double));
   SHB_CHECK(f->before && f->after && f->x, SHB_ERR_IO, "out of memory");
   return SHB_OK;
 }
 
 static void destroy(follower *f) {
   f->monitor->lock(f->monitor, true);
-  mhb_truncation_destroy(f->truncation);
   mhb_judge_destroy(f->judge);
+  mhb_harmonics_destroy(f->harmonics);
   f->monitor->lock(f->monitor, false);
-  mhb_path_destroy(f->path);
   free(f->before);
   free(f->after);
   free(f->x);

@@ -101,8 +101,8 @@ static shb_status sample(sampler *s) {
 }
 
 /* A grid point is a peak where an output is larger than at both neighbours: marked for the report. */
-static void mark_peaks(mhb_branch *branch, const mhb_residual *b, int n_probes) {
-  int K = b->m + 1, k = b->receptance->nu <= b->m ? b->receptance->nu : b->m;
+static void mark_peaks(mhb_branch *branch, const mhb_residual *b, int n_probes, int n_harmonics) {
+  int K = n_harmonics + 1, k = b->receptance->nu <= b->m ? b->receptance->nu : b->m;
   for (int o = 0; o < n_probes; o++) {
     double a[3] = {0, 0, 0};
     for (int i = 0; i < branch->n_points; i++) {
@@ -132,7 +132,7 @@ shb_status mhb_follow_linear(mhb_residual *residual, mhb_response *response, int
   shb_status status = sample(&s);
   free(s.x);
   SHB_TRY(status);
-  mark_peaks(&response->branch[branch], residual, response->n_probes);
+  mark_peaks(&response->branch[branch], residual, response->n_probes, response->n_harmonics);
   response->branch[branch].reason   = strdup("end of range");
   response->branch[branch].complete = true;
   return SHB_OK;

@@ -16,6 +16,7 @@ typedef struct {
   int    iterations;
   double residual;          /* |r|/|x| */
   double truncation, modal; /* relative error estimates, see truncation.h */
+  int    truncation_kind;   /* mhb_truncation_kind */
 } mhb_path_point;
 
 typedef struct {

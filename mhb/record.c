@@ -7,9 +7,9 @@ static const double PI = 3.14159265358979323846;
 
 static void record_signals(mhb_response *response, mhb_branch *branch, int point,
                            const mhb_residual *b, const double *x) {
-  int            K = b->m + 1, n3 = 3 * b->n_pairs, q = 3 * response->n_probes;
+  int            K = response->n_harmonics + 1, n3 = 3 * b->n_pairs, q = 3 * response->n_probes;
   double complex p[n3], motion[q + 1];
-  for (int k = 0; k < K; k++) {
+  for (int k = 0; k <= b->m; k++) {
     mhb_residual_force(b, k, p);
     for (int row = 0; row < n3; row++) {
       const double *a    = x + (size_t)row * (size_t)b->nb;
@@ -49,7 +49,9 @@ shb_status mhb_record(mhb_response *response, int index, mhb_residual *b,
   record_signals(response, branch, at, b, point->x);
   record_states(branch, at, b);
   branch->error_truncation[at] = point->truncation;
-  branch->error_modal[at]      = point->modal;
+  if (branch->harmonics) branch->harmonics[at] = b->m;
+  if (branch->truncation_kind) branch->truncation_kind[at] = point->truncation_kind;
+  branch->error_modal[at] = point->modal;
   return SHB_OK;
 }
 

@@ -51,6 +51,12 @@ static const field fields[] = {
     {"error/modal", "", DOUBLE, AT(error_modal), "-",
      "estimated error from the modes left out, relative to the motion"},
     /* the last N_LATER: of nonlinear branches only; files of earlier versions lack them */
+    {"harmonics", "", INT, AT(harmonics), "-",
+     "harmonics of the balance at the point; higher ones of motion, force and probe are 0"},
+    {"error/truncation_kind", "", INT, AT(truncation_kind), "-",
+     "how error/truncation was estimated: 0 nothing is left out (open or stuck throughout), 1 "
+     "first "
+     "order: can be several times too small, 2 a Newton step of twice the harmonics"},
     {"judged", "", INT, AT(judged), "-",
      "what stable rests on: 1 the Floquet multipliers; else the parity of folds passed since such "
      "a "
@@ -61,7 +67,7 @@ static const field fields[] = {
     {"multipliers", "f", COMPLEX, AT(multipliers), "-",
      "largest Floquet multipliers by falling modulus; 0: not computed, or there are no more"},
 };
-enum { N_FIELDS = sizeof fields / sizeof *fields, N_LATER = 3 };
+enum { N_FIELDS = sizeof fields / sizeof *fields, N_LATER = 5 };
 
 static const char *const kind_name[] = {"nonlinear", "open", "stuck"};
 enum { N_KINDS = sizeof kind_name / sizeof *kind_name };

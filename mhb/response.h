@@ -42,6 +42,8 @@ typedef struct {
   int *loss;   /* [point] MHB_NO_LOSS ... */
   double complex     *
       multipliers; /* [point][n_multipliers] the largest, by falling modulus; 0: not computed, or no more */
+  int    *harmonics;       /* [point] of the balance there, at most n_harmonics; 0: not known */
+  int    *truncation_kind; /* [point] mhb_truncation_kind */
   double *state;
   double *dissipation; /* [point][pair] J a cycle */
   int    *iterations;  /* [point] */

@@ -24,6 +24,7 @@ typedef struct {
   double             frequency[2];         /* Hz, first < second */
   int                harmonics;            /* m >= 1 */
   int                subharmonics;         /* nu >= 1: fundamental is omega/nu */
+  double             motion_tolerance;     /* > 0: harmonics are chosen for this relative error */
   double             scale;                /* multiplies the excitation */
   double             tolerance;            /* of the contact law, relative to its largest force */
   int                max_points; /* a branch ends (with a reason) beyond this, default 2000 */

@@ -6,14 +6,15 @@
 #include <string.h>
 
 #include "mhb/follow.h"
+#include "mhb/harmonics.h"
 #include "mhb/judge.h"
 
 static const double PI = 3.14159265358979323846, PUBLISH_EVERY = 10, BRANCH_END_EVERY = 1; /* s */
 
 /* What the threads share: all of it touched under the lock only. */
 typedef struct {
-  mhb_monitor           base; /* first: the callbacks get it back */
-  const mhb_settings   *settings;
+  mhb_monitor           base;     /* first: the callbacks get it back */
+  const mhb_settings   *settings; /* harmonics: the first number tried */
   mhb_response         *response;
   const char           *path;
   const shb_provenance *provenance;
@@ -195,18 +196,22 @@ static shb_status check_load(const modal_model *model, const mhb_settings *setti
   return SHB_OK;
 }
 
-shb_status mhb_sweep(const modal_model *model, const mhb_settings *settings, const char *path,
+shb_status mhb_sweep(const modal_model *model, const mhb_settings *asked, const char *path,
                      const shb_provenance *provenance, shb_progress *progress, mhb_response **out) {
-  *out = NULL;
+  int          m[MHB_MAX_RUNGS], rungs = mhb_harmonics_ladder(model, asked, m);
+  mhb_settings first = *asked, *settings = &first;
+  *out            = NULL;
+  first.harmonics = m[rungs - 1];
   SHB_TRY(check_load(model, settings));
-  sweep s    = {.base       = {.point = point, .lock = lock},
-                .settings   = settings,
-                .path       = path,
-                .provenance = provenance,
-                .progress   = progress,
-                .published  = shb_seconds()};
-  s.response = mhb_response_create(model->n_pairs, model->n_probes, settings->harmonics);
-  s.done     = calloc((size_t)settings->n_preloads, sizeof(double));
+  first.harmonics = m[0];
+  sweep s         = {.base       = {.point = point, .lock = lock},
+                     .settings   = settings,
+                     .path       = path,
+                     .provenance = provenance,
+                     .progress   = progress,
+                     .published  = shb_seconds()};
+  s.response      = mhb_response_create(model->n_pairs, model->n_probes, m[rungs - 1]);
+  s.done          = calloc((size_t)settings->n_preloads, sizeof(double));
   shb_status status =
       s.response && s.done ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   if (status == SHB_OK) status = describe(s.response, model, settings);

@@ -9,6 +9,7 @@
 #include "modal/model.h"
 
 /* Solve and, unless path is NULL, publish to path: at branch ends (once a second at most), every 10 s, at the end, and when interrupted.
+ * settings->motion_tolerance > 0: harmonics are chosen at each point (harmonics.h), settings->harmonics does not count.
  * settings->resume: branches that an earlier file of the same settings holds complete are not computed again.
  *   response  out  the caller destroys it (NULL on error)
  * Returns SHB_OK; SHB_NOT_CONVERGED if a branch ended before the range was covered; SHB_INTERRUPTED; SHB_ERR_*. */

@@ -93,6 +93,35 @@ static void every_value_arrives(void **state) {
   scratch_remove(folder);
 }
 
+/* The tolerance belongs to auto: 1e-4 unless given, and nothing where the harmonics are. */
+static void automatic_harmonics(void **state) {
+  (void)state;
+  static const struct {
+    const char *text;
+    int         harmonics;
+    double      tolerance;
+  } rows[] = {{"harmonics: auto", 0, 1e-4},
+              {"harmonics: auto\n  tolerance: 0.02 %", 0, 2e-4},
+              {"harmonics: 6", 6, 0}};
+  char folder[SCRATCH_PATH], *said;
+  scratch_create(folder);
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    char     *text = scratch_case("harmonics: 7", rows[i].text);
+    case_file f;
+    assert_int_equal(read_text(folder, "c.yaml", text, &f, &said), SHB_OK);
+    assert_int_equal(f.mhb.harmonics, rows[i].harmonics);
+    assert_true(f.mhb.motion_tolerance == rows[i].tolerance);
+    char *settings = case_settings(&f, CASE_MHB);
+    assert_int_equal(strstr(settings, "mhb.tolerance = ") != NULL, rows[i].harmonics == 0);
+    assert_int_equal(strstr(settings, "mhb.harmonics = auto") != NULL, rows[i].harmonics == 0);
+    free(settings);
+    case_free(&f);
+    free(said);
+    free(text);
+  }
+  scratch_remove(folder);
+}
+
 static void accuracy_in_words(void **state) {
   (void)state;
   static const struct {
@@ -294,10 +323,14 @@ static void one_byte_wrong(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_value_arrives),       cmocka_unit_test(accuracy_in_words),
-      cmocka_unit_test(a_modal_file_needs_little), cmocka_unit_test(stages_ask_for_their_own),
-      cmocka_unit_test(forces_and_tractions),      cmocka_unit_test(line_ends_and_marks),
-      cmocka_unit_test(truncated_anywhere),        cmocka_unit_test(one_byte_wrong)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(every_value_arrives),
+                                     cmocka_unit_test(automatic_harmonics),
+                                     cmocka_unit_test(accuracy_in_words),
+                                     cmocka_unit_test(a_modal_file_needs_little),
+                                     cmocka_unit_test(stages_ask_for_their_own),
+                                     cmocka_unit_test(forces_and_tractions),
+                                     cmocka_unit_test(line_ends_and_marks),
+                                     cmocka_unit_test(truncated_anywhere),
+                                     cmocka_unit_test(one_byte_wrong)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

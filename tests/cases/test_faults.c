@@ -67,8 +67,8 @@ static void keys_and_kinds(void **state) {
        "or {from, to, points} in N",
        1},
       {"  scale: 1.3", "  tolerance: 1e-8",
-       "c.yaml:34:3: error: mhb.tolerance: no longer a key; use contact.accuracy: fast, balanced, "
-       "exact or a number",
+       "c.yaml:34:14: error: mhb.tolerance: only says something with mhb.harmonics: auto; the "
+       "accuracy of the contact law is contact.accuracy",
        1},
       {"  scale: 1.3", "  damping: 1.3",
        "c.yaml:34:3: error: mhb.damping: unknown key; did you mean "
@@ -76,11 +76,11 @@ static void keys_and_kinds(void **state) {
        1},
       {"  scale: 1.3", "  zzzzzz: 1.3",
        "c.yaml:34:3: error: mhb.zzzzzz: unknown key; known here: frequency, "
-       "harmonics, subharmonics, scale, max_points, stability",
+       "harmonics, tolerance, subharmonics, scale, max_points, stability",
        1},
       {"  scale: 1.3", "  mhb.scale: 1.3",
        "c.yaml:34:3: error: mhb.mhb.scale: unknown key; known here: "
-       "frequency, harmonics, subharmonics, scale, max_points, stability",
+       "frequency, harmonics, tolerance, subharmonics, scale, max_points, stability",
        1},
       {"  scale: 1.3", "  [a, b]: 1.3",
        "c.yaml:34:3: error: mhb.?: a key must be a word, not a list", 1},
@@ -158,10 +158,10 @@ static void numbers_and_ranges(void **state) {
       {"blades: 37", "blades: 37.5",
        "c.yaml:12:17: error: rotor.blades: '37.5' is not a whole number", 1},
       {"blades: 37", "blades: 1", "c.yaml:12:17: error: rotor.blades: is 1, must be 2 to 1000", 1},
-      {"harmonics: 7", "harmonics: auto",
-       "c.yaml:32:14: error: mhb.harmonics: auto is not available; give a "
-       "number",
-       1},
+      {"harmonics: 7", "harmonics: all",
+       "c.yaml:32:14: error: mhb.harmonics: 'all' is not a whole number", 1},
+      {"  harmonics: 7", "  harmonics: auto\n  tolerance: 1e-9",
+       "c.yaml:33:14: error: mhb.tolerance: is 1e-09, must be 1e-08 to 0.1", 1},
       {"points: 4", "points: 0", "c.yaml:23:11: error: contact.points: is 0, must be 1 to 100000",
        1},
       {"points: 4", "points: some",

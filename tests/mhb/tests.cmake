@@ -16,6 +16,8 @@ shb_test(mhb residual fast shb_mhb)
 target_sources(test_mhb_residual PRIVATE mhb/random_model.c)
 shb_test(mhb truncation fast shb_mhb)
 target_sources(test_mhb_truncation PRIVATE mhb/periodic.c mhb/random_model.c mhb/three_degree.c)
+shb_test(mhb harmonics fast shb_mhb)
+target_sources(test_mhb_harmonics PRIVATE mhb/periodic.c mhb/random_model.c mhb/three_degree.c)
 shb_test(mhb condensed fast shb_mhb)
 target_sources(test_mhb_condensed PRIVATE bench/shroud_face.c mhb/random_model.c mhb/three_degree.c)
 target_link_options(test_mhb_condensed PRIVATE
