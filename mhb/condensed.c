@@ -6,6 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Up to this many stuck unknowns LAPACK costs more in calls than in work. */
+enum { SMALL = 6 };
+
 /* Below this many stuck unknowns the harmonics are not shared out to threads. */
 enum { WORTH_THREADS = 72 };
 
@@ -73,6 +76,65 @@ void mhb_condensed_destroy(mhb_condensed *s) {
   free(s);
 }
 
+/* ---- complex systems, column-major ---- */
+
+static inline double complex times(double complex a, double complex b) {
+  return CMPLX(creal(a) * creal(b) - cimag(a) * cimag(b),
+               creal(a) * cimag(b) + cimag(a) * creal(b));
+}
+
+static inline double weight_of(double complex a) {
+  return creal(a) * creal(a) + cimag(a) * cimag(a);
+}
+
+static void swap_rows(int n, double complex *A, int columns, int i, int j) {
+  for (int c = 0; c < columns && i != j; c++) {
+    double complex old = A[c * n + i];
+    A[c * n + i]       = A[c * n + j];
+    A[c * n + j]       = old;
+  }
+}
+
+/* Gauss with row exchanges; the diagonal is kept inverted. */
+static int factor_small(int n, double complex *A, int *pivot) {
+  for (int j = 0; j < n; j++) {
+    int best = j;
+    for (int i = j + 1; i < n; i++)
+      if (weight_of(A[j * n + i]) > weight_of(A[j * n + best])) best = i;
+    double size = weight_of(A[j * n + best]);
+    if (!(size > 0)) return 0;
+    pivot[j] = best;
+    swap_rows(n, A, n, j, best);
+    A[j * n + j] = CMPLX(creal(A[j * n + j]) / size, -cimag(A[j * n + j]) / size);
+    for (int i = j + 1; i < n; i++) A[j * n + i] = times(A[j * n + i], A[j * n + j]);
+    for (int c = j + 1; c < n; c++)
+      for (int i = j + 1; i < n; i++) A[c * n + i] -= times(A[j * n + i], A[c * n + j]);
+  }
+  return 1;
+}
+
+static void solve_small(int n, const double complex *A, const int *pivot, double complex *x) {
+  for (int j = 0; j < n; j++) swap_rows(n, x, 1, j, pivot[j]);
+  for (int j = 0; j < n; j++)
+    for (int i = j + 1; i < n; i++) x[i] -= times(A[j * n + i], x[j]);
+  for (int j = n - 1; j >= 0; j--) {
+    x[j] = times(x[j], A[j * n + j]);
+    for (int i = 0; i < j; i++) x[i] -= times(A[j * n + i], x[j]);
+  }
+}
+
+static int factor_complex(int n, double complex *A, int *pivot) {
+  if (n <= SMALL) return factor_small(n, A, pivot);
+  return LAPACKE_zgetrf_work(LAPACK_COL_MAJOR, n, n, A, n, pivot) == 0;
+}
+
+static int solve_complex(int n, const double complex *A, const int *pivot, int columns,
+                         double complex *x) {
+  for (int c = 0; c < columns && n <= SMALL; c++) solve_small(n, A, pivot, x + c * n);
+  return n <= SMALL ||
+         LAPACKE_zgetrs_work(LAPACK_COL_MAJOR, 'N', n, columns, A, n, pivot, x, n) == 0;
+}
+
 /* ---- vectors ---- */
 
 /* Real form to harmonics [k][3 pairs] and back. */
@@ -128,9 +190,7 @@ static int solve_stuck(mhb_condensed *s, int k, double complex *x) {
   size_t          at    = (size_t)k * rows_of(s);
   if (nl == 0) return 1;
   for (int i = 0; i < nl; i++) packed[i] = x[3 * s->stuck[i / 3] + i % 3];
-  if (LAPACKE_zgetrs_work(LAPACK_COL_MAJOR, 'N', nl, 1, s->A + at * rows_of(s), nl, s->A_pivot + at,
-                          packed, nl) != 0)
-    return 0;
+  if (!solve_complex(nl, s->A + at * rows_of(s), s->A_pivot + at, 1, packed)) return 0;
   for (int i = 0; i < s->n_stuck; i++) {
     int a = s->stuck[i];
     memcpy(x + 3 * a, packed + 3 * i, 3 * sizeof *x);
@@ -163,7 +223,7 @@ static int factor_harmonic(mhb_condensed *s, int k) {
         A[(size_t)(3 * j + c) * (size_t)nl + (size_t)i] = column[c] + (i == 3 * j + c);
     }
   }
-  return LAPACKE_zgetrf_work(LAPACK_COL_MAJOR, nl, nl, A, nl, s->A_pivot + at) == 0;
+  return factor_complex(nl, A, s->A_pivot + at);
 }
 
 /* What the moving pairs see of each other: directly, and through the stuck ones. */
@@ -180,9 +240,7 @@ static int condense_harmonic(mhb_condensed *s, int k) {
     const double complex *R = receptance(s, k, 3 * s->stuck[i / 3] + i % 3);
     for (int j = 0; j < nm; j++) reach[j * nl + i] = R[3 * s->moving[j / 3] + j % 3];
   }
-  if (LAPACKE_zgetrs_work(LAPACK_COL_MAJOR, 'N', nl, nm, s->A + at * rows_of(s), nl,
-                          s->A_pivot + at, reach, nl) != 0)
-    return 0;
+  if (!solve_complex(nl, s->A + at * rows_of(s), s->A_pivot + at, nm, reach)) return 0;
   /* the room behind reach holds R_ML S, row by row */
   double complex *pull = reach + (size_t)nm * (size_t)nl;
   for (int i = 0; i < nm; i++) {

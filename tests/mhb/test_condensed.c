@@ -151,9 +151,9 @@ static double compare_at(mhb_residual *b, const char *kinds, unsigned long long 
 
 static void condensed_is_whole(void **state) {
   (void)state;
-  static const char *const kinds[] = {"m",     "s",   "o",  "msso",
-                                      "ssssm", "oom", "so", "ssssssssssssssssssmo"};
-  modal_model              model;
+  static const char *const kinds[] = {
+      "m", "s", "o", "msso", "ssssm", "oom", "so", "smmmmmmmmmmmmmo", "ssssssssssssssssssmo"};
+  modal_model model;
   random_model(PAIRS, WITH_LEFT | WITH_RESIDUAL | WITH_NORMALS | WITH_AREAS, 77, &model);
   for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
     mhb_settings  s     = random_settings(M);
