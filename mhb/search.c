@@ -1,0 +1,116 @@
+#include "mhb/search.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double TOLERANCE = 1e-10, SAME = 1e-5;
+enum { MAX_STEPS = 40, MAX_HALVINGS = 6 };
+
+void mhb_found_free(mhb_found *found) {
+  free(found->x);
+  *found = (mhb_found){0};
+}
+
+shb_status mhb_found_add(mhb_found *found, int n, const double *x) {
+  if (found->n_found == found->capacity) {
+    int     room = 2 * found->capacity + 8;
+    double *more = realloc(found->x, sizeof(double) * (size_t)room * (size_t)n);
+    SHB_CHECK(more, SHB_ERR_IO, "out of memory for %d solutions", room);
+    found->x        = more;
+    found->capacity = room;
+  }
+  found->n = n;
+  memcpy(found->x + (size_t)found->n_found++ * (size_t)n, x, sizeof(double) * (size_t)n);
+  return SHB_OK;
+}
+
+static double uniform(unsigned long long *seed) {
+  *seed = *seed * 6364136223846793005ULL + 1442695040888963407ULL;
+  return (double)(*seed >> 11) / 4503599627370496. - 1;
+}
+
+/* Harmonic k of any size up to that of the fundamental over k^2: as of a motion with jumps of acceleration. */
+static void draw(const mhb_residual *b, double size, unsigned long long *seed, double *x) {
+  for (int row = 0; row < b->n / b->nb; row++)
+    for (int j = 0; j < b->nb; j++) {
+      int k              = (j + 1) / 2;
+      x[row * b->nb + j] = size * uniform(seed) / fmax(1, k * k);
+    }
+}
+
+static double distance(const double *a, const double *b, int n) {
+  double d[n];
+  for (int i = 0; i < n; i++) d[i] = a[i] - b[i];
+  return mhb_norm(d, n);
+}
+
+/* ln M, and with a step s the derivative of ln M along it. */
+static double deflation(const mhb_found *found, double size, const double *x, const double *s,
+                        double *along) {
+  double sum = 0;
+  *along     = 0;
+  for (int f = 0; f < found->n_found; f++) {
+    const double *y      = found->x + (size_t)f * (size_t)found->n;
+    double        square = 1e-300, dot = 0;
+    for (int i = 0; i < found->n; i++) {
+      double d = (x[i] - y[i]) / size;
+      square += d * d;
+      if (s) dot += d * s[i] / size;
+    }
+    sum += log1p(1 / square);
+    *along += -2 * dot / (square * (1 + square));
+  }
+  return sum;
+}
+
+/* Newton on M r from x; 1: |r| has become small. */
+static int deflated(mhb_newton *w, mhb_residual *b, double omega, double size,
+                    const mhb_found *found, double *x) {
+  int    n = b->n;
+  double kept[n], along, unused;
+  for (int step = 0; step < MAX_STEPS; step++) {
+    mhb_residual_derive(b, x, omega, w->r, NULL);
+    double r = mhb_norm(w->r, n);
+    if (!isfinite(r)) return 0;
+    if (r <= 1e-6 * mhb_norm(x, n)) return 1;
+    memcpy(w->step, w->r, sizeof(double) * (size_t)n);
+    if (!mhb_condensed_factor(w->system, NULL, NULL) || !mhb_condensed_solve(w->system, w->step))
+      return 0;
+    double before = log(r) + deflation(found, size, x, w->step, &along);
+    double factor = 1 / (1 + along), part = 1;
+    memcpy(kept, x, sizeof kept);
+    double length = fabs(factor) * mhb_norm(w->step, n);
+    if (length > 2 * size) factor *= 2 * size / length;
+    for (int k = 0; k <= MAX_HALVINGS; k++, part *= .5) {
+      for (int i = 0; i < n; i++) x[i] = kept[i] - part * factor * w->step[i];
+      mhb_residual_evaluate(b, x, omega, w->r, NULL, NULL);
+      if (log(mhb_norm(w->r, n)) + deflation(found, size, x, NULL, &unused) < before) break;
+    }
+  }
+  return 0;
+}
+
+static int is_new(const mhb_found *found, const double *x) {
+  for (int f = 0; f < found->n_found; f++) {
+    const double *y = found->x + (size_t)f * (size_t)found->n;
+    if (distance(x, y, found->n) <= SAME * fmax(mhb_norm(x, found->n), mhb_norm(y, found->n)))
+      return 0;
+  }
+  return 1;
+}
+
+shb_status mhb_search(mhb_newton *w, mhb_residual *b, double omega, double size, int starts,
+                      unsigned long long seed, mhb_found *found) {
+  double x[b->n];
+  int    iterations;
+  SHB_TRY(mhb_newton_bind(w, b));
+  found->n = b->n;
+  for (int i = 0; i < starts; i++) {
+    draw(b, size, &seed, x);
+    if (!deflated(w, b, omega, size, found, x)) continue;
+    if (mhb_newton_solve(w, b, omega, TOLERANCE, x, &iterations) != MHB_CONVERGED) continue;
+    if (is_new(found, x)) SHB_TRY(mhb_found_add(found, b->n, x));
+  }
+  return SHB_OK;
+}
