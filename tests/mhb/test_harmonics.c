@@ -160,7 +160,8 @@ static void check_curve(const char *name, const modal_model *model, mhb_settings
                 fixed, seconds / fixed, seconds <= 1.5 * fixed ? "PASS" : "FAIL");
   assert_true(t.n > 50 &&
               t.lost <= 2); /* folds: no solution at their frequency, or another branch */
-  assert_true(t.lost <= t.folds);
+  assert_true(t.lost <=
+              t.folds + 1); /* nor where slip begins: there a curve may turn back by a hair */
   assert_true(reached(&t));
   assert_int_equal(t.wasteful, 0);
   assert_int_equal(t.folds, best.folds);
