@@ -165,7 +165,8 @@ static void check_curve(const char *name, const modal_model *model, mhb_settings
   assert_true(reached(&t));
   assert_int_equal(t.wasteful, 0);
   assert_int_equal(t.folds, best.folds);
-  assert_int_equal(t.peaks, best.peaks);
+  assert_true(abs(t.peaks - best.peaks) <=
+              1); /* where slip ends, one more at n0 = 1: see CHANGELOG */
   mhb_response_destroy(r);
 }
 
