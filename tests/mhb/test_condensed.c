@@ -14,6 +14,7 @@
 
 #include "mhb/follow.h"
 #include "tests/bench/shroud_face.h"
+#include "tests/mhb/allocations.h"
 #include "tests/mhb/random_model.h"
 #include "tests/mhb/three_degree.h"
 
@@ -24,39 +25,6 @@ static const double PI = 3.14159265358979323846;
     double v_ = (value), b_ = (bound);                                  \
     if (!(v_ <= b_)) fail_msg("%s = %.3e, above %.3e", #value, v_, b_); \
   } while (0)
-
-/* ---------------------------------------------------------------- allocations, counted by the linker's wrap */
-
-static int allocations;
-
-void *__real_malloc(size_t size);
-void *__real_calloc(size_t n, size_t size);
-void *__real_realloc(void *old, size_t size);
-void *__real_aligned_alloc(size_t alignment, size_t size);
-void *__wrap_malloc(size_t size);
-void *__wrap_calloc(size_t n, size_t size);
-void *__wrap_realloc(void *old, size_t size);
-void *__wrap_aligned_alloc(size_t alignment, size_t size);
-
-void *__wrap_malloc(size_t size) {
-  allocations++;
-  return __real_malloc(size);
-}
-
-void *__wrap_calloc(size_t n, size_t size) {
-  allocations++;
-  return __real_calloc(n, size);
-}
-
-void *__wrap_realloc(void *old, size_t size) {
-  allocations++;
-  return __real_realloc(old, size);
-}
-
-void *__wrap_aligned_alloc(size_t alignment, size_t size) {
-  allocations++;
-  return __real_aligned_alloc(alignment, size);
-}
 
 /* ---------------------------------------------------------------- the same solution */
 

@@ -11,6 +11,7 @@
 #include <cmocka.h>
 
 #include "mesh/progress.h"
+#include "tests/mhb/allocations.h"
 #include "tests/mhb/disturbed.h"
 #include "tests/mhb/periodic.h"
 #include "tests/mhb/random_model.h"
@@ -26,34 +27,6 @@ enum { N = 256, MOST = 64 };
     if (!(fabs(v_ - w_) <= t_))                                                                \
       fail_msg("%s = %.9g, not %.9g (off by %.2e > %.2e)", #value, v_, w_, fabs(v_ - w_), t_); \
   } while (0)
-
-/* Allocations by this program, counted by the linker's --wrap. */
-static long allocations;
-void       *__real_malloc(size_t size);
-void       *__real_calloc(size_t n, size_t size);
-void       *__real_realloc(void *p, size_t size);
-void       *__real_aligned_alloc(size_t alignment, size_t size);
-void       *__wrap_malloc(size_t size);
-void       *__wrap_calloc(size_t n, size_t size);
-void       *__wrap_realloc(void *p, size_t size);
-void       *__wrap_aligned_alloc(size_t alignment, size_t size);
-
-void *__wrap_malloc(size_t size) {
-  allocations++;
-  return __real_malloc(size);
-}
-void *__wrap_calloc(size_t n, size_t size) {
-  allocations++;
-  return __real_calloc(n, size);
-}
-void *__wrap_realloc(void *p, size_t size) {
-  allocations++;
-  return __real_realloc(p, size);
-}
-void *__wrap_aligned_alloc(size_t alignment, size_t size) {
-  allocations++;
-  return __real_aligned_alloc(alignment, size);
-}
 
 /* From the motion in x, and into it; a cold start where x is NULL. */
 static mhb_multipliers at(const modal_model *model, const mhb_settings *s, double w, double *x,

@@ -19,7 +19,7 @@ target_sources(test_mhb_truncation PRIVATE mhb/periodic.c mhb/random_model.c mhb
 shb_test(mhb harmonics fast shb_mhb)
 target_sources(test_mhb_harmonics PRIVATE mhb/periodic.c mhb/random_model.c mhb/three_degree.c)
 shb_test(mhb condensed fast shb_mhb)
-target_sources(test_mhb_condensed PRIVATE bench/shroud_face.c mhb/random_model.c mhb/three_degree.c)
+target_sources(test_mhb_condensed PRIVATE mhb/allocations.c bench/shroud_face.c mhb/random_model.c mhb/three_degree.c)
 target_link_options(test_mhb_condensed PRIVATE
   LINKER:--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=aligned_alloc)
 shb_test(mhb path fast shb_mhb)
@@ -28,7 +28,7 @@ shb_test(mhb response fast shb_response)
 shb_test(mhb multipliers fast shb_mhb)
 target_sources(test_mhb_multipliers PRIVATE mhb/disturbed.c mhb/periodic.c mhb/three_degree.c)
 shb_test(mhb stability fast shb_mhb)
-target_sources(test_mhb_stability PRIVATE mhb/disturbed.c mhb/periodic.c mhb/random_model.c mhb/three_degree.c)
+target_sources(test_mhb_stability PRIVATE mhb/allocations.c mhb/disturbed.c mhb/periodic.c mhb/random_model.c mhb/three_degree.c)
 target_link_options(test_mhb_stability PRIVATE
   LINKER:--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=aligned_alloc)
 shb_test(mhb judge fast shb_mhb)
