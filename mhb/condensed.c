@@ -262,6 +262,7 @@ static int same_factors(const mhb_condensed *s) {
 
 static int condense(mhb_condensed *s) {
   int old = same_factors(s), ok = 1;
+  for (int k = 0; k <= s->b->m; k++) mhb_receptance_need(s->b->receptance, k);
 #pragma omp parallel for schedule(dynamic, 1) reduction(&& : ok) if (3 * s->n_stuck >= WORTH_THREADS)
   for (int k = 0; k <= s->b->m; k++) {
     if (!old && s->n_stuck > 0) ok = ok && factor_harmonic(s, k);

@@ -350,6 +350,8 @@ static void normal_load(mhb_contact *c, const mhb_law *law, const double *motion
                         double *jacobian) {
   if (c->closed.always_closed) {
     normal_force_closed(c, law, motion, force, jacobian);
+  } else if (c->closed.always_open) {
+    force[0] = -law->balance;
   } else {
     normal_force(c, law, force, jacobian);
   }

@@ -111,16 +111,23 @@ static void set_load(mhb_receptance *r, int k, double complex phase, int sides, 
   const modal_model *model = r->model;
   int                h = k / r->nu, nc = 3 * model->n_pairs * (model->has_left ? 2 : 1);
   if (k % r->nu || h > model->n_load) return;
-  for (int i = 0; i < r->n_modes; i++)
+  for (int i = 0; i < r->n_modes; i++) {
     r->F[k * r->n_modes + i] = scale * model->modal_force[h * r->n_modes + i];
+    r->driven[k] |= r->F[k * r->n_modes + i] != 0;
+  }
   if (r->load) {
     double complex *load = r->load + (size_t)k * (size_t)r->n;
     relative(r, phase, sides, model->load_residual + (size_t)h * (size_t)nc, 1, load, 1);
-    for (int i = 0; i < r->n; i++) load[i] *= scale;
+    for (int i = 0; i < r->n; i++) {
+      load[i] *= scale;
+      r->driven[k] |= load[i] != 0;
+    }
   }
   int q = 3 * model->n_probes;
-  for (int i = 0; r->probe_load && i < q; i++)
+  for (int i = 0; r->probe_load && i < q; i++) {
     r->probe_load[k * q + i] = scale * model->probe_load_residual[h * q + i];
+    r->driven[k] |= r->probe_load[k * q + i] != 0;
+  }
 }
 
 static double *part(const mhb_receptance *r, int k, int imaginary) {
@@ -164,6 +171,8 @@ static int allocate(mhb_receptance *r) {
   r->scratch = calloc(4 * m, sizeof(double));
   r->BL      = calloc(n * m, sizeof(double complex));
   r->lambda  = calloc(K * m, sizeof(double complex));
+  r->driven  = calloc(K, sizeof(int));
+  r->made_at = calloc(K, sizeof(double));
   r->R       = calloc(K * n * n, sizeof(double complex));
   r->free    = calloc(K * n, sizeof(double complex));
   int ok     = r->T0 && r->share && r->B && r->F && r->parts && r->scratch && r->BL && r->lambda &&
@@ -224,6 +233,7 @@ shb_status mhb_receptance_create(const modal_model *model, const mhb_settings *s
   double step   = settings->to_ground ? 0 : wave_step(settings);
   size_t square = (size_t)r->n * (size_t)r->n;
   for (int k = 0; k <= n_harmonics; k++) {
+    r->made_at[k]        = NAN;
     double complex phase = cexp(-I * fmod(k * step, 2 * PI));
     set_modes(r, k, phase, sides);
     set_load(r, k, phase, sides, settings->scale);
@@ -256,6 +266,8 @@ void mhb_receptance_destroy(mhb_receptance *r) {
   free(r->scratch);
   free(r->BL);
   free(r->lambda);
+  free(r->driven);
+  free(r->made_at);
   free(r->R);
   free(r->free);
   free(r);
@@ -327,9 +339,20 @@ static void harmonic_at(mhb_receptance *r, int k) {
                 r->B + (size_t)k * (size_t)n * (size_t)m, m, &one, R, n);
 }
 
-void mhb_receptance_at(mhb_receptance *r, double omega, int top) {
+void mhb_receptance_move(mhb_receptance *r, double omega) {
   r->omega = omega;
-  for (int k = 0; k <= top; k++) harmonic_at(r, k);
+}
+
+void mhb_receptance_need(mhb_receptance *r, int k) {
+  double w = k == 0 ? 0 : r->omega; /* the mean knows no frequency */
+  if (r->made_at[k] == w) return;
+  harmonic_at(r, k);
+  r->made_at[k] = w;
+}
+
+void mhb_receptance_at(mhb_receptance *r, double omega, int top) {
+  mhb_receptance_move(r, omega);
+  for (int k = 0; k <= top; k++) mhb_receptance_need(r, k);
 }
 
 /* Modal amplitudes before L: F - B^H p. */
@@ -414,9 +437,18 @@ void mhb_receptance_probe_change(const mhb_receptance *r, int k, const double co
   }
 }
 
+/* Neither driven nor pushed at by the contact. */
+static int at_rest(const mhb_receptance *r, int k, const double complex *p) {
+  for (int i = 0; i < r->n; i++)
+    if (creal(p[i]) != 0 || cimag(p[i]) != 0) return 0;
+  return !r->driven[k];
+}
+
 void mhb_receptance_probe(const mhb_receptance *r, int k, const double complex *p,
                           double complex *motion) {
   int q = 3 * r->model->n_probes, m = r->n_modes;
+  memset(motion, 0, sizeof(double complex) * (size_t)q);
+  if (at_rest(r, k, p)) return;
   mhb_receptance_probe_change(r, k, p, p, 0, motion);
   for (int s = 0; s < q; s++) {
     for (int i = 0; i < m; i++)

@@ -31,10 +31,12 @@ typedef struct {
   double complex    *load;                       /* [k][n] residual response to the load, or NULL */
   double complex    *flexibility, *inertia;      /* [k][n][n], or NULL */
   double complex    *probe_load, *probe_contact; /* [k][3 q], [k][3 q][n], or NULL */
-  double             omega;                      /* rad/s, of mhb_receptance_at */
-  double complex    *lambda;                     /* [k][modes] */
-  double complex    *R;                          /* [k][n][n] */
-  double complex    *free;                       /* [k][n] response without contact */
+  int               *driven;                     /* [k] whether the load has this harmonic */
+  double             omega;                      /* rad/s, of mhb_receptance_move */
+  double            *made_at; /* [k] rad/s for which the arrays below were made, NAN: never */
+  double complex    *lambda;  /* [k][modes] */
+  double complex    *R;       /* [k][n][n] */
+  double complex    *free;    /* [k][n] response without contact */
 } mhb_receptance;
 
 /* Errors: SHB_ERR_INPUT psi, phi do not agree with the file's normals within a degree, load harmonic above n_harmonics
@@ -44,7 +46,13 @@ shb_status mhb_receptance_create(const modal_model *model, const mhb_settings *s
                                  int n_harmonics, mhb_receptance **receptance);
 void       mhb_receptance_destroy(mhb_receptance *receptance);
 
-/* lambda, R and free at the excitation frequency omega (rad/s), harmonics 0..top. */
+/* Go to the excitation frequency omega (rad/s). lambda, R and free of a harmonic are made when they are needed. */
+void mhb_receptance_move(mhb_receptance *receptance, double omega);
+
+/* lambda, R and free of harmonic k. Not for two threads at once. */
+void mhb_receptance_need(mhb_receptance *receptance, int k);
+
+/* Both, harmonics 0..top. */
 void mhb_receptance_at(mhb_receptance *receptance, double omega, int top);
 
 /* d/d omega of harmonic k of [free - R p] at fixed p[n]. */

@@ -89,6 +89,7 @@ double mhb_output_slope(const mhb_path *path, const mhb_path_point *point, int o
     return 2 * (a[0] * da[0] + a[1] * da[1]);
   }
   double complex p[r->n], dp[r->n], q[3 * probes], dq[3 * probes];
+  mhb_receptance_need(b->receptance, k);
   mhb_residual_force(b, k, p);
   force_change(b, point->tangent, k, dp);
   mhb_receptance_probe(r, k, p, q);

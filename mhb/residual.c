@@ -38,12 +38,13 @@ shb_status mhb_residual_create(const modal_model *model, const mhb_settings *set
   b->law            = calloc(pairs, sizeof *b->law);
   b->info           = calloc(pairs, sizeof *b->info);
   b->kind           = calloc(pairs, sizeof *b->kind);
+  b->linear_dp      = calloc(pairs, sizeof *b->linear_dp);
   b->p              = calloc((size_t)b->n, sizeof(double));
   b->dp             = calloc(pairs * block * block, sizeof(double));
   b->pk             = calloc(3 * pairs, sizeof(double complex));
   b->uk             = calloc(3 * pairs, sizeof(double complex));
   shb_status status = SHB_OK;
-  if (!(b->law && b->info && b->kind && b->p && b->dp && b->pk && b->uk))
+  if (!(b->law && b->info && b->kind && b->linear_dp && b->p && b->dp && b->pk && b->uk))
     status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for %d unknowns", b->n);
   if (status == SHB_OK) status = mhb_receptance_create(model, settings, m, &b->receptance);
   if (status == SHB_OK) status = create_contacts(b);
@@ -61,6 +62,7 @@ void mhb_residual_destroy(mhb_residual *b) {
   for (int i = 0; b->contacts && i < b->n_threads; i++) mhb_contact_destroy(b->contacts[i]);
   free(b->contacts);
   free(b->kind);
+  free(b->linear_dp);
   free(b->law);
   free(b->info);
   free(b->p);
@@ -75,8 +77,9 @@ void mhb_residual_preload(mhb_residual *b, double n0) {
   b->n0                 = n0;
   b->n_laws++;
   for (int a = 0; a < b->n_pairs; a++) {
-    double share = b->receptance->share[a];
-    b->law[a]    = (mhb_law){.mu = s->mu, .kv = share * s->kv, .n0 = share * n0};
+    double share    = b->receptance->share[a];
+    b->linear_dp[a] = -1;
+    b->law[a]       = (mhb_law){.mu = s->mu, .kv = share * s->kv, .n0 = share * n0};
     for (int i = 0; i < 3; i++) b->law[a].ku[i] = share * s->ku[i];
     if (s->preload == MHB_EQUILIBRIUM) b->law[a].balance = fmax(b->law[a].n0, 0);
   }
@@ -135,6 +138,7 @@ static void assemble_columns(const mhb_residual *b, int pair, double *jacobian) 
   double re[block], im[block];
   for (int row = 0; row < n3; row++)
     for (int k = 0; k <= b->m; k++) {
+      mhb_receptance_need(b->receptance, k);
       const double complex *R =
           b->receptance->R + ((size_t)k * (size_t)n3 + (size_t)row) * (size_t)n3 + 3 * pair;
       double *J = jacobian + first * n + row * b->nb + (k ? 2 * k - 1 : 0);
@@ -162,6 +166,8 @@ static void linear_derivative(const mhb_residual *b, int a) {
   const mhb_law *law = &b->law[a];
   size_t         nb = (size_t)b->nb, block = 3 * nb;
   double        *d = b->dp + (size_t)a * block * block;
+  if (b->linear_dp[a] == (int)b->kind[a]) return;
+  b->linear_dp[a] = (int)b->kind[a];
   memset(d, 0, sizeof(double) * block * block);
   if (b->kind[a] == MHB_PAIR_OPEN) return;
   for (size_t i = 0; i < nb; i++) d[i * block + i] = law->kv;
@@ -186,7 +192,8 @@ static void evaluate_pair(mhb_residual *b, mhb_contact *contact, const double *x
   }
   if (b->kind[a] == MHB_PAIR_MOVING) {
     mhb_contact_force(contact, &b->law[a], x + at, b->p + at, dp, &b->info[a]);
-    b->kind[a] = kind_of(b, a);
+    b->linear_dp[a] = -1;
+    b->kind[a]      = kind_of(b, a);
   }
   if (b->kind[a] != MHB_PAIR_MOVING) linear_derivative(b, a);
 }
@@ -195,6 +202,13 @@ static void evaluate_pairs(mhb_residual *b, const double *x, int derivative) {
 #pragma omp parallel for schedule(dynamic, 1) num_threads(b->n_threads) if (b->n_threads > 1)
   for (int a = 0; a < b->n_pairs; a++)
     evaluate_pair(b, b->contacts[omp_get_thread_num()], x, a, derivative);
+}
+
+/* Harmonic k neither drives the contact nor is pushed at by it: its receptance does not matter. */
+static int at_rest(const mhb_residual *b, int k) {
+  for (int i = 0; i < 3 * b->n_pairs; i++)
+    if (creal(b->pk[i]) != 0 || cimag(b->pk[i]) != 0) return 0;
+  return !b->receptance->driven[k];
 }
 
 /* uk <- uk - free + R_k pk */
@@ -215,16 +229,20 @@ static void balance(const mhb_residual *b, int k) {
 
 static void evaluate(mhb_residual *b, const double *x, double omega, int derivative, double *r,
                      double *slope) {
-  mhb_receptance_at(b->receptance, omega, b->m);
+  mhb_receptance_move(b->receptance, omega);
   evaluate_pairs(b, x, derivative);
   for (int k = 0; k <= b->m; k++) {
     harmonic(b, b->p, k, b->pk);
     harmonic(b, x, k, b->uk);
-    balance(b, k);
+    int rest = at_rest(b, k);
+    if (!rest) {
+      mhb_receptance_need(b->receptance, k);
+      balance(b, k);
+    }
     store(b, r, k, b->uk);
     if (!slope) continue;
-    mhb_receptance_slope(b->receptance, k, b->pk, b->uk);
-    for (int i = 0; i < 3 * b->n_pairs; i++) b->uk[i] = -b->uk[i];
+    if (!rest) mhb_receptance_slope(b->receptance, k, b->pk, b->uk);
+    for (int i = 0; i < 3 * b->n_pairs; i++) b->uk[i] = rest ? 0 : -b->uk[i];
     store(b, slope, k, b->uk);
   }
 }

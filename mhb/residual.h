@@ -28,9 +28,10 @@ typedef struct {
   double              n0;                /* total preload, N */
   double             *p;                 /* [n] force in real form, as x */
   double             *dp;                /* [pair][3 nb][3 nb] */
-  mhb_pair_kind      *kind;              /* [pair] of the last evaluation with derivatives */
-  int                 n_laws;            /* counts changes of law */
-  double complex     *pk, *uk;           /* [3 pairs] one harmonic */
+  int                *linear_dp; /* [pair] kind whose derivative dp holds, -1: another one */
+  mhb_pair_kind      *kind;      /* [pair] of the last evaluation with derivatives */
+  int                 n_laws;    /* counts changes of law */
+  double complex     *pk, *uk;   /* [3 pairs] one harmonic */
 } mhb_residual;
 
 shb_status mhb_residual_create(const modal_model *model, const mhb_settings *settings,

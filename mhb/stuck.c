@@ -88,8 +88,8 @@ static int smallest_in(const disc d[3], int n, double slack, double c[2], int ba
 }
 
 /* The largest violation on the grid, to a factor of sqrt 2: |c + f| - r = (|c + f|^2 - r^2)/(|c + f| + r), with the
- * 1-norm in the denominator. */
-MHB_HOT static int worst_on_grid(const discs *set, const double c[2]) {
+ * 1-norm in the denominator. *size: it, nearer to zero than the true one. */
+MHB_HOT static int worst_on_grid(const discs *set, const double c[2], double *size_of) {
   const mhb_signals *s = set->signals;
   double a0 = c[0] - s->coefficient[1], b0 = c[1] - s->coefficient[2], mu2 = set->mu * set->mu;
   double worst = -INFINITY;
@@ -105,14 +105,24 @@ MHB_HOT static int worst_on_grid(const discs *set, const double c[2]) {
     for (int l = 0; l < MHB_LANES; l++)
       if (v[l] == top) at = i + l;
   }
+  *size_of = worst;
   return at;
+}
+
+/* How far |c + f| - mu n can rise above its values at both ends of a cell: |c + f| is convex along a line, and h^2/8 of the
+ * second derivatives bounds how far f and n are off theirs. */
+static double rise_in_cell(const discs *set) {
+  const mhb_signals *s = set->signals;
+  double             h = TWO_PI / s->n_grid;
+  return h * h / 8 * (hypot(s->bound[1][2], s->bound[2][2]) + set->mu * s->bound[0][2]);
 }
 
 /* Index of a disc that is violated, the worst one of the grid or of the refined times, and its violation. */
 static int worst_disc(const discs *set, const double c[2], double *worst) {
-  int  n = set->signals->n_grid, at = worst_on_grid(set, c);
-  disc d = disc_at(set, at);
-  *worst = violation(&d, c);
+  double about;
+  int    n = set->signals->n_grid, at = worst_on_grid(set, c, &about);
+  disc   d = disc_at(set, at);
+  *worst   = violation(&d, c);
   for (int i = n; i < n + set->n_extra; i++) {
     double v = violation(&set->extra[i - n], c);
     if (v <= *worst) continue;
@@ -178,11 +188,13 @@ static double scan(const discs *set, const double c[2], double t, double width) 
 /* Add refined times of local maxima that violate; the number added. */
 static int add_violated(discs *set, const double c[2]) {
   int    n = set->signals->n_grid, added = 0;
-  double width = TWO_PI / n;
-  for (int i = 0; i < n && set->n_extra < EXTRA; i++) {
-    disc left = disc_at(set, (i + n - 1) % n), mid = disc_at(set, i),
-         right  = disc_at(set, (i + 1) % n);
+  double width = TWO_PI / n, enough = -rise_in_cell(set), most;
+  worst_on_grid(set, c, &most);
+  for (int i = 0; i < n && set->n_extra < EXTRA && most >= enough; i++) {
+    disc   mid  = disc_at(set, i);
     double here = violation(&mid, c);
+    if (here < enough) continue;
+    disc left = disc_at(set, (i + n - 1) % n), right = disc_at(set, (i + 1) % n);
     if (here < violation(&left, c) || here < violation(&right, c)) continue;
     double v[3], dv[3], t = refine(set, c, scan(set, c, mid.t, width), .5 * width);
     mhb_signals_at(set->signals, t, v, dv, NULL);

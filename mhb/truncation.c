@@ -101,7 +101,8 @@ static void stiffness(const mhb_residual *b, int pair, double complex D[3][3]) {
 
 /* A <- I + R_k D, column-major. */
 static void fill(mhb_truncation *t, int k) {
-  int                   n = 3 * t->narrow->n_pairs;
+  int n = 3 * t->narrow->n_pairs;
+  mhb_receptance_need(t->beyond->receptance, k);
   const double complex *R = t->beyond->receptance->R + (size_t)k * (size_t)n * (size_t)n;
   for (int pair = 0; pair < t->narrow->n_pairs; pair++) {
     double complex D[3][3];
