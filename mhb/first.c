@@ -9,7 +9,7 @@ enum { MAX_STAGES = 200 };
 /* Natural continuation of the preload from one whose linear limit x solves, to the one asked for. */
 static mhb_reason homotopy(mhb_newton *newton, mhb_residual *b, double omega, double tolerance,
                            double from, double *x) {
-  double     to = b->n0, part = 0, step = .25;
+  double     to = b->at.n0, part = 0, step = .25;
   double     kept[b->n];
   mhb_reason reason = MHB_MAX_ITERATIONS;
   for (int i = 0; i < MAX_STAGES && part < 1 && step > 1e-5; i++) {
@@ -33,9 +33,9 @@ static mhb_reason homotopy(mhb_newton *newton, mhb_residual *b, double omega, do
 
 /* A preload beyond which the linear limit holds: no motion of size x can open it, or close it. */
 static double far_preload(const mhb_residual *b, const double *x, int stuck) {
-  double size = mhb_norm(x, b->n), mu = fmax(b->settings->mu, 1e-6);
-  double friction = (fabs(b->settings->ku[0]) + fabs(b->settings->ku[2])) / mu;
-  double reach    = 4 * size * (b->settings->kv + (stuck ? friction : 0)) + fabs(b->n0);
+  double size = mhb_norm(x, b->n), mu = fmax(b->at.mu, 1e-6);
+  double friction = (fabs(b->at.ku[0]) + fabs(b->at.ku[2])) / mu;
+  double reach    = 4 * size * (b->at.kv + (stuck ? friction : 0)) + fabs(b->at.n0);
   return stuck ? reach : -reach;
 }
 
@@ -43,7 +43,7 @@ static double far_preload(const mhb_residual *b, const double *x, int stuck) {
 static mhb_reason solve_here(mhb_newton *newton, mhb_residual *b, double omega, double tolerance,
                              double *x, int *iterations) {
   mhb_reason reason   = MHB_MAX_ITERATIONS;
-  double     n0       = b->n0;
+  double     n0       = b->at.n0;
   int        order[2] = {n0 > 0, n0 <= 0}; /* the likelier limit first */
   for (int i = 0; i < 2; i++) {
     if (mhb_residual_linear(b, omega, order[i], x) != SHB_OK) continue;
@@ -77,8 +77,8 @@ static int follow_to(mhb_residual *b, double from, double to, double *x) {
   return outcome == wanted;
 }
 
-mhb_reason mhb_first_solution(mhb_newton *newton, mhb_residual *b, double omega, double tolerance,
-                              double *x, int *iterations) {
+static mhb_reason by_frequency(mhb_newton *newton, mhb_residual *b, double omega, double tolerance,
+                               double *x, int *iterations) {
   static const double elsewhere[] = {.98, 1.02, .95, 1.05, .9, 1.1, .8, .6};
   mhb_reason          reason      = solve_here(newton, b, omega, tolerance, x, iterations);
   for (int i = 0; i < 8 && reason != MHB_CONVERGED; i++) {
@@ -87,5 +87,16 @@ mhb_reason mhb_first_solution(mhb_newton *newton, mhb_residual *b, double omega,
     if (!follow_to(b, from, omega, x)) continue;
     reason = mhb_newton_solve(newton, b, omega, tolerance, x, iterations);
   }
+  return reason;
+}
+
+/* The parameter stands; a first solution is sought as if the frequency were followed. */
+mhb_reason mhb_first_solution(mhb_newton *newton, mhb_residual *b, double value, double tolerance,
+                              double *x, int *iterations) {
+  mhb_parameter parameter = b->parameter;
+  mhb_residual_place(b, value);
+  mhb_residual_follow(b, MHB_IN_FREQUENCY);
+  mhb_reason reason = by_frequency(newton, b, b->at.omega, tolerance, x, iterations);
+  mhb_residual_follow(b, parameter);
   return reason;
 }

@@ -10,8 +10,6 @@
 #include "mhb/judge.h"
 #include "mhb/record.h"
 
-static const double PI = 3.14159265358979323846;
-
 /* A path whose steps stay below CRAWL this often is as good as stalled. */
 static const double CRAWL = 2e-3;
 enum { MAX_CRAWL = 150, MAX_GAPS = 8, MAX_BEGINS = 64 };
@@ -29,7 +27,7 @@ typedef struct {
   double        *before, *after; /* [outputs] slopes of the amplitudes at now and next */
   double        *x;              /* [n] a first solution */
   double         clock;
-  double         farthest;       /* rad/s, highest frequency reached */
+  double         farthest;       /* highest value of the parameter reached */
   int            crawling, gaps; /* tiny steps in a row; places jumped over */
   char           first_gap[96];
   int            first[MAX_BEGINS], n_first; /* where the curve begins, and begins anew */
@@ -91,7 +89,7 @@ static int list_events(const follower *f, event *list) {
 /* Leave the residual's workspace at a point that was corrected earlier. */
 static void revisit(follower *f, const mhb_path_point *point) {
   mhb_newton *w = f->path->newton;
-  mhb_residual_derive(f->residual, point->x, point->omega, w->r, NULL);
+  mhb_residual_derive(f->residual, point->x, point->value, w->r, NULL);
 }
 
 /* Leaves the residual's workspace at next, as mhb_path_step did. */
@@ -159,16 +157,16 @@ static shb_status sufficient_start(follower *f) {
   }
 }
 
-/* Start, or start again, from a solution at omega. */
-static shb_status begin(follower *f, double omega, bool *found, bool *go_on) {
+/* Start, or start again, from a solution at a value of the parameter. */
+static shb_status begin(follower *f, double value, bool *found, bool *go_on) {
   mhb_path  *path = f->path;
   int        iterations;
   mhb_reason reason =
-      mhb_first_solution(path->newton, f->residual, omega, path->tolerance, f->x, &iterations);
-  if (reason == MHB_CONVERGED) reason = mhb_path_start(path, f->x, omega, 1);
+      mhb_first_solution(path->newton, f->residual, value, path->tolerance, f->x, &iterations);
+  if (reason == MHB_CONVERGED) reason = mhb_path_start(path, f->x, value, 1);
   *found = reason == MHB_CONVERGED;
   if (!*found) return SHB_OK;
-  f->farthest = fmax(f->farthest, omega);
+  f->farthest = fmax(f->farthest, value);
   f->crawling = 0;
   begin_anew(f);
   slopes(f, &path->now, f->before);
@@ -179,15 +177,17 @@ static shb_status begin(follower *f, double omega, bool *found, bool *go_on) {
 /* The curve goes on beyond a place that cannot be passed; the reason will tell. */
 static shb_status skip(follower *f, const char *why, bool *found, bool *go_on) {
   static const double further[] = {1e-3, 3e-3, 1e-2, 3e-2, .1};
+  mhb_parameter       parameter = f->residual->parameter;
   double              from = f->farthest, span = f->path->high - f->path->low;
   *found = false;
   if (f->gaps == 0)
-    snprintf(f->first_gap, sizeof f->first_gap, "%s at %.6g Hz", why, from / (2 * PI));
+    snprintf(f->first_gap, sizeof f->first_gap, "%s at %.6g %s", why,
+             mhb_parameter_shown(parameter, from), mhb_parameter_unit(parameter));
   if (f->gaps++ == MAX_GAPS) return SHB_OK;
   for (int i = 0; i < 5 && !*found; i++) {
-    double omega = from + further[i] * span;
-    if (omega >= f->path->high) break;
-    SHB_TRY(begin(f, omega, found, go_on));
+    double value = from + further[i] * span;
+    if (value >= f->path->high) break;
+    SHB_TRY(begin(f, value, found, go_on));
   }
   return SHB_OK;
 }
@@ -216,7 +216,7 @@ static shb_status step(follower *f, bool *go_on, const char **end) {
     SHB_TRY(record_events(f, go_on));
     if (!*go_on) return SHB_OK;
     SHB_TRY(record(f, &path->next, MHB_ORDINARY, go_on));
-    f->farthest = fmax(f->farthest, path->next.omega);
+    f->farthest = fmax(f->farthest, path->next.value);
   }
   if (outcome == MHB_PATH_AT_END) *end = "end of range";
   if (*end || !*go_on) return SHB_OK;
@@ -249,13 +249,13 @@ static const char *run(follower *f, int max_points, shb_status *status) {
   return go_on ? end : "interrupted";
 }
 
-/* A pair of folds that spans less than 1e-5 of the frequency is no jump that anyone could observe: not marked. */
+/* A pair of folds that spans less than 1e-5 of the value is no jump that anyone could observe: not marked. */
 static void drop_hairlines(mhb_branch *branch) {
   int last = -1;
   for (int i = 0; i < branch->n_points; i++) {
     if (branch->special[i] != MHB_FOLD) continue;
-    double width = last < 0 ? INFINITY : fabs(branch->frequency[i] - branch->frequency[last]);
-    if (width < 1e-5 * branch->frequency[i]) {
+    double width = last < 0 ? INFINITY : fabs(branch->value[i] - branch->value[last]);
+    if (width < 1e-5 * fabs(branch->value[i])) {
       branch->special[i] = branch->special[last] = MHB_ORDINARY;
       last                                       = -1;
     } else {
@@ -279,9 +279,9 @@ static void lock_judge(mhb_judge_host *host, bool locked) {
   f->monitor->lock(f->monitor, locked);
 }
 
-static bool judged(mhb_judge_host *host, double omega) {
+static bool judged(mhb_judge_host *host, double value) {
   follower      *f     = (follower *)host;
-  mhb_path_point point = {.omega = omega};
+  mhb_path_point point = {.value = value};
   return f->monitor->point(f->monitor, f->branch, &point);
 }
 
@@ -360,7 +360,7 @@ shb_status mhb_follow(mhb_residual *residual, mhb_response *response, int branch
                                 .monitor   = monitor,
                                 .n_outputs = mhb_outputs(residual),
                                 .clock     = shb_seconds(),
-                                .farthest  = 2 * PI * s->frequency[0]};
+                                .farthest  = mhb_parameter_end(s, residual->parameter, 0)};
   shb_status          status = create(&f);
   if (status == SHB_OK) {
     const char *why = run(&f, s->max_points, &status);

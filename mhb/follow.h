@@ -23,8 +23,8 @@ shb_status mhb_follow(mhb_residual *residual, mhb_response *response, int branch
 /* The open or stuck limit, sampled until linear interpolation of every output is within .2 % of its local value. */
 shb_status mhb_follow_linear(mhb_residual *residual, mhb_response *response, int branch);
 
-/* A solution at omega from nothing: the open and stuck limits, zero, then homotopy in the preload from both sides. */
-mhb_reason mhb_first_solution(mhb_newton *newton, mhb_residual *residual, double omega,
+/* A solution at a value of the parameter from nothing: the open and stuck limits, zero, then homotopy in the preload from both sides. */
+mhb_reason mhb_first_solution(mhb_newton *newton, mhb_residual *residual, double value,
                               double tolerance, double *x, int *iterations);
 
 #endif

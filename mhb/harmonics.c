@@ -4,8 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double PI = 3.14159265358979323846;
-
 /* Of the tolerance: what an estimate may be; what a lower rung must promise; error of the first-order estimate. */
 static const double SAFETY = .7, PROMISE = .35, FIRST_ORDER = 3;
 
@@ -57,13 +55,16 @@ static shb_status rung_create(const mhb_harmonics *h, int m, mhb_residual *resid
   r->owned              = !residual;
   shb_status status     = SHB_OK;
   if (!residual) status = mhb_residual_create(h->model, &r->settings, &r->residual);
+  if (status == SHB_OK && !residual) {
+    mhb_residual_condition(r->residual, &h->at_start);
+    mhb_residual_follow(r->residual, h->parameter);
+  }
   if (status == SHB_OK) status = mhb_truncation_create(r->residual, &r->truncation);
   if (status == SHB_OK) status = mhb_path_create(r->residual, h->low, h->high, &r->path);
   if (status != SHB_OK) {
     rung_destroy(r);
     return status;
   }
-  mhb_residual_preload(r->residual, h->n0);
   *out = r;
   return SHB_OK;
 }
@@ -71,12 +72,13 @@ static shb_status rung_create(const mhb_harmonics *h, int m, mhb_residual *resid
 shb_status mhb_harmonics_create(mhb_residual *residual, mhb_harmonics **out) {
   mhb_harmonics *h = calloc(1, sizeof *h);
   SHB_CHECK(h, SHB_ERR_IO, "out of memory");
-  h->settings = residual->settings;
-  h->model    = residual->receptance->model;
-  h->low      = 2 * PI * h->settings->frequency[0];
-  h->high     = 2 * PI * h->settings->frequency[1];
-  h->n0       = residual->n0;
-  h->n        = mhb_harmonics_ladder(h->model, h->settings, h->m);
+  h->settings  = residual->settings;
+  h->model     = residual->receptance->model;
+  h->at_start  = residual->at;
+  h->parameter = residual->parameter;
+  h->low       = mhb_parameter_end(h->settings, h->parameter, 0);
+  h->high      = mhb_parameter_end(h->settings, h->parameter, 1);
+  h->n         = mhb_harmonics_ladder(h->model, h->settings, h->m);
   while (h->at + 1 < h->n && h->m[h->at] < residual->m) h->at++;
   h->m[h->at] = residual->m;
   h->highest = h->wanted = h->at;
@@ -149,7 +151,7 @@ int mhb_harmonics_most_unknowns(const mhb_harmonics *h) {
 
 void mhb_harmonics_errors(mhb_harmonics *h, mhb_path_point *point) {
   mhb_rung *r            = mhb_harmonics_rung(h);
-  point->truncation      = mhb_truncation_error(r->truncation, point->x, point->omega);
+  point->truncation      = mhb_truncation_error(r->truncation, point->x);
   point->modal           = mhb_modal_error(r->residual, point->x);
   point->truncation_kind = r->truncation->kind;
 }
@@ -193,7 +195,7 @@ mhb_reason mhb_harmonics_move(mhb_harmonics *h, int rung, int step) {
     for (int i = 0; i < wide && i < b->nb; i++)
       x[row * b->nb + i] += from->truncation->step[row * wide + i];
   mhb_reason reason =
-      mhb_path_start(to->path, x, now->omega, now->tangent[from->path->n] < 0 ? -1 : 1);
+      mhb_path_start(to->path, x, now->value, now->tangent[from->path->n] < 0 ? -1 : 1);
   if (reason != MHB_CONVERGED) return reason;
   double away = 0, size = mhb_norm(near, b->n);
   for (int i = 0; i < b->n; i++) away = fmax(away, fabs(to->path->now.x[i] - near[i]));

@@ -26,7 +26,9 @@ typedef struct {
 typedef struct {
   const modal_model  *model;
   const mhb_settings *settings;
-  double              low, high, n0; /* rad/s, N */
+  double              low, high; /* of the parameter followed */
+  mhb_parameter       parameter;
+  mhb_condition       at_start;
   int                 n, m[MHB_MAX_RUNGS];
   mhb_rung           *rung[MHB_MAX_RUNGS]; /* NULL until first needed */
   int                 at, highest;         /* the rung in use; the highest used so far */
@@ -40,7 +42,7 @@ typedef struct {
 int mhb_harmonics_ladder(const modal_model *model, const mhb_settings *settings,
                          int m[MHB_MAX_RUNGS]);
 
-/* Beginning at the given residual, whose settings and preload are used and which must outlive it. Makes one rung: not thread
+/* Beginning at the given residual, whose settings, condition and parameter are used and which must outlive it. Makes one rung: not thread
  * safe (FFTW's planner). Errors: SHB_ERR_IO no memory. */
 shb_status mhb_harmonics_create(mhb_residual *residual, mhb_harmonics **harmonics);
 void       mhb_harmonics_destroy(mhb_harmonics *harmonics);

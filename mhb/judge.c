@@ -6,8 +6,6 @@
 
 #include "mesh/progress.h"
 
-static const double PI = 3.14159265358979323846;
-
 /* Up to CHEAP states every point is judged, up to FINE those that the budget a branch allows, by the measured cost; above that
  * with fewer modes and sub-steps. */
 enum {
@@ -104,14 +102,14 @@ static void take_motion(const mhb_judge *j, int point, double *x) {
     }
 }
 
-static double omega_of(const mhb_judge *j, int point) {
-  return 2 * PI * branch_of(j)->frequency[point];
+static double value_of(const mhb_judge *j, int point) {
+  return mhb_parameter_value(j->residual->parameter, branch_of(j)->value[point]);
 }
 
 /* Multipliers at the solution that the residual was last evaluated at. */
-static void evaluate(mhb_judge *j, const double *x, double omega, mhb_multipliers *out) {
+static void evaluate(mhb_judge *j, const double *x, mhb_multipliers *out) {
   const mhb_residual *b        = j->residual;
-  mhb_solution        solution = {omega, b->law, b->info, x, b->p};
+  mhb_solution        solution = {b->at.omega, b->law, b->info, x, b->p};
   mhb_stability_evaluate(j->stability, &solution, out);
 }
 
@@ -151,15 +149,15 @@ static void put(const mhb_judge *j, int point, const mhb_multipliers *m) {
 /* false: the host wants to stop. */
 static bool judge_point(mhb_judge *j, int point) {
   mhb_multipliers m;
-  double          started = shb_seconds(), omega = omega_of(j, point);
+  double          started = shb_seconds(), value = value_of(j, point);
   take_motion(j, point, j->x);
-  mhb_residual_evaluate(j->residual, j->x, omega, j->r, NULL, NULL);
-  evaluate(j, j->x, omega, &m);
+  mhb_residual_evaluate(j->residual, j->x, value, j->r, NULL, NULL);
+  evaluate(j, j->x, &m);
   j->look[point] = look_of(&m);
   j->host->lock(j->host, true);
   put(j, point, &m);
   branch_of(j)->seconds[point] += shb_seconds() - started;
-  bool go_on = j->host->point(j->host, omega);
+  bool go_on = j->host->point(j->host, value);
   j->host->lock(j->host, false);
   return go_on;
 }
@@ -242,7 +240,7 @@ typedef struct {
 static double swing_indicator(const mhb_path *path, const mhb_path_point *point, void *context) {
   search *s = context;
   (void)path;
-  evaluate(s->judge, point->x, point->omega, &s->last);
+  evaluate(s->judge, point->x, &s->last);
   s->look = look_of(&s->last);
   return fabs(s->look.swing) < NEAR_ENOUGH ? 0 : s->look.swing;
 }
@@ -254,8 +252,8 @@ static shb_status locate(mhb_judge *j, int i) {
   double    at;
   take_motion(j, i - 1, path->now.x);
   take_motion(j, i, path->next.x);
-  path->now.omega  = omega_of(j, i - 1);
-  path->next.omega = omega_of(j, i);
+  path->now.value  = value_of(j, i - 1);
+  path->next.value = value_of(j, i);
   if (!mhb_path_locate(path, swing_indicator, &s, j->look[i - 1].swing, j->look[i].swing, &at) ||
       !(fabs(s.look.swing) < ON_CIRCLE))
     return SHB_OK;

@@ -21,7 +21,7 @@ struct mhb_judge_host {
   /* Called before (true) and after (false) the branch's arrays are written. */
   void (*lock)(mhb_judge_host *host, bool locked);
   /* After each point, locked; false: stop. */
-  bool (*point)(mhb_judge_host *host, double omega);
+  bool (*point)(mhb_judge_host *host, double value);
 };
 
 typedef struct mhb_judge mhb_judge; /* workspace; one a thread */

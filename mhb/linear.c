@@ -8,7 +8,7 @@
 #include "mhb/record.h"
 #include "mhb/truncation.h"
 
-static const double PI = 3.14159265358979323846, TOLERANCE = 2e-3;
+static const double TOLERANCE = 2e-3;
 
 typedef struct {
   mhb_residual *residual;
@@ -17,12 +17,12 @@ typedef struct {
   double       *x, *r;
 } sampler;
 
-/* Amplitudes of all outputs at omega; leaves the residual's forces there. */
-static shb_status amplitudes(sampler *s, double omega, double *out) {
+/* Amplitudes of all outputs at a value of the parameter; leaves the residual's forces there. */
+static shb_status amplitudes(sampler *s, double value, double *out) {
   mhb_residual         *b      = s->residual;
   const mhb_receptance *r      = b->receptance;
   int                   probes = r->model->n_probes, k = r->nu <= b->m ? r->nu : b->m;
-  SHB_TRY(mhb_residual_linear(b, omega, s->stuck, s->x));
+  SHB_TRY(mhb_residual_linear(b, value, s->stuck, s->x));
   double complex p[r->n], q[3 * probes + 1];
   mhb_residual_force(b, k, p);
   mhb_receptance_probe(r, k, p, q);
@@ -38,16 +38,16 @@ static shb_status amplitudes(sampler *s, double omega, double *out) {
   return SHB_OK;
 }
 
-static shb_status record(sampler *s, double omega) {
+static shb_status record(sampler *s, double value) {
   double unused[s->n_outputs + 1];
   double started = shb_seconds();
-  SHB_TRY(amplitudes(s, omega, unused));
+  SHB_TRY(amplitudes(s, value, unused));
   for (int a = 0; a < s->residual->n_pairs; a++) {
     mhb_contact_info *info = &s->residual->info[a];
     memset(info, 0, offsetof(mhb_contact_info, transition));
     info->share[s->stuck ? MHB_STICK : MHB_SEPARATE] = 1;
   }
-  mhb_path_point point = {.x = s->x, .omega = omega};
+  mhb_path_point point = {.x = s->x, .value = value};
   point.modal          = mhb_modal_error(s->residual, s->x);
   SHB_TRY(mhb_record(s->response, s->branch, s->residual, &point, MHB_ORDINARY,
                      shb_seconds() - started));
@@ -72,25 +72,27 @@ static shb_status refine(sampler *s, double lo, const double *at_lo, double hi, 
   return refine(s, mid, at_mid, hi, at_hi, depth - 1);
 }
 
-/* First grid: a quarter of the narrowest half-power width, within reason. */
+/* First grid: in frequency a quarter of the narrowest half-power width, within reason. */
 static int first_grid(const mhb_residual *b) {
   const modal_model *model = b->receptance->model;
   const double      *f     = b->settings->frequency;
   double             least = .1;
+  if (b->parameter != MHB_IN_FREQUENCY) return 32;
   for (int i = 0; i < model->n_modes; i++) least = fmin(least, model->damping_ratio[i]);
   double wanted = 4 * (f[1] - f[0]) / fmax(2 * least * f[0], 1e-3 * (f[1] - f[0]));
   return (int)fmax(32, fmin(800, wanted));
 }
 
 static shb_status sample(sampler *s) {
-  const double *f    = s->residual->settings->frequency;
-  int           grid = first_grid(s->residual);
-  double        lo = 2 * PI * f[0], step = 2 * PI * (f[1] - f[0]) / grid;
-  double        at_lo[s->n_outputs + 1], at_hi[s->n_outputs + 1];
+  const mhb_residual *b    = s->residual;
+  int                 grid = first_grid(b);
+  double              from = mhb_parameter_end(b->settings, b->parameter, 0), lo = from;
+  double              to = mhb_parameter_end(b->settings, b->parameter, 1);
+  double              at_lo[s->n_outputs + 1], at_hi[s->n_outputs + 1];
   SHB_TRY(amplitudes(s, lo, at_lo));
   SHB_TRY(record(s, lo));
   for (int i = 1; i <= grid; i++) {
-    double hi = i == grid ? 2 * PI * f[1] : 2 * PI * f[0] + i * step;
+    double hi = i == grid ? to : from + i * ((to - from) / grid);
     SHB_TRY(amplitudes(s, hi, at_hi));
     SHB_TRY(refine(s, lo, at_lo, hi, at_hi, 8));
     SHB_TRY(record(s, hi));

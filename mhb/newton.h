@@ -1,4 +1,4 @@
-/* Newton's method on the balance of harmonics at a fixed frequency, with a line search. */
+/* Newton's method on the balance of harmonics at a fixed value of the parameter, with a line search. */
 #ifndef MHB_NEWTON_H
 #define MHB_NEWTON_H
 
@@ -27,8 +27,8 @@ void       mhb_newton_destroy(mhb_newton *newton);
 /* Make the linear system of a residual of n unknowns, unless it is there. SHB_ERR_IO: no memory. */
 shb_status mhb_newton_bind(mhb_newton *newton, const mhb_residual *residual);
 
-/* Solve r(x, omega) = 0 from x: |r| <= tolerance max(|x|, floor). *iterations counts Newton steps. */
-mhb_reason mhb_newton_solve(mhb_newton *newton, mhb_residual *residual, double omega,
+/* Solve r(x, value) = 0 from x: |r| <= tolerance max(|x|, floor). *iterations counts Newton steps. */
+mhb_reason mhb_newton_solve(mhb_newton *newton, mhb_residual *residual, double value,
                             double tolerance, double *x, int *iterations);
 
 double mhb_norm(const double *x, int n);

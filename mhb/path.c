@@ -38,6 +38,7 @@ shb_status mhb_path_create(mhb_residual *residual, double low, double high, mhb_
   path->low       = low;
   path->high      = high;
   path->span      = high - low;
+  path->least     = mhb_parameter_least(residual->parameter);
   path->longest   = LONGEST_STEP;
   path->tolerance = 1e-10;
   path->chord     = calloc((size_t)n + 1, sizeof(double));
@@ -69,20 +70,26 @@ static double span(const mhb_path *path) {
   return path->span;
 }
 
+/* What a change of the parameter is compared with. */
+static double size_of(const mhb_path *path) {
+  double size = fabs(path->now.value);
+  return path->residual->parameter == MHB_IN_FREQUENCY ? size : fmax(size, path->span);
+}
+
 /* Length unit of x: the size of the current point. */
 static double unit(const mhb_path *path) {
   double size = mhb_norm(path->now.x, path->n);
   return size > 0 ? size : 1;
 }
 
-/* Inner product of two (dx, domega) in y. */
+/* Inner product of two (dx, dvalue) in y. */
 static double inner(const mhb_path *path, double scale, const double *a, const double *b) {
   double sum = a[path->n] * b[path->n] / (span(path) * span(path));
   for (int i = 0; i < path->n; i++) sum += (a[i] / scale) * (b[i] / scale);
   return sum;
 }
 
-/* Factor [J, r_omega; normal] in scaled columns; 0 if singular. */
+/* Factor [J, r_value; normal] in scaled columns; 0 if singular. */
 static int factor_bordered(const mhb_path *path, double scale, const double *normal) {
   mhb_newton *w  = path->newton;
   int         n  = path->n;
@@ -99,7 +106,7 @@ static int solve_bordered(const mhb_path *path, double *rhs) {
 
 static void evaluate(mhb_path *path, const mhb_path_point *point) {
   mhb_newton *w = path->newton;
-  mhb_residual_derive(path->residual, point->x, point->omega, w->r, w->slope);
+  mhb_residual_derive(path->residual, point->x, point->value, w->r, w->slope);
 }
 
 /* Evaluate, and note the relative residual. */
@@ -113,7 +120,7 @@ static void measure(mhb_path *path, mhb_path_point *point) {
 static void move(const mhb_path *path, double fraction, double scale, mhb_path_point *point) {
   const double *step = path->newton->step;
   for (int i = 0; i < path->n; i++) point->x[i] += fraction * scale * step[i];
-  point->omega += fraction * span(path) * step[path->n];
+  point->value += fraction * span(path) * step[path->n];
 }
 
 /* Evaluate at point; halve the last move (cut) while the residual grows. 0: not finite. */
@@ -144,12 +151,12 @@ static int correct(mhb_path *path, const double *normal, double clip, mhb_path_p
     double length = mhb_norm(w->step, n + 1);
     cut           = length > clip ? clip / length : 1;
     move(path, cut, scale, point);
-    if (!(point->omega > 0)) return 0;
+    if (!(point->value >= path->least)) return 0;
   }
   return 0;
 }
 
-/* Tangent at a point the workspace is at: [J r_omega; along] t = [0; 1], scaled to unit length. */
+/* Tangent at a point the workspace is at: [J r_value; along] t = [0; 1], scaled to unit length. */
 static int set_tangent(mhb_path *path, const double *along, mhb_path_point *point) {
   mhb_newton *w     = path->newton;
   int         n     = path->n;
@@ -166,11 +173,11 @@ static int set_tangent(mhb_path *path, const double *along, mhb_path_point *poin
   return 1;
 }
 
-mhb_reason mhb_path_start(mhb_path *path, const double *x, double omega, int direction) {
+mhb_reason mhb_path_start(mhb_path *path, const double *x, double value, int direction) {
   memcpy(path->now.x, x, sizeof(double) * (size_t)path->n);
-  path->now.omega   = omega;
+  path->now.value   = value;
   path->step        = FIRST_STEP;
-  mhb_reason reason = mhb_newton_solve(path->newton, path->residual, omega, path->tolerance,
+  mhb_reason reason = mhb_newton_solve(path->newton, path->residual, value, path->tolerance,
                                        path->now.x, &path->now.iterations);
   if (reason != MHB_CONVERGED) return reason;
   measure(path, &path->now);
@@ -186,7 +193,7 @@ mhb_reason mhb_path_start(mhb_path *path, const double *x, double omega, int dir
 /* next <- now + ds tangent, corrected. */
 static int attempt(mhb_path *path, double ds) {
   for (int i = 0; i < path->n; i++) path->next.x[i] = path->now.x[i] + ds * path->now.tangent[i];
-  path->next.omega = path->now.omega + ds * path->now.tangent[path->n];
+  path->next.value = path->now.value + ds * path->now.tangent[path->n];
   return correct(path, path->now.tangent, 2 * ds, &path->next) &&
          set_tangent(path, path->now.tangent, &path->next);
 }
@@ -198,20 +205,20 @@ static double angle_between(const mhb_path *path) {
   return acos(fmax(-1, fmin(1, cosine)));
 }
 
-/* next <- a solution at fixed omega, Newton damped, from a guess that may be far; kept if it is near now. */
-static int attempt_from(mhb_path *path, double omega, const double *guess) {
+/* next <- a solution at fixed value, Newton damped, from a guess that may be far; kept if it is near now. */
+static int attempt_from(mhb_path *path, double value, const double *guess) {
   mhb_path_point *next = &path->next;
   size_t          size = sizeof(double) * (size_t)path->n;
   memcpy(next->x, guess, size);
-  next->omega = omega;
-  if (mhb_newton_solve(path->newton, path->residual, omega, path->tolerance, next->x,
+  next->value = value;
+  if (mhb_newton_solve(path->newton, path->residual, value, path->tolerance, next->x,
                        &next->iterations) != MHB_CONVERGED)
     return 0;
   measure(path, next);
   double scale = unit(path), far = 0;
   for (int i = 0; i < path->n; i++) far = fmax(far, fabs(next->x[i] - path->now.x[i]) / scale);
   memset(path->chord, 0, size); /* onwards in frequency */
-  path->chord[path->n] = omega - path->now.omega;
+  path->chord[path->n] = value - path->now.value;
   return far < NEAR && set_tangent(path, path->chord, next);
 }
 
@@ -234,13 +241,13 @@ static int attempt_across(mhb_path *path, double ahead, double ds) {
   mhb_path_point *now = &path->now, *next = &path->next;
   int             one = path->n + 1;
   for (int i = 0; i < path->n; i++) next->x[i] = now->x[i] + ahead * now->tangent[i];
-  next->omega = now->omega + ahead * now->tangent[path->n];
+  next->value = now->value + ahead * now->tangent[path->n];
   evaluate(path, next);
   if (!set_tangent(path, now->tangent, next)) return 0;
   double sense = goes_on(path) ? 1 : -1;
   for (int i = 0; i < one; i++) path->chord[i] = sense * next->tangent[i];
   for (int i = 0; i < path->n; i++) next->x[i] = now->x[i] + ds * path->chord[i];
-  next->omega = now->omega + ds * path->chord[path->n];
+  next->value = now->value + ds * path->chord[path->n];
   return correct(path, path->chord, 2 * ds, next) && set_tangent(path, path->chord, next) &&
          goes_on(path);
 }
@@ -256,7 +263,7 @@ static int across_kink(mhb_path *path) {
 }
 
 /* Where small steps fail (the square-root zone at slip onset), larger ones pass; else the damped Newton at a fixed
- * frequency further on, then further back (a cusp), from the old point and from the linear limits. */
+ * value further on, then further back (a cusp), from the old point and from the linear limits. */
 static int last_resort(mhb_path *path) {
   const double larger[] = {3e-3, 1e-2, 3e-2, .1}, further[] = {1e-4, 5e-4, 2e-3, 1e-2};
   for (int i = 0; i < 4; i++) {
@@ -266,15 +273,15 @@ static int last_resort(mhb_path *path) {
   }
   double guess[path->n], forward = copysign(span(path), path->now.tangent[path->n]);
   for (int i = 0; i < 24; i++) {
-    double omega = path->now.omega + (i < 12 ? forward : -forward) * further[i / 3 % 4];
+    double value = path->now.value + (i < 12 ? forward : -forward) * further[i / 3 % 4];
     int    stuck = i % 3 - 1; /* -1: the old point */
-    if (omega < path->low || omega > path->high) continue;
+    if (value < path->low || value > path->high) continue;
     if (stuck < 0) {
       memcpy(guess, path->now.x, sizeof guess);
-    } else if (mhb_residual_linear(path->residual, omega, stuck, guess) != SHB_OK) {
+    } else if (mhb_residual_linear(path->residual, value, stuck, guess) != SHB_OK) {
       continue;
     }
-    if (!attempt_from(path, omega, guess) || !goes_on(path)) continue;
+    if (!attempt_from(path, value, guess) || !goes_on(path)) continue;
     path->step = FIRST_STEP;
     return 1;
   }
@@ -325,25 +332,25 @@ static int find_next(mhb_path *path) {
 }
 
 /* next went past an end of the range: solve on the end itself, from the chord. */
-static int settle_on(mhb_path *path, double omega) {
-  double part = (omega - path->now.omega) / (path->next.omega - path->now.omega);
+static int settle_on(mhb_path *path, double value) {
+  double part = (value - path->now.value) / (path->next.value - path->now.value);
   double axis[path->n + 1];
   memset(axis, 0, sizeof(double) * (size_t)path->n);
   axis[path->n] = span(path);
   for (int i = 0; i < path->n; i++)
     path->next.x[i] = path->now.x[i] + part * (path->next.x[i] - path->now.x[i]);
-  path->next.omega = omega;
+  path->next.value = value;
   int ok =
       correct(path, axis, .5, &path->next) && set_tangent(path, path->now.tangent, &path->next);
-  path->next.omega = omega;
+  path->next.value = value;
   return ok;
 }
 
 mhb_path_outcome mhb_path_step(mhb_path *path) {
   for (int tries = 0; tries < 4; tries++) {
     if (!find_next(path)) break;
-    double slack = 1e-12 * path->high;
-    int above = path->next.omega > path->high + slack, below = path->next.omega < path->low - slack;
+    double slack = 1e-12 * fmax(fabs(path->low), fabs(path->high));
+    int above = path->next.value > path->high + slack, below = path->next.value < path->low - slack;
     if (!above && !below) return MHB_PATH_ON;
     if (settle_on(path, above ? path->high : path->low))
       return above ? MHB_PATH_AT_END : MHB_PATH_AT_START;
@@ -354,16 +361,25 @@ mhb_path_outcome mhb_path_step(mhb_path *path) {
 
 /* next has come back to the end of the range: set it on the end, heading inwards. */
 static int back_at(mhb_path *path, double end, int inwards) {
-  if (inwards * (path->next.omega - end) < 0) return 0;
+  if (inwards * (path->next.value - end) < 0) return 0;
   return settle_on(path, end) && inwards * path->next.tangent[path->n] > 0;
+}
+
+/* Room beyond the end that the path has come to: frequencies by a factor, other parameters by some spans. */
+static void widen(mhb_path *path, int inwards) {
+  int    turns = path->residual->parameter == MHB_IN_FREQUENCY;
+  double room  = (1 / OUTSIDE - 1) * path->span;
+  if (inwards > 0)
+    path->low = turns ? OUTSIDE * path->low : fmax(path->least, path->low - room);
+  else
+    path->high = turns ? path->high / OUTSIDE : path->high + room;
 }
 
 mhb_path_outcome mhb_path_outside(mhb_path *path, mhb_path_outcome outcome) {
   double           low = path->low, high = path->high;
   int              inwards = outcome == MHB_PATH_AT_START ? 1 : -1;
   mhb_path_outcome way     = MHB_PATH_ON;
-  path->low                = inwards > 0 ? OUTSIDE * low : low;
-  path->high               = inwards > 0 ? high : high / OUTSIDE;
+  widen(path, inwards);
   for (int i = 0; i < MAX_OUTSIDE && way == MHB_PATH_ON; i++) {
     mhb_path_advance(path);
     way = mhb_path_step(path);
@@ -392,7 +408,7 @@ static void guess_at(const mhb_path *path, double s, double lo, double hi, int w
     if (i < path->n)
       probe->x[i] = y;
     else
-      probe->omega = y;
+      probe->value = y;
   }
 }
 
@@ -405,7 +421,7 @@ static int at_fraction(mhb_path *path, double s, double lo, double hi) {
     guess_at(path, s, lo, hi, tries % 3, probe);
     int ok = tries < 3
                  ? correct(path, path->chord, 1, probe)
-                 : mhb_newton_solve(path->newton, path->residual, probe->omega, path->tolerance,
+                 : mhb_newton_solve(path->newton, path->residual, probe->value, path->tolerance,
                                     probe->x, &probe->iterations) == MHB_CONVERGED;
     if (!ok) continue;
     if (tries == 3) measure(path, probe);
@@ -427,15 +443,15 @@ static int somewhere(mhb_path *path, double lo, double hi, double *s) {
 
 static void set_bracket(mhb_path *path, int side, const mhb_path_point *point) {
   memcpy(path->bracket[side], point->x, sizeof(double) * (size_t)path->n);
-  path->bracket[side][path->n] = point->omega;
+  path->bracket[side][path->n] = point->value;
 }
 
 int mhb_path_locate(mhb_path *path, mhb_path_indicator indicator, void *context, double at_now,
                     double at_next, double *fraction) {
   for (int i = 0; i < path->n; i++) path->chord[i] = path->next.x[i] - path->now.x[i];
-  path->chord[path->n] = path->next.omega - path->now.omega;
+  path->chord[path->n] = path->next.value - path->now.value;
   double lo = 0, hi = 1, flo = at_now, fhi = at_next;
-  double wide = fabs(path->chord[path->n]) / path->now.omega;
+  double wide = fabs(path->chord[path->n]) / size_of(path);
   int    side = 0;
   set_bracket(path, 0, &path->now);
   set_bracket(path, 1, &path->next);

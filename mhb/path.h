@@ -1,6 +1,6 @@
-/* Pseudo-arclength continuation of r(x, omega) = 0 through folds.
+/* Pseudo-arclength continuation of r(x, value) = 0 through folds; value: of the parameter that the residual follows, the frequency mostly.
  *
- * Arclength is measured in y = [x/|x_current|, omega/span]. A tangent predictor, then Newton in the plane normal to
+ * Arclength is measured in y = [x/|x_current|, value/span]. A tangent predictor, then Newton in the plane normal to
  * it; the step follows the number of iterations and the angle between tangents. The law is only piecewise smooth: an
  * angle that halving the step hardly lessens is a kink of the curve, not curvature, and is accepted. */
 #ifndef MHB_PATH_H
@@ -10,9 +10,9 @@
 
 typedef struct {
   double *x;       /* [n] m */
-  double  omega;   /* rad/s */
-  double *tangent; /* [n+1] d(x, omega) along the path, unit length in y */
-  int orientation; /* sign of det [J r_omega; tangent]: the same all along a path, but for bifurcations */
+  double  value;   /* of the parameter; rad/s for the frequency */
+  double *tangent; /* [n+1] d(x, value) along the path, unit length in y */
+  int orientation; /* sign of det [J r_value; tangent]: the same all along a path, but for bifurcations */
   int    iterations;
   double residual;          /* |r|/|x| */
   double truncation, modal; /* relative error estimates, see truncation.h */
@@ -23,14 +23,15 @@ typedef struct {
   mhb_residual *residual;
   mhb_newton   *newton;
   int           n;
-  double        low, high; /* rad/s, range */
-  double        span;      /* rad/s, unit of omega */
+  double        low, high; /* range of the value */
+  double        span;      /* unit of the value */
+  double        least;     /* below it no value makes sense */
   double        step, longest;
   double        tolerance;
   int orientation, against;        /* of the path; ordinary steps in a row that had the other one */
   mhb_path_point now, next, probe; /* probe: scratch for located points */
   double        *chord;            /* [n+1] */
-  double        *bracket[2];       /* [n+1] x and omega on both sides of a point being located */
+  double        *bracket[2];       /* [n+1] x and value on both sides of a point being located */
 } mhb_path;
 
 typedef enum { MHB_PATH_ON, MHB_PATH_AT_END, MHB_PATH_AT_START, MHB_PATH_STALLED } mhb_path_outcome;
@@ -38,8 +39,8 @@ typedef enum { MHB_PATH_ON, MHB_PATH_AT_END, MHB_PATH_AT_START, MHB_PATH_STALLED
 shb_status mhb_path_create(mhb_residual *residual, double low, double high, mhb_path **path);
 void       mhb_path_destroy(mhb_path *path);
 
-/* Begin at a solution x at omega, towards rising (+1) or falling (-1) frequency. Leaves the residual there. */
-mhb_reason mhb_path_start(mhb_path *path, const double *x, double omega, int direction);
+/* Begin at a solution x at a value, towards rising (+1) or falling (-1) ones. Leaves the residual there. */
+mhb_reason mhb_path_start(mhb_path *path, const double *x, double value, int direction);
 
 /* One step: path->next becomes the new point, path->now stays the old one. AT_END, AT_START: next lies exactly on the
  * range's high or low end. The residual's workspace is left at next. */
@@ -57,7 +58,7 @@ typedef double (*mhb_path_indicator)(const mhb_path *path, const mhb_path_point 
                                      void *context);
 
 /* Locate the sign change of indicator between now and next, into path->probe. Illinois with planes across the chord,
- * never Newton on a function that jumps at kinks. 1: found, to 1e-9 of the chord or 1e-8 of omega. */
+ * never Newton on a function that jumps at kinks. 1: found, to 1e-9 of the chord or 1e-8 of the value. */
 int mhb_path_locate(mhb_path *path, mhb_path_indicator indicator, void *context, double at_now,
                     double at_next, double *fraction);
 

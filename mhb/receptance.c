@@ -107,25 +107,22 @@ static void set_modes(mhb_receptance *r, int k, double complex phase, int sides)
 }
 
 /* Load harmonic h drives harmonic nu h. */
-static void set_load(mhb_receptance *r, int k, double complex phase, int sides, double scale) {
+static void set_load(mhb_receptance *r, int k, double complex phase, int sides) {
   const modal_model *model = r->model;
   int                h = k / r->nu, nc = 3 * model->n_pairs * (model->has_left ? 2 : 1);
   if (k % r->nu || h > model->n_load) return;
   for (int i = 0; i < r->n_modes; i++) {
-    r->F[k * r->n_modes + i] = scale * model->modal_force[h * r->n_modes + i];
+    r->F[k * r->n_modes + i] = model->modal_force[h * r->n_modes + i];
     r->driven[k] |= r->F[k * r->n_modes + i] != 0;
   }
   if (r->load) {
     double complex *load = r->load + (size_t)k * (size_t)r->n;
     relative(r, phase, sides, model->load_residual + (size_t)h * (size_t)nc, 1, load, 1);
-    for (int i = 0; i < r->n; i++) {
-      load[i] *= scale;
-      r->driven[k] |= load[i] != 0;
-    }
+    for (int i = 0; i < r->n; i++) r->driven[k] |= load[i] != 0;
   }
   int q = 3 * model->n_probes;
   for (int i = 0; r->probe_load && i < q; i++) {
-    r->probe_load[k * q + i] = scale * model->probe_load_residual[h * q + i];
+    r->probe_load[k * q + i] = model->probe_load_residual[h * q + i];
     r->driven[k] |= r->probe_load[k * q + i] != 0;
   }
 }
@@ -175,8 +172,9 @@ static int allocate(mhb_receptance *r) {
   r->made_at = calloc(K, sizeof(double));
   r->R       = calloc(K * n * n, sizeof(double complex));
   r->free    = calloc(K * n, sizeof(double complex));
+  r->unit    = calloc(K * n, sizeof(double complex));
   int ok     = r->T0 && r->share && r->B && r->F && r->parts && r->scratch && r->BL && r->lambda &&
-           r->R && r->free;
+           r->R && r->free && r->unit;
   if (model->load_residual) ok &= (r->load = calloc(K * n, sizeof(double complex))) != NULL;
   if (model->residual_flexibility)
     ok &= (r->flexibility = calloc(K * n * n, sizeof(double complex))) != NULL;
@@ -217,6 +215,7 @@ shb_status mhb_receptance_create(const modal_model *model, const mhb_settings *s
     r->n_modes     = model->n_modes;
     r->n_harmonics = n_harmonics;
     r->nu          = settings->subharmonics;
+    r->scale       = settings->scale;
     ok             = allocate(r);
   }
   shb_status status = SHB_OK;
@@ -236,7 +235,7 @@ shb_status mhb_receptance_create(const modal_model *model, const mhb_settings *s
     r->made_at[k]        = NAN;
     double complex phase = cexp(-I * fmod(k * step, 2 * PI));
     set_modes(r, k, phase, sides);
-    set_load(r, k, phase, sides, settings->scale);
+    set_load(r, k, phase, sides);
     set_parts(r, k);
     if (r->flexibility)
       condensed(r, phase, sides, nc, model->residual_flexibility, scratch,
@@ -270,6 +269,7 @@ void mhb_receptance_destroy(mhb_receptance *r) {
   free(r->made_at);
   free(r->R);
   free(r->free);
+  free(r->unit);
   free(r);
 }
 
@@ -319,7 +319,7 @@ static void residual_terms(const mhb_receptance *r, int k, double w, double comp
 static void harmonic_at(mhb_receptance *r, int k) {
   int             n = r->n, m = r->n_modes;
   double          w = k * r->omega / r->nu, *L = r->scratch, *y = L + 2 * m;
-  double complex *R = r->R + (size_t)k * (size_t)n * (size_t)n, *u = r->free + k * n;
+  double complex *R = r->R + (size_t)k * (size_t)n * (size_t)n, *u = r->unit + k * n;
   const double   *re = part(r, k, 0), *im = part(r, k, 1);
   double complex *all = r->BL, one = 1;
   set_lambda(r, w, L, L + m);
@@ -333,6 +333,7 @@ static void harmonic_at(mhb_receptance *r, int k) {
     }
     u[a] = r->load ? r->load[k * n + a] : 0;
     modal_row(r, k, y, y + m, R + (size_t)a * (size_t)n, &u[a]);
+    r->free[k * n + a] = r->scale * u[a];
   }
   if (n >= WORTH_BLAS)
     cblas_zgemm(CblasRowMajor, CblasNoTrans, CblasConjTrans, n, n, m, &one, all, m,
@@ -355,11 +356,16 @@ void mhb_receptance_at(mhb_receptance *r, double omega, int top) {
   for (int k = 0; k <= top; k++) mhb_receptance_need(r, k);
 }
 
-/* Modal amplitudes before L: F - B^H p. */
+void mhb_receptance_scale(mhb_receptance *r, double scale) {
+  r->scale = scale;
+  for (int i = 0; i < (r->n_harmonics + 1) * r->n; i++) r->free[i] = scale * r->unit[i];
+}
+
+/* Modal amplitudes before L: load F - B^H p. */
 static double complex modal_drive(const mhb_receptance *r, int k, const double complex *p, int i,
-                                  int with_load) {
+                                  double load) {
   const double complex *B = r->B + (size_t)k * (size_t)r->n * (size_t)r->n_modes;
-  double complex        a = with_load ? r->F[k * r->n_modes + i] : 0;
+  double complex        a = load * r->F[k * r->n_modes + i];
   for (int row = 0; row < r->n; row++) a -= conj(B[row * r->n_modes + i]) * p[row];
   return a;
 }
@@ -371,14 +377,16 @@ static double complex lambda_slope(const mhb_receptance *r, int k, int i) {
   return L * L * (2 * kk * kk * r->omega - 2 * I * r->model->damping_ratio[i] * wi * kk);
 }
 
-/* y = dL/d omega (F - B^H p) by modes. */
+/* y = dL/d omega (scale F - B^H p) by modes. */
 MHB_HOT static void slope_drive(const mhb_receptance *r, int k, const double complex *p,
                                 double *restrict yr, double *restrict yi) {
   int    m = r->n_modes, n = r->n;
   double kk = (double)k / r->nu, spring = 2 * kk * kk * r->omega;
   const double *restrict re = part(r, k, 0), *restrict im = part(r, k, 1);
-  memcpy(yr, re + n * m, sizeof(double) * (size_t)m);
-  memcpy(yi, im + n * m, sizeof(double) * (size_t)m);
+  for (int i = 0; i < m; i++) {
+    yr[i] = r->scale * re[n * m + i];
+    yi[i] = r->scale * im[n * m + i];
+  }
   for (int b = 0; b < n; b++, re += m, im += m) {
     double pr = creal(p[b]), pi = cimag(p[b]);
     for (int i = 0; i < m; i++) {
@@ -422,17 +430,18 @@ void mhb_receptance_slope(const mhb_receptance *r, int k, const double complex *
 }
 
 void mhb_receptance_probe_change(const mhb_receptance *r, int k, const double complex *p,
-                                 const double complex *dp, double d_omega, double complex *change) {
+                                 const double complex *dp, double d_omega, double d_scale,
+                                 double complex *change) {
   int q = 3 * r->model->n_probes, m = r->n_modes;
   for (int s = 0; s < q; s++) {
-    change[s] = 0;
+    change[s] = r->probe_load ? d_scale * r->probe_load[k * q + s] : 0;
     for (int b = 0; r->probe_contact && b < r->n; b++)
       change[s] -=
           r->probe_contact[((size_t)k * (size_t)q + (size_t)s) * (size_t)r->n + (size_t)b] * dp[b];
   }
   for (int i = 0; i < m; i++) {
-    double complex a = r->lambda[k * m + i] * modal_drive(r, k, dp, i, 0);
-    if (d_omega != 0) a += d_omega * lambda_slope(r, k, i) * modal_drive(r, k, p, i, 1);
+    double complex a = r->lambda[k * m + i] * modal_drive(r, k, dp, i, d_scale);
+    if (d_omega != 0) a += d_omega * lambda_slope(r, k, i) * modal_drive(r, k, p, i, r->scale);
     for (int s = 0; s < q; s++) change[s] += r->model->probe[s * m + i] * a;
   }
 }
@@ -446,13 +455,7 @@ static int at_rest(const mhb_receptance *r, int k, const double complex *p) {
 
 void mhb_receptance_probe(const mhb_receptance *r, int k, const double complex *p,
                           double complex *motion) {
-  int q = 3 * r->model->n_probes, m = r->n_modes;
+  int q = 3 * r->model->n_probes;
   memset(motion, 0, sizeof(double complex) * (size_t)q);
-  if (at_rest(r, k, p)) return;
-  mhb_receptance_probe_change(r, k, p, p, 0, motion);
-  for (int s = 0; s < q; s++) {
-    for (int i = 0; i < m; i++)
-      motion[s] += r->model->probe[s * m + i] * r->lambda[k * m + i] * r->F[k * m + i];
-    if (r->probe_load) motion[s] += r->probe_load[k * q + s];
-  }
+  if (!at_rest(r, k, p)) mhb_receptance_probe_change(r, k, p, p, 0, r->scale, motion);
 }

@@ -24,7 +24,8 @@ typedef struct {
   double             psi, phi; /* rad, mean over the pairs */
   double            *share;    /* [pair] area share, sums to 1 */
   double complex    *B;        /* [k][n][modes] */
-  double complex    *F;        /* [k][modes] modal force, scaled */
+  double             scale;    /* of the excitation */
+  double complex    *F;        /* [k][modes] modal force at scale 1, as all loads below */
   double            *parts; /* [k][2 (re, im)][n + 1][modes] B, then F: for the loops over modes */
   double            *scratch;                    /* [4][modes] */
   double complex    *BL;                         /* [n][modes] B L of one harmonic */
@@ -33,10 +34,10 @@ typedef struct {
   double complex    *probe_load, *probe_contact; /* [k][3 q], [k][3 q][n], or NULL */
   int               *driven;                     /* [k] whether the load has this harmonic */
   double             omega;                      /* rad/s, of mhb_receptance_move */
-  double            *made_at; /* [k] rad/s for which the arrays below were made, NAN: never */
-  double complex    *lambda;  /* [k][modes] */
-  double complex    *R;       /* [k][n][n] */
-  double complex    *free;    /* [k][n] response without contact */
+  double            *made_at;     /* [k] rad/s for which the arrays below were made, NAN: never */
+  double complex    *lambda;      /* [k][modes] */
+  double complex    *R;           /* [k][n][n] */
+  double complex    *free, *unit; /* [k][n] response without contact; the same at scale 1 */
 } mhb_receptance;
 
 /* Errors: SHB_ERR_INPUT psi, phi do not agree with the file's normals within a degree, load harmonic above n_harmonics
@@ -55,6 +56,9 @@ void mhb_receptance_need(mhb_receptance *receptance, int k);
 /* Both, harmonics 0..top. */
 void mhb_receptance_at(mhb_receptance *receptance, double omega, int top);
 
+/* Another scale of the excitation, at the same omega. */
+void mhb_receptance_scale(mhb_receptance *receptance, double scale);
+
 /* d/d omega of harmonic k of [free - R p] at fixed p[n]. */
 void mhb_receptance_slope(const mhb_receptance *receptance, int k, const double complex *p,
                           double complex *slope);
@@ -63,8 +67,9 @@ void mhb_receptance_slope(const mhb_receptance *receptance, int k, const double 
 void mhb_receptance_probe(const mhb_receptance *receptance, int k, const double complex *p,
                           double complex *motion);
 
-/* Its change with p by dp and omega by d_omega. */
+/* Its change with p by dp, omega by d_omega and the scale by d_scale. */
 void mhb_receptance_probe_change(const mhb_receptance *receptance, int k, const double complex *p,
-                                 const double complex *dp, double d_omega, double complex *change);
+                                 const double complex *dp, double d_omega, double d_scale,
+                                 double complex *change);
 
 #endif

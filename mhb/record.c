@@ -39,8 +39,9 @@ shb_status mhb_record(mhb_response *response, int index, mhb_residual *b,
   int at;
   SHB_TRY(mhb_response_point(response, index, &at));
   mhb_branch *branch       = &response->branch[index];
-  branch->frequency[at]    = point->omega / (2 * PI);
-  branch->n0[at]           = b->n0;
+  branch->frequency[at]    = b->at.omega / (2 * PI);
+  branch->n0[at]           = b->at.n0;
+  branch->value[at]        = mhb_parameter_shown(b->parameter, point->value);
   branch->special[at]      = special;
   branch->stable[at]       = -1; /* until the branch is judged */
   branch->iterations[at]   = point->iterations;
@@ -60,13 +61,15 @@ int mhb_outputs(const mhb_residual *b) {
   return b->receptance->model->n_probes + 3 * pairs;
 }
 
-/* Change of the contact forces along dx, harmonic k. */
-static void force_change(const mhb_residual *b, const double *dx, int k, double complex *dp) {
+/* Change of the contact forces along dx and with the parameter by dvalue, harmonic k. */
+static void force_change(const mhb_residual *b, const double *dx, double dvalue, int k,
+                         double complex *dp) {
   int block = 3 * b->nb;
   for (int row = 0; row < 3 * b->n_pairs; row++) {
     int           pair = row / 3, first = (row % 3) * b->nb + (k ? 2 * k - 1 : 0);
     const double *re     = b->dp + ((size_t)pair * (size_t)block + (size_t)first) * (size_t)block;
-    double        sum[2] = {0, 0};
+    const double *by     = b->by_parameter + (size_t)pair * (size_t)block + first;
+    double        sum[2] = {dvalue * by[0], k ? dvalue * by[1] : 0};
     for (int j = 0; j < block; j++) {
       sum[0] += re[j] * dx[pair * block + j];
       if (k) sum[1] += re[block + j] * dx[pair * block + j];
@@ -91,9 +94,11 @@ double mhb_output_slope(const mhb_path *path, const mhb_path_point *point, int o
   double complex p[r->n], dp[r->n], q[3 * probes], dq[3 * probes];
   mhb_receptance_need(b->receptance, k);
   mhb_residual_force(b, k, p);
-  force_change(b, point->tangent, k, dp);
+  double dvalue = point->tangent[path->n];
+  force_change(b, point->tangent, dvalue, k, dp);
   mhb_receptance_probe(r, k, p, q);
-  mhb_receptance_probe_change(r, k, p, dp, point->tangent[path->n], dq);
+  mhb_receptance_probe_change(r, k, p, dp, b->parameter == MHB_IN_FREQUENCY ? dvalue : 0,
+                              b->parameter == MHB_IN_SCALE ? dvalue : 0, dq);
   double sum = 0;
   for (int axis = 0; axis < 3; axis++) sum += 2 * dot(q[3 * o + axis], dq[3 * o + axis]);
   return sum;

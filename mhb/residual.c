@@ -24,6 +24,14 @@ static shb_status create_contacts(mhb_residual *b) {
   return SHB_OK;
 }
 
+static void set_laws(mhb_residual *b) {
+  b->n_laws++;
+  for (int a = 0; a < b->n_pairs; a++) {
+    b->law[a]       = mhb_condition_law(&b->at, b->settings->preload, b->receptance->share[a]);
+    b->linear_dp[a] = -1;
+  }
+}
+
 shb_status mhb_residual_create(const modal_model *model, const mhb_settings *settings,
                                mhb_residual **out) {
   mhb_residual *b = calloc(1, sizeof *b);
@@ -43,8 +51,10 @@ shb_status mhb_residual_create(const modal_model *model, const mhb_settings *set
   b->dp             = calloc(pairs * block * block, sizeof(double));
   b->pk             = calloc(3 * pairs, sizeof(double complex));
   b->uk             = calloc(3 * pairs, sizeof(double complex));
+  b->by_parameter   = calloc((size_t)b->n, sizeof(double));
   shb_status status = SHB_OK;
-  if (!(b->law && b->info && b->kind && b->linear_dp && b->p && b->dp && b->pk && b->uk))
+  if (!(b->law && b->info && b->kind && b->linear_dp && b->p && b->dp && b->pk && b->uk &&
+        b->by_parameter))
     status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for %d unknowns", b->n);
   if (status == SHB_OK) status = mhb_receptance_create(model, settings, m, &b->receptance);
   if (status == SHB_OK) status = create_contacts(b);
@@ -52,6 +62,8 @@ shb_status mhb_residual_create(const modal_model *model, const mhb_settings *set
     mhb_residual_destroy(b);
     return status;
   }
+  b->at = mhb_condition_of(settings);
+  set_laws(b);
   *out = b;
   return SHB_OK;
 }
@@ -69,19 +81,33 @@ void mhb_residual_destroy(mhb_residual *b) {
   free(b->dp);
   free(b->pk);
   free(b->uk);
+  free(b->by_parameter);
   free(b);
 }
 
+void mhb_residual_condition(mhb_residual *b, const mhb_condition *condition) {
+  b->at = *condition;
+  set_laws(b);
+  mhb_receptance_scale(b->receptance, b->at.scale);
+}
+
 void mhb_residual_preload(mhb_residual *b, double n0) {
-  const mhb_settings *s = b->settings;
-  b->n0                 = n0;
-  b->n_laws++;
-  for (int a = 0; a < b->n_pairs; a++) {
-    double share    = b->receptance->share[a];
-    b->linear_dp[a] = -1;
-    b->law[a]       = (mhb_law){.mu = s->mu, .kv = share * s->kv, .n0 = share * n0};
-    for (int i = 0; i < 3; i++) b->law[a].ku[i] = share * s->ku[i];
-    if (s->preload == MHB_EQUILIBRIUM) b->law[a].balance = fmax(b->law[a].n0, 0);
+  b->at.n0 = n0;
+  set_laws(b);
+}
+
+void mhb_residual_follow(mhb_residual *b, mhb_parameter parameter) {
+  b->parameter = parameter;
+}
+
+void mhb_residual_place(mhb_residual *b, double value) {
+  if (value == mhb_parameter_get(&b->at, b->parameter)) return;
+  mhb_parameter_set(&b->at, b->parameter, value);
+  if (b->parameter == MHB_IN_FREQUENCY) return;
+  if (b->parameter == MHB_IN_SCALE) {
+    mhb_receptance_scale(b->receptance, value);
+  } else {
+    set_laws(b);
   }
 }
 
@@ -227,10 +253,50 @@ static void balance(const mhb_residual *b, int k) {
   }
 }
 
-static void evaluate(mhb_residual *b, const double *x, double omega, int derivative, double *r,
+/* Harmonic k of r does not change with the parameter: rest, or no force that does. */
+static int stays(const mhb_residual *b, int k, int rest) {
+  if (b->parameter == MHB_IN_FREQUENCY) return rest;
+  for (int i = 0; i < 3 * b->n_pairs; i++)
+    if (creal(b->pk[i]) != 0 || cimag(b->pk[i]) != 0) return 0;
+  return b->parameter != MHB_IN_SCALE || !b->receptance->driven[k];
+}
+
+/* uk <- dr_k/dvalue, pk the forces at x. */
+static void slope_of(mhb_residual *b, int k, int rest) {
+  int n3 = 3 * b->n_pairs;
+  if (b->parameter != MHB_IN_FREQUENCY) harmonic(b, b->by_parameter, k, b->pk);
+  for (int i = 0; i < n3; i++) b->uk[i] = 0;
+  if (stays(b, k, rest)) return;
+  mhb_receptance_need(b->receptance, k);
+  if (b->parameter == MHB_IN_FREQUENCY) {
+    mhb_receptance_slope(b->receptance, k, b->pk, b->uk);
+    for (int i = 0; i < n3; i++) b->uk[i] = -b->uk[i];
+    return;
+  }
+  const double complex *R    = b->receptance->R + (size_t)k * (size_t)n3 * (size_t)n3;
+  const double complex *unit = b->receptance->unit + k * n3;
+  for (int i = 0; i < n3; i++, R += n3) {
+    if (b->parameter == MHB_IN_SCALE) b->uk[i] = -unit[i];
+    for (int j = 0; j < n3; j++) b->uk[i] += R[j] * b->pk[j];
+  }
+}
+
+static void force_by_parameter(mhb_residual *b, const double *x) {
+  size_t block = 3 * (size_t)b->nb;
+  for (int a = 0; a < b->n_pairs; a++) {
+    size_t at = (size_t)a * block;
+    mhb_parameter_force(&b->at, b->parameter, &b->law[a], b->receptance->share[a], b->nb, x + at,
+                        b->p + at, b->dp + at * block, b->by_parameter + at);
+  }
+}
+
+static void evaluate(mhb_residual *b, const double *x, double value, int derivative, double *r,
                      double *slope) {
-  mhb_receptance_move(b->receptance, omega);
-  evaluate_pairs(b, x, derivative);
+  int followed = slope && b->parameter != MHB_IN_FREQUENCY;
+  mhb_residual_place(b, value);
+  mhb_receptance_move(b->receptance, b->at.omega);
+  evaluate_pairs(b, x, derivative || followed);
+  if (followed) force_by_parameter(b, x);
   for (int k = 0; k <= b->m; k++) {
     harmonic(b, b->p, k, b->pk);
     harmonic(b, x, k, b->uk);
@@ -241,19 +307,18 @@ static void evaluate(mhb_residual *b, const double *x, double omega, int derivat
     }
     store(b, r, k, b->uk);
     if (!slope) continue;
-    if (!rest) mhb_receptance_slope(b->receptance, k, b->pk, b->uk);
-    for (int i = 0; i < 3 * b->n_pairs; i++) b->uk[i] = rest ? 0 : -b->uk[i];
+    slope_of(b, k, rest);
     store(b, slope, k, b->uk);
   }
 }
 
-void mhb_residual_derive(mhb_residual *b, const double *x, double omega, double *r, double *slope) {
-  evaluate(b, x, omega, 1, r, slope);
+void mhb_residual_derive(mhb_residual *b, const double *x, double value, double *r, double *slope) {
+  evaluate(b, x, value, 1, r, slope);
 }
 
-void mhb_residual_evaluate(mhb_residual *b, const double *x, double omega, double *r,
+void mhb_residual_evaluate(mhb_residual *b, const double *x, double value, double *r,
                            double *jacobian, double *slope) {
-  evaluate(b, x, omega, jacobian != NULL, r, slope);
+  evaluate(b, x, value, jacobian != NULL, r, slope);
   for (int pair = 0; jacobian && pair < b->n_pairs; pair++) assemble_columns(b, pair, jacobian);
 }
 
@@ -285,8 +350,9 @@ static shb_status linear_harmonic(const mhb_residual *b, int k, int stuck, doubl
   return SHB_OK;
 }
 
-shb_status mhb_residual_linear(mhb_residual *b, double omega, int stuck, double *x) {
-  mhb_receptance_at(b->receptance, omega, b->m);
+shb_status mhb_residual_linear(mhb_residual *b, double value, int stuck, double *x) {
+  mhb_residual_place(b, value);
+  mhb_receptance_at(b->receptance, b->at.omega, b->m);
   for (int k = 0; k <= b->m; k++) {
     SHB_TRY(linear_harmonic(b, k, stuck, b->uk));
     store(b, x, k, b->uk);

@@ -1,11 +1,12 @@
-/* The balance of harmonics (eq. 33) for all contact pairs: residual, exact Jacobian, slope by frequency.
+/* The balance of harmonics (eq. 33) for all contact pairs: residual, exact Jacobian, slope by the parameter that is followed.
  *
- *   r(x, omega) = u - [free - R p(u)],   x = (u) in real form [pair][3 (v, u, w)][2m+1], m
+ *   r(x, value) = u - [free - R p(u)],   x = (u) in real form [pair][3 (v, u, w)][2m+1], m
  * p is the force that acts back: (n - max(n0, 0), fu, fw) for a preload stated at equilibrium, (n, fu, fw) for an interference. */
 #ifndef MHB_RESIDUAL_H
 #define MHB_RESIDUAL_H
 
 #include "mhb/contact.h"
+#include "mhb/parameter.h"
 #include "mhb/receptance.h"
 #include "mhb/settings.h"
 
@@ -25,24 +26,35 @@ typedef struct {
   mhb_law            *law;               /* [pair] shares of the interface */
   mhb_contact_info   *info;              /* [pair] of the last evaluation */
   int                 m, n_pairs, nb, n; /* nb = 2m+1, n = 3 pairs nb unknowns */
-  double              n0;                /* total preload, N */
+  mhb_parameter       parameter;         /* what the argument `value` of the functions below is */
+  mhb_condition       at;                /* of the last evaluation */
   double             *p;                 /* [n] force in real form, as x */
   double             *dp;                /* [pair][3 nb][3 nb] */
-  int                *linear_dp; /* [pair] kind whose derivative dp holds, -1: another one */
-  mhb_pair_kind      *kind;      /* [pair] of the last evaluation with derivatives */
-  int                 n_laws;    /* counts changes of law */
-  double complex     *pk, *uk;   /* [3 pairs] one harmonic */
+  int                *linear_dp;    /* [pair] kind whose derivative dp holds, -1: another one */
+  mhb_pair_kind      *kind;         /* [pair] of the last evaluation with derivatives */
+  int                 n_laws;       /* counts changes of law */
+  double complex     *pk, *uk;      /* [3 pairs] one harmonic */
+  double             *by_parameter; /* [n] dp/dparameter, of the last evaluation with slope */
 } mhb_residual;
 
 shb_status mhb_residual_create(const modal_model *model, const mhb_settings *settings,
                                mhb_residual **residual);
 void       mhb_residual_destroy(mhb_residual *residual);
 
+/* Everything that evaluations do not set by `value`. */
+void mhb_residual_condition(mhb_residual *residual, const mhb_condition *condition);
+
 /* Preload of the interface, N: shared out to the pairs. */
 void mhb_residual_preload(mhb_residual *residual, double n0);
 
+/* From here on `value` is that of the parameter: rad/s for the frequency (as after creation), else as in the case. */
+void mhb_residual_follow(mhb_residual *residual, mhb_parameter parameter);
+
+/* The condition at a value of the parameter. */
+void mhb_residual_place(mhb_residual *residual, double value);
+
 /* As below, and always the derivatives dp and the kinds; the Jacobian is left to mhb/condensed. */
-void mhb_residual_derive(mhb_residual *residual, const double *x, double omega, double *r,
+void mhb_residual_derive(mhb_residual *residual, const double *x, double value, double *r,
                          double *slope);
 
 /* Two real rows, dp of harmonic k of a pair times the complex row R[3] over its axes:
@@ -50,15 +62,15 @@ void mhb_residual_derive(mhb_residual *residual, const double *x, double omega, 
 void mhb_residual_combine(const mhb_residual *residual, const double complex R[3], int pair, int k,
                           double *re, double *im);
 
-/* Evaluate at (x, omega rad/s).
+/* Evaluate at (x, value).
  *   r        out  [n] m
  *   jacobian out  [n][n] column-major dr/dx, or NULL
- *   slope    out  [n] dr/domega, or NULL */
-void mhb_residual_evaluate(mhb_residual *residual, const double *x, double omega, double *r,
+ *   slope    out  [n] dr/dvalue, or NULL */
+void mhb_residual_evaluate(mhb_residual *residual, const double *x, double value, double *r,
                            double *jacobian, double *slope);
 
-/* Linear limits at omega: harmonics of the relative motion with the contact open everywhere, or stuck everywhere. */
-shb_status mhb_residual_linear(mhb_residual *residual, double omega, int stuck, double *x);
+/* Linear limits at a value: harmonics of the relative motion with the contact open everywhere, or stuck everywhere. */
+shb_status mhb_residual_linear(mhb_residual *residual, double value, int stuck, double *x);
 
 /* Forces of the last evaluation as complex harmonic k of all pairs. */
 void mhb_residual_force(const mhb_residual *residual, int k, double complex *p);

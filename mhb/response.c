@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mhb/parameter.h"
 #include "modal/h5.h"
 
 static const char response_format[] = "shroudhb response";
@@ -26,6 +27,7 @@ typedef struct {
 static const field fields[] = {
     {"frequency", "", DOUBLE, AT(frequency), "Hz", "frequency of the excitation's first harmonic"},
     {"n0", "", DOUBLE, AT(n0), "N", "normal preload, total of the interface; negative: a gap"},
+    {"parameter", "", DOUBLE, AT(value), NULL, "value of the parameter that is followed"},
     {"motion", "p3k", COMPLEX, AT(motion), "m",
      "relative motion at the contact along v, u, w; harmonics"},
     {"force", "p3k", COMPLEX, AT(force), "N",
@@ -128,6 +130,11 @@ static bool is_later(const field *f) {
 /* Without probes there is no probe array, in memory or in the file. */
 static bool is_kept(const mhb_response *response, const mhb_branch *branch, const field *f) {
   return width_of(response, f) > 0 && (branch->kind == MHB_BRANCH_NONLINEAR || !is_later(f));
+}
+
+/* The followed parameter where it is the frequency: not in the file twice. */
+static bool is_frequency(const mhb_response *response, const field *f) {
+  return f->offset == AT(value) && response->parameter == MHB_IN_FREQUENCY;
 }
 
 static void *get(const mhb_branch *branch, const field *f) {
@@ -266,6 +273,7 @@ static shb_status write_root(hid_t file, const mhb_response *response) {
   SHB_TRY(h5_write_attribute_int(file, "/", "engine_order", response->engine_order));
   SHB_TRY(h5_write_attribute_int(file, "/", "blades", response->blades));
   SHB_TRY(h5_write_attribute_int(file, "/", "subharmonics", response->subharmonics));
+  SHB_TRY(h5_write_attribute_text(file, "/", "parameter", mhb_parameter_name(response->parameter)));
   SHB_TRY(h5_write_attribute_double(file, "/", "psi", response->psi));
   SHB_TRY(h5_write_attribute_double(file, "/", "phi", response->phi));
   SHB_TRY(h5_write_attribute_text(file, "/", "angle_units", "rad"));
@@ -287,9 +295,11 @@ static shb_status write_field(hid_t group, const mhb_response *response, const m
                               const field *f) {
   const h5_shape shape = shape_of(response, f, branch->n_points);
   const void    *data  = get(branch, f);
+  const char    *units = f->units ? f->units : mhb_parameter_unit(response->parameter);
+  if (is_frequency(response, f)) return SHB_OK;
   switch (f->kind) {
     case DOUBLE:
-      SHB_TRY(h5_write_double(group, f->name, shape, data, f->units, f->long_name));
+      SHB_TRY(h5_write_double(group, f->name, shape, data, *units ? units : "-", f->long_name));
       break;
     case COMPLEX:
       SHB_TRY(h5_write_complex(group, f->name, shape, data, f->units, f->long_name));
@@ -390,6 +400,18 @@ static shb_status read_multipliers(hid_t file, const char *path, mhb_response *r
 }
 
 /* Sizes, probe names and root attributes. */
+static shb_status read_parameter(hid_t file, const char *path, mhb_parameter *parameter) {
+  char *text = NULL;
+  SHB_TRY(h5_read_attribute_text(file, "/", "parameter", &text));
+  int found = 0;
+  while (text && found < MHB_N_PARAMETERS && strcmp(text, mhb_parameter_name(found)) != 0) found++;
+  free(text);
+  SHB_CHECK(found < MHB_N_PARAMETERS, SHB_ERR_INPUT,
+            "%s: the root attribute parameter must be frequency, n0, scale, mu, ku or kv", path);
+  *parameter = (mhb_parameter)found;
+  return SHB_OK;
+}
+
 static shb_status read_root(hid_t file, const char *path, mhb_response **out) {
   int    n_pairs = 0, n_harmonics = 0, n_probes = 0;
   char **name = NULL;
@@ -407,8 +429,17 @@ static shb_status read_root(hid_t file, const char *path, mhb_response **out) {
   SHB_TRY(h5_read_attribute_double(file, "/", "phi", 0, &response->phi));
   SHB_CHECK(response->subharmonics >= 1, SHB_ERR_INPUT,
             "%s: subharmonics is %d; 1 or more is wanted", path, response->subharmonics);
+  SHB_TRY(read_parameter(file, path, &response->parameter));
   SHB_TRY(read_multipliers(file, path, response));
   return read_modes(file, response);
+}
+
+static shb_status copy_frequency(mhb_branch *branch) {
+  size_t size   = sizeof(double) * (size_t)branch->n_points;
+  branch->value = malloc(size + 1);
+  SHB_CHECK(branch->value, SHB_ERR_IO, "no memory for %d response points", branch->n_points);
+  if (size > 0) memcpy(branch->value, branch->frequency, size);
+  return SHB_OK;
 }
 
 static shb_status read_field(hid_t group, const mhb_response *response, mhb_branch *branch,
@@ -417,6 +448,7 @@ static shb_status read_field(hid_t group, const mhb_response *response, mhb_bran
   double         *real     = NULL;
   double complex *complex_ = NULL;
   int            *whole    = NULL;
+  if (is_frequency(response, f)) return copy_frequency(branch);
   if (is_later(f) && !h5_exists(group, f->name)) { /* an earlier version's file: not known */
     void *none = calloc(h5_count(shape) + 1, bytes_of(f->kind));
     SHB_CHECK(none, SHB_ERR_IO, "no memory for %d response points", branch->n_points);

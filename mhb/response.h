@@ -7,6 +7,7 @@
 
 #include "mesh/publish.h"
 #include "mesh/status.h"
+#include "mhb/settings.h"
 
 typedef enum { MHB_BRANCH_NONLINEAR, MHB_BRANCH_OPEN, MHB_BRANCH_STUCK } mhb_branch_kind;
 
@@ -34,6 +35,7 @@ typedef struct {
   int             n_points, capacity;
   double         *frequency; /* [point] Hz, of the excitation's first harmonic */
   double         *n0;        /* [point] N, total of the interface */
+  double         *value;     /* [point] of the parameter that is followed; Hz for the frequency */
   double complex *motion, *force, *probe;
   int            *stable; /* [point] 1 stable, 0 unstable, -1 not known */
   int *special; /* [point] MHB_ORDINARY ...; peak: of any probe or contact motion, first harmonic */
@@ -53,10 +55,11 @@ typedef struct {
 } mhb_branch;
 
 typedef struct {
-  int         n_pairs, n_probes, n_harmonics, subharmonics, n_branches, capacity;
-  char      **probe_name;
-  mhb_branch *branch;
-  int         n_multipliers; /* kept a point; 0: none, set before the first point */
+  int           n_pairs, n_probes, n_harmonics, subharmonics, n_branches, capacity;
+  char        **probe_name;
+  mhb_branch   *branch;
+  mhb_parameter parameter;     /* what is followed */
+  int           n_multipliers; /* kept a point; 0: none, set before the first point */
   /* copied from the modal model for the report */
   int     n_modes;
   double *mode_frequency, *mode_damping, *mode_residual; /* [m]; mode_residual may be NULL */

@@ -9,6 +9,17 @@ typedef enum { MHB_EQUILIBRIUM, MHB_INTERFERENCE } mhb_preload;
 /* Multipliers: where they cost little and at a few points elsewhere; at every point; not at all. */
 typedef enum { MHB_STABILITY_AUTO, MHB_STABILITY_ALWAYS, MHB_STABILITY_NEVER } mhb_stability_when;
 
+/* What a curve is followed in. */
+typedef enum {
+  MHB_IN_FREQUENCY,
+  MHB_IN_N0,
+  MHB_IN_SCALE,
+  MHB_IN_MU,
+  MHB_IN_KU,
+  MHB_IN_KV,
+  MHB_N_PARAMETERS
+} mhb_parameter;
+
 enum { MHB_MAX_PRELOADS = 256 };
 
 typedef struct {
@@ -21,15 +32,17 @@ typedef struct {
   mhb_preload        preload;
   int                n_preloads;
   double             n0[MHB_MAX_PRELOADS]; /* N */
-  double             frequency[2];         /* Hz, first < second */
-  int                harmonics;            /* m >= 1 */
-  int                subharmonics;         /* nu >= 1: fundamental is omega/nu */
-  double             motion_tolerance;     /* > 0: harmonics are chosen for this relative error */
-  double             scale;                /* multiplies the excitation */
-  double             tolerance;            /* of the contact law, relative to its largest force */
-  int                max_points; /* a branch ends (with a reason) beyond this, default 2000 */
-  mhb_stability_when stability;  /* which points are judged by their multipliers */
-  bool               resume;     /* take over what an interrupted run of equal settings finished */
+  double             frequency[2];         /* Hz, first < second; equal where another is followed */
+  mhb_parameter      parameter;    /* what is followed; in its unit from range[0] to range[1], */
+  double             range[2];     /* not used for the frequency */
+  int                harmonics;    /* m >= 1 */
+  int                subharmonics; /* nu >= 1: fundamental is omega/nu */
+  double             motion_tolerance; /* > 0: harmonics are chosen for this relative error */
+  double             scale;            /* multiplies the excitation */
+  double             tolerance;        /* of the contact law, relative to its largest force */
+  int                max_points;       /* a branch ends (with a reason) beyond this, default 2000 */
+  mhb_stability_when stability;        /* which points are judged by their multipliers */
+  bool               resume; /* take over what an interrupted run of equal settings finished */
 } mhb_settings;
 
 #endif

@@ -9,7 +9,7 @@
 #include "mhb/harmonics.h"
 #include "mhb/judge.h"
 
-static const double PI = 3.14159265358979323846, PUBLISH_EVERY = 10, BRANCH_END_EVERY = 1; /* s */
+static const double PUBLISH_EVERY = 10, BRANCH_END_EVERY = 1; /* s */
 
 /* What the threads share: all of it touched under the lock only. */
 typedef struct {
@@ -52,8 +52,9 @@ static bool point(mhb_monitor *monitor, int branch, const mhb_path_point *at) {
   sweep              *s       = (sweep *)monitor;
   const mhb_settings *c       = s->settings;
   int                 preload = branch - 2;
-  double              hz = at->omega / (2 * PI), total = 0;
-  s->done[preload] = (hz - c->frequency[0]) / (c->frequency[1] - c->frequency[0]);
+  mhb_parameter       what    = c->parameter;
+  double low = mhb_parameter_end(c, what, 0), high = mhb_parameter_end(c, what, 1), total = 0;
+  s->done[preload] = (at->value - low) / (high - low);
   for (int i = 0; i < c->n_preloads; i++) total += s->done[i];
   const mhb_branch     *b = &s->response->branch[branch];
   int                   K = s->response->n_harmonics + 1;
@@ -61,8 +62,9 @@ static bool point(mhb_monitor *monitor, int branch, const mhb_path_point *at) {
       b->motion + (size_t)(b->n_points - 1) * 3 * (size_t)s->response->n_pairs * (size_t)K;
   double amplitude = sqrt(pow(cabs(u[1]), 2) + pow(cabs(u[K + 1]), 2) + pow(cabs(u[2 * K + 1]), 2));
   shb_progress_show(s->progress, 100 * total / c->n_preloads,
-                    "n0 %-8.4g N  point %-4d  %8.3f Hz  %.3e m", b->n0[b->n_points - 1],
-                    b->n_points, hz, amplitude);
+                    "n0 %-8.4g N  point %-4d  %s %9.6g %s  %.3e m", b->n0[b->n_points - 1],
+                    b->n_points, what == MHB_IN_FREQUENCY ? "at" : mhb_parameter_name(what),
+                    mhb_parameter_shown(what, at->value), mhb_parameter_unit(what), amplitude);
   if (s->path && shb_seconds() - s->published > PUBLISH_EVERY && s->status == SHB_OK)
     note_failure(s, publish(s));
   return !shb_interrupted() && s->status == SHB_OK;
@@ -75,6 +77,7 @@ static shb_status describe(mhb_response *response, const modal_model *model,
   response->subharmonics   = settings->subharmonics;
   response->engine_order   = settings->engine_order;
   response->blades         = settings->blades;
+  response->parameter      = settings->parameter;
   response->n_multipliers  = settings->stability == MHB_STABILITY_NEVER ? 0 : MHB_JUDGE_MULTIPLIERS;
   response->mode_frequency = malloc(sizeof(double) * m);
   response->mode_damping   = malloc(sizeof(double) * m);
@@ -103,6 +106,7 @@ static shb_status linear_limits(const modal_model *model, const mhb_settings *se
   double most   = settings->n0[0];
   for (int i = 1; i < settings->n_preloads; i++) most = fmax(most, settings->n0[i]);
   mhb_residual_preload(residual, most);
+  mhb_residual_follow(residual, settings->parameter);
   shb_status status = SHB_OK;
   for (int stuck = 0; stuck < 2 && status == SHB_OK; stuck++) {
     int branch;
@@ -121,6 +125,7 @@ static shb_status one_preload(sweep *s, const modal_model *model, int i) {
   lock(&s->base, false);
   if (status != SHB_OK) return status;
   mhb_residual_preload(residual, s->settings->n0[i]);
+  mhb_residual_follow(residual, s->settings->parameter);
   status = mhb_follow(residual, s->response, 2 + i, &s->base);
   lock(&s->base, true);
   s->done[i] = 1;
@@ -204,14 +209,15 @@ shb_status mhb_sweep(const modal_model *model, const mhb_settings *asked, const 
   first.harmonics = m[rungs - 1];
   SHB_TRY(check_load(model, settings));
   first.harmonics = m[0];
-  sweep s         = {.base       = {.point = point, .lock = lock},
-                     .settings   = settings,
-                     .path       = path,
-                     .provenance = provenance,
-                     .progress   = progress,
-                     .published  = shb_seconds()};
-  s.response      = mhb_response_create(model->n_pairs, model->n_probes, m[rungs - 1]);
-  s.done          = calloc((size_t)settings->n_preloads, sizeof(double));
+  if (first.parameter == MHB_IN_N0) first.n_preloads = 1;
+  sweep s    = {.base       = {.point = point, .lock = lock},
+                .settings   = settings,
+                .path       = path,
+                .provenance = provenance,
+                .progress   = progress,
+                .published  = shb_seconds()};
+  s.response = mhb_response_create(model->n_pairs, model->n_probes, m[rungs - 1]);
+  s.done     = calloc((size_t)settings->n_preloads, sizeof(double));
   shb_status status =
       s.response && s.done ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   if (status == SHB_OK) status = describe(s.response, model, settings);

@@ -117,13 +117,13 @@ static void fill(mhb_truncation *t, int k) {
 }
 
 /* far_x <- the solution with the motion at the harmonics beyond 2m; their size. */
-static double look_beyond(mhb_truncation *t, double omega) {
+static double look_beyond(mhb_truncation *t) {
   mhb_residual *b   = t->beyond;
   int           n   = 3 * b->n_pairs, pivot[n];
   double        sum = 0;
   memset(t->far_x, 0, sizeof(double) * (size_t)b->n);
   copy_rows(n, t->x, t->doubled->nb, t->far_x, b->nb);
-  mhb_residual_evaluate(b, t->far_x, omega, t->far_r, NULL, NULL);
+  mhb_residual_evaluate(b, t->far_x, t->narrow->at.omega, t->far_r, NULL, NULL);
   for (int k = 2 * t->narrow->m + 1; k <= b->m; k++) {
     for (int i = 0; i < n; i++)
       t->u[i] = -CMPLX(t->far_r[i * b->nb + 2 * k - 1], t->far_r[i * b->nb + 2 * k]);
@@ -139,9 +139,10 @@ static double look_beyond(mhb_truncation *t, double omega) {
 }
 
 /* step <- -r, then the Newton step where there is room for it and it exists. */
-static mhb_truncation_kind set_step(mhb_truncation *t, double omega) {
-  mhb_residual *b = t->doubled;
-  int           n = b->n;
+static mhb_truncation_kind set_step(mhb_truncation *t) {
+  mhb_residual *b     = t->doubled;
+  double        omega = t->narrow->at.omega;
+  int           n     = b->n;
   if (t->system) {
     mhb_residual_derive(b, t->x, omega, t->step, NULL);
   } else {
@@ -150,7 +151,7 @@ static mhb_truncation_kind set_step(mhb_truncation *t, double omega) {
   for (int i = 0; i < n; i++) t->step[i] = -t->step[i];
   if (!t->system || !mhb_condensed_factor(t->system, NULL, NULL)) return MHB_TRUNCATION_FIRST_ORDER;
   mhb_condensed_solve(t->system, t->step);
-  t->far = look_beyond(t, omega);
+  t->far = look_beyond(t);
   if (t->far <= NEGLIGIBLE * mhb_norm(t->step, n)) return MHB_TRUNCATION_NEWTON;
   mhb_residual_evaluate(t->beyond, t->far_x, omega, t->far_r, NULL, NULL);
   copy_rows(3 * b->n_pairs, t->far_r, t->beyond->nb, t->step, b->nb);
@@ -159,7 +160,7 @@ static mhb_truncation_kind set_step(mhb_truncation *t, double omega) {
   return MHB_TRUNCATION_NEWTON;
 }
 
-double mhb_truncation_error(mhb_truncation *t, const double *x, double omega) {
+double mhb_truncation_error(mhb_truncation *t, const double *x) {
   mhb_residual *b    = t->doubled;
   double        size = mhb_norm(x, t->narrow->n);
   copy_rows(3 * b->n_pairs, x, t->narrow->nb, t->x, b->nb);
@@ -167,9 +168,9 @@ double mhb_truncation_error(mhb_truncation *t, const double *x, double omega) {
   t->far  = 0;
   t->kind = MHB_TRUNCATION_NONE;
   if (is_linear(t->narrow)) return 0;
-  mhb_residual_preload(b, t->narrow->n0);
-  if (t->beyond) mhb_residual_preload(t->beyond, t->narrow->n0);
-  t->kind = set_step(t, omega);
+  mhb_residual_condition(b, &t->narrow->at);
+  if (t->beyond) mhb_residual_condition(t->beyond, &t->narrow->at);
+  t->kind = set_step(t);
   return size > 0 ? hypot(mhb_norm(t->step, b->n), t->far) / size : 0;
 }
 

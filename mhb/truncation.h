@@ -42,9 +42,9 @@ typedef struct {
 shb_status mhb_truncation_create(const mhb_residual *residual, mhb_truncation **truncation);
 void       mhb_truncation_destroy(mhb_truncation *truncation);
 
-/* Estimated error of the solution x[n] that the residual was just evaluated at (omega in rad/s), from the harmonics left
+/* Estimated error of the solution x[n] that the residual was just evaluated at, from the harmonics left
  * out, relative to |x|. First order also where the Newton step does not exist (a fold). */
-double mhb_truncation_error(mhb_truncation *truncation, const double *x, double omega);
+double mhb_truncation_error(mhb_truncation *truncation, const double *x);
 
 /* Estimated error from the modes left out of the solution that the residual was just evaluated at, relative to |x|: the
  * next term of the residual series; -1 if the file holds no residual flexibility. */

@@ -32,8 +32,8 @@ static void extent(mhb_residual *b, const double *x, double w, double ends[2]) {
       if (mhb_path_step(path) != MHB_PATH_ON) break;
       double a = path->now.tangent[path->n], c = path->next.tangent[path->n];
       if (a * c < 0 && mhb_path_locate(path, turning, NULL, a, c, &at)) {
-        ends[0] = fmin(ends[0], path->probe.omega);
-        ends[1] = fmax(ends[1], path->probe.omega);
+        ends[0] = fmin(ends[0], path->probe.value);
+        ends[1] = fmax(ends[1], path->probe.value);
         folds++;
       }
       mhb_path_advance(path);

@@ -33,7 +33,7 @@ static double off_parabola(mhb_residual *b, const double *x, double w, int c, do
     path->step = 1e-4;
     ok         = ok && mhb_path_step(path) != MHB_PATH_STALLED;
     a[2 * k]   = ok ? amplitude(path, &path->next, c) : INFINITY;
-    at[2 * k]  = path->next.omega;
+    at[2 * k]  = path->next.value;
     mhb_path_destroy(path);
   }
   double bend = a[0] - 2 * a[1] + a[2], tiny = 1e-13 * a[1];
@@ -52,7 +52,7 @@ static double off_highest(mhb_residual *b, const double *x, double w, int c) {
     for (int i = 0; i <= STEPS && ok; i++) {
       if (amplitude(path, &path->now, c) > top) {
         top = amplitude(path, &path->now, c);
-        at  = i == STEPS ? INFINITY : path->now.omega;
+        at  = i == STEPS ? INFINITY : path->now.value;
       }
       path->step = 1e-4;
       ok         = mhb_path_step(path) != MHB_PATH_STALLED;

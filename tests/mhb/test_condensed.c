@@ -149,9 +149,11 @@ static void a_new_law_is_factored_anew(void **state) {
   assert_int_equal(mhb_condensed_create(b, &system), SHB_OK);
   random_vector(N, .1, 1, x);
   for (int round = 0; round < 2; round++) {
-    double *out = round ? again : first;
-    s.kv        = round ? 1.6 : .8; /* the residual reads its settings anew */
-    mhb_residual_preload(b, 1e4);
+    double       *out = round ? again : first;
+    mhb_condition at  = b->at;
+    at.kv             = round ? 1.6 : .8;
+    at.n0             = 1e4;
+    mhb_residual_condition(b, &at);
     mhb_residual_derive(b, x, 1.2, r, NULL);
     random_vector(N, 1, 2, out);
     assert_true(mhb_condensed_factor(system, NULL, NULL) && mhb_condensed_solve(system, out));

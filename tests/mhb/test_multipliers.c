@@ -242,7 +242,7 @@ static void other_side(periodic *p, double low, double high, double *x) {
   assert_int_equal(mhb_path_start(path, p->x, p->omega, -1), MHB_CONVERGED);
   for (int i = 0; i < 1000; i++) {
     assert_int_equal(mhb_path_step(path), MHB_PATH_ON);
-    double now = path->now.omega, next = path->next.omega, share = (p->omega - now) / (next - now);
+    double now = path->now.value, next = path->next.value, share = (p->omega - now) / (next - now);
     if (now < p->omega && next >= p->omega) {
       for (int k = 0; k < path->n; k++)
         x[k] = (1 - share) * path->now.x[k] + share * path->next.x[k];

@@ -78,12 +78,12 @@ static walked walk(mhb_residual *residual, double low, double high, int directio
     double a = path->now.tangent[path->n], b = path->next.tangent[path->n];
     if (a * b < 0 && w.n_folds < MAX_FOLDS) {
       assert_int_equal(mhb_path_locate(path, turning, NULL, a, b, &at), 1);
-      w.fold[w.n_folds++] = path->probe.omega;
+      w.fold[w.n_folds++] = path->probe.value;
     }
     mhb_path_advance(path);
   }
   assert_int_equal(outcome, direction > 0 ? MHB_PATH_AT_END : MHB_PATH_AT_START);
-  w.end = path->now.omega;
+  w.end = path->now.value;
   mhb_newton_destroy(newton);
   mhb_path_destroy(path);
   return w;

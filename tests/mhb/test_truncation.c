@@ -91,7 +91,7 @@ static void compare(workspace *s, const mhb_branch *b, comparison *out) {
       continue;
     }
     mhb_residual_evaluate(r, x, omega, s->newton->r, NULL, NULL);
-    double estimate = mhb_truncation_error(s->truncation, x, omega);
+    double estimate = mhb_truncation_error(s->truncation, x);
     out->worst      = fmax(out->worst, error);
     if (fmax(error, estimate) > 1e-7) out->ratio[out->n++] = estimate / error; /* else: noise */
   }
@@ -186,7 +186,7 @@ static void step_leads_on(void **state) {
   assert_int_equal(mhb_first_solution(narrow.newton, b, omega, 1e-11, x, &iterations),
                    MHB_CONVERGED);
   mhb_residual_evaluate(b, x, omega, narrow.newton->r, NULL, NULL);
-  mhb_truncation_error(narrow.truncation, x, omega);
+  mhb_truncation_error(narrow.truncation, x);
   s.harmonics = 10;
   workspace_create(&model, &s, &wide);
   int    n = wide.residual->n;
@@ -223,7 +223,7 @@ static void kinds(void **state) {
     memset(x, 0, sizeof x);
     for (int row = 0; row < 3 * b->n_pairs; row++) x[row * b->nb + 1] = 1 + .1 * row;
     mhb_residual_evaluate(b, x, 1.23, r, NULL, NULL);
-    double error = mhb_truncation_error(at.truncation, x, 1.23);
+    double error = mhb_truncation_error(at.truncation, x);
     print_message("%2d pairs, n0 %g: kind %d, %.2e\n", rows[i].pairs, rows[i].n0,
                   at.truncation->kind, error);
     assert_int_equal(at.truncation->kind, rows[i].kind);

@@ -24,6 +24,8 @@ target_link_options(test_mhb_condensed PRIVATE
   LINKER:--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=aligned_alloc)
 shb_test(mhb path fast shb_mhb)
 target_sources(test_mhb_path PRIVATE mhb/random_model.c mhb/solution.c mhb/three_degree.c)
+shb_test(mhb parameter fast shb_mhb)
+target_sources(test_mhb_parameter PRIVATE mhb/random_model.c mhb/three_degree.c)
 shb_test(mhb response fast shb_response)
 shb_test(mhb multipliers fast shb_mhb)
 target_sources(test_mhb_multipliers PRIVATE mhb/disturbed.c mhb/periodic.c mhb/three_degree.c)
