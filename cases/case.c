@@ -87,6 +87,7 @@ void case_free(case_file *file) {
   free(file->name);
   free(file->mesh_file);
   free(file->modal_file);
+  free(file->converge_output);
   *file = (case_file){0};
 }
 

@@ -46,6 +46,7 @@ typedef enum {
   CASE_IF_TRACTION,
   CASE_IF_FORCE,
   CASE_IF_FORCE_AT, /* excitation by force with a place of its own */
+  CASE_IF_OUTPUT,   /* converge.output given */
   CASE_IF_AUTO      /* harmonics: auto */
 } case_condition;
 

@@ -6,6 +6,7 @@
 
 #include "cases/case.h"
 #include "cases/command.h"
+#include "cases/converge.h"
 #include "cases/fresh.h"
 #include "mesh/progress.h"
 #include "postproc/inspect.h"
@@ -16,7 +17,8 @@ static const char usage[] =
     "       shroudhb-post --inspect [--verbose] FILE.h5\n"
     "\n"
     "Makes NAME.html (report), NAME.csv (every point) and NAME.svg (picture) from "
-    "NAME.response.h5.\n"
+    "NAME.response.h5;\n"
+    "the report has the section Speed against error if NAME.converge.h5 belongs to the case.\n"
     "With --inspect: what an HDF5 file holds; --verbose unfolds everything, case text and settings "
     "too.\n";
 
@@ -32,14 +34,26 @@ static shb_status inspect(const command_options *options) {
   return status;
 }
 
+/* NAME.converge.h5 if it was made from the case as it is now; malloc'ed, NULL if not. */
+static char *fresh_convergence(const case_file *file) {
+  char *path = case_output(file, ".converge.h5"), *settings = NULL;
+  bool  fresh = path && access(path, R_OK) == 0 && converge_settings(file, &settings) == SHB_OK &&
+               fresh_equal(path, settings);
+  free(settings);
+  if (fresh) return path;
+  free(path);
+  return NULL;
+}
+
 static shb_status publish(const case_file *file, const command_options *options) {
   shb_progress progress = shb_progress_start("post", options->quiet, options->verbose);
   char        *response = case_output(file, ".response.h5"), *html = case_output(file, ".html");
   char        *csv = case_output(file, ".csv"), *svg = case_output(file, ".svg"), *summary = NULL;
+  char        *convergence = fresh_convergence(file);
   shb_status   status;
   if (response && html && csv && svg) {
     fresh_warn(file, CASE_MHB, response);
-    const post_job job = {file->name, response, html, csv, svg};
+    const post_job job = {file->name, response, html, csv, svg, convergence};
     status             = post_publish(&job, &progress, &summary);
   } else {
     status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
@@ -47,6 +61,7 @@ static shb_status publish(const case_file *file, const command_options *options)
   if (status == SHB_OK && !options->quiet)
     printf("%s%s%s\n", html, summary ? ": " : "", summary ? summary : "");
   free(summary);
+  free(convergence);
   free(response);
   free(html);
   free(csv);

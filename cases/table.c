@@ -118,6 +118,15 @@ static const case_key table[] = {
      .help = "points after which a branch ends"},
     {"mhb.stability", CASE_CHOICE, "", .words = "auto always never", .fallback = "auto", AT(mhb.stability), .stages = CASE_MHB,
      .help = "Floquet multipliers: at every point where that is cheap, else at a few a curve; at every point; at none"},
+
+    {"converge.tolerance", CASE_NUMBER, "", 0, 1, true, .fallback = "1 %", AT(converge_tolerance), .stages = CASE_CONVERGE,
+     .help = "what `shroudhb converge` judges by: error of the peak, its frequency and the whole curve, relative"},
+    {"converge.output", CASE_WORD, "", AT(converge_output), .stages = CASE_CONVERGE, .when = CASE_IF_OUTPUT,
+     .help = "the motion it looks at: a probe's name, or contact; default: the first probe, else the first contact"},
+    {"converge.n0", CASE_INTERVAL, "N", -1e12, 1e12, .fallback = "[-1e12, 1e12]", AT(converge_n0), .stages = CASE_CONVERGE,
+     .help = "the preloads it looks at: those of contact.n0 in this range"},
+    {"converge.seconds", CASE_NUMBER, "s", 0, 1e6, true, .fallback = "60 s", AT(converge_seconds), .stages = CASE_CONVERGE,
+     .help = "its ladder of harmonics ends before a rung whose balance would take longer"},
 };
 /* clang-format on */
 
@@ -152,6 +161,8 @@ bool case_key_applies(const case_key *key, const case_file *file) {
       return own && file->load.kind == FEM_LOAD_FORCE;
     case CASE_IF_FORCE_AT:
       return own && file->load.kind == FEM_LOAD_FORCE && file->load.has_at;
+    case CASE_IF_OUTPUT:
+      return file->converge_output != NULL;
     case CASE_IF_AUTO:
       return file->mhb.harmonics == 0;
     case CASE_ALWAYS:

@@ -9,10 +9,11 @@
 #include "postproc/report.h"
 
 typedef struct {
-  mhb_response *response;
-  post_source   source;
-  post_study   *study;
-  post_buffer   html, csv, svg;
+  mhb_response    *response;
+  post_source      source;
+  post_study      *study;
+  post_convergence convergence;
+  post_buffer      html, csv, svg;
 } work;
 
 /* The study's complaint with the file's name before it. */
@@ -30,6 +31,10 @@ static shb_status compose(const post_job *job, shb_progress *progress, work *w) 
   SHB_TRY(mhb_response_read(job->response, &w->response));
   SHB_TRY(post_source_open(job->response, &w->source));
   SHB_TRY(make_study(job, w));
+  if (job->convergence) {
+    SHB_TRY(post_convergence_read(job->convergence, &w->convergence));
+    w->study->convergence = &w->convergence;
+  }
   shb_progress_note(progress, "read %d points on %d curves in %.2f s", w->study->n_points,
                     w->response->n_branches, shb_seconds() - started);
   started = shb_seconds();
@@ -65,6 +70,7 @@ shb_status post_publish(const post_job *job, shb_progress *progress, char **summ
   }
   shb_progress_clear(progress);
   post_study_destroy(w.study);
+  post_convergence_free(&w.convergence);
   post_source_free(&w.source);
   mhb_response_destroy(w.response);
   post_buffer_free(&w.html);

@@ -9,10 +9,11 @@ typedef struct {
   const char *case_name;        /* title of the page */
   const char *response;         /* file to read */
   const char *html, *csv, *svg; /* files to write, each whole or not at all */
+  const char *convergence;      /* NAME.converge.h5 for the page, or NULL */
 } post_job;
 
 /* Nothing is written unless all three could be composed. summary: malloc'ed line for the terminal, may be NULL.
- * Errors: as mhb_response_read; SHB_ERR_INPUT no point; SHB_ERR_IO. */
+ * Errors: as mhb_response_read, post_convergence_read; SHB_ERR_INPUT no point; SHB_ERR_IO. */
 shb_status post_publish(const post_job *job, shb_progress *progress, char **summary);
 
 #endif

@@ -6,6 +6,7 @@
 
 #include "postproc/charts.h"
 #include "postproc/colour.h"
+#include "postproc/convergence_chart.h"
 #include "postproc/findings.h"
 #include "postproc/page.h"
 #include "postproc/page_data.h"
@@ -35,7 +36,7 @@ static void put_head(const post_study *study, const char *case_name, post_buffer
   put_ramp(study, false, out);
   post_put(out, "\n@media screen and (prefers-color-scheme: dark){");
   put_ramp(study, true, out);
-  post_put(out, "}\n</style>\n</head>\n");
+  post_put(out, "}\n%s</style>\n</head>\n", study->convergence ? post_convergence_css : "");
 }
 
 /* Rounded to a thousandth, so that rounding errors of an angle read 0. */
@@ -236,6 +237,7 @@ shb_status post_report(const post_study *study, const post_source *source, const
   put_main(study, case_name, out);
   put_tracking(study, out);
   put_details(study, chosen, out);
+  if (study->convergence) post_convergence_section(study->convergence, out);
   put_tables(study, out);
   put_source(source, out);
   post_put(out, "</main>\n<script type=\"application/json\" id=\"data\">\n");

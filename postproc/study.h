@@ -6,6 +6,7 @@
 #include <stdbool.h>
 
 #include "mhb/response.h"
+#include "postproc/convergence.h"
 #include "postproc/curves.h"
 #include "postproc/output.h"
 
@@ -58,6 +59,8 @@ typedef struct {
   double              frequency[2]; /* Hz, range of all points */
   double              largest;      /* m, of the primary output over all branches */
   int                 n_points;
+  const post_convergence
+      *convergence; /* speed against error, if the case was studied; set by the caller */
 } post_study;
 
 /* Errors: SHB_ERR_INPUT (no branch with a point), SHB_ERR_IO (no memory). The response must outlive the study. */

@@ -22,3 +22,9 @@ if(TARGET shroudhb-post)
     SHROUDHB="$<TARGET_FILE:shroudhb>" SCENE="${PROJECT_SOURCE_DIR}/cases/z_notch_blade/case.yaml")
   add_dependencies(test_cases_z_notch shroudhb shroudhb-mesh shroudhb-modal shroudhb-mhb shroudhb-post)
 endif()
+
+# Speed against error, from end to end.
+shb_test(cases converge fast shb_mhb shb_post)
+target_sources(test_cases_converge PRIVATE cases/scratch.c mhb/three_degree.c)
+target_compile_definitions(test_cases_converge PRIVATE SHROUDHB="$<TARGET_FILE:shroudhb>")
+add_dependencies(test_cases_converge shroudhb shroudhb-converge shroudhb-rung)

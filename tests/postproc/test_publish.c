@@ -44,7 +44,7 @@ static char *contents(const char *path) {
 }
 
 static shb_status publish(char **summary) {
-  const post_job job      = {"x", response, html, csv, svg};
+  const post_job job      = {"x", response, html, csv, svg, NULL};
   shb_progress   progress = shb_progress_start("post", true, false);
   return post_publish(&job, &progress, summary);
 }

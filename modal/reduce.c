@@ -1,0 +1,102 @@
+#include "modal/reduce.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double PI = 3.14159265358979323846;
+
+static int n_contact(const modal_model *model) {
+  return 3 * model->n_pairs * (model->has_left ? 2 : 1);
+}
+
+static double at_contact(const modal_model *model, int dof, int mode) {
+  int           side  = 3 * model->n_pairs;
+  const double *shape = dof < side ? model->right : model->left;
+  return shape[(size_t)(dof % side) * (size_t)model->n_modes + (size_t)mode];
+}
+
+static void drop_residuals(modal_model *model) {
+  free(model->residual_flexibility);
+  free(model->residual_inertia);
+  free(model->load_residual);
+  free(model->probe_contact_residual);
+  free(model->probe_load_residual);
+  model->residual_flexibility = model->residual_inertia = model->probe_contact_residual = NULL;
+  model->load_residual = model->probe_load_residual = NULL;
+}
+
+/* Zeros where the file holds none. */
+static bool make_residuals(modal_model *model) {
+  size_t c = (size_t)n_contact(model), q = 3 * (size_t)model->n_probes;
+  size_t k = (size_t)model->n_load + 1;
+  if (!model->residual_flexibility) model->residual_flexibility = calloc(c * c, sizeof(double));
+  if (!model->residual_inertia) model->residual_inertia = calloc(c * c, sizeof(double));
+  if (!model->load_residual) model->load_residual = calloc(k * c, sizeof(double complex));
+  bool made = model->residual_flexibility && model->residual_inertia && model->load_residual;
+  if (q == 0) return made;
+  if (!model->probe_contact_residual) model->probe_contact_residual = calloc(q * c, sizeof(double));
+  if (!model->probe_load_residual)
+    model->probe_load_residual = calloc(k * q, sizeof(double complex));
+  return made && model->probe_contact_residual && model->probe_load_residual;
+}
+
+/* to[rows][columns] += a b^T / scale */
+static void add_outer(double *to, int rows, const double *a, int columns, const double *b,
+                      double scale) {
+  for (int i = 0; i < rows; i++)
+    for (int j = 0; j < columns; j++)
+      to[(size_t)i * (size_t)columns + (size_t)j] += a[i] * b[j] / scale;
+}
+
+/* One mode's static answer, phi and psi its shape at contact and probes. */
+static void add_static(modal_model *model, int mode, const double *phi, const double *psi) {
+  int    c = n_contact(model), q = 3 * model->n_probes;
+  double w = 2 * PI * model->frequency[mode], w2 = w * w;
+  add_outer(model->residual_flexibility, c, phi, c, phi, w2);
+  add_outer(model->residual_inertia, c, phi, c, phi, w2 * w2);
+  if (q > 0) add_outer(model->probe_contact_residual, q, psi, c, phi, w2);
+  for (int k = 0; k <= model->n_load; k++) {
+    double complex f = model->modal_force[(size_t)k * (size_t)model->n_modes + (size_t)mode] / w2;
+    for (int i = 0; i < c; i++)
+      model->load_residual[(size_t)k * (size_t)c + (size_t)i] += phi[i] * f;
+    for (int i = 0; i < q; i++)
+      model->probe_load_residual[(size_t)k * (size_t)q + (size_t)i] += psi[i] * f;
+  }
+}
+
+static shb_status add_statics(modal_model *model, int modes) {
+  int     c = n_contact(model), q = 3 * model->n_probes;
+  double *phi = calloc((size_t)(c + q) + 1, sizeof *phi), *psi = phi ? phi + c : NULL;
+  bool    made = phi && make_residuals(model);
+  for (int mode = modes; made && mode < model->n_modes; mode++) {
+    for (int i = 0; i < c; i++) phi[i] = at_contact(model, i, mode);
+    for (int i = 0; i < q; i++)
+      psi[i] = model->probe[(size_t)i * (size_t)model->n_modes + (size_t)mode];
+    add_static(model, mode, phi, psi);
+  }
+  free(phi);
+  SHB_CHECK(made, SHB_ERR_IO, "no memory for the residual flexibility of %d contact dofs", c);
+  return SHB_OK;
+}
+
+/* [rows][from] to [rows][to], in place. */
+static void narrow(void *data, size_t rows, size_t from, size_t to, size_t size) {
+  char *bytes = data;
+  for (size_t i = 1; data && i < rows; i++)
+    memmove(bytes + i * to * size, bytes + i * from * size, to * size);
+}
+
+shb_status modal_model_keep(modal_model *model, int modes, bool residuals) {
+  SHB_CHECK(modes >= 1 && modes <= model->n_modes, SHB_ERR_INPUT,
+            "%d modes are to be kept; there are 1 to %d", modes, model->n_modes);
+  if (!residuals) drop_residuals(model);
+  if (residuals && modes < model->n_modes) SHB_TRY(add_statics(model, modes));
+  size_t pairs = 3 * (size_t)model->n_pairs, from = (size_t)model->n_modes, to = (size_t)modes;
+  narrow(model->right, pairs, from, to, sizeof(double));
+  if (model->has_left) narrow(model->left, pairs, from, to, sizeof(double));
+  narrow(model->probe, 3 * (size_t)model->n_probes, from, to, sizeof(double));
+  narrow(model->modal_force, (size_t)model->n_load + 1, from, to, sizeof(double complex));
+  model->n_modes = modes;
+  return SHB_OK;
+}
