@@ -7,6 +7,7 @@
 #include "cases/issues.h"
 #include "cases/reader.h"
 #include "cases/yaml.h"
+#include "mhb/parameter.h"
 
 static char *folder_of(const char *path) {
   const char *slash = strrchr(path, '/');
@@ -26,6 +27,18 @@ static char *default_name(const char *path, const char *folder) {
   char       *name = last && last[1] ? strdup(last + 1) : strndup(leaf, n);
   free(full);
   return name;
+}
+
+/* What curves are followed in: the frequency, unless mhb.vary names something else. */
+static void share_parameter(case_reader *r) {
+  mhb_settings *mhb = &r->file->mhb;
+  for (int i = MHB_IN_FREQUENCY + 1; i < MHB_N_PARAMETERS; i++) {
+    char path[CASE_PATH];
+    case_path(path, "mhb.vary.%s", mhb_parameter_name((mhb_parameter)i));
+    if (!case_reader_given(r, path)) continue;
+    mhb->parameter = (mhb_parameter)i;
+    memcpy(mhb->range, r->file->vary[i], sizeof mhb->range);
+  }
 }
 
 /* Copies of a value for those who look for it elsewhere. */
@@ -50,6 +63,7 @@ static bool read_document(case_issues *issues, int stages, case_file *out) {
   bool lost = false;
   if (root && root->kind == CASE_MAPPING) {
     share(&reader);
+    share_parameter(&reader);
     case_check_alternatives(&reader, stages);
     case_reader_require(&reader, stages);
     lost = case_check_values(&reader, stages);

@@ -47,6 +47,7 @@ typedef struct {
 
   int          points; /* contact patches; 0 = all */
   mhb_settings mhb;
+  double       vary[MHB_N_PARAMETERS][2]; /* range of a parameter that is followed */
 
   double converge_tolerance;
   double converge_n0[2];   /* N, preloads that are looked at */

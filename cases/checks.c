@@ -7,6 +7,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "mhb/parameter.h"
+
 static bool has_block(const case_reader *r, const char *path) {
   for (int i = 0; i < r->n_blocks; i++)
     if (strcmp(r->block[i].path, path) == 0) return true;
@@ -123,6 +125,29 @@ static void check_tolerance(case_reader *r) {
                       "law is contact.accuracy");
 }
 
+/* One parameter is followed, all others stand. */
+static void check_followed(case_reader *r) {
+  const mhb_settings *mhb    = &r->file->mhb;
+  int                 single = mhb->frequency[0] == mhb->frequency[1], given = 0;
+  for (int i = MHB_IN_FREQUENCY + 1; i < MHB_N_PARAMETERS; i++) {
+    char path[CASE_PATH];
+    case_path(path, "mhb.vary.%s", mhb_parameter_name((mhb_parameter)i));
+    if (!case_reader_given(r, path)) continue;
+    if (given++ > 0) case_reader_issue(r, path, "only one parameter can be followed");
+  }
+  if (!case_reader_given(r, "mhb.frequency") || !case_reader_good(r, "mhb.frequency")) return;
+  if (given == 0 && single)
+    case_reader_issue(r, "mhb.frequency",
+                      "is one number; give [from, to], or say with mhb.vary what is to be followed "
+                      "at this frequency");
+  if (given > 0 && !single)
+    case_reader_issue(r, "mhb.frequency",
+                      "must be one number, because curves follow mhb.vary.%s instead",
+                      mhb_parameter_name(mhb->parameter));
+  if (mhb->parameter == MHB_IN_N0 && case_reader_good(r, "contact.n0") && mhb->n_preloads > 1)
+    case_reader_issue(r, "contact.n0", "must be one number, because curves follow mhb.vary.n0");
+}
+
 /* Harmonic k of the load drives harmonic k nu of the balance, whose fundamental is omega / nu. */
 static void check_harmonics(case_reader *r, int stages) {
   const case_file *file = r->file;
@@ -168,6 +193,7 @@ bool case_check_values(case_reader *r, int stages) {
   check_blade(r, stages);
   check_harmonics(r, stages);
   check_tolerance(r);
+  if (stages & CASE_MHB) check_followed(r);
   if (own) check_extension(r);
   if (own && stages & (CASE_MESH | CASE_MODAL)) lost = check_file(r, "mesh.file", file->mesh_file);
   if (!own && stages & CASE_MHB) lost = check_file(r, "modal.file", file->modal_file);

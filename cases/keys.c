@@ -139,6 +139,7 @@ static const char *type_name(const case_key *key) {
                                                   [CASE_FILE_NAME] = "file",
                                                   [CASE_VECTOR]    = "[x, y, z]",
                                                   [CASE_INTERVAL]  = "[from, to]",
+                                                  [CASE_SWEEP]     = "[from, to] or number",
                                                   [CASE_STIFFNESS] = "number or list",
                                                   [CASE_PRELOADS]  = "number(s)",
                                                   [CASE_FACTORS]   = "mapping",

@@ -22,6 +22,7 @@ typedef enum {
   CASE_FILE_NAME, /* path, relative to the case file: char * */
   CASE_VECTOR,    /* [x, y, z]: double[3] */
   CASE_INTERVAL,  /* [from, to], increasing: double[2] */
+  CASE_SWEEP,     /* the same, or a number for both: double[2] */
   CASE_STIFFNESS, /* number or [kuu, kuw, kww], positive definite: double[3] */
   CASE_PRELOADS,  /* number, list, or {from, to, points}: the case_file's mhb.n0 */
   CASE_FACTORS,   /* {k: [factor, phase]}: the case_file's load */
@@ -47,7 +48,8 @@ typedef enum {
   CASE_IF_FORCE,
   CASE_IF_FORCE_AT, /* excitation by force with a place of its own */
   CASE_IF_OUTPUT,   /* converge.output given */
-  CASE_IF_AUTO      /* harmonics: auto */
+  CASE_IF_AUTO,     /* harmonics: auto */
+  CASE_IF_FOLLOWED  /* the parameter of this row is followed */
 } case_condition;
 
 typedef struct {

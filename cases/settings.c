@@ -75,6 +75,7 @@ static void print_scalar(FILE *out, const case_key *key, const case_file *file) 
       print_numbers(out, file->mhb.n_preloads, slot);
       break;
     case CASE_INTERVAL:
+    case CASE_SWEEP:
       print_numbers(out, 2, slot);
       break;
     case CASE_VECTOR:

@@ -104,8 +104,18 @@ static const case_key table[] = {
     {"contact.accuracy", CASE_ACCURACY, "", 1e-14, 1e-2, .words = "fast balanced exact", .fallback = "exact", AT(mhb.tolerance), .stages = CASE_MHB,
      .help = "relative tolerance of the contact law: fast 1e-3, balanced 1e-5, exact 1e-8, or a number, 1e-14 to 0.01"},
 
-    {"mhb.frequency", CASE_INTERVAL, "Hz", 0, 1e9, true, .required = true, AT(mhb.frequency), .stages = CASE_MHB,
-     .help = "range of the sweep: [from, to]"},
+    {"mhb.frequency", CASE_SWEEP, "Hz", 0, 1e9, true, .required = true, AT(mhb.frequency), .stages = CASE_MHB,
+     .help = "range of the sweep: [from, to]; with mhb.vary one number"},
+    {"mhb.vary.n0", CASE_INTERVAL, "N", -1e12, 1e12, AT(vary[MHB_IN_N0]), .stages = CASE_MHB, .when = CASE_IF_FOLLOWED,
+     .help = "curves follow this instead of the frequency: the preload"},
+    {"mhb.vary.scale", CASE_INTERVAL, "", 0, 1e12, AT(vary[MHB_IN_SCALE]), .stages = CASE_MHB, .when = CASE_IF_FOLLOWED,
+     .help = "or the level of the excitation, in place of mhb.scale"},
+    {"mhb.vary.mu", CASE_INTERVAL, "", 0, 1e6, AT(vary[MHB_IN_MU]), .stages = CASE_MHB, .when = CASE_IF_FOLLOWED,
+     .help = "or the friction coefficient, in place of contact.mu"},
+    {"mhb.vary.ku", CASE_INTERVAL, "N/m", 0, 1e15, true, AT(vary[MHB_IN_KU]), .stages = CASE_MHB, .when = CASE_IF_FOLLOWED,
+     .help = "or kuu; kuw and kww stay in the proportion that contact.ku gives"},
+    {"mhb.vary.kv", CASE_INTERVAL, "N/m", 0, 1e15, AT(vary[MHB_IN_KV]), .stages = CASE_MHB, .when = CASE_IF_FOLLOWED,
+     .help = "or the normal stiffness, in place of contact.kv"},
     {"mhb.harmonics", CASE_AUTO, "", 1, MOST_HARMONICS, .fallback = "3", AT(mhb.harmonics), .stages = CASE_MHB,
      .help = "harmonics of the balance, counted in the fundamental; auto: chosen at each point by mhb.tolerance, at most 31"},
     {"mhb.tolerance", CASE_NUMBER, "", 1e-8, 0.1, .fallback = "1e-4", AT(mhb.motion_tolerance), .stages = CASE_MHB, .when = CASE_IF_AUTO,
@@ -165,6 +175,8 @@ bool case_key_applies(const case_key *key, const case_file *file) {
       return file->converge_output != NULL;
     case CASE_IF_AUTO:
       return file->mhb.harmonics == 0;
+    case CASE_IF_FOLLOWED:
+      return (const char *)file + key->at == (const char *)file->vary[file->mhb.parameter];
     case CASE_ALWAYS:
       return true;
   }

@@ -28,6 +28,7 @@ void case_value_expected(const case_key *key, char *text, size_t size) {
       [CASE_FILE_NAME] = "a file name",
       [CASE_VECTOR]    = "[x, y, z]",
       [CASE_INTERVAL]  = "[from, to]",
+      [CASE_SWEEP]     = "[from, to] or a number",
       [CASE_STIFFNESS] = "a number or [kuu, kuw, kww]",
       [CASE_PRELOADS]  = "a number, a list or {from, to, points}",
       [CASE_FACTORS]   = "a mapping {harmonic: [factor, phase]}",
@@ -235,6 +236,14 @@ static bool read_interval(const context *c, const case_node *node, void *slot) {
   return false;
 }
 
+static bool read_sweep(const context *c, const case_node *node, void *slot) {
+  double *value = slot;
+  if (node->kind != CASE_SCALAR) return read_interval(c, node, slot);
+  if (!number_at(c, c->path, node, &value[0])) return false;
+  value[1] = value[0];
+  return true;
+}
+
 static bool read_stiffness(const context *c, const case_node *node, void *slot) {
   double *k = slot;
   if (node->kind == CASE_SCALAR) {
@@ -420,14 +429,15 @@ static bool read_signal(const context *c, const case_node *node, void *slot) {
 bool case_value_read(case_issues *issues, const case_key *key, const char *path,
                      const case_node *node, case_file *file, void *slot) {
   static bool (*const readers[CASE_N_TYPES])(const context *, const case_node *, void *) = {
-      [CASE_NUMBER] = read_number,       [CASE_INTEGER] = read_integer,
-      [CASE_COUNT] = read_count,         [CASE_CHOICE] = read_choice,
-      [CASE_SWITCH] = read_switch,       [CASE_ACCURACY] = read_accuracy,
-      [CASE_WORD] = read_word,           [CASE_FILE_NAME] = read_file_name,
-      [CASE_VECTOR] = read_vector,       [CASE_INTERVAL] = read_interval,
-      [CASE_STIFFNESS] = read_stiffness, [CASE_PRELOADS] = read_preloads,
-      [CASE_FACTORS] = read_factors,     [CASE_PROBES] = read_probes,
-      [CASE_SIGNAL] = read_signal,       [CASE_AUTO] = read_count};
+      [CASE_NUMBER] = read_number,     [CASE_INTEGER] = read_integer,
+      [CASE_COUNT] = read_count,       [CASE_CHOICE] = read_choice,
+      [CASE_SWITCH] = read_switch,     [CASE_ACCURACY] = read_accuracy,
+      [CASE_WORD] = read_word,         [CASE_FILE_NAME] = read_file_name,
+      [CASE_VECTOR] = read_vector,     [CASE_INTERVAL] = read_interval,
+      [CASE_SWEEP] = read_sweep,       [CASE_STIFFNESS] = read_stiffness,
+      [CASE_PRELOADS] = read_preloads, [CASE_FACTORS] = read_factors,
+      [CASE_PROBES] = read_probes,     [CASE_SIGNAL] = read_signal,
+      [CASE_AUTO] = read_count};
   const context c = {.issues = issues, .key = key, .path = path, .file = file};
   return readers[key->type](&c, node, slot);
 }

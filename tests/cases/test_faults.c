@@ -76,11 +76,11 @@ static void keys_and_kinds(void **state) {
        1},
       {"  scale: 1.3", "  zzzzzz: 1.3",
        "c.yaml:34:3: error: mhb.zzzzzz: unknown key; known here: frequency, "
-       "harmonics, tolerance, subharmonics, scale, max_points, stability",
+       "vary, harmonics, tolerance, subharmonics, scale, max_points, stability",
        1},
       {"  scale: 1.3", "  mhb.scale: 1.3",
        "c.yaml:34:3: error: mhb.mhb.scale: unknown key; known here: "
-       "frequency, harmonics, tolerance, subharmonics, scale, max_points, stability",
+       "frequency, vary, harmonics, tolerance, subharmonics, scale, max_points, stability",
        1},
       {"  scale: 1.3", "  [a, b]: 1.3",
        "c.yaml:34:3: error: mhb.?: a key must be a word, not a list", 1},
@@ -168,6 +168,18 @@ static void numbers_and_ranges(void **state) {
        "c.yaml:23:11: error: contact.points: 'some' is not a whole number", 1},
       {"[90 Hz, 0.12 kHz]", "[90 Hz]",
        "c.yaml:31:14: error: mhb.frequency: has 1 numbers, expected 2", 1},
+      {"[90 Hz, 0.12 kHz]", "90 Hz",
+       "c.yaml:31:14: error: mhb.frequency: is one number; give [from, to], or say with mhb.vary "
+       "what is to be followed at this frequency",
+       1},
+      {"[90 Hz, 0.12 kHz]", "[90 Hz, 120 Hz]\n  vary: {mu: [0, 1]}",
+       "c.yaml:31:14: error: mhb.frequency: must be one number, because curves follow mhb.vary.mu "
+       "instead",
+       1},
+      {"[90 Hz, 0.12 kHz]", "90 Hz\n  vary: {mu: [0, 1], scale: [1, 2]}",
+       "c.yaml:32:14: error: mhb.vary.mu: only one parameter can be followed", 1},
+      {"[90 Hz, 0.12 kHz]", "90 Hz\n  vary: {n0: [0 N, 10 N]}",
+       "c.yaml:27:7: error: contact.n0: must be one number, because curves follow mhb.vary.n0", 1},
       {"[90 Hz, 0.12 kHz]", "[90 Hz, 0.08 kHz]",
        "c.yaml:31:14: error: mhb.frequency: goes from 90 to 80 Hz; "
        "the second must be above the first",
