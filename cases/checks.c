@@ -163,6 +163,27 @@ static void check_harmonics(case_reader *r, int stages) {
         k, file->mhb.harmonics, needed);
 }
 
+/* Frequencies outside the range would find curves that are not followed. */
+static void check_search(case_reader *r) {
+  const mhb_settings *mhb  = &r->file->mhb;
+  const case_node    *node = case_reader_given(r, "mhb.search.at");
+  if (!node || !case_reader_good(r, "mhb.search.at") || !case_reader_good(r, "mhb.frequency"))
+    return;
+  if (mhb->parameter != MHB_IN_FREQUENCY) {
+    case_reader_issue(r, "mhb.search.at",
+                      "are frequencies, but curves follow mhb.vary; without it places are chosen");
+    return;
+  }
+  for (int i = 0; i < mhb->search.n_at; i++) {
+    char path[CASE_PATH];
+    case_path(path, "mhb.search.at[%d]", i);
+    if (mhb->search.at[i] < mhb->frequency[0] || mhb->search.at[i] > mhb->frequency[1])
+      case_issue_add(r->issues, node->child[i].line, node->child[i].column, path,
+                     "is %g Hz, must be within mhb.frequency, %g to %g Hz", mhb->search.at[i],
+                     mhb->frequency[0], mhb->frequency[1]);
+  }
+}
+
 /* An input file that cannot be read; true if so. */
 static bool check_file(case_reader *r, const char *key, const char *path) {
   if (!path || !case_reader_good(r, key)) return false;
@@ -194,6 +215,7 @@ bool case_check_values(case_reader *r, int stages) {
   check_harmonics(r, stages);
   check_tolerance(r);
   if (stages & CASE_MHB) check_followed(r);
+  check_search(r);
   if (own) check_extension(r);
   if (own && stages & (CASE_MESH | CASE_MODAL)) lost = check_file(r, "mesh.file", file->mesh_file);
   if (!own && stages & CASE_MHB) lost = check_file(r, "modal.file", file->modal_file);

@@ -142,6 +142,8 @@ static const char *type_name(const case_key *key) {
                                                   [CASE_SWEEP]     = "[from, to] or number",
                                                   [CASE_STIFFNESS] = "number or list",
                                                   [CASE_PRELOADS]  = "number(s)",
+                                                  [CASE_PLACES]    = "list",
+                                                  [CASE_ORDERS]    = "list",
                                                   [CASE_FACTORS]   = "mapping",
                                                   [CASE_PROBES]    = "mapping",
                                                   [CASE_SECTIONS]  = "list",

@@ -25,6 +25,8 @@ typedef enum {
   CASE_SWEEP,     /* the same, or a number for both: double[2] */
   CASE_STIFFNESS, /* number or [kuu, kuw, kww], positive definite: double[3] */
   CASE_PRELOADS,  /* number, list, or {from, to, points}: the case_file's mhb.n0 */
+  CASE_PLACES,    /* list of frequencies: the case_file's mhb.search */
+  CASE_ORDERS,    /* list of whole numbers, ascending: the case_file's mhb.search */
   CASE_FACTORS,   /* {k: [factor, phase]}: the case_file's load */
   CASE_PROBES,    /* {name: [x, y, z]}: the case_file's probe */
   CASE_SECTIONS, /* list of mappings, whose keys are rows "...sections[].": the case_file's blade */
@@ -46,10 +48,13 @@ typedef enum {
   CASE_IF_PRESSURE,   /* excitation by pressure (not modal.file), and so on */
   CASE_IF_TRACTION,
   CASE_IF_FORCE,
-  CASE_IF_FORCE_AT, /* excitation by force with a place of its own */
-  CASE_IF_OUTPUT,   /* converge.output given */
-  CASE_IF_AUTO,     /* harmonics: auto */
-  CASE_IF_FOLLOWED  /* the parameter of this row is followed */
+  CASE_IF_FORCE_AT,  /* excitation by force with a place of its own */
+  CASE_IF_OUTPUT,    /* converge.output given */
+  CASE_IF_AUTO,      /* harmonics: auto */
+  CASE_IF_FOLLOWED,  /* the parameter of this row is followed */
+  CASE_IF_STABILITY, /* multipliers are computed */
+  CASE_IF_SEARCH,    /* there are random starts */
+  CASE_IF_SEARCH_AT  /* at frequencies that are given */
 } case_condition;
 
 typedef struct {

@@ -39,6 +39,7 @@ shb_status rung_apply(const rung_setting *s, case_file *file) {
   mhb->motion_tolerance = s->tolerance;
   mhb->tolerance        = s->accuracy;
   mhb->stability        = MHB_STABILITY_NEVER;
+  mhb->search.starts    = 0;
   mhb->resume           = false;
   int kept              = 0;
   for (int i = 0; i < mhb->n_preloads; i++)

@@ -74,6 +74,13 @@ static void print_scalar(FILE *out, const case_key *key, const case_file *file) 
     case CASE_PRELOADS:
       print_numbers(out, file->mhb.n_preloads, slot);
       break;
+    case CASE_PLACES:
+      print_numbers(out, file->mhb.search.n_at, slot);
+      break;
+    case CASE_ORDERS:
+      for (int i = 0; i < file->mhb.search.n_orders; i++)
+        fprintf(out, "%s%d", i ? " " : "", ((const int *)slot)[i]);
+      break;
     case CASE_INTERVAL:
     case CASE_SWEEP:
       print_numbers(out, 2, slot);

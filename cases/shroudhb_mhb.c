@@ -28,7 +28,10 @@ static bool up_to_date(const char *path, const char *settings) {
   bool          same     = fresh_equal(path, settings);
   mhb_response *response = NULL;
   same                   = same && mhb_response_read(path, &response) == SHB_OK;
-  for (int i = 0; same && i < response->n_branches; i++) same = response->branch[i].complete;
+  for (int i = 0; same && i < response->n_branches; i++) {
+    const mhb_branch *branch = &response->branch[i];
+    same                     = branch->main != i || (branch->complete && branch->searched);
+  }
   mhb_response_destroy(response);
   return same;
 }

@@ -128,6 +128,14 @@ static const case_key table[] = {
      .help = "points after which a branch ends"},
     {"mhb.stability", CASE_CHOICE, "", .words = "auto always never", .fallback = "auto", AT(mhb.stability), .stages = CASE_MHB,
      .help = "Floquet multipliers: at every point where that is cheap, else at a few a curve; at every point; at none"},
+    {"mhb.flips", CASE_SWITCH, "", .words = "mark follow", .fallback = "follow", AT(mhb.flips), .stages = CASE_MHB, .when = CASE_IF_STABILITY,
+     .help = "where a curve loses stability by period doubling, the motion of two periods is followed from there, or not"},
+    {"mhb.search.starts", CASE_INTEGER, "", 0, 100000, .fallback = "0", AT(mhb.search.starts), .stages = CASE_MHB,
+     .help = "random starts at each frequency and order, to find curves that nothing leads to; 0: no search, 40: a good first look"},
+    {"mhb.search.at", CASE_PLACES, "Hz", 0, 1e9, true, AT(mhb.search.at), .stages = CASE_MHB, .when = CASE_IF_SEARCH_AT,
+     .help = "frequencies at which to search, at most 64; default: six, evenly over the range"},
+    {"mhb.search.orders", CASE_ORDERS, "", 1, 16, .fallback = "[1, 2, 3]", AT(mhb.search.order), .stages = CASE_MHB, .when = CASE_IF_SEARCH,
+     .help = "orders searched for, at most 8: 1 repeats like the main curve, nu after nu times as long"},
 
     {"converge.tolerance", CASE_NUMBER, "", 0, 1, true, .fallback = "1 %", AT(converge_tolerance), .stages = CASE_CONVERGE,
      .help = "what `shroudhb converge` judges by: error of the peak, its frequency and the whole curve, relative"},
@@ -177,6 +185,12 @@ bool case_key_applies(const case_key *key, const case_file *file) {
       return file->mhb.harmonics == 0;
     case CASE_IF_FOLLOWED:
       return (const char *)file + key->at == (const char *)file->vary[file->mhb.parameter];
+    case CASE_IF_STABILITY:
+      return file->mhb.stability != MHB_STABILITY_NEVER;
+    case CASE_IF_SEARCH:
+      return file->mhb.search.starts > 0;
+    case CASE_IF_SEARCH_AT:
+      return file->mhb.search.starts > 0 && file->mhb.search.n_at > 0;
     case CASE_ALWAYS:
       return true;
   }

@@ -31,6 +31,8 @@ void case_value_expected(const case_key *key, char *text, size_t size) {
       [CASE_SWEEP]     = "[from, to] or a number",
       [CASE_STIFFNESS] = "a number or [kuu, kuw, kww]",
       [CASE_PRELOADS]  = "a number, a list or {from, to, points}",
+      [CASE_PLACES]    = "a list of numbers",
+      [CASE_ORDERS]    = "a list of whole numbers",
       [CASE_FACTORS]   = "a mapping {harmonic: [factor, phase]}",
       [CASE_PROBES]    = "a mapping {name: [x, y, z]}",
       [CASE_SECTIONS]  = "a list of mappings",
@@ -333,6 +335,43 @@ static bool read_preloads(const context *c, const case_node *node, void *slot) {
   return numbers_at(c, c->path, node, node->n, mhb->n0);
 }
 
+static bool list_room(const context *c, const case_node *node, int most) {
+  if (node->kind != CASE_SEQUENCE) return refuse(c, node);
+  if (node->n >= 1 && node->n <= most) return true;
+  case_issue_add(c->issues, node->line, node->column, c->path, "has %d numbers, expected 1 to %d",
+                 node->n, most);
+  return false;
+}
+
+static bool read_places(const context *c, const case_node *node, void *slot) {
+  mhb_search_settings *search = &c->file->mhb.search;
+  if (!list_room(c, node, MHB_MAX_SEARCH_AT)) return false;
+  search->n_at = node->n;
+  return numbers_at(c, c->path, node, node->n, slot);
+}
+
+static bool read_orders(const context *c, const case_node *node, void *slot) {
+  mhb_search_settings *search = &c->file->mhb.search;
+  int                 *order  = slot;
+  bool                 good   = list_room(c, node, MHB_MAX_SEARCH_ORDERS);
+  if (!good) return false;
+  search->n_orders = node->n;
+  for (int i = 0; i < node->n && good; i++) {
+    const case_node *child = &node->child[i];
+    char             path[CASE_PATH];
+    case_path(path, "%s[%d]", c->path, i);
+    context one = *c;
+    one.path    = path;
+    if (child->kind != CASE_SCALAR) return refuse_kind(c, path, child, "a whole number");
+    good = read_integer(&one, child, &order[i]);
+    if (!good || i == 0 || order[i] > order[i - 1]) continue;
+    case_issue_add(c->issues, child->line, child->column, path,
+                   "is %d after %d; they must increase", order[i], order[i - 1]);
+    good = false;
+  }
+  return good;
+}
+
 bool case_value_polar(case_issues *issues, const char *path, const case_node *node,
                       const char *unit, double polar[2]) {
   case_key      keys[2] = {{.unit = unit}, {.unit = "rad"}};
@@ -437,7 +476,8 @@ bool case_value_read(case_issues *issues, const case_key *key, const char *path,
       [CASE_SWEEP] = read_sweep,       [CASE_STIFFNESS] = read_stiffness,
       [CASE_PRELOADS] = read_preloads, [CASE_FACTORS] = read_factors,
       [CASE_PROBES] = read_probes,     [CASE_SIGNAL] = read_signal,
-      [CASE_AUTO] = read_count};
+      [CASE_AUTO] = read_count,        [CASE_PLACES] = read_places,
+      [CASE_ORDERS] = read_orders};
   const context c = {.issues = issues, .key = key, .path = path, .file = file};
   return readers[key->type](&c, node, slot);
 }

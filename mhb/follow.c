@@ -6,33 +6,45 @@
 #include <string.h>
 
 #include "mesh/progress.h"
+#include "mhb/closed.h"
 #include "mhb/harmonics.h"
 #include "mhb/judge.h"
+#include "mhb/orders.h"
 #include "mhb/record.h"
 
 /* A path whose steps stay below CRAWL this often is as good as stalled. */
 static const double CRAWL = 2e-3;
+
+/* A curve has closed if it comes as near as this to its beginning, relative to the motion. */
+static const double SAME = 1e-5;
 enum { MAX_CRAWL = 150, MAX_GAPS = 8, MAX_BEGINS = 64 };
 
 /* A branch under way. */
 typedef struct {
-  mhb_judge_host host; /* first: the callbacks get it back */
-  mhb_harmonics *harmonics;
-  mhb_residual  *residual; /* of the rung in use, as the path */
-  mhb_path      *path;
-  mhb_response  *response;
-  int            branch;
-  mhb_monitor   *monitor;
-  int            n_outputs;
-  double        *before, *after; /* [outputs] slopes of the amplitudes at now and next */
-  double        *x;              /* [n] a first solution */
-  double         clock;
-  double         farthest;       /* highest value of the parameter reached */
-  int            crawling, gaps; /* tiny steps in a row; places jumped over */
-  char           first_gap[96];
-  int            first[MAX_BEGINS], n_first; /* where the curve begins, and begins anew */
-  mhb_judge     *judge;                      /* NULL: stability by folds */
+  mhb_judge_host   host; /* first: the callbacks get it back */
+  mhb_harmonics   *harmonics;
+  mhb_residual    *residual; /* of the rung in use, as the path */
+  mhb_path        *path;
+  mhb_response    *response;
+  int              branch;
+  mhb_monitor     *monitor;
+  int              n_outputs;
+  double          *before, *after; /* [outputs] slopes of the amplitudes at now and next */
+  double          *x;              /* [n] a first solution */
+  double           clock;
+  double           farthest;       /* highest value of the parameter reached */
+  int              crawling, gaps; /* tiny steps in a row; places jumped over */
+  char             first_gap[96];
+  int              first[MAX_BEGINS], n_first; /* where the curve begins, and begins anew */
+  mhb_judge       *judge;                      /* NULL: stability by folds */
+  const mhb_start *start;                      /* of a further branch; NULL: the end of the range */
+  mhb_closed_curve closed;                     /* where it began; empty: it cannot close */
+  int              home;                       /* the rung of its start */
 } follower;
+
+/* How a branch ends that is complete. */
+static const char WHOLE[] = "end of range", CLOSED[] = "closed curve",
+                  JOINED[] = "joins a curve of lower order";
 
 static double fold_indicator(const mhb_path *path, const mhb_path_point *point, void *context) {
   (void)context;
@@ -57,6 +69,10 @@ static shb_status record(follower *f, mhb_path_point *point, int special, bool *
 
 static void slopes(const follower *f, const mhb_path_point *point, double *out) {
   for (int o = 0; o < f->n_outputs; o++) out[o] = mhb_output_slope(f->path, point, o);
+}
+
+static bool is_complete(const char *reason) {
+  return strcmp(reason, WHOLE) == 0 || strcmp(reason, CLOSED) == 0 || strcmp(reason, JOINED) == 0;
 }
 
 /* An event between now and next: what, and where on the chord. */
@@ -205,12 +221,24 @@ static const char *obstacle(follower *f, mhb_path_outcome outcome) {
   return f->crawling > MAX_CRAWL ? "the steps stayed tiny" : NULL;
 }
 
+/* Why a further branch ends at next; NULL: it does not. */
+static const char *end_of_further(follower *f, mhb_path_outcome outcome) {
+  if (outcome == MHB_PATH_STALLED) return "no step converged";
+  if (outcome != MHB_PATH_ON) return WHOLE;
+  if (!f->closed.x || !mhb_closed_passes(&f->closed, f->path)) return NULL;
+  mhb_harmonics_errors(f->harmonics, &f->path->next);
+  return CLOSED;
+}
+
 /* One step and what lies on it; *end is set to the reason when the branch is done. */
 static shb_status step(follower *f, bool *go_on, const char **end) {
   mhb_path_outcome outcome;
   bool             found = true;
+  if (f->start && mhb_closed_joins(f->path)) *end = JOINED;
+  if (*end) return SHB_OK;
   SHB_TRY(sufficient_step(f, &outcome));
   mhb_path *path = f->path;
+  if (f->start) *end = end_of_further(f, outcome);
   if (outcome != MHB_PATH_STALLED) {
     slopes(f, &path->next, f->after);
     SHB_TRY(record_events(f, go_on));
@@ -218,9 +246,11 @@ static shb_status step(follower *f, bool *go_on, const char **end) {
     SHB_TRY(record(f, &path->next, MHB_ORDINARY, go_on));
     f->farthest = fmax(f->farthest, path->next.value);
   }
-  if (outcome == MHB_PATH_AT_END) *end = "end of range";
+  if (outcome == MHB_PATH_AT_END) *end = WHOLE;
   if (*end || !*go_on) return SHB_OK;
   const char *why = obstacle(f, outcome);
+  if (why && f->start) *end = why;
+  if (*end) return SHB_OK;
   if (why) {
     SHB_TRY(skip(f, why, &found, go_on));
     if (!found) *end = why;
@@ -247,6 +277,71 @@ static const char *run(follower *f, int max_points, shb_status *status) {
     *status = step(f, &go_on, &end);
   }
   return go_on ? end : "interrupted";
+}
+
+/* The point of another curve that the branch leaves: its first. */
+static shb_status record_crossing(follower *f, bool *go_on) {
+  mhb_path_point *point = &f->path->probe;
+  memcpy(point->x, f->start->x, sizeof(double) * (size_t)f->path->n);
+  point->value      = f->start->value;
+  point->iterations = 0;
+  revisit(f, point);
+  point->residual = mhb_norm(f->path->newton->r, f->path->n) / mhb_norm(point->x, f->path->n);
+  mhb_harmonics_errors(f->harmonics, point);
+  SHB_TRY(record(f, point, MHB_ORDINARY, go_on));
+  revisit(f, &f->path->now);
+  return SHB_OK;
+}
+
+/* Begin a further branch; the second time, the other way, its first point is there already. */
+static shb_status begin_further(follower *f, int direction, bool again, bool *found, bool *go_on) {
+  const mhb_start *start = f->start;
+  f->harmonics->at       = f->home;
+  f->crawling            = 0;
+  use_rung(f);
+  mhb_reason reason = start->along ? mhb_path_depart(f->path, start->x, start->value, start->along)
+                                   : mhb_path_start(f->path, start->x, start->value, direction);
+  *found            = reason == MHB_CONVERGED;
+  if (!*found) return SHB_OK;
+  if (start->along) SHB_TRY(record_crossing(f, go_on));
+  slopes(f, &f->path->now, f->before);
+  SHB_TRY(sufficient_start(f));
+  if (again) return SHB_OK;
+  SHB_TRY(record(f, &f->path->now, MHB_ORDINARY, go_on));
+  double tolerance = fmax(SAME, 20 * f->residual->settings->motion_tolerance);
+  return start->along ? SHB_OK : mhb_closed_begin(&f->closed, f->path, tolerance);
+}
+
+static shb_status run_to_end(follower *f, bool *go_on, const char **end) {
+  int most = f->residual->settings->max_points;
+  while (*go_on && !*end) {
+    if (f->response->branch[f->branch].n_points >= most) *end = "mhb.max_points reached";
+    if (!*end) SHB_TRY(step(f, go_on, end));
+  }
+  return SHB_OK;
+}
+
+/* One way; and, unless that closed the curve or began on another one, the other way. */
+static shb_status run_further(follower *f, const char **end, bool *none) {
+  bool        go_on = true, found;
+  const char *first = NULL;
+  SHB_TRY(begin_further(f, 1, false, &found, &go_on));
+  *none = !found;
+  if (*none) return SHB_OK;
+  SHB_TRY(run_to_end(f, &go_on, &first));
+  *end = first;
+  if (go_on && first != CLOSED && !f->start->along) {
+    f->monitor->lock(f->monitor, true);
+    mhb_response_reverse(f->response, f->branch);
+    f->monitor->lock(f->monitor, false);
+    mhb_closed_free(&f->closed);
+    *end = NULL;
+    SHB_TRY(begin_further(f, -1, true, &found, &go_on));
+    if (found) SHB_TRY(run_to_end(f, &go_on, end));
+    if (!found || !is_complete(first)) *end = first;
+  }
+  if (!go_on) *end = "interrupted";
+  return SHB_OK;
 }
 
 /* A pair of folds that spans less than 1e-5 of the value is no jump that anyone could observe: not marked. */
@@ -290,7 +385,7 @@ static shb_status judge(follower *f, const char **reason) {
   bool finished = true;
   f->monitor->lock(f->monitor, true);
   drop_hairlines(&f->response->branch[f->branch]);
-  mhb_judge_by_folds(&f->response->branch[f->branch]);
+  if (!f->start) mhb_judge_by_folds(&f->response->branch[f->branch]); /* its beginning is stable */
   f->monitor->lock(f->monitor, false);
   if (f->residual->settings->stability == MHB_STABILITY_NEVER ||
       strcmp(*reason, "interrupted") == 0)
@@ -320,7 +415,7 @@ static shb_status finish(follower *f, const char *reason) {
   mhb_branch *branch = &f->response->branch[f->branch];
   free(branch->reason);
   branch->reason   = strdup(text);
-  branch->complete = strcmp(text, "end of range") == 0;
+  branch->complete = is_complete(text);
   if (!branch->reason) status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   f->monitor->lock(f->monitor, false);
   return status;
@@ -346,6 +441,7 @@ static void destroy(follower *f) {
   mhb_judge_destroy(f->judge);
   mhb_harmonics_destroy(f->harmonics);
   f->monitor->lock(f->monitor, false);
+  mhb_closed_free(&f->closed);
   free(f->before);
   free(f->after);
   free(f->x);
@@ -365,6 +461,27 @@ shb_status mhb_follow(mhb_residual *residual, mhb_response *response, int branch
   if (status == SHB_OK) {
     const char *why = run(&f, s->max_points, &status);
     if (status == SHB_OK) status = finish(&f, why);
+  }
+  destroy(&f);
+  return status;
+}
+
+shb_status mhb_follow_from(mhb_residual *residual, mhb_response *response, int branch,
+                           mhb_monitor *monitor, const mhb_start *start, bool *none) {
+  follower   f      = {.residual  = residual,
+                       .response  = response,
+                       .branch    = branch,
+                       .monitor   = monitor,
+                       .n_outputs = mhb_outputs(residual),
+                       .clock     = shb_seconds(),
+                       .start     = start};
+  shb_status status = create(&f);
+  *none             = false;
+  if (status == SHB_OK) {
+    const char *why = NULL;
+    f.home          = f.harmonics->at;
+    status          = run_further(&f, &why, none);
+    if (status == SHB_OK && !*none) status = finish(&f, why);
   }
   destroy(&f);
   return status;

@@ -13,12 +13,27 @@ typedef struct mhb_monitor mhb_monitor;
 struct mhb_monitor {
   bool (*point)(mhb_monitor *monitor, int branch, const mhb_path_point *point);
   void (*lock)(mhb_monitor *monitor, bool locked);
+  /* Called, locked, while further branches are looked for at a value of the parameter, a share of it done; false: stop. */
+  bool (*looking)(mhb_monitor *monitor, int branch, double value, double share);
 };
 
 /* Follow the branch at the residual's preload from the low to the high end of the range. Never fails for want of
  * convergence: the branch then ends with its reason. Errors: SHB_ERR_IO no memory. */
 shb_status mhb_follow(mhb_residual *residual, mhb_response *response, int branch,
                       mhb_monitor *monitor);
+
+/* Where a further branch begins. */
+typedef struct {
+  const double *x; /* [n] m, of the residual: a solution at a value of the parameter */
+  double        value;
+  const double *along; /* [n] NULL; or x lies on another curve, which the branch leaves this way */
+} mhb_start;
+
+/* Follow the branch through a solution both ways until the curve closes, leaves the range or joins one of lower order; the points
+ * are in order along it. It is complete if one of these happened. A branch that leaves
+ * another one must be on its way already: *none tells that there was no such branch, and nothing is recorded. Errors: as above. */
+shb_status mhb_follow_from(mhb_residual *residual, mhb_response *response, int branch,
+                           mhb_monitor *monitor, const mhb_start *start, bool *none);
 
 /* The open or stuck limit, sampled until linear interpolation of every output is within .2 % of its local value. */
 shb_status mhb_follow_linear(mhb_residual *residual, mhb_response *response, int branch);

@@ -91,7 +91,7 @@ static mhb_branch *branch_of(const mhb_judge *j) {
 /* The recorded motion is the solution itself. */
 static void take_motion(const mhb_judge *j, int point, double *x) {
   const mhb_residual   *b = j->residual;
-  size_t                K = (size_t)j->response->n_harmonics + 1, rows = 3 * (size_t)b->n_pairs;
+  size_t                K = (size_t)branch_of(j)->n_harmonics + 1, rows = 3 * (size_t)b->n_pairs;
   size_t                held = K < (size_t)b->m + 1 ? K : (size_t)b->m + 1;
   const double complex *A    = branch_of(j)->motion + (size_t)point * rows * K;
   for (size_t row = 0; row < rows; row++)

@@ -222,6 +222,27 @@ static int attempt_from(mhb_path *path, double value, const double *guess) {
   return far < NEAR && set_tangent(path, path->chord, next);
 }
 
+mhb_reason mhb_path_depart(mhb_path *path, const double *x, double value, const double *along) {
+  static const double step[] = {1e-2, 3e-2, 3e-3, 1e-3};
+  mhb_path_point     *now    = &path->now;
+  memcpy(now->x, x, sizeof(double) * (size_t)path->n);
+  now->value   = value;
+  double scale = unit(path), length = mhb_norm(along, path->n) / scale;
+  for (int i = 0; i < path->n; i++) now->tangent[i] = along[i] / length;
+  now->tangent[path->n] = 0;
+  for (int i = 0; i < 4; i++) {
+    if (!attempt(path, step[i])) continue;
+    double gone = inner(path, scale, now->tangent, path->next.tangent);
+    if (gone < .5) continue; /* along the curve that is left */
+    path->step        = step[i];
+    path->orientation = path->next.orientation;
+    path->against     = 0;
+    mhb_path_advance(path);
+    return MHB_CONVERGED;
+  }
+  return MHB_NO_DESCENT;
+}
+
 /* The path goes on through next, rather than back along what was passed. */
 static int goes_on(const mhb_path *path) {
   return path->next.orientation == path->orientation;

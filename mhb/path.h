@@ -42,6 +42,10 @@ void       mhb_path_destroy(mhb_path *path);
 /* Begin at a solution x at a value, towards rising (+1) or falling (-1) ones. Leaves the residual there. */
 mhb_reason mhb_path_start(mhb_path *path, const double *x, double value, int direction);
 
+/* Begin where two curves cross, at a solution x that lies on the one, along[n] the other: now becomes its first point,
+ * .001 to .03 of |x| away. Not converged: there is none. Leaves the residual there. */
+mhb_reason mhb_path_depart(mhb_path *path, const double *x, double value, const double *along);
+
 /* One step: path->next becomes the new point, path->now stays the old one. AT_END, AT_START: next lies exactly on the
  * range's high or low end. The residual's workspace is left at next. */
 mhb_path_outcome mhb_path_step(mhb_path *path);

@@ -7,7 +7,7 @@ static const double PI = 3.14159265358979323846;
 
 static void record_signals(mhb_response *response, mhb_branch *branch, int point,
                            const mhb_residual *b, const double *x) {
-  int            K = response->n_harmonics + 1, n3 = 3 * b->n_pairs, q = 3 * response->n_probes;
+  int            K = branch->n_harmonics + 1, n3 = 3 * b->n_pairs, q = 3 * response->n_probes;
   double complex p[n3], motion[q + 1];
   for (int k = 0; k <= b->m; k++) {
     mhb_residual_force(b, k, p);

@@ -71,6 +71,9 @@ static const field fields[] = {
 };
 enum { N_FIELDS = sizeof fields / sizeof *fields, N_LATER = 5 };
 
+static const char *const origin_name[] = {"end", "search", "flip"};
+enum { N_ORIGINS = sizeof origin_name / sizeof *origin_name };
+
 static const char *const kind_name[] = {"nonlinear", "open", "stuck"};
 enum { N_KINDS = sizeof kind_name / sizeof *kind_name };
 
@@ -78,14 +81,14 @@ static size_t bytes_of(number kind) {
   return kind == COMPLEX ? sizeof(double complex) : kind == DOUBLE ? sizeof(double) : sizeof(int);
 }
 
-static hsize_t size_of(const mhb_response *response, char letter) {
+static hsize_t size_of(const mhb_response *response, const mhb_branch *branch, char letter) {
   switch (letter) {
     case 'p':
       return (hsize_t)response->n_pairs;
     case 'q':
       return (hsize_t)response->n_probes;
     case 'k':
-      return (hsize_t)response->n_harmonics + 1;
+      return (hsize_t)branch->n_harmonics + 1;
     case 'f':
       return (hsize_t)response->n_multipliers;
     default:
@@ -112,15 +115,16 @@ static const char *scale_of(char letter) {
   }
 }
 
-static h5_shape shape_of(const mhb_response *response, const field *f, int n_points) {
+static h5_shape shape_of(const mhb_response *response, const mhb_branch *branch, const field *f,
+                         int n_points) {
   h5_shape shape = {.rank = 1 + (int)strlen(f->dims), .dim = {(hsize_t)n_points}};
-  for (int i = 1; i < shape.rank; i++) shape.dim[i] = size_of(response, f->dims[i - 1]);
+  for (int i = 1; i < shape.rank; i++) shape.dim[i] = size_of(response, branch, f->dims[i - 1]);
   return shape;
 }
 
 /* Values a point. */
-static size_t width_of(const mhb_response *response, const field *f) {
-  return h5_count(shape_of(response, f, 1));
+static size_t width_of(const mhb_response *response, const mhb_branch *branch, const field *f) {
+  return h5_count(shape_of(response, branch, f, 1));
 }
 
 static bool is_later(const field *f) {
@@ -129,7 +133,8 @@ static bool is_later(const field *f) {
 
 /* Without probes there is no probe array, in memory or in the file. */
 static bool is_kept(const mhb_response *response, const mhb_branch *branch, const field *f) {
-  return width_of(response, f) > 0 && (branch->kind == MHB_BRANCH_NONLINEAR || !is_later(f));
+  return width_of(response, branch, f) > 0 &&
+         (branch->kind == MHB_BRANCH_NONLINEAR || !is_later(f));
 }
 
 /* The followed parameter where it is the frequency: not in the file twice. */
@@ -180,16 +185,25 @@ void mhb_response_destroy(mhb_response *response) {
   free(response);
 }
 
+shb_status mhb_response_reserve(mhb_response *response, int n) {
+  if (response->n_branches + n <= response->capacity) return SHB_OK;
+  int         capacity = response->n_branches + n;
+  mhb_branch *branch   = realloc(response->branch, (size_t)capacity * sizeof *branch);
+  SHB_CHECK(branch, SHB_ERR_IO, "no memory for %d response branches", capacity);
+  response->branch   = branch;
+  response->capacity = capacity;
+  return SHB_OK;
+}
+
 shb_status mhb_response_branch(mhb_response *response, mhb_branch_kind kind, int *index) {
-  if (response->n_branches == response->capacity) {
-    int         capacity = response->capacity ? 2 * response->capacity : 8;
-    mhb_branch *branch   = realloc(response->branch, (size_t)capacity * sizeof *branch);
-    SHB_CHECK(branch, SHB_ERR_IO, "no memory for %d response branches", capacity);
-    response->branch   = branch;
-    response->capacity = capacity;
-  }
-  response->branch[response->n_branches] = (mhb_branch){.kind = kind};
-  *index                                 = response->n_branches++;
+  int n = response->n_branches;
+  if (n == response->capacity) SHB_TRY(mhb_response_reserve(response, n > 8 ? n : 8));
+  response->branch[n] = (mhb_branch){.kind        = kind,
+                                     .order       = response->subharmonics,
+                                     .n_harmonics = response->n_harmonics,
+                                     .main        = n,
+                                     .searched    = true};
+  *index              = response->n_branches++;
   return SHB_OK;
 }
 
@@ -198,7 +212,7 @@ static shb_status grow(const mhb_response *response, mhb_branch *branch) {
   int capacity = branch->capacity ? 2 * branch->capacity : FIRST_POINTS;
   for (int i = 0; i < N_FIELDS; i++) {
     if (!is_kept(response, branch, &fields[i])) continue;
-    size_t row  = width_of(response, &fields[i]) * bytes_of(fields[i].kind);
+    size_t row  = width_of(response, branch, &fields[i]) * bytes_of(fields[i].kind);
     void  *data = realloc(get(branch, &fields[i]), (size_t)capacity * row);
     SHB_CHECK(data, SHB_ERR_IO, "no memory for %d response points", capacity);
     set(branch, &fields[i], data);
@@ -212,7 +226,7 @@ shb_status mhb_response_point(mhb_response *response, int branch, int *point) {
   if (b->n_points == b->capacity) SHB_TRY(grow(response, b));
   for (int i = 0; i < N_FIELDS; i++) {
     if (!is_kept(response, b, &fields[i])) continue;
-    size_t row = width_of(response, &fields[i]) * bytes_of(fields[i].kind);
+    size_t row = width_of(response, b, &fields[i]) * bytes_of(fields[i].kind);
     memset((char *)get(b, &fields[i]) + (size_t)b->n_points * row, 0, row);
   }
   *point = b->n_points++;
@@ -233,8 +247,51 @@ void mhb_response_place(mhb_response *response, int branch, int at) {
   mhb_branch *b = &response->branch[branch];
   for (int i = 0; i < N_FIELDS; i++)
     if (is_kept(response, b, &fields[i]))
-      rotate(get(b, &fields[i]), width_of(response, &fields[i]) * bytes_of(fields[i].kind),
+      rotate(get(b, &fields[i]), width_of(response, b, &fields[i]) * bytes_of(fields[i].kind),
              (size_t)at, (size_t)b->n_points);
+}
+
+static void swap_rows(char *a, char *b, size_t row) {
+  for (size_t k = 0; k < row; k++) {
+    char swap = a[k];
+    a[k]      = b[k];
+    b[k]      = swap;
+  }
+}
+
+void mhb_response_reverse(mhb_response *response, int branch) {
+  mhb_branch *b = &response->branch[branch];
+  for (int i = 0; i < N_FIELDS; i++) {
+    if (!is_kept(response, b, &fields[i])) continue;
+    size_t row  = width_of(response, b, &fields[i]) * bytes_of(fields[i].kind);
+    char  *data = get(b, &fields[i]);
+    for (int p = 0, q = b->n_points - 1; p < q; p++, q--)
+      swap_rows(data + (size_t)p * row, data + (size_t)q * row, row);
+  }
+}
+
+void mhb_response_drop(mhb_response *response, const bool *drop) {
+  int n = response->n_branches, kept = 0, to[n + 1];
+  for (int i = 0; i < n; i++) {
+    to[i] = kept;
+    if (drop[i]) free_branch(&response->branch[i]);
+    if (!drop[i]) response->branch[kept++] = response->branch[i];
+  }
+  response->n_branches = kept;
+  for (int i = 0; i < kept; i++) response->branch[i].main = to[response->branch[i].main];
+}
+
+/* Insertion: stable, and there are few. Main branches keep their places, so that main stays right. */
+void mhb_response_sort(mhb_response *response) {
+  mhb_branch *b = response->branch;
+  for (int i = 1; i < response->n_branches; i++) {
+    mhb_branch moved = b[i];
+    int        at    = i;
+    if (moved.main == i) continue;
+    for (; at > 0 && b[at - 1].main != at - 1 && b[at - 1].main > moved.main; at--)
+      b[at] = b[at - 1];
+    b[at] = moved;
+  }
 }
 
 /* ---------------------------------------------------------------- writing */
@@ -257,13 +314,13 @@ static shb_status write_scales(hid_t file, const mhb_response *response) {
   SHB_TRY(h5_write_strings(file, "/shroud_axis", 3, shroud, "shroud axes: normal v, sliding u, w"));
   SHB_TRY(h5_write_strings(file, "/axis", 3, axis, "cylindrical axes about the engine axis"));
   SHB_TRY(h5_write_strings(file, "/contact_state", 3, state, "contact state"));
-  SHB_TRY(h5_write_counter(file, "/pair", size_of(response, 'p'), "contact pair, from 0"));
+  SHB_TRY(h5_write_counter(file, "/pair", (hsize_t)response->n_pairs, "contact pair, from 0"));
   SHB_TRY(
-      h5_write_counter(file, "/harmonic", size_of(response, 'k'),
+      h5_write_counter(file, "/harmonic", (hsize_t)response->n_harmonics + 1,
                        "harmonic k of omega / subharmonics; x(t) = Re sum_k A_k exp(j k omega t / "
                        "subharmonics)"));
   if (response->n_multipliers > 0)
-    SHB_TRY(h5_write_counter(file, "/multiplier", size_of(response, 'f'),
+    SHB_TRY(h5_write_counter(file, "/multiplier", (hsize_t)response->n_multipliers,
                              "Floquet multiplier, by falling modulus"));
   return write_probe_names(file, response);
 }
@@ -291,9 +348,14 @@ static shb_status write_root(hid_t file, const mhb_response *response) {
   return h5_attach_scale(file, "/modes/residual", 0, "/modes/frequency");
 }
 
+/* Its harmonics are not those of the root's scale. */
+static bool has_own_scale(const mhb_response *response, const mhb_branch *branch) {
+  return branch->order != response->subharmonics || branch->n_harmonics != response->n_harmonics;
+}
+
 static shb_status write_field(hid_t group, const mhb_response *response, const mhb_branch *branch,
                               const field *f) {
-  const h5_shape shape = shape_of(response, f, branch->n_points);
+  const h5_shape shape = shape_of(response, branch, f, branch->n_points);
   const void    *data  = get(branch, f);
   const char    *units = f->units ? f->units : mhb_parameter_unit(response->parameter);
   if (is_frequency(response, f)) return SHB_OK;
@@ -310,8 +372,10 @@ static shb_status write_field(hid_t group, const mhb_response *response, const m
   }
   if (f == fields) return SHB_OK; /* the frequency is the scale */
   SHB_TRY(h5_attach_scale(group, f->name, 0, fields[0].name));
-  for (int i = 1; i < shape.rank; i++)
-    SHB_TRY(h5_attach_scale(group, f->name, i, scale_of(f->dims[i - 1])));
+  for (int i = 1; i < shape.rank; i++) {
+    bool own = f->dims[i - 1] == 'k' && has_own_scale(response, branch);
+    SHB_TRY(h5_attach_scale(group, f->name, i, own ? "harmonic" : scale_of(f->dims[i - 1])));
+  }
   return SHB_OK;
 }
 
@@ -319,6 +383,16 @@ static shb_status fill_branch(hid_t group, const mhb_response *response, const m
   SHB_TRY(h5_write_attribute_text(group, ".", "kind", kind_name[branch->kind]));
   SHB_TRY(h5_write_attribute_text(group, ".", "reason", branch->reason));
   SHB_TRY(h5_write_attribute_int(group, ".", "complete", branch->complete));
+  if (!branch->searched) SHB_TRY(h5_write_attribute_int(group, ".", "searched", 0));
+  if (branch->origin != MHB_FROM_END) {
+    SHB_TRY(h5_write_attribute_text(group, ".", "origin", origin_name[branch->origin]));
+    SHB_TRY(h5_write_attribute_int(group, ".", "order", branch->order));
+    SHB_TRY(h5_write_attribute_int(group, ".", "main", branch->main));
+  }
+  if (has_own_scale(response, branch))
+    SHB_TRY(h5_write_counter(
+        group, "harmonic", (hsize_t)branch->n_harmonics + 1,
+        "harmonic k of omega / order; x(t) = Re sum_k A_k exp(j k omega t / order)"));
   for (int i = 0; i < N_FIELDS; i++)
     if (is_kept(response, branch, &fields[i]))
       SHB_TRY(write_field(group, response, branch, &fields[i]));
@@ -444,7 +518,7 @@ static shb_status copy_frequency(mhb_branch *branch) {
 
 static shb_status read_field(hid_t group, const mhb_response *response, mhb_branch *branch,
                              const field *f) {
-  h5_shape        shape    = shape_of(response, f, branch->n_points);
+  h5_shape        shape    = shape_of(response, branch, f, branch->n_points);
   double         *real     = NULL;
   double complex *complex_ = NULL;
   int            *whole    = NULL;
@@ -485,6 +559,33 @@ static shb_status read_kind(hid_t group, const char *path, int index, mhb_branch
   return SHB_OK;
 }
 
+/* Earlier files have none of these: a branch is its own main one, of the file's order. */
+static shb_status read_descent(hid_t group, const char *path, int index, mhb_branch *branch) {
+  char *text     = NULL;
+  int   searched = 1, origin = 0;
+  SHB_TRY(h5_read_attribute_int(group, ".", "order", branch->order, &branch->order));
+  SHB_TRY(h5_read_attribute_int(group, ".", "main", index, &branch->main));
+  SHB_TRY(h5_read_attribute_int(group, ".", "searched", 1, &searched));
+  SHB_TRY(h5_read_attribute_text(group, ".", "origin", &text));
+  while (text && *text && origin < N_ORIGINS && strcmp(text, origin_name[origin]) != 0) origin++;
+  free(text);
+  SHB_CHECK(origin < N_ORIGINS, SHB_ERR_INPUT,
+            "%s: /branch_%d: attribute origin must be end, search or flip", path, index);
+  SHB_CHECK(branch->order >= 1 && branch->main >= 0 && branch->main <= index, SHB_ERR_INPUT,
+            "%s: /branch_%d: attribute order is %d, main is %d; 1 or more and 0 to %d are wanted",
+            path, index, branch->order, branch->main, index);
+  branch->origin   = (mhb_origin)origin;
+  branch->searched = searched != 0;
+  if (!h5_exists(group, "harmonic")) return SHB_OK;
+  h5_shape harmonic;
+  SHB_TRY(h5_shape_of(group, "harmonic", &harmonic));
+  SHB_CHECK(harmonic.rank == 1 && harmonic.dim[0] >= 1 && harmonic.dim[0] <= MAX_COUNT,
+            SHB_ERR_INPUT, "%s: /branch_%d/harmonic must be a list of 1 to %d", path, index,
+            MAX_COUNT);
+  branch->n_harmonics = (int)harmonic.dim[0] - 1;
+  return SHB_OK;
+}
+
 /* All values of a list of codes within their range. */
 static shb_status check_codes(const char *path, int index, const char *name, int n, const int *code,
                               int least, int most, const char *wanted) {
@@ -514,6 +615,7 @@ static shb_status fill_from(hid_t group, const char *path, int index, mhb_respon
   SHB_TRY(h5_read_attribute_text(group, ".", "reason", &branch->reason));
   SHB_TRY(h5_read_attribute_int(group, ".", "complete", 0, &complete));
   branch->complete = complete != 0;
+  SHB_TRY(read_descent(group, path, index, branch));
   h5_shape points;
   SHB_TRY(h5_shape_of(group, fields[0].name, &points));
   SHB_CHECK(points.rank == 1, SHB_ERR_INPUT, "%s: /branch_%d/frequency must be a list", path,

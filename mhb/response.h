@@ -11,6 +11,9 @@
 
 typedef enum { MHB_BRANCH_NONLINEAR, MHB_BRANCH_OPEN, MHB_BRANCH_STUCK } mhb_branch_kind;
 
+/* How a branch was come by: followed from the low end of the range, from a solution found by search, from a flip. */
+typedef enum { MHB_FROM_END, MHB_FROM_SEARCH, MHB_FROM_FLIP } mhb_origin;
+
 /* special of mhb_branch; the last two: where a multiplier leaves or enters the unit circle at -1, or a pair does */
 enum { MHB_ORDINARY, MHB_FOLD, MHB_PEAK, MHB_FLIP, MHB_NEIMARK_SACKER, MHB_N_SPECIALS };
 
@@ -27,15 +30,20 @@ enum {
 enum { MHB_NO_LOSS, MHB_LOSS_FOLD, MHB_LOSS_FLIP, MHB_LOSS_NEIMARK_SACKER, MHB_N_LOSSES };
 
 /* One curve. Array layouts: motion, force [point][pair][3 (v,u,w)][k = 0..m]; probe [point][probe][3 (tangential,
- * axial, radial)][k]; state [point][pair][3 (stuck, slipping, open)]; signals x(t) = Re sum_k A_k exp(j k w t). */
+ * axial, radial)][k]; state [point][pair][3 (stuck, slipping, open)]; signals x(t) = Re sum_k A_k exp(j k w t / nu), with m and
+ * nu of the branch: the harmonic of the excitation is k = nu. */
 typedef struct {
   mhb_branch_kind kind;
-  char           *reason;   /* how the branch ended: "end of range", or why not */
-  bool            complete; /* the range was covered */
-  int             n_points, capacity;
-  double         *frequency; /* [point] Hz, of the excitation's first harmonic */
-  double         *n0;        /* [point] N, total of the interface */
-  double         *value;     /* [point] of the parameter that is followed; Hz for the frequency */
+  mhb_origin      origin;
+  int     order, n_harmonics; /* nu, m; as the response's unless set before the first point */
+  int     main; /* index of the branch of the same preload that begins at the end of the range */
+  bool    searched; /* of that branch: what was to be found beside it is there */
+  char   *reason;   /* how the branch ended: "end of range", or why not */
+  bool    complete; /* the range was covered */
+  int     n_points, capacity;
+  double *frequency; /* [point] Hz, of the excitation's first harmonic */
+  double *n0;        /* [point] N, total of the interface */
+  double *value;     /* [point] of the parameter that is followed; Hz for the frequency */
   double complex *motion, *force, *probe;
   int            *stable; /* [point] 1 stable, 0 unstable, -1 not known */
   int *special; /* [point] MHB_ORDINARY ...; peak: of any probe or contact motion, first harmonic */
@@ -70,12 +78,20 @@ typedef struct {
 mhb_response *mhb_response_create(int n_pairs, int n_probes, int n_harmonics); /* NULL: no memory */
 void          mhb_response_destroy(mhb_response *response);
 
-/* Append an empty branch; its index through *index. */
+/* Room for n more branches: until it is used up, branches keep their place in memory. */
+shb_status mhb_response_reserve(mhb_response *response, int n);
+/* Append an empty branch, its own main one; its index through *index. */
 shb_status mhb_response_branch(mhb_response *response, mhb_branch_kind kind, int *index);
 /* Make room for one more point (zeroed) and return its index through *point; branch arrays may move. */
 shb_status mhb_response_point(mhb_response *response, int branch, int *point);
 /* Move the last point of a branch to place at; those from there on move up by one. */
 void mhb_response_place(mhb_response *response, int branch, int at);
+/* The points of a branch in the opposite order. */
+void mhb_response_reverse(mhb_response *response, int branch);
+/* Drop the branches for which drop is true, [n_branches]; main follows. */
+void mhb_response_drop(mhb_response *response, const bool *drop);
+/* Further branches after all others, those of one main branch together, in the order in which they were found. */
+void mhb_response_sort(mhb_response *response);
 
 /* Publish (temporary, fsync, rename) / read back with full checks. */
 shb_status mhb_response_write(const mhb_response *response, const char *path,

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mhb/orders.h"
+
 static const double TOLERANCE = 1e-10, SAME = 1e-5;
 enum { MAX_STEPS = 40, MAX_HALVINGS = 6 };
 
@@ -65,12 +67,12 @@ static double deflation(const mhb_found *found, double size, const double *x, co
 }
 
 /* Newton on M r from x; 1: |r| has become small. */
-static int deflated(mhb_newton *w, mhb_residual *b, double omega, double size,
+static int deflated(mhb_newton *w, mhb_residual *b, double value, double size,
                     const mhb_found *found, double *x) {
   int    n = b->n;
   double kept[n], along, unused;
   for (int step = 0; step < MAX_STEPS; step++) {
-    mhb_residual_derive(b, x, omega, w->r, NULL);
+    mhb_residual_derive(b, x, value, w->r, NULL);
     double r = mhb_norm(w->r, n);
     if (!isfinite(r)) return 0;
     if (r <= 1e-6 * mhb_norm(x, n)) return 1;
@@ -84,33 +86,50 @@ static int deflated(mhb_newton *w, mhb_residual *b, double omega, double size,
     if (length > 2 * size) factor *= 2 * size / length;
     for (int k = 0; k <= MAX_HALVINGS; k++, part *= .5) {
       for (int i = 0; i < n; i++) x[i] = kept[i] - part * factor * w->step[i];
-      mhb_residual_evaluate(b, x, omega, w->r, NULL, NULL);
+      mhb_residual_evaluate(b, x, value, w->r, NULL, NULL);
       if (log(mhb_norm(w->r, n)) + deflation(found, size, x, NULL, &unused) < before) break;
     }
   }
   return 0;
 }
 
-static int is_new(const mhb_found *found, const double *x) {
+bool mhb_found_has(const mhb_found *found, const double *x) {
   for (int f = 0; f < found->n_found; f++) {
     const double *y = found->x + (size_t)f * (size_t)found->n;
     if (distance(x, y, found->n) <= SAME * fmax(mhb_norm(x, found->n), mhb_norm(y, found->n)))
-      return 0;
+      return true;
   }
-  return 1;
+  return false;
 }
 
-shb_status mhb_search(mhb_newton *w, mhb_residual *b, double omega, double size, int starts,
-                      unsigned long long seed, mhb_found *found) {
-  double x[b->n];
-  int    iterations;
+shb_status mhb_found_add_shifts(mhb_found *found, const mhb_residual *b, const double *x) {
+  double later[b->n];
+  found->n = b->n;
+  for (int j = 0; j < b->receptance->nu; j++) {
+    mhb_order_shift(b, x, j, later);
+    if (!mhb_found_has(found, later)) SHB_TRY(mhb_found_add(found, b->n, later));
+  }
+  return SHB_OK;
+}
+
+shb_status mhb_search_once(mhb_newton *w, mhb_residual *b, double value, double size,
+                           unsigned long long *seed, mhb_found *found, double *x, bool *found_new) {
+  int iterations;
+  *found_new = false;
   SHB_TRY(mhb_newton_bind(w, b));
   found->n = b->n;
-  for (int i = 0; i < starts; i++) {
-    draw(b, size, &seed, x);
-    if (!deflated(w, b, omega, size, found, x)) continue;
-    if (mhb_newton_solve(w, b, omega, TOLERANCE, x, &iterations) != MHB_CONVERGED) continue;
-    if (is_new(found, x)) SHB_TRY(mhb_found_add(found, b->n, x));
-  }
+  draw(b, size, seed, x);
+  if (!deflated(w, b, value, size, found, x)) return SHB_OK;
+  if (mhb_newton_solve(w, b, value, TOLERANCE, x, &iterations) != MHB_CONVERGED) return SHB_OK;
+  *found_new = !mhb_found_has(found, x);
+  return *found_new ? mhb_found_add_shifts(found, b, x) : SHB_OK;
+}
+
+shb_status mhb_search(mhb_newton *w, mhb_residual *b, double value, double size, int starts,
+                      unsigned long long seed, mhb_found *found) {
+  double x[b->n];
+  bool   unused;
+  for (int i = 0; i < starts; i++)
+    SHB_TRY(mhb_search_once(w, b, value, size, &seed, found, x, &unused));
   return SHB_OK;
 }

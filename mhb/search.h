@@ -5,6 +5,8 @@
 #ifndef MHB_SEARCH_H
 #define MHB_SEARCH_H
 
+#include <stdbool.h>
+
 #include "mhb/newton.h"
 
 typedef struct {
@@ -17,9 +19,22 @@ void mhb_found_free(mhb_found *found);
 /* A solution that is known, or has been found. SHB_ERR_IO: no memory. */
 shb_status mhb_found_add(mhb_found *found, int n, const double *x);
 
-/* Add what `starts` random starts of harmonics up to size (m) lead to and is not there yet; at omega rad/s and the residual's
- * preload. The seed decides the starts. SHB_ERR_IO: no memory. */
-shb_status mhb_search(mhb_newton *newton, mhb_residual *residual, double omega, double size,
+/* The same, with its copies some periods of the excitation later (orders.h); those that are there already are not added again.
+ * SHB_ERR_IO: no memory. */
+shb_status mhb_found_add_shifts(mhb_found *found, const mhb_residual *residual, const double *x);
+
+/* Whether x[n] is there, to 1e-5 of its size. */
+bool mhb_found_has(const mhb_found *found, const double *x);
+
+/* One random start of harmonics up to size (m), at a value of the residual's parameter; the seed decides it and moves on.
+ *   x       out  [n] what it led to
+ *   is_new  out  x is a solution that was not there; it and its shifts now are
+ * SHB_ERR_IO: no memory. */
+shb_status mhb_search_once(mhb_newton *newton, mhb_residual *residual, double value, double size,
+                           unsigned long long *seed, mhb_found *found, double *x, bool *is_new);
+
+/* As many starts. SHB_ERR_IO: no memory. */
+shb_status mhb_search(mhb_newton *newton, mhb_residual *residual, double value, double size,
                       int starts, unsigned long long seed, mhb_found *found);
 
 #endif

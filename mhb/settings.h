@@ -20,29 +20,39 @@ typedef enum {
   MHB_N_PARAMETERS
 } mhb_parameter;
 
-enum { MHB_MAX_PRELOADS = 256 };
+enum { MHB_MAX_PRELOADS = 256, MHB_MAX_SEARCH_AT = 64, MHB_MAX_SEARCH_ORDERS = 8 };
+
+/* Branches that nothing leads to, looked for beside each main one. */
+typedef struct {
+  int    starts;                /* random starts a frequency and order; 0: none is looked for */
+  int    n_at;                  /* 0: places are chosen */
+  double at[MHB_MAX_SEARCH_AT]; /* as range: Hz for the frequency */
+  int    n_orders, order[MHB_MAX_SEARCH_ORDERS]; /* ascending, times subharmonics */
+} mhb_search_settings;
 
 typedef struct {
-  bool               to_ground;
-  int                engine_order, blades; /* inter-blade phase 2 pi E/N, eq. 16 */
-  bool               has_psi, has_phi; /* given in the case; else from the modal file's normals */
-  double             psi, phi;         /* rad */
-  double             mu, kv;           /* -, N/m: totals of the interface */
-  double             ku[3];            /* kuu, kuw, kww, N/m */
-  mhb_preload        preload;
-  int                n_preloads;
-  double             n0[MHB_MAX_PRELOADS]; /* N */
-  double             frequency[2];         /* Hz, first < second; equal where another is followed */
-  mhb_parameter      parameter;    /* what is followed; in its unit from range[0] to range[1], */
-  double             range[2];     /* not used for the frequency */
-  int                harmonics;    /* m >= 1 */
-  int                subharmonics; /* nu >= 1: fundamental is omega/nu */
-  double             motion_tolerance; /* > 0: harmonics are chosen for this relative error */
-  double             scale;            /* multiplies the excitation */
-  double             tolerance;        /* of the contact law, relative to its largest force */
-  int                max_points;       /* a branch ends (with a reason) beyond this, default 2000 */
-  mhb_stability_when stability;        /* which points are judged by their multipliers */
-  bool               resume; /* take over what an interrupted run of equal settings finished */
+  bool                to_ground;
+  int                 engine_order, blades; /* inter-blade phase 2 pi E/N, eq. 16 */
+  bool                has_psi, has_phi; /* given in the case; else from the modal file's normals */
+  double              psi, phi;         /* rad */
+  double              mu, kv;           /* -, N/m: totals of the interface */
+  double              ku[3];            /* kuu, kuw, kww, N/m */
+  mhb_preload         preload;
+  int                 n_preloads;
+  double              n0[MHB_MAX_PRELOADS]; /* N */
+  double              frequency[2]; /* Hz, first < second; equal where another is followed */
+  mhb_parameter       parameter;    /* what is followed; in its unit from range[0] to range[1], */
+  double              range[2];     /* not used for the frequency */
+  int                 harmonics;    /* m >= 1 */
+  int                 subharmonics; /* nu >= 1: fundamental is omega/nu */
+  double              motion_tolerance; /* > 0: harmonics are chosen for this relative error */
+  double              scale;            /* multiplies the excitation */
+  double              tolerance;        /* of the contact law, relative to its largest force */
+  int                 max_points; /* a branch ends (with a reason) beyond this, default 2000 */
+  mhb_search_settings search;
+  bool                flips;     /* branches of doubled period are followed from where they leave */
+  mhb_stability_when  stability; /* which points are judged by their multipliers */
+  bool                resume;    /* take over what an interrupted run of equal settings finished */
 } mhb_settings;
 
 #endif

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "mhb/follow.h"
+#include "mhb/further.h"
 #include "mhb/harmonics.h"
 #include "mhb/judge.h"
 
@@ -20,7 +21,8 @@ typedef struct {
   const shb_provenance *provenance;
   shb_progress         *progress;
   omp_lock_t            mutex;
-  double               *done; /* [preload] share of the range covered */
+  double               *done;       /* [preload] share of its work that is done */
+  double                main_share; /* of that: the main branch */
   double                published;
   shb_status            status; /* first failure, and its text: messages are per thread */
   char                  fault[512];
@@ -49,24 +51,37 @@ static void note_failure(sweep *s, shb_status status) {
 }
 
 static bool point(mhb_monitor *monitor, int branch, const mhb_path_point *at) {
-  sweep              *s       = (sweep *)monitor;
-  const mhb_settings *c       = s->settings;
-  int                 preload = branch - 2;
-  mhb_parameter       what    = c->parameter;
+  sweep              *s    = (sweep *)monitor;
+  const mhb_settings *c    = s->settings;
+  const mhb_branch   *b    = &s->response->branch[branch];
+  mhb_parameter       what = c->parameter;
   double low = mhb_parameter_end(c, what, 0), high = mhb_parameter_end(c, what, 1), total = 0;
-  s->done[preload] = (at->value - low) / (high - low);
+  if (b->main == branch) s->done[branch - 2] = s->main_share * (at->value - low) / (high - low);
   for (int i = 0; i < c->n_preloads; i++) total += s->done[i];
-  const mhb_branch     *b = &s->response->branch[branch];
-  int                   K = s->response->n_harmonics + 1;
+  int                   K = b->n_harmonics + 1, first = b->order < K ? b->order : K - 1;
   const double complex *u =
       b->motion + (size_t)(b->n_points - 1) * 3 * (size_t)s->response->n_pairs * (size_t)K;
-  double amplitude = sqrt(pow(cabs(u[1]), 2) + pow(cabs(u[K + 1]), 2) + pow(cabs(u[2 * K + 1]), 2));
+  double amplitude =
+      sqrt(pow(cabs(u[first]), 2) + pow(cabs(u[K + first]), 2) + pow(cabs(u[2 * K + first]), 2));
   shb_progress_show(s->progress, 100 * total / c->n_preloads,
                     "n0 %-8.4g N  point %-4d  %s %9.6g %s  %.3e m", b->n0[b->n_points - 1],
                     b->n_points, what == MHB_IN_FREQUENCY ? "at" : mhb_parameter_name(what),
                     mhb_parameter_shown(what, at->value), mhb_parameter_unit(what), amplitude);
   if (s->path && shb_seconds() - s->published > PUBLISH_EVERY && s->status == SHB_OK)
     note_failure(s, publish(s));
+  return !shb_interrupted() && s->status == SHB_OK;
+}
+
+static bool looking(mhb_monitor *monitor, int branch, double value, double share) {
+  sweep        *s     = (sweep *)monitor;
+  mhb_parameter what  = s->settings->parameter;
+  double        total = 0;
+  s->done[branch - 2] = s->main_share + (1 - s->main_share) * share;
+  for (int i = 0; i < s->settings->n_preloads; i++) total += s->done[i];
+  shb_progress_show(s->progress, 100 * total / s->settings->n_preloads,
+                    "n0 %-8.4g N  looking for other curves at %.6g %s",
+                    s->response->branch[branch].n0[0], mhb_parameter_shown(what, value),
+                    mhb_parameter_unit(what));
   return !shb_interrupted() && s->status == SHB_OK;
 }
 
@@ -117,8 +132,8 @@ static shb_status linear_limits(const modal_model *model, const mhb_settings *se
   return status;
 }
 
-/* One preload on this thread. */
-static shb_status one_preload(sweep *s, const modal_model *model, int i) {
+/* The main branch of a preload. */
+static shb_status main_branch(sweep *s, const modal_model *model, int i) {
   mhb_residual *residual = NULL;
   lock(&s->base, true); /* FFTW's planner */
   shb_status status = mhb_residual_create(model, s->settings, &residual);
@@ -128,12 +143,29 @@ static shb_status one_preload(sweep *s, const modal_model *model, int i) {
   mhb_residual_follow(residual, s->settings->parameter);
   status = mhb_follow(residual, s->response, 2 + i, &s->base);
   lock(&s->base, true);
-  s->done[i] = 1;
-  if (status == SHB_OK && s->path && shb_seconds() - s->published > BRANCH_END_EVERY)
-    status = publish(s);
   mhb_residual_destroy(residual);
   lock(&s->base, false);
   return status;
+}
+
+/* One preload on this thread; what an earlier run finished is there already. */
+static shb_status one_preload(sweep *s, const modal_model *model, int i) {
+  mhb_branch *main   = &s->response->branch[2 + i];
+  shb_status  status = main->complete ? SHB_OK : main_branch(s, model, i);
+  if (status == SHB_OK && !main->searched && !shb_interrupted())
+    status = mhb_further(model, s->settings, s->response, 2 + i, &s->base);
+  lock(&s->base, true);
+  s->done[i] = 1;
+  if (status == SHB_OK && s->path && shb_seconds() - s->published > BRANCH_END_EVERY)
+    status = publish(s);
+  lock(&s->base, false);
+  return status;
+}
+
+static void take_over(mhb_response *response, int index, mhb_branch *old) {
+  mhb_branch fresh        = response->branch[index];
+  response->branch[index] = *old;
+  *old                    = fresh;
 }
 
 /* Take over the branches that an interrupted run of the same settings finished. */
@@ -150,37 +182,57 @@ static void resume(sweep *s) {
   bool fits = old->n_multipliers == s->response->n_multipliers;
   for (int i = 2; fits && i < s->response->n_branches && i < old->n_branches; i++) {
     if (!old->branch[i].complete) continue;
-    mhb_branch fresh       = s->response->branch[i];
-    s->response->branch[i] = old->branch[i];
-    old->branch[i]         = fresh;
-    s->done[i - 2]         = 1;
+    take_over(s->response, i, &old->branch[i]);
+    s->done[i - 2] = s->response->branch[i].searched ? 1 : s->main_share;
+  }
+  for (int i = 2 + s->settings->n_preloads; fits && i < old->n_branches; i++) {
+    int main = old->branch[i].main, index;
+    if (main == i || main >= 2 + s->settings->n_preloads || !s->response->branch[main].searched ||
+        mhb_response_branch(s->response, MHB_BRANCH_NONLINEAR, &index) != SHB_OK)
+      continue;
+    take_over(s->response, index, &old->branch[i]);
   }
   mhb_response_destroy(old);
 }
 
+/* Branches that turned out not to be there. */
+static void drop_empty(mhb_response *response) {
+  bool drop[response->n_branches];
+  for (int i = 0; i < response->n_branches; i++)
+    drop[i] = response->branch[i].main != i && response->branch[i].n_points == 0;
+  mhb_response_drop(response, drop);
+}
+
 static shb_status all_preloads(sweep *s, const modal_model *model) {
-  int n = s->settings->n_preloads;
+  int  n      = s->settings->n_preloads;
+  bool wanted = mhb_further_wanted(s->settings);
   for (int i = 0; i < n; i++) {
     int branch;
     SHB_TRY(mhb_response_branch(s->response, MHB_BRANCH_NONLINEAR, &branch));
+    s->response->branch[branch].searched = !wanted;
   }
+  if (wanted) SHB_TRY(mhb_response_reserve(s->response, n * MHB_MAX_FURTHER));
   if (s->settings->resume) resume(s);
 #pragma omp parallel for schedule(dynamic, 1) if (n > 1) /* else the threads go to the pairs */
   for (int i = 0; i < n; i++) {
-    if (shb_interrupted() || s->response->branch[2 + i].complete) continue;
+    const mhb_branch *main = &s->response->branch[2 + i];
+    if (shb_interrupted() || (main->complete && main->searched)) continue;
     shb_status status = one_preload(s, model, i);
     lock(&s->base, true);
     note_failure(s, status);
     lock(&s->base, false);
   }
   if (s->status != SHB_OK) return shb_fail(s->status, __FILE__, __LINE__, "%s", s->fault);
+  drop_empty(s->response);
+  mhb_response_sort(s->response);
   return SHB_OK;
 }
 
+/* A further branch that does not cover its range is told in the file; the sweep has what it set out for. */
 static shb_status outcome(const mhb_response *response) {
   for (int i = 0; i < response->n_branches; i++) {
     const mhb_branch *branch = &response->branch[i];
-    if (branch->complete) continue;
+    if (branch->complete || branch->main != i) continue;
     return shb_fail(
         SHB_NOT_CONVERGED, __FILE__, __LINE__, "branch %d (n0 = %g N) did not cover the range: %s",
         i, branch->n_points ? branch->n0[0] : 0., branch->reason ? branch->reason : "not started");
@@ -210,11 +262,12 @@ shb_status mhb_sweep(const modal_model *model, const mhb_settings *asked, const 
   SHB_TRY(check_load(model, settings));
   first.harmonics = m[0];
   if (first.parameter == MHB_IN_N0) first.n_preloads = 1;
-  sweep s    = {.base       = {.point = point, .lock = lock},
+  sweep s    = {.base       = {.point = point, .lock = lock, .looking = looking},
                 .settings   = settings,
                 .path       = path,
                 .provenance = provenance,
                 .progress   = progress,
+                .main_share = settings->search.starts > 0 ? .3 : 1,
                 .published  = shb_seconds()};
   s.response = mhb_response_create(model->n_pairs, model->n_probes, m[rungs - 1]);
   s.done     = calloc((size_t)settings->n_preloads, sizeof(double));

@@ -380,7 +380,7 @@ static void name_harmonics(const post_plot *plot, int m, const mhb_branch *branc
 void post_chart_harmonics(const post_study *study, int b, post_buffer *out) {
   const mhb_response *response = study->response;
   const mhb_branch   *branch   = &response->branch[b];
-  int                 n = branch->n_points, m = response->n_harmonics;
+  int                 n = branch->n_points, m = branch->n_harmonics;
   if (n < 1) return;
   if (m >= SHOWN_HARMONICS) m = SHOWN_HARMONICS - 1;
   double *y = calloc((size_t)n * (size_t)(m + 1), sizeof *y), most = 0, least = INFINITY;

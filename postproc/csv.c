@@ -55,12 +55,12 @@ static void put_header(const mhb_response *response, post_buffer *out) {
   post_put(out,
            ",stable,special,judged,loss,largest_multiplier,iterations,seconds,error_newton,error_"
            "truncation,error_sampling,"
-           "error_modal\r\n");
+           "error_modal,origin,order\r\n");
 }
 
 /* The columns of one place from its harmonics, [3][m + 1]. */
-static void put_place(const mhb_response *response, const double complex *a, post_buffer *out) {
-  int m = response->n_harmonics, first = post_first_harmonic(response);
+static void put_place(const mhb_branch *branch, const double complex *a, post_buffer *out) {
+  int m = branch->n_harmonics, first = post_first_harmonic(branch);
   for (int i = 0; i < 3; i++) {
     const double complex *axis = a + i * (m + 1);
     put_number(out, cabs(axis[first]));
@@ -90,6 +90,7 @@ static void put_stability(const mhb_response *response, const mhb_branch *branch
 static void put_quality(const mhb_response *response, const mhb_branch *branch, int point,
                         post_buffer *out) {
   static const char *const special[] = {"", "fold", "peak", "flip", "Neimark-Sacker"};
+  static const char *const origin[]  = {"end", "search", "flip"};
   post_put(out, branch->stable[point] < 0 ? "," : ",%d", branch->stable[point]);
   post_put(out, ",%s", special[branch->special[point]]);
   put_stability(response, branch, point, out);
@@ -99,21 +100,21 @@ static void put_quality(const mhb_response *response, const mhb_branch *branch, 
   put_number(out, branch->error_truncation[point]);
   put_number(out, branch->error_sampling[point]);
   put_number(out, branch->error_modal[point]);
-  post_put(out, "\r\n");
+  post_put(out, ",%s,%d\r\n", origin[branch->origin], branch->order);
 }
 
 static void put_point(const mhb_response *response, int b, int point, post_buffer *out) {
   static const char *const kind[] = {"nonlinear", "open", "stuck"};
-  const mhb_branch        *branch = &response->branch[b];
-  size_t                   m1 = (size_t)response->n_harmonics + 1, i = (size_t)point;
+  const mhb_branch        *branch   = &response->branch[b];
+  size_t                   m1 = (size_t)branch->n_harmonics + 1, i = (size_t)point;
   size_t                   pairs = (size_t)response->n_pairs, probes = (size_t)response->n_probes;
   post_put(out, "%d,%s", b, kind[branch->kind]);
   put_number(out, branch->kind == MHB_BRANCH_NONLINEAR ? branch->n0[point] : NAN);
   put_number(out, branch->frequency[point]);
   for (size_t q = 0; q < probes; q++)
-    put_place(response, branch->probe + (i * probes + q) * 3 * m1, out);
+    put_place(branch, branch->probe + (i * probes + q) * 3 * m1, out);
   for (size_t p = 0; p < pairs; p++) {
-    put_place(response, branch->motion + (i * pairs + p) * 3 * m1, out);
+    put_place(branch, branch->motion + (i * pairs + p) * 3 * m1, out);
     for (size_t s = 0; s < 3; s++) put_number(out, branch->state[(i * pairs + p) * 3 + s]);
     put_number(out, branch->dissipation[i * pairs + p]);
   }

@@ -98,9 +98,9 @@ post_output post_output_primary(const mhb_response *response) {
   return (post_output){response->n_probes > 0 ? POST_PROBE : POST_CONTACT, 0, POST_WHOLE};
 }
 
-int post_first_harmonic(const mhb_response *response) {
-  int first = response->subharmonics > 1 ? response->subharmonics : 1;
-  return first <= response->n_harmonics ? first : response->n_harmonics;
+int post_first_harmonic(const mhb_branch *branch) {
+  int first = branch->order > 1 ? branch->order : 1;
+  return first <= branch->n_harmonics ? first : branch->n_harmonics;
 }
 
 /* The harmonics of output at a point: [n][m + 1]. */
@@ -112,26 +112,26 @@ static const double complex *harmonics_of(const mhb_response *response, const mh
   size_t                at     = ((size_t)point * places + (size_t)output.index) * AXES +
               (size_t)(output.axis < 0 ? 0 : output.axis);
   *n = output.axis < 0 ? AXES : 1;
-  return all + at * (size_t)(response->n_harmonics + 1);
+  return all + at * (size_t)(branch->n_harmonics + 1);
 }
 
 double post_amplitude(const mhb_response *response, const mhb_branch *branch, int point,
                       post_output output, int k) {
   int                   n;
   const double complex *a = harmonics_of(response, branch, point, output, &n);
-  return post_ellipse(n, a + k, response->n_harmonics + 1);
+  return k > branch->n_harmonics ? 0 : post_ellipse(n, a + k, branch->n_harmonics + 1);
 }
 
 shb_status post_series(const mhb_response *response, const mhb_branch *branch, post_output output,
                        post_quantity quantity, double **values) {
-  int     points = branch->n_points, first = post_first_harmonic(response);
+  int     points = branch->n_points, first = post_first_harmonic(branch), m = branch->n_harmonics;
   double *out = malloc((size_t)(points > 0 ? points : 1) * sizeof *out);
   SHB_CHECK(out, SHB_ERR_IO, "not enough memory for a curve of %d points", points);
   for (int p = 0; p < points; p++) {
     int                   n;
     const double complex *a = harmonics_of(response, branch, p, output, &n);
-    out[p] = quantity == POST_PEAK_TO_PEAK ? post_peak_to_peak(n, response->n_harmonics, a)
-                                           : post_ellipse(n, a + first, response->n_harmonics + 1);
+    out[p]                  = quantity == POST_PEAK_TO_PEAK ? post_peak_to_peak(n, m, a)
+                                                            : post_ellipse(n, a + first, m + 1);
   }
   *values = out;
   return SHB_OK;

@@ -30,10 +30,10 @@ double post_peak_to_peak(int n, int m, const double complex *a);
 
 /* The output that stands for the response when one must be chosen: first probe, else first contact. */
 post_output post_output_primary(const mhb_response *response);
-/* Harmonic that the excitation's first is: the subharmonic order (fundamental = excitation / order). */
-int post_first_harmonic(const mhb_response *response);
+/* Harmonic that the excitation's first is: the branch's order (fundamental = excitation / order). */
+int post_first_harmonic(const mhb_branch *branch);
 
-/* Amplitude of harmonic k of output at a point of branch, m. */
+/* Amplitude of harmonic k of output at a point of branch, m; 0 beyond its harmonics. */
 double post_amplitude(const mhb_response *response, const mhb_branch *branch, int point,
                       post_output output, int k);
 

@@ -76,11 +76,12 @@ static void keys_and_kinds(void **state) {
        1},
       {"  scale: 1.3", "  zzzzzz: 1.3",
        "c.yaml:34:3: error: mhb.zzzzzz: unknown key; known here: frequency, "
-       "vary, harmonics, tolerance, subharmonics, scale, max_points, stability",
+       "vary, harmonics, tolerance, subharmonics, scale, max_points, stability, flips, search",
        1},
       {"  scale: 1.3", "  mhb.scale: 1.3",
        "c.yaml:34:3: error: mhb.mhb.scale: unknown key; known here: "
-       "frequency, vary, harmonics, tolerance, subharmonics, scale, max_points, stability",
+       "frequency, vary, harmonics, tolerance, subharmonics, scale, max_points, stability, flips, "
+       "search",
        1},
       {"  scale: 1.3", "  [a, b]: 1.3",
        "c.yaml:34:3: error: mhb.?: a key must be a word, not a list", 1},
@@ -295,6 +296,23 @@ static void keys_among_each_other(void **state) {
       {"harmonics: 7", "harmonics: 5",
        "c.yaml:17:14: error: excitation.harmonics: harmonic 3 would be left "
        "out: mhb.harmonics is 5, must be 6 at least (times mhb.subharmonics)",
+       1},
+      {"  scale: 1.3", "  search: {starts: 40, at: [100, 119, 121]}",
+       "c.yaml:34:39: error: mhb.search.at[2]: is 121 Hz, must be within mhb.frequency, 90 to "
+       "120 Hz",
+       1},
+      {"  scale: 1.3", "  search: {starts: 40, at: 100}",
+       "c.yaml:34:28: error: mhb.search.at: is a single value; expected a list of numbers in Hz",
+       1},
+      {"  scale: 1.3", "  search: {starts: 40, orders: [1, 3, 2]}",
+       "c.yaml:34:39: error: mhb.search.orders[2]: is 2 after 3; they must increase", 1},
+      {"  scale: 1.3", "  search: {starts: 40, orders: []}",
+       "c.yaml:34:32: error: mhb.search.orders: has 0 numbers, expected 1 to 8", 1},
+      {"  scale: 1.3", "  search: {starts: 40, orders: [17]}",
+       "c.yaml:34:33: error: mhb.search.orders[0]: is 17, must be 1 to 16", 1},
+      {"  scale: 1.3", "  search: 40",
+       "c.yaml:34:11: error: mhb.search: is a single value; expected a mapping; known here: "
+       "starts, at, orders",
        1},
       {"  pressure: 210 Pa\n", "",
        "c.yaml:14:1: error: excitation.pressure: missing; expected a number in Pa, "

@@ -77,7 +77,11 @@ static void only_what_matters(void **state) {
               {"2e-9", "1e-9", CASE_MHB},
               {"2e-9", "fast", CASE_MHB},
               {"2e-9", "0.002e-6", 0},
-              {"777", "778", CASE_MHB}};
+              {"777", "778", CASE_MHB},
+              {"777", "777\n  flips: mark", CASE_MHB},
+              {"777", "777\n  flips: follow", 0},
+              {"777", "777\n  search: {starts: 0, orders: [2], at: [100]}", 0},
+              {"777", "777\n  search: {starts: 9}", CASE_MHB}};
   char *before[N_STAGES], *after[N_STAGES];
   settings_of(NULL, NULL, before);
   for (size_t row = 0; row < COUNT(rows); row++) {
@@ -91,6 +95,22 @@ static void only_what_matters(void **state) {
     }
   }
   for (int i = 0; i < N_STAGES; i++) free(before[i]);
+}
+
+/* Where and for what is searched counts only if it is. */
+static void search_settings(void **state) {
+  (void)state;
+  static const char *const rows[][2] = {
+      {"{starts: 9}", "mhb.search.starts = 9\nmhb.search.orders = 1 2 3\n"},
+      {"{starts: 9, at: [100, 0.11 kHz], orders: [2, 5]}",
+       "mhb.search.starts = 9\nmhb.search.at = 100 110\nmhb.search.orders = 2 5\n"}};
+  for (size_t i = 0; i < COUNT(rows); i++) {
+    char *settings[N_STAGES], text[128];
+    snprintf(text, sizeof text, "777\n  search: %s", rows[i][0]);
+    settings_of("777", text, settings);
+    assert_non_null(strstr(settings[2], rows[i][1]));
+    for (int k = 0; k < N_STAGES; k++) free(settings[k]);
+  }
 }
 
 static void the_text_itself(void **state) {
@@ -114,7 +134,9 @@ static void the_text_itself(void **state) {
                       "mhb.subharmonics = 2\n"
                       "mhb.scale = 1.3\n"
                       "mhb.max_points = 777\n"
-                      "mhb.stability = always\n");
+                      "mhb.stability = always\n"
+                      "mhb.flips = follow\n"
+                      "mhb.search.starts = 0\n");
   assert_non_null(
       strstr(settings[0], "mesh.blade.sections[1].thickness = 0.0028999999999999998\n"));
   assert_non_null(strstr(settings[0], "contact.psi = 0.61086523819801"));
@@ -148,8 +170,8 @@ static void paths_are_those_of_the_case(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(only_what_matters),
-                                     cmocka_unit_test(the_text_itself),
-                                     cmocka_unit_test(paths_are_those_of_the_case)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(only_what_matters), cmocka_unit_test(search_settings),
+      cmocka_unit_test(the_text_itself), cmocka_unit_test(paths_are_those_of_the_case)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

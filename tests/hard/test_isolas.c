@@ -1,93 +1,97 @@
-/* Hard case 11: subharmonic branches of order 2 and 3 that nothing connects to the main one, found by search. */
+/* Hard case 11: subharmonic branches of order 2 and 3 that nothing connects to the main one, found by the sweep's search. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include <cmocka.h>
 
-#include "mhb/path.h"
-#include "mhb/search.h"
 #include "tests/hard/verdict.h"
 #include "tests/mhb/periodic.h"
 #include "tests/mhb/three_degree.h"
 
-static double turning(const mhb_path *path, const mhb_path_point *point, void *context) {
-  (void)context;
-  return point->tangent[path->n];
+static const double PI = 3.14159265358979323846;
+
+/* Time integration; amplitudes of harmonic 1 of W/order, the stable and the unstable one at w. */
+typedef struct {
+  int    order, harmonics; /* of the main branch: times order in all */
+  double w, ends[2], amplitude[2];
+} isola;
+
+/* Point i of the curve and its share of the next, solved for: its amplitude and whether its multipliers say stable. */
+static double solved(const modal_model *model, const mhb_settings *s, const isola *row,
+                     const mhb_branch *b, int i, double share, int *stable) {
+  int            K = b->n_harmonics + 1, nb = 2 * K - 1;
+  double         x[3 * nb];
+  double complex mu[16];
+  mhb_settings   own = *s;
+  periodic       p;
+  for (int c = 0; c < 3; c++)
+    for (int k = 0; k < K; k++) {
+      const double complex *a  = b->motion + (size_t)((3 * i + c) * K + k);
+      double complex        at = (1 - share) * a[0] + share * a[3 * K];
+      if (k > 0) x[c * nb + 2 * k] = cimag(at);
+      x[c * nb + (k ? 2 * k - 1 : 0)] = creal(at);
+    }
+  own.subharmonics = b->order;
+  own.harmonics    = b->n_harmonics;
+  periodic_create(model, &own, row->w, x, &p);
+  double a = hypot(p.x[1], p.x[2]);
+  *stable  = periodic_multipliers(&p, 1024, mu).verdict == MHB_STABLE;
+  periodic_destroy(&p);
+  return a;
 }
 
-/* Lowest and highest frequency of the closed curve through x: folds on the way, both directions. */
-static void extent(mhb_residual *b, const double *x, double w, double ends[2]) {
-  ends[0] = INFINITY;
-  ends[1] = -INFINITY;
-  for (int way = -1; way <= 1; way += 2) {
-    mhb_path *path;
-    double    at;
-    assert_int_equal(mhb_path_create(b, .5 * w, 2 * w, &path), SHB_OK);
-    assert_int_equal(mhb_path_start(path, x, w, way), MHB_CONVERGED);
-    for (int i = 0, folds = 0; i < 400 && folds < 2; i++) {
-      if (mhb_path_step(path) != MHB_PATH_ON) break;
-      double a = path->now.tangent[path->n], c = path->next.tangent[path->n];
-      if (a * c < 0 && mhb_path_locate(path, turning, NULL, a, c, &at)) {
-        ends[0] = fmin(ends[0], path->probe.value);
-        ends[1] = fmax(ends[1], path->probe.value);
-        folds++;
-      }
-      mhb_path_advance(path);
+static void check_isola(const modal_model *model, const mhb_settings *s, const isola *row,
+                        const mhb_branch *b) {
+  double lo = INFINITY, hi = 0, far[2] = {INFINITY, INFINITY};
+  int    judged = 0, n = b->n_points, folds = count_special(b, MHB_FOLD), changes = 0;
+  for (int i = 0; i < n; i++) {
+    double here = 2 * PI * b->frequency[i], next = 2 * PI * b->frequency[(i + 1) % n];
+    lo = fmin(lo, here);
+    hi = fmax(hi, here);
+    changes += i > 0 && b->stable[i] != b->stable[i - 1];
+    if (i + 1 == n || (here < row->w) == (next < row->w)) continue;
+    int    stable;
+    double a = solved(model, s, row, b, i, (row->w - here) / (next - here), &stable);
+    for (int k = 0; k < 2; k++) {
+      if (fabs(a - row->amplitude[k]) > 1e-3) continue;
+      far[k] = fabs(a - row->amplitude[k]);
+      if (stable == (k == 0)) judged |= 1 << k;
     }
-    mhb_path_destroy(path);
   }
+  verdict_count(changes, 2, "11 order %d: changes of stability along the curve", row->order);
+  verdict(far[0], 1e-5, "11 order %d: stable one, amplitude", row->order);
+  verdict(far[1], 1e-5, "11 order %d: unstable one, amplitude", row->order);
+  verdict_count(judged, 3, "11 order %d: stable, unstable (bits)", row->order);
+  verdict(fabs(lo / row->ends[0] - 1), 1e-5, "11 order %d: lower end", row->order);
+  verdict(fabs(hi / row->ends[1] - 1), 1e-5, "11 order %d: upper end", row->order);
+  verdict_count(folds, 2, "11 order %d: folds", row->order);
+  verdict_count(strcmp(b->reason, "closed curve"), 0, "11 order %d: closed", row->order);
 }
 
 static void isolas(void **state) {
   (void)state;
-  static const struct {
-    int    order, harmonics;
-    double w, ends[2], amplitude[2];
-  } rows[] = {{2, 16, 2.5, {2.071793, 2.825990}, {.984855, .734821}},
-              {3, 21, 3.6, {3.274102, 3.864229}, {.770513, .719994}}};
-  modal_model model;
+  static const isola rows[] = {{2, 8, 2.5, {2.071793, 2.825990}, {.984855, .734821}},
+                               {3, 7, 3.6, {3.274102, 3.864229}, {.770513, .719994}}};
+  modal_model        model;
   one_degree_model(.02, 0, .5, &model);
   for (int i = 0; i < 2; i++) {
-    mhb_settings s = ground_settings(0, 9, 1, -4.5, rows[i].harmonics);
-    mhb_newton  *newton;
-    periodic     p;
-    mhb_found    found  = {0};
-    double       far[2] = {INFINITY, INFINITY}, ends[2] = {0, 0};
-    int          judged = 0;
-    s.subharmonics      = rows[i].order;
-    periodic_create(&model, &s, rows[i].w, NULL, &p);
-    assert_int_equal(mhb_newton_create(p.residual->n, &newton), SHB_OK);
-    assert_int_equal(mhb_found_add(&found, p.residual->n, p.x), SHB_OK);
-    assert_int_equal(mhb_search(newton, p.residual, rows[i].w, 1, 60, 7, &found), SHB_OK);
-    print_message("  order %d: %d solutions\n", rows[i].order, found.n_found);
-    for (int f = 1; f < found.n_found; f++) {
-      const double  *x = found.x + (size_t)(f * found.n);
-      double         a = hypot(x[1], x[2]);
-      double complex mu[16];
-      for (int k = 0; k < 2; k++) {
-        if (fabs(a - rows[i].amplitude[k]) > 1e-3) continue;
-        far[k] = fmin(far[k], fabs(a - rows[i].amplitude[k]));
-        periodic q;
-        periodic_create(&model, &s, rows[i].w, x, &q);
-        if (periodic_multipliers(&q, 1024, mu).verdict == (k ? MHB_UNSTABLE : MHB_STABLE))
-          judged |= 1 << k;
-        periodic_destroy(&q);
-        if (k == 0) extent(p.residual, x, rows[i].w, ends);
-      }
+    mhb_settings s    = ground_settings(0, 9, 1, -4.5, rows[i].harmonics);
+    s.search          = (mhb_search_settings){.starts = 40, .n_orders = 3, .order = {1, 2, 3}};
+    mhb_response *r   = covered_sweep(&model, &s, 2, 4);
+    int           one = 0;
+    verdict_count(r->n_branches, 5, "11: branches, the linear limits among them");
+    for (int b = 3; b < r->n_branches; b++) {
+      if (r->branch[b].order != rows[i].order) continue;
+      one++;
+      check_isola(&model, &s, &rows[i], &r->branch[b]);
     }
-    verdict(far[0], 1e-5, "11 order %d: stable one found, amplitude", rows[i].order);
-    verdict(far[1], 1e-5, "11 order %d: unstable one found, amplitude", rows[i].order);
-    verdict_count(judged, 3, "11 order %d: stable, unstable (bits)", rows[i].order);
-    for (int k = 0; k < 2; k++)
-      verdict(fabs(ends[k] / rows[i].ends[k] - 1), 1e-5, "11 order %d: %s end", rows[i].order,
-              k ? "upper" : "lower");
-    mhb_found_free(&found);
-    mhb_newton_destroy(newton);
-    periodic_destroy(&p);
+    verdict_count(one, 1, "11 order %d: found", rows[i].order);
+    mhb_response_destroy(r);
   }
   modal_model_free(&model);
   verdict_all();

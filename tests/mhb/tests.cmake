@@ -35,6 +35,8 @@ target_link_options(test_mhb_stability PRIVATE
   LINKER:--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=aligned_alloc)
 shb_test(mhb judge fast shb_mhb)
 target_sources(test_mhb_judge PRIVATE mhb/periodic.c mhb/random_model.c mhb/three_degree.c)
+shb_test(mhb further fast shb_mhb)
+target_sources(test_mhb_further PRIVATE mhb/three_degree.c)
 shb_test(mhb hill fast shb_mhb)
 target_sources(test_mhb_hill PRIVATE mhb/periodic.c mhb/random_model.c mhb/three_degree.c)
 shb_test(mhb integrate fast shb_mhb)

@@ -57,6 +57,8 @@ static void check_point(const mhb_response *r, int b, int p, char *const *cell, 
   const double complex *u      = branch->motion + ((size_t)p * 3 + 1) * 4,
                        *tip    = branch->probe + (size_t)p * 2 * 3 * 4;
   assert_near(value(cell[column(name, n, "branch")]), b, 0);
+  assert_string_equal(cell[column(name, n, "origin")], "end");
+  assert_near(value(cell[column(name, n, "order")]), 1, 0);
   assert_near(value(cell[column(name, n, "frequency_Hz")]), branch->frequency[p],
               1e-11 * branch->frequency[p]);
   assert_near(value(cell[column(name, n, "contact_u_amplitude_m")]), cabs(u[1]),
@@ -91,7 +93,7 @@ static void whole(void **state) {
   r->branch[3].multipliers[10] = CMPLX(.3, 1.4);
   post_csv(r, &text);
   const char *at = record(text.text, names, name, &n);
-  assert_int_equal(n, 4 + 2 * 11 + 15 + 11);
+  assert_int_equal(n, 4 + 2 * 11 + 15 + 13);
   for (int b = 0; b < r->n_branches; b++)
     for (int p = 0; p < r->branch[b].n_points; p++, rows++) {
       at = record(at, room, cell, &m);
@@ -141,7 +143,7 @@ static void many_contacts(void **state) {
   assert_non_null(r);
   post_csv(r, &text);
   record(text.text, names, name, &n);
-  assert_int_equal(n, 4 + 3 * 15 + 11);
+  assert_int_equal(n, 4 + 3 * 15 + 13);
   column(name, n, "contact3_w_peak_to_peak_m");
   post_buffer_free(&text);
   mhb_response_destroy(r);

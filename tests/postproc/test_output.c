@@ -89,7 +89,7 @@ static void places(void **state) {
   assert_near(post_amplitude(r, &r->branch[0], 1, (post_output){POST_PROBE, 0, POST_WHOLE}, 2), 7,
               1e-15);
   double *series;
-  r->subharmonics = 2; /* the excitation's first harmonic is now k = 2 */
+  r->branch[0].order = 2; /* the excitation's first harmonic is now k = 2 */
   assert_ok(post_series(r, &r->branch[0], w, POST_FIRST_HARMONIC, &series));
   assert_near(series[1], 2, 1e-15);
   free(series);
