@@ -14,7 +14,13 @@
 
 enum { CASE_MAX_PROBES = 32, CASE_NAME = 64 };
 
-typedef enum { CASE_MESH = 1, CASE_MODAL = 2, CASE_MHB = 4, CASE_POST = 8, CASE_CONVERGE = 16 } case_stage;
+typedef enum {
+  CASE_MESH     = 1,
+  CASE_MODAL    = 2,
+  CASE_MHB      = 4,
+  CASE_POST     = 8,
+  CASE_CONVERGE = 16
+} case_stage;
 
 typedef struct {
   char   name[CASE_NAME];

@@ -408,6 +408,9 @@ static void forget(const char *folder) {
 static shb_status prepare(study *s) {
   case_file   copy = *s->file;
   post_output output;
+  SHB_CHECK(copy.mhb.parameter == MHB_IN_FREQUENCY, SHB_ERR_INPUT,
+            "%s: mhb.vary: converge compares curves over the frequency; leave it out",
+            copy.path);
   s->base = (rung_setting){.harmonics = s->file->mhb.harmonics,
                            .accuracy  = fmin(1e-8, s->file->mhb.tolerance),
                            .modes     = 1,
