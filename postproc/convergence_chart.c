@@ -21,7 +21,7 @@ const char post_convergence_css[] =
     ".l-bare{color:#8a8f2a}.l-mesh{color:#a83250}.l-all{color:#1b2530}"
     ".line.l-bare{stroke-dasharray:6 4}.goal{stroke:#8c959f;stroke-width:1.2;fill:none;"
     "stroke-dasharray:3 4}.hollow{fill:none;stroke:currentColor;stroke-width:1.5}"
-    ".name{fill:currentColor}"
+    ".plot .name{fill:currentColor}"
     "@media screen and (prefers-color-scheme:dark){.l-h{color:#4cc3cb}.l-auto{color:#b8a1ea}"
     ".l-acc{color:#e2a15c}.l-modes{color:#86c586}.l-bare{color:#c9cd6a}.l-mesh{color:#f08aa4}"
     ".l-all{color:#e6eaee}}";
@@ -35,7 +35,7 @@ static void put_style(post_buffer *out) {
       ".dot{fill:currentColor}.grid{stroke:#e4e7ea}.base{stroke:#8c959f;fill:none}"
       "@media screen and (prefers-color-scheme:dark){text{fill:#9aa5b1}.page{fill:#12171d}"
       ".axis,.heading{fill:#e6eaee}.grid{stroke:#262e37}.base{stroke:#6b7682}}");
-  post_put(out, "%s.name{fill:currentColor}</style>\n", post_convergence_css);
+  post_put(out, "%s</style>\n", post_convergence_css);
   post_put(out, "<rect class=\"page\" width=\"%d\" height=\"%d\"/>\n", WIDTH, HEIGHT);
 }
 
@@ -229,18 +229,19 @@ static void put_legend(const post_convergence *s, double left, double top, post_
            left + 12, y - 4, left + 32, y);
 }
 
-static void put_plot(const post_convergence *s, const char *title, post_buffer *out) {
+/* The data area, 76 px below the top less lift. */
+static void put_plot(const post_convergence *s, const char *title, double lift, post_buffer *out) {
   post_plot plot = {.out    = out,
                     .id     = "convergence",
                     .left   = 62,
-                    .top    = 76,
+                    .top    = 76 - lift,
                     .width  = WIDTH - 62 - 178,
                     .height = HEIGHT - 76 - 54};
-  post_put(out, "<text class=\"axis\" x=\"14\" y=\"58\">");
+  post_put(out, "<text class=\"axis\" x=\"14\" y=\"%g\">", 58 - lift);
   post_put_escaped(out, title);
   post_put(out, "</text>\n");
   draw(s, &plot);
-  put_legend(s, WIDTH - 162, 92, out);
+  put_legend(s, WIDTH - 162, 92 - lift, out);
 }
 
 static const char axis_title[] = "relative error: the greatest of peak, its frequency and curve";
@@ -257,7 +258,7 @@ void post_convergence_picture(const post_convergence *s, const char *case_name, 
   post_put(out, "<text class=\"heading\" x=\"14\" y=\"32\">");
   post_put_escaped(out, title);
   post_put(out, "</text>\n");
-  put_plot(s, axis_title, out);
+  put_plot(s, axis_title, 0, out);
   plot_svg_close(out);
 }
 
@@ -346,8 +347,8 @@ void post_convergence_section(const post_convergence *s, post_buffer *out) {
   put_lines(conclusion.text, out);
   put_lines(s->note, out);
   post_put(out, "</ul>\n<div class=\"card\"><figure><div class=\"chart\">\n");
-  plot_svg_open(out, "convergence", WIDTH, HEIGHT, "Speed against error", description);
-  put_plot(s, axis_title, out);
+  plot_svg_open(out, "convergence", WIDTH, HEIGHT - 42, "Speed against error", description);
+  put_plot(s, axis_title, 42, out);
   plot_svg_close(out);
   post_put(out, "</div></figure></div>\n");
   put_table(s, out);

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <cmocka.h>
 
@@ -37,17 +38,22 @@ static void write_case(const char *name, const char *n0, const char *more, const
   scratch_write(folder, name, text, strlen(text));
 }
 
+static void read_said(void) {
+  char path[2 * SCRATCH_PATH];
+  snprintf(path, sizeof path, "%s/said", folder);
+  FILE  *file = fopen(path, "r");
+  size_t n    = fread(said, 1, sizeof said - 1, file);
+  said[n]     = '\0';
+  fclose(file);
+}
+
 /* Exit code; what is said on both channels goes into said. */
 static int converge(const char *words) {
   char command[8 * SCRATCH_PATH];
   snprintf(command, sizeof command, "cd '%s' && '%s' converge %s >said 2>&1", folder, SHROUDHB,
            words);
   int code = system(command);
-  snprintf(command, sizeof command, "%s/said", folder);
-  FILE  *file = fopen(command, "r");
-  size_t n    = fread(said, 1, sizeof said - 1, file);
-  said[n]     = '\0';
-  fclose(file);
+  read_said();
   return WEXITSTATUS(code);
 }
 
@@ -283,6 +289,29 @@ static void keys_are_heeded(void **state) {
   assert_non_null(strstr(said, "(converge.seconds is 1e-06)"));
 }
 
+/* Rungs that were finished are reported; those under way and to come are not. */
+static void interrupted(void **state) {
+  (void)state;
+  char command[8 * SCRATCH_PATH];
+  write_case("other.yaml", ".3, -.2", "", "");
+  snprintf(command, sizeof command, "sed -i 's/name: three/name: other/' '%s/other.yaml'", folder);
+  assert_int_equal(system(command), 0);
+  /* a shell's background jobs ignore SIGINT: SIGTERM */
+  snprintf(command, sizeof command,
+           "cd '%s' && { '%s' converge other.yaml >said 2>&1 & pid=$!; n=0; "
+           "until [ -e other.converge/h3_a1e-08_m3.cost ] || [ $n -gt 1200 ]; do sleep 0.05; "
+           "n=$((n+1)); done; kill -TERM $pid; wait $pid; }",
+           folder, SHROUDHB);
+  int code = system(command);
+  read_said();
+  assert_int_equal(WEXITSTATUS(code), 130);
+  assert_non_null(strstr(said, "interrupted; the rungs so far are kept and used again"));
+  assert_non_null(strstr(said, "harmonics           1 "));
+  assert_int_equal(count(said, "not run"), 1);
+  snprintf(command, sizeof command, "%s/other.converge.h5", folder);
+  assert_true(access(command, F_OK) != 0);
+}
+
 static void refuse(const char *words, int code, const char *why) {
   int found = converge(words);
   if (found != code || !strstr(said, why))
@@ -316,6 +345,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(errors_fall),           cmocka_unit_test(errors_are_those_of_the_curves),
       cmocka_unit_test(the_cheapest_is_named), cmocka_unit_test(results_are_kept),
-      cmocka_unit_test(keys_are_heeded),       cmocka_unit_test(broken_input)};
+      cmocka_unit_test(keys_are_heeded),       cmocka_unit_test(interrupted),
+      cmocka_unit_test(broken_input)};
   return cmocka_run_group_tests(tests, start, clean);
 }
