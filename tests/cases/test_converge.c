@@ -273,6 +273,28 @@ static void results_are_kept(void **state) {
   assert_true(fabs(rung_of(POST_LADDER_HARMONICS, "1")->curve / error - 1) < 1e-6);
 }
 
+static int other_command(const char *words) {
+  char command[8 * SCRATCH_PATH];
+  snprintf(command, sizeof command, "cd '%s' && '%s' %s >said 2>&1", folder, SHROUDHB, words);
+  int code = system(command);
+  read_said();
+  return WEXITSTATUS(code);
+}
+
+/* The section is in the report as long as the case is the one that was studied. */
+static void the_report_shows_it(void **state) {
+  (void)state;
+  assert_int_equal(other_command("run --quiet three.yaml"), 0);
+  assert_int_equal(
+      other_command("post --quiet three.yaml; grep -c 'Speed against error</h2>' three.html"), 0);
+  assert_string_equal(said, "1\n");
+  write_case("three.yaml", ".3, -.2", "", "converge: {tolerance: 2 %}\n");
+  assert_int_equal(
+      other_command("post --quiet three.yaml; grep -c 'Speed against error</h2>' three.html"), 1);
+  assert_string_equal(said, "0\n");
+  write_case("three.yaml", ".3, -.2", "", "");
+}
+
 /* Exit codes by the tolerance; output and preloads from the case. */
 static void keys_are_heeded(void **state) {
   (void)state;
@@ -332,6 +354,12 @@ static void broken_input(void **state) {
   write_case("bad.yaml", ".3", "", "converge: {output: tip}\n");
   refuse("bad.yaml", 2, "converge.output: 'tip' is not known; expected one of contact, contact");
   assert_int_equal(count(said, "\n"), 1);
+  static const char varied[] =
+      "modal: {file: three.h5}\n"
+      "contact: {to: ground, psi: 0, phi: 0, mu: 0.4, ku: 0.5, kv: 0.8}\n"
+      "mhb: {frequency: 0.2 Hz, vary: {n0: [0, 1]}}\n";
+  scratch_write(folder, "bad.yaml", varied, strlen(varied));
+  refuse("bad.yaml", 2, "mhb.vary: converge compares curves over the frequency; leave it out");
   scratch_write(folder, "broken.h5", "nothing", 7);
   write_case("bad.yaml", ".3", "", "");
   char command[4 * SCRATCH_PATH];
@@ -345,7 +373,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(errors_fall),           cmocka_unit_test(errors_are_those_of_the_curves),
       cmocka_unit_test(the_cheapest_is_named), cmocka_unit_test(results_are_kept),
-      cmocka_unit_test(keys_are_heeded),       cmocka_unit_test(interrupted),
-      cmocka_unit_test(broken_input)};
+      cmocka_unit_test(the_report_shows_it),   cmocka_unit_test(keys_are_heeded),
+      cmocka_unit_test(interrupted),           cmocka_unit_test(broken_input)};
   return cmocka_run_group_tests(tests, start, clean);
 }
