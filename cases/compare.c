@@ -65,9 +65,8 @@ static shb_status from_reference(comparison *c, int i, double *distance) {
   int           last = r->branch->n_points - 1, near = 0;
   double        point[2] = {r->branch->frequency[i], r->amplitude[i]}, found[2];
   double        drawn    = post_distance(point, &c->rung.line, c->unit, &near);
-  witness_place place    = {
-         r->response, r->branch, i, i, i > 0 ? i - 1 : 0, i < last ? i + 1 : last, 0};
-  *distance = INFINITY;
+  witness_place place    = {r->branch, i, i, i > 0 ? i - 1 : 0, i < last ? i + 1 : last, 0};
+  *distance              = INFINITY;
   c->error->n++;
   if (r->response->n_pairs == c->rung.response->n_pairs) {
     witness *w = NULL;

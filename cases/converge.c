@@ -248,8 +248,8 @@ static shb_status modes_ladder(study *s, bool residuals) {
     char         name[16];
     rung_setting setting = s->base;
     if (!residuals && !has && modes == all) break; /* the reference itself */
-    setting.modes        = modes;
-    setting.residuals    = residuals;
+    setting.modes     = modes;
+    setting.residuals = residuals;
     snprintf(name, sizeof name, "%d", modes);
     SHB_TRY(add(s, residuals ? POST_LADDER_MODES : POST_LADDER_BARE, &setting, 0, name));
     s->result.rung[s->result.n - 1].of_case = residuals && modes == all;
@@ -409,8 +409,7 @@ static shb_status prepare(study *s) {
   case_file   copy = *s->file;
   post_output output;
   SHB_CHECK(copy.mhb.parameter == MHB_IN_FREQUENCY, SHB_ERR_INPUT,
-            "%s: mhb.vary: converge compares curves over the frequency; leave it out",
-            copy.path);
+            "%s: mhb.vary: converge compares curves over the frequency; leave it out", copy.path);
   s->base = (rung_setting){.harmonics = s->file->mhb.harmonics,
                            .accuracy  = fmin(1e-8, s->file->mhb.tolerance),
                            .modes     = 1,

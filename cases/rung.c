@@ -41,6 +41,8 @@ shb_status rung_apply(const rung_setting *s, case_file *file) {
   mhb->stability        = MHB_STABILITY_NEVER;
   mhb->search.starts    = 0;
   mhb->resume           = false;
+  mhb->flips            = false;
+  mhb->search.starts    = 0;
   int kept              = 0;
   for (int i = 0; i < mhb->n_preloads; i++)
     if (mhb->n0[i] >= file->converge_n0[0] && mhb->n0[i] <= file->converge_n0[1])

@@ -50,7 +50,8 @@ bool rung_from_words(char *const words[RUNG_SETTING_WORDS], rung_setting *settin
 /* Name of a setting for files: "h7_a1e-08_m20". */
 void rung_name(const rung_setting *setting, char name[RUNG_WORD]);
 
-/* The case as a rung solves it: stability is not judged, preloads outside converge.n0 are left out. SHB_ERR_INPUT: none is left. */
+/* The case as a rung solves it: main curves only, stability is not judged, preloads outside converge.n0 are left out.
+ * SHB_ERR_INPUT: none is left. */
 shb_status rung_apply(const rung_setting *setting, case_file *file);
 
 /* Which output converge.output names; primary if it is not given. names: probes of the model.

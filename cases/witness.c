@@ -57,7 +57,7 @@ void witness_destroy(witness *w) {
 static void add_motion(const witness *w, const witness_place *place, int point, double factor,
                        double *to) {
   const mhb_residual   *b = w->residual;
-  int                   K = place->response->n_harmonics, rows = 3 * b->n_pairs;
+  int                   K = place->branch->n_harmonics, rows = 3 * b->n_pairs;
   const double complex *u = place->branch->motion + (size_t)point * (size_t)rows * (size_t)(K + 1);
   for (int row = 0; row < rows; row++)
     for (int k = 0; k <= K && k <= b->m; k++) {

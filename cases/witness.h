@@ -13,10 +13,9 @@ typedef struct witness witness;
 
 /* A place on a known curve: part of the way from one point to another of a branch, the curve running as from low to high. */
 typedef struct {
-  const mhb_response *response;
-  const mhb_branch   *branch;
-  int                 from, to, low, high; /* points */
-  double              part;                /* 0 at from, 1 at to */
+  const mhb_branch *branch;
+  int               from, to, low, high; /* points */
+  double            part;                /* 0 at from, 1 at to */
 } witness_place;
 
 /* A balance of that many harmonics (the settings' own number and tolerance do not count). The model must outlive it.

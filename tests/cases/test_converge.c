@@ -356,8 +356,8 @@ static void broken_input(void **state) {
   assert_int_equal(count(said, "\n"), 1);
   static const char varied[] =
       "modal: {file: three.h5}\n"
-      "contact: {to: ground, psi: 0, phi: 0, mu: 0.4, ku: 0.5, kv: 0.8}\n"
-      "mhb: {frequency: 0.2 Hz, vary: {n0: [0, 1]}}\n";
+      "contact: {to: ground, psi: 0, phi: 0, mu: 0.4, ku: 0.5, kv: 0.8, n0: 0.3}\n"
+      "mhb: {frequency: 0.2 Hz, vary: {mu: [0, 1]}}\n";
   scratch_write(folder, "bad.yaml", varied, strlen(varied));
   refuse("bad.yaml", 2, "mhb.vary: converge compares curves over the frequency; leave it out");
   scratch_write(folder, "broken.h5", "nothing", 7);
