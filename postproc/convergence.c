@@ -212,7 +212,7 @@ void post_convergence_conclusion(const post_convergence *s, post_buffer *out) {
   post_put(out, "Cheapest that meets ");
   put_percent(s->tolerance, out);
   post_put(out, ": %s%s", r->ladder == POST_LADDER_HARMONICS ? "mhb.harmonics " : "",
-           r->ladder == POST_LADDER_AUTO ? "mhb.harmonics " : "");
+           r->ladder == POST_LADDER_AUTO ? "mhb.harmonics auto, " : "");
   put_name(r, out);
   post_put(out, ", %.3g s, error ", r->seconds);
   put_percent(post_rung_error(r), out);

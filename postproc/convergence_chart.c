@@ -121,8 +121,9 @@ static void put_label(const post_plot *plot, const post_rung *r, double y, label
   snprintf(name, sizeof name, "%s", r->name);
   char *comma = strchr(name, ',');
   if (comma && r->ladder == POST_LADDER_MESH) *comma = '\0';
-  if (comma && r->ladder == POST_LADDER_AUTO)
-    memmove(name, "auto ", 6), memmove(name + 5, r->name + 16, strlen(r->name + 16) + 1);
+  if (r->ladder == POST_LADDER_AUTO && strncmp(name, "tolerance ", 10) == 0)
+    snprintf(name, sizeof name, "auto %s", r->name + 10);
+  if (r->ladder == POST_LADDER_TOGETHER) strcpy(name, "together");
   snprintf(classed, sizeof classed, "name %s", classes[r->ladder]);
   for (int i = 0; i < 8 && all->n < 256; i++) {
     double width = 7 * (double)strlen(name), x = plot_x(plot, r->seconds) + move[i][0];
