@@ -23,6 +23,20 @@ if(TARGET shroudhb-post)
   add_dependencies(test_cases_z_notch shroudhb shroudhb-mesh shroudhb-modal shroudhb-mhb shroudhb-post)
 endif()
 
+# The paper's figures on our own blade, from mesh to curves.
+if(TARGET shroudhb-post)
+  function(figure_test noun scene)
+    shb_test(cases ${noun} slow shb_post shb_mhb ${ARGN})
+    target_sources(test_cases_${noun} PRIVATE cases/scene.c cases/scratch.c)
+    target_compile_definitions(test_cases_${noun} PRIVATE SHROUDHB="$<TARGET_FILE:shroudhb>"
+      SCENE="${PROJECT_SOURCE_DIR}/cases/${scene}")
+    add_dependencies(test_cases_${noun} shroudhb shroudhb-mesh shroudhb-modal shroudhb-mhb shroudhb-post)
+  endfunction()
+  figure_test(paper_fig8 paper_fig8)
+  figure_test(paper_fig9 paper_fig9 shb_case)
+  figure_test(paper_fig10 paper_fig10)
+endif()
+
 # Speed against error, from end to end.
 shb_test(cases converge fast shb_mhb shb_post)
 target_sources(test_cases_converge PRIVATE cases/scratch.c mhb/three_degree.c)
