@@ -10,7 +10,7 @@ static const double SAFETY = .7, PROMISE = .35, FIRST_ORDER = 3;
 /* A move that ends farther off, relative to the motion, has met another branch. */
 static const double NEAR                 = .3;
 static const int    STEPS[MHB_MAX_RUNGS] = {1, 3, 5, 7, 9, 13, 17, 21, 31};
-enum { QUIET = 3 };
+enum { QUIET = 3, HOLD = 6 };
 
 /* Highest harmonic of the fundamental that the load has, at least nu. */
 static int load_harmonics(const modal_model *model, const mhb_settings *s) {
@@ -171,6 +171,7 @@ int mhb_harmonics_higher(const mhb_harmonics *h) {
 }
 
 int mhb_harmonics_lower(mhb_harmonics *h) {
+  if (!h->linear && h->quiet < 0) h->quiet = 0; /* past where slip begins */
   h->quiet = h->wanted < h->at ? h->quiet + 1 : 0;
   return h->quiet >= (h->linear ? 1 : QUIET) ? h->wanted : -1;
 }
@@ -201,8 +202,8 @@ mhb_reason mhb_harmonics_move(mhb_harmonics *h, int rung, int step) {
   for (int i = 0; i < b->n; i++) away = fmax(away, fabs(to->path->now.x[i] - near[i]));
   if (away > NEAR * size) return MHB_NO_DESCENT; /* another branch */
   to->path->step = from->path->step;
+  h->quiet       = rung > h->at ? -HOLD : 0; /* where slip begins few harmonics lead astray */
   h->at          = rung;
-  h->quiet       = 0;
   if (rung > h->highest) h->highest = rung;
   return MHB_CONVERGED;
 }

@@ -56,6 +56,8 @@ static mhb_response *follow(const modal_model *model, const mhb_settings *s, int
   return response;
 }
 
+enum { BEFORE = 7 };
+
 /* What is true of a branch, by solutions of 31 harmonics at its frequencies. */
 typedef struct {
   int    n, lost, within; /* points compared; without a counterpart near by; within the tolerance */
@@ -76,8 +78,8 @@ static void count_kinds(const mhb_branch *b, int p, truth *out) {
   if (b->harmonics[p] > out->most) out->most = b->harmonics[p];
   if (b->truncation_kind[p] != MHB_TRUNCATION_NONE) return;
   out->linear++;
-  int settled = p > 0 && p + 1 < b->n_points;
-  for (int i = p - 1; settled && i <= p + 1; i++)
+  int settled = p > 0 && p + BEFORE < b->n_points; /* many are kept where slip is about to begin */
+  for (int i = p - 1; settled && i <= p + BEFORE; i++)
     settled = b->truncation_kind[i] == MHB_TRUNCATION_NONE && b->special[i] == MHB_ORDINARY;
   out->wasteful += settled && b->harmonics[p] > 1;
 }
