@@ -15,11 +15,12 @@
 enum { CASE_MAX_PROBES = 32, CASE_NAME = 64 };
 
 typedef enum {
-  CASE_MESH     = 1,
-  CASE_MODAL    = 2,
-  CASE_MHB      = 4,
-  CASE_POST     = 8,
-  CASE_CONVERGE = 16
+  CASE_MESH      = 1,
+  CASE_MODAL     = 2,
+  CASE_MHB       = 4,
+  CASE_POST      = 8,
+  CASE_CONVERGE  = 16,
+  CASE_INTEGRATE = 32
 } case_stage;
 
 typedef struct {
@@ -59,6 +60,8 @@ typedef struct {
   double converge_n0[2];   /* N, preloads that are looked at */
   double converge_seconds; /* the most that a rung's balance may take */
   char  *converge_output;  /* name of a probe or "contact"; NULL: the first */
+
+  mhb_witness_settings integrate;
 } case_file;
 
 /* Read and check a case file. All errors of the file are printed to errors at once, each as

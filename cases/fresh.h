@@ -12,6 +12,9 @@ shb_status fresh_settings(const case_file *file, case_stage stage, const char *i
 /* Whether the HDF5 file at path was made from these settings. */
 bool fresh_equal(const char *path, const char *settings);
 
+/* Whether the HDF5 file at path was made from the keys of stage that the case has now. */
+bool fresh_keys(const case_file *file, case_stage stage, const char *path);
+
 /* One warning line on stderr if the HDF5 file at path was made from other keys of stage than the case has now.
  * Files that cannot be read are left to whoever needs them. */
 void fresh_warn(const case_file *file, case_stage stage, const char *path);

@@ -144,6 +144,7 @@ static const char *type_name(const case_key *key) {
                                                   [CASE_PRELOADS]  = "number(s)",
                                                   [CASE_PLACES]    = "list",
                                                   [CASE_ORDERS]    = "list",
+                                                  [CASE_POINTS]    = "integer or list",
                                                   [CASE_FACTORS]   = "mapping",
                                                   [CASE_PROBES]    = "mapping",
                                                   [CASE_SECTIONS]  = "list",

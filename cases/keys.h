@@ -27,6 +27,7 @@ typedef enum {
   CASE_PRELOADS,  /* number, list, or {from, to, points}: the case_file's mhb.n0 */
   CASE_PLACES,    /* list of frequencies: the case_file's mhb.search */
   CASE_ORDERS,    /* list of whole numbers, ascending: the case_file's mhb.search */
+  CASE_POINTS,    /* number of points, or list: the case_file's integrate.frequency */
   CASE_FACTORS,   /* {k: [factor, phase]}: the case_file's load */
   CASE_PROBES,    /* {name: [x, y, z]}: the case_file's probe */
   CASE_SECTIONS, /* list of mappings, whose keys are rows "...sections[].": the case_file's blade */

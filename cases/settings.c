@@ -81,6 +81,10 @@ static void print_scalar(FILE *out, const case_key *key, const case_file *file) 
       for (int i = 0; i < file->mhb.search.n_orders; i++)
         fprintf(out, "%s%d", i ? " " : "", ((const int *)slot)[i]);
       break;
+    case CASE_POINTS:
+      if (!file->integrate.listed) fprintf(out, "%d points", file->integrate.n_frequencies);
+      if (file->integrate.listed) print_numbers(out, file->integrate.n_frequencies, slot);
+      break;
     case CASE_INTERVAL:
     case CASE_SWEEP:
       print_numbers(out, 2, slot);

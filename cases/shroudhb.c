@@ -21,6 +21,7 @@ static const char usage[] =
     "  mesh CASE.yaml     mesh the blade                    -> NAME.msh\n"
     "  modal CASE.yaml    modes and receptances             -> NAME.modal.h5\n"
     "  mhb CASE.yaml      harmonic balance                  -> NAME.response.h5\n"
+    "  integrate CASE.yaml  points by time integration      -> NAME.integration.h5, drawn by post\n"
     "  post CASE.yaml     report, curves                    -> NAME.html, NAME.csv, NAME.svg\n"
     "  converge CASE.yaml error against time, setting by setting; `shroudhb converge --help`\n"
     "  check CASE.yaml    check a case file, run nothing\n"
@@ -139,10 +140,10 @@ static int run_main(const char *name, int argc, char **argv) {
 static const struct {
   const char  *name;
   command_main main;
-} commands[] = {{"run", run_main},        {"mesh", stage_main}, {"modal", stage_main},
-                {"mhb", stage_main},      {"post", stage_main}, {"converge", stage_main},
-                {"check", check_main},    {"keys", keys_main},  {"inspect", inspect_main},
-                {"contact", contact_main}};
+} commands[] = {{"run", run_main},         {"mesh", stage_main},     {"modal", stage_main},
+                {"mhb", stage_main},       {"post", stage_main},     {"converge", stage_main},
+                {"check", check_main},     {"keys", keys_main},      {"inspect", inspect_main},
+                {"contact", contact_main}, {"integrate", stage_main}};
 
 enum { N_COMMANDS = sizeof commands / sizeof *commands };
 

@@ -18,6 +18,7 @@ static const char usage[] =
     "\n"
     "Makes NAME.html (report), NAME.csv (every point) and NAME.svg (picture) from "
     "NAME.response.h5;\n"
+    "points of NAME.integration.h5 are drawn as dots;\n"
     "the report has the section Speed against error if NAME.converge.h5 belongs to the case.\n"
     "With --inspect: what an HDF5 file holds; --verbose unfolds everything, case text and settings "
     "too.\n";
@@ -45,15 +46,33 @@ static char *fresh_convergence(const case_file *file) {
   return NULL;
 }
 
+/* Whether there are points by time integration that belong to the case as it is now. */
+static bool has_points(const case_file *file, const char *path) {
+  if (access(path, R_OK) != 0) return false;
+  if (fresh_keys(file, (case_stage)(CASE_MHB | CASE_INTEGRATE), path)) return true;
+  fprintf(stderr,
+          "shroudhb: warning: %s was made from other settings and is left out; run `shroudhb "
+          "integrate` again\n",
+          path);
+  return false;
+}
+
 static shb_status publish(const case_file *file, const command_options *options) {
   shb_progress progress = shb_progress_start("post", options->quiet, options->verbose);
   char        *response = case_output(file, ".response.h5"), *html = case_output(file, ".html");
   char        *csv = case_output(file, ".csv"), *svg = case_output(file, ".svg"), *summary = NULL;
   char        *convergence = fresh_convergence(file);
+  char        *points      = case_output(file, ".integration.h5");
   shb_status   status;
-  if (response && html && csv && svg) {
+  if (response && html && csv && svg && points) {
     fresh_warn(file, CASE_MHB, response);
-    const post_job job = {file->name, response, html, csv, svg, convergence};
+    const post_job job = {file->name,
+                          response,
+                          html,
+                          csv,
+                          svg,
+                          convergence,
+                          has_points(file, points) ? points : NULL};
     status             = post_publish(&job, &progress, &summary);
   } else {
     status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
@@ -66,6 +85,7 @@ static shb_status publish(const case_file *file, const command_options *options)
   free(html);
   free(csv);
   free(svg);
+  free(points);
   return status;
 }
 

@@ -145,6 +145,21 @@ static const case_key table[] = {
      .help = "the preloads it looks at: those of contact.n0 in this range"},
     {"converge.seconds", CASE_NUMBER, "s", 0, 1e6, true, .fallback = "60 s", AT(converge_seconds), .stages = CASE_CONVERGE,
      .help = "its ladder of harmonics ends before a rung whose balance would take longer"},
+
+    {"integrate.frequencies", CASE_POINTS, "Hz", 0, 1e9, true, .fallback = "21", AT(integrate.frequency), .stages = CASE_INTEGRATE,
+     .help = "shroudhb integrate: number of points over mhb.frequency, or a list of frequencies"},
+    {"integrate.start", CASE_CHOICE, "", .words = "balance rest state", .fallback = "balance", AT(integrate.start), .stages = CASE_INTEGRATE,
+     .help = "each point from the stable solutions of NAME.response.h5, from rest, or from the state of the frequency before"},
+    {"integrate.direction", CASE_CHOICE, "", .words = "up down both", .fallback = "both", AT(integrate.direction), .stages = CASE_INTEGRATE,
+     .help = "of a sweep with start: state"},
+    {"integrate.steps", CASE_INTEGER, "", 8, 4096, .fallback = "48", AT(integrate.steps), .stages = CASE_INTEGRATE,
+     .help = "steps a period to begin with; doubled until two runs agree within tolerance"},
+    {"integrate.tolerance", CASE_NUMBER, "", 1e-10, 0.1, .fallback = "1e-5", AT(integrate.tolerance), .stages = CASE_INTEGRATE,
+     .help = "relative error of the periodic motion"},
+    {"integrate.periods", CASE_INTEGER, "", 10, 100000000, .fallback = "5000", AT(integrate.max_periods), .stages = CASE_INTEGRATE,
+     .help = "most periods to wait for a motion to repeat; then it counts as not periodic"},
+    {"integrate.harmonics", CASE_AUTO, "", 1, MOST_HARMONICS, .fallback = "auto", AT(integrate.harmonics), .stages = CASE_INTEGRATE,
+     .help = "harmonics kept of the motion; auto: as many as the balance has"},
 };
 /* clang-format on */
 

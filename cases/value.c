@@ -33,6 +33,7 @@ void case_value_expected(const case_key *key, char *text, size_t size) {
       [CASE_PRELOADS]  = "a number, a list or {from, to, points}",
       [CASE_PLACES]    = "a list of numbers",
       [CASE_ORDERS]    = "a list of whole numbers",
+      [CASE_POINTS]    = "a whole number of points or a list",
       [CASE_FACTORS]   = "a mapping {harmonic: [factor, phase]}",
       [CASE_PROBES]    = "a mapping {name: [x, y, z]}",
       [CASE_SECTIONS]  = "a list of mappings",
@@ -372,6 +373,37 @@ static bool read_orders(const context *c, const case_node *node, void *slot) {
   return good;
 }
 
+/* Points over the range of the sweep, or the frequencies themselves. */
+static bool read_frequencies(const context *c, const case_node *node, void *slot) {
+  (void)slot;
+  mhb_witness_settings *asked = &c->file->integrate;
+  char                  why[CASE_WHY];
+  int                   n = node->kind == CASE_SEQUENCE ? node->n : 0;
+  asked->listed           = node->kind == CASE_SEQUENCE;
+  if (!asked->listed && node->kind != CASE_SCALAR) return refuse(c, node);
+  if (!asked->listed && !case_integer(node->text, &n, why)) {
+    case_issue_add(c->issues, node->line, node->column, c->path,
+                   "%s; expected a number of points, or [from, ..] in Hz", why);
+    return false;
+  }
+  if (n < 1 || n > MHB_MAX_FREQUENCIES) {
+    case_issue_add(c->issues, node->line, node->column, c->path,
+                   "%d frequencies; there may be 1 to %d", n, MHB_MAX_FREQUENCIES);
+    return false;
+  }
+  asked->n_frequencies = n;
+  if (!asked->listed) return true;
+  if (!numbers_at(c, c->path, node, n, asked->frequency)) return false;
+  for (int i = 1; i < n; i++) {
+    if (asked->frequency[i] > asked->frequency[i - 1]) continue;
+    case_issue_add(c->issues, node->child[i].line, node->child[i].column, c->path,
+                   "%g Hz comes after %g Hz; frequencies must ascend", asked->frequency[i],
+                   asked->frequency[i - 1]);
+    return false;
+  }
+  return true;
+}
+
 bool case_value_polar(case_issues *issues, const char *path, const case_node *node,
                       const char *unit, double polar[2]) {
   case_key      keys[2] = {{.unit = unit}, {.unit = "rad"}};
@@ -477,7 +509,7 @@ bool case_value_read(case_issues *issues, const case_key *key, const char *path,
       [CASE_PRELOADS] = read_preloads, [CASE_FACTORS] = read_factors,
       [CASE_PROBES] = read_probes,     [CASE_SIGNAL] = read_signal,
       [CASE_AUTO] = read_count,        [CASE_PLACES] = read_places,
-      [CASE_ORDERS] = read_orders};
+      [CASE_ORDERS] = read_orders,     [CASE_POINTS] = read_frequencies};
   const context c = {.issues = issues, .key = key, .path = path, .file = file};
   return readers[key->type](&c, node, slot);
 }

@@ -330,7 +330,13 @@ shb_status mhb_integrator_create(const modal_model *model, const mhb_settings *s
   g->settings       = *settings;
   g->n_load         = nu * model->n_load;
   g->n_harmonics    = n_harmonics > g->n_load ? n_harmonics : g->n_load;
-  shb_status status = mhb_receptance_create(model, &g->settings, g->n_harmonics, &g->receptance);
+  shb_status status = SHB_OK;
+  if (model->residual_inertia) {
+    status = mhb_inertia_modes(model, &g->model);
+    model  = &g->model;
+  }
+  if (status == SHB_OK)
+    status = mhb_receptance_create(model, &g->settings, g->n_harmonics, &g->receptance);
   if (status == SHB_OK) status = mhb_chain_create(g->receptance, &g->settings, &g->chain);
   if (status == SHB_OK) {
     g->blades   = g->chain.s.blades;
@@ -355,6 +361,7 @@ void mhb_integrator_destroy(mhb_integrator *g) {
   mhb_span_destroy(&g->cut);
   mhb_chain_destroy(&g->chain);
   mhb_receptance_destroy(g->receptance);
+  mhb_inertia_free(&g->model);
   free(g->law);
   free(g->z);
   free(g->rub);

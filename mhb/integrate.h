@@ -10,6 +10,7 @@
 #ifndef MHB_INTEGRATE_H
 #define MHB_INTEGRATE_H
 
+#include "mhb/inertia.h"
 #include "mhb/rub.h"
 
 typedef struct {
@@ -25,7 +26,8 @@ typedef void (*mhb_integrator_watch)(void *context, const mhb_integrator *integr
                                      double h);
 
 struct mhb_integrator {
-  mhb_settings    settings;
+  mhb_settings settings;
+  modal_model  model; /* with residual modes, if the model given has residual inertia; else empty */
   mhb_receptance *receptance; /* harmonics 0..n_harmonics, at omega */
   mhb_chain       chain;
   int             n_harmonics, n_load; /* of outputs and starts; highest one of the free motion */

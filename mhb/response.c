@@ -13,7 +13,7 @@ enum { RESPONSE_VERSION = 1, FIRST_POINTS = 64, MAX_COUNT = 100000 };
 
 /* ---------------------------------------------------------------- one array of a branch
  * The table drives growing, writing and reading. dims: the dimensions after [point], one letter each:
- * p pair, q probe, 3 shroud axes, x cylindrical axes, s contact state, k harmonic 0..m, f multiplier. */
+ * p pair, q probe, 3 shroud axes, x cylindrical axes, s contact state, k harmonic 0..m, f multiplier, l spectral line. */
 typedef enum { DOUBLE, COMPLEX, INT } number;
 
 typedef struct {
@@ -52,7 +52,7 @@ static const field fields[] = {
      "estimated error of the contact force's harmonics, relative to the motion"},
     {"error/modal", "", DOUBLE, AT(error_modal), "-",
      "estimated error from the modes left out, relative to the motion"},
-    /* the last N_LATER: of nonlinear branches only; files of earlier versions lack them */
+    /* N_LATER: of nonlinear branches only; files of earlier versions lack them */
     {"harmonics", "", INT, AT(harmonics), "-",
      "harmonics of the balance at the point; higher ones of motion, force and probe are 0"},
     {"error/truncation_kind", "", INT, AT(truncation_kind), "-",
@@ -68,13 +68,21 @@ static const field fields[] = {
      "Neimark-Sacker (a pair)"},
     {"multipliers", "f", COMPLEX, AT(multipliers), "-",
      "largest Floquet multipliers by falling modulus; 0: not computed, or there are no more"},
+    /* the last N_INTEGRATION: of integration branches only */
+    {"multiple", "", INT, AT(multiple), "-",
+     "the motion repeats after so many periods of the fundamental; 0: it does not"},
+    {"periods", "", INT, AT(periods), "-", "periods of the fundamental that were integrated"},
+    {"distance", "", DOUBLE, AT(distance), "-", "of the return map, relative to the motion"},
+    {"spectrum/frequency", "l", DOUBLE, AT(line_frequency), "Hz",
+     "lines of the contact motion where it does not repeat, largest first; 0: none"},
+    {"spectrum/amplitude", "l", DOUBLE, AT(line_amplitude), "m", "amplitude of the line"},
 };
-enum { N_FIELDS = sizeof fields / sizeof *fields, N_LATER = 5 };
+enum { N_FIELDS = sizeof fields / sizeof *fields, N_LATER = 5, N_INTEGRATION = 5 };
 
 static const char *const origin_name[] = {"end", "search", "flip"};
 enum { N_ORIGINS = sizeof origin_name / sizeof *origin_name };
 
-static const char *const kind_name[] = {"nonlinear", "open", "stuck"};
+static const char *const kind_name[] = {"nonlinear", "open", "stuck", "integration"};
 enum { N_KINDS = sizeof kind_name / sizeof *kind_name };
 
 static size_t bytes_of(number kind) {
@@ -91,6 +99,8 @@ static hsize_t size_of(const mhb_response *response, const mhb_branch *branch, c
       return (hsize_t)branch->n_harmonics + 1;
     case 'f':
       return (hsize_t)response->n_multipliers;
+    case 'l':
+      return (hsize_t)response->n_lines;
     default:
       return 3;
   }
@@ -106,6 +116,8 @@ static const char *scale_of(char letter) {
       return "/harmonic";
     case 'f':
       return "/multiplier";
+    case 'l':
+      return "/line";
     case '3':
       return "/shroud_axis";
     case 'x':
@@ -127,14 +139,19 @@ static size_t width_of(const mhb_response *response, const mhb_branch *branch, c
   return h5_count(shape_of(response, branch, f, 1));
 }
 
-static bool is_later(const field *f) {
-  return f - fields >= N_FIELDS - N_LATER;
+/* Which kind of branch alone has a field; MHB_N_BRANCH_KINDS: all. */
+static mhb_branch_kind owner_of(const field *f) {
+  long from_end = fields + N_FIELDS - f;
+  return from_end <= N_INTEGRATION             ? MHB_BRANCH_INTEGRATION
+         : from_end <= N_INTEGRATION + N_LATER ? MHB_BRANCH_NONLINEAR
+                                               : MHB_N_BRANCH_KINDS;
 }
 
 /* Without probes there is no probe array, in memory or in the file. */
 static bool is_kept(const mhb_response *response, const mhb_branch *branch, const field *f) {
+  mhb_branch_kind owner = owner_of(f);
   return width_of(response, branch, f) > 0 &&
-         (branch->kind == MHB_BRANCH_NONLINEAR || !is_later(f));
+         (owner == MHB_N_BRANCH_KINDS || owner == branch->kind);
 }
 
 /* The followed parameter where it is the frequency: not in the file twice. */
@@ -322,6 +339,9 @@ static shb_status write_scales(hid_t file, const mhb_response *response) {
   if (response->n_multipliers > 0)
     SHB_TRY(h5_write_counter(file, "/multiplier", (hsize_t)response->n_multipliers,
                              "Floquet multiplier, by falling modulus"));
+  if (response->n_lines > 0)
+    SHB_TRY(h5_write_counter(file, "/line", (hsize_t)response->n_lines,
+                             "spectral line, largest first"));
   return write_probe_names(file, response);
 }
 
@@ -462,14 +482,14 @@ static shb_status read_modes(hid_t file, mhb_response *response) {
   return SHB_OK;
 }
 
-/* Files of earlier versions have none. */
-static shb_status read_multipliers(hid_t file, const char *path, mhb_response *response) {
+/* Length of a list that files of earlier versions have none of. */
+static shb_status read_count(hid_t file, const char *path, const char *name, int *count) {
   h5_shape shape;
-  if (!h5_exists(file, "/multiplier")) return SHB_OK;
-  SHB_TRY(h5_shape_of(file, "/multiplier", &shape));
+  if (!h5_exists(file, name)) return SHB_OK;
+  SHB_TRY(h5_shape_of(file, name, &shape));
   SHB_CHECK(shape.rank == 1 && shape.dim[0] <= MAX_COUNT, SHB_ERR_INPUT,
-            "%s: /multiplier must be a list of at most %d", path, MAX_COUNT);
-  response->n_multipliers = (int)shape.dim[0];
+            "%s: %s must be a list of at most %d", path, name, MAX_COUNT);
+  *count = (int)shape.dim[0];
   return SHB_OK;
 }
 
@@ -504,7 +524,8 @@ static shb_status read_root(hid_t file, const char *path, mhb_response **out) {
   SHB_CHECK(response->subharmonics >= 1, SHB_ERR_INPUT,
             "%s: subharmonics is %d; 1 or more is wanted", path, response->subharmonics);
   SHB_TRY(read_parameter(file, path, &response->parameter));
-  SHB_TRY(read_multipliers(file, path, response));
+  SHB_TRY(read_count(file, path, "/multiplier", &response->n_multipliers));
+  SHB_TRY(read_count(file, path, "/line", &response->n_lines));
   return read_modes(file, response);
 }
 
@@ -523,7 +544,8 @@ static shb_status read_field(hid_t group, const mhb_response *response, mhb_bran
   double complex *complex_ = NULL;
   int            *whole    = NULL;
   if (is_frequency(response, f)) return copy_frequency(branch);
-  if (is_later(f) && !h5_exists(group, f->name)) { /* an earlier version's file: not known */
+  if (owner_of(f) == MHB_BRANCH_NONLINEAR &&
+      !h5_exists(group, f->name)) { /* an earlier version's file: not known */
     void *none = calloc(h5_count(shape) + 1, bytes_of(f->kind));
     SHB_CHECK(none, SHB_ERR_IO, "no memory for %d response points", branch->n_points);
     set(branch, f, none);
@@ -553,8 +575,9 @@ static shb_status read_kind(hid_t group, const char *path, int index, mhb_branch
   while (text && kind < N_KINDS && strcmp(text, kind_name[kind]) != 0) kind++;
   bool known = text && kind < N_KINDS;
   free(text);
-  SHB_CHECK(known, SHB_ERR_INPUT, "%s: /branch_%d: attribute kind must be nonlinear, open or stuck",
-            path, index);
+  SHB_CHECK(known, SHB_ERR_INPUT,
+            "%s: /branch_%d: attribute kind must be nonlinear, open, stuck or integration", path,
+            index);
   branch->kind = (mhb_branch_kind)kind;
   return SHB_OK;
 }

@@ -9,7 +9,14 @@
 #include "mesh/status.h"
 #include "mhb/settings.h"
 
-typedef enum { MHB_BRANCH_NONLINEAR, MHB_BRANCH_OPEN, MHB_BRANCH_STUCK } mhb_branch_kind;
+/* The balance, its linear limits, and single points by time integration. */
+typedef enum {
+  MHB_BRANCH_NONLINEAR,
+  MHB_BRANCH_OPEN,
+  MHB_BRANCH_STUCK,
+  MHB_BRANCH_INTEGRATION,
+  MHB_N_BRANCH_KINDS
+} mhb_branch_kind;
 
 /* How a branch was come by: followed from the low end of the range, from a solution found by search, from a flip. */
 typedef enum { MHB_FROM_END, MHB_FROM_SEARCH, MHB_FROM_FLIP } mhb_origin;
@@ -60,6 +67,13 @@ typedef struct {
   double *seconds;     /* [point] */
   double *error_newton, *error_truncation, *error_sampling,
       *error_modal; /* [point] relative to the motion's norm */
+  /* integration branches only */
+  int *
+      multiple; /* [point] the motion repeats after so many periods of the fundamental; 0: it does not */
+  int    *periods;  /* [point] that were integrated */
+  double *distance; /* [point] of the return map, relative */
+  double *line_frequency,
+      *line_amplitude; /* [point][n_lines] Hz, m: spectrum of what does not repeat, largest first */
 } mhb_branch;
 
 typedef struct {
@@ -68,6 +82,7 @@ typedef struct {
   mhb_branch   *branch;
   mhb_parameter parameter;     /* what is followed */
   int           n_multipliers; /* kept a point; 0: none, set before the first point */
+  int           n_lines;       /* of spectra of integrated points; 0: none, set likewise */
   /* copied from the modal model for the report */
   int     n_modes;
   double *mode_frequency, *mode_damping, *mode_residual; /* [m]; mode_residual may be NULL */
@@ -92,6 +107,10 @@ void mhb_response_reverse(mhb_response *response, int branch);
 void mhb_response_drop(mhb_response *response, const bool *drop);
 /* Further branches after all others, those of one main branch together, in the order in which they were found. */
 void mhb_response_sort(mhb_response *response);
+
+/* Take over the branches of other, which is left without; they keep their harmonics.
+ * SHB_ERR_INPUT: other pairs, probes or subharmonics. */
+shb_status mhb_response_merge(mhb_response *response, mhb_response *other);
 
 /* Publish (temporary, fsync, rename) / read back with full checks. */
 shb_status mhb_response_write(const mhb_response *response, const char *path,

@@ -55,4 +55,22 @@ typedef struct {
   bool                resume;    /* take over what an interrupted run of equal settings finished */
 } mhb_settings;
 
+/* Points by time integration, see witness.h. */
+typedef enum { MHB_FROM_BALANCE, MHB_FROM_REST, MHB_FROM_STATE } mhb_witness_start;
+typedef enum { MHB_UP, MHB_DOWN, MHB_BOTH } mhb_witness_direction;
+
+enum { MHB_MAX_FREQUENCIES = 1000 };
+
+typedef struct {
+  int                   n_frequencies;
+  bool                  listed; /* frequency holds them; else evenly over the range */
+  double                frequency[MHB_MAX_FREQUENCIES]; /* Hz, of the excitation */
+  mhb_witness_start     start;
+  mhb_witness_direction direction; /* of state */
+  int                   steps;     /* a period of the fundamental, to begin with */
+  double                tolerance; /* relative to the motion */
+  int                   max_periods,
+      harmonics; /* harmonics of the fundamental that are kept; 0: as many as the balance */
+} mhb_witness_settings;
+
 #endif

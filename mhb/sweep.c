@@ -85,8 +85,8 @@ static bool looking(mhb_monitor *monitor, int branch, double value, double share
   return !shb_interrupted() && s->status == SHB_OK;
 }
 
-static shb_status describe(mhb_response *response, const modal_model *model,
-                           const mhb_settings *settings) {
+shb_status mhb_sweep_describe(mhb_response *response, const modal_model *model,
+                              const mhb_settings *settings) {
   size_t m                 = (size_t)model->n_modes;
   response->n_modes        = model->n_modes;
   response->subharmonics   = settings->subharmonics;
@@ -273,7 +273,7 @@ shb_status mhb_sweep(const modal_model *model, const mhb_settings *asked, const 
   s.done     = calloc((size_t)settings->n_preloads, sizeof(double));
   shb_status status =
       s.response && s.done ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  if (status == SHB_OK) status = describe(s.response, model, settings);
+  if (status == SHB_OK) status = mhb_sweep_describe(s.response, model, settings);
   if (status == SHB_OK) status = linear_limits(model, settings, s.response);
   omp_init_lock(&s.mutex);
   if (status == SHB_OK) status = all_preloads(&s, model);

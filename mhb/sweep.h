@@ -17,4 +17,8 @@ shb_status mhb_sweep(const modal_model *model, const mhb_settings *settings, con
                      const shb_provenance *provenance, shb_progress *progress,
                      mhb_response **response);
 
+/* What a response tells of the model and the settings besides its branches. SHB_ERR_IO: no memory. */
+shb_status mhb_sweep_describe(mhb_response *response, const modal_model *model,
+                              const mhb_settings *settings);
+
 #endif

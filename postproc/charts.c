@@ -62,6 +62,17 @@ static void group_classes(const post_group *group, char out[40]) {
     snprintf(out, 40, "c%d", group->rank);
 }
 
+/* Points by integration: full dots, rings where the motion does not repeat itself. */
+static void draw_points(const post_study *study, const post_plot *plot, int b) {
+  const mhb_branch *branch = &study->response->branch[b];
+  char              group[40], classes[64];
+  group_classes(&study->group[study->curve[b].group], group);
+  for (int i = 0; i < branch->n_points; i++) {
+    snprintf(classes, sizeof classes, "witness %s%s", branch->multiple[i] ? "" : "adrift ", group);
+    plot_dot(plot, classes, branch->frequency[i], study->curve[b].amplitude[i], 2.4);
+  }
+}
+
 /* One branch: a piece that touches an unstable point is dotted; folds are small circles, flips and Neimark-Sacker
  * points full ones. */
 static void draw_branch(const post_study *study, const post_plot *plot, int b) {
@@ -97,10 +108,14 @@ static void draw_branch(const post_study *study, const post_plot *plot, int b) {
 }
 
 static void draw_curves(const post_study *study, const post_plot *plot) {
-  for (int pass = 0; pass < 2; pass++) /* limits below */
-    for (int b = 0; b < study->response->n_branches; b++)
-      if ((study->response->branch[b].kind == MHB_BRANCH_NONLINEAR) == (pass == 1))
+  for (int pass = 0; pass < 2; pass++) /* limits below, points by integration on top */
+    for (int b = 0; b < study->response->n_branches; b++) {
+      mhb_branch_kind kind = study->response->branch[b].kind;
+      if (kind != MHB_BRANCH_INTEGRATION && (kind == MHB_BRANCH_NONLINEAR) == (pass == 1))
         draw_branch(study, plot, b);
+    }
+  for (int b = 0; b < study->response->n_branches; b++)
+    if (study->response->branch[b].kind == MHB_BRANCH_INTEGRATION) draw_points(study, plot, b);
   const double            move[2] = {0, -7};
   const post_track_point *open = &study->tracking.open, *stuck = &study->tracking.stuck;
   if (open->amplitude > 0)
@@ -127,7 +142,8 @@ void post_draw_response(const post_study *study, post_plot *plot) {
 
 static void describe(const post_study *study, char out[256]) {
   snprintf(out, 256,
-           "Amplitude against frequency, %d curves; solid: nonlinear, one colour a preload; "
+           "Amplitude against frequency, %d curves; solid: nonlinear, one colour a preload; dots: "
+           "time integration; "
            "dashed: the linear "
            "limits; dotted: unstable. The same numbers are in the tables and in the CSV file.",
            study->response->n_branches);

@@ -104,12 +104,13 @@ static void put_quality(const mhb_response *response, const mhb_branch *branch, 
 }
 
 static void put_point(const mhb_response *response, int b, int point, post_buffer *out) {
-  static const char *const kind[] = {"nonlinear", "open", "stuck"};
-  const mhb_branch        *branch   = &response->branch[b];
+  static const char *const kind[] = {"nonlinear", "open", "stuck", "integration"};
+  const mhb_branch        *branch = &response->branch[b];
   size_t                   m1 = (size_t)branch->n_harmonics + 1, i = (size_t)point;
   size_t                   pairs = (size_t)response->n_pairs, probes = (size_t)response->n_probes;
   post_put(out, "%d,%s", b, kind[branch->kind]);
-  put_number(out, branch->kind == MHB_BRANCH_NONLINEAR ? branch->n0[point] : NAN);
+  bool has_n0 = branch->kind == MHB_BRANCH_NONLINEAR || branch->kind == MHB_BRANCH_INTEGRATION;
+  put_number(out, has_n0 ? branch->n0[point] : NAN);
   put_number(out, branch->frequency[point]);
   for (size_t q = 0; q < probes; q++)
     put_place(branch, branch->probe + (i * probes + q) * 3 * m1, out);

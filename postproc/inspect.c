@@ -61,9 +61,11 @@ static shb_status sum_up_modal(const char *path, post_buffer *out) {
 
 static void sum_up_branches(const post_study *study, post_buffer *out) {
   const mhb_response *r         = study->response;
-  int                 nonlinear = 0, cut = 0, folds = 0, last = study->n_ranks - 1;
+  int                 nonlinear = 0, linear = 0, cut = 0, folds = 0, last = study->n_ranks - 1;
   for (int b = 0; b < r->n_branches; b++) {
-    nonlinear += r->branch[b].kind == MHB_BRANCH_NONLINEAR;
+    mhb_branch_kind kind = r->branch[b].kind;
+    nonlinear += kind == MHB_BRANCH_NONLINEAR;
+    linear += kind == MHB_BRANCH_OPEN || kind == MHB_BRANCH_STUCK;
     cut += !r->branch[b].complete;
     folds += study->curve[b].n_folds;
   }
@@ -73,7 +75,12 @@ static void sum_up_branches(const post_study *study, post_buffer *out) {
     put_span(out, study->group[0].n0, study->group[last].n0, "N");
   }
   post_put(out, "; ");
-  put_count(out, r->n_branches - nonlinear, "linear limit");
+  put_count(out, linear, "linear limit");
+  if (r->n_branches > nonlinear + linear) {
+    post_put(out, "; ");
+    put_count(out, r->n_branches - nonlinear - linear, "curve");
+    post_put(out, " by time integration");
+  }
   post_put(out, "; ");
   put_count(out, study->n_points, "point");
   post_put(out, ", ");

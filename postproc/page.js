@@ -197,6 +197,10 @@ function drawResponse() {
   for (const i of order) {
     const b = D.branches[i], g = groupOf(b), a = b.row(o.row), stable = b.row(ROW.stable);
     if (hidden.has(b.group)) continue;
+    if (b.dots) {
+      for (let k = 0; k < b.n; k++) main.dot((stable[k] === 1 ? "witness " : "witness adrift ") + classOf(g), b.f[k], a[k], 2.6);
+      continue;
+    }
     const classes = classOf(g) + (i === state.branch ? " chosen" : "");
     const unstable = k => stable[k] === 0 || stable[k - 1] === 0;
     main.line("line " + classes, b.f, a, k => !unstable(k));
@@ -210,7 +214,7 @@ function drawResponse() {
   $("whole").disabled = !state.zoom;
   drawHover();
 }
-const rankOf = i => groupOf(D.branches[i]).kind !== "nonlinear" ? 0 : i === state.branch ? 2 : 1;
+const rankOf = i => D.branches[i].dots ? 3 : groupOf(D.branches[i]).kind !== "nonlinear" ? 0 : i === state.branch ? 2 : 1;
 
 /* ---------------------------------------------------------------- read-out */
 function readout(b, i) {
@@ -220,10 +224,10 @@ function readout(b, i) {
   const rows = [["frequency", number(b.f[i], 6) + NBSP + "Hz"], [state.output.quantity, number(a / u[1], 4) + NBSP + u[0]]];
   if (g.kind === "nonlinear") {
     if (Number.isFinite(shares[0])) rows.push(["stuck · slipping · open", shares.map(s => (100 * s).toFixed(s > 0 && s < 0.0995 ? 1 : 0)).join(" · ") + NBSP + "%"], ["dissipated", number(energy / e[1], 3) + NBSP + e[0]]);
-    rows.push(["stability", stable === 1 ? "stable" : stable === 0 ? "unstable" : "not known"]);
+    rows.push(b.dots ? ["repeats itself", stable === 1 ? "yes" : "no"] : ["stability", stable === 1 ? "stable" : stable === 0 ? "unstable" : "not known"]);
     if (error > 0) rows.push(["error estimate", percent(error)]);
   }
-  const special = b.row(ROW.special)[i], what = ["", ", fold", ", peak", ", flip (period doubling)", ", Neimark-Sacker point"][special] || "";
+  const special = b.row(ROW.special)[i], what = ["", ", fold", ", peak", ", flip (period doubling)", ", Neimark-Sacker point"][special] || (b.dots ? ", time integration" : "");
   return {title: (g.kind === "nonlinear" ? g.name : "linear limit, " + g.name) + what, rows, shares: g.kind === "nonlinear" && Number.isFinite(shares[0]) ? shares : null};
 }
 function drawHover() {
@@ -376,7 +380,7 @@ function choose(place, ax, quantity) {
   drawAll();
 }
 function select(index) {
-  if (index < 0 || groupOf(D.branches[index]).kind !== "nonlinear") return;
+  if (index < 0 || D.branches[index].dots || groupOf(D.branches[index]).kind !== "nonlinear") return;
   state.branch = index;
   if ($("curve")) $("curve").value = String(index);
   drawResponse(); drawAlong(); drawHarmonics();
@@ -393,7 +397,7 @@ function wireControls() {
   for (const b of document.querySelectorAll("[data-scale]")) b.onclick = () => { state.log = b.dataset.scale === "log"; drawAll(); };
   $("whole").onclick = () => setZoom(null);
   if ($("curve")) {
-    const list = D.branches.map((b, i) => i).filter(i => groupOf(D.branches[i]).kind === "nonlinear" && D.branches[i].n > 0);
+    const list = D.branches.map((b, i) => i).filter(i => groupOf(D.branches[i]).kind === "nonlinear" && !D.branches[i].dots && D.branches[i].n > 0);
     list.sort((i, j) => D.branches[i].group - D.branches[j].group || i - j);
     const many = g => list.filter(i => D.branches[i].group === g).length > 1;
     fill($("curve"), list.map(i => [i, groupOf(D.branches[i]).name + (many(D.branches[i].group) ? ` (curve ${i})` : "")]), state.branch);

@@ -270,8 +270,10 @@ static shb_status make_sheet(const post_study *study, int b, int rows, int strid
 static void put_branches(const post_study *study, int rows, const sheet *sheets, post_buffer *out) {
   for (int b = 0; b < study->response->n_branches; b++) {
     const mhb_branch *branch = &study->response->branch[b];
-    post_put(out, "%s\n{\"group\":%d,\"n\":%d,\"complete\":%s,\"reason\":", b ? "," : "",
-             study->curve[b].group, sheets[b].n, branch->complete ? "true" : "false");
+    post_put(out,
+             "%s\n{\"group\":%d,\"n\":%d,\"complete\":%s,\"dots\":%s,\"reason\":", b ? "," : "",
+             study->curve[b].group, sheets[b].n, branch->complete ? "true" : "false",
+             branch->kind == MHB_BRANCH_INTEGRATION ? "true" : "false");
     post_put_json(out, branch->reason ? branch->reason : "");
     post_put(out, ",\"data\":\"");
     post_put_base64(out, (size_t)rows * (size_t)sheets[b].n, sheets[b].data);

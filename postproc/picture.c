@@ -21,6 +21,8 @@ static void put_style(const post_study *study, post_buffer *out) {
       ".line.open{stroke-dasharray:9 5}.line.stuck{stroke-dasharray:4 4}"
       ".dot{fill:currentColor}.fold{fill:#fff;stroke:currentColor;stroke-width:1.4}"
       ".turn{fill:currentColor;stroke:#fff;stroke-width:.8}"
+      ".witness{fill:currentColor;stroke:#1b2530;stroke-width:.9}"
+      ".adrift{fill:none;stroke:currentColor;stroke-width:1.4}"
       ".varying{color:#0b6e75}.plain{color:#56606c}.mark{font-style:italic;paint-order:stroke;"
       "stroke:#fff;stroke-width:"
       "4px}");
@@ -39,10 +41,12 @@ static void put_entry(post_buffer *out, double y, const char *classes, const cha
 
 static void put_legend(const post_study *study, post_buffer *out) {
   double step = fmin(21, 430.0 / (study->n_groups + 1)), y = 84;
-  bool   unstable = false;
-  for (int b = 0; b < study->response->n_branches; b++)
-    for (int p = 0; p < study->response->branch[b].n_points; p++)
-      unstable = unstable || study->response->branch[b].stable[p] == 0;
+  bool   unstable = false, witness = false;
+  for (int b = 0; b < study->response->n_branches; b++) {
+    const mhb_branch *branch = &study->response->branch[b];
+    witness = witness || (branch->kind == MHB_BRANCH_INTEGRATION && branch->n_points > 0);
+    for (int p = 0; p < branch->n_points; p++) unstable = unstable || branch->stable[p] == 0;
+  }
   if (study->n_ranks > 0) {
     post_put(out, "<text class=\"axis\" x=\"%d\" y=\"%.1f\">preload n₀</text>\n", LEGEND, y);
     y += 1.2 * step;
@@ -65,6 +69,11 @@ static void put_legend(const post_study *study, post_buffer *out) {
     y += step;
   }
   if (unstable) put_entry(out, y, "unstable plain", "unstable");
+  if (witness)
+    post_put(out,
+             "<circle class=\"witness plain\" cx=\"%d\" cy=\"%.1f\" r=\"2.4\"/>"
+             "<text x=\"%d\" y=\"%.1f\">time integration</text>\n",
+             LEGEND + 14, y + (unstable ? step : 0) - 4, LEGEND + 38, y + (unstable ? step : 0));
 }
 
 void post_picture(const post_study *study, const char *case_name, post_buffer *out) {

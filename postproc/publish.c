@@ -25,10 +25,24 @@ static shb_status make_study(const post_job *job, work *w) {
   SHB_FAIL(status, "%s: %s", job->response, why);
 }
 
+/* The points by time integration become branches of the response. */
+static shb_status add_integration(const post_job *job, work *w) {
+  mhb_response *points;
+  if (!job->integration) return SHB_OK;
+  SHB_TRY(mhb_response_read(job->integration, &points));
+  shb_status status = mhb_response_merge(w->response, points);
+  mhb_response_destroy(points);
+  if (status != SHB_ERR_INPUT) return status;
+  char why[256];
+  snprintf(why, sizeof why, "%s", shb_message());
+  SHB_FAIL(status, "%s: %s", job->integration, why);
+}
+
 static shb_status compose(const post_job *job, shb_progress *progress, work *w) {
   double started = shb_seconds();
   shb_progress_show(progress, 0, "reading %s", job->response);
   SHB_TRY(mhb_response_read(job->response, &w->response));
+  SHB_TRY(add_integration(job, w));
   SHB_TRY(post_source_open(job->response, &w->source));
   SHB_TRY(make_study(job, w));
   if (job->convergence) {

@@ -10,6 +10,7 @@ typedef struct {
   const char *response;         /* file to read */
   const char *html, *csv, *svg; /* files to write, each whole or not at all */
   const char *convergence;      /* NAME.converge.h5 for the page, or NULL */
+  const char *integration;      /* file of points by time integration, or NULL */
 } post_job;
 
 /* Nothing is written unless all three could be composed. summary: malloc'ed line for the terminal, may be NULL.

@@ -43,9 +43,14 @@ void post_group_name(const post_group *group, char out[64]) {
     snprintf(out, 64, "n₀ = %s\u00a0N", post_plain(number, group->n0, 6));
 }
 
+/* Points by integration belong to the curves of their preload. */
+static mhb_branch_kind group_kind(const mhb_branch *branch) {
+  return branch->kind == MHB_BRANCH_INTEGRATION ? MHB_BRANCH_NONLINEAR : branch->kind;
+}
+
 /* The one preload of a branch, NAN if it varies or there is no point. */
 static double branch_n0(const mhb_branch *branch) {
-  if (branch->n_points == 0 || branch->kind != MHB_BRANCH_NONLINEAR) return NAN;
+  if (branch->n_points == 0 || group_kind(branch) != MHB_BRANCH_NONLINEAR) return NAN;
   double n0 = branch->n0[0];
   for (int p = 1; p < branch->n_points; p++)
     if (fabs(branch->n0[p] - n0) > 1e-9 * fmax(fabs(n0), fabs(branch->n0[p]))) return NAN;
@@ -78,7 +83,7 @@ static void make_groups(post_study *study) {
   for (int pass = 0; pass < 2; pass++) {
     for (int b = 0; b < response->n_branches; b++) {
       const mhb_branch *branch = &response->branch[b];
-      post_group        wanted = {branch->kind, branch->n_points == 0, branch_n0(branch), -1};
+      post_group        wanted = {group_kind(branch), branch->n_points == 0, branch_n0(branch), -1};
       int               at     = find_group(study, &wanted);
       if (at < 0) study->group[at = study->n_groups++] = wanted;
       study->curve[b].group = at; /* right in the second pass, when the groups are sorted */
@@ -116,7 +121,7 @@ static shb_status track_group(const post_study *study, int group, double *const 
   *out = (post_track_point){study->group[group].n0, NAN, NAN, NAN, -1, -1, false, true};
   for (int b = 0; b < study->response->n_branches; b++) {
     const mhb_branch *branch = &study->response->branch[b];
-    if (study->curve[b].group != group) continue;
+    if (study->curve[b].group != group || branch->kind == MHB_BRANCH_INTEGRATION) continue;
     out->complete = out->complete && branch->complete;
     post_peak *peaks;
     int        n;
@@ -197,7 +202,8 @@ static shb_status study_branch(post_study *study, int b) {
   post_curve       *c      = &study->curve[b];
   int               n      = branch->n_points;
   c->amplitude             = study->values[b];
-  SHB_TRY(post_find_peaks(n, branch->frequency, c->amplitude, &c->peak, &c->n_peaks));
+  if (branch->kind != MHB_BRANCH_INTEGRATION)
+    SHB_TRY(post_find_peaks(n, branch->frequency, c->amplitude, &c->peak, &c->n_peaks));
   if (branch->kind == MHB_BRANCH_NONLINEAR)
     SHB_TRY(post_find_folds(n, branch->frequency, c->amplitude, branch->special, &c->fold,
                             &c->n_folds));

@@ -84,11 +84,18 @@ static double largest(int n, const double *x) {
 
 static const char *verdict(const mhb_branch *branch, double worst) {
   if (!branch->complete) return "<td class=\"bad\">incomplete</td>";
-  if (branch->kind != MHB_BRANCH_NONLINEAR) return "<td class=\"good\">linear</td>";
+  if (branch->kind == MHB_BRANCH_OPEN || branch->kind == MHB_BRANCH_STUCK)
+    return "<td class=\"good\">linear</td>";
   if (isnan(worst)) return "<td>not estimated</td>";
   return worst <= FINE     ? "<td class=\"good\">fine</td>"
          : worst <= USABLE ? "<td class=\"fair\">usable</td>"
                            : "<td class=\"bad\">coarse</td>";
+}
+
+static int sum_of(int n, const int *x) {
+  int sum = 0;
+  for (int i = 0; i < n; i++) sum += x[i];
+  return sum;
 }
 
 static void put_quality_row(const post_study *study, int b, post_buffer *out) {
@@ -103,6 +110,7 @@ static void put_quality_row(const post_study *study, int b, post_buffer *out) {
     seconds += branch->seconds[p];
   }
   put_curve_cell(study, b, out);
+  if (branch->kind == MHB_BRANCH_INTEGRATION) iterations = sum_of(n, branch->periods);
   post_put(out, "<td>%d</td><td>%d</td><td>%s</td>", n, iterations,
            post_number(number, seconds, 2));
   for (int e = 0; e < 4; e++) {
@@ -120,7 +128,8 @@ void post_table_quality(const post_study *study, post_buffer *out) {
       out,
       "<div class=\"scroll\"><table><caption>Largest error estimates along each curve, relative to "
       "the "
-      "motion. Fine: all at most 0.1&nbsp;%%; usable: at most 1&nbsp;%%; coarse: above (more "
+      "motion. Time integration: periods for iterations, the return map for Newton, steps for "
+      "sampling. Fine: all at most 0.1&nbsp;%%; usable: at most 1&nbsp;%%; coarse: above (more "
       "harmonics or "
       "modes are needed); &ldquo;–&rdquo;: not estimated.</caption>\n<thead><tr><th "
       "scope=\"col\">Curve</th>"

@@ -56,7 +56,7 @@ stage() { # NAME COMMANDS: a stand-in
 mkdir "$work/bin" "$work/dir" "$work/dir/a b"
 cp "$front" "$work/bin/shroudhb"
 : >"$work/log"
-for name in mesh modal mhb post; do stage $name 'exit 0'; done
+for name in mesh modal mhb post integrate; do stage $name 'exit 0'; done
 
 cat >"$work/dir/good.yaml" <<'END'
 name: good
@@ -130,6 +130,7 @@ called ''
 
 # one stage, and the modes of stages
 run 0 modal --verbose good.yaml; called 'modal --verbose good.yaml;'
+run 0 integrate --force good.yaml; called 'integrate --force good.yaml;'
 run 0 inspect x.h5; called 'post --inspect x.h5;'
 run 0 contact x.yaml; called 'mhb --contact x.yaml;'
 run 0 contact x.yaml --svg x.svg; called 'mhb --contact x.yaml --svg x.svg;'

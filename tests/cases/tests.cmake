@@ -15,6 +15,13 @@ add_test(NAME cases.contact
           ${PROJECT_SOURCE_DIR}/cases/prescribed_motion "${SHROUDHB_PYTHON}")
 set_tests_properties(cases.contact PROPERTIES LABELS fast TIMEOUT 120)
 
+if(SHROUDHB_PYTHON AND TARGET shroudhb-post)
+  add_test(NAME cases.integrate
+    COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/cases/test_integrate.sh $<TARGET_FILE_DIR:shroudhb-integrate>
+            ${PROJECT_SOURCE_DIR}/cases/bring_your_own ${SHROUDHB_PYTHON})
+  set_tests_properties(cases.integrate PROPERTIES LABELS fast TIMEOUT 120 SKIP_RETURN_CODE 77)
+endif()
+
 if(TARGET shroudhb-post)
   shb_test(cases z_notch slow shb_response)
   target_sources(test_cases_z_notch PRIVATE cases/scratch.c)

@@ -248,6 +248,50 @@ static void residual_flexibility(void **state) {
   modal_model_free(&model);
 }
 
+/* Residual modes have the flexibility and inertia they stand for; integrated, they give what the balance of the same modes gives, and that
+ * of R + w^2 R2 as far as w is below them. */
+static void residual_inertia(void **state) {
+  (void)state;
+  modal_model  model, with;
+  mhb_settings s = random_settings(51);
+  s.to_ground    = true;
+  random_model(2, WITH_RESIDUAL, 11, &model);
+  for (int k = 0; k < 36; k++) model.residual_inertia[k] *= .02; /* modes from 14 rad/s on */
+  assert_int_equal(mhb_inertia_modes(&model, &with), SHB_OK);
+  assert_int_equal(with.n_modes, model.n_modes + 6);
+  for (int i = 0; i < 6; i++)
+    for (int j = 0; j < 6; j++) {
+      double soft = with.residual_flexibility[i * 6 + j], heavy = 0;
+      for (int k = model.n_modes; k < with.n_modes; k++) {
+        double w       = 2 * PI * with.frequency[k];
+        double product = with.right[i * with.n_modes + k] * with.right[j * with.n_modes + k];
+        soft += product / (w * w);
+        heavy += product / (w * w * w * w);
+      }
+      assert_near(soft, model.residual_flexibility[i * 6 + j], 1e-12);
+      assert_near(heavy, model.residual_inertia[i * 6 + j], 1e-12);
+      assert_near(with.residual_flexibility[i * 6 + j], 0, 1e-12);
+    }
+  periodic same, series;
+  periodic_create(&with, &s, 1.1, NULL, &same);
+  periodic_create(&model, &s, 1.1, NULL, &series);
+  run a = prepare(&model, &s, 1.1, 192);
+  until_periodic(&a, 1e-9, 2000);
+  print_message("slips for %.2f; from the balance with residual modes %.1e, with R + w^2 R2 %.1e\n",
+                a.r->state[1], apart(&a, &same, 0), apart(&a, &series, 0));
+  assert_true(a.r->state[1] > .1);
+  assert_near(apart(&a, &same, 0), 0, 1e-5);
+  assert_near(apart(&a, &series, 0), 0, 2e-3);
+  finish(&a);
+  periodic_destroy(&same);
+  periodic_destroy(&series);
+  mhb_inertia_free(&with);
+  free(model.residual_flexibility);
+  model.residual_flexibility = NULL;
+  assert_int_equal(mhb_inertia_modes(&model, &with), SHB_ERR_INPUT);
+  modal_model_free(&model);
+}
+
 /* Rings of two, three and five blades, all blades of them in time, against the wave of the balance. */
 static void rings(void **state) {
   (void)state;
@@ -318,6 +362,7 @@ int main(void) {
                                      cmocka_unit_test(unstable_orbit),
                                      cmocka_unit_test(beam),
                                      cmocka_unit_test(residual_flexibility),
+                                     cmocka_unit_test(residual_inertia),
                                      cmocka_unit_test(rings),
                                      cmocka_unit_test(passive)};
   return cmocka_run_group_tests(tests, NULL, NULL);

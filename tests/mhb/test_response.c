@@ -324,7 +324,7 @@ static void test_attribute_faults(void **state) {
   static const struct {
     const char *group, *name, *value, *text;
   } wrong[] = {{"/", "format", "shroudhb modal model", "is a \"shroudhb modal model\" file"},
-               {"/branch_0", "kind", "linear", "kind must be nonlinear, open or stuck"},
+               {"/branch_0", "kind", "linear", "kind must be nonlinear, open, stuck or integration"},
                {"/branch_0", "complete", "yes", "/branch_0: attribute complete must be a number"},
                {"/", "psi", "35 deg", "attribute psi must be a number"},
                {"/", "branches", NULL, "attribute branches is missing"},

@@ -43,8 +43,10 @@ static char *contents(const char *path) {
   return text;
 }
 
+static const char *integration; /* of the next publish, or NULL */
+
 static shb_status publish(char **summary) {
-  const post_job job      = {"x", response, html, csv, svg, NULL};
+  const post_job job      = {"x", response, html, csv, svg, NULL, integration};
   shb_progress   progress = shb_progress_start("post", true, false);
   return post_publish(&job, &progress, summary);
 }
@@ -70,6 +72,63 @@ static void whole(void **state) {
   text = contents(svg);
   assert_has(text, "</svg>");
   free(text);
+}
+
+static int count(const char *text, const char *what) {
+  int n = 0;
+  for (const char *at = text; (at = strstr(at, what)) != NULL; at++) n++;
+  return n;
+}
+
+/* Points by time integration: dots on the curves of their preload, rows of the table, no peaks of their own. */
+static void with_points(void **state) {
+  (void)state;
+  fixture_options o = fixture_usual();
+  char            path[300];
+  write_response(&o);
+  mhb_response *whole, *points;
+  assert_ok(publish(NULL));
+  char *without = contents(html);
+  assert_ok(mhb_response_read(response, &whole));
+  points = mhb_response_create(whole->n_pairs, whole->n_probes, whole->n_harmonics);
+  int branch, at;
+  assert_ok(mhb_response_branch(points, MHB_BRANCH_INTEGRATION, &branch));
+  for (int i = 0; i < 3; i++) {
+    size_t row = 3 * (size_t)whole->n_probes * ((size_t)whole->n_harmonics + 1);
+    assert_ok(mhb_response_point(points, branch, &at));
+    mhb_branch *to = &points->branch[0], *from = &whole->branch[0];
+    to->frequency[at] = from->frequency[10 * i];
+    to->n0[at]        = 100;
+    to->multiple[at]  = i > 0;
+    to->stable[at]    = i > 0 ? 1 : -1;
+    to->periods[at]   = 321;
+    memcpy(to->probe + (size_t)at * row, from->probe + (size_t)(10 * i) * row,
+           row * sizeof *to->probe);
+  }
+  snprintf(path, sizeof path, "%s/points.h5", folder);
+  const shb_provenance provenance = {.case_text = "name: x\n"};
+  assert_ok(mhb_response_write(points, path, &provenance));
+  integration = path;
+  assert_ok(publish(NULL));
+  integration = NULL;
+  char *text  = contents(svg);
+  assert_int_equal(count(text, "<circle class=\"witness adrift c"), 1);
+  assert_int_equal(count(text, "<circle class=\"witness c"), 2);
+  assert_has(text, "time integration</text>");
+  free(text);
+  text = contents(csv);
+  assert_int_equal(count(text, ",integration,100,"), 3);
+  free(text);
+  text = contents(html);
+  assert_int_equal(count(text, "\"dots\":true"), 1);
+  assert_int_equal(count(text, "edge of range") + count(text, ">peak<"),
+                   count(without, "edge of range") + count(without, ">peak<"));
+  assert_has(text, "<td>963</td>"); /* periods */
+  free(text);
+  free(without);
+  mhb_response_destroy(whole);
+  mhb_response_destroy(points);
+  unlink(path);
 }
 
 /* A response that cannot be shown leaves the earlier results as they are, and nothing half written. */
@@ -99,6 +158,7 @@ static void untouched(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(whole), cmocka_unit_test(untouched)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(whole), cmocka_unit_test(with_points),
+                                     cmocka_unit_test(untouched)};
   return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -1,0 +1,18 @@
+/* Residual inertia as modes: what the balance takes for R + w^2 R2 becomes a structure that can be integrated in time.
+ *
+ * u = R p - R2 p'' has no solution forward in time. But with R = L L^T and L^-1 R2 L^-T = V diag(1/nu_i^2) V^T the
+ * modes psi_i = nu_i L v_i of frequency nu_i have
+ *   sum psi_i psi_i^T/(nu_i^2 - w^2) = R + w^2 R2 + O(w^4/nu^4):
+ * the least number of modes that answer with the same R and R2, as far from R + w^2 R2 as that is from the modes left out. */
+#ifndef MHB_INERTIA_H
+#define MHB_INERTIA_H
+
+#include "modal/model.h"
+
+/* A model with residual modes instead of residual inertia, and of residual flexibility as far as inertia belongs to it.
+ * They are damped like the last mode. Shares what it does not change with the model, which must outlive it.
+ * Errors: SHB_ERR_INPUT no residual flexibility, not finite; SHB_ERR_IO no memory. */
+shb_status mhb_inertia_modes(const modal_model *model, modal_model *out);
+void       mhb_inertia_free(modal_model *out);
+
+#endif

@@ -1,0 +1,28 @@
+/* Points by time integration over the frequency range, to go beside the curves of the balance.
+ *
+ *   balance  each point starts on a stable solution of the balance, as far as its harmonics tell: where there are several, several points
+ *   rest     each point starts at rest
+ *   state    one frequency after the other, up, down, or both, from the state the last one left
+ * A point runs until the motion repeats itself, or for max_periods; then again with twice the steps, until two runs agree within the
+ * tolerance. Not to repeat is an answer, with its spectrum. */
+#ifndef MHB_WITNESS_H
+#define MHB_WITNESS_H
+
+#include "mesh/progress.h"
+#include "mhb/response.h"
+#include "mhb/settings.h"
+#include "modal/model.h"
+
+/* One branch (kind integration) for each preload and direction, points by ascending frequency (falling for down).
+ *   balance     in   its response file, for start balance; else NULL
+ *   path        in   published every 10 s, at the end and when interrupted; NULL: not at all
+ *   provenance  in   for path
+ *   response    out  the caller's
+ * Errors: SHB_ERR_INPUT no solution of the balance at a preload, load harmonics beyond those kept; SHB_ERR_IO; SHB_NOT_CONVERGED the forces
+ * of a step were not found at some point, which is left out; SHB_INTERRUPTED. */
+shb_status mhb_witness(const modal_model *model, const mhb_settings *settings,
+                       const mhb_witness_settings *witness, const mhb_response *balance,
+                       const char *path, const shb_provenance *provenance, shb_progress *progress,
+                       mhb_response **response);
+
+#endif
