@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "mhb/orbit.h"
+#include "mhb/parameter.h"
 #include "mhb/spectrum.h"
 #include "mhb/sweep.h"
 
@@ -257,6 +258,7 @@ static shb_status put_cell(mhb_response *response, const cell *c) {
   size_t      pairs       = (size_t)response->n_pairs;
   b->frequency[at]        = c->hz;
   b->n0[at]               = c->n0;
+  b->value[at]            = c->hz;
   b->stable[at]           = c->multiple ? 1 : -1;
   b->seconds[at]          = c->seconds;
   b->error_newton[at]     = c->multiple ? c->distance : -1;
@@ -409,16 +411,21 @@ shb_status mhb_witness(const modal_model *model, const mhb_settings *settings,
                        const mhb_witness_settings *asked, const mhb_response *balance,
                        const char *path, const shb_provenance *provenance, shb_progress *progress,
                        mhb_response **out) {
-  witness w         = {.model      = model,
-                       .settings   = settings,
-                       .asked      = asked,
-                       .balance    = asked->start == MHB_FROM_BALANCE ? balance : NULL,
-                       .harmonics  = harmonics_of(model, settings, asked, balance),
-                       .path       = path,
-                       .provenance = provenance,
-                       .progress   = progress,
-                       .published  = shb_seconds()};
-  *out              = NULL;
+  witness w = {.model      = model,
+               .settings   = settings,
+               .asked      = asked,
+               .balance    = asked->start == MHB_FROM_BALANCE ? balance : NULL,
+               .harmonics  = harmonics_of(model, settings, asked, balance),
+               .path       = path,
+               .provenance = provenance,
+               .progress   = progress,
+               .published  = shb_seconds()};
+  *out      = NULL;
+  SHB_CHECK(
+      settings->parameter == MHB_IN_FREQUENCY, SHB_ERR_INPUT,
+      "the case follows %s at a fixed frequency; points by time integration go over a range of "
+      "frequencies",
+      mhb_parameter_name(settings->parameter));
   shb_status status = ask(&w);
   omp_init_lock(&w.mutex);
   if (status == SHB_OK) status = run_all(&w);
