@@ -6,8 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Up to this many stuck unknowns LAPACK costs more in calls than in work. */
-enum { SMALL = 6 };
+#include "mhb/elimination.h"
 
 /* Below this many stuck unknowns the harmonics are not shared out to threads. */
 enum { WORTH_THREADS = 72 };
@@ -21,24 +20,27 @@ static size_t rows_of(const mhb_condensed *s) {
 /* Everything a thread may need, from one block: touched only as far as it is used. */
 static int allocate(mhb_condensed *s) {
   size_t pairs = (size_t)s->b->n_pairs, n3 = rows_of(s), K = (size_t)s->b->m + 1,
-         one  = (size_t)s->b->n + 1;
-  s->moving   = calloc(pairs, sizeof(int));
-  s->stuck    = calloc(pairs, sizeof(int));
-  s->factored = calloc(pairs, sizeof(int));
-  s->pivot    = calloc(one, sizeof(int));
-  s->A_pivot  = calloc(K * n3, sizeof(int));
-  s->dense    = malloc(one * one * sizeof(double));
-  s->y        = calloc(one, sizeof(double));
-  s->A        = malloc(K * n3 * n3 * sizeof(double complex));
-  s->reach    = malloc(K * n3 * n3 * sizeof(double complex));
-  s->mixed    = malloc(K * n3 * n3 * sizeof(double complex));
-  s->f        = calloc(K * n3, sizeof(double complex));
-  s->c        = calloc(K * n3, sizeof(double complex));
-  s->t        = calloc(K * n3, sizeof(double complex));
-  s->q        = calloc(K * n3, sizeof(double complex));
-  s->s        = calloc(K * n3, sizeof(double complex));
-  return s->moving && s->stuck && s->factored && s->pivot && s->A_pivot && s->dense && s->y &&
-         s->A && s->reach && s->mixed && s->f && s->c && s->t && s->q && s->s;
+         one     = (size_t)s->b->n + MHB_MOST_BORDERS,
+         borders = 1 + 2 * (pairs < MHB_MOST_HELD ? pairs : MHB_MOST_HELD);
+  s->kind        = calloc(pairs, sizeof *s->kind);
+  s->have        = calloc(K, 1);
+  s->moving      = calloc(pairs, sizeof(int));
+  s->stuck       = calloc(pairs, sizeof(int));
+  s->factored    = calloc(pairs, sizeof(int));
+  s->pivot       = calloc(one, sizeof(int));
+  s->A_pivot     = calloc(K * n3, sizeof(int));
+  s->dense       = malloc(one * one * sizeof(double));
+  s->y           = calloc(one, sizeof(double));
+  s->A           = malloc(K * n3 * n3 * sizeof(double complex));
+  s->reach       = malloc(K * n3 * n3 * sizeof(double complex));
+  s->mixed       = malloc(K * n3 * n3 * sizeof(double complex));
+  s->f           = calloc(K * n3, sizeof(double complex));
+  s->c           = calloc(borders * K * n3, sizeof(double complex));
+  s->t           = calloc(borders * K * n3, sizeof(double complex));
+  s->q           = calloc(K * n3, sizeof(double complex));
+  s->s           = calloc(K * n3, sizeof(double complex));
+  return s->kind && s->have && s->moving && s->stuck && s->factored && s->pivot && s->A_pivot &&
+         s->dense && s->y && s->A && s->reach && s->mixed && s->f && s->c && s->t && s->q && s->s;
 }
 
 shb_status mhb_condensed_create(const mhb_residual *residual, mhb_condensed **out) {
@@ -58,6 +60,8 @@ shb_status mhb_condensed_create(const mhb_residual *residual, mhb_condensed **ou
 
 void mhb_condensed_destroy(mhb_condensed *s) {
   if (!s) return;
+  free(s->kind);
+  free(s->have);
   free(s->moving);
   free(s->stuck);
   free(s->factored);
@@ -74,65 +78,6 @@ void mhb_condensed_destroy(mhb_condensed *s) {
   free(s->q);
   free(s->s);
   free(s);
-}
-
-/* ---- complex systems, column-major ---- */
-
-static inline double complex times(double complex a, double complex b) {
-  return CMPLX(creal(a) * creal(b) - cimag(a) * cimag(b),
-               creal(a) * cimag(b) + cimag(a) * creal(b));
-}
-
-static inline double weight_of(double complex a) {
-  return creal(a) * creal(a) + cimag(a) * cimag(a);
-}
-
-static void swap_rows(int n, double complex *A, int columns, int i, int j) {
-  for (int c = 0; c < columns && i != j; c++) {
-    double complex old = A[c * n + i];
-    A[c * n + i]       = A[c * n + j];
-    A[c * n + j]       = old;
-  }
-}
-
-/* Gauss with row exchanges; the diagonal is kept inverted. */
-static int factor_small(int n, double complex *A, int *pivot) {
-  for (int j = 0; j < n; j++) {
-    int best = j;
-    for (int i = j + 1; i < n; i++)
-      if (weight_of(A[j * n + i]) > weight_of(A[j * n + best])) best = i;
-    double size = weight_of(A[j * n + best]);
-    if (!(size > 0)) return 0;
-    pivot[j] = best;
-    swap_rows(n, A, n, j, best);
-    A[j * n + j] = CMPLX(creal(A[j * n + j]) / size, -cimag(A[j * n + j]) / size);
-    for (int i = j + 1; i < n; i++) A[j * n + i] = times(A[j * n + i], A[j * n + j]);
-    for (int c = j + 1; c < n; c++)
-      for (int i = j + 1; i < n; i++) A[c * n + i] -= times(A[j * n + i], A[c * n + j]);
-  }
-  return 1;
-}
-
-static void solve_small(int n, const double complex *A, const int *pivot, double complex *x) {
-  for (int j = 0; j < n; j++) swap_rows(n, x, 1, j, pivot[j]);
-  for (int j = 0; j < n; j++)
-    for (int i = j + 1; i < n; i++) x[i] -= times(A[j * n + i], x[j]);
-  for (int j = n - 1; j >= 0; j--) {
-    x[j] = times(x[j], A[j * n + j]);
-    for (int i = 0; i < j; i++) x[i] -= times(A[j * n + i], x[j]);
-  }
-}
-
-static int factor_complex(int n, double complex *A, int *pivot) {
-  if (n <= SMALL) return factor_small(n, A, pivot);
-  return LAPACKE_zgetrf_work(LAPACK_COL_MAJOR, n, n, A, n, pivot) == 0;
-}
-
-static int solve_complex(int n, const double complex *A, const int *pivot, int columns,
-                         double complex *x) {
-  for (int c = 0; c < columns && n <= SMALL; c++) solve_small(n, A, pivot, x + c * n);
-  return n <= SMALL ||
-         LAPACKE_zgetrs_work(LAPACK_COL_MAJOR, 'N', n, columns, A, n, pivot, x, n) == 0;
 }
 
 /* ---- vectors ---- */
@@ -183,37 +128,39 @@ static double complex response(const double complex *R, int n, const int *pair,
   return CMPLX(re, im);
 }
 
-/* x_L <- A^-1 x_L, and the forces of it into s->s; x[3 pairs] of one harmonic. */
-static int solve_stuck(mhb_condensed *s, int k, double complex *x) {
-  int             nl    = 3 * s->n_stuck;
-  double complex *force = s->s + (size_t)k * rows_of(s), packed[nl + 1];
-  size_t          at    = (size_t)k * rows_of(s);
-  if (nl == 0) return 1;
-  for (int i = 0; i < nl; i++) packed[i] = x[3 * s->stuck[i / 3] + i % 3];
-  if (!solve_complex(nl, s->A + at * rows_of(s), s->A_pivot + at, 1, packed)) return 0;
-  for (int i = 0; i < s->n_stuck; i++) {
-    int a = s->stuck[i];
-    memcpy(x + 3 * a, packed + 3 * i, 3 * sizeof *x);
-    spring(&s->b->law[a], k, x + 3 * a, force + 3 * a);
-  }
+/* Harmonic k of an array [border][k][3 pairs]. */
+static double complex *border(const mhb_condensed *s, double complex *array, int j, int k) {
+  return array + ((size_t)j * ((size_t)s->b->m + 1) + (size_t)k) * rows_of(s);
+}
+
+static int is_zero(size_t n, const double complex *x) {
+  for (size_t i = 0; i < n; i++)
+    if (creal(x[i]) != 0 || cimag(x[i]) != 0) return 0;
   return 1;
 }
 
 /* ---- the stuck pairs ---- */
 
 static void list_pairs(mhb_condensed *s) {
-  s->n_moving = s->n_stuck = 0;
+  s->n_moving = s->n_stuck = s->n_held = 0;
   for (int a = 0; a < s->b->n_pairs; a++) {
-    if (s->b->kind[a] == MHB_PAIR_MOVING) s->moving[s->n_moving++] = a;
-    if (s->b->kind[a] == MHB_PAIR_STUCK) s->stuck[s->n_stuck++] = a;
+    mhb_pair_kind kind = s->b->kind[a];
+    if (kind == MHB_PAIR_HELD) {
+      kind = s->n_held < MHB_MOST_HELD ? MHB_PAIR_STUCK : MHB_PAIR_MOVING;
+      if (kind == MHB_PAIR_STUCK) s->held[s->n_held++] = a;
+    }
+    if (kind == MHB_PAIR_MOVING) s->moving[s->n_moving++] = a;
+    if (kind == MHB_PAIR_STUCK) s->stuck[s->n_stuck++] = a;
+    s->kind[a] = kind;
   }
 }
 
-/* A = I + R_LL S of harmonic k, column-major, factored. */
+/* A = I + R_LL S of harmonic k, column-major, factored, unless it is there. */
 static int factor_harmonic(mhb_condensed *s, int k) {
   int             nl = 3 * s->n_stuck;
   size_t          at = (size_t)k * rows_of(s);
   double complex *A  = s->A + at * rows_of(s);
+  if (s->have[k] || nl == 0) return 1;
   for (int i = 0; i < nl; i++) {
     const double complex *R = receptance(s, k, 3 * s->stuck[i / 3] + i % 3);
     for (int j = 0; j < s->n_stuck; j++) {
@@ -223,7 +170,29 @@ static int factor_harmonic(mhb_condensed *s, int k) {
         A[(size_t)(3 * j + c) * (size_t)nl + (size_t)i] = column[c] + (i == 3 * j + c);
     }
   }
-  return factor_complex(nl, A, s->A_pivot + at);
+  return s->have[k] = (char)mhb_factor_complex(nl, A, s->A_pivot + at);
+}
+
+/* x_L <- A^-1 x_L, and the forces of it into s->s; x[3 pairs] of one harmonic. */
+static int solve_stuck(mhb_condensed *s, int k, double complex *x) {
+  int             nl    = 3 * s->n_stuck;
+  double complex *force = s->s + (size_t)k * rows_of(s), packed[nl + 1];
+  size_t          at    = (size_t)k * rows_of(s);
+  if (nl == 0) return 1;
+  for (int i = 0; i < nl; i++) packed[i] = x[3 * s->stuck[i / 3] + i % 3];
+  if (is_zero((size_t)nl, packed)) {
+    memset(force, 0, sizeof *force * rows_of(s));
+    return 1;
+  }
+  mhb_receptance_need(s->b->receptance, k);
+  if (!factor_harmonic(s, k)) return 0;
+  if (!mhb_solve_complex(nl, s->A + at * rows_of(s), s->A_pivot + at, 1, packed)) return 0;
+  for (int i = 0; i < s->n_stuck; i++) {
+    int a = s->stuck[i];
+    memcpy(x + 3 * a, packed + 3 * i, 3 * sizeof *x);
+    spring(&s->b->law[a], k, x + 3 * a, force + 3 * a);
+  }
+  return 1;
 }
 
 /* What the moving pairs see of each other: directly, and through the stuck ones. */
@@ -240,7 +209,7 @@ static int condense_harmonic(mhb_condensed *s, int k) {
     const double complex *R = receptance(s, k, 3 * s->stuck[i / 3] + i % 3);
     for (int j = 0; j < nm; j++) reach[j * nl + i] = R[3 * s->moving[j / 3] + j % 3];
   }
-  if (!solve_complex(nl, s->A + at * rows_of(s), s->A_pivot + at, nm, reach)) return 0;
+  if (!mhb_solve_complex(nl, s->A + at * rows_of(s), s->A_pivot + at, nm, reach)) return 0;
   /* the room behind reach holds R_ML S, row by row */
   double complex *pull = reach + (size_t)nm * (size_t)nl;
   for (int i = 0; i < nm; i++) {
@@ -260,14 +229,13 @@ static int same_factors(const mhb_condensed *s) {
          memcmp(s->factored, s->stuck, sizeof(int) * (size_t)s->n_stuck) == 0;
 }
 
+/* What the moving pairs couple, they couple at all harmonics; without them a harmonic is factored when it is met. */
 static int condense(mhb_condensed *s) {
-  int old = same_factors(s), ok = 1;
-  for (int k = 0; k <= s->b->m; k++) mhb_receptance_need(s->b->receptance, k);
+  int ok = 1, last = s->n_moving > 0 ? s->b->m : -1;
+  if (!same_factors(s)) memset(s->have, 0, (size_t)s->b->m + 1);
+  for (int k = 0; k <= last; k++) mhb_receptance_need(s->b->receptance, k);
 #pragma omp parallel for schedule(dynamic, 1) reduction(&& : ok) if (3 * s->n_stuck >= WORTH_THREADS)
-  for (int k = 0; k <= s->b->m; k++) {
-    if (!old && s->n_stuck > 0) ok = ok && factor_harmonic(s, k);
-    if (s->n_moving > 0) ok = ok && condense_harmonic(s, k);
-  }
+  for (int k = 0; k <= last; k++) ok = ok && factor_harmonic(s, k) && condense_harmonic(s, k);
   s->omega      = ok ? s->b->receptance->omega : NAN;
   s->n_factored = s->n_stuck;
   s->n_laws     = s->b->n_laws;
@@ -279,6 +247,19 @@ static int condense(mhb_condensed *s) {
 
 static double real_product(double complex a, double complex b) {
   return creal(a) * creal(b) + cimag(a) * cimag(b);
+}
+
+/* A single number, as where nothing moves, needs no factors. */
+static int factor_dense(mhb_condensed *s) {
+  if (s->size == 1) s->pivot[0] = 1;
+  if (s->size <= 1) return s->size == 0 || s->dense[0] != 0;
+  return LAPACKE_dgetrf_work(LAPACK_COL_MAJOR, s->size, s->size, s->dense, s->size, s->pivot) == 0;
+}
+
+static int solve_dense(mhb_condensed *s) {
+  if (s->size == 1) s->y[0] /= s->dense[0];
+  return s->size <= 1 || LAPACKE_dgetrs_work(LAPACK_COL_MAJOR, 'T', s->size, 1, s->dense, s->size,
+                                             s->pivot, s->y, s->size) == 0;
 }
 
 /* Rows (moving i, axis c, harmonic k): I + mixed D. */
@@ -299,45 +280,50 @@ static void dense_rows(mhb_condensed *s, int k) {
   }
 }
 
-/* The last column, c_M - R_ML S A^-1 c_L; c_L becomes A^-1 c_L. */
-static int border_column(mhb_condensed *s) {
-  int nb = s->b->nb;
+/* Row of the dense system, moving row i of harmonic k or a border. */
+static double *dense_row(const mhb_condensed *s, int row) {
+  return s->dense + (size_t)row * (size_t)s->size;
+}
+
+/* Column j of the borders, c_M - R_ML S A^-1 c_L; c_L becomes A^-1 c_L. */
+static int border_column(mhb_condensed *s, int j) {
+  int nb = s->b->nb, column = s->size - s->n_borders + j;
   for (int k = 0; k <= s->b->m; k++) {
-    size_t at = (size_t)k * rows_of(s);
-    if (!solve_stuck(s, k, s->c + at)) return 0;
+    double complex *c = border(s, s->c, j, k), *force = s->s + (size_t)k * rows_of(s);
+    if (!solve_stuck(s, k, c)) return 0;
     for (int i = 0; i < 3 * s->n_moving; i++) {
       int            row = 3 * s->moving[i / 3] + i % 3;
-      double complex c =
-          s->c[at + (size_t)row] - response(receptance(s, k, row), s->n_stuck, s->stuck, s->s + at);
-      double *last =
-          s->dense + (size_t)(i * nb + (k ? 2 * k - 1 : 0)) * (size_t)s->size + s->size - 1;
-      *last = creal(c);
-      if (k) last[s->size] = cimag(c);
+      double complex y   = c[row] - response(receptance(s, k, row), s->n_stuck, s->stuck, force);
+      double        *to  = dense_row(s, i * nb + (k ? 2 * k - 1 : 0)) + column;
+      *to                = creal(y);
+      if (k) to[s->size] = cimag(y);
     }
   }
   return 1;
 }
 
-/* What the border's row asks of the forces p of stuck and moving pairs through the open ones: s->q += R_Op^H t_O. */
-static void open_demand(mhb_condensed *s, int k) {
-  size_t          n3 = rows_of(s), at = (size_t)k * n3;
-  double complex *out = s->q + at;
+/* What row t asks of the forces p of stuck and moving pairs through the open ones: s->q += R_Op^H t_O. */
+static void open_demand(mhb_condensed *s, int k, const double complex *t) {
+  size_t          n3  = rows_of(s);
+  double complex *out = s->q + (size_t)k * n3;
   memset(out, 0, n3 * sizeof *out);
   for (size_t row = 0; row < n3; row++) {
-    if (s->b->kind[row / 3] != MHB_PAIR_OPEN) continue;
+    if (s->kind[row / 3] != MHB_PAIR_OPEN) continue;
+    double x = creal(t[row]), y = cimag(t[row]);
+    if ((x == 0 && y == 0) || s->n_moving + s->n_stuck == 0) continue;
+    mhb_receptance_need(s->b->receptance, k);
     const double complex *R = receptance(s, k, (int)row);
-    double                x = creal(s->t[at + row]), y = cimag(s->t[at + row]);
-    if (x == 0 && y == 0) continue;
     for (size_t j = 0; j < n3; j++)
       out[j] += CMPLX(creal(R[j]) * x + cimag(R[j]) * y, creal(R[j]) * y - cimag(R[j]) * x);
   }
 }
 
 /* conj(reach^H t_L + R_OM^H t_O), negative, for the axes of moving pair j. */
-static void row_weight(const mhb_condensed *s, int k, int j, double complex weight[3]) {
+static void row_weight(const mhb_condensed *s, int k, const double complex *t, int j,
+                       double complex weight[3]) {
   int                   nl = 3 * s->n_stuck;
   size_t                at = (size_t)k * rows_of(s);
-  const double complex *t = s->t + at, *q = s->q + at + 3 * s->moving[j];
+  const double complex *q  = s->q + at + 3 * s->moving[j];
   for (int c = 0; c < 3; c++) {
     const double complex *reach = s->reach + at * rows_of(s) + (size_t)(3 * j + c) * (size_t)nl;
     double complex        w     = q[c];
@@ -347,8 +333,8 @@ static void row_weight(const mhb_condensed *s, int k, int j, double complex weig
 }
 
 /* t_L <- t_L - S R_OL^H t_O */
-static void demand_of_stuck(mhb_condensed *s, int k) {
-  double complex *t = s->t + (size_t)k * rows_of(s), *q = s->q + (size_t)k * rows_of(s), force[3];
+static void demand_of_stuck(mhb_condensed *s, int k, double complex *t) {
+  double complex *q = s->q + (size_t)k * rows_of(s), force[3];
   for (int i = 0; i < s->n_stuck; i++) {
     int a = s->stuck[i];
     spring(&s->b->law[a], k, q + 3 * a, force);
@@ -356,50 +342,92 @@ static void demand_of_stuck(mhb_condensed *s, int k) {
   }
 }
 
-/* The last row: t_M - (reach^H t_L + R_OM^H t_O)^H D, where t_L becomes t_L - S R_OL^H t_O. */
-static void border_row(mhb_condensed *s, double corner) {
-  int     block = 3 * s->b->nb;
-  double *last  = s->dense + (size_t)(s->size - 1) * (size_t)s->size, nothing[block];
-  for (int i = 0; i < s->n_moving; i++)
-    memcpy(last + i * block, s->y + s->moving[i] * block, sizeof(double) * (size_t)block);
+/* Sum over what is not moving of t x. */
+static double still_product(const mhb_condensed *s, const double complex *t,
+                            const double complex *x) {
+  double sum = 0;
+  for (size_t row = 0; row < rows_of(s); row++)
+    if (s->kind[row / 3] != MHB_PAIR_MOVING) sum += real_product(t[row], x[row]);
+  return sum;
+}
+
+/* Row i of the borders: t_M - (reach^H t_L + R_OM^H t_O)^H D, where t_L becomes t_L - S R_OL^H t_O. */
+static void border_row(mhb_condensed *s, int i, const double *corner) {
+  int     nb = s->b->nb, block = 3 * nb, first = s->size - s->n_borders;
+  double *last = dense_row(s, first + i), nothing[block];
+  memset(last, 0, sizeof(double) * (size_t)first);
+  memcpy(last + first, corner, sizeof(double) * (size_t)s->n_borders);
   for (int k = 0; k <= s->b->m; k++) {
-    const double complex *t = s->t + (size_t)k * rows_of(s), *c = s->c + (size_t)k * rows_of(s);
-    double complex        weight[3];
-    open_demand(s, k);
-    demand_of_stuck(s, k);
+    double complex *t = border(s, s->t, i, k), weight[3];
+    if (is_zero(rows_of(s), t)) continue;
+    open_demand(s, k, t);
+    demand_of_stuck(s, k, t);
     for (int j = 0; j < s->n_moving; j++) {
-      row_weight(s, k, j, weight);
+      double *to = last + j * block + (k ? 2 * k - 1 : 0);
+      for (int c = 0; c < 3; c++) {
+        double complex own = t[3 * s->moving[j] + c];
+        to[c * nb] += creal(own);
+        if (k) to[c * nb + 1] += cimag(own);
+      }
+      row_weight(s, k, t, j, weight);
       mhb_residual_combine(s->b, weight, s->moving[j], k, last + j * block, nothing);
     }
-    for (int row = 0; row < (int)rows_of(s); row++)
-      if (s->b->kind[row / 3] != MHB_PAIR_MOVING) corner -= real_product(t[row], c[row]);
+    for (int j = 0; j < s->n_borders; j++)
+      last[first + j] -= still_product(s, t, border(s, s->c, j, k));
   }
-  last[s->size - 1] = corner;
+}
+
+/* Columns R_0 and rows -G of axis u or w of a held pair, as border j. */
+static void set_held(mhb_condensed *s, int j, int pair, int axis) {
+  size_t        n3 = rows_of(s), size = sizeof(double complex) * n3;
+  int           nb = s->b->nb;
+  const double *G  = mhb_residual_mean_row(s->b, pair, axis);
+  mhb_receptance_need(s->b->receptance, 0);
+  for (int row = 0; row < (int)n3; row++)
+    border(s, s->c, j, 0)[row] = receptance(s, 0, row)[3 * pair + axis];
+  memset(border(s, s->c, j, 0) + n3, 0, size * (size_t)s->b->m);
+  memset(border(s, s->t, j, 0), 0, size * ((size_t)s->b->m + 1));
+  for (int c = 0; c < 3; c++, G += nb) {
+    border(s, s->t, j, 0)[3 * pair + c] = -G[0];
+    for (int k = 1; k <= s->b->m; k++)
+      border(s, s->t, j, k)[3 * pair + c] = CMPLX(-G[2 * k - 1], -G[2 * k]);
+  }
+}
+
+static int set_borders(mhb_condensed *s, const double *column, const double *row) {
+  double corner[MHB_MOST_BORDERS];
+  if (s->bordered) {
+    to_harmonics(s, column, s->c);
+    to_harmonics(s, row, s->t);
+  }
+  for (int i = 0; i < 2 * s->n_held; i++) set_held(s, s->bordered + i, s->held[i / 2], 1 + i % 2);
+  for (int j = 0; j < s->n_borders; j++)
+    if (!border_column(s, j)) return 0;
+  for (int i = 0; i < s->n_borders; i++) {
+    memset(corner, 0, sizeof corner);
+    corner[i] = i < s->bordered ? row[s->b->n] : 1;
+    border_row(s, i, corner);
+  }
+  return 1;
 }
 
 int mhb_condensed_factor(mhb_condensed *s, const double *column, const double *row) {
   list_pairs(s);
-  s->bordered = column != NULL;
-  s->size     = 3 * s->b->nb * s->n_moving + s->bordered;
+  s->bordered  = column != NULL;
+  s->n_borders = s->bordered + 2 * s->n_held;
+  s->size      = 3 * s->b->nb * s->n_moving + s->n_borders;
   if (!condense(s)) return 0;
-  if (s->n_moving > 0)
-    for (int k = 0; k <= s->b->m; k++) dense_rows(s, k);
-  if (s->bordered) {
-    to_harmonics(s, column, s->c);
-    to_harmonics(s, row, s->t);
-    if (!border_column(s)) return 0;
-    memcpy(s->y, row, sizeof(double) * (size_t)s->b->n);
-    border_row(s, row[s->b->n]);
-  }
-  return s->size == 0 ||
-         LAPACKE_dgetrf_work(LAPACK_COL_MAJOR, s->size, s->size, s->dense, s->size, s->pivot) == 0;
+  for (int k = 0; k <= s->b->m && s->n_moving > 0; k++) dense_rows(s, k);
+  return set_borders(s, column, row) && factor_dense(s);
 }
 
 /* ---- solution ---- */
 
 /* Right-hand side of the dense system; f_L becomes A^-1 f_L. */
 static int reduce(mhb_condensed *s, double last) {
-  int nb = s->b->nb;
+  int     nb         = s->b->nb;
+  double *of_borders = s->y + s->size - s->n_borders;
+  for (int i = 0; i < s->n_borders; i++) of_borders[i] = i < s->bordered ? last : 0;
   for (int k = 0; k <= s->b->m; k++) {
     size_t          at = (size_t)k * rows_of(s);
     double complex *f  = s->f + at;
@@ -410,11 +438,9 @@ static int reduce(mhb_condensed *s, double last) {
       s->y[to]         = creal(y);
       if (k) s->y[to + 1] = cimag(y);
     }
-    for (int row = 0; s->bordered && row < (int)rows_of(s); row++)
-      if (s->b->kind[row / 3] != MHB_PAIR_MOVING)
-        last -= real_product(s->t[at + (size_t)row], f[row]);
+    for (int i = 0; i < s->n_borders; i++)
+      of_borders[i] -= still_product(s, border(s, s->t, i, k), f);
   }
-  if (s->bordered) s->y[s->size - 1] = last;
   return 1;
 }
 
@@ -433,15 +459,18 @@ static void moving_forces(mhb_condensed *s) {
   }
 }
 
-/* Harmonic k of the stuck and the open pairs, from q and sigma; f becomes x. */
-static void expand(mhb_condensed *s, int k, double sigma) {
+/* Harmonic k of the stuck and the open pairs, from q and the borders; f becomes x. */
+static void expand(mhb_condensed *s, int k) {
   int                   nl = 3 * s->n_stuck, nm = 3 * s->n_moving;
   size_t                n3 = rows_of(s), at = (size_t)k * n3;
   const double complex *reach = s->reach + at * n3;
   double complex       *x     = s->f + at;
-  for (int row = 0; row < (int)n3; row++)
-    if (s->bordered && s->b->kind[row / 3] != MHB_PAIR_MOVING)
-      x[row] -= sigma * s->c[at + (size_t)row];
+  for (int j = 0; j < s->n_borders; j++) {
+    const double complex *c     = border(s, s->c, j, k);
+    double                sigma = s->y[s->size - s->n_borders + j];
+    for (int row = 0; row < (int)n3; row++)
+      if (s->kind[row / 3] != MHB_PAIR_MOVING) x[row] -= sigma * c[row];
+  }
   for (int j = 0; j < nm; j++) {
     double complex q = s->q[at + (size_t)(3 * s->moving[j / 3] + j % 3)];
     for (int i = 0; i < nl; i++) x[3 * s->stuck[i / 3] + i % 3] -= reach[j * nl + i] * q;
@@ -450,8 +479,8 @@ static void expand(mhb_condensed *s, int k, double sigma) {
     int a = s->stuck[i];
     spring(&s->b->law[a], k, x + 3 * a, s->s + at + 3 * a);
   }
-  for (int row = 0; row < (int)n3; row++) {
-    if (s->b->kind[row / 3] != MHB_PAIR_OPEN) continue;
+  for (int row = 0; row < (int)n3 && nl + nm > 0; row++) {
+    if (s->kind[row / 3] != MHB_PAIR_OPEN) continue;
     const double complex *R = receptance(s, k, row);
     x[row] -= response(R, s->n_moving, s->moving, s->q + at) +
               response(R, s->n_stuck, s->stuck, s->s + at);
@@ -464,16 +493,12 @@ static void expand(mhb_condensed *s, int k, double sigma) {
 
 int mhb_condensed_solve(mhb_condensed *s, double *rhs) {
   to_harmonics(s, rhs, s->f);
-  if (!reduce(s, s->bordered ? rhs[s->b->n] : 0)) return 0;
-  if (s->size > 0 && LAPACKE_dgetrs_work(LAPACK_COL_MAJOR, 'T', s->size, 1, s->dense, s->size,
-                                         s->pivot, s->y, s->size) != 0)
-    return 0;
+  if (!reduce(s, s->bordered ? rhs[s->b->n] : 0) || !solve_dense(s)) return 0;
   moving_forces(s);
-  double sigma = s->bordered ? s->y[s->size - 1] : 0;
-  for (int k = 0; k <= s->b->m; k++) expand(s, k, sigma);
+  for (int k = 0; k <= s->b->m; k++) expand(s, k);
   to_real(s, s->f, rhs);
-  if (s->bordered) rhs[s->b->n] = sigma;
-  for (int i = 0; i < s->b->n; i++)
+  if (s->bordered) rhs[s->b->n] = s->y[s->size - s->n_borders];
+  for (int i = 0; i < s->b->n + s->bordered; i++)
     if (!isfinite(rhs[i])) return 0;
   return 1;
 }

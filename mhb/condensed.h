@@ -1,4 +1,4 @@
-/* The linearised balance of harmonics, (J, dr/d omega; row, corner) z = rhs, without the pairs that stay stuck or open.
+/* The linearised balance of harmonics, (J, column; row, corner) z = rhs, without the pairs that stay stuck or open.
  *
  * Such a pair answers linearly, p_k = S u_k harmonic by harmonic (S = diag(kv, Ku), at k = 0 diag(kv, 0); none if open). With M the
  * moving pairs (D = dp/du from the law), L the stuck and O the open ones, harmonic k of (I + R D) x + c sigma = f reads
@@ -8,31 +8,43 @@
  *   O:  x_O = f_O - R_OM q - R_OL S x_L - c_O sigma
  *
  * so that only the moving pairs couple the harmonics: one dense system of 3 (2m+1) moving unknowns, and one for the border.
- * The solution is that of the whole system. det A > 0 in real form: the sign of the determinant is that of the dense one. */
+ * The solution is that of the whole system. det A > 0 in real form: the sign of the determinant is that of the dense one.
+ *
+ * A stuck pair whose mean friction g = G u depends on the motion (held) is a stuck one with two more borders: unknowns g,
+ * columns R_0 of its axes u and w, rows -G, corner I. Harmonics in which nothing happens cost nothing. */
 #ifndef MHB_CONDENSED_H
 #define MHB_CONDENSED_H
 
 #include "mhb/residual.h"
 
+/* More held pairs than this are dense, as moving ones. */
+enum { MHB_MOST_HELD = 8, MHB_MOST_BORDERS = 1 + 2 * MHB_MOST_HELD };
+
 typedef struct {
   const mhb_residual *b;
   int                 m, n_pairs;        /* of b, when this was made */
+  mhb_pair_kind      *kind;              /* [pairs] as they are treated here: held is stuck */
   int                 n_moving, n_stuck; /* pairs */
   int                *moving, *stuck;    /* [pairs] which */
-  int                 bordered, size;    /* size = 3 nb n_moving + bordered */
-  double             *dense;             /* [size][size] row-major, factored */
-  double             *y;                 /* [size] */
-  int                *pivot;             /* [size] */
-  double              omega;             /* of the factors of A; NAN: none */
-  int                 n_laws;            /* of the residual, when A was factored */
-  int                 n_factored;        /* pairs in them */
-  int                *factored;          /* [pairs] which */
-  double complex     *A;                 /* [k][3 stuck][3 stuck], factored */
-  int                *A_pivot;           /* [k][3 stuck] */
-  double complex     *reach;             /* [k][3 moving][3 stuck] A^-1 R_LM */
-  double complex     *mixed;             /* [k][3 moving][3 moving] R_MM - R_ML S reach */
-  double complex     *f, *c, *t;         /* [k][3 pairs] right-hand side, border column and row */
-  double complex     *q, *s;             /* [k][3 pairs] forces of the moving, of the stuck pairs */
+  int                 n_held, held[MHB_MOST_HELD];
+  int                 bordered;   /* the caller's border is the first one */
+  int                 n_borders;  /* bordered + 2 n_held */
+  int                 size;       /* 3 nb n_moving + n_borders */
+  double             *dense;      /* [size][size] row-major, factored */
+  double             *y;          /* [size] */
+  int                *pivot;      /* [size] */
+  double              omega;      /* of the factors of A; NAN: none */
+  int                 n_laws;     /* of the residual, when A was factored */
+  int                 n_factored; /* pairs in them */
+  int                *factored;   /* [pairs] which */
+  char               *have;       /* [k] A is factored */
+  double complex     *A;          /* [k][3 stuck][3 stuck], factored */
+  int                *A_pivot;    /* [k][3 stuck] */
+  double complex     *reach;      /* [k][3 moving][3 stuck] A^-1 R_LM */
+  double complex     *mixed;      /* [k][3 moving][3 moving] R_MM - R_ML S reach */
+  double complex     *f;          /* [k][3 pairs] right-hand side */
+  double complex     *c, *t;      /* [border][k][3 pairs] columns and rows */
+  double complex     *q, *s;      /* [k][3 pairs] forces of the moving, of the stuck pairs */
 } mhb_condensed;
 
 /* For one residual, which must outlive it. SHB_ERR_IO: no memory. */

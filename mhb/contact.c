@@ -214,9 +214,36 @@ MHB_HOT static void finish_friction(mhb_contact *c) {
   }
 }
 
+/* row[k] += factor dc_k/d(motion) of the mean friction of a stuck contact; the mean of s does not enter. */
+static void add_mean_gradient(const mhb_contact *c, double factor, double *const row[2]) {
+  const mhb_stuck *stuck = &c->stuck;
+  int              nb    = c->nb;
+  double           weight[2][2][6], b[nb], db[nb];
+  if (stuck->n_active == 0) return;
+  mhb_stuck_gradient(&c->signals, c->slip.mu, stuck, weight);
+  for (int a = 0; a < stuck->n_active; a++) {
+    mhb_basis(c->m, stuck->time[a], b, db);
+    for (int k = 0; k < 2; k++) {
+      const double *w = weight[k][a];
+      for (int j = 0; j < nb; j++) row[k][j] += factor * c->kv * (w[0] * b[j] + w[3] * db[j]);
+      for (int i = 0; i < 2; i++) {
+        double value = c->K[0][i] * w[1] + c->K[1][i] * w[2],
+               slope = c->K[0][i] * w[4] + c->K[1][i] * w[5], *to = row[k] + (1 + i) * nb;
+        for (int j = 1; j < nb; j++) to[j] += factor * (value * b[j] + slope * db[j]);
+      }
+    }
+  }
+}
+
+void mhb_contact_mean_gradient(const mhb_contact *c, double *const gradient[2]) {
+  for (int k = 0; k < 2; k++) memset(gradient[k], 0, sizeof(double) * 3 * (size_t)c->nb);
+  add_mean_gradient(c, c->scale, gradient);
+}
+
 /* Stuck throughout: f = Ku (s - mean s) + c. */
-static void finish_stuck(mhb_contact *c, const mhb_stuck *stuck) {
-  int nb = c->nb, nf = c->nf, derivative = c->columns == MHB_ALL_COLUMNS;
+static void finish_stuck(mhb_contact *c) {
+  const mhb_stuck *stuck = &c->stuck;
+  int              nb = c->nb, nf = c->nf, derivative = c->columns == MHB_ALL_COLUMNS;
   c->info->share[MHB_STICK] = 1;
   c->info->undetermined     = 1;
   mhb_pieces_stick(&c->pieces, 0,
@@ -231,21 +258,8 @@ static void finish_stuck(mhb_contact *c, const mhb_stuck *stuck) {
     }
     c->f[k * nf] = stuck->c[k];
   }
-  if (!derivative || stuck->n_active == 0) return;
-  double basis[2][mhb_real_size(c->m)], rate[2][mhb_real_size(c->m)];
-  for (int a = 0; a < stuck->n_active; a++) mhb_basis(c->m, stuck->time[a], basis[a], rate[a]);
-  for (int j = 0; j < 3 * nb; j++) {
-    double value[2][3] = {{0}}, slope[2][3] = {{0}}, dc[2];
-    for (int a = 0; a < stuck->n_active; a++) {
-      if (j == nb || j == 2 * nb) break; /* the mean of s does not enter */
-      mhb_column_change(c, basis[a], j, &value[a][1], &value[a][0]);
-      mhb_column_change(c, rate[a], j, &slope[a][1], &slope[a][0]);
-    }
-    mhb_stuck_derivative(&c->signals, c->slip.mu, stuck, (const double(*)[3])value,
-                         (const double(*)[3])slope, dc);
-    c->J[j]                                          = dc[0];
-    c->J[(size_t)nf * (size_t)c->stride + (size_t)j] = dc[1];
-  }
+  if (derivative)
+    add_mean_gradient(c, 1, (double *const[2]){c->J, c->J + (size_t)nf * (size_t)c->stride});
 }
 
 /* Always closed: n is linear in v, and a huge preload must not drown it. */
@@ -318,7 +332,6 @@ static void drop_friction(mhb_contact *c) {
 }
 
 static void friction_force(mhb_contact *c) {
-  mhb_stuck stuck = {0};
   if (c->closed.always_open) {
     c->info->share[MHB_SEPARATE] = 1;
     return;
@@ -329,13 +342,13 @@ static void friction_force(mhb_contact *c) {
   }
   int ok;
   if (c->closed.always_closed) {
-    mhb_stuck_solve(&c->signals, c->slip.mu, &stuck);
-    if (stuck.feasible) {
-      finish_stuck(c, &stuck);
+    mhb_stuck_solve(&c->signals, c->slip.mu, &c->stuck);
+    if (c->stuck.feasible) {
+      finish_stuck(c);
       return;
     }
     ok = mhb_lap_closed(
-        c, (double[2]){c->scaled[c->nb] - stuck.c[0], c->scaled[2 * c->nb] - stuck.c[1]});
+        c, (double[2]){c->scaled[c->nb] - c->stuck.c[0], c->scaled[2 * c->nb] - c->stuck.c[1]});
   } else {
     ok = mhb_lap_openings(c);
     mhb_sums_collect(c);

@@ -61,4 +61,8 @@ void       mhb_contact_destroy(mhb_contact *contact);
 void mhb_contact_force(mhb_contact *contact, const mhb_law *law, const double *motion,
                        double *force, double *jacobian, mhb_contact_info *info);
 
+/* Where the last evaluation found the contact stuck throughout: the derivative of its mean friction, which is all that the
+ * stiffnesses do not tell. gradient[2] -> [3 (2m+1)] out, N/m. */
+void mhb_contact_mean_gradient(const mhb_contact *contact, double *const gradient[2]);
+
 #endif

@@ -7,9 +7,10 @@
 
 /* Settings that did not stall on stiff and on kinked curves. */
 static const double FIRST_STEP = .02, LONGEST_STEP = .1, LARGEST_ANGLE = .35, SHORTEST_STEP = 1e-4;
-static const double STAGNANT = 1e-8, NEAR = .3;
+static const double STAGNANT = 1e-8, ROUNDED = 1e-9, NEAR = .3;
 static const double KINK_STEP = .02, KINK_RATIO = .7;
 static const double OUTSIDE = .2;
+static const double NARROW = 2e-7; /* of the frequency: a kink is located when Newton fails in it */
 enum {
   MAX_CORRECTIONS    = 12,
   WANTED_CORRECTIONS = 5,
@@ -433,23 +434,39 @@ static void guess_at(const mhb_path *path, double s, double lo, double hi, int w
   }
 }
 
+/* probe <- what a guess converges to; 0 if it does not. The fourth is the first one by the damped Newton. */
+static int from_guess(mhb_path *path, double s, double lo, double hi, int which) {
+  mhb_path_point *probe = &path->probe;
+  guess_at(path, s, lo, hi, which % 3, probe);
+  if (which < 3) return correct(path, path->chord, 1, probe);
+  if (mhb_newton_solve(path->newton, path->residual, probe->value, path->tolerance, probe->x,
+                       &probe->iterations) != MHB_CONVERGED)
+    return 0;
+  measure(path, probe);
+  return 1;
+}
+
 /* probe <- the solution in the plane across the chord at fraction s. In the square-root zone of slip onset the plane's
  * Newton can fail; the damped one at fixed frequency then stands in. What rounding stopped is taken if nothing is better. */
 static int at_fraction(mhb_path *path, double s, double lo, double hi) {
-  mhb_path_point *probe = &path->probe;
-  for (int i = 0; i < 8; i++) {
-    int tries = i % 4;
-    guess_at(path, s, lo, hi, tries % 3, probe);
-    int ok = tries < 3
-                 ? correct(path, path->chord, 1, probe)
-                 : mhb_newton_solve(path->newton, path->residual, probe->value, path->tolerance,
-                                    probe->x, &probe->iterations) == MHB_CONVERGED;
-    if (!ok) continue;
-    if (tries == 3) measure(path, probe);
-    if (probe->residual > (i < 4 ? path->tolerance : 1e-9)) continue;
-    if (set_tangent(path, path->chord, probe)) return 1;
+  int rounded = -1;
+  for (int which = 0; which < 4; which++) {
+    if (!from_guess(path, s, lo, hi, which)) continue;
+    if (path->probe.residual <= path->tolerance && set_tangent(path, path->chord, &path->probe))
+      return 1;
+    if (path->probe.residual <= ROUNDED && rounded < 0) rounded = which;
   }
-  return 0;
+  return rounded >= 0 && from_guess(path, s, lo, hi, rounded) &&
+         set_tangent(path, path->chord, &path->probe);
+}
+
+/* probe <- an end of the bracket as it was found: Newton need not come back to it. */
+static int at_end(mhb_path *path, int side) {
+  mhb_path_point *probe = &path->probe;
+  memcpy(probe->x, path->bracket[side], sizeof(double) * (size_t)path->n);
+  probe->value = path->bracket[side][path->n];
+  measure(path, probe);
+  return set_tangent(path, path->chord, probe);
 }
 
 /* Somewhere in the bracket, at *s if that can be. */
@@ -479,9 +496,10 @@ int mhb_path_locate(mhb_path *path, mhb_path_indicator indicator, void *context,
   for (int i = 0; i < 40; i++) {
     double s = (lo * fhi - hi * flo) / (fhi - flo);
     if (i % 4 == 3 || !(s > lo && s < hi)) s = .5 * (lo + hi);
-    if (!somewhere(path, lo, hi, &s)) {
+    int narrow = (hi - lo) * wide < NARROW;
+    if (!(narrow ? at_fraction(path, s, lo, hi) : somewhere(path, lo, hi, &s))) {
       *fraction = lo; /* a kink: the bracket's good side is as near as can be had */
-      return i > 2 && (hi - lo) * wide < 1e-4 && at_fraction(path, lo, lo, hi);
+      return i > 2 && (hi - lo) * wide < 1e-4 && at_end(path, 0);
     }
     double f  = indicator(path, &path->probe, context);
     *fraction = s;

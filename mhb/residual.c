@@ -183,12 +183,13 @@ static mhb_pair_kind kind_of(const mhb_residual *b, int a) {
   const mhb_contact_info *info = &b->info[a];
   const double           *p    = b->p + 3 * (size_t)a * (size_t)b->nb;
   if (info->share[MHB_SEPARATE] == 1 && !info->lost) return MHB_PAIR_OPEN;
-  int still = info->share[MHB_STICK] == 1 && info->undetermined;
-  return still && p[b->nb] == 0 && p[2 * b->nb] == 0 ? MHB_PAIR_STUCK : MHB_PAIR_MOVING;
+  if (info->share[MHB_STICK] < 1 || !info->undetermined) return MHB_PAIR_MOVING;
+  return p[b->nb] == 0 && p[2 * b->nb] == 0 ? MHB_PAIR_STUCK : MHB_PAIR_HELD;
 }
 
-/* The derivative of a pair that is stuck or open, from the law itself: the same to the last bit however it was found. */
-static void linear_derivative(const mhb_residual *b, int a) {
+/* The derivative of a pair that is stuck or open, from the law itself: the same to the last bit however it was found. Written
+ * once, but for the mean friction. */
+static void set_linear_derivative(const mhb_residual *b, int a) {
   const mhb_law *law = &b->law[a];
   size_t         nb = (size_t)b->nb, block = 3 * nb;
   double        *d = b->dp + (size_t)a * block * block;
@@ -221,7 +222,10 @@ static void evaluate_pair(mhb_residual *b, mhb_contact *contact, const double *x
     b->linear_dp[a] = -1;
     b->kind[a]      = kind_of(b, a);
   }
-  if (b->kind[a] != MHB_PAIR_MOVING) linear_derivative(b, a);
+  if (b->kind[a] != MHB_PAIR_MOVING) set_linear_derivative(b, a);
+  if (b->kind[a] == MHB_PAIR_HELD)
+    mhb_contact_mean_gradient(contact, (double *const[2]){mhb_residual_mean_row(b, a, 1),
+                                                          mhb_residual_mean_row(b, a, 2)});
 }
 
 static void evaluate_pairs(mhb_residual *b, const double *x, int derivative) {

@@ -12,8 +12,9 @@
 
 /* What a pair did over the period, as far as its derivative is concerned. */
 typedef enum {
-  MHB_PAIR_MOVING, /* slips or opens for a part of it; or its mean friction is not free */
+  MHB_PAIR_MOVING, /* slips or opens for a part of it */
   MHB_PAIR_STUCK,  /* dp_k/du_k = diag(kv, Ku), for k = 0 diag(kv, 0) */
+  MHB_PAIR_HELD,   /* the same, but that the mean friction depends on all of u */
   MHB_PAIR_OPEN    /* dp/du = 0 */
 } mhb_pair_kind;
 
@@ -56,6 +57,12 @@ void mhb_residual_place(mhb_residual *residual, double value);
 /* As below, and always the derivatives dp and the kinds; the Jacobian is left to mhb/condensed. */
 void mhb_residual_derive(mhb_residual *residual, const double *x, double value, double *r,
                          double *slope);
+
+/* The rows of dp that are the mean friction of a pair, [3 nb]: axis 1 u, 2 w. */
+static inline double *mhb_residual_mean_row(const mhb_residual *residual, int pair, int axis) {
+  size_t nb = (size_t)residual->nb;
+  return residual->dp + ((size_t)(3 * pair + axis) * nb) * 3 * nb;
+}
 
 /* Two real rows, dp of harmonic k of a pair times the complex row R[3] over its axes:
  *   re, im  inout  [3 nb] += Re, Im of sum_c R[c] dp[c, k]; im is untouched for k = 0 */

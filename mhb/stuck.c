@@ -2,6 +2,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <string.h>
 
 static const double TWO_PI = 6.283185307179586476925;
 
@@ -269,40 +270,49 @@ void mhb_stuck_solve(const mhb_signals *signals, double mu, mhb_stuck *stuck) {
 }
 
 /* One active disc, c = -e (|f| - r) with e = f/|f| at the time of the largest |f| - r, which moves by dt:
- *   g = e.f' - mu n' = 0,   g' dt = -(e.df' - mu dn' + (q.df)(q.f')/|f|),   g' = e.f'' - mu n'' + (q.f')^2/|f| < 0. */
-static void one_disc(const discs *set, double t, const double value[3], const double slope[3],
-                     double dc[2]) {
-  summit        s = summit_at(set, t);
-  const double *e = s.e, mu = set->mu;
-  double        radial = e[0] * value[1] + e[1] * value[2] - mu * value[0];
-  double        turn   = e[0] * value[2] - e[1] * value[1];
-  double moved = e[0] * slope[1] + e[1] * slope[2] - mu * slope[0] + turn * s.across / s.size;
-  double aside = -(1 - s.r / s.size) * (turn - (s.bending < 0 ? s.across * moved / s.bending : 0));
-  dc[0]        = -radial * e[0] - aside * e[1];
-  dc[1]        = -radial * e[1] + aside * e[0];
+ *   g = e.f' - mu n' = 0,   g' dt = -(e.df' - mu dn' + (q.df)(q.f')/|f|),   g' = e.f'' - mu n'' + (q.f')^2/|f| < 0,
+ *   dc = -e (e.df - mu dn) - q (1 - r/|f|) (q.df + q.f' dt). */
+static void one_disc(const discs *set, double t, double weight[2][2][6]) {
+  summit s  = summit_at(set, t);
+  double mu = set->mu, q[2] = {-s.e[1], s.e[0]}, left = 1 - s.r / s.size;
+  double late = s.bending < 0 ? left * s.across / s.bending : 0; /* of -q dt */
+  for (int k = 0; k < 2; k++) {
+    double aside = q[k] * (late * s.across / s.size - left), *w = weight[k][0];
+    w[0] = mu * s.e[k];
+    w[3] = -mu * q[k] * late;
+    for (int i = 0; i < 2; i++) {
+      w[1 + i] = -s.e[k] * s.e[i] + aside * q[i];
+      w[4 + i] = q[k] * late * s.e[i];
+    }
+  }
 }
 
 /* Two: (c + f_i).dc = r_i dr_i - (c + f_i).df_i; the times drop out, for each constraint is stationary at its own. */
-static void two_discs(const discs *set, const mhb_stuck *stuck, const double value[2][3],
-                      double dc[2]) {
-  double row[2][2], rhs[2], v[3], dv[3];
+static void two_discs(const discs *set, const mhb_stuck *stuck, double weight[2][2][6]) {
+  double row[2][2], limit[2], v[3], dv[3];
   for (int i = 0; i < 2; i++) {
     mhb_signals_at(set->signals, stuck->time[i], v, dv, NULL);
     disc d = disc_of(set, stuck->time[i], v);
     for (int k = 0; k < 2; k++) row[i][k] = stuck->c[k] + d.f[k];
-    rhs[i] = d.r * set->mu * value[i][0] - row[i][0] * value[i][1] - row[i][1] * value[i][2];
+    limit[i] = d.r * set->mu;
   }
   double det   = row[0][0] * row[1][1] - row[0][1] * row[1][0];
   double small = 1e-7 * (hypot(row[0][0], row[0][1]) * hypot(row[1][0], row[1][1]));
   if (fabs(det) < small) det = copysign(small, det); /* tangent discs: the derivative is capped */
-  dc[0] = (rhs[0] * row[1][1] - rhs[1] * row[0][1]) / det;
-  dc[1] = (row[0][0] * rhs[1] - row[1][0] * rhs[0]) / det;
+  double inverse[2][2] = {{row[1][1] / det, -row[0][1] / det}, {-row[1][0] / det, row[0][0] / det}};
+  for (int k = 0; k < 2; k++)
+    for (int i = 0; i < 2; i++) {
+      double *w = weight[k][i];
+      w[0]      = inverse[k][i] * limit[i];
+      w[1]      = -inverse[k][i] * row[i][0];
+      w[2]      = -inverse[k][i] * row[i][1];
+    }
 }
 
-void mhb_stuck_derivative(const mhb_signals *signals, double mu, const mhb_stuck *stuck,
-                          const double value[2][3], const double slope[2][3], double dc[2]) {
+void mhb_stuck_gradient(const mhb_signals *signals, double mu, const mhb_stuck *stuck,
+                        double weight[2][2][6]) {
   discs set = {.signals = signals, .mu = mu};
-  dc[0] = dc[1] = 0;
-  if (stuck->n_active == 1) one_disc(&set, stuck->time[0], value[0], slope[0], dc);
-  if (stuck->n_active == 2) two_discs(&set, stuck, value, dc);
+  memset(weight, 0, sizeof(double) * 24);
+  if (stuck->n_active == 1) one_disc(&set, stuck->time[0], weight);
+  if (stuck->n_active == 2) two_discs(&set, stuck, weight);
 }

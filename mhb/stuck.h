@@ -21,10 +21,9 @@ typedef struct {
 /* signals: (n, x_1, x_2) with n > 0 throughout. */
 void mhb_stuck_solve(const mhb_signals *signals, double mu, mhb_stuck *stuck);
 
-/* dc/d(motion): for each column j of a basis change its values and slopes (dn, dx_1, dx_2) at the active times.
- *   value, slope  in  [n_active] of the column at time[i] (dx without its mean)
- *   dc            out the column's change of c */
-void mhb_stuck_derivative(const mhb_signals *signals, double mu, const mhb_stuck *stuck,
-                          const double value[2][3], const double slope[2][3], double dc[2]);
+/* dc = weight . (dn, dx_1, dx_2, dn', dx_1', dx_2') at the active times, dx without its mean.
+ *   weight  out  [2][n_active][6] */
+void mhb_stuck_gradient(const mhb_signals *signals, double mu, const mhb_stuck *stuck,
+                        double weight[2][2][6]);
 
 #endif

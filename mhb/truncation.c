@@ -1,10 +1,10 @@
 #include "mhb/truncation.h"
 
-#include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "mhb/elimination.h"
 #include "mhb/fourier.h"
 #include "mhb/newton.h"
 
@@ -128,7 +128,8 @@ static double look_beyond(mhb_truncation *t) {
     for (int i = 0; i < n; i++)
       t->u[i] = -CMPLX(t->far_r[i * b->nb + 2 * k - 1], t->far_r[i * b->nb + 2 * k]);
     fill(t, k);
-    if (LAPACKE_zgesv(LAPACK_COL_MAJOR, n, 1, t->A, n, pivot, t->u, n) != 0) continue;
+    if (!mhb_factor_complex(n, t->A, pivot) || !mhb_solve_complex(n, t->A, pivot, 1, t->u))
+      continue;
     for (int i = 0; i < n; i++) {
       t->far_x[i * b->nb + 2 * k - 1] = creal(t->u[i]);
       t->far_x[i * b->nb + 2 * k]     = cimag(t->u[i]);

@@ -34,6 +34,7 @@ struct mhb_contact {
   mhb_slip        slip;
   mhb_panel       panel;
   mhb_closed      closed;
+  mhb_stuck       stuck;   /* of a contact that stays closed */
   double          scale;   /* force scale, N */
   double          K[2][2]; /* Ku/scale */
   double          kv;      /* kv/scale */

@@ -30,7 +30,7 @@ static const double PI = 3.14159265358979323846;
 
 enum { PAIRS = 30, M = 2, N = 3 * PAIRS * (2 * M + 1) };
 
-/* Kinds of the pairs: m moving, s stuck, o open. */
+/* Kinds of the pairs: m moving, s stuck, h stuck with a mean friction that depends on the motion, o open. */
 static mhb_residual *mixed_residual(const modal_model *model, const mhb_settings *s,
                                     const char *kinds) {
   mhb_residual *b;
@@ -38,7 +38,7 @@ static mhb_residual *mixed_residual(const modal_model *model, const mhb_settings
   mhb_residual_preload(b, s->n0[0]);
   for (int a = 0; a < b->n_pairs; a++) {
     char kind         = kinds[a % (int)strlen(kinds)];
-    b->law[a].n0      = kind == 's' ? 1e3 : kind == 'o' ? -1e3 : .001 * (a % 3);
+    b->law[a].n0      = strchr("sh", kind) ? 1e3 : kind == 'o' ? -1e3 : .001 * (a % 3);
     b->law[a].balance = 0;
   }
   return b;
@@ -52,6 +52,17 @@ static void random_vector(int n, double size, unsigned long long seed, double *x
 static void random_motion(unsigned long long seed, double *x) {
   random_vector(N, .3, seed, x);
   for (int i = 0; i < N; i += 2 * M + 1) x[i] = 0;
+}
+
+/* The load is least when the friction is largest: zero is no admissible mean. */
+static void hold_pairs(const mhb_residual *b, const char *kinds, double *x) {
+  for (int a = 0; a < b->n_pairs; a++) {
+    const mhb_law *law = &b->law[a];
+    double        *v = x + 3 * a * b->nb, *u = v + b->nb;
+    if (kinds[a % (int)strlen(kinds)] != 'h') continue;
+    v[1] = -.5 * law->n0 / law->kv;
+    u[1] = .9 * law->mu * law->n0 / law->ku[0];
+  }
 }
 
 /* x <- the solution of [J column; row] x = rhs by a dense factorization; sign of the determinant. */
@@ -83,7 +94,10 @@ static double difference(const double *a, const double *b, int n) {
 static void check_kinds(const mhb_residual *b, const char *kinds) {
   for (int a = 0; a < b->n_pairs; a++) {
     char          c      = kinds[a % (int)strlen(kinds)];
-    mhb_pair_kind wanted = c == 's' ? MHB_PAIR_STUCK : c == 'o' ? MHB_PAIR_OPEN : MHB_PAIR_MOVING;
+    mhb_pair_kind wanted = c == 's'   ? MHB_PAIR_STUCK
+                           : c == 'h' ? MHB_PAIR_HELD
+                           : c == 'o' ? MHB_PAIR_OPEN
+                                      : MHB_PAIR_MOVING;
     assert_int_equal(b->kind[a], wanted);
   }
 }
@@ -96,6 +110,7 @@ static double compare_at(mhb_residual *b, const char *kinds, unsigned long long 
   assert_int_equal(b->n, N);
   assert_int_equal(mhb_condensed_create(b, &s), SHB_OK);
   random_motion(seed, x);
+  hold_pairs(b, kinds, x);
   random_vector(N + 1, 1, seed + 1, column);
   random_vector(N + 1, 1, seed + 2, row);
   row[N] = column[N];
@@ -119,9 +134,22 @@ static double compare_at(mhb_residual *b, const char *kinds, unsigned long long 
 
 static void condensed_is_whole(void **state) {
   (void)state;
-  static const char *const kinds[] = {
-      "m", "s", "o", "msso", "ssssm", "oom", "so", "smmmmmmmmmmmmmo", "ssssssssssssssssssmo"};
-  modal_model model;
+  static const char *const kinds[] = {"m",
+                                      "s",
+                                      "o",
+                                      "msso",
+                                      "ssssm",
+                                      "oom",
+                                      "so",
+                                      "smmmmmmmmmmmmmo",
+                                      "ssssssssssssssssssmo",
+                                      "h",
+                                      "hoooo",
+                                      "hssso",
+                                      "hmsso",
+                                      "ssssssssshssssm",
+                                      "hm"};
+  modal_model              model;
   random_model(PAIRS, WITH_LEFT | WITH_RESIDUAL | WITH_NORMALS | WITH_AREAS, 77, &model);
   for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
     mhb_settings  s     = random_settings(M);
