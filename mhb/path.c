@@ -10,13 +10,14 @@ static const double FIRST_STEP = .02, LONGEST_STEP = .1, LARGEST_ANGLE = .35, SH
 static const double STAGNANT = 1e-8, ROUNDED = 1e-9, NEAR = .3;
 static const double KINK_STEP = .02, KINK_RATIO = .7;
 static const double OUTSIDE = .2;
-static const double NARROW = 2e-7; /* of the frequency: a kink is located when Newton fails in it */
+static const double NARROW = 2e-7, NARROW_CHORD = .01; /* brackets in which a kink is the event */
 enum {
   MAX_CORRECTIONS    = 12,
   WANTED_CORRECTIONS = 5,
   MAX_HALVINGS       = 3,
   LASTING            = 10,
-  MAX_OUTSIDE        = 1000
+  MAX_OUTSIDE        = 1000,
+  MAX_TO_KINK        = 100
 };
 
 static int point_create(mhb_path_point *point, int n) {
@@ -43,11 +44,13 @@ shb_status mhb_path_create(mhb_residual *residual, double low, double high, mhb_
   path->longest   = LONGEST_STEP;
   path->tolerance = 1e-10;
   path->chord     = calloc((size_t)n + 1, sizeof(double));
+  path->kept      = calloc((size_t)n + 1, sizeof(double));
   for (int i = 0; i < 2; i++) path->bracket[i] = calloc((size_t)n + 1, sizeof(double));
-  int ok = path->chord && path->bracket[0] && path->bracket[1] && point_create(&path->now, n) &&
-           point_create(&path->next, n) && point_create(&path->probe, n) &&
-           mhb_newton_create(n, &path->newton) == SHB_OK &&
-           mhb_newton_bind(path->newton, residual) == SHB_OK;
+  int ok = path->chord && path->kept && path->bracket[0] && path->bracket[1] &&
+           point_create(&path->now, n) && point_create(&path->next, n) &&
+           point_create(&path->probe, n) && mhb_newton_create(n, &path->newton) == SHB_OK &&
+           mhb_newton_bind(path->newton, residual) == SHB_OK &&
+           mhb_still_create(residual, &path->still) == SHB_OK;
   if (!ok) {
     mhb_path_destroy(path);
     SHB_FAIL(SHB_ERR_IO, "out of memory for a path of %d unknowns", n);
@@ -62,7 +65,9 @@ void mhb_path_destroy(mhb_path *path) {
   point_free(&path->next);
   point_free(&path->probe);
   mhb_newton_destroy(path->newton);
+  mhb_still_destroy(path->still);
   free(path->chord);
+  free(path->kept);
   for (int i = 0; i < 2; i++) free(path->bracket[i]);
   free(path);
 }
@@ -135,13 +140,16 @@ static int evaluate_damped(mhb_path *path, double before, double cut, double sca
   }
 }
 
-/* Newton in the plane normal.(y - point at entry) = 0; clip bounds a correction. 1: converged, workspace at point. */
-static int correct(mhb_path *path, const double *normal, double clip, mhb_path_point *point) {
+/* Newton in the plane normal.(y - point at entry) = 0; clip bounds a correction. still: only as long as the pairs stay as noted.
+ * 1: converged, workspace at point. */
+static int correct_while(mhb_path *path, const double *normal, double clip, int still,
+                         mhb_path_point *point) {
   mhb_newton *w     = path->newton;
   int         n     = path->n;
   double      scale = unit(path), before = INFINITY, cut = 0;
   for (point->iterations = 0; point->iterations <= MAX_CORRECTIONS; point->iterations++) {
     if (!evaluate_damped(path, before, cut, scale, point)) return 0;
+    if (still && !mhb_still_holds(path->still, path->residual)) return 0;
     if (point->residual <= path->tolerance) return 1;
     if (point->residual < STAGNANT && point->residual > .5 * before) return 1; /* rounding */
     before = point->residual;
@@ -155,6 +163,10 @@ static int correct(mhb_path *path, const double *normal, double clip, mhb_path_p
     if (!(point->value >= path->least)) return 0;
   }
   return 0;
+}
+
+static int correct(mhb_path *path, const double *normal, double clip, mhb_path_point *point) {
+  return correct_while(path, normal, clip, 0, point);
 }
 
 /* Tangent at a point the workspace is at: [J r_value; along] t = [0; 1], scaled to unit length. */
@@ -191,11 +203,30 @@ mhb_reason mhb_path_start(mhb_path *path, const double *x, double value, int dir
   return MHB_CONVERGED;
 }
 
-/* next <- now + ds tangent, corrected. */
-static int attempt(mhb_path *path, double ds) {
+static void predict(mhb_path *path, double ds) {
   for (int i = 0; i < path->n; i++) path->next.x[i] = path->now.x[i] + ds * path->now.tangent[i];
   path->next.value = path->now.value + ds * path->now.tangent[path->n];
-  return correct(path, path->now.tangent, 2 * ds, &path->next) &&
+}
+
+/* Where no pair moves, as noted, all but the means is found without the law, which only says whether that holds. */
+static int correct_still(mhb_path *path, const double *normal, double clip, mhb_path_point *point) {
+  double scale = unit(path), sp = span(path);
+  int    steps;
+  if (!mhb_still_slide(path->still, path->residual, normal, 1 / (scale * scale), 1 / (sp * sp),
+                       point->x, &point->value, &steps) ||
+      !correct_while(path, normal, clip, 1, point))
+    return 0;
+  if (point->iterations < steps - 1) point->iterations = steps - 1;
+  return 1;
+}
+
+/* next <- now + ds tangent, corrected. */
+static int attempt(mhb_path *path, double ds) {
+  predict(path, ds);
+  int ok = mhb_still_note(path->still, path->residual) &&
+           correct_still(path, path->now.tangent, 2 * ds, &path->next);
+  if (!ok) predict(path, ds);
+  return (ok || correct(path, path->now.tangent, 2 * ds, &path->next)) &&
          set_tangent(path, path->now.tangent, &path->next);
 }
 
@@ -469,11 +500,11 @@ static int at_end(mhb_path *path, int side) {
   return set_tangent(path, path->chord, probe);
 }
 
-/* Somewhere in the bracket, at *s if that can be. */
+/* Somewhere else in the bracket, then at *s. */
 static int somewhere(mhb_path *path, double lo, double hi, double *s) {
   static const double other[] = {.5, .2, .8, .05, .95};
-  for (int i = -1; i < 5; i++) {
-    if (i >= 0) *s = lo + other[i] * (hi - lo);
+  for (int i = 0; i < 5; i++) {
+    *s = lo + other[i] * (hi - lo);
     if (at_fraction(path, *s, lo, hi)) return 1;
   }
   return 0;
@@ -484,41 +515,119 @@ static void set_bracket(mhb_path *path, int side, const mhb_path_point *point) {
   path->bracket[side][path->n] = point->value;
 }
 
+/* The bracket being narrowed: fractions of the chord and the indicator at its ends; the chord's part of the value. */
+typedef struct {
+  double at[2], f[2], wide;
+} range;
+
+static int is_narrow(const range *r) {
+  double length = r->at[1] - r->at[0];
+  return length < NARROW_CHORD && length * r->wide < NARROW;
+}
+
+/* No pair slips or opens for a part of the period: the law is exact there. */
+static int is_still(const mhb_residual *b) {
+  for (int a = 0; a < b->n_pairs; a++)
+    if (b->kind[a] == MHB_PAIR_MOVING) return 0;
+  return 1;
+}
+
+/* The side of the bracket that is still, if the other is not; else -1. */
+static int still_side(mhb_path *path) {
+  int still[2];
+  for (int side = 0; side < 2; side++) still[side] = at_end(path, side) && is_still(path->residual);
+  return still[0] == still[1] ? -1 : still[1];
+}
+
+/* probe <- a point in the plane at the chord's fraction s, along the tangent of the probe as it was at an end. */
+static void along_tangent(mhb_path *path, int side, double ahead) {
+  mhb_path_point *probe = &path->probe;
+  double scale = unit(path), length = inner(path, scale, path->chord, path->chord) * ahead /
+                                      inner(path, scale, path->chord, probe->tangent);
+  for (int i = 0; i < path->n; i++)
+    probe->x[i] = path->bracket[side][i] + length * probe->tangent[i];
+  probe->value = path->bracket[side][path->n] + length * probe->tangent[path->n];
+}
+
+/* Where contacts begin to slip, that side is known to the root of rounding only and Newton may fail, the still side is exact: its
+ * last point, in steps that are halved, becomes that end of the bracket (the old one is kept) and the probe. */
+static int go_to_kink(mhb_path *path, int side, range *r) {
+  double step = .5 * (r->at[1 - side] - r->at[side]);
+  memcpy(path->kept, path->bracket[side], sizeof(double) * ((size_t)path->n + 1));
+  if (!at_end(path, side) || !mhb_still_note(path->still, path->residual)) return 0;
+  for (int i = 0; i < MAX_TO_KINK && fabs(step) > 1e-9; i++) {
+    double s = r->at[side] + step;
+    along_tangent(path, side, step);
+    if (s > r->at[0] && s < r->at[1] && correct_still(path, path->chord, 1, &path->probe) &&
+        set_tangent(path, path->chord, &path->probe)) {
+      r->at[side] = s;
+      set_bracket(path, side, &path->probe);
+    } else {
+      step *= .5;
+    }
+  }
+  return at_end(path, side);
+}
+
+static void swap(double **a, double **b) {
+  double *old = *a;
+  *a          = *b;
+  *b          = old;
+}
+
+/* 1: a kink, and the probe on it, is the event. Else the bracket ends there, if it holds one. */
+static int at_kink(mhb_path *path, mhb_path_indicator indicator, void *context, range *r) {
+  int side = still_side(path);
+  if (side < 0) return 0;
+  double before = r->at[side];
+  if (!go_to_kink(path, side, r)) return 0;
+  double f = indicator(path, &path->probe, context);
+  if ((f > 0) == (r->f[side] > 0)) {
+    r->f[side] = f;
+    return is_narrow(r);
+  }
+  swap(&path->bracket[1 - side], &path->bracket[side]); /* the event is on the still side */
+  swap(&path->bracket[side], &path->kept);
+  r->at[1 - side] = r->at[side];
+  r->f[1 - side]  = f;
+  r->at[side]     = before;
+  return 0;
+}
+
 int mhb_path_locate(mhb_path *path, mhb_path_indicator indicator, void *context, double at_now,
                     double at_next, double *fraction) {
   for (int i = 0; i < path->n; i++) path->chord[i] = path->next.x[i] - path->now.x[i];
   path->chord[path->n] = path->next.value - path->now.value;
-  double lo = 0, hi = 1, flo = at_now, fhi = at_next;
-  double wide = fabs(path->chord[path->n]) / size_of(path);
-  int    side = 0;
+  range r              = {
+                   .at = {0, 1}, .f = {at_now, at_next}, .wide = fabs(path->chord[path->n]) / size_of(path)};
+  int last = -1, kinks = 0;
   set_bracket(path, 0, &path->now);
   set_bracket(path, 1, &path->next);
   for (int i = 0; i < 40; i++) {
-    double s = (lo * fhi - hi * flo) / (fhi - flo);
-    if (i % 4 == 3 || !(s > lo && s < hi)) s = .5 * (lo + hi);
-    int narrow = (hi - lo) * wide < NARROW;
-    if (!(narrow ? at_fraction(path, s, lo, hi) : somewhere(path, lo, hi, &s))) {
-      *fraction = lo; /* a kink: the bracket's good side is as near as can be had */
-      return i > 2 && (hi - lo) * wide < 1e-4 && at_end(path, 0);
+    double s = (r.at[0] * r.f[1] - r.at[1] * r.f[0]) / (r.f[1] - r.f[0]);
+    if (i % 4 == 3 || !(s > r.at[0] && s < r.at[1])) s = .5 * (r.at[0] + r.at[1]);
+    int ok = (kinks > 0 || !is_narrow(&r)) && at_fraction(path, s, r.at[0], r.at[1]);
+    if (!ok && kinks++ == 0) {
+      *fraction = s;
+      if (at_kink(path, indicator, context, &r)) return 1;
+      continue;
+    }
+    if (!ok && (is_narrow(&r) || !somewhere(path, r.at[0], r.at[1], &s))) {
+      *fraction = r.at[0]; /* as near as can be had */
+      return i > 2 && (r.at[1] - r.at[0]) * r.wide < 1e-4 && at_end(path, 0);
     }
     double f  = indicator(path, &path->probe, context);
     *fraction = s;
     if (f == 0) return 1;
-    int low_side = (f > 0) == (flo > 0);
-    set_bracket(path, low_side ? 0 : 1, &path->probe);
-    double moved = low_side ? s - lo : hi - s;
-    if (low_side) {
-      lo  = s;
-      flo = f;
-      if (side > 0) fhi *= .5;
-    } else {
-      hi  = s;
-      fhi = f;
-      if (side < 0) flo *= .5;
-    }
-    side        = low_side ? 1 : -1;
-    double left = fmin(hi - lo, moved);
-    if (left < 1e-9 || (i > 2 && left * wide < 1e-10 && left < 1e-4)) return 1;
+    int side = (f > 0) != (r.f[0] > 0);
+    set_bracket(path, side, &path->probe);
+    double moved = fabs(s - r.at[side]);
+    r.at[side]   = s;
+    r.f[side]    = f;
+    if (side == last) r.f[1 - side] *= .5;
+    last        = side;
+    double left = fmin(r.at[1] - r.at[0], moved);
+    if (left < 1e-9 || (i > 2 && left * r.wide < 1e-10 && left < 1e-4)) return 1;
   }
   return 1;
 }

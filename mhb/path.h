@@ -7,6 +7,7 @@
 #define MHB_PATH_H
 
 #include "mhb/newton.h"
+#include "mhb/still.h"
 
 typedef struct {
   double *x;       /* [n] m */
@@ -22,6 +23,7 @@ typedef struct {
 typedef struct {
   mhb_residual *residual;
   mhb_newton   *newton;
+  mhb_still    *still;
   int           n;
   double        low, high; /* range of the value */
   double        span;      /* unit of the value */
@@ -32,6 +34,7 @@ typedef struct {
   mhb_path_point now, next, probe; /* probe: scratch for located points */
   double        *chord;            /* [n+1] */
   double        *bracket[2];       /* [n+1] x and value on both sides of a point being located */
+  double        *kept;             /* [n+1] an end of it */
 } mhb_path;
 
 typedef enum { MHB_PATH_ON, MHB_PATH_AT_END, MHB_PATH_AT_START, MHB_PATH_STALLED } mhb_path_outcome;

@@ -1,0 +1,37 @@
+/* The balance where every pair stays stuck or open: its harmonics k > 0 know nothing of each other, nor of the mean friction,
+ *
+ *   u_k(omega) = A_k^-1 free_k,   A_k = I + R_k S,   du_k/domega = A_k^-1 d(free_k - R_k p_k)/domega at p_k = S u_k
+ * (S = diag(kv, Ku) of the stuck pairs), zero where the load is. So a point of the path is found without the contact law. */
+#ifndef MHB_STILL_H
+#define MHB_STILL_H
+
+#include "mhb/residual.h"
+
+typedef struct {
+  int             n;     /* 3 pairs */
+  double complex *A;     /* [n][n] of one harmonic, factored */
+  int            *pivot; /* [n] */
+  double complex *u, *p; /* [n] */
+  double         *slope; /* [3 pairs nb] dx/domega, real form */
+  mhb_pair_kind  *kind;  /* [pairs] noted */
+} mhb_still;
+
+shb_status mhb_still_create(const mhb_residual *residual, mhb_still **still);
+void       mhb_still_destroy(mhb_still *still);
+
+/* Note which pairs the residual's last evaluation found stuck, which open. 0: a pair moves, or the path is not one in the
+ * frequency. */
+int mhb_still_note(mhb_still *still, const mhb_residual *residual);
+
+/* Slide (x, omega) within the plane
+ *   x_weight normal_x.dx + value_weight normal[n] domega = 0
+ * to where the harmonics k > 0 balance, with the pairs as noted; the means stay. 0: no such point; x and omega may then be
+ * changed. */
+int mhb_still_slide(mhb_still *still, const mhb_residual *residual, const double *normal,
+                    double x_weight, double value_weight, double *x, double *omega,
+                    int *iterations);
+
+/* Whether the residual's last evaluation found the pairs as noted. */
+int mhb_still_holds(const mhb_still *still, const mhb_residual *residual);
+
+#endif
