@@ -10,7 +10,8 @@ static const double FIRST_STEP = .02, LONGEST_STEP = .1, LARGEST_ANGLE = .35, SH
 static const double STAGNANT = 1e-8, ROUNDED = 1e-9, NEAR = .3;
 static const double KINK_STEP = .02, KINK_RATIO = .7;
 static const double OUTSIDE = .2;
-static const double NARROW = 2e-7, NARROW_CHORD = .01; /* brackets in which a kink is the event */
+static const double NARROW = 2e-7, NARROW_CHORD = .01,
+                    BESIDE = 3e-8; /* brackets in which a kink is the event */
 enum {
   MAX_CORRECTIONS    = 12,
   WANTED_CORRECTIONS = 5,
@@ -575,7 +576,20 @@ static void swap(double **a, double **b) {
   *b          = old;
 }
 
-/* 1: a kink, and the probe on it, is the event. Else the bracket ends there, if it holds one. */
+/* probe <- a point on the still side of the kink that the probe is at: so near that it does not matter, so far that Newton comes
+ * back to it. */
+static int beside_kink(mhb_path *path, int side, double before, range *r) {
+  double way = before - r->at[side], most = BESIDE / fmax(r->wide, BESIDE);
+  double back = copysign(fmin(most, .5 * fabs(way)), way);
+  along_tangent(path, side, back);
+  if (!correct_still(path, path->chord, 1, &path->probe) ||
+      !set_tangent(path, path->chord, &path->probe))
+    return at_end(path, side);
+  r->at[side] += back;
+  return 1;
+}
+
+/* 1: a kink, and the probe beside it, is the event. Else the bracket ends there, if it holds one. */
 static int at_kink(mhb_path *path, mhb_path_indicator indicator, void *context, range *r) {
   int side = still_side(path);
   if (side < 0) return 0;
@@ -584,7 +598,7 @@ static int at_kink(mhb_path *path, mhb_path_indicator indicator, void *context, 
   double f = indicator(path, &path->probe, context);
   if ((f > 0) == (r->f[side] > 0)) {
     r->f[side] = f;
-    return is_narrow(r);
+    return is_narrow(r) && beside_kink(path, side, before, r);
   }
   swap(&path->bracket[1 - side], &path->bracket[side]); /* the event is on the still side */
   swap(&path->bracket[side], &path->kept);
