@@ -10,8 +10,8 @@ static const double FIRST_STEP = .02, LONGEST_STEP = .1, LARGEST_ANGLE = .35, SH
 static const double STAGNANT = 1e-8, ROUNDED = 1e-9, NEAR = .3;
 static const double KINK_STEP = .02, KINK_RATIO = .7;
 static const double OUTSIDE = .2;
-static const double NARROW = 2e-7, NARROW_CHORD = .01,
-                    BESIDE = 3e-8; /* brackets in which a kink is the event */
+/* Of the value, of the chord: brackets in which a kink is the event; how far from it the point is taken. */
+static const double NARROW = 2e-7, NARROW_CHORD = .01, BESIDE = 3e-8;
 enum {
   MAX_CORRECTIONS    = 12,
   WANTED_CORRECTIONS = 5,
