@@ -38,11 +38,13 @@ static bool up_to_date(const char *path, const char *settings) {
 
 static void summarise(shb_progress *progress, const mhb_response *response) {
   long   points = 0, iterations = 0;
+  int    further = 0;
   double seconds = 0;
   for (int i = 0; i < response->n_branches; i++) {
     const mhb_branch *b = &response->branch[i];
     if (b->kind != MHB_BRANCH_NONLINEAR) continue;
     points += b->n_points;
+    further += b->origin != MHB_FROM_END;
     for (int p = 0; p < b->n_points; p++) {
       iterations += b->iterations[p];
       seconds += b->seconds[p];
@@ -51,6 +53,9 @@ static void summarise(shb_progress *progress, const mhb_response *response) {
   shb_progress_note(progress, "%ld points, %.1f Newton steps and %.3f ms a point", points,
                     points ? (double)iterations / (double)points : 0.,
                     points ? 1e3 * seconds / (double)points : 0.);
+  if (further > 0)
+    shb_progress_note(progress, "%d further curve%s beside the main ones", further,
+                      further > 1 ? "s" : "");
 }
 
 static shb_status solve(const case_file *file, const char *modal, char *settings,

@@ -6,7 +6,7 @@
 
 #include "mhb/orders.h"
 
-static const double TOLERANCE = 1e-10, SAME = 1e-5;
+static const double TOLERANCE = 1e-10, SAME = 1e-5, SMALL = 1e-6;
 enum { MAX_STEPS = 40, MAX_HALVINGS = 6 };
 
 void mhb_found_free(mhb_found *found) {
@@ -47,48 +47,27 @@ static double distance(const double *a, const double *b, int n) {
   return mhb_norm(d, n);
 }
 
-/* ln M, and with a step s the derivative of ln M along it. */
-static double deflation(const mhb_found *found, double size, const double *x, const double *s,
-                        double *along) {
-  double sum = 0;
-  *along     = 0;
-  for (int f = 0; f < found->n_found; f++) {
-    const double *y      = found->x + (size_t)f * (size_t)found->n;
-    double        square = 1e-300, dot = 0;
-    for (int i = 0; i < found->n; i++) {
-      double d = (x[i] - y[i]) / size;
-      square += d * d;
-      if (s) dot += d * s[i] / size;
-    }
-    sum += log1p(1 / square);
-    *along += -2 * dot / (square * (1 + square));
-  }
-  return sum;
-}
-
-/* Newton on M r from x; 1: |r| has become small. */
-static int deflated(mhb_newton *w, mhb_residual *b, double value, double size,
-                    const mhb_found *found, double *x) {
+/* Newton from x with steps of 2 size at most; 1: |r| has become small. */
+static int descend(mhb_newton *w, mhb_residual *b, double value, double size, double *x) {
   int    n = b->n;
-  double kept[n], along, unused;
+  double kept[n];
   for (int step = 0; step < MAX_STEPS; step++) {
     mhb_residual_derive(b, x, value, w->r, NULL);
-    double r = mhb_norm(w->r, n);
-    if (!isfinite(r)) return 0;
-    if (r <= 1e-6 * mhb_norm(x, n)) return 1;
+    double before = mhb_norm(w->r, n), part = 1;
+    if (!isfinite(before)) return 0;
+    if (before <= SMALL * mhb_norm(x, n)) return 1;
     memcpy(w->step, w->r, sizeof(double) * (size_t)n);
     if (!mhb_condensed_factor(w->system, NULL, NULL) || !mhb_condensed_solve(w->system, w->step))
       return 0;
-    double before = log(r) + deflation(found, size, x, w->step, &along);
-    double factor = 1 / (1 + along), part = 1;
+    double length = mhb_norm(w->step, n), r = INFINITY;
+    if (length > 2 * size) part = 2 * size / length;
     memcpy(kept, x, sizeof kept);
-    double length = fabs(factor) * mhb_norm(w->step, n);
-    if (length > 2 * size) factor *= 2 * size / length;
-    for (int k = 0; k <= MAX_HALVINGS; k++, part *= .5) {
-      for (int i = 0; i < n; i++) x[i] = kept[i] - part * factor * w->step[i];
+    for (int k = 0; k <= MAX_HALVINGS && !(r < before); k++, part *= .5) {
+      for (int i = 0; i < n; i++) x[i] = kept[i] - part * w->step[i];
       mhb_residual_evaluate(b, x, value, w->r, NULL, NULL);
-      if (log(mhb_norm(w->r, n)) + deflation(found, size, x, NULL, &unused) < before) break;
+      r = mhb_norm(w->r, n);
     }
+    if (!(r < before)) return 0;
   }
   return 0;
 }
@@ -119,7 +98,7 @@ shb_status mhb_search_once(mhb_newton *w, mhb_residual *b, double value, double 
   SHB_TRY(mhb_newton_bind(w, b));
   found->n = b->n;
   draw(b, size, seed, x);
-  if (!deflated(w, b, value, size, found, x)) return SHB_OK;
+  if (!descend(w, b, value, size, x)) return SHB_OK;
   if (mhb_newton_solve(w, b, value, TOLERANCE, x, &iterations) != MHB_CONVERGED) return SHB_OK;
   *found_new = !mhb_found_has(found, x);
   return *found_new ? mhb_found_add_shifts(found, b, x) : SHB_OK;

@@ -1,7 +1,7 @@
-/* Solutions at one frequency that no known branch leads to: Newton's method from random starts, with the known ones deflated.
+/* Solutions at one value of the parameter that no known branch leads to: a damped Newton method from random starts.
  *
- * Deflation: F(x) = M(x) r(x), M = prod_i (1/|x - x_i|^2 + 1) over the solutions x_i found so far (lengths relative to the size
- * of the starts), does not vanish there any more. Its Newton step is that of r, s, times 1/(1 + (grad M . s)/M). */
+ * A start that comes out at a known solution does so in some six evaluations. Deflation, which keeps it from there, was tried: it
+ * makes as many of the starts end at new solutions, but all others wander to the last step, 130 to 340 evaluations a start for 17 to 30 without. */
 #ifndef MHB_SEARCH_H
 #define MHB_SEARCH_H
 

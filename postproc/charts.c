@@ -387,7 +387,8 @@ static void name_harmonics(const post_plot *plot, int m, const mhb_branch *branc
       }
     taken[used++] = at;
     snprintf(classes, sizeof classes, "mark h%d", k);
-    snprintf(name, sizeof name, "k = %d", k);
+    snprintf(name, sizeof name, k > 0 && branch->order > 1 ? "k = %d/%d" : "k = %d", k,
+             branch->order);
     const double move[2] = {6, at - plot_y(plot, end)};
     plot_text(plot, classes, branch->frequency[n - 1], end, move, "start", name);
   }

@@ -144,9 +144,16 @@ static bool is_maximum(const curve *c, int i) {
   return c->a[j] < c->a[i] && prominence(c, i) >= RIPPLE * c->a[i];
 }
 
+/* It ends in the point at which it began. */
+static bool is_closed(const curve *c) {
+  return c->n > 3 && fabs(c->f[c->n - 1] - c->f[0]) <= 1e-8 * fabs(c->f[0]) &&
+         fabs(c->a[c->n - 1] - c->a[0]) <= 1e-4 * c->a[0];
+}
+
 /* Index of the largest value if it is at an end, else -1. */
 static int edge_point(const curve *c) {
   int top = 0;
+  if (is_closed(c)) return -1;
   for (int i = 1; i < c->n; i++)
     if (c->a[i] > c->a[top]) top = i;
   bool at_end = c->n > 0 && c->a[top] > 0 && (top == 0 || c->a[top] == c->a[c->n - 1]);

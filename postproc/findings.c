@@ -231,10 +231,11 @@ static void put_edges(const post_study *study, post_buffer *out) {
 static void put_incomplete(const post_study *study, post_buffer *out) {
   for (int b = 0; b < study->response->n_branches; b++) {
     const mhb_branch *branch = &study->response->branch[b];
-    char              name[64], f[POST_NUMBER];
+    char              name[64], note[64], f[POST_NUMBER];
     if (branch->complete) continue;
     post_group_name(&study->group[study->curve[b].group], name);
-    post_put(out, "<li class=\"caution\"><b>Not complete:</b> %s (curve %d)", name, b);
+    post_branch_note(study->response, branch, note);
+    post_put(out, "<li class=\"caution\"><b>Not complete:</b> %s%s (curve %d)", name, note, b);
     if (branch->n_points > 0)
       post_put(out, " stopped at %s after %d points",
                post_measure(f, branch->frequency[branch->n_points - 1], HERTZ, 6),
@@ -243,6 +244,30 @@ static void put_incomplete(const post_study *study, post_buffer *out) {
     post_put_escaped(out, branch->reason && *branch->reason ? branch->reason : "no reason given");
     post_put(out, ".</li>\n");
   }
+}
+
+/* Curves that a sweep from the end of the range does not come to. */
+static void put_further(const post_study *study, post_buffer *out) {
+  int n = 0;
+  for (int b = 0; b < study->response->n_branches; b++) {
+    const mhb_branch *branch = &study->response->branch[b];
+    char              name[64], note[64], from[POST_NUMBER], to[POST_NUMBER];
+    if (branch->origin == MHB_FROM_END || branch->n_points == 0 || ++n > 6) continue;
+    double lo = INFINITY, hi = -INFINITY;
+    for (int p = 0; p < branch->n_points; p++) {
+      lo = fmin(lo, branch->frequency[p]);
+      hi = fmax(hi, branch->frequency[p]);
+    }
+    post_group_name(&study->group[study->curve[b].group], name);
+    post_branch_note(study->response, branch, note);
+    post_put(out, "%s%s%s (%s to %s)", n > 1 ? "; " : "<li><b>Further curves</b>: ", name, note,
+             post_number(from, lo, 6), post_measure(to, hi, HERTZ, 6));
+  }
+  if (n > 6) post_put(out, "; and %d more", n - 6);
+  if (n > 0)
+    post_put(out,
+             ". A sweep does not come to them by itself; a disturbance can. Motion of order n "
+             "repeats after n periods of the excitation.</li>\n");
 }
 
 static void put_accuracy(const post_study *study, post_buffer *out) {
@@ -269,6 +294,7 @@ void post_findings(const post_study *study, post_buffer *out) {
   put_optimum(study, out);
   put_shift(study, out);
   put_folds(study, out);
+  put_further(study, out);
   put_stability(study, out);
   put_accuracy(study, out);
   post_put(out, "</ul>\n");

@@ -228,7 +228,7 @@ function readout(b, i) {
     if (error > 0) rows.push(["error estimate", percent(error)]);
   }
   const special = b.row(ROW.special)[i], what = ["", ", fold", ", peak", ", flip (period doubling)", ", Neimark-Sacker point"][special] || (b.dots ? ", time integration" : "");
-  return {title: (g.kind === "nonlinear" ? g.name : "linear limit, " + g.name) + what, rows, shares: g.kind === "nonlinear" && Number.isFinite(shares[0]) ? shares : null};
+  return {title: (g.kind === "nonlinear" ? g.name + b.note : "linear limit, " + g.name) + what, rows, shares: g.kind === "nonlinear" && Number.isFinite(shares[0]) ? shares : null};
 }
 function drawHover() {
   const box = $("readout"), at = state.at, layer = $("hover");
@@ -353,7 +353,7 @@ function drawHarmonics() {
     let y = p.y(a[end]) + 4;
     while (used.some(v => Math.abs(v - y) < 14)) y += 14;
     used.push(y);
-    p.svg += `<text class="mark h${k}" x="${p.x(b.f[end]) + 6}" y="${y}">k = ${k}</text>`;
+    p.svg += `<text class="mark h${k}" x="${p.x(b.f[end]) + 6}" y="${y}">k = ${k}${k > 0 && b.order > 1 ? "/" + b.order : ""}</text>`;
   }
   show("harmonics", 360, [p]);
 }
@@ -400,7 +400,7 @@ function wireControls() {
     const list = D.branches.map((b, i) => i).filter(i => groupOf(D.branches[i]).kind === "nonlinear" && !D.branches[i].dots && D.branches[i].n > 0);
     list.sort((i, j) => D.branches[i].group - D.branches[j].group || i - j);
     const many = g => list.filter(i => D.branches[i].group === g).length > 1;
-    fill($("curve"), list.map(i => [i, groupOf(D.branches[i]).name + (many(D.branches[i].group) ? ` (curve ${i})` : "")]), state.branch);
+    fill($("curve"), list.map(i => [i, groupOf(D.branches[i]).name + D.branches[i].note + (many(D.branches[i].group) ? ` (curve ${i})` : "")]), state.branch);
     $("curve").onchange = e => select(+e.target.value);
   }
   for (const key of document.querySelectorAll(".key[data-group]")) {

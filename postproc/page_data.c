@@ -61,9 +61,12 @@ static void propose_place(plan *p, int rows, post_place place, int index, int pa
 }
 
 static plan make_plan(const mhb_response *response, int n_points) {
-  int rows = BUDGET / (n_points > 0 ? n_points : 1);
-  int harmonics =
-      response->n_harmonics + 1 < MAX_HARMONICS ? response->n_harmonics + 1 : MAX_HARMONICS;
+  int rows      = BUDGET / (n_points > 0 ? n_points : 1);
+  int harmonics = response->n_harmonics + 1;
+  for (int b = 0; b < response->n_branches; b++)
+    if (response->branch[b].n_harmonics >= harmonics)
+      harmonics = response->branch[b].n_harmonics + 1;
+  if (harmonics > MAX_HARMONICS) harmonics = MAX_HARMONICS;
   plan p = {.rows = FIXED_ROWS};
   for (int pass = 0; pass < 3; pass++) {
     for (int q = 0; q < response->n_probes; q++) {
@@ -270,11 +273,15 @@ static shb_status make_sheet(const post_study *study, int b, int rows, int strid
 static void put_branches(const post_study *study, int rows, const sheet *sheets, post_buffer *out) {
   for (int b = 0; b < study->response->n_branches; b++) {
     const mhb_branch *branch = &study->response->branch[b];
+    char              note[64];
+    post_branch_note(study->response, branch, note);
     post_put(out,
              "%s\n{\"group\":%d,\"n\":%d,\"complete\":%s,\"dots\":%s,\"reason\":", b ? "," : "",
              study->curve[b].group, sheets[b].n, branch->complete ? "true" : "false",
              branch->kind == MHB_BRANCH_INTEGRATION ? "true" : "false");
     post_put_json(out, branch->reason ? branch->reason : "");
+    post_put(out, ",\"order\":%d,\"note\":", branch->order);
+    post_put_json(out, note);
     post_put(out, ",\"data\":\"");
     post_put_base64(out, (size_t)rows * (size_t)sheets[b].n, sheets[b].data);
     post_put(out, "\"}");

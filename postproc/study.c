@@ -43,6 +43,14 @@ void post_group_name(const post_group *group, char out[64]) {
     snprintf(out, 64, "n₀ = %s\u00a0N", post_plain(number, group->n0, 6));
 }
 
+void post_branch_note(const mhb_response *response, const mhb_branch *branch, char out[64]) {
+  static const char *const origin[] = {"", ", found by search", ", from a flip"};
+  int                      order = branch->order / response->subharmonics, used = 0;
+  out[0] = '\0';
+  if (branch->origin != MHB_FROM_END && order > 1) used = snprintf(out, 64, ", order %d", order);
+  snprintf(out + used, (size_t)(64 - used), "%s", origin[branch->origin]);
+}
+
 /* Points by integration belong to the curves of their preload. */
 static mhb_branch_kind group_kind(const mhb_branch *branch) {
   return branch->kind == MHB_BRANCH_INTEGRATION ? MHB_BRANCH_NONLINEAR : branch->kind;

@@ -83,6 +83,9 @@ double post_error(const mhb_branch *branch, int point);
 double post_state(const mhb_response *response, const mhb_branch *branch, int point, int state);
 double post_dissipation(const mhb_response *response, const mhb_branch *branch, int point);
 
+/* What tells a curve from the main one of its group: "", ", found by search", ", order 2, from a flip". */
+void post_branch_note(const mhb_response *response, const mhb_branch *branch, char out[64]);
+
 /* "open", "stuck", "n₀ = 50 N", "n₀ varying". */
 void post_group_name(const post_group *group, char out[64]);
 

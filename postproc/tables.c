@@ -12,12 +12,14 @@ static const double FINE = 1e-3, USABLE = 1e-2;
 /* First cell of a row: swatch and name of the branch's group. */
 static void put_curve_cell(const post_study *study, int b, post_buffer *out) {
   const post_group *group = &study->group[study->curve[b].group];
-  char              name[64];
+  char              name[64], note[64];
   post_group_name(group, name);
+  post_branch_note(study->response, &study->response->branch[b], note);
   if (group->rank >= 0)
-    post_put(out, "<tr><th scope=\"row\"><i class=\"swatch c%d\"></i>%s</th>", group->rank, name);
+    post_put(out, "<tr><th scope=\"row\"><i class=\"swatch c%d\"></i>%s%s</th>", group->rank, name,
+             note);
   else
-    post_put(out, "<tr><th scope=\"row\"><i class=\"swatch\"></i>%s</th>", name);
+    post_put(out, "<tr><th scope=\"row\"><i class=\"swatch\"></i>%s%s</th>", name, note);
 }
 
 static void put_cell(post_buffer *out, const char *text) {

@@ -1,4 +1,5 @@
-/* Hard case 11: subharmonic branches of order 2 and 3 that nothing connects to the main one, found by the sweep's search. */
+/* Hard case 11: subharmonic branches of order 2 and 3, and one with friction, that nothing connects to the main one: found by the
+ * sweep's search. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,7 +10,9 @@
 
 #include <cmocka.h>
 
+#include "mhb/orders.h"
 #include "tests/hard/verdict.h"
+#include "tests/mhb/disturbed.h"
 #include "tests/mhb/periodic.h"
 #include "tests/mhb/three_degree.h"
 
@@ -97,7 +100,93 @@ static void isolas(void **state) {
   verdict_all();
 }
 
+/* Largest |v| in a period of time integration that began near the solution, after many. */
+static double marched(const modal_model *model, const periodic *p) {
+  enum { STEPS = 2000, PERIODS = 150 };
+  disturbed d;
+  double    y[16], top = 0;
+  disturbed_create(model, &p->settings, p->residual, p->x, p->omega, STEPS, &d);
+  assert_true(d.n <= 16);
+  disturbed_start(&d, y);
+  for (int i = 0; i < d.n; i++) y[i] *= 1.01;
+  for (int i = 0; i < PERIODS; i++) disturbed_period(&d, y);
+  for (int i = 0; i < STEPS; i++) {
+    disturbed_step(&d, y, i);
+    top = fmax(top, fabs(d.u[0]));
+  }
+  disturbed_destroy(&d);
+  return top;
+}
+
+/* The same of the balance. */
+static double largest(const periodic *p) {
+  double top = 0;
+  int    m   = p->residual->m;
+  for (int i = 0; i < 2000; i++) {
+    double v = p->x[0];
+    for (int k = 1; k <= m; k++) {
+      double t = 2 * PI * k * i / 2000;
+      v += p->x[2 * k - 1] * cos(t) - p->x[2 * k] * sin(t);
+    }
+    top = fmax(top, fabs(v));
+  }
+  return top;
+}
+
+/* Point i of the curve as a solution of 21 harmonics. */
+static void fine_point(const modal_model *model, const mhb_settings *s, const mhb_response *r,
+                       const mhb_branch *b, int i, periodic *p) {
+  mhb_settings fine = *s;
+  double       own[3 * (2 * s->harmonics + 1)], x[3 * 43];
+  fine.harmonics = 21;
+  point_of(r, b, i, 0, own);
+  mhb_order_widen(3, own, s->harmonics, 1, x, 21);
+  periodic_create(model, &fine, 2 * PI * b->frequency[i], x, p);
+}
+
+static int nearest_stable(const mhb_branch *b, double w) {
+  int best = -1;
+  for (int i = 0; i < b->n_points; i++)
+    if (b->stable[i] == 1 &&
+        (best < 0 || fabs(2 * PI * b->frequency[i] - w) < fabs(2 * PI * b->frequency[best] - w)))
+      best = i;
+  return best;
+}
+
+/* Little friction and a small gap: a detached curve of the excitation's own period. */
+static void with_friction(void **state) {
+  (void)state;
+  modal_model  model;
+  mhb_settings s = ground_settings(.05, .8, .5, -.05, 9);
+  three_degree_model(&model);
+  s.search = (mhb_search_settings){
+      .starts = 40, .n_at = 1, .at = {1.025 / (2 * PI)}, .n_orders = 1, .order = {1}};
+  mhb_response *r = covered_sweep(&model, &s, .8, 1.7);
+  verdict_count(r->n_branches, 4, "11 friction: branches, the linear limits among them");
+  if (r->n_branches == 4) {
+    double top[2][2];
+    verdict_count(strcmp(r->branch[3].reason, "closed curve"), 0, "11 friction: closed");
+    verdict_count(count_special(&r->branch[3], MHB_FOLD), 2, "11 friction: folds");
+    for (int k = 0; k < 2; k++) {
+      const mhb_branch *b = &r->branch[2 + k];
+      periodic          p;
+      fine_point(&model, &s, r, b, nearest_stable(b, 1.03), &p);
+      top[k][0] = largest(&p);
+      top[k][1] = marched(&model, &p);
+      print_message("  %s at W %.4f: %.5f, time integration %.5f\n", k ? "isola" : "main", p.omega,
+                    top[k][0], top[k][1]);
+      periodic_destroy(&p);
+      verdict(fabs(top[k][1] / top[k][0] - 1), 2e-3, "11 friction: %s against time integration",
+              k ? "isola" : "main curve");
+    }
+    verdict_count(top[1][1] > 1.5 * top[0][1], 1, "11 friction: the isola's motion is the larger");
+  }
+  mhb_response_destroy(r);
+  modal_model_free(&model);
+  verdict_all();
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(isolas)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(isolas), cmocka_unit_test(with_friction)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

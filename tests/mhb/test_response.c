@@ -149,6 +149,59 @@ static void test_round_trip(void **state) {
   round_trip(PROBES, 0);
 }
 
+/* A branch of order 6 with 9 harmonics in a response of order 2 with M: its arrays are as wide as that, in the file too. */
+static mhb_response *with_further(void) {
+  mhb_response *response = sample(PROBES, 5);
+  for (int i = 0; i < 3; i++) { /* main branches 2, 3; then of 3, of 2, of 2 */
+    int branch, point;
+    if (i == 0) assert_ok(mhb_response_branch(response, MHB_BRANCH_NONLINEAR, &branch));
+    assert_ok(mhb_response_branch(response, MHB_BRANCH_NONLINEAR, &branch));
+    mhb_branch *b  = &response->branch[branch];
+    b->order       = 6;
+    b->n_harmonics = 9;
+    b->origin      = i == 1 ? MHB_FROM_SEARCH : MHB_FROM_FLIP;
+    b->main        = i == 0 ? 3 : 2;
+    for (int p = 0; p < 4; p++) {
+      assert_ok(mhb_response_point(response, branch, &point));
+      b->frequency[p] = 10 * (i + 1) + p;
+      for (int k = 0; k < PAIRS * 3 * 10; k++)
+        b->motion[p * PAIRS * 3 * 10 + k] = CMPLX(100 * i + p, k);
+    }
+  }
+  response->branch[2].searched = false;
+  return response;
+}
+
+static void test_further_branches(void **state) {
+  (void)state;
+  mhb_response *wrote = with_further(), *read;
+  mhb_response_sort(wrote);
+  static const double first[] = {20, 30, 10};
+  for (int i = 0; i < 3; i++) assert_true(wrote->branch[4 + i].frequency[0] == first[i]);
+  assert_ok(mhb_response_write(wrote, scratch("further.h5"), &from));
+  assert_ok(mhb_response_read(scratch("further.h5"), &read));
+  assert_int_equal(read->n_branches, 7);
+  for (int i = 0; i < 7; i++) {
+    const mhb_branch *a = &wrote->branch[i], *b = &read->branch[i];
+    assert_int_equal(b->order, i < 4 ? 2 : 6);
+    assert_int_equal(b->n_harmonics, i < 4 ? M : 9);
+    assert_int_equal(b->main, i < 4 ? i : i < 6 ? 2 : 3);
+    assert_true(b->origin == a->origin && b->searched == (i != 2));
+    if (i >= 4) assert_same(a, b, motion, 4 * PAIRS * 3 * 10);
+  }
+  bool drop[7] = {[4] = true};
+  mhb_response_drop(read, drop);
+  assert_int_equal(read->n_branches, 6);
+  assert_true(read->branch[4].frequency[0] == 30 && read->branch[5].main == 3);
+  mhb_response_reverse(read, 4);
+  for (int p = 0; p < 4; p++) {
+    const double complex *u = read->branch[4].motion + p * PAIRS * 3 * 10;
+    assert_true(read->branch[4].frequency[p] == 33 - p && u[7] == CMPLX(200 + 3 - p, 7));
+  }
+  mhb_response_destroy(wrote);
+  mhb_response_destroy(read);
+}
+
 /* A file read back can be continued. */
 static void test_growth(void **state) {
   (void)state;
@@ -408,6 +461,7 @@ static void test_create(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_round_trip),
+      cmocka_unit_test(test_further_branches),
       cmocka_unit_test(test_growth),
       cmocka_unit_test(test_placed),
       cmocka_unit_test(test_earlier_version),

@@ -164,6 +164,26 @@ static void cases(void **state) {
                    2); /* an edge and a lesser peak */
 }
 
+/* A closed curve has no edge, even if it begins where it is largest but for rounding. */
+static void closed(void **state) {
+  (void)state;
+  double     f[41], a[41];
+  post_peak *peaks;
+  int        n;
+  for (int i = 0; i <= 40; i++) {
+    f[i] = 10 + cos(2 * M_PI * i / 40);
+    a[i] = 3 + sin(2 * M_PI * i / 40 + M_PI / 2);
+  }
+  assert_ok(post_find_peaks(41, f, a, &peaks, &n));
+  for (int i = 0; i < n; i++) assert_false(peaks[i].edge);
+  free(peaks);
+  f[40] += .1; /* open */
+  assert_ok(post_find_peaks(41, f, a, &peaks, &n));
+  assert_int_equal(n, 1);
+  assert_true(peaks[0].edge);
+  free(peaks);
+}
+
 /* An edge peak has no bandwidth and says so. */
 static void edge(void **state) {
   (void)state;
@@ -193,12 +213,10 @@ static void hairlines_are_no_folds(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(resonance),
-                                     cmocka_unit_test(order),
-                                     cmocka_unit_test(folds),
-                                     cmocka_unit_test(flagged),
-                                     cmocka_unit_test(cases),
-                                     cmocka_unit_test(edge),
-                                     cmocka_unit_test(hairlines_are_no_folds)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(resonance), cmocka_unit_test(order),
+      cmocka_unit_test(folds),     cmocka_unit_test(flagged),
+      cmocka_unit_test(cases),     cmocka_unit_test(edge),
+      cmocka_unit_test(closed),    cmocka_unit_test(hairlines_are_no_folds)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,7 @@
 #include <complex.h>
 
 #include "postproc/output.h"
+#include "postproc/study.h"
 #include "tests/postproc/check.h"
 
 /* Largest |x(t)| over a fine scan, for comparison only. */
@@ -69,6 +70,41 @@ static void invariance(void **state) {
   assert_true(wanted > 2 * post_ellipse(3, &x[0][1], 4) * 0.7);
 }
 
+/* A curve of order 2 beside one of order 1: its own harmonics, the excitation's at k = 2, none beyond the last. */
+static void orders(void **state) {
+  (void)state;
+  mhb_response *r = mhb_response_create(1, 0, 3);
+  int           at[2], p;
+  char          note[64];
+  double       *series;
+  assert_non_null(r);
+  for (int i = 0; i < 2; i++) {
+    assert_ok(mhb_response_branch(r, MHB_BRANCH_NONLINEAR, &at[i]));
+    if (i) r->branch[1].order = 2;
+    if (i) r->branch[1].n_harmonics = 6;
+    if (i) r->branch[1].origin = MHB_FROM_SEARCH;
+    for (int k = 0; k < 2; k++) assert_ok(mhb_response_point(r, at[i], &p));
+    int K                                  = r->branch[i].n_harmonics + 1;
+    r->branch[i].motion[3 * K + 1]         = 3;
+    r->branch[i].motion[3 * K + 2]         = 5 + i;
+    r->branch[i].motion[3 * K + 2 * K + 2] = 100;
+  }
+  post_output v = {POST_CONTACT, 0, 0};
+  for (int i = 0; i < 2; i++) {
+    assert_ok(post_series(r, &r->branch[i], v, POST_FIRST_HARMONIC, &series));
+    assert_true(series[0] == 0);
+    assert_near(series[1], i ? 6 : 3, 1e-15);
+    free(series);
+    assert_near(post_amplitude(r, &r->branch[i], 1, v, 2), 5 + i, 1e-15);
+  }
+  assert_near(post_amplitude(r, &r->branch[0], 1, v, 5), 0, 0);
+  post_branch_note(r, &r->branch[0], note);
+  assert_string_equal(note, "");
+  post_branch_note(r, &r->branch[1], note);
+  assert_string_equal(note, ", order 2, found by search");
+  mhb_response_destroy(r);
+}
+
 static void places(void **state) {
   (void)state;
   mhb_response *r = mhb_response_create(2, 1, 3);
@@ -102,6 +138,7 @@ static void places(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(ellipse), cmocka_unit_test(peak_to_peak),
-                                     cmocka_unit_test(invariance), cmocka_unit_test(places)};
+                                     cmocka_unit_test(invariance), cmocka_unit_test(places),
+                                     cmocka_unit_test(orders)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
