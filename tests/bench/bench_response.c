@@ -4,6 +4,8 @@
  *   bench_response --quick    errors only, in a second or so
  *   bench_response --pairs N  the row of N pairs alone
  *   bench_response --harmonics H  the beam's rows of H harmonics alone, against themselves
+ *   bench_response --precision    error against seconds alone (precision.h)
+ *   bench_response --blade FILE N0 FROM TO  the same of a modal file: contact to the neighbour, preload N, range Hz
  *
  * Beam: the tip-contact beam (tests/mhb/three_degree.h), one row a force and number of harmonics: the whole sweep 215-320 Hz, the
  * median of a point, and the error of the located peak against H = 31. Then the three accuracies of the contact law, and the
@@ -19,6 +21,7 @@
 
 #include "mesh/progress.h"
 #include "mhb/follow.h"
+#include "precision.h"
 #include "shroud_face.h"
 #include "tests/mhb/three_degree.h"
 
@@ -367,12 +370,61 @@ static shb_status one_rung(int harmonics) {
   return SHB_OK;
 }
 
+/* The scenes whose numbers are in the documentation. */
+static shb_status precision(int *failed) {
+  static const double n0[] = {-.2, 0, .3, .5, 1};
+  modal_model         model;
+  char                name[40];
+  shb_status          status = SHB_OK;
+  for (int i = 0; i < 2 && status == SHB_OK; i++) {
+    mhb_settings s = beam_settings(7, 1e-8);
+    snprintf(name, sizeof name, "tip-contact beam, F = %d", i ? 20 : 8);
+    tip_contact_beam_model(i ? 20 : 8, &model);
+    status = bench_precision(name, &model, &s, failed);
+    modal_model_free(&model);
+  }
+  three_degree_model(&model);
+  for (int i = 0; i < 5 && status == SHB_OK; i++) {
+    mhb_settings s = beam_settings(7, 1e-8);
+    s.mu           = .4;
+    s.kv           = .8;
+    s.ku[0] = s.ku[2] = .5;
+    s.n0[0]           = n0[i];
+    s.frequency[0]    = .8 / (2 * PI);
+    s.frequency[1]    = 1.7 / (2 * PI);
+    snprintf(name, sizeof name, "three degrees, n0 = %g", n0[i]);
+    status = bench_precision(name, &model, &s, failed);
+  }
+  modal_model_free(&model);
+  return status;
+}
+
+/* Contact and excitation of cases/z_notch_blade. */
+static shb_status blade(char **argument, int *failed) {
+  modal_model  model;
+  mhb_settings s = beam_settings(7, 1e-8);
+  SHB_TRY(modal_model_read(argument[0], &model));
+  s.to_ground    = false;
+  s.engine_order = 5;
+  s.blades       = 40;
+  s.mu           = .3;
+  s.kv           = .8e6;
+  s.ku[0] = s.ku[2] = .5e6;
+  s.n0[0]           = atof(argument[1]);
+  s.frequency[0]    = atof(argument[2]);
+  s.frequency[1]    = atof(argument[3]);
+  shb_status status = bench_precision(argument[0], &model, &s, failed);
+  modal_model_free(&model);
+  return status;
+}
+
 static shb_status everything(int *failed) {
   static const int pairs[] = {1, 10, 50, 200};
   SHB_TRY(bench_harmonics(8, failed));
   SHB_TRY(bench_harmonics(20, failed));
   SHB_TRY(bench_accuracies(8, REPEATS, failed));
   SHB_TRY(bench_accuracies(20, REPEATS, failed));
+  SHB_TRY(precision(failed));
   return bench_pairs(pairs, 4, failed);
 }
 
@@ -384,13 +436,19 @@ int main(int argc, char **argv) {
     status = everything(&failed);
   } else if (argc == 2 && !strcmp(argv[1], "--quick")) {
     status = quick(&failed);
+  } else if (argc == 2 && !strcmp(argv[1], "--precision")) {
+    status = precision(&failed);
+  } else if (argc == 6 && !strcmp(argv[1], "--blade")) {
+    status = blade(argv + 2, &failed);
   } else if (pairs > 0) {
     status = bench_pairs(&pairs, 1, &failed);
   } else if (harmonics > 0) {
     status = one_rung(harmonics);
   } else {
     fprintf(stderr,
-            "bench_response: usage: bench_response [--quick | --pairs N | --harmonics H]\n");
+            "bench_response: usage: bench_response [--quick | --pairs N | --harmonics H | "
+            "--precision | "
+            "--blade FILE N0 FROM TO]\n");
     return SHB_ERR_INPUT;
   }
   if (status != SHB_OK) {
