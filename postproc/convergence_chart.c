@@ -71,27 +71,6 @@ static bool find_ranges(const post_convergence *s, double seconds[2], double err
   return any;
 }
 
-/* "1", "0.1", "10⁻⁸" */
-static void put_power(char *text, size_t room, double value) {
-  static const char *const digit[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
-  int                      power = (int)lround(-log10(value)) % 100;
-  if (power <= 1 || fabs(log10(value) + power) > .01)
-    snprintf(text, room, "%g", value);
-  else
-    snprintf(text, room, "10⁻%s%s", power >= 10 ? digit[power / 10] : "", digit[power % 10]);
-}
-
-static void put_axes(const post_plot *plot) {
-  double ticks[PLOT_MAX_TICKS];
-  plot_frame(plot);
-  int n = plot_ticks(&plot->y, (int)(plot->height / 55), ticks); /* as the frame's grid */
-  for (int i = 0; i < n; i++) {
-    char text[32];
-    put_power(text, sizeof text, ticks[i]);
-    plot_text(plot, "tick", plot->x.lo, ticks[i], (double[2]){-8, 4}, "end", text);
-  }
-}
-
 /* A label already put, px. */
 typedef struct {
   double x, y, width;
@@ -200,7 +179,8 @@ static void draw(const post_convergence *s, post_plot *plot) {
   char   goal[48];
   plot->x = plot_axis_around(seconds[0] / 1.15, seconds[1] * 1.6, true, 1, "seconds of one core");
   plot->y = plot_axis_around(error[0] / 2, error[1] * 2, true, 1, NULL);
-  put_axes(plot);
+  plot_frame(plot);
+  plot_powers(plot);
   plot_level(plot, "goal", s->tolerance);
   snprintf(goal, sizeof goal, "tolerance %g %%", 100 * s->tolerance);
   plot_text(plot, "tick", plot->x.hi, s->tolerance, (double[2]){-6, -6}, "end", goal);

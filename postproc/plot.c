@@ -176,6 +176,16 @@ void plot_frame(const post_plot *plot) {
            plot->top + plot->height, plot->left + plot->width);
 }
 
+void plot_powers(const post_plot *plot) {
+  double ticks[PLOT_MAX_TICKS];
+  int    n = plot_ticks(&plot->y, (int)fmax(2, plot->height / 55), ticks); /* as the frame's grid */
+  for (int i = 0; i < n; i++) {
+    char text[POST_NUMBER];
+    plot_text(plot, "tick", plot->x.lo, ticks[i] * plot->y.unit, (double[2]){-8, 4}, "end",
+              post_power(text, ticks[i]));
+  }
+}
+
 /* The path under construction: where its pen is, and whether any of it was written. */
 typedef struct {
   double x, y;

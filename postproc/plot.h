@@ -47,6 +47,8 @@ void plot_svg_open(post_buffer *out, const char *id, double width, double height
 void plot_svg_close(post_buffer *out);
 
 void plot_frame(const post_plot *plot); /* grid, ticks, labels, clip path */
+/* Labels of the vertical ticks as powers of ten, for an axis whose own label is NULL. After the frame. */
+void plot_powers(const post_plot *plot);
 /* Curve through [n] points; piece i joins points i - 1 and i and is drawn where piece[i] (NULL: everywhere). Values
  * that are not finite, or not positive on a log axis, part it. Points within 0.4 px are merged.
  * A curve of one point is a small circle. */

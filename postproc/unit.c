@@ -96,3 +96,11 @@ char *post_percent(char out[POST_NUMBER], double ratio) {
   snprintf(out + used, POST_NUMBER - used, "\u00a0%%");
   return out;
 }
+
+char *post_power(char out[POST_NUMBER], double value) {
+  static const char *const digit[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+  int                      power = value > 1e-99 && value < 1 ? (int)lround(-log10(value)) : 0;
+  if (power < 2 || fabs(value * pow(10, power) - 1) > 1e-6) return post_plain(out, value, 3);
+  snprintf(out, POST_NUMBER, "10⁻%s%s", power >= 10 ? digit[power / 10] : "", digit[power % 10]);
+  return out;
+}

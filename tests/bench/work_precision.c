@@ -4,6 +4,7 @@
 #include <stdio.h>
 
 #include "postproc/plot.h"
+#include "postproc/unit.h"
 
 enum { WIDTH = 860, HEIGHT = 520 };
 
@@ -27,26 +28,10 @@ static void put_style(post_buffer *out) {
       WIDTH, HEIGHT);
 }
 
-/* 10 to a power of 0 or less: "1", "10⁻⁸". */
-static void put_power(char *text, size_t room, double value) {
-  static const char *const digit[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
-  int                      power = (int)lround(-log10(value)) % 100;
-  if (power <= 0)
-    snprintf(text, room, "%g", value);
-  else
-    snprintf(text, room, "10⁻%s%s", power >= 10 ? digit[power / 10] : "", digit[power % 10]);
-}
-
 /* Error upwards, time to the right. */
 static void put_axes(const post_plot *plot) {
-  double ticks[PLOT_MAX_TICKS];
   plot_frame(plot);
-  int n = plot_ticks(&plot->y, (int)(plot->height / 55), ticks); /* as the frame's grid */
-  for (int i = 0; i < n; i++) {
-    char text[32];
-    put_power(text, sizeof text, ticks[i]);
-    plot_text(plot, "tick", plot->x.lo, ticks[i], (double[2]){-8, 4}, "end", text);
-  }
+  plot_powers(plot);
   post_put(plot->out,
            "<text class=\"axis\" x=\"20\" y=\"58\">error of the force harmonics, relative to the "
            "largest</text>\n");
@@ -77,11 +62,11 @@ static void put_law(const post_plot *plot, const work_precision *c, const method
   plot_line(plot, "line law thin", c->n, c->us_derivative, c->error, NULL);
   for (int j = 0; j < c->n; j++) {
     const method *m = &all[c->method[j]];
-    char          text[64], power[32];
+    char          text[96], power[POST_NUMBER];
     plot_dot(plot, "dot law", c->us[j], c->error[j], m->accuracy ? 5 : 2.4);
     if (!m->accuracy) continue;
     plot_dot(plot, "dot law", c->us_derivative[j], c->error[j], 3);
-    put_power(power, sizeof power, m->tolerance);
+    post_power(power, m->tolerance);
     snprintf(text, sizeof text, "%s (asked: %s)", m->accuracy, power);
     plot_text(plot, "name law strong", c->us[j], c->error[j], (double[2]){-13, 4}, "end", text);
     if (m->tolerance < 1e-7)

@@ -49,6 +49,11 @@ static void units(void **state) {
   assert_string_equal(post_percent(out, 0.7149), "71\u00a0%");
   assert_string_equal(post_percent(out, 0.000344), "0.034\u00a0%");
   assert_string_equal(post_percent(out, 1.234), "123\u00a0%");
+  assert_string_equal(post_power(out, 1e-8), "10⁻⁸");
+  assert_string_equal(post_power(out, 9.9999999999e-13), "10⁻¹²");
+  assert_string_equal(post_power(out, 0.1), "0.1");
+  assert_string_equal(post_power(out, 2e-3), "0.002");
+  assert_string_equal(post_power(out, 0), "0");
 }
 
 /* Relative luminance of "#rrggbb" (WCAG 2). */
