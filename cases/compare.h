@@ -18,4 +18,11 @@
 shb_status compare_rungs(const modal_model *model, const mhb_settings *settings, post_output output,
                          const char *stem, const char *reference, rung_error *error);
 
+/* The same against points of time integration, the file at path: from each motion that repeats every period the rung's balance is solved at
+ * that frequency and preload; error->curve is the greatest |a - a'| relative to the largest amplitude of the rung's curve, error->n the number
+ * of points. Those of other preloads do not count. */
+shb_status compare_integration(const modal_model *model, const mhb_settings *settings,
+                               post_output output, const char *stem, const char *path,
+                               rung_error *error);
+
 #endif

@@ -6,6 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "cases/fresh.h"
 #include "cases/ladders.h"
 #include "postproc/convergence_chart.h"
 
@@ -41,6 +42,20 @@ static void forget(const char *folder) {
         unlinkat(dirfd(all), entry->d_name, 0);
     }
   if (all) closedir(all);
+}
+
+/* Points by time integration that belong to the case as it is now; malloc'ed, NULL if there are none. */
+static char *fresh_points(const case_file *file) {
+  char *path = case_output(file, ".integration.h5");
+  if (path && access(path, R_OK) == 0) {
+    if (fresh_keys(file, (case_stage)(CASE_MHB | CASE_INTEGRATE), path)) return path;
+    fprintf(stderr,
+            "shroudhb: warning: %s was made from other settings and is left out; run `shroudhb "
+            "integrate` again\n",
+            path);
+  }
+  free(path);
+  return NULL;
 }
 
 static shb_status prepare(study *s) {
@@ -133,10 +148,13 @@ static shb_status run_study(study *s) {
 }
 
 shb_status converge_case(case_file *file, const command_options *options) {
-  study      s      = {.file     = file,
+  study s           = {.file     = file,
                        .options  = options,
                        .progress = shb_progress_start("converge", options->quiet, options->verbose)};
+  char *points      = fresh_points(file);
+  s.points          = points;
   shb_status status = run_study(&s);
+  free(points);
   for (int i = 0; i < s.result.n; i++) free(s.place[i].stem);
   for (int i = 0; i < s.n_variants; i++) variant_free(&s.variant[i]);
   post_convergence_free(&s.result);

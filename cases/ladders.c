@@ -60,20 +60,52 @@ static void take_cost(study *s, int i) {
   row->memory         = mesh ? fmax(p->cost.memory, v->memory) : p->cost.memory;
 }
 
-/* The child's words; its last one the reference's stem, or none. */
+/* Ladders whose errors go all the way to the finest harmonics: time integration is a measure of theirs. */
+static const char *points_for(const study *s, const post_rung *row) {
+  bool whole = row->ladder == POST_LADDER_HARMONICS || row->ladder == POST_LADDER_AUTO ||
+               row->ladder == POST_LADDER_TOGETHER;
+  return whole ? s->points : NULL;
+}
+
+/* The child's words; the last ones the reference's stem or "-", and the points of time integration. */
 static shb_status start_rung(study *s, const study_place *p, const char *reference,
-                             child_result *result) {
-  char  setting[RUNG_SETTING_WORDS][RUNG_WORD];
-  char *words[RUNG_SETTING_WORDS + 6] = {child_program("shroudhb-rung"), s->file->path,
+                             const char *points, child_result *result) {
+  char  setting[RUNG_SETTING_WORDS][RUNG_WORD], none[] = "-";
+  char *words[RUNG_SETTING_WORDS + 7] = {child_program("shroudhb-rung"), s->file->path,
                                          s->variant[p->variant].modal, p->stem};
+  int   n                             = 4;
   rung_words(&p->setting, setting);
-  for (int i = 0; i < RUNG_SETTING_WORDS; i++) words[4 + i] = setting[i];
-  words[4 + RUNG_SETTING_WORDS] = reference ? strdup(reference) : NULL;
-  SHB_CHECK(words[0] && (!reference || words[4 + RUNG_SETTING_WORDS]), SHB_ERR_IO, "out of memory");
-  shb_status status = child_run(words, result);
+  for (int i = 0; i < RUNG_SETTING_WORDS; i++) words[n++] = setting[i];
+  char *stem = reference ? strdup(reference) : NULL, *path = points ? strdup(points) : NULL;
+  bool  made = words[0] && (stem || !reference) && (path || !points);
+  words[n++] = stem ? stem : none;
+  words[n++] = path;
+  shb_status status =
+      made ? child_run(words, result) : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   free(words[0]);
-  free(words[4 + RUNG_SETTING_WORDS]);
+  free(stem);
+  free(path);
   return status;
+}
+
+/* Errors that the rung's program has left. */
+static void take_errors(study *s, int i, int reference) {
+  study_place *p   = &s->place[i];
+  post_rung   *row = &s->result.rung[i];
+  rung_error   error;
+  const char  *points = points_for(s, row);
+  if (points && rung_error_read(p->stem, "integration", points, &error) == SHB_OK) {
+    row->integration   = error.n > 0 ? error.curve : NAN;
+    s->result.n_points = error.n;
+  }
+  if (reference < 0) return;
+  const char *other = s->place[reference].stem;
+  char       *path  = rung_response(other);
+  if (path && rung_error_read(p->stem, rung_leaf(other), path, &error) == SHB_OK) {
+    rung_peak_errors(&p->cost, &s->place[reference].cost, &row->peak, &row->frequency);
+    row->curve = error.curve;
+  }
+  free(path);
 }
 
 /* Work row i out, and compare it with row reference (-1: with none). A rung that fails costs its row only. */
@@ -81,10 +113,9 @@ static shb_status run(study *s, int i, int reference) {
   study_place *p   = &s->place[i];
   post_rung   *row = &s->result.rung[i];
   child_result result;
-  rung_error   error;
   shb_progress_show(&s->progress, -1, "%s %s", post_ladder_name(row->ladder), row->name);
   const char *other  = reference >= 0 ? s->place[reference].stem : NULL;
-  shb_status  status = start_rung(s, p, other, &result);
+  shb_status  status = start_rung(s, p, other, points_for(s, row), &result);
   if ((status == SHB_OK && result.code == SHB_INTERRUPTED) || shb_interrupted())
     SHB_FAIL(SHB_INTERRUPTED, "interrupted; the rungs so far are kept and used again");
   shb_progress_clear(&s->progress);
@@ -96,11 +127,9 @@ static shb_status run(study *s, int i, int reference) {
     return SHB_OK;
   }
   take_cost(s, i);
+  take_errors(s, i, reference);
   shb_progress_note(&s->progress, "%s %s: %.3g s, %d points", post_ladder_name(row->ladder),
                     row->name, p->cost.seconds, p->cost.points);
-  if (reference < 0 || rung_error_read(p->stem, other, &error) != SHB_OK) return SHB_OK;
-  rung_peak_errors(&p->cost, &s->place[reference].cost, &row->peak, &row->frequency);
-  row->curve = error.curve;
   return SHB_OK;
 }
 

@@ -27,8 +27,9 @@ typedef struct {
   char                  *folder; /* NAME.converge */
   variant                variant[STUDY_VARIANTS];
   int                    n_variants;
-  modal_model            model; /* of the first */
-  rung_setting           base;  /* in which the ladders stand: all at its finest */
+  modal_model            model;  /* of the first */
+  const char            *points; /* NAME.integration.h5, if it belongs to the case; or NULL */
+  rung_setting           base;   /* in which the ladders stand: all at its finest */
   post_convergence       result;
   int                    capacity;
   study_place           *place; /* [result.n] */

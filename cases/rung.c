@@ -130,38 +130,41 @@ shb_status rung_cost_read(const char *stem, rung_cost *cost) {
   return SHB_OK;
 }
 
-/* STEM.REF.error, with what both curves' files held: another curve makes it void. */
-static char *error_path(const char *stem, const char *reference, char prints[64]) {
-  const char *slash = strrchr(reference, '/'), *leaf = slash ? slash + 1 : reference;
-  char       *mine = rung_response(stem), *other = rung_response(reference);
-  char        a[17] = "", b[17] = "";
-  bool        good =
-      mine && other && shb_fingerprint(mine, a) == SHB_OK && shb_fingerprint(other, b) == SHB_OK;
+/* STEM.NAME.error, with what both files held: another curve makes it void. */
+static char *error_path(const char *stem, const char *name, const char *file, char prints[64]) {
+  char *mine  = rung_response(stem);
+  char  a[17] = "", b[17] = "";
+  bool  good = mine && shb_fingerprint(mine, a) == SHB_OK && shb_fingerprint(file, b) == SHB_OK;
   snprintf(prints, 64, "%s-%s", a, b);
   free(mine);
-  free(other);
-  size_t size = strlen(stem) + strlen(leaf) + 16;
+  size_t size = strlen(stem) + strlen(name) + 16;
   char  *path = good ? malloc(size) : NULL;
-  if (path) snprintf(path, size, "%s.%s.error", stem, leaf);
+  if (path) snprintf(path, size, "%s.%s.error", stem, name);
   return path;
 }
 
-shb_status rung_error_write(const rung_error *e, const char *stem, const char *reference) {
-  char        prints[64], *path = error_path(stem, reference, prints);
+shb_status rung_error_write(const rung_error *e, const char *stem, const char *name,
+                            const char *file) {
+  char        prints[64], *path = error_path(stem, name, file, prints);
   post_buffer out = {0};
   post_put(&out, "%s %.9g %d %d end\n", prints, e->curve, e->n, e->lost);
   return publish(&out, path);
 }
 
-shb_status rung_error_read(const char *stem, const char *reference, rung_error *e) {
-  char  prints[64], found[64] = "", end[4] = "", *path = error_path(stem, reference, prints);
+shb_status rung_error_read(const char *stem, const char *name, const char *file, rung_error *e) {
+  char  prints[64], found[64] = "", end[4] = "", *path = error_path(stem, name, file, prints);
   FILE *in   = path ? fopen(path, "r") : NULL;
   bool  good = in && fscanf(in, "%63s %lf %d %d %3s", found, &e->curve, &e->n, &e->lost, end) == 5;
   if (in) fclose(in);
   free(path);
   SHB_CHECK(good && strcmp(found, prints) == 0 && strcmp(end, "end") == 0, SHB_ERR_IO,
-            "%s: not compared with %s yet", stem, reference);
+            "%s: not compared with %s yet", stem, name);
   return SHB_OK;
+}
+
+const char *rung_leaf(const char *stem) {
+  const char *slash = strrchr(stem, '/');
+  return slash ? slash + 1 : stem;
 }
 
 void rung_peak_errors(const rung_cost *cost, const rung_cost *reference, double *amplitude,

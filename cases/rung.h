@@ -3,7 +3,8 @@
  * A rung is worked out by the program shroudhb-rung, so that its memory is its own and a crash costs one row. It leaves
  *   STEM.response.h5   the curves, made anew only when settings, modal file or program have changed
  *   STEM.cost          seconds, memory, peaks
- *   STEM.REF.error     the curves' distance from those of the rung with the stem's leaf REF, in the same or another folder */
+ *   STEM.REF.error     the curves' distance from those of the rung with the stem's leaf REF, in the same or another folder
+ *   STEM.integration.error  its distance from points of time integration */
 #ifndef CASES_RUNG_H
 #define CASES_RUNG_H
 
@@ -59,14 +60,18 @@ shb_status rung_apply(const rung_setting *setting, case_file *file);
 shb_status rung_output(const case_file *file, int n_probes, char *const *names,
                        post_output *output);
 
-/* Read and write the small files. Reading: SHB_ERR_IO if absent or cut. */
+/* Read and write the small files. Reading: SHB_ERR_IO if absent or cut, or if either file has changed since.
+ *   name, file  in  what the rung was compared with: REF, or "integration", and the HDF5 file that holds it */
 shb_status rung_cost_write(const rung_cost *cost, const char *stem);
 shb_status rung_cost_read(const char *stem, rung_cost *cost);
-shb_status rung_error_write(const rung_error *error, const char *stem, const char *reference);
-shb_status rung_error_read(const char *stem, const char *reference, rung_error *error);
+shb_status rung_error_write(const rung_error *error, const char *stem, const char *name,
+                            const char *file);
+shb_status rung_error_read(const char *stem, const char *name, const char *file, rung_error *error);
 
 /* STEM.response.h5; malloc'ed. */
 char *rung_response(const char *stem);
+/* What follows the folder. */
+const char *rung_leaf(const char *stem);
 
 /* Errors of the peaks against those of a finer rung: the worst preload, relative. NAN if either has none. */
 void rung_peak_errors(const rung_cost *cost, const rung_cost *reference, double *amplitude,

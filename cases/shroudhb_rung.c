@@ -21,7 +21,7 @@
 
 static const char usage[] =
     "usage: shroudhb-rung CASE.yaml MODAL.h5 STEM HARMONICS TOLERANCE ACCURACY MODES RESIDUALS "
-    "[REFERENCE]\n"
+    "[REFERENCE|- [POINTS.h5]]\n"
     "\n"
     "One sweep with other settings than the case has, and its distance from another one: works "
     "for\n"
@@ -34,7 +34,7 @@ static const double ENOUGH = .3; /* s of runs, after which no further one is mad
 typedef struct {
   case_file    file;
   rung_setting setting;
-  const char  *modal, *stem, *reference;
+  const char  *modal, *stem, *reference, *points;
   modal_model  model;
   post_output  output;
 } job;
@@ -180,6 +180,27 @@ static shb_status compute(job *j, char *settings, const char *path) {
   return status;
 }
 
+static shb_status against_rung(job *j) {
+  rung_error error;
+  char      *path = rung_response(j->reference);
+  SHB_CHECK(path, SHB_ERR_IO, "out of memory");
+  const char *name   = rung_leaf(j->reference);
+  shb_status  status = SHB_OK;
+  if (rung_error_read(j->stem, name, path, &error) != SHB_OK) {
+    status = compare_rungs(&j->model, &j->file.mhb, j->output, j->stem, j->reference, &error);
+    if (status == SHB_OK) status = rung_error_write(&error, j->stem, name, path);
+  }
+  free(path);
+  return status;
+}
+
+static shb_status against_integration(job *j) {
+  rung_error error;
+  if (rung_error_read(j->stem, "integration", j->points, &error) == SHB_OK) return SHB_OK;
+  SHB_TRY(compare_integration(&j->model, &j->file.mhb, j->output, j->stem, j->points, &error));
+  return rung_error_write(&error, j->stem, "integration", j->points);
+}
+
 static shb_status work(job *j) {
   rung_cost cost;
   char     *settings = NULL, *path = rung_response(j->stem);
@@ -190,11 +211,9 @@ static shb_status work(job *j) {
     status = compute(j, settings, path);
   free(settings);
   free(path);
-  rung_error error;
-  if (status != SHB_OK || !j->reference || rung_error_read(j->stem, j->reference, &error) == SHB_OK)
-    return status;
-  SHB_TRY(compare_rungs(&j->model, &j->file.mhb, j->output, j->stem, j->reference, &error));
-  return rung_error_write(&error, j->stem, j->reference);
+  if (status == SHB_OK && j->reference) status = against_rung(j);
+  if (status == SHB_OK && j->points) status = against_integration(j);
+  return status;
 }
 
 static shb_status prepare(job *j) {
@@ -210,14 +229,16 @@ int main(int argc, char **argv) {
     fputs(usage, stdout);
     return SHB_OK;
   }
-  if (argc < LEAST_WORDS || argc > LEAST_WORDS + 1 ||
+  if (argc < LEAST_WORDS || argc > LEAST_WORDS + 2 ||
       !rung_from_words(argv + FIRST_WORD, &j.setting)) {
     fputs("shroudhb: error: shroudhb-rung is started by shroudhb converge; see --help\n", stderr);
     return SHB_ERR_INPUT;
   }
-  j.modal           = argv[2];
-  j.stem            = argv[3];
-  j.reference       = argc > LEAST_WORDS ? argv[LEAST_WORDS] : NULL;
+  j.modal = argv[2];
+  j.stem  = argv[3];
+  j.reference =
+      argc > LEAST_WORDS && strcmp(argv[LEAST_WORDS], "-") != 0 ? argv[LEAST_WORDS] : NULL;
+  j.points          = argc > LEAST_WORDS + 1 ? argv[LEAST_WORDS + 1] : NULL;
   shb_status status = case_read(argv[1], CASE_MHB | CASE_CONVERGE, stderr, &j.file);
   if (status != SHB_OK) return command_finish(status);
   shb_interrupt_catch();

@@ -35,7 +35,7 @@ post_rung *post_convergence_add(post_convergence *s) {
   }
   post_rung *r = &s->rung[s->n++];
   *r           = (post_rung){.seconds = NAN, .total = NAN, .memory = NAN, .unknowns = NAN};
-  r->peak = r->frequency = r->curve = NAN;
+  r->peak = r->frequency = r->curve = r->integration = NAN;
   return r;
 }
 
@@ -120,6 +120,7 @@ static void put_row(const post_convergence *s, const post_rung *r, bool first, p
     put_error(out, r->frequency);
     put_error(out, r->curve);
   }
+  if (s->n_points > 0) put_error(out, r->integration);
   post_put(out, "  %s\n", verdict(s, r));
 }
 
@@ -129,8 +130,9 @@ void post_convergence_table(const post_convergence *s, const char *case_name, po
   post_put_printable(out, s->output);
   post_put(out, ", first harmonic, the worst of %d preload%s; tolerance %g %%\n\n", s->n_preloads,
            s->n_preloads == 1 ? "" : "s", 100 * s->tolerance);
-  post_put(out, "%-18s  %-26s %9s %9s %9s %7s %9s %9s %9s  %s\n", "ladder", "rung", "unknowns",
-           "seconds", "total s", "MB", "peak", "frequency", "curve", "verdict");
+  post_put(out, "%-18s  %-26s %9s %9s %9s %7s %9s %9s %9s%s  %s\n", "ladder", "rung", "unknowns",
+           "seconds", "total s", "MB", "peak", "frequency", "curve",
+           s->n_points > 0 ? "      time" : "", "verdict");
   for (int i = 0; i < s->n; i++) {
     bool first = i == 0 || s->rung[i].ladder != s->rung[i - 1].ladder;
     if (first && i > 0) post_put(out, "\n");
@@ -140,6 +142,11 @@ void post_convergence_table(const post_convergence *s, const char *case_name, po
            "\nseconds: one core, the balance (mesh: with meshing and modes). Errors are relative; "
            "peak, its frequency,\nand distance of the curves: the greater of |ln f/f'| and "
            "|a - a'|/max a. * as in the case.\n");
+  if (s->n_points > 0)
+    post_put(out,
+             "time: |a - a'|/max a at the frequencies of %d points of time integration, against "
+             "those.\n",
+             s->n_points);
 }
 
 /* ---------------------------------------------------------------- conclusion */
@@ -198,8 +205,19 @@ static int cheapest_of_all(const post_convergence *s) {
   return best;
 }
 
+/* Nothing that is computed with harmonics tells the error of the finest: the points of time integration do. */
+static void conclude_integration(const post_convergence *s, post_buffer *out) {
+  int finest = post_reference(s, POST_LADDER_HARMONICS);
+  if (s->n_points == 0 || finest < 0 || isnan(s->rung[finest].integration)) return;
+  post_put(out, "Time integration: at %d points %s harmonics are within ", s->n_points,
+           s->rung[finest].name);
+  put_percent(s->rung[finest].integration, out);
+  post_put(out, " of the largest amplitude.\n");
+}
+
 void post_convergence_conclusion(const post_convergence *s, post_buffer *out) {
   for (int l = 0; l < POST_LADDER_TOGETHER; l++) conclude_ladder(s, (post_ladder)l, out);
+  conclude_integration(s, out);
   int best = cheapest_of_all(s), finest = post_reference(s, POST_LADDER_HARMONICS);
   if (finest < 0) return;
   if (best < 0) {
@@ -234,14 +252,14 @@ void post_convergence_csv(const post_convergence *s, post_buffer *out) {
   static const char *const state[] = {"not run", "complete", "gap", "failed"};
   post_put(out,
            "ladder,rung,of_case,state,unknowns,seconds,total_seconds,memory_bytes,peak_error,"
-           "frequency_error,curve_error,verdict\r\n");
+           "frequency_error,curve_error,integration_error,verdict\r\n");
   for (int i = 0; i < s->n; i++) {
     const post_rung *r = &s->rung[i];
     post_put(out, "\"%s\",\"%s\",%d,%s", post_ladder_name(r->ladder), r->name, r->of_case,
              state[r->state]);
     const double value[] = {r->unknowns, r->seconds,   r->total, r->memory,
-                            r->peak,     r->frequency, r->curve};
-    for (int k = 0; k < 7; k++) put_number(out, value[k]);
+                            r->peak,     r->frequency, r->curve, r->integration};
+    for (int k = 0; k < 8; k++) put_number(out, value[k]);
     post_put(out, ",%s\r\n",
              r->reference                ? "reference"
              : isnan(post_rung_error(r)) ? ""

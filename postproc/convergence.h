@@ -41,12 +41,15 @@ typedef struct {
   double total;  /* s, with the program's start and reading */
   double memory; /* greatest, bytes */
   double peak, frequency, curve; /* relative errors; NAN: not compared. 0 for a reference */
+  double
+      integration; /* error of the amplitude at the points of time integration; NAN: there are none */
 } post_rung;
 
 typedef struct {
   char       output[160]; /* "tip motion" */
   double     tolerance;
   int        n_preloads;
+  int        n_points; /* of time integration that the rungs were compared with */
   int        n, capacity;
   post_rung *rung; /* [n] ladder by ladder, coarse to fine */
   char      *note; /* what must be known besides, sentences; or NULL */
@@ -73,7 +76,7 @@ void post_convergence_table(const post_convergence *study, const char *case_name
 /* One sentence a ladder, and the cheapest setting of all; a line each. */
 void post_convergence_conclusion(const post_convergence *study, post_buffer *out);
 /* RFC 4180: ladder, rung, of_case, state, unknowns, seconds, total_seconds, memory_bytes, peak_error, frequency_error, curve_error,
- * verdict (reference, yes, no; empty: not compared). What is not known is left empty. */
+ * integration_error, verdict (reference, yes, no; empty: not compared). What is not known is left empty. */
 void post_convergence_csv(const post_convergence *study, post_buffer *out);
 
 /* NAME.converge.h5 (format "shroudhb convergence"): write whole, read back with checks.

@@ -280,6 +280,7 @@ static void put_row(const post_convergence *s, const post_rung *r, bool first, p
   put_cell(out, r->reference ? 0 : r->peak, r->reference ? "0" : error, 1);
   put_cell(out, r->reference ? 0 : r->frequency, r->reference ? "0" : error, 1);
   put_cell(out, r->reference ? 0 : r->curve, r->reference ? "0" : error, 1);
+  if (s->n_points > 0) put_cell(out, r->integration, error, 1);
   put_verdict(s, r, out);
   post_put(out, "</tr>\n");
 }
@@ -292,9 +293,11 @@ static void put_table(const post_convergence *s, post_buffer *out) {
            "stability; for a mesh with meshing and modes. Errors are relative; curve: "
            "the greater of |ln f/f′| and |a − a′|/max a, nowhere exceeded.</caption>\n<thead><tr>",
            s->n_preloads, s->n_preloads == 1 ? "" : "s");
-  static const char *const heads[] = {"Ladder", NULL,   "Unknowns",  "Seconds", "In all, s",
-                                      "MB",     "Peak", "Frequency", "Curve",   "Tolerance"};
-  for (int i = 0; i < 10; i++) {
+  static const char *const heads[] = {
+      "Ladder", NULL,        "Unknowns", "Seconds",          "In all, s", "MB",
+      "Peak",   "Frequency", "Curve",    "Time integration", "Tolerance"};
+  for (int i = 0; i < 11; i++) {
+    if (i == 9 && s->n_points == 0) continue;
     if (i == 1)
       post_put(out, "<th scope=\"col\" class=\"words\">Rung</th>");
     else

@@ -25,6 +25,9 @@ static const struct {
     {"/error/frequency", "-", "relative error of its frequency", offsetof(post_rung, frequency)},
     {"/error/curve", "-", "distance of the curves: greater of |ln f/f'| and |a - a'|/max a",
      offsetof(post_rung, curve)},
+    {"/error/integration", "-",
+     "|a - a'|/max a at the points of time integration, against those, the greatest",
+     offsetof(post_rung, integration)},
 };
 enum { N_COLUMNS = sizeof columns / sizeof *columns, N_CODES = 4 };
 
@@ -84,6 +87,7 @@ static shb_status write_parts(hid_t file, const post_convergence *s,
   SHB_TRY(h5_write_attribute_text(file, "/", "note", s->note ? s->note : ""));
   SHB_TRY(h5_write_attribute_double(file, "/", "tolerance", s->tolerance));
   SHB_TRY(h5_write_attribute_int(file, "/", "preloads", s->n_preloads));
+  SHB_TRY(h5_write_attribute_int(file, "/", "integration_points", s->n_points));
   size_t       n      = (size_t)s->n + 1;
   const char **name   = calloc(n, sizeof *name);
   double      *real   = calloc(n, sizeof *real);
@@ -166,6 +170,7 @@ static shb_status read_parts(hid_t file, const char *path, post_convergence *s) 
   SHB_TRY(h5_read_attribute_text(file, "/", "note", &s->note));
   SHB_TRY(h5_read_attribute_double(file, "/", "tolerance", 0, &s->tolerance));
   SHB_TRY(h5_read_attribute_int(file, "/", "preloads", 0, &s->n_preloads));
+  SHB_TRY(h5_read_attribute_int(file, "/", "integration_points", 0, &s->n_points));
   SHB_TRY(read_names(file, path, s));
   for (int c = 0; c < N_CODES; c++) SHB_TRY(read_codes(file, path, c, s));
   for (int c = 0; c < N_COLUMNS; c++) SHB_TRY(read_columns(file, c, s));
