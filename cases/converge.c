@@ -77,6 +77,7 @@ static shb_status prepare(study *s) {
   SHB_TRY(modal_model_read(s->variant[0].modal, &s->model));
   s->base.modes = s->model.n_modes;
   SHB_TRY(rung_output(s->file, s->model.n_probes, s->model.probe_name, &output));
+  s->points            = fresh_points(s->file);
   s->result.tolerance  = s->file->converge_tolerance;
   s->result.n_preloads = copy.mhb.n_preloads;
   snprintf(s->result.output, sizeof s->result.output, "%s %smotion",
@@ -148,13 +149,11 @@ static shb_status run_study(study *s) {
 }
 
 shb_status converge_case(case_file *file, const command_options *options) {
-  study s           = {.file     = file,
+  study      s      = {.file     = file,
                        .options  = options,
                        .progress = shb_progress_start("converge", options->quiet, options->verbose)};
-  char *points      = fresh_points(file);
-  s.points          = points;
   shb_status status = run_study(&s);
-  free(points);
+  free(s.points);
   for (int i = 0; i < s.result.n; i++) free(s.place[i].stem);
   for (int i = 0; i < s.n_variants; i++) variant_free(&s.variant[i]);
   post_convergence_free(&s.result);

@@ -28,7 +28,7 @@ typedef struct {
   variant                variant[STUDY_VARIANTS];
   int                    n_variants;
   modal_model            model;  /* of the first */
-  const char            *points; /* NAME.integration.h5, if it belongs to the case; or NULL */
+  char                  *points; /* NAME.integration.h5, if it belongs to the case; or NULL */
   rung_setting           base;   /* in which the ladders stand: all at its finest */
   post_convergence       result;
   int                    capacity;

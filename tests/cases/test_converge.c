@@ -57,6 +57,14 @@ static int converge(const char *words) {
   return WEXITSTATUS(code);
 }
 
+static int other_command(const char *words) {
+  char command[8 * SCRATCH_PATH];
+  snprintf(command, sizeof command, "cd '%s' && '%s' %s >said 2>&1", folder, SHROUDHB, words);
+  int code = system(command);
+  read_said();
+  return WEXITSTATUS(code);
+}
+
 static void read_result(void) {
   char path[2 * SCRATCH_PATH];
   snprintf(path, sizeof path, "%s/three.converge.h5", folder);
@@ -76,7 +84,9 @@ static int start(void **state) {
   bool made = h5_create(path, &file) == SHB_OK &&
               modal_model_write(file, &model, &provenance) == SHB_OK && h5_close(file) == SHB_OK;
   modal_model_free(&model);
-  write_case("three.yaml", ".3, -.2", "", "");
+  write_case("three.yaml", ".3, -.2", "",
+             "integrate: {frequencies: [0.2, 0.212, 0.225], start: rest, tolerance: 1e-8}\n");
+  made     = made && other_command("integrate --quiet three.yaml") == 0;
   int code = converge("three.yaml");
   if (!made || code != 3) { /* all three modes are needed */
     print_error("exit code %d: %s\n", code, said);
@@ -131,6 +141,20 @@ static void errors_fall(void **state) {
   assert_true(post_rung_error(rung_of(POST_LADDER_ACCURACY, "fast")) < 1e-3);
   assert_true(rung_of(POST_LADDER_HARMONICS, "5")->of_case);
   assert_true(rung_of(POST_LADDER_HARMONICS, "5")->unknowns == 33);
+}
+
+/* What the ladder says of each rung, time integration says too, though it knows nothing of harmonics. */
+static void time_integration_agrees(void **state) {
+  (void)state;
+  static const char *const name[] = {"1", "3", "5", "7"};
+  assert_int_equal(result.n_points, 6);
+  for (int i = 0; i < 4; i++) {
+    const post_rung *r = rung_of(POST_LADDER_HARMONICS, name[i]);
+    print_message("H %s: curve %.2e, time integration %.2e\n", name[i], r->curve, r->integration);
+    assert_true(r->integration < 2.5 * r->curve && r->integration > .2 * r->curve);
+  }
+  assert_true(rung_of(POST_LADDER_HARMONICS, "31")->integration < 5e-7);
+  assert_true(isnan(rung_of(POST_LADDER_ACCURACY, "fast")->integration));
 }
 
 /* A curve of its own, straight from the library. */
@@ -273,14 +297,6 @@ static void results_are_kept(void **state) {
   assert_true(fabs(rung_of(POST_LADDER_HARMONICS, "1")->curve / error - 1) < 1e-6);
 }
 
-static int other_command(const char *words) {
-  char command[8 * SCRATCH_PATH];
-  snprintf(command, sizeof command, "cd '%s' && '%s' %s >said 2>&1", folder, SHROUDHB, words);
-  int code = system(command);
-  read_said();
-  return WEXITSTATUS(code);
-}
-
 /* The section is in the report as long as the case is the one that was studied. */
 static void the_report_shows_it(void **state) {
   (void)state;
@@ -370,10 +386,14 @@ static void broken_input(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(errors_fall),           cmocka_unit_test(errors_are_those_of_the_curves),
-      cmocka_unit_test(the_cheapest_is_named), cmocka_unit_test(results_are_kept),
-      cmocka_unit_test(the_report_shows_it),   cmocka_unit_test(keys_are_heeded),
-      cmocka_unit_test(interrupted),           cmocka_unit_test(broken_input)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(errors_fall),
+                                     cmocka_unit_test(time_integration_agrees),
+                                     cmocka_unit_test(errors_are_those_of_the_curves),
+                                     cmocka_unit_test(the_cheapest_is_named),
+                                     cmocka_unit_test(results_are_kept),
+                                     cmocka_unit_test(the_report_shows_it),
+                                     cmocka_unit_test(keys_are_heeded),
+                                     cmocka_unit_test(interrupted),
+                                     cmocka_unit_test(broken_input)};
   return cmocka_run_group_tests(tests, start, clean);
 }

@@ -79,6 +79,14 @@ static void conclusion(void **state) {
   post_convergence_conclusion(&s, &text);
   assert_has(text.text, "Cheapest that meets 0.2 %: H 7, fast, 3 modes, 0.2 s");
   post_buffer_free(&text);
+  assert_null(strstr(text.text ? text.text : "", "Time integration"));
+  s.n_points            = 7;
+  s.rung[3].integration = 3.1e-6;
+  post_convergence_conclusion(&s, &text);
+  assert_has(text.text,
+             "Time integration: at 7 points 31 harmonics are within 0.00031 % of the largest "
+             "amplitude.\n");
+  post_buffer_free(&text);
   s.tolerance = 1e-5;
   post_convergence_conclusion(&s, &text);
   assert_has(text.text, "Nothing meets 0.001 % but the reference itself.");
@@ -92,6 +100,7 @@ static void table_and_csv(void **state) {
   post_buffer      text = {0};
   s.rung[0].of_case     = true;
   s.rung[4].state       = POST_RUNG_FAILED;
+  s.rung[0].integration = 4.2e-3;
   s.rung[4].peak = s.rung[4].seconds = NAN;
   post_convergence_table(&s, "x", &text);
   assert_has(text.text, "5 *");
@@ -102,9 +111,9 @@ static void table_and_csv(void **state) {
   post_convergence_csv(&s, &text);
   assert_has(text.text,
              "\"harmonics\",\"7\",0,complete,21,0.34,0.371,2.74e+07,0.000633333,0.000271429,0.0019,"
-             "yes\r\n");
+             ",yes\r\n");
   assert_has(text.text, "\"harmonics\",\"5\",1,complete,21,0.21,");
-  assert_has(text.text, ",0.0021,no\r\n");
+  assert_has(text.text, ",0.0021,0.0042,no\r\n");
   assert_has(text.text, "\"modes\",\"3\",0,failed,21,,0.241,2.74e+07,,");
   assert_has(text.text, "\"mesh\",\"9 mm, shroud 5 mm\",0,");
   int lines = 0;
@@ -145,6 +154,8 @@ static void file_is_read_back(void **state) {
   post_convergence s = sample(), t;
   snprintf(path, sizeof path, "/tmp/shroudhb-test-%d.converge.h5", (int)getpid());
   s.note                    = strdup("A note.\n");
+  s.n_points                = 7;
+  s.rung[3].integration     = 3e-7;
   s.rung[2].frequency       = NAN;
   s.rung[1].of_case         = true;
   s.rung[4].state           = POST_RUNG_INCOMPLETE;
@@ -156,6 +167,9 @@ static void file_is_read_back(void **state) {
   assert_string_equal(t.note, s.note);
   assert_near(t.tolerance, s.tolerance, 0);
   assert_int_equal(t.n_preloads, 3);
+  assert_int_equal(t.n_points, 7);
+  assert_near(t.rung[3].integration, 3e-7, 0);
+  assert_true(isnan(t.rung[2].integration));
   for (int i = 0; i < s.n; i++) {
     const post_rung *a = &s.rung[i], *b = &t.rung[i];
     assert_string_equal(a->name, b->name);
