@@ -322,6 +322,63 @@ static void rings(void **state) {
   }
 }
 
+/* Mean growth a period of a small disturbance of a motion: integrated beside it, and scaled back after every period. */
+static double growth(run *a, const modal_model *model, const mhb_settings *s, int periods) {
+  mhb_integrator    *g = a->g, *other;
+  int                n = mhb_integrator_size(g), modal = 2 * g->blades * g->modes;
+  double            *x = calloc(2 * (size_t)n, sizeof *x), *y = x + n, sum = 0;
+  unsigned long long seed = 7;
+  assert_int_equal(mhb_integrator_create(model, s, s->harmonics, &other), SHB_OK);
+  mhb_integrator_set(other, g->omega, g->n0, g->steps);
+  mhb_integrator_get(g, x);
+  memcpy(y, x, sizeof(double) * (size_t)n);
+  for (int i = 0; i < modal; i++) y[i] += 1e-7 * random_unit(&seed);
+  for (int period = 0; period < 2 * periods; period++) {
+    mhb_integrator_put(other, y);
+    double before = mhb_orbit_distance(g, y, x);
+    assert_true(mhb_integrator_period(g) && mhb_integrator_period(other));
+    mhb_integrator_get(g, x);
+    mhb_integrator_get(other, y);
+    double now = mhb_orbit_distance(g, y, x);
+    if (period >= periods) sum += log(now / before);
+    for (int i = 0; i < n; i++) y[i] = x[i] + (y[i] - x[i]) * 1e-7 / now;
+  }
+  mhb_integrator_destroy(other);
+  free(x);
+  return exp(sum / periods);
+}
+
+/* The largest multiplier, from the linearised problem along the balance's solution, and how fast disturbances of the integrated motion
+ * grow or decay: of a blade that leaves its orbit, and of rings. */
+static void disturbances(void **state) {
+  (void)state;
+  for (int i = 0; i < 3; i++) {
+    modal_model    model;
+    mhb_settings   s = i ? random_settings(25) : three_degree_settings(.1, 31);
+    periodic       p;
+    double complex multiplier[200];
+    if (i == 0) three_degree_model(&model);
+    if (i > 0) {
+      s.blades = i == 1 ? 3 : 5;
+      s.n0[0]  = .15;
+      random_model(1, WITH_LEFT, 11, &model);
+    }
+    periodic_create(&model, &s, i ? 1.1 : 1.25, NULL, &p);
+    mhb_multipliers m = periodic_multipliers(&p, 512, multiplier);
+    run             a = prepare(&model, &s, p.omega, 64);
+    from_balance(&a, &p);
+    if (i > 0) until_periodic(&a, 1e-10, 2000);
+    double rate = growth(&a, &model, &s, i ? 300 : 150);
+    print_message("%d blades, slip %.2f: growth %.5f, largest multiplier %.5f\n", a.g->blades,
+                  p.residual->info[0].share[1], rate, m.largest);
+    assert_near(rate, m.largest, 3e-3 * m.largest);
+    assert_true(i > 0 || rate > 1.005);
+    finish(&a);
+    periodic_destroy(&p);
+    modal_model_free(&model);
+  }
+}
+
 /* Without load a contact ten thousand times stiffer than the structure, and steps far too long for it, feed nothing into a
  * motion that starts with a push. */
 static void passive(void **state) {
@@ -364,6 +421,7 @@ int main(void) {
                                      cmocka_unit_test(residual_flexibility),
                                      cmocka_unit_test(residual_inertia),
                                      cmocka_unit_test(rings),
+                                     cmocka_unit_test(disturbances),
                                      cmocka_unit_test(passive)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
