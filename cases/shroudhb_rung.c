@@ -123,7 +123,7 @@ static shb_status find_peak(job *j, const mhb_response *response, const mhb_bran
   int top = post_highest(n, peaks);
   *peak   = (rung_peak){branch->n_points > 0 ? branch->n0[0] : NAN, NAN, NAN};
   if (top >= 0) {
-    peak->frequency = peaks[top].frequency;
+    peak->frequency = peaks[top].at;
     peak->amplitude = peaks[top].amplitude;
   }
   if (top >= 0 && !peaks[top].edge) {

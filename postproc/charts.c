@@ -32,8 +32,27 @@ static void peak_range(const post_study *study, double range[2]) {
   }
 }
 
+/* Least and greatest amplitude of all nonlinear points. */
+static void whole_range(const post_study *study, double range[2]) {
+  range[0] = INFINITY;
+  range[1] = 0;
+  for (int b = 0; b < study->response->n_branches; b++)
+    for (int p = 0; p < study->response->branch[b].n_points; p++) {
+      double a = study->curve[b].amplitude[p];
+      if (study->response->branch[b].kind != MHB_BRANCH_NONLINEAR || !(a > 0)) continue;
+      range[0] = fmin(range[0], a);
+      range[1] = fmax(range[1], a);
+    }
+}
+
+/* The level of the excitation: as its axis, so that a linear response is a straight line. */
 bool post_wants_log(const post_study *study) {
   double range[2];
+  if (study->abscissa.parameter == MHB_IN_SCALE) return study->abscissa.log;
+  if (post_at_one_frequency(study)) {
+    whole_range(study, range);
+    return range[1] > 12 * range[0];
+  }
   peak_range(study, range);
   return range[1] > 6 * range[0];
 }
@@ -69,7 +88,8 @@ static void draw_points(const post_study *study, const post_plot *plot, int b) {
   group_classes(&study->group[study->curve[b].group], group);
   for (int i = 0; i < branch->n_points; i++) {
     snprintf(classes, sizeof classes, "witness %s%s", branch->multiple[i] ? "" : "adrift ", group);
-    plot_dot(plot, classes, branch->frequency[i], study->curve[b].amplitude[i], 2.4);
+    plot_dot(plot, classes, post_abscissa_values(study->response, branch)[i],
+             study->curve[b].amplitude[i], 2.4);
   }
 }
 
@@ -78,6 +98,7 @@ static void draw_points(const post_study *study, const post_plot *plot, int b) {
 static void draw_branch(const post_study *study, const post_plot *plot, int b) {
   const mhb_branch *branch = &study->response->branch[b];
   const post_curve *c      = &study->curve[b];
+  const double     *x      = post_abscissa_values(study->response, branch);
   int               n      = branch->n_points;
   char              group[40], classes[64];
   bool             *stable = malloc((size_t)(n > 0 ? n : 1) * 2 * sizeof *stable);
@@ -92,19 +113,32 @@ static void draw_branch(const post_study *study, const post_plot *plot, int b) {
   }
   group_classes(&study->group[c->group], group);
   snprintf(classes, sizeof classes, "line %s", group);
-  plot_line(plot, classes, n, branch->frequency, c->amplitude, stable);
+  plot_line(plot, classes, n, x, c->amplitude, stable);
   snprintf(classes, sizeof classes, "line unstable %s", group);
-  plot_line(plot, classes, n, branch->frequency, c->amplitude, unstable);
+  plot_line(plot, classes, n, x, c->amplitude, unstable);
   free(stable);
   snprintf(classes, sizeof classes, "dot %s", group);
-  if (n == 1) plot_dot(plot, classes, branch->frequency[0], c->amplitude[0], 3);
+  if (n == 1) plot_dot(plot, classes, x[0], c->amplitude[0], 3);
   snprintf(classes, sizeof classes, "fold %s", group);
   for (int i = 0; i < c->n_folds; i++)
-    plot_dot(plot, classes, c->fold[i].frequency, c->fold[i].amplitude, 2.6);
+    plot_dot(plot, classes, c->fold[i].at, c->fold[i].amplitude, 2.6);
   snprintf(classes, sizeof classes, "turn %s", group);
   for (int i = 0; i < n; i++)
     if (branch->special[i] == MHB_FLIP || branch->special[i] == MHB_NEIMARK_SACKER)
-      plot_dot(plot, classes, branch->frequency[i], c->amplitude[i], 2.6);
+      plot_dot(plot, classes, x[i], c->amplitude[i], 2.6);
+}
+
+/* Name of a limit above its peak; inside where that is at an end of the parameter's range. */
+static void name_limit(const post_study *study, const post_plot *plot, const post_track_point *p,
+                       bool open) {
+  const double *range = study->abscissa.range, move[2] = {0, -7};
+  const char   *anchor = !post_at_one_frequency(study) ? "middle"
+                         : p->at <= range[0]           ? "start"
+                         : p->at >= range[1]           ? "end"
+                                                       : "middle";
+  if (p->amplitude > 0)
+    plot_text(plot, open ? "mark open" : "mark stuck", p->at, p->amplitude, move, anchor,
+              open ? "open" : "stuck");
 }
 
 static void draw_curves(const post_study *study, const post_plot *plot) {
@@ -116,41 +150,34 @@ static void draw_curves(const post_study *study, const post_plot *plot) {
     }
   for (int b = 0; b < study->response->n_branches; b++)
     if (study->response->branch[b].kind == MHB_BRANCH_INTEGRATION) draw_points(study, plot, b);
-  const double            move[2] = {0, -7};
-  const post_track_point *open = &study->tracking.open, *stuck = &study->tracking.stuck;
-  if (open->amplitude > 0)
-    plot_text(plot, "mark open", open->frequency, open->amplitude, move, "middle", "open");
-  if (stuck->amplitude > 0)
-    plot_text(plot, "mark stuck", stuck->frequency, stuck->amplitude, move, "middle", "stuck");
-}
-
-static plot_axis frequency_axis(const post_study *study, const char *label) {
-  double lo = study->frequency[0], hi = study->frequency[1];
-  return hi > lo ? (plot_axis){lo, hi, false, 0, 1, label}
-                 : plot_axis_around(lo, hi, false, 1, label);
+  name_limit(study, plot, &study->tracking.open, true);
+  name_limit(study, plot, &study->tracking.stuck, false);
 }
 
 void post_draw_response(const post_study *study, post_plot *plot) {
-  char      label[256];
+  char      label[256], below[POST_LABEL];
   post_unit unit = post_unit_length(study->largest);
   amplitude_label(study, unit.name, label);
+  post_abscissa_label(&study->abscissa, "", below);
   plot->y = amplitude_axis(study, unit.scale, label);
-  plot->x = frequency_axis(study, "frequency, Hz");
+  plot->x = post_abscissa_axis(&study->abscissa, below);
   plot_frame(plot);
   draw_curves(study, plot);
 }
 
-static void describe(const post_study *study, char out[256]) {
-  snprintf(out, 256,
-           "Amplitude against frequency, %d curves; solid: nonlinear, one colour a preload; dots: "
-           "time integration; "
+static void describe(const post_study *study, char out[320]) {
+  char frequency[POST_PLACE];
+  snprintf(out, 320,
+           "Amplitude against %s%s, %d curves; solid: nonlinear, one colour a preload; "
+           "dots: time integration; "
            "dashed: the linear "
            "limits; dotted: unstable. The same numbers are in the tables and in the CSV file.",
+           study->abscissa.name, post_frequency_text(study, frequency),
            study->response->n_branches);
 }
 
 void post_chart_response(const post_study *study, const char *case_name, post_buffer *out) {
-  char title[256], text[256];
+  char title[256], text[320];
   snprintf(title, sizeof title, "Forced response of %s", case_name);
   describe(study, text);
   plot_svg_open(out, "response", 1100, 540, title, text);
@@ -197,15 +224,17 @@ static void draw_level(const post_plot *plot, double value, bool open) {
 }
 
 /* All the lesser peaks of the preloads, faint; the highest ones joined. */
-static void draw_track(const post_study *study, const post_plot *plot, bool frequency) {
+static void draw_track(const post_study *study, const post_plot *plot, bool place) {
   const post_tracking *t = &study->tracking;
-  draw_level(plot, frequency ? t->open.frequency : t->open.amplitude, true);
-  draw_level(plot, frequency ? t->stuck.frequency : t->stuck.amplitude, false);
+  if (!place || !post_at_one_frequency(study)) {
+    draw_level(plot, place ? t->open.at : t->open.amplitude, true);
+    draw_level(plot, place ? t->stuck.at : t->stuck.amplitude, false);
+  }
   for (int b = 0; b < study->response->n_branches; b++) {
     const post_group *group = &study->group[study->curve[b].group];
     for (int i = 0; group->rank >= 0 && i < study->curve[b].n_peaks; i++) {
       const post_peak *peak = &study->curve[b].peak[i];
-      plot_dot(plot, "lesser", group->n0, frequency ? peak->frequency : peak->amplitude, 2.4);
+      plot_dot(plot, "lesser", group->n0, place ? peak->at : peak->amplitude, 2.4);
     }
   }
   double *x = calloc((size_t)t->n, 2 * sizeof *x), *y = x ? x + t->n : NULL;
@@ -215,7 +244,7 @@ static void draw_track(const post_study *study, const post_plot *plot, bool freq
   }
   for (int i = 0; i < t->n; i++) {
     x[i] = t->point[i].n0;
-    y[i] = frequency ? t->point[i].frequency : t->point[i].amplitude;
+    y[i] = place ? t->point[i].at : t->point[i].amplitude;
   }
   plot_line(plot, "line track", t->n, x, y, NULL);
   for (int i = 0; i < t->n; i++) {
@@ -229,21 +258,20 @@ static void draw_track(const post_study *study, const post_plot *plot, bool freq
 void post_chart_tracking(const post_study *study, post_buffer *out) {
   const post_tracking *t = &study->tracking;
   if (t->n < 2) return;
-  char      label[64], optimum[96], number[POST_NUMBER];
+  char      label[64], optimum[96], number[POST_NUMBER], preload[64], where[POST_LABEL], text[320];
   double    range[2], low = INFINITY, high = -INFINITY;
   post_unit unit  = post_unit_length(study->largest);
   post_unit force = post_unit_force(fmax(fabs(t->point[0].n0), fabs(t->point[t->n - 1].n0)));
   peak_range(study, range);
-  for (int i = 0; i < t->n + 2; i++) {
-    double f = i < t->n    ? t->point[i].frequency
-               : i == t->n ? t->open.frequency
-                           : t->stuck.frequency;
-    low      = fmin(low, f);
-    high     = fmax(high, f);
+  for (int i = 0; i < t->n + (post_at_one_frequency(study) ? 0 : 2); i++) {
+    double at = i < t->n ? t->point[i].at : i == t->n ? t->open.at : t->stuck.at;
+    low       = fmin(low, at);
+    high      = fmax(high, at);
   }
-  plot_svg_open(
-      out, "tracking", 1100, 600, "Highest peak against preload",
-      "Above: amplitude of the highest peak; below: its frequency. Dashed: linear limits.");
+  snprintf(text, sizeof text,
+           "Above: amplitude of the highest peak; below: its %s. Dashed: linear limits.",
+           study->abscissa.name);
+  plot_svg_open(out, "tracking", 1100, 600, "Highest peak against preload", text);
   snprintf(label, sizeof label, "highest peak, %s", unit.name);
   post_plot above = {
       .out = out, .id = "tracking-a", .left = 60, .top = 34, .width = 1020, .height = 280};
@@ -256,13 +284,14 @@ void post_chart_tracking(const post_study *study, post_buffer *out) {
            post_plain(number, best->n0 / force.scale, 4), force.name);
   plot_text(&above, "mark strong", best->n0, best->amplitude, (const double[2]){0, 21}, "middle",
             optimum);
-  char preload[64];
   snprintf(preload, sizeof preload, "preload n₀, %s", force.name);
   post_plot below = {
       .out = out, .id = "tracking-f", .left = 60, .top = 374, .width = 1020, .height = 170};
   below.x       = above.x;
   below.x.label = preload;
-  below.y       = plot_axis_around(low, high, false, 1, "its frequency, Hz");
+  below.y =
+      plot_axis_around(low, high, study->abscissa.log && high > 8 * low, study->abscissa.unit.scale,
+                       post_abscissa_label(&study->abscissa, "its ", where));
   plot_frame(&below);
   draw_track(study, &below, true);
   plot_svg_close(out);
@@ -334,6 +363,7 @@ void post_chart_state(const post_study *study, post_buffer *out) {
 void post_chart_along(const post_study *study, int b, post_buffer *out) {
   static const char *const classes[] = {"line stick", "line slip", "line gap"};
   const mhb_branch        *branch    = &study->response->branch[b];
+  const double            *x         = post_abscissa_values(study->response, branch);
   int                      n         = branch->n_points;
   if (n < 1 || study->response->n_pairs < 1) return;
   double *y = calloc((size_t)n, 4 * sizeof *y), most = 0;
@@ -349,30 +379,33 @@ void post_chart_along(const post_study *study, int b, post_buffer *out) {
   post_unit unit = post_unit_energy(most);
   char      label[64];
   snprintf(label, sizeof label, "dissipated a cycle, %s", unit.name);
-  plot_svg_open(out, "along", 540, 470, "Contact along one curve",
-                "Above: share of the period stuck, slipping, open against frequency. Below: energy "
-                "dissipated a cycle.");
+  char below[POST_LABEL], text[320];
+  snprintf(text, sizeof text,
+           "Above: share of the period stuck, slipping, open against %s. Below: energy "
+           "dissipated a cycle.",
+           study->abscissa.name);
+  plot_svg_open(out, "along", 540, 470, "Contact along one curve", text);
   post_plot shares = {
       .out = out, .id = "along-s", .left = 60, .top = 34, .width = 464, .height = 180};
   post_plot energy = {
       .out = out, .id = "along-d", .left = 60, .top = 266, .width = 464, .height = 150};
-  shares.x = energy.x = frequency_axis(study, NULL);
-  energy.x.label      = "frequency, Hz";
+  shares.x = energy.x = post_abscissa_axis(&study->abscissa, NULL);
+  energy.x.label      = post_abscissa_label(&study->abscissa, "", below);
   shares.y            = (plot_axis){-0.02, 1.02, false, 0, 0.01, "share of the period, %"};
   energy.y = (plot_axis){0, most > 0 ? 1.08 * most : unit.scale, false, 0, unit.scale, label};
   plot_frame(&shares);
   plot_frame(&energy);
-  for (int s = 0; s < 3; s++) plot_line(&shares, classes[s], n, branch->frequency, y + s * n, NULL);
+  for (int s = 0; s < 3; s++) plot_line(&shares, classes[s], n, x, y + s * n, NULL);
   char group[40], line[64];
   group_classes(&study->group[study->curve[b].group], group);
   snprintf(line, sizeof line, "line %s", group);
-  plot_line(&energy, line, n, branch->frequency, y + 3 * n, NULL);
+  plot_line(&energy, line, n, x, y + 3 * n, NULL);
   free(y);
   plot_svg_close(out);
 }
 
 /* "k = 1" at the end of each curve, y [m + 1][n_points]; one that would cover another moves down. */
-static void name_harmonics(const post_plot *plot, int m, const mhb_branch *branch,
+static void name_harmonics(const post_plot *plot, int m, const mhb_branch *branch, const double *x,
                            const double *y) {
   int    n = branch->n_points, used = 0;
   double taken[SHOWN_HARMONICS];
@@ -390,13 +423,14 @@ static void name_harmonics(const post_plot *plot, int m, const mhb_branch *branc
     snprintf(name, sizeof name, k > 0 && branch->order > 1 ? "k = %d/%d" : "k = %d", k,
              branch->order);
     const double move[2] = {6, at - plot_y(plot, end)};
-    plot_text(plot, classes, branch->frequency[n - 1], end, move, "start", name);
+    plot_text(plot, classes, x[n - 1], end, move, "start", name);
   }
 }
 
 void post_chart_harmonics(const post_study *study, int b, post_buffer *out) {
   const mhb_response *response = study->response;
   const mhb_branch   *branch   = &response->branch[b];
+  const double       *x        = post_abscissa_values(response, branch);
   int                 n = branch->n_points, m = branch->n_harmonics;
   if (n < 1) return;
   if (m >= SHOWN_HARMONICS) m = SHOWN_HARMONICS - 1;
@@ -412,23 +446,24 @@ void post_chart_harmonics(const post_study *study, int b, post_buffer *out) {
       if (y[k * n + i] > 0) least = fmin(least, y[k * n + i]);
     }
   post_unit unit = post_unit_length(most);
-  char      label[160], place[128];
+  char      label[160], place[128], below[POST_LABEL], text[160];
   post_place_name(response, study->primary, place);
   snprintf(label, sizeof label, "%s, amplitude of each harmonic, %s", place, unit.name);
   if (!(most > 0)) most = least = unit.scale;
-  plot_svg_open(out, "harmonics", 1100, 360, "Harmonics along one curve",
-                "Amplitude of each harmonic of the motion against frequency, logarithmic.");
+  snprintf(text, sizeof text, "Amplitude of each harmonic of the motion against %s, logarithmic.",
+           study->abscissa.name);
+  plot_svg_open(out, "harmonics", 1100, 360, "Harmonics along one curve", text);
   post_plot plot = {
       .out = out, .id = "harmonics", .left = 60, .top = 34, .width = 980, .height = 272};
-  plot.x = frequency_axis(study, "frequency, Hz");
+  plot.x = post_abscissa_axis(&study->abscissa, post_abscissa_label(&study->abscissa, "", below));
   plot.y = (plot_axis){fmax(1e-6 * most, least / 2), 2 * most, true, 0, unit.scale, label};
   plot_frame(&plot);
   for (int k = 0; k <= m; k++) {
     char classes[24];
     snprintf(classes, sizeof classes, "line h%d", k);
-    plot_line(&plot, classes, n, branch->frequency, y + k * n, NULL);
+    plot_line(&plot, classes, n, x, y + k * n, NULL);
   }
-  name_harmonics(&plot, m, branch, y);
+  name_harmonics(&plot, m, branch, x, y);
   free(y);
   plot_svg_close(out);
 }

@@ -8,12 +8,12 @@
 /* Whether the peaks of the groups differ so much that a logarithmic amplitude axis shows them better. */
 bool post_wants_log(const post_study *study);
 
-/* Amplitude of the primary output against frequency, all branches; ids begin with "response". */
+/* Amplitude of the primary output against the frequency or what is followed instead, all branches; ids begin with "response". */
 void post_chart_response(const post_study *study, const char *case_name, post_buffer *out);
 /* Its axes and curves alone, into a data area whose place is set. */
 void post_draw_response(const post_study *study, post_plot *plot);
 
-/* Peak amplitude and frequency against preload; nothing if fewer than two preloads. */
+/* Peak amplitude and its place against preload; nothing if fewer than two preloads. */
 void post_chart_tracking(const post_study *study, post_buffer *out);
 /* Shares of the period and energy a cycle at the peak, a bar a preload; nothing if there is none. */
 void post_chart_state(const post_study *study, post_buffer *out);

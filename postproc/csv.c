@@ -38,10 +38,18 @@ static void place_names(post_buffer *out, const char *place, const char *const a
   put_name(out, place, "_motion", "_peak_to_peak_m");
 }
 
+/* The column of what is followed, if it has none of its own. */
+static const char *followed(const mhb_response *response) {
+  static const char *const names[MHB_N_PARAMETERS] = {NULL, NULL,     "scale",
+                                                      "mu", "ku_N_m", "kv_N_m"};
+  return names[response->parameter];
+}
+
 static void put_header(const mhb_response *response, post_buffer *out) {
   static const char *const probe[3]   = {"_tangential", "_axial", "_radial"};
   static const char *const contact[3] = {"_v", "_u", "_w"};
   post_put(out, "branch,kind,n0_N,frequency_Hz");
+  if (followed(response)) post_put(out, ",%s", followed(response));
   for (int q = 0; q < response->n_probes; q++) place_names(out, response->probe_name[q], probe);
   for (int p = 0; p < response->n_pairs; p++) {
     char place[32] = "contact";
@@ -109,9 +117,10 @@ static void put_point(const mhb_response *response, int b, int point, post_buffe
   size_t                   m1 = (size_t)branch->n_harmonics + 1, i = (size_t)point;
   size_t                   pairs = (size_t)response->n_pairs, probes = (size_t)response->n_probes;
   post_put(out, "%d,%s", b, kind[branch->kind]);
-  bool has_n0 = branch->kind == MHB_BRANCH_NONLINEAR || branch->kind == MHB_BRANCH_INTEGRATION;
-  put_number(out, has_n0 ? branch->n0[point] : NAN);
+  bool nonlinear = branch->kind == MHB_BRANCH_NONLINEAR || branch->kind == MHB_BRANCH_INTEGRATION;
+  put_number(out, nonlinear || response->parameter == MHB_IN_N0 ? branch->n0[point] : NAN);
   put_number(out, branch->frequency[point]);
+  if (followed(response)) put_number(out, branch->value[point]);
   for (size_t q = 0; q < probes; q++)
     put_place(branch, branch->probe + (i * probes + q) * 3 * m1, out);
   for (size_t p = 0; p < pairs; p++) {

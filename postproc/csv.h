@@ -5,7 +5,8 @@
 #include "mhb/response.h"
 #include "postproc/buffer.h"
 
-/* Columns: branch, kind, n0_N, frequency_Hz; for each probe axis NAME_tangential_amplitude_m, _phase_deg (first
+/* Columns: branch, kind, n0_N (of the linear limits only if it is followed), frequency_Hz, the parameter that is followed if it is
+ * neither (scale, mu, ku_N_m, kv_N_m); for each probe axis NAME_tangential_amplitude_m, _phase_deg (first
  * harmonic), _peak_to_peak_m, and NAME_motion_amplitude_m, NAME_motion_peak_to_peak_m; for each contact (contact,
  * or contact1, contact2, ...) the same with v, u, w, then _stuck, _slipping, _open (shares of the period) and
  * _dissipation_J; stable (1, 0, empty: not known), special (fold, peak, flip, Neimark-Sacker, empty);

@@ -5,13 +5,14 @@
 
 static const double RIPPLE       = 0.02; /* of the peak's height */
 static const double LARGEST_GAIN = 1.05; /* of a refined peak over its highest point */
-static const double HAIRLINE     = 1e-5; /* of the frequency, as the solver has it */
+static const double HAIRLINE     = 1e-5; /* of x, as the solver has it */
+static const double LEVEL        = 1e-6; /* of the amplitude: no difference to be seen */
 
 /* One curve with the scales that make its arclength dimensionless. */
 typedef struct {
   int           n;
-  const double *f, *a;
-  double        f_span, a_span;
+  const double *x, *a;
+  double        x_span, a_span;
 } curve;
 
 static double span(int n, const double *x) {
@@ -23,12 +24,12 @@ static double span(int n, const double *x) {
   return hi > lo ? hi - lo : 1;
 }
 
-static curve curve_of(int n, const double *f, const double *a) {
-  return (curve){n, f, a, span(n, f), span(n, a)};
+static curve curve_of(int n, const double *x, const double *a) {
+  return (curve){n, x, a, span(n, x), span(n, a)};
 }
 
 static double chord(const curve *c, int i, int j) {
-  return hypot((c->f[j] - c->f[i]) / c->f_span, (c->a[j] - c->a[i]) / c->a_span);
+  return hypot((c->x[j] - c->x[i]) / c->x_span, (c->a[j] - c->a[i]) / c->a_span);
 }
 
 /* Parabola through (s[i], y[i]): its divided differences, y = y0 + d1 (s - s0) + d2 (s - s0)(s - s1). */
@@ -70,9 +71,9 @@ static bool three_points(const curve *c, int i, const double *x, double s[3]) {
 
 static void refine_peak(const curve *c, int i, post_peak *peak) {
   double s[3], a[3], q[3];
-  peak->frequency = c->f[i];
+  peak->at        = c->x[i];
   peak->amplitude = c->a[i];
-  if (!three_points(c, i, c->f, s) || s[2] > -10 * s[0] || -s[0] > 10 * s[2]) return;
+  if (!three_points(c, i, c->x, s) || s[2] > -10 * s[0] || -s[0] > 10 * s[2]) return;
   for (int k = 0; k < 3; k++) {
     a[k] = c->a[i - 1 + k] / c->a[i];
     q[k] = -1 / fmax(a[k] * a[k], 1e-30);
@@ -83,21 +84,21 @@ static void refine_peak(const curve *c, int i, post_peak *peak) {
     at  = vertex(s, a);
     top = parabola(s, a, at);
   }
-  double gain = fmax(1, resonant ? 1 / sqrt(-top) : top), f = parabola(s, c->f + i - 1, at);
-  double low  = fmin(c->f[i], fmin(c->f[i - 1], c->f[i + 1]));
-  double high = fmax(c->f[i], fmax(c->f[i - 1], c->f[i + 1]));
+  double gain = fmax(1, resonant ? 1 / sqrt(-top) : top), f = parabola(s, c->x + i - 1, at);
+  double low  = fmin(c->x[i], fmin(c->x[i - 1], c->x[i + 1]));
+  double high = fmax(c->x[i], fmax(c->x[i - 1], c->x[i + 1]));
   if (f < low || f > high || gain > LARGEST_GAIN)
     return; /* too coarse to tell more than the point itself */
-  peak->frequency = f;
+  peak->at        = f;
   peak->amplitude = c->a[i] * gain;
 }
 
-/* Frequency where the amplitude falls to level going from the peak in direction step; NAN if it does not before
- * the curve ends, rises above the peak, or turns back in frequency. Linear in 1/a^2 between two points. */
+/* x where the amplitude falls to level going from the peak in direction step; NAN if it does not before
+ * the curve ends, rises above the peak, or turns back in x. Linear in 1/a^2 between two points. */
 static double crossing(const curve *c, const post_peak *peak, int step, double level) {
-  double from = peak->frequency, sign = 0;
+  double from = peak->at, sign = 0;
   for (int i = peak->point; i + step >= 0 && i + step < c->n; i += step) {
-    double f0 = c->f[i], f1 = c->f[i + step], a0 = c->a[i], a1 = c->a[i + step];
+    double f0 = c->x[i], f1 = c->x[i + step], a0 = c->a[i], a1 = c->a[i + step];
     if (i == peak->point) { /* the refined peak lies within a point of here */
       f0 = from;
       a0 = peak->amplitude;
@@ -120,8 +121,8 @@ static void measure_bandwidth(const curve *c, post_peak *peak) {
   double before = crossing(c, peak, -1, level), after = crossing(c, peak, 1, level);
   peak->bandwidth = fabs(after - before);
   /* both sides must lie on their own side of the peak, or there is a fold in between */
-  if (!((after - peak->frequency) * (before - peak->frequency) < 0)) peak->bandwidth = NAN;
-  peak->damping = peak->bandwidth / (2 * peak->frequency);
+  if (!((after - peak->at) * (before - peak->at) < 0)) peak->bandwidth = NAN;
+  peak->damping = peak->bandwidth / (2 * peak->at);
 }
 
 /* Height above the deeper of the two valleys that part it from anything higher. */
@@ -136,47 +137,64 @@ static double prominence(const curve *c, int i) {
   return c->a[i] - deeper;
 }
 
-/* Rises to i and, after any run of equal values, falls. */
-static bool is_maximum(const curve *c, int i) {
+/* Rises to i and, after any run of equal values, falls: by more than a ripple unless nothing is higher. */
+static bool is_maximum(const curve *c, int i, int top) {
   if (i <= 0 || i >= c->n - 1 || !(c->a[i] > c->a[i - 1])) return false;
   int j = i + 1;
   while (j < c->n - 1 && c->a[j] == c->a[i]) j++;
-  return c->a[j] < c->a[i] && prominence(c, i) >= RIPPLE * c->a[i];
+  return c->a[j] < c->a[i] && prominence(c, i) >= (i == top ? LEVEL : RIPPLE) * c->a[i];
 }
 
 /* It ends in the point at which it began. */
 static bool is_closed(const curve *c) {
-  return c->n > 3 && fabs(c->f[c->n - 1] - c->f[0]) <= 1e-8 * fabs(c->f[0]) &&
+  return c->n > 3 &&
+         fabs(c->x[c->n - 1] - c->x[0]) <= 1e-8 * fmax(fabs(c->x[0]), 1e-2 * c->x_span) &&
          fabs(c->a[c->n - 1] - c->a[0]) <= 1e-4 * c->a[0];
 }
 
-/* Index of the largest value if it is at an end, else -1. */
-static int edge_point(const curve *c) {
-  int top = 0;
-  if (is_closed(c)) return -1;
-  for (int i = 1; i < c->n; i++)
-    if (c->a[i] > c->a[top]) top = i;
-  bool at_end = c->n > 0 && c->a[top] > 0 && (top == 0 || c->a[top] == c->a[c->n - 1]);
-  return at_end ? top : -1;
+static bool is_level(const curve *c) {
+  double lo = INFINITY, hi = 0;
+  for (int i = 0; i < c->n; i++) {
+    lo = fmin(lo, c->a[i]);
+    hi = fmax(hi, c->a[i]);
+  }
+  return c->n > 1 && hi > 0 && hi - lo <= LEVEL * hi;
 }
 
-shb_status post_find_peaks(int n, const double *frequency, const double *amplitude,
-                           post_peak **peaks, int *n_peaks) {
-  curve c    = curve_of(n, frequency, amplitude);
-  int   edge = edge_point(&c), count = 0;
+static int top_point(const curve *c) {
+  int top = 0;
+  for (int i = 1; i < c->n; i++)
+    if (c->a[i] > c->a[top]) top = i;
+  return top;
+}
+
+/* Index of the largest value if it is at an end, or as good as there, else -1. */
+static int edge_point(const curve *c, int top) {
+  if (c->n == 0 || !(c->a[top] > 0) || is_closed(c)) return -1;
+  double least = (1 - LEVEL) * c->a[top];
+  if (c->a[0] >= least) return 0;
+  if (c->a[top] == c->a[c->n - 1]) return top;
+  return c->a[c->n - 1] >= least ? c->n - 1 : -1;
+}
+
+shb_status post_find_peaks(int n, const double *x, const double *amplitude, post_peak **peaks,
+                           int *n_peaks) {
+  curve c   = curve_of(n, x, amplitude);
+  int   top = top_point(&c), edge = edge_point(&c, top), count = 0;
   *peaks   = NULL;
   *n_peaks = 0;
-  for (int i = 0; i < n; i++) count += i == edge || is_maximum(&c, i);
+  for (int i = 0; i < n; i++) count += i == edge || is_maximum(&c, i, top);
   if (count == 0) return SHB_OK;
   post_peak *out = calloc((size_t)count, sizeof *out);
   SHB_CHECK(out, SHB_ERR_IO, "not enough memory for %d peaks", count);
   for (int i = 0, p = 0; i < n; i++) {
-    if (i != edge && !is_maximum(&c, i)) continue;
+    if (i != edge && !is_maximum(&c, i, top)) continue;
     out[p].point = i;
     out[p].edge  = i == edge;
     if (i == edge) {
-      out[p].frequency = frequency[i];
+      out[p].at        = x[i];
       out[p].amplitude = amplitude[i];
+      out[p].level     = is_level(&c);
       out[p].bandwidth = out[p].damping = NAN;
     } else {
       refine_peak(&c, i, &out[p]);
@@ -189,27 +207,27 @@ shb_status post_find_peaks(int n, const double *frequency, const double *amplitu
   return SHB_OK;
 }
 
-/* Direction in which the frequency leaves point i going by step, 0 at the end of the curve. */
+/* Direction in which x leaves point i going by step, 0 at the end of the curve. */
 static int leaving(const curve *c, int i, int step) {
   for (int j = i + step; j >= 0 && j < c->n; j += step)
-    if (c->f[j] != c->f[i]) return c->f[j] > c->f[i] ? 1 : -1;
+    if (c->x[j] != c->x[i]) return c->x[j] > c->x[i] ? 1 : -1;
   return 0;
 }
 
-/* +1 the frequency is a maximum at i, -1 a minimum, 0 neither; of a run of equal values only the first counts. */
+/* +1 x is a maximum at i, -1 a minimum, 0 neither; of a run of equal values only the first counts. */
 static int turning(const curve *c, int i) {
-  if (i <= 0 || i >= c->n - 1 || c->f[i] == c->f[i - 1]) return 0;
+  if (i <= 0 || i >= c->n - 1 || c->x[i] == c->x[i - 1]) return 0;
   int before = leaving(c, i, -1), after = leaving(c, i, 1);
   return before == after ? -before : 0;
 }
 
 static void refine_fold(const curve *c, int i, post_fold *fold) {
   double s[3];
-  fold->frequency = c->f[i];
+  fold->at        = c->x[i];
   fold->amplitude = c->a[i];
   if (!three_points(c, i, c->a, s)) return;
-  double at       = vertex(s, c->f + i - 1);
-  fold->frequency = parabola(s, c->f + i - 1, at);
+  double at       = vertex(s, c->x + i - 1);
+  fold->at        = parabola(s, c->x + i - 1, at);
   fold->amplitude = parabola(s, c->a + i - 1, at);
 }
 
@@ -221,7 +239,7 @@ static bool is_fold(const curve *c, const int *special, int i) {
 }
 
 static post_fold fold_at(const curve *c, const int *special, int i) {
-  post_fold fold    = {c->f[i], c->a[i], i, false};
+  post_fold fold    = {c->x[i], c->a[i], i, false};
   bool      flagged = special && special[i] == 1;
   int       turn    = turning(c, i);
   if (!flagged) refine_fold(c, i, &fold);
@@ -231,11 +249,12 @@ static post_fold fold_at(const curve *c, const int *special, int i) {
 }
 
 /* Drop neighbouring pairs between which no jump could be seen; the number kept. */
-static int drop_hairlines(post_fold *fold, int n) {
+static int drop_hairlines(const curve *c, post_fold *fold, int n) {
   int kept = 0;
   for (int i = 0; i < n; i++) {
-    double before = kept ? fold[kept - 1].frequency : INFINITY;
-    if (fabs(fold[i].frequency - before) < HAIRLINE * fold[i].frequency) {
+    double before = kept ? fold[kept - 1].at : INFINITY;
+    double size   = fmax(fabs(fold[i].at), 1e-2 * c->x_span);
+    if (fabs(fold[i].at - before) < HAIRLINE * size) {
       kept--;
     } else {
       fold[kept++] = fold[i];
@@ -244,9 +263,9 @@ static int drop_hairlines(post_fold *fold, int n) {
   return kept;
 }
 
-shb_status post_find_folds(int n, const double *frequency, const double *amplitude,
-                           const int *special, post_fold **folds, int *n_folds) {
-  curve c     = curve_of(n, frequency, amplitude);
+shb_status post_find_folds(int n, const double *x, const double *amplitude, const int *special,
+                           post_fold **folds, int *n_folds) {
+  curve c     = curve_of(n, x, amplitude);
   int   count = 0;
   *folds      = NULL;
   *n_folds    = 0;
@@ -257,7 +276,7 @@ shb_status post_find_folds(int n, const double *frequency, const double *amplitu
   for (int i = 0, p = 0; i < n; i++)
     if (is_fold(&c, special, i)) out[p++] = fold_at(&c, special, i);
   *folds   = out;
-  *n_folds = drop_hairlines(out, count);
+  *n_folds = drop_hairlines(&c, out, count);
   return SHB_OK;
 }
 

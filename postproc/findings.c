@@ -6,7 +6,7 @@
 
 #include "postproc/unit.h"
 
-static const post_unit HERTZ = {"Hz", 1}, NEWTON = {"N", 1};
+static const post_unit NEWTON = {"N", 1};
 
 static char *preload(char out[POST_NUMBER], double n0) {
   post_plain(out, n0, 6);
@@ -21,11 +21,20 @@ static void put_figure(post_buffer *out, const char *label, const char *value, c
            value, note);
 }
 
-static void put_peak_figure(post_buffer *out, const char *label, const post_track_point *p) {
-  char a[POST_NUMBER], f[POST_NUMBER], note[160];
+/* "116.06 Hz", "μ = 0.3"; "every μ" where it does not matter. */
+static char *place(const post_study *study, const post_track_point *p, char out[POST_PLACE]) {
+  if (!p->level)
+    return post_abscissa_place(&study->abscissa, p->at, post_at_one_frequency(study) ? 4 : 5, out);
+  snprintf(out, POST_PLACE, "every %s", study->abscissa.symbol);
+  return out;
+}
+
+static void put_peak_figure(const post_study *study, post_buffer *out, const char *label,
+                            const post_track_point *p) {
+  char a[POST_NUMBER], at[POST_PLACE], note[160];
   if (!(p->amplitude > 0)) return;
-  snprintf(note, sizeof note, "at %s%s", post_measure(f, p->frequency, HERTZ, 5),
-           p->edge ? ", the edge of the range" : "");
+  snprintf(note, sizeof note, "at %s%s", place(study, p, at),
+           p->edge && !p->level ? ", the edge of the range" : "");
   put_figure(out, label, post_measure(a, p->amplitude, post_unit_length(p->amplitude), 3), note);
 }
 
@@ -34,20 +43,57 @@ static double lower_limit(const post_tracking *t) {
   return fmin(t->open.amplitude, t->stuck.amplitude);
 }
 
+/* Of all nonlinear curves: where the amplitude is largest, or least (valleys) at points where a machine can stay. */
+static post_track_point extreme(const post_study *study, bool valleys) {
+  post_track_point best = {NAN, NAN, NAN, -1, -1, false, false, true};
+  for (int b = 0; b < study->response->n_branches; b++) {
+    const mhb_branch *branch = &study->response->branch[b];
+    const post_curve *c      = &study->curve[b];
+    const post_peak  *peak   = valleys ? c->valley : c->peak;
+    for (int i = 0; i < (valleys ? c->n_valleys : c->n_peaks); i++) {
+      bool better =
+          valleys ? peak[i].amplitude < best.amplitude : peak[i].amplitude > best.amplitude;
+      if (branch->kind != MHB_BRANCH_NONLINEAR) continue;
+      if (valleys && branch->stable[peak[i].point] == 0) continue;
+      if (best.branch >= 0 && !better) continue;
+      best = (post_track_point){study->group[c->group].n0,
+                                peak[i].at,
+                                peak[i].amplitude,
+                                b,
+                                peak[i].point,
+                                peak[i].edge,
+                                peak[i].level,
+                                branch->complete};
+    }
+  }
+  return best;
+}
+
+static void put_gain(double amplitude, const post_tracking *t, post_buffer *out) {
+  char   percent[POST_NUMBER];
+  double gain = 1 - amplitude / lower_limit(t);
+  if (isfinite(gain))
+    put_figure(out, gain >= 0 ? "Reduction" : "Increase", post_percent(percent, fabs(gain)),
+               "against the better linear limit");
+}
+
 void post_figures(const post_study *study, post_buffer *out) {
-  const post_tracking *t = &study->tracking;
+  const post_tracking *t    = &study->tracking;
+  bool                 peak = !post_at_one_frequency(study);
   post_put(out, "<dl class=\"figures\">\n");
-  put_peak_figure(out, "Peak, shrouds open", &t->open);
-  put_peak_figure(out, "Peak, shrouds stuck", &t->stuck);
+  put_peak_figure(study, out, peak ? "Peak, shrouds open" : "Largest, shrouds open", &t->open);
+  put_peak_figure(study, out, peak ? "Peak, shrouds stuck" : "Largest, shrouds stuck", &t->stuck);
+  if (study->abscissa.parameter == MHB_IN_N0) {
+    post_track_point lowest = extreme(study, true);
+    put_peak_figure(study, out, "Lowest with friction", &lowest);
+    put_gain(lowest.amplitude, t, out);
+  }
   if (t->best >= 0) {
     const post_track_point *best = &t->point[t->best];
-    char                    label[160], n0[POST_NUMBER], percent[POST_NUMBER];
+    char                    label[160], n0[POST_NUMBER];
     snprintf(label, sizeof label, "Lowest peak, n₀ = %s", preload(n0, best->n0));
-    put_peak_figure(out, label, best);
-    double gain = 1 - best->amplitude / lower_limit(t);
-    if (isfinite(gain))
-      put_figure(out, gain >= 0 ? "Reduction" : "Increase", post_percent(percent, fabs(gain)),
-                 "against the better linear limit");
+    put_peak_figure(study, out, label, best);
+    put_gain(best->amplitude, t, out);
   }
   post_put(out, "</dl>\n");
 }
@@ -56,8 +102,9 @@ void post_figures(const post_study *study, post_buffer *out) {
 
 static void put_optimum(const post_study *study, post_buffer *out) {
   const post_tracking *t = &study->tracking;
-  char                 n0[POST_NUMBER], a[POST_NUMBER], f[POST_NUMBER], percent[POST_NUMBER];
+  char n0[POST_NUMBER], a[POST_NUMBER], f[POST_NUMBER], at[POST_PLACE], percent[POST_NUMBER];
   if (t->best < 0) {
+    if (study->abscissa.parameter == MHB_IN_N0 && study->largest > 0) return;
     post_put(out, study->largest > 0
                       ? "<li>No nonlinear curve was computed at one preload: there is no "
                         "peak to compare.</li>\n"
@@ -69,7 +116,7 @@ static void put_optimum(const post_study *study, post_buffer *out) {
   post_put(out, "<li><b>%s</b> of the %d preloads computed gives the lowest peak, %s at %s",
            preload(n0, best->n0), t->n,
            post_measure(a, best->amplitude, post_unit_length(best->amplitude), 3),
-           post_measure(f, best->frequency, HERTZ, 5));
+           place(study, best, at));
   const char *joint = ": ";
   for (int i = 0; i < 2; i++) {
     double ratio = best->amplitude / (i ? t->stuck : t->open).amplitude;
@@ -92,56 +139,88 @@ static void put_optimum(const post_study *study, post_buffer *out) {
   post_put(out, "</li>\n");
 }
 
+/* Where the amplitude is least and where largest; not for the excitation's level, on which it hangs as it must. */
+static void put_extremes(const post_study *study, post_buffer *out) {
+  const post_tracking *t      = &study->tracking;
+  post_track_point     lowest = extreme(study, true), highest = extreme(study, false);
+  char                 a[POST_NUMBER], n0[POST_NUMBER], at[POST_PLACE], percent[POST_NUMBER];
+  bool                 named = study->n_ranks > 1;
+  if (!post_at_one_frequency(study) || study->abscissa.parameter == MHB_IN_SCALE) return;
+  if (!(lowest.amplitude > 0) || !(highest.amplitude > 0)) return;
+  post_put(out, "<li>The amplitude is least at <b>%s</b>%s", place(study, &lowest, at),
+           lowest.edge && !lowest.level ? ", the edge of the range" : "");
+  if (named) post_put(out, " and %s of preload", preload(n0, lowest.n0));
+  post_put(out, ", %s", post_measure(a, lowest.amplitude, post_unit_length(lowest.amplitude), 3));
+  const char *joint = ": ";
+  for (int i = 0; i < 2; i++) {
+    const post_track_point *limit = i ? &t->stuck : &t->open;
+    double                  ratio = lowest.amplitude / limit->amplitude;
+    if (!isfinite(ratio) || !limit->level) continue;
+    post_put(out, "%s%s %s %s", joint, post_percent(percent, fabs(1 - ratio)),
+             ratio <= 1 ? "below" : "above", i ? "stuck" : "open");
+    joint = ", ";
+  }
+  post_put(out, ". It is largest at %s%s", place(study, &highest, at),
+           highest.edge && !highest.level ? ", the edge of the range" : "");
+  if (named) post_put(out, " and %s", preload(n0, highest.n0));
+  post_put(out, ", %s.</li>\n",
+           post_measure(a, highest.amplitude, post_unit_length(highest.amplitude), 3));
+}
+
 static void put_shift(const post_study *study, post_buffer *out) {
   const post_tracking *t = &study->tracking;
-  char                 from[POST_NUMBER], to[POST_NUMBER], n0[POST_NUMBER], n1[POST_NUMBER];
-  double               limits = t->stuck.frequency - t->open.frequency;
+  const post_abscissa *x = &study->abscissa;
+  char                 from[POST_PLACE], to[POST_PLACE], n0[POST_NUMBER], n1[POST_NUMBER];
+  double               limits = post_at_one_frequency(study) ? NAN : t->stuck.at - t->open.at;
+  int                  digits = post_at_one_frequency(study) ? 4 : 5;
   int                  first = 0, last = t->n - 1; /* a value at the edge of the range is no peak */
   while (first < t->n && t->point[first].edge) first++;
   while (last > first && t->point[last].edge) last--;
   if (last > first) {
     const post_track_point *a = &t->point[first], *b = &t->point[last];
     post_put(out, "<li>From %s to %s of preload the highest peak moves from %s to %s",
-             post_plain(n0, a->n0, 5), preload(n1, b->n0), post_number(from, a->frequency, 5),
-             post_measure(to, b->frequency, HERTZ, 5));
+             post_plain(n0, a->n0, 5), preload(n1, b->n0),
+             post_abscissa_number(x, a->at, digits, from),
+             post_abscissa_value(x, b->at, digits, to));
     if (isfinite(limits))
       post_put(out, " (open to stuck: %s by %s, %s)", limits >= 0 ? "up" : "down",
-               post_measure(from, fabs(limits), HERTZ, 3),
-               post_percent(to, fabs(limits) / t->open.frequency));
+               post_abscissa_value(x, fabs(limits), 3, from),
+               post_percent(to, fabs(limits) / t->open.at));
     post_put(out, ".</li>\n");
   } else if (isfinite(limits)) {
     post_put(out, "<li>Sticking shrouds move the highest peak from %s to %s.</li>\n",
-             post_number(from, t->open.frequency, 5),
-             post_measure(to, t->stuck.frequency, HERTZ, 5));
+             post_abscissa_number(x, t->open.at, 5, from),
+             post_abscissa_value(x, t->stuck.at, 5, to));
   }
 }
 
-/* Folds 2i and 2i + 1 along a curve and the frequencies between them; false if there is no such pair or it is too narrow
+/* Folds 2i and 2i + 1 along a curve and what lies between them; false if there is no such pair or it is too narrow
  * for a jump to be seen (20 ppm). */
 static bool fold_span(const post_curve *c, int i, double span[2]) {
   if (2 * i >= c->n_folds) return false;
-  double one = c->fold[2 * i].frequency;
-  double two = 2 * i + 1 < c->n_folds ? c->fold[2 * i + 1].frequency : one;
+  double one = c->fold[2 * i].at;
+  double two = 2 * i + 1 < c->n_folds ? c->fold[2 * i + 1].at : one;
   span[0]    = fmin(one, two);
   span[1]    = fmax(one, two);
-  return one == two || span[1] - span[0] > 2e-5 * span[1];
+  return one == two || span[1] - span[0] > 2e-5 * fmax(fabs(span[0]), fabs(span[1]));
 }
 
 /* " (103.81 to 103.96, 212.2 to 213.7 Hz)" of a group's curves; returns how many (out NULL: only counts). */
 static int put_spans(const post_study *study, int g, post_buffer *out) {
-  int spans = 0;
+  const post_abscissa *x     = &study->abscissa;
+  int                  spans = 0;
   for (int b = 0; b < study->response->n_branches; b++) {
     const post_curve *c = &study->curve[b];
     for (int i = 0; c->group == g && 2 * i < c->n_folds; i++) {
       double span[2];
       char   from[POST_NUMBER], to[POST_NUMBER];
       if (!fold_span(c, i, span) || ++spans > 4 || !out) continue;
-      post_put(out, "%s%s", spans > 1 ? ", " : " (", post_number(from, span[0], 6));
-      if (span[1] > span[0]) post_put(out, " to %s", post_number(to, span[1], 6));
+      post_put(out, "%s%s", spans > 1 ? ", " : " (", post_abscissa_number(x, span[0], 6, from));
+      if (span[1] > span[0]) post_put(out, " to %s", post_abscissa_number(x, span[1], 6, to));
     }
   }
   if (out && spans > 4) post_put(out, ", …");
-  if (out && spans > 0) post_put(out, "\u00a0Hz)");
+  if (out && spans > 0) post_put(out, "%s%s)", *x->unit.name ? "\u00a0" : "", x->unit.name);
   return spans;
 }
 
@@ -157,8 +236,9 @@ static void put_folds(const post_study *study, post_buffer *out) {
   if (groups > 6) post_put(out, "; and %d more", groups - 6);
   if (groups > 0)
     post_put(out,
-             ". In between several answers exist at one frequency, and a slow sweep jumps from one "
-             "to another.</li>\n");
+             ". In between several answers exist at one %s, and a slow sweep jumps from one "
+             "to another.</li>\n",
+             study->abscissa.symbol);
   else if (study->tracking.n > 0)
     post_put(out, "<li>No curve folds visibly: no jumps in this range.</li>\n");
 }
@@ -218,6 +298,7 @@ static void put_stability(const post_study *study, post_buffer *out) {
 
 static void put_edges(const post_study *study, post_buffer *out) {
   const post_tracking *t = &study->tracking;
+  if (post_at_one_frequency(study)) return; /* there the largest value need not be a peak */
   int edges = (t->open.edge && t->open.complete) + (t->stuck.edge && t->stuck.complete);
   for (int i = 0; i < t->n; i++) edges += t->point[i].edge && t->point[i].complete;
   if (edges == 0) return;
@@ -231,14 +312,16 @@ static void put_edges(const post_study *study, post_buffer *out) {
 static void put_incomplete(const post_study *study, post_buffer *out) {
   for (int b = 0; b < study->response->n_branches; b++) {
     const mhb_branch *branch = &study->response->branch[b];
-    char              name[64], note[64], f[POST_NUMBER];
+    char              name[64], note[64], at[POST_PLACE];
     if (branch->complete) continue;
     post_group_name(&study->group[study->curve[b].group], name);
     post_branch_note(study->response, branch, note);
     post_put(out, "<li class=\"caution\"><b>Not complete:</b> %s%s (curve %d)", name, note, b);
     if (branch->n_points > 0)
       post_put(out, " stopped at %s after %d points",
-               post_measure(f, branch->frequency[branch->n_points - 1], HERTZ, 6),
+               post_abscissa_place(
+                   &study->abscissa,
+                   post_abscissa_values(study->response, branch)[branch->n_points - 1], 6, at),
                branch->n_points);
     post_put(out, ": ");
     post_put_escaped(out, branch->reason && *branch->reason ? branch->reason : "no reason given");
@@ -253,15 +336,17 @@ static void put_further(const post_study *study, post_buffer *out) {
     const mhb_branch *branch = &study->response->branch[b];
     char              name[64], note[64], from[POST_NUMBER], to[POST_NUMBER];
     if (branch->origin == MHB_FROM_END || branch->n_points == 0 || ++n > 6) continue;
-    double lo = INFINITY, hi = -INFINITY;
+    const double *x  = post_abscissa_values(study->response, branch);
+    double        lo = INFINITY, hi = -INFINITY;
     for (int p = 0; p < branch->n_points; p++) {
-      lo = fmin(lo, branch->frequency[p]);
-      hi = fmax(hi, branch->frequency[p]);
+      lo = fmin(lo, x[p]);
+      hi = fmax(hi, x[p]);
     }
     post_group_name(&study->group[study->curve[b].group], name);
     post_branch_note(study->response, branch, note);
     post_put(out, "%s%s%s (%s to %s)", n > 1 ? "; " : "<li><b>Further curves</b>: ", name, note,
-             post_number(from, lo, 6), post_measure(to, hi, HERTZ, 6));
+             post_abscissa_number(&study->abscissa, lo, 6, from),
+             post_abscissa_value(&study->abscissa, hi, 6, to));
   }
   if (n > 6) post_put(out, "; and %d more", n - 6);
   if (n > 0)
@@ -292,6 +377,7 @@ void post_findings(const post_study *study, post_buffer *out) {
   put_incomplete(study, out);
   put_edges(study, out);
   put_optimum(study, out);
+  put_extremes(study, out);
   put_shift(study, out);
   put_folds(study, out);
   put_further(study, out);
@@ -302,20 +388,24 @@ void post_findings(const post_study *study, post_buffer *out) {
 
 /* ---------------------------------------------------------------- terminal */
 
-static void put_brief(post_buffer *out, const char *name, const post_track_point *p) {
-  char a[POST_NUMBER], f[POST_NUMBER];
+static void put_brief(const post_study *study, post_buffer *out, const char *name,
+                      const post_track_point *p) {
+  char a[POST_NUMBER], at[POST_PLACE];
   if (!(p->amplitude > 0)) return;
-  post_put(out, "%s%s peak %s at %s", out->length ? "; " : "", name,
-           post_measure(a, p->amplitude, post_unit_length(p->amplitude), 3),
-           post_measure(f, p->frequency, HERTZ, 5));
+  post_put(out, "%s%s %s at %s", out->length ? "; " : "", name,
+           post_measure(a, p->amplitude, post_unit_length(p->amplitude), 3), place(study, p, at));
 }
 
 void post_summary(const post_study *study, post_buffer *out) {
   const post_tracking *t = &study->tracking;
-  put_brief(out, "open", &t->open);
-  put_brief(out, "stuck", &t->stuck);
+  put_brief(study, out, "open peak", &t->open);
+  put_brief(study, out, "stuck peak", &t->stuck);
+  if (study->abscissa.parameter == MHB_IN_N0) {
+    post_track_point lowest = extreme(study, true);
+    put_brief(study, out, "lowest", &lowest);
+  }
   if (t->best < 0) return;
   char name[96], n0[POST_NUMBER];
-  snprintf(name, sizeof name, "lowest (n0 = %s)", preload(n0, t->point[t->best].n0));
-  put_brief(out, name, &t->point[t->best]);
+  snprintf(name, sizeof name, "lowest (n0 = %s) peak", preload(n0, t->point[t->best].n0));
+  put_brief(study, out, name, &t->point[t->best]);
 }

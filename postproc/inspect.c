@@ -5,6 +5,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "mhb/parameter.h"
 #include "mhb/response.h"
 #include "modal/h5.h"
 #include "modal/model.h"
@@ -59,6 +60,18 @@ static shb_status sum_up_modal(const char *path, post_buffer *out) {
   return SHB_OK;
 }
 
+/* "90 … 270 Hz", "scale 0.05 … 10 at 240 Hz" */
+static void put_range(const post_study *study, post_buffer *out) {
+  const post_abscissa *x = &study->abscissa;
+  if (post_at_one_frequency(study)) {
+    const char *unit = mhb_parameter_unit(x->parameter);
+    post_put(out, "%s ", mhb_parameter_name(x->parameter));
+    put_span(out, x->range[0], x->range[1], unit);
+    post_put(out, *unit ? " at " : "at ");
+  }
+  put_span(out, study->frequency[0], study->frequency[1], "Hz");
+}
+
 static void sum_up_branches(const post_study *study, post_buffer *out) {
   const mhb_response *r         = study->response;
   int                 nonlinear = 0, linear = 0, cut = 0, folds = 0, last = study->n_ranks - 1;
@@ -84,7 +97,7 @@ static void sum_up_branches(const post_study *study, post_buffer *out) {
   post_put(out, "; ");
   put_count(out, study->n_points, "point");
   post_put(out, ", ");
-  put_span(out, study->frequency[0], study->frequency[1], "Hz");
+  put_range(study, out);
   post_put(out, "; ");
   put_count(out, folds, "fold");
   if (cut) post_put(out, "; %d not complete", cut);

@@ -2,6 +2,7 @@
 "use strict";
 const $ = id => document.getElementById(id);
 const D = JSON.parse($("data").textContent);
+/* f: what curves are drawn against, the frequency unless another parameter is followed */
 const ROW = {f: 0, stick: 1, slip: 2, gap: 3, energy: 4, error: 5, stable: 6, special: 7};
 const NBSP = "\u00a0";
 
@@ -39,14 +40,23 @@ function unit(list, largest) {
   if (!(largest > 0)) return list[2];
   return list.find(u => largest >= 0.9995 * u[1]) || list[list.length - 1];
 }
+const X = D.abscissa, sweep = X.parameter === "frequency";
+const xLabel = X.name + (X.unit ? ", " + X.unit : "");
+const xText = v => number(v / X.scale, sweep ? 6 : 5, sweep) + (X.unit ? NBSP + X.unit : "");
 const percent = x => Number.isFinite(x) ? number(100 * x, 2, false) + NBSP + "%" : "–";
 const escape = s => s.replace(/[&<>"']/g, c => "&#" + c.charCodeAt(0) + ";");
 
 /* ---------------------------------------------------------------- axes */
-function linearTicks(lo, hi, wanted) {
+function evenTicks(lo, hi, wanted) {
   const raw = (hi - lo) / wanted, power = 10 ** Math.floor(Math.log10(raw)), m = raw / power;
   const step = power * (m <= 1.0001 ? 1 : m <= 2.0001 ? 2 : m <= 5.0001 ? 5 : 10), ticks = [];
   for (let k = Math.ceil(lo / step - 1e-9); k * step <= hi + 1e-9 * step && ticks.length < 40; k++) ticks.push(k * step);
+  return ticks;
+}
+/* A step may be rounded up past the range, leaving a lone tick that tells no scale: then the next finer ones. */
+function linearTicks(lo, hi, wanted) {
+  let ticks = [];
+  for (let w = wanted; ticks.length < 2 && w <= 3 * wanted; w++) ticks = evenTicks(lo, hi, w);
   return ticks;
 }
 function logTicks(lo, hi, wanted) {
@@ -176,7 +186,7 @@ const extent = (list, pick = x => x) => { let lo = Infinity, hi = -Infinity; for
 let main;
 function drawResponse() {
   const o = state.output, width = widthOf("response"), height = width < 640 ? 420 : 540;
-  const range = state.zoom || D.frequency;
+  const range = state.zoom || X.range;
   let least = Infinity, most = 0;
   for (const b of D.branches) {
     if (hidden.has(b.group)) continue;
@@ -189,9 +199,9 @@ function drawResponse() {
   }
   const u = unit(LENGTH, most);
   const y = !(most > 0) ? {lo: 0, hi: u[1], log: false} : state.log ? {lo: Math.max(least / 1.2, 1e-4 * most), hi: 1.4 * most, log: true} : {lo: 0, hi: 1.06 * most, log: false};
-  const x = range[1] > range[0] ? {lo: range[0], hi: range[1], log: false} : around(range[0], range[1], false);
+  const x = fullRange();
   const label = `${o.place} ${o.axis}, ${o.quantity}, ${u[0]}`;
-  main = new Panel("response", {left: 60, top: 34, width: width - 80, height: height - 84}, axis(x, 1, "frequency, Hz"), axis(y, u[1], label));
+  main = new Panel("response", {left: 60, top: 34, width: width - 80, height: height - 84}, axis(x, X.scale, xLabel), axis(y, u[1], label));
   main.unit = u;
   const order = D.branches.map((b, i) => i).sort((i, j) => rankOf(i) - rankOf(j));
   for (const i of order) {
@@ -209,10 +219,15 @@ function drawResponse() {
     b.row(ROW.special).forEach((special, k) => { if (special > 2) main.dot("turn " + classes, b.f[k], a[k], 2.6); });
   }
   for (const [g, f, a] of o.folds) if (!hidden.has(g)) main.dot("fold " + classOf(D.groups[g]), f, a, 2.6);
-  for (const [g, f, a] of o.limits) if (!hidden.has(g)) main.text("mark " + D.groups[g].kind, f, a, 0, -7, "middle", D.groups[g].kind);
+  for (const [g, f, a] of o.limits) if (!hidden.has(g)) main.text("mark " + D.groups[g].kind, f, a, 0, -7, anchor(f), D.groups[g].kind);
   show("response", height, [main], `<g id="hover"></g>`);
   $("whole").disabled = !state.zoom;
   drawHover();
+}
+/* Inside where the limit is named at an end of the parameter's range. */
+function anchor(f) {
+  const [lo, hi] = X.range, air = 1e-6 * (hi - lo);
+  return sweep ? "middle" : f <= lo + air ? "start" : f >= hi - air ? "end" : "middle";
 }
 const rankOf = i => D.branches[i].dots ? 3 : groupOf(D.branches[i]).kind !== "nonlinear" ? 0 : i === state.branch ? 2 : 1;
 
@@ -221,7 +236,7 @@ function readout(b, i) {
   const g = groupOf(b), a = b.row(state.output.row)[i], stable = b.row(ROW.stable)[i], error = b.row(ROW.error)[i];
   const shares = ["stick", "slip", "gap"].map(s => b.row(ROW[s])[i]), energy = b.row(ROW.energy)[i], e = unit(ENERGY, energy);
   const u = unit(LENGTH, a);
-  const rows = [["frequency", number(b.f[i], 6) + NBSP + "Hz"], [state.output.quantity, number(a / u[1], 4) + NBSP + u[0]]];
+  const rows = [[X.name, xText(b.f[i])], [state.output.quantity, number(a / u[1], 4) + NBSP + u[0]]];
   if (g.kind === "nonlinear") {
     if (Number.isFinite(shares[0])) rows.push(["stuck · slipping · open", shares.map(s => (100 * s).toFixed(s > 0 && s < 0.0995 ? 1 : 0)).join(" · ") + NBSP + "%"], ["dissipated", number(energy / e[1], 3) + NBSP + e[0]]);
     rows.push(b.dots ? ["repeats itself", stable === 1 ? "yes" : "no"] : ["stability", stable === 1 ? "stable" : stable === 0 ? "unstable" : "not known"]);
@@ -269,7 +284,7 @@ function nearest(px, py) {
 const T = {group: 0, n0: 1, a: 2, f: 3, edge: 4, stick: 5, slip: 6, gap: 7, energy: 8};
 function bestOf(track) {
   let best = -1;
-  for (const edges of [false, true]) /* one at the edge of the range only if there is no other */
+  for (const edges of sweep ? [false, true] : [true]) /* one at the edge of the frequency range only if there is no other */
     if (best < 0) track.forEach((t, i) => { if ((edges || !t[T.edge]) && (best < 0 || t[T.a] < track[best][T.a])) best = i; });
   return best;
 }
@@ -279,15 +294,15 @@ function drawTracking() {
   const width = widthOf("tracking"), forces = extent(track, t => t[T.n0]), big = Math.max(...forces.map(Math.abs)) >= 1e4;
   const fu = big ? ["kN", 1e3] : ["N", 1], least = Math.min(...track.map(t => Math.abs(t[T.n0])).filter(v => v > 0));
   const wide = Math.max(...forces.map(Math.abs)) >= 8 * least;
-  const pick = (k, l) => [...track.map(t => t[k]), ...o.limits.map(t => t[l])].filter(v => Number.isFinite(v) && v > 0);
-  const amps = extent(pick(T.a, 2)), freqs = extent(pick(T.f, 1)), u = unit(LENGTH, amps[1]);
+  const amps = extent([...track.map(t => t[T.a]), ...o.limits.map(t => t[2])].filter(v => v > 0)), u = unit(LENGTH, amps[1]);
+  const places = extent([...track.map(t => t[T.f]), ...(sweep ? o.limits.map(t => t[1]) : [])].filter(Number.isFinite));
   const x = wide && forces[0] <= 0 ? signed(forces[0], forces[1], least) : around(forces[0], forces[1], wide);
   const y = state.log && amps[0] > 0 ? {lo: amps[0] / (1.15 * (amps[1] / amps[0]) ** 0.14), hi: amps[1] * 1.2, log: true} : {lo: 0, hi: 1.1 * amps[1], log: false};
   const above = new Panel("tracking-a", {left: 60, top: 34, width: width - 80, height: 280}, axis(x, fu[1], null), axis(y, u[1], `highest peak, ${o.place} ${o.axis}, ${o.quantity}, ${u[0]}`));
-  const below = new Panel("tracking-f", {left: 60, top: 374, width: width - 80, height: 170}, axis(x, fu[1], "preload n₀, " + fu[0]), axis(around(freqs[0], freqs[1], false), 1, "its frequency, Hz"));
+  const below = new Panel("tracking-f", {left: 60, top: 374, width: width - 80, height: 170}, axis(x, fu[1], "preload n₀, " + fu[0]), axis(around(places[0], places[1], X.log && places[1] > 8 * places[0]), X.scale, "its " + xLabel));
   const best = bestOf(track);
   for (const [p, value, limit] of [[above, T.a, 2], [below, T.f, 1]]) {
-    for (const l of o.limits) {
+    for (const l of p === above || sweep ? o.limits : []) {
       const kind = D.groups[l[0]].kind, open = kind === "open";
       p.level("line limit " + kind, l[limit]);
       p.text("mark " + kind, open ? p.ax.lo : p.ax.hi, l[limit], open ? 6 : -6, -5, open ? "start" : "end", kind);
@@ -302,16 +317,16 @@ function drawTracking() {
 }
 
 /* ---------------------------------------------------------------- contact */
-function twoPanels(id, x, energyMost, lowerLabel) {
+function twoPanels(id, x, xUnit, energyMost, lowerLabel) {
   const width = widthOf(id), e = unit(ENERGY, energyMost), box = {left: 60, width: width - 76};
   const most = energyMost > 0 ? 1.08 * energyMost : e[1];
-  return [new Panel(id + "-s", {...box, top: 34, height: 180}, axis(x, lowerLabel ? 1 : 0, null), axis({lo: lowerLabel ? -0.02 : 0, hi: lowerLabel ? 1.02 : 1, log: false}, 0.01, "share of the period, %")),
-          new Panel(id + "-d", {...box, top: 266, height: 150}, axis(x, lowerLabel ? 1 : 0, lowerLabel), axis({lo: 0, hi: most, log: false}, e[1], "dissipated a cycle, " + e[0]))];
+  return [new Panel(id + "-s", {...box, top: 34, height: 180}, axis(x, xUnit, null), axis({lo: lowerLabel ? -0.02 : 0, hi: lowerLabel ? 1.02 : 1, log: false}, 0.01, "share of the period, %")),
+          new Panel(id + "-d", {...box, top: 266, height: 150}, axis(x, xUnit, lowerLabel), axis({lo: 0, hi: most, log: false}, e[1], "dissipated a cycle, " + e[0]))];
 }
 function drawState() {
   const track = state.output.track;
   if (!$("state") || !track.length) return;
-  const [shares, energy] = twoPanels("state", {lo: -0.6, hi: track.length - 0.4, log: false}, Math.max(...track.map(t => t[T.energy] || 0)), null);
+  const [shares, energy] = twoPanels("state", {lo: -0.6, hi: track.length - 0.4, log: false}, 0, Math.max(...track.map(t => t[T.energy] || 0)), null);
   const every = 1 + Math.floor((track.length - 1) / Math.max(2, Math.floor(shares.box.width / 40))), b = energy.box;
   track.forEach((t, i) => {
     let low = 0;
@@ -322,10 +337,10 @@ function drawState() {
   energy.svg += `<text class="axis" x="${b.left + b.width}" y="${b.top + b.height + 36}" text-anchor="end">preload n₀, N</text>`;
   show("state", 470, [shares, energy]);
 }
-const fullRange = () => { const [lo, hi] = state.zoom || D.frequency; return hi > lo ? {lo, hi, log: false} : around(lo, hi, false); };
+const fullRange = () => { const [lo, hi] = state.zoom || X.range; return hi > lo ? {lo, hi, log: X.log} : around(lo, hi, false); };
 function drawAlong() {
   if (!$("along") || state.branch < 0) return;
-  const b = D.branches[state.branch], [shares, energy] = twoPanels("along", fullRange(), extent(b.row(ROW.energy))[1], "frequency, Hz");
+  const b = D.branches[state.branch], [shares, energy] = twoPanels("along", fullRange(), X.scale, extent(b.row(ROW.energy))[1], xLabel);
   ["stick", "slip", "gap"].forEach(s => shares.line("line " + s, b.f, b.row(ROW[s])));
   energy.line("line " + classOf(groupOf(b)), b.f, b.row(ROW.energy));
   show("along", 470, [shares, energy]);
@@ -342,7 +357,7 @@ function drawHarmonics() {
   }
   const u = unit(LENGTH, most);
   if (!(most > 0)) most = least = u[1];
-  const p = new Panel("harmonics", {left: 60, top: 34, width: width - 120, height: 272}, axis(fullRange(), 1, "frequency, Hz"), axis({lo: Math.max(1e-6 * most, least / 2), hi: 2 * most, log: true}, u[1], `${s.place}, amplitude of each harmonic, ${u[0]}`));
+  const p = new Panel("harmonics", {left: 60, top: 34, width: width - 120, height: 272}, axis(fullRange(), X.scale, xLabel), axis({lo: Math.max(1e-6 * most, least / 2), hi: 2 * most, log: true}, u[1], `${s.place}, amplitude of each harmonic, ${u[0]}`));
   const used = [];
   for (let k = 0; k < shown; k++) {
     const a = b.row(s.row + k);

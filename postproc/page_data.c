@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "mhb/parameter.h"
 #include "postproc/charts.h"
 
 enum {
@@ -87,12 +88,11 @@ static plan make_plan(const mhb_response *response, int n_points) {
 
 /* ---------------------------------------------------------------- which points */
 
-/* Ends, special points, turns of amplitude or frequency, changes of stability, and every stride-th. */
-static bool is_kept(const mhb_branch *branch, const double *a, int i, int stride) {
+/* Ends, special points, turns of amplitude or abscissa, changes of stability, and every stride-th. */
+static bool is_kept(const mhb_branch *branch, const double *x, const double *a, int i, int stride) {
   if (i % stride == 0 || i == branch->n_points - 1 || branch->special[i]) return true;
-  const double *f    = branch->frequency;
-  bool          top  = (a[i] - a[i - 1]) * (a[i + 1] - a[i]) <= 0;
-  bool          turn = (f[i] - f[i - 1]) * (f[i + 1] - f[i]) <= 0;
+  bool top  = (a[i] - a[i - 1]) * (a[i + 1] - a[i]) <= 0;
+  bool turn = (x[i] - x[i - 1]) * (x[i + 1] - x[i]) <= 0;
   return top || turn || branch->stable[i] != branch->stable[i - 1];
 }
 
@@ -102,10 +102,9 @@ static void put_value(post_buffer *out, double value) {
   post_put(out, isfinite(value) ? "%.7g" : "null", value);
 }
 
-static void put_triple(post_buffer *out, bool *first, int group, double frequency,
-                       double amplitude) {
+static void put_triple(post_buffer *out, bool *first, int group, double at, double amplitude) {
   post_put(out, "%s[%d,", *first ? "" : ",", group);
-  put_value(out, frequency);
+  put_value(out, at);
   post_put(out, ",");
   put_value(out, amplitude);
   post_put(out, "]");
@@ -117,7 +116,7 @@ static void put_track_point(const post_study *study, const post_track_point *p, 
   const mhb_branch *branch = &study->response->branch[p->branch];
   double            all[]  = {p->n0,
                               p->amplitude,
-                              p->frequency,
+                              p->at,
                               p->edge,
                               post_state(study->response, branch, p->point, 0),
                               post_state(study->response, branch, p->point, 1),
@@ -142,10 +141,9 @@ static shb_status put_track(const post_study *study, double *const *values, post
   post_put(out, "],\"limits\":[");
   bool first = true;
   if (t.open.branch >= 0)
-    put_triple(out, &first, study->curve[t.open.branch].group, t.open.frequency, t.open.amplitude);
+    put_triple(out, &first, study->curve[t.open.branch].group, t.open.at, t.open.amplitude);
   if (t.stuck.branch >= 0)
-    put_triple(out, &first, study->curve[t.stuck.branch].group, t.stuck.frequency,
-               t.stuck.amplitude);
+    put_triple(out, &first, study->curve[t.stuck.branch].group, t.stuck.at, t.stuck.amplitude);
   post_put(out, "]");
   post_tracking_free(&t);
   return SHB_OK;
@@ -158,9 +156,10 @@ static shb_status put_peaks(const post_study *study, double *const *values, post
     const mhb_branch *branch = &study->response->branch[b];
     post_peak        *peak;
     int               n;
-    SHB_TRY(post_find_peaks(branch->n_points, branch->frequency, values[b], &peak, &n));
+    const double     *x = post_abscissa_values(study->response, branch);
+    SHB_TRY(post_find_peaks(branch->n_points, x, values[b], &peak, &n));
     for (int i = 0; i < n; i++)
-      put_triple(out, &first, study->curve[b].group, peak[i].frequency, peak[i].amplitude);
+      put_triple(out, &first, study->curve[b].group, peak[i].at, peak[i].amplitude);
     free(peak);
   }
   post_put(out, "]");
@@ -175,10 +174,10 @@ static shb_status put_folds(const post_study *study, double *const *values, post
     post_fold        *fold;
     int               n;
     if (study->curve[b].n_folds == 0) continue;
-    SHB_TRY(post_find_folds(branch->n_points, branch->frequency, values[b], branch->special, &fold,
-                            &n));
+    const double *x = post_abscissa_values(study->response, branch);
+    SHB_TRY(post_find_folds(branch->n_points, x, values[b], branch->special, &fold, &n));
     for (int i = 0; i < n; i++)
-      put_triple(out, &first, study->curve[b].group, fold[i].frequency, fold[i].amplitude);
+      put_triple(out, &first, study->curve[b].group, fold[i].at, fold[i].amplitude);
     free(fold);
   }
   post_put(out, "]");
@@ -238,7 +237,7 @@ static shb_status put_columns(const post_study *study, const plan *p, bool spect
 static double fixed_value(const post_study *study, const mhb_branch *branch, int point, int row) {
   switch (row) {
     case 0:
-      return branch->frequency[point];
+      return post_abscissa_values(study->response, branch)[point];
     case 1:
     case 2:
     case 3:
@@ -257,12 +256,13 @@ static double fixed_value(const post_study *study, const mhb_branch *branch, int
 /* Choose the points of a branch and fill its fixed rows. */
 static shb_status make_sheet(const post_study *study, int b, int rows, int stride, sheet *s) {
   const mhb_branch *branch = &study->response->branch[b];
+  const double     *x      = post_abscissa_values(study->response, branch);
   size_t            points = (size_t)branch->n_points;
   s->kept                  = malloc((points + 1) * sizeof *s->kept);
   s->data                  = malloc((points * (size_t)rows + 1) * sizeof *s->data);
   SHB_CHECK(s->kept && s->data, SHB_ERR_IO, "not enough memory for the report");
   for (int i = 0; i < branch->n_points; i++)
-    if (is_kept(branch, study->curve[b].amplitude, i, stride)) s->kept[s->n++] = i;
+    if (is_kept(branch, x, study->curve[b].amplitude, i, stride)) s->kept[s->n++] = i;
   for (int row = 0; row < FIXED_ROWS; row++)
     for (int i = 0; i < s->n; i++)
       s->data[(size_t)row * (size_t)s->n + (size_t)i] =
@@ -303,6 +303,14 @@ static void put_groups(const post_study *study, post_buffer *out) {
   }
 }
 
+static void put_abscissa(const post_abscissa *x, post_buffer *out) {
+  post_put(out,
+           "{\"parameter\":\"%s\",\"name\":\"%s\",\"unit\":\"%s\",\"scale\":%g,\"log\":%s,"
+           "\"range\":[%.9g,%.9g]}",
+           mhb_parameter_name(x->parameter), x->name, x->unit.name, x->unit.scale,
+           x->log ? "true" : "false", x->range[0], x->range[1]);
+}
+
 static shb_status put_all(const post_study *study, int chosen, sheet *sheets, post_buffer *out,
                           int *left_out) {
   int  stride = 1 + LEAST_ROWS * study->n_points / (BUDGET + 1);
@@ -310,9 +318,10 @@ static shb_status put_all(const post_study *study, int chosen, sheet *sheets, po
   *left_out   = p.left_out;
   for (int b = 0; b < study->response->n_branches; b++)
     SHB_TRY(make_sheet(study, b, p.rows, stride, &sheets[b]));
-  post_put(out, "{\"rows\":%d,\"chosen\":%d,\"log\":%s,\"frequency\":[%.9g,%.9g],\"groups\":[",
-           p.rows, chosen, post_wants_log(study) ? "true" : "false", study->frequency[0],
-           study->frequency[1]);
+  post_put(out, "{\"rows\":%d,\"chosen\":%d,\"log\":%s,\"abscissa\":", p.rows, chosen,
+           post_wants_log(study) ? "true" : "false");
+  put_abscissa(&study->abscissa, out);
+  post_put(out, ",\"groups\":[");
   put_groups(study, out);
   post_put(out, "],\"outputs\":[");
   SHB_TRY(put_columns(study, &p, false, sheets, out));

@@ -1,11 +1,12 @@
 /* The numbers behind the page's interactive charts, as JSON for its script.
  *
  * Members: groups [{name, kind, n0, rank}], branches [{group, n, complete, reason, data}], outputs [{place, axis,
- * quantity, row, track, peaks, folds}], spectra [{place, row, n}], rows, chosen, log, frequency [lo, hi].
- *   data      base64 of float32 [rows][n]; rows 0..7: frequency Hz, shares stuck, slipping, open, dissipation J,
+ * quantity, row, track, peaks, folds}], spectra [{place, row, n}], rows, chosen, log, abscissa {parameter (as in a case
+ * file), name, unit, scale (value in SI / scale is read), log, range [lo, hi]}.
+ *   data      base64 of float32 [rows][n]; rows 0..7: abscissa in SI, shares stuck, slipping, open, dissipation J,
  *             error estimate, stable, special; then what outputs and spectra (harmonics 0..n-1) point to, in m
- *   track     a preload each: [group, n0, amplitude, frequency, edge, stuck, slipping, open, dissipation]
- *   peaks, folds   [group, frequency, amplitude] */
+ *   track     a preload each: [group, n0, amplitude, abscissa, edge, stuck, slipping, open, dissipation]
+ *   peaks, folds   [group, abscissa, amplitude] */
 #ifndef POSTPROC_PAGE_DATA_H
 #define POSTPROC_PAGE_DATA_H
 

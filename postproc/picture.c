@@ -61,7 +61,8 @@ static void put_legend(const post_study *study, post_buffer *out) {
       snprintf(text, sizeof text, "%s\u00a0N", post_plain(number, group->n0, 5));
       put_entry(out, y, classes, text);
     } else if (group->kind == MHB_BRANCH_NONLINEAR) {
-      put_entry(out, y, "varying", "varying");
+      bool followed = study->abscissa.parameter == MHB_IN_N0;
+      put_entry(out, y, "varying", followed ? "n₀ varying" : "varying");
     } else {
       bool open = group->kind == MHB_BRANCH_OPEN;
       put_entry(out, y, open ? "limit open" : "limit stuck", open ? "fully open" : "fully stuck");
@@ -77,11 +78,13 @@ static void put_legend(const post_study *study, post_buffer *out) {
 }
 
 void post_picture(const post_study *study, const char *case_name, post_buffer *out) {
-  char title[256];
-  snprintf(title, sizeof title, "Forced response of %s", case_name);
+  char title[256], text[160], frequency[POST_PLACE];
+  snprintf(title, sizeof title, "Forced response of %s%s", case_name,
+           post_frequency_text(study, frequency));
+  snprintf(text, sizeof text, "Amplitude against %s%s.", study->abscissa.name,
+           study->n_ranks > 0 || !post_at_one_frequency(study) ? " for each preload" : "");
   post_put(out, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
-  plot_svg_open(out, "picture", WIDTH, HEIGHT, title,
-                "Amplitude against frequency for each preload.");
+  plot_svg_open(out, "picture", WIDTH, HEIGHT, title, text);
   put_style(study, out);
   post_put(out, "<rect width=\"%d\" height=\"%d\" fill=\"#fff\"/>\n", WIDTH, HEIGHT);
   post_put(out, "<text class=\"heading\" x=\"20\" y=\"34\">");

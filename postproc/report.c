@@ -1,5 +1,6 @@
 #include "postproc/report.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -45,13 +46,17 @@ static double degrees(double angle) {
 }
 
 static void put_lede(const post_study *study, const post_source *source, post_buffer *out) {
-  const mhb_response *r = study->response;
-  char                lo[POST_NUMBER], hi[POST_NUMBER], deg[POST_NUMBER];
+  const mhb_response  *r = study->response;
+  const post_abscissa *x = &study->abscissa;
+  char                 lo[POST_NUMBER], hi[POST_NUMBER], deg[POST_NUMBER], frequency[POST_PLACE];
   post_put(out, "<p class=\"lede\">");
   if (study->n_ranks > 0)
     post_put(out, "%d preload%s, ", study->n_ranks, study->n_ranks > 1 ? "s" : "");
-  post_put(out, "%s to %s\u00a0Hz", post_plain(lo, study->frequency[0], 5),
-           post_plain(hi, study->frequency[1], 5));
+  if (post_at_one_frequency(study))
+    post_put(out, "%c%s ", study->n_ranks > 0 ? x->name[0] : toupper(x->name[0]), x->name + 1);
+  post_put(out, "%s to %s%s%s%s", post_plain(lo, x->range[0] / x->unit.scale, 5),
+           post_plain(hi, x->range[1] / x->unit.scale, 5), *x->unit.name ? "\u00a0" : "",
+           x->unit.name, post_frequency_text(study, frequency));
   if (r->engine_order > 0) post_put(out, ", engine order %d", r->engine_order);
   if (r->blades > 0) post_put(out, " on %d blades", r->blades);
   post_put(out, ", %d harmonic%s", r->n_harmonics, r->n_harmonics == 1 ? "" : "s");
@@ -122,7 +127,10 @@ static void put_keys(const post_study *study, post_buffer *out) {
 }
 
 static void put_main(const post_study *study, const char *case_name, post_buffer *out) {
-  post_put(out, "<section id=\"chart\">\n<h2>Forced response</h2>\n<div class=\"card\"><figure>\n");
+  char frequency[POST_PLACE];
+  post_put(out,
+           "<section id=\"chart\">\n<h2>Forced response%s</h2>\n<div class=\"card\"><figure>\n",
+           post_frequency_text(study, frequency));
   put_tools(out);
   post_put(out, "<div class=\"chart\">\n");
   post_chart_response(study, case_name, out);
@@ -150,8 +158,9 @@ static void put_tracking(const post_study *study, post_buffer *out) {
       out,
       "<section>\n<h2>Peak against preload</h2>\n<p class=\"note\">Each preload’s highest peak, "
       "joined; lesser peaks are the "
-      "faint dots. An open ring marks a largest value at the edge of the frequency range.</p>\n"
-      "<div class=\"card\"><figure><div class=\"chart\">\n");
+      "faint dots. An open ring marks a largest value at the edge of the %s range.</p>\n"
+      "<div class=\"card\"><figure><div class=\"chart\">\n",
+      post_at_one_frequency(study) ? "parameter’s" : "frequency");
   post_chart_tracking(study, out);
   post_put(out, "</div></figure></div>\n</section>\n");
 }
@@ -179,12 +188,14 @@ static void put_contact(const post_study *study, int chosen, post_buffer *out) {
 static void put_details(const post_study *study, int chosen, post_buffer *out) {
   if (chosen < 0) return;
   char name[64];
+  bool followed = study->abscissa.parameter == MHB_IN_N0;
   post_group_name(&study->group[study->curve[chosen].group], name);
   post_put(out,
            "<section>\n<h2>Contact and harmonics</h2>\n<p class=\"note\">To begin with along the "
-           "curve of %s%s.</p>\n"
+           "%scurve%s%s%s.</p>\n"
            "<div class=\"tools\"><label>Curve<select id=\"curve\"></select></label></div>\n",
-           name, study->tracking.best >= 0 ? ", the one with the lowest peak" : "");
+           followed ? "first " : "", followed ? "" : " of ", followed ? "" : name,
+           study->tracking.best >= 0 ? ", the one with the lowest peak" : "");
   put_contact(study, chosen, out);
   post_put(out,
            "<div class=\"card\"><figure><h3>Harmonics along the curve</h3><div class=\"chart\">\n");

@@ -56,8 +56,21 @@ static mhb_branch_kind group_kind(const mhb_branch *branch) {
   return branch->kind == MHB_BRANCH_INTEGRATION ? MHB_BRANCH_NONLINEAR : branch->kind;
 }
 
-/* The one preload of a branch, NAN if it varies or there is no point. */
-static double branch_n0(const mhb_branch *branch) {
+bool post_at_one_frequency(const post_study *study) {
+  return study->abscissa.parameter != MHB_IN_FREQUENCY;
+}
+
+char *post_frequency_text(const post_study *study, char out[POST_PLACE]) {
+  char number[POST_NUMBER];
+  out[0] = '\0';
+  if (post_at_one_frequency(study))
+    snprintf(out, POST_PLACE, " at %s\u00a0Hz", post_plain(number, study->frequency[0], 6));
+  return out;
+}
+
+/* The one preload of a branch, NAN if it varies, is what is followed, or there is no point. */
+static double branch_n0(const mhb_response *response, const mhb_branch *branch) {
+  if (response->parameter == MHB_IN_N0) return NAN;
   if (branch->n_points == 0 || group_kind(branch) != MHB_BRANCH_NONLINEAR) return NAN;
   double n0 = branch->n0[0];
   for (int p = 1; p < branch->n_points; p++)
@@ -91,8 +104,9 @@ static void make_groups(post_study *study) {
   for (int pass = 0; pass < 2; pass++) {
     for (int b = 0; b < response->n_branches; b++) {
       const mhb_branch *branch = &response->branch[b];
-      post_group        wanted = {group_kind(branch), branch->n_points == 0, branch_n0(branch), -1};
-      int               at     = find_group(study, &wanted);
+      post_group wanted = {group_kind(branch), branch->n_points == 0, branch_n0(response, branch),
+                           -1};
+      int        at     = find_group(study, &wanted);
       if (at < 0) study->group[at = study->n_groups++] = wanted;
       study->curve[b].group = at; /* right in the second pass, when the groups are sorted */
     }
@@ -126,20 +140,22 @@ void post_values_free(const mhb_response *response, double **values) {
 /* Highest peak of one group. */
 static shb_status track_group(const post_study *study, int group, double *const *values,
                               post_track_point *out) {
-  *out = (post_track_point){study->group[group].n0, NAN, NAN, NAN, -1, -1, false, true};
+  *out = (post_track_point){study->group[group].n0, NAN, NAN, -1, -1, false, false, true};
   for (int b = 0; b < study->response->n_branches; b++) {
     const mhb_branch *branch = &study->response->branch[b];
     if (study->curve[b].group != group || branch->kind == MHB_BRANCH_INTEGRATION) continue;
     out->complete = out->complete && branch->complete;
-    post_peak *peaks;
-    int        n;
-    SHB_TRY(post_find_peaks(branch->n_points, branch->frequency, values[b], &peaks, &n));
+    post_peak    *peaks;
+    int           n;
+    const double *x = post_abscissa_values(study->response, branch);
+    SHB_TRY(post_find_peaks(branch->n_points, x, values[b], &peaks, &n));
     int top = post_highest(n, peaks);
     if (top >= 0 && !(peaks[top].amplitude <= out->amplitude)) {
-      out->frequency = peaks[top].frequency;
+      bool last      = peaks[top].level && branch->kind == MHB_BRANCH_STUCK;
+      out->at        = last ? x[branch->n_points - 1] : peaks[top].at;
       out->amplitude = peaks[top].amplitude;
-      out->damping   = peaks[top].damping;
       out->edge      = peaks[top].edge;
+      out->level     = peaks[top].level;
       out->branch    = b;
       out->point     = peaks[top].point;
     }
@@ -148,11 +164,12 @@ static shb_status track_group(const post_study *study, int group, double *const 
   return SHB_OK;
 }
 
-/* Vertex of log amplitude over n0 (or log n0) through best and its neighbours. */
-static void find_optimum(post_tracking *t) {
+/* Vertex of log amplitude over n0 (or log n0) through best and its neighbours. The largest value at an edge of the range
+ * (any_edge: of a parameter other than the frequency) need not be less than a peak. */
+static void find_optimum(bool any_edge, post_tracking *t) {
   t->best       = -1;
   t->bracket[0] = t->bracket[1] = t->optimum_n0 = t->optimum_amplitude = NAN;
-  for (int edges = 0; edges <= 1 && t->best < 0; edges++)
+  for (int edges = any_edge; edges <= 1 && t->best < 0; edges++)
     for (int i = 0; i < t->n; i++) {
       bool lower = t->best < 0 || t->point[i].amplitude < t->point[t->best].amplitude;
       if (lower && (edges || !t->point[i].edge)) t->best = i;
@@ -178,7 +195,7 @@ static void find_optimum(post_tracking *t) {
 }
 
 shb_status post_track(const post_study *study, double *const *values, post_tracking *tracking) {
-  post_track_point none = {NAN, NAN, NAN, NAN, -1, -1, false, false};
+  post_track_point none = {NAN, NAN, NAN, -1, -1, false, false, false};
   *tracking             = (post_tracking){.open = none, .stuck = none};
   tracking->point       = calloc((size_t)study->n_groups, sizeof *tracking->point);
   SHB_CHECK(tracking->point, SHB_ERR_IO, "not enough memory for the tracking curve");
@@ -196,7 +213,7 @@ shb_status post_track(const post_study *study, double *const *values, post_track
     else if (study->group[g].rank >= 0 && point.amplitude > 0)
       tracking->point[tracking->n++] = point;
   }
-  find_optimum(tracking);
+  find_optimum(post_at_one_frequency(study), tracking);
   return SHB_OK;
 }
 
@@ -205,16 +222,32 @@ void post_tracking_free(post_tracking *tracking) {
   *tracking = (post_tracking){0};
 }
 
+/* Peaks of the reciprocal. */
+static shb_status find_valleys(int n, const double *x, post_curve *c) {
+  const double *amplitude  = c->amplitude;
+  double       *reciprocal = malloc((size_t)(n > 0 ? n : 1) * sizeof *reciprocal);
+  SHB_CHECK(reciprocal, SHB_ERR_IO, "not enough memory for a curve of %d points", n);
+  for (int i = 0; i < n; i++) reciprocal[i] = 1 / fmax(amplitude[i], 1e-30);
+  shb_status status = post_find_peaks(n, x, reciprocal, &c->valley, &c->n_valleys);
+  free(reciprocal);
+  for (int i = 0; i < c->n_valleys; i++) {
+    post_peak *valley = &c->valley[i];
+    valley->amplitude = amplitude[valley->point] > 0 ? 1 / valley->amplitude : 0;
+  }
+  return status;
+}
+
 static shb_status study_branch(post_study *study, int b) {
   const mhb_branch *branch = &study->response->branch[b];
   post_curve       *c      = &study->curve[b];
   int               n      = branch->n_points;
   c->amplitude             = study->values[b];
+  const double *x          = post_abscissa_values(study->response, branch);
   if (branch->kind != MHB_BRANCH_INTEGRATION)
-    SHB_TRY(post_find_peaks(n, branch->frequency, c->amplitude, &c->peak, &c->n_peaks));
+    SHB_TRY(post_find_peaks(n, x, c->amplitude, &c->peak, &c->n_peaks));
+  if (post_at_one_frequency(study)) SHB_TRY(find_valleys(n, x, c));
   if (branch->kind == MHB_BRANCH_NONLINEAR)
-    SHB_TRY(post_find_folds(n, branch->frequency, c->amplitude, branch->special, &c->fold,
-                            &c->n_folds));
+    SHB_TRY(post_find_folds(n, x, c->amplitude, branch->special, &c->fold, &c->n_folds));
   for (int p = 0; p < n; p++) {
     study->frequency[0] = fmin(study->frequency[0], branch->frequency[p]);
     study->frequency[1] = fmax(study->frequency[1], branch->frequency[p]);
@@ -242,6 +275,7 @@ shb_status post_study_create(const mhb_response *response, post_study **out) {
   SHB_CHECK(study, SHB_ERR_IO, "not enough memory for the report");
   study->response     = response;
   study->primary      = post_output_primary(response);
+  study->abscissa     = post_abscissa_of(response);
   study->frequency[0] = INFINITY;
   study->frequency[1] = -INFINITY;
   study->group        = calloc(n + 1, sizeof *study->group);
@@ -261,6 +295,7 @@ void post_study_destroy(post_study *study) {
   if (!study) return;
   for (int b = 0; study->curve && b < study->response->n_branches; b++) {
     free(study->curve[b].peak);
+    free(study->curve[b].valley);
     free(study->curve[b].fold);
   }
   post_tracking_free(&study->tracking);

@@ -6,6 +6,7 @@
 #include <stdbool.h>
 
 #include "mhb/response.h"
+#include "postproc/abscissa.h"
 #include "postproc/convergence.h"
 #include "postproc/curves.h"
 #include "postproc/output.h"
@@ -20,10 +21,11 @@ typedef struct {
 
 /* The highest peak of one group. */
 typedef struct {
-  double n0, frequency, amplitude,
-      damping;        /* of the group, refined; NAN if the group has no point */
+  double n0, at,
+      amplitude;      /* of the group; abscissa and m, refined. NAN if the group has no point */
   int  branch, point; /* where, -1 if nowhere */
   bool edge;          /* the largest value is at the end of the range */
+  bool level;         /* it is the same all along; at: the end where the limit is the response's */
   bool complete;      /* every branch of the group covered the range */
 } post_track_point;
 
@@ -32,20 +34,22 @@ typedef struct {
   int               n; /* preloads with a constant, known n0 and at least one point, ascending */
   post_track_point *point;       /* [n] */
   post_track_point  open, stuck; /* the limits; amplitude NAN if not computed */
-  int    best; /* the lowest peak; one at the edge of the range only if all are; -1 if n = 0 */
+  int best; /* the lowest peak; one at the edge of the frequency range only if all are; -1 if n = 0 */
   double bracket[2]; /* n0 of the neighbours of best, N; NAN at an end */
   /* parabola through best and its neighbours, log amplitude over n0 (over log n0 when all are positive); NAN unless
    * best has both neighbours and none of the three is at the edge of the range nor four times as far as the other */
   double optimum_n0, optimum_amplitude;
 } post_tracking;
 
-/* Peaks and folds of one branch. */
+/* Peaks, valleys and folds of one branch. */
 typedef struct {
   const double *amplitude; /* [n_points] m, first harmonic of the primary output */
-  int           n_peaks, n_folds;
+  int           n_peaks, n_valleys, n_folds;
   post_peak    *peak;
-  post_fold    *fold;
-  int           group;
+  post_peak
+      *valley; /* minima where another parameter than the frequency is followed; no bandwidth */
+  post_fold *fold;
+  int        group;
 } post_curve;
 
 typedef struct {
@@ -56,6 +60,7 @@ typedef struct {
   post_curve         *curve;    /* [n_branches] */
   double            **values;   /* behind curve[].amplitude */
   post_tracking       tracking; /* of the primary output's first harmonic */
+  post_abscissa       abscissa;
   double              frequency[2]; /* Hz, range of all points */
   double              largest;      /* m, of the primary output over all branches */
   int                 n_points;
@@ -82,6 +87,11 @@ double post_error(const mhb_branch *branch, int point);
 /* Share 0 stuck, 1 slipping, 2 open at a point, mean of the pairs; and the energy of all pairs, J a cycle. */
 double post_state(const mhb_response *response, const mhb_branch *branch, int point, int state);
 double post_dissipation(const mhb_response *response, const mhb_branch *branch, int point);
+
+/* The curves are drawn against another parameter, at one frequency. */
+bool post_at_one_frequency(const post_study *study);
+/* " at 240 Hz" if so, else "". */
+char *post_frequency_text(const post_study *study, char out[POST_PLACE]);
 
 /* What tells a curve from the main one of its group: "", ", found by search", ", order 2, from a flip". */
 void post_branch_note(const mhb_response *response, const mhb_branch *branch, char out[64]);

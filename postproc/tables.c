@@ -1,5 +1,6 @@
 #include "postproc/tables.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -32,12 +33,26 @@ static void put_peak_row(const post_study *study, int b, const post_peak *peak, 
   put_curve_cell(study, b, out);
   post_put(out, "<td class=\"words\">%s</td>",
            !peak->edge                           ? "peak"
+           : peak->level                         ? "everywhere"
            : study->response->branch[b].complete ? "edge of range"
                                                  : "end of curve");
-  put_cell(out, post_number(number, peak->frequency, 6));
+  put_cell(out, post_abscissa_number(&study->abscissa, peak->level ? NAN : peak->at, 6, number));
   put_cell(out, post_number(number, peak->amplitude / unit.scale, 4));
-  put_cell(out, post_number(number, peak->bandwidth, 3));
-  put_cell(out, post_percent(number, peak->damping));
+  if (!post_at_one_frequency(study)) {
+    put_cell(out, post_number(number, peak->bandwidth, 3));
+    put_cell(out, post_percent(number, peak->damping));
+  }
+  post_put(out, "</tr>\n");
+}
+
+static void put_valley_row(const post_study *study, int b, const post_peak *valley, post_unit unit,
+                           post_buffer *out) {
+  char number[POST_NUMBER];
+  if (valley->edge) return;
+  put_curve_cell(study, b, out);
+  post_put(out, "<td class=\"words\">valley</td>");
+  put_cell(out, post_abscissa_number(&study->abscissa, valley->at, 6, number));
+  put_cell(out, post_number(number, valley->amplitude / unit.scale, 4));
   post_put(out, "</tr>\n");
 }
 
@@ -46,31 +61,39 @@ static void put_fold_row(const post_study *study, int b, const post_fold *fold, 
   char number[POST_NUMBER];
   put_curve_cell(study, b, out);
   post_put(out, "<td class=\"words\">fold, sweeping %s</td>", fold->upper ? "up" : "down");
-  put_cell(out, post_number(number, fold->frequency, 6));
+  put_cell(out, post_abscissa_number(&study->abscissa, fold->at, 6, number));
   put_cell(out, post_number(number, fold->amplitude / unit.scale, 4));
-  post_put(out, "<td></td><td></td></tr>\n");
+  post_put(out, "%s</tr>\n", post_at_one_frequency(study) ? "" : "<td></td><td></td>");
 }
 
 void post_table_peaks(const post_study *study, post_buffer *out) {
   post_unit unit = post_unit_length(study->largest);
-  char      place[128];
+  char      place[128], label[POST_LABEL], frequency[POST_PLACE];
+  bool      widths = !post_at_one_frequency(study);
   post_place_name(study->response, study->primary, place);
-  post_put(out, "<div class=\"scroll\"><table><caption>Peaks and folds of ");
+  post_abscissa_label(&study->abscissa, "", label);
+  label[0] = (char)toupper(label[0]);
+  post_put(out, "<div class=\"scroll\"><table><caption>Peaks%s and folds of ",
+           widths ? "" : ", valleys");
   post_put_escaped(out, place);
-  post_put(
-      out,
-      " %s, first harmonic. Damping is that of a linear resonance as wide at half power; "
-      "&ldquo;–&rdquo; where the curve does not fall that far on both sides.</caption>\n<thead><tr>"
-      "<th scope=\"col\">Curve</th><th scope=\"col\" class=\"words\">What</th><th "
-      "scope=\"col\">Frequency, Hz</th>"
-      "<th scope=\"col\">Amplitude, %s</th><th scope=\"col\">Half-power width, Hz</th>"
-      "<th scope=\"col\">Equivalent damping</th></tr></thead>\n<tbody>\n",
-      post_axis_name(study->primary), unit.name);
+  post_put(out,
+           " %s%s, first harmonic.%s</caption>\n<thead><tr>"
+           "<th scope=\"col\">Curve</th><th scope=\"col\" class=\"words\">What</th><th "
+           "scope=\"col\">%s</th><th scope=\"col\">Amplitude, %s</th>%s</tr></thead>\n<tbody>\n",
+           post_axis_name(study->primary), post_frequency_text(study, frequency),
+           widths ? " Damping is that of a linear resonance as wide at half power; &ldquo;–&rdquo; "
+                    "where the curve does not fall that far on both sides."
+                  : "",
+           label, unit.name,
+           widths ? "<th scope=\"col\">Half-power width, Hz</th><th scope=\"col\">Equivalent "
+                    "damping</th>"
+                  : "");
   for (int g = 0; g < study->n_groups; g++)
     for (int b = 0; b < study->response->n_branches; b++) {
       const post_curve *c = &study->curve[b];
       if (c->group != g) continue;
       for (int i = 0; i < c->n_peaks; i++) put_peak_row(study, b, &c->peak[i], unit, out);
+      for (int i = 0; i < c->n_valleys; i++) put_valley_row(study, b, &c->valley[i], unit, out);
       for (int i = 0; i < c->n_folds; i++) put_fold_row(study, b, &c->fold[i], unit, out);
     }
   post_put(out, "</tbody></table></div>\n");

@@ -25,6 +25,11 @@ post_unit post_unit_force(double largest) {
   return choose(unit, 3, fabs(largest) >= 1e4 ? largest : 1, 2);
 }
 
+post_unit post_unit_stiffness(double largest) {
+  static const post_unit unit[] = {{"GN/m", 1e9}, {"MN/m", 1e6}, {"kN/m", 1e3}, {"N/m", 1}};
+  return choose(unit, 4, largest, 1);
+}
+
 post_unit post_unit_energy(double largest) {
   static const post_unit unit[] = {{"kJ", 1e3}, {"J", 1}, {"mJ", 1e-3}, {"µJ", 1e-6}, {"nJ", 1e-9}};
   return choose(unit, 5, largest, 2);

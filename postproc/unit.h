@@ -10,9 +10,10 @@ typedef struct {
 } post_unit;
 
 /* The unit in which largest (SI, sign ignored) reads best; not finite or 0 gives the SI unit's usual choice. */
-post_unit post_unit_length(double largest); /* m mm µm nm pm */
-post_unit post_unit_force(double largest);  /* MN kN N */
-post_unit post_unit_energy(double largest); /* kJ J mJ µJ nJ */
+post_unit post_unit_length(double largest);    /* m mm µm nm pm */
+post_unit post_unit_force(double largest);     /* MN kN N */
+post_unit post_unit_stiffness(double largest); /* GN/m MN/m kN/m N/m */
+post_unit post_unit_energy(double largest);    /* kJ J mJ µJ nJ */
 
 /* value with digits significant digits, trailing zeros kept ("1.240"), powers as ×10⁻⁵; not finite: "–". Returns out. */
 char *post_number(char out[POST_NUMBER], double value, int digits);

@@ -37,9 +37,9 @@ scene_peak scene_highest(const mhb_response *response, const mhb_branch *b, doub
   for (int i = 0; i < b->n_points; i++) amplitude[i] = scene_amplitude(response, b, i, 1);
   assert_int_equal(post_find_peaks(b->n_points, b->frequency, amplitude, &peak, &n), SHB_OK);
   for (int i = 0; i < n; i++) {
-    if (peak[i].edge || peak[i].frequency < from || peak[i].frequency > to) continue;
+    if (peak[i].edge || peak[i].at < from || peak[i].at > to) continue;
     if (best.point >= 0 && peak[i].amplitude <= best.amplitude) continue;
-    best = (scene_peak){peak[i].frequency, peak[i].amplitude, peak[i].point};
+    best = (scene_peak){peak[i].at, peak[i].amplitude, peak[i].point};
   }
   free(peak);
   free(amplitude);

@@ -231,7 +231,7 @@ static void errors_are_those_of_the_curves(void **state) {
     for (int i = 0; i < 2; i++) {
       post_peak a = highest(&coarse, i), b = highest(&fine, i);
       peak      = fmax(peak, fabs(a.amplitude / b.amplitude - 1));
-      frequency = fmax(frequency, fabs(a.frequency / b.frequency - 1));
+      frequency = fmax(frequency, fabs(a.at / b.at - 1));
       curve     = fmax(curve, fmax(one_way(&coarse, &fine, i, b.amplitude),
                                    one_way(&fine, &coarse, i, b.amplitude)));
     }

@@ -61,7 +61,7 @@ static void the_peak_has_an_optimum(void **state) {
     assert_int_equal(t->n, PRELOADS);
     for (int i = 0; i < t->n; i++) {
       print_message("%d harmonics, n0 = %6g N: %.5g um at %.2f Hz\n", j ? 1 : 3, t->point[i].n0,
-                    1e6 * t->point[i].amplitude, t->point[i].frequency);
+                    1e6 * t->point[i].amplitude, t->point[i].at);
       assert_true(!t->point[i].edge && t->point[i].n0 == track[i][0]);
       assert_within(t->point[i].amplitude, track[i][1 + j], .02);
     }

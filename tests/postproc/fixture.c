@@ -79,6 +79,22 @@ static void fill_contact(const mhb_response *r, mhb_branch *b, int p, double lev
   }
 }
 
+const double fixture_range[MHB_N_PARAMETERS][2] = {{92, 138}, {-250, 1000}, {.05, 10},
+                                                   {0, .6},   {5e4, 5e6},   {1e5, 2e6}};
+
+/* The place on the curve becomes one in the range of what is followed; a limit that does not depend on it is level. */
+static void place_point(const fixture_options *o, mhb_branch *b, int p, double top, double *a) {
+  const double *range = fixture_range[o->parameter];
+  bool          limit = b->kind != MHB_BRANCH_NONLINEAR;
+  double        share = fmin(fmax((b->frequency[p] - 92) / (138 - 92), 0), 1);
+  b->value[p]         = b->frequency[p];
+  if (o->parameter == MHB_IN_FREQUENCY) return;
+  b->value[p]     = range[0] + share * (range[1] - range[0]);
+  b->frequency[p] = 240;
+  if (o->parameter == MHB_IN_N0) b->n0[p] = b->value[p];
+  if (limit && (o->parameter == MHB_IN_N0 || o->parameter == MHB_IN_MU)) *a = top / 2;
+}
+
 static shb_status add_branch(mhb_response *r, mhb_branch_kind kind, double n0,
                              const fixture_options *o, int n) {
   int at;
@@ -98,6 +114,7 @@ static shb_status add_branch(mhb_response *r, mhb_branch_kind kind, double n0,
     b->stable[p]     = kind != MHB_BRANCH_NONLINEAR || slope(&c, theta) > 0;
     b->iterations[p] = kind == MHB_BRANCH_NONLINEAR ? 3 + i % 3 : 0;
     b->seconds[p]    = 0.0017;
+    place_point(o, b, p, c.top, &a);
     fill_point(r, b, p, a, theta);
     fill_contact(r, b, p, 2.2 * a / (1e-5 + 1.1e-6 * fmax(n0, 0)), a);
     if (kind != MHB_BRANCH_NONLINEAR) continue;
@@ -144,6 +161,7 @@ static shb_status fill_all(mhb_response *r, const fixture_options *o) {
 
 mhb_response *fixture_response(const fixture_options *o) {
   mhb_response *r = mhb_response_create(o->n_pairs, o->n_probes, o->n_harmonics);
+  if (r) r->parameter = o->parameter;
   if (r && fill_all(r, o) == SHB_OK) return r;
   mhb_response_destroy(r);
   return NULL;
@@ -151,5 +169,5 @@ mhb_response *fixture_response(const fixture_options *o) {
 
 fixture_options fixture_usual(void) {
   static const double n0[] = {10, 25, 50, 100, 200, 500, 1000};
-  return (fixture_options){7, 240, n0, 2, 1, 3, true, true, 1};
+  return (fixture_options){7, 240, n0, 2, 1, 3, true, true, 1, MHB_IN_FREQUENCY};
 }

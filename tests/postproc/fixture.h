@@ -12,6 +12,8 @@ typedef struct {
   bool          limits;     /* open and stuck */
   bool          incomplete; /* the last nonlinear branch stops half way */
   double        scale;      /* of all motion; 0: nothing moves */
+  mhb_parameter
+      parameter; /* followed at 240 Hz, over its range as else the frequency from 92 to 138 Hz */
 } fixture_options;
 
 /* Bent resonance in slow-flow form: amplitude a = top sin(theta), frequency f = centre + bend a^2 - width cot(theta), theta in
@@ -19,6 +21,8 @@ typedef struct {
 typedef struct {
   double top, centre, bend, width;
 } fixture_curve;
+
+extern const double fixture_range[MHB_N_PARAMETERS][2];
 
 double fixture_frequency(const fixture_curve *curve, double theta);
 double fixture_amplitude(const fixture_curve *curve, double theta);

@@ -135,7 +135,7 @@ static void whole(void **state) {
 static void many_contacts(void **state) {
   (void)state;
   static const double n0[] = {40};
-  fixture_options     o    = {1, 3, n0, 0, 3, 1, false, false, 1};
+  fixture_options     o    = {1, 3, n0, 0, 3, 1, false, false, 1, MHB_IN_FREQUENCY};
   mhb_response       *r    = fixture_response(&o);
   post_buffer         text = {0};
   char               *name[MOST], names[8192];
@@ -149,7 +149,40 @@ static void many_contacts(void **state) {
   mhb_response_destroy(r);
 }
 
+/* What is followed has a column, after the frequency; the frequency and n0 have theirs anyway. */
+static void parameter(void **state) {
+  (void)state;
+  static const char *const wanted[MHB_N_PARAMETERS] = {NULL, "n0_N",   "scale",
+                                                       "mu", "ku_N_m", "kv_N_m"};
+  static const double      n0[]                     = {40};
+  for (int k = 1; k < MHB_N_PARAMETERS; k++) {
+    fixture_options o    = {1, 5, n0, 0, 1, 1, true, false, 1, (mhb_parameter)k};
+    mhb_response   *r    = fixture_response(&o);
+    post_buffer     text = {0};
+    char           *name[MOST], *cell[MOST], names[8192], room[8192];
+    int             n, m;
+    assert_non_null(r);
+    post_csv(r, &text);
+    const char *at  = record(text.text, names, name, &n);
+    bool        own = k != MHB_IN_N0;
+    assert_string_equal(name[4], own ? wanted[k] : "contact_v_amplitude_m");
+    for (int b = 0; b < r->n_branches; b++)
+      for (int p = 0; p < 5; p++) { /* the linear limits too */
+        double x = r->branch[b].value[p];
+        at       = record(at, room, cell, &m);
+        assert_int_equal(m, n);
+        assert_near(value(cell[column(name, n, wanted[k])]), x, 1e-11 * fabs(x));
+        assert_near(value(cell[column(name, n, "frequency_Hz")]), 240, 0);
+        if (own && r->branch[b].kind != MHB_BRANCH_NONLINEAR)
+          assert_string_equal(cell[column(name, n, "n0_N")], "");
+      }
+    post_buffer_free(&text);
+    mhb_response_destroy(r);
+  }
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(whole), cmocka_unit_test(many_contacts)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(whole), cmocka_unit_test(many_contacts),
+                                     cmocka_unit_test(parameter)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -39,7 +39,7 @@ static void resonance(void **state) {
   oscillator(&p, 300, zeta);
   post_peak peak = one_peak(&p);
   assert_near(peak.amplitude, 2.385 / half, 2e-7 * 2.385 / half);
-  assert_near(peak.frequency, f0 * sqrt(mid), 1e-4);
+  assert_near(peak.at, f0 * sqrt(mid), 1e-4);
   assert_near(peak.bandwidth, width, 2e-3 * width);
   assert_near(peak.damping, zeta, 2e-3 * zeta);
   assert_false(peak.edge);
@@ -58,7 +58,7 @@ static void order(void **state) {
       oscillator(&p, (level ? 1280 : 160) + shift * (level ? 24 : 3), zeta);
       post_peak peak  = one_peak(&p);
       error[level][0] = fmax(error[level][0], fabs(peak.amplitude * half / 2.385 - 1));
-      error[level][1] = fmax(error[level][1], fabs(peak.frequency - f0 * sqrt(mid)));
+      error[level][1] = fmax(error[level][1], fabs(peak.at - f0 * sqrt(mid)));
       error[level][2] = fmax(error[level][2], fabs(peak.bandwidth - width));
     }
   assert_true(log2(error[0][0] / error[1][0]) / 3 > 2.8);
@@ -88,14 +88,14 @@ static void folds(void **state) {
     bent(&p, &c, level ? 1600 : 200);
     post_peak peak = one_peak(&p);
     assert_near(peak.amplitude, c.top, 1e-5 * c.top);
-    assert_near(peak.frequency, c.centre + c.bend * c.top * c.top, level ? 2e-5 : 1e-3);
+    assert_near(peak.at, c.centre + c.bend * c.top * c.top, level ? 2e-5 : 1e-3);
     assert_true(isnan(peak.bandwidth));
     assert_ok(post_find_folds(p.n, p.f, p.a, NULL, &fold, &n));
     assert_int_equal(n, 2);
     assert_true(fold[0].upper);
     assert_false(fold[1].upper);
     for (int i = 0; i < 2; i++) {
-      error[level] = fmax(error[level], fabs(fold[i].frequency - fixture_frequency(&c, theta[i])));
+      error[level] = fmax(error[level], fabs(fold[i].at - fixture_frequency(&c, theta[i])));
       assert_near(fold[i].amplitude, fixture_amplitude(&c, theta[i]), level ? 1e-7 : 1e-6);
     }
     free(fold);
@@ -114,7 +114,7 @@ static void flagged(void **state) {
   assert_ok(post_find_folds(6, f, a, special, &fold, &n));
   assert_int_equal(n, 1);
   assert_int_equal(fold[0].point, 2);
-  assert_near(fold[0].frequency, 101.5, 0);
+  assert_near(fold[0].at, 101.5, 0);
   assert_true(fold[0].upper);
   free(fold);
   const double still[] = {100, 101, 101, 101, 100}; /* a run of equal frequencies turns once */
@@ -134,7 +134,7 @@ static int peaks_of(int n, const double *a, int top[8]) {
   assert_ok(post_find_peaks(n, f, a, &peaks, &found));
   for (int i = 0; i < found; i++) {
     top[i] = peaks[i].point;
-    assert_true(isfinite(peaks[i].frequency) && isfinite(peaks[i].amplitude));
+    assert_true(isfinite(peaks[i].at) && isfinite(peaks[i].amplitude));
     assert_true(peaks[i].amplitude >= a[peaks[i].point]);
   }
   if (found) assert_int_equal(peaks[post_highest(found, peaks)].point >= 0, 1);
@@ -193,7 +193,7 @@ static void edge(void **state) {
   assert_ok(post_find_peaks(3, f, a, &peaks, &n));
   assert_int_equal(n, 1);
   assert_true(peaks[0].edge);
-  assert_near(peaks[0].frequency, 90, 0);
+  assert_near(peaks[0].at, 90, 0);
   assert_true(isnan(peaks[0].bandwidth) && isnan(peaks[0].damping));
   free(peaks);
   assert_int_equal(post_highest(0, NULL), -1);
@@ -208,8 +208,45 @@ static void hairlines_are_no_folds(void **state) {
   post_fold *folds;
   assert_int_equal(post_find_folds(8, f, a, special, &folds, &n), SHB_OK);
   assert_int_equal(n, 2);
-  assert_true(folds[0].frequency > 117 && folds[1].frequency > 117);
+  assert_true(folds[0].at > 117 && folds[1].at > 117);
   free(folds);
+}
+
+/* A curve of one value has it everywhere; one that ends on a plateau has its largest value at the end, whatever the rounding; the
+ * largest value is told even if it rises above the plateau by no more than a ripple. */
+static void plateaus(void **state) {
+  (void)state;
+  const double  x[]     = {-2, -1, 0, 1, 2};
+  const double  flat[]  = {3, 3 + 1e-9, 3, 3 - 1e-9, 3};
+  const double  ends[]  = {1, 2, 3, 3 + 1e-9, 3 - 1e-9};
+  const double  bump[]  = {1, 3.02, 3, 3, 3};
+  const double *curve[] = {flat, ends, bump};
+  const double  at[]    = {-2, 2, -1};
+  for (int i = 0; i < 3; i++) {
+    post_peak *peaks;
+    int        n;
+    assert_ok(post_find_peaks(5, x, curve[i], &peaks, &n));
+    assert_int_equal(n, 1);
+    assert_near(peaks[0].at, at[i], i == 2 ? .5 : 0);
+    assert_int_equal(peaks[0].edge, i < 2);
+    assert_int_equal(peaks[0].level, i == 0);
+    free(peaks);
+  }
+}
+
+/* Around 0 and below the width of a fold pair is measured by the range. */
+static void folds_around_zero(void **state) {
+  (void)state;
+  const double a[] = {1, 2, 3, 4};
+  for (int k = 0; k < 4; k++) {
+    double     at = k < 2 ? 0 : -100, width = k % 2 ? 1e-9 : 3;
+    double     x[4] = {at - 200, at + width, at, at + 200};
+    post_fold *folds;
+    int        n;
+    assert_ok(post_find_folds(4, x, a, (const int[]){0, 1, 1, 0}, &folds, &n));
+    assert_int_equal(n, k % 2 ? 0 : 2);
+    free(folds);
+  }
 }
 
 int main(void) {
@@ -217,6 +254,7 @@ int main(void) {
       cmocka_unit_test(resonance), cmocka_unit_test(order),
       cmocka_unit_test(folds),     cmocka_unit_test(flagged),
       cmocka_unit_test(cases),     cmocka_unit_test(edge),
-      cmocka_unit_test(closed),    cmocka_unit_test(hairlines_are_no_folds)};
+      cmocka_unit_test(closed),    cmocka_unit_test(hairlines_are_no_folds),
+      cmocka_unit_test(plateaus),  cmocka_unit_test(folds_around_zero)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

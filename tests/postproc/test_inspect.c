@@ -76,6 +76,24 @@ static void response(void **state) {
   mhb_response_destroy(r);
 }
 
+static void parameter(void **state) {
+  (void)state;
+  static const char *const range[] = {"n0 −250 … 1000 N at 240 Hz", "scale 0.05 … 10 at 240 Hz"};
+  for (int k = 0; k < 2; k++) {
+    fixture_options o = fixture_usual();
+    o.parameter       = k ? MHB_IN_SCALE : MHB_IN_N0;
+    mhb_response *r   = fixture_response(&o);
+    assert_ok(mhb_response_write(r, at("p.response.h5"), &PROVENANCE));
+    char *text = inspect("p.response.h5", PLAIN, SHB_OK);
+    assert_has(text, range[k]);
+    assert_has(text,
+               k ? "open peak 1.24\u00a0mm at level\u00a0" : "open peak 618\u00a0µm at every n₀");
+    assert_int_equal(strstr(text, "lowest (n0 = ") != NULL, k);
+    free(text);
+    mhb_response_destroy(r);
+  }
+}
+
 static void modal(void **state) {
   (void)state;
   double frequency[] = {103.6, 410.25}, damping[] = {0.002, 0.002}, shape[6] = {1, 2, 3, -4, 5, 6};
@@ -229,8 +247,9 @@ static void errors(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(response),  cmocka_unit_test(modal),
-                                     cmocka_unit_test(pretender), cmocka_unit_test(foreign),
-                                     cmocka_unit_test(large),     cmocka_unit_test(errors)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(response), cmocka_unit_test(parameter),
+                                     cmocka_unit_test(modal),    cmocka_unit_test(pretender),
+                                     cmocka_unit_test(foreign),  cmocka_unit_test(large),
+                                     cmocka_unit_test(errors)};
   return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

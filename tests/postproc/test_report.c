@@ -236,13 +236,14 @@ static void odd(void **state) {
   (void)state;
   static const double   one[] = {100}, gap[] = {-40, 0, 60};
   const fixture_options o[] = {
-      {0, 50, NULL, 1, 1, 3, true, false, 1},   /* limits only */
-      {1, 1, one, 1, 1, 3, true, false, 1},     /* a single point */
-      {3, 40, gap, 1, 1, 3, true, true, 0},     /* nothing moves */
-      {3, 40, gap, 0, 1, 1, false, false, 1},   /* no probe, no limit, one harmonic, a gap */
-      {1, 30, one, 3, 0, 2, false, false, 1},   /* no contact */
-      {1, 1, one, 1, 1, 3, true, true, 1},      /* a branch without any point */
-      {2, 60, gap, 12, 30, 40, true, false, 1}, /* many of everything */
+      {0, 50, NULL, 1, 1, 3, true, false, 1, MHB_IN_FREQUENCY}, /* limits only */
+      {1, 1, one, 1, 1, 3, true, false, 1, MHB_IN_FREQUENCY},   /* a single point */
+      {3, 40, gap, 1, 1, 3, true, true, 0, MHB_IN_FREQUENCY},   /* nothing moves */
+      {3, 40, gap, 0, 1, 1, false, false, 1,
+       MHB_IN_FREQUENCY}, /* no probe, no limit, one harmonic, a gap */
+      {1, 30, one, 3, 0, 2, false, false, 1, MHB_IN_FREQUENCY},   /* no contact */
+      {1, 1, one, 1, 1, 3, true, true, 1, MHB_IN_FREQUENCY},      /* a branch without any point */
+      {2, 60, gap, 12, 30, 40, true, false, 1, MHB_IN_FREQUENCY}, /* many of everything */
   };
   for (size_t i = 0; i < sizeof o / sizeof *o; i++) {
     char *html = page(&o[i], "odd");
@@ -255,6 +256,52 @@ static void odd(void **state) {
     assert_int_equal(strstr(html, "No nonlinear curve") != NULL, i == 0 || i == 5);
     assert_int_equal(strstr(html, "Nothing moves") != NULL, i == 2);
     assert_int_equal(strstr(html, "leave out") != NULL, i == 6);
+    free(html);
+  }
+}
+
+/* Curves over another parameter: it is on every axis, the frequency is said, nothing is left of a sweep in frequency. */
+static void followed(void **state) {
+  (void)state;
+  static const struct {
+    const char *label, *once, *fold, *json;
+  } row[MHB_N_PARAMETERS] = {
+      {"", "", "", ""},
+      {">preload n₀, N<", "Preload n₀ −250 to 1000\u00a0N at 240\u00a0Hz", "at one n₀",
+       "\"parameter\":\"n0\",\"name\":\"preload n₀\",\"unit\":\"N\",\"scale\":1,\"log\":false"},
+      {">excitation level<", "excitation level 0.05 to 10 at 240\u00a0Hz", "at one level",
+       "\"parameter\":\"scale\",\"name\":\"excitation "
+       "level\",\"unit\":\"\",\"scale\":1,\"log\":true"},
+      {">friction coefficient μ<", "friction coefficient μ 0 to 0.6 at 240\u00a0Hz", "at one μ",
+       "\"log\":false,\"range\":[0,0.6]"},
+      {">tangential stiffness kuu, MN/m<", "kuu 0.05 to 5\u00a0MN/m at 240\u00a0Hz", "at one kuu",
+       "\"unit\":\"MN/m\",\"scale\":1e+06,\"log\":true,\"range\":[50000,5000000]"},
+      {">normal stiffness kv, MN/m<", "kv 0.1 to 2\u00a0MN/m at 240\u00a0Hz", "at one kv",
+       "\"log\":false,\"range\":[100000,2000000]"},
+  };
+  for (int p = MHB_IN_FREQUENCY + 1; p < MHB_N_PARAMETERS; p++) {
+    fixture_options o = fixture_usual();
+    o.parameter       = (mhb_parameter)p;
+    char *html        = page(&o, "x");
+    check_tags(html);
+    assert_has(html, row[p].once);
+    assert_has(html, row[p].fold);
+    assert_has(html, row[p].json);
+    assert_has(html, "<h2>Forced response at 240\u00a0Hz</h2>");
+    static const char *const never[] = {"frequency, Hz</text>",
+                                        "Half-power",
+                                        "Equivalent damping",
+                                        "Widen",
+                                        "against frequency",
+                                        ">nan",
+                                        ":nan",
+                                        "Mnan",
+                                        "Lnan",
+                                        ":inf"};
+    *strstr(html, "<script>")        = '\0'; /* the program knows all words */
+    for (size_t i = 0; i < sizeof never / sizeof *never; i++) assert_has_not(html, never[i]);
+    assert_int_equal(count(html, row[p].label), 3);
+    assert_int_equal(strstr(html, "id=\"tracking\"") != NULL, p != MHB_IN_N0);
     free(html);
   }
 }
@@ -287,7 +334,8 @@ static void size(void **state) {
   double n0[40];
   for (int i = 0; i < 40; i++) n0[i] = 5 * pow(1.3, i);
   for (int big = 0; big <= 1; big++) {
-    fixture_options o    = {big ? 40 : 20, big ? 2000 : 500, n0, 2, 1, 3, true, false, 1};
+    fixture_options o    = {big ? 40 : 20,   big ? 2000 : 500, n0, 2, 1, 3, true, false, 1,
+                         MHB_IN_FREQUENCY};
     char           *html = page(&o, "big");
     assert_true(strlen(html) < 3000000);
     check_self_contained(html);
@@ -320,9 +368,9 @@ static void picture(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(usual),         cmocka_unit_test(escaping),
-                                     cmocka_unit_test(data),          cmocka_unit_test(odd),
-                                     cmocka_unit_test(not_estimated), cmocka_unit_test(size),
-                                     cmocka_unit_test(picture),       cmocka_unit_test(turns)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(usual),   cmocka_unit_test(escaping),      cmocka_unit_test(data),
+      cmocka_unit_test(odd),     cmocka_unit_test(not_estimated), cmocka_unit_test(size),
+      cmocka_unit_test(picture), cmocka_unit_test(turns),         cmocka_unit_test(followed)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

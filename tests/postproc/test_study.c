@@ -54,7 +54,7 @@ static void tracking(void **state) {
   assert_near(t->bracket[1], 300, 0);
   assert_true(t->optimum_n0 > 20 && t->optimum_n0 < 300);
   assert_true(t->optimum_amplitude <= t->point[1].amplitude);
-  assert_true(t->open.amplitude > t->stuck.amplitude && t->stuck.frequency > t->open.frequency);
+  assert_true(t->open.amplitude > t->stuck.amplitude && t->stuck.at > t->open.at);
   assert_int_equal(t->point[1].branch, 4);
   post_study_destroy(study);
   mhb_response_destroy(r);
@@ -149,21 +149,93 @@ static void jumps(void **state) {
   for (int b = 0; b < r->n_branches; b++) study->curve[b].n_folds = 0;
   post_curve *c = &study->curve[3];
   free(c->fold);
-  c->fold              = calloc(4, sizeof *c->fold);
-  c->n_folds           = 4;
-  c->fold[0].frequency = 103.9;
-  c->fold[1].frequency = 103.25;
-  c->fold[2].frequency = 121.5;
-  c->fold[3].frequency = 121.5 + 1e-6;
+  c->fold       = calloc(4, sizeof *c->fold);
+  c->n_folds    = 4;
+  c->fold[0].at = 103.9;
+  c->fold[1].at = 103.25;
+  c->fold[2].at = 121.5;
+  c->fold[3].at = 121.5 + 1e-6;
   post_findings(study, &text);
   assert_has(text.text, "n₀ = 20\u00a0N (103.250 to 103.900\u00a0Hz). In between");
   post_buffer_free(&text);
-  c->fold[1].frequency = 103.9 - 1e-6;
+  c->fold[1].at = 103.9 - 1e-6;
   post_findings(study, &text);
   assert_has(text.text, "No curve folds visibly");
   post_buffer_free(&text);
   post_study_destroy(study);
   mhb_response_destroy(r);
+}
+
+/* n0 is followed: one curve among the groups, its limits level, no tracking; the least amplitude at an exact valley. */
+static void followed(void **state) {
+  (void)state;
+  fixture_options o = fixture_usual();
+  post_study     *study;
+  post_buffer     text = {0};
+  o.n_preloads         = 1;
+  o.incomplete         = false;
+  o.parameter          = MHB_IN_N0;
+  mhb_response *r      = fixture_response(&o);
+  mhb_branch   *b      = &r->branch[2];
+  double        least  = 2e-4, a[240];
+  for (int p = 0; p < b->n_points;
+       p++) { /* a^2 is a parabola over n0: its vertex is found exactly */
+    b->value[p] = b->n0[p] = -250 + 1250.0 * p / 239;
+    b->stable[p]           = 1;
+    a[p]                   = least * sqrt(1 + pow((b->value[p] - 87.5) / 60, 2));
+    double now             = post_amplitude(r, b, p, post_output_primary(r), 1);
+    for (int i = 0; i < 2 * 3 * 4; i++) b->probe[p * 24 + i] *= a[p] / now;
+  }
+  assert_ok(post_study_create(r, &study));
+  assert_int_equal(study->n_groups, 3);
+  assert_int_equal(study->n_ranks, 0);
+  assert_int_equal(study->tracking.n, 0);
+  assert_true(study->tracking.open.level && study->tracking.stuck.level);
+  assert_near(study->tracking.open.at, -250, 1e-9);
+  assert_near(study->tracking.stuck.at, 1000, 1e-9);
+  assert_int_equal(study->curve[2].n_valleys, 1);
+  assert_near(study->curve[2].valley[0].at, 87.5, 1e-6);
+  assert_near(study->curve[2].valley[0].amplitude, least, 1e-12);
+  post_findings(study, &text);
+  assert_has(text.text, "least at <b>n₀ = 87.5\u00a0N</b>, 200\u00a0µm");
+  assert_has(text.text, "largest at n₀ = 1000\u00a0N, the edge of the range");
+  assert_has_not(text.text, "Widen");
+  post_buffer_free(&text);
+  post_figures(study, &text);
+  assert_has(text.text, "at every n₀");
+  assert_has(text.text, "Lowest with friction");
+  post_buffer_free(&text);
+  post_study_destroy(study);
+  /* where a machine does not stay nothing is to be gained */
+  for (int p = 50; p < 80; p++) b->stable[p] = 0;
+  assert_ok(post_study_create(r, &study));
+  post_findings(study, &text);
+  assert_has_not(text.text, "87.5");
+  post_buffer_free(&text);
+  post_study_destroy(study);
+  mhb_response_destroy(r);
+}
+
+/* Another parameter: a group a preload, the highest peak's place in the parameter. */
+static void followed_by_preload(void **state) {
+  (void)state;
+  fixture_options o = fixture_usual();
+  post_study     *study, *swept;
+  mhb_response   *sweep = fixture_response(&o);
+  o.parameter           = MHB_IN_KV;
+  mhb_response *r       = fixture_response(&o);
+  assert_ok(post_study_create(r, &study));
+  assert_ok(post_study_create(sweep, &swept));
+  assert_int_equal(study->n_ranks, 7);
+  for (int i = 0; i < study->tracking.n; i++) {
+    double share = (swept->tracking.point[i].at - 92) / 46;
+    assert_near(study->tracking.point[i].at, 1e5 + 1.9e6 * share, 1);
+    assert_near(study->tracking.point[i].amplitude, swept->tracking.point[i].amplitude, 1e-12);
+  }
+  post_study_destroy(study);
+  post_study_destroy(swept);
+  mhb_response_destroy(r);
+  mhb_response_destroy(sweep);
 }
 
 /* What the page says agrees with the numbers. */
@@ -190,9 +262,14 @@ static void words(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(groups),  cmocka_unit_test(tracking),
-                                     cmocka_unit_test(optimum), cmocka_unit_test(incomplete),
-                                     cmocka_unit_test(errors),  cmocka_unit_test(jumps),
-                                     cmocka_unit_test(words)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(groups),
+                                     cmocka_unit_test(tracking),
+                                     cmocka_unit_test(optimum),
+                                     cmocka_unit_test(incomplete),
+                                     cmocka_unit_test(errors),
+                                     cmocka_unit_test(jumps),
+                                     cmocka_unit_test(words),
+                                     cmocka_unit_test(followed),
+                                     cmocka_unit_test(followed_by_preload)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -43,6 +43,8 @@ static void units(void **state) {
   assert_string_equal(post_unit_length(1e-15).name, "pm");
   assert_string_equal(post_unit_force(3000).name, "N");
   assert_string_equal(post_unit_force(30000).name, "kN");
+  assert_string_equal(post_unit_stiffness(5e5).name, "kN/m");
+  assert_string_equal(post_unit_stiffness(0).name, "MN/m");
   assert_string_equal(post_unit_energy(0.0256).name, "mJ");
   assert_string_equal(post_measure(out, 2.387e-4, post_unit_length(2.387e-4), 3), "239\u00a0µm");
   assert_string_equal(post_measure(out, NAN, post_unit_length(1), 3), "–");
