@@ -100,9 +100,19 @@ void post_figures(const post_study *study, post_buffer *out) {
 
 /* ---------------------------------------------------------------- sentences */
 
+/* ": 71 % below open" */
+static void put_ratio(const char *joint, double ratio, const char *limit, post_buffer *out) {
+  char percent[POST_NUMBER];
+  if (fabs(1 - ratio) < 1e-6)
+    post_put(out, "%sas %s", joint, limit);
+  else
+    post_put(out, "%s%s %s %s", joint, post_percent(percent, fabs(1 - ratio)),
+             ratio <= 1 ? "below" : "above", limit);
+}
+
 static void put_optimum(const post_study *study, post_buffer *out) {
   const post_tracking *t = &study->tracking;
-  char n0[POST_NUMBER], a[POST_NUMBER], f[POST_NUMBER], at[POST_PLACE], percent[POST_NUMBER];
+  char                 n0[POST_NUMBER], a[POST_NUMBER], f[POST_NUMBER], at[POST_PLACE];
   if (t->best < 0) {
     if (study->abscissa.parameter == MHB_IN_N0 && study->largest > 0) return;
     post_put(out, study->largest > 0
@@ -121,8 +131,7 @@ static void put_optimum(const post_study *study, post_buffer *out) {
   for (int i = 0; i < 2; i++) {
     double ratio = best->amplitude / (i ? t->stuck : t->open).amplitude;
     if (!isfinite(ratio)) continue;
-    post_put(out, "%s%s %s %s", joint, post_percent(percent, fabs(1 - ratio)),
-             ratio <= 1 ? "below" : "above", i ? "stuck" : "open");
+    put_ratio(joint, ratio, i ? "stuck" : "open", out);
     joint = ", ";
   }
   post_put(out, "%s.", best->complete ? "" : " (but its curve is not complete)");
@@ -143,7 +152,7 @@ static void put_optimum(const post_study *study, post_buffer *out) {
 static void put_extremes(const post_study *study, post_buffer *out) {
   const post_tracking *t      = &study->tracking;
   post_track_point     lowest = extreme(study, true), highest = extreme(study, false);
-  char                 a[POST_NUMBER], n0[POST_NUMBER], at[POST_PLACE], percent[POST_NUMBER];
+  char                 a[POST_NUMBER], n0[POST_NUMBER], at[POST_PLACE];
   bool                 named = study->n_ranks > 1;
   if (!post_at_one_frequency(study) || study->abscissa.parameter == MHB_IN_SCALE) return;
   if (!(lowest.amplitude > 0) || !(highest.amplitude > 0)) return;
@@ -156,8 +165,7 @@ static void put_extremes(const post_study *study, post_buffer *out) {
     const post_track_point *limit = i ? &t->stuck : &t->open;
     double                  ratio = lowest.amplitude / limit->amplitude;
     if (!isfinite(ratio) || !limit->level) continue;
-    post_put(out, "%s%s %s %s", joint, post_percent(percent, fabs(1 - ratio)),
-             ratio <= 1 ? "below" : "above", i ? "stuck" : "open");
+    put_ratio(joint, ratio, i ? "stuck" : "open", out);
     joint = ", ";
   }
   post_put(out, ". It is largest at %s%s", place(study, &highest, at),
