@@ -70,12 +70,23 @@ static void summarise(const case_file *file, const mhb_response *response, const
   puts("");
 }
 
+/* Rings take long, and longest where the wave that the balance finds is left. */
+static void warn_of_ring(const case_file *file, const modal_model *model) {
+  if (file->mhb.to_ground || file->mhb.blades * model->n_modes < 200) return;
+  fprintf(
+      stderr,
+      "shroudhb: warning: all %d blades of the ring are integrated, with %d modes each; a point "
+      "whose wave does not last takes all %d periods (integrate.periods)\n",
+      file->mhb.blades, model->n_modes, file->integrate.max_periods);
+}
+
 static shb_status solve(const case_file *file, const char *modal, const mhb_response *balance,
                         char *settings, const char *output, shb_progress *progress) {
   modal_model    model;
   mhb_response  *response   = NULL;
   shb_provenance provenance = command_provenance(file, settings, "shroudhb-integrate");
   SHB_TRY(modal_model_read(modal, &model));
+  if (!progress->quiet) warn_of_ring(file, &model);
   shb_status status = mhb_witness(&model, &file->mhb, &file->integrate, balance, output,
                                   &provenance, progress, &response);
   shb_progress_clear(progress);
