@@ -56,7 +56,7 @@ static const case_key table[] = {
     {"rotor.blades", CASE_INTEGER, "", 2, 1000, .required = true, AT(blades), .stages = CASE_MESH | CASE_MODAL | CASE_MHB, .when = CASE_IF_SECTOR,
      .help = "number of blades; the sector angle is 360 deg / blades"},
     {"rotor.speed", CASE_NUMBER, "rad/s", 0, 1e5, .fallback = "0 rpm", AT(speed), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
-     .help = "rotation speed; must be 0 where modes are computed (no centrifugal stiffening yet)"},
+     .help = "rotation speed: modes about the static equilibrium under the centrifugal load; 0: at rest"},
     {"rotor.axis", CASE_CHOICE, "", .words = "x y z -x -y -z", .fallback = "x", AT(axis), .stages = CASE_MESH | CASE_MODAL, .when = CASE_IF_OWN_MODES,
      .help = "engine axis, through the origin"},
 

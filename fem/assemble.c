@@ -107,9 +107,8 @@ static PetscErrorCode create_matrix(const fem_system *system, const PetscInt *di
   PetscFunctionReturn(0);
 }
 
-/* rows: block row where it is ours, else -1 (ignored by PETSc); columns: block row, -1 clamped. */
-static bool element_rows(const mesh_fe *mesh, const fem_system *system, int element,
-                         PetscInt rows[10], PetscInt columns[10]) {
+bool fem_system_rows(const mesh_fe *mesh, const fem_system *system, int element, PetscInt rows[10],
+                     PetscInt columns[10]) {
   bool touches = false;
   for (int i = 0; i < 10; i++) {
     columns[i] = system->row[mesh->connectivity[10 * element + i]];
@@ -125,7 +124,7 @@ static PetscErrorCode add_elements(const mesh_fe *mesh, const fem_material *mate
   for (int e = 0; e < mesh->n_elements; e++) {
     PetscInt rows[10], columns[10];
     double   x[10][3], K[30][30], m[10][10], M[30][30] = {{0}};
-    if (!element_rows(mesh, system, e, rows, columns)) continue;
+    if (!fem_system_rows(mesh, system, e, rows, columns)) continue;
     for (int i = 0; i < 10; i++)
       memcpy(x[i], mesh->coordinates + 3 * (size_t)mesh->connectivity[10 * e + i], sizeof x[i]);
     fem_tet10_stiffness(element, material, x, K);
@@ -175,24 +174,48 @@ PetscErrorCode fem_system_create(MPI_Comm comm, const mesh_fe *mesh, const fem_m
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode fem_system_gather(const fem_system *system, Vec x, double *nodal) {
-  Vec                all;
-  VecScatter         scatter;
+/* Nodal values of a vector of all free dofs; clamped nodes zero. */
+static PetscErrorCode to_nodes(const fem_system *system, Vec all, double *nodal) {
   const PetscScalar *value;
-  int                rank;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(all, &value));
+  for (int i = 0; i < system->n_nodes; i++)
+    for (int d = 0; d < 3; d++)
+      nodal[3 * (size_t)i + d] = system->row[i] < 0 ? 0 : value[3 * system->row[i] + d];
+  PetscCall(VecRestoreArrayRead(all, &value));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode scatter_to(VecScatter scatter, Vec x, Vec all) {
+  PetscFunctionBeginUser;
+  PetscCall(VecScatterBegin(scatter, x, all, INSERT_VALUES, SCATTER_FORWARD));
+  PetscCall(VecScatterEnd(scatter, x, all, INSERT_VALUES, SCATTER_FORWARD));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode fem_system_gather(const fem_system *system, Vec x, double *nodal) {
+  Vec        all;
+  VecScatter scatter;
+  int        rank;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(system->comm, &rank));
   PetscCall(VecScatterCreateToZero(x, &scatter, &all));
-  PetscCall(VecScatterBegin(scatter, x, all, INSERT_VALUES, SCATTER_FORWARD));
-  PetscCall(VecScatterEnd(scatter, x, all, INSERT_VALUES, SCATTER_FORWARD));
-  if (rank == 0) {
-    PetscCall(VecGetArrayRead(all, &value));
-    for (int i = 0; i < system->n_nodes; i++)
-      for (int d = 0; d < 3; d++)
-        nodal[3 * (size_t)i + d] = system->row[i] < 0 ? 0 : value[3 * system->row[i] + d];
-    PetscCall(VecRestoreArrayRead(all, &value));
-  }
+  PetscCall(scatter_to(scatter, x, all));
+  if (rank == 0) PetscCall(to_nodes(system, all, nodal));
+  PetscCall(VecScatterDestroy(&scatter));
+  PetscCall(VecDestroy(&all));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode fem_system_share(const fem_system *system, Vec x, double *nodal) {
+  Vec        all;
+  VecScatter scatter;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecScatterCreateToAll(x, &scatter, &all));
+  PetscCall(scatter_to(scatter, x, all));
+  PetscCall(to_nodes(system, all, nodal));
   PetscCall(VecScatterDestroy(&scatter));
   PetscCall(VecDestroy(&all));
   PetscFunctionReturn(0);

@@ -28,6 +28,14 @@ PetscErrorCode fem_system_create(MPI_Comm comm, const mesh_fe *mesh, const fem_m
  *   nodal  out  [n_nodes][3] on rank 0; not touched elsewhere */
 PetscErrorCode fem_system_gather(const fem_system *system, Vec x, double *nodal);
 
+/* The same on every rank. */
+PetscErrorCode fem_system_share(const fem_system *system, Vec x, double *nodal);
+
+/* Where an element's blocks go: rows as PETSc wants them, the node's block row where it is this rank's, else -1
+ * (ignored); columns, -1 for a clamped node. False if the element touches no row of this rank. */
+bool fem_system_rows(const mesh_fe *mesh, const fem_system *system, int element, PetscInt rows[10],
+                     PetscInt columns[10]);
+
 PetscErrorCode fem_system_destroy(fem_system *system); /* also on a zeroed struct */
 
 #endif

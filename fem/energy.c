@@ -2,44 +2,76 @@
 
 #include <string.h>
 
-/* lambda (tr e)^2 + 2 mu e : e of the displacement gradient H[a][d] = du_a / dx_d. */
-static double density(double lambda, double mu, const double H[3][3]) {
-  double trace = H[0][0] + H[1][1] + H[2][2], square = 0;
+#include "fem/finite.h"
+
+/* lambda (tr e)^2 + 2 mu e : e, e = sym(F^T H). */
+static double elastic(const fem_lame *lame, const double F[3][3], const double H[3][3]) {
+  double pulled[3][3], trace = 0, square = 0;
   for (int a = 0; a < 3; a++)
-    for (int d = 0; d < 3; d++) {
-      double strain = (H[a][d] + H[d][a]) / 2;
+    for (int b = 0; b < 3; b++)
+      pulled[a][b] = F[0][a] * H[0][b] + F[1][a] * H[1][b] + F[2][a] * H[2][b];
+  for (int a = 0; a < 3; a++) {
+    trace += pulled[a][a];
+    for (int b = 0; b < 3; b++) {
+      double strain = (pulled[a][b] + pulled[b][a]) / 2;
       square += strain * strain;
     }
-  return lambda * trace * trace + 2 * mu * square;
+  }
+  return lame->lambda * trace * trace + 2 * lame->mu * square;
 }
 
-static double element_energy(const fem_tet10 *element, double lambda, double mu,
-                             const double x[10][3], const double u[10][3]) {
+/* H S : H */
+static double geometric(const double S[3][3], const double H[3][3]) {
+  double sum = 0;
+  for (int a = 0; a < 3; a++)
+    for (int b = 0; b < 3; b++)
+      for (int c = 0; c < 3; c++) sum += H[a][b] * S[b][c] * H[a][c];
+  return sum;
+}
+
+static double stored(const fem_tet10 *element, const fem_lame *lame, const double x[10][3],
+                     const double state[10][3], const double u[10][3]) {
   const fem_tet_rule *rule = fem_tet10_stiffness_rule(element, x);
   double              sum  = 0;
   for (int p = 0; p < rule->n; p++) {
-    double g[10][3], H[3][3] = {{0}};
-    double volume = rule->weight[p] * fem_tet10_gradient(rule, p, x, g);
-    for (int i = 1; i < 10; i++) /* from node 0: a translation leaves no trace */
-      for (int a = 0; a < 3; a++)
-        for (int d = 0; d < 3; d++) H[a][d] += (u[i][a] - u[0][a]) * g[i][d];
-    sum += volume * density(lambda, mu, (const double(*)[3])H);
+    fem_deformation at;
+    double          g[10][3], H[3][3], h[3][3];
+    double          volume = rule->weight[p] * fem_tet10_gradient(rule, p, x, g);
+    fem_displacement_gradient((const double(*)[3])g, state, H);
+    fem_deform(lame, (const double(*)[3])H, &at);
+    fem_displacement_gradient((const double(*)[3])g, u, h);
+    sum += volume * (elastic(lame, (const double(*)[3])at.F, (const double(*)[3])h) +
+                     geometric((const double(*)[3])at.S, (const double(*)[3])h));
+  }
+  return sum;
+}
+
+static double spun(const fem_body *body, const double x[10][3], const double u[10][3]) {
+  double m[10][10], square[3], sum = 0;
+  fem_rotation_square(&body->rotation, square);
+  fem_tet10_mass(body->element, body->material->rho, x, m);
+  for (int i = 0; i < 10; i++)
+    for (int j = 0; j < 10; j++)
+      for (int d = 0; d < 3; d++) sum += m[i][j] * square[d] * u[i][d] * u[j][d];
+  return sum;
+}
+
+double fem_tangent_energy(const fem_body *body, const double *state, const double *u) {
+  const fem_lame lame = fem_lame_of(body->material);
+  double         sum  = 0;
+  for (int e = 0; e < body->mesh->n_elements; e++) {
+    double x[10][3], at[10][3], by[10][3];
+    fem_body_element(body, e, state, x, at);
+    fem_body_element(body, e, u, x, by);
+    sum += stored(body->element, &lame, (const double(*)[3])x, (const double(*)[3])at,
+                  (const double(*)[3])by);
+    if (body->rotation.speed != 0) sum -= spun(body, (const double(*)[3])x, (const double(*)[3])by);
   }
   return sum;
 }
 
 double fem_strain_energy(const mesh_fe *mesh, const fem_material *material,
                          const fem_tet10 *element, const double *u) {
-  double mu = material->E / (2 * (1 + material->nu)), sum = 0;
-  double lambda = 2 * mu * material->nu / (1 - 2 * material->nu);
-  for (int e = 0; e < mesh->n_elements; e++) {
-    double at[10][3], by[10][3];
-    for (int i = 0; i < 10; i++) {
-      size_t node = 3 * (size_t)mesh->connectivity[10 * (size_t)e + (size_t)i];
-      memcpy(at[i], mesh->coordinates + node, sizeof at[i]);
-      memcpy(by[i], u + node, sizeof by[i]);
-    }
-    sum += element_energy(element, lambda, mu, (const double(*)[3])at, (const double(*)[3])by);
-  }
-  return sum;
+  const fem_body body = {.mesh = mesh, .material = material, .element = element};
+  return fem_tangent_energy(&body, NULL, u);
 }

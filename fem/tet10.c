@@ -5,6 +5,11 @@
 
 static const int edge_of[6][2] = {{0, 1}, {1, 2}, {2, 0}, {3, 0}, {2, 3}, {1, 3}};
 
+fem_lame fem_lame_of(const fem_material *material) {
+  double mu = material->E / (2 * (1 + material->nu)), nu = material->nu;
+  return (fem_lame){.lambda = 2 * mu * nu / (1 - 2 * nu), .mu = mu};
+}
+
 static void mass_sum(const fem_tet_rule *rule, const double *scale, double m[10][10]) {
   memset(m, 0, 100 * sizeof(double));
   for (int p = 0; p < rule->n; p++) {
@@ -91,12 +96,11 @@ static void add_point(double lambda, double mu, const double g[10][3], double K[
 void fem_tet10_stiffness(const fem_tet10 *element, const fem_material *material,
                          const double x[10][3], double K[30][30]) {
   const fem_tet_rule *rule = fem_tet10_stiffness_rule(element, x);
-  double              mu = material->E / (2 * (1 + material->nu)), nu = material->nu;
-  double              lambda = 2 * mu * nu / (1 - 2 * nu);
+  const fem_lame      lame = fem_lame_of(material);
   memset(K, 0, 900 * sizeof(double));
   for (int p = 0; p < rule->n; p++) {
     double g[10][3], volume = rule->weight[p] * fem_tet10_gradient(rule, p, x, g);
-    add_point(lambda * volume, mu * volume, g, K);
+    add_point(lame.lambda * volume, lame.mu * volume, g, K);
   }
   for (int i = 0; i < 30; i++)
     for (int j = 0; j < i; j++) K[i][j] = K[j][i];

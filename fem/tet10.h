@@ -21,6 +21,13 @@ typedef struct {
   double        reference_mass[10][10]; /* integral of N_i N_j over the reference element */
 } fem_tet10;
 
+/* Lame constants, Pa. */
+typedef struct {
+  double lambda, mu;
+} fem_lame;
+
+fem_lame fem_lame_of(const fem_material *material);
+
 PetscErrorCode fem_tet10_create(fem_mass_rule mass, fem_tet10 *element);
 
 /* Do all mid-side nodes lie in the middle of their edges (to 1e-9 of the edge)? Then J is constant. */

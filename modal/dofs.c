@@ -101,6 +101,15 @@ PetscErrorCode modal_dofs_sample(const modal_dofs *dofs, const fem_system *syste
   PetscFunctionReturn(0);
 }
 
+void modal_dofs_of_nodes(const modal_dofs *dofs, const double *nodal, double *value) {
+  for (int c = 0; c < dofs->n; c++) {
+    value[c] = 0;
+    for (int e = dofs->start[c]; e < dofs->start[c + 1]; e++)
+      for (int d = 0; d < 3; d++)
+        value[c] += dofs->weight[3 * (size_t)e + d] * nodal[3 * (size_t)dofs->node[e] + d];
+  }
+}
+
 void modal_dofs_free(modal_dofs *dofs) {
   free(dofs->start);
   free(dofs->node);

@@ -31,6 +31,9 @@ PetscErrorCode modal_dofs_spread(const modal_dofs *dofs, const fem_system *syste
 PetscErrorCode modal_dofs_sample(const modal_dofs *dofs, const fem_system *system, Mat X,
                                  int n_columns, int stride, double *value);
 
+/* value[c] = b_c^T u of nodal displacements [n_nodes][3]. */
+void modal_dofs_of_nodes(const modal_dofs *dofs, const double *nodal, double *value);
+
 void modal_dofs_free(modal_dofs *dofs);
 
 #endif

@@ -65,11 +65,26 @@ static PetscErrorCode configure(const fem_system *system, const modal_eigen_sett
   PetscFunctionReturn(0);
 }
 
+/* Negative pivots that MUMPS met (on one rank all of them; on more, its dense root is not counted but must be
+ * positive definite too); 0 from another solver. */
+static PetscErrorCode count_negative(Mat factor, PetscInt *n) {
+  MatSolverType type;
+  PetscBool     is_mumps;
+  PetscFunctionBeginUser;
+  *n = 0;
+  PetscCall(MatFactorGetSolverType(factor, &type));
+  PetscCall(PetscStrcmp(type, MATSOLVERMUMPS, &is_mumps));
+  if (is_mumps) PetscCall(MatMumpsGetInfog(factor, 12, n));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode factorise(EPS eps, Mat *factor) {
   ST             st;
   KSP            ksp;
   PC             pc;
   MatFactorError error;
+  PetscInt       negative;
+  PetscScalar    shift;
 
   PetscFunctionBeginUser;
   PetscCall(EPSSetUp(eps));
@@ -83,6 +98,12 @@ static PetscErrorCode factorise(EPS eps, Mat *factor) {
   PetscCheck(error == MAT_FACTOR_NOERROR, PetscObjectComm((PetscObject)eps), PETSC_ERR_USER_INPUT,
              "the stiffness matrix is not positive definite: the clamp on group root does not hold "
              "the body, or the material is not physical");
+  PetscCall(STGetShift(st, &shift));
+  PetscCall(count_negative(*factor, &negative));
+  PetscCheck(negative == 0 || shift > 0, PetscObjectComm((PetscObject)eps), PETSC_ERR_USER_INPUT,
+             "the stiffness matrix is not positive definite (%d negative pivots): the material is "
+             "not physical, or the equilibrium at rotor.speed is not stable",
+             (int)negative);
   PetscFunctionReturn(0);
 }
 

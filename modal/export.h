@@ -22,7 +22,8 @@ shb_status modal_export_contact(hid_t file, const modal_interface *interface);
 shb_status modal_export_receptance(hid_t file, const modal_model *model);
 
 /* Writes /VTKHDF, an UnstructuredGrid of quadratic tetrahedra whose points are a link to /mesh/nodes and whose point
- * data mode_001, ... are views of /modes/shape, which must be there.
+ * data mode_001, ... are views of /modes/shape, which must be there; static_displacement and static_von_mises are links to
+ * /static where it is.
  * Source: VTKHDF file format, version 1.0. */
 shb_status modal_export_vtk(hid_t file, const mesh_fe *mesh, int n_modes);
 

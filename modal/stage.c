@@ -19,13 +19,6 @@ static shb_status agree(MPI_Comm comm, shb_status status) {
   return (shb_status)worst;
 }
 
-static shb_status check(const mesh_fe *mesh, const modal_settings *settings) {
-  SHB_CHECK(settings->speed == 0, SHB_ERR_INPUT,
-            "rotor.speed: %.6g rad/s given, but centrifugal stiffening is not modelled; set 0 rpm",
-            settings->speed);
-  return fem_clamp_check(mesh);
-}
-
 /* The load's pattern as one dof: its work on the displacement. */
 static shb_status load_dof(const mesh_fe *mesh, const modal_settings *settings, modal_dofs *dofs) {
   double *force = malloc(3 * (size_t)mesh->n_nodes * sizeof *force + 1);
@@ -76,7 +69,7 @@ static shb_status copy_patches(const modal_interface *interface, modal_model *mo
 /* What can be wrong with the input is found here, before any time is spent. */
 static shb_status prepare(const mesh_fe *mesh, const modal_settings *settings,
                           modal_interface *interface, modal_condensation *to) {
-  SHB_TRY(check(mesh, settings));
+  SHB_TRY(fem_clamp_check(mesh));
   SHB_TRY(modal_interface_create(mesh, settings->axis, settings->blades, settings->to_ground,
                                  settings->points, interface));
   SHB_TRY(modal_interface_check(interface, settings->psi, settings->phi));
@@ -91,48 +84,71 @@ static shb_status prepare(const mesh_fe *mesh, const modal_settings *settings,
 
 /* Eigenvalues as Rayleigh quotients from the strains, on rank 0: the solver's own carry the rounding of K, which in a
  * slender body reaches 1e-9 and changes with the number of ranks; these are good to about 1e-12. */
-static PetscErrorCode refine(const mesh_fe *mesh, const fem_material *material,
-                             const fem_system *system, modal_eigen *eigen) {
-  fem_tet10 *element;
-  double    *u;
-  Vec        phi;
-  int        rank;
+static PetscErrorCode refine(const fem_body *body, const double *state, const fem_system *system,
+                             modal_eigen *eigen) {
+  double *u;
+  Vec     phi;
+  int     rank;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(system->comm, &rank));
-  PetscCall(PetscNew(&element));
-  PetscCall(PetscMalloc1(rank == 0 ? 3 * (size_t)mesh->n_nodes : 1, &u));
-  PetscCall(fem_tet10_create(FEM_MASS_EXACT, element));
+  PetscCall(PetscMalloc1(rank == 0 ? 3 * (size_t)body->mesh->n_nodes : 1, &u));
   for (int i = 0; i < eigen->n; i++) {
     PetscCall(MatDenseGetColumnVecRead(eigen->phi, i, &phi));
     PetscCall(fem_system_gather(system, phi, u));
     PetscCall(MatDenseRestoreColumnVecRead(eigen->phi, i, &phi));
     if (rank != 0) continue;
-    eigen->lambda[i] = fem_strain_energy(mesh, material, element, u);
+    eigen->lambda[i] = fem_tangent_energy(body, state, u);
     if (i > 0)
       eigen->lambda[i] = PetscMax(eigen->lambda[i], eigen->lambda[i - 1]); /* equal pairs */
   }
   PetscCallMPI(MPI_Bcast(eigen->lambda, eigen->n, MPI_DOUBLE, 0, system->comm));
-  PetscCall(PetscFree(element));
   PetscCall(PetscFree(u));
   PetscFunctionReturn(0);
 }
 
-static shb_status solve(MPI_Comm comm, const mesh_fe *mesh, const modal_settings *settings,
+/* Matrices of the body, at its equilibrium if it rotates. */
+static shb_status assemble(MPI_Comm comm, const fem_body *body, const modal_condensation *to,
+                           shb_progress *progress, modal_result *result) {
+  double started = shb_seconds();
+  shb_progress_show(progress, 5, "assembling %d elements", body->mesh->n_elements);
+  FEM_PETSC(
+      fem_system_create(comm, body->mesh, body->material, body->element->mass, &result->system));
+  shb_progress_note(progress, "assembled %d elements, %d dofs in %.2f s", body->mesh->n_elements,
+                    (int)(3 * result->system.n_free), shb_seconds() - started);
+  if (body->rotation.speed == 0) return SHB_OK;
+  return modal_deflect(body, &result->system, to, &result->interface, progress,
+                       &result->deflection);
+}
+
+static shb_status solve(MPI_Comm comm, const fem_body *body, const modal_settings *settings,
                         const modal_condensation *to, shb_progress *progress,
                         modal_result *result) {
-  double               started = shb_seconds();
-  modal_eigen_settings eigen   = {.modes = settings->modes, .progress = progress};
-  shb_progress_show(progress, 5, "assembling %d elements", mesh->n_elements);
-  FEM_PETSC(fem_system_create(comm, mesh, &settings->material, FEM_MASS_EXACT, &result->system));
-  shb_progress_note(progress, "assembled %d elements, %d dofs in %.2f s", mesh->n_elements,
-                    (int)(3 * result->system.n_free), shb_seconds() - started);
+  modal_eigen_settings eigen = {.modes = settings->modes, .progress = progress};
+  SHB_TRY(assemble(comm, body, to, progress, result));
   FEM_PETSC(modal_eigen_solve(&result->system, &eigen, &result->eigen));
   SHB_CHECK(result->eigen.n > 0, SHB_INTERRUPTED, "interrupted");
-  FEM_PETSC(refine(mesh, &settings->material, &result->system, &result->eigen));
+  FEM_PETSC(refine(body, result->deflection.at.displacement, &result->system, &result->eigen));
+  SHB_CHECK(result->eigen.lambda[0] > 0, SHB_ERR_INPUT,
+            "rotor.speed: the static equilibrium at %.6g rad/s is not stable (lowest eigenvalue "
+            "%.3g rad2/s2); give a lower speed",
+            settings->speed, result->eigen.lambda[0]);
   SHB_TRY(modal_condense(&result->system, &result->eigen, to, progress, &result->model));
   SHB_TRY(name_probes(settings, &result->model));
   return copy_patches(&result->interface, &result->model);
+}
+
+static shb_status solve_body(MPI_Comm comm, const mesh_fe *mesh, const modal_settings *settings,
+                             const modal_condensation *to, shb_progress *progress,
+                             modal_result *result) {
+  fem_tet10 *element = malloc(sizeof *element);
+  SHB_TRY(
+      agree(comm, element ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory")));
+  fem_body   body   = {mesh, &settings->material, element, {settings->axis, settings->speed}};
+  shb_status status = fem_fault_status(fem_tet10_create(FEM_MASS_EXACT, element));
+  if (status == SHB_OK) status = solve(comm, &body, settings, to, progress, result);
+  free(element);
+  return status;
 }
 
 shb_status modal_solve(MPI_Comm comm, const mesh_fe *mesh, const modal_settings *settings,
@@ -140,7 +156,7 @@ shb_status modal_solve(MPI_Comm comm, const mesh_fe *mesh, const modal_settings 
   modal_condensation to = {0};
   memset(result, 0, sizeof *result);
   shb_status status = agree(comm, prepare(mesh, settings, &result->interface, &to));
-  if (status == SHB_OK) status = solve(comm, mesh, settings, &to, progress, result);
+  if (status == SHB_OK) status = solve_body(comm, mesh, settings, &to, progress, result);
   modal_dofs_free(&to.contact);
   modal_dofs_free(&to.probe);
   modal_dofs_free(&to.load);
@@ -150,6 +166,7 @@ shb_status modal_solve(MPI_Comm comm, const mesh_fe *mesh, const modal_settings 
 void modal_result_free(modal_result *result) {
   modal_model_free(&result->model);
   modal_interface_free(&result->interface);
+  modal_deflection_free(&result->deflection);
   (void)modal_eigen_destroy(&result->eigen);
   (void)fem_system_destroy(&result->system);
   memset(result, 0, sizeof *result);
@@ -180,6 +197,8 @@ static shb_status write_all(hid_t file, const mesh_fe *mesh, const modal_result 
   SHB_TRY(modal_export_shapes(file, result->model.n_modes, mesh->n_nodes, shape));
   SHB_TRY(modal_export_contact(file, &result->interface));
   SHB_TRY(modal_export_receptance(file, &result->model));
+  SHB_TRY(modal_deflection_write(file, &result->deflection, mesh->n_nodes, mesh->n_elements,
+                                 &result->model));
   return modal_export_vtk(file, mesh, result->model.n_modes);
 }
 

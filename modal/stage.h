@@ -7,6 +7,7 @@
 #include "fem/material.h"
 #include "mesh/progress.h"
 #include "mesh/publish.h"
+#include "modal/deflection.h"
 #include "modal/eigen.h"
 #include "modal/interface.h"
 #include "modal/model.h"
@@ -20,7 +21,7 @@ typedef struct {
   fem_material       material;
   mesh_axis          axis;
   int                blades;
-  double             speed; /* rad/s */
+  double             speed; /* rad/s; 0: at rest */
   int                modes;
   double             damping; /* damping ratio of every mode */
   fem_load           load;
@@ -33,15 +34,18 @@ typedef struct {
 
 /* All that the stage computed. model is the same on every rank. */
 typedef struct {
-  fem_system      system;
-  modal_eigen     eigen;
-  modal_interface interface;
-  modal_model     model;
+  fem_system       system;
+  modal_eigen      eigen;
+  modal_interface  interface;
+  modal_model      model;
+  modal_deflection deflection; /* static, under the centrifugal load; zero at rest */
 } modal_result;
 
-/* Assemble, solve, condense. Collective; mesh the same on every rank, sets oriented (mesh_fe_orient).
+/* Assemble, find the static equilibrium if the blade rotates, solve, condense; K is then the tangent at that
+ * equilibrium, in the modes and in every residual. Contact faces, axes and loads are those of the undeformed mesh.
+ * Collective; mesh the same on every rank, sets oriented (mesh_fe_orient).
  * Errors: SHB_ERR_INPUT missing groups, wrong angles, too many modes or patches, a part that is not clamped,
- * speed other than 0; SHB_NOT_CONVERGED; SHB_ERR_IO no memory; SHB_INTERRUPTED. */
+ * a speed at which there is no stable equilibrium; SHB_NOT_CONVERGED modes; SHB_ERR_IO no memory; SHB_INTERRUPTED. */
 shb_status modal_solve(MPI_Comm comm, const mesh_fe *mesh, const modal_settings *settings,
                        shb_progress *progress, modal_result *result);
 

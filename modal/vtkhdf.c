@@ -103,6 +103,20 @@ static shb_status write_point_data(hid_t file, int n_modes, int n_nodes) {
   return status;
 }
 
+/* The static deflection and stress, where the file holds them: links. */
+static shb_status write_static(hid_t file, hid_t group) {
+  if (!h5_exists(file, "/static/displacement")) return SHB_OK;
+  if (H5Lcreate_soft("/static/displacement", group, "PointData/static_displacement", H5P_DEFAULT,
+                     H5P_DEFAULT) < 0)
+    return failed("PointData/static_displacement");
+  hid_t data = H5Gcreate2(group, "CellData", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  if (data < 0) return failed("CellData");
+  herr_t error =
+      H5Lcreate_soft("/static/stress", data, "static_von_mises", H5P_DEFAULT, H5P_DEFAULT);
+  H5Gclose(data);
+  return error < 0 ? failed("CellData/static_von_mises") : SHB_OK;
+}
+
 static shb_status describe_one(hid_t group, const char *path, const char *units,
                                const char *long_name) {
   SHB_TRY(h5_write_attribute_text(group, path, "units", units));
@@ -144,6 +158,7 @@ shb_status modal_export_vtk(hid_t file, const mesh_fe *mesh, int n_modes) {
   if (group < 0) return failed("");
   shb_status status = write_group(group, mesh);
   if (status == SHB_OK) status = write_point_data(file, n_modes, mesh->n_nodes);
+  if (status == SHB_OK) status = write_static(file, group);
   if (status == SHB_OK) status = describe(group, n_modes);
   H5Gclose(group);
   return status;

@@ -19,14 +19,14 @@ static const double      size[3] = {.04, 1, .12}, inner = .1;
 static const modal_probe probe = {"tip", {.04, .0, .22}};
 
 /* Only rank 0 has the mesh at first, as in the stage. */
-static void world_equals_one_rank(void **state) {
-  (void)state;
+static void check_ranks(double speed) {
   const int      cells[3] = {4, 4, 10};
   mesh_fe        mesh     = {0};
   modal_settings settings = {
       .material = steel,
       .axis     = MESH_AXIS_X,
       .blades   = BLADES,
+      .speed    = speed,
       .modes    = 12,
       .damping  = .002,
       .load     = {.kind = FEM_LOAD_PRESSURE, .pressure = 200, .n_harmonics = 1, .factor = {0, 1}},
@@ -55,8 +55,19 @@ static void world_equals_one_rank(void **state) {
   mesh_fe_free(&mesh);
 }
 
+static void world_equals_one_rank(void **state) {
+  (void)state;
+  check_ranks(0);
+}
+
+static void world_equals_one_rank_at_speed(void **state) {
+  (void)state;
+  check_ranks(6000);
+}
+
 int main(int argc, char **argv) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(world_equals_one_rank)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(world_equals_one_rank),
+                                     cmocka_unit_test(world_equals_one_rank_at_speed)};
   modal_session           session;
   if (modal_session_start(&argc, &argv, &session) != SHB_OK) return 1;
   int failures = cmocka_run_group_tests(tests, NULL, NULL);

@@ -152,6 +152,72 @@ static void sides_are_turned_round(void **state) {
   unlink(scratch("swapped.modal.h5"));
 }
 
+static double *read_static(hid_t file, const char *path, size_t *n) {
+  h5_shape shape;
+  double  *value;
+  assert_ok(h5_shape_of(file, path, &shape));
+  assert_ok(h5_read_double(file, path, &shape, &value));
+  *n = h5_count(shape);
+  return value;
+}
+
+/* /static: the deflection everywhere, and as the contact and the probes see it. */
+static void deflection_is_in_the_file(void **state) {
+  (void)state;
+  modal_settings settings = default_settings();
+  mesh_fe        mesh     = make_sector(size, inner, BLADES, cells);
+  double         speed, greatest, most = 0, axes[3][3];
+  size_t         n_u, n_contact, n_probe, n_closing, n_normal, n_stress;
+  hid_t          file;
+  char           out[512];
+  settings.speed = 3000;
+  snprintf(out, sizeof out, "%s", scratch("turning.modal.h5"));
+  assert_ok(
+      modal_stage(PETSC_COMM_WORLD, scratch("sector.msh"), out, &settings, &provenance, NULL));
+  assert_true(assert_described(out) >= 34);
+  assert_ok(h5_open(out, &file));
+  assert_ok(h5_read_attribute_double(file, "/", "rotor_speed", -1, &speed));
+  assert_true(speed == 3000);
+  double *u        = read_static(file, "/static/displacement", &n_u);
+  double *contact  = read_static(file, "/static/contact", &n_contact);
+  double *at_probe = read_static(file, "/static/probe", &n_probe);
+  double *closing  = read_static(file, "/static/closing", &n_closing);
+  double *normal   = read_static(file, "/contact/normal", &n_normal);
+  double *shown    = read_static(file, "/VTKHDF/PointData/static_displacement", &n_u);
+  assert_true(memcmp(shown, u, n_u * sizeof *u) == 0);
+  free(shown);
+  shown = read_static(file, "/VTKHDF/CellData/static_von_mises", &n_stress);
+  assert_int_equal(n_stress, mesh.n_elements);
+  free(shown);
+  double *stress = read_static(file, "/static/stress", &n_stress);
+  assert_true(n_contact == 12 && n_probe == 6 && n_closing == 2 && n_normal == 6);
+  assert_int_equal(n_u, 3 * mesh.n_nodes);
+  assert_int_equal(n_stress, mesh.n_elements);
+  for (int q = 0; q < 2; q++) {
+    int node = mesh_fe_nearest(&mesh, probe[q].at);
+    mesh_axes_at(MESH_AXIS_X, mesh.coordinates + 3 * node, axes);
+    for (int a = 0; a < 3; a++) {
+      const double *v = u + 3 * node;
+      check_below(at_probe[3 * q + a] - axes[a][0] * v[0] - axes[a][1] * v[1] - axes[a][2] * v[2],
+                  1e-15, "probe");
+    }
+    assert_true(at_probe[3 * q + 2] > 1e-6); /* outward */
+  }
+  for (int p = 0; p < 2; p++) {
+    double wanted = 0;
+    for (int a = 0; a < 3; a++)
+      wanted += normal[3 * p + a] * (contact[3 * p + a] - contact[6 + 3 * p + a]);
+    check_below(closing[p] - wanted, 1e-15, "closing");
+  }
+  for (size_t e = 0; e < n_stress; e++) most = fmax(most, stress[e]);
+  assert_ok(h5_read_attribute_double(file, "/static", "greatest_stress", 0, &greatest));
+  assert_true(greatest == most && most > 1e7);
+  assert_ok(h5_close(file));
+  free(u), free(contact), free(at_probe), free(closing), free(normal), free(stress);
+  mesh_fe_free(&mesh);
+  unlink(out);
+}
+
 static void refused(const modal_settings *settings, const char *mesh, shb_status code,
                     const char *text) {
   char before[17], after[17], out[512];
@@ -169,7 +235,7 @@ static void failures_leave_the_file_alone(void **state) {
   const double   psi      = .6;
   modal_settings settings = default_settings();
   refused(&settings, "missing.msh", SHB_ERR_IO, "missing.msh");
-  settings.speed = 314;
+  settings.speed = 9e4;
   refused(&settings, "sector.msh", SHB_ERR_INPUT, "rotor.speed");
   settings        = default_settings();
   settings.blades = 24;
@@ -191,11 +257,9 @@ static void failures_leave_the_file_alone(void **state) {
 
 int main(int argc, char **argv) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(file_is_complete),
-      cmocka_unit_test(vtk_group_shows_the_modes),
-      cmocka_unit_test(receptance_is_sampled),
-      cmocka_unit_test(sides_are_turned_round),
-      cmocka_unit_test(failures_leave_the_file_alone),
+      cmocka_unit_test(file_is_complete),          cmocka_unit_test(vtk_group_shows_the_modes),
+      cmocka_unit_test(receptance_is_sampled),     cmocka_unit_test(sides_are_turned_round),
+      cmocka_unit_test(deflection_is_in_the_file), cmocka_unit_test(failures_leave_the_file_alone),
   };
   modal_session session;
   if (modal_session_start(&argc, &argv, &session) != SHB_OK) return 1;

@@ -1,6 +1,7 @@
 shb_test(modal h5 fast shb_model)
 
 shb_test(modal eigen slow tests_fem shb_modal)
+shb_test(modal rotating fast tests_fem shb_modal)
 shb_test(modal interface fast tests_fem shb_modal)
 shb_test(modal stage fast tests_fem shb_modal)
 shb_test(modal condense slow tests_fem shb_modal PkgConfig::LAPACKE)
@@ -25,3 +26,15 @@ if(SHROUDHB_PYTHON)
     ${CMAKE_CURRENT_SOURCE_DIR}/modal/foreign.py ${PROJECT_SOURCE_DIR}/cases/bring_your_own/write_modal.py)
   set_tests_properties(modal.python PROPERTIES LABELS fast TIMEOUT 120 SKIP_RETURN_CODE 77)
 endif()
+
+# Against CalculiX (Debian: calculix-ccx); skipped where it is not installed.
+find_program(SHROUDHB_CCX NAMES ccx)
+add_executable(test_modal_calculix modal/test_calculix.c)
+target_link_libraries(test_modal_calculix PRIVATE tests_fem shb_modal PkgConfig::CMOCKA m)
+if(SHROUDHB_CCX)
+  add_test(NAME modal.calculix COMMAND test_modal_calculix ${SHROUDHB_CCX})
+else()
+  add_test(NAME modal.calculix COMMAND test_modal_calculix)
+endif()
+set_tests_properties(modal.calculix PROPERTIES LABELS fast TIMEOUT 600 SKIP_RETURN_CODE 77
+  ENVIRONMENT OPENBLAS_NUM_THREADS=1)

@@ -1,0 +1,139 @@
+#include "fem/finite.h"
+
+#include <math.h>
+#include <string.h>
+
+void fem_displacement_gradient(const double g[10][3], const double u[10][3], double H[3][3]) {
+  memset(H, 0, 9 * sizeof(double));
+  for (int i = 1; i < 10; i++) /* from node 0: a translation leaves no trace */
+    for (int a = 0; a < 3; a++)
+      for (int d = 0; d < 3; d++) H[a][d] += (u[i][a] - u[0][a]) * g[i][d];
+}
+
+/* E from H, not from F^T F - I, which would lose the digits of small strains. */
+void fem_deform(const fem_lame *lame, const double H[3][3], fem_deformation *at) {
+  double E[3][3], trace;
+  for (int a = 0; a < 3; a++)
+    for (int b = 0; b < 3; b++) {
+      double square = H[0][a] * H[0][b] + H[1][a] * H[1][b] + H[2][a] * H[2][b];
+      E[a][b]       = (H[a][b] + H[b][a] + square) / 2;
+      at->F[a][b]   = H[a][b] + (a == b);
+    }
+  trace = E[0][0] + E[1][1] + E[2][2];
+  for (int a = 0; a < 3; a++)
+    for (int b = 0; b < 3; b++)
+      at->S[a][b] = 2 * lame->mu * E[a][b] + (a == b ? lame->lambda * trace : 0);
+}
+
+static void multiply(const double A[3][3], const double B[3][3], double C[3][3]) {
+  for (int a = 0; a < 3; a++)
+    for (int b = 0; b < 3; b++) C[a][b] = A[a][0] * B[0][b] + A[a][1] * B[1][b] + A[a][2] * B[2][b];
+}
+
+static void apply(const double A[3][3], const double v[3], double out[3]) {
+  for (int a = 0; a < 3; a++) out[a] = A[a][0] * v[0] + A[a][1] * v[1] + A[a][2] * v[2];
+}
+
+/* F F^T */
+static void left_cauchy(const double F[3][3], double B[3][3]) {
+  for (int a = 0; a < 3; a++)
+    for (int b = 0; b < 3; b++) B[a][b] = F[a][0] * F[b][0] + F[a][1] * F[b][1] + F[a][2] * F[b][2];
+}
+
+static double inner(const double a[3], const double b[3]) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+void fem_tet10_force(const fem_tet10 *element, const fem_material *material, const double x[10][3],
+                     const double u[10][3], double f[10][3]) {
+  const fem_tet_rule *rule = fem_tet10_stiffness_rule(element, x);
+  const fem_lame      lame = fem_lame_of(material);
+  memset(f, 0, 30 * sizeof(double));
+  for (int p = 0; p < rule->n; p++) {
+    fem_deformation at;
+    double          g[10][3], H[3][3], P[3][3], nodal[3];
+    double          volume = rule->weight[p] * fem_tet10_gradient(rule, p, x, g);
+    fem_displacement_gradient((const double(*)[3])g, u, H);
+    fem_deform(&lame, (const double(*)[3])H, &at);
+    multiply((const double(*)[3])at.F, (const double(*)[3])at.S, P);
+    for (int i = 0; i < 10; i++) {
+      apply((const double(*)[3])P, g[i], nodal);
+      for (int d = 0; d < 3; d++) f[i][d] += volume * nodal[d];
+    }
+  }
+}
+
+/* The upper triangle of one point's share. */
+static void add_point(const fem_lame *lame, double volume, const fem_deformation *at,
+                      const double g[10][3], double K[30][30]) {
+  const double lambda = volume * lame->lambda, mu = volume * lame->mu;
+  double       B[3][3], p[10][3], Sg[10][3];
+  left_cauchy(at->F, B);
+  for (int i = 0; i < 10; i++) {
+    apply(at->F, g[i], p[i]);
+    apply(at->S, g[i], Sg[i]);
+  }
+  for (int i = 0; i < 10; i++)
+    for (int j = i; j < 10; j++) {
+      double geometric = volume * inner(g[i], Sg[j]), shear = mu * inner(g[i], g[j]);
+      for (int a = 0; a < 3; a++) {
+        for (int b = 0; b < 3; b++)
+          K[3 * i + a][3 * j + b] +=
+              lambda * p[i][a] * p[j][b] + mu * p[j][a] * p[i][b] + shear * B[a][b];
+        K[3 * i + a][3 * j + a] += geometric;
+      }
+    }
+}
+
+void fem_tet10_tangent(const fem_tet10 *element, const fem_material *material,
+                       const double x[10][3], const double u[10][3], double K[30][30]) {
+  const fem_tet_rule *rule = fem_tet10_stiffness_rule(element, x);
+  const fem_lame      lame = fem_lame_of(material);
+  memset(K, 0, 900 * sizeof(double));
+  for (int p = 0; p < rule->n; p++) {
+    fem_deformation at;
+    double          g[10][3], H[3][3];
+    double          volume = rule->weight[p] * fem_tet10_gradient(rule, p, x, g);
+    fem_displacement_gradient((const double(*)[3])g, u, H);
+    fem_deform(&lame, (const double(*)[3])H, &at);
+    add_point(&lame, volume, &at, (const double(*)[3])g, K);
+  }
+  for (int i = 0; i < 30; i++)
+    for (int j = 0; j < i; j++) K[i][j] = K[j][i];
+}
+
+static double determinant(const double A[3][3]) {
+  return A[0][0] * (A[1][1] * A[2][2] - A[1][2] * A[2][1]) -
+         A[0][1] * (A[1][0] * A[2][2] - A[1][2] * A[2][0]) +
+         A[0][2] * (A[1][0] * A[2][1] - A[1][1] * A[2][0]);
+}
+
+static double von_mises(const fem_deformation *at) {
+  double P[3][3], s[3][3], J = determinant(at->F);
+  multiply(at->F, at->S, P);
+  for (int a = 0; a < 3; a++)
+    for (int b = 0; b < 3; b++) s[a][b] = inner(P[a], at->F[b]) / J;
+  double square = 0;
+  for (int a = 0; a < 3; a++) {
+    int    b          = (a + 1) % 3;
+    double difference = s[a][a] - s[b][b];
+    square += difference * difference / 2 + 3 * s[a][b] * s[a][b];
+  }
+  return sqrt(square);
+}
+
+double fem_tet10_stress(const fem_tet10 *element, const fem_material *material,
+                        const double x[10][3], const double u[10][3]) {
+  const fem_tet_rule *rule     = fem_tet10_stiffness_rule(element, x);
+  const fem_lame      lame     = fem_lame_of(material);
+  double              greatest = 0;
+  for (int p = 0; p < rule->n; p++) {
+    fem_deformation at;
+    double          g[10][3], H[3][3];
+    fem_tet10_gradient(rule, p, x, g);
+    fem_displacement_gradient((const double(*)[3])g, u, H);
+    fem_deform(&lame, (const double(*)[3])H, &at);
+    greatest = fmax(greatest, von_mises(&at));
+  }
+  return greatest;
+}

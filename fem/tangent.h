@@ -1,0 +1,35 @@
+/* A rotating body under large displacements: forces out of balance and tangent stiffness, assembled.
+ *
+ * Equilibrium in the rotating frame: F(u) = Omega^2 P M (X + u), with F the internal forces of fem/finite.h. The
+ * load follows the displacement, so that the tangent is K_T(u) - Omega^2 P M, symmetric. */
+#ifndef FEM_TANGENT_H
+#define FEM_TANGENT_H
+
+#include "fem/assemble.h"
+#include "fem/rotation.h"
+
+/* What is assembled; nothing is owned. */
+typedef struct {
+  const mesh_fe      *mesh;
+  const fem_material *material;
+  const fem_tet10    *element;
+  fem_rotation        rotation;
+} fem_body;
+
+/* Coordinates and displacements of an element's nodes, m. u: [n_nodes][3], NULL for none. */
+void fem_body_element(const fem_body *body, int element, const double *u, double x[10][3],
+                      double v[10][3]);
+
+/* R = F(u) - Omega^2 P M (X + u), N, at the free dofs.
+ *   u  in  [n_nodes][3] m, the same on every rank, zero at clamped nodes
+ * Nothing is sent: each rank computes the elements that touch its rows. */
+PetscErrorCode fem_residual_assemble(const fem_body *body, const fem_system *system,
+                                     const double *u, Vec R);
+
+/* system->K = dR/du at u, in the places that fem_system_create preallocated. */
+PetscErrorCode fem_tangent_assemble(const fem_body *body, const double *u, fem_system *system);
+
+/* Greatest von Mises stress of each element's quadrature points, Pa: [n_elements]. */
+void fem_body_stress(const fem_body *body, const double *u, double *stress);
+
+#endif

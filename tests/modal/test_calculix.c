@@ -1,0 +1,166 @@
+/* Modes of a twisted blade at speed, against CalculiX on the same mesh; argument: the program ccx. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "fem/equilibrium.h"
+#include "modal/eigen.h"
+#include "tests/fem/support.h"
+
+enum { MODES = 6 };
+
+static const double size[3] = {.2, .03, .005}, hub = .15, twist = .7;
+static const int    cells[3] = {10, 2, 1};
+static const double two_pi   = 6.28318530717958647692;
+static const char  *program;
+static char         folder[] = "/tmp/shroudhb-calculix-XXXXXX";
+
+/* A blade along x from the hub's radius on, twisted, on straight-sided elements: CalculiX integrates every C3D10 at
+ * four points. */
+static mesh_fe make_blade(void) {
+  static const int edge[6][2] = {{0, 1}, {1, 2}, {2, 0}, {3, 0}, {2, 3}, {1, 3}};
+  mesh_fe          mesh       = make_box(size, cells);
+  for (int i = 0; i < mesh.n_nodes; i++) {
+    double *x = mesh.coordinates + 3 * i, angle = .3 + twist * x[0] / size[0];
+    double  y = x[1] - size[1] / 2, z = x[2] - size[2] / 2;
+    x[0] += hub;
+    x[1] = y * cos(angle) - z * sin(angle);
+    x[2] = y * sin(angle) + z * cos(angle);
+  }
+  for (int e = 0; e < mesh.n_elements; e++)
+    for (int i = 0; i < 6; i++) {
+      const int *node = mesh.connectivity + 10 * e;
+      for (int d = 0; d < 3; d++)
+        mesh.coordinates[3 * node[4 + i] + d] = (mesh.coordinates[3 * node[edge[i][0]] + d] +
+                                                 mesh.coordinates[3 * node[edge[i][1]] + d]) /
+                                                2;
+    }
+  return mesh;
+}
+
+/* The static step's controls are tightened: CalculiX's own leave 1e-4 in the frequencies. */
+static void write_deck(const mesh_fe *mesh, double speed) {
+  static const int order[10] = {0, 1, 2, 3, 4, 5, 6, 7, 9, 8};
+  char             path[128];
+  snprintf(path, sizeof path, "%s/blade.inp", folder);
+  FILE *deck = fopen(path, "w");
+  assert_non_null(deck);
+  fprintf(deck, "*NODE, NSET=NALL\n"); /* numbers may have 20 characters */
+  for (int i = 0; i < mesh->n_nodes; i++)
+    fprintf(deck, "%d, %.14f, %.14f, %.14f\n", i + 1, mesh->coordinates[3 * i],
+            mesh->coordinates[3 * i + 1], mesh->coordinates[3 * i + 2]);
+  fprintf(deck, "*ELEMENT, TYPE=C3D10, ELSET=EALL\n");
+  for (int e = 0; e < mesh->n_elements; e++) {
+    fprintf(deck, "%d", e + 1);
+    for (int i = 0; i < 10; i++) fprintf(deck, ", %d", mesh->connectivity[10 * e + order[i]] + 1);
+    fprintf(deck, "\n");
+  }
+  fprintf(deck, "*BOUNDARY\n");
+  for (int i = 0; i < 6 * mesh->set[MESH_ROOT].n; i++)
+    fprintf(deck, "%d, 1, 3\n", mesh->set[MESH_ROOT].nodes[i] + 1);
+  fprintf(deck,
+          "*MATERIAL, NAME=STEEL\n*ELASTIC\n%.13g, %.13g\n*DENSITY\n%.13g\n"
+          "*SOLID SECTION, ELSET=EALL, MATERIAL=STEEL\n",
+          steel.E, steel.nu, steel.rho);
+  if (speed != 0)
+    fprintf(deck,
+            "*STEP, NLGEOM\n*STATIC\n0.25, 1., 1e-5, 0.25\n*CONTROLS, PARAMETERS=FIELD\n"
+            "1.e-8,1.e-8,,,1.e-8,1.e-7\n*DLOAD\nEALL, CENTRIF, %.13g, 0, 0, 0, 0, 0, 1\n"
+            "*NODE FILE\nU\n*END STEP\n",
+            speed * speed);
+  fprintf(deck, "*STEP%s\n*FREQUENCY\n%d\n*NODE FILE\nU\n*END STEP\n",
+          speed != 0 ? ", PERTURBATION" : "", MODES);
+  fclose(deck);
+}
+
+/* Lines "mode, eigenvalue, rad/time, cycles/time, imaginary" below the heading of blade.dat. */
+static void read_frequencies(double frequency[MODES]) {
+  char   path[128], line[512];
+  int    found = 0, inside = 0, mode;
+  double value[3];
+  snprintf(path, sizeof path, "%s/blade.dat", folder);
+  FILE *file = fopen(path, "r");
+  assert_non_null(file);
+  while (found < MODES && fgets(line, sizeof line, file)) {
+    inside = inside || strstr(line, "E I G E N V A L U E   O U T P U T");
+    if (!inside || sscanf(line, "%d %lf %lf %lf", &mode, value, value + 1, value + 2) != 4)
+      continue;
+    frequency[found++] = sqrt(value[0]) / two_pi;
+  }
+  fclose(file);
+  assert_int_equal(found, MODES);
+}
+
+static void run_calculix(const mesh_fe *mesh, double speed, double frequency[MODES]) {
+  char command[512];
+  write_deck(mesh, speed);
+  snprintf(command, sizeof command, "cd %s && OMP_NUM_THREADS=1 '%s' blade >blade.log 2>&1", folder,
+           program);
+  assert_int_equal(system(command), 0);
+  read_frequencies(frequency);
+}
+
+static void run_own(const mesh_fe *mesh, double speed, double frequency[MODES]) {
+  fem_tet10           *element = malloc(sizeof *element);
+  fem_body             body    = {mesh, &steel, element, {MESH_AXIS_Z, speed}};
+  fem_system           system;
+  fem_equilibrium      at = {0};
+  modal_eigen          eigen;
+  modal_eigen_settings wanted = {.modes = MODES};
+  assert_non_null(element);
+  assert_int_equal(fem_tet10_create(FEM_MASS_4POINT, element), 0);
+  assert_int_equal(fem_system_create(PETSC_COMM_SELF, mesh, &steel, FEM_MASS_4POINT, &system), 0);
+  if (speed != 0) assert_int_equal(fem_equilibrium_solve(&body, &system, NULL, &at), 0);
+  assert_int_equal(modal_eigen_solve(&system, &wanted, &eigen), 0);
+  for (int i = 0; i < MODES; i++) frequency[i] = sqrt(eigen.lambda[i]) / two_pi;
+  modal_eigen_destroy(&eigen);
+  fem_equilibrium_free(&at);
+  fem_system_destroy(&system);
+  free(element);
+}
+
+/* Eigenvalues have seven digits in blade.dat: frequencies are good to 2.5e-7. */
+static void frequencies_agree(void **state) {
+  (void)state;
+  const double speed[] = {0, 400, 1000};
+  mesh_fe      mesh    = make_blade();
+  for (int s = 0; s < 3; s++) {
+    double own[MODES], other[MODES], worst = 0;
+    run_own(&mesh, speed[s], own);
+    run_calculix(&mesh, speed[s], other);
+    for (int i = 0; i < MODES; i++) worst = fmax(worst, fabs(own[i] / other[i] - 1));
+    print_message("%g rad/s: first mode %.7g Hz, CalculiX %.7g; six modes to %.1e\n", speed[s],
+                  own[0], other[0], worst);
+    for (int i = 0; i < MODES; i++) check_close(own[i], other[i], 1e-6, "frequency");
+  }
+  mesh_fe_free(&mesh);
+}
+
+static int make_folder(void **state) {
+  (void)state;
+  return mkdtemp(folder) ? 0 : -1;
+}
+
+static int remove_folder(void **state) {
+  char command[128];
+  (void)state;
+  snprintf(command, sizeof command, "rm -r %s", folder);
+  return system(command);
+}
+
+int main(int argc, char **argv) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(frequencies_agree)};
+  if (argc < 2) return 77;
+  program = argv[1];
+  if (SlepcInitialize(NULL, NULL, NULL, NULL)) return 1;
+  int failures = cmocka_run_group_tests(tests, make_folder, remove_folder);
+  SlepcFinalize();
+  return failures;
+}
