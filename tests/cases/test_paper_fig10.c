@@ -1,5 +1,13 @@
 /* cases/paper_fig10: softening and the jump of the third mode; the numbers of its README. */
+#include <complex.h>
+
+#include "cases/case.h"
+#include "mhb/integrate.h"
 #include "tests/cases/scene.h"
+
+enum { PERIODS = 300, STEPS = 48 };
+
+static const double two_pi = 6.28318530717958647692;
 
 static char          folder[SCRATCH_PATH];
 static mhb_response *ring, *three, *one;
@@ -105,6 +113,93 @@ static void two_blades_are_the_ring(void **state) {
   }
 }
 
+/* Largest sum of squares of the modes' displacements so far. */
+static void watch_size(void *context, const mhb_integrator *g, double t0, double h) {
+  double sum = 0, *most = context;
+  (void)t0;
+  (void)h;
+  for (int i = 0; i < g->blades * g->modes; i++) sum += g->z[i] * g->z[i];
+  *most = fmax(*most, sum);
+}
+
+/* Start on a point of the curve; the size of its motion over the first period. */
+static double start_on(mhb_integrator *g, const mhb_branch *b, int point, double *most) {
+  const int      K = b->n_harmonics + 1;
+  double complex force[3 * K];
+  for (int k = 0; k < K; k++)
+    for (int c = 0; c < 3; c++) force[k * 3 + c] = b->force[(point * 3 + c) * K + k];
+  mhb_integrator_set(g, two_pi * b->frequency[point], 160, STEPS);
+  mhb_integrator_balance(g, b->n_harmonics, force);
+  *most = 0;
+  assert_true(mhb_integrator_period(g));
+  return *most;
+}
+
+/* Sweep by steps of the frequency, the state carried over, until the size leaves [least, most] of that at the fold; the
+ * frequency before and the one at which it left. */
+static void sweep(mhb_integrator *g, double from, double step, const double bound[2], double *most,
+                  double left[2]) {
+  for (int i = 1; i <= 60; i++) {
+    left[0] = from + (i - 1) * step;
+    left[1] = from + i * step;
+    mhb_integrator_set(g, two_pi * left[1], 160, STEPS);
+    for (int period = 0; period < PERIODS; period++) {
+      *most = 0;
+      assert_true(mhb_integrator_period(g));
+    }
+    if (*most < bound[0] || *most > bound[1]) return;
+  }
+  fail_msg("no jump from %g to %g Hz", from, left[1]);
+}
+
+static int point_near(const mhb_branch *b, int first, int last, double frequency) {
+  int best = first;
+  for (int p = first; p <= last; p++)
+    if (fabs(b->frequency[p] - frequency) < fabs(b->frequency[best] - frequency)) best = p;
+  return best;
+}
+
+/* Both blades are integrated, neither bound to the other's motion. Upwards the lower branch is left for the upper one,
+ * downwards the upper for the lower, where the balance has its folds. */
+static void sweeps_jump_at_the_folds(void **state) {
+  (void)state;
+  char              path[SCRATCH_PATH + 64];
+  case_file         file;
+  modal_model       model;
+  mhb_integrator   *g;
+  double            f[2], a[2], most, left[2];
+  int               p[2];
+  const mhb_branch *b = scene_branch(three, MHB_BRANCH_NONLINEAR, 160);
+  jumps(three, f, a, p);
+  snprintf(path, sizeof path, "%s/two_blades.yaml", folder);
+  assert_int_equal(case_read(path, CASE_MHB, stderr, &file), SHB_OK);
+  snprintf(path, sizeof path, "%s/paper_fig10.modal.h5", folder);
+  assert_int_equal(modal_model_read(path, &model), SHB_OK);
+  assert_int_equal(mhb_integrator_create(&model, &file.mhb, 3, &g), SHB_OK);
+  assert_int_equal(g->blades, 2);
+  g->watch        = watch_size;
+  g->context      = &most;
+  double upper[2] = {0, 1.1 * start_on(g, b, p[0], &most)};
+  int    start    = point_near(b, 0, p[0], f[0] - 1);
+  start_on(g, b, start, &most);
+  sweep(g, b->frequency[start], .1, upper, &most, left);
+  print_message("upwards: jump between %.2f and %.2f Hz, fold at %.2f Hz\n", left[0], left[1],
+                f[0]);
+  assert_within(left[0], f[0], 1e-3);
+  assert_within(left[1], f[0], 1e-3);
+  double lower[2] = {.25 * start_on(g, b, p[1], &most), 1e300};
+  start           = point_near(b, p[1], b->n_points - 1, f[1] + 2);
+  start_on(g, b, start, &most);
+  sweep(g, b->frequency[start], -.1, lower, &most, left);
+  print_message("downwards: jump between %.2f and %.2f Hz, fold at %.2f Hz\n", left[0], left[1],
+                f[1]);
+  assert_within(left[0], f[1], 1e-3);
+  assert_within(left[1], f[1], 1e-3);
+  mhb_integrator_destroy(g);
+  modal_model_free(&model);
+  case_free(&file);
+}
+
 static void all_is_sound(void **state) {
   (void)state;
   scene_is_sound(ring);
@@ -114,11 +209,9 @@ static void all_is_sound(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(the_curve_leans_left_and_folds),
-      cmocka_unit_test(the_middle_is_unstable),
-      cmocka_unit_test(one_harmonic_overestimates),
-      cmocka_unit_test(two_blades_are_the_ring),
-      cmocka_unit_test(all_is_sound),
+      cmocka_unit_test(the_curve_leans_left_and_folds), cmocka_unit_test(the_middle_is_unstable),
+      cmocka_unit_test(one_harmonic_overestimates),     cmocka_unit_test(two_blades_are_the_ring),
+      cmocka_unit_test(sweeps_jump_at_the_folds),       cmocka_unit_test(all_is_sound),
   };
   return cmocka_run_group_tests(tests, run_scene, clean);
 }

@@ -43,7 +43,7 @@ if(TARGET shroudhb-post)
   add_dependencies(test_cases_paper_fig7 shroudhb-integrate)
   figure_test(paper_fig8 paper_fig8)
   figure_test(paper_fig9 paper_fig9 shb_case)
-  figure_test(paper_fig10 paper_fig10)
+  figure_test(paper_fig10 paper_fig10 shb_case)
 endif()
 
 # Speed against error, from end to end.
