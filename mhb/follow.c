@@ -344,13 +344,14 @@ static shb_status run_further(follower *f, const char **end, bool *none) {
   return SHB_OK;
 }
 
-/* A pair of folds that spans less than 1e-5 of the value is no jump that anyone could observe: not marked. */
-static void drop_hairlines(mhb_branch *branch) {
+/* A pair of folds that spans less than 1e-5 of the value, or of a hundredth of the range, is no jump that anyone could observe: not
+ * marked. */
+static void drop_hairlines(mhb_branch *branch, double range) {
   int last = -1;
   for (int i = 0; i < branch->n_points; i++) {
     if (branch->special[i] != MHB_FOLD) continue;
     double width = last < 0 ? INFINITY : fabs(branch->value[i] - branch->value[last]);
-    if (width < 1e-5 * fabs(branch->value[i])) {
+    if (width < 1e-5 * fmax(fabs(branch->value[i]), .01 * range)) {
       branch->special[i] = branch->special[last] = MHB_ORDINARY;
       last                                       = -1;
     } else {
@@ -384,7 +385,8 @@ static bool judged(mhb_judge_host *host, double value) {
 static shb_status judge(follower *f, const char **reason) {
   bool finished = true;
   f->monitor->lock(f->monitor, true);
-  drop_hairlines(&f->response->branch[f->branch]);
+  drop_hairlines(&f->response->branch[f->branch],
+                 mhb_parameter_shown(f->residual->parameter, f->path->high - f->path->low));
   if (!f->start) mhb_judge_by_folds(&f->response->branch[f->branch]); /* its beginning is stable */
   f->monitor->lock(f->monitor, false);
   if (f->residual->settings->stability == MHB_STABILITY_NEVER ||

@@ -9,13 +9,14 @@
 static const double FIRST_STEP = .02, LONGEST_STEP = .1, LARGEST_ANGLE = .35, SHORTEST_STEP = 1e-4;
 static const double STAGNANT = 1e-8, ROUNDED = 1e-9, NEAR = .3;
 static const double KINK_STEP = .02, KINK_RATIO = .7;
-static const double OUTSIDE = .2;
+static const double OUTSIDE = .2, POLISHED = 1e-2, SMOOTH = 1e-5;
 /* Of the value, of the chord: brackets in which a kink is the event; how far from it the point is taken. */
 static const double NARROW = 2e-7, NARROW_CHORD = .01, BESIDE = 3e-8;
 enum {
   MAX_CORRECTIONS    = 12,
   WANTED_CORRECTIONS = 5,
   MAX_HALVINGS       = 3,
+  MAX_POLISHED       = 4,
   LASTING            = 10,
   MAX_OUTSIDE        = 1000,
   MAX_TO_KINK        = 100
@@ -141,6 +142,25 @@ static int evaluate_damped(mhb_path *path, double before, double cut, double sca
   }
 }
 
+/* Near the solution the factors at hand do: the law's derivative costs up to ten times its force. As long as each step gains a
+ * decade; what is left is for Newton. The derivatives stay those of the factors. A coarse law has jumps that lead the steps astray. */
+static void polish(mhb_path *path, double scale, mhb_path_point *point) {
+  mhb_newton *w      = path->newton;
+  int         n      = path->n;
+  double      before = POLISHED;
+  if (path->residual->settings->tolerance > SMOOTH) return;
+  for (int i = 0; i < MAX_POLISHED && point->value >= path->least; i++) {
+    mhb_residual_evaluate(path->residual, point->x, point->value, w->r, NULL, NULL);
+    double residual = mhb_norm(w->r, n) / mhb_norm(point->x, n);
+    if (!(residual <= before) || residual <= path->tolerance) return;
+    for (int j = 0; j < n; j++) w->step[j] = -w->r[j] / scale;
+    w->step[n] = 0;
+    if (!solve_bordered(path, w->step)) return;
+    move(path, 1, scale, point);
+    before = .1 * residual;
+  }
+}
+
 /* Newton in the plane normal.(y - point at entry) = 0; clip bounds a correction. still: only as long as the pairs stay as noted.
  * 1: converged, workspace at point. */
 static int correct_while(mhb_path *path, const double *normal, double clip, int still,
@@ -161,6 +181,7 @@ static int correct_while(mhb_path *path, const double *normal, double clip, int 
     double length = mhb_norm(w->step, n + 1);
     cut           = length > clip ? clip / length : 1;
     move(path, cut, scale, point);
+    if (cut == 1 && before < POLISHED) polish(path, scale, point);
     if (!(point->value >= path->least)) return 0;
   }
   return 0;

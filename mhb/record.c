@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-static const double PI = 3.14159265358979323846;
+static const double PI = 3.14159265358979323846, FLAT = 1e-9;
 
 static void record_signals(mhb_response *response, mhb_branch *branch, int point,
                            const mhb_residual *b, const double *x) {
@@ -82,6 +82,11 @@ static double dot(double complex a, double complex b) {
   return creal(a) * creal(b) + cimag(a) * cimag(b);
 }
 
+/* Along a stretch on which nothing changes (another parameter than the frequency, stuck) the sign of a slope is noise. */
+static double unless_flat(double slope, double square) {
+  return fabs(slope) > FLAT * square ? slope : 0;
+}
+
 double mhb_output_slope(const mhb_path *path, const mhb_path_point *point, int o) {
   const mhb_residual   *b      = path->residual;
   const mhb_receptance *r      = b->receptance;
@@ -89,7 +94,7 @@ double mhb_output_slope(const mhb_path *path, const mhb_path_point *point, int o
   if (o >= probes) {
     size_t        at = (size_t)(o - probes) * (size_t)b->nb + (size_t)(2 * k - 1);
     const double *a = point->x + at, *da = point->tangent + at;
-    return 2 * (a[0] * da[0] + a[1] * da[1]);
+    return unless_flat(2 * (a[0] * da[0] + a[1] * da[1]), a[0] * a[0] + a[1] * a[1]);
   }
   double complex p[r->n], dp[r->n], q[3 * probes], dq[3 * probes];
   mhb_receptance_need(b->receptance, k);
@@ -99,7 +104,10 @@ double mhb_output_slope(const mhb_path *path, const mhb_path_point *point, int o
   mhb_receptance_probe(r, k, p, q);
   mhb_receptance_probe_change(r, k, p, dp, b->parameter == MHB_IN_FREQUENCY ? dvalue : 0,
                               b->parameter == MHB_IN_SCALE ? dvalue : 0, dq);
-  double sum = 0;
-  for (int axis = 0; axis < 3; axis++) sum += 2 * dot(q[3 * o + axis], dq[3 * o + axis]);
-  return sum;
+  double sum = 0, square = 0;
+  for (int axis = 0; axis < 3; axis++) {
+    sum += 2 * dot(q[3 * o + axis], dq[3 * o + axis]);
+    square += dot(q[3 * o + axis], q[3 * o + axis]);
+  }
+  return unless_flat(sum, square);
 }

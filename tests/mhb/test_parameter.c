@@ -158,6 +158,32 @@ static void every_parameter_is_followed(void **state) {
   modal_model_free(&model);
 }
 
+/* Stuck, nothing changes with mu: no peaks there, and no way back. */
+static void stuck_means_nothing_changes(void **state) {
+  (void)state;
+  modal_model model;
+  three_degree_model(&model);
+  for (int i = 0; i < 6; i++) {
+    mhb_settings s = ground(.4, .8, .5, 1, 3 + 2 * (i % 3));
+    s.parameter    = MHB_IN_MU;
+    s.frequency[0] = s.frequency[1] = (1.1 + .07 * i) / (2 * PI);
+    s.range[0]                      = .02;
+    s.range[1]                      = 5;
+    mhb_response     *response      = sweep(&model, &s);
+    const mhb_branch *b             = &response->branch[2];
+    int               stuck         = 0;
+    for (int p = 1; p < b->n_points; p++) {
+      if (b->state[3 * p] < 1 || b->state[3 * p - 3] < 1) continue;
+      stuck++;
+      assert_true(b->value[p] > b->value[p - 1]);
+      assert_int_equal(b->special[p], MHB_ORDINARY);
+    }
+    assert_true(stuck > 3);
+    mhb_response_destroy(response);
+  }
+  modal_model_free(&model);
+}
+
 /* Hertz of the fold nearest to w of the curve in frequency at this scale. */
 static double fold_in_frequency(const modal_model *model, mhb_settings s, double scale, double w) {
   double best                = INFINITY;
@@ -206,6 +232,7 @@ static void folds_are_those_in_frequency(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(slopes_are_exact),
                                      cmocka_unit_test(every_parameter_is_followed),
+                                     cmocka_unit_test(stuck_means_nothing_changes),
                                      cmocka_unit_test(folds_are_those_in_frequency)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
