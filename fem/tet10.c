@@ -14,9 +14,13 @@ static void mass_sum(const fem_tet_rule *rule, const double *scale, double m[10]
   memset(m, 0, 100 * sizeof(double));
   for (int p = 0; p < rule->n; p++) {
     double factor = rule->weight[p] * scale[p];
-    for (int i = 0; i < 10; i++)
-      for (int j = 0; j < 10; j++) m[i][j] += factor * rule->shape[p][i] * rule->shape[p][j];
+    for (int i = 0; i < 10; i++) {
+      double weighted = factor * rule->shape[p][i];
+      for (int j = i; j < 10; j++) m[i][j] += weighted * rule->shape[p][j];
+    }
   }
+  for (int i = 0; i < 10; i++)
+    for (int j = 0; j < i; j++) m[i][j] = m[j][i];
 }
 
 PetscErrorCode fem_tet10_create(fem_mass_rule mass, fem_tet10 *element) {
