@@ -1,175 +1,12 @@
 #include "mhb/response.h"
 
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "mhb/parameter.h"
-#include "modal/h5.h"
+#include "mhb/field.h"
 
-static const char response_format[] = "shroudhb response";
-enum { RESPONSE_VERSION = 1, FIRST_POINTS = 64, MAX_COUNT = 100000 };
-
-/* ---------------------------------------------------------------- one array of a branch
- * The table drives growing, writing and reading. dims: the dimensions after [point], one letter each:
- * p pair, q probe, 3 shroud axes, x cylindrical axes, s contact state, k harmonic 0..m, f multiplier, l spectral line. */
-typedef enum { DOUBLE, COMPLEX, INT } number;
-
-typedef struct {
-  const char *name, *dims;
-  number      kind;
-  size_t      offset; /* of the pointer in mhb_branch */
-  const char *units, *long_name;
-} field;
-
-#define AT(member) offsetof(mhb_branch, member)
-static const field fields[] = {
-    {"frequency", "", DOUBLE, AT(frequency), "Hz", "frequency of the excitation's first harmonic"},
-    {"n0", "", DOUBLE, AT(n0), "N", "normal preload, total of the interface; negative: a gap"},
-    {"parameter", "", DOUBLE, AT(value), NULL, "value of the parameter that is followed"},
-    {"motion", "p3k", COMPLEX, AT(motion), "m",
-     "relative motion at the contact along v, u, w; harmonics"},
-    {"force", "p3k", COMPLEX, AT(force), "N",
-     "contact force on the blade along v, u, w; harmonics. Where the contact neither slips nor "
-     "opens "
-     "the mean friction is not determined by the physics: by convention the smallest admissible"},
-    {"probe", "qxk", COMPLEX, AT(probe), "m",
-     "displacement of the probes, tangential, axial, radial; harmonics"},
-    {"stable", "", INT, AT(stable), "-", "stability: 1 stable, 0 unstable, -1 not known"},
-    {"special", "", INT, AT(special), "-",
-     "0 ordinary point, 1 fold, 2 peak of the first harmonic of a probe or contact motion, 3 flip "
-     "(period doubling), 4 Neimark-Sacker point"},
-    {"state", "ps", DOUBLE, AT(state), "-", "share of the period stuck, slipping, open"},
-    {"dissipation", "p", DOUBLE, AT(dissipation), "J", "energy lost by friction in a period"},
-    {"iterations", "", INT, AT(iterations), "-", "Newton iterations"},
-    {"seconds", "", DOUBLE, AT(seconds), "s", "time spent on the point"},
-    {"error/newton", "", DOUBLE, AT(error_newton), "-",
-     "estimated error from the Newton residual, relative to the motion"},
-    {"error/truncation", "", DOUBLE, AT(error_truncation), "-",
-     "estimated error from the harmonics left out, relative to the motion"},
-    {"error/sampling", "", DOUBLE, AT(error_sampling), "-",
-     "estimated error of the contact force's harmonics, relative to the motion"},
-    {"error/modal", "", DOUBLE, AT(error_modal), "-",
-     "estimated error from the modes left out, relative to the motion"},
-    /* N_LATER: of nonlinear branches only; files of earlier versions lack them */
-    {"harmonics", "", INT, AT(harmonics), "-",
-     "harmonics of the balance at the point; higher ones of motion, force and probe are 0"},
-    {"error/truncation_kind", "", INT, AT(truncation_kind), "-",
-     "how error/truncation was estimated: 0 nothing is left out (open or stuck throughout), 1 "
-     "first "
-     "order: can be several times too small, 2 a Newton step of twice the harmonics"},
-    {"judged", "", INT, AT(judged), "-",
-     "what stable rests on: 1 the Floquet multipliers; else the parity of folds passed since such "
-     "a "
-     "point, because the multipliers were 0 not computed, 2 marginal, 3 undecided"},
-    {"loss", "", INT, AT(loss), "-",
-     "how stability was lost: 0 it was not, 1 fold (a multiplier beyond +1), 2 flip (beyond -1), 3 "
-     "Neimark-Sacker (a pair)"},
-    {"multipliers", "f", COMPLEX, AT(multipliers), "-",
-     "largest Floquet multipliers by falling modulus; 0: not computed, or there are no more"},
-    /* the last N_INTEGRATION: of integration branches only */
-    {"multiple", "", INT, AT(multiple), "-",
-     "the motion repeats after so many periods of the fundamental; 0: it does not"},
-    {"periods", "", INT, AT(periods), "-", "periods of the fundamental that were integrated"},
-    {"distance", "", DOUBLE, AT(distance), "-", "of the return map, relative to the motion"},
-    {"spectrum/frequency", "l", DOUBLE, AT(line_frequency), "Hz",
-     "lines of the contact motion where it does not repeat, largest first; 0: none"},
-    {"spectrum/amplitude", "l", DOUBLE, AT(line_amplitude), "m", "amplitude of the line"},
-};
-enum { N_FIELDS = sizeof fields / sizeof *fields, N_LATER = 5, N_INTEGRATION = 5 };
-
-static const char *const origin_name[] = {"end", "search", "flip"};
-enum { N_ORIGINS = sizeof origin_name / sizeof *origin_name };
-
-static const char *const kind_name[] = {"nonlinear", "open", "stuck", "integration"};
-enum { N_KINDS = sizeof kind_name / sizeof *kind_name };
-
-static size_t bytes_of(number kind) {
-  return kind == COMPLEX ? sizeof(double complex) : kind == DOUBLE ? sizeof(double) : sizeof(int);
-}
-
-static hsize_t size_of(const mhb_response *response, const mhb_branch *branch, char letter) {
-  switch (letter) {
-    case 'p':
-      return (hsize_t)response->n_pairs;
-    case 'q':
-      return (hsize_t)response->n_probes;
-    case 'k':
-      return (hsize_t)branch->n_harmonics + 1;
-    case 'f':
-      return (hsize_t)response->n_multipliers;
-    case 'l':
-      return (hsize_t)response->n_lines;
-    default:
-      return 3;
-  }
-}
-
-static const char *scale_of(char letter) {
-  switch (letter) {
-    case 'p':
-      return "/pair";
-    case 'q':
-      return "/probe/name";
-    case 'k':
-      return "/harmonic";
-    case 'f':
-      return "/multiplier";
-    case 'l':
-      return "/line";
-    case '3':
-      return "/shroud_axis";
-    case 'x':
-      return "/axis";
-    default:
-      return "/contact_state";
-  }
-}
-
-static h5_shape shape_of(const mhb_response *response, const mhb_branch *branch, const field *f,
-                         int n_points) {
-  h5_shape shape = {.rank = 1 + (int)strlen(f->dims), .dim = {(hsize_t)n_points}};
-  for (int i = 1; i < shape.rank; i++) shape.dim[i] = size_of(response, branch, f->dims[i - 1]);
-  return shape;
-}
-
-/* Values a point. */
-static size_t width_of(const mhb_response *response, const mhb_branch *branch, const field *f) {
-  return h5_count(shape_of(response, branch, f, 1));
-}
-
-/* Which kind of branch alone has a field; MHB_N_BRANCH_KINDS: all. */
-static mhb_branch_kind owner_of(const field *f) {
-  long from_end = fields + N_FIELDS - f;
-  return from_end <= N_INTEGRATION             ? MHB_BRANCH_INTEGRATION
-         : from_end <= N_INTEGRATION + N_LATER ? MHB_BRANCH_NONLINEAR
-                                               : MHB_N_BRANCH_KINDS;
-}
-
-/* Without probes there is no probe array, in memory or in the file. */
-static bool is_kept(const mhb_response *response, const mhb_branch *branch, const field *f) {
-  mhb_branch_kind owner = owner_of(f);
-  return width_of(response, branch, f) > 0 &&
-         (owner == MHB_N_BRANCH_KINDS || owner == branch->kind);
-}
-
-/* The followed parameter where it is the frequency: not in the file twice. */
-static bool is_frequency(const mhb_response *response, const field *f) {
-  return f->offset == AT(value) && response->parameter == MHB_IN_FREQUENCY;
-}
-
-static void *get(const mhb_branch *branch, const field *f) {
-  void *data;
-  memcpy(&data, (const char *)branch + f->offset, sizeof data);
-  return data;
-}
-
-static void set(mhb_branch *branch, const field *f, void *data) {
-  memcpy((char *)branch + f->offset, &data, sizeof data);
-}
-
-/* ---------------------------------------------------------------- life cycle */
+enum { FIRST_POINTS = 64 };
 
 mhb_response *mhb_response_create(int n_pairs, int n_probes, int n_harmonics) {
   if (n_pairs < 0 || n_probes < 0 || n_harmonics < 0) return NULL;
@@ -186,7 +23,7 @@ mhb_response *mhb_response_create(int n_pairs, int n_probes, int n_harmonics) {
 }
 
 static void free_branch(mhb_branch *branch) {
-  for (int i = 0; i < N_FIELDS; i++) free(get(branch, &fields[i]));
+  for (int i = 0; i < MHB_N_FIELDS; i++) free(mhb_field_get(branch, &mhb_fields[i]));
   free(branch->reason);
 }
 
@@ -227,12 +64,13 @@ shb_status mhb_response_branch(mhb_response *response, mhb_branch_kind kind, int
 /* Arrays grown before one fails stay valid: capacity counts what all have. */
 static shb_status grow(const mhb_response *response, mhb_branch *branch) {
   int capacity = branch->capacity ? 2 * branch->capacity : FIRST_POINTS;
-  for (int i = 0; i < N_FIELDS; i++) {
-    if (!is_kept(response, branch, &fields[i])) continue;
-    size_t row  = width_of(response, branch, &fields[i]) * bytes_of(fields[i].kind);
-    void  *data = realloc(get(branch, &fields[i]), (size_t)capacity * row);
+  for (int i = 0; i < MHB_N_FIELDS; i++) {
+    if (!mhb_field_kept(response, branch, &mhb_fields[i])) continue;
+    size_t row =
+        mhb_field_width(response, branch, &mhb_fields[i]) * mhb_field_bytes(mhb_fields[i].kind);
+    void *data = realloc(mhb_field_get(branch, &mhb_fields[i]), (size_t)capacity * row);
     SHB_CHECK(data, SHB_ERR_IO, "no memory for %d response points", capacity);
-    set(branch, &fields[i], data);
+    mhb_field_set(branch, &mhb_fields[i], data);
   }
   branch->capacity = capacity;
   return SHB_OK;
@@ -241,10 +79,10 @@ static shb_status grow(const mhb_response *response, mhb_branch *branch) {
 shb_status mhb_response_point(mhb_response *response, int branch, int *point) {
   mhb_branch *b = &response->branch[branch];
   if (b->n_points == b->capacity) SHB_TRY(grow(response, b));
-  for (int i = 0; i < N_FIELDS; i++) {
-    if (!is_kept(response, b, &fields[i])) continue;
-    size_t row = width_of(response, b, &fields[i]) * bytes_of(fields[i].kind);
-    memset((char *)get(b, &fields[i]) + (size_t)b->n_points * row, 0, row);
+  for (int i = 0; i < MHB_N_FIELDS; i++) {
+    if (!mhb_field_kept(response, b, &mhb_fields[i])) continue;
+    size_t row = mhb_field_width(response, b, &mhb_fields[i]) * mhb_field_bytes(mhb_fields[i].kind);
+    memset((char *)mhb_field_get(b, &mhb_fields[i]) + (size_t)b->n_points * row, 0, row);
   }
   *point = b->n_points++;
   return SHB_OK;
@@ -262,9 +100,10 @@ static void rotate(char *data, size_t row, size_t at, size_t n) {
 
 void mhb_response_place(mhb_response *response, int branch, int at) {
   mhb_branch *b = &response->branch[branch];
-  for (int i = 0; i < N_FIELDS; i++)
-    if (is_kept(response, b, &fields[i]))
-      rotate(get(b, &fields[i]), width_of(response, b, &fields[i]) * bytes_of(fields[i].kind),
+  for (int i = 0; i < MHB_N_FIELDS; i++)
+    if (mhb_field_kept(response, b, &mhb_fields[i]))
+      rotate(mhb_field_get(b, &mhb_fields[i]),
+             mhb_field_width(response, b, &mhb_fields[i]) * mhb_field_bytes(mhb_fields[i].kind),
              (size_t)at, (size_t)b->n_points);
 }
 
@@ -278,10 +117,10 @@ static void swap_rows(char *a, char *b, size_t row) {
 
 void mhb_response_reverse(mhb_response *response, int branch) {
   mhb_branch *b = &response->branch[branch];
-  for (int i = 0; i < N_FIELDS; i++) {
-    if (!is_kept(response, b, &fields[i])) continue;
-    size_t row  = width_of(response, b, &fields[i]) * bytes_of(fields[i].kind);
-    char  *data = get(b, &fields[i]);
+  for (int i = 0; i < MHB_N_FIELDS; i++) {
+    if (!mhb_field_kept(response, b, &mhb_fields[i])) continue;
+    size_t row = mhb_field_width(response, b, &mhb_fields[i]) * mhb_field_bytes(mhb_fields[i].kind);
+    char  *data = mhb_field_get(b, &mhb_fields[i]);
     for (int p = 0, q = b->n_points - 1; p < q; p++, q--)
       swap_rows(data + (size_t)p * row, data + (size_t)q * row, row);
   }
@@ -309,378 +148,4 @@ void mhb_response_sort(mhb_response *response) {
       b[at] = b[at - 1];
     b[at] = moved;
   }
-}
-
-/* ---------------------------------------------------------------- writing */
-
-static shb_status write_probe_names(hid_t file, const mhb_response *response) {
-  if (response->n_probes == 0) return SHB_OK;
-  const char **name = calloc((size_t)response->n_probes, sizeof *name);
-  SHB_CHECK(name, SHB_ERR_IO, "no memory to write /probe/name");
-  for (int i = 0; i < response->n_probes; i++)
-    name[i] = response->probe_name[i] ? response->probe_name[i] : "";
-  shb_status status =
-      h5_write_strings(file, "/probe/name", response->n_probes, name, "name of the probe");
-  free(name);
-  return status;
-}
-
-static shb_status write_scales(hid_t file, const mhb_response *response) {
-  static const char *const shroud[] = {"v", "u", "w"}, *const state[] = {"stuck", "slip", "open"},
-                           *const axis[] = {"tangential", "axial", "radial"};
-  SHB_TRY(h5_write_strings(file, "/shroud_axis", 3, shroud, "shroud axes: normal v, sliding u, w"));
-  SHB_TRY(h5_write_strings(file, "/axis", 3, axis, "cylindrical axes about the engine axis"));
-  SHB_TRY(h5_write_strings(file, "/contact_state", 3, state, "contact state"));
-  SHB_TRY(h5_write_counter(file, "/pair", (hsize_t)response->n_pairs, "contact pair, from 0"));
-  SHB_TRY(
-      h5_write_counter(file, "/harmonic", (hsize_t)response->n_harmonics + 1,
-                       "harmonic k of omega / subharmonics; x(t) = Re sum_k A_k exp(j k omega t / "
-                       "subharmonics)"));
-  if (response->n_multipliers > 0)
-    SHB_TRY(h5_write_counter(file, "/multiplier", (hsize_t)response->n_multipliers,
-                             "Floquet multiplier, by falling modulus"));
-  if (response->n_lines > 0)
-    SHB_TRY(h5_write_counter(file, "/line", (hsize_t)response->n_lines,
-                             "spectral line, largest first"));
-  return write_probe_names(file, response);
-}
-
-static shb_status write_root(hid_t file, const mhb_response *response) {
-  SHB_TRY(h5_write_attribute_int(file, "/", "branches", response->n_branches));
-  SHB_TRY(h5_write_attribute_int(file, "/", "engine_order", response->engine_order));
-  SHB_TRY(h5_write_attribute_int(file, "/", "blades", response->blades));
-  SHB_TRY(h5_write_attribute_int(file, "/", "subharmonics", response->subharmonics));
-  SHB_TRY(h5_write_attribute_text(file, "/", "parameter", mhb_parameter_name(response->parameter)));
-  SHB_TRY(h5_write_attribute_double(file, "/", "psi", response->psi));
-  SHB_TRY(h5_write_attribute_double(file, "/", "phi", response->phi));
-  SHB_TRY(h5_write_attribute_text(file, "/", "angle_units", "rad"));
-  SHB_TRY(write_scales(file, response));
-  if (response->n_modes == 0) return SHB_OK;
-  const h5_shape modes = H5_SHAPE((hsize_t)response->n_modes);
-  SHB_TRY(h5_write_double(file, "/modes/frequency", modes, response->mode_frequency, "Hz",
-                          "undamped natural frequency of the free blade"));
-  SHB_TRY(h5_write_double(file, "/modes/damping_ratio", modes, response->mode_damping, "-",
-                          "modal damping ratio"));
-  SHB_TRY(h5_attach_scale(file, "/modes/damping_ratio", 0, "/modes/frequency"));
-  if (!response->mode_residual) return SHB_OK;
-  SHB_TRY(h5_write_double(file, "/modes/residual", modes, response->mode_residual, "-",
-                          "relative residual of the eigenpair"));
-  return h5_attach_scale(file, "/modes/residual", 0, "/modes/frequency");
-}
-
-/* Its harmonics are not those of the root's scale. */
-static bool has_own_scale(const mhb_response *response, const mhb_branch *branch) {
-  return branch->order != response->subharmonics || branch->n_harmonics != response->n_harmonics;
-}
-
-static shb_status write_field(hid_t group, const mhb_response *response, const mhb_branch *branch,
-                              const field *f) {
-  const h5_shape shape = shape_of(response, branch, f, branch->n_points);
-  const void    *data  = get(branch, f);
-  const char    *units = f->units ? f->units : mhb_parameter_unit(response->parameter);
-  if (is_frequency(response, f)) return SHB_OK;
-  switch (f->kind) {
-    case DOUBLE:
-      SHB_TRY(h5_write_double(group, f->name, shape, data, *units ? units : "-", f->long_name));
-      break;
-    case COMPLEX:
-      SHB_TRY(h5_write_complex(group, f->name, shape, data, f->units, f->long_name));
-      break;
-    case INT:
-      SHB_TRY(h5_write_int(group, f->name, shape, data, f->units, f->long_name));
-      break;
-  }
-  if (f == fields) return SHB_OK; /* the frequency is the scale */
-  SHB_TRY(h5_attach_scale(group, f->name, 0, fields[0].name));
-  for (int i = 1; i < shape.rank; i++) {
-    bool own = f->dims[i - 1] == 'k' && has_own_scale(response, branch);
-    SHB_TRY(h5_attach_scale(group, f->name, i, own ? "harmonic" : scale_of(f->dims[i - 1])));
-  }
-  return SHB_OK;
-}
-
-static shb_status fill_branch(hid_t group, const mhb_response *response, const mhb_branch *branch) {
-  SHB_TRY(h5_write_attribute_text(group, ".", "kind", kind_name[branch->kind]));
-  SHB_TRY(h5_write_attribute_text(group, ".", "reason", branch->reason));
-  SHB_TRY(h5_write_attribute_int(group, ".", "complete", branch->complete));
-  if (!branch->searched) SHB_TRY(h5_write_attribute_int(group, ".", "searched", 0));
-  if (branch->origin != MHB_FROM_END) {
-    SHB_TRY(h5_write_attribute_text(group, ".", "origin", origin_name[branch->origin]));
-    SHB_TRY(h5_write_attribute_int(group, ".", "order", branch->order));
-    SHB_TRY(h5_write_attribute_int(group, ".", "main", branch->main));
-  }
-  if (has_own_scale(response, branch))
-    SHB_TRY(h5_write_counter(
-        group, "harmonic", (hsize_t)branch->n_harmonics + 1,
-        "harmonic k of omega / order; x(t) = Re sum_k A_k exp(j k omega t / order)"));
-  for (int i = 0; i < N_FIELDS; i++)
-    if (is_kept(response, branch, &fields[i]))
-      SHB_TRY(write_field(group, response, branch, &fields[i]));
-  return SHB_OK;
-}
-
-static shb_status write_branch(hid_t file, const mhb_response *response, int index) {
-  char name[32];
-  snprintf(name, sizeof name, "/branch_%d", index);
-  hid_t group = H5Gcreate2(file, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
-  SHB_CHECK(group >= 0, SHB_ERR_IO, "%s of the response cannot be written", name);
-  shb_status status = fill_branch(group, response, &response->branch[index]);
-  H5Gclose(group);
-  return status;
-}
-
-static shb_status write_parts(hid_t file, const mhb_response *response,
-                              const shb_provenance *provenance) {
-  SHB_TRY(h5_write_provenance(file, response_format, RESPONSE_VERSION, provenance));
-  SHB_TRY(write_root(file, response));
-  for (int i = 0; i < response->n_branches; i++) SHB_TRY(write_branch(file, response, i));
-  return SHB_OK;
-}
-
-static shb_status write_file(const mhb_response *response, const char *temporary,
-                             const shb_provenance *provenance) {
-  hid_t file;
-  SHB_TRY(h5_create(temporary, &file));
-  shb_status status = write_parts(file, response, provenance);
-  if (status == SHB_OK) return h5_close(file);
-  h5_abandon(file);
-  return status;
-}
-
-shb_status mhb_response_write(const mhb_response *response, const char *path,
-                              const shb_provenance *provenance) {
-  char *temporary = shb_publish_temporary(path);
-  SHB_CHECK(temporary, SHB_ERR_IO, "%s: no memory", path);
-  shb_status status = write_file(response, temporary, provenance);
-  if (status == SHB_OK) status = shb_publish(temporary, path);
-  free(temporary);
-  return status;
-}
-
-/* ---------------------------------------------------------------- reading */
-
-static shb_status read_sizes(hid_t file, const char *path, int *n_pairs, int *n_harmonics) {
-  h5_shape pair, harmonic;
-  SHB_TRY(h5_shape_of(file, "/pair", &pair));
-  SHB_TRY(h5_shape_of(file, "/harmonic", &harmonic));
-  SHB_CHECK(pair.rank == 1 && pair.dim[0] <= MAX_COUNT && harmonic.rank == 1 &&
-                harmonic.dim[0] >= 1 && harmonic.dim[0] <= MAX_COUNT,
-            SHB_ERR_INPUT, "%s: /pair and /harmonic must be lists of at most %d", path, MAX_COUNT);
-  *n_pairs     = (int)pair.dim[0];
-  *n_harmonics = (int)harmonic.dim[0] - 1;
-  return SHB_OK;
-}
-
-static shb_status read_modes(hid_t file, mhb_response *response) {
-  if (!h5_exists(file, "/modes")) return SHB_OK;
-  h5_shape modes = H5_SHAPE(0);
-  SHB_TRY(h5_read_double(file, "/modes/frequency", &modes, &response->mode_frequency));
-  SHB_TRY(h5_read_double(file, "/modes/damping_ratio", &modes, &response->mode_damping));
-  if (h5_exists(file, "/modes/residual"))
-    SHB_TRY(h5_read_double(file, "/modes/residual", &modes, &response->mode_residual));
-  response->n_modes = (int)modes.dim[0];
-  return SHB_OK;
-}
-
-/* Length of a list that files of earlier versions have none of. */
-static shb_status read_count(hid_t file, const char *path, const char *name, int *count) {
-  h5_shape shape;
-  if (!h5_exists(file, name)) return SHB_OK;
-  SHB_TRY(h5_shape_of(file, name, &shape));
-  SHB_CHECK(shape.rank == 1 && shape.dim[0] <= MAX_COUNT, SHB_ERR_INPUT,
-            "%s: %s must be a list of at most %d", path, name, MAX_COUNT);
-  *count = (int)shape.dim[0];
-  return SHB_OK;
-}
-
-/* Sizes, probe names and root attributes. */
-static shb_status read_parameter(hid_t file, const char *path, mhb_parameter *parameter) {
-  char *text = NULL;
-  SHB_TRY(h5_read_attribute_text(file, "/", "parameter", &text));
-  int found = 0;
-  while (text && found < MHB_N_PARAMETERS && strcmp(text, mhb_parameter_name(found)) != 0) found++;
-  free(text);
-  SHB_CHECK(found < MHB_N_PARAMETERS, SHB_ERR_INPUT,
-            "%s: the root attribute parameter must be frequency, n0, scale, mu, ku or kv", path);
-  *parameter = (mhb_parameter)found;
-  return SHB_OK;
-}
-
-static shb_status read_root(hid_t file, const char *path, mhb_response **out) {
-  int    n_pairs = 0, n_harmonics = 0, n_probes = 0;
-  char **name = NULL;
-  SHB_TRY(read_sizes(file, path, &n_pairs, &n_harmonics));
-  if (h5_exists(file, "/probe")) SHB_TRY(h5_read_strings(file, "/probe/name", &n_probes, &name));
-  mhb_response *response = *out = mhb_response_create(n_pairs, n_probes, n_harmonics);
-  for (int i = 0; i < n_probes && !response; i++) free(name[i]);
-  for (int i = 0; i < n_probes && response; i++) response->probe_name[i] = name[i];
-  free(name);
-  SHB_CHECK(response, SHB_ERR_IO, "%s: no memory", path);
-  SHB_TRY(h5_read_attribute_int(file, "/", "engine_order", 0, &response->engine_order));
-  SHB_TRY(h5_read_attribute_int(file, "/", "blades", 0, &response->blades));
-  SHB_TRY(h5_read_attribute_int(file, "/", "subharmonics", 1, &response->subharmonics));
-  SHB_TRY(h5_read_attribute_double(file, "/", "psi", 0, &response->psi));
-  SHB_TRY(h5_read_attribute_double(file, "/", "phi", 0, &response->phi));
-  SHB_CHECK(response->subharmonics >= 1, SHB_ERR_INPUT,
-            "%s: subharmonics is %d; 1 or more is wanted", path, response->subharmonics);
-  SHB_TRY(read_parameter(file, path, &response->parameter));
-  SHB_TRY(read_count(file, path, "/multiplier", &response->n_multipliers));
-  SHB_TRY(read_count(file, path, "/line", &response->n_lines));
-  return read_modes(file, response);
-}
-
-static shb_status copy_frequency(mhb_branch *branch) {
-  size_t size   = sizeof(double) * (size_t)branch->n_points;
-  branch->value = malloc(size + 1);
-  SHB_CHECK(branch->value, SHB_ERR_IO, "no memory for %d response points", branch->n_points);
-  if (size > 0) memcpy(branch->value, branch->frequency, size);
-  return SHB_OK;
-}
-
-static shb_status read_field(hid_t group, const mhb_response *response, mhb_branch *branch,
-                             const field *f) {
-  h5_shape        shape    = shape_of(response, branch, f, branch->n_points);
-  double         *real     = NULL;
-  double complex *complex_ = NULL;
-  int            *whole    = NULL;
-  if (is_frequency(response, f)) return copy_frequency(branch);
-  if (owner_of(f) == MHB_BRANCH_NONLINEAR &&
-      !h5_exists(group, f->name)) { /* an earlier version's file: not known */
-    void *none = calloc(h5_count(shape) + 1, bytes_of(f->kind));
-    SHB_CHECK(none, SHB_ERR_IO, "no memory for %d response points", branch->n_points);
-    set(branch, f, none);
-    return SHB_OK;
-  }
-  switch (f->kind) {
-    case DOUBLE:
-      SHB_TRY(h5_read_double(group, f->name, &shape, &real));
-      set(branch, f, real);
-      break;
-    case COMPLEX:
-      SHB_TRY(h5_read_complex(group, f->name, &shape, &complex_));
-      set(branch, f, complex_);
-      break;
-    case INT:
-      SHB_TRY(h5_read_int(group, f->name, &shape, &whole));
-      set(branch, f, whole);
-      break;
-  }
-  return SHB_OK;
-}
-
-static shb_status read_kind(hid_t group, const char *path, int index, mhb_branch *branch) {
-  char *text = NULL;
-  SHB_TRY(h5_read_attribute_text(group, ".", "kind", &text));
-  int kind = 0;
-  while (text && kind < N_KINDS && strcmp(text, kind_name[kind]) != 0) kind++;
-  bool known = text && kind < N_KINDS;
-  free(text);
-  SHB_CHECK(known, SHB_ERR_INPUT,
-            "%s: /branch_%d: attribute kind must be nonlinear, open, stuck or integration", path,
-            index);
-  branch->kind = (mhb_branch_kind)kind;
-  return SHB_OK;
-}
-
-/* Earlier files have none of these: a branch is its own main one, of the file's order. */
-static shb_status read_descent(hid_t group, const char *path, int index, mhb_branch *branch) {
-  char *text     = NULL;
-  int   searched = 1, origin = 0;
-  SHB_TRY(h5_read_attribute_int(group, ".", "order", branch->order, &branch->order));
-  SHB_TRY(h5_read_attribute_int(group, ".", "main", index, &branch->main));
-  SHB_TRY(h5_read_attribute_int(group, ".", "searched", 1, &searched));
-  SHB_TRY(h5_read_attribute_text(group, ".", "origin", &text));
-  while (text && *text && origin < N_ORIGINS && strcmp(text, origin_name[origin]) != 0) origin++;
-  free(text);
-  SHB_CHECK(origin < N_ORIGINS, SHB_ERR_INPUT,
-            "%s: /branch_%d: attribute origin must be end, search or flip", path, index);
-  SHB_CHECK(branch->order >= 1 && branch->main >= 0 && branch->main <= index, SHB_ERR_INPUT,
-            "%s: /branch_%d: attribute order is %d, main is %d; 1 or more and 0 to %d are wanted",
-            path, index, branch->order, branch->main, index);
-  branch->origin   = (mhb_origin)origin;
-  branch->searched = searched != 0;
-  if (!h5_exists(group, "harmonic")) return SHB_OK;
-  h5_shape harmonic;
-  SHB_TRY(h5_shape_of(group, "harmonic", &harmonic));
-  SHB_CHECK(harmonic.rank == 1 && harmonic.dim[0] >= 1 && harmonic.dim[0] <= MAX_COUNT,
-            SHB_ERR_INPUT, "%s: /branch_%d/harmonic must be a list of 1 to %d", path, index,
-            MAX_COUNT);
-  branch->n_harmonics = (int)harmonic.dim[0] - 1;
-  return SHB_OK;
-}
-
-/* All values of a list of codes within their range. */
-static shb_status check_codes(const char *path, int index, const char *name, int n, const int *code,
-                              int least, int most, const char *wanted) {
-  for (int i = 0; code && i < n; i++)
-    SHB_CHECK(code[i] >= least && code[i] <= most, SHB_ERR_INPUT,
-              "%s: /branch_%d/%s: value %d (from 0) is %d; %s is wanted", path, index, name, i,
-              code[i], wanted);
-  return SHB_OK;
-}
-
-static shb_status check_points(const char *path, int index, const mhb_branch *branch) {
-  int n = branch->n_points;
-  for (int i = 0; i < n; i++)
-    SHB_CHECK(branch->frequency[i] > 0, SHB_ERR_INPUT,
-              "%s: /branch_%d/frequency: value %d (from 0) is %g Hz; all must be positive", path,
-              index, i, branch->frequency[i]);
-  SHB_TRY(check_codes(path, index, "stable", n, branch->stable, -1, 1, "1, 0 or -1"));
-  SHB_TRY(check_codes(path, index, "special", n, branch->special, 0, MHB_N_SPECIALS - 1, "0 to 4"));
-  SHB_TRY(check_codes(path, index, "judged", n, branch->judged, 0, MHB_N_JUDGED - 1, "0 to 3"));
-  return check_codes(path, index, "loss", n, branch->loss, 0, MHB_N_LOSSES - 1, "0 to 3");
-}
-
-static shb_status fill_from(hid_t group, const char *path, int index, mhb_response *response) {
-  mhb_branch *branch = &response->branch[index];
-  int         complete;
-  SHB_TRY(read_kind(group, path, index, branch));
-  SHB_TRY(h5_read_attribute_text(group, ".", "reason", &branch->reason));
-  SHB_TRY(h5_read_attribute_int(group, ".", "complete", 0, &complete));
-  branch->complete = complete != 0;
-  SHB_TRY(read_descent(group, path, index, branch));
-  h5_shape points;
-  SHB_TRY(h5_shape_of(group, fields[0].name, &points));
-  SHB_CHECK(points.rank == 1, SHB_ERR_INPUT, "%s: /branch_%d/frequency must be a list", path,
-            index);
-  branch->n_points = branch->capacity = (int)points.dim[0];
-  for (int i = 0; i < N_FIELDS; i++)
-    if (is_kept(response, branch, &fields[i]))
-      SHB_TRY(read_field(group, response, branch, &fields[i]));
-  return check_points(path, index, branch);
-}
-
-static shb_status read_branch(hid_t file, const char *path, mhb_response *response) {
-  char name[32];
-  int  index = 0;
-  SHB_TRY(mhb_response_branch(response, MHB_BRANCH_NONLINEAR, &index));
-  snprintf(name, sizeof name, "/branch_%d", index);
-  SHB_CHECK(h5_exists(file, name), SHB_ERR_INPUT, "%s: %s is missing", path, name);
-  hid_t group = H5Gopen2(file, name, H5P_DEFAULT);
-  SHB_CHECK(group >= 0, SHB_ERR_INPUT, "%s: %s is not a readable group", path, name);
-  shb_status status = fill_from(group, path, index, response);
-  H5Gclose(group);
-  return status;
-}
-
-static shb_status read_parts(hid_t file, const char *path, mhb_response **response) {
-  int n_branches = -1;
-  SHB_TRY(h5_check_format(file, response_format, RESPONSE_VERSION));
-  SHB_TRY(read_root(file, path, response));
-  SHB_TRY(h5_read_attribute_int(file, "/", "branches", -1, &n_branches));
-  SHB_CHECK(n_branches >= 0, SHB_ERR_INPUT, "%s: the root attribute branches is missing", path);
-  for (int i = 0; i < n_branches; i++) SHB_TRY(read_branch(file, path, *response));
-  return SHB_OK;
-}
-
-shb_status mhb_response_read(const char *path, mhb_response **response) {
-  *response = NULL;
-  hid_t file;
-  SHB_TRY(h5_open(path, &file));
-  shb_status status = read_parts(file, path, response);
-  h5_close(file);
-  if (status == SHB_OK) return SHB_OK;
-  mhb_response_destroy(*response);
-  *response = NULL;
-  return status;
 }
