@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mhb/locate.h"
 #include "mhb/orders.h"
 
 /* Of a step: how far off the beginning it may pass for a closer look. */

@@ -9,6 +9,7 @@
 #include "mhb/closed.h"
 #include "mhb/harmonics.h"
 #include "mhb/judge.h"
+#include "mhb/locate.h"
 #include "mhb/orders.h"
 #include "mhb/record.h"
 

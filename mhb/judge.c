@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "mesh/progress.h"
+#include "mhb/locate.h"
 
 /* Up to CHEAP states every point is judged, up to FINE those that the budget a branch allows, by the measured cost; above that
  * with fewer modes and sub-steps. */

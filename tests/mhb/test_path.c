@@ -14,6 +14,7 @@
 #include <cmocka.h>
 
 #include "mhb/follow.h"
+#include "mhb/locate.h"
 #include "mhb/sweep.h"
 #include "tests/mhb/random_model.h"
 #include "tests/mhb/solution.h"
