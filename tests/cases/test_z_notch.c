@@ -15,17 +15,10 @@
 
 #include "mhb/follow.h"
 #include "mhb/response.h"
-#include "tests/cases/scratch.h"
+#include "tests/cases/scene.h"
 
 static char          folder[SCRATCH_PATH];
 static mhb_response *response;
-
-#define assert_within(value, wanted, relative)                                       \
-  do {                                                                               \
-    double v_ = (value), w_ = (wanted);                                              \
-    if (!(fabs(v_ - w_) <= (relative)*fabs(w_)))                                     \
-      fail_msg("%s = %.6g, not %.6g (%.2g off)", #value, v_, w_, fabs(v_ / w_ - 1)); \
-  } while (0)
 
 static char *path_of(const char *suffix) {
   static char path[SCRATCH_PATH + 64];
@@ -75,20 +68,11 @@ static double peak(const mhb_branch *b, double *frequency) {
   return top;
 }
 
-static const mhb_branch *branch_of(mhb_branch_kind kind, double n0) {
-  for (int i = 0; i < response->n_branches; i++) {
-    const mhb_branch *b = &response->branch[i];
-    if (b->kind == kind && (kind != MHB_BRANCH_NONLINEAR || fabs(b->n0[0] - n0) < 1e-9)) return b;
-  }
-  fail_msg("no branch of kind %d at %g N", (int)kind, n0);
-  return NULL;
-}
-
 static void frequency_shifts_from_open_to_stuck(void **state) {
   (void)state;
   double open, stuck;
-  assert_within(peak(branch_of(MHB_BRANCH_OPEN, 0), &open), 5.93e-3, .01);
-  assert_within(peak(branch_of(MHB_BRANCH_STUCK, 0), &stuck), 2.846e-3, .01);
+  assert_within(peak(scene_branch(response, MHB_BRANCH_OPEN, 0), &open), 5.93e-3, .01);
+  assert_within(peak(scene_branch(response, MHB_BRANCH_STUCK, 0), &stuck), 2.846e-3, .01);
   assert_within(open, 116.07, 2e-3);
   assert_within(stuck, 243.98, 2e-3);
 }
@@ -101,21 +85,17 @@ static void peaks_against_preload_have_an_optimum(void **state) {
                                    {250, 3.787e-4, 243.39},  {1000, 1.439e-3, 243.96}};
   for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
     double            frequency;
-    const mhb_branch *b = branch_of(MHB_BRANCH_NONLINEAR, rows[i][0]);
+    const mhb_branch *b = scene_branch(response, MHB_BRANCH_NONLINEAR, rows[i][0]);
     assert_true(b->complete);
     assert_within(peak(b, &frequency), rows[i][1], .02);
     assert_within(frequency, rows[i][2], 3e-3);
   }
 }
 
-/* Folds, but for pairs closer than 2e-5: where slip begins a curve may turn back by a hair. */
-static int folds(const mhb_branch *b, double *list) {
-  int n = 0;
-  for (int i = 0; i < b->n_points; i++) {
-    if (b->special[i] != MHB_FOLD || n == 8) continue;
-    list[n++] = b->frequency[i];
-    if (n > 1 && fabs(list[n - 1] - list[n - 2]) < 2e-5 * list[n - 1]) n -= 2;
-  }
+/* Frequencies of the folds; how many. */
+static int folds(const mhb_branch *b, double list[8]) {
+  int point[8], n = scene_folds(b, 8, point);
+  for (int i = 0; i < n; i++) list[i] = b->frequency[point[i]];
   return n;
 }
 
@@ -123,10 +103,10 @@ static int folds(const mhb_branch *b, double *list) {
 static void softening_and_hardening_jump(void **state) {
   (void)state;
   double list[8];
-  assert_int_equal(folds(branch_of(MHB_BRANCH_NONLINEAR, 25), list), 2);
+  assert_int_equal(folds(scene_branch(response, MHB_BRANCH_NONLINEAR, 25), list), 2);
   assert_within(list[0], 223.32, 3e-3);
   assert_within(list[1], 221.79, 3e-3);
-  assert_int_equal(folds(branch_of(MHB_BRANCH_NONLINEAR, -250), list), 2);
+  assert_int_equal(folds(scene_branch(response, MHB_BRANCH_NONLINEAR, -250), list), 2);
   assert_within(list[0], 121.92, 3e-3);
   assert_within(list[1], 119.22, 3e-3);
 }

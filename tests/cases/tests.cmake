@@ -23,8 +23,8 @@ if(SHROUDHB_PYTHON AND TARGET shroudhb-post)
 endif()
 
 if(TARGET shroudhb-post)
-  shb_test(cases z_notch slow shb_response)
-  target_sources(test_cases_z_notch PRIVATE cases/scratch.c)
+  shb_test(cases z_notch slow shb_post)
+  target_sources(test_cases_z_notch PRIVATE cases/scene.c cases/scratch.c)
   target_compile_definitions(test_cases_z_notch PRIVATE
     SHROUDHB="$<TARGET_FILE:shroudhb>" SCENE="${PROJECT_SOURCE_DIR}/cases/z_notch_blade/case.yaml")
   add_dependencies(test_cases_z_notch shroudhb shroudhb-mesh shroudhb-modal shroudhb-mhb shroudhb-post)
