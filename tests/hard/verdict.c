@@ -57,8 +57,8 @@ mhb_response *covered_sweep(const modal_model *model, mhb_settings *s, double fr
   assert_true(status == SHB_OK || status == SHB_NOT_CONVERGED);
   for (int i = 2; i < r->n_branches; i++)
     if (!r->branch[i].complete)
-      verdict_count(0, 1, "n0 %g covers the range (%s)", r->branch[i].n_points ? r->branch[i].n0[0] : NAN,
-                    r->branch[i].reason);
+      verdict_count(0, 1, "n0 %g covers the range (%s)",
+                    r->branch[i].n_points ? r->branch[i].n0[0] : NAN, r->branch[i].reason);
   return r;
 }
 

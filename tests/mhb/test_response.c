@@ -376,12 +376,13 @@ static void test_attribute_faults(void **state) {
   (void)state;
   static const struct {
     const char *group, *name, *value, *text;
-  } wrong[] = {{"/", "format", "shroudhb modal model", "is a \"shroudhb modal model\" file"},
-               {"/branch_0", "kind", "linear", "kind must be nonlinear, open, stuck or integration"},
-               {"/branch_0", "complete", "yes", "/branch_0: attribute complete must be a number"},
-               {"/", "psi", "35 deg", "attribute psi must be a number"},
-               {"/", "branches", NULL, "attribute branches is missing"},
-               {"/branch_0", "kind", NULL, "kind must be nonlinear"}};
+  } wrong[] = {
+      {"/", "format", "shroudhb modal model", "is a \"shroudhb modal model\" file"},
+      {"/branch_0", "kind", "linear", "kind must be nonlinear, open, stuck or integration"},
+      {"/branch_0", "complete", "yes", "/branch_0: attribute complete must be a number"},
+      {"/", "psi", "35 deg", "attribute psi must be a number"},
+      {"/", "branches", NULL, "attribute branches is missing"},
+      {"/branch_0", "kind", NULL, "kind must be nonlinear"}};
   mhb_response *response = sample(PROBES, 5);
   for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
     assert_ok(mhb_response_write(response, scratch("wrong.h5"), &from));
