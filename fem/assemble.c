@@ -12,7 +12,8 @@ typedef struct {
 static void find_free(const mesh_fe *mesh, bool *is_free) {
   const mesh_face_set *root = &mesh->set[MESH_ROOT];
   for (int i = 0; i < mesh->n_nodes; i++) is_free[i] = true;
-  for (int i = 0; i < 6 * root->n; i++) is_free[root->nodes[i]] = false;
+  for (int i = 0; i < mesh_topology_of(mesh->kind)->face_nodes * root->n; i++)
+    is_free[root->nodes[i]] = false;
 }
 
 /* Free nodes get block rows rank by rank, in mesh order inside a rank. */
@@ -46,7 +47,8 @@ static bool is_own(const fem_system *system, PetscInt row) {
 
 static PetscErrorCode find_incidence(const mesh_fe *mesh, const fem_system *system,
                                      incidence *around) {
-  const int n_own = (int)(system->last - system->first), n = 10 * mesh->n_elements;
+  const int each = mesh_topology_of(mesh->kind)->nodes, n = each * mesh->n_elements;
+  const int n_own = (int)(system->last - system->first);
   int      *next;
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(n_own + 1, &around->start));
@@ -60,7 +62,7 @@ static PetscErrorCode find_incidence(const mesh_fe *mesh, const fem_system *syst
   PetscCall(PetscArraycpy(next, around->start, n_own));
   for (int i = 0; i < n; i++) {
     PetscInt row = system->row[mesh->connectivity[i]];
-    if (is_own(system, row)) around->element[next[row - system->first]++] = i / 10;
+    if (is_own(system, row)) around->element[next[row - system->first]++] = i / each;
   }
   PetscCall(PetscFree(next));
   PetscFunctionReturn(0);
@@ -70,6 +72,7 @@ static PetscErrorCode find_incidence(const mesh_fe *mesh, const fem_system *syst
 static PetscErrorCode count_blocks(const mesh_fe *mesh, const fem_system *system,
                                    const incidence *around, PetscInt *diagonal,
                                    PetscInt *off_diagonal) {
+  const int each = mesh_topology_of(mesh->kind)->nodes;
   PetscInt *seen; /* last row in which this column was counted, plus 1 */
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(system->n_free, &seen));
@@ -78,8 +81,8 @@ static PetscErrorCode count_blocks(const mesh_fe *mesh, const fem_system *system
     diagonal[r]     = 0;
     off_diagonal[r] = 0;
     for (int k = around->start[r]; k < around->start[r + 1]; k++)
-      for (int i = 0; i < 10; i++) {
-        PetscInt column = system->row[mesh->connectivity[10 * around->element[k] + i]];
+      for (int i = 0; i < each; i++) {
+        PetscInt column = system->row[mesh->connectivity[each * around->element[k] + i]];
         if (column < row || seen[column] == row + 1) continue;
         seen[column] = row + 1;
         if (column < system->last)
@@ -107,33 +110,42 @@ static PetscErrorCode create_matrix(const fem_system *system, const PetscInt *di
   PetscFunctionReturn(0);
 }
 
-bool fem_system_rows(const mesh_fe *mesh, const fem_system *system, int element, PetscInt rows[10],
-                     PetscInt columns[10]) {
-  bool touches = false;
-  for (int i = 0; i < 10; i++) {
-    columns[i] = system->row[mesh->connectivity[10 * element + i]];
+bool fem_system_rows(const mesh_fe *mesh, const fem_system *system, int element, PetscInt *rows,
+                     PetscInt *columns) {
+  const int each    = mesh_topology_of(mesh->kind)->nodes;
+  bool      touches = false;
+  for (int i = 0; i < each; i++) {
+    columns[i] = system->row[mesh->connectivity[each * element + i]];
     rows[i]    = is_own(system, columns[i]) ? columns[i] : -1;
     touches    = touches || rows[i] >= 0;
   }
   return touches;
 }
 
+/* M = m x the 3x3 identity, [3n][3n]. */
+static void spread(int n, const double *m, double *M) {
+  memset(M, 0, (size_t)(9 * n * n) * sizeof *M);
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j < n; j++)
+      for (int d = 0; d < 3; d++) M[(3 * i + d) * 3 * n + 3 * j + d] = m[n * i + j];
+}
+
 static PetscErrorCode add_elements(const mesh_fe *mesh, const fem_material *material,
-                                   const fem_tet10 *element, const fem_system *system) {
+                                   const fem_element *element, const fem_system *system) {
+  const int n = element->n;
   PetscFunctionBeginUser;
   for (int e = 0; e < mesh->n_elements; e++) {
-    PetscInt rows[10], columns[10];
-    double   x[10][3], K[30][30], m[10][10], M[30][30] = {{0}};
+    PetscInt   rows[MESH_NODES], columns[MESH_NODES];
+    double     x[MESH_NODES][3], K[FEM_DOFS * FEM_DOFS], M[FEM_DOFS * FEM_DOFS];
+    double     m[MESH_NODES * MESH_NODES];
+    const int *node = mesh->connectivity + n * (size_t)e;
     if (!fem_system_rows(mesh, system, e, rows, columns)) continue;
-    for (int i = 0; i < 10; i++)
-      memcpy(x[i], mesh->coordinates + 3 * (size_t)mesh->connectivity[10 * e + i], sizeof x[i]);
-    fem_tet10_stiffness(element, material, x, K);
-    fem_tet10_mass(element, material->rho, x, m);
-    for (int i = 0; i < 10; i++)
-      for (int j = 0; j < 10; j++)
-        for (int d = 0; d < 3; d++) M[3 * i + d][3 * j + d] = m[i][j];
-    PetscCall(MatSetValuesBlocked(system->K, 10, rows, 10, columns, &K[0][0], ADD_VALUES));
-    PetscCall(MatSetValuesBlocked(system->M, 10, rows, 10, columns, &M[0][0], ADD_VALUES));
+    for (int i = 0; i < n; i++) memcpy(x[i], mesh->coordinates + 3 * (size_t)node[i], sizeof x[i]);
+    fem_element_stiffness(element, material, (const double(*)[3])x, K);
+    fem_element_mass(element, material->rho, (const double(*)[3])x, m);
+    spread(n, m, M);
+    PetscCall(MatSetValuesBlocked(system->K, n, rows, n, columns, K, ADD_VALUES));
+    PetscCall(MatSetValuesBlocked(system->M, n, rows, n, columns, M, ADD_VALUES));
   }
   PetscFunctionReturn(0);
 }
@@ -146,10 +158,10 @@ static PetscErrorCode finish(Mat A) {
 }
 
 PetscErrorCode fem_system_create(MPI_Comm comm, const mesh_fe *mesh, const fem_material *material,
-                                 fem_mass_rule mass, fem_system *system) {
-  fem_tet10 *element;
-  incidence  around;
-  PetscInt  *diagonal, *off_diagonal;
+                                 fem_rules rules, fem_system *system) {
+  fem_element *element;
+  incidence    around;
+  PetscInt    *diagonal, *off_diagonal;
 
   PetscFunctionBeginUser;
   memset(system, 0, sizeof *system);
@@ -166,7 +178,7 @@ PetscErrorCode fem_system_create(MPI_Comm comm, const mesh_fe *mesh, const fem_m
   PetscCall(PetscFree(around.start));
   PetscCall(PetscFree(around.element));
   PetscCall(PetscNew(&element));
-  PetscCall(fem_tet10_create(mass, element));
+  PetscCall(fem_element_create(mesh->kind, rules, element));
   PetscCall(add_elements(mesh, material, element, system));
   PetscCall(PetscFree(element));
   PetscCall(finish(system->K));

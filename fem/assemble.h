@@ -8,7 +8,7 @@
 
 #include <petscmat.h>
 
-#include "fem/tet10.h"
+#include "fem/element.h"
 #include "mesh/fe_mesh.h"
 
 typedef struct {
@@ -22,7 +22,7 @@ typedef struct {
 
 /* Assemble. mesh must be the same on every rank. */
 PetscErrorCode fem_system_create(MPI_Comm comm, const mesh_fe *mesh, const fem_material *material,
-                                 fem_mass_rule mass, fem_system *system);
+                                 fem_rules rules, fem_system *system);
 
 /* Bring a distributed vector to rank 0 in mesh order, clamped nodes zero.
  *   nodal  out  [n_nodes][3] on rank 0; not touched elsewhere */
@@ -32,9 +32,9 @@ PetscErrorCode fem_system_gather(const fem_system *system, Vec x, double *nodal)
 PetscErrorCode fem_system_share(const fem_system *system, Vec x, double *nodal);
 
 /* Where an element's blocks go: rows as PETSc wants them, the node's block row where it is this rank's, else -1
- * (ignored); columns, -1 for a clamped node. False if the element touches no row of this rank. */
-bool fem_system_rows(const mesh_fe *mesh, const fem_system *system, int element, PetscInt rows[10],
-                     PetscInt columns[10]);
+ * (ignored); columns, -1 for a clamped node; one a node of the element. False if the element touches no row of this rank. */
+bool fem_system_rows(const mesh_fe *mesh, const fem_system *system, int element, PetscInt *rows,
+                     PetscInt *columns);
 
 PetscErrorCode fem_system_destroy(fem_system *system); /* also on a zeroed struct */
 

@@ -18,19 +18,22 @@ static void join(int *parent, const int *nodes, int n) {
 }
 
 shb_status fem_clamp_check(const mesh_fe *mesh) {
-  const mesh_face_set *root   = &mesh->set[MESH_ROOT];
-  int                 *parent = malloc((size_t)mesh->n_nodes * sizeof *parent + 1);
+  const mesh_topology *topology = mesh_topology_of(mesh->kind);
+  const int            nodes    = topology->nodes;
+  const mesh_face_set *root     = &mesh->set[MESH_ROOT];
+  int                 *parent   = malloc((size_t)mesh->n_nodes * sizeof *parent + 1);
   SHB_CHECK(parent, SHB_ERR_IO, "out of memory for %d nodes", mesh->n_nodes);
   for (int i = 0; i < mesh->n_nodes; i++) parent[i] = i;
-  for (int e = 0; e < mesh->n_elements; e++) join(parent, mesh->connectivity + 10 * (size_t)e, 10);
+  for (int e = 0; e < mesh->n_elements; e++)
+    join(parent, mesh->connectivity + nodes * (size_t)e, nodes);
   for (int f = 1; f < root->n; f++) {
-    int ends[2] = {root->nodes[0], root->nodes[6 * f]};
+    int ends[2] = {root->nodes[0], root->nodes[topology->face_nodes * f]};
     join(parent, ends, 2);
   }
   int floating = 0, first = -1;
   for (int e = 0; e < mesh->n_elements; e++) {
     bool held = root->n > 0 &&
-                find(parent, mesh->connectivity[10 * (size_t)e]) == find(parent, root->nodes[0]);
+                find(parent, mesh->connectivity[nodes * (size_t)e]) == find(parent, root->nodes[0]);
     if (held) continue;
     if (floating++ == 0) first = e;
   }

@@ -29,30 +29,31 @@ static double geometric(const double S[3][3], const double H[3][3]) {
   return sum;
 }
 
-static double stored(const fem_tet10 *element, const fem_lame *lame, const double x[10][3],
-                     const double state[10][3], const double u[10][3]) {
-  const fem_tet_rule *rule = fem_tet10_stiffness_rule(element, x);
-  double              sum  = 0;
+static double stored(const fem_element *element, const fem_lame *lame, const double x[][3],
+                     const double state[][3], const double u[][3]) {
+  const fem_rule *rule = fem_element_stiffness_rule(element, x);
+  double          sum  = 0;
   for (int p = 0; p < rule->n; p++) {
     fem_deformation at;
-    double          g[10][3], H[3][3], h[3][3];
-    double          volume = rule->weight[p] * fem_tet10_gradient(rule, p, x, g);
-    fem_displacement_gradient((const double(*)[3])g, state, H);
+    double          g[MESH_NODES][3], H[3][3], h[3][3];
+    double          volume = rule->weight[p] * fem_element_gradient(element, rule, p, x, g);
+    fem_displacement_gradient(element->n, (const double(*)[3])g, state, H);
     fem_deform(lame, (const double(*)[3])H, &at);
-    fem_displacement_gradient((const double(*)[3])g, u, h);
+    fem_displacement_gradient(element->n, (const double(*)[3])g, u, h);
     sum += volume * (elastic(lame, (const double(*)[3])at.F, (const double(*)[3])h) +
                      geometric((const double(*)[3])at.S, (const double(*)[3])h));
   }
   return sum;
 }
 
-static double spun(const fem_body *body, const double x[10][3], const double u[10][3]) {
-  double m[10][10], square[3], sum = 0;
+static double spun(const fem_body *body, const double x[][3], const double u[][3]) {
+  const int n = body->element->n;
+  double    m[MESH_NODES * MESH_NODES], square[3], sum = 0;
   fem_rotation_square(&body->rotation, square);
-  fem_tet10_mass(body->element, body->material->rho, x, m);
-  for (int i = 0; i < 10; i++)
-    for (int j = 0; j < 10; j++)
-      for (int d = 0; d < 3; d++) sum += m[i][j] * square[d] * u[i][d] * u[j][d];
+  fem_element_mass(body->element, body->material->rho, x, m);
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j < n; j++)
+      for (int d = 0; d < 3; d++) sum += m[n * i + j] * square[d] * u[i][d] * u[j][d];
   return sum;
 }
 
@@ -60,7 +61,7 @@ double fem_tangent_energy(const fem_body *body, const double *state, const doubl
   const fem_lame lame = fem_lame_of(body->material);
   double         sum  = 0;
   for (int e = 0; e < body->mesh->n_elements; e++) {
-    double x[10][3], at[10][3], by[10][3];
+    double x[MESH_NODES][3], at[MESH_NODES][3], by[MESH_NODES][3];
     fem_body_element(body, e, state, x, at);
     fem_body_element(body, e, u, x, by);
     sum += stored(body->element, &lame, (const double(*)[3])x, (const double(*)[3])at,
@@ -71,7 +72,7 @@ double fem_tangent_energy(const fem_body *body, const double *state, const doubl
 }
 
 double fem_strain_energy(const mesh_fe *mesh, const fem_material *material,
-                         const fem_tet10 *element, const double *u) {
+                         const fem_element *element, const double *u) {
   const fem_body body = {.mesh = mesh, .material = material, .element = element};
   return fem_tangent_energy(&body, NULL, u);
 }

@@ -5,10 +5,10 @@
 #include "fem/tangent.h"
 
 /* u^T K u (twice the strain energy, J) of nodal displacements [n_nodes][3], with the quadrature of
- * fem_tet10_stiffness. The product with the assembled K loses log10(lambda_max / lambda) digits to the cancellation
+ * fem_element_stiffness. The product with the assembled K loses log10(lambda_max / lambda) digits to the cancellation
  * of rigid motion inside each element; strains do not, so that Rayleigh quotients keep about 13 digits. */
 double fem_strain_energy(const mesh_fe *mesh, const fem_material *material,
-                         const fem_tet10 *element, const double *u);
+                         const fem_element *element, const double *u);
 
 /* The same about a deformed state: u^T K u, K that of fem_tangent_assemble at the displacements state. With
  * h = du/dX and e = sym(F^T h): integral of lambda (tr e)^2 + 2 mu e:e + h S:h, less Omega^2 u^T M P u.

@@ -3,9 +3,12 @@
 #include <math.h>
 #include <string.h>
 
-void fem_displacement_gradient(const double g[10][3], const double u[10][3], double H[3][3]) {
+/* Compiled for each number of nodes. */
+#define KERNEL static inline __attribute__((always_inline))
+
+void fem_displacement_gradient(int n, const double g[][3], const double u[][3], double H[3][3]) {
   memset(H, 0, 9 * sizeof(double));
-  for (int i = 1; i < 10; i++) /* from node 0: a translation leaves no trace */
+  for (int i = 1; i < n; i++) /* from node 0: a translation leaves no trace */
     for (int a = 0; a < 3; a++)
       for (int d = 0; d < 3; d++) H[a][d] += (u[i][a] - u[0][a]) * g[i][d];
 }
@@ -44,19 +47,19 @@ static double inner(const double a[3], const double b[3]) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-void fem_tet10_force(const fem_tet10 *element, const fem_material *material, const double x[10][3],
-                     const double u[10][3], double f[10][3]) {
-  const fem_tet_rule *rule = fem_tet10_stiffness_rule(element, x);
-  const fem_lame      lame = fem_lame_of(material);
-  memset(f, 0, 30 * sizeof(double));
+void fem_element_force(const fem_element *element, const fem_material *material,
+                       const double x[][3], const double u[][3], double f[][3]) {
+  const fem_rule *rule = fem_element_stiffness_rule(element, x);
+  const fem_lame  lame = fem_lame_of(material);
+  memset(f, 0, (size_t)element->n * sizeof *f);
   for (int p = 0; p < rule->n; p++) {
     fem_deformation at;
-    double          g[10][3], H[3][3], P[3][3], nodal[3];
-    double          volume = rule->weight[p] * fem_tet10_gradient(rule, p, x, g);
-    fem_displacement_gradient((const double(*)[3])g, u, H);
+    double          g[MESH_NODES][3], H[3][3], P[3][3], nodal[3];
+    double          volume = rule->weight[p] * fem_element_gradient(element, rule, p, x, g);
+    fem_displacement_gradient(element->n, (const double(*)[3])g, u, H);
     fem_deform(&lame, (const double(*)[3])H, &at);
     multiply((const double(*)[3])at.F, (const double(*)[3])at.S, P);
-    for (int i = 0; i < 10; i++) {
+    for (int i = 0; i < element->n; i++) {
       apply((const double(*)[3])P, g[i], nodal);
       for (int d = 0; d < 3; d++) f[i][d] += volume * nodal[d];
     }
@@ -64,42 +67,46 @@ void fem_tet10_force(const fem_tet10 *element, const fem_material *material, con
 }
 
 /* The upper triangle of one point's share. */
-static void add_point(const fem_lame *lame, double volume, const fem_deformation *at,
-                      const double g[10][3], double K[30][30]) {
+KERNEL void add_point(int n, const fem_lame *lame, double volume, const fem_deformation *at,
+                      const double g[][3], double *K) {
   const double lambda = volume * lame->lambda, mu = volume * lame->mu;
-  double       B[3][3], p[10][3], Sg[10][3];
+  double       B[3][3], p[MESH_NODES][3], Sg[MESH_NODES][3];
   left_cauchy(at->F, B);
-  for (int i = 0; i < 10; i++) {
+  for (int i = 0; i < n; i++) {
     apply(at->F, g[i], p[i]);
     apply(at->S, g[i], Sg[i]);
   }
-  for (int i = 0; i < 10; i++)
-    for (int j = i; j < 10; j++) {
+  for (int i = 0; i < n; i++)
+    for (int j = i; j < n; j++) {
       double geometric = volume * inner(g[i], Sg[j]), shear = mu * inner(g[i], g[j]);
       for (int a = 0; a < 3; a++) {
+        double *row = K + (3 * i + a) * 3 * n + 3 * j;
         for (int b = 0; b < 3; b++)
-          K[3 * i + a][3 * j + b] +=
-              lambda * p[i][a] * p[j][b] + mu * p[j][a] * p[i][b] + shear * B[a][b];
-        K[3 * i + a][3 * j + a] += geometric;
+          row[b] += lambda * p[i][a] * p[j][b] + mu * p[j][a] * p[i][b] + shear * B[a][b];
+        row[a] += geometric;
       }
     }
 }
 
-void fem_tet10_tangent(const fem_tet10 *element, const fem_material *material,
-                       const double x[10][3], const double u[10][3], double K[30][30]) {
-  const fem_tet_rule *rule = fem_tet10_stiffness_rule(element, x);
-  const fem_lame      lame = fem_lame_of(material);
-  memset(K, 0, 900 * sizeof(double));
+void fem_element_tangent(const fem_element *element, const fem_material *material,
+                         const double x[][3], const double u[][3], double *K) {
+  const fem_rule *rule  = fem_element_stiffness_rule(element, x);
+  const fem_lame  lame  = fem_lame_of(material);
+  const int       order = 3 * element->n;
+  memset(K, 0, (size_t)(order * order) * sizeof *K);
   for (int p = 0; p < rule->n; p++) {
     fem_deformation at;
-    double          g[10][3], H[3][3];
-    double          volume = rule->weight[p] * fem_tet10_gradient(rule, p, x, g);
-    fem_displacement_gradient((const double(*)[3])g, u, H);
+    double          g[MESH_NODES][3], H[3][3];
+    double          volume = rule->weight[p] * fem_element_gradient(element, rule, p, x, g);
+    fem_displacement_gradient(element->n, (const double(*)[3])g, u, H);
     fem_deform(&lame, (const double(*)[3])H, &at);
-    add_point(&lame, volume, &at, (const double(*)[3])g, K);
+    if (element->n == 10)
+      add_point(10, &lame, volume, &at, (const double(*)[3])g, K);
+    else
+      add_point(20, &lame, volume, &at, (const double(*)[3])g, K);
   }
-  for (int i = 0; i < 30; i++)
-    for (int j = 0; j < i; j++) K[i][j] = K[j][i];
+  for (int i = 0; i < order; i++)
+    for (int j = 0; j < i; j++) K[order * i + j] = K[order * j + i];
 }
 
 static double determinant(const double A[3][3]) {
@@ -122,16 +129,16 @@ static double von_mises(const fem_deformation *at) {
   return sqrt(square);
 }
 
-double fem_tet10_stress(const fem_tet10 *element, const fem_material *material,
-                        const double x[10][3], const double u[10][3]) {
-  const fem_tet_rule *rule     = fem_tet10_stiffness_rule(element, x);
-  const fem_lame      lame     = fem_lame_of(material);
-  double              greatest = 0;
+double fem_element_stress(const fem_element *element, const fem_material *material,
+                          const double x[][3], const double u[][3]) {
+  const fem_rule *rule     = fem_element_stiffness_rule(element, x);
+  const fem_lame  lame     = fem_lame_of(material);
+  double          greatest = 0;
   for (int p = 0; p < rule->n; p++) {
     fem_deformation at;
-    double          g[10][3], H[3][3];
-    fem_tet10_gradient(rule, p, x, g);
-    fem_displacement_gradient((const double(*)[3])g, u, H);
+    double          g[MESH_NODES][3], H[3][3];
+    fem_element_gradient(element, rule, p, x, g);
+    fem_displacement_gradient(element->n, (const double(*)[3])g, u, H);
     fem_deform(&lame, (const double(*)[3])H, &at);
     greatest = fmax(greatest, von_mises(&at));
   }

@@ -17,29 +17,33 @@ static PetscErrorCode share(MPI_Comm comm, int rank, void **data, size_t count, 
 }
 
 PetscErrorCode fem_mesh_broadcast(MPI_Comm comm, mesh_fe *mesh) {
-  int rank, n[2 + MESH_N_SETS];
+  int rank, n[3 + MESH_N_SETS];
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   if (rank == 0) {
     n[0] = mesh->n_nodes;
     n[1] = mesh->n_elements;
-    for (int s = 0; s < MESH_N_SETS; s++) n[2 + s] = mesh->set[s].n;
+    n[2] = (int)mesh->kind;
+    for (int s = 0; s < MESH_N_SETS; s++) n[3 + s] = mesh->set[s].n;
   } else {
     memset(mesh, 0, sizeof *mesh);
   }
-  PetscCallMPI(MPI_Bcast(n, 2 + MESH_N_SETS, MPI_INT, 0, comm));
-  mesh->n_nodes    = n[0];
-  mesh->n_elements = n[1];
-  size_t nodes = (size_t)n[0], elements = (size_t)n[1];
+  PetscCallMPI(MPI_Bcast(n, 3 + MESH_N_SETS, MPI_INT, 0, comm));
+  mesh->n_nodes                 = n[0];
+  mesh->n_elements              = n[1];
+  mesh->kind                    = (mesh_kind)n[2];
+  const mesh_topology *topology = mesh_topology_of(mesh->kind);
+  const size_t         nodes = (size_t)n[0], elements = (size_t)n[1];
+  const size_t         each = (size_t)topology->nodes, face = (size_t)topology->face_nodes;
   PetscCall(share(comm, rank, (void **)&mesh->coordinates, 3 * nodes, MPI_DOUBLE));
-  PetscCall(share(comm, rank, (void **)&mesh->connectivity, 10 * elements, MPI_INT));
+  PetscCall(share(comm, rank, (void **)&mesh->connectivity, each * elements, MPI_INT));
   PetscCall(share(comm, rank, (void **)&mesh->node_tag, nodes, MPI_LONG));
   PetscCall(share(comm, rank, (void **)&mesh->element_tag, elements, MPI_LONG));
   for (int s = 0; s < MESH_N_SETS; s++) {
-    mesh->set[s].n = n[2 + s];
-    if (n[2 + s] == 0) continue;
-    PetscCall(share(comm, rank, (void **)&mesh->set[s].nodes, 6 * (size_t)n[2 + s], MPI_INT));
+    mesh->set[s].n = n[3 + s];
+    if (n[3 + s] == 0) continue;
+    PetscCall(share(comm, rank, (void **)&mesh->set[s].nodes, face * (size_t)n[3 + s], MPI_INT));
   }
   PetscFunctionReturn(0);
 }

@@ -6,22 +6,22 @@ void fem_rotation_square(const fem_rotation *rotation, double square[3]) {
   for (int d = 0; d < 3; d++) square[d] = axial[d] == 0 ? rotation->speed * rotation->speed : 0;
 }
 
-void fem_tet10_centrifugal(const fem_rotation *rotation, const double m[10][10],
-                           const double x[10][3], const double u[10][3], double f[10][3]) {
+void fem_rotation_load(const fem_rotation *rotation, int n, const double *m, const double x[][3],
+                       const double u[][3], double f[][3]) {
   double square[3];
   fem_rotation_square(rotation, square);
-  for (int i = 0; i < 10; i++)
+  for (int i = 0; i < n; i++)
     for (int d = 0; d < 3; d++) {
       double sum = 0;
-      for (int j = 0; j < 10; j++) sum += m[i][j] * (x[j][d] + u[j][d]);
+      for (int j = 0; j < n; j++) sum += m[n * i + j] * (x[j][d] + u[j][d]);
       f[i][d] = square[d] * sum;
     }
 }
 
-void fem_tet10_soften(const fem_rotation *rotation, const double m[10][10], double K[30][30]) {
+void fem_rotation_soften(const fem_rotation *rotation, int n, const double *m, double *K) {
   double square[3];
   fem_rotation_square(rotation, square);
-  for (int i = 0; i < 10; i++)
-    for (int j = 0; j < 10; j++)
-      for (int d = 0; d < 3; d++) K[3 * i + d][3 * j + d] -= square[d] * m[i][j];
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j < n; j++)
+      for (int d = 0; d < 3; d++) K[(3 * i + d) * 3 * n + 3 * j + d] -= square[d] * m[n * i + j];
 }

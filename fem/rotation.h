@@ -13,13 +13,13 @@ typedef struct {
 /* Omega^2 along the mesh axes across the engine axis, 0 along it, rad2/s2: the diagonal of Omega^2 P, P = I - a a^T. */
 void fem_rotation_square(const fem_rotation *rotation, double square[3]);
 
-/* Consistent load of an element, f_i = Omega^2 P sum_j m_ij (x_j + u_j), N.
- *   m     in   [10][10] kg, fem_tet10_mass
- *   x, u  in   [10][3] m, coordinates and displacements */
-void fem_tet10_centrifugal(const fem_rotation *rotation, const double m[10][10],
-                           const double x[10][3], const double u[10][3], double f[10][3]);
+/* Consistent load of an element of n nodes, f_i = Omega^2 P sum_j m_ij (x_j + u_j), N.
+ *   m     in   [n][n] kg, fem_element_mass
+ *   x, u  in   [n][3] m, coordinates and displacements */
+void fem_rotation_load(const fem_rotation *rotation, int n, const double *m, const double x[][3],
+                       const double u[][3], double f[][3]);
 
-/* K -= Omega^2 m_ij P: the load grows where the body moves outward. */
-void fem_tet10_soften(const fem_rotation *rotation, const double m[10][10], double K[30][30]);
+/* K -= Omega^2 m_ij P: the load grows where the body moves outward. K: [3n][3n]. */
+void fem_rotation_soften(const fem_rotation *rotation, int n, const double *m, double *K);
 
 #endif

@@ -5,20 +5,20 @@
 
 #include "fem/fault.h"
 
-void fem_tri6_integrate(const fem_tri_rule *rule, const double x[6][3], double area[6],
-                        double normal[6][3]) {
-  memset(area, 0, 6 * sizeof(double));
-  memset(normal, 0, 18 * sizeof(double));
+void fem_face_integrate(const fem_face_rule *rule, const double x[][3], double *area,
+                        double normal[][3]) {
+  memset(area, 0, (size_t)rule->nodes * sizeof *area);
+  memset(normal, 0, (size_t)rule->nodes * sizeof *normal);
   for (int p = 0; p < rule->n; p++) {
     double r[3] = {0}, s[3] = {0};
-    for (int i = 0; i < 6; i++)
+    for (int i = 0; i < rule->nodes; i++)
       for (int d = 0; d < 3; d++) {
         r[d] += rule->gradient[p][i][0] * x[i][d];
         s[d] += rule->gradient[p][i][1] * x[i][d];
       }
     double n[3] = {r[1] * s[2] - r[2] * s[1], r[2] * s[0] - r[0] * s[2], r[0] * s[1] - r[1] * s[0]};
     double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-    for (int i = 0; i < 6; i++) {
+    for (int i = 0; i < rule->nodes; i++) {
       double weight = rule->weight[p] * rule->shape[p][i];
       area[i] += weight * length;
       for (int d = 0; d < 3; d++) normal[i][d] += weight * n[d];
@@ -26,23 +26,24 @@ void fem_tri6_integrate(const fem_tri_rule *rule, const double x[6][3], double a
   }
 }
 
-void fem_face_coordinates(const mesh_fe *mesh, const mesh_face_set *set, int face, double x[6][3]) {
-  for (int i = 0; i < 6; i++)
-    memcpy(x[i], mesh->coordinates + 3 * (size_t)set->nodes[6 * face + i], sizeof x[i]);
+void fem_face_coordinates(const mesh_fe *mesh, const mesh_face_set *set, int face, double x[][3]) {
+  const int width = mesh_topology_of(mesh->kind)->face_nodes;
+  for (int i = 0; i < width; i++)
+    memcpy(x[i], mesh->coordinates + 3 * (size_t)set->nodes[width * face + i], sizeof x[i]);
 }
 
-static void surface_force(const mesh_fe *mesh, const fem_load *load, const fem_tri_rule *rule,
+static void surface_force(const mesh_fe *mesh, const fem_load *load, const fem_face_rule *rule,
                           double *force) {
   const mesh_face_set *set = &mesh->set[MESH_LOAD];
   for (int f = 0; f < set->n; f++) {
-    double x[6][3], area[6], normal[6][3];
+    double x[MESH_FACE_NODES][3], area[MESH_FACE_NODES], normal[MESH_FACE_NODES][3];
     fem_face_coordinates(mesh, set, f, x);
-    fem_tri6_integrate(rule, x, area, normal);
-    for (int i = 0; i < 6; i++)
+    fem_face_integrate(rule, (const double(*)[3])x, area, normal);
+    for (int i = 0; i < rule->nodes; i++)
       for (int d = 0; d < 3; d++)
-        force[3 * (size_t)set->nodes[6 * f + i] + d] += load->kind == FEM_LOAD_PRESSURE
-                                                            ? -load->pressure * normal[i][d]
-                                                            : load->traction[d] * area[i];
+        force[3 * (size_t)set->nodes[rule->nodes * f + i] + d] +=
+            load->kind == FEM_LOAD_PRESSURE ? -load->pressure * normal[i][d]
+                                            : load->traction[d] * area[i];
   }
 }
 
@@ -61,8 +62,8 @@ shb_status fem_load_pattern(const mesh_fe *mesh, const fem_load *load, const dou
             "the mesh has no group \"%s\" for excitation.%s; name the loaded faces so, or give "
             "excitation.force",
             mesh_set_name(MESH_LOAD), load->kind == FEM_LOAD_PRESSURE ? "pressure" : "traction");
-  fem_tri_rule rule;
-  FEM_PETSC(fem_tri_rule_conical(4, &rule));
+  fem_face_rule rule;
+  FEM_PETSC(fem_face_rule_create(mesh->kind, &rule));
   surface_force(mesh, load, &rule, force);
   return SHB_OK;
 }

@@ -1,4 +1,4 @@
-/* Integrals over six-node faces: nodal areas, and the nodal forces of a load. */
+/* Integrals over the faces of elements: nodal areas, and the nodal forces of a load. */
 #ifndef FEM_SURFACE_H
 #define FEM_SURFACE_H
 
@@ -6,15 +6,16 @@
 #include "fem/quadrature.h"
 #include "mesh/fe_mesh.h"
 
-/* Integrals of one face.
- *   x       in   [6][3] m
- *   area    out  [6]    integral of N_i dA, m2 (zero at the corners of a flat straight-sided face)
- *   normal  out  [6][3] integral of N_i n dA, m2, n the outward unit normal */
-void fem_tri6_integrate(const fem_tri_rule *rule, const double x[6][3], double area[6],
-                        double normal[6][3]);
+/* Integrals of one face, n = rule->nodes.
+ *   x       in   [n][3] m
+ *   area    out  [n]    integral of N_i dA, m2. On a flat straight-sided triangle of area A: 0 at the corners, A/3 at the
+ *                       middles of the sides; on a parallelogram -A/12 and A/3
+ *   normal  out  [n][3] integral of N_i n dA, m2, n the outward unit normal */
+void fem_face_integrate(const fem_face_rule *rule, const double x[][3], double *area,
+                        double normal[][3]);
 
-/* Coordinates of face f of a set. */
-void fem_face_coordinates(const mesh_fe *mesh, const mesh_face_set *set, int face, double x[6][3]);
+/* Coordinates of face f of a set, [face_nodes][3]. */
+void fem_face_coordinates(const mesh_fe *mesh, const mesh_face_set *set, int face, double x[][3]);
 
 /* Consistent nodal forces of the load's spatial pattern (before the factors of its harmonics).
  *   fallback  in   point where a force acts whose load->has_at is false (the first probe); NULL: none

@@ -4,10 +4,11 @@
 
 #include "fem/finite.h"
 
-void fem_body_element(const fem_body *body, int element, const double *u, double x[10][3],
-                      double v[10][3]) {
-  const int *nodes = body->mesh->connectivity + 10 * (size_t)element;
-  for (int i = 0; i < 10; i++) {
+void fem_body_element(const fem_body *body, int element, const double *u, double x[][3],
+                      double v[][3]) {
+  const int  n     = body->element->n;
+  const int *nodes = body->mesh->connectivity + n * (size_t)element;
+  for (int i = 0; i < n; i++) {
     size_t node = 3 * (size_t)nodes[i];
     memcpy(x[i], body->mesh->coordinates + node, sizeof x[i]);
     if (u)
@@ -19,21 +20,23 @@ void fem_body_element(const fem_body *body, int element, const double *u, double
 
 PetscErrorCode fem_residual_assemble(const fem_body *body, const fem_system *system,
                                      const double *u, Vec R) {
+  const int    n = body->element->n;
   PetscScalar *out;
 
   PetscFunctionBeginUser;
   PetscCall(VecZeroEntries(R));
   PetscCall(VecGetArray(R, &out));
   for (int e = 0; e < body->mesh->n_elements; e++) {
-    PetscInt rows[10], columns[10];
-    double   x[10][3], v[10][3], m[10][10], internal[10][3], load[10][3];
+    PetscInt rows[MESH_NODES], columns[MESH_NODES];
+    double   x[MESH_NODES][3], v[MESH_NODES][3], m[MESH_NODES * MESH_NODES];
+    double   internal[MESH_NODES][3], load[MESH_NODES][3];
     if (!fem_system_rows(body->mesh, system, e, rows, columns)) continue;
     fem_body_element(body, e, u, x, v);
     const double(*at)[3] = (const double(*)[3])x, (*by)[3] = (const double(*)[3])v;
-    fem_tet10_force(body->element, body->material, at, by, internal);
-    fem_tet10_mass(body->element, body->material->rho, at, m);
-    fem_tet10_centrifugal(&body->rotation, (const double(*)[10])m, at, by, load);
-    for (int i = 0; i < 10; i++)
+    fem_element_force(body->element, body->material, at, by, internal);
+    fem_element_mass(body->element, body->material->rho, at, m);
+    fem_rotation_load(&body->rotation, n, m, at, by, load);
+    for (int i = 0; i < n; i++)
       for (int d = 0; d < 3 && rows[i] >= 0; d++)
         out[3 * (rows[i] - system->first) + d] += internal[i][d] - load[i][d];
   }
@@ -42,18 +45,20 @@ PetscErrorCode fem_residual_assemble(const fem_body *body, const fem_system *sys
 }
 
 PetscErrorCode fem_tangent_assemble(const fem_body *body, const double *u, fem_system *system) {
+  const int n = body->element->n;
   PetscFunctionBeginUser;
   PetscCall(MatZeroEntries(system->K));
   for (int e = 0; e < body->mesh->n_elements; e++) {
-    PetscInt rows[10], columns[10];
-    double   x[10][3], v[10][3], m[10][10], K[30][30];
+    PetscInt rows[MESH_NODES], columns[MESH_NODES];
+    double   x[MESH_NODES][3], v[MESH_NODES][3], m[MESH_NODES * MESH_NODES];
+    double   K[FEM_DOFS * FEM_DOFS];
     if (!fem_system_rows(body->mesh, system, e, rows, columns)) continue;
     fem_body_element(body, e, u, x, v);
-    fem_tet10_tangent(body->element, body->material, (const double(*)[3])x, (const double(*)[3])v,
-                      K);
-    fem_tet10_mass(body->element, body->material->rho, (const double(*)[3])x, m);
-    fem_tet10_soften(&body->rotation, (const double(*)[10])m, K);
-    PetscCall(MatSetValuesBlocked(system->K, 10, rows, 10, columns, &K[0][0], ADD_VALUES));
+    fem_element_tangent(body->element, body->material, (const double(*)[3])x, (const double(*)[3])v,
+                        K);
+    fem_element_mass(body->element, body->material->rho, (const double(*)[3])x, m);
+    fem_rotation_soften(&body->rotation, n, m, K);
+    PetscCall(MatSetValuesBlocked(system->K, n, rows, n, columns, K, ADD_VALUES));
   }
   PetscCall(MatAssemblyBegin(system->K, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(system->K, MAT_FINAL_ASSEMBLY));
@@ -62,9 +67,9 @@ PetscErrorCode fem_tangent_assemble(const fem_body *body, const double *u, fem_s
 
 void fem_body_stress(const fem_body *body, const double *u, double *stress) {
   for (int e = 0; e < body->mesh->n_elements; e++) {
-    double x[10][3], v[10][3];
+    double x[MESH_NODES][3], v[MESH_NODES][3];
     fem_body_element(body, e, u, x, v);
-    stress[e] = fem_tet10_stress(body->element, body->material, (const double(*)[3])x,
-                                 (const double(*)[3])v);
+    stress[e] = fem_element_stress(body->element, body->material, (const double(*)[3])x,
+                                   (const double(*)[3])v);
   }
 }

@@ -12,13 +12,13 @@
 typedef struct {
   const mesh_fe      *mesh;
   const fem_material *material;
-  const fem_tet10    *element;
+  const fem_element  *element;
   fem_rotation        rotation;
 } fem_body;
 
-/* Coordinates and displacements of an element's nodes, m. u: [n_nodes][3], NULL for none. */
-void fem_body_element(const fem_body *body, int element, const double *u, double x[10][3],
-                      double v[10][3]);
+/* Coordinates and displacements of an element's nodes, m: [n][3]. u: [n_nodes][3], NULL for none. */
+void fem_body_element(const fem_body *body, int element, const double *u, double x[][3],
+                      double v[][3]);
 
 /* R = F(u) - Omega^2 P M (X + u), N, at the free dofs.
  *   u  in  [n_nodes][3] m, the same on every rank, zero at clamped nodes

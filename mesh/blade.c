@@ -10,9 +10,9 @@
 #include "mesh/frame.h"
 #include "mesh/groups.h"
 #include "mesh/import.h"
+#include "mesh/jacobian.h"
 #include "mesh/kernel.h"
 #include "mesh/shroud.h"
-#include "mesh/tet10.h"
 
 static const char *const who = "mesh.blade";
 
@@ -243,13 +243,13 @@ static shb_status move_nodes(const mesh_fe *mesh, const char *moved) {
 /* Curved edges can invert a few elements where the airfoil is thin: those edges are made straight, at the cost
  * of their sag. More than 1 % of them means that the mesh does not resolve the blade: an error. */
 static shb_status straighten(mesh_fe *mesh, shb_progress *progress) {
-  int bad = mesh_tet10_inverted(mesh);
-  if (bad == 0 || bad > mesh->n_elements / 100) return mesh_tet10_check(mesh, "mesh.blade.size");
+  int bad = mesh_jacobian_inverted(mesh);
+  if (bad == 0 || bad > mesh->n_elements / 100) return mesh_jacobian_check(mesh, "mesh.blade.size");
   char *moved = calloc((size_t)mesh->n_nodes, 1);
   SHB_CHECK(moved, SHB_ERR_IO, "no memory to straighten elements");
-  mesh_tet10_straighten(mesh, moved);
+  mesh_jacobian_straighten(mesh, moved);
   shb_progress_note(progress, "%d inverted elements straightened", bad);
-  shb_status status = mesh_tet10_check(mesh, "mesh.blade.size");
+  shb_status status = mesh_jacobian_check(mesh, "mesh.blade.size");
   if (status == SHB_OK) status = move_nodes(mesh, moved);
   free(moved);
   return status;

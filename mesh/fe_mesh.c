@@ -9,13 +9,14 @@ const char *mesh_set_name(mesh_set_id id) {
   return name[id];
 }
 
-/* Tangential component of the summed area normals of a set (corner triangles), m2. */
+/* Tangential component of the summed area normals of a set (triangles of a face's first three corners), m2. */
 static double facing(const mesh_fe *mesh, const mesh_face_set *set, mesh_axis axis) {
-  double sum = 0;
+  const int width = mesh_topology_of(mesh->kind)->face_nodes;
+  double    sum   = 0;
   for (int f = 0; f < set->n; f++) {
     const double *x[3];
     double        a[3], b[3], centre[3], axes[3][3];
-    for (int c = 0; c < 3; c++) x[c] = mesh->coordinates + 3 * (size_t)set->nodes[6 * f + c];
+    for (int c = 0; c < 3; c++) x[c] = mesh->coordinates + 3 * (size_t)set->nodes[width * f + c];
     for (int d = 0; d < 3; d++) {
       a[d]      = x[1][d] - x[0][d];
       b[d]      = x[2][d] - x[0][d];

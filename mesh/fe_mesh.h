@@ -1,4 +1,4 @@
-/* A second-order tetrahedral mesh in memory: nodes, elements, named sets. */
+/* A second-order mesh of tetrahedra or of hexahedra in memory: nodes, elements, named sets. */
 #ifndef MESH_FE_MESH_H
 #define MESH_FE_MESH_H
 
@@ -6,6 +6,7 @@
 
 #include "mesh/axes.h"
 #include "mesh/status.h"
+#include "mesh/topology.h"
 
 typedef enum {
   MESH_ROOT,
@@ -15,20 +16,20 @@ typedef enum {
   MESH_N_SETS
 } mesh_set_id;
 
-/* A named group of six-node triangles; n = 0 if the group is absent. */
+/* A named group of element faces; n = 0 if the group is absent. */
 typedef struct {
-  int n; /* faces */
-  int *
-      nodes; /* [n][6] node indices: 3 corners, then mid-sides of 01, 12, 20; outward orientation */
+  int  n;     /* faces */
+  int *nodes; /* [n][face_nodes] node indices: corners, outward, then the middles of the sides */
 } mesh_face_set;
 
 typedef struct {
-  int     n_nodes;
-  double *coordinates; /* [n_nodes][3], m */
-  int     n_elements;
-  int    *connectivity; /* [n_elements][10] node indices, gmsh order of a 10-node tetrahedron */
-  long   *node_tag;     /* [n_nodes] tag in the mesh file */
-  long   *element_tag;  /* [n_elements] tag in the mesh file */
+  mesh_kind kind; /* of all elements; the numbers of nodes are those of mesh_topology_of(kind) */
+  int       n_nodes;
+  double   *coordinates; /* [n_nodes][3], m */
+  int       n_elements;
+  int      *connectivity; /* [n_elements][nodes] node indices, gmsh order */
+  long     *node_tag;     /* [n_nodes] tag in the mesh file */
+  long     *element_tag;  /* [n_elements] tag in the mesh file */
   mesh_face_set set[MESH_N_SETS];
 } mesh_fe;
 
@@ -36,7 +37,7 @@ typedef struct {
 const char *mesh_set_name(mesh_set_id id);
 
 /* Read a gmsh .msh file (2.2 or 4.1) with those physical groups. Only nodes that an element uses are kept.
- * Errors: SHB_ERR_IO unreadable; SHB_ERR_INPUT not tet10, no volume elements, group root absent or empty,
+ * Errors: SHB_ERR_IO unreadable; SHB_ERR_INPUT neither all tet10 nor all hex20, no volume elements, group root absent or empty,
  * inverted elements (det J <= 0 at a quadrature or corner point; the first five tags are named), a group's
  * face not on the surface of the body. */
 shb_status mesh_fe_read(const char *path, mesh_fe *mesh);

@@ -4,9 +4,10 @@
 
 #include "mesh/fe_mesh.h"
 
-/* Copy the second-order tetrahedra, their nodes and the four groups out of gmsh's current model, groups
+/* Copy the second-order tetrahedra or hexahedra, their nodes and the four groups out of gmsh's current model, groups
  * oriented outward; name heads error texts. A gmsh session must be open. Not checked: inverted elements.
- * Errors: SHB_ERR_INPUT other elements than ten-node tetrahedra, no root group, broken references. */
+ * Errors: SHB_ERR_INPUT other elements than ten-node tetrahedra or twenty-node
+ * hexahedra, both kinds, no root group, broken references. */
 shb_status mesh_import(const char *name, mesh_fe *mesh);
 
 #endif

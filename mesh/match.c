@@ -23,13 +23,14 @@ static int by_key(const void *a, const void *b) {
 }
 
 /* Nodes of a set, each once, ascending; NULL when out of memory. */
-static int *unique_nodes(const mesh_face_set *set, int *n) {
-  int *nodes = malloc((6 * (size_t)set->n + 1) * sizeof *nodes);
+static int *unique_nodes(const mesh_fe *mesh, const mesh_face_set *set, int *n) {
+  const int count = mesh_topology_of(mesh->kind)->face_nodes * set->n;
+  int      *nodes = malloc(((size_t)count + 1) * sizeof *nodes);
   if (!nodes) return NULL;
-  for (int i = 0; i < 6 * set->n; i++) nodes[i] = set->nodes[i];
-  qsort(nodes, 6 * (size_t)set->n, sizeof *nodes, by_node);
+  for (int i = 0; i < count; i++) nodes[i] = set->nodes[i];
+  qsort(nodes, (size_t)count, sizeof *nodes, by_node);
   *n = 0;
-  for (int i = 0; i < 6 * set->n; i++)
+  for (int i = 0; i < count; i++)
     if (i == 0 || nodes[i] != nodes[*n - 1]) nodes[(*n)++] = nodes[i];
   return nodes;
 }
@@ -105,8 +106,8 @@ shb_status mesh_fe_match(const mesh_fe *mesh, mesh_axis axis, int blades, int *n
             "group %s is absent or empty; contact to the neighbour needs both contact faces",
             sr->n ? "contact_left" : "contact_right");
   int        nr = 0, nl = 0;
-  int       *right  = unique_nodes(sr, &nr);
-  int       *left   = unique_nodes(sl, &nl);
+  int       *right  = unique_nodes(mesh, sr, &nr);
+  int       *left   = unique_nodes(mesh, sl, &nl);
   place     *places = left ? turned(mesh, left, nl, axis, 2 * M_PI / blades) : NULL;
   shb_status status = SHB_OK;
   if (!right || !places) {

@@ -9,8 +9,8 @@
 
 #include "mesh/fe_mesh.h"
 #include "mesh/import.h"
+#include "mesh/jacobian.h"
 #include "mesh/kernel.h"
-#include "mesh/tet10.h"
 
 /* First line $MeshFormat (comments may come before it), then version 2.2 or 4.1. gmsh takes anything else
  * for a script of its own language, so it must not see a file that fails here. */
@@ -65,7 +65,7 @@ static shb_status check_file(const char *path) {
 static shb_status open_and_import(const char *path, mesh_fe *mesh) {
   GMSH_TRY(path, gmshMerge(path, &ierr));
   SHB_TRY(mesh_import(path, mesh));
-  shb_status status = mesh_tet10_check(mesh, path);
+  shb_status status = mesh_jacobian_check(mesh, path);
   if (status != SHB_OK) mesh_fe_free(mesh);
   return status;
 }

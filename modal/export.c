@@ -9,17 +9,22 @@
 enum { SAMPLES = 201, MAX_BYTES = 64 << 20 };
 
 shb_status modal_export_mesh(hid_t file, const mesh_fe *mesh) {
+  const mesh_topology *topology = mesh_topology_of(mesh->kind);
+  char                 text[80];
   SHB_TRY(h5_write_double(file, "mesh/nodes", H5_SHAPE((hsize_t)mesh->n_nodes, 3),
                           mesh->coordinates, "m", "node coordinates"));
-  SHB_TRY(h5_write_int(file, "mesh/connectivity", H5_SHAPE((hsize_t)mesh->n_elements, 10),
-                       mesh->connectivity, "-",
-                       "nodes of each 10-node tetrahedron, from 0, gmsh order"));
+  snprintf(text, sizeof text, "nodes of each %s, from 0, gmsh order", topology->name);
+  SHB_TRY(h5_write_int(file, "mesh/connectivity",
+                       H5_SHAPE((hsize_t)mesh->n_elements, (hsize_t)topology->nodes),
+                       mesh->connectivity, "-", text));
+  snprintf(text, sizeof text, "nodes of each %s, outward", topology->face_name);
   for (int s = 0; s < MESH_N_SETS; s++) {
     char path[64];
     if (mesh->set[s].n == 0) continue;
     snprintf(path, sizeof path, "mesh/sets/%s", mesh_set_name((mesh_set_id)s));
-    SHB_TRY(h5_write_int(file, path, H5_SHAPE((hsize_t)mesh->set[s].n, 6), mesh->set[s].nodes, "-",
-                         "nodes of each 6-node face, outward"));
+    SHB_TRY(h5_write_int(file, path,
+                         H5_SHAPE((hsize_t)mesh->set[s].n, (hsize_t)topology->face_nodes),
+                         mesh->set[s].nodes, "-", text));
   }
   return SHB_OK;
 }

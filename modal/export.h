@@ -7,7 +7,7 @@
 #include "modal/interface.h"
 #include "modal/model.h"
 
-/* Writes /mesh/{nodes [n][3], connectivity [e][10], sets/NAME [f][6]}. */
+/* Writes /mesh/{nodes [n][3], connectivity [e][10 or 20], sets/NAME [f][6 or 8]}. */
 shb_status modal_export_mesh(hid_t file, const mesh_fe *mesh);
 
 /* Writes /modes/shape [m][n][3], mesh axes, clamped nodes zero. */
@@ -21,7 +21,7 @@ shb_status modal_export_contact(hid_t file, const modal_interface *interface);
  * /receptance/contact [201 + m][n_contact][n_contact]; nothing when that would exceed 64 MB. */
 shb_status modal_export_receptance(hid_t file, const modal_model *model);
 
-/* Writes /VTKHDF, an UnstructuredGrid of quadratic tetrahedra whose points are a link to /mesh/nodes and whose point
+/* Writes /VTKHDF, an UnstructuredGrid of quadratic cells whose points are a link to /mesh/nodes and whose point
  * data mode_001, ... are views of /modes/shape, which must be there; static_displacement and static_von_mises are links to
  * /static where it is.
  * Source: VTKHDF file format, version 1.0. */

@@ -83,8 +83,8 @@ static shb_status build_patch(builder *b, int patch, modal_interface *out) {
   for (int f = 0; f < b->facets.n; f++) {
     if (b->facets.patch[f] != patch) continue;
     out->area[patch] += b->facets.total[f];
-    for (int i = 0; i < 6; i++) {
-      b->node_area[b->right->nodes[6 * f + i]] += b->facets.area[f][i];
+    for (int i = 0; i < b->facets.nodes; i++) {
+      b->node_area[b->right->nodes[b->facets.nodes * f + i]] += b->facets.area[f][i];
       for (int d = 0; d < 3; d++) normal[d] += b->facets.normal[f][i][d];
     }
   }
@@ -97,14 +97,15 @@ static shb_status build_patch(builder *b, int patch, modal_interface *out) {
   return finish_patch(b, patch, normal, out);
 }
 
-/* points = 0: a node that carries more than a thousandth of the largest nodal area is a patch. On a slightly curved
- * face corners carry a little, of either sign: left out, the rest scaled to the face's area. */
+/* points = 0: a node that carries more than a thousandth of the largest nodal area is a patch. The corners of triangles
+ * on a slightly curved face carry a little, of either sign, those of quadrangles a negative area: left out, the rest
+ * scaled to the face's area. */
 static shb_status build_nodes(builder *b, double (*normal)[3], modal_interface *out) {
   double largest = 0, kept = 0;
   int    n = 0, n_nodes = b->mesh->n_nodes;
   for (int f = 0; f < b->facets.n; f++)
-    for (int i = 0; i < 6; i++) {
-      int node = b->right->nodes[6 * f + i];
+    for (int i = 0; i < b->facets.nodes; i++) {
+      int node = b->right->nodes[b->facets.nodes * f + i];
       b->node_area[node] += b->facets.area[f][i];
       for (int d = 0; d < 3; d++) normal[node][d] += b->facets.normal[f][i][d];
     }
@@ -133,7 +134,7 @@ static shb_status measure_face(const builder *b, modal_interface *out) {
     out->total_area += b->facets.total[f];
     for (int d = 0; d < 3; d++) {
       centroid[d] += b->facets.total[f] * b->facets.centroid[f][d];
-      for (int i = 0; i < 6; i++) normal[d] += b->facets.normal[f][i][d];
+      for (int i = 0; i < b->facets.nodes; i++) normal[d] += b->facets.normal[f][i][d];
     }
   }
   SHB_CHECK(out->total_area > 0, SHB_ERR_INPUT, "group contact_right has no area");
@@ -156,7 +157,7 @@ static shb_status build(builder *b, int points, modal_interface *out) {
     return status;
   }
   SHB_TRY(modal_facets_divide(&b->facets, points));
-  SHB_TRY(allocate(points, b->left_of != NULL, 6 * b->facets.n, out));
+  SHB_TRY(allocate(points, b->left_of != NULL, b->facets.nodes * b->facets.n, out));
   for (int patch = 0; patch < points; patch++) SHB_TRY(build_patch(b, patch, out));
   return SHB_OK;
 }

@@ -2,7 +2,7 @@
  *
  * A patch moves as the mean of its face's displacement, integral of u dA / A, which with the shape functions of
  * the faces is sum_e weight[e] u(node[e]); on flat straight-sided six-node triangles only mid-side nodes carry
- * weight. The left patches are the images of the right ones one sector back, node by node. */
+ * weight, on eight-node quadrangles corners carry a negative one. The left patches are the images of the right ones one sector back, node by node. */
 #ifndef MODAL_INTERFACE_H
 #define MODAL_INTERFACE_H
 

@@ -19,13 +19,14 @@ shb_status modal_facets_create(const mesh_fe *mesh, const mesh_face_set *set,
   facets->patch    = calloc(n + 1, sizeof *facets->patch);
   SHB_CHECK(facets->area && facets->normal && facets->total && facets->centroid && facets->patch,
             SHB_ERR_IO, "out of memory for %d contact facets", set->n);
-  fem_tri_rule rule;
-  FEM_PETSC(fem_tri_rule_conical(4, &rule));
+  fem_face_rule rule;
+  FEM_PETSC(fem_face_rule_create(mesh->kind, &rule));
+  facets->nodes = rule.nodes;
   for (int f = 0; f < set->n; f++) {
-    double x[6][3];
+    double x[MESH_FACE_NODES][3];
     fem_face_coordinates(mesh, set, f, x);
-    fem_tri6_integrate(&rule, x, facets->area[f], facets->normal[f]);
-    for (int i = 0; i < 6; i++) {
+    fem_face_integrate(&rule, (const double(*)[3])x, facets->area[f], facets->normal[f]);
+    for (int i = 0; i < rule.nodes; i++) {
       facets->total[f] += facets->area[f][i];
       for (int d = 0; d < 3; d++) facets->centroid[f][d] += facets->area[f][i] * x[i][d];
     }

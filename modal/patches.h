@@ -6,12 +6,13 @@
 
 /* Integrals over the facets of a set, and the patch each belongs to. */
 typedef struct {
-  int n;                  /* facets */
-  double (*area)[6];      /* [n] integral of N_i dA, m2 */
-  double (*normal)[6][3]; /* [n] integral of N_i n dA, m2 */
-  double *total;          /* [n] facet area, m2 */
-  double (*centroid)[3];  /* [n] m */
-  int *patch;             /* [n] */
+  int n;                                /* facets */
+  int nodes;                            /* of a facet */
+  double (*area)[MESH_FACE_NODES];      /* [n] integral of N_i dA, m2 */
+  double (*normal)[MESH_FACE_NODES][3]; /* [n] integral of N_i n dA, m2 */
+  double *total;                        /* [n] facet area, m2 */
+  double (*centroid)[3];                /* [n] m */
+  int *patch;                           /* [n] */
 } modal_facets;
 
 /* Integrate over the facets; every patch index is 0. */

@@ -113,7 +113,7 @@ static shb_status assemble(MPI_Comm comm, const fem_body *body, const modal_cond
   double started = shb_seconds();
   shb_progress_show(progress, 5, "assembling %d elements", body->mesh->n_elements);
   FEM_PETSC(
-      fem_system_create(comm, body->mesh, body->material, body->element->mass, &result->system));
+      fem_system_create(comm, body->mesh, body->material, body->element->rules, &result->system));
   shb_progress_note(progress, "assembled %d elements, %d dofs in %.2f s", body->mesh->n_elements,
                     (int)(3 * result->system.n_free), shb_seconds() - started);
   if (body->rotation.speed == 0) return SHB_OK;
@@ -141,11 +141,11 @@ static shb_status solve(MPI_Comm comm, const fem_body *body, const modal_setting
 static shb_status solve_body(MPI_Comm comm, const mesh_fe *mesh, const modal_settings *settings,
                              const modal_condensation *to, shb_progress *progress,
                              modal_result *result) {
-  fem_tet10 *element = malloc(sizeof *element);
+  fem_element *element = malloc(sizeof *element);
   SHB_TRY(
       agree(comm, element ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory")));
   fem_body   body   = {mesh, &settings->material, element, {settings->axis, settings->speed}};
-  shb_status status = fem_fault_status(fem_tet10_create(FEM_MASS_EXACT, element));
+  shb_status status = fem_fault_status(fem_element_create(mesh->kind, FEM_STANDARD, element));
   if (status == SHB_OK) status = solve(comm, &body, settings, to, progress, result);
   free(element);
   return status;

@@ -5,11 +5,6 @@
 
 #include "modal/export.h"
 
-enum { VTK_QUADRATIC_TETRA = 24 };
-
-/* gmsh's 10-node tetrahedron ends with the middles of edges 23, 13; VTK's with 13, 23. */
-static const int vtk_order[10] = {0, 1, 2, 3, 4, 5, 6, 7, 9, 8};
-
 static shb_status failed(const char *what) {
   SHB_FAIL(SHB_ERR_IO, "VTKHDF/%s cannot be written", what);
 }
@@ -50,20 +45,21 @@ static shb_status write_header(hid_t group) {
 }
 
 static shb_status write_cells(hid_t group, const mesh_fe *mesh) {
-  const size_t   n            = (size_t)mesh->n_elements;
-  long long     *connectivity = malloc(10 * n * sizeof *connectivity + 1);
-  long long     *offset       = malloc((n + 1) * sizeof *offset);
-  unsigned char *type         = malloc(n + 1);
-  shb_status     status       = connectivity && offset && type ? SHB_OK : failed("Connectivity");
+  const mesh_topology *topology = mesh_topology_of(mesh->kind);
+  const size_t         n = (size_t)mesh->n_elements, each = (size_t)topology->nodes;
+  long long           *connectivity = malloc(each * n * sizeof *connectivity + 1);
+  long long           *offset       = malloc((n + 1) * sizeof *offset);
+  unsigned char       *type         = malloc(n + 1);
+  shb_status           status = connectivity && offset && type ? SHB_OK : failed("Connectivity");
   for (size_t e = 0; status == SHB_OK && e <= n; e++) {
-    offset[e] = (long long)(10 * e);
+    offset[e] = (long long)(each * e);
     if (e == n) break;
-    type[e] = VTK_QUADRATIC_TETRA;
-    for (size_t i = 0; i < 10; i++)
-      connectivity[10 * e + i] = mesh->connectivity[10 * e + (size_t)vtk_order[i]];
+    type[e] = (unsigned char)topology->vtk;
+    for (size_t i = 0; i < each; i++)
+      connectivity[each * e + i] = mesh->connectivity[each * e + (size_t)topology->vtk_order[i]];
   }
   if (status == SHB_OK)
-    status = write_array(group, "Connectivity", H5T_NATIVE_LLONG, 10 * n, connectivity);
+    status = write_array(group, "Connectivity", H5T_NATIVE_LLONG, each * n, connectivity);
   if (status == SHB_OK) status = write_array(group, "Offsets", H5T_NATIVE_LLONG, n + 1, offset);
   if (status == SHB_OK) status = write_array(group, "Types", H5T_NATIVE_UCHAR, n, type);
   free(connectivity);
@@ -129,7 +125,7 @@ static shb_status describe(hid_t group, int n_modes) {
       {"NumberOfPoints", "nodes"},
       {"NumberOfCells", "elements"},
       {"NumberOfConnectivityIds", "entries of Connectivity"},
-      {"Connectivity", "nodes of each quadratic tetrahedron, from 0, VTK order"},
+      {"Connectivity", "nodes of each quadratic cell, from 0, VTK order"},
       {"Offsets", "start of each element in Connectivity"},
       {"Types", "VTK cell types"},
   };

@@ -47,7 +47,7 @@ static void patch_test(void **state) {
   Vec        u, f;
   double     inner = 0, outer = 0;
   int        n_inner = 0;
-  assert_int_equal(fem_system_create(PETSC_COMM_SELF, &mesh, &steel, FEM_MASS_EXACT, &system), 0);
+  assert_int_equal(fem_system_create(PETSC_COMM_SELF, &mesh, &steel, FEM_STANDARD, &system), 0);
   assert_int_equal(MatCreateVecs(system.K, &u, &f), 0);
   const double offset[3] = {.01, -.02, .03};
   const double g[3][3]   = {{1e-3, 2e-4, -5e-4}, {7e-4, -2e-3, 3e-4}, {1e-4, 9e-4, 1.4e-3}};
@@ -82,7 +82,7 @@ static void mass_and_inertia_are_exact(void **state) {
   fem_system system;
   Vec        u, f;
   double     twice;
-  assert_int_equal(fem_system_create(PETSC_COMM_SELF, &mesh, &steel, FEM_MASS_EXACT, &system), 0);
+  assert_int_equal(fem_system_create(PETSC_COMM_SELF, &mesh, &steel, FEM_STANDARD, &system), 0);
   assert_int_equal(MatCreateVecs(system.M, &u, &f), 0);
   const double mass = 7850 * size[0] * size[1] * size[2], none[3][3] = {{0}}, zero[3] = {0};
   for (int a = 0; a < 3; a++) {
@@ -110,13 +110,13 @@ static void mass_and_inertia_are_exact(void **state) {
 /* Energy from the strains is u^T K u; of a rigid motion it is nothing, where u^T K u is rounding. */
 static void strain_energy_is_the_quadratic_form(void **state) {
   (void)state;
-  mesh_fe    mesh    = free_body();
-  fem_tet10 *element = malloc(sizeof *element);
-  double    *u       = malloc(3 * (size_t)mesh.n_nodes * sizeof *u), product;
-  fem_system system;
-  Vec        x, f;
-  assert_int_equal(fem_tet10_create(FEM_MASS_EXACT, element), 0);
-  assert_int_equal(fem_system_create(PETSC_COMM_SELF, &mesh, &steel, FEM_MASS_EXACT, &system), 0);
+  mesh_fe      mesh    = free_body();
+  fem_element *element = malloc(sizeof *element);
+  double      *u       = malloc(3 * (size_t)mesh.n_nodes * sizeof *u), product;
+  fem_system   system;
+  Vec          x, f;
+  assert_int_equal(fem_element_create(MESH_TET10, FEM_STANDARD, element), 0);
+  assert_int_equal(fem_system_create(PETSC_COMM_SELF, &mesh, &steel, FEM_STANDARD, &system), 0);
   assert_int_equal(MatCreateVecs(system.K, &x, &f), 0);
   for (int i = 0; i < mesh.n_nodes; i++)
     for (int d = 0; d < 3; d++) {
@@ -149,7 +149,7 @@ static void clamped_nodes_are_left_out_and_storage_is_exact(void **state) {
   fem_system system;
   MatInfo    info;
   int        clamped = 0;
-  assert_int_equal(fem_system_create(PETSC_COMM_SELF, &mesh, &steel, FEM_MASS_EXACT, &system), 0);
+  assert_int_equal(fem_system_create(PETSC_COMM_SELF, &mesh, &steel, FEM_STANDARD, &system), 0);
   for (int i = 0; i < mesh.n_nodes; i++) {
     bool on_root = mesh.coordinates[3 * i] == 0;
     assert_true((system.row[i] < 0) == on_root);

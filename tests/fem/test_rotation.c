@@ -14,7 +14,7 @@
 #include "tests/fem/support.h"
 #include "tests/mesh/box.h"
 
-static fem_tet10 *element;
+static fem_element *element;
 
 static double wave(int i, int d, double phase) {
   return sin(2.3 * i + 1.7 * d * d + phase);
@@ -47,7 +47,7 @@ static void load_adds_up_to_the_centrifugal_force(void **state) {
     Vec                R;
     double             sum[3] = {0};
     const PetscScalar *value;
-    assert_int_equal(fem_system_create(PETSC_COMM_SELF, &mesh, &steel, FEM_MASS_EXACT, &system), 0);
+    assert_int_equal(fem_system_create(PETSC_COMM_SELF, &mesh, &steel, FEM_STANDARD, &system), 0);
     assert_int_equal(MatCreateVecs(system.K, NULL, &R), 0);
     assert_int_equal(fem_residual_assemble(&body, &system, u, R), 0);
     assert_int_equal(VecGetArrayRead(R, &value), 0);
@@ -78,7 +78,7 @@ static void tangent_is_the_derivative_of_the_residual(void **state) {
   fem_system   system;
   Vec          direction, slope, R[2];
   PetscScalar *value;
-  assert_int_equal(fem_system_create(PETSC_COMM_SELF, &mesh, &steel, FEM_MASS_EXACT, &system), 0);
+  assert_int_equal(fem_system_create(PETSC_COMM_SELF, &mesh, &steel, FEM_STANDARD, &system), 0);
   assert_int_equal(MatCreateVecs(system.K, &direction, &slope), 0);
   for (int s = 0; s < 2; s++) assert_int_equal(VecDuplicate(slope, &R[s]), 0);
   assert_int_equal(VecGetArray(direction, &value), 0);
@@ -176,8 +176,7 @@ static void rod_stretches_as_its_equation_says(void **state) {
   fem_equilibrium    at;
   Vec                R;
   double             out_of_balance, load, *rest = field(&mesh, 0, 0);
-  assert_int_equal(fem_system_create(PETSC_COMM_SELF, &mesh, &material, FEM_MASS_EXACT, &system),
-                   0);
+  assert_int_equal(fem_system_create(PETSC_COMM_SELF, &mesh, &material, FEM_STANDARD, &system), 0);
   assert_int_equal(fem_equilibrium_solve(&body, &system, NULL, &at), 0);
   double tip = at.displacement[3 * mesh_fe_nearest(&mesh, at_tip)], wanted = rod_tip(speed);
   print_message(
@@ -206,7 +205,7 @@ static void no_equilibrium_is_told(void **state) {
   const fem_body  body  = {&mesh, &steel, element, {MESH_AXIS_Z, speed}};
   fem_system      system;
   fem_equilibrium at;
-  assert_int_equal(fem_system_create(PETSC_COMM_SELF, &mesh, &steel, FEM_MASS_EXACT, &system), 0);
+  assert_int_equal(fem_system_create(PETSC_COMM_SELF, &mesh, &steel, FEM_STANDARD, &system), 0);
   PetscPushErrorHandler(fem_fault_handler, NULL);
   assert_int_equal(fem_fault_status(fem_equilibrium_solve(&body, &system, NULL, &at)),
                    SHB_ERR_INPUT);
@@ -222,7 +221,7 @@ static void no_equilibrium_is_told(void **state) {
 static int tables(void **state) {
   (void)state;
   element = malloc(sizeof *element);
-  return element && fem_tet10_create(FEM_MASS_EXACT, element) == 0 ? 0 : -1;
+  return element && fem_element_create(MESH_TET10, FEM_STANDARD, element) == 0 ? 0 : -1;
 }
 
 static int free_tables(void **state) {

@@ -71,11 +71,11 @@ static mesh_fe closed_curved_body(void) {
 /* int n dA = 0, int x cross n dA = 0, int x . n dA = 3 V over a closed surface. */
 static void pressure_on_a_closed_curved_surface(void **state) {
   (void)state;
-  mesh_fe      mesh   = closed_curved_body();
-  double      *force  = malloc(3 * (size_t)mesh.n_nodes * sizeof *force), sum[3], moment[3];
-  double       volume = 0, virial = 0, scale = 0;
-  fem_load     load = {.kind = FEM_LOAD_PRESSURE, .pressure = 1e5};
-  fem_tet_rule rule;
+  mesh_fe  mesh   = closed_curved_body();
+  double  *force  = malloc(3 * (size_t)mesh.n_nodes * sizeof *force), sum[3], moment[3];
+  double   volume = 0, virial = 0, scale = 0;
+  fem_load load = {.kind = FEM_LOAD_PRESSURE, .pressure = 1e5};
+  fem_rule rule;
   assert_int_equal(fem_load_pattern(&mesh, &load, NULL, force), SHB_OK);
   resultant(&mesh, force, sum, moment);
   for (int i = 0; i < 3 * mesh.n_nodes; i++) {

@@ -14,8 +14,8 @@
 #include <cmocka.h>
 
 #include "mesh/fe_mesh.h"
+#include "mesh/jacobian.h"
 #include "mesh/provenance.h"
-#include "mesh/tet10.h"
 
 static const double degree = M_PI / 180;
 
@@ -216,8 +216,10 @@ static double volume(const mesh_fe *mesh) {
         for (int i = 0; i < 4; i++) L[i] = i == p ? 1 - 3 * a : a;
         for (int d = 0; d < 3; d++) {
           double g = n < 4 ? (4 * L[n] - 1) * dL[n][d]
-                           : 4 * (L[mesh_tet10_edge[n - 4][0]] * dL[mesh_tet10_edge[n - 4][1]][d] +
-                                  L[mesh_tet10_edge[n - 4][1]] * dL[mesh_tet10_edge[n - 4][0]][d]);
+                           : 4 * (L[mesh_topology_of(MESH_TET10)->edge[n - 4][0]] *
+                                      dL[mesh_topology_of(MESH_TET10)->edge[n - 4][1]][d] +
+                                  L[mesh_topology_of(MESH_TET10)->edge[n - 4][1]] *
+                                      dL[mesh_topology_of(MESH_TET10)->edge[n - 4][0]][d]);
           for (int i = 0; i < 3; i++)
             J[i][d] += g * mesh->coordinates[3 * mesh->connectivity[10 * e + n] + i];
         }

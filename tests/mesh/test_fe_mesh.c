@@ -14,8 +14,8 @@
 
 #include <cmocka.h>
 
+#include "mesh/jacobian.h"
 #include "mesh/progress.h"
-#include "mesh/tet10.h"
 #include "tests/mesh/box.h"
 
 static const double size[3]  = {0.237, 0.041, 0.023};
@@ -50,7 +50,7 @@ static void assert_says(shb_status status, shb_status wanted, const char *words)
 /* Volume by the four-point rule, exact for straight elements. */
 static double volume(const mesh_fe *mesh) {
   double sum = 0;
-  for (int e = 0; e < mesh->n_elements; e++) sum += mesh_tet10_jacobian(mesh, e) / 6;
+  for (int e = 0; e < mesh->n_elements; e++) sum += mesh_jacobian_least(mesh, e) / 6;
   return sum;
 }
 
@@ -78,7 +78,7 @@ static void box_is_exact(void **state) {
   assert_int_equal(mesh.n_nodes, 11 * 7 * 5);
   assert_int_equal(mesh.n_elements, 6 * 30);
   assert_near(volume(&mesh), size[0] * size[1] * size[2], 1e-17);
-  assert_int_equal(mesh_tet10_check(&mesh, "box"), SHB_OK);
+  assert_int_equal(mesh_jacobian_check(&mesh, "box"), SHB_OK);
   double sum[3];
   area(&mesh, MESH_ROOT, sum);
   assert_near(sum[0], -size[1] * size[2], 1e-17);
@@ -95,8 +95,8 @@ static void middles_lie_between_their_ends(void **state) {
     for (int k = 0; k < 6; k++)
       for (int d = 0; d < 3; d++) {
         const int *n = mesh.connectivity + 10 * e;
-        double     a = mesh.coordinates[3 * n[mesh_tet10_edge[k][0]] + d];
-        double     b = mesh.coordinates[3 * n[mesh_tet10_edge[k][1]] + d];
+        double     a = mesh.coordinates[3 * n[mesh_topology_of(MESH_TET10)->edge[k][0]] + d];
+        double     b = mesh.coordinates[3 * n[mesh_topology_of(MESH_TET10)->edge[k][1]] + d];
         assert_near(mesh.coordinates[3 * n[4 + k] + d], (a + b) / 2, 1e-16);
       }
   mesh_fe_free(&mesh);
@@ -335,14 +335,14 @@ static void inverted_elements_are_named(void **state) {
   for (int d = 0; d < 3; d++)
     box.coordinates[3 * n[4] + d] =
         0.1 * box.coordinates[3 * n[0] + d] + 0.9 * box.coordinates[3 * n[1] + d];
-  assert_true(mesh_tet10_jacobian(&box, 77) < 0);
+  assert_true(mesh_jacobian_least(&box, 77) < 0);
   assert_int_equal(box_write(&box, path), SHB_OK);
   assert_says(mesh_fe_read(path, &mesh), SHB_ERR_INPUT, "inverted");
   assert_null(mesh.coordinates);
   char tag[16];
   int  named = 0;
   for (int e = 0; e < box.n_elements; e++) {
-    if (mesh_tet10_jacobian(&box, e) > 0) continue;
+    if (mesh_jacobian_least(&box, e) > 0) continue;
     snprintf(tag, sizeof tag, " %ld", box.element_tag[e]);
     if (named++ < 5) assert_non_null(strstr(shb_message(), tag));
   }

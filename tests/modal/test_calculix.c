@@ -108,15 +108,15 @@ static void run_calculix(const mesh_fe *mesh, double speed, double frequency[MOD
 }
 
 static void run_own(const mesh_fe *mesh, double speed, double frequency[MODES]) {
-  fem_tet10           *element = malloc(sizeof *element);
+  fem_element         *element = malloc(sizeof *element);
   fem_body             body    = {mesh, &steel, element, {MESH_AXIS_Z, speed}};
   fem_system           system;
   fem_equilibrium      at = {0};
   modal_eigen          eigen;
   modal_eigen_settings wanted = {.modes = MODES};
   assert_non_null(element);
-  assert_int_equal(fem_tet10_create(FEM_MASS_4POINT, element), 0);
-  assert_int_equal(fem_system_create(PETSC_COMM_SELF, mesh, &steel, FEM_MASS_4POINT, &system), 0);
+  assert_int_equal(fem_element_create(MESH_TET10, FEM_CALCULIX, element), 0);
+  assert_int_equal(fem_system_create(PETSC_COMM_SELF, mesh, &steel, FEM_CALCULIX, &system), 0);
   if (speed != 0) assert_int_equal(fem_equilibrium_solve(&body, &system, NULL, &at), 0);
   assert_int_equal(modal_eigen_solve(&system, &wanted, &eigen), 0);
   for (int i = 0; i < MODES; i++) frequency[i] = sqrt(eigen.lambda[i]) / two_pi;
