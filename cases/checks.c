@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <math.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -197,10 +198,15 @@ static bool check_file(case_reader *r, const char *key, const char *path) {
 }
 
 static void check_extension(case_reader *r) {
-  const char *path = r->file->mesh_file;
-  size_t      n    = path ? strlen(path) : 0;
-  if (path && case_reader_good(r, "mesh.file") && (n < 4 || strcmp(path + n - 4, ".msh") != 0))
-    case_reader_issue(r, "mesh.file", "'%s' is not a gmsh .msh file", case_key_leaf(path));
+  static const char *const known[] = {".msh", ".inp"};
+  const char              *path    = r->file->mesh_file;
+  if (!path || !case_reader_good(r, "mesh.file")) return;
+  const char *dot  = strrchr(path, '.');
+  bool        good = false;
+  for (size_t i = 0; dot && i < sizeof known / sizeof *known; i++)
+    good = good || strcasecmp(dot, known[i]) == 0;
+  if (!good)
+    case_reader_issue(r, "mesh.file", "'%s' is neither a gmsh .msh nor an Abaqus .inp file", path);
 }
 
 bool case_check_values(case_reader *r, int stages) {

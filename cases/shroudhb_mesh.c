@@ -8,16 +8,19 @@
 #include "cases/command.h"
 #include "mesh/blade.h"
 #include "mesh/fe_mesh.h"
+#include "mesh/inp.h"
 #include "mesh/progress.h"
 #include "mesh/provenance.h"
 
 static const char usage[] =
-    "usage: shroudhb-mesh [--quiet] [--verbose] [--force] CASE.yaml\n"
+    "usage: shroudhb-mesh [--quiet] [--verbose] [--force] [--inp] CASE.yaml\n"
     "\n"
     "Meshes the blade of mesh.blade with gmsh (ten-node tetrahedra) and writes NAME.msh with the\n"
     "groups root, contact_right, contact_left and load; does nothing if that file is up to date\n"
     "(unless --force). With mesh.file instead: checks that mesh's elements, groups and contact "
-    "faces.\n";
+    "faces.\n"
+    "--inp writes the mesh for CalculiX and Abaqus too, NAME.inp: groups as surfaces and node "
+    "sets, m.\n";
 
 static shb_status check_contact(const case_file *file, mesh_fe *mesh, int *pairs) {
   int *right = NULL, *left = NULL;
@@ -74,6 +77,27 @@ static shb_status make(const case_file *file, const command_options *options,
   return status;
 }
 
+/* NAME.inp of the mesh that the case uses, unless that is the very file. */
+static shb_status write_inp(const case_file *file, shb_progress *progress) {
+  char      *source = case_mesh_path(file), *output = case_output(file, ".inp");
+  mesh_fe    mesh   = {0};
+  shb_status status = SHB_OK;
+  if (!source || !output) {
+    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  } else if (strcmp(source, output) == 0) {
+    status =
+        shb_fail(SHB_ERR_INPUT, __FILE__, __LINE__, "%s is the mesh of the case itself", source);
+  } else {
+    status = mesh_fe_read(source, &mesh);
+  }
+  if (status == SHB_OK) status = mesh_inp_write(&mesh, output);
+  if (status == SHB_OK) shb_progress_note(progress, "wrote %s", output);
+  mesh_fe_free(&mesh);
+  free(source);
+  free(output);
+  return status;
+}
+
 static shb_status run(const case_file *file, const command_options *options) {
   shb_progress progress = shb_progress_start("mesh", options->quiet, options->verbose);
   if (file->modal_file) {
@@ -82,6 +106,7 @@ static shb_status run(const case_file *file, const command_options *options) {
   }
   shb_status status =
       file->mesh_file ? check_file(file, &progress) : make(file, options, &progress);
+  if (status == SHB_OK && options->mode) status = write_inp(file, &progress);
   shb_progress_note(&progress, "%.2f s in all", shb_seconds() - progress.started);
   return status;
 }

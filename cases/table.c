@@ -16,7 +16,7 @@ static const case_key table[] = {
      .help = "name of the output files; default: the file's name, or its folder's for case.yaml"},
 
     {"mesh.file", CASE_FILE_NAME, "", AT(mesh_file), .stages = CASE_MODAL, .when = CASE_IF_MESH_FILE,
-     .help = "gmsh .msh file with the groups root, contact_right, contact_left, load; instead of blade"},
+     .help = "gmsh .msh or Abaqus/CalculiX .inp file with the groups root, contact_right, contact_left, load; instead of blade"},
     {"mesh.blade.root.length", CASE_NUMBER, "m", 0, 100, true, .required = true, AT(blade.root_length), .stages = CASE_MESH, .when = CASE_IF_BLADE,
      .help = "root block, axial"},
     {"mesh.blade.root.width", CASE_NUMBER, "m", 0, 100, true, .required = true, AT(blade.root_width), .stages = CASE_MESH, .when = CASE_IF_BLADE,

@@ -1,5 +1,6 @@
 #include "mesh/faces.h"
 
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -107,4 +108,63 @@ shb_status mesh_faces_orient(mesh_fe *mesh, const char *name) {
   free(keys);
   free(flag);
   return status;
+}
+
+/* Nodes of face f of an element; false if one is not marked (NULL: all are). */
+static bool marked_face(const mesh_fe *mesh, const char *marked, int e, int f, int *nodes) {
+  const mesh_topology *topology = mesh_topology_of(mesh->kind);
+  bool                 all      = true;
+  for (int i = 0; i < topology->face_nodes; i++) {
+    nodes[i] = mesh->connectivity[topology->nodes * (size_t)e + (size_t)topology->face[f][i]];
+    all      = all && (!marked || marked[nodes[i]]);
+  }
+  return all;
+}
+
+/* Candidates as keys (set: element, face: local face) sorted by corners, unless keys is NULL; their number. */
+static int list_candidates(const mesh_fe *mesh, const char *marked, face_key *keys) {
+  const mesh_topology *topology = mesh_topology_of(mesh->kind);
+  int                  n        = 0, nodes[MESH_FACE_NODES];
+  for (int e = 0; e < mesh->n_elements; e++)
+    for (int f = 0; f < topology->faces; f++) {
+      if (!marked_face(mesh, marked, e, f, nodes)) continue;
+      if (keys) {
+        keys[n] = (face_key){.set = e, .face = f};
+        take_corners(nodes, topology->face_corners, keys[n].corner);
+      }
+      n++;
+    }
+  if (keys) qsort(keys, (size_t)n, sizeof *keys, by_corner);
+  return n;
+}
+
+static int by_element(const void *a, const void *b) {
+  const face_key *p = a, *q = b;
+  return p->set != q->set ? (p->set > q->set) - (p->set < q->set) : p->face - q->face;
+}
+
+/* Keys that are alone with their corners, in the order of elements. */
+static int keep_single(face_key *keys, int n) {
+  int kept = 0;
+  for (int i = 0, next; i < n; i = next) {
+    for (next = i + 1; next < n && by_corner(&keys[i], &keys[next]) == 0;) next++;
+    if (next == i + 1) keys[kept++] = keys[i];
+  }
+  qsort(keys, (size_t)kept, sizeof *keys, by_element);
+  return kept;
+}
+
+shb_status mesh_faces_outer(const mesh_fe *mesh, const char *marked, mesh_face_set *set) {
+  const size_t each = (size_t)mesh_topology_of(mesh->kind)->face_nodes;
+  int          n    = list_candidates(mesh, marked, NULL);
+  face_key    *keys = malloc(((size_t)n + 1) * sizeof *keys);
+  SHB_CHECK(keys, SHB_ERR_IO, "no memory for the faces of the mesh");
+  list_candidates(mesh, marked, keys);
+  set->n     = keep_single(keys, n);
+  set->nodes = malloc((each * (size_t)set->n + 1) * sizeof *set->nodes);
+  for (int f = 0; set->nodes && f < set->n; f++)
+    marked_face(mesh, NULL, keys[f].set, keys[f].face, set->nodes + each * (size_t)f);
+  free(keys);
+  SHB_CHECK(set->nodes, SHB_ERR_IO, "no memory for the faces of the mesh");
+  return SHB_OK;
 }

@@ -8,4 +8,8 @@
  * element, or inside the body (between two elements); name heads the text. */
 shb_status mesh_faces_orient(mesh_fe *mesh, const char *name);
 
+/* The faces on the surface of the body whose nodes are all marked ([n_nodes], NULL: every face), outward, in the
+ * order of elements; set->nodes is malloc'ed. SHB_ERR_IO no memory. */
+shb_status mesh_faces_outer(const mesh_fe *mesh, const char *marked, mesh_face_set *set);
+
 #endif

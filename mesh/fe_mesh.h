@@ -36,7 +36,8 @@ typedef struct {
 /* "root", "contact_right", "contact_left", "load" */
 const char *mesh_set_name(mesh_set_id id);
 
-/* Read a gmsh .msh file (2.2 or 4.1) with those physical groups. Only nodes that an element uses are kept.
+/* Read a gmsh .msh file (2.2 or 4.1) with those physical groups, or an .inp file (mesh/inp.h). Only nodes that an element
+ * uses are kept.
  * Errors: SHB_ERR_IO unreadable; SHB_ERR_INPUT neither all tet10 nor all hex20, no volume elements, group root absent or empty,
  * inverted elements (det J <= 0 at a quadrature or corner point; the first five tags are named), a group's
  * face not on the surface of the body. */

@@ -1,4 +1,4 @@
-/* Reading a gmsh .msh file. */
+/* Reading a mesh file: gmsh's own, or Abaqus' and CalculiX'. */
 #define _GNU_SOURCE /* memmem */
 #include <errno.h>
 #include <gmshc.h>
@@ -6,9 +6,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "mesh/fe_mesh.h"
 #include "mesh/import.h"
+#include "mesh/inp.h"
 #include "mesh/jacobian.h"
 #include "mesh/kernel.h"
 
@@ -62,23 +64,31 @@ static shb_status check_file(const char *path) {
   return status;
 }
 
-static shb_status open_and_import(const char *path, mesh_fe *mesh) {
-  GMSH_TRY(path, gmshMerge(path, &ierr));
-  SHB_TRY(mesh_import(path, mesh));
-  shb_status status = mesh_jacobian_check(mesh, path);
-  if (status != SHB_OK) mesh_fe_free(mesh);
+static shb_status read_msh(const char *path, mesh_fe *mesh) {
+  SHB_TRY(check_file(path));
+  mesh_kernel kernel;
+  SHB_TRY(mesh_kernel_open(&kernel));
+  int ierr = 0;
+  gmshMerge(path, &ierr);
+  shb_status status =
+      ierr ? mesh_kernel_fail(SHB_ERR_INPUT, __FILE__, __LINE__, path) : mesh_import(path, mesh);
+  mesh_kernel_close(&kernel);
   return status;
+}
+
+static bool ends_in(const char *path, const char *ending) {
+  size_t n = strlen(path), m = strlen(ending);
+  return n > m && strcasecmp(path + n - m, ending) == 0;
 }
 
 shb_status mesh_fe_read(const char *path, mesh_fe *mesh) {
   memset(mesh, 0, sizeof *mesh);
-  size_t length = strlen(path);
-  SHB_CHECK(length > 4 && strcmp(path + length - 4, ".msh") == 0, SHB_ERR_INPUT,
-            "%s: not a gmsh mesh file; its name must end in .msh", path);
-  SHB_TRY(check_file(path));
-  mesh_kernel kernel;
-  SHB_TRY(mesh_kernel_open(&kernel));
-  shb_status status = open_and_import(path, mesh);
-  mesh_kernel_close(&kernel);
+  bool msh = ends_in(path, ".msh");
+  SHB_CHECK(msh || ends_in(path, ".inp"), SHB_ERR_INPUT,
+            "%s: not a mesh file; its name must end in .msh (gmsh) or .inp (Abaqus, CalculiX)",
+            path);
+  SHB_TRY(msh ? read_msh(path, mesh) : mesh_inp_read(path, mesh));
+  shb_status status = mesh_jacobian_check(mesh, path);
+  if (status != SHB_OK) mesh_fe_free(mesh);
   return status;
 }

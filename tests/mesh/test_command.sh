@@ -65,6 +65,19 @@ says "is up to date"
 run 0 --quiet --force case.yaml
 cmp -s "$mesh" "$work/first.msh" || fail "the same case gave another mesh"
 
+first=$(inode)
+run 0 --quiet --inp case.yaml
+[ "$(inode)" = "$first" ] || fail "an up-to-date mesh was written again for --inp"
+mv "$work/dir/z_notch_blade.inp" "$work/dir/own.inp"
+bring own.inp
+run 0 --verbose brought.yaml
+says "is sound"
+sed -i 's/^\*ELEMENT, TYPE=C3D10/*ELEMENT, TYPE=C3D4/' "$work/dir/own.inp"
+run 2 brought.yaml
+lines 1
+says "C3D4 is not supported; C3D10 is"
+rm "$work/dir/own.inp"
+
 sed -i 's/mu: 0.3/mu: 0.4/' "$work/dir/case.yaml"
 run 0 --verbose case.yaml
 says "is up to date"

@@ -2,6 +2,7 @@
 #include <math.h>
 
 #include "fem/surface.h"
+#include "mesh/inp.h"
 #include "modal/receptance.h"
 #include "modal/session.h"
 #include "modal/stage.h"
@@ -66,6 +67,30 @@ static void file_is_complete(void **state) {
   for (int i = 0; i < 8; i++) check_below(model.mode_residual[i], 1e-9, "mode residual");
   modal_model_free(&model);
   assert_true(assert_described(out) >= 30);
+}
+
+/* The same body from an .inp file: the same modes and the same receptance. */
+static void abaqus_mesh_gives_the_same(void **state) {
+  (void)state;
+  modal_settings settings = default_settings();
+  modal_model    first, second;
+  char           mesh[512], out[512];
+  mesh_fe        sector = make_sector(size, inner, BLADES, cells);
+  snprintf(mesh, sizeof mesh, "%s", scratch("sector.inp"));
+  snprintf(out, sizeof out, "%s", scratch("inp.modal.h5"));
+  assert_int_equal(mesh_inp_write(&sector, mesh), SHB_OK);
+  mesh_fe_free(&sector);
+  assert_ok(modal_stage(PETSC_COMM_WORLD, mesh, out, &settings, &provenance, NULL));
+  assert_ok(modal_model_read(out, &second));
+  assert_ok(modal_model_read(scratch("sector.modal.h5"), &first));
+  for (int i = 0; i < 8; i++)
+    check_close(second.frequency[i], first.frequency[i], 1e-12, "frequency");
+  for (int i = 0; i < 144; i += 13)
+    check_close(second.residual_flexibility[i], first.residual_flexibility[i], 1e-9, "residual");
+  modal_model_free(&first);
+  modal_model_free(&second);
+  remove(mesh);
+  remove(out);
 }
 
 /* /VTKHDF: what ParaView reads; mode_00i is /modes/shape[i]. */
@@ -257,9 +282,13 @@ static void failures_leave_the_file_alone(void **state) {
 
 int main(int argc, char **argv) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(file_is_complete),          cmocka_unit_test(vtk_group_shows_the_modes),
-      cmocka_unit_test(receptance_is_sampled),     cmocka_unit_test(sides_are_turned_round),
-      cmocka_unit_test(deflection_is_in_the_file), cmocka_unit_test(failures_leave_the_file_alone),
+      cmocka_unit_test(file_is_complete),
+      cmocka_unit_test(abaqus_mesh_gives_the_same),
+      cmocka_unit_test(vtk_group_shows_the_modes),
+      cmocka_unit_test(receptance_is_sampled),
+      cmocka_unit_test(sides_are_turned_round),
+      cmocka_unit_test(deflection_is_in_the_file),
+      cmocka_unit_test(failures_leave_the_file_alone),
   };
   modal_session session;
   if (modal_session_start(&argc, &argv, &session) != SHB_OK) return 1;
