@@ -45,7 +45,8 @@ typedef struct {
 
   int    modes;
   double damping;
-  char  *modal_file; /* resolved path of modal.file, or NULL */
+  bool   full_integration; /* of hexahedra: stiffness with 3x3x3 points */
+  char  *modal_file;       /* resolved path of modal.file, or NULL */
 
   int        engine_order;
   fem_load   load;

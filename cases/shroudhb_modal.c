@@ -83,19 +83,20 @@ static modal_settings stage_settings(const case_file *file, modal_probe probe[CA
     memcpy(probe[q].at, file->probe[q].at, sizeof probe[q].at);
   }
   return (modal_settings){
-      .material  = file->material,
-      .axis      = file->axis,
-      .blades    = file->blades,
-      .speed     = file->speed,
-      .modes     = file->modes,
-      .damping   = file->damping,
-      .load      = file->load,
-      .n_probes  = file->n_probes,
-      .probe     = probe,
-      .to_ground = mhb->to_ground,
-      .points    = file->points,
-      .psi       = mhb->has_psi ? &mhb->psi : NULL,
-      .phi       = mhb->has_phi ? &mhb->phi : NULL,
+      .material         = file->material,
+      .axis             = file->axis,
+      .blades           = file->blades,
+      .speed            = file->speed,
+      .full_integration = file->full_integration,
+      .modes            = file->modes,
+      .damping          = file->damping,
+      .load             = file->load,
+      .n_probes         = file->n_probes,
+      .probe            = probe,
+      .to_ground        = mhb->to_ground,
+      .points           = file->points,
+      .psi              = mhb->has_psi ? &mhb->psi : NULL,
+      .phi              = mhb->has_phi ? &mhb->phi : NULL,
   };
 }
 

@@ -64,6 +64,8 @@ static const case_key table[] = {
      .help = "modes kept; what is left out goes into the residual flexibility"},
     {"modal.damping", CASE_NUMBER, "", 0, 1, .below = true, .required = true, AT(damping), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
      .help = "damping ratio of every mode"},
+    {"modal.integration", CASE_SWITCH, "", .words = "reduced full", .fallback = "reduced", AT(full_integration), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
+     .help = "stiffness of hexahedra with 2x2x2 points, or 3x3x3; tetrahedra: no difference"},
     {"modal.file", CASE_FILE_NAME, "", AT(modal_file), .stages = CASE_MHB, .when = CASE_IF_MODAL_FILE,
      .help = "modal file to use; mesh, material, rotor.speed and the load are then not needed"},
 

@@ -12,9 +12,9 @@
 enum { FEM_DOFS = 3 * MESH_NODES }; /* of the largest element */
 
 /* Quadrature. The mass is exact (degree 7 in curved tetrahedra, 3x3x3 points in hexahedra) unless it is CalculiX's.
- * Hexahedra: with 2x2x2 points the stiffness is of rank 48 of 54. The six zero-energy motions of one element cannot
- * pass through a mesh: no two neighbours can share them, and the displacements converge faster than with 3x3x3 points,
- * which stiffen bending. */
+ * The stiffness of a hexahedron with 2x2x2 points converges faster than with 3x3x3, which stiffen bending, but has rank
+ * 48 of 54: where elements lie in a column one by one, motions without energy are left (fem/hourglass.h); with two
+ * elements across, or more, none is. */
 typedef enum {
   FEM_STANDARD, /* stiffness: tetrahedra 4 points (27 where curved), hexahedra 2x2x2 */
   FEM_CALCULIX, /* as CalculiX's C3D10 and C3D20R: the mass with the points of the stiffness too */

@@ -6,6 +6,7 @@
 #include "fem/clamp.h"
 #include "fem/energy.h"
 #include "fem/fault.h"
+#include "fem/hourglass.h"
 #include "fem/partition.h"
 #include "fem/surface.h"
 #include "modal/condense.h"
@@ -70,6 +71,7 @@ static shb_status copy_patches(const modal_interface *interface, modal_model *mo
 static shb_status prepare(const mesh_fe *mesh, const modal_settings *settings,
                           modal_interface *interface, modal_condensation *to) {
   SHB_TRY(fem_clamp_check(mesh));
+  if (!settings->full_integration) SHB_TRY(fem_hourglass_check(mesh));
   SHB_TRY(modal_interface_create(mesh, settings->axis, settings->blades, settings->to_ground,
                                  settings->points, interface));
   SHB_TRY(modal_interface_check(interface, settings->psi, settings->phi));
@@ -145,7 +147,8 @@ static shb_status solve_body(MPI_Comm comm, const mesh_fe *mesh, const modal_set
   SHB_TRY(
       agree(comm, element ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory")));
   fem_body   body   = {mesh, &settings->material, element, {settings->axis, settings->speed}};
-  shb_status status = fem_fault_status(fem_element_create(mesh->kind, FEM_STANDARD, element));
+  fem_rules  rules  = settings->full_integration ? FEM_FULL : FEM_STANDARD;
+  shb_status status = fem_fault_status(fem_element_create(mesh->kind, rules, element));
   if (status == SHB_OK) status = solve(comm, &body, settings, to, progress, result);
   free(element);
   return status;

@@ -23,7 +23,8 @@ typedef struct {
   int                blades;
   double             speed; /* rad/s; 0: at rest */
   int                modes;
-  double             damping; /* damping ratio of every mode */
+  double             damping;          /* damping ratio of every mode */
+  bool               full_integration; /* stiffness of hexahedra with 3x3x3 points, not 2x2x2 */
   fem_load           load;
   int                n_probes;
   const modal_probe *probe;
@@ -45,6 +46,7 @@ typedef struct {
  * equilibrium, in the modes and in every residual. Contact faces, axes and loads are those of the undeformed mesh.
  * Collective; mesh the same on every rank, sets oriented (mesh_fe_orient).
  * Errors: SHB_ERR_INPUT missing groups, wrong angles, too many modes or patches, a part that is not clamped,
+ * hexahedra in a column one by one unless full_integration,
  * a speed at which there is no stable equilibrium; SHB_NOT_CONVERGED modes; SHB_ERR_IO no memory; SHB_INTERRUPTED. */
 shb_status modal_solve(MPI_Comm comm, const mesh_fe *mesh, const modal_settings *settings,
                        shb_progress *progress, modal_result *result);

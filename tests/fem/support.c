@@ -24,9 +24,20 @@ void check_below(double a, double bound, const char *what) {
   if (!(fabs(a) <= bound)) fail_msg("%s: %.3e, wanted below %.3e", what, a, bound);
 }
 
+static mesh_kind kind = MESH_TET10;
+
+void use_elements(mesh_kind wanted) {
+  kind = wanted;
+}
+
+mesh_kind used_elements(void) {
+  return kind;
+}
+
 mesh_fe make_box(const double size[3], const int n[3]) {
-  mesh_fe mesh;
-  if (box_mesh(size, n, &mesh) != SHB_OK) fail_msg("%s", shb_message());
+  mesh_fe    mesh;
+  shb_status status = kind == MESH_HEX20 ? box_hex(size, n, &mesh) : box_mesh(size, n, &mesh);
+  if (status != SHB_OK) fail_msg("%s", shb_message());
   return mesh;
 }
 
@@ -51,6 +62,19 @@ static double random_unit(uint64_t *state) {
   return (double)(*state >> 11) * 0x1p-52 - 1;
 }
 
+static void straighten(mesh_fe *mesh) {
+  const mesh_topology *topology = mesh_topology_of(mesh->kind);
+  double              *x        = mesh->coordinates;
+  for (int e = 0; e < mesh->n_elements; e++) {
+    const int *node = mesh->connectivity + topology->nodes * e;
+    for (int s = 0; s < topology->edges; s++) {
+      const int a = node[topology->edge[s][0]], b = node[topology->edge[s][1]];
+      for (int d = 0; d < 3; d++)
+        x[3 * node[topology->corners + s] + d] = (x[3 * a + d] + x[3 * b + d]) / 2;
+    }
+  }
+}
+
 void shake_inside(mesh_fe *mesh, const double size[3], double amount) {
   uint64_t state = 7;
   for (int i = 0; i < mesh->n_nodes; i++) {
@@ -59,4 +83,5 @@ void shake_inside(mesh_fe *mesh, const double size[3], double amount) {
     for (int d = 0; d < 3; d++) inside = inside && x[d] > 1e-12 && x[d] < size[d] - 1e-12;
     for (int d = 0; d < 3 && inside; d++) x[d] += amount * random_unit(&state);
   }
+  if (mesh->kind == MESH_HEX20) straighten(mesh);
 }

@@ -12,6 +12,10 @@ void check_close(double a, double b, double relative, const char *what);
 /* |a| <= bound */
 void check_below(double a, double bound, const char *what);
 
+/* The elements of the meshes made from here on; tetrahedra at first. */
+void      use_elements(mesh_kind kind);
+mesh_kind used_elements(void);
+
 /* Box, failing the test when it cannot be made. */
 mesh_fe make_box(const double size[3], const int n[3]);
 
@@ -20,7 +24,8 @@ mesh_fe make_box(const double size[3], const int n[3]);
  * whose normal is tangential), load the outer face. Curved elements. */
 mesh_fe make_sector(const double size[3], double inner, int blades, const int n[3]);
 
-/* Move every node that is not on the box's surface by up to amount in each direction, repeatably. */
+/* Move every node that is not on the box's surface by up to amount in each direction, repeatably. Hexahedra keep
+ * straight edges: 2x2x2 points integrate the stiffness exactly then, under constant stress. */
 void shake_inside(mesh_fe *mesh, const double size[3], double amount);
 
 #endif

@@ -25,7 +25,7 @@ static double *field(const mesh_fe *mesh, double amount, double phase) {
   assert_non_null(u);
   for (int i = 0; i < mesh->n_nodes; i++)
     for (int d = 0; d < 3; d++) u[3 * i + d] = amount * wave(i, d, phase);
-  for (int i = 0; i < 6 * mesh->set[MESH_ROOT].n; i++)
+  for (int i = 0; i < mesh_topology_of(mesh->kind)->face_nodes * mesh->set[MESH_ROOT].n; i++)
     memset(u + 3 * mesh->set[MESH_ROOT].nodes[i], 0, 3 * sizeof *u);
   return u;
 }
@@ -155,7 +155,7 @@ static double rod_tip(double speed) {
 
 static mesh_fe make_rod(double from, int n) {
   const double size[3]  = {rod_length, .004, .004};
-  const int    cells[3] = {n, 1, 1};
+  const int    cells[3] = {n, used_elements() == MESH_HEX20 ? 2 : 1, 1};
   mesh_fe      mesh     = make_box(size, cells);
   for (int i = 0; i < mesh.n_nodes; i++) {
     mesh.coordinates[3 * i] += from;
@@ -221,7 +221,12 @@ static void no_equilibrium_is_told(void **state) {
 static int tables(void **state) {
   (void)state;
   element = malloc(sizeof *element);
-  return element && fem_element_create(MESH_TET10, FEM_STANDARD, element) == 0 ? 0 : -1;
+  return element && fem_element_create(used_elements(), FEM_STANDARD, element) == 0 ? 0 : -1;
+}
+
+static int hexahedra(void **state) {
+  use_elements(MESH_HEX20);
+  return tables(state);
 }
 
 static int free_tables(void **state) {
@@ -238,7 +243,8 @@ int main(void) {
       cmocka_unit_test(no_equilibrium_is_told),
   };
   if (PetscInitialize(NULL, NULL, NULL, NULL) != 0) return 1;
-  int failures = cmocka_run_group_tests(tests, tables, free_tables);
+  int failures = cmocka_run_group_tests_name("tet10", tests, tables, free_tables);
+  failures += cmocka_run_group_tests_name("hex20", tests, hexahedra, free_tables);
   PetscFinalize();
   return failures;
 }

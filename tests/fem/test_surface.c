@@ -51,11 +51,12 @@ static void pressure_pushes_into_a_flat_face(void **state) {
 
 /* All six sides of a body with curved sides as the loaded group. */
 static mesh_fe closed_curved_body(void) {
-  mesh_fe        mesh = make_box(size, cells);
+  mesh_fe        mesh  = make_box(size, cells);
+  const int      width = mesh_topology_of(mesh.kind)->face_nodes;
   mesh_face_set *load = &mesh.set[MESH_LOAD], all = {0, malloc(96 * 6 * sizeof(int) * 24)};
   for (int side = 0; side < 6; side++) {
     assert_int_equal(box_set(&mesh, MESH_LOAD, side / 2, side % 2 ? size[side / 2] : 0), SHB_OK);
-    memcpy(all.nodes + 6 * all.n, load->nodes, 6 * (size_t)load->n * sizeof(int));
+    memcpy(all.nodes + width * all.n, load->nodes, (size_t)(width * load->n) * sizeof(int));
     all.n += load->n;
   }
   free(load->nodes);
@@ -86,15 +87,17 @@ static void pressure_on_a_closed_curved_surface(void **state) {
     check_below(sum[d], 1e-13 * scale, "resultant");
     check_below(moment[d], 1e-13 * scale, "moment");
   }
-  assert_int_equal(fem_tet_rule_conical(3, &rule), 0);
+  assert_int_equal(
+      mesh.kind == MESH_HEX20 ? fem_hex_rule(3, &rule) : fem_tet_rule_conical(3, &rule), 0);
+  const int nodes = mesh_topology_of(mesh.kind)->nodes;
   for (int e = 0; e < mesh.n_elements; e++)
     for (int p = 0; p < rule.n; p++) {
       double J[3][3] = {{0}};
-      for (int i = 0; i < 10; i++)
+      for (int i = 0; i < nodes; i++)
         for (int a = 0; a < 3; a++)
           for (int d = 0; d < 3; d++)
             J[a][d] +=
-                rule.gradient[p][i][a] * mesh.coordinates[3 * mesh.connectivity[10 * e + i] + d];
+                rule.gradient[p][i][a] * mesh.coordinates[3 * mesh.connectivity[nodes * e + i] + d];
       volume += rule.weight[p] * (J[0][0] * (J[1][1] * J[2][2] - J[1][2] * J[2][1]) -
                                   J[0][1] * (J[1][0] * J[2][2] - J[1][2] * J[2][0]) +
                                   J[0][2] * (J[1][0] * J[2][1] - J[1][1] * J[2][0]));
@@ -131,14 +134,42 @@ static void point_force_and_its_place(void **state) {
   mesh_fe_free(&mesh);
 }
 
+/* Shares of the nodes of one flat parallelogram: -1/12 at the corners, 1/3 at the middles of the sides. */
+static void quadrangle_has_its_known_weights(void **state) {
+  (void)state;
+  static const double place[8][2] = {{0, 0},  {1, 0},  {1, 1},  {0, 1},
+                                     {.5, 0}, {1, .5}, {.5, 1}, {0, .5}};
+  fem_face_rule       rule;
+  double              x[8][3], area[8], normal[8][3];
+  for (int i = 0; i < 8; i++) {
+    x[i][0] = .3 + .21 * place[i][0] + .04 * place[i][1];
+    x[i][1] = .1 + .13 * place[i][1];
+    x[i][2] = 0;
+  }
+  assert_int_equal(fem_face_rule_create(MESH_HEX20, &rule), 0);
+  fem_face_integrate(&rule, (const double(*)[3])x, area, normal);
+  for (int i = 0; i < 8; i++) {
+    check_close(area[i], (i < 4 ? -1. / 12 : 1. / 3) * .21 * .13, 1e-13, "share of a node");
+    check_close(normal[i][2], area[i], 1e-13, "normal of a node");
+  }
+}
+
+static int hexahedra(void **state) {
+  (void)state;
+  use_elements(MESH_HEX20);
+  return 0;
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(pressure_pushes_into_a_flat_face),
       cmocka_unit_test(pressure_on_a_closed_curved_surface),
       cmocka_unit_test(point_force_and_its_place),
+      cmocka_unit_test(quadrangle_has_its_known_weights),
   };
   if (PetscInitialize(NULL, NULL, NULL, NULL) != 0) return 1;
-  int failures = cmocka_run_group_tests(tests, NULL, NULL);
+  int failures = cmocka_run_group_tests_name("tet10", tests, NULL, NULL);
+  failures += cmocka_run_group_tests_name("hex20", tests, hexahedra, NULL);
   PetscFinalize();
   return failures;
 }

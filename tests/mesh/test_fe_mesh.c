@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include <cmocka.h>
+#include <gmshc.h>
 
 #include "mesh/jacobian.h"
 #include "mesh/progress.h"
@@ -54,11 +55,11 @@ static double volume(const mesh_fe *mesh) {
   return sum;
 }
 
-/* Summed area vector of a set. */
+/* Summed area vector of a set of triangles or parallelograms. */
 static void area(const mesh_fe *mesh, mesh_set_id id, double sum[3]) {
   sum[0] = sum[1] = sum[2] = 0;
   for (int f = 0; f < mesh->set[id].n; f++) {
-    const int    *n = mesh->set[id].nodes + 6 * f;
+    const int    *n = mesh->set[id].nodes + mesh_topology_of(mesh->kind)->face_nodes * f;
     const double *x = mesh->coordinates + 3 * n[0], *y = mesh->coordinates + 3 * n[1],
                  *z = mesh->coordinates + 3 * n[2];
     double a[3], b[3];
@@ -67,7 +68,8 @@ static void area(const mesh_fe *mesh, mesh_set_id id, double sum[3]) {
       b[d] = z[d] - x[d];
     }
     for (int d = 0; d < 3; d++)
-      sum[d] += 0.5 * (a[(d + 1) % 3] * b[(d + 2) % 3] - a[(d + 2) % 3] * b[(d + 1) % 3]);
+      sum[d] += (mesh->kind == MESH_HEX20 ? 1 : 0.5) *
+                (a[(d + 1) % 3] * b[(d + 2) % 3] - a[(d + 2) % 3] * b[(d + 1) % 3]);
   }
 }
 
@@ -149,6 +151,110 @@ static void faces_are_turned_outward(void **state) {
       }
   mesh_fe_free(&mesh);
   mesh_fe_free(&box);
+}
+
+/* The places of a hexahedron's nodes are those that gmsh itself states for its type 17, and of its faces for 16. */
+static void node_order_is_gmshs(void **state) {
+  (void)state;
+  const mesh_kind both[2] = {MESH_TET10, MESH_HEX20};
+  int             ierr    = 0;
+  gmshInitialize(0, NULL, 0, &ierr);
+  for (int k = 0; k < 2; k++) {
+    const mesh_topology *t       = mesh_topology_of(both[k]);
+    const int            type[2] = {t->gmsh, t->gmsh_face};
+    for (int face = 0; face < 2; face++) {
+      char   *label = NULL;
+      double *place = NULL;
+      int     dim = 0, order = 0, nodes = 0, primary = 0;
+      size_t  n = 0;
+      gmshModelMeshGetElementProperties(type[face], &label, &dim, &order, &nodes, &place, &n,
+                                        &primary, &ierr);
+      assert_int_equal(ierr, 0);
+      assert_int_equal(nodes, face ? t->face_nodes : t->nodes);
+      assert_int_equal(primary, face ? t->face_corners : t->corners);
+      for (int i = 0; i < nodes; i++) {
+        double shape[MESH_NODES], slope[MESH_FACE_NODES][2], unused[MESH_NODES][3], at[3];
+        /* gmsh's cube is [-1, 1], ours [0, 1] */
+        for (int d = 0; d < dim; d++)
+          at[d] = both[k] == MESH_HEX20 ? (place[dim * i + d] + 1) / 2 : place[dim * i + d];
+        if (face)
+          mesh_face_shape(both[k], at, shape, slope);
+        else
+          mesh_shape(both[k], at, shape, unused);
+        for (int j = 0; j < nodes; j++) assert_near(shape[j], i == j, 1e-14);
+      }
+      gmshFree(label);
+      gmshFree(place);
+    }
+  }
+  gmshFinalize(&ierr);
+}
+
+/* Hexahedra through a file and back; the volume, the area of each group, and what lies on the far side. */
+static void hexahedra_are_read(void **state) {
+  (void)state;
+  mesh_fe box, mesh;
+  double  sum[3];
+  assert_int_equal(box_hex(size, cells, &box), SHB_OK);
+  assert_int_equal(box.n_elements, 30);
+  assert_int_equal(box_set(&box, MESH_CONTACT_LEFT, 1, size[1]), SHB_OK);
+  assert_int_equal(box_write(&box, path), SHB_OK);
+  assert_int_equal(mesh_fe_read(path, &mesh), SHB_OK);
+  assert_int_equal(mesh.kind, MESH_HEX20);
+  assert_int_equal(mesh.n_nodes, box.n_nodes);
+  assert_int_equal(mesh.n_elements, box.n_elements);
+  assert_near(mesh_jacobian_least(&mesh, 17), size[0] * size[1] * size[2] / 30, 1e-18);
+  for (int i = 0; i < 20 * mesh.n_elements; i++)
+    assert_int_equal(mesh.node_tag[mesh.connectivity[i]], box.node_tag[box.connectivity[i]]);
+  area(&mesh, MESH_ROOT, sum);
+  assert_near(sum[0], -size[1] * size[2], 1e-15);
+  area(&mesh, MESH_CONTACT_LEFT, sum);
+  assert_near(sum[1], size[0] * size[2], 1e-15);
+  assert_near(sum[0], 0, 1e-15);
+  mesh_fe_free(&mesh);
+  int *face = box.set[MESH_ROOT].nodes, corner = face[1]; /* given inward: turned round */
+  face[1] = face[3];
+  face[3] = corner;
+  for (int i = 0; i < 2; i++) {
+    int middle  = face[4 + i];
+    face[4 + i] = face[7 - i];
+    face[7 - i] = middle;
+  }
+  assert_int_equal(box_write(&box, path), SHB_OK);
+  assert_int_equal(mesh_fe_read(path, &mesh), SHB_OK);
+  area(&mesh, MESH_ROOT, sum);
+  assert_near(sum[0], -size[1] * size[2], 1e-15);
+  mesh_fe_free(&mesh);
+  box.coordinates[3 * box.connectivity[20 * 7 + 6]] -= size[0]; /* a corner through its element */
+  assert_int_equal(box_write(&box, path), SHB_OK);
+  assert_says(mesh_fe_read(path, &mesh), SHB_ERR_INPUT, "elements inverted");
+  mesh_fe_free(&box);
+}
+
+static void hexahedra_of_other_orders_are_refused(void **state) {
+  (void)state;
+  mesh_fe mesh;
+  int     ierr = 0;
+  for (int order = 1; order <= 2; order++) {
+    gmshInitialize(0, NULL, 0, &ierr);
+    gmshOptionSetNumber("General.Terminal", 0, &ierr);
+    int    square = gmshModelOccAddRectangle(0, 0, 0, .1, .1, -1, 0, &ierr), *made = NULL;
+    int    from[2] = {2, square}, layers[1] = {2};
+    size_t n = 0;
+    gmshModelOccExtrude(from, 2, 0, 0, .1, &made, &n, layers, 1, NULL, 0, 1, &ierr);
+    gmshFree(made);
+    gmshModelOccSynchronize(&ierr);
+    gmshModelMeshSetTransfiniteSurface(square, "Left", NULL, 0, &ierr);
+    gmshModelMeshSetRecombine(2, square, &ierr);
+    gmshOptionSetNumber("Mesh.MeshSizeMax", .05, &ierr);
+    gmshModelMeshGenerate(3, &ierr);
+    gmshModelMeshSetOrder(order, &ierr);
+    gmshWrite(path, &ierr);
+    assert_int_equal(ierr, 0);
+    gmshFinalize(&ierr);
+    assert_says(mesh_fe_read(path, &mesh), SHB_ERR_INPUT,
+                order == 1 ? "linear (eight-node) hexahedra" : "hexahedra of 27 nodes");
+  }
 }
 
 static void unused_nodes_are_dropped(void **state) {
@@ -372,6 +478,9 @@ int main(void) {
       cmocka_unit_test(middles_lie_between_their_ends),
       cmocka_unit_test(reads_back_what_was_written),
       cmocka_unit_test(faces_are_turned_outward),
+      cmocka_unit_test(node_order_is_gmshs),
+      cmocka_unit_test(hexahedra_are_read),
+      cmocka_unit_test(hexahedra_of_other_orders_are_refused),
       cmocka_unit_test(unused_nodes_are_dropped),
       cmocka_unit_test(contact_faces_are_paired),
       cmocka_unit_test(right_is_the_tangential_side),

@@ -2,7 +2,8 @@
 add_library(tests_box STATIC mesh/box.c)
 target_link_libraries(tests_box PUBLIC shb_mesh)
 
-shb_test(mesh fe_mesh fast tests_box)
+shb_test(mesh fe_mesh fast tests_box ${GMSH_LIBRARY})
+target_include_directories(test_mesh_fe_mesh PRIVATE ${GMSH_INCLUDE})
 shb_test(mesh inp fast tests_box)
 shb_test(mesh blade fast shb_mesh)
 

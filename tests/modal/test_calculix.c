@@ -1,4 +1,4 @@
-/* Modes of a twisted blade at speed, against CalculiX on the same mesh; argument: the program ccx. */
+/* Modes of a twisted blade at speed, against CalculiX on the same mesh and with its rules; argument: the program ccx. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -23,11 +23,19 @@ static const double two_pi   = 6.28318530717958647692;
 static const char  *program;
 static char         folder[] = "/tmp/shroudhb-calculix-XXXXXX";
 
-/* A blade along x from the hub's radius on, twisted, on straight-sided elements: CalculiX integrates every C3D10 at
+/* An element of CalculiX, and ours with the same rules. */
+typedef struct {
+  const char *name;
+  mesh_kind   kind;
+  fem_rules   rules;
+} element_kind;
+
+/* A blade along x from the hub's radius on, twisted. Tetrahedra have straight sides: CalculiX integrates every C3D10 at
  * four points. */
-static mesh_fe make_blade(void) {
-  static const int edge[6][2] = {{0, 1}, {1, 2}, {2, 0}, {3, 0}, {2, 3}, {1, 3}};
-  mesh_fe          mesh       = make_box(size, cells);
+static mesh_fe make_blade(mesh_kind kind) {
+  use_elements(kind);
+  mesh_fe              mesh     = make_box(size, cells);
+  const mesh_topology *topology = mesh_topology_of(kind);
   for (int i = 0; i < mesh.n_nodes; i++) {
     double *x = mesh.coordinates + 3 * i, angle = .3 + twist * x[0] / size[0];
     double  y = x[1] - size[1] / 2, z = x[2] - size[2] / 2;
@@ -35,22 +43,29 @@ static mesh_fe make_blade(void) {
     x[1] = y * cos(angle) - z * sin(angle);
     x[2] = y * sin(angle) + z * cos(angle);
   }
-  for (int e = 0; e < mesh.n_elements; e++)
-    for (int i = 0; i < 6; i++) {
-      const int *node = mesh.connectivity + 10 * e;
+  for (int e = 0; e < mesh.n_elements && kind == MESH_TET10; e++)
+    for (int i = 0; i < topology->edges; i++) {
+      const int *node = mesh.connectivity + 10 * e, *edge = topology->edge[i];
       for (int d = 0; d < 3; d++)
-        mesh.coordinates[3 * node[4 + i] + d] = (mesh.coordinates[3 * node[edge[i][0]] + d] +
-                                                 mesh.coordinates[3 * node[edge[i][1]] + d]) /
-                                                2;
+        mesh.coordinates[3 * node[4 + i] + d] =
+            (mesh.coordinates[3 * node[edge[0]] + d] + mesh.coordinates[3 * node[edge[1]] + d]) / 2;
     }
   return mesh;
 }
 
+/* The mesh is written as C3D20R where it is of hexahedra. */
+static void use_type(const char *name) {
+  char command[256];
+  snprintf(command, sizeof command, "sed -i 's/TYPE=C3D20R/TYPE=%s/' %s/blade.inp", name, folder);
+  assert_int_equal(system(command), 0);
+}
+
 /* The static step's controls are tightened: CalculiX's own leave 1e-4 in the frequencies. */
-static void write_deck(const mesh_fe *mesh, double speed) {
+static void write_deck(const element_kind *element, const mesh_fe *mesh, double speed) {
   char path[128];
   snprintf(path, sizeof path, "%s/blade.inp", folder);
   assert_int_equal(mesh_inp_write(mesh, path), SHB_OK);
+  if (element->kind == MESH_HEX20) use_type(element->name);
   FILE *deck = fopen(path, "a");
   assert_non_null(deck);
   fprintf(deck,
@@ -86,16 +101,17 @@ static void read_frequencies(double frequency[MODES]) {
   assert_int_equal(found, MODES);
 }
 
-static void run_calculix(const mesh_fe *mesh, double speed, double frequency[MODES]) {
+static void run_calculix(const element_kind *element, const mesh_fe *mesh, double speed,
+                         double frequency[MODES]) {
   char command[512];
-  write_deck(mesh, speed);
+  write_deck(element, mesh, speed);
   snprintf(command, sizeof command, "cd %s && OMP_NUM_THREADS=1 '%s' blade >blade.log 2>&1", folder,
            program);
   assert_int_equal(system(command), 0);
   read_frequencies(frequency);
 }
 
-static void run_own(const mesh_fe *mesh, double speed, double frequency[MODES]) {
+static void run_own(const mesh_fe *mesh, fem_rules rules, double speed, double frequency[MODES]) {
   fem_element         *element = malloc(sizeof *element);
   fem_body             body    = {mesh, &steel, element, {MESH_AXIS_Z, speed}};
   fem_system           system;
@@ -103,8 +119,8 @@ static void run_own(const mesh_fe *mesh, double speed, double frequency[MODES]) 
   modal_eigen          eigen;
   modal_eigen_settings wanted = {.modes = MODES};
   assert_non_null(element);
-  assert_int_equal(fem_element_create(MESH_TET10, FEM_CALCULIX, element), 0);
-  assert_int_equal(fem_system_create(PETSC_COMM_SELF, mesh, &steel, FEM_CALCULIX, &system), 0);
+  assert_int_equal(fem_element_create(mesh->kind, rules, element), 0);
+  assert_int_equal(fem_system_create(PETSC_COMM_SELF, mesh, &steel, rules, &system), 0);
   if (speed != 0) assert_int_equal(fem_equilibrium_solve(&body, &system, NULL, &at), 0);
   assert_int_equal(modal_eigen_solve(&system, &wanted, &eigen), 0);
   for (int i = 0; i < MODES; i++) frequency[i] = sqrt(eigen.lambda[i]) / two_pi;
@@ -115,20 +131,34 @@ static void run_own(const mesh_fe *mesh, double speed, double frequency[MODES]) 
 }
 
 /* Eigenvalues have seven digits in blade.dat: frequencies are good to 2.5e-7. */
-static void frequencies_agree(void **state) {
-  (void)state;
+static void compare(const element_kind *element) {
   const double speed[] = {0, 400, 1000};
-  mesh_fe      mesh    = make_blade();
+  mesh_fe      mesh    = make_blade(element->kind);
   for (int s = 0; s < 3; s++) {
     double own[MODES], other[MODES], worst = 0;
-    run_own(&mesh, speed[s], own);
-    run_calculix(&mesh, speed[s], other);
+    run_own(&mesh, element->rules, speed[s], own);
+    run_calculix(element, &mesh, speed[s], other);
     for (int i = 0; i < MODES; i++) worst = fmax(worst, fabs(own[i] / other[i] - 1));
-    print_message("%g rad/s: first mode %.7g Hz, CalculiX %.7g; six modes to %.1e\n", speed[s],
-                  own[0], other[0], worst);
+    print_message("%s, %g rad/s: first mode %.7g Hz, CalculiX %.7g; six modes to %.1e\n",
+                  element->name, speed[s], own[0], other[0], worst);
     for (int i = 0; i < MODES; i++) check_close(own[i], other[i], 1e-6, "frequency");
   }
   mesh_fe_free(&mesh);
+}
+
+static void tetrahedra_agree(void **state) {
+  (void)state;
+  compare(&(element_kind){"C3D10", MESH_TET10, FEM_CALCULIX});
+}
+
+static void reduced_hexahedra_agree(void **state) {
+  (void)state;
+  compare(&(element_kind){"C3D20R", MESH_HEX20, FEM_CALCULIX});
+}
+
+static void full_hexahedra_agree(void **state) {
+  (void)state;
+  compare(&(element_kind){"C3D20", MESH_HEX20, FEM_FULL});
 }
 
 static int make_folder(void **state) {
@@ -144,7 +174,9 @@ static int remove_folder(void **state) {
 }
 
 int main(int argc, char **argv) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(frequencies_agree)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(tetrahedra_agree),
+                                     cmocka_unit_test(reduced_hexahedra_agree),
+                                     cmocka_unit_test(full_hexahedra_agree)};
   if (argc < 2) return 77;
   program = argv[1];
   if (SlepcInitialize(NULL, NULL, NULL, NULL)) return 1;

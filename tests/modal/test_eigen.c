@@ -161,6 +161,44 @@ static void too_many_modes_is_one_line(void **state) {
   mesh_fe_free(&mesh);
 }
 
+/* Six frequencies of the steel bar with a number of hexahedra along. */
+static void bar_frequencies(int n, fem_rules rules, double frequency[6]) {
+  const double size[3]  = {.2, .03, .01};
+  const int    cells[3] = {n, 3 * n / 20, n / 10};
+  mesh_fe      mesh     = make_box(size, cells);
+  fem_system   system;
+  modal_eigen  eigen;
+  solve(&mesh, &steel, rules, 6, 0, &system, &eigen);
+  check_modes(&system, &eigen);
+  for (int i = 0; i < 6; i++) frequency[i] = sqrt(eigen.lambda[i]) / two_pi;
+  release(&system, &eigen);
+  mesh_fe_free(&mesh);
+}
+
+/* 2x2x2 and 3x3x3 points go to the same frequencies, the former from below the latter; Timoshenko's first three. */
+static void both_rules_of_hexahedra_meet(void **state) {
+  (void)state;
+  const double timoshenko[3] = {208.47, 615.89, 1291.46};
+  double       gap[2][6], reduced[6], full[6];
+  for (int level = 0; level < 2; level++) {
+    bar_frequencies(20 << level, FEM_STANDARD, reduced);
+    bar_frequencies(20 << level, FEM_FULL, full);
+    for (int i = 0; i < 6; i++) gap[level][i] = full[i] / reduced[i] - 1;
+  }
+  for (int i = 0; i < 6; i++) {
+    print_message("mode %d: %.4f Hz, 3x3x3 points %.1e above, half as fine %.1e\n", i + 1,
+                  reduced[i], gap[1][i], gap[0][i]);
+    assert_true(gap[1][i] > 0 && gap[1][i] < 1e-3 && gap[1][i] < .5 * gap[0][i]);
+    if (i < 3) check_close(reduced[i], timoshenko[i], 1e-2, "frequency against Timoshenko");
+  }
+}
+
+static int hexahedra(void **state) {
+  (void)state;
+  use_elements(MESH_HEX20);
+  return 0;
+}
+
 int main(int argc, char **argv) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(steel_bar),
@@ -168,9 +206,14 @@ int main(int argc, char **argv) {
       cmocka_unit_test(smooth_mode_converges_with_order_four),
       cmocka_unit_test(too_many_modes_is_one_line),
   };
+  const struct CMUnitTest of_hexahedra[] = {
+      cmocka_unit_test(both_rules_of_hexahedra_meet),
+      cmocka_unit_test(free_body_has_six_rigid_modes),
+  };
   modal_session session;
   if (modal_session_start(&argc, &argv, &session) != SHB_OK) return 1;
-  int failures  = cmocka_run_group_tests(tests, NULL, NULL);
+  int failures = cmocka_run_group_tests_name("tet10", tests, NULL, NULL);
+  failures += cmocka_run_group_tests_name("hex20", of_hexahedra, hexahedra, NULL);
   session.fault = false;
   modal_session_end(&session, SHB_OK);
   return failures;

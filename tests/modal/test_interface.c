@@ -66,33 +66,42 @@ static void check_pairs(const mesh_fe *mesh, const modal_interface *face) {
   }
 }
 
+/* Of the side's 24 cells, each one quadrangle or two triangles. */
+static int facets(void) {
+  return used_elements() == MESH_HEX20 ? 24 : 48;
+}
+
 static void any_division_keeps_the_totals(void **state) {
   (void)state;
   mesh_fe   mesh      = make_sector(size, inner, BLADES, cells);
-  const int points[5] = {1, 2, 4, 7, 48};
+  const int points[5] = {1, 2, 4, 7, facets()};
   for (int i = 0; i < 5; i++) {
     modal_interface face = create(&mesh, false, points[i]);
     assert_int_equal(face.n_pairs, points[i]);
     check_totals(&face);
     check_pairs(&mesh, &face);
-    for (int p = 0; p < face.n_pairs && points[i] < 8; p++) /* facets are 1/48 of the area */
-      check_close(face.area[p], face.total_area / points[i], .15, "equal areas");
+    for (int p = 0; p < face.n_pairs && points[i] < 8;
+         p++) /* a facet is 1/24 of the area or less */
+      check_close(face.area[p], face.total_area / points[i], 7. / facets(), "equal areas");
     modal_interface_free(&face);
   }
   mesh_fe_free(&mesh);
 }
 
-/* Flat straight-sided triangles: mid-side nodes alone; 48 triangles have (3*48 + 20 boundary)/2 = 82 sides. */
+/* Flat straight-sided faces: mid-side nodes alone; 48 triangles have (3*48 + 20 boundary)/2 = 82 sides, 24 quadrangles
+ * (4*24 + 20)/2 = 58. A side has its part, a third or a quarter, of one facet, or of two. */
 static void all_nodes(void **state) {
   (void)state;
   mesh_fe         mesh = make_sector(size, inner, BLADES, cells);
   modal_interface face = create(&mesh, false, 0);
-  assert_int_equal(face.n_pairs, 82);
+  const bool      hex  = used_elements() == MESH_HEX20;
+  const double    part = hex ? .25 : 1. / 3;
+  assert_int_equal(face.n_pairs, hex ? 58 : 82);
   check_totals(&face);
   check_pairs(&mesh, &face);
   for (int p = 0; p < face.n_pairs; p++) {
-    double share = face.area[p] / face.total_area * 48; /* a third of one facet, or of two */
-    assert_true(fabs(share - 1. / 3) < 1e-9 || fabs(share - 2. / 3) < 1e-9);
+    double share = face.area[p] / face.total_area * facets();
+    assert_true(fabs(share - part) < 1e-9 || fabs(share - 2 * part) < 1e-9);
   }
   modal_interface_free(&face);
   mesh_fe_free(&mesh);
@@ -164,7 +173,9 @@ static void bad_faces_are_one_line(void **state) {
   (void)state;
   mesh_fe         mesh = make_sector(size, inner, BLADES, cells);
   modal_interface face;
-  refused(&mesh, false, 49, "49 patches asked of a contact face of 48 facets");
+  refused(&mesh, false, 49,
+          used_elements() == MESH_HEX20 ? "contact face of 24 facets"
+                                        : "49 patches asked of a contact face of 48 facets");
   mesh.set[MESH_CONTACT_LEFT].n = 0;
   refused(&mesh, false, 1, "no group \"contact_left\"");
   face = create(&mesh, true, 3);
@@ -181,6 +192,12 @@ static void bad_faces_are_one_line(void **state) {
   mesh_fe_free(&mesh);
 }
 
+static int hexahedra(void **state) {
+  (void)state;
+  use_elements(MESH_HEX20);
+  return 0;
+}
+
 int main(int argc, char **argv) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(any_division_keeps_the_totals),
@@ -192,7 +209,8 @@ int main(int argc, char **argv) {
   };
   modal_session session;
   if (modal_session_start(&argc, &argv, &session) != SHB_OK) return 1;
-  int failures = cmocka_run_group_tests(tests, NULL, NULL);
+  int failures = cmocka_run_group_tests_name("tet10", tests, NULL, NULL);
+  failures += cmocka_run_group_tests_name("hex20", tests, hexahedra, NULL);
   modal_session_end(&session, SHB_OK);
   return failures;
 }

@@ -134,6 +134,66 @@ static void vtk_group_shows_the_modes(void **state) {
   free(shape), free(mode), free(coordinates), free(linked), free(gmsh), free(vtk), free(type);
 }
 
+/* The same of hexahedra: cells of VTK's type 25, whose edges go ring by ring. */
+static void hexahedra_go_through(void **state) {
+  (void)state;
+  static const int ends[12][2] = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6},
+                                  {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
+  modal_settings   settings    = default_settings();
+  hid_t            file;
+  h5_shape         flat = {1, {0}}, types = {1, {0}}, nodes = {2, {0, 3}}, faces = {2, {0, 8}};
+  double          *x;
+  int             *vtk, *type, *face;
+  char             mesh[512], out[512];
+  snprintf(mesh, sizeof mesh, "%s", scratch("hex.msh"));
+  snprintf(out, sizeof out, "%s", scratch("hex.modal.h5"));
+  use_elements(MESH_HEX20);
+  write_mesh(mesh, false);
+  use_elements(MESH_TET10);
+  settings.speed = 300;
+  assert_ok(modal_stage(PETSC_COMM_WORLD, mesh, out, &settings, &provenance, NULL));
+  assert_ok(h5_open(out, &file));
+  assert_ok(h5_read_double(file, "/mesh/nodes", &nodes, &x));
+  assert_ok(h5_read_int(file, "/mesh/sets/contact_right", &faces, &face));
+  assert_ok(h5_read_int(file, "/VTKHDF/Connectivity", &flat, &vtk));
+  assert_ok(h5_read_int(file, "/VTKHDF/Types", &types, &type));
+  assert_ok(h5_close(file));
+  assert_int_equal(types.dim[0], 2 * 2 * 4);
+  assert_int_equal(flat.dim[0], 20 * types.dim[0]);
+  assert_int_equal(faces.dim[0], 2 * 4);
+  for (size_t e = 0; e < types.dim[0]; e++) {
+    const int *cell = vtk + 20 * e;
+    assert_int_equal(type[e], 25);
+    for (int s = 0; s < 12; s++) { /* axial and radial coordinates are linear along an edge */
+      double r[3];
+      int    n[3] = {cell[ends[s][0]], cell[8 + s], cell[ends[s][1]]};
+      for (int i = 0; i < 3; i++) r[i] = hypot(x[3 * n[i] + 1], x[3 * n[i] + 2]);
+      check_below(x[3 * n[1]] - (x[3 * n[0]] + x[3 * n[2]]) / 2, 1e-15, "middle of an edge");
+      check_below(r[1] - (r[0] + r[2]) / 2, 1e-15, "middle of an edge");
+    }
+  }
+  free(x), free(face), free(vtk), free(type);
+}
+
+/* A column of single hexahedra has motions without energy: refused, and allowed with all points. */
+static void columns_need_all_points(void **state) {
+  (void)state;
+  modal_settings settings  = default_settings();
+  const int      single[3] = {1, 1, 5};
+  modal_result   result;
+  settings.points = 1;
+  use_elements(MESH_HEX20);
+  mesh_fe mesh = make_sector(size, inner, BLADES, single);
+  use_elements(MESH_TET10);
+  assert_int_equal(modal_solve(PETSC_COMM_WORLD, &mesh, &settings, NULL, &result), SHB_ERR_INPUT);
+  assert_non_null(strstr(shb_message(), "5 hexahedra (the first has tag 1) stand in a column"));
+  modal_result_free(&result);
+  settings.full_integration = true;
+  assert_ok(modal_solve(PETSC_COMM_WORLD, &mesh, &settings, NULL, &result));
+  modal_result_free(&result);
+  mesh_fe_free(&mesh);
+}
+
 /* The sampled receptance is the model's own. */
 static void receptance_is_sampled(void **state) {
   (void)state;
@@ -289,6 +349,8 @@ int main(int argc, char **argv) {
       cmocka_unit_test(sides_are_turned_round),
       cmocka_unit_test(deflection_is_in_the_file),
       cmocka_unit_test(failures_leave_the_file_alone),
+      cmocka_unit_test(hexahedra_go_through),
+      cmocka_unit_test(columns_need_all_points),
   };
   modal_session session;
   if (modal_session_start(&argc, &argv, &session) != SHB_OK) return 1;
