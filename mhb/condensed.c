@@ -20,7 +20,7 @@ static size_t rows_of(const mhb_condensed *s) {
 /* Everything a thread may need, from one block: touched only as far as it is used. */
 static int allocate(mhb_condensed *s) {
   size_t pairs = (size_t)s->b->n_pairs, n3 = rows_of(s), K = (size_t)s->b->m + 1,
-         one     = (size_t)s->b->n + MHB_MOST_BORDERS,
+         one     = (size_t)s->most + MHB_MOST_BORDERS,
          borders = 1 + 2 * (pairs < MHB_MOST_HELD ? pairs : MHB_MOST_HELD);
   s->kind        = calloc(pairs, sizeof *s->kind);
   s->have        = calloc(K, 1);
@@ -44,11 +44,17 @@ static int allocate(mhb_condensed *s) {
 }
 
 shb_status mhb_condensed_create(const mhb_residual *residual, mhb_condensed **out) {
+  return mhb_condensed_create_within(residual, residual->n, out);
+}
+
+shb_status mhb_condensed_create_within(const mhb_residual *residual, int most,
+                                       mhb_condensed **out) {
   mhb_condensed *s = calloc(1, sizeof *s);
   SHB_CHECK(s, SHB_ERR_IO, "out of memory");
   s->b       = residual;
   s->m       = residual->m;
   s->n_pairs = residual->n_pairs;
+  s->most    = most < residual->n ? most : residual->n;
   s->omega   = NAN;
   if (!allocate(s)) {
     mhb_condensed_destroy(s);
@@ -416,7 +422,7 @@ int mhb_condensed_factor(mhb_condensed *s, const double *column, const double *r
   s->bordered  = column != NULL;
   s->n_borders = s->bordered + 2 * s->n_held;
   s->size      = 3 * s->b->nb * s->n_moving + s->n_borders;
-  if (!condense(s)) return 0;
+  if (s->size - s->n_borders > s->most || !condense(s)) return 0;
   for (int k = 0; k <= s->b->m && s->n_moving > 0; k++) dense_rows(s, k);
   return set_borders(s, column, row) && factor_dense(s);
 }

@@ -23,6 +23,7 @@ enum { MHB_MOST_HELD = 8, MHB_MOST_BORDERS = 1 + 2 * MHB_MOST_HELD };
 typedef struct {
   const mhb_residual *b;
   int                 m, n_pairs;        /* of b, when this was made */
+  int                 most;              /* moving unknowns there is room for */
   mhb_pair_kind      *kind;              /* [pairs] as they are treated here: held is stuck */
   int                 n_moving, n_stuck; /* pairs */
   int                *moving, *stuck;    /* [pairs] which */
@@ -49,6 +50,10 @@ typedef struct {
 
 /* For one residual, which must outlive it. SHB_ERR_IO: no memory. */
 shb_status mhb_condensed_create(const mhb_residual *residual, mhb_condensed **condensed);
+
+/* With room for so many moving unknowns; where there are more, factors do not come about. */
+shb_status mhb_condensed_create_within(const mhb_residual *residual, int most,
+                                       mhb_condensed **condensed);
 void       mhb_condensed_destroy(mhb_condensed *condensed);
 
 /* Factor at the point where the residual was evaluated last with derivatives.

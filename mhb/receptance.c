@@ -73,22 +73,6 @@ static void relative(const mhb_receptance *r, double complex phase, int sides,
   }
 }
 
-/* T R T^H */
-static void condensed(const mhb_receptance *r, double complex phase, int sides, int nc,
-                      const double *matrix, double complex *scratch, double complex *out) {
-  double complex *column = scratch + (size_t)nc * (size_t)r->n; /* [nc] */
-  for (int j = 0; j < nc; j++) {                                /* scratch[j][n] = T R e_j */
-    for (int i = 0; i < nc; i++) column[i] = matrix[(size_t)i * (size_t)nc + (size_t)j];
-    relative(r, phase, sides, column, 1, scratch + (size_t)j * (size_t)r->n, 1);
-  }
-  for (int i = 0; i < r->n; i++) { /* conj(T (T R)^H) */
-    for (int j = 0; j < nc; j++) column[j] = conj(scratch[(size_t)j * (size_t)r->n + (size_t)i]);
-    double complex row[r->n];
-    relative(r, phase, sides, column, 1, row, 1);
-    for (int j = 0; j < r->n; j++) out[(size_t)i * (size_t)r->n + (size_t)j] = conj(row[j]);
-  }
-}
-
 static void set_modes(mhb_receptance *r, int k, double complex phase, int sides) {
   const modal_model *model = r->model;
   int                m     = r->n_modes;
@@ -170,16 +154,13 @@ static int allocate(mhb_receptance *r) {
   r->lambda  = calloc(K * m, sizeof(double complex));
   r->driven  = calloc(K, sizeof(int));
   r->made_at = calloc(K, sizeof(double));
+  r->phase   = calloc(K, sizeof(double complex));
   r->R       = calloc(K * n * n, sizeof(double complex));
   r->free    = calloc(K * n, sizeof(double complex));
   r->unit    = calloc(K * n, sizeof(double complex));
   int ok     = r->T0 && r->share && r->B && r->F && r->parts && r->scratch && r->BL && r->lambda &&
-           r->R && r->free && r->unit;
+           r->driven && r->made_at && r->phase && r->R && r->free && r->unit;
   if (model->load_residual) ok &= (r->load = calloc(K * n, sizeof(double complex))) != NULL;
-  if (model->residual_flexibility)
-    ok &= (r->flexibility = calloc(K * n * n, sizeof(double complex))) != NULL;
-  if (model->residual_inertia)
-    ok &= (r->inertia = calloc(K * n * n, sizeof(double complex))) != NULL;
   if (model->probe_load_residual && q)
     ok &= (r->probe_load = calloc(K * q, sizeof(double complex))) != NULL;
   if (model->probe_contact_residual && q)
@@ -196,6 +177,31 @@ static double wave_step(const mhb_settings *s) {
   return NAN;
 }
 
+/* Everything that does not depend on omega. */
+static shb_status set_blade(mhb_receptance *r, const mhb_settings *settings) {
+  const modal_model *model = r->model;
+  int                sides = settings->to_ground ? 1 : 2;
+  int                nc    = 3 * model->n_pairs * (model->has_left ? 2 : 1);
+  double             step  = settings->to_ground ? 0 : wave_step(settings);
+  set_shares(r);
+  SHB_TRY(set_axes(r, settings));
+  if (model->residual_flexibility)
+    SHB_TRY(mhb_flexibility_create(model->residual_flexibility, nc, r->T0, model->n_pairs, sides,
+                                   &r->flexibility));
+  if (model->residual_inertia)
+    SHB_TRY(mhb_flexibility_create(model->residual_inertia, nc, r->T0, model->n_pairs, sides,
+                                   &r->inertia));
+  for (int k = 0; k <= r->n_harmonics; k++) {
+    r->made_at[k]        = NAN;
+    double complex phase = r->phase[k] = cexp(-I * fmod(k * step, 2 * PI));
+    set_modes(r, k, phase, sides);
+    set_load(r, k, phase, sides);
+    set_parts(r, k);
+    if (r->probe_contact) set_probe(r, k, phase, sides, nc);
+  }
+  return SHB_OK;
+}
+
 shb_status mhb_receptance_create(const modal_model *model, const mhb_settings *settings,
                                  int n_harmonics, mhb_receptance **out) {
   SHB_CHECK(settings->to_ground || model->has_left, SHB_ERR_INPUT,
@@ -205,47 +211,21 @@ shb_status mhb_receptance_create(const modal_model *model, const mhb_settings *s
             "blades at engine order %d; set it to 1",
             settings->subharmonics, settings->blades, settings->engine_order);
   mhb_receptance *r = calloc(1, sizeof *r);
-  int nc = 3 * model->n_pairs * (model->has_left ? 2 : 1), sides = settings->to_ground ? 1 : 2;
-  double complex *scratch =
-      calloc((size_t)nc * (size_t)(3 * model->n_pairs + 1), sizeof(double complex));
-  int ok = r && scratch;
-  if (ok) {
-    r->model       = model;
-    r->n           = 3 * model->n_pairs;
-    r->n_modes     = model->n_modes;
-    r->n_harmonics = n_harmonics;
-    r->nu          = settings->subharmonics;
-    r->scale       = settings->scale;
-    ok             = allocate(r);
-  }
+  SHB_CHECK(r, SHB_ERR_IO, "out of memory");
+  r->model          = model;
+  r->n              = 3 * model->n_pairs;
+  r->n_modes        = model->n_modes;
+  r->n_harmonics    = n_harmonics;
+  r->nu             = settings->subharmonics;
+  r->scale          = settings->scale;
   shb_status status = SHB_OK;
-  if (!ok) status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for the receptance");
-  if (ok) {
-    set_shares(r);
-    status = set_axes(r, settings);
-  }
+  if (!allocate(r))
+    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for the receptance");
+  if (status == SHB_OK) status = set_blade(r, settings);
   if (status != SHB_OK) {
-    free(scratch);
     mhb_receptance_destroy(r);
     return status;
   }
-  double step   = settings->to_ground ? 0 : wave_step(settings);
-  size_t square = (size_t)r->n * (size_t)r->n;
-  for (int k = 0; k <= n_harmonics; k++) {
-    r->made_at[k]        = NAN;
-    double complex phase = cexp(-I * fmod(k * step, 2 * PI));
-    set_modes(r, k, phase, sides);
-    set_load(r, k, phase, sides);
-    set_parts(r, k);
-    if (r->flexibility)
-      condensed(r, phase, sides, nc, model->residual_flexibility, scratch,
-                r->flexibility + (size_t)k * square);
-    if (r->inertia)
-      condensed(r, phase, sides, nc, model->residual_inertia, scratch,
-                r->inertia + (size_t)k * square);
-    if (r->probe_contact) set_probe(r, k, phase, sides, nc);
-  }
-  free(scratch);
   *out = r;
   return SHB_OK;
 }
@@ -257,8 +237,9 @@ void mhb_receptance_destroy(mhb_receptance *r) {
   free(r->B);
   free(r->F);
   free(r->load);
-  free(r->flexibility);
-  free(r->inertia);
+  mhb_flexibility_destroy(r->flexibility);
+  mhb_flexibility_destroy(r->inertia);
+  free(r->phase);
   free(r->probe_load);
   free(r->probe_contact);
   free(r->parts);
@@ -308,12 +289,9 @@ MHB_HOT static void modal_row(const mhb_receptance *r, int k, const double *yr, 
 
 /* The residual terms: R + w^2 R2. */
 static void residual_terms(const mhb_receptance *r, int k, double w, double complex *R) {
-  size_t                square = (size_t)r->n * (size_t)r->n, from = (size_t)k * square;
-  const double complex *stiff = r->flexibility, *heavy = r->inertia;
-  for (size_t i = 0; i < square; i++) R[i] = stiff ? stiff[from + i] : 0;
-  for (size_t i = 0; heavy && i < square; i++)
-    R[i] = CMPLX(creal(R[i]) + w * w * creal(heavy[from + i]),
-                 cimag(R[i]) + w * w * cimag(heavy[from + i]));
+  memset(R, 0, sizeof *R * (size_t)r->n * (size_t)r->n);
+  if (r->flexibility) mhb_flexibility_add(r->flexibility, r->phase[k], 1, R);
+  if (r->inertia) mhb_flexibility_add(r->inertia, r->phase[k], w * w, R);
 }
 
 static void harmonic_at(mhb_receptance *r, int k) {
@@ -418,15 +396,9 @@ void mhb_receptance_slope(const mhb_receptance *r, int k, const double complex *
   double kk = (double)k / r->nu, yr[r->n_modes], yi[r->n_modes];
   slope_drive(r, k, p, yr, yi);
   modal_sums(r, k, yr, yi, slope);
-  for (int a = 0; r->inertia && a < n; a++) {
-    const double complex *row = r->inertia + ((size_t)k * (size_t)n + (size_t)a) * (size_t)n;
-    double                re = 0, im = 0, weight = 2 * kk * kk * r->omega;
-    for (int b = 0; b < n; b++) {
-      re += creal(row[b]) * creal(p[b]) - cimag(row[b]) * cimag(p[b]);
-      im += creal(row[b]) * cimag(p[b]) + cimag(row[b]) * creal(p[b]);
-    }
-    slope[a] = CMPLX(creal(slope[a]) - weight * re, cimag(slope[a]) - weight * im);
-  }
+  double weight = 2 * kk * kk * r->omega;
+  for (int a = 0; r->inertia && a < n; a++)
+    slope[a] -= weight * mhb_flexibility_row(r->inertia, r->phase[k], a, p);
 }
 
 void mhb_receptance_probe_change(const mhb_receptance *r, int k, const double complex *p,

@@ -14,6 +14,7 @@
 #include <complex.h>
 
 #include "mesh/status.h"
+#include "mhb/flexibility.h"
 #include "mhb/settings.h"
 #include "modal/model.h"
 
@@ -30,7 +31,8 @@ typedef struct {
   double            *scratch;                    /* [4][modes] */
   double complex    *BL;                         /* [n][modes] B L of one harmonic */
   double complex    *load;                       /* [k][n] residual response to the load, or NULL */
-  double complex    *flexibility, *inertia;      /* [k][n][n], or NULL */
+  mhb_flexibility   *flexibility, *inertia;      /* or NULL */
+  double complex    *phase;                      /* [k] e_k */
   double complex    *probe_load, *probe_contact; /* [k][3 q], [k][3 q][n], or NULL */
   int               *driven;                     /* [k] whether the load has this harmonic */
   double             omega;                      /* rad/s, of mhb_receptance_move */

@@ -183,11 +183,9 @@ static double modal_term(const mhb_residual *b, int k, const double complex *p) 
   double                w    = k * r->omega / r->nu;
   double                top  = 2 * PI * r->model->frequency[r->n_modes - 1];
   double                held = r->inertia ? w * w : 1, ratio = w * w / (top * top), sum = 0;
-  const double complex *last = r->inertia ? r->inertia : r->flexibility;
+  const mhb_flexibility *last = r->inertia ? r->inertia : r->flexibility;
   for (int i = 0; i < n; i++) {
-    double complex u = 0;
-    for (int j = 0; j < n; j++)
-      u += held * last[((size_t)k * (size_t)n + (size_t)i) * (size_t)n + (size_t)j] * p[j];
+    double complex u = held * mhb_flexibility_row(last, r->phase[k], i, p);
     sum += creal(u) * creal(u) + cimag(u) * cimag(u);
   }
   return sum * ratio * ratio;
