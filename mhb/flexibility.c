@@ -13,8 +13,8 @@ typedef struct {
 
 static void block(const source *s, int side_i, int i, int side_j, int j, double out[3][3]) {
   const double *Ti = s->T0 + 9 * i, *Tj = s->T0 + 9 * j;
-  const double *from = s->matrix + (size_t)(side_i * s->n + 3 * i) * (size_t)s->nc +
-                       (size_t)(side_j * s->n + 3 * j);
+  const double *from =
+      s->matrix + (size_t)(side_i * s->n + 3 * i) * (size_t)s->nc + (size_t)(side_j * s->n + 3 * j);
   double half[3][3] = {{0}};
   for (int a = 0; a < 3; a++, from += s->nc)
     for (int b = 0; b < 3; b++)
@@ -97,4 +97,14 @@ double complex mhb_flexibility_row(const mhb_flexibility *f, double complex phas
     im += a * cimag(p[j]) + b * creal(p[j]);
   }
   return CMPLX(re, im);
+}
+
+void mhb_flexibility_add_block(const mhb_flexibility *f, double complex phase, double factor,
+                               int pair, double complex R[3][3]) {
+  for (int c = 0; c < 3; c++)
+    for (int d = 0; d < 3; d++) {
+      size_t at = (size_t)(3 * pair + c) * (size_t)f->n + (size_t)(3 * pair + d);
+      R[c][d] += factor * f->own[at];
+      if (f->both) R[c][d] -= factor * CMPLX(creal(phase) * f->both[at], cimag(phase) * f->odd[at]);
+    }
 }

@@ -11,7 +11,7 @@
 #include "mesh/status.h"
 
 typedef struct {
-  int     n;                 /* 3 pairs */
+  int     n;                /* 3 pairs */
   double *own, *both, *odd; /* [n][n]; both and odd are NULL to ground */
 } mhb_flexibility;
 
@@ -24,6 +24,10 @@ void       mhb_flexibility_destroy(mhb_flexibility *flexibility);
 /* R[n][n] += factor T M T^H */
 void mhb_flexibility_add(const mhb_flexibility *flexibility, double complex phase, double factor,
                          double complex *R);
+
+/* R[3][3] += factor times the block of pair a with itself. */
+void mhb_flexibility_add_block(const mhb_flexibility *flexibility, double complex phase,
+                               double factor, int pair, double complex R[3][3]);
 
 /* Row i of T M T^H times p[n]. */
 double complex mhb_flexibility_row(const mhb_flexibility *flexibility, double complex phase, int i,

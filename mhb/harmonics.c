@@ -111,21 +111,11 @@ static double power(const double *x, int rows, int nb, int k) {
 
 /* share[k] = |all harmonics above k|^2, k = 0..MHB_MOST_LOOKED_AT: the solution's up to m, the estimate's beyond. */
 static void tail(const mhb_rung *r, const double *x, double *share) {
-  const mhb_truncation *t = r->truncation;
-  const mhb_residual   *b = r->residual;
-  int                   m = b->m, rows = 3 * b->n_pairs, none = t->kind == MHB_TRUNCATION_NONE;
-  double                sum = 0;
+  const mhb_residual *b   = r->residual;
+  double              sum = 0;
   for (int k = MHB_MOST_LOOKED_AT; k > 0; k--) {
     share[k] = sum;
-    if (k <= m) {
-      sum += power(x, rows, b->nb, k);
-    } else if (none) {
-      continue;
-    } else if (k <= 2 * m) {
-      sum += power(t->step, rows, t->doubled->nb, k);
-    } else if (t->kind == MHB_TRUNCATION_NEWTON && k <= t->beyond->m) {
-      sum += power(t->far_x, rows, t->beyond->nb, k);
-    }
+    sum += k <= b->m ? power(x, 3 * b->n_pairs, b->nb, k) : mhb_truncation_power(r->truncation, k);
   }
 }
 

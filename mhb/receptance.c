@@ -355,11 +355,10 @@ static double complex lambda_slope(const mhb_receptance *r, int k, int i) {
   return L * L * (2 * kk * kk * r->omega - 2 * I * r->model->damping_ratio[i] * wi * kk);
 }
 
-/* y = dL/d omega (scale F - B^H p) by modes. */
-MHB_HOT static void slope_drive(const mhb_receptance *r, int k, const double complex *p,
-                                double *restrict yr, double *restrict yi) {
-  int    m = r->n_modes, n = r->n;
-  double kk = (double)k / r->nu, spring = 2 * kk * kk * r->omega;
+/* y = scale F - B^H p by modes. */
+MHB_INLINE void drive(const mhb_receptance *r, int k, const double complex *p, double *restrict yr,
+                      double *restrict yi) {
+  int m = r->n_modes, n = r->n;
   const double *restrict re = part(r, k, 0), *restrict im = part(r, k, 1);
   for (int i = 0; i < m; i++) {
     yr[i] = r->scale * re[n * m + i];
@@ -372,6 +371,14 @@ MHB_HOT static void slope_drive(const mhb_receptance *r, int k, const double com
       yi[i] -= re[i] * pi - im[i] * pr;
     }
   }
+}
+
+/* y = dL/d omega (scale F - B^H p) by modes. */
+MHB_HOT static void slope_drive(const mhb_receptance *r, int k, const double complex *p,
+                                double *restrict yr, double *restrict yi) {
+  int    m  = r->n_modes;
+  double kk = (double)k / r->nu, spring = 2 * kk * kk * r->omega;
+  drive(r, k, p, yr, yi);
   const double complex *lambda = r->lambda + k * m;
   for (int i = 0; i < m; i++) {
     double a = creal(lambda[i]), b = cimag(lambda[i]);
@@ -383,11 +390,37 @@ MHB_HOT static void slope_drive(const mhb_receptance *r, int k, const double com
   }
 }
 
+/* y = L (scale F - B^H p) by modes, at w rad/s. */
+MHB_HOT static void motion_drive(const mhb_receptance *r, int k, double w, const double complex *p,
+                                 double *restrict yr, double *restrict yi) {
+  int    m = r->n_modes;
+  double L[2 * m];
+  set_lambda(r, w, L, L + m);
+  drive(r, k, p, yr, yi);
+  for (int i = 0; i < m; i++) {
+    double x = yr[i];
+    yr[i]    = L[i] * x - L[m + i] * yi[i];
+    yi[i]    = L[i] * yi[i] + L[m + i] * x;
+  }
+}
+
 MHB_HOT static void modal_sums(const mhb_receptance *r, int k, const double *yr, const double *yi,
                                double complex *out) {
   int           m  = r->n_modes;
   const double *re = part(r, k, 0), *im = part(r, k, 1);
   for (int a = 0; a < r->n; a++, re += m, im += m) out[a] = product(m, yr, yi, re, im, 1);
+}
+
+void mhb_receptance_motion(const mhb_receptance *r, int k, const double complex *p,
+                           double complex *motion) {
+  double w = k * r->omega / r->nu, yr[r->n_modes], yi[r->n_modes];
+  motion_drive(r, k, w, p, yr, yi);
+  modal_sums(r, k, yr, yi, motion);
+  for (int a = 0; a < r->n; a++) {
+    if (r->load) motion[a] += r->scale * r->load[k * r->n + a];
+    if (r->flexibility) motion[a] -= mhb_flexibility_row(r->flexibility, r->phase[k], a, p);
+    if (r->inertia) motion[a] -= w * w * mhb_flexibility_row(r->inertia, r->phase[k], a, p);
+  }
 }
 
 void mhb_receptance_slope(const mhb_receptance *r, int k, const double complex *p,

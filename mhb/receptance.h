@@ -61,6 +61,10 @@ void mhb_receptance_at(mhb_receptance *receptance, double omega, int top);
 /* Another scale of the excitation, at the same omega. */
 void mhb_receptance_scale(mhb_receptance *receptance, double scale);
 
+/* motion[n] <- harmonic k of free - R p, without making R: what a single product costs. */
+void mhb_receptance_motion(const mhb_receptance *receptance, int k, const double complex *p,
+                           double complex *motion);
+
 /* d/d omega of harmonic k of [free - R p] at fixed p[n]. */
 void mhb_receptance_slope(const mhb_receptance *receptance, int k, const double complex *p,
                           double complex *slope);

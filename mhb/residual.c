@@ -34,14 +34,27 @@ static void set_laws(mhb_residual *b) {
 
 shb_status mhb_residual_create(const modal_model *model, const mhb_settings *settings,
                                mhb_residual **out) {
+  mhb_receptance *receptance;
+  SHB_TRY(mhb_receptance_create(model, settings, settings->harmonics, &receptance));
+  shb_status status = mhb_residual_create_on(receptance, settings, out);
+  if (status == SHB_OK)
+    (*out)->owns_receptance = 1;
+  else
+    mhb_receptance_destroy(receptance);
+  return status;
+}
+
+shb_status mhb_residual_create_on(mhb_receptance *receptance, const mhb_settings *settings,
+                                  mhb_residual **out) {
   mhb_residual *b = calloc(1, sizeof *b);
   SHB_CHECK(b, SHB_ERR_IO, "out of memory");
-  int m        = settings->harmonics;
-  b->settings  = settings;
-  b->m         = m;
-  b->n_pairs   = model->n_pairs;
-  b->nb        = mhb_real_size(m);
-  b->n         = 3 * b->n_pairs * b->nb;
+  int m         = settings->harmonics;
+  b->settings   = settings;
+  b->receptance = receptance;
+  b->m          = m;
+  b->n_pairs    = receptance->model->n_pairs;
+  b->nb         = mhb_real_size(m);
+  b->n          = 3 * b->n_pairs * b->nb;
   size_t pairs = (size_t)b->n_pairs, block = 3 * (size_t)b->nb;
   b->law            = calloc(pairs, sizeof *b->law);
   b->info           = calloc(pairs, sizeof *b->info);
@@ -56,7 +69,6 @@ shb_status mhb_residual_create(const modal_model *model, const mhb_settings *set
   if (!(b->law && b->info && b->kind && b->linear_dp && b->p && b->dp && b->pk && b->uk &&
         b->by_parameter))
     status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for %d unknowns", b->n);
-  if (status == SHB_OK) status = mhb_receptance_create(model, settings, m, &b->receptance);
   if (status == SHB_OK) status = create_contacts(b);
   if (status != SHB_OK) {
     mhb_residual_destroy(b);
@@ -70,7 +82,7 @@ shb_status mhb_residual_create(const modal_model *model, const mhb_settings *set
 
 void mhb_residual_destroy(mhb_residual *b) {
   if (!b) return;
-  mhb_receptance_destroy(b->receptance);
+  if (b->owns_receptance) mhb_receptance_destroy(b->receptance);
   for (int i = 0; b->contacts && i < b->n_threads; i++) mhb_contact_destroy(b->contacts[i]);
   free(b->contacts);
   free(b->kind);

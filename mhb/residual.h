@@ -20,9 +20,10 @@ typedef enum {
 
 typedef struct {
   const mhb_settings *settings;
-  mhb_receptance     *receptance; /* harmonics 0..m */
-  mhb_contact        *contact;    /* forces to harmonic m: that of thread 0 */
-  mhb_contact       **contacts;   /* [thread] */
+  mhb_receptance     *receptance; /* harmonics 0..m at least */
+  int                 owns_receptance;
+  mhb_contact        *contact;  /* forces to harmonic m: that of thread 0 */
+  mhb_contact       **contacts; /* [thread] */
   int                 n_threads;
   mhb_law            *law;               /* [pair] shares of the interface */
   mhb_contact_info   *info;              /* [pair] of the last evaluation */
@@ -40,6 +41,10 @@ typedef struct {
 
 shb_status mhb_residual_create(const modal_model *model, const mhb_settings *settings,
                                mhb_residual **residual);
+
+/* On a receptance of the same settings, for as many harmonics or more, which must outlive it and may serve others. */
+shb_status mhb_residual_create_on(mhb_receptance *receptance, const mhb_settings *settings,
+                                  mhb_residual **residual);
 void       mhb_residual_destroy(mhb_residual *residual);
 
 /* Everything that evaluations do not set by `value`. */

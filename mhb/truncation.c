@@ -4,11 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "mhb/elimination.h"
 #include "mhb/fourier.h"
 #include "mhb/newton.h"
 
-static const double PI = 3.14159265358979323846, NEGLIGIBLE = .1;
+static const double PI = 3.14159265358979323846, NEGLIGIBLE = .1, NEAR_BY = .1;
 
 static int least(int a, int b) {
   return a < b ? a : b;
@@ -18,38 +17,30 @@ static int most(int a, int b) {
   return a > b ? a : b;
 }
 
-/* What the Newton step and the harmonics beyond 2m need. */
-static shb_status create_newton(mhb_truncation *t) {
-  const modal_model *model = t->narrow->receptance->model;
-  size_t             n3    = 3 * (size_t)t->narrow->n_pairs;
-  int                m     = t->narrow->m;
-  t->beyond_settings       = t->settings;
-  t->beyond_settings.harmonics =
-      most(2 * m, least(most(4 * m, MHB_LEAST_LOOKED_AT), MHB_MOST_LOOKED_AT));
-  SHB_TRY(mhb_residual_create(model, &t->beyond_settings, &t->beyond));
-  size_t far = (size_t)t->beyond->n;
-  t->far_x   = calloc(far, sizeof(double));
-  t->far_r   = calloc(far, sizeof(double));
-  t->A       = calloc(n3 * n3, sizeof(double complex));
-  t->u       = calloc(n3, sizeof(double complex));
-  SHB_CHECK(t->far_x && t->far_r && t->A && t->u, SHB_ERR_IO, "out of memory for %zu unknowns",
-            far);
-  return mhb_condensed_create(t->doubled, &t->system);
-}
-
 shb_status mhb_truncation_create(const mhb_residual *residual, mhb_truncation **out) {
   mhb_truncation *t = calloc(1, sizeof *t);
   SHB_CHECK(t, SHB_ERR_IO, "out of memory");
+  int m                 = residual->m;
+  int looked_at         = most(2 * m, least(most(4 * m, MHB_LEAST_LOOKED_AT), MHB_MOST_LOOKED_AT));
   t->narrow             = residual;
   t->settings           = *residual->settings;
-  t->settings.harmonics = 2 * residual->m;
-  shb_status status = mhb_residual_create(residual->receptance->model, &t->settings, &t->doubled);
+  t->settings.harmonics = 2 * m;
+  shb_status status =
+      mhb_receptance_create(residual->receptance->model, &t->settings, looked_at, &t->receptance);
+  if (status == SHB_OK) status = mhb_residual_create_on(t->receptance, &t->settings, &t->doubled);
   if (status == SHB_OK) {
-    t->x    = calloc((size_t)t->doubled->n, sizeof(double));
-    t->step = calloc((size_t)t->doubled->n, sizeof(double));
-    if (!(t->x && t->step)) status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+    size_t n    = (size_t)t->doubled->n;
+    t->x        = calloc(n, sizeof(double));
+    t->step     = calloc(n, sizeof(double));
+    t->residual = calloc(n, sizeof(double));
+    t->trial    = calloc(n, sizeof(double));
+    t->change   = calloc(n, sizeof(double));
+    if (!(t->x && t->step && t->residual && t->trial && t->change))
+      status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   }
-  if (status == SHB_OK && t->doubled->n <= MHB_MAX_DOUBLED) status = create_newton(t);
+  if (status == SHB_OK) status = mhb_beyond_create(t->doubled, t->receptance, &t->beyond);
+  if (status == SHB_OK)
+    status = mhb_condensed_create_within(t->doubled, MHB_MOST_DOUBLED, &t->system);
   if (status != SHB_OK) {
     mhb_truncation_destroy(t);
     return status;
@@ -60,15 +51,15 @@ shb_status mhb_truncation_create(const mhb_residual *residual, mhb_truncation **
 
 void mhb_truncation_destroy(mhb_truncation *t) {
   if (!t) return;
+  mhb_condensed_destroy(t->system);
+  mhb_beyond_destroy(t->beyond);
   mhb_residual_destroy(t->doubled);
-  mhb_residual_destroy(t->beyond);
+  mhb_receptance_destroy(t->receptance);
   free(t->x);
   free(t->step);
-  mhb_condensed_destroy(t->system);
-  free(t->far_x);
-  free(t->far_r);
-  free(t->A);
-  free(t->u);
+  free(t->residual);
+  free(t->trial);
+  free(t->change);
   free(t);
 }
 
@@ -86,78 +77,54 @@ static void copy_rows(int rows, const double *from, int nb, double *to, int wide
     memcpy(to + (size_t)i * (size_t)wide, from + (size_t)i * (size_t)nb, length);
 }
 
-/* Stiffness of a pair at harmonic 2m that turns with the motion: what couples k with -k is left out. */
-static void stiffness(const mhb_residual *b, int pair, double complex D[3][3]) {
-  size_t        block = 3 * (size_t)b->nb;
-  const double *dp    = b->dp + (size_t)pair * block * block;
-  for (int c = 0; c < 3; c++) {
-    const double *re = dp + ((size_t)((c + 1) * b->nb) - 2) * block, *im = re + block;
-    for (int d = 0; d < 3; d++) {
-      int j   = (d + 1) * b->nb - 2;
-      D[c][d] = .5 * CMPLX(re[j] + im[j + 1], im[j] - re[j + 1]);
-    }
-  }
+/* The residual along the step, -1 + tau + kappa tau^2 in units of it: kappa from one more evaluation, near by. */
+static double bend(mhb_truncation *t, double length, double size) {
+  mhb_residual *b    = t->doubled;
+  double        part = fmin(1, NEAR_BY * size / length), product = 0;
+  for (int i = 0; i < b->n; i++) t->trial[i] = t->x[i] + part * t->step[i];
+  double *r = t->trial;
+  mhb_residual_evaluate(b, t->trial, t->narrow->at.omega, t->residual, NULL, NULL);
+  for (int i = 0; i < b->n; i++) r[i] = t->residual[i] + t->change[i];
+  if (!mhb_condensed_solve(t->system, r)) return 0;
+  for (int i = 0; i < b->n; i++)
+    product += (r[i] + (1 - part) * t->step[i]) / length * (t->step[i] / length);
+  return product / (part * part);
 }
 
-/* A <- I + R_k D, column-major. */
-static void fill(mhb_truncation *t, int k) {
-  int n = 3 * t->narrow->n_pairs;
-  mhb_receptance_need(t->beyond->receptance, k);
-  const double complex *R = t->beyond->receptance->R + (size_t)k * (size_t)n * (size_t)n;
-  for (int pair = 0; pair < t->narrow->n_pairs; pair++) {
-    double complex D[3][3];
-    stiffness(t->doubled, pair, D);
-    for (int i = 0; i < n; i++) {
-      const double complex *r = R + (size_t)i * (size_t)n + 3 * pair;
-      for (int d = 0; d < 3; d++)
-        t->A[(3 * pair + d) * n + i] =
-            r[0] * D[0][d] + r[1] * D[1][d] + r[2] * D[2][d] + (i == 3 * pair + d);
-    }
-  }
+/* Where the residual vanishes first: the root of -1 + tau + kappa tau^2, or, where the curve does not come that far, the modulus of
+ * both. */
+static double reach(double kappa) {
+  double root = 1 + 4 * kappa;
+  return root >= 0 ? 2 / (1 + sqrt(root)) : 1 / sqrt(-kappa);
 }
 
-/* far_x <- the solution with the motion at the harmonics beyond 2m; their size. */
-static double look_beyond(mhb_truncation *t) {
-  mhb_residual *b   = t->beyond;
-  int           n   = 3 * b->n_pairs, pivot[n];
-  double        sum = 0;
-  memset(t->far_x, 0, sizeof(double) * (size_t)b->n);
-  copy_rows(n, t->x, t->doubled->nb, t->far_x, b->nb);
-  mhb_residual_evaluate(b, t->far_x, t->narrow->at.omega, t->far_r, NULL, NULL);
-  for (int k = 2 * t->narrow->m + 1; k <= b->m; k++) {
-    for (int i = 0; i < n; i++)
-      t->u[i] = -CMPLX(t->far_r[i * b->nb + 2 * k - 1], t->far_r[i * b->nb + 2 * k]);
-    fill(t, k);
-    if (!mhb_factor_complex(n, t->A, pivot) || !mhb_solve_complex(n, t->A, pivot, 1, t->u))
-      continue;
-    for (int i = 0; i < n; i++) {
-      t->far_x[i * b->nb + 2 * k - 1] = creal(t->u[i]);
-      t->far_x[i * b->nb + 2 * k]     = cimag(t->u[i]);
-      sum += creal(t->u[i]) * creal(t->u[i]) + cimag(t->u[i]) * cimag(t->u[i]);
-    }
-  }
-  return sqrt(sum);
+static void scale_step(mhb_truncation *t, double size) {
+  double length = mhb_norm(t->step, t->doubled->n);
+  if (!(length > 0)) return;
+  double part = reach(bend(t, length, size));
+  for (int i = 0; i < t->doubled->n; i++) t->step[i] *= part;
 }
 
 /* step <- -r, then the Newton step where there is room for it and it exists. */
-static mhb_truncation_kind set_step(mhb_truncation *t) {
+static mhb_truncation_kind set_step(mhb_truncation *t, double size) {
   mhb_residual *b     = t->doubled;
   double        omega = t->narrow->at.omega;
-  int           n     = b->n;
-  if (t->system) {
-    mhb_residual_derive(b, t->x, omega, t->step, NULL);
-  } else {
-    mhb_residual_evaluate(b, t->x, omega, t->step, NULL, NULL);
+  size_t        bytes = sizeof(double) * (size_t)b->n;
+  mhb_residual_derive(b, t->x, omega, t->residual, NULL);
+  for (int i = 0; i < b->n; i++) t->step[i] = -t->residual[i];
+  if (!mhb_condensed_factor(t->system, NULL, NULL)) return MHB_TRUNCATION_FIRST_ORDER;
+  memcpy(t->trial, t->step, bytes);
+  if (!mhb_condensed_solve(t->system, t->trial)) return MHB_TRUNCATION_FIRST_ORDER;
+  memset(t->change, 0, bytes);
+  double length = mhb_norm(t->trial, b->n);
+  t->far        = mhb_beyond_look(t->beyond, b, t->x);
+  if (t->far > NEGLIGIBLE * length) {
+    mhb_beyond_answer(t->beyond, b, t->x, t->change);
+    for (int i = 0; i < b->n; i++) t->trial[i] = -t->residual[i] - t->change[i];
+    mhb_condensed_solve(t->system, t->trial);
   }
-  for (int i = 0; i < n; i++) t->step[i] = -t->step[i];
-  if (!t->system || !mhb_condensed_factor(t->system, NULL, NULL)) return MHB_TRUNCATION_FIRST_ORDER;
-  mhb_condensed_solve(t->system, t->step);
-  t->far = look_beyond(t);
-  if (t->far <= NEGLIGIBLE * mhb_norm(t->step, n)) return MHB_TRUNCATION_NEWTON;
-  mhb_residual_evaluate(t->beyond, t->far_x, omega, t->far_r, NULL, NULL);
-  copy_rows(3 * b->n_pairs, t->far_r, t->beyond->nb, t->step, b->nb);
-  for (int i = 0; i < n; i++) t->step[i] = -t->step[i];
-  mhb_condensed_solve(t->system, t->step);
+  memcpy(t->step, t->trial, bytes);
+  scale_step(t, size);
   return MHB_TRUNCATION_NEWTON;
 }
 
@@ -170,19 +137,30 @@ double mhb_truncation_error(mhb_truncation *t, const double *x) {
   t->kind = MHB_TRUNCATION_NONE;
   if (is_linear(t->narrow)) return 0;
   mhb_residual_condition(b, &t->narrow->at);
-  if (t->beyond) mhb_residual_condition(t->beyond, &t->narrow->at);
-  t->kind = set_step(t);
+  t->kind = set_step(t, size);
   return size > 0 ? hypot(mhb_norm(t->step, b->n), t->far) / size : 0;
+}
+
+double mhb_truncation_power(const mhb_truncation *t, int k) {
+  const mhb_residual *b = t->doubled;
+  if (t->kind == MHB_TRUNCATION_NONE) return 0;
+  if (k > b->m) return t->kind == MHB_TRUNCATION_NEWTON ? mhb_beyond_power(t->beyond, k) : 0;
+  double sum = 0;
+  for (int row = 0; row < 3 * b->n_pairs; row++) {
+    const double *a = t->step + (size_t)row * (size_t)b->nb;
+    sum += a[2 * k - 1] * a[2 * k - 1] + a[2 * k] * a[2 * k];
+  }
+  return sum;
 }
 
 /* Motion, squared, by the terms of the residual series that the model does not hold: the last one held times
  * (k w/w_m)^2. */
 static double modal_term(const mhb_residual *b, int k, const double complex *p) {
-  const mhb_receptance *r    = b->receptance;
-  int                   n    = r->n;
-  double                w    = k * r->omega / r->nu;
-  double                top  = 2 * PI * r->model->frequency[r->n_modes - 1];
-  double                held = r->inertia ? w * w : 1, ratio = w * w / (top * top), sum = 0;
+  const mhb_receptance  *r    = b->receptance;
+  int                    n    = r->n;
+  double                 w    = k * r->omega / r->nu;
+  double                 top  = 2 * PI * r->model->frequency[r->n_modes - 1];
+  double                 held = r->inertia ? w * w : 1, ratio = w * w / (top * top), sum = 0;
   const mhb_flexibility *last = r->inertia ? r->inertia : r->flexibility;
   for (int i = 0; i < n; i++) {
     double complex u = held * mhb_flexibility_row(last, r->phase[k], i, p);

@@ -9,10 +9,11 @@
 #ifndef MHB_TRUNCATION_H
 #define MHB_TRUNCATION_H
 
+#include "mhb/beyond.h"
 #include "mhb/condensed.h"
 
-/* Beyond this many unknowns of the doubled balance the estimate is of first order. */
-enum { MHB_MAX_DOUBLED = 600 };
+/* Beyond this many moving unknowns of the doubled balance (3 (4m+1) a pair that moves) the estimate is of first order. */
+enum { MHB_MOST_DOUBLED = 3000 };
 
 /* Harmonics looked at: four times those of the solution, within these. */
 enum { MHB_LEAST_LOOKED_AT = 12, MHB_MOST_LOOKED_AT = 64 };
@@ -26,16 +27,16 @@ typedef enum {
 
 typedef struct {
   const mhb_residual *narrow;
-  mhb_settings        settings, beyond_settings;
-  mhb_residual       *doubled; /* harmonics 0..2m */
-  mhb_residual       *beyond;  /* all harmonics looked at, or NULL: first order only */
+  mhb_settings        settings;
+  mhb_receptance     *receptance; /* all harmonics looked at */
+  mhb_residual       *doubled;    /* harmonics 0..2m */
+  mhb_condensed      *system;     /* of the doubled balance */
+  mhb_beyond         *beyond;
   double             *x,
       *step; /* [doubled->n] the solution, zero beyond m; delta of the last estimate, or -r, or zero */
-  mhb_condensed      *system;        /* of the doubled balance, or NULL */
-  double             *far_x, *far_r; /* [beyond->n] */
-  double complex     *A, *u;         /* [3 pairs][3 pairs], [3 pairs] of one harmonic */
-  double              far;           /* |u_k|, k > 2m, of the last estimate */
-  mhb_truncation_kind kind;          /* of the last estimate */
+  double             *residual, *trial, *change; /* [doubled->n] */
+  double              far;                       /* |u_k|, k > 2m, of the last estimate */
+  mhb_truncation_kind kind;                      /* of the last estimate */
 } mhb_truncation;
 
 /* Not thread safe (FFTW's planner). The residual must outlive it. Errors: as mhb_residual_create. */
@@ -45,6 +46,9 @@ void       mhb_truncation_destroy(mhb_truncation *truncation);
 /* Estimated error of the solution x[n] that the residual was just evaluated at, from the harmonics left
  * out, relative to |x|. First order also where the Newton step does not exist (a fold). */
 double mhb_truncation_error(mhb_truncation *truncation, const double *x);
+
+/* Sum of squares of harmonic k > 0 of the last estimate. */
+double mhb_truncation_power(const mhb_truncation *truncation, int k);
 
 /* Estimated error from the modes left out of the solution that the residual was just evaluated at, relative to |x|: the
  * next term of the residual series; -1 if the file holds no residual flexibility. */

@@ -1,4 +1,5 @@
-/* Hard case 14: twenty contact pairs, some stuck, some slipping, some opening. */
+/* Hard case 14: twenty contact pairs, some stuck, some slipping, some opening; and what the truncation estimate of 1 to 200 is
+ * worth. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -10,7 +11,10 @@
 
 #include <cmocka.h>
 
+#include "mhb/fourier.h"
 #include "mhb/newton.h"
+#include "mhb/truncation.h"
+#include "tests/bench/shroud_face.h"
 #include "tests/hard/power.h"
 #include "tests/hard/verdict.h"
 #include "tests/mhb/periodic.h"
@@ -93,7 +97,70 @@ static void curve(void **state) {
   verdict_all();
 }
 
+static const double PI = 3.14159265358979323846;
+
+/* Shroud faces of 20 modes near the peak of their resonance: motion with 3 harmonics against that with `fine`. */
+typedef struct {
+  int    pairs, fine;
+  double force, frequency; /* N, Hz */
+  int    few, many;        /* pairs that move: at least, at most */
+} face;
+
+/* |x - y|/|y|, x of nb coefficients a row, y of wide ones. */
+static double distance(int rows, const double *x, int nb, const double *y, int wide) {
+  double sum = 0;
+  for (int row = 0; row < rows; row++)
+    for (int i = 0; i < wide; i++)
+      sum += pow((i < nb ? x[row * nb + i] : 0) - y[row * wide + i], 2);
+  return sqrt(sum) / mhb_norm(y, rows * wide);
+}
+
+/* The same point with more harmonics; the error of p's. */
+static double true_error(const modal_model *model, const face *row, const periodic *p) {
+  mhb_settings s    = shroud_face_settings(row->fine);
+  int          rows = 3 * row->pairs, nb = p->residual->nb, wide = mhb_real_size(row->fine);
+  periodic     q;
+  double      *guess = calloc((size_t)(rows * wide), sizeof(double));
+  for (int i = 0; i < rows; i++)
+    memcpy(guess + i * wide, p->x + i * nb, sizeof(double) * (size_t)nb);
+  periodic_create(model, &s, p->omega, guess, &q);
+  double error = distance(rows, p->x, nb, q.x, wide);
+  periodic_destroy(&q);
+  free(guess);
+  return error;
+}
+
+static void estimates(void **state) {
+  (void)state;
+  static const face rows[] = {{1, 13, 150, 212, 1, 1},      {10, 13, 8, 232, 1, 3},
+                              {10, 13, 150, 216.7, 10, 10}, {50, 13, 8, 221.1, 5, 12},
+                              {50, 9, 20, 219, 50, 50},     {200, 9, 8, 220, 20, 40},
+                              {200, 9, 12, 219.5, 45, 60}};
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    const face     *row = &rows[i];
+    modal_model     model;
+    mhb_settings    s = shroud_face_settings(3);
+    mhb_truncation *t;
+    periodic        p;
+    int             moving = 0;
+    shroud_face_model(row->pairs, row->force, &model);
+    periodic_create(&model, &s, 2 * PI * row->frequency, NULL, &p);
+    assert_int_equal(mhb_truncation_create(p.residual, &t), SHB_OK);
+    double estimate = mhb_truncation_error(t, p.x);
+    for (int a = 0; a < row->pairs; a++) moving += t->doubled->kind[a] == MHB_PAIR_MOVING;
+    assert_in_range(moving, row->few, row->many);
+    assert_int_equal(t->kind, MHB_TRUNCATION_NEWTON);
+    mhb_truncation_destroy(t);
+    verdict(fabs(log(estimate / true_error(&model, row, &p))), log(1.5),
+            "%d pairs, %d moving, estimate %.1e: off by", row->pairs, moving, estimate);
+    periodic_destroy(&p);
+    modal_model_free(&model);
+  }
+  verdict_all();
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(mixed_states), cmocka_unit_test(curve)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(mixed_states), cmocka_unit_test(curve),
+                                     cmocka_unit_test(estimates)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -7,5 +7,6 @@ foreach(noun three_degree jumps friction limits ring resonance balance pairs pea
   shb_test(hard ${noun} fast shb_mhb)
   target_sources(test_hard_${noun} PRIVATE ${HARD_SOURCES})
 endforeach()
+target_sources(test_hard_pairs PRIVATE bench/shroud_face.c)
 shb_test(hard gaps slow shb_mhb)
 target_sources(test_hard_gaps PRIVATE ${HARD_SOURCES})

@@ -63,7 +63,7 @@ static double distance(const double *x, int nb, const double *fine) {
   return sqrt(sum) / mhb_norm(fine, 3 * wide);
 }
 
-/* Near a fold the error at fixed frequency goes with the root of the shift of the curve, which no step tells. */
+/* Near a fold the error at fixed frequency goes with the root of the shift of the curve. */
 static int near_fold(const mhb_branch *b, int point) {
   for (int i = 0; i < b->n_points; i++)
     if (b->special[i] == MHB_FOLD &&
@@ -72,14 +72,15 @@ static int near_fold(const mhb_branch *b, int point) {
   return 0;
 }
 
-static void compare(workspace *s, const mhb_branch *b, comparison *out) {
+/* Points near folds, or all others. */
+static void compare(workspace *s, const mhb_branch *b, int folds, comparison *out) {
   mhb_residual *r  = s->residual;
   int           nb = r->nb, iterations;
   double        x[3 * nb], fine[3 * mhb_real_size(FINE)];
   *out = (comparison){.n = 0};
   for (int p = 0; p < b->n_points && out->n < MAX_RATIOS; p++) {
     double omega = 2 * PI * b->frequency[p];
-    if (near_fold(b, p)) continue;
+    if (near_fold(b, p) != folds) continue;
     fine_solution(b, p, fine);
     for (int c = 0; c < 3; c++)
       memcpy(x + c * nb, fine + c * mhb_real_size(FINE), sizeof(double) * (size_t)nb);
@@ -102,20 +103,47 @@ static int ascending(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
+/* There the other solution may be met, or none. */
+static void check_folds(comparison *seen) {
+  if (seen->n == 0) return;
+  qsort(seen->ratio, (size_t)seen->n, sizeof(double), ascending);
+  double middle = seen->ratio[seen->n / 2];
+  print_message(
+      "near folds %3d points (%d lost), true error to %.1e, estimate/error %.2f to %.2f, median "
+      "%.2f\n",
+      seen->n, seen->lost, seen->worst, seen->ratio[0], seen->ratio[seen->n - 1], middle);
+  assert_true(middle > .5 && middle < 1.3);
+  assert_true(seen->ratio[0] > .08 && seen->ratio[seen->n - 1] < 15);
+}
+
+/* With 31 harmonics little is left out, at folds as elsewhere: there a Newton step alone would go any distance. */
+static void check_finest(const char *name, const mhb_branch *b) {
+  double worst = 0, at_folds = 0;
+  for (int i = 0; i < b->n_points; i++) {
+    worst = fmax(worst, b->error_truncation[i]);
+    if (b->special[i] == MHB_FOLD) at_folds = fmax(at_folds, b->error_truncation[i]);
+  }
+  print_message("%-12s H 31: estimates to %.1e, at folds %.1e\n", name, worst, at_folds);
+  assert_true(worst < 1e-2);
+}
+
 static void check_curve(const char *name, const modal_model *model, mhb_settings s, double from,
                         double to) {
   static const int  H[] = {5, 7, 9, 13};
-  static comparison seen;
+  static comparison seen, folds;
   mhb_response     *r;
   s.frequency[0] = from / (2 * PI);
   s.frequency[1] = to / (2 * PI);
   assert_int_equal(mhb_sweep(model, &s, NULL, NULL, NULL, &r), SHB_OK);
+  check_finest(name, &r->branch[2]);
   for (int h = 0; h < 4; h++) {
     workspace at;
     s.harmonics = H[h];
     workspace_create(model, &s, &at);
-    compare(&at, &r->branch[2], &seen);
+    compare(&at, &r->branch[2], 1, &folds);
+    compare(&at, &r->branch[2], 0, &seen);
     workspace_destroy(&at);
+    check_folds(&folds);
     qsort(seen.ratio, (size_t)seen.n, sizeof(double), ascending);
     assert_true(seen.n >= 20);
     double low = seen.ratio[0], middle = seen.ratio[seen.n / 2],
@@ -125,8 +153,8 @@ static void check_curve(const char *name, const modal_model *model, mhb_settings
         "%.2f, median %.2f, at 95 %% %.2f\n",
         name, H[h], seen.n, seen.lost, seen.worst, low, seen.ratio[seen.n - 1], middle, high);
     assert_true(seen.lost <= seen.n / 50);
-    /* never optimistic by more than two, but for one point on a steep flank (n0 .1) */
-    assert_true(seen.ratio[seen.n / 100] > .5 && low > .45);
+    /* never optimistic by more than two */
+    assert_true(low > .5);
     assert_true(fabs(middle - 1) < .1);
     assert_true(high < 1.6);
   }
@@ -202,7 +230,7 @@ static void step_leads_on(void **state) {
   modal_model_free(&model);
 }
 
-/* Which kind of estimate it was: none needed when stuck throughout, of first order for many pairs. */
+/* Which kind of estimate it was: none needed when stuck throughout, of first order for many moving unknowns. */
 static void kinds(void **state) {
   (void)state;
   static const struct {
@@ -211,8 +239,9 @@ static void kinds(void **state) {
     mhb_truncation_kind kind;
   } rows[] = {{1, 5, 1e4, MHB_TRUNCATION_NONE},
               {1, 5, .3, MHB_TRUNCATION_NEWTON},
-              {12, 5, .3, MHB_TRUNCATION_FIRST_ORDER}};
-  for (int i = 0; i < 3; i++) {
+              {12, 5, .3, MHB_TRUNCATION_NEWTON},
+              {12, 21, .3, MHB_TRUNCATION_FIRST_ORDER}};
+  for (int i = 0; i < 4; i++) {
     modal_model  model;
     mhb_settings s = ground_settings(.4, .8, .5, rows[i].n0, rows[i].harmonics);
     random_model(rows[i].pairs, 0, 5, &model);
