@@ -3,7 +3,9 @@
  * u = R p - R2 p'' has no solution forward in time. But with R = L L^T and L^-1 R2 L^-T = V diag(1/nu_i^2) V^T the
  * modes psi_i = nu_i L v_i of frequency nu_i have
  *   sum psi_i psi_i^T/(nu_i^2 - w^2) = R + w^2 R2 + O(w^4/nu^4):
- * the least number of modes that answer with the same R and R2, as far from R + w^2 R2 as that is from the modes left out. */
+ * the least number of modes that answer with the same R and R2, as far from R + w^2 R2 as that is from the modes left out.
+ * The inertia of the load's and the probes' terms stays: the steady response to the load is known at its frequencies, and the
+ * probes are read from harmonics of the forces, which the new modes do not reach (their shape at the probes is zero). */
 #ifndef MHB_INERTIA_H
 #define MHB_INERTIA_H
 

@@ -93,21 +93,23 @@ static void set_modes(mhb_receptance *r, int k, double complex phase, int sides)
 /* Load harmonic h drives harmonic nu h. */
 static void set_load(mhb_receptance *r, int k, double complex phase, int sides) {
   const modal_model *model = r->model;
-  int                h = k / r->nu, nc = 3 * model->n_pairs * (model->has_left ? 2 : 1);
+  int h = k / r->nu, nc = 3 * model->n_pairs * (model->has_left ? 2 : 1), q = 3 * model->n_probes;
   if (k % r->nu || h > model->n_load) return;
   for (int i = 0; i < r->n_modes; i++) {
     r->F[k * r->n_modes + i] = model->modal_force[h * r->n_modes + i];
     r->driven[k] |= r->F[k * r->n_modes + i] != 0;
   }
-  if (r->load) {
-    double complex *load = r->load + (size_t)k * (size_t)r->n;
-    relative(r, phase, sides, model->load_residual + (size_t)h * (size_t)nc, 1, load, 1);
-    for (int i = 0; i < r->n; i++) r->driven[k] |= load[i] != 0;
-  }
-  int q = 3 * model->n_probes;
-  for (int i = 0; r->probe_load && i < q; i++) {
-    r->probe_load[k * q + i] = model->probe_load_residual[h * q + i];
-    r->driven[k] |= r->probe_load[k * q + i] != 0;
+  const double complex *contact[] = {model->load_residual, model->load_inertia};
+  double complex       *load[]    = {r->load, r->load_inertia};
+  const double complex *probe[]   = {model->probe_load_residual, model->probe_load_inertia};
+  double complex       *at[]      = {r->probe_load, r->probe_load_inertia};
+  for (int term = 0; term < 2; term++) {
+    if (load[term]) relative(r, phase, sides, contact[term] + h * nc, 1, load[term] + k * r->n, 1);
+    for (int i = 0; load[term] && i < r->n; i++) r->driven[k] |= load[term][k * r->n + i] != 0;
+    for (int i = 0; at[term] && i < q; i++) {
+      at[term][k * q + i] = probe[term][h * q + i];
+      r->driven[k] |= at[term][k * q + i] != 0;
+    }
   }
 }
 
@@ -127,17 +129,22 @@ static void set_parts(mhb_receptance *r, int k) {
   }
 }
 
-/* Probe motion per contact force p: residual matrix times T^H. */
-static void set_probe(mhb_receptance *r, int k, double complex phase, int sides, int nc) {
+/* Probe motion per contact force p: a residual matrix [3 q][nc] times T^H. */
+static void set_probe(const mhb_receptance *r, int k, double complex phase, int sides, int nc,
+                      const double *matrix, double complex *out) {
   int q = 3 * r->model->n_probes;
   for (int i = 0; i < q; i++) {
-    double complex column[nc],
-        *row = r->probe_contact + ((size_t)k * (size_t)q + (size_t)i) * (size_t)r->n;
-    for (int j = 0; j < nc; j++)
-      column[j] = r->model->probe_contact_residual[(size_t)i * (size_t)nc + (size_t)j];
+    double complex column[nc], *row = out + ((size_t)k * (size_t)q + (size_t)i) * (size_t)r->n;
+    for (int j = 0; j < nc; j++) column[j] = matrix[(size_t)i * (size_t)nc + (size_t)j];
     relative(r, phase, sides, column, 1, row, 1);
     for (int j = 0; j < r->n; j++) row[j] = conj(row[j]);
   }
+}
+
+/* True if there is nothing to hold, or room for it. */
+static int room(const void *wanted, size_t n, double complex **array) {
+  if (wanted && n) *array = calloc(n, sizeof **array);
+  return !wanted || !n || *array;
 }
 
 static int allocate(mhb_receptance *r) {
@@ -160,12 +167,12 @@ static int allocate(mhb_receptance *r) {
   r->unit    = calloc(K * n, sizeof(double complex));
   int ok     = r->T0 && r->share && r->B && r->F && r->parts && r->scratch && r->BL && r->lambda &&
            r->driven && r->made_at && r->phase && r->R && r->free && r->unit;
-  if (model->load_residual) ok &= (r->load = calloc(K * n, sizeof(double complex))) != NULL;
-  if (model->probe_load_residual && q)
-    ok &= (r->probe_load = calloc(K * q, sizeof(double complex))) != NULL;
-  if (model->probe_contact_residual && q)
-    ok &= (r->probe_contact = calloc(K * q * n, sizeof(double complex))) != NULL;
-  return ok;
+  return ok && room(model->load_residual, K * n, &r->load) &&
+         room(model->load_inertia, K * n, &r->load_inertia) &&
+         room(model->probe_load_residual, K * q, &r->probe_load) &&
+         room(model->probe_load_inertia, K * q, &r->probe_load_inertia) &&
+         room(model->probe_contact_residual, K * q * n, &r->probe_contact) &&
+         room(model->probe_contact_inertia, K * q * n, &r->probe_contact_inertia);
 }
 
 /* Inter-blade phase of the fundamental omega/nu. A neighbour lags by phi and any whole number l of periods,
@@ -197,7 +204,10 @@ static shb_status set_blade(mhb_receptance *r, const mhb_settings *settings) {
     set_modes(r, k, phase, sides);
     set_load(r, k, phase, sides);
     set_parts(r, k);
-    if (r->probe_contact) set_probe(r, k, phase, sides, nc);
+    if (r->probe_contact)
+      set_probe(r, k, phase, sides, nc, model->probe_contact_residual, r->probe_contact);
+    if (r->probe_contact_inertia)
+      set_probe(r, k, phase, sides, nc, model->probe_contact_inertia, r->probe_contact_inertia);
   }
   return SHB_OK;
 }
@@ -237,11 +247,14 @@ void mhb_receptance_destroy(mhb_receptance *r) {
   free(r->B);
   free(r->F);
   free(r->load);
+  free(r->load_inertia);
   mhb_flexibility_destroy(r->flexibility);
   mhb_flexibility_destroy(r->inertia);
   free(r->phase);
   free(r->probe_load);
+  free(r->probe_load_inertia);
   free(r->probe_contact);
+  free(r->probe_contact_inertia);
   free(r->parts);
   free(r->scratch);
   free(r->BL);
@@ -287,6 +300,14 @@ MHB_HOT static void modal_row(const mhb_receptance *r, int k, const double *yr, 
   *u += product(m, yr, yi, re + n * m, im + n * m, 1);
 }
 
+/* One value of residual + w2 inertia, either of which may be absent. */
+MHB_INLINE double complex residual_at(const double complex *still, const double complex *heavy,
+                                      double w2, size_t i) {
+  double complex value = still ? still[i] : 0;
+  return heavy ? CMPLX(creal(value) + w2 * creal(heavy[i]), cimag(value) + w2 * cimag(heavy[i]))
+               : value;
+}
+
 /* The residual terms: R + w^2 R2. */
 static void residual_terms(const mhb_receptance *r, int k, double w, double complex *R) {
   memset(R, 0, sizeof *R * (size_t)r->n * (size_t)r->n);
@@ -309,7 +330,7 @@ static void harmonic_at(mhb_receptance *r, int k) {
       y[m + i] = re[i] * L[m + i] + im[i] * L[i];
       if (n >= WORTH_BLAS) all[a * m + i] = CMPLX(y[i], y[m + i]);
     }
-    u[a] = r->load ? r->load[k * n + a] : 0;
+    u[a] = residual_at(r->load, r->load_inertia, w * w, (size_t)(k * n + a));
     modal_row(r, k, y, y + m, R + (size_t)a * (size_t)n, &u[a]);
     r->free[k * n + a] = r->scale * u[a];
   }
@@ -417,7 +438,7 @@ void mhb_receptance_motion(const mhb_receptance *r, int k, const double complex 
   motion_drive(r, k, w, p, yr, yi);
   modal_sums(r, k, yr, yi, motion);
   for (int a = 0; a < r->n; a++) {
-    if (r->load) motion[a] += r->scale * r->load[k * r->n + a];
+    motion[a] += r->scale * residual_at(r->load, r->load_inertia, w * w, (size_t)(k * r->n + a));
     if (r->flexibility) motion[a] -= mhb_flexibility_row(r->flexibility, r->phase[k], a, p);
     if (r->inertia) motion[a] -= w * w * mhb_flexibility_row(r->inertia, r->phase[k], a, p);
   }
@@ -426,24 +447,38 @@ void mhb_receptance_motion(const mhb_receptance *r, int k, const double complex 
 void mhb_receptance_slope(const mhb_receptance *r, int k, const double complex *p,
                           double complex *slope) {
   int    n  = r->n;
-  double kk = (double)k / r->nu, yr[r->n_modes], yi[r->n_modes];
+  double kk = (double)k / r->nu, weight = 2 * kk * kk * r->omega, yr[r->n_modes], yi[r->n_modes];
   slope_drive(r, k, p, yr, yi);
   modal_sums(r, k, yr, yi, slope);
-  double weight = 2 * kk * kk * r->omega;
+  for (int a = 0; r->load_inertia && a < n; a++)
+    slope[a] += weight * r->scale * r->load_inertia[k * n + a];
   for (int a = 0; r->inertia && a < n; a++)
     slope[a] -= weight * mhb_flexibility_row(r->inertia, r->phase[k], a, p);
+}
+
+/* What the modes left out add to a probe dof, and its change with omega (dw2: of (k w)^2). */
+static double complex probe_residual_change(const mhb_receptance *r, int k, int s,
+                                            const double complex *p, const double complex *dp,
+                                            double dw2, double d_scale) {
+  double                w     = k * r->omega / r->nu;
+  size_t                at    = (size_t)k * 3 * (size_t)r->model->n_probes + (size_t)s;
+  size_t                row   = at * (size_t)r->n;
+  const double complex *heavy = r->probe_contact_inertia;
+  double complex change = d_scale * residual_at(r->probe_load, r->probe_load_inertia, w * w, at);
+  if (r->probe_load_inertia) change += dw2 * r->scale * r->probe_load_inertia[at];
+  for (size_t b = 0; (r->probe_contact || heavy) && b < (size_t)r->n; b++)
+    change -= residual_at(r->probe_contact, heavy, w * w, row + b) * dp[b];
+  for (size_t b = 0; heavy && dw2 != 0 && b < (size_t)r->n; b++)
+    change -= dw2 * heavy[row + b] * p[b];
+  return change;
 }
 
 void mhb_receptance_probe_change(const mhb_receptance *r, int k, const double complex *p,
                                  const double complex *dp, double d_omega, double d_scale,
                                  double complex *change) {
-  int q = 3 * r->model->n_probes, m = r->n_modes;
-  for (int s = 0; s < q; s++) {
-    change[s] = r->probe_load ? d_scale * r->probe_load[k * q + s] : 0;
-    for (int b = 0; r->probe_contact && b < r->n; b++)
-      change[s] -=
-          r->probe_contact[((size_t)k * (size_t)q + (size_t)s) * (size_t)r->n + (size_t)b] * dp[b];
-  }
+  int    q = 3 * r->model->n_probes, m = r->n_modes;
+  double kk = (double)k / r->nu, dw2 = 2 * kk * kk * r->omega * d_omega;
+  for (int s = 0; s < q; s++) change[s] = probe_residual_change(r, k, s, p, dp, dw2, d_scale);
   for (int i = 0; i < m; i++) {
     double complex a = r->lambda[k * m + i] * modal_drive(r, k, dp, i, d_scale);
     if (d_omega != 0) a += d_omega * lambda_slope(r, k, i) * modal_drive(r, k, p, i, r->scale);

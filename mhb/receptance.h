@@ -6,8 +6,9 @@
  *   B_k[3a + c][i] = T0^T (right - e_k left)                              relative motion of mode i
  *   L_i  = 1/(w_i^2 - (k w)^2 + 2 j zeta_i w_i k w)                       eq. 20
  *   R_k  = B L B^H + T (R + (k w)^2 R2) T^H                               eqs. 34, 35, with residual terms
- *   u_k  = B L F_k + T x_load,k - R_k p_k                                 eq. 33
- * Motions are [3 pairs] in the order pair, (v, u, w). Everything that does not depend on omega is made once. */
+ *   u_k  = B L F_k + T (x + (k w)^2 x2)_load,k - R_k p_k                  eq. 33
+ * and the probes by the same with their own shapes and residual terms. Motions are [3 pairs] in the order pair,
+ * (v, u, w). Everything that does not depend on omega is made once. */
 #ifndef MHB_RECEPTANCE_H
 #define MHB_RECEPTANCE_H
 
@@ -28,14 +29,15 @@ typedef struct {
   double             scale;    /* of the excitation */
   double complex    *F;        /* [k][modes] modal force at scale 1, as all loads below */
   double            *parts; /* [k][2 (re, im)][n + 1][modes] B, then F: for the loops over modes */
-  double            *scratch;                    /* [4][modes] */
-  double complex    *BL;                         /* [n][modes] B L of one harmonic */
-  double complex    *load;                       /* [k][n] residual response to the load, or NULL */
-  mhb_flexibility   *flexibility, *inertia;      /* or NULL */
-  double complex    *phase;                      /* [k] e_k */
-  double complex    *probe_load, *probe_contact; /* [k][3 q], [k][3 q][n], or NULL */
-  int               *driven;                     /* [k] whether the load has this harmonic */
-  double             omega;                      /* rad/s, of mhb_receptance_move */
+  double            *scratch;               /* [4][modes] */
+  double complex    *BL;                    /* [n][modes] B L of one harmonic */
+  double complex    *load, *load_inertia;   /* [k][n] residual response to the load, or NULL */
+  mhb_flexibility   *flexibility, *inertia; /* or NULL */
+  double complex    *phase;                 /* [k] e_k */
+  double complex    *probe_load, *probe_load_inertia;       /* [k][3 q], or NULL */
+  double complex    *probe_contact, *probe_contact_inertia; /* [k][3 q][n], or NULL */
+  int               *driven;      /* [k] whether the load has this harmonic */
+  double             omega;       /* rad/s, of mhb_receptance_move */
   double            *made_at;     /* [k] rad/s for which the arrays below were made, NAN: never */
   double complex    *lambda;      /* [k][modes] */
   double complex    *R;           /* [k][n][n] */

@@ -153,18 +153,23 @@ double mhb_truncation_power(const mhb_truncation *t, int k) {
   return sum;
 }
 
-/* Motion, squared, by the terms of the residual series that the model does not hold: the last one held times
- * (k w/w_m)^2. */
+static double square(double complex z) {
+  return creal(z) * creal(z) + cimag(z) * cimag(z);
+}
+
+/* Motion, squared, by the terms of the residual series that the model does not hold, of the contact forces and of the
+ * load: the last ones held times (k w/w_m)^2. */
 static double modal_term(const mhb_residual *b, int k, const double complex *p) {
-  const mhb_receptance  *r    = b->receptance;
-  int                    n    = r->n;
-  double                 w    = k * r->omega / r->nu;
-  double                 top  = 2 * PI * r->model->frequency[r->n_modes - 1];
-  double                 held = r->inertia ? w * w : 1, ratio = w * w / (top * top), sum = 0;
+  const mhb_receptance *r = b->receptance;
+  int                   n = r->n;
+  double                w = k * r->omega / r->nu, sum = 0;
+  double top = 2 * PI * r->model->frequency[r->n_modes - 1], ratio = w * w / (top * top);
+  double held = r->inertia ? w * w : 1, pushed = r->load_inertia ? w * w : 1;
   const mhb_flexibility *last = r->inertia ? r->inertia : r->flexibility;
+  const double complex  *load = r->load_inertia ? r->load_inertia : r->load;
   for (int i = 0; i < n; i++) {
     double complex u = held * mhb_flexibility_row(last, r->phase[k], i, p);
-    sum += creal(u) * creal(u) + cimag(u) * cimag(u);
+    sum += square(u) + (load ? square(pushed * r->scale * load[k * n + i]) : 0);
   }
   return sum * ratio * ratio;
 }

@@ -40,10 +40,14 @@ static shb_status allocate(const modal_condensation *to, int n_modes, modal_mode
   model->probe                  = calloc(q3 * m + 1, sizeof(double));
   model->probe_contact_residual = calloc(q3 * nc + 1, sizeof(double));
   model->probe_load_residual    = calloc(k * q3 + 1, sizeof(double complex));
+  model->load_inertia           = calloc(k * nc, sizeof(double complex));
+  model->probe_contact_inertia  = calloc(q3 * nc + 1, sizeof(double));
+  model->probe_load_inertia     = calloc(k * q3 + 1, sizeof(double complex));
   SHB_CHECK(model->frequency && model->damping_ratio && model->mode_residual && model->right &&
                 (model->left || !to->has_left) && model->residual_flexibility &&
                 model->residual_inertia && model->modal_force && model->load_residual &&
-                model->probe && model->probe_contact_residual && model->probe_load_residual,
+                model->probe && model->probe_contact_residual && model->probe_load_residual &&
+                model->load_inertia && model->probe_contact_inertia && model->probe_load_inertia,
             SHB_ERR_IO, "out of memory for a modal model of %zu contact dofs", nc);
   return SHB_OK;
 }
@@ -74,47 +78,62 @@ static PetscErrorCode fill_shapes(const workspace *w, modal_model *model) {
 }
 
 /* X = P K^-1 B, sampled at contact and probe dofs. */
-static PetscErrorCode solve_batch(workspace *w) {
+static PetscErrorCode solve_batch(workspace *w, Mat X) {
   PetscFunctionBeginUser;
-  PetscCall(modal_eigen_inverse(w->eigen, w->B, w->X));
-  PetscCall(modal_eigen_remove(w->system, w->eigen, w->X));
-  PetscCall(modal_dofs_sample(&w->to->contact, w->system, w->X, w->batch, w->batch, w->contact));
-  PetscCall(modal_dofs_sample(&w->to->probe, w->system, w->X, w->batch, w->batch, w->probe));
+  PetscCall(modal_eigen_inverse(w->eigen, w->B, X));
+  PetscCall(modal_eigen_remove(w->system, w->eigen, X));
+  PetscCall(modal_dofs_sample(&w->to->contact, w->system, X, w->batch, w->batch, w->contact));
+  PetscCall(modal_dofs_sample(&w->to->probe, w->system, X, w->batch, w->batch, w->probe));
   PetscFunctionReturn(0);
+}
+
+/* The next term, after solve_batch(w, w->X): Y = P K^-1 M X, sampled. */
+static PetscErrorCode solve_inertia(workspace *w) {
+  PetscFunctionBeginUser;
+  PetscCall(modal_mass_multiply(w->system, w->X, w->B));
+  PetscCall(solve_batch(w, w->Y));
+  PetscFunctionReturn(0);
+}
+
+/* Columns first..first + count - 1 of to [rows][columns] from the samples [rows][batch]. */
+static void put_columns(const workspace *w, const double *sample, int rows, int first, int count,
+                        double *to) {
+  const size_t columns = (size_t)w->to->contact.n, batch = (size_t)w->batch;
+  for (size_t r = 0; r < (size_t)rows; r++)
+    for (int c = 0; c < count; c++)
+      to[r * columns + (size_t)(first + c)] = sample[r * batch + (size_t)c];
 }
 
 static PetscErrorCode contact_batch(workspace *w, int first, int count, modal_model *model) {
-  const size_t nc = (size_t)w->to->contact.n, batch = (size_t)w->batch;
+  const int nc = w->to->contact.n, q3 = w->to->probe.n;
   PetscFunctionBeginUser;
   PetscCall(modal_dofs_spread(&w->to->contact, w->system, first, count, w->B));
-  PetscCall(solve_batch(w));
-  for (size_t r = 0; r < nc; r++)
-    for (int c = 0; c < count; c++)
-      model->residual_flexibility[r * nc + (size_t)(first + c)] = w->contact[r * batch + (size_t)c];
-  for (int r = 0; r < w->to->probe.n; r++)
-    for (int c = 0; c < count; c++)
-      model->probe_contact_residual[(size_t)r * nc + (size_t)(first + c)] =
-          w->probe[(size_t)r * batch + (size_t)c];
-  PetscCall(modal_mass_multiply(w->system, w->X, w->B));
-  PetscCall(modal_eigen_inverse(w->eigen, w->B, w->Y));
-  PetscCall(modal_eigen_remove(w->system, w->eigen, w->Y));
-  PetscCall(modal_dofs_sample(&w->to->contact, w->system, w->Y, w->batch, w->batch, w->contact));
-  for (size_t r = 0; r < nc; r++)
-    for (int c = 0; c < count; c++)
-      model->residual_inertia[r * nc + (size_t)(first + c)] = w->contact[r * batch + (size_t)c];
+  PetscCall(solve_batch(w, w->X));
+  put_columns(w, w->contact, nc, first, count, model->residual_flexibility);
+  put_columns(w, w->probe, q3, first, count, model->probe_contact_residual);
+  PetscCall(solve_inertia(w));
+  put_columns(w, w->contact, nc, first, count, model->residual_inertia);
+  put_columns(w, w->probe, q3, first, count, model->probe_contact_inertia);
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode load_batch(workspace *w, modal_model *model) {
+/* The samples of the one column, times the factor of each harmonic. */
+static void put_loads(const workspace *w, double complex *contact, double complex *probe) {
   const int nc = w->to->contact.n, q3 = w->to->probe.n;
+  for (int k = 0; k <= w->to->excitation->n_harmonics; k++) {
+    double complex factor = w->to->excitation->factor[k];
+    for (int c = 0; c < nc; c++) contact[k * nc + c] = factor * w->contact[c];
+    for (int c = 0; c < q3; c++) probe[k * q3 + c] = factor * w->probe[c];
+  }
+}
+
+static PetscErrorCode load_batch(workspace *w, modal_model *model) {
   PetscFunctionBeginUser;
   PetscCall(modal_dofs_spread(&w->to->load, w->system, 0, 1, w->B));
-  PetscCall(solve_batch(w));
-  for (int k = 0; k <= model->n_load; k++) {
-    double complex factor = w->to->excitation->factor[k];
-    for (int c = 0; c < nc; c++) model->load_residual[k * nc + c] = factor * w->contact[c];
-    for (int c = 0; c < q3; c++) model->probe_load_residual[k * q3 + c] = factor * w->probe[c];
-  }
+  PetscCall(solve_batch(w, w->X));
+  put_loads(w, model->load_residual, model->probe_load_residual);
+  PetscCall(solve_inertia(w));
+  put_loads(w, model->load_inertia, model->probe_load_inertia);
   PetscFunctionReturn(0);
 }
 

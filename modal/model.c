@@ -123,6 +123,9 @@ shb_status modal_model_write(hid_t file, const modal_model *model,
       {"/load/residual_response", "kc", "m",
        "static response of the contact dofs to the load, modes removed", true,
        model->load_residual},
+      {"/load/residual_inertia", "kc", "m s^2",
+       "coefficient of omega^2 in the response of the contact dofs to the load, modes removed",
+       true, model->load_inertia},
       {"/probe/shape", "q3m", "kg^-1/2", "mass-normalised modes at the probes", false,
        probes ? model->probe : NULL},
       {"/probe/contact_residual", "Qc", "m/N", "static flexibility probe to contact, modes removed",
@@ -130,6 +133,12 @@ shb_status modal_model_write(hid_t file, const modal_model *model,
       {"/probe/load_residual", "kQ", "m",
        "static response of the probes to the load, modes removed", true,
        probes ? model->probe_load_residual : NULL},
+      {"/probe/contact_inertia", "Qc", "m s^2/N",
+       "coefficient of omega^2 in the receptance probe to contact, modes removed", false,
+       probes ? model->probe_contact_inertia : NULL},
+      {"/probe/load_inertia", "kQ", "m s^2",
+       "coefficient of omega^2 in the response of the probes to the load, modes removed", true,
+       probes ? model->probe_load_inertia : NULL},
   };
   SHB_TRY(h5_write_provenance(file, model_format, MODEL_VERSION, provenance));
   SHB_TRY(write_scales(file, model));
@@ -249,6 +258,8 @@ static shb_status read_load(hid_t file, const char *path, modal_model *model) {
   h5_shape residual = H5_SHAPE(shape.dim[0], (hsize_t)n_contact(model));
   if (h5_exists(file, "/load/residual_response"))
     SHB_TRY(h5_read_complex(file, "/load/residual_response", &residual, &model->load_residual));
+  if (h5_exists(file, "/load/residual_inertia"))
+    SHB_TRY(h5_read_complex(file, "/load/residual_inertia", &residual, &model->load_inertia));
   return SHB_OK;
 }
 
@@ -265,6 +276,11 @@ static shb_status read_probes(hid_t file, modal_model *model) {
         h5_read_double(file, "/probe/contact_residual", &contact, &model->probe_contact_residual));
   if (h5_exists(file, "/probe/load_residual"))
     SHB_TRY(h5_read_complex(file, "/probe/load_residual", &load, &model->probe_load_residual));
+  if (h5_exists(file, "/probe/contact_inertia"))
+    SHB_TRY(
+        h5_read_double(file, "/probe/contact_inertia", &contact, &model->probe_contact_inertia));
+  if (h5_exists(file, "/probe/load_inertia"))
+    SHB_TRY(h5_read_complex(file, "/probe/load_inertia", &load, &model->probe_load_inertia));
   return SHB_OK;
 }
 
@@ -297,10 +313,13 @@ void modal_model_free(modal_model *model) {
                   model->residual_inertia,
                   model->modal_force,
                   model->load_residual,
+                  model->load_inertia,
                   model->probe_name,
                   model->probe,
                   model->probe_contact_residual,
                   model->probe_load_residual,
+                  model->probe_contact_inertia,
+                  model->probe_load_inertia,
                   model->normal,
                   model->area,
                   model->mode_residual};

@@ -2,6 +2,7 @@
  *
  * Cylindrical axes (tangential x, axial y, radial z) at contact and probe nodes. Contact dofs are ordered
  * c = (side * n_pairs + pair) * 3 + axis, side 0 right, 1 left; n_contact = 3 n_pairs * (has_left ? 2 : 1).
+ * The modes left out answer by residual + omega^2 inertia, on each way from contact and load to contact and probes.
  * Optional parts are NULL. Free of PETSc. */
 #ifndef MODAL_MODEL_H
 #define MODAL_MODEL_H
@@ -20,11 +21,14 @@ typedef struct {
   double *residual_flexibility;               /* [n_contact][n_contact] m/N, or NULL */
   double *residual_inertia;    /* [n_contact][n_contact] m s2/N, or NULL: coefficient of omega^2 */
   double complex *modal_force; /* [K+1][m] N kg^-1/2 */
-  double complex *load_residual;          /* /load/residual_response [K+1][n_contact] m, or NULL */
-  char          **probe_name;             /* [q] */
-  double         *probe;                  /* [q][3][m] kg^-1/2 */
+  double complex *load_residual; /* /load/residual_response [K+1][n_contact] m, or NULL */
+  double complex *load_inertia;  /* /load/residual_inertia [K+1][n_contact] m s2, or NULL */
+  char          **probe_name;    /* [q] */
+  double         *probe;         /* [q][3][m] kg^-1/2 */
   double         *probe_contact_residual; /* [3 q][n_contact] m/N, or NULL */
   double complex *probe_load_residual;    /* [K+1][3 q] m, or NULL */
+  double         *probe_contact_inertia;  /* [3 q][n_contact] m s2/N, or NULL */
+  double complex *probe_load_inertia;     /* [K+1][3 q] m s2, or NULL */
   double         *normal;        /* [pair][3] v axis in the pair's cylindrical axes, or NULL */
   double         *area;          /* [pair] m2, or NULL */
   double         *mode_residual; /* [m] relative eigen residual, or NULL */

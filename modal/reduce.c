@@ -20,25 +20,39 @@ static void drop_residuals(modal_model *model) {
   free(model->residual_flexibility);
   free(model->residual_inertia);
   free(model->load_residual);
+  free(model->load_inertia);
   free(model->probe_contact_residual);
+  free(model->probe_contact_inertia);
   free(model->probe_load_residual);
-  model->residual_flexibility = model->residual_inertia = model->probe_contact_residual = NULL;
-  model->load_residual = model->probe_load_residual = NULL;
+  free(model->probe_load_inertia);
+  model->residual_flexibility = model->residual_inertia = NULL;
+  model->probe_contact_residual = model->probe_contact_inertia = NULL;
+  model->load_residual = model->load_inertia = NULL;
+  model->probe_load_residual = model->probe_load_inertia = NULL;
+}
+
+static bool make(double **part, size_t n) {
+  if (!*part) *part = calloc(n, sizeof **part);
+  return *part;
+}
+
+static bool make_complex(double complex **part, size_t n) {
+  if (!*part) *part = calloc(n, sizeof **part);
+  return *part;
 }
 
 /* Zeros where the file holds none. */
 static bool make_residuals(modal_model *model) {
   size_t c = (size_t)n_contact(model), q = 3 * (size_t)model->n_probes;
-  size_t k = (size_t)model->n_load + 1;
-  if (!model->residual_flexibility) model->residual_flexibility = calloc(c * c, sizeof(double));
-  if (!model->residual_inertia) model->residual_inertia = calloc(c * c, sizeof(double));
-  if (!model->load_residual) model->load_residual = calloc(k * c, sizeof(double complex));
-  bool made = model->residual_flexibility && model->residual_inertia && model->load_residual;
+  size_t k  = (size_t)model->n_load + 1;
+  bool made = make(&model->residual_flexibility, c * c) && make(&model->residual_inertia, c * c) &&
+              make_complex(&model->load_residual, k * c) &&
+              make_complex(&model->load_inertia, k * c);
   if (q == 0) return made;
-  if (!model->probe_contact_residual) model->probe_contact_residual = calloc(q * c, sizeof(double));
-  if (!model->probe_load_residual)
-    model->probe_load_residual = calloc(k * q, sizeof(double complex));
-  return made && model->probe_contact_residual && model->probe_load_residual;
+  return made && make(&model->probe_contact_residual, q * c) &&
+         make(&model->probe_contact_inertia, q * c) &&
+         make_complex(&model->probe_load_residual, k * q) &&
+         make_complex(&model->probe_load_inertia, k * q);
 }
 
 /* to[rows][columns] += a b^T / scale */
@@ -49,19 +63,31 @@ static void add_outer(double *to, int rows, const double *a, int columns, const 
       to[(size_t)i * (size_t)columns + (size_t)j] += a[i] * b[j] / scale;
 }
 
-/* One mode's static answer, phi and psi its shape at contact and probes. */
+/* to[n] += shape f, inertia[n] += shape f / w2 */
+static void add_forced(double complex *to, double complex *inertia, int n, const double *shape,
+                       double complex f, double w2) {
+  for (int i = 0; i < n; i++) {
+    to[i] += shape[i] * f;
+    inertia[i] += shape[i] * f / w2;
+  }
+}
+
+/* One mode's answer to w^2, phi and psi its shape at contact and probes. */
 static void add_static(modal_model *model, int mode, const double *phi, const double *psi) {
   int    c = n_contact(model), q = 3 * model->n_probes;
   double w = 2 * PI * model->frequency[mode], w2 = w * w;
   add_outer(model->residual_flexibility, c, phi, c, phi, w2);
   add_outer(model->residual_inertia, c, phi, c, phi, w2 * w2);
-  if (q > 0) add_outer(model->probe_contact_residual, q, psi, c, phi, w2);
+  if (q > 0) {
+    add_outer(model->probe_contact_residual, q, psi, c, phi, w2);
+    add_outer(model->probe_contact_inertia, q, psi, c, phi, w2 * w2);
+  }
   for (int k = 0; k <= model->n_load; k++) {
-    double complex f = model->modal_force[(size_t)k * (size_t)model->n_modes + (size_t)mode] / w2;
-    for (int i = 0; i < c; i++)
-      model->load_residual[(size_t)k * (size_t)c + (size_t)i] += phi[i] * f;
-    for (int i = 0; i < q; i++)
-      model->probe_load_residual[(size_t)k * (size_t)q + (size_t)i] += psi[i] * f;
+    double complex f  = model->modal_force[(size_t)k * (size_t)model->n_modes + (size_t)mode] / w2;
+    size_t         at = (size_t)k * (size_t)c, by = (size_t)k * (size_t)q;
+    add_forced(model->load_residual + at, model->load_inertia + at, c, phi, f, w2);
+    if (q > 0)
+      add_forced(model->probe_load_residual + by, model->probe_load_inertia + by, q, psi, f, w2);
   }
 }
 

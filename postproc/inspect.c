@@ -42,6 +42,15 @@ static void put_span(post_buffer *out, double lo, double hi, const char *unit) {
     post_put(out, "%s … %s %s", post_plain(a, lo, 6), post_plain(b, hi, 6), unit);
 }
 
+/* Files of earlier versions hold the inertia of the contact alone. */
+static const char *inertia_of(const modal_model *m) {
+  bool load   = m->load_inertia || !m->load_residual;
+  bool probes = m->n_probes == 0 || !m->probe_contact_residual ||
+                (m->probe_contact_inertia && m->probe_load_inertia);
+  if (!m->residual_inertia) return "no";
+  return load && probes ? "yes" : "of the contact alone: not of load and probes";
+}
+
 static shb_status sum_up_modal(const char *path, post_buffer *out) {
   modal_model m;
   SHB_TRY(modal_model_read(path, &m));
@@ -55,7 +64,7 @@ static shb_status sum_up_modal(const char *path, post_buffer *out) {
   post_put(out, ", %s; load harmonics 0..%d; ", m.has_left ? "neighbour" : "ground", m.n_load);
   put_names(out, m.n_probes, m.probe_name);
   post_put(out, "; residual flexibility %s, inertia %s\n", m.residual_flexibility ? "yes" : "no",
-           m.residual_inertia ? "yes" : "no");
+           inertia_of(&m));
   modal_model_free(&m);
   return SHB_OK;
 }

@@ -329,8 +329,7 @@ static int nearest_point(const mhb_branch *b, double frequency) {
 }
 
 /* Below the first resonance, near the three, between and above them; all below a third of mode 20 (12.2 kHz). What the modes
- * left out answer to the load, and at the probe, is stored at frequency 0 only: at 1110 Hz, near the third stuck resonance,
- * that is felt (7e-6). */
+ * left out answer is held to omega^2: on the third stuck resonance the next term of the contact's own part is felt (5e-6). */
 static void limit_is_the_direct_solution(bool stuck, int n, const double *frequency,
                                          const double *bound) {
   const mhb_branch *b = scene_branch(response, stuck ? MHB_BRANCH_STUCK : MHB_BRANCH_OPEN, 0);

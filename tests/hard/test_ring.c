@@ -32,6 +32,7 @@ static void unfold(const modal_model *sector, int engine_order, modal_model *rin
   ring->normal               = calloc(3 * BLADES, sizeof(double));
   ring->modal_force          = calloc((size_t)(ring->n_load + 1) * modes, sizeof(double complex));
   ring->load_residual        = calloc((size_t)((ring->n_load + 1) * nc), sizeof(double complex));
+  ring->load_inertia         = calloc((size_t)((ring->n_load + 1) * nc), sizeof(double complex));
   ring->residual_flexibility = calloc((size_t)(nc * nc), sizeof(double));
   ring->residual_inertia     = calloc((size_t)(nc * nc), sizeof(double));
   for (int b = 0; b < BLADES; b++) {
@@ -57,8 +58,11 @@ static void unfold(const modal_model *sector, int engine_order, modal_model *rin
       double complex lag = cexp(-2 * PI * I * k * b * engine_order / BLADES);
       for (int i = 0; i < m; i++)
         ring->modal_force[k * all + b * m + i] = lag * sector->modal_force[k * m + i];
-      for (int i = 0; i < 6; i++)
-        ring->load_residual[k * nc + at[i / 3] + i % 3] = lag * sector->load_residual[6 * k + i];
+      for (int i = 0; i < 6; i++) {
+        int to                  = k * nc + at[i / 3] + i % 3;
+        ring->load_residual[to] = lag * sector->load_residual[6 * k + i];
+        ring->load_inertia[to]  = lag * sector->load_inertia[6 * k + i];
+      }
     }
   }
 }

@@ -47,6 +47,15 @@ static void add_normals(modal_model *model, unsigned long long *seed) {
   }
 }
 
+/* Of load and probes, from a seed of its own: the normals that follow stay the same without it. */
+static void add_inertia(modal_model *model, unsigned long long seed) {
+  int    nc = 3 * model->n_pairs * (model->has_left ? 2 : 1), q = 3 * model->n_probes;
+  size_t loads                 = (size_t)model->n_load + 1;
+  model->load_inertia          = complex_list(loads * (size_t)nc, .005, &seed);
+  model->probe_contact_inertia = list((size_t)(q * nc), .01, &seed);
+  model->probe_load_inertia    = complex_list(loads * (size_t)q, .005, &seed);
+}
+
 static void add_residuals(modal_model *model, unsigned long long *seed) {
   int    nc = 3 * model->n_pairs * (model->has_left ? 2 : 1), q = 3 * model->n_probes;
   size_t loads                  = (size_t)model->n_load + 1;
@@ -57,6 +66,7 @@ static void add_residuals(modal_model *model, unsigned long long *seed) {
   model->probe_load_residual    = complex_list(loads * (size_t)q, .05, seed);
   for (int c = 0; c < nc; c++) model->load_residual[c] = creal(model->load_residual[c]);
   for (int s = 0; s < q; s++) model->probe_load_residual[s] = creal(model->probe_load_residual[s]);
+  add_inertia(model, *seed);
 }
 
 void random_model(int n_pairs, int parts, unsigned long long seed, modal_model *model) {

@@ -22,12 +22,14 @@
       fail_msg("%s = %.9g, not %.9g (off by %.2e > %.2e)", #value, v_, w_, fabs(v_ - w_), t_); \
   } while (0)
 
-/* What the variational problem cannot hold is taken off the model: residual inertia, static response to the load. */
+/* What the variational problem cannot hold is taken off the model: residual inertia, residual response to the load. */
 static void integrable(modal_model *model) {
   free(model->residual_inertia);
   free(model->load_residual);
+  free(model->load_inertia);
   model->residual_inertia = NULL;
   model->load_residual    = NULL;
+  model->load_inertia     = NULL;
 }
 
 typedef struct {

@@ -297,8 +297,11 @@ static void to_micrometres(modal_model *model, mhb_settings *s) {
   times(model->residual_flexibility, nc * nc, 1e12);
   times(model->residual_inertia, nc * nc, 1e12);
   times(model->probe_contact_residual, q * nc, 1e12);
+  times(model->probe_contact_inertia, q * nc, 1e12);
   times((double *)model->load_residual, 2 * 3 * nc, 1e6);
+  times((double *)model->load_inertia, 2 * 3 * nc, 1e6);
   times((double *)model->probe_load_residual, 2 * 3 * q, 1e6);
+  times((double *)model->probe_load_inertia, 2 * 3 * q, 1e6);
   s->kv *= 1e-12;
   times(s->ku, 3, 1e-12);
   times(s->n0, 1, 1e-6);

@@ -86,16 +86,19 @@ static void dense_at(const modal_model *model, const mhb_settings *s, int k, dou
   double complex r[MAX_C][MAX_C] = {{0}}, x[MAX_C] = {0}, rp[PROBE_DOFS][MAX_C] = {{0}};
   for (int a = 0; a < nc; a++) {
     if (model->load_residual && h <= model->n_load)
-      x[a] = s->scale * model->load_residual[h * nc + a];
+      x[a] =
+          s->scale * (model->load_residual[h * nc + a] + w * w * model->load_inertia[h * nc + a]);
     for (int b = 0; model->residual_flexibility && b < nc; b++)
       r[a][b] =
           model->residual_flexibility[a * nc + b] + w * w * model->residual_inertia[a * nc + b];
   }
   for (int q = 0; q < PROBE_DOFS; q++) {
     if (model->probe_load_residual && h <= model->n_load)
-      d->probe_free[q] = s->scale * model->probe_load_residual[h * PROBE_DOFS + q];
+      d->probe_free[q] = s->scale * (model->probe_load_residual[h * PROBE_DOFS + q] +
+                                     w * w * model->probe_load_inertia[h * PROBE_DOFS + q]);
     for (int b = 0; model->probe_contact_residual && b < nc; b++)
-      rp[q][b] = model->probe_contact_residual[q * nc + b];
+      rp[q][b] = model->probe_contact_residual[q * nc + b] +
+                 w * w * model->probe_contact_inertia[q * nc + b];
   }
   for (int i = 0; i < MODES; i++) {
     double complex L = modal_receptance(model, i, w),
@@ -133,14 +136,19 @@ static void compare(const modal_model *model, const mhb_settings *s, int top, do
   double worst[3] = {0, 0, 0};
   for (int k = 0; k <= top; k++) {
     dense          d;
-    double complex p[MAX_N], motion[PROBE_DOFS];
+    double complex p[MAX_N], motion[PROBE_DOFS], u[MAX_N];
     dense_at(model, s, k, omega, &d);
     random_force(d.n, 5, p);
     mhb_receptance_probe(r, k, p, motion);
+    mhb_receptance_motion(r, k, p, u);
     for (int i = 0; i < d.n; i++) {
       worst[1] = fmax(worst[1], cabs(r->free[k * d.n + i] - d.free[i]));
-      for (int j = 0; j < d.n; j++)
+      u[i] -= d.free[i];
+      for (int j = 0; j < d.n; j++) {
         worst[0] = fmax(worst[0], cabs(r->R[(k * d.n + i) * d.n + j] - d.R[i][j]));
+        u[i] += d.R[i][j] * p[j];
+      }
+      worst[1] = fmax(worst[1], cabs(u[i]));
     }
     for (int q = 0; q < PROBE_DOFS; q++) {
       double complex wanted = d.probe_free[q];

@@ -182,6 +182,8 @@ static void repeat_pair(const modal_model *one, modal_model *four) {
   memcpy(four->probe, one->probe, sizeof(double) * (size_t)(q * m));
   memcpy(four->probe_load_residual, one->probe_load_residual,
          sizeof(double complex) * (size_t)(loads * q));
+  memcpy(four->probe_load_inertia, one->probe_load_inertia,
+         sizeof(double complex) * (size_t)(loads * q));
   for (int a = 0; a < 4; a++) {
     memcpy(four->right + 3 * a * m, one->right, sizeof(double) * 3 * (size_t)m);
     memcpy(four->left + 3 * a * m, one->left, sizeof(double) * 3 * (size_t)m);
@@ -189,10 +191,14 @@ static void repeat_pair(const modal_model *one, modal_model *four) {
   }
   for (int i = 0; i < nc; i++) {
     int from = i / 12 * 3 + i % 3;
-    for (int k = 0; k < loads; k++)
+    for (int k = 0; k < loads; k++) {
       four->load_residual[k * nc + i] = one->load_residual[k * 6 + from];
-    for (int s = 0; s < q; s++)
+      four->load_inertia[k * nc + i]  = one->load_inertia[k * 6 + from];
+    }
+    for (int s = 0; s < q; s++) {
       four->probe_contact_residual[s * nc + i] = one->probe_contact_residual[s * 6 + from];
+      four->probe_contact_inertia[s * nc + i]  = one->probe_contact_inertia[s * 6 + from];
+    }
     for (int j = 0; j < nc; j++) {
       int to                                 = j / 12 * 3 + j % 3;
       four->residual_flexibility[i * nc + j] = one->residual_flexibility[from * 6 + to];
@@ -254,7 +260,8 @@ static void blade_at(const modal_model *model, int k, double omega, int nu, blad
     t[2]          = v[0] * u[1] - v[1] * u[0];
   }
   for (int a = 0; a < DOFS; a++) {
-    if (h >= 0) out->load[a] = model->load_residual[h * DOFS + a];
+    if (h >= 0)
+      out->load[a] = model->load_residual[h * DOFS + a] + w * w * model->load_inertia[h * DOFS + a];
     for (int b = 0; b < DOFS; b++)
       out->H[a][b] =
           model->residual_flexibility[a * DOFS + b] + w * w * model->residual_inertia[a * DOFS + b];
@@ -481,7 +488,7 @@ static double power_imbalance(const mhb_residual *b, double omega) {
       damping += model->damping_ratio[i] * wi * w * w * creal(q * conj(q));
     }
     for (int row = 0; r->load && row < r->n; row++)
-      residual += conj(r->load[k * r->n + row]) * p[row];
+      residual += conj(r->load[k * r->n + row] + w * w * r->load_inertia[k * r->n + row]) * p[row];
     in -= .5 * creal(I * w * residual);
   }
   for (int a = 0; a < b->n_pairs; a++)

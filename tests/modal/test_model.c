@@ -52,6 +52,9 @@ static modal_model sample(bool full) {
   model.probe                  = numbers(PROBES * 3 * MODES, 9);
   model.probe_contact_residual = numbers(PROBES * 3 * CONTACTS, 10);
   model.probe_load_residual    = waves((LOADS + 1) * 3 * PROBES, 11);
+  model.load_inertia           = waves((LOADS + 1) * CONTACTS, 15);
+  model.probe_contact_inertia  = numbers(PROBES * 3 * CONTACTS, 17);
+  model.probe_load_inertia     = waves((LOADS + 1) * 3 * PROBES, 18);
   model.normal                 = numbers(PAIRS * 3, 12);
   model.area                   = numbers(PAIRS, 13);
   model.mode_residual          = numbers(MODES, 14);
@@ -112,6 +115,9 @@ static void test_round_trip(void **state) {
   assert_same(wrote, read, probe, PROBES * 3 * MODES);
   assert_same(wrote, read, probe_contact_residual, PROBES * 3 * CONTACTS);
   assert_same(wrote, read, probe_load_residual, (LOADS + 1) * 3 * PROBES);
+  assert_same(wrote, read, load_inertia, (LOADS + 1) * CONTACTS);
+  assert_same(wrote, read, probe_contact_inertia, PROBES * 3 * CONTACTS);
+  assert_same(wrote, read, probe_load_inertia, (LOADS + 1) * 3 * PROBES);
   assert_same(wrote, read, normal, PAIRS * 3);
   assert_same(wrote, read, area, PAIRS);
   for (int i = 0; i < PROBES; i++) assert_string_equal(wrote.probe_name[i], read.probe_name[i]);
@@ -128,19 +134,20 @@ static void test_least(void **state) {
   assert_false(read.has_left);
   assert_int_equal(read.n_probes, 0);
   assert_true(!read.left && !read.residual_flexibility && !read.residual_inertia &&
-              !read.load_residual && !read.probe && !read.normal && !read.area);
+              !read.load_residual && !read.load_inertia && !read.probe_contact_inertia &&
+              !read.probe_load_inertia && !read.probe && !read.normal && !read.area);
   assert_same(wrote, read, right, PAIRS * 3 * MODES);
   assert_same(wrote, read, modal_force, (LOADS + 1) * MODES);
   modal_model_free(&wrote);
   modal_model_free(&read);
 }
 
-/* 14 arrays, the names, and 5 dimension scales of their own. */
+/* 17 arrays, the names, and 5 dimension scales of their own. */
 static void test_described(void **state) {
   (void)state;
   modal_model model = sample(true);
   write_model("described.h5", &model);
-  assert_int_equal(assert_described(scratch("described.h5")), 20);
+  assert_int_equal(assert_described(scratch("described.h5")), 23);
   hid_t file;
   char *text;
   assert_ok(h5_open(scratch("described.h5"), &file));
@@ -204,6 +211,9 @@ static void test_missing(void **state) {
                        {"/load/residual_response", true},
                        {"/probe/contact_residual", true},
                        {"/probe/load_residual", true},
+                       {"/load/residual_inertia", true},
+                       {"/probe/contact_inertia", true},
+                       {"/probe/load_inertia", true},
                        {"/contact/normal", true},
                        {"/contact/area", true}};
   modal_model model = sample(true);
@@ -254,6 +264,9 @@ static void test_shapes(void **state) {
       {"/probe/shape", {3, {3, 4, 3}}, "has shape [3, 4, 3] where [3, 3, 4] is wanted"},
       {"/probe/contact_residual", {2, {3, 12}}, "has shape [3, 12] where [9, 12] is wanted"},
       {"/probe/load_residual", {2, {3, 3}}, "has shape [3, 3] where [3, 9] is wanted"},
+      {"/load/residual_inertia", {2, {3, 6}}, "has shape [3, 6] where [3, 12] is wanted"},
+      {"/probe/contact_inertia", {2, {9, 6}}, "has shape [9, 6] where [9, 12] is wanted"},
+      {"/probe/load_inertia", {2, {2, 9}}, "has shape [2, 9] where [3, 9] is wanted"},
       {"/contact/normal", {2, {3, 3}}, "has shape [3, 3] where [2, 3] is wanted"},
       {"/contact/area", {1, {1}}, "/contact/area has shape [1] where [2] is wanted"},
   };
@@ -297,6 +310,9 @@ static void test_values(void **state) {
       {IN(probe), 0, NAN, "/probe/shape: the value at [0, 0, 0]"},
       {IN(probe_contact_residual), 0, NAN, "/probe/contact_residual: the value"},
       {IN(probe_load_residual), 1, NAN, "/probe/load_residual: the value"},
+      {IN(load_inertia), 2, NAN, "/load/residual_inertia: the value at [0, 1]"},
+      {IN(probe_contact_inertia), 12, NAN, "/probe/contact_inertia: the value at [1, 0]"},
+      {IN(probe_load_inertia), 0, NAN, "/probe/load_inertia: the value at [0, 0]"},
       {IN(normal), 3, .7, "/contact/normal: row 1 (from 0) has length 1.06301; unit vectors"},
       {IN(area), 1, 0, "/contact/area: value 1 (from 0) is 0 m^2; all must be positive"},
   };

@@ -127,6 +127,21 @@ static void modal(void **state) {
   assert_has(text, "kg^-1/2");
   assert_has(text, "shroudhb-mhb");
   free(text);
+  /* a file of an earlier version: the load's residual response without its inertia */
+  double soft[36]           = {1e-9};
+  double _Complex moved[12] = {1e-6};
+  m.residual_flexibility = m.residual_inertia = soft;
+  m.load_residual                             = moved;
+  for (int i = 0; i < 2; i++) {
+    m.load_inertia = i ? moved : NULL;
+    assert_ok(h5_create(at("x.modal.h5"), &file));
+    assert_ok(modal_model_write(file, &m, &PROVENANCE));
+    assert_ok(h5_close(file));
+    text = inspect("x.modal.h5", PLAIN, SHB_OK);
+    assert_has(text, i ? "flexibility yes, inertia yes\n"
+                       : "inertia of the contact alone: not of load and probes\n");
+    free(text);
+  }
 }
 
 /* Claims to be ours and is not: the tree all the same, and the complaint. */
