@@ -4,7 +4,7 @@
 #include <string.h>
 
 static const double STAGNANT = 1e-8, POLISHED = 1e-2, SMOOTH = 1e-5;
-enum { MAX_CORRECTIONS = 12, MAX_HALVINGS = 3, MAX_POLISHED = 4 };
+enum { MAX_CORRECTIONS = 12, MAX_HALVINGS = 3, MAX_POLISHED = 4, MAX_SETTLED = 6 };
 
 double mhb_path_size(const mhb_path *path) {
   double size = fabs(path->now.value);
@@ -85,16 +85,12 @@ static void polish(mhb_path *path, double scale, mhb_path_point *point) {
   }
 }
 
-/* Newton in the plane normal.(y - point at entry) = 0; clip bounds a correction. still: only as long as the pairs stay as noted.
- * 1: converged, workspace at point. */
-static int correct_while(mhb_path *path, const double *normal, double clip, int still,
-                         mhb_path_point *point) {
+int mhb_path_correct(mhb_path *path, const double *normal, double clip, mhb_path_point *point) {
   mhb_newton *w     = path->newton;
   int         n     = path->n;
   double      scale = mhb_path_unit(path), before = INFINITY, cut = 0;
   for (point->iterations = 0; point->iterations <= MAX_CORRECTIONS; point->iterations++) {
     if (!evaluate_damped(path, before, cut, scale, point)) return 0;
-    if (still && !mhb_still_holds(path->still, path->residual)) return 0;
     if (point->residual <= path->tolerance) return 1;
     if (point->residual < STAGNANT && point->residual > .5 * before) return 1; /* rounding */
     before = point->residual;
@@ -109,10 +105,6 @@ static int correct_while(mhb_path *path, const double *normal, double clip, int 
     if (!(point->value >= path->least)) return 0;
   }
   return 0;
-}
-
-int mhb_path_correct(mhb_path *path, const double *normal, double clip, mhb_path_point *point) {
-  return correct_while(path, normal, clip, 0, point);
 }
 
 /* Tangent at a point the workspace is at: [J r_value; along] t = [0; 1], scaled to unit length. */
@@ -132,14 +124,28 @@ int mhb_path_set_tangent(mhb_path *path, const double *along, mhb_path_point *po
   return 1;
 }
 
-/* Where no pair moves, as noted, all but the means is found without the law, which only says whether that holds. */
-int mhb_path_correct_still(mhb_path *path, const double *normal, double clip,
-                           mhb_path_point *point) {
+/* Means that balance, as long as the pairs stay as noted: the means leave the plane by a hair, which does not matter. */
+static int settle(mhb_path *path, mhb_path_point *point) {
+  double before = INFINITY;
+  for (int i = 0; i <= MAX_SETTLED; i++) {
+    point->iterations = i;
+    mhb_path_measure(path, point);
+    if (!mhb_still_holds(path->still, path->residual)) return 0;
+    if (point->residual <= path->tolerance) return 1;
+    if (point->residual < STAGNANT && point->residual > .5 * before) return 1; /* rounding */
+    if (!(point->residual < .5 * before)) return 0;
+    if (!mhb_still_settle(path->still, path->residual, path->newton->r, i > 0, point->x)) return 0;
+    before = point->residual;
+  }
+  return 0;
+}
+
+int mhb_path_correct_still(mhb_path *path, const double *normal, mhb_path_point *point) {
   double scale = mhb_path_unit(path), sp = path->span;
   int    steps;
   if (!mhb_still_slide(path->still, path->residual, normal, 1 / (scale * scale), 1 / (sp * sp),
                        point->x, &point->value, &steps) ||
-      !correct_while(path, normal, clip, 1, point))
+      !settle(path, point))
     return 0;
   if (point->iterations < steps - 1) point->iterations = steps - 1;
   return 1;

@@ -26,8 +26,7 @@ int mhb_path_correct(mhb_path *path, const double *normal, double clip, mhb_path
 
 /* Where no pair moves, as noted in path->still, all but the means is found without the law, which only says whether that
  * holds. 0: it does not. */
-int mhb_path_correct_still(mhb_path *path, const double *normal, double clip,
-                           mhb_path_point *point);
+int mhb_path_correct_still(mhb_path *path, const double *normal, mhb_path_point *point);
 
 /* Tangent and orientation at the point of the workspace, in the sense of along. 0: singular. */
 int mhb_path_set_tangent(mhb_path *path, const double *along, mhb_path_point *point);

@@ -78,39 +78,47 @@ void mhb_basis_product(int p, int q, const double *integral, double *product, in
   }
 }
 
-static int grid_size(int m) {
-  int n = 64;
-  while (n < 8 * (m + 1)) n *= 2;
-  return n;
+/* Which grid m harmonics need: 8 (m + 1) points. */
+static int grid_of(int m) {
+  int grid = 0;
+  while (MHB_LEAST_GRID << grid < 8 * (m + 1)) grid++;
+  return grid;
 }
 
 shb_status mhb_signals_create(int m, mhb_signals *signals) {
   memset(signals, 0, sizeof *signals);
-  int    n = grid_size(m), half = n / 2 + 1, room = n + MHB_LANES;
+  int grid = grid_of(m), most = MHB_LEAST_GRID << grid, half = most / 2 + 1,
+      room = most + MHB_LANES;
+  SHB_CHECK(grid < MHB_GRIDS, SHB_ERR_IO, "out of memory for %d harmonics", m);
   size_t size          = 3 * (size_t)mhb_real_size(m);
   signals->m           = m;
-  signals->n_grid      = n;
+  signals->n_grid      = most;
+  signals->most        = most;
   signals->coefficient = calloc(size, sizeof(double));
   signals->rate        = calloc(size, sizeof(double));
   signals->spectrum    = fftw_alloc_complex(6 * (size_t)half);
   signals->samples     = fftw_alloc_real(6 * (size_t)room);
-  if (signals->coefficient && signals->rate && signals->spectrum && signals->samples) {
-    signals->plan =
+  int ok = signals->coefficient && signals->rate && signals->spectrum && signals->samples;
+  for (int i = 0; i <= grid && ok; i++) {
+    int n = MHB_LEAST_GRID << i;
+    signals->plan[i] =
         fftw_plan_many_dft_c2r(1, &n, 6, signals->spectrum, NULL, 1, half, signals->samples, NULL,
                                1, room, FFTW_ESTIMATE | FFTW_DESTROY_INPUT);
+    ok = signals->plan[i] != NULL;
   }
   for (int i = 0; i < 3; i++) {
     signals->value[i] = signals->samples + i * room;
     signals->slope[i] = signals->samples + (i + 3) * room;
   }
-  if (signals->plan) return SHB_OK;
+  if (ok) return SHB_OK;
   mhb_signals_destroy(signals);
   SHB_FAIL(SHB_ERR_IO, "out of memory for %d harmonics", m);
 }
 
 void mhb_signals_destroy(mhb_signals *signals) {
   if (!signals) return;
-  if (signals->plan) fftw_destroy_plan(signals->plan);
+  for (int i = 0; i < MHB_GRIDS; i++)
+    if (signals->plan[i]) fftw_destroy_plan(signals->plan[i]);
   fftw_free(signals->spectrum);
   fftw_free(signals->samples);
   free(signals->coefficient);
@@ -136,15 +144,19 @@ static int highest_harmonic(int m, const double *const a[3]) {
 }
 
 void mhb_signals_set(mhb_signals *signals, const double *const a[3]) {
-  int m = signals->m, n = signals->n_grid, half = n / 2 + 1;
-  signals->used = highest_harmonic(m, a);
-  memset(signals->spectrum, 0, sizeof(fftw_complex) * 6 * (size_t)half);
+  int used = highest_harmonic(signals->m, a), grid = grid_of(used), n = MHB_LEAST_GRID << grid,
+      half        = signals->most / 2 + 1;
+  signals->used   = used;
+  signals->n_grid = n;
+  for (int i = 0; i < 6; i++)
+    memset(signals->spectrum + (size_t)i * (size_t)half, 0,
+           sizeof(fftw_complex) * (size_t)(n / 2 + 1));
   for (int i = 0; i < 3; i++) {
     fftw_complex *X = signals->spectrum + (size_t)i * (size_t)half, *dX = X + 3 * (size_t)half;
     double       *coefficient = signals->coefficient + i, *rate = signals->rate + i;
     X[0]           = a[i][0];
     coefficient[0] = a[i][0];
-    for (int k = 1; k <= signals->used; k++) {
+    for (int k = 1; k <= used; k++) {
       double even = a[i][2 * k - 1], odd = a[i][2 * k];
       X[k]                   = CMPLX(.5 * even, .5 * odd);
       dX[k]                  = CMPLX(-.5 * k * odd, .5 * k * even);
@@ -155,7 +167,7 @@ void mhb_signals_set(mhb_signals *signals, const double *const a[3]) {
     }
     set_bounds(signals, i, a[i]);
   }
-  fftw_execute(signals->plan);
+  fftw_execute(signals->plan[grid]);
   for (int i = 0; i < 3; i++) {
     memcpy(signals->value[i] + n, signals->value[i], sizeof(double) * MHB_LANES);
     memcpy(signals->slope[i] + n, signals->slope[i], sizeof(double) * MHB_LANES);

@@ -30,22 +30,27 @@ void mhb_basis_integral(int n, double t0, double t1, double *integral);
  * product[i * ld + j], i < 2p+1, j < 2q+1 (Toeplitz + Hankel). */
 void mhb_basis_product(int p, int q, const double *integral, double *product, int ld);
 
-/* Three signals of up to m harmonics: values and slopes on a grid of n_grid points, evaluation anywhere. */
+/* Grids of 64, 128, ... points. */
+enum { MHB_LEAST_GRID = 64, MHB_GRIDS = 12 };
+
+/* Three signals of up to m harmonics: values and slopes on a grid of n_grid points, as many as the harmonics in use need,
+ * evaluation anywhere. */
 typedef struct {
   int     m;
   int     used;        /* highest harmonic that is not zero */
-  int     n_grid;      /* a multiple of MHB_LANES */
+  int     n_grid;      /* of the signals that are set, a multiple of MHB_LANES */
+  int     most;        /* n_grid of m harmonics */
   double *coefficient; /* [2m+1][3] */
   double *rate;        /* [2m+1][3], k times that of the same harmonic */
   double *value[3]; /* [n_grid + MHB_LANES], t = 2 pi i/n_grid, going on periodically at the end */
   double *slope[3]; /* the same */
-  double  bound[3][5];    /* [signal][j] = sum_k k^j |A_k| >= |d^j x/dt^j| */
-  fftw_complex *spectrum; /* [6][n_grid/2 + 1] */
-  double       *samples;  /* [6][n_grid + MHB_LANES]: value, slope */
-  fftw_plan     plan;
+  double  bound[3][5];           /* [signal][j] = sum_k k^j |A_k| >= |d^j x/dt^j| */
+  fftw_complex *spectrum;        /* [6][most/2 + 1] */
+  double       *samples;         /* [6][most + MHB_LANES]: value, slope */
+  fftw_plan     plan[MHB_GRIDS]; /* of 64 points, 128, ... as far as m needs them */
 } mhb_signals;
 
-/* FFTW plans are made here and only here. Not thread safe (FFTW's planner). SHB_ERR_IO: no memory. */
+/* FFTW plans are made here and only here. Not thread safe (FFTW's planner). SHB_ERR_IO: no memory, or too many harmonics. */
 shb_status mhb_signals_create(int m, mhb_signals *signals);
 void       mhb_signals_destroy(mhb_signals *signals);
 

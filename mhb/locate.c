@@ -121,8 +121,7 @@ static int go_to_kink(mhb_path *path, int side, range *r) {
   for (int i = 0; i < MAX_TO_KINK && fabs(step) > 1e-9; i++) {
     double s = r->at[side] + step;
     along_tangent(path, side, step);
-    if (s > r->at[0] && s < r->at[1] &&
-        mhb_path_correct_still(path, path->chord, 1, &path->probe) &&
+    if (s > r->at[0] && s < r->at[1] && mhb_path_correct_still(path, path->chord, &path->probe) &&
         mhb_path_set_tangent(path, path->chord, &path->probe)) {
       r->at[side] = s;
       set_bracket(path, side, &path->probe);
@@ -145,7 +144,7 @@ static int beside_kink(mhb_path *path, int side, double before, range *r) {
   double way = before - r->at[side], most = BESIDE / fmax(r->wide, BESIDE);
   double back = copysign(fmin(most, .5 * fabs(way)), way);
   along_tangent(path, side, back);
-  if (!mhb_path_correct_still(path, path->chord, 1, &path->probe) ||
+  if (!mhb_path_correct_still(path, path->chord, &path->probe) ||
       !mhb_path_set_tangent(path, path->chord, &path->probe))
     return at_end(path, side);
   r->at[side] += back;

@@ -91,7 +91,7 @@ static void predict(mhb_path *path, double ds) {
 static int attempt(mhb_path *path, double ds) {
   predict(path, ds);
   int ok = mhb_still_note(path->still, path->residual) &&
-           mhb_path_correct_still(path, path->now.tangent, 2 * ds, &path->next);
+           mhb_path_correct_still(path, path->now.tangent, &path->next);
   if (!ok) predict(path, ds);
   return (ok || mhb_path_correct(path, path->now.tangent, 2 * ds, &path->next)) &&
          mhb_path_set_tangent(path, path->now.tangent, &path->next);

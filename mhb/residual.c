@@ -241,7 +241,10 @@ static void evaluate_pair(mhb_residual *b, mhb_contact *contact, const double *x
 }
 
 static void evaluate_pairs(mhb_residual *b, const double *x, int derivative) {
-#pragma omp parallel for schedule(dynamic, 1) num_threads(b->n_threads) if (b->n_threads > 1)
+  for (int a = 0; a < b->n_pairs && b->n_threads == 1; a++)
+    evaluate_pair(b, b->contact, x, a, derivative);
+  if (b->n_threads == 1) return;
+#pragma omp parallel for schedule(dynamic, 1) num_threads(b->n_threads)
   for (int a = 0; a < b->n_pairs; a++)
     evaluate_pair(b, b->contacts[omp_get_thread_num()], x, a, derivative);
 }

@@ -130,3 +130,30 @@ int mhb_still_slide(mhb_still *s, const mhb_residual *b, const double *normal, d
   }
   return 0;
 }
+
+/* A <- I + R_0 dp_0/du_0, column-major, factored. */
+static int factor_means(mhb_still *s, const mhb_residual *b) {
+  int    n     = s->n;
+  size_t block = 3 * (size_t)b->nb;
+  mhb_receptance_need(b->receptance, 0);
+  for (int a = 0; a < b->n_pairs; a++)
+    for (int d = 0; d < 3;
+         d++) { /* dp[c]: how the mean force c of a pair follows its mean motion d */
+      const double *dp = b->dp + (size_t)a * block * block + d * b->nb;
+      double        p[3];
+      for (int c = 0; c < 3; c++) p[c] = dp[(size_t)(c * b->nb) * block];
+      const double complex *R = b->receptance->R + 3 * a;
+      for (int i = 0; i < n; i++, R += n)
+        s->A[(3 * a + d) * n + i] =
+            creal(R[0]) * p[0] + creal(R[1]) * p[1] + creal(R[2]) * p[2] + (i == 3 * a + d);
+    }
+  return mhb_factor_complex(n, s->A, s->pivot);
+}
+
+int mhb_still_settle(mhb_still *s, const mhb_residual *b, const double *r, int again, double *x) {
+  if (!again && !factor_means(s, b)) return 0;
+  for (int row = 0; row < s->n; row++) s->u[row] = r[row * b->nb];
+  if (!mhb_solve_complex(s->n, s->A, s->pivot, 1, s->u)) return 0;
+  for (int row = 0; row < s->n; row++) x[row * b->nb] -= creal(s->u[row]);
+  return 1;
+}

@@ -1,7 +1,8 @@
 /* The balance where every pair stays stuck or open: its harmonics k > 0 know nothing of each other, nor of the mean friction,
  *
  *   u_k(omega) = A_k^-1 free_k,   A_k = I + R_k S,   du_k/domega = A_k^-1 d(free_k - R_k p_k)/domega at p_k = S u_k
- * (S = diag(kv, Ku) of the stuck pairs), zero where the load is. So a point of the path is found without the contact law. */
+ * (S = diag(kv, Ku) of the stuck pairs), zero where no load is. So a point of the path is found without the contact law, but for
+ * the means: the mean friction follows the other harmonics, and the mean normal load. */
 #ifndef MHB_STILL_H
 #define MHB_STILL_H
 
@@ -30,6 +31,11 @@ int mhb_still_note(mhb_still *still, const mhb_residual *residual);
 int mhb_still_slide(mhb_still *still, const mhb_residual *residual, const double *normal,
                     double x_weight, double value_weight, double *x, double *omega,
                     int *iterations);
+
+/* A Newton step of the means x_0 alone, at the frequency where the residual r[n] was evaluated last, with derivatives; again: with
+ * the derivatives of the last step. 0: singular. */
+int mhb_still_settle(mhb_still *still, const mhb_residual *residual, const double *r, int again,
+                     double *x);
 
 /* Whether the residual's last evaluation found the pairs as noted. */
 int mhb_still_holds(const mhb_still *still, const mhb_residual *residual);

@@ -22,6 +22,8 @@ shb_test(mhb condensed fast shb_mhb)
 target_sources(test_mhb_condensed PRIVATE mhb/allocations.c bench/shroud_face.c mhb/random_model.c mhb/three_degree.c)
 target_link_options(test_mhb_condensed PRIVATE
   LINKER:--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=aligned_alloc)
+shb_test(mhb still fast shb_mhb)
+target_sources(test_mhb_still PRIVATE mhb/periodic.c mhb/random_model.c)
 shb_test(mhb path fast shb_mhb)
 target_sources(test_mhb_path PRIVATE mhb/random_model.c mhb/solution.c mhb/three_degree.c)
 shb_test(mhb parameter fast shb_mhb)
