@@ -7,6 +7,7 @@
 #include "cases/issues.h"
 #include "cases/reader.h"
 #include "cases/yaml.h"
+#include "mesh/format.h"
 #include "mhb/parameter.h"
 
 static char *folder_of(const char *path) {
@@ -50,6 +51,11 @@ static void share(case_reader *r) {
   file->mhb.blades       = file->blades;
   file->blade.blades     = file->blades;
   file->blade.axis       = file->axis;
+  file->source.path      = file->mesh_file;
+  bool step              = file->mesh_file && mesh_format_of(file->mesh_file) == MESH_FORMAT_STEP;
+  file->source.unit      = step ? 1e-3 : (const double[]){1, 1e-2, 1e-3, 0.0254}[file->mesh_unit];
+  file->source.axis      = file->axis;
+  file->source.blades    = file->mhb.to_ground ? 0 : file->blades;
   file->blade.psi        = file->mhb.has_psi ? file->mhb.psi : 0;
   file->blade.phi        = file->mhb.has_phi ? file->mhb.phi : 0;
 }
@@ -114,8 +120,17 @@ char *case_output(const case_file *file, const char *suffix) {
   return path;
 }
 
+bool case_mesh_is_made(const case_file *file) {
+  const mesh_source *source = &file->source;
+  if (!file->mesh_file) return false;
+  bool made = MESH_FORMAT_IS_SOLID(mesh_format_of(file->mesh_file)) || source->unit != 1;
+  for (int id = 0; id < MESH_N_SETS; id++) made = made || source->rule[id].kind != MESH_RULE_NONE;
+  return made;
+}
+
 char *case_mesh_path(const case_file *file) {
-  return file->mesh_file ? strdup(file->mesh_file) : case_output(file, ".msh");
+  return file->mesh_file && !case_mesh_is_made(file) ? strdup(file->mesh_file)
+                                                     : case_output(file, ".msh");
 }
 
 char *case_modal_path(const case_file *file) {

@@ -9,6 +9,7 @@
 #include "fem/material.h"
 #include "mesh/blade.h"
 #include "mesh/publish.h"
+#include "mesh/source.h"
 #include "mesh/status.h"
 #include "mhb/settings.h"
 
@@ -34,9 +35,11 @@ typedef struct {
   char *text;   /* verbatim */
   char *name;
 
-  bool       has_mesh;  /* block mesh present (needed unless modal.file) */
-  char      *mesh_file; /* resolved path of mesh.file, or NULL: parametric blade */
-  mesh_blade blade;
+  bool        has_mesh;  /* block mesh present (needed unless modal.file) */
+  char       *mesh_file; /* resolved path of mesh.file, or NULL: parametric blade */
+  int         mesh_unit; /* place in the words of mesh.unit */
+  mesh_source source;    /* mesh.file, all that is said of it */
+  mesh_blade  blade;
 
   fem_material material;
   int          blades;
@@ -73,6 +76,8 @@ void       case_free(case_file *file);
 
 /* folder/NAME + suffix, e.g. ".modal.h5"; malloc'ed. */
 char *case_output(const case_file *file, const char *suffix);
+/* Is mesh.file not used as it is, but made into NAME.msh first (solids, other units, groups by rule)? */
+bool case_mesh_is_made(const case_file *file);
 /* mesh_file or NAME.msh; modal_file or NAME.modal.h5 (malloc'ed). */
 char *case_mesh_path(const case_file *file);
 char *case_modal_path(const case_file *file);

@@ -3,11 +3,12 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "mesh/format.h"
 #include "mhb/parameter.h"
 
 static bool has_block(const case_reader *r, const char *path) {
@@ -23,7 +24,7 @@ static void check_mesh(case_reader *r, int stages) {
     case_reader_issue(r, "mesh.blade", "give either mesh.blade or mesh.file, not both");
   bool needed = stages & (CASE_MESH | CASE_MODAL) && !r->file->modal_file;
   if (needed && !file && !blade)
-    case_reader_issue(r, "mesh", "missing; expected {blade: ...} or {file: NAME.msh}");
+    case_reader_issue(r, "mesh", "missing; expected {blade: ...} or {file: NAME}");
 }
 
 static void check_load(case_reader *r) {
@@ -198,15 +199,27 @@ static bool check_file(case_reader *r, const char *key, const char *path) {
 }
 
 static void check_extension(case_reader *r) {
-  static const char *const known[] = {".msh", ".inp"};
-  const char              *path    = r->file->mesh_file;
-  if (!path || !case_reader_good(r, "mesh.file")) return;
-  const char *dot  = strrchr(path, '.');
-  bool        good = false;
-  for (size_t i = 0; dot && i < sizeof known / sizeof *known; i++)
-    good = good || strcasecmp(dot, known[i]) == 0;
-  if (!good)
-    case_reader_issue(r, "mesh.file", "'%s' is neither a gmsh .msh nor an Abaqus .inp file", path);
+  const case_file *file = r->file;
+  if (!file->mesh_file || !case_reader_good(r, "mesh.file")) return;
+  mesh_format format = mesh_format_of(file->mesh_file);
+  bool        solid  = MESH_FORMAT_IS_SOLID(format);
+  bool        sized  = case_reader_good(r, "mesh.size") && file->source.size > 0;
+  if (format == MESH_FORMAT_UNKNOWN)
+    case_reader_issue(r, "mesh.file",
+                      "'%s' is neither a mesh (.msh, .inp) nor a solid (.step, .stp, .brep, .geo)",
+                      file->mesh_file);
+  if (format == MESH_FORMAT_STEP && case_reader_given(r, "mesh.unit"))
+    case_reader_issue(r, "mesh.unit", "leave it out: a STEP file has its own unit");
+  if (solid && format != MESH_FORMAT_GEO && !sized && case_reader_good(r, "mesh.size"))
+    case_reader_issue(r, "mesh.size", "missing; the element size of a solid, in m");
+  if (format != MESH_FORMAT_UNKNOWN && !solid && case_reader_given(r, "mesh.size"))
+    case_reader_issue(r, "mesh.size", "leave it out: '%s' is a mesh already", file->mesh_file);
+  char *own = case_output(file, ".msh");
+  if (own && case_mesh_is_made(file) && strcmp(own, file->mesh_file) == 0)
+    case_reader_issue(r, "mesh.file",
+                      "'%s' would be overwritten by the mesh made from it; rename it or the case",
+                      file->mesh_file);
+  free(own);
 }
 
 bool case_check_values(case_reader *r, int stages) {

@@ -30,6 +30,7 @@ typedef enum {
   CASE_POINTS,    /* number of points, or list: the case_file's integrate.frequency */
   CASE_FACTORS,   /* {k: [factor, phase]}: the case_file's load */
   CASE_PROBES,    /* {name: [x, y, z]}: the case_file's probe */
+  CASE_GROUPS,    /* {group: rule}: the case_file's source.rule */
   CASE_SECTIONS, /* list of mappings, whose keys are rows "...sections[].": the case_file's blade */
   CASE_SIGNAL,   /* [[amplitude, phase], ...] from harmonic 0; read by motion.c */
   CASE_N_TYPES
@@ -40,6 +41,7 @@ typedef enum {
   CASE_ALWAYS,
   CASE_IF_BLADE,      /* parametric blade: neither mesh.file nor modal.file */
   CASE_IF_MESH_FILE,  /* mesh.file, and no modal.file */
+  CASE_IF_SIZE,       /* mesh.file is a solid */
   CASE_IF_OWN_MODES,  /* no modal.file */
   CASE_IF_MODAL_FILE, /* modal.file */
   CASE_IF_NEIGHBOUR,  /* contact.to: neighbour */

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cases/groups.h"
 #include "cases/value.h"
 
 static void print_numbers(FILE *out, int n, const double *value) {
@@ -104,6 +105,8 @@ void case_value_print(FILE *out, const case_key *key, const case_file *file) {
     print_sections(out, &file->blade);
   } else if (key->type == CASE_FACTORS) {
     print_factors(out, key->path, &file->load);
+  } else if (key->type == CASE_GROUPS) {
+    case_groups_print(out, key->path, file->source.rule);
   } else if (key->type == CASE_PROBES) {
     print_probes(out, key->path, file);
   } else {

@@ -9,6 +9,7 @@
 #include "mesh/blade.h"
 #include "mesh/fe_mesh.h"
 #include "mesh/inp.h"
+#include "mesh/msh_write.h"
 #include "mesh/progress.h"
 #include "mesh/provenance.h"
 
@@ -18,7 +19,8 @@ static const char usage[] =
     "Meshes the blade of mesh.blade with gmsh (ten-node tetrahedra) and writes NAME.msh with the\n"
     "groups root, contact_right, contact_left and load; does nothing if that file is up to date\n"
     "(unless --force). With mesh.file instead: checks that mesh's elements, groups and contact "
-    "faces.\n"
+    "faces;\n"
+    "a solid is meshed, groups by rule and other units are put into NAME.msh.\n"
     "--inp writes the mesh for CalculiX and Abaqus too, NAME.inp: groups as surfaces and node "
     "sets, m.\n";
 
@@ -60,18 +62,58 @@ static bool up_to_date(const char *path, const char *settings) {
   return same;
 }
 
+/* What NAME.msh depends on: for mesh.file its contents and the pitch that the sides must match after. */
+static shb_status settings_of(const case_file *file, char **text) {
+  char fingerprint[17], *keys = case_settings(file, CASE_MESH);
+  SHB_CHECK(keys, SHB_ERR_IO, "out of memory");
+  *text = keys;
+  if (!file->mesh_file) return SHB_OK;
+  shb_status status = shb_fingerprint(file->mesh_file, fingerprint);
+  size_t     size   = strlen(keys) + 128;
+  *text             = status == SHB_OK ? malloc(size) : NULL;
+  if (*text)
+    snprintf(*text, size, "%smesh.fingerprint = %s\nsector = %d\n", keys, fingerprint,
+             file->source.blades);
+  free(keys);
+  SHB_TRY(status);
+  SHB_CHECK(*text, SHB_ERR_IO, "out of memory");
+  return SHB_OK;
+}
+
+/* From a solid, or from a mesh in other units or without groups. */
+static shb_status make_from_file(const case_file *file, const char *output,
+                                 const shb_provenance *provenance, shb_progress *progress) {
+  mesh_fe mesh;
+  int     pairs = 0;
+  double  start = shb_seconds();
+  SHB_TRY(mesh_source_read(&file->source, progress, &mesh));
+  shb_progress_note(progress, "%d nodes, %d elements in %.2f s", mesh.n_nodes, mesh.n_elements,
+                    shb_seconds() - start);
+  shb_status status = check_contact(file, &mesh, &pairs);
+  if (status != SHB_OK)
+    status = shb_fail(status, __FILE__, __LINE__, "%s: %s", file->mesh_file, shb_message());
+  if (status == SHB_OK) status = mesh_msh_write(&mesh, output, provenance);
+  mesh_fe_free(&mesh);
+  return status;
+}
+
+static shb_status make_at(const case_file *file, const command_options *options, const char *output,
+                          char *settings, shb_progress *progress) {
+  if (!options->force && up_to_date(output, settings)) {
+    shb_progress_note(progress, "%s is up to date", output);
+    return SHB_OK;
+  }
+  shb_provenance provenance = command_provenance(file, settings, "shroudhb-mesh");
+  return file->mesh_file ? make_from_file(file, output, &provenance, progress)
+                         : mesh_blade_write(&file->blade, output, &provenance, progress);
+}
+
 static shb_status make(const case_file *file, const command_options *options,
                        shb_progress *progress) {
-  char      *output = case_output(file, ".msh"), *settings = case_settings(file, CASE_MESH);
-  shb_status status = SHB_OK;
-  if (!output || !settings) {
-    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  } else if (!options->force && up_to_date(output, settings)) {
-    shb_progress_note(progress, "%s is up to date", output);
-  } else {
-    shb_provenance provenance = command_provenance(file, settings, "shroudhb-mesh");
-    status                    = mesh_blade_write(&file->blade, output, &provenance, progress);
-  }
+  char      *settings = NULL, *output = case_output(file, ".msh");
+  shb_status status = output ? settings_of(file, &settings)
+                             : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  if (status == SHB_OK) status = make_at(file, options, output, settings, progress);
   free(output);
   free(settings);
   return status;
@@ -104,8 +146,8 @@ static shb_status run(const case_file *file, const command_options *options) {
     shb_progress_note(&progress, "modal.file is given: nothing to mesh");
     return SHB_OK;
   }
-  shb_status status =
-      file->mesh_file ? check_file(file, &progress) : make(file, options, &progress);
+  shb_status status = file->mesh_file && !case_mesh_is_made(file) ? check_file(file, &progress)
+                                                                  : make(file, options, &progress);
   if (status == SHB_OK && options->mode) status = write_inp(file, &progress);
   shb_progress_note(&progress, "%.2f s in all", shb_seconds() - progress.started);
   return status;

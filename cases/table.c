@@ -1,6 +1,8 @@
 /* The rows of the key table. */
 #include "cases/keys.h"
 
+#include "mesh/format.h"
+
 #define AT(member) .at = offsetof(case_file, member)
 #define SECTION(member) .at = offsetof(mesh_section, member)
 #define COUNT(array) ((int)(sizeof(array) / sizeof *(array)))
@@ -15,8 +17,14 @@ static const case_key table[] = {
     {"name", CASE_WORD, "", AT(name), .stages = CASE_POST,
      .help = "name of the output files; default: the file's name, or its folder's for case.yaml"},
 
-    {"mesh.file", CASE_FILE_NAME, "", AT(mesh_file), .stages = CASE_MODAL, .when = CASE_IF_MESH_FILE,
-     .help = "gmsh .msh or Abaqus/CalculiX .inp file with the groups root, contact_right, contact_left, load; instead of blade"},
+    {"mesh.file", CASE_FILE_NAME, "", AT(mesh_file), .stages = CASE_MESH | CASE_MODAL, .when = CASE_IF_MESH_FILE,
+     .help = "instead of blade: a mesh (.msh, Abaqus/CalculiX .inp) or a solid (.step, .brep, .geo) with the groups root, contact_right, contact_left, load"},
+    {"mesh.unit", CASE_CHOICE, "", .words = "m cm mm in", .fallback = "m", AT(mesh_unit), .stages = CASE_MESH, .when = CASE_IF_MESH_FILE,
+     .help = "unit of the coordinates in mesh.file; a STEP file has its own"},
+    {"mesh.size", CASE_NUMBER, "m", 0, 100, .fallback = "0 m", AT(source.size), .stages = CASE_MESH, .when = CASE_IF_SIZE,
+     .help = "element size of a solid; 0: as a .geo file says"},
+    {"mesh.groups", CASE_GROUPS, "", .fallback = "{}", AT(source.rule), .stages = CASE_MESH, .when = CASE_IF_MESH_FILE,
+     .help = "groups by rule: {GROUP: {plane: point, normal: vector} | {radius: r} | {nearest: point} | {name: the file's}}, tolerance 1e-6 m"},
     {"mesh.blade.root.length", CASE_NUMBER, "m", 0, 100, true, .required = true, AT(blade.root_length), .stages = CASE_MESH, .when = CASE_IF_BLADE,
      .help = "root block, axial"},
     {"mesh.blade.root.width", CASE_NUMBER, "m", 0, 100, true, .required = true, AT(blade.root_width), .stages = CASE_MESH, .when = CASE_IF_BLADE,
@@ -176,6 +184,8 @@ bool case_key_applies(const case_key *key, const case_file *file) {
       return blade;
     case CASE_IF_MESH_FILE:
       return own && file->mesh_file;
+    case CASE_IF_SIZE:
+      return own && file->mesh_file && MESH_FORMAT_IS_SOLID(mesh_format_of(file->mesh_file));
     case CASE_IF_OWN_MODES:
       return own;
     case CASE_IF_MODAL_FILE:

@@ -277,7 +277,7 @@ static shb_status make(const mesh_blade *blade, const char *path, const shb_prov
   shb_progress_note(progress, "solid %.2f s", built - start);
   SHB_CHECK(!shb_interrupted(), SHB_INTERRUPTED, "interrupted while meshing; nothing written");
   SHB_TRY(mesh_volume(blade, &frame, progress));
-  SHB_TRY(mesh_import(who, &mesh));
+  SHB_TRY(mesh_import(who, NULL, &mesh));
   shb_status status = verify(blade, &mesh, progress);
   shb_progress_note(progress, "mesh %.2f s: %d nodes, %d elements, %d contact faces a side",
                     shb_seconds() - built, mesh.n_nodes, mesh.n_elements,

@@ -43,6 +43,12 @@ const char *mesh_set_name(mesh_set_id id);
  * face not on the surface of the body. */
 shb_status mesh_fe_read(const char *path, mesh_fe *mesh);
 
+/* The same where groups have other names in the file (group[id], NULL: the usual one; or group itself NULL) and root may
+ * be absent: that is mesh_fe_check_root's to tell. */
+shb_status mesh_fe_read_named(const char *path, const char *const group[MESH_N_SETS],
+                              mesh_fe *mesh);
+shb_status mesh_fe_check_root(const mesh_fe *mesh, const char *name);
+
 /* Which left node lies on each right node after rotating the left face by the sector angle 2 pi/blades.
  *   match  out  [n_right_unique] pairs are returned through right_nodes/left_nodes, malloc'ed, sorted by right
  * Errors: SHB_ERR_INPUT if counts differ or a distance exceeds 1e-9 m (the distance and node are named). */

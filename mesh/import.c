@@ -206,18 +206,22 @@ static shb_status take_surface(const char *name, const node_table *table, int en
 }
 
 /* Which of our sets a physical surface is; MESH_N_SETS if none. */
-static shb_status which_set(const char *name, int group, mesh_set_id *id) {
+static shb_status which_set(const char *name, const char *const names[MESH_N_SETS], int group,
+                            mesh_set_id *id) {
   char *label = NULL;
   GMSH_TRY(name, gmshModelGetPhysicalName(2, group, &label, &ierr));
-  *id = MESH_ROOT;
-  while (*id < MESH_N_SETS && (!label || strcmp(label, mesh_set_name(*id)) != 0)) ++*id;
+  for (*id = MESH_ROOT; *id < MESH_N_SETS; ++*id) {
+    const char *wanted = names && names[*id] ? names[*id] : mesh_set_name(*id);
+    if (label && strcmp(label, wanted) == 0) break;
+  }
   gmshFree(label);
   return SHB_OK;
 }
 
-static shb_status take_group(const char *name, const node_table *table, int group, mesh_fe *mesh) {
+static shb_status take_group(const char *name, const char *const names[MESH_N_SETS],
+                             const node_table *table, int group, mesh_fe *mesh) {
   mesh_set_id id = MESH_ROOT;
-  SHB_TRY(which_set(name, group, &id));
+  SHB_TRY(which_set(name, names, group, &id));
   if (id == MESH_N_SETS) return SHB_OK;
   int   *entities = NULL;
   size_t n        = 0;
@@ -229,29 +233,25 @@ static shb_status take_group(const char *name, const node_table *table, int grou
   return status;
 }
 
-static shb_status take_groups(const char *name, const node_table *table, mesh_fe *mesh) {
+static shb_status take_groups(const char *name, const char *const names[MESH_N_SETS],
+                              const node_table *table, mesh_fe *mesh) {
   int   *groups = NULL;
   size_t n      = 0;
   GMSH_TRY(name, gmshModelGetPhysicalGroups(&groups, &n, 2, &ierr));
   shb_status status = SHB_OK;
   for (size_t i = 0; i + 1 < n && status == SHB_OK; i += 2)
-    status = take_group(name, table, groups[i + 1], mesh);
+    status = take_group(name, names, table, groups[i + 1], mesh);
   gmshFree(groups);
-  SHB_TRY(status);
-  SHB_CHECK(mesh->set[MESH_ROOT].n > 0, SHB_ERR_INPUT,
-            "%s: group root is absent or empty; a physical surface named root says which faces are "
-            "clamped",
-            name);
-  return SHB_OK;
+  return status;
 }
 
-shb_status mesh_import(const char *name, mesh_fe *mesh) {
+shb_status mesh_import(const char *name, const char *const group[MESH_N_SETS], mesh_fe *mesh) {
   memset(mesh, 0, sizeof *mesh);
   node_table table  = {0};
   shb_status status = check_types(name, &mesh->kind);
   if (status == SHB_OK) status = table_fill(name, &table);
   if (status == SHB_OK) status = take_volume(name, &table, mesh);
-  if (status == SHB_OK) status = take_groups(name, &table, mesh);
+  if (status == SHB_OK) status = take_groups(name, group, &table, mesh);
   if (status == SHB_OK) status = mesh_faces_orient(mesh, name);
   table_free(&table);
   if (status != SHB_OK) mesh_fe_free(mesh);

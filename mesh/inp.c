@@ -169,8 +169,8 @@ static shb_status faces_of_nodes(builder *b, const mesh_inp_set *from, mesh_set_
   return status;
 }
 
-static shb_status take_group(builder *b, mesh_set_id id) {
-  const char         *name = mesh_set_name(id);
+static shb_status take_group(builder *b, const char *const names[MESH_N_SETS], mesh_set_id id) {
+  const char         *name = names && names[id] ? names[id] : mesh_set_name(id);
   const mesh_inp_set *set  = mesh_inp_find(&b->inp, MESH_INP_SURFACE, name);
   if (!set) set = mesh_inp_find(&b->inp, MESH_INP_ELSET, name);
   if (!set) set = mesh_inp_find(&b->inp, MESH_INP_NSET, name);
@@ -179,26 +179,22 @@ static shb_status take_group(builder *b, mesh_set_id id) {
   return set->of_nodes ? faces_of_nodes(b, set, id) : faces_of_elements(b, set, id);
 }
 
-static shb_status build(builder *b) {
+static shb_status build(builder *b, const char *const names[MESH_N_SETS]) {
   SHB_TRY(mesh_inp_sort(&b->inp, b->deck));
   SHB_TRY(find_kind(b));
   SHB_TRY(take_volumes(b));
   SHB_TRY(take_nodes(b));
-  for (int id = 0; id < MESH_N_SETS; id++) SHB_TRY(take_group(b, (mesh_set_id)id));
-  SHB_CHECK(b->mesh->set[MESH_ROOT].n > 0, SHB_ERR_INPUT,
-            "%s: group root is absent; a *SURFACE or *NSET of that name says which faces are "
-            "clamped",
-            b->deck->path);
+  for (int id = 0; id < MESH_N_SETS; id++) SHB_TRY(take_group(b, names, (mesh_set_id)id));
   return mesh_faces_orient(b->mesh, b->deck->path);
 }
 
-shb_status mesh_inp_read(const char *path, mesh_fe *mesh) {
+shb_status mesh_inp_read(const char *path, const char *const group[MESH_N_SETS], mesh_fe *mesh) {
   mesh_deck deck;
   memset(mesh, 0, sizeof *mesh);
   shb_status status = mesh_deck_open(path, &deck);
   builder    b      = {.deck = &deck, .mesh = mesh};
   if (status == SHB_OK) status = mesh_inp_cards(&deck, &b.inp);
-  if (status == SHB_OK) status = build(&b);
+  if (status == SHB_OK) status = build(&b, group);
   mesh_inp_free(&b.inp);
   mesh_deck_close(&deck);
   free(b.index);

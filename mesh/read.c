@@ -6,9 +6,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 #include "mesh/fe_mesh.h"
+#include "mesh/format.h"
 #include "mesh/import.h"
 #include "mesh/inp.h"
 #include "mesh/jacobian.h"
@@ -64,31 +64,42 @@ static shb_status check_file(const char *path) {
   return status;
 }
 
-static shb_status read_msh(const char *path, mesh_fe *mesh) {
+static shb_status read_msh(const char *path, const char *const group[MESH_N_SETS], mesh_fe *mesh) {
   SHB_TRY(check_file(path));
   mesh_kernel kernel;
   SHB_TRY(mesh_kernel_open(&kernel));
   int ierr = 0;
   gmshMerge(path, &ierr);
-  shb_status status =
-      ierr ? mesh_kernel_fail(SHB_ERR_INPUT, __FILE__, __LINE__, path) : mesh_import(path, mesh);
+  shb_status status = ierr ? mesh_kernel_fail(SHB_ERR_INPUT, __FILE__, __LINE__, path)
+                           : mesh_import(path, group, mesh);
   mesh_kernel_close(&kernel);
   return status;
 }
 
-static bool ends_in(const char *path, const char *ending) {
-  size_t n = strlen(path), m = strlen(ending);
-  return n > m && strcasecmp(path + n - m, ending) == 0;
+shb_status mesh_fe_read_named(const char *path, const char *const group[MESH_N_SETS],
+                              mesh_fe *mesh) {
+  memset(mesh, 0, sizeof *mesh);
+  bool msh = mesh_format_of(path) == MESH_FORMAT_MSH;
+  SHB_CHECK(msh || mesh_format_of(path) == MESH_FORMAT_INP, SHB_ERR_INPUT,
+            "%s: not a mesh file; its name must end in .msh (gmsh) or .inp (Abaqus, CalculiX)",
+            path);
+  SHB_TRY(msh ? read_msh(path, group, mesh) : mesh_inp_read(path, group, mesh));
+  shb_status status = mesh_jacobian_check(mesh, path);
+  if (status != SHB_OK) mesh_fe_free(mesh);
+  return status;
+}
+
+shb_status mesh_fe_check_root(const mesh_fe *mesh, const char *name) {
+  SHB_CHECK(mesh->set[MESH_ROOT].n > 0, SHB_ERR_INPUT,
+            "%s: group root is absent or empty; a physical surface (in .inp a *SURFACE or *NSET) "
+            "of that name, or a rule in mesh.groups, says which faces are clamped",
+            name);
+  return SHB_OK;
 }
 
 shb_status mesh_fe_read(const char *path, mesh_fe *mesh) {
-  memset(mesh, 0, sizeof *mesh);
-  bool msh = ends_in(path, ".msh");
-  SHB_CHECK(msh || ends_in(path, ".inp"), SHB_ERR_INPUT,
-            "%s: not a mesh file; its name must end in .msh (gmsh) or .inp (Abaqus, CalculiX)",
-            path);
-  SHB_TRY(msh ? read_msh(path, mesh) : mesh_inp_read(path, mesh));
-  shb_status status = mesh_jacobian_check(mesh, path);
+  SHB_TRY(mesh_fe_read_named(path, NULL, mesh));
+  shb_status status = mesh_fe_check_root(mesh, path);
   if (status != SHB_OK) mesh_fe_free(mesh);
   return status;
 }

@@ -117,6 +117,49 @@ rm "$work/dir/own.msh"
 run 4 brought.yaml
 says "own.msh: cannot be read: No such file"
 
+# A solid: meshed once, its groups by rule, its sides alike.
+cat >"$work/dir/sector.geo" <<'GEO'
+SetFactory("OpenCASCADE");
+Rectangle(1) = {0, 300, 0, 50, 40};
+Extrude {{1, 0, 0}, {0, 0, 0}, 2*Pi/40} { Surface{1}; }
+MeshSize{ PointsOf{ Surface{1}; } } = 7;
+GEO
+solid() { # MESH-BLOCK
+  sed -e '/^mesh:/,/^material:/{/^material:/!d}' -e '/psi:/d' "$scene" >"$work/dir/solid.yaml"
+  printf 'name: solid\nmesh:\n  file: sector.geo\n%s\n' "$1" >>"$work/dir/solid.yaml"
+  sed -i '0,/^name: z/{/^name: z/d}' "$work/dir/solid.yaml"
+}
+rules='  unit: mm
+  size: 12 mm
+  groups:
+    root: {radius: 300 mm}
+    contact_right: {nearest: [20 mm, 320 mm, 0 m]}
+    contact_left: {plane: [0, 0, 0], normal: [0, -0.15643446504023087, 0.98768834059513777]}
+    load: {nearest: [25 mm, 350 mm, 25 mm]}'
+solid "$rules"
+run 0 --verbose solid.yaml
+[ -s "$work/dir/solid.msh" ] || fail "no solid.msh"
+run 0 --verbose solid.yaml
+says "is up to date"
+echo "// touched" >>"$work/dir/sector.geo"
+run 0 --verbose solid.yaml
+says "nodes"
+sed -i 's/contact_left: .*/contact_left: {radius: 2 m}/' "$work/dir/solid.yaml"
+run 2 solid.yaml
+lines 1
+says "mesh.groups.contact_left: "
+says "has no face at radius 2 m"
+solid "  unit: mm
+  groups:
+    root: {radius: 300 mm, nearest: [0, 0, 0]}
+    rot: {radius: 1}
+    load: {plane: [0, 0, 0]}"
+run 2 solid.yaml
+says "mesh.groups.root.nearest: is a second rule for its group"
+says "mesh.groups.rot: unknown group"
+says "mesh.groups.load: lacks normal"
+rm "$work/dir/sector.geo" "$work/dir/solid.yaml" "$work/dir/solid.msh"
+
 left=$(ls -A "$work/home" | grep -v -e '^.fltk$')
 [ -z "$left" ] || fail "something was written to HOME: $left"
 left=$(ls -A "$work/dir" | grep -v -e '^case.yaml$' -e '^brought.yaml$' -e '^z_notch_blade.msh$')

@@ -273,7 +273,7 @@ static void faults_are_named_with_their_line(void **state) {
   (void)state;
   static const fault faults[] = {
       {"", 0, "no volume elements"},
-      {NODES ELEMENT, 0, "group root is absent; a *SURFACE or *NSET"},
+      {NODES ELEMENT, 0, "group root is absent or empty; a physical surface (in .inp a *SURFACE"},
       {"*NODE\n1, 0, 0\n", 2, "*NODE: 3 values"},
       {"*NODE\n1, 0, 0, zero\n", 2, "'zero' is not a number"},
       {"*NODE\n1, 0, nan, 0\n", 2, "'nan' is not a number"},

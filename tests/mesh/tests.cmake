@@ -5,6 +5,8 @@ target_link_libraries(tests_box PUBLIC shb_mesh)
 shb_test(mesh fe_mesh fast tests_box ${GMSH_LIBRARY})
 target_include_directories(test_mesh_fe_mesh PRIVATE ${GMSH_INCLUDE})
 shb_test(mesh inp fast tests_box)
+shb_test(mesh source fast tests_box ${GMSH_LIBRARY})
+target_include_directories(test_mesh_source PRIVATE ${GMSH_INCLUDE})
 shb_test(mesh blade fast shb_mesh)
 
 if(TARGET shb_case)

@@ -1,0 +1,165 @@
+#include "cases/groups.h"
+
+#include <string.h>
+
+#include "cases/units.h"
+
+static const char *const group_name[MESH_N_SETS] = {"root", "contact_right", "contact_left",
+                                                    "load"};
+static const char        expected[] =
+    "{plane: [x, y, z], normal: [x, y, z]}, {radius: r}, {nearest: [x, y, z]} or {name: WORD}";
+static const double usual_tolerance = 1e-6; /* m */
+
+/* One rule as it is read. */
+typedef struct {
+  case_issues *issues;
+  char         path[CASE_PATH];
+  mesh_rule   *rule;
+  bool         plane, normal, tolerance;
+} context;
+
+static bool refuse(const context *c, const case_node *node, const char *wanted) {
+  if (node->kind != CASE_BROKEN)
+    case_issue_add(c->issues, node->line, node->column, c->path, "is %s; expected %s",
+                   case_kind_name(node->kind), wanted);
+  return false;
+}
+
+static bool read_number(const context *c, const case_node *node, const char *unit, double *value) {
+  char why[CASE_WHY];
+  if (node->kind != CASE_SCALAR) return refuse(c, node, "a number");
+  if (case_quantity(node->text, unit, value, why)) return true;
+  case_issue_add(c->issues, node->line, node->column, c->path, "%s", why);
+  return false;
+}
+
+static bool read_vector(const context *c, const case_node *node, const char *unit,
+                        double value[3]) {
+  if (node->kind != CASE_SEQUENCE || node->n != 3) return refuse(c, node, "[x, y, z]");
+  bool good = true;
+  for (int d = 0; d < 3; d++) good = read_number(c, &node->child[d], unit, &value[d]) && good;
+  return good;
+}
+
+static bool read_positive(const context *c, const case_node *node, double *value) {
+  if (!read_number(c, node, "m", value)) return false;
+  if (*value > 0) return true;
+  case_issue_add(c->issues, node->line, node->column, c->path, "is %g m, must be above 0 m",
+                 *value);
+  return false;
+}
+
+/* A second rule for the same group. */
+static bool take_kind(const context *c, const case_node *node, mesh_rule_kind kind) {
+  bool first = c->rule->kind == MESH_RULE_NONE || c->rule->kind == kind;
+  if (!first)
+    case_issue_add(c->issues, node->key_line, node->key_column, c->path,
+                   "is a second rule for its group; expected one of %s", expected);
+  c->rule->kind = kind;
+  return first;
+}
+
+static bool read_name(const context *c, const case_node *node) {
+  if (node->kind != CASE_SCALAR) return refuse(c, node, "the name of a group in the mesh file");
+  size_t n = strlen(node->text);
+  if (n == 0 || n >= MESH_RULE_WORD) return refuse(c, node, "a name of 1 to 80 letters");
+  memcpy(c->rule->name, node->text, n + 1);
+  return true;
+}
+
+static bool read_part(context *c, const case_node *node) {
+  mesh_rule *rule = c->rule;
+  if (strcmp(node->key, "plane") == 0) {
+    c->plane = true;
+    return take_kind(c, node, MESH_RULE_PLANE) && read_vector(c, node, "m", rule->at);
+  }
+  if (strcmp(node->key, "normal") == 0) {
+    c->normal = true;
+    return take_kind(c, node, MESH_RULE_PLANE) && read_vector(c, node, "", rule->normal);
+  }
+  if (strcmp(node->key, "radius") == 0)
+    return take_kind(c, node, MESH_RULE_RADIUS) && read_positive(c, node, &rule->radius);
+  if (strcmp(node->key, "nearest") == 0)
+    return take_kind(c, node, MESH_RULE_NEAREST) && read_vector(c, node, "m", rule->at);
+  if (strcmp(node->key, "name") == 0)
+    return take_kind(c, node, MESH_RULE_NAME) && read_name(c, node);
+  if (strcmp(node->key, "tolerance") == 0) {
+    c->tolerance = true;
+    return read_positive(c, node, &rule->tolerance);
+  }
+  case_issue_add(c->issues, node->key_line, node->key_column, c->path,
+                 "unknown key; known here: plane, normal, radius, nearest, name, tolerance");
+  return false;
+}
+
+/* What the parts of a rule must be together. */
+static bool check_rule(const context *c, const case_node *node) {
+  const mesh_rule *rule = c->rule;
+  const char      *lack = NULL;
+  if (rule->kind == MESH_RULE_NONE) lack = "says no faces";
+  if (rule->kind == MESH_RULE_PLANE && !c->plane) lack = "lacks plane, a point in it";
+  if (rule->kind == MESH_RULE_PLANE && !c->normal) lack = "lacks normal";
+  if (rule->kind == MESH_RULE_PLANE && c->normal && rule->normal[0] == 0 && rule->normal[1] == 0 &&
+      rule->normal[2] == 0)
+    lack = "has a normal without direction";
+  if (c->tolerance && (rule->kind == MESH_RULE_NEAREST || rule->kind == MESH_RULE_NAME))
+    lack = "has a tolerance, which only a plane or a radius has";
+  if (lack)
+    case_issue_add(c->issues, node->line, node->column, c->path, "%s; expected %s", lack, expected);
+  return !lack;
+}
+
+static bool read_rule(case_issues *issues, const char *path, const case_node *node,
+                      mesh_rule *rule) {
+  context c       = {.issues = issues, .rule = rule};
+  bool    good    = true;
+  *rule           = (mesh_rule){.kind = MESH_RULE_NONE};
+  rule->tolerance = usual_tolerance;
+  case_path(c.path, "%s", path);
+  if (node->kind != CASE_MAPPING) return refuse(&c, node, expected);
+  for (int i = 0; i < node->n; i++) {
+    case_path(c.path, "%s.%s", path, node->child[i].key);
+    good = read_part(&c, &node->child[i]) && good;
+  }
+  case_path(c.path, "%s", path);
+  return good && check_rule(&c, node);
+}
+
+bool case_groups_read(case_issues *issues, const char *path, const case_node *node,
+                      mesh_rule rule[MESH_N_SETS]) {
+  bool good = node->kind == CASE_MAPPING;
+  if (!good && node->kind != CASE_BROKEN)
+    case_issue_add(issues, node->line, node->column, path,
+                   "is %s; expected {root: ..., contact_right: ..., contact_left: ..., load: ...}",
+                   case_kind_name(node->kind));
+  for (int i = 0; node->kind == CASE_MAPPING && i < node->n; i++) {
+    const case_node *child = &node->child[i];
+    char             full[CASE_PATH];
+    int              id = 0;
+    case_path(full, "%s.%s", path, child->key);
+    while (id < MESH_N_SETS && strcmp(child->key, group_name[id]) != 0) id++;
+    if (id == MESH_N_SETS)
+      case_issue_add(issues, child->key_line, child->key_column, full,
+                     "unknown group; known are root, contact_right, contact_left, load");
+    good = id < MESH_N_SETS && read_rule(issues, full, child, &rule[id]) && good;
+  }
+  return good;
+}
+
+void case_groups_print(FILE *out, const char *path, const mesh_rule rule[MESH_N_SETS]) {
+  for (int id = 0; id < MESH_N_SETS; id++) {
+    const mesh_rule *r = &rule[id];
+    if (r->kind == MESH_RULE_NONE) continue;
+    fprintf(out, "%s.%s = ", path, group_name[id]);
+    if (r->kind == MESH_RULE_NAME) fprintf(out, "name %s", r->name);
+    if (r->kind == MESH_RULE_PLANE)
+      fprintf(out, "plane %.17g %.17g %.17g normal %.17g %.17g %.17g", r->at[0], r->at[1], r->at[2],
+              r->normal[0], r->normal[1], r->normal[2]);
+    if (r->kind == MESH_RULE_RADIUS) fprintf(out, "radius %.17g", r->radius);
+    if (r->kind == MESH_RULE_NEAREST)
+      fprintf(out, "nearest %.17g %.17g %.17g", r->at[0], r->at[1], r->at[2]);
+    if (r->kind == MESH_RULE_PLANE || r->kind == MESH_RULE_RADIUS)
+      fprintf(out, " tolerance %.17g", r->tolerance);
+    fputc('\n', out);
+  }
+}

@@ -1,0 +1,18 @@
+/* The block mesh.groups: which faces are root, contact_right, contact_left, load. */
+#ifndef CASES_GROUPS_H
+#define CASES_GROUPS_H
+
+#include "cases/issues.h"
+#include "cases/keys.h"
+#include "cases/yaml.h"
+#include "mesh/rules.h"
+
+/* {GROUP: {plane: [x, y, z], normal: [x, y, z]} | {radius: r} | {nearest: [x, y, z]} | {name: WORD}}, a plane and a
+ * radius with an optional tolerance. Every fault is recorded under path. */
+bool case_groups_read(case_issues *issues, const char *path, const case_node *node,
+                      mesh_rule rule[MESH_N_SETS]);
+
+/* One line a rule, in SI. */
+void case_groups_print(FILE *out, const char *path, const mesh_rule rule[MESH_N_SETS]);
+
+#endif

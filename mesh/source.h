@@ -1,0 +1,20 @@
+/* Where a blade's mesh comes from when it is not the parametric one: a mesh, or a solid that is meshed here. */
+#ifndef MESH_SOURCE_H
+#define MESH_SOURCE_H
+
+#include "mesh/progress.h"
+#include "mesh/rules.h"
+
+typedef struct {
+  const char *path;
+  double      unit; /* m: length of one unit of the file's coordinates; STEP files arrive in mm */
+  double      size; /* m, element size of a solid; 0: as the file says (.geo) */
+  mesh_axis   axis;
+  int blades; /* contact faces of a solid are made to match after this sector; 0: contact to ground */
+  mesh_rule rule[MESH_N_SETS];
+} mesh_source;
+
+/* Read, or mesh, and give every group its faces; coordinates in m. SHB_ERR_INPUT, SHB_ERR_IO, SHB_INTERRUPTED. */
+shb_status mesh_source_read(const mesh_source *source, shb_progress *progress, mesh_fe *mesh);
+
+#endif
