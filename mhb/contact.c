@@ -115,6 +115,19 @@ static double content_of(const mhb_signals *s, double mu) {
   return all > 0 && high < INFINITY ? sqrt(sqrt(high / all)) : 1;
 }
 
+/* Where the contact closes for less than a few cells of the grid, which may pass over it: n there is about a parabola. */
+static double brief_load(mhb_contact *c) {
+  double load = 0, brief = 4 * TWO_PI / c->signals.n_grid;
+  for (int i = 0; i < c->closed.n; i++) {
+    double y[3], dy[3], length = c->closed.opening[i] - c->closed.closing[i];
+    if (length > brief) continue;
+    mhb_signals_at(&c->signals, c->closed.closing[i] + .5 * length, y, dy, NULL);
+    load += 2. / 3 * fmax(0, y[0]) * length / TWO_PI;
+    c->slip.peak = fmax(c->slip.peak, y[0]);
+  }
+  return load;
+}
+
 /* What the forces will be like: the mean and the peak of n over the period, and the friction. */
 static void set_reference(mhb_contact *c) {
   const mhb_signals *s    = &c->signals;
@@ -125,7 +138,7 @@ static void set_reference(mhb_contact *c) {
     load         = n > 0 ? load + n : load;
     c->slip.peak = n > c->slip.peak ? n : c->slip.peak;
   }
-  load /= s->n_grid;
+  load = fmax(load / s->n_grid, brief_load(c));
   for (int i = 1; i < 3; i++) swing += s->bound[i][0] - fabs(s->coefficient[i]);
   double limit = c->slip.mu * load;
   c->friction  = fmax(limit < swing ? limit : swing, 1e-300);
@@ -393,8 +406,8 @@ void mhb_contact_force(mhb_contact *c, const mhb_law *law, const double *motion,
     for (size_t i = 0; info->lost && i < size; i++) force[i] = NAN;
     return;
   }
-  set_slip(c, law, jacobian != NULL);
   mhb_closed_intervals(&c->signals, &c->closed);
+  set_slip(c, law, jacobian != NULL);
   c->columns = jacobian ? MHB_ALL_COLUMNS : MHB_NO_COLUMNS;
   c->record  = 1;
   mhb_sums_clear(c);

@@ -441,6 +441,28 @@ static double uniform(void) {
   return (double)(seed >> 11) / 9007199254740992.;
 }
 
+/* Closed for less than a cell of any grid: n is a parabola of height g, slip keeps its direction, so that
+ *   mean n = (4/3) g sqrt(2 g/n'')/(2 pi),   |mean f| = mu mean n,   but for g itself and what rounding leaves of n. */
+static void grazing(void **state) {
+  (void)state;
+  double kv = 3e5, B = 2.385e-4, mu = .3;
+  for (int i = 1; i <= 9; i++) {
+    double     g = kv * B * pow(10, -i), load = 4. / 3 * g * sqrt(2 * g / (kv * B)) / (2 * PI);
+    evaluation e = {.law = {.mu = mu, .kv = kv, .ku = {4e5, 2e4, 5e5}, .n0 = g - kv * B}};
+    set(&e, 0, 1, B, .7 * i);
+    set(&e, 1, 1, .7 * B, 1.1);
+    set(&e, 1, 2, .2 * B, .3);
+    set(&e, 2, 1, .5 * B, -1.4);
+    evaluate(&e, 1);
+    double friction = hypot(e.force[1][0], e.force[2][0]), off = pow(10, -i) + 1e-14 * pow(10, i);
+    assert_int_equal(e.info.lost, 0);
+    assert_true(e.info.error < 1e-8);
+    assert_near(e.info.share[0] + e.info.share[1] + e.info.share[2], 1, 1e-9);
+    assert_near(e.force[0][0], load, off * load);
+    assert_near(friction, mu * load, (3 * off + pow(10, -.5 * i)) * load);
+  }
+}
+
 static void random_cases_are_sane(void **state) {
   (void)state;
   int lost = 0, total = 20000;
@@ -498,6 +520,7 @@ int main(void) {
       cmocka_unit_test(units_do_not_matter),
       cmocka_unit_test(stuck_and_open_are_linear),
       cmocka_unit_test(continuous_through_onset),
+      cmocka_unit_test(grazing),
       cmocka_unit_test(random_cases_are_sane),
       cmocka_unit_test(zero_motion_and_zero_friction),
   };
