@@ -10,6 +10,7 @@
 #include "mesh/fe_mesh.h"
 #include "mesh/inp.h"
 #include "mesh/msh_write.h"
+#include "mesh/pairing.h"
 #include "mesh/progress.h"
 #include "mesh/provenance.h"
 
@@ -24,32 +25,40 @@ static const char usage[] =
     "--inp writes the mesh for CalculiX and Abaqus too, NAME.inp: groups as surfaces and node "
     "sets, m.\n";
 
-static shb_status check_contact(const case_file *file, mesh_fe *mesh, int *pairs) {
-  int *right = NULL, *left = NULL;
+/* pairing: zero where the contact is to ground. */
+static shb_status check_contact(const case_file *file, mesh_fe *mesh, mesh_pairing *pairing) {
+  *pairing = (mesh_pairing){0};
   if (file->mhb.to_ground) {
     SHB_CHECK(mesh->set[MESH_CONTACT_RIGHT].n, SHB_ERR_INPUT,
               "group contact_right is absent or empty; contact to ground needs it");
     return SHB_OK;
   }
   SHB_TRY(mesh_fe_orient(mesh, file->axis));
-  SHB_TRY(mesh_fe_match(mesh, file->axis, file->blades, pairs, &right, &left));
-  free(right);
-  free(left);
+  SHB_TRY(mesh_pairing_create(mesh, file->axis, file->blades, pairing));
   return SHB_OK;
+}
+
+static void note_pairing(shb_progress *progress, const mesh_pairing *pairing) {
+  if (pairing->projected)
+    shb_progress_note(
+        progress, "the contact faces do not match node for node: projected, at most %.3g m apart",
+        pairing->gap);
 }
 
 /* The mesh brought by the case: readable, whole, and fit for its contact. */
 static shb_status check_file(const case_file *file, shb_progress *progress) {
-  mesh_fe mesh;
-  int     pairs = 0;
+  mesh_fe      mesh;
+  mesh_pairing pairing;
   SHB_TRY(mesh_fe_read(file->mesh_file, &mesh));
-  shb_status status = check_contact(file, &mesh, &pairs);
+  shb_status status = check_contact(file, &mesh, &pairing);
   if (status != SHB_OK)
     status = shb_fail(status, __FILE__, __LINE__, "%s: %s", file->mesh_file, shb_message());
   if (status == SHB_OK)
-    shb_progress_note(progress,
-                      "%s is sound: %d nodes, %d elements, %d contact node pairs, %d load faces",
-                      file->mesh_file, mesh.n_nodes, mesh.n_elements, pairs, mesh.set[MESH_LOAD].n);
+    shb_progress_note(
+        progress, "%s is sound: %d nodes, %d elements, %d contact node pairs, %d load faces",
+        file->mesh_file, mesh.n_nodes, mesh.n_elements, pairing.n, mesh.set[MESH_LOAD].n);
+  if (status == SHB_OK) note_pairing(progress, &pairing);
+  mesh_pairing_free(&pairing);
   mesh_fe_free(&mesh);
   return status;
 }
@@ -83,16 +92,18 @@ static shb_status settings_of(const case_file *file, char **text) {
 /* From a solid, or from a mesh in other units or without groups. */
 static shb_status make_from_file(const case_file *file, const char *output,
                                  const shb_provenance *provenance, shb_progress *progress) {
-  mesh_fe mesh;
-  int     pairs = 0;
-  double  start = shb_seconds();
+  mesh_fe      mesh;
+  mesh_pairing pairing;
+  double       start = shb_seconds();
   SHB_TRY(mesh_source_read(&file->source, progress, &mesh));
   shb_progress_note(progress, "%d nodes, %d elements in %.2f s", mesh.n_nodes, mesh.n_elements,
                     shb_seconds() - start);
-  shb_status status = check_contact(file, &mesh, &pairs);
+  shb_status status = check_contact(file, &mesh, &pairing);
   if (status != SHB_OK)
     status = shb_fail(status, __FILE__, __LINE__, "%s: %s", file->mesh_file, shb_message());
   if (status == SHB_OK) status = mesh_msh_write(&mesh, output, provenance);
+  if (status == SHB_OK) note_pairing(progress, &pairing);
+  mesh_pairing_free(&pairing);
   mesh_fe_free(&mesh);
   return status;
 }

@@ -59,6 +59,10 @@ shb_status modal_export_contact(hid_t file, const modal_interface *interface) {
   if (status == SHB_OK)
     status = h5_write_double(file, "contact/weight", H5_SHAPE((hsize_t)n), interface->weight, "-",
                              "share of each entry in its patch's mean displacement");
+  if (status == SHB_OK && interface->projected)
+    status = h5_write_double(
+        file, "contact/left_weight", H5_SHAPE((hsize_t)n), interface->left_weight, "-",
+        "the same of the left nodes: the faces do not match and are projected");
   if (status == SHB_OK)
     status =
         h5_write_double(file, "contact/coordinates", H5_SHAPE((hsize_t)sides, (hsize_t)pairs, 3),

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/pairing.h"
 #include "modal/patches.h"
 
 static const double degree = 3.14159265358979323846 / 180;
@@ -12,7 +13,8 @@ static const double degree = 3.14159265358979323846 / 180;
 typedef struct {
   const mesh_fe       *mesh;
   const mesh_face_set *right;
-  const int           *left_of; /* [n_nodes] left image of a right node, or NULL */
+  const mesh_pairing  *pairing; /* what the right nodes meet, or NULL */
+  double               sector;  /* rad */
   mesh_axis            axis;
   modal_facets         facets;
   double              *node_area; /* [n_nodes] m2, zero outside the patch in hand */
@@ -32,9 +34,11 @@ static shb_status allocate(int n_pairs, bool has_left, int capacity, modal_inter
   out->has_left = has_left;
   out->start    = calloc(n + 1, sizeof *out->start);
   out->weight   = calloc(entries, sizeof *out->weight);
-  out->area     = calloc(n, sizeof *out->area);
-  out->normal   = calloc(3 * n, sizeof *out->normal);
-  bool complete = out->start && out->weight && out->area && out->normal;
+  if (has_left) out->left_weight = calloc(entries, sizeof *out->left_weight);
+  out->area   = calloc(n, sizeof *out->area);
+  out->normal = calloc(3 * n, sizeof *out->normal);
+  bool complete =
+      out->start && out->weight && (!has_left || out->left_weight) && out->area && out->normal;
   for (int side = 0; side <= (int)has_left; side++) {
     out->node[side]     = calloc(entries, sizeof *out->node[side]);
     out->centroid[side] = calloc(3 * n, sizeof *out->centroid[side]);
@@ -45,12 +49,43 @@ static shb_status allocate(int n_pairs, bool has_left, int capacity, modal_inter
   return SHB_OK;
 }
 
-/* One entry of the patch being built (its last). */
+static int compare(const void *a, const void *b) {
+  int p = *(const int *)a, q = *(const int *)b;
+  return (p > q) - (p < q);
+}
+
+/* A right node in the patch being built (the last), with the left nodes it meets: as many entries, the node's own weight
+ * in the first. */
 static void add_entry(const builder *b, int patch, int node, double weight, modal_interface *out) {
-  int entry           = out->start[patch + 1]++;
-  out->node[0][entry] = node;
-  out->weight[entry]  = weight;
-  if (out->has_left) out->node[1][entry] = b->left_of[node];
+  const mesh_pairing *pairing = b->pairing;
+  if (!pairing) {
+    out->node[0][out->start[patch + 1]]  = node;
+    out->weight[out->start[patch + 1]++] = weight;
+    return;
+  }
+  const int *found = bsearch(&node, pairing->right, (size_t)pairing->n, sizeof node, compare);
+  int        at    = (int)(found - pairing->right);
+  for (int i = pairing->start[at]; i < pairing->start[at + 1]; i++) {
+    int entry               = out->start[patch + 1]++;
+    out->node[0][entry]     = node;
+    out->weight[entry]      = i == pairing->start[at] ? weight : 0;
+    out->node[1][entry]     = pairing->left[i];
+    out->left_weight[entry] = weight * pairing->share[i];
+  }
+}
+
+/* Mean position of a patch. On projected faces the left one is the right one turned back, so that their axes correspond
+ * although the faces are apart. */
+static void find_centroid(const builder *b, int patch, int side, modal_interface *out) {
+  const double *weight   = side ? out->left_weight : out->weight;
+  double       *centroid = out->centroid[side] + 3 * patch;
+  if (side == 1 && out->projected) {
+    mesh_axis_rotate(b->axis, -b->sector, out->centroid[0] + 3 * patch, centroid);
+    return;
+  }
+  for (int e = out->start[patch]; e < out->start[patch + 1]; e++)
+    for (int d = 0; d < 3; d++)
+      centroid[d] += weight[e] * b->mesh->coordinates[3 * (size_t)out->node[side][e] + d];
 }
 
 /* Centroid, axes, normal from the entries and the patch's integral of n dA. */
@@ -59,9 +94,7 @@ static shb_status finish_patch(const builder *b, int patch, const double normal[
   double length = norm(normal);
   for (int side = 0; side <= (int)out->has_left; side++) {
     double *centroid = out->centroid[side] + 3 * patch, radial[3], along[3];
-    for (int e = out->start[patch]; e < out->start[patch + 1]; e++)
-      for (int d = 0; d < 3; d++)
-        centroid[d] += out->weight[e] * b->mesh->coordinates[3 * (size_t)out->node[side][e] + d];
+    find_centroid(b, patch, side, out);
     mesh_axis_vector(b->axis, along);
     for (int d = 0; d < 3; d++) radial[d] = centroid[d] * (along[d] == 0);
     SHB_CHECK(
@@ -75,6 +108,11 @@ static shb_status finish_patch(const builder *b, int patch, const double normal[
   double unit[3] = {normal[0] / length, normal[1] / length, normal[2] / length};
   into_axes((const double(*)[3])out->axes[0][patch], unit, out->normal + 3 * patch);
   return SHB_OK;
+}
+
+/* Entries of a right node, at most. */
+static int entries_each(const builder *b) {
+  return b->pairing && b->pairing->projected ? b->facets.nodes : 1;
 }
 
 /* points >= 1: facets of the same index form a patch. Entries in order of nodes. */
@@ -115,7 +153,7 @@ static shb_status build_nodes(builder *b, double (*normal)[3], modal_interface *
     kept += b->node_area[i];
     n++;
   }
-  SHB_TRY(allocate(n, b->left_of != NULL, n, out));
+  SHB_TRY(allocate(n, b->pairing != NULL, n * entries_each(b), out));
   for (int i = 0, patch = 0; i < n_nodes; i++) {
     if (b->node_area[i] <= 1e-3 * largest) continue;
     out->area[patch]      = b->node_area[i] * out->total_area / kept;
@@ -157,19 +195,9 @@ static shb_status build(builder *b, int points, modal_interface *out) {
     return status;
   }
   SHB_TRY(modal_facets_divide(&b->facets, points));
-  SHB_TRY(allocate(points, b->left_of != NULL, b->facets.nodes * b->facets.n, out));
+  SHB_TRY(
+      allocate(points, b->pairing != NULL, b->facets.nodes * b->facets.n * entries_each(b), out));
   for (int patch = 0; patch < points; patch++) SHB_TRY(build_patch(b, patch, out));
-  return SHB_OK;
-}
-
-/* left_of[right node] = left node, -1 elsewhere. */
-static shb_status match(const mesh_fe *mesh, mesh_axis axis, int blades, int *left_of) {
-  int *right = NULL, *left = NULL, n = 0;
-  SHB_TRY(mesh_fe_match(mesh, axis, blades, &n, &right, &left));
-  for (int i = 0; i < mesh->n_nodes; i++) left_of[i] = -1;
-  for (int i = 0; i < n; i++) left_of[right[i]] = left[i];
-  free(right);
-  free(left);
   return SHB_OK;
 }
 
@@ -187,21 +215,23 @@ shb_status modal_interface_create(const mesh_fe *mesh, mesh_axis axis, int blade
                                   int points, modal_interface *out) {
   memset(out, 0, sizeof *out);
   SHB_TRY(check_groups(mesh, to_ground));
-  const size_t n       = (size_t)mesh->n_nodes;
-  int         *left_of = malloc(n * sizeof *left_of + 1);
-  builder      b       = {.mesh      = mesh,
-                          .right     = &mesh->set[MESH_CONTACT_RIGHT],
-                          .left_of   = to_ground ? NULL : left_of,
-                          .axis      = axis,
-                          .node_area = calloc(n + 1, sizeof(double))};
-  shb_status   status  = SHB_OK;
-  if (!left_of || !b.node_area)
+  mesh_pairing pairing = {0};
+  if (!to_ground) SHB_TRY(mesh_pairing_create(mesh, axis, blades, &pairing));
+  builder    b      = {.mesh      = mesh,
+                       .right     = &mesh->set[MESH_CONTACT_RIGHT],
+                       .pairing   = to_ground ? NULL : &pairing,
+                       .sector    = to_ground ? 0 : 2 * M_PI / blades,
+                       .axis      = axis,
+                       .node_area = calloc((size_t)mesh->n_nodes + 1, sizeof(double))};
+  shb_status status = SHB_OK;
+  out->projected    = pairing.projected;
+  out->gap          = pairing.gap;
+  if (!b.node_area)
     status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for the contact nodes");
-  if (status == SHB_OK && !to_ground) status = match(mesh, axis, blades, left_of);
   if (status == SHB_OK) status = build(&b, points, out);
   modal_facets_free(&b.facets);
   free(b.node_area);
-  free(left_of);
+  mesh_pairing_free(&pairing);
   if (status != SHB_OK) modal_interface_free(out);
   return status;
 }
@@ -226,9 +256,10 @@ shb_status modal_interface_check(const modal_interface *interface, const double 
 shb_status modal_interface_dofs(const modal_interface *interface, modal_dofs *dofs) {
   for (int side = 0; side <= (int)interface->has_left; side++)
     for (int p = 0; p < interface->n_pairs; p++) {
-      int first = interface->start[p], n = interface->start[p + 1] - first;
+      int           first = interface->start[p], n = interface->start[p + 1] - first;
+      const double *weight = side ? interface->left_weight : interface->weight;
       for (int a = 0; a < 3; a++)
-        SHB_TRY(modal_dofs_add(dofs, n, interface->node[side] + first, interface->weight + first,
+        SHB_TRY(modal_dofs_add(dofs, n, interface->node[side] + first, weight + first,
                                interface->axes[side][p][a]));
     }
   return SHB_OK;
@@ -237,6 +268,7 @@ shb_status modal_interface_dofs(const modal_interface *interface, modal_dofs *do
 void modal_interface_free(modal_interface *interface) {
   free(interface->start);
   free(interface->weight);
+  free(interface->left_weight);
   free(interface->area);
   free(interface->normal);
   for (int side = 0; side < 2; side++) {

@@ -2,7 +2,8 @@
  *
  * A patch moves as the mean of its face's displacement, integral of u dA / A, which with the shape functions of
  * the faces is sum_e weight[e] u(node[e]); on flat straight-sided six-node triangles only mid-side nodes carry
- * weight, on eight-node quadrangles corners carry a negative one. The left patches are the images of the right ones one sector back, node by node. */
+ * weight, on eight-node quadrangles corners carry a negative one. The left patches are the images of the right ones one sector back, node by node, or
+ * where the faces do not match projected (mesh/pairing.h): left nodes then have weights of their own. */
 #ifndef MODAL_INTERFACE_H
 #define MODAL_INTERFACE_H
 
@@ -17,6 +18,10 @@ typedef struct {
   int    *start;       /* [n_pairs + 1] entries of patch p: start[p] .. start[p + 1] - 1 */
   int    *node[2];     /* [entry] mesh node, right and left (NULL without left) */
   double *weight;      /* [entry], sum 1 over a patch */
+  double *left_weight; /* [entry] the same of the left nodes (NULL without left) */
+  bool
+      projected; /* left nodes have weights of their own, and right ones occur repeatedly (weight 0) */
+  double  gap;         /* m, greatest distance between the projected faces */
   double *area;        /* [n_pairs] m2; they add up to the face's */
   double *normal;      /* [n_pairs][3] mean outward normal of the right patch, unit, in its axes */
   double *centroid[2]; /* [n_pairs][3] m, mesh axes (left NULL without left) */

@@ -186,9 +186,46 @@ static void bad_faces_are_one_line(void **state) {
   refused(&mesh, true, 1, "no group \"contact_right\"");
   mesh_fe_free(&mesh);
   mesh = make_sector(size, inner, BLADES, cells);
-  mesh.coordinates[3 * mesh.set[MESH_CONTACT_LEFT].nodes[0]] += 1e-6;
+  for (int i = 0; i < 8; i++) /* off by a tenth of the face */
+    mesh.coordinates[3 * mesh.set[MESH_CONTACT_LEFT].nodes[i] + 1] += .1 * size[2];
   assert_int_equal(modal_interface_create(&mesh, MESH_AXIS_X, BLADES, false, 1, &face),
                    SHB_ERR_INPUT);
+  mesh_fe_free(&mesh);
+}
+
+/* The left face's nodes moved within it: patches still see a field that is linear in position as their right halves do, turned
+ * back by a sector. */
+static void faces_that_do_not_match_are_projected(void **state) {
+  (void)state;
+  mesh_fe mesh = make_sector(size, inner, BLADES, cells);
+  for (int i = 0; i < mesh.n_nodes; i++) {
+    double *x = mesh.coordinates + 3 * i, r = hypot(x[1], x[2]), high = (r - inner) / size[2];
+    double  bump = .05 * sin(acos(-1) * x[0] / size[0]) * sin(acos(-1) * high);
+    if (x[1] / x[2] < tan(acos(-1) / BLADES) * (1 - 1e-9)) continue; /* not on the left side */
+    x[0] += bump * size[0];
+    for (int d = 1; d < 3; d++) x[d] *= 1 + bump * size[2] / r;
+  }
+  for (int points = 0; points < 4; points++) {
+    modal_interface face;
+    assert_int_equal(modal_interface_create(&mesh, MESH_AXIS_X, BLADES, false, points, &face),
+                     SHB_OK);
+    assert_true(face.projected && face.gap < 1e-12);
+    for (int p = 0; p < face.n_pairs; p++) {
+      double sum[2] = {0, 0}, centroid[3] = {0, 0, 0}, image[3];
+      for (int e = face.start[p]; e < face.start[p + 1]; e++) {
+        sum[0] += face.weight[e];
+        sum[1] += face.left_weight[e];
+        for (int d = 0; d < 3; d++)
+          centroid[d] += face.left_weight[e] * mesh.coordinates[3 * face.node[1][e] + d];
+      }
+      check_close(sum[0], 1, 1e-12, "weights of the right");
+      check_close(sum[1], 1, 1e-12, "weights of the left");
+      mesh_axis_rotate(MESH_AXIS_X, 2 * acos(-1) / BLADES, centroid, image);
+      for (int d = 0; d < 3; d++)
+        check_below(image[d] - face.centroid[0][3 * p + d], 1e-12, "image of a patch");
+    }
+    modal_interface_free(&face);
+  }
   mesh_fe_free(&mesh);
 }
 
@@ -205,6 +242,7 @@ int main(int argc, char **argv) {
       cmocka_unit_test(patch_is_the_mean_of_its_face),
       cmocka_unit_test(angles_must_agree_with_the_faces),
       cmocka_unit_test(angles_of_a_skewed_face),
+      cmocka_unit_test(faces_that_do_not_match_are_projected),
       cmocka_unit_test(bad_faces_are_one_line),
   };
   modal_session session;
