@@ -80,6 +80,27 @@ static double off(const view *v, const mhb_path *path, const mhb_path_point *now
   return sqrt(sum);
 }
 
+void mhb_closed_turn(mhb_closed_curve *c) {
+  int n = c->order * c->rows * (2 * c->m + 1);
+  for (int i = 0; i < n; i++) c->tangent[i] = -c->tangent[i];
+  c->rise = -c->rise;
+}
+
+static double size_of_motion(const mhb_path *path) {
+  double size = mhb_norm(path->now.x, path->n);
+  return size > 0 ? size : 1;
+}
+
+double mhb_closed_distance(const mhb_closed_curve *c, const mhb_path *path,
+                           const mhb_path_point *point) {
+  double least = INFINITY;
+  for (int j = 0; j < c->order; j++) {
+    view v = {c, j, size_of_motion(path)};
+    least  = fmin(least, off(&v, path, point, point, 0));
+  }
+  return least;
+}
+
 static double length(const mhb_path *path, double scale) {
   double sum = pow((path->next.value - path->now.value) / path->span, 2);
   for (int i = 0; i < path->n; i++) sum += pow((path->next.x[i] - path->now.x[i]) / scale, 2);
@@ -112,9 +133,8 @@ static int passes(view *v, mhb_path *path) {
 }
 
 int mhb_closed_passes(mhb_closed_curve *c, mhb_path *path) {
-  double size = mhb_norm(path->now.x, path->n);
   for (int j = 0; j < c->order; j++) {
-    view v = {c, j, size > 0 ? size : 1};
+    view v = {c, j, size_of_motion(path)};
     if (passes(&v, path)) return 1;
   }
   return 0;

@@ -15,6 +15,13 @@ typedef struct {
 shb_status mhb_closed_begin(mhb_closed_curve *curve, const mhb_path *path, double tolerance);
 void       mhb_closed_free(mhb_closed_curve *curve);
 
+/* It is to be passed the other way. */
+void mhb_closed_turn(mhb_closed_curve *curve);
+
+/* Of a point of the path from the beginning, in y. */
+double mhb_closed_distance(const mhb_closed_curve *curve, const mhb_path *path,
+                           const mhb_path_point *point);
+
 /* Whether the step from path->now to next passes the beginning in the direction in which it was left. If so path->next
  * becomes that point, solved for; else it is as it was. The residual's workspace is left at next either way. */
 int mhb_closed_passes(mhb_closed_curve *curve, mhb_path *path);

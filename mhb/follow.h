@@ -17,8 +17,12 @@ struct mhb_monitor {
   bool (*looking)(mhb_monitor *monitor, int branch, double value, double share);
 };
 
-/* Follow the branch at the residual's preload from the low to the high end of the range. Never fails for want of
- * convergence: the branch then ends with its reason. Errors: SHB_ERR_IO no memory. */
+/* Branches at most that mhb_follow appends: the response needs room reserved for them. */
+enum { MHB_MAX_ASIDE = 4 };
+
+/* Follow the branch at the residual's preload from the low to the high end of the range. A curve that closes or leaves by the low
+ * end becomes a branch of its own (MHB_ASIDE), and what reaches the high end is followed from beyond it, both ways; so is a curve that
+ * was lost. Never fails for want of convergence: the branch then ends with its reason. Errors: SHB_ERR_IO no memory. */
 shb_status mhb_follow(mhb_residual *residual, mhb_response *response, int branch,
                       mhb_monitor *monitor);
 

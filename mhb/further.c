@@ -342,6 +342,8 @@ shb_status mhb_further(const modal_model *model, const mhb_settings *settings,
                        .monitor  = monitor,
                        .go_on    = true};
   shb_status status = SHB_OK;
+  for (int i = 0; i < response->n_branches; i++)
+    if (response->branch[i].main == main && i != main) h.further[h.n_further++] = i;
   if (branch_at(&h, main)->n_points > 0) {
     if (settings->flips) status = follow_flips(&h);
     if (status == SHB_OK) status = look_everywhere(&h);

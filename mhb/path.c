@@ -8,7 +8,7 @@
 
 /* Settings that did not stall on stiff and on kinked curves. */
 static const double FIRST_STEP = .02, LONGEST_STEP = .1, LARGEST_ANGLE = .35, SHORTEST_STEP = 1e-4;
-static const double NEAR      = .3;
+static const double NEAR = .3, CAREFUL_STEP = 1e-3;
 static const double KINK_STEP = .02, KINK_RATIO = .7;
 static const double OUTSIDE = .2;
 enum { WANTED_CORRECTIONS = 5, LASTING = 10, MAX_OUTSIDE = 1000 };
@@ -183,17 +183,20 @@ static int across_kink(mhb_path *path) {
 }
 
 /* Where small steps fail (the square-root zone at slip onset), larger ones pass; else the damped Newton at a fixed
- * value further on, then further back (a cusp), from the old point and from the linear limits. */
+ * value further on, then further back (a cusp), from the old point and from the linear limits. Then very near: where slip
+ * ends in two directions at once, the lens of admissible mean frictions opens, and the mean leaves, with the root of the distance. */
 static int last_resort(mhb_path *path) {
-  const double larger[] = {3e-3, 1e-2, 3e-2, .1}, further[] = {1e-4, 5e-4, 2e-3, 1e-2};
+  const double larger[] = {3e-3, 1e-2, 3e-2, .1},
+               way[]    = {1e-4, 5e-4, 2e-3, 1e-2, -1e-4, -5e-4, -2e-3, -1e-2, 1e-5, 1e-6};
+  enum { WAYS = sizeof way / sizeof *way };
   for (int i = 0; i < 4; i++) {
     if (!attempt(path, larger[i]) || !goes_on(path)) continue;
     path->step = larger[i];
     return 1;
   }
   double guess[path->n], forward = copysign(path->span, path->now.tangent[path->n]);
-  for (int i = 0; i < 24; i++) {
-    double value = path->now.value + (i < 12 ? forward : -forward) * further[i / 3 % 4];
+  for (int i = 0; i < 3 * WAYS; i++) {
+    double value = path->now.value + forward * way[i / 3];
     int    stuck = i % 3 - 1; /* -1: the old point */
     if (value < path->low || value > path->high) continue;
     if (stuck < 0) {
@@ -202,7 +205,7 @@ static int last_resort(mhb_path *path) {
       continue;
     }
     if (!attempt_from(path, value, guess) || !goes_on(path)) continue;
-    path->step = FIRST_STEP;
+    path->step = fabs(way[i / 3]) < 1e-4 ? CAREFUL_STEP : FIRST_STEP;
     return 1;
   }
   return 0;

@@ -115,15 +115,35 @@ static void swap_rows(char *a, char *b, size_t row) {
   }
 }
 
-void mhb_response_reverse(mhb_response *response, int branch) {
+void mhb_response_reverse(mhb_response *response, int branch, int from) {
   mhb_branch *b = &response->branch[branch];
   for (int i = 0; i < MHB_N_FIELDS; i++) {
     if (!mhb_field_kept(response, b, &mhb_fields[i])) continue;
     size_t row = mhb_field_width(response, b, &mhb_fields[i]) * mhb_field_bytes(mhb_fields[i].kind);
     char  *data = mhb_field_get(b, &mhb_fields[i]);
-    for (int p = 0, q = b->n_points - 1; p < q; p++, q--)
+    for (int p = from, q = b->n_points - 1; p < q; p++, q--)
       swap_rows(data + (size_t)p * row, data + (size_t)q * row, row);
   }
+}
+
+shb_status mhb_response_split(mhb_response *response, int branch, int from, int to) {
+  const mhb_branch *a = &response->branch[branch];
+  mhb_branch       *b = &response->branch[to];
+  b->order            = a->order;
+  b->n_harmonics      = a->n_harmonics;
+  for (int i = from; i < a->n_points; i++) {
+    int point;
+    SHB_TRY(mhb_response_point(response, to, &point));
+    for (int k = 0; k < MHB_N_FIELDS; k++) {
+      const mhb_field *f = &mhb_fields[k];
+      if (!mhb_field_kept(response, b, f)) continue;
+      size_t row = mhb_field_width(response, b, f) * mhb_field_bytes(f->kind);
+      memcpy((char *)mhb_field_get(b, f) + (size_t)point * row,
+             (char *)mhb_field_get(a, f) + (size_t)i * row, row);
+    }
+  }
+  response->branch[branch].n_points = from;
+  return SHB_OK;
 }
 
 void mhb_response_drop(mhb_response *response, const bool *drop) {

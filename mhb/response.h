@@ -18,8 +18,9 @@ typedef enum {
   MHB_N_BRANCH_KINDS
 } mhb_branch_kind;
 
-/* How a branch was come by: followed from the low end of the range, from a solution found by search, from a flip. */
-typedef enum { MHB_FROM_END, MHB_FROM_SEARCH, MHB_FROM_FLIP } mhb_origin;
+/* How a branch was come by: followed from the low end of the range, from a solution found by search, from a flip; aside: on the way of
+ * the main branch, a curve that is closed or leaves by the low end. */
+typedef enum { MHB_FROM_END, MHB_FROM_SEARCH, MHB_FROM_FLIP, MHB_ASIDE } mhb_origin;
 
 /* special of mhb_branch; the last two: where a multiplier leaves or enters the unit circle at -1, or a pair does */
 enum { MHB_ORDINARY, MHB_FOLD, MHB_PEAK, MHB_FLIP, MHB_NEIMARK_SACKER, MHB_N_SPECIALS };
@@ -101,8 +102,10 @@ shb_status mhb_response_branch(mhb_response *response, mhb_branch_kind kind, int
 shb_status mhb_response_point(mhb_response *response, int branch, int *point);
 /* Move the last point of a branch to place at; those from there on move up by one. */
 void mhb_response_place(mhb_response *response, int branch, int at);
-/* The points of a branch in the opposite order. */
-void mhb_response_reverse(mhb_response *response, int branch);
+/* The points of a branch from `from` on in the opposite order. */
+void mhb_response_reverse(mhb_response *response, int branch, int from);
+/* The points of a branch from `from` on become those of `to`, an empty branch of the same kind. */
+shb_status mhb_response_split(mhb_response *response, int branch, int from, int to);
 /* Drop the branches for which drop is true, [n_branches]; main follows. */
 void mhb_response_drop(mhb_response *response, const bool *drop);
 /* Further branches after all others, those of one main branch together, in the order in which they were found. */

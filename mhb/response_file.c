@@ -11,7 +11,7 @@
 static const char response_format[] = "shroudhb response";
 enum { RESPONSE_VERSION = 1, MAX_COUNT = 100000 };
 
-static const char *const origin_name[] = {"end", "search", "flip"};
+static const char *const origin_name[] = {"end", "search", "flip", "aside"};
 enum { N_ORIGINS = sizeof origin_name / sizeof *origin_name };
 
 static const char *const kind_name[] = {"nonlinear", "open", "stuck", "integration"};
@@ -320,7 +320,7 @@ static shb_status read_descent(hid_t group, const char *path, int index, mhb_bra
   while (text && *text && origin < N_ORIGINS && strcmp(text, origin_name[origin]) != 0) origin++;
   free(text);
   SHB_CHECK(origin < N_ORIGINS, SHB_ERR_INPUT,
-            "%s: /branch_%d: attribute origin must be end, search or flip", path, index);
+            "%s: /branch_%d: attribute origin must be end, search, flip or aside", path, index);
   SHB_CHECK(branch->order >= 1 && branch->main >= 0 && branch->main <= index, SHB_ERR_INPUT,
             "%s: /branch_%d: attribute order is %d, main is %d; 1 or more and 0 to %d are wanted",
             path, index, branch->order, branch->main, index);

@@ -187,7 +187,10 @@ static void resume(sweep *s) {
   }
   for (int i = 2 + s->settings->n_preloads; fits && i < old->n_branches; i++) {
     int main = old->branch[i].main, index;
-    if (main == i || main >= 2 + s->settings->n_preloads || !s->response->branch[main].searched ||
+    if (main == i || main >= 2 + s->settings->n_preloads) continue;
+    const mhb_branch *trunk = &s->response->branch[main];
+    bool              whole = trunk->searched || old->branch[i].origin == MHB_ASIDE;
+    if (!trunk->complete || !whole ||
         mhb_response_branch(s->response, MHB_BRANCH_NONLINEAR, &index) != SHB_OK)
       continue;
     take_over(s->response, index, &old->branch[i]);
@@ -211,7 +214,7 @@ static shb_status all_preloads(sweep *s, const modal_model *model) {
     SHB_TRY(mhb_response_branch(s->response, MHB_BRANCH_NONLINEAR, &branch));
     s->response->branch[branch].searched = !wanted;
   }
-  if (wanted) SHB_TRY(mhb_response_reserve(s->response, n * MHB_MAX_FURTHER));
+  SHB_TRY(mhb_response_reserve(s->response, n * (MHB_MAX_ASIDE + (wanted ? MHB_MAX_FURTHER : 0))));
   if (s->settings->resume) resume(s);
 #pragma omp parallel for schedule(dynamic, 1) if (n > 1) /* else the threads go to the pairs */
   for (int i = 0; i < n; i++) {

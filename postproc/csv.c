@@ -98,7 +98,7 @@ static void put_stability(const mhb_response *response, const mhb_branch *branch
 static void put_quality(const mhb_response *response, const mhb_branch *branch, int point,
                         post_buffer *out) {
   static const char *const special[] = {"", "fold", "peak", "flip", "Neimark-Sacker"};
-  static const char *const origin[]  = {"end", "search", "flip"};
+  static const char *const origin[]  = {"end", "search", "flip", "aside"};
   post_put(out, branch->stable[point] < 0 ? "," : ",%d", branch->stable[point]);
   post_put(out, ",%s", special[branch->special[point]]);
   put_stability(response, branch, point, out);

@@ -45,6 +45,7 @@ if(TARGET shroudhb-post)
   figure_test(paper_fig8_direct paper_fig8 shb_modal shb_case)
   figure_test(paper_fig9 paper_fig9 shb_case)
   figure_test(paper_fig10 paper_fig10 shb_case)
+  figure_test(lost_curves paper_fig8)
 endif()
 
 # Speed against error, from end to end.

@@ -1,0 +1,255 @@
+#include "mhb/follower.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "mesh/progress.h"
+#include "mhb/locate.h"
+#include "mhb/record.h"
+
+/* A path whose steps stay below CRAWL this often is as good as stalled. */
+static const double CRAWL = 2e-3;
+enum { MAX_CRAWL = 150 };
+
+/* A curve has closed if it comes as near as this to its beginning, relative to the motion. */
+static const double SAME = 1e-5;
+
+const char MHB_WHOLE[] = "end of range", MHB_CLOSED[] = "closed curve",
+           MHB_JOINED[]      = "joins a curve of lower order",
+           MHB_TURNED_BACK[] = "turned back to the start of the range";
+
+void mhb_follower_lock(const mhb_follower *f, bool locked) {
+  f->monitor->lock(f->monitor, locked);
+}
+
+static double fold_indicator(const mhb_path *path, const mhb_path_point *point, void *context) {
+  (void)context;
+  return point->tangent[path->n];
+}
+
+static double peak_indicator(const mhb_path *path, const mhb_path_point *point, void *context) {
+  return mhb_output_slope(path, point, *(const int *)context);
+}
+
+shb_status mhb_follower_record(mhb_follower *f, mhb_path_point *point, int special, bool *go_on) {
+  double now = shb_seconds();
+  mhb_follower_lock(f, true);
+  shb_status status =
+      mhb_record(f->response, f->branch, f->residual, point, special, now - f->clock);
+  if (status == SHB_OK) *go_on = f->monitor->point(f->monitor, f->branch, point);
+  mhb_follower_lock(f, false);
+  f->clock = shb_seconds();
+  return status;
+}
+
+static void slopes(const mhb_follower *f, const mhb_path_point *point, double *out) {
+  for (int o = 0; o < f->n_outputs; o++) out[o] = mhb_output_slope(f->path, point, o);
+}
+
+/* An event between now and next: what, and where on the chord. */
+typedef struct {
+  int    special, output;
+  double fraction;
+} event;
+
+enum { MAX_EVENTS = 16 };
+
+static int by_fraction(const void *a, const void *b) {
+  double x = ((const event *)a)->fraction, y = ((const event *)b)->fraction;
+  return (x > y) - (x < y);
+}
+
+/* Folds (the frequency turns) and peaks (an amplitude turns down), by linear interpolation of their indicators. */
+static int list_events(const mhb_follower *f, event *list) {
+  const mhb_path *path = f->path;
+  int             n = 0, last = path->n;
+  double          a = path->now.tangent[last], b = path->next.tangent[last];
+  if (a * b < 0) list[n++] = (event){MHB_FOLD, 0, a / (a - b)};
+  for (int o = 0; o < f->n_outputs && n < MAX_EVENTS; o++) {
+    double up = f->before[o], down = f->after[o];
+    if (up > 0 && down < 0) list[n++] = (event){MHB_PEAK, o, up / (up - down)};
+  }
+  qsort(list, (size_t)n, sizeof *list, by_fraction);
+  return n;
+}
+
+void mhb_follower_revisit(mhb_follower *f, const mhb_path_point *point) {
+  mhb_newton *w = f->path->newton;
+  mhb_residual_derive(f->residual, point->x, point->value, w->r, NULL);
+}
+
+/* Leaves the residual's workspace at next, as mhb_path_step did. */
+static shb_status record_events(mhb_follower *f, bool *go_on) {
+  event list[MAX_EVENTS];
+  int   n = list_events(f, list), last = f->path->n;
+  for (int i = 0; i < n && *go_on; i++) {
+    int    fold = list[i].special == MHB_FOLD;
+    double lo   = fold ? f->path->now.tangent[last] : f->before[list[i].output];
+    double hi   = fold ? f->path->next.tangent[last] : f->after[list[i].output];
+    double at;
+    if (!mhb_path_locate(f->path, fold ? fold_indicator : peak_indicator, &list[i].output, lo, hi,
+                         &at))
+      continue;
+    mhb_harmonics_errors(f->harmonics, &f->path->probe);
+    SHB_TRY(mhb_follower_record(f, &f->path->probe, list[i].special, go_on));
+  }
+  if (n > 0) mhb_follower_revisit(f, &f->path->next);
+  return SHB_OK;
+}
+
+/* The point recorded next does not follow the one before along the curve. */
+static void begin_anew(mhb_follower *f) {
+  if (f->n_first < MHB_MAX_BEGINS) f->first[f->n_first++] = f->response->branch[f->branch].n_points;
+}
+
+void mhb_follower_use_rung(mhb_follower *f) {
+  f->residual = mhb_harmonics_rung(f->harmonics)->residual;
+  f->path     = mhb_harmonics_rung(f->harmonics)->path;
+}
+
+/* Go on from now with another number of harmonics. *moved: 0 if that cannot be. */
+static shb_status move(mhb_follower *f, int rung, int step, int *moved) {
+  mhb_follower_lock(f, true); /* FFTW's planner */
+  shb_status status = mhb_harmonics_make(f->harmonics, rung);
+  mhb_follower_lock(f, false);
+  SHB_TRY(status);
+  *moved = mhb_harmonics_move(f->harmonics, rung, step) == MHB_CONVERGED;
+  if (!*moved) return SHB_OK;
+  mhb_follower_use_rung(f);
+  slopes(f, &f->path->now, f->before);
+  return SHB_OK;
+}
+
+/* A step at a number of harmonics that suffices at its end: where it does not, the step is taken anew from now, with more.
+ * The errors of next are estimated. */
+static shb_status sufficient_step(mhb_follower *f, mhb_path_outcome *outcome) {
+  for (int moved = 1;;) {
+    *outcome = mhb_path_step(f->path);
+    if (*outcome == MHB_PATH_STALLED) return SHB_OK;
+    mhb_harmonics_estimate(f->harmonics, &f->path->next);
+    int higher = mhb_harmonics_higher(f->harmonics);
+    if (higher < 0 || !moved) return SHB_OK;
+    SHB_TRY(move(f, higher, 0, &moved));
+  }
+}
+
+/* The start of a curve: now at a number of harmonics that suffices, errors estimated. */
+static shb_status sufficient_start(mhb_follower *f) {
+  for (int moved = 1;;) {
+    mhb_harmonics_estimate(f->harmonics, &f->path->now);
+    int higher = mhb_harmonics_higher(f->harmonics);
+    if (higher < 0 || !moved) return SHB_OK;
+    SHB_TRY(move(f, higher, 1, &moved));
+  }
+}
+
+double mhb_follower_closeness(const mhb_follower *f) {
+  return fmax(SAME, 20 * f->residual->settings->motion_tolerance);
+}
+
+shb_status mhb_follower_arrive(mhb_follower *f) {
+  slopes(f, &f->path->now, f->before);
+  return sufficient_start(f);
+}
+
+shb_status mhb_follower_begin(mhb_follower *f, double value, int direction, bool recorded,
+                              bool *found, bool *go_on) {
+  f->crawling = 0;
+  *found      = mhb_path_start(f->path, f->x, value, direction) == MHB_CONVERGED;
+  if (!*found) return SHB_OK;
+  f->farthest = fmax(f->farthest, value);
+  mhb_closed_free(&f->closed);
+  SHB_TRY(mhb_closed_begin(&f->closed, f->path, mhb_follower_closeness(f)));
+  SHB_TRY(mhb_follower_arrive(f));
+  if (!recorded) return SHB_OK;
+  begin_anew(f);
+  return mhb_follower_record(f, &f->path->now, MHB_ORDINARY, go_on);
+}
+
+/* Why the curve ends at next; NULL: it does not. A curve that leaves by the low end and may come back is set on its way back. */
+static const char *end_at(mhb_follower *f, mhb_path_outcome outcome) {
+  f->crawling = f->path->step < CRAWL ? f->crawling + 1 : 0;
+  if (outcome == MHB_PATH_STALLED) return "no step converged";
+  if (outcome == MHB_PATH_AT_END || (f->either && outcome == MHB_PATH_AT_START)) return MHB_WHOLE;
+  if (f->closed.x && mhb_closed_passes(&f->closed, f->path)) {
+    mhb_harmonics_errors(f->harmonics, &f->path->next);
+    return MHB_CLOSED;
+  }
+  return f->crawling > MAX_CRAWL ? "the steps stayed tiny" : NULL;
+}
+
+/* next, recorded, is on the low end of the range: go on where the curve comes back into it. */
+static const char *come_back(mhb_follower *f) {
+  if (mhb_path_outside(f->path, MHB_PATH_AT_START) != MHB_PATH_ON) return MHB_TURNED_BACK;
+  if (f->closed.x &&
+      mhb_closed_distance(&f->closed, f->path, &f->path->next) <= f->closed.tolerance)
+    return MHB_CLOSED;
+  slopes(f, &f->path->next, f->after);
+  begin_anew(f);
+  return NULL;
+}
+
+shb_status mhb_follower_step(mhb_follower *f, bool *go_on, const char **end) {
+  mhb_path_outcome outcome;
+  if (f->joins && mhb_closed_joins(f->path)) *end = MHB_JOINED;
+  if (*end) return SHB_OK;
+  SHB_TRY(sufficient_step(f, &outcome));
+  *end = end_at(f, outcome);
+  if (outcome == MHB_PATH_STALLED) return SHB_OK;
+  slopes(f, &f->path->next, f->after);
+  SHB_TRY(record_events(f, go_on));
+  if (*go_on) SHB_TRY(mhb_follower_record(f, &f->path->next, MHB_ORDINARY, go_on));
+  f->farthest = fmax(f->farthest, f->path->next.value);
+  if (!*end && *go_on && outcome == MHB_PATH_AT_START) *end = come_back(f);
+  if (*end || !*go_on) return SHB_OK;
+  mhb_path_advance(f->path);
+  double *swap = f->before;
+  f->before    = f->after;
+  f->after     = swap;
+  int lower    = mhb_harmonics_lower(f->harmonics), moved;
+  return lower < 0 ? SHB_OK : move(f, lower, 0, &moved);
+}
+
+shb_status mhb_follower_run(mhb_follower *f, bool *go_on, const char **end) {
+  int most = f->residual->settings->max_points;
+  while (*go_on && !*end) {
+    if (f->response->branch[f->branch].n_points >= most) *end = "mhb.max_points reached";
+    if (!*end) SHB_TRY(mhb_follower_step(f, go_on, end));
+  }
+  return SHB_OK;
+}
+
+shb_status mhb_follower_create(mhb_follower *f, mhb_residual *residual, mhb_response *response,
+                               int branch, mhb_monitor *monitor) {
+  const mhb_settings *s = residual->settings;
+  *f                    = (mhb_follower){.residual  = residual,
+                                         .response  = response,
+                                         .branch    = branch,
+                                         .monitor   = monitor,
+                                         .n_outputs = mhb_outputs(residual),
+                                         .clock     = shb_seconds(),
+                                         .farthest  = mhb_parameter_end(s, residual->parameter, 0)};
+  size_t outputs        = (size_t)f->n_outputs + 1;
+  mhb_follower_lock(f, true); /* FFTW's planner */
+  shb_status status = mhb_harmonics_create(residual, &f->harmonics);
+  mhb_follower_lock(f, false);
+  SHB_TRY(status);
+  mhb_follower_use_rung(f);
+  f->before = calloc(outputs, sizeof(double));
+  f->after  = calloc(outputs, sizeof(double));
+  f->x      = calloc((size_t)mhb_harmonics_most_unknowns(f->harmonics), sizeof(double));
+  SHB_CHECK(f->before && f->after && f->x, SHB_ERR_IO, "out of memory");
+  return SHB_OK;
+}
+
+void mhb_follower_destroy(mhb_follower *f) {
+  mhb_follower_lock(f, true);
+  mhb_judge_destroy(f->judge);
+  mhb_harmonics_destroy(f->harmonics);
+  mhb_follower_lock(f, false);
+  mhb_closed_free(&f->closed);
+  free(f->before);
+  free(f->after);
+  free(f->x);
+}
