@@ -2,6 +2,7 @@
  *
  *   bench_integrate            the tables
  *   bench_integrate --quick    errors only, on few frequencies
+ *   bench_integrate --blade FILE N0 FROM TO   the same with a modal file: contact of cases/paper_fig7, preload N, range Hz
  *
  * Scenes: the three-degree model and the tip-contact beam (tests/mhb/three_degree.h). Frequencies over the range, all with one stable
  * solution. A point of the balance is solved from the solution .2 % of the frequency away, as a continuation has it. A point of the
@@ -156,6 +157,20 @@ static void beam(scene *s, int quick) {
   spread(s, quick ? 2 : 12, 2 * PI * 264, 2 * PI * 272);
 }
 
+/* Contact of cases/paper_fig7. */
+static shb_status blade(scene *s, char **argument) {
+  static char name[96];
+  SHB_TRY(modal_model_read(argument[0], &s->model));
+  snprintf(name, sizeof name, "blade to the ground, n0 = %s N, %s to %s Hz", argument[1],
+           argument[2], argument[3]);
+  s->name             = name;
+  s->settings         = ground(.3, 5e4, 5e4, atof(argument[1]));
+  s->settings.has_psi = true;
+  s->settings.psi     = 35 * PI / 180;
+  spread(s, MAX_POINTS, 2 * PI * atof(argument[2]), 2 * PI * atof(argument[3]));
+  return SHB_OK;
+}
+
 /* ---- tables ---- */
 
 static const int harmonics[] = {1, 3, 5, 7, 9, 13, 17, 21, 31},
@@ -224,13 +239,25 @@ static int run(scene *s, int quick) {
   return missed;
 }
 
-int main(int argc, char **argv) {
-  int   quick = argc > 1 && strcmp(argv[1], "--quick") == 0, missed = 0;
-  scene s = {0};
+static int scenes(int quick) {
+  int missed = 0;
   for (int i = 0; i < 3; i++) {
+    scene s = {0};
     if (i < 2) three_degrees(&s, i ? 0 : .3, quick);
     if (i == 2) beam(&s, quick);
     missed += run(&s, quick);
   }
-  return missed > 0;
+  return missed;
+}
+
+int main(int argc, char **argv) {
+  scene s = {0};
+  if (argc == 6 && strcmp(argv[1], "--blade") == 0) {
+    if (blade(&s, argv + 2) == SHB_OK) return run(&s, 0) > 0;
+    fprintf(stderr, "bench_integrate: %s\n", shb_message());
+    return SHB_ERR_INPUT;
+  }
+  if (argc == 1 || (argc == 2 && strcmp(argv[1], "--quick") == 0)) return scenes(argc == 2) > 0;
+  fprintf(stderr, "bench_integrate: usage: bench_integrate [--quick | --blade FILE N0 FROM TO]\n");
+  return SHB_ERR_INPUT;
 }
