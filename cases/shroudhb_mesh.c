@@ -17,7 +17,7 @@
 static const char usage[] =
     "usage: shroudhb-mesh [--quiet] [--verbose] [--force] [--inp] CASE.yaml\n"
     "\n"
-    "Meshes the blade of mesh.blade with gmsh (ten-node tetrahedra) and writes NAME.msh with the\n"
+    "Meshes the blade of mesh.blade (tetrahedra or hexahedra) and writes NAME.msh with the\n"
     "groups root, contact_right, contact_left and load; does nothing if that file is up to date\n"
     "(unless --force). With mesh.file instead: checks that mesh's elements, groups and contact "
     "faces;\n"

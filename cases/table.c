@@ -54,6 +54,9 @@ static const case_key table[] = {
     {"mesh.blade.shroud_size", CASE_NUMBER, "m", 0, 100, .fallback = "0 m", AT(blade.shroud_size), .stages = CASE_MESH, .when = CASE_IF_BLADE,
      .help = "element size in the shroud; 0: as size"},
 
+    {"mesh.blade.elements", CASE_CHOICE, "", .words = "tet10 hex20", .fallback = "tet10", AT(blade.elements), .stages = CASE_MESH, .when = CASE_IF_BLADE,
+     .help = "tetrahedra of ten nodes, or hexahedra of twenty swept along the blade"},
+
     {"material.E", CASE_NUMBER, "Pa", 1e6, 1e14, .required = true, AT(material.E), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
      .help = "Young's modulus"},
     {"material.nu", CASE_NUMBER, "", -1, 0.5, true, true, .required = true, AT(material.nu), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,

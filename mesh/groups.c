@@ -110,7 +110,7 @@ static shb_status find_pressure(const mesh_blade *blade, const mesh_frame *frame
   return SHB_OK;
 }
 
-static shb_status name_group(int dimension, int entity, const char *name) {
+shb_status mesh_groups_name(int dimension, int entity, const char *name) {
   int group = 0;
   GMSH_TRY("mesh.blade", group = gmshModelAddPhysicalGroup(dimension, &entity, 1, -1, &ierr));
   GMSH_TRY("mesh.blade", gmshModelSetPhysicalName(dimension, group, name, &ierr));
@@ -148,10 +148,10 @@ static shb_status set_all(const mesh_blade *blade, const mesh_frame *frame, cons
       mesh_shroud_centre(blade, leg, right, centre);
       SHB_TRY(find_centre(faces, n, centre, "a side of the shroud", &side[right][leg]));
     }
-  SHB_TRY(name_group(2, root, mesh_set_name(MESH_ROOT)));
-  SHB_TRY(name_group(2, side[1][MESH_SHROUD_CONTACT], mesh_set_name(MESH_CONTACT_RIGHT)));
-  SHB_TRY(name_group(2, side[0][MESH_SHROUD_CONTACT], mesh_set_name(MESH_CONTACT_LEFT)));
-  SHB_TRY(name_group(2, load, mesh_set_name(MESH_LOAD)));
+  SHB_TRY(mesh_groups_name(2, root, mesh_set_name(MESH_ROOT)));
+  SHB_TRY(mesh_groups_name(2, side[1][MESH_SHROUD_CONTACT], mesh_set_name(MESH_CONTACT_RIGHT)));
+  SHB_TRY(mesh_groups_name(2, side[0][MESH_SHROUD_CONTACT], mesh_set_name(MESH_CONTACT_LEFT)));
+  SHB_TRY(mesh_groups_name(2, load, mesh_set_name(MESH_LOAD)));
   return tie_sides(blade, frame, side[1], side[0]);
 }
 
@@ -162,5 +162,5 @@ shb_status mesh_groups_set(const mesh_blade *blade, const mesh_frame *frame, int
   if (status == SHB_OK) status = set_all(blade, frame, faces, n);
   free(faces);
   SHB_TRY(status);
-  return name_group(3, volume, "body");
+  return mesh_groups_name(3, volume, "body");
 }

@@ -10,4 +10,7 @@
  * SHB_ERR_INPUT if a face is not found exactly once: the parts of the blade cut into each other. */
 shb_status mesh_groups_set(const mesh_blade *blade, const mesh_frame *frame, int volume);
 
+/* A physical group of one entity. */
+shb_status mesh_groups_name(int dimension, int entity, const char *name);
+
 #endif

@@ -66,6 +66,48 @@ void mesh_shroud_centre(const mesh_blade *blade, int leg, bool right, double own
   mesh_frame_turn(right ? half_sector(blade) : -half_sector(blade), sum, own);
 }
 
+static double middle_radius(const mesh_blade *blade) {
+  return underside(blade) + 0.5 * blade->shroud_thickness;
+}
+
+void mesh_shroud_outline(const mesh_blade *blade, double out[2 * CORNERS][2]) {
+  const double half = middle_radius(blade) * half_sector(blade);
+  double       z[CORNERS][2];
+  plan(blade, z);
+  for (int i = 0; i < CORNERS; i++) {
+    double *right = out[i], *left = out[2 * CORNERS - 1 - i];
+    right[0] = z[i][0] + half;
+    left[0]  = z[i][0] - half;
+    right[1] = left[1] = z[i][1];
+  }
+}
+
+int mesh_shroud_contact_side(const mesh_blade *blade, const double at[2]) {
+  const double half = middle_radius(blade) * half_sector(blade);
+  const double from = at[0] - side_at(blade, at[1], middle_radius(blade));
+  if (fabs(at[1]) >= blade->shroud_contact / 2 * cos(blade->psi)) return 0;
+  return fabs(from - half) < 1e-9 ? 1 : fabs(from + half) < 1e-9 ? -1 : 0;
+}
+
+void mesh_shroud_point(const mesh_blade *blade, const double at[2], double share, double own[3]) {
+  const double radial = underside(blade) + share * blade->shroud_thickness;
+  const double angle = (at[0] - side_at(blade, at[1], middle_radius(blade))) / middle_radius(blade);
+  const double side[3] = {side_at(blade, at[1], radial), at[1], radial};
+  mesh_frame_turn(angle, side, own);
+}
+
+void mesh_shroud_plan(const mesh_blade *blade, const double own[3], double at[2]) {
+  const double side  = side_at(blade, own[1], underside(blade));
+  const double angle = atan2(own[0], own[2]) - atan2(side, underside(blade));
+  at[0]              = middle_radius(blade) * angle + side_at(blade, own[1], middle_radius(blade));
+  at[1]              = own[1];
+}
+
+double mesh_shroud_underside(const mesh_blade *blade, const double own[3]) {
+  const double radius = hypot(underside(blade), side_at(blade, own[1], underside(blade)));
+  return sqrt(radius * radius - own[0] * own[0]);
+}
+
 static shb_status check_sizes(const mesh_blade *blade) {
   double axial = blade->shroud_contact * cos(blade->psi), r = underside(blade);
   SHB_CHECK(blade->blades >= 3, SHB_ERR_INPUT,

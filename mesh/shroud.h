@@ -19,6 +19,22 @@ enum { MESH_SHROUD_LEGS = 3, MESH_SHROUD_CONTACT = 1 /* the middle leg */ };
 /* Centre of mass of a leg's planar face on the left or right side, own coordinates, m. */
 void mesh_shroud_centre(const mesh_blade *blade, int leg, bool right, double own[3]);
 
+/* The shroud unrolled: plan coordinates (p, axial), p = R theta + t, R the radius at mid thickness, t the tangential place
+ * of the left side's Z at this axial place and theta the angle from it. The two sides are p = t -+ R pi/N. */
+
+/* Corners of the outline, anticlockwise from the front of the right side: its Z, then the left one's backwards. */
+void mesh_shroud_outline(const mesh_blade *blade, double corner[2 * (MESH_SHROUD_LEGS + 1)][2]);
+
+/* Is a point of the outline on the contact leg: 1 right, -1 left, 0 neither? */
+int mesh_shroud_contact_side(const mesh_blade *blade, const double plan[2]);
+
+/* Own coordinates at a share (0 underside, 1 top) of the thickness. */
+void mesh_shroud_point(const mesh_blade *blade, const double plan[2], double share, double own[3]);
+
+/* Plan coordinates of a point of the underside; and the radial coordinate of the underside above or below own. */
+void   mesh_shroud_plan(const mesh_blade *blade, const double own[3], double plan[2]);
+double mesh_shroud_underside(const mesh_blade *blade, const double own[3]);
+
 /* SHB_ERR_INPUT for a shroud that cannot be built or does not cover the last section. */
 shb_status mesh_shroud_check(const mesh_blade *blade);
 

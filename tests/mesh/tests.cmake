@@ -9,6 +9,7 @@ shb_test(mesh pairing fast tests_box)
 shb_test(mesh source fast tests_box ${GMSH_LIBRARY})
 target_include_directories(test_mesh_source PRIVATE ${GMSH_INCLUDE})
 shb_test(mesh blade fast shb_mesh)
+shb_test(mesh sweep fast shb_mesh)
 
 if(TARGET shb_case)
   shb_test(mesh scene fast shb_case shb_mesh)
