@@ -56,6 +56,8 @@ static void share(case_reader *r) {
   file->source.unit      = step ? 1e-3 : (const double[]){1, 1e-2, 1e-3, 0.0254}[file->mesh_unit];
   file->source.axis      = file->axis;
   file->source.blades    = file->mhb.to_ground ? 0 : file->blades;
+  file->material.E       = file->constants.E[0];
+  file->material.nu      = file->constants.nu[0];
   file->blade.psi        = file->mhb.has_psi ? file->mhb.psi : 0;
   file->blade.phi        = file->mhb.has_phi ? file->mhb.phi : 0;
 }

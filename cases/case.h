@@ -41,10 +41,11 @@ typedef struct {
   mesh_source source;    /* mesh.file, all that is said of it */
   mesh_blade  blade;
 
-  fem_material material;
-  int          blades;
-  double       speed; /* rad/s */
-  mesh_axis    axis;
+  fem_orthotropic constants; /* material.E, nu, G, axes */
+  fem_material    material;  /* what they make */
+  int             blades;
+  double          speed; /* rad/s */
+  mesh_axis       axis;
 
   int    modes;
   double damping;

@@ -138,6 +138,7 @@ static const char *type_name(const case_key *key) {
                                                   [CASE_WORD]      = "word",
                                                   [CASE_FILE_NAME] = "file",
                                                   [CASE_VECTOR]    = "[x, y, z]",
+                                                  [CASE_TRIPLE]    = "number or list",
                                                   [CASE_INTERVAL]  = "[from, to]",
                                                   [CASE_SWEEP]     = "[from, to] or number",
                                                   [CASE_STIFFNESS] = "number or list",

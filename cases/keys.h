@@ -21,6 +21,7 @@ typedef enum {
   CASE_WORD,      /* safe file name: char * */
   CASE_FILE_NAME, /* path, relative to the case file: char * */
   CASE_VECTOR,    /* [x, y, z]: double[3] */
+  CASE_TRIPLE,    /* number for all three axes, or [1, 2, 3]: double[3] */
   CASE_INTERVAL,  /* [from, to], increasing: double[2] */
   CASE_SWEEP,     /* the same, or a number for both: double[2] */
   CASE_STIFFNESS, /* number or [kuu, kuw, kww], positive definite: double[3] */
@@ -44,6 +45,7 @@ typedef enum {
   CASE_IF_SIZE,       /* mesh.file is a solid */
   CASE_IF_OWN_MODES,  /* no modal.file */
   CASE_IF_MODAL_FILE, /* modal.file */
+  CASE_IF_CRYSTAL,    /* material.G given */
   CASE_IF_NEIGHBOUR,  /* contact.to: neighbour */
   CASE_IF_SECTOR,     /* neighbour or parametric blade */
   CASE_IF_PSI,        /* psi given */

@@ -49,6 +49,11 @@ static void print_probes(FILE *out, const char *path, const case_file *file) {
   }
 }
 
+/* One number where the three are equal. */
+static void print_triple(FILE *out, const double v[3]) {
+  print_numbers(out, v[0] == v[1] && v[1] == v[2] ? 1 : 3, v);
+}
+
 static void print_scalar(FILE *out, const case_key *key, const case_file *file) {
   const void *slot = (const char *)file + key->at;
   switch (key->type) {
@@ -89,6 +94,9 @@ static void print_scalar(FILE *out, const case_key *key, const case_file *file) 
     case CASE_INTERVAL:
     case CASE_SWEEP:
       print_numbers(out, 2, slot);
+      break;
+    case CASE_TRIPLE:
+      print_triple(out, slot);
       break;
     case CASE_VECTOR:
     case CASE_STIFFNESS:

@@ -57,10 +57,16 @@ static const case_key table[] = {
     {"mesh.blade.elements", CASE_CHOICE, "", .words = "tet10 hex20", .fallback = "tet10", AT(blade.elements), .stages = CASE_MESH, .when = CASE_IF_BLADE,
      .help = "tetrahedra of ten nodes, or hexahedra of twenty swept along the blade"},
 
-    {"material.E", CASE_NUMBER, "Pa", 1e6, 1e14, .required = true, AT(material.E), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
-     .help = "Young's modulus"},
-    {"material.nu", CASE_NUMBER, "", -1, 0.5, true, true, .required = true, AT(material.nu), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
-     .help = "Poisson's ratio"},
+    {"material.E", CASE_TRIPLE, "Pa", 1e6, 1e14, .required = true, AT(constants.E), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
+     .help = "Young's modulus; with G of a single crystal, along its axes: a number or [E1, E2, E3]"},
+    {"material.nu", CASE_TRIPLE, "", -1, 0.5, true, true, .required = true, AT(constants.nu), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
+     .help = "Poisson's ratio, or [nu12, nu13, nu23]: contraction along the second under tension along the first"},
+    {"material.G", CASE_TRIPLE, "Pa", 1e6, 1e14, AT(constants.G), .stages = CASE_MODAL, .when = CASE_IF_CRYSTAL,
+     .help = "shear modulus of a cubic material, or [G12, G13, G23] of an orthotropic one; default: isotropic"},
+    {"material.axis_1", CASE_VECTOR, "", -1e6, 1e6, .fallback = "[1, 0, 0]", AT(constants.axis), .stages = CASE_MODAL, .when = CASE_IF_CRYSTAL,
+     .help = "direction of the material's axis 1, mesh axes"},
+    {"material.axis_2", CASE_VECTOR, "", -1e6, 1e6, .fallback = "[0, 1, 0]", AT(constants.in_plane), .stages = CASE_MODAL, .when = CASE_IF_CRYSTAL,
+     .help = "a direction in the plane of axes 1 and 2, on the side of 2"},
     {"material.rho", CASE_NUMBER, "kg/m3", 10, 1e5, .required = true, AT(material.rho), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
      .help = "density"},
 
@@ -193,6 +199,8 @@ bool case_key_applies(const case_key *key, const case_file *file) {
       return own;
     case CASE_IF_MODAL_FILE:
       return !own;
+    case CASE_IF_CRYSTAL:
+      return own && file->constants.G[0] != 0;
     case CASE_IF_NEIGHBOUR:
       return !file->mhb.to_ground;
     case CASE_IF_SECTOR:

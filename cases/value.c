@@ -28,6 +28,7 @@ void case_value_expected(const case_key *key, char *text, size_t size) {
       [CASE_WORD]      = "a name",
       [CASE_FILE_NAME] = "a file name",
       [CASE_VECTOR]    = "[x, y, z]",
+      [CASE_TRIPLE]    = "a number or three, for the axes",
       [CASE_INTERVAL]  = "[from, to]",
       [CASE_SWEEP]     = "[from, to] or a number",
       [CASE_STIFFNESS] = "a number or [kuu, kuw, kww]",
@@ -247,6 +248,21 @@ static bool read_sweep(const context *c, const case_node *node, void *slot) {
   if (!number_at(c, c->path, node, &value[0])) return false;
   value[1] = value[0];
   return true;
+}
+
+/* A list may leave the range: it is that of an isotropic material. */
+static bool read_triple(const context *c, const case_node *node, void *slot) {
+  double *v = slot;
+  if (node->kind == CASE_SCALAR) {
+    if (!number_at(c, c->path, node, v)) return false;
+    v[1] = v[2] = v[0];
+    return true;
+  }
+  case_key free_key = *c->key;
+  free_key.least = free_key.most = 0;
+  context free_context           = *c;
+  free_context.key               = &free_key;
+  return numbers_at(&free_context, c->path, node, 3, v);
 }
 
 static bool read_stiffness(const context *c, const case_node *node, void *slot) {
@@ -506,17 +522,17 @@ static bool read_signal(const context *c, const case_node *node, void *slot) {
 bool case_value_read(case_issues *issues, const case_key *key, const char *path,
                      const case_node *node, case_file *file, void *slot) {
   static bool (*const readers[CASE_N_TYPES])(const context *, const case_node *, void *) = {
-      [CASE_NUMBER] = read_number,     [CASE_INTEGER] = read_integer,
-      [CASE_COUNT] = read_count,       [CASE_CHOICE] = read_choice,
-      [CASE_SWITCH] = read_switch,     [CASE_ACCURACY] = read_accuracy,
-      [CASE_WORD] = read_word,         [CASE_FILE_NAME] = read_file_name,
-      [CASE_VECTOR] = read_vector,     [CASE_INTERVAL] = read_interval,
-      [CASE_SWEEP] = read_sweep,       [CASE_STIFFNESS] = read_stiffness,
-      [CASE_PRELOADS] = read_preloads, [CASE_FACTORS] = read_factors,
-      [CASE_PROBES] = read_probes,     [CASE_GROUPS] = read_groups,
-      [CASE_SIGNAL] = read_signal,     [CASE_AUTO] = read_count,
-      [CASE_PLACES] = read_places,     [CASE_ORDERS] = read_orders,
-      [CASE_POINTS] = read_frequencies};
+      [CASE_NUMBER] = read_number,       [CASE_INTEGER] = read_integer,
+      [CASE_COUNT] = read_count,         [CASE_CHOICE] = read_choice,
+      [CASE_SWITCH] = read_switch,       [CASE_ACCURACY] = read_accuracy,
+      [CASE_WORD] = read_word,           [CASE_FILE_NAME] = read_file_name,
+      [CASE_VECTOR] = read_vector,       [CASE_TRIPLE] = read_triple,
+      [CASE_INTERVAL] = read_interval,   [CASE_SWEEP] = read_sweep,
+      [CASE_STIFFNESS] = read_stiffness, [CASE_PRELOADS] = read_preloads,
+      [CASE_FACTORS] = read_factors,     [CASE_PROBES] = read_probes,
+      [CASE_GROUPS] = read_groups,       [CASE_SIGNAL] = read_signal,
+      [CASE_AUTO] = read_count,          [CASE_PLACES] = read_places,
+      [CASE_ORDERS] = read_orders,       [CASE_POINTS] = read_frequencies};
   const context c = {.issues = issues, .key = key, .path = path, .file = file};
   return readers[key->type](&c, node, slot);
 }

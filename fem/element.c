@@ -128,18 +128,47 @@ KERNEL void add_point(int n, double lambda, double mu, const double g[][3], doub
     }
 }
 
+void fem_strain_rows(const double F[3][3], const double g[3], double B[6][3]) {
+  for (int a = 0; a < 3; a++) {
+    for (int i = 0; i < 3; i++) B[i][a] = F[a][i] * g[i];
+    B[3][a] = F[a][0] * g[1] + F[a][1] * g[0];
+    B[4][a] = F[a][0] * g[2] + F[a][2] * g[0];
+    B[5][a] = F[a][1] * g[2] + F[a][2] * g[1];
+  }
+}
+
+void fem_add_anisotropic(int n, const double C[6][6], double volume, const double F[3][3],
+                         const double g[][3], double *K) {
+  double B[MESH_NODES][6][3], CB[6][3];
+  for (int i = 0; i < n; i++) fem_strain_rows(F, g[i], B[i]);
+  for (int j = 0; j < n; j++) {
+    for (int p = 0; p < 6; p++)
+      for (int b = 0; b < 3; b++) {
+        CB[p][b] = 0;
+        for (int q = 0; q < 6; q++) CB[p][b] += volume * C[p][q] * B[j][q][b];
+      }
+    for (int i = 0; i <= j; i++)
+      for (int a = 0; a < 3; a++)
+        for (int p = 0; p < 6; p++)
+          for (int b = 0; b < 3; b++) K[(3 * i + a) * 3 * n + 3 * j + b] += B[i][p][a] * CB[p][b];
+  }
+}
+
 void fem_element_stiffness(const fem_element *element, const fem_material *material,
                            const double x[][3], double *K) {
   const fem_rule *rule = fem_element_stiffness_rule(element, x);
   const fem_lame  lame = fem_lame_of(material);
   const int       n = element->n, order = 3 * n;
+  const double    identity[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   memset(K, 0, (size_t)(order * order) * sizeof *K);
   for (int p = 0; p < rule->n; p++) {
     double       g[MESH_NODES][3];
     const double volume  = rule->weight[p] * fem_element_gradient(element, rule, p, x, g);
     const double(*at)[3] = (const double(*)[3])g;
     const double lambda = lame.lambda * volume, mu = lame.mu * volume;
-    if (n == 10)
+    if (material->anisotropic)
+      fem_add_anisotropic(n, material->C, volume, identity, at, K);
+    else if (n == 10)
       add_point(10, lambda, mu, at, K);
     else
       add_point(20, lambda, mu, at, K);

@@ -51,7 +51,15 @@ const fem_rule *fem_element_stiffness_rule(const fem_element *element, const dou
 double fem_element_gradient(const fem_element *element, const fem_rule *rule, int point,
                             const double x[][3], double g[][3]);
 
-/* K = integral of B^T D B, isotropic, N/m: [3n][3n], rows and columns 3 node + axis. */
+/* The rows by which a node's displacement changes the Green-Lagrange strain (fem/material.h) at the deformation gradient F:
+ * B[.][a] = sym(F^T (e_a g^T)), shear doubled; for F = I the usual B. */
+void fem_strain_rows(const double F[3][3], const double g[3], double B[6][3]);
+
+/* K += volume B_i^T C B_j of all nodes i <= j, any C: the upper triangle of [3n][3n]. */
+void fem_add_anisotropic(int n, const double C[6][6], double volume, const double F[3][3],
+                         const double g[][3], double *K);
+
+/* K = integral of B^T D B, N/m: [3n][3n], rows and columns 3 node + axis. */
 void fem_element_stiffness(const fem_element *element, const fem_material *material,
                            const double x[][3], double *K);
 

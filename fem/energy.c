@@ -4,12 +4,28 @@
 
 #include "fem/finite.h"
 
-/* lambda (tr e)^2 + 2 mu e : e, e = sym(F^T H). */
-static double elastic(const fem_lame *lame, const double F[3][3], const double H[3][3]) {
-  double pulled[3][3], trace = 0, square = 0;
+/* e C e with shear strains doubled. */
+static double anisotropic(const double C[6][6], const double pulled[3][3]) {
+  const double e[6] = {pulled[0][0],
+                       pulled[1][1],
+                       pulled[2][2],
+                       pulled[0][1] + pulled[1][0],
+                       pulled[0][2] + pulled[2][0],
+                       pulled[1][2] + pulled[2][1]};
+  double       sum  = 0;
+  for (int p = 0; p < 6; p++)
+    for (int q = 0; q < 6; q++) sum += e[p] * C[p][q] * e[q];
+  return sum;
+}
+
+/* lambda (tr e)^2 + 2 mu e : e, or e C e, e = sym(F^T H). */
+static double elastic(const fem_material *material, const double F[3][3], const double H[3][3]) {
+  const fem_lame lame = fem_lame_of(material);
+  double         pulled[3][3], trace = 0, square = 0;
   for (int a = 0; a < 3; a++)
     for (int b = 0; b < 3; b++)
       pulled[a][b] = F[0][a] * H[0][b] + F[1][a] * H[1][b] + F[2][a] * H[2][b];
+  if (material->anisotropic) return anisotropic(material->C, (const double(*)[3])pulled);
   for (int a = 0; a < 3; a++) {
     trace += pulled[a][a];
     for (int b = 0; b < 3; b++) {
@@ -17,7 +33,7 @@ static double elastic(const fem_lame *lame, const double F[3][3], const double H
       square += strain * strain;
     }
   }
-  return lame->lambda * trace * trace + 2 * lame->mu * square;
+  return lame.lambda * trace * trace + 2 * lame.mu * square;
 }
 
 /* H S : H */
@@ -29,7 +45,7 @@ static double geometric(const double S[3][3], const double H[3][3]) {
   return sum;
 }
 
-static double stored(const fem_element *element, const fem_lame *lame, const double x[][3],
+static double stored(const fem_element *element, const fem_material *material, const double x[][3],
                      const double state[][3], const double u[][3]) {
   const fem_rule *rule = fem_element_stiffness_rule(element, x);
   double          sum  = 0;
@@ -38,9 +54,9 @@ static double stored(const fem_element *element, const fem_lame *lame, const dou
     double          g[MESH_NODES][3], H[3][3], h[3][3];
     double          volume = rule->weight[p] * fem_element_gradient(element, rule, p, x, g);
     fem_displacement_gradient(element->n, (const double(*)[3])g, state, H);
-    fem_deform(lame, (const double(*)[3])H, &at);
+    fem_deform(material, (const double(*)[3])H, &at);
     fem_displacement_gradient(element->n, (const double(*)[3])g, u, h);
-    sum += volume * (elastic(lame, (const double(*)[3])at.F, (const double(*)[3])h) +
+    sum += volume * (elastic(material, (const double(*)[3])at.F, (const double(*)[3])h) +
                      geometric((const double(*)[3])at.S, (const double(*)[3])h));
   }
   return sum;
@@ -58,13 +74,12 @@ static double spun(const fem_body *body, const double x[][3], const double u[][3
 }
 
 double fem_tangent_energy(const fem_body *body, const double *state, const double *u) {
-  const fem_lame lame = fem_lame_of(body->material);
-  double         sum  = 0;
+  double sum = 0;
   for (int e = 0; e < body->mesh->n_elements; e++) {
     double x[MESH_NODES][3], at[MESH_NODES][3], by[MESH_NODES][3];
     fem_body_element(body, e, state, x, at);
     fem_body_element(body, e, u, x, by);
-    sum += stored(body->element, &lame, (const double(*)[3])x, (const double(*)[3])at,
+    sum += stored(body->element, body->material, (const double(*)[3])x, (const double(*)[3])at,
                   (const double(*)[3])by);
     if (body->rotation.speed != 0) sum -= spun(body, (const double(*)[3])x, (const double(*)[3])by);
   }

@@ -13,19 +13,36 @@ void fem_displacement_gradient(int n, const double g[][3], const double u[][3], 
       for (int d = 0; d < 3; d++) H[a][d] += (u[i][a] - u[0][a]) * g[i][d];
 }
 
+/* S = C E */
+static void anisotropic_stress(const fem_material *material, const double E[3][3], double S[3][3]) {
+  const double strain[6] = {E[0][0], E[1][1], E[2][2], 2 * E[0][1], 2 * E[0][2], 2 * E[1][2]};
+  double       stress[6] = {0};
+  for (int p = 0; p < 6; p++)
+    for (int q = 0; q < 6; q++) stress[p] += material->C[p][q] * strain[q];
+  for (int a = 0; a < 3; a++) S[a][a] = stress[a];
+  S[0][1] = S[1][0] = stress[3];
+  S[0][2] = S[2][0] = stress[4];
+  S[1][2] = S[2][1] = stress[5];
+}
+
 /* E from H, not from F^T F - I, which would lose the digits of small strains. */
-void fem_deform(const fem_lame *lame, const double H[3][3], fem_deformation *at) {
-  double E[3][3], trace;
+void fem_deform(const fem_material *material, const double H[3][3], fem_deformation *at) {
+  const fem_lame lame = fem_lame_of(material);
+  double         E[3][3], trace;
   for (int a = 0; a < 3; a++)
     for (int b = 0; b < 3; b++) {
       double square = H[0][a] * H[0][b] + H[1][a] * H[1][b] + H[2][a] * H[2][b];
       E[a][b]       = (H[a][b] + H[b][a] + square) / 2;
       at->F[a][b]   = H[a][b] + (a == b);
     }
+  if (material->anisotropic) {
+    anisotropic_stress(material, (const double(*)[3])E, at->S);
+    return;
+  }
   trace = E[0][0] + E[1][1] + E[2][2];
   for (int a = 0; a < 3; a++)
     for (int b = 0; b < 3; b++)
-      at->S[a][b] = 2 * lame->mu * E[a][b] + (a == b ? lame->lambda * trace : 0);
+      at->S[a][b] = 2 * lame.mu * E[a][b] + (a == b ? lame.lambda * trace : 0);
 }
 
 static void multiply(const double A[3][3], const double B[3][3], double C[3][3]) {
@@ -50,14 +67,13 @@ static double inner(const double a[3], const double b[3]) {
 void fem_element_force(const fem_element *element, const fem_material *material,
                        const double x[][3], const double u[][3], double f[][3]) {
   const fem_rule *rule = fem_element_stiffness_rule(element, x);
-  const fem_lame  lame = fem_lame_of(material);
   memset(f, 0, (size_t)element->n * sizeof *f);
   for (int p = 0; p < rule->n; p++) {
     fem_deformation at;
     double          g[MESH_NODES][3], H[3][3], P[3][3], nodal[3];
     double          volume = rule->weight[p] * fem_element_gradient(element, rule, p, x, g);
     fem_displacement_gradient(element->n, (const double(*)[3])g, u, H);
-    fem_deform(&lame, (const double(*)[3])H, &at);
+    fem_deform(material, (const double(*)[3])H, &at);
     multiply((const double(*)[3])at.F, (const double(*)[3])at.S, P);
     for (int i = 0; i < element->n; i++) {
       apply((const double(*)[3])P, g[i], nodal);
@@ -88,6 +104,17 @@ KERNEL void add_point(int n, const fem_lame *lame, double volume, const fem_defo
     }
 }
 
+static void add_anisotropic(int n, const fem_material *material, double volume,
+                            const fem_deformation *at, const double g[][3], double *K) {
+  fem_add_anisotropic(n, material->C, volume, at->F, g, K);
+  for (int j = 0; j < n; j++) {
+    double Sg[3];
+    apply(at->S, g[j], Sg);
+    for (int i = 0; i <= j; i++)
+      for (int a = 0; a < 3; a++) K[(3 * i + a) * 3 * n + 3 * j + a] += volume * inner(g[i], Sg);
+  }
+}
+
 void fem_element_tangent(const fem_element *element, const fem_material *material,
                          const double x[][3], const double u[][3], double *K) {
   const fem_rule *rule  = fem_element_stiffness_rule(element, x);
@@ -99,8 +126,10 @@ void fem_element_tangent(const fem_element *element, const fem_material *materia
     double          g[MESH_NODES][3], H[3][3];
     double          volume = rule->weight[p] * fem_element_gradient(element, rule, p, x, g);
     fem_displacement_gradient(element->n, (const double(*)[3])g, u, H);
-    fem_deform(&lame, (const double(*)[3])H, &at);
-    if (element->n == 10)
+    fem_deform(material, (const double(*)[3])H, &at);
+    if (material->anisotropic)
+      add_anisotropic(element->n, material, volume, &at, (const double(*)[3])g, K);
+    else if (element->n == 10)
       add_point(10, &lame, volume, &at, (const double(*)[3])g, K);
     else
       add_point(20, &lame, volume, &at, (const double(*)[3])g, K);
@@ -132,14 +161,13 @@ static double von_mises(const fem_deformation *at) {
 double fem_element_stress(const fem_element *element, const fem_material *material,
                           const double x[][3], const double u[][3]) {
   const fem_rule *rule     = fem_element_stiffness_rule(element, x);
-  const fem_lame  lame     = fem_lame_of(material);
   double          greatest = 0;
   for (int p = 0; p < rule->n; p++) {
     fem_deformation at;
     double          g[MESH_NODES][3], H[3][3];
     fem_element_gradient(element, rule, p, x, g);
     fem_displacement_gradient(element->n, (const double(*)[3])g, u, H);
-    fem_deform(&lame, (const double(*)[3])H, &at);
+    fem_deform(material, (const double(*)[3])H, &at);
     greatest = fmax(greatest, von_mises(&at));
   }
   return greatest;

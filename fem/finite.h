@@ -4,6 +4,7 @@
  *   F = I + H,  E = (H + H^T + H^T H)/2,  S = lambda tr(E) I + 2 mu E,  p_i = F g_i
  *   force    f_i  = int F S g_i dV
  *   tangent  K_ij = int (g_i . S g_j) I + lambda p_i p_j^T + mu p_j p_i^T + mu (g_i . g_j) F F^T dV
+ * and for an anisotropic material S = C E, the middle terms B_i^T C B_j with the rows of fem_strain_rows,
  * at the points of fem_element_stiffness_rule; for u = 0 the tangent is fem_element_stiffness. */
 #ifndef FEM_FINITE_H
 #define FEM_FINITE_H
@@ -19,7 +20,7 @@ typedef struct {
 /* H[a][d] = du_a/dX_d = sum_i u_i[a] g_i[d], free of rigid translation. */
 void fem_displacement_gradient(int n, const double g[][3], const double u[][3], double H[3][3]);
 
-void fem_deform(const fem_lame *lame, const double H[3][3], fem_deformation *at);
+void fem_deform(const fem_material *material, const double H[3][3], fem_deformation *at);
 
 /* Internal forces of the nodes, N.  x, u in m. */
 void fem_element_force(const fem_element *element, const fem_material *material,

@@ -254,6 +254,40 @@ static void forces_and_tractions(void **state) {
 }
 
 /* The same file with the line ends, the mark and the end that other editors leave. */
+/* Single crystals: constants of the axes, and the stiffness that they make; without G nothing changes. */
+static void materials_with_axes(void **state) {
+  (void)state;
+  char folder[SCRATCH_PATH], *said, *settings;
+  scratch_create(folder);
+  case_file f;
+  char     *text = scratch_case("E: 207 GPa", "E: 127 GPa, G: 120 GPa, axis_1: [1, 1, 0]");
+  assert_int_equal(read_text(folder, "x.yaml", text, &f, &said), SHB_OK);
+  assert_true(f.material.anisotropic && f.material.rho == 7850);
+  double S11 = 1 / 127e9, S12 = -.29 / 127e9, C44 = 120e9;
+  double C11 = (S11 + S12) / ((S11 - S12) * (S11 + 2 * S12)),
+         C12 = -S12 / ((S11 - S12) * (S11 + 2 * S12)); /* turned by 45 deg about axis 3 */
+  assert_true(fabs(f.material.C[0][0] / ((C11 + C12) / 2 + C44) - 1) < 1e-12);
+  assert_true(fabs(f.material.C[2][2] / C11 - 1) < 1e-12);
+  settings = case_settings(&f, CASE_MODAL);
+  assert_non_null(strstr(settings, "material.E = 127000000000\n"));
+  assert_non_null(strstr(settings, "material.axis_1 = 1 1 0\n"));
+  free(settings), free(said), free(text);
+  case_free(&f);
+  text = scratch_case("E: 207 GPa", "E: [90 GPa, 150 GPa, 210 GPa], G: [61 GPa, 47 GPa, 83 GPa]");
+  assert_int_equal(read_text(folder, "x.yaml", text, &f, &said), SHB_OK);
+  assert_true(f.material.anisotropic && f.material.E == 210e9 && f.material.C[5][5] == 83e9);
+  free(said), free(text);
+  case_free(&f);
+  text = scratch_case(NULL, NULL);
+  assert_int_equal(read_text(folder, "x.yaml", text, &f, &said), SHB_OK);
+  assert_false(f.material.anisotropic);
+  settings = case_settings(&f, CASE_MODAL);
+  assert_null(strstr(settings, "material.G"));
+  free(settings), free(said), free(text);
+  case_free(&f);
+  scratch_remove(folder);
+}
+
 static void line_ends_and_marks(void **state) {
   (void)state;
   char folder[SCRATCH_PATH], *said, *text = scratch_case(NULL, NULL), *other = malloc(8192);
@@ -325,14 +359,11 @@ static void one_byte_wrong(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(every_value_arrives),
-                                     cmocka_unit_test(automatic_harmonics),
-                                     cmocka_unit_test(accuracy_in_words),
-                                     cmocka_unit_test(a_modal_file_needs_little),
-                                     cmocka_unit_test(stages_ask_for_their_own),
-                                     cmocka_unit_test(forces_and_tractions),
-                                     cmocka_unit_test(line_ends_and_marks),
-                                     cmocka_unit_test(truncated_anywhere),
-                                     cmocka_unit_test(one_byte_wrong)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(every_value_arrives),      cmocka_unit_test(automatic_harmonics),
+      cmocka_unit_test(accuracy_in_words),        cmocka_unit_test(a_modal_file_needs_little),
+      cmocka_unit_test(stages_ask_for_their_own), cmocka_unit_test(forces_and_tractions),
+      cmocka_unit_test(materials_with_axes),      cmocka_unit_test(line_ends_and_marks),
+      cmocka_unit_test(truncated_anywhere),       cmocka_unit_test(one_byte_wrong)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -107,11 +107,11 @@ static void keys_and_kinds(void **state) {
       {"0.31\n", "{a: 1}\n", "c.yaml:24:7: error: contact.mu: is a mapping; expected a number", 1},
       {"material: {E: 207 GPa, nu: 0.29, rho: 7.85 g/cm3}", "material: steel",
        "c.yaml:11:11: error: material: "
-       "is a single value; expected a mapping; known here: E, nu, rho",
+       "is a single value; expected a mapping; known here: E, nu, G, axis_1, axis_2, rho",
        1},
       {"material: {E: 207 GPa, nu: 0.29, rho: 7.85 g/cm3}", "material:",
        "c.yaml:11:10: error: material: "
-       "is nothing; expected a mapping; known here: E, nu, rho",
+       "is nothing; expected a mapping; known here: E, nu, G, axis_1, axis_2, rho",
        1},
       {"material: {E: 207 GPa, nu: 0.29, rho: 7.85 g/cm3}\n", "",
        "c.yaml:1:1: error: material: missing; "
@@ -154,6 +154,24 @@ static void numbers_and_ranges(void **state) {
        1},
       {"nu: 0.29", "nu: 0.5",
        "c.yaml:11:28: error: material.nu: is 0.5, must be above -1 and below 0.5", 1},
+      {"E: 207 GPa", "E: [207 GPa, 180 GPa, 207 GPa]",
+       "c.yaml:11:1: error: material.G: missing; E or nu differ along the axes, expected [G12, "
+       "G13, G23]",
+       1},
+      {"E: 207 GPa", "E: 207 GPa, G: [80 GPa, 80 GPa, -1 GPa]",
+       "c.yaml:11:27: error: material.G: E, nu and G are those of no stable material (the "
+       "stiffness is "
+       "not positive definite); nu12 is the contraction along 2 under tension along 1, nu12/E1 = "
+       "nu21/E2",
+       1},
+      {"E: 207 GPa", "E: 207 GPa, G: 80 GPa, axis_2: [1, 0, 0]",
+       "c.yaml:11:27: error: material.G: axis_1 and axis_2 must be two directions, not along one "
+       "line",
+       1},
+      {"E: 207 GPa", "E: 207 GPa, axis_1: [1, 1, 0]",
+       "c.yaml:11:1: error: material.G: missing; without it the material is isotropic and has no "
+       "axes",
+       1},
       {"E: 207 GPa", "E: 207",
        "c.yaml:11:15: error: material.E: is 207 Pa, must be 1e+06 to 1e+14 Pa", 1},
       {"blades: 37", "blades: 37.5",

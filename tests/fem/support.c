@@ -12,7 +12,7 @@
 
 #include "tests/mesh/box.h"
 
-const fem_material steel = {2.1e11, 0.3, 7850};
+const fem_material steel = {.E = 2.1e11, .nu = 0.3, .rho = 7850};
 
 void check_close(double a, double b, double relative, const char *what) {
   if (!(fabs(a - b) <= relative * fabs(b)))

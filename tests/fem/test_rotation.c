@@ -168,7 +168,7 @@ static mesh_fe make_rod(double from, int n) {
 /* A rod without lateral contraction stretches as its own differential equation says, 5 % at the clamp. */
 static void rod_stretches_as_its_equation_says(void **state) {
   (void)state;
-  const fem_material material = {steel.E, 0, steel.rho};
+  const fem_material material = {.E = steel.E, .rho = steel.rho};
   const double       speed = 4200, at_tip[3] = {rod_hub + rod_length, 0, 0};
   mesh_fe            mesh = make_rod(rod_hub, 24);
   const fem_body     body = {&mesh, &material, element, {MESH_AXIS_MZ, speed}};

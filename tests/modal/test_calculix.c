@@ -23,6 +23,9 @@ static const double two_pi   = 6.28318530717958647692;
 static const char  *program;
 static char         folder[] = "/tmp/shroudhb-calculix-XXXXXX";
 
+static const fem_orthotropic crystal = {
+    {127e9, 141e9, 118e9}, {.38, .31, .27}, {120e9, 97e9, 71e9}, {.3, -.8, .52}, {.9, .2, -.4}};
+
 /* An element of CalculiX, and ours with the same rules. */
 typedef struct {
   const char *name;
@@ -60,18 +63,46 @@ static void use_type(const char *name) {
   assert_int_equal(system(command), 0);
 }
 
+/* D1111, D1122, D2222, D1133, D2233, D3333, D1212, D1313, D2323 in the material's own axes. */
+static void write_crystal(FILE *deck) {
+  fem_orthotropic own = crystal;
+  fem_material    material;
+  own.axis[0] = 1, own.axis[1] = own.axis[2] = 0;
+  own.in_plane[1] = 1, own.in_plane[0] = own.in_plane[2] = 0;
+  assert_int_equal(fem_material_orthotropic(&own, 8500, &material), SHB_OK);
+  const double(*C)[6] = (const double(*)[6])material.C;
+  fprintf(deck,
+          "*ORIENTATION, NAME=AXES, SYSTEM=RECTANGULAR\n%g, %g, %g, %g, %g, %g\n*MATERIAL, "
+          "NAME=CRYSTAL\n*ELASTIC, TYPE=ORTHO\n",
+          crystal.axis[0], crystal.axis[1], crystal.axis[2], crystal.in_plane[0],
+          crystal.in_plane[1], crystal.in_plane[2]);
+  fprintf(deck, "%.13g, %.13g, %.13g, %.13g, %.13g, %.13g, %.13g, %.13g,\n%.13g\n", C[0][0],
+          C[0][1], C[1][1], C[0][2], C[1][2], C[2][2], C[3][3], C[4][4], C[5][5]);
+  fprintf(deck, "*DENSITY\n8500\n*SOLID SECTION, ELSET=body, MATERIAL=CRYSTAL, ORIENTATION=AXES\n");
+}
+
+static void write_material(const fem_material *material, FILE *deck) {
+  if (material->anisotropic) {
+    write_crystal(deck);
+    return;
+  }
+  fprintf(deck,
+          "*MATERIAL, NAME=STEEL\n*ELASTIC\n%.13g, %.13g\n*DENSITY\n%.13g\n"
+          "*SOLID SECTION, ELSET=body, MATERIAL=STEEL\n",
+          material->E, material->nu, material->rho);
+}
+
 /* The static step's controls are tightened: CalculiX's own leave 1e-4 in the frequencies. */
-static void write_deck(const element_kind *element, const mesh_fe *mesh, double speed) {
+static void write_deck(const element_kind *element, const mesh_fe *mesh,
+                       const fem_material *material, double speed) {
   char path[128];
   snprintf(path, sizeof path, "%s/blade.inp", folder);
   assert_int_equal(mesh_inp_write(mesh, path), SHB_OK);
   if (element->kind == MESH_HEX20) use_type(element->name);
   FILE *deck = fopen(path, "a");
   assert_non_null(deck);
-  fprintf(deck,
-          "*BOUNDARY\nroot, 1, 3\n*MATERIAL, NAME=STEEL\n*ELASTIC\n%.13g, %.13g\n*DENSITY\n%.13g\n"
-          "*SOLID SECTION, ELSET=body, MATERIAL=STEEL\n",
-          steel.E, steel.nu, steel.rho);
+  fprintf(deck, "*BOUNDARY\nroot, 1, 3\n");
+  write_material(material, deck);
   if (speed != 0)
     fprintf(deck,
             "*STEP, NLGEOM\n*STATIC\n0.25, 1., 1e-5, 0.25\n*CONTROLS, PARAMETERS=FIELD\n"
@@ -101,26 +132,27 @@ static void read_frequencies(double frequency[MODES]) {
   assert_int_equal(found, MODES);
 }
 
-static void run_calculix(const element_kind *element, const mesh_fe *mesh, double speed,
-                         double frequency[MODES]) {
+static void run_calculix(const element_kind *element, const mesh_fe *mesh,
+                         const fem_material *material, double speed, double frequency[MODES]) {
   char command[512];
-  write_deck(element, mesh, speed);
+  write_deck(element, mesh, material, speed);
   snprintf(command, sizeof command, "cd %s && OMP_NUM_THREADS=1 '%s' blade >blade.log 2>&1", folder,
            program);
   assert_int_equal(system(command), 0);
   read_frequencies(frequency);
 }
 
-static void run_own(const mesh_fe *mesh, fem_rules rules, double speed, double frequency[MODES]) {
+static void run_own(const mesh_fe *mesh, const fem_material *material, fem_rules rules,
+                    double speed, double frequency[MODES]) {
   fem_element         *element = malloc(sizeof *element);
-  fem_body             body    = {mesh, &steel, element, {MESH_AXIS_Z, speed}};
+  fem_body             body    = {mesh, material, element, {MESH_AXIS_Z, speed}};
   fem_system           system;
   fem_equilibrium      at = {0};
   modal_eigen          eigen;
   modal_eigen_settings wanted = {.modes = MODES};
   assert_non_null(element);
   assert_int_equal(fem_element_create(mesh->kind, rules, element), 0);
-  assert_int_equal(fem_system_create(PETSC_COMM_SELF, mesh, &steel, rules, &system), 0);
+  assert_int_equal(fem_system_create(PETSC_COMM_SELF, mesh, material, rules, &system), 0);
   if (speed != 0) assert_int_equal(fem_equilibrium_solve(&body, &system, NULL, &at), 0);
   assert_int_equal(modal_eigen_solve(&system, &wanted, &eigen), 0);
   for (int i = 0; i < MODES; i++) frequency[i] = sqrt(eigen.lambda[i]) / two_pi;
@@ -131,13 +163,13 @@ static void run_own(const mesh_fe *mesh, fem_rules rules, double speed, double f
 }
 
 /* Eigenvalues have seven digits in blade.dat: frequencies are good to 2.5e-7. */
-static void compare(const element_kind *element) {
+static void compare(const element_kind *element, const fem_material *material) {
   const double speed[] = {0, 400, 1000};
   mesh_fe      mesh    = make_blade(element->kind);
   for (int s = 0; s < 3; s++) {
     double own[MODES], other[MODES], worst = 0;
-    run_own(&mesh, element->rules, speed[s], own);
-    run_calculix(element, &mesh, speed[s], other);
+    run_own(&mesh, material, element->rules, speed[s], own);
+    run_calculix(element, &mesh, material, speed[s], other);
     for (int i = 0; i < MODES; i++) worst = fmax(worst, fabs(own[i] / other[i] - 1));
     print_message("%s, %g rad/s: first mode %.7g Hz, CalculiX %.7g; six modes to %.1e\n",
                   element->name, speed[s], own[0], other[0], worst);
@@ -148,17 +180,26 @@ static void compare(const element_kind *element) {
 
 static void tetrahedra_agree(void **state) {
   (void)state;
-  compare(&(element_kind){"C3D10", MESH_TET10, FEM_CALCULIX});
+  compare(&(element_kind){"C3D10", MESH_TET10, FEM_CALCULIX}, &steel);
 }
 
 static void reduced_hexahedra_agree(void **state) {
   (void)state;
-  compare(&(element_kind){"C3D20R", MESH_HEX20, FEM_CALCULIX});
+  compare(&(element_kind){"C3D20R", MESH_HEX20, FEM_CALCULIX}, &steel);
 }
 
 static void full_hexahedra_agree(void **state) {
   (void)state;
-  compare(&(element_kind){"C3D20", MESH_HEX20, FEM_FULL});
+  compare(&(element_kind){"C3D20", MESH_HEX20, FEM_FULL}, &steel);
+}
+
+/* CalculiX gets the constants in the material's axes and their orientation, ours are turned beforehand. */
+static void crystals_agree(void **state) {
+  (void)state;
+  fem_material material;
+  assert_int_equal(fem_material_orthotropic(&crystal, 8500, &material), SHB_OK);
+  compare(&(element_kind){"C3D10", MESH_TET10, FEM_CALCULIX}, &material);
+  compare(&(element_kind){"C3D20R", MESH_HEX20, FEM_CALCULIX}, &material);
 }
 
 static int make_folder(void **state) {
@@ -174,9 +215,9 @@ static int remove_folder(void **state) {
 }
 
 int main(int argc, char **argv) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(tetrahedra_agree),
-                                     cmocka_unit_test(reduced_hexahedra_agree),
-                                     cmocka_unit_test(full_hexahedra_agree)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(tetrahedra_agree), cmocka_unit_test(reduced_hexahedra_agree),
+      cmocka_unit_test(full_hexahedra_agree), cmocka_unit_test(crystals_agree)};
   if (argc < 2) return 77;
   program = argv[1];
   if (SlepcInitialize(NULL, NULL, NULL, NULL)) return 1;

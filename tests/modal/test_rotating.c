@@ -18,7 +18,7 @@
 enum { MODES = 6 };
 
 /* No lateral contraction: a clamp that hinders it shortens the beam by a share of its width. */
-static const fem_material material = {2.1e11, 0, 7850};
+static const fem_material material = {.E = 2.1e11, .rho = 7850};
 
 /* A beam along x, clamped at x = hub, turning about y: flapping is along y, in-plane motion along z. The section is
  * width along y, 1.3 width along z, so that the two do not mix. */
