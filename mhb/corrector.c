@@ -85,15 +85,24 @@ static void polish(mhb_path *path, double scale, mhb_path_point *point) {
   }
 }
 
+/* Between two faces of a kink Newton goes to and fro for ever: the last two residuals are those of two iterations before. */
+static int goes_in_circles(const double *seen, int last) {
+  for (int i = last; i > last - 2; i--)
+    if (i < 2 || fabs(seen[i] - seen[i - 2]) > 1e-3 * seen[i]) return 0;
+  return 1;
+}
+
 int mhb_path_correct(mhb_path *path, const double *normal, double clip, mhb_path_point *point) {
   mhb_newton *w     = path->newton;
   int         n     = path->n;
   double      scale = mhb_path_unit(path), before = INFINITY, cut = 0;
+  double      seen[MAX_CORRECTIONS + 1];
   for (point->iterations = 0; point->iterations <= MAX_CORRECTIONS; point->iterations++) {
     if (!evaluate_damped(path, before, cut, scale, point)) return 0;
     if (point->residual <= path->tolerance) return 1;
     if (point->residual < STAGNANT && point->residual > .5 * before) return 1; /* rounding */
-    before = point->residual;
+    before = seen[point->iterations] = point->residual;
+    if (goes_in_circles(seen, point->iterations)) return 0;
     if (point->iterations == MAX_CORRECTIONS || !factor_bordered(path, scale, normal)) return 0;
     for (int i = 0; i < n; i++) w->step[i] = -w->r[i] / scale;
     w->step[n] = 0; /* every iterate stays in the plane */

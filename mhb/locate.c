@@ -9,7 +9,14 @@ static const double ROUNDED = 1e-9;
 
 /* Of the value, of the chord: brackets in which a kink is the event; how far from it the point is taken. */
 static const double NARROW = 2e-7, NARROW_CHORD = .01, BESIDE = 3e-8;
-enum { MAX_TO_KINK = 100 };
+enum { MAX_TO_KINK = 100, GUESSES = 4 };
+
+/* The bracket being narrowed: fractions of the chord and the indicator at its ends; the chord's part of the value; which guess
+ * was good last. */
+typedef struct {
+  double at[2], f[2], wide;
+  int    guess;
+} range;
 
 /* Which guess at fraction s, between the solved ends lo and hi of a bracket: the line between them, or one end, shifted. */
 static void guess_at(const mhb_path *path, double s, double lo, double hi, int which,
@@ -38,18 +45,34 @@ static int from_guess(mhb_path *path, double s, double lo, double hi, int which)
   return 1;
 }
 
-/* probe <- the solution in the plane across the chord at fraction s. In the square-root zone of slip onset the plane's
- * Newton can fail; the damped one at fixed frequency then stands in. What rounding stopped is taken if nothing is better. */
-static int at_fraction(mhb_path *path, double s, double lo, double hi) {
+/* Which fraction of the chord the probe is at; a solution at fixed value need not be in the plane it was sought in. */
+static double fraction_of(mhb_path *path) {
+  double scale = mhb_path_unit(path), away[path->n + 1];
+  for (int i = 0; i < path->n; i++) away[i] = path->probe.x[i] - path->now.x[i];
+  away[path->n] = path->probe.value - path->now.value;
+  return mhb_path_inner(path, scale, path->chord, away) /
+         mhb_path_inner(path, scale, path->chord, path->chord);
+}
+
+/* probe <- the solution in the plane across the chord at fraction *s. In the square-root zone of slip onset the plane's
+ * Newton can fail; the damped one at fixed frequency then stands in, if it stays in the bracket, and is tried first from there on.
+ * What rounding stopped is taken if nothing is better. */
+static int at_fraction(mhb_path *path, range *r, double *s) {
   int rounded = -1;
-  for (int which = 0; which < 4; which++) {
-    if (!from_guess(path, s, lo, hi, which)) continue;
+  for (int i = 0; i < GUESSES; i++) {
+    int which = (r->guess + i) % GUESSES;
+    if (!from_guess(path, *s, r->at[0], r->at[1], which)) continue;
+    double at = which < 3 ? *s : fraction_of(path);
+    if (!(at > r->at[0] && at < r->at[1])) continue;
     if (path->probe.residual <= path->tolerance &&
-        mhb_path_set_tangent(path, path->chord, &path->probe))
+        mhb_path_set_tangent(path, path->chord, &path->probe)) {
+      r->guess = which;
+      *s       = at;
       return 1;
+    }
     if (path->probe.residual <= ROUNDED && rounded < 0) rounded = which;
   }
-  return rounded >= 0 && from_guess(path, s, lo, hi, rounded) &&
+  return rounded >= 0 && from_guess(path, *s, r->at[0], r->at[1], rounded) &&
          mhb_path_set_tangent(path, path->chord, &path->probe);
 }
 
@@ -63,11 +86,11 @@ static int at_end(mhb_path *path, int side) {
 }
 
 /* Somewhere else in the bracket, then at *s. */
-static int somewhere(mhb_path *path, double lo, double hi, double *s) {
+static int somewhere(mhb_path *path, range *r, double *s) {
   static const double other[] = {.5, .2, .8, .05, .95};
   for (int i = 0; i < 5; i++) {
-    *s = lo + other[i] * (hi - lo);
-    if (at_fraction(path, *s, lo, hi)) return 1;
+    *s = r->at[0] + other[i] * (r->at[1] - r->at[0]);
+    if (at_fraction(path, r, s)) return 1;
   }
   return 0;
 }
@@ -76,11 +99,6 @@ static void set_bracket(mhb_path *path, int side, const mhb_path_point *point) {
   memcpy(path->bracket[side], point->x, sizeof(double) * (size_t)path->n);
   path->bracket[side][path->n] = point->value;
 }
-
-/* The bracket being narrowed: fractions of the chord and the indicator at its ends; the chord's part of the value. */
-typedef struct {
-  double at[2], f[2], wide;
-} range;
 
 static int is_narrow(const range *r) {
   double length = r->at[1] - r->at[0];
@@ -183,13 +201,13 @@ int mhb_path_locate(mhb_path *path, mhb_path_indicator indicator, void *context,
   for (int i = 0; i < 40; i++) {
     double s = (r.at[0] * r.f[1] - r.at[1] * r.f[0]) / (r.f[1] - r.f[0]);
     if (i % 4 == 3 || !(s > r.at[0] && s < r.at[1])) s = .5 * (r.at[0] + r.at[1]);
-    int ok = (kinks > 0 || !is_narrow(&r)) && at_fraction(path, s, r.at[0], r.at[1]);
+    int ok = (kinks > 0 || !is_narrow(&r)) && at_fraction(path, &r, &s);
     if (!ok && kinks++ == 0) {
       *fraction = s;
       if (at_kink(path, indicator, context, &r)) return 1;
       continue;
     }
-    if (!ok && (is_narrow(&r) || !somewhere(path, r.at[0], r.at[1], &s))) {
+    if (!ok && (is_narrow(&r) || !somewhere(path, &r, &s))) {
       *fraction = r.at[0]; /* as near as can be had */
       return i > 2 && (r.at[1] - r.at[0]) * r.wide < 1e-4 && at_end(path, 0);
     }
