@@ -12,6 +12,7 @@
 #include "mesh/source.h"
 #include "mesh/status.h"
 #include "mhb/settings.h"
+#include "modal/damping.h"
 
 enum { CASE_MAX_PROBES = 32, CASE_NAME = 64 };
 
@@ -47,10 +48,10 @@ typedef struct {
   double          speed; /* rad/s */
   mesh_axis       axis;
 
-  int    modes;
-  double damping;
-  bool   full_integration; /* of hexahedra: stiffness with 3x3x3 points */
-  char  *modal_file;       /* resolved path of modal.file, or NULL */
+  int           modes;
+  modal_damping damping;
+  bool          full_integration; /* of hexahedra: stiffness with 3x3x3 points */
+  char         *modal_file;       /* resolved path of modal.file, or NULL */
 
   int        engine_order;
   fem_load   load;

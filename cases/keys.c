@@ -148,6 +148,7 @@ static const char *type_name(const case_key *key) {
                                                   [CASE_POINTS]    = "integer or list",
                                                   [CASE_FACTORS]   = "mapping",
                                                   [CASE_PROBES]    = "mapping",
+                                                  [CASE_DAMPING]   = "number(s), mapping",
                                                   [CASE_GROUPS]    = "mapping",
                                                   [CASE_SECTIONS]  = "list",
                                                   [CASE_SIGNAL]    = "list"};

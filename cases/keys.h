@@ -31,7 +31,8 @@ typedef enum {
   CASE_POINTS,    /* number of points, or list: the case_file's integrate.frequency */
   CASE_FACTORS,   /* {k: [factor, phase]}: the case_file's load */
   CASE_PROBES,    /* {name: [x, y, z]}: the case_file's probe */
-  CASE_GROUPS,    /* {group: rule}: the case_file's source.rule */
+  CASE_DAMPING,  /* ratio, list of them, {loss_factor: } or {rayleigh: }: the case_file's damping */
+  CASE_GROUPS,   /* {group: rule}: the case_file's source.rule */
   CASE_SECTIONS, /* list of mappings, whose keys are rows "...sections[].": the case_file's blade */
   CASE_SIGNAL,   /* [[amplitude, phase], ...] from harmonic 0; read by motion.c */
   CASE_N_TYPES

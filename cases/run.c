@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "cases/child.h"
+#include "cases/damping.h"
 
 enum { N_STAGES = 4 };
 
@@ -111,7 +112,9 @@ static void describe_source(const case_file *file, FILE *out) {
     if (blade->shroud_size > 0) fprintf(out, ", %g mm in the shroud", 1e3 * blade->shroud_size);
     fputc('\n', out);
   }
-  fprintf(out, "  modes     %d, damping ratio %g\n", file->modes, file->damping);
+  fprintf(out, "  modes     %d, damping ratio ", file->modes);
+  case_damping_print(out, &file->damping, 6);
+  fputc('\n', out);
 }
 
 static void describe_preloads(const mhb_settings *mhb, FILE *out) {

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cases/damping.h"
 #include "cases/groups.h"
 #include "cases/value.h"
 
@@ -94,6 +95,9 @@ static void print_scalar(FILE *out, const case_key *key, const case_file *file) 
     case CASE_INTERVAL:
     case CASE_SWEEP:
       print_numbers(out, 2, slot);
+      break;
+    case CASE_DAMPING:
+      case_damping_print(out, slot, 17);
       break;
     case CASE_TRIPLE:
       print_triple(out, slot);

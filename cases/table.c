@@ -79,8 +79,8 @@ static const case_key table[] = {
 
     {"modal.modes", CASE_INTEGER, "", 1, 1000, .fallback = "20", AT(modes), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
      .help = "modes kept; what is left out goes into the residual flexibility"},
-    {"modal.damping", CASE_NUMBER, "", 0, 1, .below = true, .required = true, AT(damping), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
-     .help = "damping ratio of every mode"},
+    {"modal.damping", CASE_DAMPING, "", 0, 1, .below = true, .required = true, AT(damping), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
+     .help = "damping ratio of every mode; [ratio of each], the last for those beyond; {loss_factor: eta}; {rayleigh: [alpha 1/s, beta s]}"},
     {"modal.integration", CASE_SWITCH, "", .words = "reduced full", .fallback = "reduced", AT(full_integration), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
      .help = "stiffness of hexahedra with 2x2x2 points, or 3x3x3; tetrahedra: no difference"},
     {"modal.file", CASE_FILE_NAME, "", AT(modal_file), .stages = CASE_MHB, .when = CASE_IF_MODAL_FILE,

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cases/damping.h"
 #include "cases/groups.h"
 #include "cases/units.h"
 
@@ -38,6 +39,7 @@ void case_value_expected(const case_key *key, char *text, size_t size) {
       [CASE_POINTS]    = "a whole number of points or a list",
       [CASE_FACTORS]   = "a mapping {harmonic: [factor, phase]}",
       [CASE_PROBES]    = "a mapping {name: [x, y, z]}",
+      [CASE_DAMPING]   = "a number, a list, {loss_factor: ...} or {rayleigh: [alpha, beta]}",
       [CASE_GROUPS]    = "a mapping {group: rule}",
       [CASE_SECTIONS]  = "a list of mappings",
       [CASE_SIGNAL]    = "a list of [amplitude, phase]"};
@@ -482,6 +484,10 @@ static bool probe_name(const char *name) {
   return name[0] && strlen(name) < CASE_NAME;
 }
 
+static bool read_damping(const context *c, const case_node *node, void *slot) {
+  return case_damping_read(c->issues, c->path, node, slot);
+}
+
 static bool read_groups(const context *c, const case_node *node, void *slot) {
   return case_groups_read(c->issues, c->path, node, slot);
 }
@@ -530,9 +536,10 @@ bool case_value_read(case_issues *issues, const case_key *key, const char *path,
       [CASE_INTERVAL] = read_interval,   [CASE_SWEEP] = read_sweep,
       [CASE_STIFFNESS] = read_stiffness, [CASE_PRELOADS] = read_preloads,
       [CASE_FACTORS] = read_factors,     [CASE_PROBES] = read_probes,
-      [CASE_GROUPS] = read_groups,       [CASE_SIGNAL] = read_signal,
-      [CASE_AUTO] = read_count,          [CASE_PLACES] = read_places,
-      [CASE_ORDERS] = read_orders,       [CASE_POINTS] = read_frequencies};
+      [CASE_DAMPING] = read_damping,     [CASE_GROUPS] = read_groups,
+      [CASE_SIGNAL] = read_signal,       [CASE_AUTO] = read_count,
+      [CASE_PLACES] = read_places,       [CASE_ORDERS] = read_orders,
+      [CASE_POINTS] = read_frequencies};
   const context c = {.issues = issues, .key = key, .path = path, .file = file};
   return readers[key->type](&c, node, slot);
 }

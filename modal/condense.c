@@ -70,7 +70,6 @@ static PetscErrorCode fill_shapes(const workspace *w, modal_model *model) {
       model->modal_force[k * m + i] = to->excitation->factor[k] * force[i];
   for (int i = 0; i < m; i++) {
     model->frequency[i]     = sqrt(w->eigen->lambda[i]) / two_pi;
-    model->damping_ratio[i] = to->damping;
     model->mode_residual[i] = w->eigen->residual[i];
   }
   PetscCall(PetscFree2(shape, force));
@@ -167,6 +166,9 @@ static shb_status fill(workspace *w, shb_progress *progress, modal_model *model)
   const int nc = w->to->contact.n, batch = nc < BATCH ? nc : BATCH;
   FEM_PETSC(create_workspace(w, batch));
   FEM_PETSC(fill_shapes(w, model));
+  for (int i = 0; i < w->eigen->n; i++)
+    SHB_TRY(modal_damping_ratio(&w->to->damping, i, sqrt(w->eigen->lambda[i]),
+                                &model->damping_ratio[i]));
   for (int first = 0; first < nc; first += batch) {
     int count = nc - first < batch ? nc - first : batch, stop = shb_interrupted();
     MPI_Allreduce(MPI_IN_PLACE, &stop, 1, MPI_INT, MPI_MAX, w->system->comm);

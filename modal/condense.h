@@ -4,6 +4,7 @@
 #define MODAL_CONDENSE_H
 
 #include "fem/load.h"
+#include "modal/damping.h"
 #include "modal/dofs.h"
 #include "modal/eigen.h"
 #include "modal/model.h"
@@ -15,7 +16,7 @@ typedef struct {
   bool            has_left;
   modal_dofs      contact, probe, load;
   const fem_load *excitation; /* factors of the harmonics */
-  double          damping;    /* of every mode */
+  modal_damping   damping;
 } modal_condensation;
 
 /* Fill model (zeroed before): frequency, damping_ratio, right, left, residual_flexibility, residual_inertia,

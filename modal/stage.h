@@ -7,6 +7,7 @@
 #include "fem/material.h"
 #include "mesh/progress.h"
 #include "mesh/publish.h"
+#include "modal/damping.h"
 #include "modal/deflection.h"
 #include "modal/eigen.h"
 #include "modal/interface.h"
@@ -23,7 +24,7 @@ typedef struct {
   int                blades;
   double             speed; /* rad/s; 0: at rest */
   int                modes;
-  double             damping;          /* damping ratio of every mode */
+  modal_damping      damping;
   bool               full_integration; /* stiffness of hexahedra with 3x3x3 points, not 2x2x2 */
   fem_load           load;
   int                n_probes;

@@ -62,7 +62,7 @@ static void every_value_arrives(void **state) {
   assert_true(near(b->psi, 35 * degree) && near(b->phi, -3 * degree));
   assert_true(f.material.E == 207e9 && f.material.nu == 0.29 && f.material.rho == 7850);
   assert_true(f.blades == 37 && f.axis == MESH_AXIS_MY && near(f.speed, 2900 * 6 * degree));
-  assert_true(f.modes == 17 && f.damping == 0.0023);
+  assert_true(f.modes == 17 && f.damping.ratio == 0.0023);
   assert_true(f.engine_order == 7 && f.load.kind == FEM_LOAD_PRESSURE && f.load.pressure == 210);
   assert_int_equal(f.load.n_harmonics, 3);
   assert_true(f.load.factor[0] == 0 && f.load.factor[1] == 1 && f.load.factor[2] == 0);
@@ -254,6 +254,30 @@ static void forces_and_tractions(void **state) {
 }
 
 /* The same file with the line ends, the mark and the end that other editors leave. */
+static void damping_laws(void **state) {
+  (void)state;
+  static const struct {
+    const char *text, *setting;
+  } rows[] = {
+      {"damping: 0.25 %", "modal.damping = 0.0025000000000000001\n"},
+      {"damping: [0.125, 0.25 %, 0.5]", "modal.damping = 0.125 0.0025000000000000001 0.5\n"},
+      {"damping: {loss_factor: 0.25}", "modal.damping = loss_factor 0.25\n"},
+      {"damping: {rayleigh: [12.5, 0.25 s]}", "modal.damping = rayleigh 12.5 0.25\n"},
+  };
+  char folder[SCRATCH_PATH], *said;
+  scratch_create(folder);
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    case_file f;
+    char     *text = scratch_case("damping: 0.23 %", rows[i].text);
+    assert_int_equal(read_text(folder, "x.yaml", text, &f, &said), SHB_OK);
+    char *settings = case_settings(&f, CASE_MODAL);
+    if (!strstr(settings, rows[i].setting)) fail_msg("no %s in %s", rows[i].setting, settings);
+    free(settings), free(said), free(text);
+    case_free(&f);
+  }
+  scratch_remove(folder);
+}
+
 /* Single crystals: constants of the axes, and the stiffness that they make; without G nothing changes. */
 static void materials_with_axes(void **state) {
   (void)state;
@@ -359,11 +383,16 @@ static void one_byte_wrong(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_value_arrives),      cmocka_unit_test(automatic_harmonics),
-      cmocka_unit_test(accuracy_in_words),        cmocka_unit_test(a_modal_file_needs_little),
-      cmocka_unit_test(stages_ask_for_their_own), cmocka_unit_test(forces_and_tractions),
-      cmocka_unit_test(materials_with_axes),      cmocka_unit_test(line_ends_and_marks),
-      cmocka_unit_test(truncated_anywhere),       cmocka_unit_test(one_byte_wrong)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(every_value_arrives),
+                                     cmocka_unit_test(automatic_harmonics),
+                                     cmocka_unit_test(accuracy_in_words),
+                                     cmocka_unit_test(a_modal_file_needs_little),
+                                     cmocka_unit_test(stages_ask_for_their_own),
+                                     cmocka_unit_test(forces_and_tractions),
+                                     cmocka_unit_test(materials_with_axes),
+                                     cmocka_unit_test(damping_laws),
+                                     cmocka_unit_test(line_ends_and_marks),
+                                     cmocka_unit_test(truncated_anywhere),
+                                     cmocka_unit_test(one_byte_wrong)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -154,6 +154,17 @@ static void numbers_and_ranges(void **state) {
        1},
       {"nu: 0.29", "nu: 0.5",
        "c.yaml:11:28: error: material.nu: is 0.5, must be above -1 and below 0.5", 1},
+      {"damping: 0.23 %", "damping: {loss: 0.1}",
+       "c.yaml:13:29: error: modal.damping: expected a ratio, a list of ratios, {loss_factor: eta} "
+       "or "
+       "{rayleigh: [alpha, beta]}",
+       1},
+      {"damping: 0.23 %", "damping: [0.1, 1.5]",
+       "c.yaml:13:35: error: modal.damping[1]: is 1.5, must be 0 or more and below 1", 1},
+      {"damping: 0.23 %", "damping: {rayleigh: 3}",
+       "c.yaml:13:40: error: modal.damping.rayleigh: expected [alpha, beta] in 1/s and s", 1},
+      {"damping: 0.23 %", "damping: -0.1",
+       "c.yaml:13:29: error: modal.damping: is -0.1, must be 0 or more and below 1", 1},
       {"E: 207 GPa", "E: [207 GPa, 180 GPa, 207 GPa]",
        "c.yaml:11:1: error: material.G: missing; E or nu differ along the axes, expected [G12, "
        "G13, G23]",

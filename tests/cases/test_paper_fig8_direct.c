@@ -229,7 +229,7 @@ static PetscErrorCode apply(Mat shell, Vec x, Vec y) {
   PetscCall(MatDenseGetArrayRead(d->w->eigen.m_phi, &phi));
   for (int i = 0; i < d->w->eigen.n; i++) {
     const PetscScalar *column = phi + (size_t)d->w->n * (size_t)i;
-    double             c      = 2 * d->w->file.damping * sqrt(d->w->eigen.lambda[i]) * d->omega;
+    double             c  = 2 * d->w->file.damping.ratio * sqrt(d->w->eigen.lambda[i]) * d->omega;
     double             re = 0, im = 0;
     for (PetscInt r = 0; r < d->w->n; r++) {
       re += column[r] * in[r];

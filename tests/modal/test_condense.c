@@ -26,7 +26,7 @@ static modal_settings default_settings(int points) {
       .axis     = MESH_AXIS_X,
       .blades   = BLADES,
       .modes    = 20,
-      .damping  = zeta,
+      .damping  = {.ratio = zeta},
       .load     = {.kind        = FEM_LOAD_PRESSURE,
                    .pressure    = 2385,
                    .n_harmonics = 2,
@@ -72,7 +72,7 @@ typedef struct {
 } body;
 
 /* C = sum 2 zeta w_i M phi phi^T M: each retained mode damped, the rest not. */
-static double *modal_damping(const modal_eigen *eigen, int n) {
+static double *damping_matrix(const modal_eigen *eigen, int n) {
   double            *C = calloc((size_t)n * (size_t)n, sizeof *C);
   const PetscScalar *m_phi;
   assert_int_equal(MatDenseGetArrayRead(eigen->m_phi, &m_phi), 0);
@@ -127,7 +127,7 @@ static body create_body(const mesh_fe *mesh, const modal_settings *settings,
                 n_dofs,
                 dense_of(result->system.K, n),
                 dense_of(result->system.M, n),
-                modal_damping(&result->eigen, n),
+                damping_matrix(&result->eigen, n),
                 condensed_dofs(mesh, settings, result, n, n_dofs)};
 }
 

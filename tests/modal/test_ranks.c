@@ -28,7 +28,7 @@ static void check_ranks(double speed) {
       .blades   = BLADES,
       .speed    = speed,
       .modes    = 12,
-      .damping  = .002,
+      .damping  = {.ratio = .002},
       .load     = {.kind = FEM_LOAD_PRESSURE, .pressure = 200, .n_harmonics = 1, .factor = {0, 1}},
       .n_probes = 1,
       .probe    = &probe,

@@ -22,7 +22,7 @@ static modal_settings default_settings(void) {
       .axis     = MESH_AXIS_X,
       .blades   = BLADES,
       .modes    = 8,
-      .damping  = .002,
+      .damping  = {.ratio = .002},
       .load     = {.kind = FEM_LOAD_PRESSURE, .pressure = 200, .n_harmonics = 1, .factor = {0, 1}},
       .n_probes = 2,
       .probe    = probe,
@@ -68,6 +68,30 @@ static void file_is_complete(void **state) {
   for (int i = 0; i < 8; i++) check_below(model.mode_residual[i], 1e-9, "mode residual");
   modal_model_free(&model);
   assert_true(assert_described(out) >= 30);
+}
+
+/* Rayleigh's law in the file, mode by mode. */
+static void damping_follows_its_law(void **state) {
+  (void)state;
+  modal_settings settings = default_settings();
+  modal_model    model;
+  char           mesh[512], out[512];
+  snprintf(mesh, sizeof mesh, "%s", scratch("sector.msh"));
+  snprintf(out, sizeof out, "%s", scratch("damped.modal.h5"));
+  settings.damping = (modal_damping){.kind = MODAL_DAMPING_RAYLEIGH, .alpha = 20, .beta = 1e-7};
+  assert_ok(modal_stage(PETSC_COMM_WORLD, mesh, out, &settings, &provenance, NULL));
+  assert_ok(modal_model_read(out, &model));
+  for (int i = 0; i < model.n_modes; i++) {
+    double omega = 2 * acos(-1) * model.frequency[i];
+    check_close(2 * model.damping_ratio[i] * omega, 20 + 1e-7 * omega * omega, 1e-12, "damping");
+  }
+  modal_model_free(&model);
+  remove(out);
+  settings.damping.beta = 1;
+  assert_int_equal(modal_stage(PETSC_COMM_WORLD, mesh, out, &settings, &provenance, NULL),
+                   SHB_ERR_INPUT);
+  assert_non_null(strstr(shb_message(), "modal.damping: mode 1 at "));
+  assert_int_equal(access(out, F_OK), -1);
 }
 
 /* The same body from an .inp file: the same modes and the same receptance. */
@@ -343,15 +367,11 @@ static void failures_leave_the_file_alone(void **state) {
 
 int main(int argc, char **argv) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(file_is_complete),
-      cmocka_unit_test(abaqus_mesh_gives_the_same),
-      cmocka_unit_test(vtk_group_shows_the_modes),
-      cmocka_unit_test(receptance_is_sampled),
-      cmocka_unit_test(sides_are_turned_round),
-      cmocka_unit_test(deflection_is_in_the_file),
-      cmocka_unit_test(failures_leave_the_file_alone),
-      cmocka_unit_test(hexahedra_go_through),
-      cmocka_unit_test(columns_need_all_points),
+      cmocka_unit_test(file_is_complete),           cmocka_unit_test(damping_follows_its_law),
+      cmocka_unit_test(abaqus_mesh_gives_the_same), cmocka_unit_test(vtk_group_shows_the_modes),
+      cmocka_unit_test(receptance_is_sampled),      cmocka_unit_test(sides_are_turned_round),
+      cmocka_unit_test(deflection_is_in_the_file),  cmocka_unit_test(failures_leave_the_file_alone),
+      cmocka_unit_test(hexahedra_go_through),       cmocka_unit_test(columns_need_all_points),
   };
   modal_session session;
   if (modal_session_start(&argc, &argv, &session) != SHB_OK) return 1;
