@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "modal/series.h"
+
 static const double PI = 3.14159265358979323846;
 
 /* Of the largest: flexibilities below carry no inertia. Inertia whose mode is so many times above the last one is none. */
@@ -12,6 +14,7 @@ static const double SOFT_ENOUGH = 1e-8, FAR_ABOVE = 1e4;
 
 typedef struct {
   int     n, kept;        /* contact dofs; modes found */
+  int     power;          /* psi = nu^power L v: 1 from R and R2, 2 from R2 and R3 */
   double *vector, *value; /* [n][n] rows L^T / sqrt(r), [n]; then the modes */
   double *A, *tau;        /* [n][n], [n] */
   double *psi, *nu;       /* [kept][n] kg^-1/2, [kept] rad/s */
@@ -21,7 +24,7 @@ static int symmetric_eigen(int n, double *a, double *value) {
   return LAPACKE_dsyev(LAPACK_COL_MAJOR, 'V', 'U', n, a, n, value) == 0;
 }
 
-/* L^-1 R2 L^-T in the p softest directions of R; the eigenvectors of R are columns of vector, ascending. */
+/* L^-1 R2 L^-T (or R3) in the p softest directions of L L^T = R (or R2), whose eigenvectors are columns of vector, ascending. */
 static void reduce(const search *s, const double *R2, int p) {
   int n = s->n;
   for (int a = 0; a < p; a++)
@@ -37,14 +40,19 @@ static void reduce(const search *s, const double *R2, int p) {
 
 static shb_status find(const modal_model *model, search *s) {
   int    n = s->n, p = 0;
-  double last = 2 * PI * model->frequency[model->n_modes - 1];
-  memcpy(s->vector, model->residual_flexibility, sizeof(double) * (size_t)n * (size_t)n);
+  double last  = 2 * PI * model->frequency[model->n_modes - 1];
+  bool   three = modal_series_has_fourth(model);
+  s->power     = three ? 2 : 1;
+  memcpy(s->vector, three ? model->residual_inertia : model->residual_flexibility,
+         sizeof(double) * (size_t)n * (size_t)n);
   SHB_CHECK(symmetric_eigen(n, s->vector, s->value), SHB_ERR_INPUT,
-            "/contact/residual_flexibility has no eigenvalues; it must be finite");
+            "/contact/residual_%s has no eigenvalues; it must be finite",
+            three ? "inertia" : "flexibility");
   while (p < n && s->value[n - 1 - p] > SOFT_ENOUGH * s->value[n - 1] && s->value[n - 1] > 0) p++;
-  reduce(s, model->residual_inertia, p);
+  reduce(s, three ? model->residual_fourth : model->residual_inertia, p);
   SHB_CHECK(p == 0 || symmetric_eigen(p, s->A, s->tau), SHB_ERR_INPUT,
-            "/contact/residual_inertia has no eigenvalues; it must be finite");
+            "/contact/residual_%s has no eigenvalues; it must be finite",
+            three ? "fourth" : "inertia");
   for (int k = 0; k < p; k++) {
     if (!(s->tau[k] > 1 / pow(FAR_ABOVE * last, 2))) continue;
     double *psi    = s->psi + (size_t)s->kept * (size_t)n;
@@ -52,7 +60,7 @@ static shb_status find(const modal_model *model, search *s) {
     for (int i = 0; i < n; i++) {
       psi[i] = 0;
       for (int a = 0; a < p; a++)
-        psi[i] += s->nu[s->kept] * s->A[k * p + a] * sqrt(s->value[n - p + a]) *
+        psi[i] += pow(s->nu[s->kept], s->power) * s->A[k * p + a] * sqrt(s->value[n - p + a]) *
                   s->vector[(size_t)(n - p + a) * (size_t)n + (size_t)i];
     }
     s->kept++;
@@ -81,6 +89,7 @@ static int widen_all(const modal_model *model, int kept, modal_model *out) {
   out->modal_force          = calloc(loads * (size_t)(m + kept), sizeof *out->modal_force);
   out->mode_residual        = NULL;
   out->residual_inertia     = NULL;
+  out->residual_fourth      = NULL;
   size_t square             = rows * rows * (model->has_left ? 4 : 1);
   out->residual_flexibility = malloc(sizeof(double) * square);
   if (!(out->frequency && out->damping_ratio && out->right && (out->left || !model->has_left) &&
@@ -110,6 +119,21 @@ static void add_modes(const search *s, int m, modal_model *out) {
   }
 }
 
+/* What is left of the flexibility must not push back: in space [n][n + 1]. */
+static shb_status check_left(const modal_model *model, const modal_model *out, int n,
+                             double *space) {
+  double *value = space + (size_t)n * (size_t)n, largest = 0;
+  memcpy(space, out->residual_flexibility, sizeof(double) * (size_t)n * (size_t)n);
+  for (int i = 0; i < n; i++)
+    largest = fmax(largest, model->residual_flexibility[(size_t)i * (size_t)(n + 1)]);
+  SHB_CHECK(
+      symmetric_eigen(n, space, value) && value[0] >= -1e-6 * largest, SHB_ERR_INPUT,
+      "/contact/residual_fourth does not fit residual_flexibility and residual_inertia: no "
+      "modes have all three; leave it out, or write sums of phi phi^T/w^2, /w^4 and /w^6 over "
+      "the modes left out");
+  return SHB_OK;
+}
+
 shb_status mhb_inertia_modes(const modal_model *model, modal_model *out) {
   SHB_CHECK(
       model->residual_flexibility, SHB_ERR_INPUT,
@@ -133,7 +157,11 @@ shb_status mhb_inertia_modes(const modal_model *model, modal_model *out) {
       status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for residual modes");
     }
   }
-  if (status == SHB_OK) add_modes(&s, model->n_modes, out);
+  if (status == SHB_OK) {
+    add_modes(&s, model->n_modes, out);
+    if (s.power == 2) status = check_left(model, out, s.n, s.vector);
+    if (status != SHB_OK) mhb_inertia_free(out);
+  }
   free(space);
   return status;
 }

@@ -4,6 +4,9 @@
  * modes psi_i = nu_i L v_i of frequency nu_i have
  *   sum psi_i psi_i^T/(nu_i^2 - w^2) = R + w^2 R2 + O(w^4/nu^4):
  * the least number of modes that answer with the same R and R2, as far from R + w^2 R2 as that is from the modes left out.
+ * Where the model has the coefficient R3 of w^4 too, R2 = L L^T, L^-1 R3 L^-T = V diag(1/nu_i^2) V^T and psi_i = nu_i^2 L v_i
+ * have the same R2 and R3; R - sum psi psi^T/nu^2 = R - R2 R3^-1 R2 stays flexibility. It is not negative: as a sum over the
+ * modes left out [R R2; R2 R3] = sum (a x phi)(a x phi)^T/w^2, a = (1, 1/w^2). What differs is O(w^6).
  * The inertia of the load's and the probes' terms stays: the steady response to the load is known at its frequencies, and the
  * probes are read from harmonics of the forces, which the new modes do not reach (their shape at the probes is zero). */
 #ifndef MHB_INERTIA_H

@@ -186,18 +186,18 @@ static double wave_step(const mhb_settings *s) {
 
 /* Everything that does not depend on omega. */
 static shb_status set_blade(mhb_receptance *r, const mhb_settings *settings) {
-  const modal_model *model = r->model;
-  int                sides = settings->to_ground ? 1 : 2;
-  int                nc    = 3 * model->n_pairs * (model->has_left ? 2 : 1);
-  double             step  = settings->to_ground ? 0 : wave_step(settings);
+  const modal_model *model             = r->model;
+  int                sides             = settings->to_ground ? 1 : 2;
+  int                nc                = 3 * model->n_pairs * (model->has_left ? 2 : 1);
+  double             step              = settings->to_ground ? 0 : wave_step(settings);
+  const double      *term[MODAL_TERMS] = {
+           model->residual_flexibility, model->residual_inertia,
+      modal_series_has_fourth(model) ? model->residual_fourth : NULL};
   set_shares(r);
   SHB_TRY(set_axes(r, settings));
-  if (model->residual_flexibility)
-    SHB_TRY(mhb_flexibility_create(model->residual_flexibility, nc, r->T0, model->n_pairs, sides,
-                                   &r->flexibility));
-  if (model->residual_inertia)
-    SHB_TRY(mhb_flexibility_create(model->residual_inertia, nc, r->T0, model->n_pairs, sides,
-                                   &r->inertia));
+  for (int t = 0; t < MODAL_TERMS; t++)
+    if (term[t])
+      SHB_TRY(mhb_flexibility_create(term[t], nc, r->T0, model->n_pairs, sides, &r->residual[t]));
   for (int k = 0; k <= r->n_harmonics; k++) {
     r->made_at[k]        = NAN;
     double complex phase = r->phase[k] = cexp(-I * fmod(k * step, 2 * PI));
@@ -248,8 +248,7 @@ void mhb_receptance_destroy(mhb_receptance *r) {
   free(r->F);
   free(r->load);
   free(r->load_inertia);
-  mhb_flexibility_destroy(r->flexibility);
-  mhb_flexibility_destroy(r->inertia);
+  for (int t = 0; t < MODAL_TERMS; t++) mhb_flexibility_destroy(r->residual[t]);
   free(r->phase);
   free(r->probe_load);
   free(r->probe_load_inertia);
@@ -308,11 +307,12 @@ MHB_INLINE double complex residual_at(const double complex *still, const double 
                : value;
 }
 
-/* The residual terms: R + w^2 R2. */
+/* The residual terms of the contact. */
 static void residual_terms(const mhb_receptance *r, int k, double w, double complex *R) {
   memset(R, 0, sizeof *R * (size_t)r->n * (size_t)r->n);
-  if (r->flexibility) mhb_flexibility_add(r->flexibility, r->phase[k], 1, R);
-  if (r->inertia) mhb_flexibility_add(r->inertia, r->phase[k], w * w, R);
+  modal_series s = modal_series_at(r->model, w);
+  for (int t = 0; t < MODAL_TERMS; t++)
+    if (r->residual[t]) mhb_flexibility_add(r->residual[t], r->phase[k], s.weight[t], R);
 }
 
 static void harmonic_at(mhb_receptance *r, int k) {
@@ -434,13 +434,15 @@ MHB_HOT static void modal_sums(const mhb_receptance *r, int k, const double *yr,
 
 void mhb_receptance_motion(const mhb_receptance *r, int k, const double complex *p,
                            double complex *motion) {
-  double w = k * r->omega / r->nu, yr[r->n_modes], yi[r->n_modes];
+  double       w = k * r->omega / r->nu, yr[r->n_modes], yi[r->n_modes];
+  modal_series s = modal_series_at(r->model, w);
   motion_drive(r, k, w, p, yr, yi);
   modal_sums(r, k, yr, yi, motion);
   for (int a = 0; a < r->n; a++) {
     motion[a] += r->scale * residual_at(r->load, r->load_inertia, w * w, (size_t)(k * r->n + a));
-    if (r->flexibility) motion[a] -= mhb_flexibility_row(r->flexibility, r->phase[k], a, p);
-    if (r->inertia) motion[a] -= w * w * mhb_flexibility_row(r->inertia, r->phase[k], a, p);
+    for (int t = 0; t < MODAL_TERMS; t++)
+      if (r->residual[t])
+        motion[a] -= s.weight[t] * mhb_flexibility_row(r->residual[t], r->phase[k], a, p);
   }
 }
 
@@ -452,8 +454,10 @@ void mhb_receptance_slope(const mhb_receptance *r, int k, const double complex *
   modal_sums(r, k, yr, yi, slope);
   for (int a = 0; r->load_inertia && a < n; a++)
     slope[a] += weight * r->scale * r->load_inertia[k * n + a];
-  for (int a = 0; r->inertia && a < n; a++)
-    slope[a] -= weight * mhb_flexibility_row(r->inertia, r->phase[k], a, p);
+  modal_series s = modal_series_at(r->model, kk * r->omega);
+  for (int t = 1; t < MODAL_TERMS; t++)
+    for (int a = 0; r->residual[t] && a < n; a++)
+      slope[a] -= weight * s.slope[t] * mhb_flexibility_row(r->residual[t], r->phase[k], a, p);
 }
 
 /* What the modes left out add to a probe dof, and its change with omega (dw2: of (k w)^2). */

@@ -5,9 +5,9 @@
  * closes around the ring; no left side to ground):
  *   B_k[3a + c][i] = T0^T (right - e_k left)                              relative motion of mode i
  *   L_i  = 1/(w_i^2 - (k w)^2 + 2 j zeta_i w_i k w)                       eq. 20
- *   R_k  = B L B^H + T (R + (k w)^2 R2) T^H                               eqs. 34, 35, with residual terms
+ *   R_k  = B L B^H + T (R + alpha R2 + beta R3) T^H                        eqs. 34, 35, with residual terms
  *   u_k  = B L F_k + T (x + (k w)^2 x2)_load,k - R_k p_k                  eq. 33
- * and the probes by the same with their own shapes and residual terms. Motions are [3 pairs] in the order pair,
+ * alpha = (k w)^2, beta = (k w)^4 but for O(w^6) (modal/series.h); and the probes by the same with their own shapes and residual terms. Motions are [3 pairs] in the order pair,
  * (v, u, w). Everything that does not depend on omega is made once. */
 #ifndef MHB_RECEPTANCE_H
 #define MHB_RECEPTANCE_H
@@ -17,7 +17,7 @@
 #include "mesh/status.h"
 #include "mhb/flexibility.h"
 #include "mhb/settings.h"
-#include "modal/model.h"
+#include "modal/series.h"
 
 typedef struct {
   const modal_model *model;
@@ -32,7 +32,7 @@ typedef struct {
   double            *scratch;               /* [4][modes] */
   double complex    *BL;                    /* [n][modes] B L of one harmonic */
   double complex    *load, *load_inertia;   /* [k][n] residual response to the load, or NULL */
-  mhb_flexibility   *flexibility, *inertia; /* or NULL */
+  mhb_flexibility   *residual[MODAL_TERMS]; /* R, R2, R3; each or NULL */
   double complex    *phase;                 /* [k] e_k */
   double complex    *probe_load, *probe_load_inertia;       /* [k][3 q], or NULL */
   double complex    *probe_contact, *probe_contact_inertia; /* [k][3 q][n], or NULL */

@@ -161,15 +161,15 @@ static double square(double complex z) {
  * load: the last ones held times (k w/w_m)^2. */
 static double modal_term(const mhb_residual *b, int k, const double complex *p) {
   const mhb_receptance *r = b->receptance;
-  int                   n = r->n;
-  double                w = k * r->omega / r->nu, sum = 0;
-  double top = 2 * PI * r->model->frequency[r->n_modes - 1], ratio = w * w / (top * top);
-  double held = r->inertia ? w * w : 1, pushed = r->load_inertia ? w * w : 1;
-  const mhb_flexibility *last = r->inertia ? r->inertia : r->flexibility;
-  const double complex  *load = r->load_inertia ? r->load_inertia : r->load;
+  int                   n = r->n, t = MODAL_TERMS - 1;
+  double                w2 = pow(k * r->omega / r->nu, 2), sum = 0;
+  double top = 2 * PI * r->model->frequency[r->n_modes - 1], ratio = w2 / (top * top);
+  const double complex *load = r->load_inertia ? r->load_inertia : r->load;
+  while (!r->residual[t]) t--;
   for (int i = 0; i < n; i++) {
-    double complex u = held * mhb_flexibility_row(last, r->phase[k], i, p);
-    sum += square(u) + (load ? square(pushed * r->scale * load[k * n + i]) : 0);
+    double complex u = pow(w2, t) * mhb_flexibility_row(r->residual[t], r->phase[k], i, p);
+    sum += square(u);
+    if (load) sum += square((r->load_inertia ? w2 : 1) * r->scale * load[k * n + i]);
   }
   return sum * ratio * ratio;
 }
@@ -177,7 +177,7 @@ static double modal_term(const mhb_residual *b, int k, const double complex *p) 
 double mhb_modal_error(const mhb_residual *b, const double *x) {
   double complex p[3 * b->n_pairs];
   double         unheld = 0, size = mhb_norm(x, b->n);
-  if (!b->receptance->flexibility) return -1;
+  if (!b->receptance->residual[0]) return -1;
   for (int k = 0; k <= b->m; k++) {
     mhb_residual_force(b, k, p);
     unheld += modal_term(b, k, p);

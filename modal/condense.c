@@ -35,6 +35,7 @@ static shb_status allocate(const modal_condensation *to, int n_modes, modal_mode
   model->left                   = to->has_left ? calloc(3 * pairs * m, sizeof(double)) : NULL;
   model->residual_flexibility   = calloc(nc * nc, sizeof(double));
   model->residual_inertia       = calloc(nc * nc, sizeof(double));
+  model->residual_fourth        = calloc(nc * nc, sizeof(double));
   model->modal_force            = calloc(k * m, sizeof(double complex));
   model->load_residual          = calloc(k * nc, sizeof(double complex));
   model->probe                  = calloc(q3 * m + 1, sizeof(double));
@@ -45,9 +46,10 @@ static shb_status allocate(const modal_condensation *to, int n_modes, modal_mode
   model->probe_load_inertia     = calloc(k * q3 + 1, sizeof(double complex));
   SHB_CHECK(model->frequency && model->damping_ratio && model->mode_residual && model->right &&
                 (model->left || !to->has_left) && model->residual_flexibility &&
-                model->residual_inertia && model->modal_force && model->load_residual &&
-                model->probe && model->probe_contact_residual && model->probe_load_residual &&
-                model->load_inertia && model->probe_contact_inertia && model->probe_load_inertia,
+                model->residual_inertia && model->residual_fourth && model->modal_force &&
+                model->load_residual && model->probe && model->probe_contact_residual &&
+                model->probe_load_residual && model->load_inertia && model->probe_contact_inertia &&
+                model->probe_load_inertia,
             SHB_ERR_IO, "out of memory for a modal model of %zu contact dofs", nc);
   return SHB_OK;
 }
@@ -86,11 +88,11 @@ static PetscErrorCode solve_batch(workspace *w, Mat X) {
   PetscFunctionReturn(0);
 }
 
-/* The next term, after solve_batch(w, w->X): Y = P K^-1 M X, sampled. */
-static PetscErrorCode solve_inertia(workspace *w) {
+/* The next term of the series, sampled: Y = P K^-1 M X. */
+static PetscErrorCode solve_next(workspace *w, Mat X, Mat Y) {
   PetscFunctionBeginUser;
-  PetscCall(modal_mass_multiply(w->system, w->X, w->B));
-  PetscCall(solve_batch(w, w->Y));
+  PetscCall(modal_mass_multiply(w->system, X, w->B));
+  PetscCall(solve_batch(w, Y));
   PetscFunctionReturn(0);
 }
 
@@ -110,9 +112,11 @@ static PetscErrorCode contact_batch(workspace *w, int first, int count, modal_mo
   PetscCall(solve_batch(w, w->X));
   put_columns(w, w->contact, nc, first, count, model->residual_flexibility);
   put_columns(w, w->probe, q3, first, count, model->probe_contact_residual);
-  PetscCall(solve_inertia(w));
+  PetscCall(solve_next(w, w->X, w->Y));
   put_columns(w, w->contact, nc, first, count, model->residual_inertia);
   put_columns(w, w->probe, q3, first, count, model->probe_contact_inertia);
+  PetscCall(solve_next(w, w->Y, w->X));
+  put_columns(w, w->contact, nc, first, count, model->residual_fourth);
   PetscFunctionReturn(0);
 }
 
@@ -131,7 +135,7 @@ static PetscErrorCode load_batch(workspace *w, modal_model *model) {
   PetscCall(modal_dofs_spread(&w->to->load, w->system, 0, 1, w->B));
   PetscCall(solve_batch(w, w->X));
   put_loads(w, model->load_residual, model->probe_load_residual);
-  PetscCall(solve_inertia(w));
+  PetscCall(solve_next(w, w->X, w->Y));
   put_loads(w, model->load_inertia, model->probe_load_inertia);
   PetscFunctionReturn(0);
 }
@@ -182,6 +186,7 @@ static shb_status fill(workspace *w, shb_progress *progress, modal_model *model)
   FEM_PETSC(load_batch(w, model));
   symmetrise(model->residual_flexibility, (size_t)nc);
   symmetrise(model->residual_inertia, (size_t)nc);
+  symmetrise(model->residual_fourth, (size_t)nc);
   return SHB_OK;
 }
 

@@ -115,6 +115,9 @@ shb_status modal_model_write(hid_t file, const modal_model *model,
       {"/contact/residual_inertia", "cc", "m s^2/N",
        "coefficient of omega^2 in the receptance of the modes left out", false,
        model->residual_inertia},
+      {"/contact/residual_fourth", "cc", "m s^4/N",
+       "coefficient of omega^4 in the receptance of the modes left out", false,
+       model->residual_fourth},
       {"/contact/normal", "p3", "-", "unit normal v of the right face, cylindrical axes", false,
        model->normal},
       {"/contact/area", "p", "m^2", "area of the contact patch", false, model->area},
@@ -239,6 +242,7 @@ static shb_status read_contact(hid_t file, const char *path, modal_model *model)
   SHB_TRY(
       read_symmetric(file, path, "/contact/residual_flexibility", n, &model->residual_flexibility));
   SHB_TRY(read_symmetric(file, path, "/contact/residual_inertia", n, &model->residual_inertia));
+  SHB_TRY(read_symmetric(file, path, "/contact/residual_fourth", n, &model->residual_fourth));
   h5_shape normals = H5_SHAPE(shape.dim[0], 3), areas = H5_SHAPE(shape.dim[0]);
   if (h5_exists(file, "/contact/normal"))
     SHB_TRY(h5_read_double(file, "/contact/normal", &normals, &model->normal));
@@ -311,6 +315,7 @@ void modal_model_free(modal_model *model) {
                   model->left,
                   model->residual_flexibility,
                   model->residual_inertia,
+                  model->residual_fourth,
                   model->modal_force,
                   model->load_residual,
                   model->load_inertia,

@@ -2,7 +2,8 @@
  *
  * Cylindrical axes (tangential x, axial y, radial z) at contact and probe nodes. Contact dofs are ordered
  * c = (side * n_pairs + pair) * 3 + axis, side 0 right, 1 left; n_contact = 3 n_pairs * (has_left ? 2 : 1).
- * The modes left out answer by residual + omega^2 inertia, on each way from contact and load to contact and probes.
+ * The modes left out answer by residual + omega^2 inertia, on each way from contact and load to contact and probes;
+ * from contact to contact by omega^4 fourth too (modal/series.h).
  * Optional parts are NULL. Free of PETSc. */
 #ifndef MODAL_MODEL_H
 #define MODAL_MODEL_H
@@ -20,6 +21,7 @@ typedef struct {
   double *right, *left;                       /* [pair][3][m] kg^-1/2 */
   double *residual_flexibility;               /* [n_contact][n_contact] m/N, or NULL */
   double *residual_inertia;    /* [n_contact][n_contact] m s2/N, or NULL: coefficient of omega^2 */
+  double *residual_fourth;     /* [n_contact][n_contact] m s4/N, or NULL: coefficient of omega^4 */
   double complex *modal_force; /* [K+1][m] N kg^-1/2 */
   double complex *load_residual; /* /load/residual_response [K+1][n_contact] m, or NULL */
   double complex *load_inertia;  /* /load/residual_inertia [K+1][n_contact] m s2, or NULL */

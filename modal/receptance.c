@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "modal/series.h"
+
 static const double *shape_of(const modal_model *model, int dof) {
   const int side = 3 * model->n_pairs;
   return dof < side ? model->right + (size_t)dof * (size_t)model->n_modes
@@ -19,13 +21,15 @@ static double complex modal_sum(const modal_model *model, double omega, const do
 }
 
 void modal_receptance(const modal_model *model, double omega, double complex *receptance) {
-  const int n = 3 * model->n_pairs * (model->has_left ? 2 : 1);
+  const int          n      = 3 * model->n_pairs * (model->has_left ? 2 : 1);
+  const modal_series series = modal_series_at(model, omega);
   for (int p = 0; p < n; p++)
     for (int l = 0; l <= p; l++) {
       size_t         at    = (size_t)p * (size_t)n + (size_t)l;
       double complex value = modal_sum(model, omega, shape_of(model, p), shape_of(model, l));
       if (model->residual_flexibility) value += model->residual_flexibility[at];
-      if (model->residual_inertia) value += omega * omega * model->residual_inertia[at];
+      if (model->residual_inertia) value += series.weight[1] * model->residual_inertia[at];
+      if (series.weight[2] != 0) value += series.weight[2] * model->residual_fourth[at];
       receptance[at] = receptance[(size_t)l * (size_t)n + (size_t)p] = value;
     }
 }

@@ -4,10 +4,11 @@
 
 #include "modal/model.h"
 
-/* r_pl(w) = sum_i phi_ip phi_il / (w_i^2 - w^2 + 2 j zeta_i w_i w) + R_pl + w^2 I_pl.
+/* r_pl(w) = sum_i phi_ip phi_il / (w_i^2 - w^2 + 2 j zeta_i w_i w) + R_pl + alpha I_pl + beta J_pl,
+ * alpha = w^2 + O(w^6), beta = w^4 + O(w^6) as in modal/series.h.
  *   omega       in   rad/s
  *   receptance  out  [n_contact][n_contact] m/N, order of the contact dofs
- * Source: Chen, Yang, Menq 1999, eqs. 19-20; plus the residual terms R, I of the modes left out. */
+ * Source: Chen, Yang, Menq 1999, eqs. 19-20; plus the residual terms R, I, J of the modes left out. */
 void modal_receptance(const modal_model *model, double omega, double complex *receptance);
 
 #endif

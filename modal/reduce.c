@@ -19,13 +19,14 @@ static double at_contact(const modal_model *model, int dof, int mode) {
 static void drop_residuals(modal_model *model) {
   free(model->residual_flexibility);
   free(model->residual_inertia);
+  free(model->residual_fourth);
   free(model->load_residual);
   free(model->load_inertia);
   free(model->probe_contact_residual);
   free(model->probe_contact_inertia);
   free(model->probe_load_residual);
   free(model->probe_load_inertia);
-  model->residual_flexibility = model->residual_inertia = NULL;
+  model->residual_flexibility = model->residual_inertia = model->residual_fourth = NULL;
   model->probe_contact_residual = model->probe_contact_inertia = NULL;
   model->load_residual = model->load_inertia = NULL;
   model->probe_load_residual = model->probe_load_inertia = NULL;
@@ -41,11 +42,12 @@ static bool make_complex(double complex **part, size_t n) {
   return *part;
 }
 
-/* Zeros where the file holds none. */
+/* Zeros where the file holds none. To an inertia without a next term none is added: it would be that of a few modes. */
 static bool make_residuals(modal_model *model) {
   size_t c = (size_t)n_contact(model), q = 3 * (size_t)model->n_probes;
-  size_t k  = (size_t)model->n_load + 1;
-  bool made = make(&model->residual_flexibility, c * c) && make(&model->residual_inertia, c * c) &&
+  size_t k    = (size_t)model->n_load + 1;
+  bool   made = (model->residual_inertia || make(&model->residual_fourth, c * c)) &&
+              make(&model->residual_flexibility, c * c) && make(&model->residual_inertia, c * c) &&
               make_complex(&model->load_residual, k * c) &&
               make_complex(&model->load_inertia, k * c);
   if (q == 0) return made;
@@ -78,6 +80,7 @@ static void add_static(modal_model *model, int mode, const double *phi, const do
   double w = 2 * PI * model->frequency[mode], w2 = w * w;
   add_outer(model->residual_flexibility, c, phi, c, phi, w2);
   add_outer(model->residual_inertia, c, phi, c, phi, w2 * w2);
+  if (model->residual_fourth) add_outer(model->residual_fourth, c, phi, c, phi, w2 * w2 * w2);
   if (q > 0) {
     add_outer(model->probe_contact_residual, q, psi, c, phi, w2);
     add_outer(model->probe_contact_inertia, q, psi, c, phi, w2 * w2);

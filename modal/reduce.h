@@ -10,7 +10,7 @@
  *
  *   modes      1 to model->n_modes
  *   residuals  true: the modes left out answer statically, as if the file had been made with fewer of them:
- *              residual flexibility += sum phi phi^T/w^2, inertia += sum phi phi^T/w^4, and so both for load and probes (eqs. 34, 35);
+ *              residual flexibility += sum phi phi^T/w^2, inertia += sum phi phi^T/w^4, fourth += sum phi phi^T/w^6, and so for load and probes (eqs. 34, 35);
  *              false: they are gone, and the residual parts of the file too
  * With all modes and residuals nothing changes.
  * Errors: SHB_ERR_INPUT modes out of range, SHB_ERR_IO no memory (the model is then still to be freed, and no longer of use). */

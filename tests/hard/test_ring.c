@@ -35,6 +35,7 @@ static void unfold(const modal_model *sector, int engine_order, modal_model *rin
   ring->load_inertia         = calloc((size_t)((ring->n_load + 1) * nc), sizeof(double complex));
   ring->residual_flexibility = calloc((size_t)(nc * nc), sizeof(double));
   ring->residual_inertia     = calloc((size_t)(nc * nc), sizeof(double));
+  ring->residual_fourth      = calloc((size_t)(nc * nc), sizeof(double));
   for (int b = 0; b < BLADES; b++) {
     int at[2] = {3 * b, 3 * (BLADES + (b + BLADES - 1) % BLADES)}; /* dofs of its right and left */
     for (int i = 0; i < m; i++) {
@@ -53,6 +54,7 @@ static void unfold(const modal_model *sector, int engine_order, modal_model *rin
         int to                         = (at[i / 3] + i % 3) * nc + at[j / 3] + j % 3;
         ring->residual_flexibility[to] = sector->residual_flexibility[6 * i + j];
         ring->residual_inertia[to]     = sector->residual_inertia[6 * i + j];
+        ring->residual_fourth[to]      = sector->residual_fourth[6 * i + j];
       }
     for (int k = 0; k <= ring->n_load; k++) {
       double complex lag = cexp(-2 * PI * I * k * b * engine_order / BLADES);

@@ -47,13 +47,22 @@ static void add_normals(modal_model *model, unsigned long long *seed) {
   }
 }
 
-/* Of load and probes, from a seed of its own: the normals that follow stay the same without it. */
+/* Inertia of load and probes, the term of w^4, from a seed of its own: the normals that follow stay the same without it. */
 static void add_inertia(modal_model *model, unsigned long long seed) {
   int    nc = 3 * model->n_pairs * (model->has_left ? 2 : 1), q = 3 * model->n_probes;
   size_t loads                 = (size_t)model->n_load + 1;
   model->load_inertia          = complex_list(loads * (size_t)nc, .005, &seed);
   model->probe_contact_inertia = list((size_t)(q * nc), .01, &seed);
   model->probe_load_inertia    = complex_list(loads * (size_t)q, .005, &seed);
+  model->residual_fourth       = symmetric(nc, .002, &seed);
+}
+
+double residual_by_hand(const modal_model *model, double w, int at) {
+  double top = 4 * PI * model->frequency[model->n_modes - 1], x = w * w / (top * top + w * w);
+  if (!model->residual_fourth)
+    return model->residual_flexibility[at] + w * w * model->residual_inertia[at];
+  return model->residual_flexibility[at] + top * top * x * (1 + x) * model->residual_inertia[at] +
+         pow(top, 4) * x * x * model->residual_fourth[at];
 }
 
 static void add_residuals(modal_model *model, unsigned long long *seed) {

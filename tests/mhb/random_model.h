@@ -8,7 +8,7 @@
 /* Parts of a model that are there. */
 enum {
   WITH_LEFT     = 1,
-  WITH_RESIDUAL = 2, /* flexibility, inertia, and those of load and probes */
+  WITH_RESIDUAL = 2, /* flexibility, inertia, and those of load and probes; the term of w^4 */
   WITH_NORMALS  = 4, /* each pair a few degrees off (35, 10) deg */
   WITH_AREAS    = 8
 };
@@ -18,6 +18,9 @@ double random_unit(unsigned long long *seed);
 
 /* 6 modes of .8 to 2.3 rad/s, damping ratio .01 to .03; 2 probes; load harmonics 0 (real), 1, 2. */
 void random_model(int n_pairs, int parts, unsigned long long seed, modal_model *model);
+
+/* What the residual terms add to the receptance of the contact dofs at [at], w in rad/s. */
+double residual_by_hand(const modal_model *model, double w, int at);
 
 /* Neighbour, 6 blades, engine order 1, mu .4, kv .8, skew ku, preload at equilibrium, n0 .3. */
 mhb_settings random_settings(int harmonics);

@@ -11,6 +11,7 @@
 #include <cmocka.h>
 
 #include "mhb/orbit.h"
+#include "modal/reduce.h"
 #include "tests/mhb/periodic.h"
 #include "tests/mhb/random_model.h"
 #include "tests/mhb/three_degree.h"
@@ -268,6 +269,11 @@ static void residual_flexibility(void **state) {
   modal_model_free(&model);
 }
 
+static void drop_fourth(modal_model *model) {
+  free(model->residual_fourth);
+  model->residual_fourth = NULL;
+}
+
 /* Residual modes have the flexibility and inertia they stand for; integrated, they give what the balance of the same modes gives, and that
  * of R + w^2 R2 as far as w is below them. */
 static void residual_inertia(void **state) {
@@ -277,6 +283,10 @@ static void residual_inertia(void **state) {
   s.to_ground    = true;
   random_model(2, WITH_RESIDUAL, 11, &model);
   for (int k = 0; k < 36; k++) model.residual_inertia[k] *= .02; /* modes from 14 rad/s on */
+  for (int k = 0; k < 36; k++) model.residual_fourth[k] *= 1e-6; /* no modes have so little of it */
+  assert_int_equal(mhb_inertia_modes(&model, &with), SHB_ERR_INPUT);
+  assert_non_null(strstr(shb_message(), "/contact/residual_fourth does not fit"));
+  drop_fourth(&model);
   assert_int_equal(mhb_inertia_modes(&model, &with), SHB_OK);
   assert_int_equal(with.n_modes, model.n_modes + 6);
   for (int i = 0; i < 6; i++)
@@ -312,6 +322,94 @@ static void residual_inertia(void **state) {
   model.residual_flexibility = NULL;
   assert_int_equal(mhb_inertia_modes(&model, &with), SHB_ERR_INPUT);
   modal_model_free(&model);
+}
+
+/* Six modes of which four, from 10 rad/s on and undamped, are left out. */
+static void stiff_model(modal_model *model) {
+  random_model(1, 0, 11, model);
+  for (int i = 2; i < 6; i++) {
+    model->frequency[i] *= 7;
+    model->damping_ratio[i] = 0;
+    for (int c = 0; c < 3; c++) model->right[c * 6 + i] *= 5;
+  }
+  assert_int_equal(modal_model_keep(model, 2, true), SHB_OK);
+}
+
+/* Largest error of sum psi psi^T/nu^(2 power), from mode 2 on, against a matrix [3][3], relative to its first entry. */
+static double moment_error(const modal_model *with, int power, const double *left,
+                           const double *wanted) {
+  double worst = 0;
+  for (int i = 0; i < 9; i++) {
+    double sum = left ? left[i] : 0;
+    for (int k = 2; k < with->n_modes; k++)
+      sum += with->right[i / 3 * with->n_modes + k] * with->right[i % 3 * with->n_modes + k] /
+             pow(2 * PI * with->frequency[k], 2 * power);
+    worst = fmax(worst, fabs(sum - wanted[i]));
+  }
+  return worst / fabs(wanted[0]);
+}
+
+/* Largest difference at harmonic 1 between what the balance and the integration see, residual modes undamped. */
+static double receptance_gap(const modal_model *model, double omega) {
+  modal_model     with;
+  mhb_receptance *r[2];
+  mhb_settings    s     = random_settings(1);
+  double          worst = 0;
+  s.to_ground           = true;
+  assert_int_equal(mhb_inertia_modes(model, &with), SHB_OK);
+  for (int k = model->n_modes; k < with.n_modes; k++) with.damping_ratio[k] = 0;
+  for (int i = 0; i < 2; i++) {
+    assert_int_equal(mhb_receptance_create(i ? &with : model, &s, 1, &r[i]), SHB_OK);
+    mhb_receptance_at(r[i], omega, 1);
+  }
+  for (int i = 0; i < 9; i++) worst = fmax(worst, cabs(r[0]->R[9 + i] - r[1]->R[9 + i]));
+  for (int i = 0; i < 2; i++) mhb_receptance_destroy(r[i]);
+  mhb_inertia_free(&with);
+  return worst;
+}
+
+/* With the term of omega^4 residual modes have all three terms, and some of the flexibility stays; what the integration sees
+ * differs from what the balance does by omega^6, with two terms by omega^4. */
+static void fourth_term(void **state) {
+  (void)state;
+  modal_model  three, two, with;
+  mhb_settings s = random_settings(31);
+  s.to_ground    = true;
+  s.scale        = 4;
+  stiff_model(&three);
+  stiff_model(&two);
+  drop_fourth(&two);
+  assert_int_equal(mhb_inertia_modes(&three, &with), SHB_OK);
+  assert_int_equal(with.n_modes, 5);
+  assert_near(moment_error(&with, 1, with.residual_flexibility, three.residual_flexibility), 0,
+              1e-12);
+  assert_near(moment_error(&with, 2, NULL, three.residual_inertia), 0, 1e-12);
+  assert_near(moment_error(&with, 3, NULL, three.residual_fourth), 0, 1e-12);
+  double trace[2] = {0, 0};
+  for (int c = 0; c < 9; c += 4) {
+    trace[0] += with.residual_flexibility[c];
+    trace[1] += three.residual_flexibility[c];
+  }
+  assert_true(trace[0] > 1e-3 * trace[1] && trace[0] < .5 * trace[1]);
+  double   order[2] = {log2(receptance_gap(&two, .2) / receptance_gap(&two, .1)),
+                       log2(receptance_gap(&three, .2) / receptance_gap(&three, .1))};
+  periodic same;
+  periodic_create(&with, &s, 1.1, NULL, &same);
+  run a = prepare(&three, &s, 1.1, 192);
+  until_periodic(&a, 1e-9, 2000);
+  print_message(
+      "receptances differ with order %.3f, %.3f; slips for %.2f, from the balance of the same "
+      "modes %.1e\n",
+      order[0], order[1], a.r->state[1], apart(&a, &same, 0));
+  assert_near(order[0], 4, .1);
+  assert_near(order[1], 6, .1);
+  assert_true(a.r->state[1] > .1);
+  assert_near(apart(&a, &same, 0), 0, 1e-5);
+  finish(&a);
+  periodic_destroy(&same);
+  mhb_inertia_free(&with);
+  modal_model_free(&three);
+  modal_model_free(&two);
 }
 
 /* Rings of two, three and five blades, all blades of them in time, against the wave of the balance. */
@@ -442,6 +540,7 @@ int main(void) {
                                      cmocka_unit_test(beam),
                                      cmocka_unit_test(residual_flexibility),
                                      cmocka_unit_test(residual_inertia),
+                                     cmocka_unit_test(fourth_term),
                                      cmocka_unit_test(rings),
                                      cmocka_unit_test(disturbances),
                                      cmocka_unit_test(passive)};

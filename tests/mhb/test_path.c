@@ -296,6 +296,7 @@ static void to_micrometres(modal_model *model, mhb_settings *s) {
   times(model->probe, q * m, 1e6);
   times(model->residual_flexibility, nc * nc, 1e12);
   times(model->residual_inertia, nc * nc, 1e12);
+  times(model->residual_fourth, nc * nc, 1e12);
   times(model->probe_contact_residual, q * nc, 1e12);
   times(model->probe_contact_inertia, q * nc, 1e12);
   times((double *)model->load_residual, 2 * 3 * nc, 1e6);

@@ -89,8 +89,7 @@ static void dense_at(const modal_model *model, const mhb_settings *s, int k, dou
       x[a] =
           s->scale * (model->load_residual[h * nc + a] + w * w * model->load_inertia[h * nc + a]);
     for (int b = 0; model->residual_flexibility && b < nc; b++)
-      r[a][b] =
-          model->residual_flexibility[a * nc + b] + w * w * model->residual_inertia[a * nc + b];
+      r[a][b] = residual_by_hand(model, w, a * nc + b);
   }
   for (int q = 0; q < PROBE_DOFS; q++) {
     if (model->probe_load_residual && h <= model->n_load)

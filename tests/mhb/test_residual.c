@@ -203,6 +203,7 @@ static void repeat_pair(const modal_model *one, modal_model *four) {
       int to                                 = j / 12 * 3 + j % 3;
       four->residual_flexibility[i * nc + j] = one->residual_flexibility[from * 6 + to];
       four->residual_inertia[i * nc + j]     = one->residual_inertia[from * 6 + to];
+      four->residual_fourth[i * nc + j]      = one->residual_fourth[from * 6 + to];
     }
   }
 }
@@ -262,9 +263,7 @@ static void blade_at(const modal_model *model, int k, double omega, int nu, blad
   for (int a = 0; a < DOFS; a++) {
     if (h >= 0)
       out->load[a] = model->load_residual[h * DOFS + a] + w * w * model->load_inertia[h * DOFS + a];
-    for (int b = 0; b < DOFS; b++)
-      out->H[a][b] =
-          model->residual_flexibility[a * DOFS + b] + w * w * model->residual_inertia[a * DOFS + b];
+    for (int b = 0; b < DOFS; b++) out->H[a][b] = residual_by_hand(model, w, a * DOFS + b);
   }
   for (int i = 0; i < m; i++) {
     double         wi = 2 * PI * model->frequency[i], shape[DOFS];

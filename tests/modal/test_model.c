@@ -52,6 +52,7 @@ static modal_model sample(bool full) {
   model.probe                  = numbers(PROBES * 3 * MODES, 9);
   model.probe_contact_residual = numbers(PROBES * 3 * CONTACTS, 10);
   model.probe_load_residual    = waves((LOADS + 1) * 3 * PROBES, 11);
+  model.residual_fourth        = symmetric(CONTACTS, 20);
   model.load_inertia           = waves((LOADS + 1) * CONTACTS, 15);
   model.probe_contact_inertia  = numbers(PROBES * 3 * CONTACTS, 17);
   model.probe_load_inertia     = waves((LOADS + 1) * 3 * PROBES, 18);
@@ -115,6 +116,7 @@ static void test_round_trip(void **state) {
   assert_same(wrote, read, probe, PROBES * 3 * MODES);
   assert_same(wrote, read, probe_contact_residual, PROBES * 3 * CONTACTS);
   assert_same(wrote, read, probe_load_residual, (LOADS + 1) * 3 * PROBES);
+  assert_same(wrote, read, residual_fourth, CONTACTS * CONTACTS);
   assert_same(wrote, read, load_inertia, (LOADS + 1) * CONTACTS);
   assert_same(wrote, read, probe_contact_inertia, PROBES * 3 * CONTACTS);
   assert_same(wrote, read, probe_load_inertia, (LOADS + 1) * 3 * PROBES);
@@ -134,20 +136,21 @@ static void test_least(void **state) {
   assert_false(read.has_left);
   assert_int_equal(read.n_probes, 0);
   assert_true(!read.left && !read.residual_flexibility && !read.residual_inertia &&
-              !read.load_residual && !read.load_inertia && !read.probe_contact_inertia &&
-              !read.probe_load_inertia && !read.probe && !read.normal && !read.area);
+              !read.residual_fourth && !read.load_residual && !read.load_inertia &&
+              !read.probe_contact_inertia && !read.probe_load_inertia && !read.probe &&
+              !read.normal && !read.area);
   assert_same(wrote, read, right, PAIRS * 3 * MODES);
   assert_same(wrote, read, modal_force, (LOADS + 1) * MODES);
   modal_model_free(&wrote);
   modal_model_free(&read);
 }
 
-/* 17 arrays, the names, and 5 dimension scales of their own. */
+/* 18 arrays, the names, and 5 dimension scales of their own. */
 static void test_described(void **state) {
   (void)state;
   modal_model model = sample(true);
   write_model("described.h5", &model);
-  assert_int_equal(assert_described(scratch("described.h5")), 23);
+  assert_int_equal(assert_described(scratch("described.h5")), 24);
   hid_t file;
   char *text;
   assert_ok(h5_open(scratch("described.h5"), &file));
@@ -211,6 +214,7 @@ static void test_missing(void **state) {
                        {"/load/residual_response", true},
                        {"/probe/contact_residual", true},
                        {"/probe/load_residual", true},
+                       {"/contact/residual_fourth", true},
                        {"/load/residual_inertia", true},
                        {"/probe/contact_inertia", true},
                        {"/probe/load_inertia", true},
@@ -264,6 +268,7 @@ static void test_shapes(void **state) {
       {"/probe/shape", {3, {3, 4, 3}}, "has shape [3, 4, 3] where [3, 3, 4] is wanted"},
       {"/probe/contact_residual", {2, {3, 12}}, "has shape [3, 12] where [9, 12] is wanted"},
       {"/probe/load_residual", {2, {3, 3}}, "has shape [3, 3] where [3, 9] is wanted"},
+      {"/contact/residual_fourth", {2, {6, 12}}, "has shape [6, 12] where [12, 12] is wanted"},
       {"/load/residual_inertia", {2, {3, 6}}, "has shape [3, 6] where [3, 12] is wanted"},
       {"/probe/contact_inertia", {2, {9, 6}}, "has shape [9, 6] where [9, 12] is wanted"},
       {"/probe/load_inertia", {2, {2, 9}}, "has shape [2, 9] where [3, 9] is wanted"},
@@ -310,6 +315,8 @@ static void test_values(void **state) {
       {IN(probe), 0, NAN, "/probe/shape: the value at [0, 0, 0]"},
       {IN(probe_contact_residual), 0, NAN, "/probe/contact_residual: the value"},
       {IN(probe_load_residual), 1, NAN, "/probe/load_residual: the value"},
+      {IN(residual_fourth), 30, 1, "/contact/residual_fourth is not symmetric"},
+      {IN(residual_fourth), 0, NAN, "/contact/residual_fourth: the value at [0, 0]"},
       {IN(load_inertia), 2, NAN, "/load/residual_inertia: the value at [0, 1]"},
       {IN(probe_contact_inertia), 12, NAN, "/probe/contact_inertia: the value at [1, 0]"},
       {IN(probe_load_inertia), 0, NAN, "/probe/load_inertia: the value at [0, 0]"},

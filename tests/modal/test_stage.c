@@ -63,7 +63,8 @@ static void file_is_complete(void **state) {
   assert_int_equal(model.n_load, 1);
   assert_string_equal(model.probe_name[1], "middle");
   assert_true(model.residual_flexibility && model.residual_inertia && model.load_residual);
-  assert_true(model.load_inertia && model.probe_contact_inertia && model.probe_load_inertia);
+  assert_true(model.residual_fourth && model.load_inertia && model.probe_contact_inertia &&
+              model.probe_load_inertia);
   assert_true(model.probe_contact_residual && model.probe_load_residual && model.normal);
   for (int i = 0; i < 8; i++) check_below(model.mode_residual[i], 1e-9, "mode residual");
   modal_model_free(&model);
