@@ -163,19 +163,27 @@ typedef struct {
   double            radial[3]; /* unit vector of the stacking line */
 } sizing;
 
+/* edge_size where the airfoil meets root and shroud, growing by a half of the distance along the stacking line. */
+static double edge_limit(const mesh_blade *blade, double radial) {
+  const double low  = fabs(radial - blade->section[0].radius);
+  const double high = fabs(radial - blade->section[blade->n_sections - 1].radius);
+  return blade->edge_size > 0 ? blade->edge_size + fmin(low, high) / 2 : INFINITY;
+}
+
 /* size on the airfoil and root, shroud_size from the shroud's underside up, linear over 4 sizes between.
  * Along the stacking line, not the radius: for a shroud side and its copy this differs by the sector's
  * turn, but gmsh copies the periodic side's mesh. */
 static double element_size(int dim, int tag, double x, double y, double z, void *data) {
   (void)dim;
   (void)tag;
-  const sizing     *s     = data;
-  const mesh_blade *blade = s->blade;
-  if (!(blade->shroud_size > 0)) return blade->size;
-  double radial = x * s->radial[0] + y * s->radial[1] + z * s->radial[2];
-  double from   = blade->section[blade->n_sections - 1].radius - 4 * blade->size;
-  double share  = fmin(1, fmax(0, (radial - from) / (4 * blade->size)));
-  return blade->size + share * (blade->shroud_size - blade->size);
+  const sizing     *s      = data;
+  const mesh_blade *blade  = s->blade;
+  const double      radial = x * s->radial[0] + y * s->radial[1] + z * s->radial[2];
+  const double      edge   = edge_limit(blade, radial);
+  if (!(blade->shroud_size > 0)) return fmin(edge, blade->size);
+  double from  = blade->section[blade->n_sections - 1].radius - 4 * blade->size;
+  double share = fmin(1, fmax(0, (radial - from) / (4 * blade->size)));
+  return fmin(edge, blade->size + share * (blade->shroud_size - blade->size));
 }
 
 static shb_status set_options(void) {

@@ -29,7 +29,8 @@ typedef struct {
   double       shroud_contact; /* length of the contact face along u, m; the middle leg of the Z */
   double       size;           /* element size, m */
   double       shroud_size;    /* element size in the shroud, m (0: as size) */
-  mesh_kind    elements;       /* hexahedra: mesh/sweep.h */
+  double    edge_size; /* tetrahedra: element size at the re-entrant edges, m (0: as elsewhere) */
+  mesh_kind elements;  /* hexahedra: mesh/sweep.h */
 } mesh_blade;
 
 /* Mesh the blade (second order) and publish it as a gmsh 4.1 file with the groups root, contact_right,

@@ -1,0 +1,199 @@
+/* Elements side by side: error of the first ten frequencies of one blade against processor time, for tetrahedra, tetrahedra
+ * that are smaller at the re-entrant edges, and hexahedra. The blade is that of cases/z_notch_blade.
+ *
+ *   bench_elements          all (two minutes)
+ *   bench_elements --quick  coarse meshes only; fails if hexahedra are not the better ones
+ *
+ * The error of a row is the worst of the ten, against hexahedra finer than any row's; how well that reference is known is
+ * printed: 2x2x2 points against 3x3x3. Seconds are processor time of assembly, factor and modes, the least of up to three
+ * runs; meshing comes beside it. "seconds at 0.1 %" is interpolated in the logarithms, or extrapolated by the last two rows. */
+#include <math.h>
+#include <slepceps.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include "mesh/blade.h"
+#include "mesh/fe_mesh.h"
+#include "modal/eigen.h"
+
+enum { MODES = 10, MOST = 8 };
+
+typedef struct {
+  double size, shroud, edge; /* mm */
+} sizes;
+
+typedef struct {
+  const char *name;
+  mesh_kind   kind;
+  int         n_quick, n;
+  sizes       at[MOST];
+} ladder;
+
+typedef struct {
+  int    nodes;
+  double mesh, solve; /* s */
+  double frequency[MODES];
+} row;
+
+static const ladder ladders[] = {
+    {"tet10", MESH_TET10, 2, 5, {{14, 9, 0}, {10, 6, 0}, {6.5, 4, 0}, {4.5, 3, 0}, {3, 2, 0}}},
+    {"graded tet10",
+     MESH_TET10,
+     2,
+     5,
+     {{14, 9, 3}, {10, 6, 2}, {8, 5, 1.5}, {6.5, 4, 1}, {5, 3, .7}}},
+    {"hex20",
+     MESH_HEX20,
+     3,
+     6,
+     {{20, 14, 0}, {14, 10, 0}, {10, 8, 0}, {8, 6, 0}, {6, 5, 0}, {5, 4, 0}}}};
+
+enum { LADDERS = sizeof ladders / sizeof *ladders };
+
+static double processor_time(void) {
+  struct rusage usage;
+  getrusage(RUSAGE_SELF, &usage);
+  return (double)usage.ru_utime.tv_sec + 1e-6 * (double)usage.ru_utime.tv_usec +
+         (double)usage.ru_stime.tv_sec + 1e-6 * (double)usage.ru_stime.tv_usec;
+}
+
+static mesh_blade make_blade(mesh_kind kind, const sizes *s) {
+  const double       degree     = acos(-1) / 180;
+  const mesh_section section[5] = {{.25, .058, .009, .011, -10 * degree},
+                                   {.3, .054, .0076, .009, -19 * degree},
+                                   {.35, .05, .0062, .007, -28 * degree},
+                                   {.4, .047, .0051, .0054, -36 * degree},
+                                   {.445, .045, .0044, .0042, -42 * degree}};
+  mesh_blade         blade      = {.blades           = 40,
+                                   .axis             = MESH_AXIS_X,
+                                   .psi              = 35 * degree,
+                                   .root_length      = .068,
+                                   .root_width       = .035,
+                                   .root_height      = .018,
+                                   .n_sections       = 5,
+                                   .shroud_length    = .046,
+                                   .shroud_thickness = .007,
+                                   .shroud_contact   = .024,
+                                   .size             = 1e-3 * s->size,
+                                   .shroud_size      = 1e-3 * s->shroud,
+                                   .edge_size        = 1e-3 * s->edge,
+                                   .elements         = kind};
+  memcpy(blade.section, section, sizeof section);
+  return blade;
+}
+
+static shb_status make_mesh(mesh_kind kind, const sizes *s, mesh_fe *mesh) {
+  const mesh_blade     blade      = make_blade(kind, s);
+  const shb_provenance provenance = {"", "", "", "bench_elements"};
+  char                 path[]     = "/tmp/shb_elements_XXXXXX.msh";
+  const int            handle     = mkstemps(path, 4);
+  SHB_CHECK(handle >= 0, SHB_ERR_IO, "%s: cannot be made", path);
+  close(handle);
+  shb_status status = mesh_blade_write(&blade, path, &provenance, NULL);
+  if (status == SHB_OK) status = mesh_fe_read(path, mesh);
+  unlink(path);
+  return status;
+}
+
+static PetscErrorCode find_modes(const mesh_fe *mesh, fem_rules rules, double frequency[MODES]) {
+  const fem_material         steel  = {.E = 2.1e11, .nu = .3, .rho = 7850};
+  const modal_eigen_settings wanted = {.modes = MODES};
+  fem_system                 system;
+  modal_eigen                eigen;
+
+  PetscFunctionBeginUser;
+  PetscCall(fem_system_create(PETSC_COMM_SELF, mesh, &steel, rules, &system));
+  PetscCall(modal_eigen_solve(&system, &wanted, &eigen));
+  for (int i = 0; i < MODES; i++) frequency[i] = sqrt(eigen.lambda[i]) / (2 * acos(-1));
+  PetscCall(modal_eigen_destroy(&eigen));
+  PetscCall(fem_system_destroy(&system));
+  PetscFunctionReturn(0);
+}
+
+static bool run(mesh_kind kind, const sizes *s, fem_rules rules, row *r) {
+  mesh_fe mesh;
+  double  started = processor_time();
+  if (make_mesh(kind, s, &mesh) != SHB_OK) {
+    fprintf(stderr, "bench_elements: %s\n", shb_message());
+    return false;
+  }
+  r->nodes  = mesh.n_nodes;
+  r->mesh   = processor_time() - started;
+  r->solve  = INFINITY;
+  bool good = true;
+  for (int i = 0; good && i < 3 && (i == 0 || r->solve < 3); i++) {
+    started  = processor_time();
+    good     = find_modes(&mesh, rules, r->frequency) == 0;
+    r->solve = fmin(r->solve, processor_time() - started);
+  }
+  mesh_fe_free(&mesh);
+  return good;
+}
+
+static double worst(const double frequency[MODES], const double reference[MODES]) {
+  double most = 0;
+  for (int i = 0; i < MODES; i++) most = fmax(most, fabs(frequency[i] / reference[i] - 1));
+  return most;
+}
+
+/* log seconds is linear in log error between rows, and beyond the last two. */
+static double seconds_at(double target, int n, const double *error, const double *seconds) {
+  int i = 1;
+  while (i < n - 1 && error[i] > target) i++;
+  double slope = log(seconds[i] / seconds[i - 1]) / log(error[i] / error[i - 1]);
+  return seconds[i] * pow(target / error[i], slope);
+}
+
+/* Rows of one kind; the error and the time of its last, and its time at 0.1 %. */
+static bool measure(const ladder *l, bool quick, const double reference[MODES], double *last,
+                    double *at_target) {
+  const int n           = quick ? l->n_quick : l->n;
+  double    error[MOST] = {0}, seconds[MOST] = {0};
+  for (int i = 0; i < n; i++) {
+    row r;
+    if (!run(l->kind, &l->at[i], FEM_STANDARD, &r)) return false;
+    error[i]   = worst(r.frequency, reference);
+    seconds[i] = r.solve;
+    printf("%-13s %5.1f %5.1f %5.1f %8d %8.2f %8.2f   %.1e\n", l->name, l->at[i].size,
+           l->at[i].shroud, l->at[i].edge, r.nodes, r.mesh, r.solve, error[i]);
+    fflush(stdout);
+  }
+  *last      = error[n - 1];
+  *at_target = seconds_at(1e-3, n, error, seconds);
+  printf("%-13s seconds at 0.1 %%: %.3g%s\n", l->name, *at_target,
+         error[n - 1] > 1e-3 ? " (extrapolated)" : "");
+  return true;
+}
+
+static bool make_reference(bool quick, double reference[MODES]) {
+  const sizes fine = quick ? (sizes){6, 5, 0} : (sizes){3, 3, 0};
+  row         reduced, full;
+  if (!run(MESH_HEX20, &fine, FEM_STANDARD, &reduced)) return false;
+  if (!run(MESH_HEX20, &fine, FEM_FULL, &full)) return false;
+  memcpy(reference, reduced.frequency, sizeof reduced.frequency);
+  printf("reference: hex20, %g mm, %d nodes, %.1f s; 3x3x3 points differ by %.1e\n\n", fine.size,
+         reduced.nodes, reduced.solve, worst(full.frequency, reference));
+  return true;
+}
+
+int main(int argc, char **argv) {
+  const bool quick = argc > 1 && strcmp(argv[1], "--quick") == 0;
+  double     reference[MODES], last[LADDERS], at_target[LADDERS];
+  if (SlepcInitialize(NULL, NULL, NULL, NULL)) return 1;
+  bool good = make_reference(quick, reference);
+  if (good)
+    printf("elements       size shroud edge mm  nodes   mesh s  solve s   worst of %d\n", MODES);
+  for (int k = 0; good && k < LADDERS; k++)
+    good = measure(&ladders[k], quick, reference, &last[k], &at_target[k]);
+  if (good && !quick)
+    for (int k = 0; k + 1 < LADDERS; k++)
+      printf("hex20 reaches 0.1 %% %.3g times cheaper than %s\n",
+             at_target[k] / at_target[LADDERS - 1], ladders[k].name);
+  if (good && quick) good = last[2] < .2 * last[0] && last[2] < .2 * last[1];
+  SlepcFinalize();
+  return good ? 0 : 1;
+}
