@@ -58,6 +58,7 @@ static void share(case_reader *r) {
   file->source.blades    = file->mhb.to_ground ? 0 : file->blades;
   file->material.E       = file->constants.E[0];
   file->material.nu      = file->constants.nu[0];
+  file->load.field       = file->field_file;
   file->blade.psi        = file->mhb.has_psi ? file->mhb.psi : 0;
   file->blade.phi        = file->mhb.has_phi ? file->mhb.phi : 0;
 }
@@ -109,6 +110,7 @@ void case_free(case_file *file) {
   free(file->name);
   free(file->mesh_file);
   free(file->modal_file);
+  free(file->field_file);
   free(file->converge_output);
   *file = (case_file){0};
 }

@@ -55,6 +55,7 @@ typedef struct {
 
   int        engine_order;
   fem_load   load;
+  char      *field_file; /* resolved path of excitation.field, or NULL */
   int        n_probes;
   case_probe probe[CASE_MAX_PROBES];
 

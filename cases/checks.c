@@ -29,15 +29,15 @@ static void check_mesh(case_reader *r, int stages) {
 
 static void check_load(case_reader *r) {
   static const char *const names[] = {"excitation.pressure", "excitation.traction",
-                                      "excitation.force"};
+                                      "excitation.force", "excitation.field"};
   fem_load                *load    = &r->file->load;
   int                      given   = 0;
-  for (int i = 0; i < 3; i++) {
+  for (int i = 0; i < 4; i++) {
     if (!case_reader_given(r, names[i]) && !has_block(r, names[i])) continue;
     if (given++ == 0) {
       load->kind = (fem_load_kind)i;
     } else {
-      case_reader_issue(r, names[i], "give only one of pressure, traction and force");
+      case_reader_issue(r, names[i], "give only one of pressure, traction, force and field");
     }
   }
   bool own     = !r->file->modal_file;
@@ -69,8 +69,9 @@ static void check_load_size(case_reader *r) {
   const fem_load          *load    = &r->file->load;
   double                   one[3]  = {load->pressure, 0, 0};
   const double            *value[] = {one, load->traction, load->force};
-  const char              *name    = names[load->kind];
-  const double            *v       = value[load->kind];
+  if (load->kind == FEM_LOAD_FIELD) return; /* told when the file is read */
+  const char   *name = names[load->kind];
+  const double *v    = value[load->kind];
   if (!r->file->modal_file && case_reader_given(r, name) && case_reader_good(r, name) &&
       v[0] == 0 && v[1] == 0 && v[2] == 0)
     case_reader_issue(r, name, "is 0; nothing would move");
@@ -156,6 +157,11 @@ static void check_harmonics(case_reader *r, int stages) {
   bool good = case_reader_good(r, "excitation.harmonics") && case_reader_good(r, "mhb.harmonics") &&
               case_reader_good(r, "mhb.subharmonics");
   if (file->modal_file || !good || !(stages & CASE_MHB)) return;
+  if (file->load.kind == FEM_LOAD_FIELD) {
+    if (case_reader_given(r, "excitation.harmonics"))
+      case_reader_issue(r, "excitation.harmonics", "leave it out: the field has its own harmonics");
+    return;
+  }
   int k = file->load.n_harmonics, needed = k * file->mhb.subharmonics;
   if (file->mhb.harmonics > 0 && needed > file->mhb.harmonics)
     case_reader_issue(
@@ -261,6 +267,8 @@ bool case_check_values(case_reader *r, int stages) {
   check_search(r);
   if (own) check_extension(r);
   if (own && stages & (CASE_MESH | CASE_MODAL)) lost = check_file(r, "mesh.file", file->mesh_file);
+  if (own && stages & CASE_MODAL && file->load.kind == FEM_LOAD_FIELD && !lost)
+    lost = check_file(r, "excitation.field", file->field_file);
   if (!own && stages & CASE_MHB) lost = check_file(r, "modal.file", file->modal_file);
   return lost;
 }

@@ -8,13 +8,17 @@
 
 shb_status fresh_settings(const case_file *file, case_stage stage, const char *input, char **text) {
   const char *name = stage == CASE_MODAL ? "mesh" : "modal";
-  char        fingerprint[17];
+  char        fingerprint[17], field[64] = "", of_field[17];
   SHB_TRY(shb_fingerprint(input, fingerprint));
+  if (stage == CASE_MODAL && file->load.kind == FEM_LOAD_FIELD) {
+    SHB_TRY(shb_fingerprint(file->field_file, of_field));
+    snprintf(field, sizeof field, "excitation.field.fingerprint = %s\n", of_field);
+  }
   char *keys = case_settings(file, stage);
   SHB_CHECK(keys, SHB_ERR_IO, "out of memory");
-  size_t size = strlen(keys) + 64;
+  size_t size = strlen(keys) + 128;
   *text       = malloc(size);
-  if (*text) snprintf(*text, size, "%s%s.fingerprint = %s\n", keys, name, fingerprint);
+  if (*text) snprintf(*text, size, "%s%s.fingerprint = %s\n%s", keys, name, fingerprint, field);
   free(keys);
   SHB_CHECK(*text, SHB_ERR_IO, "out of memory");
   return SHB_OK;

@@ -88,15 +88,17 @@ static const case_key table[] = {
 
     {"excitation.engine_order", CASE_INTEGER, "", 0, 10000, .required = true, AT(engine_order), .stages = CASE_MHB, .when = CASE_IF_NEIGHBOUR,
      .help = "engine order E; the inter-blade phase is 2 pi E / blades"},
-    {"excitation.pressure", CASE_NUMBER, "Pa", -1e12, 1e12, .required = true, .instead = "traction or force", AT(load.pressure), .stages = CASE_MODAL, .when = CASE_IF_PRESSURE,
-     .help = "on the group load, into the surface; one of pressure, traction, force"},
+    {"excitation.pressure", CASE_NUMBER, "Pa", -1e12, 1e12, .required = true, .instead = "traction, force or field", AT(load.pressure), .stages = CASE_MODAL, .when = CASE_IF_PRESSURE,
+     .help = "on the group load, into the surface; one of pressure, traction, force, field"},
     {"excitation.traction", CASE_VECTOR, "Pa", -1e12, 1e12, .required = true, AT(load.traction), .stages = CASE_MODAL, .when = CASE_IF_TRACTION,
      .help = "on the group load, along a direction in mesh axes"},
     {"excitation.force.at", CASE_VECTOR, "m", -1e3, 1e3, AT(load.at), .stages = CASE_MODAL, .when = CASE_IF_FORCE_AT,
      .help = "where the force acts: the node nearest to it; default: the first probe"},
     {"excitation.force.vector", CASE_VECTOR, "N", -1e12, 1e12, .required = true, AT(load.force), .stages = CASE_MODAL, .when = CASE_IF_FORCE,
      .help = "force in mesh axes"},
-    {"excitation.harmonics", CASE_FACTORS, "", .fallback = "{1: [1, 0 deg]}", AT(load.factor), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
+    {"excitation.field", CASE_FILE_NAME, "", .required = true, AT(field_file), .stages = CASE_MODAL, .when = CASE_IF_FIELD,
+     .help = "HDF5 file of forces at nodes or of pressure at the nodes of group load, amplitude and phase a harmonic"},
+    {"excitation.harmonics", CASE_FACTORS, "", .fallback = "{1: [1, 0 deg]}", AT(load.factor), .stages = CASE_MODAL, .when = CASE_IF_FACTORS,
      .help = "factor and phase of the load a harmonic: {k: [factor, phase]}, k from 0 to 64"},
 
     {"probe", CASE_PROBES, "m", -1e3, 1e3, .fallback = "{}", AT(probe), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
@@ -215,6 +217,10 @@ bool case_key_applies(const case_key *key, const case_file *file) {
       return own && file->load.kind == FEM_LOAD_TRACTION;
     case CASE_IF_FORCE:
       return own && file->load.kind == FEM_LOAD_FORCE;
+    case CASE_IF_FACTORS:
+      return own && file->load.kind != FEM_LOAD_FIELD;
+    case CASE_IF_FIELD:
+      return own && file->load.kind == FEM_LOAD_FIELD;
     case CASE_IF_FORCE_AT:
       return own && file->load.kind == FEM_LOAD_FORCE && file->load.has_at;
     case CASE_IF_OUTPUT:

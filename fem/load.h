@@ -8,16 +8,18 @@
 
 enum { FEM_MAX_LOAD_HARMONICS = 64 };
 
-typedef enum { FEM_LOAD_PRESSURE, FEM_LOAD_TRACTION, FEM_LOAD_FORCE } fem_load_kind;
+typedef enum { FEM_LOAD_PRESSURE, FEM_LOAD_TRACTION, FEM_LOAD_FORCE, FEM_LOAD_FIELD } fem_load_kind;
 
 typedef struct {
-  fem_load_kind  kind;
-  double         pressure;    /* Pa, on group load; positive pushes into the surface */
-  double         traction[3]; /* Pa, mesh axes, on group load */
-  double         force[3];    /* N, mesh axes, at the node nearest to at */
-  bool           has_at;      /* false: the force acts at the first probe's node */
-  double         at[3];       /* m */
-  int            n_harmonics; /* K; factor[0..K] */
+  fem_load_kind kind;
+  double        pressure;    /* Pa, on group load; positive pushes into the surface */
+  double        traction[3]; /* Pa, mesh axes, on group load */
+  double        force[3];    /* N, mesh axes, at the node nearest to at */
+  bool          has_at;      /* false: the force acts at the first probe's node */
+  double        at[3];       /* m */
+  const char
+      *field;       /* file of nodal values a harmonic (modal/field.h); factors do not count then */
+  int  n_harmonics; /* K; factor[0..K] */
   double complex factor[FEM_MAX_LOAD_HARMONICS +
                         1]; /* excitation at harmonic k = factor[k] times the pattern */
 } fem_load;

@@ -22,12 +22,12 @@ typedef struct {
 
 static shb_status allocate(const modal_condensation *to, int n_modes, modal_model *model) {
   const size_t m = (size_t)n_modes, pairs = (size_t)to->n_pairs, nc = (size_t)to->contact.n;
-  const size_t q3 = (size_t)to->probe.n, k = (size_t)to->excitation->n_harmonics + 1;
+  const size_t q3 = (size_t)to->probe.n, k = (size_t)to->load.n_harmonics + 1;
   model->n_modes                = n_modes;
   model->n_pairs                = to->n_pairs;
   model->has_left               = to->has_left;
   model->n_probes               = to->probe.n / 3;
-  model->n_load                 = to->excitation->n_harmonics;
+  model->n_load                 = to->load.n_harmonics;
   model->frequency              = calloc(m, sizeof(double));
   model->damping_ratio          = calloc(m, sizeof(double));
   model->mode_residual          = calloc(m, sizeof(double));
@@ -60,16 +60,18 @@ static PetscErrorCode fill_shapes(const workspace *w, modal_model *model) {
   double                   *shape, *force;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2((size_t)nc * (size_t)m, &shape, m, &force));
+  const modal_load *load = &to->load;
+  PetscCall(PetscMalloc2((size_t)nc * (size_t)m, &shape, load->dofs.n * (size_t)m, &force));
   PetscCall(modal_dofs_sample(&to->contact, w->system, w->eigen->phi, m, m, shape));
   PetscCall(modal_dofs_sample(&to->probe, w->system, w->eigen->phi, m, m, model->probe));
-  PetscCall(modal_dofs_sample(&to->load, w->system, w->eigen->phi, m, m, force));
+  PetscCall(modal_dofs_sample(&load->dofs, w->system, w->eigen->phi, m, m, force));
   size_t side = 3 * (size_t)to->n_pairs * (size_t)m;
   memcpy(model->right, shape, side * sizeof(double));
   if (to->has_left) memcpy(model->left, shape + side, side * sizeof(double));
   for (int k = 0; k <= model->n_load; k++)
-    for (int i = 0; i < m; i++)
-      model->modal_force[k * m + i] = to->excitation->factor[k] * force[i];
+    for (int c = 0; c < load->dofs.n; c++)
+      for (int i = 0; i < m; i++)
+        model->modal_force[k * m + i] += load->weight[k * load->dofs.n + c] * force[c * m + i];
   for (int i = 0; i < m; i++) {
     model->frequency[i]     = sqrt(w->eigen->lambda[i]) / two_pi;
     model->mode_residual[i] = w->eigen->residual[i];
@@ -120,23 +122,25 @@ static PetscErrorCode contact_batch(workspace *w, int first, int count, modal_mo
   PetscFunctionReturn(0);
 }
 
-/* The samples of the one column, times the factor of each harmonic. */
-static void put_loads(const workspace *w, double complex *contact, double complex *probe) {
-  const int nc = w->to->contact.n, q3 = w->to->probe.n;
-  for (int k = 0; k <= w->to->excitation->n_harmonics; k++) {
-    double complex factor = w->to->excitation->factor[k];
-    for (int c = 0; c < nc; c++) contact[k * nc + c] = factor * w->contact[c];
-    for (int c = 0; c < q3; c++) probe[k * q3 + c] = factor * w->probe[c];
+/* Add the samples of one pattern, times what each harmonic takes of it. */
+static void add_load(const workspace *w, int pattern, double complex *contact,
+                     double complex *probe) {
+  const modal_load *load = &w->to->load;
+  const int         nc = w->to->contact.n, q3 = w->to->probe.n;
+  for (int k = 0; k <= load->n_harmonics; k++) {
+    double complex weight = load->weight[k * load->dofs.n + pattern];
+    for (int c = 0; c < nc; c++) contact[k * nc + c] += weight * w->contact[c];
+    for (int c = 0; c < q3; c++) probe[k * q3 + c] += weight * w->probe[c];
   }
 }
 
-static PetscErrorCode load_batch(workspace *w, modal_model *model) {
+static PetscErrorCode load_batch(workspace *w, int pattern, modal_model *model) {
   PetscFunctionBeginUser;
-  PetscCall(modal_dofs_spread(&w->to->load, w->system, 0, 1, w->B));
+  PetscCall(modal_dofs_spread(&w->to->load.dofs, w->system, pattern, 1, w->B));
   PetscCall(solve_batch(w, w->X));
-  put_loads(w, model->load_residual, model->probe_load_residual);
+  add_load(w, pattern, model->load_residual, model->probe_load_residual);
   PetscCall(solve_next(w, w->X, w->Y));
-  put_loads(w, model->load_inertia, model->probe_load_inertia);
+  add_load(w, pattern, model->load_inertia, model->probe_load_inertia);
   PetscFunctionReturn(0);
 }
 
@@ -183,7 +187,7 @@ static shb_status fill(workspace *w, shb_progress *progress, modal_model *model)
   }
   FEM_PETSC(destroy_workspace(w));
   FEM_PETSC(create_workspace(w, 1));
-  FEM_PETSC(load_batch(w, model));
+  for (int c = 0; c < w->to->load.dofs.n; c++) FEM_PETSC(load_batch(w, c, model));
   symmetrise(model->residual_flexibility, (size_t)nc);
   symmetrise(model->residual_inertia, (size_t)nc);
   symmetrise(model->residual_fourth, (size_t)nc);

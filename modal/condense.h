@@ -7,16 +7,16 @@
 #include "modal/damping.h"
 #include "modal/dofs.h"
 #include "modal/eigen.h"
+#include "modal/field.h"
 #include "modal/model.h"
 
-/* What to condense to. contact: (side * n_pairs + pair) * 3 + axis; probe: 3 a probe; load: one dof, the work of
- * the load's pattern. */
+/* What to condense to. contact: (side * n_pairs + pair) * 3 + axis; probe: 3 a probe. */
 typedef struct {
-  int             n_pairs;
-  bool            has_left;
-  modal_dofs      contact, probe, load;
-  const fem_load *excitation; /* factors of the harmonics */
-  modal_damping   damping;
+  int           n_pairs;
+  bool          has_left;
+  modal_dofs    contact, probe;
+  modal_load    load;
+  modal_damping damping;
 } modal_condensation;
 
 /* Fill model (zeroed before): frequency, damping_ratio, right, left, residual_flexibility, residual_inertia, residual_fourth,

@@ -20,17 +20,6 @@ static shb_status agree(MPI_Comm comm, shb_status status) {
   return (shb_status)worst;
 }
 
-/* The load's pattern as one dof: its work on the displacement. */
-static shb_status load_dof(const mesh_fe *mesh, const modal_settings *settings, modal_dofs *dofs) {
-  double *force = malloc(3 * (size_t)mesh->n_nodes * sizeof *force + 1);
-  SHB_CHECK(force, SHB_ERR_IO, "out of memory for the load");
-  const double *fallback = settings->n_probes > 0 ? settings->probe[0].at : NULL;
-  shb_status    status   = fem_load_pattern(mesh, &settings->load, fallback, force);
-  if (status == SHB_OK) status = modal_dofs_add_field(dofs, mesh->n_nodes, force);
-  free(force);
-  return status;
-}
-
 /* Three dofs a probe: its nearest node in that node's cylindrical axes. */
 static shb_status probe_dofs(const mesh_fe *mesh, const modal_settings *settings,
                              modal_dofs *dofs) {
@@ -75,13 +64,13 @@ static shb_status prepare(const mesh_fe *mesh, const modal_settings *settings,
   SHB_TRY(modal_interface_create(mesh, settings->axis, settings->blades, settings->to_ground,
                                  settings->points, interface));
   SHB_TRY(modal_interface_check(interface, settings->psi, settings->phi));
-  to->n_pairs    = interface->n_pairs;
-  to->has_left   = interface->has_left;
-  to->excitation = &settings->load;
-  to->damping    = settings->damping;
+  to->n_pairs  = interface->n_pairs;
+  to->has_left = interface->has_left;
+  to->damping  = settings->damping;
   SHB_TRY(modal_interface_dofs(interface, &to->contact));
   SHB_TRY(probe_dofs(mesh, settings, &to->probe));
-  return load_dof(mesh, settings, &to->load);
+  const double *fallback = settings->n_probes > 0 ? settings->probe[0].at : NULL;
+  return modal_load_create(mesh, &settings->load, fallback, &to->load);
 }
 
 /* Eigenvalues as Rayleigh quotients from the strains, on rank 0: the solver's own carry the rounding of K, which in a
@@ -162,7 +151,7 @@ shb_status modal_solve(MPI_Comm comm, const mesh_fe *mesh, const modal_settings 
   if (status == SHB_OK) status = solve_body(comm, mesh, settings, &to, progress, result);
   modal_dofs_free(&to.contact);
   modal_dofs_free(&to.probe);
-  modal_dofs_free(&to.load);
+  modal_load_free(&to.load);
   return status;
 }
 

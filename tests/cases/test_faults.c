@@ -345,7 +345,7 @@ static void keys_among_each_other(void **state) {
        1},
       {"  pressure: 210 Pa\n", "",
        "c.yaml:14:1: error: excitation.pressure: missing; expected a number in Pa, "
-       "or traction or force",
+       "or traction, force or field",
        1},
       {"pressure: 210 Pa", "pressure: 0",
        "c.yaml:16:13: error: excitation.pressure: is 0; nothing would move", 1},
@@ -355,8 +355,11 @@ static void keys_among_each_other(void **state) {
        1},
       {"pressure: 210 Pa", "pressure: 210 Pa\n  traction: [1, 1, 1]",
        "c.yaml:17:13: error: "
-       "excitation.traction: give only one of pressure, traction and force",
+       "excitation.traction: give only one of pressure, traction, force and field",
        1},
+      {"pressure: 210 Pa", "field: none.h5",
+       "c.yaml:16:10: error: excitation.field: none.h5: cannot be read: No such file or directory",
+       2},
       {"pressure: 210 Pa", "force: {at: [0, 0, 0.4]}",
        "c.yaml:16:3: error: excitation.force.vector: missing; "
        "expected [x, y, z] in N",

@@ -1,5 +1,6 @@
 shb_test(modal h5 fast shb_model)
 shb_test(modal damping fast shb_modal)
+shb_test(modal field fast tests_fem shb_modal)
 
 shb_test(modal eigen slow tests_fem shb_modal)
 shb_test(modal rotating fast tests_fem shb_modal)
