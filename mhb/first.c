@@ -39,9 +39,9 @@ static double far_preload(const mhb_residual *b, const double *x, int stuck) {
   return stuck ? reach : -reach;
 }
 
-/* By Newton's method at omega alone. */
-static mhb_reason solve_here(mhb_newton *newton, mhb_residual *b, double omega, double tolerance,
-                             double *x, int *iterations) {
+/* From the linear limits and from zero. */
+static mhb_reason directly(mhb_newton *newton, mhb_residual *b, double omega, double tolerance,
+                           double *x, int *iterations) {
   mhb_reason reason   = MHB_MAX_ITERATIONS;
   double     n0       = b->at.n0;
   int        order[2] = {n0 > 0, n0 <= 0}; /* the likelier limit first */
@@ -51,10 +51,17 @@ static mhb_reason solve_here(mhb_newton *newton, mhb_residual *b, double omega, 
     if (reason == MHB_CONVERGED) return reason;
   }
   memset(x, 0, sizeof(double) * (size_t)b->n);
-  reason = mhb_newton_solve(newton, b, omega, tolerance, x, iterations);
+  return mhb_newton_solve(newton, b, omega, tolerance, x, iterations);
+}
+
+/* By Newton's method at omega alone. */
+static mhb_reason solve_here(mhb_newton *newton, mhb_residual *b, double omega, double tolerance,
+                             double *x, int *iterations) {
+  mhb_reason reason = directly(newton, b, omega, tolerance, x, iterations);
   for (int i = 0; i < 2 && reason != MHB_CONVERGED; i++) {
-    if (mhb_residual_linear(b, omega, order[i], x) != SHB_OK) continue;
-    reason = homotopy(newton, b, omega, tolerance, far_preload(b, x, order[i]), x);
+    int stuck = b->at.n0 > 0 ? 1 - i : i; /* the likelier limit first */
+    if (mhb_residual_linear(b, omega, stuck, x) != SHB_OK) continue;
+    reason = homotopy(newton, b, omega, tolerance, far_preload(b, x, stuck), x);
   }
   return reason;
 }
@@ -90,13 +97,33 @@ static mhb_reason by_frequency(mhb_newton *newton, mhb_residual *b, double omega
   return reason;
 }
 
+/* Along the path in the preload, past its folds, from one at which the contact is stuck, or open, throughout. */
+static mhb_reason by_preload(mhb_newton *newton, mhb_residual *b, double omega, double tolerance,
+                             double *x, int *iterations) {
+  double     n0     = b->at.n0;
+  mhb_reason reason = MHB_MAX_ITERATIONS;
+  for (int stuck = 1; stuck >= 0 && reason != MHB_CONVERGED; stuck--) {
+    if (mhb_residual_linear(b, omega, stuck, x) != SHB_OK) continue;
+    double from = far_preload(b, x, stuck);
+    mhb_residual_follow(b, MHB_IN_N0);
+    int found = follow_to(b, from, n0, x);
+    mhb_residual_follow(b, MHB_IN_FREQUENCY);
+    mhb_residual_preload(b, n0);
+    if (found) reason = mhb_newton_solve(newton, b, omega, tolerance, x, iterations);
+  }
+  return reason;
+}
+
 /* The parameter stands; a first solution is sought as if the frequency were followed. */
 mhb_reason mhb_first_solution(mhb_newton *newton, mhb_residual *b, double value, double tolerance,
                               double *x, int *iterations) {
   mhb_parameter parameter = b->parameter;
   mhb_residual_place(b, value);
   mhb_residual_follow(b, MHB_IN_FREQUENCY);
-  mhb_reason reason = by_frequency(newton, b, b->at.omega, tolerance, x, iterations);
+  double     omega  = b->at.omega;
+  mhb_reason reason = directly(newton, b, omega, tolerance, x, iterations);
+  if (reason != MHB_CONVERGED) reason = by_preload(newton, b, omega, tolerance, x, iterations);
+  if (reason != MHB_CONVERGED) reason = by_frequency(newton, b, omega, tolerance, x, iterations);
   mhb_residual_follow(b, parameter);
   return reason;
 }

@@ -20,6 +20,7 @@ typedef struct {
   int          gaps; /* places jumped over */
   char         first_gap[96];
   int          start;                         /* the point where the curve under way begins */
+  bool         turned;                        /* that is on the high end of the range */
   int          n_aside, aside[MHB_MAX_ASIDE]; /* branches split off */
   mhb_closed_curve
       lost; /* where the curve was lost, to be come upon from the other side; or empty */
@@ -160,6 +161,22 @@ static bool first_solution(mhb_follower *f, double value) {
                             &iterations) == MHB_CONVERGED;
 }
 
+/* The points from `from` on, where a piece begins, in the opposite order. */
+static void reverse(mhb_follower *f, int from) {
+  int n = n_points(f), last = f->n_first - 1;
+  mhb_follower_lock(f, true);
+  mhb_response_reverse(f->response, f->branch, from);
+  mhb_follower_lock(f, false);
+  for (int k = 0; k < f->n_first; k++)
+    if (f->first[k] > from) f->first[k] = from + n - f->first[k];
+  for (int k = 0; k < last; k++) /* ascending again */
+    for (int j = k; j >= 0 && f->first[j] > f->first[j + 1]; j--) {
+      int swap        = f->first[j];
+      f->first[j]     = f->first[j + 1];
+      f->first[j + 1] = swap;
+    }
+}
+
 /* The points from `from` on lead down from a restart: onto the curve that was lost, or else to the low end of the range? */
 static shb_status piece_before(trunk *t, int from, const char *why, bool *found) {
   mhb_follower *f = &t->f;
@@ -180,9 +197,9 @@ static shb_status piece_before(trunk *t, int from, const char *why, bool *found)
   } else if (why != MHB_WHOLE) {
     note_gap(t, why, f->path->now.value);
   }
-  mhb_follower_lock(f, true);
-  mhb_response_reverse(f->response, f->branch, from);
-  mhb_follower_lock(f, false);
+  const mhb_path *path = f->path;
+  t->turned            = why == MHB_WHOLE && path->next.value > .5 * (path->low + path->high);
+  reverse(f, from);
   return SHB_OK;
 }
 
@@ -194,6 +211,7 @@ static shb_status both_ways(trunk *t, double value, bool *found, bool *go_on) {
   SHB_TRY(mhb_follower_begin(f, value, -1, true, found, go_on));
   if (!*found) return SHB_OK;
   if (!t->lost.x) t->start = from;
+  t->turned = false;
   if (t->lost.x) swap_curves(&t->lost, &f->closed);
   f->either         = true;
   shb_status status = mhb_follower_run(f, go_on, &why);
@@ -208,11 +226,11 @@ static shb_status both_ways(trunk *t, double value, bool *found, bool *go_on) {
 
 /* The curve goes on beyond what was reached. */
 static shb_status restart(trunk *t, bool *found, bool *go_on) {
-  static const double further[] = {1e-3, 3e-3, 1e-2, 3e-2, .1};
+  static const double further[] = {1e-3, 3e-3, 1e-2, 3e-2, .1, .2, .4, .7};
   mhb_follower       *f         = &t->f;
   double              span      = f->path->high - f->path->low;
   *found                        = false;
-  for (int i = 0; i < 5 && !*found && *go_on; i++) {
+  for (int i = 0; i < 8 && !*found && *go_on; i++) {
     double value = f->farthest + further[i] * span;
     if (value >= f->path->high) break;
     if (first_solution(f, value)) SHB_TRY(both_ways(t, value, found, go_on));
@@ -225,6 +243,11 @@ static shb_status go_beyond(trunk *t, const char *why, bool *go_on, const char *
   mhb_follower *f      = &t->f;
   bool          passed = why == MHB_CLOSED || why == MHB_TURNED_BACK, found;
   *end                 = NULL;
+  if (why == MHB_TURNED_BACK && t->turned) { /* from end to end, the other way */
+    reverse(f, t->start);
+    *end = MHB_WHOLE;
+    return SHB_OK;
+  }
   if (passed && t->n_aside < MHB_MAX_ASIDE) {
     SHB_TRY(set_aside(t, t->start, why));
   } else if (n_points(f) > 0) {
