@@ -32,7 +32,7 @@ typedef struct {
 } mesh_section_grid;
 
 /* The section alone: a middle part of chord x 2 half elements; in each tip three blocks of half x half around a point,
- * so that no element has two sides on the sharp edge's corner of the outline.
+ * so that no corner of an element is flat.
  *   place  out  [n_nodes], malloc'ed */
 shb_status mesh_plan_section(const mesh_section_grid *grid, mesh_plan *plan,
                              mesh_section_place **place);

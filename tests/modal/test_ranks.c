@@ -65,9 +65,17 @@ static void world_equals_one_rank_at_speed(void **state) {
   check_ranks(6000);
 }
 
+static void world_equals_one_rank_with_hexahedra(void **state) {
+  (void)state;
+  use_elements(MESH_HEX20);
+  check_ranks(300);
+  use_elements(MESH_TET10);
+}
+
 int main(int argc, char **argv) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(world_equals_one_rank),
-                                     cmocka_unit_test(world_equals_one_rank_at_speed)};
+                                     cmocka_unit_test(world_equals_one_rank_at_speed),
+                                     cmocka_unit_test(world_equals_one_rank_with_hexahedra)};
   modal_session           session;
   if (modal_session_start(&argc, &argv, &session) != SHB_OK) return 1;
   int failures = cmocka_run_group_tests(tests, NULL, NULL);
