@@ -26,7 +26,8 @@ typedef struct {
       lost; /* where the curve was lost, to be come upon from the other side; or empty */
 } trunk;
 
-static const char INTERRUPTED[] = "interrupted";
+static const char INTERRUPTED[]    = "interrupted",
+                  NOTHING_BEYOND[] = "no solution found beyond a curve that closes or turns back";
 
 static bool is_complete(const char *reason) {
   return strcmp(reason, MHB_WHOLE) == 0 || strcmp(reason, MHB_CLOSED) == 0 ||
@@ -259,7 +260,7 @@ static shb_status go_beyond(trunk *t, const char *why, bool *go_on, const char *
   }
   shb_status status = restart(t, &found, go_on);
   mhb_closed_free(&t->lost);
-  if (!found) *end = why;
+  if (!found) *end = passed ? NOTHING_BEYOND : why;
   return status;
 }
 
@@ -280,7 +281,7 @@ static shb_status run(trunk *t, const char **end) {
     else
       SHB_TRY(go_beyond(t, why, &go_on, end));
   }
-  if (!go_on) *end = "interrupted";
+  if (!go_on) *end = INTERRUPTED;
   return SHB_OK;
 }
 
