@@ -94,6 +94,8 @@ shb_status child_run(char *const argv[], child_result *result) {
   result->code    = WIFEXITED(status) ? WEXITSTATUS(status) : SHB_ERR_IO;
   if (interrupted) {
     result->code = SHB_INTERRUPTED;
+  } else if (WIFSIGNALED(status) && WTERMSIG(status) == SIGPIPE) {
+    result->code = SHB_OK; /* the reader of the output has seen enough */
   } else if (WIFSIGNALED(status)) {
     int number = WTERMSIG(status);
     SHB_FAIL(SHB_ERR_IO, "%s was killed by signal %d (%s)%s", leaf(argv[0]), number,

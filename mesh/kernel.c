@@ -3,6 +3,7 @@
 #include <ctype.h>
 #include <gmshc.h>
 #include <stdio.h>
+#include <string.h>
 
 static const int kept[MESH_KERNEL_SIGNALS] = {SIGINT, SIGTERM, SIGHUP, SIGFPE, SIGSEGV};
 
@@ -49,4 +50,25 @@ shb_status mesh_kernel_fail(shb_status code, const char *file, int line, const c
   shb_fail(code, file, line, "%s: gmsh: %s", what, text);
   gmshFree(text);
   return code;
+}
+
+void mesh_kernel_listen(void) {
+  int ierr = 0;
+  gmshLoggerStart(&ierr);
+}
+
+shb_status mesh_kernel_heard(const char *what) {
+  char     **line   = NULL;
+  size_t     n      = 0;
+  int        ierr   = 0;
+  shb_status status = SHB_OK;
+  gmshLoggerGet(&line, &n, &ierr);
+  gmshLoggerStop(&ierr);
+  for (size_t i = 0; i < n; i++) {
+    if (status == SHB_OK && strncmp(line[i], "Error: ", 7) == 0)
+      status = shb_fail(SHB_ERR_INPUT, __FILE__, __LINE__, "%s: gmsh: %s", what, line[i] + 7);
+    gmshFree(line[i]);
+  }
+  gmshFree(line);
+  return status;
 }

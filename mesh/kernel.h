@@ -20,6 +20,11 @@ void       mesh_kernel_close(mesh_kernel *kernel);
 /* Record "what: gmsh: last error of gmsh" on one line; returns code. */
 shb_status mesh_kernel_fail(shb_status code, const char *file, int line, const char *what);
 
+/* gmsh reads on after some faults of a file. Listen before a call; heard then fails with the first error it told, on one line:
+ * "what: gmsh: error". SHB_ERR_INPUT. */
+void       mesh_kernel_listen(void);
+shb_status mesh_kernel_heard(const char *what);
+
 /* Make a gmsh call whose last argument is &ierr. */
 #define GMSH_TRY(what, ...)                                                       \
   do {                                                                            \

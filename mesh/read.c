@@ -69,9 +69,12 @@ static shb_status read_msh(const char *path, const char *const group[MESH_N_SETS
   mesh_kernel kernel;
   SHB_TRY(mesh_kernel_open(&kernel));
   int ierr = 0;
+  mesh_kernel_listen();
   gmshMerge(path, &ierr);
-  shb_status status = ierr ? mesh_kernel_fail(SHB_ERR_INPUT, __FILE__, __LINE__, path)
-                           : mesh_import(path, group, mesh);
+  shb_status heard  = mesh_kernel_heard(path); /* gmsh reads on where an element lacks its nodes */
+  shb_status status = ierr              ? mesh_kernel_fail(SHB_ERR_INPUT, __FILE__, __LINE__, path)
+                      : heard != SHB_OK ? heard
+                                        : mesh_import(path, group, mesh);
   mesh_kernel_close(&kernel);
   return status;
 }

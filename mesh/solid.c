@@ -29,7 +29,9 @@ static shb_status load(const mesh_source *source) {
   SHB_CHECK(file, SHB_ERR_IO, "%s: cannot be read: %s", source->path, strerror(errno));
   fclose(file);
   SHB_TRY(set_options(source));
+  mesh_kernel_listen();
   GMSH_TRY(source->path, gmshOpen(source->path, &ierr));
+  SHB_TRY(mesh_kernel_heard(source->path)); /* gmsh goes on after a fault of syntax */
   int   *tags = NULL;
   size_t n    = 0;
   GMSH_TRY(source->path, gmshModelGetEntities(&tags, &n, 3, &ierr));

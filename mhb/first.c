@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "mesh/progress.h"
 #include "mhb/follow.h"
 
 enum { MAX_STAGES = 200 };
@@ -12,7 +13,7 @@ static mhb_reason homotopy(mhb_newton *newton, mhb_residual *b, double omega, do
   double     to = b->at.n0, part = 0, step = .25;
   double     kept[b->n];
   mhb_reason reason = MHB_MAX_ITERATIONS;
-  for (int i = 0; i < MAX_STAGES && part < 1 && step > 1e-5; i++) {
+  for (int i = 0; i < MAX_STAGES && part < 1 && step > 1e-5 && !shb_interrupted(); i++) {
     double next = fmin(1, part + step);
     int    iterations;
     memcpy(kept, x, sizeof kept);
@@ -73,7 +74,7 @@ static int follow_to(mhb_residual *b, double from, double to, double *x) {
                    wanted  = to > from ? MHB_PATH_AT_END : MHB_PATH_AT_START;
   if (mhb_path_create(b, fmin(from, to), fmax(from, to), &path) != SHB_OK) return 0;
   if (mhb_path_start(path, x, from, to > from ? 1 : -1) == MHB_CONVERGED) outcome = MHB_PATH_ON;
-  for (int i = 0; i < MAX_STAGES && outcome == MHB_PATH_ON; i++) {
+  for (int i = 0; i < MAX_STAGES && outcome == MHB_PATH_ON && !shb_interrupted(); i++) {
     outcome = mhb_path_step(path);
     if (outcome != MHB_PATH_ON && outcome != MHB_PATH_STALLED && outcome != wanted)
       outcome = mhb_path_outside(path, outcome);
@@ -88,7 +89,7 @@ static mhb_reason by_frequency(mhb_newton *newton, mhb_residual *b, double omega
                                double *x, int *iterations) {
   static const double elsewhere[] = {.98, 1.02, .95, 1.05, .9, 1.1, .8, .6};
   mhb_reason          reason      = solve_here(newton, b, omega, tolerance, x, iterations);
-  for (int i = 0; i < 8 && reason != MHB_CONVERGED; i++) {
+  for (int i = 0; i < 8 && reason != MHB_CONVERGED && !shb_interrupted(); i++) {
     double from = elsewhere[i] * omega;
     if (solve_here(newton, b, from, tolerance, x, iterations) != MHB_CONVERGED) continue;
     if (!follow_to(b, from, omega, x)) continue;

@@ -231,7 +231,7 @@ static shb_status restart(trunk *t, bool *found, bool *go_on) {
   mhb_follower       *f         = &t->f;
   double              span      = f->path->high - f->path->low;
   *found                        = false;
-  for (int i = 0; i < 8 && !*found && *go_on; i++) {
+  for (int i = 0; i < 8 && !*found && *go_on && !shb_interrupted(); i++) {
     double value = f->farthest + further[i] * span;
     if (value >= f->path->high) break;
     if (first_solution(f, value)) SHB_TRY(both_ways(t, value, found, go_on));

@@ -269,7 +269,20 @@ static int settle_on(mhb_path *path, double value) {
   return ok;
 }
 
+/* A preload is measured by itself or by what the motion does to the normal force, whichever is more: where the contact opens and slips
+ * must not be stepped over in a range that is far wider. */
+static void set_unit_of_preload(mhb_path *path) {
+  static const double WIDE = 4;
+  mhb_path_point     *now  = &path->now;
+  double scale = mhb_path_unit(path), moved = path->residual->at.kv * mhb_norm(now->x, path->n),
+         own    = WIDE * fmax(fabs(now->value), moved);
+  path->span    = fmin(path->high - path->low, own > 0 ? own : INFINITY);
+  double length = sqrt(mhb_path_inner(path, scale, now->tangent, now->tangent));
+  for (int i = 0; i <= path->n; i++) now->tangent[i] /= length;
+}
+
 mhb_path_outcome mhb_path_step(mhb_path *path) {
+  if (path->residual->parameter == MHB_IN_N0) set_unit_of_preload(path);
   for (int tries = 0; tries < 4; tries++) {
     if (!find_next(path)) break;
     double slack = 1e-12 * fmax(fabs(path->low), fabs(path->high));

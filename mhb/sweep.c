@@ -232,13 +232,13 @@ static shb_status all_preloads(sweep *s, const modal_model *model) {
 }
 
 /* A further branch that does not cover its range is told in the file; the sweep has what it set out for. */
-static shb_status outcome(const mhb_response *response) {
+static shb_status outcome(const mhb_response *response, const mhb_settings *settings) {
   for (int i = 0; i < response->n_branches; i++) {
     const mhb_branch *branch = &response->branch[i];
     if (branch->complete || branch->main != i) continue;
-    return shb_fail(
-        SHB_NOT_CONVERGED, __FILE__, __LINE__, "branch %d (n0 = %g N) did not cover the range: %s",
-        i, branch->n_points ? branch->n0[0] : 0., branch->reason ? branch->reason : "not started");
+    return shb_fail(SHB_NOT_CONVERGED, __FILE__, __LINE__,
+                    "branch %d (n0 = %g N) did not cover the range: %s", i, settings->n0[i - 2],
+                    branch->reason ? branch->reason : "not started");
   }
   return SHB_OK;
 }
@@ -291,5 +291,5 @@ shb_status mhb_sweep(const modal_model *model, const mhb_settings *asked, const 
   if (shb_interrupted())
     return shb_fail(SHB_INTERRUPTED, __FILE__, __LINE__,
                     "interrupted; the points so far are saved");
-  return outcome(s.response);
+  return outcome(s.response, settings);
 }

@@ -415,6 +415,15 @@ static void surface_only_is_refused(void **state) {
   assert_says(mesh_fe_read(path, &mesh), SHB_ERR_INPUT, "no volume elements");
 }
 
+static void an_element_without_its_node_is_refused(void **state) {
+  (void)state;
+  mesh_fe mesh;
+  put("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n2 1 \"root\"\n3 2 \"body\"\n"
+      "$EndPhysicalNames\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n$EndNodes\n"
+      "$Elements\n2\n1 2 2 1 1 1 2 3\n2 4 2 2 1 1 2 3 99\n$EndElements\n");
+  assert_says(mesh_fe_read(path, &mesh), SHB_ERR_INPUT, "99");
+}
+
 static void bad_groups_are_refused(void **state) {
   (void)state;
   mesh_fe box, mesh;
@@ -489,6 +498,7 @@ int main(void) {
       cmocka_unit_test(truncated_files_are_refused),
       cmocka_unit_test(first_order_is_refused),
       cmocka_unit_test(surface_only_is_refused),
+      cmocka_unit_test(an_element_without_its_node_is_refused),
       cmocka_unit_test(bad_groups_are_refused),
       cmocka_unit_test(inverted_elements_are_named),
       cmocka_unit_test(signals_stay_ours),

@@ -324,6 +324,8 @@ static void bad_solids_are_refused(void **state) {
   refused(&source, "bad.geo: holds no solid");
   put(source.path, "Point(1) = {0, 0;\n");
   refused(&source, "bad.geo: ");
+  put(source.path, "SetFactory(\"OpenCASCADE\");\nBox(1) = {0, 0, 0, 1, 1, 1};\nFoo(3) = {;\n");
+  refused(&source, "line 3: syntax error");
   put(source.path, "SetFactory(\"OpenCASCADE\");\nBox(1) = {0, 0, 0, 1, 1, 1};\n");
   source.size = .5;
   refused(&source, "group root is absent");
