@@ -253,7 +253,8 @@ static void wide_ranges_of_preload_are_resolved(void **state) {
     print_message("to %g N: %d points, %d near 0, least motion %.5g\n", s.range[1], b->n_points,
                   near, least[i]);
     assert_true(near > 50 && b->n_points < 400);
-    assert_below(fabs(least[i] / least[0] - 1), 2e-2); /* the least of the points, not of the curve */
+    assert_below(fabs(least[i] / least[0] - 1),
+                 2e-2); /* the least of the points, not of the curve */
     mhb_response_destroy(response);
   }
   modal_model_free(&model);
