@@ -150,7 +150,7 @@ static const char *type_name(const case_key *key) {
                                                   [CASE_PROBES]    = "mapping",
                                                   [CASE_DAMPING]   = "number(s), mapping",
                                                   [CASE_GROUPS]    = "mapping",
-                                                  [CASE_SECTIONS]  = "list",
+                                                  [CASE_LIST]      = "list",
                                                   [CASE_SIGNAL]    = "list"};
   return names[key->type];
 }

@@ -25,16 +25,16 @@ typedef enum {
   CASE_INTERVAL,  /* [from, to], increasing: double[2] */
   CASE_SWEEP,     /* the same, or a number for both: double[2] */
   CASE_STIFFNESS, /* number or [kuu, kuw, kww], positive definite: double[3] */
-  CASE_PRELOADS,  /* number, list, or {from, to, points}: the case_file's mhb.n0 */
+  CASE_PRELOADS,  /* number, list, or {from, to, points}: double[], their number at count_at */
   CASE_PLACES,    /* list of frequencies: the case_file's mhb.search */
   CASE_ORDERS,    /* list of whole numbers, ascending: the case_file's mhb.search */
   CASE_POINTS,    /* number of points, or list: the case_file's integrate.frequency */
-  CASE_FACTORS,   /* {k: [factor, phase]}: the case_file's load */
+  CASE_FACTORS,   /* {k: [factor, phase]}: fem_load, its factors */
   CASE_PROBES,    /* {name: [x, y, z]}: the case_file's probe */
-  CASE_DAMPING,  /* ratio, list of them, {loss_factor: } or {rayleigh: }: the case_file's damping */
-  CASE_GROUPS,   /* {group: rule}: the case_file's source.rule */
-  CASE_SECTIONS, /* list of mappings, whose keys are rows "...sections[].": the case_file's blade */
-  CASE_SIGNAL,   /* [[amplitude, phase], ...] from harmonic 0; read by motion.c */
+  CASE_DAMPING, /* ratio, list of them, {loss_factor: } or {rayleigh: }: the case_file's damping */
+  CASE_GROUPS,  /* {group: rule}: the case_file's source.rule */
+  CASE_LIST, /* list of mappings, whose keys are rows "LIST[].KEY": elements of each bytes, their number at count_at */
+  CASE_SIGNAL, /* [[amplitude, phase], ...] from harmonic 0; read by motion.c */
   CASE_N_TYPES
 } case_type;
 
@@ -76,7 +76,9 @@ typedef struct {
   bool           required;     /* by its stages, when it applies */
   int            stages;       /* case_stage mask: whose result depends on it */
   case_condition when;
-  size_t         at;      /* offset in case_file (in mesh_section for "[]" rows) */
+  size_t         at;       /* offset in case_file (in the element for "[]" rows) */
+  size_t         count_at; /* offset of the number of values or elements, likewise */
+  size_t         each;    /* CASE_LIST: size of an element; least and most: how many there may be */
   const char    *help;    /* one line */
   const char    *instead; /* required, or one of these: "traction or force"; NULL */
 } case_key;

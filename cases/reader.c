@@ -128,28 +128,46 @@ static void read_element(case_reader *r, const case_key *list, const case_node *
   }
 }
 
-static void read_sections(case_reader *r, const case_key *key, const char *path,
-                          const case_node *node) {
-  mesh_blade *blade = &r->file->blade;
+/* The keys of a list's elements: "{radius, chord}". */
+static void list_shape(const case_reader *r, const case_key *list, char *text, size_t size) {
+  char   last[CASE_PATH] = "";
+  size_t n               = strlen(list->path);
+  for (int i = 0; i < r->keys.n; i++) {
+    const char *path = r->keys.key[i].path;
+    if (strncmp(path, list->path, n) != 0 || strncmp(path + n, "[].", 3) != 0) continue;
+    char part[CASE_PATH];
+    case_path(part, "%.*s", (int)strcspn(path + n + 3, "."), path + n + 3);
+    if (strcmp(part, last) == 0) continue;
+    case_append(text, size, "%s%s", last[0] ? ", " : "{", part);
+    strcpy(last, part);
+  }
+  case_append(text, size, "}");
+}
+
+static void read_list(case_reader *r, const case_key *key, const char *path,
+                      const case_node *node) {
   if (node->kind != CASE_SEQUENCE) {
+    char shape[256] = "";
+    list_shape(r, key, shape, sizeof shape);
     if (node->kind != CASE_BROKEN)
-      case_issue_add(r->issues, node->line, node->column, path,
-                     "is %s; expected a list of {radius, chord, thickness, camber, twist}",
-                     case_kind_name(node->kind));
+      case_issue_add(r->issues, node->line, node->column, path, "is %s; expected a list of %s",
+                     case_kind_name(node->kind), shape);
     return;
   }
-  if (node->n < 2 || node->n > MESH_MAX_SECTIONS) {
-    case_issue_add(r->issues, node->line, node->column, path, "has %d section%s, must have 2 to %d",
-                   node->n, node->n == 1 ? "" : "s", MESH_MAX_SECTIONS);
+  if (node->n < (int)key->least || node->n > (int)key->most) {
+    const char *leaf = case_key_leaf(path); /* a plural */
+    int         n    = (int)strlen(leaf) - (node->n == 1);
+    case_issue_add(r->issues, node->line, node->column, path, "has %d %.*s, must have %g to %g",
+                   node->n, n, leaf, key->least, key->most);
     return;
   }
-  blade->n_sections = node->n;
+  *(int *)((char *)r->file + key->count_at) = node->n;
   for (int i = 0; i < node->n; i++) {
     const case_node *child = &node->child[i];
     char             full[CASE_PATH];
     case_path(full, "%s[%d]", path, i);
     if (child->kind == CASE_MAPPING) {
-      read_element(r, key, child, full, (char *)&blade->section[i]);
+      read_element(r, key, child, full, (char *)r->file + key->at + (size_t)i * key->each);
     } else if (child->kind != CASE_BROKEN) {
       case_issue_add(r->issues, child->line, child->column, full, "is %s; expected a mapping",
                      case_kind_name(child->kind));
@@ -161,8 +179,8 @@ static void read_key(case_reader *r, int index, const char *path, const case_nod
   const case_key *key    = &r->keys.key[index];
   int             before = r->issues->n;
   r->given[index]        = node;
-  if (key->type == CASE_SECTIONS) {
-    read_sections(r, key, path, node);
+  if (key->type == CASE_LIST) {
+    read_list(r, key, path, node);
   } else {
     case_value_read(r->issues, key, path, node, r->file, (char *)r->file + key->at);
   }

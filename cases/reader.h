@@ -9,7 +9,7 @@
 #include "cases/keys.h"
 #include "cases/yaml.h"
 
-enum { CASE_MAX_KEYS = 128, CASE_MAX_BLOCKS = 32 };
+enum { CASE_MAX_KEYS = 192, CASE_MAX_BLOCKS = 32 };
 
 /* A block of keys that is in the file. */
 typedef struct {

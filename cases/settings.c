@@ -22,19 +22,6 @@ static const char *inside(const case_file *file, const char *path) {
   return strncmp(path, file->folder, n) == 0 && path[n] == '/' ? path + n + 1 : path;
 }
 
-static void print_sections(FILE *out, const mesh_blade *blade) {
-  case_keys keys = case_key_table();
-  for (int s = 0; s < blade->n_sections; s++) {
-    const char *base = (const char *)&blade->section[s];
-    for (int i = 0; i < keys.n; i++) {
-      const char *inner = strstr(keys.key[i].path, "[].");
-      if (!inner) continue;
-      fprintf(out, "mesh.blade.sections[%d].%s = %.17g\n", s, inner + 3,
-              *(const double *)(base + keys.key[i].at));
-    }
-  }
-}
-
 static void print_factors(FILE *out, const char *path, const fem_load *load) {
   for (int k = 0; k <= load->n_harmonics; k++)
     if (load->factor[k] != 0)
@@ -55,8 +42,7 @@ static void print_triple(FILE *out, const double v[3]) {
   print_numbers(out, v[0] == v[1] && v[1] == v[2] ? 1 : 3, v);
 }
 
-static void print_scalar(FILE *out, const case_key *key, const case_file *file) {
-  const void *slot = (const char *)file + key->at;
+static void print_scalar(FILE *out, const case_key *key, const case_file *file, const void *slot) {
   switch (key->type) {
     case CASE_INTEGER:
     case CASE_COUNT:
@@ -79,7 +65,7 @@ static void print_scalar(FILE *out, const case_key *key, const case_file *file) 
       fputs(inside(file, *(char *const *)slot), out);
       break;
     case CASE_PRELOADS:
-      print_numbers(out, file->mhb.n_preloads, slot);
+      print_numbers(out, *(const int *)((const char *)slot - key->at + key->count_at), slot);
       break;
     case CASE_PLACES:
       print_numbers(out, file->mhb.search.n_at, slot);
@@ -111,20 +97,46 @@ static void print_scalar(FILE *out, const case_key *key, const case_file *file) 
   }
 }
 
-void case_value_print(FILE *out, const case_key *key, const case_file *file) {
-  if (strstr(key->path, "[].")) return; /* printed by its list */
-  if (key->type == CASE_SECTIONS) {
-    print_sections(out, &file->blade);
-  } else if (key->type == CASE_FACTORS) {
-    print_factors(out, key->path, &file->load);
+/* One value of the file, or of an element whose slots are at base. */
+static void print_value(FILE *out, const case_key *key, const char *path, const case_file *file,
+                        const void *base) {
+  const void *slot = (const char *)base + key->at;
+  if (key->type == CASE_FACTORS) {
+    print_factors(out, path, slot);
   } else if (key->type == CASE_GROUPS) {
-    case_groups_print(out, key->path, file->source.rule);
+    case_groups_print(out, path, slot);
   } else if (key->type == CASE_PROBES) {
-    print_probes(out, key->path, file);
+    print_probes(out, path, file);
   } else {
-    fprintf(out, "%s = ", key->path);
-    print_scalar(out, key, file);
+    fprintf(out, "%s = ", path);
+    print_scalar(out, key, file, slot);
     fputc('\n', out);
+  }
+}
+
+/* The rows of a list, element by element. */
+static void print_list(FILE *out, const case_key *list, const case_file *file, int stages) {
+  case_keys   keys = case_key_table();
+  const char *base = (const char *)file + list->at;
+  int         n    = *(const int *)((const char *)file + list->count_at);
+  for (int i = 0; i < n; i++, base += list->each)
+    for (int k = 0; k < keys.n; k++) {
+      const case_key *key    = &keys.key[k];
+      size_t          length = strlen(list->path);
+      char            path[CASE_PATH];
+      if (strncmp(key->path, list->path, length) != 0 || strncmp(key->path + length, "[].", 3) != 0)
+        continue;
+      case_path(path, "%s[%d].%s", list->path, i, key->path + length + 3);
+      if (key->stages & stages) print_value(out, key, path, file, base);
+    }
+}
+
+void case_value_print(FILE *out, const case_key *key, const case_file *file, int stages) {
+  if (strstr(key->path, "[].")) return; /* printed by its list */
+  if (key->type == CASE_LIST) {
+    print_list(out, key, file, stages);
+  } else {
+    print_value(out, key, key->path, file, file);
   }
 }
 
@@ -136,7 +148,7 @@ char *case_settings(const case_file *file, case_stage stage) {
   case_keys keys = case_key_table();
   for (int i = 0; i < keys.n; i++)
     if ((keys.key[i].stages & (int)stage) && case_key_applies(&keys.key[i], file))
-      case_value_print(out, &keys.key[i], file);
+      case_value_print(out, &keys.key[i], file, (int)stage);
   if (fclose(out) != 0) {
     free(text);
     return NULL;

@@ -4,6 +4,8 @@
 #include "mesh/format.h"
 
 #define AT(member) .at = offsetof(case_file, member)
+#define LIST(member, count) \
+  AT(member), .count_at = offsetof(case_file, count), .each = sizeof(*((case_file *)0)->member)
 #define SECTION(member) .at = offsetof(mesh_section, member)
 #define COUNT(array) ((int)(sizeof(array) / sizeof *(array)))
 
@@ -31,7 +33,7 @@ static const case_key table[] = {
      .help = "root block, tangential"},
     {"mesh.blade.root.height", CASE_NUMBER, "m", 0, 100, true, .required = true, AT(blade.root_height), .stages = CASE_MESH, .when = CASE_IF_BLADE,
      .help = "root block, radial, below the first section"},
-    {"mesh.blade.sections", CASE_SECTIONS, "", .required = true, AT(blade.section), .stages = CASE_MESH, .when = CASE_IF_BLADE,
+    {"mesh.blade.sections", CASE_LIST, "", 2, MESH_MAX_SECTIONS, .required = true, LIST(blade.section, blade.n_sections), .stages = CASE_MESH, .when = CASE_IF_BLADE,
      .help = "airfoil sections, 2 to 16, radius increasing: a list of {radius, chord, thickness, camber, twist}"},
     {"mesh.blade.sections[].radius", CASE_NUMBER, "m", 0, 100, true, .required = true, SECTION(radius), .stages = CASE_MESH,
      .help = "distance from the engine axis"},
@@ -98,7 +100,7 @@ static const case_key table[] = {
      .help = "force in mesh axes"},
     {"excitation.field", CASE_FILE_NAME, "", .required = true, AT(field_file), .stages = CASE_MODAL, .when = CASE_IF_FIELD,
      .help = "HDF5 file of forces at nodes or of pressure at the nodes of group load, amplitude and phase a harmonic"},
-    {"excitation.harmonics", CASE_FACTORS, "", .fallback = "{1: [1, 0 deg]}", AT(load.factor), .stages = CASE_MODAL, .when = CASE_IF_FACTORS,
+    {"excitation.harmonics", CASE_FACTORS, "", .fallback = "{1: [1, 0 deg]}", AT(load), .stages = CASE_MODAL, .when = CASE_IF_FACTORS,
      .help = "factor and phase of the load a harmonic: {k: [factor, phase]}, k from 0 to 64"},
 
     {"probe", CASE_PROBES, "m", -1e3, 1e3, .fallback = "{}", AT(probe), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
@@ -118,7 +120,7 @@ static const case_key table[] = {
      .help = "tangential stiffness of the interface: a number or [kuu, kuw, kww]"},
     {"contact.kv", CASE_NUMBER, "N/m", 0, 1e15, .required = true, AT(mhb.kv), .stages = CASE_MHB,
      .help = "normal stiffness of the interface"},
-    {"contact.n0", CASE_PRELOADS, "N", -1e12, 1e12, .required = true, AT(mhb.n0), .stages = CASE_MHB,
+    {"contact.n0", CASE_PRELOADS, "N", -1e12, 1e12, .required = true, AT(mhb.n0), .count_at = offsetof(case_file, mhb.n_preloads), .stages = CASE_MHB,
      .help = "normal preload, negative for a gap of -n0/kv: a number, a list, or {from, to, points}"},
     {"contact.preload", CASE_CHOICE, "", .words = "equilibrium interference", .fallback = "equilibrium", AT(mhb.preload), .stages = CASE_MHB,
      .help = "n0 is the load at rest, or an interference that also deflects the blade"},

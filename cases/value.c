@@ -7,15 +7,8 @@
 
 #include "cases/damping.h"
 #include "cases/groups.h"
+#include "cases/lists.h"
 #include "cases/units.h"
-
-/* What a reader needs to know of the value at hand. */
-typedef struct {
-  case_issues    *issues;
-  const case_key *key;
-  const char     *path;
-  case_file      *file;
-} context;
 
 void case_value_expected(const case_key *key, char *text, size_t size) {
   static const char *const shapes[CASE_N_TYPES] = {
@@ -41,7 +34,7 @@ void case_value_expected(const case_key *key, char *text, size_t size) {
       [CASE_PROBES]    = "a mapping {name: [x, y, z]}",
       [CASE_DAMPING]   = "a number, a list, {loss_factor: ...} or {rayleigh: [alpha, beta]}",
       [CASE_GROUPS]    = "a mapping {group: rule}",
-      [CASE_SECTIONS]  = "a list of mappings",
+      [CASE_LIST]      = "a list of mappings",
       [CASE_SIGNAL]    = "a list of [amplitude, phase]"};
   text[0] = '\0';
   case_append(text, size, "%s", shapes[key->type]);
@@ -53,8 +46,8 @@ void case_value_expected(const case_key *key, char *text, size_t size) {
   if (key->unit[0]) case_append(text, size, " in %s", key->unit);
 }
 
-static bool refuse_kind(const context *c, const char *path, const case_node *node,
-                        const char *expected) {
+bool case_reading_refuse_kind(const case_reading *c, const char *path, const case_node *node,
+                              const char *expected) {
   if (node->kind != CASE_BROKEN)
     case_issue_add(c->issues, node->line, node->column, path, "%s; expected %s",
                    node->kind == CASE_NULL       ? "has no value"
@@ -65,10 +58,10 @@ static bool refuse_kind(const context *c, const char *path, const case_node *nod
   return false;
 }
 
-static bool refuse(const context *c, const case_node *node) {
+bool case_reading_refuse(const case_reading *c, const case_node *node) {
   char expected[256];
   case_value_expected(c->key, expected, sizeof expected);
-  return refuse_kind(c, c->path, node, expected);
+  return case_reading_refuse_kind(c, c->path, node, expected);
 }
 
 static bool in_range(const case_key *key, double value) {
@@ -78,7 +71,8 @@ static bool in_range(const case_key *key, double value) {
   return !low && !high;
 }
 
-static bool check_range(const context *c, const char *path, const case_node *node, double value) {
+static bool check_range(const case_reading *c, const char *path, const case_node *node,
+                        double value) {
   if (in_range(c->key, value)) return true;
   char range[128];
   case_key_range(c->key, range, sizeof range);
@@ -88,10 +82,11 @@ static bool check_range(const context *c, const char *path, const case_node *nod
   return false;
 }
 
-static bool number_at(const context *c, const char *path, const case_node *node, double *value) {
+bool case_reading_number(const case_reading *c, const char *path, const case_node *node,
+                         double *value) {
   char why[CASE_WHY], expected[128] = "a number";
   if (c->key->unit[0]) case_append(expected, sizeof expected, " in %s", c->key->unit);
-  if (node->kind != CASE_SCALAR) return refuse_kind(c, path, node, expected);
+  if (node->kind != CASE_SCALAR) return case_reading_refuse_kind(c, path, node, expected);
   if (!case_quantity(node->text, c->key->unit, value, why)) {
     case_issue_add(c->issues, node->line, node->column, path, "%s", why);
     return false;
@@ -99,13 +94,13 @@ static bool number_at(const context *c, const char *path, const case_node *node,
   return check_range(c, path, node, *value);
 }
 
-static bool read_number(const context *c, const case_node *node, void *slot) {
-  return number_at(c, c->path, node, slot);
+static bool read_number(const case_reading *c, const case_node *node, void *slot) {
+  return case_reading_number(c, c->path, node, slot);
 }
 
-static bool read_integer(const context *c, const case_node *node, void *slot) {
+bool case_reading_integer(const case_reading *c, const case_node *node, void *slot) {
   char why[CASE_WHY];
-  if (node->kind != CASE_SCALAR) return refuse(c, node);
+  if (node->kind != CASE_SCALAR) return case_reading_refuse(c, node);
   if (!case_integer(node->text, slot, why)) {
     case_issue_add(c->issues, node->line, node->column, c->path, "%s", why);
     return false;
@@ -114,11 +109,11 @@ static bool read_integer(const context *c, const case_node *node, void *slot) {
 }
 
 /* A whole number, or the word that stands for 0. */
-static bool read_count(const context *c, const case_node *node, void *slot) {
+static bool read_count(const case_reading *c, const case_node *node, void *slot) {
   const char *word = c->key->type == CASE_AUTO ? "auto" : "all";
   bool        zero = node->kind == CASE_SCALAR && strcmp(node->text, word) == 0;
   if (zero) *(int *)slot = 0;
-  return zero || read_integer(c, node, slot);
+  return zero || case_reading_integer(c, node, slot);
 }
 
 /* Place of text in words separated by spaces, or -1. */
@@ -132,9 +127,9 @@ static int word_index(const char *words, const char *text) {
   return -1;
 }
 
-static int choose(const context *c, const case_node *node) {
+static int choose(const case_reading *c, const case_node *node) {
   if (node->kind != CASE_SCALAR) {
-    refuse(c, node);
+    case_reading_refuse(c, node);
     return -1;
   }
   int index = word_index(c->key->words, node->text);
@@ -146,30 +141,31 @@ static int choose(const context *c, const case_node *node) {
   return -1;
 }
 
-static bool read_choice(const context *c, const case_node *node, void *slot) {
+static bool read_choice(const case_reading *c, const case_node *node, void *slot) {
   int index = choose(c, node);
   if (index >= 0) *(int *)slot = index;
   return index >= 0;
 }
 
-static bool read_switch(const context *c, const case_node *node, void *slot) {
+static bool read_switch(const case_reading *c, const case_node *node, void *slot) {
   int index = choose(c, node);
   if (index >= 0) *(bool *)slot = index == 1;
   return index >= 0;
 }
 
 /* The words' tolerances, in the order of the row's words; what begins like a number is one. */
-static bool read_accuracy(const context *c, const case_node *node, void *slot) {
+static bool read_accuracy(const case_reading *c, const case_node *node, void *slot) {
   static const double tolerance[] = {1e-3, 1e-5, 1e-8};
 
   const char *text = node->kind == CASE_SCALAR ? node->text : "";
-  if (text[0] && strchr("+-.0123456789", text[0])) return number_at(c, c->path, node, slot);
+  if (text[0] && strchr("+-.0123456789", text[0]))
+    return case_reading_number(c, c->path, node, slot);
   int index = choose(c, node);
   if (index >= 0) *(double *)slot = tolerance[index];
   return index >= 0;
 }
 
-static bool keep_text(const context *c, const case_node *node, void *slot, char *copy) {
+static bool keep_text(const case_reading *c, const case_node *node, void *slot, char *copy) {
   if (!copy) case_issue_add(c->issues, node->line, node->column, c->path, "out of memory");
   free(*(char **)slot);
   *(char **)slot = copy;
@@ -180,8 +176,8 @@ static bool is_control(unsigned char c) {
   return c < 0x20 || c == 0x7F;
 }
 
-static bool read_word(const context *c, const case_node *node, void *slot) {
-  if (node->kind != CASE_SCALAR) return refuse(c, node);
+static bool read_word(const case_reading *c, const case_node *node, void *slot) {
+  if (node->kind != CASE_SCALAR) return case_reading_refuse(c, node);
   const char *text = node->text;
   bool        good = text[0] && text[0] != '.' && text[0] != '-' && strlen(text) <= 100;
   for (const char *at = text; *at; at++)
@@ -195,8 +191,8 @@ static bool read_word(const context *c, const case_node *node, void *slot) {
   return keep_text(c, node, slot, strdup(text));
 }
 
-static bool read_file_name(const context *c, const case_node *node, void *slot) {
-  if (node->kind != CASE_SCALAR) return refuse(c, node);
+static bool read_file_name(const case_reading *c, const case_node *node, void *slot) {
+  if (node->kind != CASE_SCALAR) return case_reading_refuse(c, node);
   if (node->text[0] == '\0') {
     case_issue_add(c->issues, node->line, node->column, c->path, "is empty; expected a file name");
     return false;
@@ -210,13 +206,13 @@ static bool read_file_name(const context *c, const case_node *node, void *slot) 
 }
 
 /* A list of n numbers; names the shape if it is none. */
-static bool numbers_at(const context *c, const char *path, const case_node *node, int n,
-                       double *value) {
+bool case_reading_numbers(const case_reading *c, const char *path, const case_node *node, int n,
+                          double *value) {
   if (node->kind != CASE_SEQUENCE || node->n != n) {
     char expected[256] = "";
     case_append(expected, sizeof expected, "%d numbers", n);
     if (c->key->unit[0]) case_append(expected, sizeof expected, " in %s", c->key->unit);
-    if (node->kind != CASE_SEQUENCE) return refuse_kind(c, path, node, expected);
+    if (node->kind != CASE_SEQUENCE) return case_reading_refuse_kind(c, path, node, expected);
     case_issue_add(c->issues, node->line, node->column, path, "has %d numbers, expected %d",
                    node->n, n);
     return false;
@@ -225,18 +221,18 @@ static bool numbers_at(const context *c, const char *path, const case_node *node
   for (int i = 0; i < n; i++) {
     char inner[CASE_PATH];
     case_path(inner, "%s[%d]", path, i);
-    good = number_at(c, inner, &node->child[i], &value[i]) && good;
+    good = case_reading_number(c, inner, &node->child[i], &value[i]) && good;
   }
   return good;
 }
 
-static bool read_vector(const context *c, const case_node *node, void *slot) {
-  return numbers_at(c, c->path, node, 3, slot);
+static bool read_vector(const case_reading *c, const case_node *node, void *slot) {
+  return case_reading_numbers(c, c->path, node, 3, slot);
 }
 
-static bool read_interval(const context *c, const case_node *node, void *slot) {
+static bool read_interval(const case_reading *c, const case_node *node, void *slot) {
   double *value = slot;
-  if (!numbers_at(c, c->path, node, 2, value)) return false;
+  if (!case_reading_numbers(c, c->path, node, 2, value)) return false;
   if (value[0] < value[1]) return true;
   case_issue_add(c->issues, node->line, node->column, c->path,
                  "goes from %g to %g %s; the second must be above the first", value[0], value[1],
@@ -244,43 +240,43 @@ static bool read_interval(const context *c, const case_node *node, void *slot) {
   return false;
 }
 
-static bool read_sweep(const context *c, const case_node *node, void *slot) {
+static bool read_sweep(const case_reading *c, const case_node *node, void *slot) {
   double *value = slot;
   if (node->kind != CASE_SCALAR) return read_interval(c, node, slot);
-  if (!number_at(c, c->path, node, &value[0])) return false;
+  if (!case_reading_number(c, c->path, node, &value[0])) return false;
   value[1] = value[0];
   return true;
 }
 
 /* A list may leave the range: it is that of an isotropic material. */
-static bool read_triple(const context *c, const case_node *node, void *slot) {
+static bool read_triple(const case_reading *c, const case_node *node, void *slot) {
   double *v = slot;
   if (node->kind == CASE_SCALAR) {
-    if (!number_at(c, c->path, node, v)) return false;
+    if (!case_reading_number(c, c->path, node, v)) return false;
     v[1] = v[2] = v[0];
     return true;
   }
   case_key free_key = *c->key;
   free_key.least = free_key.most = 0;
-  context free_context           = *c;
+  case_reading free_context      = *c;
   free_context.key               = &free_key;
-  return numbers_at(&free_context, c->path, node, 3, v);
+  return case_reading_numbers(&free_context, c->path, node, 3, v);
 }
 
-static bool read_stiffness(const context *c, const case_node *node, void *slot) {
+static bool read_stiffness(const case_reading *c, const case_node *node, void *slot) {
   double *k = slot;
   if (node->kind == CASE_SCALAR) {
-    if (!number_at(c, c->path, node, &k[0])) return false;
+    if (!case_reading_number(c, c->path, node, &k[0])) return false;
     k[1] = 0;
     k[2] = k[0];
     return true;
   }
-  if (node->kind != CASE_SEQUENCE) return refuse(c, node);
+  if (node->kind != CASE_SEQUENCE) return case_reading_refuse(c, node);
   case_key free_key = *c->key; /* kuw may have any sign: the range holds for a single number */
   free_key.least = free_key.most = 0;
-  context free_context           = *c;
+  case_reading free_context      = *c;
   free_context.key               = &free_key;
-  if (!numbers_at(&free_context, c->path, node, 3, k)) return false;
+  if (!case_reading_numbers(&free_context, c->path, node, 3, k)) return false;
   if (k[0] > 0 && k[2] > 0 && k[0] * k[2] > k[1] * k[1]) return true;
   case_issue_add(
       c->issues, node->line, node->column, c->path,
@@ -290,256 +286,66 @@ static bool read_stiffness(const context *c, const case_node *node, void *slot) 
   return false;
 }
 
-static bool preload_room(const context *c, const case_node *node, int n) {
-  if (n >= 1 && n <= MHB_MAX_PRELOADS) return true;
-  case_issue_add(c->issues, node->line, node->column, c->path, "%d preloads; there may be 1 to %d",
-                 n, MHB_MAX_PRELOADS);
-  return false;
-}
-
-/* {from, to, points}: both ends included. */
-static bool read_preload_range(const context *c, const case_node *node) {
-  static const case_key names[] = {
-      {.path = "from", .unit = ""}, {.path = "to", .unit = ""}, {.path = "points", .unit = ""}};
-  mhb_settings *mhb    = &c->file->mhb;
-  double        end[2] = {0, 0};
-  int           points = 0;
-  bool          good   = true;
-  for (int i = 0; i < node->n; i++) {
-    if (case_key_find((case_keys){3, names}, node->child[i].key)) continue;
-    char hint[256], path[CASE_PATH];
-    case_path(path, "%s.%s", c->path, node->child[i].key);
-    case_key_suggest((case_keys){3, names}, "", node->child[i].key, hint, sizeof hint);
-    case_issue_add(c->issues, node->child[i].key_line, node->child[i].key_column, path,
-                   "unknown key%s", hint);
-    good = false;
-  }
-  for (int i = 0; i < 3; i++) {
-    const case_node *child = case_node_find(node, names[i].path);
-    char             path[CASE_PATH], why[CASE_WHY];
-    case_path(path, "%s.%s", c->path, names[i].path);
-    if (!child) {
-      case_issue_add(c->issues, node->line, node->column, path,
-                     "missing; expected {from, to, points}");
-      good = false;
-    } else if (i < 2) {
-      good = number_at(c, path, child, &end[i]) && good;
-    } else if (child->kind != CASE_SCALAR) {
-      good = refuse_kind(c, path, child, "a whole number");
-    } else if (!case_integer(child->text, &points, why)) {
-      case_issue_add(c->issues, child->line, child->column, path, "%s", why);
-      good = false;
-    } else if (points < 2 || points > MHB_MAX_PRELOADS) {
-      case_issue_add(c->issues, child->line, child->column, path, "is %d, must be 2 to %d", points,
-                     MHB_MAX_PRELOADS);
-      good = false;
-    }
-  }
-  if (!good) return false;
-  mhb->n_preloads = points;
-  for (int i = 0; i < points; i++) {
-    double share = (double)i / (points - 1);
-    mhb->n0[i]   = (1 - share) * end[0] + share * end[1];
-  }
-  return true;
-}
-
-static bool read_preloads(const context *c, const case_node *node, void *slot) {
-  (void)slot;
-  mhb_settings *mhb = &c->file->mhb;
-  mhb->n_preloads   = 1;
-  if (node->kind == CASE_SCALAR) return number_at(c, c->path, node, &mhb->n0[0]);
-  if (node->kind == CASE_MAPPING) return read_preload_range(c, node);
-  if (node->kind != CASE_SEQUENCE) return refuse(c, node);
-  if (!preload_room(c, node, node->n)) return false;
-  mhb->n_preloads = node->n;
-  return numbers_at(c, c->path, node, node->n, mhb->n0);
-}
-
-static bool list_room(const context *c, const case_node *node, int most) {
-  if (node->kind != CASE_SEQUENCE) return refuse(c, node);
-  if (node->n >= 1 && node->n <= most) return true;
-  case_issue_add(c->issues, node->line, node->column, c->path, "has %d numbers, expected 1 to %d",
-                 node->n, most);
-  return false;
-}
-
-static bool read_places(const context *c, const case_node *node, void *slot) {
-  mhb_search_settings *search = &c->file->mhb.search;
-  if (!list_room(c, node, MHB_MAX_SEARCH_AT)) return false;
-  search->n_at = node->n;
-  return numbers_at(c, c->path, node, node->n, slot);
-}
-
-static bool read_orders(const context *c, const case_node *node, void *slot) {
-  mhb_search_settings *search = &c->file->mhb.search;
-  int                 *order  = slot;
-  bool                 good   = list_room(c, node, MHB_MAX_SEARCH_ORDERS);
-  if (!good) return false;
-  search->n_orders = node->n;
-  for (int i = 0; i < node->n && good; i++) {
-    const case_node *child = &node->child[i];
-    char             path[CASE_PATH];
-    case_path(path, "%s[%d]", c->path, i);
-    context one = *c;
-    one.path    = path;
-    if (child->kind != CASE_SCALAR) return refuse_kind(c, path, child, "a whole number");
-    good = read_integer(&one, child, &order[i]);
-    if (!good || i == 0 || order[i] > order[i - 1]) continue;
-    case_issue_add(c->issues, child->line, child->column, path,
-                   "is %d after %d; they must increase", order[i], order[i - 1]);
-    good = false;
-  }
-  return good;
-}
-
-/* Points over the range of the sweep, or the frequencies themselves. */
-static bool read_frequencies(const context *c, const case_node *node, void *slot) {
-  (void)slot;
-  mhb_witness_settings *asked = &c->file->integrate;
-  char                  why[CASE_WHY];
-  int                   n = node->kind == CASE_SEQUENCE ? node->n : 0;
-  asked->listed           = node->kind == CASE_SEQUENCE;
-  if (!asked->listed && node->kind != CASE_SCALAR) return refuse(c, node);
-  if (!asked->listed && !case_integer(node->text, &n, why)) {
-    case_issue_add(c->issues, node->line, node->column, c->path,
-                   "%s; expected a number of points, or [from, ..] in Hz", why);
-    return false;
-  }
-  if (n < 1 || n > MHB_MAX_FREQUENCIES) {
-    case_issue_add(c->issues, node->line, node->column, c->path,
-                   "%d frequencies; there may be 1 to %d", n, MHB_MAX_FREQUENCIES);
-    return false;
-  }
-  asked->n_frequencies = n;
-  if (!asked->listed) return true;
-  if (!numbers_at(c, c->path, node, n, asked->frequency)) return false;
-  for (int i = 1; i < n; i++) {
-    if (asked->frequency[i] > asked->frequency[i - 1]) continue;
-    case_issue_add(c->issues, node->child[i].line, node->child[i].column, c->path,
-                   "%g Hz comes after %g Hz; frequencies must ascend", asked->frequency[i],
-                   asked->frequency[i - 1]);
-    return false;
-  }
-  return true;
-}
-
 bool case_value_polar(case_issues *issues, const char *path, const case_node *node,
                       const char *unit, double polar[2]) {
-  case_key      keys[2] = {{.unit = unit}, {.unit = "rad"}};
-  const context c       = {.issues = issues, .key = &keys[0], .path = path};
-  const context phase   = {.issues = issues, .key = &keys[1], .path = path};
-  char          inner[CASE_PATH];
+  case_key           keys[2] = {{.unit = unit}, {.unit = "rad"}};
+  const case_reading c       = {.issues = issues, .key = &keys[0], .path = path};
+  const case_reading phase   = {.issues = issues, .key = &keys[1], .path = path};
+  char               inner[CASE_PATH];
   polar[0] = polar[1] = 0;
-  if (node->kind == CASE_SCALAR) return number_at(&c, path, node, &polar[0]);
-  if (node->kind != CASE_SEQUENCE) return refuse_kind(&c, path, node, "[amplitude, phase]");
+  if (node->kind == CASE_SCALAR) return case_reading_number(&c, path, node, &polar[0]);
+  if (node->kind != CASE_SEQUENCE)
+    return case_reading_refuse_kind(&c, path, node, "[amplitude, phase]");
   if (node->n != 2) {
     case_issue_add(issues, node->line, node->column, path,
                    "has %d value%s; expected [amplitude, phase]", node->n, node->n == 1 ? "" : "s");
     return false;
   }
   case_path(inner, "%s[0]", path);
-  bool good = number_at(&c, inner, &node->child[0], &polar[0]);
+  bool good = case_reading_number(&c, inner, &node->child[0], &polar[0]);
   case_path(inner, "%s[1]", path);
-  return number_at(&phase, inner, &node->child[1], &polar[1]) && good;
+  return case_reading_number(&phase, inner, &node->child[1], &polar[1]) && good;
 }
 
-static bool read_factors(const context *c, const case_node *node, void *slot) {
-  fem_load *load = &c->file->load;
-  (void)slot;
-  if (node->kind != CASE_MAPPING) return refuse(c, node);
-  bool good = true, given[FEM_MAX_LOAD_HARMONICS + 1] = {false};
-  load->n_harmonics = 0;
-  for (int i = 0; i < node->n; i++) {
-    const case_node *child = &node->child[i];
-    char             path[CASE_PATH], why[CASE_WHY];
-    int              k = -1;
-    double           polar[2];
-    case_path(path, "%s.%s", c->path, child->key);
-    bool known = case_integer(child->key, &k, why) && k >= 0 && k <= FEM_MAX_LOAD_HARMONICS;
-    if (!known || given[k]) {
-      case_issue_add(c->issues, child->key_line, child->key_column, c->path,
-                     known ? "harmonic '%.40s' is given twice"
-                           : "'%.40s' is not a harmonic; expected a whole number, 0 to 64",
-                     child->key);
-      good = false;
-      continue;
-    }
-    given[k] = true;
-    if (k > load->n_harmonics) load->n_harmonics = k;
-    good            = case_value_polar(c->issues, path, child, "", polar) && good;
-    load->factor[k] = polar[0] * cexp(I * polar[1]);
-  }
-  bool any = false;
-  for (int k = 0; k <= load->n_harmonics; k++) any = any || load->factor[k] != 0;
-  if (any || !good) return good;
-  case_issue_add(c->issues, node->line, node->column, c->path,
-                 "every factor is 0; nothing would move");
-  return false;
-}
-
-static bool probe_name(const char *name) {
-  for (const char *at = name; *at; at++)
-    if (!isalnum((unsigned char)*at) && !strchr("_-.+", *at)) return false;
-  return name[0] && strlen(name) < CASE_NAME;
-}
-
-static bool read_damping(const context *c, const case_node *node, void *slot) {
+static bool read_damping(const case_reading *c, const case_node *node, void *slot) {
   return case_damping_read(c->issues, c->path, node, slot);
 }
 
-static bool read_groups(const context *c, const case_node *node, void *slot) {
+static bool read_groups(const case_reading *c, const case_node *node, void *slot) {
   return case_groups_read(c->issues, c->path, node, slot);
 }
 
-static bool read_probes(const context *c, const case_node *node, void *slot) {
+static bool read_signal(const case_reading *c, const case_node *node, void *slot) {
   (void)slot;
-  if (node->kind != CASE_MAPPING) return refuse(c, node);
-  if (node->n > CASE_MAX_PROBES) {
-    case_issue_add(c->issues, node->line, node->column, c->path, "%d probes; at most %d", node->n,
-                   CASE_MAX_PROBES);
-    return false;
-  }
-  bool good = true;
-  for (int i = 0; i < node->n; i++) {
-    const case_node *child = &node->child[i];
-    char             path[CASE_PATH];
-    case_path(path, "%s.%s", c->path, child->key);
-    case_probe *probe = &c->file->probe[i];
-    if (!probe_name(child->key)) {
-      case_issue_add(c->issues, child->key_line, child->key_column, c->path,
-                     "'%.60s' cannot be a probe's name: 1 to %d letters, digits, _ - . +",
-                     child->key, CASE_NAME - 1);
-      good = false;
-      continue;
-    }
-    strcpy(probe->name, child->key);
-    good = numbers_at(c, path, child, 3, probe->at) && good;
-  }
-  c->file->n_probes = node->n;
-  return good;
-}
-
-static bool read_signal(const context *c, const case_node *node, void *slot) {
-  (void)slot;
-  return node->kind == CASE_SEQUENCE || refuse(c, node);
+  return node->kind == CASE_SEQUENCE || case_reading_refuse(c, node);
 }
 
 bool case_value_read(case_issues *issues, const case_key *key, const char *path,
                      const case_node *node, case_file *file, void *slot) {
-  static bool (*const readers[CASE_N_TYPES])(const context *, const case_node *, void *) = {
-      [CASE_NUMBER] = read_number,       [CASE_INTEGER] = read_integer,
-      [CASE_COUNT] = read_count,         [CASE_CHOICE] = read_choice,
-      [CASE_SWITCH] = read_switch,       [CASE_ACCURACY] = read_accuracy,
-      [CASE_WORD] = read_word,           [CASE_FILE_NAME] = read_file_name,
-      [CASE_VECTOR] = read_vector,       [CASE_TRIPLE] = read_triple,
-      [CASE_INTERVAL] = read_interval,   [CASE_SWEEP] = read_sweep,
-      [CASE_STIFFNESS] = read_stiffness, [CASE_PRELOADS] = read_preloads,
-      [CASE_FACTORS] = read_factors,     [CASE_PROBES] = read_probes,
-      [CASE_DAMPING] = read_damping,     [CASE_GROUPS] = read_groups,
-      [CASE_SIGNAL] = read_signal,       [CASE_AUTO] = read_count,
-      [CASE_PLACES] = read_places,       [CASE_ORDERS] = read_orders,
-      [CASE_POINTS] = read_frequencies};
-  const context c = {.issues = issues, .key = key, .path = path, .file = file};
+  static bool (*const readers[CASE_N_TYPES])(const case_reading *, const case_node *, void *) = {
+      [CASE_NUMBER]    = read_number,
+      [CASE_INTEGER]   = case_reading_integer,
+      [CASE_COUNT]     = read_count,
+      [CASE_CHOICE]    = read_choice,
+      [CASE_SWITCH]    = read_switch,
+      [CASE_ACCURACY]  = read_accuracy,
+      [CASE_WORD]      = read_word,
+      [CASE_FILE_NAME] = read_file_name,
+      [CASE_VECTOR]    = read_vector,
+      [CASE_TRIPLE]    = read_triple,
+      [CASE_INTERVAL]  = read_interval,
+      [CASE_SWEEP]     = read_sweep,
+      [CASE_STIFFNESS] = read_stiffness,
+      [CASE_PRELOADS]  = case_list_preloads,
+      [CASE_FACTORS]   = case_list_factors,
+      [CASE_PROBES]    = case_list_probes,
+      [CASE_DAMPING]   = read_damping,
+      [CASE_GROUPS]    = read_groups,
+      [CASE_SIGNAL]    = read_signal,
+      [CASE_AUTO]      = read_count,
+      [CASE_PLACES]    = case_list_places,
+      [CASE_ORDERS]    = case_list_orders,
+      [CASE_POINTS]    = case_list_frequencies};
+  const case_reading c = {.issues = issues, .key = key, .path = path, .file = file};
   return readers[key->type](&c, node, slot);
 }
