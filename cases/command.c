@@ -56,8 +56,11 @@ int command_parse(int argc, char **argv, const char *usage, command_options *out
     } else if (options && word[0] == '-' && word[1] != '\0') {
       return refuse("unknown option", word);
     } else {
-      if (out->path) return refuse("one file is enough; unexpected", word);
-      out->path = word;
+      if (out->path && (out->other || !mentions(usage, "OTHER")))
+        return refuse(
+            out->other ? "two files are enough; unexpected" : "one file is enough; unexpected",
+            word);
+      *(out->path ? &out->other : &out->path) = word;
     }
   }
   if (!out->path) return refuse("no file given", NULL);

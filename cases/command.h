@@ -10,9 +10,10 @@
 
 typedef struct {
   bool        quiet, verbose, force;
-  const char *mode; /* "inspect" for --inspect, or NULL; see command_parse */
-  const char *path; /* the FILE argument */
-  const char *svg;  /* what --svg names, or NULL; known where the usage mentions it */
+  const char *mode;  /* "inspect" for --inspect, or NULL; see command_parse */
+  const char *path;  /* the FILE argument */
+  const char *other; /* a second FILE, or NULL; known where the usage mentions OTHER */
+  const char *svg;   /* what --svg names, or NULL; known where the usage mentions it */
 } command_options;
 
 /* Options and the one FILE of a command line, in any order; "--" ends the options.

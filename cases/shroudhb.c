@@ -26,7 +26,7 @@ static const char usage[] =
     "  converge CASE.yaml error against time, setting by setting; `shroudhb converge --help`\n"
     "  check CASE.yaml    check a case file, run nothing\n"
     "  keys               every key of a case file: unit, range, default, meaning\n"
-    "  inspect FILE.h5    what a modal or response file holds\n"
+    "  inspect FILE.h5    what a modal or response file holds; of two modal files: A.h5 B.h5\n"
     "  contact FILE.yaml  contact forces for a prescribed motion; --svg OUT.svg draws the loops\n"
     "\n"
     "  --quiet    no progress, no summary       --verbose  time and memory of every stage\n"

@@ -10,24 +10,30 @@
 #include "cases/fresh.h"
 #include "mesh/progress.h"
 #include "postproc/inspect.h"
+#include "postproc/mac.h"
 #include "postproc/publish.h"
 
 static const char usage[] =
     "usage: shroudhb-post [--quiet] [--verbose] CASE.yaml\n"
-    "       shroudhb-post --inspect [--verbose] FILE.h5\n"
+    "       shroudhb-post --inspect [--verbose] FILE.h5 [OTHER.h5]\n"
     "\n"
     "Makes NAME.html (report), NAME.csv (every point) and NAME.svg (picture) from "
     "NAME.response.h5;\n"
     "points of NAME.integration.h5 are drawn as dots;\n"
     "the report has the section Speed against error if NAME.converge.h5 belongs to the case.\n"
     "With --inspect: what an HDF5 file holds; --verbose unfolds everything, case text and settings "
-    "too.\n";
+    "too.\n"
+    "Of two modal files: frequencies side by side, and which mode shapes are alike (MAC).\n";
 
 static shb_status inspect(const command_options *options) {
   bool        terminal = isatty(STDOUT_FILENO) && !getenv("NO_COLOR");
   post_buffer text     = {0};
-  shb_status  status   = post_inspect(
-         options->path, (post_tree_style){.colour = terminal, .verbose = options->verbose}, &text);
+  shb_status  status   = SHB_OK;
+  if (options->other)
+    status = post_compare((const char *[]){options->path, options->other}, options->verbose, &text);
+  else
+    status = post_inspect(
+        options->path, (post_tree_style){.colour = terminal, .verbose = options->verbose}, &text);
   bool written = !text.text || fwrite(text.text, 1, text.length, stdout) == text.length;
   written      = fflush(stdout) == 0 && written;
   post_buffer_free(&text);
@@ -95,6 +101,11 @@ int main(int argc, char **argv) {
   if (code >= 0) return code;
   if (options.mode && strcmp(options.mode, "inspect") == 0)
     return command_finish(inspect(&options));
+  if (options.other) {
+    fprintf(stderr, "shroudhb: error: one case is enough; unexpected '%s'; see --help\n",
+            options.other);
+    return SHB_ERR_INPUT;
+  }
   case_file  file;
   shb_status status = case_read(options.path, CASE_POST, stderr, &file);
   if (status != SHB_OK) return command_finish(status);

@@ -124,6 +124,8 @@ static shb_status solve(MPI_Comm comm, const fem_body *body, const modal_setting
             "rotor.speed: the static equilibrium at %.6g rad/s is not stable (lowest eigenvalue "
             "%.3g rad2/s2); give a lower speed",
             settings->speed, result->eigen.lambda[0]);
+  SHB_TRY(modal_participate(body, result->deflection.at.displacement, &result->system,
+                            &result->eigen, &result->participation));
   SHB_TRY(modal_condense(&result->system, &result->eigen, to, progress, &result->model));
   SHB_TRY(name_probes(settings, &result->model));
   return copy_patches(&result->interface, &result->model);
@@ -159,6 +161,7 @@ void modal_result_free(modal_result *result) {
   modal_model_free(&result->model);
   modal_interface_free(&result->interface);
   modal_deflection_free(&result->deflection);
+  modal_participation_free(&result->participation);
   (void)modal_eigen_destroy(&result->eigen);
   (void)fem_system_destroy(&result->system);
   memset(result, 0, sizeof *result);
@@ -187,6 +190,7 @@ static shb_status write_all(hid_t file, const mesh_fe *mesh, const modal_result 
   SHB_TRY(modal_model_write(file, &result->model, provenance));
   SHB_TRY(modal_export_mesh(file, mesh));
   SHB_TRY(modal_export_shapes(file, result->model.n_modes, mesh->n_nodes, shape));
+  SHB_TRY(modal_participation_write(file, &result->participation));
   SHB_TRY(modal_export_contact(file, &result->interface));
   SHB_TRY(modal_export_receptance(file, &result->model));
   SHB_TRY(modal_deflection_write(file, &result->deflection, mesh->n_nodes, mesh->n_elements,

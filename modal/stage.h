@@ -12,6 +12,7 @@
 #include "modal/eigen.h"
 #include "modal/interface.h"
 #include "modal/model.h"
+#include "modal/participation.h"
 
 typedef struct {
   const char *name;
@@ -36,11 +37,12 @@ typedef struct {
 
 /* All that the stage computed. model is the same on every rank. */
 typedef struct {
-  fem_system       system;
-  modal_eigen      eigen;
-  modal_interface  interface;
-  modal_model      model;
-  modal_deflection deflection; /* static, under the centrifugal load; zero at rest */
+  fem_system          system;
+  modal_eigen         eigen;
+  modal_interface     interface;
+  modal_model         model;
+  modal_deflection    deflection; /* static, under the centrifugal load; zero at rest */
+  modal_participation participation;
 } modal_result;
 
 /* Assemble, find the static equilibrium if the blade rotates, solve, condense; K is then the tangent at that

@@ -10,6 +10,7 @@
 #include "modal/h5.h"
 #include "modal/model.h"
 #include "postproc/findings.h"
+#include "postproc/modes.h"
 #include "postproc/source.h"
 #include "postproc/study.h"
 #include "postproc/unit.h"
@@ -51,7 +52,7 @@ static const char *inertia_of(const modal_model *m) {
   return load && probes ? "yes" : "of the contact alone: not of load and probes";
 }
 
-static shb_status sum_up_modal(const char *path, post_buffer *out) {
+static shb_status sum_up_modal(hid_t file, const char *path, bool verbose, post_buffer *out) {
   modal_model m;
   SHB_TRY(modal_model_read(path, &m));
   put_count(out, m.n_modes, "mode");
@@ -65,8 +66,9 @@ static shb_status sum_up_modal(const char *path, post_buffer *out) {
   put_names(out, m.n_probes, m.probe_name);
   post_put(out, "; residual flexibility %s, inertia %s\n", m.residual_flexibility ? "yes" : "no",
            inertia_of(&m));
+  shb_status status = post_modes(file, &m, verbose, out);
   modal_model_free(&m);
-  return SHB_OK;
+  return status;
 }
 
 /* "90 … 270 Hz", "scale 0.05 … 10 at 240 Hz" */
@@ -204,8 +206,9 @@ static void put_title(const char *path, const post_source *s, bool colour, post_
   post_put(out, "\n  ");
 }
 
-static shb_status sum_up(const char *path, const post_source *s, post_buffer *out) {
-  if (strcmp(s->format, "shroudhb modal model") == 0) return sum_up_modal(path, out);
+static shb_status sum_up(hid_t file, const char *path, const post_source *s, bool verbose,
+                         post_buffer *out) {
+  if (strcmp(s->format, "shroudhb modal model") == 0) return sum_up_modal(file, path, verbose, out);
   if (strcmp(s->format, "shroudhb response") == 0) return sum_up_response(path, out);
   post_put(out, "not one of shroudhb's files: only its tree can be shown\n");
   return SHB_OK;
@@ -216,7 +219,7 @@ static shb_status inspect_open(hid_t file, const char *path, post_tree_style sty
   post_source source;
   SHB_TRY(post_source_read(file, &source));
   put_title(path, &source, style.colour, out);
-  shb_status verdict = sum_up(path, &source, out);
+  shb_status verdict = sum_up(file, path, &source, style.verbose, out);
   if (verdict != SHB_OK) post_put(out, "not usable: %s\n", shb_message());
   post_put(out, "\n");
   put_source(&source, style, out);

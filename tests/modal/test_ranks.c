@@ -46,6 +46,11 @@ static void check_ranks(double speed) {
   }
   for (int i = 0; i < 9 * settings.modes; i++)                           /* signs included */
     check_below(all.model.right[i] - one.model.right[i], 1e-5, "shape"); /* of order 1 */
+  for (int i = 0; i < FEM_RIGID * settings.modes; i++)
+    check_below(all.participation.gamma[i] - one.participation.gamma[i],
+                1e-6 * sqrt(one.participation.inertia[i % FEM_RIGID]), "participation");
+  for (int r = 0; r < FEM_RIGID; r++)
+    check_close(all.participation.inertia[r], one.participation.inertia[r], 1e-12, "inertia");
   double complex a[18 * 18], b[18 * 18];
   modal_receptance(&one.model, 3000, a);
   modal_receptance(&all.model, 3000, b);

@@ -4,6 +4,7 @@ shb_test(modal field fast tests_fem shb_modal)
 
 shb_test(modal eigen slow tests_fem shb_modal)
 shb_test(modal rotating fast tests_fem shb_modal)
+shb_test(modal participation fast tests_fem shb_modal)
 shb_test(modal interface fast tests_fem shb_modal)
 shb_test(modal stage fast tests_fem shb_modal)
 shb_test(modal condense slow tests_fem shb_modal PkgConfig::LAPACKE)
