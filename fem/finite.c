@@ -144,16 +144,18 @@ static double determinant(const double A[3][3]) {
          A[0][2] * (A[1][0] * A[2][1] - A[1][1] * A[2][0]);
 }
 
-static double von_mises(const fem_deformation *at) {
-  double P[3][3], s[3][3], J = determinant(at->F);
+void fem_cauchy(const fem_deformation *at, double stress[6]) {
+  static const int place[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {0, 2}};
+  double           P[3][3], J = determinant(at->F);
   multiply(at->F, at->S, P);
-  for (int a = 0; a < 3; a++)
-    for (int b = 0; b < 3; b++) s[a][b] = inner(P[a], at->F[b]) / J;
+  for (int c = 0; c < 6; c++) stress[c] = inner(P[place[c][0]], at->F[place[c][1]]) / J;
+}
+
+double fem_von_mises(const double stress[6]) {
   double square = 0;
   for (int a = 0; a < 3; a++) {
-    int    b          = (a + 1) % 3;
-    double difference = s[a][a] - s[b][b];
-    square += difference * difference / 2 + 3 * s[a][b] * s[a][b];
+    double difference = stress[a] - stress[(a + 1) % 3];
+    square += difference * difference / 2 + 3 * stress[3 + a] * stress[3 + a];
   }
   return sqrt(square);
 }
@@ -164,11 +166,12 @@ double fem_element_stress(const fem_element *element, const fem_material *materi
   double          greatest = 0;
   for (int p = 0; p < rule->n; p++) {
     fem_deformation at;
-    double          g[MESH_NODES][3], H[3][3];
+    double          g[MESH_NODES][3], H[3][3], stress[6];
     fem_element_gradient(element, rule, p, x, g);
     fem_displacement_gradient(element->n, (const double(*)[3])g, u, H);
     fem_deform(material, (const double(*)[3])H, &at);
-    greatest = fmax(greatest, von_mises(&at));
+    fem_cauchy(&at, stress);
+    greatest = fmax(greatest, fem_von_mises(stress));
   }
   return greatest;
 }

@@ -30,6 +30,10 @@ void fem_element_force(const fem_element *element, const fem_material *material,
 void fem_element_tangent(const fem_element *element, const fem_material *material,
                          const double x[][3], const double u[][3], double *K);
 
+/* Cauchy stress F S F^T / det F: xx, yy, zz, xy, yz, xz, Pa; and its von Mises stress. */
+void   fem_cauchy(const fem_deformation *at, double stress[6]);
+double fem_von_mises(const double stress[6]);
+
 /* Greatest von Mises stress (Cauchy, F S F^T / det F) at the element's quadrature points, Pa. */
 double fem_element_stress(const fem_element *element, const fem_material *material,
                           const double x[][3], const double u[][3]);

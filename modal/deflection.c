@@ -46,6 +46,21 @@ static void tell(const modal_deflection *d, double started, shb_progress *progre
                     at->factorisations, at->solves, at->correction);
   shb_progress_note(progress, "greatest displacement %.4g m, greatest von Mises stress %.4g MPa",
                     d->greatest_displacement, d->greatest_stress / 1e6);
+  shb_progress_note(progress, "force of the clamp [%.6g, %.6g, %.6g] N", d->statics.force[0],
+                    d->statics.force[1], d->statics.force[2]);
+}
+
+/* Stresses and reactions, on rank 0; its status everywhere. */
+static shb_status find_statics(const fem_body *body, MPI_Comm comm, int rank,
+                               modal_deflection *out) {
+  int code = SHB_OK;
+  if (rank == 0) {
+    fem_body_stress(body, out->at.displacement, out->stress);
+    code = modal_statics_create(body, out->at.displacement, &out->statics);
+  }
+  MPI_Bcast(&code, 1, MPI_INT, 0, comm);
+  if (code != SHB_OK && rank != 0) SHB_FAIL((shb_status)code, "another rank failed");
+  return (shb_status)code;
 }
 
 shb_status modal_deflect(const fem_body *body, fem_system *system, const modal_condensation *to,
@@ -59,7 +74,7 @@ shb_status modal_deflect(const fem_body *body, fem_system *system, const modal_c
   FEM_PETSC(fem_equilibrium_solve(body, system, progress, &out->at));
   SHB_CHECK(out->at.displacement, SHB_INTERRUPTED, "interrupted");
   sample(body, to, interface, out);
-  if (rank == 0) fem_body_stress(body, out->at.displacement, out->stress);
+  SHB_TRY(find_statics(body, system->comm, rank, out));
   for (int e = 0; rank == 0 && e < body->mesh->n_elements; e++)
     out->greatest_stress = fmax(out->greatest_stress, out->stress[e]);
   MPI_Bcast(&out->greatest_stress, 1, MPI_DOUBLE, 0, system->comm);
@@ -108,6 +123,7 @@ shb_status modal_deflection_write(hid_t file, const modal_deflection *d, int n_n
                           "static displacement at every node, mesh axes (x, y, z)"));
   SHB_TRY(h5_write_double(file, "/static/stress", H5_SHAPE((hsize_t)n_elements), d->stress, "Pa",
                           "greatest von Mises stress of each element"));
+  SHB_TRY(modal_statics_write(file, &d->statics));
   SHB_TRY(write_samples(file, d, model));
   return write_attributes(file, d);
 }
@@ -118,5 +134,6 @@ void modal_deflection_free(modal_deflection *d) {
   free(d->probe);
   free(d->closing);
   free(d->stress);
+  modal_statics_free(&d->statics);
   memset(d, 0, sizeof *d);
 }

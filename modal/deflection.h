@@ -6,6 +6,7 @@
 #include "fem/equilibrium.h"
 #include "modal/condense.h"
 #include "modal/interface.h"
+#include "modal/statics.h"
 
 typedef struct {
   double          speed;   /* rad/s; 0: nothing else is set */
@@ -17,7 +18,8 @@ typedef struct {
                               all blades alike; kv times it is the interference load of the shroud */
   double *
       stress; /* [n_elements] Pa, greatest von Mises stress of each element (rank 0; NULL elsewhere) */
-  double greatest_displacement, greatest_stress; /* m; Pa */
+  modal_statics statics;                                /* rank 0; zero elsewhere */
+  double        greatest_displacement, greatest_stress; /* m; Pa */
 } modal_deflection;
 
 /* Solve the equilibrium (fem_equilibrium_solve) and sample it. system->K becomes the tangent there.

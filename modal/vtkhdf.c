@@ -99,18 +99,23 @@ static shb_status write_point_data(hid_t file, int n_modes, int n_nodes) {
   return status;
 }
 
-/* The static deflection and stress, where the file holds them: links. */
+/* The static deflection and stresses, where the file holds them: links. */
 static shb_status write_static(hid_t file, hid_t group) {
+  static const char *const link[][2] = {
+      {"/static/displacement", "PointData/static_displacement"},
+      {"/static/nodal_stress", "PointData/static_stress"},
+      {"/static/nodal_von_mises", "PointData/static_von_mises"},
+      {"/static/stress", "CellData/static_von_mises"},
+  };
   if (!h5_exists(file, "/static/displacement")) return SHB_OK;
-  if (H5Lcreate_soft("/static/displacement", group, "PointData/static_displacement", H5P_DEFAULT,
-                     H5P_DEFAULT) < 0)
-    return failed("PointData/static_displacement");
   hid_t data = H5Gcreate2(group, "CellData", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
   if (data < 0) return failed("CellData");
-  herr_t error =
-      H5Lcreate_soft("/static/stress", data, "static_von_mises", H5P_DEFAULT, H5P_DEFAULT);
   H5Gclose(data);
-  return error < 0 ? failed("CellData/static_von_mises") : SHB_OK;
+  for (size_t i = 0; i < sizeof link / sizeof *link; i++)
+    if (h5_exists(file, link[i][0]) &&
+        H5Lcreate_soft(link[i][0], group, link[i][1], H5P_DEFAULT, H5P_DEFAULT) < 0)
+      return failed(link[i][1]);
+  return SHB_OK;
 }
 
 static shb_status describe_one(hid_t group, const char *path, const char *units,
@@ -143,7 +148,8 @@ static shb_status write_group(hid_t group, const mesh_fe *mesh) {
   SHB_TRY(write_header(group));
   SHB_TRY(write_count(group, "NumberOfPoints", mesh->n_nodes));
   SHB_TRY(write_count(group, "NumberOfCells", mesh->n_elements));
-  SHB_TRY(write_count(group, "NumberOfConnectivityIds", 10LL * mesh->n_elements));
+  SHB_TRY(write_count(group, "NumberOfConnectivityIds",
+                      (long long)mesh_topology_of(mesh->kind)->nodes * mesh->n_elements));
   if (H5Lcreate_soft("/mesh/nodes", group, "Points", H5P_DEFAULT, H5P_DEFAULT) < 0)
     return failed("Points");
   return write_cells(group, mesh);

@@ -169,7 +169,8 @@ static void hexahedra_go_through(void **state) {
   hid_t            file;
   h5_shape         flat = {1, {0}}, types = {1, {0}}, nodes = {2, {0, 3}}, faces = {2, {0, 8}};
   double          *x;
-  int             *vtk, *type, *face;
+  h5_shape         count = {1, {0}};
+  int             *vtk, *type, *face, *ids;
   char             mesh[512], out[512];
   snprintf(mesh, sizeof mesh, "%s", scratch("hex.msh"));
   snprintf(out, sizeof out, "%s", scratch("hex.modal.h5"));
@@ -183,9 +184,12 @@ static void hexahedra_go_through(void **state) {
   assert_ok(h5_read_int(file, "/mesh/sets/contact_right", &faces, &face));
   assert_ok(h5_read_int(file, "/VTKHDF/Connectivity", &flat, &vtk));
   assert_ok(h5_read_int(file, "/VTKHDF/Types", &types, &type));
+  assert_ok(h5_read_int(file, "/VTKHDF/NumberOfConnectivityIds", &count, &ids));
   assert_ok(h5_close(file));
   assert_int_equal(types.dim[0], 2 * 2 * 4);
   assert_int_equal(flat.dim[0], 20 * types.dim[0]);
+  assert_int_equal(ids[0], 20 * types.dim[0]);
+  free(ids);
   assert_int_equal(faces.dim[0], 2 * 4);
   for (size_t e = 0; e < types.dim[0]; e++) {
     const int *cell = vtk + 20 * e;
@@ -329,6 +333,44 @@ static void deflection_is_in_the_file(void **state) {
   unlink(out);
 }
 
+/* Reactions and nodal stresses: sums, and what ParaView sees. */
+static void statics_are_in_the_file(void **state) {
+  (void)state;
+  modal_settings settings = default_settings();
+  double         sum[3] = {0}, greatest = 0, most = 0;
+  size_t         n_node, n_force, n_stress, n_mises;
+  hid_t          file;
+  char           out[512];
+  settings.speed = 3000;
+  snprintf(out, sizeof out, "%s", scratch("static.modal.h5"));
+  assert_ok(
+      modal_stage(PETSC_COMM_WORLD, scratch("sector.msh"), out, &settings, &provenance, NULL));
+  assert_ok(h5_open(out, &file));
+  int     *node;
+  h5_shape nodes = {1, {0}};
+  assert_ok(h5_read_int(file, "/static/reaction_node", &nodes, &node));
+  n_node         = nodes.dim[0];
+  double *force  = read_static(file, "/static/reaction", &n_force);
+  double *whole  = read_static(file, "/static/reaction_force", &n_mises);
+  double *load   = read_static(file, "/static/load_force", &n_mises);
+  double *stress = read_static(file, "/VTKHDF/PointData/static_stress", &n_stress);
+  double *mises  = read_static(file, "/VTKHDF/PointData/static_von_mises", &n_mises);
+  assert_int_equal(n_force, 3 * n_node);
+  assert_int_equal(n_stress, 6 * n_mises);
+  for (size_t i = 0; i < n_force; i++) sum[i % 3] += force[i];
+  for (int d = 0; d < 3; d++) {
+    check_below(sum[d] - whole[d], 1e-12 * fabs(whole[2]), "sum of the reactions");
+    check_below(whole[d] + load[d], 1e-9 * fabs(load[2]), "reaction and load");
+  }
+  assert_true(load[2] > 1e5); /* the blade points along z */
+  for (size_t i = 0; i < n_mises; i++) most = fmax(most, mises[i]);
+  assert_ok(h5_read_attribute_double(file, "/static", "greatest_stress", 0, &greatest));
+  assert_true(most > .5 * greatest && most < 2 * greatest);
+  assert_ok(h5_close(file));
+  free(node), free(force), free(whole), free(load), free(stress), free(mises);
+  unlink(out);
+}
+
 static void refused(const modal_settings *settings, const char *mesh, shb_status code,
                     const char *text) {
   char before[17], after[17], out[512];
@@ -368,11 +410,17 @@ static void failures_leave_the_file_alone(void **state) {
 
 int main(int argc, char **argv) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(file_is_complete),           cmocka_unit_test(damping_follows_its_law),
-      cmocka_unit_test(abaqus_mesh_gives_the_same), cmocka_unit_test(vtk_group_shows_the_modes),
-      cmocka_unit_test(receptance_is_sampled),      cmocka_unit_test(sides_are_turned_round),
-      cmocka_unit_test(deflection_is_in_the_file),  cmocka_unit_test(failures_leave_the_file_alone),
-      cmocka_unit_test(hexahedra_go_through),       cmocka_unit_test(columns_need_all_points),
+      cmocka_unit_test(file_is_complete),
+      cmocka_unit_test(damping_follows_its_law),
+      cmocka_unit_test(abaqus_mesh_gives_the_same),
+      cmocka_unit_test(vtk_group_shows_the_modes),
+      cmocka_unit_test(receptance_is_sampled),
+      cmocka_unit_test(sides_are_turned_round),
+      cmocka_unit_test(deflection_is_in_the_file),
+      cmocka_unit_test(statics_are_in_the_file),
+      cmocka_unit_test(failures_leave_the_file_alone),
+      cmocka_unit_test(hexahedra_go_through),
+      cmocka_unit_test(columns_need_all_points),
   };
   modal_session session;
   if (modal_session_start(&argc, &argv, &session) != SHB_OK) return 1;
