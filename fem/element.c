@@ -41,11 +41,11 @@ static PetscErrorCode create_rules(fem_element *element) {
     PetscFunctionReturn(0);
   }
   fem_tet_rule_4(&element->straight);
+  fem_tet_rule_4(&element->curved);
+  fem_tet_rule_4(&element->mass);
+  if (rules == FEM_CALCULIX) PetscFunctionReturn(0);
   PetscCall(fem_tet_rule_conical(3, &element->curved));
-  if (rules == FEM_CALCULIX)
-    fem_tet_rule_4(&element->mass);
-  else
-    PetscCall(fem_tet_rule_conical(4, &element->mass));
+  PetscCall(fem_tet_rule_conical(4, &element->mass));
   PetscFunctionReturn(0);
 }
 

@@ -17,7 +17,8 @@ enum { FEM_DOFS = 3 * MESH_NODES }; /* of the largest element */
  * elements across, or more, none is. */
 typedef enum {
   FEM_STANDARD, /* stiffness: tetrahedra 4 points (27 where curved), hexahedra 2x2x2 */
-  FEM_CALCULIX, /* as CalculiX's C3D10 and C3D20R: the mass with the points of the stiffness too */
+  FEM_CALCULIX, /* as CalculiX's C3D10 and C3D20R: the mass with the points of the stiffness too, tetrahedra 4 points
+                   also where curved */
   FEM_FULL,     /* stiffness of hexahedra with 3x3x3 points (CalculiX's C3D20) */
 } fem_rules;
 

@@ -12,26 +12,19 @@
 #include <slepceps.h>
 #include <stdbool.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
-#include <unistd.h>
 
-#include "mesh/blade.h"
-#include "mesh/fe_mesh.h"
 #include "modal/eigen.h"
+#include "tests/bench/z_notch.h"
 
 enum { MODES = 10, MOST = 8 };
 
 typedef struct {
-  double size, shroud, edge; /* mm */
-} sizes;
-
-typedef struct {
-  const char *name;
-  mesh_kind   kind;
-  int         n_quick, n;
-  sizes       at[MOST];
+  const char   *name;
+  mesh_kind     kind;
+  int           n_quick, n;
+  z_notch_sizes at[MOST];
 } ladder;
 
 typedef struct {
@@ -58,44 +51,6 @@ static double processor_time(void) {
          (double)usage.ru_stime.tv_sec + 1e-6 * (double)usage.ru_stime.tv_usec;
 }
 
-static mesh_blade make_blade(mesh_kind kind, const sizes *s) {
-  const double       degree     = acos(-1) / 180;
-  const mesh_section section[5] = {{.25, .058, .009, .011, -10 * degree},
-                                   {.3, .054, .0076, .009, -19 * degree},
-                                   {.35, .05, .0062, .007, -28 * degree},
-                                   {.4, .047, .0051, .0054, -36 * degree},
-                                   {.445, .045, .0044, .0042, -42 * degree}};
-  mesh_blade         blade      = {.blades           = 40,
-                                   .axis             = MESH_AXIS_X,
-                                   .psi              = 35 * degree,
-                                   .root_length      = .068,
-                                   .root_width       = .035,
-                                   .root_height      = .018,
-                                   .n_sections       = 5,
-                                   .shroud_length    = .046,
-                                   .shroud_thickness = .007,
-                                   .shroud_contact   = .024,
-                                   .size             = 1e-3 * s->size,
-                                   .shroud_size      = 1e-3 * s->shroud,
-                                   .edge_size        = 1e-3 * s->edge,
-                                   .elements         = kind};
-  memcpy(blade.section, section, sizeof section);
-  return blade;
-}
-
-static shb_status make_mesh(mesh_kind kind, const sizes *s, mesh_fe *mesh) {
-  const mesh_blade     blade      = make_blade(kind, s);
-  const shb_provenance provenance = {"", "", "", "bench_elements"};
-  char                 path[]     = "/tmp/shb_elements_XXXXXX.msh";
-  const int            handle     = mkstemps(path, 4);
-  SHB_CHECK(handle >= 0, SHB_ERR_IO, "%s: cannot be made", path);
-  close(handle);
-  shb_status status = mesh_blade_write(&blade, path, &provenance, NULL);
-  if (status == SHB_OK) status = mesh_fe_read(path, mesh);
-  unlink(path);
-  return status;
-}
-
 static PetscErrorCode find_modes(const mesh_fe *mesh, fem_rules rules, double frequency[MODES]) {
   const fem_material         steel  = {.E = 2.1e11, .nu = .3, .rho = 7850};
   const modal_eigen_settings wanted = {.modes = MODES};
@@ -111,10 +66,10 @@ static PetscErrorCode find_modes(const mesh_fe *mesh, fem_rules rules, double fr
   PetscFunctionReturn(0);
 }
 
-static bool run(mesh_kind kind, const sizes *s, fem_rules rules, row *r) {
+static bool run(mesh_kind kind, const z_notch_sizes *s, fem_rules rules, row *r) {
   mesh_fe mesh;
   double  started = processor_time();
-  if (make_mesh(kind, s, &mesh) != SHB_OK) {
+  if (z_notch_mesh(kind, s, &mesh) != SHB_OK) {
     fprintf(stderr, "bench_elements: %s\n", shb_message());
     return false;
   }
@@ -177,8 +132,8 @@ static double extrapolated_difference(const row *coarse, const row *fine,
 }
 
 static bool make_reference(bool quick, double reference[MODES]) {
-  const sizes coarse = {6, 6, 0}, fine = {3, 3, 0};
-  row         reduced, full[2];
+  const z_notch_sizes coarse = {6, 6, 0}, fine = {3, 3, 0};
+  row                 reduced, full[2];
   if (!run(MESH_HEX20, quick ? &coarse : &fine, FEM_STANDARD, &reduced)) return false;
   memcpy(reference, reduced.frequency, sizeof reduced.frequency);
   printf("reference: hex20, %g mm, %d nodes, %.1f s\n", quick ? 6. : 3., reduced.nodes,

@@ -1,0 +1,17 @@
+/* The blade of cases/z_notch_blade, meshed as finely as asked. */
+#ifndef BENCH_Z_NOTCH_H
+#define BENCH_Z_NOTCH_H
+
+#include "mesh/fe_mesh.h"
+
+typedef struct {
+  double size, shroud, edge; /* mm; edge 0: re-entrant edges as the rest */
+} z_notch_sizes;
+
+/* Write path (.msh). */
+shb_status z_notch_write(mesh_kind kind, const z_notch_sizes *sizes, const char *path);
+
+/* The same, by way of a temporary file. */
+shb_status z_notch_mesh(mesh_kind kind, const z_notch_sizes *sizes, mesh_fe *mesh);
+
+#endif
