@@ -45,7 +45,8 @@ typedef struct {
   fem_orthotropic constants; /* material.E, nu, G, axes */
   fem_material    material;  /* what they make */
   int             blades;
-  double          speed; /* rad/s */
+  double          speed;    /* rad/s */
+  double          pressure; /* Pa, steady */
   mesh_axis       axis;
 
   int           modes;

@@ -87,6 +87,7 @@ static modal_settings stage_settings(const case_file *file, modal_probe probe[CA
       .axis             = file->axis,
       .blades           = file->blades,
       .speed            = file->speed,
+      .pressure         = file->pressure,
       .full_integration = file->full_integration,
       .modes            = file->modes,
       .damping          = file->damping,

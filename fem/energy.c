@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "fem/finite.h"
+#include "fem/pressure.h"
 
 /* e C e with shear strains doubled. */
 static double anisotropic(const double C[6][6], const double pulled[3][3]) {
@@ -83,7 +84,7 @@ double fem_tangent_energy(const fem_body *body, const double *state, const doubl
                   (const double(*)[3])by);
     if (body->rotation.speed != 0) sum -= spun(body, (const double(*)[3])x, (const double(*)[3])by);
   }
-  return sum;
+  return sum + fem_pressure_energy(body, state, u);
 }
 
 double fem_strain_energy(const mesh_fe *mesh, const fem_material *material,

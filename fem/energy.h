@@ -11,7 +11,7 @@ double fem_strain_energy(const mesh_fe *mesh, const fem_material *material,
                          const fem_element *element, const double *u);
 
 /* The same about a deformed state: u^T K u, K that of fem_tangent_assemble at the displacements state. With
- * h = du/dX and e = sym(F^T h): integral of lambda (tr e)^2 + 2 mu e:e + h S:h, less Omega^2 u^T M P u.
+ * h = du/dX and e = sym(F^T h): integral of lambda (tr e)^2 + 2 mu e:e + h S:h, less Omega^2 u^T M P u, and the pressure's.
  *   state, u  in  [n_nodes][3] m; zero at clamped nodes */
 double fem_tangent_energy(const fem_body *body, const double *state, const double *u);
 

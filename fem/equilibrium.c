@@ -17,7 +17,7 @@ static const double settled = 1e-9; /* relative correction; what is left is abou
 typedef enum { WORKING, CONVERGED, FAILED, INTERRUPTED } outcome;
 
 typedef struct {
-  fem_body         body; /* at the speed of the load step */
+  fem_body         body; /* at the speed and pressure of the load step */
   fem_system      *system;
   shb_progress    *progress;
   fem_equilibrium *out;
@@ -200,17 +200,25 @@ static PetscErrorCode iterate(newton *n, bool *anew, outcome *result) {
 
 /* ------------------------------------------------------------------ load steps */
 
-static PetscErrorCode follow(newton *n, double speed, outcome *result) {
-  const size_t size = 3 * (size_t)n->system->n_nodes;
-  double       load = 0, step = 1, *kept; /* load: share of Omega^2 */
+/* The loads of the case, a share of them. */
+static void set_load(newton *n, const fem_body *whole, double share) {
+  n->body.rotation.speed = whole->rotation.speed * sqrt(share);
+  n->body.pressure       = whole->pressure * share;
+}
+
+static PetscErrorCode follow(newton *n, const fem_body *whole, outcome *result) {
+  const size_t size  = 3 * (size_t)n->system->n_nodes;
+  const double speed = whole->rotation.speed;
+  const char  *name  = speed == 0 ? "pressure" : "speed";
+  double       load = 0, step = 1, *kept; /* load: share of Omega^2 and p */
   bool         anew = true;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(size, &kept));
   while (load < 1) {
-    double next            = PetscMin(1, load + step);
-    int    made            = n->out->factorisations;
-    n->body.rotation.speed = speed * sqrt(next);
+    double next = PetscMin(1, load + step);
+    int    made = n->out->factorisations;
+    set_load(n, whole, next);
     PetscCall(iterate(n, &anew, result));
     if (*result == INTERRUPTED) break;
     if (*result == CONVERGED) {
@@ -221,12 +229,13 @@ static PetscErrorCode follow(newton *n, double speed, outcome *result) {
     }
     step /= 2;
     PetscCheck(step >= 1. / (1 << MAX_HALVINGS), n->system->comm, PETSC_ERR_USER_INPUT,
-               "rotor.speed: no static equilibrium at %.6g rad/s: Newton failed in load step %d, "
-               "between %.6g and %.6g rad/s; give a lower speed, or check material.E, material.rho "
+               "rotor.%s: no static equilibrium at %.6g rad/s%s: Newton failed in load step %d, "
+               "between %.6g and %.6g rad/s; give a lower %s, or check material.E, material.rho "
                "and that the mesh is in metres",
-               speed, n->out->steps + 1, speed * sqrt(load), n->body.rotation.speed);
+               name, speed, whole->pressure != 0 ? " and this pressure" : "", n->out->steps + 1,
+               speed * sqrt(load), n->body.rotation.speed, name);
     PetscCall(PetscArraycpy(n->u, kept, size));
-    n->body.rotation.speed = speed * sqrt(load);
+    set_load(n, whole, load);
     PetscCall(fem_tangent_assemble(&n->body, n->u, n->system));
     anew = n->out->factorisations > made; /* the factor is of a state that was given up */
   }
@@ -248,7 +257,7 @@ PetscErrorCode fem_equilibrium_solve(const fem_body *body, fem_system *system,
   PetscCall(PetscMalloc2(size, &n.step, size, &n.tried));
   PetscCall(MatCreateVecs(system->K, &n.d, &n.R));
   PetscCall(create_solver(&n));
-  PetscCall(follow(&n, body->rotation.speed, &result));
+  PetscCall(follow(&n, body, &result));
   PetscCall(KSPDestroy(&n.ksp));
   PetscCall(VecDestroy(&n.d));
   PetscCall(VecDestroy(&n.R));

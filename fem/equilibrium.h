@@ -1,10 +1,10 @@
-/* Static equilibrium of the clamped body under its centrifugal load, large displacements included.
+/* Static equilibrium of the clamped body under its centrifugal load and a steady pressure, large displacements included.
  *
- * Omega^2 is raised to its full value in steps, one if it can be. In each, Newton's method on R(u) = 0 of
+ * Omega^2 and the pressure are raised to their full values in steps, one if it can be. In each, Newton's method on R(u) = 0 of
  * fem/tangent.h: the first direction comes from the tangent of the step before (a predictor), the others from the exact
  * one, by conjugate gradients on a Cholesky factor that is kept as long as it serves, in the first place that of
  * the body at rest. The length of a Newton step is the least potential along it, exactly: a St. Venant-Kirchhoff body's
- * potential is a quartic along a line. A tangent that is not positive definite (beyond what the body can bear, or with
+ * potential is a quartic along a line (of a pressure that follows the surface, with its slope in the place of the potential's). A tangent that is not positive definite (beyond what the body can bear, or with
  * too large a step) and Newton steps that do not settle halve the load step. */
 #ifndef FEM_EQUILIBRIUM_H
 #define FEM_EQUILIBRIUM_H

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "fem/finite.h"
+#include "fem/pressure.h"
 
 /* Linear functions of the reference coordinates fitted to values at the points of a rule: node value = sum_p
  * at[node][p] value_p. */
@@ -127,5 +128,6 @@ PetscErrorCode fem_balance(const fem_body *body, const double *u, double (*balan
       load[i % 3] += outer[i / 3][i % 3];
     }
   }
+  PetscCall(fem_pressure_balance(body, u, balance, load));
   PetscFunctionReturn(0);
 }

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "fem/finite.h"
+#include "fem/pressure.h"
 
 void fem_body_element(const fem_body *body, int element, const double *u, double x[][3],
                       double v[][3]) {
@@ -40,6 +41,7 @@ PetscErrorCode fem_residual_assemble(const fem_body *body, const fem_system *sys
       for (int d = 0; d < 3 && rows[i] >= 0; d++)
         out[3 * (rows[i] - system->first) + d] += internal[i][d] - load[i][d];
   }
+  PetscCall(fem_pressure_residual(body, system, u, out));
   PetscCall(VecRestoreArray(R, &out));
   PetscFunctionReturn(0);
 }
@@ -60,6 +62,7 @@ PetscErrorCode fem_tangent_assemble(const fem_body *body, const double *u, fem_s
     fem_rotation_soften(&body->rotation, n, m, K);
     PetscCall(MatSetValuesBlocked(system->K, n, rows, n, columns, K, ADD_VALUES));
   }
+  PetscCall(fem_pressure_tangent(body, u, system));
   PetscCall(MatAssemblyBegin(system->K, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(system->K, MAT_FINAL_ASSEMBLY));
   PetscFunctionReturn(0);

@@ -69,7 +69,8 @@ shb_status modal_deflect(const fem_body *body, fem_system *system, const modal_c
   const double started = shb_seconds();
   int          rank;
   MPI_Comm_rank(system->comm, &rank);
-  out->speed = body->rotation.speed;
+  out->speed    = body->rotation.speed;
+  out->pressure = body->pressure;
   SHB_TRY(allocate(body, to, interface->n_pairs, rank, out));
   FEM_PETSC(fem_equilibrium_solve(body, system, progress, &out->at));
   SHB_CHECK(out->at.displacement, SHB_INTERRUPTED, "interrupted");
@@ -79,10 +80,10 @@ shb_status modal_deflect(const fem_body *body, fem_system *system, const modal_c
     out->greatest_stress = fmax(out->greatest_stress, out->stress[e]);
   MPI_Bcast(&out->greatest_stress, 1, MPI_DOUBLE, 0, system->comm);
   SHB_CHECK(out->greatest_stress < greatest_strain * body->material->E, SHB_ERR_INPUT,
-            "rotor.speed: at %.6g rad/s the static stress reaches %.3g MPa, above a tenth of "
-            "material.E: no elastic blade bears that; give a lower speed, or check material and "
+            "rotor.%s: at %.6g rad/s the static stress reaches %.3g MPa, above a tenth of "
+            "material.E: no elastic blade bears that; give a lower load, or check material and "
             "the mesh's unit (m)",
-            out->speed, out->greatest_stress / 1e6);
+            out->speed == 0 ? "pressure" : "speed", out->speed, out->greatest_stress / 1e6);
   tell(out, started, progress);
   return SHB_OK;
 }
@@ -117,7 +118,8 @@ static shb_status write_samples(hid_t file, const modal_deflection *d, const mod
 shb_status modal_deflection_write(hid_t file, const modal_deflection *d, int n_nodes,
                                   int n_elements, const modal_model *model) {
   SHB_TRY(h5_write_attribute_double(file, "/", "rotor_speed", d->speed));
-  if (d->speed == 0) return SHB_OK;
+  SHB_TRY(h5_write_attribute_double(file, "/", "rotor_pressure", d->pressure));
+  if (!d->at.displacement) return SHB_OK;
   SHB_TRY(h5_write_double(file, "/static/displacement", H5_SHAPE((hsize_t)n_nodes, 3),
                           d->at.displacement, "m",
                           "static displacement at every node, mesh axes (x, y, z)"));

@@ -1,4 +1,4 @@
-/* The static deflection of the rotating blade: how the contact and the probes move under the centrifugal load, with the
+/* The static deflection of the rotating blade: how the contact and the probes move under the centrifugal load and the steady pressure, with the
  * contact faces free. */
 #ifndef MODAL_DEFLECTION_H
 #define MODAL_DEFLECTION_H
@@ -9,8 +9,8 @@
 #include "modal/statics.h"
 
 typedef struct {
-  double          speed;   /* rad/s; 0: nothing else is set */
-  fem_equilibrium at;      /* displacement [n_nodes][3] m, and how it was found */
+  double          speed, pressure; /* rad/s, Pa; both 0: nothing else is set */
+  fem_equilibrium at;              /* displacement [n_nodes][3] m, and how it was found */
   double         *contact; /* [n_contact] m, mean displacement of the patches, cylindrical axes */
   double         *probe;   /* [3 q] m, cylindrical axes */
   double
@@ -28,7 +28,7 @@ shb_status modal_deflect(const fem_body *body, fem_system *system, const modal_c
                          const modal_interface *interface, shb_progress *progress,
                          modal_deflection *out);
 
-/* Writes the root attribute rotor_speed and, if it is not 0, the group /static; modal_model_write comes first. */
+/* Writes the root attributes rotor_speed, rotor_pressure and, unless both are 0, the group /static; modal_model_write comes first. */
 shb_status modal_deflection_write(hid_t file, const modal_deflection *deflection, int n_nodes,
                                   int n_elements, const modal_model *model);
 

@@ -61,6 +61,9 @@ static shb_status prepare(const mesh_fe *mesh, const modal_settings *settings,
                           modal_interface *interface, modal_condensation *to) {
   SHB_TRY(fem_clamp_check(mesh));
   if (!settings->full_integration) SHB_TRY(fem_hourglass_check(mesh));
+  SHB_CHECK(settings->pressure == 0 || mesh->set[MESH_LOAD].n > 0, SHB_ERR_INPUT,
+            "the mesh has no group \"%s\" for rotor.pressure; name the loaded faces so",
+            mesh_set_name(MESH_LOAD));
   SHB_TRY(modal_interface_create(mesh, settings->axis, settings->blades, settings->to_ground,
                                  settings->points, interface));
   SHB_TRY(modal_interface_check(interface, settings->psi, settings->phi));
@@ -107,7 +110,7 @@ static shb_status assemble(MPI_Comm comm, const fem_body *body, const modal_cond
       fem_system_create(comm, body->mesh, body->material, body->element->rules, &result->system));
   shb_progress_note(progress, "assembled %d elements, %d dofs in %.2f s", body->mesh->n_elements,
                     (int)(3 * result->system.n_free), shb_seconds() - started);
-  if (body->rotation.speed == 0) return SHB_OK;
+  if (body->rotation.speed == 0 && body->pressure == 0) return SHB_OK;
   return modal_deflect(body, &result->system, to, &result->interface, progress,
                        &result->deflection);
 }
@@ -137,7 +140,8 @@ static shb_status solve_body(MPI_Comm comm, const mesh_fe *mesh, const modal_set
   fem_element *element = malloc(sizeof *element);
   SHB_TRY(
       agree(comm, element ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory")));
-  fem_body   body   = {mesh, &settings->material, element, {settings->axis, settings->speed}};
+  fem_body body = {
+      mesh, &settings->material, element, {settings->axis, settings->speed}, settings->pressure};
   fem_rules  rules  = settings->full_integration ? FEM_FULL : FEM_STANDARD;
   shb_status status = fem_fault_status(fem_element_create(mesh->kind, rules, element));
   if (status == SHB_OK) status = solve(comm, &body, settings, to, progress, result);

@@ -23,7 +23,8 @@ typedef struct {
   fem_material       material;
   mesh_axis          axis;
   int                blades;
-  double             speed; /* rad/s; 0: at rest */
+  double             speed;    /* rad/s; 0: at rest */
+  double             pressure; /* Pa, steady, on group load, into the deformed surface */
   int                modes;
   modal_damping      damping;
   bool               full_integration; /* stiffness of hexahedra with 3x3x3 points, not 2x2x2 */

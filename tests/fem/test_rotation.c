@@ -42,7 +42,7 @@ static void load_adds_up_to_the_centrifugal_force(void **state) {
   double *u = field(&mesh, 0, 0);
   for (int i = 0; i < 3 * mesh.n_nodes; i++) u[i] = moved[i % 3];
   for (int axis = 0; axis < MESH_AXIS_MZ + 1; axis++) {
-    const fem_body     body = {&mesh, &steel, element, {(mesh_axis)axis, speed}};
+    const fem_body     body = {&mesh, &steel, element, {(mesh_axis)axis, speed}, 0};
     fem_system         system;
     Vec                R;
     double             sum[3] = {0};
@@ -71,7 +71,7 @@ static void tangent_is_the_derivative_of_the_residual(void **state) {
   const int    cells[3] = {3, 2, 1};
   mesh_fe      mesh     = make_box(size, cells);
   shake_inside(&mesh, size, .004);
-  const fem_body body = {&mesh, &steel, element, {MESH_AXIS_Y, 20000}};
+  const fem_body body = {&mesh, &steel, element, {MESH_AXIS_Y, 20000}, 0};
   const size_t   n    = 3 * (size_t)mesh.n_nodes;
   double      *u = field(&mesh, .004, .4), *d = field(&mesh, 1, 1.9), *shifted = field(&mesh, 0, 0);
   double       error[3], norm, energy;
@@ -171,7 +171,7 @@ static void rod_stretches_as_its_equation_says(void **state) {
   const fem_material material = {.E = steel.E, .rho = steel.rho};
   const double       speed = 4200, at_tip[3] = {rod_hub + rod_length, 0, 0};
   mesh_fe            mesh = make_rod(rod_hub, 24);
-  const fem_body     body = {&mesh, &material, element, {MESH_AXIS_MZ, speed}};
+  const fem_body     body = {&mesh, &material, element, {MESH_AXIS_MZ, speed}, 0};
   fem_system         system;
   fem_equilibrium    at;
   Vec                R;
@@ -202,7 +202,7 @@ static void no_equilibrium_is_told(void **state) {
   (void)state;
   const double    speed = 6e4;
   mesh_fe         mesh  = make_rod(-rod_hub - rod_length, 8);
-  const fem_body  body  = {&mesh, &steel, element, {MESH_AXIS_Z, speed}};
+  const fem_body  body  = {&mesh, &steel, element, {MESH_AXIS_Z, speed}, 0};
   fem_system      system;
   fem_equilibrium at;
   assert_int_equal(fem_system_create(PETSC_COMM_SELF, &mesh, &steel, FEM_STANDARD, &system), 0);

@@ -23,7 +23,7 @@ static double stress_error(const int cells[3], double shake, const fem_material 
                            motion move, motion normal, motion shear) {
   mesh_fe mesh = make_box(size, cells);
   shake_inside(&mesh, size, shake);
-  const fem_body body = {&mesh, material, element, {MESH_AXIS_X, 0}};
+  const fem_body body = {&mesh, material, element, {MESH_AXIS_X, 0}, 0};
   double        *u = calloc(3 * (size_t)mesh.n_nodes, sizeof *u), error = 0, most = 0;
   double(*stress)[FEM_STRESSES] = calloc((size_t)mesh.n_nodes, sizeof *stress);
   for (int i = 0; i < mesh.n_nodes; i++) move(mesh.coordinates + 3 * i, u + 3 * i);
@@ -119,7 +119,7 @@ static void reactions_add_up_to_the_load(void **state) {
   (void)state;
   const int       cells[3] = {3, 2, 2};
   mesh_fe         mesh     = make_box(size, cells);
-  const fem_body  body     = {&mesh, &steel, element, {MESH_AXIS_Z, 4000}};
+  const fem_body  body     = {&mesh, &steel, element, {MESH_AXIS_Z, 4000}, 0};
   fem_system      system;
   fem_equilibrium at;
   double          load[3], sum[3] = {0}, turn = 0, most = 0;

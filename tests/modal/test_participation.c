@@ -26,7 +26,7 @@ static model *make(const mesh_fe *mesh, const fem_material *material, int modes)
   model               *m        = calloc(1, sizeof *m);
   assert_non_null(m);
   assert_int_equal(fem_element_create(mesh->kind, FEM_FULL, &m->element), 0);
-  m->body = (fem_body){mesh, material, &m->element, {MESH_AXIS_X, 0}};
+  m->body = (fem_body){mesh, material, &m->element, {MESH_AXIS_X, 0}, 0};
   assert_int_equal(fem_system_create(PETSC_COMM_SELF, mesh, material, FEM_FULL, &m->system), 0);
   if (modes <= 0) settings.modes = 3 * (int)m->system.n_free;
   if (modal_eigen_solve(&m->system, &settings, &m->eigen) != 0) fail_msg("%s", shb_message());

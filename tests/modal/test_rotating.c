@@ -43,7 +43,7 @@ static mesh_fe make_beam(const beam *b) {
 static shb_status solve(const beam *b, double speed, double flap[MODES], double plane[MODES]) {
   mesh_fe              mesh    = make_beam(b);
   fem_element         *element = malloc(sizeof *element);
-  const fem_body       body    = {&mesh, &material, element, {MESH_AXIS_Y, speed}};
+  const fem_body       body    = {&mesh, &material, element, {MESH_AXIS_Y, speed}, 0};
   modal_eigen_settings wanted  = {.modes = MODES, .tolerance = 1e-12};
   fem_system           system;
   fem_equilibrium      at    = {0};
