@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cases/assign.h"
 #include "cases/checks.h"
 #include "cases/issues.h"
 #include "cases/reader.h"
@@ -58,9 +59,15 @@ static void share(case_reader *r) {
   file->source.blades    = file->mhb.to_ground ? 0 : file->blades;
   file->material.E       = file->constants.E[0];
   file->material.nu      = file->constants.nu[0];
-  file->load.field       = file->field_file;
-  file->blade.psi        = file->mhb.has_psi ? file->mhb.psi : 0;
-  file->blade.phi        = file->mhb.has_phi ? file->mhb.phi : 0;
+  file->has_materials    = case_reader_given(r, "materials") != NULL;
+  for (int i = 0; i < file->n_materials; i++) {
+    case_material *one = &file->materials[i];
+    one->material.E    = one->constants.E[0];
+    one->material.nu   = one->constants.nu[0];
+  }
+  file->load.field = file->field_file;
+  file->blade.psi  = file->mhb.has_psi ? file->mhb.psi : 0;
+  file->blade.phi  = file->mhb.has_phi ? file->mhb.phi : 0;
 }
 
 /* Returns true if an input file named in the case cannot be read. */
@@ -73,6 +80,7 @@ static bool read_document(case_issues *issues, int stages, case_file *out) {
   if (root && root->kind == CASE_MAPPING) {
     share(&reader);
     share_parameter(&reader);
+    case_assign_groups(&reader);
     case_check_alternatives(&reader, stages);
     case_reader_require(&reader, stages);
     lost = case_check_values(&reader, stages);
@@ -128,7 +136,11 @@ bool case_mesh_is_made(const case_file *file) {
   const mesh_source *source = &file->source;
   if (!file->mesh_file) return false;
   bool made = MESH_FORMAT_IS_SOLID(mesh_format_of(file->mesh_file)) || source->unit != 1;
-  for (int id = 0; id < MESH_N_SETS; id++) made = made || source->rule[id].kind != MESH_RULE_NONE;
+  const mesh_rules *rules = &source->rules;
+  for (int i = 0; i < MESH_N_SETS; i++) made = made || rules->usual[i].kind != MESH_RULE_NONE;
+  for (int i = 0; i < rules->n_more; i++) made = made || rules->more[i].rule.kind != MESH_RULE_NONE;
+  for (int i = 0; i < rules->n_volumes; i++)
+    made = made || rules->volume[i].rule.kind != MESH_RULE_NONE;
   return made;
 }
 

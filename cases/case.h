@@ -30,6 +30,13 @@ typedef struct {
   double at[3]; /* m, mesh axes */
 } case_probe;
 
+/* A volume of the mesh and what it is made of. */
+typedef struct {
+  char            group[MESH_WORD];
+  fem_orthotropic constants; /* E, nu, G, axes */
+  fem_material    material;  /* what they make */
+} case_material;
+
 typedef struct {
   char *path;   /* as given */
   char *folder; /* of path, "." if none; outputs and relative input files live here */
@@ -44,6 +51,9 @@ typedef struct {
 
   fem_orthotropic constants; /* material.E, nu, G, axes */
   fem_material    material;  /* what they make */
+  bool            has_materials;
+  int             n_materials; /* with materials, instead of material */
+  case_material   materials[MESH_MAX_VOLUMES];
   int             blades;
   double          speed;    /* rad/s */
   double          pressure; /* Pa, steady */

@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "cases/materials.h"
 #include "mesh/format.h"
 #include "mhb/parameter.h"
 
@@ -171,29 +172,6 @@ static void check_harmonics(case_reader *r, int stages) {
         k, file->mhb.harmonics, needed);
 }
 
-/* The material's stiffness, where it is not isotropic. */
-static void check_material(case_reader *r) {
-  static const char *const needed[] = {"material.E", "material.nu",     "material.rho",
-                                       "material.G", "material.axis_1", "material.axis_2"};
-  case_file               *file     = r->file;
-  const double            *E = file->constants.E, *nu = file->constants.nu;
-  bool                     axes  = E[0] != E[1] || E[0] != E[2] || nu[0] != nu[1] || nu[0] != nu[2];
-  bool                     given = case_reader_given(r, "material.G") != NULL;
-  if (file->modal_file) return;
-  for (int i = 0; i < 6; i++)
-    if (!case_reader_good(r, needed[i]) && (given || i != 3)) return;
-  if (!given && axes)
-    case_reader_issue(r, "material.G",
-                      "missing; E or nu differ along the axes, expected [G12, G13, G23]");
-  if (!given &&
-      (case_reader_given(r, "material.axis_1") || case_reader_given(r, "material.axis_2")))
-    case_reader_issue(r, "material.G",
-                      "missing; without it the material is isotropic and has no axes");
-  double rho = file->material.rho;
-  if (given && fem_material_orthotropic(&file->constants, rho, &file->material) != SHB_OK)
-    case_reader_issue(r, "material.G", "%s", shb_message());
-}
-
 /* Frequencies outside the range would find curves that are not followed. */
 static void check_search(case_reader *r) {
   const mhb_settings *mhb  = &r->file->mhb;
@@ -262,7 +240,7 @@ bool case_check_values(case_reader *r, int stages) {
   check_blade(r, stages);
   check_harmonics(r, stages);
   check_tolerance(r);
-  check_material(r);
+  case_check_materials(r);
   if (stages & CASE_MHB) check_followed(r);
   check_search(r);
   if (own) check_extension(r);

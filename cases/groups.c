@@ -62,7 +62,7 @@ static bool take_kind(const context *c, const case_node *node, mesh_rule_kind ki
 static bool read_name(const context *c, const case_node *node) {
   if (node->kind != CASE_SCALAR) return refuse(c, node, "the name of a group in the mesh file");
   size_t n = strlen(node->text);
-  if (n == 0 || n >= MESH_RULE_WORD) return refuse(c, node, "a name of 1 to 80 letters");
+  if (n == 0 || n >= MESH_WORD) return refuse(c, node, "a name of 1 to 80 letters");
   memcpy(c->rule->name, node->text, n + 1);
   return true;
 }
@@ -125,8 +125,17 @@ static bool read_rule(case_issues *issues, const char *path, const case_node *no
   return good && check_rule(&c, node);
 }
 
+/* Where the rule of a group goes; NULL if there are too many. */
+static mesh_rule *slot_of(const char *name, mesh_rules *rules) {
+  for (int id = 0; id < MESH_N_SETS; id++)
+    if (strcmp(name, group_name[id]) == 0) return &rules->usual[id];
+  if (rules->n_more == MESH_MAX_MORE || strlen(name) >= MESH_WORD) return NULL;
+  strcpy(rules->more[rules->n_more].name, name);
+  return &rules->more[rules->n_more++].rule;
+}
+
 bool case_groups_read(case_issues *issues, const char *path, const case_node *node,
-                      mesh_rule rule[MESH_N_SETS]) {
+                      mesh_rules *rules) {
   bool good = node->kind == CASE_MAPPING;
   if (!good && node->kind != CASE_BROKEN)
     case_issue_add(issues, node->line, node->column, path,
@@ -135,31 +144,37 @@ bool case_groups_read(case_issues *issues, const char *path, const case_node *no
   for (int i = 0; node->kind == CASE_MAPPING && i < node->n; i++) {
     const case_node *child = &node->child[i];
     char             full[CASE_PATH];
-    int              id = 0;
+    mesh_rule       *slot = slot_of(child->key, rules);
     case_path(full, "%s.%s", path, child->key);
-    while (id < MESH_N_SETS && strcmp(child->key, group_name[id]) != 0) id++;
-    if (id == MESH_N_SETS)
+    if (!slot)
       case_issue_add(issues, child->key_line, child->key_column, full,
-                     "unknown group; known are root, contact_right, contact_left, load");
-    good = id < MESH_N_SETS && read_rule(issues, full, child, &rule[id]) && good;
+                     "one group too many (%d besides the usual four), or a name of more than %d "
+                     "letters",
+                     MESH_MAX_MORE, MESH_WORD - 1);
+    good = slot && read_rule(issues, full, child, slot) && good;
   }
   return good;
 }
 
-void case_groups_print(FILE *out, const char *path, const mesh_rule rule[MESH_N_SETS]) {
-  for (int id = 0; id < MESH_N_SETS; id++) {
-    const mesh_rule *r = &rule[id];
-    if (r->kind == MESH_RULE_NONE) continue;
-    fprintf(out, "%s.%s = ", path, group_name[id]);
-    if (r->kind == MESH_RULE_NAME) fprintf(out, "name %s", r->name);
-    if (r->kind == MESH_RULE_PLANE)
-      fprintf(out, "plane %.17g %.17g %.17g normal %.17g %.17g %.17g", r->at[0], r->at[1], r->at[2],
-              r->normal[0], r->normal[1], r->normal[2]);
-    if (r->kind == MESH_RULE_RADIUS) fprintf(out, "radius %.17g", r->radius);
-    if (r->kind == MESH_RULE_NEAREST)
-      fprintf(out, "nearest %.17g %.17g %.17g", r->at[0], r->at[1], r->at[2]);
-    if (r->kind == MESH_RULE_PLANE || r->kind == MESH_RULE_RADIUS)
-      fprintf(out, " tolerance %.17g", r->tolerance);
-    fputc('\n', out);
-  }
+static void print_rule(FILE *out, const char *path, const char *name, const mesh_rule *r) {
+  if (r->kind == MESH_RULE_NONE) return;
+  fprintf(out, "%s.%s = ", path, name);
+  if (r->kind == MESH_RULE_NAME) fprintf(out, "name %s", r->name);
+  if (r->kind == MESH_RULE_PLANE)
+    fprintf(out, "plane %.17g %.17g %.17g normal %.17g %.17g %.17g", r->at[0], r->at[1], r->at[2],
+            r->normal[0], r->normal[1], r->normal[2]);
+  if (r->kind == MESH_RULE_RADIUS) fprintf(out, "radius %.17g", r->radius);
+  if (r->kind == MESH_RULE_NEAREST)
+    fprintf(out, "nearest %.17g %.17g %.17g", r->at[0], r->at[1], r->at[2]);
+  if (r->kind == MESH_RULE_PLANE || r->kind == MESH_RULE_RADIUS)
+    fprintf(out, " tolerance %.17g", r->tolerance);
+  fputc('\n', out);
+}
+
+void case_groups_print(FILE *out, const char *path, const mesh_rules *rules) {
+  for (int id = 0; id < MESH_N_SETS; id++) print_rule(out, path, group_name[id], &rules->usual[id]);
+  for (int i = 0; i < rules->n_more; i++)
+    print_rule(out, path, rules->more[i].name, &rules->more[i].rule);
+  for (int i = 0; i < rules->n_volumes; i++)
+    print_rule(out, path, rules->volume[i].name, &rules->volume[i].rule);
 }

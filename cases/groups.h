@@ -8,11 +8,12 @@
 #include "mesh/rules.h"
 
 /* {GROUP: {plane: [x, y, z], normal: [x, y, z]} | {radius: r} | {nearest: [x, y, z]} | {name: WORD}}, a plane and a
- * radius with an optional tolerance. Every fault is recorded under path. */
+ * radius with an optional tolerance. Groups that are not among the usual four go to rules->more, in order (cases/assign.h sorts
+ * them). Every fault is recorded under path. */
 bool case_groups_read(case_issues *issues, const char *path, const case_node *node,
-                      mesh_rule rule[MESH_N_SETS]);
+                      mesh_rules *rules);
 
 /* One line a rule, in SI. */
-void case_groups_print(FILE *out, const char *path, const mesh_rule rule[MESH_N_SETS]);
+void case_groups_print(FILE *out, const char *path, const mesh_rules *rules);
 
 #endif

@@ -136,6 +136,7 @@ static const char *type_name(const case_key *key) {
                                                   [CASE_SWITCH]    = "word",
                                                   [CASE_ACCURACY]  = "word or number",
                                                   [CASE_WORD]      = "word",
+                                                  [CASE_LABEL]     = "word",
                                                   [CASE_FILE_NAME] = "file",
                                                   [CASE_VECTOR]    = "[x, y, z]",
                                                   [CASE_TRIPLE]    = "number or list",

@@ -19,6 +19,7 @@ typedef enum {
   CASE_SWITCH,    /* one of two words: bool, true for the second */
   CASE_ACCURACY,  /* one of words, or a number: double */
   CASE_WORD,      /* safe file name: char * */
+  CASE_LABEL,     /* name of a group: char[MESH_WORD] */
   CASE_FILE_NAME, /* path, relative to the case file: char * */
   CASE_VECTOR,    /* [x, y, z]: double[3] */
   CASE_TRIPLE,    /* number for all three axes, or [1, 2, 3]: double[3] */
@@ -32,7 +33,7 @@ typedef enum {
   CASE_FACTORS,   /* {k: [factor, phase]}: fem_load, its factors */
   CASE_PROBES,    /* {name: [x, y, z]}: the case_file's probe */
   CASE_DAMPING, /* ratio, list of them, {loss_factor: } or {rayleigh: }: the case_file's damping */
-  CASE_GROUPS,  /* {group: rule}: the case_file's source.rule */
+  CASE_GROUPS,  /* {group: rule}: the case_file's source.rules */
   CASE_LIST, /* list of mappings, whose keys are rows "LIST[].KEY": elements of each bytes, their number at count_at */
   CASE_SIGNAL, /* [[amplitude, phase], ...] from harmonic 0; read by motion.c */
   CASE_N_TYPES
@@ -46,6 +47,8 @@ typedef enum {
   CASE_IF_SIZE,       /* mesh.file is a solid */
   CASE_IF_OWN_MODES,  /* no modal.file */
   CASE_IF_MODAL_FILE, /* modal.file */
+  CASE_IF_MATERIAL,   /* no modal.file, and one material */
+  CASE_IF_MATERIALS,  /* several, by volumes */
   CASE_IF_CRYSTAL,    /* material.G given */
   CASE_IF_NEIGHBOUR,  /* contact.to: neighbour */
   CASE_IF_SECTOR,     /* neighbour or parametric blade */

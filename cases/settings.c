@@ -58,6 +58,9 @@ static void print_scalar(FILE *out, const case_key *key, const case_file *file, 
     case CASE_SWITCH:
       print_word(out, key->words, *(const bool *)slot);
       break;
+    case CASE_LABEL:
+      fputs(slot, out);
+      break;
     case CASE_WORD:
       fputs(*(char *const *)slot, out);
       break;

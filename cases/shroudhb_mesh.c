@@ -45,11 +45,20 @@ static void note_pairing(shb_progress *progress, const mesh_pairing *pairing) {
         pairing->gap);
 }
 
+/* With the groups that the case names. */
+static shb_status read_mesh(const case_file *file, const char *path, mesh_fe *mesh) {
+  mesh_names names = mesh_rules_labels(&file->source.rules);
+  SHB_TRY(mesh_fe_read_named(path, &names, mesh));
+  shb_status status = mesh_fe_check_groups(mesh, path);
+  if (status != SHB_OK) mesh_fe_free(mesh);
+  return status;
+}
+
 /* The mesh brought by the case: readable, whole, and fit for its contact. */
 static shb_status check_file(const case_file *file, shb_progress *progress) {
   mesh_fe      mesh;
   mesh_pairing pairing;
-  SHB_TRY(mesh_fe_read(file->mesh_file, &mesh));
+  SHB_TRY(read_mesh(file, file->mesh_file, &mesh));
   shb_status status = check_contact(file, &mesh, &pairing);
   if (status != SHB_OK)
     status = shb_fail(status, __FILE__, __LINE__, "%s: %s", file->mesh_file, shb_message());
@@ -141,7 +150,7 @@ static shb_status write_inp(const case_file *file, shb_progress *progress) {
     status =
         shb_fail(SHB_ERR_INPUT, __FILE__, __LINE__, "%s is the mesh of the case itself", source);
   } else {
-    status = mesh_fe_read(source, &mesh);
+    status = read_mesh(file, source, &mesh);
   }
   if (status == SHB_OK) status = mesh_inp_write(&mesh, output);
   if (status == SHB_OK) shb_progress_note(progress, "wrote %s", output);

@@ -76,14 +76,19 @@ static int parse(const words *line, command_options *options, case_file *file) {
   return code;
 }
 
-static modal_settings stage_settings(const case_file *file, modal_probe probe[CASE_MAX_PROBES]) {
+static modal_settings stage_settings(const case_file *file, modal_probe probe[CASE_MAX_PROBES],
+                                     modal_region region[MESH_MAX_VOLUMES]) {
   const mhb_settings *mhb = &file->mhb;
   for (int q = 0; q < file->n_probes; q++) {
     probe[q].name = file->probe[q].name;
     memcpy(probe[q].at, file->probe[q].at, sizeof probe[q].at);
   }
+  for (int i = 0; i < file->n_materials; i++)
+    region[i] = (modal_region){file->materials[i].group, file->materials[i].material};
   return (modal_settings){
       .material         = file->material,
+      .n_regions        = file->n_materials,
+      .region           = region,
       .axis             = file->axis,
       .blades           = file->blades,
       .speed            = file->speed,
@@ -119,16 +124,17 @@ static shb_status decide(const case_file *file, bool force, const char *mesh, co
 static shb_status run(const case_file *file, const command_options *options, int rank) {
   shb_progress progress =
       shb_progress_start("modal", options->quiet || rank != 0, options->verbose);
-  modal_probe probe[CASE_MAX_PROBES];
-  char       *mesh = case_mesh_path(file), *output = case_output(file, ".modal.h5");
-  char       *settings = NULL;
-  bool        skip;
-  shb_status  status =
+  modal_probe  probe[CASE_MAX_PROBES];
+  modal_region region[MESH_MAX_VOLUMES];
+  char        *mesh = case_mesh_path(file), *output = case_output(file, ".modal.h5");
+  char        *settings = NULL;
+  bool         skip;
+  shb_status   status =
       mesh && output ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   if (status == SHB_OK) status = decide(file, options->force, mesh, output, &settings, &skip);
   if (status == SHB_OK && skip) shb_progress_note(&progress, "%s is up to date", output);
   if (status == SHB_OK && !skip) {
-    modal_settings stage      = stage_settings(file, probe);
+    modal_settings stage      = stage_settings(file, probe, region);
     shb_provenance provenance = command_provenance(file, settings, "shroudhb-modal");
     status = modal_stage(PETSC_COMM_WORLD, mesh, output, &stage, &provenance, &progress);
     shb_progress_note(&progress, "%.2f s in all", shb_seconds() - progress.started);

@@ -6,6 +6,7 @@
 #define AT(member) .at = offsetof(case_file, member)
 #define LIST(member, count) \
   AT(member), .count_at = offsetof(case_file, count), .each = sizeof(*((case_file *)0)->member)
+#define MATERIAL(member) .at = offsetof(case_material, member)
 #define SECTION(member) .at = offsetof(mesh_section, member)
 #define COUNT(array) ((int)(sizeof(array) / sizeof *(array)))
 
@@ -25,8 +26,8 @@ static const case_key table[] = {
      .help = "unit of the coordinates in mesh.file; a STEP file has its own"},
     {"mesh.size", CASE_NUMBER, "m", 0, 100, .fallback = "0 m", AT(source.size), .stages = CASE_MESH, .when = CASE_IF_SIZE,
      .help = "element size of a solid; 0: as a .geo file says"},
-    {"mesh.groups", CASE_GROUPS, "", .fallback = "{}", AT(source.rule), .stages = CASE_MESH, .when = CASE_IF_MESH_FILE,
-     .help = "groups by rule: {GROUP: {plane: point, normal: vector} | {radius: r} | {nearest: point} | {name: the file's}}, tolerance 1e-6 m"},
+    {"mesh.groups", CASE_GROUPS, "", .fallback = "{}", AT(source.rules), .stages = CASE_MESH, .when = CASE_IF_MESH_FILE,
+     .help = "groups by rule: {GROUP: {plane: point, normal: vector} | {radius: r} | {nearest: point} | {name: the file's}}, tolerance 1e-6 m; volumes by nearest or name"},
     {"mesh.blade.root.length", CASE_NUMBER, "m", 0, 100, true, .required = true, AT(blade.root_length), .stages = CASE_MESH, .when = CASE_IF_BLADE,
      .help = "root block, axial"},
     {"mesh.blade.root.width", CASE_NUMBER, "m", 0, 100, true, .required = true, AT(blade.root_width), .stages = CASE_MESH, .when = CASE_IF_BLADE,
@@ -59,9 +60,9 @@ static const case_key table[] = {
     {"mesh.blade.elements", CASE_CHOICE, "", .words = "tet10 hex20", .fallback = "tet10", AT(blade.elements), .stages = CASE_MESH, .when = CASE_IF_BLADE,
      .help = "tetrahedra of ten nodes, or hexahedra of twenty swept along the blade"},
 
-    {"material.E", CASE_TRIPLE, "Pa", 1e6, 1e14, .required = true, AT(constants.E), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
+    {"material.E", CASE_TRIPLE, "Pa", 1e6, 1e14, .required = true, AT(constants.E), .stages = CASE_MODAL, .when = CASE_IF_MATERIAL,
      .help = "Young's modulus; with G of a single crystal, along its axes: a number or [E1, E2, E3]"},
-    {"material.nu", CASE_TRIPLE, "", -1, 0.5, true, true, .required = true, AT(constants.nu), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
+    {"material.nu", CASE_TRIPLE, "", -1, 0.5, true, true, .required = true, AT(constants.nu), .stages = CASE_MODAL, .when = CASE_IF_MATERIAL,
      .help = "Poisson's ratio, or [nu12, nu13, nu23]: contraction along the second under tension along the first"},
     {"material.G", CASE_TRIPLE, "Pa", 1e6, 1e14, AT(constants.G), .stages = CASE_MODAL, .when = CASE_IF_CRYSTAL,
      .help = "shear modulus of a cubic material, or [G12, G13, G23] of an orthotropic one; default: isotropic"},
@@ -69,7 +70,24 @@ static const case_key table[] = {
      .help = "direction of the material's axis 1, mesh axes"},
     {"material.axis_2", CASE_VECTOR, "", -1e6, 1e6, .fallback = "[0, 1, 0]", AT(constants.in_plane), .stages = CASE_MODAL, .when = CASE_IF_CRYSTAL,
      .help = "a direction in the plane of axes 1 and 2, on the side of 2"},
-    {"material.rho", CASE_NUMBER, "kg/m3", 10, 1e5, .required = true, AT(material.rho), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
+    {"material.rho", CASE_NUMBER, "kg/m3", 10, 1e5, .required = true, AT(material.rho), .stages = CASE_MODAL, .when = CASE_IF_MATERIAL,
+     .help = "density"},
+
+    {"materials", CASE_LIST, "", 1, MESH_MAX_VOLUMES, LIST(materials, n_materials), .stages = CASE_MESH | CASE_MODAL, .when = CASE_IF_MATERIALS,
+     .help = "instead of material, where mesh.file has several volumes: a list of {group, E, nu, rho, ...}, every element in one group"},
+    {"materials[].group", CASE_LABEL, "", .required = true, MATERIAL(group), .stages = CASE_MESH | CASE_MODAL,
+     .help = "physical volume of the mesh or solid, element set of an .inp file, or a group that mesh.groups finds by name or nearest point"},
+    {"materials[].E", CASE_TRIPLE, "Pa", 1e6, 1e14, .required = true, MATERIAL(constants.E), .stages = CASE_MODAL,
+     .help = "Young's modulus; with G of a single crystal, along its axes: a number or [E1, E2, E3]"},
+    {"materials[].nu", CASE_TRIPLE, "", -1, 0.5, true, true, .required = true, MATERIAL(constants.nu), .stages = CASE_MODAL,
+     .help = "Poisson's ratio, or [nu12, nu13, nu23]: contraction along the second under tension along the first"},
+    {"materials[].G", CASE_TRIPLE, "Pa", 1e6, 1e14, MATERIAL(constants.G), .stages = CASE_MODAL,
+     .help = "shear modulus of a cubic material, or [G12, G13, G23] of an orthotropic one; default: isotropic"},
+    {"materials[].axis_1", CASE_VECTOR, "", -1e6, 1e6, .fallback = "[1, 0, 0]", MATERIAL(constants.axis), .stages = CASE_MODAL,
+     .help = "direction of the material's axis 1, mesh axes"},
+    {"materials[].axis_2", CASE_VECTOR, "", -1e6, 1e6, .fallback = "[0, 1, 0]", MATERIAL(constants.in_plane), .stages = CASE_MODAL,
+     .help = "a direction in the plane of axes 1 and 2, on the side of 2"},
+    {"materials[].rho", CASE_NUMBER, "kg/m3", 10, 1e5, .required = true, MATERIAL(material.rho), .stages = CASE_MODAL,
      .help = "density"},
 
     {"rotor.blades", CASE_INTEGER, "", 2, 1000, .required = true, AT(blades), .stages = CASE_MESH | CASE_MODAL | CASE_MHB, .when = CASE_IF_SECTOR,
@@ -205,8 +223,12 @@ bool case_key_applies(const case_key *key, const case_file *file) {
       return own;
     case CASE_IF_MODAL_FILE:
       return !own;
+    case CASE_IF_MATERIAL:
+      return own && !file->has_materials;
+    case CASE_IF_MATERIALS:
+      return own && file->has_materials;
     case CASE_IF_CRYSTAL:
-      return own && file->constants.G[0] != 0;
+      return own && !file->has_materials && file->constants.G[0] != 0;
     case CASE_IF_NEIGHBOUR:
       return !file->mhb.to_ground;
     case CASE_IF_SECTOR:

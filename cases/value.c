@@ -20,6 +20,7 @@ void case_value_expected(const case_key *key, char *text, size_t size) {
       [CASE_SWITCH]    = "one of",
       [CASE_ACCURACY]  = "a number or one of",
       [CASE_WORD]      = "a name",
+      [CASE_LABEL]     = "the name of a group",
       [CASE_FILE_NAME] = "a file name",
       [CASE_VECTOR]    = "[x, y, z]",
       [CASE_TRIPLE]    = "a number or three, for the axes",
@@ -191,6 +192,22 @@ static bool read_word(const case_reading *c, const case_node *node, void *slot) 
   return keep_text(c, node, slot, strdup(text));
 }
 
+static bool read_label(const case_reading *c, const case_node *node, void *slot) {
+  if (node->kind != CASE_SCALAR) return case_reading_refuse(c, node);
+  const char *text = node->text;
+  bool        good = text[0] && strlen(text) < MESH_WORD;
+  for (const char *at = text; *at; at++)
+    good = good && !strchr("/\",", *at) && !is_control((unsigned char)*at);
+  if (good) {
+    strcpy(slot, text);
+  } else {
+    case_issue_add(c->issues, node->line, node->column, c->path,
+                   "'%.90s' cannot be the name of a group: 1 to %d letters, no '/', ',' or '\"'",
+                   text, MESH_WORD - 1);
+  }
+  return good;
+}
+
 static bool read_file_name(const case_reading *c, const case_node *node, void *slot) {
   if (node->kind != CASE_SCALAR) return case_reading_refuse(c, node);
   if (node->text[0] == '\0') {
@@ -330,6 +347,7 @@ bool case_value_read(case_issues *issues, const case_key *key, const char *path,
       [CASE_SWITCH]    = read_switch,
       [CASE_ACCURACY]  = read_accuracy,
       [CASE_WORD]      = read_word,
+      [CASE_LABEL]     = read_label,
       [CASE_FILE_NAME] = read_file_name,
       [CASE_VECTOR]    = read_vector,
       [CASE_TRIPLE]    = read_triple,

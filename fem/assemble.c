@@ -139,10 +139,12 @@ static PetscErrorCode add_elements(const mesh_fe *mesh, const fem_material *mate
     double     x[MESH_NODES][3], K[FEM_DOFS * FEM_DOFS], M[FEM_DOFS * FEM_DOFS];
     double     m[MESH_NODES * MESH_NODES];
     const int *node = mesh->connectivity + n * (size_t)e;
+
+    const fem_material *own = fem_material_at(material, mesh, e);
     if (!fem_system_rows(mesh, system, e, rows, columns)) continue;
     for (int i = 0; i < n; i++) memcpy(x[i], mesh->coordinates + 3 * (size_t)node[i], sizeof x[i]);
-    fem_element_stiffness(element, material, (const double(*)[3])x, K);
-    fem_element_mass(element, material->rho, (const double(*)[3])x, m);
+    fem_element_stiffness(element, own, (const double(*)[3])x, K);
+    fem_element_mass(element, own->rho, (const double(*)[3])x, m);
     spread(n, m, M);
     PetscCall(MatSetValuesBlocked(system->K, n, rows, n, columns, K, ADD_VALUES));
     PetscCall(MatSetValuesBlocked(system->M, n, rows, n, columns, M, ADD_VALUES));

@@ -20,7 +20,7 @@ typedef struct {
   Mat       K, M;        /* SBAIJ, block size 3, order 3 n_free; N/m and kg */
 } fem_system;
 
-/* Assemble. mesh must be the same on every rank. */
+/* Assemble. mesh must be the same on every rank; material: one, or one a region (fem_material_at). */
 PetscErrorCode fem_system_create(MPI_Comm comm, const mesh_fe *mesh, const fem_material *material,
                                  fem_rules rules, fem_system *system);
 

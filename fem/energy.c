@@ -63,11 +63,11 @@ static double stored(const fem_element *element, const fem_material *material, c
   return sum;
 }
 
-static double spun(const fem_body *body, const double x[][3], const double u[][3]) {
+static double spun(const fem_body *body, double rho, const double x[][3], const double u[][3]) {
   const int n = body->element->n;
   double    m[MESH_NODES * MESH_NODES], square[3], sum = 0;
   fem_rotation_square(&body->rotation, square);
-  fem_element_mass(body->element, body->material->rho, x, m);
+  fem_element_mass(body->element, rho, x, m);
   for (int i = 0; i < n; i++)
     for (int j = 0; j < n; j++)
       for (int d = 0; d < 3; d++) sum += m[n * i + j] * square[d] * u[i][d] * u[j][d];
@@ -78,11 +78,14 @@ double fem_tangent_energy(const fem_body *body, const double *state, const doubl
   double sum = 0;
   for (int e = 0; e < body->mesh->n_elements; e++) {
     double x[MESH_NODES][3], at[MESH_NODES][3], by[MESH_NODES][3];
+
+    const fem_material *own = fem_material_at(body->material, body->mesh, e);
     fem_body_element(body, e, state, x, at);
     fem_body_element(body, e, u, x, by);
-    sum += stored(body->element, body->material, (const double(*)[3])x, (const double(*)[3])at,
+    sum += stored(body->element, own, (const double(*)[3])x, (const double(*)[3])at,
                   (const double(*)[3])by);
-    if (body->rotation.speed != 0) sum -= spun(body, (const double(*)[3])x, (const double(*)[3])by);
+    if (body->rotation.speed != 0)
+      sum -= spun(body, own->rho, (const double(*)[3])x, (const double(*)[3])by);
   }
   return sum + fem_pressure_energy(body, state, u);
 }

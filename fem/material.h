@@ -6,7 +6,7 @@
 
 #include <stdbool.h>
 
-#include "mesh/status.h"
+#include "mesh/fe_mesh.h"
 
 typedef struct {
   double E;           /* Young's modulus, Pa; anisotropic: the greatest of the three */
@@ -31,5 +31,11 @@ shb_status fem_material_orthotropic(const fem_orthotropic *from, double rho, fem
 
 /* Stiffness of any material, isotropic ones included. */
 void fem_material_stiffness(const fem_material *material, double C[6][6]);
+
+/* Material of an element: materials[mesh->region], one for each of the mesh's regions; the one where it has none. */
+static inline const fem_material *fem_material_at(const fem_material *materials,
+                                                  const mesh_fe *mesh, int element) {
+  return mesh->region ? &materials[mesh->region[element]] : materials;
+}
 
 #endif

@@ -17,7 +17,7 @@ static PetscErrorCode share(MPI_Comm comm, int rank, void **data, size_t count, 
 }
 
 PetscErrorCode fem_mesh_broadcast(MPI_Comm comm, mesh_fe *mesh) {
-  int rank, n[3 + MESH_N_SETS];
+  int rank, n[5 + MESH_MAX_SETS];
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
@@ -25,14 +25,19 @@ PetscErrorCode fem_mesh_broadcast(MPI_Comm comm, mesh_fe *mesh) {
     n[0] = mesh->n_nodes;
     n[1] = mesh->n_elements;
     n[2] = (int)mesh->kind;
-    for (int s = 0; s < MESH_N_SETS; s++) n[3 + s] = mesh->set[s].n;
+    n[3] = mesh->n_more;
+    n[4] = mesh->n_regions;
+    for (int s = 0; s < MESH_MAX_SETS; s++) n[5 + s] = mesh->set[s].n;
   } else {
     memset(mesh, 0, sizeof *mesh);
   }
-  PetscCallMPI(MPI_Bcast(n, 3 + MESH_N_SETS, MPI_INT, 0, comm));
-  mesh->n_nodes                 = n[0];
-  mesh->n_elements              = n[1];
-  mesh->kind                    = (mesh_kind)n[2];
+  PetscCallMPI(MPI_Bcast(n, 5 + MESH_MAX_SETS, MPI_INT, 0, comm));
+  mesh->n_nodes    = n[0];
+  mesh->n_elements = n[1];
+  mesh->kind       = (mesh_kind)n[2];
+  mesh->n_more     = n[3];
+  mesh->n_regions  = n[4];
+  PetscCallMPI(MPI_Bcast(mesh->more, (int)sizeof mesh->more, MPI_CHAR, 0, comm));
   const mesh_topology *topology = mesh_topology_of(mesh->kind);
   const size_t         nodes = (size_t)n[0], elements = (size_t)n[1];
   const size_t         each = (size_t)topology->nodes, face = (size_t)topology->face_nodes;
@@ -40,11 +45,14 @@ PetscErrorCode fem_mesh_broadcast(MPI_Comm comm, mesh_fe *mesh) {
   PetscCall(share(comm, rank, (void **)&mesh->connectivity, each * elements, MPI_INT));
   PetscCall(share(comm, rank, (void **)&mesh->node_tag, nodes, MPI_LONG));
   PetscCall(share(comm, rank, (void **)&mesh->element_tag, elements, MPI_LONG));
-  for (int s = 0; s < MESH_N_SETS; s++) {
-    mesh->set[s].n = n[3 + s];
-    if (n[3 + s] == 0) continue;
-    PetscCall(share(comm, rank, (void **)&mesh->set[s].nodes, face * (size_t)n[3 + s], MPI_INT));
+  for (int s = 0; s < MESH_MAX_SETS; s++) {
+    mesh->set[s].n = n[5 + s];
+    if (n[5 + s] == 0) continue;
+    PetscCall(share(comm, rank, (void **)&mesh->set[s].nodes, face * (size_t)n[5 + s], MPI_INT));
   }
+  if (n[4] == 0) PetscFunctionReturn(0);
+  PetscCall(share(comm, rank, (void **)&mesh->region_name, MESH_WORD * (size_t)n[4], MPI_CHAR));
+  PetscCall(share(comm, rank, (void **)&mesh->region, elements, MPI_INT));
   PetscFunctionReturn(0);
 }
 

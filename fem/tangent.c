@@ -31,11 +31,13 @@ PetscErrorCode fem_residual_assemble(const fem_body *body, const fem_system *sys
     PetscInt rows[MESH_NODES], columns[MESH_NODES];
     double   x[MESH_NODES][3], v[MESH_NODES][3], m[MESH_NODES * MESH_NODES];
     double   internal[MESH_NODES][3], load[MESH_NODES][3];
+
+    const fem_material *own = fem_material_at(body->material, body->mesh, e);
     if (!fem_system_rows(body->mesh, system, e, rows, columns)) continue;
     fem_body_element(body, e, u, x, v);
     const double(*at)[3] = (const double(*)[3])x, (*by)[3] = (const double(*)[3])v;
-    fem_element_force(body->element, body->material, at, by, internal);
-    fem_element_mass(body->element, body->material->rho, at, m);
+    fem_element_force(body->element, own, at, by, internal);
+    fem_element_mass(body->element, own->rho, at, m);
     fem_rotation_load(&body->rotation, n, m, at, by, load);
     for (int i = 0; i < n; i++)
       for (int d = 0; d < 3 && rows[i] >= 0; d++)
@@ -54,11 +56,12 @@ PetscErrorCode fem_tangent_assemble(const fem_body *body, const double *u, fem_s
     PetscInt rows[MESH_NODES], columns[MESH_NODES];
     double   x[MESH_NODES][3], v[MESH_NODES][3], m[MESH_NODES * MESH_NODES];
     double   K[FEM_DOFS * FEM_DOFS];
+
+    const fem_material *own = fem_material_at(body->material, body->mesh, e);
     if (!fem_system_rows(body->mesh, system, e, rows, columns)) continue;
     fem_body_element(body, e, u, x, v);
-    fem_element_tangent(body->element, body->material, (const double(*)[3])x, (const double(*)[3])v,
-                        K);
-    fem_element_mass(body->element, body->material->rho, (const double(*)[3])x, m);
+    fem_element_tangent(body->element, own, (const double(*)[3])x, (const double(*)[3])v, K);
+    fem_element_mass(body->element, own->rho, (const double(*)[3])x, m);
     fem_rotation_soften(&body->rotation, n, m, K);
     PetscCall(MatSetValuesBlocked(system->K, n, rows, n, columns, K, ADD_VALUES));
   }
@@ -72,7 +75,7 @@ void fem_body_stress(const fem_body *body, const double *u, double *stress) {
   for (int e = 0; e < body->mesh->n_elements; e++) {
     double x[MESH_NODES][3], v[MESH_NODES][3];
     fem_body_element(body, e, u, x, v);
-    stress[e] = fem_element_stress(body->element, body->material, (const double(*)[3])x,
-                                   (const double(*)[3])v);
+    stress[e] = fem_element_stress(body->element, fem_material_at(body->material, body->mesh, e),
+                                   (const double(*)[3])x, (const double(*)[3])v);
   }
 }

@@ -11,7 +11,7 @@
 /* What is assembled; nothing is owned. */
 typedef struct {
   const mesh_fe      *mesh;
-  const fem_material *material;
+  const fem_material *material; /* one, or one a region */
   const fem_element  *element;
   fem_rotation        rotation;
   double              pressure; /* Pa, steady, on group load, into the deformed surface */

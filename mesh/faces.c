@@ -34,7 +34,7 @@ static int by_corner(const void *a, const void *b) {
 static int fill_keys(const mesh_fe *mesh, face_key *keys, char *flag) {
   const mesh_topology *topology = mesh_topology_of(mesh->kind);
   int                  n        = 0;
-  for (int s = 0; s < MESH_N_SETS; s++)
+  for (int s = 0; s < mesh_fe_sets(mesh); s++)
     for (int f = 0; f < mesh->set[s].n; f++) {
       face_key  *key  = &keys[n++];
       const int *face = mesh->set[s].nodes + topology->face_nodes * f;
@@ -72,7 +72,7 @@ static shb_status check_hits(const mesh_fe *mesh, const face_key *keys, int n, c
         keys[i].hits == 1, SHB_ERR_INPUT,
         "%s: group %s: the face on nodes %ld, %ld, %ld %s; a group must lie on the surface of "
         "the body",
-        name, mesh_set_name((mesh_set_id)keys[i].set), tag[c[0]], tag[c[1]], tag[c[2]],
+        name, mesh_fe_set_name(mesh, keys[i].set), tag[c[0]], tag[c[1]], tag[c[2]],
         keys[i].hits ? "is inside the body" : "is on no element");
   }
   return SHB_OK;
@@ -94,7 +94,7 @@ static void visit_elements(mesh_fe *mesh, face_key *keys, int n, const char *fla
 
 shb_status mesh_faces_orient(mesh_fe *mesh, const char *name) {
   size_t total = 0;
-  for (int s = 0; s < MESH_N_SETS; s++) total += (size_t)mesh->set[s].n;
+  for (int s = 0; s < mesh_fe_sets(mesh); s++) total += (size_t)mesh->set[s].n;
   face_key  *keys   = malloc((total + 1) * sizeof *keys);
   char      *flag   = calloc((size_t)mesh->n_nodes + 1, 1);
   shb_status status = SHB_OK;

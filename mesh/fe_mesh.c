@@ -9,6 +9,26 @@ const char *mesh_set_name(mesh_set_id id) {
   return name[id];
 }
 
+int mesh_fe_sets(const mesh_fe *mesh) {
+  return MESH_N_SETS + mesh->n_more;
+}
+
+const char *mesh_fe_set_name(const mesh_fe *mesh, int set) {
+  return set < MESH_N_SETS ? mesh_set_name((mesh_set_id)set) : mesh->more[set - MESH_N_SETS];
+}
+
+int mesh_fe_set_named(const mesh_fe *mesh, const char *name) {
+  for (int s = 0; s < mesh_fe_sets(mesh); s++)
+    if (strcmp(mesh_fe_set_name(mesh, s), name) == 0) return s;
+  return -1;
+}
+
+const char *mesh_names_set(const mesh_names *names, int set) {
+  if (set < MESH_N_SETS)
+    return names && names->set[set] ? names->set[set] : mesh_set_name((mesh_set_id)set);
+  return names->more[set - MESH_N_SETS].name;
+}
+
 /* Tangential component of the summed area normals of a set (triangles of a face's first three corners), m2. */
 static double facing(const mesh_fe *mesh, const mesh_face_set *set, mesh_axis axis) {
   const int width = mesh_topology_of(mesh->kind)->face_nodes;
@@ -70,6 +90,8 @@ void mesh_fe_free(mesh_fe *mesh) {
   free(mesh->connectivity);
   free(mesh->node_tag);
   free(mesh->element_tag);
-  for (int s = 0; s < MESH_N_SETS; s++) free(mesh->set[s].nodes);
+  free(mesh->region);
+  free(mesh->region_name);
+  for (int s = 0; s < MESH_MAX_SETS; s++) free(mesh->set[s].nodes);
   memset(mesh, 0, sizeof *mesh);
 }

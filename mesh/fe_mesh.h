@@ -2,6 +2,7 @@
 #ifndef MESH_FE_MESH_H
 #define MESH_FE_MESH_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #include "mesh/axes.h"
@@ -16,6 +17,13 @@ typedef enum {
   MESH_N_SETS
 } mesh_set_id;
 
+enum {
+  MESH_MAX_MORE    = 16,
+  MESH_MAX_SETS    = MESH_N_SETS + MESH_MAX_MORE,
+  MESH_MAX_VOLUMES = 16,
+  MESH_WORD        = 81
+};
+
 /* A named group of element faces; n = 0 if the group is absent. */
 typedef struct {
   int  n;     /* faces */
@@ -27,14 +35,44 @@ typedef struct {
   int       n_nodes;
   double   *coordinates; /* [n_nodes][3], m */
   int       n_elements;
-  int      *connectivity; /* [n_elements][nodes] node indices, gmsh order */
-  long     *node_tag;     /* [n_nodes] tag in the mesh file */
-  long     *element_tag;  /* [n_elements] tag in the mesh file */
-  mesh_face_set set[MESH_N_SETS];
+  int      *connectivity;                   /* [n_elements][nodes] node indices, gmsh order */
+  long     *node_tag;                       /* [n_nodes] tag in the mesh file */
+  long     *element_tag;                    /* [n_elements] tag in the mesh file */
+  int       n_more;                         /* groups besides the usual four: */
+  char      more[MESH_MAX_MORE][MESH_WORD]; /* their names, */
+  mesh_face_set set[MESH_MAX_SETS];         /* their faces after those of the four */
+  int           n_regions;                  /* volumes that were asked for, 0: none */
+  char (*region_name)[MESH_WORD];           /* [n_regions] */
+  int *region; /* [n_elements] the one each element lies in; NULL without */
 } mesh_fe;
+
+/* What is read from a mesh file, by its names there. Labels are our names, and the file's unless it has another. */
+typedef struct {
+  const char *set[MESH_N_SETS]; /* NULL: the usual names */
+  int         n_more;           /* further groups of faces */
+  struct {
+    const char *label, *name;
+  } more[MESH_MAX_MORE];
+  int n_volumes; /* groups of elements: every element must be in one */
+  struct {
+    const char *label, *name;
+    bool   near; /* no group of the file, but the volume in which at lies, in the file's unit */
+    double at[3];
+  } volume[MESH_MAX_VOLUMES];
+} mesh_names;
 
 /* "root", "contact_right", "contact_left", "load" */
 const char *mesh_set_name(mesh_set_id id);
+
+/* All groups of the mesh, 0 .. mesh_fe_sets - 1, and the name of each. */
+int         mesh_fe_sets(const mesh_fe *mesh);
+const char *mesh_fe_set_name(const mesh_fe *mesh, int set);
+
+/* Place of the group of that name, -1 if there is none. */
+int mesh_fe_set_named(const mesh_fe *mesh, const char *name);
+
+/* Name of a group in the file; names may be NULL. */
+const char *mesh_names_set(const mesh_names *names, int set);
 
 /* Read a gmsh .msh file (2.2 or 4.1) with those physical groups, or an .inp file (mesh/inp.h). Only nodes that an element
  * uses are kept.
@@ -43,11 +81,10 @@ const char *mesh_set_name(mesh_set_id id);
  * face not on the surface of the body. */
 shb_status mesh_fe_read(const char *path, mesh_fe *mesh);
 
-/* The same where groups have other names in the file (group[id], NULL: the usual one; or group itself NULL) and root may
- * be absent: that is mesh_fe_check_root's to tell. */
-shb_status mesh_fe_read_named(const char *path, const char *const group[MESH_N_SETS],
-                              mesh_fe *mesh);
-shb_status mesh_fe_check_root(const mesh_fe *mesh, const char *name);
+/* The same by other names, with further groups and volumes (names NULL: none); groups may be absent: root and the further ones
+ * are mesh_fe_check_groups' to tell. SHB_ERR_INPUT too: a volume that is absent, elements in no volume or in two. */
+shb_status mesh_fe_read_named(const char *path, const mesh_names *names, mesh_fe *mesh);
+shb_status mesh_fe_check_groups(const mesh_fe *mesh, const char *name);
 
 /* Which left node lies on each right node after rotating the left face by the sector angle 2 pi/blades.
  *   match  out  [n_right_unique] pairs are returned through right_nodes/left_nodes, malloc'ed, sorted by right

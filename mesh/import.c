@@ -8,6 +8,8 @@
 
 #include "mesh/faces.h"
 #include "mesh/kernel.h"
+#include "mesh/regions.h"
+#include "mesh/volumes.h"
 
 enum { GMSH_TET4 = 4, GMSH_HEX8 = 5, GMSH_HEX27 = 12 };
 
@@ -166,7 +168,7 @@ static shb_status take_volume(const char *name, node_table *table, mesh_fe *mesh
 
 /* Append n faces, given by node tags, to a set. */
 static shb_status append_faces(const char *name, const node_table *table, const size_t *nodes,
-                               size_t n, mesh_fe *mesh, mesh_set_id id) {
+                               size_t n, mesh_fe *mesh, int id) {
   const size_t   each = (size_t)mesh_topology_of(mesh->kind)->face_nodes;
   mesh_face_set *set  = &mesh->set[id];
   int           *grow = realloc(set->nodes, each * ((size_t)set->n + n + 1) * sizeof *grow);
@@ -175,7 +177,8 @@ static shb_status append_faces(const char *name, const node_table *table, const 
   for (size_t i = 0; i < each * n; i++) {
     size_t place = table_find(table, nodes[i]);
     SHB_CHECK(place < table->n && table->index[place] >= 0, SHB_ERR_INPUT,
-              "%s: group %s: node %zu belongs to no element", name, mesh_set_name(id), nodes[i]);
+              "%s: group %s: node %zu belongs to no element", name, mesh_fe_set_name(mesh, id),
+              nodes[i]);
     grow[each * (size_t)set->n + i] = table->index[place];
   }
   set->n += (int)n;
@@ -183,7 +186,7 @@ static shb_status append_faces(const char *name, const node_table *table, const 
 }
 
 static shb_status take_surface(const char *name, const node_table *table, int entity, mesh_fe *mesh,
-                               mesh_set_id id) {
+                               int id) {
   const mesh_topology *topology = mesh_topology_of(mesh->kind);
   int                 *types    = NULL;
   size_t               n_types  = 0;
@@ -194,7 +197,8 @@ static shb_status take_surface(const char *name, const node_table *table, int en
   gmshFree(types);
   SHB_CHECK(odd == 0, SHB_ERR_INPUT,
             "%s: group %s holds faces of gmsh type %d; only %ss (type %d) lie on a %s", name,
-            mesh_set_name(id), odd, topology->face_name, topology->gmsh_face, topology->name);
+            mesh_fe_set_name(mesh, id), odd, topology->face_name, topology->gmsh_face,
+            topology->name);
   if (n_types == 0) return SHB_OK;
   size_t *tags = NULL, *nodes = NULL, n = 0, n_nodes = 0;
   GMSH_TRY(name, gmshModelMeshGetElementsByType(topology->gmsh_face, &tags, &n, &nodes, &n_nodes,
@@ -205,24 +209,22 @@ static shb_status take_surface(const char *name, const node_table *table, int en
   return status;
 }
 
-/* Which of our sets a physical surface is; MESH_N_SETS if none. */
-static shb_status which_set(const char *name, const char *const names[MESH_N_SETS], int group,
-                            mesh_set_id *id) {
+/* Which of our sets a physical surface is; their number if none. */
+static shb_status which_set(const char *name, const mesh_names *names, const mesh_fe *mesh,
+                            int group, int *id) {
   char *label = NULL;
   GMSH_TRY(name, gmshModelGetPhysicalName(2, group, &label, &ierr));
-  for (*id = MESH_ROOT; *id < MESH_N_SETS; ++*id) {
-    const char *wanted = names && names[*id] ? names[*id] : mesh_set_name(*id);
-    if (label && strcmp(label, wanted) == 0) break;
-  }
+  for (*id = 0; *id < mesh_fe_sets(mesh); ++*id)
+    if (label && strcmp(label, mesh_names_set(names, *id)) == 0) break;
   gmshFree(label);
   return SHB_OK;
 }
 
-static shb_status take_group(const char *name, const char *const names[MESH_N_SETS],
-                             const node_table *table, int group, mesh_fe *mesh) {
-  mesh_set_id id = MESH_ROOT;
-  SHB_TRY(which_set(name, names, group, &id));
-  if (id == MESH_N_SETS) return SHB_OK;
+static shb_status take_group(const char *name, const mesh_names *names, const node_table *table,
+                             int group, mesh_fe *mesh) {
+  int id = MESH_ROOT;
+  SHB_TRY(which_set(name, names, mesh, group, &id));
+  if (id == mesh_fe_sets(mesh)) return SHB_OK;
   int   *entities = NULL;
   size_t n        = 0;
   GMSH_TRY(name, gmshModelGetEntitiesForPhysicalGroup(2, group, &entities, &n, &ierr));
@@ -233,8 +235,8 @@ static shb_status take_group(const char *name, const char *const names[MESH_N_SE
   return status;
 }
 
-static shb_status take_groups(const char *name, const char *const names[MESH_N_SETS],
-                              const node_table *table, mesh_fe *mesh) {
+static shb_status take_groups(const char *name, const mesh_names *names, const node_table *table,
+                              mesh_fe *mesh) {
   int   *groups = NULL;
   size_t n      = 0;
   GMSH_TRY(name, gmshModelGetPhysicalGroups(&groups, &n, 2, &ierr));
@@ -245,14 +247,16 @@ static shb_status take_groups(const char *name, const char *const names[MESH_N_S
   return status;
 }
 
-shb_status mesh_import(const char *name, const char *const group[MESH_N_SETS], mesh_fe *mesh) {
+shb_status mesh_import(const char *name, const mesh_names *names, mesh_fe *mesh) {
   memset(mesh, 0, sizeof *mesh);
+  mesh_regions_name(names, mesh);
   node_table table  = {0};
   shb_status status = check_types(name, &mesh->kind);
   if (status == SHB_OK) status = table_fill(name, &table);
   if (status == SHB_OK) status = take_volume(name, &table, mesh);
-  if (status == SHB_OK) status = take_groups(name, group, &table, mesh);
+  if (status == SHB_OK) status = take_groups(name, names, &table, mesh);
   if (status == SHB_OK) status = mesh_faces_orient(mesh, name);
+  if (status == SHB_OK && names && names->n_volumes) status = mesh_volumes_take(name, names, mesh);
   table_free(&table);
   if (status != SHB_OK) mesh_fe_free(mesh);
   return status;

@@ -6,6 +6,7 @@
 
 #include "mesh/faces.h"
 #include "mesh/inp_cards.h"
+#include "mesh/regions.h"
 
 /* What resolving needs. */
 typedef struct {
@@ -135,19 +136,19 @@ static shb_status member_face(const builder *b, const mesh_inp_member *member, c
   return SHB_OK;
 }
 
-static shb_status faces_of_elements(builder *b, const mesh_inp_set *from, mesh_set_id id) {
+static shb_status faces_of_elements(builder *b, const mesh_inp_set *from, int id) {
   const size_t   each = (size_t)mesh_topology_of(b->mesh->kind)->face_nodes;
   mesh_face_set *set  = &b->mesh->set[id];
   set->nodes          = malloc(each * (size_t)from->n * sizeof *set->nodes + 1);
   SHB_CHECK(set->nodes, SHB_ERR_IO, "%s: no memory for its groups", b->deck->path);
   for (int i = 0; i < from->n; i++)
-    SHB_TRY(
-        member_face(b, &from->member[i], mesh_set_name(id), set->nodes + each * (size_t)set->n++));
+    SHB_TRY(member_face(b, &from->member[i], mesh_fe_set_name(b->mesh, id),
+                        set->nodes + each * (size_t)set->n++));
   return SHB_OK;
 }
 
 /* The faces of the body whose nodes are all in the set. */
-static shb_status faces_of_nodes(builder *b, const mesh_inp_set *from, mesh_set_id id) {
+static shb_status faces_of_nodes(builder *b, const mesh_inp_set *from, int id) {
   char *marked = calloc((size_t)b->mesh->n_nodes + 1, 1);
   SHB_CHECK(marked, SHB_ERR_IO, "%s: no memory for its groups", b->deck->path);
   shb_status status = SHB_OK;
@@ -155,22 +156,22 @@ static shb_status faces_of_nodes(builder *b, const mesh_inp_set *from, mesh_set_
     int at = mesh_inp_node_at(&b->inp, from->member[i].id);
     if (at < 0)
       status = mesh_deck_fail(b->deck, from->member[i].line, __FILE__, __LINE__,
-                              "group %s: node %ld is not in the file", mesh_set_name(id),
-                              from->member[i].id);
+                              "group %s: node %ld is not in the file",
+                              mesh_fe_set_name(b->mesh, id), from->member[i].id);
     if (at >= 0 && b->index[at] >= 0) marked[b->index[at]] = 1;
   }
   if (status == SHB_OK) status = mesh_faces_outer(b->mesh, marked, &b->mesh->set[id]);
   if (status == SHB_OK && b->mesh->set[id].n == 0)
-    status =
-        mesh_deck_fail(b->deck, from->line, __FILE__, __LINE__,
-                       "group %s: its %d nodes hold no whole face of the body (%d nodes)",
-                       mesh_set_name(id), from->n, mesh_topology_of(b->mesh->kind)->face_nodes);
+    status = mesh_deck_fail(b->deck, from->line, __FILE__, __LINE__,
+                            "group %s: its %d nodes hold no whole face of the body (%d nodes)",
+                            mesh_fe_set_name(b->mesh, id), from->n,
+                            mesh_topology_of(b->mesh->kind)->face_nodes);
   free(marked);
   return status;
 }
 
-static shb_status take_group(builder *b, const char *const names[MESH_N_SETS], mesh_set_id id) {
-  const char         *name = names && names[id] ? names[id] : mesh_set_name(id);
+static shb_status take_group(builder *b, const mesh_names *names, int id) {
+  const char         *name = mesh_names_set(names, id);
   const mesh_inp_set *set  = mesh_inp_find(&b->inp, MESH_INP_SURFACE, name);
   if (!set) set = mesh_inp_find(&b->inp, MESH_INP_ELSET, name);
   if (!set) set = mesh_inp_find(&b->inp, MESH_INP_NSET, name);
@@ -179,22 +180,53 @@ static shb_status take_group(builder *b, const char *const names[MESH_N_SETS], m
   return set->of_nodes ? faces_of_nodes(b, set, id) : faces_of_elements(b, set, id);
 }
 
-static shb_status build(builder *b, const char *const names[MESH_N_SETS]) {
+/* The volume elements of the element set that is volume i. */
+static shb_status take_volume(builder *b, mesh_regions *regions, int i) {
+  const char *name = regions->names->volume[i].name;
+  SHB_CHECK(!regions->names->volume[i].near, SHB_ERR_INPUT,
+            "mesh.groups.%s: %s is not made of volumes in which a point could lie; give {name: an "
+            "element set}",
+            regions->names->volume[i].label, b->deck->path);
+  const mesh_inp_set *set = mesh_inp_find(&b->inp, MESH_INP_ELSET, name);
+  SHB_CHECK(set, SHB_ERR_INPUT, "%s: no element set '%s' (*ELSET, or ELSET= of *ELEMENT)",
+            b->deck->path, name);
+  for (int m = 0; m < set->n; m++) {
+    const mesh_inp_member *member = &set->member[m];
+    int                    at     = mesh_inp_element_at(&b->inp, member->id);
+    MESH_DECK_CHECK(at >= 0, b->deck, member->line,
+                    "element set %s: element %ld is not in the file", name, member->id);
+    MESH_DECK_CHECK(b->volume[at] >= 0, b->deck, member->line,
+                    "element set %s: element %ld is a face, not a volume", name, member->id);
+    mesh_regions_put(regions, b->volume[at], i);
+  }
+  return SHB_OK;
+}
+
+static shb_status take_regions(builder *b, const mesh_names *names) {
+  mesh_regions regions;
+  SHB_TRY(mesh_regions_begin(b->deck->path, names, b->mesh, &regions));
+  for (int i = 0; i < names->n_volumes; i++) SHB_TRY(take_volume(b, &regions, i));
+  return mesh_regions_end(&regions);
+}
+
+static shb_status build(builder *b, const mesh_names *names) {
   SHB_TRY(mesh_inp_sort(&b->inp, b->deck));
   SHB_TRY(find_kind(b));
   SHB_TRY(take_volumes(b));
   SHB_TRY(take_nodes(b));
-  for (int id = 0; id < MESH_N_SETS; id++) SHB_TRY(take_group(b, names, (mesh_set_id)id));
+  for (int id = 0; id < mesh_fe_sets(b->mesh); id++) SHB_TRY(take_group(b, names, id));
+  if (names && names->n_volumes) SHB_TRY(take_regions(b, names));
   return mesh_faces_orient(b->mesh, b->deck->path);
 }
 
-shb_status mesh_inp_read(const char *path, const char *const group[MESH_N_SETS], mesh_fe *mesh) {
+shb_status mesh_inp_read(const char *path, const mesh_names *names, mesh_fe *mesh) {
   mesh_deck deck;
   memset(mesh, 0, sizeof *mesh);
+  mesh_regions_name(names, mesh);
   shb_status status = mesh_deck_open(path, &deck);
   builder    b      = {.deck = &deck, .mesh = mesh};
   if (status == SHB_OK) status = mesh_inp_cards(&deck, &b.inp);
-  if (status == SHB_OK) status = build(&b, group);
+  if (status == SHB_OK) status = build(&b, names);
   mesh_inp_free(&b.inp);
   mesh_deck_close(&deck);
   free(b.index);

@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <unistd.h>
 
 #include "mesh/inp.h"
@@ -35,7 +36,7 @@ static int by_corner(const void *a, const void *b) {
 static wanted *list_faces(const mesh_fe *mesh, int *n) {
   const mesh_topology *topology = mesh_topology_of(mesh->kind);
   size_t               total    = 0;
-  for (int s = 0; s < MESH_N_SETS; s++) total += (size_t)mesh->set[s].n;
+  for (int s = 0; s < mesh_fe_sets(mesh); s++) total += (size_t)mesh->set[s].n;
   wanted *list = malloc((total + 1) * sizeof *list);
   *n           = 0;
   for (int s = 0; list && s < MESH_N_SETS; s++)
@@ -50,8 +51,8 @@ static wanted *list_faces(const mesh_fe *mesh, int *n) {
 }
 
 /* element[set][face], label[set][face]: where each face of a group lies. */
-static void locate(const mesh_fe *mesh, const wanted *list, int n, int *const element[MESH_N_SETS],
-                   int *const label[MESH_N_SETS]) {
+static void locate(const mesh_fe *mesh, const wanted *list, int n,
+                   int *const element[MESH_MAX_SETS], int *const label[MESH_MAX_SETS]) {
   const mesh_topology *topology = mesh_topology_of(mesh->kind);
   for (int e = 0; e < mesh->n_elements; e++)
     for (int c = 0; c < topology->corners; c++) {
@@ -84,6 +85,13 @@ static void print_real(FILE *file, double value) {
   fprintf(file, ", %s", text);
 }
 
+/* Name of the set of all elements: not that of a volume. */
+static const char *body_name(const mesh_fe *mesh) {
+  for (int i = 0; i < mesh->n_regions; i++)
+    if (strcasecmp(mesh->region_name[i], "body") == 0) return "whole_body";
+  return "body";
+}
+
 static void write_body(const mesh_fe *mesh, FILE *file) {
   fprintf(file, "*NODE, NSET=nodes\n");
   for (int i = 0; i < mesh->n_nodes; i++) {
@@ -92,7 +100,8 @@ static void write_body(const mesh_fe *mesh, FILE *file) {
     fputc('\n', file);
   }
   const mesh_topology *topology = mesh_topology_of(mesh->kind);
-  fprintf(file, "*ELEMENT, TYPE=%s, ELSET=body\n", mesh->kind == MESH_HEX20 ? "C3D20R" : "C3D10");
+  fprintf(file, "*ELEMENT, TYPE=%s, ELSET=%s\n", mesh->kind == MESH_HEX20 ? "C3D20R" : "C3D10",
+          body_name(mesh));
   for (int e = 0; e < mesh->n_elements; e++) { /* a row holds 16 numbers at most */
     const int *node = mesh->connectivity + topology->nodes * (size_t)e;
     fprintf(file, "%ld", mesh->element_tag[e]);
@@ -102,35 +111,43 @@ static void write_body(const mesh_fe *mesh, FILE *file) {
   }
 }
 
+static void write_volumes(const mesh_fe *mesh, FILE *file) {
+  for (int i = 0; i < mesh->n_regions; i++) {
+    fprintf(file, "*ELSET, ELSET=%s\n", mesh->region_name[i]);
+    for (int e = 0; e < mesh->n_elements; e++)
+      if (mesh->region[e] == i) fprintf(file, "%ld\n", mesh->element_tag[e]);
+  }
+}
+
 /* The nodes of each group, for *BOUNDARY and the like. */
 static void write_node_sets(const mesh_fe *mesh, char *marked, FILE *file) {
   const size_t each = (size_t)mesh_topology_of(mesh->kind)->face_nodes;
-  for (int s = 0; s < MESH_N_SETS; s++) {
+  for (int s = 0; s < mesh_fe_sets(mesh); s++) {
     const mesh_face_set *set = &mesh->set[s];
     memset(marked, 0, (size_t)mesh->n_nodes);
     for (size_t i = 0; i < each * (size_t)set->n; i++) marked[set->nodes[i]] = 1;
-    if (set->n > 0) fprintf(file, "*NSET, NSET=%s\n", mesh_set_name((mesh_set_id)s));
+    if (set->n > 0) fprintf(file, "*NSET, NSET=%s\n", mesh_fe_set_name(mesh, s));
     for (int i = 0; i < mesh->n_nodes; i++)
       if (marked[i]) fprintf(file, "%ld\n", mesh->node_tag[i]);
   }
 }
 
-static void write_groups(const mesh_fe *mesh, int *const element[MESH_N_SETS],
-                         int *const label[MESH_N_SETS], FILE *file) {
-  for (int s = 0; s < MESH_N_SETS; s++) {
+static void write_groups(const mesh_fe *mesh, int *const element[MESH_MAX_SETS],
+                         int *const label[MESH_MAX_SETS], FILE *file) {
+  for (int s = 0; s < mesh_fe_sets(mesh); s++) {
     if (mesh->set[s].n > 0)
-      fprintf(file, "*SURFACE, NAME=%s, TYPE=ELEMENT\n", mesh_set_name((mesh_set_id)s));
+      fprintf(file, "*SURFACE, NAME=%s, TYPE=ELEMENT\n", mesh_fe_set_name(mesh, s));
     for (int f = 0; f < mesh->set[s].n; f++)
       fprintf(file, "%ld, S%d\n", mesh->element_tag[element[s][f]], label[s][f]);
   }
 }
 
 static shb_status write_all(const mesh_fe *mesh, FILE *file) {
-  int    *element[MESH_N_SETS] = {0}, *label[MESH_N_SETS] = {0}, n = 0;
+  int    *element[MESH_MAX_SETS] = {0}, *label[MESH_MAX_SETS] = {0}, n = 0;
   wanted *list     = list_faces(mesh, &n);
   char   *marked   = malloc((size_t)mesh->n_nodes + 1);
   bool    complete = list && marked;
-  for (int s = 0; s < MESH_N_SETS; s++) {
+  for (int s = 0; s < mesh_fe_sets(mesh); s++) {
     element[s] = calloc((size_t)mesh->set[s].n + 1, sizeof **element);
     label[s]   = calloc((size_t)mesh->set[s].n + 1, sizeof **label);
     complete   = complete && element[s] && label[s];
@@ -138,10 +155,11 @@ static shb_status write_all(const mesh_fe *mesh, FILE *file) {
   if (complete) {
     locate(mesh, list, n, element, label);
     write_body(mesh, file);
+    write_volumes(mesh, file);
     write_node_sets(mesh, marked, file);
     write_groups(mesh, element, label, file);
   }
-  for (int s = 0; s < MESH_N_SETS; s++) {
+  for (int s = 0; s < mesh_fe_sets(mesh); s++) {
     free(element[s]);
     free(label[s]);
   }

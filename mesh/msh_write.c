@@ -9,12 +9,19 @@
 
 #include "mesh/provenance.h"
 
+/* Tags of the volumes come after those of the groups. */
+static int volume_tag(const mesh_fe *mesh, int element) {
+  return mesh_fe_sets(mesh) + 1 + (mesh->region ? mesh->region[element] : 0);
+}
+
 static void write_groups(const mesh_fe *mesh, FILE *file) {
-  int groups = 1;
-  for (int s = 0; s < MESH_N_SETS; s++) groups += mesh->set[s].n > 0;
-  fprintf(file, "$PhysicalNames\n%d\n3 %d \"body\"\n", groups, MESH_N_SETS + 1);
-  for (int s = 0; s < MESH_N_SETS; s++)
-    if (mesh->set[s].n) fprintf(file, "2 %d \"%s\"\n", s + 1, mesh_set_name((mesh_set_id)s));
+  int sets = mesh_fe_sets(mesh), volumes = mesh->n_regions ? mesh->n_regions : 1, groups = volumes;
+  for (int s = 0; s < sets; s++) groups += mesh->set[s].n > 0;
+  fprintf(file, "$PhysicalNames\n%d\n", groups);
+  for (int i = 0; i < volumes; i++)
+    fprintf(file, "3 %d \"%s\"\n", sets + 1 + i, mesh->n_regions ? mesh->region_name[i] : "body");
+  for (int s = 0; s < sets; s++)
+    if (mesh->set[s].n) fprintf(file, "2 %d \"%s\"\n", s + 1, mesh_fe_set_name(mesh, s));
   fprintf(file, "$EndPhysicalNames\n");
 }
 
@@ -38,15 +45,15 @@ static void write_one(const mesh_fe *mesh, long tag, int type, int group, const 
 static void write_elements(const mesh_fe *mesh, FILE *file) {
   const mesh_topology *topology = mesh_topology_of(mesh->kind);
   long                 total = mesh->n_elements, last = 0;
-  for (int s = 0; s < MESH_N_SETS; s++) total += mesh->set[s].n;
+  for (int s = 0; s < mesh_fe_sets(mesh); s++) total += mesh->set[s].n;
   fprintf(file, "$Elements\n%ld\n", total);
   for (int e = 0; e < mesh->n_elements; e++) {
     long tag = mesh->element_tag[e];
     last     = tag > last ? tag : last;
-    write_one(mesh, tag, topology->gmsh, MESH_N_SETS + 1,
+    write_one(mesh, tag, topology->gmsh, volume_tag(mesh, e),
               mesh->connectivity + topology->nodes * (size_t)e, topology->nodes, file);
   }
-  for (int s = 0; s < MESH_N_SETS; s++)
+  for (int s = 0; s < mesh_fe_sets(mesh); s++)
     for (int f = 0; f < mesh->set[s].n; f++)
       write_one(mesh, ++last, topology->gmsh_face, s + 1,
                 mesh->set[s].nodes + topology->face_nodes * (size_t)f, topology->face_nodes, file);

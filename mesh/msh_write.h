@@ -5,7 +5,7 @@
 #include "mesh/fe_mesh.h"
 #include "mesh/publish.h"
 
-/* Write gmsh 2.2 text: nodes to the last bit, elements, the groups as physical surfaces, the volume as group body; the
+/* Write gmsh 2.2 text: nodes to the last bit, elements, the groups as physical surfaces, the volumes, or the one volume as group body; the
  * provenance after it. Tags as in the mesh. SHB_ERR_IO; nothing is left behind then. */
 shb_status mesh_msh_write(const mesh_fe *mesh, const char *path, const shb_provenance *provenance);
 

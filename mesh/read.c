@@ -64,7 +64,7 @@ static shb_status check_file(const char *path) {
   return status;
 }
 
-static shb_status read_msh(const char *path, const char *const group[MESH_N_SETS], mesh_fe *mesh) {
+static shb_status read_msh(const char *path, const mesh_names *names, mesh_fe *mesh) {
   SHB_TRY(check_file(path));
   mesh_kernel kernel;
   SHB_TRY(mesh_kernel_open(&kernel));
@@ -74,35 +74,39 @@ static shb_status read_msh(const char *path, const char *const group[MESH_N_SETS
   shb_status heard  = mesh_kernel_heard(path); /* gmsh reads on where an element lacks its nodes */
   shb_status status = ierr              ? mesh_kernel_fail(SHB_ERR_INPUT, __FILE__, __LINE__, path)
                       : heard != SHB_OK ? heard
-                                        : mesh_import(path, group, mesh);
+                                        : mesh_import(path, names, mesh);
   mesh_kernel_close(&kernel);
   return status;
 }
 
-shb_status mesh_fe_read_named(const char *path, const char *const group[MESH_N_SETS],
-                              mesh_fe *mesh) {
+shb_status mesh_fe_read_named(const char *path, const mesh_names *names, mesh_fe *mesh) {
   memset(mesh, 0, sizeof *mesh);
   bool msh = mesh_format_of(path) == MESH_FORMAT_MSH;
   SHB_CHECK(msh || mesh_format_of(path) == MESH_FORMAT_INP, SHB_ERR_INPUT,
             "%s: not a mesh file; its name must end in .msh (gmsh) or .inp (Abaqus, CalculiX)",
             path);
-  SHB_TRY(msh ? read_msh(path, group, mesh) : mesh_inp_read(path, group, mesh));
+  SHB_TRY(msh ? read_msh(path, names, mesh) : mesh_inp_read(path, names, mesh));
   shb_status status = mesh_jacobian_check(mesh, path);
   if (status != SHB_OK) mesh_fe_free(mesh);
   return status;
 }
 
-shb_status mesh_fe_check_root(const mesh_fe *mesh, const char *name) {
+shb_status mesh_fe_check_groups(const mesh_fe *mesh, const char *name) {
   SHB_CHECK(mesh->set[MESH_ROOT].n > 0, SHB_ERR_INPUT,
             "%s: group root is absent or empty; a physical surface (in .inp a *SURFACE or *NSET) "
             "of that name, or a rule in mesh.groups, says which faces are clamped",
             name);
+  for (int s = MESH_N_SETS; s < mesh_fe_sets(mesh); s++)
+    SHB_CHECK(mesh->set[s].n > 0, SHB_ERR_INPUT,
+              "%s: group %s is absent or empty; a physical surface (in .inp a *SURFACE or *NSET) "
+              "of that name, or a rule in mesh.groups, says which faces it is",
+              name, mesh_fe_set_name(mesh, s));
   return SHB_OK;
 }
 
 shb_status mesh_fe_read(const char *path, mesh_fe *mesh) {
   SHB_TRY(mesh_fe_read_named(path, NULL, mesh));
-  shb_status status = mesh_fe_check_root(mesh, path);
+  shb_status status = mesh_fe_check_groups(mesh, path);
   if (status != SHB_OK) mesh_fe_free(mesh);
   return status;
 }

@@ -8,9 +8,32 @@
 #include "mesh/faces.h"
 #include "mesh/triangle.h"
 
-void mesh_rules_names(const mesh_rule rule[MESH_N_SETS], const char *name[MESH_N_SETS]) {
+mesh_names mesh_rules_names(const mesh_rules *rules, double unit) {
+  mesh_names names = {.n_more = rules->n_more, .n_volumes = rules->n_volumes};
   for (int s = 0; s < MESH_N_SETS; s++)
-    name[s] = rule[s].kind == MESH_RULE_NAME ? rule[s].name : NULL;
+    names.set[s] = rules->usual[s].kind == MESH_RULE_NAME ? rules->usual[s].name : NULL;
+  for (int i = 0; i < rules->n_more; i++) {
+    const mesh_named_rule *more = &rules->more[i];
+    names.more[i].label         = more->name;
+    names.more[i].name          = more->rule.kind == MESH_RULE_NAME ? more->rule.name : more->name;
+  }
+  for (int i = 0; i < rules->n_volumes; i++) {
+    const mesh_named_rule *volume = &rules->volume[i];
+    names.volume[i].label         = volume->name;
+    names.volume[i].name = volume->rule.kind == MESH_RULE_NAME ? volume->rule.name : volume->name;
+    names.volume[i].near = volume->rule.kind == MESH_RULE_NEAREST;
+    for (int d = 0; d < 3; d++) names.volume[i].at[d] = volume->rule.at[d] / unit;
+  }
+  return names;
+}
+
+mesh_names mesh_rules_labels(const mesh_rules *rules) {
+  mesh_names names = {.n_more = rules->n_more, .n_volumes = rules->n_volumes};
+  for (int i = 0; i < rules->n_more; i++)
+    names.more[i].label = names.more[i].name = rules->more[i].name;
+  for (int i = 0; i < rules->n_volumes; i++)
+    names.volume[i].label = names.volume[i].name = rules->volume[i].name;
+  return names;
 }
 
 /* What the rules look at. */
@@ -156,18 +179,17 @@ static shb_status take_nearest(const surface *s, const mesh_rule *rule, char *ta
   return SHB_OK;
 }
 
-static shb_status refuse_none(const surface *s, const mesh_rule *rule, mesh_set_id id,
-                              double least) {
+static shb_status refuse_none(const surface *s, const mesh_rule *rule, int id, double least) {
   if (rule->kind == MESH_RULE_PLANE)
     SHB_FAIL(SHB_ERR_INPUT,
              "mesh.groups.%s: %s has no face in the plane through (%g, %g, %g) m; the nearest is "
              "%.3g m off, %.3g m are allowed (tolerance)",
-             mesh_set_name(id), s->file, rule->at[0], rule->at[1], rule->at[2], least,
+             mesh_fe_set_name(s->mesh, id), s->file, rule->at[0], rule->at[1], rule->at[2], least,
              rule->tolerance);
   SHB_FAIL(SHB_ERR_INPUT,
            "mesh.groups.%s: %s has no face at radius %g m; the nearest is %.3g m off, %.3g m are "
            "allowed (tolerance)",
-           mesh_set_name(id), s->file, rule->radius, least, rule->tolerance);
+           mesh_fe_set_name(s->mesh, id), s->file, rule->radius, least, rule->tolerance);
 }
 
 static shb_status copy_taken(const surface *s, const char *taken, mesh_face_set *set) {
@@ -181,7 +203,7 @@ static shb_status copy_taken(const surface *s, const char *taken, mesh_face_set 
   return SHB_OK;
 }
 
-static shb_status apply_one(const surface *s, const mesh_rule *rule, mesh_set_id id, mesh_fe *mesh,
+static shb_status apply_one(const surface *s, const mesh_rule *rule, int id, mesh_fe *mesh,
                             char *taken) {
   memset(taken, 0, (size_t)s->outer.n);
   if (rule->kind == MESH_RULE_NEAREST) {
@@ -189,29 +211,33 @@ static shb_status apply_one(const surface *s, const mesh_rule *rule, mesh_set_id
   } else {
     double least;
     SHB_CHECK(rule->kind != MESH_RULE_PLANE || length(rule->normal) > 0, SHB_ERR_INPUT,
-              "mesh.groups.%s.normal: has no direction", mesh_set_name(id));
+              "mesh.groups.%s.normal: has no direction", mesh_fe_set_name(s->mesh, id));
     if (take_fitting(s, rule, taken, &least) == 0) return refuse_none(s, rule, id, least);
   }
   return copy_taken(s, taken, &mesh->set[id]);
+}
+
+static const mesh_rule *rule_of(const mesh_rules *rules, int set) {
+  return set < MESH_N_SETS ? &rules->usual[set] : &rules->more[set - MESH_N_SETS].rule;
 }
 
 static bool has_rule(const mesh_rule *rule) {
   return rule->kind != MESH_RULE_NONE && rule->kind != MESH_RULE_NAME;
 }
 
-shb_status mesh_rules_apply(const mesh_rule rule[MESH_N_SETS], mesh_axis axis, const char *file,
+shb_status mesh_rules_apply(const mesh_rules *rules, mesh_axis axis, const char *file,
                             mesh_fe *mesh) {
   surface s = {.mesh = mesh, .topology = mesh_topology_of(mesh->kind), .file = file, .axis = axis};
   bool    any = false;
-  for (int id = 0; id < MESH_N_SETS; id++) any = any || has_rule(&rule[id]);
+  for (int id = 0; id < mesh_fe_sets(mesh); id++) any = any || has_rule(rule_of(rules, id));
   if (!any) return SHB_OK;
   SHB_TRY(mesh_faces_outer(mesh, NULL, &s.outer));
   char      *taken = malloc((size_t)s.outer.n + 1);
   shb_status status =
       taken ? SHB_OK
             : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "%s: no memory for its groups", file);
-  for (int id = 0; id < MESH_N_SETS && status == SHB_OK; id++)
-    if (has_rule(&rule[id])) status = apply_one(&s, &rule[id], (mesh_set_id)id, mesh, taken);
+  for (int id = 0; id < mesh_fe_sets(mesh) && status == SHB_OK; id++)
+    if (has_rule(rule_of(rules, id))) status = apply_one(&s, rule_of(rules, id), id, mesh, taken);
   free(taken);
   free(s.outer.nodes);
   return status;

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/format.h"
 #include "mesh/import.h"
 #include "mesh/jacobian.h"
 
@@ -37,6 +38,10 @@ static shb_status load(const mesh_source *source) {
   GMSH_TRY(source->path, gmshModelGetEntities(&tags, &n, 3, &ierr));
   gmshFree(tags);
   SHB_CHECK(n > 0, SHB_ERR_INPUT, "%s: holds no solid (volume)", source->path);
+  if (n == 2 || mesh_format_of(source->path) == MESH_FORMAT_GEO) return SHB_OK;
+  /* solids that touch each have a face of their own there: one mesh needs one face */
+  GMSH_TRY(source->path, gmshModelOccRemoveAllDuplicates(&ierr));
+  GMSH_TRY(source->path, gmshModelOccSynchronize(&ierr));
   return SHB_OK;
 }
 
@@ -88,10 +93,9 @@ static shb_status straighten(mesh_solid *solid, mesh_fe *mesh) {
 }
 
 shb_status mesh_solid_mesh(mesh_solid *solid, mesh_fe *mesh) {
-  const char *name[MESH_N_SETS];
+  mesh_names names = mesh_rules_names(&solid->source->rules, solid->source->unit);
   SHB_TRY(generate(solid));
-  mesh_rules_names(solid->source->rule, name);
-  SHB_TRY(mesh_import(solid->source->path, name, mesh));
+  SHB_TRY(mesh_import(solid->source->path, &names, mesh));
   shb_status status = straighten(solid, mesh);
   if (status != SHB_OK) mesh_fe_free(mesh);
   return status;
@@ -135,8 +139,7 @@ static shb_status inspect(const mesh_solid *solid, const mesh_fe *mesh, const ch
   return SHB_OK;
 }
 
-static shb_status find_patch(const mesh_solid *solid, const mesh_fe *mesh, mesh_set_id id,
-                             patch *p) {
+static shb_status find_patch(const mesh_solid *solid, const mesh_fe *mesh, int id, patch *p) {
   const mesh_face_set *set  = &mesh->set[id];
   const size_t         each = (size_t)mesh_topology_of(mesh->kind)->face_nodes;
   int                 *tags = NULL;

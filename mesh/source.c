@@ -10,14 +10,13 @@
 static shb_status finish(const mesh_source *source, mesh_fe *mesh) {
   for (size_t i = 0; source->unit != 1 && i < 3 * (size_t)mesh->n_nodes; i++)
     mesh->coordinates[i] *= source->unit;
-  SHB_TRY(mesh_rules_apply(source->rule, source->axis, source->path, mesh));
-  return mesh_fe_check_root(mesh, source->path);
+  SHB_TRY(mesh_rules_apply(&source->rules, source->axis, source->path, mesh));
+  return mesh_fe_check_groups(mesh, source->path);
 }
 
 static shb_status read_mesh(const mesh_source *source, mesh_fe *mesh) {
-  const char *name[MESH_N_SETS];
-  mesh_rules_names(source->rule, name);
-  SHB_TRY(mesh_fe_read_named(source->path, name, mesh));
+  mesh_names names = mesh_rules_names(&source->rules, source->unit);
+  SHB_TRY(mesh_fe_read_named(source->path, &names, mesh));
   shb_status status = finish(source, mesh);
   if (status != SHB_OK) mesh_fe_free(mesh);
   return status;

@@ -11,7 +11,7 @@ typedef struct {
   double      size; /* m, element size of a solid; 0: as the file says (.geo) */
   mesh_axis   axis;
   int blades; /* contact faces of a solid are made to match after this sector; 0: contact to ground */
-  mesh_rule rule[MESH_N_SETS];
+  mesh_rules rules;
 } mesh_source;
 
 /* Read, or mesh, and give every group its faces; coordinates in m. SHB_ERR_INPUT, SHB_ERR_IO, SHB_INTERRUPTED. */

@@ -76,10 +76,15 @@ shb_status modal_deflect(const fem_body *body, fem_system *system, const modal_c
   SHB_CHECK(out->at.displacement, SHB_INTERRUPTED, "interrupted");
   sample(body, to, interface, out);
   SHB_TRY(find_statics(body, system->comm, rank, out));
-  for (int e = 0; rank == 0 && e < body->mesh->n_elements; e++)
-    out->greatest_stress = fmax(out->greatest_stress, out->stress[e]);
-  MPI_Bcast(&out->greatest_stress, 1, MPI_DOUBLE, 0, system->comm);
-  SHB_CHECK(out->greatest_stress < greatest_strain * body->material->E, SHB_ERR_INPUT,
+  double greatest[2] = {0, 0}; /* Pa; strain */
+  for (int e = 0; rank == 0 && e < body->mesh->n_elements; e++) {
+    double E    = fem_material_at(body->material, body->mesh, e)->E;
+    greatest[0] = fmax(greatest[0], out->stress[e]);
+    greatest[1] = fmax(greatest[1], out->stress[e] / E);
+  }
+  MPI_Bcast(greatest, 2, MPI_DOUBLE, 0, system->comm);
+  out->greatest_stress = greatest[0];
+  SHB_CHECK(greatest[1] < greatest_strain, SHB_ERR_INPUT,
             "rotor.%s: at %.6g rad/s the static stress reaches %.3g MPa, above a tenth of "
             "material.E: no elastic blade bears that; give a lower load, or check material and "
             "the mesh's unit (m)",

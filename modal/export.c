@@ -8,6 +8,14 @@
 
 enum { SAMPLES = 201, MAX_BYTES = 64 << 20 };
 
+static shb_status export_regions(hid_t file, const mesh_fe *mesh) {
+  const char *name[MESH_MAX_VOLUMES];
+  for (int i = 0; i < mesh->n_regions; i++) name[i] = mesh->region_name[i];
+  SHB_TRY(h5_write_strings(file, "mesh/volume", mesh->n_regions, name, "volumes by material"));
+  return h5_write_int(file, "mesh/material", H5_SHAPE((hsize_t)mesh->n_elements), mesh->region, "-",
+                      "volume that each element lies in, from 0");
+}
+
 shb_status modal_export_mesh(hid_t file, const mesh_fe *mesh) {
   const mesh_topology *topology = mesh_topology_of(mesh->kind);
   char                 text[80];
@@ -18,15 +26,15 @@ shb_status modal_export_mesh(hid_t file, const mesh_fe *mesh) {
                        H5_SHAPE((hsize_t)mesh->n_elements, (hsize_t)topology->nodes),
                        mesh->connectivity, "-", text));
   snprintf(text, sizeof text, "nodes of each %s, outward", topology->face_name);
-  for (int s = 0; s < MESH_N_SETS; s++) {
-    char path[64];
+  for (int s = 0; s < mesh_fe_sets(mesh); s++) {
+    char path[128];
     if (mesh->set[s].n == 0) continue;
-    snprintf(path, sizeof path, "mesh/sets/%s", mesh_set_name((mesh_set_id)s));
+    snprintf(path, sizeof path, "mesh/sets/%s", mesh_fe_set_name(mesh, s));
     SHB_TRY(h5_write_int(file, path,
                          H5_SHAPE((hsize_t)mesh->set[s].n, (hsize_t)topology->face_nodes),
                          mesh->set[s].nodes, "-", text));
   }
-  return SHB_OK;
+  return mesh->region ? export_regions(file, mesh) : SHB_OK;
 }
 
 shb_status modal_export_shapes(hid_t file, int n_modes, int n_nodes, const double *shape) {

@@ -140,8 +140,9 @@ static shb_status solve_body(MPI_Comm comm, const mesh_fe *mesh, const modal_set
   fem_element *element = malloc(sizeof *element);
   SHB_TRY(
       agree(comm, element ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory")));
-  fem_body body = {
-      mesh, &settings->material, element, {settings->axis, settings->speed}, settings->pressure};
+  fem_material materials[MESH_MAX_VOLUMES] = {settings->material};
+  for (int i = 0; i < settings->n_regions; i++) materials[i] = settings->region[i].material;
+  fem_body body = {mesh, materials, element, {settings->axis, settings->speed}, settings->pressure};
   fem_rules  rules  = settings->full_integration ? FEM_FULL : FEM_STANDARD;
   shb_status status = fem_fault_status(fem_element_create(mesh->kind, rules, element));
   if (status == SHB_OK) status = solve(comm, &body, settings, to, progress, result);
@@ -222,7 +223,11 @@ static shb_status publish(const char *path, const mesh_fe *mesh, const modal_res
 }
 
 static shb_status read_mesh(const char *path, const modal_settings *settings, mesh_fe *mesh) {
-  SHB_TRY(mesh_fe_read(path, mesh));
+  mesh_names names = {.n_volumes = settings->n_regions};
+  for (int i = 0; i < settings->n_regions; i++)
+    names.volume[i].label = names.volume[i].name = settings->region[i].name;
+  SHB_TRY(mesh_fe_read_named(path, &names, mesh));
+  SHB_TRY(mesh_fe_check_groups(mesh, path));
   if (mesh->set[MESH_CONTACT_RIGHT].n == 0 || mesh->set[MESH_CONTACT_LEFT].n == 0) return SHB_OK;
   return mesh_fe_orient(mesh, settings->axis);
 }

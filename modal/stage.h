@@ -19,21 +19,29 @@ typedef struct {
   double      at[3]; /* m, mesh axes */
 } modal_probe;
 
+/* A volume of the mesh and what it is made of. */
 typedef struct {
-  fem_material       material;
-  mesh_axis          axis;
-  int                blades;
-  double             speed;    /* rad/s; 0: at rest */
-  double             pressure; /* Pa, steady, on group load, into the deformed surface */
-  int                modes;
-  modal_damping      damping;
-  bool               full_integration; /* stiffness of hexahedra with 3x3x3 points, not 2x2x2 */
-  fem_load           load;
-  int                n_probes;
-  const modal_probe *probe;
-  bool               to_ground;
-  int                points;    /* contact patches, 0: one a node */
-  const double      *psi, *phi; /* rad, to be checked against the faces; NULL: not given */
+  const char  *name;
+  fem_material material;
+} modal_region;
+
+typedef struct {
+  fem_material        material;
+  int                 n_regions; /* 0: material everywhere */
+  const modal_region *region;
+  mesh_axis           axis;
+  int                 blades;
+  double              speed;    /* rad/s; 0: at rest */
+  double              pressure; /* Pa, steady, on group load, into the deformed surface */
+  int                 modes;
+  modal_damping       damping;
+  bool                full_integration; /* stiffness of hexahedra with 3x3x3 points, not 2x2x2 */
+  fem_load            load;
+  int                 n_probes;
+  const modal_probe  *probe;
+  bool                to_ground;
+  int                 points;    /* contact patches, 0: one a node */
+  const double       *psi, *phi; /* rad, to be checked against the faces; NULL: not given */
 } modal_settings;
 
 /* All that the stage computed. model is the same on every rank. */

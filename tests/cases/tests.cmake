@@ -1,6 +1,6 @@
 shb_test(cases units fast shb_case)
 shb_test(cases keys fast shb_case)
-foreach(noun case faults settings motion)
+foreach(noun case faults settings lists motion)
   shb_test(cases ${noun} fast shb_case)
   target_sources(test_cases_${noun} PRIVATE cases/scratch.c)
 endforeach()

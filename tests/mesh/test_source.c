@@ -175,10 +175,10 @@ static void rules_find_the_faces(void **state) {
       assert_ok(format ? mesh_inp_write(&box, source.path) : box_write(&box, source.path));
       mesh_fe_free(&box);
       refused(&source, "group root is absent");
-      source.rule[MESH_ROOT] = (mesh_rule){
+      source.rules.usual[MESH_ROOT] = (mesh_rule){
           .kind = MESH_RULE_PLANE, .at = {0, 9, 9}, .normal = {-3, 0, 0}, .tolerance = 1e-6};
-      source.rule[MESH_LOAD] = (mesh_rule){.kind = MESH_RULE_NEAREST, .at = {.1, .02, .03}};
-      source.rule[MESH_CONTACT_RIGHT] =
+      source.rules.usual[MESH_LOAD] = (mesh_rule){.kind = MESH_RULE_NEAREST, .at = {.1, .02, .03}};
+      source.rules.usual[MESH_CONTACT_RIGHT] =
           (mesh_rule){.kind = MESH_RULE_NEAREST, .at = {.1, -.001, .012}};
       assert_ok(mesh_source_read(&source, NULL, &mesh));
       assert_area(&mesh, MESH_ROOT, -size[1] * size[2], 0, 0);
@@ -186,10 +186,10 @@ static void rules_find_the_faces(void **state) {
       assert_area(&mesh, MESH_CONTACT_RIGHT, 0, -size[0] * size[2], 0);
       assert_int_equal(mesh.set[MESH_CONTACT_LEFT].n, 0);
       mesh_fe_free(&mesh);
-      source.rule[MESH_ROOT].at[0] = -.001;
+      source.rules.usual[MESH_ROOT].at[0] = -.001;
       refused(&source, "mesh.groups.root: ");
       refused(&source, "the nearest is 0.001 m off");
-      source.rule[MESH_ROOT].normal[0] = 0;
+      source.rules.usual[MESH_ROOT].normal[0] = 0;
       refused(&source, "has no direction");
     }
 }
@@ -209,15 +209,15 @@ static void curved_faces_are_found(void **state) {
   }
   box.set[MESH_ROOT].n = box.set[MESH_LOAD].n = 0;
   assert_ok(box_write(&box, source.path));
-  source.rule[MESH_ROOT] = (mesh_rule){.kind = MESH_RULE_RADIUS, .radius = .31, .tolerance = 1e-9};
-  source.rule[MESH_LOAD] = (mesh_rule){.kind = MESH_RULE_NEAREST, .at = {.1, 0, .2}};
+  source.rules.usual[MESH_ROOT] = (mesh_rule){.kind = MESH_RULE_RADIUS, .radius = .31, .tolerance = 1e-9};
+  source.rules.usual[MESH_LOAD] = (mesh_rule){.kind = MESH_RULE_NEAREST, .at = {.1, 0, .2}};
   assert_ok(mesh_source_read(&source, NULL, &mesh));
   assert_int_equal(mesh.set[MESH_ROOT].n, 2 * many[0] * many[1]);
   assert_int_equal(mesh.set[MESH_LOAD].n, 2 * many[0] * many[1]);
   assert_memory_equal(mesh.set[MESH_ROOT].nodes, mesh.set[MESH_LOAD].nodes,
                       6 * (size_t)mesh.set[MESH_ROOT].n * sizeof(int));
   mesh_fe_free(&mesh);
-  source.rule[MESH_ROOT].radius = .32;
+  source.rules.usual[MESH_ROOT].radius = .32;
   refused(&source, "no face at radius 0.32 m; the nearest is 0.01 m off");
   mesh_fe_free(&box);
 }
@@ -228,8 +228,8 @@ static void groups_may_have_other_names(void **state) {
   mesh_source source = {.path = scratch("named.inp"), .unit = 1, .axis = MESH_AXIS_Z};
   assert_ok(box_mesh(size, cells, &box));
   assert_ok(mesh_inp_write(&box, source.path));
-  source.rule[MESH_ROOT].kind = MESH_RULE_NAME;
-  strcpy(source.rule[MESH_ROOT].name, "load");
+  source.rules.usual[MESH_ROOT].kind = MESH_RULE_NAME;
+  strcpy(source.rules.usual[MESH_ROOT].name, "load");
   assert_ok(mesh_source_read(&source, NULL, &mesh));
   assert_area(&mesh, MESH_ROOT, 0, 0, size[0] * size[1]);
   mesh_fe_free(&mesh);
@@ -264,9 +264,9 @@ static void solids_are_meshed(void **state) {
   for (int i = 0; i < 3; i++) {
     mesh_fe     mesh;
     mesh_source source = {.path = scratch(name[i]), .unit = 1e-3, .size = .01, .axis = MESH_AXIS_X};
-    source.rule[MESH_ROOT] = (mesh_rule){
+    source.rules.usual[MESH_ROOT] = (mesh_rule){
         .kind = MESH_RULE_PLANE, .at = {0, 0, .3}, .normal = {0, 0, 1}, .tolerance = 1e-6};
-    source.rule[MESH_LOAD] = (mesh_rule){.kind = MESH_RULE_NEAREST, .at = {.05, 0, .32}};
+    source.rules.usual[MESH_LOAD] = (mesh_rule){.kind = MESH_RULE_NEAREST, .at = {.05, 0, .32}};
     assert_ok(mesh_source_read(&source, NULL, &mesh));
     assert_near(volume(&mesh), .04 * .02 * .05, 1e-10);
     assert_in_range(mesh.n_elements, 100, 2000);
@@ -294,10 +294,10 @@ static void sides_are_made_to_match(void **state) {
       "SetFactory(\"OpenCASCADE\");\nRectangle(1) = {0, .3, 0, .05, .04};\n"
       "Extrude {{1, 0, 0}, {0, 0, 0}, 2*Pi/23} { Surface{1}; }\n"
       "MeshSize{ PointsOf{ Surface{1}; } } = .007;\n");
-  source.rule[MESH_ROOT] = (mesh_rule){.kind = MESH_RULE_RADIUS, .radius = .3, .tolerance = 1e-6};
-  source.rule[MESH_CONTACT_RIGHT] = (mesh_rule){.kind = MESH_RULE_NEAREST, .at = {.02, .32, 0}};
+  source.rules.usual[MESH_ROOT] = (mesh_rule){.kind = MESH_RULE_RADIUS, .radius = .3, .tolerance = 1e-6};
+  source.rules.usual[MESH_CONTACT_RIGHT] = (mesh_rule){.kind = MESH_RULE_NEAREST, .at = {.02, .32, 0}};
   double angle = 2 * M_PI / BLADES, r = .32;
-  source.rule[MESH_CONTACT_LEFT] =
+  source.rules.usual[MESH_CONTACT_LEFT] =
       (mesh_rule){.kind = MESH_RULE_NEAREST, .at = {.02, r * cos(angle), r * sin(angle)}};
   for (int tied = 0; tied < 2; tied++) {
     int pairs = 0, *right = NULL, *left = NULL;

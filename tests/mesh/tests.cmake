@@ -8,6 +8,8 @@ shb_test(mesh inp fast tests_box)
 shb_test(mesh pairing fast tests_box)
 shb_test(mesh source fast tests_box ${GMSH_LIBRARY})
 target_include_directories(test_mesh_source PRIVATE ${GMSH_INCLUDE})
+shb_test(mesh regions fast tests_box ${GMSH_LIBRARY})
+target_include_directories(test_mesh_regions PRIVATE ${GMSH_INCLUDE})
 shb_test(mesh blade fast shb_mesh)
 shb_test(mesh sweep fast shb_mesh)
 

@@ -81,6 +81,15 @@ static void write_crystal(FILE *deck) {
   fprintf(deck, "*DENSITY\n8500\n*SOLID SECTION, ELSET=body, MATERIAL=CRYSTAL, ORIENTATION=AXES\n");
 }
 
+/* One material a region of the mesh. */
+static void write_parts(const mesh_fe *mesh, const fem_material *part, FILE *deck) {
+  for (int i = 0; i < mesh->n_regions; i++)
+    fprintf(deck,
+            "*MATERIAL, NAME=PART%d\n*ELASTIC\n%.13g, %.13g\n*DENSITY\n%.13g\n"
+            "*SOLID SECTION, ELSET=%s, MATERIAL=PART%d\n",
+            i, part[i].E, part[i].nu, part[i].rho, mesh->region_name[i], i);
+}
+
 static void write_material(const fem_material *material, FILE *deck) {
   if (material->anisotropic) {
     write_crystal(deck);
@@ -102,7 +111,10 @@ static void write_deck(const element_kind *element, const mesh_fe *mesh,
   FILE *deck = fopen(path, "a");
   assert_non_null(deck);
   fprintf(deck, "*BOUNDARY\nroot, 1, 3\n");
-  write_material(material, deck);
+  if (mesh->region)
+    write_parts(mesh, material, deck);
+  else
+    write_material(material, deck);
   if (speed != 0)
     fprintf(deck,
             "*STEP, NLGEOM\n*STATIC\n0.25, 1., 1e-5, 0.25\n*CONTROLS, PARAMETERS=FIELD\n"
@@ -167,18 +179,23 @@ static void run_own(const mesh_fe *mesh, const fem_material *material, fem_rules
 }
 
 /* Eigenvalues have seven digits in blade.dat: frequencies are good to 2.5e-7. */
-static void compare(const element_kind *element, const fem_material *material) {
+static void compare_on(const element_kind *element, const mesh_fe *mesh,
+                       const fem_material *material) {
   const double speed[] = {0, 400, 1000};
-  mesh_fe      mesh    = make_blade(element->kind);
   for (int s = 0; s < 3; s++) {
     double own[MODES], other[MODES], worst = 0;
-    run_own(&mesh, material, element->rules, speed[s], 0, own, NULL);
-    run_calculix(element, &mesh, material, speed[s], 0, other);
+    run_own(mesh, material, element->rules, speed[s], 0, own, NULL);
+    run_calculix(element, mesh, material, speed[s], 0, other);
     for (int i = 0; i < MODES; i++) worst = fmax(worst, fabs(own[i] / other[i] - 1));
     print_message("%s, %g rad/s: first mode %.7g Hz, CalculiX %.7g; six modes to %.1e\n",
                   element->name, speed[s], own[0], other[0], worst);
     for (int i = 0; i < MODES; i++) check_close(own[i], other[i], 1e-6, "frequency");
   }
+}
+
+static void compare(const element_kind *element, const fem_material *material) {
+  mesh_fe mesh = make_blade(element->kind);
+  compare_on(element, &mesh, material);
   mesh_fe_free(&mesh);
 }
 
@@ -257,6 +274,32 @@ static void crystals_agree(void **state) {
   compare(&(element_kind){"C3D20R", MESH_HEX20, FEM_CALCULIX}, &material);
 }
 
+/* A steel blade with a tip of titanium, twice as light. */
+static void two_materials_agree(void **state) {
+  (void)state;
+  const fem_material parts[]   = {steel, {.E = 1.14e11, .nu = .33, .rho = 4430}};
+  const element_kind element[] = {{"C3D10", MESH_TET10, FEM_CALCULIX},
+                                  {"C3D20R", MESH_HEX20, FEM_CALCULIX}};
+  for (int k = 0; k < 2; k++) {
+    mesh_fe              mesh     = make_blade(element[k].kind);
+    const mesh_topology *topology = mesh_topology_of(mesh.kind);
+    mesh.n_regions                = 2;
+    mesh.region_name              = calloc(2, sizeof *mesh.region_name);
+    mesh.region                   = malloc((size_t)mesh.n_elements * sizeof(int));
+    assert_true(mesh.region_name && mesh.region);
+    strcpy(mesh.region_name[0], "shank");
+    strcpy(mesh.region_name[1], "tip");
+    for (int e = 0; e < mesh.n_elements; e++) {
+      double x = 0;
+      for (int i = 0; i < topology->corners; i++)
+        x += mesh.coordinates[3 * mesh.connectivity[topology->nodes * e + i]] / topology->corners;
+      mesh.region[e] = x > hub + .6 * size[0];
+    }
+    compare_on(&element[k], &mesh, parts);
+    mesh_fe_free(&mesh);
+  }
+}
+
 static int make_folder(void **state) {
   (void)state;
   return mkdtemp(folder) ? 0 : -1;
@@ -271,9 +314,9 @@ static int remove_folder(void **state) {
 
 int main(int argc, char **argv) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(tetrahedra_agree), cmocka_unit_test(reduced_hexahedra_agree),
+      cmocka_unit_test(tetrahedra_agree),     cmocka_unit_test(reduced_hexahedra_agree),
       cmocka_unit_test(full_hexahedra_agree), cmocka_unit_test(crystals_agree),
-      cmocka_unit_test(pressure_agrees)};
+      cmocka_unit_test(pressure_agrees),      cmocka_unit_test(two_materials_agree)};
   if (argc < 2) return 77;
   program = argv[1];
   if (SlepcInitialize(NULL, NULL, NULL, NULL)) return 1;

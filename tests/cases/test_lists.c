@@ -1,0 +1,137 @@
+/* Keys that are lists of mappings: materials by volumes, and what goes with them. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "cases/case.h"
+#include "scratch.h"
+
+enum { ALL = CASE_MESH | CASE_MODAL | CASE_MHB };
+
+static const char head[] =
+    "mesh:\n"                                           /* 1 */
+    "  file: b.msh\n"                                   /* 2 */
+    "  groups: {airfoil: {nearest: [0, 1 mm, 0.4]}}\n"; /* 3 */
+
+static const char materials[] =
+    "materials:\n"                                                    /* 4 */
+    "  - {group: root part, E: 207 GPa, nu: 0.29, rho: 7.85 g/cm3}\n" /* 5 */
+    "  - {group: airfoil, E: 127 GPa, nu: 0.38, G: 120 GPa, rho: 8500, axis_1: [0, 0, "
+    "2]}\n"; /* 6 */
+
+static const char rest[] =
+    "rotor: {axis: x}\n"
+    "modal: {damping: 0.2 %}\n"
+    "excitation: {pressure: 1 Pa}\n"
+    "contact: {to: ground, mu: 0.4, ku: 0.5, kv: 0.8, n0: 1}\n"
+    "mhb: {frequency: [0.14, 0.25]}\n";
+
+/* *said is malloc'ed. */
+static shb_status judge(const char *text, char **said, case_file *file) {
+  char   folder[SCRATCH_PATH], path[2 * SCRATCH_PATH];
+  size_t size = 0;
+  scratch_create(folder);
+  scratch_write(folder, "b.msh", "x", 1);
+  scratch_write(folder, "c.yaml", text, strlen(text));
+  snprintf(path, sizeof path, "%s/c.yaml", folder);
+  FILE      *errors = open_memstream(said, &size);
+  shb_status status = case_read(path, ALL, errors, file);
+  fclose(errors);
+  scratch_remove(folder);
+  return status;
+}
+
+/* The case with one change; the first error, after the file's name, and their number. */
+typedef struct {
+  const char *from, *to, *says;
+  int         n;
+} fault;
+
+static void check_faults(const char *whole, const fault *rows, size_t n) {
+  for (size_t i = 0; i < n; i++) {
+    char        text[4096], ending[32], *said;
+    case_file   file;
+    const char *at = strstr(whole, rows[i].from);
+    assert_non_null(at);
+    snprintf(text, sizeof text, "%.*s%s%s", (int)(at - whole), whole, rows[i].to,
+             at + strlen(rows[i].from));
+    shb_status status = judge(text, &said, &file);
+    if (status == SHB_OK) fail_msg("'%s' was taken", rows[i].to);
+    snprintf(ending, sizeof ending, "\n%d error%s\n", rows[i].n, rows[i].n == 1 ? "" : "s");
+    const char *first = strstr(said, "c.yaml:");
+    if (!first || strncmp(first + 7, rows[i].says, strlen(rows[i].says)) != 0 ||
+        !strstr(said, ending))
+      fail_msg("expected %s and %sfound %s", rows[i].says, ending, said);
+    free(said);
+  }
+}
+
+static void materials_are_read(void **state) {
+  (void)state;
+  char      whole[2048], *said;
+  case_file file;
+  snprintf(whole, sizeof whole, "%s%s%s", head, materials, rest);
+  if (judge(whole, &said, &file) != SHB_OK) fail_msg("%s", said);
+  free(said);
+  assert_int_equal(file.n_materials, 2);
+  assert_string_equal(file.materials[0].group, "root part");
+  const fem_material *steel = &file.materials[0].material, *crystal = &file.materials[1].material;
+  assert_true(steel->E == 207e9 && steel->nu == .29 && fabs(steel->rho - 7850) < 1e-9);
+  assert_true(!steel->anisotropic && crystal->anisotropic && crystal->rho == 8500);
+  assert_true(file.source.rules.n_volumes == 2 && file.source.rules.n_more == 0);
+  assert_int_equal(file.source.rules.volume[0].rule.kind, MESH_RULE_NONE);
+  assert_int_equal(file.source.rules.volume[1].rule.kind, MESH_RULE_NEAREST);
+  assert_true(case_mesh_is_made(&file));
+  char *mesh = case_settings(&file, CASE_MESH), *modal = case_settings(&file, CASE_MODAL);
+  assert_non_null(strstr(mesh, "mesh.groups.airfoil = nearest 0 0.001"));
+  assert_non_null(strstr(mesh, "materials[1].group = airfoil\n"));
+  assert_null(strstr(mesh, "materials[1].E"));
+  assert_non_null(strstr(modal, "materials[1].G = 120000000000\n"));
+  assert_null(strstr(modal, "material.E"));
+  free(mesh);
+  free(modal);
+  case_free(&file);
+}
+
+static void faults_of_materials(void **state) {
+  (void)state;
+  static const fault rows[] = {
+      {", rho: 8500", "", "6:5: error: materials[1].rho: missing; expected a number in kg/m3\n", 1},
+      {"E: 127", "Y: 127", "6:5: error: materials[1].E: missing; expected a number or three", 2},
+      {"nu: 0.38", "nu: 0.58", "6:38: error: materials[1].nu: is 0.58, must be above -1", 1},
+      {", G: 120 GPa", "",
+       "6:5: error: materials[1].G: missing; without it the material is isotropic", 1},
+      {"nu: 0.38, G: 120 GPa", "nu: [0.9, 0.9, 0.9], G: 120 GPa",
+       "6:58: error: materials[1].G: E, nu and G are those of no stable material", 1},
+      {"group: root part", "group: airfoil",
+       "6:13: error: materials[1].group: 'airfoil' has a material already\n", 1},
+      {"group: airfoil", "group: air",
+       "3:12: error: mesh.groups.airfoil: unknown group; known are root, ", 1},
+      {"group: airfoil", "group: a/b",
+       "6:13: error: materials[1].group: 'a/b' cannot be the name of a group", 1},
+      {"nearest: [0, 1 mm, 0.4]", "radius: 1 mm",
+       "3:12: error: mesh.groups.airfoil: is a volume (materials names it); expected", 1},
+      {"materials:\n", "material: {E: 1 GPa, nu: 0, rho: 1000}\nmaterials:\n",
+       "6:3: error: materials: give either material or materials, not both\n", 1},
+      {"materials:\n", "materials: []\nname: x\nprobe:\n",
+       "4:12: error: materials: has 0 materials, must have 1 to 16\n", 2},
+  };
+  char whole[2048];
+  snprintf(whole, sizeof whole, "%s%s%s", head, materials, rest);
+  check_faults(whole, rows, sizeof rows / sizeof *rows);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(materials_are_read),
+      cmocka_unit_test(faults_of_materials),
+  };
+  return cmocka_run_group_tests_name("cases.lists", tests, NULL, NULL);
+}
