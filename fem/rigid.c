@@ -52,7 +52,8 @@ PetscErrorCode fem_rigid_load(const fem_body *body, const double *u, const fem_s
     const bool counted = counts(system, n, columns, rank);
     if (!touches && !counted) continue;
     fem_body_element(body, e, u, x, v);
-    fem_element_mass(body->element, body->material->rho, (const double(*)[3])x, m);
+    fem_element_mass(body->element, fem_material_at(body->material, body->mesh, e)->rho,
+                     (const double(*)[3])x, m);
     for (int i = 0; i < 3 * n; i++) x[i / 3][i % 3] += v[i / 3][i % 3];
     for (int r = 0; r < FEM_RIGID; r++) {
       double whole = element_load(n, r, m, axis, (const double(*)[3])x, f);

@@ -55,8 +55,8 @@ static void fit(const mesh_topology *topology, const fem_rule *rule, extrapolati
 }
 
 /* Add the element's volume times its nodal stresses; returns the volume. */
-static double add_element(const fem_body *body, const double x[][3], const double u[][3],
-                          const fem_rule *rule, const extrapolation *to,
+static double add_element(const fem_body *body, const fem_material *own, const double x[][3],
+                          const double u[][3], const fem_rule *rule, const extrapolation *to,
                           double nodal[][FEM_STRESSES]) {
   double volume = 0, stress[FEM_POINTS][FEM_STRESSES];
   for (int p = 0; p < rule->n; p++) {
@@ -64,7 +64,7 @@ static double add_element(const fem_body *body, const double x[][3], const doubl
     double          g[MESH_NODES][3], H[3][3];
     volume += rule->weight[p] * fem_element_gradient(body->element, rule, p, x, g);
     fem_displacement_gradient(body->element->n, (const double(*)[3])g, u, H);
-    fem_deform(body->material, (const double(*)[3])H, &at);
+    fem_deform(own, (const double(*)[3])H, &at);
     fem_cauchy(&at, stress[p]);
   }
   for (int i = 0; i < body->element->n; i++)
@@ -94,8 +94,9 @@ PetscErrorCode fem_nodal_stress(const fem_body *body, const double *u,
     double     x[MESH_NODES][3], v[MESH_NODES][3], nodal[MESH_NODES][FEM_STRESSES];
     fem_body_element(body, e, u, x, v);
     const fem_rule *rule = fem_element_stiffness_rule(body->element, (const double(*)[3])x);
-    double          here = add_element(body, (const double(*)[3])x, (const double(*)[3])v, rule,
-                                       &to[rule == &body->element->curved], nodal);
+    double          here =
+        add_element(body, fem_material_at(body->material, mesh, e), (const double(*)[3])x,
+                    (const double(*)[3])v, rule, &to[rule == &body->element->curved], nodal);
     for (int i = 0; i < body->element->n; i++) {
       volume[node[i]] += here;
       for (int c = 0; c < FEM_STRESSES; c++) stress[node[i]][c] += nodal[i][c];
@@ -118,10 +119,12 @@ PetscErrorCode fem_balance(const fem_body *body, const double *u, double (*balan
     const int *node = body->mesh->connectivity + n * (size_t)e;
     double     x[MESH_NODES][3], v[MESH_NODES][3], internal[MESH_NODES][3], outer[MESH_NODES][3];
     double     m[MESH_NODES * MESH_NODES];
+
+    const fem_material *own = fem_material_at(body->material, body->mesh, e);
     fem_body_element(body, e, u, x, v);
     const double(*at)[3] = (const double(*)[3])x, (*by)[3] = (const double(*)[3])v;
-    fem_element_force(body->element, body->material, at, by, internal);
-    fem_element_mass(body->element, body->material->rho, at, m);
+    fem_element_force(body->element, own, at, by, internal);
+    fem_element_mass(body->element, own->rho, at, m);
     fem_rotation_load(&body->rotation, n, m, at, by, outer);
     for (int i = 0; i < 3 * n; i++) {
       balance[node[i / 3]][i % 3] += internal[i / 3][i % 3] - outer[i / 3][i % 3];

@@ -8,7 +8,7 @@ enum { FEM_STRESSES = 6 }; /* xx, yy, zz, xy, yz, xz, as VTK orders a symmetric 
 
 /* Cauchy stresses at the nodes, Pa: [n_nodes][6]. In each element the linear function that fits its quadrature points best (least
  * squares) is taken to its nodes; a node has the mean of its elements, by their volumes. Second order in the
- * element's size; exact where the stress is linear in space.
+ * element's size; exact where the stress is linear in space (where materials meet: a mean of theirs).
  *   u  in  [n_nodes][3] m
  * Errors: PETSC_ERR_MEM. */
 PetscErrorCode fem_nodal_stress(const fem_body *body, const double *u,

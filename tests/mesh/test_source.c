@@ -209,7 +209,8 @@ static void curved_faces_are_found(void **state) {
   }
   box.set[MESH_ROOT].n = box.set[MESH_LOAD].n = 0;
   assert_ok(box_write(&box, source.path));
-  source.rules.usual[MESH_ROOT] = (mesh_rule){.kind = MESH_RULE_RADIUS, .radius = .31, .tolerance = 1e-9};
+  source.rules.usual[MESH_ROOT] =
+      (mesh_rule){.kind = MESH_RULE_RADIUS, .radius = .31, .tolerance = 1e-9};
   source.rules.usual[MESH_LOAD] = (mesh_rule){.kind = MESH_RULE_NEAREST, .at = {.1, 0, .2}};
   assert_ok(mesh_source_read(&source, NULL, &mesh));
   assert_int_equal(mesh.set[MESH_ROOT].n, 2 * many[0] * many[1]);
@@ -294,8 +295,10 @@ static void sides_are_made_to_match(void **state) {
       "SetFactory(\"OpenCASCADE\");\nRectangle(1) = {0, .3, 0, .05, .04};\n"
       "Extrude {{1, 0, 0}, {0, 0, 0}, 2*Pi/23} { Surface{1}; }\n"
       "MeshSize{ PointsOf{ Surface{1}; } } = .007;\n");
-  source.rules.usual[MESH_ROOT] = (mesh_rule){.kind = MESH_RULE_RADIUS, .radius = .3, .tolerance = 1e-6};
-  source.rules.usual[MESH_CONTACT_RIGHT] = (mesh_rule){.kind = MESH_RULE_NEAREST, .at = {.02, .32, 0}};
+  source.rules.usual[MESH_ROOT] =
+      (mesh_rule){.kind = MESH_RULE_RADIUS, .radius = .3, .tolerance = 1e-6};
+  source.rules.usual[MESH_CONTACT_RIGHT] =
+      (mesh_rule){.kind = MESH_RULE_NEAREST, .at = {.02, .32, 0}};
   double angle = 2 * M_PI / BLADES, r = .32;
   source.rules.usual[MESH_CONTACT_LEFT] =
       (mesh_rule){.kind = MESH_RULE_NEAREST, .at = {.02, r * cos(angle), r * sin(angle)}};

@@ -110,7 +110,7 @@ static void energies(void **state) {
                             parts[1].E * strain[1] * strain[1] * (size[0] - a));
     check_close(fem_strain_energy(&mesh, parts, element, u), wanted, 1e-12, "strain energy");
     for (int i = 0; i < 3 * mesh.n_nodes; i++) u[i] = i % 3 == 1 ? 1e-3 : 0;
-    fem_body body = {&mesh, parts, element, {MESH_AXIS_X, speed}};
+    fem_body body = {&mesh, parts, element, {MESH_AXIS_X, speed}, 0};
     double   mass = area * (parts[0].rho * a + parts[1].rho * (size[0] - a));
     check_close(fem_tangent_energy(&body, NULL, u), -1e-6 * speed * speed * mass, 1e-12,
                 "softening");
@@ -136,7 +136,7 @@ static void stretch_under_rotation(void **state) {
   assert_non_null(element);
   assert_int_equal(fem_element_create(mesh.kind, FEM_FULL, element), 0);
   assert_int_equal(fem_system_create(PETSC_COMM_SELF, &mesh, parts, FEM_FULL, &system), 0);
-  fem_body body = {&mesh, parts, element, {MESH_AXIS_Z, speed}};
+  fem_body body = {&mesh, parts, element, {MESH_AXIS_Z, speed}, 0};
   assert_int_equal(fem_equilibrium_solve(&body, &system, NULL, &at), 0);
   double outer = parts[1].rho * (L * L - a * a) / 2, inner = parts[0].rho;
   double tip = (outer * a + inner * (a * a * a - a * a * a / 3) / 2) / parts[0].E +
