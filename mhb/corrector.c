@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-static const double STAGNANT = 1e-8, POLISHED = 1e-2, SMOOTH = 1e-5;
+static const double POLISHED = 1e-2, SMOOTH = 1e-5;
 enum { MAX_CORRECTIONS = 12, MAX_HALVINGS = 3, MAX_POLISHED = 4, MAX_SETTLED = 6 };
 
 double mhb_path_size(const mhb_path *path) {
@@ -100,7 +100,7 @@ int mhb_path_correct(mhb_path *path, const double *normal, double clip, mhb_path
   for (point->iterations = 0; point->iterations <= MAX_CORRECTIONS; point->iterations++) {
     if (!evaluate_damped(path, before, cut, scale, point)) return 0;
     if (point->residual <= path->tolerance) return 1;
-    if (point->residual < STAGNANT && point->residual > .5 * before) return 1; /* rounding */
+    if (point->residual < path->stagnant && point->residual > .5 * before) return 1; /* rounding */
     before = seen[point->iterations] = point->residual;
     if (goes_in_circles(seen, point->iterations)) return 0;
     if (point->iterations == MAX_CORRECTIONS || !factor_bordered(path, scale, normal)) return 0;
@@ -141,7 +141,7 @@ static int settle(mhb_path *path, mhb_path_point *point) {
     mhb_path_measure(path, point);
     if (!mhb_still_holds(path->still, path->residual)) return 0;
     if (point->residual <= path->tolerance) return 1;
-    if (point->residual < STAGNANT && point->residual > .5 * before) return 1; /* rounding */
+    if (point->residual < path->stagnant && point->residual > .5 * before) return 1; /* rounding */
     if (!(point->residual < .5 * before)) return 0;
     if (!mhb_still_settle(path->still, path->residual, path->newton->r, i > 0, point->x)) return 0;
     before = point->residual;

@@ -36,6 +36,7 @@ shb_status mhb_path_create(mhb_residual *residual, double low, double high, mhb_
   path->least     = mhb_parameter_least(residual->parameter);
   path->longest   = LONGEST_STEP;
   path->tolerance = 1e-10;
+  path->stagnant  = fmax(1e-8, .1 * residual->settings->tolerance);
   path->chord     = calloc((size_t)n + 1, sizeof(double));
   path->kept      = calloc((size_t)n + 1, sizeof(double));
   for (int i = 0; i < 2; i++) path->bracket[i] = calloc((size_t)n + 1, sizeof(double));
