@@ -36,15 +36,16 @@ shb_status mhb_variation_create(const mhb_structure *s, int capacity, mhb_variat
   v->relation   = calloc(contacts, sizeof *v->relation);
   v->propagator = calloc((size_t)s->modes * PROPAGATOR, sizeof(double));
   v->compliance = calloc(n * n, sizeof(double));
-  v->matrix     = calloc(n * n, sizeof(double));
-  v->pivot      = calloc(n, sizeof(int));
+  v->near       = calloc((size_t)s->blades, sizeof *v->near);
   v->du         = calloc(n, sizeof(double));
   v->dsigma     = calloc(2 * contacts, sizeof(double));
-  if (!(v->Y && v->P && v->work && v->relation && v->propagator && v->compliance && v->matrix &&
-        v->pivot && v->du && v->dsigma)) {
+  int ok        = mhb_band_create(s->blades, 3 * s->pairs, &v->band);
+  if (!(ok && v->Y && v->P && v->work && v->relation && v->propagator && v->compliance && v->near &&
+        v->du && v->dsigma)) {
     mhb_variation_destroy(v);
     SHB_FAIL(SHB_ERR_IO, "out of memory for the stability of %d columns", capacity);
   }
+  for (int b = 0; b < s->blades; b++) v->meets = mhb_band_near(&v->band, b, v->near[b]);
   *out = v;
   return SHB_OK;
 }
@@ -57,8 +58,8 @@ void mhb_variation_destroy(mhb_variation *v) {
   free(v->relation);
   free(v->propagator);
   free(v->compliance);
-  free(v->matrix);
-  free(v->pivot);
+  free(v->near);
+  mhb_band_destroy(&v->band);
   free(v->du);
   free(v->dsigma);
   free(v);
@@ -208,51 +209,44 @@ int mhb_lu(int n, double *A, int *pivot) {
   return 1;
 }
 
-/* x [n][width] */
-MHB_INLINE void lu_solve(int n, const double *A, const int *pivot, double *x, int width) {
+void mhb_lu_solve(int n, const double *A, const int *pivot, double *x) {
   for (int k = 0; k < n; k++) {
     const double *row = A + (long)k * n;
-    double       *top = x + (long)k * width, *other = x + (long)pivot[k] * width;
-    for (int l = 0; l < width; l++) {
-      double swap = top[l];
-      top[l]      = other[l];
-      other[l]    = swap;
-    }
-    for (int j = 0; j < k; j++)
-      for (int l = 0; l < width; l++) top[l] -= row[j] * x[(long)j * width + l];
+    double        xk  = x[pivot[k]];
+    x[pivot[k]]       = x[k];
+    for (int j = 0; j < k; j++) xk -= row[j] * x[j];
+    x[k] = xk;
   }
   for (int k = n - 1; k >= 0; k--) {
     const double *row = A + (long)k * n;
-    double       *top = x + (long)k * width;
-    for (int j = k + 1; j < n; j++)
-      for (int l = 0; l < width; l++) top[l] -= row[j] * x[(long)j * width + l];
-    for (int l = 0; l < width; l++) top[l] *= row[k];
+    for (int j = k + 1; j < n; j++) x[k] -= row[j] * x[j];
+    x[k] *= row[k];
   }
 }
 
-void mhb_lu_solve(int n, const double *A, const int *pivot, double *x) {
-  lu_solve(n, A, pivot, x, 1);
+/* Element of I + compliance hold/2 + R grow. */
+static double coupling(const mhb_variation *v, int row, int column) {
+  const mhb_relation *relation = &v->relation[column / 3];
+  long                first    = (long)row * v->band.n + column - column % 3;
+  const double       *C = v->compliance + first, *R = v->structure->flexibility;
+  double              sum = row == column;
+  for (int k = 0; k < 3; k++) {
+    sum += .5 * C[k] * relation->hold[k][column % 3];
+    if (R) sum += R[first + k] * relation->grow[k][column % 3];
+  }
+  return sum;
 }
 
-/* I + compliance hold/2 + R grow: what a change of du meets. */
 int mhb_variation_couple(mhb_variation *v) {
-  const mhb_structure *s = v->structure;
-  int                  n = unknowns(s);
-  for (int row = 0; row < n; row++) {
-    const double *C = v->compliance + (long)row * n;
-    const double *R = s->flexibility ? s->flexibility + (long)row * n : NULL;
-    for (int column = 0; column < n; column++) {
-      const mhb_relation *relation = &v->relation[column / 3];
-      int                 first = column - column % 3, c = column % 3;
-      double              sum = row == column;
-      for (int k = 0; k < 3; k++) {
-        sum += .5 * C[first + k] * relation->hold[k][c];
-        if (R) sum += R[first + k] * relation->grow[k][c];
-      }
-      v->matrix[(long)row * n + column] = sum;
+  int block = v->band.block;
+  mhb_band_clear(&v->band);
+  for (int row = 0; row < v->band.n; row++)
+    for (int i = 0; i < v->meets; i++) {
+      int first = v->near[row / block][i] * block;
+      for (int column = first; column < first + block; column++)
+        *mhb_band_at(&v->band, row, column) = coupling(v, row, column);
     }
-  }
-  return mhb_lu(n, v->matrix, v->pivot);
+  return mhb_band_factor(&v->band);
 }
 
 /* y = (v, sigma) of contact j */
@@ -266,18 +260,23 @@ MHB_INLINE mhb_lanes dot3(const double a[3], const mhb_lanes *x) {
   return a[0] * x[0] + a[1] * x[1] + a[2] * x[2];
 }
 
-/* D <- D - M x, M [n][n] */
-MHB_INLINE void subtract_product(int n, const double *M, const mhb_lanes *x, mhb_lanes *D) {
+/* D <- D - M x, M [n][n] between contacts of blades that meet */
+MHB_INLINE void subtract_product(const mhb_variation *v, int n, int block, int meets,
+                                 const double *M, const mhb_lanes *x, mhb_lanes *D) {
   for (int r = 0; r < n; r++) {
-    mhb_lanes sum = D[r];
-    for (int c = 0; c < n; c++) sum -= M[(long)r * n + c] * x[c];
+    const double *row = M + (long)r * n;
+    mhb_lanes     sum = D[r];
+    for (int i = 0; i < meets; i++) {
+      int first = meets > 1 ? v->near[r / block][i] * block : 0;
+      for (int c = first; c < first + block; c++) sum -= row[c] * x[c];
+    }
     D[r] = sum;
   }
 }
 
 /* The change of du from that without contact (D), the mean forces P, and sigma at the end. */
-MHB_INLINE void solve_contacts(const mhb_variation *v, int n, mhb_lanes *u, mhb_lanes *P,
-                               mhb_lanes *D, mhb_lanes *other) {
+MHB_INLINE void solve_contacts(const mhb_variation *v, int n, int block, int meets, mhb_lanes *u,
+                               mhb_lanes *P, mhb_lanes *D, mhb_lanes *other) {
   mhb_lanes *sigma = u + n, y[3];
   for (int j = 0; j < n / 3; j++) {
     const mhb_relation *relation = &v->relation[j];
@@ -287,9 +286,10 @@ MHB_INLINE void solve_contacts(const mhb_variation *v, int n, mhb_lanes *u, mhb_
       other[3 * j + r] = dot3(relation->b[r], y);
     }
   }
-  subtract_product(n, v->compliance, P, D);
-  if (v->structure->flexibility) subtract_product(n, v->structure->flexibility, other, D);
-  lu_solve(n, v->matrix, v->pivot, (double *)D, MHB_LANES);
+  subtract_product(v, n, block, meets, v->compliance, P, D);
+  if (v->structure->flexibility)
+    subtract_product(v, n, block, meets, v->structure->flexibility, other, D);
+  mhb_band_solve(&v->band, D, other);
   for (int j = 0; j < n / 3; j++) {
     const mhb_relation *relation = &v->relation[j];
     contact_rows(u, sigma, j, y);
@@ -302,12 +302,12 @@ MHB_INLINE void solve_contacts(const mhb_variation *v, int n, mhb_lanes *u, mhb_
 
 MHB_HOT static void solve_one(const mhb_variation *v, mhb_lanes *u, mhb_lanes *P, mhb_lanes *D) {
   mhb_lanes other[3];
-  solve_contacts(v, 3, u, P, D, other);
+  solve_contacts(v, 3, 3, 1, u, P, D, other);
 }
 
 MHB_HOT static void solve_any(const mhb_variation *v, mhb_lanes *u, mhb_lanes *P, mhb_lanes *D) {
   int n = unknowns(v->structure);
-  solve_contacts(v, n, u, P, D, v->work + n);
+  solve_contacts(v, n, v->band.block, v->meets, u, P, D, v->work + n);
 }
 
 void mhb_variation_step(mhb_variation *v) {

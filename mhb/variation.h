@@ -11,7 +11,7 @@
 #ifndef MHB_VARIATION_H
 #define MHB_VARIATION_H
 
-#include "mhb/lanes.h"
+#include "mhb/band.h"
 #include "mhb/structure.h"
 
 /* One contact over one sub-step, linear in y = (v, sigma) at its start and in the change D of (v, u, w):
@@ -34,13 +34,14 @@ typedef struct {
   mhb_lanes           *Y;                               /* [block][rows] */
   mhb_lanes    *P;    /* [block][n] mean force of the last sub-step, not yet felt by the modes */
   mhb_lanes    *work; /* [3][n] */
-  mhb_relation *relation;    /* [contact] of the coming sub-step */
-  double        h;           /* s, of the propagator */
-  double       *propagator;  /* [mode][6] */
-  double       *compliance;  /* [n][n] change of du by a unit mean force */
-  double       *matrix;      /* [n][n] factorized */
-  int          *pivot;       /* [n] */
-  double       *du, *dsigma; /* [n], [2 contacts] of a jump */
+  mhb_relation *relation;   /* [contact] of the coming sub-step */
+  double        h;          /* s, of the propagator */
+  double       *propagator; /* [mode][6] */
+  double       *compliance; /* [n][n] change of du by a unit mean force */
+  int (*near)[3];           /* [blade] the blades that its contacts meet */
+  int      meets;           /* how many */
+  mhb_band band;            /* what a change of du meets */
+  double  *du, *dsigma;     /* [n], [2 contacts] of a jump */
 } mhb_variation;
 
 /* Room for capacity columns. SHB_ERR_IO: no memory. The structure must outlive it. */
