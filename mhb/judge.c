@@ -17,7 +17,7 @@ enum {
   FEWER_SUBSTEPS = 32,
   LEAST_POINTS   = 3
 };
-static const double BUDGET = .5, SECONDS_A_CUBE = 4e-9, SECONDS_A_STATE = 1e-5;
+static const double BUDGET = .5, FEWER_BUDGET = .1, SECONDS_A_CUBE = 4e-9, SECONDS_A_STATE = 1e-5;
 
 /* Beyond the circle in earnest, and on it after a search. */
 static const double MARGIN = 1e-3, ON_CIRCLE = 1e-3, NEAR_ENOUGH = 1e-6;
@@ -204,10 +204,12 @@ static int largest_motion(const mhb_judge *j) {
   return best;
 }
 
-/* Points that the budget allows, by the states that are integrated. */
+/* Points that the budget allows, by the states that are integrated and the cells of the ring that share them (bloch.h). */
 static int affordable(const mhb_judge *j) {
-  double states = j->states < FEWER_STATES ? j->states : FEWER_STATES;
-  int    n = (int)(BUDGET / (SECONDS_A_CUBE * states * states * states + SECONDS_A_STATE * states));
+  int    few = j->states > FINE, g = mhb_stability_cells(j->stability);
+  double states = few && j->states > FEWER_STATES ? FEWER_STATES : j->states;
+  double cube   = SECONDS_A_CUBE * states * states * states * (g > 2 ? 2. : 1.) / (g * g);
+  int    n      = (int)((few ? FEWER_BUDGET : BUDGET) / (cube + SECONDS_A_STATE * states));
   return n > LEAST_POINTS ? n : LEAST_POINTS;
 }
 

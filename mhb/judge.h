@@ -3,7 +3,7 @@
  *
  * auto: every point where that costs little (up to 60 states, or up to 120 and half a second a branch by the measured cost);
  * else every point where no contact slips, opens or closes, and some others, spread over the curve, as many as half a second
- * allows but at least three; above 120 states with fewer modes and sub-steps.
+ * allows but at least three; above 120 states a tenth of a second, with fewer modes and sub-steps.
  * A point that is not judged, or whose largest multiplier is at 1 within what can be told, is what the last judged point
  * before it was, changed by every fold in between. Flips and Neimark-Sacker points are located where every point is judged. */
 #ifndef MHB_JUDGE_H

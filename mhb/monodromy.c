@@ -1,6 +1,5 @@
 #include "mhb/monodromy.h"
 
-#include <cblas.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,9 +13,11 @@ shb_status mhb_monodromy_create(const mhb_structure *s, const mhb_timetable *tim
                                 mhb_contact *contact, int m, int substeps, mhb_monodromy **out) {
   mhb_monodromy *d = calloc(1, sizeof *d);
   SHB_CHECK(d, SHB_ERR_IO, "out of memory");
-  int    capacity = 2 * s->modes * s->blades + 2 * s->contacts, pieces = timetable->capacity + 1;
+  int    blades = timetable->chunks, capacity = 2 * blades * (s->modes + s->pairs);
+  int    pieces     = timetable->capacity + 1;
   int    steps      = 2 * ((int)(substeps * timetable->span) + 1 + pieces);
-  size_t square     = (size_t)capacity * (size_t)capacity;
+  size_t cells      = (size_t)(s->blades / blades);
+  d->blades         = blades;
   d->structure      = s;
   d->timetable      = timetable;
   d->substeps       = substeps;
@@ -24,11 +25,9 @@ shb_status mhb_monodromy_create(const mhb_structure *s, const mhb_timetable *tim
   d->u              = calloc(3 * (size_t)s->contacts, sizeof *d->u);
   d->matrix         = calloc(9 * (size_t)s->contacts * (size_t)s->contacts, sizeof *d->matrix);
   d->pivot          = calloc(3 * (size_t)s->contacts, sizeof *d->pivot);
-  d->M              = calloc(square, sizeof *d->M);
-  d->power          = calloc(square, sizeof *d->power);
-  d->product        = calloc(square, sizeof *d->product);
+  d->M              = calloc(cells * (size_t)capacity * (size_t)capacity, sizeof *d->M);
   shb_status status = SHB_OK;
-  if (!(d->column && d->u && d->matrix && d->pivot && d->M && d->power && d->product))
+  if (!(d->column && d->u && d->matrix && d->pivot && d->M))
     status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__,
                       "out of memory for the stability of %d states", capacity);
   if (status == SHB_OK) status = mhb_variation_create(s, capacity, &d->variation);
@@ -51,11 +50,10 @@ void mhb_monodromy_destroy(mhb_monodromy *d) {
   free(d->matrix);
   free(d->pivot);
   free(d->M);
-  free(d->power);
-  free(d->product);
   free(d);
 }
 
+/* Rows q and v of all blades. */
 static int modal_states(const mhb_structure *s) {
   return 2 * s->modes * s->blades;
 }
@@ -141,55 +139,65 @@ static void put_motion(mhb_monodromy *d, int column, const double *u) {
   }
 }
 
+/* A unit of mode i of a blade: of q in one column, of v in another. */
+static void start_mode(mhb_monodromy *d, int blade, int i) {
+  const mhb_structure *s = d->structure;
+  int state = blade * s->modes + i, half = s->modes * d->blades, rows = s->modes * s->blades;
+  *mhb_variation_at(d->variation, state, state)               = 1;
+  *mhb_variation_at(d->variation, rows + state, half + state) = 1;
+  start_motion(d, -1, blade, i, d->u);
+  put_motion(d, state, d->u);
+}
+
+/* Columns: q of the cell's blades, v, frictions. */
 static int start_columns(mhb_monodromy *d) {
   const mhb_structure *s     = d->structure;
-  int                  modal = s->modes * s->blades, column = 2 * modal, n = 3 * s->contacts;
-  d->n = column;
-  for (int j = 0; j < s->contacts; j++) d->n += friction_states(d, j);
+  int                  first = modal_states(s) + 3 * s->contacts, contacts = d->blades * s->pairs;
+  d->n = 2 * s->modes * d->blades;
+  for (int j = 0; j < contacts; j++) {
+    d->column[j] = d->n;
+    d->n += friction_states(d, j);
+  }
   mhb_variation_clear(d->variation, d->n);
   if (s->flexibility && !start_matrix(d)) return 0;
-  for (int i = 0; i < 2 * modal; i++) *mhb_variation_at(d->variation, i, i) = 1;
-  for (int i = 0; i < modal; i++) {
-    start_motion(d, -1, i / s->modes, i % s->modes, d->u);
-    put_motion(d, i, d->u);
-  }
-  for (int j = 0; j < s->contacts; j++) {
-    d->column[j] = column;
-    for (int i = 0; i < friction_states(d, j); i++, column++) {
+  for (int i = 0; i < s->modes * d->blades; i++) start_mode(d, i / s->modes, i % s->modes);
+  for (int j = 0; j < contacts; j++)
+    for (int i = 0; i < friction_states(d, j); i++) {
       start_motion(d, j, 0, i, d->u);
-      put_motion(d, column, d->u);
-      *mhb_variation_at(d->variation, 2 * modal + n + 2 * j + i, column) = 1;
+      put_motion(d, d->column[j] + i, d->u);
+      *mhb_variation_at(d->variation, first + 2 * j + i, d->column[j] + i) = 1;
     }
-  }
   return 1;
 }
 
-/* Row of the variation that holds state i of blade b's successor by `shift` names: where state i comes from. */
-static void put_row(mhb_monodromy *d, int from, int state) {
+/* State of a cell <- a row of the variation. */
+static void put_row(mhb_monodromy *d, int from, int cell, int state) {
+  size_t  n = (size_t)d->n;
+  double *S = d->M + (size_t)cell * n * n + state;
   for (int column = 0; column < d->n; column++)
-    d->M[(size_t)column * (size_t)d->n + (size_t)state] =
-        *mhb_variation_at(d->variation, from, column);
+    S[(size_t)column * n] = *mhb_variation_at(d->variation, from, column);
 }
 
 /* The end of the stretch, blades renamed: what blade b holds is now blade b - shift. */
 static void take_matrix(mhb_monodromy *d) {
-  const mhb_structure *s     = d->structure;
-  int                  modal = s->modes * s->blades, n = 3 * s->contacts;
+  const mhb_structure *s    = d->structure;
+  int                  rows = s->modes * s->blades, half = s->modes * d->blades;
   for (int b = 0; b < s->blades; b++) {
-    int to = ((b - d->timetable->shift) % s->blades + s->blades) % s->blades;
+    int name = ((b - d->timetable->shift) % s->blades + s->blades) % s->blades;
+    int cell = name / d->blades, to = name % d->blades;
     for (int i = 0; i < s->modes; i++) {
-      put_row(d, b * s->modes + i, to * s->modes + i);
-      put_row(d, modal + b * s->modes + i, modal + to * s->modes + i);
+      put_row(d, b * s->modes + i, cell, to * s->modes + i);
+      put_row(d, rows + b * s->modes + i, cell, half + to * s->modes + i);
     }
     for (int a = 0; a < s->pairs; a++) {
       int j = b * s->pairs + a, k = to * s->pairs + a;
       for (int i = 0; i < friction_states(d, k); i++)
-        put_row(d, 2 * modal + n + 2 * j + i, d->column[k] + i);
+        put_row(d, 2 * rows + 3 * s->contacts + 2 * j + i, cell, d->column[k] + i);
     }
   }
 }
 
-/* ---- the whole period ---- */
+/* ---- the stretch ---- */
 
 static int run_piece(mhb_monodromy *d, double from, double to, int refinement) {
   double length = to - from, period = TWO_PI / d->passage->omega;
@@ -226,48 +234,6 @@ static int walk(mhb_monodromy *d, int noting, int refinement) {
   return 1;
 }
 
-/* power = M^chunks, by squaring. */
-static void raise(mhb_monodromy *d, int chunks) {
-  int n = d->n, bit = 1;
-  while (bit <= chunks / 2) bit *= 2;
-  memcpy(d->power, d->M, sizeof(double) * (size_t)n * (size_t)n);
-  for (bit /= 2; bit > 0; bit /= 2) {
-    const double *by[2] = {d->power, d->M};
-    for (int k = 0; k < 1 + ((chunks & bit) != 0); k++) {
-      cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, n, n, n, 1, d->power, n,
-                  k == 0 ? d->power : by[1], n, 0, d->product, n);
-      double *swap = d->power;
-      d->power     = d->product;
-      d->product   = swap;
-    }
-  }
-}
-
-/* State i of a blade -> the same state of the blade `names` further on. */
-static int renamed(const mhb_monodromy *d, int state, int names) {
-  const mhb_structure *s     = d->structure;
-  int                  modal = s->modes * s->blades;
-  if (state < 2 * modal) {
-    int half = state / modal, blade = state % modal / s->modes, mode = state % s->modes;
-    return half * modal + (blade + names) % s->blades * s->modes + mode;
-  }
-  int j = 0;
-  while (j + 1 < s->contacts && d->column[j + 1] <= state) j++;
-  return d->column[(j + names * s->pairs) % s->contacts] + state - d->column[j];
-}
-
-/* M^chunks, the blades' names changed back. */
-static void whole_period(mhb_monodromy *d) {
-  const mhb_timetable *t     = d->timetable;
-  size_t               n     = (size_t)d->n;
-  int                  names = (int)((long)t->shift * t->chunks % d->structure->blades);
-  raise(d, t->chunks);
-  for (int row = 0; row < d->n; row++) {
-    size_t to = (size_t)renamed(d, row, names);
-    for (size_t c = 0; c < n; c++) d->M[c * n + to] = d->power[c * n + (size_t)row];
-  }
-}
-
 const char *mhb_monodromy_set(mhb_monodromy *d, const mhb_solution *solution, double omega,
                               int refinement) {
   mhb_passage_solution(d->passage, solution, omega);
@@ -275,6 +241,5 @@ const char *mhb_monodromy_set(mhb_monodromy *d, const mhb_solution *solution, do
   if (!mhb_passage_trace(d->passage)) return "the contact law lost its way";
   if (!walk(d, 0, refinement)) return "the equations of the contacts are singular";
   take_matrix(d);
-  if (d->timetable->chunks > 1) whole_period(d);
   return NULL;
 }

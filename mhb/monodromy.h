@@ -1,4 +1,5 @@
-/* The monodromy matrix of a periodic solution: what one period makes of a small disturbance of (q, q', friction).
+/* What a stretch of a period makes of a small disturbance of (q, q', friction): for a blade on the ground the monodromy matrix, for a
+ * ring its columns for the disturbances of one cell (bloch.h), over 1/chunks of a period, the blades renamed (timetable.h).
  *
  * Sub-steps (variation.h) are split at the transitions of every contact; the law is linearised at their middles
  * (tangent.h, passage.h). States that are carried: q and q' of every mode and blade, and at the start two frictions for a
@@ -17,8 +18,8 @@ typedef struct {
   int                 *column;     /* [contact] its first friction state */
   double              *u, *matrix; /* [3 contacts], [.][.] the start with residual flexibility */
   int                 *pivot;      /* [3 contacts] */
-  int                  n;          /* states */
-  double              *M, *power, *product; /* [n][n] column-major */
+  int                  blades, n;  /* of a cell; its states */
+  double              *M;          /* [cell][n][n] column-major */
 } mhb_monodromy;
 
 /* SHB_ERR_IO: no memory. Structure, timetable and contact must outlive it. */

@@ -1,10 +1,10 @@
 #include "mhb/stability.h"
 
-#include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "mhb/bloch.h"
 #include "mhb/exponents.h"
 
 static const double TWO_PI = 6.283185307179586476925;
@@ -18,11 +18,10 @@ struct mhb_stability {
   mhb_exponents   exponents;
   mhb_contact    *contact;
   mhb_monodromy  *monodromy; /* NULL: too many states even with one mode */
-  int             nu, max_states, room;
-  int            *state;   /* [pair] */
-  double         *re, *im; /* [states] */
-  double         *work;    /* [room] of dgeev */
-  double complex *multiplier;
+  mhb_bloch       bloch;
+  int             nu, max_states;
+  int            *state;      /* [pair] */
+  double complex *multiplier; /* [states] */
 };
 
 /* Modes a blade that max_states leaves room for. */
@@ -44,16 +43,15 @@ static shb_status fill(mhb_stability *s, const mhb_receptance *receptance,
     SHB_TRY(mhb_structure_create(receptance, settings, affordable(s), &s->reduced));
     SHB_TRY(
         mhb_monodromy_create(&s->reduced, &s->timetable, s->contact, m, substeps, &s->monodromy));
+    int cell = s->timetable.chunks;
+    SHB_TRY(mhb_bloch_create(mhb_stability_cells(s), 2 * cell * (s->reduced.modes + whole->pairs),
+                             &s->bloch));
   }
   s->nu         = settings->subharmonics;
-  s->room       = 8 * all;
   s->state      = calloc((size_t)whole->pairs, sizeof(int));
-  s->re         = calloc((size_t)all, sizeof(double));
-  s->im         = calloc((size_t)all, sizeof(double));
-  s->work       = calloc((size_t)s->room, sizeof(double));
   s->multiplier = calloc((size_t)all, sizeof(double complex));
-  SHB_CHECK(s->state && s->re && s->im && s->work && s->multiplier, SHB_ERR_IO,
-            "out of memory for the stability of %d states", all);
+  SHB_CHECK(s->state && s->multiplier, SHB_ERR_IO, "out of memory for the stability of %d states",
+            all);
   return SHB_OK;
 }
 
@@ -75,6 +73,7 @@ shb_status mhb_stability_create(const mhb_receptance *receptance, const mhb_sett
 
 void mhb_stability_destroy(mhb_stability *s) {
   if (!s) return;
+  mhb_bloch_destroy(&s->bloch);
   mhb_monodromy_destroy(s->monodromy);
   mhb_contact_destroy(s->contact);
   mhb_exponents_destroy(&s->exponents);
@@ -82,11 +81,12 @@ void mhb_stability_destroy(mhb_stability *s) {
   mhb_structure_destroy(&s->reduced);
   mhb_structure_destroy(&s->structure);
   free(s->state);
-  free(s->re);
-  free(s->im);
-  free(s->work);
   free(s->multiplier);
   free(s);
+}
+
+int mhb_stability_cells(const mhb_stability *s) {
+  return s->structure.blades / s->timetable.chunks;
 }
 
 /* By falling modulus; conjugates have equal ones, and an insertion sort keeps their order. */
@@ -137,14 +137,14 @@ static const char *integrated(mhb_stability *s, const mhb_solution *solution, do
   mhb_monodromy *d   = s->monodromy;
   const char    *why = mhb_monodromy_set(d, solution, omega, refinement);
   if (why) return why;
-  for (int i = 0; i < d->n * d->n; i++)
+  const mhb_timetable *t = &s->timetable;
+  for (int i = 0; i < s->bloch.cells * d->n * d->n; i++)
     if (!isfinite(d->M[i])) return "the disturbances overflow";
-  if (LAPACKE_dgeev_work(LAPACK_COL_MAJOR, 'N', 'N', d->n, d->M, d->n, s->re, s->im, NULL, 1, NULL,
-                         1, s->work, s->room) != 0)
+  if (!mhb_bloch_multipliers(&s->bloch, d->n, d->M, t->chunks, t->shift % s->bloch.cells,
+                             s->multiplier))
     return "the eigensolver failed";
-  for (int i = 0; i < d->n; i++) s->multiplier[i] = CMPLX(s->re[i], s->im[i]);
   out->modes = s->reduced.modes;
-  take(s, d->n, out);
+  take(s, s->bloch.cells * d->n, out);
   return NULL;
 }
 

@@ -45,6 +45,9 @@ shb_status mhb_stability_create(const mhb_receptance *receptance, const mhb_sett
                                 int substeps, int max_states, mhb_stability **stability);
 void       mhb_stability_destroy(mhb_stability *stability);
 
+/* Equal cells of the ring, gcd(E, N); the work goes with 1/cells^2. 1: a blade on the ground. */
+int mhb_stability_cells(const mhb_stability *stability);
+
 /* Multipliers of a solution. Unstable: largest > 1 + max(1e-3, change); marginal: above 1 but not beyond that; undecided: the
  * contact law was lost at the solution, or max_states is too small for one mode a blade. No allocation. */
 void mhb_stability_evaluate(mhb_stability *stability, const mhb_solution *solution,

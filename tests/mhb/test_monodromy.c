@@ -95,6 +95,7 @@ static void one_period_by_brute_force(void **state) {
       {"ring of 3, order 1", 1, 0, 3, 1, .4, .05, 1, 0, 3e-4},
       {"ring of 4, order 2", 1, 0, 4, 2, .4, .05, 1, 0, 1e-3},
       {"ring of 4, in phase", 1, 0, 4, 0, .4, .05, 1, 0, 1e-3},
+      {"ring of 6, order 3", 1, 0, 6, 3, .4, .05, 1, 0, 1e-3},
       {"ring of 3, residual", 1, RESIDUAL, 3, 1, .4, .05, 1, 0, 1e-3},
       {"ring of 3, stuck", 1, 0, 3, 1, .4, 3, 1, 6, 3e-5}};
   for (size_t i = 0; i < sizeof scenes / sizeof scenes[0]; i++) {

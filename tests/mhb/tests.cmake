@@ -45,6 +45,8 @@ shb_test(mhb integrate fast shb_mhb)
 target_sources(test_mhb_integrate PRIVATE mhb/periodic.c mhb/random_model.c mhb/three_degree.c)
 shb_test(mhb witness fast shb_mhb)
 target_sources(test_mhb_witness PRIVATE mhb/periodic.c mhb/three_degree.c)
+shb_test(mhb band fast shb_mhb)
+shb_test(mhb bloch fast shb_mhb)
 shb_test(mhb monodromy slow shb_mhb)
 target_sources(test_mhb_monodromy PRIVATE mhb/disturbed.c mhb/periodic.c mhb/random_model.c mhb/three_degree.c)
 
