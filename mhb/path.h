@@ -30,7 +30,8 @@ typedef struct {
   double        least;     /* below it no value makes sense */
   double        step, longest;
   double        tolerance;
-  double        stagnant;  /* a residual below it that Newton no longer betters is rounding, or the law's own */
+  double
+      stagnant; /* a residual below it that Newton no longer betters is rounding, or the law's own */
   int orientation, against;        /* of the path; ordinary steps in a row that had the other one */
   mhb_path_point now, next, probe; /* probe: scratch for located points */
   double        *chord;            /* [n+1] */
