@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "cases/groups.h"
+
 /* Rules as they were read, and whether a group has taken each. */
 typedef struct {
   case_reader      *reader;
@@ -42,15 +44,29 @@ static void assign_volumes(rules *g, mesh_rules *to) {
   }
 }
 
+/* A group of faces that something names. */
+static void assign_faces(rules *g, const char *name, mesh_rules *to) {
+  if (!name[0] || case_group_is_usual(name) || to->n_more == MESH_MAX_MORE) return;
+  for (int i = 0; i < to->n_more; i++)
+    if (strcmp(to->more[i].name, name) == 0) return;
+  to->more[to->n_more++] = take(g, name);
+}
+
+static bool is_good(const case_reader *r, const char *path) {
+  return !case_reader_given(r, path) || case_reader_good(r, path);
+}
+
 void case_assign_groups(case_reader *reader) {
   mesh_rules *to = &reader->file->source.rules, read = *to;
   rules       g = {.reader = reader, .read = &read};
   to->n_more    = 0;
   assign_volumes(&g, to);
-  bool known = !case_reader_given(reader, "materials") || case_reader_good(reader, "materials");
+  for (int i = 0; i < reader->file->n_loads; i++)
+    assign_faces(&g, reader->file->loads[i].group, to);
+  bool known = is_good(reader, "materials") && is_good(reader, "excitation.loads");
   for (int i = 0; i < read.n_more && known; i++)
     if (!g.taken[i])
       tell(&g, read.more[i].name,
            "unknown group; known are root, contact_right, contact_left, load, and those that "
-           "materials names");
+           "materials or excitation.loads name");
 }

@@ -66,8 +66,14 @@ static void share(case_reader *r) {
     one->material.nu   = one->constants.nu[0];
   }
   file->load.field = file->field_file;
-  file->blade.psi  = file->mhb.has_psi ? file->mhb.psi : 0;
-  file->blade.phi  = file->mhb.has_phi ? file->mhb.phi : 0;
+  file->has_loads  = case_reader_given(r, "excitation.loads") != NULL;
+  for (int i = 0; i < file->n_loads; i++) {
+    case_load *one  = &file->loads[i];
+    one->load.field = one->field;
+    one->load.group = one->group;
+  }
+  file->blade.psi = file->mhb.has_psi ? file->mhb.psi : 0;
+  file->blade.phi = file->mhb.has_phi ? file->mhb.phi : 0;
 }
 
 /* Returns true if an input file named in the case cannot be read. */
@@ -119,6 +125,7 @@ void case_free(case_file *file) {
   free(file->mesh_file);
   free(file->modal_file);
   free(file->field_file);
+  for (int i = 0; i < CASE_MAX_LOADS; i++) free(file->loads[i].field);
   free(file->converge_output);
   *file = (case_file){0};
 }

@@ -14,7 +14,7 @@
 #include "mhb/settings.h"
 #include "modal/damping.h"
 
-enum { CASE_MAX_PROBES = 32, CASE_NAME = 64 };
+enum { CASE_MAX_PROBES = 32, CASE_MAX_LOADS = 16, CASE_NAME = 64 };
 
 typedef enum {
   CASE_MESH      = 1,
@@ -29,6 +29,13 @@ typedef struct {
   char   name[CASE_NAME];
   double at[3]; /* m, mesh axes */
 } case_probe;
+
+/* One of several loads. */
+typedef struct {
+  fem_load load;
+  char    *field; /* resolved path, or NULL */
+  char     group[MESH_WORD];
+} case_load;
 
 /* A volume of the mesh and what it is made of. */
 typedef struct {
@@ -67,6 +74,9 @@ typedef struct {
   int        engine_order;
   fem_load   load;
   char      *field_file; /* resolved path of excitation.field, or NULL */
+  bool       has_loads;
+  int        n_loads; /* with excitation.loads, instead of load */
+  case_load  loads[CASE_MAX_LOADS];
   int        n_probes;
   case_probe probe[CASE_MAX_PROBES];
 

@@ -8,19 +8,15 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "cases/loads.h"
 #include "cases/materials.h"
 #include "mesh/format.h"
 #include "mhb/parameter.h"
 
-static bool has_block(const case_reader *r, const char *path) {
-  for (int i = 0; i < r->n_blocks; i++)
-    if (strcmp(r->block[i].path, path) == 0) return true;
-  return false;
-}
-
 static void check_mesh(case_reader *r, int stages) {
-  bool file = case_reader_given(r, "mesh.file") != NULL, blade = has_block(r, "mesh.blade");
-  r->file->has_mesh = has_block(r, "mesh");
+  bool file         = case_reader_given(r, "mesh.file") != NULL,
+       blade        = case_reader_has_block(r, "mesh.blade");
+  r->file->has_mesh = case_reader_has_block(r, "mesh");
   if (file && blade)
     case_reader_issue(r, "mesh.blade", "give either mesh.blade or mesh.file, not both");
   bool needed = stages & (CASE_MESH | CASE_MODAL) && !r->file->modal_file;
@@ -28,33 +24,12 @@ static void check_mesh(case_reader *r, int stages) {
     case_reader_issue(r, "mesh", "missing; expected {blade: ...} or {file: NAME}");
 }
 
-static void check_load(case_reader *r) {
-  static const char *const names[] = {"excitation.pressure", "excitation.traction",
-                                      "excitation.force", "excitation.field"};
-  fem_load                *load    = &r->file->load;
-  int                      given   = 0;
-  for (int i = 0; i < 4; i++) {
-    if (!case_reader_given(r, names[i]) && !has_block(r, names[i])) continue;
-    if (given++ == 0) {
-      load->kind = (fem_load_kind)i;
-    } else {
-      case_reader_issue(r, names[i], "give only one of pressure, traction, force and field");
-    }
-  }
-  bool own     = !r->file->modal_file;
-  bool vector  = case_reader_given(r, "excitation.force.vector") != NULL;
-  load->has_at = case_reader_given(r, "excitation.force.at") != NULL;
-  bool lost    = own && load->kind == FEM_LOAD_FORCE && vector && !load->has_at;
-  if (lost && r->file->n_probes == 0 && case_reader_good(r, "probe"))
-    case_reader_issue(r, "excitation.force.vector",
-                      "has no place to act: give excitation.force.at, or a probe");
-}
-
 /* What a parametric blade cannot be. */
 static void check_blade(case_reader *r, int stages) {
   const mesh_blade *blade  = &r->file->blade;
   double            degree = 180 / 3.14159265358979323846;
-  if (r->file->modal_file || !(stages & CASE_MESH) || !has_block(r, "mesh.blade")) return;
+  if (r->file->modal_file || !(stages & CASE_MESH) || !case_reader_has_block(r, "mesh.blade"))
+    return;
   if (case_reader_good(r, "contact.psi") && fabs(blade->psi) * degree > 70)
     case_reader_issue(r, "contact.psi", "a parametric blade needs -70 to 70 deg");
   if (case_reader_good(r, "contact.phi") && fabs(blade->phi) * degree > 45)
@@ -63,24 +38,9 @@ static void check_blade(case_reader *r, int stages) {
     case_reader_issue(r, "rotor.blades", "a parametric blade needs 3 or more");
 }
 
-/* Nothing would move. */
-static void check_load_size(case_reader *r) {
-  static const char *const names[] = {"excitation.pressure", "excitation.traction",
-                                      "excitation.force.vector"};
-  const fem_load          *load    = &r->file->load;
-  double                   one[3]  = {load->pressure, 0, 0};
-  const double            *value[] = {one, load->traction, load->force};
-  if (load->kind == FEM_LOAD_FIELD) return; /* told when the file is read */
-  const char   *name = names[load->kind];
-  const double *v    = value[load->kind];
-  if (!r->file->modal_file && case_reader_given(r, name) && case_reader_good(r, name) &&
-      v[0] == 0 && v[1] == 0 && v[2] == 0)
-    case_reader_issue(r, name, "is 0; nothing would move");
-}
-
 void case_check_alternatives(case_reader *r, int stages) {
   check_mesh(r, stages);
-  check_load(r);
+  case_check_load(r);
 }
 
 static void check_sections(case_reader *r) {
@@ -152,26 +112,6 @@ static void check_followed(case_reader *r) {
     case_reader_issue(r, "contact.n0", "must be one number, because curves follow mhb.vary.n0");
 }
 
-/* Harmonic k of the load drives harmonic k nu of the balance, whose fundamental is omega / nu. */
-static void check_harmonics(case_reader *r, int stages) {
-  const case_file *file = r->file;
-  bool good = case_reader_good(r, "excitation.harmonics") && case_reader_good(r, "mhb.harmonics") &&
-              case_reader_good(r, "mhb.subharmonics");
-  if (file->modal_file || !good || !(stages & CASE_MHB)) return;
-  if (file->load.kind == FEM_LOAD_FIELD) {
-    if (case_reader_given(r, "excitation.harmonics"))
-      case_reader_issue(r, "excitation.harmonics", "leave it out: the field has its own harmonics");
-    return;
-  }
-  int k = file->load.n_harmonics, needed = k * file->mhb.subharmonics;
-  if (file->mhb.harmonics > 0 && needed > file->mhb.harmonics)
-    case_reader_issue(
-        r, "excitation.harmonics",
-        "harmonic %d would be left out: mhb.harmonics is %d, must be %d at least (times "
-        "mhb.subharmonics)",
-        k, file->mhb.harmonics, needed);
-}
-
 /* Frequencies outside the range would find curves that are not followed. */
 static void check_search(case_reader *r) {
   const mhb_settings *mhb  = &r->file->mhb;
@@ -236,9 +176,8 @@ bool case_check_values(case_reader *r, int stages) {
     check_sections(r);
     check_sizes(r);
   }
-  check_load_size(r);
+  case_check_load_values(r, stages);
   check_blade(r, stages);
-  check_harmonics(r, stages);
   check_tolerance(r);
   case_check_materials(r);
   if (stages & CASE_MHB) check_followed(r);
@@ -247,6 +186,8 @@ bool case_check_values(case_reader *r, int stages) {
   if (own && stages & (CASE_MESH | CASE_MODAL)) lost = check_file(r, "mesh.file", file->mesh_file);
   if (own && stages & CASE_MODAL && file->load.kind == FEM_LOAD_FIELD && !lost)
     lost = check_file(r, "excitation.field", file->field_file);
+  for (int i = 0; i < file->n_loads && own && stages & CASE_MODAL && !lost; i++)
+    lost = check_file(r, "excitation.loads", file->loads[i].field);
   if (!own && stages & CASE_MHB) lost = check_file(r, "modal.file", file->modal_file);
   return lost;
 }

@@ -6,17 +6,26 @@
 
 #include "modal/h5.h"
 
+/* A line for a load's field, if it is one. */
+static shb_status add_field(const char *path, int load, char *text, size_t size) {
+  char fingerprint[17], which[24] = "";
+  if (!path) return SHB_OK;
+  SHB_TRY(shb_fingerprint(path, fingerprint));
+  if (load >= 0) snprintf(which, sizeof which, "loads[%d].", load);
+  size_t used = strlen(text);
+  snprintf(text + used, size - used, "excitation.%sfield.fingerprint = %s\n", which, fingerprint);
+  return SHB_OK;
+}
+
 shb_status fresh_settings(const case_file *file, case_stage stage, const char *input, char **text) {
   const char *name = stage == CASE_MODAL ? "mesh" : "modal";
-  char        fingerprint[17], field[64] = "", of_field[17];
+  char        fingerprint[17], field[64 * (CASE_MAX_LOADS + 1)] = "";
   SHB_TRY(shb_fingerprint(input, fingerprint));
-  if (stage == CASE_MODAL && file->load.kind == FEM_LOAD_FIELD) {
-    SHB_TRY(shb_fingerprint(file->field_file, of_field));
-    snprintf(field, sizeof field, "excitation.field.fingerprint = %s\n", of_field);
-  }
+  for (int i = -1; i < file->n_loads && stage == CASE_MODAL; i++)
+    SHB_TRY(add_field(i < 0 ? file->field_file : file->loads[i].field, i, field, sizeof field));
   char *keys = case_settings(file, stage);
   SHB_CHECK(keys, SHB_ERR_IO, "out of memory");
-  size_t size = strlen(keys) + 128;
+  size_t size = strlen(keys) + strlen(field) + 128;
   *text       = malloc(size);
   if (*text) snprintf(*text, size, "%s%s.fingerprint = %s\n%s", keys, name, fingerprint, field);
   free(keys);

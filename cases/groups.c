@@ -125,6 +125,12 @@ static bool read_rule(case_issues *issues, const char *path, const case_node *no
   return good && check_rule(&c, node);
 }
 
+bool case_group_is_usual(const char *name) {
+  for (int id = 0; id < MESH_N_SETS; id++)
+    if (strcmp(name, group_name[id]) == 0) return true;
+  return false;
+}
+
 /* Where the rule of a group goes; NULL if there are too many. */
 static mesh_rule *slot_of(const char *name, mesh_rules *rules) {
   for (int id = 0; id < MESH_N_SETS; id++)

@@ -13,6 +13,9 @@
 bool case_groups_read(case_issues *issues, const char *path, const case_node *node,
                       mesh_rules *rules);
 
+/* root, contact_right, contact_left, load? */
+bool case_group_is_usual(const char *name);
+
 /* One line a rule, in SI. */
 void case_groups_print(FILE *out, const char *path, const mesh_rules *rules);
 

@@ -58,6 +58,7 @@ typedef enum {
   CASE_IF_TRACTION,
   CASE_IF_FORCE,
   CASE_IF_FIELD,
+  CASE_IF_LOADS,     /* several loads */
   CASE_IF_FACTORS,   /* any other load */
   CASE_IF_FORCE_AT,  /* excitation by force with a place of its own */
   CASE_IF_OUTPUT,    /* converge.output given */

@@ -27,6 +27,10 @@ static const case_block *find_block(const case_reader *r, const char *path) {
   return NULL;
 }
 
+bool case_reader_has_block(const case_reader *r, const char *path) {
+  return find_block(r, path) != NULL;
+}
+
 /* Cuts the last part of a path; false at the top. */
 static bool parent_of(char *path) {
   char *dot = strrchr(path, '.');
@@ -98,23 +102,35 @@ static bool element_has(const case_reader *r, const case_node *node, const case_
   return false;
 }
 
-/* One element of a list of mappings: its rows are "LIST[].KEY". */
-static void read_element(case_reader *r, const case_key *list, const case_node *node,
+/* The keys of an element, or of a block in it, whose rows begin with prefix. */
+static void read_members(case_reader *r, const char *prefix, const case_node *node,
                          const char *path, char *base) {
-  char prefix[CASE_PATH];
-  case_path(prefix, "%s[]", list->path);
   for (int i = 0; i < node->n; i++) {
     const case_node *child = &node->child[i];
     char             row[CASE_PATH], full[CASE_PATH];
     case_path(row, "%s.%s", prefix, child->key);
     case_path(full, "%s.%s", path, child->key);
-    const case_key *key = case_key_find(r->keys, row);
+    const case_key *key   = case_key_find(r->keys, row);
+    bool            block = !key && case_key_is_block(r->keys, row);
     if (key) {
       case_value_read(r->issues, key, full, child, r->file, base + key->at);
-    } else {
+    } else if (block && child->kind == CASE_MAPPING) {
+      read_members(r, row, child, full, base);
+    } else if (block && child->kind != CASE_BROKEN) {
+      case_issue_add(r->issues, child->line, child->column, full, "is %s; expected a mapping",
+                     case_kind_name(child->kind));
+    } else if (!block) {
       refuse_key(r, prefix, full, child);
     }
   }
+}
+
+/* One element of a list of mappings: its rows are "LIST[].KEY". */
+static void read_element(case_reader *r, const case_key *list, const case_node *node,
+                         const char *path, char *base) {
+  char prefix[CASE_PATH];
+  case_path(prefix, "%s[]", list->path);
+  read_members(r, prefix, node, path, base);
   for (int i = 0; i < r->keys.n; i++) {
     const case_key *key = &r->keys.key[i];
     if (strncmp(key->path, prefix, strlen(prefix)) != 0) continue;

@@ -37,6 +37,9 @@ void case_reader_require(case_reader *reader, int stages);
 /* Node of a key, NULL if it is not in the file. */
 const case_node *case_reader_given(const case_reader *reader, const char *path);
 
+/* Whether a block of keys is in the file. */
+bool case_reader_has_block(const case_reader *reader, const char *path);
+
 /* Whether the value of a key may be used: read well, or its default. */
 bool case_reader_good(const case_reader *reader, const char *path);
 

@@ -65,7 +65,7 @@ static void print_scalar(FILE *out, const case_key *key, const case_file *file, 
       fputs(*(char *const *)slot, out);
       break;
     case CASE_FILE_NAME:
-      fputs(inside(file, *(char *const *)slot), out);
+      fputs(*(char *const *)slot ? inside(file, *(char *const *)slot) : "-", out);
       break;
     case CASE_PRELOADS:
       print_numbers(out, *(const int *)((const char *)slot - key->at + key->count_at), slot);

@@ -77,7 +77,8 @@ static int parse(const words *line, command_options *options, case_file *file) {
 }
 
 static modal_settings stage_settings(const case_file *file, modal_probe probe[CASE_MAX_PROBES],
-                                     modal_region region[MESH_MAX_VOLUMES]) {
+                                     modal_region region[MESH_MAX_VOLUMES],
+                                     fem_load     loads[CASE_MAX_LOADS]) {
   const mhb_settings *mhb = &file->mhb;
   for (int q = 0; q < file->n_probes; q++) {
     probe[q].name = file->probe[q].name;
@@ -85,7 +86,8 @@ static modal_settings stage_settings(const case_file *file, modal_probe probe[CA
   }
   for (int i = 0; i < file->n_materials; i++)
     region[i] = (modal_region){file->materials[i].group, file->materials[i].material};
-  return (modal_settings){
+  for (int i = 0; i < file->n_loads; i++) loads[i] = file->loads[i].load;
+  modal_settings out = {
       .material         = file->material,
       .n_regions        = file->n_materials,
       .region           = region,
@@ -103,7 +105,12 @@ static modal_settings stage_settings(const case_file *file, modal_probe probe[CA
       .points           = file->points,
       .psi              = mhb->has_psi ? &mhb->psi : NULL,
       .phi              = mhb->has_phi ? &mhb->phi : NULL,
+      .n_loads          = file->n_loads,
+      .loads            = loads,
+      .n_groups         = file->source.rules.n_more,
   };
+  for (int i = 0; i < out.n_groups; i++) out.group[i] = file->source.rules.more[i].name;
+  return out;
 }
 
 /* Rank 0 decides whether there is anything to do; *settings is malloc'ed there, NULL elsewhere. */
@@ -126,6 +133,7 @@ static shb_status run(const case_file *file, const command_options *options, int
       shb_progress_start("modal", options->quiet || rank != 0, options->verbose);
   modal_probe  probe[CASE_MAX_PROBES];
   modal_region region[MESH_MAX_VOLUMES];
+  fem_load     loads[CASE_MAX_LOADS];
   char        *mesh = case_mesh_path(file), *output = case_output(file, ".modal.h5");
   char        *settings = NULL;
   bool         skip;
@@ -134,7 +142,7 @@ static shb_status run(const case_file *file, const command_options *options, int
   if (status == SHB_OK) status = decide(file, options->force, mesh, output, &settings, &skip);
   if (status == SHB_OK && skip) shb_progress_note(&progress, "%s is up to date", output);
   if (status == SHB_OK && !skip) {
-    modal_settings stage      = stage_settings(file, probe, region);
+    modal_settings stage      = stage_settings(file, probe, region, loads);
     shb_provenance provenance = command_provenance(file, settings, "shroudhb-modal");
     status = modal_stage(PETSC_COMM_WORLD, mesh, output, &stage, &provenance, &progress);
     shb_progress_note(&progress, "%.2f s in all", shb_seconds() - progress.started);

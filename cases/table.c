@@ -7,6 +7,7 @@
 #define LIST(member, count) \
   AT(member), .count_at = offsetof(case_file, count), .each = sizeof(*((case_file *)0)->member)
 #define MATERIAL(member) .at = offsetof(case_material, member)
+#define LOAD(member) .at = offsetof(case_load, member)
 #define SECTION(member) .at = offsetof(mesh_section, member)
 #define COUNT(array) ((int)(sizeof(array) / sizeof *(array)))
 
@@ -110,7 +111,7 @@ static const case_key table[] = {
 
     {"excitation.engine_order", CASE_INTEGER, "", 0, 10000, .required = true, AT(engine_order), .stages = CASE_MHB, .when = CASE_IF_NEIGHBOUR,
      .help = "engine order E; the inter-blade phase is 2 pi E / blades"},
-    {"excitation.pressure", CASE_NUMBER, "Pa", -1e12, 1e12, .required = true, .instead = "traction, force or field", AT(load.pressure), .stages = CASE_MODAL, .when = CASE_IF_PRESSURE,
+    {"excitation.pressure", CASE_NUMBER, "Pa", -1e12, 1e12, .required = true, .instead = "traction, force, field or loads", AT(load.pressure), .stages = CASE_MODAL, .when = CASE_IF_PRESSURE,
      .help = "on the group load, into the surface; one of pressure, traction, force, field"},
     {"excitation.traction", CASE_VECTOR, "Pa", -1e12, 1e12, .required = true, AT(load.traction), .stages = CASE_MODAL, .when = CASE_IF_TRACTION,
      .help = "on the group load, along a direction in mesh axes"},
@@ -122,6 +123,22 @@ static const case_key table[] = {
      .help = "HDF5 file of forces at nodes or of pressure at the nodes of group load, amplitude and phase a harmonic"},
     {"excitation.harmonics", CASE_FACTORS, "", .fallback = "{1: [1, 0 deg]}", AT(load), .stages = CASE_MODAL, .when = CASE_IF_FACTORS,
      .help = "factor and phase of the load a harmonic: {k: [factor, phase]}, k from 0 to 64"},
+    {"excitation.loads", CASE_LIST, "", 1, CASE_MAX_LOADS, LIST(loads, n_loads), .stages = CASE_MESH | CASE_MODAL, .when = CASE_IF_LOADS,
+     .help = "instead of one load: a list of loads that act together, each one of pressure, traction, force, field"},
+    {"excitation.loads[].group", CASE_LABEL, "", .fallback = "load", LOAD(group), .stages = CASE_MESH | CASE_MODAL,
+     .help = "group of faces that the pressure or traction acts on"},
+    {"excitation.loads[].pressure", CASE_NUMBER, "Pa", -1e12, 1e12, LOAD(load.pressure), .stages = CASE_MODAL,
+     .help = "into the surface"},
+    {"excitation.loads[].traction", CASE_VECTOR, "Pa", -1e12, 1e12, LOAD(load.traction), .stages = CASE_MODAL,
+     .help = "along a direction in mesh axes"},
+    {"excitation.loads[].force.at", CASE_VECTOR, "m", -1e3, 1e3, LOAD(load.at), .stages = CASE_MODAL,
+     .help = "where the force acts: the node nearest to it; default: the first probe"},
+    {"excitation.loads[].force.vector", CASE_VECTOR, "N", -1e12, 1e12, LOAD(load.force), .stages = CASE_MODAL,
+     .help = "force in mesh axes"},
+    {"excitation.loads[].field", CASE_FILE_NAME, "", LOAD(field), .stages = CASE_MODAL,
+     .help = "file of forces or pressure at nodes, as excitation.field"},
+    {"excitation.loads[].harmonics", CASE_FACTORS, "", .fallback = "{1: [1, 0 deg]}", LOAD(load), .stages = CASE_MODAL,
+     .help = "factor and phase of this load a harmonic"},
 
     {"probe", CASE_PROBES, "m", -1e3, 1e3, .fallback = "{}", AT(probe), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
      .help = "nodes to watch, at most 32: {name: [x, y, z]}, the nearest node to each"},
@@ -211,7 +228,7 @@ case_keys case_key_table(void) {
 }
 
 bool case_key_applies(const case_key *key, const case_file *file) {
-  bool own = !file->modal_file, blade = own && !file->mesh_file;
+  bool own = !file->modal_file, blade = own && !file->mesh_file, one = own && !file->has_loads;
   switch (key->when) {
     case CASE_IF_BLADE:
       return blade;
@@ -227,6 +244,8 @@ bool case_key_applies(const case_key *key, const case_file *file) {
       return own && !file->has_materials;
     case CASE_IF_MATERIALS:
       return own && file->has_materials;
+    case CASE_IF_LOADS:
+      return own && file->has_loads;
     case CASE_IF_CRYSTAL:
       return own && !file->has_materials && file->constants.G[0] != 0;
     case CASE_IF_NEIGHBOUR:
@@ -238,17 +257,17 @@ bool case_key_applies(const case_key *key, const case_file *file) {
     case CASE_IF_PHI:
       return file->mhb.has_phi;
     case CASE_IF_PRESSURE:
-      return own && file->load.kind == FEM_LOAD_PRESSURE;
+      return one && file->load.kind == FEM_LOAD_PRESSURE;
     case CASE_IF_TRACTION:
-      return own && file->load.kind == FEM_LOAD_TRACTION;
+      return one && file->load.kind == FEM_LOAD_TRACTION;
     case CASE_IF_FORCE:
-      return own && file->load.kind == FEM_LOAD_FORCE;
+      return one && file->load.kind == FEM_LOAD_FORCE;
     case CASE_IF_FACTORS:
-      return own && file->load.kind != FEM_LOAD_FIELD;
+      return one && file->load.kind != FEM_LOAD_FIELD;
     case CASE_IF_FIELD:
-      return own && file->load.kind == FEM_LOAD_FIELD;
+      return one && file->load.kind == FEM_LOAD_FIELD;
     case CASE_IF_FORCE_AT:
-      return own && file->load.kind == FEM_LOAD_FORCE && file->load.has_at;
+      return one && file->load.kind == FEM_LOAD_FORCE && file->load.has_at;
     case CASE_IF_OUTPUT:
       return file->converge_output != NULL;
     case CASE_IF_AUTO:

@@ -12,6 +12,7 @@ typedef enum { FEM_LOAD_PRESSURE, FEM_LOAD_TRACTION, FEM_LOAD_FORCE, FEM_LOAD_FI
 
 typedef struct {
   fem_load_kind kind;
+  const char   *group;       /* of faces that pressure and traction act on; NULL: load */
   double        pressure;    /* Pa, on group load; positive pushes into the surface */
   double        traction[3]; /* Pa, mesh axes, on group load */
   double        force[3];    /* N, mesh axes, at the node nearest to at */

@@ -49,6 +49,17 @@ shb_status modal_dofs_add_field(modal_dofs *dofs, int n_nodes, const double *for
   return SHB_OK;
 }
 
+shb_status modal_dofs_append(modal_dofs *dofs, const modal_dofs *more) {
+  for (int c = 0; c < more->n; c++) {
+    const int first = dofs->n_entries, from = more->start[c], n = more->start[c + 1] - from;
+    SHB_TRY(grow(dofs, n));
+    memcpy(dofs->node + first, more->node + from, (size_t)n * sizeof *dofs->node);
+    memcpy(dofs->weight + 3 * (size_t)first, more->weight + 3 * (size_t)from,
+           3 * (size_t)n * sizeof *dofs->weight);
+  }
+  return SHB_OK;
+}
+
 /* Local offset of a node's first dof in a dense column, -1 if clamped or another rank's. */
 static PetscInt offset_of(const fem_system *system, int node) {
   PetscInt row = system->row[node];

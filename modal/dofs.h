@@ -22,6 +22,9 @@ shb_status modal_dofs_add(modal_dofs *dofs, int n_entries, const int *node, cons
 /* Append one dof that is the work of nodal forces [n_nodes][3]; zeros are left out. */
 shb_status modal_dofs_add_field(modal_dofs *dofs, int n_nodes, const double *force);
 
+/* Append all dofs of another. */
+shb_status modal_dofs_append(modal_dofs *dofs, const modal_dofs *more);
+
 /* B[:, c] = b_(first + c) for c < count; the other columns of the dense matrix B are zeroed. */
 PetscErrorCode modal_dofs_spread(const modal_dofs *dofs, const fem_system *system, int first,
                                  int count, Mat B);

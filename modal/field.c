@@ -187,22 +187,59 @@ static shb_status from_case(const mesh_fe *mesh, const fem_load *load, const dou
   return SHB_OK;
 }
 
-shb_status modal_load_create(const mesh_fe *mesh, const fem_load *load, const double *fallback,
-                             modal_load *out) {
-  field f = {.path = load->field};
+/* The mesh as a load sees it: its own group is the group load. */
+static shb_status view_of(const mesh_fe *mesh, const fem_load *load, mesh_fe *view) {
+  *view = *mesh;
+  if (!load->group) return SHB_OK;
+  int set = mesh_fe_set_named(mesh, load->group);
+  SHB_CHECK(set >= 0 && mesh->set[set].n > 0, SHB_ERR_INPUT,
+            "the mesh has no group \"%s\", which excitation.loads names", load->group);
+  view->set[MESH_LOAD] = mesh->set[set];
+  return SHB_OK;
+}
+
+static shb_status create_one(const mesh_fe *mesh, const fem_load *load, const double *fallback,
+                             double *force, modal_load *out) {
+  field   f = {.path = load->field};
+  mesh_fe view;
+  SHB_TRY(view_of(mesh, load, &view));
+  if (load->kind != FEM_LOAD_FIELD) return from_case(&view, load, fallback, force, out);
+  shb_status status = read_field(&view, &f);
+  if (status == SHB_OK) status = from_field(&view, &f, force, out);
+  field_free(&f);
+  return status;
+}
+
+/* The patterns of one more load after those of out. */
+static shb_status append(modal_load *out, const modal_load *one) {
+  const int       top = one->n_harmonics > out->n_harmonics ? one->n_harmonics : out->n_harmonics;
+  const int       n = out->dofs.n, both = n + one->dofs.n;
+  double complex *weight = calloc((size_t)(top + 1) * (size_t)both, sizeof *weight);
+  SHB_CHECK(weight, SHB_ERR_IO, "out of memory for the load");
+  for (int k = 0; k <= out->n_harmonics && n > 0; k++)
+    memcpy(weight + k * both, out->weight + k * n, (size_t)n * sizeof *weight);
+  for (int k = 0; k <= one->n_harmonics; k++)
+    memcpy(weight + k * both + n, one->weight + k * one->dofs.n,
+           (size_t)one->dofs.n * sizeof *weight);
+  free(out->weight);
+  out->weight      = weight;
+  out->n_harmonics = top;
+  return modal_dofs_append(&out->dofs, &one->dofs);
+}
+
+shb_status modal_load_create(const mesh_fe *mesh, int n, const fem_load *loads,
+                             const double *fallback, modal_load *out) {
   memset(out, 0, sizeof *out);
   double    *force  = malloc(3 * (size_t)mesh->n_nodes * sizeof *force + 1);
   shb_status status = SHB_OK;
-  if (!force) {
-    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for the load");
-  } else if (load->kind == FEM_LOAD_FIELD) {
-    status = read_field(mesh, &f);
-    if (status == SHB_OK) status = from_field(mesh, &f, force, out);
-  } else {
-    status = from_case(mesh, load, fallback, force, out);
+  if (!force) status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for the load");
+  for (int i = 0; i < n && status == SHB_OK; i++) {
+    modal_load one = {0};
+    status         = create_one(mesh, &loads[i], fallback, force, &one);
+    if (status == SHB_OK) status = append(out, &one);
+    modal_load_free(&one);
   }
   free(force);
-  field_free(&f);
   if (status != SHB_OK) modal_load_free(out);
   return status;
 }

@@ -73,7 +73,9 @@ static shb_status prepare(const mesh_fe *mesh, const modal_settings *settings,
   SHB_TRY(modal_interface_dofs(interface, &to->contact));
   SHB_TRY(probe_dofs(mesh, settings, &to->probe));
   const double *fallback = settings->n_probes > 0 ? settings->probe[0].at : NULL;
-  return modal_load_create(mesh, &settings->load, fallback, &to->load);
+  return modal_load_create(mesh, settings->n_loads ? settings->n_loads : 1,
+                           settings->n_loads ? settings->loads : &settings->load, fallback,
+                           &to->load);
 }
 
 /* Eigenvalues as Rayleigh quotients from the strains, on rank 0: the solver's own carry the rounding of K, which in a
@@ -223,7 +225,9 @@ static shb_status publish(const char *path, const mesh_fe *mesh, const modal_res
 }
 
 static shb_status read_mesh(const char *path, const modal_settings *settings, mesh_fe *mesh) {
-  mesh_names names = {.n_volumes = settings->n_regions};
+  mesh_names names = {.n_more = settings->n_groups, .n_volumes = settings->n_regions};
+  for (int i = 0; i < settings->n_groups; i++)
+    names.more[i].label = names.more[i].name = settings->group[i];
   for (int i = 0; i < settings->n_regions; i++)
     names.volume[i].label = names.volume[i].name = settings->region[i].name;
   SHB_TRY(mesh_fe_read_named(path, &names, mesh));

@@ -37,6 +37,10 @@ typedef struct {
   modal_damping       damping;
   bool                full_integration; /* stiffness of hexahedra with 3x3x3 points, not 2x2x2 */
   fem_load            load;
+  int                 n_loads;  /* 0: load alone */
+  const fem_load     *loads;    /* that act together */
+  int                 n_groups; /* further groups of faces that loads name */
+  const char         *group[MESH_MAX_MORE];
   int                 n_probes;
   const modal_probe  *probe;
   bool                to_ground;

@@ -1,4 +1,5 @@
 /* Keys that are lists of mappings: materials by volumes, and what goes with them. */
+#include <complex.h>
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -128,10 +129,85 @@ static void faults_of_materials(void **state) {
   check_faults(whole, rows, sizeof rows / sizeof *rows);
 }
 
+static const char loads[] =
+    "mesh:\n"                                                                          /* 1 */
+    "  file: b.msh\n"                                                                  /* 2 */
+    "  groups: {suction: {name: S}}\n"                                                 /* 3 */
+    "material: {E: 1 GPa, nu: 0, rho: 1000}\n"                                         /* 4 */
+    "rotor: {axis: x}\n"                                                               /* 5 */
+    "modal: {damping: 0.2 %}\n"                                                        /* 6 */
+    "excitation:\n"                                                                    /* 7 */
+    "  loads:\n"                                                                       /* 8 */
+    "    - {pressure: 210 Pa, harmonics: {1: [1, 0 deg], 2: [0.5, 90 deg]}}\n"         /* 9 */
+    "    - {pressure: -90 Pa, group: suction}\n"                                       /* 10 */
+    "    - {force: {at: [0, 0, 1 mm], vector: [5 N, 0, 0]}, harmonics: {0: [1, 0]}}\n" /* 11 */
+    "contact: {to: ground, mu: 0.4, ku: 0.5, kv: 0.8, n0: 1}\n"                        /* 12 */
+    "mhb: {frequency: [0.14, 0.25], harmonics: 2}\n";                                  /* 13 */
+
+static void loads_are_read(void **state) {
+  (void)state;
+  char     *said;
+  case_file file;
+  if (judge(loads, &said, &file) != SHB_OK) fail_msg("%s", said);
+  free(said);
+  assert_int_equal(file.n_loads, 3);
+  const fem_load *a = &file.loads[0].load, *b = &file.loads[1].load, *c = &file.loads[2].load;
+  assert_true(a->kind == FEM_LOAD_PRESSURE && a->pressure == 210 && a->n_harmonics == 2);
+  assert_true(cabs(a->factor[2] - .5 * I) < 1e-15 && a->factor[1] == 1);
+  assert_true(b->pressure == -90 && b->n_harmonics == 1 && b->factor[1] == 1);
+  assert_string_equal(a->group, "load");
+  assert_string_equal(b->group, "suction");
+  assert_true(c->kind == FEM_LOAD_FORCE && c->has_at && c->at[2] == .001 && c->force[0] == 5);
+  assert_true(c->n_harmonics == 0 && c->factor[0] == 1);
+  assert_int_equal(file.source.rules.n_more, 1);
+  assert_string_equal(file.source.rules.more[0].name, "suction");
+  assert_string_equal(file.source.rules.more[0].rule.name, "S");
+  char *mesh = case_settings(&file, CASE_MESH), *modal = case_settings(&file, CASE_MODAL);
+  assert_non_null(strstr(mesh, "excitation.loads[1].group = suction\n"));
+  assert_null(strstr(mesh, "pressure"));
+  assert_non_null(strstr(modal, "excitation.loads[0].harmonics.2 = "));
+  assert_non_null(strstr(modal, "excitation.loads[2].force.vector = 5 0 0\n"));
+  assert_null(strstr(modal, "excitation.pressure"));
+  free(mesh);
+  free(modal);
+  case_free(&file);
+}
+
+static void faults_of_loads(void **state) {
+  (void)state;
+  static const fault rows[] = {
+      {"pressure: 210 Pa", "presure: 210 Pa",
+       "9:8: error: excitation.loads[0].presure: unknown key; did you mean 'pressure'?\n", 1},
+      {"pressure: 210 Pa, ", "",
+       "9:7: error: excitation.loads[0]: missing; expected one of pressure, traction, force and "
+       "field\n",
+       1},
+      {"pressure: 210 Pa", "pressure: 210 Pa, traction: [1, 0, 0]",
+       "9:36: error: excitation.loads[0].traction: give only one of", 1},
+      {"-90 Pa", "0 Pa", "10:7: error: excitation.loads[1]: is 0; nothing would move\n", 1},
+      {"at: [0, 0, 1 mm], ", "",
+       "11:15: error: excitation.loads[2].force.vector: has no place to act", 1},
+      {", vector: [5 N, 0, 0]", "",
+       "11:15: error: excitation.loads[2].force.vector: missing; expected [x, y, z] in N\n", 1},
+      {"vector: [5 N, 0, 0]", "vektor: [5 N, 0, 0]",
+       "11:34: error: excitation.loads[2].force.vektor: unknown key; did you mean 'vector'?", 1},
+      {"harmonics: 2}", "harmonics: 1}",
+       "9:37: error: excitation.loads[0].harmonics: harmonic 2 would be left out", 1},
+      {"  loads:\n", "  pressure: 3 Pa\n  loads:\n",
+       "8:13: error: excitation.pressure: put it into excitation.loads", 1},
+      {"group: suction", "group: load",
+       "3:12: error: mesh.groups.suction: unknown group; known are root", 1},
+      {"pressure: -90 Pa", "field: none.h5", "9:5: error: excitation.loads: ", 1},
+  };
+  check_faults(loads, rows, sizeof rows / sizeof *rows);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(materials_are_read),
       cmocka_unit_test(faults_of_materials),
+      cmocka_unit_test(loads_are_read),
+      cmocka_unit_test(faults_of_loads),
   };
   return cmocka_run_group_tests_name("cases.lists", tests, NULL, NULL);
 }

@@ -135,7 +135,7 @@ static void linear_pressure_is_exact(void **state) {
     fem_load   field = {.kind = FEM_LOAD_FIELD};
     modal_load load;
     field.field = write_field("linear.h5", mesh.n_nodes, node, 1, &harmonic, 0, value);
-    assert_ok(modal_load_create(&mesh, &field, NULL, &load));
+    assert_ok(modal_load_create(&mesh, 1, &field, NULL, &load));
     assert_int_equal(load.dofs.n, 1); /* the imaginary part is 0 */
     double sum = 0, moment[2] = {0, 0};
     for (int e = 0; e < load.dofs.n_entries; e++) {
@@ -158,7 +158,7 @@ static void linear_pressure_is_exact(void **state) {
 static void refused(const mesh_fe *mesh, const char *path, const char *words) {
   fem_load   field = {.kind = FEM_LOAD_FIELD, .field = path};
   modal_load load;
-  assert_int_equal(modal_load_create(mesh, &field, NULL, &load), SHB_ERR_INPUT);
+  assert_int_equal(modal_load_create(mesh, 1, &field, NULL, &load), SHB_ERR_INPUT);
   if (!strstr(shb_message(), words)) fail_msg("'%s', wanted '%s'", shb_message(), words);
   assert_null(strchr(shb_message(), '\n'));
 }
@@ -181,12 +181,122 @@ static void faults_are_one_line(void **state) {
   mesh.set[MESH_LOAD].n = 0;
   refused(&mesh, write_field("a.h5", 2, node, 2, harmonic, 0, value), "no group \"load\"");
   lost.field = scratch("none.h5");
-  assert_int_equal(modal_load_create(&mesh, &lost, NULL, &load), SHB_ERR_IO);
+  assert_int_equal(modal_load_create(&mesh, 1, &lost, NULL, &load), SHB_ERR_IO);
+  mesh_fe_free(&mesh);
+}
+
+/* Moduli and phases of their own a harmonic, together: the sum of what each does alone. */
+static void loads_add_up(void **state) {
+  (void)state;
+  const double complex turn    = cexp(.9 * I);
+  mesh_fe              mesh    = make_sector(size, inner, BLADES, cells);
+  fem_load             load[3] = {
+                  {.kind = FEM_LOAD_PRESSURE, .pressure = 210, .n_harmonics = 1, .factor = {0, 1}},
+                  {.kind        = FEM_LOAD_TRACTION,
+                   .traction    = {3, -70, 20},
+                   .n_harmonics = 3,
+                   .factor      = {.2, -.4 * I, 0, cexp(2 * I)}},
+                  {.kind        = FEM_LOAD_FORCE,
+                   .force       = {.1, 0, .3},
+                   .has_at      = true,
+                   .at          = {0, 0, .3},
+                   .n_harmonics = 2,
+                   .factor      = {0, .3, turn}}};
+  modal_model    one[3], all;
+  modal_settings settings = default_settings();
+  modal_result   result;
+  for (int i = 0; i < 3; i++) solve(&mesh, &load[i], &one[i]);
+  settings.n_loads = 3;
+  settings.loads   = load;
+  assert_ok(modal_solve(PETSC_COMM_WORLD, &mesh, &settings, NULL, &result));
+  all = result.model;
+  assert_int_equal(all.n_load, 3);
+  const int nc = 6 * all.n_pairs, width[3] = {all.n_modes, nc, nc};
+  for (int part = 0; part < 3; part++) {
+    const int       n   = width[part];
+    double complex *sum = calloc((size_t)(4 * n), sizeof *sum);
+    for (int i = 0; i < 3; i++) {
+      const double complex *own[] = {one[i].modal_force, one[i].load_residual, one[i].load_inertia};
+      for (int k = 0; k < (one[i].n_load + 1) * n; k++) sum[k] += own[part][k];
+    }
+    const double complex *both[] = {all.modal_force, all.load_residual, all.load_inertia};
+    double                most   = 0;
+    for (int k = 0; k < 4 * n; k++) most = fmax(most, cabs(sum[k]));
+    for (int k = 0; k < 4 * n; k++) check_below(cabs(both[part][k] - sum[k]), 1e-11 * most, "sum");
+    free(sum);
+  }
+  modal_result_free(&result);
+
+  /* a quarter turn of both turns the sum; opposite loads leave nothing but rounding */
+  load[1].n_harmonics = 1, load[1].factor[0] = 0, load[1].factor[1] = I;
+  load[0].factor[1] = I;
+  settings.n_loads  = 2;
+  assert_ok(modal_solve(PETSC_COMM_WORLD, &mesh, &settings, NULL, &result));
+  all               = result.model;
+  load[0].factor[1] = 1, load[1].factor[1] = 1;
+  modal_result still;
+  assert_ok(modal_solve(PETSC_COMM_WORLD, &mesh, &settings, NULL, &still));
+  double most = 0;
+  for (int i = 0; i < all.n_modes; i++)
+    most = fmax(most, cabs(still.model.modal_force[all.n_modes + i]));
+  for (int i = 0; i < all.n_modes; i++)
+    check_below(
+        cabs(all.modal_force[all.n_modes + i] - I * still.model.modal_force[all.n_modes + i]),
+        1e-13 * most, "a quarter turn");
+  modal_result_free(&still);
+  modal_result_free(&result);
+  load[1]           = load[0];
+  load[1].factor[1] = -1;
+  assert_ok(modal_solve(PETSC_COMM_WORLD, &mesh, &settings, NULL, &result));
+  for (int i = 0; i < all.n_modes; i++)
+    check_below(cabs(result.model.modal_force[result.model.n_modes + i]), 1e-13 * most,
+                "what is left");
+  modal_result_free(&result);
+  for (int i = 0; i < 3; i++) modal_model_free(&one[i]);
+  mesh_fe_free(&mesh);
+}
+
+/* Each load on a group of its own. */
+static void loads_have_groups(void **state) {
+  (void)state;
+  mesh_fe    mesh    = make_sector(size, inner, BLADES, cells);
+  fem_load   load[2] = {{.kind        = FEM_LOAD_PRESSURE,
+                         .pressure    = 210,
+                         .n_harmonics = 1,
+                         .factor      = {0, 1},
+                         .group       = "side"},
+                        {.kind        = FEM_LOAD_PRESSURE,
+                         .pressure    = 210,
+                         .n_harmonics = 1,
+                         .factor      = {0, 1},
+                         .group       = "load"}};
+  modal_load made[2];
+  strcpy(mesh.more[0], "side");
+  mesh.n_more = 1;
+  assert_int_equal(modal_load_create(&mesh, 1, load, NULL, &made[0]), SHB_ERR_INPUT);
+  assert_non_null(strstr(shb_message(), "no group \"side\""));
+  mesh.set[MESH_N_SETS] = mesh.set[MESH_CONTACT_RIGHT];
+  for (int i = 0; i < 2; i++) assert_ok(modal_load_create(&mesh, 1, &load[i], NULL, &made[i]));
+  double sum[2][3] = {{0}};
+  for (int i = 0; i < 2; i++) {
+    assert_int_equal(made[i].dofs.n, 1);
+    for (int e = 0; e < 3 * made[i].dofs.n_entries; e++) sum[i][e % 3] += made[i].dofs.weight[e];
+    modal_load_free(&made[i]);
+  }
+  /* the resultant of a pressure: on the outer face along the radius, on the flat side across it */
+  double half = acos(-1) / BLADES, outer = inner + size[2];
+  check_close(sum[1][2], -210 * size[0] * 2 * outer * sin(half), 1e-6,
+              "resultant on the outer face");
+  check_close(hypot(sum[0][1], sum[0][2]), 210 * size[0] * size[2], 1e-9, "resultant on the side");
+  mesh.set[MESH_N_SETS] = (mesh_face_set){0, NULL};
   mesh_fe_free(&mesh);
 }
 
 int main(int argc, char **argv) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(loads_add_up),
+      cmocka_unit_test(loads_have_groups),
+
       cmocka_unit_test(even_pressure_is_the_case_s),
       cmocka_unit_test(force_at_a_node_is_the_case_s),
       cmocka_unit_test(linear_pressure_is_exact),
