@@ -345,7 +345,7 @@ static void keys_among_each_other(void **state) {
        1},
       {"  pressure: 210 Pa\n", "",
        "c.yaml:14:1: error: excitation.pressure: missing; expected a number in Pa, "
-       "or traction, force or field",
+       "or traction, force, field or loads",
        1},
       {"pressure: 210 Pa", "pressure: 0",
        "c.yaml:16:13: error: excitation.pressure: is 0; nothing would move", 1},
