@@ -62,8 +62,9 @@ typedef struct {
   int             n_materials; /* with materials, instead of material */
   case_material   materials[MESH_MAX_VOLUMES];
   int             blades;
-  double          speed;    /* rad/s */
-  double          pressure; /* Pa, steady */
+  int             n_speeds;
+  double          speed[MHB_MAX_PRELOADS]; /* [n_speeds] rad/s, the last that of the response */
+  double          pressure;                /* Pa, steady */
   mesh_axis       axis;
 
   int           modes;

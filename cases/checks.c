@@ -112,6 +112,18 @@ static void check_followed(case_reader *r) {
     case_reader_issue(r, "contact.n0", "must be one number, because curves follow mhb.vary.n0");
 }
 
+/* Each speed once. */
+static void check_speeds(case_reader *r) {
+  const case_file *file = r->file;
+  if (!case_reader_good(r, "rotor.speed")) return;
+  for (int i = 0; i < file->n_speeds; i++)
+    for (int j = 0; j < i; j++)
+      if (file->speed[i] == file->speed[j]) {
+        case_reader_issue(r, "rotor.speed", "holds %g rad/s twice", file->speed[i]);
+        return;
+      }
+}
+
 /* Frequencies outside the range would find curves that are not followed. */
 static void check_search(case_reader *r) {
   const mhb_settings *mhb  = &r->file->mhb;
@@ -180,6 +192,7 @@ bool case_check_values(case_reader *r, int stages) {
   check_blade(r, stages);
   check_tolerance(r);
   case_check_materials(r);
+  check_speeds(r);
   if (stages & CASE_MHB) check_followed(r);
   check_search(r);
   if (own) check_extension(r);

@@ -9,8 +9,8 @@
 
 static bool preload_room(const case_reading *c, const case_node *node, int n) {
   if (n >= 1 && n <= MHB_MAX_PRELOADS) return true;
-  case_issue_add(c->issues, node->line, node->column, c->path, "%d preloads; there may be 1 to %d",
-                 n, MHB_MAX_PRELOADS);
+  case_issue_add(c->issues, node->line, node->column, c->path, "%d %s; there may be 1 to %d", n,
+                 strcmp(c->path, "rotor.speed") == 0 ? "speeds" : "preloads", MHB_MAX_PRELOADS);
   return false;
 }
 

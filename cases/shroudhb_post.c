@@ -63,23 +63,30 @@ static bool has_points(const case_file *file, const char *path) {
   return false;
 }
 
+/* The modal file that belongs to the case as it is now; malloc'ed, NULL if there is none. */
+static char *fresh_modal(const case_file *file) {
+  char *path  = case_modal_path(file);
+  bool  there = path && access(path, R_OK) == 0;
+  if (there && (file->modal_file || fresh_keys(file, CASE_MODAL, path))) return path;
+  free(path);
+  return NULL;
+}
+
 static shb_status publish(const case_file *file, const command_options *options) {
   shb_progress progress = shb_progress_start("post", options->quiet, options->verbose);
   char        *response = case_output(file, ".response.h5"), *html = case_output(file, ".html");
   char        *csv = case_output(file, ".csv"), *svg = case_output(file, ".svg"), *summary = NULL;
   char        *convergence = fresh_convergence(file);
   char        *points      = case_output(file, ".integration.h5");
+  char        *diagram     = case_output(file, ".campbell.svg");
+  char        *modal       = fresh_modal(file);
   shb_status   status;
-  if (response && html && csv && svg && points) {
+  if (response && html && csv && svg && points && diagram) {
     fresh_warn(file, CASE_MHB, response);
-    const post_job job = {file->name,
-                          response,
-                          html,
-                          csv,
-                          svg,
-                          convergence,
-                          has_points(file, points) ? points : NULL};
-    status             = post_publish(&job, &progress, &summary);
+    const post_job job = {
+        file->name, response, html, csv, svg, convergence, has_points(file, points) ? points : NULL,
+        modal,      diagram};
+    status = post_publish(&job, &progress, &summary);
   } else {
     status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   }
@@ -92,6 +99,8 @@ static shb_status publish(const case_file *file, const command_options *options)
   free(csv);
   free(svg);
   free(points);
+  free(diagram);
+  free(modal);
   return status;
 }
 

@@ -93,8 +93,8 @@ static const case_key table[] = {
 
     {"rotor.blades", CASE_INTEGER, "", 2, 1000, .required = true, AT(blades), .stages = CASE_MESH | CASE_MODAL | CASE_MHB, .when = CASE_IF_SECTOR,
      .help = "number of blades; the sector angle is 360 deg / blades"},
-    {"rotor.speed", CASE_NUMBER, "rad/s", 0, 1e5, .fallback = "0 rpm", AT(speed), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
-     .help = "rotation speed: modes about the static equilibrium under the centrifugal load; 0: at rest"},
+    {"rotor.speed", CASE_PRELOADS, "rad/s", 0, 1e5, .fallback = "0 rpm", AT(speed), .count_at = offsetof(case_file, n_speeds), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
+     .help = "rotation speed: modes about the static equilibrium under the centrifugal load; 0: at rest; a list or {from, to, points}: a Campbell diagram, the response at the last of them"},
     {"rotor.pressure", CASE_NUMBER, "Pa", -1e12, 1e12, .fallback = "0 Pa", AT(pressure), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
      .help = "steady gas pressure on the group load, into the deformed surface: part of the static equilibrium"},
     {"rotor.axis", CASE_CHOICE, "", .words = "x y z -x -y -z", .fallback = "x", AT(axis), .stages = CASE_MESH | CASE_MODAL, .when = CASE_IF_OWN_MODES,

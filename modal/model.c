@@ -5,7 +5,14 @@
 #include <string.h>
 
 static const char model_format[] = "shroudhb modal model";
-enum { MODEL_VERSION = 1, MAX_MODES = 100000, MAX_PAIRS = 100000, MAX_HARMONICS = 10000 };
+/* 2: with more than one speed (modal/speeds.h); the model beside them is read as ever. */
+enum {
+  MODEL_VERSION = 1,
+  MODEL_NEWEST  = 2,
+  MAX_MODES     = 100000,
+  MAX_PAIRS     = 100000,
+  MAX_HARMONICS = 10000
+};
 
 static int n_contact(const modal_model *model) {
   return 3 * model->n_pairs * (model->has_left ? 2 : 1);
@@ -44,19 +51,19 @@ static hsize_t size_of(const modal_model *model, char letter) {
 static const char *scale_of(char letter) {
   switch (letter) {
     case 'm':
-      return "/modes/frequency";
+      return "modes/frequency";
     case 'p':
-      return "/contact/pair";
+      return "contact/pair";
     case '3':
-      return "/axis";
+      return "axis";
     case 'c':
-      return "/contact/dof";
+      return "contact/dof";
     case 'k':
-      return "/load/harmonic";
+      return "load/harmonic";
     case 'q':
-      return "/probe/name";
+      return "probe/name";
     default:
-      return "/probe/dof";
+      return "probe/dof";
   }
 }
 
@@ -67,87 +74,90 @@ static h5_shape shape_from(const modal_model *model, const char *dims) {
 }
 
 /* The dimension scales that carry no data of their own. */
-static shb_status write_scales(hid_t file, const modal_model *model) {
+static shb_status write_scales(hid_t at, const modal_model *model) {
   static const char *const axis[] = {"tangential", "axial", "radial"};
-  SHB_TRY(h5_write_strings(file, "/axis", 3, axis, "cylindrical axes about the engine axis"));
-  SHB_TRY(h5_write_counter(file, "/contact/pair", size_of(model, 'p'), "contact pair, from 0"));
-  SHB_TRY(h5_write_counter(file, "/contact/dof", size_of(model, 'c'),
+  SHB_TRY(h5_write_strings(at, "axis", 3, axis, "cylindrical axes about the engine axis"));
+  SHB_TRY(h5_write_counter(at, "contact/pair", size_of(model, 'p'), "contact pair, from 0"));
+  SHB_TRY(h5_write_counter(at, "contact/dof", size_of(model, 'c'),
                            "contact degree of freedom: (side * pairs + pair) * 3 + axis, side 0 "
                            "right, 1 left"));
-  SHB_TRY(h5_write_counter(file, "/load/harmonic", size_of(model, 'k'),
+  SHB_TRY(h5_write_counter(at, "load/harmonic", size_of(model, 'k'),
                            "harmonic of the excitation, from 0"));
   if (model->n_probes == 0) return SHB_OK;
-  SHB_TRY(h5_write_strings(file, "/probe/name", model->n_probes,
+  SHB_TRY(h5_write_strings(at, "probe/name", model->n_probes,
                            (const char *const *)model->probe_name, "name of the probe"));
-  return h5_write_counter(file, "/probe/dof", size_of(model, 'Q'),
+  return h5_write_counter(at, "probe/dof", size_of(model, 'Q'),
                           "probe degree of freedom: probe * 3 + axis");
 }
 
-static shb_status write_entry(hid_t file, const modal_model *model, const entry *e) {
+static shb_status write_entry(hid_t at, const modal_model *model, const entry *e) {
   if (!e->data) return SHB_OK;
   h5_shape shape = shape_from(model, e->dims);
   if (e->is_complex) {
-    SHB_TRY(h5_write_complex(file, e->path, shape, e->data, e->units, e->long_name));
+    SHB_TRY(h5_write_complex(at, e->path, shape, e->data, e->units, e->long_name));
   } else {
-    SHB_TRY(h5_write_double(file, e->path, shape, e->data, e->units, e->long_name));
+    SHB_TRY(h5_write_double(at, e->path, shape, e->data, e->units, e->long_name));
   }
-  if (strcmp(e->path, "/modes/frequency") == 0) return SHB_OK; /* a scale has no scale */
+  if (strcmp(e->path, "modes/frequency") == 0) return SHB_OK; /* a scale has no scale */
   for (int i = 0; i < shape.rank; i++)
-    SHB_TRY(h5_attach_scale(file, e->path, i, scale_of(e->dims[i])));
+    SHB_TRY(h5_attach_scale(at, e->path, i, scale_of(e->dims[i])));
+  return SHB_OK;
+}
+
+shb_status modal_model_write_at(hid_t at, const modal_model *model) {
+  const bool  probes  = model->n_probes > 0;
+  const entry table[] = {
+      {"modes/frequency", "m", "Hz", "undamped natural frequency of the free blade", false,
+       model->frequency},
+      {"modes/damping_ratio", "m", "-", "modal damping ratio", false, model->damping_ratio},
+      {"modes/residual", "m", "-", "relative residual of the eigenpair", false,
+       model->mode_residual},
+      {"contact/right/shape", "p3m", "kg^-1/2", "mass-normalised modes at the right contact", false,
+       model->right},
+      {"contact/left/shape", "p3m", "kg^-1/2", "mass-normalised modes at the left contact", false,
+       model->has_left ? model->left : NULL},
+      {"contact/residual_flexibility", "cc", "m/N", "static flexibility of the modes left out",
+       false, model->residual_flexibility},
+      {"contact/residual_inertia", "cc", "m s^2/N",
+       "coefficient of omega^2 in the receptance of the modes left out", false,
+       model->residual_inertia},
+      {"contact/residual_fourth", "cc", "m s^4/N",
+       "coefficient of omega^4 in the receptance of the modes left out", false,
+       model->residual_fourth},
+      {"contact/normal", "p3", "-", "unit normal v of the right face, cylindrical axes", false,
+       model->normal},
+      {"contact/area", "p", "m^2", "area of the contact patch", false, model->area},
+      {"load/modal_force", "km", "N kg^-1/2", "modal force; f(t) = Re sum_k f_k exp(j k omega t)",
+       true, model->modal_force},
+      {"load/residual_response", "kc", "m",
+       "static response of the contact dofs to the load, modes removed", true,
+       model->load_residual},
+      {"load/residual_inertia", "kc", "m s^2",
+       "coefficient of omega^2 in the response of the contact dofs to the load, modes removed",
+       true, model->load_inertia},
+      {"probe/shape", "q3m", "kg^-1/2", "mass-normalised modes at the probes", false,
+       probes ? model->probe : NULL},
+      {"probe/contact_residual", "Qc", "m/N", "static flexibility probe to contact, modes removed",
+       false, probes ? model->probe_contact_residual : NULL},
+      {"probe/load_residual", "kQ", "m", "static response of the probes to the load, modes removed",
+       true, probes ? model->probe_load_residual : NULL},
+      {"probe/contact_inertia", "Qc", "m s^2/N",
+       "coefficient of omega^2 in the receptance probe to contact, modes removed", false,
+       probes ? model->probe_contact_inertia : NULL},
+      {"probe/load_inertia", "kQ", "m s^2",
+       "coefficient of omega^2 in the response of the probes to the load, modes removed", true,
+       probes ? model->probe_load_inertia : NULL},
+  };
+  SHB_TRY(write_scales(at, model));
+  for (size_t i = 0; i < sizeof table / sizeof *table; i++)
+    SHB_TRY(write_entry(at, model, &table[i]));
   return SHB_OK;
 }
 
 shb_status modal_model_write(hid_t file, const modal_model *model,
                              const shb_provenance *provenance) {
-  const bool  probes  = model->n_probes > 0;
-  const entry table[] = {
-      {"/modes/frequency", "m", "Hz", "undamped natural frequency of the free blade", false,
-       model->frequency},
-      {"/modes/damping_ratio", "m", "-", "modal damping ratio", false, model->damping_ratio},
-      {"/modes/residual", "m", "-", "relative residual of the eigenpair", false,
-       model->mode_residual},
-      {"/contact/right/shape", "p3m", "kg^-1/2", "mass-normalised modes at the right contact",
-       false, model->right},
-      {"/contact/left/shape", "p3m", "kg^-1/2", "mass-normalised modes at the left contact", false,
-       model->has_left ? model->left : NULL},
-      {"/contact/residual_flexibility", "cc", "m/N", "static flexibility of the modes left out",
-       false, model->residual_flexibility},
-      {"/contact/residual_inertia", "cc", "m s^2/N",
-       "coefficient of omega^2 in the receptance of the modes left out", false,
-       model->residual_inertia},
-      {"/contact/residual_fourth", "cc", "m s^4/N",
-       "coefficient of omega^4 in the receptance of the modes left out", false,
-       model->residual_fourth},
-      {"/contact/normal", "p3", "-", "unit normal v of the right face, cylindrical axes", false,
-       model->normal},
-      {"/contact/area", "p", "m^2", "area of the contact patch", false, model->area},
-      {"/load/modal_force", "km", "N kg^-1/2", "modal force; f(t) = Re sum_k f_k exp(j k omega t)",
-       true, model->modal_force},
-      {"/load/residual_response", "kc", "m",
-       "static response of the contact dofs to the load, modes removed", true,
-       model->load_residual},
-      {"/load/residual_inertia", "kc", "m s^2",
-       "coefficient of omega^2 in the response of the contact dofs to the load, modes removed",
-       true, model->load_inertia},
-      {"/probe/shape", "q3m", "kg^-1/2", "mass-normalised modes at the probes", false,
-       probes ? model->probe : NULL},
-      {"/probe/contact_residual", "Qc", "m/N", "static flexibility probe to contact, modes removed",
-       false, probes ? model->probe_contact_residual : NULL},
-      {"/probe/load_residual", "kQ", "m",
-       "static response of the probes to the load, modes removed", true,
-       probes ? model->probe_load_residual : NULL},
-      {"/probe/contact_inertia", "Qc", "m s^2/N",
-       "coefficient of omega^2 in the receptance probe to contact, modes removed", false,
-       probes ? model->probe_contact_inertia : NULL},
-      {"/probe/load_inertia", "kQ", "m s^2",
-       "coefficient of omega^2 in the response of the probes to the load, modes removed", true,
-       probes ? model->probe_load_inertia : NULL},
-  };
   SHB_TRY(h5_write_provenance(file, model_format, MODEL_VERSION, provenance));
-  SHB_TRY(write_scales(file, model));
-  for (size_t i = 0; i < sizeof table / sizeof *table; i++)
-    SHB_TRY(write_entry(file, model, &table[i]));
-  return SHB_OK;
+  return modal_model_write_at(file, model);
 }
 
 /* ---------------------------------------------------------------- reading */
@@ -171,16 +181,16 @@ static shb_status check_modes(const char *path, const modal_model *model) {
   return SHB_OK;
 }
 
-static shb_status read_modes(hid_t file, const char *path, modal_model *model) {
+static shb_status read_modes(hid_t at, const char *path, modal_model *model) {
   h5_shape shape = H5_SHAPE(0);
-  SHB_TRY(h5_read_double(file, "/modes/frequency", &shape, &model->frequency));
+  SHB_TRY(h5_read_double(at, "modes/frequency", &shape, &model->frequency));
   SHB_CHECK(shape.dim[0] > 0 && shape.dim[0] <= MAX_MODES, SHB_ERR_INPUT,
             "%s: /modes/frequency holds %llu modes; 1 to %d are wanted", path,
             (unsigned long long)shape.dim[0], MAX_MODES);
   model->n_modes = (int)shape.dim[0];
-  SHB_TRY(h5_read_double(file, "/modes/damping_ratio", &shape, &model->damping_ratio));
-  if (h5_exists(file, "/modes/residual"))
-    SHB_TRY(h5_read_double(file, "/modes/residual", &shape, &model->mode_residual));
+  SHB_TRY(h5_read_double(at, "modes/damping_ratio", &shape, &model->damping_ratio));
+  if (h5_exists(at, "modes/residual"))
+    SHB_TRY(h5_read_double(at, "modes/residual", &shape, &model->mode_residual));
   return check_modes(path, model);
 }
 
@@ -199,18 +209,19 @@ static shb_status check_symmetric(const char *path, const char *dataset, const d
       row    = i;
       column = j;
     }
-  SHB_CHECK(worst <= 1e-6 * largest, SHB_ERR_INPUT,
-            "%s: %s is not symmetric: [%d, %d] and [%d, %d] differ by %.2g of the largest value; a "
-            "receptance must be symmetric to 1e-6",
-            path, dataset, row, column, column, row, worst / largest);
+  SHB_CHECK(
+      worst <= 1e-6 * largest, SHB_ERR_INPUT,
+      "%s: /%s is not symmetric: [%d, %d] and [%d, %d] differ by %.2g of the largest value; a "
+      "receptance must be symmetric to 1e-6",
+      path, dataset, row, column, column, row, worst / largest);
   return SHB_OK;
 }
 
-static shb_status read_symmetric(hid_t file, const char *path, const char *dataset, int n,
+static shb_status read_symmetric(hid_t at, const char *path, const char *dataset, int n,
                                  double **matrix) {
-  if (!h5_exists(file, dataset)) return SHB_OK;
+  if (!h5_exists(at, dataset)) return SHB_OK;
   h5_shape shape = H5_SHAPE((hsize_t)n, (hsize_t)n);
-  SHB_TRY(h5_read_double(file, dataset, &shape, matrix));
+  SHB_TRY(h5_read_double(at, dataset, &shape, matrix));
   return check_symmetric(path, dataset, *matrix, n);
 }
 
@@ -229,71 +240,73 @@ static shb_status check_patches(const char *path, const modal_model *model) {
   return SHB_OK;
 }
 
-static shb_status read_contact(hid_t file, const char *path, modal_model *model) {
+static shb_status read_contact(hid_t at, const char *path, modal_model *model) {
   h5_shape shape = H5_SHAPE(0, 3, (hsize_t)model->n_modes);
-  SHB_TRY(h5_read_double(file, "/contact/right/shape", &shape, &model->right));
+  SHB_TRY(h5_read_double(at, "contact/right/shape", &shape, &model->right));
   SHB_CHECK(shape.dim[0] > 0 && shape.dim[0] <= MAX_PAIRS, SHB_ERR_INPUT,
             "%s: /contact/right/shape holds %llu contact pairs; 1 to %d are wanted", path,
             (unsigned long long)shape.dim[0], MAX_PAIRS);
   model->n_pairs  = (int)shape.dim[0];
-  model->has_left = h5_exists(file, "/contact/left");
-  if (model->has_left) SHB_TRY(h5_read_double(file, "/contact/left/shape", &shape, &model->left));
+  model->has_left = h5_exists(at, "contact/left");
+  if (model->has_left) SHB_TRY(h5_read_double(at, "contact/left/shape", &shape, &model->left));
   const int n = n_contact(model);
   SHB_TRY(
-      read_symmetric(file, path, "/contact/residual_flexibility", n, &model->residual_flexibility));
-  SHB_TRY(read_symmetric(file, path, "/contact/residual_inertia", n, &model->residual_inertia));
-  SHB_TRY(read_symmetric(file, path, "/contact/residual_fourth", n, &model->residual_fourth));
+      read_symmetric(at, path, "contact/residual_flexibility", n, &model->residual_flexibility));
+  SHB_TRY(read_symmetric(at, path, "contact/residual_inertia", n, &model->residual_inertia));
+  SHB_TRY(read_symmetric(at, path, "contact/residual_fourth", n, &model->residual_fourth));
   h5_shape normals = H5_SHAPE(shape.dim[0], 3), areas = H5_SHAPE(shape.dim[0]);
-  if (h5_exists(file, "/contact/normal"))
-    SHB_TRY(h5_read_double(file, "/contact/normal", &normals, &model->normal));
-  if (h5_exists(file, "/contact/area"))
-    SHB_TRY(h5_read_double(file, "/contact/area", &areas, &model->area));
+  if (h5_exists(at, "contact/normal"))
+    SHB_TRY(h5_read_double(at, "contact/normal", &normals, &model->normal));
+  if (h5_exists(at, "contact/area"))
+    SHB_TRY(h5_read_double(at, "contact/area", &areas, &model->area));
   return check_patches(path, model);
 }
 
-static shb_status read_load(hid_t file, const char *path, modal_model *model) {
+static shb_status read_load(hid_t at, const char *path, modal_model *model) {
   h5_shape shape = H5_SHAPE(0, (hsize_t)model->n_modes);
-  SHB_TRY(h5_read_complex(file, "/load/modal_force", &shape, &model->modal_force));
+  SHB_TRY(h5_read_complex(at, "load/modal_force", &shape, &model->modal_force));
   SHB_CHECK(shape.dim[0] > 0 && shape.dim[0] <= MAX_HARMONICS, SHB_ERR_INPUT,
             "%s: /load/modal_force holds %llu harmonics; 1 to %d are wanted, the first being the "
             "mean (k = 0)",
             path, (unsigned long long)shape.dim[0], MAX_HARMONICS);
   model->n_load     = (int)shape.dim[0] - 1;
   h5_shape residual = H5_SHAPE(shape.dim[0], (hsize_t)n_contact(model));
-  if (h5_exists(file, "/load/residual_response"))
-    SHB_TRY(h5_read_complex(file, "/load/residual_response", &residual, &model->load_residual));
-  if (h5_exists(file, "/load/residual_inertia"))
-    SHB_TRY(h5_read_complex(file, "/load/residual_inertia", &residual, &model->load_inertia));
+  if (h5_exists(at, "load/residual_response"))
+    SHB_TRY(h5_read_complex(at, "load/residual_response", &residual, &model->load_residual));
+  if (h5_exists(at, "load/residual_inertia"))
+    SHB_TRY(h5_read_complex(at, "load/residual_inertia", &residual, &model->load_inertia));
   return SHB_OK;
 }
 
-static shb_status read_probes(hid_t file, modal_model *model) {
-  if (!h5_exists(file, "/probe")) return SHB_OK;
-  SHB_TRY(h5_read_strings(file, "/probe/name", &model->n_probes, &model->probe_name));
+static shb_status read_probes(hid_t at, modal_model *model) {
+  if (!h5_exists(at, "probe")) return SHB_OK;
+  SHB_TRY(h5_read_strings(at, "probe/name", &model->n_probes, &model->probe_name));
   const hsize_t q = (hsize_t)model->n_probes, c = (hsize_t)n_contact(model);
   if (q == 0) return SHB_OK;
   h5_shape shape = H5_SHAPE(q, 3, (hsize_t)model->n_modes);
-  SHB_TRY(h5_read_double(file, "/probe/shape", &shape, &model->probe));
+  SHB_TRY(h5_read_double(at, "probe/shape", &shape, &model->probe));
   h5_shape contact = H5_SHAPE(3 * q, c), load = H5_SHAPE((hsize_t)model->n_load + 1, 3 * q);
-  if (h5_exists(file, "/probe/contact_residual"))
-    SHB_TRY(
-        h5_read_double(file, "/probe/contact_residual", &contact, &model->probe_contact_residual));
-  if (h5_exists(file, "/probe/load_residual"))
-    SHB_TRY(h5_read_complex(file, "/probe/load_residual", &load, &model->probe_load_residual));
-  if (h5_exists(file, "/probe/contact_inertia"))
-    SHB_TRY(
-        h5_read_double(file, "/probe/contact_inertia", &contact, &model->probe_contact_inertia));
-  if (h5_exists(file, "/probe/load_inertia"))
-    SHB_TRY(h5_read_complex(file, "/probe/load_inertia", &load, &model->probe_load_inertia));
+  if (h5_exists(at, "probe/contact_residual"))
+    SHB_TRY(h5_read_double(at, "probe/contact_residual", &contact, &model->probe_contact_residual));
+  if (h5_exists(at, "probe/load_residual"))
+    SHB_TRY(h5_read_complex(at, "probe/load_residual", &load, &model->probe_load_residual));
+  if (h5_exists(at, "probe/contact_inertia"))
+    SHB_TRY(h5_read_double(at, "probe/contact_inertia", &contact, &model->probe_contact_inertia));
+  if (h5_exists(at, "probe/load_inertia"))
+    SHB_TRY(h5_read_complex(at, "probe/load_inertia", &load, &model->probe_load_inertia));
   return SHB_OK;
 }
 
+shb_status modal_model_read_at(hid_t at, const char *path, modal_model *model) {
+  SHB_TRY(read_modes(at, path, model));
+  SHB_TRY(read_contact(at, path, model));
+  SHB_TRY(read_load(at, path, model));
+  return read_probes(at, model);
+}
+
 static shb_status read_parts(hid_t file, const char *path, modal_model *model) {
-  SHB_TRY(h5_check_format(file, model_format, MODEL_VERSION));
-  SHB_TRY(read_modes(file, path, model));
-  SHB_TRY(read_contact(file, path, model));
-  SHB_TRY(read_load(file, path, model));
-  return read_probes(file, model);
+  SHB_TRY(h5_check_format(file, model_format, MODEL_NEWEST));
+  return modal_model_read_at(file, path, model);
 }
 
 shb_status modal_model_read(const char *path, modal_model *model) {

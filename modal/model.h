@@ -40,6 +40,12 @@ typedef struct {
 shb_status modal_model_write(hid_t file, const modal_model *model,
                              const shb_provenance *provenance);
 
+/* The same datasets in a group of an open file, without attributes. */
+shb_status modal_model_write_at(hid_t at, const modal_model *model);
+
+/* Read them from a group; path names it in messages. model: zeroed before, to be freed in any case. */
+shb_status modal_model_read_at(hid_t at, const char *path, modal_model *model);
+
 /* Read and check a modal file, whoever wrote it. Errors: SHB_ERR_IO missing / not HDF5 / truncated; SHB_ERR_INPUT
  * foreign format, missing dataset, wrong shape, non-finite, frequency <= 0 or descending, damping outside [0, 1). */
 shb_status modal_model_read(const char *path, modal_model *model);

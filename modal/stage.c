@@ -9,6 +9,7 @@
 #include "fem/hourglass.h"
 #include "fem/partition.h"
 #include "fem/surface.h"
+#include "modal/campbell.h"
 #include "modal/condense.h"
 #include "modal/export.h"
 
@@ -192,9 +193,12 @@ static shb_status gather_shapes(const modal_result *result, int rank, double **s
   return SHB_OK;
 }
 
+/* speeds: n = 0 with one speed. */
 static shb_status write_all(hid_t file, const mesh_fe *mesh, const modal_result *result,
-                            const double *shape, const shb_provenance *provenance) {
+                            const modal_speeds *speeds, const double *shape,
+                            const shb_provenance *provenance) {
   SHB_TRY(modal_model_write(file, &result->model, provenance));
+  if (speeds->n > 0) SHB_TRY(modal_speeds_write(file, speeds));
   SHB_TRY(modal_export_mesh(file, mesh));
   SHB_TRY(modal_export_shapes(file, result->model.n_modes, mesh->n_nodes, shape));
   SHB_TRY(modal_participation_write(file, &result->participation));
@@ -206,13 +210,14 @@ static shb_status write_all(hid_t file, const mesh_fe *mesh, const modal_result 
 }
 
 static shb_status publish(const char *path, const mesh_fe *mesh, const modal_result *result,
-                          const double *shape, const shb_provenance *provenance) {
+                          const modal_speeds *speeds, const double *shape,
+                          const shb_provenance *provenance) {
   char *temporary = shb_publish_temporary(path);
   SHB_CHECK(temporary, SHB_ERR_IO, "out of memory");
   hid_t      file   = -1;
   shb_status status = h5_create(temporary, &file);
   if (status == SHB_OK) {
-    status            = write_all(file, mesh, result, shape, provenance);
+    status            = write_all(file, mesh, result, speeds, shape, provenance);
     shb_status closed = h5_close(file);
     if (status == SHB_OK) status = closed;
     if (status == SHB_OK)
@@ -240,18 +245,23 @@ static shb_status run(MPI_Comm comm, int rank, const char *out_path, const mesh_
                       const modal_settings *settings, const shb_provenance *provenance,
                       shb_progress *progress) {
   modal_result result;
+  modal_speeds speeds = {0};
   double      *shape  = NULL;
-  shb_status   status = modal_solve(comm, mesh, settings, progress, &result);
+  shb_status   status = settings->n_speeds > 1
+                            ? modal_campbell_solve(comm, mesh, settings, progress, &speeds, &result)
+                            : modal_solve(comm, mesh, settings, progress, &result);
   double       begun  = shb_seconds();
   if (status == SHB_OK) status = gather_shapes(&result, rank, &shape);
   if (status == SHB_OK) {
     shb_progress_show(progress, 96, "writing %s", out_path);
-    shb_status mine = rank != 0 ? SHB_OK : publish(out_path, mesh, &result, shape, provenance);
-    status          = agree(comm, mine);
+    shb_status mine =
+        rank != 0 ? SHB_OK : publish(out_path, mesh, &result, &speeds, shape, provenance);
+    status = agree(comm, mine);
     if (status == SHB_OK)
       shb_progress_note(progress, "wrote %s in %.2f s", out_path, shb_seconds() - begun);
   }
   free(shape);
+  modal_campbell_free(&speeds, &result);
   modal_result_free(&result);
   return status;
 }

@@ -32,6 +32,8 @@ typedef struct {
   mesh_axis           axis;
   int                 blades;
   double              speed;    /* rad/s; 0: at rest */
+  int                 n_speeds; /* of modal_stage: more than one: all of these, speed among them */
+  const double       *speeds;   /* [n_speeds] rad/s, distinct */
   double              pressure; /* Pa, steady, on group load, into the deformed surface */
   int                 modes;
   modal_damping       damping;

@@ -9,6 +9,7 @@
 #include "mhb/response.h"
 #include "modal/h5.h"
 #include "modal/model.h"
+#include "postproc/campbell.h"
 #include "postproc/findings.h"
 #include "postproc/modes.h"
 #include "postproc/source.h"
@@ -66,7 +67,11 @@ static shb_status sum_up_modal(hid_t file, const char *path, bool verbose, post_
   put_names(out, m.n_probes, m.probe_name);
   post_put(out, "; residual flexibility %s, inertia %s\n", m.residual_flexibility ? "yes" : "no",
            inertia_of(&m));
-  shb_status status = post_modes(file, &m, verbose, out);
+  shb_status   status = post_modes(file, &m, verbose, out);
+  modal_speeds speeds = {0};
+  if (status == SHB_OK) status = modal_speeds_read(path, &speeds);
+  if (speeds.n > 0) post_campbell_table(&speeds, verbose, out);
+  modal_speeds_free(&speeds);
   modal_model_free(&m);
   return status;
 }

@@ -13,7 +13,9 @@ typedef struct {
   post_source      source;
   post_study      *study;
   post_convergence convergence;
-  post_buffer      html, csv, svg;
+  modal_speeds     speeds;
+  post_campbell    campbell;
+  post_buffer      html, csv, svg, diagram;
 } work;
 
 /* The study's complaint with the file's name before it. */
@@ -38,6 +40,16 @@ static shb_status add_integration(const post_job *job, work *w) {
   SHB_FAIL(status, "%s: %s", job->integration, why);
 }
 
+static shb_status add_campbell(const post_job *job, work *w) {
+  if (!job->modal) return SHB_OK;
+  SHB_TRY(modal_speeds_read(job->modal, &w->speeds));
+  if (w->speeds.n < 2) return SHB_OK;
+  w->campbell        = (post_campbell){&w->speeds, w->response->engine_order};
+  w->study->campbell = &w->campbell;
+  post_campbell_picture(&w->campbell, job->case_name, &w->diagram);
+  return SHB_OK;
+}
+
 static shb_status compose(const post_job *job, shb_progress *progress, work *w) {
   double started = shb_seconds();
   shb_progress_show(progress, 0, "reading %s", job->response);
@@ -49,6 +61,7 @@ static shb_status compose(const post_job *job, shb_progress *progress, work *w) 
     SHB_TRY(post_convergence_read(job->convergence, &w->convergence));
     w->study->convergence = &w->convergence;
   }
+  SHB_TRY(add_campbell(job, w));
   shb_progress_note(progress, "read %d points on %d curves in %.2f s", w->study->n_points,
                     w->response->n_branches, shb_seconds() - started);
   started = shb_seconds();
@@ -62,7 +75,7 @@ static shb_status compose(const post_job *job, shb_progress *progress, work *w) 
   post_picture(w->study, job->case_name, &w->svg);
   shb_progress_note(progress, "table, %.1f MB, and picture in %.2f s", 1e-6 * (double)w->csv.length,
                     shb_seconds() - started);
-  bool failed = w->html.failed || w->csv.failed || w->svg.failed;
+  bool failed = w->html.failed || w->csv.failed || w->svg.failed || w->diagram.failed;
   SHB_CHECK(!failed, SHB_ERR_IO, "%s: not enough memory for its report", job->response);
   return SHB_OK;
 }
@@ -70,6 +83,7 @@ static shb_status compose(const post_job *job, shb_progress *progress, work *w) 
 static shb_status write_all(const post_job *job, const work *w) {
   SHB_TRY(post_buffer_publish(&w->csv, job->csv));
   SHB_TRY(post_buffer_publish(&w->svg, job->svg));
+  if (job->campbell && w->study->campbell) SHB_TRY(post_buffer_publish(&w->diagram, job->campbell));
   return post_buffer_publish(&w->html, job->html);
 }
 
@@ -90,5 +104,7 @@ shb_status post_publish(const post_job *job, shb_progress *progress, char **summ
   post_buffer_free(&w.html);
   post_buffer_free(&w.csv);
   post_buffer_free(&w.svg);
+  post_buffer_free(&w.diagram);
+  modal_speeds_free(&w.speeds);
   return status;
 }

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "postproc/campbell.h"
 #include "postproc/charts.h"
 #include "postproc/colour.h"
 #include "postproc/convergence_chart.h"
@@ -37,7 +38,8 @@ static void put_head(const post_study *study, const char *case_name, post_buffer
   put_ramp(study, false, out);
   post_put(out, "\n@media screen and (prefers-color-scheme: dark){");
   put_ramp(study, true, out);
-  post_put(out, "}\n%s</style>\n</head>\n", study->convergence ? post_convergence_css : "");
+  post_put(out, "}\n%s%s</style>\n</head>\n", study->campbell ? post_campbell_css : "",
+           study->convergence ? post_convergence_css : "");
 }
 
 /* Rounded to a thousandth, so that rounding errors of an angle read 0. */
@@ -248,6 +250,7 @@ shb_status post_report(const post_study *study, const post_source *source, const
   put_main(study, case_name, out);
   put_tracking(study, out);
   put_details(study, chosen, out);
+  if (study->campbell) post_campbell_section(study->campbell, out);
   if (study->convergence) post_convergence_section(study->convergence, out);
   put_tables(study, out);
   put_source(source, out);

@@ -7,6 +7,7 @@
 
 #include "mhb/response.h"
 #include "postproc/abscissa.h"
+#include "postproc/campbell.h"
 #include "postproc/convergence.h"
 #include "postproc/curves.h"
 #include "postproc/output.h"
@@ -66,6 +67,7 @@ typedef struct {
   int                 n_points;
   const post_convergence
       *convergence; /* speed against error, if the case was studied; set by the caller */
+  const post_campbell *campbell; /* modes over the speed, if there are several; set by the caller */
 } post_study;
 
 /* Errors: SHB_ERR_INPUT (no branch with a point), SHB_ERR_IO (no memory). The response must outlive the study. */

@@ -1,4 +1,6 @@
 shb_test(modal h5 fast shb_model)
+shb_test(modal spline fast shb_model)
+shb_test(modal speeds fast tests_fem shb_modal)
 shb_test(modal damping fast shb_modal)
 shb_test(modal field fast tests_fem shb_modal)
 

@@ -14,6 +14,7 @@ shb_test(postproc csv fast post_fixture)
 shb_test(postproc report fast post_fixture)
 shb_test(postproc inspect fast post_fixture)
 shb_test(postproc mac fast shb_post)
+shb_test(postproc campbell fast shb_post)
 shb_test(postproc publish fast post_fixture)
 
 # The program itself: exit codes and the one line of an error.
