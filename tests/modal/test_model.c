@@ -170,9 +170,9 @@ static void test_format(void **state) {
   modal_model model = sample(false);
   write_model("format.h5", &model);
   hid_t file = edit("format.h5");
-  assert_ok(h5_write_attribute_int(file, "/", "format_version", 2));
+  assert_ok(h5_write_attribute_int(file, "/", "format_version", 3));
   H5Fclose(file);
-  assert_refused(read_only(scratch("format.h5")), SHB_ERR_INPUT, "format_version is 2");
+  assert_refused(read_only(scratch("format.h5")), SHB_ERR_INPUT, "format_version is 3");
   file = edit("format.h5");
   assert_ok(h5_write_attribute_text(file, "/", "format", "shroudhb response"));
   H5Fclose(file);
