@@ -10,6 +10,7 @@
 
 #include "cases/loads.h"
 #include "cases/materials.h"
+#include "cases/unread.h"
 #include "mesh/format.h"
 #include "mhb/parameter.h"
 
@@ -188,6 +189,7 @@ bool case_check_values(case_reader *r, int stages) {
     check_sections(r);
     check_sizes(r);
   }
+  case_check_unread(r);
   case_check_load_values(r, stages);
   check_blade(r, stages);
   check_tolerance(r);

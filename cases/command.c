@@ -1,5 +1,6 @@
 #include "cases/command.h"
 
+#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -39,10 +40,10 @@ int command_parse(int argc, char **argv, const char *usage, command_options *out
       options = false;
     } else if (options && strcmp(word, "--help") == 0) {
       fputs(usage, stdout);
-      return SHB_OK;
+      return command_finish(SHB_OK);
     } else if (options && strcmp(word, "--version") == 0) {
       printf("shroudhb %s\n", shb_revision());
-      return SHB_OK;
+      return command_finish(SHB_OK);
     } else if (options && set_flag(word, out)) {
       continue;
     } else if (options && strcmp(word, "--svg") == 0 && mentions(usage, word)) {
@@ -67,7 +68,20 @@ int command_parse(int argc, char **argv, const char *usage, command_options *out
   return -1;
 }
 
+/* A reader that has left is no fault; a full disk is. */
+static shb_status finish_output(void) {
+  errno     = 0;
+  bool good = fflush(stdout) == 0;
+  if ((good && !ferror(stdout)) || errno == EPIPE) return SHB_OK;
+  SHB_FAIL(SHB_ERR_IO, "standard output cannot be written%s%s", errno ? ": " : "",
+           errno ? strerror(errno) : "");
+}
+
 int command_finish(shb_status status) {
+  if (status == SHB_OK || status == SHB_NOT_CONVERGED) {
+    shb_status output = finish_output();
+    if (output != SHB_OK) status = output;
+  }
   if (status != SHB_OK && shb_message()[0] != '\0')
     fprintf(stderr, "shroudhb: %s: %s\n", status == SHB_NOT_CONVERGED ? "warning" : "error",
             shb_message());

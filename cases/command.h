@@ -25,7 +25,8 @@ typedef struct {
 int command_parse(int argc, char **argv, const char *usage, command_options *out);
 
 /* Exit code for status; unless it is SHB_OK prints "shroudhb: error: TEXT" ("warning" for SHB_NOT_CONVERGED)
- * with the last recorded text, if there is one: case_read has already printed its errors and leaves none. */
+ * with the last recorded text, if there is one: case_read has already printed its errors and leaves none. A standard
+ * output that could not be written whole makes SHB_ERR_IO of SHB_OK and SHB_NOT_CONVERGED. */
 int command_finish(shb_status status);
 
 /* Provenance of an output; keeps the pointers (settings: case_settings of the stage; name: the command). */

@@ -66,7 +66,9 @@ typedef enum {
   CASE_IF_FOLLOWED,  /* the parameter of this row is followed */
   CASE_IF_STABILITY, /* multipliers are computed */
   CASE_IF_SEARCH,    /* there are random starts */
-  CASE_IF_SEARCH_AT  /* at frequencies that are given */
+  CASE_IF_SEARCH_AT, /* at frequencies that are given */
+  CASE_IF_SWEEP,     /* time integration that goes on from the frequency before */
+  CASE_IF_NOT_SCALED /* curves do not follow the level of the excitation */
 } case_condition;
 
 typedef struct {

@@ -90,7 +90,7 @@ static int contact_main(const char *name, int argc, char **argv) {
   char mode[] = "--contact";
   if (argc > 1 && strcmp(argv[1], "--help") == 0) {
     fputs(usage, stdout);
-    return SHB_OK;
+    return command_finish(SHB_OK);
   }
   return become("mhb", mode, argc, argv, replace_by);
 }
@@ -99,14 +99,14 @@ static int keys_main(const char *name, int argc, char **argv) {
   (void)name;
   if (argc > 1 && strcmp(argv[1], "--help") == 0) {
     fputs(usage, stdout);
-    return SHB_OK;
+    return command_finish(SHB_OK);
   }
   if (argc > 1) {
     fprintf(stderr, "shroudhb: error: keys takes nothing more; unexpected '%s'\n", argv[1]);
     return SHB_ERR_INPUT;
   }
   case_print_keys(stdout);
-  return fflush(stdout) == 0 ? SHB_OK : SHB_ERR_IO;
+  return command_finish(SHB_OK);
 }
 
 /* The options of commands that draw nothing. */

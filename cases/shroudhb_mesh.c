@@ -181,6 +181,7 @@ int main(int argc, char **argv) {
   shb_status status = case_read(options.path, CASE_MESH, stderr, &file);
   if (status != SHB_OK) return command_finish(status);
   shb_interrupt_catch();
+  shb_interrupt_grace(2);
   status = run(&file, &options);
   case_free(&file);
   return command_finish(status);

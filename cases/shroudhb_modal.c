@@ -164,6 +164,7 @@ static int work(words *line, const case_file *file, const command_options *optio
   shb_status status = modal_session_start(&line->n_petsc, &line->petsc, &session);
   if (status != SHB_OK) return command_finish(status);
   shb_interrupt_catch(); /* after MPI, whose launcher sets handlers of its own */
+  shb_interrupt_grace(2);
   status   = run(file, options, session.rank);
   int code = session.rank == 0 ? command_finish(status) : (int)status;
   modal_session_end(&session, status);

@@ -182,7 +182,7 @@ static const case_key table[] = {
      .help = "with harmonics: auto, the relative error of the motion that the harmonics left out may cause"},
     {"mhb.subharmonics", CASE_INTEGER, "", 1, 16, .fallback = "1", AT(mhb.subharmonics), .stages = CASE_MHB,
      .help = "order nu: the fundamental is the excitation frequency / nu"},
-    {"mhb.scale", CASE_NUMBER, "", 0, 1e12, .fallback = "1", AT(mhb.scale), .stages = CASE_MHB,
+    {"mhb.scale", CASE_NUMBER, "", 0, 1e12, .fallback = "1", AT(mhb.scale), .stages = CASE_MHB, .when = CASE_IF_NOT_SCALED,
      .help = "multiplies the excitation"},
     {"mhb.max_points", CASE_INTEGER, "", 10, 1000000, .fallback = "2000", AT(mhb.max_points), .stages = CASE_MHB,
      .help = "points after which a branch ends"},
@@ -210,7 +210,7 @@ static const case_key table[] = {
      .help = "shroudhb integrate: number of points over mhb.frequency, or a list of frequencies"},
     {"integrate.start", CASE_CHOICE, "", .words = "balance rest state", .fallback = "balance", AT(integrate.start), .stages = CASE_INTEGRATE,
      .help = "each point from the stable solutions of NAME.response.h5, from rest, or from the state of the frequency before"},
-    {"integrate.direction", CASE_CHOICE, "", .words = "up down both", .fallback = "both", AT(integrate.direction), .stages = CASE_INTEGRATE,
+    {"integrate.direction", CASE_CHOICE, "", .words = "up down both", .fallback = "both", AT(integrate.direction), .stages = CASE_INTEGRATE, .when = CASE_IF_SWEEP,
      .help = "of a sweep with start: state"},
     {"integrate.steps", CASE_INTEGER, "", 8, 4096, .fallback = "48", AT(integrate.steps), .stages = CASE_INTEGRATE,
      .help = "steps a period to begin with; doubled until two runs agree within tolerance"},
@@ -280,6 +280,10 @@ bool case_key_applies(const case_key *key, const case_file *file) {
       return file->mhb.search.starts > 0;
     case CASE_IF_SEARCH_AT:
       return file->mhb.search.starts > 0 && file->mhb.search.n_at > 0;
+    case CASE_IF_SWEEP:
+      return file->integrate.start == MHB_FROM_STATE;
+    case CASE_IF_NOT_SCALED:
+      return file->mhb.parameter != MHB_IN_SCALE;
     case CASE_ALWAYS:
       return true;
   }

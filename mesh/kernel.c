@@ -3,7 +3,9 @@
 #include <ctype.h>
 #include <gmshc.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static const int kept[MESH_KERNEL_SIGNALS] = {SIGINT, SIGTERM, SIGHUP, SIGFPE, SIGSEGV};
 
@@ -13,6 +15,24 @@ static void keep_handlers(mesh_kernel *kernel) {
 
 static void restore_handlers(const mesh_kernel *kernel) {
   for (int i = 0; i < MESH_KERNEL_SIGNALS; i++) sigaction(kept[i], &kernel->handler[i], NULL);
+}
+
+/* gmsh is up, and what it reads: exit handlers have no arguments. */
+static char at_work[512];
+
+/* "Exit" in a script makes gmsh call exit(0), as if all were done. */
+static void on_exit_at_work(void) {
+  if (!at_work[0]) return;
+  fprintf(stderr,
+          "shroudhb: error: %s: ends the program while it is read; leave out Exit in the script\n",
+          at_work);
+  _exit(SHB_ERR_INPUT);
+}
+
+static void guard(const char *what) {
+  static int guarded;
+  if (!guarded) guarded = atexit(on_exit_at_work) == 0;
+  snprintf(at_work, sizeof at_work, "%s", what);
 }
 
 shb_status mesh_kernel_open(mesh_kernel *kernel) {
@@ -28,11 +48,14 @@ shb_status mesh_kernel_open(mesh_kernel *kernel) {
   for (size_t i = 0; i < sizeof option / sizeof *option; i++)
     gmshOptionSetNumber(option[i], 0, &ierr);
   gmshOptionSetNumber("General.NumThreads", 1, &ierr);
+  gmshOptionSetNumber("General.ExpertMode", 1, &ierr); /* asks nothing on the terminal */
+  guard("gmsh");
   return SHB_OK;
 }
 
 void mesh_kernel_close(mesh_kernel *kernel) {
-  int ierr = 0;
+  int ierr   = 0;
+  at_work[0] = '\0';
   gmshFinalize(&ierr);
   restore_handlers(kernel);
 }
@@ -52,8 +75,9 @@ shb_status mesh_kernel_fail(shb_status code, const char *file, int line, const c
   return code;
 }
 
-void mesh_kernel_listen(void) {
+void mesh_kernel_listen(const char *what) {
   int ierr = 0;
+  guard(what);
   gmshLoggerStart(&ierr);
 }
 

@@ -13,16 +13,17 @@ typedef struct {
   struct sigaction handler[MESH_KERNEL_SIGNALS];
 } mesh_kernel;
 
-/* Start gmsh: no terminal output, no ~/.gmshrc, one thread. Only one session at a time. SHB_ERR_IO. */
+/* Start gmsh: no terminal output, no ~/.gmshrc, one thread. Only one session at a time. A script that ends the program (Exit)
+ * while gmsh is up ends it with code SHB_ERR_INPUT and a line that says so. SHB_ERR_IO. */
 shb_status mesh_kernel_open(mesh_kernel *kernel);
 void       mesh_kernel_close(mesh_kernel *kernel);
 
 /* Record "what: gmsh: last error of gmsh" on one line; returns code. */
 shb_status mesh_kernel_fail(shb_status code, const char *file, int line, const char *what);
 
-/* gmsh reads on after some faults of a file. Listen before a call; heard then fails with the first error it told, on one line:
+/* gmsh reads on after some faults of a file. Listen before a call (what: see above, also for a script's Exit); heard then fails with the first error it told, on one line:
  * "what: gmsh: error". SHB_ERR_INPUT. */
-void       mesh_kernel_listen(void);
+void       mesh_kernel_listen(const char *what);
 shb_status mesh_kernel_heard(const char *what);
 
 /* Make a gmsh call whose last argument is &ierr. */

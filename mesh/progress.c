@@ -7,6 +7,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "mesh/publish.h"
+
 double shb_seconds(void) {
   struct timespec t;
   clock_gettime(CLOCK_MONOTONIC, &t);
@@ -57,21 +59,46 @@ void shb_progress_note(shb_progress *progress, const char *format, ...) {
   va_end(args);
 }
 
-static volatile sig_atomic_t interrupted;
+static volatile sig_atomic_t interrupted; /* number of the first signal */
+static volatile sig_atomic_t grace;
+
+/* Only calls that a signal handler may make. */
+static void end_at_once(void) {
+  static const char text[] = "shroudhb: ended at once; what was published before is kept\n";
+  shb_publish_abandon();
+  if (write(STDERR_FILENO, text, sizeof text - 1) < 0) _exit(128 + interrupted);
+  _exit(128 + interrupted);
+}
 
 static void on_signal(int number) {
+  enum { USUAL = 10 }; /* s */
+  if (interrupted) end_at_once();
+  interrupted = number;
+  alarm((unsigned)(grace > 0 ? grace : number == SIGTERM ? USUAL : 0));
+}
+
+static void on_alarm(int number) {
   (void)number;
-  interrupted = 1;
+  end_at_once();
+}
+
+static void install(int number, void (*handler)(int)) {
+  struct sigaction action;
+  memset(&action, 0, sizeof action);
+  action.sa_handler = handler;
+  sigemptyset(&action.sa_mask);
+  sigaction(number, &action, NULL);
 }
 
 void shb_interrupt_catch(void) {
-  struct sigaction action;
-  memset(&action, 0, sizeof action);
-  action.sa_handler = on_signal;
-  sigemptyset(&action.sa_mask);
-  sigaction(SIGINT, &action, NULL);
-  sigaction(SIGTERM, &action, NULL);
+  install(SIGINT, on_signal);
+  install(SIGTERM, on_signal);
+  install(SIGALRM, on_alarm);
   signal(SIGXFSZ, SIG_IGN); /* a file size limit shall fail the write, not kill the process */
+}
+
+void shb_interrupt_grace(int seconds) {
+  grace = seconds;
 }
 
 bool shb_interrupted(void) {

@@ -29,8 +29,13 @@ void shb_progress_clear(shb_progress *progress);
 void shb_progress_note(shb_progress *progress, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
-/* Install handlers for SIGINT and SIGTERM once; then ask whether one came. */
+/* Install handlers for SIGINT and SIGTERM once; then ask whether one came.
+ *
+ * A second signal ends the process at once with 128 + the signal's number, and so does the first if the process still runs
+ * after some seconds: grace of them (from 1; for stages that have nothing to save), else 10 after a SIGTERM and no end after
+ * a SIGINT. What shb_publish_temporary named and was not published is removed. */
 void shb_interrupt_catch(void);
+void shb_interrupt_grace(int seconds);
 bool shb_interrupted(void);
 
 #endif

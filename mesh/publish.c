@@ -4,17 +4,41 @@
 #include <fcntl.h>
 #include <inttypes.h>
 #include <signal.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+enum { KEPT = 8 };
+
+/* Temporary files that may exist; one that was published or removed does no harm here. Longer names are not kept. */
+static struct {
+  volatile sig_atomic_t used;
+  char                  name[1024];
+} kept[KEPT];
+
+static void keep(const char *name) {
+  static atomic_int turn;
+  int               at = atomic_fetch_add(&turn, 1) % KEPT;
+  kept[at].used        = 0;
+  if (strlen(name) >= sizeof kept[at].name) return;
+  strcpy(kept[at].name, name);
+  kept[at].used = 1;
+}
+
+void shb_publish_abandon(void) {
+  for (int i = 0; i < KEPT; i++)
+    if (kept[i].used) unlink(kept[i].name);
+}
+
 char *shb_publish_temporary(const char *path) {
   signal(SIGXFSZ, SIG_IGN); /* a limit on file sizes is then an error like a full disk */
   size_t size = strlen(path) + 32;
   char  *name = malloc(size);
   if (name) snprintf(name, size, "%s.tmp.%ld", path, (long)getpid());
+  if (name) keep(name);
   return name;
 }
 

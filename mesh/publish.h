@@ -17,6 +17,9 @@ typedef struct {
 /* Temporary name beside path; malloc'ed (NULL when out of memory). */
 char *shb_publish_temporary(const char *path);
 
+/* Remove the temporary files that are not published yet; for a signal handler that ends the process. */
+void shb_publish_abandon(void);
+
 /* fsync temporary, rename it to path, fsync the folder. On failure removes temporary. SHB_ERR_IO. */
 shb_status shb_publish(const char *temporary, const char *path);
 

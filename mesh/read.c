@@ -13,6 +13,7 @@
 #include "mesh/inp.h"
 #include "mesh/jacobian.h"
 #include "mesh/kernel.h"
+#include "mesh/overlap.h"
 
 /* First line $MeshFormat (comments may come before it), then version 2.2 or 4.1. gmsh takes anything else
  * for a script of its own language, so it must not see a file that fails here. */
@@ -69,7 +70,7 @@ static shb_status read_msh(const char *path, const mesh_names *names, mesh_fe *m
   mesh_kernel kernel;
   SHB_TRY(mesh_kernel_open(&kernel));
   int ierr = 0;
-  mesh_kernel_listen();
+  mesh_kernel_listen(path);
   gmshMerge(path, &ierr);
   shb_status heard  = mesh_kernel_heard(path); /* gmsh reads on where an element lacks its nodes */
   shb_status status = ierr              ? mesh_kernel_fail(SHB_ERR_INPUT, __FILE__, __LINE__, path)
@@ -101,7 +102,7 @@ shb_status mesh_fe_check_groups(const mesh_fe *mesh, const char *name) {
               "%s: group %s is absent or empty; a physical surface (in .inp a *SURFACE or *NSET) "
               "of that name, or a rule in mesh.groups, says which faces it is",
               name, mesh_fe_set_name(mesh, s));
-  return SHB_OK;
+  return mesh_overlap_check(mesh, name);
 }
 
 shb_status mesh_fe_read(const char *path, mesh_fe *mesh) {

@@ -42,7 +42,8 @@ typedef struct {
   const mesh_topology *topology;
   const char          *file;
   mesh_axis            axis;
-  mesh_face_set        outer; /* the surface of the body */
+  mesh_face_set        outer;  /* the surface of the body */
+  double               extent; /* m, diagonal of the body's box */
 } surface;
 
 static const double *place(const surface *s, int node) {
@@ -55,6 +56,21 @@ static const int *face_nodes(const surface *s, int face) {
 
 static double length(const double v[3]) {
   return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+static double extent(const mesh_fe *mesh) {
+  double low[3], high[3], span[3];
+  for (int d = 0; d < 3; d++) {
+    low[d]  = INFINITY;
+    high[d] = -INFINITY;
+  }
+  for (int i = 0; i < mesh->n_nodes; i++)
+    for (int d = 0; d < 3; d++) {
+      low[d]  = fmin(low[d], mesh->coordinates[3 * (size_t)i + d]);
+      high[d] = fmax(high[d], mesh->coordinates[3 * (size_t)i + d]);
+    }
+  for (int d = 0; d < 3; d++) span[d] = high[d] - low[d];
+  return length(span);
 }
 
 /* How far a point is off the rule's plane or radius, m. */
@@ -161,7 +177,7 @@ static void spread(const surface *s, const side *list, int first, int *queue, ch
     }
 }
 
-static shb_status take_nearest(const surface *s, const mesh_rule *rule, char *taken) {
+static shb_status take_nearest(const surface *s, const mesh_rule *rule, int id, char *taken) {
   int    first = 0;
   double least = INFINITY;
   for (int f = 0; f < s->outer.n; f++) {
@@ -169,6 +185,11 @@ static shb_status take_nearest(const surface *s, const mesh_rule *rule, char *ta
     if (distance < least) first = f;
     least = fmin(least, distance);
   }
+  SHB_CHECK(least <= MESH_RULE_FARTHEST * s->extent, SHB_ERR_INPUT,
+            "mesh.groups.%s.nearest: (%g, %g, %g) m is %.3g m off the body of %s, which measures "
+            "%.3g m; name a point on the face that is meant, in mesh axes",
+            mesh_fe_set_name(s->mesh, id), rule->at[0], rule->at[1], rule->at[2], least, s->file,
+            s->extent);
   side *list  = list_sides(s);
   int  *queue = malloc(((size_t)s->outer.n + 1) * sizeof *queue);
   if (list && queue) spread(s, list, first, queue, taken);
@@ -207,11 +228,16 @@ static shb_status apply_one(const surface *s, const mesh_rule *rule, int id, mes
                             char *taken) {
   memset(taken, 0, (size_t)s->outer.n);
   if (rule->kind == MESH_RULE_NEAREST) {
-    SHB_TRY(take_nearest(s, rule, taken));
+    SHB_TRY(take_nearest(s, rule, id, taken));
   } else {
     double least;
     SHB_CHECK(rule->kind != MESH_RULE_PLANE || length(rule->normal) > 0, SHB_ERR_INPUT,
               "mesh.groups.%s.normal: has no direction", mesh_fe_set_name(s->mesh, id));
+    SHB_CHECK(rule->tolerance <= MESH_RULE_WIDEST * s->extent, SHB_ERR_INPUT,
+              "mesh.groups.%s.tolerance: %g m is too wide for the body of %s, which measures %.3g "
+              "m: other faces would be taken too; give at most %.2g m",
+              mesh_fe_set_name(s->mesh, id), rule->tolerance, s->file, s->extent,
+              MESH_RULE_WIDEST * s->extent);
     if (take_fitting(s, rule, taken, &least) == 0) return refuse_none(s, rule, id, least);
   }
   return copy_taken(s, taken, &mesh->set[id]);
@@ -232,6 +258,7 @@ shb_status mesh_rules_apply(const mesh_rules *rules, mesh_axis axis, const char 
   for (int id = 0; id < mesh_fe_sets(mesh); id++) any = any || has_rule(rule_of(rules, id));
   if (!any) return SHB_OK;
   SHB_TRY(mesh_faces_outer(mesh, NULL, &s.outer));
+  s.extent         = extent(mesh);
   char      *taken = malloc((size_t)s.outer.n + 1);
   shb_status status =
       taken ? SHB_OK

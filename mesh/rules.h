@@ -37,6 +37,10 @@ typedef struct {
 /* An edge between two faces whose normals differ by more than this ends a face (MESH_RULE_NEAREST), rad. */
 #define MESH_RULE_EDGE 0.35
 
+/* The most a tolerance may be, and a point off the face that it names, in diagonals of the body's box. */
+#define MESH_RULE_WIDEST 0.01
+#define MESH_RULE_FARTHEST 0.5
+
 /* Names of the groups and volumes in the file, whose coordinates count unit m; they stay the rules'. */
 mesh_names mesh_rules_names(const mesh_rules *rules, double unit);
 
@@ -44,7 +48,8 @@ mesh_names mesh_rules_names(const mesh_rules *rules, double unit);
 mesh_names mesh_rules_labels(const mesh_rules *rules);
 
 /* Make the groups that have a rule of their own, instead of those the file had; faces outward. file heads error texts.
- * SHB_ERR_INPUT: a rule that no face fits (the nearest is named), or that has no normal; SHB_ERR_IO. */
+ * SHB_ERR_INPUT: a rule that no face fits (the nearest is named), that has no normal, a tolerance as wide as parts of the
+ * body, or a point far off it; SHB_ERR_IO. */
 shb_status mesh_rules_apply(const mesh_rules *rules, mesh_axis axis, const char *file,
                             mesh_fe *mesh);
 

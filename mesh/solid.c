@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/foresee.h"
 #include "mesh/format.h"
 #include "mesh/import.h"
 #include "mesh/jacobian.h"
@@ -30,7 +31,7 @@ static shb_status load(const mesh_source *source) {
   SHB_CHECK(file, SHB_ERR_IO, "%s: cannot be read: %s", source->path, strerror(errno));
   fclose(file);
   SHB_TRY(set_options(source));
-  mesh_kernel_listen();
+  mesh_kernel_listen(source->path);
   GMSH_TRY(source->path, gmshOpen(source->path, &ierr));
   SHB_TRY(mesh_kernel_heard(source->path)); /* gmsh goes on after a fault of syntax */
   int   *tags = NULL;
@@ -68,13 +69,16 @@ static shb_status set_size(const mesh_source *source) {
 
 static shb_status generate(mesh_solid *solid) {
   const char *path = solid->source->path;
+  mesh_extent extent;
   GMSH_TRY(path, gmshModelMeshClear(NULL, 0, &ierr));
+  SHB_TRY(mesh_foresee_solid(solid->source, &extent));
   SHB_TRY(set_size(solid->source));
   for (int dimension = 1; dimension <= 3; dimension++) {
     shb_progress_show(solid->progress, 25 * dimension, "meshing %s",
                       (const char *[]){"curves", "faces", "the volume"}[dimension - 1]);
     GMSH_TRY(path, gmshModelMeshGenerate(dimension, &ierr));
     SHB_CHECK(!shb_interrupted(), SHB_INTERRUPTED, "interrupted while meshing; nothing written");
+    if (dimension < 3) SHB_TRY(mesh_foresee_next(solid->source, dimension, &extent));
   }
   GMSH_TRY(path, gmshModelMeshSetOrder(2, &ierr));
   return SHB_OK;

@@ -17,7 +17,7 @@ shb_status mesh_solid_open(const mesh_source *source, shb_progress *progress, me
 void       mesh_solid_close(mesh_solid *solid);
 
 /* Mesh (anew) and copy out, coordinates in the source's unit, groups as the file has them. A few inverted
- * elements are straightened, more than 1 % are SHB_ERR_INPUT. */
+ * elements are straightened, more than 1 % are SHB_ERR_INPUT, and so are more nodes than can be computed with. */
 shb_status mesh_solid_mesh(mesh_solid *solid, mesh_fe *mesh);
 
 /* Where the blade meets its neighbour and the contact faces of mesh (in m) do not match node for node: make those of

@@ -100,6 +100,17 @@ run 2 check --frobnicate good.yaml; says err "unknown option '--frobnicate'"
 run 2 run; says err 'no file given'
 run 2 keys more; says err "unexpected 'more'"
 
+# an output that cannot be written (here: closed) is told, and is no success
+for words in '--help' '--version' 'keys' 'check good.yaml' 'run good.yaml' 'contact --help'; do
+  (cd "$work/dir" && touch good.html && "$work/bin/shroudhb" $words) >&- 2>"$work/err" </dev/null
+  code=$?
+  [ $code -eq 4 ] || fail "$words with a closed output: exit code $code, expected 4"
+  [ "$(wc -l <"$work/err")" -eq 1 ] || fail "$words with a closed output: not one line"
+  says err 'standard output cannot be written'
+  rm "$work/dir/good.html"
+done
+: >"$work/log"
+
 # keys, check
 run 0 keys; says out 'contact.mu '; says out 'friction coefficient'; silent err
 run 0 check good.yaml; says out 'good.yaml: ok'; says out '37 blades, engine order 7'; silent err

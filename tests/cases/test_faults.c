@@ -372,18 +372,59 @@ static void keys_among_each_other(void **state) {
       {"  blade:\n", "  file: x.msh\n  blade:\n",
        "c.yaml:3:9: error: mesh.file: x.msh: cannot be read: No such "
        "file or directory",
-       2},
-      {"modal: {modes: 17,", "modal: {file: no.h5, modes: 17,",
-       "c.yaml:13:15: error: modal.file: no.h5: cannot "
-       "be read: No such file or directory",
-       1}};
-  check_faults(rows, COUNT(rows) - 1);
+       2}};
+  check_faults(rows, COUNT(rows));
   /* a file that is not there is no fault of the case file */
-  char *said, *text = scratch_case(rows[COUNT(rows) - 1].from, rows[COUNT(rows) - 1].to);
+  const char text[] =
+      "modal: {file: no.h5}\n"
+      "contact: {to: ground, mu: 0.3, ku: 1, kv: 1, n0: 1}\n"
+      "mhb: {frequency: [1, 2]}\n";
+  char *said;
   assert_int_equal(judge(text, strlen(text), &said), SHB_ERR_IO);
-  assert_non_null(strstr(said, rows[COUNT(rows) - 1].says));
+  assert_non_null(strstr(said,
+                         "c.yaml:1:15: error: modal.file: no.h5: cannot be read: No such file or "
+                         "directory"));
   free(said);
-  free(text);
+}
+
+/* Keys that would not be read, each at its place. */
+static void nothing_is_ignored(void **state) {
+  (void)state;
+  static const fault rows[] = {
+      {"mesh:\n", "mesh:\n  unit: mm\n",
+       "c.yaml:3:9: error: mesh.unit: only says something with mesh.file", 1},
+      {"mesh:\n", "mesh:\n  size: 3 mm\n",
+       "c.yaml:3:9: error: mesh.size: only says something with mesh.file", 1},
+      {"mesh:\n", "mesh:\n  groups: {root: {radius: 1}}\n",
+       "c.yaml:3:11: error: mesh.groups: only says something with mesh.file", 1},
+      {"  scale: 1.3", "  search: {at: [100]}",
+       "c.yaml:34:16: error: mhb.search.at: only says something with mhb.search.starts above 0", 1},
+      {"  scale: 1.3", "  search: {orders: [2]}",
+       "c.yaml:34:20: error: mhb.search.orders: only says something with mhb.search.starts above 0",
+       1},
+      {"  stability: always", "  stability: never\n  flips: mark",
+       "c.yaml:37:10: error: mhb.flips: only says something with mhb.stability: auto or always", 1},
+      {"mhb:\n", "integrate: {direction: up}\nmhb:\n",
+       "c.yaml:30:24: error: integrate.direction: only says something with integrate.start: state",
+       1},
+      {"mhb:\n", "integrate: {direction: up, start: rest}\nmhb:\n",
+       "c.yaml:30:24: error: integrate.direction: only says something with integrate.start: state",
+       1},
+      {"modal: {modes: 17,", "modal: {file: no.h5, modes: 17,",
+       "c.yaml:2:1: error: mesh: leave it out: modal.file is given, which holds what it made", 11}};
+  check_faults(rows, COUNT(rows));
+  static const char both[] =
+      "modal: {file: c.yaml}\n"
+      "rotor: {blades: 4, speed: 3}\n"
+      "excitation: {engine_order: 1}\n"
+      "contact: {mu: 0.3, ku: 1, kv: 1, n0: 1}\n"
+      "mhb: {frequency: 1, scale: 2, vary: {scale: [0, 1]}, search: {starts: 0, orders: [2]}}\n";
+  char *said;
+  assert_int_equal(judge(both, strlen(both), &said), SHB_ERR_INPUT);
+  assert_non_null(strstr(said, "c.yaml:2:27: error: rotor.speed: leave it out: modal.file"));
+  assert_non_null(strstr(said, "c.yaml:5:28: error: mhb.scale: leave it out: curves follow"));
+  assert_non_null(strstr(said, "\n2 errors\n"));
+  free(said);
 }
 
 static void a_force_needs_a_place(void **state) {
@@ -528,14 +569,11 @@ static void carets_stay_below(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(keys_and_kinds),
-                                     cmocka_unit_test(numbers_and_ranges),
-                                     cmocka_unit_test(keys_among_each_other),
-                                     cmocka_unit_test(a_force_needs_a_place),
-                                     cmocka_unit_test(not_yaml),
-                                     cmocka_unit_test(strange_files),
-                                     cmocka_unit_test(a_missing_file_is_told),
-                                     cmocka_unit_test(all_at_once),
-                                     cmocka_unit_test(carets_stay_below)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(keys_and_kinds),        cmocka_unit_test(numbers_and_ranges),
+      cmocka_unit_test(keys_among_each_other), cmocka_unit_test(nothing_is_ignored),
+      cmocka_unit_test(a_force_needs_a_place), cmocka_unit_test(not_yaml),
+      cmocka_unit_test(strange_files),         cmocka_unit_test(a_missing_file_is_told),
+      cmocka_unit_test(all_at_once),           cmocka_unit_test(carets_stay_below)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

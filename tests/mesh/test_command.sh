@@ -158,6 +158,30 @@ run 2 solid.yaml
 says "mesh.groups.root.nearest: is a second rule for its group"
 says "mesh.groups.rot: unknown group"
 says "mesh.groups.load: lacks normal"
+
+# A script that ends the program is no success.
+solid "$rules"
+echo 'Exit;' >>"$work/dir/sector.geo"
+run 2 solid.yaml
+lines 1
+says "shroudhb: error: sector.geo: ends the program while it is read; leave out Exit"
+sed -i '/Exit/d' "$work/dir/sector.geo"
+
+# A second signal ends it at once, in the midst of gmsh; so does a first one within seconds, unless gmsh comes to an end.
+solid "$(echo "$rules" | sed 's/12 mm/.9 mm/')"
+for signals in 'INT INT 130 at_once' 'TERM TERM 143 at_once' 'TERM - 143 130'; do
+  set -- $signals
+  (cd "$work/dir" && exec "$program" --force solid.yaml) >"$work/out" 2>"$work/err" &
+  pid=$!
+  sleep 1.5
+  kill -"$1" $pid
+  sleep 0.1
+  [ "$2" = - ] || kill -"$2" $pid
+  wait $pid
+  code=$?
+  [ $code -eq "$3" ] || [ $code = "$4" ] || fail "signals $1 $2: exit code $code, expected $3"
+  [ "$4" = at_once ] && says "ended at once"
+done
 rm "$work/dir/sector.geo" "$work/dir/solid.yaml" "$work/dir/solid.msh"
 
 left=$(ls -A "$work/home" | grep -v -e '^.fltk$')

@@ -14,6 +14,7 @@
 
 #include <cmocka.h>
 
+#include "mesh/foresee.h"
 #include "mesh/inp.h"
 #include "mesh/jacobian.h"
 #include "mesh/kernel.h"
@@ -212,11 +213,21 @@ static void curved_faces_are_found(void **state) {
   source.rules.usual[MESH_ROOT] =
       (mesh_rule){.kind = MESH_RULE_RADIUS, .radius = .31, .tolerance = 1e-9};
   source.rules.usual[MESH_LOAD] = (mesh_rule){.kind = MESH_RULE_NEAREST, .at = {.1, 0, .2}};
+  refused(&source, "ring.msh: groups load and root share 24 of 24 faces, one at (");
+  refused(&source, "what is clamped does not move");
+  source.rules.usual[MESH_ROOT].kind = MESH_RULE_NONE;
+  mesh_fe other;
+  source.rules.usual[MESH_ROOT]      = (mesh_rule){.kind = MESH_RULE_NEAREST, .at = {.1, 0, .2}};
+  source.rules.usual[MESH_LOAD].kind = MESH_RULE_NONE;
+  assert_ok(mesh_source_read(&source, NULL, &other));
+  source.rules.usual[MESH_ROOT] =
+      (mesh_rule){.kind = MESH_RULE_RADIUS, .radius = .31, .tolerance = 1e-9};
   assert_ok(mesh_source_read(&source, NULL, &mesh));
   assert_int_equal(mesh.set[MESH_ROOT].n, 2 * many[0] * many[1]);
-  assert_int_equal(mesh.set[MESH_LOAD].n, 2 * many[0] * many[1]);
-  assert_memory_equal(mesh.set[MESH_ROOT].nodes, mesh.set[MESH_LOAD].nodes,
+  assert_int_equal(other.set[MESH_ROOT].n, 2 * many[0] * many[1]);
+  assert_memory_equal(mesh.set[MESH_ROOT].nodes, other.set[MESH_ROOT].nodes,
                       6 * (size_t)mesh.set[MESH_ROOT].n * sizeof(int));
+  mesh_fe_free(&other);
   mesh_fe_free(&mesh);
   source.rules.usual[MESH_ROOT].radius = .32;
   refused(&source, "no face at radius 0.32 m; the nearest is 0.01 m off");
@@ -231,6 +242,8 @@ static void groups_may_have_other_names(void **state) {
   assert_ok(mesh_inp_write(&box, source.path));
   source.rules.usual[MESH_ROOT].kind = MESH_RULE_NAME;
   strcpy(source.rules.usual[MESH_ROOT].name, "load");
+  source.rules.usual[MESH_LOAD].kind = MESH_RULE_NAME;
+  strcpy(source.rules.usual[MESH_LOAD].name, "root");
   assert_ok(mesh_source_read(&source, NULL, &mesh));
   assert_area(&mesh, MESH_ROOT, 0, 0, size[0] * size[1]);
   mesh_fe_free(&mesh);
@@ -240,6 +253,33 @@ static void groups_may_have_other_names(void **state) {
   assert_area(&mesh, MESH_ROOT, 0, 0, size[0] * size[1]);
   mesh_fe_free(&mesh);
   mesh_fe_free(&box);
+}
+
+/* Contact on clamped faces, the same face twice; rules that cannot mean what they say. */
+static void groups_that_cannot_be_right(void **state) {
+  (void)state;
+  mesh_fe         box, mesh;
+  const double    far    = 900;
+  mesh_source     source = {.path = scratch("wrong.msh"), .unit = 1, .axis = MESH_AXIS_Z};
+  const mesh_rule clamp  = {.kind = MESH_RULE_PLANE, .normal = {1, 0, 0}, .tolerance = 1e-6};
+  assert_ok(box_mesh(size, cells, &box));
+  assert_ok(box_write(&box, source.path));
+  mesh_fe_free(&box);
+  source.rules.usual[MESH_CONTACT_RIGHT] = clamp;
+  refused(&source, "groups contact_right and root share 8 of 8 faces, one at (0, ");
+  source.rules.usual[MESH_CONTACT_RIGHT].normal[0] = 0;
+  source.rules.usual[MESH_CONTACT_RIGHT].normal[1] = 1; /* it meets the clamp along an edge: well */
+  assert_ok(mesh_source_read(&source, NULL, &mesh));
+  mesh_fe_free(&mesh);
+  source.rules.usual[MESH_CONTACT_LEFT] = source.rules.usual[MESH_CONTACT_RIGHT];
+  refused(&source, "groups contact_right and contact_left share 12 of 12 faces");
+  source.rules.usual[MESH_CONTACT_LEFT].kind       = MESH_RULE_NONE;
+  source.rules.usual[MESH_CONTACT_RIGHT].tolerance = 1;
+  refused(&source, "mesh.groups.contact_right.tolerance: 1 m is too wide for the body of");
+  refused(&source, "which measures 0.242 m: other faces would be taken too; give at most 0.0024 m");
+  source.rules.usual[MESH_CONTACT_RIGHT] =
+      (mesh_rule){.kind = MESH_RULE_NEAREST, .at = {.1, .01, far}};
+  refused(&source, "mesh.groups.contact_right.nearest: (0.1, 0.01, 900) m is 900 m off the body");
 }
 
 static void put(const char *path, const char *text) {
@@ -316,6 +356,48 @@ static void sides_are_made_to_match(void **state) {
   }
 }
 
+static const char block_text[] = /* 40 x 10 x 100 mm of gmsh's own geometry */
+    "Point(1)={0,0,100,%g};Point(2)={40,0,100,%g};Point(3)={40,10,100,%g};Point(4)={0,10,100,%g};\n"
+    "Line(1)={1,2};Line(2)={2,3};Line(3)={3,4};Line(4)={4,1};\n"
+    "Line Loop(1)={1,2,3,4};Plane Surface(1)={1};Extrude{0,0,100}{Surface{1};}\n";
+
+static void put_block(const char *path, double h) {
+  FILE *file = fopen(path, "w");
+  assert_non_null(file);
+  fprintf(file, block_text, h, h, h, h);
+  fclose(file);
+}
+
+/* What is foreseen is near what comes; what no memory holds is refused before it is made. */
+static void nodes_are_foreseen(void **state) {
+  (void)state;
+  const mesh_extent block       = {.length = .6, .area = 10.8e-3, .volume = 4e-5};
+  const double      of[]        = {4e-3, 2e-3};
+  mesh_source       source      = {.path = scratch("many.geo"), .unit = 1e-3, .axis = MESH_AXIS_X};
+  source.rules.usual[MESH_ROOT] = (mesh_rule){
+      .kind = MESH_RULE_PLANE, .at = {0, 0, .1}, .normal = {0, 0, 1}, .tolerance = 1e-6};
+  for (int i = 0; i < 4; i++) {
+    mesh_fe mesh;
+    double  h = of[i / 2];
+    put_block(source.path, i % 2 ? 1e3 * h : 5);
+    source.size = i % 2 ? 0 : h;
+    assert_ok(mesh_source_read(&source, NULL, &mesh));
+    double ratio = mesh_foresee_nodes(&block, h) / mesh.n_nodes;
+    if (!(ratio > .7 && ratio < 1.5)) fail_msg("size %g: %g of the nodes foreseen", h, ratio);
+    mesh_fe_free(&mesh);
+  }
+  double least = mesh_foresee_size(&block, 1e5);
+  assert_near(mesh_foresee_nodes(&block, least), 1e5, 500);
+  source.size = 1e-9;
+  refused(&source, "many.geo: mesh.size 1e-09 m would give about 2.5e+16 nodes; with ");
+  source.size = 0;
+  put_block(source.path, 1e-7);
+  refused(&source, "many.geo: its own element size of 4e-07 m would give about 1.6e+11 nodes");
+  put(source.path, "SetFactory(\"OpenCASCADE\");\nBox(1) = {0, 0, 100, 40, 10, 100};\n");
+  source.size = 1e-6;
+  refused(&source, "many.geo: mesh.size 1e-06 m would give about 2.4e+14 nodes");
+}
+
 static void bad_solids_are_refused(void **state) {
   (void)state;
   mesh_source source = {.path = scratch("bad.step"), .unit = 1, .size = .01};
@@ -342,6 +424,7 @@ int main(void) {
       cmocka_unit_test(rules_find_the_faces),        cmocka_unit_test(curved_faces_are_found),
       cmocka_unit_test(groups_may_have_other_names), cmocka_unit_test(solids_are_meshed),
       cmocka_unit_test(sides_are_made_to_match),     cmocka_unit_test(bad_solids_are_refused),
+      cmocka_unit_test(groups_that_cannot_be_right), cmocka_unit_test(nodes_are_foreseen),
   };
   return cmocka_run_group_tests_name("mesh.source", tests, set_up, tear_down);
 }
