@@ -19,8 +19,8 @@ static const char usage[] =
     "to the\n"
     "contact, load and probe points and writes NAME.modal.h5; does nothing if that file is up to "
     "date\n"
-    "(unless --force). Options after the case go to PETSc and SLEPc, such as -eps_view, -eps_ncv "
-    "60,\n"
+    "(unless --force). Options after the case go to PETSc and SLEPc, such as -eps_view,\n"
+    "-eps_block_size 8, -eps_type krylovschur, -st_pc_factor_mat_solver_type mumps,\n"
     "-st_mat_mumps_icntl_14 50.\n";
 
 /* Words of the command line: ours up to and with the case file, and any --long one; the rest is PETSc's. */

@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "fem/factor.h"
+
 enum {
   MAX_ITERATIONS = 25, /* Newton, a load step */
   MAX_HALVINGS   = 6,  /* of the load step */
@@ -21,6 +23,7 @@ typedef struct {
   fem_system      *system;
   shb_progress    *progress;
   fem_equilibrium *out;
+  fem_factor      *factor;
   KSP              ksp;
   Vec              R, d;             /* out of balance; direction */
   double          *u, *step, *tried; /* [n_nodes][3]: displacement, direction, u + alpha step */
@@ -32,43 +35,33 @@ typedef struct {
 static PetscErrorCode create_solver(newton *n) {
   PC pc;
   PetscFunctionBeginUser;
+  PetscCall(fem_factor_create(n->system->K, 0, &n->factor));
   PetscCall(KSPCreate(n->system->comm, &n->ksp));
   PetscCall(KSPSetOperators(n->ksp, n->system->K, n->system->K));
   PetscCall(KSPSetType(n->ksp, KSPCG));
   PetscCall(KSPGetPC(n->ksp, &pc));
-  PetscCall(PCSetType(pc, PCCHOLESKY));
-  PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
-  PetscCall(PCSetOptionsPrefix(pc, "st_"));
-  PetscCall(PCSetFromOptions(pc));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode check_memory(KSP ksp) {
-  PC             pc;
-  Mat            factor;
-  MatFactorError error;
-  PetscFunctionBeginUser;
-  PetscCall(KSPGetPC(ksp, &pc));
-  PetscCall(PCFactorGetMatrix(pc, &factor));
-  PetscCall(MatFactorGetError(factor, &error));
-  PetscCheck(error != MAT_FACTOR_OUTMEMORY, PetscObjectComm((PetscObject)ksp), PETSC_ERR_MEM,
-             "MUMPS");
+  PetscCall(fem_factor_serve(n->factor, pc));
   PetscFunctionReturn(0);
 }
 
 /* One solve with the factor at hand, or with a new one. */
 static PetscErrorCode solve_with(newton *n, bool anew, KSPConvergedReason *reason,
                                  PetscInt *count) {
+  bool definite = true;
   PetscFunctionBeginUser;
-  PetscCall(KSPSetReusePreconditioner(n->ksp, (PetscBool)!anew));
+  *count = 0;
+  if (anew) {
+    PetscCall(fem_factor_update(n->factor, n->system->K, &definite));
+    n->out->factorisations++;
+  }
+  if (!definite) {
+    *reason = KSP_DIVERGED_INDEFINITE_MAT;
+    PetscFunctionReturn(0);
+  }
   PetscCall(KSPSolve(n->ksp, n->R, n->d));
   PetscCall(KSPGetConvergedReason(n->ksp, reason));
   PetscCall(KSPGetIterationNumber(n->ksp, count));
   n->out->solves += (int)*count;
-  if (anew) {
-    n->out->factorisations++;
-    PetscCall(check_memory(n->ksp));
-  }
   PetscFunctionReturn(0);
 }
 
@@ -259,6 +252,7 @@ PetscErrorCode fem_equilibrium_solve(const fem_body *body, fem_system *system,
   PetscCall(create_solver(&n));
   PetscCall(follow(&n, body, &result));
   PetscCall(KSPDestroy(&n.ksp));
+  PetscCall(fem_factor_destroy(&n.factor));
   PetscCall(VecDestroy(&n.d));
   PetscCall(VecDestroy(&n.R));
   PetscCall(PetscFree2(n.step, n.tried));

@@ -23,7 +23,7 @@ typedef struct {
 } fem_equilibrium;
 
 /* Solve; system->K, on entry the stiffness at rest (fem_system_create), becomes the tangent at the equilibrium, spin
- * softening included. MUMPS takes the options -st_mat_mumps_...
+ * softening included.
  * Errors: PETSC_ERR_USER_INPUT no equilibrium found (load step and speed named); PETSC_ERR_MEM.
  * If shb_interrupted(), stops early with displacement = NULL and no error. Collective. */
 PetscErrorCode fem_equilibrium_solve(const fem_body *body, fem_system *system,

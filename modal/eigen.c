@@ -4,6 +4,9 @@
 #include <petscblaslapack.h>
 #include <string.h>
 
+#include "modal/block_lanczos.h"
+#include "modal/noise.h"
+
 typedef struct {
   shb_progress *progress;
   MPI_Comm      comm;
@@ -35,19 +38,33 @@ static PetscErrorCode stop(EPS eps, PetscInt iteration, PetscInt max_iterations,
   PetscFunctionReturn(0);
 }
 
+/* Block Lanczos where there is room for it; a mesh of a few nodes is left to Krylov-Schur. */
+static PetscErrorCode choose_method(const fem_system *system, int n, EPS eps) {
+  const PetscInt order = 3 * system->n_free;
+  PetscFunctionBeginUser;
+  PetscCall(modal_block_lanczos_register());
+  if (order >= 20 * (n + 10)) {
+    PetscCall(EPSSetType(eps, MODAL_BLOCK_LANCZOS));
+    PetscCall(EPSSetDimensions(eps, n, PETSC_DEFAULT, PETSC_DEFAULT));
+  } else {
+    PetscCall(EPSSetType(eps, EPSKRYLOVSCHUR));
+    PetscCall(EPSSetDimensions(eps, n, PetscMin(order, PetscMax(2 * n, n + 15)), PETSC_DEFAULT));
+  }
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode configure(const fem_system *system, const modal_eigen_settings *settings,
-                                watch *context, EPS eps) {
-  const PetscInt order = 3 * system->n_free, n = settings->modes;
-  PetscInt       ncv = PetscMin(order, PetscMax(2 * n, n + 15));
-  ST             st;
-  KSP            ksp;
-  PC             pc;
+                                watch *context, modal_eigen *eigen) {
+  EPS eps = eigen->eps;
+  ST  st;
+  KSP ksp;
+  PC  pc;
 
   PetscFunctionBeginUser;
   PetscCall(EPSSetOperators(eps, system->K, system->M));
   PetscCall(EPSSetProblemType(eps, EPS_GHEP));
-  PetscCall(EPSSetType(eps, EPSKRYLOVSCHUR));
-  PetscCall(EPSSetDimensions(eps, n, ncv, PETSC_DEFAULT));
+  PetscCall(choose_method(system, settings->modes, eps));
+  PetscCall(EPSSetPurify(eps, PETSC_FALSE)); /* M is not singular */
   PetscCall(EPSSetTolerances(eps, settings->tolerance > 0 ? settings->tolerance : 1e-10, 1000));
   PetscCall(EPSSetTarget(eps, settings->shift));
   PetscCall(EPSSetWhichEigenpairs(eps, EPS_TARGET_MAGNITUDE));
@@ -55,55 +72,52 @@ static PetscErrorCode configure(const fem_system *system, const modal_eigen_sett
   PetscCall(EPSSetStoppingTestFunction(eps, stop, context, NULL));
   PetscCall(EPSGetST(eps, &st));
   PetscCall(STSetType(st, STSINVERT));
-  PetscCall(STSetMatStructure(st, SAME_NONZERO_PATTERN));
+  PetscCall(STSetMatMode(st, ST_MATMODE_SHELL)); /* K - shift M is the factor's own business */
   PetscCall(STGetKSP(st, &ksp));
   PetscCall(KSPSetType(ksp, KSPPREONLY));
   PetscCall(KSPGetPC(ksp, &pc));
-  PetscCall(PCSetType(pc, PCCHOLESKY));
-  PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  PetscCall(fem_factor_serve(eigen->factor, pc));
   PetscCall(EPSSetFromOptions(eps));
   PetscFunctionReturn(0);
 }
 
-/* Negative pivots that MUMPS met (on one rank all of them; on more, its dense root is not counted but must be
- * positive definite too); 0 from another solver. */
-static PetscErrorCode count_negative(Mat factor, PetscInt *n) {
-  MatSolverType type;
-  PetscBool     is_mumps;
+/* K - shift M: K itself where the shift is 0. */
+static PetscErrorCode shifted(const fem_system *system, double shift, Mat *A) {
   PetscFunctionBeginUser;
-  *n = 0;
-  PetscCall(MatFactorGetSolverType(factor, &type));
-  PetscCall(PetscStrcmp(type, MATSOLVERMUMPS, &is_mumps));
-  if (is_mumps) PetscCall(MatMumpsGetInfog(factor, 12, n));
+  if (shift == 0) {
+    PetscCall(PetscObjectReference((PetscObject)system->K));
+    *A = system->K;
+    PetscFunctionReturn(0);
+  }
+  PetscCall(MatDuplicate(system->K, MAT_COPY_VALUES, A));
+  PetscCall(MatAXPY(*A, -shift, system->M, SAME_NONZERO_PATTERN));
+  PetscCall(MatSetOption(*A, MAT_SPD, PETSC_TRUE));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode factorise(EPS eps, Mat *factor) {
-  ST             st;
-  KSP            ksp;
-  PC             pc;
-  MatFactorError error;
-  PetscInt       negative;
-  PetscScalar    shift;
+/* Vectors of the basis, of the modes and of what is done with them. */
+static double beside(const fem_system *system, int modes) {
+  return 8. * 3. * (double)system->n_free * (8. * modes + 60.);
+}
+
+static PetscErrorCode factorise(const fem_system *system, const modal_eigen_settings *settings,
+                                modal_eigen *eigen) {
+  const double started  = shb_seconds();
+  bool         definite = false;
+  Mat          A;
 
   PetscFunctionBeginUser;
-  PetscCall(EPSSetUp(eps));
-  PetscCall(EPSGetST(eps, &st));
-  PetscCall(STGetKSP(st, &ksp));
-  PetscCall(KSPGetPC(ksp, &pc));
-  PetscCall(PCFactorGetMatrix(pc, factor));
-  PetscCall(MatFactorGetError(*factor, &error));
-  PetscCheck(error != MAT_FACTOR_OUTMEMORY, PetscObjectComm((PetscObject)eps), PETSC_ERR_MEM,
-             "MUMPS");
-  PetscCheck(error == MAT_FACTOR_NOERROR, PetscObjectComm((PetscObject)eps), PETSC_ERR_USER_INPUT,
+  PetscCall(shifted(system, settings->shift, &A));
+  PetscCall(fem_factor_create(A, beside(system, settings->modes), &eigen->factor));
+  PetscCall(fem_factor_update(eigen->factor, A, &definite));
+  PetscCall(MatDestroy(&A));
+  PetscCheck(definite, system->comm, PETSC_ERR_USER_INPUT,
              "the stiffness matrix is not positive definite: the clamp on group root does not hold "
-             "the body, or the material is not physical");
-  PetscCall(STGetShift(st, &shift));
-  PetscCall(count_negative(*factor, &negative));
-  PetscCheck(negative == 0 || shift > 0, PetscObjectComm((PetscObject)eps), PETSC_ERR_USER_INPUT,
-             "the stiffness matrix is not positive definite (%d negative pivots): the material is "
-             "not physical, or the equilibrium at rotor.speed is not stable",
-             (int)negative);
+             "the body, the material is not physical, or the equilibrium at rotor.speed is not "
+             "stable");
+  shb_progress_note(settings->progress, "factorised by %s in %.2f s, %.3g GB foreseen",
+                    fem_factor_by(eigen->factor), shb_seconds() - started,
+                    1e-9 * fem_factor_foreseen(eigen->factor));
   PetscFunctionReturn(0);
 }
 
@@ -118,7 +132,7 @@ PetscErrorCode modal_dense_create(const fem_system *system, int n, Mat *X) {
 
 PetscErrorCode modal_eigen_inverse(const modal_eigen *eigen, Mat B, Mat X) {
   PetscFunctionBeginUser;
-  PetscCall(MatMatSolve(eigen->factor, B, X));
+  PetscCall(fem_factor_solve_many(eigen->factor, B, X));
   PetscFunctionReturn(0);
 }
 
@@ -169,14 +183,6 @@ PetscErrorCode modal_eigen_remove(const fem_system *system, const modal_eigen *e
   PetscFunctionReturn(0);
 }
 
-/* A fixed number in [-1, 1) for each dof of the mesh (splitmix64's finaliser): no symmetric mode cancels. */
-static double noise(uint64_t key) {
-  uint64_t z = (key + 1) * 0x9e3779b97f4a7c15u;
-  z          = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-  z          = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-  return (double)((z ^ (z >> 31)) >> 11) * 0x1p-52 - 1;
-}
-
 /* +1 or -1 so that the sum of the mode's dofs times noise comes out positive, on any number of ranks. */
 static PetscErrorCode sign_of(const fem_system *system, Vec phi, double *sign) {
   const PetscScalar *x;
@@ -188,7 +194,7 @@ static PetscErrorCode sign_of(const fem_system *system, Vec phi, double *sign) {
     PetscInt row = system->row[i];
     if (row < system->first || row >= system->last) continue;
     for (int d = 0; d < 3; d++)
-      sum += noise(3 * (uint64_t)i + (uint64_t)d) * x[3 * (row - system->first) + d];
+      sum += modal_noise(3 * (uint64_t)i + (uint64_t)d) * x[3 * (row - system->first) + d];
   }
   PetscCall(VecRestoreArrayRead(phi, &x));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM, system->comm));
@@ -248,19 +254,17 @@ PetscErrorCode modal_eigen_solve(const fem_system *system, const modal_eigen_set
   watch              context = {settings->progress, system->comm};
   EPSConvergedReason reason;
   PetscInt           n_converged;
-  double             started = shb_seconds();
 
   PetscFunctionBeginUser;
   memset(eigen, 0, sizeof *eigen);
   PetscCheck(settings->modes <= 3 * system->n_free, system->comm, PETSC_ERR_USER_INPUT,
              "modal.modes: %d modes asked of a mesh with %d free dofs", settings->modes,
              (int)(3 * system->n_free));
-  PetscCall(EPSCreate(system->comm, &eigen->eps));
-  PetscCall(configure(system, settings, &context, eigen->eps));
   shb_progress_show(settings->progress, 15, "factorising %d dofs", (int)(3 * system->n_free));
-  PetscCall(factorise(eigen->eps, &eigen->factor));
-  shb_progress_note(settings->progress, "factorised in %.2f s", shb_seconds() - started);
-  started = shb_seconds();
+  PetscCall(factorise(system, settings, eigen));
+  PetscCall(EPSCreate(system->comm, &eigen->eps));
+  PetscCall(configure(system, settings, &context, eigen));
+  const double started = shb_seconds();
   PetscCall(EPSSolve(eigen->eps));
   PetscCall(EPSGetConvergedReason(eigen->eps, &reason));
   PetscCall(EPSGetConverged(eigen->eps, &n_converged));
@@ -282,6 +286,7 @@ PetscErrorCode modal_eigen_destroy(modal_eigen *eigen) {
   PetscCall(MatDestroy(&eigen->phi));
   PetscCall(MatDestroy(&eigen->m_phi));
   PetscCall(EPSDestroy(&eigen->eps));
+  PetscCall(fem_factor_destroy(&eigen->factor));
   memset(eigen, 0, sizeof *eigen);
   PetscFunctionReturn(0);
 }

@@ -1,10 +1,12 @@
-/* Lowest modes of K phi = lambda M phi by SLEPc: Krylov-Schur, shift-invert, MUMPS Cholesky. */
+/* Lowest modes of K phi = lambda M phi by SLEPc: shift-invert with a Cholesky factor (fem/factor.h), block Lanczos
+ * (modal/block_lanczos.h; -eps_type krylovschur: SLEPc's own). */
 #ifndef MODAL_EIGEN_H
 #define MODAL_EIGEN_H
 
 #include <slepceps.h>
 
 #include "fem/assemble.h"
+#include "fem/factor.h"
 #include "mesh/progress.h"
 
 typedef struct {
@@ -21,10 +23,10 @@ typedef struct {
       residual; /* [n] |phi - (lambda - shift) (K - shift M)^-1 M phi| in the M norm, |phi| = 1: an eigenvalue
                        lies within that relative distance of lambda - shift. (The plain residual |K phi - lambda M phi| is
                        drowned by rounding of the stiffest directions.) */
-  Mat phi;    /* dense [3 n_free][n], phi^T M phi = 1; sign fixed by the mesh, not by the solver */
-  Mat m_phi;  /* M phi, same layout */
-  Mat factor; /* of K - shift M, for further solves; lives as long as eps */
-  EPS eps;
+  Mat phi;   /* dense [3 n_free][n], phi^T M phi = 1; sign fixed by the mesh, not by the solver */
+  Mat m_phi; /* M phi, same layout */
+  fem_factor *factor; /* of K - shift M, for further solves too */
+  EPS         eps;
 } modal_eigen;
 
 /* Solve. Needs SLEPc initialised. Takes options (-eps_..., -st_mat_mumps_icntl_...) from PETSc's data base.
