@@ -149,7 +149,7 @@ static void indefinite_matrices_are_told(void **state) {
 static void memory_is_foreseen(void **state) {
   (void)state;
   const double size[3]  = {.2, .06, .05};
-  const int    cells[3] = {24, 12, 10};
+  const int    cells[3] = {18, 8, 7};
   mesh_fe      mesh     = make_box(size, cells);
   fem_system   system;
   fem_factor  *factor;
