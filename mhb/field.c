@@ -7,6 +7,8 @@ const mhb_field mhb_fields[] = {
     {"frequency", "", MHB_DOUBLE, AT(frequency), "Hz",
      "frequency of the excitation's first harmonic"},
     {"n0", "", MHB_DOUBLE, AT(n0), "N", "normal preload, total of the interface; negative: a gap"},
+    {"interface_n0", "i", MHB_DOUBLE, AT(interface_n0), "N",
+     "normal preload of each contact interface; n0 is that of the one that leads"},
     {"parameter", "", MHB_DOUBLE, AT(value), NULL, "value of the parameter that is followed"},
     {"motion", "p3k", MHB_COMPLEX, AT(motion), "m",
      "relative motion at the contact along v, u, w; harmonics"},
@@ -78,6 +80,8 @@ static hsize_t size_of(const mhb_response *response, const mhb_branch *branch, c
       return (hsize_t)response->n_multipliers;
     case 'l':
       return (hsize_t)response->n_lines;
+    case 'i':
+      return (hsize_t)response->n_interfaces;
     default:
       return 3;
   }

@@ -10,7 +10,7 @@
 typedef enum { MHB_DOUBLE, MHB_COMPLEX, MHB_INT } mhb_number;
 
 /* dims: the dimensions after [point], one letter each: p pair, q probe, 3 shroud axes, x cylindrical axes, s contact state,
- * k harmonic 0..m, f multiplier, l spectral line. */
+ *  k harmonic 0..m, f multiplier, l spectral line, i contact interface (none where there is one). */
 typedef struct {
   const char *name, *dims;
   mhb_number  kind;
@@ -19,7 +19,7 @@ typedef struct {
   const char *long_name;
 } mhb_field;
 
-enum { MHB_N_FIELDS = 26 };
+enum { MHB_N_FIELDS = 27 };
 extern const mhb_field mhb_fields[MHB_N_FIELDS]; /* the first: the frequency */
 
 size_t   mhb_field_bytes(mhb_number kind);

@@ -34,10 +34,15 @@ static mhb_reason homotopy(mhb_newton *newton, mhb_residual *b, double omega, do
 
 /* A preload beyond which the linear limit holds: no motion of size x can open it, or close it. */
 static double far_preload(const mhb_residual *b, const double *x, int stuck) {
-  double size = mhb_norm(x, b->n), mu = fmax(b->at.mu, 1e-6);
-  double friction = (fabs(b->at.ku[0]) + fabs(b->at.ku[2])) / mu;
-  double reach    = 4 * size * (b->at.kv + (stuck ? friction : 0)) + fabs(b->at.n0);
-  return stuck ? reach : -reach;
+  double size = mhb_norm(x, b->n), most = 0;
+  for (int i = 0; i < b->n_interfaces; i++) {
+    const mhb_condition *own      = &b->own[i];
+    double               friction = (fabs(own->ku[0]) + fabs(own->ku[2])) / fmax(own->mu, 1e-6);
+    double               reach    = 4 * size * (own->kv + (stuck ? friction : 0)) + fabs(own->n0);
+    if (b->n_interfaces > 1) reach += fabs(b->at.n0); /* all move by what this one does */
+    most = fmax(most, reach);
+  }
+  return stuck ? most : -most;
 }
 
 /* From the linear limits and from zero. */
@@ -45,9 +50,9 @@ static mhb_reason directly(mhb_newton *newton, mhb_residual *b, double omega, do
                            double *x, int *iterations) {
   mhb_reason reason   = MHB_MAX_ITERATIONS;
   double     n0       = b->at.n0;
-  int        order[2] = {n0 > 0, n0 <= 0}; /* the likelier limit first */
-  for (int i = 0; i < 2; i++) {
-    if (mhb_residual_linear(b, omega, order[i], x) != SHB_OK) continue;
+  int        order[3] = {n0 > 0, n0 <= 0, MHB_BY_PRELOAD}; /* the likelier limit first */
+  for (int i = b->n_interfaces > 1 ? -1 : 0; i < 2; i++) {
+    if (mhb_residual_linear(b, omega, order[i < 0 ? 2 : i], x) != SHB_OK) continue;
     reason = mhb_newton_solve(newton, b, omega, tolerance, x, iterations);
     if (reason == MHB_CONVERGED) return reason;
   }
@@ -62,7 +67,9 @@ static mhb_reason solve_here(mhb_newton *newton, mhb_residual *b, double omega, 
   for (int i = 0; i < 2 && reason != MHB_CONVERGED; i++) {
     int stuck = b->at.n0 > 0 ? 1 - i : i; /* the likelier limit first */
     if (mhb_residual_linear(b, omega, stuck, x) != SHB_OK) continue;
+    mhb_residual_anchor(b, 1);
     reason = homotopy(newton, b, omega, tolerance, far_preload(b, x, stuck), x);
+    mhb_residual_anchor(b, 0);
   }
   return reason;
 }
@@ -106,10 +113,12 @@ static mhb_reason by_preload(mhb_newton *newton, mhb_residual *b, double omega, 
   for (int stuck = 1; stuck >= 0 && reason != MHB_CONVERGED; stuck--) {
     if (mhb_residual_linear(b, omega, stuck, x) != SHB_OK) continue;
     double from = far_preload(b, x, stuck);
+    mhb_residual_anchor(b, 1);
     mhb_residual_follow(b, MHB_IN_N0);
     int found = follow_to(b, from, n0, x);
     mhb_residual_follow(b, MHB_IN_FREQUENCY);
     mhb_residual_preload(b, n0);
+    mhb_residual_anchor(b, 0);
     if (found) reason = mhb_newton_solve(newton, b, omega, tolerance, x, iterations);
   }
   return reason;

@@ -6,6 +6,7 @@
 shb_status mhb_response_merge(mhb_response *response, mhb_response *other) {
   SHB_CHECK(response->n_pairs == other->n_pairs && response->n_probes == other->n_probes &&
                 response->subharmonics == other->subharmonics &&
+                response->n_interfaces == other->n_interfaces &&
                 response->parameter == other->parameter,
             SHB_ERR_INPUT,
             "%d pairs, %d probes, subharmonics %d do not go with %d, %d, %d; make both files from "

@@ -17,6 +17,8 @@ typedef struct {
   double n0;        /* N, of the interface, as all below */
   double scale, mu; /* - */
   double ku[3], kv; /* N/m */
+  int    anchored;  /* the preloads of all interfaces move alike from where this one's is anchor */
+  double anchor;    /* N */
 } mhb_condition;
 
 /* That of the settings, at the low end of the range and the first preload. */

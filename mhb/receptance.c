@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mhb/interfaces.h"
 #include "mhb/lanes.h"
 
 static const double PI = 3.14159265358979323846;
@@ -19,13 +20,40 @@ static void shroud_axes(double psi, double phi, double T0[3][3]) {
   memcpy(T0, T, sizeof T);
 }
 
-/* Axes of each pair: from its own normal where the file has one, else psi and phi of the case (0 if not given). */
-static shb_status set_axes(mhb_receptance *r, const mhb_settings *s) {
+/* Angles of an interface as the case has them; 0 if not given. */
+typedef struct {
+  bool        has_psi, has_phi;
+  double      psi, phi;
+  const char *name; /* NULL: the only one */
+} angles;
+
+static angles angles_of(const mhb_settings *s, int interface) {
+  const mhb_interface *own = &s->interface[interface];
+  angles               a   = {s->has_psi, s->has_phi, s->psi, s->phi, NULL};
+  if (s->n_interfaces > 1) a = (angles){own->has_psi, own->has_phi, own->psi, own->phi, own->name};
+  if (!a.has_psi) a.psi = 0;
+  if (!a.has_phi) a.phi = 0;
+  return a;
+}
+
+static shb_status check_angle(const char *name, const char *interface, bool given, double wanted,
+                              double found, double degree) {
+  SHB_CHECK(!given || fabs(remainder(found - wanted, 2 * PI)) * degree <= 1, SHB_ERR_INPUT,
+            "contact.%s is %.2f deg, but the contact faces of the modal file stand at %.2f deg%s%s",
+            name, wanted * degree, found * degree, interface ? ", interface " : "",
+            interface ? interface : "");
+  return SHB_OK;
+}
+
+/* Axes of each pair: from its own normal where the file has one, else psi and phi of the case. */
+static shb_status set_axes(mhb_receptance *r, const mhb_settings *s, int interface) {
   const modal_model *model = r->model;
+  const angles       given = angles_of(s, interface);
   double(*T0)[3][3]        = (double(*)[3][3])r->T0;
   double mean[3]           = {0, 0, 0};
   for (int a = 0; a < model->n_pairs; a++) {
-    double psi = s->has_psi ? s->psi : 0, phi = s->has_phi ? s->phi : 0;
+    if (r->interface[a] != interface) continue;
+    double psi = given.psi, phi = given.phi;
     if (model->normal) {
       const double *v = model->normal + 3 * a;
       psi             = atan2(v[1], v[0]);
@@ -34,23 +62,23 @@ static shb_status set_axes(mhb_receptance *r, const mhb_settings *s) {
     shroud_axes(psi, phi, T0[a]);
     for (int i = 0; i < 3; i++) mean[i] += r->share[a] * T0[a][i][0];
   }
-  r->psi        = atan2(mean[1], mean[0]);
-  r->phi        = -atan2(mean[2], hypot(mean[0], mean[1]));
+  double psi = atan2(mean[1], mean[0]), phi = -atan2(mean[2], hypot(mean[0], mean[1]));
   double degree = 180 / PI;
-  SHB_CHECK(!s->has_psi || fabs(remainder(r->psi - s->psi, 2 * PI)) * degree <= 1, SHB_ERR_INPUT,
-            "contact.psi is %.2f deg, but the contact faces of the modal file stand at %.2f deg",
-            s->psi * degree, r->psi * degree);
-  SHB_CHECK(!s->has_phi || fabs(remainder(r->phi - s->phi, 2 * PI)) * degree <= 1, SHB_ERR_INPUT,
-            "contact.phi is %.2f deg, but the contact faces of the modal file stand at %.2f deg",
-            s->phi * degree, r->phi * degree);
-  return SHB_OK;
+  if (s->n_interfaces < 2 || interface == s->lead) {
+    r->psi = psi;
+    r->phi = phi;
+  }
+  SHB_TRY(check_angle("psi", given.name, given.has_psi, given.psi, psi, degree));
+  return check_angle("phi", given.name, given.has_phi, given.phi, phi, degree);
 }
 
-static void set_shares(mhb_receptance *r) {
+static void set_shares(mhb_receptance *r, int interface) {
   const modal_model *model = r->model;
   double             total = 0;
-  for (int a = 0; a < model->n_pairs; a++) total += model->area ? model->area[a] : 1;
-  for (int a = 0; a < model->n_pairs; a++) r->share[a] = (model->area ? model->area[a] : 1) / total;
+  for (int a = 0; a < model->n_pairs; a++)
+    if (r->interface[a] == interface) total += model->area ? model->area[a] : 1;
+  for (int a = 0; a < model->n_pairs; a++)
+    if (r->interface[a] == interface) r->share[a] = (model->area ? model->area[a] : 1) / total;
 }
 
 /* Row (a, c) of T: the weights of contact dof (side, b, axis) are nonzero for b = a only. */
@@ -151,22 +179,23 @@ static int allocate(mhb_receptance *r) {
   const modal_model *model = r->model;
   size_t             n = (size_t)r->n, m = (size_t)r->n_modes, K = (size_t)r->n_harmonics + 1;
   size_t             q = 3 * (size_t)model->n_probes, pairs = (size_t)model->n_pairs;
-  r->T0      = calloc(9 * pairs, sizeof(double));
-  r->share   = calloc(pairs, sizeof(double));
-  r->B       = calloc(K * n * m, sizeof(double complex));
-  r->F       = calloc(K * m, sizeof(double complex));
-  r->parts   = calloc(K * 2 * (n + 1) * m, sizeof(double));
-  r->scratch = calloc(4 * m, sizeof(double));
-  r->BL      = calloc(n * m, sizeof(double complex));
-  r->lambda  = calloc(K * m, sizeof(double complex));
-  r->driven  = calloc(K, sizeof(int));
-  r->made_at = calloc(K, sizeof(double));
-  r->phase   = calloc(K, sizeof(double complex));
-  r->R       = calloc(K * n * n, sizeof(double complex));
-  r->free    = calloc(K * n, sizeof(double complex));
-  r->unit    = calloc(K * n, sizeof(double complex));
-  int ok     = r->T0 && r->share && r->B && r->F && r->parts && r->scratch && r->BL && r->lambda &&
-           r->driven && r->made_at && r->phase && r->R && r->free && r->unit;
+  r->T0        = calloc(9 * pairs, sizeof(double));
+  r->share     = calloc(pairs, sizeof(double));
+  r->interface = calloc(pairs, sizeof(int));
+  r->B         = calloc(K * n * m, sizeof(double complex));
+  r->F         = calloc(K * m, sizeof(double complex));
+  r->parts     = calloc(K * 2 * (n + 1) * m, sizeof(double));
+  r->scratch   = calloc(4 * m, sizeof(double));
+  r->BL        = calloc(n * m, sizeof(double complex));
+  r->lambda    = calloc(K * m, sizeof(double complex));
+  r->driven    = calloc(K, sizeof(int));
+  r->made_at   = calloc(K, sizeof(double));
+  r->phase     = calloc(K, sizeof(double complex));
+  r->R         = calloc(K * n * n, sizeof(double complex));
+  r->free      = calloc(K * n, sizeof(double complex));
+  r->unit      = calloc(K * n, sizeof(double complex));
+  int ok = r->T0 && r->share && r->interface && r->B && r->F && r->parts && r->scratch && r->BL &&
+           r->lambda && r->driven && r->made_at && r->phase && r->R && r->free && r->unit;
   return ok && room(model->load_residual, K * n, &r->load) &&
          room(model->load_inertia, K * n, &r->load_inertia) &&
          room(model->probe_load_residual, K * q, &r->probe_load) &&
@@ -193,8 +222,11 @@ static shb_status set_blade(mhb_receptance *r, const mhb_settings *settings) {
   const double      *term[MODAL_TERMS] = {
            model->residual_flexibility, model->residual_inertia,
       modal_series_has_fourth(model) ? model->residual_fourth : NULL};
-  set_shares(r);
-  SHB_TRY(set_axes(r, settings));
+  SHB_TRY(mhb_interfaces_match(model, settings, r->interface));
+  for (int i = 0; i < mhb_interfaces(settings); i++) {
+    set_shares(r, i);
+    SHB_TRY(set_axes(r, settings, i));
+  }
   for (int t = 0; t < MODAL_TERMS; t++)
     if (term[t])
       SHB_TRY(mhb_flexibility_create(term[t], nc, r->T0, model->n_pairs, sides, &r->residual[t]));
@@ -244,6 +276,7 @@ void mhb_receptance_destroy(mhb_receptance *r) {
   if (!r) return;
   free(r->T0);
   free(r->share);
+  free(r->interface);
   free(r->B);
   free(r->F);
   free(r->load);

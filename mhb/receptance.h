@@ -22,12 +22,13 @@
 typedef struct {
   const modal_model *model;
   int                n, n_modes, n_harmonics, nu; /* n = 3 pairs; harmonics 0..n_harmonics */
-  double            *T0;       /* [pair][3][3], columns v, u, w in (tangential, axial, radial) */
-  double             psi, phi; /* rad, mean over the pairs */
-  double            *share;    /* [pair] area share, sums to 1 */
-  double complex    *B;        /* [k][n][modes] */
-  double             scale;    /* of the excitation */
-  double complex    *F;        /* [k][modes] modal force at scale 1, as all loads below */
+  double            *T0;        /* [pair][3][3], columns v, u, w in (tangential, axial, radial) */
+  double             psi, phi;  /* rad, mean over the pairs (of the interface that leads) */
+  double            *share;     /* [pair] area share, sums to 1 over each interface */
+  int               *interface; /* [pair] in the order of the settings */
+  double complex    *B;         /* [k][n][modes] */
+  double             scale;     /* of the excitation */
+  double complex    *F;         /* [k][modes] modal force at scale 1, as all loads below */
   double            *parts; /* [k][2 (re, im)][n + 1][modes] B, then F: for the loops over modes */
   double            *scratch;               /* [4][modes] */
   double complex    *BL;                    /* [n][modes] B L of one harmonic */

@@ -38,9 +38,11 @@ shb_status mhb_record(mhb_response *response, int index, mhb_residual *b,
                       const mhb_path_point *point, int special, double seconds) {
   int at;
   SHB_TRY(mhb_response_point(response, index, &at));
-  mhb_branch *branch       = &response->branch[index];
-  branch->frequency[at]    = b->at.omega / (2 * PI);
-  branch->n0[at]           = b->at.n0;
+  mhb_branch *branch    = &response->branch[index];
+  branch->frequency[at] = b->at.omega / (2 * PI);
+  branch->n0[at]        = b->at.n0;
+  for (int i = 0; i < response->n_interfaces; i++)
+    branch->interface_n0[at * response->n_interfaces + i] = b->own[i].n0;
   branch->value[at]        = mhb_parameter_shown(b->parameter, point->value);
   branch->special[at]      = special;
   branch->stable[at]       = -1; /* until the branch is judged */

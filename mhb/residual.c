@@ -26,8 +26,11 @@ static shb_status create_contacts(mhb_residual *b) {
 
 static void set_laws(mhb_residual *b) {
   b->n_laws++;
+  for (int i = 0; i < b->n_interfaces; i++)
+    b->own[i] = mhb_interface_condition(&b->at, b->settings, i);
   for (int a = 0; a < b->n_pairs; a++) {
-    b->law[a]       = mhb_condition_law(&b->at, b->settings->preload, b->receptance->share[a]);
+    const mhb_condition *own = &b->own[b->receptance->interface[a]];
+    b->law[a]       = mhb_condition_law(own, b->settings->preload, b->receptance->share[a]);
     b->linear_dp[a] = -1;
   }
 }
@@ -48,13 +51,14 @@ shb_status mhb_residual_create_on(mhb_receptance *receptance, const mhb_settings
                                   mhb_residual **out) {
   mhb_residual *b = calloc(1, sizeof *b);
   SHB_CHECK(b, SHB_ERR_IO, "out of memory");
-  int m         = settings->harmonics;
-  b->settings   = settings;
-  b->receptance = receptance;
-  b->m          = m;
-  b->n_pairs    = receptance->model->n_pairs;
-  b->nb         = mhb_real_size(m);
-  b->n          = 3 * b->n_pairs * b->nb;
+  int m           = settings->harmonics;
+  b->settings     = settings;
+  b->receptance   = receptance;
+  b->m            = m;
+  b->n_pairs      = receptance->model->n_pairs;
+  b->n_interfaces = mhb_interfaces(settings);
+  b->nb           = mhb_real_size(m);
+  b->n            = 3 * b->n_pairs * b->nb;
   size_t pairs = (size_t)b->n_pairs, block = 3 * (size_t)b->nb;
   b->law            = calloc(pairs, sizeof *b->law);
   b->info           = calloc(pairs, sizeof *b->info);
@@ -106,6 +110,11 @@ void mhb_residual_condition(mhb_residual *b, const mhb_condition *condition) {
 void mhb_residual_preload(mhb_residual *b, double n0) {
   b->at.n0 = n0;
   set_laws(b);
+}
+
+void mhb_residual_anchor(mhb_residual *b, int anchored) {
+  b->at.anchored = anchored;
+  b->at.anchor   = b->at.n0;
 }
 
 void mhb_residual_follow(mhb_residual *b, mhb_parameter parameter) {
@@ -303,9 +312,12 @@ static void slope_of(mhb_residual *b, int k, int rest) {
 static void force_by_parameter(mhb_residual *b, const double *x) {
   size_t block = 3 * (size_t)b->nb;
   for (int a = 0; a < b->n_pairs; a++) {
-    size_t at = (size_t)a * block;
-    mhb_parameter_force(&b->at, b->parameter, &b->law[a], b->receptance->share[a], b->nb, x + at,
-                        b->p + at, b->dp + at * block, b->by_parameter + at);
+    size_t at   = (size_t)a * block;
+    int    i    = b->receptance->interface[a];
+    double rate = mhb_interface_rate(&b->at, b->settings, i, b->parameter);
+    mhb_parameter_force(&b->own[i], b->parameter, &b->law[a], b->receptance->share[a], b->nb,
+                        x + at, b->p + at, b->dp + at * block, b->by_parameter + at);
+    for (size_t j = at; j < at + block && rate != 1; j++) b->by_parameter[j] *= rate;
   }
 }
 
@@ -341,6 +353,10 @@ void mhb_residual_evaluate(mhb_residual *b, const double *x, double value, doubl
   for (int pair = 0; jacobian && pair < b->n_pairs; pair++) assemble_columns(b, pair, jacobian);
 }
 
+static int holds(const mhb_residual *b, int pair, int stuck) {
+  return stuck == MHB_BY_PRELOAD ? b->law[pair].n0 > 0 : stuck;
+}
+
 /* Stuck: (I + R_k S) u_k = free_k - R_k s0, S = diag(kv, Ku), s0 the unbalanced preload at k = 0. The mean friction is
  * zero there (stuck.h: the smallest admissible one), so that S_0 = diag(kv, 0). */
 static shb_status linear_harmonic(const mhb_residual *b, int k, int stuck, double complex *u) {
@@ -353,12 +369,13 @@ static shb_status linear_harmonic(const mhb_residual *b, int k, int stuck, doubl
   for (int i = 0; A && ipiv && i < n; i++) {
     for (int pair = 0; pair < b->n_pairs; pair++) {
       const mhb_law        *law  = &b->law[pair];
+      double                on   = holds(b, pair, stuck);
       const double complex *r    = R + (size_t)i * (size_t)n + 3 * pair;
       double complex        s[3] = {r[0] * law->kv, k ? r[1] * law->ku[0] + r[2] * law->ku[1] : 0,
                              k ? r[1] * law->ku[1] + r[2] * law->ku[2] : 0};
       for (int c = 0; c < 3; c++)
-        A[(size_t)(3 * pair + c) * (size_t)n + (size_t)i] = s[c] + (i == 3 * pair + c);
-      if (k == 0) u[i] -= r[0] * (fmax(law->n0, 0) - law->balance);
+        A[(size_t)(3 * pair + c) * (size_t)n + (size_t)i] = on * s[c] + (i == 3 * pair + c);
+      if (k == 0 && on > 0) u[i] -= r[0] * (fmax(law->n0, 0) - law->balance);
     }
   }
   lapack_int bad = 1;
@@ -377,6 +394,7 @@ shb_status mhb_residual_linear(mhb_residual *b, double value, int stuck, double 
     store(b, x, k, b->uk);
     for (int i = 0; i < 3 * b->n_pairs; i++) b->pk[i] = 0;
     for (int a = 0; stuck && a < b->n_pairs; a++) {
+      if (!holds(b, a, stuck)) continue;
       const mhb_law        *law = &b->law[a];
       const double complex *u   = b->uk + 3 * a;
       b->pk[3 * a]              = law->kv * u[0] + (k == 0 ? fmax(law->n0, 0) - law->balance : 0);

@@ -6,7 +6,7 @@
 #define MHB_RESIDUAL_H
 
 #include "mhb/contact.h"
-#include "mhb/parameter.h"
+#include "mhb/interfaces.h"
 #include "mhb/receptance.h"
 #include "mhb/settings.h"
 
@@ -17,6 +17,8 @@ typedef enum {
   MHB_PAIR_HELD,   /* the same, but that the mean friction depends on all of u */
   MHB_PAIR_OPEN    /* dp/du = 0 */
 } mhb_pair_kind;
+
+enum { MHB_BY_PRELOAD = 2 };
 
 typedef struct {
   const mhb_settings *settings;
@@ -32,10 +34,12 @@ typedef struct {
   mhb_condition       at;                /* of the last evaluation */
   double             *p;                 /* [n] force in real form, as x */
   double             *dp;                /* [pair][3 nb][3 nb] */
-  int                *linear_dp;    /* [pair] kind whose derivative dp holds, -1: another one */
-  mhb_pair_kind      *kind;         /* [pair] of the last evaluation with derivatives */
-  int                 n_laws;       /* counts changes of law */
-  double complex     *pk, *uk;      /* [3 pairs] one harmonic */
+  int                *linear_dp; /* [pair] kind whose derivative dp holds, -1: another one */
+  mhb_pair_kind      *kind;      /* [pair] of the last evaluation with derivatives */
+  int                 n_interfaces;
+  mhb_condition       own[MHB_MAX_INTERFACES]; /* of each, for the laws */
+  int                 n_laws;                  /* counts changes of law */
+  double complex     *pk, *uk;                 /* [3 pairs] one harmonic */
   double             *by_parameter; /* [n] dp/dparameter, of the last evaluation with slope */
 } mhb_residual;
 
@@ -50,7 +54,7 @@ void       mhb_residual_destroy(mhb_residual *residual);
 /* Everything that evaluations do not set by `value`. */
 void mhb_residual_condition(mhb_residual *residual, const mhb_condition *condition);
 
-/* Preload of the interface, N: shared out to the pairs. */
+/* Preload of the (leading) interface, N: shared out to the pairs. */
 void mhb_residual_preload(mhb_residual *residual, double n0);
 
 /* From here on `value` is that of the parameter: rad/s for the frequency (as after creation), else as in the case. */
@@ -81,7 +85,11 @@ void mhb_residual_combine(const mhb_residual *residual, const double complex R[3
 void mhb_residual_evaluate(mhb_residual *residual, const double *x, double value, double *r,
                            double *jacobian, double *slope);
 
-/* Linear limits at a value: harmonics of the relative motion with the contact open everywhere, or stuck everywhere. */
+/* From here on the preloads of all interfaces move with it alike, or no longer. */
+void mhb_residual_anchor(mhb_residual *residual, int anchored);
+
+/* Linear limits at a value: harmonics of the relative motion with the contact open everywhere, or stuck everywhere; or each pair
+ * as its preload says (stuck: MHB_BY_PRELOAD). */
 shb_status mhb_residual_linear(mhb_residual *residual, double value, int stuck, double *x);
 
 /* Forces of the last evaluation as complex harmonic k of all pairs. */

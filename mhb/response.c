@@ -31,12 +31,33 @@ void mhb_response_destroy(mhb_response *response) {
   if (!response) return;
   for (int i = 0; i < response->n_branches; i++) free_branch(&response->branch[i]);
   for (int i = 0; i < response->n_probes; i++) free(response->probe_name[i]);
+  for (int i = 0; response->interface_name && i < response->n_interfaces; i++)
+    free(response->interface_name[i]);
+  free(response->interface_name);
+  free(response->interface);
   free(response->branch);
   free(response->probe_name);
   free(response->mode_frequency);
   free(response->mode_damping);
   free(response->mode_residual);
   free(response);
+}
+
+shb_status mhb_response_interfaces(mhb_response *response, int n, char *const *name,
+                                   const int *interface, int lead) {
+  const size_t pairs       = (size_t)response->n_pairs;
+  response->interface_name = calloc((size_t)n, sizeof *response->interface_name);
+  response->interface      = malloc(pairs * sizeof *response->interface + 1);
+  response->lead           = lead;
+  SHB_CHECK(response->interface_name && response->interface, SHB_ERR_IO,
+            "no memory for %d interfaces", n);
+  memcpy(response->interface, interface, pairs * sizeof *interface);
+  for (response->n_interfaces = 0; response->n_interfaces < n; response->n_interfaces++) {
+    char *copy = strdup(name[response->n_interfaces]);
+    SHB_CHECK(copy, SHB_ERR_IO, "no memory for %d interfaces", n);
+    response->interface_name[response->n_interfaces] = copy;
+  }
+  return SHB_OK;
 }
 
 shb_status mhb_response_reserve(mhb_response *response, int n) {

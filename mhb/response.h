@@ -49,9 +49,10 @@ typedef struct {
   char   *reason;   /* how the branch ended: "end of range", or why not */
   bool    complete; /* the range was covered */
   int     n_points, capacity;
-  double *frequency; /* [point] Hz, of the excitation's first harmonic */
-  double *n0;        /* [point] N, total of the interface */
-  double *value;     /* [point] of the parameter that is followed; Hz for the frequency */
+  double *frequency;    /* [point] Hz, of the excitation's first harmonic */
+  double *n0;           /* [point] N, total of the interface, of several: of the one that leads */
+  double *interface_n0; /* [point][n_interfaces] N */
+  double *value;        /* [point] of the parameter that is followed; Hz for the frequency */
   double complex *motion, *force, *probe;
   int            *stable; /* [point] 1 stable, 0 unstable, -1 not known */
   int *special; /* [point] MHB_ORDINARY ...; peak: of any probe or contact motion, first harmonic */
@@ -81,9 +82,13 @@ typedef struct {
   int           n_pairs, n_probes, n_harmonics, subharmonics, n_branches, capacity;
   char        **probe_name;
   mhb_branch   *branch;
-  mhb_parameter parameter;     /* what is followed */
-  int           n_multipliers; /* kept a point; 0: none, set before the first point */
-  int           n_lines;       /* of spectra of integrated points; 0: none, set likewise */
+  mhb_parameter parameter;      /* what is followed */
+  int           n_multipliers;  /* kept a point; 0: none, set before the first point */
+  int           n_interfaces;   /* 0: one, without a name; set before the first point */
+  int           lead;           /* whose parameter is followed */
+  char        **interface_name; /* [n_interfaces] */
+  int          *interface;      /* [pair] which one; NULL without */
+  int           n_lines;        /* of spectra of integrated points; 0: none, set likewise */
   /* copied from the modal model for the report */
   int     n_modes;
   double *mode_frequency, *mode_damping, *mode_residual; /* [m]; mode_residual may be NULL */
@@ -93,6 +98,10 @@ typedef struct {
 
 mhb_response *mhb_response_create(int n_pairs, int n_probes, int n_harmonics); /* NULL: no memory */
 void          mhb_response_destroy(mhb_response *response);
+
+/* Takes over names and places of n >= 2 interfaces: name[n], interface[pair] are copied. SHB_ERR_IO. */
+shb_status mhb_response_interfaces(mhb_response *response, int n, char *const *name,
+                                   const int *interface, int lead);
 
 /* Room for n more branches: until it is used up, branches keep their place in memory. */
 shb_status mhb_response_reserve(mhb_response *response, int n);

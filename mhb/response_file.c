@@ -31,6 +31,8 @@ static const char *scale_of(char letter) {
       return "/multiplier";
     case 'l':
       return "/line";
+    case 'i':
+      return "/interface_name";
     case '3':
       return "/shroud_axis";
     case 'x':
@@ -52,6 +54,16 @@ static shb_status write_probe_names(hid_t file, const mhb_response *response) {
   return status;
 }
 
+static shb_status write_interfaces(hid_t file, const mhb_response *response) {
+  if (response->n_interfaces < 2) return SHB_OK;
+  SHB_TRY(h5_write_strings(file, "/interface_name", response->n_interfaces,
+                           (const char *const *)response->interface_name, "contact interface"));
+  SHB_TRY(h5_write_int(file, "/interface", H5_SHAPE((hsize_t)response->n_pairs),
+                       response->interface, "-", "contact interface of each pair, from 0"));
+  return h5_write_attribute_text(file, "/", "followed_interface",
+                                 response->interface_name[response->lead]);
+}
+
 static shb_status write_scales(hid_t file, const mhb_response *response) {
   static const char *const shroud[] = {"v", "u", "w"}, *const state[] = {"stuck", "slip", "open"},
                            *const axis[] = {"tangential", "axial", "radial"};
@@ -69,6 +81,7 @@ static shb_status write_scales(hid_t file, const mhb_response *response) {
   if (response->n_lines > 0)
     SHB_TRY(h5_write_counter(file, "/line", (hsize_t)response->n_lines,
                              "spectral line, largest first"));
+  SHB_TRY(write_interfaces(file, response));
   return write_probe_names(file, response);
 }
 
@@ -233,6 +246,25 @@ static shb_status read_parameter(hid_t file, const char *path, mhb_parameter *pa
   return SHB_OK;
 }
 
+/* Files of one interface have none of these. */
+static shb_status read_interfaces(hid_t file, const char *path, mhb_response *response) {
+  h5_shape pairs = H5_SHAPE((hsize_t)response->n_pairs);
+  char    *lead  = NULL;
+  if (!h5_exists(file, "/interface_name")) return SHB_OK;
+  SHB_TRY(
+      h5_read_strings(file, "/interface_name", &response->n_interfaces, &response->interface_name));
+  SHB_TRY(h5_read_int(file, "/interface", &pairs, &response->interface));
+  for (int i = 0; i < response->n_pairs; i++)
+    SHB_CHECK(response->interface[i] >= 0 && response->interface[i] < response->n_interfaces,
+              SHB_ERR_INPUT, "%s: /interface: value %d (from 0) is %d; 0 to %d are wanted", path, i,
+              response->interface[i], response->n_interfaces - 1);
+  SHB_TRY(h5_read_attribute_text(file, "/", "followed_interface", &lead));
+  for (int i = 0; i < response->n_interfaces; i++)
+    if (lead && strcmp(lead, response->interface_name[i]) == 0) response->lead = i;
+  free(lead);
+  return SHB_OK;
+}
+
 static shb_status read_root(hid_t file, const char *path, mhb_response **out) {
   int    n_pairs = 0, n_harmonics = 0, n_probes = 0;
   char **name = NULL;
@@ -253,6 +285,7 @@ static shb_status read_root(hid_t file, const char *path, mhb_response **out) {
   SHB_TRY(read_parameter(file, path, &response->parameter));
   SHB_TRY(read_count(file, path, "/multiplier", &response->n_multipliers));
   SHB_TRY(read_count(file, path, "/line", &response->n_lines));
+  SHB_TRY(read_interfaces(file, path, response));
   return read_modes(file, response);
 }
 

@@ -20,7 +20,22 @@ typedef enum {
   MHB_N_PARAMETERS
 } mhb_parameter;
 
-enum { MHB_MAX_PRELOADS = 256, MHB_MAX_SEARCH_AT = 64, MHB_MAX_SEARCH_ORDERS = 8 };
+enum {
+  MHB_MAX_INTERFACES    = 8,
+  MHB_NAME              = 64,
+  MHB_MAX_PRELOADS      = 256,
+  MHB_MAX_SEARCH_AT     = 64,
+  MHB_MAX_SEARCH_ORDERS = 8
+};
+
+/* One of several contact interfaces; totals of it. */
+typedef struct {
+  char   name[MHB_NAME];
+  bool   has_psi, has_phi;
+  double psi, phi, mu, kv, ku[3];
+  int    n_preloads; /* as many as the leading one's, or 1 */
+  double n0[MHB_MAX_PRELOADS];
+} mhb_interface;
 
 /* Branches that nothing leads to, looked for beside each main one. */
 typedef struct {
@@ -31,15 +46,19 @@ typedef struct {
 } mhb_search_settings;
 
 typedef struct {
-  bool                to_ground;
-  int                 engine_order, blades; /* inter-blade phase 2 pi E/N, eq. 16 */
-  bool                has_psi, has_phi; /* given in the case; else from the modal file's normals */
-  double              psi, phi;         /* rad */
-  double              mu, kv;           /* -, N/m: totals of the interface */
-  double              ku[3];            /* kuu, kuw, kww, N/m */
-  mhb_preload         preload;
-  int                 n_preloads;
-  double              n0[MHB_MAX_PRELOADS]; /* N */
+  bool        to_ground;
+  int         engine_order, blades; /* inter-blade phase 2 pi E/N, eq. 16 */
+  bool        has_psi, has_phi;     /* given in the case; else from the modal file's normals */
+  double      psi, phi;             /* rad */
+  double      mu, kv;               /* -, N/m: totals of the interface */
+  double      ku[3];                /* kuu, kuw, kww, N/m */
+  mhb_preload preload;
+  int         n_preloads;
+  double      n0[MHB_MAX_PRELOADS]; /* N */
+  int         n_interfaces;         /* 0, 1: the parameters above are all */
+  int         lead; /* else they are those of this one, which a curve follows (mhb/interfaces.h) */
+  bool        together; /* what is followed the others have in proportion, else they keep theirs */
+  mhb_interface       interface[MHB_MAX_INTERFACES];
   double              frequency[2]; /* Hz, first < second; equal where another is followed */
   mhb_parameter       parameter;    /* what is followed; in its unit from range[0] to range[1], */
   double              range[2];     /* not used for the frequency */

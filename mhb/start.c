@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "mhb/integrate.h"
+#include "mhb/interfaces.h"
 
 static const double PI = 3.14159265358979323846;
 
@@ -64,16 +65,15 @@ static void settle(mhb_integrator *g) {
 }
 
 static void set_laws(mhb_integrator *g, double n0) {
-  const mhb_settings *s = &g->settings;
-  g->n0                 = n0;
-  g->scale              = 0;
+  const mhb_settings *s  = &g->settings;
+  mhb_condition       at = mhb_condition_of(s);
+  at.n0 = g->n0 = n0;
+  g->scale      = 0;
   for (int a = 0; a < g->pairs; a++) {
-    double  share = g->receptance->share[a];
-    mhb_law law   = {.mu = s->mu, .kv = share * s->kv, .n0 = share * n0};
-    for (int i = 0; i < 3; i++) law.ku[i] = share * s->ku[i];
-    if (s->preload == MHB_EQUILIBRIUM) law.balance = fmax(law.n0, 0);
-    g->law[a] = mhb_rub_law(&law);
-    g->scale  = fmax(g->scale, fabs(law.n0));
+    mhb_condition own = mhb_interface_condition(&at, s, g->receptance->interface[a]);
+    mhb_law       law = mhb_condition_law(&own, s->preload, g->receptance->share[a]);
+    g->law[a]         = mhb_rub_law(&law);
+    g->scale          = fmax(g->scale, fabs(law.n0));
   }
 }
 

@@ -85,6 +85,21 @@ static bool looking(mhb_monitor *monitor, int branch, double value, double share
   return !shb_interrupted() && s->status == SHB_OK;
 }
 
+/* In the order of the case. */
+static shb_status describe_interfaces(mhb_response *response, const modal_model *model,
+                                      const mhb_settings *settings) {
+  const int n = settings->n_interfaces;
+  char     *name[MHB_MAX_INTERFACES];
+  int      *interface = malloc((size_t)model->n_pairs * sizeof *interface + 1);
+  SHB_CHECK(interface, SHB_ERR_IO, "out of memory");
+  for (int i = 0; i < n; i++) name[i] = (char *)settings->interface[i].name;
+  shb_status status = mhb_interfaces_match(model, settings, interface);
+  if (status == SHB_OK)
+    status = mhb_response_interfaces(response, n, name, interface, settings->lead);
+  free(interface);
+  return status;
+}
+
 shb_status mhb_sweep_describe(mhb_response *response, const modal_model *model,
                               const mhb_settings *settings) {
   size_t m                 = (size_t)model->n_modes;
@@ -104,6 +119,7 @@ shb_status mhb_sweep_describe(mhb_response *response, const modal_model *model,
     SHB_CHECK(response->mode_residual, SHB_ERR_IO, "out of memory");
     memcpy(response->mode_residual, model->mode_residual, sizeof(double) * m);
   }
+  if (settings->n_interfaces > 1) SHB_TRY(describe_interfaces(response, model, settings));
   for (int q = 0; q < model->n_probes; q++) {
     free(response->probe_name[q]);
     response->probe_name[q] = strdup(model->probe_name[q]);

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mhb/interfaces.h"
 #include "mhb/orbit.h"
 #include "mhb/parameter.h"
 #include "mhb/spectrum.h"
@@ -249,15 +250,23 @@ static shb_status run_cell(const witness *w, mhb_integrator *g, mhb_orbit *orbit
 
 /* ---- the response ---- */
 
-static shb_status put_cell(mhb_response *response, const cell *c) {
+static void record_preloads(const witness *w, int n, mhb_branch *b, int at, double n0) {
+  mhb_condition c = mhb_condition_of(w->settings);
+  c.n0            = n0;
+  for (int i = 0; i < n; i++)
+    b->interface_n0[at * n + i] = mhb_interface_condition(&c, w->settings, i).n0;
+}
+
+static shb_status put_cell(const witness *w, mhb_response *response, const cell *c) {
   int    at, K = response->n_harmonics + 1;
   size_t n3 = 3 * (size_t)response->n_pairs * (size_t)K,
          q  = 3 * (size_t)response->n_probes * (size_t)K;
   SHB_TRY(mhb_response_point(response, c->branch, &at));
-  mhb_branch *b           = &response->branch[c->branch];
-  size_t      pairs       = (size_t)response->n_pairs;
-  b->frequency[at]        = c->hz;
-  b->n0[at]               = c->n0;
+  mhb_branch *b     = &response->branch[c->branch];
+  size_t      pairs = (size_t)response->n_pairs;
+  b->frequency[at]  = c->hz;
+  b->n0[at]         = c->n0;
+  record_preloads(w, response->n_interfaces, b, at, c->n0);
   b->value[at]            = c->hz;
   b->stable[at]           = c->multiple ? 1 : -1;
   b->seconds[at]          = c->seconds;
@@ -300,7 +309,7 @@ static shb_status fill(const witness *w, mhb_response *response) {
   }
   for (int i = 0; i < w->n; i++) {
     if (w->cells[i].done > 0) {
-      SHB_TRY(put_cell(response, &w->cells[i]));
+      SHB_TRY(put_cell(w, response, &w->cells[i]));
     } else {
       response->branch[w->cells[i].branch].complete = false;
     }

@@ -104,6 +104,16 @@ static shb_status write_entry(hid_t at, const modal_model *model, const entry *e
   return SHB_OK;
 }
 
+/* One interface needs no name. */
+static shb_status write_interfaces(hid_t at, const modal_model *model) {
+  if (model->n_interfaces < 2) return SHB_OK;
+  SHB_TRY(h5_write_strings(at, "contact/interface_name", model->n_interfaces,
+                           (const char *const *)model->interface_name, "contact interface"));
+  SHB_TRY(h5_write_int(at, "contact/interface", H5_SHAPE((hsize_t)model->n_pairs), model->interface,
+                       "-", "contact interface of the pair, from 0"));
+  return h5_attach_scale(at, "contact/interface", 0, "contact/pair");
+}
+
 shb_status modal_model_write_at(hid_t at, const modal_model *model) {
   const bool  probes  = model->n_probes > 0;
   const entry table[] = {
@@ -151,7 +161,7 @@ shb_status modal_model_write_at(hid_t at, const modal_model *model) {
   SHB_TRY(write_scales(at, model));
   for (size_t i = 0; i < sizeof table / sizeof *table; i++)
     SHB_TRY(write_entry(at, model, &table[i]));
-  return SHB_OK;
+  return write_interfaces(at, model);
 }
 
 shb_status modal_model_write(hid_t file, const modal_model *model,
@@ -262,6 +272,21 @@ static shb_status read_contact(hid_t at, const char *path, modal_model *model) {
   return check_patches(path, model);
 }
 
+/* Several interfaces: which one each pair belongs to. */
+static shb_status read_interfaces(hid_t at, const char *path, modal_model *model) {
+  h5_shape pairs = H5_SHAPE((hsize_t)model->n_pairs);
+  if (!h5_exists(at, "contact/interface")) return SHB_OK;
+  SHB_TRY(
+      h5_read_strings(at, "contact/interface_name", &model->n_interfaces, &model->interface_name));
+  SHB_TRY(h5_read_int(at, "contact/interface", &pairs, &model->interface));
+  for (int i = 0; i < model->n_pairs; i++)
+    SHB_CHECK(model->interface[i] >= 0 && model->interface[i] < model->n_interfaces, SHB_ERR_INPUT,
+              "%s: /contact/interface: value %d (from 0) is %d; 0 to %d are wanted, as "
+              "/contact/interface_name has names",
+              path, i, model->interface[i], model->n_interfaces - 1);
+  return SHB_OK;
+}
+
 static shb_status read_load(hid_t at, const char *path, modal_model *model) {
   h5_shape shape = H5_SHAPE(0, (hsize_t)model->n_modes);
   SHB_TRY(h5_read_complex(at, "load/modal_force", &shape, &model->modal_force));
@@ -300,6 +325,7 @@ static shb_status read_probes(hid_t at, modal_model *model) {
 shb_status modal_model_read_at(hid_t at, const char *path, modal_model *model) {
   SHB_TRY(read_modes(at, path, model));
   SHB_TRY(read_contact(at, path, model));
+  SHB_TRY(read_interfaces(at, path, model));
   SHB_TRY(read_load(at, path, model));
   return read_probes(at, model);
 }
@@ -322,7 +348,11 @@ shb_status modal_model_read(const char *path, modal_model *model) {
 void modal_model_free(modal_model *model) {
   if (!model) return;
   for (int i = 0; model->probe_name && i < model->n_probes; i++) free(model->probe_name[i]);
-  void *part[] = {model->frequency,
+  for (int i = 0; model->interface_name && i < model->n_interfaces; i++)
+    free(model->interface_name[i]);
+  void *part[] = {model->interface_name,
+                  model->interface,
+                  model->frequency,
                   model->damping_ratio,
                   model->right,
                   model->left,

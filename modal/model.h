@@ -15,6 +15,9 @@
 
 typedef struct {
   int     n_modes, n_pairs, n_probes, n_load; /* n_load = K: load harmonics 0..K */
+  int     n_interfaces;                       /* 0: one, without a name */
+  char  **interface_name;                     /* [n_interfaces] */
+  int    *interface;                          /* [pair] which one; NULL without */
   bool    has_left;                           /* false: contact to ground */
   double *frequency;                          /* [m] Hz */
   double *damping_ratio;                      /* [m] */
