@@ -36,6 +36,8 @@ static shb_status allocate(const modal_condensation *to, int n_modes, modal_mode
   model->residual_flexibility   = calloc(nc * nc, sizeof(double));
   model->residual_inertia       = calloc(nc * nc, sizeof(double));
   model->residual_fourth        = calloc(nc * nc, sizeof(double));
+  model->moment_fourth          = calloc(nc, sizeof(double));
+  model->moment_fifth           = calloc(nc, sizeof(double));
   model->modal_force            = calloc(k * m, sizeof(double complex));
   model->load_residual          = calloc(k * nc, sizeof(double complex));
   model->probe                  = calloc(q3 * m + 1, sizeof(double));
@@ -46,10 +48,10 @@ static shb_status allocate(const modal_condensation *to, int n_modes, modal_mode
   model->probe_load_inertia     = calloc(k * q3 + 1, sizeof(double complex));
   SHB_CHECK(model->frequency && model->damping_ratio && model->mode_residual && model->right &&
                 (model->left || !to->has_left) && model->residual_flexibility &&
-                model->residual_inertia && model->residual_fourth && model->modal_force &&
-                model->load_residual && model->probe && model->probe_contact_residual &&
-                model->probe_load_residual && model->load_inertia && model->probe_contact_inertia &&
-                model->probe_load_inertia,
+                model->residual_inertia && model->residual_fourth && model->moment_fourth &&
+                model->moment_fifth && model->modal_force && model->load_residual && model->probe &&
+                model->probe_contact_residual && model->probe_load_residual &&
+                model->load_inertia && model->probe_contact_inertia && model->probe_load_inertia,
             SHB_ERR_IO, "out of memory for a modal model of %zu contact dofs", nc);
   return SHB_OK;
 }
@@ -107,6 +109,20 @@ static void put_columns(const workspace *w, const double *sample, int rows, int 
       to[r * columns + (size_t)(first + c)] = sample[r * batch + (size_t)c];
 }
 
+/* moment[first + c] = X_c . Y_c */
+static PetscErrorCode column_products(Mat X, Mat Y, int first, int count, double *moment) {
+  Vec x, y;
+  PetscFunctionBeginUser;
+  for (int c = 0; c < count; c++) {
+    PetscCall(MatDenseGetColumnVecRead(X, c, &x));
+    PetscCall(MatDenseGetColumnVecRead(Y, c, &y));
+    PetscCall(VecDot(x, y, &moment[first + c]));
+    PetscCall(MatDenseRestoreColumnVecRead(Y, c, &y));
+    PetscCall(MatDenseRestoreColumnVecRead(X, c, &x));
+  }
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode contact_batch(workspace *w, int first, int count, modal_model *model) {
   const int nc = w->to->contact.n, q3 = w->to->probe.n;
   PetscFunctionBeginUser;
@@ -119,6 +135,8 @@ static PetscErrorCode contact_batch(workspace *w, int first, int count, modal_mo
   put_columns(w, w->probe, q3, first, count, model->probe_contact_inertia);
   PetscCall(solve_next(w, w->Y, w->X));
   put_columns(w, w->contact, nc, first, count, model->residual_fourth);
+  PetscCall(column_products(w->Y, w->B, first, count, model->moment_fourth)); /* B = M Y */
+  PetscCall(column_products(w->X, w->B, first, count, model->moment_fifth));
   PetscFunctionReturn(0);
 }
 

@@ -19,7 +19,7 @@ typedef struct {
   modal_damping damping;
 } modal_condensation;
 
-/* Fill model (zeroed before): frequency, damping_ratio, right, left, residual_flexibility, residual_inertia, residual_fourth,
+/* Fill model (zeroed before): frequency, damping_ratio, right, left, residual_flexibility, residual_inertia, residual_fourth, moment_fourth, moment_fifth,
  * modal_force, load_residual, load_inertia, probe, probe_contact_residual, probe_contact_inertia, probe_load_residual,
  * probe_load_inertia, mode_residual. With P = I - phi phi^T M, b a column of the contact dofs or the load and a one of
  * the contact or probe dofs, the modes left out, which are not damped, answer by
@@ -28,6 +28,7 @@ typedef struct {
  *   inertia  = a^T P K^-1 M P K^-1 b   = a^T [K^-1 M K^-1 - sum phi phi^T / lambda^2] b
  * and, of the contact alone, whose error is what shifts a resonance,
  *   fourth   = a^T P K^-1 M P K^-1 M P K^-1 b
+ * With y = P K^-1 M P K^-1 b and z = P K^-1 M y its moments mu_4 = y^T M y and mu_5 = z^T M y of every contact dof (modal/series.h).
  * Collective; every rank gets the model. Errors: SHB_ERR_IO no memory, solver; SHB_INTERRUPTED. */
 shb_status modal_condense(const fem_system *system, const modal_eigen *eigen,
                           const modal_condensation *to, shb_progress *progress, modal_model *model);

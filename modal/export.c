@@ -85,6 +85,24 @@ static int compare(const void *a, const void *b) {
   return (*p > *q) - (*p < *q);
 }
 
+/* Estimated relative error of each sample, where the model tells. */
+static shb_status write_error(hid_t file, const modal_model *model, int n, int count,
+                              const double *frequency, const double complex *value) {
+  double *error = malloc((size_t)count * sizeof *error);
+  SHB_CHECK(error, SHB_ERR_IO, "out of memory for the receptance");
+  for (int f = 0; f < count; f++)
+    error[f] = modal_receptance_error(model, 6.28318530717958647692 * frequency[f],
+                                      value + (size_t)f * (size_t)n * (size_t)n);
+  shb_status status = SHB_OK;
+  if (error[0] >= 0)
+    status = h5_write_double(file, "receptance/error", H5_SHAPE((hsize_t)count), error, "-",
+                             "estimated relative error of the contact receptance");
+  if (status == SHB_OK && error[0] >= 0)
+    status = h5_attach_scale(file, "receptance/error", 0, "receptance/frequency");
+  free(error);
+  return status;
+}
+
 static shb_status write_receptance(hid_t file, const modal_model *model, int n, double *frequency,
                                    double complex *value) {
   const int    m = model->n_modes, count = SAMPLES + m;
@@ -100,6 +118,7 @@ static shb_status write_receptance(hid_t file, const modal_model *model, int n, 
   SHB_TRY(h5_write_complex(file, "receptance/contact",
                            H5_SHAPE((hsize_t)count, (hsize_t)n, (hsize_t)n), value, "m/N",
                            "receptance of the contact dofs, damped, with residual terms"));
+  SHB_TRY(write_error(file, model, n, count, frequency, value));
   SHB_TRY(h5_attach_scale(file, "receptance/contact", 0, "receptance/frequency"));
   SHB_TRY(h5_attach_scale(file, "receptance/contact", 1, "contact/dof"));
   return h5_attach_scale(file, "receptance/contact", 2, "contact/dof");

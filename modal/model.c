@@ -134,6 +134,11 @@ shb_status modal_model_write_at(hid_t at, const modal_model *model) {
       {"contact/residual_fourth", "cc", "m s^4/N",
        "coefficient of omega^4 in the receptance of the modes left out", false,
        model->residual_fourth},
+      {"contact/moment_fourth", "c", "m s^6/N",
+       "sum of phi^2/omega^8 over the modes left out: estimates what the residual terms miss",
+       false, model->moment_fourth},
+      {"contact/moment_fifth", "c", "m s^8/N", "the same of phi^2/omega^10", false,
+       model->moment_fifth},
       {"contact/normal", "p3", "-", "unit normal v of the right face, cylindrical axes", false,
        model->normal},
       {"contact/area", "p", "m^2", "area of the contact patch", false, model->area},
@@ -235,6 +240,18 @@ static shb_status read_symmetric(hid_t at, const char *path, const char *dataset
   return check_symmetric(path, dataset, *matrix, n);
 }
 
+static shb_status read_moment(hid_t at, const char *path, const char *dataset, int n,
+                              double **moment) {
+  if (!h5_exists(at, dataset)) return SHB_OK;
+  h5_shape shape = H5_SHAPE((hsize_t)n);
+  SHB_TRY(h5_read_double(at, dataset, &shape, moment));
+  for (int i = 0; i < n; i++)
+    SHB_CHECK((*moment)[i] >= 0, SHB_ERR_INPUT,
+              "%s: /%s: value %d (from 0) is %g; a sum of squares is wanted", path, dataset, i,
+              (*moment)[i]);
+  return SHB_OK;
+}
+
 static shb_status check_patches(const char *path, const modal_model *model) {
   for (int i = 0; i < model->n_pairs; i++) {
     SHB_CHECK(!model->area || model->area[i] > 0, SHB_ERR_INPUT,
@@ -264,6 +281,8 @@ static shb_status read_contact(hid_t at, const char *path, modal_model *model) {
       read_symmetric(at, path, "contact/residual_flexibility", n, &model->residual_flexibility));
   SHB_TRY(read_symmetric(at, path, "contact/residual_inertia", n, &model->residual_inertia));
   SHB_TRY(read_symmetric(at, path, "contact/residual_fourth", n, &model->residual_fourth));
+  SHB_TRY(read_moment(at, path, "contact/moment_fourth", n, &model->moment_fourth));
+  SHB_TRY(read_moment(at, path, "contact/moment_fifth", n, &model->moment_fifth));
   h5_shape normals = H5_SHAPE(shape.dim[0], 3), areas = H5_SHAPE(shape.dim[0]);
   if (h5_exists(at, "contact/normal"))
     SHB_TRY(h5_read_double(at, "contact/normal", &normals, &model->normal));
@@ -359,6 +378,8 @@ void modal_model_free(modal_model *model) {
                   model->residual_flexibility,
                   model->residual_inertia,
                   model->residual_fourth,
+                  model->moment_fourth,
+                  model->moment_fifth,
                   model->modal_force,
                   model->load_residual,
                   model->load_inertia,

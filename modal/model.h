@@ -23,9 +23,12 @@ typedef struct {
   double *damping_ratio;                      /* [m] */
   double *right, *left;                       /* [pair][3][m] kg^-1/2 */
   double *residual_flexibility;               /* [n_contact][n_contact] m/N, or NULL */
-  double *residual_inertia;    /* [n_contact][n_contact] m s2/N, or NULL: coefficient of omega^2 */
-  double *residual_fourth;     /* [n_contact][n_contact] m s4/N, or NULL: coefficient of omega^4 */
-  double complex *modal_force; /* [K+1][m] N kg^-1/2 */
+  double *residual_inertia; /* [n_contact][n_contact] m s2/N, or NULL: coefficient of omega^2 */
+  double *residual_fourth;  /* [n_contact][n_contact] m s4/N, or NULL: coefficient of omega^4 */
+  double *moment_fourth,
+      *moment_fifth; /* [n_contact] sums of phi^2/w^8, phi^2/w^10 over the modes left out, m s6/N and m s8/N, or NULL:
+                                           for the estimate of what the residual terms leave out (modal/series.h) */
+  double complex *modal_force;   /* [K+1][m] N kg^-1/2 */
   double complex *load_residual; /* /load/residual_response [K+1][n_contact] m, or NULL */
   double complex *load_inertia;  /* /load/residual_inertia [K+1][n_contact] m s2, or NULL */
   char          **probe_name;    /* [q] */

@@ -1,5 +1,6 @@
 #include "modal/receptance.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "modal/series.h"
@@ -32,4 +33,17 @@ void modal_receptance(const modal_model *model, double omega, double complex *re
       if (series.weight[2] != 0) value += series.weight[2] * model->residual_fourth[at];
       receptance[at] = receptance[(size_t)l * (size_t)n + (size_t)p] = value;
     }
+}
+
+double modal_receptance_error(const modal_model *model, double omega,
+                              const double complex *receptance) {
+  const int n    = 3 * model->n_pairs * (model->has_left ? 2 : 1);
+  double    most = 0, error = 0;
+  for (int p = 0; p < n; p++) {
+    double here = modal_series_error(model, omega, p);
+    if (here < 0) return -1;
+    error = fmax(error, here);
+    most  = fmax(most, cabs(receptance[(size_t)p * (size_t)n + (size_t)p]));
+  }
+  return most > 0 ? error / most : 0;
 }

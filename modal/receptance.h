@@ -11,4 +11,9 @@
  * Source: Chen, Yang, Menq 1999, eqs. 19-20; plus the residual terms R, I, J of the modes left out. */
 void modal_receptance(const modal_model *model, double omega, double complex *receptance);
 
+/* Estimated error of the greatest receptance of a contact dof with itself, relative to it, by the modes left out; -1 if the model does not
+ * hold what it takes (modal_series_error). receptance: as modal_receptance gives it at omega. */
+double modal_receptance_error(const modal_model *model, double omega,
+                              const double complex *receptance);
+
 #endif

@@ -20,6 +20,9 @@ static void drop_residuals(modal_model *model) {
   free(model->residual_flexibility);
   free(model->residual_inertia);
   free(model->residual_fourth);
+  free(model->moment_fourth);
+  free(model->moment_fifth);
+  model->moment_fourth = model->moment_fifth = NULL;
   free(model->load_residual);
   free(model->load_inertia);
   free(model->probe_contact_residual);
@@ -81,6 +84,10 @@ static void add_static(modal_model *model, int mode, const double *phi, const do
   add_outer(model->residual_flexibility, c, phi, c, phi, w2);
   add_outer(model->residual_inertia, c, phi, c, phi, w2 * w2);
   if (model->residual_fourth) add_outer(model->residual_fourth, c, phi, c, phi, w2 * w2 * w2);
+  for (int i = 0; model->moment_fourth && model->moment_fifth && i < c; i++) {
+    model->moment_fourth[i] += phi[i] * phi[i] / (w2 * w2 * w2 * w2);
+    model->moment_fifth[i] += phi[i] * phi[i] / (w2 * w2 * w2 * w2 * w2);
+  }
   if (q > 0) {
     add_outer(model->probe_contact_residual, q, psi, c, phi, w2);
     add_outer(model->probe_contact_inertia, q, psi, c, phi, w2 * w2);

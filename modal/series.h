@@ -23,4 +23,12 @@ modal_series modal_series_at(const modal_model *model, double omega);
 /* Whether the model holds R3: it counts beside R and R2 only. */
 bool modal_series_has_fourth(const modal_model *model);
 
+/* What R + alpha R2 + beta R3 leaves out of the receptance of contact dof p with itself, m/N; no receptance between contact dofs lacks
+ * more than the greatest of these. With mu_j = sum phi_p^2/lambda^j over the modes left out, s = omega^2, exactly
+ *   sum phi^2/(lambda - s) - R - alpha R2 - beta R3 = s^3 sum phi^2/(lambda^3 (lambda - s)) + (s - alpha) mu_2 + (s^2 - beta) mu_3,
+ * and the sum is mu_4/(1 - s mu_5/mu_4) for one mode in the place of all, of the same mu_4 and mu_5: exact to O(s^5), and below the first
+ * mode left out never too great (Jensen's inequality). Not more than R: where the series means nothing that is all there is to go by.
+ * -1 if the model does not hold the moments. */
+double modal_series_error(const modal_model *model, double omega, int dof);
+
 #endif

@@ -91,6 +91,7 @@ static shb_status check_alike(const char *path, const modal_model *a, const moda
               !a->residual_flexibility == !b->residual_flexibility &&
               !a->residual_inertia == !b->residual_inertia &&
               !a->residual_fourth == !b->residual_fourth &&
+              !a->moment_fourth == !b->moment_fourth && !a->moment_fifth == !b->moment_fifth &&
               !a->load_residual == !b->load_residual && !a->load_inertia == !b->load_inertia &&
               !a->probe_contact_residual == !b->probe_contact_residual &&
               !a->probe_contact_inertia == !b->probe_contact_inertia &&

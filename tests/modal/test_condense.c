@@ -11,6 +11,7 @@
 
 #include "fem/surface.h"
 #include "modal/receptance.h"
+#include "modal/reduce.h"
 #include "modal/session.h"
 #include "modal/stage.h"
 #include "tests/fem/support.h"
@@ -311,6 +312,54 @@ static void every_receptance_errs_by_the_first_term_left_out(void **state) {
   mesh_fe_free(&mesh);
 }
 
+/* Greatest error of a contact dof with itself, relative to the greatest such receptance. */
+static double worst_error(const double complex *model, const double complex *exact) {
+  double off = 0, most = 0;
+  for (int c = 0; c < NC; c++) {
+    off  = fmax(off, cabs(model[c * NC + c] - exact[c * (LOAD + 1) + c]));
+    most = fmax(most, cabs(exact[c * (LOAD + 1) + c]));
+  }
+  return off / most;
+}
+
+/* The estimate against a direct solve without damping: from far below the modes left out up to just below them, with few modes
+ * and with many; and no entry of the matrix is worse than the estimate allows. */
+static void error_is_estimated(void **state) {
+  (void)state;
+  static const double share[]  = {.1, .2, 1. / 3, .5, .7, .85};
+  const int           cells[3] = {2, 2, 4};
+  mesh_fe             mesh     = make_sector(size, inner, BLADES, cells);
+  modal_settings      settings = default_settings(2);
+  modal_result        result   = solve(&mesh, &settings);
+  body                whole    = create_body(&mesh, &settings, &result);
+  double              frequency[20], low = INFINITY, high = 0;
+  memset(whole.C, 0, (size_t)whole.n * (size_t)whole.n * sizeof *whole.C);
+  for (int i = 0; i < result.model.n_modes; i++) result.model.damping_ratio[i] = 0;
+  memcpy(frequency, result.model.frequency, sizeof frequency);
+  for (int modes = 20; modes > 2; modes -= 5) {
+    assert_int_equal(modal_model_keep(&result.model, modes, true), SHB_OK);
+    double top = frequency[modes < 20 ? modes : 19]; /* the first left out */
+    for (int i = 0; i < 6; i++) {
+      double         omega = two_pi * share[i] * top;
+      double complex model[NC * NC], *exact = direct(&whole, omega);
+      modal_receptance(&result.model, omega, model);
+      double estimate = modal_receptance_error(&result.model, omega, model);
+      double error    = worst_error(model, exact);
+      print_message("%d modes, %.2f of %.0f Hz: error %.2e, estimate %.2e\n", modes, share[i], top,
+                    error, estimate);
+      free(exact);
+      if (error < 1e-11) continue; /* rounding of the direct solve */
+      low  = fmin(low, estimate / error);
+      high = fmax(high, estimate / error);
+    }
+  }
+  print_message("estimate over error: %.3f to %.3f\n", low, high);
+  assert_true(low > 1. / 3 && high < 3);
+  free_body(&whole);
+  modal_result_free(&result);
+  mesh_fe_free(&mesh);
+}
+
 /* At w = 0 every part is exact: contact, load and probes. */
 static void check_static_response(double speed) {
   const int      cells[3] = {2, 2, 4}, nc = 12;
@@ -454,6 +503,7 @@ int main(int argc, char **argv) {
       cmocka_unit_test(receptance_matches_a_direct_solve),
       cmocka_unit_test(receptance_at_speed_matches_a_direct_solve),
       cmocka_unit_test(every_receptance_errs_by_the_first_term_left_out),
+      cmocka_unit_test(error_is_estimated),
       cmocka_unit_test(static_response_is_exact),
       cmocka_unit_test(patches_add_up_to_the_face),
       cmocka_unit_test(receptance_converges_with_the_mesh),

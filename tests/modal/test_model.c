@@ -32,6 +32,12 @@ static double *symmetric(int n, double seed) {
   return out;
 }
 
+static double *squares(int n, double seed) {
+  double *out = numbers((size_t)n, seed);
+  for (int i = 0; i < n; i++) out[i] *= out[i];
+  return out;
+}
+
 /* Every part present when full; the least a file may hold otherwise. */
 static modal_model sample(bool full) {
   static const char *const name[] = {"tip", "mi-corde \xc3\xa9", "root"};
@@ -53,6 +59,8 @@ static modal_model sample(bool full) {
   model.probe_contact_residual = numbers(PROBES * 3 * CONTACTS, 10);
   model.probe_load_residual    = waves((LOADS + 1) * 3 * PROBES, 11);
   model.residual_fourth        = symmetric(CONTACTS, 20);
+  model.moment_fourth          = squares(CONTACTS, 21);
+  model.moment_fifth           = squares(CONTACTS, 22);
   model.load_inertia           = waves((LOADS + 1) * CONTACTS, 15);
   model.probe_contact_inertia  = numbers(PROBES * 3 * CONTACTS, 17);
   model.probe_load_inertia     = waves((LOADS + 1) * 3 * PROBES, 18);
@@ -117,6 +125,8 @@ static void test_round_trip(void **state) {
   assert_same(wrote, read, probe_contact_residual, PROBES * 3 * CONTACTS);
   assert_same(wrote, read, probe_load_residual, (LOADS + 1) * 3 * PROBES);
   assert_same(wrote, read, residual_fourth, CONTACTS * CONTACTS);
+  assert_same(wrote, read, moment_fourth, CONTACTS);
+  assert_same(wrote, read, moment_fifth, CONTACTS);
   assert_same(wrote, read, load_inertia, (LOADS + 1) * CONTACTS);
   assert_same(wrote, read, probe_contact_inertia, PROBES * 3 * CONTACTS);
   assert_same(wrote, read, probe_load_inertia, (LOADS + 1) * 3 * PROBES);
@@ -215,6 +225,8 @@ static void test_missing(void **state) {
                        {"/probe/contact_residual", true},
                        {"/probe/load_residual", true},
                        {"/contact/residual_fourth", true},
+                       {"/contact/moment_fourth", true},
+                       {"/contact/moment_fifth", true},
                        {"/load/residual_inertia", true},
                        {"/probe/contact_inertia", true},
                        {"/probe/load_inertia", true},
@@ -316,6 +328,7 @@ static void test_values(void **state) {
       {IN(probe_contact_residual), 0, NAN, "/probe/contact_residual: the value"},
       {IN(probe_load_residual), 1, NAN, "/probe/load_residual: the value"},
       {IN(residual_fourth), 30, 1, "/contact/residual_fourth is not symmetric"},
+      {IN(moment_fifth), 2, -1, "/contact/moment_fifth: value 2 (from 0) is "},
       {IN(residual_fourth), 0, NAN, "/contact/residual_fourth: the value at [0, 0]"},
       {IN(load_inertia), 2, NAN, "/load/residual_inertia: the value at [0, 1]"},
       {IN(probe_contact_inertia), 12, NAN, "/probe/contact_inertia: the value at [1, 0]"},
