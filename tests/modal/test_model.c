@@ -160,7 +160,7 @@ static void test_described(void **state) {
   (void)state;
   modal_model model = sample(true);
   write_model("described.h5", &model);
-  assert_int_equal(assert_described(scratch("described.h5")), 24);
+  assert_int_equal(assert_described(scratch("described.h5")), 26);
   hid_t file;
   char *text;
   assert_ok(h5_open(scratch("described.h5"), &file));
