@@ -109,7 +109,7 @@ static PetscErrorCode keep_shapes(const modal_result *r, Mat *before) {
 static PetscErrorCode drop_factor(modal_result *r) {
   PetscFunctionBeginUser;
   PetscCall(EPSDestroy(&r->eigen.eps));
-  r->eigen.factor = NULL;
+  PetscCall(fem_factor_destroy(&r->eigen.factor));
   PetscFunctionReturn(0);
 }
 
