@@ -224,5 +224,5 @@ int mhb_path_locate(mhb_path *path, mhb_path_indicator indicator, void *context,
     double left = fmin(r.at[1] - r.at[0], moved);
     if (left < 1e-9 || (i > 2 && left * r.wide < 1e-10 && left < 1e-4)) return 1;
   }
-  return 1;
+  return 0;
 }

@@ -5,13 +5,14 @@
 #include <string.h>
 
 #include "mhb/corrector.h"
+#include "mhb/narrow.h"
 
 /* Settings that did not stall on stiff and on kinked curves. */
 static const double FIRST_STEP = .02, LONGEST_STEP = .1, LARGEST_ANGLE = .35, SHORTEST_STEP = 1e-4;
 static const double NEAR = .3, CAREFUL_STEP = 1e-3;
 static const double KINK_STEP = .02, KINK_RATIO = .7;
 static const double OUTSIDE = .2;
-enum { WANTED_CORRECTIONS = 5, LASTING = 10, MAX_OUTSIDE = 1000 };
+enum { WANTED_CORRECTIONS = 5, LASTING = 10, MAX_OUTSIDE = 1000, MAX_LOOKS = 8 };
 
 static int point_create(mhb_path_point *point, int n) {
   point->x       = calloc((size_t)n, sizeof(double));
@@ -49,6 +50,11 @@ shb_status mhb_path_create(mhb_residual *residual, double low, double high, mhb_
     mhb_path_destroy(path);
     SHB_FAIL(SHB_ERR_IO, "out of memory for a path of %d unknowns", n);
   }
+  shb_status status = mhb_resonances_create(residual, low, high, &path->resonances);
+  if (status != SHB_OK) {
+    mhb_path_destroy(path);
+    return status;
+  }
   *out = path;
   return SHB_OK;
 }
@@ -60,6 +66,7 @@ void mhb_path_destroy(mhb_path *path) {
   point_free(&path->probe);
   mhb_newton_destroy(path->newton);
   mhb_still_destroy(path->still);
+  mhb_resonances_destroy(&path->resonances);
   free(path->chord);
   free(path->kept);
   for (int i = 0; i < 2; i++) free(path->bracket[i]);
@@ -255,6 +262,40 @@ static int find_next(mhb_path *path) {
   return across_kink(path) || last_resort(path) || turned(path);
 }
 
+/* A step of length ds, however short; path->step stays. 0: no ordinary point there. */
+static int short_step(mhb_path *path, double ds) {
+  if (!attempt(path, ds) || angle_between(path) > LARGEST_ANGLE) return 0;
+  if (!goes_on(path) && path->against == 0) return 0;
+  note_orientation(path);
+  return 1;
+}
+
+/* The same; else, at a kink, one that begins with ds, and at worst with the path's own. */
+static int at_most(mhb_path *path, double ds) {
+  double step = path->step;
+  if (ds >= step) return find_next(path);
+  if (short_step(path, ds)) return 1;
+  path->step = fmax(ds, SHORTEST_STEP);
+  if (find_next(path)) return 1;
+  path->step = step;
+  return find_next(path);
+}
+
+/* next: a step that does not pass over a resonance that is felt. */
+static int find_resolved(mhb_path *path) {
+  double step = path->step, along = path->now.tangent[path->n];
+  int    orientation = path->orientation, against = path->against;
+  for (int i = 0; i < MAX_LOOKS; i++) {
+    double way        = mhb_resonances_way(&path->resonances, path->now.value, along > 0 ? 1 : -1);
+    path->step        = step;
+    path->orientation = orientation;
+    path->against     = against;
+    if (!at_most(path, way / fabs(along))) return 0;
+    if (!mhb_narrow_passed(path)) break;
+  }
+  return 1;
+}
+
 /* next went past an end of the range: solve on the end itself, from the chord. */
 static int settle_on(mhb_path *path, double value) {
   double part = (value - path->now.value) / (path->next.value - path->now.value);
@@ -285,7 +326,7 @@ static void set_unit_of_preload(mhb_path *path) {
 mhb_path_outcome mhb_path_step(mhb_path *path) {
   if (path->residual->parameter == MHB_IN_N0) set_unit_of_preload(path);
   for (int tries = 0; tries < 4; tries++) {
-    if (!find_next(path)) break;
+    if (!find_resolved(path)) break;
     double slack = 1e-12 * fmax(fabs(path->low), fabs(path->high));
     int above = path->next.value > path->high + slack, below = path->next.value < path->low - slack;
     if (!above && !below) return MHB_PATH_ON;

@@ -2,11 +2,13 @@
  *
  * Arclength is measured in y = [x/|x_current|, value/span]. A tangent predictor, then Newton in the plane normal to
  * it; the step follows the number of iterations and the angle between tangents. The law is only piecewise smooth: an
- * angle that halving the step hardly lessens is a kink of the curve, not curvature, and is accepted. */
+ * angle that halving the step hardly lessens is a kink of the curve, not curvature, and is accepted. Resonances of modes that
+ * hardly move the contact, and are felt all the same (mhb/narrow.h), are not stepped over. */
 #ifndef MHB_PATH_H
 #define MHB_PATH_H
 
 #include "mhb/newton.h"
+#include "mhb/resonances.h"
 #include "mhb/still.h"
 
 typedef struct {
@@ -37,6 +39,7 @@ typedef struct {
   double        *chord;            /* [n+1] */
   double        *bracket[2];       /* [n+1] x and value on both sides of a point being located */
   double        *kept;             /* [n+1] an end of it */
+  mhb_resonances resonances;       /* in the range */
 } mhb_path;
 
 typedef enum { MHB_PATH_ON, MHB_PATH_AT_END, MHB_PATH_AT_START, MHB_PATH_STALLED } mhb_path_outcome;

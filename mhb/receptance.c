@@ -340,8 +340,7 @@ MHB_INLINE double complex residual_at(const double complex *still, const double 
                : value;
 }
 
-/* The residual terms of the contact. */
-static void residual_terms(const mhb_receptance *r, int k, double w, double complex *R) {
+void mhb_receptance_residual(const mhb_receptance *r, int k, double w, double complex *R) {
   memset(R, 0, sizeof *R * (size_t)r->n * (size_t)r->n);
   modal_series s = modal_series_at(r->model, w);
   for (int t = 0; t < MODAL_TERMS; t++)
@@ -356,7 +355,7 @@ static void harmonic_at(mhb_receptance *r, int k) {
   double complex *all = r->BL, one = 1;
   set_lambda(r, w, L, L + m);
   for (int i = 0; i < m; i++) r->lambda[k * m + i] = CMPLX(L[i], L[m + i]);
-  residual_terms(r, k, w, R);
+  mhb_receptance_residual(r, k, w, R);
   for (int a = 0; a < n; a++, re += m, im += m) {
     for (int i = 0; i < m; i++) {
       y[i]     = re[i] * L[i] - im[i] * L[m + i];

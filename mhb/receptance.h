@@ -72,6 +72,9 @@ void mhb_receptance_motion(const mhb_receptance *receptance, int k, const double
 void mhb_receptance_slope(const mhb_receptance *receptance, int k, const double complex *p,
                           double complex *slope);
 
+/* R[n][n] <- the residual terms alone of harmonic k, at w rad/s of its own. */
+void mhb_receptance_residual(const mhb_receptance *receptance, int k, double w, double complex *R);
+
 /* Motion of the probes [3 q] at harmonic k under contact force p[n] (both at the omega of the last call). */
 void mhb_receptance_probe(const mhb_receptance *receptance, int k, const double complex *p,
                           double complex *motion);

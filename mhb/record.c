@@ -89,6 +89,20 @@ static double unless_flat(double slope, double square) {
   return fabs(slope) > FLAT * square ? slope : 0;
 }
 
+void mhb_probe_change(const mhb_path *path, const mhb_path_point *point, int k, double complex *q,
+                      double complex *dq) {
+  const mhb_residual *b      = path->residual;
+  double              dvalue = point->tangent[path->n];
+  double complex      p[b->receptance->n], dp[b->receptance->n];
+  mhb_receptance_need(b->receptance, k);
+  mhb_residual_force(b, k, p);
+  force_change(b, point->tangent, dvalue, k, dp);
+  mhb_receptance_probe(b->receptance, k, p, q);
+  mhb_receptance_probe_change(b->receptance, k, p, dp,
+                              b->parameter == MHB_IN_FREQUENCY ? dvalue : 0,
+                              b->parameter == MHB_IN_SCALE ? dvalue : 0, dq);
+}
+
 double mhb_output_slope(const mhb_path *path, const mhb_path_point *point, int o) {
   const mhb_residual   *b      = path->residual;
   const mhb_receptance *r      = b->receptance;
@@ -98,14 +112,8 @@ double mhb_output_slope(const mhb_path *path, const mhb_path_point *point, int o
     const double *a = point->x + at, *da = point->tangent + at;
     return unless_flat(2 * (a[0] * da[0] + a[1] * da[1]), a[0] * a[0] + a[1] * a[1]);
   }
-  double complex p[r->n], dp[r->n], q[3 * probes], dq[3 * probes];
-  mhb_receptance_need(b->receptance, k);
-  mhb_residual_force(b, k, p);
-  double dvalue = point->tangent[path->n];
-  force_change(b, point->tangent, dvalue, k, dp);
-  mhb_receptance_probe(r, k, p, q);
-  mhb_receptance_probe_change(r, k, p, dp, b->parameter == MHB_IN_FREQUENCY ? dvalue : 0,
-                              b->parameter == MHB_IN_SCALE ? dvalue : 0, dq);
+  double complex q[3 * probes], dq[3 * probes];
+  mhb_probe_change(path, point, k, q, dq);
   double sum = 0, square = 0;
   for (int axis = 0; axis < 3; axis++) {
     sum += 2 * dot(q[3 * o + axis], dq[3 * o + axis]);

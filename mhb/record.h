@@ -11,6 +11,10 @@ shb_status mhb_record(mhb_response *response, int branch, mhb_residual *residual
 /* Number of outputs whose peaks are followed: every probe, and v, u, w of the first two pairs. */
 int mhb_outputs(const mhb_residual *residual);
 
+/* Motion q[3 probes] of harmonic k at a point just corrected, and its change dq along the tangent. */
+void mhb_probe_change(const mhb_path *path, const mhb_path_point *point, int k, double complex *q,
+                      double complex *dq);
+
 /* d a^2/ds of output o along the tangent of a point just corrected, 0 below 1e-9 a^2; a = amplitude of the excitation's
  * harmonic. */
 double mhb_output_slope(const mhb_path *path, const mhb_path_point *point, int o);

@@ -46,6 +46,20 @@ void one_degree_model(double zeta, int direction, double force, modal_model *mod
   model->modal_force[1]                             = force;
 }
 
+void two_mode_model(double omega, double zeta, double contact, double probe, double force,
+                    modal_model *model) {
+  allocate(model, 2);
+  model->frequency[0]     = 1 / (2 * PI);
+  model->frequency[1]     = omega / (2 * PI);
+  model->damping_ratio[0] = .01;
+  model->damping_ratio[1] = zeta;
+  model->right[2] = model->probe[2] = 1;
+  model->right[3]                   = contact;
+  model->probe[3]                   = probe;
+  model->modal_force[2]             = .05;
+  model->modal_force[3]             = force;
+}
+
 /* Roots of cos x cosh x = -1. */
 static double cantilever_root(int r) {
   double x = (r - .5) * PI;
