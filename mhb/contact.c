@@ -52,6 +52,7 @@ shb_status mhb_contact_create(int m, int H, double tolerance, mhb_contact **out)
                 {(void **)&c->basis0, 2 * nb},
                 {(void **)&c->traced, 3 * nf}};
   int ok     = mhb_signals_create(m, &c->signals) == SHB_OK;
+  ok &= mhb_closed_create(m, &c->closed) == SHB_OK;
   for (size_t i = 0; i < sizeof wanted / sizeof wanted[0]; i++)
     ok &= (*wanted[i].array = aligned(wanted[i].size * sizeof(double))) != NULL;
   mhb_collocation_create(&c->rule);
@@ -72,6 +73,7 @@ void mhb_contact_destroy(mhb_contact *c) {
                     c->T,      c->drive, c->node_T,  c->node_basis, c->basis0,   c->traced};
   for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; i++) free(arrays[i]);
   mhb_pieces_destroy(&c->pieces);
+  mhb_closed_destroy(&c->closed);
   mhb_signals_destroy(&c->signals);
   free(c);
 }

@@ -2,6 +2,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdlib.h>
 
 static const double TWO_PI = 6.283185307179586476925;
 
@@ -147,6 +148,20 @@ MHB_HOT static int next_suspect(const event_function *f, double sign, int from, 
   return to;
 }
 
+shb_status mhb_closed_create(int m, mhb_closed *closed) {
+  int room        = m > 0 ? m : 1;
+  *closed         = (mhb_closed){.room = room};
+  closed->closing = calloc(2 * ((size_t)room + 1), sizeof(double));
+  SHB_CHECK(closed->closing, SHB_ERR_IO, "out of memory for %d openings", room);
+  closed->opening = closed->closing + room + 1;
+  return SHB_OK;
+}
+
+void mhb_closed_destroy(mhb_closed *closed) {
+  free(closed->closing);
+  *closed = (mhb_closed){0};
+}
+
 void mhb_closed_intervals(const mhb_signals *signals, mhb_closed *closed) {
   event_function f     = {.signals = signals, .is_load = 1, .bound4 = signals->bound[0][4]};
   double         slack = 8 * DBL_EPSILON * signals->bound[0][0];
@@ -177,7 +192,7 @@ void mhb_closed_intervals(const mhb_signals *signals, mhb_closed *closed) {
     if (clear > i) a = sample_grid(&f, i = clear);
     sample b = sample_grid(&f, i + 1), from = a;
     double root;
-    while (crossings < 2 * MHB_MAX_OPENINGS && first_crossing(&f, sign, from, b, &root)) {
+    while (crossings < 2 * closed->room && first_crossing(&f, sign, from, b, &root)) {
       double *list                        = sign < 0 ? closed->closing : closed->opening;
       list[(crossings + !began_open) / 2] = root;
       crossings++;

@@ -10,15 +10,18 @@
 
 #include "mhb/fourier.h"
 
-enum { MHB_MAX_OPENINGS = 64 };
-
 /* Intervals of the period in which n > 0. */
 typedef struct {
-  int    n; /* number of closed intervals; 0 with always_* set */
-  int    always_closed, always_open;
-  double closing[MHB_MAX_OPENINGS + 1]; /* in [0, 2 pi), ascending */
-  double opening[MHB_MAX_OPENINGS + 1]; /* the opening after closing[i], up to closing[i] + 2 pi */
+  int     room; /* as many as m harmonics can make: n has 2m roots at most */
+  int     n;    /* number of closed intervals; 0 with always_* set */
+  int     always_closed, always_open;
+  double *closing; /* [room + 1] in [0, 2 pi), ascending */
+  double *opening; /* [room + 1] the opening after closing[i], up to closing[i] + 2 pi */
 } mhb_closed;
+
+/* For loads of up to m harmonics. SHB_ERR_IO: no memory. */
+shb_status mhb_closed_create(int m, mhb_closed *closed);
+void       mhb_closed_destroy(mhb_closed *closed);
 
 /* Roots of n (eqs. 11, 12). Touching zero without crossing counts as closed (n >= 0). */
 void mhb_closed_intervals(const mhb_signals *signals, mhb_closed *closed);

@@ -98,6 +98,28 @@ static void normal_force_of_opening_contact(void **state) {
   assert_near(e.info.share[MHB_SEPARATE], 1 - tc / PI, 1e-12);
 }
 
+/* v = cos kt at n0 = 0 opens k times a period: n = max(v, 0) has mean 1/pi and amplitude 1/2, however large k. */
+static void every_opening_counts(void **state) {
+  (void)state;
+  static const int many[] = {1, 63, 65, 128};
+  for (int i = 0; i < 4; i++) {
+    int              k = many[i], n = 2 * k + 1;
+    mhb_contact     *own;
+    mhb_law          law = {.mu = .3, .kv = 1, .ku = {1, 0, 1}};
+    mhb_contact_info info;
+    double          *motion = calloc(6 * (size_t)n, sizeof(double)), *force = motion + 3 * n;
+    assert_int_equal(mhb_contact_create(k, k, 1e-8, &own), SHB_OK);
+    motion[2 * k - 1] = 1;
+    mhb_contact_force(own, &law, motion, force, NULL, &info);
+    assert_near(force[0], 1 / PI, 1e-8);
+    assert_near(force[2 * k - 1], .5, 1e-8);
+    assert_near(info.share[MHB_SEPARATE], .5, 1e-10);
+    assert_int_equal(info.lost, 0);
+    mhb_contact_destroy(own);
+    free(motion);
+  }
+}
+
 static void circle(void **state) {
   (void)state;
   double     R = 1e-4, k = 1e6, S = 40, s = S / (k * R);
@@ -510,6 +532,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(one_direction),
       cmocka_unit_test(normal_force_of_opening_contact),
+      cmocka_unit_test(every_opening_counts),
       cmocka_unit_test(circle),
       cmocka_unit_test(in_phase_normal_load),
       cmocka_unit_test(quadrature_normal_load),
