@@ -54,6 +54,17 @@ static shb_status read_mesh(const case_file *file, const char *path, mesh_fe *me
   return status;
 }
 
+/* Coordinates in mm taken as m, or the other way round, are no fault of the mesh. */
+static void warn_size(const case_file *file, const mesh_fe *mesh) {
+  static const double least = 2e-3, most = 10; /* m */
+  const double        size = mesh_fe_extent(mesh);
+  if (size >= least && size <= most) return;
+  fprintf(stderr,
+          "shroudhb: warning: %s: the body measures %.3g m; are its coordinates in %s? Say so with "
+          "mesh.unit\n",
+          file->mesh_file, size, size > most ? "mm" : "m");
+}
+
 /* The mesh brought by the case: readable, whole, and fit for its contact. */
 static shb_status check_file(const case_file *file, shb_progress *progress) {
   mesh_fe      mesh;
@@ -66,7 +77,10 @@ static shb_status check_file(const case_file *file, shb_progress *progress) {
     shb_progress_note(
         progress, "%s is sound: %d nodes, %d elements, %d contact node pairs, %d load faces",
         file->mesh_file, mesh.n_nodes, mesh.n_elements, pairing.n, mesh.set[MESH_LOAD].n);
-  if (status == SHB_OK) note_pairing(progress, &pairing);
+  if (status == SHB_OK) {
+    note_pairing(progress, &pairing);
+    if (!progress->quiet) warn_size(file, &mesh);
+  }
   mesh_pairing_free(&pairing);
   mesh_fe_free(&mesh);
   return status;
@@ -111,7 +125,10 @@ static shb_status make_from_file(const case_file *file, const char *output,
   if (status != SHB_OK)
     status = shb_fail(status, __FILE__, __LINE__, "%s: %s", file->mesh_file, shb_message());
   if (status == SHB_OK) status = mesh_msh_write(&mesh, output, provenance);
-  if (status == SHB_OK) note_pairing(progress, &pairing);
+  if (status == SHB_OK) {
+    note_pairing(progress, &pairing);
+    if (!progress->quiet) warn_size(file, &mesh);
+  }
   mesh_pairing_free(&pairing);
   mesh_fe_free(&mesh);
   return status;

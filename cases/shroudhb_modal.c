@@ -155,6 +155,24 @@ static shb_status run(const case_file *file, const command_options *options, int
   return status;
 }
 
+/* Elements of displacements lock in a material that hardly changes its volume. */
+static void warn_locking(const char *key, double nu) {
+  if (nu > .49)
+    fprintf(stderr,
+            "shroudhb: warning: %s: %g is nearly incompressible; elements may lock above .49 "
+            "(frequencies too high): compare with a finer mesh\n",
+            key, nu);
+}
+
+static void warn(const case_file *file) {
+  if (!file->has_materials) warn_locking("material.nu", file->constants.nu[0]);
+  for (int i = 0; file->has_materials && i < file->n_materials; i++) {
+    char key[64];
+    snprintf(key, sizeof key, "materials[%d].nu", i);
+    warn_locking(key, file->materials[i].constants.nu[0]);
+  }
+}
+
 static int work(words *line, const case_file *file, const command_options *options) {
   modal_session session;
   if (file->modal_file) {
@@ -165,6 +183,7 @@ static int work(words *line, const case_file *file, const command_options *optio
   if (status != SHB_OK) return command_finish(status);
   shb_interrupt_catch(); /* after MPI, whose launcher sets handlers of its own */
   shb_interrupt_grace(2);
+  if (session.rank == 0 && !options->quiet) warn(file);
   status   = run(file, options, session.rank);
   int code = session.rank == 0 ? command_finish(status) : (int)status;
   modal_session_end(&session, status);

@@ -54,7 +54,9 @@ shb_status fem_load_pattern(const mesh_fe *mesh, const fem_load *load, const dou
     const double *at = load->has_at ? load->at : fallback;
     SHB_CHECK(at, SHB_ERR_INPUT,
               "excitation.force: no place for the force; give force.at or a probe");
-    int node = mesh_fe_nearest(mesh, at);
+    int node = 0;
+    SHB_TRY(
+        mesh_fe_near(mesh, at, load->has_at ? "excitation.force.at" : "the first probe", &node));
     for (int d = 0; d < 3; d++) force[3 * (size_t)node + d] = load->force[d];
     return SHB_OK;
   }

@@ -85,6 +85,35 @@ int mesh_fe_nearest(const mesh_fe *mesh, const double point[3]) {
   return nearest;
 }
 
+double mesh_fe_extent(const mesh_fe *mesh) {
+  double low[3], high[3], span[3];
+  for (int d = 0; d < 3; d++) {
+    low[d]  = INFINITY;
+    high[d] = -INFINITY;
+  }
+  for (int i = 0; i < mesh->n_nodes; i++)
+    for (int d = 0; d < 3; d++) {
+      low[d]  = fmin(low[d], mesh->coordinates[3 * (size_t)i + d]);
+      high[d] = fmax(high[d], mesh->coordinates[3 * (size_t)i + d]);
+    }
+  for (int d = 0; d < 3; d++) span[d] = high[d] - low[d];
+  return sqrt(span[0] * span[0] + span[1] * span[1] + span[2] * span[2]);
+}
+
+shb_status mesh_fe_near(const mesh_fe *mesh, const double point[3], const char *what, int *node) {
+  double        extent = mesh_fe_extent(mesh), d[3];
+  const double *x;
+  *node = mesh_fe_nearest(mesh, point);
+  x     = mesh->coordinates + 3 * (size_t)*node;
+  for (int k = 0; k < 3; k++) d[k] = x[k] - point[k];
+  double distance = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+  SHB_CHECK(distance <= MESH_FE_NEAR * extent, SHB_ERR_INPUT,
+            "%s: (%g, %g, %g) m is %.3g m off the nearest node of the body, which measures %.3g m; "
+            "give a point on it, in mesh axes (that node is at (%.4g, %.4g, %.4g) m)",
+            what, point[0], point[1], point[2], distance, extent, x[0], x[1], x[2]);
+  return SHB_OK;
+}
+
 void mesh_fe_free(mesh_fe *mesh) {
   free(mesh->coordinates);
   free(mesh->connectivity);

@@ -100,6 +100,14 @@ shb_status mesh_fe_orient(mesh_fe *mesh, mesh_axis axis);
 /* Index of the node nearest to point. */
 int mesh_fe_nearest(const mesh_fe *mesh, const double point[3]);
 
+/* Diagonal of the box around all nodes, m. */
+double mesh_fe_extent(const mesh_fe *mesh);
+
+/* The node nearest to point. SHB_ERR_INPUT: it is further off than MESH_FE_NEAR of the body's extent, so that another point was
+ * meant (or another unit); what heads the text, as "probe.tip". */
+#define MESH_FE_NEAR 0.1
+shb_status mesh_fe_near(const mesh_fe *mesh, const double point[3], const char *what, int *node);
+
 void mesh_fe_free(mesh_fe *mesh); /* also on a zeroed struct */
 
 #endif

@@ -58,21 +58,6 @@ static double length(const double v[3]) {
   return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
-static double extent(const mesh_fe *mesh) {
-  double low[3], high[3], span[3];
-  for (int d = 0; d < 3; d++) {
-    low[d]  = INFINITY;
-    high[d] = -INFINITY;
-  }
-  for (int i = 0; i < mesh->n_nodes; i++)
-    for (int d = 0; d < 3; d++) {
-      low[d]  = fmin(low[d], mesh->coordinates[3 * (size_t)i + d]);
-      high[d] = fmax(high[d], mesh->coordinates[3 * (size_t)i + d]);
-    }
-  for (int d = 0; d < 3; d++) span[d] = high[d] - low[d];
-  return length(span);
-}
-
 /* How far a point is off the rule's plane or radius, m. */
 static double off(const surface *s, const mesh_rule *rule, const double x[3]) {
   if (rule->kind == MESH_RULE_PLANE) {
@@ -258,7 +243,7 @@ shb_status mesh_rules_apply(const mesh_rules *rules, mesh_axis axis, const char 
   for (int id = 0; id < mesh_fe_sets(mesh); id++) any = any || has_rule(rule_of(rules, id));
   if (!any) return SHB_OK;
   SHB_TRY(mesh_faces_outer(mesh, NULL, &s.outer));
-  s.extent         = extent(mesh);
+  s.extent         = mesh_fe_extent(mesh);
   char      *taken = malloc((size_t)s.outer.n + 1);
   shb_status status =
       taken ? SHB_OK

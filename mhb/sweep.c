@@ -9,6 +9,7 @@
 #include "mhb/further.h"
 #include "mhb/harmonics.h"
 #include "mhb/judge.h"
+#include "mhb/rigid.h"
 
 static const double PUBLISH_EVERY = 10, BRANCH_END_EVERY = 1; /* s */
 
@@ -138,7 +139,7 @@ static shb_status linear_limits(const modal_model *model, const mhb_settings *se
   for (int i = 1; i < settings->n_preloads; i++) most = fmax(most, settings->n0[i]);
   mhb_residual_preload(residual, most);
   mhb_residual_follow(residual, settings->parameter);
-  shb_status status = SHB_OK;
+  shb_status status = mhb_rigid_check(residual->receptance, settings);
   for (int stuck = 0; stuck < 2 && status == SHB_OK; stuck++) {
     int branch;
     status = mhb_response_branch(response, stuck ? MHB_BRANCH_STUCK : MHB_BRANCH_OPEN, &branch);

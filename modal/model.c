@@ -252,6 +252,25 @@ static shb_status read_moment(hid_t at, const char *path, const char *dataset, i
   return SHB_OK;
 }
 
+/* What the modes leave out is a sum of phi^2/omega^2 over more modes: never negative, but for rounding and other programs' rules
+ * of integration. Compared with what the modes have. */
+static shb_status check_flexibility(const char *path, const modal_model *model) {
+  static const double allowed = 1e-3;
+  const int           m = model->n_modes, n = n_contact(model), right = 3 * model->n_pairs;
+  for (int i = 0; model->residual_flexibility && i < n; i++) {
+    const double *shape = i < right ? model->right + (size_t)i * (size_t)m
+                                    : model->left + (size_t)(i - right) * (size_t)m;
+    double        R = model->residual_flexibility[(size_t)i * (size_t)(n + 1)], modes = 0;
+    for (int k = 0; k < m; k++) modes += pow(shape[k] / (2 * M_PI * model->frequency[k]), 2);
+    SHB_CHECK(!(R < -allowed * modes), SHB_ERR_INPUT,
+              "%s: /contact/residual_flexibility: value [%d, %d] is %.3g m/N; what modes leave out "
+              "cannot be negative: static flexibility less that of the modes, %.3g m/N here, is "
+              "wanted",
+              path, i, i, R, modes);
+  }
+  return SHB_OK;
+}
+
 static shb_status check_patches(const char *path, const modal_model *model) {
   for (int i = 0; i < model->n_pairs; i++) {
     SHB_CHECK(!model->area || model->area[i] > 0, SHB_ERR_INPUT,
@@ -288,6 +307,7 @@ static shb_status read_contact(hid_t at, const char *path, modal_model *model) {
     SHB_TRY(h5_read_double(at, "contact/normal", &normals, &model->normal));
   if (h5_exists(at, "contact/area"))
     SHB_TRY(h5_read_double(at, "contact/area", &areas, &model->area));
+  SHB_TRY(check_flexibility(path, model));
   return check_patches(path, model);
 }
 

@@ -1,5 +1,6 @@
 #include "modal/stage.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -27,7 +28,10 @@ static shb_status probe_dofs(const mesh_fe *mesh, const modal_settings *settings
   const double one = 1;
   for (int q = 0; q < settings->n_probes; q++) {
     double axes[3][3];
-    int    node = mesh_fe_nearest(mesh, settings->probe[q].at);
+    char   what[96];
+    int    node = 0;
+    snprintf(what, sizeof what, "probe.%s", settings->probe[q].name);
+    SHB_TRY(mesh_fe_near(mesh, settings->probe[q].at, what, &node));
     mesh_axes_at(settings->axis, mesh->coordinates + 3 * (size_t)node, axes);
     SHB_CHECK(axes[2][0] == axes[2][0], SHB_ERR_INPUT,
               "probe.%s: its nearest node lies on the engine axis; check rotor.axis",

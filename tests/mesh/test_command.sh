@@ -159,6 +159,13 @@ says "mesh.groups.root.nearest: is a second rule for its group"
 says "mesh.groups.rot: unknown group"
 says "mesh.groups.load: lacks normal"
 
+# Coordinates in mm taken as m.
+solid "$(echo "$rules" | sed -e 's/unit: mm/unit: m/' -e 's/12 mm/12 m/' -e 's/300 mm/300 m/' -e 's/ mm/ m/g' -e '/load:/d')"
+run 0 solid.yaml
+lines 1
+says "shroudhb: warning: sector.geo: the body measures "
+says "are its coordinates in mm? Say so with mesh.unit"
+
 # A script that ends the program is no success.
 solid "$rules"
 echo 'Exit;' >>"$work/dir/sector.geo"

@@ -347,6 +347,16 @@ static void nearest_node_is_found(void **state) {
     double        at[3] = {x[0] + 0.004, x[1] - 0.003, x[2] + 0.002};
     assert_int_equal(mesh_fe_nearest(&mesh, at), i);
   }
+  const double extent = sqrt(size[0] * size[0] + size[1] * size[1] + size[2] * size[2]);
+  double       far[3] = {0, 0, -.099 * extent};
+  int          node   = -1;
+  assert_true(fabs(mesh_fe_extent(&mesh) - extent) < 1e-15);
+  assert_int_equal(mesh_fe_near(&mesh, far, "probe.tip", &node), SHB_OK);
+  assert_int_equal(node, 0);
+  far[2] = -.101 * extent;
+  assert_int_equal(mesh_fe_near(&mesh, far, "probe.tip", &node), SHB_ERR_INPUT);
+  assert_non_null(strstr(shb_message(), "probe.tip: (0, 0, -0."));
+  assert_non_null(strstr(shb_message(), "m off the nearest node of the body, which measures"));
   mesh_fe_free(&mesh);
 }
 

@@ -22,5 +22,5 @@ if(TARGET shroudhb-mesh)
   add_test(NAME mesh.command
     COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/mesh/test_command.sh $<TARGET_FILE:shroudhb-mesh>
             ${PROJECT_SOURCE_DIR}/cases/z_notch_blade/case.yaml)
-  set_tests_properties(mesh.command PROPERTIES LABELS fast TIMEOUT 120)
+  set_tests_properties(mesh.command PROPERTIES LABELS fast TIMEOUT 240)
 endif()

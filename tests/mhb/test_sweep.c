@@ -11,6 +11,7 @@
 
 #include "mhb/follow.h"
 #include "mhb/fourier.h"
+#include "mhb/rigid.h"
 #include "mhb/sweep.h"
 #include "tests/mhb/solution.h"
 #include "tests/mhb/three_degree.h"
@@ -337,10 +338,40 @@ static void nothing_happens_without_excitation(void **state) {
   modal_model_free(&model);
 }
 
+/* Stiffer than the blade by more than the limit: R = K^-1, K of three_degree_model, axes v, u, w. */
+static void rigid_contacts_are_refused(void **state) {
+  (void)state;
+  static const double R[3]    = {2.0575 / 1.9865, 1.59 / 1.9865, 1.26 / 1.9865};
+  static const char  *word[3] = {"contact.kv: ", "contact.ku: ", "contact.ku: "};
+  modal_model         model;
+  three_degree_model(&model);
+  for (int axis = 0; axis < 3; axis++)
+    for (int over = 0; over < 2; over++) {
+      mhb_settings    s          = ground(.4, .8, .5, .3, 3);
+      double         *k          = axis == 0 ? &s.kv : &s.ku[axis - 1 ? 2 : 0];
+      mhb_receptance *receptance = NULL;
+      *k                         = (over ? 1.001 : .999) * MHB_RIGID_LIMIT / R[axis];
+      assert_int_equal(mhb_receptance_create(&model, &s, 3, &receptance), SHB_OK);
+      assert_int_equal(mhb_rigid_check(receptance, &s), over ? SHB_ERR_INPUT : SHB_OK);
+      if (over) assert_int_equal(strncmp(shb_message(), word[axis], 12), 0);
+      mhb_receptance_destroy(receptance);
+    }
+  mhb_settings  s        = ground(.4, .8, .5, .3, 3);
+  mhb_response *response = NULL;
+  s.frequency[0] = s.frequency[1] = .2;
+  s.parameter                     = MHB_IN_KV;
+  s.range[1]                      = 1e9;
+  assert_int_equal(mhb_sweep(&model, &s, NULL, NULL, NULL, &response), SHB_ERR_INPUT);
+  assert_non_null(strstr(shb_message(), "contact.kv: 1e+09 N/m is 1e+09 times as stiff"));
+  mhb_response_destroy(response);
+  modal_model_free(&model);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(amplitudes_of_time_integration),
       cmocka_unit_test(three_degree_peaks_and_folds),
+      cmocka_unit_test(rigid_contacts_are_refused),
       cmocka_unit_test(one_degree_with_jumps),
       cmocka_unit_test(friction_oscillator_from_a_cold_start),
       cmocka_unit_test(tip_contact_beam),

@@ -199,7 +199,7 @@ static void loads_add_up(void **state) {
                   {.kind        = FEM_LOAD_FORCE,
                    .force       = {.1, 0, .3},
                    .has_at      = true,
-                   .at          = {0, 0, .3},
+                   .at          = {0, 0, .22},
                    .n_harmonics = 2,
                    .factor      = {0, .3, turn}}};
   modal_model    one[3], all;

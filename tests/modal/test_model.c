@@ -49,10 +49,13 @@ static modal_model sample(bool full) {
   model.right       = numbers(PAIRS * 3 * MODES, 3);
   model.modal_force = waves((LOADS + 1) * MODES, 4);
   if (!full) return model;
-  model.n_probes               = PROBES;
-  model.has_left               = true;
-  model.left                   = numbers(PAIRS * 3 * MODES, 5);
-  model.residual_flexibility   = symmetric(CONTACTS, 6);
+  model.n_probes             = PROBES;
+  model.has_left             = true;
+  model.left                 = numbers(PAIRS * 3 * MODES, 5);
+  model.residual_flexibility = symmetric(CONTACTS, 6);
+  for (int i = 0; i < CONTACTS; i++) /* flexibility is not negative */
+    model.residual_flexibility[i * (CONTACTS + 1)] =
+        fabs(model.residual_flexibility[i * (CONTACTS + 1)]);
   model.residual_inertia       = symmetric(CONTACTS, 7);
   model.load_residual          = waves((LOADS + 1) * CONTACTS, 8);
   model.probe                  = numbers(PROBES * 3 * MODES, 9);
@@ -320,6 +323,9 @@ static void test_values(void **state) {
       {IN(right), 7, INFINITY, "/contact/right/shape: the value at [0, 1, 3] (from 0) is infinite"},
       {IN(left), 0, NAN, "/contact/left/shape: the value at [0, 0, 0]"},
       {IN(residual_flexibility), 5, 1, "/contact/residual_flexibility is not symmetric: [0, 5]"},
+      {IN(residual_flexibility), 0, -1,
+       "/contact/residual_flexibility: value [0, 0] is -1 m/N; what modes leave out cannot be "
+       "negative"},
       {IN(residual_inertia), 30, 1, "/contact/residual_inertia is not symmetric"},
       {IN(residual_inertia), 0, NAN, "/contact/residual_inertia: the value at [0, 0]"},
       {IN(modal_force), 3, NAN, "/load/modal_force: the value at [0, 1]"},
