@@ -67,7 +67,8 @@ typedef struct {
   double          pressure;                /* Pa, steady */
   mesh_axis       axis;
 
-  int           modes;
+  int           modes;           /* 0: auto */
+  double        tolerance, band; /* with modes: auto; Hz */
   modal_damping damping;
   bool          full_integration; /* of hexahedra: stiffness with 3x3x3 points */
   char         *modal_file;       /* resolved path of modal.file, or NULL */

@@ -113,6 +113,21 @@ static void check_followed(case_reader *r) {
     case_reader_issue(r, "contact.n0", "must be one number, because curves follow mhb.vary.n0");
 }
 
+/* The band of modes: auto, where it is not given: what the balance needs. */
+static void check_band(case_reader *r) {
+  case_file          *file = r->file;
+  const mhb_settings *mhb  = &file->mhb;
+  if (file->modal_file || file->modes > 0 || !case_reader_good(r, "modal.modes")) return;
+  if (file->n_speeds > 1)
+    case_reader_issue(r, "modal.modes", "must be a number where rotor.speed is a list");
+  if (file->band > 0 || !case_reader_good(r, "modal.band")) return;
+  if (case_reader_given(r, "mhb.frequency") && case_reader_good(r, "mhb.frequency"))
+    file->band = mhb->frequency[1] * (mhb->harmonics > 0 ? mhb->harmonics : 5) /
+                 (mhb->subharmonics > 0 ? mhb->subharmonics : 1);
+  else if (!case_reader_given(r, "mhb.frequency"))
+    case_reader_issue(r, "modal.band", "missing; modes: auto needs it, or mhb.frequency");
+}
+
 /* Each speed once. */
 static void check_speeds(case_reader *r) {
   const case_file *file = r->file;
@@ -195,6 +210,7 @@ bool case_check_values(case_reader *r, int stages) {
   check_tolerance(r);
   case_check_materials(r);
   check_speeds(r);
+  check_band(r);
   if (stages & CASE_MHB) check_followed(r);
   check_search(r);
   if (own) check_extension(r);

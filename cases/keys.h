@@ -49,6 +49,7 @@ typedef enum {
   CASE_IF_MODAL_FILE, /* modal.file */
   CASE_IF_MATERIAL,   /* no modal.file, and one material */
   CASE_IF_MATERIALS,  /* several, by volumes */
+  CASE_IF_AUTO_MODES, /* modal.modes: auto */
   CASE_IF_CRYSTAL,    /* material.G given */
   CASE_IF_NEIGHBOUR,  /* contact.to: neighbour */
   CASE_IF_SECTOR,     /* neighbour or parametric blade */

@@ -112,7 +112,11 @@ static void describe_source(const case_file *file, FILE *out) {
     if (blade->shroud_size > 0) fprintf(out, ", %g mm in the shroud", 1e3 * blade->shroud_size);
     fputc('\n', out);
   }
-  fprintf(out, "  modes     %d, damping ratio ", file->modes);
+  if (file->modes > 0)
+    fprintf(out, "  modes     %d, damping ratio ", file->modes);
+  else
+    fprintf(out, "  modes     as a tolerance of %g up to %g Hz needs, damping ratio ",
+            file->tolerance, file->band);
   case_damping_print(out, &file->damping, 6);
   fputc('\n', out);
 }

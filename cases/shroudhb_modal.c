@@ -99,6 +99,8 @@ static modal_settings stage_settings(const case_file *file, modal_probe probe[CA
       .pressure         = file->pressure,
       .full_integration = file->full_integration,
       .modes            = file->modes,
+      .tolerance        = file->tolerance,
+      .band             = file->band,
       .damping          = file->damping,
       .load             = file->load,
       .n_probes         = file->n_probes,

@@ -100,8 +100,12 @@ static const case_key table[] = {
     {"rotor.axis", CASE_CHOICE, "", .words = "x y z -x -y -z", .fallback = "x", AT(axis), .stages = CASE_MESH | CASE_MODAL, .when = CASE_IF_OWN_MODES,
      .help = "engine axis, through the origin"},
 
-    {"modal.modes", CASE_INTEGER, "", 1, 1000, .fallback = "20", AT(modes), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
-     .help = "modes kept; what is left out goes into the residual flexibility"},
+    {"modal.modes", CASE_AUTO, "", 1, 1000, .fallback = "20", AT(modes), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
+     .help = "modes kept; what is left out goes into the residual flexibility; auto: as few as modal.tolerance allows"},
+    {"modal.tolerance", CASE_NUMBER, "", 0, 1, true, .fallback = "1e-6", AT(tolerance), .stages = CASE_MODAL, .when = CASE_IF_AUTO_MODES,
+     .help = "with modes: auto, the relative error of the receptance at the contact up to modal.band"},
+    {"modal.band", CASE_NUMBER, "Hz", 0, 1e9, .fallback = "0 Hz", AT(band), .stages = CASE_MODAL, .when = CASE_IF_AUTO_MODES,
+     .help = "with modes: auto; 0: the upper end of mhb.frequency times mhb.harmonics (times 5 where they are auto)"},
     {"modal.damping", CASE_DAMPING, "", 0, 1, .below = true, .required = true, AT(damping), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
      .help = "damping ratio of every mode; [ratio of each], the last for those beyond; {loss_factor: eta}; {rayleigh: [alpha 1/s, beta s]}"},
     {"modal.integration", CASE_SWITCH, "", .words = "reduced full", .fallback = "reduced", AT(full_integration), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
@@ -246,6 +250,8 @@ bool case_key_applies(const case_key *key, const case_file *file) {
       return own && file->has_materials;
     case CASE_IF_LOADS:
       return own && file->has_loads;
+    case CASE_IF_AUTO_MODES:
+      return !file->modal_file && file->modes == 0;
     case CASE_IF_CRYSTAL:
       return own && !file->has_materials && file->constants.G[0] != 0;
     case CASE_IF_NEIGHBOUR:

@@ -10,7 +10,7 @@
 
 #include "modal/model.h"
 
-enum { MODAL_TERMS = 3 }; /* R, R2, R3 */
+enum { MODAL_TERMS = 3, MODAL_MOMENTS = 5 }; /* R, R2, R3; mu_1 .. mu_5 */
 
 typedef struct {
   double weight[MODAL_TERMS]; /* 1, alpha s^-2, beta s^-4; beta is 0 without R3 */
@@ -30,5 +30,11 @@ bool modal_series_has_fourth(const modal_model *model);
  * mode left out never too great (Jensen's inequality). Not more than R: where the series means nothing that is all there is to go by.
  * -1 if the model does not hold the moments. */
 double modal_series_error(const modal_model *model, double omega, int dof);
+
+/* The same from moments mu_1 .. mu_5; last: the last mode kept, rad/s. */
+double modal_series_left(const double moment[MODAL_MOMENTS], double omega, double last);
+
+/* mu_1 .. mu_5 of a contact dof; the model must hold them all. */
+void modal_series_moments(const modal_model *model, int dof, double moment[MODAL_MOMENTS]);
 
 #endif

@@ -12,7 +12,11 @@
 #include "fem/surface.h"
 #include "modal/campbell.h"
 #include "modal/condense.h"
+#include "modal/enough.h"
 #include "modal/export.h"
+#include "modal/reduce.h"
+
+enum { FIRST_MODES = 20, MOST_MODES = 1000 }; /* with modes: auto */
 
 /* The worst status of all ranks; collective. */
 static shb_status agree(MPI_Comm comm, shb_status status) {
@@ -122,21 +126,57 @@ static shb_status assemble(MPI_Comm comm, const fem_body *body, const modal_cond
                        &result->deflection);
 }
 
-static shb_status solve(MPI_Comm comm, const fem_body *body, const modal_settings *settings,
-                        const modal_condensation *to, shb_progress *progress,
-                        modal_result *result) {
-  modal_eigen_settings eigen = {.modes = settings->modes, .progress = progress};
-  SHB_TRY(assemble(comm, body, to, progress, result));
+/* That many modes, condensed. */
+static shb_status find_modes(const fem_body *body, const modal_condensation *to, int modes,
+                             shb_progress *progress, modal_result *result) {
+  modal_eigen_settings eigen = {.modes = modes, .progress = progress};
   FEM_PETSC(modal_eigen_solve(&result->system, &eigen, &result->eigen));
   SHB_CHECK(result->eigen.n > 0, SHB_INTERRUPTED, "interrupted");
   FEM_PETSC(refine(body, result->deflection.at.displacement, &result->system, &result->eigen));
   SHB_CHECK(result->eigen.lambda[0] > 0, SHB_ERR_INPUT,
             "rotor.speed: the static equilibrium at %.6g rad/s is not stable (lowest eigenvalue "
             "%.3g rad2/s2); give a lower speed",
-            settings->speed, result->eigen.lambda[0]);
+            body->rotation.speed, result->eigen.lambda[0]);
+  return modal_condense(&result->system, &result->eigen, to, progress, &result->model);
+}
+
+/* As many modes as the tolerance needs: twice as many until there are enough, then the fewest of them. */
+static shb_status find_enough(const fem_body *body, const modal_settings *settings,
+                              const modal_condensation *to, shb_progress *progress,
+                              modal_result *result) {
+  const int most  = (int)PetscMin(MOST_MODES, 3 * result->system.n_free);
+  int       modes = PetscMin(FIRST_MODES, most), enough = 0;
+  double    error = 0;
+  for (;; modes = PetscMin(2 * modes, most)) {
+    SHB_TRY(find_modes(body, to, modes, progress, result));
+    SHB_TRY(modal_enough(&result->model, settings->band, settings->tolerance, &enough, &error));
+    if (enough > 0) break;
+    SHB_CHECK(modes < most, SHB_ERR_INPUT,
+              "modal.modes: auto: with %d modes, to %.6g Hz, the receptance at the contact errs by "
+              "%.1e up to %.6g Hz; give a greater modal.tolerance than %.1e, or a lower modal.band",
+              modes, result->model.frequency[modes - 1], error, settings->band,
+              settings->tolerance);
+    modal_model_free(&result->model);
+    memset(&result->model, 0, sizeof result->model);
+    FEM_PETSC(modal_eigen_destroy(&result->eigen));
+  }
+  shb_progress_note(progress,
+                    "%d of %d modes kept: the receptance at the contact errs by %.1e up to %.6g Hz",
+                    enough, modes, error, settings->band);
+  result->eigen.n = enough;
+  return modal_model_keep(&result->model, enough, true);
+}
+
+static shb_status solve(MPI_Comm comm, const fem_body *body, const modal_settings *settings,
+                        const modal_condensation *to, shb_progress *progress,
+                        modal_result *result) {
+  SHB_TRY(assemble(comm, body, to, progress, result));
+  if (settings->modes > 0)
+    SHB_TRY(find_modes(body, to, settings->modes, progress, result));
+  else
+    SHB_TRY(find_enough(body, settings, to, progress, result));
   SHB_TRY(modal_participate(body, result->deflection.at.displacement, &result->system,
                             &result->eigen, &result->participation));
-  SHB_TRY(modal_condense(&result->system, &result->eigen, to, progress, &result->model));
   SHB_TRY(name_probes(settings, &result->model));
   return copy_patches(&result->interface, &result->model);
 }

@@ -35,7 +35,8 @@ typedef struct {
   int                 n_speeds; /* of modal_stage: more than one: all of these, speed among them */
   const double       *speeds;   /* [n_speeds] rad/s, distinct */
   double              pressure; /* Pa, steady, on group load, into the deformed surface */
-  int                 modes;
+  int                 modes;    /* 0: as many as tolerance and band need (modal/enough.h) */
+  double              tolerance, band; /* of the contact receptance; Hz */
   modal_damping       damping;
   bool                full_integration; /* stiffness of hexahedra with 3x3x3 points, not 2x2x2 */
   fem_load            load;

@@ -53,6 +53,7 @@ static void only_what_matters(void **state) {
               {"2900 rpm", "2901 rpm", CASE_MODAL},
               {"-y", "y", CASE_MESH | CASE_MODAL},
               {"modes: 17", "modes: 18", CASE_MODAL},
+              {"modes: 17", "modes: auto", CASE_MODAL},
               {"0.23 %", "0.24 %", CASE_MODAL},
               {"engine_order: 7", "engine_order: 8", CASE_MHB},
               {"210 Pa", "211 Pa", CASE_MODAL},

@@ -360,6 +360,50 @@ static void error_is_estimated(void **state) {
   mesh_fe_free(&mesh);
 }
 
+/* Greatest error over the band, against direct solves without damping. */
+static double worst_in_band(modal_model *model, const body *whole, double band) {
+  double worst = 0;
+  for (int i = 1; i <= 10; i++) {
+    double         omega = two_pi * band * i / 10;
+    double complex found[NC * NC], *exact = direct(whole, omega);
+    modal_receptance(model, omega, found);
+    worst = fmax(worst, worst_error(found, exact));
+    free(exact);
+  }
+  return worst;
+}
+
+/* modes: auto keeps what the tolerance and the band ask for, and not one mode more. */
+static void modes_are_just_enough(void **state) {
+  (void)state;
+  const int      cells[3] = {2, 2, 4};
+  mesh_fe        mesh     = make_sector(size, inner, BLADES, cells);
+  modal_settings settings = default_settings(2);
+  settings.modes          = 0;
+  settings.band           = 9000;
+  int before              = 0;
+  for (int k = 0; k < 2; k++) {
+    settings.tolerance  = k ? 1e-8 : 1e-4;
+    modal_result result = solve(&mesh, &settings);
+    body         whole  = create_body(&mesh, &settings, &result);
+    const int    n      = result.model.n_modes;
+    memset(whole.C, 0, (size_t)whole.n * (size_t)whole.n * sizeof *whole.C);
+    for (int i = 0; i < n; i++) result.model.damping_ratio[i] = 0;
+    double error = worst_in_band(&result.model, &whole, settings.band);
+    assert_int_equal(modal_model_keep(&result.model, n - 1, true), SHB_OK);
+    double fewer = worst_in_band(&result.model, &whole, settings.band);
+    print_message("tolerance %.0e: %d modes err by %.1e, one less by %.1e\n", settings.tolerance, n,
+                  error, fewer);
+    assert_true(n > before);
+    check_below(error, 1.1 * settings.tolerance, "error in the band");
+    assert_true(fewer > .9 * settings.tolerance);
+    before = n;
+    free_body(&whole);
+    modal_result_free(&result);
+  }
+  mesh_fe_free(&mesh);
+}
+
 /* At w = 0 every part is exact: contact, load and probes. */
 static void check_static_response(double speed) {
   const int      cells[3] = {2, 2, 4}, nc = 12;
@@ -504,6 +548,7 @@ int main(int argc, char **argv) {
       cmocka_unit_test(receptance_at_speed_matches_a_direct_solve),
       cmocka_unit_test(every_receptance_errs_by_the_first_term_left_out),
       cmocka_unit_test(error_is_estimated),
+      cmocka_unit_test(modes_are_just_enough),
       cmocka_unit_test(static_response_is_exact),
       cmocka_unit_test(patches_add_up_to_the_face),
       cmocka_unit_test(receptance_converges_with_the_mesh),
