@@ -191,7 +191,7 @@ static void numbers_and_ranges(void **state) {
       {"modes: 17", "modes: few", "c.yaml:13:16: error: modal.modes: 'few' is not a whole number",
        1},
       {"modes: 17", "modes: auto, tolerance: 0",
-       "c.yaml:13:35: error: modal.tolerance: is 0, must be above 0", 1},
+       "c.yaml:13:33: error: modal.tolerance: is 0, must be above 0 to 1", 1},
       {"2900 rpm", "[0 rpm, 30 rpm, 0 rpm]",
        "c.yaml:12:28: error: rotor.speed: holds 0 rad/s twice", 1},
       {"2900 rpm", "[]", "c.yaml:12:28: error: rotor.speed: 0 speeds; there may be 1 to 256", 1},
