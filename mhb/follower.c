@@ -138,6 +138,7 @@ static shb_status sufficient_step(mhb_follower *f, mhb_path_outcome *outcome) {
 static shb_status sufficient_start(mhb_follower *f) {
   for (int moved = 1;;) {
     mhb_harmonics_estimate(f->harmonics, &f->path->now);
+    mhb_harmonics_accept(f->harmonics);
     int higher = mhb_harmonics_higher(f->harmonics);
     if (higher < 0 || !moved) return SHB_OK;
     SHB_TRY(move(f, higher, 1, &moved));
@@ -204,6 +205,7 @@ shb_status mhb_follower_step(mhb_follower *f, bool *go_on, const char **end) {
   if (!*end && *go_on && outcome == MHB_PATH_AT_START) *end = come_back(f);
   if (*end || !*go_on) return SHB_OK;
   mhb_path_advance(f->path);
+  mhb_harmonics_accept(f->harmonics);
   double *swap = f->before;
   f->before    = f->after;
   f->after     = swap;

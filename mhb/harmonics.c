@@ -10,7 +10,7 @@ static const double SAFETY = .7, PROMISE = .35, FIRST_ORDER = 3;
 /* A move that ends farther off, relative to the motion, has met another branch. */
 static const double NEAR                 = .3;
 static const int    STEPS[MHB_MAX_RUNGS] = {1, 3, 5, 7, 9, 13, 17, 21, 31};
-enum { QUIET = 3, HOLD = 6 };
+enum { QUIET = 3, HOLD = 6, ONSET = 7 };
 
 /* Highest harmonic of the fundamental that the load has, at least nu. */
 static int load_harmonics(const modal_model *model, const mhb_settings *s) {
@@ -135,6 +135,13 @@ static int choose(const mhb_harmonics *h, const double *x, double error, double 
   return h->n - 1;
 }
 
+/* Where slip or opening begins. */
+static int at_onset(const mhb_harmonics *h) {
+  int rung = 0;
+  while (rung + 1 < h->n && h->m[rung] < ONSET * h->settings->subharmonics) rung++;
+  return rung;
+}
+
 int mhb_harmonics_most_unknowns(const mhb_harmonics *h) {
   return 3 * h->model->n_pairs * (2 * h->m[h->n - 1] + 1);
 }
@@ -154,10 +161,15 @@ void mhb_harmonics_estimate(mhb_harmonics *h, mhb_path_point *point) {
   if (h->n == 1) return;
   double factor = point->truncation_kind == MHB_TRUNCATION_FIRST_ORDER ? FIRST_ORDER : 1;
   h->wanted = choose(h, point->x, factor * point->truncation, mhb_norm(point->x, r->residual->n));
+  if (h->from_linear && !h->linear && h->wanted < at_onset(h)) h->wanted = at_onset(h);
 }
 
 int mhb_harmonics_higher(const mhb_harmonics *h) {
   return h->wanted > h->at ? h->wanted : -1;
+}
+
+void mhb_harmonics_accept(mhb_harmonics *h) {
+  h->from_linear = h->linear;
 }
 
 int mhb_harmonics_lower(mhb_harmonics *h) {

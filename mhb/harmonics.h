@@ -34,6 +34,7 @@ typedef struct {
   int                 at, highest;         /* the rung in use; the highest used so far */
   int                 wanted;              /* what the last estimate asks for */
   int                 linear;              /* nothing was left out there */
+  int                 from_linear;         /* nor at the last accepted point */
   int                 quiet;               /* points in a row that ask for a lower one */
 } mhb_harmonics;
 
@@ -60,11 +61,15 @@ int mhb_harmonics_most_unknowns(const mhb_harmonics *harmonics);
 /* Errors of a solution the residual of the rung in use was just evaluated at: fills truncation and modal of the point. */
 void mhb_harmonics_errors(mhb_harmonics *harmonics, mhb_path_point *point);
 
-/* The same, and which rung they ask for. */
+/* The same, and which rung they ask for: where a contact begins to slip or open no fewer than seven harmonics, for a curve of
+ * fewer may go on smoothly where that of many turns back, and is then lost to it. */
 void mhb_harmonics_estimate(mhb_harmonics *harmonics, mhb_path_point *point);
 
 /* The rung that the last estimate asks for, above the one in use; -1: the one in use will do. */
 int mhb_harmonics_higher(const mhb_harmonics *harmonics);
+
+/* The last estimate is that of an accepted point. */
+void mhb_harmonics_accept(mhb_harmonics *harmonics);
 
 /* The rung to go down to after an accepted point, -1: none. Counts the points. */
 int mhb_harmonics_lower(mhb_harmonics *harmonics);
