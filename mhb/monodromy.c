@@ -10,12 +10,13 @@ static const double TWO_PI = 6.283185307179586476925;
 static const double SHORT = 1e-13;
 
 shb_status mhb_monodromy_create(const mhb_structure *s, const mhb_timetable *timetable,
-                                mhb_contact *contact, int m, int substeps, mhb_monodromy **out) {
+                                mhb_contact *contact, int m, int substeps, int finest,
+                                mhb_monodromy **out) {
   mhb_monodromy *d = calloc(1, sizeof *d);
   SHB_CHECK(d, SHB_ERR_IO, "out of memory");
   int    blades = timetable->chunks, capacity = 2 * blades * (s->modes + s->pairs);
   int    pieces     = timetable->capacity + 1;
-  int    steps      = 2 * ((int)(substeps * timetable->span) + 1 + pieces);
+  int    steps      = finest * ((int)(substeps * timetable->span) + 1 + pieces);
   size_t cells      = (size_t)(s->blades / blades);
   d->blades         = blades;
   d->structure      = s;

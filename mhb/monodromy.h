@@ -22,13 +22,14 @@ typedef struct {
   double              *M;          /* [cell][n][n] column-major */
 } mhb_monodromy;
 
-/* SHB_ERR_IO: no memory. Structure, timetable and contact must outlive it. */
+/* finest: the greatest refinement there is room for. SHB_ERR_IO: no memory. Structure, timetable and contact must outlive it. */
 shb_status mhb_monodromy_create(const mhb_structure *structure, const mhb_timetable *timetable,
-                                mhb_contact *contact, int m, int substeps,
+                                mhb_contact *contact, int m, int substeps, int finest,
                                 mhb_monodromy **monodromy);
 void       mhb_monodromy_destroy(mhb_monodromy *monodromy);
 
-/* M for a solution and the timetable set from it, with substeps * refinement (1 or 2) sub-steps; omega: of the fundamental.
+/* M for a solution and the timetable set from it, with substeps * refinement sub-steps, each piece between events cut
+ * that much finer; omega: of the fundamental.
  * NULL, or why not. */
 const char *mhb_monodromy_set(mhb_monodromy *monodromy, const mhb_solution *solution, double omega,
                               int refinement);

@@ -9,7 +9,14 @@
 
 static const double TWO_PI = 6.283185307179586476925;
 static const double MARGIN = 1e-3;
-enum { MAX_STATES = 600 };
+
+/* Sub-steps are halved until they change the largest multiplier by less than half its distance from 1, and by less than ROUGH the
+ * first time, where the change is that of the coarser of two orders, FINE later. FINEST: of half the sub-steps asked for. */
+static const double DISTANCE = .5, ROUGH = 2e-2, FINE = 1e-3;
+
+/* Modes whose squared frequency a contact raises by this part count; sub-steps to a cycle of theirs. */
+static const double SHIFTED = .1, A_CYCLE = 3;
+enum { MAX_STATES = 600, FINEST = 32 };
 
 struct mhb_stability {
   mhb_structure   structure; /* all modes */
@@ -19,6 +26,7 @@ struct mhb_stability {
   mhb_contact    *contact;
   mhb_monodromy  *monodromy; /* NULL: too many states even with one mode */
   mhb_bloch       bloch;
+  double         *coarse; /* the matrix of twice the sub-step */
   int             nu, max_states;
   int            *state;      /* [pair] */
   double complex *multiplier; /* [states] */
@@ -41,11 +49,13 @@ static shb_status fill(mhb_stability *s, const mhb_receptance *receptance,
   SHB_TRY(mhb_contact_create(m, m, settings->tolerance, &s->contact));
   if (affordable(s) > 0) {
     SHB_TRY(mhb_structure_create(receptance, settings, affordable(s), &s->reduced));
-    SHB_TRY(
-        mhb_monodromy_create(&s->reduced, &s->timetable, s->contact, m, substeps, &s->monodromy));
-    int cell = s->timetable.chunks;
-    SHB_TRY(mhb_bloch_create(mhb_stability_cells(s), 2 * cell * (s->reduced.modes + whole->pairs),
-                             &s->bloch));
+    SHB_TRY(mhb_monodromy_create(&s->reduced, &s->timetable, s->contact, m, (substeps + 1) / 2,
+                                 FINEST, &s->monodromy));
+    int cells  = mhb_stability_cells(s),
+        states = 2 * s->timetable.chunks * (s->reduced.modes + whole->pairs);
+    SHB_TRY(mhb_bloch_create(cells, states, &s->bloch));
+    s->coarse = calloc((size_t)cells * (size_t)states * (size_t)states + 1, sizeof *s->coarse);
+    SHB_CHECK(s->coarse, SHB_ERR_IO, "out of memory for the stability of %d states", all);
   }
   s->nu         = settings->subharmonics;
   s->state      = calloc((size_t)whole->pairs, sizeof(int));
@@ -81,6 +91,7 @@ void mhb_stability_destroy(mhb_stability *s) {
   mhb_structure_destroy(&s->reduced);
   mhb_structure_destroy(&s->structure);
   free(s->state);
+  free(s->coarse);
   free(s->multiplier);
   free(s);
 }
@@ -132,31 +143,92 @@ static const char *linear(mhb_stability *s, const mhb_solution *solution, double
   return NULL;
 }
 
-static const char *integrated(mhb_stability *s, const mhb_solution *solution, double omega,
-                              int refinement, mhb_multipliers *out) {
-  mhb_monodromy *d   = s->monodromy;
-  const char    *why = mhb_monodromy_set(d, solution, omega, refinement);
-  if (why) return why;
+/* Multipliers of the matrix S. */
+static const char *multipliers_of(mhb_stability *s, const double *S, mhb_multipliers *out) {
   const mhb_timetable *t = &s->timetable;
-  for (int i = 0; i < s->bloch.cells * d->n * d->n; i++)
-    if (!isfinite(d->M[i])) return "the disturbances overflow";
-  if (!mhb_bloch_multipliers(&s->bloch, d->n, d->M, t->chunks, t->shift % s->bloch.cells,
-                             s->multiplier))
+  int                  n = s->monodromy->n;
+  if (!mhb_bloch_multipliers(&s->bloch, n, S, t->chunks, t->shift % s->bloch.cells, s->multiplier))
     return "the eigensolver failed";
   out->modes = s->reduced.modes;
-  take(s, s->bloch.cells * d->n, out);
+  take(s, s->bloch.cells * n, out);
   return NULL;
 }
 
-/* Slip, opening, closing: refined only where the answer hangs on it. */
+/* The matrix of a refinement into the monodromy's M, the one before into coarse. */
+static const char *refine(mhb_stability *s, const mhb_solution *solution, double omega,
+                          int refinement) {
+  mhb_monodromy *d    = s->monodromy;
+  double        *swap = d->M;
+  d->M                = s->coarse;
+  s->coarse           = swap;
+  const char *why     = mhb_monodromy_set(d, solution, omega, refinement);
+  if (why) return why;
+  for (int i = 0; i < s->bloch.cells * d->n * d->n; i++)
+    if (!isfinite(d->M[i])) return "the disturbances overflow";
+  return NULL;
+}
+
+/* coarse <- (4 M - coarse)/3: the sub-steps' error is of second order and even, what is left of fourth. */
+static const double *extrapolated(mhb_stability *s) {
+  const mhb_monodromy *d = s->monodromy;
+  for (int i = 0; i < s->bloch.cells * d->n * d->n; i++)
+    s->coarse[i] = d->M[i] + (d->M[i] - s->coarse[i]) / 3;
+  return s->coarse;
+}
+
+static int settled(const mhb_multipliers *out, double most) {
+  return out->change <= fmax(.1 * MARGIN, fmin(most, DISTANCE * fabs(out->largest - 1)));
+}
+
+/* |phi|^2 S of a mode of a blade: what sticking contacts add to its squared frequency. */
+static double stiffening(const mhb_structure *structure, const mhb_law *law, int mode) {
+  double sum = 0;
+  for (int k = 0; k < structure->sides * structure->pairs; k++) {
+    int           side = k / structure->pairs, pair = k % structure->pairs;
+    const double *b = structure->shape +
+                      (size_t)(side * structure->modes + mode) * (size_t)(3 * structure->pairs) +
+                      3 * pair;
+    const mhb_law *of = &law[pair];
+    sum += of->kv * b[0] * b[0];
+    if (of->mu > 0)
+      sum += of->ku[0] * b[1] * b[1] + 2 * of->ku[1] * b[1] * b[2] + of->ku[2] * b[2] * b[2];
+  }
+  return sum;
+}
+
+/* Where to begin: A_CYCLE sub-steps to a cycle of the fastest mode that its contacts shift. */
+static int first_refinement(const mhb_stability *s, const mhb_law *law, double omega) {
+  const mhb_structure *structure  = &s->reduced;
+  double               square     = 0;
+  int                  refinement = 1;
+  for (int i = 0; i < structure->modes; i++) {
+    double own = structure->omega[i] * structure->omega[i], more = stiffening(structure, law, i);
+    if (more > SHIFTED * own) square = fmax(square, own + more);
+  }
+  while (s->monodromy->substeps * refinement * omega < A_CYCLE * sqrt(square) &&
+         4 * refinement < FINEST)
+    refinement *= 2;
+  return refinement;
+}
+
+/* Slip, opening, closing: sub-steps halved until the answer no longer hangs on them. */
 static const char *nonlinear(mhb_stability *s, const mhb_solution *solution, double omega,
                              mhb_multipliers *out) {
   if (!s->monodromy) return "more states than max_states";
-  const char *why = integrated(s, solution, omega, 1, out);
-  if (why || out->largest <= 1 + MARGIN) return why;
-  double coarse = out->largest;
-  why           = integrated(s, solution, omega, 2, out);
-  out->change   = fabs(out->largest - coarse);
+  int         first = first_refinement(s, solution->law, omega);
+  const char *why   = refine(s, solution, omega, first);
+  if (!why) why = refine(s, solution, omega, 2 * first);
+  if (!why) why = multipliers_of(s, s->monodromy->M, out);
+  for (int refinement = 2 * first; !why; refinement *= 2) {
+    double before = out->largest;
+    why           = multipliers_of(s, extrapolated(s), out);
+    out->change   = fabs(out->largest - before);
+    if (why || settled(out, refinement == 2 * first ? ROUGH : FINE)) return why;
+    if (refinement == FINEST) break;
+    why = refine(s, solution, omega, 2 * refinement);
+  }
+  if (!why && out->change > MARGIN && fabs(out->largest - 1) <= out->change)
+    why = "the sub-steps do not settle it";
   return why;
 }
 

@@ -26,20 +26,19 @@ typedef struct {
   mhb_crossing crossing; /* of the largest: fold, flip or Neimark-Sacker if it is beyond 1 */
   int          n;        /* multipliers computed */
   const double complex
-        *multiplier; /* [n] by falling modulus, pairs together; valid until the next call */
-  int    n_stuck;    /* multipliers 1 left out */
-  int    n_zero;     /* exact zeros left out */
-  int    n_unstable; /* beyond the margin */
-  int    modes;      /* with their dynamics; fewer than the model has: max_states was reached */
-  double largest;    /* modulus of the first */
-  double
-      change; /* of largest from N sub-steps to 2 N; -1: not needed, only values above 1 are checked */
-  const char *reason; /* of MHB_UNDECIDED, else NULL */
+             *multiplier; /* [n] by falling modulus, pairs together; valid until the next call */
+  int         n_stuck;    /* multipliers 1 left out */
+  int         n_zero;     /* exact zeros left out */
+  int         n_unstable; /* beyond the margin */
+  int         modes;   /* with their dynamics; fewer than the model has: max_states was reached */
+  double      largest; /* modulus of the first */
+  double      change;  /* of largest by the last halving of the sub-steps; -1: there are none */
+  const char *reason;  /* of MHB_UNDECIDED, else NULL */
 } mhb_multipliers;
 
 typedef struct mhb_stability mhb_stability; /* workspace; one a thread */
 
-/* For the harmonics of settings and N = substeps to a period of the fundamental; max_states 0: 600.
+/* For the harmonics of settings and N = substeps to a period of the fundamental, to begin with; max_states 0: 600.
  * The receptance must outlive it. Errors: SHB_ERR_INPUT substeps < 1; SHB_ERR_IO no memory. Not thread safe (FFTW planner). */
 shb_status mhb_stability_create(const mhb_receptance *receptance, const mhb_settings *settings,
                                 int substeps, int max_states, mhb_stability **stability);
@@ -49,7 +48,7 @@ void       mhb_stability_destroy(mhb_stability *stability);
 int mhb_stability_cells(const mhb_stability *stability);
 
 /* Multipliers of a solution. Unstable: largest > 1 + max(1e-3, change); marginal: above 1 but not beyond that; undecided: the
- * contact law was lost at the solution, or max_states is too small for one mode a blade. No allocation. */
+ * contact law was lost at the solution, 16 N sub-steps do not settle it, or max_states is too small for one mode a blade. No allocation. */
 void mhb_stability_evaluate(mhb_stability *stability, const mhb_solution *solution,
                             mhb_multipliers *multipliers);
 

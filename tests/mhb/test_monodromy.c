@@ -180,12 +180,14 @@ static void many_periods_by_brute_force(void **state) {
   modal_model_free(&model);
 }
 
-/* The error falls with the square of the sub-step: the slope over three halvings. */
-static void second_order(void **state) {
+/* Extrapolated, the error falls with the fourth power of the sub-step. With residual flexibility what is left is not the sub-steps': the
+ * slip directions of the balance, of finitely many harmonics, do not meet at the events. */
+static void fourth_order(void **state) {
   (void)state;
-  static const scene scenes[] = {{"one pair", 1, 0, 0, 0, .4, .05, 1, 0, 0},
-                                 {"residual, two pairs", 2, WITH_RESIDUAL, 0, 0, .4, .05, 1, 0, 0},
-                                 {"ring of 3, order 1", 1, 0, 3, 1, .4, .05, 1, 0, 0}};
+  static const scene  scenes[] = {{"one pair", 1, 0, 0, 0, .4, .05, 1, 0, 0},
+                                  {"ring of 3, order 1", 1, 0, 3, 1, .4, .05, 1, 0, 0},
+                                  {"residual, two pairs", 2, WITH_RESIDUAL, 0, 0, .4, .05, 1, 0, 0}};
+  static const double least[] = {3.4, 3, 0}, most[] = {1e-5, 3e-4, 1e-4};
   for (int i = 0; i < 3; i++) {
     modal_model    model;
     periodic       p = solve(&scenes[i], &model);
@@ -199,8 +201,8 @@ static void second_order(void **state) {
     double order = log2(error[0] / error[3]) / 3;
     print_message("%-24s %.1e %.1e %.1e %.1e: order %.2f\n", scenes[i].name, error[0], error[1],
                   error[2], error[3], order);
-    assert_true(order > 1.8);
-    assert_true(error[3] < 3e-4);
+    assert_true(order > least[i]);
+    assert_true(error[0] < most[i]);
     periodic_destroy(&p);
     modal_model_free(&model);
   }
@@ -210,7 +212,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(one_period_by_brute_force),
       cmocka_unit_test(many_periods_by_brute_force),
-      cmocka_unit_test(second_order),
+      cmocka_unit_test(fourth_order),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
