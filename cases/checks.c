@@ -161,6 +161,26 @@ static void check_search(case_reader *r) {
   }
 }
 
+/* There are no solutions of the balance to start on outside its range. */
+static void check_integrate(case_reader *r) {
+  static const char           path[] = "integrate.frequencies";
+  const mhb_settings         *mhb    = &r->file->mhb;
+  const mhb_witness_settings *asked  = &r->file->integrate;
+  const case_node            *node   = case_reader_given(r, path);
+  if (!node || !case_reader_good(r, path) || !case_reader_good(r, "mhb.frequency")) return;
+  if (!asked->listed || asked->start != MHB_FROM_BALANCE || mhb->parameter != MHB_IN_FREQUENCY)
+    return;
+  for (int i = 0; i < asked->n_frequencies; i++) {
+    char full[CASE_PATH];
+    case_path(full, "%s[%d]", path, i);
+    if (asked->frequency[i] < mhb->frequency[0] || asked->frequency[i] > mhb->frequency[1])
+      case_issue_add(r->issues, node->child[i].line, node->child[i].column, full,
+                     "is %g Hz, must be within mhb.frequency, %g to %g Hz, where there are "
+                     "solutions to start on; or set integrate.start to rest or state",
+                     asked->frequency[i], mhb->frequency[0], mhb->frequency[1]);
+  }
+}
+
 /* An input file that cannot be read; true if so. */
 static bool check_file(case_reader *r, const char *key, const char *path) {
   if (!path || !case_reader_good(r, key)) return false;
@@ -213,6 +233,7 @@ bool case_check_values(case_reader *r, int stages) {
   check_band(r);
   if (stages & CASE_MHB) check_followed(r);
   check_search(r);
+  if (stages & CASE_MHB) check_integrate(r);
   if (own) check_extension(r);
   if (own && stages & (CASE_MESH | CASE_MODAL)) lost = check_file(r, "mesh.file", file->mesh_file);
   if (own && stages & CASE_MODAL && file->load.kind == FEM_LOAD_FIELD && !lost)

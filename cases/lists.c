@@ -60,6 +60,20 @@ static bool read_preload_range(const case_reading *c, const case_node *node, int
   return true;
 }
 
+/* The same preload twice gives the same curve twice. With several interfaces the lists go together: paths of their own. */
+static bool all_differ(const case_reading *c, const case_node *node, const double *n0) {
+  for (int i = 1; strcmp(c->path, "contact.n0") == 0 && i < node->n; i++)
+    for (int j = 0; j < i; j++) {
+      char path[CASE_PATH];
+      if (n0[i] != n0[j]) continue;
+      case_path(path, "%s[%d]", c->path, i);
+      case_issue_add(c->issues, node->child[i].line, node->child[i].column, path,
+                     "is %g N, which [%d] is already; every preload once", n0[i], j);
+      return false;
+    }
+  return true;
+}
+
 bool case_list_preloads(const case_reading *c, const case_node *node, void *slot) {
   double *n0 = slot;
   int    *n  = (int *)((char *)slot - c->key->at + c->key->count_at);
@@ -69,7 +83,7 @@ bool case_list_preloads(const case_reading *c, const case_node *node, void *slot
   if (node->kind != CASE_SEQUENCE) return case_reading_refuse(c, node);
   if (!preload_room(c, node, node->n)) return false;
   *n = node->n;
-  return case_reading_numbers(c, c->path, node, node->n, n0);
+  return case_reading_numbers(c, c->path, node, node->n, n0) && all_differ(c, node, n0);
 }
 
 static bool list_room(const case_reading *c, const case_node *node, int most) {

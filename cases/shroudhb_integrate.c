@@ -92,8 +92,14 @@ static shb_status solve(const case_file *file, const char *modal, const mhb_resp
   shb_progress_clear(progress);
   if (response && !progress->quiet) summarise(file, response, output);
   shb_progress_note(progress, "%.2f s in all", shb_seconds() - progress->started);
+  int points = 0;
+  for (int i = 0; response && i < response->n_branches; i++) points += response->branch[i].n_points;
   mhb_response_destroy(response);
   modal_model_free(&model);
+  SHB_CHECK(status != SHB_OK || points > 0, SHB_NOT_CONVERGED,
+            "%s: no points: the balance has no stable solution at any of integrate.frequencies to "
+            "start on; set integrate.start to rest or state",
+            output);
   return status;
 }
 

@@ -1,4 +1,4 @@
-#define _GNU_SOURCE /* getline */
+#define _GNU_SOURCE /* getdelim */
 #include "mesh/deck.h"
 
 #include <ctype.h>
@@ -21,10 +21,23 @@ shb_status mesh_deck_fail(const mesh_deck *deck, long line, const char *source, 
   return shb_fail(SHB_ERR_INPUT, source, at, "%s:%ld: %s", deck->path, line, text);
 }
 
+/* Passes over a byte order mark; sees what ends the first line. */
+static void begin(mesh_deck *deck) {
+  char start[4] = "";
+  int  c        = 0;
+  deck->end     = '\n';
+  if (fread(start, 1, 3, deck->file) != 3 || strcmp(start, "\xEF\xBB\xBF") != 0) rewind(deck->file);
+  long from = ftell(deck->file);
+  while ((c = getc(deck->file)) != EOF && c != '\n' && c != '\r') continue;
+  if (c == '\r' && getc(deck->file) != '\n') deck->end = '\r';
+  fseek(deck->file, from, SEEK_SET);
+}
+
 shb_status mesh_deck_open(const char *path, mesh_deck *deck) {
   *deck      = (mesh_deck){.path = path};
   deck->file = fopen(path, "rb");
   SHB_CHECK(deck->file, SHB_ERR_IO, "%s: cannot be read: %s", path, strerror(errno));
+  begin(deck);
   return SHB_OK;
 }
 
@@ -49,7 +62,7 @@ static shb_status next_line(mesh_deck *deck, bool *found) {
     deck->held = false;
     return SHB_OK;
   }
-  for (ssize_t n; (n = getline(&deck->text, &deck->size, deck->file)) >= 0;) {
+  for (ssize_t n; (n = getdelim(&deck->text, &deck->size, deck->end, deck->file)) >= 0;) {
     deck->line++;
     MESH_DECK_CHECK(memchr(deck->text, '\0', (size_t)n) == NULL, deck, deck->line,
                     "holds a zero byte; not a text file");

@@ -16,6 +16,7 @@ typedef struct {
   size_t      size;
   long        line; /* its number, from 1 */
   bool        held; /* it was looked at but not taken */
+  int         end;  /* what ends a line: LF (also CR LF), or CR */
 } mesh_deck;
 
 /* "*NSET, NSET=root, GENERATE" */

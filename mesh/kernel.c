@@ -1,6 +1,7 @@
 #include "mesh/kernel.h"
 
 #include <ctype.h>
+#include <fcntl.h>
 #include <gmshc.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,6 +16,25 @@ static void keep_handlers(mesh_kernel *kernel) {
 
 static void restore_handlers(const mesh_kernel *kernel) {
   for (int i = 0; i < MESH_KERNEL_SIGNALS; i++) sigaction(kept[i], &kernel->handler[i], NULL);
+}
+
+/* OpenCASCADE tells its faults on standard output, in colours; gmsh's logger has them too. */
+static int silenced = -1;
+
+static void silence(void) {
+  int null = open("/dev/null", O_WRONLY);
+  fflush(stdout);
+  silenced = null >= 0 ? dup(STDOUT_FILENO) : -1;
+  if (silenced >= 0) dup2(null, STDOUT_FILENO);
+  if (null >= 0) close(null);
+}
+
+static void speak(void) {
+  fflush(stdout);
+  if (silenced < 0) return;
+  dup2(silenced, STDOUT_FILENO);
+  close(silenced);
+  silenced = -1;
 }
 
 /* gmsh is up, and what it reads: exit handlers have no arguments. */
@@ -54,7 +74,8 @@ shb_status mesh_kernel_open(mesh_kernel *kernel) {
 }
 
 void mesh_kernel_close(mesh_kernel *kernel) {
-  int ierr   = 0;
+  int ierr = 0;
+  speak();
   at_work[0] = '\0';
   gmshFinalize(&ierr);
   restore_handlers(kernel);
@@ -78,6 +99,7 @@ shb_status mesh_kernel_fail(shb_status code, const char *file, int line, const c
 void mesh_kernel_listen(const char *what) {
   int ierr = 0;
   guard(what);
+  silence();
   gmshLoggerStart(&ierr);
 }
 
@@ -86,6 +108,7 @@ shb_status mesh_kernel_heard(const char *what) {
   size_t     n      = 0;
   int        ierr   = 0;
   shb_status status = SHB_OK;
+  speak();
   gmshLoggerGet(&line, &n, &ierr);
   gmshLoggerStop(&ierr);
   for (size_t i = 0; i < n; i++) {

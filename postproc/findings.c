@@ -29,6 +29,11 @@ static char *place(const post_study *study, const post_track_point *p, char out[
   return out;
 }
 
+/* The largest value is no peak, but where the range ends. */
+static bool at_end(const post_track_point *p) {
+  return p->edge && !p->level;
+}
+
 static void put_peak_figure(const post_study *study, post_buffer *out, const char *label,
                             const post_track_point *p) {
   char a[POST_NUMBER], at[POST_PLACE], note[160];
@@ -78,11 +83,15 @@ static void put_gain(double amplitude, const post_tracking *t, post_buffer *out)
 }
 
 void post_figures(const post_study *study, post_buffer *out) {
-  const post_tracking *t    = &study->tracking;
-  bool                 peak = !post_at_one_frequency(study);
+  const post_tracking *t = &study->tracking;
+  const bool one         = post_at_one_frequency(study); /* there the largest need not be a peak */
   post_put(out, "<dl class=\"figures\">\n");
-  put_peak_figure(study, out, peak ? "Peak, shrouds open" : "Largest, shrouds open", &t->open);
-  put_peak_figure(study, out, peak ? "Peak, shrouds stuck" : "Largest, shrouds stuck", &t->stuck);
+  put_peak_figure(study, out,
+                  one || at_end(&t->open) ? "Largest, shrouds open" : "Peak, shrouds open",
+                  &t->open);
+  put_peak_figure(study, out,
+                  one || at_end(&t->stuck) ? "Largest, shrouds stuck" : "Peak, shrouds stuck",
+                  &t->stuck);
   if (study->abscissa.parameter == MHB_IN_N0) {
     post_track_point lowest = extreme(study, true);
     put_peak_figure(study, out, "Lowest with friction", &lowest);
@@ -400,14 +409,15 @@ static void put_brief(const post_study *study, post_buffer *out, const char *nam
                       const post_track_point *p) {
   char a[POST_NUMBER], at[POST_PLACE];
   if (!(p->amplitude > 0)) return;
-  post_put(out, "%s%s %s at %s", out->length ? "; " : "", name,
-           post_measure(a, p->amplitude, post_unit_length(p->amplitude), 3), place(study, p, at));
+  post_put(out, "%s%s %s at %s%s", out->length ? "; " : "", name,
+           post_measure(a, p->amplitude, post_unit_length(p->amplitude), 3), place(study, p, at),
+           at_end(p) ? ", the end of the range" : "");
 }
 
 void post_summary(const post_study *study, post_buffer *out) {
   const post_tracking *t = &study->tracking;
-  put_brief(study, out, "open peak", &t->open);
-  put_brief(study, out, "stuck peak", &t->stuck);
+  put_brief(study, out, at_end(&t->open) ? "open, largest" : "open peak", &t->open);
+  put_brief(study, out, at_end(&t->stuck) ? "stuck, largest" : "stuck peak", &t->stuck);
   if (study->abscissa.parameter == MHB_IN_N0) {
     post_track_point lowest = extreme(study, true);
     put_brief(study, out, "lowest", &lowest);

@@ -408,6 +408,12 @@ static void nothing_is_ignored(void **state) {
        1},
       {"  stability: always", "  stability: never\n  flips: mark",
        "c.yaml:37:10: error: mhb.flips: only says something with mhb.stability: auto or always", 1},
+      {"[-20 N, 0, 0.3 kN]", "[-20 N, 300 N, 0.3 kN]",
+       "c.yaml:27:22: error: contact.n0[2]: is 300 N, which [1] is already; every preload once", 1},
+      {"mhb:\n", "integrate: {frequencies: [100, 130 Hz, 0.14 kHz]}\nmhb:\n",
+       "c.yaml:30:32: error: integrate.frequencies[1]: is 130 Hz, must be within mhb.frequency, 90 "
+       "to 120 Hz, where there are solutions to start on; or set integrate.start to rest or state",
+       2},
       {"mhb:\n", "integrate: {direction: up}\nmhb:\n",
        "c.yaml:30:24: error: integrate.direction: only says something with integrate.start: state",
        1},

@@ -166,6 +166,16 @@ lines 1
 says "shroudhb: warning: sector.geo: the body measures "
 says "are its coordinates in mm? Say so with mesh.unit"
 
+# What OpenCASCADE says of a file that is none is one line, without colours.
+printf 'ISO-10303-21;\nnothing\n' >"$work/dir/none.step"
+solid "$(echo "$rules" | sed '/unit:/d')"
+sed -i 's/sector.geo/none.step/' "$work/dir/solid.yaml"
+run 2 solid.yaml
+lines 1
+says "shroudhb: error: none.step: "
+[ -s "$work/out" ] && fail "OpenCASCADE spoke on standard output"
+rm "$work/dir/none.step"
+
 # A script that ends the program is no success.
 solid "$rules"
 echo 'Exit;' >>"$work/dir/sector.geo"

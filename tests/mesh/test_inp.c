@@ -108,6 +108,35 @@ static void what_was_written_comes_back(void **state) {
 }
 
 /* Coordinates of 17 digits of any size and sign: next to what they were, in 20 characters each. */
+/* A byte order mark before all; lines that end in CR LF, or in CR. */
+static void other_ends_of_lines_are_read(void **state) {
+  (void)state;
+  mesh_fe box, mesh;
+  full_box(MESH_TET10, &box);
+  for (int way = 0; way < 4; way++) {
+    assert_int_equal(mesh_inp_write(&box, path), SHB_OK);
+    FILE  *file = fopen(path, "rb");
+    char  *text = calloc(1, 1 << 20);
+    size_t n    = fread(text, 1, (1 << 20) - 1, file);
+    assert_true(n > 1000 && n < (1 << 20) - 1);
+    fclose(file);
+    file = fopen(path, "wb");
+    if (way != 1) fputs("\xEF\xBB\xBF", file);
+    for (size_t i = 0; i < n; i++) {
+      if (text[i] == '\n' && way > 0) fputc('\r', file);
+      if (text[i] != '\n' || way < 2) fputc(text[i], file);
+      if (text[i] == '\n' && way == 3) fputc('\r', file); /* empty lines between */
+    }
+    fclose(file);
+    free(text);
+    shb_status status = mesh_fe_read(path, &mesh);
+    if (status != SHB_OK) fail_msg("way %d: %s", way, shb_message());
+    same_mesh(&box, &mesh);
+    mesh_fe_free(&mesh);
+  }
+  mesh_fe_free(&box);
+}
+
 static void numbers_fit_calculix(void **state) {
   (void)state;
   mesh_fe box, mesh;
@@ -367,6 +396,7 @@ static void other_bytes_are_refused(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(what_was_written_comes_back),
+      cmocka_unit_test(other_ends_of_lines_are_read),
       cmocka_unit_test(numbers_fit_calculix),
       cmocka_unit_test(cannot_be_written_nowhere),
       cmocka_unit_test(other_ways_to_write_are_read),

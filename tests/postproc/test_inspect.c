@@ -76,6 +76,21 @@ static void response(void **state) {
   mhb_response_destroy(r);
 }
 
+/* Curves that end below their resonance have no peak. */
+static void largest_at_the_end(void **state) {
+  (void)state;
+  fixture_options o     = fixture_usual();
+  mhb_response   *r     = fixture_response(&o);
+  r->branch[0].n_points = 12;
+  assert_int_equal(r->branch[0].kind, MHB_BRANCH_OPEN);
+  assert_ok(mhb_response_write(r, at("e.response.h5"), &PROVENANCE));
+  char *text = inspect("e.response.h5", PLAIN, SHB_OK);
+  assert_has(text, "open, largest ");
+  assert_has(text, ", the end of the range; stuck peak ");
+  free(text);
+  mhb_response_destroy(r);
+}
+
 static void parameter(void **state) {
   (void)state;
   static const char *const range[] = {"n0 −250 … 1000 N at 240 Hz", "scale 0.05 … 10 at 240 Hz"};
@@ -262,9 +277,9 @@ static void errors(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(response), cmocka_unit_test(parameter),
-                                     cmocka_unit_test(modal),    cmocka_unit_test(pretender),
-                                     cmocka_unit_test(foreign),  cmocka_unit_test(large),
-                                     cmocka_unit_test(errors)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(response), cmocka_unit_test(parameter), cmocka_unit_test(largest_at_the_end),
+      cmocka_unit_test(modal),    cmocka_unit_test(pretender), cmocka_unit_test(foreign),
+      cmocka_unit_test(large),    cmocka_unit_test(errors)};
   return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }
