@@ -4,7 +4,8 @@
  * e_k = exp(-j k phi/nu), phi = 2 pi E/N + 2 pi l (eq. 16; l = 0 for nu = 1, else the least for which the wave of nu periods
  * closes around the ring; no left side to ground):
  *   B_k[3a + c][i] = T0^T (right - e_k left)                              relative motion of mode i
- *   L_i  = 1/(w_i^2 - (k w)^2 + 2 j zeta_i w_i k w)                       eq. 20
+ *   L_i  = 1/(w_i^2 - (k w)^2 + 2 j zeta_i w_i k w)                       eq. 20; at most 1e8/w_i^2: without damping, at a
+ *                                                                         resonance, it is that of 5e-9 beside
  *   R_k  = B L B^H + T (R + alpha R2 + beta R3) T^H                        eqs. 34, 35, with residual terms
  *   u_k  = B L F_k + T (x + (k w)^2 x2)_load,k - R_k p_k                  eq. 33
  * alpha = (k w)^2, beta = (k w)^4 but for O(w^6) (modal/series.h); and the probes by the same with their own shapes and residual terms. Motions are [3 pairs] in the order pair,

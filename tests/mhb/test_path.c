@@ -136,12 +136,13 @@ static void a_branch_cut_short_says_why(void **state) {
   modal_model_free(&model);
 }
 
-/* An undamped mode driven at its own frequency has no finite response: told, and no NaN among the results. */
-static void no_solution_is_an_outcome(void **state) {
+/* An undamped mode driven exactly at its own frequency runs against the contact: what is found there is what is found beside. */
+static void at_a_resonance_is_as_beside(void **state) {
   (void)state;
-  modal_model model;
+  static const double aside[] = {0, -1e-7, 1e-7};
+  modal_model         model;
   one_degree_model(0, 0, .1, &model);
-  mhb_settings s     = ground(.5, 3, 1, 1.5);
+  mhb_settings s     = ground(-1, 3, 1, 1.5);
   model.frequency[0] = s.frequency[0] = .25; /* the same in every rounding */
   mhb_residual *residual;
   mhb_newton   *newton;
@@ -149,10 +150,48 @@ static void no_solution_is_an_outcome(void **state) {
   assert_int_equal(mhb_residual_create(&model, &s, &residual), SHB_OK);
   assert_int_equal(mhb_newton_create(residual->n, &newton), SHB_OK);
   mhb_residual_preload(residual, -1);
-  double x[residual->n];
-  assert_true(mhb_first_solution(newton, residual, 2 * PI * .25, 1e-10, x, &iterations) < 0);
+  double x[3][residual->n];
+  for (int i = 0; i < 3; i++) {
+    assert_int_equal(mhb_first_solution(newton, residual, 2 * PI * .25 * (1 + aside[i]), 1e-10,
+                                        x[i], &iterations),
+                     MHB_CONVERGED);
+    for (int j = 0; j < residual->n; j++) assert_below(fabs(x[i][j] - x[0][j]), 1e-5);
+  }
+  print_message("at a resonance: %.6f\n", mhb_norm(x[0], residual->n));
+  assert_true(mhb_norm(x[0], residual->n) > .1 && mhb_norm(x[0], residual->n) < 10);
   mhb_newton_destroy(newton);
   mhb_residual_destroy(residual);
+  modal_model_free(&model);
+}
+
+/* Nothing but friction damps, and harmonic 2 at the low end of the range, harmonic 1 in its middle, are exactly at the resonance. The
+ * stuck contact moves by F/(k + ku - w^2), what is open by as much as a frequency next to it; the curve between is bounded. */
+static void undamped_resonances_are_passed(void **state) {
+  (void)state;
+  modal_model model;
+  one_degree_model(0, 1, .1, &model);
+  mhb_settings s          = ground(.3, 5, 1, 2);
+  model.frequency[0]      = .25; /* the same in every rounding */
+  s.frequency[0]          = .125;
+  s.frequency[1]          = .375;
+  mhb_response     *r     = sweep(&model, &s, SHB_OK);
+  const mhb_branch *stuck = &r->branch[1], *open = &r->branch[0], *curve = &r->branch[2];
+  double            top = 0, k = .25 * PI * PI;
+  int               K = curve->n_harmonics + 1, seen = 0;
+  for (int p = 0; p < open->n_points; p++) top = fmax(top, cabs(open->motion[(p * 3 + 1) * K + 1]));
+  for (int p = 0; p < stuck->n_points; p++) {
+    double w = 2 * PI * stuck->frequency[p], u = cabs(stuck->motion[(p * 3 + 1) * K + 1]);
+    assert_below(fabs(u * fabs(k + .5 - w * w) / .1 - 1), 1e-6);
+    seen += stuck->frequency[p] == .25;
+  }
+  assert_int_equal(seen, 1);
+  assert_true(top > 1e6 * .1 / k && isfinite(top));
+  top = 0;
+  for (int p = 0; p < curve->n_points; p++)
+    top = fmax(top, cabs(curve->motion[(p * 3 + 1) * K + 1]));
+  print_message("undamped: %d points, largest motion %.3f\n", curve->n_points, top);
+  assert_true(top > .12 / .5 && top < 10);
+  mhb_response_destroy(r);
   modal_model_free(&model);
 }
 
@@ -435,7 +474,8 @@ int main(void) {
       cmocka_unit_test(an_interrupt_saves), /* first: it forks */
       cmocka_unit_test(both_directions_see_the_same_folds),
       cmocka_unit_test(a_branch_cut_short_says_why),
-      cmocka_unit_test(no_solution_is_an_outcome),
+      cmocka_unit_test(at_a_resonance_is_as_beside),
+      cmocka_unit_test(undamped_resonances_are_passed),
       cmocka_unit_test(a_norm_tells_what_is_not_a_number),
       cmocka_unit_test(a_motion_that_is_no_number_ends),
       cmocka_unit_test(dull_ranges_are_covered),
