@@ -13,7 +13,7 @@ double mhb_path_size(const mhb_path *path) {
 
 double mhb_path_unit(const mhb_path *path) {
   double size = mhb_norm(path->now.x, path->n);
-  return size > 0 ? size : 1;
+  return size > 0 ? size : path->rest;
 }
 
 double mhb_path_inner(const mhb_path *path, double scale, const double *a, const double *b) {
@@ -45,7 +45,7 @@ void mhb_path_evaluate(mhb_path *path, const mhb_path_point *point) {
 void mhb_path_measure(mhb_path *path, mhb_path_point *point) {
   mhb_path_evaluate(path, point);
   double size     = mhb_norm(point->x, path->n);
-  point->residual = mhb_norm(path->newton->r, path->n) / (size > 0 ? size : 1);
+  point->residual = mhb_norm(path->newton->r, path->n) / (size > 0 ? size : path->rest);
 }
 
 /* point += fraction of the scaled step in the workspace */

@@ -9,7 +9,7 @@
 /* What a change of the parameter is compared with. */
 double mhb_path_size(const mhb_path *path);
 
-/* Length unit of x: the size of the current point. */
+/* Length unit of x: the size of the current point; that of the curve (path->rest) where nothing moves. */
 double mhb_path_unit(const mhb_path *path);
 
 /* Inner product of two (dx, dvalue) in y, scale the unit of x. */

@@ -35,6 +35,7 @@ shb_status mhb_path_create(mhb_residual *residual, double low, double high, mhb_
   path->high      = high;
   path->span      = high - low;
   path->least     = mhb_parameter_least(residual->parameter);
+  path->rest      = 1;
   path->longest   = LONGEST_STEP;
   path->tolerance = 1e-10;
   path->stagnant  = fmax(1e-8, .1 * residual->settings->tolerance);
@@ -73,6 +74,13 @@ void mhb_path_destroy(mhb_path *path) {
   free(path);
 }
 
+/* From rest: |dx/dvalue| span, whatever the unit of the tangent. */
+static void set_unit_of_rest(mhb_path *path) {
+  const double *t    = path->now.tangent;
+  double        unit = mhb_norm(t, path->n) / fabs(t[path->n]) * path->span;
+  if (unit > 0 && isfinite(unit)) path->rest = unit;
+}
+
 mhb_reason mhb_path_start(mhb_path *path, const double *x, double value, int direction) {
   memcpy(path->now.x, x, sizeof(double) * (size_t)path->n);
   path->now.value   = value;
@@ -85,6 +93,10 @@ mhb_reason mhb_path_start(mhb_path *path, const double *x, double value, int dir
   memset(along, 0, sizeof(double) * (size_t)path->n);
   along[path->n] = direction * path->span;
   if (!mhb_path_set_tangent(path, along, &path->now)) return MHB_SINGULAR;
+  if (mhb_norm(path->now.x, path->n) == 0) {
+    set_unit_of_rest(path);
+    if (!mhb_path_set_tangent(path, along, &path->now)) return MHB_SINGULAR;
+  }
   path->orientation = path->now.orientation;
   path->against     = 0;
   return MHB_CONVERGED;

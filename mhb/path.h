@@ -30,8 +30,10 @@ typedef struct {
   double        low, high; /* range of the value */
   double        span;      /* unit of the value */
   double        least;     /* below it no value makes sense */
-  double        step, longest;
-  double        tolerance;
+  double
+      rest; /* m: unit of x where nothing moves, by the motion that the tangent leads to over the span */
+  double step, longest;
+  double tolerance;
   double
       stagnant; /* a residual below it that Newton no longer betters is rounding, or the law's own */
   int orientation, against;        /* of the path; ordinary steps in a row that had the other one */
