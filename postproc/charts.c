@@ -128,17 +128,29 @@ static void draw_branch(const post_study *study, const post_plot *plot, int b) {
       plot_dot(plot, classes, x[i], c->amplitude[i], 2.6);
 }
 
-/* Name of a limit above its peak; inside where that is at an end of the parameter's range. */
-static void name_limit(const post_study *study, const post_plot *plot, const post_track_point *p,
-                       bool open) {
-  const double *range = study->abscissa.range, move[2] = {0, -7};
-  const char   *anchor = !post_at_one_frequency(study) ? "middle"
-                         : p->at <= range[0]           ? "start"
-                         : p->at >= range[1]           ? "end"
-                                                       : "middle";
-  if (p->amplitude > 0)
-    plot_text(plot, open ? "mark open" : "mark stuck", p->at, p->amplitude, move, anchor,
-              open ? "open" : "stuck");
+/* Names of the limits above their peaks: within the frame, and moved aside where they would cover each other. */
+static void name_limits(const post_study *study, const post_plot *plot) {
+  enum { NAME = 44, ABOVE = 7 }; /* a name's room, px; what it is lifted by */
+  const post_track_point *limit[2] = {&study->tracking.open, &study->tracking.stuck};
+  const double           *range    = study->abscissa.range;
+  double                  peak[2], centre[2];
+  for (int i = 0; i < 2; i++) {
+    peak[i]   = (limit[i]->at - range[0]) / (range[1] - range[0]) * plot->width;
+    centre[i] = fmin(fmax(peak[i], NAME / 2), plot->width - NAME / 2);
+  }
+  const int first = peak[0] > peak[1], second = 1 - first;
+  if (limit[0]->amplitude > 0 && limit[1]->amplitude > 0 && centre[second] - centre[first] < NAME) {
+    double middle  = (centre[0] + centre[1]) / 2;
+    middle         = fmin(fmax(middle, NAME), plot->width - NAME);
+    centre[first]  = middle - NAME / 2;
+    centre[second] = middle + NAME / 2;
+  }
+  for (int i = 0; i < 2; i++) {
+    const double move[2] = {centre[i] - peak[i], -ABOVE};
+    if (limit[i]->amplitude > 0)
+      plot_text(plot, i == 0 ? "mark open" : "mark stuck", limit[i]->at, limit[i]->amplitude, move,
+                "middle", i == 0 ? "open" : "stuck");
+  }
 }
 
 static void draw_curves(const post_study *study, const post_plot *plot) {
@@ -150,8 +162,7 @@ static void draw_curves(const post_study *study, const post_plot *plot) {
     }
   for (int b = 0; b < study->response->n_branches; b++)
     if (study->response->branch[b].kind == MHB_BRANCH_INTEGRATION) draw_points(study, plot, b);
-  name_limit(study, plot, &study->tracking.open, true);
-  name_limit(study, plot, &study->tracking.stuck, false);
+  name_limits(study, plot);
 }
 
 void post_draw_response(const post_study *study, post_plot *plot) {

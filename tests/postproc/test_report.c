@@ -367,10 +367,52 @@ static void picture(void **state) {
   }
 }
 
+/* Left and right end and height of a limit's name, px, at 8 px a letter. */
+static void place_of(const char *svg, const char *name, double box[3]) {
+  char mark[32], anchor[16];
+  snprintf(mark, sizeof mark, "class=\"mark %s\"", name);
+  const char *at = strstr(svg, mark);
+  double      x, width = 8 * (double)strlen(name);
+  assert_non_null(at);
+  assert_int_equal(
+      sscanf(at + strlen(mark), " x=\"%lf\" y=\"%lf\" text-anchor=\"%15[a-z]", &x, &box[2], anchor),
+      3);
+  box[0] = x - (strcmp(anchor, "middle") == 0 ? width / 2 : strcmp(anchor, "end") == 0 ? width : 0);
+  box[1] = box[0] + width;
+}
+
+/* The limits' names stay within the frame, 68 to 792 px, and do not cover each other, wherever the peaks are. */
+static void names_of_limits(void **state) {
+  (void)state;
+  fixture_options o = fixture_usual();
+  mhb_response   *r = fixture_response(&o);
+  post_study     *study;
+  assert_ok(post_study_create(r, &study));
+  const double *range = study->abscissa.range;
+  for (int i = 0; i <= 40; i += 4)
+    for (int j = 0; j <= 40; j++) {
+      post_buffer svg = {0};
+      double      open[3], stuck[3];
+      study->tracking.open.at  = range[0] + (range[1] - range[0]) * i / 40;
+      study->tracking.stuck.at = range[0] + (range[1] - range[0]) * (j < 39 ? i + j - 20 : i) / 40;
+      study->tracking.stuck.at = fmin(range[1], fmax(range[0], study->tracking.stuck.at));
+      study->tracking.open.amplitude = study->tracking.stuck.amplitude = .9 * study->largest;
+      post_picture(study, "x", &svg);
+      place_of(svg.text, "open", open);
+      place_of(svg.text, "stuck", stuck);
+      assert_true(fmin(open[0], stuck[0]) >= 68 && fmax(open[1], stuck[1]) <= 792);
+      assert_true(open[1] <= stuck[0] || stuck[1] <= open[0] || fabs(open[2] - stuck[2]) >= 13);
+      post_buffer_free(&svg);
+    }
+  post_study_destroy(study);
+  mhb_response_destroy(r);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(usual),   cmocka_unit_test(escaping),      cmocka_unit_test(data),
-      cmocka_unit_test(odd),     cmocka_unit_test(not_estimated), cmocka_unit_test(size),
-      cmocka_unit_test(picture), cmocka_unit_test(turns),         cmocka_unit_test(followed)};
+      cmocka_unit_test(usual),   cmocka_unit_test(escaping),        cmocka_unit_test(data),
+      cmocka_unit_test(odd),     cmocka_unit_test(not_estimated),   cmocka_unit_test(size),
+      cmocka_unit_test(picture), cmocka_unit_test(names_of_limits), cmocka_unit_test(turns),
+      cmocka_unit_test(followed)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
