@@ -63,10 +63,16 @@ void case_assign_groups(case_reader *reader) {
   assign_volumes(&g, to);
   for (int i = 0; i < reader->file->n_loads; i++)
     assign_faces(&g, reader->file->loads[i].group, to);
-  bool known = is_good(reader, "materials") && is_good(reader, "excitation.loads");
+  const case_file *file = reader->file;
+  for (int i = 0; i < file->n_interfaces && !file->modal_file; i++) {
+    assign_faces(&g, file->interfaces[i].right, to);
+    if (!file->mhb.to_ground) assign_faces(&g, file->interfaces[i].left, to);
+  }
+  bool known = is_good(reader, "contact.interfaces") && is_good(reader, "materials") &&
+               is_good(reader, "excitation.loads");
   for (int i = 0; i < read.n_more && known; i++)
     if (!g.taken[i])
       tell(&g, read.more[i].name,
            "unknown group; known are root, contact_right, contact_left, load, and those that "
-           "materials or excitation.loads name");
+           "materials, excitation.loads or contact.interfaces name");
 }

@@ -5,6 +5,7 @@
 
 #include "cases/assign.h"
 #include "cases/checks.h"
+#include "cases/interfaces.h"
 #include "cases/issues.h"
 #include "cases/reader.h"
 #include "cases/yaml.h"
@@ -86,6 +87,7 @@ static bool read_document(case_issues *issues, int stages, case_file *out) {
   if (root && root->kind == CASE_MAPPING) {
     share(&reader);
     share_parameter(&reader);
+    case_share_interfaces(&reader);
     case_assign_groups(&reader);
     case_check_alternatives(&reader, stages);
     case_reader_require(&reader, stages);

@@ -30,6 +30,13 @@ typedef struct {
   double at[3]; /* m, mesh axes */
 } case_probe;
 
+/* One of several contact interfaces. */
+typedef struct {
+  mhb_interface mhb;
+  char          right[MESH_WORD], left[MESH_WORD]; /* groups of faces */
+  int           points;                            /* contact patches; 0 = all */
+} case_interface;
+
 /* One of several loads. */
 typedef struct {
   fem_load load;
@@ -82,9 +89,13 @@ typedef struct {
   int        n_probes;
   case_probe probe[CASE_MAX_PROBES];
 
-  int          points; /* contact patches; 0 = all */
-  mhb_settings mhb;
-  double       vary[MHB_N_PARAMETERS][2]; /* range of a parameter that is followed */
+  int            points; /* contact patches; 0 = all */
+  bool           has_interfaces;
+  int            n_interfaces; /* with contact.interfaces */
+  case_interface interfaces[MHB_MAX_INTERFACES];
+  char           vary_interface[MHB_NAME]; /* mhb.vary.interface */
+  mhb_settings   mhb;
+  double         vary[MHB_N_PARAMETERS][2]; /* range of a parameter that is followed */
 
   double converge_tolerance;
   double converge_n0[2];   /* N, preloads that are looked at */

@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "cases/interfaces.h"
 #include "cases/loads.h"
 #include "cases/materials.h"
 #include "cases/unread.h"
@@ -232,6 +233,7 @@ bool case_check_values(case_reader *r, int stages) {
   check_speeds(r);
   check_band(r);
   if (stages & CASE_MHB) check_followed(r);
+  case_check_interfaces(r, stages);
   check_search(r);
   if (stages & CASE_MHB) check_integrate(r);
   if (own) check_extension(r);

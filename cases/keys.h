@@ -51,6 +51,10 @@ typedef enum {
   CASE_IF_MATERIALS,  /* several, by volumes */
   CASE_IF_AUTO_MODES, /* modal.modes: auto */
   CASE_IF_CRYSTAL,    /* material.G given */
+  CASE_IF_INTERFACE,  /* one contact interface */
+  CASE_IF_POINTS,     /* the same, and no modal.file */
+  CASE_IF_INTERFACES, /* several by name */
+  CASE_IF_VARIED,     /* several, and a parameter of one is followed */
   CASE_IF_NEIGHBOUR,  /* contact.to: neighbour */
   CASE_IF_SECTOR,     /* neighbour or parametric blade */
   CASE_IF_PSI,        /* psi given */

@@ -18,7 +18,9 @@ static case_keys motion_table(case_key row[CASE_MAX_KEYS]) {
   case_keys all = case_key_table();
   int       n   = 0;
   for (int i = 0; i < all.n && n < CASE_MAX_KEYS - 3; i++)
-    if (strncmp(all.key[i].path, "contact.", strlen("contact.")) == 0) row[n++] = all.key[i];
+    if (strncmp(all.key[i].path, "contact.", strlen("contact.")) == 0 &&
+        strncmp(all.key[i].path, "contact.interfaces", strlen("contact.interfaces")) != 0)
+      row[n++] = all.key[i];
   for (int i = 0; i < n; i++)
     if (row[i].type == CASE_ACCURACY) row[i].fallback = "1e-13";
   for (int i = 0; i < 3; i++) row[n++] = signal_rows[i];

@@ -121,16 +121,16 @@ static void describe_source(const case_file *file, FILE *out) {
   fputc('\n', out);
 }
 
-static void describe_preloads(const mhb_settings *mhb, FILE *out) {
-  double low = mhb->n0[0], high = mhb->n0[0];
-  for (int i = 1; i < mhb->n_preloads; i++) {
-    low  = fmin(low, mhb->n0[i]);
-    high = fmax(high, mhb->n0[i]);
+static void describe_preloads(int n, const double *n0, FILE *out) {
+  double low = n0[0], high = n0[0];
+  for (int i = 1; i < n; i++) {
+    low  = fmin(low, n0[i]);
+    high = fmax(high, n0[i]);
   }
-  if (mhb->n_preloads == 1) {
+  if (n == 1) {
     fprintf(out, "  preload   %g N\n", low);
   } else {
-    fprintf(out, "  preloads  %d, from %g to %g N\n", mhb->n_preloads, low, high);
+    fprintf(out, "  preloads  %d, from %g to %g N\n", n, low, high);
   }
 }
 
@@ -144,8 +144,17 @@ void run_describe(const case_file *file, FILE *out) {
     fprintf(out, "  contact   to the neighbour, %d blades, engine order %d", mhb->blades,
             mhb->engine_order);
   }
-  fprintf(out, ", mu %g\n", mhb->mu);
-  describe_preloads(mhb, out);
+  if (mhb->n_interfaces > 1) {
+    fprintf(out, ", %d interfaces\n", mhb->n_interfaces);
+    for (int i = 0; i < mhb->n_interfaces; i++) {
+      const mhb_interface *own = &mhb->interface[i];
+      fprintf(out, "  %s: mu %g\n", own->name, own->mu);
+      describe_preloads(own->n_preloads, own->n0, out);
+    }
+  } else {
+    fprintf(out, ", mu %g\n", mhb->mu);
+    describe_preloads(mhb->n_preloads, mhb->n0, out);
+  }
   fprintf(out, "  sweep     %g to %g Hz, ", mhb->frequency[0], mhb->frequency[1]);
   if (mhb->harmonics == 0) {
     fprintf(out, "harmonics as a tolerance of %g needs\n", mhb->motion_tolerance);

@@ -25,16 +25,36 @@ static const char usage[] =
     "--inp writes the mesh for CalculiX and Abaqus too, NAME.inp: groups as surfaces and node "
     "sets, m.\n";
 
-/* pairing: zero where the contact is to ground. */
-static shb_status check_contact(const case_file *file, mesh_fe *mesh, mesh_pairing *pairing) {
+/* Both faces of one interface; to ground the right one alone. pairing: zero there. */
+static shb_status check_faces(const case_file *file, const char *right, const char *left,
+                              mesh_fe *mesh, mesh_pairing *pairing) {
+  int r = mesh_fe_set_named(mesh, right), l = mesh_fe_set_named(mesh, left);
   *pairing = (mesh_pairing){0};
   if (file->mhb.to_ground) {
-    SHB_CHECK(mesh->set[MESH_CONTACT_RIGHT].n, SHB_ERR_INPUT,
-              "group contact_right is absent or empty; contact to ground needs it");
+    SHB_CHECK(mesh->set[r].n, SHB_ERR_INPUT,
+              "group %s is absent or empty; contact to ground needs it", right);
     return SHB_OK;
   }
-  SHB_TRY(mesh_fe_orient(mesh, file->axis));
-  SHB_TRY(mesh_pairing_create(mesh, file->axis, file->blades, pairing));
+  SHB_TRY(mesh_fe_orient_groups(mesh, file->axis, r, l));
+  mesh_fe view = mesh_fe_facing(mesh, r, l);
+  return mesh_pairing_create(&view, file->axis, file->blades, pairing);
+}
+
+/* pairing: that of the first interface. */
+static shb_status check_contact(const case_file *file, mesh_fe *mesh, mesh_pairing *pairing) {
+  if (file->n_interfaces == 0)
+    return check_faces(file, "contact_right", "contact_left", mesh, pairing);
+  *pairing = (mesh_pairing){0};
+  for (int i = 0; i < file->n_interfaces; i++) {
+    const case_interface *own = &file->interfaces[i];
+    mesh_pairing          one;
+    shb_status            status = check_faces(file, own->right, own->left, mesh, &one);
+    if (status != SHB_OK)
+      return shb_fail(status, __FILE__, __LINE__, "contact interface %s: %s", own->mhb.name,
+                      shb_message());
+    if (i == 0) *pairing = one;
+    if (i > 0) mesh_pairing_free(&one);
+  }
   return SHB_OK;
 }
 

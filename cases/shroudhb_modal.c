@@ -77,8 +77,9 @@ static int parse(const words *line, command_options *options, case_file *file) {
 }
 
 static modal_settings stage_settings(const case_file *file, modal_probe probe[CASE_MAX_PROBES],
-                                     modal_region region[MESH_MAX_VOLUMES],
-                                     fem_load     loads[CASE_MAX_LOADS]) {
+                                     modal_region  region[MESH_MAX_VOLUMES],
+                                     fem_load      loads[CASE_MAX_LOADS],
+                                     modal_contact contacts[MHB_MAX_INTERFACES]) {
   const mhb_settings *mhb = &file->mhb;
   for (int q = 0; q < file->n_probes; q++) {
     probe[q].name = file->probe[q].name;
@@ -87,6 +88,15 @@ static modal_settings stage_settings(const case_file *file, modal_probe probe[CA
   for (int i = 0; i < file->n_materials; i++)
     region[i] = (modal_region){file->materials[i].group, file->materials[i].material};
   for (int i = 0; i < file->n_loads; i++) loads[i] = file->loads[i].load;
+  for (int i = 0; i < file->n_interfaces; i++) {
+    const case_interface *own = &file->interfaces[i];
+    contacts[i]               = (modal_contact){own->mhb.name,
+                                                own->right,
+                                                own->left,
+                                                own->points,
+                                  own->mhb.has_psi ? &own->mhb.psi : NULL,
+                                  own->mhb.has_phi ? &own->mhb.phi : NULL};
+  }
   modal_settings out = {
       .material         = file->material,
       .n_regions        = file->n_materials,
@@ -111,6 +121,8 @@ static modal_settings stage_settings(const case_file *file, modal_probe probe[CA
       .phi              = mhb->has_phi ? &mhb->phi : NULL,
       .n_loads          = file->n_loads,
       .loads            = loads,
+      .n_contacts       = file->n_interfaces,
+      .contact          = contacts,
       .n_groups         = file->source.rules.n_more,
   };
   for (int i = 0; i < out.n_groups; i++) out.group[i] = file->source.rules.more[i].name;
@@ -135,18 +147,19 @@ static shb_status decide(const case_file *file, bool force, const char *mesh, co
 static shb_status run(const case_file *file, const command_options *options, int rank) {
   shb_progress progress =
       shb_progress_start("modal", options->quiet || rank != 0, options->verbose);
-  modal_probe  probe[CASE_MAX_PROBES];
-  modal_region region[MESH_MAX_VOLUMES];
-  fem_load     loads[CASE_MAX_LOADS];
-  char        *mesh = case_mesh_path(file), *output = case_output(file, ".modal.h5");
-  char        *settings = NULL;
-  bool         skip;
-  shb_status   status =
+  modal_probe   probe[CASE_MAX_PROBES];
+  modal_region  region[MESH_MAX_VOLUMES];
+  fem_load      loads[CASE_MAX_LOADS];
+  modal_contact contacts[MHB_MAX_INTERFACES];
+  char         *mesh = case_mesh_path(file), *output = case_output(file, ".modal.h5");
+  char         *settings = NULL;
+  bool          skip;
+  shb_status    status =
       mesh && output ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   if (status == SHB_OK) status = decide(file, options->force, mesh, output, &settings, &skip);
   if (status == SHB_OK && skip) shb_progress_note(&progress, "%s is up to date", output);
   if (status == SHB_OK && !skip) {
-    modal_settings stage      = stage_settings(file, probe, region, loads);
+    modal_settings stage      = stage_settings(file, probe, region, loads, contacts);
     shb_provenance provenance = command_provenance(file, settings, "shroudhb-modal");
     status = modal_stage(PETSC_COMM_WORLD, mesh, output, &stage, &provenance, &progress);
     shb_progress_note(&progress, "%.2f s in all", shb_seconds() - progress.started);

@@ -8,6 +8,7 @@
   AT(member), .count_at = offsetof(case_file, count), .each = sizeof(*((case_file *)0)->member)
 #define MATERIAL(member) .at = offsetof(case_material, member)
 #define LOAD(member) .at = offsetof(case_load, member)
+#define INTERFACE(member) .at = offsetof(case_interface, member)
 #define SECTION(member) .at = offsetof(mesh_section, member)
 #define COUNT(array) ((int)(sizeof(array) / sizeof *(array)))
 
@@ -153,20 +154,43 @@ static const case_key table[] = {
      .help = "shroud angle; default: from the faces (parametric blade: 0)"},
     {"contact.phi", CASE_NUMBER, "rad", -RIGHT_ANGLE, RIGHT_ANGLE, true, true, AT(mhb.phi), .stages = CASE_MESH | CASE_MODAL | CASE_MHB, .when = CASE_IF_PHI,
      .help = "inclination of the contact face; default: from the faces (parametric blade: 0)"},
-    {"contact.points", CASE_COUNT, "", 1, 100000, .fallback = "1", AT(points), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
+    {"contact.points", CASE_COUNT, "", 1, 100000, .fallback = "1", AT(points), .stages = CASE_MODAL, .when = CASE_IF_POINTS,
      .help = "patches of the contact face, or all: one a node"},
-    {"contact.mu", CASE_NUMBER, "", 0, 1e6, .required = true, AT(mhb.mu), .stages = CASE_MHB,
+    {"contact.mu", CASE_NUMBER, "", 0, 1e6, .required = true, AT(mhb.mu), .stages = CASE_MHB, .when = CASE_IF_INTERFACE,
      .help = "friction coefficient"},
-    {"contact.ku", CASE_STIFFNESS, "N/m", 0, 1e15, true, .required = true, AT(mhb.ku), .stages = CASE_MHB,
+    {"contact.ku", CASE_STIFFNESS, "N/m", 0, 1e15, true, .required = true, AT(mhb.ku), .stages = CASE_MHB, .when = CASE_IF_INTERFACE,
      .help = "tangential stiffness of the interface: a number or [kuu, kuw, kww]"},
-    {"contact.kv", CASE_NUMBER, "N/m", 0, 1e15, .required = true, AT(mhb.kv), .stages = CASE_MHB,
+    {"contact.kv", CASE_NUMBER, "N/m", 0, 1e15, .required = true, AT(mhb.kv), .stages = CASE_MHB, .when = CASE_IF_INTERFACE,
      .help = "normal stiffness of the interface"},
-    {"contact.n0", CASE_PRELOADS, "N", -1e12, 1e12, .required = true, AT(mhb.n0), .count_at = offsetof(case_file, mhb.n_preloads), .stages = CASE_MHB,
+    {"contact.n0", CASE_PRELOADS, "N", -1e12, 1e12, .required = true, AT(mhb.n0), .count_at = offsetof(case_file, mhb.n_preloads), .stages = CASE_MHB, .when = CASE_IF_INTERFACE,
      .help = "normal preload, negative for a gap of -n0/kv: a number, a list, or {from, to, points}"},
     {"contact.preload", CASE_CHOICE, "", .words = "equilibrium interference", .fallback = "equilibrium", AT(mhb.preload), .stages = CASE_MHB,
      .help = "n0 is the load at rest, or an interference that also deflects the blade"},
     {"contact.accuracy", CASE_ACCURACY, "", 1e-14, 1e-2, .words = "fast balanced exact", .fallback = "exact", AT(mhb.tolerance), .stages = CASE_MHB,
      .help = "relative tolerance of the contact law: fast 1e-3, balanced 1e-5, exact 1e-8, or a number, 1e-14 to 0.01"},
+
+    {"contact.interfaces", CASE_LIST, "", 1, MHB_MAX_INTERFACES, LIST(interfaces, n_interfaces), .stages = CASE_MESH | CASE_MODAL | CASE_MHB, .when = CASE_IF_INTERFACES,
+     .help = "several interfaces (a shroud, a mid-span snubber), instead of psi to n0 above: a list of {name, right, left, points, mu, ku, kv, n0}"},
+    {"contact.interfaces[].name", CASE_LABEL, "", .required = true, INTERFACE(mhb.name), .stages = CASE_MODAL | CASE_MHB,
+     .help = "name in the modal and the response file"},
+    {"contact.interfaces[].right", CASE_LABEL, "", .fallback = "contact_right", INTERFACE(right), .stages = CASE_MESH | CASE_MODAL,
+     .help = "group of its right face"},
+    {"contact.interfaces[].left", CASE_LABEL, "", .fallback = "contact_left", INTERFACE(left), .stages = CASE_MESH | CASE_MODAL,
+     .help = "group of its left face; not to ground"},
+    {"contact.interfaces[].psi", CASE_NUMBER, "rad", -RIGHT_ANGLE, RIGHT_ANGLE, true, true, INTERFACE(mhb.psi), .stages = CASE_MODAL | CASE_MHB,
+     .help = "angle; default: from the faces"},
+    {"contact.interfaces[].phi", CASE_NUMBER, "rad", -RIGHT_ANGLE, RIGHT_ANGLE, true, true, INTERFACE(mhb.phi), .stages = CASE_MODAL | CASE_MHB,
+     .help = "inclination; default: from the faces"},
+    {"contact.interfaces[].points", CASE_COUNT, "", 1, 100000, .fallback = "1", INTERFACE(points), .stages = CASE_MODAL,
+     .help = "patches of its face, or all"},
+    {"contact.interfaces[].mu", CASE_NUMBER, "", 0, 1e6, INTERFACE(mhb.mu), .stages = CASE_MHB,
+     .help = "friction coefficient"},
+    {"contact.interfaces[].ku", CASE_STIFFNESS, "N/m", 0, 1e15, true, INTERFACE(mhb.ku), .stages = CASE_MHB,
+     .help = "its tangential stiffness: a number or [kuu, kuw, kww]"},
+    {"contact.interfaces[].kv", CASE_NUMBER, "N/m", 0, 1e15, INTERFACE(mhb.kv), .stages = CASE_MHB,
+     .help = "its normal stiffness"},
+    {"contact.interfaces[].n0", CASE_PRELOADS, "N", -1e12, 1e12, INTERFACE(mhb.n0), .count_at = offsetof(case_interface, mhb.n_preloads), .stages = CASE_MHB,
+     .help = "its preload, negative for a gap: a number, or a list as long as the others' lists"},
 
     {"mhb.frequency", CASE_SWEEP, "Hz", 0, 1e9, true, .required = true, AT(mhb.frequency), .stages = CASE_MHB,
      .help = "range of the sweep: [from, to]; with mhb.vary one number"},
@@ -180,6 +204,8 @@ static const case_key table[] = {
      .help = "or kuu; kuw and kww stay in the proportion that contact.ku gives"},
     {"mhb.vary.kv", CASE_INTERVAL, "N/m", 0, 1e15, AT(vary[MHB_IN_KV]), .stages = CASE_MHB, .when = CASE_IF_FOLLOWED,
      .help = "or the normal stiffness, in place of contact.kv"},
+    {"mhb.vary.interface", CASE_LABEL, "", AT(vary_interface), .stages = CASE_MHB, .when = CASE_IF_VARIED,
+     .help = "of several interfaces the one whose n0, mu, ku or kv that is, the others keep theirs (default: the first); all: in proportion"},
     {"mhb.harmonics", CASE_AUTO, "", 1, MOST_HARMONICS, .fallback = "3", AT(mhb.harmonics), .stages = CASE_MHB,
      .help = "harmonics of the balance, counted in the fundamental; auto: chosen at each point by mhb.tolerance, at most 31"},
     {"mhb.tolerance", CASE_NUMBER, "", 1e-8, 0.1, .fallback = "1e-4", AT(mhb.motion_tolerance), .stages = CASE_MHB, .when = CASE_IF_AUTO,
@@ -252,6 +278,15 @@ bool case_key_applies(const case_key *key, const case_file *file) {
       return own && file->has_loads;
     case CASE_IF_AUTO_MODES:
       return !file->modal_file && file->modes == 0;
+    case CASE_IF_POINTS:
+      return own && !file->has_interfaces;
+    case CASE_IF_INTERFACE:
+      return !file->has_interfaces;
+    case CASE_IF_INTERFACES:
+      return file->has_interfaces;
+    case CASE_IF_VARIED:
+      return file->n_interfaces > 1 && file->mhb.parameter != MHB_IN_FREQUENCY &&
+             file->mhb.parameter != MHB_IN_SCALE;
     case CASE_IF_CRYSTAL:
       return own && !file->has_materials && file->constants.G[0] != 0;
     case CASE_IF_NEIGHBOUR:
@@ -259,9 +294,9 @@ bool case_key_applies(const case_key *key, const case_file *file) {
     case CASE_IF_SECTOR:
       return blade || !file->mhb.to_ground;
     case CASE_IF_PSI:
-      return file->mhb.has_psi;
+      return file->mhb.has_psi && !file->has_interfaces;
     case CASE_IF_PHI:
-      return file->mhb.has_phi;
+      return file->mhb.has_phi && !file->has_interfaces;
     case CASE_IF_PRESSURE:
       return one && file->load.kind == FEM_LOAD_PRESSURE;
     case CASE_IF_TRACTION:

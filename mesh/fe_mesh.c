@@ -69,6 +69,21 @@ shb_status mesh_fe_orient(mesh_fe *mesh, mesh_axis axis) {
   return SHB_OK;
 }
 
+mesh_fe mesh_fe_facing(const mesh_fe *mesh, int right, int left) {
+  mesh_fe view                 = *mesh;
+  view.set[MESH_CONTACT_RIGHT] = mesh->set[right];
+  view.set[MESH_CONTACT_LEFT]  = left < 0 ? (mesh_face_set){0, NULL} : mesh->set[left];
+  return view;
+}
+
+shb_status mesh_fe_orient_groups(mesh_fe *mesh, mesh_axis axis, int right, int left) {
+  mesh_fe view = mesh_fe_facing(mesh, right, left);
+  SHB_TRY(mesh_fe_orient(&view, axis));
+  mesh->set[right] = view.set[MESH_CONTACT_RIGHT];
+  mesh->set[left]  = view.set[MESH_CONTACT_LEFT];
+  return SHB_OK;
+}
+
 int mesh_fe_nearest(const mesh_fe *mesh, const double point[3]) {
   int    nearest = 0;
   double best    = INFINITY;

@@ -97,6 +97,13 @@ shb_status mesh_fe_match(const mesh_fe *mesh, mesh_axis axis, int blades, int *n
  * Errors: SHB_ERR_INPUT if both point alike. */
 shb_status mesh_fe_orient(mesh_fe *mesh, mesh_axis axis);
 
+/* The mesh as one of several contact interfaces sees it: its groups (by place, left -1: none) are contact_right and
+ * contact_left. It owns nothing. */
+mesh_fe mesh_fe_facing(const mesh_fe *mesh, int right, int left);
+
+/* mesh_fe_orient for those two groups. */
+shb_status mesh_fe_orient_groups(mesh_fe *mesh, mesh_axis axis, int right, int left);
+
 /* Index of the node nearest to point. */
 int mesh_fe_nearest(const mesh_fe *mesh, const double point[3]);
 

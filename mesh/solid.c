@@ -208,17 +208,18 @@ static bool matches(const mesh_fe *mesh, mesh_axis axis, int blades) {
   return true;
 }
 
-shb_status mesh_solid_tie(mesh_solid *solid, mesh_fe *mesh, bool *again) {
+/* One pair of faces; *again as mesh_solid_tie. */
+static shb_status tie(mesh_solid *solid, mesh_fe *mesh, int right_set, int left_set, bool *again) {
   const mesh_source *source = solid->source;
-  *again                    = false;
-  if (source->blades == 0 || !mesh->set[MESH_CONTACT_RIGHT].n || !mesh->set[MESH_CONTACT_LEFT].n)
-    return SHB_OK;
-  SHB_TRY(mesh_fe_orient(mesh, source->axis));
-  if (matches(mesh, source->axis, source->blades)) return SHB_OK;
+  if (!mesh->set[right_set].n || !mesh->set[left_set].n) return SHB_OK;
+  SHB_TRY(mesh_fe_orient_groups(mesh, source->axis, right_set, left_set));
+  mesh_fe view = mesh_fe_facing(mesh, right_set, left_set);
+  if (matches(&view, source->axis, source->blades)) return SHB_OK;
   const double angle = 2 * M_PI / source->blades;
   patch        right = {0}, left = {0};
-  shb_status   status = find_patch(solid, mesh, MESH_CONTACT_RIGHT, &right);
-  if (status == SHB_OK) status = find_patch(solid, mesh, MESH_CONTACT_LEFT, &left);
+  bool         tied   = false;
+  shb_status   status = find_patch(solid, mesh, right_set, &right);
+  if (status == SHB_OK) status = find_patch(solid, mesh, left_set, &left);
   if (status == SHB_OK && right.n > 0 && right.n == left.n) {
     double matrix[16];
     int    ierr = 0;
@@ -226,10 +227,25 @@ shb_status mesh_solid_tie(mesh_solid *solid, mesh_fe *mesh, bool *again) {
     turning(source->axis, angle, matrix);
     gmshModelMeshSetPeriodic(2, right.tag, (size_t)right.n, left.tag, (size_t)left.n, matrix, 16,
                              &ierr);
-    *again = ierr == 0;
+    tied = ierr == 0;
   }
   patch_free(&right);
   patch_free(&left);
-  if (!*again) shb_progress_note(solid->progress, "the contact faces cannot be meshed alike");
+  if (!tied) shb_progress_note(solid->progress, "the contact faces cannot be meshed alike");
+  *again = *again || tied;
   return status;
+}
+
+shb_status mesh_solid_tie(mesh_solid *solid, mesh_fe *mesh, bool *again) {
+  const mesh_source *source = solid->source;
+  *again                    = false;
+  if (source->blades == 0) return SHB_OK;
+  if (source->n_contacts == 0)
+    return tie(solid, mesh, MESH_CONTACT_RIGHT, MESH_CONTACT_LEFT, again);
+  for (int i = 0; i < source->n_contacts; i++) {
+    int right = mesh_fe_set_named(mesh, source->contact[i].right);
+    int left  = mesh_fe_set_named(mesh, source->contact[i].left);
+    if (right >= 0 && left >= 0) SHB_TRY(tie(solid, mesh, right, left, again));
+  }
+  return SHB_OK;
 }

@@ -12,6 +12,10 @@ typedef struct {
   mesh_axis   axis;
   int blades; /* contact faces of a solid are made to match after this sector; 0: contact to ground */
   mesh_rules rules;
+  int        n_contacts; /* several contact interfaces, 0: contact_right and contact_left */
+  struct {
+    char right[MESH_WORD], left[MESH_WORD];
+  } contact[MESH_MAX_MORE / 2];
 } mesh_source;
 
 /* Read, or mesh, and give every group its faces; coordinates in m. SHB_ERR_INPUT, SHB_ERR_IO, SHB_INTERRUPTED. */

@@ -22,7 +22,7 @@ typedef enum {
 
 enum {
   MHB_MAX_INTERFACES    = 8,
-  MHB_NAME              = 64,
+  MHB_NAME              = 81,
   MHB_MAX_PRELOADS      = 256,
   MHB_MAX_SEARCH_AT     = 64,
   MHB_MAX_SEARCH_ORDERS = 8

@@ -236,6 +236,48 @@ shb_status modal_interface_create(const mesh_fe *mesh, mesh_axis axis, int blade
   return status;
 }
 
+/* Patches of a part behind those that are there already. */
+static void append(const modal_interface *part, int which, int pairs, modal_interface *out) {
+  const size_t entries = (size_t)part->start[part->n_pairs], n = (size_t)part->n_pairs;
+  const int    first = out->start[pairs], sides = part->has_left ? 2 : 1;
+  for (size_t p = 0; p < n; p++) {
+    out->which[(size_t)pairs + p]     = which;
+    out->start[(size_t)pairs + p + 1] = first + part->start[p + 1];
+  }
+  memcpy(out->weight + first, part->weight, entries * sizeof *out->weight);
+  if (part->has_left)
+    memcpy(out->left_weight + first, part->left_weight, entries * sizeof *out->left_weight);
+  memcpy(out->area + pairs, part->area, n * sizeof *out->area);
+  memcpy(out->normal + 3 * pairs, part->normal, 3 * n * sizeof *out->normal);
+  for (int side = 0; side < sides; side++) {
+    memcpy(out->node[side] + first, part->node[side], entries * sizeof *out->node[side]);
+    memcpy(out->centroid[side] + 3 * pairs, part->centroid[side], 3 * n * sizeof(double));
+    memcpy(out->axes[side] + pairs, part->axes[side], n * sizeof *out->axes[side]);
+  }
+  out->projected = out->projected || part->projected;
+  out->gap       = fmax(out->gap, part->gap);
+  out->total_area += part->total_area;
+}
+
+shb_status modal_interface_join(int n, const modal_interface *part, modal_interface *out) {
+  int pairs = 0, entries = 0;
+  memset(out, 0, sizeof *out);
+  for (int i = 0; i < n; i++) {
+    pairs += part[i].n_pairs;
+    entries += part[i].start[part[i].n_pairs];
+  }
+  out->which        = malloc((size_t)pairs * sizeof *out->which);
+  shb_status status = allocate(pairs, part[0].has_left, entries, out);
+  if (status == SHB_OK && !out->which)
+    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for the contact patches");
+  for (int i = 0, at = 0; i < n && status == SHB_OK; at += part[i++].n_pairs)
+    append(&part[i], i, at, out);
+  out->psi = part[0].psi;
+  out->phi = part[0].phi;
+  if (status != SHB_OK) modal_interface_free(out);
+  return status;
+}
+
 static shb_status check_angle(const char *name, const double *given, double face) {
   if (!given) return SHB_OK;
   double off = remainder(*given - face, 360 * degree);
@@ -266,6 +308,7 @@ shb_status modal_interface_dofs(const modal_interface *interface, modal_dofs *do
 }
 
 void modal_interface_free(modal_interface *interface) {
+  free(interface->which);
   free(interface->start);
   free(interface->weight);
   free(interface->left_weight);

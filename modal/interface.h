@@ -12,8 +12,11 @@
 #include "mesh/fe_mesh.h"
 #include "modal/dofs.h"
 
+enum { MODAL_MAX_INTERFACES = 8 };
+
 typedef struct {
   int     n_pairs;
+  int    *which;       /* [n_pairs] of several that were joined; else NULL */
   bool    has_left;    /* contact to the neighbour */
   int    *start;       /* [n_pairs + 1] entries of patch p: start[p] .. start[p + 1] - 1 */
   int    *node[2];     /* [entry] mesh node, right and left (NULL without left) */
@@ -38,6 +41,10 @@ typedef struct {
  * more patches than facets. */
 shb_status modal_interface_create(const mesh_fe *mesh, mesh_axis axis, int blades, bool to_ground,
                                   int points, modal_interface *out);
+
+/* The patches of n interfaces one after the other, as those of one: all to ground or all to the neighbour. psi, phi are the first's,
+ * gap is the largest. SHB_ERR_IO no memory. */
+shb_status modal_interface_join(int n, const modal_interface *part, modal_interface *out);
 
 /* Do the angles given in the case (NULL: not given) agree with the face within a degree? SHB_ERR_INPUT. */
 shb_status modal_interface_check(const modal_interface *interface, const double *psi,

@@ -65,6 +65,59 @@ static shb_status copy_patches(const modal_interface *interface, modal_model *mo
   return SHB_OK;
 }
 
+/* An interface by its groups; its name heads error texts. */
+static shb_status create_contact(const mesh_fe *mesh, const modal_settings *settings,
+                                 const modal_contact *contact, modal_interface *out) {
+  int        right = mesh_fe_set_named(mesh, contact->right);
+  int        left  = settings->to_ground ? -1 : mesh_fe_set_named(mesh, contact->left);
+  const bool there = right >= 0 && (left >= 0 || settings->to_ground);
+  SHB_CHECK(there, SHB_ERR_INPUT, "contact interface %s: the mesh has no group \"%s\"",
+            contact->name, right < 0 ? contact->right : contact->left);
+  mesh_fe    view   = mesh_fe_facing(mesh, right, left);
+  shb_status status = modal_interface_create(&view, settings->axis, settings->blades,
+                                             settings->to_ground, contact->points, out);
+  if (status == SHB_OK) status = modal_interface_check(out, contact->psi, contact->phi);
+  if (status == SHB_OK) return SHB_OK;
+  modal_interface_free(out);
+  return shb_fail(status, __FILE__, __LINE__, "contact interface %s: %s", contact->name,
+                  shb_message());
+}
+
+static shb_status create_interfaces(const mesh_fe *mesh, const modal_settings *settings,
+                                    modal_interface *out) {
+  const int       n                          = settings->n_contacts;
+  modal_interface part[MODAL_MAX_INTERFACES] = {{0}};
+  shb_status      status                     = SHB_OK;
+  if (n == 0) {
+    SHB_TRY(modal_interface_create(mesh, settings->axis, settings->blades, settings->to_ground,
+                                   settings->points, out));
+    return modal_interface_check(out, settings->psi, settings->phi);
+  }
+  for (int i = 0; i < n && status == SHB_OK; i++)
+    status = create_contact(mesh, settings, &settings->contact[i], &part[i]);
+  if (status == SHB_OK) status = modal_interface_join(n, part, out);
+  for (int i = 0; i < n; i++) modal_interface_free(&part[i]);
+  return status;
+}
+
+/* Which interface each pair belongs to; one alone needs no name. */
+static shb_status name_interfaces(const modal_settings *settings, const modal_interface *interface,
+                                  modal_model *model) {
+  const int n = settings->n_contacts;
+  if (n < 2) return SHB_OK;
+  model->interface      = malloc((size_t)interface->n_pairs * sizeof *model->interface);
+  model->interface_name = calloc((size_t)n, sizeof *model->interface_name);
+  SHB_CHECK(model->interface && model->interface_name, SHB_ERR_IO,
+            "out of memory for the contact patches");
+  memcpy(model->interface, interface->which, (size_t)interface->n_pairs * sizeof *model->interface);
+  for (model->n_interfaces = 0; model->n_interfaces < n; model->n_interfaces++) {
+    char *name = strdup(settings->contact[model->n_interfaces].name);
+    SHB_CHECK(name, SHB_ERR_IO, "out of memory for the contact patches");
+    model->interface_name[model->n_interfaces] = name;
+  }
+  return SHB_OK;
+}
+
 /* What can be wrong with the input is found here, before any time is spent. */
 static shb_status prepare(const mesh_fe *mesh, const modal_settings *settings,
                           modal_interface *interface, modal_condensation *to) {
@@ -73,9 +126,7 @@ static shb_status prepare(const mesh_fe *mesh, const modal_settings *settings,
   SHB_CHECK(settings->pressure == 0 || mesh->set[MESH_LOAD].n > 0, SHB_ERR_INPUT,
             "the mesh has no group \"%s\" for rotor.pressure; name the loaded faces so",
             mesh_set_name(MESH_LOAD));
-  SHB_TRY(modal_interface_create(mesh, settings->axis, settings->blades, settings->to_ground,
-                                 settings->points, interface));
-  SHB_TRY(modal_interface_check(interface, settings->psi, settings->phi));
+  SHB_TRY(create_interfaces(mesh, settings, interface));
   to->n_pairs  = interface->n_pairs;
   to->has_left = interface->has_left;
   to->damping  = settings->damping;
@@ -178,6 +229,7 @@ static shb_status solve(MPI_Comm comm, const fem_body *body, const modal_setting
   SHB_TRY(modal_participate(body, result->deflection.at.displacement, &result->system,
                             &result->eigen, &result->participation));
   SHB_TRY(name_probes(settings, &result->model));
+  SHB_TRY(name_interfaces(settings, &result->interface, &result->model));
   return copy_patches(&result->interface, &result->model);
 }
 
@@ -281,7 +333,15 @@ static shb_status read_mesh(const char *path, const modal_settings *settings, me
     names.volume[i].label = names.volume[i].name = settings->region[i].name;
   SHB_TRY(mesh_fe_read_named(path, &names, mesh));
   SHB_TRY(mesh_fe_check_groups(mesh, path));
-  if (mesh->set[MESH_CONTACT_RIGHT].n == 0 || mesh->set[MESH_CONTACT_LEFT].n == 0) return SHB_OK;
+  for (int i = 0; i < settings->n_contacts && !settings->to_ground; i++) {
+    int right = mesh_fe_set_named(mesh, settings->contact[i].right);
+    int left  = mesh_fe_set_named(mesh, settings->contact[i].left);
+    if (right < 0 || left < 0 || !mesh->set[right].n || !mesh->set[left].n) continue;
+    SHB_TRY(mesh_fe_orient_groups(mesh, settings->axis, right, left));
+  }
+  if (settings->n_contacts || mesh->set[MESH_CONTACT_RIGHT].n == 0 ||
+      mesh->set[MESH_CONTACT_LEFT].n == 0)
+    return SHB_OK;
   return mesh_fe_orient(mesh, settings->axis);
 }
 

@@ -19,6 +19,13 @@ typedef struct {
   double      at[3]; /* m, mesh axes */
 } modal_probe;
 
+/* One of several contact interfaces, by the groups of its faces. */
+typedef struct {
+  const char   *name, *right, *left; /* left: not to ground */
+  int           points;              /* patches, 0: one a node */
+  const double *psi, *phi;           /* rad, to be checked against the faces; NULL: not given */
+} modal_contact;
+
 /* A volume of the mesh and what it is made of. */
 typedef struct {
   const char  *name;
@@ -49,13 +56,15 @@ typedef struct {
   bool                to_ground;
   int                 points;    /* contact patches, 0: one a node */
   const double       *psi, *phi; /* rad, to be checked against the faces; NULL: not given */
+  int n_contacts; /* 0: one, of contact_right and contact_left, with points, psi, phi */
+  const modal_contact *contact;
 } modal_settings;
 
 /* All that the stage computed. model is the same on every rank. */
 typedef struct {
   fem_system          system;
   modal_eigen         eigen;
-  modal_interface     interface;
+  modal_interface     interface; /* all patches, interface by interface */
   modal_model         model;
   modal_deflection    deflection; /* static, under the centrifugal load; zero at rest */
   modal_participation participation;

@@ -49,11 +49,13 @@ static void put_header(const mhb_response *response, post_buffer *out) {
   static const char *const probe[3]   = {"_tangential", "_axial", "_radial"};
   static const char *const contact[3] = {"_v", "_u", "_w"};
   post_put(out, "branch,kind,n0_N,frequency_Hz");
+  for (int i = 0; i < response->n_interfaces; i++)
+    put_name(out, "n0_", response->interface_name[i], "_N");
   if (followed(response)) post_put(out, ",%s", followed(response));
   for (int q = 0; q < response->n_probes; q++) place_names(out, response->probe_name[q], probe);
   for (int p = 0; p < response->n_pairs; p++) {
-    char place[32] = "contact";
-    if (response->n_pairs > 1) snprintf(place, sizeof place, "contact%d", p + 1);
+    char place[128];
+    post_contact_name(response, p, "", place);
     place_names(out, place, contact);
     put_name(out, place, "_stuck", "");
     put_name(out, place, "_slipping", "");
@@ -120,6 +122,8 @@ static void put_point(const mhb_response *response, int b, int point, post_buffe
   bool nonlinear = branch->kind == MHB_BRANCH_NONLINEAR || branch->kind == MHB_BRANCH_INTEGRATION;
   put_number(out, nonlinear || response->parameter == MHB_IN_N0 ? branch->n0[point] : NAN);
   put_number(out, branch->frequency[point]);
+  for (size_t k = 0; k < (size_t)response->n_interfaces; k++)
+    put_number(out, branch->interface_n0[i * (size_t)response->n_interfaces + k]);
   if (followed(response)) put_number(out, branch->value[point]);
   for (size_t q = 0; q < probes; q++)
     put_place(branch, branch->probe + (i * probes + q) * 3 * m1, out);

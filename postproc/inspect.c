@@ -35,6 +35,16 @@ static void put_count(post_buffer *out, int n, const char *noun) {
   post_put(out, "%d %s%s", n, noun, n == 1 ? "" : "s");
 }
 
+/* " (2 shroud, 1 snubber)"; nothing for one interface. */
+static void put_interfaces(post_buffer *out, int n_pairs, const int *which, int n,
+                           char *const *name) {
+  for (int i = 0; i < n; i++) {
+    int pairs = 0;
+    for (int p = 0; p < n_pairs; p++) pairs += which[p] == i;
+    post_put(out, "%s%d %s%s", i ? ", " : " (", pairs, name[i], i == n - 1 ? ")" : "");
+  }
+}
+
 /* "lo … hi unit", or one value. */
 static void put_span(post_buffer *out, double lo, double hi, const char *unit) {
   char a[POST_NUMBER], b[POST_NUMBER];
@@ -63,6 +73,7 @@ static shb_status sum_up_modal(hid_t file, const char *path, bool verbose, post_
   }
   post_put(out, "; ");
   put_count(out, m.n_pairs, "pair");
+  put_interfaces(out, m.n_pairs, m.interface, m.n_interfaces, m.interface_name);
   post_put(out, ", %s; load harmonics 0..%d; ", m.has_left ? "neighbour" : "ground", m.n_load);
   put_names(out, m.n_probes, m.probe_name);
   post_put(out, "; residual flexibility %s, inertia %s\n", m.residual_flexibility ? "yes" : "no",
@@ -131,6 +142,7 @@ static shb_status sum_up_response(const char *path, post_buffer *out) {
     put_count(out, r->n_harmonics, "harmonic");
     post_put(out, "; ");
     put_count(out, r->n_pairs, "pair");
+    put_interfaces(out, r->n_pairs, r->interface, r->n_interfaces, r->interface_name);
     post_put(out, "; ");
     put_names(out, r->n_probes, r->probe_name);
     post_summary(study, &peaks);

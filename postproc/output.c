@@ -140,10 +140,23 @@ shb_status post_series(const mhb_response *response, const mhb_branch *branch, p
 void post_place_name(const mhb_response *response, post_output output, char out[128]) {
   if (output.place == POST_PROBE)
     snprintf(out, 128, "%s", response->probe_name[output.index]);
-  else if (response->n_pairs == 1)
-    snprintf(out, 128, "contact");
   else
-    snprintf(out, 128, "contact %d", output.index + 1);
+    post_contact_name(response, output.index, " ", out);
+}
+
+void post_contact_name(const mhb_response *response, int pair, const char *gap, char out[128]) {
+  const int  *which = response->interface;
+  const char *name  = which ? response->interface_name[which[pair]] : "contact";
+  int         n = 0, place = 0;
+  for (int p = 0; p < response->n_pairs; p++) {
+    if (which && which[p] != which[pair]) continue;
+    n++;
+    place += p <= pair;
+  }
+  if (n == 1)
+    snprintf(out, 128, "%s", name);
+  else
+    snprintf(out, 128, "%s%s%d", name, gap, place);
 }
 
 const char *post_axis_name(post_output output) {

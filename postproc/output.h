@@ -45,4 +45,8 @@ shb_status post_series(const mhb_response *response, const mhb_branch *branch, p
 void        post_place_name(const mhb_response *response, post_output output, char out[128]);
 const char *post_axis_name(post_output output);
 
+/* A contact pair: "contact", with the number from 1 after gap where there are several; of several interfaces the name of its
+ * own one, with a number if it has several pairs. */
+void post_contact_name(const mhb_response *response, int pair, const char *gap, char out[128]);
+
 #endif

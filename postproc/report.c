@@ -64,6 +64,12 @@ static void put_lede(const post_study *study, const post_source *source, post_bu
   post_put(out, ", %d harmonic%s", r->n_harmonics, r->n_harmonics == 1 ? "" : "s");
   if (r->subharmonics > 1) post_put(out, " of ω/%d", r->subharmonics);
   post_put(out, ", %d contact%s", r->n_pairs, r->n_pairs == 1 ? "" : "s");
+  for (int i = 0; i < r->n_interfaces; i++) {
+    post_put(out, i ? ", " : " (");
+    post_put_escaped(out, r->interface_name[i]);
+    if (i == r->lead) post_put(out, ", whose preloads are named");
+    if (i == r->n_interfaces - 1) post_put(out, ")");
+  }
   post_put(out, ", ψ\u00a0=\u00a0%s°", post_plain(deg, degrees(r->psi), 3));
   post_put(out, ", φ\u00a0=\u00a0%s°", post_plain(deg, degrees(r->phi), 3));
   if (*source->created) {

@@ -202,12 +202,80 @@ static void faults_of_loads(void **state) {
   check_faults(loads, rows, sizeof rows / sizeof *rows);
 }
 
+static const char faces[] =
+    "mesh: {file: b.msh}\n"                                            /* 1 */
+    "material: {E: 1 GPa, nu: 0, rho: 1000}\n"                         /* 2 */
+    "rotor: {axis: x, blades: 30}\n"                                   /* 3 */
+    "modal: {damping: 0.2 %}\n"                                        /* 4 */
+    "excitation: {engine_order: 3, pressure: 1 Pa}\n"                  /* 5 */
+    "contact:\n"                                                       /* 6 */
+    "  accuracy: fast\n"                                               /* 7 */
+    "  interfaces:\n"                                                  /* 8 */
+    "    - {name: shroud, mu: 0.3, ku: 2, kv: 3, n0: 20, points: 4}\n" /* 9 */
+    "    - {name: mid, right: mr, left: ml, mu: 0.1, ku: [1, 0, 2], kv: 2, n0: [-1, 50], psi: 5 "
+    "deg}\n"                                          /* 10 */
+    "mhb: {frequency: [0.14, 0.25], harmonics: 2}\n"; /* 11 */
+
+static void interfaces_are_read(void **state) {
+  (void)state;
+  char     *said;
+  case_file file;
+  if (judge(faces, &said, &file) != SHB_OK) fail_msg("%s", said);
+  free(said);
+  const mhb_settings *mhb = &file.mhb;
+  assert_true(mhb->n_interfaces == 2 && mhb->lead == 1 && !mhb->together); /* the one with a list */
+  assert_string_equal(mhb->interface[0].name, "shroud");
+  assert_true(mhb->interface[0].mu == .3 && mhb->interface[0].n_preloads == 1);
+  assert_true(mhb->mu == .1 && mhb->ku[2] == 2 && mhb->n_preloads == 2 && mhb->n0[1] == 50);
+  assert_true(mhb->interface[1].has_psi && !mhb->interface[0].has_psi);
+  assert_true(file.interfaces[0].points == 4 && file.interfaces[1].points == 1);
+  assert_string_equal(file.interfaces[0].left, "contact_left");
+  assert_int_equal(file.source.rules.n_more, 2);
+  assert_string_equal(file.source.rules.more[1].name, "ml");
+  char *balance = case_settings(&file, CASE_MHB), *modal = case_settings(&file, CASE_MODAL);
+  assert_non_null(strstr(balance, "contact.interfaces[1].n0 = -1 50\n"));
+  assert_non_null(strstr(balance, "contact.interfaces[0].name = shroud\n"));
+  assert_null(strstr(balance, "contact.mu"));
+  assert_null(strstr(balance, "right"));
+  assert_non_null(strstr(modal, "contact.interfaces[1].right = mr\n"));
+  assert_null(strstr(modal, "].mu"));
+  free(balance);
+  free(modal);
+  case_free(&file);
+}
+
+static void faults_of_interfaces(void **state) {
+  (void)state;
+  static const fault rows[] = {
+      {", n0: 20", "", "9:7: error: contact.interfaces[0].n0: missing; expected a number, a list",
+       1},
+      {"n0: 20", "n0: [1, 2, 3]",
+       "10:75: error: contact.interfaces[1].n0: has 2 preloads, shroud has 3; lists must be", 1},
+      {"[-1, 50]", "[50, 50]", "10:75: error: contact.interfaces[1].n0: has 50 N twice", 1},
+      {"name: mid", "name: shroud",
+       "10:14: error: contact.interfaces[1].name: there is another one of that name\n", 1},
+      {", left: ml", "",
+       "10:7: error: contact.interfaces[1].left: its group is one of another interface", 1},
+      {"left: ml", "left: mr",
+       "10:36: error: contact.interfaces[1].left: is the group of its right face\n", 1},
+      {"  accuracy: fast\n", "  mu: 0.2\n",
+       "7:7: error: contact.mu: put it into contact.interfaces", 1},
+      {"{file: b.msh}", "{file: b.msh, groups: {mx: {name: a}}}",
+       "1:30: error: mesh.groups.mx: unknown group", 1},
+      {"harmonics: 2}", "harmonics: 2, vary: {interface: all}}",
+       "11:64: error: mhb.vary.interface: only says something with", 1},
+      {"[0.14, 0.25]", "0.2, vary: {n0: [1, 2], interface: tip}",
+       "10:75: error: contact.interfaces[1].n0: must be one number", 2},
+      {"mu: 0.3", "mu: -0.3", "9:26: error: contact.interfaces[0].mu: is -0.3, must be 0 to", 1},
+  };
+  check_faults(faces, rows, sizeof rows / sizeof *rows);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(materials_are_read),
-      cmocka_unit_test(faults_of_materials),
-      cmocka_unit_test(loads_are_read),
-      cmocka_unit_test(faults_of_loads),
+      cmocka_unit_test(materials_are_read),  cmocka_unit_test(faults_of_materials),
+      cmocka_unit_test(loads_are_read),      cmocka_unit_test(faults_of_loads),
+      cmocka_unit_test(interfaces_are_read), cmocka_unit_test(faults_of_interfaces),
   };
   return cmocka_run_group_tests_name("cases.lists", tests, NULL, NULL);
 }
