@@ -33,6 +33,13 @@ void rung_name(const rung_setting *s, char name[RUNG_WORD]) {
            s->residuals ? "" : "_bare");
 }
 
+/* A preload, with those of the other interfaces that go with it, to another place. */
+static void keep_preload(mhb_settings *mhb, int to, int from) {
+  mhb->n0[to] = mhb->n0[from];
+  for (int k = 0; k < mhb->n_interfaces; k++)
+    if (mhb->interface[k].n_preloads > 1) mhb->interface[k].n0[to] = mhb->interface[k].n0[from];
+}
+
 shb_status rung_apply(const rung_setting *s, case_file *file) {
   mhb_settings *mhb     = &file->mhb;
   mhb->harmonics        = s->harmonics;
@@ -46,10 +53,12 @@ shb_status rung_apply(const rung_setting *s, case_file *file) {
   int kept              = 0;
   for (int i = 0; i < mhb->n_preloads; i++)
     if (mhb->n0[i] >= file->converge_n0[0] && mhb->n0[i] <= file->converge_n0[1])
-      mhb->n0[kept++] = mhb->n0[i];
+      keep_preload(mhb, kept++, i);
   SHB_CHECK(kept > 0, SHB_ERR_INPUT,
             "%s: converge.n0: no preload of contact.n0 lies between %g and %g N", file->path,
             file->converge_n0[0], file->converge_n0[1]);
+  for (int k = 0; k < mhb->n_interfaces; k++)
+    if (mhb->interface[k].n_preloads > 1) mhb->interface[k].n_preloads = kept;
   mhb->n_preloads = kept;
   return SHB_OK;
 }

@@ -408,6 +408,85 @@ static void failures_leave_the_file_alone(void **state) {
   refused(&settings, "sector.msh", SHB_ERR_INPUT, "excitation.force");
 }
 
+/* The faces of a group whose first corner is on one side of a radius: a group of its own. */
+static mesh_face_set part_of(const mesh_fe *mesh, mesh_set_id id, bool outer) {
+  const int     each = mesh_topology_of(mesh->kind)->face_nodes;
+  mesh_face_set out  = {0, malloc((size_t)(each * mesh->set[id].n) * sizeof(int))};
+  assert_non_null(out.nodes);
+  for (int f = 0; f < mesh->set[id].n; f++) {
+    const int *face = mesh->set[id].nodes + each * f;
+    double     far  = 0;
+    for (int i = 0; i < each; i++) {
+      const double *x = mesh->coordinates + 3 * face[i];
+      far             = fmax(far, hypot(x[1], x[2]));
+    }
+    if ((far > inner + .55 * size[2]) != outer) continue;
+    memcpy(out.nodes + each * out.n++, face, (size_t)each * sizeof(int));
+  }
+  return out;
+}
+
+/* Two interfaces, of one and two patches: each as when it is alone, and the coupling symmetric. */
+static void interfaces_are_condensed_together(void **state) {
+  (void)state;
+  mesh_fe             mesh       = make_sector(size, inner, BLADES, cells);
+  modal_settings      settings   = default_settings();
+  const modal_contact contact[2] = {
+      {.name = "shroud", .right = "outer right", .left = "outer left", .points = 1},
+      {.name = "snubber", .right = "inner right", .left = "inner left", .points = 2}};
+  static const mesh_set_id side[2] = {MESH_CONTACT_RIGHT, MESH_CONTACT_LEFT};
+  modal_result             both, one;
+  mesh.n_more = 4;
+  for (int i = 0; i < 4; i++) {
+    snprintf(mesh.more[i], MESH_WORD, "%s", i % 2 ? contact[i / 2].left : contact[i / 2].right);
+    mesh.set[MESH_N_SETS + i] = part_of(&mesh, side[i % 2], i < 2);
+    assert_true(mesh.set[MESH_N_SETS + i].n > 2);
+  }
+  settings.contact    = contact;
+  settings.n_contacts = 2;
+  assert_ok(modal_solve(PETSC_COMM_WORLD, &mesh, &settings, NULL, &both));
+  const modal_model *all = &both.model;
+  assert_int_equal(all->n_pairs, 3);
+  assert_int_equal(all->n_interfaces, 2);
+  assert_string_equal(all->interface_name[1], "snubber");
+  for (int a = 0; a < 3; a++) assert_int_equal(all->interface[a], a > 0);
+  for (int i = 0; i < 2; i++) {
+    const int first = i, pairs = i + 1, m = all->n_modes;
+    settings.contact    = &contact[i];
+    settings.n_contacts = 1;
+    assert_ok(modal_solve(PETSC_COMM_WORLD, &mesh, &settings, NULL, &one));
+    const modal_model *own = &one.model;
+    assert_int_equal(own->n_pairs, pairs);
+    assert_int_equal(own->n_interfaces, 0);
+    double most = 0;
+    for (int k = 0; k < 3 * pairs * m; k++) most = fmax(most, fabs(own->right[k]));
+    for (int k = 0; k < 3 * pairs * m; k++) { /* signs of modes are the solver's */
+      check_below(fabs(all->right[3 * first * m + k]) - fabs(own->right[k]), 1e-7 * most, "right");
+      check_below(fabs(all->left[3 * first * m + k]) - fabs(own->left[k]), 1e-7 * most, "left");
+    }
+    for (int a = 0; a < pairs; a++) check_close(all->area[first + a], own->area[a], 1e-14, "area");
+    const int n = 6 * pairs;
+    most        = 0;
+    for (int k = 0; k < n * n; k++) most = fmax(most, fabs(own->residual_flexibility[k]));
+    for (int k = 0; k < n * n; k++) {
+      int at[2] = {k / n, k % n};
+      for (int j = 0; j < 2; j++)
+        at[j] = (at[j] / (3 * pairs) * 3 + first) * 3 + at[j] % (3 * pairs);
+      check_below(all->residual_flexibility[18 * at[0] + at[1]] - own->residual_flexibility[k],
+                  1e-8 * most, "residual flexibility");
+    }
+    modal_result_free(&one);
+  }
+  modal_result_free(&both);
+  modal_contact lost = {.name = "shroud", .right = "nowhere", .left = "outer left", .points = 1};
+  settings.contact   = &lost;
+  assert_int_equal(modal_solve(PETSC_COMM_WORLD, &mesh, &settings, NULL, &one), SHB_ERR_INPUT);
+  assert_non_null(
+      strstr(shb_message(), "contact interface shroud: the mesh has no group \"nowhere\""));
+  modal_result_free(&one);
+  mesh_fe_free(&mesh);
+}
+
 int main(int argc, char **argv) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(file_is_complete),
@@ -421,6 +500,7 @@ int main(int argc, char **argv) {
       cmocka_unit_test(failures_leave_the_file_alone),
       cmocka_unit_test(hexahedra_go_through),
       cmocka_unit_test(columns_need_all_points),
+      cmocka_unit_test(interfaces_are_condensed_together),
   };
   modal_session session;
   if (modal_session_start(&argc, &argv, &session) != SHB_OK) return 1;
