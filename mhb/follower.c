@@ -5,12 +5,12 @@
 #include <string.h>
 
 #include "mesh/progress.h"
-#include "mhb/locate.h"
+#include "mhb/corrector.h"
 #include "mhb/record.h"
 
 /* A path whose steps stay below CRAWL this often is as good as stalled. */
 static const double CRAWL = 2e-3;
-enum { MAX_CRAWL = 150 };
+enum { MAX_CRAWL = 150, MAX_SHORTER = 5 };
 
 /* A curve has closed if it comes as near as this to its beginning, relative to the motion. */
 static const double SAME = 1e-5;
@@ -21,15 +21,6 @@ const char MHB_WHOLE[] = "end of range", MHB_CLOSED[] = "closed curve",
 
 void mhb_follower_lock(const mhb_follower *f, bool locked) {
   f->monitor->lock(f->monitor, locked);
-}
-
-static double fold_indicator(const mhb_path *path, const mhb_path_point *point, void *context) {
-  (void)context;
-  return point->tangent[path->n];
-}
-
-static double peak_indicator(const mhb_path *path, const mhb_path_point *point, void *context) {
-  return mhb_output_slope(path, point, *(const int *)context);
 }
 
 shb_status mhb_follower_record(mhb_follower *f, mhb_path_point *point, int special, bool *go_on) {
@@ -47,54 +38,20 @@ static void slopes(const mhb_follower *f, const mhb_path_point *point, double *o
   for (int o = 0; o < f->n_outputs; o++) out[o] = mhb_output_slope(f->path, point, o);
 }
 
-/* An event between now and next: what, and where on the chord. */
-typedef struct {
-  int    special, output;
-  double fraction;
-} event;
-
-enum { MAX_EVENTS = 16 };
-
-static int by_fraction(const void *a, const void *b) {
-  double x = ((const event *)a)->fraction, y = ((const event *)b)->fraction;
-  return (x > y) - (x < y);
-}
-
-/* Folds (the frequency turns) and peaks (an amplitude turns down), by linear interpolation of their indicators. */
-static int list_events(const mhb_follower *f, event *list) {
-  const mhb_path *path = f->path;
-  int             n = 0, last = path->n;
-  double          a = path->now.tangent[last], b = path->next.tangent[last];
-  if (a * b < 0) list[n++] = (event){MHB_FOLD, 0, a / (a - b)};
-  for (int o = 0; o < f->n_outputs && n < MAX_EVENTS; o++) {
-    double up = f->before[o], down = f->after[o];
-    if (up > 0 && down < 0) list[n++] = (event){MHB_PEAK, o, up / (up - down)};
-  }
-  qsort(list, (size_t)n, sizeof *list, by_fraction);
-  return n;
-}
-
 void mhb_follower_revisit(mhb_follower *f, const mhb_path_point *point) {
   mhb_newton *w = f->path->newton;
   mhb_residual_derive(f->residual, point->x, point->value, w->r, NULL);
 }
 
 /* Leaves the residual's workspace at next, as mhb_path_step did. */
-static shb_status record_events(mhb_follower *f, bool *go_on) {
-  event list[MAX_EVENTS];
-  int   n = list_events(f, list), last = f->path->n;
-  for (int i = 0; i < n && *go_on; i++) {
-    int    fold = list[i].special == MHB_FOLD;
-    double lo   = fold ? f->path->now.tangent[last] : f->before[list[i].output];
-    double hi   = fold ? f->path->next.tangent[last] : f->after[list[i].output];
-    double at;
-    if (!mhb_path_locate(f->path, fold ? fold_indicator : peak_indicator, &list[i].output, lo, hi,
-                         &at))
-      continue;
+static shb_status record_landmarks(mhb_follower *f, bool *go_on) {
+  const mhb_landmarks *l = &f->landmarks;
+  for (int i = 0; i < l->n && *go_on; i++) {
+    mhb_landmarks_visit(l, f->path, i);
     mhb_harmonics_errors(f->harmonics, &f->path->probe);
-    SHB_TRY(mhb_follower_record(f, &f->path->probe, list[i].special, go_on));
+    SHB_TRY(mhb_follower_record(f, &f->path->probe, l->mark[i].special, go_on));
   }
-  if (n > 0) mhb_follower_revisit(f, &f->path->next);
+  if (l->away) mhb_follower_revisit(f, &f->path->next);
   return SHB_OK;
 }
 
@@ -191,16 +148,50 @@ static const char *come_back(mhb_follower *f) {
   return NULL;
 }
 
+/* A step, why the curve ends there, and its folds and peaks, not yet recorded. */
+static shb_status look_ahead(mhb_follower *f, mhb_path_outcome *outcome, const char **end,
+                             bool *folds_hidden) {
+  *folds_hidden = false;
+  SHB_TRY(sufficient_step(f, outcome));
+  *end = end_at(f, *outcome);
+  if (*outcome == MHB_PATH_STALLED) return SHB_OK;
+  slopes(f, &f->path->next, f->after);
+  mhb_landmarks_find(&f->landmarks, f->path, f->n_outputs, f->before, f->after);
+  *folds_hidden = !*end && mhb_landmarks_hide_folds(&f->landmarks, f->path);
+  return SHB_OK;
+}
+
+/* From now to next. */
+static double length(const mhb_path *path) {
+  for (int i = 0; i < path->n; i++) path->chord[i] = path->next.x[i] - path->now.x[i];
+  path->chord[path->n] = path->next.value - path->now.value;
+  return sqrt(mhb_path_inner(path, mhb_path_unit(path), path->chord, path->chord));
+}
+
+/* The same, with shorter steps where folds are hidden in it; as it was if that does not help. */
+static shb_status open_step(mhb_follower *f, mhb_path_outcome *outcome, const char **end) {
+  bool hidden;
+  SHB_TRY(look_ahead(f, outcome, end, &hidden));
+  if (!hidden) return SHB_OK;
+  double whole = length(f->path), part = whole;
+  for (int i = 0; i < MAX_SHORTER; i++) {
+    f->path->step = part *= .25;
+    SHB_TRY(look_ahead(f, outcome, end, &hidden));
+    if (!hidden && *outcome != MHB_PATH_STALLED) return SHB_OK;
+  }
+  f->path->step = whole;
+  return look_ahead(f, outcome, end, &hidden);
+}
+
 shb_status mhb_follower_step(mhb_follower *f, bool *go_on, const char **end) {
   mhb_path_outcome outcome;
   if (f->joins && mhb_closed_joins(f->path)) *end = MHB_JOINED;
   if (*end) return SHB_OK;
-  SHB_TRY(sufficient_step(f, &outcome));
-  *end = end_at(f, outcome);
+  SHB_TRY(open_step(f, &outcome, end));
   if (outcome == MHB_PATH_STALLED) return SHB_OK;
-  slopes(f, &f->path->next, f->after);
-  SHB_TRY(record_events(f, go_on));
-  if (*go_on) SHB_TRY(mhb_follower_record(f, &f->path->next, MHB_ORDINARY, go_on));
+  SHB_TRY(record_landmarks(f, go_on));
+  int special = f->landmarks.unmarked ? MHB_FOLD : MHB_ORDINARY; /* as near as it is known */
+  if (*go_on) SHB_TRY(mhb_follower_record(f, &f->path->next, special, go_on));
   f->farthest = fmax(f->farthest, f->path->next.value);
   if (!*end && *go_on && outcome == MHB_PATH_AT_START) *end = come_back(f);
   if (*end || !*go_on) return SHB_OK;
@@ -242,7 +233,7 @@ shb_status mhb_follower_create(mhb_follower *f, mhb_residual *residual, mhb_resp
   f->after  = calloc(outputs, sizeof(double));
   f->x      = calloc((size_t)mhb_harmonics_most_unknowns(f->harmonics), sizeof(double));
   SHB_CHECK(f->before && f->after && f->x, SHB_ERR_IO, "out of memory");
-  return SHB_OK;
+  return mhb_landmarks_create(&f->landmarks, mhb_harmonics_most_unknowns(f->harmonics));
 }
 
 void mhb_follower_destroy(mhb_follower *f) {
@@ -251,6 +242,7 @@ void mhb_follower_destroy(mhb_follower *f) {
   mhb_harmonics_destroy(f->harmonics);
   mhb_follower_lock(f, false);
   mhb_closed_free(&f->closed);
+  mhb_landmarks_destroy(&f->landmarks);
   free(f->before);
   free(f->after);
   free(f->x);

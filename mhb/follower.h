@@ -7,6 +7,7 @@
 #include "mhb/follow.h"
 #include "mhb/harmonics.h"
 #include "mhb/judge.h"
+#include "mhb/landmarks.h"
 
 enum { MHB_MAX_BEGINS = 64 };
 
@@ -21,6 +22,7 @@ typedef struct {
   int              n_outputs;
   double          *before, *after; /* [outputs] slopes of the amplitudes at now and next */
   double          *x;              /* [n] a first solution */
+  mhb_landmarks    landmarks;
   double           clock;
   double           farthest;                       /* highest value of the parameter reached */
   int              crawling;                       /* tiny steps in a row */

@@ -6,6 +6,7 @@
 static const double RIPPLE       = 0.02; /* of the peak's height */
 static const double LARGEST_GAIN = 1.05; /* of a refined peak over its highest point */
 static const double HAIRLINE     = 1e-5; /* of x, as the solver has it */
+static const double ROUNDING     = 1e-9; /* of x: no reversal */
 static const double LEVEL        = 1e-6; /* of the amplitude: no difference to be seen */
 
 /* One curve with the scales that make its arclength dimensionless. */
@@ -207,18 +208,31 @@ shb_status post_find_peaks(int n, const double *x, const double *amplitude, post
   return SHB_OK;
 }
 
+/* What a difference of x is compared with. */
+static double size_at(const curve *c, int i) {
+  return fmax(fabs(c->x[i]), 1e-2 * c->x_span);
+}
+
+static bool is_same(const curve *c, int i, int j) {
+  return fabs(c->x[j] - c->x[i]) <= ROUNDING * size_at(c, i);
+}
+
 /* Direction in which x leaves point i going by step, 0 at the end of the curve. */
 static int leaving(const curve *c, int i, int step) {
   for (int j = i + step; j >= 0 && j < c->n; j += step)
-    if (c->x[j] != c->x[i]) return c->x[j] > c->x[i] ? 1 : -1;
+    if (!is_same(c, i, j)) return c->x[j] > c->x[i] ? 1 : -1;
   return 0;
 }
 
-/* +1 x is a maximum at i, -1 a minimum, 0 neither; of a run of equal values only the first counts. */
-static int turning(const curve *c, int i) {
-  if (i <= 0 || i >= c->n - 1 || c->x[i] == c->x[i - 1]) return 0;
+/* +1 x is a maximum at i, -1 a minimum, 0 neither. */
+static int sense(const curve *c, int i) {
   int before = leaving(c, i, -1), after = leaving(c, i, 1);
   return before == after ? -before : 0;
+}
+
+/* The same; of a run of equal values only the first counts. */
+static int turning(const curve *c, int i) {
+  return i <= 0 || i >= c->n - 1 || is_same(c, i, i - 1) ? 0 : sense(c, i);
 }
 
 static void refine_fold(const curve *c, int i, post_fold *fold) {
@@ -231,18 +245,21 @@ static void refine_fold(const curve *c, int i, post_fold *fold) {
   fold->amplitude = parabola(s, c->a + i - 1, at);
 }
 
-/* A flagged point i, or a turning point with no flag on either side of it (rounding may move the turn by one). */
+/* A flagged point at which x does not turn: rounding has moved the turn to a neighbour. */
+static bool lost_its_turn(const curve *c, const int *special, int i) {
+  return special[i] == 1 && sense(c, i) == 0;
+}
+
+/* A flagged point, or a turning point that is not the one of a flagged neighbour. */
 static bool is_fold(const curve *c, const int *special, int i) {
   if (special && special[i] == 1) return true;
   if (!turning(c, i)) return false;
-  return !special || (special[i - 1] != 1 && special[i + 1] != 1);
+  return !special || !(lost_its_turn(c, special, i - 1) || lost_its_turn(c, special, i + 1));
 }
 
-static post_fold fold_at(const curve *c, const int *special, int i) {
-  post_fold fold    = {c->x[i], c->a[i], i, false};
-  bool      flagged = special && special[i] == 1;
-  int       turn    = turning(c, i);
-  if (!flagged) refine_fold(c, i, &fold);
+static post_fold fold_at(const curve *c, int i) {
+  post_fold fold = {c->x[i], c->a[i], i, false};
+  int       turn = sense(c, i);
   for (int j = i - 1; turn == 0 && j <= i + 1; j += 2) turn = turning(c, j);
   fold.upper = turn > 0;
   return fold;
@@ -274,7 +291,10 @@ shb_status post_find_folds(int n, const double *x, const double *amplitude, cons
   post_fold *out = calloc((size_t)count, sizeof *out);
   SHB_CHECK(out, SHB_ERR_IO, "not enough memory for %d folds", count);
   for (int i = 0, p = 0; i < n; i++)
-    if (is_fold(&c, special, i)) out[p++] = fold_at(&c, special, i);
+    if (is_fold(&c, special, i)) out[p++] = fold_at(&c, i);
+  count = drop_hairlines(&c, out, count); /* refined, the two turns of a ripple would move apart */
+  for (int i = 0; i < count; i++)
+    if (!special || special[out[i].point] != 1) refine_fold(&c, out[i].point, &out[i]);
   *folds   = out;
   *n_folds = drop_hairlines(&c, out, count);
   return SHB_OK;

@@ -12,6 +12,7 @@
 #include "tests/hard/floquet.h"
 #include "tests/hard/verdict.h"
 #include "tests/mhb/periodic.h"
+#include "tests/mhb/random_model.h"
 #include "tests/mhb/three_degree.h"
 
 static const double PI = 3.14159265358979323846;
@@ -155,10 +156,42 @@ static void gap_and_preload_in_one_sweep(void **state) {
   verdict_all();
 }
 
+/* Where the frequency runs back from one point to the next though no fold is at either: the largest part of it. */
+static double largest_reversal(const mhb_branch *b) {
+  double worst = 0;
+  for (int i = 1; i + 1 < b->n_points; i++) {
+    const int    *special = b->special + i;
+    const double *w       = b->frequency + i;
+    if (special[-1] == MHB_FOLD || special[0] == MHB_FOLD || special[1] == MHB_FOLD) continue;
+    if ((w[0] - w[-1]) * (w[1] - w[0]) < 0)
+      worst = fmax(worst, fmin(fabs(w[0] - w[-1]), fabs(w[1] - w[0])) / w[0]);
+  }
+  return worst;
+}
+
+/* Several peaks and folds in one step are recorded in the order in which they lie on the curve, one at a place once, and no step hides
+ * a pair of folds. */
+static void in_order_along_the_curve(void **state) {
+  (void)state;
+  static const int    seed[] = {1, 12, 22, 27, 32, 38, 57};
+  static const double n0[]   = {-.2, 0, .1, .3, .6};
+  for (int i = 0; i < 7; i++) {
+    modal_model model;
+    random_model(1, 0, (unsigned long long)seed[i], &model);
+    mhb_settings s  = ground_settings(.4, .8, .5, n0[seed[i] % 5], 5);
+    mhb_response *r = covered_sweep(&model, &s, .7, 2.2);
+    verdict(largest_reversal(&r->branch[2]), 1e-12, "model %d: largest reversal", seed[i]);
+    mhb_response_destroy(r);
+    modal_model_free(&model);
+  }
+  verdict_all();
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(jumps),
       cmocka_unit_test(gap_and_preload_in_one_sweep),
+      cmocka_unit_test(in_order_along_the_curve),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -212,6 +212,25 @@ static void hairlines_are_no_folds(void **state) {
   free(folds);
 }
 
+/* A reversal that the solver did not mark, of rounding or of a millionth, is none, though the parabolas through its two turns are
+ * flat far from each other. */
+static void ripples_are_no_folds(void **state) {
+  (void)state;
+  const double back[] = {2e-14, 1e-6};
+  for (int k = 0; k < 2; k++) {
+    double     f[]        = {100, 105, 110, 110 * (1 - back[k]), 120, 119, 125};
+    double     a[]        = {1, 2, 3, 3.5, 5, 6, 7};
+    int        special[7] = {0, 0, 2, 2, 1, 1, 0}, n;
+    post_fold *folds;
+    assert_ok(post_find_folds(7, f, a, special, &folds, &n));
+    assert_int_equal(n, 2);
+    assert_true(folds[0].at == 120 && folds[0].upper && folds[1].at == 119 && !folds[1].upper);
+    free(folds);
+    assert_ok(post_find_folds(5, f, a, NULL, &folds, &n));
+    assert_int_equal(n, 0);
+  }
+}
+
 /* A curve of one value has it everywhere; one that ends on a plateau has its largest value at the end, whatever the rounding; the
  * largest value is told even if it rises above the plateau by no more than a ripple. */
 static void plateaus(void **state) {
@@ -255,6 +274,7 @@ int main(void) {
       cmocka_unit_test(folds),     cmocka_unit_test(flagged),
       cmocka_unit_test(cases),     cmocka_unit_test(edge),
       cmocka_unit_test(closed),    cmocka_unit_test(hairlines_are_no_folds),
-      cmocka_unit_test(plateaus),  cmocka_unit_test(folds_around_zero)};
+      cmocka_unit_test(plateaus),  cmocka_unit_test(folds_around_zero),
+      cmocka_unit_test(ripples_are_no_folds)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
