@@ -9,7 +9,7 @@
 #include "mhb/follower.h"
 #include "mhb/record.h"
 
-enum { MAX_GAPS = 8 };
+enum { MAX_GAPS = 8, MAX_RETURNS = 8 };
 
 /* Of the length in y: as near as this, what lies between two ends of a curve is a kink that no step passes. */
 static const double ACROSS_KINK = 1e-2;
@@ -21,6 +21,7 @@ typedef struct {
   char         first_gap[96];
   int          start;                         /* the point where the curve under way begins */
   bool         turned;                        /* that is on the high end of the range */
+  int          stable_at;                     /* the first solution found, stable by assumption */
   int          n_aside, aside[MHB_MAX_ASIDE]; /* branches split off */
   mhb_closed_curve
       lost; /* where the curve was lost, to be come upon from the other side; or empty */
@@ -72,12 +73,12 @@ static bool judged(mhb_judge_host *host, double value) {
 }
 
 /* Before the branch counts as complete: an interrupted run takes complete branches over as they are. */
-static shb_status judge(mhb_follower *f, bool stable_start, const char **reason) {
+static shb_status judge(mhb_follower *f, bool stable_start, int stable_at, const char **reason) {
   bool finished = true;
   mhb_follower_lock(f, true);
   drop_hairlines(&f->response->branch[f->branch],
                  mhb_parameter_shown(f->residual->parameter, f->path->high - f->path->low));
-  if (stable_start) mhb_judge_by_folds(&f->response->branch[f->branch]);
+  if (stable_start) mhb_judge_by_folds(&f->response->branch[f->branch], stable_at);
   mhb_follower_lock(f, false);
   if (f->residual->settings->stability == MHB_STABILITY_NEVER || strcmp(*reason, INTERRUPTED) == 0)
     return SHB_OK;
@@ -87,7 +88,8 @@ static shb_status judge(mhb_follower *f, bool stable_start, const char **reason)
   shb_status made = f->judge ? SHB_OK : mhb_judge_create(f->residual, &f->judge);
   mhb_follower_lock(f, false);
   SHB_TRY(made);
-  f->host           = (mhb_judge_host){.insert = insert, .lock = lock_judge, .point = judged};
+  f->host = (mhb_judge_host){
+      .insert = insert, .lock = lock_judge, .point = judged, .stable_at = stable_at};
   shb_status status = mhb_judge_branch(f->judge, f->path, f->response, f->branch, f->first,
                                        f->n_first, &f->host, &finished);
   if (!finished) *reason = INTERRUPTED;
@@ -285,17 +287,49 @@ static shb_status run(trunk *t, const char **end) {
   return SHB_OK;
 }
 
+/* The range is covered from end to end; what comes back into it behind the last point, at either end. */
+static shb_status come_back_behind(trunk *t, bool *go_on) {
+  mhb_follower *f    = &t->f;
+  bool          back = true;
+  f->either          = true;
+  for (int i = 0; i < MAX_RETURNS && back && *go_on; i++) {
+    const char *why = NULL;
+    SHB_TRY(mhb_follower_return(f, &back, go_on));
+    if (!back || !*go_on) break;
+    SHB_TRY(mhb_follower_run(f, go_on, &why));
+    if (!*go_on || why == MHB_WHOLE) continue;
+    if (why != MHB_CLOSED) note_gap(t, why, f->path->now.value);
+    break;
+  }
+  f->either = false;
+  return SHB_OK;
+}
+
+/* The same behind the last point, and before the first. */
+static shb_status come_back_around(trunk *t, const char **end) {
+  mhb_follower *f     = &t->f;
+  bool          go_on = true;
+  SHB_TRY(come_back_behind(t, &go_on));
+  int n = n_points(f);
+  reverse(f, 0);
+  if (go_on) SHB_TRY(come_back_behind(t, &go_on));
+  t->stable_at = n_points(f) - n;
+  reverse(f, 0);
+  if (!go_on) *end = INTERRUPTED;
+  return SHB_OK;
+}
+
 static shb_status finish_main(trunk *t, const char *reason) {
   mhb_follower *f = &t->f;
   char          text[256];
   int           main = f->branch;
-  SHB_TRY(judge(f, true, &reason));
+  SHB_TRY(judge(f, true, t->stable_at, &reason));
   for (int i = 0; i < t->n_aside && strcmp(reason, INTERRUPTED) != 0; i++) {
     const char *own = MHB_WHOLE;
     f->branch       = t->aside[i];
     f->first[0]     = 0;
     f->n_first      = 1;
-    SHB_TRY(judge(f, false, &own));
+    SHB_TRY(judge(f, false, 0, &own));
     if (own != MHB_WHOLE) reason = own;
   }
   f->branch = main;
@@ -312,6 +346,7 @@ shb_status mhb_follow(mhb_residual *residual, mhb_response *response, int branch
   const char *why    = NULL;
   shb_status  status = mhb_follower_create(&t.f, residual, response, branch, monitor);
   if (status == SHB_OK) status = run(&t, &why);
+  if (status == SHB_OK && why == MHB_WHOLE) status = come_back_around(&t, &why);
   if (status == SHB_OK) status = finish_main(&t, why);
   mhb_follower_destroy(&t.f);
   return status;
@@ -396,7 +431,7 @@ shb_status mhb_follow_from(mhb_residual *residual, mhb_response *response, int b
     s.f.either = s.f.joins = true;
     status                 = run_further(&s, &why, none);
   }
-  if (status == SHB_OK && !*none) status = judge(&s.f, false, &why);
+  if (status == SHB_OK && !*none) status = judge(&s.f, false, 0, &why);
   if (status == SHB_OK && !*none) status = end_branch(&s.f, why);
   mhb_follower_destroy(&s.f);
   return status;

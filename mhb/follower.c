@@ -6,6 +6,7 @@
 
 #include "mesh/progress.h"
 #include "mhb/corrector.h"
+#include "mhb/fourier.h"
 #include "mhb/record.h"
 
 /* A path whose steps stay below CRAWL this often is as good as stalled. */
@@ -137,15 +138,98 @@ static const char *end_at(mhb_follower *f, mhb_path_outcome outcome) {
   return f->crawling > MAX_CRAWL ? "the steps stayed tiny" : NULL;
 }
 
-/* next, recorded, is on the low end of the range: go on where the curve comes back into it. */
-static const char *come_back(mhb_follower *f) {
-  if (mhb_path_outside(f->path, MHB_PATH_AT_START) != MHB_PATH_ON) return MHB_TURNED_BACK;
-  if (f->closed.x &&
-      mhb_closed_distance(&f->closed, f->path, &f->path->next) <= f->closed.tolerance)
-    return MHB_CLOSED;
-  slopes(f, &f->path->next, f->after);
+/* The motion recorded at a point of any curve is that of path->next, as near as a curve comes to itself. */
+static bool is_recorded(const mhb_follower *f, const mhb_branch *b, int point) {
+  const mhb_residual   *r = f->residual;
+  int                   K = b->n_harmonics + 1, rows = 3 * r->n_pairs;
+  const double complex *A    = b->motion + (size_t)point * (size_t)rows * (size_t)K;
+  double                away = 0, size = 0;
+  for (int row = 0; row < rows; row++)
+    for (int k = 0; k < K || k <= r->m; k++) {
+      const double  *x    = f->path->next.x + (size_t)row * (size_t)r->nb;
+      double complex here = k > r->m ? 0 : k ? CMPLX(x[2 * k - 1], x[2 * k]) : x[0];
+      double complex then = k < K ? A[row * K + k] : 0;
+      away += pow(cabs(here - then), 2);
+      size += pow(cabs(here), 2);
+    }
+  return sqrt(away) <= 10 * mhb_follower_closeness(f) * sqrt(size);
+}
+
+/* path->next, on an end of the range, has been passed before: by this curve, or by one set aside. */
+static bool is_known(mhb_follower *f) {
+  const mhb_response *r     = f->response;
+  double              value = mhb_parameter_shown(f->residual->parameter, f->path->next.value);
+  bool                known = false;
+  mhb_follower_lock(f, true);
+  for (int i = 0; i < r->n_branches && !known; i++) {
+    const mhb_branch *b = &r->branch[i];
+    if (b->kind != MHB_BRANCH_NONLINEAR || b->main != r->branch[f->branch].main) continue;
+    for (int p = 0; p < b->n_points && !known; p++)
+      known = fabs(b->value[p] - value) <= 1e-12 * fabs(value) && is_recorded(f, b, p);
+  }
+  mhb_follower_lock(f, false);
+  return known;
+}
+
+/* The curve is back in the range at path->next, which is to be recorded and followed from. */
+static shb_status begin_back(mhb_follower *f, bool *go_on) {
+  mhb_path_advance(f->path);
   begin_anew(f);
-  return NULL;
+  SHB_TRY(mhb_follower_arrive(f));
+  return mhb_follower_record(f, &f->path->now, MHB_ORDINARY, go_on);
+}
+
+/* next, recorded, is on the low end of the range: go on where the curve comes back into it. */
+static shb_status come_back(mhb_follower *f, bool *go_on, const char **end) {
+  if (mhb_path_outside(f->path, MHB_PATH_AT_START) != MHB_PATH_ON) *end = MHB_TURNED_BACK;
+  if (!*end && f->closed.x &&
+      mhb_closed_distance(&f->closed, f->path, &f->path->next) <= f->closed.tolerance)
+    *end = MHB_CLOSED;
+  return *end ? SHB_OK : begin_back(f, go_on);
+}
+
+/* Begin at the last recorded point of the branch, as it was solved. */
+static shb_status begin_at_last(mhb_follower *f, int direction, bool *found) {
+  const mhb_branch *b    = &f->response->branch[f->branch];
+  int               last = b->n_points - 1, K = b->n_harmonics + 1, rung = 0;
+  while (rung + 1 < f->harmonics->n && f->harmonics->m[rung] < b->harmonics[last]) rung++;
+  mhb_follower_lock(f, true); /* FFTW's planner */
+  shb_status status = mhb_harmonics_make(f->harmonics, rung);
+  mhb_follower_lock(f, false);
+  SHB_TRY(status);
+  f->harmonics->at = rung;
+  mhb_follower_use_rung(f);
+  const mhb_residual *r = f->residual;
+  for (int row = 0; row < 3 * r->n_pairs; row++) {
+    double complex A[r->m + 1];
+    for (int k = 0; k <= r->m; k++)
+      A[k] = k < K ? b->motion[((size_t)last * 3 * (size_t)r->n_pairs + (size_t)row) * (size_t)K +
+                               (size_t)k]
+                   : 0;
+    mhb_to_real(r->m, A, f->x + (size_t)row * (size_t)r->nb);
+  }
+  double value = mhb_parameter_value(r->parameter, b->value[last]);
+  value        = direction < 0 ? fmax(value, f->path->low) : fmin(value, f->path->high);
+  f->crawling  = 0;
+  *found       = mhb_path_start(f->path, f->x, value, direction) == MHB_CONVERGED;
+  return SHB_OK;
+}
+
+shb_status mhb_follower_return(mhb_follower *f, bool *back, bool *go_on) {
+  const mhb_branch *b    = &f->response->branch[f->branch];
+  double            last = b->value[b->n_points - 1];
+  double            lo   = mhb_parameter_shown(f->residual->parameter, f->path->low),
+         hi              = mhb_parameter_shown(f->residual->parameter, f->path->high);
+  bool low = fabs(last - lo) <= 1e-9 * (hi - lo), high = fabs(last - hi) <= 1e-9 * (hi - lo);
+  *back = low || high;
+  if (*back) SHB_TRY(begin_at_last(f, low ? -1 : 1, back));
+  mhb_closed_free(&f->closed);
+  *back =
+      *back && mhb_path_beyond(f->path, low ? MHB_PATH_AT_START : MHB_PATH_AT_END) == MHB_PATH_ON;
+  *back = *back && !is_known(f);
+  if (!*back) return SHB_OK;
+  SHB_TRY(begin_back(f, go_on));
+  return mhb_closed_begin(&f->closed, f->path, mhb_follower_closeness(f));
 }
 
 /* A step, why the curve ends there, and its folds and peaks, not yet recorded. */
@@ -193,8 +277,8 @@ shb_status mhb_follower_step(mhb_follower *f, bool *go_on, const char **end) {
   int special = f->landmarks.unmarked ? MHB_FOLD : MHB_ORDINARY; /* as near as it is known */
   if (*go_on) SHB_TRY(mhb_follower_record(f, &f->path->next, special, go_on));
   f->farthest = fmax(f->farthest, f->path->next.value);
-  if (!*end && *go_on && outcome == MHB_PATH_AT_START) *end = come_back(f);
   if (*end || !*go_on) return SHB_OK;
+  if (outcome == MHB_PATH_AT_START) return come_back(f, go_on, end);
   mhb_path_advance(f->path);
   mhb_harmonics_accept(f->harmonics);
   double *swap = f->before;

@@ -57,6 +57,11 @@ shb_status mhb_follower_arrive(mhb_follower *f);
  * at the low end of the range only leaves and comes back (mhb_path_outside). *go_on false: interrupted. */
 shb_status mhb_follower_step(mhb_follower *f, bool *go_on, const char **end);
 
+/* The last recorded point is an end of the range at which a curve with `either` ended: follow it outside, a little (mhb_path_beyond).
+ * *back: it has come back into the range where no curve of this preload was before; that point is recorded, as the first of a
+ * piece, and is path->now. */
+shb_status mhb_follower_return(mhb_follower *f, bool *back, bool *go_on);
+
 /* Steps until the curve ends. */
 shb_status mhb_follower_run(mhb_follower *f, bool *go_on, const char **end);
 

@@ -312,10 +312,29 @@ static shb_status mark_turns(mhb_judge *j, const int *first, int n_first) {
 
 /* ---- the verdict ---- */
 
+/* Point i is where the curve came back to the end of the range at which point i - 1 left it. Its direction has changed: an odd number of
+ * folds lies outside. */
+static bool comes_back(const mhb_branch *branch, int i) {
+  return i > 0 && branch->value[i] == branch->value[i - 1] && branch->special[i] == MHB_ORDINARY &&
+         branch->special[i - 1] == MHB_ORDINARY;
+}
+
+/* Number of folds between the beginning and point `to`, modulo 2. */
+static int parity(const mhb_branch *branch, int to) {
+  int odd = 0;
+  for (int i = 1; i <= to && i < branch->n_points; i++)
+    odd ^= (branch->special[i - 1] == MHB_FOLD) ^ comes_back(branch, i);
+  return odd;
+}
+
 /* looks: NULL, or [point]. */
-static void decide(mhb_branch *branch, const look *looks) {
-  int n_unstable = 0, loss = MHB_NO_LOSS;
+static void decide(mhb_branch *branch, const look *looks, int stable_at) {
+  int n_unstable = parity(branch, stable_at), loss = n_unstable ? MHB_LOSS_FOLD : MHB_NO_LOSS;
   for (int i = 0; i < branch->n_points; i++) {
+    if (comes_back(branch, i)) {
+      if (n_unstable == 0) loss = MHB_LOSS_FOLD;
+      n_unstable = n_unstable == 0 ? 1 : n_unstable == 1 ? 0 : n_unstable;
+    }
     const look *l = looks && looks[i].known ? &looks[i] : NULL;
     if (l && (l->verdict == MHB_STABLE || l->verdict == MHB_UNSTABLE)) {
       n_unstable = l->verdict == MHB_STABLE ? 0 : l->n_unstable;
@@ -330,8 +349,8 @@ static void decide(mhb_branch *branch, const look *looks) {
   }
 }
 
-void mhb_judge_by_folds(mhb_branch *branch) {
-  decide(branch, NULL);
+void mhb_judge_by_folds(mhb_branch *branch, int stable_at) {
+  decide(branch, NULL, stable_at);
 }
 
 shb_status mhb_judge_branch(mhb_judge *j, mhb_path *path, mhb_response *response, int index,
@@ -347,7 +366,7 @@ shb_status mhb_judge_branch(mhb_judge *j, mhb_path *path, mhb_response *response
   *finished         = judge_points(j);
   shb_status status = *finished && j->all ? mark_turns(j, first, n_first) : SHB_OK;
   host->lock(host, true);
-  decide(branch_of(j), j->look);
+  decide(branch_of(j), j->look, host->stable_at);
   host->lock(host, false);
   free(j->look);
   j->look = NULL;

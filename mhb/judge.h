@@ -22,6 +22,7 @@ struct mhb_judge_host {
   void (*lock)(mhb_judge_host *host, bool locked);
   /* After each point, locked; false: stop. */
   bool (*point)(mhb_judge_host *host, double value);
+  int stable_at; /* by folds: this point is stable, unless multipliers tell otherwise */
 };
 
 typedef struct mhb_judge mhb_judge; /* workspace; one a thread */
@@ -42,7 +43,8 @@ void       mhb_judge_destroy(mhb_judge *judge);
 shb_status mhb_judge_branch(mhb_judge *judge, mhb_path *path, mhb_response *response, int branch,
                             const int *first, int n_first, mhb_judge_host *host, bool *finished);
 
-/* stable and loss by the parity of folds alone. */
-void mhb_judge_by_folds(mhb_branch *branch);
+/* stable and loss by the parity of folds alone, counted from a point that is stable; where the curve left the range and came
+ * back to the same end (two points in a row at one value) it has passed another one. */
+void mhb_judge_by_folds(mhb_branch *branch, int stable_at);
 
 #endif

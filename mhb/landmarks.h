@@ -21,7 +21,7 @@ typedef struct {
   int          slot[MHB_MAX_LANDMARKS]; /* where in x the motion of each is */
   double      *x;                       /* [MHB_MAX_LANDMARKS][most unknowns] m */
   bool         unmarked;                /* there is a fold that could not be located */
-  bool         away;                    /* the residual's workspace was left elsewhere than at next */
+  bool         away; /* the residual's workspace was left elsewhere than at next */
 } mhb_landmarks;
 
 /* Errors: SHB_ERR_IO no memory. */

@@ -11,8 +11,8 @@
 static const double FIRST_STEP = .02, LONGEST_STEP = .1, LARGEST_ANGLE = .35, SHORTEST_STEP = 1e-4;
 static const double NEAR = .3, CAREFUL_STEP = 1e-3;
 static const double KINK_STEP = .02, KINK_RATIO = .7;
-static const double OUTSIDE = .2;
-enum { WANTED_CORRECTIONS = 5, LASTING = 10, MAX_OUTSIDE = 1000, MAX_LOOKS = 8 };
+static const double OUTSIDE = .2, NEAR_ROOM[] = {.1, .3};
+enum { WANTED_CORRECTIONS = 5, LASTING = 10, MAX_OUTSIDE = 1000, MAX_LOOKS = 8, PATIENCE = 24 };
 
 static int point_create(mhb_path_point *point, int n) {
   point->x       = calloc((size_t)n, sizeof(double));
@@ -356,29 +356,58 @@ static int back_at(mhb_path *path, double end, int inwards) {
 }
 
 /* Room beyond the end that the path has come to: frequencies by a factor, other parameters by some spans. */
-static void widen(mhb_path *path, int inwards) {
-  int    turns = path->residual->parameter == MHB_IN_FREQUENCY;
-  double room  = (1 / OUTSIDE - 1) * path->span;
-  if (inwards > 0)
-    path->low = turns ? OUTSIDE * path->low : fmax(path->least, path->low - room);
-  else
-    path->high = turns ? path->high / OUTSIDE : path->high + room;
+static double far_room(const mhb_path *path, double end, int inwards) {
+  if (path->residual->parameter != MHB_IN_FREQUENCY) return (1 / OUTSIDE - 1) * path->span;
+  return inwards > 0 ? (1 - OUTSIDE) * end : (1 / OUTSIDE - 1) * end;
 }
 
-mhb_path_outcome mhb_path_outside(mhb_path *path, mhb_path_outcome outcome) {
-  double           low = path->low, high = path->high;
-  int              inwards = outcome == MHB_PATH_AT_START ? 1 : -1;
-  mhb_path_outcome way     = MHB_PATH_ON;
-  widen(path, inwards);
-  for (int i = 0; i < MAX_OUTSIDE && way == MHB_PATH_ON; i++) {
-    mhb_path_advance(path);
-    way = mhb_path_step(path);
-    if (way == MHB_PATH_ON && back_at(path, inwards > 0 ? low : high, inwards)) break;
-    if (i == MAX_OUTSIDE - 1) way = MHB_PATH_STALLED;
+static double near_room(const mhb_path *path, double end) {
+  double half = .5 * (path->high - path->low);
+  if (path->residual->parameter != MHB_IN_FREQUENCY) return half;
+  return fmin(fmax(half, NEAR_ROOM[0] * end), NEAR_ROOM[1] * end);
+}
+
+static bool is_linear(const mhb_path *path) {
+  const mhb_residual *b = path->residual;
+  for (int i = 0; i < b->n_pairs; i++)
+    if (b->info[i].share[0] < 1 && b->info[i].share[2] < 1) return false;
+  return true;
+}
+
+/* On from now until the path is back on the end, with a budget of steps on which a contact moves and the way is not back. */
+static mhb_path_outcome excursion(mhb_path *path, int inwards, double room, int budget) {
+  double           low = path->low, high = path->high, end = inwards > 0 ? low : high;
+  mhb_path_outcome way = MHB_PATH_ON;
+  if (inwards > 0)
+    path->low = fmax(path->least, low - room);
+  else
+    path->high = high + room;
+  for (int i = 0; way == MHB_PATH_ON; i++) {
+    if (i > 0) mhb_path_advance(path);
+    way = i < MAX_OUTSIDE && budget >= 0 ? mhb_path_step(path) : MHB_PATH_STALLED;
+    if (way == MHB_PATH_ON && i > 0 && back_at(path, end, inwards)) break;
+    budget -= inwards * path->next.tangent[path->n] < 0 && !is_linear(path);
   }
   path->low  = low;
   path->high = high;
   return way == MHB_PATH_ON ? MHB_PATH_ON : MHB_PATH_STALLED;
+}
+
+mhb_path_outcome mhb_path_outside(mhb_path *path, mhb_path_outcome outcome) {
+  int inwards = outcome == MHB_PATH_AT_START ? 1 : -1;
+  mhb_path_advance(path);
+  return excursion(path, inwards, far_room(path, inwards > 0 ? path->low : path->high, inwards),
+                   MAX_OUTSIDE);
+}
+
+mhb_path_outcome mhb_path_beyond(mhb_path *path, mhb_path_outcome outcome) {
+  int    inwards = outcome == MHB_PATH_AT_START ? 1 : -1;
+  double longest = path->longest, room = near_room(path, inwards > 0 ? path->low : path->high);
+  path->longest        = 2 * longest;
+  mhb_path_outcome way = excursion(path, inwards, room, PATIENCE);
+  path->longest        = longest;
+  path->step           = fmin(path->step, longest);
+  return way;
 }
 
 void mhb_path_advance(mhb_path *path) {

@@ -110,6 +110,7 @@ static void draw_branch(const post_study *study, const post_plot *plot, int b) {
   for (int i = 0; i < n; i++) {
     unstable[i] = branch->stable[i] == 0 || (i > 0 && branch->stable[i - 1] == 0);
     stable[i]   = !unstable[i];
+    if (post_left_range(n, x, c->amplitude, i - 1)) stable[i] = unstable[i] = false;
   }
   group_classes(&study->group[c->group], group);
   snprintf(classes, sizeof classes, "line %s", group);

@@ -33,6 +33,23 @@ static double chord(const curve *c, int i, int j) {
   return hypot((c->x[j] - c->x[i]) / c->x_span, (c->a[j] - c->a[i]) / c->a_span);
 }
 
+bool post_left_range(int n, const double *x, const double *amplitude, int i) {
+  if (i < 0 || i + 1 >= n || x[i] != x[i + 1]) return false;
+  double before = i > 0 ? x[i - 1] - x[i] : 0, after = i + 2 < n ? x[i + 2] - x[i] : 0;
+  bool   ends = (i == 0 || before != 0) && (i + 2 >= n || after != 0) && before * after >= 0;
+  return ends &&
+         fabs(amplitude[i + 1] - amplitude[i]) > LEVEL * fmax(amplitude[i], amplitude[i + 1]);
+}
+
+static bool is_parted(const curve *c, int i) {
+  return post_left_range(c->n, c->x, c->a, i);
+}
+
+/* The same between point i and the next one that way. */
+static bool is_parted_to(const curve *c, int i, int step) {
+  return is_parted(c, step > 0 ? i : i - 1);
+}
+
 /* Parabola through (s[i], y[i]): its divided differences, y = y0 + d1 (s - s0) + d2 (s - s0)(s - s1). */
 static void differences(const double s[3], const double y[3], double d[2]) {
   double first = (y[1] - y[0]) / (s[1] - s[0]), second = (y[2] - y[1]) / (s[2] - s[1]);
@@ -100,6 +117,7 @@ static double crossing(const curve *c, const post_peak *peak, int step, double l
   double from = peak->at, sign = 0;
   for (int i = peak->point; i + step >= 0 && i + step < c->n; i += step) {
     double f0 = c->x[i], f1 = c->x[i + step], a0 = c->a[i], a1 = c->a[i + step];
+    if (is_parted_to(c, i, step)) return NAN;
     if (i == peak->point) { /* the refined peak lies within a point of here */
       f0 = from;
       a0 = peak->amplitude;
@@ -131,7 +149,8 @@ static double prominence(const curve *c, int i) {
   double deeper = c->a[i];
   for (int step = -1; step <= 1; step += 2) {
     double valley = c->a[i];
-    for (int j = i + step; j >= 0 && j < c->n && c->a[j] <= c->a[i]; j += step)
+    for (int j = i + step; j >= 0 && j < c->n && c->a[j] <= c->a[i] && !is_parted_to(c, j, -step);
+         j += step)
       valley = fmin(valley, c->a[j]);
     deeper = step < 0 ? valley : fmax(deeper, valley);
   }
@@ -141,6 +160,7 @@ static double prominence(const curve *c, int i) {
 /* Rises to i and, after any run of equal values, falls: by more than a ripple unless nothing is higher. */
 static bool is_maximum(const curve *c, int i, int top) {
   if (i <= 0 || i >= c->n - 1 || !(c->a[i] > c->a[i - 1])) return false;
+  if (is_parted(c, i - 1) || is_parted(c, i)) return false;
   int j = i + 1;
   while (j < c->n - 1 && c->a[j] == c->a[i]) j++;
   return c->a[j] < c->a[i] && prominence(c, i) >= (i == top ? LEVEL : RIPPLE) * c->a[i];
@@ -174,6 +194,7 @@ static int edge_point(const curve *c, int top) {
   if (c->n == 0 || !(c->a[top] > 0) || is_closed(c)) return -1;
   double least = (1 - LEVEL) * c->a[top];
   if (c->a[0] >= least) return 0;
+  if (is_parted(c, top) || is_parted(c, top - 1)) return top;
   if (c->a[top] == c->a[c->n - 1]) return top;
   return c->a[c->n - 1] >= least ? c->n - 1 : -1;
 }
@@ -217,9 +238,9 @@ static bool is_same(const curve *c, int i, int j) {
   return fabs(c->x[j] - c->x[i]) <= ROUNDING * size_at(c, i);
 }
 
-/* Direction in which x leaves point i going by step, 0 at the end of the curve. */
+/* Direction in which x leaves point i going by step, 0 at the end of the curve or of the range. */
 static int leaving(const curve *c, int i, int step) {
-  for (int j = i + step; j >= 0 && j < c->n; j += step)
+  for (int j = i + step; j >= 0 && j < c->n && !is_parted_to(c, j, -step); j += step)
     if (!is_same(c, i, j)) return c->x[j] > c->x[i] ? 1 : -1;
   return 0;
 }

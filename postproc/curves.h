@@ -25,6 +25,10 @@ typedef struct {
   bool   upper;         /* x has a maximum here: a sweep upwards falls off; else downwards */
 } post_fold;
 
+/* Between points i and i + 1 (false if there are no such) the curve was outside its range: it left it and came back at the same
+ * end: just two points at one x, of different amplitude, and x turns there. It folds there an odd number of times, and what follows is a piece of its own. */
+bool post_left_range(int n, const double *x, const double *amplitude, int i);
+
 /* Local maxima in order along the curve, less the ripples (that rise by less than 2 % of their height above the deeper
  * neighbouring valley; the largest value of all is none), plus the edge peak if the largest value of all is at an end.
  *   x, amplitude    in   [n], amplitude >= 0

@@ -211,30 +211,56 @@ static void put_shift(const post_study *study, post_buffer *out) {
   }
 }
 
-/* Folds 2i and 2i + 1 along a curve and what lies between them; false if there is no such pair or it is too narrow
- * for a jump to be seen (20 ppm). */
-static bool fold_span(const post_curve *c, int i, double span[2]) {
-  if (2 * i >= c->n_folds) return false;
-  double one = c->fold[2 * i].at;
-  double two = 2 * i + 1 < c->n_folds ? c->fold[2 * i + 1].at : one;
-  span[0]    = fmin(one, two);
-  span[1]    = fmax(one, two);
-  return one == two || span[1] - span[0] > 2e-5 * fmax(fabs(span[0]), fabs(span[1]));
+/* Where a curve turns: at a fold, or at an end of the range beyond which it folds. Walks along it. */
+typedef struct {
+  int fold, point, outside; /* the next ones; times it was outside so far */
+} walk;
+
+static bool next_turn(const post_study *study, int b, walk *w, double *at) {
+  const mhb_branch *branch = &study->response->branch[b];
+  const post_curve *c      = &study->curve[b];
+  const double     *x      = post_abscissa_values(study->response, branch);
+  for (;; w->point++) {
+    if (w->fold < c->n_folds &&
+        (c->fold[w->fold].point <= w->point || w->point >= branch->n_points)) {
+      *at = c->fold[w->fold++].at;
+      return true;
+    }
+    if (w->point >= branch->n_points) return false;
+    if (!post_left_range(branch->n_points, x, c->amplitude, w->point)) continue;
+    *at = x[w->point++];
+    w->outside++;
+    return true;
+  }
 }
 
-/* " (103.81 to 103.96, 212.2 to 213.7 Hz)" of a group's curves; returns how many (out NULL: only counts). */
-static int put_spans(const post_study *study, int g, post_buffer *out) {
+/* The next two turns and what lies between them; false if there are no more. *visible: wide enough for a jump to be seen (20 ppm). */
+static bool next_span(const post_study *study, int b, walk *w, double span[2], bool *visible) {
+  double one, two;
+  if (!next_turn(study, b, w, &one)) return false;
+  if (!next_turn(study, b, w, &two)) two = one;
+  span[0]  = fmin(one, two);
+  span[1]  = fmax(one, two);
+  *visible = one == two || span[1] - span[0] > 2e-5 * fmax(fabs(span[0]), fabs(span[1]));
+  return true;
+}
+
+/* " (103.81 to 103.96, 212.2 to 213.7 Hz)" of a group's curves; returns how many (out NULL: only counts). *outside counts the turns
+ * that lie outside the range. */
+static int put_spans(const post_study *study, int g, post_buffer *out, int *outside) {
   const post_abscissa *x     = &study->abscissa;
   int                  spans = 0;
   for (int b = 0; b < study->response->n_branches; b++) {
-    const post_curve *c = &study->curve[b];
-    for (int i = 0; c->group == g && 2 * i < c->n_folds; i++) {
-      double span[2];
-      char   from[POST_NUMBER], to[POST_NUMBER];
-      if (!fold_span(c, i, span) || ++spans > 4 || !out) continue;
+    walk   w = {0};
+    double span[2];
+    bool   visible;
+    while (study->curve[b].group == g && next_span(study, b, &w, span, &visible)) {
+      char from[POST_NUMBER], to[POST_NUMBER];
+      if (!visible || ++spans > 4 || !out) continue;
       post_put(out, "%s%s", spans > 1 ? ", " : " (", post_abscissa_number(x, span[0], 6, from));
       if (span[1] > span[0]) post_put(out, " to %s", post_abscissa_number(x, span[1], 6, to));
     }
+    *outside += w.outside;
   }
   if (out && spans > 4) post_put(out, ", …");
   if (out && spans > 0) post_put(out, "%s%s)", *x->unit.name ? "\u00a0" : "", x->unit.name);
@@ -242,22 +268,26 @@ static int put_spans(const post_study *study, int g, post_buffer *out) {
 }
 
 static void put_folds(const post_study *study, post_buffer *out) {
-  int groups = 0;
+  int groups = 0, outside = 0, counted = 0;
   for (int g = 0; g < study->n_groups; g++) {
     char name[64];
-    if (put_spans(study, g, NULL) == 0 || ++groups > 6) continue;
+    if (put_spans(study, g, NULL, &outside) == 0 || ++groups > 6) continue;
     post_group_name(&study->group[g], name);
     post_put(out, "%s%s", groups > 1 ? "; " : "<li><b>Jumps.</b> Folds on ", name);
-    put_spans(study, g, out);
+    put_spans(study, g, out, &counted);
   }
   if (groups > 6) post_put(out, "; and %d more", groups - 6);
   if (groups > 0)
     post_put(out,
              ". In between several answers exist at one %s, and a slow sweep jumps from one "
-             "to another.</li>\n",
-             study->abscissa.symbol);
+             "to another.%s</li>\n",
+             study->abscissa.symbol,
+             outside ? " Where one of these is an end of the range, the fold lies beyond it." : "");
   else if (study->tracking.n > 0)
-    post_put(out, "<li>No curve folds visibly: no jumps in this range.</li>\n");
+    post_put(
+        out,
+        "<li>No curve folds visibly: no jumps on the curves that were followed. Curves that do "
+        "not hang together with them are found by <code>mhb.search</code> only.</li>\n");
 }
 
 /* What the multipliers told beyond the folds. */

@@ -213,8 +213,10 @@ function drawResponse() {
     }
     const classes = classOf(g) + (i === state.branch ? " chosen" : "");
     const unstable = k => stable[k] === 0 || stable[k - 1] === 0;
-    main.line("line " + classes, b.f, a, k => !unstable(k));
-    main.line("line unstable " + classes, b.f, a, unstable);
+    const low = Math.min(...b.f), high = Math.max(...b.f); /* where it leaves the range and comes back there is no line */
+    const left = k => b.f[k] === b.f[k - 1] && (b.f[k] === low || b.f[k] === high);
+    main.line("line " + classes, b.f, a, k => !unstable(k) && !left(k));
+    main.line("line unstable " + classes, b.f, a, k => unstable(k) && !left(k));
     if (b.n === 1) main.dot("dot " + classes, b.f[0], a[0], 3);
     b.row(ROW.special).forEach((special, k) => { if (special > 2) main.dot("turn " + classes, b.f[k], a[k], 2.6); });
   }

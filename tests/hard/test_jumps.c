@@ -178,7 +178,7 @@ static void in_order_along_the_curve(void **state) {
   for (int i = 0; i < 7; i++) {
     modal_model model;
     random_model(1, 0, (unsigned long long)seed[i], &model);
-    mhb_settings s  = ground_settings(.4, .8, .5, n0[seed[i] % 5], 5);
+    mhb_settings  s = ground_settings(.4, .8, .5, n0[seed[i] % 5], 5);
     mhb_response *r = covered_sweep(&model, &s, .7, 2.2);
     verdict(largest_reversal(&r->branch[2]), 1e-12, "model %d: largest reversal", seed[i]);
     mhb_response_destroy(r);

@@ -231,6 +231,27 @@ static void ripples_are_no_folds(void **state) {
   }
 }
 
+/* A curve that leaves the range by its high end (108) in its upper part, and comes back in its lower one: the largest value is at an
+ * edge, and there is no fold where it turns in the points only. */
+static void left_the_range(void **state) {
+  (void)state;
+  double     f[] = {100, 104, 108, 108, 103, 101, 105, 108}, a[] = {1, 2, 4, 3, 2, 1, .5, .2};
+  int        special[8] = {0, 0, 0, 0, 0, 1, 0, 0}, n;
+  post_fold *folds;
+  post_peak *peaks;
+  for (int k = 0; k < 2; k++) {
+    assert_ok(post_find_folds(8, f, a, k ? special : NULL, &folds, &n));
+    assert_int_equal(n, 1);
+    assert_false(folds[0].upper);
+    assert_int_equal(folds[0].point, 5);
+    free(folds);
+  }
+  assert_ok(post_find_peaks(8, f, a, &peaks, &n));
+  assert_int_equal(n, 1);
+  assert_true(peaks[0].edge && peaks[0].point == 2 && peaks[0].at == 108);
+  free(peaks);
+}
+
 /* A curve of one value has it everywhere; one that ends on a plateau has its largest value at the end, whatever the rounding; the
  * largest value is told even if it rises above the plateau by no more than a ripple. */
 static void plateaus(void **state) {
@@ -269,12 +290,17 @@ static void folds_around_zero(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(resonance), cmocka_unit_test(order),
-      cmocka_unit_test(folds),     cmocka_unit_test(flagged),
-      cmocka_unit_test(cases),     cmocka_unit_test(edge),
-      cmocka_unit_test(closed),    cmocka_unit_test(hairlines_are_no_folds),
-      cmocka_unit_test(plateaus),  cmocka_unit_test(folds_around_zero),
-      cmocka_unit_test(ripples_are_no_folds)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(resonance),
+                                     cmocka_unit_test(order),
+                                     cmocka_unit_test(folds),
+                                     cmocka_unit_test(flagged),
+                                     cmocka_unit_test(cases),
+                                     cmocka_unit_test(edge),
+                                     cmocka_unit_test(closed),
+                                     cmocka_unit_test(hairlines_are_no_folds),
+                                     cmocka_unit_test(plateaus),
+                                     cmocka_unit_test(folds_around_zero),
+                                     cmocka_unit_test(ripples_are_no_folds),
+                                     cmocka_unit_test(left_the_range)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
