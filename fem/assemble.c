@@ -68,9 +68,9 @@ static PetscErrorCode find_incidence(const mesh_fe *mesh, const fem_system *syst
   PetscFunctionReturn(0);
 }
 
-/* Exact numbers of blocks a row, upper triangle: diagonal (own columns) and off-diagonal part. */
+/* Exact numbers of blocks a row, of the upper triangle or the whole: in own columns (diagonal) and the others. */
 static PetscErrorCode count_blocks(const mesh_fe *mesh, const fem_system *system,
-                                   const incidence *around, PetscInt *diagonal,
+                                   const incidence *around, bool whole, PetscInt *diagonal,
                                    PetscInt *off_diagonal) {
   const int each = mesh_topology_of(mesh->kind)->nodes;
   PetscInt *seen; /* last row in which this column was counted, plus 1 */
@@ -83,9 +83,9 @@ static PetscErrorCode count_blocks(const mesh_fe *mesh, const fem_system *system
     for (int k = around->start[r]; k < around->start[r + 1]; k++)
       for (int i = 0; i < each; i++) {
         PetscInt column = system->row[mesh->connectivity[each * around->element[k] + i]];
-        if (column < row || seen[column] == row + 1) continue;
+        if (column < (whole ? 0 : row) || seen[column] == row + 1) continue;
         seen[column] = row + 1;
-        if (column < system->last)
+        if (is_own(system, column))
           diagonal[r]++;
         else
           off_diagonal[r]++;
@@ -110,6 +110,37 @@ static PetscErrorCode create_matrix(const fem_system *system, const PetscInt *di
   PetscFunctionReturn(0);
 }
 
+/* The mass of the nodes, one number a pair of them. */
+static PetscErrorCode create_mass(const fem_system *system, const PetscInt *diagonal,
+                                  const PetscInt *off_diagonal, Mat *m) {
+  const PetscInt n_own = system->last - system->first;
+  PetscFunctionBeginUser;
+  PetscCall(MatCreate(system->comm, m));
+  PetscCall(MatSetSizes(*m, n_own, n_own, system->n_free, system->n_free));
+  PetscCall(MatSetType(*m, MATAIJ));
+  PetscCall(MatSeqAIJSetPreallocation(*m, 0, diagonal));
+  PetscCall(MatMPIAIJSetPreallocation(*m, 0, diagonal, 0, off_diagonal));
+  PetscCall(MatSetOption(*m, MAT_NO_OFF_PROC_ENTRIES, PETSC_TRUE));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode create_matrices(const mesh_fe *mesh, fem_system *system, Mat *mass) {
+  const PetscInt n_own = system->last - system->first;
+  incidence      around;
+  PetscInt      *diagonal, *off_diagonal;
+  PetscFunctionBeginUser;
+  PetscCall(find_incidence(mesh, system, &around));
+  PetscCall(PetscMalloc2(n_own, &diagonal, n_own, &off_diagonal));
+  PetscCall(count_blocks(mesh, system, &around, false, diagonal, off_diagonal));
+  PetscCall(create_matrix(system, diagonal, off_diagonal, &system->K));
+  PetscCall(count_blocks(mesh, system, &around, true, diagonal, off_diagonal));
+  PetscCall(create_mass(system, diagonal, off_diagonal, mass));
+  PetscCall(PetscFree2(diagonal, off_diagonal));
+  PetscCall(PetscFree(around.start));
+  PetscCall(PetscFree(around.element));
+  PetscFunctionReturn(0);
+}
+
 bool fem_system_rows(const mesh_fe *mesh, const fem_system *system, int element, PetscInt *rows,
                      PetscInt *columns) {
   const int each    = mesh_topology_of(mesh->kind)->nodes;
@@ -122,21 +153,13 @@ bool fem_system_rows(const mesh_fe *mesh, const fem_system *system, int element,
   return touches;
 }
 
-/* M = m x the 3x3 identity, [3n][3n]. */
-static void spread(int n, const double *m, double *M) {
-  memset(M, 0, (size_t)(9 * n * n) * sizeof *M);
-  for (int i = 0; i < n; i++)
-    for (int j = 0; j < n; j++)
-      for (int d = 0; d < 3; d++) M[(3 * i + d) * 3 * n + 3 * j + d] = m[n * i + j];
-}
-
 static PetscErrorCode add_elements(const mesh_fe *mesh, const fem_material *material,
-                                   const fem_element *element, const fem_system *system) {
+                                   const fem_element *element, const fem_system *system, Mat mass) {
   const int n = element->n;
   PetscFunctionBeginUser;
   for (int e = 0; e < mesh->n_elements; e++) {
     PetscInt   rows[MESH_NODES], columns[MESH_NODES];
-    double     x[MESH_NODES][3], K[FEM_DOFS * FEM_DOFS], M[FEM_DOFS * FEM_DOFS];
+    double     x[MESH_NODES][3], K[FEM_DOFS * FEM_DOFS];
     double     m[MESH_NODES * MESH_NODES];
     const int *node = mesh->connectivity + n * (size_t)e;
 
@@ -145,9 +168,8 @@ static PetscErrorCode add_elements(const mesh_fe *mesh, const fem_material *mate
     for (int i = 0; i < n; i++) memcpy(x[i], mesh->coordinates + 3 * (size_t)node[i], sizeof x[i]);
     fem_element_stiffness(element, own, (const double(*)[3])x, K);
     fem_element_mass(element, own->rho, (const double(*)[3])x, m);
-    spread(n, m, M);
     PetscCall(MatSetValuesBlocked(system->K, n, rows, n, columns, K, ADD_VALUES));
-    PetscCall(MatSetValuesBlocked(system->M, n, rows, n, columns, M, ADD_VALUES));
+    PetscCall(MatSetValues(mass, n, rows, n, columns, m, ADD_VALUES));
   }
   PetscFunctionReturn(0);
 }
@@ -162,29 +184,46 @@ static PetscErrorCode finish(Mat A) {
 PetscErrorCode fem_system_create(MPI_Comm comm, const mesh_fe *mesh, const fem_material *material,
                                  fem_rules rules, fem_system *system) {
   fem_element *element;
-  incidence    around;
-  PetscInt    *diagonal, *off_diagonal;
+  Mat          mass;
 
   PetscFunctionBeginUser;
   memset(system, 0, sizeof *system);
   system->comm    = comm;
   system->n_nodes = mesh->n_nodes;
   PetscCall(number_nodes(mesh, system));
-  const PetscInt n_own = system->last - system->first;
-  PetscCall(find_incidence(mesh, system, &around));
-  PetscCall(PetscMalloc2(n_own, &diagonal, n_own, &off_diagonal));
-  PetscCall(count_blocks(mesh, system, &around, diagonal, off_diagonal));
-  PetscCall(create_matrix(system, diagonal, off_diagonal, &system->K));
-  PetscCall(create_matrix(system, diagonal, off_diagonal, &system->M));
-  PetscCall(PetscFree2(diagonal, off_diagonal));
-  PetscCall(PetscFree(around.start));
-  PetscCall(PetscFree(around.element));
+  PetscCall(create_matrices(mesh, system, &mass));
   PetscCall(PetscNew(&element));
   PetscCall(fem_element_create(mesh->kind, rules, element));
-  PetscCall(add_elements(mesh, material, element, system));
+  PetscCall(add_elements(mesh, material, element, system, mass));
   PetscCall(PetscFree(element));
   PetscCall(finish(system->K));
-  PetscCall(finish(system->M));
+  PetscCall(finish(mass));
+  PetscCall(MatCreateMAIJ(mass, 3, &system->M));
+  PetscCall(MatDestroy(&mass));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode fem_system_shifted(const fem_system *system, double shift, Mat *A) {
+  Mat mass;
+  PetscFunctionBeginUser;
+  PetscCall(MatDuplicate(system->K, MAT_COPY_VALUES, A));
+  PetscCall(MatSetOption(*A, MAT_IGNORE_LOWER_TRIANGULAR, PETSC_TRUE));
+  PetscCall(MatMAIJGetAIJ(system->M, &mass));
+  for (PetscInt row = system->first; row < system->last; row++) {
+    const PetscInt    *column;
+    const PetscScalar *value;
+    PetscInt           n;
+    PetscCall(MatGetRow(mass, row, &n, &column, &value));
+    for (PetscInt i = 0; i < n; i++) {
+      const double m        = -shift * value[i];
+      const double block[9] = {m, 0, 0, 0, m, 0, 0, 0, m};
+      if (column[i] >= row)
+        PetscCall(MatSetValuesBlocked(*A, 1, &row, 1, column + i, block, ADD_VALUES));
+    }
+    PetscCall(MatRestoreRow(mass, row, &n, &column, &value));
+  }
+  PetscCall(finish(*A));
+  PetscCall(MatSetOption(*A, MAT_SPD, PETSC_TRUE));
   PetscFunctionReturn(0);
 }
 

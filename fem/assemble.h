@@ -17,12 +17,16 @@ typedef struct {
   PetscInt  n_free;      /* free nodes, all ranks */
   PetscInt  first, last; /* block rows of this rank */
   PetscInt *row;         /* [n_nodes] block row, -1 for a clamped node; the same on every rank */
-  Mat       K, M;        /* SBAIJ, block size 3, order 3 n_free; N/m and kg */
+  Mat       K;           /* SBAIJ, block size 3, order 3 n_free; N/m */
+  Mat       M;           /* MAIJ: one number a pair of nodes, times the 3x3 identity; kg */
 } fem_system;
 
 /* Assemble. mesh must be the same on every rank; material: one, or one a region (fem_material_at). */
 PetscErrorCode fem_system_create(MPI_Comm comm, const mesh_fe *mesh, const fem_material *material,
                                  fem_rules rules, fem_system *system);
+
+/* A = K - shift M, like K. */
+PetscErrorCode fem_system_shifted(const fem_system *system, double shift, Mat *A);
 
 /* Bring a distributed vector to rank 0 in mesh order, clamped nodes zero.
  *   nodal  out  [n_nodes][3] on rank 0; not touched elsewhere */

@@ -89,9 +89,7 @@ static PetscErrorCode shifted(const fem_system *system, double shift, Mat *A) {
     *A = system->K;
     PetscFunctionReturn(0);
   }
-  PetscCall(MatDuplicate(system->K, MAT_COPY_VALUES, A));
-  PetscCall(MatAXPY(*A, -shift, system->M, SAME_NONZERO_PATTERN));
-  PetscCall(MatSetOption(*A, MAT_SPD, PETSC_TRUE));
+  PetscCall(fem_system_shifted(system, shift, A));
   PetscFunctionReturn(0);
 }
 

@@ -47,6 +47,14 @@ static Mat dense(const body *b, int n) {
   return X;
 }
 
+/* K += share M */
+static void add_mass(body *b, double share) {
+  Mat A;
+  assert_int_equal(fem_system_shifted(&b->system, -share, &A), 0);
+  MatDestroy(&b->system.K);
+  b->system.K = A;
+}
+
 /* |K X - B| / (|K| |X|), the backward error. */
 static double backward_error(const body *b, Mat X, Mat B) {
   double worst = 0, size, length, norm;
@@ -115,9 +123,8 @@ static void both_programs_agree(void **state) {
     VecAXPY(y, -1, x);
     VecNorm(y, NORM_2, &difference);
     check_below(difference, 1e-8 * norm, "CHOLMOD against MUMPS");
-    MatAXPY(b->system.K, 1e6, b->system.M, SAME_NONZERO_PATTERN);
+    add_mass(b, 1e6);
   }
-  MatAXPY(b->system.K, -2e6, b->system.M, SAME_NONZERO_PATTERN);
   fem_factor_destroy(&one);
   fem_factor_destroy(&other);
   VecDestroy(&x);
@@ -137,7 +144,7 @@ static void indefinite_matrices_are_told(void **state) {
   PetscOptionsClearValue(NULL, mumps);
   for (int i = 0; i < 2; i++) {
     for (int sign = -1; sign <= 1; sign += 2) {
-      MatAXPY(b->system.K, sign * squared, b->system.M, SAME_NONZERO_PATTERN);
+      add_mass(b, sign * squared);
       assert_int_equal(fem_factor_update(factor[i], b->system.K, &definite), 0);
       assert_int_equal(definite, sign > 0);
     }
