@@ -2,15 +2,20 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include <suitesparse/cholmod.h>
+
+#include "fem/supernodes.h"
+
+enum { MANY = 12 }; /* right-hand sides for which calls to BLAS are the faster way */
 
 struct fem_cholesky {
   int             n;     /* block rows */
   int            *place; /* [n] of a block row in the factor */
   cholmod_factor *L;
-  cholmod_dense  *x,
-      *work; /* right-hand sides in the factor's order, [3 n][columns]; CHOLMOD's own */
-  cholmod_common common;
+  fem_lanes      *few;      /* [3 n] right-hand sides in the factor's order */
+  fem_lanes      *few_work; /* [largest supernode] */
+  cholmod_dense  *x;        /* [3 n][columns] many of them */
+  cholmod_dense  *work;     /* CHOLMOD's own */
+  cholmod_common  common;
 };
 
 /* The blocks of A by rows, upper triangle. */
@@ -45,6 +50,7 @@ static void start_common(cholmod_common *common) {
   common->print                      = 0;
   common->quick_return_if_not_posdef = 1;
   common->nmethods                   = 1;
+  common->zrelax[0] = .3, common->zrelax[1] = .05, common->zrelax[2] = .02;
 }
 
 /* Nested dissection of the graph of the nodes: three times smaller than that of the dofs, and as good. */
@@ -203,21 +209,66 @@ static PetscErrorCode make_room(fem_cholesky *factor, size_t count) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode fem_cholesky_solve(fem_cholesky *factor, int count, const double *b, size_t ldb,
-                                  double *x, size_t ldx) {
+static PetscErrorCode solve_many(fem_cholesky *factor, size_t count, const double *b, size_t ldb,
+                                 double *x, size_t ldx) {
   const size_t n = (size_t)factor->n;
   PetscFunctionBeginUser;
-  PetscCall(make_room(factor, (size_t)count));
+  PetscCall(make_room(factor, count));
   double *own = factor->x->x;
-  for (size_t c = 0; c < (size_t)count; c++)
+  for (size_t c = 0; c < count; c++)
     for (size_t i = 0; i < n; i++)
       memcpy(own + 3 * (c * n + (size_t)factor->place[i]), b + c * ldb + 3 * i, 3 * sizeof *x);
   const bool good = cholmod_super_lsolve(factor->L, factor->x, factor->work, &factor->common) &&
                     cholmod_super_ltsolve(factor->L, factor->x, factor->work, &factor->common);
   PetscCheck(good, PETSC_COMM_SELF, PETSC_ERR_LIB, "CHOLMOD: no solution");
-  for (size_t c = 0; c < (size_t)count; c++)
+  for (size_t c = 0; c < count; c++)
     for (size_t i = 0; i < n; i++)
       memcpy(x + c * ldx + 3 * i, own + 3 * (c * n + (size_t)factor->place[i]), 3 * sizeof *x);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode make_room_for_few(fem_cholesky *factor) {
+  const size_t alignment = sizeof(fem_lanes);
+  PetscFunctionBeginUser;
+  if (factor->few) PetscFunctionReturn(0);
+  factor->few      = aligned_alloc(alignment, 3 * (size_t)factor->n * sizeof(fem_lanes));
+  factor->few_work = aligned_alloc(alignment, fem_supernodes_rows(factor->L) * sizeof(fem_lanes));
+  PetscCheck(factor->few && factor->few_work, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory");
+  PetscFunctionReturn(0);
+}
+
+/* count <= FEM_LANES; the lanes that are left over are zero. */
+static PetscErrorCode solve_few(fem_cholesky *factor, size_t count, const double *b, size_t ldb,
+                                double *x, size_t ldx) {
+  const size_t n = (size_t)factor->n;
+  PetscFunctionBeginUser;
+  PetscCall(make_room_for_few(factor));
+  for (size_t i = 0; i < n; i++)
+    for (size_t d = 0; d < 3; d++) {
+      fem_lanes *at = factor->few + 3 * (size_t)factor->place[i] + d;
+      for (size_t c = 0; c < FEM_LANES; c++) (*at)[c] = c < count ? b[c * ldb + 3 * i + d] : 0;
+    }
+  fem_supernodes_solve(factor->L, factor->few, factor->few_work);
+  for (size_t i = 0; i < n; i++)
+    for (size_t d = 0; d < 3; d++) {
+      const fem_lanes *at = factor->few + 3 * (size_t)factor->place[i] + d;
+      for (size_t c = 0; c < count; c++) x[c * ldx + 3 * i + d] = (*at)[c];
+    }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode fem_cholesky_solve(fem_cholesky *factor, int count, const double *b, size_t ldb,
+                                  double *x, size_t ldx) {
+  const size_t all = (size_t)count;
+  PetscFunctionBeginUser;
+  if (all == 1 || all >= MANY) {
+    PetscCall(solve_many(factor, all, b, ldb, x, ldx));
+    PetscFunctionReturn(0);
+  }
+  for (size_t c = 0; c < all; c += FEM_LANES) {
+    size_t here = all - c < FEM_LANES ? all - c : FEM_LANES;
+    PetscCall(solve_few(factor, here, b + c * ldb, ldb, x + c * ldx, ldx));
+  }
   PetscFunctionReturn(0);
 }
 
@@ -227,6 +278,8 @@ void fem_cholesky_destroy(fem_cholesky *factor) {
   cholmod_free_dense(&factor->x, &factor->common);
   cholmod_free_dense(&factor->work, &factor->common);
   cholmod_finish(&factor->common);
+  free(factor->few);
+  free(factor->few_work);
   free(factor->place);
   free(factor);
 }

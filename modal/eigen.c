@@ -223,27 +223,45 @@ static PetscErrorCode collect(const fem_system *system, modal_eigen *eigen) {
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode find_residuals(const fem_system *system, double shift, modal_eigen *eigen) {
-  Mat    inverse;
-  Vec    phi, x, work;
-  double square;
+/* Residuals of count modes from first on; X: [order][count]. */
+static PetscErrorCode find_some_residuals(const fem_system *system, double shift, int first, Mat X,
+                                          Vec work, modal_eigen *eigen) {
+  Mat      m_phi;
+  PetscInt count;
+  double   square;
 
   PetscFunctionBeginUser;
-  PetscCall(modal_dense_create(system, eigen->n, &inverse));
-  PetscCall(modal_eigen_inverse(eigen, eigen->m_phi, inverse));
-  PetscCall(MatCreateVecs(system->M, NULL, &work));
-  for (int i = 0; i < eigen->n; i++) {
-    PetscCall(MatDenseGetColumnVecRead(eigen->phi, i, &phi));
-    PetscCall(MatDenseGetColumnVec(inverse, i, &x));
-    PetscCall(VecAYPX(x, -(eigen->lambda[i] - shift), phi));
+  PetscCall(MatGetSize(X, NULL, &count));
+  PetscCall(
+      MatDenseGetSubMatrix(eigen->m_phi, PETSC_DECIDE, PETSC_DECIDE, first, first + count, &m_phi));
+  PetscCall(fem_factor_solve_many(eigen->factor, m_phi, X));
+  PetscCall(MatDenseRestoreSubMatrix(eigen->m_phi, &m_phi));
+  for (int i = 0; i < count; i++) {
+    Vec phi, x;
+    PetscCall(MatDenseGetColumnVecRead(eigen->phi, first + i, &phi));
+    PetscCall(MatDenseGetColumnVec(X, i, &x));
+    PetscCall(VecAYPX(x, -(eigen->lambda[first + i] - shift), phi));
     PetscCall(MatMult(system->M, x, work));
     PetscCall(VecDot(x, work, &square));
-    eigen->residual[i] = sqrt(PetscMax(square, 0));
-    PetscCall(MatDenseRestoreColumnVec(inverse, i, &x));
-    PetscCall(MatDenseRestoreColumnVecRead(eigen->phi, i, &phi));
+    eigen->residual[first + i] = sqrt(PetscMax(square, 0));
+    PetscCall(MatDenseRestoreColumnVec(X, i, &x));
+    PetscCall(MatDenseRestoreColumnVecRead(eigen->phi, first + i, &phi));
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode find_residuals(const fem_system *system, double shift, modal_eigen *eigen) {
+  enum { BATCH = 4 };
+  Vec work;
+  PetscFunctionBeginUser;
+  PetscCall(MatCreateVecs(system->M, NULL, &work));
+  for (int first = 0; first < eigen->n; first += BATCH) {
+    Mat X;
+    PetscCall(modal_dense_create(system, PetscMin(BATCH, eigen->n - first), &X));
+    PetscCall(find_some_residuals(system, shift, first, X, work, eigen));
+    PetscCall(MatDestroy(&X));
   }
   PetscCall(VecDestroy(&work));
-  PetscCall(MatDestroy(&inverse));
   PetscFunctionReturn(0);
 }
 
