@@ -129,7 +129,7 @@ static bool run_apart(bool (*work)(const rung *, figures *), const rung *r, figu
   bool told = read(ends[0], out, sizeof *out) == (ssize_t)sizeof *out;
   close(ends[0]);
   if (child < 0 || wait4(child, &state, 0, &usage) != child) return false;
-  out->memory      = 1e-6 * (double)usage.ru_maxrss;
+  out->memory      = 1.024e-6 * (double)usage.ru_maxrss;
   return out->done = told && state == 0;
 }
 
@@ -165,7 +165,7 @@ static bool run_calculix(const char *program, figures *out) {
   }
   if (child < 0 || wait4(child, &state, 0, &usage) != child || state != 0) return false;
   out->seconds     = seconds_of(&usage);
-  out->memory      = 1e-6 * (double)usage.ru_maxrss;
+  out->memory      = 1.024e-6 * (double)usage.ru_maxrss;
   return out->done = read_frequencies(out->frequency) == MODES;
 }
 
