@@ -160,6 +160,7 @@ shb_status converge_case(case_file *file, const command_options *options) {
   post_buffer_free(&s.note);
   modal_model_free(&s.model);
   free(s.place);
+  if (s.folder) rmdir(s.folder); /* stays unless it is empty */
   free(s.folder);
   return status;
 }

@@ -172,10 +172,11 @@ static shb_status harmonics_ladder(study *s) {
     rung_setting setting = s->base;
     setting.harmonics    = m[i];
     setting.tolerance    = 0;
-    double next = i == 0 ? 0 : predict(s->place[s->result.n - 1].cost.seconds, m[i - 1], m[i]);
-    if (next > s->file->converge_seconds) {
+    double next   = i == 0 ? 0 : predict(s->place[s->result.n - 1].cost.seconds, m[i - 1], m[i]);
+    bool   enough = i >= 2 && m[i - 1] >= own; /* a reference beside another rung, and the case */
+    if (enough && next > s->file->converge_seconds) {
       post_put(&s->note,
-               "The ladder of harmonics ends at %d: %d would take about %.0f s "
+               "The ladder of harmonics ends at %d: %d would take about %.2g s "
                "(converge.seconds is %g).\n",
                m[i - 1], m[i], next, s->file->converge_seconds);
       break;

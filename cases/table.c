@@ -234,7 +234,7 @@ static const case_key table[] = {
     {"converge.n0", CASE_INTERVAL, "N", -1e12, 1e12, .fallback = "[-1e12, 1e12]", AT(converge_n0), .stages = CASE_CONVERGE,
      .help = "the preloads it looks at: those of contact.n0 in this range"},
     {"converge.seconds", CASE_NUMBER, "s", 0, 1e6, true, .fallback = "60 s", AT(converge_seconds), .stages = CASE_CONVERGE,
-     .help = "its ladder of harmonics ends before a rung whose balance would take longer"},
+     .help = "its ladder of harmonics ends before a rung whose balance would take longer, but has two at least, and the case's own"},
 
     {"integrate.frequencies", CASE_POINTS, "Hz", 0, 1e9, true, .fallback = "21", AT(integrate.frequency), .stages = CASE_INTEGRATE,
      .help = "shroudhb integrate: number of points over mhb.frequency, or a list of frequencies"},

@@ -323,8 +323,16 @@ static void keys_are_heeded(void **state) {
   assert_non_null(strstr(said, "the worst of 1 preload;"));
   assert_non_null(strstr(said, "contact motion")); /* the probe's name */
   assert_non_null(strstr(said, "accuracy: none below the finest meets 1e-10 %"));
-  assert_non_null(strstr(said, "The ladder of harmonics ends at 1: 3 would take about"));
+  assert_non_null(strstr(said, "The ladder of harmonics ends at 5: 7 would take about"));
   assert_non_null(strstr(said, "(converge.seconds is 1e-06)"));
+  /* a study that does not come about leaves no folder */
+  write_case("hollow.yaml", ".3, -.2", "", "converge: {output: nobody}\n");
+  char path[2 * SCRATCH_PATH];
+  snprintf(path, sizeof path, "sed -i 's/name: three/name: hollow/' '%s/hollow.yaml'", folder);
+  assert_int_equal(system(path), 0);
+  assert_int_equal(converge("hollow.yaml"), 2);
+  snprintf(path, sizeof path, "%s/hollow.converge", folder);
+  assert_true(access(path, F_OK) != 0);
 }
 
 /* Rungs that were finished are reported; those under way and to come are not. */
