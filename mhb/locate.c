@@ -11,6 +11,9 @@ static const double ROUNDED = 1e-9;
 static const double NARROW = 2e-7, NARROW_CHORD = .01, BESIDE = 3e-8;
 enum { MAX_TO_KINK = 100, GUESSES = 4 };
 
+/* An indicator that jumps leads Illinois astray: from HALVED on the bracket is halved. */
+enum { HALVED = 24, MAX_STEPS = 64 };
+
 /* The bracket being narrowed: fractions of the chord and the indicator at its ends; the chord's part of the value; which guess
  * was good last. */
 typedef struct {
@@ -198,9 +201,9 @@ int mhb_path_locate(mhb_path *path, mhb_path_indicator indicator, void *context,
   int   last = -1, kinks = 0;
   set_bracket(path, 0, &path->now);
   set_bracket(path, 1, &path->next);
-  for (int i = 0; i < 40; i++) {
+  for (int i = 0; i < MAX_STEPS; i++) {
     double s = (r.at[0] * r.f[1] - r.at[1] * r.f[0]) / (r.f[1] - r.f[0]);
-    if (i % 4 == 3 || !(s > r.at[0] && s < r.at[1])) s = .5 * (r.at[0] + r.at[1]);
+    if (i % 4 == 3 || i >= HALVED || !(s > r.at[0] && s < r.at[1])) s = .5 * (r.at[0] + r.at[1]);
     int ok = (kinks > 0 || !is_narrow(&r)) && at_fraction(path, &r, &s);
     if (!ok && kinks++ == 0) {
       *fraction = s;
