@@ -64,8 +64,8 @@ mhb_path_outcome mhb_path_step(mhb_path *path);
  * to that end. ON: next is there, heading inwards; STALLED: it does not come back. */
 mhb_path_outcome mhb_path_outside(mhb_path *path, mhb_path_outcome outcome);
 
-/* The same from path->now, a solution on that end, but no farther than half a range beyond it (frequency: at least a tenth, at most
- * three of it) and with few steps while a contact slips or opens. now is the point before next then. */
+/* The same from path->now, a solution on that end, but no farther than half a range beyond it (frequency: at least one, at most
+ * three tenths of it) and with few steps while a contact slips or opens. now is the point before next then. */
 mhb_path_outcome mhb_path_beyond(mhb_path *path, mhb_path_outcome outcome);
 
 /* now <- next */
