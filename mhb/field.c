@@ -29,11 +29,11 @@ const mhb_field mhb_fields[] = {
     {"error/newton", "", MHB_DOUBLE, AT(error_newton), "-",
      "estimated error from the Newton residual, relative to the motion"},
     {"error/truncation", "", MHB_DOUBLE, AT(error_truncation), "-",
-     "estimated error from the harmonics left out, relative to the motion"},
+     "estimated error from the harmonics left out, relative to the vibration"},
     {"error/sampling", "", MHB_DOUBLE, AT(error_sampling), "-",
      "estimated error of the contact force's harmonics, relative to the motion"},
     {"error/modal", "", MHB_DOUBLE, AT(error_modal), "-",
-     "estimated error from the modes left out, relative to the motion"},
+     "estimated error from the modes left out, relative to the vibration"},
     /* N_LATER: of nonlinear branches only; files of earlier versions lack them */
     {"harmonics", "", MHB_INT, AT(harmonics), "-",
      "harmonics of the balance at the point; higher ones of motion, force and probe are 0"},

@@ -160,7 +160,8 @@ void mhb_harmonics_estimate(mhb_harmonics *h, mhb_path_point *point) {
   h->linear = point->truncation_kind == MHB_TRUNCATION_NONE;
   if (h->n == 1) return;
   double factor = point->truncation_kind == MHB_TRUNCATION_FIRST_ORDER ? FIRST_ORDER : 1;
-  h->wanted = choose(h, point->x, factor * point->truncation, mhb_norm(point->x, r->residual->n));
+  h->wanted     = choose(h, point->x, factor * point->truncation,
+                         mhb_residual_vibration(r->residual, point->x));
   if (h->from_linear && !h->linear && h->wanted < at_onset(h)) h->wanted = at_onset(h);
 }
 

@@ -410,3 +410,9 @@ shb_status mhb_residual_linear(mhb_residual *b, double value, int stuck, double 
 void mhb_residual_force(const mhb_residual *b, int k, double complex *p) {
   harmonic(b, b->p, k, p);
 }
+
+double mhb_residual_vibration(const mhb_residual *b, const double *x) {
+  double moving = 0, still = 0;
+  for (int i = 0; i < b->n; i++) *(i % b->nb ? &moving : &still) += x[i] * x[i];
+  return sqrt(moving > 0 ? moving : still);
+}

@@ -95,4 +95,7 @@ shb_status mhb_residual_linear(mhb_residual *residual, double value, int stuck, 
 /* Forces of the last evaluation as complex harmonic k of all pairs. */
 void mhb_residual_force(const mhb_residual *residual, int k, double complex *p);
 
+/* |x| of harmonics 1..m, which errors are measured by: a static part says nothing of the vibration. |x| if there is no other. */
+double mhb_residual_vibration(const mhb_residual *residual, const double *x);
+
 #endif

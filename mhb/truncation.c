@@ -130,7 +130,7 @@ static mhb_truncation_kind set_step(mhb_truncation *t, double size) {
 
 double mhb_truncation_error(mhb_truncation *t, const double *x) {
   mhb_residual *b    = t->doubled;
-  double        size = mhb_norm(x, t->narrow->n);
+  double        size = mhb_residual_vibration(t->narrow, x);
   copy_rows(3 * b->n_pairs, x, t->narrow->nb, t->x, b->nb);
   memset(t->step, 0, sizeof(double) * (size_t)b->n);
   t->far  = 0;
@@ -194,7 +194,7 @@ static double modal_term(const mhb_residual *b, int k, const double complex *p) 
 
 double mhb_modal_error(const mhb_residual *b, const double *x) {
   double complex p[3 * b->n_pairs];
-  double         unheld = 0, size = mhb_norm(x, b->n);
+  double         unheld = 0, size = mhb_residual_vibration(b, x);
   if (!b->receptance->residual[0]) return -1;
   for (int k = 0; k <= b->m; k++) {
     mhb_residual_force(b, k, p);
