@@ -3,8 +3,12 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { AXES = 3, NEWTON_STEPS = 20 };
+
+/* A harmonic this small beside the largest changes no figure. */
+static const double ROUNDING = 1e-13;
 
 double post_ellipse(int n, const double complex *a, int stride) {
   double         sum    = 0;
@@ -75,7 +79,7 @@ static void farthest(int n, int samples, const double *x, int pair[2]) {
     }
 }
 
-double post_peak_to_peak(int n, int m, const double complex *a) {
+static double extent(int n, int m, const double complex *a) {
   int     samples = 8 * (m + 1);
   double *x       = malloc((size_t)(samples * n) * sizeof *x);
   if (!x) return NAN;
@@ -92,6 +96,26 @@ double post_peak_to_peak(int n, int m, const double complex *a) {
   free(x);
   double step = 2 * M_PI / samples;
   return refine_distance(n, m, a, pair[0] * step, pair[1] * step);
+}
+
+/* Highest harmonic of a [n][m + 1] that is more than rounding beside the others. */
+static int highest(int n, int m, const double complex *a) {
+  double most = 0;
+  for (int i = 0; i < n * (m + 1); i++)
+    if (i % (m + 1)) most = fmax(most, cabs(a[i]));
+  for (int k = m; k > 1; k--)
+    for (int axis = 0; axis < n; axis++)
+      if (cabs(a[axis * (m + 1) + k]) > ROUNDING * most) return k;
+  return m < 1 ? m : 1;
+}
+
+/* The search for the farthest pair goes with the square of the harmonics: those that are not there are left out. */
+double post_peak_to_peak(int n, int m, const double complex *a) {
+  int            top = highest(n, m, a);
+  double complex held[n * (top + 1)];
+  for (int axis = 0; axis < n; axis++)
+    memcpy(held + axis * (top + 1), a + axis * (m + 1), sizeof *held * (size_t)(top + 1));
+  return extent(n, top, held);
 }
 
 post_output post_output_primary(const mhb_response *response) {
