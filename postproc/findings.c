@@ -303,14 +303,18 @@ static void put_multipliers(const post_study *study, post_buffer *out) {
     }
     curves += lost[MHB_LOSS_FLIP] + lost[MHB_LOSS_NEIMARK_SACKER] > before;
   }
-  if (curves > 0)
-    post_put(
-        out,
-        "<li><b>Motion that does not repeat.</b> On %d curve%s a part is unstable other than by a "
-        "fold: %d points by period doubling (flip), %d by a modulation (Neimark-Sacker). The "
-        "motion "
-        "there settles on another one, of several periods or modulated.</li>\n",
-        curves, curves > 1 ? "s" : "", lost[MHB_LOSS_FLIP], lost[MHB_LOSS_NEIMARK_SACKER]);
+  int flips = lost[MHB_LOSS_FLIP], waves = lost[MHB_LOSS_NEIMARK_SACKER];
+  if (curves > 0) {
+    post_put(out,
+             "<li><b>Motion that does not repeat.</b> On %d curve%s a part is unstable other than "
+             "by a fold: ",
+             curves, curves > 1 ? "s" : "");
+    if (flips > 0)
+      post_put(out, "%d points by period doubling (flip)%s", flips, waves > 0 ? ", " : "");
+    if (waves > 0) post_put(out, "%d by a modulation (Neimark-Sacker)", waves);
+    post_put(out,
+             ". The motion there settles on another one, of several periods or modulated.</li>\n");
+  }
   if (judged > 0 && judged < total)
     post_put(
         out,

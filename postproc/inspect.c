@@ -139,7 +139,7 @@ static shb_status sum_up_response(const char *path, post_buffer *out) {
   if (status == SHB_OK) {
     post_buffer peaks = {0};
     sum_up_branches(study, out);
-    put_count(out, r->n_harmonics, "harmonic");
+    post_put_harmonics(r, out);
     post_put(out, "; ");
     put_count(out, r->n_pairs, "pair");
     put_interfaces(out, r->n_pairs, r->interface, r->n_interfaces, r->interface_name);

@@ -61,7 +61,8 @@ static void put_lede(const post_study *study, const post_source *source, post_bu
            x->unit.name, post_frequency_text(study, frequency));
   if (r->engine_order > 0) post_put(out, ", engine order %d", r->engine_order);
   if (r->blades > 0) post_put(out, " on %d blades", r->blades);
-  post_put(out, ", %d harmonic%s", r->n_harmonics, r->n_harmonics == 1 ? "" : "s");
+  post_put(out, ", ");
+  post_put_harmonics(r, out);
   if (r->subharmonics > 1) post_put(out, " of ω/%d", r->subharmonics);
   post_put(out, ", %d contact%s", r->n_pairs, r->n_pairs == 1 ? "" : "s");
   for (int i = 0; i < r->n_interfaces; i++) {

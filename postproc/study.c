@@ -305,3 +305,19 @@ void post_study_destroy(post_study *study) {
   free(study->group);
   free(study);
 }
+
+void post_put_harmonics(const mhb_response *response, post_buffer *out) {
+  int fewest = response->n_harmonics, most = 0;
+  for (int b = 0; b < response->n_branches; b++) {
+    const mhb_branch *branch = &response->branch[b];
+    if (branch->kind != MHB_BRANCH_NONLINEAR) continue;
+    for (int p = 0; p < branch->n_points; p++) {
+      int m = branch->harmonics[p] > 0 ? branch->harmonics[p] : response->n_harmonics;
+      if (m < fewest) fewest = m;
+      if (m > most) most = m;
+    }
+  }
+  if (most == 0) most = response->n_harmonics;
+  if (fewest < most) post_put(out, "%d to ", fewest);
+  post_put(out, "%d harmonic%s", most, most == 1 ? "" : "s");
+}

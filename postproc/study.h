@@ -101,4 +101,7 @@ void post_branch_note(const mhb_response *response, const mhb_branch *branch, ch
 /* "open", "stuck", "n₀ = 50 N", "n₀ varying". */
 void post_group_name(const post_group *group, char out[64]);
 
+/* "7 harmonics", or "1 to 21 harmonics" where each nonlinear point has its own number. */
+void post_put_harmonics(const mhb_response *response, post_buffer *out);
+
 #endif
