@@ -190,9 +190,9 @@ static Mat undamped(const body *w, double omega, bool stuck) {
   Mat       A;
   PetscInt *width = malloc(2 * (size_t)w->n * sizeof *width);
   for (PetscInt r = 0; r < w->n; r++) {
-    ok(MatGetRow(w->M, r, &width[r], NULL, NULL));
+    ok(MatGetRow(w->K, r, &width[r], NULL, NULL));
     PetscInt own = width[r];
-    ok(MatRestoreRow(w->M, r, &width[r], NULL, NULL));
+    ok(MatRestoreRow(w->K, r, &width[r], NULL, NULL));
     width[r] = width[r + w->n] = own;
   }
   for (int i = 0; i < 3 * w->spring.n_entries; i++) {
