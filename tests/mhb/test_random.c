@@ -28,7 +28,7 @@
 /* The tolerance of the evaluations, and what a force or work may be off for it. */
 static const double TOLERANCE = 1e-8;
 
-enum { PHASES = 48, HANG_SECONDS = 20, SHOWN = 8, MILD = 300 };
+enum { PHASES = 48, HANG_SECONDS = 120, SHOWN = 8, MILD = 300 };
 
 /* The first ones must not happen, the others rarely. */
 typedef enum { FINITE, WITHIN_LIMIT, WORK_GAINED, SHARES, WORK_DIFFERS, LOST, SLOW, FAULTS } fault;
