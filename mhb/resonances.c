@@ -139,7 +139,7 @@ static shb_status add_all(const stuck_modes *w, mhb_resonances *s) {
     for (int i = 0; i < r->n_modes; i++) SHB_TRY(add_inside(w, s, free_one(r, k, i)));
     if (r->driven[k]) SHB_TRY(add_stuck(w, s, k));
   }
-  qsort(s->at, (size_t)s->n, sizeof *s->at, by_value);
+  if (s->n > 0) qsort(s->at, (size_t)s->n, sizeof *s->at, by_value);
   return SHB_OK;
 }
 
