@@ -115,6 +115,31 @@ static void margin(void **state) {
   modal_model_free(&model);
 }
 
+/* Far below its resonance a closed contact vibrates ten times a period: however few sub-steps it begins with, the verdict is that
+ * of many. A fixed number of 32 calls most of the unstable ones stable. */
+static void slow_motions_are_resolved(void **state) {
+  (void)state;
+  modal_model    model;
+  double complex mu[MOST];
+  int            unstable = 0;
+  one_degree_model(.02, 0, .5, &model);
+  mhb_settings s = ground_settings(0, 9, 1, -.5, 21);
+  for (int i = 0; i < 24; i++) {
+    periodic p;
+    double   w = .3 + .02 * i;
+    periodic_create(&model, &s, w, NULL, &p);
+    mhb_multipliers few  = periodic_multipliers(&p, 32, mu),
+                    many = periodic_multipliers(&p, 2048, mu);
+    print_message("W %.2f: %.4f, %.4f\n", w, few.largest, many.largest);
+    assert_int_equal(few.verdict, many.verdict);
+    assert_true(fabs(few.largest - many.largest) <= .1 * fabs(many.largest - 1) + 1e-3);
+    unstable += many.verdict == MHB_UNSTABLE;
+    periodic_destroy(&p);
+  }
+  assert_true(unstable >= 3);
+  modal_model_free(&model);
+}
+
 /* A gap closed hard near twice its own frequency: the motion doubles its period. */
 static void flip(void **state) {
   (void)state;
@@ -300,6 +325,7 @@ static void nothing_is_allocated(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(neimark_sacker_points),
+      cmocka_unit_test(slow_motions_are_resolved),
       cmocka_unit_test(margin),
       cmocka_unit_test(flip),
       cmocka_unit_test(friction_alone_is_stable),
