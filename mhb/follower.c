@@ -66,12 +66,16 @@ void mhb_follower_use_rung(mhb_follower *f) {
   f->path     = mhb_harmonics_rung(f->harmonics)->path;
 }
 
-/* Go on from now with another number of harmonics. *moved: 0 if that cannot be. */
-static shb_status move(mhb_follower *f, int rung, int step, int *moved) {
+static shb_status make_rung(mhb_follower *f, int rung) {
   mhb_follower_lock(f, true); /* FFTW's planner */
   shb_status status = mhb_harmonics_make(f->harmonics, rung);
   mhb_follower_lock(f, false);
-  SHB_TRY(status);
+  return status;
+}
+
+/* Go on from now with another number of harmonics. *moved: 0 if that cannot be. */
+static shb_status move(mhb_follower *f, int rung, int step, int *moved) {
+  SHB_TRY(make_rung(f, rung));
   *moved = mhb_harmonics_move(f->harmonics, rung, step) == MHB_CONVERGED;
   if (!*moved) return SHB_OK;
   mhb_follower_use_rung(f);
@@ -193,10 +197,7 @@ static shb_status begin_at_last(mhb_follower *f, int direction, bool *found) {
   const mhb_branch *b    = &f->response->branch[f->branch];
   int               last = b->n_points - 1, K = b->n_harmonics + 1, rung = 0;
   while (rung + 1 < f->harmonics->n && f->harmonics->m[rung] < b->harmonics[last]) rung++;
-  mhb_follower_lock(f, true); /* FFTW's planner */
-  shb_status status = mhb_harmonics_make(f->harmonics, rung);
-  mhb_follower_lock(f, false);
-  SHB_TRY(status);
+  SHB_TRY(make_rung(f, rung));
   f->harmonics->at = rung;
   mhb_follower_use_rung(f);
   const mhb_residual *r = f->residual;
