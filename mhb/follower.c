@@ -6,7 +6,6 @@
 
 #include "mesh/progress.h"
 #include "mhb/corrector.h"
-#include "mhb/fourier.h"
 #include "mhb/record.h"
 
 /* A path whose steps stay below CRAWL this often is as good as stalled. */
@@ -195,20 +194,13 @@ static shb_status come_back(mhb_follower *f, bool *go_on, const char **end) {
 /* Begin at the last recorded point of the branch, as it was solved. */
 static shb_status begin_at_last(mhb_follower *f, int direction, bool *found) {
   const mhb_branch *b    = &f->response->branch[f->branch];
-  int               last = b->n_points - 1, K = b->n_harmonics + 1, rung = 0;
+  int               last = b->n_points - 1, rung = 0;
   while (rung + 1 < f->harmonics->n && f->harmonics->m[rung] < b->harmonics[last]) rung++;
   SHB_TRY(make_rung(f, rung));
   f->harmonics->at = rung;
   mhb_follower_use_rung(f);
   const mhb_residual *r = f->residual;
-  for (int row = 0; row < 3 * r->n_pairs; row++) {
-    double complex A[r->m + 1];
-    for (int k = 0; k <= r->m; k++)
-      A[k] = k < K ? b->motion[((size_t)last * 3 * (size_t)r->n_pairs + (size_t)row) * (size_t)K +
-                               (size_t)k]
-                   : 0;
-    mhb_to_real(r->m, A, f->x + (size_t)row * (size_t)r->nb);
-  }
+  mhb_recorded_motion(b, last, r, f->x);
   double value = mhb_parameter_value(r->parameter, b->value[last]);
   value        = direction < 0 ? fmax(value, f->path->low) : fmin(value, f->path->high);
   f->crawling  = 0;

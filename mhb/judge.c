@@ -6,6 +6,7 @@
 
 #include "mesh/progress.h"
 #include "mhb/locate.h"
+#include "mhb/record.h"
 
 /* Up to CHEAP states every point is judged, up to FINE those that the budget a branch allows, by the measured cost; above that
  * with fewer modes and sub-steps. */
@@ -89,20 +90,6 @@ static mhb_branch *branch_of(const mhb_judge *j) {
   return &j->response->branch[j->branch];
 }
 
-/* The recorded motion is the solution itself. */
-static void take_motion(const mhb_judge *j, int point, double *x) {
-  const mhb_residual   *b = j->residual;
-  size_t                K = (size_t)branch_of(j)->n_harmonics + 1, rows = 3 * (size_t)b->n_pairs;
-  size_t                held = K < (size_t)b->m + 1 ? K : (size_t)b->m + 1;
-  const double complex *A    = branch_of(j)->motion + (size_t)point * rows * K;
-  for (size_t row = 0; row < rows; row++)
-    for (size_t k = 0; k < held; k++) {
-      double *to = x + row * (size_t)b->nb;
-      if (k > 0) to[2 * k] = cimag(A[row * K + k]);
-      to[k > 0 ? 2 * k - 1 : 0] = creal(A[row * K + k]);
-    }
-}
-
 static double value_of(const mhb_judge *j, int point) {
   return mhb_parameter_value(j->residual->parameter, branch_of(j)->value[point]);
 }
@@ -151,7 +138,7 @@ static void put(const mhb_judge *j, int point, const mhb_multipliers *m) {
 static bool judge_point(mhb_judge *j, int point) {
   mhb_multipliers m;
   double          started = shb_seconds(), value = value_of(j, point);
-  take_motion(j, point, j->x);
+  mhb_recorded_motion(branch_of(j), point, j->residual, j->x);
   mhb_residual_evaluate(j->residual, j->x, value, j->r, NULL, NULL);
   evaluate(j, j->x, &m);
   j->look[point] = look_of(&m);
@@ -195,7 +182,7 @@ static int largest_motion(const mhb_judge *j) {
   int    best = -1;
   for (int i = 0; i < j->n; i++) {
     if (j->look[i].known) continue;
-    take_motion(j, i, j->x);
+    mhb_recorded_motion(branch_of(j), i, j->residual, j->x);
     double size = mhb_norm(j->x, j->residual->n);
     if (size <= top) continue;
     top  = size;
@@ -253,8 +240,8 @@ static shb_status locate(mhb_judge *j, int i) {
   mhb_path *path = j->path;
   search    s    = {.judge = j};
   double    at;
-  take_motion(j, i - 1, path->now.x);
-  take_motion(j, i, path->next.x);
+  mhb_recorded_motion(branch_of(j), i - 1, j->residual, path->now.x);
+  mhb_recorded_motion(branch_of(j), i, j->residual, path->next.x);
   path->now.value  = value_of(j, i - 1);
   path->next.value = value_of(j, i);
   if (!mhb_path_locate(path, swing_indicator, &s, j->look[i - 1].swing, j->look[i].swing, &at) ||

@@ -121,3 +121,16 @@ double mhb_output_slope(const mhb_path *path, const mhb_path_point *point, int o
   }
   return unless_flat(sum, square);
 }
+
+void mhb_recorded_motion(const mhb_branch *branch, int point, const mhb_residual *b, double *x) {
+  size_t                K = (size_t)branch->n_harmonics + 1, rows = 3 * (size_t)b->n_pairs;
+  size_t                held = K < (size_t)b->m + 1 ? K : (size_t)b->m + 1;
+  const double complex *A    = branch->motion + (size_t)point * rows * K;
+  memset(x, 0, sizeof *x * (size_t)b->n);
+  for (size_t row = 0; row < rows; row++)
+    for (size_t k = 0; k < held; k++) {
+      double *to = x + row * (size_t)b->nb;
+      if (k > 0) to[2 * k] = cimag(A[row * K + k]);
+      to[k > 0 ? 2 * k - 1 : 0] = creal(A[row * K + k]);
+    }
+}

@@ -8,6 +8,10 @@
 shb_status mhb_record(mhb_response *response, int branch, mhb_residual *residual,
                       const mhb_path_point *point, int special, double seconds);
 
+/* The motion recorded at a point as unknowns x of a residual; harmonics that were not recorded are 0. */
+void mhb_recorded_motion(const mhb_branch *branch, int point, const mhb_residual *residual,
+                         double *x);
+
 /* Number of outputs whose peaks are followed: every probe, and v, u, w of the first two pairs. */
 int mhb_outputs(const mhb_residual *residual);
 
