@@ -137,15 +137,14 @@ static shb_status make_from_file(const case_file *file, const char *output,
                                  const shb_provenance *provenance, shb_progress *progress) {
   mesh_fe      mesh;
   mesh_pairing pairing;
-  double       start = shb_seconds();
   SHB_TRY(mesh_source_read(&file->source, progress, &mesh));
-  shb_progress_note(progress, "%d nodes, %d elements in %.2f s", mesh.n_nodes, mesh.n_elements,
-                    shb_seconds() - start);
+  shb_progress_phase(progress, "mesh", "%d nodes, %d elements", mesh.n_nodes, mesh.n_elements);
   shb_status status = check_contact(file, &mesh, &pairing);
   if (status != SHB_OK)
     status = shb_fail(status, __FILE__, __LINE__, "%s: %s", file->mesh_file, shb_message());
   if (status == SHB_OK) status = mesh_msh_write(&mesh, output, provenance);
   if (status == SHB_OK) {
+    shb_progress_phase(progress, "write", "%s", output);
     note_pairing(progress, &pairing);
     if (!progress->quiet) warn_size(file, &mesh);
   }

@@ -90,9 +90,3 @@ static double left_to_address(void) {
 double fem_memory_available(void) {
   return fmin(fmin(line_of("/proc/meminfo", "MemAvailable:"), left_in_groups()), left_to_address());
 }
-
-double fem_memory_peak(void) {
-  struct rusage usage;
-  getrusage(RUSAGE_SELF, &usage);
-  return 1024. * (double)usage.ru_maxrss;
-}

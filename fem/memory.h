@@ -6,7 +6,4 @@
  * control groups leave and of its own address-space limit. Infinite where none of these can be read. */
 double fem_memory_available(void);
 
-/* Most bytes of this process in main memory at once, so far. */
-double fem_memory_peak(void);
-
 #endif

@@ -276,10 +276,9 @@ static shb_status verify(const mesh_blade *blade, mesh_fe *mesh, shb_progress *p
 
 /* The solid, filled with tetrahedra. */
 static shb_status fill(const mesh_blade *blade, const mesh_frame *frame, shb_progress *progress) {
-  double start = shb_seconds();
   shb_progress_show(progress, 0, "building the solid");
   SHB_TRY(build(blade, frame));
-  shb_progress_note(progress, "solid %.2f s", shb_seconds() - start);
+  shb_progress_phase(progress, "solid", "root, airfoil, shroud");
   SHB_CHECK(!shb_interrupted(), SHB_INTERRUPTED, "interrupted while meshing; nothing written");
   return mesh_volume(blade, frame, progress);
 }
@@ -288,18 +287,19 @@ static shb_status make(const mesh_blade *blade, const char *path, const shb_prov
                        shb_progress *progress) {
   mesh_frame frame = mesh_frame_at(blade->axis);
   mesh_fe    mesh  = {0};
-  double     start = shb_seconds();
   SHB_TRY(set_options());
   SHB_TRY(blade->elements == MESH_HEX20 ? mesh_sweep_build(blade, &frame, progress)
                                         : fill(blade, &frame, progress));
   SHB_TRY(mesh_import(who, NULL, &mesh));
   shb_status status = verify(blade, &mesh, progress);
-  shb_progress_note(progress, "mesh %.2f s: %d nodes, %d elements, %d contact faces a side",
-                    shb_seconds() - start, mesh.n_nodes, mesh.n_elements,
-                    mesh.set[MESH_CONTACT_RIGHT].n);
+  if (status == SHB_OK)
+    shb_progress_phase(progress, "mesh", "%d nodes, %d elements, %d contact faces a side",
+                       mesh.n_nodes, mesh.n_elements, mesh.set[MESH_CONTACT_RIGHT].n);
   mesh_fe_free(&mesh);
   SHB_TRY(status);
-  return mesh_export(path, provenance);
+  SHB_TRY(mesh_export(path, provenance));
+  shb_progress_phase(progress, "write", "%s", path);
+  return SHB_OK;
 }
 
 shb_status mesh_blade_write(const mesh_blade *blade, const char *path,

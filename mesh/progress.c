@@ -21,6 +21,7 @@ shb_progress shb_progress_start(const char *stage, bool quiet, bool verbose) {
                            .terminal = isatty(STDERR_FILENO) == 1,
                            .stage    = stage,
                            .started  = shb_seconds()};
+  shb_phases_start(&progress.phases);
   return progress;
 }
 
@@ -57,6 +58,19 @@ void shb_progress_note(shb_progress *progress, const char *format, ...) {
   vfprintf(stderr, format, args);
   fputc('\n', stderr);
   va_end(args);
+}
+
+void shb_progress_phase(shb_progress *progress, const char *name, const char *format, ...) {
+  if (!progress) return;
+  shb_phase phase = shb_phases_lap(&progress->phases, name);
+  char      text[160];
+  va_list   args;
+  va_start(args, format);
+  vsnprintf(text, sizeof text, format, args);
+  va_end(args);
+  shb_phases_add(&progress->phases, &phase);
+  shb_progress_note(progress, "%s: %s: %.2f s, CPU %.2f s, peak %.0f MB", name, text, phase.seconds,
+                    phase.cpu, 1e-6 * phase.memory);
 }
 
 static volatile sig_atomic_t interrupted; /* number of the first signal */

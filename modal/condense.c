@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "fem/fault.h"
+#include "modal/phases.h"
 
 enum { BATCH = 32 }; /* right-hand sides a solve: beyond this MUMPS gains nothing, memory grows */
 
@@ -215,13 +216,12 @@ static shb_status fill(workspace *w, shb_progress *progress, modal_model *model)
 shb_status modal_condense(const fem_system *system, const modal_eigen *eigen,
                           const modal_condensation *to, shb_progress *progress,
                           modal_model *model) {
-  double    started = shb_seconds();
-  workspace w       = {.system = system, .eigen = eigen, .to = to};
+  workspace w = {.system = system, .eigen = eigen, .to = to};
   memset(model, 0, sizeof *model);
   SHB_TRY(allocate(to, eigen->n, model));
   shb_status status = fill(&w, progress, model);
   FEM_PETSC(destroy_workspace(&w));
-  shb_progress_note(progress, "residuals of %d contact dofs in %.2f s", to->contact.n,
-                    shb_seconds() - started);
+  if (status == SHB_OK)
+    modal_phase(system->comm, progress, "residuals", "%d contact dofs", to->contact.n);
   return status;
 }

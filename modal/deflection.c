@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "fem/fault.h"
+#include "modal/phases.h"
 
 /* Beyond this the St. Venant-Kirchhoff law, and any metal, has long failed. */
 static const double greatest_strain = .1;
@@ -37,13 +38,12 @@ static shb_status allocate(const fem_body *body, const modal_condensation *to, i
   return SHB_OK;
 }
 
-static void tell(const modal_deflection *d, double started, shb_progress *progress) {
+static void tell(const modal_deflection *d, MPI_Comm comm, shb_progress *progress) {
   const fem_equilibrium *at = &d->at;
-  shb_progress_note(progress,
-                    "static equilibrium at %.6g rad/s in %.2f s: load steps %d, Newton iterations "
-                    "%d, factors %d, solves %d, last correction %.1e",
-                    d->speed, shb_seconds() - started, at->steps, at->iterations,
-                    at->factorisations, at->solves, at->correction);
+  modal_phase(comm, progress, "equilibrium",
+              "%.6g rad/s, load steps %d, Newton iterations %d, factors %d, solves %d, last "
+              "correction %.1e",
+              d->speed, at->steps, at->iterations, at->factorisations, at->solves, at->correction);
   shb_progress_note(progress, "greatest displacement %.4g m, greatest von Mises stress %.4g MPa",
                     d->greatest_displacement, d->greatest_stress / 1e6);
   shb_progress_note(progress, "force of the clamp [%.6g, %.6g, %.6g] N", d->statics.force[0],
@@ -66,8 +66,7 @@ static shb_status find_statics(const fem_body *body, MPI_Comm comm, int rank,
 shb_status modal_deflect(const fem_body *body, fem_system *system, const modal_condensation *to,
                          const modal_interface *interface, shb_progress *progress,
                          modal_deflection *out) {
-  const double started = shb_seconds();
-  int          rank;
+  int rank;
   MPI_Comm_rank(system->comm, &rank);
   out->speed    = body->rotation.speed;
   out->pressure = body->pressure;
@@ -89,7 +88,7 @@ shb_status modal_deflect(const fem_body *body, fem_system *system, const modal_c
             "material.E: no elastic blade bears that; give a lower load, or check material and "
             "the mesh's unit (m)",
             out->speed == 0 ? "pressure" : "speed", out->speed, out->greatest_stress / 1e6);
-  tell(out, started, progress);
+  tell(out, system->comm, progress);
   return SHB_OK;
 }
 

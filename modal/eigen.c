@@ -6,6 +6,7 @@
 
 #include "modal/block_lanczos.h"
 #include "modal/noise.h"
+#include "modal/phases.h"
 
 typedef struct {
   shb_progress *progress;
@@ -100,22 +101,21 @@ static double beside(const fem_system *system, int modes) {
 
 static PetscErrorCode factorise(const fem_system *system, const modal_eigen_settings *settings,
                                 modal_eigen *eigen) {
-  const double started  = shb_seconds();
-  bool         definite = false;
-  Mat          A;
+  bool definite = false;
+  Mat  A;
 
   PetscFunctionBeginUser;
   PetscCall(shifted(system, settings->shift, &A));
   PetscCall(fem_factor_create(A, beside(system, settings->modes), &eigen->factor));
+  modal_phase(system->comm, settings->progress, "analysis", "%s, %.3g GB foreseen",
+              fem_factor_by(eigen->factor), 1e-9 * fem_factor_foreseen(eigen->factor));
   PetscCall(fem_factor_update(eigen->factor, A, &definite));
   PetscCall(MatDestroy(&A));
   PetscCheck(definite, system->comm, PETSC_ERR_USER_INPUT,
              "the stiffness matrix is not positive definite: the clamp on group root does not hold "
              "the body, the material is not physical, or the equilibrium at rotor.speed is not "
              "stable");
-  shb_progress_note(settings->progress, "factorised by %s in %.2f s, %.3g GB foreseen",
-                    fem_factor_by(eigen->factor), shb_seconds() - started,
-                    1e-9 * fem_factor_foreseen(eigen->factor));
+  modal_phase(system->comm, settings->progress, "factor", "%d dofs", (int)(3 * system->n_free));
   PetscFunctionReturn(0);
 }
 
@@ -280,7 +280,6 @@ PetscErrorCode modal_eigen_solve(const fem_system *system, const modal_eigen_set
   PetscCall(factorise(system, settings, eigen));
   PetscCall(EPSCreate(system->comm, &eigen->eps));
   PetscCall(configure(system, settings, &context, eigen));
-  const double started = shb_seconds();
   PetscCall(EPSSolve(eigen->eps));
   PetscCall(EPSGetConvergedReason(eigen->eps, &reason));
   PetscCall(EPSGetConverged(eigen->eps, &n_converged));
@@ -292,7 +291,7 @@ PetscErrorCode modal_eigen_solve(const fem_system *system, const modal_eigen_set
   PetscCall(PetscMalloc2(eigen->n, &eigen->lambda, eigen->n, &eigen->residual));
   PetscCall(collect(system, eigen));
   PetscCall(find_residuals(system, settings->shift, eigen));
-  shb_progress_note(settings->progress, "%d modes in %.2f s", eigen->n, shb_seconds() - started);
+  modal_phase(system->comm, settings->progress, "modes", "%d", eigen->n);
   PetscFunctionReturn(0);
 }
 

@@ -14,6 +14,7 @@
 #include "modal/condense.h"
 #include "modal/enough.h"
 #include "modal/export.h"
+#include "modal/phases.h"
 #include "modal/reduce.h"
 
 enum { FIRST_MODES = 20, MOST_MODES = 1000 }; /* with modes: auto */
@@ -166,12 +167,11 @@ static PetscErrorCode refine(const fem_body *body, const double *state, const fe
 /* Matrices of the body, at its equilibrium if it rotates. */
 static shb_status assemble(MPI_Comm comm, const fem_body *body, const modal_condensation *to,
                            shb_progress *progress, modal_result *result) {
-  double started = shb_seconds();
   shb_progress_show(progress, 5, "assembling %d elements", body->mesh->n_elements);
   FEM_PETSC(
       fem_system_create(comm, body->mesh, body->material, body->element->rules, &result->system));
-  shb_progress_note(progress, "assembled %d elements, %d dofs in %.2f s", body->mesh->n_elements,
-                    (int)(3 * result->system.n_free), shb_seconds() - started);
+  modal_phase(comm, progress, "assembly", "%d elements, %d dofs", body->mesh->n_elements,
+              (int)(3 * result->system.n_free));
   if (body->rotation.speed == 0 && body->pressure == 0) return SHB_OK;
   return modal_deflect(body, &result->system, to, &result->interface, progress,
                        &result->deflection);
@@ -184,6 +184,7 @@ static shb_status find_modes(const fem_body *body, const modal_condensation *to,
   FEM_PETSC(modal_eigen_solve(&result->system, &eigen, &result->eigen));
   SHB_CHECK(result->eigen.n > 0, SHB_INTERRUPTED, "interrupted");
   FEM_PETSC(refine(body, result->deflection.at.displacement, &result->system, &result->eigen));
+  modal_phase(result->system.comm, progress, "refinement", "eigenvalues from the strains");
   SHB_CHECK(result->eigen.lambda[0] > 0, SHB_ERR_INPUT,
             "rotor.speed: the static equilibrium at %.6g rad/s is not stable (lowest eigenvalue "
             "%.3g rad2/s2); give a lower speed",
@@ -228,6 +229,7 @@ static shb_status solve(MPI_Comm comm, const fem_body *body, const modal_setting
     SHB_TRY(find_enough(body, settings, to, progress, result));
   SHB_TRY(modal_participate(body, result->deflection.at.displacement, &result->system,
                             &result->eigen, &result->participation));
+  modal_phase(comm, progress, "participation", "effective masses");
   SHB_TRY(name_probes(settings, &result->model));
   SHB_TRY(name_interfaces(settings, &result->interface, &result->model));
   return copy_patches(&result->interface, &result->model);
@@ -305,15 +307,19 @@ static shb_status write_all(hid_t file, const mesh_fe *mesh, const modal_result 
   return modal_export_vtk(file, mesh, result->model.n_modes);
 }
 
+/* progress: its phases go into the file. */
 static shb_status publish(const char *path, const mesh_fe *mesh, const modal_result *result,
                           const modal_speeds *speeds, const double *shape,
-                          const shb_provenance *provenance) {
+                          const shb_provenance *provenance, const shb_progress *progress) {
   char *temporary = shb_publish_temporary(path);
   SHB_CHECK(temporary, SHB_ERR_IO, "out of memory");
   hid_t      file   = -1;
   shb_status status = h5_create(temporary, &file);
   if (status == SHB_OK) {
-    status            = write_all(file, mesh, result, speeds, shape, provenance);
+    int ranks;
+    MPI_Comm_size(result->system.comm, &ranks);
+    status = write_all(file, mesh, result, speeds, shape, provenance);
+    if (status == SHB_OK) status = modal_phases_write(file, ranks, progress, "write");
     shb_status closed = h5_close(file);
     if (status == SHB_OK) status = closed;
     if (status == SHB_OK)
@@ -354,15 +360,13 @@ static shb_status run(MPI_Comm comm, int rank, const char *out_path, const mesh_
   shb_status   status = settings->n_speeds > 1
                             ? modal_campbell_solve(comm, mesh, settings, progress, &speeds, &result)
                             : modal_solve(comm, mesh, settings, progress, &result);
-  double       begun  = shb_seconds();
   if (status == SHB_OK) status = gather_shapes(&result, rank, &shape);
   if (status == SHB_OK) {
     shb_progress_show(progress, 96, "writing %s", out_path);
     shb_status mine =
-        rank != 0 ? SHB_OK : publish(out_path, mesh, &result, &speeds, shape, provenance);
+        rank != 0 ? SHB_OK : publish(out_path, mesh, &result, &speeds, shape, provenance, progress);
     status = agree(comm, mine);
-    if (status == SHB_OK)
-      shb_progress_note(progress, "wrote %s in %.2f s", out_path, shb_seconds() - begun);
+    if (status == SHB_OK) modal_phase(comm, progress, "write", "%s", out_path);
   }
   free(shape);
   modal_campbell_free(&speeds, &result);
@@ -376,12 +380,11 @@ shb_status modal_stage(MPI_Comm comm, const char *mesh_path, const char *out_pat
   int     rank;
   mesh_fe mesh = {0};
   MPI_Comm_rank(comm, &rank);
-  double started = shb_seconds();
   shb_progress_show(progress, 0, "reading %s", mesh_path);
   shb_status status = agree(comm, rank == 0 ? read_mesh(mesh_path, settings, &mesh) : SHB_OK);
   if (status == SHB_OK) status = fem_fault_status(fem_mesh_broadcast(comm, &mesh));
-  shb_progress_note(progress, "read %d nodes, %d elements in %.2f s", mesh.n_nodes, mesh.n_elements,
-                    shb_seconds() - started);
+  if (status == SHB_OK)
+    modal_phase(comm, progress, "mesh", "%d nodes, %d elements", mesh.n_nodes, mesh.n_elements);
   if (status == SHB_OK) status = run(comm, rank, out_path, &mesh, settings, provenance, progress);
   mesh_fe_free(&mesh);
   shb_progress_clear(progress);

@@ -12,6 +12,7 @@
 #include "postproc/campbell.h"
 #include "postproc/findings.h"
 #include "postproc/modes.h"
+#include "postproc/phases.h"
 #include "postproc/source.h"
 #include "postproc/study.h"
 #include "postproc/unit.h"
@@ -83,6 +84,7 @@ static shb_status sum_up_modal(hid_t file, const char *path, bool verbose, post_
   if (status == SHB_OK) status = modal_speeds_read(path, &speeds);
   if (speeds.n > 0) post_campbell_table(&speeds, verbose, out);
   modal_speeds_free(&speeds);
+  if (status == SHB_OK) status = post_phases(file, out);
   modal_model_free(&m);
   return status;
 }

@@ -13,6 +13,7 @@
 #include "fem/factor.h"
 #include "fem/fault.h"
 #include "fem/memory.h"
+#include "mesh/phases.h"
 #include "tests/fem/support.h"
 
 static const char mumps[] = "-st_pc_factor_mat_solver_type";
@@ -163,9 +164,9 @@ static void memory_is_foreseen(void **state) {
   bool         definite;
   assert_int_equal(fem_system_create(PETSC_COMM_SELF, &mesh, &steel, FEM_STANDARD, &system), 0);
   assert_int_equal(fem_factor_create(system.K, 0, &factor), 0);
-  const double before = fem_memory_peak(), foreseen = fem_factor_foreseen(factor);
+  const double before = shb_memory_peak(), foreseen = fem_factor_foreseen(factor);
   assert_int_equal(fem_factor_update(factor, system.K, &definite), 0);
-  const double taken = fem_memory_peak() - before;
+  const double taken = shb_memory_peak() - before;
   print_message("%.3g MB foreseen, %.3g MB taken\n", 1e-6 * foreseen, 1e-6 * taken);
   assert_true(foreseen > 50e6);
   assert_true(taken > .7 * foreseen && taken < 1.15 * foreseen);

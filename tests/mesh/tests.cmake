@@ -4,6 +4,7 @@ target_link_libraries(tests_box PUBLIC shb_mesh)
 
 shb_test(mesh fe_mesh fast tests_box ${GMSH_LIBRARY})
 target_include_directories(test_mesh_fe_mesh PRIVATE ${GMSH_INCLUDE})
+shb_test(mesh phases fast shb_base)
 shb_test(mesh inp fast tests_box)
 shb_test(mesh pairing fast tests_box)
 shb_test(mesh source fast tests_box ${GMSH_LIBRARY})

@@ -71,6 +71,51 @@ static void file_is_complete(void **state) {
   assert_true(assert_described(out) >= 30);
 }
 
+/* Every phase is there once, in the order in which it was; peaks never fall; with two speeds times add up. */
+static void phases_are_in_the_file(void **state) {
+  (void)state;
+  static const char *const wanted[] = {"mesh",          "assembly", "equilibrium", "analysis",
+                                       "factor",        "modes",    "refinement",  "residuals",
+                                       "participation", "write"};
+  static const double      speeds[] = {200, 300};
+  enum { PHASES = sizeof wanted / sizeof *wanted };
+  modal_settings settings = default_settings();
+  h5_shape       shape    = H5_SHAPE(PHASES);
+  char           mesh[512], out[512], **name;
+  double        *seconds, *cpu, *memory, *greatest, sum = 0;
+  int            n, ranks;
+  hid_t          file;
+  snprintf(mesh, sizeof mesh, "%s", scratch("sector.msh"));
+  snprintf(out, sizeof out, "%s", scratch("phases.modal.h5"));
+  settings.speed        = 300;
+  settings.n_speeds     = 2;
+  settings.speeds       = speeds;
+  shb_progress progress = shb_progress_start("modal", true, false);
+  assert_ok(modal_stage(PETSC_COMM_WORLD, mesh, out, &settings, &provenance, &progress));
+  const double whole = shb_seconds() - progress.started;
+  assert_ok(h5_open(out, &file));
+  assert_ok(h5_read_strings(file, "/phases/name", &n, &name));
+  assert_ok(h5_read_double(file, "/phases/seconds", &shape, &seconds));
+  assert_ok(h5_read_double(file, "/phases/cpu", &shape, &cpu));
+  assert_ok(h5_read_double(file, "/phases/memory", &shape, &memory));
+  assert_ok(h5_read_double(file, "/phases/greatest_memory", &shape, &greatest));
+  assert_ok(h5_read_attribute_int(file, "/phases", "ranks", 0, &ranks));
+  assert_ok(h5_close(file));
+  assert_int_equal(ranks, 1);
+  assert_int_equal(n, PHASES);
+  for (int i = 0; i < n; i++) {
+    assert_string_equal(name[i], wanted[i]);
+    assert_true(seconds[i] > 0 && cpu[i] > 0);
+    assert_true(memory[i] > 1e6 && memory[i] == greatest[i]);
+    assert_true(i == 0 || i == n - 1 || memory[i] >= memory[0]);
+    sum += seconds[i];
+    free(name[i]);
+  }
+  assert_true(sum <= whole && sum > .5 * whole);
+  free(name), free(seconds), free(cpu), free(memory), free(greatest);
+  remove(out);
+}
+
 /* Rayleigh's law in the file, mode by mode. */
 static void damping_follows_its_law(void **state) {
   (void)state;
@@ -490,6 +535,7 @@ static void interfaces_are_condensed_together(void **state) {
 int main(int argc, char **argv) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(file_is_complete),
+      cmocka_unit_test(phases_are_in_the_file),
       cmocka_unit_test(damping_follows_its_law),
       cmocka_unit_test(abaqus_mesh_gives_the_same),
       cmocka_unit_test(vtk_group_shows_the_modes),

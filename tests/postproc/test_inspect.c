@@ -159,6 +159,50 @@ static void modal(void **state) {
   }
 }
 
+static void write_phases(hid_t file, int n, int ranks) {
+  static const char *const name[]    = {"mesh", "factor"};
+  static const double      seconds[] = {.125, 2.5}, cpu[] = {.25, 4.75}, memory[] = {8e7, 3.21e9};
+  static const double      most[] = {5e7, 1.7e9};
+  const h5_shape           shape  = H5_SHAPE((hsize_t)n);
+  assert_ok(h5_write_strings(file, "/phases/name", 2, name, "phase"));
+  assert_ok(h5_write_double(file, "/phases/seconds", H5_SHAPE(2), seconds, "s", "s"));
+  assert_ok(h5_write_double(file, "/phases/cpu", shape, cpu, "s", "s"));
+  assert_ok(h5_write_double(file, "/phases/memory", H5_SHAPE(2), memory, "B", "B"));
+  assert_ok(h5_write_double(file, "/phases/greatest_memory", H5_SHAPE(2), most, "B", "B"));
+  assert_ok(h5_write_attribute_int(file, "/phases", "ranks", ranks));
+}
+
+/* Where the modal stage's time went: a line a phase, and one for all of them. */
+static void phases(void **state) {
+  (void)state;
+  double frequency[] = {103.6}, damping[] = {0.002}, shape[3] = {1, 2, 3};
+  double _Complex force[1] = {1};
+  modal_model m            = {.n_modes       = 1,
+                              .n_pairs       = 1,
+                              .frequency     = frequency,
+                              .damping_ratio = damping,
+                              .right         = shape,
+                              .modal_force   = force};
+  for (int i = 0; i < 3; i++) {
+    hid_t file;
+    assert_ok(h5_create(at("x.modal.h5"), &file));
+    assert_ok(modal_model_write(file, &m, &PROVENANCE));
+    write_phases(file, i == 2 ? 1 : 2, i == 0 ? 1 : 4);
+    assert_ok(h5_close(file));
+    char *text = inspect("x.modal.h5", PLAIN, i == 2 ? SHB_ERR_INPUT : SHB_OK);
+    if (i == 0) {
+      assert_has(text, "  factor               2.50     4.75     3210\n");
+      assert_has(text, "  all                  2.62     5.00     3210\n");
+      assert_has_not(text, "ranks)");
+    } else if (i == 1) {
+      assert_has(text, "  mesh                 0.12     0.25       80       50\n");
+      assert_has(text, "(4 ranks)");
+    } else
+      assert_has(shb_message(), "/phases/cpu");
+    free(text);
+  }
+}
+
 /* Claims to be ours and is not: the tree all the same, and the complaint. */
 static void pretender(void **state) {
   (void)state;
@@ -279,7 +323,7 @@ static void errors(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(response), cmocka_unit_test(parameter), cmocka_unit_test(largest_at_the_end),
-      cmocka_unit_test(modal),    cmocka_unit_test(pretender), cmocka_unit_test(foreign),
-      cmocka_unit_test(large),    cmocka_unit_test(errors)};
+      cmocka_unit_test(modal),    cmocka_unit_test(phases),    cmocka_unit_test(pretender),
+      cmocka_unit_test(foreign),  cmocka_unit_test(large),     cmocka_unit_test(errors)};
   return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }
