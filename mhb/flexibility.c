@@ -48,8 +48,7 @@ shb_status mhb_flexibility_create(const double *matrix, int nc, const double *T0
   mhb_flexibility *f = calloc(1, sizeof *f);
   SHB_CHECK(f, SHB_ERR_IO, "out of memory");
   size_t square = 9 * (size_t)n_pairs * (size_t)n_pairs;
-  source s      = {.matrix = matrix, .T0 = T0, .nc = nc, .n = 3 * n_pairs};
-  f->n          = s.n;
+  f->n          = 3 * n_pairs;
   f->own        = malloc(square * sizeof(double));
   if (sides == 2) f->both = malloc(square * sizeof(double));
   if (sides == 2) f->odd = malloc(square * sizeof(double));
@@ -57,10 +56,15 @@ shb_status mhb_flexibility_create(const double *matrix, int nc, const double *T0
     mhb_flexibility_destroy(f);
     SHB_FAIL(SHB_ERR_IO, "out of memory for the residual flexibility of %d pairs", n_pairs);
   }
-  for (int i = 0; i < n_pairs; i++)
-    for (int j = 0; j < n_pairs; j++) set_pairs(&s, i, j, f);
+  mhb_flexibility_set(f, matrix, nc, T0);
   *out = f;
   return SHB_OK;
+}
+
+void mhb_flexibility_set(mhb_flexibility *f, const double *matrix, int nc, const double *T0) {
+  const source s = {.matrix = matrix, .T0 = T0, .nc = nc, .n = f->n};
+  for (int i = 0; i < f->n / 3; i++)
+    for (int j = 0; j < f->n / 3; j++) set_pairs(&s, i, j, f);
 }
 
 void mhb_flexibility_destroy(mhb_flexibility *f) {

@@ -21,6 +21,10 @@ shb_status mhb_flexibility_create(const double *matrix, int nc, const double *T0
                                   int sides, mhb_flexibility **flexibility);
 void       mhb_flexibility_destroy(mhb_flexibility *flexibility);
 
+/* Another matrix of that size, the same axes. */
+void mhb_flexibility_set(mhb_flexibility *flexibility, const double *matrix, int nc,
+                         const double *T0);
+
 /* R[n][n] += factor T M T^H */
 void mhb_flexibility_add(const mhb_flexibility *flexibility, double complex phase, double factor,
                          double complex *R);

@@ -213,15 +213,50 @@ static double wave_step(const mhb_settings *s) {
   return NAN;
 }
 
+/* Residual terms of the contact that count; NULL: not there. */
+static void contact_terms(const modal_model *model, const double *term[MODAL_TERMS]) {
+  term[0] = model->residual_flexibility;
+  term[1] = model->residual_inertia;
+  term[2] = modal_series_has_fourth(model) ? model->residual_fourth : NULL;
+}
+
+/* Modes, loads and probes of every harmonic. */
+static void set_harmonics(mhb_receptance *r) {
+  const modal_model *model = r->model;
+  const int          nc    = 3 * model->n_pairs * (model->has_left ? 2 : 1);
+  for (int k = 0; k <= r->n_harmonics; k++) {
+    double complex phase = r->phase[k];
+    set_modes(r, k, phase, r->sides);
+    set_load(r, k, phase, r->sides);
+    set_parts(r, k);
+    if (r->probe_contact)
+      set_probe(r, k, phase, r->sides, nc, model->probe_contact_residual, r->probe_contact);
+    if (r->probe_contact_inertia)
+      set_probe(r, k, phase, r->sides, nc, model->probe_contact_inertia, r->probe_contact_inertia);
+  }
+}
+
+/* The model's arrays have other values. */
+static void set_again(mhb_receptance *r) {
+  const modal_model *model = r->model;
+  const double      *term[MODAL_TERMS];
+  contact_terms(model, term);
+  for (int t = 0; t < MODAL_TERMS; t++)
+    if (r->residual[t])
+      mhb_flexibility_set(r->residual[t], term[t], 3 * model->n_pairs * (model->has_left ? 2 : 1),
+                          r->T0);
+  set_harmonics(r);
+}
+
 /* Everything that does not depend on omega. */
 static shb_status set_blade(mhb_receptance *r, const mhb_settings *settings) {
-  const modal_model *model             = r->model;
-  int                sides             = settings->to_ground ? 1 : 2;
-  int                nc                = 3 * model->n_pairs * (model->has_left ? 2 : 1);
-  double             step              = settings->to_ground ? 0 : wave_step(settings);
-  const double      *term[MODAL_TERMS] = {
-           model->residual_flexibility, model->residual_inertia,
-      modal_series_has_fourth(model) ? model->residual_fourth : NULL};
+  const modal_model *model = r->model;
+  int                sides = settings->to_ground ? 1 : 2;
+  int                nc    = 3 * model->n_pairs * (model->has_left ? 2 : 1);
+  double             step  = settings->to_ground ? 0 : wave_step(settings);
+  const double      *term[MODAL_TERMS];
+  contact_terms(model, term);
+  r->sides = sides;
   SHB_TRY(mhb_interfaces_match(model, settings, r->interface));
   for (int i = 0; i < mhb_interfaces(settings); i++) {
     set_shares(r, i);
@@ -231,27 +266,15 @@ static shb_status set_blade(mhb_receptance *r, const mhb_settings *settings) {
     if (term[t])
       SHB_TRY(mhb_flexibility_create(term[t], nc, r->T0, model->n_pairs, sides, &r->residual[t]));
   for (int k = 0; k <= r->n_harmonics; k++) {
-    r->made_at[k]        = NAN;
-    double complex phase = r->phase[k] = cexp(-I * fmod(k * step, 2 * PI));
-    set_modes(r, k, phase, sides);
-    set_load(r, k, phase, sides);
-    set_parts(r, k);
-    if (r->probe_contact)
-      set_probe(r, k, phase, sides, nc, model->probe_contact_residual, r->probe_contact);
-    if (r->probe_contact_inertia)
-      set_probe(r, k, phase, sides, nc, model->probe_contact_inertia, r->probe_contact_inertia);
+    r->made_at[k] = NAN;
+    r->phase[k]   = cexp(-I * fmod(k * step, 2 * PI));
   }
+  set_harmonics(r);
   return SHB_OK;
 }
 
-shb_status mhb_receptance_create(const modal_model *model, const mhb_settings *settings,
-                                 int n_harmonics, mhb_receptance **out) {
-  SHB_CHECK(settings->to_ground || model->has_left, SHB_ERR_INPUT,
-            "contact.to is neighbour, but the modal file has no /contact/left; set it to ground");
-  SHB_CHECK(settings->to_ground || isfinite(wave_step(settings)), SHB_ERR_INPUT,
-            "mhb.subharmonics is %d, but a wave of that many periods does not close around %d "
-            "blades at engine order %d; set it to 1",
-            settings->subharmonics, settings->blades, settings->engine_order);
+static shb_status create(const modal_model *model, const mhb_settings *settings, int n_harmonics,
+                         mhb_receptance **out) {
   mhb_receptance *r = calloc(1, sizeof *r);
   SHB_CHECK(r, SHB_ERR_IO, "out of memory");
   r->model          = model;
@@ -272,8 +295,37 @@ shb_status mhb_receptance_create(const modal_model *model, const mhb_settings *s
   return SHB_OK;
 }
 
+shb_status mhb_receptance_create(const modal_model *model, const mhb_settings *settings,
+                                 int n_harmonics, mhb_receptance **out) {
+  SHB_CHECK(settings->to_ground || model->has_left, SHB_ERR_INPUT,
+            "contact.to is neighbour, but the modal file has no /contact/left; set it to ground");
+  SHB_CHECK(settings->to_ground || isfinite(wave_step(settings)), SHB_ERR_INPUT,
+            "mhb.subharmonics is %d, but a wave of that many periods does not close around %d "
+            "blades at engine order %d; set it to 1",
+            settings->subharmonics, settings->blades, settings->engine_order);
+  mhb_receptance *r = NULL;
+  if (!settings->run_up) return create(model, settings, n_harmonics, out);
+  mhb_at_speed *at = NULL;
+  SHB_TRY(mhb_at_speed_create(settings->run_up, &at));
+  mhb_at_speed_go(at, 0);
+  mhb_at_speed_differentiate(at);
+  shb_status status = create(&at->model, settings, n_harmonics, &r);
+  if (status == SHB_OK) status = create(&at->slope, settings, n_harmonics, &r->rate);
+  if (status != SHB_OK) {
+    mhb_receptance_destroy(r);
+    mhb_at_speed_destroy(at);
+    return status;
+  }
+  r->at          = at;
+  r->rate->omega = NAN;
+  *out           = r;
+  return SHB_OK;
+}
+
 void mhb_receptance_destroy(mhb_receptance *r) {
   if (!r) return;
+  mhb_receptance_destroy(r->rate);
+  mhb_at_speed_destroy(r->at);
   free(r->T0);
   free(r->share);
   free(r->interface);
@@ -376,10 +428,13 @@ static void harmonic_at(mhb_receptance *r, int k) {
 
 void mhb_receptance_move(mhb_receptance *r, double omega) {
   r->omega = omega;
+  if (!r->at || r->at->omega == omega) return;
+  mhb_at_speed_go(r->at, omega);
+  set_again(r);
 }
 
 void mhb_receptance_need(mhb_receptance *r, int k) {
-  double w = k == 0 ? 0 : r->omega; /* the mean knows no frequency */
+  double w = k == 0 && !r->at ? 0 : r->omega; /* the mean knows no frequency, but a speed */
   if (r->made_at[k] == w) return;
   harmonic_at(r, k);
   r->made_at[k] = w;
@@ -481,6 +536,84 @@ void mhb_receptance_motion(const mhb_receptance *r, int k, const double complex 
   }
 }
 
+/* ---- run-up: the model changes with omega too ---- */
+
+/* The rate at the model's omega. */
+static const mhb_receptance *rate_of(const mhb_receptance *r) {
+  if (r->rate->omega == r->omega) return r->rate;
+  mhb_at_speed_differentiate(r->at);
+  set_again(r->rate);
+  r->rate->omega = r->omega;
+  return r->rate;
+}
+
+/* a = L d, d = scale F - B^H p, and its change with the model, L (d' - (dK + j w dN) a): [modes] each. */
+static void modal_rate(const mhb_receptance *r, int k, const double complex *p, double complex *a,
+                       double complex *change) {
+  const mhb_receptance *rate = rate_of(r);
+  const int             m    = r->n_modes;
+  const double          w    = k * r->omega / r->nu;
+  for (int i = 0; i < m; i++) a[i] = r->lambda[k * m + i] * modal_drive(r, k, p, i, r->scale);
+  for (int i = 0; i < m; i++) {
+    const double  *dK = r->at->stiffness + i * m, *dN = r->at->damping + i * m;
+    double complex sum = modal_drive(rate, k, p, i, r->scale);
+    for (int j = 0; j < m; j++) sum -= CMPLX(dK[j], w * dN[j]) * a[j];
+    change[i] = r->lambda[k * m + i] * sum;
+  }
+}
+
+/* d/d omega of the weights of the residual terms by w_m, the last mode kept: weight t is of degree t in (w^2, w_m^2). */
+static double weight_rate(const mhb_receptance *r, const modal_series *s, int t, double w) {
+  const int    last = r->n_modes - 1;
+  const double top  = 2 * PI * r->model->frequency[last];
+  const double dc   = r->at->stiffness[last * r->n_modes + last] / (top * top);
+  return dc * (t * s->weight[t] - w * w * s->slope[t]);
+}
+
+/* slope[n] += what changes with the model. */
+static void add_model_slope(const mhb_receptance *r, int k, const double complex *p,
+                            double complex *slope) {
+  const int             m = r->n_modes, n = r->n;
+  const double          w    = k * r->omega / r->nu;
+  const mhb_receptance *rate = rate_of(r);
+  const modal_series    s    = modal_series_at(r->model, w);
+  const double complex *B    = r->B + (size_t)k * (size_t)n * (size_t)m;
+  const double complex *dB   = rate->B + (size_t)k * (size_t)n * (size_t)m;
+  double complex        a[m], change[m];
+  modal_rate(r, k, p, a, change);
+  for (int row = 0; row < n; row++, B += m, dB += m) {
+    double complex sum =
+        r->scale * residual_at(rate->load, rate->load_inertia, w * w, (size_t)(k * n + row));
+    for (int i = 0; i < m; i++) sum += dB[i] * a[i] + B[i] * change[i];
+    for (int t = 0; t < MODAL_TERMS; t++) {
+      if (!r->residual[t]) continue;
+      sum -= s.weight[t] * mhb_flexibility_row(rate->residual[t], r->phase[k], row, p);
+      sum -= weight_rate(r, &s, t, w) * mhb_flexibility_row(r->residual[t], r->phase[k], row, p);
+    }
+    slope[row] += sum;
+  }
+}
+
+/* change[3 q] += d_omega times what changes with the model. */
+static void add_model_probe(const mhb_receptance *r, int k, const double complex *p, double d_omega,
+                            double complex *change) {
+  const int             m = r->n_modes, n = r->n, q = 3 * r->model->n_probes;
+  const double          w2   = pow(k * r->omega / r->nu, 2);
+  const mhb_receptance *rate = rate_of(r);
+  double complex        a[m], by[m];
+  modal_rate(r, k, p, a, by);
+  for (int s = 0; s < q; s++) {
+    const double  *psi = r->model->probe + s * m, *d_psi = rate->model->probe + s * m;
+    const size_t   at  = (size_t)k * (size_t)q + (size_t)s;
+    double complex sum = r->scale * residual_at(rate->probe_load, rate->probe_load_inertia, w2, at);
+    for (int i = 0; i < m; i++) sum += d_psi[i] * a[i] + psi[i] * by[i];
+    for (size_t b = 0; (rate->probe_contact || rate->probe_contact_inertia) && b < (size_t)n; b++)
+      sum -= residual_at(rate->probe_contact, rate->probe_contact_inertia, w2, at * (size_t)n + b) *
+             p[b];
+    change[s] += d_omega * sum;
+  }
+}
+
 void mhb_receptance_slope(const mhb_receptance *r, int k, const double complex *p,
                           double complex *slope) {
   int    n  = r->n;
@@ -493,6 +626,7 @@ void mhb_receptance_slope(const mhb_receptance *r, int k, const double complex *
   for (int t = 1; t < MODAL_TERMS; t++)
     for (int a = 0; r->residual[t] && a < n; a++)
       slope[a] -= weight * s.slope[t] * mhb_flexibility_row(r->residual[t], r->phase[k], a, p);
+  if (r->at) add_model_slope(r, k, p, slope);
 }
 
 /* What the modes left out add to a probe dof, and its change with omega (dw2: of (k w)^2). */
@@ -523,6 +657,7 @@ void mhb_receptance_probe_change(const mhb_receptance *r, int k, const double co
     if (d_omega != 0) a += d_omega * lambda_slope(r, k, i) * modal_drive(r, k, p, i, r->scale);
     for (int s = 0; s < q; s++) change[s] += r->model->probe[s * m + i] * a;
   }
+  if (r->at && d_omega != 0) add_model_probe(r, k, p, d_omega, change);
 }
 
 /* Neither driven nor pushed at by the contact. */

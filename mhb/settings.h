@@ -71,7 +71,9 @@ typedef struct {
   mhb_search_settings search;
   bool                flips;     /* branches of doubled period are followed from where they leave */
   mhb_stability_when  stability; /* which points are judged by their multipliers */
-  bool                resume;    /* take over what an interrupted run of equal settings finished */
+  const struct mhb_run_up
+      *run_up; /* the modal model follows the frequency (mhb/run_up.h); NULL: one speed */
+  bool resume; /* take over what an interrupted run of equal settings finished */
 } mhb_settings;
 
 /* Points by time integration, see witness.h. */

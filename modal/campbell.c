@@ -67,6 +67,16 @@ static PetscErrorCode turn(modal_result *r, int mode) {
   PetscFunctionReturn(0);
 }
 
+/* first: mode shapes of the first speed, NULL there: the identity. */
+static PetscErrorCode compare(Mat first, int s, const modal_result *r, modal_speeds *out) {
+  const size_t m       = (size_t)out->n_modes;
+  double      *overlap = out->overlap + (size_t)s * m * m;
+  PetscFunctionBeginUser;
+  for (size_t i = 0; !first && i < m; i++) overlap[i * (m + 1)] = 1;
+  if (first) PetscCall(project(first, &r->eigen, overlap));
+  PetscFunctionReturn(0);
+}
+
 /* Continue the tracks to speed s. before: mode shapes of speed s - 1; NULL at the first. */
 static shb_status track(Mat before, int s, modal_result *r, modal_speeds *out) {
   const int m   = out->n_modes;
@@ -113,16 +123,19 @@ static PetscErrorCode drop_factor(modal_result *r) {
   PetscFunctionReturn(0);
 }
 
+/* kept: shapes of the first speed and of the one before. */
 static shb_status solve_speed(MPI_Comm comm, const mesh_fe *mesh, const modal_settings *settings,
-                              int s, shb_progress *progress, modal_speeds *out, Mat *before,
+                              int s, shb_progress *progress, modal_speeds *out, Mat kept[2],
                               modal_result *result) {
   modal_settings here = *settings;
   modal_result   now;
   here.speed = out->speed[s];
   shb_progress_note(progress, "speed %d of %d: %.6g rad/s", s + 1, out->n, here.speed);
   shb_status status = modal_solve(comm, mesh, &here, progress, &now);
-  if (status == SHB_OK) status = track(*before, s, &now, out);
-  if (status == SHB_OK) status = fem_fault_status(keep_shapes(&now, before));
+  if (status == SHB_OK) status = track(kept[1], s, &now, out);
+  if (status == SHB_OK) status = fem_fault_status(compare(kept[0], s, &now, out));
+  if (status == SHB_OK && s == 0) status = fem_fault_status(keep_shapes(&now, &kept[0]));
+  if (status == SHB_OK) status = fem_fault_status(keep_shapes(&now, &kept[1]));
   if (status == SHB_OK) status = fem_fault_status(drop_factor(&now));
   if (status == SHB_OK) out->model[s] = now.model; /* moved, or shared with result */
   if (status == SHB_OK && here.speed == settings->speed) {
@@ -137,15 +150,19 @@ static shb_status solve_speed(MPI_Comm comm, const mesh_fe *mesh, const modal_se
 shb_status modal_campbell_solve(MPI_Comm comm, const mesh_fe *mesh, const modal_settings *settings,
                                 shb_progress *progress, modal_speeds *speeds,
                                 modal_result *result) {
-  Mat before = NULL;
+  Mat kept[2] = {NULL, NULL};
   memset(result, 0, sizeof *result);
   SHB_TRY(modal_speeds_create(settings->n_speeds, settings->modes, speeds));
+  const size_t m  = (size_t)speeds->n_modes;
+  speeds->overlap = calloc((size_t)speeds->n * m * m, sizeof *speeds->overlap);
+  SHB_CHECK(speeds->overlap, SHB_ERR_IO, "out of memory to compare the modes of %d speeds",
+            speeds->n);
   memcpy(speeds->speed, settings->speeds, (size_t)speeds->n * sizeof *speeds->speed);
   qsort(speeds->speed, (size_t)speeds->n, sizeof *speeds->speed, ascending);
   shb_status status = SHB_OK;
   for (int s = 0; status == SHB_OK && s < speeds->n; s++)
-    status = solve_speed(comm, mesh, settings, s, progress, speeds, &before, result);
-  (void)MatDestroy(&before);
+    status = solve_speed(comm, mesh, settings, s, progress, speeds, kept, result);
+  for (int i = 0; i < 2; i++) (void)MatDestroy(&kept[i]);
   return status;
 }
 

@@ -52,6 +52,14 @@ static shb_status write_tracks(hid_t file, const modal_speeds *s, double *freque
   SHB_TRY(h5_write_double(file, "/speeds/mac", all, s->mac, "-",
                           "MAC of the track's mode with its mode at the speed before"));
   SHB_TRY(h5_attach_scale(file, "/speeds/frequency", 0, "/speeds/speed"));
+  if (s->overlap) {
+    SHB_TRY(h5_write_double(file, "/speeds/overlap",
+                            H5_SHAPE((hsize_t)s->n, (hsize_t)s->n_modes, (hsize_t)s->n_modes),
+                            s->overlap, "-",
+                            "phi^T M psi of each mode at the first speed with each mode at this "
+                            "one, as numbered there"));
+    SHB_TRY(h5_attach_scale(file, "/speeds/overlap", 0, "/speeds/speed"));
+  }
   SHB_TRY(h5_attach_scale(file, "/speeds/mode", 0, "/speeds/speed"));
   return h5_attach_scale(file, "/speeds/mac", 0, "/speeds/speed");
 }
@@ -143,6 +151,10 @@ static shb_status read_all(hid_t file, const char *path, modal_speeds *s) {
   free(mode);
   free(speed);
   free(mac);
+  if (status == SHB_OK && h5_exists(file, "/speeds/overlap")) {
+    h5_shape every = H5_SHAPE(shape.dim[0], shape.dim[1], shape.dim[1]);
+    status         = h5_read_double(file, "/speeds/overlap", &every, &s->overlap);
+  }
   for (int i = 0; status == SHB_OK && i < s->n; i++) status = read_one(file, path, s, i);
   return status;
 }
@@ -164,5 +176,6 @@ void modal_speeds_free(modal_speeds *s) {
   free(s->model);
   free(s->mode);
   free(s->mac);
+  free(s->overlap);
   *s = (modal_speeds){0};
 }

@@ -15,6 +15,8 @@ typedef struct {
   modal_model *model; /* [n] */
   int         *mode;  /* [n][n_modes] mode of the model that belongs to track t */
   double *mac; /* [n][n_modes] of that mode with the track's at the speed before; 1 at the first */
+  double *
+      overlap; /* [n][n_modes][n_modes] phi_i^T M psi_j of mode i of the first speed, j of this one, or NULL */
 } modal_speeds;
 
 /* Below this MAC a track is not the same mode any more. */

@@ -72,6 +72,21 @@ static void check_tracks(const modal_speeds *s) {
   assert_int_equal(s->mode[3 * MODES], 1); /* they have crossed */
 }
 
+/* With the first speed's modes: the same space, and where shapes hardly change the tracks. */
+static void check_overlaps(const modal_speeds *s) {
+  for (int i = 0; i < SPEEDS; i++) {
+    const double *C = s->overlap + i * MODES * MODES;
+    for (int a = 0; i == 0 && a < MODES; a++)
+      for (int b = 0; b < MODES; b++) assert_true(C[a * MODES + b] == (a == b));
+    for (int a = 0; a < MODES; a++) {
+      double inside = 0;
+      for (int b = 0; b < MODES; b++) inside += C[a * MODES + b] * C[a * MODES + b];
+      assert_true(inside < 1 + 1e-9);
+      if (a < 2) assert_true(inside > .99 && C[a * MODES + s->mode[i * MODES + a]] > .99);
+    }
+  }
+}
+
 /* Every model is that of its speed alone, but for signs; those are continued. */
 static void check_models(const mesh_fe *mesh, const modal_speeds *s) {
   modal_settings settings = make_settings();
@@ -113,6 +128,7 @@ static void crossing_modes_are_tracked(void **state) {
   assert_ok(modal_campbell_solve(PETSC_COMM_SELF, &mesh, &settings, NULL, &s, &result));
   for (int i = 1; i < SPEEDS; i++) assert_true(s.speed[i] > s.speed[i - 1]);
   check_tracks(&s);
+  check_overlaps(&s);
   check_models(&mesh, &s);
   assert_true(result.deflection.speed == 400);
   assert_true(s.model[2].frequency == result.model.frequency);
@@ -144,6 +160,7 @@ static void file_keeps_every_speed(void **state) {
   assert_ok(modal_speeds_read(path, &s));
   assert_int_equal(s.n, SPEEDS);
   check_tracks(&s);
+  check_overlaps(&s);
   assert_ok(modal_model_read(path, &model)); /* that of settings.speed */
   for (int m = 0; m < MODES; m++) assert_true(model.frequency[m] == s.model[2].frequency[m]);
   for (int m = 0; m < 3 * MODES; m++) assert_true(model.right[m] == s.model[2].right[m]);
