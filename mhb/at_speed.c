@@ -33,6 +33,7 @@ static shb_status make_model(const mhb_run_up *r, double *entry, double *turned,
                                            .interface_name = given->interface_name,
                                            .interface      = given->interface,
                                            .has_left       = given->has_left,
+                                           .tail_order     = given->tail_order,
                                            .probe_name     = given->probe_name,
                                            .normal         = given->normal,
                                            .area           = given->area};

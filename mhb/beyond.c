@@ -152,12 +152,9 @@ static int solve_pairs(mhb_beyond *b, int k, double complex *u) {
 static void set_own(mhb_beyond *b, int k, int pair, double complex W[3][3]) {
   const mhb_receptance *r       = b->receptance;
   const double complex *D       = b->D + 9 * pair;
-  modal_series          s       = modal_series_at(r->model, k * r->omega / r->nu);
   double complex        G[3][3] = {{0}}, A[9];
   int                   pivot[3];
-  for (int t = 0; t < MODAL_TERMS; t++)
-    if (r->residual[t])
-      mhb_flexibility_add_block(r->residual[t], r->phase[k], s.weight[t], pair, G);
+  mhb_left_out_block(r->left_out, k, k * r->omega / r->nu, pair, G);
   for (int c = 0; c < 3; c++)
     for (int d = 0; d < 3; d++)
       A[3 * d + c] = G[c][0] * D[d] + G[c][1] * D[3 + d] + G[c][2] * D[6 + d] + (c == d);

@@ -149,8 +149,10 @@ int mhb_harmonics_most_unknowns(const mhb_harmonics *h) {
 void mhb_harmonics_errors(mhb_harmonics *h, mhb_path_point *point) {
   mhb_rung *r            = mhb_harmonics_rung(h);
   point->truncation      = mhb_truncation_error(r->truncation, point->x);
-  point->modal           = mhb_modal_error(r->residual, point->x);
   point->truncation_kind = r->truncation->kind;
+  point->modal           = mhb_modal_error(
+                r->residual, point->x,
+      point->truncation_kind == MHB_TRUNCATION_NEWTON ? r->truncation->system : NULL);
 }
 
 void mhb_harmonics_estimate(mhb_harmonics *h, mhb_path_point *point) {

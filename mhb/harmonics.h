@@ -9,6 +9,7 @@
 #ifndef MHB_HARMONICS_H
 #define MHB_HARMONICS_H
 
+#include "mhb/modal_error.h"
 #include "mhb/path.h"
 #include "mhb/truncation.h"
 

@@ -90,6 +90,7 @@ static int widen_all(const modal_model *model, int kept, modal_model *out) {
   out->mode_residual        = NULL;
   out->residual_inertia     = NULL;
   out->residual_fourth      = NULL;
+  out->n_residual           = 0;
   size_t square             = rows * rows * (model->has_left ? 4 : 1);
   out->residual_flexibility = malloc(sizeof(double) * square);
   if (!(out->frequency && out->damping_ratio && out->right && (out->left || !model->has_left) &&

@@ -7,8 +7,9 @@
  * Where the model has the coefficient R3 of w^4 too, R2 = L L^T, L^-1 R3 L^-T = V diag(1/nu_i^2) V^T and psi_i = nu_i^2 L v_i
  * have the same R2 and R3; R - sum psi psi^T/nu^2 = R - R2 R3^-1 R2 stays flexibility. It is not negative: as a sum over the
  * modes left out [R R2; R2 R3] = sum (a x phi)(a x phi)^T/w^2, a = (1, 1/w^2). What differs is O(w^6).
- * The inertia of the load's and the probes' terms stays: the steady response to the load is known at its frequencies, and the
- * probes are read from harmonics of the forces, which the new modes do not reach (their shape at the probes is zero). */
+ * The three terms of the load and the probes stay: the steady response to the load is known at its frequencies, and the
+ * probes are read from harmonics of the forces, which the new modes do not reach (their shape at the probes is zero). The file's own residual modes
+ * (modal/series.h), more of them and up to far higher frequencies, are not integrated. */
 #ifndef MHB_INERTIA_H
 #define MHB_INERTIA_H
 

@@ -5,8 +5,8 @@
 
 #include "mesh/progress.h"
 #include "mhb/follow.h"
+#include "mhb/modal_error.h"
 #include "mhb/record.h"
-#include "mhb/truncation.h"
 
 static const double TOLERANCE = 2e-3;
 
@@ -48,7 +48,7 @@ static shb_status record(sampler *s, double value) {
     info->share[s->stuck ? MHB_STICK : MHB_SEPARATE] = 1;
   }
   mhb_path_point point = {.x = s->x, .value = value};
-  point.modal          = mhb_modal_error(s->residual, s->x);
+  point.modal          = mhb_modal_error(s->residual, s->x, NULL);
   SHB_TRY(mhb_record(s->response, s->branch, s->residual, &point, MHB_ORDINARY,
                      shb_seconds() - started));
   mhb_branch *branch                   = &s->response->branch[s->branch];

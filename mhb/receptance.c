@@ -81,37 +81,19 @@ static void set_shares(mhb_receptance *r, int interface) {
     if (r->interface[a] == interface) r->share[a] = (model->area ? model->area[a] : 1) / total;
 }
 
-/* Row (a, c) of T: the weights of contact dof (side, b, axis) are nonzero for b = a only. */
-static double complex transform(const mhb_receptance *r, int row, int side, int axis,
-                                double complex phase) {
-  double weight = r->T0[(row / 3) * 9 + axis * 3 + row % 3];
-  return side ? -phase * weight : weight;
-}
-
-/* out[n] = T_k x for a vector over contact dofs with stride. */
-static void relative(const mhb_receptance *r, double complex phase, int sides,
-                     const double complex *x, int stride, double complex *out, int out_stride) {
-  for (int row = 0; row < r->n; row++) {
-    double complex sum = 0;
-    for (int side = 0; side < sides; side++)
-      for (int axis = 0; axis < 3; axis++)
-        sum += transform(r, row, side, axis, phase) *
-               x[(size_t)(side * r->n + (row / 3) * 3 + axis) * (size_t)stride];
-    out[row * out_stride] = sum;
-  }
-}
-
-static void set_modes(mhb_receptance *r, int k, double complex phase, int sides) {
-  const modal_model *model = r->model;
-  int                m     = r->n_modes;
-  double complex    *B     = r->B + (size_t)k * (size_t)r->n * (size_t)m;
+static void set_modes(mhb_receptance *r, int k) {
+  const modal_model  *model    = r->model;
+  const mhb_relative *relative = &r->left_out->relative;
+  int                 m        = r->n_modes;
+  double complex     *B        = r->B + (size_t)k * (size_t)r->n * (size_t)m;
   for (int row = 0; row < r->n; row++) {
     for (int i = 0; i < m; i++) {
       double complex sum = 0;
       for (int axis = 0; axis < 3; axis++) {
         size_t at = ((size_t)(row / 3) * 3 + (size_t)axis) * (size_t)m + (size_t)i;
-        sum += transform(r, row, 0, axis, phase) * model->right[at];
-        if (sides == 2) sum += transform(r, row, 1, axis, phase) * model->left[at];
+        sum += mhb_relative_weight(relative, row, 0, axis, r->phase[k]) * model->right[at];
+        if (relative->sides == 2)
+          sum += mhb_relative_weight(relative, row, 1, axis, r->phase[k]) * model->left[at];
       }
       B[(size_t)row * (size_t)m + (size_t)i] = sum;
     }
@@ -119,25 +101,14 @@ static void set_modes(mhb_receptance *r, int k, double complex phase, int sides)
 }
 
 /* Load harmonic h drives harmonic nu h. */
-static void set_load(mhb_receptance *r, int k, double complex phase, int sides) {
+static void set_load(mhb_receptance *r, int k) {
   const modal_model *model = r->model;
-  int h = k / r->nu, nc = 3 * model->n_pairs * (model->has_left ? 2 : 1), q = 3 * model->n_probes;
+  const int          h = k / r->nu, m = r->n_modes;
+  r->driven[k] = mhb_left_out_driven(r->left_out, k);
   if (k % r->nu || h > model->n_load) return;
-  for (int i = 0; i < r->n_modes; i++) {
-    r->F[k * r->n_modes + i] = model->modal_force[h * r->n_modes + i];
-    r->driven[k] |= r->F[k * r->n_modes + i] != 0;
-  }
-  const double complex *contact[] = {model->load_residual, model->load_inertia};
-  double complex       *load[]    = {r->load, r->load_inertia};
-  const double complex *probe[]   = {model->probe_load_residual, model->probe_load_inertia};
-  double complex       *at[]      = {r->probe_load, r->probe_load_inertia};
-  for (int term = 0; term < 2; term++) {
-    if (load[term]) relative(r, phase, sides, contact[term] + h * nc, 1, load[term] + k * r->n, 1);
-    for (int i = 0; load[term] && i < r->n; i++) r->driven[k] |= load[term][k * r->n + i] != 0;
-    for (int i = 0; at[term] && i < q; i++) {
-      at[term][k * q + i] = probe[term][h * q + i];
-      r->driven[k] |= at[term][k * q + i] != 0;
-    }
+  for (int i = 0; i < m; i++) {
+    r->F[k * m + i] = model->modal_force[h * m + i];
+    r->driven[k] |= r->F[k * m + i] != 0;
   }
 }
 
@@ -157,28 +128,8 @@ static void set_parts(mhb_receptance *r, int k) {
   }
 }
 
-/* Probe motion per contact force p: a residual matrix [3 q][nc] times T^H. */
-static void set_probe(const mhb_receptance *r, int k, double complex phase, int sides, int nc,
-                      const double *matrix, double complex *out) {
-  int q = 3 * r->model->n_probes;
-  for (int i = 0; i < q; i++) {
-    double complex column[nc], *row = out + ((size_t)k * (size_t)q + (size_t)i) * (size_t)r->n;
-    for (int j = 0; j < nc; j++) column[j] = matrix[(size_t)i * (size_t)nc + (size_t)j];
-    relative(r, phase, sides, column, 1, row, 1);
-    for (int j = 0; j < r->n; j++) row[j] = conj(row[j]);
-  }
-}
-
-/* True if there is nothing to hold, or room for it. */
-static int room(const void *wanted, size_t n, double complex **array) {
-  if (wanted && n) *array = calloc(n, sizeof **array);
-  return !wanted || !n || *array;
-}
-
 static int allocate(mhb_receptance *r) {
-  const modal_model *model = r->model;
-  size_t             n = (size_t)r->n, m = (size_t)r->n_modes, K = (size_t)r->n_harmonics + 1;
-  size_t             q = 3 * (size_t)model->n_probes, pairs = (size_t)model->n_pairs;
+  size_t n = (size_t)r->n, m = (size_t)r->n_modes, K = (size_t)r->n_harmonics + 1, pairs = n / 3;
   r->T0        = calloc(9 * pairs, sizeof(double));
   r->share     = calloc(pairs, sizeof(double));
   r->interface = calloc(pairs, sizeof(int));
@@ -194,14 +145,8 @@ static int allocate(mhb_receptance *r) {
   r->R         = calloc(K * n * n, sizeof(double complex));
   r->free      = calloc(K * n, sizeof(double complex));
   r->unit      = calloc(K * n, sizeof(double complex));
-  int ok = r->T0 && r->share && r->interface && r->B && r->F && r->parts && r->scratch && r->BL &&
-           r->lambda && r->driven && r->made_at && r->phase && r->R && r->free && r->unit;
-  return ok && room(model->load_residual, K * n, &r->load) &&
-         room(model->load_inertia, K * n, &r->load_inertia) &&
-         room(model->probe_load_residual, K * q, &r->probe_load) &&
-         room(model->probe_load_inertia, K * q, &r->probe_load_inertia) &&
-         room(model->probe_contact_residual, K * q * n, &r->probe_contact) &&
-         room(model->probe_contact_inertia, K * q * n, &r->probe_contact_inertia);
+  return r->T0 && r->share && r->interface && r->B && r->F && r->parts && r->scratch && r->BL &&
+         r->lambda && r->driven && r->made_at && r->phase && r->R && r->free && r->unit;
 }
 
 /* Inter-blade phase of the fundamental omega/nu. A neighbour lags by phi and any whole number l of periods,
@@ -213,62 +158,35 @@ static double wave_step(const mhb_settings *s) {
   return NAN;
 }
 
-/* Residual terms of the contact that count; NULL: not there. */
-static void contact_terms(const modal_model *model, const double *term[MODAL_TERMS]) {
-  term[0] = model->residual_flexibility;
-  term[1] = model->residual_inertia;
-  term[2] = modal_series_has_fourth(model) ? model->residual_fourth : NULL;
-}
-
-/* Modes, loads and probes of every harmonic. */
+/* Modes and loads of every harmonic. */
 static void set_harmonics(mhb_receptance *r) {
-  const modal_model *model = r->model;
-  const int          nc    = 3 * model->n_pairs * (model->has_left ? 2 : 1);
   for (int k = 0; k <= r->n_harmonics; k++) {
-    double complex phase = r->phase[k];
-    set_modes(r, k, phase, r->sides);
-    set_load(r, k, phase, r->sides);
+    set_modes(r, k);
+    set_load(r, k);
     set_parts(r, k);
-    if (r->probe_contact)
-      set_probe(r, k, phase, r->sides, nc, model->probe_contact_residual, r->probe_contact);
-    if (r->probe_contact_inertia)
-      set_probe(r, k, phase, r->sides, nc, model->probe_contact_inertia, r->probe_contact_inertia);
   }
 }
 
 /* The model's arrays have other values. */
 static void set_again(mhb_receptance *r) {
-  const modal_model *model = r->model;
-  const double      *term[MODAL_TERMS];
-  contact_terms(model, term);
-  for (int t = 0; t < MODAL_TERMS; t++)
-    if (r->residual[t])
-      mhb_flexibility_set(r->residual[t], term[t], 3 * model->n_pairs * (model->has_left ? 2 : 1),
-                          r->T0);
+  mhb_left_out_set(r->left_out);
   set_harmonics(r);
 }
 
 /* Everything that does not depend on omega. */
 static shb_status set_blade(mhb_receptance *r, const mhb_settings *settings) {
-  const modal_model *model = r->model;
-  int                sides = settings->to_ground ? 1 : 2;
-  int                nc    = 3 * model->n_pairs * (model->has_left ? 2 : 1);
-  double             step  = settings->to_ground ? 0 : wave_step(settings);
-  const double      *term[MODAL_TERMS];
-  contact_terms(model, term);
-  r->sides = sides;
-  SHB_TRY(mhb_interfaces_match(model, settings, r->interface));
+  const mhb_relative relative = {r->n, settings->to_ground ? 1 : 2, r->T0};
+  const double       step     = settings->to_ground ? 0 : wave_step(settings);
+  SHB_TRY(mhb_interfaces_match(r->model, settings, r->interface));
   for (int i = 0; i < mhb_interfaces(settings); i++) {
     set_shares(r, i);
     SHB_TRY(set_axes(r, settings, i));
   }
-  for (int t = 0; t < MODAL_TERMS; t++)
-    if (term[t])
-      SHB_TRY(mhb_flexibility_create(term[t], nc, r->T0, model->n_pairs, sides, &r->residual[t]));
   for (int k = 0; k <= r->n_harmonics; k++) {
     r->made_at[k] = NAN;
     r->phase[k]   = cexp(-I * fmod(k * step, 2 * PI));
   }
+  SHB_TRY(mhb_left_out_create(r->model, relative, r->nu, r->n_harmonics, r->phase, &r->left_out));
   set_harmonics(r);
   return SHB_OK;
 }
@@ -331,14 +249,8 @@ void mhb_receptance_destroy(mhb_receptance *r) {
   free(r->interface);
   free(r->B);
   free(r->F);
-  free(r->load);
-  free(r->load_inertia);
-  for (int t = 0; t < MODAL_TERMS; t++) mhb_flexibility_destroy(r->residual[t]);
+  mhb_left_out_destroy(r->left_out);
   free(r->phase);
-  free(r->probe_load);
-  free(r->probe_load_inertia);
-  free(r->probe_contact);
-  free(r->probe_contact_inertia);
   free(r->parts);
   free(r->scratch);
   free(r->BL);
@@ -387,19 +299,9 @@ MHB_HOT static void modal_row(const mhb_receptance *r, int k, const double *yr, 
   *u += product(m, yr, yi, re + n * m, im + n * m, 1);
 }
 
-/* One value of residual + w2 inertia, either of which may be absent. */
-MHB_INLINE double complex residual_at(const double complex *still, const double complex *heavy,
-                                      double w2, size_t i) {
-  double complex value = still ? still[i] : 0;
-  return heavy ? CMPLX(creal(value) + w2 * creal(heavy[i]), cimag(value) + w2 * cimag(heavy[i]))
-               : value;
-}
-
 void mhb_receptance_residual(const mhb_receptance *r, int k, double w, double complex *R) {
   memset(R, 0, sizeof *R * (size_t)r->n * (size_t)r->n);
-  modal_series s = modal_series_at(r->model, w);
-  for (int t = 0; t < MODAL_TERMS; t++)
-    if (r->residual[t]) mhb_flexibility_add(r->residual[t], r->phase[k], s.weight[t], R);
+  mhb_left_out_matrix(r->left_out, k, w, R);
 }
 
 static void harmonic_at(mhb_receptance *r, int k) {
@@ -410,14 +312,17 @@ static void harmonic_at(mhb_receptance *r, int k) {
   double complex *all = r->BL, one = 1;
   set_lambda(r, w, L, L + m);
   for (int i = 0; i < m; i++) r->lambda[k * m + i] = CMPLX(L[i], L[m + i]);
+  double complex none[n];
+  memset(none, 0, sizeof none);
+  memset(u, 0, sizeof none);
   mhb_receptance_residual(r, k, w, R);
+  mhb_left_out_motion(r->left_out, k, w, 1, none, u);
   for (int a = 0; a < n; a++, re += m, im += m) {
     for (int i = 0; i < m; i++) {
       y[i]     = re[i] * L[i] - im[i] * L[m + i];
       y[m + i] = re[i] * L[m + i] + im[i] * L[i];
       if (n >= WORTH_BLAS) all[a * m + i] = CMPLX(y[i], y[m + i]);
     }
-    u[a] = residual_at(r->load, r->load_inertia, w * w, (size_t)(k * n + a));
     modal_row(r, k, y, y + m, R + (size_t)a * (size_t)n, &u[a]);
     r->free[k * n + a] = r->scale * u[a];
   }
@@ -524,16 +429,10 @@ MHB_HOT static void modal_sums(const mhb_receptance *r, int k, const double *yr,
 
 void mhb_receptance_motion(const mhb_receptance *r, int k, const double complex *p,
                            double complex *motion) {
-  double       w = k * r->omega / r->nu, yr[r->n_modes], yi[r->n_modes];
-  modal_series s = modal_series_at(r->model, w);
+  double w = k * r->omega / r->nu, yr[r->n_modes], yi[r->n_modes];
   motion_drive(r, k, w, p, yr, yi);
   modal_sums(r, k, yr, yi, motion);
-  for (int a = 0; a < r->n; a++) {
-    motion[a] += r->scale * residual_at(r->load, r->load_inertia, w * w, (size_t)(k * r->n + a));
-    for (int t = 0; t < MODAL_TERMS; t++)
-      if (r->residual[t])
-        motion[a] -= s.weight[t] * mhb_flexibility_row(r->residual[t], r->phase[k], a, p);
-  }
+  mhb_left_out_motion(r->left_out, k, w, r->scale, p, motion);
 }
 
 /* ---- run-up: the model changes with omega too ---- */
@@ -563,11 +462,16 @@ static void modal_rate(const mhb_receptance *r, int k, const double complex *p, 
 }
 
 /* d/d omega of the weights of the residual terms by w_m, the last mode kept: weight t is of degree t in (w^2, w_m^2). */
-static double weight_rate(const mhb_receptance *r, const modal_series *s, int t, double w) {
+static modal_series weight_rate(const mhb_receptance *r, const modal_series *s, double w) {
   const int    last = r->n_modes - 1;
   const double top  = 2 * PI * r->model->frequency[last];
   const double dc   = r->at->stiffness[last * r->n_modes + last] / (top * top);
-  return dc * (t * s->weight[t] - w * w * s->slope[t]);
+  modal_series rate = {.x = 0};
+  for (int t = 0; t < MODAL_TERMS; t++) {
+    rate.weight[t]      = dc * (t * s->weight[t] - w * w * s->slope[t]);
+    rate.load_weight[t] = r->model->load_fourth ? rate.weight[t] : 0;
+  }
+  return rate;
 }
 
 /* slope[n] += what changes with the model. */
@@ -576,74 +480,43 @@ static void add_model_slope(const mhb_receptance *r, int k, const double complex
   const int             m = r->n_modes, n = r->n;
   const double          w    = k * r->omega / r->nu;
   const mhb_receptance *rate = rate_of(r);
-  const modal_series    s    = modal_series_at(r->model, w);
-  const double complex *B    = r->B + (size_t)k * (size_t)n * (size_t)m;
-  const double complex *dB   = rate->B + (size_t)k * (size_t)n * (size_t)m;
+  const modal_series    s = modal_series_at(r->model, w), by_weights = weight_rate(r, &s, w);
+  const double complex *B  = r->B + (size_t)k * (size_t)n * (size_t)m;
+  const double complex *dB = rate->B + (size_t)k * (size_t)n * (size_t)m;
   double complex        a[m], change[m];
   modal_rate(r, k, p, a, change);
-  for (int row = 0; row < n; row++, B += m, dB += m) {
-    double complex sum =
-        r->scale * residual_at(rate->load, rate->load_inertia, w * w, (size_t)(k * n + row));
-    for (int i = 0; i < m; i++) sum += dB[i] * a[i] + B[i] * change[i];
-    for (int t = 0; t < MODAL_TERMS; t++) {
-      if (!r->residual[t]) continue;
-      sum -= s.weight[t] * mhb_flexibility_row(rate->residual[t], r->phase[k], row, p);
-      sum -= weight_rate(r, &s, t, w) * mhb_flexibility_row(r->residual[t], r->phase[k], row, p);
-    }
-    slope[row] += sum;
-  }
+  for (int row = 0; row < n; row++, B += m, dB += m)
+    for (int i = 0; i < m; i++) slope[row] += dB[i] * a[i] + B[i] * change[i];
+  mhb_left_out_motion_by(rate->left_out, k, &s, r->scale, p, slope);
+  mhb_left_out_motion_by(r->left_out, k, &by_weights, r->scale, p, slope);
 }
 
 /* change[3 q] += d_omega times what changes with the model. */
 static void add_model_probe(const mhb_receptance *r, int k, const double complex *p, double d_omega,
                             double complex *change) {
-  const int             m = r->n_modes, n = r->n, q = 3 * r->model->n_probes;
-  const double          w2   = pow(k * r->omega / r->nu, 2);
+  const int             m = r->n_modes, q = 3 * r->model->n_probes;
+  const double          w    = k * r->omega / r->nu;
   const mhb_receptance *rate = rate_of(r);
-  double complex        a[m], by[m];
+  const modal_series    s = modal_series_at(r->model, w), by_weights = weight_rate(r, &s, w);
+  double complex        a[m], by[m], residual[q + 1];
+  memset(residual, 0, sizeof residual);
   modal_rate(r, k, p, a, by);
-  for (int s = 0; s < q; s++) {
-    const double  *psi = r->model->probe + s * m, *d_psi = rate->model->probe + s * m;
-    const size_t   at  = (size_t)k * (size_t)q + (size_t)s;
-    double complex sum = r->scale * residual_at(rate->probe_load, rate->probe_load_inertia, w2, at);
-    for (int i = 0; i < m; i++) sum += d_psi[i] * a[i] + psi[i] * by[i];
-    for (size_t b = 0; (rate->probe_contact || rate->probe_contact_inertia) && b < (size_t)n; b++)
-      sum -= residual_at(rate->probe_contact, rate->probe_contact_inertia, w2, at * (size_t)n + b) *
-             p[b];
-    change[s] += d_omega * sum;
+  mhb_left_out_probe_by(rate->left_out, k, &s, r->scale, p, residual);
+  mhb_left_out_probe_by(r->left_out, k, &by_weights, r->scale, p, residual);
+  for (int c = 0; c < q; c++) {
+    const double *psi = r->model->probe + c * m, *d_psi = rate->model->probe + c * m;
+    for (int i = 0; i < m; i++) residual[c] += d_psi[i] * a[i] + psi[i] * by[i];
+    change[c] += d_omega * residual[c];
   }
 }
 
 void mhb_receptance_slope(const mhb_receptance *r, int k, const double complex *p,
                           double complex *slope) {
-  int    n  = r->n;
-  double kk = (double)k / r->nu, weight = 2 * kk * kk * r->omega, yr[r->n_modes], yi[r->n_modes];
+  double kk = (double)k / r->nu, dw2 = 2 * kk * kk * r->omega, yr[r->n_modes], yi[r->n_modes];
   slope_drive(r, k, p, yr, yi);
   modal_sums(r, k, yr, yi, slope);
-  for (int a = 0; r->load_inertia && a < n; a++)
-    slope[a] += weight * r->scale * r->load_inertia[k * n + a];
-  modal_series s = modal_series_at(r->model, kk * r->omega);
-  for (int t = 1; t < MODAL_TERMS; t++)
-    for (int a = 0; r->residual[t] && a < n; a++)
-      slope[a] -= weight * s.slope[t] * mhb_flexibility_row(r->residual[t], r->phase[k], a, p);
+  mhb_left_out_slope(r->left_out, k, kk * r->omega, dw2, r->scale, p, slope);
   if (r->at) add_model_slope(r, k, p, slope);
-}
-
-/* What the modes left out add to a probe dof, and its change with omega (dw2: of (k w)^2). */
-static double complex probe_residual_change(const mhb_receptance *r, int k, int s,
-                                            const double complex *p, const double complex *dp,
-                                            double dw2, double d_scale) {
-  double                w     = k * r->omega / r->nu;
-  size_t                at    = (size_t)k * 3 * (size_t)r->model->n_probes + (size_t)s;
-  size_t                row   = at * (size_t)r->n;
-  const double complex *heavy = r->probe_contact_inertia;
-  double complex change = d_scale * residual_at(r->probe_load, r->probe_load_inertia, w * w, at);
-  if (r->probe_load_inertia) change += dw2 * r->scale * r->probe_load_inertia[at];
-  for (size_t b = 0; (r->probe_contact || heavy) && b < (size_t)r->n; b++)
-    change -= residual_at(r->probe_contact, heavy, w * w, row + b) * dp[b];
-  for (size_t b = 0; heavy && dw2 != 0 && b < (size_t)r->n; b++)
-    change -= dw2 * heavy[row + b] * p[b];
-  return change;
 }
 
 void mhb_receptance_probe_change(const mhb_receptance *r, int k, const double complex *p,
@@ -651,7 +524,8 @@ void mhb_receptance_probe_change(const mhb_receptance *r, int k, const double co
                                  double complex *change) {
   int    q = 3 * r->model->n_probes, m = r->n_modes;
   double kk = (double)k / r->nu, dw2 = 2 * kk * kk * r->omega * d_omega;
-  for (int s = 0; s < q; s++) change[s] = probe_residual_change(r, k, s, p, dp, dw2, d_scale);
+  memset(change, 0, sizeof *change * (size_t)q);
+  mhb_left_out_probe_change(r->left_out, k, kk * r->omega, r->scale, p, dp, dw2, d_scale, change);
   for (int i = 0; i < m; i++) {
     double complex a = r->lambda[k * m + i] * modal_drive(r, k, dp, i, d_scale);
     if (d_omega != 0) a += d_omega * lambda_slope(r, k, i) * modal_drive(r, k, p, i, r->scale);

@@ -6,11 +6,10 @@
  *   B_k[3a + c][i] = T0^T (right - e_k left)                              relative motion of mode i
  *   L_i  = 1/(w_i^2 - (k w)^2 + 2 j zeta_i w_i k w)                       eq. 20; at most 1e8/w_i^2: without damping, at a
  *                                                                         resonance, it is that of 5e-9 beside
- *   R_k  = B L B^H + T (R + alpha R2 + beta R3) T^H                        eqs. 34, 35, with residual terms
- *   u_k  = B L F_k + T (x + (k w)^2 x2)_load,k - R_k p_k                  eq. 33
- * alpha = (k w)^2, beta = (k w)^4 but for O(w^6) (modal/series.h); and the probes by the same with their own shapes and residual terms. Motions are [3 pairs] in the order pair,
- * (v, u, w). Everything that does not depend on omega is made once; in a run-up (settings->run_up), where the model does,
- * anew at every omega that is moved to. */
+ *   R_k  = B L B^H + what the modes left out answer (mhb/left_out.h)       eqs. 34, 35
+ *   u_k  = B L F_k + the same of the load - R_k p_k                       eq. 33
+ * and the probes by the same with their own shapes. Motions are [3 pairs] in the order pair, (v, u, w). Everything that does not depend on omega
+ * is made once; in a run-up (settings->run_up), where the model does, anew at every omega that is moved to. */
 #ifndef MHB_RECEPTANCE_H
 #define MHB_RECEPTANCE_H
 
@@ -18,38 +17,32 @@
 
 #include "mesh/status.h"
 #include "mhb/at_speed.h"
-#include "mhb/flexibility.h"
+#include "mhb/left_out.h"
 #include "mhb/settings.h"
-#include "modal/series.h"
 
 typedef struct mhb_receptance {
-  const modal_model *model; /* in a run-up the one at omega */
-  mhb_at_speed      *at;    /* run-up: whose model that is; else NULL */
-  struct mhb_receptance
-                  *rate;  /* run-up: B, F, loads and residual terms of d model/d omega; else NULL */
-  int              sides; /* 1 to ground, else 2 */
-  int              n, n_modes, n_harmonics, nu; /* n = 3 pairs; harmonics 0..n_harmonics */
-  double          *T0;        /* [pair][3][3], columns v, u, w in (tangential, axial, radial) */
-  double           psi, phi;  /* rad, mean over the pairs (of the interface that leads) */
-  double          *share;     /* [pair] area share, sums to 1 over each interface */
-  int             *interface; /* [pair] in the order of the settings */
-  double complex  *B;         /* [k][n][modes] */
-  double           scale;     /* of the excitation */
-  double complex  *F;         /* [k][modes] modal force at scale 1, as all loads below */
-  double          *parts;   /* [k][2 (re, im)][n + 1][modes] B, then F: for the loops over modes */
-  double          *scratch; /* [4][modes] */
-  double complex  *BL;      /* [n][modes] B L of one harmonic */
-  double complex  *load, *load_inertia;   /* [k][n] residual response to the load, or NULL */
-  mhb_flexibility *residual[MODAL_TERMS]; /* R, R2, R3; each or NULL */
-  double complex  *phase;                 /* [k] e_k */
-  double complex  *probe_load, *probe_load_inertia;       /* [k][3 q], or NULL */
-  double complex  *probe_contact, *probe_contact_inertia; /* [k][3 q][n], or NULL */
-  int             *driven;      /* [k] whether the load has this harmonic */
-  double           omega;       /* rad/s, of mhb_receptance_move */
-  double          *made_at;     /* [k] rad/s for which the arrays below were made, NAN: never */
-  double complex  *lambda;      /* [k][modes] */
-  double complex  *R;           /* [k][n][n] */
-  double complex  *free, *unit; /* [k][n] response without contact; the same at scale 1 */
+  const modal_model     *model; /* in a run-up the one at omega */
+  mhb_at_speed          *at;    /* run-up: whose model that is; else NULL */
+  struct mhb_receptance *rate;  /* run-up: B, F and residual terms of d model/d omega; else NULL */
+  int                    n, n_modes, n_harmonics, nu; /* n = 3 pairs; harmonics 0..n_harmonics */
+  double                *T0; /* [pair][3][3], columns v, u, w in (tangential, axial, radial) */
+  double                 psi, phi;  /* rad, mean over the pairs (of the interface that leads) */
+  double                *share;     /* [pair] area share, sums to 1 over each interface */
+  int                   *interface; /* [pair] in the order of the settings */
+  double complex        *B;         /* [k][n][modes] */
+  double                 scale;     /* of the excitation */
+  double complex        *F;         /* [k][modes] modal force at scale 1, as all loads below */
+  double         *parts;   /* [k][2 (re, im)][n + 1][modes] B, then F: for the loops over modes */
+  double         *scratch; /* [4][modes] */
+  double complex *BL;      /* [n][modes] B L of one harmonic */
+  mhb_left_out   *left_out;
+  double complex *phase;       /* [k] e_k */
+  int            *driven;      /* [k] whether the load has this harmonic */
+  double          omega;       /* rad/s, of mhb_receptance_move */
+  double         *made_at;     /* [k] rad/s for which the arrays below were made, NAN: never */
+  double complex *lambda;      /* [k][modes] */
+  double complex *R;           /* [k][n][n] */
+  double complex *free, *unit; /* [k][n] response without contact; the same at scale 1 */
 } mhb_receptance;
 
 /* Errors: SHB_ERR_INPUT psi, phi do not agree with the file's normals within a degree, load harmonic above n_harmonics

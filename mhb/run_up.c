@@ -34,16 +34,18 @@ void mhb_run_up_plain(const modal_model *m, const void *data[MHB_RUN_UP_PLAIN],
     size_t      count;
   } part[MHB_RUN_UP_PLAIN] = {{m->load_residual, k * c},
                               {m->load_inertia, k * c},
+                              {m->load_fourth, k * c},
                               {m->probe_load_residual, k * q},
                               {m->probe_load_inertia, k * q},
+                              {m->probe_load_fourth, k * q},
                               {m->residual_flexibility, c * c},
                               {m->residual_inertia, c * c},
                               {m->residual_fourth, c * c},
-                              {m->moment_fourth, c},
-                              {m->moment_fifth, c},
+                              {m->contact_tail, 2 * c},
+                              {m->load_tail, k},
                               {m->probe_contact_residual, q * c},
                               {m->probe_contact_inertia, q * c},
-                              {NULL, 0}};
+                              {m->probe_contact_fourth, q * c}};
   for (int i = 0; i < MHB_RUN_UP_PLAIN; i++) {
     data[i]  = part[i].data;
     count[i] = part[i].data ? part[i].count : 0;
@@ -53,15 +55,18 @@ void mhb_run_up_plain(const modal_model *m, const void *data[MHB_RUN_UP_PLAIN],
 void mhb_run_up_set_plain(modal_model *m, double *const data[MHB_RUN_UP_PLAIN]) {
   m->load_residual          = (double complex *)data[0];
   m->load_inertia           = (double complex *)data[1];
-  m->probe_load_residual    = (double complex *)data[2];
-  m->probe_load_inertia     = (double complex *)data[3];
-  m->residual_flexibility   = data[4];
-  m->residual_inertia       = data[5];
-  m->residual_fourth        = data[6];
-  m->moment_fourth          = data[7];
-  m->moment_fifth           = data[8];
-  m->probe_contact_residual = data[9];
-  m->probe_contact_inertia  = data[10];
+  m->load_fourth            = (double complex *)data[2];
+  m->probe_load_residual    = (double complex *)data[3];
+  m->probe_load_inertia     = (double complex *)data[4];
+  m->probe_load_fourth      = (double complex *)data[5];
+  m->residual_flexibility   = data[6];
+  m->residual_inertia       = data[7];
+  m->residual_fourth        = data[8];
+  m->contact_tail           = data[9];
+  m->load_tail              = data[10];
+  m->probe_contact_residual = data[11];
+  m->probe_contact_inertia  = data[12];
+  m->probe_contact_fourth   = data[13];
 }
 
 static void lay_out(mhb_run_up *r) {
@@ -265,6 +270,13 @@ static shb_status check_between(const mhb_run_up *r, const char *path) {
   return SHB_OK;
 }
 
+/* Residual modes, which cross and turn with the speed, are not interpolated: the three terms stay. */
+static shb_status keep_terms(modal_model *model, int modes) {
+  SHB_TRY(modal_model_keep(model, modes, true));
+  modal_model_drop_residual_modes(model);
+  return SHB_OK;
+}
+
 static shb_status make(mhb_run_up *r, const char *path) {
   modal_speeds *s    = &r->speeds;
   int           from = 0, to = s->n - 1;
@@ -290,7 +302,7 @@ static shb_status make(mhb_run_up *r, const char *path) {
   r->high           = s->speed[to];
   r->given          = &s->model[to];
   for (int i = from; i <= to && status == SHB_OK; i++)
-    status = modal_model_keep(&s->model[i], r->n_modes, true);
+    status = keep_terms(&s->model[i], r->n_modes);
   if (status == SHB_OK) {
     lay_out(r);
     status = fill(r, from, work);

@@ -16,7 +16,7 @@
 #include "modal/spline.h"
 
 enum {
-  MHB_RUN_UP_PLAIN = 12
+  MHB_RUN_UP_PLAIN = 14
 }; /* arrays of a model that do not depend on which modes are kept apart */
 
 /* Does not change once made: threads may share it. An entry: K [m][m], Z [m][m], rows [rows][m], plain. */

@@ -7,7 +7,7 @@
 #include "mhb/fourier.h"
 #include "mhb/newton.h"
 
-static const double PI = 3.14159265358979323846, NEGLIGIBLE = .1, NEAR_BY = .1;
+static const double NEGLIGIBLE = .1, NEAR_BY = .1;
 
 static int least(int a, int b) {
   return a < b ? a : b;
@@ -151,54 +151,4 @@ double mhb_truncation_power(const mhb_truncation *t, int k) {
     sum += a[2 * k - 1] * a[2 * k - 1] + a[2 * k] * a[2 * k];
   }
   return sum;
-}
-
-static double square(double complex z) {
-  return creal(z) * creal(z) + cimag(z) * cimag(z);
-}
-
-/* What the residual series of the contact leaves out, relative to its last term: from the moments of the modes left out if the model
- * holds them, the worst dof; else (w/w_m)^2. */
-static double series_ratio(const modal_model *model, double w) {
-  const int n   = 3 * model->n_pairs * (model->has_left ? 2 : 1);
-  double    top = 2 * PI * model->frequency[model->n_modes - 1], worst = 0;
-  double    last = modal_series_at(model, w).weight[2];
-  for (int i = 0; i < n; i++) {
-    double error = modal_series_error(model, w, i);
-    if (error < 0) return w * w / (top * top);
-    double term = last * model->residual_fourth[(size_t)i * (size_t)(n + 1)];
-    if (term > 0) worst = fmax(worst, error / term);
-  }
-  return worst;
-}
-
-/* Motion, squared, by the terms of the residual series that the model does not hold, of the contact forces and of the
- * load: the last ones held times what the next is to them. */
-static double modal_term(const mhb_residual *b, int k, const double complex *p) {
-  const mhb_receptance *r = b->receptance;
-  int                   n = r->n, t = MODAL_TERMS - 1;
-  double                w = k * r->omega / r->nu, w2 = w * w, contact = 0, drive = 0;
-  double top = 2 * PI * r->model->frequency[r->n_modes - 1], ratio = w2 / (top * top), series;
-  const double complex *load = r->load_inertia ? r->load_inertia : r->load;
-  if (k == 0) return 0;
-  while (!r->residual[t]) t--;
-  series        = t == MODAL_TERMS - 1 ? series_ratio(r->model, w) : ratio;
-  double weight = t == MODAL_TERMS - 1 ? modal_series_at(r->model, w).weight[t] : pow(w2, t);
-  for (int i = 0; i < n; i++) {
-    double complex u = weight * mhb_flexibility_row(r->residual[t], r->phase[k], i, p);
-    contact += square(u);
-    if (load) drive += square((r->load_inertia ? w2 : 1) * r->scale * load[k * n + i]);
-  }
-  return contact * series * series + drive * ratio * ratio;
-}
-
-double mhb_modal_error(const mhb_residual *b, const double *x) {
-  double complex p[3 * b->n_pairs];
-  double         unheld = 0, size = mhb_residual_vibration(b, x);
-  if (!b->receptance->residual[0]) return -1;
-  for (int k = 0; k <= b->m; k++) {
-    mhb_residual_force(b, k, p);
-    unheld += modal_term(b, k, p);
-  }
-  return size > 0 ? sqrt(unheld) / size : 0;
 }

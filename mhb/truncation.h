@@ -1,4 +1,4 @@
-/* What a solution of m harmonics leaves out: the harmonics m+1..2m, and modes.
+/* What a solution of m harmonics leaves out: the harmonics m+1..2m.
  *
  * The solution u of m harmonics is put into the balance of 2m, where its residual r no longer vanishes. One Newton step
  * there, delta = -(I + R J)^-1 r, is the estimate of the error at this frequency, and u + delta a good start for more
@@ -49,9 +49,5 @@ double mhb_truncation_error(mhb_truncation *truncation, const double *x);
 
 /* Sum of squares of harmonic k > 0 of the last estimate. */
 double mhb_truncation_power(const mhb_truncation *truncation, int k);
-
-/* Estimated error from the modes left out of the solution that the residual was just evaluated at, relative to |x|: the
- * next term of the residual series; -1 if the file holds no residual flexibility. */
-double mhb_modal_error(const mhb_residual *residual, const double *x);
 
 #endif

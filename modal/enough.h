@@ -4,12 +4,12 @@
 
 #include "modal/model.h"
 
-/* The fewest modes that, the others answering by the residual terms (modal/reduce.h), leave the receptance of the contact with an estimated error
+/* The fewest modes that, the others answering by residual terms and modes (modal/reduce.h), leave the receptance of the contact with an estimated error
  * (modal_series_error) of at most tolerance of its greatest diagonal value at every frequency from 0 to band (Hz; a hundred of them); and no mode
  * up to 1.2 band is left out.
  *   modes  out  0: the model has too few
  *   error  out  of those modes; of all of them if they are too few
- * Errors: SHB_ERR_INPUT a model without residual terms and moments; SHB_ERR_IO no memory. */
+ * Errors: SHB_ERR_INPUT a model without residual terms and their tail; SHB_ERR_IO no memory. */
 shb_status modal_enough(const modal_model *model, double band, double tolerance, int *modes,
                         double *error);
 

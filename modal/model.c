@@ -21,7 +21,7 @@ static int n_contact(const modal_model *model) {
 /* ---------------------------------------------------------------- writing */
 
 /* A dataset as the table below describes it. A dimension is one of the sizes named by its letter:
- * m modes, p pairs, 3, c contact dofs, k load harmonics, q probes, Q probe dofs (3 q). */
+ * m modes, p pairs, 2, 3, c contact dofs, k load harmonics, q probes, Q probe dofs (3 q), r residual modes. */
 typedef struct {
   const char *path, *dims, *units, *long_name;
   bool        is_complex;
@@ -34,8 +34,12 @@ static hsize_t size_of(const modal_model *model, char letter) {
       return (hsize_t)model->n_modes;
     case 'p':
       return (hsize_t)model->n_pairs;
+    case '2':
+      return 2;
     case '3':
       return 3;
+    case 'r':
+      return (hsize_t)model->n_residual;
     case 'c':
       return (hsize_t)n_contact(model);
     case 'k':
@@ -47,11 +51,15 @@ static hsize_t size_of(const modal_model *model, char letter) {
   }
 }
 
-/* The dataset that labels a dimension; the frequencies label the modes. */
+/* The dataset that labels a dimension, if any does; the frequencies label the modes. */
 static const char *scale_of(char letter) {
   switch (letter) {
+    case '2':
+      return NULL;
     case 'm':
       return "modes/frequency";
+    case 'r':
+      return "residual_modes/frequency";
     case 'p':
       return "contact/pair";
     case '3':
@@ -98,9 +106,9 @@ static shb_status write_entry(hid_t at, const modal_model *model, const entry *e
   } else {
     SHB_TRY(h5_write_double(at, e->path, shape, e->data, e->units, e->long_name));
   }
-  if (strcmp(e->path, "modes/frequency") == 0) return SHB_OK; /* a scale has no scale */
+  if (strcmp(e->path, scale_of(e->dims[0])) == 0) return SHB_OK; /* a scale has no scale */
   for (int i = 0; i < shape.rank; i++)
-    SHB_TRY(h5_attach_scale(at, e->path, i, scale_of(e->dims[i])));
+    if (scale_of(e->dims[i])) SHB_TRY(h5_attach_scale(at, e->path, i, scale_of(e->dims[i])));
   return SHB_OK;
 }
 
@@ -115,7 +123,7 @@ static shb_status write_interfaces(hid_t at, const modal_model *model) {
 }
 
 shb_status modal_model_write_at(hid_t at, const modal_model *model) {
-  const bool  probes  = model->n_probes > 0;
+  const bool  probes = model->n_probes > 0, residual = model->n_residual > 0;
   const entry table[] = {
       {"modes/frequency", "m", "Hz", "undamped natural frequency of the free blade", false,
        model->frequency},
@@ -134,11 +142,19 @@ shb_status modal_model_write_at(hid_t at, const modal_model *model) {
       {"contact/residual_fourth", "cc", "m s^4/N",
        "coefficient of omega^4 in the receptance of the modes left out", false,
        model->residual_fourth},
-      {"contact/moment_fourth", "c", "m s^6/N",
-       "sum of phi^2/omega^8 over the modes left out: estimates what the residual terms miss",
-       false, model->moment_fourth},
-      {"contact/moment_fifth", "c", "m s^8/N", "the same of phi^2/omega^10", false,
-       model->moment_fifth},
+      {"contact/residual_tail", "c2", "m s^2r/N, m s^(2r+2)/N",
+       "a and b of what terms and residual modes leave out, a omega^2r + b omega^(2r+2) + .., r "
+       "the "
+       "attribute order",
+       false, model->contact_tail},
+      {"residual_modes/frequency", "r", "Hz", "frequency of a mode that stands for modes left out",
+       false, residual ? model->residual_frequency : NULL},
+      {"residual_modes/contact", "cr", "kg^-1/2", "residual modes at the contact", false,
+       residual ? model->residual_shape : NULL},
+      {"residual_modes/load", "kr", "N kg^-1/2", "force of the load on the residual modes", true,
+       residual ? model->residual_force : NULL},
+      {"residual_modes/probe", "Qr", "kg^-1/2", "residual modes at the probes", false,
+       residual && probes ? model->residual_probe : NULL},
       {"contact/normal", "p3", "-", "unit normal v of the right face, cylindrical axes", false,
        model->normal},
       {"contact/area", "p", "m^2", "area of the contact patch", false, model->area},
@@ -150,6 +166,10 @@ shb_status modal_model_write_at(hid_t at, const modal_model *model) {
       {"load/residual_inertia", "kc", "m s^2",
        "coefficient of omega^2 in the response of the contact dofs to the load, modes removed",
        true, model->load_inertia},
+      {"load/residual_fourth", "kc", "m s^4", "its coefficient of omega^4", true,
+       model->load_fourth},
+      {"load/residual_tail", "k2", "N m s^2r, N m s^(2r+2)",
+       "as contact/residual_tail, of the load's work", false, model->load_tail},
       {"probe/shape", "q3m", "kg^-1/2", "mass-normalised modes at the probes", false,
        probes ? model->probe : NULL},
       {"probe/contact_residual", "Qc", "m/N", "static flexibility probe to contact, modes removed",
@@ -162,10 +182,16 @@ shb_status modal_model_write_at(hid_t at, const modal_model *model) {
       {"probe/load_inertia", "kQ", "m s^2",
        "coefficient of omega^2 in the response of the probes to the load, modes removed", true,
        probes ? model->probe_load_inertia : NULL},
+      {"probe/contact_fourth", "Qc", "m s^4/N", "coefficient of omega^4 of the same", false,
+       probes ? model->probe_contact_fourth : NULL},
+      {"probe/load_fourth", "kQ", "m s^4", "coefficient of omega^4 of the same", true,
+       probes ? model->probe_load_fourth : NULL},
   };
   SHB_TRY(write_scales(at, model));
   for (size_t i = 0; i < sizeof table / sizeof *table; i++)
     SHB_TRY(write_entry(at, model, &table[i]));
+  if (model->contact_tail)
+    SHB_TRY(h5_write_attribute_int(at, "contact/residual_tail", "order", model->tail_order));
   return write_interfaces(at, model);
 }
 
@@ -240,15 +266,14 @@ static shb_status read_symmetric(hid_t at, const char *path, const char *dataset
   return check_symmetric(path, dataset, *matrix, n);
 }
 
-static shb_status read_moment(hid_t at, const char *path, const char *dataset, int n,
-                              double **moment) {
+static shb_status read_tail(hid_t at, const char *path, const char *dataset, int n, double **tail) {
   if (!h5_exists(at, dataset)) return SHB_OK;
-  h5_shape shape = H5_SHAPE((hsize_t)n);
-  SHB_TRY(h5_read_double(at, dataset, &shape, moment));
-  for (int i = 0; i < n; i++)
-    SHB_CHECK((*moment)[i] >= 0, SHB_ERR_INPUT,
-              "%s: /%s: value %d (from 0) is %g; a sum of squares is wanted", path, dataset, i,
-              (*moment)[i]);
+  h5_shape shape = H5_SHAPE((hsize_t)n, 2);
+  SHB_TRY(h5_read_double(at, dataset, &shape, tail));
+  for (int i = 0; i < 2 * n; i++)
+    SHB_CHECK((*tail)[i] >= 0, SHB_ERR_INPUT,
+              "%s: /%s: value [%d, %d] is %g; a sum of squares is wanted", path, dataset, i / 2,
+              i % 2, (*tail)[i]);
   return SHB_OK;
 }
 
@@ -300,8 +325,7 @@ static shb_status read_contact(hid_t at, const char *path, modal_model *model) {
       read_symmetric(at, path, "contact/residual_flexibility", n, &model->residual_flexibility));
   SHB_TRY(read_symmetric(at, path, "contact/residual_inertia", n, &model->residual_inertia));
   SHB_TRY(read_symmetric(at, path, "contact/residual_fourth", n, &model->residual_fourth));
-  SHB_TRY(read_moment(at, path, "contact/moment_fourth", n, &model->moment_fourth));
-  SHB_TRY(read_moment(at, path, "contact/moment_fifth", n, &model->moment_fifth));
+  SHB_TRY(read_tail(at, path, "contact/residual_tail", n, &model->contact_tail));
   h5_shape normals = H5_SHAPE(shape.dim[0], 3), areas = H5_SHAPE(shape.dim[0]);
   if (h5_exists(at, "contact/normal"))
     SHB_TRY(h5_read_double(at, "contact/normal", &normals, &model->normal));
@@ -339,7 +363,9 @@ static shb_status read_load(hid_t at, const char *path, modal_model *model) {
     SHB_TRY(h5_read_complex(at, "load/residual_response", &residual, &model->load_residual));
   if (h5_exists(at, "load/residual_inertia"))
     SHB_TRY(h5_read_complex(at, "load/residual_inertia", &residual, &model->load_inertia));
-  return SHB_OK;
+  if (h5_exists(at, "load/residual_fourth"))
+    SHB_TRY(h5_read_complex(at, "load/residual_fourth", &residual, &model->load_fourth));
+  return read_tail(at, path, "load/residual_tail", model->n_load + 1, &model->load_tail);
 }
 
 static shb_status read_probes(hid_t at, modal_model *model) {
@@ -358,7 +384,52 @@ static shb_status read_probes(hid_t at, modal_model *model) {
     SHB_TRY(h5_read_double(at, "probe/contact_inertia", &contact, &model->probe_contact_inertia));
   if (h5_exists(at, "probe/load_inertia"))
     SHB_TRY(h5_read_complex(at, "probe/load_inertia", &load, &model->probe_load_inertia));
+  if (h5_exists(at, "probe/contact_fourth"))
+    SHB_TRY(h5_read_double(at, "probe/contact_fourth", &contact, &model->probe_contact_fourth));
+  if (h5_exists(at, "probe/load_fourth"))
+    SHB_TRY(h5_read_complex(at, "probe/load_fourth", &load, &model->probe_load_fourth));
   return SHB_OK;
+}
+
+static shb_status check_residual_modes(const char *path, const modal_model *model) {
+  SHB_CHECK(model->residual_flexibility && model->residual_inertia && model->residual_fourth,
+            SHB_ERR_INPUT,
+            "%s: /residual_modes count beside /contact/residual_flexibility, residual_inertia and "
+            "residual_fourth only; write those too, or leave the residual modes out",
+            path);
+  for (int i = 0; i < model->n_residual; i++)
+    SHB_CHECK(
+        model->residual_frequency[i] > 0 &&
+            (i == 0 || model->residual_frequency[i] >= model->residual_frequency[i - 1]),
+        SHB_ERR_INPUT,
+        "%s: /residual_modes/frequency: value %d (from 0) is %g Hz; all must be positive, and "
+        "ascend",
+        path, i, model->residual_frequency[i]);
+  return SHB_OK;
+}
+
+/* Load and probes are zero where the file says nothing of them. */
+static shb_status read_residual_modes(hid_t at, const char *path, modal_model *model) {
+  static const char *const load = "residual_modes/load", *const probe = "residual_modes/probe";
+  const size_t K = (size_t)model->n_load + 1, q = 3 * (size_t)model->n_probes;
+  h5_shape     shape = H5_SHAPE(0);
+  if (!h5_exists(at, "residual_modes")) return SHB_OK;
+  SHB_TRY(h5_read_double(at, "residual_modes/frequency", &shape, &model->residual_frequency));
+  SHB_CHECK(shape.dim[0] <= MAX_MODES, SHB_ERR_INPUT,
+            "%s: /residual_modes holds %llu modes; %d are the most", path,
+            (unsigned long long)shape.dim[0], MAX_MODES);
+  model->n_residual   = (int)shape.dim[0];
+  h5_shape by_contact = H5_SHAPE((hsize_t)n_contact(model), shape.dim[0]),
+           by_load = H5_SHAPE(K, shape.dim[0]), by_probe = H5_SHAPE(q, shape.dim[0]);
+  SHB_TRY(h5_read_double(at, "residual_modes/contact", &by_contact, &model->residual_shape));
+  if (h5_exists(at, load)) SHB_TRY(h5_read_complex(at, load, &by_load, &model->residual_force));
+  if (q && h5_exists(at, probe))
+    SHB_TRY(h5_read_double(at, probe, &by_probe, &model->residual_probe));
+  if (!model->residual_force)
+    model->residual_force = calloc(K * shape.dim[0] + 1, sizeof(double complex));
+  if (!model->residual_probe) model->residual_probe = calloc(q * shape.dim[0] + 1, sizeof(double));
+  SHB_CHECK(model->residual_force && model->residual_probe, SHB_ERR_IO, "out of memory");
+  return check_residual_modes(path, model);
 }
 
 shb_status modal_model_read_at(hid_t at, const char *path, modal_model *model) {
@@ -366,7 +437,10 @@ shb_status modal_model_read_at(hid_t at, const char *path, modal_model *model) {
   SHB_TRY(read_contact(at, path, model));
   SHB_TRY(read_interfaces(at, path, model));
   SHB_TRY(read_load(at, path, model));
-  return read_probes(at, model);
+  SHB_TRY(read_probes(at, model));
+  if (model->contact_tail)
+    SHB_TRY(h5_read_attribute_int(at, "contact/residual_tail", "order", 3, &model->tail_order));
+  return read_residual_modes(at, path, model);
 }
 
 static shb_status read_parts(hid_t file, const char *path, modal_model *model) {
@@ -398,8 +472,15 @@ void modal_model_free(modal_model *model) {
                   model->residual_flexibility,
                   model->residual_inertia,
                   model->residual_fourth,
-                  model->moment_fourth,
-                  model->moment_fifth,
+                  model->residual_frequency,
+                  model->residual_shape,
+                  model->residual_force,
+                  model->residual_probe,
+                  model->contact_tail,
+                  model->load_tail,
+                  model->load_fourth,
+                  model->probe_contact_fourth,
+                  model->probe_load_fourth,
                   model->modal_force,
                   model->load_residual,
                   model->load_inertia,

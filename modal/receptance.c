@@ -21,6 +21,16 @@ static double complex modal_sum(const modal_model *model, double omega, const do
   return sum;
 }
 
+/* sum psi_p psi_l times the weight of each residual mode */
+static double residual_sum(const modal_model *model, const modal_series *series, int p, int l) {
+  const size_t r   = (size_t)model->n_residual;
+  double       sum = 0, unused;
+  for (size_t i = 0; i < r; i++)
+    sum += model->residual_shape[(size_t)p * r + i] * model->residual_shape[(size_t)l * r + i] *
+           modal_series_mode(model, (int)i, series, &unused);
+  return sum;
+}
+
 void modal_receptance(const modal_model *model, double omega, double complex *receptance) {
   const int          n      = 3 * model->n_pairs * (model->has_left ? 2 : 1);
   const modal_series series = modal_series_at(model, omega);
@@ -31,6 +41,7 @@ void modal_receptance(const modal_model *model, double omega, double complex *re
       if (model->residual_flexibility) value += model->residual_flexibility[at];
       if (model->residual_inertia) value += series.weight[1] * model->residual_inertia[at];
       if (series.weight[2] != 0) value += series.weight[2] * model->residual_fourth[at];
+      value += residual_sum(model, &series, p, l);
       receptance[at] = receptance[(size_t)l * (size_t)n + (size_t)p] = value;
     }
 }

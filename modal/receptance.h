@@ -4,11 +4,10 @@
 
 #include "modal/model.h"
 
-/* r_pl(w) = sum_i phi_ip phi_il / (w_i^2 - w^2 + 2 j zeta_i w_i w) + R_pl + alpha I_pl + beta J_pl,
- * alpha = w^2 + O(w^6), beta = w^4 + O(w^6) as in modal/series.h.
+/* r_pl(w) = sum_i phi_ip phi_il / (w_i^2 - w^2 + 2 j zeta_i w_i w) + what the modes left out answer (modal/series.h).
  *   omega       in   rad/s
  *   receptance  out  [n_contact][n_contact] m/N, order of the contact dofs
- * Source: Chen, Yang, Menq 1999, eqs. 19-20; plus the residual terms R, I, J of the modes left out. */
+ * Source: Chen, Yang, Menq 1999, eqs. 19-20; plus the residual terms and modes. */
 void modal_receptance(const modal_model *model, double omega, double complex *receptance);
 
 /* Estimated error of the greatest receptance of a contact dof with itself, relative to it, by the modes left out; -1 if the model does not

@@ -9,11 +9,13 @@
 /* Keep the lowest modes only, in place.
  *
  *   modes      1 to model->n_modes
- *   residuals  true: the modes left out answer statically, as if the file had been made with fewer of them:
- *              residual flexibility += sum phi phi^T/w^2, inertia += sum phi phi^T/w^4, fourth += sum phi phi^T/w^6, and so for load and probes (eqs. 34, 35);
- *              false: they are gone, and the residual parts of the file too
+ *   residuals  true: the modes left out answer by the residual terms (R += sum phi phi^T/w^2, R2 += sum phi phi^T/w^4, and so on, eqs. 34, 35), and, where
+ *              R3 is there, as residual modes: as themselves, but for their damping; false: they are gone, and all of that too
  * With all modes and residuals nothing changes.
  * Errors: SHB_ERR_INPUT modes out of range, SHB_ERR_IO no memory (the model is then still to be freed, and no longer of use). */
 shb_status modal_model_keep(modal_model *model, int modes, bool residuals);
+
+/* The three terms alone: residual modes go into their tail, which is of third order then. */
+void modal_model_drop_residual_modes(modal_model *model);
 
 #endif

@@ -98,9 +98,9 @@ static shb_status check_alike(const char *path, const modal_model *a, const moda
               a->n_probes == b->n_probes && a->n_load == b->n_load &&
               !a->residual_flexibility == !b->residual_flexibility &&
               !a->residual_inertia == !b->residual_inertia &&
-              !a->residual_fourth == !b->residual_fourth &&
-              !a->moment_fourth == !b->moment_fourth && !a->moment_fifth == !b->moment_fifth &&
-              !a->load_residual == !b->load_residual && !a->load_inertia == !b->load_inertia &&
+              !a->residual_fourth == !b->residual_fourth && !a->contact_tail == !b->contact_tail &&
+              !a->load_fourth == !b->load_fourth && !a->load_residual == !b->load_residual &&
+              !a->load_inertia == !b->load_inertia &&
               !a->probe_contact_residual == !b->probe_contact_residual &&
               !a->probe_contact_inertia == !b->probe_contact_inertia &&
               !a->probe_load_residual == !b->probe_load_residual &&

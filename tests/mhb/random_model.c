@@ -57,8 +57,55 @@ static void add_inertia(modal_model *model, unsigned long long seed) {
   model->residual_fourth       = symmetric(nc, .002, &seed);
 }
 
-double residual_by_hand(const modal_model *model, double w, int at) {
+static void add_residual_modes(modal_model *model, unsigned long long seed) {
+  int    nc = 3 * model->n_pairs * (model->has_left ? 2 : 1), q = 3 * model->n_probes;
+  size_t loads = (size_t)model->n_load + 1, r = 3;
+  model->n_residual           = (int)r;
+  model->residual_frequency   = malloc(r * sizeof(double));
+  model->residual_shape       = list((size_t)nc * r, .5, &seed);
+  model->residual_force       = complex_list(loads * r, .05, &seed);
+  model->residual_probe       = list((size_t)q * r, .7, &seed);
+  model->load_fourth          = complex_list(loads * (size_t)nc, .0005, &seed);
+  model->probe_contact_fourth = list((size_t)(q * nc), .001, &seed);
+  model->probe_load_fourth    = complex_list(loads * (size_t)q, .0005, &seed);
+  for (size_t i = 0; i < r; i++)
+    model->residual_frequency[i] = (2.8 + .6 * (double)i + .2 * random_unit(&seed)) / (2 * PI);
+}
+
+/* s = w^2, or what is taken for it so that the residual modes stay bounded. */
+static double bounded(const modal_model *model, double w) {
+  if (model->n_residual == 0) return w * w;
+  double c = .9 * pow(2 * PI * model->residual_frequency[0], 2);
+  return w * w / pow(1 + pow(w * w / c, 32), 1. / 32);
+}
+
+/* 1/(theta - x) less the terms that are held otherwise. */
+static double rest(const modal_model *model, int i, double x) {
+  double theta = pow(2 * PI * model->residual_frequency[i], 2);
+  return 1 / (theta - x) - 1 / theta - x / (theta * theta) - x * x / (theta * theta * theta);
+}
+
+double complex loaded_by_hand(const modal_model *model, double w, double complex still,
+                              double complex inertia, double complex fourth, const double *to,
+                              const double complex *by) {
+  double         x   = bounded(model, w);
+  double complex sum = still + x * inertia + x * x * fourth;
+  for (int i = 0; i < model->n_residual; i++) sum += to[i] * by[i] * rest(model, i, x);
+  return sum;
+}
+
+double residual_by_hand(const modal_model *model, double w, int a, int b) {
   double top = 4 * PI * model->frequency[model->n_modes - 1], x = w * w / (top * top + w * w);
+  int    at = a * 3 * model->n_pairs * (model->has_left ? 2 : 1) + b, r = model->n_residual;
+  if (r > 0) {
+    double sum = model->residual_flexibility[at];
+    x          = bounded(model, w);
+    sum += x * model->residual_inertia[at] + x * x * model->residual_fourth[at];
+    for (int i = 0; i < r; i++)
+      sum +=
+          model->residual_shape[a * r + i] * model->residual_shape[b * r + i] * rest(model, i, x);
+    return sum;
+  }
   if (!model->residual_fourth)
     return model->residual_flexibility[at] + w * w * model->residual_inertia[at];
   return model->residual_flexibility[at] + top * top * x * (1 + x) * model->residual_inertia[at] +
@@ -103,6 +150,7 @@ void random_model(int n_pairs, int parts, unsigned long long seed, modal_model *
   model->probe_name = malloc(2 * sizeof(char *));
   for (int i = 0; i < 2; i++) model->probe_name[i] = strdup(i ? "b" : "a");
   if (parts & WITH_RESIDUAL) add_residuals(model, &seed);
+  if (parts & WITH_RESIDUAL_MODES) add_residual_modes(model, seed);
   if (parts & WITH_NORMALS) add_normals(model, &seed);
   if (parts & WITH_AREAS) {
     model->area = malloc(sizeof(double) * pairs);

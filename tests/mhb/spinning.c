@@ -77,14 +77,17 @@ static void make_room(modal_model *m) {
   m->residual_flexibility   = zeros(CONTACT * CONTACT);
   m->residual_inertia       = zeros(CONTACT * CONTACT);
   m->residual_fourth        = zeros(CONTACT * CONTACT);
-  m->moment_fourth          = zeros(CONTACT);
-  m->moment_fifth           = zeros(CONTACT);
+  m->tail_order             = 3;
+  m->contact_tail           = zeros(2 * CONTACT);
   m->load_residual          = calloc(LOADS * CONTACT, sizeof(double complex));
   m->load_inertia           = calloc(LOADS * CONTACT, sizeof(double complex));
+  m->load_fourth            = calloc(LOADS * CONTACT, sizeof(double complex));
   m->probe_contact_residual = zeros(PROBE_DOFS * CONTACT);
   m->probe_contact_inertia  = zeros(PROBE_DOFS * CONTACT);
+  m->probe_contact_fourth   = zeros(PROBE_DOFS * CONTACT);
   m->probe_load_residual    = calloc(LOADS * PROBE_DOFS, sizeof(double complex));
   m->probe_load_inertia     = calloc(LOADS * PROBE_DOFS, sizeof(double complex));
+  m->probe_load_fourth      = calloc(LOADS * PROBE_DOFS, sizeof(double complex));
   m->probe_name             = malloc(sizeof(char *));
   m->probe_name[0]          = strdup("tip");
 }
@@ -109,21 +112,24 @@ static void add_left_out(modal_model *m, double lambda, const double phi[N],
       m->residual_inertia[i * CONTACT + j] += phi[i] * phi[j] / pow(lambda, 2);
       m->residual_fourth[i * CONTACT + j] += phi[i] * phi[j] / pow(lambda, 3);
     }
-    m->moment_fourth[i] += phi[i] * phi[i] / pow(lambda, 4);
-    m->moment_fifth[i] += phi[i] * phi[i] / pow(lambda, 5);
+    for (int j = 0; j < 2; j++)
+      m->contact_tail[2 * i + j] += phi[i] * phi[i] / pow(lambda, 4 + j);
     for (int q = 0; q < PROBE_DOFS; q++) {
       m->probe_contact_residual[q * CONTACT + i] += phi[PROBE + q] * phi[i] / lambda;
       m->probe_contact_inertia[q * CONTACT + i] += phi[PROBE + q] * phi[i] / pow(lambda, 2);
+      m->probe_contact_fourth[q * CONTACT + i] += phi[PROBE + q] * phi[i] / pow(lambda, 3);
     }
   }
   for (int k = 0; k < LOADS; k++) {
     for (int i = 0; i < CONTACT; i++) {
       m->load_residual[k * CONTACT + i] += phi[i] * f[k] / lambda;
       m->load_inertia[k * CONTACT + i] += phi[i] * f[k] / pow(lambda, 2);
+      m->load_fourth[k * CONTACT + i] += phi[i] * f[k] / pow(lambda, 3);
     }
     for (int q = 0; q < PROBE_DOFS; q++) {
       m->probe_load_residual[k * PROBE_DOFS + q] += phi[PROBE + q] * f[k] / lambda;
       m->probe_load_inertia[k * PROBE_DOFS + q] += phi[PROBE + q] * f[k] / pow(lambda, 2);
+      m->probe_load_fourth[k * PROBE_DOFS + q] += phi[PROBE + q] * f[k] / pow(lambda, 3);
     }
   }
 }

@@ -14,7 +14,7 @@
 
 static const double PI = 3.14159265358979323846;
 
-enum { MAX_N = 9, MAX_C = 18, MODES = 6, PROBE_DOFS = 6 };
+enum { MAX_N = 12, MAX_C = 24, MODES = 6, PROBE_DOFS = 6 };
 
 #define assert_below(value, bound)                                                  \
   do {                                                                              \
@@ -83,21 +83,34 @@ static void dense_at(const modal_model *model, const mhb_settings *s, int k, dou
   set_transform(model, s, k, d);
   double         w = k * omega / s->subharmonics;
   int            h = k % s->subharmonics == 0 ? k / s->subharmonics : 99, nc = d->nc;
+  int            r_n             = model->n_residual;
   double complex r[MAX_C][MAX_C] = {{0}}, x[MAX_C] = {0}, rp[PROBE_DOFS][MAX_C] = {{0}};
   for (int a = 0; a < nc; a++) {
     if (model->load_residual && h <= model->n_load)
-      x[a] =
-          s->scale * (model->load_residual[h * nc + a] + w * w * model->load_inertia[h * nc + a]);
+      x[a] = s->scale * loaded_by_hand(model, w, model->load_residual[h * nc + a],
+                                       model->load_inertia[h * nc + a],
+                                       r_n ? model->load_fourth[h * nc + a] : 0,
+                                       r_n ? model->residual_shape + a * r_n : NULL,
+                                       r_n ? model->residual_force + h * r_n : NULL);
     for (int b = 0; model->residual_flexibility && b < nc; b++)
-      r[a][b] = residual_by_hand(model, w, a * nc + b);
+      r[a][b] = residual_by_hand(model, w, a, b);
   }
   for (int q = 0; q < PROBE_DOFS; q++) {
     if (model->probe_load_residual && h <= model->n_load)
-      d->probe_free[q] = s->scale * (model->probe_load_residual[h * PROBE_DOFS + q] +
-                                     w * w * model->probe_load_inertia[h * PROBE_DOFS + q]);
-    for (int b = 0; model->probe_contact_residual && b < nc; b++)
-      rp[q][b] = model->probe_contact_residual[q * nc + b] +
-                 w * w * model->probe_contact_inertia[q * nc + b];
+      d->probe_free[q] =
+          s->scale * loaded_by_hand(model, w, model->probe_load_residual[h * PROBE_DOFS + q],
+                                    model->probe_load_inertia[h * PROBE_DOFS + q],
+                                    r_n ? model->probe_load_fourth[h * PROBE_DOFS + q] : 0,
+                                    r_n ? model->residual_probe + q * r_n : NULL,
+                                    r_n ? model->residual_force + h * r_n : NULL);
+    for (int b = 0; model->probe_contact_residual && b < nc; b++) {
+      double complex column[3] = {0};
+      for (int i = 0; i < r_n; i++) column[i] = model->residual_shape[b * r_n + i];
+      rp[q][b] = loaded_by_hand(model, w, model->probe_contact_residual[q * nc + b],
+                                model->probe_contact_inertia[q * nc + b],
+                                r_n ? model->probe_contact_fourth[q * nc + b] : 0,
+                                r_n ? model->residual_probe + q * r_n : NULL, column);
+    }
   }
   for (int i = 0; i < MODES; i++) {
     double complex L = modal_receptance(model, i, w),
@@ -170,6 +183,8 @@ static void condensation_is_the_dense_sum(void **state) {
       {"two pairs, residuals", 2, WITH_LEFT | WITH_RESIDUAL, 0, 4, 1},
       {"three pairs, normals", 3, WITH_LEFT | WITH_RESIDUAL | WITH_NORMALS | WITH_AREAS, 0, 2, 1},
       {"subharmonics", 2, WITH_LEFT | WITH_RESIDUAL, 0, 2, 2},
+      {"residual modes", 2, WITH_LEFT | WITH_RESIDUAL | WITH_RESIDUAL_MODES, 0, 4, 1},
+      {"residual modes, four pairs", 4, WITH_LEFT | WITH_RESIDUAL | WITH_RESIDUAL_MODES, 0, 2, 2},
       {"ground, left shapes there", 2, WITH_LEFT | WITH_RESIDUAL | WITH_NORMALS, 1, 3, 1},
       {"ground, no left shapes", 3, WITH_RESIDUAL, 1, 3, 2}};
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
@@ -270,13 +285,14 @@ static void difference(mhb_receptance *r, int k, int kind, const double complex 
 static void slopes_are_derivatives(void **state) {
   (void)state;
   const char *where = "slopes";
-  for (int nu = 1; nu <= 2; nu++) {
+  for (int trial = 0; trial < 4; trial++) {
+    const int       nu = 1 + trial / 2, modes = trial % 2 ? WITH_RESIDUAL_MODES : 0;
     modal_model     model;
     mhb_receptance *r;
     mhb_settings    s = random_settings(3);
     s.subharmonics    = nu;
     s.engine_order    = 2;
-    random_model(2, WITH_LEFT | WITH_RESIDUAL | WITH_NORMALS, 21, &model);
+    random_model(2, WITH_LEFT | WITH_RESIDUAL | WITH_NORMALS | modes, 21, &model);
     assert_int_equal(mhb_receptance_create(&model, &s, 5, &r), SHB_OK);
     for (int k = 0; k <= 5; k++) {
       double complex p[MAX_N], dp[MAX_N], zero[MAX_N] = {0}, exact[MAX_N], wanted[MAX_N];

@@ -263,7 +263,7 @@ static void blade_at(const modal_model *model, int k, double omega, int nu, blad
   for (int a = 0; a < DOFS; a++) {
     if (h >= 0)
       out->load[a] = model->load_residual[h * DOFS + a] + w * w * model->load_inertia[h * DOFS + a];
-    for (int b = 0; b < DOFS; b++) out->H[a][b] = residual_by_hand(model, w, a * DOFS + b);
+    for (int b = 0; b < DOFS; b++) out->H[a][b] = residual_by_hand(model, w, a, b);
   }
   for (int i = 0; i < m; i++) {
     double         wi = 2 * PI * model->frequency[i], shape[DOFS];
@@ -486,8 +486,10 @@ static double power_imbalance(const mhb_residual *b, double omega) {
       in += .5 * creal(conj(F) * I * w * q);
       damping += model->damping_ratio[i] * wi * w * w * creal(q * conj(q));
     }
-    for (int row = 0; r->load && row < r->n; row++)
-      residual += conj(r->load[k * r->n + row] + w * w * r->load_inertia[k * r->n + row]) * p[row];
+    const mhb_left_out *left = r->left_out;
+    for (int row = 0; left->load[0] && row < r->n; row++)
+      residual +=
+          conj(left->load[0][k * r->n + row] + w * w * left->load[1][k * r->n + row]) * p[row];
     in -= .5 * creal(I * w * residual);
   }
   for (int a = 0; a < b->n_pairs; a++)

@@ -6,7 +6,7 @@
 
 #include <hdf5_hl.h>
 
-enum { MODES = 4, PAIRS = 2, PROBES = 3, LOADS = 2, CONTACTS = 12, RIGHT_ONLY = 6 };
+enum { MODES = 4, PAIRS = 2, PROBES = 3, LOADS = 2, CONTACTS = 12, RIGHT_ONLY = 6, RESIDUAL = 5 };
 
 static double *numbers(size_t n, double seed) {
   double *out = malloc(n * sizeof *out);
@@ -62,15 +62,25 @@ static modal_model sample(bool full) {
   model.probe_contact_residual = numbers(PROBES * 3 * CONTACTS, 10);
   model.probe_load_residual    = waves((LOADS + 1) * 3 * PROBES, 11);
   model.residual_fourth        = symmetric(CONTACTS, 20);
-  model.moment_fourth          = squares(CONTACTS, 21);
-  model.moment_fifth           = squares(CONTACTS, 22);
-  model.load_inertia           = waves((LOADS + 1) * CONTACTS, 15);
-  model.probe_contact_inertia  = numbers(PROBES * 3 * CONTACTS, 17);
-  model.probe_load_inertia     = waves((LOADS + 1) * 3 * PROBES, 18);
-  model.normal                 = numbers(PAIRS * 3, 12);
-  model.area                   = numbers(PAIRS, 13);
-  model.mode_residual          = numbers(MODES, 14);
-  model.probe_name             = calloc(PROBES, sizeof *model.probe_name);
+  model.load_fourth            = waves((LOADS + 1) * CONTACTS, 23);
+  model.probe_contact_fourth   = numbers(PROBES * 3 * CONTACTS, 24);
+  model.probe_load_fourth      = waves((LOADS + 1) * 3 * PROBES, 25);
+  model.tail_order             = 6;
+  model.contact_tail           = squares(2 * CONTACTS, 21);
+  model.load_tail              = squares(2 * (LOADS + 1), 22);
+  model.n_residual             = RESIDUAL;
+  model.residual_frequency     = numbers(RESIDUAL, 26);
+  for (int i = 0; i < RESIDUAL; i++) model.residual_frequency[i] = 700.5 + 50 * i;
+  model.residual_shape        = numbers(CONTACTS * RESIDUAL, 27);
+  model.residual_force        = waves((LOADS + 1) * RESIDUAL, 28);
+  model.residual_probe        = numbers(PROBES * 3 * RESIDUAL, 29);
+  model.load_inertia          = waves((LOADS + 1) * CONTACTS, 15);
+  model.probe_contact_inertia = numbers(PROBES * 3 * CONTACTS, 17);
+  model.probe_load_inertia    = waves((LOADS + 1) * 3 * PROBES, 18);
+  model.normal                = numbers(PAIRS * 3, 12);
+  model.area                  = numbers(PAIRS, 13);
+  model.mode_residual         = numbers(MODES, 14);
+  model.probe_name            = calloc(PROBES, sizeof *model.probe_name);
   for (int i = 0; i < PROBES; i++) model.probe_name[i] = strdup(name[i]);
   for (int i = 0; i < PAIRS; i++) {
     model.area[i] = 1e-5 * (i + 1);
@@ -128,8 +138,17 @@ static void test_round_trip(void **state) {
   assert_same(wrote, read, probe_contact_residual, PROBES * 3 * CONTACTS);
   assert_same(wrote, read, probe_load_residual, (LOADS + 1) * 3 * PROBES);
   assert_same(wrote, read, residual_fourth, CONTACTS * CONTACTS);
-  assert_same(wrote, read, moment_fourth, CONTACTS);
-  assert_same(wrote, read, moment_fifth, CONTACTS);
+  assert_int_equal(read.tail_order, 6);
+  assert_same(wrote, read, contact_tail, 2 * CONTACTS);
+  assert_same(wrote, read, load_tail, 2 * (LOADS + 1));
+  assert_same(wrote, read, load_fourth, (LOADS + 1) * CONTACTS);
+  assert_same(wrote, read, probe_contact_fourth, PROBES * 3 * CONTACTS);
+  assert_same(wrote, read, probe_load_fourth, (LOADS + 1) * 3 * PROBES);
+  assert_int_equal(read.n_residual, RESIDUAL);
+  assert_same(wrote, read, residual_frequency, RESIDUAL);
+  assert_same(wrote, read, residual_shape, CONTACTS * RESIDUAL);
+  assert_same(wrote, read, residual_force, (LOADS + 1) * RESIDUAL);
+  assert_same(wrote, read, residual_probe, PROBES * 3 * RESIDUAL);
   assert_same(wrote, read, load_inertia, (LOADS + 1) * CONTACTS);
   assert_same(wrote, read, probe_contact_inertia, PROBES * 3 * CONTACTS);
   assert_same(wrote, read, probe_load_inertia, (LOADS + 1) * 3 * PROBES);
@@ -158,12 +177,12 @@ static void test_least(void **state) {
   modal_model_free(&read);
 }
 
-/* 18 arrays, the names, and 5 dimension scales of their own. */
+/* 25 arrays, the names, and 5 dimension scales of their own. */
 static void test_described(void **state) {
   (void)state;
   modal_model model = sample(true);
   write_model("described.h5", &model);
-  assert_int_equal(assert_described(scratch("described.h5")), 26);
+  assert_int_equal(assert_described(scratch("described.h5")), 33);
   hid_t file;
   char *text;
   assert_ok(h5_open(scratch("described.h5"), &file));
@@ -222,14 +241,19 @@ static void test_missing(void **state) {
                        {"/probe/shape", false},
                        {"/probe", true},
                        {"/modes/residual", true},
-                       {"/contact/residual_flexibility", true},
-                       {"/contact/residual_inertia", true},
+                       {"/residual_modes", true},
+                       {"/residual_modes/frequency", false},
+                       {"/residual_modes/contact", false},
+                       {"/residual_modes/load", true},
+                       {"/residual_modes/probe", true},
                        {"/load/residual_response", true},
                        {"/probe/contact_residual", true},
                        {"/probe/load_residual", true},
-                       {"/contact/residual_fourth", true},
-                       {"/contact/moment_fourth", true},
-                       {"/contact/moment_fifth", true},
+                       {"/contact/residual_tail", true},
+                       {"/load/residual_tail", true},
+                       {"/load/residual_fourth", true},
+                       {"/probe/contact_fourth", true},
+                       {"/probe/load_fourth", true},
                        {"/load/residual_inertia", true},
                        {"/probe/contact_inertia", true},
                        {"/probe/load_inertia", true},
@@ -248,6 +272,28 @@ static void test_missing(void **state) {
       snprintf(text, sizeof text, "missing.h5: %s is missing", part[i].path);
       assert_refused(read_only(scratch("missing.h5")), SHB_ERR_INPUT, text);
     }
+  }
+  modal_model_free(&model);
+}
+
+/* Residual terms are optional, but not below residual modes, which stand for what they leave out. */
+static void test_residual_modes_need_terms(void **state) {
+  (void)state;
+  static const char *const term[] = {"/contact/residual_flexibility", "/contact/residual_inertia",
+                                     "/contact/residual_fourth"};
+  modal_model              model  = sample(true);
+  for (size_t i = 0; i < 2 * sizeof term / sizeof *term; i++) {
+    write_model("terms.h5", &model);
+    hid_t file = edit("terms.h5");
+    assert_true(H5Ldelete(file, term[i / 2], H5P_DEFAULT) >= 0);
+    if (i % 2) assert_true(H5Ldelete(file, "/residual_modes", H5P_DEFAULT) >= 0);
+    H5Fclose(file);
+    if (i % 2)
+      assert_ok(read_only(scratch("terms.h5")));
+    else
+      assert_refused(read_only(scratch("terms.h5")), SHB_ERR_INPUT,
+                     "/residual_modes count beside /contact/residual_flexibility, "
+                     "residual_inertia and residual_fourth only");
   }
   modal_model_free(&model);
 }
@@ -285,6 +331,9 @@ static void test_shapes(void **state) {
       {"/probe/load_residual", {2, {3, 3}}, "has shape [3, 3] where [3, 9] is wanted"},
       {"/contact/residual_fourth", {2, {6, 12}}, "has shape [6, 12] where [12, 12] is wanted"},
       {"/load/residual_inertia", {2, {3, 6}}, "has shape [3, 6] where [3, 12] is wanted"},
+      {"/residual_modes/contact", {2, {12, 4}}, "has shape [12, 4] where [12, 5] is wanted"},
+      {"/residual_modes/probe", {2, {3, 5}}, "has shape [3, 5] where [9, 5] is wanted"},
+      {"/contact/residual_tail", {2, {12, 3}}, "has shape [12, 3] where [12, 2] is wanted"},
       {"/probe/contact_inertia", {2, {9, 6}}, "has shape [9, 6] where [9, 12] is wanted"},
       {"/probe/load_inertia", {2, {2, 9}}, "has shape [2, 9] where [3, 9] is wanted"},
       {"/contact/normal", {2, {3, 3}}, "has shape [3, 3] where [2, 3] is wanted"},
@@ -334,7 +383,10 @@ static void test_values(void **state) {
       {IN(probe_contact_residual), 0, NAN, "/probe/contact_residual: the value"},
       {IN(probe_load_residual), 1, NAN, "/probe/load_residual: the value"},
       {IN(residual_fourth), 30, 1, "/contact/residual_fourth is not symmetric"},
-      {IN(moment_fifth), 2, -1, "/contact/moment_fifth: value 2 (from 0) is "},
+      {IN(contact_tail), 2, -1, "/contact/residual_tail: value [1, 0] is -1; a sum of squares"},
+      {IN(residual_frequency), 0, 0, "/residual_modes/frequency: value 0 (from 0) is 0 Hz"},
+      {IN(residual_frequency), 1, 3, "value 1 (from 0) is 3 Hz; all must be positive, and ascend"},
+      {IN(residual_shape), 6, NAN, "/residual_modes/contact: the value at [1, 1]"},
       {IN(residual_fourth), 0, NAN, "/contact/residual_fourth: the value at [0, 0]"},
       {IN(load_inertia), 2, NAN, "/load/residual_inertia: the value at [0, 1]"},
       {IN(probe_contact_inertia), 12, NAN, "/probe/contact_inertia: the value at [1, 0]"},
@@ -399,11 +451,17 @@ static void test_other_types(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_round_trip),     cmocka_unit_test(test_least),
-      cmocka_unit_test(test_described),      cmocka_unit_test(test_format),
-      cmocka_unit_test(test_truncated),      cmocka_unit_test(test_missing),
-      cmocka_unit_test(test_shapes),         cmocka_unit_test(test_values),
-      cmocka_unit_test(test_symmetry_bound), cmocka_unit_test(test_other_types),
+      cmocka_unit_test(test_round_trip),
+      cmocka_unit_test(test_least),
+      cmocka_unit_test(test_described),
+      cmocka_unit_test(test_format),
+      cmocka_unit_test(test_truncated),
+      cmocka_unit_test(test_missing),
+      cmocka_unit_test(test_residual_modes_need_terms),
+      cmocka_unit_test(test_shapes),
+      cmocka_unit_test(test_values),
+      cmocka_unit_test(test_symmetry_bound),
+      cmocka_unit_test(test_other_types),
   };
   return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }
