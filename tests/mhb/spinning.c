@@ -112,8 +112,7 @@ static void add_left_out(modal_model *m, double lambda, const double phi[N],
       m->residual_inertia[i * CONTACT + j] += phi[i] * phi[j] / pow(lambda, 2);
       m->residual_fourth[i * CONTACT + j] += phi[i] * phi[j] / pow(lambda, 3);
     }
-    for (int j = 0; j < 2; j++)
-      m->contact_tail[2 * i + j] += phi[i] * phi[i] / pow(lambda, 4 + j);
+    for (int j = 0; j < 2; j++) m->contact_tail[2 * i + j] += phi[i] * phi[i] / pow(lambda, 4 + j);
     for (int q = 0; q < PROBE_DOFS; q++) {
       m->probe_contact_residual[q * CONTACT + i] += phi[PROBE + q] * phi[i] / lambda;
       m->probe_contact_inertia[q * CONTACT + i] += phi[PROBE + q] * phi[i] / pow(lambda, 2);
