@@ -119,8 +119,6 @@ static void check_band(case_reader *r) {
   case_file          *file = r->file;
   const mhb_settings *mhb  = &file->mhb;
   if (file->modal_file || file->modes > 0 || !case_reader_good(r, "modal.modes")) return;
-  if (file->n_speeds > 1)
-    case_reader_issue(r, "modal.modes", "must be a number where rotor.speed is a list");
   if (file->band > 0 || !case_reader_good(r, "modal.band")) return;
   if (case_reader_given(r, "mhb.frequency") && case_reader_good(r, "mhb.frequency"))
     file->band = mhb->frequency[1] * (mhb->harmonics > 0 ? mhb->harmonics : 5) /

@@ -147,12 +147,36 @@ static shb_status solve_speed(MPI_Comm comm, const mesh_fe *mesh, const modal_se
   return status;
 }
 
+/* modes: auto: what the lowest or the highest speed needs, whichever is more, at every speed. */
+static shb_status choose_modes(MPI_Comm comm, const mesh_fe *mesh, const modal_settings *settings,
+                               shb_progress *progress, int *modes) {
+  double end[2] = {INFINITY, 0};
+  *modes        = settings->modes;
+  for (int i = 0; i < settings->n_speeds; i++) {
+    end[0] = fmin(end[0], settings->speeds[i]);
+    end[1] = fmax(end[1], settings->speeds[i]);
+  }
+  for (int i = 0; i < 2 && settings->modes == 0; i++) {
+    modal_settings here = *settings;
+    modal_result   result;
+    here.speed = end[i];
+    shb_progress_note(progress, "modes needed at %.6g rad/s", here.speed);
+    shb_status status = modal_solve(comm, mesh, &here, progress, &result);
+    if (status == SHB_OK) *modes = PetscMax(*modes, result.model.n_modes);
+    modal_result_free(&result);
+    SHB_TRY(status);
+  }
+  return SHB_OK;
+}
+
 shb_status modal_campbell_solve(MPI_Comm comm, const mesh_fe *mesh, const modal_settings *settings,
                                 shb_progress *progress, modal_speeds *speeds,
                                 modal_result *result) {
-  Mat kept[2] = {NULL, NULL};
+  Mat            kept[2] = {NULL, NULL};
+  modal_settings each    = *settings;
   memset(result, 0, sizeof *result);
-  SHB_TRY(modal_speeds_create(settings->n_speeds, settings->modes, speeds));
+  SHB_TRY(choose_modes(comm, mesh, settings, progress, &each.modes));
+  SHB_TRY(modal_speeds_create(settings->n_speeds, each.modes, speeds));
   const size_t m  = (size_t)speeds->n_modes;
   speeds->overlap = calloc((size_t)speeds->n * m * m, sizeof *speeds->overlap);
   SHB_CHECK(speeds->overlap, SHB_ERR_IO, "out of memory to compare the modes of %d speeds",
@@ -161,7 +185,7 @@ shb_status modal_campbell_solve(MPI_Comm comm, const mesh_fe *mesh, const modal_
   qsort(speeds->speed, (size_t)speeds->n, sizeof *speeds->speed, ascending);
   shb_status status = SHB_OK;
   for (int s = 0; status == SHB_OK && s < speeds->n; s++)
-    status = solve_speed(comm, mesh, settings, s, progress, speeds, kept, result);
+    status = solve_speed(comm, mesh, &each, s, progress, speeds, kept, result);
   for (int i = 0; i < 2; i++) (void)MatDestroy(&kept[i]);
   return status;
 }

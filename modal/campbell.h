@@ -5,7 +5,7 @@
 #include "modal/speeds.h"
 #include "modal/stage.h"
 
-/* modal_solve at each of settings->speeds, ascending. MAC = (phi^T M psi)^2 of all modes of neighbouring speeds, the greatest first, each
+/* modal_solve at each of settings->speeds, ascending; with modes: auto as many modes at every speed as the lowest or the highest needs. MAC = (phi^T M psi)^2 of all modes of neighbouring speeds, the greatest first, each
  * mode taken once; signs continue along the tracks.
  *   speeds  out  models of every speed, the one of settings->speed shared with result (modal_campbell_free)
  *   result  out  of settings->speed, as modal_solve gives it, but for the factor, which is gone

@@ -137,6 +137,42 @@ static void crossing_modes_are_tracked(void **state) {
   mesh_fe_free(&mesh);
 }
 
+/* modes: auto: one number for all speeds, enough for the lowest and for the highest. */
+static void auto_modes_suit_every_speed(void **state) {
+  (void)state;
+  static const double band[2]  = {900, 2500};
+  modal_settings      settings = make_settings();
+  mesh_fe             mesh     = make_beam();
+  int                 before   = 0;
+  settings.modes               = 0;
+  settings.tolerance           = 1e-6;
+  for (int k = 0; k < 2; k++) {
+    modal_speeds s;
+    modal_result result;
+    int          single[2];
+    settings.band = band[k];
+    assert_ok(modal_campbell_solve(PETSC_COMM_SELF, &mesh, &settings, NULL, &s, &result));
+    for (int i = 0; i < 2; i++) {
+      modal_settings one = settings;
+      modal_result   at;
+      one.n_speeds = 1;
+      one.speed    = i ? 700 : 0;
+      assert_ok(modal_solve(PETSC_COMM_SELF, &mesh, &one, NULL, &at));
+      single[i] = at.model.n_modes;
+      modal_result_free(&at);
+    }
+    print_message("to %.0f Hz: %d modes at rest, %d at 700 rad/s: %d\n", band[k], single[0],
+                  single[1], s.n_modes);
+    assert_int_equal(s.n_modes, single[0] > single[1] ? single[0] : single[1]);
+    for (int i = 0; i < SPEEDS; i++) assert_int_equal(s.model[i].n_modes, s.n_modes);
+    assert_true(s.n_modes > before);
+    before = s.n_modes;
+    modal_campbell_free(&s, &result);
+    modal_result_free(&result);
+  }
+  mesh_fe_free(&mesh);
+}
+
 static const shb_provenance provenance = {"case.yaml", "name: case\n", "modal.modes = 5\n",
                                           "shroudhb-modal"};
 
@@ -209,8 +245,9 @@ static void damage_is_told(void **state) {
 
 int main(int argc, char **argv) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(crossing_modes_are_tracked), cmocka_unit_test(file_keeps_every_speed),
-      cmocka_unit_test(one_speed_changes_nothing), cmocka_unit_test(damage_is_told)};
+      cmocka_unit_test(crossing_modes_are_tracked), cmocka_unit_test(auto_modes_suit_every_speed),
+      cmocka_unit_test(file_keeps_every_speed), cmocka_unit_test(one_speed_changes_nothing),
+      cmocka_unit_test(damage_is_told)};
   modal_session session;
   if (modal_session_start(&argc, &argv, &session) != SHB_OK) return 1;
   int failed = cmocka_run_group_tests(tests, scratch_make, scratch_remove);
