@@ -12,6 +12,7 @@
 #include "mesh/source.h"
 #include "mesh/status.h"
 #include "mhb/settings.h"
+#include "modal/check.h"
 #include "modal/damping.h"
 
 enum { CASE_MAX_PROBES = 32, CASE_MAX_LOADS = 16, CASE_NAME = 64 };
@@ -74,11 +75,12 @@ typedef struct {
   double          pressure;                /* Pa, steady */
   mesh_axis       axis;
 
-  int           modes;           /* 0: auto */
-  double        tolerance, band; /* with modes: auto; Hz */
-  modal_damping damping;
-  bool          full_integration; /* of hexahedra: stiffness with 3x3x3 points */
-  char         *modal_file;       /* resolved path of modal.file, or NULL */
+  int              modes;           /* 0: auto */
+  double           tolerance, band; /* with modes: auto; Hz */
+  modal_damping    damping;
+  modal_check_kind check;
+  bool             full_integration; /* of hexahedra: stiffness with 3x3x3 points */
+  char            *modal_file;       /* resolved path of modal.file, or NULL */
 
   int        engine_order;
   fem_load   load;

@@ -112,6 +112,7 @@ static modal_settings stage_settings(const case_file *file, modal_probe probe[CA
       .tolerance        = file->tolerance,
       .band             = file->band,
       .damping          = file->damping,
+      .check            = file->check,
       .load             = file->load,
       .n_probes         = file->n_probes,
       .probe            = probe,

@@ -109,6 +109,8 @@ static const case_key table[] = {
      .help = "with modes: auto; 0: the upper end of mhb.frequency times mhb.harmonics (times 5 where they are auto)"},
     {"modal.damping", CASE_DAMPING, "", 0, 1, .below = true, .required = true, AT(damping), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
      .help = "damping ratio of every mode; [ratio of each], the last for those beyond; {loss_factor: eta}; {rayleigh: [alpha 1/s, beta s]}"},
+    {"modal.check", CASE_CHOICE, "", .words = "auto inertia never", .fallback = "auto", AT(check), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
+     .help = "that no mode is missing: by a search of what the modes leave out (auto), or by counting with a second factorisation"},
     {"modal.integration", CASE_SWITCH, "", .words = "reduced full", .fallback = "reduced", AT(full_integration), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
      .help = "stiffness of hexahedra with 2x2x2 points, or 3x3x3; tetrahedra: no difference"},
     {"modal.file", CASE_FILE_NAME, "", AT(modal_file), .stages = CASE_MHB, .when = CASE_IF_MODAL_FILE,

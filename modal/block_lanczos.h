@@ -12,6 +12,8 @@
 
 #include <slepceps.h>
 
+#include "modal/block_basis.h"
+
 #define MODAL_BLOCK_LANCZOS "block_lanczos"
 
 /* Make the type known to SLEPc; again does no harm. */
@@ -19,5 +21,10 @@ PetscErrorCode modal_block_lanczos_register(void);
 
 /* Columns a block; eps is of this type. */
 PetscErrorCode modal_block_lanczos_set_size(EPS eps, PetscInt size);
+PetscErrorCode modal_block_lanczos_get_size(EPS eps, PetscInt *size);
+
+/* The basis of the last run, which modal/complement.h asks for; freed by _release, or with eps. */
+PetscErrorCode modal_block_lanczos_basis(EPS eps, const modal_block_basis **basis);
+PetscErrorCode modal_block_lanczos_release(EPS eps);
 
 #endif

@@ -5,6 +5,8 @@
 #include <string.h>
 
 #include "modal/block_lanczos.h"
+#include "modal/complement.h"
+#include "modal/inertia.h"
 #include "modal/noise.h"
 #include "modal/phases.h"
 
@@ -265,11 +267,136 @@ static PetscErrorCode find_residuals(const fem_system *system, double shift, mod
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode modal_eigen_solve(const fem_system *system, const modal_eigen_settings *settings,
-                                 modal_eigen *eigen) {
+/* ------------------------------------------------------------------ is any missing? */
+
+/* Of the eigenvalues found, those below limit. */
+static PetscErrorCode count_found(EPS eps, int modes, double limit, int *count) {
+  PetscFunctionBeginUser;
+  *count = 0;
+  for (int i = 0; i < modes; i++) {
+    double lambda;
+    PetscCall(EPSGetEigenvalue(eps, i, &lambda, NULL));
+    *count += lambda < limit;
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode check_by_inertia(const fem_system *system, modal_check *check,
+                                       modal_verdict *verdict) {
+  const int found = check->count;
+  PetscFunctionBeginUser;
+  PetscCall(modal_inertia_below(system, check->limit, &check->count));
+  check->by     = "inertia";
+  check->chance = 0;
+  *verdict      = check->count == found ? MODAL_COMPLETE : MODAL_MISSING;
+  PetscFunctionReturn(0);
+}
+
+/* With the basis of block Lanczos; undecided without one. */
+static PetscErrorCode check_by_restart(EPS eps, double shift, modal_check *check,
+                                       modal_verdict *verdict) {
+  const modal_block_basis *basis;
+  modal_complement         rest;
+  PetscBool                block;
+  PetscFunctionBeginUser;
+  *verdict = MODAL_OPEN;
+  PetscCall(PetscObjectTypeCompare((PetscObject)eps, MODAL_BLOCK_LANCZOS, &block));
+  if (!block) PetscFunctionReturn(0);
+  PetscCall(modal_block_lanczos_basis(eps, &basis));
+  PetscCall(modal_complement_search(basis, 1 / (check->limit - shift), &rest));
+  if (rest.count == check->count) *verdict = rest.verdict;
+  check->by     = "restart";
+  check->chance = rest.chance;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode check_modes(const fem_system *system, const modal_eigen_settings *settings,
+                                  EPS eps, modal_check *check, modal_verdict *verdict) {
+  double last, margin;
+
+  PetscFunctionBeginUser;
+  PetscCall(EPSGetTolerances(eps, &margin, NULL));
+  PetscCall(EPSGetEigenvalue(eps, settings->modes - 1, &last, NULL));
+  margin   = PetscMax(margin, 1e-6); /* above the error and the rounding of an eigenvalue */
+  *verdict = MODAL_COMPLETE;
+  *check =
+      (modal_check){.by = "no", .limit = last - margin * (last - settings->shift), .chance = 1};
+  PetscCall(count_found(eps, settings->modes, check->limit, &check->count));
+  if (settings->check == MODAL_CHECK_NEVER) PetscFunctionReturn(0);
+  *verdict = MODAL_OPEN;
+  if (settings->check == MODAL_CHECK_AUTO)
+    PetscCall(check_by_restart(eps, settings->shift, check, verdict));
+  if (*verdict == MODAL_OPEN) PetscCall(check_by_inertia(system, check, verdict));
+  modal_phase(system->comm, settings->progress, "check", "%s, %d below %.6g Hz by %s",
+              *verdict == MODAL_COMPLETE ? "no mode is missing" : "a mode is missing", check->count,
+              modal_check_below(check), check->by);
+  PetscFunctionReturn(0);
+}
+
+/* Blocks of twice the size, as far as that may help. */
+static PetscErrorCode enlarge(const fem_system *system, const modal_eigen *eigen, PetscInt *size) {
+  enum { MOST = 32 };
+  PetscBool block;
+  PetscFunctionBeginUser;
+  PetscCall(PetscObjectTypeCompare((PetscObject)eigen->eps, MODAL_BLOCK_LANCZOS, &block));
+  *size = MOST;
+  if (block) PetscCall(modal_block_lanczos_get_size(eigen->eps, size));
+  *size *= 2;
+  PetscCheck(*size <= MOST && *size <= 3 * system->n_free, system->comm, PETSC_ERR_NOT_CONVERGED,
+             "modal: the eigensolver missed a mode below %.6g Hz (checked by %s); ask for more or "
+             "fewer modes, or try -eps_ncv",
+             modal_check_below(&eigen->check), eigen->check.by);
+  PetscFunctionReturn(0);
+}
+
+/* ------------------------------------------------------------------ together */
+
+/* size: columns a block, 0: as ever. *found: that many modes converged; false: interrupted. */
+static PetscErrorCode run(const fem_system *system, const modal_eigen_settings *settings,
+                          PetscInt size, modal_eigen *eigen, bool *found) {
   watch              context = {settings->progress, system->comm};
   EPSConvergedReason reason;
   PetscInt           n_converged;
+
+  PetscFunctionBeginUser;
+  PetscCall(EPSDestroy(&eigen->eps));
+  PetscCall(EPSCreate(system->comm, &eigen->eps));
+  PetscCall(configure(system, settings, &context, eigen));
+  if (size > 0) PetscCall(modal_block_lanczos_set_size(eigen->eps, size));
+  PetscCall(EPSSolve(eigen->eps));
+  PetscCall(EPSMonitorCancel(eigen->eps)); /* context ends here */
+  PetscCall(EPSGetConvergedReason(eigen->eps, &reason));
+  PetscCall(EPSGetConverged(eigen->eps, &n_converged));
+  *found = n_converged >= settings->modes;
+  if (reason == EPS_CONVERGED_USER && !*found) PetscFunctionReturn(0);
+  PetscCheck(*found, system->comm, PETSC_ERR_NOT_CONVERGED,
+             "modal: only %d of %d modes converged; try -eps_ncv or -eps_max_it", (int)n_converged,
+             settings->modes);
+  modal_phase(system->comm, settings->progress, "modes", "%d", settings->modes);
+  PetscFunctionReturn(0);
+}
+
+/* Modes of which none is missing. *found false: interrupted. */
+static PetscErrorCode run_checked(const fem_system *system, const modal_eigen_settings *settings,
+                                  modal_eigen *eigen, bool *found) {
+  modal_verdict verdict = MODAL_MISSING;
+  PetscInt      size    = 0;
+  PetscBool     block;
+  PetscFunctionBeginUser;
+  while (verdict == MODAL_MISSING) {
+    PetscCall(run(system, settings, size, eigen, found));
+    if (!*found) PetscFunctionReturn(0);
+    PetscCall(check_modes(system, settings, eigen->eps, &eigen->check, &verdict));
+    if (verdict == MODAL_MISSING) PetscCall(enlarge(system, eigen, &size));
+  }
+  PetscCall(PetscObjectTypeCompare((PetscObject)eigen->eps, MODAL_BLOCK_LANCZOS, &block));
+  if (block) PetscCall(modal_block_lanczos_release(eigen->eps));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode modal_eigen_solve(const fem_system *system, const modal_eigen_settings *settings,
+                                 modal_eigen *eigen) {
+  bool found = false;
 
   PetscFunctionBeginUser;
   memset(eigen, 0, sizeof *eigen);
@@ -278,20 +405,13 @@ PetscErrorCode modal_eigen_solve(const fem_system *system, const modal_eigen_set
              (int)(3 * system->n_free));
   shb_progress_show(settings->progress, 15, "factorising %d dofs", (int)(3 * system->n_free));
   PetscCall(factorise(system, settings, eigen));
-  PetscCall(EPSCreate(system->comm, &eigen->eps));
-  PetscCall(configure(system, settings, &context, eigen));
-  PetscCall(EPSSolve(eigen->eps));
-  PetscCall(EPSGetConvergedReason(eigen->eps, &reason));
-  PetscCall(EPSGetConverged(eigen->eps, &n_converged));
-  if (reason == EPS_CONVERGED_USER && n_converged < settings->modes) PetscFunctionReturn(0);
-  PetscCheck(n_converged >= settings->modes, system->comm, PETSC_ERR_NOT_CONVERGED,
-             "modal: only %d of %d modes converged; try -eps_ncv or -eps_max_it", (int)n_converged,
-             settings->modes);
+  PetscCall(run_checked(system, settings, eigen, &found));
+  if (!found) PetscFunctionReturn(0);
   eigen->n = settings->modes;
   PetscCall(PetscMalloc2(eigen->n, &eigen->lambda, eigen->n, &eigen->residual));
   PetscCall(collect(system, eigen));
   PetscCall(find_residuals(system, settings->shift, eigen));
-  modal_phase(system->comm, settings->progress, "modes", "%d", eigen->n);
+  modal_phase(system->comm, settings->progress, "mode residuals", "%d", eigen->n);
   PetscFunctionReturn(0);
 }
 

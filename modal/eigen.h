@@ -8,12 +8,14 @@
 #include "fem/assemble.h"
 #include "fem/factor.h"
 #include "mesh/progress.h"
+#include "modal/check.h"
 
 typedef struct {
-  int           modes;     /* wanted, >= 1 */
-  double        shift;     /* rad2/s2: 0 for a clamped body, below 0 for a free one */
-  double        tolerance; /* of the eigensolver; 0: 1e-10 */
-  shb_progress *progress;  /* or NULL */
+  int              modes;     /* wanted, >= 1 */
+  double           shift;     /* rad2/s2: 0 for a clamped body, below 0 for a free one */
+  double           tolerance; /* of the eigensolver; 0: 1e-10 */
+  shb_progress    *progress;  /* or NULL */
+  modal_check_kind check;
 } modal_eigen_settings;
 
 typedef struct {
@@ -27,10 +29,12 @@ typedef struct {
   Mat m_phi; /* M phi, same layout */
   fem_factor *factor; /* of K - shift M, for further solves too */
   EPS         eps;
+  modal_check check;
 } modal_eigen;
 
-/* Solve. Needs SLEPc initialised. Takes options (-eps_..., -st_mat_mumps_icntl_...) from PETSc's data base.
- * Errors: PETSC_ERR_USER_INPUT more modes than dofs, K singular; PETSC_ERR_NOT_CONVERGED; PETSC_ERR_MEM.
+/* Solve, and check that no mode is missing below the last: one that is (of more copies than a block has columns, or hidden from the
+ * start block) is searched again with blocks of twice the size. Needs SLEPc initialised. Takes options (-eps_..., -st_mat_mumps_icntl_...) from PETSc's data base.
+ * Errors: PETSC_ERR_USER_INPUT more modes than dofs, K singular; PETSC_ERR_NOT_CONVERGED, also if a mode stays missing; PETSC_ERR_MEM.
  * If shb_interrupted(), stops early with eigen->n = 0 and no error. */
 PetscErrorCode modal_eigen_solve(const fem_system *system, const modal_eigen_settings *settings,
                                  modal_eigen *eigen);

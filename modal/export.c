@@ -44,6 +44,13 @@ shb_status modal_export_shapes(hid_t file, int n_modes, int n_nodes, const doubl
   return h5_attach_scale(file, "modes/shape", 0, "modes/frequency");
 }
 
+shb_status modal_export_check(hid_t file, const modal_check *check) {
+  SHB_TRY(h5_write_attribute_text(file, "/modes", "checked", check->by));
+  SHB_TRY(h5_write_attribute_int(file, "/modes", "checked_count", check->count));
+  SHB_TRY(h5_write_attribute_double(file, "/modes", "checked_below", modal_check_below(check)));
+  return h5_write_attribute_double(file, "/modes", "missed_chance", check->chance);
+}
+
 shb_status modal_export_contact(hid_t file, const modal_interface *interface) {
   const size_t pairs = (size_t)interface->n_pairs;
   const int    n = interface->start[interface->n_pairs], sides = interface->has_left ? 2 : 1;

@@ -4,6 +4,7 @@
 #define MODAL_EXPORT_H
 
 #include "mesh/fe_mesh.h"
+#include "modal/check.h"
 #include "modal/interface.h"
 #include "modal/model.h"
 
@@ -12,6 +13,9 @@ shb_status modal_export_mesh(hid_t file, const mesh_fe *mesh);
 
 /* Writes /modes/shape [m][n][3], mesh axes, clamped nodes zero. */
 shb_status modal_export_shapes(hid_t file, int n_modes, int n_nodes, const double *shape);
+
+/* Writes the attributes checked, checked_count, checked_below, missed_chance of /modes. */
+shb_status modal_export_check(hid_t file, const modal_check *check);
 
 /* Writes /contact/nodes [entry][3] (pair, right node, left node or -1), /contact/weight [entry] and
  * /contact/coordinates [side][pair][3]. */

@@ -178,9 +178,10 @@ static shb_status assemble(MPI_Comm comm, const fem_body *body, const modal_cond
 }
 
 /* That many modes, condensed. */
-static shb_status find_modes(const fem_body *body, const modal_condensation *to, int modes,
-                             shb_progress *progress, modal_result *result) {
-  modal_eigen_settings eigen = {.modes = modes, .progress = progress};
+static shb_status find_modes(const fem_body *body, const modal_settings *settings,
+                             const modal_condensation *to, int modes, shb_progress *progress,
+                             modal_result *result) {
+  modal_eigen_settings eigen = {.modes = modes, .progress = progress, .check = settings->check};
   FEM_PETSC(modal_eigen_solve(&result->system, &eigen, &result->eigen));
   SHB_CHECK(result->eigen.n > 0, SHB_INTERRUPTED, "interrupted");
   FEM_PETSC(refine(body, result->deflection.at.displacement, &result->system, &result->eigen));
@@ -200,7 +201,7 @@ static shb_status find_enough(const fem_body *body, const modal_settings *settin
   int       modes = PetscMin(FIRST_MODES, most), enough = 0;
   double    error = 0;
   for (;; modes = PetscMin(2 * modes, most)) {
-    SHB_TRY(find_modes(body, to, modes, progress, result));
+    SHB_TRY(find_modes(body, settings, to, modes, progress, result));
     SHB_TRY(modal_enough(&result->model, settings->band, settings->tolerance, &enough, &error));
     if (enough > 0) break;
     SHB_CHECK(modes < most, SHB_ERR_INPUT,
@@ -224,7 +225,7 @@ static shb_status solve(MPI_Comm comm, const fem_body *body, const modal_setting
                         modal_result *result) {
   SHB_TRY(assemble(comm, body, to, progress, result));
   if (settings->modes > 0)
-    SHB_TRY(find_modes(body, to, settings->modes, progress, result));
+    SHB_TRY(find_modes(body, settings, to, settings->modes, progress, result));
   else
     SHB_TRY(find_enough(body, settings, to, progress, result));
   SHB_TRY(modal_participate(body, result->deflection.at.displacement, &result->system,
@@ -299,6 +300,7 @@ static shb_status write_all(hid_t file, const mesh_fe *mesh, const modal_result 
   if (speeds->n > 0) SHB_TRY(modal_speeds_write(file, speeds));
   SHB_TRY(modal_export_mesh(file, mesh));
   SHB_TRY(modal_export_shapes(file, result->model.n_modes, mesh->n_nodes, shape));
+  SHB_TRY(modal_export_check(file, &result->eigen.check));
   SHB_TRY(modal_participation_write(file, &result->participation));
   SHB_TRY(modal_export_contact(file, &result->interface));
   SHB_TRY(modal_export_receptance(file, &result->model));

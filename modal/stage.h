@@ -45,6 +45,7 @@ typedef struct {
   int                 modes;    /* 0: as many as tolerance and band need (modal/enough.h) */
   double              tolerance, band; /* of the contact receptance; Hz */
   modal_damping       damping;
+  modal_check_kind    check;            /* that no mode is missing */
   bool                full_integration; /* stiffness of hexahedra with 3x3x3 points, not 2x2x2 */
   fem_load            load;
   int                 n_loads;  /* 0: load alone */

@@ -1,6 +1,7 @@
 #include "postproc/modes.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "modal/h5.h"
 #include "postproc/unit.h"
@@ -66,10 +67,37 @@ static void put_table(const modal_model *m, const shares *s, bool all, post_buff
   if (s->mass > 0) put_sums(m, s, out);
 }
 
+/* How it was checked that no mode is missing; nothing in files that do not tell. */
+static shb_status put_check(hid_t file, post_buffer *out) {
+  char  *by = NULL, below[POST_NUMBER], number[POST_NUMBER];
+  double limit, chance;
+  int    count;
+  SHB_TRY(h5_read_attribute_text(file, "/modes", "checked", &by));
+  if (!by) return SHB_OK;
+  shb_status status = h5_read_attribute_int(file, "/modes", "checked_count", 0, &count);
+  if (status == SHB_OK)
+    status = h5_read_attribute_double(file, "/modes", "checked_below", 0, &limit);
+  if (status == SHB_OK)
+    status = h5_read_attribute_double(file, "/modes", "missed_chance", 1, &chance);
+  if (status == SHB_OK && strcmp(by, "no") == 0) {
+    post_put(out, "  not checked whether a mode is missing\n");
+  } else if (status == SHB_OK) {
+    post_put(out, "  no mode is missing: %d below %s Hz, counted by ", count,
+             post_plain(below, limit, 6));
+    post_put_printable(out, by);
+    if (chance > 0)
+      post_put(out, ", wrong with a chance of %s at most", post_number(number, chance, 2));
+    post_put(out, "\n");
+  }
+  free(by);
+  return status;
+}
+
 shb_status post_modes(hid_t file, const modal_model *model, bool all, post_buffer *out) {
   shares     s      = {0};
   shb_status status = read_shares(file, model, &s);
   if (status == SHB_OK) put_table(model, &s, all, out);
+  if (status == SHB_OK) status = put_check(file, out);
   free(s.translation);
   free(s.rotation);
   return status;

@@ -44,6 +44,8 @@ static void check_ranks(double speed) {
     check_close(all.model.frequency[i], one.model.frequency[i], 1e-11, "frequency");
     check_below(all.model.mode_residual[i], 1e-9, "residual of a mode");
   }
+  assert_int_equal(all.eigen.check.count, one.eigen.check.count);
+  assert_true(all.eigen.check.chance <= 1e-9 && one.eigen.check.chance <= 1e-9);
   for (int i = 0; i < 9 * settings.modes; i++)                           /* signs included */
     check_below(all.model.right[i] - one.model.right[i], 1e-5, "shape"); /* of order 1 */
   for (int i = 0; i < FEM_RIGID * settings.modes; i++)
@@ -57,6 +59,23 @@ static void check_ranks(double speed) {
   for (int i = 0; i < 18 * 18; i++) check_below(cabs(a[i] - b[i]), 1e-8 * cabs(a[0]), "receptance");
   modal_result_free(&one);
   modal_result_free(&all);
+  mesh_fe_free(&mesh);
+}
+
+/* Counted by inertia too: the pivots of all ranks. */
+static void world_counts_alike(void **state) {
+  (void)state;
+  const modal_eigen_settings settings = {.modes = 12, .check = MODAL_CHECK_INERTIA};
+  const int                  cells[3] = {4, 4, 10};
+  mesh_fe                    mesh     = make_sector(size, inner, BLADES, cells);
+  fem_system                 system;
+  modal_eigen                eigen;
+  assert_int_equal(fem_system_create(PETSC_COMM_WORLD, &mesh, &steel, FEM_STANDARD, &system), 0);
+  assert_int_equal(modal_eigen_solve(&system, &settings, &eigen), 0);
+  assert_string_equal(eigen.check.by, "inertia");
+  assert_int_equal(eigen.check.count, 11);
+  modal_eigen_destroy(&eigen);
+  fem_system_destroy(&system);
   mesh_fe_free(&mesh);
 }
 
@@ -79,6 +98,7 @@ static void world_equals_one_rank_with_hexahedra(void **state) {
 
 int main(int argc, char **argv) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(world_equals_one_rank),
+                                     cmocka_unit_test(world_counts_alike),
                                      cmocka_unit_test(world_equals_one_rank_at_speed),
                                      cmocka_unit_test(world_equals_one_rank_with_hexahedra)};
   modal_session           session;

@@ -45,6 +45,23 @@ static void write_mesh(const char *path, bool swap) {
   mesh_fe_free(&mesh);
 }
 
+static void check_is_in_the_file(const char *path) {
+  hid_t  file;
+  char  *by;
+  double below, chance;
+  int    count;
+  assert_ok(h5_open(path, &file));
+  assert_ok(h5_read_attribute_text(file, "/modes", "checked", &by));
+  assert_ok(h5_read_attribute_int(file, "/modes", "checked_count", 0, &count));
+  assert_ok(h5_read_attribute_double(file, "/modes", "checked_below", 0, &below));
+  assert_ok(h5_read_attribute_double(file, "/modes", "missed_chance", 2, &chance));
+  assert_ok(h5_close(file));
+  assert_string_equal(by, "restart");
+  assert_int_equal(count, 7);
+  assert_true(below > 0 && chance > 0 && chance <= 1e-9);
+  free(by);
+}
+
 static void file_is_complete(void **state) {
   (void)state;
   modal_settings settings = default_settings();
@@ -69,14 +86,15 @@ static void file_is_complete(void **state) {
   for (int i = 0; i < 8; i++) check_below(model.mode_residual[i], 1e-9, "mode residual");
   modal_model_free(&model);
   assert_true(assert_described(out) >= 30);
+  check_is_in_the_file(out);
 }
 
 /* Every phase is there once, in the order in which it was; peaks never fall; with two speeds times add up. */
 static void phases_are_in_the_file(void **state) {
   (void)state;
-  static const char *const wanted[] = {"mesh",          "assembly", "equilibrium", "analysis",
-                                       "factor",        "modes",    "refinement",  "residuals",
-                                       "participation", "write"};
+  static const char *const wanted[] = {"mesh",       "assembly",  "equilibrium",   "analysis",
+                                       "factor",     "modes",     "check",         "mode residuals",
+                                       "refinement", "residuals", "participation", "write"};
   static const double      speeds[] = {200, 300};
   enum { PHASES = sizeof wanted / sizeof *wanted };
   modal_settings settings = default_settings();

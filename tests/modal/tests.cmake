@@ -6,6 +6,7 @@ shb_test(modal field fast tests_fem shb_modal)
 
 shb_test(modal eigen slow tests_fem shb_modal)
 shb_test(modal block_lanczos fast tests_fem shb_modal)
+shb_test(modal check fast tests_fem shb_modal)
 shb_test(modal rotating fast tests_fem shb_modal)
 shb_test(modal participation fast tests_fem shb_modal)
 shb_test(modal materials fast tests_fem shb_modal)

@@ -187,6 +187,10 @@ static void phases(void **state) {
     hid_t file;
     assert_ok(h5_create(at("x.modal.h5"), &file));
     assert_ok(modal_model_write(file, &m, &PROVENANCE));
+    assert_ok(h5_write_attribute_text(file, "/modes", "checked", i == 0 ? "restart" : "no"));
+    assert_ok(h5_write_attribute_int(file, "/modes", "checked_count", 19));
+    assert_ok(h5_write_attribute_double(file, "/modes", "checked_below", 11836.25));
+    assert_ok(h5_write_attribute_double(file, "/modes", "missed_chance", 4e-10));
     write_phases(file, i == 2 ? 1 : 2, i == 0 ? 1 : 4);
     assert_ok(h5_close(file));
     char *text = inspect("x.modal.h5", PLAIN, i == 2 ? SHB_ERR_INPUT : SHB_OK);
@@ -194,9 +198,13 @@ static void phases(void **state) {
       assert_has(text, "  factor               2.50     4.75     3210\n");
       assert_has(text, "  all                  2.62     5.00     3210\n");
       assert_has_not(text, "ranks)");
+      assert_has(text,
+                 "no mode is missing: 19 below 11836.2 Hz, counted by restart, wrong with a chance "
+                 "of 4.0×10⁻¹⁰ at most\n");
     } else if (i == 1) {
       assert_has(text, "  mesh                 0.12     0.25       80       50\n");
       assert_has(text, "(4 ranks)");
+      assert_has(text, "not checked whether a mode is missing\n");
     } else
       assert_has(shb_message(), "/phases/cpu");
     free(text);
