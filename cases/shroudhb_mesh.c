@@ -6,6 +6,7 @@
 
 #include "cases/case.h"
 #include "cases/command.h"
+#include "mesh/airfoil.h"
 #include "mesh/blade.h"
 #include "mesh/fe_mesh.h"
 #include "mesh/inp.h"
@@ -153,6 +154,18 @@ static shb_status make_from_file(const case_file *file, const char *output,
   return status;
 }
 
+static shb_status make_blade(const case_file *file, const char *output,
+                             const shb_provenance *provenance, shb_progress *progress) {
+  const double chord = mesh_airfoil_chord(&file->blade);
+  SHB_TRY(mesh_blade_write(&file->blade, output, provenance, progress));
+  if (file->blade.size > chord && !progress->quiet)
+    fprintf(stderr,
+            "shroudhb: warning: mesh.blade.size: %.3g mm is more than the chord, %.3g mm: "
+            "frequencies can be 3 %% off and more\n",
+            1e3 * file->blade.size, 1e3 * chord);
+  return SHB_OK;
+}
+
 static shb_status make_at(const case_file *file, const command_options *options, const char *output,
                           char *settings, shb_progress *progress) {
   if (!options->force && up_to_date(output, settings)) {
@@ -161,7 +174,7 @@ static shb_status make_at(const case_file *file, const command_options *options,
   }
   shb_provenance provenance = command_provenance(file, settings, "shroudhb-mesh");
   return file->mesh_file ? make_from_file(file, output, &provenance, progress)
-                         : mesh_blade_write(&file->blade, output, &provenance, progress);
+                         : make_blade(file, output, &provenance, progress);
 }
 
 static shb_status make(const case_file *file, const command_options *options,

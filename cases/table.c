@@ -59,8 +59,8 @@ static const case_key table[] = {
     {"mesh.blade.shroud_size", CASE_NUMBER, "m", 0, 100, .fallback = "0 m", AT(blade.shroud_size), .stages = CASE_MESH, .when = CASE_IF_BLADE,
      .help = "element size in the shroud; 0: as size"},
 
-    {"mesh.blade.elements", CASE_CHOICE, "", .words = "tet10 hex20", .fallback = "tet10", AT(blade.elements), .stages = CASE_MESH, .when = CASE_IF_BLADE,
-     .help = "tetrahedra of ten nodes, or hexahedra of twenty swept along the blade"},
+    {"mesh.blade.elements", CASE_CHOICE, "", .words = "tet10 hex20", .fallback = "hex20", AT(blade.elements), .stages = CASE_MESH, .when = CASE_IF_BLADE,
+     .help = "hexahedra of twenty nodes swept along the blade, or tetrahedra of ten"},
 
     {"material.E", CASE_TRIPLE, "Pa", 1e6, 1e14, .required = true, AT(constants.E), .stages = CASE_MODAL, .when = CASE_IF_MATERIAL,
      .help = "Young's modulus; with G of a single crystal, along its axes: a number or [E1, E2, E3]"},

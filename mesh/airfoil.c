@@ -30,9 +30,18 @@ static void centroid(double suction[N][2], double pressure[N][2], double centre[
   for (int d = 0; d < 2; d++) centre[d] /= area;
 }
 
-void mesh_airfoil_outline(const mesh_section *section, mesh_outline *outline) {
-  double suction[N][2], pressure[N][2], centre[2];
-  double side = section->camber < 0 ? -1 : 1;
+/* The first section that bends, or -1. */
+static int bent_section(const mesh_blade *blade) {
+  for (int i = 0; i < blade->n_sections; i++)
+    if (blade->section[i].camber != 0) return i;
+  return -1;
+}
+
+void mesh_airfoil_outline(const mesh_blade *blade, const mesh_section *section,
+                          mesh_outline *outline) {
+  double       suction[N][2], pressure[N][2], centre[2];
+  const int    bent = bent_section(blade);
+  const double side = bent >= 0 && blade->section[bent].camber < 0 ? -1 : 1;
   for (int i = 0; i < N; i++) {
     double s = (double)i / (N - 1), half = section->thickness / 2 * thickness_at(s);
     double camber  = 4 * section->camber * s * (1 - s);
@@ -66,6 +75,12 @@ mesh_section mesh_airfoil_at(const mesh_blade *blade, double radius) {
   return at;
 }
 
+double mesh_airfoil_chord(const mesh_blade *blade) {
+  double chord = 0;
+  for (int i = 0; i < blade->n_sections; i++) chord = fmax(chord, blade->section[i].chord);
+  return chord;
+}
+
 double mesh_airfoil_begin(const mesh_blade *blade) {
   double span = blade->section[1].radius - blade->section[0].radius;
   return blade->section[0].radius - fmin(0.3 * blade->root_height, 0.2 * span);
@@ -76,7 +91,8 @@ double mesh_airfoil_end(const mesh_blade *blade) {
 }
 
 static shb_status check_section(const mesh_blade *blade, int i) {
-  const mesh_section *s = &blade->section[i], *first = &blade->section[0];
+  const mesh_section *s    = &blade->section[i];
+  const int           bent = bent_section(blade);
   SHB_CHECK(s->radius > 0 && isfinite(s->radius), SHB_ERR_INPUT,
             "mesh.blade.sections[%d].radius: %g mm; it must be positive", i, 1e3 * s->radius);
   SHB_CHECK(i == 0 || s->radius > s[-1].radius, SHB_ERR_INPUT,
@@ -91,9 +107,9 @@ static shb_status check_section(const mesh_blade *blade, int i) {
   SHB_CHECK(fabs(s->camber) <= 0.4 * s->chord, SHB_ERR_INPUT,
             "mesh.blade.sections[%d].camber: %g mm; at most 40 %% of the chord, %g mm, either way",
             i, 1e3 * s->camber, 400 * s->chord);
-  SHB_CHECK(s->camber * first->camber >= 0, SHB_ERR_INPUT,
-            "mesh.blade.sections[%d].camber: %g mm bends the other way than sections[0], %g mm", i,
-            1e3 * s->camber, 1e3 * first->camber);
+  SHB_CHECK(bent < 0 || s->camber * blade->section[bent].camber >= 0, SHB_ERR_INPUT,
+            "mesh.blade.sections[%d].camber: %g mm bends the other way than sections[%d], %g mm", i,
+            1e3 * s->camber, bent, 1e3 * blade->section[bent].camber);
   SHB_CHECK(fabs(s->twist) <= 80 * M_PI / 180, SHB_ERR_INPUT,
             "mesh.blade.sections[%d].twist: %g deg; it must be between -80 and 80 deg", i,
             s->twist * 180 / M_PI);
@@ -134,9 +150,10 @@ static shb_status add_side(const mesh_frame *frame, double side[N][3], const int
   return SHB_OK;
 }
 
-static shb_status add_wire(const mesh_section *section, const mesh_frame *frame, int *wire) {
+static shb_status add_wire(const mesh_blade *blade, const mesh_section *section,
+                           const mesh_frame *frame, int *wire) {
   mesh_outline outline;
-  mesh_airfoil_outline(section, &outline);
+  mesh_airfoil_outline(blade, section, &outline);
   int edge[2], curve[2];
   SHB_TRY(mesh_frame_add_point(frame, outline.suction[0], &edge[0]));
   SHB_TRY(mesh_frame_add_point(frame, outline.suction[N - 1], &edge[1]));
@@ -150,10 +167,10 @@ shb_status mesh_airfoil_build(const mesh_blade *blade, const mesh_frame *frame, 
   int          wires[MESH_MAX_SECTIONS + 2], n = 0;
   mesh_section below = mesh_airfoil_at(blade, mesh_airfoil_begin(blade));
   mesh_section above = mesh_airfoil_at(blade, mesh_airfoil_end(blade));
-  SHB_TRY(add_wire(&below, frame, &wires[n++]));
+  SHB_TRY(add_wire(blade, &below, frame, &wires[n++]));
   for (int i = 0; i < blade->n_sections; i++)
-    SHB_TRY(add_wire(&blade->section[i], frame, &wires[n++]));
-  SHB_TRY(add_wire(&above, frame, &wires[n++]));
+    SHB_TRY(add_wire(blade, &blade->section[i], frame, &wires[n++]));
+  SHB_TRY(add_wire(blade, &above, frame, &wires[n++]));
   enum { DEGREE = 3 }; /* along the radius; more makes the joining three times slower */
   int   *made   = NULL;
   size_t n_made = 0;

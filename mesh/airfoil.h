@@ -20,10 +20,14 @@ typedef struct {
   double pressure[MESH_AIRFOIL_POINTS][3];
 } mesh_outline;
 
-void mesh_airfoil_outline(const mesh_section *section, mesh_outline *outline);
+/* The suction side is that of the blade's camber, also where a section's own is zero or, run on beyond the ends, less. */
+void mesh_airfoil_outline(const mesh_blade *blade, const mesh_section *section,
+                          mesh_outline *outline);
 
 /* Section parameters at a radius: linear between sections, and beyond the first and last. */
 mesh_section mesh_airfoil_at(const mesh_blade *blade, double radius);
+
+double mesh_airfoil_chord(const mesh_blade *blade); /* greatest, m */
 
 /* Radii at which the lofted solid begins (inside the root block) and ends (inside the shroud). */
 double mesh_airfoil_begin(const mesh_blade *blade);

@@ -2,6 +2,7 @@
 
 #include <gmshc.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 #include "mesh/airfoil.h"
@@ -44,7 +45,7 @@ static shb_status check_foot(const mesh_blade *blade) {
   for (int k = 0; k < 2; k++) {
     mesh_section section = mesh_airfoil_at(blade, radius[k]);
     mesh_outline outline;
-    mesh_airfoil_outline(&section, &outline);
+    mesh_airfoil_outline(blade, &section, &outline);
     for (int i = 0; i < MESH_AIRFOIL_POINTS; i++)
       for (int d = 0; d < 2; d++) {
         reach[d] = fmax(reach[d], fabs(outline.suction[i][d]));
@@ -249,25 +250,66 @@ static shb_status move_nodes(const mesh_fe *mesh, const char *moved) {
   return SHB_OK;
 }
 
+/* Hexahedra that are inverted lie where the loft crosses itself: radii between which they are. Tetrahedra were never seen to
+ * fill a blade that hexahedra do not. */
+static shb_status check_swept(const mesh_blade *blade, const mesh_fe *mesh) {
+  double radial[3], low = INFINITY, high = 0;
+  int    bad = 0;
+  mesh_axis_stacking(blade->axis, radial);
+  for (int e = 0; e < mesh->n_elements; e++) {
+    if (mesh_jacobian_least(mesh, e) > 0) continue;
+    bad++;
+    for (int c = 0; c < 8; c++) {
+      const double *x =
+          mesh->coordinates + 3 * (size_t)mesh->connectivity[MESH_NODES * (size_t)e + (size_t)c];
+      const double at = x[0] * radial[0] + x[1] * radial[1] + x[2] * radial[2];
+      low             = fmin(low, at);
+      high            = fmax(high, at);
+    }
+  }
+  const double fine = mesh_airfoil_chord(blade) / 5;
+  char         size[80];
+  snprintf(size, sizeof size, ", or give a mesh.blade.size below %.2g mm", 1e3 * fine);
+  SHB_CHECK(
+      bad == 0, SHB_ERR_INPUT,
+      "mesh.blade.sections: %d of %d hexahedra are inverted, from radius %.4g to %.4g mm: the "
+      "airfoil crosses itself there; make neighbouring sections more alike%s",
+      bad, mesh->n_elements, 1e3 * low, 1e3 * high, blade->size > fine ? size : "");
+  return SHB_OK;
+}
+
+static shb_status check_shape(const mesh_blade *blade, const mesh_fe *mesh) {
+  return mesh->kind == MESH_HEX20 ? check_swept(blade, mesh)
+                                  : mesh_jacobian_check(mesh, "mesh.blade.size");
+}
+
 /* Curved edges can invert a few elements where the airfoil is thin: those edges are made straight, at the cost
  * of their sag. More than 1 % of them means that the mesh does not resolve the blade: an error. */
-static shb_status straighten(mesh_fe *mesh, shb_progress *progress) {
+static shb_status straighten(const mesh_blade *blade, mesh_fe *mesh, shb_progress *progress) {
   int bad = mesh_jacobian_inverted(mesh);
-  if (bad == 0 || bad > mesh->n_elements / 100) return mesh_jacobian_check(mesh, "mesh.blade.size");
+  if (bad == 0 || bad > mesh->n_elements / 100) return check_shape(blade, mesh);
   char *moved = calloc((size_t)mesh->n_nodes, 1);
   SHB_CHECK(moved, SHB_ERR_IO, "no memory to straighten elements");
   mesh_jacobian_straighten(mesh, moved);
   shb_progress_note(progress, "%d inverted elements straightened", bad);
-  shb_status status = mesh_jacobian_check(mesh, "mesh.blade.size");
+  shb_status status = check_shape(blade, mesh);
   if (status == SHB_OK) status = move_nodes(mesh, moved);
   free(moved);
   return status;
 }
 
+static void note_corner(const mesh_fe *mesh, shb_progress *progress) {
+  double       x[3];
+  const double sine = mesh_jacobian_sharpest(mesh, x);
+  shb_progress_note(progress,
+                    "sharpest corner of an element %.2g of a right one, at %.4g %.4g %.4g mm", sine,
+                    1e3 * x[0], 1e3 * x[1], 1e3 * x[2]);
+}
+
 /* The mesh as it will be read: no element inverted, contact faces matching. */
 static shb_status verify(const mesh_blade *blade, mesh_fe *mesh, shb_progress *progress) {
   int pairs = 0, *right = NULL, *left = NULL;
-  SHB_TRY(straighten(mesh, progress));
+  SHB_TRY(straighten(blade, mesh, progress));
   SHB_TRY(mesh_fe_match(mesh, blade->axis, blade->blades, &pairs, &right, &left));
   free(right);
   free(left);
@@ -295,6 +337,7 @@ static shb_status make(const mesh_blade *blade, const char *path, const shb_prov
   if (status == SHB_OK)
     shb_progress_phase(progress, "mesh", "%d nodes, %d elements, %d contact faces a side",
                        mesh.n_nodes, mesh.n_elements, mesh.set[MESH_CONTACT_RIGHT].n);
+  if (status == SHB_OK) note_corner(&mesh, progress);
   mesh_fe_free(&mesh);
   SHB_TRY(status);
   SHB_TRY(mesh_export(path, provenance));

@@ -35,7 +35,7 @@ typedef struct {
 
 /* Mesh the blade (second order) and publish it as a gmsh 4.1 file with the groups root, contact_right,
  * contact_left, load (the pressure side) and a $Comments section that holds the provenance (mesh/provenance.h).
- * The same blade gives the same file. Where curved edges invert elements, at thin places, these are made
+ * The same blade gives the same file. With verbose progress: the sharpest corner of all elements. Where curved edges invert elements, at thin places, these are made
  * straight if they are at most 1 % of all. progress may be NULL.
  * Errors: SHB_ERR_INPUT for a geometry that cannot be built (what is wrong in the case's words) or inverted
  * elements (tags named); SHB_ERR_IO when the file cannot be written; SHB_INTERRUPTED. Nothing is left behind

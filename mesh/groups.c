@@ -78,24 +78,18 @@ static shb_status distance_to(const mesh_frame *frame, int tag, const double own
   return SHB_OK;
 }
 
-static double greatest_chord(const mesh_blade *blade) {
-  double chord = 0;
-  for (int i = 0; i < blade->n_sections; i++) chord = fmax(chord, blade->section[i].chord);
-  return chord;
-}
-
 /* Of the two faces that span root to shroud (a wide shroud's may too), the one through the first section's pressure side. */
 static shb_status find_pressure(const mesh_blade *blade, const mesh_frame *frame, const face *faces,
                                 int n, int *tag) {
   double       bottom = blade->section[0].radius;
   double       top = blade->section[blade->n_sections - 1].radius, best = INFINITY;
   mesh_outline outline;
-  mesh_airfoil_outline(&blade->section[0], &outline);
+  mesh_airfoil_outline(blade, &blade->section[0], &outline);
   int found = 0;
   for (int i = 0; i < n; i++) {
     double edge = 0.1 * (top - bottom), gap = 0;
     if (faces[i].low > bottom + edge || faces[i].high < top - edge) continue;
-    if (faces[i].width > 2 * greatest_chord(blade)) continue;
+    if (faces[i].width > 2 * mesh_airfoil_chord(blade)) continue;
     SHB_TRY(distance_to(frame, faces[i].tag, outline.pressure[MESH_AIRFOIL_POINTS / 2], &gap));
     if (gap < best) {
       best = gap;

@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 enum { POINTS = 43 };
 
@@ -41,23 +42,47 @@ static void make_probes(mesh_kind kind, probes *p) {
   }
 }
 
+/* J = dx/d(reference) of an element at a probe; its determinant. */
+static double jacobian_at(const mesh_fe *mesh, int element, const probes *p, int q,
+                          double J[3][3]) {
+  const int  nodes = mesh_topology_of(mesh->kind)->nodes;
+  const int *node  = mesh->connectivity + nodes * (size_t)element;
+  memset(J, 0, 9 * sizeof(double));
+  for (int n = 0; n < nodes; n++) {
+    const double *x = mesh->coordinates + 3 * (size_t)node[n];
+    for (int i = 0; i < 3; i++)
+      for (int d = 0; d < 3; d++) J[i][d] += x[i] * p->gradient[q][n][d];
+  }
+  return J[0][0] * (J[1][1] * J[2][2] - J[1][2] * J[2][1]) -
+         J[0][1] * (J[1][0] * J[2][2] - J[1][2] * J[2][0]) +
+         J[0][2] * (J[1][0] * J[2][1] - J[1][1] * J[2][0]);
+}
+
 static double least(const mesh_fe *mesh, int element, const probes *p) {
-  const int  nodes   = mesh_topology_of(mesh->kind)->nodes;
-  const int *node    = mesh->connectivity + nodes * (size_t)element;
-  double     minimum = INFINITY;
+  double J[3][3], minimum = INFINITY;
   for (int q = 0; q < p->n; q++) {
-    double J[3][3] = {{0}};
-    for (int n = 0; n < nodes; n++) {
-      const double *x = mesh->coordinates + 3 * (size_t)node[n];
-      for (int i = 0; i < 3; i++)
-        for (int d = 0; d < 3; d++) J[i][d] += x[i] * p->gradient[q][n][d];
-    }
-    double det = J[0][0] * (J[1][1] * J[2][2] - J[1][2] * J[2][1]) -
-                 J[0][1] * (J[1][0] * J[2][2] - J[1][2] * J[2][0]) +
-                 J[0][2] * (J[1][0] * J[2][1] - J[1][1] * J[2][0]);
+    double det = jacobian_at(mesh, element, p, q, J);
     if (!(det >= minimum)) minimum = det;
   }
   return minimum;
+}
+
+double mesh_jacobian_sharpest(const mesh_fe *mesh, double x[3]) {
+  const mesh_topology *topology = mesh_topology_of(mesh->kind);
+  probes               p;
+  double               J[3][3], sharpest = INFINITY;
+  make_probes(mesh->kind, &p);
+  for (int e = 0; e < mesh->n_elements; e++)
+    for (int c = 0; c < topology->corners; c++) {
+      double sine = jacobian_at(mesh, e, &p, c, J);
+      for (int d = 0; d < 3; d++)
+        sine /= sqrt(J[0][d] * J[0][d] + J[1][d] * J[1][d] + J[2][d] * J[2][d]);
+      if (!(sine < sharpest)) continue;
+      sharpest       = sine;
+      const int node = mesh->connectivity[topology->nodes * (size_t)e + (size_t)c];
+      memcpy(x, mesh->coordinates + 3 * (size_t)node, 3 * sizeof *x);
+    }
+  return sharpest;
 }
 
 double mesh_jacobian_least(const mesh_fe *mesh, int element) {

@@ -53,7 +53,7 @@ static shb_status learn(const mesh_blade *blade, const mesh_loft *loft, mesh_lof
   if (own[0][2] > own[1][2]) swap(&side->low[1], &side->high[1]);
   mesh_section section = mesh_airfoil_at(blade, mesh_airfoil_begin(blade));
   mesh_outline outline;
-  mesh_airfoil_outline(&section, &outline);
+  mesh_airfoil_outline(blade, &section, &outline);
   SHB_TRY(evaluate(loft, side, 0, 0, own[0]));
   SHB_TRY(evaluate(loft, side, 1, 0, own[1]));
   const double *edge = outline.suction[0];
@@ -87,7 +87,7 @@ static shb_status find_sides(const mesh_blade *blade, mesh_loft *loft) {
   SHB_CHECK(found == 2, SHB_ERR_INPUT, "%s: the lofted airfoil has %d sides, not 2", who, found);
   mesh_section section = mesh_airfoil_at(blade, mesh_airfoil_begin(blade));
   mesh_outline outline;
-  mesh_airfoil_outline(&section, &outline);
+  mesh_airfoil_outline(blade, &section, &outline);
   const double *at = outline.pressure[MESH_AIRFOIL_POINTS / 2];
   for (int s = 0; s < 2; s++) {
     SHB_TRY(learn(blade, loft, &loft->side[s]));

@@ -174,7 +174,7 @@ shb_status mesh_shroud_check(const mesh_blade *blade) {
   mesh_outline outline;
   for (int k = 0; k < 2; k++) {
     mesh_section section = mesh_airfoil_at(blade, radius[k]);
-    mesh_airfoil_outline(&section, &outline);
+    mesh_airfoil_outline(blade, &section, &outline);
     for (int i = 0; i < 2 * MESH_AIRFOIL_POINTS; i++) {
       const double *own =
           i < MESH_AIRFOIL_POINTS ? outline.suction[i] : outline.pressure[i - MESH_AIRFOIL_POINTS];

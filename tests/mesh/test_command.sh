@@ -9,7 +9,7 @@ trap 'rm -rf "$work"' EXIT
 failed=0
 export HOME="$work/home" # gmsh must leave it alone (its FLTK makes an empty preferences file)
 mkdir "$work/home" "$work/dir"
-cp "$scene" "$work/dir/case.yaml"
+sed 's/^    size: .*/    size: 6.5 mm\n    shroud_size: 4 mm\n    elements: tet10/' "$scene" >"$work/dir/case.yaml"
 mesh=$work/dir/z_notch_blade.msh
 
 fail() {

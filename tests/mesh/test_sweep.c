@@ -237,7 +237,7 @@ static void groups_lie_where_they_should(void **state) {
                 blade.section[0].radius - blade.root_height, 1e-14);
   /* the loaded side goes through the pressure side of the section in the middle */
   mesh_outline outline;
-  mesh_airfoil_outline(&blade.section[1], &outline);
+  mesh_airfoil_outline(&blade, &blade.section[1], &outline);
   const double *at      = outline.pressure[MESH_AIRFOIL_POINTS / 2];
   double        nearest = INFINITY, low = INFINITY, high = 0;
   for (int i = 0; i < 8 * mesh.set[MESH_LOAD].n; i++) {
@@ -282,6 +282,70 @@ static void any_blade_is_meshed(void **state) {
     mesh_fe_free(&mesh);
   }
   assert_int_equal(made, 72);
+}
+
+/* Camber that ends at zero changes sign where the airfoil runs on into root or shroud: the suction side stays the same, and a
+ * blade mirrored by camber and twist has the same volumes. */
+static void camber_may_end_at_zero(void **state) {
+  (void)state;
+  for (int end = 0; end < 3; end += 2) {
+    double part[2][3];
+    for (int mirrored = 0; mirrored < 2; mirrored++) {
+      mesh_blade blade = sample();
+      mesh_fe    mesh;
+      blade.section[end].camber = 0;
+      for (int s = 0; s < 3 && mirrored; s++)
+        blade.section[s].twist *= -1, blade.section[s].camber *= -1;
+      if (mirrored) blade.psi *= -1;
+      make(&blade, &mesh);
+      volumes(&blade, &mesh, part[mirrored]);
+      assert_near(part[mirrored][1] / airfoil_volume(&blade), 1, 4e-3);
+      mesh_fe_free(&mesh);
+    }
+    for (int p = 0; p < 3; p++) assert_near(part[1][p] / part[0][p], 1, 1e-4);
+  }
+}
+
+/* Sections between which the loft crosses itself. */
+static void crossing_airfoil_is_refused(void **state) {
+  (void)state;
+  mesh_blade blade = sample();
+  blade.section[1] = (mesh_section){.26, .09, .0015, .036, 20 * degree};
+  assert_int_equal(mesh_blade_write(&blade, other, &origin, NULL), SHB_ERR_INPUT);
+  if (!strstr(shb_message(), "mesh.blade.sections: ") ||
+      !strstr(shb_message(), "hexahedra are inverted, from radius ") ||
+      !strstr(shb_message(), "make neighbouring sections more alike"))
+    fail_msg("%s", shb_message());
+}
+
+/* The sharpest corner of a blade is at the airfoil's edge; that of a brick is right. */
+static void sharpest_corner(void **state) {
+  (void)state;
+  mesh_blade blade = sample();
+  mesh_fe    mesh;
+  double     x[3], sine;
+  make(&blade, &mesh);
+  sine = mesh_jacobian_sharpest(&mesh, x);
+  assert_true(sine > .1 && sine < .5);
+  assert_true(hypot(x[1], x[2]) > blade.section[0].radius - 1e-9);
+  mesh_fe_free(&mesh);
+  /* a parallelepiped: its edges' triple product */
+  const double edge[3][3] = {{2, 0, 0}, {.7, 1.1, 0}, {-.4, .3, 3}};
+  int          node[MESH_NODES];
+  double       at[MESH_NODES][3];
+  for (int n = 0; n < MESH_NODES; n++) {
+    const double *place = mesh_topology_of(MESH_HEX20)->place[n];
+    node[n]             = n;
+    for (int d = 0; d < 3; d++)
+      at[n][d] = place[0] * edge[0][d] + place[1] * edge[1][d] + place[2] * edge[2][d];
+  }
+  mesh_fe one = {.kind         = MESH_HEX20,
+                 .n_nodes      = MESH_NODES,
+                 .n_elements   = 1,
+                 .coordinates  = at[0],
+                 .connectivity = node};
+  assert_near(mesh_jacobian_sharpest(&one, x), 1.1 / hypot(.7, 1.1) * 3 / sqrt(.16 + .09 + 9),
+              1e-14);
 }
 
 static void same_case_same_file(void **state) {
@@ -349,6 +413,9 @@ int main(void) {
       cmocka_unit_test(contact_faces_have_their_normal_and_match),
       cmocka_unit_test(groups_lie_where_they_should),
       cmocka_unit_test(any_blade_is_meshed),
+      cmocka_unit_test(camber_may_end_at_zero),
+      cmocka_unit_test(crossing_airfoil_is_refused),
+      cmocka_unit_test(sharpest_corner),
       cmocka_unit_test(same_case_same_file),
   };
   return cmocka_run_group_tests_name("mesh.sweep", tests, set_up, tear_down);
