@@ -261,6 +261,20 @@ void mhb_left_out_motion_by(const mhb_left_out *l, int k, const modal_series *s,
   add_terms(l, k, s, false, 1, scale, p, motion);
 }
 
+void mhb_left_out_load(const mhb_left_out *l, int k, double w, double scale,
+                       double complex *motion) {
+  const int             n = l->relative.n, r = l->model->n_residual;
+  const double complex *S = shapes(l, k);
+  modal_series          s = modal_series_at(l->model, w);
+  for (int a = 0; a < n; a++)
+    motion[a] += scale * series(l->load, s.load_weight, (size_t)(k * n + a));
+  for (int i = 0; i < r; i++) {
+    double         slope;
+    double complex f = scale * modal_series_mode(l->model, i, &s, &slope) * l->F[k * r + i];
+    for (int a = 0; a < n; a++) motion[a] += S[a * r + i] * f;
+  }
+}
+
 void mhb_left_out_motion(const mhb_left_out *l, int k, double w, double scale,
                          const double complex *p, double complex *motion) {
   modal_series s = modal_series_at(l->model, w);

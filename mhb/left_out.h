@@ -47,6 +47,10 @@ void mhb_left_out_matrix(const mhb_left_out *left, int k, double w, double compl
 void mhb_left_out_block(const mhb_left_out *left, int k, double w, int pair,
                         double complex R[3][3]);
 
+/* motion[n] += scale load */
+void mhb_left_out_load(const mhb_left_out *left, int k, double w, double scale,
+                       double complex *motion);
+
 /* motion[n] += scale load - matrix p */
 void mhb_left_out_motion(const mhb_left_out *left, int k, double w, double scale,
                          const double complex *p, double complex *motion);

@@ -312,11 +312,9 @@ static void harmonic_at(mhb_receptance *r, int k) {
   double complex *all = r->BL, one = 1;
   set_lambda(r, w, L, L + m);
   for (int i = 0; i < m; i++) r->lambda[k * m + i] = CMPLX(L[i], L[m + i]);
-  double complex none[n];
-  memset(none, 0, sizeof none);
-  memset(u, 0, sizeof none);
+  memset(u, 0, sizeof *u * (size_t)n);
   mhb_receptance_residual(r, k, w, R);
-  mhb_left_out_motion(r->left_out, k, w, 1, none, u);
+  mhb_left_out_load(r->left_out, k, w, 1, u);
   for (int a = 0; a < n; a++, re += m, im += m) {
     for (int i = 0; i < m; i++) {
       y[i]     = re[i] * L[i] - im[i] * L[m + i];
