@@ -77,8 +77,11 @@ static shb_status sum_up_modal(hid_t file, const char *path, bool verbose, post_
   put_interfaces(out, m.n_pairs, m.interface, m.n_interfaces, m.interface_name);
   post_put(out, ", %s; load harmonics 0..%d; ", m.has_left ? "neighbour" : "ground", m.n_load);
   put_names(out, m.n_probes, m.probe_name);
-  post_put(out, "; residual flexibility %s, inertia %s\n", m.residual_flexibility ? "yes" : "no",
+  post_put(out, "; residual flexibility %s, inertia %s", m.residual_flexibility ? "yes" : "no",
            inertia_of(&m));
+  if (m.n_residual > 0) post_put(out, ", ");
+  if (m.n_residual > 0) put_count(out, m.n_residual, "residual mode");
+  post_put(out, "\n");
   shb_status   status = post_modes(file, &m, verbose, out);
   modal_speeds speeds = {0};
   if (status == SHB_OK) status = modal_speeds_read(path, &speeds);
