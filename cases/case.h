@@ -72,6 +72,7 @@ typedef struct {
   int             blades;
   int             n_speeds;
   double          speed[MHB_MAX_PRELOADS]; /* [n_speeds] rad/s, the last that of the response */
+  bool            run_up;                  /* the speed follows the frequency */
   double          pressure;                /* Pa, steady */
   mesh_axis       axis;
 

@@ -139,6 +139,45 @@ static void check_speeds(case_reader *r) {
       }
 }
 
+/* The range of the sweep lies on the engine order within the speeds of the list. */
+static void check_run_up_speeds(case_reader *r) {
+  static const double two_pi = 6.283185307179586476925, hair = 1e-9;
+  const case_file    *file = r->file;
+  const double       *f = file->mhb.frequency, E = file->engine_order;
+  double              low = file->speed[0], high = file->speed[0];
+  if (!case_reader_good(r, "rotor.speed")) return;
+  for (int i = 1; i < file->n_speeds; i++) {
+    low  = fmin(low, file->speed[i]);
+    high = fmax(high, file->speed[i]);
+  }
+  if (file->n_speeds < 2) {
+    case_reader_issue(r, "mhb.run_up", "needs rotor.speed as a list, or {from, to, points}");
+    return;
+  }
+  if (!case_reader_good(r, "mhb.frequency") || !case_reader_good(r, "excitation.engine_order"))
+    return;
+  if (two_pi * f[0] / E < low * (1 - hair) || two_pi * f[1] / E > high * (1 + hair))
+    case_reader_issue(
+        r, "mhb.frequency",
+        "must be within %.6g to %.6g Hz, which engine order %g meets at the speeds of "
+        "rotor.speed, %.6g to %.6g rpm (mhb.run_up)",
+        E * low / two_pi, E * high / two_pi, E, low * 60 / two_pi, high * 60 / two_pi);
+}
+
+static void check_run_up(case_reader *r) {
+  const case_file *file = r->file;
+  if (!file->run_up) return;
+  if (case_reader_good(r, "excitation.engine_order") && file->engine_order < 1) {
+    case_reader_issue(r, "mhb.run_up", "needs excitation.engine_order of 1 or more");
+    return;
+  }
+  if (case_reader_given(r, "integrate.start") && file->integrate.start == MHB_FROM_STATE)
+    case_reader_issue(r, "integrate.start",
+                      "must be balance or rest in a run-up (mhb.run_up): the structure is another "
+                      "one at each frequency");
+  if (!file->modal_file) check_run_up_speeds(r);
+}
+
 /* Frequencies outside the range would find curves that are not followed. */
 static void check_search(case_reader *r) {
   const mhb_settings *mhb  = &r->file->mhb;
@@ -231,6 +270,7 @@ bool case_check_values(case_reader *r, int stages) {
   check_speeds(r);
   check_band(r);
   if (stages & CASE_MHB) check_followed(r);
+  if (stages & CASE_MHB) check_run_up(r);
   case_check_interfaces(r, stages);
   check_search(r);
   if (stages & CASE_MHB) check_integrate(r);

@@ -55,7 +55,8 @@ typedef enum {
   CASE_IF_POINTS,     /* the same, and no modal.file */
   CASE_IF_INTERFACES, /* several by name */
   CASE_IF_VARIED,     /* several, and a parameter of one is followed */
-  CASE_IF_NEIGHBOUR,  /* contact.to: neighbour */
+  CASE_IF_ORDER,      /* contact.to: neighbour, or mhb.run_up: yes */
+  CASE_IF_RUN_UP,     /* mhb.run_up: yes */
   CASE_IF_SECTOR,     /* neighbour or parametric blade */
   CASE_IF_PSI,        /* psi given */
   CASE_IF_PHI,        /* phi given */

@@ -156,6 +156,9 @@ void run_describe(const case_file *file, FILE *out) {
     describe_preloads(mhb->n_preloads, mhb->n0, out);
   }
   fprintf(out, "  sweep     %g to %g Hz, ", mhb->frequency[0], mhb->frequency[1]);
+  if (file->run_up)
+    fprintf(out, "a run-up of %g to %g rpm, ", 60 * mhb->frequency[0] / mhb->engine_order,
+            60 * mhb->frequency[1] / mhb->engine_order);
   if (mhb->harmonics == 0) {
     fprintf(out, "harmonics as a tolerance of %g needs\n", mhb->motion_tolerance);
   } else {

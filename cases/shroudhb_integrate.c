@@ -8,9 +8,9 @@
 #include "cases/case.h"
 #include "cases/command.h"
 #include "cases/fresh.h"
+#include "cases/model.h"
 #include "mesh/progress.h"
 #include "mhb/witness.h"
-#include "modal/model.h"
 
 static const char usage[] =
     "usage: shroudhb-integrate [--quiet] [--verbose] [--force] CASE.yaml\n"
@@ -82,20 +82,21 @@ static void warn_of_ring(const case_file *file, const modal_model *model) {
 
 static shb_status solve(const case_file *file, const char *modal, const mhb_response *balance,
                         char *settings, const char *output, shb_progress *progress) {
-  modal_model    model;
+  case_model     model;
   mhb_response  *response   = NULL;
   shb_provenance provenance = command_provenance(file, settings, "shroudhb-integrate");
-  SHB_TRY(modal_model_read(modal, &model));
-  if (!progress->quiet) warn_of_ring(file, &model);
-  shb_status status = mhb_witness(&model, &file->mhb, &file->integrate, balance, output,
-                                  &provenance, progress, &response);
+  shb_status     status     = case_model_read(file, modal, 0, true, &model);
+  if (status == SHB_OK && !progress->quiet) warn_of_ring(file, &model.model);
+  if (status == SHB_OK)
+    status = mhb_witness(&model.model, &model.settings, &file->integrate, balance, output,
+                         &provenance, progress, &response);
   shb_progress_clear(progress);
   if (response && !progress->quiet) summarise(file, response, output);
   shb_progress_note(progress, "%.2f s in all", shb_seconds() - progress->started);
   int points = 0;
   for (int i = 0; response && i < response->n_branches; i++) points += response->branch[i].n_points;
   mhb_response_destroy(response);
-  modal_model_free(&model);
+  case_model_free(&model);
   SHB_CHECK(status != SHB_OK || points > 0, SHB_NOT_CONVERGED,
             "%s: no points: the balance has no stable solution at any of integrate.frequencies to "
             "start on; set integrate.start to rest or state",

@@ -8,9 +8,9 @@
 #include "cases/command.h"
 #include "cases/contact.h"
 #include "cases/fresh.h"
+#include "cases/model.h"
 #include "mesh/progress.h"
 #include "mhb/sweep.h"
-#include "modal/model.h"
 
 static const char usage[] =
     "usage: shroudhb-mhb [--quiet] [--verbose] [--force] CASE.yaml\n"
@@ -58,18 +58,35 @@ static void summarise(shb_progress *progress, const mhb_response *response) {
                       further > 1 ? "s" : "");
 }
 
+static void note_run_up(shb_progress *progress, const case_model *model) {
+  const mhb_run_up *r = model->run_up;
+  shb_progress_note(progress, "run-up: engine order %d, %.6g to %.6g rpm, %d speeds, %d modes",
+                    r->engine_order, 60 * model->settings.frequency[0] / r->engine_order,
+                    60 * model->settings.frequency[1] / r->engine_order, r->n, r->n_modes);
+  if (!r->speeds.overlap)
+    shb_progress_note(progress,
+                      "run-up: the modal file has no /speeds/overlap: modes are joined by their "
+                      "tracks, which take a veering between two speeds for a crossing");
+  if (r->n_dropped > 0)
+    shb_progress_note(progress,
+                      "run-up: %d modes change places with ones left out and answer statically",
+                      r->n_dropped);
+}
+
 static shb_status solve(const case_file *file, const char *modal, char *settings,
                         const char *output, shb_progress *progress) {
-  modal_model    model;
+  case_model     model;
   mhb_response  *response   = NULL;
   shb_provenance provenance = command_provenance(file, settings, "shroudhb-mhb");
-  SHB_TRY(modal_model_read(modal, &model));
-  shb_status status = mhb_sweep(&model, &file->mhb, output, &provenance, progress, &response);
+  shb_status     status     = case_model_read(file, modal, 0, true, &model);
+  if (status == SHB_OK && model.run_up) note_run_up(progress, &model);
+  if (status == SHB_OK)
+    status = mhb_sweep(&model.model, &model.settings, output, &provenance, progress, &response);
   shb_progress_clear(progress);
   if (response) summarise(progress, response);
   shb_progress_note(progress, "%.2f s in all", shb_seconds() - progress->started);
   mhb_response_destroy(response);
-  modal_model_free(&model);
+  case_model_free(&model);
   return status;
 }
 

@@ -12,11 +12,11 @@
 #include "cases/command.h"
 #include "cases/compare.h"
 #include "cases/fresh.h"
+#include "cases/model.h"
 #include "cases/rung.h"
 #include "cases/witness.h"
 #include "mesh/progress.h"
 #include "mhb/sweep.h"
-#include "modal/reduce.h"
 #include "postproc/curves.h"
 
 static const char usage[] =
@@ -35,7 +35,7 @@ typedef struct {
   case_file    file;
   rung_setting setting;
   const char  *modal, *stem, *reference, *points;
-  modal_model  model;
+  case_model   source;
   post_output  output;
 } job;
 
@@ -69,7 +69,7 @@ static shb_status run_sweeps(job *j, rung_cost *cost, mhb_response **response) {
   for (cost->runs = 0; cost->runs < MAX_RUNS && all < ENOUGH;) {
     mhb_response_destroy(*response);
     double began = cpu_seconds();
-    status       = mhb_sweep(&j->model, &j->file.mhb, NULL, NULL, NULL, response);
+    status       = mhb_sweep(&j->source.model, &j->source.settings, NULL, NULL, NULL, response);
     if (status != SHB_OK && status != SHB_NOT_CONVERGED) return status;
     double seconds = cpu_seconds() - began;
     cost->seconds  = cost->runs++ == 0 ? seconds : fmin(cost->seconds, seconds);
@@ -129,7 +129,8 @@ static shb_status find_peak(job *j, const mhb_response *response, const mhb_bran
   if (top >= 0 && !peaks[top].edge) {
     int      i = peaks[top].point;
     witness *w = NULL;
-    status     = witness_create(&j->model, &j->file.mhb, branch->harmonics[i], j->output, &w);
+    status =
+        witness_create(&j->source.model, &j->source.settings, branch->harmonics[i], j->output, &w);
     if (status == SHB_OK) refine(w, branch, i, peak);
     witness_destroy(w);
   }
@@ -187,7 +188,8 @@ static shb_status against_rung(job *j) {
   const char *name   = rung_leaf(j->reference);
   shb_status  status = SHB_OK;
   if (rung_error_read(j->stem, name, path, &error) != SHB_OK) {
-    status = compare_rungs(&j->model, &j->file.mhb, j->output, j->stem, j->reference, &error);
+    status = compare_rungs(&j->source.model, &j->source.settings, j->output, j->stem, j->reference,
+                           &error);
     if (status == SHB_OK) status = rung_error_write(&error, j->stem, name, path);
   }
   free(path);
@@ -197,7 +199,8 @@ static shb_status against_rung(job *j) {
 static shb_status against_integration(job *j) {
   rung_error error;
   if (rung_error_read(j->stem, "integration", j->points, &error) == SHB_OK) return SHB_OK;
-  SHB_TRY(compare_integration(&j->model, &j->file.mhb, j->output, j->stem, j->points, &error));
+  SHB_TRY(compare_integration(&j->source.model, &j->source.settings, j->output, j->stem, j->points,
+                              &error));
   return rung_error_write(&error, j->stem, "integration", j->points);
 }
 
@@ -218,9 +221,8 @@ static shb_status work(job *j) {
 
 static shb_status prepare(job *j) {
   SHB_TRY(rung_apply(&j->setting, &j->file));
-  SHB_TRY(modal_model_read(j->modal, &j->model));
-  SHB_TRY(modal_model_keep(&j->model, j->setting.modes, j->setting.residuals));
-  return rung_output(&j->file, j->model.n_probes, j->model.probe_name, &j->output);
+  SHB_TRY(case_model_read(&j->file, j->modal, j->setting.modes, j->setting.residuals, &j->source));
+  return rung_output(&j->file, j->source.model.n_probes, j->source.model.probe_name, &j->output);
 }
 
 int main(int argc, char **argv) {
@@ -246,7 +248,7 @@ int main(int argc, char **argv) {
   omp_set_num_threads(1); /* seconds are those of one core */
   status = prepare(&j);
   if (status == SHB_OK) status = work(&j);
-  modal_model_free(&j.model);
+  case_model_free(&j.source);
   case_free(&j.file);
   return command_finish(status);
 }

@@ -95,7 +95,7 @@ static const case_key table[] = {
     {"rotor.blades", CASE_INTEGER, "", 2, 1000, .required = true, AT(blades), .stages = CASE_MESH | CASE_MODAL | CASE_MHB, .when = CASE_IF_SECTOR,
      .help = "number of blades; the sector angle is 360 deg / blades"},
     {"rotor.speed", CASE_PRELOADS, "rad/s", 0, 1e5, .fallback = "0 rpm", AT(speed), .count_at = offsetof(case_file, n_speeds), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
-     .help = "rotation speed: modes about the static equilibrium under the centrifugal load; 0: at rest; a list or {from, to, points}: a Campbell diagram, the response at the last of them"},
+     .help = "rotation speed: modes about the static equilibrium under the centrifugal load; 0: at rest; a list or {from, to, points}: a Campbell diagram, the response at the last of them, or along them with mhb.run_up"},
     {"rotor.pressure", CASE_NUMBER, "Pa", -1e12, 1e12, .fallback = "0 Pa", AT(pressure), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
      .help = "steady gas pressure on the group load, into the deformed surface: part of the static equilibrium"},
     {"rotor.axis", CASE_CHOICE, "", .words = "x y z -x -y -z", .fallback = "x", AT(axis), .stages = CASE_MESH | CASE_MODAL, .when = CASE_IF_OWN_MODES,
@@ -116,7 +116,7 @@ static const case_key table[] = {
     {"modal.file", CASE_FILE_NAME, "", AT(modal_file), .stages = CASE_MHB, .when = CASE_IF_MODAL_FILE,
      .help = "modal file to use; mesh, material, rotor.speed and the load are then not needed"},
 
-    {"excitation.engine_order", CASE_INTEGER, "", 0, 10000, .required = true, AT(engine_order), .stages = CASE_MHB, .when = CASE_IF_NEIGHBOUR,
+    {"excitation.engine_order", CASE_INTEGER, "", 0, 10000, .required = true, AT(engine_order), .stages = CASE_MHB, .when = CASE_IF_ORDER,
      .help = "engine order E; the inter-blade phase is 2 pi E / blades"},
     {"excitation.pressure", CASE_NUMBER, "Pa", -1e12, 1e12, .required = true, .instead = "traction, force, field or loads", AT(load.pressure), .stages = CASE_MODAL, .when = CASE_IF_PRESSURE,
      .help = "on the group load, into the surface; one of pressure, traction, force, field"},
@@ -196,6 +196,8 @@ static const case_key table[] = {
 
     {"mhb.frequency", CASE_SWEEP, "Hz", 0, 1e9, true, .required = true, AT(mhb.frequency), .stages = CASE_MHB,
      .help = "range of the sweep: [from, to]; with mhb.vary one number"},
+    {"mhb.run_up", CASE_SWITCH, "", .words = "no yes", .fallback = "no", AT(run_up), .stages = CASE_MHB, .when = CASE_IF_RUN_UP,
+     .help = "the rotor's speed is the excitation frequency / engine order: modes of the speeds in rotor.speed (or in a modal file of several speeds), interpolated"},
     {"mhb.vary.n0", CASE_INTERVAL, "N", -1e12, 1e12, AT(vary[MHB_IN_N0]), .stages = CASE_MHB, .when = CASE_IF_FOLLOWED,
      .help = "curves follow this instead of the frequency: the preload"},
     {"mhb.vary.scale", CASE_INTERVAL, "", 0, 1e12, AT(vary[MHB_IN_SCALE]), .stages = CASE_MHB, .when = CASE_IF_FOLLOWED,
@@ -291,8 +293,10 @@ bool case_key_applies(const case_key *key, const case_file *file) {
              file->mhb.parameter != MHB_IN_SCALE;
     case CASE_IF_CRYSTAL:
       return own && !file->has_materials && file->constants.G[0] != 0;
-    case CASE_IF_NEIGHBOUR:
-      return !file->mhb.to_ground;
+    case CASE_IF_ORDER:
+      return !file->mhb.to_ground || file->run_up;
+    case CASE_IF_RUN_UP:
+      return file->run_up;
     case CASE_IF_SECTOR:
       return blade || !file->mhb.to_ground;
     case CASE_IF_PSI:

@@ -24,7 +24,7 @@ static const char *needed(case_condition when) {
 
 /* A row that only modes made here depend on. */
 static bool of_own_modes(const case_key *key) {
-  return key->when != CASE_IF_NEIGHBOUR && key->when != CASE_IF_SECTOR &&
+  return key->when != CASE_IF_ORDER && key->when != CASE_IF_SECTOR &&
          (key->stages & (CASE_MESH | CASE_MODAL)) != 0;
 }
 

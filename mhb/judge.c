@@ -98,6 +98,7 @@ static double value_of(const mhb_judge *j, int point) {
 static void evaluate(mhb_judge *j, const double *x, mhb_multipliers *out) {
   const mhb_residual *b        = j->residual;
   mhb_solution        solution = {b->at.omega, b->law, b->info, x, b->p};
+  if (b->settings->run_up) mhb_stability_move(j->stability, b->receptance);
   mhb_stability_evaluate(j->stability, &solution, out);
 }
 
@@ -152,8 +153,9 @@ static bool judge_point(mhb_judge *j, int point) {
 
 /* ---- which points ---- */
 
-/* Stuck or open throughout: the exponents are kept from point to point, and cost little. */
+/* Stuck or open throughout: the exponents are kept from point to point, and cost little; but not where the speed changes. */
 static bool is_linear(const mhb_judge *j, int point) {
+  if (j->residual->settings->run_up) return false;
   size_t        pairs = (size_t)j->response->n_pairs;
   const double *share = branch_of(j)->state + 3 * (size_t)point * pairs;
   for (size_t a = 0; a < pairs; a++)

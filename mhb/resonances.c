@@ -11,6 +11,10 @@ static const double TWO_PI = 6.283185307179586476925;
  * be; farther from each other than that, the contact's own motion tells the resonance. */
 static const double WINDOW = 4, SHORTEST = .5, APART = 2, FARTHEST = 32;
 
+/* A run-up is looked at this often; a mode that goes along with the excitation is no wider than this makes it. */
+enum { LOOKS = 16 };
+static const double LEAST_STEEP = .1;
+
 /* The eigenproblem of one harmonic. */
 typedef struct {
   const mhb_residual *b;
@@ -92,15 +96,18 @@ static int solve(const stuck_modes *w, int k) {
   return LAPACKE_zheev(LAPACK_COL_MAJOR, 'V', 'L', m, w->M, m, w->square) == 0;
 }
 
+/* The free mode that has most of a stuck one. */
+static int likest(int m, const double complex *q) {
+  int mode = 0;
+  for (int i = 1; i < m; i++)
+    if (cabs(q[i]) > cabs(q[mode])) mode = i;
+  return mode;
+}
+
 /* Between a mode's free and its stuck place. */
 static shb_status add_between(const stuck_modes *w, mhb_resonances *s, mhb_resonance stuck,
-                              const double complex *q) {
-  const mhb_receptance *r    = w->b->receptance;
-  int                   mode = 0;
-  for (int i = 1; i < r->n_modes; i++)
-    if (cabs(q[i]) > cabs(q[mode])) mode = i;
-  mhb_resonance own = free_one(r, stuck.k, mode);
-  double        gap = stuck.value - own.value;
+                              mhb_resonance own) {
+  double gap = stuck.value - own.value;
   if (fabs(gap) > FARTHEST * own.half) return add_inside(w, s, stuck);
   stuck.mode = own.mode;
   int n      = (int)(fabs(gap) / (APART * own.half));
@@ -111,21 +118,102 @@ static shb_status add_between(const stuck_modes *w, mhb_resonances *s, mhb_reson
   return fabs(gap) < SHORTEST * own.half ? SHB_OK : add_inside(w, s, stuck);
 }
 
+/* Of stuck mode j of harmonic k, as solved. */
+static mhb_resonance stuck_one(const stuck_modes *w, int k, int j) {
+  const mhb_receptance *r     = w->b->receptance;
+  const double complex *q     = w->M + (size_t)j * (size_t)r->n_modes;
+  double                decay = 0, turns = (double)r->nu / k;
+  for (int i = 0; i < r->n_modes; i++) {
+    double size = cabs(q[i]);
+    decay += size * size * r->model->damping_ratio[i] * TWO_PI * r->model->frequency[i];
+  }
+  double omega = sqrt(fmax(0, w->square[j]));
+  return (mhb_resonance){turns * omega, turns * decay, k, -1, false};
+}
+
 static shb_status add_stuck(const stuck_modes *w, mhb_resonances *s, int k) {
   const mhb_receptance *r = w->b->receptance;
   int                   m = r->n_modes;
   if (!solve(w, k)) return SHB_OK;
-  for (int j = 0; j < m; j++) {
-    const double complex *q     = w->M + (size_t)j * (size_t)m;
-    double                decay = 0, turns = (double)r->nu / k;
-    for (int i = 0; i < m; i++) {
-      double size = cabs(q[i]);
-      decay += size * size * r->model->damping_ratio[i] * TWO_PI * r->model->frequency[i];
-    }
-    double omega = sqrt(fmax(0, w->square[j]));
-    SHB_TRY(add_between(w, s, (mhb_resonance){turns * omega, turns * decay, k, -1, false}, q));
-  }
+  for (int j = 0; j < m; j++)
+    SHB_TRY(add_between(w, s, stuck_one(w, k, j),
+                        free_one(r, k, likest(m, w->M + (size_t)j * (size_t)m))));
   return SHB_OK;
+}
+
+/* ---- run-up: places omega = nu w_i(omega)/k ---- */
+
+/* What a mode has where the structure is that at omega. */
+typedef struct {
+  mhb_resonance free, stuck,
+      own; /* own: the free one that the stuck one is like; half = 0: not there */
+} mode_at;
+
+/* Of all harmonics and modes, [k][mode]. */
+static void look_at(const stuck_modes *w, double omega, mode_at *out) {
+  mhb_receptance *r = w->b->receptance;
+  int             m = r->n_modes;
+  mhb_receptance_move(r, omega);
+  for (int k = 1; k <= w->b->m; k++) {
+    mode_at *of    = out + (size_t)k * (size_t)m;
+    int      found = r->driven[k] && solve(w, k);
+    for (int i = 0; i < m; i++) {
+      of[i] = (mode_at){.free = free_one(r, k, i)};
+      if (!found) continue;
+      of[i].stuck = stuck_one(w, k, i);
+      of[i].own   = free_one(r, k, likest(m, w->M + (size_t)i * (size_t)m));
+    }
+  }
+}
+
+/* value - omega changes its sign between two frequencies: squares are linear in Omega^2. *steep <- what the excitation nears the
+ * resonance by as it changes by 1. */
+static bool meets(const mhb_resonance *a, double low, const mhb_resonance *b, double high,
+                  mhb_resonance *place, double *steep) {
+  double x = low * low, y = high * high, f = a->value * a->value - x, g = b->value * b->value - y;
+  if ((f > 0) == (g > 0)) return false;
+  double part  = f / (f - g);
+  *steep       = fmax(fabs(f - g) / (y - x), LEAST_STEEP);
+  *place       = part < .5 ? *a : *b;
+  place->value = sqrt(x + part * (y - x));
+  place->half  = ((1 - part) * a->half + part * b->half) / *steep;
+  return true;
+}
+
+static shb_status add_meetings(const stuck_modes *w, mhb_resonances *s, const mode_at *a,
+                               double low, const mode_at *b, double high) {
+  mhb_resonance place;
+  double        steep;
+  if (meets(&a->free, low, &b->free, high, &place, &steep)) SHB_TRY(add_inside(w, s, place));
+  if (!(a->stuck.half > 0 && b->stuck.half > 0) ||
+      !meets(&a->stuck, low, &b->stuck, high, &place, &steep))
+    return SHB_OK;
+  const bool    near = place.value - low < high - place.value;
+  mhb_resonance own  = near ? a->own : b->own;
+  own.value          = place.value + (own.value - (near ? a : b)->stuck.value) / steep;
+  own.half /= steep;
+  return add_between(w, s, place, own);
+}
+
+static shb_status add_run_up(const stuck_modes *w, mhb_resonances *s) {
+  size_t   all = (size_t)(w->b->m + 1) * (size_t)w->b->receptance->n_modes;
+  mode_at *at = calloc(2 * all, sizeof *at), *a = at, *b = at + all;
+  SHB_CHECK(at, SHB_ERR_IO, "out of memory for the resonances of a run-up");
+  shb_status status = SHB_OK;
+  double     low    = w->low;
+  look_at(w, low, a);
+  for (int i = 1; i <= LOOKS && status == SHB_OK; i++) {
+    double high = w->low + (w->high - w->low) * i / LOOKS;
+    look_at(w, high, b);
+    for (size_t j = 0; j < all && status == SHB_OK; j++)
+      if (a[j].free.k > 0) status = add_meetings(w, s, &a[j], low, &b[j], high);
+    mode_at *swap = a;
+    a             = b;
+    b             = swap;
+    low           = high;
+  }
+  free(at);
+  return status;
 }
 
 static int by_value(const void *a, const void *b) {
@@ -135,7 +223,8 @@ static int by_value(const void *a, const void *b) {
 
 static shb_status add_all(const stuck_modes *w, mhb_resonances *s) {
   const mhb_receptance *r = w->b->receptance;
-  for (int k = 1; k <= w->b->m; k++) {
+  if (r->at) SHB_TRY(add_run_up(w, s));
+  for (int k = 1; k <= w->b->m && !r->at; k++) {
     for (int i = 0; i < r->n_modes; i++) SHB_TRY(add_inside(w, s, free_one(r, k, i)));
     if (r->driven[k]) SHB_TRY(add_stuck(w, s, k));
   }

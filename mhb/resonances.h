@@ -4,7 +4,8 @@
  * the blade. Stuck ones, of the harmonics that are driven:
  *   (diag(w_i^2) + B^H K B) q = w^2 q,   K = (S^-1 + R)^-1,   S = diag(kv, Ku),   zeta w = sum_i |q_i|^2 zeta_i w_i
  * R the residual flexibility in the middle of the range. A contact that slips or opens is between the two; so is the resonance
- * (K rises from 0), which where they are near each other is as narrow, and anywhere between them. */
+ * (K rises from 0), which where they are near each other is as narrow, and anywhere between them.
+ * In a run-up the w_i are those at omega: places are where the curves omega and nu w_i(omega)/k meet, wider by the angle. */
 #ifndef MHB_RESONANCES_H
 #define MHB_RESONANCES_H
 

@@ -93,7 +93,9 @@ typedef struct {
   int     n_modes;
   double *mode_frequency, *mode_damping, *mode_residual; /* [m]; mode_residual may be NULL */
   int     engine_order, blades;
-  double  psi, phi; /* rad, mean of the pairs */
+  bool
+         run_up; /* the speed goes with the frequency, along the engine order; modes are those at the top of the range */
+  double psi, phi; /* rad, mean of the pairs */
 } mhb_response;
 
 mhb_response *mhb_response_create(int n_pairs, int n_probes, int n_harmonics); /* NULL: no memory */

@@ -90,6 +90,7 @@ static shb_status write_root(hid_t file, const mhb_response *response) {
   SHB_TRY(h5_write_attribute_int(file, "/", "engine_order", response->engine_order));
   SHB_TRY(h5_write_attribute_int(file, "/", "blades", response->blades));
   SHB_TRY(h5_write_attribute_int(file, "/", "subharmonics", response->subharmonics));
+  if (response->run_up) SHB_TRY(h5_write_attribute_int(file, "/", "run_up", 1));
   SHB_TRY(h5_write_attribute_text(file, "/", "parameter", mhb_parameter_name(response->parameter)));
   SHB_TRY(h5_write_attribute_double(file, "/", "psi", response->psi));
   SHB_TRY(h5_write_attribute_double(file, "/", "phi", response->phi));
@@ -139,6 +140,21 @@ static shb_status write_field(hid_t group, const mhb_response *response, const m
   return SHB_OK;
 }
 
+/* Of the rotor in a run-up; not read back. */
+static shb_status write_speed(hid_t group, const mhb_response *response, const mhb_branch *branch) {
+  static const double two_pi = 6.283185307179586476925;
+  if (!response->run_up) return SHB_OK;
+  double *speed = malloc(sizeof *speed * (size_t)branch->n_points + 1);
+  SHB_CHECK(speed, SHB_ERR_IO, "no memory for %d response points", branch->n_points);
+  for (int i = 0; i < branch->n_points; i++)
+    speed[i] = two_pi * branch->frequency[i] / response->engine_order;
+  shb_status status = h5_write_double(group, "speed", H5_SHAPE((hsize_t)branch->n_points), speed,
+                                      "rad/s", "speed of the rotor, frequency/engine_order");
+  free(speed);
+  SHB_TRY(status);
+  return h5_attach_scale(group, "speed", 0, mhb_fields[0].name);
+}
+
 static shb_status fill_branch(hid_t group, const mhb_response *response, const mhb_branch *branch) {
   SHB_TRY(h5_write_attribute_text(group, ".", "kind", kind_name[branch->kind]));
   SHB_TRY(h5_write_attribute_text(group, ".", "reason", branch->reason));
@@ -156,7 +172,7 @@ static shb_status fill_branch(hid_t group, const mhb_response *response, const m
   for (int i = 0; i < MHB_N_FIELDS; i++)
     if (mhb_field_kept(response, branch, &mhb_fields[i]))
       SHB_TRY(write_field(group, response, branch, &mhb_fields[i]));
-  return SHB_OK;
+  return write_speed(group, response, branch);
 }
 
 static shb_status write_branch(hid_t file, const mhb_response *response, int index) {
@@ -278,6 +294,9 @@ static shb_status read_root(hid_t file, const char *path, mhb_response **out) {
   SHB_TRY(h5_read_attribute_int(file, "/", "engine_order", 0, &response->engine_order));
   SHB_TRY(h5_read_attribute_int(file, "/", "blades", 0, &response->blades));
   SHB_TRY(h5_read_attribute_int(file, "/", "subharmonics", 1, &response->subharmonics));
+  int run_up = 0;
+  SHB_TRY(h5_read_attribute_int(file, "/", "run_up", 0, &run_up));
+  response->run_up = run_up != 0 && response->engine_order >= 1;
   SHB_TRY(h5_read_attribute_double(file, "/", "psi", 0, &response->psi));
   SHB_TRY(h5_read_attribute_double(file, "/", "phi", 0, &response->phi));
   SHB_CHECK(response->subharmonics >= 1, SHB_ERR_INPUT,

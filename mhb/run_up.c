@@ -155,20 +155,24 @@ static double kept(const modal_speeds *s, int from, int to, int m, double *work)
   return least;
 }
 
+static shb_status exchanged(const modal_speeds *s, const char *path, int from, int to) {
+  SHB_FAIL(SHB_ERR_INPUT,
+           "mhb.run_up: %s: whatever number of the %d modes is kept, some change places with the "
+           "others between %.6g and %.6g rpm; give more modal.modes",
+           path, s->model[from].n_modes, rpm(s->speed[from]), rpm(s->speed[to]));
+}
+
 static shb_status choose_space(const modal_speeds *s, const char *path, int from, int to,
                                double *work, int *modes) {
   double best = 0;
   int    at   = 0;
-  for (int m = s->n_modes; 2 * m >= s->n_modes && best < STAYS; m--) {
+  for (int m = s->model[from].n_modes; 2 * m >= s->model[from].n_modes && best < STAYS; m--) {
     double part = kept(s, from, to, m, work);
     if (part <= best) continue;
     best = part;
     at   = m;
   }
-  SHB_CHECK(best >= modal_speeds_alike, SHB_ERR_INPUT,
-            "mhb.run_up: %s: whatever number of the %d modes is kept, some change places with the "
-            "others between %.6g and %.6g rpm; give more modal.modes",
-            path, s->n_modes, rpm(s->speed[from]), rpm(s->speed[to]));
+  if (best < modal_speeds_alike) return exchanged(s, path, from, to);
   *modes = at;
   return SHB_OK;
 }
@@ -181,24 +185,30 @@ static bool is_closed(const modal_speeds *s, int from, int to, int m) {
   return true;
 }
 
+/* The first speed and track below m that is lost there; false: none. */
+static bool is_lost(const modal_speeds *s, int from, int to, int m, int *speed, int *track) {
+  for (*speed = from + 1; *speed <= to; ++*speed)
+    for (*track = 0; *track < m; ++*track)
+      if (s->mac[*speed * s->n_modes + *track] < modal_speeds_alike) return true;
+  return false;
+}
+
 /* Without overlaps: tracks that are not lost. */
 static shb_status choose_tracks(const modal_speeds *s, const char *path, int from, int to,
                                 int *modes) {
-  int m = s->n_modes;
-  while (m > 1 && !is_closed(s, from, to, m)) m--;
-  SHB_CHECK(2 * m >= s->n_modes && is_closed(s, from, to, m), SHB_ERR_INPUT,
-            "mhb.run_up: %s: whatever number of the %d modes is kept, some change places with the "
-            "others between %.6g and %.6g rpm; give more modes",
-            path, s->n_modes, rpm(s->speed[from]), rpm(s->speed[to]));
-  for (int i = from + 1; i <= to; i++)
-    for (int t = 0; t < m; t++)
-      SHB_CHECK(s->mac[i * s->n_modes + t] >= modal_speeds_alike, SHB_ERR_INPUT,
-                "mhb.run_up: %s: mode %d of %.6g rpm has a MAC of %.2g only with any of %.6g rpm; "
-                "give more speeds between them, or /speeds/overlap",
-                path, s->mode[i * s->n_modes + t] + 1, rpm(s->speed[i]), s->mac[i * s->n_modes + t],
-                rpm(s->speed[i - 1]));
-  *modes = m;
-  return SHB_OK;
+  const int all = s->model[from].n_modes, least = (all + 1) / 2;
+  int       i, t;
+  for (int m = all; m >= least; m--) {
+    if (!is_closed(s, from, to, m) || is_lost(s, from, to, m, &i, &t)) continue;
+    *modes = m;
+    return SHB_OK;
+  }
+  SHB_CHECK(!is_lost(s, from, to, least, &i, &t), SHB_ERR_INPUT,
+            "mhb.run_up: %s: mode %d of %.6g rpm has a MAC of %.2g only with any of %.6g rpm; "
+            "give more speeds between them, or /speeds/overlap",
+            path, s->mode[i * s->n_modes + t] + 1, rpm(s->speed[i]), s->mac[i * s->n_modes + t],
+            rpm(s->speed[i - 1]));
+  return exchanged(s, path, from, to);
 }
 
 /* V[mode][place] of a speed. */
@@ -297,7 +307,7 @@ static shb_status make(mhb_run_up *r, const char *path) {
   shb_status status = s->overlap ? choose_space(s, path, from, to, work, &r->n_modes)
                                  : choose_tracks(s, path, from, to, &r->n_modes);
   r->n              = to - from + 1;
-  r->n_dropped      = s->n_modes - r->n_modes;
+  r->n_dropped      = s->model[from].n_modes - r->n_modes;
   r->low            = s->speed[from];
   r->high           = s->speed[to];
   r->given          = &s->model[to];

@@ -96,6 +96,14 @@ void mhb_stability_destroy(mhb_stability *s) {
   free(s);
 }
 
+void mhb_stability_move(mhb_stability *s, const mhb_receptance *receptance) {
+  mhb_structure_set(receptance, &s->structure);
+  s->exponents.known = 0;
+  if (!s->monodromy) return;
+  mhb_structure_set(receptance, &s->reduced);
+  s->monodromy->variation->h = -1; /* propagators of no step length */
+}
+
 int mhb_stability_cells(const mhb_stability *s) {
   return s->structure.blades / s->timetable.chunks;
 }

@@ -44,6 +44,9 @@ shb_status mhb_stability_create(const mhb_receptance *receptance, const mhb_sett
                                 int substeps, int max_states, mhb_stability **stability);
 void       mhb_stability_destroy(mhb_stability *stability);
 
+/* A receptance in a run-up has moved: the structure is that at its speed from now on. */
+void mhb_stability_move(mhb_stability *stability, const mhb_receptance *receptance);
+
 /* Equal cells of the ring, gcd(E, N); the work goes with 1/cells^2. 1: a blade on the ground. */
 int mhb_stability_cells(const mhb_stability *stability);
 

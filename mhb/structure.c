@@ -75,14 +75,21 @@ shb_status mhb_structure_create(const mhb_receptance *r, const mhb_settings *set
     mhb_structure_destroy(s);
     SHB_FAIL(SHB_ERR_IO, "out of memory for the structure of %d contacts", s->contacts);
   }
-  for (int i = 0; i < m; i++) {
-    s->omega[i] = TWO_PI * model->frequency[i];
-    s->zeta[i]  = model->damping_ratio[i];
+  mhb_structure_set(r, s);
+  return SHB_OK;
+}
+
+void mhb_structure_set(const mhb_receptance *r, mhb_structure *s) {
+  const size_t side = (size_t)s->modes * (size_t)r->n, n = 3 * (size_t)s->contacts;
+  for (int i = 0; i < s->modes; i++) {
+    s->omega[i] = TWO_PI * r->model->frequency[i];
+    s->zeta[i]  = r->model->damping_ratio[i];
   }
   for (size_t k = 0; k < (size_t)s->sides * side; k++)
     s->shape[k] = shape_of(r, k >= side, (int)(k % (size_t)r->n), (int)(k % side) / r->n);
-  if (s->flexibility) set_flexibility(r, s);
-  return SHB_OK;
+  if (!s->flexibility) return;
+  memset(s->flexibility, 0, n * n * sizeof *s->flexibility);
+  set_flexibility(r, s);
 }
 
 void mhb_structure_destroy(mhb_structure *s) {

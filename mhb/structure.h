@@ -20,7 +20,9 @@ typedef struct {
  * inertia is left out: u = B q - R p + R2 p'' cannot be integrated forward in time. SHB_ERR_IO: no memory. */
 shb_status mhb_structure_create(const mhb_receptance *receptance, const mhb_settings *settings,
                                 int modes, mhb_structure *structure);
-void       mhb_structure_destroy(mhb_structure *structure);
+/* The same modes once the receptance has moved to another speed of a run-up. */
+void mhb_structure_set(const mhb_receptance *receptance, mhb_structure *structure);
+void mhb_structure_destroy(mhb_structure *structure);
 
 /* First contact of the side of a blade. */
 static inline int mhb_structure_contact(const mhb_structure *s, int blade, int side) {

@@ -108,6 +108,7 @@ shb_status mhb_sweep_describe(mhb_response *response, const modal_model *model,
   response->subharmonics   = settings->subharmonics;
   response->engine_order   = settings->engine_order;
   response->blades         = settings->blades;
+  response->run_up         = settings->run_up != NULL;
   response->parameter      = settings->parameter;
   response->n_multipliers  = settings->stability == MHB_STABILITY_NEVER ? 0 : MHB_JUDGE_MULTIPLIERS;
   response->mode_frequency = malloc(sizeof(double) * m);

@@ -352,12 +352,48 @@ static void note(witness *w, shb_status status) {
   snprintf(w->fault, sizeof w->fault, "%s", shb_message());
 }
 
-static void run_chain(witness *w, mhb_integrator *g, mhb_orbit *orbit, int chain) {
+/* What a thread has. In a run-up each frequency has a structure of its own, which stays as it is while it is integrated. */
+typedef struct {
+  mhb_at_speed   *at; /* NULL: one speed */
+  mhb_settings    settings;
+  mhb_integrator *g;
+  mhb_orbit      *orbit;
+  int             harmonics;
+} worker;
+
+static void worker_drop(worker *k) {
+  mhb_orbit_destroy(k->orbit);
+  mhb_integrator_destroy(k->g);
+  k->orbit = NULL;
+  k->g     = NULL;
+}
+
+static shb_status worker_take(worker *k, const modal_model *model) {
+  SHB_TRY(mhb_integrator_create(model, &k->settings, k->harmonics, &k->g));
+  return mhb_orbit_create(k->g, &k->orbit);
+}
+
+static shb_status worker_create(const witness *w, int harmonics, worker *k) {
+  *k                 = (worker){.settings = *w->settings, .harmonics = harmonics};
+  k->settings.run_up = NULL;
+  return w->settings->run_up ? mhb_at_speed_create(w->settings->run_up, &k->at)
+                             : worker_take(k, w->model);
+}
+
+static shb_status worker_go(worker *k, double hz) {
+  if (!k->at) return SHB_OK;
+  worker_drop(k);
+  mhb_at_speed_go(k->at, 2 * PI * hz);
+  return worker_take(k, &k->at->model);
+}
+
+static void run_chain(witness *w, worker *k, int chain) {
   for (int i = w->chain[chain]; i < w->chain[chain + 1]; i++) {
     cell found = w->cells[i];
     if (shb_interrupted() || w->status != SHB_OK) return;
     bool       first  = i == w->chain[chain] || w->cells[i - 1].done < 0;
-    shb_status status = run_cell(w, g, orbit, first, &found);
+    shb_status status = worker_go(k, found.hz);
+    if (status == SHB_OK) status = run_cell(w, k->g, k->orbit, first, &found);
     omp_set_lock(&w->mutex);
     note(w, status);
     w->cells[i] = found;
@@ -376,18 +412,16 @@ static shb_status run_all(witness *w) {
     if (w->cells[i].m > most) most = w->cells[i].m;
 #pragma omp parallel if (w->n_chains > 1)
   {
-    mhb_integrator *g      = NULL;
-    mhb_orbit      *orbit  = NULL;
-    shb_status      status = mhb_integrator_create(w->model, w->settings, most, &g);
-    if (status == SHB_OK) status = mhb_orbit_create(g, &orbit);
+    worker     k;
+    shb_status status = worker_create(w, most, &k);
     omp_set_lock(&w->mutex);
     note(w, status);
     omp_unset_lock(&w->mutex);
 #pragma omp for schedule(dynamic, 1)
     for (int i = 0; i < w->n_chains; i++)
-      if (status == SHB_OK) run_chain(w, g, orbit, i);
-    mhb_orbit_destroy(orbit);
-    mhb_integrator_destroy(g);
+      if (status == SHB_OK) run_chain(w, &k, i);
+    worker_drop(&k);
+    mhb_at_speed_destroy(k.at);
   }
   if (w->status != SHB_OK) return shb_fail(w->status, __FILE__, __LINE__, "%s", w->fault);
   return SHB_OK;
@@ -430,6 +464,9 @@ shb_status mhb_witness(const modal_model *model, const mhb_settings *settings,
                .progress   = progress,
                .published  = shb_seconds()};
   *out      = NULL;
+  SHB_CHECK(!settings->run_up || asked->start != MHB_FROM_STATE, SHB_ERR_INPUT,
+            "integrate.start: state takes the state of one structure to the next, but in a run-up "
+            "(mhb.run_up) each frequency has its own; set it to balance or rest");
   SHB_CHECK(
       settings->parameter == MHB_IN_FREQUENCY, SHB_ERR_INPUT,
       "the case follows %s at a fixed frequency; points by time integration go over a range of "

@@ -49,6 +49,7 @@ static void put_header(const mhb_response *response, post_buffer *out) {
   static const char *const probe[3]   = {"_tangential", "_axial", "_radial"};
   static const char *const contact[3] = {"_v", "_u", "_w"};
   post_put(out, "branch,kind,n0_N,frequency_Hz");
+  if (response->run_up) post_put(out, ",speed_rpm");
   for (int i = 0; i < response->n_interfaces; i++)
     put_name(out, "n0_", response->interface_name[i], "_N");
   if (followed(response)) post_put(out, ",%s", followed(response));
@@ -122,6 +123,7 @@ static void put_point(const mhb_response *response, int b, int point, post_buffe
   bool nonlinear = branch->kind == MHB_BRANCH_NONLINEAR || branch->kind == MHB_BRANCH_INTEGRATION;
   put_number(out, nonlinear || response->parameter == MHB_IN_N0 ? branch->n0[point] : NAN);
   put_number(out, branch->frequency[point]);
+  if (response->run_up) put_number(out, 60 * branch->frequency[point] / response->engine_order);
   for (size_t k = 0; k < (size_t)response->n_interfaces; k++)
     put_number(out, branch->interface_n0[i * (size_t)response->n_interfaces + k]);
   if (followed(response)) put_number(out, branch->value[point]);

@@ -133,6 +133,8 @@ static void sum_up_branches(const post_study *study, post_buffer *out) {
   post_put(out, "; ");
   put_count(out, folds, "fold");
   if (cut) post_put(out, "; %d not complete", cut);
+  if (r->run_up) post_put(out, "\n  ");
+  post_put_run_up(study, out);
   post_put(out, "\n  ");
 }
 

@@ -73,6 +73,8 @@ static void put_lede(const post_study *study, const post_source *source, post_bu
   }
   post_put(out, ", ψ\u00a0=\u00a0%s°", post_plain(deg, degrees(r->psi), 3));
   post_put(out, ", φ\u00a0=\u00a0%s°", post_plain(deg, degrees(r->phi), 3));
+  if (r->run_up) post_put(out, "; ");
+  post_put_run_up(study, out);
   if (*source->created) {
     post_put(out, ". Computed ");
     post_put_escaped(out, source->created);

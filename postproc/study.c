@@ -321,3 +321,13 @@ void post_put_harmonics(const mhb_response *response, post_buffer *out) {
   if (fewest < most) post_put(out, "%d to ", fewest);
   post_put(out, "%d harmonic%s", most, most == 1 ? "" : "s");
 }
+
+void post_put_run_up(const post_study *study, post_buffer *out) {
+  const mhb_response *r = study->response;
+  char                lo[POST_NUMBER], hi[POST_NUMBER];
+  if (!r->run_up || !(study->frequency[0] <= study->frequency[1])) return;
+  post_put(out, "run-up: speed %s", post_plain(lo, 60 * study->frequency[0] / r->engine_order, 6));
+  if (study->frequency[0] < study->frequency[1])
+    post_put(out, " to %s", post_plain(hi, 60 * study->frequency[1] / r->engine_order, 6));
+  post_put(out, " rpm along E = %d", r->engine_order);
+}

@@ -104,4 +104,7 @@ void post_group_name(const post_group *group, char out[64]);
 /* "7 harmonics", or "1 to 21 harmonics" where each nonlinear point has its own number. */
 void post_put_harmonics(const mhb_response *response, post_buffer *out);
 
+/* "run-up: speed 1080 to 3480 rpm along E = 5", or at one speed; nothing where the speed does not go with the frequency. */
+void post_put_run_up(const post_study *study, post_buffer *out);
+
 #endif

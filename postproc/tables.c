@@ -175,12 +175,13 @@ void post_table_modes(const mhb_response *response, post_buffer *out) {
     post_put(out, "<p>The response file does not list the modes it was computed from.</p>\n");
     return;
   }
-  post_put(
-      out,
-      "<div class=\"scroll\"><table><caption>Modes of the blade with its shrouds free.</caption>\n"
-      "<thead><tr><th scope=\"col\">Mode</th><th scope=\"col\">Frequency, Hz</th>"
-      "<th scope=\"col\">Damping ratio, %%</th><th scope=\"col\">Relative "
-      "residual</th></tr></thead>\n<tbody>\n");
+  post_put(out,
+           "<div class=\"scroll\"><table><caption>Modes of the blade with its shrouds "
+           "free%s.</caption>\n"
+           "<thead><tr><th scope=\"col\">Mode</th><th scope=\"col\">Frequency, Hz</th>"
+           "<th scope=\"col\">Damping ratio, %%</th><th scope=\"col\">Relative "
+           "residual</th></tr></thead>\n<tbody>\n",
+           response->run_up ? ", at the highest speed of the run-up" : "");
   for (int i = 0; i < response->n_modes; i++) {
     char number[POST_NUMBER];
     post_put(out, "<tr><th scope=\"row\">%d</th>", i + 1);

@@ -76,11 +76,13 @@ static void keys_and_kinds(void **state) {
        1},
       {"  scale: 1.3", "  zzzzzz: 1.3",
        "c.yaml:34:3: error: mhb.zzzzzz: unknown key; known here: frequency, "
-       "vary, harmonics, tolerance, subharmonics, scale, max_points, stability, flips, search",
+       "run_up, vary, harmonics, tolerance, subharmonics, scale, max_points, stability, flips, "
+       "search",
        1},
       {"  scale: 1.3", "  mhb.scale: 1.3",
        "c.yaml:34:3: error: mhb.mhb.scale: unknown key; known here: "
-       "frequency, vary, harmonics, tolerance, subharmonics, scale, max_points, stability, flips, "
+       "frequency, run_up, vary, harmonics, tolerance, subharmonics, scale, max_points, stability, "
+       "flips, "
        "search",
        1},
       {"  scale: 1.3", "  [a, b]: 1.3",
@@ -307,6 +309,10 @@ static void numbers_and_ranges(void **state) {
 static void keys_among_each_other(void **state) {
   (void)state;
   static const fault rows[] = {
+      {"  scale: 1.3", "  run_up: yes",
+       "c.yaml:34:11: error: mhb.run_up: needs rotor.speed as a list, or {from, to, points}", 1},
+      {"  scale: 1.3", "  run_up: true",
+       "c.yaml:34:11: error: mhb.run_up: 'true' is not known; expected one of no, yes", 1},
       {"radius: 0.47 m", "radius: 0.3 m",
        "c.yaml:7:9: error: mesh.blade.sections[1]: radius is 0.3 m, must be "
        "above that of the section before, 0.31 m",
@@ -392,6 +398,50 @@ static void keys_among_each_other(void **state) {
 }
 
 /* Keys that would not be read, each at its place. */
+/* text with from replaced by to; frees text. */
+static char *change(char *text, const char *from, const char *to) {
+  char  *at   = strstr(text, from);
+  size_t size = strlen(text) + strlen(to) + 1;
+  char  *out  = malloc(size);
+  assert_non_null(at);
+  snprintf(out, size, "%.*s%s%s", (int)(at - text), text, to, at + strlen(from));
+  free(text);
+  return out;
+}
+
+/* A run-up needs the speeds that its frequencies go with. */
+static void run_ups(void **state) {
+  (void)state;
+  static const struct {
+    const char *from, *to, *says; /* "": nothing is wrong */
+  } rows[] = {
+      {"  scale: 1.3", "  scale: 1.3", ""},
+      {"frequency: [90 Hz, 0.12 kHz]", "frequency: [60 Hz, 0.12 kHz]",
+       "c.yaml:31:14: error: mhb.frequency: must be within 70 to 128.333 Hz, which engine order 7 "
+       "meets at the speeds of rotor.speed, 600 to 1100 rpm (mhb.run_up)"},
+      {"frequency: [90 Hz, 0.12 kHz]", "frequency: [90 Hz, 0.13 kHz]",
+       "c.yaml:31:14: error: mhb.frequency: must be within 70 to 128.333 Hz, which"},
+      {"engine_order: 7", "engine_order: 0",
+       "c.yaml:35:11: error: mhb.run_up: needs excitation.engine_order of 1 or more"},
+      {"to: neighbour", "to: ground", ""},
+      {"  stability: always\n", "  stability: always\nintegrate: {start: state}\n",
+       "c.yaml:37:20: error: integrate.start: must be balance or rest in a run-up (mhb.run_up): "
+       "the structure is another one at each frequency"},
+      {"  stability: always\n", "  stability: always\nintegrate: {start: rest}\n", ""},
+  };
+  for (size_t i = 0; i < COUNT(rows); i++) {
+    char *said, *text = scratch_case("speed: 2900 rpm", "speed: [900 rpm, 600 rpm, 1100 rpm]");
+    text              = change(text, rows[i].from, rows[i].to);
+    text              = change(text, "  max_points: 777", "  run_up: yes");
+    shb_status status = judge(text, strlen(text), &said);
+    assert_int_equal(status, *rows[i].says ? SHB_ERR_INPUT : SHB_OK);
+    if (strncmp(said, rows[i].says, strlen(rows[i].says)) != 0)
+      fail_msg("expected %s\nfound %s", rows[i].says, said);
+    free(said);
+    free(text);
+  }
+}
+
 static void nothing_is_ignored(void **state) {
   (void)state;
   static const fault rows[] = {
@@ -579,11 +629,16 @@ static void carets_stay_below(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(keys_and_kinds),        cmocka_unit_test(numbers_and_ranges),
-      cmocka_unit_test(keys_among_each_other), cmocka_unit_test(nothing_is_ignored),
-      cmocka_unit_test(a_force_needs_a_place), cmocka_unit_test(not_yaml),
-      cmocka_unit_test(strange_files),         cmocka_unit_test(a_missing_file_is_told),
-      cmocka_unit_test(all_at_once),           cmocka_unit_test(carets_stay_below)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(keys_and_kinds),
+                                     cmocka_unit_test(numbers_and_ranges),
+                                     cmocka_unit_test(keys_among_each_other),
+                                     cmocka_unit_test(run_ups),
+                                     cmocka_unit_test(nothing_is_ignored),
+                                     cmocka_unit_test(a_force_needs_a_place),
+                                     cmocka_unit_test(not_yaml),
+                                     cmocka_unit_test(strange_files),
+                                     cmocka_unit_test(a_missing_file_is_told),
+                                     cmocka_unit_test(all_at_once),
+                                     cmocka_unit_test(carets_stay_below)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

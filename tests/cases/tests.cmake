@@ -30,6 +30,13 @@ if(TARGET shroudhb-post)
   add_dependencies(test_cases_z_notch shroudhb shroudhb-mesh shroudhb-modal shroudhb-mhb shroudhb-post)
 endif()
 
+if(TARGET shroudhb-post)
+  shb_test(cases run_up slow shb_response)
+  target_sources(test_cases_run_up PRIVATE cases/scratch.c)
+  target_compile_definitions(test_cases_run_up PRIVATE SHROUDHB="$<TARGET_FILE:shroudhb>")
+  add_dependencies(test_cases_run_up shroudhb shroudhb-mesh shroudhb-modal shroudhb-mhb shroudhb-post)
+endif()
+
 # The paper's figures on our own blade, from mesh to curves.
 if(TARGET shroudhb-post)
   function(figure_test noun scene)

@@ -37,6 +37,7 @@ static void core(spinning_kind kind, double s, double A[N][N]) {
     if (i == 1) b += (pow(.8 + .66, 2) - pow(.8 + .33, 2)) / .49 + .05; /* meets the next at .7 */
     A[i][i] = a + (kind == SPINNING_STEADY ? 0 : b * s);
     if (kind == SPINNING_STRAIGHT && i >= M) A[i][i] = a;
+    if (kind == SPINNING_LEAVING && i == M - 1) A[i][i] = a + 7 * s;
     if (kind == SPINNING_TURNING) A[i][i] = a + (.2 + .05 * i) * s;
     for (int j = 0; j < i; j++) {
       double x = random_unit(&seed), y = random_unit(&seed);

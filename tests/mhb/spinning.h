@@ -12,6 +12,7 @@ typedef enum {
   SPINNING_STEADY,   /* the same at every speed */
   SPINNING_STRAIGHT, /* w_i^2 = a_i + b_i Omega^2 of those kept, shapes and damping ratio constant; the second mode crosses the third at .7 */
   SPINNING_TURNING,  /* shapes change, smoothly */
+  SPINNING_LEAVING,  /* as STRAIGHT, but the last mode kept crosses the first left out at .5 */
   SPINNING_VEERING   /* as STRAIGHT, but the second and the third mode veer, in a tenth of Omega */
 } spinning_kind;
 

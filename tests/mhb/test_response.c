@@ -142,6 +142,32 @@ static void round_trip(int n_probes, int points) {
   mhb_response_destroy(read);
 }
 
+/* The speed of each point, and the mark; files without it have one speed. */
+static void run_up_tells_its_speeds(void **state) {
+  (void)state;
+  mhb_response *wrote = sample(PROBES, 7), *read;
+  hid_t         file;
+  double       *speed = NULL;
+  h5_shape      shape = H5_SHAPE(7);
+  wrote->run_up       = true;
+  assert_ok(mhb_response_write(wrote, scratch("speeds.h5"), &from));
+  assert_ok(mhb_response_read(scratch("speeds.h5"), &read));
+  assert_true(read->run_up);
+  assert_ok(h5_open(scratch("speeds.h5"), &file));
+  assert_ok(h5_read_double(file, "/branch_0/speed", &shape, &speed));
+  for (int i = 0; i < 7; i++)
+    assert_true(fabs(speed[i] * 5 / (2 * M_PI * wrote->branch[0].frequency[i]) - 1) < 1e-14);
+  assert_ok(h5_close(file));
+  free(speed);
+  mhb_response_destroy(read);
+  wrote->run_up = false;
+  assert_ok(mhb_response_write(wrote, scratch("one.h5"), &from));
+  assert_ok(mhb_response_read(scratch("one.h5"), &read));
+  assert_false(read->run_up);
+  mhb_response_destroy(wrote);
+  mhb_response_destroy(read);
+}
+
 static void test_round_trip(void **state) {
   (void)state;
   round_trip(PROBES, 7);
@@ -471,6 +497,7 @@ static void test_create(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_round_trip),
+      cmocka_unit_test(run_up_tells_its_speeds),
       cmocka_unit_test(test_further_branches),
       cmocka_unit_test(test_growth),
       cmocka_unit_test(test_placed),

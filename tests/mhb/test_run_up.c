@@ -10,6 +10,7 @@
 #include <cmocka.h>
 
 #include "mhb/receptance.h"
+#include "modal/reduce.h"
 #include "tests/mhb/random_model.h"
 #include "tests/mhb/spinning.h"
 
@@ -92,6 +93,7 @@ static double error(spinning_kind kind, int n, bool overlap) {
     double complex a[VALUES], b[VALUES];
     modal_model    model;
     spinning_model(kind, place(i) / s.engine_order, &model, NULL);
+    assert_ok(modal_model_keep(&model, run_up->n_modes, true));
     assert_ok(mhb_receptance_create(&model, &plain, K, &exact));
     outputs(r, place(i), false, a);
     outputs(exact, place(i), false, b);
@@ -179,9 +181,76 @@ static void slopes_are_derivatives(void **state) {
     }
 }
 
+/* Modes that change places with ones left out are left out as well. */
+static void modes_that_leave_are_static(void **state) {
+  (void)state;
+  for (int overlap = 0; overlap < 2; overlap++) {
+    mhb_settings s      = spinning_settings();
+    mhb_run_up  *run_up = make_run_up(SPINNING_LEAVING, 9, overlap, &s);
+    assert_int_equal(run_up->n_modes, SPINNING_MODES - 1);
+    assert_int_equal(run_up->n_dropped, 1);
+    mhb_run_up_destroy(run_up);
+    assert_below(error(SPINNING_LEAVING, 33, overlap), 1e-5);
+  }
+}
+
+/* Only the speeds about the range count, two more on each side. */
+static void speeds_far_away_do_not_count(void **state) {
+  (void)state;
+  mhb_settings s = spinning_settings();
+  modal_speeds speeds;
+  mhb_run_up  *run_up = NULL;
+  spinning_speeds(SPINNING_TURNING, 41, 0, 1, false, &speeds);
+  speeds.mac[5 * SPINNING_MODES] = .1; /* a track lost far below */
+  s.frequency[0]                 = .81 / (2 * 3.14159265358979323846);
+  s.frequency[1]                 = 1.19 / (2 * 3.14159265358979323846);
+  assert_ok(mhb_run_up_create(&speeds, "blade", 2, s.frequency, &run_up));
+  assert_below(fabs(run_up->low - .35), 1e-12);
+  assert_below(fabs(run_up->high - .65), 1e-12);
+  assert_below(fabs(mhb_run_up_speed(run_up, .8) - .4), 1e-12);
+  assert_true(mhb_run_up_speed(run_up, 2) == run_up->high); /* nothing is extrapolated */
+  mhb_run_up_destroy(run_up);
+}
+
+static void refuse(modal_speeds *speeds, int order, double from, double to, const char *text) {
+  const double two_pi = 2 * 3.14159265358979323846, range[2] = {from / two_pi, to / two_pi};
+  mhb_run_up  *run_up = NULL;
+  assert_int_equal(mhb_run_up_create(speeds, "blade.h5", order, range, &run_up), SHB_ERR_INPUT);
+  if (!strstr(shb_message(), text)) fail_msg("'%s' does not say '%s'", shb_message(), text);
+  assert_int_equal(speeds->n, 0); /* taken over */
+}
+
+static void what_cannot_be_is_refused(void **state) {
+  (void)state;
+  const size_t all = SPINNING_MODES * SPINNING_MODES;
+  modal_speeds s   = {0};
+  refuse(&s, 2, .4, 1.9, "blade.h5 holds modes of one speed; give rotor.speed as a list");
+  spinning_speeds(SPINNING_TURNING, 3, 0, 1, true, &s);
+  refuse(&s, 0, .4, 1.9, "excitation.engine_order is 0");
+  spinning_speeds(SPINNING_TURNING, 3, .25, 1, true, &s);
+  refuse(&s, 2, .4, 1.9, "2.38732 to 9.5493 rpm, which cover 0.0795775 to 0.31831 Hz");
+  spinning_speeds(SPINNING_TURNING, 3, 0, 1, true, &s);
+  refuse(&s, 2, .4, 2.1, "on engine order 2 is a rotor of 1.90986 to 10.0268 rpm");
+  spinning_speeds(SPINNING_TURNING, 5, 0, 1, false, &s);
+  s.mac[2 * SPINNING_MODES + 1] = .3;
+  refuse(&s, 2, .4, 1.9, "mode 2 of 4.77465 rpm has a MAC of 0.3 only with any of 2.38732 rpm");
+  spinning_speeds(SPINNING_TURNING, 5, 0, 1, true, &s);
+  for (size_t i = 0; i < all; i++) /* all but two modes are others */
+    if (i / SPINNING_MODES > 1 || i % SPINNING_MODES > 1) s.overlap[3 * all + i] = 0;
+  refuse(&s, 2, .4, 1.9, "whatever number of the 6 modes is kept, some change places");
+  spinning_speeds(SPINNING_TURNING, 3, 0, 1, true, &s);
+  for (int i = 0; i < SPINNING_MODES; i++) s.model[1].frequency[i] *= i ? 1 : 1e-2;
+  for (int i = 0; i < SPINNING_MODES; i++) s.model[2].frequency[i] *= i ? 1 : 5;
+  refuse(&s, 2, .4, 1.9, "the speeds are too far apart");
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(what_does_not_change_stays), cmocka_unit_test(straight_lines_are_exact),
-      cmocka_unit_test(order_is_four), cmocka_unit_test(slopes_are_derivatives)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(what_does_not_change_stays),
+                                     cmocka_unit_test(straight_lines_are_exact),
+                                     cmocka_unit_test(order_is_four),
+                                     cmocka_unit_test(slopes_are_derivatives),
+                                     cmocka_unit_test(modes_that_leave_are_static),
+                                     cmocka_unit_test(speeds_far_away_do_not_count),
+                                     cmocka_unit_test(what_cannot_be_is_refused)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -132,6 +132,25 @@ static void whole(void **state) {
   mhb_response_destroy(r);
 }
 
+/* A column more, and only then. */
+static void run_up(void **state) {
+  (void)state;
+  fixture_options o    = fixture_usual();
+  mhb_response   *r    = fixture_response(&o);
+  post_buffer     text = {0};
+  char           *name[MOST], *cell[MOST], names[8192], room[8192];
+  int             n, m;
+  assert_non_null(r);
+  r->run_up = true;
+  post_csv(r, &text);
+  const char *at = record(text.text, names, name, &n);
+  record(at, room, cell, &m);
+  assert_int_equal(n, 5 + 2 * 11 + 15 + 13);
+  assert_near(value(cell[column(name, n, "speed_rpm")]), 60 * r->branch[0].frequency[0] / 5, 1e-8);
+  post_buffer_free(&text);
+  mhb_response_destroy(r);
+}
+
 static void many_contacts(void **state) {
   (void)state;
   static const double n0[] = {40};
@@ -182,7 +201,7 @@ static void parameter(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(whole), cmocka_unit_test(many_contacts),
-                                     cmocka_unit_test(parameter)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(whole), cmocka_unit_test(run_up),
+                                     cmocka_unit_test(many_contacts), cmocka_unit_test(parameter)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -91,6 +91,19 @@ static void largest_at_the_end(void **state) {
   mhb_response_destroy(r);
 }
 
+static void run_up(void **state) {
+  (void)state;
+  fixture_options o = fixture_usual();
+  mhb_response   *r = fixture_response(&o);
+  r->run_up         = true;
+  assert_ok(mhb_response_write(r, at("r.response.h5"), &PROVENANCE));
+  char *text = inspect("r.response.h5", PLAIN, SHB_OK);
+  assert_has(text, "run-up: speed 1102.76 to 1656 rpm along E = 5");
+  assert_has(text, "speed of the rotor, frequency/engine_order");
+  free(text);
+  mhb_response_destroy(r);
+}
+
 static void parameter(void **state) {
   (void)state;
   static const char *const range[] = {"n0 −250 … 1000 N at 240 Hz", "scale 0.05 … 10 at 240 Hz"};
@@ -330,8 +343,10 @@ static void errors(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(response), cmocka_unit_test(parameter), cmocka_unit_test(largest_at_the_end),
-      cmocka_unit_test(modal),    cmocka_unit_test(phases),    cmocka_unit_test(pretender),
-      cmocka_unit_test(foreign),  cmocka_unit_test(large),     cmocka_unit_test(errors)};
+      cmocka_unit_test(response),  cmocka_unit_test(run_up),
+      cmocka_unit_test(parameter), cmocka_unit_test(largest_at_the_end),
+      cmocka_unit_test(modal),     cmocka_unit_test(phases),
+      cmocka_unit_test(pretender), cmocka_unit_test(foreign),
+      cmocka_unit_test(large),     cmocka_unit_test(errors)};
   return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

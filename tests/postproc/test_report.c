@@ -93,17 +93,21 @@ static void check_self_contained(const char *html) {
 
 /* ---------------------------------------------------------------- pages */
 
-static char *page(const fixture_options *o, const char *name) {
-  mhb_response *r = fixture_response(o);
-  post_study   *study;
-  post_buffer   html = {0};
-  post_source   s    = source();
+/* Takes the response. */
+static char *page_of(mhb_response *r, const char *name) {
+  post_study *study;
+  post_buffer html = {0};
+  post_source s    = source();
   assert_non_null(r);
   assert_ok(post_study_create(r, &study));
   assert_ok(post_report(study, &s, name, &html));
   post_study_destroy(study);
   mhb_response_destroy(r);
   return html.text;
+}
+
+static char *page(const fixture_options *o, const char *name) {
+  return page_of(fixture_response(o), name);
 }
 
 static void usual(void **state) {
@@ -123,6 +127,21 @@ static void usual(void **state) {
   assert_int_equal(count(html, "class=\"line limit open\""),
                    1 + 1 + 2); /* curve, key, two levels */
   assert_true(count(html, "line unstable c3") >= 1);
+  free(html);
+}
+
+static void run_up(void **state) {
+  (void)state;
+  fixture_options o    = fixture_usual();
+  char           *html = page(&o, "plain");
+  assert_null(strstr(html, "run-up"));
+  free(html);
+  mhb_response *r = fixture_response(&o);
+  assert_non_null(r);
+  r->run_up = true;
+  html      = page_of(r, "runs up");
+  assert_has(html, "run-up: speed 1102.76 to 1656 rpm along E = 5");
+  assert_has(html, "shrouds free, at the highest speed of the run-up.");
   free(html);
 }
 
@@ -412,7 +431,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(usual),   cmocka_unit_test(escaping),        cmocka_unit_test(data),
       cmocka_unit_test(odd),     cmocka_unit_test(not_estimated),   cmocka_unit_test(size),
-      cmocka_unit_test(picture), cmocka_unit_test(names_of_limits), cmocka_unit_test(turns),
-      cmocka_unit_test(followed)};
+      cmocka_unit_test(picture), cmocka_unit_test(names_of_limits), cmocka_unit_test(run_up),
+      cmocka_unit_test(turns),   cmocka_unit_test(followed)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
