@@ -46,21 +46,37 @@ static double geometric(const double S[3][3], const double H[3][3]) {
   return sum;
 }
 
-static double stored(const fem_element *element, const fem_material *material, const double x[][3],
-                     const double state[][3], const double u[][3]) {
+/* What a point holds of the state: nothing, at rest. */
+typedef struct {
+  bool            rest;
+  fem_deformation at;
+} situation;
+
+static double density(const fem_material *material, const situation *here, const double h[3][3]) {
+  static const double identity[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  if (here->rest) return elastic(material, identity, h);
+  return elastic(material, (const double(*)[3])here->at.F, h) +
+         geometric((const double(*)[3])here->at.S, h);
+}
+
+/* energy[i] += that of the element, of n fields u[i][node][3]; state: NULL at rest. */
+static void add_stored(const fem_element *element, const fem_material *material,
+                       const double x[][3], const double state[][3], int n,
+                       const double u[][MESH_NODES][3], double *energy) {
   const fem_rule *rule = fem_element_stiffness_rule(element, x);
-  double          sum  = 0;
   for (int p = 0; p < rule->n; p++) {
-    fem_deformation at;
-    double          g[MESH_NODES][3], H[3][3], h[3][3];
-    double          volume = rule->weight[p] * fem_element_gradient(element, rule, p, x, g);
-    fem_displacement_gradient(element->n, (const double(*)[3])g, state, H);
-    fem_deform(material, (const double(*)[3])H, &at);
-    fem_displacement_gradient(element->n, (const double(*)[3])g, u, h);
-    sum += volume * (elastic(material, (const double(*)[3])at.F, (const double(*)[3])h) +
-                     geometric((const double(*)[3])at.S, (const double(*)[3])h));
+    situation here = {.rest = !state};
+    double    g[MESH_NODES][3], h[3][3];
+    double    volume = rule->weight[p] * fem_element_gradient(element, rule, p, x, g);
+    if (state) {
+      fem_displacement_gradient(element->n, (const double(*)[3])g, state, h);
+      fem_deform(material, (const double(*)[3])h, &here.at);
+    }
+    for (int i = 0; i < n; i++) {
+      fem_displacement_gradient(element->n, (const double(*)[3])g, u[i], h);
+      energy[i] += volume * density(material, &here, (const double(*)[3])h);
+    }
   }
-  return sum;
 }
 
 static double spun(const fem_body *body, double rho, const double x[][3], const double u[][3]) {
@@ -74,20 +90,31 @@ static double spun(const fem_body *body, double rho, const double x[][3], const 
   return sum;
 }
 
-double fem_tangent_energy(const fem_body *body, const double *state, const double *u) {
-  double sum = 0;
+void fem_tangent_energies(const fem_body *body, const double *state, int n, const double *u,
+                          double *energy) {
+  const size_t stride = 3 * (size_t)body->mesh->n_nodes;
+  memset(energy, 0, (size_t)n * sizeof *energy);
   for (int e = 0; e < body->mesh->n_elements; e++) {
-    double x[MESH_NODES][3], at[MESH_NODES][3], by[MESH_NODES][3];
-
+    double              x[MESH_NODES][3], at[MESH_NODES][3], by[FEM_FIELDS][MESH_NODES][3];
     const fem_material *own = fem_material_at(body->material, body->mesh, e);
-    fem_body_element(body, e, state, x, at);
-    fem_body_element(body, e, u, x, by);
-    sum += stored(body->element, own, (const double(*)[3])x, (const double(*)[3])at,
-                  (const double(*)[3])by);
-    if (body->rotation.speed != 0)
-      sum -= spun(body, own->rho, (const double(*)[3])x, (const double(*)[3])by);
+    if (state) fem_body_element(body, e, state, x, at);
+    for (int first = 0; first < n; first += FEM_FIELDS) {
+      const int count = n - first < FEM_FIELDS ? n - first : FEM_FIELDS;
+      for (int i = 0; i < count; i++)
+        fem_body_element(body, e, u + (size_t)(first + i) * stride, x, by[i]);
+      add_stored(body->element, own, (const double(*)[3])x, state ? (const double(*)[3])at : NULL,
+                 count, (const double(*)[MESH_NODES][3])by, energy + first);
+      for (int i = 0; i < count && body->rotation.speed != 0; i++)
+        energy[first + i] -= spun(body, own->rho, (const double(*)[3])x, (const double(*)[3])by[i]);
+    }
   }
-  return sum + fem_pressure_energy(body, state, u);
+  for (int i = 0; i < n; i++) energy[i] += fem_pressure_energy(body, state, u + (size_t)i * stride);
+}
+
+double fem_tangent_energy(const fem_body *body, const double *state, const double *u) {
+  double energy;
+  fem_tangent_energies(body, state, 1, u, &energy);
+  return energy;
 }
 
 double fem_strain_energy(const mesh_fe *mesh, const fem_material *material,

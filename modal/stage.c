@@ -143,22 +143,25 @@ static shb_status prepare(const mesh_fe *mesh, const modal_settings *settings,
  * slender body reaches 1e-9 and changes with the number of ranks; these are good to about 1e-12. */
 static PetscErrorCode refine(const fem_body *body, const double *state, const fem_system *system,
                              modal_eigen *eigen) {
-  double *u;
-  Vec     phi;
-  int     rank;
+  const size_t stride = 3 * (size_t)body->mesh->n_nodes;
+  double      *u;
+  int          rank;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(system->comm, &rank));
-  PetscCall(PetscMalloc1(rank == 0 ? 3 * (size_t)body->mesh->n_nodes : 1, &u));
-  for (int i = 0; i < eigen->n; i++) {
-    PetscCall(MatDenseGetColumnVecRead(eigen->phi, i, &phi));
-    PetscCall(fem_system_gather(system, phi, u));
-    PetscCall(MatDenseRestoreColumnVecRead(eigen->phi, i, &phi));
-    if (rank != 0) continue;
-    eigen->lambda[i] = fem_tangent_energy(body, state, u);
-    if (i > 0)
-      eigen->lambda[i] = PetscMax(eigen->lambda[i], eigen->lambda[i - 1]); /* equal pairs */
+  PetscCall(PetscMalloc1(rank == 0 ? FEM_FIELDS * stride : 1, &u));
+  for (int first = 0; first < eigen->n; first += FEM_FIELDS) {
+    const int count = PetscMin(FEM_FIELDS, eigen->n - first);
+    for (int i = 0; i < count; i++) {
+      Vec phi;
+      PetscCall(MatDenseGetColumnVecRead(eigen->phi, first + i, &phi));
+      PetscCall(fem_system_gather(system, phi, rank == 0 ? u + (size_t)i * stride : u));
+      PetscCall(MatDenseRestoreColumnVecRead(eigen->phi, first + i, &phi));
+    }
+    if (rank == 0) fem_tangent_energies(body, state, count, u, eigen->lambda + first);
   }
+  for (int i = 1; i < eigen->n; i++) /* equal pairs */
+    eigen->lambda[i] = PetscMax(eigen->lambda[i], eigen->lambda[i - 1]);
   PetscCallMPI(MPI_Bcast(eigen->lambda, eigen->n, MPI_DOUBLE, 0, system->comm));
   PetscCall(PetscFree(u));
   PetscFunctionReturn(0);
