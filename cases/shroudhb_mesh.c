@@ -32,8 +32,10 @@ static shb_status check_faces(const case_file *file, const char *right, const ch
   int r = mesh_fe_set_named(mesh, right), l = mesh_fe_set_named(mesh, left);
   *pairing = (mesh_pairing){0};
   if (file->mhb.to_ground) {
+    char found[MESH_FOUND + 40];
     SHB_CHECK(mesh->set[r].n, SHB_ERR_INPUT,
-              "group %s is absent or empty; contact to ground needs it", right);
+              "group %s is absent or empty; contact to ground needs it; %s", right,
+              mesh_fe_found(mesh, found));
     return SHB_OK;
   }
   SHB_TRY(mesh_fe_orient_groups(mesh, file->axis, r, l));

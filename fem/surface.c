@@ -49,6 +49,7 @@ static void surface_force(const mesh_fe *mesh, const fem_load *load, const fem_f
 
 shb_status fem_load_pattern(const mesh_fe *mesh, const fem_load *load, const double *fallback,
                             double *force) {
+  char found[MESH_FOUND + 40];
   memset(force, 0, 3 * (size_t)mesh->n_nodes * sizeof(double));
   if (load->kind == FEM_LOAD_FORCE) {
     const double *at = load->has_at ? load->at : fallback;
@@ -62,8 +63,9 @@ shb_status fem_load_pattern(const mesh_fe *mesh, const fem_load *load, const dou
   }
   SHB_CHECK(mesh->set[MESH_LOAD].n > 0, SHB_ERR_INPUT,
             "the mesh has no group \"%s\" for excitation.%s; name the loaded faces so, or give "
-            "excitation.force",
-            mesh_set_name(MESH_LOAD), load->kind == FEM_LOAD_PRESSURE ? "pressure" : "traction");
+            "excitation.force; %s",
+            mesh_set_name(MESH_LOAD), load->kind == FEM_LOAD_PRESSURE ? "pressure" : "traction",
+            mesh_fe_found(mesh, found));
   fem_face_rule rule;
   FEM_PETSC(fem_face_rule_create(mesh->kind, &rule));
   surface_force(mesh, load, &rule, force);

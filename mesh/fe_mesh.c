@@ -1,6 +1,7 @@
 #include "mesh/fe_mesh.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -21,6 +22,24 @@ int mesh_fe_set_named(const mesh_fe *mesh, const char *name) {
   for (int s = 0; s < mesh_fe_sets(mesh); s++)
     if (strcmp(mesh_fe_set_name(mesh, s), name) == 0) return s;
   return -1;
+}
+
+void mesh_fe_note_group(mesh_fe *mesh, const char *name) {
+  static const char more[] = ", ...";
+  const size_t      length = strlen(mesh->found), room = sizeof mesh->found - sizeof more;
+  char             *end = mesh->found + length;
+  if (length >= sizeof more && strcmp(end - strlen(more), more) == 0) return;
+  const bool fits = length + 2 + strlen(name) <= room;
+  snprintf(end, sizeof mesh->found - length, "%s%s", length && fits ? ", " : "",
+           fits ? name : more);
+  for (; *end; end++)
+    if ((unsigned char)*end < ' ' || *end == 127) *end = '?';
+}
+
+const char *mesh_fe_found(const mesh_fe *mesh, char text[MESH_FOUND + 40]) {
+  if (!*mesh->found) return "the mesh has no groups of faces";
+  snprintf(text, MESH_FOUND + 40, "the mesh has the groups %s", mesh->found);
+  return text;
 }
 
 const char *mesh_names_set(const mesh_names *names, int set) {

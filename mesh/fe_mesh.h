@@ -21,7 +21,8 @@ enum {
   MESH_MAX_MORE    = 16,
   MESH_MAX_SETS    = MESH_N_SETS + MESH_MAX_MORE,
   MESH_MAX_VOLUMES = 16,
-  MESH_WORD        = 81
+  MESH_WORD        = 81,
+  MESH_FOUND       = 200 /* of a text that lists groups */
 };
 
 /* A named group of element faces; n = 0 if the group is absent. */
@@ -41,9 +42,10 @@ typedef struct {
   int       n_more;                         /* groups besides the usual four: */
   char      more[MESH_MAX_MORE][MESH_WORD]; /* their names, */
   mesh_face_set set[MESH_MAX_SETS];         /* their faces after those of the four */
-  int           n_regions;                  /* volumes that were asked for, 0: none */
-  char (*region_name)[MESH_WORD];           /* [n_regions] */
-  int *region; /* [n_elements] the one each element lies in; NULL without */
+  char found[MESH_FOUND]; /* "a, b": groups of the file, also those that were not asked for */
+  int  n_regions;         /* volumes that were asked for, 0: none */
+  char (*region_name)[MESH_WORD]; /* [n_regions] */
+  int *region;                    /* [n_elements] the one each element lies in; NULL without */
 } mesh_fe;
 
 /* What is read from a mesh file, by its names there. Labels are our names, and the file's unless it has another. */
@@ -70,6 +72,12 @@ const char *mesh_fe_set_name(const mesh_fe *mesh, int set);
 
 /* Place of the group of that name, -1 if there is none. */
 int mesh_fe_set_named(const mesh_fe *mesh, const char *name);
+
+/* Add to mesh->found what the file has: as many names as there is room for, then "...". */
+void mesh_fe_note_group(mesh_fe *mesh, const char *name);
+
+/* "the mesh has the groups a, b": ends the text of what is missing. */
+const char *mesh_fe_found(const mesh_fe *mesh, char text[MESH_FOUND + 40]);
 
 /* Name of a group in the file; names may be NULL. */
 const char *mesh_names_set(const mesh_names *names, int set);

@@ -210,12 +210,13 @@ static shb_status take_surface(const char *name, const node_table *table, int en
 }
 
 /* Which of our sets a physical surface is; their number if none. */
-static shb_status which_set(const char *name, const mesh_names *names, const mesh_fe *mesh,
-                            int group, int *id) {
+static shb_status which_set(const char *name, const mesh_names *names, mesh_fe *mesh, int group,
+                            int *id) {
   char *label = NULL;
   GMSH_TRY(name, gmshModelGetPhysicalName(2, group, &label, &ierr));
   for (*id = 0; *id < mesh_fe_sets(mesh); ++*id)
     if (label && strcmp(label, mesh_names_set(names, *id)) == 0) break;
+  if (label && *label) mesh_fe_note_group(mesh, label);
   gmshFree(label);
   return SHB_OK;
 }

@@ -214,6 +214,8 @@ static shb_status build(builder *b, const mesh_names *names) {
   SHB_TRY(find_kind(b));
   SHB_TRY(take_volumes(b));
   SHB_TRY(take_nodes(b));
+  for (int i = 0; i < b->inp.n_sets; i++)
+    if (*b->inp.set[i].name) mesh_fe_note_group(b->mesh, b->inp.set[i].name);
   for (int id = 0; id < mesh_fe_sets(b->mesh); id++) SHB_TRY(take_group(b, names, id));
   if (names && names->n_volumes) SHB_TRY(take_regions(b, names));
   return mesh_faces_orient(b->mesh, b->deck->path);

@@ -102,9 +102,10 @@ static shb_status pair_up(const mesh_fe *mesh, const place *places, int n, const
 shb_status mesh_fe_match(const mesh_fe *mesh, mesh_axis axis, int blades, int *n_pairs,
                          int **right_nodes, int **left_nodes) {
   const mesh_face_set *sr = &mesh->set[MESH_CONTACT_RIGHT], *sl = &mesh->set[MESH_CONTACT_LEFT];
+  char                 found[MESH_FOUND + 40];
   SHB_CHECK(sr->n && sl->n, SHB_ERR_INPUT,
-            "group %s is absent or empty; contact to the neighbour needs both contact faces",
-            sr->n ? "contact_left" : "contact_right");
+            "group %s is absent or empty; contact to the neighbour needs both contact faces; %s",
+            sr->n ? "contact_left" : "contact_right", mesh_fe_found(mesh, found));
   int        nr = 0, nl = 0;
   int       *right  = unique_nodes(mesh, sr, &nr);
   int       *left   = unique_nodes(mesh, sl, &nl);

@@ -93,15 +93,16 @@ shb_status mesh_fe_read_named(const char *path, const mesh_names *names, mesh_fe
 }
 
 shb_status mesh_fe_check_groups(const mesh_fe *mesh, const char *name) {
+  char found[MESH_FOUND + 40];
   SHB_CHECK(mesh->set[MESH_ROOT].n > 0, SHB_ERR_INPUT,
             "%s: group root is absent or empty; a physical surface (in .inp a *SURFACE or *NSET) "
-            "of that name, or a rule in mesh.groups, says which faces are clamped",
-            name);
+            "of that name, or a rule in mesh.groups, says which faces are clamped; %s",
+            name, mesh_fe_found(mesh, found));
   for (int s = MESH_N_SETS; s < mesh_fe_sets(mesh); s++)
     SHB_CHECK(mesh->set[s].n > 0, SHB_ERR_INPUT,
               "%s: group %s is absent or empty; a physical surface (in .inp a *SURFACE or *NSET) "
-              "of that name, or a rule in mesh.groups, says which faces it is",
-              name, mesh_fe_set_name(mesh, s));
+              "of that name, or a rule in mesh.groups, says which faces it is; %s",
+              name, mesh_fe_set_name(mesh, s), mesh_fe_found(mesh, found));
   return mesh_overlap_check(mesh, name);
 }
 

@@ -119,8 +119,9 @@ static shb_status pressure_force(const mesh_fe *mesh, const field *f, int harmon
   const mesh_face_set  *set   = &mesh->set[MESH_LOAD];
   const double complex *value = f->value + (size_t)f->nodes * (size_t)harmonic;
   fem_face_rule         rule;
-  SHB_CHECK(set->n > 0, SHB_ERR_INPUT, "the mesh has no group \"load\" for the pressure of %s",
-            f->path);
+  char                  found[MESH_FOUND + 40];
+  SHB_CHECK(set->n > 0, SHB_ERR_INPUT, "the mesh has no group \"load\" for the pressure of %s; %s",
+            f->path, mesh_fe_found(mesh, found));
   FEM_PETSC(fem_face_rule_create(mesh->kind, &rule));
   for (int face = 0; face < set->n; face++) {
     const int *node = set->nodes + rule.nodes * (size_t)face;
@@ -189,11 +190,13 @@ static shb_status from_case(const mesh_fe *mesh, const fem_load *load, const dou
 
 /* The mesh as a load sees it: its own group is the group load. */
 static shb_status view_of(const mesh_fe *mesh, const fem_load *load, mesh_fe *view) {
+  char found[MESH_FOUND + 40];
   *view = *mesh;
   if (!load->group) return SHB_OK;
   int set = mesh_fe_set_named(mesh, load->group);
   SHB_CHECK(set >= 0 && mesh->set[set].n > 0, SHB_ERR_INPUT,
-            "the mesh has no group \"%s\", which excitation.loads names", load->group);
+            "the mesh has no group \"%s\", which excitation.loads names; %s", load->group,
+            mesh_fe_found(mesh, found));
   view->set[MESH_LOAD] = mesh->set[set];
   return SHB_OK;
 }

@@ -202,11 +202,13 @@ static shb_status build(builder *b, int points, modal_interface *out) {
 }
 
 static shb_status check_groups(const mesh_fe *mesh, bool to_ground) {
+  char found[MESH_FOUND + 40];
   for (int id = MESH_CONTACT_RIGHT; id <= MESH_CONTACT_LEFT; id++) {
     if (id == MESH_CONTACT_LEFT && to_ground) continue;
     SHB_CHECK(mesh->set[id].n > 0, SHB_ERR_INPUT,
-              "the mesh has no group \"%s\"; contact.to: %s needs it",
-              mesh_set_name((mesh_set_id)id), to_ground ? "ground" : "neighbour");
+              "the mesh has no group \"%s\"; contact.to: %s needs it; %s",
+              mesh_set_name((mesh_set_id)id), to_ground ? "ground" : "neighbour",
+              mesh_fe_found(mesh, found));
   }
   return SHB_OK;
 }

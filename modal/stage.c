@@ -72,8 +72,9 @@ static shb_status create_contact(const mesh_fe *mesh, const modal_settings *sett
   int        right = mesh_fe_set_named(mesh, contact->right);
   int        left  = settings->to_ground ? -1 : mesh_fe_set_named(mesh, contact->left);
   const bool there = right >= 0 && (left >= 0 || settings->to_ground);
-  SHB_CHECK(there, SHB_ERR_INPUT, "contact interface %s: the mesh has no group \"%s\"",
-            contact->name, right < 0 ? contact->right : contact->left);
+  char       found[MESH_FOUND + 40];
+  SHB_CHECK(there, SHB_ERR_INPUT, "contact interface %s: the mesh has no group \"%s\"; %s",
+            contact->name, right < 0 ? contact->right : contact->left, mesh_fe_found(mesh, found));
   mesh_fe    view   = mesh_fe_facing(mesh, right, left);
   shb_status status = modal_interface_create(&view, settings->axis, settings->blades,
                                              settings->to_ground, contact->points, out);
@@ -122,11 +123,12 @@ static shb_status name_interfaces(const modal_settings *settings, const modal_in
 /* What can be wrong with the input is found here, before any time is spent. */
 static shb_status prepare(const mesh_fe *mesh, const modal_settings *settings,
                           modal_interface *interface, modal_condensation *to) {
+  char found[MESH_FOUND + 40];
   SHB_TRY(fem_clamp_check(mesh));
   if (!settings->full_integration) SHB_TRY(fem_hourglass_check(mesh));
   SHB_CHECK(settings->pressure == 0 || mesh->set[MESH_LOAD].n > 0, SHB_ERR_INPUT,
-            "the mesh has no group \"%s\" for rotor.pressure; name the loaded faces so",
-            mesh_set_name(MESH_LOAD));
+            "the mesh has no group \"%s\" for rotor.pressure; name the loaded faces so; %s",
+            mesh_set_name(MESH_LOAD), mesh_fe_found(mesh, found));
   SHB_TRY(create_interfaces(mesh, settings, interface));
   to->n_pairs  = interface->n_pairs;
   to->has_left = interface->has_left;

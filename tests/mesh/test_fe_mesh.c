@@ -434,6 +434,35 @@ static void an_element_without_its_node_is_refused(void **state) {
   assert_says(mesh_fe_read(path, &mesh), SHB_ERR_INPUT, "99");
 }
 
+/* As many as fit into a line, in one line whatever they are called. */
+static void groups_are_listed(void **state) {
+  (void)state;
+  mesh_fe mesh = {0};
+  char    text[MESH_FOUND + 40], long_name[80];
+  assert_string_equal(mesh_fe_found(&mesh, text), "the mesh has no groups of faces");
+  mesh_fe_note_group(&mesh, "foot");
+  mesh_fe_note_group(&mesh, "tip\nshroud");
+  assert_string_equal(mesh_fe_found(&mesh, text), "the mesh has the groups foot, tip?shroud");
+  memset(long_name, 'x', sizeof long_name);
+  long_name[sizeof long_name - 1] = 0;
+  for (int i = 0; i < 5; i++) mesh_fe_note_group(&mesh, long_name);
+  mesh_fe_note_group(&mesh, "late"); /* nothing follows the dots */
+  mesh_fe_found(&mesh, text);
+  assert_true(strlen(text) < sizeof text && strlen(mesh.found) < MESH_FOUND);
+  assert_string_equal(text + strlen(text) - 6, "x, ...");
+  memset(&mesh, 0, sizeof mesh);
+  memset(long_name, 'y', sizeof long_name);
+  long_name[sizeof long_name - 1] = 0;
+  for (size_t n = 1; n < 60; n++) { /* names of every length */
+    char name[80];
+    memset(&mesh, 0, sizeof mesh);
+    snprintf(name, sizeof name, "%.*s", (int)n, long_name);
+    for (int i = 0; i < 120; i++) mesh_fe_note_group(&mesh, name);
+    assert_true(strlen(mesh.found) < MESH_FOUND);
+    assert_string_equal(mesh.found + strlen(mesh.found) - 6, "y, ...");
+  }
+}
+
 static void bad_groups_are_refused(void **state) {
   (void)state;
   mesh_fe box, mesh;
@@ -442,6 +471,7 @@ static void bad_groups_are_refused(void **state) {
   box.set[MESH_ROOT].n = 0;
   assert_int_equal(box_write(&box, path), SHB_OK);
   assert_says(mesh_fe_read(path, &mesh), SHB_ERR_INPUT, "group root is absent");
+  assert_says(mesh_fe_read(path, &mesh), SHB_ERR_INPUT, "; the mesh has the groups load");
   box.set[MESH_ROOT].n = roots;
   assert_int_equal(box_set(&box, MESH_LOAD, 0, size[0] * 2 / cells[0]), SHB_OK);
   assert_true(box.set[MESH_LOAD].n > 0);
@@ -509,6 +539,7 @@ int main(void) {
       cmocka_unit_test(first_order_is_refused),
       cmocka_unit_test(surface_only_is_refused),
       cmocka_unit_test(an_element_without_its_node_is_refused),
+      cmocka_unit_test(groups_are_listed),
       cmocka_unit_test(bad_groups_are_refused),
       cmocka_unit_test(inverted_elements_are_named),
       cmocka_unit_test(signals_stay_ours),
