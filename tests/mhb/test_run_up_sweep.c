@@ -83,6 +83,14 @@ static void check_point(const mhb_settings *plain, spinning_kind kind, const mhb
   modal_model_free(&model);
 }
 
+/* Of peaks of two outputs that lie close together in a step one is marked, whichever the step meets first. */
+static int has_mark(const mhb_branch *b, int special, double frequency) {
+  const double same = special == MHB_PEAK ? 2e-5 : 1e-7;
+  for (int i = 0; i < b->n_points; i++)
+    if (b->special[i] == special && fabs(b->frequency[i] / frequency - 1) < same) return 1;
+  return 0;
+}
+
 /* The same structure at every speed. The linear limits are the plain sweep's; on the curve the lengths of the steps feel rounding, so that
  * only folds and peaks are at the same places. */
 static void what_does_not_change_gives_the_plain_curve(void **state) {
@@ -108,11 +116,7 @@ static void what_does_not_change_gives_the_plain_curve(void **state) {
     for (int j = 0; j < p->n_points && !linear; j++) {
       if (p->special[j] == MHB_ORDINARY) continue;
       marks++;
-      for (int l = 0; l < q->n_points; l++)
-        if (q->special[l] == p->special[j] && fabs(q->frequency[l] / p->frequency[j] - 1) < 1e-7) {
-          met++;
-          break;
-        }
+      met += has_mark(q, p->special[j], p->frequency[j]);
     }
     print_message("branch %d: %d points, %d of %d marks met\n", i, q->n_points, met, marks);
     assert_int_equal(met, marks);
