@@ -1,4 +1,4 @@
-/* Light damping, weak preload, large motion: scenes of the blade of cases/paper_fig8 whose curves were once lost. Where slip ends in
+/* Light damping, weak preload, large motion: scenes of the blade of cases/paper_fig8, of tetrahedra, whose curves were once lost. Where slip ends in
  * two directions at once the mean friction leaves with the root of the distance; the first solution at the low end of the range may
  * lie on a curve that closes or turns back, and not on the one that leads to the high end. */
 #include "tests/cases/scene.h"
@@ -33,7 +33,9 @@ static void write_case(const lost *l) {
            "sed -e 's/^name: .*/name: lost/' -e 's/damping: 0.005/damping: 0.002/'"
            " -e 's/engine_order: 8/engine_order: 10/' -e 's/\\[10 N, 0 N, 0 N\\]/[1 N, 1 N, 0 N]/'"
            " -e 's/psi: 35 deg/psi: %s deg/' -e 's/ku: 2 /ku: %s /' -e 's/kv: 3 /kv: %s /'"
-           " -e 's/n0: .*/n0: %s N/' -e 's/frequency: .*/frequency: %s/' '%s/case.yaml' > "
+           " -e 's/n0: .*/n0: %s N/' -e 's/^    size: .*/    size: 11 mm\\n    shroud_size: 6 "
+           "mm\\n    elements: tet10/'"
+           " -e 's/frequency: .*/frequency: %s/' '%s/case.yaml' > "
            "'%s/lost.yaml'",
            l->psi, l->ku, l->kv, l->n0, l->range, SCENE, source);
   if (system(line) != 0) fail_msg("failed: %s", line);

@@ -9,14 +9,14 @@ static mhb_response *response;
 /* Ranges that hold one resonance each, Hz, and what is found there: frequency over the first open mode's, m. */
 static const struct {
   double from, to, ratio, amplitude;
-} open_mode[MODES]  = {{80, 200, 1, 3.3486e-3},
-                       {300, 400, 3.1782, 1.4877e-4},
-                       {400, 500, 3.7537, 4.1938e-4}},
+} open_mode[MODES]  = {{80, 200, 1, 3.3930e-3},
+                       {300, 400, 3.1725, 1.7120e-4},
+                       {400, 500, 3.7450, 4.0980e-4}},
   stuck_mode[MODES] = {
-      {300, 500, 3.7292, 5.924e-4}, {550, 700, 5.2260, 8.566e-5}, {1000, 1200, 9.5320, 5.615e-6}};
+      {300, 500, 3.7269, 5.981e-4}, {550, 700, 5.2391, 8.028e-5}, {1000, 1200, 9.5219, 6.025e-6}};
 
 /* Reduction of each peak from open to stuck. */
-static const double reduction[MODES] = {.8231, .4242, .98661};
+static const double reduction[MODES] = {.8237, .5312, .98530};
 
 static int run_scene(void **state) {
   (void)state;
@@ -37,7 +37,7 @@ static void three_modes_shift_and_fall(void **state) {
   const mhb_branch *open  = scene_branch(response, MHB_BRANCH_OPEN, 0);
   const mhb_branch *stuck = scene_branch(response, MHB_BRANCH_STUCK, 0);
   double            first = scene_highest(response, open, 80, 200).frequency;
-  assert_within(first, 116.393, 2e-3);
+  assert_within(first, 115.699, 2e-3);
   for (int i = 0; i < MODES; i++) {
     scene_peak a = scene_highest(response, open, open_mode[i].from, open_mode[i].to);
     scene_peak b = scene_highest(response, stuck, stuck_mode[i].from, stuck_mode[i].to);
@@ -78,9 +78,9 @@ static void widest_gap_and_highest_preload_are_the_limits(void **state) {
 static void friction_lowers_the_peaks(void **state) {
   (void)state;
   static const double n0[3]          = {30, 100, 300};
-  static const double peak[3][MODES] = {{3.334e-5, 9.363e-6, 2.762e-6},
-                                        {9.113e-5, 2.277e-5, 5.615e-6},
-                                        {2.572e-4, 6.267e-5, 5.615e-6}};
+  static const double peak[3][MODES] = {{3.425e-5, 9.264e-6, 2.847e-6},
+                                        {9.319e-5, 2.258e-5, 6.025e-6},
+                                        {2.628e-4, 6.227e-5, 6.024e-6}};
   for (int j = 0; j < 3; j++) {
     const mhb_branch *b = scene_branch(response, MHB_BRANCH_NONLINEAR, n0[j]);
     for (int i = 0; i < MODES; i++) {
