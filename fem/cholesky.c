@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "fem/panels.h"
 #include "fem/supernodes.h"
 
 enum { MANY = 12 }; /* right-hand sides for which calls to BLAS are the faster way */
@@ -187,10 +188,9 @@ PetscErrorCode fem_cholesky_update(fem_cholesky *factor, Mat A, bool *definite) 
   cholmod_sparse *permuted = permute(&b, factor->place, common);
   PetscCall(give_back(A, &b));
   PetscCheck(permuted, PETSC_COMM_SELF, PETSC_ERR_MEM, "CHOLMOD");
-  cholmod_factorize(permuted, factor->L, common);
+  const bool made = fem_panels_fill(factor->L, permuted, definite, common);
   cholmod_free_sparse(&permuted, common);
-  PetscCheck(common->status >= CHOLMOD_OK, PETSC_COMM_SELF, PETSC_ERR_MEM, "CHOLMOD");
-  *definite = common->status != CHOLMOD_NOT_POSDEF;
+  PetscCheck(made, PETSC_COMM_SELF, PETSC_ERR_MEM, "CHOLMOD");
   PetscFunctionReturn(0);
 }
 
