@@ -57,7 +57,7 @@ static void every_value_arrives(void **state) {
   assert_true(b->section[1].camber == 0 && b->section[1].twist == 0);
   assert_true(b->shroud_length == 0.037 && b->shroud_thickness == 0.0061 &&
               b->shroud_contact == 0.023);
-  assert_true(b->size == 0.008 && b->shroud_size == 0.004);
+  assert_true(b->size == 0.008 && b->shroud_size == 0.004 && b->elements == MESH_HEX20);
   assert_true(b->blades == 37 && b->axis == MESH_AXIS_MY);
   assert_true(near(b->psi, 35 * degree) && near(b->phi, -3 * degree));
   assert_true(f.material.E == 207e9 && f.material.nu == 0.29 && f.material.rho == 7850);
