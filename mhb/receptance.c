@@ -7,6 +7,7 @@
 
 #include "mhb/interfaces.h"
 #include "mhb/lanes.h"
+#include "mhb/rate.h"
 
 static const double PI = 3.14159265358979323846, NUDGE = 1e-8;
 
@@ -167,8 +168,7 @@ static void set_harmonics(mhb_receptance *r) {
   }
 }
 
-/* The model's arrays have other values. */
-static void set_again(mhb_receptance *r) {
+void mhb_receptance_set(mhb_receptance *r) {
   mhb_left_out_set(r->left_out);
   set_harmonics(r);
 }
@@ -333,7 +333,7 @@ void mhb_receptance_move(mhb_receptance *r, double omega) {
   r->omega = omega;
   if (!r->at || r->at->omega == omega) return;
   mhb_at_speed_go(r->at, omega);
-  set_again(r);
+  mhb_receptance_set(r);
 }
 
 void mhb_receptance_need(mhb_receptance *r, int k) {
@@ -354,8 +354,8 @@ void mhb_receptance_scale(mhb_receptance *r, double scale) {
 }
 
 /* Modal amplitudes before L: load F - B^H p. */
-static double complex modal_drive(const mhb_receptance *r, int k, const double complex *p, int i,
-                                  double load) {
+double complex mhb_receptance_drive(const mhb_receptance *r, int k, const double complex *p, int i,
+                                    double load) {
   const double complex *B = r->B + (size_t)k * (size_t)r->n * (size_t)r->n_modes;
   double complex        a = load * r->F[k * r->n_modes + i];
   for (int row = 0; row < r->n; row++) a -= conj(B[row * r->n_modes + i]) * p[row];
@@ -433,88 +433,13 @@ void mhb_receptance_motion(const mhb_receptance *r, int k, const double complex 
   mhb_left_out_motion(r->left_out, k, w, r->scale, p, motion);
 }
 
-/* ---- run-up: the model changes with omega too ---- */
-
-/* The rate at the model's omega. */
-static const mhb_receptance *rate_of(const mhb_receptance *r) {
-  if (r->rate->omega == r->omega) return r->rate;
-  mhb_at_speed_differentiate(r->at);
-  set_again(r->rate);
-  r->rate->omega = r->omega;
-  return r->rate;
-}
-
-/* a = L d, d = scale F - B^H p, and its change with the model, L (d' - (dK + j w dN) a): [modes] each. */
-static void modal_rate(const mhb_receptance *r, int k, const double complex *p, double complex *a,
-                       double complex *change) {
-  const mhb_receptance *rate = rate_of(r);
-  const int             m    = r->n_modes;
-  const double          w    = k * r->omega / r->nu;
-  for (int i = 0; i < m; i++) a[i] = r->lambda[k * m + i] * modal_drive(r, k, p, i, r->scale);
-  for (int i = 0; i < m; i++) {
-    const double  *dK = r->at->stiffness + i * m, *dN = r->at->damping + i * m;
-    double complex sum = modal_drive(rate, k, p, i, r->scale);
-    for (int j = 0; j < m; j++) sum -= CMPLX(dK[j], w * dN[j]) * a[j];
-    change[i] = r->lambda[k * m + i] * sum;
-  }
-}
-
-/* d/d omega of the weights of the residual terms by w_m, the last mode kept: weight t is of degree t in (w^2, w_m^2). */
-static modal_series weight_rate(const mhb_receptance *r, const modal_series *s, double w) {
-  const int    last = r->n_modes - 1;
-  const double top  = 2 * PI * r->model->frequency[last];
-  const double dc   = r->at->stiffness[last * r->n_modes + last] / (top * top);
-  modal_series rate = {.x = 0};
-  for (int t = 0; t < MODAL_TERMS; t++) {
-    rate.weight[t]      = dc * (t * s->weight[t] - w * w * s->slope[t]);
-    rate.load_weight[t] = r->model->load_fourth ? rate.weight[t] : 0;
-  }
-  return rate;
-}
-
-/* slope[n] += what changes with the model. */
-static void add_model_slope(const mhb_receptance *r, int k, const double complex *p,
-                            double complex *slope) {
-  const int             m = r->n_modes, n = r->n;
-  const double          w    = k * r->omega / r->nu;
-  const mhb_receptance *rate = rate_of(r);
-  const modal_series    s = modal_series_at(r->model, w), by_weights = weight_rate(r, &s, w);
-  const double complex *B  = r->B + (size_t)k * (size_t)n * (size_t)m;
-  const double complex *dB = rate->B + (size_t)k * (size_t)n * (size_t)m;
-  double complex        a[m], change[m];
-  modal_rate(r, k, p, a, change);
-  for (int row = 0; row < n; row++, B += m, dB += m)
-    for (int i = 0; i < m; i++) slope[row] += dB[i] * a[i] + B[i] * change[i];
-  mhb_left_out_motion_by(rate->left_out, k, &s, r->scale, p, slope);
-  mhb_left_out_motion_by(r->left_out, k, &by_weights, r->scale, p, slope);
-}
-
-/* change[3 q] += d_omega times what changes with the model. */
-static void add_model_probe(const mhb_receptance *r, int k, const double complex *p, double d_omega,
-                            double complex *change) {
-  const int             m = r->n_modes, q = 3 * r->model->n_probes;
-  const double          w    = k * r->omega / r->nu;
-  const mhb_receptance *rate = rate_of(r);
-  const modal_series    s = modal_series_at(r->model, w), by_weights = weight_rate(r, &s, w);
-  double complex        a[m], by[m], residual[q + 1];
-  memset(residual, 0, sizeof residual);
-  modal_rate(r, k, p, a, by);
-  mhb_left_out_probe_by(rate->left_out, k, &s, r->scale, p, residual);
-  mhb_left_out_probe_by(r->left_out, k, &by_weights, r->scale, p, residual);
-  for (int c = 0; c < q; c++) {
-    const double *psi = r->model->probe + c * m, *d_psi = rate->model->probe + c * m;
-    for (int i = 0; i < m; i++) residual[c] += d_psi[i] * a[i] + psi[i] * by[i];
-    change[c] += d_omega * residual[c];
-  }
-}
-
 void mhb_receptance_slope(const mhb_receptance *r, int k, const double complex *p,
                           double complex *slope) {
   double kk = (double)k / r->nu, dw2 = 2 * kk * kk * r->omega, yr[r->n_modes], yi[r->n_modes];
   slope_drive(r, k, p, yr, yi);
   modal_sums(r, k, yr, yi, slope);
   mhb_left_out_slope(r->left_out, k, kk * r->omega, dw2, r->scale, p, slope);
-  if (r->at) add_model_slope(r, k, p, slope);
+  if (r->at) mhb_rate_slope(r, k, p, slope);
 }
 
 void mhb_receptance_probe_change(const mhb_receptance *r, int k, const double complex *p,
@@ -525,11 +450,12 @@ void mhb_receptance_probe_change(const mhb_receptance *r, int k, const double co
   memset(change, 0, sizeof *change * (size_t)q);
   mhb_left_out_probe_change(r->left_out, k, kk * r->omega, r->scale, p, dp, dw2, d_scale, change);
   for (int i = 0; i < m; i++) {
-    double complex a = r->lambda[k * m + i] * modal_drive(r, k, dp, i, d_scale);
-    if (d_omega != 0) a += d_omega * lambda_slope(r, k, i) * modal_drive(r, k, p, i, r->scale);
+    double complex a = r->lambda[k * m + i] * mhb_receptance_drive(r, k, dp, i, d_scale);
+    if (d_omega != 0)
+      a += d_omega * lambda_slope(r, k, i) * mhb_receptance_drive(r, k, p, i, r->scale);
     for (int s = 0; s < q; s++) change[s] += r->model->probe[s * m + i] * a;
   }
-  if (r->at && d_omega != 0) add_model_probe(r, k, p, d_omega, change);
+  if (r->at && d_omega != 0) mhb_rate_probe(r, k, p, d_omega, change);
 }
 
 /* Neither driven nor pushed at by the contact. */

@@ -64,6 +64,13 @@ void mhb_receptance_at(mhb_receptance *receptance, double omega, int top);
 /* Another scale of the excitation, at the same omega. */
 void mhb_receptance_scale(mhb_receptance *receptance, double scale);
 
+/* What does not depend on omega, anew: the model's arrays have other values. */
+void mhb_receptance_set(mhb_receptance *receptance);
+
+/* What acts on mode i at harmonic k: load F - B^H p. */
+double complex mhb_receptance_drive(const mhb_receptance *receptance, int k,
+                                    const double complex *p, int i, double load);
+
 /* motion[n] <- harmonic k of free - R p, without making R: what a single product costs. */
 void mhb_receptance_motion(const mhb_receptance *receptance, int k, const double complex *p,
                            double complex *motion);
