@@ -1,9 +1,9 @@
 #include "fem/cholesky.h"
 
+#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "fem/panels.h"
 #include "fem/supernodes.h"
 
 enum { MANY = 12 }; /* right-hand sides for which calls to BLAS are the faster way */
@@ -179,6 +179,15 @@ void fem_cholesky_foresee(const fem_cholesky *factor, double *kept, double *pass
   *passing                = 8. * (double)L->maxcsize + 12. * factor->common.anz;
 }
 
+/* On one thread: CHOLMOD copies panels with four threads of OpenMP that wait for each other in between, which on a busy machine takes more processor
+ * time than the arithmetic. Without active levels its parallel regions are of one thread. */
+static void factorise(cholmod_sparse *A, cholmod_factor *L, cholmod_common *common) {
+  const int levels = omp_get_max_active_levels();
+  omp_set_max_active_levels(0);
+  cholmod_factorize(A, L, common);
+  omp_set_max_active_levels(levels);
+}
+
 PetscErrorCode fem_cholesky_update(fem_cholesky *factor, Mat A, bool *definite) {
   cholmod_common *common = &factor->common;
   blocks          b;
@@ -188,9 +197,10 @@ PetscErrorCode fem_cholesky_update(fem_cholesky *factor, Mat A, bool *definite) 
   cholmod_sparse *permuted = permute(&b, factor->place, common);
   PetscCall(give_back(A, &b));
   PetscCheck(permuted, PETSC_COMM_SELF, PETSC_ERR_MEM, "CHOLMOD");
-  const bool made = fem_panels_fill(factor->L, permuted, definite, common);
+  factorise(permuted, factor->L, common);
   cholmod_free_sparse(&permuted, common);
-  PetscCheck(made, PETSC_COMM_SELF, PETSC_ERR_MEM, "CHOLMOD");
+  PetscCheck(common->status >= CHOLMOD_OK, PETSC_COMM_SELF, PETSC_ERR_MEM, "CHOLMOD");
+  *definite = common->status != CHOLMOD_NOT_POSDEF;
   PetscFunctionReturn(0);
 }
 

@@ -1,4 +1,4 @@
-/* Sparse Cholesky factor on one rank, analysed by CHOLMOD: supernodal, ordered by nested dissection of the nodes.
+/* Sparse Cholesky factor on one rank, by CHOLMOD: supernodal, ordered by nested dissection of the nodes.
  *
  * The matrix is copied, permuted, only while a factor is being made; CHOLMOD's own copy is thereby avoided. Solves take
  * several right-hand sides at once: eight cost twice one. */
