@@ -4,7 +4,7 @@
 
 packages_build="gcc libc6-dev cmake ninja-build pkg-config git
 libgmsh-dev libpetsc-real-dev libslepc-real-dev libhdf5-openmpi-dev libfftw3-dev
-liblapacke-dev libopenblas-dev libsuitesparse-dev libyaml-dev libcmocka-dev openmpi-bin"
+liblapacke-dev libopenblas-dev libsuitesparse-dev libmumps-dev libyaml-dev libcmocka-dev openmpi-bin"
 
 # the tests also look at files with other people's eyes, and at frequencies with CalculiX's
 packages_test="hdf5-tools python3-h5py calculix-ccx"

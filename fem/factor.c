@@ -5,10 +5,12 @@
 
 #include "fem/cholesky.h"
 #include "fem/memory.h"
+#include "fem/single.h"
 
 struct fem_factor {
   MPI_Comm      comm;
   fem_cholesky *cholesky; /* or */
+  fem_single   *single;   /* or */
   Mat           mumps;
   double        foreseen; /* bytes, all ranks */
 };
@@ -60,13 +62,11 @@ static double nodes_that_fit(double nodes, double share) {
   return floor(fit / by) * by;
 }
 
-static PetscErrorCode check_memory(const fem_factor *factor, Mat A, double mine) {
-  double   needed, there;
+static PetscErrorCode check_memory(Mat A, double needed, double there) {
   PetscInt order;
   PetscFunctionBeginUser;
   PetscCall(MatGetSize(A, &order, NULL));
-  PetscCall(compare(factor->comm, mine, &needed, &there));
-  PetscCheck(needed <= there, factor->comm, PETSC_ERR_USER_INPUT,
+  PetscCheck(needed <= there, PetscObjectComm((PetscObject)A), PETSC_ERR_USER_INPUT,
              "the modes of this mesh (%d free nodes) need %.3g GB more memory, and %.3g GB are "
              "left; make a coarser mesh (about %.0f nodes fit), or use more machines (mpiexec)",
              (int)(order / 3), needed / giga, there / giga,
@@ -107,17 +107,34 @@ static PetscErrorCode analyse(fem_factor *factor, Mat A, double *mine) {
   PetscFunctionReturn(0);
 }
 
+/* In place of CHOLMOD's factor one of half its size, which takes longer to solve with; mine: what it takes. */
+static PetscErrorCode take_single(fem_factor *factor, Mat A, double *mine) {
+  PetscFunctionBeginUser;
+  fem_cholesky_destroy(factor->cholesky);
+  factor->cholesky = NULL;
+  PetscCall(fem_single_create(A, &factor->single));
+  *mine = fem_single_foreseen(factor->single);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode fem_factor_create(Mat A, double beside, fem_factor **out) {
-  double mine;
-  int    n_ranks;
+  double    mine, needed, there;
+  int       n_ranks;
+  PetscBool asked = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(out));
   (*out)->comm = PetscObjectComm((PetscObject)A);
   PetscCallMPI(MPI_Comm_size((*out)->comm, &n_ranks));
+  PetscCall(PetscOptionsGetBool(NULL, "st_", "-single_precision", &asked, NULL));
   PetscCall(analyse(*out, A, &mine));
+  PetscCall(compare((*out)->comm, mine + beside / n_ranks, &needed, &there));
+  if ((*out)->cholesky && (asked || needed > there)) {
+    PetscCall(take_single(*out, A, &mine));
+    PetscCall(compare((*out)->comm, mine + beside, &needed, &there));
+  }
   PetscCallMPI(MPI_Allreduce(&mine, &(*out)->foreseen, 1, MPI_DOUBLE, MPI_SUM, (*out)->comm));
-  PetscCall(check_memory(*out, A, mine + beside / n_ranks));
+  PetscCall(check_memory(A, needed, there));
   PetscFunctionReturn(0);
 }
 
@@ -126,6 +143,7 @@ double fem_factor_foreseen(const fem_factor *factor) {
 }
 
 const char *fem_factor_by(const fem_factor *factor) {
+  if (factor->single) return "SMUMPS in single precision";
   return factor->cholesky ? "CHOLMOD" : "MUMPS";
 }
 
@@ -150,10 +168,22 @@ static PetscErrorCode update_mumps(Mat mumps, Mat A, bool *definite) {
 
 PetscErrorCode fem_factor_update(fem_factor *factor, Mat A, bool *definite) {
   PetscFunctionBeginUser;
-  if (factor->cholesky)
+  if (factor->single)
+    PetscCall(fem_single_update(factor->single, A, definite));
+  else if (factor->cholesky)
     PetscCall(fem_cholesky_update(factor->cholesky, A, definite));
   else
     PetscCall(update_mumps(factor->mumps, A, definite));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode solve_columns(fem_factor *factor, int count, const double *b, size_t ldb,
+                                    double *x, size_t ldx) {
+  PetscFunctionBeginUser;
+  if (factor->single)
+    PetscCall(fem_single_solve(factor->single, count, b, ldb, x, ldx));
+  else
+    PetscCall(fem_cholesky_solve(factor->cholesky, count, b, ldb, x, ldx));
   PetscFunctionReturn(0);
 }
 
@@ -163,14 +193,14 @@ PetscErrorCode fem_factor_solve(fem_factor *factor, Vec b, Vec x) {
   PetscInt      n;
 
   PetscFunctionBeginUser;
-  if (!factor->cholesky) {
+  if (factor->mumps) {
     PetscCall(MatSolve(factor->mumps, b, x));
     PetscFunctionReturn(0);
   }
   PetscCall(VecGetLocalSize(b, &n));
   PetscCall(VecGetArrayRead(b, &from));
   PetscCall(VecGetArrayWrite(x, &to));
-  PetscCall(fem_cholesky_solve(factor->cholesky, 1, from, (size_t)n, to, (size_t)n));
+  PetscCall(solve_columns(factor, 1, from, (size_t)n, to, (size_t)n));
   PetscCall(VecRestoreArrayWrite(x, &to));
   PetscCall(VecRestoreArrayRead(b, &from));
   PetscFunctionReturn(0);
@@ -182,7 +212,7 @@ PetscErrorCode fem_factor_solve_many(fem_factor *factor, Mat B, Mat X) {
   PetscInt      count, ldb, ldx;
 
   PetscFunctionBeginUser;
-  if (!factor->cholesky) {
+  if (factor->mumps) {
     PetscCall(MatMatSolve(factor->mumps, B, X));
     PetscFunctionReturn(0);
   }
@@ -191,7 +221,7 @@ PetscErrorCode fem_factor_solve_many(fem_factor *factor, Mat B, Mat X) {
   PetscCall(MatDenseGetLDA(X, &ldx));
   PetscCall(MatDenseGetArrayRead(B, &from));
   PetscCall(MatDenseGetArrayWrite(X, &to));
-  PetscCall(fem_cholesky_solve(factor->cholesky, (int)count, from, (size_t)ldb, to, (size_t)ldx));
+  PetscCall(solve_columns(factor, (int)count, from, (size_t)ldb, to, (size_t)ldx));
   PetscCall(MatDenseRestoreArrayWrite(X, &to));
   PetscCall(MatDenseRestoreArrayRead(B, &from));
   PetscFunctionReturn(0);
@@ -227,6 +257,7 @@ PetscErrorCode fem_factor_destroy(fem_factor **factor) {
   PetscFunctionBeginUser;
   if (!*factor) PetscFunctionReturn(0);
   fem_cholesky_destroy((*factor)->cholesky);
+  PetscCall(fem_single_destroy(&(*factor)->single));
   PetscCall(MatDestroy(&(*factor)->mumps));
   PetscCall(PetscFree(*factor));
   PetscFunctionReturn(0);

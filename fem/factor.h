@@ -1,7 +1,8 @@
 /* Factor of a symmetric positive definite matrix: who factorises, and what it will take.
  *
  * One rank: CHOLMOD (fem/cholesky.h), whose solves are twice as fast as MUMPS's. Several ranks, a factor too large for
- * CHOLMOD, or the option -st_pc_factor_mat_solver_type mumps: MUMPS, which takes the options -st_mat_mumps_.... */
+ * CHOLMOD, or the option -st_pc_factor_mat_solver_type mumps: MUMPS, which takes the options -st_mat_mumps_.... One rank
+ * without the memory for that, or the option -st_single_precision: a factor in single precision (fem/single.h). */
 #ifndef FEM_FACTOR_H
 #define FEM_FACTOR_H
 
@@ -12,7 +13,7 @@ typedef struct fem_factor fem_factor;
 
 /* Order and analyse the pattern of A (SBAIJ, block size 3). Collective, as all that follows.
  *   beside  bytes that will be wanted beside the factor, all ranks
- * Errors: PETSC_ERR_USER_INPUT this machine has not the memory (what is needed, what there is, and what to do). */
+ * Errors: PETSC_ERR_USER_INPUT this machine has not the memory, in single precision either (what is needed, what there is, and what to do). */
 PetscErrorCode fem_factor_create(Mat A, double beside, fem_factor **out);
 
 /* Factorise A; again after its values have changed. *definite false: it is not positive definite; there may be no factor
