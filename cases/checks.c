@@ -127,13 +127,15 @@ static void check_band(case_reader *r) {
     case_reader_issue(r, "modal.band", "missing; modes: auto needs it, or mhb.frequency");
 }
 
-/* Each speed once. */
+/* Each speed once: what is interpolated between two that are nearly the same is rounding. */
+static const double ALIKE = 1e-5;
+
 static void check_speeds(case_reader *r) {
   const case_file *file = r->file;
   if (!case_reader_good(r, "rotor.speed")) return;
   for (int i = 0; i < file->n_speeds; i++)
     for (int j = 0; j < i; j++)
-      if (file->speed[i] == file->speed[j]) {
+      if (fabs(file->speed[i] - file->speed[j]) <= ALIKE * file->speed[i]) {
         case_reader_issue(r, "rotor.speed", "holds %g rad/s twice", file->speed[i]);
         return;
       }

@@ -7,6 +7,9 @@
 /* Of the tolerance: what an estimate may be; what a lower rung must promise; error of the first-order estimate. */
 static const double SAFETY = .7, PROMISE = .35, FIRST_ORDER = 3;
 
+/* Share of the period that is nearly all of it. */
+static const double MOSTLY = .75;
+
 /* A move that ends farther off, relative to the motion, has met another branch. */
 static const double NEAR                 = .3;
 static const int    STEPS[MHB_MAX_RUNGS] = {1, 3, 5, 7, 9, 13, 17, 21, 31};
@@ -146,6 +149,15 @@ int mhb_harmonics_most_unknowns(const mhb_harmonics *h) {
   return 3 * h->model->n_pairs * (2 * h->m[h->n - 1] + 1);
 }
 
+/* Every pair sticks, or is open, but for a small part of the period: near where that begins or ends curves of few and of many harmonics may turn at
+ * different places, however small the estimate. */
+static bool barely_moves(const mhb_residual *b) {
+  for (int a = 0; a < b->n_pairs; a++)
+    if (b->info[a].share[MHB_STICK] < MOSTLY && b->info[a].share[MHB_SEPARATE] < MOSTLY)
+      return false;
+  return true;
+}
+
 void mhb_harmonics_errors(mhb_harmonics *h, mhb_path_point *point) {
   mhb_rung *r            = mhb_harmonics_rung(h);
   point->truncation      = mhb_truncation_error(r->truncation, point->x);
@@ -164,7 +176,8 @@ void mhb_harmonics_estimate(mhb_harmonics *h, mhb_path_point *point) {
   double factor = point->truncation_kind == MHB_TRUNCATION_FIRST_ORDER ? FIRST_ORDER : 1;
   h->wanted     = choose(h, point->x, factor * point->truncation,
                          mhb_residual_vibration(r->residual, point->x));
-  if (h->from_linear && !h->linear && h->wanted < at_onset(h)) h->wanted = at_onset(h);
+  if (!h->linear && (h->from_linear || barely_moves(r->residual)) && h->wanted < at_onset(h))
+    h->wanted = at_onset(h);
 }
 
 int mhb_harmonics_higher(const mhb_harmonics *h) {

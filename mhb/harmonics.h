@@ -62,8 +62,8 @@ int mhb_harmonics_most_unknowns(const mhb_harmonics *harmonics);
 /* Errors of a solution the residual of the rung in use was just evaluated at: fills truncation and modal of the point. */
 void mhb_harmonics_errors(mhb_harmonics *harmonics, mhb_path_point *point);
 
-/* The same, and which rung they ask for: where a contact begins to slip or open no fewer than seven harmonics, for a curve of
- * fewer may go on smoothly where that of many turns back, and is then lost to it. */
+/* The same, and which rung they ask for: where contacts begin to slip or open, and while they do so for less than a quarter of the period, no fewer than
+ * seven harmonics, for a curve of fewer may go on smoothly where that of many turns back, and is then lost to it. */
 void mhb_harmonics_estimate(mhb_harmonics *harmonics, mhb_path_point *point);
 
 /* The rung that the last estimate asks for, above the one in use; -1: the one in use will do. */

@@ -391,6 +391,13 @@ static shb_status read_probes(hid_t at, modal_model *model) {
   return SHB_OK;
 }
 
+static shb_status read_order(hid_t at, const char *path, int *order) {
+  SHB_TRY(h5_read_attribute_int(at, "contact/residual_tail", "order", 3, order));
+  SHB_CHECK(*order >= 3 && *order <= 64, SHB_ERR_INPUT,
+            "%s: /contact/residual_tail: attribute order is %d; 3 to 64 are wanted", path, *order);
+  return SHB_OK;
+}
+
 static shb_status check_residual_modes(const char *path, const modal_model *model) {
   SHB_CHECK(model->residual_flexibility && model->residual_inertia && model->residual_fourth,
             SHB_ERR_INPUT,
@@ -405,6 +412,11 @@ static shb_status check_residual_modes(const char *path, const modal_model *mode
         "%s: /residual_modes/frequency: value %d (from 0) is %g Hz; all must be positive, and "
         "ascend",
         path, i, model->residual_frequency[i]);
+  const double last = model->frequency[model->n_modes - 1];
+  SHB_CHECK(model->n_residual == 0 || model->residual_frequency[0] >= .999 * last, SHB_ERR_INPUT,
+            "%s: /residual_modes/frequency: value 0 is %g Hz, below the last of /modes/frequency, "
+            "%g Hz; a mode among those kept belongs to /modes",
+            path, model->residual_frequency[0], last);
   return SHB_OK;
 }
 
@@ -438,8 +450,7 @@ shb_status modal_model_read_at(hid_t at, const char *path, modal_model *model) {
   SHB_TRY(read_interfaces(at, path, model));
   SHB_TRY(read_load(at, path, model));
   SHB_TRY(read_probes(at, model));
-  if (model->contact_tail)
-    SHB_TRY(h5_read_attribute_int(at, "contact/residual_tail", "order", 3, &model->tail_order));
+  if (model->contact_tail) SHB_TRY(read_order(at, path, &model->tail_order));
   return read_residual_modes(at, path, model);
 }
 

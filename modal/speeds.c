@@ -1,5 +1,6 @@
 #include "modal/speeds.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -78,7 +79,10 @@ shb_status modal_speeds_write(hid_t file, const modal_speeds *s) {
 
 static shb_status check_tracks(const char *path, const modal_speeds *s, const int *mode) {
   for (int i = 0; i < s->n; i++) {
-    SHB_CHECK(s->speed[i] >= 0 && (i == 0 || s->speed[i] > s->speed[i - 1]), SHB_ERR_INPUT,
+    SHB_CHECK(s->speed[i] >= 0, SHB_ERR_INPUT,
+              "%s: /speeds/speed: value %d (from 0) is %g rad/s; none may be negative", path, i,
+              s->speed[i]);
+    SHB_CHECK(i == 0 || s->speed[i] > s->speed[i - 1], SHB_ERR_INPUT,
               "%s: /speeds/speed: value %d (from 0), %g rad/s, does not ascend", path, i,
               s->speed[i]);
     for (int t = 0; t < s->n_modes; t++) {
@@ -127,6 +131,22 @@ static shb_status read_one(hid_t file, const char *path, modal_speeds *s, int i)
   return check_alike(path, &s->model[0], &s->model[i], i);
 }
 
+/* Of the first speed with itself: the identity; no mode has more in common with another than with itself. */
+static shb_status check_overlap(const char *path, const modal_speeds *s) {
+  const int m = s->n_modes;
+  for (int i = 0; i < m * m; i++)
+    SHB_CHECK(fabs(s->overlap[i] - (i % (m + 1) == 0)) < 1e-6, SHB_ERR_INPUT,
+              "%s: /speeds/overlap: value [0, %d, %d] is %g; of the first speed with itself the "
+              "identity is wanted",
+              path, i / m, i % m, s->overlap[i]);
+  for (int i = 0; i < s->n * m * m; i++)
+    SHB_CHECK(fabs(s->overlap[i]) < 1 + 1e-6, SHB_ERR_INPUT,
+              "%s: /speeds/overlap: value [%d, %d, %d] is %g; 1 is the most that two modes of unit "
+              "mass have in common",
+              path, i / (m * m), i / m % m, i % m, s->overlap[i]);
+  return SHB_OK;
+}
+
 static shb_status read_all(hid_t file, const char *path, modal_speeds *s) {
   h5_shape all = H5_SHAPE(0, 0), shape;
   SHB_TRY(h5_shape_of(file, "/speeds/mode", &shape));
@@ -154,6 +174,7 @@ static shb_status read_all(hid_t file, const char *path, modal_speeds *s) {
   if (status == SHB_OK && h5_exists(file, "/speeds/overlap")) {
     h5_shape every = H5_SHAPE(shape.dim[0], shape.dim[1], shape.dim[1]);
     status         = h5_read_double(file, "/speeds/overlap", &every, &s->overlap);
+    if (status == SHB_OK) status = check_overlap(path, s);
   }
   for (int i = 0; status == SHB_OK && i < s->n; i++) status = read_one(file, path, s, i);
   return status;
@@ -163,8 +184,8 @@ shb_status modal_speeds_read(const char *path, modal_speeds *s) {
   hid_t file;
   *s = (modal_speeds){0};
   SHB_TRY(h5_open(path, &file));
-  shb_status status = SHB_OK;
-  if (h5_exists(file, "/speeds/mode")) status = read_all(file, path, s);
+  shb_status status = h5_check_format(file, "shroudhb modal model", MODAL_SPEEDS_VERSION);
+  if (status == SHB_OK && h5_exists(file, "/speeds/mode")) status = read_all(file, path, s);
   h5_close(file);
   if (status != SHB_OK) modal_speeds_free(s);
   return status;
