@@ -118,7 +118,12 @@ static void check_followed(case_reader *r) {
 static void check_band(case_reader *r) {
   case_file          *file = r->file;
   const mhb_settings *mhb  = &file->mhb;
-  if (file->modal_file || file->modes > 0 || !case_reader_good(r, "modal.modes")) return;
+  if (file->modal_file || !case_reader_good(r, "modal.modes")) return;
+  if (file->modes > 0 && case_reader_given(r, "modal.tolerance"))
+    case_reader_issue(r, "modal.tolerance", "only says something with modal.modes: auto");
+  if (file->modes > 0 && case_reader_given(r, "modal.band"))
+    case_reader_issue(r, "modal.band", "only says something with modal.modes: auto");
+  if (file->modes > 0) return;
   if (file->band > 0 || !case_reader_good(r, "modal.band")) return;
   if (case_reader_given(r, "mhb.frequency") && case_reader_good(r, "mhb.frequency"))
     file->band = mhb->frequency[1] * (mhb->harmonics > 0 ? mhb->harmonics : 5) /

@@ -45,7 +45,7 @@ packages_install() {
   fi
 }
 
-# packages_build_release: configure and build in build/release of the current folder
+# packages_build_release [TARGET]: configure and build in build/release of the current folder
 packages_build_release() {
-  cmake --preset release -Wno-dev >/dev/null && cmake --build --preset release
+  cmake --preset release -Wno-dev >/dev/null && cmake --build --preset release --target "${1:-all}"
 }

@@ -8,7 +8,7 @@ cd "$root"
 
 # shellcheck disable=SC2086
 packages_install $packages_build
-packages_build_release
+packages_build_release programs # the tests are for tests/run.sh
 code=0
 build/release/bin/shroudhb run cases/z_notch_blade/case.yaml || code=$?
 report=$root/cases/z_notch_blade/z_notch_blade.html

@@ -54,6 +54,7 @@ if(TARGET shroudhb-post)
   figure_test(paper_fig10 paper_fig10 shb_case)
   figure_test(lost_curves paper_fig8)
   figure_test(snubber_blade snubber_blade)
+  figure_test(slip_onset z_notch_blade)
 endif()
 
 # Speed against error, from end to end.
