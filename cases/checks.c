@@ -46,9 +46,10 @@ void case_check_alternatives(case_reader *r, int stages) {
 }
 
 static void check_sections(case_reader *r) {
-  static const char path[] = "mesh.blade.sections";
-  const mesh_blade *blade  = &r->file->blade;
-  const case_node  *node   = case_reader_given(r, path);
+  static const char   path[] = "mesh.blade.sections";
+  static const double degree = 180 / 3.14159265358979323846;
+  const mesh_blade   *blade  = &r->file->blade;
+  const case_node    *node   = case_reader_given(r, path);
   for (int i = 0; node && case_reader_good(r, path) && i < blade->n_sections; i++) {
     const mesh_section *s     = &blade->section[i];
     const case_node    *place = &node->child[i];
@@ -58,12 +59,17 @@ static void check_sections(case_reader *r) {
       case_issue_add(r->issues, place->line, place->column, full,
                      "radius is %g m, must be above that of the section before, %g m", s->radius,
                      s[-1].radius);
-    if (s->thickness >= s->chord)
+    if (s->thickness <= .01 * s->chord || s->thickness >= .5 * s->chord)
       case_issue_add(r->issues, place->line, place->column, full,
-                     "thickness is %g m, must be below the chord, %g m", s->thickness, s->chord);
-    if (s->camber >= s->chord / 2 || s->camber <= -s->chord / 2)
+                     "thickness is %g m, must be between 1 %% and 50 %% of the chord, %g to %g m",
+                     s->thickness, .01 * s->chord, .5 * s->chord);
+    if (fabs(s->camber) > .4 * s->chord)
       case_issue_add(r->issues, place->line, place->column, full,
-                     "camber is %g m, must be below half the chord, %g m", s->camber, s->chord / 2);
+                     "camber is %g m, must be at most 40 %% of the chord, %g m, either way",
+                     s->camber, .4 * s->chord);
+    if (fabs(s->twist) * degree > 80)
+      case_issue_add(r->issues, place->line, place->column, full,
+                     "twist is %g deg, must be -80 to 80 deg", s->twist * degree);
   }
   double height = blade->root_height;
   if (node && case_reader_good(r, path) && case_reader_good(r, "mesh.blade.root.height") &&

@@ -319,12 +319,14 @@ static void keys_among_each_other(void **state) {
        1},
       {"thickness: 2.9 mm", "thickness: 41 mm",
        "c.yaml:7:9: error: mesh.blade.sections[1]: thickness is "
-       "0.041 m, must be below the chord, 0.041 m",
+       "0.041 m, must be between 1 % and 50 % of the chord, 0.00041 to 0.0205 m",
        1},
       {"camber: 3 mm", "camber: 30 mm",
        "c.yaml:6:9: error: mesh.blade.sections[0]: camber is 0.03 m, must be "
-       "below half the chord, 0.0265 m",
+       "at most 40 % of the chord, 0.0212 m, either way",
        1},
+      {"thickness: 2.9 mm", "thickness: 2.9 mm, twist: 81 deg",
+       "c.yaml:7:9: error: mesh.blade.sections[1]: twist is 81 deg, must be -80 to 80 deg", 1},
       {"      - {radius: 0.47 m, chord: 41 mm, thickness: 2.9 mm}\n", "",
        "c.yaml:6:7: error: "
        "mesh.blade.sections: has 1 section, must have 2 to 16",
