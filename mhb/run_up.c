@@ -295,7 +295,10 @@ static shb_status make(mhb_run_up *r, const char *path) {
             "engine order 1 or higher",
             r->engine_order);
   SHB_CHECK(s->n > 1, SHB_ERR_INPUT,
-            "mhb.run_up: %s holds modes of one speed; give rotor.speed as a list", path);
+            "mhb.run_up: %s holds modes of one speed; several are wanted: rotor.speed as a list "
+            "where the "
+            "modal stage makes the file, /speeds in a file of your own",
+            path);
   SHB_TRY(check_range(r, path));
   while (from + 1 < s->n && s->speed[from + 1] <= r->band[0] / r->engine_order) from++;
   while (to > 0 && s->speed[to - 1] >= r->band[1] / r->engine_order) to--;

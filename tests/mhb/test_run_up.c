@@ -225,7 +225,8 @@ static void what_cannot_be_is_refused(void **state) {
   (void)state;
   const size_t all = SPINNING_MODES * SPINNING_MODES;
   modal_speeds s   = {0};
-  refuse(&s, 2, .4, 1.9, "blade.h5 holds modes of one speed; give rotor.speed as a list");
+  refuse(&s, 2, .4, 1.9,
+         "blade.h5 holds modes of one speed; several are wanted: rotor.speed as a list");
   spinning_speeds(SPINNING_TURNING, 3, 0, 1, true, &s);
   refuse(&s, 0, .4, 1.9, "excitation.engine_order is 0");
   spinning_speeds(SPINNING_TURNING, 3, .25, 1, true, &s);
