@@ -121,18 +121,3 @@ double modal_series_error(const modal_model *model, double omega, int dof) {
       r ? model->residual_shape + p * r : NULL};
   return error_of(model, omega, &of);
 }
-
-double modal_series_load_error(const modal_model *model, double omega, int k) {
-  const double s = omega * omega;
-  if (!model->load_tail || k > model->n_load) return k > model->n_load ? 0 : -1;
-  const modal_series taken = modal_series_at(model, omega);
-  double             most = 0, error = tail_at(model, s, model->load_tail + 2 * (size_t)k);
-  for (int i = 0; i < model->n_residual; i++) {
-    const double theta = eigenvalue(model, i);
-    const double size =
-        square(cabs(model->residual_force[(size_t)k * (size_t)model->n_residual + (size_t)i]));
-    most += size / theta;
-    error += theta > s ? size * (1 / (theta - s) - 1 / (theta - taken.x)) : INFINITY;
-  }
-  return fmin(error, most);
-}

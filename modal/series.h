@@ -43,7 +43,4 @@ bool modal_series_has_fourth(const modal_model *model);
  * The error matrix is positive semi-definite: no receptance between dofs p and l lacks more than the geometric mean of theirs. */
 double modal_series_error(const modal_model *model, double omega, int dof);
 
-/* The same of the response to harmonic k of the load as if the load's work were measured, N m; -1 without a tail of the load. */
-double modal_series_load_error(const modal_model *model, double omega, int k);
-
 #endif
