@@ -59,15 +59,18 @@ static void check_sections(case_reader *r) {
       case_issue_add(r->issues, place->line, place->column, full,
                      "radius is %g m, must be above that of the section before, %g m", s->radius,
                      s[-1].radius);
-    if (s->thickness <= .01 * s->chord || s->thickness >= .5 * s->chord)
+    const double least = .01 * MESH_LEAST_THICKNESS * s->chord;
+    const double most  = .01 * MESH_MOST_THICKNESS * s->chord;
+    const double bend  = .01 * MESH_MOST_CAMBER * s->chord;
+    if (s->thickness <= least || s->thickness >= most)
       case_issue_add(r->issues, place->line, place->column, full,
                      "thickness is %g m, must be between 1 %% and 50 %% of the chord, %g to %g m",
-                     s->thickness, .01 * s->chord, .5 * s->chord);
-    if (fabs(s->camber) > .4 * s->chord)
+                     s->thickness, least, most);
+    if (fabs(s->camber) > bend)
       case_issue_add(r->issues, place->line, place->column, full,
                      "camber is %g m, must be at most 40 %% of the chord, %g m, either way",
-                     s->camber, .4 * s->chord);
-    if (fabs(s->twist) * degree > 80)
+                     s->camber, bend);
+    if (fabs(s->twist) > MESH_MOST_TWIST / degree)
       case_issue_add(r->issues, place->line, place->column, full,
                      "twist is %g deg, must be -80 to 80 deg", s->twist * degree);
   }

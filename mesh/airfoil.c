@@ -100,17 +100,19 @@ static shb_status check_section(const mesh_blade *blade, int i) {
             1e3 * s->radius, i ? 1e3 * s[-1].radius : 0);
   SHB_CHECK(s->chord > 0 && isfinite(s->chord), SHB_ERR_INPUT,
             "mesh.blade.sections[%d].chord: %g mm; it must be positive", i, 1e3 * s->chord);
-  SHB_CHECK(s->thickness > 0.01 * s->chord && s->thickness < 0.5 * s->chord, SHB_ERR_INPUT,
+  SHB_CHECK(s->thickness > .01 * MESH_LEAST_THICKNESS * s->chord &&
+                s->thickness < .01 * MESH_MOST_THICKNESS * s->chord,
+            SHB_ERR_INPUT,
             "mesh.blade.sections[%d].thickness: %g mm; it must be between 1 %% and 50 %% of the "
             "chord, %g mm to %g mm",
             i, 1e3 * s->thickness, 10 * s->chord, 500 * s->chord);
-  SHB_CHECK(fabs(s->camber) <= 0.4 * s->chord, SHB_ERR_INPUT,
+  SHB_CHECK(fabs(s->camber) <= .01 * MESH_MOST_CAMBER * s->chord, SHB_ERR_INPUT,
             "mesh.blade.sections[%d].camber: %g mm; at most 40 %% of the chord, %g mm, either way",
             i, 1e3 * s->camber, 400 * s->chord);
   SHB_CHECK(bent < 0 || s->camber * blade->section[bent].camber >= 0, SHB_ERR_INPUT,
             "mesh.blade.sections[%d].camber: %g mm bends the other way than sections[%d], %g mm", i,
             1e3 * s->camber, bent, 1e3 * blade->section[bent].camber);
-  SHB_CHECK(fabs(s->twist) <= 80 * M_PI / 180, SHB_ERR_INPUT,
+  SHB_CHECK(fabs(s->twist) <= MESH_MOST_TWIST * M_PI / 180, SHB_ERR_INPUT,
             "mesh.blade.sections[%d].twist: %g deg; it must be between -80 and 80 deg", i,
             s->twist * 180 / M_PI);
   return SHB_OK;

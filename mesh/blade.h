@@ -8,7 +8,14 @@
 #include "mesh/status.h"
 #include "mesh/topology.h"
 
-enum { MESH_MAX_SECTIONS = 16 };
+/* What a section may be: thickness and camber in per cent of the chord, twist in degrees either way. */
+enum {
+  MESH_MAX_SECTIONS    = 16,
+  MESH_LEAST_THICKNESS = 1,
+  MESH_MOST_THICKNESS  = 50,
+  MESH_MOST_CAMBER     = 40,
+  MESH_MOST_TWIST      = 80
+};
 
 /* Airfoil section at a radius; lengths in m, twist in rad (stagger of the chord from the axial direction,
  * positive turning the trailing edge towards +tangential). */
