@@ -30,7 +30,6 @@ struct fem_single {
   Vec            in, out;
   float         *rhs;               /* [columns][n] */
   double        *x, *r, *z, *p, *q; /* [columns][n] */
-  int            iterations;
 };
 
 /* MUMPS counts from 1. */
@@ -233,7 +232,6 @@ static PetscErrorCode iterate(fem_single *f, int count) {
       if (done[c]) continue;
       turn(f, c, i == 0 ? 0 : rho[c] / before[c]);
       PetscCall(step(f, c, rho[c], &definite));
-      f->iterations = PetscMax(f->iterations, i + 1);
     }
   }
   PetscFunctionReturn(0);
@@ -242,7 +240,6 @@ static PetscErrorCode iterate(fem_single *f, int count) {
 PetscErrorCode fem_single_solve(fem_single *f, int count, const double *b, size_t ldb, double *x,
                                 size_t ldx) {
   PetscFunctionBeginUser;
-  f->iterations = 0;
   for (int first = 0; first < count; first += COLUMNS) {
     const int some = PetscMin(COLUMNS, count - first);
     for (int c = 0; c < some; c++)
@@ -252,10 +249,6 @@ PetscErrorCode fem_single_solve(fem_single *f, int count, const double *b, size_
       memcpy(x + (size_t)(first + c) * ldx, f->x + (size_t)c * f->n, f->n * sizeof *x);
   }
   PetscFunctionReturn(0);
-}
-
-int fem_single_iterations(const fem_single *f) {
-  return f->iterations;
 }
 
 PetscErrorCode fem_single_destroy(fem_single **factor) {

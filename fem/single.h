@@ -24,9 +24,6 @@ PetscErrorCode fem_single_update(fem_single *factor, Mat A, bool *definite);
 PetscErrorCode fem_single_solve(fem_single *factor, int count, const double *b, size_t ldb,
                                 double *x, size_t ldx);
 
-/* Iterations of the last solution, of its column that took most. */
-int fem_single_iterations(const fem_single *factor);
-
 PetscErrorCode fem_single_destroy(fem_single **factor); /* NULL: nothing */
 
 #endif
