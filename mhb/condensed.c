@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "mhb/elimination.h"
+#include "mhb/springs.h"
 
 /* Below this many stuck unknowns the harmonics are not shared out to threads. */
 enum { WORTH_THREADS = 72 };
@@ -110,13 +111,6 @@ static void to_real(const mhb_condensed *s, const double complex *X, double *x) 
   }
 }
 
-/* Forces of a stuck pair at harmonic k: S x. */
-static void spring(const mhb_law *law, int k, const double complex x[3], double complex p[3]) {
-  p[0] = law->kv * x[0];
-  p[1] = k ? law->ku[0] * x[1] + law->ku[1] * x[2] : 0;
-  p[2] = k ? law->ku[1] * x[1] + law->ku[2] * x[2] : 0;
-}
-
 static const double complex *receptance(const mhb_condensed *s, int k, int row) {
   size_t n3 = rows_of(s);
   return s->b->receptance->R + ((size_t)k * n3 + (size_t)row) * n3;
@@ -171,7 +165,7 @@ static int factor_harmonic(mhb_condensed *s, int k) {
     const double complex *R = receptance(s, k, 3 * s->stuck[i / 3] + i % 3);
     for (int j = 0; j < s->n_stuck; j++) {
       double complex column[3]; /* S is symmetric: R S = (S R^T)^T */
-      spring(&s->b->law[s->stuck[j]], k, R + 3 * s->stuck[j], column);
+      mhb_springs_force(&s->b->law[s->stuck[j]], k, R + 3 * s->stuck[j], column);
       for (int c = 0; c < 3; c++)
         A[(size_t)(3 * j + c) * (size_t)nl + (size_t)i] = column[c] + (i == 3 * j + c);
     }
@@ -196,7 +190,7 @@ static int solve_stuck(mhb_condensed *s, int k, double complex *x) {
   for (int i = 0; i < s->n_stuck; i++) {
     int a = s->stuck[i];
     memcpy(x + 3 * a, packed + 3 * i, 3 * sizeof *x);
-    spring(&s->b->law[a], k, x + 3 * a, force + 3 * a);
+    mhb_springs_force(&s->b->law[a], k, x + 3 * a, force + 3 * a);
   }
   return 1;
 }
@@ -221,8 +215,8 @@ static int condense_harmonic(mhb_condensed *s, int k) {
   for (int i = 0; i < nm; i++) {
     const double complex *R = receptance(s, k, 3 * s->moving[i / 3] + i % 3);
     for (int j = 0; j < s->n_stuck; j++)
-      spring(&s->b->law[s->stuck[j]], k, R + 3 * s->stuck[j],
-             pull + (size_t)i * (size_t)nl + 3 * j);
+      mhb_springs_force(&s->b->law[s->stuck[j]], k, R + 3 * s->stuck[j],
+                        pull + (size_t)i * (size_t)nl + 3 * j);
   }
   cblas_zgemm(CblasRowMajor, CblasNoTrans, CblasTrans, nm, nm, nl, &MINUS, pull, nl, reach, nl,
               &ONE, mixed, nm);
@@ -343,7 +337,7 @@ static void demand_of_stuck(mhb_condensed *s, int k, double complex *t) {
   double complex *q = s->q + (size_t)k * rows_of(s), force[3];
   for (int i = 0; i < s->n_stuck; i++) {
     int a = s->stuck[i];
-    spring(&s->b->law[a], k, q + 3 * a, force);
+    mhb_springs_force(&s->b->law[a], k, q + 3 * a, force);
     for (int c = 0; c < 3; c++) t[3 * a + c] -= force[c];
   }
 }
@@ -483,7 +477,7 @@ static void expand(mhb_condensed *s, int k) {
   }
   for (int i = 0; i < s->n_stuck; i++) {
     int a = s->stuck[i];
-    spring(&s->b->law[a], k, x + 3 * a, s->s + at + 3 * a);
+    mhb_springs_force(&s->b->law[a], k, x + 3 * a, s->s + at + 3 * a);
   }
   for (int row = 0; row < (int)n3 && nl + nm > 0; row++) {
     if (s->kind[row / 3] != MHB_PAIR_OPEN) continue;

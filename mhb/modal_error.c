@@ -6,6 +6,7 @@
 
 #include "mhb/elimination.h"
 #include "mhb/newton.h"
+#include "mhb/springs.h"
 
 static const double PI = 3.14159265358979323846;
 
@@ -74,34 +75,16 @@ static double by_system(const mhb_residual *b, mhb_condensed *system, const doub
   return length;
 }
 
-static bool is_linear(const mhb_residual *b) {
-  for (int a = 0; a < b->n_pairs; a++)
-    if (b->info[a].share[MHB_STICK] < 1 && b->info[a].share[MHB_SEPARATE] < 1) return false;
-  return true;
-}
-
-/* Column-major I + R_k S, S the springs of the stuck pairs. */
-static void fill(const mhb_residual *b, int k, double complex *A) {
-  const int n = 3 * b->n_pairs;
-  mhb_receptance_need(b->receptance, k);
-  const double complex *R = b->receptance->R + (size_t)k * (size_t)n * (size_t)n;
-  for (int i = 0; i < n; i++, R += n)
-    for (int a = 0; a < b->n_pairs; a++) {
-      const mhb_law        *law = &b->law[a];
-      const double          on  = b->info[a].share[MHB_STICK] >= 1;
-      const double complex *x   = R + 3 * a;
-      double complex S[] = {on * law->kv * x[0], on * (law->ku[0] * x[1] + law->ku[1] * x[2]),
-                            on * (law->ku[1] * x[1] + law->ku[2] * x[2])};
-      for (int c = 0; c < 3; c++) A[(3 * a + c) * n + i] = S[c] + (i == 3 * a + c);
-    }
-}
-
 /* Harmonic by harmonic, where all pairs are open or stuck. */
 static void answer(const mhb_residual *b, double complex *A, int *pivot, double complex *e) {
-  const int n = 3 * b->n_pairs;
+  const int     n = 3 * b->n_pairs;
+  mhb_pair_kind kind[b->n_pairs];
+  for (int a = 0; a < b->n_pairs; a++)
+    kind[a] = b->info[a].share[MHB_STICK] >= 1 ? MHB_PAIR_STUCK : MHB_PAIR_OPEN;
   for (int k = 1; k <= b->m; k++) {
     if (!(length_of(n, e + k * n) > 0)) continue;
-    fill(b, k, A);
+    mhb_receptance_need(b->receptance, k);
+    mhb_springs_matrix(b, k, kind, A);
     if (mhb_factor_complex(n, A, pivot)) mhb_solve_complex(n, A, pivot, 1, e + k * n);
   }
 }
@@ -109,7 +92,7 @@ static void answer(const mhb_residual *b, double complex *A, int *pivot, double 
 double mhb_modal_error(const mhb_residual *b, const double *x, mhb_condensed *system) {
   const mhb_receptance *r = b->receptance;
   const int             n = r->n, all = (b->m + 1) * n;
-  const bool            linear = !system && n <= MOST_SOLVED && is_linear(b);
+  const bool            linear = !system && n <= MOST_SOLVED && mhb_springs_throughout(b);
   const double          size   = mhb_residual_vibration(b, x);
   double                ratio[b->m + 1], sum = 0;
   int                   pivot[n];

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "mhb/elimination.h"
+#include "mhb/springs.h"
 
 enum { MAX_ITERATIONS = 8 };
 
@@ -38,26 +39,9 @@ void mhb_still_destroy(mhb_still *s) {
   free(s);
 }
 
-/* out[3] = S x of a pair. */
-static void spring(const mhb_still *s, const mhb_residual *b, int pair, const double complex x[3],
-                   double complex out[3]) {
-  const mhb_law *law = &b->law[pair];
-  double         on  = s->kind[pair] == MHB_PAIR_STUCK;
-  out[0]             = on * law->kv * x[0];
-  out[1]             = on * (law->ku[0] * x[1] + law->ku[1] * x[2]);
-  out[2]             = on * (law->ku[1] * x[1] + law->ku[2] * x[2]);
-}
-
 static int factor(mhb_still *s, const mhb_residual *b, int k) {
-  int                   n = s->n;
-  const double complex *R = b->receptance->R + (size_t)k * (size_t)n * (size_t)n;
-  for (int i = 0; i < n; i++, R += n)
-    for (int a = 0; a < b->n_pairs; a++) {
-      double complex row[3]; /* S is symmetric */
-      spring(s, b, a, R + 3 * a, row);
-      for (int c = 0; c < 3; c++) s->A[(3 * a + c) * n + i] = row[c] + (i == 3 * a + c);
-    }
-  return mhb_factor_complex(n, s->A, s->pivot);
+  mhb_springs_matrix(b, k, s->kind, s->A);
+  return mhb_factor_complex(s->n, s->A, s->pivot);
 }
 
 static void store(const mhb_residual *b, int k, const double complex *in, double *x) {
@@ -80,7 +64,9 @@ static int harmonic(mhb_still *s, const mhb_residual *b, int k, double *x) {
   memcpy(s->u, b->receptance->free + k * n, sizeof(double complex) * (size_t)n);
   if (!factor(s, b, k) || !mhb_solve_complex(n, s->A, s->pivot, 1, s->u)) return 0;
   store(b, k, s->u, x);
-  for (int a = 0; a < b->n_pairs; a++) spring(s, b, a, s->u + 3 * a, s->p + 3 * a);
+  memset(s->p, 0, sizeof(double complex) * (size_t)n);
+  for (int a = 0; a < b->n_pairs; a++)
+    if (s->kind[a] == MHB_PAIR_STUCK) mhb_springs_force(&b->law[a], k, s->u + 3 * a, s->p + 3 * a);
   mhb_receptance_slope(b->receptance, k, s->p, s->u);
   if (!mhb_solve_complex(n, s->A, s->pivot, 1, s->u)) return 0;
   store(b, k, s->u, s->slope);

@@ -6,6 +6,7 @@
 
 #include "mhb/fourier.h"
 #include "mhb/newton.h"
+#include "mhb/springs.h"
 
 static const double NEGLIGIBLE = .1, NEAR_BY = .1;
 
@@ -61,13 +62,6 @@ void mhb_truncation_destroy(mhb_truncation *t) {
   free(t->trial);
   free(t->change);
   free(t);
-}
-
-/* Open or stuck throughout at all pairs: the force has the harmonics of the motion and no others. */
-static int is_linear(const mhb_residual *b) {
-  for (int a = 0; a < b->n_pairs; a++)
-    if (b->info[a].share[MHB_STICK] < 1 && b->info[a].share[MHB_SEPARATE] < 1) return 0;
-  return 1;
 }
 
 /* Rows of nb coefficients into rows of wide ones, or back; the rest is left as it is. */
@@ -135,7 +129,7 @@ double mhb_truncation_error(mhb_truncation *t, const double *x) {
   memset(t->step, 0, sizeof(double) * (size_t)b->n);
   t->far  = 0;
   t->kind = MHB_TRUNCATION_NONE;
-  if (is_linear(t->narrow)) return 0;
+  if (mhb_springs_throughout(t->narrow)) return 0;
   mhb_residual_condition(b, &t->narrow->at);
   t->kind = set_step(t, size);
   return size > 0 ? hypot(mhb_norm(t->step, b->n), t->far) / size : 0;
