@@ -11,8 +11,8 @@
 #ifndef TESTS_BASELINE_H
 #define TESTS_BASELINE_H
 
-#include "mesh/status.h"
-#include "mhb/contact.h"
+#include "mesh/base/status.h"
+#include "mhb/contact/contact.h"
 
 /* Compiled for wide vectors too, chosen at run time, as the law is. */
 #if defined(__x86_64__) && defined(__gnu_linux__) && !defined(__SANITIZE_ADDRESS__)

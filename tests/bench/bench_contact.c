@@ -14,7 +14,7 @@
 
 #include "method.h"
 #include "summary.h"
-#include "tests/mhb/reference.h"
+#include "tests/support/reference_law.h"
 #include "work_precision.h"
 
 enum { MAX_MOTIONS = 64, MAX_ROUNDS = 10001 };

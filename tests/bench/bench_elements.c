@@ -16,7 +16,7 @@
 #include <string.h>
 #include <sys/resource.h>
 
-#include "modal/eigen.h"
+#include "modal/eigen/eigen.h"
 #include "tests/bench/z_notch.h"
 
 enum { MODES = 10, MOST = 8 };

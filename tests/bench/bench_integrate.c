@@ -4,7 +4,7 @@
  *   bench_integrate --quick    errors only, on few frequencies
  *   bench_integrate --blade FILE N0 FROM TO   the same with a modal file: contact of cases/paper_fig7, preload N, range Hz
  *
- * Scenes: the three-degree model and the tip-contact beam (tests/mhb/three_degree.h). Frequencies over the range, all with one stable
+ * Scenes: the three-degree model and the tip-contact beam (tests/support/three_degree.h). Frequencies over the range, all with one stable
  * solution. A point of the balance is solved from the solution .2 % of the frequency away, as a continuation has it. A point of the
  * integration goes on from the state there (a sweep), or starts at rest, until the return map is within a tenth of the error wanted.
  * Error: of the contact's first harmonics, relative, worst of all frequencies, against integration with many steps. The
@@ -14,11 +14,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "mesh/progress.h"
-#include "mhb/follow.h"
-#include "mhb/inertia.h"
-#include "mhb/orbit.h"
-#include "tests/mhb/three_degree.h"
+#include "mesh/base/progress.h"
+#include "mhb/branches/main_branch.h"
+#include "mhb/integration/inertia_modes.h"
+#include "mhb/integration/steady_state.h"
+#include "tests/support/three_degree.h"
 
 static const double PI = 3.14159265358979323846, AWAY = .998;
 

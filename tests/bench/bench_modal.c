@@ -18,9 +18,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "mesh/inp.h"
-#include "modal/eigen.h"
-#include "modal/session.h"
+#include "mesh/io/inp_read.h"
+#include "modal/common/session.h"
+#include "modal/eigen/eigen.h"
 #include "tests/bench/z_notch.h"
 
 enum { MODES = 20 };

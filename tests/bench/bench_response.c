@@ -7,7 +7,7 @@
  *   bench_response --precision    error against seconds alone (precision.h)
  *   bench_response --blade FILE N0 FROM TO  the same of a modal file: contact to the neighbour, preload N, range Hz
  *
- * Beam: the tip-contact beam (tests/mhb/three_degree.h), one row a force and number of harmonics: the whole sweep 215-320 Hz, the
+ * Beam: the tip-contact beam (tests/support/three_degree.h), one row a force and number of harmonics: the whole sweep 215-320 Hz, the
  * median of a point, and the error of the located peak against H = 31. Then the three accuracies of the contact law, and the
  * growth with pairs (shroud_face.h), each row in a process of its own so that its memory can be told. Goals carry verdicts; the
  * exit code tells of errors only, for times depend on the machine. */
@@ -19,11 +19,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "mesh/progress.h"
-#include "mhb/follow.h"
+#include "mesh/base/progress.h"
+#include "mhb/branches/main_branch.h"
 #include "precision.h"
 #include "shroud_face.h"
-#include "tests/mhb/three_degree.h"
+#include "tests/support/three_degree.h"
 
 static const double PI = 3.14159265358979323846;
 

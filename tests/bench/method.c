@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "mesh/progress.h"
+#include "mesh/base/progress.h"
 
 static const struct {
   double      tolerance;

@@ -3,9 +3,9 @@
 #define TESTS_METHOD_H
 
 #include "baseline.h"
-#include "mesh/status.h"
-#include "mhb/contact.h"
-#include "tests/mhb/suite.h"
+#include "mesh/base/status.h"
+#include "mhb/contact/contact.h"
+#include "tests/support/motion_suite.h"
 
 typedef enum { METHOD_RETURN, METHOD_CLOSED, METHOD_LAW, METHOD_FAMILIES } method_family;
 

@@ -6,9 +6,9 @@
 #include <string.h>
 #include <time.h>
 
-#include "mhb/follow.h"
-#include "mhb/fourier.h"
-#include "mhb/harmonics.h"
+#include "mhb/branches/harmonic_selection.h"
+#include "mhb/branches/main_branch.h"
+#include "mhb/numerics/fourier.h"
 
 static const double PI = 3.14159265358979323846, TOLERANCE = 1e-4, GOAL = 1.5, NEAR_BY = .1;
 

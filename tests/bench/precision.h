@@ -6,8 +6,8 @@
 #ifndef BENCH_PRECISION_H
 #define BENCH_PRECISION_H
 
-#include "mhb/settings.h"
-#include "modal/model.h"
+#include "mhb/problem/settings.h"
+#include "modal/model/model.h"
 
 /* Prints the rows of one scene and whether the chosen harmonics at tolerance 1e-4 cost at most 1.5 times the cheapest fixed number
  * that reaches it. *failed: counts chosen ones whose error is above the tolerance, never seconds. */

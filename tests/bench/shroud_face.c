@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "tests/mhb/three_degree.h"
+#include "tests/support/three_degree.h"
 
 static const double STIFFNESS = 2e5;
 

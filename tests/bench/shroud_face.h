@@ -2,10 +2,10 @@
 #ifndef TESTS_SHROUD_FACE_H
 #define TESTS_SHROUD_FACE_H
 
-#include "mhb/settings.h"
-#include "modal/model.h"
+#include "mhb/problem/settings.h"
+#include "modal/model/model.h"
 
-/* The tip-contact beam (tests/mhb/three_degree.h) with its contact spread over n patches of equal area at y = -1 .. 1 across the
+/* The tip-contact beam (tests/support/three_degree.h) with its contact spread over n patches of equal area at y = -1 .. 1 across the
  * face, which moves as .3 + y^8 of the tip (and a little askew): the edges slip and separate while most of it sticks. Each patch
  * gives way by itself, and by a third of that to its neighbour's force (residual flexibility and inertia). */
 void shroud_face_model(int n_patches, double force, modal_model *model);

@@ -3,8 +3,8 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "postproc/plot.h"
-#include "postproc/unit.h"
+#include "postproc/draw/number_format.h"
+#include "postproc/draw/plot.h"
 
 enum { WIDTH = 860, HEIGHT = 520 };
 

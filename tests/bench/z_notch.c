@@ -5,7 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "mesh/blade.h"
+#include "mesh/blade/blade.h"
 
 static mesh_blade make_blade(mesh_kind kind, const z_notch_sizes *s) {
   const double       degree     = acos(-1) / 180;

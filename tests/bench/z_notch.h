@@ -2,7 +2,7 @@
 #ifndef BENCH_Z_NOTCH_H
 #define BENCH_Z_NOTCH_H
 
-#include "mesh/fe_mesh.h"
+#include "mesh/core/fe_mesh.h"
 
 typedef struct {
   double size, shroud, edge; /* mm; edge 0: re-entrant edges as the rest */

@@ -9,9 +9,9 @@
 
 #include <cmocka.h>
 
-#include "mhb/residual.h"
+#include "mhb/balance/balance.h"
 #include "tests/hard/verdict.h"
-#include "tests/mhb/periodic.h"
+#include "tests/support/periodic.h"
 
 static const double PI = 3.14159265358979323846;
 

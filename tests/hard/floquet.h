@@ -2,10 +2,10 @@
 #ifndef TESTS_HARD_FLOQUET_H
 #define TESTS_HARD_FLOQUET_H
 
-#include "mhb/response.h"
-#include "mhb/settings.h"
-#include "mhb/stability.h"
-#include "modal/model.h"
+#include "mhb/floquet/floquet.h"
+#include "mhb/problem/settings.h"
+#include "mhb/response/response.h"
+#include "modal/model/model.h"
 
 typedef struct {
   mhb_verdict  verdict;

@@ -2,7 +2,7 @@
 #ifndef TESTS_HARD_POWER_H
 #define TESTS_HARD_POWER_H
 
-#include "mhb/residual.h"
+#include "mhb/balance/balance.h"
 
 typedef struct {
   double input, damping, friction; /* J a cycle */

@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "mesh/progress.h"
-#include "mhb/sweep.h"
+#include "mesh/base/progress.h"
+#include "mhb/branches/forced_response.h"
 
 static const double PRELOADS[] = {-500, -100, -20, 0,   3,   10,  20,   30,   50,   75,
                                   100,  150,  200, 300, 500, 700, 1000, 1200, 1500, 1800};

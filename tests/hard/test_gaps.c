@@ -9,11 +9,11 @@
 
 #include <cmocka.h>
 
-#include "mhb/sweep.h"
+#include "mhb/branches/forced_response.h"
 #include "tests/hard/verdict.h"
-#include "tests/mhb/periodic.h"
-#include "tests/mhb/random_model.h"
-#include "tests/mhb/three_degree.h"
+#include "tests/support/periodic.h"
+#include "tests/support/random_model.h"
+#include "tests/support/three_degree.h"
 
 static const double PI = 3.14159265358979323846;
 

@@ -10,11 +10,11 @@
 
 #include <cmocka.h>
 
-#include "mhb/orders.h"
+#include "mhb/balance/subharmonics.h"
 #include "tests/hard/verdict.h"
-#include "tests/mhb/disturbed.h"
-#include "tests/mhb/periodic.h"
-#include "tests/mhb/three_degree.h"
+#include "tests/support/disturbed.h"
+#include "tests/support/periodic.h"
+#include "tests/support/three_degree.h"
 
 static const double PI = 3.14159265358979323846;
 

@@ -8,12 +8,12 @@
 
 #include <cmocka.h>
 
-#include "mhb/follow.h"
+#include "mhb/branches/main_branch.h"
 #include "tests/hard/floquet.h"
 #include "tests/hard/verdict.h"
-#include "tests/mhb/periodic.h"
-#include "tests/mhb/random_model.h"
-#include "tests/mhb/three_degree.h"
+#include "tests/support/periodic.h"
+#include "tests/support/random_model.h"
+#include "tests/support/three_degree.h"
 
 static const double PI = 3.14159265358979323846;
 

@@ -9,11 +9,11 @@
 
 #include <cmocka.h>
 
-#include "mhb/follow.h"
+#include "mhb/branches/main_branch.h"
 #include "tests/hard/verdict.h"
-#include "tests/mhb/periodic.h"
-#include "tests/mhb/random_model.h"
-#include "tests/mhb/three_degree.h"
+#include "tests/support/periodic.h"
+#include "tests/support/random_model.h"
+#include "tests/support/three_degree.h"
 
 enum { M = 7, N = 3 * (2 * M + 1) };
 

@@ -11,14 +11,14 @@
 
 #include <cmocka.h>
 
-#include "mhb/fourier.h"
-#include "mhb/newton.h"
-#include "mhb/truncation.h"
+#include "mhb/balance/newton.h"
+#include "mhb/balance/truncation_error.h"
+#include "mhb/numerics/fourier.h"
 #include "tests/bench/shroud_face.h"
 #include "tests/hard/power.h"
 #include "tests/hard/verdict.h"
-#include "tests/mhb/periodic.h"
-#include "tests/mhb/random_model.h"
+#include "tests/support/periodic.h"
+#include "tests/support/random_model.h"
 
 enum { PAIRS = 20, M = 3 };
 

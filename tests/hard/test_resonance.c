@@ -8,12 +8,12 @@
 
 #include <cmocka.h>
 
-#include "mhb/follow.h"
-#include "mhb/fourier.h"
+#include "mhb/branches/main_branch.h"
+#include "mhb/numerics/fourier.h"
 #include "tests/hard/verdict.h"
-#include "tests/mhb/disturbed.h"
-#include "tests/mhb/periodic.h"
-#include "tests/mhb/three_degree.h"
+#include "tests/support/disturbed.h"
+#include "tests/support/periodic.h"
+#include "tests/support/three_degree.h"
 
 static const double PI = 3.14159265358979323846;
 

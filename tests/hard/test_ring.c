@@ -9,11 +9,11 @@
 
 #include <cmocka.h>
 
-#include "mhb/fourier.h"
-#include "mhb/newton.h"
+#include "mhb/balance/newton.h"
+#include "mhb/numerics/fourier.h"
 #include "tests/hard/verdict.h"
-#include "tests/mhb/periodic.h"
-#include "tests/mhb/random_model.h"
+#include "tests/support/periodic.h"
+#include "tests/support/random_model.h"
 
 static const double PI = 3.14159265358979323846;
 

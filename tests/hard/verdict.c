@@ -10,8 +10,8 @@
 
 #include <cmocka.h>
 
-#include "mhb/fourier.h"
-#include "mhb/sweep.h"
+#include "mhb/branches/forced_response.h"
+#include "mhb/numerics/fourier.h"
 
 static const double PI = 3.14159265358979323846;
 

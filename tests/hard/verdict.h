@@ -2,9 +2,9 @@
 #ifndef TESTS_HARD_VERDICT_H
 #define TESTS_HARD_VERDICT_H
 
-#include "mhb/response.h"
-#include "mhb/settings.h"
-#include "modal/model.h"
+#include "mhb/problem/settings.h"
+#include "mhb/response/response.h"
+#include "modal/model/model.h"
 
 /* One row: what was measured, its figure, the bound, pass or FAIL. Fails the test when all rows of it are printed
  * (verdict_all, at its end) if the figure is not <= bound. */

@@ -1,0 +1,94 @@
+#include "cases/commands/command.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Whether usage mentions option as a whole word. */
+static bool mentions(const char *usage, const char *option) {
+  size_t n = strlen(option);
+  for (const char *at = usage; (at = strstr(at, option)) != NULL; at += n)
+    if (!strchr("abcdefghijklmnopqrstuvwxyz-", at[n]) || at[n] == '\0') return true;
+  return false;
+}
+
+static bool set_flag(const char *word, command_options *out) {
+  if (strcmp(word, "--quiet") == 0) {
+    out->quiet = true;
+  } else if (strcmp(word, "--verbose") == 0) {
+    out->verbose = true;
+  } else if (strcmp(word, "--force") == 0) {
+    out->force = true;
+  } else {
+    return false;
+  }
+  return true;
+}
+
+static int refuse(const char *what, const char *word) {
+  fprintf(stderr, "shroudhb: error: %s%s%s%s; see --help\n", what, word ? " '" : "",
+          word ? word : "", word ? "'" : "");
+  return SHB_ERR_INPUT;
+}
+
+int command_parse(int argc, char **argv, const char *usage, command_options *out) {
+  *out         = (command_options){0};
+  bool options = true;
+  for (int i = 1; i < argc; i++) {
+    const char *word = argv[i];
+    if (options && strcmp(word, "--") == 0) {
+      options = false;
+    } else if (options && strcmp(word, "--help") == 0) {
+      fputs(usage, stdout);
+      return command_finish(SHB_OK);
+    } else if (options && strcmp(word, "--version") == 0) {
+      printf("shroudhb %s\n", shb_revision());
+      return command_finish(SHB_OK);
+    } else if (options && set_flag(word, out)) {
+      continue;
+    } else if (options && strcmp(word, "--svg") == 0 && mentions(usage, word)) {
+      if (i + 1 == argc || argv[i + 1][0] == '-' || argv[i + 1][0] == '\0')
+        return refuse("--svg needs the name of a file to write", NULL);
+      if (out->svg) return refuse("one --svg is enough; unexpected", argv[i + 1]);
+      out->svg = argv[++i];
+    } else if (options && strncmp(word, "--", 2) == 0 && mentions(usage, word)) {
+      if (out->mode) return refuse("one mode at a time; unexpected", word);
+      out->mode = word + 2;
+    } else if (options && word[0] == '-' && word[1] != '\0') {
+      return refuse("unknown option", word);
+    } else {
+      if (out->path && (out->other || !mentions(usage, "OTHER")))
+        return refuse(
+            out->other ? "two files are enough; unexpected" : "one file is enough; unexpected",
+            word);
+      *(out->path ? &out->other : &out->path) = word;
+    }
+  }
+  if (!out->path) return refuse("no file given", NULL);
+  return -1;
+}
+
+/* A reader that has left is no fault; a full disk is. */
+static shb_status finish_output(void) {
+  errno     = 0;
+  bool good = fflush(stdout) == 0;
+  if ((good && !ferror(stdout)) || errno == EPIPE) return SHB_OK;
+  SHB_FAIL(SHB_ERR_IO, "standard output cannot be written%s%s", errno ? ": " : "",
+           errno ? strerror(errno) : "");
+}
+
+int command_finish(shb_status status) {
+  if (status == SHB_OK || status == SHB_NOT_CONVERGED) {
+    shb_status output = finish_output();
+    if (output != SHB_OK) status = output;
+  }
+  if (status != SHB_OK && shb_message()[0] != '\0')
+    fprintf(stderr, "shroudhb: %s: %s\n", status == SHB_NOT_CONVERGED ? "warning" : "error",
+            shb_message());
+  return (int)status;
+}
+
+shb_provenance command_provenance(const case_file *file, char *settings, const char *name) {
+  return (shb_provenance){
+      .case_path = file->path, .case_text = file->text, .settings = settings, .command = name};
+}

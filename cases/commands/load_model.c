@@ -1,0 +1,38 @@
+#include "cases/commands/load_model.h"
+
+#include "modal/model/reduce.h"
+
+static const double TWO_PI = 6.283185307179586476925;
+
+static shb_status read_speeds(const char *path, int modes, bool residuals, case_model *m) {
+  const double *f = m->settings.frequency;
+  modal_speeds  speeds;
+  SHB_TRY(modal_speeds_read(path, &speeds));
+  shb_status status = SHB_OK;
+  for (int i = 0; i < speeds.n && modes > 0 && status == SHB_OK; i++)
+    status = modal_model_keep(&speeds.model[i], modes, residuals);
+  if (status == SHB_OK)
+    status = mhb_run_up_create(&speeds, path, m->settings.engine_order, f, &m->run_up);
+  modal_speeds_free(&speeds);
+  if (status == SHB_OK) status = mhb_at_speed_create(m->run_up, &m->top);
+  SHB_TRY(status);
+  mhb_at_speed_go(m->top, TWO_PI * f[1]);
+  m->model           = m->top->model;
+  m->settings.run_up = m->run_up;
+  return SHB_OK;
+}
+
+shb_status case_model_read(const case_file *file, const char *path, int modes, bool residuals,
+                           case_model *m) {
+  *m = (case_model){.settings = file->mhb};
+  if (file->run_up) return read_speeds(path, modes, residuals, m);
+  SHB_TRY(modal_model_read(path, &m->model));
+  return modes > 0 ? modal_model_keep(&m->model, modes, residuals) : SHB_OK;
+}
+
+void case_model_free(case_model *m) {
+  if (!m->run_up) modal_model_free(&m->model);
+  mhb_at_speed_destroy(m->top);
+  mhb_run_up_destroy(m->run_up);
+  *m = (case_model){0};
+}

@@ -1,0 +1,170 @@
+#include "cases/commands/run.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cases/commands/subprocess.h"
+#include "cases/parse/damping.h"
+
+enum { N_STAGES = 4 };
+
+static const char *const stage_name[N_STAGES] = {"mesh", "modal", "mhb", "post"};
+
+/* --verbose: where the time went. */
+static void print_times(const child_result result[N_STAGES]) {
+  double seconds = 0, cpu = 0, peak = 0;
+  fprintf(stderr, "%-8s %10s %10s %10s\n", "stage", "seconds", "cpu s", "peak MB");
+  for (int i = 0; i < N_STAGES; i++) {
+    if (result[i].seconds == 0) continue;
+    fprintf(stderr, "%-8s %10.2f %10.2f %10.0f\n", stage_name[i], result[i].seconds, result[i].cpu,
+            result[i].peak / 1e6);
+    seconds += result[i].seconds;
+    cpu += result[i].cpu;
+    peak = fmax(peak, result[i].peak);
+  }
+  fprintf(stderr, "%-8s %10.2f %10.2f %10.0f\n", "all", seconds, cpu, peak / 1e6);
+}
+
+static void print_result(const case_file *file, const char *what, const char *suffix) {
+  char *path = case_output(file, suffix);
+  if (path && access(path, R_OK) == 0) printf("%-9s %s\n", what, path);
+  free(path);
+}
+
+static void print_results(const case_file *file, int code) {
+  if (code == SHB_NOT_CONVERGED) puts("not converged everywhere: the report says where and why");
+  print_result(file, "report", ".html");
+  print_result(file, "curves", ".csv");
+  if (!file->modal_file) print_result(file, "modes", ".modal.h5");
+  print_result(file, "response", ".response.h5");
+  fflush(stdout);
+}
+
+static shb_status run_stage(const char *stage, const command_options *options,
+                            child_result *result) {
+  char  name[32];
+  char *words[8] = {NULL};
+  int   n        = 0;
+  snprintf(name, sizeof name, "shroudhb-%s", stage);
+  words[n++] = child_program(name);
+  SHB_CHECK(words[0], SHB_ERR_IO, "out of memory");
+  char quiet[] = "--quiet", verbose[] = "--verbose", force[] = "--force", end[] = "--";
+  if (options->quiet) words[n++] = quiet;
+  if (options->verbose) words[n++] = verbose;
+  if (options->force) words[n++] = force;
+  if (options->path[0] == '-') words[n++] = end;
+  char *path = strdup(options->path);
+  words[n++] = path;
+  shb_status status =
+      path ? child_run(words, result)
+           : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "%s: out of memory", options->path);
+  free(path);
+  free(words[0]);
+  return status;
+}
+
+/* A response that did not converge everywhere is still worth a report; modes that did not are no result. */
+static bool goes_on(int stage, int code) {
+  return code == SHB_OK || (code == SHB_NOT_CONVERGED && strcmp(stage_name[stage], "mhb") == 0);
+}
+
+/* *code: of the stage that ended the run, else 3 if the response did not converge everywhere, else 0. */
+static shb_status run_stages(const case_file *file, const command_options *options, int *code,
+                             child_result result[N_STAGES]) {
+  *code = SHB_OK;
+  for (int i = file->modal_file ? 2 : 0; i < N_STAGES; i++) {
+    SHB_TRY(run_stage(stage_name[i], options, &result[i]));
+    if (result[i].code == SHB_OK) continue;
+    *code = result[i].code;
+    if (!goes_on(i, *code)) return SHB_OK;
+  }
+  return SHB_OK;
+}
+
+shb_status run_case(const command_options *options) {
+  case_file file;
+  SHB_TRY(case_read(options->path, RUN_ALL, stderr, &file));
+  int          code;
+  child_result result[N_STAGES] = {{0}};
+  shb_status   status           = run_stages(&file, options, &code, result);
+  if (options->verbose && !options->quiet) print_times(result);
+  bool done = status == SHB_OK && result[N_STAGES - 1].seconds > 0 &&
+              (code == SHB_OK || code == SHB_NOT_CONVERGED);
+  if (done && !options->quiet) print_results(&file, code);
+  case_free(&file);
+  if (status != SHB_OK) return status;
+  return code == SHB_OK ? SHB_OK : shb_fail((shb_status)code, __FILE__, __LINE__, "%s", "");
+}
+
+static void describe_source(const case_file *file, FILE *out) {
+  const mesh_blade *blade = &file->blade;
+  if (file->modal_file) {
+    fprintf(out, "  modes     from %s\n", file->modal_file);
+    return;
+  }
+  if (file->mesh_file) {
+    fprintf(out, "  mesh      from %s\n", file->mesh_file);
+  } else {
+    fprintf(out, "  mesh      parametric blade, %d sections, element size %g mm", blade->n_sections,
+            1e3 * blade->size);
+    if (blade->shroud_size > 0) fprintf(out, ", %g mm in the shroud", 1e3 * blade->shroud_size);
+    fputc('\n', out);
+  }
+  if (file->modes > 0)
+    fprintf(out, "  modes     %d, damping ratio ", file->modes);
+  else
+    fprintf(out, "  modes     as a tolerance of %g up to %g Hz needs, damping ratio ",
+            file->tolerance, file->band);
+  case_damping_print(out, &file->damping, 6);
+  fputc('\n', out);
+}
+
+static void describe_preloads(int n, const double *n0, FILE *out) {
+  double low = n0[0], high = n0[0];
+  for (int i = 1; i < n; i++) {
+    low  = fmin(low, n0[i]);
+    high = fmax(high, n0[i]);
+  }
+  if (n == 1) {
+    fprintf(out, "  preload   %g N\n", low);
+  } else {
+    fprintf(out, "  preloads  %d, from %g to %g N\n", n, low, high);
+  }
+}
+
+void run_describe(const case_file *file, FILE *out) {
+  const mhb_settings *mhb = &file->mhb;
+  fprintf(out, "%s: ok\n", file->path);
+  describe_source(file, out);
+  if (mhb->to_ground) {
+    fputs("  contact   to ground", out);
+  } else {
+    fprintf(out, "  contact   to the neighbour, %d blades, engine order %d", mhb->blades,
+            mhb->engine_order);
+  }
+  if (mhb->n_interfaces > 1) {
+    fprintf(out, ", %d interfaces\n", mhb->n_interfaces);
+    for (int i = 0; i < mhb->n_interfaces; i++) {
+      const mhb_interface *own = &mhb->interface[i];
+      fprintf(out, "  %s: mu %g\n", own->name, own->mu);
+      describe_preloads(own->n_preloads, own->n0, out);
+    }
+  } else {
+    fprintf(out, ", mu %g\n", mhb->mu);
+    describe_preloads(mhb->n_preloads, mhb->n0, out);
+  }
+  fprintf(out, "  sweep     %g to %g Hz, ", mhb->frequency[0], mhb->frequency[1]);
+  if (file->run_up)
+    fprintf(out, "a run-up of %g to %g rpm, ", 60 * mhb->frequency[0] / mhb->engine_order,
+            60 * mhb->frequency[1] / mhb->engine_order);
+  if (mhb->harmonics == 0) {
+    fprintf(out, "harmonics as a tolerance of %g needs\n", mhb->motion_tolerance);
+  } else {
+    fprintf(out, "%d harmonic%s\n", mhb->harmonics, mhb->harmonics == 1 ? "" : "s");
+  }
+  char *path = case_output(file, ".html");
+  fprintf(out, "  report    %s\n", path ? path : file->name);
+  free(path);
+}

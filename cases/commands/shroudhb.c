@@ -1,0 +1,175 @@
+/* The front command: checks the case, runs the stages as programs of their own. */
+#include <errno.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cases/commands/command.h"
+#include "cases/commands/run.h"
+#include "cases/commands/subprocess.h"
+#include "cases/parse/keys.h"
+#include "cases/schema/case.h"
+
+static const char usage[] =
+    "usage: shroudhb COMMAND [OPTION]... [FILE]\n"
+    "\n"
+    "Forced response of shrouded blades whose shrouds rub, stick and separate.\n"
+    "\n"
+    "  run CASE.yaml      all stages: mesh, modal, mhb, post\n"
+    "  mesh CASE.yaml     mesh the blade                    -> NAME.msh\n"
+    "  modal CASE.yaml    modes and receptances             -> NAME.modal.h5\n"
+    "  mhb CASE.yaml      harmonic balance                  -> NAME.response.h5\n"
+    "  integrate CASE.yaml  points by time integration      -> NAME.integration.h5, drawn by post\n"
+    "  post CASE.yaml     report, curves                    -> NAME.html, NAME.csv, NAME.svg\n"
+    "  converge CASE.yaml error against time, setting by setting; `shroudhb converge --help`\n"
+    "  check CASE.yaml    check a case file, run nothing\n"
+    "  keys               every key of a case file: unit, range, default, meaning\n"
+    "  inspect FILE.h5    what a modal or response file holds; of two modal files: A.h5 B.h5\n"
+    "  contact FILE.yaml  contact forces for a prescribed motion; --svg OUT.svg draws the loops\n"
+    "\n"
+    "  --quiet    no progress, no summary       --verbose  time and memory of every stage\n"
+    "  --force    run though up to date         --help, --version\n"
+    "\n"
+    "A stage runs again only when what it depends on has changed. The heavy stage on several "
+    "processes:\n"
+    "mpiexec -n 4 shroudhb-modal CASE.yaml\n"
+    "\n"
+    "Exit codes: 0 done, 2 bad input, 3 not converged everywhere (results kept), 4 input/output,\n"
+    "130 interrupted (results so far kept).\n";
+
+typedef int (*command_main)(const char *name, int argc, char **argv);
+
+static int replace_by(char **argv) {
+  execvp(argv[0], argv);
+  fprintf(stderr, "shroudhb: error: %s: cannot be started: %s\n", argv[0], strerror(errno));
+  return SHB_ERR_IO;
+}
+
+/* HDF5's reader can crash on files whose bytes were damaged in place: watch, and say so. */
+static int watch(char **argv) {
+  child_result result;
+  if (child_run(argv, &result) == SHB_OK) return result.code;
+  fprintf(stderr, "shroudhb: error: %s; the file may be damaged\n", shb_message());
+  return SHB_ERR_IO;
+}
+
+/* argv[0] is the command; the program "shroudhb-STAGE [mode]" gets the rest. end: how it is run. */
+static int become(const char *stage, char *mode, int argc, char **argv, int (*end)(char **)) {
+  char name[64];
+  snprintf(name, sizeof name, "shroudhb-%s", stage);
+  char **words = calloc((size_t)argc + 2, sizeof *words);
+  int    n = 0, code = SHB_ERR_IO;
+  char  *path = child_program(name);
+  if (words && path) {
+    words[n++] = path;
+    if (mode) words[n++] = mode;
+    for (int i = 1; i < argc; i++) words[n++] = argv[i];
+    code = end(words);
+  } else {
+    fputs("shroudhb: error: out of memory\n", stderr);
+  }
+  free(path);
+  free(words);
+  return code;
+}
+
+static int stage_main(const char *name, int argc, char **argv) {
+  return become(name, NULL, argc, argv, replace_by);
+}
+
+static int inspect_main(const char *name, int argc, char **argv) {
+  (void)name;
+  char mode[] = "--inspect";
+  return become("post", mode, argc, argv, watch);
+}
+
+static int contact_main(const char *name, int argc, char **argv) {
+  (void)name;
+  char mode[] = "--contact";
+  if (argc > 1 && strcmp(argv[1], "--help") == 0) {
+    fputs(usage, stdout);
+    return command_finish(SHB_OK);
+  }
+  return become("mhb", mode, argc, argv, replace_by);
+}
+
+static int keys_main(const char *name, int argc, char **argv) {
+  (void)name;
+  if (argc > 1 && strcmp(argv[1], "--help") == 0) {
+    fputs(usage, stdout);
+    return command_finish(SHB_OK);
+  }
+  if (argc > 1) {
+    fprintf(stderr, "shroudhb: error: keys takes nothing more; unexpected '%s'\n", argv[1]);
+    return SHB_ERR_INPUT;
+  }
+  case_print_keys(stdout);
+  return command_finish(SHB_OK);
+}
+
+/* The options of commands that draw nothing. */
+static int parse(int argc, char **argv, command_options *options) {
+  int code = command_parse(argc, argv, usage, options);
+  if (code >= 0 || !options->svg) return code;
+  fprintf(stderr, "shroudhb: error: --svg goes with contact, not with %s; see --help\n", argv[0]);
+  return SHB_ERR_INPUT;
+}
+
+static int check_main(const char *name, int argc, char **argv) {
+  (void)name;
+  command_options options;
+  int             code = parse(argc, argv, &options);
+  if (code >= 0) return code;
+  case_file  file;
+  shb_status status = case_read(options.path, RUN_ALL, stderr, &file);
+  if (status == SHB_OK && !options.quiet) run_describe(&file, stdout);
+  if (status == SHB_OK) case_free(&file);
+  return command_finish(status);
+}
+
+static int run_main(const char *name, int argc, char **argv) {
+  (void)name;
+  command_options options;
+  int             code = parse(argc, argv, &options);
+  if (code >= 0) return code;
+  return command_finish(run_case(&options));
+}
+
+static const struct {
+  const char  *name;
+  command_main main;
+} commands[] = {{"run", run_main},         {"mesh", stage_main},     {"modal", stage_main},
+                {"mhb", stage_main},       {"post", stage_main},     {"converge", stage_main},
+                {"check", check_main},     {"keys", keys_main},      {"inspect", inspect_main},
+                {"contact", contact_main}, {"integrate", stage_main}};
+
+enum { N_COMMANDS = sizeof commands / sizeof *commands };
+
+static int unknown_command(const char *word) {
+  int best = -1, least = 3;
+  for (int i = 0; i < N_COMMANDS; i++) {
+    int distance = case_edit_distance(word, commands[i].name);
+    if (distance >= least) continue;
+    least = distance;
+    best  = i;
+  }
+  fprintf(stderr, "shroudhb: error: unknown command '%s'", word);
+  if (best >= 0) fprintf(stderr, "; did you mean '%s'?", commands[best].name);
+  fputs(best >= 0 ? "\n" : "; see shroudhb --help\n", stderr);
+  return SHB_ERR_INPUT;
+}
+
+int main(int argc, char **argv) {
+  if (argc < 2) {
+    fputs(usage, stderr);
+    return SHB_ERR_INPUT;
+  }
+  const char *word = argv[1];
+  for (int i = 0; i < N_COMMANDS; i++)
+    if (strcmp(word, commands[i].name) == 0) return commands[i].main(word, argc - 1, argv + 1);
+  command_options options;
+  if (word[0] == '-') return command_parse(2, argv, usage, &options);
+  return unknown_command(word);
+}

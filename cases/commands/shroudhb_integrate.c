@@ -1,0 +1,156 @@
+/* shroudhb-integrate: points of a case by direct time integration. Starts no MPI. */
+#include <cblas.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cases/commands/command.h"
+#include "cases/commands/load_model.h"
+#include "cases/commands/up_to_date.h"
+#include "cases/schema/case.h"
+#include "mesh/base/progress.h"
+#include "mhb/integration/integration_sweep.h"
+
+static const char usage[] =
+    "usage: shroudhb-integrate [--quiet] [--verbose] [--force] CASE.yaml\n"
+    "\n"
+    "Integrates CASE.yaml in time, at the frequencies of its block integrate and every preload, "
+    "until\n"
+    "the motion repeats itself, and writes NAME.integration.h5, whose points shroudhb post draws "
+    "as\n"
+    "dots on the curves of NAME.response.h5. Does nothing if that file is up to date (unless "
+    "--force).\n";
+
+/* Keys of the stage; that on which it starts. malloc'ed. */
+static shb_status settings_of(const case_file *file, const char *modal, const char *balance,
+                              char **text) {
+  char *keys, fingerprint[17];
+  SHB_TRY(fresh_settings(file, (case_stage)(CASE_MHB | CASE_INTEGRATE), modal, &keys));
+  *text = keys;
+  if (!balance) return SHB_OK;
+  size_t     size   = strlen(keys) + 64;
+  char      *longer = malloc(size);
+  shb_status status = shb_fingerprint(balance, fingerprint);
+  if (status == SHB_OK && longer) {
+    snprintf(longer, size, "%sresponse.fingerprint = %s\n", keys, fingerprint);
+    *text  = longer;
+    longer = keys;
+  }
+  free(longer);
+  if (status == SHB_OK && *text == keys) SHB_FAIL(SHB_ERR_IO, "out of memory");
+  return status;
+}
+
+/* Whether path holds the finished answer to these settings. */
+static bool up_to_date(const char *path, const char *settings) {
+  bool          same     = fresh_equal(path, settings);
+  mhb_response *response = NULL;
+  same                   = same && mhb_response_read(path, &response) == SHB_OK;
+  for (int i = 0; same && i < response->n_branches; i++) same = response->branch[i].complete;
+  mhb_response_destroy(response);
+  return same;
+}
+
+static void summarise(const case_file *file, const mhb_response *response, const char *path) {
+  int  points = 0, higher = 0, never = 0;
+  long periods = 0;
+  for (int i = 0; i < response->n_branches; i++) {
+    const mhb_branch *b = &response->branch[i];
+    for (int p = 0; p < b->n_points; p++) {
+      points++;
+      periods += b->periods[p];
+      higher += b->multiple[p] > 1;
+      never += b->multiple[p] == 0;
+    }
+  }
+  printf("%s: %d points, %ld periods on the average", path, points, points ? periods / points : 0);
+  if (higher) printf("; %d repeat after several periods of the fundamental only", higher);
+  if (never) printf("; %d are not periodic after %d periods", never, file->integrate.max_periods);
+  puts("");
+}
+
+/* Rings take long, and longest where the wave that the balance finds is left. */
+static void warn_of_ring(const case_file *file, const modal_model *model) {
+  if (file->mhb.to_ground || file->mhb.blades * model->n_modes < 200) return;
+  fprintf(
+      stderr,
+      "shroudhb: warning: all %d blades of the ring are integrated, with %d modes each; a point "
+      "whose wave does not last takes all %d periods (integrate.periods)\n",
+      file->mhb.blades, model->n_modes, file->integrate.max_periods);
+}
+
+static shb_status solve(const case_file *file, const char *modal, const mhb_response *balance,
+                        char *settings, const char *output, shb_progress *progress) {
+  case_model     model;
+  mhb_response  *response   = NULL;
+  shb_provenance provenance = command_provenance(file, settings, "shroudhb-integrate");
+  shb_status     status     = case_model_read(file, modal, 0, true, &model);
+  if (status == SHB_OK && !progress->quiet) warn_of_ring(file, &model.model);
+  if (status == SHB_OK)
+    status = mhb_witness(&model.model, &model.settings, &file->integrate, balance, output,
+                         &provenance, progress, &response);
+  shb_progress_clear(progress);
+  if (response && !progress->quiet) summarise(file, response, output);
+  shb_progress_note(progress, "%.2f s in all", shb_seconds() - progress->started);
+  int points = 0;
+  for (int i = 0; response && i < response->n_branches; i++) points += response->branch[i].n_points;
+  mhb_response_destroy(response);
+  case_model_free(&model);
+  SHB_CHECK(status != SHB_OK || points > 0, SHB_NOT_CONVERGED,
+            "%s: no points: the balance has no stable solution at any of integrate.frequencies to "
+            "start on; set integrate.start to rest or state",
+            output);
+  return status;
+}
+
+/* The response file to start on. */
+static shb_status read_balance(const case_file *file, const char *path, mhb_response **balance) {
+  SHB_CHECK(
+      access(path, R_OK) == 0, SHB_ERR_INPUT,
+      "%s: not there to start on; run `shroudhb mhb %s` first, or set integrate.start to rest "
+      "or state",
+      path, file->path);
+  fresh_warn(file, CASE_MHB, path);
+  return mhb_response_read(path, balance);
+}
+
+static shb_status run(const case_file *file, const command_options *options) {
+  shb_progress  progress = shb_progress_start("time", options->quiet, options->verbose);
+  char         *modal = case_modal_path(file), *output = case_output(file, ".integration.h5");
+  char         *start = case_output(file, ".response.h5"), *settings = NULL;
+  mhb_response *balance = NULL;
+  bool          needed  = file->integrate.start == MHB_FROM_BALANCE;
+  shb_status    status =
+      modal && output && start ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  if (status == SHB_OK && !file->modal_file) fresh_warn(file, CASE_MODAL, modal);
+  if (status == SHB_OK && needed) status = read_balance(file, start, &balance);
+  if (status == SHB_OK) status = settings_of(file, modal, needed ? start : NULL, &settings);
+  if (status == SHB_OK) {
+    if (!options->force && up_to_date(output, settings)) {
+      shb_progress_note(&progress, "%s is up to date", output);
+    } else {
+      status = solve(file, modal, balance, settings, output, &progress);
+    }
+  }
+  mhb_response_destroy(balance);
+  free(modal);
+  free(output);
+  free(start);
+  free(settings);
+  return status;
+}
+
+int main(int argc, char **argv) {
+  command_options options;
+  int             code = command_parse(argc, argv, usage, &options);
+  if (code >= 0) return code;
+  case_file  file;
+  shb_status status = case_read(options.path, CASE_MHB | CASE_INTEGRATE, stderr, &file);
+  if (status != SHB_OK) return command_finish(status);
+  shb_interrupt_catch();
+  openblas_set_num_threads(1); /* threads go to the points */
+  status = run(&file, &options);
+  case_free(&file);
+  return command_finish(status);
+}

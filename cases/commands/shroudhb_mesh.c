@@ -1,0 +1,239 @@
+/* shroudhb-mesh: mesh the parametric blade of a case, or check the mesh file that it names. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cases/commands/command.h"
+#include "cases/schema/case.h"
+#include "mesh/base/progress.h"
+#include "mesh/blade/airfoil.h"
+#include "mesh/blade/blade.h"
+#include "mesh/core/face_pairing.h"
+#include "mesh/core/fe_mesh.h"
+#include "mesh/gmsh/provenance.h"
+#include "mesh/io/inp_read.h"
+#include "mesh/io/msh_write.h"
+
+static const char usage[] =
+    "usage: shroudhb-mesh [--quiet] [--verbose] [--force] [--inp] CASE.yaml\n"
+    "\n"
+    "Meshes the blade of mesh.blade (tetrahedra or hexahedra) and writes NAME.msh with the\n"
+    "groups root, contact_right, contact_left and load; does nothing if that file is up to date\n"
+    "(unless --force). With mesh.file instead: checks that mesh's elements, groups and contact "
+    "faces;\n"
+    "a solid is meshed, groups by rule and other units are put into NAME.msh.\n"
+    "--inp writes the mesh for CalculiX and Abaqus too, NAME.inp: groups as surfaces and node "
+    "sets, m.\n";
+
+/* Both faces of one interface; to ground the right one alone. pairing: zero there. */
+static shb_status check_faces(const case_file *file, const char *right, const char *left,
+                              mesh_fe *mesh, mesh_pairing *pairing) {
+  int r = mesh_fe_set_named(mesh, right), l = mesh_fe_set_named(mesh, left);
+  *pairing = (mesh_pairing){0};
+  if (file->mhb.to_ground) {
+    char found[MESH_FOUND + 40];
+    SHB_CHECK(mesh->set[r].n, SHB_ERR_INPUT,
+              "group %s is absent or empty; contact to ground needs it; %s", right,
+              mesh_fe_found(mesh, found));
+    return SHB_OK;
+  }
+  SHB_TRY(mesh_fe_orient_groups(mesh, file->axis, r, l));
+  mesh_fe view = mesh_fe_facing(mesh, r, l);
+  return mesh_pairing_create(&view, file->axis, file->blades, pairing);
+}
+
+/* pairing: that of the first interface. */
+static shb_status check_contact(const case_file *file, mesh_fe *mesh, mesh_pairing *pairing) {
+  if (file->n_interfaces == 0)
+    return check_faces(file, "contact_right", "contact_left", mesh, pairing);
+  *pairing = (mesh_pairing){0};
+  for (int i = 0; i < file->n_interfaces; i++) {
+    const case_interface *own = &file->interfaces[i];
+    mesh_pairing          one;
+    shb_status            status = check_faces(file, own->right, own->left, mesh, &one);
+    if (status != SHB_OK)
+      return shb_fail(status, __FILE__, __LINE__, "contact interface %s: %s", own->mhb.name,
+                      shb_message());
+    if (i == 0) *pairing = one;
+    if (i > 0) mesh_pairing_free(&one);
+  }
+  return SHB_OK;
+}
+
+static void note_pairing(shb_progress *progress, const mesh_pairing *pairing) {
+  if (pairing->projected)
+    shb_progress_note(
+        progress, "the contact faces do not match node for node: projected, at most %.3g m apart",
+        pairing->gap);
+}
+
+/* With the groups that the case names. */
+static shb_status read_mesh(const case_file *file, const char *path, mesh_fe *mesh) {
+  mesh_names names = mesh_rules_labels(&file->source.rules);
+  SHB_TRY(mesh_fe_read_named(path, &names, mesh));
+  shb_status status = mesh_fe_check_groups(mesh, path);
+  if (status != SHB_OK) mesh_fe_free(mesh);
+  return status;
+}
+
+/* Coordinates in mm taken as m, or the other way round, are no fault of the mesh. */
+static void warn_size(const case_file *file, const mesh_fe *mesh) {
+  static const double least = 2e-3, most = 10; /* m */
+  const double        size = mesh_fe_extent(mesh);
+  if (size >= least && size <= most) return;
+  fprintf(stderr,
+          "shroudhb: warning: %s: the body measures %.3g m; are its coordinates in %s? Say so with "
+          "mesh.unit\n",
+          file->mesh_file, size, size > most ? "mm" : "m");
+}
+
+/* The mesh brought by the case: readable, whole, and fit for its contact. */
+static shb_status check_file(const case_file *file, shb_progress *progress) {
+  mesh_fe      mesh;
+  mesh_pairing pairing;
+  SHB_TRY(read_mesh(file, file->mesh_file, &mesh));
+  shb_status status = check_contact(file, &mesh, &pairing);
+  if (status != SHB_OK)
+    status = shb_fail(status, __FILE__, __LINE__, "%s: %s", file->mesh_file, shb_message());
+  if (status == SHB_OK)
+    shb_progress_note(
+        progress, "%s is sound: %d nodes, %d elements, %d contact node pairs, %d load faces",
+        file->mesh_file, mesh.n_nodes, mesh.n_elements, pairing.n, mesh.set[MESH_LOAD].n);
+  if (status == SHB_OK) {
+    note_pairing(progress, &pairing);
+    if (!progress->quiet) warn_size(file, &mesh);
+  }
+  mesh_pairing_free(&pairing);
+  mesh_fe_free(&mesh);
+  return status;
+}
+
+static bool up_to_date(const char *path, const char *settings) {
+  char *found = NULL;
+  if (access(path, R_OK) != 0 || mesh_settings_read(path, &found) != SHB_OK) return false;
+  bool same = strcmp(found, settings) == 0;
+  free(found);
+  return same;
+}
+
+/* What NAME.msh depends on: for mesh.file its contents and the pitch that the sides must match after. */
+static shb_status settings_of(const case_file *file, char **text) {
+  char fingerprint[17], *keys = case_settings(file, CASE_MESH);
+  SHB_CHECK(keys, SHB_ERR_IO, "out of memory");
+  *text = keys;
+  if (!file->mesh_file) return SHB_OK;
+  shb_status status = shb_fingerprint(file->mesh_file, fingerprint);
+  size_t     size   = strlen(keys) + 128;
+  *text             = status == SHB_OK ? malloc(size) : NULL;
+  if (*text)
+    snprintf(*text, size, "%smesh.fingerprint = %s\nsector = %d\n", keys, fingerprint,
+             file->source.blades);
+  free(keys);
+  SHB_TRY(status);
+  SHB_CHECK(*text, SHB_ERR_IO, "out of memory");
+  return SHB_OK;
+}
+
+/* From a solid, or from a mesh in other units or without groups. */
+static shb_status make_from_file(const case_file *file, const char *output,
+                                 const shb_provenance *provenance, shb_progress *progress) {
+  mesh_fe      mesh;
+  mesh_pairing pairing;
+  SHB_TRY(mesh_source_read(&file->source, progress, &mesh));
+  shb_progress_phase(progress, "mesh", "%d nodes, %d elements", mesh.n_nodes, mesh.n_elements);
+  shb_status status = check_contact(file, &mesh, &pairing);
+  if (status != SHB_OK)
+    status = shb_fail(status, __FILE__, __LINE__, "%s: %s", file->mesh_file, shb_message());
+  if (status == SHB_OK) status = mesh_msh_write(&mesh, output, provenance);
+  if (status == SHB_OK) {
+    shb_progress_phase(progress, "write", "%s", output);
+    note_pairing(progress, &pairing);
+    if (!progress->quiet) warn_size(file, &mesh);
+  }
+  mesh_pairing_free(&pairing);
+  mesh_fe_free(&mesh);
+  return status;
+}
+
+static shb_status make_blade(const case_file *file, const char *output,
+                             const shb_provenance *provenance, shb_progress *progress) {
+  const double chord = mesh_airfoil_chord(&file->blade);
+  SHB_TRY(mesh_blade_write(&file->blade, output, provenance, progress));
+  if (file->blade.size > chord && !progress->quiet)
+    fprintf(stderr,
+            "shroudhb: warning: mesh.blade.size: %.3g mm is more than the chord, %.3g mm: "
+            "frequencies can be 3 %% off and more\n",
+            1e3 * file->blade.size, 1e3 * chord);
+  return SHB_OK;
+}
+
+static shb_status make_at(const case_file *file, const command_options *options, const char *output,
+                          char *settings, shb_progress *progress) {
+  if (!options->force && up_to_date(output, settings)) {
+    shb_progress_note(progress, "%s is up to date", output);
+    return SHB_OK;
+  }
+  shb_provenance provenance = command_provenance(file, settings, "shroudhb-mesh");
+  return file->mesh_file ? make_from_file(file, output, &provenance, progress)
+                         : make_blade(file, output, &provenance, progress);
+}
+
+static shb_status make(const case_file *file, const command_options *options,
+                       shb_progress *progress) {
+  char      *settings = NULL, *output = case_output(file, ".msh");
+  shb_status status = output ? settings_of(file, &settings)
+                             : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  if (status == SHB_OK) status = make_at(file, options, output, settings, progress);
+  free(output);
+  free(settings);
+  return status;
+}
+
+/* NAME.inp of the mesh that the case uses, unless that is the very file. */
+static shb_status write_inp(const case_file *file, shb_progress *progress) {
+  char      *source = case_mesh_path(file), *output = case_output(file, ".inp");
+  mesh_fe    mesh   = {0};
+  shb_status status = SHB_OK;
+  if (!source || !output) {
+    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  } else if (strcmp(source, output) == 0) {
+    status =
+        shb_fail(SHB_ERR_INPUT, __FILE__, __LINE__, "%s is the mesh of the case itself", source);
+  } else {
+    status = read_mesh(file, source, &mesh);
+  }
+  if (status == SHB_OK) status = mesh_inp_write(&mesh, output);
+  if (status == SHB_OK) shb_progress_note(progress, "wrote %s", output);
+  mesh_fe_free(&mesh);
+  free(source);
+  free(output);
+  return status;
+}
+
+static shb_status run(const case_file *file, const command_options *options) {
+  shb_progress progress = shb_progress_start("mesh", options->quiet, options->verbose);
+  if (file->modal_file) {
+    shb_progress_note(&progress, "modal.file is given: nothing to mesh");
+    return SHB_OK;
+  }
+  shb_status status = file->mesh_file && !case_mesh_is_made(file) ? check_file(file, &progress)
+                                                                  : make(file, options, &progress);
+  if (status == SHB_OK && options->mode) status = write_inp(file, &progress);
+  shb_progress_note(&progress, "%.2f s in all", shb_seconds() - progress.started);
+  return status;
+}
+
+int main(int argc, char **argv) {
+  command_options options;
+  case_file       file;
+  int             code = command_parse(argc, argv, usage, &options);
+  if (code >= 0) return code;
+  shb_status status = case_read(options.path, CASE_MESH, stderr, &file);
+  if (status != SHB_OK) return command_finish(status);
+  shb_interrupt_catch();
+  shb_interrupt_grace(2);
+  status = run(&file, &options);
+  case_free(&file);
+  return command_finish(status);
+}

@@ -1,0 +1,133 @@
+/* shroudhb-mhb: the harmonic balance of a case, or the contact law for a prescribed motion. Starts no MPI. */
+#include <cblas.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cases/commands/command.h"
+#include "cases/commands/contact_command.h"
+#include "cases/commands/load_model.h"
+#include "cases/commands/up_to_date.h"
+#include "cases/schema/case.h"
+#include "mesh/base/progress.h"
+#include "mhb/branches/forced_response.h"
+
+static const char usage[] =
+    "usage: shroudhb-mhb [--quiet] [--verbose] [--force] CASE.yaml\n"
+    "       shroudhb-mhb --contact MOTION.yaml [--svg OUT.svg]\n"
+    "\n"
+    "Solves the multi-harmonic balance of CASE.yaml on its modal file and writes "
+    "NAME.response.h5;\n"
+    "does nothing if that file is up to date (unless --force). With --contact: prints the force\n"
+    "harmonics, transitions and energy for a prescribed relative motion; with --svg also draws "
+    "its\n"
+    "hysteresis loops, friction path and states.\n";
+
+/* Whether path holds the finished answer to these settings. */
+static bool up_to_date(const char *path, const char *settings) {
+  bool          same     = fresh_equal(path, settings);
+  mhb_response *response = NULL;
+  same                   = same && mhb_response_read(path, &response) == SHB_OK;
+  for (int i = 0; same && i < response->n_branches; i++) {
+    const mhb_branch *branch = &response->branch[i];
+    same                     = branch->main != i || (branch->complete && branch->searched);
+  }
+  mhb_response_destroy(response);
+  return same;
+}
+
+static void summarise(shb_progress *progress, const mhb_response *response) {
+  long   points = 0, iterations = 0;
+  int    further = 0;
+  double seconds = 0;
+  for (int i = 0; i < response->n_branches; i++) {
+    const mhb_branch *b = &response->branch[i];
+    if (b->kind != MHB_BRANCH_NONLINEAR) continue;
+    points += b->n_points;
+    further += b->origin != MHB_FROM_END;
+    for (int p = 0; p < b->n_points; p++) {
+      iterations += b->iterations[p];
+      seconds += b->seconds[p];
+    }
+  }
+  shb_progress_note(progress, "%ld points, %.1f Newton steps and %.3f ms a point", points,
+                    points ? (double)iterations / (double)points : 0.,
+                    points ? 1e3 * seconds / (double)points : 0.);
+  if (further > 0)
+    shb_progress_note(progress, "%d further curve%s beside the main ones", further,
+                      further > 1 ? "s" : "");
+}
+
+static void note_run_up(shb_progress *progress, const case_model *model) {
+  const mhb_run_up *r = model->run_up;
+  shb_progress_note(progress, "run-up: engine order %d, %.6g to %.6g rpm, %d speeds, %d modes",
+                    r->engine_order, 60 * model->settings.frequency[0] / r->engine_order,
+                    60 * model->settings.frequency[1] / r->engine_order, r->n, r->n_modes);
+  if (!r->speeds.overlap)
+    shb_progress_note(progress,
+                      "run-up: the modal file has no /speeds/overlap: modes are joined by their "
+                      "tracks, which take a veering between two speeds for a crossing");
+  if (r->n_dropped > 0)
+    shb_progress_note(progress,
+                      "run-up: %d modes change places with ones left out and answer statically",
+                      r->n_dropped);
+}
+
+static shb_status solve(const case_file *file, const char *modal, char *settings,
+                        const char *output, shb_progress *progress) {
+  case_model     model;
+  mhb_response  *response   = NULL;
+  shb_provenance provenance = command_provenance(file, settings, "shroudhb-mhb");
+  shb_status     status     = case_model_read(file, modal, 0, true, &model);
+  if (status == SHB_OK && model.run_up) note_run_up(progress, &model);
+  if (status == SHB_OK)
+    status = mhb_sweep(&model.model, &model.settings, output, &provenance, progress, &response);
+  shb_progress_clear(progress);
+  if (response) summarise(progress, response);
+  shb_progress_note(progress, "%.2f s in all", shb_seconds() - progress->started);
+  mhb_response_destroy(response);
+  case_model_free(&model);
+  return status;
+}
+
+static shb_status run(const case_file *file, const command_options *options) {
+  shb_progress progress = shb_progress_start("mhb", options->quiet, options->verbose);
+  char        *modal = case_modal_path(file), *output = case_output(file, ".response.h5");
+  char        *settings = NULL;
+  shb_status   status =
+      modal && output ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  if (status == SHB_OK && !file->modal_file) fresh_warn(file, CASE_MODAL, modal);
+  if (status == SHB_OK) status = fresh_settings(file, CASE_MHB, modal, &settings);
+  if (status == SHB_OK) {
+    if (!options->force && up_to_date(output, settings)) {
+      shb_progress_note(&progress, "%s is up to date", output);
+    } else {
+      status = solve(file, modal, settings, output, &progress);
+    }
+  }
+  free(modal);
+  free(output);
+  free(settings);
+  return status;
+}
+
+int main(int argc, char **argv) {
+  command_options options;
+  int             code = command_parse(argc, argv, usage, &options);
+  if (code >= 0) return code;
+  if (options.mode && strcmp(options.mode, "contact") == 0)
+    return command_finish(contact_command(options.path, options.svg, stdout));
+  if (options.svg) {
+    fputs("shroudhb: error: --svg goes with --contact; see --help\n", stderr);
+    return SHB_ERR_INPUT;
+  }
+  case_file  file;
+  shb_status status = case_read(options.path, CASE_MHB, stderr, &file);
+  if (status != SHB_OK) return command_finish(status);
+  shb_interrupt_catch();
+  openblas_set_num_threads(1); /* threads go to the preloads; the systems are small */
+  file.mhb.resume = !options.force;
+  status          = run(&file, &options);
+  case_free(&file);
+  return command_finish(status);
+}

@@ -1,0 +1,224 @@
+/* shroudhb-modal: from the mesh of a case to its modal file; runs on any number of MPI ranks. */
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cases/commands/command.h"
+#include "cases/commands/up_to_date.h"
+#include "cases/schema/case.h"
+#include "modal/common/session.h"
+#include "modal/stage/stage.h"
+
+static const char usage[] =
+    "usage: shroudhb-modal [--quiet] [--verbose] [--force] CASE.yaml [PETSC OPTIONS]\n"
+    "       mpiexec -n N shroudhb-modal CASE.yaml\n"
+    "\n"
+    "Assembles mass and stiffness on the mesh of CASE.yaml, finds the lowest modes, condenses them "
+    "to the\n"
+    "contact, load and probe points and writes NAME.modal.h5; does nothing if that file is up to "
+    "date\n"
+    "(unless --force). Options after the case go to PETSc and SLEPc, such as -eps_view,\n"
+    "-eps_block_size 8, -eps_type krylovschur, -st_pc_factor_mat_solver_type mumps,\n"
+    "-st_mat_mumps_icntl_14 50.\n";
+
+/* Words of the command line: ours up to and with the case file, and any --long one; the rest is PETSc's. */
+typedef struct {
+  int    n_own, n_petsc;
+  char **own, **petsc; /* each begins with the program's name and ends with NULL */
+} words;
+
+static bool split_words(int argc, char **argv, words *out) {
+  bool found = false, ended = false;
+  *out = (words){1, 1, calloc((size_t)argc + 1, sizeof(char *)),
+                 calloc((size_t)argc + 1, sizeof(char *))};
+  if (!out->own || !out->petsc) return false;
+  out->own[0] = out->petsc[0] = argv[0];
+  for (int i = 1; i < argc; i++) {
+    bool is_long = strncmp(argv[i], "--", 2) == 0;
+    if (found && !is_long) {
+      out->petsc[out->n_petsc++] = argv[i];
+      continue;
+    }
+    out->own[out->n_own++] = argv[i];
+    found                  = found || ended || argv[i][0] != '-';
+    ended                  = ended || strcmp(argv[i], "--") == 0;
+  }
+  return true;
+}
+
+/* Rank under mpiexec before MPI starts; 0 where the launcher does not tell. */
+static int launch_rank(void) {
+  const char *rank = getenv("OMPI_COMM_WORLD_RANK");
+  if (!rank) rank = getenv("PMI_RANK");
+  return rank ? atoi(rank) : 0;
+}
+
+/* Rank 0 alone speaks of what every rank finds wrong with the command line and the case file. */
+static int parse(const words *line, command_options *options, case_file *file) {
+  int saved = -1, null = launch_rank() == 0 ? -1 : open("/dev/null", O_WRONLY);
+  if (null >= 0) {
+    saved = dup(STDERR_FILENO);
+    dup2(null, STDERR_FILENO);
+    close(null);
+  }
+  int code = command_parse(line->n_own, line->own, usage, options);
+  if (code < 0) {
+    shb_status status = case_read(options->path, CASE_MODAL, stderr, file);
+    if (status != SHB_OK) code = (int)status;
+  }
+  fflush(stderr);
+  if (saved >= 0) {
+    dup2(saved, STDERR_FILENO);
+    close(saved);
+  }
+  return code;
+}
+
+static modal_settings stage_settings(const case_file *file, modal_probe probe[CASE_MAX_PROBES],
+                                     modal_region  region[MESH_MAX_VOLUMES],
+                                     fem_load      loads[CASE_MAX_LOADS],
+                                     modal_contact contacts[MHB_MAX_INTERFACES]) {
+  const mhb_settings *mhb = &file->mhb;
+  for (int q = 0; q < file->n_probes; q++) {
+    probe[q].name = file->probe[q].name;
+    memcpy(probe[q].at, file->probe[q].at, sizeof probe[q].at);
+  }
+  for (int i = 0; i < file->n_materials; i++)
+    region[i] = (modal_region){file->materials[i].group, file->materials[i].material};
+  for (int i = 0; i < file->n_loads; i++) loads[i] = file->loads[i].load;
+  for (int i = 0; i < file->n_interfaces; i++) {
+    const case_interface *own = &file->interfaces[i];
+    contacts[i]               = (modal_contact){own->mhb.name,
+                                                own->right,
+                                                own->left,
+                                                own->points,
+                                  own->mhb.has_psi ? &own->mhb.psi : NULL,
+                                  own->mhb.has_phi ? &own->mhb.phi : NULL};
+  }
+  modal_settings out = {
+      .material         = file->material,
+      .n_regions        = file->n_materials,
+      .region           = region,
+      .axis             = file->axis,
+      .blades           = file->blades,
+      .speed            = file->speed[file->n_speeds - 1],
+      .n_speeds         = file->n_speeds,
+      .speeds           = file->speed,
+      .pressure         = file->pressure,
+      .full_integration = file->full_integration,
+      .modes            = file->modes,
+      .tolerance        = file->tolerance,
+      .band             = file->band,
+      .damping          = file->damping,
+      .check            = file->check,
+      .load             = file->load,
+      .n_probes         = file->n_probes,
+      .probe            = probe,
+      .to_ground        = mhb->to_ground,
+      .points           = file->points,
+      .psi              = mhb->has_psi ? &mhb->psi : NULL,
+      .phi              = mhb->has_phi ? &mhb->phi : NULL,
+      .n_loads          = file->n_loads,
+      .loads            = loads,
+      .n_contacts       = file->n_interfaces,
+      .contact          = contacts,
+      .n_groups         = file->source.rules.n_more,
+  };
+  for (int i = 0; i < out.n_groups; i++) out.group[i] = file->source.rules.more[i].name;
+  return out;
+}
+
+/* Rank 0 decides whether there is anything to do; *settings is malloc'ed there, NULL elsewhere. */
+static shb_status decide(const case_file *file, bool force, const char *mesh, const char *output,
+                         char **settings, bool *skip) {
+  int rank, answer[2] = {SHB_OK, 0};
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  *settings = NULL;
+  if (rank == 0) {
+    answer[0] = fresh_settings(file, CASE_MODAL, mesh, settings);
+    answer[1] = answer[0] == SHB_OK && !force && fresh_equal(output, *settings);
+  }
+  MPI_Bcast(answer, 2, MPI_INT, 0, PETSC_COMM_WORLD);
+  *skip = answer[1];
+  return (shb_status)answer[0];
+}
+
+static shb_status run(const case_file *file, const command_options *options, int rank) {
+  shb_progress progress =
+      shb_progress_start("modal", options->quiet || rank != 0, options->verbose);
+  modal_probe   probe[CASE_MAX_PROBES];
+  modal_region  region[MESH_MAX_VOLUMES];
+  fem_load      loads[CASE_MAX_LOADS];
+  modal_contact contacts[MHB_MAX_INTERFACES];
+  char         *mesh = case_mesh_path(file), *output = case_output(file, ".modal.h5");
+  char         *settings = NULL;
+  bool          skip;
+  shb_status    status =
+      mesh && output ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  if (status == SHB_OK) status = decide(file, options->force, mesh, output, &settings, &skip);
+  if (status == SHB_OK && skip) shb_progress_note(&progress, "%s is up to date", output);
+  if (status == SHB_OK && !skip) {
+    modal_settings stage      = stage_settings(file, probe, region, loads, contacts);
+    shb_provenance provenance = command_provenance(file, settings, "shroudhb-modal");
+    status = modal_stage(PETSC_COMM_WORLD, mesh, output, &stage, &provenance, &progress);
+    shb_progress_note(&progress, "%.2f s in all", shb_seconds() - progress.started);
+  }
+  free(mesh);
+  free(output);
+  free(settings);
+  return status;
+}
+
+/* Elements of displacements lock in a material that hardly changes its volume. */
+static void warn_locking(const char *key, double nu) {
+  if (nu > .49)
+    fprintf(stderr,
+            "shroudhb: warning: %s: %g is nearly incompressible; elements may lock above .49 "
+            "(frequencies too high): compare with a finer mesh\n",
+            key, nu);
+}
+
+static void warn(const case_file *file) {
+  if (!file->has_materials) warn_locking("material.nu", file->constants.nu[0]);
+  for (int i = 0; file->has_materials && i < file->n_materials; i++) {
+    char key[64];
+    snprintf(key, sizeof key, "materials[%d].nu", i);
+    warn_locking(key, file->materials[i].constants.nu[0]);
+  }
+}
+
+static int work(words *line, const case_file *file, const command_options *options) {
+  modal_session session;
+  if (file->modal_file) {
+    fprintf(stderr, "shroudhb: modal.file is given: nothing to compute\n");
+    return SHB_OK;
+  }
+  shb_status status = modal_session_start(&line->n_petsc, &line->petsc, &session);
+  if (status != SHB_OK) return command_finish(status);
+  shb_interrupt_catch(); /* after MPI, whose launcher sets handlers of its own */
+  shb_interrupt_grace(2);
+  if (session.rank == 0 && !options->quiet) warn(file);
+  status   = run(file, options, session.rank);
+  int code = session.rank == 0 ? command_finish(status) : (int)status;
+  modal_session_end(&session, status);
+  return code;
+}
+
+int main(int argc, char **argv) {
+  words           line;
+  command_options options;
+  case_file       file;
+  int             code = SHB_ERR_IO;
+  if (split_words(argc, argv, &line)) {
+    code = parse(&line, &options, &file);
+    if (code < 0) {
+      code = work(&line, &file, &options);
+      case_free(&file);
+    }
+  }
+  free(line.own);
+  free(line.petsc);
+  return code;
+}

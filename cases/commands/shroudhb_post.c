@@ -1,0 +1,125 @@
+/* shroudhb-post: the report of a case from its response file, or what an HDF5 file holds. Starts no MPI. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cases/commands/command.h"
+#include "cases/commands/up_to_date.h"
+#include "cases/converge/converge.h"
+#include "cases/schema/case.h"
+#include "mesh/base/progress.h"
+#include "postproc/inspect/inspect.h"
+#include "postproc/inspect/mac.h"
+#include "postproc/report/publish.h"
+
+static const char usage[] =
+    "usage: shroudhb-post [--quiet] [--verbose] CASE.yaml\n"
+    "       shroudhb-post --inspect [--verbose] FILE.h5 [OTHER.h5]\n"
+    "\n"
+    "Makes NAME.html (report), NAME.csv (every point) and NAME.svg (picture) from "
+    "NAME.response.h5;\n"
+    "points of NAME.integration.h5 are drawn as dots;\n"
+    "the report has the section Speed against error if NAME.converge.h5 belongs to the case.\n"
+    "With --inspect: what an HDF5 file holds; --verbose unfolds everything, case text and settings "
+    "too.\n"
+    "Of two modal files: frequencies side by side, and which mode shapes are alike (MAC).\n";
+
+static shb_status inspect(const command_options *options) {
+  bool        terminal = isatty(STDOUT_FILENO) && !getenv("NO_COLOR");
+  post_buffer text     = {0};
+  shb_status  status   = SHB_OK;
+  if (options->other)
+    status = post_compare((const char *[]){options->path, options->other}, options->verbose, &text);
+  else
+    status = post_inspect(
+        options->path, (post_tree_style){.colour = terminal, .verbose = options->verbose}, &text);
+  bool written = !text.text || fwrite(text.text, 1, text.length, stdout) == text.length;
+  written      = fflush(stdout) == 0 && written;
+  post_buffer_free(&text);
+  if (status == SHB_OK && !written) SHB_FAIL(SHB_ERR_IO, "standard output cannot be written");
+  return status;
+}
+
+/* NAME.converge.h5 if it was made from the case as it is now; malloc'ed, NULL if not. */
+static char *fresh_convergence(const case_file *file) {
+  char *path = case_output(file, ".converge.h5"), *settings = NULL;
+  bool  fresh = path && access(path, R_OK) == 0 && converge_settings(file, &settings) == SHB_OK &&
+               fresh_equal(path, settings);
+  free(settings);
+  if (fresh) return path;
+  free(path);
+  return NULL;
+}
+
+/* Whether there are points by time integration that belong to the case as it is now. */
+static bool has_points(const case_file *file, const char *path) {
+  if (access(path, R_OK) != 0) return false;
+  if (fresh_keys(file, (case_stage)(CASE_MHB | CASE_INTEGRATE), path)) return true;
+  fprintf(stderr,
+          "shroudhb: warning: %s was made from other settings and is left out; run `shroudhb "
+          "integrate` again\n",
+          path);
+  return false;
+}
+
+/* The modal file that belongs to the case as it is now; malloc'ed, NULL if there is none. */
+static char *fresh_modal(const case_file *file) {
+  char *path  = case_modal_path(file);
+  bool  there = path && access(path, R_OK) == 0;
+  if (there && (file->modal_file || fresh_keys(file, CASE_MODAL, path))) return path;
+  free(path);
+  return NULL;
+}
+
+static shb_status publish(const case_file *file, const command_options *options) {
+  shb_progress progress = shb_progress_start("post", options->quiet, options->verbose);
+  char        *response = case_output(file, ".response.h5"), *html = case_output(file, ".html");
+  char        *csv = case_output(file, ".csv"), *svg = case_output(file, ".svg"), *summary = NULL;
+  char        *convergence = fresh_convergence(file);
+  char        *points      = case_output(file, ".integration.h5");
+  char        *diagram     = case_output(file, ".campbell.svg");
+  char        *modal       = fresh_modal(file);
+  shb_status   status;
+  if (response && html && csv && svg && points && diagram) {
+    fresh_warn(file, CASE_MHB, response);
+    const post_job job = {
+        file->name, response, html, csv, svg, convergence, has_points(file, points) ? points : NULL,
+        modal,      diagram};
+    status = post_publish(&job, &progress, &summary);
+  } else {
+    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  }
+  if (status == SHB_OK && !options->quiet)
+    printf("%s%s%s\n", html, summary ? ": " : "", summary ? summary : "");
+  free(summary);
+  free(convergence);
+  free(response);
+  free(html);
+  free(csv);
+  free(svg);
+  free(points);
+  free(diagram);
+  free(modal);
+  return status;
+}
+
+int main(int argc, char **argv) {
+  command_options options;
+  int             code = command_parse(argc, argv, usage, &options);
+  if (code >= 0) return code;
+  if (options.mode && strcmp(options.mode, "inspect") == 0)
+    return command_finish(inspect(&options));
+  if (options.other) {
+    fprintf(stderr, "shroudhb: error: one case is enough; unexpected '%s'; see --help\n",
+            options.other);
+    return SHB_ERR_INPUT;
+  }
+  case_file  file;
+  shb_status status = case_read(options.path, CASE_POST, stderr, &file);
+  if (status != SHB_OK) return command_finish(status);
+  shb_interrupt_catch(); /* a fraction of a second: finish rather than leave a temporary file */
+  status = publish(&file, &options);
+  case_free(&file);
+  return command_finish(status);
+}

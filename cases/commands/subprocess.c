@@ -1,0 +1,105 @@
+#include "cases/commands/subprocess.h"
+
+#include <errno.h>
+#include <signal.h>
+#include <spawn.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "mesh/base/progress.h"
+
+extern char **environ;
+
+char *child_program(const char *name) {
+  char    here[4096];
+  ssize_t n = readlink("/proc/self/exe", here, sizeof here - 1);
+  if (n > 0) {
+    here[n]     = '\0';
+    char *slash = strrchr(here, '/');
+    if (slash) slash[1] = '\0';
+    size_t size = strlen(here) + strlen(name) + 1;
+    char  *path = malloc(size);
+    if (path) snprintf(path, size, "%s%s", here, name);
+    if (!path || access(path, X_OK) == 0) return path;
+    free(path);
+  }
+  return strdup(name);
+}
+
+static sigset_t waited_signals(void) {
+  sigset_t set;
+  sigemptyset(&set);
+  sigaddset(&set, SIGINT);
+  sigaddset(&set, SIGTERM);
+  sigaddset(&set, SIGCHLD);
+  return set;
+}
+
+static int spawn(char *const argv[], const sigset_t *mask, pid_t *child) {
+  posix_spawnattr_t attributes;
+  int               why = posix_spawnattr_init(&attributes);
+  if (why) return why;
+  posix_spawnattr_setsigmask(&attributes, mask);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
+  why = posix_spawnp(child, argv[0], NULL, &attributes, argv, environ);
+  posix_spawnattr_destroy(&attributes);
+  return why;
+}
+
+/* Waits for the child, handing signals on. A SIGINT from the terminal has reached the whole foreground group
+ * already, the child included. */
+static bool wait_for(pid_t child, const sigset_t *signals, int *status, struct rusage *usage) {
+  bool  interrupted = false;
+  pid_t ended;
+  while ((ended = wait4(child, status, WNOHANG, usage)) == 0) {
+    siginfo_t info;
+    int       number = sigwaitinfo(signals, &info);
+    if (number != SIGINT && number != SIGTERM) continue;
+    interrupted = true;
+    if (info.si_code != SI_KERNEL) kill(child, number);
+  }
+  if (ended < 0) *status = SHB_ERR_IO << 8; /* lost: as if it had exited with 4 */
+  return interrupted;
+}
+
+static double seconds_of(struct timeval t) {
+  return (double)t.tv_sec + 1e-6 * (double)t.tv_usec;
+}
+
+static const char *leaf(const char *path) {
+  const char *slash = strrchr(path, '/');
+  return slash ? slash + 1 : path;
+}
+
+shb_status child_run(char *const argv[], child_result *result) {
+  *result          = (child_result){.code = SHB_ERR_IO};
+  sigset_t signals = waited_signals(), before;
+  signal(SIGCHLD, SIG_DFL); /* if it came in ignored, the kernel would reap the child for us */
+  sigprocmask(SIG_BLOCK, &signals, &before);
+  double        started = shb_seconds();
+  pid_t         child   = 0;
+  int           why = spawn(argv, &before, &child), status = 0;
+  struct rusage usage       = {0};
+  bool          interrupted = !why && wait_for(child, &signals, &status, &usage);
+  sigprocmask(SIG_SETMASK, &before, NULL);
+  SHB_CHECK(!why, SHB_ERR_IO, "%s: cannot be started: %s", argv[0], strerror(why));
+  result->seconds = shb_seconds() - started;
+  result->cpu     = seconds_of(usage.ru_utime) + seconds_of(usage.ru_stime);
+  result->peak    = 1024.0 * (double)usage.ru_maxrss;
+  result->code    = WIFEXITED(status) ? WEXITSTATUS(status) : SHB_ERR_IO;
+  if (interrupted) {
+    result->code = SHB_INTERRUPTED;
+  } else if (WIFSIGNALED(status) && WTERMSIG(status) == SIGPIPE) {
+    result->code = SHB_OK; /* the reader of the output has seen enough */
+  } else if (WIFSIGNALED(status)) {
+    int number = WTERMSIG(status);
+    SHB_FAIL(SHB_ERR_IO, "%s was killed by signal %d (%s)%s", leaf(argv[0]), number,
+             strsignal(number), number == SIGKILL ? "; out of memory?" : "");
+  }
+  return SHB_OK;
+}

@@ -1,0 +1,68 @@
+#include "cases/commands/up_to_date.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "modal/hdf5/h5.h"
+
+/* A line for a load's field, if it is one. */
+static shb_status add_field(const char *path, int load, char *text, size_t size) {
+  char fingerprint[17], which[24] = "";
+  if (!path) return SHB_OK;
+  SHB_TRY(shb_fingerprint(path, fingerprint));
+  if (load >= 0) snprintf(which, sizeof which, "loads[%d].", load);
+  size_t used = strlen(text);
+  snprintf(text + used, size - used, "excitation.%sfield.fingerprint = %s\n", which, fingerprint);
+  return SHB_OK;
+}
+
+shb_status fresh_settings(const case_file *file, case_stage stage, const char *input, char **text) {
+  const char *name = stage == CASE_MODAL ? "mesh" : "modal";
+  char        fingerprint[17], field[64 * (CASE_MAX_LOADS + 1)] = "";
+  SHB_TRY(shb_fingerprint(input, fingerprint));
+  for (int i = -1; i < file->n_loads && stage == CASE_MODAL; i++)
+    SHB_TRY(add_field(i < 0 ? file->field_file : file->loads[i].field, i, field, sizeof field));
+  char *keys = case_settings(file, stage);
+  SHB_CHECK(keys, SHB_ERR_IO, "out of memory");
+  size_t size = strlen(keys) + strlen(field) + 128;
+  *text       = malloc(size);
+  if (*text) snprintf(*text, size, "%s%s.fingerprint = %s\n%s", keys, name, fingerprint, field);
+  free(keys);
+  SHB_CHECK(*text, SHB_ERR_IO, "out of memory");
+  return SHB_OK;
+}
+
+/* The settings a file was made from; malloc'ed, NULL if it cannot be told. */
+static char *written(const char *path) {
+  hid_t file;
+  char *text = NULL;
+  if (h5_open(path, &file) != SHB_OK) return NULL;
+  if (h5_read_attribute_text(file, "/", "settings", &text) != SHB_OK) text = NULL;
+  h5_close(file);
+  return text;
+}
+
+bool fresh_equal(const char *path, const char *settings) {
+  char *text = written(path);
+  bool  same = text && strcmp(text, settings) == 0;
+  free(text);
+  return same;
+}
+
+bool fresh_keys(const case_file *file, case_stage stage, const char *path) {
+  char *text = written(path), *keys = case_settings(file, stage);
+  bool  same = text && keys && strncmp(text, keys, strlen(keys)) == 0; /* the keys come first */
+  free(text);
+  free(keys);
+  return same;
+}
+
+void fresh_warn(const case_file *file, case_stage stage, const char *path) {
+  char *text = written(path), *keys = case_settings(file, stage);
+  if (text && keys && strncmp(text, keys, strlen(keys)) != 0) /* the keys come first */
+    fprintf(stderr, "shroudhb: warning: %s was made from other settings; run `shroudhb %s` first\n",
+            path, stage == CASE_MODAL ? "modal" : "mhb");
+  free(text);
+  free(keys);
+}

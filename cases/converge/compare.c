@@ -1,0 +1,201 @@
+#include "cases/converge/compare.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "cases/converge/matched_point.h"
+#include "mesh/base/progress.h"
+#include "mhb/branches/harmonic_selection.h"
+#include "postproc/analysis/curve_distance.h"
+
+static const double FAR =
+    2e-3; /* from here on the polyline is looked at too: its own error is of this size */
+static const double SAGS = 4;
+
+enum { MOST_HARMONICS = 256 };
+
+/* One of the two curves. */
+typedef struct {
+  mhb_response     *response;
+  const mhb_branch *branch;
+  double           *amplitude;
+  post_polyline     line;
+} side;
+
+typedef struct {
+  const modal_model  *model;
+  const mhb_settings *settings;
+  post_output         output;
+  witness            *witness[MOST_HARMONICS]; /* by harmonics, made when first needed */
+  side                rung, reference;
+  double              unit; /* m */
+  rung_error         *error;
+} comparison;
+
+static shb_status load_curves(const char *stem, side *s) {
+  char *path = rung_response(stem);
+  SHB_CHECK(path, SHB_ERR_IO, "out of memory");
+  shb_status status = mhb_response_read(path, &s->response);
+  free(path);
+  return status;
+}
+
+static shb_status choose(post_output output, int b, side *s) {
+  s->branch = &s->response->branch[b];
+  free(s->amplitude);
+  s->amplitude = NULL;
+  SHB_TRY(post_series(s->response, s->branch, output, POST_FIRST_HARMONIC, &s->amplitude));
+  s->line = (post_polyline){s->branch->n_points, s->branch->frequency, s->amplitude};
+  return SHB_OK;
+}
+
+static shb_status witness_of(comparison *c, int harmonics, witness **out) {
+  SHB_CHECK(harmonics >= 1 && harmonics < MOST_HARMONICS, SHB_ERR_INPUT,
+            "the response has a point of %d harmonics; 1 to %d are wanted", harmonics,
+            MOST_HARMONICS - 1);
+  if (!c->witness[harmonics])
+    SHB_TRY(witness_create(c->model, c->settings, harmonics, c->output, &c->witness[harmonics]));
+  *out = c->witness[harmonics];
+  return SHB_OK;
+}
+
+/* From point i of the reference. */
+static shb_status from_reference(comparison *c, int i, double *distance) {
+  const side   *r    = &c->reference;
+  int           last = r->branch->n_points - 1, near = 0;
+  double        point[2] = {r->branch->frequency[i], r->amplitude[i]}, found[2];
+  double        drawn    = post_distance(point, &c->rung.line, c->unit, &near);
+  witness_place place    = {r->branch, i, i, i > 0 ? i - 1 : 0, i < last ? i + 1 : last, 0};
+  *distance              = INFINITY;
+  c->error->n++;
+  if (r->response->n_pairs == c->rung.response->n_pairs) {
+    witness *w = NULL;
+    SHB_TRY(witness_of(c, c->rung.branch->harmonics[near], &w));
+    if (witness_solve(w, &place, i == 0 || i == last, found))
+      *distance = post_apart(point, found, c->unit);
+  }
+  c->error->lost += !isfinite(*distance);
+  if (*distance > FAR) *distance = fmin(*distance, drawn);
+  return SHB_OK;
+}
+
+/* From point i of the rung. */
+static double from_rung(const comparison *c, int i) {
+  const side *s        = &c->rung;
+  double      point[2] = {s->branch->frequency[i], s->amplitude[i]};
+  int         near     = 0;
+  double      d        = post_distance(point, &c->reference.line, c->unit, &near);
+  double      sag      = fmax(post_sag(&c->reference.line, near, c->unit),
+                    near > 0 ? post_sag(&c->reference.line, near - 1, c->unit) : 0);
+  return d > fmax(FAR, SAGS * sag) ? d : 0;
+}
+
+static shb_status compare_branch(comparison *c, int b) {
+  double distance;
+  SHB_TRY(choose(c->output, b, &c->rung));
+  SHB_TRY(choose(c->output, b, &c->reference));
+  c->unit = 0;
+  for (int i = 0; i < c->reference.line.n; i++) c->unit = fmax(c->unit, c->reference.amplitude[i]);
+  SHB_CHECK(c->unit > 0 && c->rung.line.n > 0, SHB_ERR_INPUT,
+            "curve %d (from 0) has no motion: nothing to compare", b);
+  for (int i = 0; i < c->reference.line.n; i++) {
+    SHB_TRY(from_reference(c, i, &distance));
+    c->error->curve = fmax(c->error->curve, distance);
+    SHB_CHECK(!shb_interrupted(), SHB_INTERRUPTED, "interrupted");
+  }
+  for (int i = 0; i < c->rung.line.n; i++) c->error->curve = fmax(c->error->curve, from_rung(c, i));
+  return SHB_OK;
+}
+
+static shb_status compare_all(comparison *c, const char *stem, const char *reference) {
+  SHB_TRY(load_curves(stem, &c->rung));
+  SHB_TRY(load_curves(reference, &c->reference));
+  int n = c->rung.response->n_branches;
+  SHB_CHECK(n == c->reference.response->n_branches, SHB_ERR_INPUT,
+            "%s and %s hold different preloads", stem, reference);
+  for (int b = 0; b < n; b++)
+    if (c->rung.response->branch[b].kind == MHB_BRANCH_NONLINEAR) SHB_TRY(compare_branch(c, b));
+  return SHB_OK;
+}
+
+/* ---------------------------------------------------------------- points of time integration */
+
+/* From point i of the reference, whose curve the rung's chosen one is. */
+static shb_status from_integration(comparison *c, int i) {
+  const side   *r        = &c->reference;
+  double        point[2] = {r->branch->frequency[i], r->amplitude[i]}, found[2];
+  witness_place place    = {r->branch, i, i, i, i, 0};
+  int           near     = 0;
+  double        drawn    = post_distance(point, &c->rung.line, c->unit, &near);
+  witness      *w        = NULL;
+  SHB_TRY(witness_of(c, c->rung.branch->harmonics[near], &w));
+  bool solved = witness_solve(w, &place, true, found);
+  c->error->n++;
+  c->error->lost += !solved;
+  c->error->curve = fmax(c->error->curve, solved ? fabs(found[1] - point[1]) / c->unit : drawn);
+  return SHB_OK;
+}
+
+/* The rung's main curve of a preload; -1: there is none. */
+static int curve_of(const mhb_response *response, double n0) {
+  for (int b = 0; b < response->n_branches; b++) {
+    const mhb_branch *branch = &response->branch[b];
+    if (branch->kind != MHB_BRANCH_NONLINEAR || branch->n_points == 0) continue;
+    if (fabs(branch->n0[0] - n0) <= 1e-9 * fmax(fabs(n0), 1e-300)) return b;
+  }
+  return -1;
+}
+
+static shb_status compare_points(comparison *c, int b) {
+  const mhb_branch *points = &c->reference.response->branch[b];
+  int               own    = points->n_points > 0 ? curve_of(c->rung.response, points->n0[0]) : -1;
+  if (points->kind != MHB_BRANCH_INTEGRATION || own < 0) return SHB_OK;
+  SHB_TRY(choose(c->output, own, &c->rung));
+  SHB_TRY(choose(c->output, b, &c->reference));
+  c->unit = 0;
+  for (int i = 0; i < c->rung.line.n; i++) c->unit = fmax(c->unit, c->rung.amplitude[i]);
+  for (int i = 0; c->unit > 0 && i < points->n_points; i++)
+    if (points->multiple[i] == 1) SHB_TRY(from_integration(c, i));
+  return SHB_OK;
+}
+
+static shb_status compare_all_points(comparison *c, const char *stem, const char *path) {
+  SHB_TRY(load_curves(stem, &c->rung));
+  SHB_TRY(mhb_response_read(path, &c->reference.response));
+  const mhb_response *r = c->reference.response, *own = c->rung.response;
+  SHB_CHECK(r->n_pairs == own->n_pairs && r->n_probes == own->n_probes, SHB_ERR_INPUT,
+            "%s: holds %d contacts and %d probes, the case %d and %d", path, r->n_pairs,
+            r->n_probes, own->n_pairs, own->n_probes);
+  for (int b = 0; b < r->n_branches; b++) SHB_TRY(compare_points(c, b));
+  return SHB_OK;
+}
+
+/* ---------------------------------------------------------------- both */
+
+static void end(comparison *c) {
+  for (int i = 0; i < MOST_HARMONICS; i++) witness_destroy(c->witness[i]);
+  side *both[] = {&c->rung, &c->reference};
+  for (int i = 0; i < 2; i++) {
+    free(both[i]->amplitude);
+    mhb_response_destroy(both[i]->response);
+  }
+}
+
+shb_status compare_rungs(const modal_model *model, const mhb_settings *settings, post_output output,
+                         const char *stem, const char *reference, rung_error *error) {
+  *error            = (rung_error){0};
+  comparison c      = {.model = model, .settings = settings, .output = output, .error = error};
+  shb_status status = compare_all(&c, stem, reference);
+  end(&c);
+  return status;
+}
+
+shb_status compare_integration(const modal_model *model, const mhb_settings *settings,
+                               post_output output, const char *stem, const char *path,
+                               rung_error *error) {
+  *error            = (rung_error){0};
+  comparison c      = {.model = model, .settings = settings, .output = output, .error = error};
+  shb_status status = compare_all_points(&c, stem, path);
+  end(&c);
+  return status;
+}

@@ -1,0 +1,115 @@
+#include "cases/parse/diagnostics.h"
+
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { WIDTH = 120, SHOWN = 50 }; /* columns of a source line, issues of a file that are printed */
+
+case_issues case_issues_start(const char *path, const char *text, size_t length) {
+  return (case_issues){.path = path, .text = text, .length = length};
+}
+
+void case_issue_add(case_issues *issues, int line, int column, const char *key, const char *format,
+                    ...) {
+  char    text[1024], full[1280];
+  va_list args;
+  va_start(args, format);
+  vsnprintf(text, sizeof text, format, args);
+  va_end(args);
+  snprintf(full, sizeof full, "%s%s%s", key ? key : "", key && key[0] ? ": " : "", text);
+  int at = issues->n++; /* counted even when there is no memory to keep it */
+  if (at >= issues->capacity) {
+    int         capacity = issues->capacity ? 2 * issues->capacity : 16;
+    case_issue *grown    = realloc(issues->issue, (size_t)capacity * sizeof *grown);
+    if (!grown) return;
+    memset(grown + issues->capacity, 0, (size_t)(capacity - issues->capacity) * sizeof *grown);
+    issues->issue    = grown;
+    issues->capacity = capacity;
+  }
+  issues->issue[at] = (case_issue){line, column, strdup(full)};
+}
+
+static int by_place(const void *left, const void *right) {
+  const case_issue *a = left, *b = right;
+  if (a->line != b->line) return a->line < b->line ? -1 : 1;
+  return (a->column > b->column) - (a->column < b->column);
+}
+
+/* Start and length of a line, without its end; length 0 if there is no such line. YAML ends a line with
+ * LF, CR LF or CR. */
+static const char *find_line(const case_issues *issues, int line, size_t *length) {
+  const char *at = issues->text, *end = at + issues->length;
+  *length = 0;
+  if (line < 1 || !at) return NULL;
+  if (issues->length >= 3 && memcmp(at, "\xEF\xBB\xBF", 3) == 0) at += 3;
+  for (int i = 1; i < line; i++) {
+    while (at < end && *at != '\n' && *at != '\r') at++;
+    if (at == end) return NULL;
+    at += at + 1 < end && at[0] == '\r' && at[1] == '\n' ? 2 : 1;
+  }
+  const char *stop = at;
+  while (stop < end && *stop != '\n' && *stop != '\r') stop++;
+  *length = (size_t)(stop - at);
+  return at;
+}
+
+/* Bytes of the UTF-8 character at text (1 for a stray byte). */
+static size_t character(const char *text, const char *end) {
+  size_t n = 1;
+  while (text + n < end && n < 4 && ((unsigned char)text[n] & 0xC0) == 0x80) n++;
+  return n;
+}
+
+static void put_character(const char *text, size_t n, FILE *out) {
+  unsigned char c = (unsigned char)text[0];
+  if ((c < 0x20 && c != '\t') || c == 0x7F || (n == 1 && c >= 0x80)) {
+    fputc('?', out); /* never send a terminal what a broken file holds */
+  } else {
+    fwrite(text, 1, n, out);
+  }
+}
+
+/* The part of the line around column, and a caret under it. */
+static void print_source(const case_issues *issues, const case_issue *issue, FILE *out) {
+  size_t      length;
+  const char *at = find_line(issues, issue->line, &length), *end = at + length;
+  if (length == 0) return;
+  int first = issue->column > WIDTH - 20 ? issue->column - WIDTH / 2 : 1, i = 1;
+  for (; at < end && i < first; i++) at += character(at, end);
+  const char *start = at;
+  fputs("    ", out);
+  for (; at < end && i < first + WIDTH; i++) {
+    size_t n = character(at, end);
+    put_character(at, n, out);
+    at += n;
+  }
+  fputs("\n    ", out);
+  for (i = first, at = start; at < end && i < issue->column; i++) {
+    fputc(*at == '\t' ? '\t' : ' ', out);
+    at += character(at, end);
+  }
+  fputs("^\n", out);
+}
+
+void case_issues_print(case_issues *issues, FILE *out) {
+  int kept = issues->n < issues->capacity ? issues->n : issues->capacity;
+  /* merge order within a place is of no importance, so qsort will do */
+  if (kept > 0) qsort(issues->issue, (size_t)kept, sizeof *issues->issue, by_place);
+  for (int i = 0; i < kept && i < SHOWN; i++) {
+    const case_issue *issue = &issues->issue[i];
+    fprintf(out, "%s:", issues->path);
+    if (issue->line > 0) fprintf(out, "%d:%d:", issue->line, issue->column);
+    fprintf(out, " error: %s\n", issue->text ? issue->text : "out of memory");
+    print_source(issues, issue, out);
+  }
+  if (issues->n > SHOWN) fprintf(out, "... and %d more\n", issues->n - SHOWN);
+  if (issues->n > 0) fprintf(out, "%d error%s\n", issues->n, issues->n == 1 ? "" : "s");
+}
+
+void case_issues_free(case_issues *issues) {
+  int kept = issues->n < issues->capacity ? issues->n : issues->capacity;
+  for (int i = 0; i < kept; i++) free(issues->issue[i].text);
+  free(issues->issue);
+  *issues = (case_issues){0};
+}

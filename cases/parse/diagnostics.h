@@ -1,0 +1,32 @@
+/* The errors of one input file: collected, sorted by place, printed together. */
+#ifndef CASES_PARSE_DIAGNOSTICS_H
+#define CASES_PARSE_DIAGNOSTICS_H
+
+#include <stddef.h>
+#include <stdio.h>
+
+typedef struct {
+  int   line, column; /* from 1; 0: the file as a whole */
+  char *text;
+} case_issue;
+
+typedef struct {
+  const char *path;   /* as the user gave it */
+  const char *text;   /* contents of the file, not NUL-terminated */
+  size_t      length; /* bytes */
+  int         n, capacity;
+  case_issue *issue; /* [capacity]; the first min(n, capacity) hold a text */
+} case_issues;
+
+case_issues case_issues_start(const char *path, const char *text, size_t length);
+
+/* Record "KEY: TEXT" at a place; key may be "" or NULL. */
+void case_issue_add(case_issues *issues, int line, int column, const char *key, const char *format,
+                    ...) __attribute__((format(printf, 5, 6)));
+
+/* "file:line:col: error: key: text", the source line and a caret each; then "N errors". Sorts by place. */
+void case_issues_print(case_issues *issues, FILE *out);
+
+void case_issues_free(case_issues *issues);
+
+#endif

@@ -1,0 +1,338 @@
+/* The rows of the key table. */
+#include "cases/parse/keys.h"
+
+#include "mesh/core/file_format.h"
+
+#define AT(member) .at = offsetof(case_file, member)
+#define LIST(member, count) \
+  AT(member), .count_at = offsetof(case_file, count), .each = sizeof(*((case_file *)0)->member)
+#define MATERIAL(member) .at = offsetof(case_material, member)
+#define LOAD(member) .at = offsetof(case_load, member)
+#define INTERFACE(member) .at = offsetof(case_interface, member)
+#define SECTION(member) .at = offsetof(mesh_section, member)
+#define COUNT(array) ((int)(sizeof(array) / sizeof *(array)))
+
+enum { MOST_HARMONICS = 200 };
+
+/* Angles in the range column are rad: 1.5708 is 90 deg. */
+#define RIGHT_ANGLE 1.5707963267948966
+
+/* clang-format off */
+static const case_key table[] = {
+    {"name", CASE_WORD, "", AT(name), .stages = CASE_POST,
+     .help = "name of the output files; default: the file's name, or its folder's for case.yaml"},
+
+    {"mesh.file", CASE_FILE_NAME, "", AT(mesh_file), .stages = CASE_MESH | CASE_MODAL, .when = CASE_IF_MESH_FILE,
+     .help = "instead of blade: a mesh (.msh, Abaqus/CalculiX .inp) or a solid (.step, .brep, .geo) with the groups root, contact_right, contact_left, load"},
+    {"mesh.unit", CASE_CHOICE, "", .words = "m cm mm in", .fallback = "m", AT(mesh_unit), .stages = CASE_MESH, .when = CASE_IF_MESH_FILE,
+     .help = "unit of the coordinates in mesh.file; a STEP file has its own"},
+    {"mesh.size", CASE_NUMBER, "m", 0, 100, .fallback = "0 m", AT(source.size), .stages = CASE_MESH, .when = CASE_IF_SIZE,
+     .help = "element size of a solid; 0: as a .geo file says"},
+    {"mesh.groups", CASE_GROUPS, "", .fallback = "{}", AT(source.rules), .stages = CASE_MESH, .when = CASE_IF_MESH_FILE,
+     .help = "groups by rule: {GROUP: {plane: point, normal: vector} | {radius: r} | {nearest: point} | {name: the file's}}, tolerance 1e-6 m; volumes by nearest or name"},
+    {"mesh.blade.root.length", CASE_NUMBER, "m", 0, 100, true, .required = true, AT(blade.root_length), .stages = CASE_MESH, .when = CASE_IF_BLADE,
+     .help = "root block, axial"},
+    {"mesh.blade.root.width", CASE_NUMBER, "m", 0, 100, true, .required = true, AT(blade.root_width), .stages = CASE_MESH, .when = CASE_IF_BLADE,
+     .help = "root block, tangential"},
+    {"mesh.blade.root.height", CASE_NUMBER, "m", 0, 100, true, .required = true, AT(blade.root_height), .stages = CASE_MESH, .when = CASE_IF_BLADE,
+     .help = "root block, radial, below the first section"},
+    {"mesh.blade.sections", CASE_LIST, "", 2, MESH_MAX_SECTIONS, .required = true, LIST(blade.section, blade.n_sections), .stages = CASE_MESH, .when = CASE_IF_BLADE,
+     .help = "airfoil sections, 2 to 16, radius increasing: a list of {radius, chord, thickness, camber, twist}"},
+    {"mesh.blade.sections[].radius", CASE_NUMBER, "m", 0, 100, true, .required = true, SECTION(radius), .stages = CASE_MESH,
+     .help = "distance from the engine axis"},
+    {"mesh.blade.sections[].chord", CASE_NUMBER, "m", 0, 100, true, .required = true, SECTION(chord), .stages = CASE_MESH,
+     .help = "chord length"},
+    {"mesh.blade.sections[].thickness", CASE_NUMBER, "m", 0, 100, true, .required = true, SECTION(thickness), .stages = CASE_MESH,
+     .help = "greatest thickness, 1 % to 50 % of the chord"},
+    {"mesh.blade.sections[].camber", CASE_NUMBER, "m", -100, 100, .fallback = "0 m", SECTION(camber), .stages = CASE_MESH,
+     .help = "height of the mean line over the chord, at most 40 % of the chord either way"},
+    {"mesh.blade.sections[].twist", CASE_NUMBER, "rad", -RIGHT_ANGLE, RIGHT_ANGLE, true, true, .fallback = "0 deg", SECTION(twist), .stages = CASE_MESH,
+     .help = "stagger from the axial direction, trailing edge towards rotation; -80 to 80 deg"},
+    {"mesh.blade.shroud.length", CASE_NUMBER, "m", 0, 100, true, .required = true, AT(blade.shroud_length), .stages = CASE_MESH, .when = CASE_IF_BLADE,
+     .help = "shroud, axial"},
+    {"mesh.blade.shroud.thickness", CASE_NUMBER, "m", 0, 100, true, .required = true, AT(blade.shroud_thickness), .stages = CASE_MESH, .when = CASE_IF_BLADE,
+     .help = "shroud, radial; it sits on the last section"},
+    {"mesh.blade.shroud.contact", CASE_NUMBER, "m", 0, 100, true, .required = true, AT(blade.shroud_contact), .stages = CASE_MESH, .when = CASE_IF_BLADE,
+     .help = "length of the contact face, the middle leg of the Z"},
+    {"mesh.blade.size", CASE_NUMBER, "m", 0, 100, true, .required = true, AT(blade.size), .stages = CASE_MESH, .when = CASE_IF_BLADE,
+     .help = "element size"},
+    {"mesh.blade.shroud_size", CASE_NUMBER, "m", 0, 100, .fallback = "0 m", AT(blade.shroud_size), .stages = CASE_MESH, .when = CASE_IF_BLADE,
+     .help = "element size in the shroud; 0: as size"},
+
+    {"mesh.blade.elements", CASE_CHOICE, "", .words = "tet10 hex20", .fallback = "hex20", AT(blade.elements), .stages = CASE_MESH, .when = CASE_IF_BLADE,
+     .help = "hexahedra of twenty nodes swept along the blade, or tetrahedra of ten"},
+
+    {"material.E", CASE_TRIPLE, "Pa", 1e6, 1e14, .required = true, AT(constants.E), .stages = CASE_MODAL, .when = CASE_IF_MATERIAL,
+     .help = "Young's modulus; with G of a single crystal, along its axes: a number or [E1, E2, E3]"},
+    {"material.nu", CASE_TRIPLE, "", -1, 0.5, true, true, .required = true, AT(constants.nu), .stages = CASE_MODAL, .when = CASE_IF_MATERIAL,
+     .help = "Poisson's ratio, or [nu12, nu13, nu23]: contraction along the second under tension along the first"},
+    {"material.G", CASE_TRIPLE, "Pa", 1e6, 1e14, AT(constants.G), .stages = CASE_MODAL, .when = CASE_IF_CRYSTAL,
+     .help = "shear modulus of a cubic material, or [G12, G13, G23] of an orthotropic one; default: isotropic"},
+    {"material.axis_1", CASE_VECTOR, "", -1e6, 1e6, .fallback = "[1, 0, 0]", AT(constants.axis), .stages = CASE_MODAL, .when = CASE_IF_CRYSTAL,
+     .help = "direction of the material's axis 1, mesh axes"},
+    {"material.axis_2", CASE_VECTOR, "", -1e6, 1e6, .fallback = "[0, 1, 0]", AT(constants.in_plane), .stages = CASE_MODAL, .when = CASE_IF_CRYSTAL,
+     .help = "a direction in the plane of axes 1 and 2, on the side of 2"},
+    {"material.rho", CASE_NUMBER, "kg/m3", 10, 1e5, .required = true, AT(material.rho), .stages = CASE_MODAL, .when = CASE_IF_MATERIAL,
+     .help = "density"},
+
+    {"materials", CASE_LIST, "", 1, MESH_MAX_VOLUMES, LIST(materials, n_materials), .stages = CASE_MESH | CASE_MODAL, .when = CASE_IF_MATERIALS,
+     .help = "instead of material, where mesh.file has several volumes: a list of {group, E, nu, rho, ...}, every element in one group"},
+    {"materials[].group", CASE_LABEL, "", .required = true, MATERIAL(group), .stages = CASE_MESH | CASE_MODAL,
+     .help = "physical volume of the mesh or solid, element set of an .inp file, or a group that mesh.groups finds by name or nearest point"},
+    {"materials[].E", CASE_TRIPLE, "Pa", 1e6, 1e14, .required = true, MATERIAL(constants.E), .stages = CASE_MODAL,
+     .help = "Young's modulus; with G of a single crystal, along its axes: a number or [E1, E2, E3]"},
+    {"materials[].nu", CASE_TRIPLE, "", -1, 0.5, true, true, .required = true, MATERIAL(constants.nu), .stages = CASE_MODAL,
+     .help = "Poisson's ratio, or [nu12, nu13, nu23]: contraction along the second under tension along the first"},
+    {"materials[].G", CASE_TRIPLE, "Pa", 1e6, 1e14, MATERIAL(constants.G), .stages = CASE_MODAL,
+     .help = "shear modulus of a cubic material, or [G12, G13, G23] of an orthotropic one; default: isotropic"},
+    {"materials[].axis_1", CASE_VECTOR, "", -1e6, 1e6, .fallback = "[1, 0, 0]", MATERIAL(constants.axis), .stages = CASE_MODAL,
+     .help = "direction of the material's axis 1, mesh axes"},
+    {"materials[].axis_2", CASE_VECTOR, "", -1e6, 1e6, .fallback = "[0, 1, 0]", MATERIAL(constants.in_plane), .stages = CASE_MODAL,
+     .help = "a direction in the plane of axes 1 and 2, on the side of 2"},
+    {"materials[].rho", CASE_NUMBER, "kg/m3", 10, 1e5, .required = true, MATERIAL(material.rho), .stages = CASE_MODAL,
+     .help = "density"},
+
+    {"rotor.blades", CASE_INTEGER, "", 2, 1000, .required = true, AT(blades), .stages = CASE_MESH | CASE_MODAL | CASE_MHB, .when = CASE_IF_SECTOR,
+     .help = "number of blades; the sector angle is 360 deg / blades"},
+    {"rotor.speed", CASE_PRELOADS, "rad/s", 0, 1e5, .fallback = "0 rpm", AT(speed), .count_at = offsetof(case_file, n_speeds), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
+     .help = "rotation speed: modes about the static equilibrium under the centrifugal load; 0: at rest; a list or {from, to, points}: a Campbell diagram, the response at the last of them, or along them with mhb.run_up"},
+    {"rotor.pressure", CASE_NUMBER, "Pa", -1e12, 1e12, .fallback = "0 Pa", AT(pressure), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
+     .help = "steady gas pressure on the group load, into the deformed surface: part of the static equilibrium"},
+    {"rotor.axis", CASE_CHOICE, "", .words = "x y z -x -y -z", .fallback = "x", AT(axis), .stages = CASE_MESH | CASE_MODAL, .when = CASE_IF_OWN_MODES,
+     .help = "engine axis, through the origin"},
+
+    {"modal.modes", CASE_AUTO, "", 1, 1000, .fallback = "20", AT(modes), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
+     .help = "modes kept; what is left out goes into the residual flexibility; auto: as few as modal.tolerance allows"},
+    {"modal.tolerance", CASE_NUMBER, "", 0, 1, true, .fallback = "1e-6", AT(tolerance), .stages = CASE_MODAL, .when = CASE_IF_AUTO_MODES,
+     .help = "with modes: auto, the relative error of the receptance at the contact up to modal.band"},
+    {"modal.band", CASE_NUMBER, "Hz", 0, 1e9, .fallback = "0 Hz", AT(band), .stages = CASE_MODAL, .when = CASE_IF_AUTO_MODES,
+     .help = "with modes: auto; 0: the upper end of mhb.frequency times mhb.harmonics (times 5 where they are auto)"},
+    {"modal.damping", CASE_DAMPING, "", 0, 1, .below = true, .required = true, AT(damping), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
+     .help = "damping ratio of every mode; [ratio of each], the last for those beyond; {loss_factor: eta}; {rayleigh: [alpha 1/s, beta s]}"},
+    {"modal.check", CASE_CHOICE, "", .words = "auto inertia never", .fallback = "auto", AT(check), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
+     .help = "that no mode is missing: by a search of what the modes leave out (auto), or by counting with a second factorisation"},
+    {"modal.integration", CASE_SWITCH, "", .words = "reduced full", .fallback = "reduced", AT(full_integration), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
+     .help = "stiffness of hexahedra with 2x2x2 points, or 3x3x3; tetrahedra: no difference"},
+    {"modal.file", CASE_FILE_NAME, "", AT(modal_file), .stages = CASE_MHB, .when = CASE_IF_MODAL_FILE,
+     .help = "modal file to use; mesh, material, rotor.speed and the load are then not needed"},
+
+    {"excitation.engine_order", CASE_INTEGER, "", 0, 10000, .required = true, AT(engine_order), .stages = CASE_MHB, .when = CASE_IF_ORDER,
+     .help = "engine order E; the inter-blade phase is 2 pi E / blades"},
+    {"excitation.pressure", CASE_NUMBER, "Pa", -1e12, 1e12, .required = true, .instead = "traction, force, field or loads", AT(load.pressure), .stages = CASE_MODAL, .when = CASE_IF_PRESSURE,
+     .help = "on the group load, into the surface; one of pressure, traction, force, field"},
+    {"excitation.traction", CASE_VECTOR, "Pa", -1e12, 1e12, .required = true, AT(load.traction), .stages = CASE_MODAL, .when = CASE_IF_TRACTION,
+     .help = "on the group load, along a direction in mesh axes"},
+    {"excitation.force.at", CASE_VECTOR, "m", -1e3, 1e3, AT(load.at), .stages = CASE_MODAL, .when = CASE_IF_FORCE_AT,
+     .help = "where the force acts: the node nearest to it; default: the first probe"},
+    {"excitation.force.vector", CASE_VECTOR, "N", -1e12, 1e12, .required = true, AT(load.force), .stages = CASE_MODAL, .when = CASE_IF_FORCE,
+     .help = "force in mesh axes"},
+    {"excitation.field", CASE_FILE_NAME, "", .required = true, AT(field_file), .stages = CASE_MODAL, .when = CASE_IF_FIELD,
+     .help = "HDF5 file of forces at nodes or of pressure at the nodes of group load, amplitude and phase a harmonic"},
+    {"excitation.harmonics", CASE_FACTORS, "", .fallback = "{1: [1, 0 deg]}", AT(load), .stages = CASE_MODAL, .when = CASE_IF_FACTORS,
+     .help = "factor and phase of the load a harmonic: {k: [factor, phase]}, k from 0 to 64"},
+    {"excitation.loads", CASE_LIST, "", 1, CASE_MAX_LOADS, LIST(loads, n_loads), .stages = CASE_MESH | CASE_MODAL, .when = CASE_IF_LOADS,
+     .help = "instead of one load: a list of loads that act together, each one of pressure, traction, force, field"},
+    {"excitation.loads[].group", CASE_LABEL, "", .fallback = "load", LOAD(group), .stages = CASE_MESH | CASE_MODAL,
+     .help = "group of faces that the pressure or traction acts on"},
+    {"excitation.loads[].pressure", CASE_NUMBER, "Pa", -1e12, 1e12, LOAD(load.pressure), .stages = CASE_MODAL,
+     .help = "into the surface"},
+    {"excitation.loads[].traction", CASE_VECTOR, "Pa", -1e12, 1e12, LOAD(load.traction), .stages = CASE_MODAL,
+     .help = "along a direction in mesh axes"},
+    {"excitation.loads[].force.at", CASE_VECTOR, "m", -1e3, 1e3, LOAD(load.at), .stages = CASE_MODAL,
+     .help = "where the force acts: the node nearest to it; default: the first probe"},
+    {"excitation.loads[].force.vector", CASE_VECTOR, "N", -1e12, 1e12, LOAD(load.force), .stages = CASE_MODAL,
+     .help = "force in mesh axes"},
+    {"excitation.loads[].field", CASE_FILE_NAME, "", LOAD(field), .stages = CASE_MODAL,
+     .help = "file of forces or pressure at nodes, as excitation.field"},
+    {"excitation.loads[].harmonics", CASE_FACTORS, "", .fallback = "{1: [1, 0 deg]}", LOAD(load), .stages = CASE_MODAL,
+     .help = "factor and phase of this load a harmonic"},
+
+    {"probe", CASE_PROBES, "m", -1e3, 1e3, .fallback = "{}", AT(probe), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
+     .help = "nodes to watch, at most 32: {name: [x, y, z]}, the nearest node to each"},
+
+    {"contact.to", CASE_SWITCH, "", .words = "neighbour ground", .fallback = "neighbour", AT(mhb.to_ground), .stages = CASE_MODAL | CASE_MHB,
+     .help = "what the right contact face meets"},
+    {"contact.psi", CASE_NUMBER, "rad", -RIGHT_ANGLE, RIGHT_ANGLE, true, true, AT(mhb.psi), .stages = CASE_MESH | CASE_MODAL | CASE_MHB, .when = CASE_IF_PSI,
+     .help = "shroud angle; default: from the faces (parametric blade: 0)"},
+    {"contact.phi", CASE_NUMBER, "rad", -RIGHT_ANGLE, RIGHT_ANGLE, true, true, AT(mhb.phi), .stages = CASE_MESH | CASE_MODAL | CASE_MHB, .when = CASE_IF_PHI,
+     .help = "inclination of the contact face; default: from the faces (parametric blade: 0)"},
+    {"contact.points", CASE_COUNT, "", 1, 100000, .fallback = "1", AT(points), .stages = CASE_MODAL, .when = CASE_IF_POINTS,
+     .help = "patches of the contact face, or all: one a node"},
+    {"contact.mu", CASE_NUMBER, "", 0, 1e6, .required = true, AT(mhb.mu), .stages = CASE_MHB, .when = CASE_IF_INTERFACE,
+     .help = "friction coefficient"},
+    {"contact.ku", CASE_STIFFNESS, "N/m", 0, 1e15, true, .required = true, AT(mhb.ku), .stages = CASE_MHB, .when = CASE_IF_INTERFACE,
+     .help = "tangential stiffness of the interface: a number or [kuu, kuw, kww]"},
+    {"contact.kv", CASE_NUMBER, "N/m", 0, 1e15, .required = true, AT(mhb.kv), .stages = CASE_MHB, .when = CASE_IF_INTERFACE,
+     .help = "normal stiffness of the interface"},
+    {"contact.n0", CASE_PRELOADS, "N", -1e12, 1e12, .required = true, AT(mhb.n0), .count_at = offsetof(case_file, mhb.n_preloads), .stages = CASE_MHB, .when = CASE_IF_INTERFACE,
+     .help = "normal preload, negative for a gap of -n0/kv: a number, a list, or {from, to, points}"},
+    {"contact.preload", CASE_CHOICE, "", .words = "equilibrium interference", .fallback = "equilibrium", AT(mhb.preload), .stages = CASE_MHB,
+     .help = "n0 is the load at rest, or an interference that also deflects the blade"},
+    {"contact.accuracy", CASE_ACCURACY, "", 1e-14, 1e-2, .words = "fast balanced exact", .fallback = "exact", AT(mhb.tolerance), .stages = CASE_MHB,
+     .help = "relative tolerance of the contact law: fast 1e-3, balanced 1e-5, exact 1e-8, or a number, 1e-14 to 0.01"},
+
+    {"contact.interfaces", CASE_LIST, "", 1, MHB_MAX_INTERFACES, LIST(interfaces, n_interfaces), .stages = CASE_MESH | CASE_MODAL | CASE_MHB, .when = CASE_IF_INTERFACES,
+     .help = "several interfaces (a shroud, a mid-span snubber), instead of psi to n0 above: a list of {name, right, left, points, mu, ku, kv, n0}"},
+    {"contact.interfaces[].name", CASE_LABEL, "", .required = true, INTERFACE(mhb.name), .stages = CASE_MODAL | CASE_MHB,
+     .help = "name in the modal and the response file"},
+    {"contact.interfaces[].right", CASE_LABEL, "", .fallback = "contact_right", INTERFACE(right), .stages = CASE_MESH | CASE_MODAL,
+     .help = "group of its right face"},
+    {"contact.interfaces[].left", CASE_LABEL, "", .fallback = "contact_left", INTERFACE(left), .stages = CASE_MESH | CASE_MODAL,
+     .help = "group of its left face; not to ground"},
+    {"contact.interfaces[].psi", CASE_NUMBER, "rad", -RIGHT_ANGLE, RIGHT_ANGLE, true, true, INTERFACE(mhb.psi), .stages = CASE_MODAL | CASE_MHB,
+     .help = "angle; default: from the faces"},
+    {"contact.interfaces[].phi", CASE_NUMBER, "rad", -RIGHT_ANGLE, RIGHT_ANGLE, true, true, INTERFACE(mhb.phi), .stages = CASE_MODAL | CASE_MHB,
+     .help = "inclination; default: from the faces"},
+    {"contact.interfaces[].points", CASE_COUNT, "", 1, 100000, .fallback = "1", INTERFACE(points), .stages = CASE_MODAL,
+     .help = "patches of its face, or all"},
+    {"contact.interfaces[].mu", CASE_NUMBER, "", 0, 1e6, INTERFACE(mhb.mu), .stages = CASE_MHB,
+     .help = "friction coefficient"},
+    {"contact.interfaces[].ku", CASE_STIFFNESS, "N/m", 0, 1e15, true, INTERFACE(mhb.ku), .stages = CASE_MHB,
+     .help = "its tangential stiffness: a number or [kuu, kuw, kww]"},
+    {"contact.interfaces[].kv", CASE_NUMBER, "N/m", 0, 1e15, INTERFACE(mhb.kv), .stages = CASE_MHB,
+     .help = "its normal stiffness"},
+    {"contact.interfaces[].n0", CASE_PRELOADS, "N", -1e12, 1e12, INTERFACE(mhb.n0), .count_at = offsetof(case_interface, mhb.n_preloads), .stages = CASE_MHB,
+     .help = "its preload, negative for a gap: a number, or a list as long as the others' lists"},
+
+    {"mhb.frequency", CASE_SWEEP, "Hz", 0, 1e9, true, .required = true, AT(mhb.frequency), .stages = CASE_MHB,
+     .help = "range of the sweep: [from, to]; with mhb.vary one number"},
+    {"mhb.run_up", CASE_SWITCH, "", .words = "no yes", .fallback = "no", AT(run_up), .stages = CASE_MHB, .when = CASE_IF_RUN_UP,
+     .help = "the rotor's speed is the excitation frequency / engine order: modes of the speeds in rotor.speed (or in a modal file of several speeds), interpolated"},
+    {"mhb.vary.n0", CASE_INTERVAL, "N", -1e12, 1e12, AT(vary[MHB_IN_N0]), .stages = CASE_MHB, .when = CASE_IF_FOLLOWED,
+     .help = "curves follow this instead of the frequency: the preload"},
+    {"mhb.vary.scale", CASE_INTERVAL, "", 0, 1e12, AT(vary[MHB_IN_SCALE]), .stages = CASE_MHB, .when = CASE_IF_FOLLOWED,
+     .help = "or the level of the excitation, in place of mhb.scale"},
+    {"mhb.vary.mu", CASE_INTERVAL, "", 0, 1e6, AT(vary[MHB_IN_MU]), .stages = CASE_MHB, .when = CASE_IF_FOLLOWED,
+     .help = "or the friction coefficient, in place of contact.mu"},
+    {"mhb.vary.ku", CASE_INTERVAL, "N/m", 0, 1e15, true, AT(vary[MHB_IN_KU]), .stages = CASE_MHB, .when = CASE_IF_FOLLOWED,
+     .help = "or kuu; kuw and kww stay in the proportion that contact.ku gives"},
+    {"mhb.vary.kv", CASE_INTERVAL, "N/m", 0, 1e15, AT(vary[MHB_IN_KV]), .stages = CASE_MHB, .when = CASE_IF_FOLLOWED,
+     .help = "or the normal stiffness, in place of contact.kv"},
+    {"mhb.vary.interface", CASE_LABEL, "", AT(vary_interface), .stages = CASE_MHB, .when = CASE_IF_VARIED,
+     .help = "of several interfaces the one whose n0, mu, ku or kv that is, the others keep theirs (default: the first); all: in proportion"},
+    {"mhb.harmonics", CASE_AUTO, "", 1, MOST_HARMONICS, .fallback = "3", AT(mhb.harmonics), .stages = CASE_MHB,
+     .help = "harmonics of the balance, counted in the fundamental; auto: chosen at each point by mhb.tolerance, at most 31"},
+    {"mhb.tolerance", CASE_NUMBER, "", 1e-8, 0.1, .fallback = "1e-4", AT(mhb.motion_tolerance), .stages = CASE_MHB, .when = CASE_IF_AUTO,
+     .help = "with harmonics: auto, the relative error of the motion that the harmonics left out may cause"},
+    {"mhb.subharmonics", CASE_INTEGER, "", 1, 16, .fallback = "1", AT(mhb.subharmonics), .stages = CASE_MHB,
+     .help = "order nu: the fundamental is the excitation frequency / nu"},
+    {"mhb.scale", CASE_NUMBER, "", 0, 1e12, .fallback = "1", AT(mhb.scale), .stages = CASE_MHB, .when = CASE_IF_NOT_SCALED,
+     .help = "multiplies the excitation"},
+    {"mhb.max_points", CASE_INTEGER, "", 10, 1000000, .fallback = "2000", AT(mhb.max_points), .stages = CASE_MHB,
+     .help = "points after which a branch ends"},
+    {"mhb.stability", CASE_CHOICE, "", .words = "auto always never", .fallback = "auto", AT(mhb.stability), .stages = CASE_MHB,
+     .help = "Floquet multipliers: at every point where that is cheap, else at a few a curve; at every point; at none"},
+    {"mhb.flips", CASE_SWITCH, "", .words = "mark follow", .fallback = "follow", AT(mhb.flips), .stages = CASE_MHB, .when = CASE_IF_STABILITY,
+     .help = "where a curve loses stability by period doubling, the motion of two periods is followed from there, or not"},
+    {"mhb.search.starts", CASE_INTEGER, "", 0, 100000, .fallback = "0", AT(mhb.search.starts), .stages = CASE_MHB,
+     .help = "random starts at each frequency and order, to find curves that nothing leads to; 0: no search, 40: a good first look"},
+    {"mhb.search.at", CASE_PLACES, "Hz", 0, 1e9, true, AT(mhb.search.at), .stages = CASE_MHB, .when = CASE_IF_SEARCH_AT,
+     .help = "frequencies at which to search, at most 64; default: six, evenly over the range"},
+    {"mhb.search.orders", CASE_ORDERS, "", 1, 16, .fallback = "[1, 2, 3]", AT(mhb.search.order), .stages = CASE_MHB, .when = CASE_IF_SEARCH,
+     .help = "orders searched for, at most 8: 1 repeats like the main curve, nu after nu times as long"},
+
+    {"converge.tolerance", CASE_NUMBER, "", 0, 1, true, .fallback = "1 %", AT(converge_tolerance), .stages = CASE_CONVERGE,
+     .help = "what `shroudhb converge` judges by: error of the peak, its frequency and the whole curve, relative"},
+    {"converge.output", CASE_WORD, "", AT(converge_output), .stages = CASE_CONVERGE, .when = CASE_IF_OUTPUT,
+     .help = "the motion it looks at: a probe's name, or contact; default: the first probe, else the first contact"},
+    {"converge.n0", CASE_INTERVAL, "N", -1e12, 1e12, .fallback = "[-1e12, 1e12]", AT(converge_n0), .stages = CASE_CONVERGE,
+     .help = "the preloads it looks at: those of contact.n0 in this range"},
+    {"converge.seconds", CASE_NUMBER, "s", 0, 1e6, true, .fallback = "60 s", AT(converge_seconds), .stages = CASE_CONVERGE,
+     .help = "its ladder of harmonics ends before a rung whose balance would take longer, but has two at least, and the case's own"},
+
+    {"integrate.frequencies", CASE_POINTS, "Hz", 0, 1e9, true, .fallback = "21", AT(integrate.frequency), .stages = CASE_INTEGRATE,
+     .help = "shroudhb integrate: number of points over mhb.frequency, or a list of frequencies"},
+    {"integrate.start", CASE_CHOICE, "", .words = "balance rest state", .fallback = "balance", AT(integrate.start), .stages = CASE_INTEGRATE,
+     .help = "each point from the stable solutions of NAME.response.h5, from rest, or from the state of the frequency before"},
+    {"integrate.direction", CASE_CHOICE, "", .words = "up down both", .fallback = "both", AT(integrate.direction), .stages = CASE_INTEGRATE, .when = CASE_IF_SWEEP,
+     .help = "of a sweep with start: state"},
+    {"integrate.steps", CASE_INTEGER, "", 8, 4096, .fallback = "48", AT(integrate.steps), .stages = CASE_INTEGRATE,
+     .help = "steps a period to begin with; doubled until two runs agree within tolerance"},
+    {"integrate.tolerance", CASE_NUMBER, "", 1e-10, 0.1, .fallback = "1e-5", AT(integrate.tolerance), .stages = CASE_INTEGRATE,
+     .help = "relative error of the periodic motion"},
+    {"integrate.periods", CASE_INTEGER, "", 10, 100000000, .fallback = "5000", AT(integrate.max_periods), .stages = CASE_INTEGRATE,
+     .help = "most periods to wait for a motion to repeat; then it counts as not periodic"},
+    {"integrate.harmonics", CASE_AUTO, "", 1, MOST_HARMONICS, .fallback = "auto", AT(integrate.harmonics), .stages = CASE_INTEGRATE,
+     .help = "harmonics kept of the motion; auto: as many as the balance has"},
+};
+/* clang-format on */
+
+case_keys case_key_table(void) {
+  return (case_keys){COUNT(table), table};
+}
+
+bool case_key_applies(const case_key *key, const case_file *file) {
+  bool own = !file->modal_file, blade = own && !file->mesh_file, one = own && !file->has_loads;
+  switch (key->when) {
+    case CASE_IF_BLADE:
+      return blade;
+    case CASE_IF_MESH_FILE:
+      return own && file->mesh_file;
+    case CASE_IF_SIZE:
+      return own && file->mesh_file && MESH_FORMAT_IS_SOLID(mesh_format_of(file->mesh_file));
+    case CASE_IF_OWN_MODES:
+      return own;
+    case CASE_IF_MODAL_FILE:
+      return !own;
+    case CASE_IF_MATERIAL:
+      return own && !file->has_materials;
+    case CASE_IF_MATERIALS:
+      return own && file->has_materials;
+    case CASE_IF_LOADS:
+      return own && file->has_loads;
+    case CASE_IF_AUTO_MODES:
+      return !file->modal_file && file->modes == 0;
+    case CASE_IF_POINTS:
+      return own && !file->has_interfaces;
+    case CASE_IF_INTERFACE:
+      return !file->has_interfaces;
+    case CASE_IF_INTERFACES:
+      return file->has_interfaces;
+    case CASE_IF_VARIED:
+      return file->n_interfaces > 1 && file->mhb.parameter != MHB_IN_FREQUENCY &&
+             file->mhb.parameter != MHB_IN_SCALE;
+    case CASE_IF_CRYSTAL:
+      return own && !file->has_materials && file->constants.G[0] != 0;
+    case CASE_IF_ORDER:
+      return !file->mhb.to_ground || file->run_up;
+    case CASE_IF_RUN_UP:
+      return file->run_up;
+    case CASE_IF_SECTOR:
+      return blade || !file->mhb.to_ground;
+    case CASE_IF_PSI:
+      return file->mhb.has_psi && !file->has_interfaces;
+    case CASE_IF_PHI:
+      return file->mhb.has_phi && !file->has_interfaces;
+    case CASE_IF_PRESSURE:
+      return one && file->load.kind == FEM_LOAD_PRESSURE;
+    case CASE_IF_TRACTION:
+      return one && file->load.kind == FEM_LOAD_TRACTION;
+    case CASE_IF_FORCE:
+      return one && file->load.kind == FEM_LOAD_FORCE;
+    case CASE_IF_FACTORS:
+      return one && file->load.kind != FEM_LOAD_FIELD;
+    case CASE_IF_FIELD:
+      return one && file->load.kind == FEM_LOAD_FIELD;
+    case CASE_IF_FORCE_AT:
+      return one && file->load.kind == FEM_LOAD_FORCE && file->load.has_at;
+    case CASE_IF_OUTPUT:
+      return file->converge_output != NULL;
+    case CASE_IF_AUTO:
+      return file->mhb.harmonics == 0;
+    case CASE_IF_FOLLOWED:
+      return (const char *)file + key->at == (const char *)file->vary[file->mhb.parameter];
+    case CASE_IF_STABILITY:
+      return file->mhb.stability != MHB_STABILITY_NEVER;
+    case CASE_IF_SEARCH:
+      return file->mhb.search.starts > 0;
+    case CASE_IF_SEARCH_AT:
+      return file->mhb.search.starts > 0 && file->mhb.search.n_at > 0;
+    case CASE_IF_SWEEP:
+      return file->integrate.start == MHB_FROM_STATE;
+    case CASE_IF_NOT_SCALED:
+      return file->mhb.parameter != MHB_IN_SCALE;
+    case CASE_ALWAYS:
+      return true;
+  }
+  return true;
+}

@@ -1,0 +1,223 @@
+#include "cases/parse/lists.h"
+
+#include <complex.h>
+#include <ctype.h>
+#include <string.h>
+
+#include "cases/parse/units.h"
+#include "cases/parse/value.h"
+
+static bool preload_room(const case_reading *c, const case_node *node, int n) {
+  if (n >= 1 && n <= MHB_MAX_PRELOADS) return true;
+  case_issue_add(c->issues, node->line, node->column, c->path, "%d %s; there may be 1 to %d", n,
+                 strcmp(c->path, "rotor.speed") == 0 ? "speeds" : "preloads", MHB_MAX_PRELOADS);
+  return false;
+}
+
+/* {from, to, points}: both ends included. */
+static bool read_preload_range(const case_reading *c, const case_node *node, int *n, double *n0) {
+  static const case_key names[] = {
+      {.path = "from", .unit = ""}, {.path = "to", .unit = ""}, {.path = "points", .unit = ""}};
+  double end[2] = {0, 0};
+  int    points = 0;
+  bool   good   = true;
+  for (int i = 0; i < node->n; i++) {
+    if (case_key_find((case_keys){3, names}, node->child[i].key)) continue;
+    char hint[256], path[CASE_PATH];
+    case_path(path, "%s.%s", c->path, node->child[i].key);
+    case_key_suggest((case_keys){3, names}, "", node->child[i].key, hint, sizeof hint);
+    case_issue_add(c->issues, node->child[i].key_line, node->child[i].key_column, path,
+                   "unknown key%s", hint);
+    good = false;
+  }
+  for (int i = 0; i < 3; i++) {
+    const case_node *child = case_node_find(node, names[i].path);
+    char             path[CASE_PATH], why[CASE_WHY];
+    case_path(path, "%s.%s", c->path, names[i].path);
+    if (!child) {
+      case_issue_add(c->issues, node->line, node->column, path,
+                     "missing; expected {from, to, points}");
+      good = false;
+    } else if (i < 2) {
+      good = case_reading_number(c, path, child, &end[i]) && good;
+    } else if (child->kind != CASE_SCALAR) {
+      good = case_reading_refuse_kind(c, path, child, "a whole number");
+    } else if (!case_integer(child->text, &points, why)) {
+      case_issue_add(c->issues, child->line, child->column, path, "%s", why);
+      good = false;
+    } else if (points < 2 || points > MHB_MAX_PRELOADS) {
+      case_issue_add(c->issues, child->line, child->column, path, "is %d, must be 2 to %d", points,
+                     MHB_MAX_PRELOADS);
+      good = false;
+    }
+  }
+  if (!good) return false;
+  *n = points;
+  for (int i = 0; i < points; i++) {
+    double share = (double)i / (points - 1);
+    n0[i]        = (1 - share) * end[0] + share * end[1];
+  }
+  return true;
+}
+
+/* The same preload twice gives the same curve twice. With several interfaces the lists go together: paths of their own. */
+static bool all_differ(const case_reading *c, const case_node *node, const double *n0) {
+  for (int i = 1; strcmp(c->path, "contact.n0") == 0 && i < node->n; i++)
+    for (int j = 0; j < i; j++) {
+      char path[CASE_PATH];
+      if (n0[i] != n0[j]) continue;
+      case_path(path, "%s[%d]", c->path, i);
+      case_issue_add(c->issues, node->child[i].line, node->child[i].column, path,
+                     "is %g N, which [%d] is already; every preload once", n0[i], j);
+      return false;
+    }
+  return true;
+}
+
+bool case_list_preloads(const case_reading *c, const case_node *node, void *slot) {
+  double *n0 = slot;
+  int    *n  = (int *)((char *)slot - c->key->at + c->key->count_at);
+  *n         = 1;
+  if (node->kind == CASE_SCALAR) return case_reading_number(c, c->path, node, n0);
+  if (node->kind == CASE_MAPPING) return read_preload_range(c, node, n, n0);
+  if (node->kind != CASE_SEQUENCE) return case_reading_refuse(c, node);
+  if (!preload_room(c, node, node->n)) return false;
+  *n = node->n;
+  return case_reading_numbers(c, c->path, node, node->n, n0) && all_differ(c, node, n0);
+}
+
+static bool list_room(const case_reading *c, const case_node *node, int most) {
+  if (node->kind != CASE_SEQUENCE) return case_reading_refuse(c, node);
+  if (node->n >= 1 && node->n <= most) return true;
+  case_issue_add(c->issues, node->line, node->column, c->path, "has %d numbers, expected 1 to %d",
+                 node->n, most);
+  return false;
+}
+
+bool case_list_places(const case_reading *c, const case_node *node, void *slot) {
+  mhb_search_settings *search = &c->file->mhb.search;
+  if (!list_room(c, node, MHB_MAX_SEARCH_AT)) return false;
+  search->n_at = node->n;
+  return case_reading_numbers(c, c->path, node, node->n, slot);
+}
+
+bool case_list_orders(const case_reading *c, const case_node *node, void *slot) {
+  mhb_search_settings *search = &c->file->mhb.search;
+  int                 *order  = slot;
+  bool                 good   = list_room(c, node, MHB_MAX_SEARCH_ORDERS);
+  if (!good) return false;
+  search->n_orders = node->n;
+  for (int i = 0; i < node->n && good; i++) {
+    const case_node *child = &node->child[i];
+    char             path[CASE_PATH];
+    case_path(path, "%s[%d]", c->path, i);
+    case_reading one = *c;
+    one.path         = path;
+    if (child->kind != CASE_SCALAR)
+      return case_reading_refuse_kind(c, path, child, "a whole number");
+    good = case_reading_integer(&one, child, &order[i]);
+    if (!good || i == 0 || order[i] > order[i - 1]) continue;
+    case_issue_add(c->issues, child->line, child->column, path,
+                   "is %d after %d; they must increase", order[i], order[i - 1]);
+    good = false;
+  }
+  return good;
+}
+
+/* Points over the range of the sweep, or the frequencies themselves. */
+bool case_list_frequencies(const case_reading *c, const case_node *node, void *slot) {
+  (void)slot;
+  mhb_witness_settings *asked = &c->file->integrate;
+  char                  why[CASE_WHY];
+  int                   n = node->kind == CASE_SEQUENCE ? node->n : 0;
+  asked->listed           = node->kind == CASE_SEQUENCE;
+  if (!asked->listed && node->kind != CASE_SCALAR) return case_reading_refuse(c, node);
+  if (!asked->listed && !case_integer(node->text, &n, why)) {
+    case_issue_add(c->issues, node->line, node->column, c->path,
+                   "%s; expected a number of points, or [from, ..] in Hz", why);
+    return false;
+  }
+  if (n < 1 || n > MHB_MAX_FREQUENCIES) {
+    case_issue_add(c->issues, node->line, node->column, c->path,
+                   "%d frequencies; there may be 1 to %d", n, MHB_MAX_FREQUENCIES);
+    return false;
+  }
+  asked->n_frequencies = n;
+  if (!asked->listed) return true;
+  if (!case_reading_numbers(c, c->path, node, n, asked->frequency)) return false;
+  for (int i = 1; i < n; i++) {
+    if (asked->frequency[i] > asked->frequency[i - 1]) continue;
+    case_issue_add(c->issues, node->child[i].line, node->child[i].column, c->path,
+                   "%g Hz comes after %g Hz; frequencies must ascend", asked->frequency[i],
+                   asked->frequency[i - 1]);
+    return false;
+  }
+  return true;
+}
+
+bool case_list_factors(const case_reading *c, const case_node *node, void *slot) {
+  fem_load *load = slot;
+  if (node->kind != CASE_MAPPING) return case_reading_refuse(c, node);
+  bool good = true, given[FEM_MAX_LOAD_HARMONICS + 1] = {false};
+  load->n_harmonics = 0;
+  for (int i = 0; i < node->n; i++) {
+    const case_node *child = &node->child[i];
+    char             path[CASE_PATH], why[CASE_WHY];
+    int              k = -1;
+    double           polar[2];
+    case_path(path, "%s.%s", c->path, child->key);
+    bool known = case_integer(child->key, &k, why) && k >= 0 && k <= FEM_MAX_LOAD_HARMONICS;
+    if (!known || given[k]) {
+      case_issue_add(c->issues, child->key_line, child->key_column, c->path,
+                     known ? "harmonic '%.40s' is given twice"
+                           : "'%.40s' is not a harmonic; expected a whole number, 0 to 64",
+                     child->key);
+      good = false;
+      continue;
+    }
+    given[k] = true;
+    if (k > load->n_harmonics) load->n_harmonics = k;
+    good            = case_value_polar(c->issues, path, child, "", polar) && good;
+    load->factor[k] = polar[0] * cexp(I * polar[1]);
+  }
+  bool any = false;
+  for (int k = 0; k <= load->n_harmonics; k++) any = any || load->factor[k] != 0;
+  if (any || !good) return good;
+  case_issue_add(c->issues, node->line, node->column, c->path,
+                 "every factor is 0; nothing would move");
+  return false;
+}
+
+static bool probe_name(const char *name) {
+  for (const char *at = name; *at; at++)
+    if (!isalnum((unsigned char)*at) && !strchr("_-.+", *at)) return false;
+  return name[0] && strlen(name) < CASE_NAME;
+}
+
+bool case_list_probes(const case_reading *c, const case_node *node, void *slot) {
+  (void)slot;
+  if (node->kind != CASE_MAPPING) return case_reading_refuse(c, node);
+  if (node->n > CASE_MAX_PROBES) {
+    case_issue_add(c->issues, node->line, node->column, c->path, "%d probes; at most %d", node->n,
+                   CASE_MAX_PROBES);
+    return false;
+  }
+  bool good = true;
+  for (int i = 0; i < node->n; i++) {
+    const case_node *child = &node->child[i];
+    char             path[CASE_PATH];
+    case_path(path, "%s.%s", c->path, child->key);
+    case_probe *probe = &c->file->probe[i];
+    if (!probe_name(child->key)) {
+      case_issue_add(c->issues, child->key_line, child->key_column, c->path,
+                     "'%.60s' cannot be a probe's name: 1 to %d letters, digits, _ - . +",
+                     child->key, CASE_NAME - 1);
+      good = false;
+      continue;
+    }
+    strcpy(probe->name, child->key);
+    good = case_reading_numbers(c, path, child, 3, probe->at) && good;
+  }
+  c->file->n_probes = node->n;
+  return good;
+}

@@ -1,0 +1,336 @@
+#include "cases/parse/reader.h"
+
+#include <assert.h>
+#include <stdarg.h>
+#include <string.h>
+
+#include "cases/parse/value.h"
+
+static int index_of(const case_reader *r, const char *path) {
+  const case_key *key = case_key_find(r->keys, path);
+  return key ? (int)(key - r->keys.key) : -1;
+}
+
+const case_node *case_reader_given(const case_reader *r, const char *path) {
+  int i = index_of(r, path);
+  return i >= 0 ? r->given[i] : NULL;
+}
+
+bool case_reader_good(const case_reader *r, const char *path) {
+  int i = index_of(r, path);
+  return i >= 0 && r->good[i];
+}
+
+static const case_block *find_block(const case_reader *r, const char *path) {
+  for (int i = 0; i < r->n_blocks; i++)
+    if (strcmp(r->block[i].path, path) == 0) return &r->block[i];
+  return NULL;
+}
+
+bool case_reader_has_block(const case_reader *r, const char *path) {
+  return find_block(r, path) != NULL;
+}
+
+/* Cuts the last part of a path; false at the top. */
+static bool parent_of(char *path) {
+  char *dot = strrchr(path, '.');
+  if (dot) *dot = '\0';
+  if (!dot) path[0] = '\0';
+  return dot != NULL;
+}
+
+void case_reader_issue(const case_reader *r, const char *path, const char *format, ...) {
+  char    text[1024], around[CASE_PATH];
+  va_list args;
+  va_start(args, format);
+  vsnprintf(text, sizeof text, format, args);
+  va_end(args);
+  const case_node *node = case_reader_given(r, path);
+  int              line = 0, column = 0;
+  if (node) {
+    line   = node->line;
+    column = node->column;
+  }
+  case_path(around, "%s", path);
+  while (line == 0 && around[0]) {
+    const case_block *block = find_block(r, around);
+    if (block && block->node->key_line > 0) {
+      line   = block->node->key_line;
+      column = block->node->key_column;
+    }
+    if (!parent_of(around)) break;
+  }
+  case_issue_add(r->issues, line > 0 ? line : 1, line > 0 ? column : 1, path, "%s", text);
+}
+
+static void read_default(case_reader *r, const case_key *key, char *base) {
+  case_issues none = case_issues_start("default", key->fallback, strlen(key->fallback));
+  case_node  *node = case_document_parse(&none);
+  bool        good = node && case_value_read(&none, key, key->path, node, r->file, base + key->at);
+  assert(good);
+  (void)good;
+  case_document_free(node);
+  case_issues_free(&none);
+}
+
+static bool is_section_row(const case_key *key) {
+  return strstr(key->path, "[].") != NULL;
+}
+
+static void walk(case_reader *r, const case_node *map, const char *path);
+
+static void refuse_key(case_reader *r, const char *block, const char *path, const case_node *node) {
+  char hint[512];
+  case_key_suggest(r->keys, block, node->key, hint, sizeof hint);
+  case_issue_add(r->issues, node->key_line, node->key_column, path, "unknown key%s", hint);
+}
+
+/* Whether an element has the row's key, be it misspelt: that has been told. */
+static bool element_has(const case_reader *r, const case_node *node, const case_key *key) {
+  char        block[CASE_PATH], meant[CASE_LONGEST_WORD];
+  const char *leaf = case_key_leaf(key->path);
+  case_path(block, "%.*s", (int)(leaf - key->path - 1), key->path);
+  for (int i = 0; i < node->n; i++) {
+    const char *word = node->child[i].key;
+    if (strcmp(word, leaf) == 0) return true;
+    bool known = false;
+    for (int k = 0; k < r->keys.n; k++)
+      known = known || strcmp(case_key_leaf(r->keys.key[k].path), word) == 0;
+    if (!known && case_key_nearest(r->keys, block, word, meant) && strcmp(meant, leaf) == 0)
+      return true;
+  }
+  return false;
+}
+
+/* The keys of an element, or of a block in it, whose rows begin with prefix. */
+static void read_members(case_reader *r, const char *prefix, const case_node *node,
+                         const char *path, char *base) {
+  for (int i = 0; i < node->n; i++) {
+    const case_node *child = &node->child[i];
+    char             row[CASE_PATH], full[CASE_PATH];
+    case_path(row, "%s.%s", prefix, child->key);
+    case_path(full, "%s.%s", path, child->key);
+    const case_key *key   = case_key_find(r->keys, row);
+    bool            block = !key && case_key_is_block(r->keys, row);
+    if (key) {
+      case_value_read(r->issues, key, full, child, r->file, base + key->at);
+    } else if (block && child->kind == CASE_MAPPING) {
+      read_members(r, row, child, full, base);
+    } else if (block && child->kind != CASE_BROKEN) {
+      case_issue_add(r->issues, child->line, child->column, full, "is %s; expected a mapping",
+                     case_kind_name(child->kind));
+    } else if (!block) {
+      refuse_key(r, prefix, full, child);
+    }
+  }
+}
+
+/* One element of a list of mappings: its rows are "LIST[].KEY". */
+static void read_element(case_reader *r, const case_key *list, const case_node *node,
+                         const char *path, char *base) {
+  char prefix[CASE_PATH];
+  case_path(prefix, "%s[]", list->path);
+  read_members(r, prefix, node, path, base);
+  for (int i = 0; i < r->keys.n; i++) {
+    const case_key *key = &r->keys.key[i];
+    if (strncmp(key->path, prefix, strlen(prefix)) != 0) continue;
+    if (element_has(r, node, key)) continue;
+    char full[CASE_PATH], expected[256];
+    case_path(full, "%s.%s", path, case_key_leaf(key->path));
+    case_value_expected(key, expected, sizeof expected);
+    if (key->required)
+      case_issue_add(r->issues, node->line, node->column, full, "missing; expected %s", expected);
+    if (key->fallback) read_default(r, key, base);
+  }
+}
+
+/* The keys of a list's elements: "{radius, chord}". */
+static void list_shape(const case_reader *r, const case_key *list, char *text, size_t size) {
+  char   last[CASE_PATH] = "";
+  size_t n               = strlen(list->path);
+  for (int i = 0; i < r->keys.n; i++) {
+    const char *path = r->keys.key[i].path;
+    if (strncmp(path, list->path, n) != 0 || strncmp(path + n, "[].", 3) != 0) continue;
+    char part[CASE_PATH];
+    case_path(part, "%.*s", (int)strcspn(path + n + 3, "."), path + n + 3);
+    if (strcmp(part, last) == 0) continue;
+    case_append(text, size, "%s%s", last[0] ? ", " : "{", part);
+    strcpy(last, part);
+  }
+  case_append(text, size, "}");
+}
+
+static void read_list(case_reader *r, const case_key *key, const char *path,
+                      const case_node *node) {
+  if (node->kind != CASE_SEQUENCE) {
+    char shape[256] = "";
+    list_shape(r, key, shape, sizeof shape);
+    if (node->kind != CASE_BROKEN)
+      case_issue_add(r->issues, node->line, node->column, path, "is %s; expected a list of %s",
+                     case_kind_name(node->kind), shape);
+    return;
+  }
+  if (node->n < (int)key->least || node->n > (int)key->most) {
+    const char *leaf = case_key_leaf(path); /* a plural */
+    int         n    = (int)strlen(leaf) - (node->n == 1);
+    case_issue_add(r->issues, node->line, node->column, path, "has %d %.*s, must have %g to %g",
+                   node->n, n, leaf, key->least, key->most);
+    return;
+  }
+  *(int *)((char *)r->file + key->count_at) = node->n;
+  for (int i = 0; i < node->n; i++) {
+    const case_node *child = &node->child[i];
+    char             full[CASE_PATH];
+    case_path(full, "%s[%d]", path, i);
+    if (child->kind == CASE_MAPPING) {
+      read_element(r, key, child, full, (char *)r->file + key->at + (size_t)i * key->each);
+    } else if (child->kind != CASE_BROKEN) {
+      case_issue_add(r->issues, child->line, child->column, full, "is %s; expected a mapping",
+                     case_kind_name(child->kind));
+    }
+  }
+}
+
+static void read_key(case_reader *r, int index, const char *path, const case_node *node) {
+  const case_key *key    = &r->keys.key[index];
+  int             before = r->issues->n;
+  r->given[index]        = node;
+  if (key->type == CASE_LIST) {
+    read_list(r, key, path, node);
+  } else {
+    case_value_read(r->issues, key, path, node, r->file, (char *)r->file + key->at);
+  }
+  r->good[index] = node->kind != CASE_BROKEN && r->issues->n == before;
+}
+
+static void read_block(case_reader *r, const char *path, const case_node *node) {
+  if (node->kind != CASE_MAPPING) {
+    char known[512];
+    case_key_suggest(r->keys, path, "", known, sizeof known);
+    if (node->kind != CASE_BROKEN)
+      case_issue_add(r->issues, node->line, node->column, path, "is %s; expected a mapping%s",
+                     case_kind_name(node->kind), known);
+  }
+  if (r->n_blocks < CASE_MAX_BLOCKS) {
+    case_block *block = &r->block[r->n_blocks++];
+    case_path(block->path, "%s", path);
+    block->node = node;
+  }
+  if (node->kind == CASE_MAPPING) walk(r, node, path);
+}
+
+/* A key that is not known. If it looks like one that is, it stands for it: what it holds is read, and it is not
+ * told to be missing as well. */
+static void read_unknown(case_reader *r, const char *path, const case_node *node,
+                         const char *full) {
+  char meant[CASE_LONGEST_WORD], right[CASE_PATH];
+  refuse_key(r, path, full, node);
+  if (!case_key_nearest(r->keys, path, node->key, meant)) return;
+  case_path(right, "%s%s%s", path, path[0] ? "." : "", meant);
+  int index = index_of(r, right);
+  if (index >= 0 && !r->given[index]) {
+    /* a file's name decides which other keys are needed */
+    if (r->keys.key[index].type == CASE_FILE_NAME) read_key(r, index, right, node);
+    r->given[index] = node;
+    r->good[index]  = false;
+  } else if (index < 0 && node->kind == CASE_MAPPING && !find_block(r, right)) {
+    read_block(r, right, node);
+  }
+}
+
+static void walk(case_reader *r, const case_node *map, const char *path) {
+  for (int i = 0; i < map->n; i++) {
+    const case_node *child = &map->child[i];
+    char             full[CASE_PATH];
+    bool plain = child->key[0] && !strpbrk(child->key, ".["); /* "contact.mu: 1" is no block */
+    case_path(full, "%s%s%s", path, path[0] ? "." : "", child->key);
+    int index = plain ? index_of(r, full) : -1;
+    if (index >= 0) {
+      read_key(r, index, full, child);
+    } else if (plain && case_key_is_block(r->keys, full)) {
+      read_block(r, full, child);
+    } else {
+      read_unknown(r, path, child, full);
+    }
+  }
+}
+
+void case_reader_walk(case_reader *r, const case_node *root) {
+  assert(r->keys.n <= CASE_MAX_KEYS);
+  for (int i = 0; i < r->keys.n; i++) {
+    const case_key *key = &r->keys.key[i];
+    if (!key->fallback || is_section_row(key)) continue;
+    read_default(r, key, (char *)r->file);
+    r->good[i] = true;
+  }
+  if (root && root->kind == CASE_MAPPING) {
+    walk(r, root, "");
+  } else if (!root || root->kind == CASE_NULL) {
+    case_issue_add(r->issues, 1, 1, NULL, "the file is empty");
+  } else if (root->kind != CASE_BROKEN) {
+    case_issue_add(r->issues, root->line, root->column, NULL,
+                   "the file holds %s, not a mapping of keys", case_kind_name(root->kind));
+  }
+}
+
+static bool is_missing(const case_reader *r, int index, int stages) {
+  const case_key *key = &r->keys.key[index];
+  /* neither mesh.blade nor mesh.file: told as a whole by case_check_alternatives */
+  bool told = key->when == CASE_IF_BLADE && !find_block(r, "mesh.blade");
+  return key->required && (key->stages & stages) && !r->given[index] && !is_section_row(key) &&
+         !told && case_key_applies(key, r->file);
+}
+
+/* The outermost block around key that is not in the file; false if the block of the key is there. broken: the
+ * block is there but is no mapping, which has been told. */
+static bool missing_block(const case_reader *r, const case_key *key, char block[CASE_PATH],
+                          bool *broken) {
+  char path[CASE_PATH];
+  bool missing = false;
+  *broken      = false;
+  case_path(path, "%s", key->path);
+  while (parent_of(path)) {
+    const case_block *found = find_block(r, path);
+    if (found) {
+      *broken = found->node->kind != CASE_MAPPING;
+      return missing;
+    }
+    missing = true;
+    strcpy(block, path);
+  }
+  return missing;
+}
+
+static void require_block(case_reader *r, const char *block, int stages) {
+  char text[512] = "";
+  for (int i = 0, n = 0; i < r->keys.n; i++) {
+    char path[CASE_PATH];
+    bool broken;
+    if (!is_missing(r, i, stages) || !missing_block(r, &r->keys.key[i], path, &broken)) continue;
+    if (strcmp(path, block) != 0) continue;
+    const case_key *key = &r->keys.key[i];
+    case_append(text, sizeof text, "%s%s%s%s", n++ ? ", " : "", key->path + strlen(block) + 1,
+                key->instead ? " or " : "", key->instead ? key->instead : "");
+  }
+  case_reader_issue(r, block, "missing; expected a mapping with %s", text);
+}
+
+void case_reader_require(case_reader *r, int stages) {
+  char last[CASE_PATH] = "";
+  for (int i = 0; i < r->keys.n; i++) {
+    const case_key *key = &r->keys.key[i];
+    char            block[CASE_PATH], expected[256];
+    bool            broken;
+    if (!is_missing(r, i, stages)) continue;
+    bool whole = missing_block(r, key, block, &broken);
+    if (broken) continue;
+    if (!whole) {
+      case_value_expected(key, expected, sizeof expected);
+      case_reader_issue(r, key->path, "missing; expected %s%s%s", expected,
+                        key->instead ? ", or " : "", key->instead ? key->instead : "");
+    } else if (strcmp(block, last) != 0) {
+      require_block(r, block, stages);
+      strcpy(last, block);
+    }
+  }
+}

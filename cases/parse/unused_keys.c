@@ -1,0 +1,74 @@
+#include "cases/parse/unused_keys.h"
+
+#include <string.h>
+
+/* What would have to be for a key of this condition to be read; NULL: not told here. */
+static const char *needed(case_condition when) {
+  switch (when) {
+    case CASE_IF_MESH_FILE:
+    case CASE_IF_SIZE:
+      return "only says something with mesh.file";
+    case CASE_IF_STABILITY:
+      return "only says something with mhb.stability: auto or always";
+    case CASE_IF_SEARCH:
+    case CASE_IF_SEARCH_AT:
+      return "only says something with mhb.search.starts above 0";
+    case CASE_IF_SWEEP:
+      return "only says something with integrate.start: state";
+    case CASE_IF_NOT_SCALED:
+      return "leave it out: curves follow mhb.vary.scale instead";
+    default:
+      return NULL;
+  }
+}
+
+/* A row that only modes made here depend on. */
+static bool of_own_modes(const case_key *key) {
+  return key->when != CASE_IF_ORDER && key->when != CASE_IF_SECTOR &&
+         (key->stages & (CASE_MESH | CASE_MODAL)) != 0;
+}
+
+static bool has_block(const case_reader *r, const char *path) {
+  for (int i = 0; i < r->n_blocks; i++)
+    if (strcmp(r->block[i].path, path) == 0) return true;
+  return false;
+}
+
+/* The key's outermost block if nothing in it is read, else the key itself. */
+static void whole(const case_reader *r, const case_key *key, char path[CASE_PATH]) {
+  size_t n = strcspn(key->path, ".");
+  case_path(path, "%.*s", (int)n, key->path);
+  bool none = has_block(r, path);
+  for (int i = 0; i < r->keys.n && none; i++) {
+    const case_key *other = &r->keys.key[i];
+    if (strncmp(other->path, key->path, n) == 0 && other->path[n] == '.' &&
+        !strstr(other->path, "[]"))
+      none = !case_key_applies(other, r->file);
+  }
+  if (!none) case_path(path, "%s", key->path);
+}
+
+/* mesh.size beside a mesh is told by the check of mesh.file; search.starts: 0 says that at and orders shall wait. */
+static bool told(const case_reader *r, const case_key *key) {
+  if (key->when == CASE_IF_SIZE) return r->file->mesh_file != NULL;
+  if (key->when == CASE_IF_SEARCH || key->when == CASE_IF_SEARCH_AT)
+    return case_reader_given(r, "mhb.search.starts") != NULL;
+  return false;
+}
+
+void case_check_unread(const case_reader *r) {
+  char last[CASE_PATH] = "", path[CASE_PATH];
+  for (int i = 0; i < r->keys.n; i++) {
+    const case_key *key = &r->keys.key[i];
+    if (!case_reader_good(r, key->path) || !case_reader_given(r, key->path)) continue;
+    if (case_key_applies(key, r->file)) continue;
+    if (r->file->modal_file && of_own_modes(key)) {
+      whole(r, key, path);
+      if (strcmp(path, last) != 0)
+        case_reader_issue(r, path, "leave it out: modal.file is given, which holds what it made");
+      strcpy(last, path);
+    } else if (needed(key->when) && !told(r, key)) {
+      case_reader_issue(r, key->path, "%s", needed(key->when));
+    }
+  }
+}

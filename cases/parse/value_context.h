@@ -1,0 +1,34 @@
+/* A value in hand: what its reader needs to know, and what readers share. */
+#ifndef CASES_PARSE_VALUE_CONTEXT_H
+#define CASES_PARSE_VALUE_CONTEXT_H
+
+#include <stdbool.h>
+
+#include "cases/parse/diagnostics.h"
+#include "cases/parse/keys.h"
+#include "cases/parse/yaml.h"
+
+typedef struct {
+  case_issues    *issues;
+  const case_key *key;
+  const char     *path;
+  case_file      *file;
+} case_reading;
+
+/* Record that node is of the wrong kind (nothing if it is broken); false. The first says what the key wants. */
+bool case_reading_refuse(const case_reading *c, const case_node *node);
+bool case_reading_refuse_kind(const case_reading *c, const char *path, const case_node *node,
+                              const char *expected);
+
+/* A number in the key's unit and range. */
+bool case_reading_number(const case_reading *c, const char *path, const case_node *node,
+                         double *value);
+
+/* A list of n of them. */
+bool case_reading_numbers(const case_reading *c, const char *path, const case_node *node, int n,
+                          double *value);
+
+/* slot: int */
+bool case_reading_integer(const case_reading *c, const case_node *node, void *slot);
+
+#endif

@@ -1,0 +1,317 @@
+#include "cases/parse/yaml.h"
+
+#include <errno.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <yaml.h>
+
+typedef struct {
+  yaml_parser_t parser;
+  case_issues  *issues;
+} builder;
+
+shb_status case_text_read(const char *path, char **text, size_t *length) {
+  *text      = NULL;
+  FILE *file = fopen(path, "rb");
+  SHB_CHECK(file, SHB_ERR_IO, "%s: cannot be opened: %s", path, strerror(errno));
+  char  *bytes = malloc(CASE_MAX_BYTES + 2);
+  size_t n     = bytes ? fread(bytes, 1, CASE_MAX_BYTES + 1, file) : 0;
+  int    why   = bytes ? (ferror(file) ? errno : 0) : ENOMEM;
+  fclose(file);
+  shb_status status = SHB_OK;
+  if (why) {
+    status =
+        shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "%s: cannot be read: %s", path, strerror(why));
+  } else if (n > CASE_MAX_BYTES) {
+    status = shb_fail(SHB_ERR_INPUT, __FILE__, __LINE__,
+                      "%s: larger than 1 MiB; a case file is a page of YAML text", path);
+  } else if (memchr(bytes, '\0', n)) {
+    status = shb_fail(SHB_ERR_INPUT, __FILE__, __LINE__,
+                      "%s: holds binary data; a case file is YAML text in UTF-8", path);
+  }
+  if (status != SHB_OK) {
+    free(bytes);
+    return status;
+  }
+  bytes[n] = '\0';
+  *text    = bytes;
+  *length  = n;
+  return SHB_OK;
+}
+
+/* Line and column (from 1, in characters) of a byte offset. */
+static void place_of(const case_issues *issues, size_t offset, int *line, int *column) {
+  *line = *column = 1;
+  for (size_t i = 0; i < offset && i < issues->length; i++) {
+    unsigned char c = (unsigned char)issues->text[i];
+    if (c == '\n') {
+      (*line)++;
+      *column = 1;
+    } else if ((c & 0xC0) != 0x80) {
+      (*column)++;
+    }
+  }
+}
+
+static char byte_at(const case_issues *issues, const yaml_mark_t *mark) {
+  size_t line = 0, i = 0;
+  for (; i < issues->length && line < mark->line; i++) line += issues->text[i] == '\n';
+  i += mark->column;
+  return i < issues->length ? issues->text[i] : '\0';
+}
+
+static void syntax_issue(builder *b) {
+  const yaml_parser_t *p = &b->parser;
+  int                  line, column;
+  if (p->error == YAML_MEMORY_ERROR) {
+    case_issue_add(b->issues, 0, 0, NULL, "out of memory");
+  } else if (p->error == YAML_READER_ERROR) {
+    place_of(b->issues, p->problem_offset, &line, &column);
+    case_issue_add(b->issues, line, column, NULL, "not UTF-8 text: %s", p->problem);
+  } else if (byte_at(b->issues, &p->problem_mark) == '\t') {
+    case_issue_add(b->issues, (int)p->problem_mark.line + 1, (int)p->problem_mark.column + 1, NULL,
+                   "a tab; YAML indents with spaces");
+  } else {
+    bool begun = p->context && p->context_mark.line != p->problem_mark.line;
+    char where[96];
+    snprintf(where, sizeof where, ", begun on line %d", (int)p->context_mark.line + 1);
+    case_issue_add(b->issues, (int)p->problem_mark.line + 1, (int)p->problem_mark.column + 1, NULL,
+                   "not valid YAML: %s%s%s%s%s", p->problem ? p->problem : "syntax error",
+                   p->context ? " (" : "", p->context ? p->context : "", begun ? where : "",
+                   p->context ? ")" : "");
+  }
+}
+
+static bool next_event(builder *b, yaml_event_t *event) {
+  if (yaml_parser_parse(&b->parser, event)) return true;
+  syntax_issue(b);
+  return false;
+}
+
+static void node_clear(case_node *node) {
+  for (int i = 0; i < node->n; i++) node_clear(&node->child[i]);
+  free(node->child);
+  free(node->text);
+  free(node->key);
+  *node = (case_node){0};
+}
+
+/* Room for one more entry; NULL (issue recorded) when there are too many or there is no memory. */
+static case_node *add_child(builder *b, case_node *parent) {
+  bool many = parent->n >= CASE_MAX_ENTRIES;
+  if (!many && (parent->n & (parent->n - 1)) == 0) { /* full at 0, 1, 2, 4, 8, ... */
+    int        capacity = parent->n ? 2 * parent->n : 1;
+    case_node *grown    = realloc(parent->child, (size_t)capacity * sizeof *grown);
+    if (grown) parent->child = grown;
+    if (!grown) {
+      case_issue_add(b->issues, 0, 0, NULL, "out of memory");
+      return NULL;
+    }
+  }
+  if (many) {
+    case_issue_add(b->issues, parent->line, parent->column, NULL, "more than %d entries",
+                   CASE_MAX_ENTRIES);
+    return NULL;
+  }
+  case_node *child = &parent->child[parent->n++];
+  *child           = (case_node){0};
+  return child;
+}
+
+static bool is_null(const yaml_event_t *event) {
+  const char *text = (const char *)event->data.scalar.value;
+  if (event->data.scalar.style != YAML_PLAIN_SCALAR_STYLE) return false;
+  return text[0] == '\0' || strcmp(text, "~") == 0 || strcmp(text, "null") == 0;
+}
+
+static bool has_tag(const yaml_event_t *event) {
+  if (event->type == YAML_SCALAR_EVENT) return event->data.scalar.tag != NULL;
+  if (event->type == YAML_SEQUENCE_START_EVENT) return event->data.sequence_start.tag != NULL;
+  return event->type == YAML_MAPPING_START_EVENT && event->data.mapping_start.tag != NULL;
+}
+
+static bool build(builder *b, const yaml_event_t *event, const char *path, int depth,
+                  case_node *out);
+
+static bool build_sequence(builder *b, const char *path, int depth, case_node *out) {
+  for (;;) {
+    yaml_event_t event;
+    if (!next_event(b, &event)) return false;
+    bool done = event.type == YAML_SEQUENCE_END_EVENT, good = true;
+    if (!done) {
+      char inner[CASE_PATH];
+      case_path(inner, "%s[%d]", path, out->n);
+      case_node *child = add_child(b, out);
+      good             = child && build(b, &event, inner, depth + 1, child);
+    }
+    yaml_event_delete(&event);
+    if (done || !good) return good;
+  }
+}
+
+/* Turns the built key into child->key; drops an entry that may not stay. */
+static void settle_entry(builder *b, case_node *map, case_node *key, const char *path) {
+  case_node *child  = &map->child[map->n - 1];
+  child->key_line   = key->line;
+  child->key_column = key->column;
+  child->key        = key->text;
+  key->text         = NULL;
+  bool keep         = child->key != NULL;
+  if (!keep && key->kind != CASE_BROKEN)
+    case_issue_add(b->issues, key->line, key->column, path, "a key must be a word, not %s",
+                   case_kind_name(key->kind));
+  for (int i = 0; keep && i < map->n - 1; i++) {
+    if (strcmp(map->child[i].key, child->key) != 0) continue;
+    case_issue_add(b->issues, key->line, key->column, path, "given twice; first on line %d",
+                   map->child[i].key_line);
+    keep = false;
+  }
+  if (!keep) {
+    node_clear(child);
+    map->n--;
+  }
+}
+
+static bool build_entry(builder *b, const yaml_event_t *key_event, const char *path, int depth,
+                        case_node *out) {
+  case_node key = {0};
+  if (!build(b, key_event, path, depth + 1, &key)) {
+    node_clear(&key);
+    return false;
+  }
+  char inner[CASE_PATH];
+  case_path(inner, "%s%s%s", path, path[0] ? "." : "", key.text ? key.text : "?");
+  yaml_event_t event;
+  bool         good = next_event(b, &event);
+  if (good) {
+    case_node *child = add_child(b, out);
+    good             = child && build(b, &event, inner, depth + 1, child);
+    yaml_event_delete(&event);
+  }
+  if (good) settle_entry(b, out, &key, inner);
+  node_clear(&key);
+  return good;
+}
+
+static bool build_mapping(builder *b, const char *path, int depth, case_node *out) {
+  for (;;) {
+    yaml_event_t event;
+    if (!next_event(b, &event)) return false;
+    bool done = event.type == YAML_MAPPING_END_EVENT, good = true;
+    if (!done) good = build_entry(b, &event, path, depth, out);
+    yaml_event_delete(&event);
+    if (done || !good) return good;
+  }
+}
+
+static bool build_scalar(builder *b, const yaml_event_t *event, case_node *out) {
+  out->kind = is_null(event) ? CASE_NULL : CASE_SCALAR;
+  out->text = strdup((const char *)event->data.scalar.value);
+  if (!out->text) case_issue_add(b->issues, 0, 0, NULL, "out of memory");
+  return out->text != NULL;
+}
+
+static bool build(builder *b, const yaml_event_t *event, const char *path, int depth,
+                  case_node *out) {
+  out->line   = (int)event->start_mark.line + 1;
+  out->column = (int)event->start_mark.column + 1;
+  if (depth > CASE_MAX_DEPTH) {
+    case_issue_add(b->issues, out->line, out->column, path, "nested more than %d deep",
+                   CASE_MAX_DEPTH);
+    return false;
+  }
+  if (has_tag(event))
+    case_issue_add(b->issues, out->line, out->column, path, "tags (!...) are not supported");
+  switch (event->type) {
+    case YAML_SCALAR_EVENT:
+      return build_scalar(b, event, out);
+    case YAML_SEQUENCE_START_EVENT:
+      out->kind = CASE_SEQUENCE;
+      return build_sequence(b, path, depth, out);
+    case YAML_MAPPING_START_EVENT:
+      out->kind = CASE_MAPPING;
+      return build_mapping(b, path, depth, out);
+    default:
+      out->kind = CASE_BROKEN;
+      case_issue_add(b->issues, out->line, out->column, path,
+                     "aliases (*name) are not supported; write the value out");
+      return true;
+  }
+}
+
+/* Skips stream and document start; false at the end of the stream or after an issue. */
+static bool first_event(builder *b, yaml_event_t *event) {
+  while (next_event(b, event)) {
+    if (event->type != YAML_STREAM_START_EVENT && event->type != YAML_DOCUMENT_START_EVENT &&
+        event->type != YAML_STREAM_END_EVENT)
+      return true;
+    bool end = event->type == YAML_STREAM_END_EVENT;
+    yaml_event_delete(event);
+    if (end) return false;
+  }
+  return false;
+}
+
+/* After the document: nothing else but the end. */
+static bool expect_end(builder *b) {
+  yaml_event_t event;
+  for (bool end = false; !end;) {
+    if (!next_event(b, &event)) return false;
+    bool again = event.type == YAML_DOCUMENT_START_EVENT;
+    if (again)
+      case_issue_add(b->issues, (int)event.start_mark.line + 1, (int)event.start_mark.column + 1,
+                     NULL, "a second document begins here; one file holds one case");
+    end = again || event.type == YAML_STREAM_END_EVENT;
+    yaml_event_delete(&event);
+    if (again) return false;
+  }
+  return true;
+}
+
+case_node *case_document_parse(case_issues *issues) {
+  builder b = {.issues = issues};
+  if (!yaml_parser_initialize(&b.parser)) {
+    case_issue_add(issues, 0, 0, NULL, "out of memory");
+    return NULL;
+  }
+  yaml_parser_set_input_string(&b.parser, (const unsigned char *)issues->text, issues->length);
+  case_node   *root = NULL;
+  yaml_event_t event;
+  if (first_event(&b, &event)) {
+    root      = calloc(1, sizeof *root);
+    bool good = root && build(&b, &event, "", 0, root) && expect_end(&b);
+    yaml_event_delete(&event);
+    if (!good) {
+      case_document_free(root);
+      root = NULL;
+    }
+  }
+  yaml_parser_delete(&b.parser);
+  return root;
+}
+
+void case_document_free(case_node *root) {
+  if (!root) return;
+  node_clear(root);
+  free(root);
+}
+
+const char *case_kind_name(case_kind kind) {
+  static const char *const names[] = {"nothing", "a single value", "a list", "a mapping",
+                                      "something broken"};
+  return names[kind];
+}
+
+void case_path(char path[CASE_PATH], const char *format, ...) {
+  va_list args;
+  va_start(args, format);
+  vsnprintf(path, CASE_PATH, format, args);
+  va_end(args);
+}
+
+const case_node *case_node_find(const case_node *mapping, const char *key) {
+  for (int i = 0; mapping && mapping->kind == CASE_MAPPING && i < mapping->n; i++)
+    if (strcmp(mapping->child[i].key, key) == 0) return &mapping->child[i];
+  return NULL;
+}

@@ -1,0 +1,163 @@
+#include "cases/schema/case.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "cases/parse/diagnostics.h"
+#include "cases/parse/reader.h"
+#include "cases/parse/yaml.h"
+#include "cases/schema/checks.h"
+#include "cases/schema/interfaces.h"
+#include "cases/schema/named_groups.h"
+#include "mesh/core/file_format.h"
+#include "mhb/problem/parameter.h"
+
+static char *folder_of(const char *path) {
+  const char *slash = strrchr(path, '/');
+  if (!slash) return strdup(".");
+  return strndup(path, slash == path ? 1 : (size_t)(slash - path));
+}
+
+/* The file's name without its ending; for case.yaml the name of its folder, which tells more. */
+static char *default_name(const char *path, const char *folder) {
+  const char *leaf = strrchr(path, '/');
+  leaf             = leaf ? leaf + 1 : path;
+  const char *dot  = strrchr(leaf, '.');
+  size_t      n    = dot && dot != leaf ? (size_t)(dot - leaf) : strlen(leaf);
+  if (n != 4 || strncmp(leaf, "case", 4) != 0) return strndup(leaf, n);
+  char       *full = realpath(folder, NULL);
+  const char *last = full ? strrchr(full, '/') : NULL;
+  char       *name = last && last[1] ? strdup(last + 1) : strndup(leaf, n);
+  free(full);
+  return name;
+}
+
+/* What curves are followed in: the frequency, unless mhb.vary names something else. */
+static void share_parameter(case_reader *r) {
+  mhb_settings *mhb = &r->file->mhb;
+  for (int i = MHB_IN_FREQUENCY + 1; i < MHB_N_PARAMETERS; i++) {
+    char path[CASE_PATH];
+    case_path(path, "mhb.vary.%s", mhb_parameter_name((mhb_parameter)i));
+    if (!case_reader_given(r, path)) continue;
+    mhb->parameter = (mhb_parameter)i;
+    memcpy(mhb->range, r->file->vary[i], sizeof mhb->range);
+  }
+}
+
+/* Copies of a value for those who look for it elsewhere. */
+static void share(case_reader *r) {
+  case_file *file        = r->file;
+  file->mhb.has_psi      = case_reader_given(r, "contact.psi") != NULL;
+  file->mhb.has_phi      = case_reader_given(r, "contact.phi") != NULL;
+  file->mhb.engine_order = file->engine_order;
+  file->mhb.blades       = file->blades;
+  file->blade.blades     = file->blades;
+  file->blade.axis       = file->axis;
+  file->source.path      = file->mesh_file;
+  bool step              = file->mesh_file && mesh_format_of(file->mesh_file) == MESH_FORMAT_STEP;
+  file->source.unit      = step ? 1e-3 : (const double[]){1, 1e-2, 1e-3, 0.0254}[file->mesh_unit];
+  file->source.axis      = file->axis;
+  file->source.blades    = file->mhb.to_ground ? 0 : file->blades;
+  file->material.E       = file->constants.E[0];
+  file->material.nu      = file->constants.nu[0];
+  file->has_materials    = case_reader_given(r, "materials") != NULL;
+  for (int i = 0; i < file->n_materials; i++) {
+    case_material *one = &file->materials[i];
+    one->material.E    = one->constants.E[0];
+    one->material.nu   = one->constants.nu[0];
+  }
+  file->load.field = file->field_file;
+  file->has_loads  = case_reader_given(r, "excitation.loads") != NULL;
+  for (int i = 0; i < file->n_loads; i++) {
+    case_load *one  = &file->loads[i];
+    one->load.field = one->field;
+    one->load.group = one->group;
+  }
+  file->blade.psi = file->mhb.has_psi ? file->mhb.psi : 0;
+  file->blade.phi = file->mhb.has_phi ? file->mhb.phi : 0;
+}
+
+/* Returns true if an input file named in the case cannot be read. */
+static bool read_document(case_issues *issues, int stages, case_file *out) {
+  case_node *root = case_document_parse(issues);
+  if (!root && issues->n > 0) return false; /* not YAML: nothing more can be said */
+  case_reader reader = {.issues = issues, .keys = case_key_table(), .file = out};
+  case_reader_walk(&reader, root);
+  bool lost = false;
+  if (root && root->kind == CASE_MAPPING) {
+    share(&reader);
+    share_parameter(&reader);
+    case_share_interfaces(&reader);
+    case_assign_groups(&reader);
+    case_check_alternatives(&reader, stages);
+    case_reader_require(&reader, stages);
+    lost = case_check_values(&reader, stages);
+  }
+  case_document_free(root);
+  return lost;
+}
+
+shb_status case_read(const char *path, int stages, FILE *errors, case_file *out) {
+  *out          = (case_file){0};
+  size_t length = 0;
+  SHB_TRY(case_text_read(path, &out->text, &length));
+  out->path   = strdup(path);
+  out->folder = folder_of(path);
+  out->name   = out->path && out->folder ? default_name(path, out->folder) : NULL;
+  if (!out->name) {
+    case_free(out);
+    SHB_FAIL(SHB_ERR_IO, "%s: out of memory", path);
+  }
+  case_issues issues = case_issues_start(path, out->text, length);
+  bool        lost   = read_document(&issues, stages, out);
+  int         n      = issues.n;
+  case_issues_print(&issues, errors);
+  case_issues_free(&issues);
+  if (n == 0) return SHB_OK;
+  case_free(out);
+  /* all is said: no text for the closing line. A lone file that cannot be read is not the case file's fault. */
+  return shb_fail(lost && n == 1 ? SHB_ERR_IO : SHB_ERR_INPUT, __FILE__, __LINE__, "%s", "");
+}
+
+void case_free(case_file *file) {
+  free(file->path);
+  free(file->folder);
+  free(file->text);
+  free(file->name);
+  free(file->mesh_file);
+  free(file->modal_file);
+  free(file->field_file);
+  for (int i = 0; i < CASE_MAX_LOADS; i++) free(file->loads[i].field);
+  free(file->converge_output);
+  *file = (case_file){0};
+}
+
+char *case_output(const case_file *file, const char *suffix) {
+  bool   here = strcmp(file->folder, ".") == 0;
+  size_t size = strlen(file->folder) + strlen(file->name) + strlen(suffix) + 2;
+  char  *path = malloc(size);
+  if (path)
+    snprintf(path, size, "%s%s%s%s", here ? "" : file->folder, here ? "" : "/", file->name, suffix);
+  return path;
+}
+
+bool case_mesh_is_made(const case_file *file) {
+  const mesh_source *source = &file->source;
+  if (!file->mesh_file) return false;
+  bool made = MESH_FORMAT_IS_SOLID(mesh_format_of(file->mesh_file)) || source->unit != 1;
+  const mesh_rules *rules = &source->rules;
+  for (int i = 0; i < MESH_N_SETS; i++) made = made || rules->usual[i].kind != MESH_RULE_NONE;
+  for (int i = 0; i < rules->n_more; i++) made = made || rules->more[i].rule.kind != MESH_RULE_NONE;
+  for (int i = 0; i < rules->n_volumes; i++)
+    made = made || rules->volume[i].rule.kind != MESH_RULE_NONE;
+  return made;
+}
+
+char *case_mesh_path(const case_file *file) {
+  return file->mesh_file && !case_mesh_is_made(file) ? strdup(file->mesh_file)
+                                                     : case_output(file, ".msh");
+}
+
+char *case_modal_path(const case_file *file) {
+  return file->modal_file ? strdup(file->modal_file) : case_output(file, ".modal.h5");
+}

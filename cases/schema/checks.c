@@ -1,0 +1,301 @@
+#include "cases/schema/checks.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "cases/parse/unused_keys.h"
+#include "cases/schema/interfaces.h"
+#include "cases/schema/loads.h"
+#include "cases/schema/materials.h"
+#include "mesh/core/file_format.h"
+#include "mhb/problem/parameter.h"
+
+static void check_mesh(case_reader *r, int stages) {
+  bool file         = case_reader_given(r, "mesh.file") != NULL,
+       blade        = case_reader_has_block(r, "mesh.blade");
+  r->file->has_mesh = case_reader_has_block(r, "mesh");
+  if (file && blade)
+    case_reader_issue(r, "mesh.blade", "give either mesh.blade or mesh.file, not both");
+  bool needed = stages & (CASE_MESH | CASE_MODAL) && !r->file->modal_file;
+  if (needed && !file && !blade)
+    case_reader_issue(r, "mesh", "missing; expected {blade: ...} or {file: NAME}");
+}
+
+/* What a parametric blade cannot be. */
+static void check_blade(case_reader *r, int stages) {
+  const mesh_blade *blade  = &r->file->blade;
+  double            degree = 180 / 3.14159265358979323846;
+  if (r->file->modal_file || !(stages & CASE_MESH) || !case_reader_has_block(r, "mesh.blade"))
+    return;
+  if (case_reader_good(r, "contact.psi") && fabs(blade->psi) * degree > 70)
+    case_reader_issue(r, "contact.psi", "a parametric blade needs -70 to 70 deg");
+  if (case_reader_good(r, "contact.phi") && fabs(blade->phi) * degree > 45)
+    case_reader_issue(r, "contact.phi", "a parametric blade needs -45 to 45 deg");
+  if (case_reader_good(r, "rotor.blades") && blade->blades == 2)
+    case_reader_issue(r, "rotor.blades", "a parametric blade needs 3 or more");
+}
+
+void case_check_alternatives(case_reader *r, int stages) {
+  check_mesh(r, stages);
+  case_check_load(r);
+}
+
+static void check_sections(case_reader *r) {
+  static const char   path[] = "mesh.blade.sections";
+  static const double degree = 180 / 3.14159265358979323846;
+  const mesh_blade   *blade  = &r->file->blade;
+  const case_node    *node   = case_reader_given(r, path);
+  for (int i = 0; node && case_reader_good(r, path) && i < blade->n_sections; i++) {
+    const mesh_section *s     = &blade->section[i];
+    const case_node    *place = &node->child[i];
+    char                full[CASE_PATH];
+    case_path(full, "%s[%d]", path, i);
+    if (i > 0 && s->radius <= s[-1].radius)
+      case_issue_add(r->issues, place->line, place->column, full,
+                     "radius is %g m, must be above that of the section before, %g m", s->radius,
+                     s[-1].radius);
+    const double least = .01 * MESH_LEAST_THICKNESS * s->chord;
+    const double most  = .01 * MESH_MOST_THICKNESS * s->chord;
+    const double bend  = .01 * MESH_MOST_CAMBER * s->chord;
+    if (s->thickness <= least || s->thickness >= most)
+      case_issue_add(r->issues, place->line, place->column, full,
+                     "thickness is %g m, must be between 1 %% and 50 %% of the chord, %g to %g m",
+                     s->thickness, least, most);
+    if (fabs(s->camber) > bend)
+      case_issue_add(r->issues, place->line, place->column, full,
+                     "camber is %g m, must be at most 40 %% of the chord, %g m, either way",
+                     s->camber, bend);
+    if (fabs(s->twist) > MESH_MOST_TWIST / degree)
+      case_issue_add(r->issues, place->line, place->column, full,
+                     "twist is %g deg, must be -80 to 80 deg", s->twist * degree);
+  }
+  double height = blade->root_height;
+  if (node && case_reader_good(r, path) && case_reader_good(r, "mesh.blade.root.height") &&
+      height >= blade->section[0].radius)
+    case_reader_issue(r, "mesh.blade.root.height",
+                      "is %g m, must be below the radius of the first section, %g m", height,
+                      blade->section[0].radius);
+}
+
+static void check_sizes(case_reader *r) {
+  const mesh_blade *blade = &r->file->blade;
+  if (case_reader_good(r, "mesh.blade.size") && case_reader_good(r, "mesh.blade.shroud_size") &&
+      blade->shroud_size > blade->size)
+    case_reader_issue(r, "mesh.blade.shroud_size", "is %g m, must not be above size, %g m",
+                      blade->shroud_size, blade->size);
+}
+
+/* A tolerance of the motion is what auto works for, and means nothing else. */
+static void check_tolerance(case_reader *r) {
+  if (!case_reader_good(r, "mhb.harmonics") || r->file->mhb.harmonics == 0) return;
+  r->file->mhb.motion_tolerance = 0;
+  if (case_reader_given(r, "mhb.tolerance"))
+    case_reader_issue(r, "mhb.tolerance",
+                      "only says something with mhb.harmonics: auto; the accuracy of the contact "
+                      "law is contact.accuracy");
+}
+
+/* One parameter is followed, all others stand. */
+static void check_followed(case_reader *r) {
+  const mhb_settings *mhb    = &r->file->mhb;
+  int                 single = mhb->frequency[0] == mhb->frequency[1], given = 0;
+  for (int i = MHB_IN_FREQUENCY + 1; i < MHB_N_PARAMETERS; i++) {
+    char path[CASE_PATH];
+    case_path(path, "mhb.vary.%s", mhb_parameter_name((mhb_parameter)i));
+    if (!case_reader_given(r, path)) continue;
+    if (given++ > 0) case_reader_issue(r, path, "only one parameter can be followed");
+  }
+  if (!case_reader_given(r, "mhb.frequency") || !case_reader_good(r, "mhb.frequency")) return;
+  if (given == 0 && single)
+    case_reader_issue(r, "mhb.frequency",
+                      "is one number; give [from, to], or say with mhb.vary what is to be followed "
+                      "at this frequency");
+  if (given > 0 && !single)
+    case_reader_issue(r, "mhb.frequency",
+                      "must be one number, because curves follow mhb.vary.%s instead",
+                      mhb_parameter_name(mhb->parameter));
+  if (mhb->parameter == MHB_IN_N0 && case_reader_good(r, "contact.n0") && mhb->n_preloads > 1)
+    case_reader_issue(r, "contact.n0", "must be one number, because curves follow mhb.vary.n0");
+}
+
+/* The band of modes: auto, where it is not given: what the balance needs. */
+static void check_band(case_reader *r) {
+  case_file          *file = r->file;
+  const mhb_settings *mhb  = &file->mhb;
+  if (file->modal_file || !case_reader_good(r, "modal.modes")) return;
+  if (file->modes > 0 && case_reader_given(r, "modal.tolerance"))
+    case_reader_issue(r, "modal.tolerance", "only says something with modal.modes: auto");
+  if (file->modes > 0 && case_reader_given(r, "modal.band"))
+    case_reader_issue(r, "modal.band", "only says something with modal.modes: auto");
+  if (file->modes > 0) return;
+  if (file->band > 0 || !case_reader_good(r, "modal.band")) return;
+  if (case_reader_given(r, "mhb.frequency") && case_reader_good(r, "mhb.frequency"))
+    file->band = mhb->frequency[1] * (mhb->harmonics > 0 ? mhb->harmonics : 5) /
+                 (mhb->subharmonics > 0 ? mhb->subharmonics : 1);
+  else if (!case_reader_given(r, "mhb.frequency"))
+    case_reader_issue(r, "modal.band", "missing; modes: auto needs it, or mhb.frequency");
+}
+
+/* Each speed once: what is interpolated between two that are nearly the same is rounding. */
+static const double ALIKE = 1e-5;
+
+static void check_speeds(case_reader *r) {
+  const case_file *file = r->file;
+  if (!case_reader_good(r, "rotor.speed")) return;
+  for (int i = 0; i < file->n_speeds; i++)
+    for (int j = 0; j < i; j++)
+      if (fabs(file->speed[i] - file->speed[j]) <= ALIKE * file->speed[i]) {
+        case_reader_issue(r, "rotor.speed", "holds %g rad/s twice", file->speed[i]);
+        return;
+      }
+}
+
+/* The range of the sweep lies on the engine order within the speeds of the list. */
+static void check_run_up_speeds(case_reader *r) {
+  static const double two_pi = 6.283185307179586476925, hair = 1e-9;
+  const case_file    *file = r->file;
+  const double       *f = file->mhb.frequency, E = file->engine_order;
+  double              low = file->speed[0], high = file->speed[0];
+  if (!case_reader_good(r, "rotor.speed")) return;
+  for (int i = 1; i < file->n_speeds; i++) {
+    low  = fmin(low, file->speed[i]);
+    high = fmax(high, file->speed[i]);
+  }
+  if (file->n_speeds < 2) {
+    case_reader_issue(r, "mhb.run_up", "needs rotor.speed as a list, or {from, to, points}");
+    return;
+  }
+  if (!case_reader_good(r, "mhb.frequency") || !case_reader_good(r, "excitation.engine_order"))
+    return;
+  if (two_pi * f[0] / E < low * (1 - hair) || two_pi * f[1] / E > high * (1 + hair))
+    case_reader_issue(
+        r, "mhb.frequency",
+        "must be within %.6g to %.6g Hz, which engine order %g meets at the speeds of "
+        "rotor.speed, %.6g to %.6g rpm (mhb.run_up)",
+        E * low / two_pi, E * high / two_pi, E, low * 60 / two_pi, high * 60 / two_pi);
+}
+
+static void check_run_up(case_reader *r) {
+  const case_file *file = r->file;
+  if (!file->run_up) return;
+  if (case_reader_good(r, "excitation.engine_order") && file->engine_order < 1) {
+    case_reader_issue(r, "mhb.run_up", "needs excitation.engine_order of 1 or more");
+    return;
+  }
+  if (case_reader_given(r, "integrate.start") && file->integrate.start == MHB_FROM_STATE)
+    case_reader_issue(r, "integrate.start",
+                      "must be balance or rest in a run-up (mhb.run_up): the structure is another "
+                      "one at each frequency");
+  if (!file->modal_file) check_run_up_speeds(r);
+}
+
+/* Frequencies outside the range would find curves that are not followed. */
+static void check_search(case_reader *r) {
+  const mhb_settings *mhb  = &r->file->mhb;
+  const case_node    *node = case_reader_given(r, "mhb.search.at");
+  if (!node || !case_reader_good(r, "mhb.search.at") || !case_reader_good(r, "mhb.frequency"))
+    return;
+  if (mhb->parameter != MHB_IN_FREQUENCY) {
+    case_reader_issue(r, "mhb.search.at",
+                      "are frequencies, but curves follow mhb.vary; without it places are chosen");
+    return;
+  }
+  for (int i = 0; i < mhb->search.n_at; i++) {
+    char path[CASE_PATH];
+    case_path(path, "mhb.search.at[%d]", i);
+    if (mhb->search.at[i] < mhb->frequency[0] || mhb->search.at[i] > mhb->frequency[1])
+      case_issue_add(r->issues, node->child[i].line, node->child[i].column, path,
+                     "is %g Hz, must be within mhb.frequency, %g to %g Hz", mhb->search.at[i],
+                     mhb->frequency[0], mhb->frequency[1]);
+  }
+}
+
+/* There are no solutions of the balance to start on outside its range. */
+static void check_integrate(case_reader *r) {
+  static const char           path[] = "integrate.frequencies";
+  const mhb_settings         *mhb    = &r->file->mhb;
+  const mhb_witness_settings *asked  = &r->file->integrate;
+  const case_node            *node   = case_reader_given(r, path);
+  if (!node || !case_reader_good(r, path) || !case_reader_good(r, "mhb.frequency")) return;
+  if (!asked->listed || asked->start != MHB_FROM_BALANCE || mhb->parameter != MHB_IN_FREQUENCY)
+    return;
+  for (int i = 0; i < asked->n_frequencies; i++) {
+    char full[CASE_PATH];
+    case_path(full, "%s[%d]", path, i);
+    if (asked->frequency[i] < mhb->frequency[0] || asked->frequency[i] > mhb->frequency[1])
+      case_issue_add(r->issues, node->child[i].line, node->child[i].column, full,
+                     "is %g Hz, must be within mhb.frequency, %g to %g Hz, where there are "
+                     "solutions to start on; or set integrate.start to rest or state",
+                     asked->frequency[i], mhb->frequency[0], mhb->frequency[1]);
+  }
+}
+
+/* An input file that cannot be read; true if so. */
+static bool check_file(case_reader *r, const char *key, const char *path) {
+  if (!path || !case_reader_good(r, key)) return false;
+  struct stat info;
+  int         fd  = open(path, O_RDONLY | O_NONBLOCK);
+  int         why = fd < 0 ? errno : 0;
+  if (fd >= 0 && fstat(fd, &info) == 0 && S_ISDIR(info.st_mode)) why = EISDIR;
+  if (fd >= 0) close(fd);
+  if (why) case_reader_issue(r, key, "%s: cannot be read: %s", path, strerror(why));
+  return why != 0;
+}
+
+static void check_extension(case_reader *r) {
+  const case_file *file = r->file;
+  if (!file->mesh_file || !case_reader_good(r, "mesh.file")) return;
+  mesh_format format = mesh_format_of(file->mesh_file);
+  bool        solid  = MESH_FORMAT_IS_SOLID(format);
+  bool        sized  = case_reader_good(r, "mesh.size") && file->source.size > 0;
+  if (format == MESH_FORMAT_UNKNOWN)
+    case_reader_issue(r, "mesh.file",
+                      "'%s' is neither a mesh (.msh, .inp) nor a solid (.step, .stp, .brep, .geo)",
+                      file->mesh_file);
+  if (format == MESH_FORMAT_STEP && case_reader_given(r, "mesh.unit"))
+    case_reader_issue(r, "mesh.unit", "leave it out: a STEP file has its own unit");
+  if (solid && format != MESH_FORMAT_GEO && !sized && case_reader_good(r, "mesh.size"))
+    case_reader_issue(r, "mesh.size", "missing; the element size of a solid, in m");
+  if (format != MESH_FORMAT_UNKNOWN && !solid && case_reader_given(r, "mesh.size"))
+    case_reader_issue(r, "mesh.size", "leave it out: '%s' is a mesh already", file->mesh_file);
+  char *own = case_output(file, ".msh");
+  if (own && case_mesh_is_made(file) && strcmp(own, file->mesh_file) == 0)
+    case_reader_issue(r, "mesh.file",
+                      "'%s' would be overwritten by the mesh made from it; rename it or the case",
+                      file->mesh_file);
+  free(own);
+}
+
+bool case_check_values(case_reader *r, int stages) {
+  case_file *file = r->file;
+  bool       own = !file->modal_file, lost = false;
+  if (own && !file->mesh_file) {
+    check_sections(r);
+    check_sizes(r);
+  }
+  case_check_unread(r);
+  case_check_load_values(r, stages);
+  check_blade(r, stages);
+  check_tolerance(r);
+  case_check_materials(r);
+  check_speeds(r);
+  check_band(r);
+  if (stages & CASE_MHB) check_followed(r);
+  if (stages & CASE_MHB) check_run_up(r);
+  case_check_interfaces(r, stages);
+  check_search(r);
+  if (stages & CASE_MHB) check_integrate(r);
+  if (own) check_extension(r);
+  if (own && stages & (CASE_MESH | CASE_MODAL)) lost = check_file(r, "mesh.file", file->mesh_file);
+  if (own && stages & CASE_MODAL && file->load.kind == FEM_LOAD_FIELD && !lost)
+    lost = check_file(r, "excitation.field", file->field_file);
+  for (int i = 0; i < file->n_loads && own && stages & CASE_MODAL && !lost; i++)
+    lost = check_file(r, "excitation.loads", file->loads[i].field);
+  if (!own && stages & CASE_MHB) lost = check_file(r, "modal.file", file->modal_file);
+  return lost;
+}

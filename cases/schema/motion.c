@@ -1,0 +1,103 @@
+#include "cases/schema/motion.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cases/parse/reader.h"
+#include "cases/parse/value.h"
+
+static const case_key signal_rows[] = {
+    {"motion.v", CASE_SIGNAL, "m", .required = true, .stages = CASE_MHB},
+    {"motion.u", CASE_SIGNAL, "m", .required = true, .stages = CASE_MHB},
+    {"motion.w", CASE_SIGNAL, "m", .required = true, .stages = CASE_MHB},
+};
+
+/* The contact rows of the case file's table, and the motion's. One evaluation is cheap: as accurate as can be. */
+static case_keys motion_table(case_key row[CASE_MAX_KEYS]) {
+  case_keys all = case_key_table();
+  int       n   = 0;
+  for (int i = 0; i < all.n && n < CASE_MAX_KEYS - 3; i++)
+    if (strncmp(all.key[i].path, "contact.", strlen("contact.")) == 0 &&
+        strncmp(all.key[i].path, "contact.interfaces", strlen("contact.interfaces")) != 0)
+      row[n++] = all.key[i];
+  for (int i = 0; i < n; i++)
+    if (row[i].type == CASE_ACCURACY) row[i].fallback = "1e-13";
+  for (int i = 0; i < 3; i++) row[n++] = signal_rows[i];
+  return (case_keys){n, row};
+}
+
+/* m; far beyond any blade, and far from what overflows. */
+static const double LARGEST = 1e6;
+
+static void read_signal(case_reader *r, const char *path, double complex *signal) {
+  const case_node *list = case_reader_given(r, path);
+  if (!list || list->kind != CASE_SEQUENCE) return;
+  if (list->n > CASE_MAX_MOTION + 1) {
+    case_reader_issue(r, path, "has harmonics to %d; at most %d", list->n - 1, CASE_MAX_MOTION);
+    return;
+  }
+  for (int k = 0; k < list->n; k++) {
+    char   inner[CASE_PATH];
+    double polar[2];
+    case_path(inner, "%s[%d]", path, k);
+    if (!case_value_polar(r->issues, inner, &list->child[k], "m", polar)) continue;
+    if (fabs(polar[0]) <= LARGEST) {
+      signal[k] = polar[0] * cexp(I * polar[1]);
+    } else {
+      case_reader_issue(r, inner, "is %g m; amplitudes go up to %g m", polar[0], LARGEST);
+    }
+  }
+}
+
+static int longest(const case_reader *r) {
+  int n = 1;
+  for (int i = 0; i < 3; i++) {
+    const case_node *list = case_reader_given(r, signal_rows[i].path);
+    if (list && list->n - 1 > n) n = list->n - 1;
+  }
+  return n < CASE_MAX_MOTION ? n : CASE_MAX_MOTION;
+}
+
+/* False when there is no memory. */
+static bool read_document(case_issues *issues, case_motion *out) {
+  case_node *root = case_document_parse(issues);
+  if (!root && issues->n > 0) return true;
+  case_key    row[CASE_MAX_KEYS];
+  case_file   file   = {.folder = "."};
+  case_reader reader = {.issues = issues, .keys = motion_table(row), .file = &file};
+  case_reader_walk(&reader, root);
+  if (root && root->kind == CASE_MAPPING) case_reader_require(&reader, CASE_MHB);
+  if (file.mhb.n_preloads > 1 && case_reader_good(&reader, "contact.n0"))
+    case_reader_issue(&reader, "contact.n0", "is a list; a prescribed motion takes one number");
+  int m            = longest(&reader);
+  out->n_harmonics = m;
+  out->motion      = calloc(3 * ((size_t)CASE_MAX_MOTION + 1), sizeof *out->motion);
+  for (int i = 0; out->motion && i < 3; i++)
+    read_signal(&reader, signal_rows[i].path, out->motion + (size_t)i * (size_t)(m + 1));
+  out->contact = file.mhb;
+  case_document_free(root);
+  return out->motion != NULL;
+}
+
+shb_status case_motion_read(const char *path, FILE *errors, case_motion *out) {
+  *out          = (case_motion){0};
+  char  *text   = NULL;
+  size_t length = 0;
+  SHB_TRY(case_text_read(path, &text, &length));
+  case_issues issues = case_issues_start(path, text, length);
+  bool        memory = read_document(&issues, out);
+  int         n      = issues.n;
+  case_issues_print(&issues, errors);
+  case_issues_free(&issues);
+  free(text);
+  if (n == 0 && memory) return SHB_OK;
+  case_motion_free(out);
+  SHB_CHECK(memory, SHB_ERR_IO, "%s: out of memory", path);
+  return shb_fail(SHB_ERR_INPUT, __FILE__, __LINE__, "%s", "");
+}
+
+void case_motion_free(case_motion *motion) {
+  free(motion->motion);
+  *motion = (case_motion){0};
+}

@@ -1,0 +1,160 @@
+/* The settings of a stage, key by key in SI: what decides whether a stage must run again. */
+#include <complex.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cases/parse/damping.h"
+#include "cases/parse/groups.h"
+#include "cases/parse/value.h"
+
+static void print_numbers(FILE *out, int n, const double *value) {
+  for (int i = 0; i < n; i++) fprintf(out, "%s%.17g", i ? " " : "", value[i]);
+}
+
+static void print_word(FILE *out, const char *words, int index) {
+  for (; index > 0; index--) words = strchr(words, ' ') + 1;
+  fprintf(out, "%.*s", (int)strcspn(words, " "), words);
+}
+
+/* A path as in the case file: the settings do not depend on where the program is started. */
+static const char *inside(const case_file *file, const char *path) {
+  size_t n = strlen(file->folder);
+  return strncmp(path, file->folder, n) == 0 && path[n] == '/' ? path + n + 1 : path;
+}
+
+static void print_factors(FILE *out, const char *path, const fem_load *load) {
+  for (int k = 0; k <= load->n_harmonics; k++)
+    if (load->factor[k] != 0)
+      fprintf(out, "%s.%d = %.17g %.17g\n", path, k, creal(load->factor[k]),
+              cimag(load->factor[k]));
+}
+
+static void print_probes(FILE *out, const char *path, const case_file *file) {
+  for (int i = 0; i < file->n_probes; i++) {
+    fprintf(out, "%s.%s = ", path, file->probe[i].name);
+    print_numbers(out, 3, file->probe[i].at);
+    fputc('\n', out);
+  }
+}
+
+/* One number where the three are equal. */
+static void print_triple(FILE *out, const double v[3]) {
+  print_numbers(out, v[0] == v[1] && v[1] == v[2] ? 1 : 3, v);
+}
+
+static void print_scalar(FILE *out, const case_key *key, const case_file *file, const void *slot) {
+  switch (key->type) {
+    case CASE_INTEGER:
+    case CASE_COUNT:
+      fprintf(out, "%d", *(const int *)slot);
+      break;
+    case CASE_AUTO:
+      if (*(const int *)slot == 0) fputs("auto", out);
+      if (*(const int *)slot != 0) fprintf(out, "%d", *(const int *)slot);
+      break;
+    case CASE_CHOICE:
+      print_word(out, key->words, *(const int *)slot);
+      break;
+    case CASE_SWITCH:
+      print_word(out, key->words, *(const bool *)slot);
+      break;
+    case CASE_LABEL:
+      fputs(slot, out);
+      break;
+    case CASE_WORD:
+      fputs(*(char *const *)slot, out);
+      break;
+    case CASE_FILE_NAME:
+      fputs(*(char *const *)slot ? inside(file, *(char *const *)slot) : "-", out);
+      break;
+    case CASE_PRELOADS:
+      print_numbers(out, *(const int *)((const char *)slot - key->at + key->count_at), slot);
+      break;
+    case CASE_PLACES:
+      print_numbers(out, file->mhb.search.n_at, slot);
+      break;
+    case CASE_ORDERS:
+      for (int i = 0; i < file->mhb.search.n_orders; i++)
+        fprintf(out, "%s%d", i ? " " : "", ((const int *)slot)[i]);
+      break;
+    case CASE_POINTS:
+      if (!file->integrate.listed) fprintf(out, "%d points", file->integrate.n_frequencies);
+      if (file->integrate.listed) print_numbers(out, file->integrate.n_frequencies, slot);
+      break;
+    case CASE_INTERVAL:
+    case CASE_SWEEP:
+      print_numbers(out, 2, slot);
+      break;
+    case CASE_DAMPING:
+      case_damping_print(out, slot, 17);
+      break;
+    case CASE_TRIPLE:
+      print_triple(out, slot);
+      break;
+    case CASE_VECTOR:
+    case CASE_STIFFNESS:
+      print_numbers(out, 3, slot);
+      break;
+    default:
+      print_numbers(out, 1, slot);
+  }
+}
+
+/* One value of the file, or of an element whose slots are at base. */
+static void print_value(FILE *out, const case_key *key, const char *path, const case_file *file,
+                        const void *base) {
+  const void *slot = (const char *)base + key->at;
+  if (key->type == CASE_FACTORS) {
+    print_factors(out, path, slot);
+  } else if (key->type == CASE_GROUPS) {
+    case_groups_print(out, path, slot);
+  } else if (key->type == CASE_PROBES) {
+    print_probes(out, path, file);
+  } else {
+    fprintf(out, "%s = ", path);
+    print_scalar(out, key, file, slot);
+    fputc('\n', out);
+  }
+}
+
+/* The rows of a list, element by element. */
+static void print_list(FILE *out, const case_key *list, const case_file *file, int stages) {
+  case_keys   keys = case_key_table();
+  const char *base = (const char *)file + list->at;
+  int         n    = *(const int *)((const char *)file + list->count_at);
+  for (int i = 0; i < n; i++, base += list->each)
+    for (int k = 0; k < keys.n; k++) {
+      const case_key *key    = &keys.key[k];
+      size_t          length = strlen(list->path);
+      char            path[CASE_PATH];
+      if (strncmp(key->path, list->path, length) != 0 || strncmp(key->path + length, "[].", 3) != 0)
+        continue;
+      case_path(path, "%s[%d].%s", list->path, i, key->path + length + 3);
+      if (key->stages & stages) print_value(out, key, path, file, base);
+    }
+}
+
+void case_value_print(FILE *out, const case_key *key, const case_file *file, int stages) {
+  if (strstr(key->path, "[].")) return; /* printed by its list */
+  if (key->type == CASE_LIST) {
+    print_list(out, key, file, stages);
+  } else {
+    print_value(out, key, key->path, file, file);
+  }
+}
+
+char *case_settings(const case_file *file, case_stage stage) {
+  char  *text = NULL;
+  size_t size = 0;
+  FILE  *out  = open_memstream(&text, &size);
+  if (!out) return NULL;
+  case_keys keys = case_key_table();
+  for (int i = 0; i < keys.n; i++)
+    if ((keys.key[i].stages & (int)stage) && case_key_applies(&keys.key[i], file))
+      case_value_print(out, &keys.key[i], file, (int)stage);
+  if (fclose(out) != 0) {
+    free(text);
+    return NULL;
+  }
+  return text;
+}

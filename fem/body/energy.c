@@ -1,0 +1,124 @@
+#include "fem/body/energy.h"
+
+#include <string.h>
+
+#include "fem/body/pressure.h"
+#include "fem/element/finite_strain.h"
+
+/* e C e with shear strains doubled. */
+static double anisotropic(const double C[6][6], const double pulled[3][3]) {
+  const double e[6] = {pulled[0][0],
+                       pulled[1][1],
+                       pulled[2][2],
+                       pulled[0][1] + pulled[1][0],
+                       pulled[0][2] + pulled[2][0],
+                       pulled[1][2] + pulled[2][1]};
+  double       sum  = 0;
+  for (int p = 0; p < 6; p++)
+    for (int q = 0; q < 6; q++) sum += e[p] * C[p][q] * e[q];
+  return sum;
+}
+
+/* lambda (tr e)^2 + 2 mu e : e, or e C e, e = sym(F^T H). */
+static double elastic(const fem_material *material, const double F[3][3], const double H[3][3]) {
+  const fem_lame lame = fem_lame_of(material);
+  double         pulled[3][3], trace = 0, square = 0;
+  for (int a = 0; a < 3; a++)
+    for (int b = 0; b < 3; b++)
+      pulled[a][b] = F[0][a] * H[0][b] + F[1][a] * H[1][b] + F[2][a] * H[2][b];
+  if (material->anisotropic) return anisotropic(material->C, (const double(*)[3])pulled);
+  for (int a = 0; a < 3; a++) {
+    trace += pulled[a][a];
+    for (int b = 0; b < 3; b++) {
+      double strain = (pulled[a][b] + pulled[b][a]) / 2;
+      square += strain * strain;
+    }
+  }
+  return lame.lambda * trace * trace + 2 * lame.mu * square;
+}
+
+/* H S : H */
+static double geometric(const double S[3][3], const double H[3][3]) {
+  double sum = 0;
+  for (int a = 0; a < 3; a++)
+    for (int b = 0; b < 3; b++)
+      for (int c = 0; c < 3; c++) sum += H[a][b] * S[b][c] * H[a][c];
+  return sum;
+}
+
+/* What a point holds of the state: nothing, at rest. */
+typedef struct {
+  bool            rest;
+  fem_deformation at;
+} situation;
+
+static double density(const fem_material *material, const situation *here, const double h[3][3]) {
+  static const double identity[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  if (here->rest) return elastic(material, identity, h);
+  return elastic(material, (const double(*)[3])here->at.F, h) +
+         geometric((const double(*)[3])here->at.S, h);
+}
+
+/* energy[i] += that of the element, of n fields u[i][node][3]; state: NULL at rest. */
+static void add_stored(const fem_element *element, const fem_material *material,
+                       const double x[][3], const double state[][3], int n,
+                       const double u[][MESH_NODES][3], double *energy) {
+  const fem_rule *rule = fem_element_stiffness_rule(element, x);
+  for (int p = 0; p < rule->n; p++) {
+    situation here = {.rest = !state};
+    double    g[MESH_NODES][3], h[3][3];
+    double    volume = rule->weight[p] * fem_element_gradient(element, rule, p, x, g);
+    if (state) {
+      fem_displacement_gradient(element->n, (const double(*)[3])g, state, h);
+      fem_deform(material, (const double(*)[3])h, &here.at);
+    }
+    for (int i = 0; i < n; i++) {
+      fem_displacement_gradient(element->n, (const double(*)[3])g, u[i], h);
+      energy[i] += volume * density(material, &here, (const double(*)[3])h);
+    }
+  }
+}
+
+static double spun(const fem_body *body, double rho, const double x[][3], const double u[][3]) {
+  const int n = body->element->n;
+  double    m[MESH_NODES * MESH_NODES], square[3], sum = 0;
+  fem_rotation_square(&body->rotation, square);
+  fem_element_mass(body->element, rho, x, m);
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j < n; j++)
+      for (int d = 0; d < 3; d++) sum += m[n * i + j] * square[d] * u[i][d] * u[j][d];
+  return sum;
+}
+
+void fem_tangent_energies(const fem_body *body, const double *state, int n, const double *u,
+                          double *energy) {
+  const size_t stride = 3 * (size_t)body->mesh->n_nodes;
+  memset(energy, 0, (size_t)n * sizeof *energy);
+  for (int e = 0; e < body->mesh->n_elements; e++) {
+    double              x[MESH_NODES][3], at[MESH_NODES][3], by[FEM_FIELDS][MESH_NODES][3];
+    const fem_material *own = fem_material_at(body->material, body->mesh, e);
+    if (state) fem_body_element(body, e, state, x, at);
+    for (int first = 0; first < n; first += FEM_FIELDS) {
+      const int count = n - first < FEM_FIELDS ? n - first : FEM_FIELDS;
+      for (int i = 0; i < count; i++)
+        fem_body_element(body, e, u + (size_t)(first + i) * stride, x, by[i]);
+      add_stored(body->element, own, (const double(*)[3])x, state ? (const double(*)[3])at : NULL,
+                 count, (const double(*)[MESH_NODES][3])by, energy + first);
+      for (int i = 0; i < count && body->rotation.speed != 0; i++)
+        energy[first + i] -= spun(body, own->rho, (const double(*)[3])x, (const double(*)[3])by[i]);
+    }
+  }
+  for (int i = 0; i < n; i++) energy[i] += fem_pressure_energy(body, state, u + (size_t)i * stride);
+}
+
+double fem_tangent_energy(const fem_body *body, const double *state, const double *u) {
+  double energy;
+  fem_tangent_energies(body, state, 1, u, &energy);
+  return energy;
+}
+
+double fem_strain_energy(const mesh_fe *mesh, const fem_material *material,
+                         const fem_element *element, const double *u) {
+  const fem_body body = {.mesh = mesh, .material = material, .element = element};
+  return fem_tangent_energy(&body, NULL, u);
+}

@@ -1,0 +1,266 @@
+#include "fem/body/equilibrium.h"
+
+#include <math.h>
+#include <petscksp.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "fem/solver/factor.h"
+
+enum {
+  MAX_ITERATIONS = 25, /* Newton, a load step */
+  MAX_HALVINGS   = 6,  /* of the load step */
+  KEEP       = 12, /* conjugate gradients up to which a factor is kept: one costs 30 to 70 solves */
+  MAX_SOLVES = 100, /* conjugate gradients, a linear system */
+};
+
+static const double settled = 1e-9; /* relative correction; what is left is about its square */
+
+typedef enum { WORKING, CONVERGED, FAILED, INTERRUPTED } outcome;
+
+typedef struct {
+  fem_body         body; /* at the speed and pressure of the load step */
+  fem_system      *system;
+  shb_progress    *progress;
+  fem_equilibrium *out;
+  fem_factor      *factor;
+  KSP              ksp;
+  Vec              R, d;             /* out of balance; direction */
+  double          *u, *step, *tried; /* [n_nodes][3]: displacement, direction, u + alpha step */
+  double           slope;            /* d.R at u */
+} newton;
+
+/* ------------------------------------------------------------------ linear systems */
+
+static PetscErrorCode create_solver(newton *n) {
+  PC pc;
+  PetscFunctionBeginUser;
+  PetscCall(fem_factor_create(n->system->K, 0, &n->factor));
+  PetscCall(KSPCreate(n->system->comm, &n->ksp));
+  PetscCall(KSPSetOperators(n->ksp, n->system->K, n->system->K));
+  PetscCall(KSPSetType(n->ksp, KSPCG));
+  PetscCall(KSPGetPC(n->ksp, &pc));
+  PetscCall(fem_factor_serve(n->factor, pc));
+  PetscFunctionReturn(0);
+}
+
+/* One solve with the factor at hand, or with a new one. */
+static PetscErrorCode solve_with(newton *n, bool anew, KSPConvergedReason *reason,
+                                 PetscInt *count) {
+  bool definite = true;
+  PetscFunctionBeginUser;
+  *count = 0;
+  if (anew) {
+    PetscCall(fem_factor_update(n->factor, n->system->K, &definite));
+    n->out->factorisations++;
+  }
+  if (!definite) {
+    *reason = KSP_DIVERGED_INDEFINITE_MAT;
+    PetscFunctionReturn(0);
+  }
+  PetscCall(KSPSolve(n->ksp, n->R, n->d));
+  PetscCall(KSPGetConvergedReason(n->ksp, reason));
+  PetscCall(KSPGetIterationNumber(n->ksp, count));
+  n->out->solves += (int)*count;
+  PetscFunctionReturn(0);
+}
+
+/* d = -K^-1 R to a relative tolerance; false if K is not positive definite. */
+static PetscErrorCode find_direction(newton *n, double tolerance, bool *anew, bool *found) {
+  KSPConvergedReason reason;
+  PetscInt           count;
+
+  PetscFunctionBeginUser;
+  PetscCall(KSPSetTolerances(n->ksp, tolerance, PETSC_DEFAULT, PETSC_DEFAULT, MAX_SOLVES));
+  PetscCall(solve_with(n, *anew, &reason, &count));
+  if (reason < 0 && reason != KSP_DIVERGED_INDEFINITE_MAT && !*anew)
+    PetscCall(solve_with(n, true, &reason, &count));
+  *anew  = count > KEEP;
+  *found = reason > 0;
+  PetscCall(VecScale(n->d, -1));
+  PetscFunctionReturn(0);
+}
+
+/* ------------------------------------------------------------------ line search */
+
+/* The derivative of the potential at u + alpha d along d; R is left there. */
+static PetscErrorCode slope_at(newton *n, double alpha, double *slope) {
+  const size_t size = 3 * (size_t)n->system->n_nodes;
+  PetscFunctionBeginUser;
+  for (size_t i = 0; i < size; i++) n->tried[i] = n->u[i] + alpha * n->step[i];
+  PetscCall(fem_residual_assemble(&n->body, n->system, n->tried, n->R));
+  PetscCall(VecDot(n->d, n->R, slope));
+  PetscFunctionReturn(0);
+}
+
+/* First zero in (0, 1) of the cubic through (0, g[0]), (1/3, g[1]), (2/3, g[2]), (1, g[3]), g[0] < 0 < g[3]. */
+static double first_zero(const double g[4]) {
+  enum { SAMPLES = 64 };
+  double c[4]; /* Newton's form: differences */
+  memcpy(c, g, sizeof c);
+  for (int order = 1; order < 4; order++)
+    for (int i = 3; i >= order; i--) c[i] = (c[i] - c[i - 1]) * 3 / order;
+  double low = 0, high = 1;
+  for (int s = 1; s <= SAMPLES; s++) {
+    double t     = (double)s / SAMPLES;
+    double value = c[0] + t * (c[1] + (t - 1. / 3) * (c[2] + (t - 2. / 3) * c[3]));
+    if (value < 0) continue;
+    high = t;
+    low  = t - 1. / SAMPLES;
+    break;
+  }
+  for (int s = 0; s < 40; s++) {
+    double t                    = (low + high) / 2;
+    double value                = c[0] + t * (c[1] + (t - 1. / 3) * (c[2] + (t - 2. / 3) * c[3]));
+    *(value < 0 ? &low : &high) = t;
+  }
+  return (low + high) / 2;
+}
+
+/* How far to go along d: all the way unless that passes the least potential by much. R is left at u + alpha d. */
+static PetscErrorCode search(newton *n, double *alpha) {
+  double g[4], at;
+
+  PetscFunctionBeginUser;
+  g[0]   = n->slope;
+  *alpha = 1;
+  PetscCall(slope_at(n, 1, &g[3]));
+  if (g[3] <= .5 * fabs(g[0])) PetscFunctionReturn(0);
+  PetscCall(slope_at(n, 1. / 3, &g[1]));
+  PetscCall(slope_at(n, 2. / 3, &g[2]));
+  *alpha = first_zero(g);
+  PetscCall(slope_at(n, *alpha, &at));
+  PetscFunctionReturn(0);
+}
+
+/* ------------------------------------------------------------------ Newton */
+
+static double greatest(const double *v, size_t n) {
+  double most = 0;
+  for (size_t i = 0; i < n; i++)
+    if (!(fabs(v[i]) <= most)) most = fabs(v[i]); /* keeps NaN */
+  return most;
+}
+
+static PetscErrorCode is_interrupted(const newton *n, bool *yes) {
+  int stop = shb_interrupted();
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &stop, 1, MPI_INT, MPI_MAX, n->system->comm));
+  *yes = stop != 0;
+  PetscFunctionReturn(0);
+}
+
+/* One Newton step with the K at hand; *change: |alpha d| / |u|. */
+static PetscErrorCode advance(newton *n, bool *anew, double *change, outcome *result) {
+  const size_t size      = 3 * (size_t)n->system->n_nodes;
+  const double tolerance = PetscMin(1e-2, PetscMax(1e-7, .1 * *change));
+  double       alpha;
+  bool         found = false, stop = false;
+
+  PetscFunctionBeginUser;
+  PetscCall(is_interrupted(n, &stop));
+  *result = stop ? INTERRUPTED : FAILED;
+  if (stop) PetscFunctionReturn(0);
+  PetscCall(find_direction(n, tolerance, anew, &found));
+  PetscCall(VecDot(n->d, n->R, &n->slope));
+  n->out->iterations++;
+  if (!found || !(n->slope <= 0)) PetscFunctionReturn(0);
+  PetscCall(fem_system_share(n->system, n->d, n->step));
+  PetscCall(search(n, &alpha));
+  PetscCall(PetscArraycpy(n->u, n->tried, size));
+  *change = alpha * greatest(n->step, size) / greatest(n->u, size);
+  if (!isfinite(*change)) PetscFunctionReturn(0);
+  n->out->correction = *change;
+  *result            = alpha == 1 && *change <= settled ? CONVERGED : WORKING;
+  PetscFunctionReturn(0);
+}
+
+/* Equilibrium at body.rotation, from u and with the tangent at hand; K ends as the tangent there. */
+static PetscErrorCode iterate(newton *n, bool *anew, outcome *result) {
+  double change = 1;
+  PetscFunctionBeginUser;
+  PetscCall(fem_residual_assemble(&n->body, n->system, n->u, n->R));
+  for (int i = 0; i < MAX_ITERATIONS; i++) {
+    PetscCall(advance(n, anew, &change, result));
+    if (*result == FAILED || *result == INTERRUPTED) PetscFunctionReturn(0);
+    PetscCall(fem_tangent_assemble(&n->body, n->u, n->system));
+    if (*result == CONVERGED) PetscFunctionReturn(0);
+    shb_progress_show(n->progress, 10, "static equilibrium: Newton correction %.1e", change);
+  }
+  *result = FAILED;
+  PetscFunctionReturn(0);
+}
+
+/* ------------------------------------------------------------------ load steps */
+
+/* The loads of the case, a share of them. */
+static void set_load(newton *n, const fem_body *whole, double share) {
+  n->body.rotation.speed = whole->rotation.speed * sqrt(share);
+  n->body.pressure       = whole->pressure * share;
+}
+
+static PetscErrorCode follow(newton *n, const fem_body *whole, outcome *result) {
+  const size_t size  = 3 * (size_t)n->system->n_nodes;
+  const double speed = whole->rotation.speed;
+  const char  *name  = speed == 0 ? "pressure" : "speed";
+  double       load = 0, step = 1, *kept; /* load: share of Omega^2 and p */
+  bool         anew = true;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(size, &kept));
+  while (load < 1) {
+    double next = PetscMin(1, load + step);
+    int    made = n->out->factorisations;
+    set_load(n, whole, next);
+    PetscCall(iterate(n, &anew, result));
+    if (*result == INTERRUPTED) break;
+    if (*result == CONVERGED) {
+      PetscCall(PetscArraycpy(kept, n->u, size));
+      n->out->steps++;
+      load = next;
+      continue;
+    }
+    step /= 2;
+    PetscCheck(step >= 1. / (1 << MAX_HALVINGS), n->system->comm, PETSC_ERR_USER_INPUT,
+               "rotor.%s: no static equilibrium at %.6g rad/s%s: Newton failed in load step %d, "
+               "between %.6g and %.6g rad/s; give a lower %s, or check material.E, material.rho "
+               "and that the mesh is in metres",
+               name, speed, whole->pressure != 0 ? " and this pressure" : "", n->out->steps + 1,
+               speed * sqrt(load), n->body.rotation.speed, name);
+    PetscCall(PetscArraycpy(n->u, kept, size));
+    set_load(n, whole, load);
+    PetscCall(fem_tangent_assemble(&n->body, n->u, n->system));
+    anew = n->out->factorisations > made; /* the factor is of a state that was given up */
+  }
+  PetscCall(PetscFree(kept));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode fem_equilibrium_solve(const fem_body *body, fem_system *system,
+                                     shb_progress *progress, fem_equilibrium *out) {
+  const size_t size   = 3 * (size_t)system->n_nodes;
+  newton       n      = {.body = *body, .system = system, .progress = progress, .out = out};
+  outcome      result = FAILED;
+
+  PetscFunctionBeginUser;
+  memset(out, 0, sizeof *out);
+  out->displacement = calloc(size + 1, sizeof(double));
+  PetscCheck(out->displacement, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for displacements");
+  n.u = out->displacement;
+  PetscCall(PetscMalloc2(size, &n.step, size, &n.tried));
+  PetscCall(MatCreateVecs(system->K, &n.d, &n.R));
+  PetscCall(create_solver(&n));
+  PetscCall(follow(&n, body, &result));
+  PetscCall(KSPDestroy(&n.ksp));
+  PetscCall(fem_factor_destroy(&n.factor));
+  PetscCall(VecDestroy(&n.d));
+  PetscCall(VecDestroy(&n.R));
+  PetscCall(PetscFree2(n.step, n.tried));
+  if (result != CONVERGED) fem_equilibrium_free(out);
+  PetscFunctionReturn(0);
+}
+
+void fem_equilibrium_free(fem_equilibrium *equilibrium) {
+  free(equilibrium->displacement);
+  memset(equilibrium, 0, sizeof *equilibrium);
+}

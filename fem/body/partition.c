@@ -1,0 +1,125 @@
+#include "fem/body/partition.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* malloc, not PetscMalloc: the mesh is freed by mesh_fe_free. */
+static PetscErrorCode share(MPI_Comm comm, int rank, void **data, size_t count, MPI_Datatype type) {
+  int size;
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Type_size(type, &size));
+  if (rank != 0) {
+    *data = malloc(count * (size_t)size + 1);
+    PetscCheck(*data, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for the mesh");
+  }
+  PetscCallMPI(MPI_Bcast(*data, (int)count, type, 0, comm));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode fem_mesh_broadcast(MPI_Comm comm, mesh_fe *mesh) {
+  int rank, n[5 + MESH_MAX_SETS];
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  if (rank == 0) {
+    n[0] = mesh->n_nodes;
+    n[1] = mesh->n_elements;
+    n[2] = (int)mesh->kind;
+    n[3] = mesh->n_more;
+    n[4] = mesh->n_regions;
+    for (int s = 0; s < MESH_MAX_SETS; s++) n[5 + s] = mesh->set[s].n;
+  } else {
+    memset(mesh, 0, sizeof *mesh);
+  }
+  PetscCallMPI(MPI_Bcast(n, 5 + MESH_MAX_SETS, MPI_INT, 0, comm));
+  mesh->n_nodes    = n[0];
+  mesh->n_elements = n[1];
+  mesh->kind       = (mesh_kind)n[2];
+  mesh->n_more     = n[3];
+  mesh->n_regions  = n[4];
+  PetscCallMPI(MPI_Bcast(mesh->more, (int)sizeof mesh->more, MPI_CHAR, 0, comm));
+  const mesh_topology *topology = mesh_topology_of(mesh->kind);
+  const size_t         nodes = (size_t)n[0], elements = (size_t)n[1];
+  const size_t         each = (size_t)topology->nodes, face = (size_t)topology->face_nodes;
+  PetscCall(share(comm, rank, (void **)&mesh->coordinates, 3 * nodes, MPI_DOUBLE));
+  PetscCall(share(comm, rank, (void **)&mesh->connectivity, each * elements, MPI_INT));
+  PetscCall(share(comm, rank, (void **)&mesh->node_tag, nodes, MPI_LONG));
+  PetscCall(share(comm, rank, (void **)&mesh->element_tag, elements, MPI_LONG));
+  for (int s = 0; s < MESH_MAX_SETS; s++) {
+    mesh->set[s].n = n[5 + s];
+    if (n[5 + s] == 0) continue;
+    PetscCall(share(comm, rank, (void **)&mesh->set[s].nodes, face * (size_t)n[5 + s], MPI_INT));
+  }
+  if (n[4] == 0) PetscFunctionReturn(0);
+  PetscCall(share(comm, rank, (void **)&mesh->region_name, MESH_WORD * (size_t)n[4], MPI_CHAR));
+  PetscCall(share(comm, rank, (void **)&mesh->region, elements, MPI_INT));
+  PetscFunctionReturn(0);
+}
+
+typedef struct {
+  double x[3];
+  int    node;
+} site;
+
+/* Ties by node number: the order, hence the partition, is the same everywhere. */
+static int compare(const void *a, const void *b, int d) {
+  const site *p = a, *q = b;
+  if (p->x[d] != q->x[d]) return p->x[d] < q->x[d] ? -1 : 1;
+  return p->node - q->node;
+}
+
+static int compare_x(const void *a, const void *b) {
+  return compare(a, b, 0);
+}
+
+static int compare_y(const void *a, const void *b) {
+  return compare(a, b, 1);
+}
+
+static int compare_z(const void *a, const void *b) {
+  return compare(a, b, 2);
+}
+
+static int longest_side(const site *sites, int n) {
+  double side[3];
+  int    longest = 0;
+  for (int d = 0; d < 3; d++) {
+    double low = sites[0].x[d], high = low;
+    for (int i = 1; i < n; i++) {
+      if (sites[i].x[d] < low) low = sites[i].x[d];
+      if (sites[i].x[d] > high) high = sites[i].x[d];
+    }
+    side[d] = high - low;
+    if (side[d] > side[longest]) longest = d;
+  }
+  return longest;
+}
+
+static void bisect(site *sites, int n, int first_rank, int n_ranks, int *rank) {
+  if (n_ranks == 1 || n == 0) {
+    for (int i = 0; i < n; i++) rank[sites[i].node] = first_rank;
+    return;
+  }
+  int (*const order[3])(const void *, const void *) = {compare_x, compare_y, compare_z};
+  qsort(sites, (size_t)n, sizeof *sites, order[longest_side(sites, n)]);
+  int lower = n_ranks / 2, cut = (int)((long)n * lower / n_ranks);
+  bisect(sites, cut, first_rank, lower, rank);
+  bisect(sites + cut, n - cut, first_rank + lower, n_ranks - lower, rank);
+}
+
+PetscErrorCode fem_partition(const mesh_fe *mesh, const bool *is_free, int n_ranks, int *rank) {
+  site *sites;
+  int   n = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(mesh->n_nodes, &sites));
+  for (int i = 0; i < mesh->n_nodes; i++) {
+    rank[i] = -1;
+    if (!is_free[i]) continue;
+    memcpy(sites[n].x, mesh->coordinates + 3 * (size_t)i, sizeof sites[n].x);
+    sites[n++].node = i;
+  }
+  bisect(sites, n, 0, n_ranks, rank);
+  PetscCall(PetscFree(sites));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,269 @@
+#include "fem/solver/cholesky.h"
+
+#include <omp.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "fem/solver/sbaij_blocks.h"
+#include "fem/solver/supernodal_solve.h"
+
+enum { MANY = 12 }; /* right-hand sides for which calls to BLAS are the faster way */
+
+struct fem_cholesky {
+  int             n;     /* block rows */
+  int            *place; /* [n] of a block row in the factor */
+  cholmod_factor *L;
+  fem_lanes      *few;      /* [3 n] right-hand sides in the factor's order */
+  fem_lanes      *few_work; /* [largest supernode] */
+  cholmod_dense  *x;        /* [3 n][columns] many of them */
+  cholmod_dense  *work;     /* CHOLMOD's own */
+  cholmod_common  common;
+};
+
+static void start_common(cholmod_common *common) {
+  cholmod_start(common);
+  common->print                      = 0;
+  common->quick_return_if_not_posdef = 1;
+  common->nmethods                   = 1;
+  common->zrelax[0] = .3, common->zrelax[1] = .05, common->zrelax[2] = .02;
+}
+
+/* Nested dissection of the graph of the nodes: three times smaller than that of the dofs, and as good. */
+static bool order_nodes(const fem_blocks *b, cholmod_common *common, int *place) {
+  const size_t    n = (size_t)b->n, count = (size_t)b->start[n];
+  cholmod_sparse *graph = cholmod_allocate_sparse(n, n, count, 1, 1, -1, CHOLMOD_PATTERN, common);
+  if (!graph) return false;
+  memcpy(graph->p, b->start, (n + 1) * sizeof(int));
+  memcpy(graph->i, b->column, count * sizeof(int));
+  common->method[0].ordering = CHOLMOD_NESDIS;
+  common->supernodal         = CHOLMOD_SIMPLICIAL;
+  common->postorder          = 1;
+  cholmod_factor *order      = cholmod_analyze(graph, common);
+  if (order)
+    for (size_t i = 0; i < n; i++) place[((const int *)order->Perm)[i]] = (int)i;
+  bool good = order != NULL;
+  cholmod_free_factor(&order, common);
+  cholmod_free_sparse(&graph, common);
+  return good;
+}
+
+/* Columns of the permuted lower triangle: of block column b the blocks below its diagonal follow that. next: [n] zeros. */
+static void count_columns(const fem_blocks *b, const int *place, int *next, int *start) {
+  int total = 0;
+  for (PetscInt r = 0; r < b->n; r++)
+    for (PetscInt q = b->start[r]; q < b->start[r + 1]; q++) {
+      int here = place[r], there = place[b->column[q]];
+      if (here != there) next[here < there ? here : there]++;
+    }
+  for (int c = 0; c < b->n; c++) {
+    for (int d = 0; d < 3; d++) {
+      start[3 * c + d] = total;
+      total += 3 - d + 3 * next[c];
+    }
+    next[c] = 0;
+  }
+  start[3 * b->n] = total;
+}
+
+static void put_diagonal(const double *B, int c, const int *start, int *row, double *value) {
+  for (int d = 0; d < 3; d++)
+    for (int e = d; e < 3; e++) {
+      row[start[3 * c + d] + e - d]   = 3 * c + e;
+      value[start[3 * c + d] + e - d] = B[d + 3 * e];
+    }
+}
+
+/* Block of rows low and columns high (or turned round) as the slot-th below the diagonal of column low. */
+static void put_block(const double *B, bool turned, int low, int high, int slot, const int *start,
+                      int *row, double *value) {
+  for (int d = 0; d < 3; d++) {
+    int at = start[3 * low + d] + 3 - d + 3 * slot;
+    for (int e = 0; e < 3; e++) {
+      row[at + e]   = 3 * high + e;
+      value[at + e] = turned ? B[e + 3 * d] : B[d + 3 * e];
+    }
+  }
+}
+
+/* The permuted lower triangle; NULL: out of memory. */
+static cholmod_sparse *permute(const fem_blocks *b, const int *place, cholmod_common *common) {
+  const size_t    n = (size_t)b->n, entries = 9 * (size_t)b->start[n] - 3 * n;
+  cholmod_sparse *A =
+      cholmod_allocate_sparse(3 * n, 3 * n, entries, 0, 1, -1, CHOLMOD_REAL, common);
+  int *next = calloc(n + 1, sizeof *next);
+  if (A && next) {
+    int *start = A->p;
+    count_columns(b, place, next, start);
+    for (PetscInt r = 0; r < b->n; r++)
+      for (PetscInt q = b->start[r]; q < b->start[r + 1]; q++) {
+        int here = place[r], there = place[b->column[q]];
+        if (here == there)
+          put_diagonal(b->value + 9 * q, here, start, A->i, A->x);
+        else if (here < there)
+          put_block(b->value + 9 * q, false, here, there, next[here]++, start, A->i, A->x);
+        else
+          put_block(b->value + 9 * q, true, there, here, next[there]++, start, A->i, A->x);
+      }
+  } else
+    cholmod_free_sparse(&A, common);
+  free(next);
+  return A;
+}
+
+/* Supernodes of the permuted matrix. */
+static void analyse(const fem_blocks *b, fem_cholesky *factor) {
+  cholmod_common *common = &factor->common;
+  cholmod_sparse *A;
+  if (!order_nodes(b, common, factor->place)) return;
+  A = permute(b, factor->place, common);
+  if (!A) return;
+  common->method[0].ordering = CHOLMOD_NATURAL;
+  common->supernodal         = CHOLMOD_SUPERNODAL;
+  common->postorder          = 0;
+  factor->L                  = cholmod_analyze(A, common);
+  cholmod_free_sparse(&A, common);
+}
+
+PetscErrorCode fem_cholesky_create(Mat A, bool *fits, fem_cholesky **out) {
+  fem_blocks    b;
+  fem_cholesky *factor = calloc(1, sizeof *factor);
+
+  PetscFunctionBeginUser;
+  *out = NULL;
+  PetscCheck(factor, PETSC_COMM_SELF, PETSC_ERR_MEM, "CHOLMOD");
+  start_common(&factor->common);
+  PetscCall(fem_blocks_borrow(A, &b));
+  factor->n     = (int)b.n;
+  factor->place = malloc((size_t)b.n * sizeof *factor->place);
+  if (factor->place) analyse(&b, factor);
+  PetscCall(fem_blocks_give_back(A, &b));
+  *fits = factor->common.status != CHOLMOD_TOO_LARGE;
+  if (factor->L) {
+    *out = factor;
+    PetscFunctionReturn(0);
+  }
+  fem_cholesky_destroy(factor);
+  PetscCheck(!*fits, PETSC_COMM_SELF, PETSC_ERR_MEM, "CHOLMOD");
+  PetscFunctionReturn(0);
+}
+
+void fem_cholesky_foresee(const fem_cholesky *factor, double *kept, double *passing) {
+  const cholmod_factor *L = factor->L;
+  *kept                   = 8. * (double)L->xsize + 4. * (double)L->ssize;
+  *passing                = 8. * (double)L->maxcsize + 12. * factor->common.anz;
+}
+
+/* On one thread: CHOLMOD copies panels with four threads of OpenMP that wait for each other in between, which on a busy machine takes more processor
+ * time than the arithmetic. Without active levels its parallel regions are of one thread. */
+static void factorise(cholmod_sparse *A, cholmod_factor *L, cholmod_common *common) {
+  const int levels = omp_get_max_active_levels();
+  omp_set_max_active_levels(0);
+  cholmod_factorize(A, L, common);
+  omp_set_max_active_levels(levels);
+}
+
+PetscErrorCode fem_cholesky_update(fem_cholesky *factor, Mat A, bool *definite) {
+  cholmod_common *common = &factor->common;
+  fem_blocks      b;
+
+  PetscFunctionBeginUser;
+  PetscCall(fem_blocks_borrow(A, &b));
+  cholmod_sparse *permuted = permute(&b, factor->place, common);
+  PetscCall(fem_blocks_give_back(A, &b));
+  PetscCheck(permuted, PETSC_COMM_SELF, PETSC_ERR_MEM, "CHOLMOD");
+  factorise(permuted, factor->L, common);
+  cholmod_free_sparse(&permuted, common);
+  PetscCheck(common->status >= CHOLMOD_OK, PETSC_COMM_SELF, PETSC_ERR_MEM, "CHOLMOD");
+  *definite = common->status != CHOLMOD_NOT_POSDEF;
+  PetscFunctionReturn(0);
+}
+
+/* Room for count right-hand sides; kept from solve to solve. */
+static PetscErrorCode make_room(fem_cholesky *factor, size_t count) {
+  cholmod_common *common = &factor->common;
+  PetscFunctionBeginUser;
+  if (factor->x && factor->x->ncol == count) PetscFunctionReturn(0);
+  cholmod_free_dense(&factor->x, common);
+  cholmod_free_dense(&factor->work, common);
+  const size_t n = 3 * (size_t)factor->n;
+  factor->x      = cholmod_allocate_dense(n, count, n, CHOLMOD_REAL, common);
+  factor->work =
+      cholmod_allocate_dense(factor->L->maxesize, count, factor->L->maxesize, CHOLMOD_REAL, common);
+  PetscCheck(factor->x && factor->work, PETSC_COMM_SELF, PETSC_ERR_MEM, "CHOLMOD");
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode solve_many(fem_cholesky *factor, size_t count, const double *b, size_t ldb,
+                                 double *x, size_t ldx) {
+  const size_t n = (size_t)factor->n;
+  PetscFunctionBeginUser;
+  PetscCall(make_room(factor, count));
+  double *own = factor->x->x;
+  for (size_t c = 0; c < count; c++)
+    for (size_t i = 0; i < n; i++)
+      memcpy(own + 3 * (c * n + (size_t)factor->place[i]), b + c * ldb + 3 * i, 3 * sizeof *x);
+  const bool good = cholmod_super_lsolve(factor->L, factor->x, factor->work, &factor->common) &&
+                    cholmod_super_ltsolve(factor->L, factor->x, factor->work, &factor->common);
+  PetscCheck(good, PETSC_COMM_SELF, PETSC_ERR_LIB, "CHOLMOD: no solution");
+  for (size_t c = 0; c < count; c++)
+    for (size_t i = 0; i < n; i++)
+      memcpy(x + c * ldx + 3 * i, own + 3 * (c * n + (size_t)factor->place[i]), 3 * sizeof *x);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode make_room_for_few(fem_cholesky *factor) {
+  const size_t alignment = sizeof(fem_lanes);
+  PetscFunctionBeginUser;
+  if (factor->few) PetscFunctionReturn(0);
+  factor->few      = aligned_alloc(alignment, 3 * (size_t)factor->n * sizeof(fem_lanes));
+  factor->few_work = aligned_alloc(alignment, fem_supernodes_rows(factor->L) * sizeof(fem_lanes));
+  PetscCheck(factor->few && factor->few_work, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory");
+  PetscFunctionReturn(0);
+}
+
+/* count <= FEM_LANES; the lanes that are left over are zero. */
+static PetscErrorCode solve_few(fem_cholesky *factor, size_t count, const double *b, size_t ldb,
+                                double *x, size_t ldx) {
+  const size_t n = (size_t)factor->n;
+  PetscFunctionBeginUser;
+  PetscCall(make_room_for_few(factor));
+  for (size_t i = 0; i < n; i++)
+    for (size_t d = 0; d < 3; d++) {
+      fem_lanes *at = factor->few + 3 * (size_t)factor->place[i] + d;
+      for (size_t c = 0; c < FEM_LANES; c++) (*at)[c] = c < count ? b[c * ldb + 3 * i + d] : 0;
+    }
+  fem_supernodes_solve(factor->L, factor->few, factor->few_work);
+  for (size_t i = 0; i < n; i++)
+    for (size_t d = 0; d < 3; d++) {
+      const fem_lanes *at = factor->few + 3 * (size_t)factor->place[i] + d;
+      for (size_t c = 0; c < count; c++) x[c * ldx + 3 * i + d] = (*at)[c];
+    }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode fem_cholesky_solve(fem_cholesky *factor, int count, const double *b, size_t ldb,
+                                  double *x, size_t ldx) {
+  const size_t all = (size_t)count;
+  PetscFunctionBeginUser;
+  if (all == 1 || all >= MANY) {
+    PetscCall(solve_many(factor, all, b, ldb, x, ldx));
+    PetscFunctionReturn(0);
+  }
+  for (size_t c = 0; c < all; c += FEM_LANES) {
+    size_t here = all - c < FEM_LANES ? all - c : FEM_LANES;
+    PetscCall(solve_few(factor, here, b + c * ldb, ldb, x + c * ldx, ldx));
+  }
+  PetscFunctionReturn(0);
+}
+
+void fem_cholesky_destroy(fem_cholesky *factor) {
+  if (!factor) return;
+  cholmod_free_factor(&factor->L, &factor->common);
+  cholmod_free_dense(&factor->x, &factor->common);
+  cholmod_free_dense(&factor->work, &factor->common);
+  cholmod_finish(&factor->common);
+  free(factor->few);
+  free(factor->few_work);
+  free(factor->place);
+  free(factor);
+}

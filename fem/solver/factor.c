@@ -1,0 +1,264 @@
+#include "fem/solver/factor.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "fem/solver/cholesky.h"
+#include "fem/solver/memory.h"
+#include "fem/solver/mixed_precision.h"
+
+struct fem_factor {
+  MPI_Comm      comm;
+  fem_cholesky *cholesky; /* or */
+  fem_single   *single;   /* or */
+  Mat           mumps;
+  double        foreseen; /* bytes, all ranks */
+};
+
+static const double giga = 1e9;
+
+/* Does the user want MUMPS on one rank? */
+static PetscErrorCode wants_mumps(MPI_Comm comm, bool *yes) {
+  char      name[32] = "";
+  PetscBool given, is_mumps;
+  int       n_ranks;
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(comm, &n_ranks));
+  PetscCall(
+      PetscOptionsGetString(NULL, "st_", "-pc_factor_mat_solver_type", name, sizeof name, &given));
+  PetscCall(PetscStrcmp(name, MATSOLVERMUMPS, &is_mumps));
+  *yes = n_ranks > 1 || is_mumps;
+  PetscFunctionReturn(0);
+}
+
+/* ------------------------------------------------------------------ memory */
+
+/* All ranks of a machine share what it has: the worst machine decides. mine: bytes that this rank will take. */
+static PetscErrorCode compare(MPI_Comm comm, double mine, double *needed, double *there) {
+  MPI_Comm machine;
+  struct {
+    double margin;
+    int    rank;
+  } own, worst;
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_split_type(comm, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine));
+  PetscCallMPI(MPI_Allreduce(&mine, needed, 1, MPI_DOUBLE, MPI_SUM, machine));
+  *there = fem_memory_available();
+  PetscCallMPI(MPI_Comm_free(&machine));
+  own.margin = *there - *needed;
+  PetscCallMPI(MPI_Comm_rank(comm, &own.rank));
+  PetscCallMPI(MPI_Allreduce(&own, &worst, 1, MPI_DOUBLE_INT, MPI_MINLOC, comm));
+  double both[2] = {*needed, *there};
+  PetscCallMPI(MPI_Bcast(both, 2, MPI_DOUBLE, worst.rank, comm));
+  *needed = both[0];
+  *there  = both[1];
+  PetscFunctionReturn(0);
+}
+
+/* Nodes that fit, to two digits: memory grows as nodes^1.4 on blades. */
+static double nodes_that_fit(double nodes, double share) {
+  const double fit = nodes * pow(share, 1 / 1.4);
+  const double by  = pow(10, fmax(floor(log10(fmax(fit, 1))) - 1, 0));
+  return floor(fit / by) * by;
+}
+
+static PetscErrorCode check_memory(Mat A, double needed, double there) {
+  PetscInt order;
+  PetscFunctionBeginUser;
+  PetscCall(MatGetSize(A, &order, NULL));
+  PetscCheck(needed <= there, PetscObjectComm((PetscObject)A), PETSC_ERR_USER_INPUT,
+             "the modes of this mesh (%d free nodes) need %.3g GB more memory, and %.3g GB are "
+             "left; make a coarser mesh (about %.0f nodes fit), or use more machines (mpiexec)",
+             (int)(order / 3), needed / giga, there / giga,
+             nodes_that_fit((double)order / 3, there / needed));
+  PetscFunctionReturn(0);
+}
+
+/* ------------------------------------------------------------------ analysis */
+
+static PetscErrorCode analyse_mumps(fem_factor *factor, Mat A, double *mine) {
+  MatFactorInfo info;
+  PetscInt      megabytes;
+  PetscFunctionBeginUser;
+  PetscCall(MatGetFactor(A, MATSOLVERMUMPS, MAT_FACTOR_CHOLESKY, &factor->mumps));
+  PetscCall(MatSetOptionsPrefix(factor->mumps, "st_"));
+  PetscCall(MatFactorInfoInitialize(&info));
+  PetscCall(MatCholeskyFactorSymbolic(factor->mumps, A, NULL, &info));
+  PetscCall(MatMumpsGetInfo(factor->mumps, 15, &megabytes));
+  *mine = 1e6 * megabytes;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode analyse(fem_factor *factor, Mat A, double *mine) {
+  bool   mumps = false, fits = false;
+  double kept, passing;
+  PetscFunctionBeginUser;
+  PetscCall(wants_mumps(factor->comm, &mumps));
+  if (!mumps) {
+    PetscCall(fem_cholesky_create(A, &fits, &factor->cholesky));
+    mumps = !fits;
+  }
+  if (mumps) {
+    PetscCall(analyse_mumps(factor, A, mine));
+    PetscFunctionReturn(0);
+  }
+  fem_cholesky_foresee(factor->cholesky, &kept, &passing);
+  *mine = kept + passing;
+  PetscFunctionReturn(0);
+}
+
+/* In place of CHOLMOD's factor one of half its size, which takes longer to solve with; mine: what it takes. */
+static PetscErrorCode take_single(fem_factor *factor, Mat A, double *mine) {
+  PetscFunctionBeginUser;
+  fem_cholesky_destroy(factor->cholesky);
+  factor->cholesky = NULL;
+  PetscCall(fem_single_create(A, &factor->single));
+  *mine = fem_single_foreseen(factor->single);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode fem_factor_create(Mat A, double beside, fem_factor **out) {
+  double    mine, needed, there;
+  int       n_ranks;
+  PetscBool asked = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(out));
+  (*out)->comm = PetscObjectComm((PetscObject)A);
+  PetscCallMPI(MPI_Comm_size((*out)->comm, &n_ranks));
+  PetscCall(PetscOptionsGetBool(NULL, "st_", "-single_precision", &asked, NULL));
+  PetscCall(analyse(*out, A, &mine));
+  PetscCall(compare((*out)->comm, mine + beside / n_ranks, &needed, &there));
+  if ((*out)->cholesky && (asked || needed > there)) {
+    PetscCall(take_single(*out, A, &mine));
+    PetscCall(compare((*out)->comm, mine + beside, &needed, &there));
+  }
+  PetscCallMPI(MPI_Allreduce(&mine, &(*out)->foreseen, 1, MPI_DOUBLE, MPI_SUM, (*out)->comm));
+  PetscCall(check_memory(A, needed, there));
+  PetscFunctionReturn(0);
+}
+
+double fem_factor_foreseen(const fem_factor *factor) {
+  return factor->foreseen;
+}
+
+const char *fem_factor_by(const fem_factor *factor) {
+  if (factor->single) return "SMUMPS in single precision";
+  return factor->cholesky ? "CHOLMOD" : "MUMPS";
+}
+
+/* ------------------------------------------------------------------ factor and solves */
+
+/* Negative pivots that MUMPS met (on one rank all of them; on more, its dense root is not counted but must be
+ * positive definite too). */
+static PetscErrorCode update_mumps(Mat mumps, Mat A, bool *definite) {
+  MatFactorInfo  info;
+  MatFactorError error;
+  PetscInt       negative;
+  PetscFunctionBeginUser;
+  PetscCall(MatFactorInfoInitialize(&info));
+  PetscCall(MatCholeskyFactorNumeric(mumps, A, &info));
+  PetscCall(MatFactorGetError(mumps, &error));
+  PetscCheck(error != MAT_FACTOR_OUTMEMORY, PetscObjectComm((PetscObject)A), PETSC_ERR_MEM,
+             "MUMPS");
+  PetscCall(MatMumpsGetInfog(mumps, 12, &negative));
+  *definite = error == MAT_FACTOR_NOERROR && negative == 0;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode fem_factor_update(fem_factor *factor, Mat A, bool *definite) {
+  PetscFunctionBeginUser;
+  if (factor->single)
+    PetscCall(fem_single_update(factor->single, A, definite));
+  else if (factor->cholesky)
+    PetscCall(fem_cholesky_update(factor->cholesky, A, definite));
+  else
+    PetscCall(update_mumps(factor->mumps, A, definite));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode solve_columns(fem_factor *factor, int count, const double *b, size_t ldb,
+                                    double *x, size_t ldx) {
+  PetscFunctionBeginUser;
+  if (factor->single)
+    PetscCall(fem_single_solve(factor->single, count, b, ldb, x, ldx));
+  else
+    PetscCall(fem_cholesky_solve(factor->cholesky, count, b, ldb, x, ldx));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode fem_factor_solve(fem_factor *factor, Vec b, Vec x) {
+  const double *from;
+  double       *to;
+  PetscInt      n;
+
+  PetscFunctionBeginUser;
+  if (factor->mumps) {
+    PetscCall(MatSolve(factor->mumps, b, x));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(VecGetLocalSize(b, &n));
+  PetscCall(VecGetArrayRead(b, &from));
+  PetscCall(VecGetArrayWrite(x, &to));
+  PetscCall(solve_columns(factor, 1, from, (size_t)n, to, (size_t)n));
+  PetscCall(VecRestoreArrayWrite(x, &to));
+  PetscCall(VecRestoreArrayRead(b, &from));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode fem_factor_solve_many(fem_factor *factor, Mat B, Mat X) {
+  const double *from;
+  double       *to;
+  PetscInt      count, ldb, ldx;
+
+  PetscFunctionBeginUser;
+  if (factor->mumps) {
+    PetscCall(MatMatSolve(factor->mumps, B, X));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(MatGetSize(B, NULL, &count));
+  PetscCall(MatDenseGetLDA(B, &ldb));
+  PetscCall(MatDenseGetLDA(X, &ldx));
+  PetscCall(MatDenseGetArrayRead(B, &from));
+  PetscCall(MatDenseGetArrayWrite(X, &to));
+  PetscCall(solve_columns(factor, (int)count, from, (size_t)ldb, to, (size_t)ldx));
+  PetscCall(MatDenseRestoreArrayWrite(X, &to));
+  PetscCall(MatDenseRestoreArrayRead(B, &from));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode apply(PC pc, Vec b, Vec x) {
+  void *factor;
+  PetscFunctionBeginUser;
+  PetscCall(PCShellGetContext(pc, &factor));
+  PetscCall(fem_factor_solve(factor, b, x));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode apply_many(PC pc, Mat B, Mat X) {
+  void *factor;
+  PetscFunctionBeginUser;
+  PetscCall(PCShellGetContext(pc, &factor));
+  PetscCall(fem_factor_solve_many(factor, B, X));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode fem_factor_serve(fem_factor *factor, PC pc) {
+  PetscFunctionBeginUser;
+  PetscCall(PCSetType(pc, PCSHELL));
+  PetscCall(PCShellSetContext(pc, factor));
+  PetscCall(PCShellSetApply(pc, apply));
+  PetscCall(PCShellSetMatApply(pc, apply_many));
+  PetscCall(PCShellSetName(pc, fem_factor_by(factor)));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode fem_factor_destroy(fem_factor **factor) {
+  PetscFunctionBeginUser;
+  if (!*factor) PetscFunctionReturn(0);
+  fem_cholesky_destroy((*factor)->cholesky);
+  PetscCall(fem_single_destroy(&(*factor)->single));
+  PetscCall(MatDestroy(&(*factor)->mumps));
+  PetscCall(PetscFree(*factor));
+  PetscFunctionReturn(0);
+}

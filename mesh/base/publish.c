@@ -1,0 +1,102 @@
+#include "mesh/base/publish.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <inttypes.h>
+#include <signal.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { KEPT = 8 };
+
+/* Temporary files that may exist; one that was published or removed does no harm here. Longer names are not kept. */
+static struct {
+  volatile sig_atomic_t used;
+  char                  name[1024];
+} kept[KEPT];
+
+static void keep(const char *name) {
+  static atomic_int turn;
+  int               at = atomic_fetch_add(&turn, 1) % KEPT;
+  kept[at].used        = 0;
+  if (strlen(name) >= sizeof kept[at].name) return;
+  strcpy(kept[at].name, name);
+  kept[at].used = 1;
+}
+
+void shb_publish_abandon(void) {
+  for (int i = 0; i < KEPT; i++)
+    if (kept[i].used) unlink(kept[i].name);
+}
+
+char *shb_publish_temporary(const char *path) {
+  signal(SIGXFSZ, SIG_IGN); /* a limit on file sizes is then an error like a full disk */
+  size_t size = strlen(path) + 32;
+  char  *name = malloc(size);
+  if (name) snprintf(name, size, "%s.tmp.%ld", path, (long)getpid());
+  if (name) keep(name);
+  return name;
+}
+
+static int sync_path(const char *path, int flags) {
+  int fd = open(path, flags);
+  if (fd < 0) return -1;
+  int ret   = fsync(fd);
+  int saved = errno;
+  close(fd);
+  errno = saved;
+  return ret;
+}
+
+/* Make the rename itself durable; file systems that cannot sync a folder are let be. */
+static void sync_folder(const char *path) {
+  const char *slash = strrchr(path, '/');
+  if (!slash) {
+    (void)sync_path(".", O_RDONLY);
+    return;
+  }
+  char *folder = strndup(path, slash == path ? 1 : (size_t)(slash - path));
+  if (!folder) return;
+  (void)sync_path(folder, O_RDONLY);
+  free(folder);
+}
+
+/* Renaming onto a device, a pipe or a link would take its place. */
+static int takes_a_file(const char *path) {
+  struct stat about;
+  return lstat(path, &about) != 0 || S_ISREG(about.st_mode) || S_ISDIR(about.st_mode);
+}
+
+shb_status shb_publish(const char *temporary, const char *path) {
+  if (!takes_a_file(path)) {
+    unlink(temporary);
+    SHB_FAIL(SHB_ERR_IO, "%s: is a link, a device or a pipe, not a file that can be replaced",
+             path);
+  }
+  if (sync_path(temporary, O_RDWR) != 0 || rename(temporary, path) != 0) {
+    int why = errno;
+    unlink(temporary);
+    SHB_FAIL(SHB_ERR_IO, "%s: cannot be written: %s; the earlier file, if any, is untouched", path,
+             strerror(why));
+  }
+  sync_folder(path);
+  return SHB_OK;
+}
+
+shb_status shb_fingerprint(const char *path, char out[17]) {
+  FILE *file = fopen(path, "rb");
+  SHB_CHECK(file, SHB_ERR_IO, "%s: cannot be read: %s", path, strerror(errno));
+  uint64_t      hash = 14695981039346656037u;
+  unsigned char buffer[1 << 16];
+  for (size_t n; (n = fread(buffer, 1, sizeof buffer, file)) > 0;)
+    for (size_t i = 0; i < n; i++) hash = (hash ^ buffer[i]) * 1099511628211u;
+  int bad = ferror(file);
+  fclose(file);
+  SHB_CHECK(!bad, SHB_ERR_IO, "%s: cannot be read", path);
+  snprintf(out, 17, "%016" PRIx64, hash);
+  return SHB_OK;
+}

@@ -1,0 +1,187 @@
+#include "mesh/blade/section_mesh.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The section is drawn in the plane (u, y), |y| <= 4 u (1 - u): sharp at both ends as the airfoil is, w = y over that. */
+static double lens(double u) {
+  return 4 * u * (1 - u);
+}
+
+/* A sheet of n x m cells: quadratic nodes on a lattice of half cells, -1 where a cell's middle would be. */
+typedef struct {
+  int  n, m;
+  int *node; /* [2 m + 1][2 n + 1] */
+} sheet;
+
+/* What is built: nodes so far with their (u, y). */
+typedef struct {
+  mesh_plan *plan;
+  double (*uy)[2];
+  int capacity;
+} drawing;
+
+/* The node at (u, y), found or made: blocks share their sides. */
+static int node_at(drawing *d, double u, double y) {
+  for (int i = d->plan->n_nodes - 1; i >= 0; i--)
+    if (fabs(d->uy[i][0] - u) < 1e-10 && fabs(d->uy[i][1] - y) < 1e-10) return i;
+  int i       = d->plan->n_nodes++;
+  d->uy[i][0] = u;
+  d->uy[i][1] = y;
+  return i;
+}
+
+/* Cells of a block from its lattice, anticlockwise. */
+static void add_cells(mesh_plan *plan, int n, int m, const int *node) {
+  static const int step[8][2] = {{0, 0}, {2, 0}, {2, 2}, {0, 2}, {1, 0}, {2, 1}, {1, 2}, {0, 1}};
+  for (int j = 0; j < m; j++)
+    for (int i = 0; i < n; i++) {
+      int *quad = plan->quad[plan->n_quads++];
+      for (int c = 0; c < 8; c++)
+        quad[c] = node[(2 * j + step[c][1]) * (2 * n + 1) + 2 * i + step[c][0]];
+    }
+}
+
+/* The side between two points: along the lens if both are on it and it is a side of it, else straight. */
+static void side_at(const double a[2], const double b[2], int along, double s, double at[2]) {
+  at[0] = a[0] + s * (b[0] - a[0]);
+  at[1] = along ? along * lens(at[0]) : a[1] + s * (b[1] - a[1]);
+}
+
+/* A block of n x m cells with corners p[0..3] anticlockwise; its side i, from p[i] on, lies on the lens' upper (1) or
+ * lower (-1) side where along[i] says so: transfinite interpolation. */
+static void add_block(drawing *d, int n, int m, double p[4][2], const int along[4], int *node) {
+  for (int j = 0; j <= 2 * m; j++)
+    for (int i = 0; i <= 2 * n; i++) {
+      double s = (double)i / (2 * n), t = (double)j / (2 * m), side[4][2], at[2];
+      if (i % 2 && j % 2) continue;
+      side_at(p[0], p[1], along[0], s, side[0]);
+      side_at(p[1], p[2], along[1], t, side[1]);
+      side_at(p[3], p[2], along[2], s, side[2]);
+      side_at(p[0], p[3], along[3], t, side[3]);
+      for (int x = 0; x < 2; x++)
+        at[x] = (1 - t) * side[0][x] + s * side[1][x] + t * side[2][x] + (1 - s) * side[3][x] -
+                (1 - s) * (1 - t) * p[0][x] - s * (1 - t) * p[1][x] - s * t * p[2][x] -
+                (1 - s) * t * p[3][x];
+      node[j * (2 * n + 1) + i] = node_at(d, at[0], at[1]);
+    }
+  add_cells(d->plan, n, m, node);
+}
+
+/* Three blocks at the edge u = 0 (or, mirrored, u = 1), the tip taking a share of u. */
+static void add_tip(drawing *d, int k, double share, int mirror, int *node) {
+  const double half = .5 * share, middle = .55 * share;
+  double       edge[2] = {0, 0}, centre[2] = {middle, 0}, cross[2] = {share, 0};
+  double       up[2] = {half, lens(half)}, low[2] = {half, -lens(half)};
+  double       top[2] = {share, lens(share)}, bottom[2] = {share, -lens(share)};
+  double      *block[3][4] = {
+           {edge, low, centre, up}, {low, bottom, cross, centre}, {centre, cross, top, up}};
+  int along[3][4] = {{-1, 0, 0, 1}, {-1, 0, 0, 0}, {0, 0, 1, 0}};
+  for (int b = 0; b < 3; b++) {
+    double p[4][2];
+    int    way[4];
+    for (int c = 0; c < 4; c++) { /* mirrored: corners in the other order, sides with them */
+      const double *from = block[b][mirror ? (4 - c) % 4 : c];
+      p[c][0]            = mirror ? 1 - from[0] : from[0];
+      p[c][1]            = from[1];
+      way[c]             = along[b][mirror ? 3 - c : c];
+    }
+    add_block(d, k, k, p, way, node);
+  }
+}
+
+static void add_middle(drawing *d, const mesh_section_grid *grid, int *node) {
+  double first = grid->tip[0], last = 1 - grid->tip[1];
+  int    n = grid->chord, m = 2 * grid->half;
+  for (int j = 0; j <= 2 * m; j++)
+    for (int i = 0; i <= 2 * n; i++) {
+      if (i % 2 && j % 2) continue;
+      double u                  = first + (last - first) * i / (2 * n);
+      node[j * (2 * n + 1) + i] = node_at(d, u, ((double)j / m - 1) * lens(u));
+    }
+  add_cells(d->plan, n, m, node);
+}
+
+static int by_key(const void *a, const void *b) {
+  double p = *(const double *)a, q = *(const double *)b;
+  return (p > q) - (p < q);
+}
+
+/* Nodes on the lens: upper side by rising u, then lower side by falling u. */
+static void find_contour(drawing *d, double (*key)[2]) {
+  mesh_plan *plan = d->plan;
+  plan->n_contour = 0;
+  for (int i = 0; i < plan->n_nodes; i++) {
+    double u = d->uy[i][0], y = d->uy[i][1];
+    if (fabs(fabs(y) - lens(u)) > 1e-9) continue;
+    key[plan->n_contour][0]   = y > -1e-12 && u < 1 ? u : 2 - u;
+    key[plan->n_contour++][1] = i;
+  }
+  qsort(key, (size_t)plan->n_contour, sizeof *key, by_key);
+  for (int i = 0; i < plan->n_contour; i++) plan->contour[i] = (int)key[i][1];
+}
+
+static void draw(const mesh_section_grid *grid, drawing *d, int *node, double (*key)[2],
+                 mesh_section_place *place) {
+  mesh_plan *plan = d->plan;
+  add_tip(d, grid->half, grid->tip[0], 0, node);
+  add_middle(d, grid, node);
+  add_tip(d, grid->half, grid->tip[1], 1, node);
+  find_contour(d, key);
+  plan->n_section_nodes = plan->n_nodes;
+  plan->n_section_quads = plan->n_quads;
+  for (int i = 0; i < plan->n_nodes; i++) {
+    double u = d->uy[i][0], most = lens(u);
+    place[i] = (mesh_section_place){u, most > 1e-9 ? d->uy[i][1] / most : 0};
+    if (fabs(fabs(place[i].w) - 1) < 1e-8) place[i].w = place[i].w > 0 ? 1 : -1;
+  }
+}
+
+shb_status mesh_plan_section(const mesh_section_grid *grid, mesh_plan *plan,
+                             mesh_section_place **place) {
+  const int k = grid->half, n = grid->chord;
+  const int quads = 6 * k * k + 2 * k * n, most = 8 * quads + 1;
+  double(*key)[2] = malloc((size_t)most * sizeof *key);
+  int    *node    = malloc((size_t)((4 * k + 1) * (2 * (n + k) + 1)) * sizeof *node);
+  drawing d       = {.plan = plan, .capacity = most};
+  memset(plan, 0, sizeof *plan);
+  d.uy          = malloc((size_t)most * sizeof *d.uy);
+  plan->at      = calloc((size_t)most, sizeof *plan->at);
+  plan->quad    = malloc((size_t)quads * sizeof *plan->quad);
+  plan->contour = malloc((size_t)most * sizeof *plan->contour);
+  *place        = malloc((size_t)most * sizeof **place);
+  int complete  = key && node && d.uy && plan->at && plan->quad && plan->contour && *place;
+  if (complete) draw(grid, &d, node, key, *place);
+  free(key);
+  free(node);
+  free(d.uy);
+  if (complete) return SHB_OK;
+  free(*place);
+  *place = NULL;
+  mesh_plan_free(plan);
+  SHB_FAIL(SHB_ERR_IO, "no memory for the airfoil's mesh");
+}
+
+void mesh_plan_orient(mesh_plan *section) {
+  static const int back[8] = {0, 3, 2, 1, 7, 6, 5, 4};
+  double           area    = 0;
+  for (int q = 0; q < section->n_quads; q++)
+    for (int c = 0; c < 4; c++) {
+      const double *p = section->at[section->quad[q][c]];
+      const double *r = section->at[section->quad[q][(c + 1) % 4]];
+      area += p[0] * r[1] - p[1] * r[0];
+    }
+  for (int q = 0; q < section->n_quads && area < 0; q++) {
+    int old[8];
+    memcpy(old, section->quad[q], sizeof old);
+    for (int c = 0; c < 8; c++) section->quad[q][c] = old[back[c]];
+  }
+}
+
+void mesh_plan_free(mesh_plan *plan) {
+  free(plan->at);
+  free(plan->quad);
+  free(plan->contour);
+  memset(plan, 0, sizeof *plan);
+}

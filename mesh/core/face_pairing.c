@@ -1,0 +1,238 @@
+#include "mesh/core/face_pairing.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "mesh/core/triangle.h"
+
+/* The left face, for looking up the nearest point. */
+typedef struct {
+  const mesh_fe       *mesh;
+  const mesh_topology *topology;
+  const mesh_face_set *set;
+  double (*ball)[4]; /* [faces] centre and radius around a face's nodes */
+} target;
+
+/* A place on the left face. */
+typedef struct {
+  int    face;
+  double at[2]; /* reference coordinates */
+  double shape[MESH_FACE_NODES];
+  double distance; /* m */
+} contact_place;
+
+static const int *face_nodes(const target *t, int face) {
+  return t->set->nodes + t->topology->face_nodes * (size_t)face;
+}
+
+static double apart(const double a[3], const double b[3]) {
+  double sum = 0;
+  for (int d = 0; d < 3; d++) sum += (a[d] - b[d]) * (a[d] - b[d]);
+  return sqrt(sum);
+}
+
+static void enclose(const target *t, int face) {
+  const int  n    = t->topology->face_nodes;
+  const int *node = face_nodes(t, face);
+  double    *ball = t->ball[face];
+  memset(ball, 0, sizeof *t->ball);
+  for (int i = 0; i < n; i++)
+    for (int d = 0; d < 3; d++) ball[d] += t->mesh->coordinates[3 * (size_t)node[i] + d] / n;
+  for (int i = 0; i < n; i++)
+    ball[3] = fmax(ball[3], apart(ball, t->mesh->coordinates + 3 * (size_t)node[i]));
+}
+
+/* Reference coordinates of a face's local node. */
+static void reference(const target *t, int local, double at[2]) {
+  static const double six[6][2]   = {{0, 0}, {1, 0}, {0, 1}, {.5, 0}, {.5, .5}, {0, .5}};
+  static const double eight[8][2] = {{0, 0},  {1, 0},  {1, 1},  {0, 1},
+                                     {.5, 0}, {1, .5}, {.5, 1}, {0, .5}};
+  memcpy(at, t->mesh->kind == MESH_HEX20 ? eight[local] : six[local], 2 * sizeof *at);
+}
+
+/* Nearest point of the flat triangles of all faces: a start for settle. */
+static void look_up(const target *t, const double x[3], contact_place *best) {
+  best->distance = INFINITY;
+  for (int f = 0; f < t->set->n; f++) {
+    mesh_triangle part[MESH_TRIANGLES];
+    if (apart(t->ball[f], x) - t->ball[f][3] >= best->distance) continue;
+    int n = mesh_triangles(t->mesh, face_nodes(t, f), part);
+    for (int p = 0; p < n; p++) {
+      double foot[3], weight[3], corner[2];
+      double here = mesh_triangle_closest(&part[p], x, foot, weight);
+      if (here >= best->distance) continue;
+      best->distance = here;
+      best->face     = f;
+      best->at[0] = best->at[1] = 0;
+      for (int c = 0; c < 3; c++) {
+        reference(t, part[p].local[c], corner);
+        for (int d = 0; d < 2; d++) best->at[d] += weight[c] * corner[d];
+      }
+    }
+  }
+}
+
+/* Back into the face. */
+static void clamp(mesh_kind kind, double at[2]) {
+  for (int d = 0; d < 2; d++) at[d] = fmin(1, fmax(0, at[d]));
+  double over = at[0] + at[1] - 1;
+  if (kind == MESH_HEX20 || over <= 0) return;
+  at[0] = fmin(1, fmax(0, at[0] - over / 2));
+  at[1] = 1 - at[0];
+}
+
+/* x - X(r, s) and its derivatives' columns. */
+static void residual(const target *t, const double x[3], contact_place *p, double off[3],
+                     double J[2][3]) {
+  double     gradient[MESH_FACE_NODES][2];
+  const int *node = face_nodes(t, p->face);
+  mesh_face_shape(t->mesh->kind, p->at, p->shape, gradient);
+  for (int d = 0; d < 3; d++) {
+    off[d]  = x[d];
+    J[0][d] = J[1][d] = 0;
+    for (int i = 0; i < t->topology->face_nodes; i++) {
+      double there = t->mesh->coordinates[3 * (size_t)node[i] + d];
+      off[d] -= p->shape[i] * there;
+      J[0][d] += gradient[i][0] * there;
+      J[1][d] += gradient[i][1] * there;
+    }
+  }
+}
+
+static double dot(const double a[3], const double b[3]) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* The nearest point of the curved face by Gauss and Newton: J^T J d = J^T (x - X). */
+static void settle(const target *t, const double x[3], contact_place *p) {
+  double off[3], J[2][3];
+  for (int i = 0; i < 30; i++) {
+    residual(t, x, p, off, J);
+    double a = dot(J[0], J[0]), b = dot(J[0], J[1]), c = dot(J[1], J[1]), det = a * c - b * b;
+    double r = dot(J[0], off), s = dot(J[1], off), before[2] = {p->at[0], p->at[1]};
+    if (!(det > 0)) break;
+    p->at[0] += (c * r - b * s) / det;
+    p->at[1] += (a * s - b * r) / det;
+    clamp(t->mesh->kind, p->at);
+    if (hypot(p->at[0] - before[0], p->at[1] - before[1]) < 1e-14) break;
+  }
+  residual(t, x, p, off, J);
+  p->distance = sqrt(dot(off, off));
+}
+
+static double area(const mesh_fe *mesh, const mesh_face_set *set) {
+  const mesh_topology *topology = mesh_topology_of(mesh->kind);
+  double               sum      = 0;
+  for (int f = 0; f < set->n; f++) {
+    mesh_triangle part[MESH_TRIANGLES];
+    int           n = mesh_triangles(mesh, set->nodes + topology->face_nodes * (size_t)f, part);
+    for (int p = 0; p < n; p++) {
+      double one[3];
+      mesh_triangle_area(&part[p], one);
+      sum += sqrt(dot(one, one));
+    }
+  }
+  return sum;
+}
+
+static shb_status allocate(int n, int each, mesh_pairing *out) {
+  const size_t nodes = (size_t)n;
+  out->n             = n;
+  out->right         = malloc((nodes + 1) * sizeof *out->right);
+  out->start         = malloc((nodes + 1) * sizeof *out->start);
+  out->left          = malloc((nodes * (size_t)each + 1) * sizeof *out->left);
+  out->share         = malloc((nodes * (size_t)each + 1) * sizeof *out->share);
+  SHB_CHECK(out->right && out->start && out->left && out->share, SHB_ERR_IO,
+            "no memory to match the contact faces");
+  for (int i = 0; i <= n; i++) out->start[i] = each * i;
+  return SHB_OK;
+}
+
+/* The right face's nodes, each once, ascending. */
+static shb_status take_right(const mesh_fe *mesh, mesh_pairing *out) {
+  const mesh_topology *topology = mesh_topology_of(mesh->kind);
+  const mesh_face_set *set      = &mesh->set[MESH_CONTACT_RIGHT];
+  char                *marked   = calloc((size_t)mesh->n_nodes + 1, 1);
+  int                  n        = 0;
+  SHB_CHECK(marked, SHB_ERR_IO, "no memory to match the contact faces");
+  for (int i = 0; i < topology->face_nodes * set->n; i++) marked[set->nodes[i]] = 1;
+  for (int i = 0; i < mesh->n_nodes; i++) n += marked[i];
+  shb_status status = allocate(n, topology->face_nodes, out);
+  n                 = 0;
+  for (int i = 0; i < mesh->n_nodes && status == SHB_OK; i++)
+    if (marked[i]) out->right[n++] = i;
+  free(marked);
+  return status;
+}
+
+static shb_status project_all(const target *t, mesh_axis axis, double angle, mesh_pairing *out) {
+  const mesh_fe *mesh  = t->mesh;
+  const int      each  = t->topology->face_nodes;
+  const double   limit = MESH_PAIRING_GAP * sqrt(area(mesh, &mesh->set[MESH_CONTACT_RIGHT]));
+  for (int i = 0; i < out->n; i++) {
+    const double *x = mesh->coordinates + 3 * (size_t)out->right[i];
+    double        back[3];
+    contact_place p;
+    mesh_axis_rotate(axis, -angle, x, back);
+    look_up(t, back, &p);
+    settle(t, back, &p);
+    SHB_CHECK(
+        p.distance <= limit, SHB_ERR_INPUT,
+        "contact faces do not match: node %ld of contact_right at (%g, %g, %g) m is %.3g m "
+        "from contact_left turned by the sector angle; at most %.3g m is allowed (2 %% of the "
+        "face's size)",
+        mesh->node_tag[out->right[i]], x[0], x[1], x[2], p.distance, limit);
+    out->gap = fmax(out->gap, p.distance);
+    memcpy(out->left + each * i, face_nodes(t, p.face), (size_t)each * sizeof *out->left);
+    memcpy(out->share + each * i, p.shape, (size_t)each * sizeof *out->share);
+  }
+  return SHB_OK;
+}
+
+static shb_status project(const mesh_fe *mesh, mesh_axis axis, int blades, mesh_pairing *out) {
+  target t       = {mesh, mesh_topology_of(mesh->kind), &mesh->set[MESH_CONTACT_LEFT], NULL};
+  out->projected = true;
+  SHB_TRY(take_right(mesh, out));
+  t.ball = malloc(((size_t)t.set->n + 1) * sizeof *t.ball);
+  SHB_CHECK(t.ball, SHB_ERR_IO, "no memory to match the contact faces");
+  for (int f = 0; f < t.set->n; f++) enclose(&t, f);
+  shb_status status = project_all(&t, axis, 2 * M_PI / blades, out);
+  free(t.ball);
+  return status;
+}
+
+/* Node for node: right and left become the pairing's. */
+static shb_status take_match(int n, int *right, int *left, mesh_pairing *out) {
+  shb_status status = allocate(n, 1, out);
+  for (int i = 0; i < n && status == SHB_OK; i++) {
+    out->right[i] = right[i];
+    out->left[i]  = left[i];
+    out->share[i] = 1;
+  }
+  free(right);
+  free(left);
+  return status;
+}
+
+shb_status mesh_pairing_create(const mesh_fe *mesh, mesh_axis axis, int blades, mesh_pairing *out) {
+  int *right = NULL, *left = NULL, n = 0;
+  memset(out, 0, sizeof *out);
+  shb_status status  = mesh_fe_match(mesh, axis, blades, &n, &right, &left);
+  bool       missing = !mesh->set[MESH_CONTACT_RIGHT].n || !mesh->set[MESH_CONTACT_LEFT].n;
+  if (status == SHB_OK) {
+    status = take_match(n, right, left, out);
+  } else if (status == SHB_ERR_INPUT && !missing) {
+    status = project(mesh, axis, blades, out);
+  }
+  if (status != SHB_OK) mesh_pairing_free(out);
+  return status;
+}
+
+void mesh_pairing_free(mesh_pairing *pairing) {
+  free(pairing->right);
+  free(pairing->start);
+  free(pairing->left);
+  free(pairing->share);
+  memset(pairing, 0, sizeof *pairing);
+}

@@ -1,0 +1,62 @@
+#include "mesh/core/group_checks.h"
+
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Faces of set a with all their nodes in set b: how many, and the first. marked: [n_nodes] scratch. */
+static int count(const mesh_fe *mesh, int a, int b, char *marked, int *first) {
+  const mesh_face_set *inner = &mesh->set[a], *outer = &mesh->set[b];
+  const int            each = mesh_topology_of(mesh->kind)->face_nodes;
+  int                  n    = 0;
+  memset(marked, 0, (size_t)mesh->n_nodes);
+  for (int i = 0; i < each * outer->n; i++) marked[outer->nodes[i]] = 1;
+  for (int f = inner->n - 1; f >= 0; f--) {
+    int inside = 0;
+    for (int i = 0; i < each; i++) inside += marked[inner->nodes[each * f + i]];
+    if (inside < each) continue;
+    *first = f;
+    n++;
+  }
+  return n;
+}
+
+static void centre(const mesh_fe *mesh, int id, int face, double at[3]) {
+  const mesh_topology *t    = mesh_topology_of(mesh->kind);
+  const int           *node = mesh->set[id].nodes + t->face_nodes * (size_t)face;
+  for (int d = 0; d < 3; d++) {
+    at[d] = 0;
+    for (int c = 0; c < t->face_corners; c++)
+      at[d] += mesh->coordinates[3 * (size_t)node[c] + d] / t->face_corners;
+  }
+}
+
+static shb_status refuse(const mesh_fe *mesh, const char *name, int a, int b, int n, int first) {
+  double at[3];
+  centre(mesh, a, first, at);
+  SHB_FAIL(SHB_ERR_INPUT,
+           "%s: groups %s and %s share %d of %d faces, one at (%.4g, %.4g, %.4g) m; %s: leave them "
+           "out of one of the two",
+           name, mesh_fe_set_name(mesh, a), mesh_fe_set_name(mesh, b), n, mesh->set[a].n, at[0],
+           at[1], at[2],
+           b == MESH_ROOT ? "what is clamped does not move" : "a face meets one neighbour");
+}
+
+static shb_status check_pair(const mesh_fe *mesh, const char *name, int a, int b, char *marked) {
+  const bool contact = a == MESH_CONTACT_RIGHT || a == MESH_CONTACT_LEFT;
+  int        first = 0, n = count(mesh, a, b, marked, &first);
+  if (n > 0 && (contact || n == mesh->set[a].n)) return refuse(mesh, name, a, b, n, first);
+  return SHB_OK;
+}
+
+shb_status mesh_overlap_check(const mesh_fe *mesh, const char *name) {
+  char      *marked = malloc((size_t)mesh->n_nodes + 1);
+  shb_status status = SHB_OK;
+  SHB_CHECK(marked, SHB_ERR_IO, "%s: no memory for its groups", name);
+  for (int s = MESH_ROOT + 1; s < mesh_fe_sets(mesh) && status == SHB_OK; s++)
+    status = check_pair(mesh, name, s, MESH_ROOT, marked);
+  if (status == SHB_OK)
+    status = check_pair(mesh, name, MESH_CONTACT_RIGHT, MESH_CONTACT_LEFT, marked);
+  free(marked);
+  return status;
+}

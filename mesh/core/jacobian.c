@@ -1,0 +1,146 @@
+#include "mesh/core/jacobian.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { POINTS = 43 };
+
+/* Shape function gradients at the points that are looked at. */
+typedef struct {
+  int    n;
+  double gradient[POINTS][MESH_NODES][3];
+} probes;
+
+static void add(mesh_kind kind, const double at[3], probes *p) {
+  double shape[MESH_NODES];
+  mesh_shape(kind, at, shape, p->gradient[p->n++]);
+}
+
+static void add_gauss(int n, const double *point, probes *p) {
+  for (int i = 0; i < n * n * n; i++) {
+    const double at[3] = {point[i % n], point[i / n % n], point[i / (n * n)]};
+    add(MESH_HEX20, at, p);
+  }
+}
+
+static void make_probes(mesh_kind kind, probes *p) {
+  const mesh_topology *topology = mesh_topology_of(kind);
+  p->n                          = 0;
+  for (int c = 0; c < topology->corners; c++) add(kind, topology->place[c], p);
+  if (kind == MESH_HEX20) {
+    const double two = .5 / sqrt(3), three = .5 * sqrt(.6);
+    add_gauss(2, (const double[]){.5 - two, .5 + two}, p);
+    add_gauss(3, (const double[]){.5 - three, .5, .5 + three}, p);
+    return;
+  }
+  const double near = (5 - sqrt(5)) / 20;
+  for (int i = 0; i < 4; i++) {
+    double at[3] = {near, near, near};
+    if (i > 0) at[i - 1] = 1 - 3 * near;
+    add(kind, at, p);
+  }
+}
+
+/* J = dx/d(reference) of an element at a probe; its determinant. */
+static double jacobian_at(const mesh_fe *mesh, int element, const probes *p, int q,
+                          double J[3][3]) {
+  const int  nodes = mesh_topology_of(mesh->kind)->nodes;
+  const int *node  = mesh->connectivity + nodes * (size_t)element;
+  memset(J, 0, 9 * sizeof(double));
+  for (int n = 0; n < nodes; n++) {
+    const double *x = mesh->coordinates + 3 * (size_t)node[n];
+    for (int i = 0; i < 3; i++)
+      for (int d = 0; d < 3; d++) J[i][d] += x[i] * p->gradient[q][n][d];
+  }
+  return J[0][0] * (J[1][1] * J[2][2] - J[1][2] * J[2][1]) -
+         J[0][1] * (J[1][0] * J[2][2] - J[1][2] * J[2][0]) +
+         J[0][2] * (J[1][0] * J[2][1] - J[1][1] * J[2][0]);
+}
+
+static double least(const mesh_fe *mesh, int element, const probes *p) {
+  double J[3][3], minimum = INFINITY;
+  for (int q = 0; q < p->n; q++) {
+    double det = jacobian_at(mesh, element, p, q, J);
+    if (!(det >= minimum)) minimum = det;
+  }
+  return minimum;
+}
+
+double mesh_jacobian_sharpest(const mesh_fe *mesh, double x[3]) {
+  const mesh_topology *topology = mesh_topology_of(mesh->kind);
+  probes               p;
+  double               J[3][3], sharpest = INFINITY;
+  make_probes(mesh->kind, &p);
+  for (int e = 0; e < mesh->n_elements; e++)
+    for (int c = 0; c < topology->corners; c++) {
+      double sine = jacobian_at(mesh, e, &p, c, J);
+      for (int d = 0; d < 3; d++)
+        sine /= sqrt(J[0][d] * J[0][d] + J[1][d] * J[1][d] + J[2][d] * J[2][d]);
+      if (!(sine < sharpest)) continue;
+      sharpest       = sine;
+      const int node = mesh->connectivity[topology->nodes * (size_t)e + (size_t)c];
+      memcpy(x, mesh->coordinates + 3 * (size_t)node, 3 * sizeof *x);
+    }
+  return sharpest;
+}
+
+double mesh_jacobian_least(const mesh_fe *mesh, int element) {
+  probes p;
+  make_probes(mesh->kind, &p);
+  return least(mesh, element, &p);
+}
+
+int mesh_jacobian_inverted(const mesh_fe *mesh) {
+  probes p;
+  int    bad = 0;
+  make_probes(mesh->kind, &p);
+  for (int e = 0; e < mesh->n_elements; e++) bad += !(least(mesh, e, &p) > 0);
+  return bad;
+}
+
+/* Straighten the edges of an element; number of nodes that moved. */
+static int straighten_edges(mesh_fe *mesh, int element, char *moved) {
+  const mesh_topology *topology = mesh_topology_of(mesh->kind);
+  const int           *node     = mesh->connectivity + topology->nodes * (size_t)element;
+  int                  n        = 0;
+  for (int e = 0; e < topology->edges; e++) {
+    const int     middle = node[topology->corners + e];
+    const double *a      = mesh->coordinates + 3 * (size_t)node[topology->edge[e][0]];
+    const double *b      = mesh->coordinates + 3 * (size_t)node[topology->edge[e][1]];
+    if (moved[middle]) continue;
+    for (int d = 0; d < 3; d++) mesh->coordinates[3 * (size_t)middle + d] = (a[d] + b[d]) / 2;
+    moved[middle] = 1;
+    n++;
+  }
+  return n;
+}
+
+void mesh_jacobian_straighten(mesh_fe *mesh, char *moved) {
+  probes p;
+  make_probes(mesh->kind, &p);
+  for (int again = 1; again;) {
+    again = 0;
+    for (int e = 0; e < mesh->n_elements; e++)
+      if (!(least(mesh, e, &p) > 0)) again += straighten_edges(mesh, e, moved);
+  }
+}
+
+shb_status mesh_jacobian_check(const mesh_fe *mesh, const char *name) {
+  probes p;
+  char   tags[160] = "";
+  size_t used      = 0;
+  int    bad       = 0;
+  make_probes(mesh->kind, &p);
+  for (int e = 0; e < mesh->n_elements; e++) {
+    if (least(mesh, e, &p) > 0) continue;
+    if (bad++ < 5)
+      used += (size_t)snprintf(tags + used, sizeof tags - used, "%s%ld", used ? ", " : "",
+                               mesh->element_tag[e]);
+  }
+  SHB_CHECK(bad == 0, SHB_ERR_INPUT,
+            "%s: %d of %d elements inverted (det J <= 0): element%s %s%s; mesh finer or straighten "
+            "the curved edges there",
+            name, bad, mesh->n_elements, bad > 1 ? "s" : "", tags, bad > 5 ? ", ..." : "");
+  return SHB_OK;
+}

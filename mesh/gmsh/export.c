@@ -1,0 +1,71 @@
+#include "mesh/gmsh/export.h"
+
+#include <errno.h>
+#include <gmshc.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "mesh/gmsh/provenance.h"
+#include "mesh/gmsh/session.h"
+
+/* All lines but those of the $Periodic section. */
+static bool copy_lines(FILE *from, FILE *to) {
+  char  *line = NULL;
+  size_t size = 0;
+  bool   skip = false;
+  while (getline(&line, &size, from) > 0) {
+    if (strcmp(line, "$Periodic\n") == 0) skip = true;
+    if (!skip) fputs(line, to);
+    if (strcmp(line, "$EndPeriodic\n") == 0) skip = false;
+  }
+  free(line);
+  return !ferror(from) && !ferror(to);
+}
+
+static shb_status copy_file(const char *raw, const char *temporary, const char *path) {
+  FILE *from = fopen(raw, "rb"), *to = fopen(temporary, "wb");
+  bool  good = from && to && copy_lines(from, to);
+  if (to) good = fclose(to) == 0 && good;
+  int why = errno;
+  if (from) fclose(from);
+  SHB_CHECK(good, SHB_ERR_IO, "%s: cannot be written: %s", path, strerror(why));
+  return SHB_OK;
+}
+
+/* gmsh's own text of the model; it would not say why a file cannot be opened. */
+static shb_status write_raw(const char *raw, const char *path) {
+  FILE *file = fopen(raw, "wb");
+  SHB_CHECK(file, SHB_ERR_IO, "%s: cannot be written: %s", path, strerror(errno));
+  fclose(file);
+  int ierr = 0;
+  gmshWrite(raw, &ierr);
+  if (ierr) return mesh_kernel_fail(SHB_ERR_IO, __FILE__, __LINE__, path);
+  return SHB_OK;
+}
+
+static shb_status write_all(const char *raw, const char *temporary, const char *path,
+                            const shb_provenance *provenance) {
+  SHB_TRY(write_raw(raw, path));
+  SHB_TRY(copy_file(raw, temporary, path));
+  SHB_TRY(mesh_provenance_append(temporary, provenance));
+  return shb_publish(temporary, path);
+}
+
+shb_status mesh_export(const char *path, const shb_provenance *provenance) {
+  char *temporary = shb_publish_temporary(path);
+  char *raw       = temporary ? malloc(strlen(temporary) + 5) : NULL;
+  if (!raw) {
+    free(temporary);
+    SHB_FAIL(SHB_ERR_IO, "%s: no memory to write it", path);
+  }
+  sprintf(raw, "%s.msh", temporary); /* gmsh goes by the ending */
+  shb_status status = write_all(raw, temporary, path, provenance);
+  unlink(raw);
+  if (status != SHB_OK) unlink(temporary);
+  free(raw);
+  free(temporary);
+  return status;
+}

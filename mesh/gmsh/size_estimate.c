@@ -1,0 +1,170 @@
+#include "mesh/gmsh/size_estimate.h"
+
+#include <gmshc.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "mesh/gmsh/session.h"
+
+enum { GMSH_LINE = 1, GMSH_TRIANGLE = 2, MOST = 3000000, BYTES_EACH = 1500 };
+
+double mesh_foresee_nodes(const mesh_extent *extent, double h) {
+  return 2 * extent->length / h + 4.6 * extent->area / (h * h) + 6 * extent->volume / (h * h * h);
+}
+
+double mesh_foresee_size(const mesh_extent *extent, double nodes) {
+  double high = extent->length + sqrt(extent->area) + cbrt(extent->volume), low = 0;
+  for (int i = 0; i < 200 && high - low > 1e-3 * high; i++) {
+    double middle = low > 0 ? sqrt(low * high) : high / 2;
+    if (low == 0 && mesh_foresee_nodes(extent, middle) <= nodes) {
+      high = middle;
+    } else if (mesh_foresee_nodes(extent, middle) > nodes) {
+      low = middle;
+    } else {
+      high = middle;
+    }
+  }
+  return high;
+}
+
+double mesh_foresee_most(void) {
+  double kilobytes = 0;
+  FILE  *info      = fopen("/proc/meminfo", "r");
+  char   line[256];
+  while (info && kilobytes == 0 && fgets(line, sizeof line, info))
+    if (sscanf(line, "MemAvailable: %lf", &kilobytes) != 1) kilobytes = 0;
+  if (info) fclose(info);
+  return kilobytes > 0 ? fmin(MOST, 1e3 * kilobytes / BYTES_EACH) : MOST;
+}
+
+/* Length, area or volume of an entity: OpenCASCADE's own, else from its box. */
+static double measure(int dimension, int tag) {
+  double size = -1, low[3], high[3], span[3];
+  int    ierr = 0;
+  gmshModelOccGetMass(dimension, tag, &size, &ierr);
+  if (ierr == 0 && size >= 0) return size;
+  ierr = 0;
+  gmshModelGetBoundingBox(dimension, tag, &low[0], &low[1], &low[2], &high[0], &high[1], &high[2],
+                          &ierr);
+  if (ierr) return 0;
+  for (int d = 0; d < 3; d++) span[d] = high[d] - low[d];
+  double xy = span[0] * span[1], yz = span[1] * span[2], zx = span[2] * span[0];
+  if (dimension == 1) return hypot(hypot(span[0], span[1]), span[2]);
+  /* a face fills half of its box's largest side at least, or so */
+  return dimension == 2 ? fmax(xy, fmax(yz, zx)) / 2 : 0;
+}
+
+static shb_status measure_all(const char *path, mesh_extent *extent) {
+  double *sum[4] = {NULL, &extent->length, &extent->area, &extent->volume};
+  *extent        = (mesh_extent){0};
+  for (int dimension = 1; dimension <= 3; dimension++) {
+    int   *tags = NULL;
+    size_t n    = 0;
+    GMSH_TRY(path, gmshModelGetEntities(&tags, &n, dimension, &ierr));
+    for (size_t i = 0; i + 1 < n; i += 2) *sum[dimension] += measure(dimension, tags[i + 1]);
+    gmshFree(tags);
+  }
+  return SHB_OK;
+}
+
+static shb_status check(const mesh_source *source, const mesh_extent *extent, double h) {
+  double most = mesh_foresee_most(), nodes = mesh_foresee_nodes(extent, h);
+  SHB_CHECK(
+      nodes <= most, SHB_ERR_INPUT,
+      "%s: %s %.3g m would give about %.2g nodes; with %.2g m they are %.2g, the most that %s",
+      source->path,
+      h * source->unit > .9 * source->size && source->size > 0 ? "mesh.size"
+                                                               : "its own element size of",
+      h * source->unit, nodes, 1.02 * source->unit * mesh_foresee_size(extent, most), most,
+      most < MOST ? "the free memory holds" : "can be computed with");
+  return SHB_OK;
+}
+
+shb_status mesh_foresee_solid(const mesh_source *source, mesh_extent *extent) {
+  double floor = 0;
+  SHB_TRY(measure_all(source->path, extent));
+  if (source->size > 0) SHB_TRY(check(source, extent, source->size / source->unit));
+  GMSH_TRY(source->path, gmshOptionGetNumber("Mesh.MeshSizeMin", &floor, &ierr));
+  floor = fmax(floor, mesh_foresee_size(&(mesh_extent){.length = extent->length}, MOST));
+  GMSH_TRY(source->path, gmshOptionSetNumber("Mesh.MeshSizeMin", floor, &ierr));
+  return SHB_OK;
+}
+
+/* Corners of the lines or triangles on an entity, [n][dimension + 1][3]; the caller frees. */
+static shb_status corners(const char *path, int dimension, int tag, double **xyz, size_t *n) {
+  const int type = dimension == 1 ? GMSH_LINE : GMSH_TRIANGLE;
+  size_t   *tags = NULL, n_tags = 0, n_xyz = 0, n_unused = 0;
+  double   *unused = NULL;
+  GMSH_TRY(path, gmshModelMeshGetNodesByElementType(type, &tags, &n_tags, xyz, &n_xyz, &unused,
+                                                    &n_unused, tag, 0, &ierr));
+  gmshFree(tags);
+  gmshFree(unused);
+  *n = n_xyz / (size_t)(3 * (dimension + 1));
+  return SHB_OK;
+}
+
+/* Length of a line, area of a triangle; *cone: six times the volume between a triangle and the origin. */
+static double size_of(int dimension, const double *x, double *cone) {
+  double a[3], b[3] = {0}, c[3];
+  for (int d = 0; d < 3; d++) {
+    a[d] = x[3 + d] - x[d];
+    if (dimension == 2) b[d] = x[6 + d] - x[d];
+  }
+  if (dimension == 1) return hypot(hypot(a[0], a[1]), a[2]);
+  for (int d = 0; d < 3; d++)
+    c[d] = a[(d + 1) % 3] * b[(d + 2) % 3] - a[(d + 2) % 3] * b[(d + 1) % 3];
+  *cone += x[0] * c[0] + x[1] * c[1] + x[2] * c[2];
+  return hypot(hypot(c[0], c[1]), c[2]) / 2;
+}
+
+/* Sum over an entity of the sizes, of size times element size h, and of the cones. */
+static shb_status add(const char *path, int dimension, int tag, double sum[3]) {
+  double *xyz = NULL;
+  size_t  n   = 0;
+  SHB_TRY(corners(path, dimension, tag, &xyz, &n));
+  for (size_t i = 0; i < n; i++) {
+    double one = size_of(dimension, xyz + i * (size_t)(3 * (dimension + 1)), &sum[2]);
+    sum[0] += one;
+    sum[1] += one * (dimension == 1 ? one : sqrt(2.3 * one)); /* 2.3 triangles a square of h */
+  }
+  gmshFree(xyz);
+  return SHB_OK;
+}
+
+/* Volume within the meshed faces, by the theorem of Gauss; the boundary of each solid has its signs. */
+static shb_status enclose(const char *path, double *volume) {
+  int   *solids = NULL;
+  size_t n      = 0;
+  GMSH_TRY(path, gmshModelGetEntities(&solids, &n, 3, &ierr));
+  shb_status status = SHB_OK;
+  for (size_t i = 0; i + 1 < n && status == SHB_OK; i += 2) {
+    int   *face = NULL, ierr = 0;
+    size_t n_face = 0;
+    double six    = 0;
+    gmshModelGetBoundary(&solids[i], 2, &face, &n_face, 0, 1, 0, &ierr);
+    for (size_t f = 0; f + 1 < n_face && status == SHB_OK; f += 2) {
+      double sum[3] = {0};
+      status        = add(path, 2, abs(face[f + 1]), sum);
+      six += face[f + 1] < 0 ? -sum[2] : sum[2];
+    }
+    *volume += fabs(six) / 6;
+    gmshFree(face);
+  }
+  gmshFree(solids);
+  return status;
+}
+
+shb_status mesh_foresee_next(const mesh_source *source, int dimension, mesh_extent *extent) {
+  int   *tags   = NULL;
+  size_t n      = 0;
+  double sum[3] = {0};
+  GMSH_TRY(source->path, gmshModelGetEntities(&tags, &n, dimension, &ierr));
+  shb_status status = SHB_OK;
+  for (size_t i = 0; i + 1 < n && status == SHB_OK; i += 2)
+    status = add(source->path, dimension, tags[i + 1], sum);
+  gmshFree(tags);
+  SHB_TRY(status);
+  if (dimension == 2 && extent->volume == 0) SHB_TRY(enclose(source->path, &extent->volume));
+  return sum[0] > 0 ? check(source, extent, sum[1] / sum[0]) : SHB_OK;
+}

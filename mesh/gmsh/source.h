@@ -1,0 +1,24 @@
+/* Where a blade's mesh comes from when it is not the parametric one: a mesh, or a solid that is meshed here. */
+#ifndef MESH_GMSH_SOURCE_H
+#define MESH_GMSH_SOURCE_H
+
+#include "mesh/base/progress.h"
+#include "mesh/core/group_rules.h"
+
+typedef struct {
+  const char *path;
+  double      unit; /* m: length of one unit of the file's coordinates; STEP files arrive in mm */
+  double      size; /* m, element size of a solid; 0: as the file says (.geo) */
+  mesh_axis   axis;
+  int blades; /* contact faces of a solid are made to match after this sector; 0: contact to ground */
+  mesh_rules rules;
+  int        n_contacts; /* several contact interfaces, 0: contact_right and contact_left */
+  struct {
+    char right[MESH_WORD], left[MESH_WORD];
+  } contact[MESH_MAX_MORE / 2];
+} mesh_source;
+
+/* Read, or mesh, and give every group its faces; coordinates in m. SHB_ERR_INPUT, SHB_ERR_IO, SHB_INTERRUPTED. */
+shb_status mesh_source_read(const mesh_source *source, shb_progress *progress, mesh_fe *mesh);
+
+#endif

@@ -1,0 +1,187 @@
+#define _GNU_SOURCE /* getdelim */
+#include "mesh/io/inp_deck.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+shb_status mesh_deck_fail(const mesh_deck *deck, long line, const char *source, int at,
+                          const char *format, ...) {
+  char    text[512];
+  va_list args;
+  va_start(args, format);
+  vsnprintf(text, sizeof text, format, args);
+  va_end(args);
+  for (char *c = text; *c; c++)
+    if (iscntrl((unsigned char)*c)) *c = ' ';
+  return shb_fail(SHB_ERR_INPUT, source, at, "%s:%ld: %s", deck->path, line, text);
+}
+
+/* Passes over a byte order mark; sees what ends the first line. */
+static void begin(mesh_deck *deck) {
+  char start[4] = "";
+  int  c        = 0;
+  deck->end     = '\n';
+  if (fread(start, 1, 3, deck->file) != 3 || strcmp(start, "\xEF\xBB\xBF") != 0) rewind(deck->file);
+  long from = ftell(deck->file);
+  while ((c = getc(deck->file)) != EOF && c != '\n' && c != '\r') continue;
+  if (c == '\r' && getc(deck->file) != '\n') deck->end = '\r';
+  fseek(deck->file, from, SEEK_SET);
+}
+
+shb_status mesh_deck_open(const char *path, mesh_deck *deck) {
+  *deck      = (mesh_deck){.path = path};
+  deck->file = fopen(path, "rb");
+  SHB_CHECK(deck->file, SHB_ERR_IO, "%s: cannot be read: %s", path, strerror(errno));
+  begin(deck);
+  return SHB_OK;
+}
+
+void mesh_deck_close(mesh_deck *deck) {
+  if (deck->file) fclose(deck->file);
+  free(deck->text);
+  *deck = (mesh_deck){0};
+}
+
+/* Cuts spaces and the line's end, in place. */
+static char *trim(char *text) {
+  while (isspace((unsigned char)*text)) text++;
+  size_t n = strlen(text);
+  while (n > 0 && isspace((unsigned char)text[n - 1])) text[--n] = '\0';
+  return text;
+}
+
+/* The next line that is neither empty nor a comment into deck->text; *found: false at the end. */
+static shb_status next_line(mesh_deck *deck, bool *found) {
+  *found = true;
+  if (deck->held) {
+    deck->held = false;
+    return SHB_OK;
+  }
+  for (ssize_t n; (n = getdelim(&deck->text, &deck->size, deck->end, deck->file)) >= 0;) {
+    deck->line++;
+    MESH_DECK_CHECK(memchr(deck->text, '\0', (size_t)n) == NULL, deck, deck->line,
+                    "holds a zero byte; not a text file");
+    char *start = trim(deck->text);
+    memmove(deck->text, start, strlen(start) + 1);
+    if (deck->text[0] && strncmp(deck->text, "**", 2) != 0) return SHB_OK;
+  }
+  SHB_CHECK(!ferror(deck->file), SHB_ERR_IO, "%s: cannot be read: %s", deck->path, strerror(errno));
+  *found = false;
+  return SHB_OK;
+}
+
+/* Keyword in capitals, runs of spaces as one. */
+static void take_word(const char *text, size_t n, char word[MESH_DECK_NAME]) {
+  size_t used = 0;
+  for (size_t i = 0; i < n && used + 1 < MESH_DECK_NAME; i++) {
+    bool space = isspace((unsigned char)text[i]);
+    if (space && (used == 0 || word[used - 1] == ' ')) continue;
+    word[used++] = space ? ' ' : (char)toupper((unsigned char)text[i]);
+  }
+  while (used > 0 && word[used - 1] == ' ') used--;
+  word[used] = '\0';
+}
+
+shb_status mesh_deck_card(mesh_deck *deck, mesh_card *card, bool *found) {
+  do SHB_TRY(next_line(deck, found));
+  while (*found && deck->text[0] != '*');
+  if (!*found) return SHB_OK;
+  card->line = deck->line;
+  size_t n   = strcspn(deck->text, ",");
+  take_word(deck->text + 1, n - 1, card->word);
+  card->text[0] = '\0';
+  for (const char *part = deck->text + n;; part = deck->text) {
+    size_t used = strlen(card->text);
+    MESH_DECK_CHECK(used + strlen(part) + 1 < sizeof card->text, deck, card->line,
+                    "*%s: its keyword line is too long", card->word);
+    memcpy(card->text + used, part, strlen(part) + 1);
+    used = strlen(card->text);
+    if (used == 0 || card->text[used - 1] != ',') return SHB_OK;
+    bool more;
+    SHB_TRY(next_line(deck, &more));
+    if (!more) return SHB_OK;
+    deck->held = deck->text[0] == '*';
+    if (deck->held) return SHB_OK;
+  }
+}
+
+shb_status mesh_deck_row(mesh_deck *deck, mesh_row *row, bool *found) {
+  row->n = 0;
+  SHB_TRY(next_line(deck, found));
+  if (!*found) return SHB_OK;
+  row->line  = deck->line;
+  deck->held = deck->text[0] == '*';
+  *found     = !deck->held;
+  for (char *at = deck->text, *end = at; *found && end; at = end + 1) {
+    end = strchr(at, ',');
+    if (end) *end = '\0';
+    if (!end && !*trim(at)) break;
+    MESH_DECK_CHECK(row->n < MESH_DECK_FIELDS, deck, row->line, "more than %d values in a row",
+                    MESH_DECK_FIELDS);
+    row->field[row->n++] = trim(at);
+  }
+  return SHB_OK;
+}
+
+/* Start of the parameter in the card's text, at what follows its name; NULL if absent. */
+static const char *find_parameter(const mesh_card *card, const char *parameter) {
+  size_t n = strlen(parameter);
+  for (const char *at = strchr(card->text, ','); at; at = strchr(at, ',')) {
+    at += 1 + strspn(at + 1, " \t");
+    if (strncasecmp(at, parameter, n) != 0) continue;
+    const char *rest = at + n + strspn(at + n, " \t");
+    if (*rest == '=' || *rest == ',' || *rest == '\0') return rest;
+  }
+  return NULL;
+}
+
+bool mesh_card_has(const mesh_card *card, const char *parameter) {
+  return find_parameter(card, parameter) != NULL;
+}
+
+shb_status mesh_card_value(const mesh_deck *deck, const mesh_card *card, const char *parameter,
+                           char value[MESH_DECK_NAME]) {
+  const char *at = find_parameter(card, parameter);
+  value[0]       = '\0';
+  if (!at || *at != '=') return SHB_OK;
+  at += 1 + strspn(at + 1, " \t\"");
+  size_t n = strcspn(at, ",\"");
+  while (n > 0 && isspace((unsigned char)at[n - 1])) n--;
+  MESH_DECK_CHECK(n < MESH_DECK_NAME, deck, card->line, "*%s: %s: a name of more than %d letters",
+                  card->word, parameter, MESH_DECK_NAME - 1);
+  memcpy(value, at, n);
+  value[n] = '\0';
+  return SHB_OK;
+}
+
+bool mesh_deck_numeric(const char *field) {
+  return *field && (isdigit((unsigned char)*field) || strchr("+-.", *field));
+}
+
+shb_status mesh_deck_number(const mesh_deck *deck, const char *field, long *number) {
+  char *end = NULL;
+  errno     = 0;
+  *number   = strtol(field, &end, 10);
+  MESH_DECK_CHECK(*field && !*end && errno == 0 && *number > 0, deck, deck->line,
+                  "'%.40s' is not a number of a node or an element (1, 2, ...)", field);
+  return SHB_OK;
+}
+
+shb_status mesh_deck_real(const mesh_deck *deck, const char *field, double *value) {
+  char   text[64];
+  size_t n    = strlen(field);
+  bool   good = n > 0 && n < sizeof text && strspn(field, "0123456789+-.eEdD") == n;
+  if (good) {
+    char *end = NULL;
+    for (size_t i = 0; i <= n; i++) text[i] = strchr("dD", field[i]) && field[i] ? 'e' : field[i];
+    *value = strtod(text, &end);
+    good   = !*end && isfinite(*value);
+  }
+  MESH_DECK_CHECK(good, deck, deck->line, "'%.40s' is not a number", field);
+  return SHB_OK;
+}

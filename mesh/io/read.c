@@ -1,0 +1,114 @@
+/* Reading a mesh file: gmsh's own, or Abaqus' and CalculiX'. */
+#define _GNU_SOURCE /* memmem */
+#include <errno.h>
+#include <gmshc.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "mesh/core/fe_mesh.h"
+#include "mesh/core/file_format.h"
+#include "mesh/core/group_checks.h"
+#include "mesh/core/jacobian.h"
+#include "mesh/gmsh/import.h"
+#include "mesh/gmsh/session.h"
+#include "mesh/io/inp_read.h"
+
+/* First line $MeshFormat (comments may come before it), then version 2.2 or 4.1. gmsh takes anything else
+ * for a script of its own language, so it must not see a file that fails here. */
+static shb_status check_head(FILE *file, const char *path) {
+  char line[256] = "";
+  bool comment   = false;
+  while (fgets(line, sizeof line, file)) {
+    if (strncmp(line, "$Comments", 9) == 0) comment = true;
+    if (!comment && strspn(line, " \t\r\n") != strlen(line)) break;
+    if (strncmp(line, "$EndComments", 12) == 0) comment = false;
+  }
+  double version = 0;
+  SHB_CHECK(strncmp(line, "$MeshFormat", 11) == 0 && fgets(line, sizeof line, file) &&
+                sscanf(line, "%lf", &version) == 1,
+            SHB_ERR_INPUT, "%s: not a gmsh mesh file (it does not begin with $MeshFormat)", path);
+  SHB_CHECK(version == 2.2 || version == 4.1, SHB_ERR_INPUT,
+            "%s: mesh format %g; 2.2 or 4.1 is needed (gmsh -format msh41)", path, version);
+  return SHB_OK;
+}
+
+/* Is mark anywhere in the file? Blocks overlap by the mark's length. */
+static bool holds(FILE *file, const char *mark) {
+  enum { BLOCK = 1 << 18 };
+  size_t length = strlen(mark), kept = 0;
+  char  *buffer = malloc(BLOCK + 64);
+  bool   found  = false;
+  rewind(file);
+  for (size_t n; buffer && !found && (n = fread(buffer + kept, 1, BLOCK, file)) > 0;) {
+    n += kept;
+    found = memmem(buffer, n, mark, length) != NULL;
+    kept  = n < length ? n : length;
+    memmove(buffer, buffer + n - kept, kept);
+  }
+  free(buffer);
+  return found;
+}
+
+static shb_status check_file(const char *path) {
+  FILE *file = fopen(path, "rb");
+  SHB_CHECK(file, SHB_ERR_IO, "%s: cannot be read: %s", path, strerror(errno));
+  shb_status status = check_head(file, path);
+  if (status == SHB_OK && !holds(file, "$EndNodes"))
+    status = shb_fail(SHB_ERR_INPUT, __FILE__, __LINE__,
+                      "%s: cut short or without nodes (no $EndNodes)", path);
+  if (status == SHB_OK && !holds(file, "$EndElements"))
+    status = shb_fail(SHB_ERR_INPUT, __FILE__, __LINE__,
+                      "%s: cut short or without elements (no $EndElements)", path);
+  fclose(file);
+  return status;
+}
+
+static shb_status read_msh(const char *path, const mesh_names *names, mesh_fe *mesh) {
+  SHB_TRY(check_file(path));
+  mesh_kernel kernel;
+  SHB_TRY(mesh_kernel_open(&kernel));
+  int ierr = 0;
+  mesh_kernel_listen(path);
+  gmshMerge(path, &ierr);
+  shb_status heard  = mesh_kernel_heard(path); /* gmsh reads on where an element lacks its nodes */
+  shb_status status = ierr              ? mesh_kernel_fail(SHB_ERR_INPUT, __FILE__, __LINE__, path)
+                      : heard != SHB_OK ? heard
+                                        : mesh_import(path, names, mesh);
+  mesh_kernel_close(&kernel);
+  return status;
+}
+
+shb_status mesh_fe_read_named(const char *path, const mesh_names *names, mesh_fe *mesh) {
+  memset(mesh, 0, sizeof *mesh);
+  bool msh = mesh_format_of(path) == MESH_FORMAT_MSH;
+  SHB_CHECK(msh || mesh_format_of(path) == MESH_FORMAT_INP, SHB_ERR_INPUT,
+            "%s: not a mesh file; its name must end in .msh (gmsh) or .inp (Abaqus, CalculiX)",
+            path);
+  SHB_TRY(msh ? read_msh(path, names, mesh) : mesh_inp_read(path, names, mesh));
+  shb_status status = mesh_jacobian_check(mesh, path);
+  if (status != SHB_OK) mesh_fe_free(mesh);
+  return status;
+}
+
+shb_status mesh_fe_check_groups(const mesh_fe *mesh, const char *name) {
+  char found[MESH_FOUND + 40];
+  SHB_CHECK(mesh->set[MESH_ROOT].n > 0, SHB_ERR_INPUT,
+            "%s: group root is absent or empty; a physical surface (in .inp a *SURFACE or *NSET) "
+            "of that name, or a rule in mesh.groups, says which faces are clamped; %s",
+            name, mesh_fe_found(mesh, found));
+  for (int s = MESH_N_SETS; s < mesh_fe_sets(mesh); s++)
+    SHB_CHECK(mesh->set[s].n > 0, SHB_ERR_INPUT,
+              "%s: group %s is absent or empty; a physical surface (in .inp a *SURFACE or *NSET) "
+              "of that name, or a rule in mesh.groups, says which faces it is; %s",
+              name, mesh_fe_set_name(mesh, s), mesh_fe_found(mesh, found));
+  return mesh_overlap_check(mesh, name);
+}
+
+shb_status mesh_fe_read(const char *path, mesh_fe *mesh) {
+  SHB_TRY(mesh_fe_read_named(path, NULL, mesh));
+  shb_status status = mesh_fe_check_groups(mesh, path);
+  if (status != SHB_OK) mesh_fe_free(mesh);
+  return status;
+}

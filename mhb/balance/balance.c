@@ -1,0 +1,418 @@
+#include "mhb/balance/balance.h"
+
+#include <lapacke.h>
+#include <math.h>
+#include <omp.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "mhb/numerics/fourier.h"
+#include "mhb/numerics/simd.h"
+
+/* Fewer pairs than this are not worth a team of threads. */
+enum { WORTH_THREADS = 24 };
+
+/* One workspace a thread; where threads are busy already (one a branch) just one. */
+static shb_status create_contacts(mhb_residual *b) {
+  int threads  = omp_in_parallel() || b->n_pairs < WORTH_THREADS ? 1 : omp_get_max_threads();
+  b->contacts  = calloc((size_t)threads, sizeof *b->contacts);
+  b->n_threads = threads;
+  SHB_CHECK(b->contacts, SHB_ERR_IO, "out of memory");
+  for (int i = 0; i < threads; i++)
+    SHB_TRY(mhb_contact_create(b->m, b->m, b->settings->tolerance, &b->contacts[i]));
+  b->contact = b->contacts[0];
+  return SHB_OK;
+}
+
+static void set_laws(mhb_residual *b) {
+  b->n_laws++;
+  for (int i = 0; i < b->n_interfaces; i++)
+    b->own[i] = mhb_interface_condition(&b->at, b->settings, i);
+  for (int a = 0; a < b->n_pairs; a++) {
+    const mhb_condition *own = &b->own[b->receptance->interface[a]];
+    b->law[a]       = mhb_condition_law(own, b->settings->preload, b->receptance->share[a]);
+    b->linear_dp[a] = -1;
+  }
+}
+
+shb_status mhb_residual_create(const modal_model *model, const mhb_settings *settings,
+                               mhb_residual **out) {
+  mhb_receptance *receptance;
+  SHB_TRY(mhb_receptance_create(model, settings, settings->harmonics, &receptance));
+  shb_status status = mhb_residual_create_on(receptance, settings, out);
+  if (status == SHB_OK)
+    (*out)->owns_receptance = 1;
+  else
+    mhb_receptance_destroy(receptance);
+  return status;
+}
+
+shb_status mhb_residual_create_on(mhb_receptance *receptance, const mhb_settings *settings,
+                                  mhb_residual **out) {
+  mhb_residual *b = calloc(1, sizeof *b);
+  SHB_CHECK(b, SHB_ERR_IO, "out of memory");
+  int m           = settings->harmonics;
+  b->settings     = settings;
+  b->receptance   = receptance;
+  b->m            = m;
+  b->n_pairs      = receptance->model->n_pairs;
+  b->n_interfaces = mhb_interfaces(settings);
+  b->nb           = mhb_real_size(m);
+  b->n            = 3 * b->n_pairs * b->nb;
+  size_t pairs = (size_t)b->n_pairs, block = 3 * (size_t)b->nb;
+  b->law            = calloc(pairs, sizeof *b->law);
+  b->info           = calloc(pairs, sizeof *b->info);
+  b->kind           = calloc(pairs, sizeof *b->kind);
+  b->linear_dp      = calloc(pairs, sizeof *b->linear_dp);
+  b->p              = calloc((size_t)b->n, sizeof(double));
+  b->dp             = calloc(pairs * block * block, sizeof(double));
+  b->pk             = calloc(3 * pairs, sizeof(double complex));
+  b->uk             = calloc(3 * pairs, sizeof(double complex));
+  b->by_parameter   = calloc((size_t)b->n, sizeof(double));
+  shb_status status = SHB_OK;
+  if (!(b->law && b->info && b->kind && b->linear_dp && b->p && b->dp && b->pk && b->uk &&
+        b->by_parameter))
+    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for %d unknowns", b->n);
+  if (status == SHB_OK) status = create_contacts(b);
+  if (status != SHB_OK) {
+    mhb_residual_destroy(b);
+    return status;
+  }
+  b->at = mhb_condition_of(settings);
+  set_laws(b);
+  *out = b;
+  return SHB_OK;
+}
+
+void mhb_residual_destroy(mhb_residual *b) {
+  if (!b) return;
+  if (b->owns_receptance) mhb_receptance_destroy(b->receptance);
+  for (int i = 0; b->contacts && i < b->n_threads; i++) mhb_contact_destroy(b->contacts[i]);
+  free(b->contacts);
+  free(b->kind);
+  free(b->linear_dp);
+  free(b->law);
+  free(b->info);
+  free(b->p);
+  free(b->dp);
+  free(b->pk);
+  free(b->uk);
+  free(b->by_parameter);
+  free(b);
+}
+
+void mhb_residual_condition(mhb_residual *b, const mhb_condition *condition) {
+  b->at = *condition;
+  set_laws(b);
+  mhb_receptance_scale(b->receptance, b->at.scale);
+}
+
+void mhb_residual_preload(mhb_residual *b, double n0) {
+  b->at.n0 = n0;
+  set_laws(b);
+}
+
+void mhb_residual_anchor(mhb_residual *b, int anchored) {
+  b->at.anchored = anchored;
+  b->at.anchor   = b->at.n0;
+}
+
+void mhb_residual_follow(mhb_residual *b, mhb_parameter parameter) {
+  b->parameter = parameter;
+}
+
+void mhb_residual_place(mhb_residual *b, double value) {
+  if (value == mhb_parameter_get(&b->at, b->parameter)) return;
+  mhb_parameter_set(&b->at, b->parameter, value);
+  if (b->parameter == MHB_IN_FREQUENCY) return;
+  if (b->parameter == MHB_IN_SCALE) {
+    mhb_receptance_scale(b->receptance, value);
+  } else {
+    set_laws(b);
+  }
+}
+
+/* Complex harmonic k of a vector in real form. */
+static void harmonic(const mhb_residual *b, const double *x, int k, double complex *out) {
+  for (int row = 0; row < 3 * b->n_pairs; row++) {
+    const double *a = x + (size_t)row * (size_t)b->nb;
+    out[row]        = k == 0 ? a[0] : CMPLX(a[2 * k - 1], a[2 * k]);
+  }
+}
+
+static void store(const mhb_residual *b, double *x, int k, const double complex *in) {
+  for (int row = 0; row < 3 * b->n_pairs; row++) {
+    double *a = x + (size_t)row * (size_t)b->nb;
+    if (k == 0) {
+      a[0] = creal(in[row]);
+    } else {
+      a[2 * k - 1] = creal(in[row]);
+      a[2 * k]     = cimag(in[row]);
+    }
+  }
+}
+
+MHB_HOT static void combine(int block, const double *d, size_t stride, const double complex R[3],
+                            double *restrict re, double *restrict im) {
+  const double *d0 = d, *d1 = d + stride, *d2 = d1 + stride;
+  const double *e0 = d0 + block, *e1 = d1 + block, *e2 = d2 + block;
+  double        x0 = creal(R[0]), x1 = creal(R[1]), x2 = creal(R[2]);
+  double        y0 = cimag(R[0]), y1 = cimag(R[1]), y2 = cimag(R[2]);
+  for (int j = 0; j < block; j++) {
+    re[j] += x0 * d0[j] - y0 * e0[j] + x1 * d1[j] - y1 * e1[j] + x2 * d2[j] - y2 * e2[j];
+    im[j] += y0 * d0[j] + x0 * e0[j] + y1 * d1[j] + x1 * e1[j] + y2 * d2[j] + x2 * e2[j];
+  }
+}
+
+void mhb_residual_combine(const mhb_residual *b, const double complex R[3], int pair, int k,
+                          double *re, double *im) {
+  int           block  = 3 * b->nb;
+  size_t        stride = (size_t)b->nb * (size_t)block;
+  const double *d      = b->dp + (size_t)pair * 3 * stride + (k ? 2 * k - 1 : 0) * block;
+  if (k) {
+    combine(block, d, stride, R, re, im);
+    return;
+  }
+  for (int j = 0; j < block; j++)
+    re[j] += creal(R[0]) * d[j] + creal(R[1]) * d[stride + (size_t)j] +
+             creal(R[2]) * d[2 * stride + (size_t)j];
+}
+
+/* Columns of one pair of I + R dp, from rows. */
+static void assemble_columns(const mhb_residual *b, int pair, double *jacobian) {
+  int    block = 3 * b->nb, n3 = 3 * b->n_pairs;
+  size_t n = (size_t)b->n, first = (size_t)pair * (size_t)block;
+  double re[block], im[block];
+  for (int row = 0; row < n3; row++)
+    for (int k = 0; k <= b->m; k++) {
+      mhb_receptance_need(b->receptance, k);
+      const double complex *R =
+          b->receptance->R + ((size_t)k * (size_t)n3 + (size_t)row) * (size_t)n3 + 3 * pair;
+      double *J = jacobian + first * n + row * b->nb + (k ? 2 * k - 1 : 0);
+      memset(re, 0, sizeof re);
+      memset(im, 0, sizeof im);
+      mhb_residual_combine(b, R, pair, k, re, im);
+      for (size_t j = 0; j < (size_t)block; j++) {
+        J[j * n] = re[j];
+        if (k) J[j * n + 1] = im[j];
+      }
+    }
+  for (size_t i = first; i < first + (size_t)block; i++) jacobian[i * n + i] += 1;
+}
+
+static mhb_pair_kind kind_of(const mhb_residual *b, int a) {
+  const mhb_contact_info *info = &b->info[a];
+  const double           *p    = b->p + 3 * (size_t)a * (size_t)b->nb;
+  if (info->share[MHB_SEPARATE] == 1 && !info->lost) return MHB_PAIR_OPEN;
+  if (info->share[MHB_STICK] < 1 || !info->undetermined) return MHB_PAIR_MOVING;
+  return p[b->nb] == 0 && p[2 * b->nb] == 0 ? MHB_PAIR_STUCK : MHB_PAIR_HELD;
+}
+
+/* The derivative of a pair that is stuck or open, from the law itself: the same to the last bit however it was found. Written
+ * once, but for the mean friction. */
+static void set_linear_derivative(const mhb_residual *b, int a) {
+  const mhb_law *law = &b->law[a];
+  size_t         nb = (size_t)b->nb, block = 3 * nb;
+  double        *d = b->dp + (size_t)a * block * block;
+  if (b->linear_dp[a] == (int)b->kind[a]) return;
+  b->linear_dp[a] = (int)b->kind[a];
+  memset(d, 0, sizeof(double) * block * block);
+  if (b->kind[a] == MHB_PAIR_OPEN) return;
+  for (size_t i = 0; i < nb; i++) d[i * block + i] = law->kv;
+  for (size_t i = 1; i < nb; i++) {
+    double *u = d + (nb + i) * block, *w = d + (2 * nb + i) * block;
+    u[nb + i]     = law->ku[0];
+    u[2 * nb + i] = law->ku[1];
+    w[nb + i]     = law->ku[1];
+    w[2 * nb + i] = law->ku[2];
+  }
+}
+
+/* A pair that was stuck or open will mostly be so again: then its derivative need not be worked out. */
+static void evaluate_pair(mhb_residual *b, mhb_contact *contact, const double *x, int a,
+                          int derivative) {
+  size_t  block = 3 * (size_t)b->nb, at = (size_t)a * block;
+  double *dp = b->dp + at * block;
+  if (!derivative || b->kind[a] != MHB_PAIR_MOVING) {
+    mhb_contact_force(contact, &b->law[a], x + at, b->p + at, NULL, &b->info[a]);
+    if (!derivative) return;
+    b->kind[a] = kind_of(b, a);
+  }
+  if (b->kind[a] == MHB_PAIR_MOVING) {
+    mhb_contact_force(contact, &b->law[a], x + at, b->p + at, dp, &b->info[a]);
+    b->linear_dp[a] = -1;
+    b->kind[a]      = kind_of(b, a);
+  }
+  if (b->kind[a] != MHB_PAIR_MOVING) set_linear_derivative(b, a);
+  if (b->kind[a] == MHB_PAIR_HELD)
+    mhb_contact_mean_gradient(contact, (double *const[2]){mhb_residual_mean_row(b, a, 1),
+                                                          mhb_residual_mean_row(b, a, 2)});
+}
+
+static void evaluate_pairs(mhb_residual *b, const double *x, int derivative) {
+  for (int a = 0; a < b->n_pairs && b->n_threads == 1; a++)
+    evaluate_pair(b, b->contact, x, a, derivative);
+  if (b->n_threads == 1) return;
+#pragma omp parallel for schedule(dynamic, 1) num_threads(b->n_threads)
+  for (int a = 0; a < b->n_pairs; a++)
+    evaluate_pair(b, b->contacts[omp_get_thread_num()], x, a, derivative);
+}
+
+/* Harmonic k neither drives the contact nor is pushed at by it: its receptance does not matter. */
+static int at_rest(const mhb_residual *b, int k) {
+  for (int i = 0; i < 3 * b->n_pairs; i++)
+    if (creal(b->pk[i]) != 0 || cimag(b->pk[i]) != 0) return 0;
+  return !b->receptance->driven[k];
+}
+
+/* uk <- uk - free + R_k pk */
+static void balance(const mhb_residual *b, int k) {
+  int                   n3   = 3 * b->n_pairs;
+  const double complex *R    = b->receptance->R + (size_t)k * (size_t)n3 * (size_t)n3;
+  const double complex *free = b->receptance->free + k * n3;
+  for (int i = 0; i < n3; i++, R += n3) {
+    double complex u  = b->uk[i] - free[i];
+    double         re = creal(u), im = cimag(u);
+    for (int j = 0; j < n3; j++) {
+      re += creal(R[j]) * creal(b->pk[j]) - cimag(R[j]) * cimag(b->pk[j]);
+      im += creal(R[j]) * cimag(b->pk[j]) + cimag(R[j]) * creal(b->pk[j]);
+    }
+    b->uk[i] = CMPLX(re, im);
+  }
+}
+
+/* Harmonic k of r does not change with the parameter: rest, or no force that does. */
+static int stays(const mhb_residual *b, int k, int rest) {
+  if (b->parameter == MHB_IN_FREQUENCY) return rest;
+  for (int i = 0; i < 3 * b->n_pairs; i++)
+    if (creal(b->pk[i]) != 0 || cimag(b->pk[i]) != 0) return 0;
+  return b->parameter != MHB_IN_SCALE || !b->receptance->driven[k];
+}
+
+/* uk <- dr_k/dvalue, pk the forces at x. */
+static void slope_of(mhb_residual *b, int k, int rest) {
+  int n3 = 3 * b->n_pairs;
+  if (b->parameter != MHB_IN_FREQUENCY) harmonic(b, b->by_parameter, k, b->pk);
+  for (int i = 0; i < n3; i++) b->uk[i] = 0;
+  if (stays(b, k, rest)) return;
+  mhb_receptance_need(b->receptance, k);
+  if (b->parameter == MHB_IN_FREQUENCY) {
+    mhb_receptance_slope(b->receptance, k, b->pk, b->uk);
+    for (int i = 0; i < n3; i++) b->uk[i] = -b->uk[i];
+    return;
+  }
+  const double complex *R    = b->receptance->R + (size_t)k * (size_t)n3 * (size_t)n3;
+  const double complex *unit = b->receptance->unit + k * n3;
+  for (int i = 0; i < n3; i++, R += n3) {
+    if (b->parameter == MHB_IN_SCALE) b->uk[i] = -unit[i];
+    for (int j = 0; j < n3; j++) b->uk[i] += R[j] * b->pk[j];
+  }
+}
+
+static void force_by_parameter(mhb_residual *b, const double *x) {
+  size_t block = 3 * (size_t)b->nb;
+  for (int a = 0; a < b->n_pairs; a++) {
+    size_t at   = (size_t)a * block;
+    int    i    = b->receptance->interface[a];
+    double rate = mhb_interface_rate(&b->at, b->settings, i, b->parameter);
+    mhb_parameter_force(&b->own[i], b->parameter, &b->law[a], b->receptance->share[a], b->nb,
+                        x + at, b->p + at, b->dp + at * block, b->by_parameter + at);
+    for (size_t j = at; j < at + block && rate != 1; j++) b->by_parameter[j] *= rate;
+  }
+}
+
+static void evaluate(mhb_residual *b, const double *x, double value, int derivative, double *r,
+                     double *slope) {
+  int followed = slope && b->parameter != MHB_IN_FREQUENCY;
+  mhb_residual_place(b, value);
+  mhb_receptance_move(b->receptance, b->at.omega);
+  evaluate_pairs(b, x, derivative || followed);
+  if (followed) force_by_parameter(b, x);
+  for (int k = 0; k <= b->m; k++) {
+    harmonic(b, b->p, k, b->pk);
+    harmonic(b, x, k, b->uk);
+    int rest = at_rest(b, k);
+    if (!rest) {
+      mhb_receptance_need(b->receptance, k);
+      balance(b, k);
+    }
+    store(b, r, k, b->uk);
+    if (!slope) continue;
+    slope_of(b, k, rest);
+    store(b, slope, k, b->uk);
+  }
+}
+
+void mhb_residual_derive(mhb_residual *b, const double *x, double value, double *r, double *slope) {
+  evaluate(b, x, value, 1, r, slope);
+}
+
+void mhb_residual_evaluate(mhb_residual *b, const double *x, double value, double *r,
+                           double *jacobian, double *slope) {
+  evaluate(b, x, value, jacobian != NULL, r, slope);
+  for (int pair = 0; jacobian && pair < b->n_pairs; pair++) assemble_columns(b, pair, jacobian);
+}
+
+static int holds(const mhb_residual *b, int pair, int stuck) {
+  return stuck == MHB_BY_PRELOAD ? b->law[pair].n0 > 0 : stuck;
+}
+
+/* Stuck: (I + R_k S) u_k = free_k - R_k s0, S = diag(kv, Ku), s0 the unbalanced preload at k = 0. The mean friction is
+ * zero there (static_friction.h: the smallest admissible one), so that S_0 = diag(kv, 0). */
+static shb_status linear_harmonic(const mhb_residual *b, int k, int stuck, double complex *u) {
+  int                   n = 3 * b->n_pairs;
+  const double complex *R = b->receptance->R + (size_t)k * (size_t)n * (size_t)n;
+  memcpy(u, b->receptance->free + k * n, sizeof(double complex) * (size_t)n);
+  if (!stuck) return SHB_OK;
+  lapack_complex_double *A    = calloc((size_t)n * (size_t)n, sizeof *A);
+  lapack_int            *ipiv = calloc((size_t)n, sizeof *ipiv);
+  for (int i = 0; A && ipiv && i < n; i++) {
+    for (int pair = 0; pair < b->n_pairs; pair++) {
+      const mhb_law        *law  = &b->law[pair];
+      double                on   = holds(b, pair, stuck);
+      const double complex *r    = R + (size_t)i * (size_t)n + 3 * pair;
+      double complex        s[3] = {r[0] * law->kv, k ? r[1] * law->ku[0] + r[2] * law->ku[1] : 0,
+                             k ? r[1] * law->ku[1] + r[2] * law->ku[2] : 0};
+      for (int c = 0; c < 3; c++)
+        A[(size_t)(3 * pair + c) * (size_t)n + (size_t)i] = on * s[c] + (i == 3 * pair + c);
+      if (k == 0 && on > 0) u[i] -= r[0] * (fmax(law->n0, 0) - law->balance);
+    }
+  }
+  lapack_int bad = 1;
+  if (A && ipiv) bad = LAPACKE_zgesv(LAPACK_COL_MAJOR, n, 1, A, n, ipiv, u, n);
+  free(A);
+  free(ipiv);
+  SHB_CHECK(bad == 0, SHB_ERR_INPUT, "the stuck system is singular at harmonic %d", k);
+  return SHB_OK;
+}
+
+shb_status mhb_residual_linear(mhb_residual *b, double value, int stuck, double *x) {
+  mhb_residual_place(b, value);
+  mhb_receptance_at(b->receptance, b->at.omega, b->m);
+  for (int k = 0; k <= b->m; k++) {
+    SHB_TRY(linear_harmonic(b, k, stuck, b->uk));
+    store(b, x, k, b->uk);
+    for (int i = 0; i < 3 * b->n_pairs; i++) b->pk[i] = 0;
+    for (int a = 0; stuck && a < b->n_pairs; a++) {
+      if (!holds(b, a, stuck)) continue;
+      const mhb_law        *law = &b->law[a];
+      const double complex *u   = b->uk + 3 * a;
+      b->pk[3 * a]              = law->kv * u[0] + (k == 0 ? fmax(law->n0, 0) - law->balance : 0);
+      if (k == 0) continue;
+      b->pk[3 * a + 1] = law->ku[0] * u[1] + law->ku[1] * u[2];
+      b->pk[3 * a + 2] = law->ku[1] * u[1] + law->ku[2] * u[2];
+    }
+    store(b, b->p, k, b->pk);
+  }
+  return SHB_OK;
+}
+
+void mhb_residual_force(const mhb_residual *b, int k, double complex *p) {
+  harmonic(b, b->p, k, p);
+}
+
+double mhb_residual_vibration(const mhb_residual *b, const double *x) {
+  double moving = 0, still = 0;
+  for (int i = 0; i < b->n; i++) *(i % b->nb ? &moving : &still) += x[i] * x[i];
+  return sqrt(moving > 0 ? moving : still);
+}

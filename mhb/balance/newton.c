@@ -1,0 +1,100 @@
+#include "mhb/balance/newton.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MAX_ITERATIONS = 40, MAX_HALVINGS = 8 };
+
+const char *mhb_reason_text(mhb_reason reason) {
+  switch (reason) {
+    case MHB_CONVERGED:
+      return "converged";
+    case MHB_NO_DESCENT:
+      return "Newton found no decrease of the residual";
+    case MHB_MAX_ITERATIONS:
+      return "Newton did not converge";
+    default:
+      return "the Jacobian is singular";
+  }
+}
+
+double mhb_norm(const double *x, int n) {
+  double top = 0, sum = 0;
+  for (int i = 0; i < n; i++) top = fmax(top, fabs(x[i]));
+  for (int i = 0; i < n && top == 0; i++) /* fmax passes over NaN */
+    if (isnan(x[i])) return NAN;
+  if (top == 0) return 0;
+  for (int i = 0; i < n; i++) sum += (x[i] / top) * (x[i] / top);
+  return top * sqrt(sum);
+}
+
+shb_status mhb_newton_create(int n, mhb_newton **out) {
+  mhb_newton *w = calloc(1, sizeof *w);
+  SHB_CHECK(w, SHB_ERR_IO, "out of memory");
+  size_t one = (size_t)n + 1;
+  w->n       = n;
+  w->r       = malloc(sizeof(double) * one);
+  w->step    = malloc(sizeof(double) * one);
+  w->trial   = malloc(sizeof(double) * one);
+  w->slope   = malloc(sizeof(double) * one);
+  w->row     = malloc(sizeof(double) * one);
+  if (!(w->r && w->step && w->trial && w->slope && w->row)) {
+    mhb_newton_destroy(w);
+    SHB_FAIL(SHB_ERR_IO, "out of memory for %d unknowns", n);
+  }
+  *out = w;
+  return SHB_OK;
+}
+
+void mhb_newton_destroy(mhb_newton *w) {
+  if (!w) return;
+  free(w->r);
+  free(w->step);
+  free(w->trial);
+  free(w->slope);
+  free(w->row);
+  mhb_condensed_destroy(w->system);
+  free(w);
+}
+
+shb_status mhb_newton_bind(mhb_newton *w, const mhb_residual *b) {
+  const mhb_condensed *s = w->system;
+  if (s && s->b == b && s->m == b->m && s->n_pairs == b->n_pairs) return SHB_OK;
+  mhb_condensed_destroy(w->system);
+  w->system = NULL;
+  return mhb_condensed_create(b, &w->system);
+}
+
+/* Halve the step until |r| falls; leaves r and derivatives at the new x. */
+static int line_search(mhb_newton *w, mhb_residual *b, double value, double *x, double *size) {
+  int n = w->n;
+  memcpy(w->trial, x, sizeof(double) * (size_t)n);
+  double before = *size, fraction = 1;
+  for (int i = 0; i < MAX_HALVINGS; i++, fraction *= .5) {
+    for (int j = 0; j < n; j++) x[j] = w->trial[j] - fraction * w->step[j];
+    mhb_residual_derive(b, x, value, w->r, NULL);
+    *size = mhb_norm(w->r, n);
+    if (*size < (1 - .1 * fraction) * before) return 1;
+  }
+  return 0;
+}
+
+mhb_reason mhb_newton_solve(mhb_newton *w, mhb_residual *b, double value, double tolerance,
+                            double *x, int *iterations) {
+  int n = w->n;
+  if (mhb_newton_bind(w, b) != SHB_OK) return MHB_SINGULAR;
+  mhb_residual_derive(b, x, value, w->r, NULL);
+  double size = mhb_norm(w->r, n);
+  for (*iterations = 0; *iterations < MAX_ITERATIONS; ++*iterations) {
+    if (size <= tolerance * fmax(mhb_norm(x, n), DBL_MIN)) return MHB_CONVERGED;
+    memcpy(w->step, w->r, sizeof(double) * (size_t)n);
+    if (!mhb_condensed_factor(w->system, NULL, NULL) || !mhb_condensed_solve(w->system, w->step))
+      return MHB_SINGULAR;
+    if (!line_search(w, b, value, x, &size))
+      return size <= 100 * tolerance * mhb_norm(x, n) ? MHB_CONVERGED
+                                                      : MHB_NO_DESCENT; /* rounding */
+  }
+  return MHB_MAX_ITERATIONS;
+}

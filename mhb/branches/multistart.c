@@ -1,0 +1,114 @@
+#include "mhb/branches/multistart.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "mhb/balance/subharmonics.h"
+
+static const double TOLERANCE = 1e-10, SAME = 1e-5, SMALL = 1e-6;
+enum { MAX_STEPS = 40, MAX_HALVINGS = 6 };
+
+void mhb_found_free(mhb_found *found) {
+  free(found->x);
+  *found = (mhb_found){0};
+}
+
+shb_status mhb_found_add(mhb_found *found, int n, const double *x) {
+  if (found->n_found == found->capacity) {
+    int     room = 2 * found->capacity + 8;
+    double *more = realloc(found->x, sizeof(double) * (size_t)room * (size_t)n);
+    SHB_CHECK(more, SHB_ERR_IO, "out of memory for %d solutions", room);
+    found->x        = more;
+    found->capacity = room;
+  }
+  found->n = n;
+  memcpy(found->x + (size_t)found->n_found++ * (size_t)n, x, sizeof(double) * (size_t)n);
+  return SHB_OK;
+}
+
+static double uniform(unsigned long long *seed) {
+  *seed = *seed * 6364136223846793005ULL + 1442695040888963407ULL;
+  return (double)(*seed >> 11) / 4503599627370496. - 1;
+}
+
+/* Harmonic k of any size up to that of the fundamental over k^2: as of a motion with jumps of acceleration. */
+static void draw(const mhb_residual *b, double size, unsigned long long *seed, double *x) {
+  for (int row = 0; row < b->n / b->nb; row++)
+    for (int j = 0; j < b->nb; j++) {
+      int k              = (j + 1) / 2;
+      x[row * b->nb + j] = size * uniform(seed) / fmax(1, k * k);
+    }
+}
+
+static double distance(const double *a, const double *b, int n) {
+  double d[n];
+  for (int i = 0; i < n; i++) d[i] = a[i] - b[i];
+  return mhb_norm(d, n);
+}
+
+/* Newton from x with steps of 2 size at most; 1: |r| has become small. */
+static int descend(mhb_newton *w, mhb_residual *b, double value, double size, double *x) {
+  int    n = b->n;
+  double kept[n];
+  for (int step = 0; step < MAX_STEPS; step++) {
+    mhb_residual_derive(b, x, value, w->r, NULL);
+    double before = mhb_norm(w->r, n), part = 1;
+    if (!isfinite(before)) return 0;
+    if (before <= SMALL * mhb_norm(x, n)) return 1;
+    memcpy(w->step, w->r, sizeof(double) * (size_t)n);
+    if (!mhb_condensed_factor(w->system, NULL, NULL) || !mhb_condensed_solve(w->system, w->step))
+      return 0;
+    double length = mhb_norm(w->step, n), r = INFINITY;
+    if (length > 2 * size) part = 2 * size / length;
+    memcpy(kept, x, sizeof kept);
+    for (int k = 0; k <= MAX_HALVINGS && !(r < before); k++, part *= .5) {
+      for (int i = 0; i < n; i++) x[i] = kept[i] - part * w->step[i];
+      mhb_residual_evaluate(b, x, value, w->r, NULL, NULL);
+      r = mhb_norm(w->r, n);
+    }
+    if (!(r < before)) return 0;
+  }
+  return 0;
+}
+
+bool mhb_found_has(const mhb_found *found, const double *x) {
+  for (int f = 0; f < found->n_found; f++) {
+    const double *y = found->x + (size_t)f * (size_t)found->n;
+    if (distance(x, y, found->n) <= SAME * fmax(mhb_norm(x, found->n), mhb_norm(y, found->n)))
+      return true;
+  }
+  return false;
+}
+
+shb_status mhb_found_add_shifts(mhb_found *found, const mhb_residual *b, const double *x) {
+  double later[b->n];
+  found->n = b->n;
+  for (int j = 0; j < b->receptance->nu; j++) {
+    mhb_order_shift(b, x, j, later);
+    if (!mhb_found_has(found, later)) SHB_TRY(mhb_found_add(found, b->n, later));
+  }
+  return SHB_OK;
+}
+
+shb_status mhb_search_once(mhb_newton *w, mhb_residual *b, double value, double size,
+                           unsigned long long *seed, mhb_found *found, double *x, bool *found_new) {
+  int iterations;
+  *found_new = false;
+  SHB_TRY(mhb_newton_bind(w, b));
+  found->n = b->n;
+  draw(b, size, seed, x);
+  if (!descend(w, b, value, size, x)) return SHB_OK;
+  if (mhb_newton_solve(w, b, value, TOLERANCE, x, &iterations) != MHB_CONVERGED) return SHB_OK;
+  *found_new = !mhb_found_has(found, x);
+  return *found_new ? mhb_found_add_shifts(found, b, x) : SHB_OK;
+}
+
+shb_status mhb_search(mhb_newton *w, mhb_residual *b, double value, double size, int starts,
+                      unsigned long long seed, mhb_found *found) {
+  double x[b->n];
+  bool   unused;
+  for (int i = 0; i < starts; i++)
+    SHB_TRY(mhb_search_once(w, b, value, size, &seed, found, x, &unused));
+  return SHB_OK;
+}

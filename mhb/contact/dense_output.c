@@ -1,0 +1,112 @@
+#include "mhb/contact/dense_output.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double TWO_PI = 6.283185307179586476925;
+
+enum { POINTS = 1 + MHB_NODES };
+
+shb_status mhb_pieces_create(const mhb_collocation *rule, mhb_pieces *pieces) {
+  *pieces       = (mhb_pieces){0};
+  pieces->piece = calloc(MHB_MAX_PIECES, sizeof *pieces->piece);
+  SHB_CHECK(pieces->piece, SHB_ERR_IO, "out of memory");
+  for (int i = 0; i < MHB_NODES; i++) pieces->node[1 + i] = rule->node[i];
+  for (int i = 0; i < POINTS; i++) {
+    double product = 1;
+    for (int j = 0; j < POINTS; j++)
+      if (j != i) product *= pieces->node[i] - pieces->node[j];
+    pieces->weight[i] = 1 / product;
+  }
+  return SHB_OK;
+}
+
+void mhb_pieces_destroy(mhb_pieces *pieces) {
+  free(pieces->piece);
+  *pieces = (mhb_pieces){0};
+}
+
+static mhb_piece *add(mhb_pieces *pieces, mhb_state state, double t0) {
+  if (!pieces->on) return NULL;
+  if (pieces->n == MHB_MAX_PIECES) {
+    pieces->full = 1;
+    return NULL;
+  }
+  mhb_piece *piece = &pieces->piece[pieces->n++];
+  piece->state     = state;
+  piece->t0        = t0;
+  return piece;
+}
+
+void mhb_pieces_stick(mhb_pieces *pieces, double t0, const double z[2]) {
+  mhb_piece *piece = add(pieces, MHB_STICK, t0);
+  if (piece) memcpy(piece->z, z, sizeof piece->z);
+}
+
+void mhb_pieces_slip(mhb_pieces *pieces, const mhb_panel *panel) {
+  mhb_piece *piece = panel->h > 0 ? add(pieces, MHB_SLIDE, panel->t0) : NULL;
+  if (!piece) return;
+  piece->h        = panel->h;
+  piece->theta[0] = panel->theta0;
+  lanes_store(piece->theta + 1, panel->theta);
+}
+
+void mhb_pieces_open(mhb_pieces *pieces, double t0) {
+  add(pieces, MHB_SEPARATE, t0);
+}
+
+void mhb_pieces_frictionless(mhb_pieces *pieces, double t0) {
+  mhb_piece *piece = add(pieces, MHB_SLIDE, t0);
+  if (!piece) return;
+  piece->h = TWO_PI; /* any direction: mu = 0 */
+  memset(piece->theta, 0, sizeof piece->theta);
+}
+
+/* The collocation polynomial at fraction s of the panel, by the barycentric formula. */
+static double direction_at(const mhb_pieces *pieces, const mhb_piece *piece, double s) {
+  double sum = 0, total = 0;
+  for (int i = 0; i < POINTS; i++) {
+    double distance = s - pieces->node[i];
+    if (distance == 0) return piece->theta[i];
+    double weight = pieces->weight[i] / distance;
+    sum += weight * (piece->theta[i] - piece->theta[0]);
+    total += weight;
+  }
+  return piece->theta[0] + sum / total;
+}
+
+/* The last piece that has begun at t; t is lifted by periods to the first (the lap of a contact that opens begins at a
+ * closing, which may be one period on). */
+static const mhb_piece *find(const mhb_pieces *pieces, double *t) {
+  while (*t < pieces->piece[0].t0) *t += TWO_PI;
+  int low = 0, high = pieces->n;
+  while (high - low > 1) {
+    int middle = low + (high - low) / 2;
+    if (pieces->piece[middle].t0 <= *t) {
+      low = middle;
+    } else {
+      high = middle;
+    }
+  }
+  return &pieces->piece[low];
+}
+
+mhb_state mhb_pieces_at(const mhb_pieces *pieces, double t, double force[3]) {
+  force[0] = force[1] = force[2] = 0;
+  if (pieces->n == 0) return MHB_SEPARATE;
+  double           y[3], dy[3];
+  const mhb_piece *piece = find(pieces, &t);
+  if (piece->state == MHB_SEPARATE) return MHB_SEPARATE;
+  mhb_signals_at(pieces->signals, t, y, dy, NULL);
+  force[0] = fmax(0, y[0]);
+  if (piece->state == MHB_STICK) {
+    for (int k = 0; k < 2; k++) force[1 + k] = y[1 + k] - piece->z[k];
+  } else {
+    double s     = fmin(1, (t - piece->t0) / piece->h);
+    double theta = direction_at(pieces, piece, s), limit = pieces->mu * force[0];
+    force[1] = limit * cos(theta);
+    force[2] = limit * sin(theta);
+  }
+  return piece->state;
+}

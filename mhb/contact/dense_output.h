@@ -1,0 +1,52 @@
+/* The contact over one period as a list of smooth pieces, for looking at it (time_history.h); kept only when asked for.
+ *
+ * Each piece holds until the next begins; the last ends one period after the first begins. In units of the force
+ * scale:
+ *   stick  f = x - z
+ *   slip   f = mu n (cos th, sin th), th the collocation polynomial of a panel: through its start and its nodes
+ *   open   f = 0 */
+#ifndef MHB_CONTACT_DENSE_OUTPUT_H
+#define MHB_CONTACT_DENSE_OUTPUT_H
+
+#include "mhb/contact/contact.h"
+#include "mhb/contact/slip.h"
+#include "mhb/numerics/fourier.h"
+
+enum { MHB_MAX_PIECES = 8192 };
+
+typedef struct {
+  mhb_state state;
+  double    t0, h;                /* start; length of a slip panel */
+  double    z[2];                 /* stick: the slider */
+  double    theta[1 + MHB_NODES]; /* slip: at the start and at the panel's nodes */
+} mhb_piece;
+
+typedef struct {
+  int                on;   /* pieces are wanted */
+  int                full; /* some had no room */
+  int                n;
+  mhb_piece         *piece;                 /* [MHB_MAX_PIECES] */
+  double             node[1 + MHB_NODES];   /* 0 and the nodes on [0, 1] */
+  double             weight[1 + MHB_NODES]; /* barycentric */
+  const mhb_signals *signals;               /* (n, x_1, x_2) */
+  double             mu, scale;             /* force scale, N */
+} mhb_pieces;
+
+/* SHB_ERR_IO: no memory. */
+shb_status mhb_pieces_create(const mhb_collocation *rule, mhb_pieces *pieces);
+void       mhb_pieces_destroy(mhb_pieces *pieces);
+
+/* What the law tells as it goes along; nothing happens unless pieces->on. */
+void mhb_pieces_stick(mhb_pieces *pieces, double t0, const double z[2]);
+void mhb_pieces_slip(mhb_pieces *pieces, const mhb_panel *panel);
+void mhb_pieces_open(mhb_pieces *pieces, double t0);
+void mhb_pieces_frictionless(mhb_pieces *pieces, double t0);
+
+/* State and force (n, fu, fw) in units of the force scale at t in [0, 2 pi]. */
+mhb_state mhb_pieces_at(const mhb_pieces *pieces, double t, double force[3]);
+
+/* Evaluate the law (contact.h) and keep its pieces: valid until the contact is used again. */
+const mhb_pieces *mhb_contact_pieces(mhb_contact *contact, const mhb_law *law, const double *motion,
+                                     mhb_contact_info *info);
+
+#endif

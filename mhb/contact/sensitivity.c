@@ -1,0 +1,327 @@
+/* The exact derivative of friction, carried along the lap (docs/contact.md, Derivative). */
+#include <math.h>
+#include <string.h>
+
+#include "mhb/contact/internal.h"
+
+void mhb_columns_clear(mhb_contact *c) {
+  size_t size = sizeof(double) * (size_t)c->stride;
+  memset(c->T, 0, size);
+  memset(c->Z[0], 0, size);
+  memset(c->Z[1], 0, size);
+  memset(&c->memory, 0, sizeof c->memory);
+}
+
+void mhb_column_change(const mhb_contact *c, const double *b, int j, double dx[2], double *dn) {
+  int nb = c->nb, kind = j / nb, i = j - kind * nb;
+  dx[0] = dx[1] = *dn = 0;
+  if (kind == 0) {
+    *dn = c->kv * b[i];
+  } else {
+    dx[0] = c->K[0][kind - 1] * b[i];
+    dx[1] = c->K[1][kind - 1] * b[i];
+  }
+}
+
+/* out = sum_k keep[k] from[k] + value[kind] basis + slope[kind] basis' (kinds v, u, w). */
+static void combine(const mhb_contact *c, double *out, int terms, const double *keep,
+                    double *const *from, const double value[3], const double slope[3]) {
+  int           begin = c->columns == MHB_ALL_COLUMNS ? 0 : c->slider, nb = c->nb;
+  const double *b = c->basis0, *db = b + nb;
+  for (int j = begin; j <= c->slider; j++)
+    out[j] = terms == 0   ? 0
+             : terms == 1 ? keep[0] * from[0][j]
+                          : keep[0] * from[0][j] + keep[1] * from[1][j];
+  if (begin) return;
+  for (int kind = 0; kind < 3; kind++, out += nb)
+    for (int i = 0; i < nb; i++) out[i] += value[kind] * b[i] + (slope ? slope[kind] * db[i] : 0);
+}
+
+static void basis_at(mhb_contact *c, double t) {
+  if (c->columns == MHB_ALL_COLUMNS) mhb_basis(c->m, t, c->basis0, c->basis0 + c->nb);
+}
+
+/* delta f is projected obliquely onto the circle (free of the onset speed, so that nothing blows up at grazing):
+ *   df+ = df - Kf (f.df - mu^2 n dn)/(f.Kf),  hence  dtheta = [g.(dx - dz) + mu beta dn]/(mu n),  g = q - beta e. */
+void mhb_columns_stick_to_slip(mhb_contact *c, double t, double theta, double n) {
+  if (c->columns == MHB_NO_COLUMNS) return;
+  mhb_direction d        = mhb_slip_direction(c->K, theta);
+  double        limit    = c->slip.mu * n;
+  double        g[2]     = {(d.q[0] - d.beta * d.e[0]) / limit, (d.q[1] - d.beta * d.e[1]) / limit};
+  double        value[3] = {d.beta / n * c->kv, g[0] * c->K[0][0] + g[1] * c->K[1][0],
+                            g[0] * c->K[0][1] + g[1] * c->K[1][1]};
+  /* the power begins with gamma mu n/eKe, dt = -(e.df - mu dn)/gamma earlier */
+  double eKe =
+      d.e[0] * (c->K[0][0] * d.e[0] + 2 * c->K[0][1] * d.e[1]) + c->K[1][1] * d.e[1] * d.e[1];
+  double work  = -limit / eKe;
+  double dz[2] = {c->Z[0][c->slider], c->Z[1][c->slider]};
+  basis_at(c, t);
+  combine(c, c->T, 2, (double[2]){-g[0], -g[1]}, c->Z, value, NULL);
+  c->memory.work += work * (d.e[0] * dz[0] + d.e[1] * dz[1]);
+  if (c->memory.slipped) return;
+  c->memory =
+      (mhb_memory){.slipped = 1, .v = {-g[0], -g[1]}, .onset = {work * d.e[0], work * d.e[1]}};
+  c->T[c->slider] = 1;
+}
+
+/* df does not jump: dz = dx - (mu dn e + mu n q dtheta). */
+void mhb_columns_slip_to_stick(mhb_contact *c, double t, double theta, double n) {
+  if (c->columns == MHB_NO_COLUMNS) return;
+  double mu = c->slip.mu, e[2] = {cos(theta), sin(theta)}, q[2] = {-e[1], e[0]};
+  basis_at(c, t);
+  for (int k = 0; k < 2; k++) {
+    double value[3] = {-mu * c->kv * e[k], c->K[k][0], c->K[k][1]}, keep = -mu * n * q[k];
+    combine(c, c->Z[k], 1, &keep, &c->T, value, NULL);
+  }
+}
+
+/* Stick: z = x(t), dz = dx + x' dt with dt = -dn/n'. Slip: the regular solution
+ *   dtheta = [(q - beta e).dx' + mu beta dn' - mu theta' dn]/D with theta', D of slip.h. */
+void mhb_columns_closing(mhb_contact *c, double t, mhb_state state, double theta) {
+  if (c->columns == MHB_NO_COLUMNS) return;
+  double y[3], dy[3], ddy[3], mu = c->slip.mu;
+  basis_at(c, t);
+  mhb_signals_at(&c->signals, t, y, dy, ddy);
+  if (state == MHB_STICK) {
+    for (int k = 0; k < 2; k++) {
+      double value[3] = {-dy[1 + k] * c->kv / dy[0], c->K[k][0], c->K[k][1]};
+      combine(c, c->Z[k], 0, NULL, NULL, value, NULL);
+    }
+    return;
+  }
+  double        D;
+  mhb_direction d        = mhb_slip_direction(c->K, theta);
+  double        rate     = mhb_slip_closing_rate(&c->slip, &d, dy, ddy, &D);
+  double        g[2]     = {d.q[0] - d.beta * d.e[0], d.q[1] - d.beta * d.e[1]};
+  double        value[3] = {-mu * rate * c->kv / D, 0, 0};
+  double        slope[3] = {mu * d.beta * c->kv / D, (g[0] * c->K[0][0] + g[1] * c->K[1][0]) / D,
+                            (g[0] * c->K[0][1] + g[1] * c->K[1][1]) / D};
+  combine(c, c->T, 0, NULL, NULL, value, slope);
+}
+
+/* ---- a panel of slip ---- */
+
+/* sum[i] += basis_i g over the panel's nodes, for n quantities g side by side. */
+MHB_INLINE void add_to_sums(const mhb_panel *p, int harmonics, int n, int stride,
+                            const mhb_lanes *g, mhb_lanes *sum) {
+  mhb_lanes c = lanes_all(1), s = lanes_all(0);
+  for (int q = 0; q < n; q++) sum[q] += g[q];
+  for (int k = 1; k <= harmonics; k++) {
+    mhb_lanes next = c * p->cosine - s * p->sine;
+    s              = s * p->cosine + c * p->sine;
+    c              = next;
+    sum += stride;
+    for (int q = 0; q < n; q++) sum[q] += c * g[q];
+    sum += stride;
+    for (int q = 0; q < n; q++) sum[q] -= s * g[q];
+  }
+}
+
+/* The force of a panel: mu n e, weighted; with the slider column also mu n q dtheta. */
+MHB_HOT static void add_force(mhb_contact *c, double growth) {
+  const mhb_panel *p      = &c->panel;
+  mhb_lanes        weight = p->h * c->slip.mu * c->rule.weight * p->y[0];
+  mhb_lanes        g[4]   = {weight * p->e[0], weight * p->e[1]};
+  if (growth == 0) { /* no slider to remember */
+    add_to_sums(p, c->H, 2, 4, g, c->sum);
+    return;
+  }
+  mhb_lanes ones = p->inverse[0];
+  for (int j = 1; j < MHB_NODES; j++) ones += p->inverse[j];
+  g[2] = -growth * ones * g[1];
+  g[3] = growth * ones * g[0];
+  add_to_sums(p, c->H, 4, 4, g, c->sum);
+  mhb_lanes across = p->e[0] * p->dy[2] - p->e[1] * p->dy[1];
+  c->memory.work += growth * lanes_sum(weight * ones / p->eKe * (across - 2 * p->beta * p->gamma));
+}
+
+/* dtheta(end) for dtheta(start) = 1: 1 + h sum w F_th (I - h A F_th)^-1 1. */
+MHB_HOT static double panel_growth(const mhb_contact *c) {
+  const mhb_panel *p    = &c->panel;
+  mhb_lanes        ones = p->inverse[0];
+  for (int j = 1; j < MHB_NODES; j++) ones += p->inverse[j];
+  if (p->stiff) return lanes_sum(c->rule.end * ones);
+  return 1 + p->h * lanes_sum(c->rule.weight * p->F_theta * ones);
+}
+
+/* The basis at the nodes by lanes, [nf], and its rows weighted across the friction, mu n w q_k, [2][nf]. */
+MHB_INLINE void basis_lanes(const mhb_contact *c) {
+  const mhb_panel *p = &c->panel;
+  mhb_lanes       *b = c->node_basis, cs = lanes_all(1), sn = lanes_all(0);
+  b[0] = cs;
+  for (int k = 1; k <= c->H; k++) {
+    mhb_lanes next = cs * p->cosine - sn * p->sine;
+    sn             = sn * p->cosine + cs * p->sine;
+    cs             = next;
+    b[2 * k - 1]   = cs;
+    b[2 * k]       = -sn;
+  }
+  mhb_lanes weight    = p->h * c->slip.mu * c->rule.weight * p->y[0];
+  mhb_lanes across[2] = {-weight * p->e[1], weight * p->e[0]};
+  for (int k = 0; k < 2; k++)
+    for (int i = 0; i < c->nf; i++) b[(1 + k) * c->nf + i] = across[k] * b[i];
+}
+
+/* Right-hand side of the linearised slip equation, rows by node: for columns v_i, u_i, w_i
+ *   kv (beta/n b'_i - F/n b_i),  a_u b'_i,  a_w b'_i  with a = ((q - beta e) K)/(mu n). */
+MHB_INLINE void fill_drive(const mhb_contact *c) {
+  const mhb_panel *p    = &c->panel;
+  mhb_lanes        over = p->frozen ? lanes_all(0) : 1 / p->y[0], limit = over * (1 / c->slip.mu);
+  mhb_lanes g0 = (-p->e[1] - p->beta * p->e[0]) * limit, g1 = (p->e[0] - p->beta * p->e[1]) * limit;
+  mhb_lanes slope[3] = {c->kv * p->beta * over, g0 * c->K[0][0] + g1 * c->K[1][0],
+                        g0 * c->K[0][1] + g1 * c->K[1][1]};
+  mhb_lanes value    = -c->kv * p->F * over;
+  int       nb       = c->nb;
+  for (int i = 0; i < nb; i++) {
+    int       k = (i + 1) / 2;
+    mhb_lanes b = c->node_basis[i], db = i == 0  ? lanes_all(0)
+                                         : i % 2 ? k * c->node_basis[i + 1]
+                                                 : -k * c->node_basis[i - 1];
+    mhb_lanes r[3] = {slope[0] * db + value * b, slope[1] * db, slope[2] * db};
+    for (int kind = 0; kind < 3; kind++)
+      for (int l = 0; l < MHB_NODES; l++) c->drive[l * c->stride + kind * nb + i] = r[kind][l];
+  }
+}
+
+/* dtheta at the nodes (node_T) and at the panel's end (T): the collocation equations linearised, same matrix. */
+MHB_INLINE void columns_through(const mhb_contact *c) {
+  const mhb_panel *p    = &c->panel;
+  mhb_lanes        ones = p->inverse[0], hA[MHB_NODES], end = p->h * c->rule.weight;
+  mhb_lanes        last = p->stiff ? c->rule.end : end * p->F_theta;
+  double           keep = p->stiff ? 0 : 1;
+  if (p->stiff) end = lanes_all(0);
+  for (int j = 1; j < MHB_NODES; j++) ones += p->inverse[j];
+  for (int q = 0; q < MHB_NODES; q++) { /* columns of (I - h A F_th)^-1 h A */
+    hA[q] = p->inverse[0] * c->rule.A[q][0];
+    for (int j = 1; j < MHB_NODES; j++) hA[q] += p->inverse[j] * c->rule.A[q][j];
+    hA[q] *= p->h;
+  }
+  for (int j = 0; j < c->stride; j += MHB_LANES) {
+    mhb_lanes T = lanes_load(c->T + j), sum = keep * T, value[MHB_NODES];
+#pragma GCC unroll 8
+    for (int l = 0; l < MHB_NODES; l++) value[l] = ones[l] * T;
+#pragma GCC unroll 8
+    for (int q = 0; q < MHB_NODES; q++) {
+      mhb_lanes r = lanes_load(c->drive + q * c->stride + j);
+      sum += end[q] * r;
+#pragma GCC unroll 8
+      for (int l = 0; l < MHB_NODES; l++) value[l] += hA[q][l] * r;
+    }
+#pragma GCC unroll 8
+    for (int l = 0; l < MHB_NODES; l++) {
+      lanes_store(c->node_T + l * c->stride + j, value[l]);
+      sum += last[l] * value[l];
+    }
+    lanes_store(c->T + j, sum);
+  }
+}
+
+/* J[row][j] += sum_l b[row][l] y[l][j], some rows together. */
+MHB_INLINE void add_rows(int rows, int stride, const mhb_lanes *b, const double *y, double *J) {
+  for (int j = 0; j < stride; j += MHB_LANES) {
+    mhb_lanes sum[6];
+    for (int r = 0; r < rows; r++) sum[r] = lanes_load(J + r * stride + j);
+#pragma GCC unroll 8
+    for (int l = 0; l < MHB_NODES; l++) {
+      mhb_lanes column = lanes_load(y + l * stride + j);
+      for (int r = 0; r < rows; r++) sum[r] += b[r][l] * column;
+    }
+    for (int r = 0; r < rows; r++) lanes_store(J + r * stride + j, sum[r]);
+  }
+}
+
+/* The hot loop of the derivative. Six rows hide the latency of a multiplication, two and one make up the rest. */
+MHB_INLINE void add_outer(int rows, int stride, const mhb_lanes *b, const double *y, double *J) {
+  int row = 0;
+  for (; row + 6 <= rows; row += 6) add_rows(6, stride, b + row, y, J + row * stride);
+  for (; row + 2 <= rows; row += 2) add_rows(2, stride, b + row, y, J + row * stride);
+  for (; row < rows; row++) add_rows(1, stride, b + row, y, J + row * stride);
+}
+
+MHB_HOT static void add_derivative(const mhb_contact *c) {
+  const mhb_panel *p      = &c->panel;
+  mhb_lanes        weight = p->h * c->slip.mu * c->kv * c->rule.weight,
+            g[2]          = {weight * p->e[0], weight * p->e[1]};
+  add_to_sums(p, c->H + c->m, 2, 2, g, c->load);
+  basis_lanes(c);
+  fill_drive(c);
+  columns_through(c);
+  add_outer(2 * c->nf, c->stride, c->node_basis + c->nf, c->node_T, c->J);
+}
+
+void mhb_columns_panel(mhb_contact *c) {
+  double growth = c->T[c->slider], before = growth;
+  if (growth != 0) growth *= panel_growth(c);
+  if (c->record) add_force(c, before);
+  if (c->columns == MHB_ALL_COLUMNS) add_derivative(c);
+  c->T[c->slider] = growth;
+}
+
+/* ---- a piece of stick ---- */
+
+MHB_HOT static void add_stick_derivative(const mhb_contact *c) {
+  for (int k = 0; k < 2; k++) {
+    for (int i = 0; i < c->nf; i++) {
+      double *row = c->J + (size_t)(k * c->nf + i) * (size_t)c->stride;
+      for (int j = 0; j < c->stride; j += MHB_LANES)
+        lanes_store(row + j, lanes_load(row + j) - c->piece[i] * lanes_load(c->Z[k] + j));
+    }
+  }
+}
+
+void mhb_columns_stick(mhb_contact *c) {
+  if (c->columns == MHB_NO_COLUMNS) return;
+  if (!c->memory.slipped) {
+    for (int i = 0; i < c->nf; i++) c->first[i] += c->piece[i];
+  } else {
+    for (int k = 0; k < 2; k++)
+      for (int i = 0; i < c->nf; i++)
+        c->f_slider[k * c->nf + i] -= c->piece[i] * c->Z[k][c->slider];
+  }
+  if (c->columns == MHB_ALL_COLUMNS) add_stick_derivative(c);
+}
+
+/* ---- the periodic slider ---- */
+
+/* DP = d v^T: (I - DP)^-1 r = r + d v.r/(1 - v.d), the denominator held above a floor: for Newton rounding's, for the
+ * derivative one that keeps it bounded where slip just begins. */
+static double closure(const mhb_contact *c, double floor) {
+  double det = 1 - c->memory.v[0] * c->Z[0][c->slider] - c->memory.v[1] * c->Z[1][c->slider];
+  return fabs(det) < floor ? copysign(floor, det) : det;
+}
+
+double mhb_columns_gain(const mhb_contact *c) {
+  const double *v = c->memory.v;
+  return c->memory.slipped ? hypot(v[0], v[1]) * hypot(c->Z[0][c->slider], c->Z[1][c->slider]) : 1;
+}
+
+double mhb_columns_doubt(const mhb_contact *c) {
+  return c->memory.slipped ? fmin(4e-6, 4e-13 / fabs(closure(c, 1e-12))) : 0;
+}
+
+void mhb_columns_close(const mhb_contact *c, const double r[2], double dz[2]) {
+  const mhb_memory *memory = &c->memory;
+  double            part =
+      memory->slipped ? (memory->v[0] * r[0] + memory->v[1] * r[1]) / closure(c, 1e-12) : 0;
+  for (int k = 0; k < 2; k++) dz[k] = r[k] + c->Z[k][c->slider] * part;
+}
+
+MHB_HOT static void eliminate(mhb_contact *c) {
+  const double *v = c->memory.v, det = closure(c, 1e-7);
+  for (int j = 0; j < c->slider; j++) {
+    double G[2] = {c->Z[0][j], c->Z[1][j]}, part = (v[0] * G[0] + v[1] * G[1]) / det;
+    for (int k = 0; k < 2; k++) c->Z[k][j] = G[k] + c->Z[k][c->slider] * part;
+    c->T[j] = part; /* v.dz, since v.d part + v.G = part */
+  }
+  for (int k = 0; k < 2; k++) {
+    for (int i = 0; i < c->nf; i++) {
+      double *row = c->J + (size_t)(k * c->nf + i) * (size_t)c->stride;
+      double  a = -c->first[i], b = c->f_slider[k * c->nf + i];
+      for (int j = 0; j < c->slider; j++) row[j] += a * c->Z[k][j] + b * c->T[j];
+    }
+  }
+}
+
+void mhb_columns_eliminate_slider(mhb_contact *c) {
+  eliminate(c);
+}

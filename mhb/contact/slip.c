@@ -1,0 +1,515 @@
+#include "mhb/contact/slip.h"
+
+#include <float.h>
+
+/* ---- the rule ---- */
+
+/* Legendre polynomial of degree n and its derivative at x. */
+static double legendre(int n, double x, double *slope) {
+  double p0 = 1, p1 = x;
+  for (int k = 2; k <= n; k++) {
+    double p2 = ((2 * k - 1) * x * p1 - (k - 1) * p0) / k;
+    p0        = p1;
+    p1        = p2;
+  }
+  if (slope) *slope = n * (x * p1 - p0) / (x * x - 1);
+  return n == 0 ? 1 : p1;
+}
+
+/* Monomial coefficients of the Lagrange polynomial that is 1 at node j. */
+static void lagrange_monomials(const double *node, int j, double *c) {
+  memset(c, 0, sizeof(double) * MHB_NODES);
+  c[0]       = 1;
+  int degree = 0;
+  for (int i = 0; i < MHB_NODES; i++) {
+    if (i == j) continue;
+    double scale = 1 / (node[j] - node[i]);
+    for (int k = ++degree; k > 0; k--) c[k] = (c[k - 1] - node[i] * c[k]) * scale;
+    c[0] *= -node[i] * scale;
+  }
+}
+
+/* int_0^s l_j */
+static double lagrange_integral(const double *c, double s) {
+  double sum = 0;
+  for (int k = MHB_NODES - 1; k >= 0; k--) sum = sum * s + c[k] / (k + 1);
+  return sum * s;
+}
+
+static double binomial(int n, int k) {
+  double b = 1;
+  for (int i = 1; i <= k; i++) b *= (double)(n - k + i) / i;
+  return b;
+}
+
+/* Column j of the tables: what a value of one at node j and zero elsewhere means. */
+static void table_column(mhb_collocation *rule, const double *node, const double *weight, int j) {
+  enum { FIT = 5 };
+  double c[MHB_NODES], x = 2 * node[j] - 1;
+  lagrange_monomials(node, j, c);
+  rule->end[j] = 0;
+  for (int i = 0; i < MHB_NODES; i++) {
+    rule->A[j][i]        = lagrange_integral(c, node[i]);
+    rule->monomial[j][i] = c[i];
+    rule->end[j] += c[i];
+    double bernstein = 0,
+           ahead = 0; /* s^k = sum_i C(i,k)/C(7,k) B_i;  P_k(2s-1) = sum C(k,i)C(k+i,i) (s-1)^i */
+    for (int k = 0; k <= i; k++) bernstein += binomial(i, k) / binomial(MHB_NODES - 1, k) * c[k];
+    for (int k = i; k <= FIT; k++)
+      ahead += (2 * k + 1) * weight[j] * legendre(k, x, NULL) * binomial(k, i) * binomial(k + i, i);
+    rule->bernstein[j][i] = bernstein;
+    rule->ahead[j][i]     = ahead;
+  }
+  for (int k = 0; k < MHB_NODES; k++)
+    rule->legendre[j][k] = (2 * k + 1) * weight[j] * legendre(k, x, NULL);
+}
+
+void mhb_collocation_create(mhb_collocation *rule) {
+  const double pi = 3.141592653589793238463;
+  double       node[MHB_NODES], weight[MHB_NODES];
+  for (int i = 0; i < MHB_NODES; i++) {
+    double x = -cos(pi * (i + .75) / (MHB_NODES + .5)), slope = 1;
+    for (int k = 0; k < 20; k++) x -= legendre(MHB_NODES, x, &slope) / slope;
+    legendre(MHB_NODES, x, &slope);
+    node[i]   = .5 * (1 + x);
+    weight[i] = 1 / ((1 - x * x) * slope * slope);
+  }
+  rule->node   = lanes_load(node);
+  rule->weight = lanes_load(weight);
+  for (int j = 0; j < MHB_NODES; j++) table_column(rule, node, weight, j);
+}
+
+/* ---- the equation ---- */
+
+mhb_direction mhb_slip_direction(const double (*K)[2], double theta) {
+  mhb_direction d;
+  double        c = cos(theta), s = sin(theta);
+  d.e[0]       = c;
+  d.e[1]       = s;
+  d.q[0]       = -s;
+  d.q[1]       = c;
+  double eKe   = K[0][0] * c * c + 2 * K[0][1] * c * s + K[1][1] * s * s;
+  double qKq   = K[0][0] * s * s - 2 * K[0][1] * c * s + K[1][1] * c * c;
+  double qKe   = (K[1][1] - K[0][0]) * c * s + K[0][1] * (c * c - s * s);
+  d.beta       = qKe / eKe;
+  d.beta_theta = (qKq - eKe) / eKe - 2 * d.beta * d.beta;
+  return d;
+}
+
+double mhb_slip_gamma(const mhb_slip *slip, const mhb_direction *d, const double dy[3]) {
+  return d->e[0] * dy[1] + d->e[1] * dy[2] - slip->mu * dy[0];
+}
+
+/* F, F_theta, gamma, beta at the nodes from theta, with over = 1/(mu n). */
+MHB_INLINE void rate(const mhb_slip *slip, mhb_lanes over, mhb_panel *p) {
+  mhb_lanes c, s;
+  lanes_cos_sin(p->theta, &c, &s);
+  mhb_lanes along = c * p->dy[1] + s * p->dy[2], across = c * p->dy[2] - s * p->dy[1];
+  p->e[0]  = c;
+  p->e[1]  = s;
+  p->gamma = along - slip->mu * p->dy[0];
+  if (slip->half == 0 && slip->skew == 0) {
+    p->F       = across * over;
+    p->F_theta = -along * over;
+    p->beta    = lanes_all(0);
+    p->eKe     = lanes_all(slip->mean);
+    return;
+  }
+  mhb_lanes c2 = c * c - s * s, s2 = 2 * c * s, turn = slip->half * c2 + slip->skew * s2;
+  p->eKe               = slip->mean + turn;
+  p->beta              = (slip->skew * c2 - slip->half * s2) / p->eKe;
+  mhb_lanes beta_theta = -2 * turn / p->eKe - 2 * p->beta * p->beta;
+  p->F                 = (across - p->beta * p->gamma) * over;
+  p->F_theta           = -(along + p->beta * across + p->gamma * beta_theta) * over;
+}
+
+/* sum_j table[j] x[j] */
+MHB_INLINE mhb_lanes apply(const mhb_lanes table[MHB_NODES], mhb_lanes x) {
+  mhb_lanes even = table[0] * lanes_pick(x, 0), odd = table[1] * lanes_pick(x, 1);
+#pragma GCC unroll 8
+  for (int j = 2; j < MHB_NODES; j += 2) {
+    even += table[j] * lanes_pick(x, j);
+    odd += table[j + 1] * lanes_pick(x, j + 1);
+  }
+  return even + odd;
+}
+
+static const mhb_lanes UNIT[MHB_NODES] = {{1, 0, 0, 0, 0, 0, 0, 0}, {0, 1, 0, 0, 0, 0, 0, 0},
+                                          {0, 0, 1, 0, 0, 0, 0, 0}, {0, 0, 0, 1, 0, 0, 0, 0},
+                                          {0, 0, 0, 0, 1, 0, 0, 0}, {0, 0, 0, 0, 0, 1, 0, 0},
+                                          {0, 0, 0, 0, 0, 0, 1, 0}, {0, 0, 0, 0, 0, 0, 0, 1}};
+
+/* The inverse of M = I - h A diag(F_theta), by columns: Gauss-Jordan in place on the transpose, whose rows are columns of
+ * M. No pivoting: A of Gauss is positive on the diagonal and F_theta <= 0 where slip is stiff. 0: a pivot vanishes. */
+MHB_INLINE int invert(const mhb_collocation *rule, mhb_panel *p) {
+  mhb_lanes M[MHB_NODES], scale = -p->h * p->F_theta, pivots = lanes_all(0);
+#pragma GCC unroll 8
+  for (int j = 0; j < MHB_NODES; j++) M[j] = UNIT[j] + rule->A[j] * lanes_pick(scale, j);
+#pragma GCC unroll 8
+  for (int k = 0; k < MHB_NODES; k++) {
+    mhb_lanes pivot = lanes_pick(M[k], k);
+    M[k]            = (M[k] + UNIT[k] * (1 - pivot)) / pivot;
+    pivots += UNIT[k] * pivot;
+    mhb_lanes row = M[k] + UNIT[k];
+#pragma GCC unroll 8
+    for (int i = 0; i < MHB_NODES; i++)
+      if (i != k) M[i] -= row * lanes_pick(M[i], k);
+  }
+#pragma GCC unroll 8
+  for (int j = 0; j < MHB_NODES; j++) p->inverse[j] = M[j];
+  return lanes_bottom(lanes_abs(pivots)) > .02;
+}
+
+MHB_INLINE void place_nodes(const mhb_slip *slip, double t, double h, mhb_panel *p) {
+  p->t0     = t;
+  p->h      = h;
+  p->frozen = p->stiff = 0;
+  lanes_cos_sin(t + h * slip->rule->node, &p->cosine, &p->sine);
+  mhb_signals_at_lanes(slip->signals, p->cosine, p->sine, p->y, p->dy);
+}
+
+static double power16(double x) {
+  x *= x;
+  x *= x;
+  x *= x;
+  return x * x;
+}
+
+/* Accuracy of a panel, as an integral of force.
+ * Of the direction, from the Legendre coefficients a_k of th'. Where they fall as r^k, the superconvergent values (the end,
+ * the integrals) err by about a_6 r^10, that is a_6 (a_6/a_2)^2 or less; pairs of coefficients stand for one, since one
+ * may vanish. Where they fall slowly (the singular end at an opening) the ratio is near one and the estimate is a_6
+ * itself. What rounding makes of th' is not an error of the panel; nor is, where th' is stiff, the polynomial's way from a
+ * start that is off: there the coefficients are those of
+ * theta at the nodes, and the end errs by a_6 (a_6/a_2), for a time of h/20 at most. What the end errs by is carried on: over a radian or what is left of the interval; while n
+ * grows it counts by the largest n that may come.
+ * Of the sums: Gauss quadrature of exp(j k t) errs by h (8!)^4/(17 (16!)^3) (k h)^16, k the highest harmonic wanted plus
+ * that of the force. */
+MHB_INLINE double panel_error(const mhb_slip *slip, const mhb_panel *p) {
+  mhb_lanes values = p->stiff ? (p->theta - p->theta0) / p->h : p->F;
+  mhb_lanes a      = lanes_abs(apply(slip->rule->legendre, values));
+  mhb_lanes pull   = (lanes_abs(p->dy[1]) + lanes_abs(p->dy[2])) * (1 + lanes_abs(p->beta));
+  double    noise  = p->stiff ? 0 : 1e-15 * lanes_top(pull / (slip->mu * p->y[0]));
+  double    high = a[6] + a[7] > noise ? a[6] + a[7] - noise : 0, low = a[1] + a[2];
+  double    ratio = high < low ? high / low : 1, n = lanes_top(p->y[0]);
+  double    carried = p->dy[0][MHB_NODES - 1] > 0 && !p->stiff ? slip->peak : n;
+  if (p->left < 1) carried *= p->left;
+  double wave   = (slip->harmonic + lanes_top(lanes_abs(values))) * p->h;
+  double turned = high * ratio * (p->stiff ? p->h : ratio);
+  return p->h * slip->mu * (turned * carried + 1.7e-23 * power16(wave) * n);
+}
+
+/* e and gamma after the last small step of theta, to its third power, K = k I. */
+MHB_INLINE void turn(mhb_panel *p, mhb_lanes step) {
+  mhb_lanes along  = p->e[0] * p->dy[1] + p->e[1] * p->dy[2],
+            across = p->e[0] * p->dy[2] - p->e[1] * p->dy[1];
+  mhb_lanes c = 1 - .5 * step * step, e0 = p->e[0];
+  p->gamma += step * across + (c - 1) * along;
+  p->e[0] = c * e0 - step * p->e[1];
+  p->e[1] = c * p->e[1] + step * e0;
+}
+
+/* Newton on the collocation equations from theta, the matrix kept while it converges well; 1 if converged.
+ * The end: Gauss collocation carries an error of the start to the end undamped where h F_theta -> -infinity, though it
+ * hardly shows at the nodes; there the end is extrapolated from the nodes. */
+MHB_INLINE int collocate(const mhb_slip *slip, mhb_panel *p) {
+  const mhb_collocation *rule   = slip->rule;
+  mhb_lanes              over   = 1 / (slip->mu * p->y[0]);
+  double                 before = INFINITY, left = INFINITY, enough = .3 * slip->tolerance;
+  int                    fresh = 0;
+  mhb_lanes              step  = lanes_all(0);
+  for (int i = 0; left > enough; i++) {
+    rate(slip, over, p);
+    if (i == 16) return 0;
+    if (!fresh && !invert(rule, p)) return 0;
+    step           = apply(p->inverse, p->theta0 + p->h * apply(rule->A, p->F) - p->theta);
+    double size    = lanes_top(lanes_abs(step));
+    int    stalled = i > 1 && size > .5 * before && size < 1e-7; /* at what rounding leaves of F */
+    if (!(size < 4) || (i > 5 && size > .5 * before && size > 1e-7)) return 0;
+    p->theta += step;
+    p->F +=
+        p->F_theta *
+        step; /* what is left is quadratic in the last step, or its product with the one before */
+    left  = size * fmin(1, fresh ? size / before : size);
+    fresh = size < .1 * before || i == 0; /* as good a matrix as any */
+    if (size > .05) fresh = 0;
+    before = size;
+    if (size < 1e-14 || stalled) break;
+  }
+  if (slip->linearized || before * before * before > slip->tolerance || slip->half != 0 ||
+      slip->skew != 0) {
+    rate(slip, over, p);
+    if (slip->linearized && !invert(rule, p)) return 0;
+  } else {
+    turn(p, step);
+  }
+  p->stiff  = p->h * lanes_top(p->F_theta) < -20;
+  p->theta1 = p->stiff ? lanes_sum(rule->end * p->theta)
+                       : p->theta0 + p->h * lanes_sum(rule->weight * p->F);
+  p->error  = panel_error(slip, p);
+  return isfinite(p->theta1);
+}
+
+/* ---- a panel's prediction and its end ---- */
+
+/* th' beyond the end of the panel before, in powers of (t - t0). */
+typedef struct {
+  double power[6];
+} forecast;
+
+MHB_HOT static void forecast_from(const mhb_slip *slip, const mhb_panel *p, double t,
+                                  forecast *ahead) {
+  memset(ahead, 0, sizeof *ahead);
+  if (!(p->h > 0) || p->t0 + p->h != t) {
+    ahead->power[0] = slip->begins;
+    return;
+  }
+  mhb_lanes c     = apply(slip->rule->ahead, p->F);
+  double    scale = 1;
+  for (int k = 0; k < 6; k++, scale /= p->h) ahead->power[k] = c[k] * scale;
+}
+
+MHB_INLINE void predict(const mhb_slip *slip, const forecast *ahead, double h, mhb_panel *p) {
+  mhb_lanes x = h * slip->rule->node, sum = lanes_all(0);
+  for (int k = 5; k >= 0; k--) sum = sum * x + ahead->power[k] / (k + 1);
+  p->theta = p->theta0 + sum * x;
+}
+
+/* The interpolant of th' over the first fraction of the panel: theta there. */
+MHB_INLINE void shorten_theta(const mhb_slip *slip, double fraction, mhb_panel *p) {
+  mhb_lanes c = apply(slip->rule->monomial, p->F), x = fraction * slip->rule->node;
+  mhb_lanes sum = lanes_all(0);
+  for (int k = MHB_NODES - 1; k >= 0; k--) sum = sum * x + c[k] / (k + 1);
+  p->theta = p->theta0 + p->h * sum * x;
+}
+
+/* A panel of length h from (t, theta). 1 if Newton converged. */
+MHB_HOT static int solve_panel(const mhb_slip *slip, const forecast *ahead, double t, double h,
+                               double theta, mhb_panel *p) {
+  p->theta0 = theta;
+  place_nodes(slip, t, h, p);
+  predict(slip, ahead, h, p);
+  return collocate(slip, p);
+}
+
+/* The first fraction of a panel that is solved. */
+MHB_HOT static int solve_part(const mhb_slip *slip, double fraction, mhb_panel *p) {
+  shorten_theta(slip, fraction, p);
+  place_nodes(slip, p->t0, fraction * p->h, p);
+  return collocate(slip, p);
+}
+
+/* gamma over the panel as a polynomial of the fraction: powers c. */
+MHB_HOT static void gamma_powers(const mhb_slip *slip, const mhb_panel *p, double *c) {
+  lanes_store(c, apply(slip->rule->monomial, p->gamma));
+}
+
+/* Its Bernstein coefficients b, with a bound on their rounding. 0: it stays above zero throughout. */
+MHB_HOT static int gamma_falls(const mhb_slip *slip, const mhb_panel *p, double *b, double *slack) {
+  mhb_lanes hull = apply(slip->rule->bernstein, p->gamma);
+  *slack         = 1e-13 * lanes_top(lanes_abs(hull));
+  lanes_store(b, hull);
+  return lanes_bottom(hull) < -*slack;
+}
+
+static double polynomial(const double *c, double x, double *slope) {
+  double y = 0, dy = 0;
+  for (int k = MHB_NODES - 1; k >= 0; k--) {
+    dy = dy * x + y;
+    y  = y * x + c[k];
+  }
+  *slope = dy;
+  return y;
+}
+
+/* Root in [lo, hi] of the polynomial c that falls from positive to negative there: safeguarded Newton from x. */
+static double falling_root(const double *c, double lo, double hi, double x) {
+  double slope;
+  for (int i = 0; i < 60; i++) {
+    double y = polynomial(c, x, &slope);
+    if (y > 0) {
+      lo = x;
+    } else {
+      hi = x;
+    }
+    double next = x - y / slope;
+    if (!(next > lo && next < hi)) next = .5 * (lo + hi);
+    double moved = fabs(next - x);
+    x            = next;
+    if (moved < 1e-9) break; /* Newton: rounding now */
+  }
+  return x;
+}
+
+/* De Casteljau: the Bernstein coefficients b on the parts before and after fraction s. */
+static void split(const double *b, double s, double *left, double *right) {
+  memcpy(right, b, sizeof(double) * MHB_NODES);
+  for (int k = 0; k < MHB_NODES; k++) {
+    left[k] = right[0];
+    for (int i = 0; i + k + 1 < MHB_NODES; i++) right[i] += s * (right[i + 1] - right[i]);
+  }
+}
+
+/* First root in (lo, hi) of the polynomial c, of Bernstein coefficients b there, from above; 2: none. It stays in the
+ * hull of its coefficients, and has no more roots than they change sign. */
+static double first_fall(const double *c, const double *b, double lo, double hi, double slack,
+                         int depth) {
+  int    changes = 0, sign = 1, low = 0;
+  double cross = .5; /* of the control polygon */
+  for (int i = 0; i < MHB_NODES; i++) {
+    int now = b[i] < -slack ? -1 : b[i] > slack ? 1 : sign;
+    if (now < 0 && !low && i > 0) cross = (i - b[i] / (b[i] - b[i - 1])) / (MHB_NODES - 1);
+    low |= now < 0;
+    changes += now != sign;
+    sign = now;
+  }
+  if (!low) return 2;
+  if (changes == 1) return falling_root(c, lo, hi, lo + cross * (hi - lo));
+  if (depth == 30) return b[MHB_NODES - 1] < 0 ? hi : 2;
+  double left[MHB_NODES], right[MHB_NODES];
+  split(b, .5, left, right);
+  double middle = .5 * (lo + hi), root = first_fall(c, left, lo, middle, slack, depth + 1);
+  return root <= 1 ? root : first_fall(c, right, middle, hi, slack, depth + 1);
+}
+
+/* gamma at fraction 0 or 1 of the panel, not of the interpolant; *size: of the terms it is made of. */
+static double gamma_at(const mhb_slip *slip, const mhb_panel *p, int end, double *size) {
+  double y[3], dy[3];
+  mhb_signals_at(slip->signals, end ? p->t0 + p->h : p->t0, y, dy, NULL);
+  mhb_direction d = mhb_slip_direction(slip->K, end ? p->theta1 : p->theta0);
+  *size           = fabs(dy[1]) + fabs(dy[2]) + slip->mu * fabs(dy[0]);
+  return mhb_slip_gamma(slip, &d, dy);
+}
+
+/* Fraction of the panel at which gamma first turns negative; > 1 if it does not. The interpolant is trusted between the
+ * nodes only: what happens before the first one is told by the panel's start. */
+static double slip_end(const mhb_slip *slip, const mhb_panel *p) {
+  double c[MHB_NODES], hull[MHB_NODES], left[MHB_NODES], right[MHB_NODES], slack, size;
+  if (!gamma_falls(slip, p, hull, &slack)) return 2;
+  double first = slip->rule->node[0];
+  if (p->gamma[0] < 0) {
+    double start = gamma_at(slip, p, 0, &size);
+    return start <= 0 ? 0 : first * start / (start - p->gamma[0]);
+  }
+  gamma_powers(slip, p, c);
+  split(hull, first, left, right);
+  right[0] = p->gamma[0];
+  return first_fall(c, right, first, 1, slack, 0);
+}
+
+/* Shorten the panel until gamma = 0 at its very end. If that comes near zero only, slip goes on. */
+static mhb_slip_outcome settle_end(const mhb_slip *slip, double fraction, mhb_panel *p) {
+  double close = fmax(1e-12, .01 * slip->tolerance), whole = p->h;
+  for (int i = 0; i < 8; i++) {
+    double c[MHB_NODES], slope, size;
+    if (fraction * p->h < 1e-12) {
+      p->h      = 0;
+      p->theta1 = p->theta0;
+      return MHB_SLIP_ENDS;
+    }
+    if (!solve_part(slip, fraction, p)) return MHB_SLIP_LOST;
+    gamma_powers(slip, p, c);
+    polynomial(c, 1, &slope);
+    double gamma = gamma_at(slip, p, 1, &size), step = -gamma / slope;
+    if (fabs(step * p->h) <= close) break;
+    if (!(fabs(step) <= .5)) return gamma > 1e-10 * size ? MHB_SLIP_ON : MHB_SLIP_ENDS;
+    fraction = fmin(1 + step, whole / p->h);
+  }
+  return MHB_SLIP_ENDS;
+}
+
+/* The last sliver before an opening: the direction is held, the force there is of second order in its length. */
+MHB_HOT static void freeze(const mhb_slip *slip, double t, double h, double theta, mhb_panel *p) {
+  place_nodes(slip, t, h, p);
+  p->theta = lanes_all(theta);
+  rate(slip, 1 / (slip->mu * p->y[0]), p);
+  double turned =
+      fmin(1, fabs(p->F[0]) * h); /* it would turn by about as much, over half the sliver's force */
+  p->error = .25 * slip->mu * p->y[0][0] * h * turned;
+  p->F = p->F_theta = lanes_all(0);
+  p->theta0 = p->theta1 = theta;
+  for (int j = 0; j < MHB_NODES; j++) {
+    p->inverse[j]    = lanes_all(0);
+    p->inverse[j][j] = 1;
+  }
+  p->frozen = 1;
+}
+
+static const double SHORTEST = 1e-13;
+
+mhb_slip_outcome mhb_slip_panel(const mhb_slip *slip, double t, double theta, double limit,
+                                int opening, double *suggested, mhb_panel *panel) {
+  double left = limit - t;
+  if (opening && left < slip->sliver) {
+    freeze(slip, t, left, theta, panel);
+    return MHB_SLIP_AT_LIMIT;
+  }
+  panel->left = opening ? left : 1;
+  forecast ahead;
+  forecast_from(slip, panel, t, &ahead);
+  double h = opening ? fmin(*suggested, .8 * left) : left / ceil(left / *suggested - 1e-9);
+  for (;;) {
+    double shrink = .5;
+    if (solve_panel(slip, &ahead, t, h, theta, panel)) {
+      if (panel->error < slip->tolerance || h < 1e-4 * panel->left) break;
+      shrink = fmax(.25, .9 * pow(slip->tolerance / panel->error, 1. / 16));
+    } else {
+      memset(&ahead, 0, sizeof ahead);
+    }
+    h *= shrink;
+    if (h < SHORTEST) return MHB_SLIP_LOST;
+  }
+  int    at_limit = !opening && h >= left * (1 - 1e-15);
+  double room     = slip->tolerance / fmax(panel->error, 1e-30);
+  *suggested      = fmin(slip->longest, room > 100 ? 1.5 * h : h);
+  double end      = slip_end(slip, panel);
+  if (end <= 1) return settle_end(slip, end, panel);
+  return at_limit ? MHB_SLIP_AT_LIMIT : MHB_SLIP_ON;
+}
+
+double mhb_slip_closing_rate(const mhb_slip *slip, const mhb_direction *d, const double dy[3],
+                             const double ddy[3], double *D) {
+  double g[2]   = {d->q[0] - d->beta * d->e[0], d->q[1] - d->beta * d->e[1]};
+  double across = d->q[0] * dy[1] + d->q[1] * dy[2], along = d->e[0] * dy[1] + d->e[1] * dy[2];
+  *D          = along + d->beta * across + mhb_slip_gamma(slip, d, dy) * d->beta_theta;
+  double turn = g[0] * ddy[1] + g[1] * ddy[2] + d->beta * slip->mu * ddy[0];
+  return turn / (slip->mu * dy[0] + *D);
+}
+
+/* In the eigenbasis of K: sum_i (x_i/(a + lambda k_i))^2 = 1, lambda >= 0; decreasing and convex in lambda, so Newton
+ * from below is monotone. */
+double mhb_slip_rate(const mhb_slip *slip, double theta, const double y[3], const double dy[3]) {
+  mhb_direction d      = mhb_slip_direction(slip->K, theta);
+  double        across = d.q[0] * dy[1] + d.q[1] * dy[2];
+  return (across - d.beta * mhb_slip_gamma(slip, &d, dy)) / (slip->mu * y[0]);
+}
+
+void mhb_slip_return(const double (*K)[2], double a, const double x[2], double d[2]) {
+  double mean = .5 * (K[0][0] + K[1][1]), half = .5 * (K[0][0] - K[1][1]);
+  double radius = hypot(half, K[0][1]), angle = .5 * atan2(K[0][1], half);
+  double c = cos(angle), s = sin(angle), k[2] = {mean + radius, mean - radius};
+  double xi[2] = {c * x[0] + s * x[1], -s * x[0] + c * x[1]}, size = hypot(xi[0], xi[1]);
+  double low = fmax(0, (size - a) / k[0]), high = fmax(low, (size - a) / k[1]), lambda = low;
+  double di[2] = {0, 0};
+  for (int i = 0; i < 100; i++) {
+    double sum = 0, slope = 0;
+    for (int j = 0; j < 2; j++) {
+      di[j] = xi[j] / (a + lambda * k[j]);
+      sum += di[j] * di[j];
+      slope -= 2 * di[j] * di[j] * k[j] / (a + lambda * k[j]);
+    }
+    if (fabs(1 - sum) < 1e-15) break;
+    double step = (1 - sum) / slope,
+           next = fmin(high, fmax(low, lambda + step)); /* Newton on the sum */
+    if (!(fabs(next - lambda) > 1e-16 * high)) break;
+    lambda = next;
+  }
+  double norm = hypot(di[0], di[1]);
+  if (!(norm > 0)) {
+    d[0] = 1;
+    d[1] = 0;
+    return;
+  }
+  d[0] = (c * di[0] - s * di[1]) / norm;
+  d[1] = (s * di[0] + c * di[1]) / norm;
+}

@@ -1,0 +1,34 @@
+/* Transition times from the harmonics themselves (eqs. 7, 11, 12): every root is bracketed by a bound, not by luck.
+ *
+ * Signals are (n, x_1, x_2): normal load before clipping, and x = Ku s, all divided by one force scale. On a cell of
+ * width h a function with |y''''| <= M4 differs from its cubic Hermite interpolant by at most h^4 M4/384, and the
+ * cubic lies inside the hull of its Bezier points y0, y0 + h y0'/3, y1 - h y1'/3, y1. A cell whose hull, widened by the
+ * bound, stays on one side of zero holds no root; else it is bisected, and where the slope has one sign the root is
+ * found by safeguarded Newton. */
+#ifndef MHB_CONTACT_TRANSITIONS_H
+#define MHB_CONTACT_TRANSITIONS_H
+
+#include "mhb/numerics/fourier.h"
+
+/* Intervals of the period in which n > 0. */
+typedef struct {
+  int     room; /* as many as m harmonics can make: n has 2m roots at most */
+  int     n;    /* number of closed intervals; 0 with always_* set */
+  int     always_closed, always_open;
+  double *closing; /* [room + 1] in [0, 2 pi), ascending */
+  double *opening; /* [room + 1] the opening after closing[i], up to closing[i] + 2 pi */
+} mhb_closed;
+
+/* For loads of up to m harmonics. SHB_ERR_IO: no memory. */
+shb_status mhb_closed_create(int m, mhb_closed *closed);
+void       mhb_closed_destroy(mhb_closed *closed);
+
+/* Roots of n (eqs. 11, 12). Touching zero without crossing counts as closed (n >= 0). */
+void mhb_closed_intervals(const mhb_signals *signals, mhb_closed *closed);
+
+/* First t in (from, to] at which |x - z| reaches mu n from below (eq. 7); to + 1 if there is none.
+ * from may be a double zero (slip has just ended, or the contact has just closed): it is stepped over. */
+double mhb_slip_onset(const mhb_signals *signals, double mu, const double z[2], double from,
+                      double to);
+
+#endif

@@ -1,0 +1,274 @@
+#include "mhb/continuation/linear_resonances.h"
+
+#include <lapacke.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double TWO_PI = 6.283185307179586476925;
+
+/* In half widths: what is resolved around a resonance, the shortest way there, and the way between places where a resonance may
+ * be; farther from each other than that, the contact's own motion tells the resonance. */
+static const double WINDOW = 4, SHORTEST = .5, APART = 2, FARTHEST = 32;
+
+/* A run-up is looked at this often; a mode that goes along with the excitation is no wider than this makes it. */
+enum { LOOKS = 16 };
+static const double LEAST_STEEP = .1;
+
+/* The eigenproblem of one harmonic. */
+typedef struct {
+  const mhb_residual *b;
+  double              low, high;
+  double complex     *R, *A, *X; /* [n][n], [n][n], [n][modes] */
+  double complex     *M;         /* [modes][modes] */
+  double             *square;    /* [modes] */
+  int                *pivot;
+} stuck_modes;
+
+static shb_status add(mhb_resonances *s, mhb_resonance place) {
+  if (s->n == s->room) {
+    int            room = 2 * s->room + 32;
+    mhb_resonance *more = realloc(s->at, (size_t)room * sizeof *more);
+    SHB_CHECK(more, SHB_ERR_IO, "out of memory for %d resonances", room);
+    s->at   = more;
+    s->room = room;
+  }
+  s->at[s->n++] = place;
+  return SHB_OK;
+}
+
+static shb_status add_inside(const stuck_modes *w, mhb_resonances *s, mhb_resonance place) {
+  bool inside = place.value > w->low && place.value < w->high;
+  return inside && place.half > 0 ? add(s, place) : SHB_OK;
+}
+
+/* Of free mode i at harmonic k. */
+static mhb_resonance free_one(const mhb_receptance *r, int k, int i) {
+  double omega = TWO_PI * r->model->frequency[i], turns = (double)r->nu / k;
+  return (mhb_resonance){turns * omega, turns * omega * r->model->damping_ratio[i], k, i, false};
+}
+
+/* X = K B, by (I + S R) X = S B, column-major. 0: singular. */
+static int stiffen(const stuck_modes *w, int k) {
+  const mhb_residual   *b = w->b;
+  const mhb_receptance *r = b->receptance;
+  int                   n = r->n, m = r->n_modes;
+  const double complex *B = r->B + (size_t)k * (size_t)n * (size_t)m;
+  mhb_receptance_residual(r, k, k * .5 * (w->low + w->high) / r->nu, w->R);
+  for (int row = 0; row < n; row++) {
+    const mhb_law *law     = &b->law[row / 3];
+    double         slips   = law->mu == 0 ? 0 : 1;
+    double         S[3][3] = {{law->kv, 0, 0},
+                              {0, slips * law->ku[0], slips * law->ku[1]},
+                              {0, slips * law->ku[1], slips * law->ku[2]}};
+    for (int c = 0; c < n + m; c++) {
+      double complex sum = c == row;
+      for (int j = 0; j < 3; j++) {
+        int at = row - row % 3 + j;
+        sum += S[row % 3][j] * (c < n ? w->R[(size_t)at * (size_t)n + (size_t)c]
+                                      : B[(size_t)at * (size_t)m + (size_t)(c - n)]);
+      }
+      if (c < n)
+        w->A[(size_t)c * (size_t)n + (size_t)row] = sum;
+      else
+        w->X[(size_t)(c - n) * (size_t)n + (size_t)row] = sum - (c == row);
+    }
+  }
+  return LAPACKE_zgesv(LAPACK_COL_MAJOR, n, m, w->A, n, w->pivot, w->X, n) == 0;
+}
+
+/* Eigenvalues into square, vectors into M, column-major. 0: not found. */
+static int solve(const stuck_modes *w, int k) {
+  const mhb_receptance *r = w->b->receptance;
+  int                   n = r->n, m = r->n_modes;
+  const double complex *B = r->B + (size_t)k * (size_t)n * (size_t)m;
+  if (!stiffen(w, k)) return 0;
+  for (int j = 0; j < m; j++) {
+    for (int i = 0; i < m; i++) {
+      double         omega = TWO_PI * r->model->frequency[i];
+      double complex sum   = i == j ? omega * omega : 0;
+      for (int row = 0; row < n; row++)
+        sum += conj(B[(size_t)row * (size_t)m + (size_t)i]) *
+               w->X[(size_t)j * (size_t)n + (size_t)row];
+      w->M[(size_t)j * (size_t)m + (size_t)i] = sum;
+    }
+  }
+  return LAPACKE_zheev(LAPACK_COL_MAJOR, 'V', 'L', m, w->M, m, w->square) == 0;
+}
+
+/* The free mode that has most of a stuck one. */
+static int likest(int m, const double complex *q) {
+  int mode = 0;
+  for (int i = 1; i < m; i++)
+    if (cabs(q[i]) > cabs(q[mode])) mode = i;
+  return mode;
+}
+
+/* Between a mode's free and its stuck place. */
+static shb_status add_between(const stuck_modes *w, mhb_resonances *s, mhb_resonance stuck,
+                              mhb_resonance own) {
+  double gap = stuck.value - own.value;
+  if (fabs(gap) > FARTHEST * own.half) return add_inside(w, s, stuck);
+  stuck.mode = own.mode;
+  int n      = (int)(fabs(gap) / (APART * own.half));
+  for (int i = 1; i <= n; i++) {
+    own.value += gap / (n + 1);
+    SHB_TRY(add_inside(w, s, own));
+  }
+  return fabs(gap) < SHORTEST * own.half ? SHB_OK : add_inside(w, s, stuck);
+}
+
+/* Of stuck mode j of harmonic k, as solved. */
+static mhb_resonance stuck_one(const stuck_modes *w, int k, int j) {
+  const mhb_receptance *r     = w->b->receptance;
+  const double complex *q     = w->M + (size_t)j * (size_t)r->n_modes;
+  double                decay = 0, turns = (double)r->nu / k;
+  for (int i = 0; i < r->n_modes; i++) {
+    double size = cabs(q[i]);
+    decay += size * size * r->model->damping_ratio[i] * TWO_PI * r->model->frequency[i];
+  }
+  double omega = sqrt(fmax(0, w->square[j]));
+  return (mhb_resonance){turns * omega, turns * decay, k, -1, false};
+}
+
+static shb_status add_stuck(const stuck_modes *w, mhb_resonances *s, int k) {
+  const mhb_receptance *r = w->b->receptance;
+  int                   m = r->n_modes;
+  if (!solve(w, k)) return SHB_OK;
+  for (int j = 0; j < m; j++)
+    SHB_TRY(add_between(w, s, stuck_one(w, k, j),
+                        free_one(r, k, likest(m, w->M + (size_t)j * (size_t)m))));
+  return SHB_OK;
+}
+
+/* ---- run-up: places omega = nu w_i(omega)/k ---- */
+
+/* What a mode has where the structure is that at omega. */
+typedef struct {
+  mhb_resonance free, stuck,
+      own; /* own: the free one that the stuck one is like; half = 0: not there */
+} mode_at;
+
+/* Of all harmonics and modes, [k][mode]. */
+static void look_at(const stuck_modes *w, double omega, mode_at *out) {
+  mhb_receptance *r = w->b->receptance;
+  int             m = r->n_modes;
+  mhb_receptance_move(r, omega);
+  for (int k = 1; k <= w->b->m; k++) {
+    mode_at *of    = out + (size_t)k * (size_t)m;
+    int      found = r->driven[k] && solve(w, k);
+    for (int i = 0; i < m; i++) {
+      of[i] = (mode_at){.free = free_one(r, k, i)};
+      if (!found) continue;
+      of[i].stuck = stuck_one(w, k, i);
+      of[i].own   = free_one(r, k, likest(m, w->M + (size_t)i * (size_t)m));
+    }
+  }
+}
+
+/* value - omega changes its sign between two frequencies: squares are linear in Omega^2. *steep <- what the excitation nears the
+ * resonance by as it changes by 1. */
+static bool meets(const mhb_resonance *a, double low, const mhb_resonance *b, double high,
+                  mhb_resonance *place, double *steep) {
+  double x = low * low, y = high * high, f = a->value * a->value - x, g = b->value * b->value - y;
+  if ((f > 0) == (g > 0)) return false;
+  double part  = f / (f - g);
+  *steep       = fmax(fabs(f - g) / (y - x), LEAST_STEEP);
+  *place       = part < .5 ? *a : *b;
+  place->value = sqrt(x + part * (y - x));
+  place->half  = ((1 - part) * a->half + part * b->half) / *steep;
+  return true;
+}
+
+static shb_status add_meetings(const stuck_modes *w, mhb_resonances *s, const mode_at *a,
+                               double low, const mode_at *b, double high) {
+  mhb_resonance place;
+  double        steep;
+  if (meets(&a->free, low, &b->free, high, &place, &steep)) SHB_TRY(add_inside(w, s, place));
+  if (!(a->stuck.half > 0 && b->stuck.half > 0) ||
+      !meets(&a->stuck, low, &b->stuck, high, &place, &steep))
+    return SHB_OK;
+  const bool    near = place.value - low < high - place.value;
+  mhb_resonance own  = near ? a->own : b->own;
+  own.value          = place.value + (own.value - (near ? a : b)->stuck.value) / steep;
+  own.half /= steep;
+  return add_between(w, s, place, own);
+}
+
+static shb_status add_run_up(const stuck_modes *w, mhb_resonances *s) {
+  size_t   all = (size_t)(w->b->m + 1) * (size_t)w->b->receptance->n_modes;
+  mode_at *at = calloc(2 * all, sizeof *at), *a = at, *b = at + all;
+  SHB_CHECK(at, SHB_ERR_IO, "out of memory for the resonances of a run-up");
+  shb_status status = SHB_OK;
+  double     low    = w->low;
+  look_at(w, low, a);
+  for (int i = 1; i <= LOOKS && status == SHB_OK; i++) {
+    double high = w->low + (w->high - w->low) * i / LOOKS;
+    look_at(w, high, b);
+    for (size_t j = 0; j < all && status == SHB_OK; j++)
+      if (a[j].free.k > 0) status = add_meetings(w, s, &a[j], low, &b[j], high);
+    mode_at *swap = a;
+    a             = b;
+    b             = swap;
+    low           = high;
+  }
+  free(at);
+  return status;
+}
+
+static int by_value(const void *a, const void *b) {
+  double x = ((const mhb_resonance *)a)->value, y = ((const mhb_resonance *)b)->value;
+  return (x > y) - (x < y);
+}
+
+static shb_status add_all(const stuck_modes *w, mhb_resonances *s) {
+  const mhb_receptance *r = w->b->receptance;
+  if (r->at) SHB_TRY(add_run_up(w, s));
+  for (int k = 1; k <= w->b->m && !r->at; k++) {
+    for (int i = 0; i < r->n_modes; i++) SHB_TRY(add_inside(w, s, free_one(r, k, i)));
+    if (r->driven[k]) SHB_TRY(add_stuck(w, s, k));
+  }
+  if (s->n > 0) qsort(s->at, (size_t)s->n, sizeof *s->at, by_value);
+  return SHB_OK;
+}
+
+shb_status mhb_resonances_create(const mhb_residual *b, double low, double high,
+                                 mhb_resonances *out) {
+  *out = (mhb_resonances){0};
+  if (b->parameter != MHB_IN_FREQUENCY) return SHB_OK;
+  size_t      n = (size_t)b->receptance->n, m = (size_t)b->receptance->n_modes;
+  stuck_modes w     = {.b = b, .low = low, .high = high};
+  w.R               = calloc(n * n, sizeof *w.R);
+  w.A               = calloc(n * n, sizeof *w.A);
+  w.X               = calloc(n * m, sizeof *w.X);
+  w.M               = calloc(m * m, sizeof *w.M);
+  w.square          = calloc(m, sizeof *w.square);
+  w.pivot           = calloc(n, sizeof *w.pivot);
+  int        ok     = w.R && w.A && w.X && w.M && w.square && w.pivot;
+  shb_status status = ok ? add_all(&w, out) : SHB_ERR_IO;
+  free(w.R);
+  free(w.A);
+  free(w.X);
+  free(w.M);
+  free(w.square);
+  free(w.pivot);
+  SHB_CHECK(ok, SHB_ERR_IO, "out of memory for the resonances of %zu modes", m);
+  if (status != SHB_OK) mhb_resonances_destroy(out);
+  return status;
+}
+
+void mhb_resonances_destroy(mhb_resonances *s) {
+  free(s->at);
+  *s = (mhb_resonances){0};
+}
+
+double mhb_resonances_way(const mhb_resonances *s, double value, int sense) {
+  double way = INFINITY;
+  for (int i = 0; i < s->n; i++) {
+    if (!s->at[i].felt) continue;
+    double half = s->at[i].half, ahead = sense * (s->at[i].value - value), edge = WINDOW * half;
+    if (ahead > edge) way = fmin(way, fmax(ahead - edge, half));
+    if (fabs(ahead) <= edge) way = fmin(way, fmax(SHORTEST * half, .5 * fabs(ahead)));
+  }
+  return way;
+}

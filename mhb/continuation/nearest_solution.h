@@ -1,0 +1,17 @@
+/* The solution next to a given one of another balance: other harmonics, modes, accuracy. */
+#ifndef MHB_CONTINUATION_NEAREST_SOLUTION_H
+#define MHB_CONTINUATION_NEAREST_SOLUTION_H
+
+#include "mhb/balance/newton.h"
+
+/* Newton in the plane normal to `normal` through (x, omega), in y = [x/scale, omega/span].
+ *
+ *   normal  in     [n+1] d(x, omega); along the curve the solution is compared with, or (0, 1): at the same frequency
+ *   x       inout  [n] m
+ *   omega   inout  rad/s
+ * Returns 1 if |r| <= 1e-10 |x| (1e-8 where rounding lets it fall no further) within a distance of .5 in y; the residual is
+ * then left evaluated there. 0 if not; x and omega are then of no use. */
+int mhb_nearest(mhb_newton *newton, mhb_residual *residual, const double *normal, double scale,
+                double span, double *x, double *omega);
+
+#endif

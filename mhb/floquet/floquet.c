@@ -1,0 +1,282 @@
+#include "mhb/floquet/floquet.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "mhb/floquet/bloch.h"
+#include "mhb/floquet/linear_exponents.h"
+
+static const double TWO_PI = 6.283185307179586476925;
+static const double MARGIN = 1e-3;
+
+/* Sub-steps are halved until they change the largest multiplier by less than half its distance from 1, and by less than ROUGH the
+ * first time, where the change is that of the coarser of two orders, FINE later. FINEST: of half the sub-steps asked for. */
+static const double DISTANCE = .5, ROUGH = 2e-2, FINE = 1e-3;
+
+/* Modes whose squared frequency a contact raises by this part count; sub-steps to a cycle of theirs. */
+static const double SHIFTED = .1, A_CYCLE = 3;
+enum { MAX_STATES = 600, FINEST = 32 };
+
+struct mhb_stability {
+  mhb_structure   structure; /* all modes */
+  mhb_structure   reduced;   /* those that are integrated */
+  mhb_timetable   timetable;
+  mhb_exponents   exponents;
+  mhb_contact    *contact;
+  mhb_monodromy  *monodromy; /* NULL: too many states even with one mode */
+  mhb_bloch       bloch;
+  double         *coarse; /* the matrix of twice the sub-step */
+  int             nu, max_states;
+  int            *state;      /* [pair] */
+  double complex *multiplier; /* [states] */
+};
+
+/* Modes a blade that max_states leaves room for. */
+static int affordable(const mhb_stability *s) {
+  int left = s->max_states - 2 * s->structure.contacts, a_mode = 2 * s->structure.blades;
+  int most = left > 0 ? left / a_mode : 0;
+  return most < s->structure.modes ? most : s->structure.modes;
+}
+
+static shb_status fill(mhb_stability *s, const mhb_receptance *receptance,
+                       const mhb_settings *settings, int substeps) {
+  SHB_TRY(mhb_structure_create(receptance, settings, receptance->n_modes, &s->structure));
+  const mhb_structure *whole = &s->structure;
+  int m = settings->harmonics, all = 2 * (whole->modes * whole->blades + whole->contacts);
+  SHB_TRY(mhb_timetable_create(whole->blades, whole->pairs, whole->wave, &s->timetable));
+  SHB_TRY(mhb_exponents_create(whole, &s->exponents));
+  SHB_TRY(mhb_contact_create(m, m, settings->tolerance, &s->contact));
+  if (affordable(s) > 0) {
+    SHB_TRY(mhb_structure_create(receptance, settings, affordable(s), &s->reduced));
+    SHB_TRY(mhb_monodromy_create(&s->reduced, &s->timetable, s->contact, m, (substeps + 1) / 2,
+                                 FINEST, &s->monodromy));
+    int cells  = mhb_stability_cells(s),
+        states = 2 * s->timetable.chunks * (s->reduced.modes + whole->pairs);
+    SHB_TRY(mhb_bloch_create(cells, states, &s->bloch));
+    s->coarse = calloc((size_t)cells * (size_t)states * (size_t)states + 1, sizeof *s->coarse);
+    SHB_CHECK(s->coarse, SHB_ERR_IO, "out of memory for the stability of %d states", all);
+  }
+  s->nu         = settings->subharmonics;
+  s->state      = calloc((size_t)whole->pairs, sizeof(int));
+  s->multiplier = calloc((size_t)all, sizeof(double complex));
+  SHB_CHECK(s->state && s->multiplier, SHB_ERR_IO, "out of memory for the stability of %d states",
+            all);
+  return SHB_OK;
+}
+
+shb_status mhb_stability_create(const mhb_receptance *receptance, const mhb_settings *settings,
+                                int substeps, int max_states, mhb_stability **out) {
+  SHB_CHECK(substeps >= 1, SHB_ERR_INPUT, "stability needs at least one sub-step a period, not %d",
+            substeps);
+  mhb_stability *s = calloc(1, sizeof *s);
+  SHB_CHECK(s, SHB_ERR_IO, "out of memory");
+  s->max_states     = max_states > 0 ? max_states : MAX_STATES;
+  shb_status status = fill(s, receptance, settings, substeps);
+  if (status != SHB_OK) {
+    mhb_stability_destroy(s);
+    return status;
+  }
+  *out = s;
+  return SHB_OK;
+}
+
+void mhb_stability_destroy(mhb_stability *s) {
+  if (!s) return;
+  mhb_bloch_destroy(&s->bloch);
+  mhb_monodromy_destroy(s->monodromy);
+  mhb_contact_destroy(s->contact);
+  mhb_exponents_destroy(&s->exponents);
+  mhb_timetable_destroy(&s->timetable);
+  mhb_structure_destroy(&s->reduced);
+  mhb_structure_destroy(&s->structure);
+  free(s->state);
+  free(s->coarse);
+  free(s->multiplier);
+  free(s);
+}
+
+void mhb_stability_move(mhb_stability *s, const mhb_receptance *receptance) {
+  mhb_structure_set(receptance, &s->structure);
+  s->exponents.known = 0;
+  if (!s->monodromy) return;
+  mhb_structure_set(receptance, &s->reduced);
+  s->monodromy->variation->h = -1; /* propagators of no step length */
+}
+
+int mhb_stability_cells(const mhb_stability *s) {
+  return s->structure.blades / s->timetable.chunks;
+}
+
+/* By falling modulus; conjugates have equal ones, and an insertion sort keeps their order. */
+static void sort(int n, double complex *x) {
+  for (int i = 1; i < n; i++) {
+    double complex z    = x[i];
+    double         size = cabs(z);
+    int            j    = i;
+    for (; j > 0 && cabs(x[j - 1]) < size; j--) x[j] = x[j - 1];
+    x[j] = z;
+  }
+}
+
+static void take(mhb_stability *s, int n, mhb_multipliers *out) {
+  sort(n, s->multiplier);
+  out->n          = n;
+  out->multiplier = s->multiplier;
+  out->largest    = n ? cabs(s->multiplier[0]) : 0;
+  if (n == 0 || cimag(s->multiplier[0]) != 0) {
+    out->crossing = MHB_THROUGH_PAIR;
+  } else {
+    out->crossing = creal(s->multiplier[0]) > 0 ? MHB_THROUGH_PLUS_ONE : MHB_THROUGH_MINUS_ONE;
+  }
+}
+
+/* Nothing slips, opens or closes. */
+static int is_linear(const mhb_stability *s, const mhb_solution *solution) {
+  for (int a = 0; a < s->structure.pairs; a++)
+    if (!s->timetable.permanent[a] ||
+        (s->timetable.state[a] == MHB_SLIDE && solution->law[a].mu > 0))
+      return 0;
+  return 1;
+}
+
+static const char *linear(mhb_stability *s, const mhb_solution *solution, double period,
+                          mhb_multipliers *out) {
+  mhb_exponents *x = &s->exponents;
+  for (int a = 0; a < s->structure.pairs; a++) s->state[a] = s->timetable.state[a];
+  if (!mhb_exponents_set(x, s->state, solution->law)) return "the eigensolver failed";
+  for (int i = 0; i < x->n; i++) s->multiplier[i] = cexp(x->exponent[i] * period);
+  out->modes = s->structure.modes;
+  take(s, x->n, out);
+  return NULL;
+}
+
+/* Multipliers of the matrix S. */
+static const char *multipliers_of(mhb_stability *s, const double *S, mhb_multipliers *out) {
+  const mhb_timetable *t = &s->timetable;
+  int                  n = s->monodromy->n;
+  if (!mhb_bloch_multipliers(&s->bloch, n, S, t->chunks, t->shift % s->bloch.cells, s->multiplier))
+    return "the eigensolver failed";
+  out->modes = s->reduced.modes;
+  take(s, s->bloch.cells * n, out);
+  return NULL;
+}
+
+/* The matrix of a refinement into the monodromy's M, the one before into coarse. */
+static const char *refine(mhb_stability *s, const mhb_solution *solution, double omega,
+                          int refinement) {
+  mhb_monodromy *d    = s->monodromy;
+  double        *swap = d->M;
+  d->M                = s->coarse;
+  s->coarse           = swap;
+  const char *why     = mhb_monodromy_set(d, solution, omega, refinement);
+  if (why) return why;
+  for (int i = 0; i < s->bloch.cells * d->n * d->n; i++)
+    if (!isfinite(d->M[i])) return "the disturbances overflow";
+  return NULL;
+}
+
+/* coarse <- (4 M - coarse)/3: the sub-steps' error is of second order and even, what is left of fourth. */
+static const double *extrapolated(mhb_stability *s) {
+  const mhb_monodromy *d = s->monodromy;
+  for (int i = 0; i < s->bloch.cells * d->n * d->n; i++)
+    s->coarse[i] = d->M[i] + (d->M[i] - s->coarse[i]) / 3;
+  return s->coarse;
+}
+
+static int settled(const mhb_multipliers *out, double most) {
+  return out->change <= fmax(.1 * MARGIN, fmin(most, DISTANCE * fabs(out->largest - 1)));
+}
+
+/* |phi|^2 S of a mode of a blade: what sticking contacts add to its squared frequency. */
+static double stiffening(const mhb_structure *structure, const mhb_law *law, int mode) {
+  double sum = 0;
+  for (int k = 0; k < structure->sides * structure->pairs; k++) {
+    int           side = k / structure->pairs, pair = k % structure->pairs;
+    const double *b = structure->shape +
+                      (size_t)(side * structure->modes + mode) * (size_t)(3 * structure->pairs) +
+                      3 * pair;
+    const mhb_law *of = &law[pair];
+    sum += of->kv * b[0] * b[0];
+    if (of->mu > 0)
+      sum += of->ku[0] * b[1] * b[1] + 2 * of->ku[1] * b[1] * b[2] + of->ku[2] * b[2] * b[2];
+  }
+  return sum;
+}
+
+/* Where to begin: A_CYCLE sub-steps to a cycle of the fastest mode that its contacts shift. */
+static int first_refinement(const mhb_stability *s, const mhb_law *law, double omega) {
+  const mhb_structure *structure  = &s->reduced;
+  double               square     = 0;
+  int                  refinement = 1;
+  for (int i = 0; i < structure->modes; i++) {
+    double own = structure->omega[i] * structure->omega[i], more = stiffening(structure, law, i);
+    if (more > SHIFTED * own) square = fmax(square, own + more);
+  }
+  while (s->monodromy->substeps * refinement * omega < A_CYCLE * sqrt(square) &&
+         4 * refinement < FINEST)
+    refinement *= 2;
+  return refinement;
+}
+
+/* Slip, opening, closing: sub-steps halved until the answer no longer hangs on them. */
+static const char *nonlinear(mhb_stability *s, const mhb_solution *solution, double omega,
+                             mhb_multipliers *out) {
+  if (!s->monodromy) return "more states than max_states";
+  int         first = first_refinement(s, solution->law, omega);
+  const char *why   = refine(s, solution, omega, first);
+  if (!why) why = refine(s, solution, omega, 2 * first);
+  if (!why) why = multipliers_of(s, s->monodromy->M, out);
+  for (int refinement = 2 * first; !why; refinement *= 2) {
+    double before = out->largest;
+    why           = multipliers_of(s, extrapolated(s), out);
+    out->change   = fabs(out->largest - before);
+    if (why || settled(out, refinement == 2 * first ? ROUGH : FINE)) return why;
+    if (refinement == FINEST) break;
+    why = refine(s, solution, omega, 2 * refinement);
+  }
+  if (!why && out->change > MARGIN && fabs(out->largest - 1) <= out->change)
+    why = "the sub-steps do not settle it";
+  return why;
+}
+
+/* What was left out: ones of contacts that always stick, zeros of those that forget. */
+static void count_left_out(const mhb_stability *s, const mhb_solution *solution,
+                           mhb_multipliers *out) {
+  const mhb_timetable *t = &s->timetable;
+  for (int j = 0; j < s->structure.contacts; j++) {
+    double mu = solution->law[j % s->structure.pairs].mu;
+    if (mu == 0 || (t->permanent[j] && t->state[j] == MHB_SEPARATE)) continue;
+    if (t->permanent[j] && t->state[j] == MHB_STICK) {
+      out->n_stuck += 2;
+    } else {
+      out->n_zero += 2 - mhb_friction_states(t->state[j], t->permanent[j], mu);
+    }
+  }
+}
+
+static void judge(mhb_multipliers *out) {
+  double beyond = 1 + fmax(MARGIN, out->change);
+  for (int i = 0; i < out->n; i++) out->n_unstable += cabs(out->multiplier[i]) > beyond;
+  if (out->reason) {
+    out->verdict = MHB_UNDECIDED;
+  } else if (out->largest > beyond) {
+    out->verdict = MHB_UNSTABLE;
+  } else {
+    out->verdict = out->largest > 1 ? MHB_MARGINAL : MHB_STABLE;
+  }
+}
+
+void mhb_stability_evaluate(mhb_stability *s, const mhb_solution *solution, mhb_multipliers *out) {
+  double omega = solution->omega / s->nu;
+  *out         = (mhb_multipliers){.change = -1};
+  if (!mhb_timetable_set(&s->timetable, solution->info)) {
+    out->reason = "the contact law lost its way, or has too many transitions";
+  } else if (is_linear(s, solution)) {
+    out->reason = linear(s, solution, TWO_PI / omega, out);
+  } else {
+    out->reason = nonlinear(s, solution, omega, out);
+  }
+  if (!out->reason) count_left_out(s, solution, out);
+  judge(out);
+}

@@ -1,0 +1,153 @@
+#include "mhb/floquet/linear_exponents.h"
+
+#include <lapacke.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double TWO_PI = 6.283185307179586476925;
+
+shb_status mhb_exponents_create(const mhb_structure *s, mhb_exponents *x) {
+  size_t m = (size_t)s->modes, pairs = (size_t)s->pairs, n3 = 3 * pairs;
+  *x          = (mhb_exponents){.structure = s, .n = 2 * s->modes * s->blades};
+  x->state    = calloc(pairs, sizeof *x->state);
+  x->law      = calloc(pairs, sizeof *x->law);
+  x->exponent = calloc((size_t)x->n, sizeof *x->exponent);
+  x->A        = calloc(4 * m * m, sizeof *x->A);
+  x->left     = calloc(n3 * m, sizeof *x->left);
+  x->R        = calloc(n3 * n3, sizeof *x->R);
+  x->S        = calloc(n3 * (n3 + m), sizeof *x->S);
+  x->work     = calloc(40 * m, sizeof *x->work);
+  x->rwork    = calloc(4 * m, sizeof *x->rwork);
+  x->pivot    = calloc(n3, sizeof *x->pivot);
+  if (x->state && x->law && x->exponent && x->A && x->left && x->R && x->S && x->work && x->rwork &&
+      x->pivot)
+    return SHB_OK;
+  mhb_exponents_destroy(x);
+  SHB_FAIL(SHB_ERR_IO, "out of memory for the exponents of %d modes", s->modes);
+}
+
+void mhb_exponents_destroy(mhb_exponents *x) {
+  free(x->state);
+  free(x->law);
+  free(x->exponent);
+  free(x->A);
+  free(x->left);
+  free(x->R);
+  free(x->S);
+  free(x->work);
+  free(x->rwork);
+  free(x->pivot);
+  *x = (mhb_exponents){0};
+}
+
+/* Stiffness of a contact that stays in its state. */
+static void stiffness(int state, const mhb_law *law, double S[3][3]) {
+  memset(S, 0, sizeof(double) * 9);
+  if (state == MHB_SEPARATE) return;
+  S[0][0] = law->kv;
+  if (state != MHB_STICK || law->mu == 0) return;
+  S[1][1] = law->ku[0];
+  S[1][2] = S[2][1] = law->ku[1];
+  S[2][2]           = law->ku[2];
+}
+
+/* B[3 pairs][mode] of nodal diameter d, into left. */
+static void relative_shapes(mhb_exponents *x, double complex step) {
+  const mhb_structure *s = x->structure;
+  int                  m = s->modes, n3 = 3 * s->pairs;
+  for (int r = 0; r < n3; r++) {
+    for (int i = 0; i < m; i++) {
+      double complex sum = s->shape[i * n3 + r];
+      if (s->sides == 2) sum += step * s->shape[(m + i) * n3 + r];
+      x->left[r * m + i] = sum;
+    }
+  }
+}
+
+/* Residual flexibility of nodal diameter d: the first row of blocks, each with its phase. */
+static void relative_flexibility(mhb_exponents *x, double complex step) {
+  const mhb_structure *s  = x->structure;
+  int                  n3 = 3 * s->pairs, n = 3 * s->contacts;
+  double complex       phase = 1;
+  memset(x->R, 0, sizeof *x->R * (size_t)(n3 * n3));
+  for (int b = 0; b < s->blades && s->flexibility; b++, phase *= step)
+    for (int r = 0; r < n3; r++)
+      for (int c = 0; c < n3; c++)
+        x->R[r * n3 + c] += phase * s->flexibility[(size_t)r * (size_t)n + (size_t)(b * n3 + c)];
+}
+
+/* Row r of contact a of K [R B], K its stiffness; element c of n3 + modes. */
+static double complex stiffness_row(const mhb_exponents *x, const double K[3], int a, int c) {
+  int            n3 = 3 * x->structure->pairs, m = x->structure->modes;
+  double complex sum = 0;
+  for (int k = 0; k < 3; k++) {
+    int row = 3 * a + k;
+    sum += K[k] * (c < n3 ? x->R[row * n3 + c] : x->left[row * m + c - n3]);
+  }
+  return sum;
+}
+
+/* Column-major: S[0..n3) = I + diag R, S[n3..) = diag B  ->  S B in the second part. 0: singular. */
+static int contact_stiffness(mhb_exponents *x) {
+  int    n3 = 3 * x->structure->pairs, m = x->structure->modes;
+  size_t rows = (size_t)n3;
+  double K[3][3];
+  for (int row = 0; row < n3; row++) {
+    stiffness(x->state[row / 3], &x->law[row / 3], K);
+    for (int c = 0; c < n3 + m; c++)
+      x->S[(size_t)c * rows + (size_t)row] = (c == row) + stiffness_row(x, K[row % 3], row / 3, c);
+  }
+  return LAPACKE_zgesv_work(LAPACK_COL_MAJOR, n3, m, x->S, n3, x->pivot, x->S + rows * rows, n3) ==
+         0;
+}
+
+static int nodal_diameter(mhb_exponents *x, int d) {
+  const mhb_structure *s  = x->structure;
+  int                  n3 = 3 * s->pairs, m = s->modes, n = 2 * m;
+  double complex       step = cexp(-I * TWO_PI * d / s->blades);
+  relative_shapes(x, step);
+  relative_flexibility(x, step);
+  if (!contact_stiffness(x)) return 0;
+  const double complex *SB = x->S + (size_t)n3 * (size_t)n3;
+  memset(x->A, 0, sizeof *x->A * (size_t)(n * n));
+  for (int i = 0; i < m; i++) {
+    x->A[(m + i) * n + i]     = 1;
+    x->A[(m + i) * n + m + i] = -2 * s->zeta[i] * s->omega[i];
+    for (int k = 0; k < m; k++) {
+      double complex sum = i == k ? s->omega[i] * s->omega[i] : 0;
+      for (int r = 0; r < n3; r++) sum += conj(x->left[r * m + i]) * SB[k * n3 + r];
+      x->A[k * n + m + i] = -sum;
+    }
+  }
+  return LAPACKE_zgeev_work(LAPACK_COL_MAJOR, 'N', 'N', n, x->A, n,
+                            x->exponent + (size_t)d * (size_t)n, NULL, 1, NULL, 1, x->work, 40 * m,
+                            x->rwork) == 0;
+}
+
+static int same(const mhb_exponents *x, const int *state, const mhb_law *law) {
+  for (int a = 0; a < x->structure->pairs; a++) {
+    const mhb_law *old = &x->law[a];
+    if (state[a] != x->state[a] || law[a].kv != old->kv || (law[a].mu == 0) != (old->mu == 0) ||
+        law[a].ku[0] != old->ku[0] || law[a].ku[1] != old->ku[1] || law[a].ku[2] != old->ku[2])
+      return 0;
+  }
+  return 1;
+}
+
+/* By falling real part: the multipliers then come by falling modulus at any period. */
+static int by_growth(const void *a, const void *b) {
+  double x = creal(*(const double complex *)a), y = creal(*(const double complex *)b);
+  return (x < y) - (x > y);
+}
+
+int mhb_exponents_set(mhb_exponents *x, const int *state, const mhb_law *law) {
+  const mhb_structure *s = x->structure;
+  if (x->known && same(x, state, law)) return 1;
+  memcpy(x->state, state, sizeof *state * (size_t)s->pairs);
+  memcpy(x->law, law, sizeof *law * (size_t)s->pairs);
+  x->known = 1;
+  for (int d = 0; d < s->blades; d++) x->known &= nodal_diameter(x, d);
+  qsort(x->exponent, (size_t)x->n, sizeof *x->exponent, by_growth);
+  return x->known;
+}

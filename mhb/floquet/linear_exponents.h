@@ -1,0 +1,33 @@
+/* Exponents of the blade or the ring while every contact stays stuck, open or frictionless: a linear structure, whose
+ * disturbances of nodal diameter d (neighbours 2 pi d/N apart) are independent of each other.
+ *
+ *   B = right - exp(-j 2 pi d/N) left,   S = (I + diag(kv, Ku) R)^-1 diag(kv, Ku)
+ *   lambda: eigenvalues of [0 I; -(w_i^2 + B^H S B), -2 zeta w_i]
+ * They do not depend on the excitation, and are computed anew only when a state or a stiffness has changed. */
+#ifndef MHB_FLOQUET_LINEAR_EXPONENTS_H
+#define MHB_FLOQUET_LINEAR_EXPONENTS_H
+
+#include <complex.h>
+
+#include "mhb/contact/contact.h"
+#include "mhb/floquet/variational.h"
+
+typedef struct {
+  const mhb_structure *structure;
+  int                  n, known; /* 2 modes blades; known: for the states and laws below */
+  int                 *state;    /* [pair] */
+  mhb_law             *law;      /* [pair] */
+  double complex      *exponent; /* [n] 1/s */
+  double complex      *A, *left, *R, *S, *work; /* one nodal diameter */
+  double              *rwork;
+  int                 *pivot;
+} mhb_exponents;
+
+/* SHB_ERR_IO: no memory. The structure must outlive it. */
+shb_status mhb_exponents_create(const mhb_structure *structure, mhb_exponents *exponents);
+void       mhb_exponents_destroy(mhb_exponents *exponents);
+
+/* For states and laws of the pairs (the same on all blades). 0: the eigensolver failed. */
+int mhb_exponents_set(mhb_exponents *exponents, const int *state, const mhb_law *law);
+
+#endif

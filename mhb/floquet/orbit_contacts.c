@@ -1,0 +1,330 @@
+#include "mhb/floquet/orbit_contacts.h"
+
+#include <complex.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "mhb/contact/slip.h"
+#include "mhb/numerics/fourier.h"
+
+static const double TWO_PI = 6.283185307179586476925;
+
+/* How far from an opening or closing the direction of the friction is taken, in periods. */
+static const double NEAR = 1e-8;
+
+shb_status mhb_passage_create(const mhb_structure *s, const mhb_timetable *timetable,
+                              mhb_contact *contact, int m, int looks, mhb_passage **out) {
+  mhb_passage *d = calloc(1, sizeof *d);
+  SHB_CHECK(d, SHB_ERR_IO, "out of memory");
+  size_t contacts = (size_t)s->contacts, n = 3 * contacts;
+  d->structure = s;
+  d->timetable = timetable;
+  d->contact   = contact;
+  d->m         = m;
+  d->nb        = mhb_real_size(m);
+  d->room      = s->blades * looks;
+  struct {
+    void **array;
+    size_t size;
+  } wanted[] = {{(void **)&d->motion, n * (size_t)d->nb * sizeof(double)},
+                {(void **)&d->sample, (size_t)s->pairs * (size_t)d->room * sizeof *d->sample},
+                {(void **)&d->count, (size_t)s->pairs * sizeof(int)},
+                {(void **)&d->touch, contacts * sizeof *d->touch},
+                {(void **)&d->matrix, n * n * sizeof(double)},
+                {(void **)&d->pivot, n * sizeof(int)},
+                {(void **)&d->rate, n * sizeof(double)},
+                {(void **)&d->other, n * sizeof(double)},
+                {(void **)&d->recoil, n * sizeof(double)},
+                {(void **)&d->basis, 2 * (size_t)d->nb * sizeof(double)}};
+  int ok     = 1;
+  for (size_t i = 0; i < sizeof wanted / sizeof wanted[0]; i++)
+    ok &= (*wanted[i].array = calloc(1, wanted[i].size)) != NULL;
+  if (!ok) {
+    mhb_passage_destroy(d);
+    SHB_FAIL(SHB_ERR_IO, "out of memory for the stability of %d contacts", s->contacts);
+  }
+  *out = d;
+  return SHB_OK;
+}
+
+void mhb_passage_destroy(mhb_passage *d) {
+  if (!d) return;
+  void *arrays[] = {d->motion, d->sample, d->count, d->touch,  d->matrix,
+                    d->pivot,  d->rate,   d->other, d->recoil, d->basis};
+  for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; i++) free(arrays[i]);
+  free(d);
+}
+
+static int pair_of(const mhb_passage *d, int contact) {
+  return contact % d->structure->pairs;
+}
+
+/* ---- the periodic motion ---- */
+
+/* Harmonic k of (R p)_r of blade 0; the force of blade b lags by k b phi. */
+static double complex flexed(const mhb_passage *d, int k, int r) {
+  const mhb_structure *s = d->structure;
+  size_t               n = 3 * (size_t)s->contacts, n3 = 3 * (size_t)s->pairs, nb = (size_t)d->nb;
+  double complex       sum = 0;
+  for (size_t c = 0; c < n; c++) {
+    const double  *a  = d->solution->p + c % n3 * nb;
+    double complex pk = k ? CMPLX(a[2 * k - 1], a[2 * k]) : a[0];
+    double lag = TWO_PI * (double)((long)k * (long)(c / n3) * s->wave % s->blades) / s->blades;
+    sum += s->flexibility[(size_t)r * n + c] * pk * cexp(-I * lag);
+  }
+  return sum;
+}
+
+/* w = u + R p */
+static void free_of_flexibility(mhb_passage *d) {
+  int n3 = 3 * d->structure->pairs, nb = d->nb;
+  memcpy(d->motion, d->solution->x, sizeof(double) * (size_t)n3 * (size_t)nb);
+  if (!d->structure->flexibility) return;
+  for (int r = 0; r < n3; r++) {
+    double *w = d->motion + (size_t)r * (size_t)nb;
+    for (int k = 0; k <= d->m; k++) {
+      double complex more = flexed(d, k, r);
+      w[k ? 2 * k - 1 : 0] += creal(more);
+      if (k) w[2 * k] += cimag(more);
+    }
+  }
+}
+
+/* Time derivative of the motion of a contact, of x[pair][3][nb]. */
+static void motion_rate(mhb_passage *d, const double *x, int contact, double at, double rate[3]) {
+  double *basis = d->basis, *slope = basis + d->nb;
+  mhb_basis(d->m, TWO_PI * mhb_timetable_phase(d->timetable, contact, at), basis, slope);
+  const double *of = x + (size_t)(3 * pair_of(d, contact)) * (size_t)d->nb;
+  for (int i = 0; i < 3; i++) {
+    double sum = 0;
+    for (int k = 1; k < d->nb; k++) sum += slope[k] * of[i * d->nb + k];
+    rate[i] = d->omega * sum;
+  }
+}
+
+/* Load and direction of a slipping contact. While collecting, only the phase is noted. */
+static void look(mhb_passage *d, int contact, double at) {
+  int                 pair   = pair_of(d, contact);
+  mhb_contact_sample *sample = &d->sample[(size_t)pair * (size_t)d->room + (size_t)d->count[pair]];
+  d->count[pair]++;
+  if (d->collecting) {
+    sample->phase = mhb_timetable_phase(d->timetable, contact, at);
+    return;
+  }
+  mhb_touch *touch = &d->touch[contact];
+  double     size  = hypot(sample->f[0], sample->f[1]);
+  touch->n         = sample->n;
+  for (int k = 0; k < 2; k++) touch->e[k] = size > 0 ? sample->f[k] / size : k == 0;
+}
+
+static int slips(const mhb_touch *touch) {
+  return touch->state == MHB_SLIDE && touch->law->mu > 0;
+}
+
+/* ---- rates with residual flexibility: p' = (I + G R)^-1 G w',  u' = w' - R p' ---- */
+
+/* Rows of contact j of I + G R, and of G w'. */
+static void rate_rows(mhb_passage *d, int j, double at, double *rate) {
+  int    n = 3 * d->structure->contacts;
+  double G[3][3], w[3];
+  mhb_tangent_rate(&d->touch[j], G);
+  motion_rate(d, d->motion, j, at, w);
+  for (int r = 0; r < 3; r++) {
+    const double *R   = d->structure->flexibility + (size_t)(3 * j) * (size_t)n;
+    double       *row = d->matrix + (size_t)(3 * j + r) * (size_t)n;
+    rate[3 * j + r]   = G[r][0] * w[0] + G[r][1] * w[1] + G[r][2] * w[2];
+    for (int c = 0; c < n; c++)
+      row[c] = (c == 3 * j + r) + G[r][0] * R[c] + G[r][1] * R[n + c] + G[r][2] * R[2 * n + c];
+  }
+}
+
+/* I + G R, factorized; and p' into rate[n]. 0: singular. */
+static int force_rates(mhb_passage *d, double at, double *rate) {
+  int n = 3 * d->structure->contacts;
+  for (int j = 0; j < d->structure->contacts; j++) rate_rows(d, j, at, rate);
+  if (!mhb_lu(n, d->matrix, d->pivot)) return 0;
+  mhb_lu_solve(n, d->matrix, d->pivot, rate);
+  return 1;
+}
+
+/* out = -R p */
+static void recoil(const mhb_structure *s, const double *p, double *out) {
+  int n = 3 * s->contacts;
+  for (int r = 0; r < n; r++) {
+    out[r] = 0;
+    for (int c = 0; c < n; c++) out[r] -= s->flexibility[(size_t)r * (size_t)n + (size_t)c] * p[c];
+  }
+}
+
+/* Rates of the motion of one contact, or of all of them where they are coupled. */
+static int set_rates(mhb_passage *d, int contact, double at) {
+  const mhb_structure *s = d->structure;
+  if (!s->flexibility) {
+    motion_rate(d, d->motion, contact, at, d->touch[contact].rate);
+    return 1;
+  }
+  if (!force_rates(d, at, d->rate)) return 0;
+  recoil(s, d->rate, d->recoil);
+  for (int j = 0; j < s->contacts; j++) {
+    motion_rate(d, d->motion, j, at, d->touch[j].rate);
+    for (int k = 0; k < 3; k++) d->touch[j].rate[k] += d->recoil[3 * j + k];
+  }
+  return 1;
+}
+
+void mhb_passage_solution(mhb_passage *d, const mhb_solution *solution, double omega) {
+  d->solution = solution;
+  d->omega    = omega;
+  free_of_flexibility(d);
+}
+
+void mhb_passage_begin(mhb_passage *d, int collecting) {
+  const mhb_structure *s = d->structure;
+  d->collecting          = collecting;
+  memset(d->count, 0, sizeof *d->count * (size_t)s->pairs);
+  for (int j = 0; j < s->contacts; j++) {
+    mhb_touch *touch = &d->touch[j];
+    *touch           = (mhb_touch){.law   = &d->solution->law[pair_of(d, j)],
+                                   .state = (mhb_state)d->timetable->state[j]};
+    if (s->flexibility && slips(touch)) look(d, j, NEAR);
+  }
+}
+
+int mhb_passage_trace(mhb_passage *d) {
+  for (int a = 0; a < d->structure->pairs; a++) {
+    if (d->count[a] == 0) continue;
+    const double *x = d->solution->x + (size_t)(3 * a) * (size_t)d->nb;
+    mhb_contact_trace(d->contact, &d->solution->law[a], x, d->count[a],
+                      d->sample + (size_t)a * (size_t)d->room, &d->info);
+    if (!mhb_timetable_usable(&d->info)) return 0;
+  }
+  return 1;
+}
+
+/* ---- sub-steps ---- */
+
+int mhb_passage_slips(const mhb_passage *d) {
+  for (int j = 0; j < d->structure->contacts; j++)
+    if (slips(&d->touch[j])) return 1;
+  return 0;
+}
+
+/* Relations of all contacts over a sub-step with this middle; those that do not slip only at the first. */
+int mhb_passage_relate(mhb_passage *d, double middle, double h, int first, mhb_relation *relation) {
+  const mhb_structure *s = d->structure;
+  for (int j = 0; j < s->contacts; j++)
+    if (slips(&d->touch[j])) look(d, j, middle);
+  if (d->collecting) return 1;
+  if (s->flexibility && mhb_passage_slips(d) && !set_rates(d, 0, middle)) return 0;
+  for (int j = 0; j < s->contacts; j++) {
+    int slipping = slips(&d->touch[j]);
+    if (!slipping && !first) continue;
+    if (slipping && !s->flexibility) set_rates(d, j, middle);
+    mhb_tangent_relation(&d->touch[j], h, &relation[j]);
+  }
+  return 1;
+}
+
+/* ---- events ---- */
+
+/* The direction in which slip begins at a closing (eq. 15), from the motion that the law saw. */
+static void closing_direction(mhb_passage *d, int contact, double at) {
+  mhb_touch     *touch   = &d->touch[contact];
+  const mhb_law *law     = touch->law;
+  const double   K[2][2] = {{law->ku[0], law->ku[1]}, {law->ku[1], law->ku[2]}};
+  double         u[3];
+  motion_rate(d, d->solution->x, contact, at, u);
+  double x[2] = {K[0][0] * u[1] + K[0][1] * u[2], K[1][0] * u[1] + K[1][1] * u[2]};
+  mhb_slip_return(K, law->mu * law->kv * u[0], x, touch->e);
+  touch->n = 0;
+}
+
+/* Rows of all contacts change by jump[n] times alpha. */
+static void share_jump(mhb_passage *d, int contact, const double *jump, mhb_variation *v) {
+  recoil(d->structure, jump, v->du);
+  for (int j = 0; j < d->structure->contacts; j++) {
+    const mhb_touch *touch = &d->touch[j];
+    const double    *f     = jump + 3 * j + 1;
+    double          *out   = v->dsigma + 2 * j;
+    out[0] = out[1] = 0;
+    if (j == contact || touch->state == MHB_SEPARATE || touch->law->mu == 0) continue;
+    out[0] = touch->state == MHB_STICK ? f[0] : touch->e[0] * f[1] - touch->e[1] * f[0];
+    out[1] = touch->state == MHB_STICK ? f[1] : 0;
+  }
+}
+
+/* Stick to slip: dp jumps along (I + G R)^-1 (0, Ku e) until it obeys the friction limit. G: still stuck. */
+static int elastic_onset(mhb_passage *d, double at, mhb_jump *jump, mhb_variation *v) {
+  const mhb_touch *touch = &d->touch[jump->contact];
+  const double    *e = touch->e, *ku = touch->law->ku, mu = touch->law->mu;
+  int              n = 3 * d->structure->contacts, a = 3 * jump->contact;
+  if (!force_rates(d, at, d->rate)) return 0;
+  memset(d->other, 0, sizeof(double) * (size_t)n);
+  d->other[a + 1] = ku[0] * e[0] + ku[1] * e[1];
+  d->other[a + 2] = ku[1] * e[0] + ku[2] * e[1];
+  mhb_lu_solve(n, d->matrix, d->pivot, d->other);
+  const double *k = d->other + a;
+  double        s = e[0] * k[1] + e[1] * k[2] - mu * k[0], across = e[0] * k[2] - e[1] * k[1];
+  double measure[3] = {-mu * touch->law->kv / s, e[0] / s, e[1] / s}, q[3] = {0, -e[1], e[0]};
+  for (int i = 0; i < 3; i++) {
+    jump->measure[i] = measure[i];
+    jump->set[0][i]  = q[i] - across * measure[i];
+  }
+  for (int i = 0; i < n; i++) d->other[i] = -d->other[i];
+  share_jump(d, jump->contact, d->other, v);
+  return 1;
+}
+
+/* Opening and closing: the event shifts by -dv/v', and with it the step of p' from one state to the next. */
+static int elastic_contact(mhb_passage *d, double at, mhb_state to, mhb_jump *jump,
+                           mhb_variation *v) {
+  mhb_touch *touch = &d->touch[jump->contact];
+  mhb_state  from  = touch->state;
+  int        n = 3 * d->structure->contacts, a = 3 * jump->contact;
+  if (!set_rates(d, jump->contact, at)) return 0;
+  double speed = touch->rate[0];
+  touch->state = to;
+  int ok       = force_rates(d, at, d->other);
+  touch->state = from;
+  for (int i = 0; i < n; i++) d->other[i] -= d->rate[i];
+  jump->measure[0] = 1 / speed;
+  for (int i = 0; i < 2 && to == MHB_STICK && touch->law->mu > 0; i++)
+    jump->set[i][0] = d->other[a + 1 + i] / speed;
+  share_jump(d, jump->contact, d->other, v);
+  return ok;
+}
+
+/* With residual flexibility the direction of every slipping contact is needed, else of one that turns to or from slip. At n = 0
+ * friction has no direction: shortly before. */
+static void look_around(mhb_passage *d, const mhb_event *event, int turns) {
+  double at = event->state == MHB_SEPARATE ? event->at - NEAR : event->at;
+  for (int j = 0; j < d->structure->contacts; j++) {
+    int coupled = d->structure->flexibility && slips(&d->touch[j]);
+    if (coupled || (turns && j == event->contact)) look(d, j, at);
+  }
+}
+
+int mhb_passage_event(mhb_passage *d, const mhb_event *event, mhb_variation *v) {
+  mhb_touch *touch = &d->touch[event->contact];
+  mhb_state  from = touch->state, to = (mhb_state)event->state;
+  int        friction = touch->law->mu > 0, ok = 1;
+  int        turns = friction && from != MHB_SEPARATE && to != MHB_SEPARATE;
+  mhb_jump   jump  = {.contact = event->contact};
+  look_around(d, event, turns);
+  if (!d->collecting) {
+    if (friction && from == MHB_SEPARATE && to == MHB_SLIDE)
+      closing_direction(d, event->contact, event->at);
+    if (!d->structure->flexibility || (turns && to == MHB_STICK)) {
+      ok = set_rates(d, event->contact, event->at);
+      mhb_tangent_jump(touch, to, &jump); /* measure 0: no other contact takes notice */
+    } else if (turns) {
+      ok = elastic_onset(d, event->at, &jump, v);
+    } else {
+      ok = elastic_contact(d, event->at, to, &jump, v);
+    }
+    mhb_variation_jump(v, &jump);
+  }
+  touch->state = to;
+  return ok;
+}

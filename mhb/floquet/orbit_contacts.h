@@ -1,0 +1,67 @@
+/* The contacts of a blade or ring on their way through a period: how they answer a disturbance over each sub-step, and what
+ * their transitions do to it.
+ *
+ * A stretch of time is walked through twice with the same calls: first only the phases are noted at which slipping contacts
+ * must be looked at (one trace of the law gives them all), then the looks are used in the same order. */
+#ifndef MHB_FLOQUET_ORBIT_CONTACTS_H
+#define MHB_FLOQUET_ORBIT_CONTACTS_H
+
+#include "mhb/contact/contact.h"
+#include "mhb/contact/time_history.h"
+#include "mhb/floquet/linearised_law.h"
+#include "mhb/floquet/transition_schedule.h"
+#include "mhb/floquet/variational.h"
+
+/* A solution of the balance and what the contact law said of it. */
+typedef struct {
+  double                  omega; /* rad/s, of the excitation */
+  const mhb_law          *law;   /* [pair] */
+  const mhb_contact_info *info;  /* [pair] of mhb_contact_force at x */
+  const double           *x;     /* [pair][3][2m+1] relative motion, real form (fourier.h), m */
+  const double           *p; /* the same shape: force, N; needed with residual flexibility only */
+} mhb_solution;
+
+typedef struct {
+  const mhb_structure *structure;
+  const mhb_timetable *timetable;
+  mhb_contact         *contact;
+  int                  m, nb; /* harmonics; 2m+1 */
+  const mhb_solution  *solution;
+  double               omega;                 /* rad/s, fundamental */
+  double              *motion;                /* [pair][3][nb] w = u + R p */
+  mhb_contact_sample  *sample;                /* [pair][room] */
+  int                  room, collecting;      /* looks a pair; noted now, not used */
+  int                 *count;                 /* [pair] looks noted, or used */
+  mhb_contact_info     info;                  /* of a trace */
+  mhb_touch           *touch;                 /* [contact] now */
+  double              *matrix;                /* [n][n] I + G R, n = 3 contacts */
+  int                 *pivot;                 /* [n] */
+  double              *rate, *other, *recoil; /* [n] p' before and after, -R p' */
+  double              *basis;                 /* [2][nb] */
+} mhb_passage;
+
+/* Room for a number of looks at each contact of a pair. SHB_ERR_IO: no memory. */
+shb_status mhb_passage_create(const mhb_structure *structure, const mhb_timetable *timetable,
+                              mhb_contact *contact, int m, int looks, mhb_passage **passage);
+void       mhb_passage_destroy(mhb_passage *passage);
+
+/* The solution to walk along; omega: of the fundamental. */
+void mhb_passage_solution(mhb_passage *passage, const mhb_solution *solution, double omega);
+
+/* Go to the start of the timetable. */
+void mhb_passage_begin(mhb_passage *passage, int collecting);
+
+/* The looks that were noted. 0: the contact law was lost. */
+int mhb_passage_trace(mhb_passage *passage);
+
+/* Does any contact slip now? */
+int mhb_passage_slips(const mhb_passage *passage);
+
+/* Relations of the contacts over h seconds around the phase middle; unless first, only of those that slip. 0: singular. */
+int mhb_passage_relate(mhb_passage *passage, double middle, double h, int first,
+                       mhb_relation *relation);
+
+/* Pass a transition, and the variation with it. 0: singular. */
+int mhb_passage_event(mhb_passage *passage, const mhb_event *event, mhb_variation *variation);
+
+#endif

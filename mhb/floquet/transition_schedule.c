@@ -1,0 +1,150 @@
+#include "mhb/floquet/transition_schedule.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Events closer than this, in periods, are of one time. */
+static const double CLOSE = 1e-12;
+
+/* A contact that missed its tolerance by little still has its transitions in the right places. */
+static const double TOO_FAR = 1e-5;
+
+static int common_divisor(int a, int b) {
+  while (b) {
+    int rest = a % b;
+    a        = b;
+    b        = rest;
+  }
+  return a;
+}
+
+shb_status mhb_timetable_create(int blades, int pairs, int wave, mhb_timetable *t) {
+  int E = ((wave % blades) + blades) % blades, g = common_divisor(blades, E);
+  *t      = (mhb_timetable){.blades = blades, .pairs = pairs, .wave = E, .chunks = blades / g};
+  t->span = 1. / t->chunks;
+  while (((long)t->shift * E - g) % blades) t->shift++;
+  t->capacity  = 64 + 64 * pairs * g;
+  size_t n     = (size_t)(blades * pairs);
+  t->event     = calloc((size_t)t->capacity, sizeof *t->event);
+  t->state     = calloc(n, sizeof *t->state);
+  t->permanent = calloc(n, sizeof *t->permanent);
+  if (t->event && t->state && t->permanent) return SHB_OK;
+  mhb_timetable_destroy(t);
+  SHB_FAIL(SHB_ERR_IO, "out of memory for the stability of %d contacts", blades * pairs);
+}
+
+void mhb_timetable_destroy(mhb_timetable *t) {
+  free(t->event);
+  free(t->state);
+  free(t->permanent);
+  *t = (mhb_timetable){0};
+}
+
+static double fraction(double x) {
+  x -= floor(x);
+  return x < 1 ? x : 0;
+}
+
+/* Phase by which a contact's blade is behind. */
+static double lag(const mhb_timetable *t, int contact) {
+  return (double)((long)(contact / t->pairs) * t->wave % t->blades) / t->blades;
+}
+
+double mhb_timetable_phase(const mhb_timetable *t, int contact, double at) {
+  return fraction(t->start + at - lag(t, contact));
+}
+
+/* State right after a phase. */
+static int state_at(const mhb_contact_info *info, double phase) {
+  if (info->n_transitions == 0) {
+    int most = 0;
+    for (int k = 1; k < 3; k++)
+      if (info->share[k] > info->share[most]) most = k;
+    return most;
+  }
+  int    state   = 0;
+  double nearest = 2;
+  for (int i = 0; i < info->n_transitions; i++) {
+    double since = fraction(phase + CLOSE - info->transition[i].phase);
+    if (since > nearest) continue;
+    nearest = since;
+    state   = info->transition[i].state;
+  }
+  return state;
+}
+
+static int stays(const mhb_contact_info *info) {
+  return info->n_transitions == 0;
+}
+
+/* Friction states that a start at this phase would carry along. */
+static int burden(const mhb_timetable *t, const mhb_contact_info *info, double phase) {
+  int sum = 0;
+  for (int j = 0; j < t->blades * t->pairs; j++) {
+    const mhb_contact_info *of = &info[j % t->pairs];
+    sum += mhb_friction_states(state_at(of, phase - lag(t, j)), stays(of), 1);
+  }
+  return sum;
+}
+
+static void choose_start(mhb_timetable *t, const mhb_contact_info *info) {
+  int least = -1;
+  t->start  = 0;
+  for (int a = 0; a < t->pairs; a++) {
+    for (int i = 0; i < info[a].n_transitions; i++) {
+      int states = burden(t, info, info[a].transition[i].phase);
+      if (least >= 0 && states >= least) continue;
+      least    = states;
+      t->start = info[a].transition[i].phase;
+    }
+  }
+}
+
+static int later(const mhb_event *a, const mhb_event *b) {
+  return a->at != b->at ? a->at > b->at : a->order > b->order;
+}
+
+/* Insertion sort: no allocation, few events. */
+static void sort_events(mhb_timetable *t) {
+  for (int i = 1; i < t->n_events; i++) {
+    mhb_event event = t->event[i];
+    int       j     = i;
+    for (; j > 0 && later(&t->event[j - 1], &event); j--) t->event[j] = t->event[j - 1];
+    t->event[j] = event;
+  }
+}
+
+/* Events at the very start are over; they come again at its end. */
+static int list_events(mhb_timetable *t, const mhb_contact_info *info) {
+  t->n_events = 0;
+  for (int j = 0; j < t->blades * t->pairs; j++) {
+    const mhb_contact_info *of = &info[j % t->pairs];
+    for (int i = 0; i < of->n_transitions; i++) {
+      double at = fraction(of->transition[i].phase + lag(t, j) - t->start);
+      if (at <= CLOSE) at += 1;
+      if (at > t->span + CLOSE) continue;
+      if (t->n_events == t->capacity) return 0;
+      t->event[t->n_events] = (mhb_event){at, j, of->transition[i].state, t->n_events};
+      t->n_events++;
+    }
+  }
+  sort_events(t);
+  return 1;
+}
+
+int mhb_timetable_usable(const mhb_contact_info *info) {
+  return (!info->lost || info->error <= TOO_FAR) && info->n_transitions < MHB_MAX_TRANSITIONS;
+}
+
+int mhb_timetable_set(mhb_timetable *t, const mhb_contact_info *info) {
+  for (int a = 0; a < t->pairs; a++)
+    if (!mhb_timetable_usable(&info[a])) return 0;
+  choose_start(t, info);
+  for (int j = 0; j < t->blades * t->pairs; j++) {
+    const mhb_contact_info *of = &info[j % t->pairs];
+    t->state[j]                = state_at(of, t->start - lag(t, j));
+    t->permanent[j]            = stays(of);
+  }
+  return list_events(t, info);
+}

@@ -1,0 +1,342 @@
+#include "mhb/floquet/variational.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Coefficients of a mode over h: change of q by (q, v), v by (q, v), and the answer to a unit force. */
+enum { DQ_Q, DQ_V, V_Q, V_V, DQ_P, V_P, PROPAGATOR };
+
+static int unknowns(const mhb_structure *s) {
+  return 3 * s->contacts;
+}
+
+static int modal_rows(const mhb_structure *s) {
+  return s->blades * s->modes;
+}
+
+static mhb_lanes *lanes(size_t n) {
+  mhb_lanes *x = aligned_alloc(sizeof *x, (n + 1) * sizeof *x);
+  if (x) memset(x, 0, (n + 1) * sizeof *x);
+  return x;
+}
+
+shb_status mhb_variation_create(const mhb_structure *s, int capacity, mhb_variation **out) {
+  mhb_variation *v = calloc(1, sizeof *v);
+  SHB_CHECK(v, SHB_ERR_IO, "out of memory");
+  size_t n = (size_t)unknowns(s), contacts = (size_t)s->contacts;
+  size_t blocks = ((size_t)capacity + MHB_LANES - 1) / MHB_LANES;
+  v->structure  = s;
+  v->capacity   = capacity;
+  v->rows       = 2 * modal_rows(s) + 5 * s->contacts;
+  v->h          = -1;
+  v->Y          = lanes(blocks * (size_t)v->rows);
+  v->P          = lanes(blocks * n);
+  v->work       = lanes(3 * n);
+  v->relation   = calloc(contacts, sizeof *v->relation);
+  v->propagator = calloc((size_t)s->modes * PROPAGATOR, sizeof(double));
+  v->compliance = calloc(n * n, sizeof(double));
+  v->near       = calloc((size_t)s->blades, sizeof *v->near);
+  v->du         = calloc(n, sizeof(double));
+  v->dsigma     = calloc(2 * contacts, sizeof(double));
+  int ok        = mhb_band_create(s->blades, 3 * s->pairs, &v->band);
+  if (!(ok && v->Y && v->P && v->work && v->relation && v->propagator && v->compliance && v->near &&
+        v->du && v->dsigma)) {
+    mhb_variation_destroy(v);
+    SHB_FAIL(SHB_ERR_IO, "out of memory for the stability of %d columns", capacity);
+  }
+  for (int b = 0; b < s->blades; b++) v->meets = mhb_band_near(&v->band, b, v->near[b]);
+  *out = v;
+  return SHB_OK;
+}
+
+void mhb_variation_destroy(mhb_variation *v) {
+  if (!v) return;
+  free(v->Y);
+  free(v->P);
+  free(v->work);
+  free(v->relation);
+  free(v->propagator);
+  free(v->compliance);
+  free(v->near);
+  mhb_band_destroy(&v->band);
+  free(v->du);
+  free(v->dsigma);
+  free(v);
+}
+
+void mhb_variation_clear(mhb_variation *v, int columns) {
+  v->columns    = columns;
+  v->blocks     = (columns + MHB_LANES - 1) / MHB_LANES;
+  size_t blocks = (size_t)v->blocks;
+  memset(v->Y, 0, blocks * (size_t)v->rows * sizeof *v->Y);
+  memset(v->P, 0, blocks * (size_t)unknowns(v->structure) * sizeof *v->P);
+}
+
+/* ---- modes ---- */
+
+/* Damped oscillator over h, exactly; force constant. */
+static void set_propagator(double w, double zeta, double h, double *e) {
+  double a = zeta * w, wd = w * sqrt(1 - zeta * zeta), decay = exp(-a * h);
+  double s = sin(wd * h), half = sin(.5 * wd * h), ratio = s / wd;
+  double change = expm1(-a * h) + decay * (a * ratio - 2 * half * half); /* of q by q */
+  e[DQ_Q]       = change;
+  e[DQ_V]       = decay * ratio;
+  e[V_Q]        = -w * w * decay * ratio;
+  e[V_V]        = decay * (1 - 2 * half * half - a * ratio);
+  e[DQ_P]       = -change / (w * w);
+  e[V_P]        = decay * ratio;
+}
+
+static void set_compliance(mhb_variation *v) {
+  const mhb_structure *s = v->structure;
+  int                  n = unknowns(s), n3 = 3 * s->pairs;
+  memset(v->compliance, 0, sizeof(double) * (size_t)n * (size_t)n);
+  for (int k = 0; k < s->blades * s->sides * s->sides; k++) {
+    int blade = k / (s->sides * s->sides), to = k / s->sides % s->sides, by = k % s->sides;
+    const double *phi = s->shape + (size_t)to * (size_t)(s->modes * n3);
+    const double *psi = s->shape + (size_t)by * (size_t)(s->modes * n3);
+    double *C = v->compliance + (size_t)(3 * mhb_structure_contact(s, blade, to)) * (size_t)n +
+                3 * mhb_structure_contact(s, blade, by);
+    for (int i = 0; i < s->modes; i++) {
+      double answer = v->propagator[i * PROPAGATOR + DQ_P];
+      for (int r = 0; r < n3; r++)
+        for (int c = 0; c < n3; c++)
+          C[(size_t)r * (size_t)n + (size_t)c] += phi[i * n3 + r] * answer * psi[i * n3 + c];
+    }
+  }
+}
+
+void mhb_variation_length(mhb_variation *v, double h) {
+  const mhb_structure *s = v->structure;
+  if (h == v->h) return;
+  mhb_variation_settle(v);
+  v->h = h;
+  for (int i = 0; i < s->modes; i++)
+    set_propagator(s->omega[i], s->zeta[i], h, v->propagator + i * PROPAGATOR);
+  set_compliance(v);
+}
+
+/* All modes of one blade: feel the last mean force P, then go on freely; W += B (change of q). */
+MHB_INLINE void advance_blade(int sides, int n3, int modes, const double *propagator,
+                              const double *const shape[2], mhb_lanes *const y[2],
+                              const mhb_lanes *const P[2], mhb_lanes *const W[2]) {
+  mhb_lanes *q = y[0], *v = y[1];
+  for (int i = 0; i < modes; i++) {
+    const double *e     = propagator + i * PROPAGATOR;
+    mhb_lanes     force = {0};
+    for (int side = 0; side < sides; side++)
+      for (int r = 0; r < n3; r++) force += shape[side][i * n3 + r] * P[side][r];
+    mhb_lanes q0 = q[i] - e[DQ_P] * force, v0 = v[i] - e[V_P] * force;
+    mhb_lanes dq = e[DQ_Q] * q0 + e[DQ_V] * v0;
+    for (int side = 0; side < sides; side++)
+      for (int r = 0; r < n3; r++) W[side][r] += shape[side][i * n3 + r] * dq;
+    q[i] = q0 + dq;
+    v[i] = e[V_Q] * q0 + e[V_V] * v0;
+  }
+}
+
+MHB_HOT static void advance_one(const mhb_variation *v, mhb_lanes *Y, const mhb_lanes *P,
+                                mhb_lanes *W) {
+  const mhb_structure *s      = v->structure;
+  mhb_lanes            sum[3] = {W[0], W[1], W[2]};
+  advance_blade(1, 3, s->modes, v->propagator, (const double *const[2]){s->shape, NULL},
+                (mhb_lanes *const[2]){Y, Y + s->modes}, (const mhb_lanes *const[2]){P, NULL},
+                (mhb_lanes *const[2]){sum, NULL});
+  for (int r = 0; r < 3; r++) W[r] = sum[r];
+}
+
+MHB_HOT static void advance_any(const mhb_variation *v, mhb_lanes *Y, const mhb_lanes *P,
+                                mhb_lanes *W) {
+  const mhb_structure *s  = v->structure;
+  int                  n3 = 3 * s->pairs, m = s->modes;
+  for (int b = 0; b < s->blades; b++) {
+    int at[2] = {3 * mhb_structure_contact(s, b, 0), 3 * mhb_structure_contact(s, b, s->sides - 1)};
+    advance_blade(s->sides, n3, m, v->propagator,
+                  (const double *const[2]){s->shape, s->shape + (s->sides - 1) * m * n3},
+                  (mhb_lanes *const[2]){Y + b * m, Y + (s->blades + b) * m},
+                  (const mhb_lanes *const[2]){P + at[0], P + at[1]},
+                  (mhb_lanes *const[2]){W + at[0], W + at[1]});
+  }
+}
+
+MHB_HOT static void feel(const mhb_variation *v, mhb_lanes *Y, const mhb_lanes *P) {
+  const mhb_structure *s  = v->structure;
+  int                  n3 = 3 * s->pairs, m = s->modes;
+  for (int k = 0; k < s->blades * s->sides; k++) {
+    int              b = k / s->sides, side = k % s->sides;
+    const double    *shape = s->shape + side * m * n3;
+    const mhb_lanes *p     = P + 3 * mhb_structure_contact(s, b, side);
+    for (int i = 0; i < m; i++) {
+      mhb_lanes force = {0};
+      for (int r = 0; r < n3; r++) force += shape[i * n3 + r] * p[r];
+      Y[b * m + i] -= v->propagator[i * PROPAGATOR + DQ_P] * force;
+      Y[(s->blades + b) * m + i] -= v->propagator[i * PROPAGATOR + V_P] * force;
+    }
+  }
+}
+
+void mhb_variation_settle(mhb_variation *v) {
+  if (v->h < 0) return;
+  int n = unknowns(v->structure);
+  for (int k = 0; k < v->blocks; k++) {
+    feel(v, v->Y + (long)k * v->rows, v->P + (long)k * n);
+    memset(v->P + (long)k * n, 0, sizeof *v->P * (size_t)n);
+  }
+}
+
+/* ---- contacts ---- */
+
+int mhb_lu(int n, double *A, int *pivot) {
+  for (int k = 0; k < n; k++) {
+    double *row = A + (long)k * n;
+    int     p   = k;
+    for (int i = k + 1; i < n; i++)
+      if (fabs(A[(long)i * n + k]) > fabs(A[(long)p * n + k])) p = i;
+    pivot[k] = p;
+    if (!(fabs(A[(long)p * n + k]) > 1e-300)) return 0;
+    for (int j = 0; p != k && j < n; j++) {
+      double swap        = row[j];
+      row[j]             = A[(long)p * n + j];
+      A[(long)p * n + j] = swap;
+    }
+    row[k] = 1 / row[k];
+    for (int i = k + 1; i < n; i++) {
+      double *other = A + (long)i * n, l = other[k] *= row[k];
+      for (int j = k + 1; l != 0 && j < n; j++) other[j] -= l * row[j];
+    }
+  }
+  return 1;
+}
+
+void mhb_lu_solve(int n, const double *A, const int *pivot, double *x) {
+  for (int k = 0; k < n; k++) {
+    const double *row = A + (long)k * n;
+    double        xk  = x[pivot[k]];
+    x[pivot[k]]       = x[k];
+    for (int j = 0; j < k; j++) xk -= row[j] * x[j];
+    x[k] = xk;
+  }
+  for (int k = n - 1; k >= 0; k--) {
+    const double *row = A + (long)k * n;
+    for (int j = k + 1; j < n; j++) x[k] -= row[j] * x[j];
+    x[k] *= row[k];
+  }
+}
+
+/* Element of I + compliance hold/2 + R grow. */
+static double coupling(const mhb_variation *v, int row, int column) {
+  const mhb_relation *relation = &v->relation[column / 3];
+  long                first    = (long)row * v->band.n + column - column % 3;
+  const double       *C = v->compliance + first, *R = v->structure->flexibility;
+  double              sum = row == column;
+  for (int k = 0; k < 3; k++) {
+    sum += .5 * C[k] * relation->hold[k][column % 3];
+    if (R) sum += R[first + k] * relation->grow[k][column % 3];
+  }
+  return sum;
+}
+
+int mhb_variation_couple(mhb_variation *v) {
+  int block = v->band.block;
+  mhb_band_clear(&v->band);
+  for (int row = 0; row < v->band.n; row++)
+    for (int i = 0; i < v->meets; i++) {
+      int first = v->near[row / block][i] * block;
+      for (int column = first; column < first + block; column++)
+        *mhb_band_at(&v->band, row, column) = coupling(v, row, column);
+    }
+  return mhb_band_factor(&v->band);
+}
+
+/* y = (v, sigma) of contact j */
+MHB_INLINE void contact_rows(const mhb_lanes *u, const mhb_lanes *sigma, int j, mhb_lanes y[3]) {
+  y[0] = u[3 * j];
+  y[1] = sigma[2 * j];
+  y[2] = sigma[2 * j + 1];
+}
+
+MHB_INLINE mhb_lanes dot3(const double a[3], const mhb_lanes *x) {
+  return a[0] * x[0] + a[1] * x[1] + a[2] * x[2];
+}
+
+/* D <- D - M x, M [n][n] between contacts of blades that meet */
+MHB_INLINE void subtract_product(const mhb_variation *v, int n, int block, int meets,
+                                 const double *M, const mhb_lanes *x, mhb_lanes *D) {
+  for (int r = 0; r < n; r++) {
+    const double *row = M + (long)r * n;
+    mhb_lanes     sum = D[r];
+    for (int i = 0; i < meets; i++) {
+      int first = meets > 1 ? v->near[r / block][i] * block : 0;
+      for (int c = first; c < first + block; c++) sum -= row[c] * x[c];
+    }
+    D[r] = sum;
+  }
+}
+
+/* The change of du from that without contact (D), the mean forces P, and sigma at the end. */
+MHB_INLINE void solve_contacts(const mhb_variation *v, int n, int block, int meets, mhb_lanes *u,
+                               mhb_lanes *P, mhb_lanes *D, mhb_lanes *other) {
+  mhb_lanes *sigma = u + n, y[3];
+  for (int j = 0; j < n / 3; j++) {
+    const mhb_relation *relation = &v->relation[j];
+    contact_rows(u, sigma, j, y);
+    for (int r = 0; r < 3; r++) {
+      P[3 * j + r]     = dot3(relation->a[r], y);
+      other[3 * j + r] = dot3(relation->b[r], y);
+    }
+  }
+  subtract_product(v, n, block, meets, v->compliance, P, D);
+  if (v->structure->flexibility)
+    subtract_product(v, n, block, meets, v->structure->flexibility, other, D);
+  mhb_band_solve(&v->band, D, other);
+  for (int j = 0; j < n / 3; j++) {
+    const mhb_relation *relation = &v->relation[j];
+    contact_rows(u, sigma, j, y);
+    for (int r = 0; r < 3; r++) P[3 * j + r] += .5 * dot3(relation->hold[r], D + 3 * j);
+    for (int i = 0; i < 2; i++)
+      sigma[2 * j + i] = dot3(relation->keep[i], y) + dot3(relation->gain[i], D + 3 * j);
+    for (int r = 0; r < 3; r++) u[3 * j + r] += D[3 * j + r];
+  }
+}
+
+MHB_HOT static void solve_one(const mhb_variation *v, mhb_lanes *u, mhb_lanes *P, mhb_lanes *D) {
+  mhb_lanes other[3];
+  solve_contacts(v, 3, 3, 1, u, P, D, other);
+}
+
+MHB_HOT static void solve_any(const mhb_variation *v, mhb_lanes *u, mhb_lanes *P, mhb_lanes *D) {
+  int n = unknowns(v->structure);
+  solve_contacts(v, n, v->band.block, v->meets, u, P, D, v->work + n);
+}
+
+void mhb_variation_step(mhb_variation *v) {
+  const mhb_structure *s = v->structure;
+  int                  n = unknowns(s), one = n == 3 && s->sides == 1;
+  for (int k = 0; k < v->blocks; k++) {
+    mhb_lanes *Y = v->Y + (long)k * v->rows, *P = v->P + (long)k * n;
+    mhb_lanes *u = Y + 2 * modal_rows(s);
+    memset(v->work, 0, sizeof *v->work * (size_t)n);
+    if (one) {
+      advance_one(v, Y, P, v->work);
+      solve_one(v, u, P, v->work);
+    } else {
+      advance_any(v, Y, P, v->work);
+      solve_any(v, u, P, v->work);
+    }
+  }
+}
+
+void mhb_variation_jump(mhb_variation *v, const mhb_jump *jump) {
+  const mhb_structure *s = v->structure;
+  int                  n = unknowns(s), j = jump->contact;
+  for (int k = 0; k < v->blocks; k++) {
+    mhb_lanes *u = v->Y + (long)k * v->rows + 2 * modal_rows(s), *sigma = u + n, y[3];
+    contact_rows(u, sigma, j, y);
+    for (int i = 0; i < 2; i++) sigma[2 * j + i] = dot3(jump->set[i], y);
+    if (!s->flexibility) continue;
+    mhb_lanes alpha = dot3(jump->measure, y);
+    for (int i = 0; i < n; i++) u[i] += v->du[i] * alpha;
+    for (int i = 0; i < 2 * s->contacts; i++) sigma[i] += v->dsigma[i] * alpha;
+  }
+}

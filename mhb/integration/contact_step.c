@@ -1,0 +1,340 @@
+#include "mhb/integration/contact_step.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "mhb/floquet/variational.h"
+
+enum { S = MHB_STAGES, F = MHB_STAGE_FORCES, SAMPLES = 8, ITERATIONS = 20 };
+
+static const double PI = 3.14159265358979323846;
+
+mhb_law mhb_rub_law(const mhb_law *law) {
+  mhb_law out = *law;
+  if (!(law->mu > 0)) out.mu = out.ku[0] = out.ku[1] = out.ku[2] = 0;
+  return out;
+}
+
+/* Ku s */
+static void spring(const mhb_law *law, const double *s, double x[2]) {
+  x[0] = law->ku[0] * s[0] + law->ku[1] * s[1];
+  x[1] = law->ku[1] * s[0] + law->ku[2] * s[1];
+}
+
+/* u = y - S p */
+static void answer(const double *matrix, const double *y, mhb_rub_step *step) {
+  for (int i = 0; i < F; i++) {
+    double sum = y[i];
+    for (int k = 0; k < F; k++) sum -= matrix[i * F + k] * step->p[k];
+    step->u[i] = sum;
+  }
+}
+
+/* ---- stick: (I + K S) p = K y + offset ---- */
+
+static void factor_stick(const mhb_law *law, const double *matrix, double *stick, int *pivot) {
+  for (int i = 0; i < S; i++)
+    for (int k = 0; k < F; k++) {
+      double column[3];
+      for (int c = 0; c < 3; c++) column[c] = matrix[(3 * i + c) * F + k];
+      double *row = stick + 3 * i * F + k, x[2];
+      spring(law, column + 1, x);
+      row[0]     = law->kv * column[0];
+      row[F]     = x[0];
+      row[2 * F] = x[1];
+    }
+  for (int i = 0; i < F; i++) stick[i * F + i] += 1;
+  mhb_lu(F, stick, pivot);
+}
+
+static void solve_stick(const mhb_law *law, const mhb_rub *rub, const double *matrix, double *stick,
+                        int *pivot, const double *y, mhb_rub_step *step) {
+  if (pivot[0] < 0) factor_stick(law, matrix, stick, pivot);
+  for (int i = 0; i < S; i++) {
+    const double *at = y + 3 * i;
+    double        x[2];
+    spring(law, at + 1, x);
+    step->p[3 * i]     = law->kv * at[0] + law->n0 - law->balance;
+    step->p[3 * i + 1] = x[0] - rub->zeta[0];
+    step->p[3 * i + 2] = x[1] - rub->zeta[1];
+  }
+  mhb_lu_solve(F, stick, pivot, step->p);
+  answer(matrix, y, step);
+}
+
+/* ---- slip: Newton's method for n_i, theta_i, kappa_i ---- */
+
+typedef struct {
+  double e[S][2], Ke[S][2], Kq[S][2];
+} heading;
+
+static void set_forces(const mhb_law *law, mhb_rub_step *step, heading *d) {
+  for (int i = 0; i < S; i++) {
+    double c = cos(step->theta[i]), s = sin(step->theta[i]), q[2] = {-s, c};
+    d->e[i][0] = c;
+    d->e[i][1] = s;
+    spring(law, d->e[i], d->Ke[i]);
+    spring(law, q, d->Kq[i]);
+    step->p[3 * i]     = step->n[i] - law->balance;
+    step->p[3 * i + 1] = law->mu * step->n[i] * c;
+    step->p[3 * i + 2] = law->mu * step->n[i] * s;
+  }
+}
+
+/* Its size, less what rounding may leave. */
+static double slip_residual(const mhb_radau *rule, const mhb_law *law, const mhb_rub *rub,
+                            const mhb_rub_step *step, const heading *d, double r[F]) {
+  double worst = 0;
+  for (int i = 0; i < S; i++) {
+    const double *u = step->u + 3 * i;
+    double        x[2], sum[2];
+    spring(law, u + 1, x);
+    r[3 * i] = step->n[i] - law->n0 - law->kv * u[0];
+    for (int c = 0; c < 2; c++) {
+      sum[c] = step->p[3 * i + 1 + c] - x[c] + rub->zeta[c];
+      for (int j = 0; j < S; j++) sum[c] += rule->A[i][j] * step->kappa[j] * d->Ke[j][c];
+      r[3 * i + 1 + c] = sum[c];
+    }
+    double rounding = 4e-16 * (fabs(law->kv * u[0]) + fabs(x[0]) + fabs(x[1]));
+    for (int c = 0; c < 3; c++) worst = fmax(worst, fabs(r[3 * i + c]) - rounding);
+  }
+  return worst;
+}
+
+static void slip_jacobian(const mhb_radau *rule, const mhb_law *law, const double *matrix,
+                          const mhb_rub_step *step, const heading *d, double J[F * F]) {
+  for (int j = 0; j < S; j++) {
+    double c = d->e[j][0], s = d->e[j][1], mn = law->mu * step->n[j];
+    double by_n[3] = {1, law->mu * c, law->mu * s}, by_theta[3] = {0, -mn * s, mn * c};
+    for (int i = 0; i < S; i++) {
+      double sn[3], st[3], x[2], *row = J + 3 * i * F + 3 * j;
+      for (int k = 0; k < 3; k++) {
+        const double *m = matrix + (3 * i + k) * F + 3 * j;
+        sn[k]           = m[0] + m[1] * by_n[1] + m[2] * by_n[2];
+        st[k]           = m[1] * by_theta[1] + m[2] * by_theta[2];
+      }
+      double a = rule->A[i][j];
+      row[0]   = law->kv * sn[0] + (i == j);
+      row[1]   = law->kv * st[0];
+      row[2]   = 0;
+      spring(law, sn + 1, x);
+      for (int k = 0; k < 2; k++) {
+        row[(k + 1) * F]     = x[k] + (i == j ? by_n[k + 1] : 0);
+        row[(k + 1) * F + 2] = a * d->Ke[j][k];
+      }
+      spring(law, st + 1, x);
+      for (int k = 0; k < 2; k++)
+        row[(k + 1) * F + 1] =
+            x[k] + (i == j ? by_theta[k + 1] : 0) + a * step->kappa[j] * d->Kq[j][k];
+    }
+  }
+}
+
+static int slip_update(const double r[F], mhb_rub_step *step) {
+  double turn = 0;
+  for (int i = 0; i < F; i++)
+    if (!isfinite(r[i])) return 0;
+  for (int i = 0; i < S; i++) turn = fmax(turn, fabs(r[3 * i + 1]));
+  double part = turn > 1 ? 1 / turn : 1;
+  for (int i = 0; i < S; i++) {
+    step->n[i] -= part * r[3 * i];
+    step->theta[i] -= part * r[3 * i + 1];
+    step->kappa[i] -= part * r[3 * i + 2];
+  }
+  return 1;
+}
+
+/* Where slip begins: the normal load and the slider's path for friction of a fixed direction. */
+static void begin_slip(const mhb_radau *rule, const mhb_law *law, const mhb_rub *rub,
+                       const double *matrix, const double *y, double scale, mhb_rub_step *step) {
+  heading d;
+  double  rest[S];
+  for (int round = 0; round < 3; round++) {
+    set_forces(law, step, &d);
+    answer(matrix, y, step);
+    for (int i = 0; i < S && round < 2; i++)
+      step->n[i] = fmax(law->n0 + law->kv * step->u[3 * i], 1e-9 * scale);
+  }
+  for (int i = 0; i < S; i++) {
+    double x[2];
+    spring(law, step->u + 3 * i + 1, x);
+    rest[i] = -law->mu * step->n[i];
+    for (int c = 0; c < 2; c++) rest[i] += d.e[i][c] * (x[c] - rub->zeta[c]);
+  }
+  for (int i = 0; i < S; i++) {
+    double sum = 0, eKe = d.e[i][0] * d.Ke[i][0] + d.e[i][1] * d.Ke[i][1];
+    for (int j = 0; j < S; j++) sum += rule->inverse[i][j] * rest[j];
+    step->kappa[i] = sum / eKe;
+  }
+}
+
+static int solve_slip(const mhb_radau *rule, const mhb_law *law, const mhb_rub *rub,
+                      const double *matrix, const double *y, double scale, mhb_rub_step *step) {
+  heading d;
+  double  r[F], J[F * F], last = INFINITY;
+  int     pivot[F];
+  if (rub->lambda == 0) begin_slip(rule, law, rub, matrix, y, scale, step);
+  for (int k = 0; k < ITERATIONS; k++) {
+    set_forces(law, step, &d);
+    answer(matrix, y, step);
+    double size = slip_residual(rule, law, rub, step, &d, r);
+    if (size <= 1e-13 * scale || (size <= 1e-11 * scale && size > .1 * last)) return 1;
+    last = size;
+    slip_jacobian(rule, law, matrix, step, &d, J);
+    if (!mhb_lu(F, J, pivot)) return 0;
+    mhb_lu_solve(F, J, pivot, r);
+    if (!slip_update(r, step)) return 0;
+  }
+  return 0;
+}
+
+/* ---- a step ---- */
+
+void mhb_rub_guess(const mhb_law *law, const mhb_rub *rub, double h, mhb_rub_step *step) {
+  for (int i = 0; i < S; i++) {
+    memcpy(step->p + 3 * i, rub->p, sizeof rub->p);
+    memcpy(step->u + 3 * i, rub->u, sizeof rub->u);
+    step->n[i]     = rub->p[0] + law->balance;
+    step->theta[i] = rub->theta;
+    step->kappa[i] = rub->lambda * h;
+  }
+}
+
+int mhb_rub_solve(const mhb_radau *rule, const mhb_law *law, const mhb_rub *rub, const double *S_,
+                  double *stick, int *pivot, const double *y, double scale, mhb_rub_step *step) {
+  switch (rub->state) {
+    case MHB_STICK:
+      solve_stick(law, rub, S_, stick, pivot, y, step);
+      return 1;
+    case MHB_SLIDE:
+      return solve_slip(rule, law, rub, S_, y, scale, step);
+    default:
+      memset(step->p, 0, sizeof step->p);
+      for (int i = 0; i < S; i++) step->p[3 * i] = -law->balance;
+      answer(S_, y, step);
+      return 1;
+  }
+}
+
+/* ---- events ---- */
+
+/* The cubic through the start and the stages. */
+static double cubic(const mhb_radau *rule, double start, const double *stage, int stride,
+                    double tau) {
+  double value = 0;
+  for (int k = S; k >= 0; k--) {
+    double c = rule->dense[k][0] * start;
+    for (int i = 0; i < S; i++) c += rule->dense[k][i + 1] * stage[i * stride];
+    value = value * tau + c;
+  }
+  return value;
+}
+
+static double slider_speed(const mhb_radau *rule, const double kappa[S], double tau) {
+  double value = 0, weight = 1;
+  for (int m = 0; m < S; m++) {
+    for (int j = 0; j < S; j++) value += rule->basis[j][m] * kappa[j] * weight;
+    weight *= tau / (m + 1);
+  }
+  return value;
+}
+
+double mhb_rub_excess(const mhb_radau *rule, const mhb_law *law, const mhb_rub *rub,
+                      const mhb_rub_step *step, mhb_rub_event event, double tau) {
+  if (event == MHB_GRIPS)
+    return -.5 * (law->ku[0] + law->ku[2]) * slider_speed(rule, step->kappa, tau);
+  double n = law->n0 + law->kv * cubic(rule, rub->u[0], step->u, 3, tau);
+  if (event == MHB_CLOSES) return n;
+  if (event == MHB_OPENS) return -n;
+  double fu = cubic(rule, rub->p[1], step->p + 1, 3, tau);
+  double fw = cubic(rule, rub->p[2], step->p + 2, 3, tau);
+  return hypot(fu, fw) - law->mu * n;
+}
+
+/* The root between a (no excess) and b (excess), by Illinois. */
+static double root_of(const mhb_radau *rule, const mhb_law *law, const mhb_rub *rub,
+                      const mhb_rub_step *step, mhb_rub_event event, double a, double b) {
+  double fa = mhb_rub_excess(rule, law, rub, step, event, a);
+  double fb = mhb_rub_excess(rule, law, rub, step, event, b);
+  if (fa >= 0) return a;
+  for (int k = 0, side = 0; k < 60 && b - a > 1e-14; k++) {
+    double c = (fb * a - fa * b) / (fb - fa);
+    double f = mhb_rub_excess(rule, law, rub, step, event, c);
+    if (f == 0) return c;
+    if (f > 0) {
+      b  = c;
+      fb = f;
+      if (side > 0) fa /= 2;
+      side = 1;
+    } else {
+      a  = c;
+      fa = f;
+      if (side < 0) fb /= 2;
+      side = -1;
+    }
+  }
+  return b;
+}
+
+static double first_of(const mhb_radau *rule, const mhb_law *law, const mhb_rub *rub,
+                       const mhb_rub_step *step, double tolerance, mhb_rub_event event) {
+  for (int k = 1; k <= SAMPLES; k++) {
+    double tau = (double)k / SAMPLES;
+    if (mhb_rub_excess(rule, law, rub, step, event, tau) > tolerance)
+      return root_of(rule, law, rub, step, event, (double)(k - 1) / SAMPLES, tau);
+  }
+  return 2;
+}
+
+double mhb_rub_first(const mhb_radau *rule, const mhb_law *law, const mhb_rub *rub,
+                     const mhb_rub_step *step, double tolerance, mhb_rub_event *event) {
+  if (rub->state == MHB_SEPARATE) {
+    *event = MHB_CLOSES;
+    return first_of(rule, law, rub, step, tolerance, MHB_CLOSES);
+  }
+  mhb_rub_event other = rub->state == MHB_STICK ? MHB_SLIPS : MHB_GRIPS;
+  double        opens = first_of(rule, law, rub, step, tolerance, MHB_OPENS), ends = 2;
+  if (law->mu > 0) ends = first_of(rule, law, rub, step, tolerance, other);
+  *event = ends <= opens ? other : MHB_OPENS;
+  return ends <= opens ? ends : opens;
+}
+
+/* ---- between steps ---- */
+
+void mhb_rub_advance(const mhb_law *law, const mhb_rub_step *step, double h, mhb_rub *rub) {
+  const int end = 3 * (S - 1);
+  memcpy(rub->u, step->u + end, sizeof rub->u);
+  memcpy(rub->p, step->p + end, sizeof rub->p);
+  if (rub->state != MHB_SLIDE) return;
+  double x[2];
+  spring(law, rub->u + 1, x);
+  for (int c = 0; c < 2; c++) rub->zeta[c] = x[c] - rub->p[1 + c];
+  rub->theta  = remainder(step->theta[S - 1], 2 * PI);
+  rub->lambda = step->kappa[S - 1] / h;
+}
+
+void mhb_rub_change(const mhb_law *law, mhb_state state, double direction, mhb_rub *rub) {
+  double x[2];
+  spring(law, rub->u + 1, x);
+  if (state == MHB_SEPARATE || rub->state == MHB_SEPARATE) {
+    rub->p[0] = -law->balance;
+    rub->p[1] = rub->p[2] = 0;
+  }
+  for (int c = 0; c < 2; c++) rub->zeta[c] = x[c] - rub->p[1 + c];
+  if (state == MHB_SLIDE) {
+    rub->lambda = 0;
+    rub->theta  = direction;
+  }
+  rub->state = state;
+}
+
+double mhb_rub_closing(const mhb_radau *rule, const mhb_law *law, const mhb_rub *rub,
+                       const mhb_rub_step *step, double *direction) {
+  double rate[3]; /* of the cubic at 0 */
+  for (int c = 0; c < 3; c++) {
+    rate[c] = rule->dense[1][0] * rub->p[c];
+    for (int i = 0; i < S; i++) rate[c] += rule->dense[1][i + 1] * step->p[3 * i + c];
+  }
+  *direction = atan2(rate[2], rate[1]);
+  return hypot(rate[1], rate[2]) - law->mu * rate[0];
+}

@@ -1,0 +1,248 @@
+#include "mhb/integration/modal_step.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "mhb/numerics/simd.h"
+
+enum { S = MHB_STAGES, MOMENTS = 5, GAMMAS = MOMENTS + 2 };
+
+/* ---- the rule ---- */
+
+/* Coefficients by powers of tau of the Lagrange polynomial j through n points. */
+static void lagrange(int n, const double *x, int j, double *power) {
+  memset(power, 0, sizeof(double) * (size_t)n);
+  power[0]   = 1;
+  int degree = 0;
+  for (int i = 0; i < n; i++) {
+    if (i == j) continue;
+    double scale = 1 / (x[j] - x[i]);
+    for (int k = ++degree; k >= 0; k--)
+      power[k] = scale * ((k > 0 ? power[k - 1] : 0) - (k < degree ? x[i] * power[k] : 0));
+  }
+}
+
+/* A^-1: derivatives at the c_i of the polynomials through 0 and the c_j. */
+static void set_inverse(mhb_radau *r) {
+  for (int j = 0; j < S; j++)
+    for (int i = 0; i < S; i++) {
+      double t = r->c[i];
+      r->inverse[i][j] =
+          r->dense[1][j + 1] + t * (2 * r->dense[2][j + 1] + t * 3 * r->dense[3][j + 1]);
+    }
+}
+
+void mhb_radau_create(mhb_radau *r) {
+  const double root = sqrt(6.), factorial[] = {1, 1, 2};
+  double       point[S + 1] = {0, (4 - root) / 10, (4 + root) / 10, 1}, power[S + 1];
+  memcpy(r->c, point + 1, sizeof r->c);
+  for (int j = 0; j <= S; j++) {
+    lagrange(S + 1, point, j, power);
+    for (int k = 0; k <= S; k++) r->dense[k][j] = power[k];
+  }
+  for (int j = 0; j < S; j++) {
+    lagrange(S, r->c, j, power);
+    for (int m = 0; m < S; m++) r->basis[j][m] = power[m] * factorial[m];
+    for (int i = 0; i < S; i++) {
+      double t   = r->c[i];
+      r->A[i][j] = t * (power[0] + t * (power[1] / 2 + t * power[2] / 3));
+    }
+  }
+  for (int i = 0; i < S; i++) { /* sum_m (2m+1) P_m(tau) int_0^c P_m, shifted Legendre */
+    double c = r->c[i], I1 = c * c - c, I2 = c * (1 + c * (2 * c - 3));
+    r->kernel[i][0] = c + 3 * I1 + 5 * I2;
+    r->kernel[i][1] = -6 * I1 - 30 * I2;
+    r->kernel[i][2] = 60 * I2;
+  }
+  set_inverse(r);
+}
+
+/* ---- modes ----
+ * In tau the impulse response G_0 solves G'' + 2a G' + b G = delta, a = zeta w h, b = (w h)^2; G_k is its k-th integral from 0,
+ * G_-1 its derivative, all taken at tau = 1. The answer to tau^m/m! is G_m+1, with velocity G_m, and
+ * int (1 - tau)^l/l! G_m = G_m+l+1: nothing else is needed. Integrating the equation k times,
+ *   G_k-2 + 2a G_k-1 + b G_k = 1/(k-1)!,   k >= 1,
+ * which is used downwards (stable where b is small) from the Taylor series of G_5 and G_4, or upwards from G_-1 and G_0. */
+
+static const double inverse_factorial[] = {1, 1, 1. / 2, 1. / 6, 1. / 24, 1. / 120, 1. / 720};
+
+static void series(double a, double b, double G[GAMMAS]) {
+  double g = 1, before = 0, weight4 = 1. / 120, weight5 = 1. / 720, sum4 = 0, sum5 = 0;
+  for (int n = 0; n < 60; n++) {
+    sum4 += g * weight4;
+    sum5 += g * weight5;
+    double next = -2 * a * g - b * before;
+    if (n > 2 && (fabs(g) + fabs(next)) * weight4 < 1e-20) break;
+    before = g;
+    g      = next;
+    weight4 /= n + 6;
+    weight5 /= n + 7;
+  }
+  G[6] = sum5;
+  G[5] = sum4;
+  for (int k = MOMENTS; k >= 1; k--)
+    G[k - 1] = inverse_factorial[k - 1] - 2 * a * G[k] - b * G[k + 1];
+}
+
+static void closed_form(double a, double b, double G[GAMMAS]) {
+  double wd = sqrt(b - a * a), decay = exp(-a), sine = sin(wd) / wd;
+  G[0] = decay * (cos(wd) - a * sine);
+  G[1] = decay * sine;
+  for (int k = 1; k <= MOMENTS; k++)
+    G[k + 1] = (inverse_factorial[k - 1] - G[k - 1] - 2 * a * G[k]) / b;
+}
+
+/* G[k + 1] = G_k(1) */
+static void responses(double a, double b, double G[GAMMAS]) {
+  if (b < 4) {
+    series(a, b, G);
+  } else {
+    closed_form(a, b, G);
+  }
+}
+
+static void set_mode(const mhb_chain *chain, double h, int i, mhb_span *span) {
+  const mhb_radau *r = &chain->rule;
+  int              m = chain->s.modes;
+  double           w = chain->s.omega[i] * h, a = chain->s.zeta[i] * w, b = w * w, G[GAMMAS];
+  double          *row = span->mode + i;
+  responses(a, b, G);
+  for (int k = 0; k < S; k++) {
+    double z = 1, v = 0, end = 0, rate = 0;
+    for (int l = 0; l < S; l++) {
+      z -= b * r->kernel[k][l] * G[l + 2];
+      v += r->kernel[k][l] * G[l + 1];
+      end += r->basis[k][l] * G[l + 2];
+      rate += r->basis[k][l] * G[l + 1];
+    }
+    row[(MHB_STAGE_Z + k) * m] = z;
+    row[(MHB_STAGE_V + k) * m] = h * v;
+    row[(MHB_END_F + k) * m]   = h * h * end;
+    row[(MHB_RATE_F + k) * m]  = h * rate;
+  }
+  row[MHB_END_Z * m]  = G[0] + 2 * a * G[1];
+  row[MHB_END_V * m]  = h * G[1];
+  row[MHB_RATE_Z * m] = -b / h * G[1];
+  row[MHB_RATE_V * m] = G[0];
+  for (int k = 0; k < MOMENTS; k++) row[(MHB_MOMENT + k) * m] = h * h * G[k + 2];
+}
+
+/* ---- what the contacts meet ---- */
+
+/* moment[5] += sum over modes of to by' G_1..5 */
+MHB_HOT static void add_moments(int m, const double *to, const double *by, const double *moments,
+                                double *sum) {
+  for (int k = 0; k < MOMENTS; k++) {
+    double x = 0;
+#pragma omp simd reduction(+ : x)
+    for (int i = 0; i < m; i++) x += to[i] * by[i] * moments[k * m + i];
+    sum[k] += x;
+  }
+}
+
+/* The slot in which the contacts on side `by` of a blade stand, seen from those on side `to`. */
+static int slot_of(const mhb_chain *c, int to, int by) {
+  if (to == by) return 0;
+  return c->s.blades == 1 ? 0 : c->s.blades == 2 || to == 0 ? 1 : 2;
+}
+
+static void set_moments(const mhb_chain *c, const mhb_span *span) {
+  int n3 = 3 * c->s.pairs, m = c->s.modes, sides = c->s.sides;
+  memset(c->moment, 0, sizeof(double) * (size_t)(c->slots * n3 * n3 * MOMENTS));
+  for (int k = 0; k < sides * sides; k++) {
+    int to = k / sides, by = k % sides, slot = slot_of(c, to, by);
+    for (int row = 0; row < n3; row++)
+      for (int column = 0; column < n3; column++)
+        add_moments(m, c->shape + (to * n3 + row) * m, c->shape + (by * n3 + column) * m,
+                    span->mode + MHB_MOMENT * m,
+                    c->moment + ((slot * n3 + row) * n3 + column) * MOMENTS);
+  }
+}
+
+/* R between the rows of group 0 and those of the group in a slot. */
+static double flexibility(const mhb_chain *c, int slot, int row, int column) {
+  int n3 = 3 * c->s.pairs, n = 3 * c->s.contacts;
+  if (!c->s.flexibility) return 0;
+  return c->s
+      .flexibility[(size_t)row * (size_t)n + (size_t)(mhb_chain_group(c, 0, slot) * n3 + column)];
+}
+
+static void set_compliance(const mhb_chain *c, mhb_span *span) {
+  const mhb_radau *r  = &c->rule;
+  int              n3 = 3 * c->s.pairs, pairs = c->s.pairs;
+  double           weight[S][S][MOMENTS] = {{{0}}};
+  for (int k = 0; k < S * S * S * S; k++) { /* stages i, j; powers l, m */
+    int i = k / (S * S * S), j = k / (S * S) % S, l = k / S % S, m = k % S;
+    weight[i][j][l + m] += r->kernel[i][l] * r->basis[j][m];
+  }
+  for (int k = 0; k < c->slots * n3 * n3; k++) {
+    int     slot = k / (n3 * n3), row = k / n3 % n3, column = k % n3;
+    double  R     = flexibility(c, slot, row, column);
+    double *block = span->compliance + (size_t)((slot * pairs + row / 3) * pairs + column / 3) *
+                                           MHB_STAGE_FORCES * MHB_STAGE_FORCES;
+    const double *G = c->moment + k * MOMENTS;
+    for (int ij = 0; ij < S * S; ij++) {
+      int    i = ij / S, j = ij % S;
+      double sum = i == j ? R : 0;
+      for (int q = 0; q < MOMENTS; q++) sum += weight[i][j][q] * G[q];
+      block[(3 * i + row % 3) * MHB_STAGE_FORCES + 3 * j + column % 3] = sum;
+    }
+  }
+}
+
+void mhb_span_length(const mhb_chain *chain, double h, mhb_span *span) {
+  span->h = h;
+  for (int i = 0; i < chain->s.modes; i++) set_mode(chain, h, i, span);
+  set_moments(chain, span);
+  set_compliance(chain, span);
+  for (int a = 0; a < chain->s.pairs; a++) span->pivot[a * MHB_STAGE_FORCES] = -1;
+}
+
+/* ---- life cycle ---- */
+
+shb_status mhb_chain_create(const mhb_receptance *receptance, const mhb_settings *settings,
+                            mhb_chain *chain) {
+  *chain = (mhb_chain){.slots = 1};
+  mhb_radau_create(&chain->rule);
+  SHB_TRY(mhb_structure_create(receptance, settings, receptance->n_modes, &chain->s));
+  const mhb_structure *s  = &chain->s;
+  int                  n3 = 3 * s->pairs, m = s->modes;
+  if (s->sides == 2) chain->slots = s->blades < 3 ? s->blades : 3;
+  chain->shape  = calloc((size_t)(s->sides * n3 * m), sizeof(double));
+  chain->moment = calloc((size_t)(chain->slots * n3 * n3 * MOMENTS), sizeof(double));
+  if (!chain->shape || !chain->moment) {
+    mhb_chain_destroy(chain);
+    SHB_FAIL(SHB_ERR_IO, "out of memory");
+  }
+  for (int k = 0; k < s->sides * n3 * m; k++)
+    chain->shape[k] = s->shape[(k / (n3 * m) * m + k % m) * n3 + k / m % n3];
+  return SHB_OK;
+}
+
+void mhb_chain_destroy(mhb_chain *chain) {
+  mhb_structure_destroy(&chain->s);
+  free(chain->shape);
+  free(chain->moment);
+  *chain = (mhb_chain){0};
+}
+
+shb_status mhb_span_create(const mhb_chain *c, mhb_span *span) {
+  size_t pairs = (size_t)c->s.pairs, square = MHB_STAGE_FORCES * MHB_STAGE_FORCES;
+  *span            = (mhb_span){.h = NAN};
+  span->mode       = calloc(MHB_SPAN_ROWS * (size_t)c->s.modes, sizeof(double));
+  span->compliance = calloc((size_t)c->slots * pairs * pairs * square, sizeof(double));
+  span->stick      = calloc(pairs * square, sizeof(double));
+  span->pivot      = calloc(pairs * MHB_STAGE_FORCES, sizeof(int));
+  if (span->mode && span->compliance && span->stick && span->pivot) return SHB_OK;
+  mhb_span_destroy(span);
+  SHB_FAIL(SHB_ERR_IO, "out of memory");
+}
+
+void mhb_span_destroy(mhb_span *span) {
+  free(span->mode);
+  free(span->compliance);
+  free(span->stick);
+  free(span->pivot);
+  *span = (mhb_span){0};
+}

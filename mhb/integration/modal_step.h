@@ -1,0 +1,74 @@
+/* One step of every linear mode: exact under a contact force that is a polynomial of degree two over the step.
+ *
+ *   z'' + 2 zeta w z' + w^2 z = f(t),  t = h tau,  f = sum_j f_j l_j(tau),  l_j Lagrange at the Radau points c_1..c_3 = 1.
+ * What the contact meets at c_i is not w(c_i), w = B z, but the polynomial of degree three that has the step's ends and whose
+ * derivative is the least-squares fit of w' by degree two. Then
+ *   int f . w' dt = sum_i b_i f_i . w_i'   (Radau's weights; exact, degree four),
+ * so that a spring takes at least what it stores and friction at least what it dissipates: no step length makes a passive
+ * contact active. At the ends of steps the error is of order five. Derivation: docs/time_integration.md. */
+#ifndef MHB_INTEGRATION_MODAL_STEP_H
+#define MHB_INTEGRATION_MODAL_STEP_H
+
+#include "mhb/structure/modal_structure.h"
+
+enum { MHB_STAGES = 3, MHB_STAGE_FORCES = 3 * MHB_STAGES };
+
+/* Radau IIA with three stages, and what goes with it. */
+typedef struct {
+  double c[MHB_STAGES], A[MHB_STAGES][MHB_STAGES], inverse[MHB_STAGES][MHB_STAGES]; /* of A */
+  double basis[MHB_STAGES][MHB_STAGES]; /* [j][m] l_j = sum_m basis tau^m/m! */
+  double kernel[MHB_STAGES]
+               [MHB_STAGES]; /* [i][l] w_i = w_0 + int k_i w', k_i = sum_l kernel (1 - tau)^l/l! */
+  double dense[MHB_STAGES + 1]
+              [MHB_STAGES + 1]; /* [power][0, c_1, c_2, c_3] of the cubic through them */
+} mhb_radau;
+
+void mhb_radau_create(mhb_radau *radau);
+
+/* Coefficients of the modes for one step: rows of [modes]. */
+typedef enum {
+  MHB_STAGE_Z, /* [stage] of w_i by z and by z' */
+  MHB_STAGE_V = MHB_STAGE_Z + MHB_STAGES,
+  MHB_END_Z   = MHB_STAGE_V + MHB_STAGES, /* z at the end by z, z', f_j */
+  MHB_END_V,
+  MHB_END_F,
+  MHB_RATE_Z = MHB_END_F + MHB_STAGES, /* z' at the end */
+  MHB_RATE_V,
+  MHB_RATE_F,
+  MHB_MOMENT    = MHB_RATE_F + MHB_STAGES, /* [5] h^2 G_1..5, see modal_step.c */
+  MHB_SPAN_ROWS = MHB_MOMENT + 5
+} mhb_span_row;
+
+/* The structure as the steps use it. */
+typedef struct {
+  mhb_radau     rule;
+  mhb_structure s;
+  double       *shape; /* [side][3 pairs][modes] */
+  int           slots; /* groups (the contacts of a blade's right side) that a group feels: itself, previous, next */
+  double       *moment; /* [slot][3 pairs][3 pairs][5] scratch */
+} mhb_chain;
+
+/* Errors: SHB_ERR_IO no memory. */
+shb_status mhb_chain_create(const mhb_receptance *receptance, const mhb_settings *settings,
+                            mhb_chain *chain);
+void       mhb_chain_destroy(mhb_chain *chain);
+
+/* The group in a slot of a group. */
+static inline int mhb_chain_group(const mhb_chain *c, int group, int slot) {
+  int n = c->s.blades;
+  return slot == 0 ? group : slot == 1 ? (group + n - 1) % n : (group + 1) % n;
+}
+
+typedef struct {
+  double  h;          /* s */
+  double *mode;       /* [MHB_SPAN_ROWS][modes] */
+  double *compliance; /* [slot][pair][pair by][9 (stage, axis)][9 by]: w - R p by p, m/N */
+  double *stick;      /* [pair][9][9] factored matrix of a stuck contact */
+  int    *pivot;      /* [pair][9]; pivot[9 pair] < 0: not made yet */
+} mhb_span;
+
+shb_status mhb_span_create(const mhb_chain *chain, mhb_span *span);
+void       mhb_span_destroy(mhb_span *span);
+void       mhb_span_length(const mhb_chain *chain, double h, mhb_span *span);
+
+#endif

@@ -1,0 +1,260 @@
+#include "mhb/integration/steady_state.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { S = MHB_STAGES, HISTORY = 2 * MHB_ORBIT_MULTIPLE + 1, TREND = 8 };
+
+static const double PI = 3.14159265358979323846;
+
+/* How far apart, in tolerances, the periods of a motion of higher order are at least. */
+static const double APART = 1e3;
+
+struct mhb_orbit {
+  mhb_integrator  *g;
+  mhb_orbit_result result;
+  double          *history;      /* [HISTORY][size] states at the ends of the last periods */
+  double          *distance;     /* [TREND][multiple] the last distances */
+  double complex  *force;        /* [k][3 contacts] of the period that is recorded */
+  double          *share, *work; /* [contact][3], [contact] */
+};
+
+/* ---- distance ---- */
+
+/* Mean square of the modes' motion without contact forces. */
+static double free_size(const mhb_integrator *g) {
+  const mhb_receptance *r    = g->receptance;
+  double                size = 0;
+  for (int k = 0; k < (g->n_load + 1) * g->modes; k++) {
+    double part = cabs(r->lambda[k] * r->F[k]);
+    size += g->blades * part * part;
+  }
+  return size;
+}
+
+double mhb_orbit_distance(const mhb_integrator *g, const double *a, const double *b) {
+  int    n     = g->blades * g->modes;
+  double apart = 0, size = free_size(g), friction = 0, force = 0;
+  for (int k = 0; k < n; k++) {
+    double w = g->chain.s.omega[k % g->modes], dz = a[k] - b[k], dv = (a[n + k] - b[n + k]) / w;
+    apart += dz * dz + dv * dv;
+    size += b[k] * b[k] + b[n + k] * b[n + k] / (w * w);
+  }
+  for (int k = 2 * n; k < 2 * n + 2 * g->contacts; k++) {
+    friction = fmax(friction, fabs(a[k] - b[k]));
+    force    = fmax(force, fabs(b[k]));
+  }
+  force = fmax(force, g->scale);
+  return fmax(size > 0 ? sqrt(apart / size) : sqrt(apart), force > 0 ? friction / force : 0);
+}
+
+/* ---- recording ---- */
+
+/* J[m] = int_0^1 tau^m/m! exp(-j x tau) */
+static void fourier_moments(double x, double complex J[S]) {
+  if (x < 2) {
+    double complex term = 1;
+    J[0] = J[1] = J[2] = 0;
+    for (int n = 0; n < 30; n++) {
+      J[0] += term / (n + 1);
+      J[1] += term / (n + 2);
+      J[2] += term / (2 * (n + 3));
+      term *= -I * x / (n + 1);
+    }
+    return;
+  }
+  double complex end = cexp(-I * x), step = I * x;
+  J[0] = (1 - end) / step;
+  J[1] = (J[0] - end) / step;
+  J[2] = (J[1] - end / 2) / step;
+}
+
+static void record(void *context, const mhb_integrator *g, double t0, double h) {
+  mhb_orbit       *o = context;
+  const mhb_radau *r = &g->chain.rule;
+  int              n = 3 * g->contacts;
+  for (int k = 0; k <= o->result.n_harmonics; k++) {
+    double         w = 2 * PI * k / g->period;
+    double complex J[S], weight[S] = {0}, turn = cexp(-I * w * t0) * h * (k ? 2 : 1) / g->period;
+    fourier_moments(w * h, J);
+    for (int j = 0; j < S; j++)
+      for (int m = 0; m < S; m++) weight[j] += turn * r->basis[j][m] * J[m];
+    for (int i = 0; i < n; i++)
+      for (int j = 0; j < S; j++)
+        o->force[k * n + i] += weight[j] * g->step[i / 3].p[3 * j + i % 3];
+  }
+  for (int c = 0; c < g->contacts; c++) {
+    o->share[3 * c + (int)g->rub[c].state] += h / g->period;
+    for (int j = 0; j < S && g->rub[c].state == MHB_SLIDE; j++)
+      o->work[c] +=
+          r->A[S - 1][j] * g->step[c].kappa[j] * g->law[c % g->pairs].mu * g->step[c].n[j];
+  }
+}
+
+/* Harmonic k of z of a blade's mode, from the equation of motion integrated with exp(-jkwt): exact, whether or not the end
+ * is like the start. */
+static double complex mode_harmonic(const mhb_orbit *o, int k, int blade, int i, const double *z0) {
+  const mhb_integrator *g = o->g;
+  const mhb_structure  *s = &g->chain.s;
+  int                   m = g->modes, n3 = 3 * g->pairs, at = blade * m + i, modal = g->blades * m;
+  double                w    = 2 * PI * k / g->period;
+  double complex        rise = (g->z[modal + at] - z0[modal + at]) +
+                        CMPLX(2 * s->zeta[i] * s->omega[i], w) * (g->z[at] - z0[at]);
+  double complex force = -(k ? 2 : 1) / g->period * rise;
+  for (int side = 0; side < s->sides; side++) {
+    const double complex *p =
+        o->force + k * 3 * g->contacts + 3 * mhb_structure_contact(s, blade, side);
+    for (int r = 0; r < n3; r++) force -= g->chain.shape[(side * n3 + r) * m + i] * p[r];
+  }
+  return g->receptance->lambda[k * m + i] * force;
+}
+
+/* Motion of the contacts of blade 0's right side. */
+static void set_motion(mhb_orbit *o, int k, const double *z0) {
+  const mhb_integrator *g = o->g;
+  const mhb_receptance *r = g->receptance;
+  int m = g->modes, n3 = 3 * g->pairs, n = 3 * g->contacts, K = o->result.n_harmonics + 1;
+  for (int row = 0; row < n3; row++) {
+    double complex u = r->free[k * n3 + row];
+    for (int c = 0; g->chain.s.flexibility && c < n; c++)
+      u -= g->chain.s.flexibility[row * n + c] * o->force[k * n + c];
+    o->result.motion[row * K + k] = u;
+    o->result.force[row * K + k]  = o->force[k * n + row];
+  }
+  for (int i = 0; i < m; i++)
+    for (int side = 0; side < g->chain.s.sides; side++) {
+      double complex z = mode_harmonic(o, k, side, i, z0); /* blade 1 to the right, its left side */
+      for (int row = 0; row < n3; row++)
+        o->result.motion[row * K + k] += g->chain.shape[(side * n3 + row) * m + i] * z;
+    }
+}
+
+/* Probes of blade 0: those of the wave with these forces, and what the modes lack to it. */
+static void set_probes(mhb_orbit *o, int k, const double *z0) {
+  const mhb_integrator *g = o->g;
+  const mhb_receptance *r = g->receptance;
+  int                   m = g->modes, q = 3 * r->model->n_probes, K = o->result.n_harmonics + 1;
+  double complex       *p = o->force + k * 3 * g->contacts, motion[q + 1];
+  mhb_receptance_probe(r, k, p, motion);
+  for (int i = 0; i < m; i++) {
+    double complex lacks = mode_harmonic(o, k, 0, i, z0), wave = 0;
+    for (int row = 0; row < r->n; row++) wave -= conj(r->B[(k * r->n + row) * m + i]) * p[row];
+    lacks -= r->lambda[k * m + i] * wave;
+    for (int s = 0; s < q; s++) motion[s] += r->model->probe[s * m + i] * lacks;
+  }
+  for (int s = 0; s < q; s++) o->result.probe[s * K + k] = motion[s];
+}
+
+/* One more period, recorded. */
+static int record_period(mhb_orbit *o) {
+  mhb_integrator *g  = o->g;
+  double         *z0 = o->history; /* no longer needed */
+  size_t          n  = 3 * (size_t)g->contacts;
+  memset(o->force, 0, sizeof *o->force * n * ((size_t)o->result.n_harmonics + 1));
+  memset(o->share, 0, sizeof(double) * n);
+  memset(o->work, 0, sizeof(double) * (size_t)g->contacts);
+  memcpy(z0, g->z, sizeof(double) * 2 * (size_t)(g->blades * g->modes));
+  g->watch   = record;
+  g->context = o;
+  int found  = mhb_integrator_period(g);
+  g->watch   = NULL;
+  if (!found) return 0;
+  for (int k = 0; k <= o->result.n_harmonics; k++) {
+    set_motion(o, k, z0);
+    set_probes(o, k, z0);
+  }
+  memcpy(o->result.state, o->share, sizeof(double) * 3 * (size_t)g->pairs);
+  memcpy(o->result.dissipation, o->work, sizeof(double) * (size_t)g->pairs);
+  return 1;
+}
+
+/* ---- until it repeats ---- */
+
+static double *state_at(const mhb_orbit *o, int period) {
+  return o->history + (size_t)(period % HISTORY) * (size_t)mhb_integrator_size(o->g);
+}
+
+/* Whether the motion repeats after `multiple` periods, within the tolerance of where it is going. */
+static int repeats(mhb_orbit *o, int period, int multiple, double tolerance) {
+  if (period < multiple) return 0;
+  double *trend = o->distance + (multiple - 1) * TREND;
+  double  d     = mhb_orbit_distance(o->g, state_at(o, period), state_at(o, period - multiple));
+  double  past  = trend[period % TREND];
+  trend[period % TREND] = d;
+  if (multiple == 1) o->result.distance = d;
+  if (d < 1e-14) return 1;
+  if (period < multiple + TREND || !(d < tolerance)) return 0;
+  if (multiple > 1 && o->result.distance < APART * tolerance) return 0; /* it goes to order one */
+  double rate = pow(d / past, (double)multiple / TREND); /* over `multiple` periods */
+  return rate < 1 && d / (1 - rate) < tolerance;
+}
+
+const mhb_orbit_result *mhb_orbit_run(mhb_orbit *o, const mhb_orbit_settings *settings,
+                                      int (*go_on)(void *), void             *context) {
+  mhb_integrator   *g = o->g;
+  mhb_orbit_result *r = &o->result;
+  r->multiple = r->lost = r->periods = 0;
+  r->distance                        = INFINITY;
+  mhb_integrator_get(g, state_at(o, 0));
+  while (!r->multiple && r->periods < settings->max_periods) {
+    if (!mhb_integrator_period(g)) {
+      r->lost = 1;
+      return r;
+    }
+    r->periods++;
+    mhb_integrator_get(g, state_at(o, r->periods));
+    for (int k = 1; k <= MHB_ORBIT_MULTIPLE && !r->multiple; k++)
+      if (repeats(o, r->periods, k, settings->tolerance)) r->multiple = k;
+    if (go_on && !go_on(context)) break;
+  }
+  if (r->multiple > 1) r->distance = o->distance[(r->multiple - 1) * TREND + r->periods % TREND];
+  r->lost = !record_period(o);
+  return r;
+}
+
+/* ---- life cycle ---- */
+
+shb_status mhb_orbit_create(mhb_integrator *g, mhb_orbit **out) {
+  mhb_orbit *o = calloc(1, sizeof *o);
+  SHB_CHECK(o, SHB_ERR_IO, "out of memory");
+  mhb_orbit_result *r = &o->result;
+  o->g                = g;
+  r->n_harmonics      = g->n_harmonics;
+  r->n_pairs          = g->pairs;
+  r->n_probes         = g->receptance->model->n_probes;
+  size_t K = (size_t)r->n_harmonics + 1, n3 = 3 * (size_t)g->pairs, n = 3 * (size_t)g->contacts;
+  size_t q       = 3 * (size_t)r->n_probes;
+  r->motion      = calloc(n3 * K, sizeof *r->motion);
+  r->force       = calloc(n3 * K, sizeof *r->force);
+  r->probe       = calloc(q * K + 1, sizeof *r->probe);
+  r->state       = calloc(n3, sizeof(double));
+  r->dissipation = calloc(n3, sizeof(double));
+  o->history     = calloc(HISTORY * (size_t)mhb_integrator_size(g), sizeof(double));
+  o->distance    = calloc(TREND * MHB_ORBIT_MULTIPLE, sizeof(double));
+  o->force       = calloc(n * K, sizeof *o->force);
+  o->share       = calloc(n, sizeof(double));
+  o->work        = calloc(n, sizeof(double));
+  if (!(r->motion && r->force && r->probe && r->state && r->dissipation && o->history &&
+        o->distance && o->force && o->share && o->work)) {
+    mhb_orbit_destroy(o);
+    SHB_FAIL(SHB_ERR_IO, "out of memory");
+  }
+  *out = o;
+  return SHB_OK;
+}
+
+void mhb_orbit_destroy(mhb_orbit *o) {
+  if (!o) return;
+  free(o->result.motion);
+  free(o->result.force);
+  free(o->result.probe);
+  free(o->result.state);
+  free(o->result.dissipation);
+  free(o->history);
+  free(o->distance);
+  free(o->force);
+  free(o->share);
+  free(o->work);
+  free(o);
+}

@@ -1,0 +1,198 @@
+#include "mhb/numerics/fourier.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+void mhb_to_real(int m, const double complex *A, double *a) {
+  a[0] = creal(A[0]);
+  for (int k = 1; k <= m; k++) {
+    a[2 * k - 1] = creal(A[k]);
+    a[2 * k]     = cimag(A[k]);
+  }
+}
+
+void mhb_to_complex(int m, const double *a, double complex *A) {
+  A[0] = a[0];
+  for (int k = 1; k <= m; k++) A[k] = CMPLX(a[2 * k - 1], a[2 * k]);
+}
+
+void mhb_basis(int m, double t, double *basis, double *slope) {
+  double c1 = cos(t), s1 = sin(t), c = 1, s = 0;
+  basis[0] = 1;
+  if (slope) slope[0] = 0;
+  for (int k = 1; k <= m; k++) {
+    double next = c * c1 - s * s1;
+    s           = s * c1 + c * s1;
+    c           = next;
+
+    basis[2 * k - 1] = c;
+    basis[2 * k]     = -s;
+    if (!slope) continue;
+    slope[2 * k - 1] = -k * s;
+    slope[2 * k]     = -k * c;
+  }
+}
+
+void mhb_basis_integral(int n, double t0, double t1, double *integral) {
+  /* int cos kt = (2/k) cos(k mid) sin(k half): no cancellation on short intervals */
+  double mid = .5 * (t0 + t1), half = .5 * (t1 - t0);
+  double c1 = cos(mid), s1 = sin(mid), c = 1, s = 0;
+  double p1 = cos(half), q1 = sin(half), p = 1, q = 0;
+  integral[0] += t1 - t0;
+  for (int k = 1; k <= n; k++) {
+    double next = c * c1 - s * s1;
+    s           = s * c1 + c * s1;
+    c           = next;
+    next        = p * p1 - q * q1;
+    q           = q * p1 + p * q1;
+    p           = next;
+    integral[2 * k - 1] += 2 * c * q / k;
+    integral[2 * k] -= 2 * s * q / k;
+  }
+}
+
+/* integral of cos kt and sin kt for any sign of k, out of the integrals of the basis */
+static inline double cos_integral(const double *integral, int k) {
+  return k == 0 ? integral[0] : integral[2 * abs(k) - 1];
+}
+
+static inline double sin_integral(const double *integral, int k) {
+  return k == 0 ? 0 : k > 0 ? -integral[2 * k] : integral[-2 * k];
+}
+
+void mhb_basis_product(int p, int q, const double *integral, double *product, int ld) {
+  for (int j = 0; j <= 2 * q; j++) product[j] = integral[j];
+  for (int i = 1; i <= p; i++) {
+    double *row_c = product + (size_t)(2 * i - 1) * (size_t)ld, *row_s = row_c + ld;
+    row_c[0] = integral[2 * i - 1];
+    row_s[0] = integral[2 * i];
+    for (int k = 1; k <= q; k++) {
+      double cd = cos_integral(integral, i - k), cs = cos_integral(integral, i + k);
+      double sd = sin_integral(integral, i - k), ss = sin_integral(integral, i + k);
+      row_c[2 * k - 1] = .5 * (cd + cs);  /* cos i cos k */
+      row_c[2 * k]     = .5 * (sd - ss);  /* -cos i sin k */
+      row_s[2 * k - 1] = -.5 * (sd + ss); /* -sin i cos k */
+      row_s[2 * k]     = .5 * (cd - cs);  /* sin i sin k */
+    }
+  }
+}
+
+/* Which grid m harmonics need: 8 (m + 1) points. */
+static int grid_of(int m) {
+  int grid = 0;
+  while (MHB_LEAST_GRID << grid < 8 * (m + 1)) grid++;
+  return grid;
+}
+
+shb_status mhb_signals_create(int m, mhb_signals *signals) {
+  memset(signals, 0, sizeof *signals);
+  int grid = grid_of(m), most = MHB_LEAST_GRID << grid, half = most / 2 + 1,
+      room = most + MHB_LANES;
+  SHB_CHECK(grid < MHB_GRIDS, SHB_ERR_IO, "out of memory for %d harmonics", m);
+  size_t size          = 3 * (size_t)mhb_real_size(m);
+  signals->m           = m;
+  signals->n_grid      = most;
+  signals->most        = most;
+  signals->coefficient = calloc(size, sizeof(double));
+  signals->rate        = calloc(size, sizeof(double));
+  signals->spectrum    = fftw_alloc_complex(6 * (size_t)half);
+  signals->samples     = fftw_alloc_real(6 * (size_t)room);
+  int ok = signals->coefficient && signals->rate && signals->spectrum && signals->samples;
+  for (int i = 0; i <= grid && ok; i++) {
+    int n = MHB_LEAST_GRID << i;
+    signals->plan[i] =
+        fftw_plan_many_dft_c2r(1, &n, 6, signals->spectrum, NULL, 1, half, signals->samples, NULL,
+                               1, room, FFTW_ESTIMATE | FFTW_DESTROY_INPUT);
+    ok = signals->plan[i] != NULL;
+  }
+  for (int i = 0; i < 3; i++) {
+    signals->value[i] = signals->samples + i * room;
+    signals->slope[i] = signals->samples + (i + 3) * room;
+  }
+  if (ok) return SHB_OK;
+  mhb_signals_destroy(signals);
+  SHB_FAIL(SHB_ERR_IO, "out of memory for %d harmonics", m);
+}
+
+void mhb_signals_destroy(mhb_signals *signals) {
+  if (!signals) return;
+  for (int i = 0; i < MHB_GRIDS; i++)
+    if (signals->plan[i]) fftw_destroy_plan(signals->plan[i]);
+  fftw_free(signals->spectrum);
+  fftw_free(signals->samples);
+  free(signals->coefficient);
+  free(signals->rate);
+  memset(signals, 0, sizeof *signals);
+}
+
+static void set_bounds(mhb_signals *signals, int i, const double *a) {
+  double *bound = signals->bound[i];
+  bound[0]      = fabs(a[0]);
+  for (int j = 1; j < 5; j++) bound[j] = 0;
+  for (int k = 1; k <= signals->used; k++) {
+    double size = sqrt(a[2 * k - 1] * a[2 * k - 1] + a[2 * k] * a[2 * k]);
+    for (int j = 0; j < 5; j++, size *= k) bound[j] += size;
+  }
+}
+
+static int highest_harmonic(int m, const double *const a[3]) {
+  for (int k = m; k > 0; k--)
+    for (int i = 0; i < 3; i++)
+      if (a[i][2 * k - 1] != 0 || a[i][2 * k] != 0) return k;
+  return 0;
+}
+
+void mhb_signals_set(mhb_signals *signals, const double *const a[3]) {
+  int used = highest_harmonic(signals->m, a), grid = grid_of(used), n = MHB_LEAST_GRID << grid,
+      half        = signals->most / 2 + 1;
+  signals->used   = used;
+  signals->n_grid = n;
+  for (int i = 0; i < 6; i++)
+    memset(signals->spectrum + (size_t)i * (size_t)half, 0,
+           sizeof(fftw_complex) * (size_t)(n / 2 + 1));
+  for (int i = 0; i < 3; i++) {
+    fftw_complex *X = signals->spectrum + (size_t)i * (size_t)half, *dX = X + 3 * (size_t)half;
+    double       *coefficient = signals->coefficient + i, *rate = signals->rate + i;
+    X[0]           = a[i][0];
+    coefficient[0] = a[i][0];
+    for (int k = 1; k <= used; k++) {
+      double even = a[i][2 * k - 1], odd = a[i][2 * k];
+      X[k]                   = CMPLX(.5 * even, .5 * odd);
+      dX[k]                  = CMPLX(-.5 * k * odd, .5 * k * even);
+      coefficient[6 * k - 3] = even;
+      coefficient[6 * k]     = odd;
+      rate[6 * k - 3]        = k * even;
+      rate[6 * k]            = k * odd;
+    }
+    set_bounds(signals, i, a[i]);
+  }
+  fftw_execute(signals->plan[grid]);
+  for (int i = 0; i < 3; i++) {
+    memcpy(signals->value[i] + n, signals->value[i], sizeof(double) * MHB_LANES);
+    memcpy(signals->slope[i] + n, signals->slope[i], sizeof(double) * MHB_LANES);
+  }
+}
+
+void mhb_signals_at(const mhb_signals *signals, double t, double y[3], double dy[3],
+                    double ddy[3]) {
+  double        c1 = cos(t), s1 = sin(t), c = 1, s = 0;
+  const double *a = signals->coefficient;
+  for (int i = 0; i < 3; i++) {
+    y[i]  = a[i];
+    dy[i] = 0;
+    if (ddy) ddy[i] = 0;
+  }
+  for (int k = 1; k <= signals->used; k++) {
+    double next = c * c1 - s * s1;
+    s           = s * c1 + c * s1;
+    c           = next;
+    a += k == 1 ? 3 : 6;
+    for (int i = 0; i < 3; i++) {
+      double even = a[i] * c - a[i + 3] * s;
+      y[i] += even;
+      dy[i] -= k * (a[i] * s + a[i + 3] * c);
+      if (ddy) ddy[i] -= (double)k * k * even;
+    }
+  }
+}

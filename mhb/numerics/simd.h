@@ -1,0 +1,108 @@
+/* Eight numbers at once: the nodes of a panel, or eight neighbouring points of a grid.
+ *
+ * GCC and Clang vector extensions: one AVX-512 register, two of AVX2, four of SSE2. Functions marked MHB_HOT are compiled
+ * for each of them and chosen when the program starts; those marked MHB_INLINE become part of their callers. */
+#ifndef MHB_NUMERICS_SIMD_H
+#define MHB_NUMERICS_SIMD_H
+
+#include <math.h>
+#include <string.h>
+
+enum { MHB_LANES = 8 };
+
+typedef double    mhb_lanes __attribute__((vector_size(64)));
+typedef long long mhb_lanes_bits __attribute__((vector_size(64)));
+
+#define MHB_INLINE static inline __attribute__((always_inline))
+
+#if defined(__x86_64__) && defined(__gnu_linux__) && !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__clang__)
+#define MHB_HOT __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
+#else
+#define MHB_HOT
+#endif
+
+MHB_INLINE mhb_lanes lanes_all(double x) {
+  return (mhb_lanes){x, x, x, x, x, x, x, x};
+}
+
+/* From memory of any alignment. */
+MHB_INLINE mhb_lanes lanes_load(const double *x) {
+  mhb_lanes y;
+  memcpy(&y, x, sizeof y);
+  return y;
+}
+
+MHB_INLINE void lanes_store(double *x, mhb_lanes y) {
+  memcpy(x, &y, sizeof y);
+}
+
+/* Lane i in all lanes; i a constant after unrolling. */
+MHB_INLINE mhb_lanes lanes_pick(mhb_lanes x, int i) {
+#ifdef __clang__
+  return lanes_all(x[i]);
+#else
+  return __builtin_shuffle(x, (mhb_lanes_bits){i, i, i, i, i, i, i, i});
+#endif
+}
+
+MHB_INLINE double lanes_sum(mhb_lanes x) {
+  return ((x[0] + x[4]) + (x[2] + x[6])) + ((x[1] + x[5]) + (x[3] + x[7]));
+}
+
+MHB_INLINE mhb_lanes lanes_where(mhb_lanes_bits mask, mhb_lanes a, mhb_lanes b) {
+  return (mhb_lanes)((mask & (mhb_lanes_bits)a) | (~mask & (mhb_lanes_bits)b));
+}
+
+MHB_INLINE mhb_lanes lanes_min(mhb_lanes a, mhb_lanes b) {
+  return lanes_where(a < b, a, b);
+}
+
+MHB_INLINE mhb_lanes lanes_max(mhb_lanes a, mhb_lanes b) {
+  return lanes_where(a > b, a, b);
+}
+
+MHB_INLINE mhb_lanes lanes_abs(mhb_lanes x) {
+  return lanes_max(x, -x);
+}
+
+/* Largest and smallest lane; NaN lanes may be passed over. */
+MHB_INLINE double lanes_top(mhb_lanes x) {
+  double a = x[0] > x[4] ? x[0] : x[4], b = x[1] > x[5] ? x[1] : x[5];
+  double c = x[2] > x[6] ? x[2] : x[6], d = x[3] > x[7] ? x[3] : x[7];
+  a = a > c ? a : c;
+  b = b > d ? b : d;
+  return a > b ? a : b;
+}
+
+MHB_INLINE double lanes_bottom(mhb_lanes x) {
+  return -lanes_top(-x);
+}
+
+/* cos x and sin x to rounding for |x| < 1e5: reduction by multiples of pi/2 in two parts, minimax polynomials on
+ * [-pi/4, pi/4] (coefficients of the classic fdlibm kernels). */
+MHB_INLINE void lanes_cos_sin(mhb_lanes x, mhb_lanes *cosine, mhb_lanes *sine) {
+  const double   magic = 6755399441055744.0; /* 1.5 2^52: adding it rounds to an integer */
+  mhb_lanes      turns = x * 0.63661977236758134308 + magic;
+  mhb_lanes_bits n     = (mhb_lanes_bits)turns;
+  turns -= magic;
+  mhb_lanes r = x - turns * 1.57079632673412561417;
+  r -= turns * 6.07710050650619224932e-11;
+  mhb_lanes z = r * r;
+  mhb_lanes s = 2.75573137070700676789e-06 +
+                z * (-2.50507602534068634195e-08 + z * 1.58969099521155010221e-10);
+  s = -1.66666666666666324348e-01 +
+      z * (8.33333333332248946124e-03 + z * (-1.98412698298579493134e-04 + z * s));
+  s           = r + r * z * s;
+  mhb_lanes c = -2.75573143513906633035e-07 +
+                z * (2.08757232129817482790e-09 - z * 1.13596475577881948265e-11);
+  c = 4.16666666666666019037e-02 +
+      z * (-1.38888888888741095749e-03 + z * (2.48015872894767294178e-05 + z * c));
+  c                       = 1 - .5 * z + z * z * c;
+  mhb_lanes_bits swap     = -(n & 1);
+  mhb_lanes_bits sin_sign = (n & 2) << 62, cos_sign = ((n + 1) & 2) << 62;
+  *sine   = (mhb_lanes)((mhb_lanes_bits)lanes_where(swap, c, s) ^ sin_sign);
+  *cosine = (mhb_lanes)((mhb_lanes_bits)lanes_where(swap, s, c) ^ cos_sign);
+}
+
+#endif

@@ -1,0 +1,110 @@
+#include "mhb/problem/parameter.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+static const double PI = 3.14159265358979323846;
+
+mhb_condition mhb_condition_of(const mhb_settings *s) {
+  mhb_condition c = {.omega = 2 * PI * s->frequency[0],
+                     .n0    = s->n0[0],
+                     .scale = s->scale,
+                     .mu    = s->mu,
+                     .kv    = s->kv};
+  memcpy(c.ku, s->ku, sizeof c.ku);
+  return c;
+}
+
+const char *mhb_parameter_name(mhb_parameter parameter) {
+  static const char *const names[MHB_N_PARAMETERS] = {"frequency", "n0", "scale", "mu", "ku", "kv"};
+  return names[parameter];
+}
+
+const char *mhb_parameter_unit(mhb_parameter parameter) {
+  static const char *const units[MHB_N_PARAMETERS] = {"Hz", "N", "", "", "N/m", "N/m"};
+  return units[parameter];
+}
+
+double mhb_parameter_shown(mhb_parameter parameter, double value) {
+  return parameter == MHB_IN_FREQUENCY ? value / (2 * PI) : value;
+}
+
+double mhb_parameter_value(mhb_parameter parameter, double shown) {
+  return parameter == MHB_IN_FREQUENCY ? 2 * PI * shown : shown;
+}
+
+double mhb_parameter_end(const mhb_settings *s, mhb_parameter parameter, int high) {
+  return parameter == MHB_IN_FREQUENCY ? 2 * PI * s->frequency[high] : s->range[high];
+}
+
+static double *field(mhb_condition *c, mhb_parameter parameter) {
+  double *fields[MHB_N_PARAMETERS] = {&c->omega, &c->n0, &c->scale, &c->mu, c->ku, &c->kv};
+  return fields[parameter];
+}
+
+double mhb_parameter_get(const mhb_condition *condition, mhb_parameter parameter) {
+  mhb_condition c = *condition;
+  return *field(&c, parameter);
+}
+
+void mhb_parameter_set(mhb_condition *condition, mhb_parameter parameter, double value) {
+  double old = *field(condition, parameter);
+  for (int i = 1; parameter == MHB_IN_KU && i < 3; i++) condition->ku[i] *= value / old;
+  *field(condition, parameter) = value;
+}
+
+double mhb_parameter_least(mhb_parameter parameter) {
+  if (parameter == MHB_IN_N0 || parameter == MHB_IN_SCALE) return -INFINITY;
+  return parameter == MHB_IN_MU || parameter == MHB_IN_KV ? 0 : DBL_MIN;
+}
+
+mhb_law mhb_condition_law(const mhb_condition *c, mhb_preload preload, double share) {
+  mhb_law law = {.mu = c->mu, .kv = share * c->kv, .n0 = share * c->n0};
+  for (int i = 0; i < 3; i++) law.ku[i] = share * c->ku[i];
+  if (preload == MHB_EQUILIBRIUM) law.balance = fmax(law.n0, 0);
+  return law;
+}
+
+/* y <- factor (dp/du) x over the axes from..to */
+static void times(int nb, const double *dp, const double *x, int from, int to, double factor,
+                  double *y) {
+  int block = 3 * nb;
+  for (int i = 0; i < block; i++) {
+    double sum = 0;
+    for (int j = from * nb; j < to * nb; j++) sum += dp[i * block + j] * x[j];
+    y[i] = factor * sum;
+  }
+}
+
+/* Constant normal load: all is homogeneous in (u, n0). */
+static void by_constant_load(const mhb_law *law, int nb, const double *u, const double *p,
+                             const double *dp, double *change) {
+  memset(change, 0, sizeof(double) * 3 * (size_t)nb);
+  if (law->n0 <= 0) return;
+  times(nb, dp, u, 0, 3, -1 / law->n0, change);
+  for (int i = 0; i < 3 * nb; i++) change[i] += p[i] / law->n0;
+  change[0] += law->balance / law->n0; /* of n, not of n - balance */
+}
+
+void mhb_parameter_force(const mhb_condition *c, mhb_parameter parameter, const mhb_law *law,
+                         double share, int nb, const double *u, const double *p, const double *dp,
+                         double *change) {
+  int block = 3 * nb;
+  memset(change, 0, sizeof(double) * (size_t)block);
+  if (parameter == MHB_IN_KV && c->kv > 0) times(nb, dp, u, 0, 1, 1 / c->kv, change);
+  if (parameter == MHB_IN_KU) times(nb, dp, u, 1, 3, 1 / c->ku[0], change);
+  if (parameter == MHB_IN_MU && c->mu > 0) {
+    times(nb, dp, u, 1, 3, -1 / c->mu, change);
+    for (int i = 0; i < nb; i++) change[i] = 0;
+    for (int i = nb; i < block; i++) change[i] += p[i] / c->mu;
+  }
+  if (parameter != MHB_IN_N0) return;
+  if (law->kv > 0) {
+    for (int i = 0; i < block; i++) change[i] = dp[i * block] / law->kv;
+  } else {
+    by_constant_load(law, nb, u, p, dp, change);
+  }
+  if (law->balance > 0) change[0] -= 1;
+  for (int i = 0; i < block; i++) change[i] *= share;
+}

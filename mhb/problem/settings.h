@@ -1,0 +1,97 @@
+/* What the harmonic balance is asked to do: contact parameters and sweep. Plain data, SI. */
+#ifndef MHB_PROBLEM_SETTINGS_H
+#define MHB_PROBLEM_SETTINGS_H
+
+#include <stdbool.h>
+
+typedef enum { MHB_EQUILIBRIUM, MHB_INTERFERENCE } mhb_preload;
+
+/* Multipliers: where they cost little and at a few points elsewhere; at every point; not at all. */
+typedef enum { MHB_STABILITY_AUTO, MHB_STABILITY_ALWAYS, MHB_STABILITY_NEVER } mhb_stability_when;
+
+/* What a curve is followed in. */
+typedef enum {
+  MHB_IN_FREQUENCY,
+  MHB_IN_N0,
+  MHB_IN_SCALE,
+  MHB_IN_MU,
+  MHB_IN_KU,
+  MHB_IN_KV,
+  MHB_N_PARAMETERS
+} mhb_parameter;
+
+enum {
+  MHB_MAX_INTERFACES    = 8,
+  MHB_NAME              = 81,
+  MHB_MAX_PRELOADS      = 256,
+  MHB_MAX_SEARCH_AT     = 64,
+  MHB_MAX_SEARCH_ORDERS = 8
+};
+
+/* One of several contact interfaces; totals of it. */
+typedef struct {
+  char   name[MHB_NAME];
+  bool   has_psi, has_phi;
+  double psi, phi, mu, kv, ku[3];
+  int    n_preloads; /* as many as the leading one's, or 1 */
+  double n0[MHB_MAX_PRELOADS];
+} mhb_interface;
+
+/* Branches that nothing leads to, looked for beside each main one. */
+typedef struct {
+  int    starts;                /* random starts a frequency and order; 0: none is looked for */
+  int    n_at;                  /* 0: places are chosen */
+  double at[MHB_MAX_SEARCH_AT]; /* as range: Hz for the frequency */
+  int    n_orders, order[MHB_MAX_SEARCH_ORDERS]; /* ascending, times subharmonics */
+} mhb_search_settings;
+
+typedef struct {
+  bool        to_ground;
+  int         engine_order, blades; /* inter-blade phase 2 pi E/N, eq. 16 */
+  bool        has_psi, has_phi;     /* given in the case; else from the modal file's normals */
+  double      psi, phi;             /* rad */
+  double      mu, kv;               /* -, N/m: totals of the interface */
+  double      ku[3];                /* kuu, kuw, kww, N/m */
+  mhb_preload preload;
+  int         n_preloads;
+  double      n0[MHB_MAX_PRELOADS]; /* N */
+  int         n_interfaces;         /* 0, 1: the parameters above are all */
+  int  lead; /* else they are those of this one, which a curve follows (mhb/problem/interfaces.h) */
+  bool together; /* what is followed the others have in proportion, else they keep theirs */
+  mhb_interface       interface[MHB_MAX_INTERFACES];
+  double              frequency[2]; /* Hz, first < second; equal where another is followed */
+  mhb_parameter       parameter;    /* what is followed; in its unit from range[0] to range[1], */
+  double              range[2];     /* not used for the frequency */
+  int                 harmonics;    /* m >= 1 */
+  int                 subharmonics; /* nu >= 1: fundamental is omega/nu */
+  double              motion_tolerance; /* > 0: harmonics are chosen for this relative error */
+  double              scale;            /* multiplies the excitation */
+  double              tolerance;        /* of the contact law, relative to its largest force */
+  int                 max_points; /* a branch ends (with a reason) beyond this, default 2000 */
+  mhb_search_settings search;
+  bool                flips;     /* branches of doubled period are followed from where they leave */
+  mhb_stability_when  stability; /* which points are judged by their multipliers */
+  const struct mhb_run_up *
+      run_up; /* the modal model follows the frequency (mhb/structure/speed_table.h); NULL: one speed */
+  bool resume; /* take over what an interrupted run of equal settings finished */
+} mhb_settings;
+
+/* Points by time integration, see integration_sweep.h. */
+typedef enum { MHB_FROM_BALANCE, MHB_FROM_REST, MHB_FROM_STATE } mhb_witness_start;
+typedef enum { MHB_UP, MHB_DOWN, MHB_BOTH } mhb_witness_direction;
+
+enum { MHB_MAX_FREQUENCIES = 1000 };
+
+typedef struct {
+  int                   n_frequencies;
+  bool                  listed; /* frequency holds them; else evenly over the range */
+  double                frequency[MHB_MAX_FREQUENCIES]; /* Hz, of the excitation */
+  mhb_witness_start     start;
+  mhb_witness_direction direction; /* of state */
+  int                   steps;     /* a period of the fundamental, to begin with */
+  double                tolerance; /* relative to the motion */
+  int                   max_periods,
+      harmonics; /* harmonics of the fundamental that are kept; 0: as many as the balance */
+} mhb_witness_settings;
+
+#endif

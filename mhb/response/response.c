@@ -1,0 +1,192 @@
+#include "mhb/response/response.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "mhb/response/response_fields.h"
+
+enum { FIRST_POINTS = 64 };
+
+mhb_response *mhb_response_create(int n_pairs, int n_probes, int n_harmonics) {
+  if (n_pairs < 0 || n_probes < 0 || n_harmonics < 0) return NULL;
+  mhb_response *response = calloc(1, sizeof *response);
+  if (!response) return NULL;
+  response->n_pairs      = n_pairs;
+  response->n_probes     = n_probes;
+  response->n_harmonics  = n_harmonics;
+  response->subharmonics = 1;
+  response->probe_name   = calloc((size_t)n_probes + 1, sizeof *response->probe_name);
+  if (response->probe_name) return response;
+  free(response);
+  return NULL;
+}
+
+static void free_branch(mhb_branch *branch) {
+  for (int i = 0; i < MHB_N_FIELDS; i++) free(mhb_field_get(branch, &mhb_fields[i]));
+  free(branch->reason);
+}
+
+void mhb_response_destroy(mhb_response *response) {
+  if (!response) return;
+  for (int i = 0; i < response->n_branches; i++) free_branch(&response->branch[i]);
+  for (int i = 0; i < response->n_probes; i++) free(response->probe_name[i]);
+  for (int i = 0; response->interface_name && i < response->n_interfaces; i++)
+    free(response->interface_name[i]);
+  free(response->interface_name);
+  free(response->interface);
+  free(response->branch);
+  free(response->probe_name);
+  free(response->mode_frequency);
+  free(response->mode_damping);
+  free(response->mode_residual);
+  free(response);
+}
+
+shb_status mhb_response_interfaces(mhb_response *response, int n, char *const *name,
+                                   const int *interface, int lead) {
+  const size_t pairs       = (size_t)response->n_pairs;
+  response->interface_name = calloc((size_t)n, sizeof *response->interface_name);
+  response->interface      = malloc(pairs * sizeof *response->interface + 1);
+  response->lead           = lead;
+  SHB_CHECK(response->interface_name && response->interface, SHB_ERR_IO,
+            "no memory for %d interfaces", n);
+  memcpy(response->interface, interface, pairs * sizeof *interface);
+  for (response->n_interfaces = 0; response->n_interfaces < n; response->n_interfaces++) {
+    char *copy = strdup(name[response->n_interfaces]);
+    SHB_CHECK(copy, SHB_ERR_IO, "no memory for %d interfaces", n);
+    response->interface_name[response->n_interfaces] = copy;
+  }
+  return SHB_OK;
+}
+
+shb_status mhb_response_reserve(mhb_response *response, int n) {
+  if (response->n_branches + n <= response->capacity) return SHB_OK;
+  int         capacity = response->n_branches + n;
+  mhb_branch *branch   = realloc(response->branch, (size_t)capacity * sizeof *branch);
+  SHB_CHECK(branch, SHB_ERR_IO, "no memory for %d response branches", capacity);
+  response->branch   = branch;
+  response->capacity = capacity;
+  return SHB_OK;
+}
+
+shb_status mhb_response_branch(mhb_response *response, mhb_branch_kind kind, int *index) {
+  int n = response->n_branches;
+  if (n == response->capacity) SHB_TRY(mhb_response_reserve(response, n > 8 ? n : 8));
+  response->branch[n] = (mhb_branch){.kind        = kind,
+                                     .order       = response->subharmonics,
+                                     .n_harmonics = response->n_harmonics,
+                                     .main        = n,
+                                     .searched    = true};
+  *index              = response->n_branches++;
+  return SHB_OK;
+}
+
+/* Arrays grown before one fails stay valid: capacity counts what all have. */
+static shb_status grow(const mhb_response *response, mhb_branch *branch) {
+  int capacity = branch->capacity ? 2 * branch->capacity : FIRST_POINTS;
+  for (int i = 0; i < MHB_N_FIELDS; i++) {
+    if (!mhb_field_kept(response, branch, &mhb_fields[i])) continue;
+    size_t row =
+        mhb_field_width(response, branch, &mhb_fields[i]) * mhb_field_bytes(mhb_fields[i].kind);
+    void *data = realloc(mhb_field_get(branch, &mhb_fields[i]), (size_t)capacity * row);
+    SHB_CHECK(data, SHB_ERR_IO, "no memory for %d response points", capacity);
+    mhb_field_set(branch, &mhb_fields[i], data);
+  }
+  branch->capacity = capacity;
+  return SHB_OK;
+}
+
+shb_status mhb_response_point(mhb_response *response, int branch, int *point) {
+  mhb_branch *b = &response->branch[branch];
+  if (b->n_points == b->capacity) SHB_TRY(grow(response, b));
+  for (int i = 0; i < MHB_N_FIELDS; i++) {
+    if (!mhb_field_kept(response, b, &mhb_fields[i])) continue;
+    size_t row = mhb_field_width(response, b, &mhb_fields[i]) * mhb_field_bytes(mhb_fields[i].kind);
+    memset((char *)mhb_field_get(b, &mhb_fields[i]) + (size_t)b->n_points * row, 0, row);
+  }
+  *point = b->n_points++;
+  return SHB_OK;
+}
+
+/* The last of n rows goes to place at, byte by byte: no room is needed. */
+static void rotate(char *data, size_t row, size_t at, size_t n) {
+  for (size_t i = n - 1; i > at; i--)
+    for (size_t k = 0; k < row; k++) {
+      char swap               = data[i * row + k];
+      data[i * row + k]       = data[(i - 1) * row + k];
+      data[(i - 1) * row + k] = swap;
+    }
+}
+
+void mhb_response_place(mhb_response *response, int branch, int at) {
+  mhb_branch *b = &response->branch[branch];
+  for (int i = 0; i < MHB_N_FIELDS; i++)
+    if (mhb_field_kept(response, b, &mhb_fields[i]))
+      rotate(mhb_field_get(b, &mhb_fields[i]),
+             mhb_field_width(response, b, &mhb_fields[i]) * mhb_field_bytes(mhb_fields[i].kind),
+             (size_t)at, (size_t)b->n_points);
+}
+
+static void swap_rows(char *a, char *b, size_t row) {
+  for (size_t k = 0; k < row; k++) {
+    char swap = a[k];
+    a[k]      = b[k];
+    b[k]      = swap;
+  }
+}
+
+void mhb_response_reverse(mhb_response *response, int branch, int from) {
+  mhb_branch *b = &response->branch[branch];
+  for (int i = 0; i < MHB_N_FIELDS; i++) {
+    if (!mhb_field_kept(response, b, &mhb_fields[i])) continue;
+    size_t row = mhb_field_width(response, b, &mhb_fields[i]) * mhb_field_bytes(mhb_fields[i].kind);
+    char  *data = mhb_field_get(b, &mhb_fields[i]);
+    for (int p = from, q = b->n_points - 1; p < q; p++, q--)
+      swap_rows(data + (size_t)p * row, data + (size_t)q * row, row);
+  }
+}
+
+shb_status mhb_response_split(mhb_response *response, int branch, int from, int to) {
+  const mhb_branch *a = &response->branch[branch];
+  mhb_branch       *b = &response->branch[to];
+  b->order            = a->order;
+  b->n_harmonics      = a->n_harmonics;
+  for (int i = from; i < a->n_points; i++) {
+    int point;
+    SHB_TRY(mhb_response_point(response, to, &point));
+    for (int k = 0; k < MHB_N_FIELDS; k++) {
+      const mhb_field *f = &mhb_fields[k];
+      if (!mhb_field_kept(response, b, f)) continue;
+      size_t row = mhb_field_width(response, b, f) * mhb_field_bytes(f->kind);
+      memcpy((char *)mhb_field_get(b, f) + (size_t)point * row,
+             (char *)mhb_field_get(a, f) + (size_t)i * row, row);
+    }
+  }
+  response->branch[branch].n_points = from;
+  return SHB_OK;
+}
+
+void mhb_response_drop(mhb_response *response, const bool *drop) {
+  int n = response->n_branches, kept = 0, to[n + 1];
+  for (int i = 0; i < n; i++) {
+    to[i] = kept;
+    if (drop[i]) free_branch(&response->branch[i]);
+    if (!drop[i]) response->branch[kept++] = response->branch[i];
+  }
+  response->n_branches = kept;
+  for (int i = 0; i < kept; i++) response->branch[i].main = to[response->branch[i].main];
+}
+
+/* Insertion: stable, and there are few. Main branches keep their places, so that main stays right. */
+void mhb_response_sort(mhb_response *response) {
+  mhb_branch *b = response->branch;
+  for (int i = 1; i < response->n_branches; i++) {
+    mhb_branch moved = b[i];
+    int        at    = i;
+    if (moved.main == i) continue;
+    for (; at > 0 && b[at - 1].main != at - 1 && b[at - 1].main > moved.main; at--)
+      b[at] = b[at - 1];
+    b[at] = moved;
+  }
+}

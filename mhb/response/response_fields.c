@@ -1,0 +1,126 @@
+#include "mhb/response/response_fields.h"
+
+#include <string.h>
+
+#define AT(member) offsetof(mhb_branch, member)
+const mhb_field mhb_fields[] = {
+    {"frequency", "", MHB_DOUBLE, AT(frequency), "Hz",
+     "frequency of the excitation's first harmonic"},
+    {"n0", "", MHB_DOUBLE, AT(n0), "N", "normal preload, total of the interface; negative: a gap"},
+    {"interface_n0", "i", MHB_DOUBLE, AT(interface_n0), "N",
+     "normal preload of each contact interface; n0 is that of the one that leads"},
+    {"parameter", "", MHB_DOUBLE, AT(value), NULL, "value of the parameter that is followed"},
+    {"motion", "p3k", MHB_COMPLEX, AT(motion), "m",
+     "relative motion at the contact along v, u, w; harmonics"},
+    {"force", "p3k", MHB_COMPLEX, AT(force), "N",
+     "contact force on the blade along v, u, w; harmonics. Where the contact neither slips nor "
+     "opens "
+     "the mean friction is not determined by the physics: by convention the smallest admissible"},
+    {"probe", "qxk", MHB_COMPLEX, AT(probe), "m",
+     "displacement of the probes, tangential, axial, radial; harmonics"},
+    {"stable", "", MHB_INT, AT(stable), "-", "stability: 1 stable, 0 unstable, -1 not known"},
+    {"special", "", MHB_INT, AT(special), "-",
+     "0 ordinary point, 1 fold, 2 peak of the first harmonic of a probe or contact motion, 3 flip "
+     "(period doubling), 4 Neimark-Sacker point"},
+    {"state", "ps", MHB_DOUBLE, AT(state), "-", "share of the period stuck, slipping, open"},
+    {"dissipation", "p", MHB_DOUBLE, AT(dissipation), "J", "energy lost by friction in a period"},
+    {"iterations", "", MHB_INT, AT(iterations), "-", "Newton iterations"},
+    {"seconds", "", MHB_DOUBLE, AT(seconds), "s", "time spent on the point"},
+    {"error/newton", "", MHB_DOUBLE, AT(error_newton), "-",
+     "estimated error from the Newton residual, relative to the motion"},
+    {"error/truncation", "", MHB_DOUBLE, AT(error_truncation), "-",
+     "estimated error from the harmonics left out, relative to the vibration"},
+    {"error/sampling", "", MHB_DOUBLE, AT(error_sampling), "-",
+     "estimated error of the contact force's harmonics, relative to the motion"},
+    {"error/modal", "", MHB_DOUBLE, AT(error_modal), "-",
+     "estimated error from the modes left out, relative to the vibration"},
+    /* N_LATER: of nonlinear branches only; files of earlier versions lack them */
+    {"harmonics", "", MHB_INT, AT(harmonics), "-",
+     "harmonics of the balance at the point; higher ones of motion, force and probe are 0"},
+    {"error/truncation_kind", "", MHB_INT, AT(truncation_kind), "-",
+     "how error/truncation was estimated: 0 nothing is left out (open or stuck throughout), 1 "
+     "first "
+     "order: can be several times too small, 2 a Newton step of twice the harmonics"},
+    {"judged", "", MHB_INT, AT(judged), "-",
+     "what stable rests on: 1 the Floquet multipliers; else the parity of folds passed since such "
+     "a "
+     "point, because the multipliers were 0 not computed, 2 marginal, 3 undecided"},
+    {"loss", "", MHB_INT, AT(loss), "-",
+     "how stability was lost: 0 it was not, 1 fold (a multiplier beyond +1), 2 flip (beyond -1), 3 "
+     "Neimark-Sacker (a pair)"},
+    {"multipliers", "f", MHB_COMPLEX, AT(multipliers), "-",
+     "largest Floquet multipliers by falling modulus; 0: not computed, or there are no more"},
+    /* the last N_INTEGRATION: of integration branches only */
+    {"multiple", "", MHB_INT, AT(multiple), "-",
+     "the motion repeats after so many periods of the fundamental; 0: it does not"},
+    {"periods", "", MHB_INT, AT(periods), "-", "periods of the fundamental that were integrated"},
+    {"distance", "", MHB_DOUBLE, AT(distance), "-", "of the return map, relative to the motion"},
+    {"spectrum/frequency", "l", MHB_DOUBLE, AT(line_frequency), "Hz",
+     "lines of the contact motion where it does not repeat, largest first; 0: none"},
+    {"spectrum/amplitude", "l", MHB_DOUBLE, AT(line_amplitude), "m", "amplitude of the line"},
+};
+enum { N_LATER = 5, N_INTEGRATION = 5 };
+_Static_assert(sizeof mhb_fields / sizeof *mhb_fields == MHB_N_FIELDS, "MHB_N_FIELDS counts them");
+
+size_t mhb_field_bytes(mhb_number kind) {
+  return kind == MHB_COMPLEX  ? sizeof(double complex)
+         : kind == MHB_DOUBLE ? sizeof(double)
+                              : sizeof(int);
+}
+
+static hsize_t size_of(const mhb_response *response, const mhb_branch *branch, char letter) {
+  switch (letter) {
+    case 'p':
+      return (hsize_t)response->n_pairs;
+    case 'q':
+      return (hsize_t)response->n_probes;
+    case 'k':
+      return (hsize_t)branch->n_harmonics + 1;
+    case 'f':
+      return (hsize_t)response->n_multipliers;
+    case 'l':
+      return (hsize_t)response->n_lines;
+    case 'i':
+      return (hsize_t)response->n_interfaces;
+    default:
+      return 3;
+  }
+}
+
+h5_shape mhb_field_shape(const mhb_response *response, const mhb_branch *branch, const mhb_field *f,
+                         int n_points) {
+  h5_shape shape = {.rank = 1 + (int)strlen(f->dims), .dim = {(hsize_t)n_points}};
+  for (int i = 1; i < shape.rank; i++) shape.dim[i] = size_of(response, branch, f->dims[i - 1]);
+  return shape;
+}
+
+size_t mhb_field_width(const mhb_response *response, const mhb_branch *branch, const mhb_field *f) {
+  return h5_count(mhb_field_shape(response, branch, f, 1));
+}
+
+mhb_branch_kind mhb_field_owner(const mhb_field *f) {
+  long from_end = mhb_fields + MHB_N_FIELDS - f;
+  return from_end <= N_INTEGRATION             ? MHB_BRANCH_INTEGRATION
+         : from_end <= N_INTEGRATION + N_LATER ? MHB_BRANCH_NONLINEAR
+                                               : MHB_N_BRANCH_KINDS;
+}
+
+bool mhb_field_kept(const mhb_response *response, const mhb_branch *branch, const mhb_field *f) {
+  mhb_branch_kind owner = mhb_field_owner(f);
+  return mhb_field_width(response, branch, f) > 0 &&
+         (owner == MHB_N_BRANCH_KINDS || owner == branch->kind);
+}
+
+bool mhb_field_is_frequency(const mhb_response *response, const mhb_field *f) {
+  return f->offset == AT(value) && response->parameter == MHB_IN_FREQUENCY;
+}
+
+void *mhb_field_get(const mhb_branch *branch, const mhb_field *f) {
+  void *data;
+  memcpy(&data, (const char *)branch + f->offset, sizeof data);
+  return data;
+}
+
+void mhb_field_set(mhb_branch *branch, const mhb_field *f, void *data) {
+  memcpy((char *)branch + f->offset, &data, sizeof data);
+}

@@ -1,0 +1,465 @@
+/* The response file, written and read. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "mhb/problem/parameter.h"
+#include "mhb/response/response.h"
+#include "mhb/response/response_fields.h"
+#include "modal/hdf5/h5.h"
+
+static const char response_format[] = "shroudhb response";
+enum { RESPONSE_VERSION = 1, MAX_COUNT = 100000 };
+
+static const char *const origin_name[] = {"end", "search", "flip", "aside"};
+enum { N_ORIGINS = sizeof origin_name / sizeof *origin_name };
+
+static const char *const kind_name[] = {"nonlinear", "open", "stuck", "integration"};
+enum { N_KINDS = sizeof kind_name / sizeof *kind_name };
+
+/* ---------------------------------------------------------------- writing */
+
+static const char *scale_of(char letter) {
+  switch (letter) {
+    case 'p':
+      return "/pair";
+    case 'q':
+      return "/probe/name";
+    case 'k':
+      return "/harmonic";
+    case 'f':
+      return "/multiplier";
+    case 'l':
+      return "/line";
+    case 'i':
+      return "/interface_name";
+    case '3':
+      return "/shroud_axis";
+    case 'x':
+      return "/axis";
+    default:
+      return "/contact_state";
+  }
+}
+
+static shb_status write_probe_names(hid_t file, const mhb_response *response) {
+  if (response->n_probes == 0) return SHB_OK;
+  const char **name = calloc((size_t)response->n_probes, sizeof *name);
+  SHB_CHECK(name, SHB_ERR_IO, "no memory to write /probe/name");
+  for (int i = 0; i < response->n_probes; i++)
+    name[i] = response->probe_name[i] ? response->probe_name[i] : "";
+  shb_status status =
+      h5_write_strings(file, "/probe/name", response->n_probes, name, "name of the probe");
+  free(name);
+  return status;
+}
+
+static shb_status write_interfaces(hid_t file, const mhb_response *response) {
+  if (response->n_interfaces < 2) return SHB_OK;
+  SHB_TRY(h5_write_strings(file, "/interface_name", response->n_interfaces,
+                           (const char *const *)response->interface_name, "contact interface"));
+  SHB_TRY(h5_write_int(file, "/interface", H5_SHAPE((hsize_t)response->n_pairs),
+                       response->interface, "-", "contact interface of each pair, from 0"));
+  return h5_write_attribute_text(file, "/", "followed_interface",
+                                 response->interface_name[response->lead]);
+}
+
+static shb_status write_scales(hid_t file, const mhb_response *response) {
+  static const char *const shroud[] = {"v", "u", "w"}, *const state[] = {"stuck", "slip", "open"},
+                           *const axis[] = {"tangential", "axial", "radial"};
+  SHB_TRY(h5_write_strings(file, "/shroud_axis", 3, shroud, "shroud axes: normal v, sliding u, w"));
+  SHB_TRY(h5_write_strings(file, "/axis", 3, axis, "cylindrical axes about the engine axis"));
+  SHB_TRY(h5_write_strings(file, "/contact_state", 3, state, "contact state"));
+  SHB_TRY(h5_write_counter(file, "/pair", (hsize_t)response->n_pairs, "contact pair, from 0"));
+  SHB_TRY(
+      h5_write_counter(file, "/harmonic", (hsize_t)response->n_harmonics + 1,
+                       "harmonic k of omega / subharmonics; x(t) = Re sum_k A_k exp(j k omega t / "
+                       "subharmonics)"));
+  if (response->n_multipliers > 0)
+    SHB_TRY(h5_write_counter(file, "/multiplier", (hsize_t)response->n_multipliers,
+                             "Floquet multiplier, by falling modulus"));
+  if (response->n_lines > 0)
+    SHB_TRY(h5_write_counter(file, "/line", (hsize_t)response->n_lines,
+                             "spectral line, largest first"));
+  SHB_TRY(write_interfaces(file, response));
+  return write_probe_names(file, response);
+}
+
+static shb_status write_root(hid_t file, const mhb_response *response) {
+  SHB_TRY(h5_write_attribute_int(file, "/", "branches", response->n_branches));
+  SHB_TRY(h5_write_attribute_int(file, "/", "engine_order", response->engine_order));
+  SHB_TRY(h5_write_attribute_int(file, "/", "blades", response->blades));
+  SHB_TRY(h5_write_attribute_int(file, "/", "subharmonics", response->subharmonics));
+  if (response->run_up) SHB_TRY(h5_write_attribute_int(file, "/", "run_up", 1));
+  SHB_TRY(h5_write_attribute_text(file, "/", "parameter", mhb_parameter_name(response->parameter)));
+  SHB_TRY(h5_write_attribute_double(file, "/", "psi", response->psi));
+  SHB_TRY(h5_write_attribute_double(file, "/", "phi", response->phi));
+  SHB_TRY(h5_write_attribute_text(file, "/", "angle_units", "rad"));
+  SHB_TRY(write_scales(file, response));
+  if (response->n_modes == 0) return SHB_OK;
+  const h5_shape modes = H5_SHAPE((hsize_t)response->n_modes);
+  SHB_TRY(h5_write_double(file, "/modes/frequency", modes, response->mode_frequency, "Hz",
+                          "undamped natural frequency of the free blade"));
+  SHB_TRY(h5_write_double(file, "/modes/damping_ratio", modes, response->mode_damping, "-",
+                          "modal damping ratio"));
+  SHB_TRY(h5_attach_scale(file, "/modes/damping_ratio", 0, "/modes/frequency"));
+  if (!response->mode_residual) return SHB_OK;
+  SHB_TRY(h5_write_double(file, "/modes/residual", modes, response->mode_residual, "-",
+                          "relative residual of the eigenpair"));
+  return h5_attach_scale(file, "/modes/residual", 0, "/modes/frequency");
+}
+
+/* Its harmonics are not those of the root's scale. */
+static bool has_own_scale(const mhb_response *response, const mhb_branch *branch) {
+  return branch->order != response->subharmonics || branch->n_harmonics != response->n_harmonics;
+}
+
+static shb_status write_field(hid_t group, const mhb_response *response, const mhb_branch *branch,
+                              const mhb_field *f) {
+  const h5_shape shape = mhb_field_shape(response, branch, f, branch->n_points);
+  const void    *data  = mhb_field_get(branch, f);
+  const char    *units = f->units ? f->units : mhb_parameter_unit(response->parameter);
+  if (mhb_field_is_frequency(response, f)) return SHB_OK;
+  switch (f->kind) {
+    case MHB_DOUBLE:
+      SHB_TRY(h5_write_double(group, f->name, shape, data, *units ? units : "-", f->long_name));
+      break;
+    case MHB_COMPLEX:
+      SHB_TRY(h5_write_complex(group, f->name, shape, data, f->units, f->long_name));
+      break;
+    case MHB_INT:
+      SHB_TRY(h5_write_int(group, f->name, shape, data, f->units, f->long_name));
+      break;
+  }
+  if (f == mhb_fields) return SHB_OK; /* the frequency is the scale */
+  SHB_TRY(h5_attach_scale(group, f->name, 0, mhb_fields[0].name));
+  for (int i = 1; i < shape.rank; i++) {
+    bool own = f->dims[i - 1] == 'k' && has_own_scale(response, branch);
+    SHB_TRY(h5_attach_scale(group, f->name, i, own ? "harmonic" : scale_of(f->dims[i - 1])));
+  }
+  return SHB_OK;
+}
+
+/* Of the rotor in a run-up; not read back. */
+static shb_status write_speed(hid_t group, const mhb_response *response, const mhb_branch *branch) {
+  static const double two_pi = 6.283185307179586476925;
+  if (!response->run_up) return SHB_OK;
+  double *speed = malloc(sizeof *speed * (size_t)branch->n_points + 1);
+  SHB_CHECK(speed, SHB_ERR_IO, "no memory for %d response points", branch->n_points);
+  for (int i = 0; i < branch->n_points; i++)
+    speed[i] = two_pi * branch->frequency[i] / response->engine_order;
+  shb_status status = h5_write_double(group, "speed", H5_SHAPE((hsize_t)branch->n_points), speed,
+                                      "rad/s", "speed of the rotor, frequency/engine_order");
+  free(speed);
+  SHB_TRY(status);
+  return h5_attach_scale(group, "speed", 0, mhb_fields[0].name);
+}
+
+static shb_status fill_branch(hid_t group, const mhb_response *response, const mhb_branch *branch) {
+  SHB_TRY(h5_write_attribute_text(group, ".", "kind", kind_name[branch->kind]));
+  SHB_TRY(h5_write_attribute_text(group, ".", "reason", branch->reason));
+  SHB_TRY(h5_write_attribute_int(group, ".", "complete", branch->complete));
+  if (!branch->searched) SHB_TRY(h5_write_attribute_int(group, ".", "searched", 0));
+  if (branch->origin != MHB_FROM_END) {
+    SHB_TRY(h5_write_attribute_text(group, ".", "origin", origin_name[branch->origin]));
+    SHB_TRY(h5_write_attribute_int(group, ".", "order", branch->order));
+    SHB_TRY(h5_write_attribute_int(group, ".", "main", branch->main));
+  }
+  if (has_own_scale(response, branch))
+    SHB_TRY(h5_write_counter(
+        group, "harmonic", (hsize_t)branch->n_harmonics + 1,
+        "harmonic k of omega / order; x(t) = Re sum_k A_k exp(j k omega t / order)"));
+  for (int i = 0; i < MHB_N_FIELDS; i++)
+    if (mhb_field_kept(response, branch, &mhb_fields[i]))
+      SHB_TRY(write_field(group, response, branch, &mhb_fields[i]));
+  return write_speed(group, response, branch);
+}
+
+static shb_status write_branch(hid_t file, const mhb_response *response, int index) {
+  char name[32];
+  snprintf(name, sizeof name, "/branch_%d", index);
+  hid_t group = H5Gcreate2(file, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  SHB_CHECK(group >= 0, SHB_ERR_IO, "%s of the response cannot be written", name);
+  shb_status status = fill_branch(group, response, &response->branch[index]);
+  H5Gclose(group);
+  return status;
+}
+
+static shb_status write_parts(hid_t file, const mhb_response *response,
+                              const shb_provenance *provenance) {
+  SHB_TRY(h5_write_provenance(file, response_format, RESPONSE_VERSION, provenance));
+  SHB_TRY(write_root(file, response));
+  for (int i = 0; i < response->n_branches; i++) SHB_TRY(write_branch(file, response, i));
+  return SHB_OK;
+}
+
+static shb_status write_file(const mhb_response *response, const char *temporary,
+                             const shb_provenance *provenance) {
+  hid_t file;
+  SHB_TRY(h5_create(temporary, &file));
+  shb_status status = write_parts(file, response, provenance);
+  if (status == SHB_OK) return h5_close(file);
+  h5_abandon(file);
+  return status;
+}
+
+shb_status mhb_response_write(const mhb_response *response, const char *path,
+                              const shb_provenance *provenance) {
+  char *temporary = shb_publish_temporary(path);
+  SHB_CHECK(temporary, SHB_ERR_IO, "%s: no memory", path);
+  shb_status status = write_file(response, temporary, provenance);
+  if (status == SHB_OK) status = shb_publish(temporary, path);
+  free(temporary);
+  return status;
+}
+
+/* ---------------------------------------------------------------- reading */
+
+static shb_status read_sizes(hid_t file, const char *path, int *n_pairs, int *n_harmonics) {
+  h5_shape pair, harmonic;
+  SHB_TRY(h5_shape_of(file, "/pair", &pair));
+  SHB_TRY(h5_shape_of(file, "/harmonic", &harmonic));
+  SHB_CHECK(pair.rank == 1 && pair.dim[0] <= MAX_COUNT && harmonic.rank == 1 &&
+                harmonic.dim[0] >= 1 && harmonic.dim[0] <= MAX_COUNT,
+            SHB_ERR_INPUT, "%s: /pair and /harmonic must be lists of at most %d", path, MAX_COUNT);
+  *n_pairs     = (int)pair.dim[0];
+  *n_harmonics = (int)harmonic.dim[0] - 1;
+  return SHB_OK;
+}
+
+static shb_status read_modes(hid_t file, mhb_response *response) {
+  if (!h5_exists(file, "/modes")) return SHB_OK;
+  h5_shape modes = H5_SHAPE(0);
+  SHB_TRY(h5_read_double(file, "/modes/frequency", &modes, &response->mode_frequency));
+  SHB_TRY(h5_read_double(file, "/modes/damping_ratio", &modes, &response->mode_damping));
+  if (h5_exists(file, "/modes/residual"))
+    SHB_TRY(h5_read_double(file, "/modes/residual", &modes, &response->mode_residual));
+  response->n_modes = (int)modes.dim[0];
+  return SHB_OK;
+}
+
+/* Length of a list that files of earlier versions have none of. */
+static shb_status read_count(hid_t file, const char *path, const char *name, int *count) {
+  h5_shape shape;
+  if (!h5_exists(file, name)) return SHB_OK;
+  SHB_TRY(h5_shape_of(file, name, &shape));
+  SHB_CHECK(shape.rank == 1 && shape.dim[0] <= MAX_COUNT, SHB_ERR_INPUT,
+            "%s: %s must be a list of at most %d", path, name, MAX_COUNT);
+  *count = (int)shape.dim[0];
+  return SHB_OK;
+}
+
+/* Sizes, probe names and root attributes. */
+static shb_status read_parameter(hid_t file, const char *path, mhb_parameter *parameter) {
+  char *text = NULL;
+  SHB_TRY(h5_read_attribute_text(file, "/", "parameter", &text));
+  int found = 0;
+  while (text && found < MHB_N_PARAMETERS && strcmp(text, mhb_parameter_name(found)) != 0) found++;
+  free(text);
+  SHB_CHECK(found < MHB_N_PARAMETERS, SHB_ERR_INPUT,
+            "%s: the root attribute parameter must be frequency, n0, scale, mu, ku or kv", path);
+  *parameter = (mhb_parameter)found;
+  return SHB_OK;
+}
+
+/* Files of one interface have none of these. */
+static shb_status read_interfaces(hid_t file, const char *path, mhb_response *response) {
+  h5_shape pairs = H5_SHAPE((hsize_t)response->n_pairs);
+  char    *lead  = NULL;
+  if (!h5_exists(file, "/interface_name")) return SHB_OK;
+  SHB_TRY(
+      h5_read_strings(file, "/interface_name", &response->n_interfaces, &response->interface_name));
+  SHB_TRY(h5_read_int(file, "/interface", &pairs, &response->interface));
+  for (int i = 0; i < response->n_pairs; i++)
+    SHB_CHECK(response->interface[i] >= 0 && response->interface[i] < response->n_interfaces,
+              SHB_ERR_INPUT, "%s: /interface: value %d (from 0) is %d; 0 to %d are wanted", path, i,
+              response->interface[i], response->n_interfaces - 1);
+  SHB_TRY(h5_read_attribute_text(file, "/", "followed_interface", &lead));
+  for (int i = 0; i < response->n_interfaces; i++)
+    if (lead && strcmp(lead, response->interface_name[i]) == 0) response->lead = i;
+  free(lead);
+  return SHB_OK;
+}
+
+static shb_status read_root(hid_t file, const char *path, mhb_response **out) {
+  int    n_pairs = 0, n_harmonics = 0, n_probes = 0;
+  char **name = NULL;
+  SHB_TRY(read_sizes(file, path, &n_pairs, &n_harmonics));
+  if (h5_exists(file, "/probe")) SHB_TRY(h5_read_strings(file, "/probe/name", &n_probes, &name));
+  mhb_response *response = *out = mhb_response_create(n_pairs, n_probes, n_harmonics);
+  for (int i = 0; i < n_probes && !response; i++) free(name[i]);
+  for (int i = 0; i < n_probes && response; i++) response->probe_name[i] = name[i];
+  free(name);
+  SHB_CHECK(response, SHB_ERR_IO, "%s: no memory", path);
+  SHB_TRY(h5_read_attribute_int(file, "/", "engine_order", 0, &response->engine_order));
+  SHB_TRY(h5_read_attribute_int(file, "/", "blades", 0, &response->blades));
+  SHB_TRY(h5_read_attribute_int(file, "/", "subharmonics", 1, &response->subharmonics));
+  int run_up = 0;
+  SHB_TRY(h5_read_attribute_int(file, "/", "run_up", 0, &run_up));
+  response->run_up = run_up != 0 && response->engine_order >= 1;
+  SHB_TRY(h5_read_attribute_double(file, "/", "psi", 0, &response->psi));
+  SHB_TRY(h5_read_attribute_double(file, "/", "phi", 0, &response->phi));
+  SHB_CHECK(response->subharmonics >= 1, SHB_ERR_INPUT,
+            "%s: subharmonics is %d; 1 or more is wanted", path, response->subharmonics);
+  SHB_TRY(read_parameter(file, path, &response->parameter));
+  SHB_TRY(read_count(file, path, "/multiplier", &response->n_multipliers));
+  SHB_TRY(read_count(file, path, "/line", &response->n_lines));
+  SHB_TRY(read_interfaces(file, path, response));
+  return read_modes(file, response);
+}
+
+static shb_status copy_frequency(mhb_branch *branch) {
+  size_t size   = sizeof(double) * (size_t)branch->n_points;
+  branch->value = malloc(size + 1);
+  SHB_CHECK(branch->value, SHB_ERR_IO, "no memory for %d response points", branch->n_points);
+  if (size > 0) memcpy(branch->value, branch->frequency, size);
+  return SHB_OK;
+}
+
+static shb_status read_field(hid_t group, const mhb_response *response, mhb_branch *branch,
+                             const mhb_field *f) {
+  h5_shape        shape    = mhb_field_shape(response, branch, f, branch->n_points);
+  double         *real     = NULL;
+  double complex *complex_ = NULL;
+  int            *whole    = NULL;
+  if (mhb_field_is_frequency(response, f)) return copy_frequency(branch);
+  if (mhb_field_owner(f) == MHB_BRANCH_NONLINEAR &&
+      !h5_exists(group, f->name)) { /* an earlier version's file: not known */
+    void *none = calloc(h5_count(shape) + 1, mhb_field_bytes(f->kind));
+    SHB_CHECK(none, SHB_ERR_IO, "no memory for %d response points", branch->n_points);
+    mhb_field_set(branch, f, none);
+    return SHB_OK;
+  }
+  switch (f->kind) {
+    case MHB_DOUBLE:
+      SHB_TRY(h5_read_double(group, f->name, &shape, &real));
+      mhb_field_set(branch, f, real);
+      break;
+    case MHB_COMPLEX:
+      SHB_TRY(h5_read_complex(group, f->name, &shape, &complex_));
+      mhb_field_set(branch, f, complex_);
+      break;
+    case MHB_INT:
+      SHB_TRY(h5_read_int(group, f->name, &shape, &whole));
+      mhb_field_set(branch, f, whole);
+      break;
+  }
+  return SHB_OK;
+}
+
+static shb_status read_kind(hid_t group, const char *path, int index, mhb_branch *branch) {
+  char *text = NULL;
+  SHB_TRY(h5_read_attribute_text(group, ".", "kind", &text));
+  int kind = 0;
+  while (text && kind < N_KINDS && strcmp(text, kind_name[kind]) != 0) kind++;
+  bool known = text && kind < N_KINDS;
+  free(text);
+  SHB_CHECK(known, SHB_ERR_INPUT,
+            "%s: /branch_%d: attribute kind must be nonlinear, open, stuck or integration", path,
+            index);
+  branch->kind = (mhb_branch_kind)kind;
+  return SHB_OK;
+}
+
+/* Earlier files have none of these: a branch is its own main one, of the file's order. */
+static shb_status read_descent(hid_t group, const char *path, int index, mhb_branch *branch) {
+  char *text     = NULL;
+  int   searched = 1, origin = 0;
+  SHB_TRY(h5_read_attribute_int(group, ".", "order", branch->order, &branch->order));
+  SHB_TRY(h5_read_attribute_int(group, ".", "main", index, &branch->main));
+  SHB_TRY(h5_read_attribute_int(group, ".", "searched", 1, &searched));
+  SHB_TRY(h5_read_attribute_text(group, ".", "origin", &text));
+  while (text && *text && origin < N_ORIGINS && strcmp(text, origin_name[origin]) != 0) origin++;
+  free(text);
+  SHB_CHECK(origin < N_ORIGINS, SHB_ERR_INPUT,
+            "%s: /branch_%d: attribute origin must be end, search, flip or aside", path, index);
+  SHB_CHECK(branch->order >= 1 && branch->main >= 0 && branch->main <= index, SHB_ERR_INPUT,
+            "%s: /branch_%d: attribute order is %d, main is %d; 1 or more and 0 to %d are wanted",
+            path, index, branch->order, branch->main, index);
+  branch->origin   = (mhb_origin)origin;
+  branch->searched = searched != 0;
+  if (!h5_exists(group, "harmonic")) return SHB_OK;
+  h5_shape harmonic;
+  SHB_TRY(h5_shape_of(group, "harmonic", &harmonic));
+  SHB_CHECK(harmonic.rank == 1 && harmonic.dim[0] >= 1 && harmonic.dim[0] <= MAX_COUNT,
+            SHB_ERR_INPUT, "%s: /branch_%d/harmonic must be a list of 1 to %d", path, index,
+            MAX_COUNT);
+  branch->n_harmonics = (int)harmonic.dim[0] - 1;
+  return SHB_OK;
+}
+
+/* All values of a list of codes within their range. */
+static shb_status check_codes(const char *path, int index, const char *name, int n, const int *code,
+                              int least, int most, const char *wanted) {
+  for (int i = 0; code && i < n; i++)
+    SHB_CHECK(code[i] >= least && code[i] <= most, SHB_ERR_INPUT,
+              "%s: /branch_%d/%s: value %d (from 0) is %d; %s is wanted", path, index, name, i,
+              code[i], wanted);
+  return SHB_OK;
+}
+
+static shb_status check_points(const char *path, int index, const mhb_branch *branch) {
+  int n = branch->n_points;
+  for (int i = 0; i < n; i++)
+    SHB_CHECK(branch->frequency[i] > 0, SHB_ERR_INPUT,
+              "%s: /branch_%d/frequency: value %d (from 0) is %g Hz; all must be positive", path,
+              index, i, branch->frequency[i]);
+  SHB_TRY(check_codes(path, index, "stable", n, branch->stable, -1, 1, "1, 0 or -1"));
+  SHB_TRY(check_codes(path, index, "special", n, branch->special, 0, MHB_N_SPECIALS - 1, "0 to 4"));
+  SHB_TRY(check_codes(path, index, "judged", n, branch->judged, 0, MHB_N_JUDGED - 1, "0 to 3"));
+  return check_codes(path, index, "loss", n, branch->loss, 0, MHB_N_LOSSES - 1, "0 to 3");
+}
+
+static shb_status fill_from(hid_t group, const char *path, int index, mhb_response *response) {
+  mhb_branch *branch = &response->branch[index];
+  int         complete;
+  SHB_TRY(read_kind(group, path, index, branch));
+  SHB_TRY(h5_read_attribute_text(group, ".", "reason", &branch->reason));
+  SHB_TRY(h5_read_attribute_int(group, ".", "complete", 0, &complete));
+  branch->complete = complete != 0;
+  SHB_TRY(read_descent(group, path, index, branch));
+  h5_shape points;
+  SHB_TRY(h5_shape_of(group, mhb_fields[0].name, &points));
+  SHB_CHECK(points.rank == 1, SHB_ERR_INPUT, "%s: /branch_%d/frequency must be a list", path,
+            index);
+  branch->n_points = branch->capacity = (int)points.dim[0];
+  for (int i = 0; i < MHB_N_FIELDS; i++)
+    if (mhb_field_kept(response, branch, &mhb_fields[i]))
+      SHB_TRY(read_field(group, response, branch, &mhb_fields[i]));
+  return check_points(path, index, branch);
+}
+
+static shb_status read_branch(hid_t file, const char *path, mhb_response *response) {
+  char name[32];
+  int  index = 0;
+  SHB_TRY(mhb_response_branch(response, MHB_BRANCH_NONLINEAR, &index));
+  snprintf(name, sizeof name, "/branch_%d", index);
+  SHB_CHECK(h5_exists(file, name), SHB_ERR_INPUT, "%s: %s is missing", path, name);
+  hid_t group = H5Gopen2(file, name, H5P_DEFAULT);
+  SHB_CHECK(group >= 0, SHB_ERR_INPUT, "%s: %s is not a readable group", path, name);
+  shb_status status = fill_from(group, path, index, response);
+  H5Gclose(group);
+  return status;
+}
+
+static shb_status read_parts(hid_t file, const char *path, mhb_response **response) {
+  int n_branches = -1;
+  SHB_TRY(h5_check_format(file, response_format, RESPONSE_VERSION));
+  SHB_TRY(read_root(file, path, response));
+  SHB_TRY(h5_read_attribute_int(file, "/", "branches", -1, &n_branches));
+  SHB_CHECK(n_branches >= 0, SHB_ERR_INPUT, "%s: the root attribute branches is missing", path);
+  for (int i = 0; i < n_branches; i++) SHB_TRY(read_branch(file, path, *response));
+  return SHB_OK;
+}
+
+shb_status mhb_response_read(const char *path, mhb_response **response) {
+  *response = NULL;
+  hid_t file;
+  SHB_TRY(h5_open(path, &file));
+  shb_status status = read_parts(file, path, response);
+  h5_close(file);
+  if (status == SHB_OK) return SHB_OK;
+  mhb_response_destroy(*response);
+  *response = NULL;
+  return status;
+}

@@ -1,0 +1,114 @@
+#include "mhb/structure/cyclic_flexibility.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "mhb/numerics/simd.h"
+
+/* A block of the matrix between pairs i and j, on a side each, in the pairs' axes. */
+typedef struct {
+  const double *matrix, *T0;
+  int           nc, n;
+} source;
+
+static void block(const source *s, int side_i, int i, int side_j, int j, double out[3][3]) {
+  const double *Ti = s->T0 + 9 * i, *Tj = s->T0 + 9 * j;
+  const double *from =
+      s->matrix + (size_t)(side_i * s->n + 3 * i) * (size_t)s->nc + (size_t)(side_j * s->n + 3 * j);
+  double half[3][3] = {{0}};
+  for (int a = 0; a < 3; a++, from += s->nc)
+    for (int b = 0; b < 3; b++)
+      for (int d = 0; d < 3; d++) half[a][d] += from[b] * Tj[3 * b + d];
+  memset(out, 0, 9 * sizeof(double));
+  for (int a = 0; a < 3; a++)
+    for (int c = 0; c < 3; c++)
+      for (int d = 0; d < 3; d++) out[c][d] += Ti[3 * a + c] * half[a][d];
+}
+
+static void set_pairs(const source *s, int i, int j, mhb_flexibility *f) {
+  double rr[3][3], ll[3][3] = {{0}}, rl[3][3] = {{0}}, lr[3][3] = {{0}};
+  block(s, 0, i, 0, j, rr);
+  if (f->both) {
+    block(s, 1, i, 1, j, ll);
+    block(s, 0, i, 1, j, rl);
+    block(s, 1, i, 0, j, lr);
+  }
+  for (int c = 0; c < 3; c++)
+    for (int d = 0; d < 3; d++) {
+      size_t at  = (size_t)(3 * i + c) * (size_t)f->n + (size_t)(3 * j + d);
+      f->own[at] = rr[c][d] + ll[c][d];
+      if (!f->both) continue;
+      f->both[at] = rl[c][d] + lr[c][d];
+      f->odd[at]  = lr[c][d] - rl[c][d];
+    }
+}
+
+shb_status mhb_flexibility_create(const double *matrix, int nc, const double *T0, int n_pairs,
+                                  int sides, mhb_flexibility **out) {
+  mhb_flexibility *f = calloc(1, sizeof *f);
+  SHB_CHECK(f, SHB_ERR_IO, "out of memory");
+  size_t square = 9 * (size_t)n_pairs * (size_t)n_pairs;
+  f->n          = 3 * n_pairs;
+  f->own        = malloc(square * sizeof(double));
+  if (sides == 2) f->both = malloc(square * sizeof(double));
+  if (sides == 2) f->odd = malloc(square * sizeof(double));
+  if (!f->own || (sides == 2 && !(f->both && f->odd))) {
+    mhb_flexibility_destroy(f);
+    SHB_FAIL(SHB_ERR_IO, "out of memory for the residual flexibility of %d pairs", n_pairs);
+  }
+  mhb_flexibility_set(f, matrix, nc, T0);
+  *out = f;
+  return SHB_OK;
+}
+
+void mhb_flexibility_set(mhb_flexibility *f, const double *matrix, int nc, const double *T0) {
+  const source s = {.matrix = matrix, .T0 = T0, .nc = nc, .n = f->n};
+  for (int i = 0; i < f->n / 3; i++)
+    for (int j = 0; j < f->n / 3; j++) set_pairs(&s, i, j, f);
+}
+
+void mhb_flexibility_destroy(mhb_flexibility *f) {
+  if (!f) return;
+  free(f->own);
+  free(f->both);
+  free(f->odd);
+  free(f);
+}
+
+MHB_HOT void mhb_flexibility_add(const mhb_flexibility *f, double complex phase, double factor,
+                                 double complex *R) {
+  size_t square = (size_t)f->n * (size_t)f->n;
+  double re = factor * creal(phase), im = factor * cimag(phase);
+  if (!f->both) {
+    for (size_t i = 0; i < square; i++) R[i] += factor * f->own[i];
+    return;
+  }
+  for (size_t i = 0; i < square; i++)
+    R[i] = CMPLX(creal(R[i]) + factor * f->own[i] - re * f->both[i], cimag(R[i]) - im * f->odd[i]);
+}
+
+double complex mhb_flexibility_row(const mhb_flexibility *f, double complex phase, int i,
+                                   const double complex *p) {
+  size_t at = (size_t)i * (size_t)f->n;
+  double re = 0, im = 0;
+  for (int j = 0; j < f->n; j++) {
+    double a = f->own[at + (size_t)j], b = 0;
+    if (f->both) {
+      a -= creal(phase) * f->both[at + (size_t)j];
+      b = -cimag(phase) * f->odd[at + (size_t)j];
+    }
+    re += a * creal(p[j]) - b * cimag(p[j]);
+    im += a * cimag(p[j]) + b * creal(p[j]);
+  }
+  return CMPLX(re, im);
+}
+
+void mhb_flexibility_add_block(const mhb_flexibility *f, double complex phase, double factor,
+                               int pair, double complex R[3][3]) {
+  for (int c = 0; c < 3; c++)
+    for (int d = 0; d < 3; d++) {
+      size_t at = (size_t)(3 * pair + c) * (size_t)f->n + (size_t)(3 * pair + d);
+      R[c][d] += factor * f->own[at];
+      if (f->both) R[c][d] -= factor * CMPLX(creal(phase) * f->both[at], cimag(phase) * f->odd[at]);
+    }
+}

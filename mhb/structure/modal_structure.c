@@ -1,0 +1,101 @@
+#include "mhb/structure/modal_structure.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const double TWO_PI = 6.283185307179586476925;
+
+/* The wave of nu periods lags by (2 pi/nu)(E/N + l), l the least for which it closes around the ring: E' = (E + N l)/nu. */
+static int wave_of(const mhb_settings *s) {
+  for (int l = 0; l < s->subharmonics; l++)
+    if ((s->engine_order + (long)s->blades * l) % s->subharmonics == 0)
+      return (int)((s->engine_order + (long)s->blades * l) / s->subharmonics);
+  return 0;
+}
+
+/* T0^T x of a pair by a mode, negative on the left. */
+static double shape_of(const mhb_receptance *r, int side, int row, int mode) {
+  const double *x   = side ? r->model->left : r->model->right;
+  double        sum = 0;
+  for (int axis = 0; axis < 3; axis++)
+    sum += r->T0[(row / 3) * 9 + axis * 3 + row % 3] * x[(row / 3 * 3 + axis) * r->n_modes + mode];
+  return side ? -sum : sum;
+}
+
+/* Motion on side s by a unit contact force on side t of the same blade: modes from `first` on, and the residual. */
+static double flexibility(const mhb_receptance *r, int s, int row, int t, int column, int first) {
+  const modal_model *model = r->model;
+  int                n = r->n, nc = n * (model->has_left ? 2 : 1);
+  double             sum = 0;
+  for (int k = 0; k < 9 && model->residual_flexibility; k++) {
+    int to = s * n + row / 3 * 3 + k / 3, by = t * n + column / 3 * 3 + k % 3;
+    sum += r->T0[(row / 3) * 9 + k / 3 * 3 + row % 3] *
+           r->T0[(column / 3) * 9 + k % 3 * 3 + column % 3] *
+           model->residual_flexibility[(size_t)to * (size_t)nc + (size_t)by];
+  }
+  if (s != t) sum = -sum;
+  for (int i = first; i < r->n_modes; i++) {
+    double w = TWO_PI * model->frequency[i];
+    sum += shape_of(r, s, row, i) * shape_of(r, t, column, i) / (w * w);
+  }
+  return sum;
+}
+
+static void set_flexibility(const mhb_receptance *r, mhb_structure *s) {
+  int n3 = r->n, n = 3 * s->contacts;
+  for (int k = 0; k < s->blades * s->sides * s->sides; k++) {
+    int blade = k / (s->sides * s->sides), to = k / s->sides % s->sides, by = k % s->sides;
+    int row0    = 3 * mhb_structure_contact(s, blade, to);
+    int column0 = 3 * mhb_structure_contact(s, blade, by);
+    for (int row = 0; row < n3; row++)
+      for (int column = 0; column < n3; column++)
+        s->flexibility[(size_t)(row0 + row) * (size_t)n + (size_t)(column0 + column)] +=
+            flexibility(r, to, row, by, column, s->modes);
+  }
+}
+
+shb_status mhb_structure_create(const mhb_receptance *r, const mhb_settings *settings, int modes,
+                                mhb_structure *s) {
+  const modal_model *model = r->model;
+  int                m = modes < r->n_modes ? modes : r->n_modes, ground = settings->to_ground;
+  *s          = (mhb_structure){.blades = ground ? 1 : settings->blades,
+                                .sides  = ground ? 1 : 2,
+                                .modes  = m,
+                                .pairs  = model->n_pairs,
+                                .wave   = ground ? 0 : wave_of(settings)};
+  s->contacts = s->blades * s->pairs;
+  size_t n = 3 * (size_t)s->contacts, side = (size_t)m * (size_t)r->n;
+  s->omega = calloc((size_t)m, sizeof(double));
+  s->zeta  = calloc((size_t)m, sizeof(double));
+  s->shape = calloc((size_t)s->sides * side, sizeof(double));
+  int ok   = s->omega && s->zeta && s->shape;
+  if (model->residual_flexibility || m < r->n_modes)
+    ok &= (s->flexibility = calloc(n * n, sizeof(double))) != NULL;
+  if (!ok) {
+    mhb_structure_destroy(s);
+    SHB_FAIL(SHB_ERR_IO, "out of memory for the structure of %d contacts", s->contacts);
+  }
+  mhb_structure_set(r, s);
+  return SHB_OK;
+}
+
+void mhb_structure_set(const mhb_receptance *r, mhb_structure *s) {
+  const size_t side = (size_t)s->modes * (size_t)r->n, n = 3 * (size_t)s->contacts;
+  for (int i = 0; i < s->modes; i++) {
+    s->omega[i] = TWO_PI * r->model->frequency[i];
+    s->zeta[i]  = r->model->damping_ratio[i];
+  }
+  for (size_t k = 0; k < (size_t)s->sides * side; k++)
+    s->shape[k] = shape_of(r, k >= side, (int)(k % (size_t)r->n), (int)(k % side) / r->n);
+  if (!s->flexibility) return;
+  memset(s->flexibility, 0, n * n * sizeof *s->flexibility);
+  set_flexibility(r, s);
+}
+
+void mhb_structure_destroy(mhb_structure *s) {
+  free(s->omega);
+  free(s->zeta);
+  free(s->shape);
+  free(s->flexibility);
+  *s = (mhb_structure){0};
+}

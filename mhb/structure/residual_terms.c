@@ -1,0 +1,329 @@
+#include "mhb/structure/residual_terms.h"
+
+#include <cblas.h>
+#include <stdlib.h>
+
+#include "mhb/numerics/simd.h"
+
+/* From this many relative motions on, products of matrices are left to BLAS. */
+enum { WORTH_BLAS = 12 };
+
+static int n_contact(const modal_model *model) {
+  return 3 * model->n_pairs * (model->has_left ? 2 : 1);
+}
+
+/* ---- made once ---- */
+
+/* True if there is nothing to hold, or room for it. */
+static bool room(const void *wanted, size_t n, double complex **array) {
+  if (wanted && n) *array = calloc(n, sizeof **array);
+  return !wanted || !n || *array;
+}
+
+typedef struct {
+  const double         *contact[MODAL_TERMS], *probe_contact[MODAL_TERMS];
+  const double complex *load[MODAL_TERMS], *probe_load[MODAL_TERMS];
+} terms;
+
+static terms terms_of(const modal_model *m) {
+  return (terms){{m->residual_flexibility, m->residual_inertia,
+                  modal_series_has_fourth(m) ? m->residual_fourth : NULL},
+                 {m->probe_contact_residual, m->probe_contact_inertia, m->probe_contact_fourth},
+                 {m->load_residual, m->load_inertia, m->load_fourth},
+                 {m->probe_load_residual, m->probe_load_inertia, m->probe_load_fourth}};
+}
+
+static bool allocate(mhb_left_out *l, const terms *from) {
+  const size_t n = (size_t)l->relative.n, K = (size_t)l->n_harmonics + 1;
+  const size_t q = 3 * (size_t)l->model->n_probes, r = (size_t)l->model->n_residual;
+  bool         made = true;
+  for (int t = 0; t < MODAL_TERMS; t++)
+    made = made && room(from->load[t], K * n, &l->load[t]) &&
+           room(from->probe_load[t], K * q, &l->probe_load[t]) &&
+           room(from->probe_contact[t], K * q * n, &l->probe_contact[t]);
+  return made && room(l, K * n * r, &l->S) && room(l, K * r, &l->F) && room(l, n * r, &l->Sg);
+}
+
+/* S = T times the residual modes. */
+static void set_shapes(mhb_left_out *l, int k) {
+  const size_t    n = (size_t)l->relative.n, r = (size_t)l->model->n_residual;
+  const int       nc = n_contact(l->model);
+  double complex *S  = l->S + (size_t)k * n * r, column[nc];
+  for (size_t i = 0; i < r; i++) {
+    for (int c = 0; c < nc; c++) column[c] = l->model->residual_shape[(size_t)c * r + i];
+    mhb_relative_motion(&l->relative, l->phase[k], column, 1, S + i, (int)r);
+  }
+}
+
+/* Load harmonic h drives harmonic nu h. */
+static void set_load(mhb_left_out *l, int k, const terms *from) {
+  const modal_model *model = l->model;
+  const int          h = k / l->nu, q = 3 * model->n_probes, r = model->n_residual;
+  if (k % l->nu || h > model->n_load) return;
+  for (int i = 0; i < r; i++) l->F[k * r + i] = model->residual_force[h * r + i];
+  for (int t = 0; t < MODAL_TERMS; t++) {
+    if (l->load[t])
+      mhb_relative_motion(&l->relative, l->phase[k], from->load[t] + h * n_contact(model), 1,
+                          l->load[t] + k * l->relative.n, 1);
+    for (int i = 0; l->probe_load[t] && i < q; i++)
+      l->probe_load[t][k * q + i] = from->probe_load[t][h * q + i];
+  }
+}
+
+/* Probe motion per contact force p: a residual matrix [3 q][nc] times T^H. */
+static void set_probe(const mhb_left_out *l, int k, const double *matrix, double complex *out) {
+  const int      q = 3 * l->model->n_probes, nc = n_contact(l->model), n = l->relative.n;
+  double complex column[nc];
+  for (int i = 0; i < q; i++) {
+    double complex *row = out + ((size_t)k * (size_t)q + (size_t)i) * (size_t)n;
+    for (int j = 0; j < nc; j++) column[j] = matrix[(size_t)i * (size_t)nc + (size_t)j];
+    mhb_relative_motion(&l->relative, l->phase[k], column, 1, row, 1);
+    for (int j = 0; j < n; j++) row[j] = conj(row[j]);
+  }
+}
+
+void mhb_left_out_set(mhb_left_out *l) {
+  const terms from = terms_of(l->model);
+  for (int t = 0; t < MODAL_TERMS; t++)
+    if (l->contact[t])
+      mhb_flexibility_set(l->contact[t], from.contact[t], n_contact(l->model), l->relative.T0);
+  for (int k = 0; k <= l->n_harmonics; k++) {
+    if (l->S) set_shapes(l, k);
+    set_load(l, k, &from);
+    for (int t = 0; t < MODAL_TERMS; t++)
+      if (l->probe_contact[t]) set_probe(l, k, from.probe_contact[t], l->probe_contact[t]);
+  }
+}
+
+static shb_status make(mhb_left_out *l) {
+  const terms from = terms_of(l->model);
+  SHB_CHECK(allocate(l, &from), SHB_ERR_IO, "out of memory for the residual terms");
+  for (int t = 0; t < MODAL_TERMS; t++)
+    if (from.contact[t])
+      SHB_TRY(mhb_flexibility_create(from.contact[t], n_contact(l->model), l->relative.T0,
+                                     l->model->n_pairs, l->relative.sides, &l->contact[t]));
+  mhb_left_out_set(l);
+  return SHB_OK;
+}
+
+shb_status mhb_left_out_create(const modal_model *model, mhb_relative relative, int nu,
+                               int n_harmonics, const double complex *phase, mhb_left_out **out) {
+  mhb_left_out *l = calloc(1, sizeof *l);
+  SHB_CHECK(l, SHB_ERR_IO, "out of memory");
+  l->model          = model;
+  l->relative       = relative;
+  l->nu             = nu;
+  l->n_harmonics    = n_harmonics;
+  l->phase          = phase;
+  shb_status status = make(l);
+  if (status == SHB_OK)
+    *out = l;
+  else
+    mhb_left_out_destroy(l);
+  return status;
+}
+
+void mhb_left_out_destroy(mhb_left_out *l) {
+  if (!l) return;
+  for (int t = 0; t < MODAL_TERMS; t++) {
+    mhb_flexibility_destroy(l->contact[t]);
+    free(l->load[t]);
+    free(l->probe_load[t]);
+    free(l->probe_contact[t]);
+  }
+  free(l->S);
+  free(l->F);
+  free(l->Sg);
+  free(l);
+}
+
+static bool any(const double complex *x, int n) {
+  for (int i = 0; x && i < n; i++)
+    if (x[i] != 0) return true;
+  return false;
+}
+
+bool mhb_left_out_driven(const mhb_left_out *l, int k) {
+  const int n = l->relative.n, q = 3 * l->model->n_probes, r = l->model->n_residual;
+  bool      driven = l->F && any(l->F + k * r, r);
+  for (int t = 0; t < MODAL_TERMS; t++)
+    driven = driven || (l->load[t] && any(l->load[t] + k * n, n)) ||
+             (l->probe_load[t] && any(l->probe_load[t] + k * q, q));
+  return driven;
+}
+
+/* ---- at a frequency ---- */
+
+static const double complex *shapes(const mhb_left_out *l, int k) {
+  return l->S + (size_t)k * (size_t)l->relative.n * (size_t)l->model->n_residual;
+}
+
+/* sum_t weight_t x_t at i, of the terms that there are. */
+MHB_INLINE double complex series(double complex *const x[MODAL_TERMS],
+                                 const double weight[MODAL_TERMS], size_t i) {
+  double re = 0, im = 0;
+  for (int t = 0; t < MODAL_TERMS; t++)
+    if (x[t] && weight[t] != 0) {
+      re += weight[t] * creal(x[t][i]);
+      im += weight[t] * cimag(x[t][i]);
+    }
+  return CMPLX(re, im);
+}
+
+/* R += S g S^H by rows */
+MHB_HOT static void add_small(const mhb_left_out *l, const double complex *S, const double *g,
+                              double complex *R) {
+  const int n = l->relative.n, r = l->model->n_residual;
+  for (int a = 0; a < n; a++)
+    for (int b = 0; b < n; b++) {
+      const double complex *x = S + a * r, *y = S + b * r;
+      double                re = 0, im = 0;
+      for (int i = 0; i < r; i++) {
+        re += g[i] * (creal(x[i]) * creal(y[i]) + cimag(x[i]) * cimag(y[i]));
+        im += g[i] * (cimag(x[i]) * creal(y[i]) - creal(x[i]) * cimag(y[i]));
+      }
+      R[a * n + b] += CMPLX(re, im);
+    }
+}
+
+static void add_large(const mhb_left_out *l, const double complex *S, const double *g,
+                      double complex *R) {
+  const int      n = l->relative.n, r = l->model->n_residual;
+  double complex one = 1;
+  for (int a = 0; a < n; a++)
+    for (int i = 0; i < r; i++) l->Sg[a * r + i] = g[i] * S[a * r + i];
+  cblas_zgemm(CblasRowMajor, CblasNoTrans, CblasConjTrans, n, n, r, &one, l->Sg, r, S, r, &one, R,
+              n);
+}
+
+void mhb_left_out_matrix(const mhb_left_out *l, int k, double w, double complex *R) {
+  const int    r = l->model->n_residual;
+  modal_series s = modal_series_at(l->model, w);
+  double       g[r + 1], slope;
+  for (int t = 0; t < MODAL_TERMS; t++)
+    if (l->contact[t]) mhb_flexibility_add(l->contact[t], l->phase[k], s.weight[t], R);
+  for (int i = 0; i < r; i++) g[i] = modal_series_mode(l->model, i, &s, &slope);
+  if (r > 0 && w > 0) (l->relative.n < WORTH_BLAS ? add_small : add_large)(l, shapes(l, k), g, R);
+}
+
+void mhb_left_out_block(const mhb_left_out *l, int k, double w, int pair, double complex R[3][3]) {
+  const int             r = l->model->n_residual;
+  modal_series          s = modal_series_at(l->model, w);
+  const double complex *S = shapes(l, k) + 3 * pair * r;
+  double                slope;
+  for (int t = 0; t < MODAL_TERMS; t++)
+    if (l->contact[t]) mhb_flexibility_add_block(l->contact[t], l->phase[k], s.weight[t], pair, R);
+  for (int i = 0; i < r; i++) {
+    double g = modal_series_mode(l->model, i, &s, &slope);
+    for (int a = 0; a < 3; a++)
+      for (int b = 0; b < 3; b++) R[a][b] += g * S[a * r + i] * conj(S[b * r + i]);
+  }
+}
+
+/* What acts on residual mode i: load F - S^H p. */
+static double complex drive(const mhb_left_out *l, int k, int i, double load,
+                            const double complex *p) {
+  const int             r = l->model->n_residual;
+  const double complex *S = shapes(l, k) + i;
+  double complex        f = load * l->F[k * r + i];
+  for (int a = 0; a < l->relative.n; a++) f -= conj(S[a * r]) * p[a];
+  return f;
+}
+
+/* to[n] += factor (load x - matrix p), of the terms, with their weights or slopes. */
+static void add_terms(const mhb_left_out *l, int k, const modal_series *s, bool slopes,
+                      double factor, double load, const double complex *p, double complex *to) {
+  const int     n       = l->relative.n;
+  const double *contact = slopes ? s->slope : s->weight;
+  const double *loaded  = slopes ? s->load_slope : s->load_weight;
+  for (int a = 0; a < n; a++) {
+    to[a] += factor * load * series(l->load, loaded, (size_t)(k * n + a));
+    for (int t = 0; t < MODAL_TERMS; t++)
+      if (l->contact[t] && contact[t] != 0)
+        to[a] -= factor * contact[t] * mhb_flexibility_row(l->contact[t], l->phase[k], a, p);
+  }
+}
+
+/* The same of the residual modes. */
+static void add_modes(const mhb_left_out *l, int k, const modal_series *s, bool slopes,
+                      double factor, double load, const double complex *p, double complex *to) {
+  const int             n = l->relative.n, r = l->model->n_residual;
+  const double complex *S = shapes(l, k);
+  for (int i = 0; i < r; i++) {
+    double         slope, g = modal_series_mode(l->model, i, s, &slope);
+    double complex f = factor * (slopes ? slope : g) * drive(l, k, i, load, p);
+    for (int a = 0; a < n; a++) to[a] += S[a * r + i] * f;
+  }
+}
+
+void mhb_left_out_motion_by(const mhb_left_out *l, int k, const modal_series *s, double scale,
+                            const double complex *p, double complex *motion) {
+  add_terms(l, k, s, false, 1, scale, p, motion);
+}
+
+void mhb_left_out_load(const mhb_left_out *l, int k, double w, double scale,
+                       double complex *motion) {
+  const int             n = l->relative.n, r = l->model->n_residual;
+  const double complex *S = shapes(l, k);
+  modal_series          s = modal_series_at(l->model, w);
+  for (int a = 0; a < n; a++)
+    motion[a] += scale * series(l->load, s.load_weight, (size_t)(k * n + a));
+  for (int i = 0; i < r; i++) {
+    double         slope;
+    double complex f = scale * modal_series_mode(l->model, i, &s, &slope) * l->F[k * r + i];
+    for (int a = 0; a < n; a++) motion[a] += S[a * r + i] * f;
+  }
+}
+
+void mhb_left_out_motion(const mhb_left_out *l, int k, double w, double scale,
+                         const double complex *p, double complex *motion) {
+  modal_series s = modal_series_at(l->model, w);
+  add_terms(l, k, &s, false, 1, scale, p, motion);
+  add_modes(l, k, &s, false, 1, scale, p, motion);
+}
+
+void mhb_left_out_slope(const mhb_left_out *l, int k, double w, double dw2, double scale,
+                        const double complex *p, double complex *slope) {
+  modal_series s = modal_series_at(l->model, w);
+  add_terms(l, k, &s, true, dw2, scale, p, slope);
+  add_modes(l, k, &s, true, dw2, scale, p, slope);
+}
+
+/* change[3 q] += P_i (g drive of the change + dw2 g' drive). */
+static void add_probe_modes(const mhb_left_out *l, int k, const modal_series *s, double scale,
+                            const double complex *p, const double complex *dp, double dw2,
+                            double d_scale, double complex *change) {
+  const int q = 3 * l->model->n_probes, r = l->model->n_residual;
+  for (int i = 0; i < r; i++) {
+    double         slope, g = modal_series_mode(l->model, i, s, &slope);
+    double complex f = g * drive(l, k, i, d_scale, dp);
+    if (dw2 != 0) f += dw2 * slope * drive(l, k, i, scale, p);
+    for (int c = 0; c < q; c++) change[c] += l->model->residual_probe[c * r + i] * f;
+  }
+}
+
+/* change[3 q] += scale load - matrix p, of the terms. */
+static void add_probe_terms(const mhb_left_out *l, int k, const double weight[MODAL_TERMS],
+                            double scale, const double complex *p, double complex *change) {
+  const size_t n = (size_t)l->relative.n, q = 3 * (size_t)l->model->n_probes;
+  for (size_t c = 0; c < q; c++) {
+    const size_t at = (size_t)k * q + c;
+    change[c] += scale * series(l->probe_load, weight, at);
+    for (size_t b = 0; b < n; b++) change[c] -= series(l->probe_contact, weight, at * n + b) * p[b];
+  }
+}
+
+void mhb_left_out_probe_by(const mhb_left_out *l, int k, const modal_series *s, double scale,
+                           const double complex *p, double complex *motion) {
+  add_probe_terms(l, k, s->load_weight, scale, p, motion);
+}
+
+void mhb_left_out_probe_change(const mhb_left_out *l, int k, double w, double scale,
+                               const double complex *p, const double complex *dp, double dw2,
+                               double d_scale, double complex *change) {
+  modal_series s = modal_series_at(l->model, w);
+  add_probe_terms(l, k, s.load_weight, d_scale, dp, change);
+  for (int t = 0; t < MODAL_TERMS; t++) s.load_slope[t] *= dw2;
+  if (dw2 != 0) add_probe_terms(l, k, s.load_slope, scale, p, change);
+  add_probe_modes(l, k, &s, scale, p, dp, dw2, d_scale, change);
+}

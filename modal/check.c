@@ -1,7 +1,0 @@
-#include "modal/check.h"
-
-#include <math.h>
-
-double modal_check_below(const modal_check *check) {
-  return sqrt(fmax(check->limit, 0)) / (2 * acos(-1));
-}

@@ -1,0 +1,7 @@
+#include "modal/common/completeness.h"
+
+#include <math.h>
+
+double modal_check_below(const modal_check *check) {
+  return sqrt(fmax(check->limit, 0)) / (2 * acos(-1));
+}

@@ -1,0 +1,15 @@
+/* Numbers without structure, the same on every machine. */
+#ifndef MODAL_COMMON_RANDOM_VECTOR_H
+#define MODAL_COMMON_RANDOM_VECTOR_H
+
+#include <stdint.h>
+
+/* A fixed number in [-1, 1) for each key (splitmix64's finaliser): no symmetric mode cancels. */
+static inline double modal_noise(uint64_t key) {
+  uint64_t z = (key + 1) * 0x9e3779b97f4a7c15u;
+  z          = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+  z          = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+  return (double)((z ^ (z >> 31)) >> 11) * 0x1p-52 - 1;
+}
+
+#endif

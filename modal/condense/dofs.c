@@ -1,0 +1,129 @@
+#include "modal/condense/dofs.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Room for one more dof of n_entries entries, which are the last ones. */
+static shb_status grow(modal_dofs *dofs, int n_entries) {
+  const size_t total = (size_t)(dofs->n_entries + n_entries);
+  int         *start = realloc(dofs->start, (size_t)(dofs->n + 2) * sizeof *start);
+  if (start) dofs->start = start;
+  int *node = realloc(dofs->node, (total + 1) * sizeof *node);
+  if (node) dofs->node = node;
+  double *weight = realloc(dofs->weight, (3 * total + 1) * sizeof *weight);
+  if (weight) dofs->weight = weight;
+  SHB_CHECK(start && node && weight, SHB_ERR_IO, "out of memory for %d condensed dofs",
+            dofs->n + 1);
+  start[dofs->n] = dofs->n_entries;
+  dofs->n++;
+  dofs->n_entries += n_entries;
+  start[dofs->n] = dofs->n_entries;
+  return SHB_OK;
+}
+
+shb_status modal_dofs_add(modal_dofs *dofs, int n_entries, const int *node, const double *weight,
+                          const double direction[3]) {
+  const int first = dofs->n_entries;
+  SHB_TRY(grow(dofs, n_entries));
+  for (int e = 0; e < n_entries; e++) {
+    dofs->node[first + e] = node[e];
+    for (int d = 0; d < 3; d++) dofs->weight[3 * (first + e) + d] = weight[e] * direction[d];
+  }
+  return SHB_OK;
+}
+
+static int is_loaded(const double force[3]) {
+  return force[0] != 0 || force[1] != 0 || force[2] != 0;
+}
+
+shb_status modal_dofs_add_field(modal_dofs *dofs, int n_nodes, const double *force) {
+  int n_entries = 0, entry = dofs->n_entries;
+  for (int i = 0; i < n_nodes; i++) n_entries += is_loaded(force + 3 * (size_t)i);
+  SHB_TRY(grow(dofs, n_entries));
+  for (int i = 0; i < n_nodes; i++) {
+    if (!is_loaded(force + 3 * (size_t)i)) continue;
+    dofs->node[entry] = i;
+    memcpy(dofs->weight + 3 * (size_t)entry, force + 3 * (size_t)i, 3 * sizeof(double));
+    entry++;
+  }
+  return SHB_OK;
+}
+
+shb_status modal_dofs_append(modal_dofs *dofs, const modal_dofs *more) {
+  for (int c = 0; c < more->n; c++) {
+    const int first = dofs->n_entries, from = more->start[c], n = more->start[c + 1] - from;
+    SHB_TRY(grow(dofs, n));
+    memcpy(dofs->node + first, more->node + from, (size_t)n * sizeof *dofs->node);
+    memcpy(dofs->weight + 3 * (size_t)first, more->weight + 3 * (size_t)from,
+           3 * (size_t)n * sizeof *dofs->weight);
+  }
+  return SHB_OK;
+}
+
+/* Local offset of a node's first dof in a dense column, -1 if clamped or another rank's. */
+static PetscInt offset_of(const fem_system *system, int node) {
+  PetscInt row = system->row[node];
+  return row >= system->first && row < system->last ? 3 * (row - system->first) : -1;
+}
+
+PetscErrorCode modal_dofs_spread(const modal_dofs *dofs, const fem_system *system, int first,
+                                 int count, Mat B) {
+  PetscScalar *b;
+  PetscInt     lda;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatZeroEntries(B));
+  PetscCall(MatDenseGetLDA(B, &lda));
+  PetscCall(MatDenseGetArray(B, &b));
+  for (int c = 0; c < count; c++)
+    for (int e = dofs->start[first + c]; e < dofs->start[first + c + 1]; e++) {
+      PetscInt offset = offset_of(system, dofs->node[e]);
+      if (offset < 0) continue;
+      for (int d = 0; d < 3; d++) b[c * lda + offset + d] += dofs->weight[3 * (size_t)e + d];
+    }
+  PetscCall(MatDenseRestoreArray(B, &b));
+  PetscFunctionReturn(0);
+}
+
+static double inner(const modal_dofs *dofs, const fem_system *system, int c, const PetscScalar *x) {
+  double sum = 0;
+  for (int e = dofs->start[c]; e < dofs->start[c + 1]; e++) {
+    PetscInt offset = offset_of(system, dofs->node[e]);
+    if (offset < 0) continue;
+    for (int d = 0; d < 3; d++) sum += dofs->weight[3 * (size_t)e + d] * x[offset + d];
+  }
+  return sum;
+}
+
+PetscErrorCode modal_dofs_sample(const modal_dofs *dofs, const fem_system *system, Mat X,
+                                 int n_columns, int stride, double *value) {
+  const PetscScalar *x;
+  PetscInt           lda;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatDenseGetLDA(X, &lda));
+  PetscCall(MatDenseGetArrayRead(X, &x));
+  for (int c = 0; c < dofs->n; c++) {
+    double *row = value + (size_t)c * (size_t)stride;
+    for (int k = 0; k < n_columns; k++) row[k] = inner(dofs, system, c, x + k * lda);
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, row, n_columns, MPI_DOUBLE, MPI_SUM, system->comm));
+  }
+  PetscCall(MatDenseRestoreArrayRead(X, &x));
+  PetscFunctionReturn(0);
+}
+
+void modal_dofs_of_nodes(const modal_dofs *dofs, const double *nodal, double *value) {
+  for (int c = 0; c < dofs->n; c++) {
+    value[c] = 0;
+    for (int e = dofs->start[c]; e < dofs->start[c + 1]; e++)
+      for (int d = 0; d < 3; d++)
+        value[c] += dofs->weight[3 * (size_t)e + d] * nodal[3 * (size_t)dofs->node[e] + d];
+  }
+}
+
+void modal_dofs_free(modal_dofs *dofs) {
+  free(dofs->start);
+  free(dofs->node);
+  free(dofs->weight);
+  memset(dofs, 0, sizeof *dofs);
+}

@@ -1,0 +1,177 @@
+#include "modal/eigen/block_basis.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "modal/common/random_vector.h"
+
+static const PetscScalar one = 1, minus = -1, zero = 0;
+
+PetscErrorCode modal_block_basis_create(Mat M, KSP ksp, int p, int room, modal_block_basis *b) {
+  PetscInt rows;
+  PetscFunctionBeginUser;
+  memset(b, 0, sizeof *b);
+  b->p    = (PetscBLASInt)p;
+  b->room = room;
+  b->comm = PetscObjectComm((PetscObject)M);
+  b->M    = M;
+  b->ksp  = ksp;
+  PetscCall(MatGetSize(M, &b->order, NULL));
+  PetscCall(MatGetLocalSize(M, &rows, NULL));
+  b->rows = (PetscBLASInt)rows;
+  PetscCall(MatCreateDense(b->comm, rows, PETSC_DECIDE, b->order, p, NULL, &b->W));
+  PetscCall(MatCreateDense(b->comm, rows, PETSC_DECIDE, b->order, p, NULL, &b->MW));
+  const size_t m = (size_t)p * (size_t)room, each = (size_t)p * (size_t)p;
+  PetscCall(PetscCalloc5((size_t)room, &b->Q, (size_t)room * each, &b->D, (size_t)room * each,
+                         &b->B, m * m, &b->H, m, &b->theta));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode modal_block_basis_destroy(modal_block_basis *b) {
+  PetscFunctionBeginUser;
+  for (int k = 0; k < b->n; k++) free(b->Q[k]);
+  PetscCall(PetscFree5(b->Q, b->D, b->B, b->H, b->theta));
+  PetscCall(MatDestroy(&b->W));
+  PetscCall(MatDestroy(&b->MW));
+  memset(b, 0, sizeof *b);
+  PetscFunctionReturn(0);
+}
+
+/* Normally distributed, after Box and Muller. */
+static double normal(uint64_t key) {
+  const double u = (modal_noise(2 * key) + 1) / 2, v = modal_noise(2 * key + 1);
+  return sqrt(-2 * log(1 - u)) * cos(PETSC_PI * v);
+}
+
+PetscErrorCode modal_block_basis_noise(const modal_block_basis *b, uint64_t seed) {
+  double  *W;
+  PetscInt first;
+  PetscFunctionBeginUser;
+  PetscCall(MatGetOwnershipRange(b->W, &first, NULL));
+  PetscCall(MatDenseGetArrayWrite(b->W, &W));
+  for (size_t c = 0; c < (size_t)b->p; c++)
+    for (size_t i = 0; i < (size_t)b->rows; i++) {
+      const uint64_t key         = ((uint64_t)first + i) * (uint64_t)b->p + (uint64_t)c;
+      W[c * (size_t)b->rows + i] = normal(seed * (uint64_t)b->order * (uint64_t)b->p + key);
+    }
+  PetscCall(MatDenseRestoreArrayWrite(b->W, &W));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode modal_block_basis_weigh(const modal_block_basis *b) {
+  PetscFunctionBeginUser;
+  for (int c = 0; c < b->p; c++) {
+    Vec w, mw;
+    PetscCall(MatDenseGetColumnVecRead(b->W, c, &w));
+    PetscCall(MatDenseGetColumnVecWrite(b->MW, c, &mw));
+    PetscCall(MatMult(b->M, w, mw));
+    PetscCall(MatDenseRestoreColumnVecWrite(b->MW, c, &mw));
+    PetscCall(MatDenseRestoreColumnVecRead(b->W, c, &w));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode modal_block_basis_inner(const modal_block_basis *b, const double *X, const double *Y,
+                                       double *out) {
+  PetscFunctionBeginUser;
+  PetscCallBLAS("BLASgemm", BLASgemm_("T", "N", &b->p, &b->p, &b->rows, &one, X, &b->rows, Y,
+                                      &b->rows, &zero, out, &b->p));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, out, b->p * b->p, MPI_DOUBLE, MPI_SUM, b->comm));
+  PetscFunctionReturn(0);
+}
+
+/* W -= Q_k C */
+static PetscErrorCode subtract(const modal_block_basis *b, int k, const double *C, double *W) {
+  PetscFunctionBeginUser;
+  PetscCallBLAS("BLASgemm", BLASgemm_("N", "N", &b->rows, &b->p, &b->p, &minus, b->Q[k], &b->rows,
+                                      C, &b->p, &one, W, &b->rows));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode modal_block_basis_remove(const modal_block_basis *b, double *last) {
+  double       *W, *C;
+  const double *MW;
+  PetscFunctionBeginUser;
+  PetscCall(modal_block_basis_weigh(b));
+  PetscCall(PetscMalloc1((size_t)(b->p * b->p), &C));
+  PetscCall(MatDenseGetArray(b->W, &W));
+  PetscCall(MatDenseGetArrayRead(b->MW, &MW));
+  for (int k = 0; k < b->n; k++) {
+    PetscCall(modal_block_basis_inner(b, b->Q[k], MW, C));
+    PetscCall(subtract(b, k, C, W));
+  }
+  for (int i = 0; last && b->n > 0 && i < b->p * b->p; i++) last[i] += C[i];
+  PetscCall(MatDenseRestoreArrayRead(b->MW, &MW));
+  PetscCall(MatDenseRestoreArray(b->W, &W));
+  PetscCall(PetscFree(C));
+  PetscFunctionReturn(0);
+}
+
+/* P = R P, R upper triangular, by columns. */
+static void multiply_triangle(int p, const double *R, double *P) {
+  for (int c = 0; c < p; c++)
+    for (int r = 0; r < p; r++) {
+      double sum = 0;
+      for (int i = r; i < p; i++) sum += R[i * p + r] * P[c * p + i];
+      P[c * p + r] = sum;
+    }
+}
+
+PetscErrorCode modal_block_basis_scale(const modal_block_basis *b, double *product, bool *good) {
+  double      *W, *MW, *R;
+  PetscBLASInt info;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1((size_t)(b->p * b->p), &R));
+  PetscCall(MatDenseGetArray(b->W, &W));
+  PetscCall(MatDenseGetArray(b->MW, &MW));
+  PetscCall(modal_block_basis_inner(b, W, MW, R));
+  PetscCallBLAS("LAPACKpotrf", LAPACKpotrf_("U", &b->p, R, &b->p, &info));
+  *good = info == 0;
+  if (*good) {
+    PetscCallBLAS("BLAStrsm",
+                  BLAStrsm_("R", "U", "N", "N", &b->rows, &b->p, &one, R, &b->p, W, &b->rows));
+    PetscCallBLAS("BLAStrsm",
+                  BLAStrsm_("R", "U", "N", "N", &b->rows, &b->p, &one, R, &b->p, MW, &b->rows));
+    multiply_triangle((int)b->p, R, product);
+  }
+  PetscCall(MatDenseRestoreArray(b->MW, &MW));
+  PetscCall(MatDenseRestoreArray(b->W, &W));
+  PetscCall(PetscFree(R));
+  PetscFunctionReturn(0);
+}
+
+/* What the second pass takes out is rounding, and MW need not follow; what a single one does would grow from step to step. */
+PetscErrorCode modal_block_basis_orthonormalise(const modal_block_basis *b, double *D, double *R,
+                                                bool *good) {
+  PetscFunctionBeginUser;
+  *good = true;
+  for (int i = 0; i < b->p * b->p; i++) R[i] = i % (b->p + 1) == 0;
+  for (int pass = 0; pass < (b->n > 0 ? 2 : 1); pass++) PetscCall(modal_block_basis_remove(b, D));
+  for (int pass = 0; pass < 2 && *good; pass++) PetscCall(modal_block_basis_scale(b, R, good));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode modal_block_basis_append(modal_block_basis *b) {
+  const double *W;
+  const size_t  size = (size_t)b->rows * (size_t)b->p;
+  PetscFunctionBeginUser;
+  b->Q[b->n] = malloc((size + 1) * sizeof(double));
+  PetscCheck(b->Q[b->n], PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for the Lanczos basis");
+  PetscCall(MatDenseGetArrayRead(b->W, &W));
+  memcpy(b->Q[b->n++], W, size * sizeof *W);
+  PetscCall(MatDenseRestoreArrayRead(b->W, &W));
+  PetscFunctionReturn(0);
+}
+
+void modal_block_basis_project(int p, int n, const double *D, const double *B, double *H) {
+  const size_t each = (size_t)p * (size_t)p, m = (size_t)p * (size_t)n;
+  memset(H, 0, m * m * sizeof *H);
+  for (int k = 0; k < n; k++, D += each, B += each)
+    for (int c = 0; c < p; c++)
+      for (int r = 0; r < p; r++) {
+        double *column = H + (size_t)(k * p + c) * m + k * p;
+        column[r]      = (D[c * p + r] + D[r * p + c]) / 2;
+        if (k + 1 < n) column[p + r] = B[c * p + r];
+      }
+}

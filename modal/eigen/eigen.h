@@ -1,0 +1,56 @@
+/* Lowest modes of K phi = lambda M phi by SLEPc: shift-invert with a Cholesky factor (fem/solver/factor.h), block Lanczos
+ * (modal/eigen/block_lanczos.h; -eps_type krylovschur: SLEPc's own). */
+#ifndef MODAL_EIGEN_EIGEN_H
+#define MODAL_EIGEN_EIGEN_H
+
+#include <slepceps.h>
+
+#include "fem/body/assemble.h"
+#include "fem/solver/factor.h"
+#include "mesh/base/progress.h"
+#include "modal/common/completeness.h"
+
+typedef struct {
+  int              modes;     /* wanted, >= 1 */
+  double           shift;     /* rad2/s2: 0 for a clamped body, below 0 for a free one */
+  double           tolerance; /* of the eigensolver; 0: 1e-10 */
+  shb_progress    *progress;  /* or NULL */
+  modal_check_kind check;
+} modal_eigen_settings;
+
+typedef struct {
+  int     n;
+  double *lambda; /* [n] rad2/s2, ascending */
+  double *
+      residual; /* [n] |phi - (lambda - shift) (K - shift M)^-1 M phi| in the M norm, |phi| = 1: an eigenvalue
+                       lies within that relative distance of lambda - shift. (The plain residual |K phi - lambda M phi| is
+                       drowned by rounding of the stiffest directions.) */
+  Mat phi;   /* dense [3 n_free][n], phi^T M phi = 1; sign fixed by the mesh, not by the solver */
+  Mat m_phi; /* M phi, same layout */
+  fem_factor *factor; /* of K - shift M, for further solves too */
+  EPS         eps;
+  modal_check check;
+} modal_eigen;
+
+/* Solve, and check that no mode is missing below the last: one that is (of more copies than a block has columns, or hidden from the
+ * start block) is searched again with blocks of twice the size. Needs SLEPc initialised. Takes options (-eps_..., -st_mat_mumps_icntl_...) from PETSc's data base.
+ * Errors: PETSC_ERR_USER_INPUT more modes than dofs, K singular; PETSC_ERR_NOT_CONVERGED, also if a mode stays missing; PETSC_ERR_MEM.
+ * If shb_interrupted(), stops early with eigen->n = 0 and no error. */
+PetscErrorCode modal_eigen_solve(const fem_system *system, const modal_eigen_settings *settings,
+                                 modal_eigen *eigen);
+
+/* X = (K - shift M)^-1 B, all columns at once. */
+PetscErrorCode modal_eigen_inverse(const modal_eigen *eigen, Mat B, Mat X);
+
+/* Y = M X, column by column. */
+PetscErrorCode modal_mass_multiply(const fem_system *system, Mat X, Mat Y);
+
+/* X -= phi phi^T M X: take the modes out of every column. */
+PetscErrorCode modal_eigen_remove(const fem_system *system, const modal_eigen *eigen, Mat X);
+
+/* A dense matrix of n columns, distributed like the system's vectors. */
+PetscErrorCode modal_dense_create(const fem_system *system, int n, Mat *X);
+
+PetscErrorCode modal_eigen_destroy(modal_eigen *eigen); /* also on a zeroed struct */
+
+#endif

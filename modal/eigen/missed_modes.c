@@ -1,0 +1,223 @@
+#include "modal/eigen/missed_modes.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { MOST = 40 };                                   /* block solves */
+static const double allowed     = 1e-9;               /* chance */
+static const double least_share = .05;                /* a of the header */
+static const double rounding = 1e-9, touching = .999; /* of an eigenvalue, to t */
+
+static const PetscScalar one = 1, minus = -1, zero = 0;
+
+typedef struct {
+  const modal_block_basis *b;
+  double                  *next, *now, *before; /* R; blocks of the search [p][rows] */
+  double                  *F, *Y, *C;           /* [p][p] */
+  double                  *D, *B;               /* [MOST] blocks [p][p] */
+  double                  *H, *theta;           /* [MOST p][MOST p], [MOST p] */
+} search;
+
+double modal_complement_chance(double ratio, int steps, int columns, double order) {
+  if (!(ratio < 1)) return 1;
+  const double x         = fmax(ratio, 1e-6);
+  const double chebyshev = log(cosh(fmin((steps - 1) * acosh(2 / x - 1), 300)));
+  const double square    = log(x / (1 - x)) - 2 * chebyshev; /* log eta^2 */
+  const double half      = .5 * columns;
+  const double result    = half * (square + log(order / (2 * least_share))) - lgamma(half + 1);
+  return fmin(exp(result), 1);
+}
+
+/* F = sum over the Ritz values below t of (B s)(B s)^T / (t - theta), s the vector's last part; their number above t. */
+static int couple(const modal_block_basis *b, double t, double *F) {
+  const int     p = b->p, m = p * b->n;
+  const double *B     = b->B + (size_t)(b->n - 1) * (size_t)(p * p);
+  int           above = 0;
+  memset(F, 0, (size_t)(p * p) * sizeof *F);
+  for (int i = 0; i < m; i++) {
+    const double *s = b->H + (size_t)i * (size_t)m + (m - p);
+    if (b->theta[i] > t) {
+      above++;
+      continue;
+    }
+    const double gap = fmax(t - b->theta[i], 1e-14 * t);
+    for (int r = 0; r < p; r++)
+      for (int c = 0; c < p; c++) {
+        double left = 0, right = 0;
+        for (int k = r; k < p; k++) left += B[k * p + r] * s[k];
+        for (int k = c; k < p; k++) right += B[k * p + c] * s[k];
+        F[c * p + r] += left * right / gap;
+      }
+  }
+  return above;
+}
+
+/* W scaled row by row with diag(M)^-1/2; the mass of a node is the same in its three directions. */
+static PetscErrorCode scale_rows(const modal_block_basis *b) {
+  Mat           nodes;
+  Vec           diagonal;
+  const double *d;
+  double       *W;
+  PetscBool     three;
+  PetscFunctionBeginUser;
+  PetscCall(
+      PetscObjectTypeCompareAny((PetscObject)b->M, &three, MATMAIJ, MATSEQMAIJ, MATMPIMAIJ, ""));
+  nodes = b->M;
+  if (three) PetscCall(MatMAIJGetAIJ(b->M, &nodes));
+  PetscCall(MatCreateVecs(nodes, NULL, &diagonal));
+  PetscCall(MatGetDiagonal(nodes, diagonal));
+  PetscCall(VecGetArrayRead(diagonal, &d));
+  PetscCall(MatDenseGetArray(b->W, &W));
+  for (size_t c = 0; c < (size_t)b->p; c++)
+    for (size_t i = 0; i < (size_t)b->rows; i++)
+      W[c * (size_t)b->rows + i] /= sqrt(d[three ? i / 3 : i]);
+  PetscCall(MatDenseRestoreArray(b->W, &W));
+  PetscCall(VecRestoreArrayRead(diagonal, &d));
+  PetscCall(VecDestroy(&diagonal));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode copy_block(const modal_block_basis *b, double *to) {
+  const double *W;
+  PetscFunctionBeginUser;
+  PetscCall(MatDenseGetArrayRead(b->W, &W));
+  PetscCall(PetscArraycpy(to, W, (size_t)b->rows * (size_t)b->p));
+  PetscCall(MatDenseRestoreArrayRead(b->W, &W));
+  PetscFunctionReturn(0);
+}
+
+/* W += factor X C or, turned, factor X C^T */
+static PetscErrorCode add(const modal_block_basis *b, PetscScalar factor, const double *X,
+                          const double *C, bool turned) {
+  double *W;
+  PetscFunctionBeginUser;
+  PetscCall(MatDenseGetArray(b->W, &W));
+  PetscCallBLAS("BLASgemm", BLASgemm_("N", turned ? "T" : "N", &b->rows, &b->p, &b->p, &factor, X,
+                                      &b->rows, C, &b->p, &one, W, &b->rows));
+  PetscCall(MatDenseRestoreArray(b->W, &W));
+  PetscFunctionReturn(0);
+}
+
+/* out = X^T MW */
+static PetscErrorCode against(const modal_block_basis *b, const double *X, double *out) {
+  const double *MW;
+  PetscFunctionBeginUser;
+  PetscCall(MatDenseGetArrayRead(b->MW, &MW));
+  PetscCall(modal_block_basis_inner(b, X, MW, out));
+  PetscCall(MatDenseRestoreArrayRead(b->MW, &MW));
+  PetscFunctionReturn(0);
+}
+
+/* W = G times the block whose product with M is MW. */
+static PetscErrorCode apply(const search *s) {
+  const modal_block_basis *b = s->b;
+  PetscFunctionBeginUser;
+  PetscCall(against(b, s->next, s->Y));
+  PetscCall(KSPMatSolve(b->ksp, b->MW, b->W));
+  PetscCall(modal_block_basis_remove(b, NULL));
+  PetscCallBLAS("BLASgemm", BLASgemm_("N", "N", &b->p, &b->p, &b->p, &one, s->F, &b->p, s->Y, &b->p,
+                                      &zero, s->C, &b->p));
+  PetscCall(add(b, one, s->next, s->C, false));
+  PetscFunctionReturn(0);
+}
+
+/* W -= X X^T M W, MW with it */
+static PetscErrorCode clear_of(const search *s, const double *X) {
+  PetscFunctionBeginUser;
+  PetscCall(against(s->b, X, s->C));
+  PetscCall(add(s->b, minus, X, s->C, false));
+  PetscCall(modal_block_basis_weigh(s->b));
+  PetscFunctionReturn(0);
+}
+
+/* W = W' B. Where B is small, at a Ritz pair that has converged, rounding has grown in W' and is taken out. */
+static PetscErrorCode normalise(const search *s, int k, double t, double *B, bool *good) {
+  const modal_block_basis *b = s->b;
+  double                   least;
+  PetscFunctionBeginUser;
+  for (int i = 0; i < b->p * b->p; i++) B[i] = i % (b->p + 1) == 0;
+  PetscCall(modal_block_basis_scale(b, B, good));
+  least = fabs(B[0]);
+  for (int i = 1; i < b->p; i++) least = fmin(least, fabs(B[i * (b->p + 1)]));
+  if (!*good || least > 1e-3 * t) PetscFunctionReturn(0);
+  PetscCall(modal_block_basis_remove(b, NULL));
+  PetscCall(modal_block_basis_weigh(b));
+  PetscCall(clear_of(s, s->now));
+  if (k > 0) PetscCall(clear_of(s, s->before));
+  PetscCall(modal_block_basis_scale(b, B, good));
+  PetscFunctionReturn(0);
+}
+
+/* One block more by the recurrence of three terms: too few steps for the blocks to lose their orthogonality. */
+static PetscErrorCode step(search *s, int k, double t, bool *good) {
+  const modal_block_basis *b    = s->b;
+  const size_t             each = (size_t)(b->p * b->p), at = (size_t)k * each;
+  PetscFunctionBeginUser;
+  PetscCall(apply(s));
+  PetscCall(modal_block_basis_weigh(b));
+  PetscCall(against(b, s->now, s->D + at));
+  PetscCall(add(b, minus, s->now, s->D + at, false));
+  if (k > 0) PetscCall(add(b, minus, s->before, s->B + at - each, true));
+  PetscCall(modal_block_basis_weigh(b));
+  PetscCall(normalise(s, k, t, s->B + at, good));
+  double *oldest = s->before;
+  s->before      = s->now;
+  s->now         = oldest;
+  PetscCall(copy_block(b, s->now));
+  PetscFunctionReturn(0);
+}
+
+/* Greatest Ritz value of so many blocks. */
+static PetscErrorCode greatest(const search *s, int blocks, double *value) {
+  const PetscBLASInt m    = s->b->p * blocks;
+  PetscBLASInt       size = 8 * m, info;
+  double            *work;
+  PetscFunctionBeginUser;
+  modal_block_basis_project((int)s->b->p, blocks, s->D, s->B, s->H);
+  PetscCall(PetscMalloc1((size_t)size, &work));
+  PetscCallBLAS("LAPACKsyev", LAPACKsyev_("N", "L", &m, s->H, &m, s->theta, work, &size, &info));
+  PetscCall(PetscFree(work));
+  PetscCheck(info == 0, s->b->comm, PETSC_ERR_LIB, "syev: %d", (int)info);
+  *value = s->theta[m - 1];
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode follow(search *s, double t, modal_complement *out) {
+  const modal_block_basis *b    = s->b;
+  bool                     good = true;
+  PetscFunctionBeginUser;
+  PetscCall(copy_block(b, s->next));
+  PetscCall(modal_block_basis_noise(b, 1));
+  PetscCall(scale_rows(b));
+  PetscCall(modal_block_basis_orthonormalise(b, NULL, s->C, &good));
+  PetscCall(copy_block(b, s->now));
+  while (good && out->verdict == MODAL_OPEN && out->steps < MOST) {
+    const double before = out->ratio;
+    PetscCall(step(s, out->steps++, t, &good));
+    PetscCall(greatest(s, out->steps, &out->ratio));
+    out->ratio /= t;
+    out->chance = modal_complement_chance(out->ratio, out->steps, (int)b->p, b->order);
+    if (out->ratio > 1 + rounding) out->verdict = MODAL_MISSING;
+    if (out->chance <= allowed) out->verdict = MODAL_COMPLETE;
+    if (out->ratio > touching && out->ratio - before < rounding)
+      break; /* an eigenvalue at t itself */
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode modal_complement_search(const modal_block_basis *b, double t,
+                                       modal_complement *out) {
+  const size_t size = (size_t)b->rows * (size_t)b->p, each = (size_t)(b->p * b->p);
+  const size_t most = (size_t)b->p * MOST;
+  search       s    = {.b = b};
+  PetscFunctionBeginUser;
+  *out = (modal_complement){.verdict = MODAL_OPEN, .chance = 1};
+  PetscCall(PetscMalloc3(size, &s.next, size, &s.now, size, &s.before));
+  PetscCall(PetscCalloc7(each, &s.F, each, &s.Y, each, &s.C, MOST * each, &s.D, MOST * each, &s.B,
+                         most * most, &s.H, most, &s.theta));
+  out->count = couple(b, t, s.F);
+  PetscCall(follow(&s, t, out));
+  PetscCall(PetscFree3(s.next, s.now, s.before));
+  PetscCall(PetscFree7(s.F, s.Y, s.C, s.D, s.B, s.H, s.theta));
+  PetscFunctionReturn(0);
+}

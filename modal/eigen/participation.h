@@ -1,0 +1,32 @@
+/* How much of the blade's mass each mode carries when the root is shaken: participation factors and effective masses.
+ *
+ *   gamma_ir = phi_i^T M r,   effective mass gamma_ir^2   (modes are mass-normalised)
+ * r: translation along x, y, z, and rotation about the engine axis, the clamped nodes moving too. Summed over all modes of
+ * the mesh the effective masses are the mass (moment of inertia) of the body less what rests on the clamped nodes themselves,
+ * r_c^T (M_cc - M_cf M_ff^-1 M_fc) r_c, which vanishes as the mesh is refined. At speed the modes are those about the equilibrium and the
+ * rotation that of the deformed blade. */
+#ifndef MODAL_EIGEN_PARTICIPATION_H
+#define MODAL_EIGEN_PARTICIPATION_H
+
+#include "fem/body/rigid_body.h"
+#include "modal/eigen/eigen.h"
+#include "modal/hdf5/h5.h"
+
+typedef struct {
+  int     n_modes;
+  double *gamma;              /* [n_modes][FEM_RIGID] kg^1/2 and, the last, kg^1/2 m */
+  double  inertia[FEM_RIGID]; /* of the whole body: kg three times, kg m2 */
+} modal_participation;
+
+/* Fill out (zeroed before). displacement: [n_nodes][3] of the equilibrium, NULL at rest. Collective; every rank gets it. */
+shb_status modal_participate(const fem_body *body, const double *displacement,
+                             const fem_system *system, const modal_eigen *eigen,
+                             modal_participation *out);
+
+/* /modes/participation, effective_mass [m, 3]; rotation_participation, effective_inertia [m]; root attributes mass, inertia.
+ * /modes/frequency must be there. */
+shb_status modal_participation_write(hid_t file, const modal_participation *participation);
+
+void modal_participation_free(modal_participation *participation); /* also on a zeroed struct */
+
+#endif

@@ -1,0 +1,224 @@
+#include "modal/hdf5/h5.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "modal/hdf5/h5_internal.h"
+
+/* A file is built in memory (HDF5's core driver without backing store) and written by h5_close with plain
+ * write(): HDF5 1.10 leaves a file whose flush failed open and may crash at exit on a full disk. */
+enum { GROWTH = 1 << 20 };
+
+size_t h5_count(h5_shape shape) {
+  size_t count = 1;
+  for (int i = 0; i < shape.rank; i++) count *= (size_t)shape.dim[i];
+  return count;
+}
+
+static herr_t innermost(unsigned n, const H5E_error2_t *error, void *out) {
+  (void)n;
+  snprintf(out, H5_LABEL, "%s", error->desc ? error->desc : "");
+  return 1; /* stop: walking upward starts at the cause */
+}
+
+void h5_reason(char *out, size_t size) {
+  char text[H5_LABEL] = "";
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, innermost, text);
+  snprintf(out, size, "%s", *text ? text : "unknown HDF5 error");
+}
+
+/* Cut ".tmp.PID" off: the user knows the file by its final name. */
+static void cut_temporary(char *path) {
+  char *mark = strstr(path, ".tmp.");
+  for (char *next = mark; next; next = strstr(next + 1, ".tmp.")) mark = next;
+  if (mark && mark[5] && strspn(mark + 5, "0123456789") == strlen(mark + 5)) *mark = '\0';
+}
+
+const char *h5_label(hid_t at, const char *path, char out[H5_LABEL]) {
+  char file[H5_LABEL] = "", group[H5_LABEL] = "";
+  if (H5Fget_name(at, file, sizeof file) < 0) *file = '\0';
+  if (H5Iget_name(at, group, sizeof group) < 0) *group = '\0';
+  cut_temporary(file);
+  size_t end = strlen(group);
+  while (end && group[end - 1] == '/') group[--end] = '\0';
+  int n;
+  if (*path == '/' || strcmp(path, ".") == 0) {
+    n = snprintf(out, H5_LABEL, "%s: %s", file, *path == '/' ? path : *group ? group : "/");
+  } else {
+    n = snprintf(out, H5_LABEL, "%s: %s/%s", file, group, path);
+  }
+  if (n >= H5_LABEL) memcpy(out + H5_LABEL - 4, "...", 4);
+  return out;
+}
+
+shb_status h5_failed(shb_status code, hid_t at, const char *path, const char *verb) {
+  char label[H5_LABEL], reason[H5_LABEL];
+  h5_reason(reason, sizeof reason);
+  h5_label(at, path, label);
+  SHB_FAIL(code, "%s %s: %s", label, verb, reason);
+}
+
+hid_t h5_complex_type(const char *real, const char *imaginary) {
+  hid_t type = H5Tcreate(H5T_COMPOUND, 2 * sizeof(double));
+  if (type < 0) return type;
+  if (H5Tinsert(type, real, 0, H5T_NATIVE_DOUBLE) < 0 ||
+      H5Tinsert(type, imaginary, sizeof(double), H5T_NATIVE_DOUBLE) < 0) {
+    H5Tclose(type);
+    return -1;
+  }
+  return type;
+}
+
+hid_t h5_text_type(void) {
+  hid_t type = H5Tcopy(H5T_C_S1);
+  if (type < 0) return type;
+  if (H5Tset_size(type, H5T_VARIABLE) < 0 || H5Tset_cset(type, H5T_CSET_UTF8) < 0) {
+    H5Tclose(type);
+    return -1;
+  }
+  return type;
+}
+
+/* Closing the file closes every object left open in it. The format of HDF5 1.8: the one before it ends an
+ * attribute at 64 kB, and with it the list of datasets that a dimension scale labels, at 4085. */
+static hid_t access_list(bool in_memory) {
+  hid_t list = H5Pcreate(H5P_FILE_ACCESS);
+  if (list < 0) return list;
+  if (H5Pset_fclose_degree(list, H5F_CLOSE_STRONG) < 0 ||
+      (in_memory && (H5Pset_fapl_core(list, GROWTH, 0) < 0 ||
+                     H5Pset_libver_bounds(list, H5F_LIBVER_V18, H5F_LIBVER_V18) < 0))) {
+    H5Pclose(list);
+    return -1;
+  }
+  return list;
+}
+
+/* Never a device such as /dev/null. */
+static void remove_file(const char *path) {
+  struct stat info;
+  if (lstat(path, &info) == 0 && S_ISREG(info.st_mode)) unlink(path);
+}
+
+static shb_status write_failed(const char *path, int why) {
+  char name[4096];
+  snprintf(name, sizeof name, "%s", path);
+  cut_temporary(name);
+  SHB_FAIL(SHB_ERR_IO, "%s: cannot be written: %s; the earlier file, if any, is untouched", name,
+           strerror(why));
+}
+
+shb_status h5_create(const char *path, hid_t *file) {
+  *file = H5I_INVALID_HID;
+  H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+  int fd =
+      open(path, O_WRONLY | O_CREAT | O_TRUNC, 0666); /* tell a bad folder now, not at the end */
+  if (fd < 0) return write_failed(path, errno);
+  close(fd);
+  hid_t list = access_list(true);
+  if (list >= 0) {
+    *file = H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, list);
+    if (*file < 0) {
+      char reason[H5_LABEL];
+      h5_reason(reason, sizeof reason);
+      H5Pclose(list);
+      remove_file(path);
+      SHB_FAIL(SHB_ERR_IO, "%s: cannot be created: %s", path, reason);
+    }
+    H5Pclose(list);
+  }
+  SHB_CHECK(*file >= 0, SHB_ERR_IO, "%s: cannot be created: HDF5 failed to start", path);
+  return SHB_OK;
+}
+
+/* The two ways HDF5 gives away a short file: its end is missing, or the superblock itself is. */
+static shb_status open_failed(const char *path) {
+  char reason[H5_LABEL];
+  h5_reason(reason, sizeof reason);
+  if (strstr(reason, "truncated"))
+    SHB_FAIL(SHB_ERR_IO, "%s: is truncated (%s); write or copy it again", path, reason);
+  if (strstr(reason, "lock"))
+    SHB_FAIL(SHB_ERR_IO, "%s: is locked, another program has it open for writing", path);
+  SHB_FAIL(SHB_ERR_IO, "%s: is damaged or truncated (%s); write or copy it again", path, reason);
+}
+
+static shb_status check_readable(const char *path) {
+  struct stat info;
+  int         fd = open(path, O_RDONLY | O_NONBLOCK); /* not to wait for a pipe's writer */
+  SHB_CHECK(fd >= 0, SHB_ERR_IO, "%s: cannot be opened: %s", path, strerror(errno));
+  bool known = fstat(fd, &info) == 0;
+  close(fd);
+  SHB_CHECK(known && S_ISREG(info.st_mode), SHB_ERR_IO, "%s: is not a file", path);
+  SHB_CHECK(info.st_size > 0, SHB_ERR_IO, "%s: is empty, not an HDF5 file", path);
+  SHB_CHECK(H5Fis_hdf5(path) > 0, SHB_ERR_IO, "%s: is not an HDF5 file", path);
+  return SHB_OK;
+}
+
+shb_status h5_open(const char *path, hid_t *file) {
+  *file = H5I_INVALID_HID;
+  H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+  SHB_TRY(check_readable(path));
+  hid_t list = access_list(false);
+  SHB_CHECK(list >= 0, SHB_ERR_IO, "%s: cannot be opened: HDF5 failed to start", path);
+  *file             = H5Fopen(path, H5F_ACC_RDONLY, list);
+  shb_status status = *file < 0 ? open_failed(path) : SHB_OK;
+  H5Pclose(list);
+  return status;
+}
+
+/* 0 or errno. */
+static int write_all(const char *path, const char *data, size_t size) {
+  int fd = open(path, O_WRONLY | O_CREAT | O_TRUNC, 0666);
+  if (fd < 0) return errno;
+  int why = 0;
+  while (size > 0 && !why) {
+    ssize_t n = write(fd, data, size);
+    if (n > 0) {
+      data += n;
+      size -= (size_t)n;
+    } else if (n < 0 && errno != EINTR) {
+      why = errno;
+    } else if (n == 0) {
+      why = ENOSPC;
+    }
+  }
+  if (close(fd) != 0 && !why) why = errno;
+  if (why) remove_file(path);
+  return why;
+}
+
+static shb_status write_image(hid_t file) {
+  char  path[4096];
+  void *handle = NULL;
+  if (H5Fget_name(file, path, sizeof path) < 0 || H5Fflush(file, H5F_SCOPE_GLOBAL) < 0)
+    return h5_failed(SHB_ERR_IO, file, ".", "cannot be written");
+  ssize_t size = H5Fget_file_image(file, NULL, 0);
+  if (size <= 0 || H5Fget_vfd_handle(file, H5P_DEFAULT, &handle) < 0 || !handle)
+    return h5_failed(SHB_ERR_IO, file, ".", "cannot be written");
+  int why = write_all(path, *(char **)handle, (size_t)size); /* the core driver's buffer */
+  return why ? write_failed(path, why) : SHB_OK;
+}
+
+shb_status h5_close(hid_t file) {
+  if (file < 0) return SHB_OK;
+  unsigned   intent = 0;
+  shb_status status = SHB_OK;
+  if (H5Fget_intent(file, &intent) >= 0 && (intent & H5F_ACC_RDWR)) status = write_image(file);
+  if (H5Fclose(file) < 0 && status == SHB_OK)
+    SHB_FAIL(SHB_ERR_IO, "an HDF5 file could not be closed");
+  return status;
+}
+
+void h5_abandon(hid_t file) {
+  if (file < 0) return;
+  char     path[4096];
+  unsigned intent = 0;
+  bool     ours   = H5Fget_name(file, path, sizeof path) > 0 && H5Fget_intent(file, &intent) >= 0 &&
+              (intent & H5F_ACC_RDWR);
+  H5Fclose(file);
+  if (ours) remove_file(path);
+}

@@ -1,0 +1,105 @@
+#include "modal/model/mode_selection.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "modal/model/receptance.h"
+#include "modal/model/reduce.h"
+#include "modal/model/residual_series.h"
+
+enum { SAMPLES = 100 };
+
+static const double TWO_PI = 6.28318530717958647692, margin = 1.2;
+
+typedef struct {
+  const modal_model *model;
+  int                n;             /* contact dofs */
+  double             band;          /* Hz */
+  double             most[SAMPLES]; /* greatest diagonal receptance, m/N */
+} search;
+
+static double omega_at(const search *s, int sample) {
+  return TWO_PI * s->band * (sample + 1) / SAMPLES;
+}
+
+/* The receptance that errors are relative to, from all modes there are. */
+static shb_status find_scale(search *s) {
+  const size_t    n     = (size_t)s->n;
+  double complex *value = malloc(n * n * sizeof *value);
+  SHB_CHECK(value, SHB_ERR_IO, "out of memory for the receptance");
+  for (int f = 0; f < SAMPLES; f++) {
+    modal_receptance(s->model, omega_at(s, f), value);
+    s->most[f] = 0;
+    for (size_t c = 0; c < n; c++) s->most[f] = fmax(s->most[f], cabs(value[c * (n + 1)]));
+  }
+  free(value);
+  return SHB_OK;
+}
+
+/* Relative error of the model with fewer modes. */
+static double error_of(const search *s, const modal_model *fewer) {
+  double worst = 0;
+  for (int f = 0; f < SAMPLES; f++)
+    for (int c = 0; c < s->n && s->most[f] > 0; c++)
+      worst = fmax(worst, modal_series_error(fewer, omega_at(s, f), c) / s->most[f]);
+  return worst;
+}
+
+static double *copy_of(const double *data, size_t n) {
+  double *copy = data ? malloc(n * sizeof *copy + 1) : NULL;
+  return copy ? memcpy(copy, data, n * sizeof *copy) : NULL;
+}
+
+/* What modes can be left out of: the contact's part of the model. */
+static shb_status copy_contact(const modal_model *model, modal_model *copy) {
+  const size_t side = 3 * (size_t)model->n_pairs, m = (size_t)model->n_modes;
+  const size_t n = side * (model->has_left ? 2 : 1), r = (size_t)model->n_residual;
+  *copy                      = (modal_model){.n_modes    = model->n_modes,
+                                             .n_pairs    = model->n_pairs,
+                                             .has_left   = model->has_left,
+                                             .n_residual = model->n_residual,
+                                             .tail_order = model->tail_order};
+  copy->frequency            = copy_of(model->frequency, m);
+  copy->right                = copy_of(model->right, side * m);
+  copy->left                 = copy_of(model->left, side * m);
+  copy->residual_flexibility = copy_of(model->residual_flexibility, n * n);
+  copy->residual_inertia     = copy_of(model->residual_inertia, n * n);
+  copy->residual_fourth      = copy_of(model->residual_fourth, n * n);
+  copy->contact_tail         = copy_of(model->contact_tail, 2 * n);
+  copy->residual_frequency   = copy_of(model->residual_frequency, r);
+  copy->residual_shape       = copy_of(model->residual_shape, n * r);
+  copy->modal_force          = calloc(m, sizeof *copy->modal_force);
+  SHB_CHECK(copy->frequency && copy->right && (copy->left || !model->has_left) &&
+                copy->residual_flexibility && copy->residual_inertia && copy->residual_fourth &&
+                copy->contact_tail && (copy->residual_shape || r == 0) && copy->modal_force,
+            SHB_ERR_IO, "out of memory to choose the modes");
+  return SHB_OK;
+}
+
+static shb_status count(search *s, double tolerance, modal_model *left, int *modes, double *error) {
+  *modes = 0;
+  *error = error_of(s, left);
+  if (*error > tolerance || left->frequency[left->n_modes - 1] < margin * s->band) return SHB_OK;
+  for (*modes = left->n_modes; *modes > 1; *modes = left->n_modes) {
+    if (left->frequency[*modes - 1] <= margin * s->band) return SHB_OK;
+    SHB_TRY(modal_model_keep(left, *modes - 1, true));
+    double next = error_of(s, left);
+    if (next > tolerance) return SHB_OK;
+    *error = next;
+  }
+  return SHB_OK;
+}
+
+shb_status modal_enough(const modal_model *model, double band, double tolerance, int *modes,
+                        double *error) {
+  search s = {.model = model, .n = 3 * model->n_pairs * (model->has_left ? 2 : 1), .band = band};
+  modal_model left;
+  SHB_CHECK(modal_series_has_fourth(model) && model->contact_tail, SHB_ERR_INPUT,
+            "the modal model does not hold what estimates its error");
+  shb_status status = copy_contact(model, &left);
+  if (status == SHB_OK) status = find_scale(&s);
+  if (status == SHB_OK) status = count(&s, tolerance, &left, modes, error);
+  modal_model_free(&left);
+  return status;
+}

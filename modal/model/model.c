@@ -1,0 +1,509 @@
+#include "modal/model/model.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char model_format[] = "shroudhb modal model";
+/* 2: with more than one speed (modal/model/speeds.h); the model beside them is read as ever. */
+enum {
+  MODEL_VERSION = 1,
+  MODEL_NEWEST  = 2,
+  MAX_MODES     = 100000,
+  MAX_PAIRS     = 100000,
+  MAX_HARMONICS = 10000
+};
+
+static int n_contact(const modal_model *model) {
+  return 3 * model->n_pairs * (model->has_left ? 2 : 1);
+}
+
+/* ---------------------------------------------------------------- writing */
+
+/* A dataset as the table below describes it. A dimension is one of the sizes named by its letter:
+ * m modes, p pairs, 2, 3, c contact dofs, k load harmonics, q probes, Q probe dofs (3 q), r residual modes. */
+typedef struct {
+  const char *path, *dims, *units, *long_name;
+  bool        is_complex;
+  const void *data; /* NULL: not written */
+} entry;
+
+static hsize_t size_of(const modal_model *model, char letter) {
+  switch (letter) {
+    case 'm':
+      return (hsize_t)model->n_modes;
+    case 'p':
+      return (hsize_t)model->n_pairs;
+    case '2':
+      return 2;
+    case '3':
+      return 3;
+    case 'r':
+      return (hsize_t)model->n_residual;
+    case 'c':
+      return (hsize_t)n_contact(model);
+    case 'k':
+      return (hsize_t)model->n_load + 1;
+    case 'q':
+      return (hsize_t)model->n_probes;
+    default:
+      return 3 * (hsize_t)model->n_probes;
+  }
+}
+
+/* The dataset that labels a dimension, if any does; the frequencies label the modes. */
+static const char *scale_of(char letter) {
+  switch (letter) {
+    case '2':
+      return NULL;
+    case 'm':
+      return "modes/frequency";
+    case 'r':
+      return "residual_modes/frequency";
+    case 'p':
+      return "contact/pair";
+    case '3':
+      return "axis";
+    case 'c':
+      return "contact/dof";
+    case 'k':
+      return "load/harmonic";
+    case 'q':
+      return "probe/name";
+    default:
+      return "probe/dof";
+  }
+}
+
+static h5_shape shape_from(const modal_model *model, const char *dims) {
+  h5_shape shape = {.rank = (int)strlen(dims)};
+  for (int i = 0; i < shape.rank; i++) shape.dim[i] = size_of(model, dims[i]);
+  return shape;
+}
+
+/* The dimension scales that carry no data of their own. */
+static shb_status write_scales(hid_t at, const modal_model *model) {
+  static const char *const axis[] = {"tangential", "axial", "radial"};
+  SHB_TRY(h5_write_strings(at, "axis", 3, axis, "cylindrical axes about the engine axis"));
+  SHB_TRY(h5_write_counter(at, "contact/pair", size_of(model, 'p'), "contact pair, from 0"));
+  SHB_TRY(h5_write_counter(at, "contact/dof", size_of(model, 'c'),
+                           "contact degree of freedom: (side * pairs + pair) * 3 + axis, side 0 "
+                           "right, 1 left"));
+  SHB_TRY(h5_write_counter(at, "load/harmonic", size_of(model, 'k'),
+                           "harmonic of the excitation, from 0"));
+  if (model->n_probes == 0) return SHB_OK;
+  SHB_TRY(h5_write_strings(at, "probe/name", model->n_probes,
+                           (const char *const *)model->probe_name, "name of the probe"));
+  return h5_write_counter(at, "probe/dof", size_of(model, 'Q'),
+                          "probe degree of freedom: probe * 3 + axis");
+}
+
+static shb_status write_entry(hid_t at, const modal_model *model, const entry *e) {
+  if (!e->data) return SHB_OK;
+  h5_shape shape = shape_from(model, e->dims);
+  if (e->is_complex) {
+    SHB_TRY(h5_write_complex(at, e->path, shape, e->data, e->units, e->long_name));
+  } else {
+    SHB_TRY(h5_write_double(at, e->path, shape, e->data, e->units, e->long_name));
+  }
+  if (strcmp(e->path, scale_of(e->dims[0])) == 0) return SHB_OK; /* a scale has no scale */
+  for (int i = 0; i < shape.rank; i++)
+    if (scale_of(e->dims[i])) SHB_TRY(h5_attach_scale(at, e->path, i, scale_of(e->dims[i])));
+  return SHB_OK;
+}
+
+/* One interface needs no name. */
+static shb_status write_interfaces(hid_t at, const modal_model *model) {
+  if (model->n_interfaces < 2) return SHB_OK;
+  SHB_TRY(h5_write_strings(at, "contact/interface_name", model->n_interfaces,
+                           (const char *const *)model->interface_name, "contact interface"));
+  SHB_TRY(h5_write_int(at, "contact/interface", H5_SHAPE((hsize_t)model->n_pairs), model->interface,
+                       "-", "contact interface of the pair, from 0"));
+  return h5_attach_scale(at, "contact/interface", 0, "contact/pair");
+}
+
+shb_status modal_model_write_at(hid_t at, const modal_model *model) {
+  const bool  probes = model->n_probes > 0, residual = model->n_residual > 0;
+  const entry table[] = {
+      {"modes/frequency", "m", "Hz", "undamped natural frequency of the free blade", false,
+       model->frequency},
+      {"modes/damping_ratio", "m", "-", "modal damping ratio", false, model->damping_ratio},
+      {"modes/residual", "m", "-", "relative residual of the eigenpair", false,
+       model->mode_residual},
+      {"contact/right/shape", "p3m", "kg^-1/2", "mass-normalised modes at the right contact", false,
+       model->right},
+      {"contact/left/shape", "p3m", "kg^-1/2", "mass-normalised modes at the left contact", false,
+       model->has_left ? model->left : NULL},
+      {"contact/residual_flexibility", "cc", "m/N", "static flexibility of the modes left out",
+       false, model->residual_flexibility},
+      {"contact/residual_inertia", "cc", "m s^2/N",
+       "coefficient of omega^2 in the receptance of the modes left out", false,
+       model->residual_inertia},
+      {"contact/residual_fourth", "cc", "m s^4/N",
+       "coefficient of omega^4 in the receptance of the modes left out", false,
+       model->residual_fourth},
+      {"contact/residual_tail", "c2", "m s^2r/N, m s^(2r+2)/N",
+       "a and b of what terms and residual modes leave out, a omega^2r + b omega^(2r+2) + .., r "
+       "the "
+       "attribute order",
+       false, model->contact_tail},
+      {"residual_modes/frequency", "r", "Hz", "frequency of a mode that stands for modes left out",
+       false, residual ? model->residual_frequency : NULL},
+      {"residual_modes/contact", "cr", "kg^-1/2", "residual modes at the contact", false,
+       residual ? model->residual_shape : NULL},
+      {"residual_modes/load", "kr", "N kg^-1/2", "force of the load on the residual modes", true,
+       residual ? model->residual_force : NULL},
+      {"residual_modes/probe", "Qr", "kg^-1/2", "residual modes at the probes", false,
+       residual && probes ? model->residual_probe : NULL},
+      {"contact/normal", "p3", "-", "unit normal v of the right face, cylindrical axes", false,
+       model->normal},
+      {"contact/area", "p", "m^2", "area of the contact patch", false, model->area},
+      {"load/modal_force", "km", "N kg^-1/2", "modal force; f(t) = Re sum_k f_k exp(j k omega t)",
+       true, model->modal_force},
+      {"load/residual_response", "kc", "m",
+       "static response of the contact dofs to the load, modes removed", true,
+       model->load_residual},
+      {"load/residual_inertia", "kc", "m s^2",
+       "coefficient of omega^2 in the response of the contact dofs to the load, modes removed",
+       true, model->load_inertia},
+      {"load/residual_fourth", "kc", "m s^4", "its coefficient of omega^4", true,
+       model->load_fourth},
+      {"load/residual_tail", "k2", "N m s^2r, N m s^(2r+2)",
+       "as contact/residual_tail, of the load's work", false, model->load_tail},
+      {"probe/shape", "q3m", "kg^-1/2", "mass-normalised modes at the probes", false,
+       probes ? model->probe : NULL},
+      {"probe/contact_residual", "Qc", "m/N", "static flexibility probe to contact, modes removed",
+       false, probes ? model->probe_contact_residual : NULL},
+      {"probe/load_residual", "kQ", "m", "static response of the probes to the load, modes removed",
+       true, probes ? model->probe_load_residual : NULL},
+      {"probe/contact_inertia", "Qc", "m s^2/N",
+       "coefficient of omega^2 in the receptance probe to contact, modes removed", false,
+       probes ? model->probe_contact_inertia : NULL},
+      {"probe/load_inertia", "kQ", "m s^2",
+       "coefficient of omega^2 in the response of the probes to the load, modes removed", true,
+       probes ? model->probe_load_inertia : NULL},
+      {"probe/contact_fourth", "Qc", "m s^4/N", "coefficient of omega^4 of the same", false,
+       probes ? model->probe_contact_fourth : NULL},
+      {"probe/load_fourth", "kQ", "m s^4", "coefficient of omega^4 of the same", true,
+       probes ? model->probe_load_fourth : NULL},
+  };
+  SHB_TRY(write_scales(at, model));
+  for (size_t i = 0; i < sizeof table / sizeof *table; i++)
+    SHB_TRY(write_entry(at, model, &table[i]));
+  if (model->contact_tail)
+    SHB_TRY(h5_write_attribute_int(at, "contact/residual_tail", "order", model->tail_order));
+  return write_interfaces(at, model);
+}
+
+shb_status modal_model_write(hid_t file, const modal_model *model,
+                             const shb_provenance *provenance) {
+  SHB_TRY(h5_write_provenance(file, model_format, MODEL_VERSION, provenance));
+  return modal_model_write_at(file, model);
+}
+
+/* ---------------------------------------------------------------- reading */
+
+static shb_status check_modes(const char *path, const modal_model *model) {
+  for (int i = 0; i < model->n_modes; i++) {
+    double f = model->frequency[i], zeta = model->damping_ratio[i];
+    SHB_CHECK(f > 0, SHB_ERR_INPUT,
+              "%s: /modes/frequency: value %d (from 0) is %g Hz; all must be positive (a free body "
+              "must be clamped)",
+              path, i, f);
+    SHB_CHECK(i == 0 || f >= model->frequency[i - 1], SHB_ERR_INPUT,
+              "%s: /modes/frequency: value %d (from 0), %g Hz, is below the one before; sort the "
+              "modes by frequency",
+              path, i, f);
+    SHB_CHECK(
+        zeta >= 0 && zeta < 1, SHB_ERR_INPUT,
+        "%s: /modes/damping_ratio: value %d (from 0) is %g; it must be at least 0 and below 1",
+        path, i, zeta);
+  }
+  return SHB_OK;
+}
+
+static shb_status read_modes(hid_t at, const char *path, modal_model *model) {
+  h5_shape shape = H5_SHAPE(0);
+  SHB_TRY(h5_read_double(at, "modes/frequency", &shape, &model->frequency));
+  SHB_CHECK(shape.dim[0] > 0 && shape.dim[0] <= MAX_MODES, SHB_ERR_INPUT,
+            "%s: /modes/frequency holds %llu modes; 1 to %d are wanted", path,
+            (unsigned long long)shape.dim[0], MAX_MODES);
+  model->n_modes = (int)shape.dim[0];
+  SHB_TRY(h5_read_double(at, "modes/damping_ratio", &shape, &model->damping_ratio));
+  if (h5_exists(at, "modes/residual"))
+    SHB_TRY(h5_read_double(at, "modes/residual", &shape, &model->mode_residual));
+  return check_modes(path, model);
+}
+
+/* Reciprocity: the part above the diagonal must be the part below, to 1e-6 of the largest. */
+static shb_status check_symmetric(const char *path, const char *dataset, const double *matrix,
+                                  int n) {
+  double largest = 0, worst = 0;
+  int    row = 0, column = 0;
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j < n; j++) {
+      double a = matrix[(size_t)i * (size_t)n + (size_t)j];
+      double d = fabs(a - matrix[(size_t)j * (size_t)n + (size_t)i]);
+      largest  = fmax(largest, fabs(a));
+      if (d <= worst) continue;
+      worst  = d;
+      row    = i;
+      column = j;
+    }
+  SHB_CHECK(
+      worst <= 1e-6 * largest, SHB_ERR_INPUT,
+      "%s: /%s is not symmetric: [%d, %d] and [%d, %d] differ by %.2g of the largest value; a "
+      "receptance must be symmetric to 1e-6",
+      path, dataset, row, column, column, row, worst / largest);
+  return SHB_OK;
+}
+
+static shb_status read_symmetric(hid_t at, const char *path, const char *dataset, int n,
+                                 double **matrix) {
+  if (!h5_exists(at, dataset)) return SHB_OK;
+  h5_shape shape = H5_SHAPE((hsize_t)n, (hsize_t)n);
+  SHB_TRY(h5_read_double(at, dataset, &shape, matrix));
+  return check_symmetric(path, dataset, *matrix, n);
+}
+
+static shb_status read_tail(hid_t at, const char *path, const char *dataset, int n, double **tail) {
+  if (!h5_exists(at, dataset)) return SHB_OK;
+  h5_shape shape = H5_SHAPE((hsize_t)n, 2);
+  SHB_TRY(h5_read_double(at, dataset, &shape, tail));
+  for (int i = 0; i < 2 * n; i++)
+    SHB_CHECK((*tail)[i] >= 0, SHB_ERR_INPUT,
+              "%s: /%s: value [%d, %d] is %g; a sum of squares is wanted", path, dataset, i / 2,
+              i % 2, (*tail)[i]);
+  return SHB_OK;
+}
+
+/* What the modes leave out is a sum of phi^2/omega^2 over more modes: never negative, but for rounding and other programs' rules
+ * of integration. Compared with what the modes have. */
+static shb_status check_flexibility(const char *path, const modal_model *model) {
+  static const double allowed = 1e-3;
+  const int           m = model->n_modes, n = n_contact(model), right = 3 * model->n_pairs;
+  for (int i = 0; model->residual_flexibility && i < n; i++) {
+    const double *shape = i < right ? model->right + (size_t)i * (size_t)m
+                                    : model->left + (size_t)(i - right) * (size_t)m;
+    double        R = model->residual_flexibility[(size_t)i * (size_t)(n + 1)], modes = 0;
+    for (int k = 0; k < m; k++) modes += pow(shape[k] / (2 * M_PI * model->frequency[k]), 2);
+    SHB_CHECK(!(R < -allowed * modes), SHB_ERR_INPUT,
+              "%s: /contact/residual_flexibility: value [%d, %d] is %.3g m/N; what modes leave out "
+              "cannot be negative: static flexibility less that of the modes, %.3g m/N here, is "
+              "wanted",
+              path, i, i, R, modes);
+  }
+  return SHB_OK;
+}
+
+static shb_status check_patches(const char *path, const modal_model *model) {
+  for (int i = 0; i < model->n_pairs; i++) {
+    SHB_CHECK(!model->area || model->area[i] > 0, SHB_ERR_INPUT,
+              "%s: /contact/area: value %d (from 0) is %g m^2; all must be positive", path, i,
+              model->area[i]);
+    if (!model->normal) continue;
+    const double *v      = model->normal + 3 * (size_t)i;
+    double        length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    SHB_CHECK(fabs(length - 1) < 1e-6, SHB_ERR_INPUT,
+              "%s: /contact/normal: row %d (from 0) has length %g; unit vectors are wanted", path,
+              i, length);
+  }
+  return SHB_OK;
+}
+
+static shb_status read_contact(hid_t at, const char *path, modal_model *model) {
+  h5_shape shape = H5_SHAPE(0, 3, (hsize_t)model->n_modes);
+  SHB_TRY(h5_read_double(at, "contact/right/shape", &shape, &model->right));
+  SHB_CHECK(shape.dim[0] > 0 && shape.dim[0] <= MAX_PAIRS, SHB_ERR_INPUT,
+            "%s: /contact/right/shape holds %llu contact pairs; 1 to %d are wanted", path,
+            (unsigned long long)shape.dim[0], MAX_PAIRS);
+  model->n_pairs  = (int)shape.dim[0];
+  model->has_left = h5_exists(at, "contact/left");
+  if (model->has_left) SHB_TRY(h5_read_double(at, "contact/left/shape", &shape, &model->left));
+  const int n = n_contact(model);
+  SHB_TRY(
+      read_symmetric(at, path, "contact/residual_flexibility", n, &model->residual_flexibility));
+  SHB_TRY(read_symmetric(at, path, "contact/residual_inertia", n, &model->residual_inertia));
+  SHB_TRY(read_symmetric(at, path, "contact/residual_fourth", n, &model->residual_fourth));
+  SHB_TRY(read_tail(at, path, "contact/residual_tail", n, &model->contact_tail));
+  h5_shape normals = H5_SHAPE(shape.dim[0], 3), areas = H5_SHAPE(shape.dim[0]);
+  if (h5_exists(at, "contact/normal"))
+    SHB_TRY(h5_read_double(at, "contact/normal", &normals, &model->normal));
+  if (h5_exists(at, "contact/area"))
+    SHB_TRY(h5_read_double(at, "contact/area", &areas, &model->area));
+  SHB_TRY(check_flexibility(path, model));
+  return check_patches(path, model);
+}
+
+/* Several interfaces: which one each pair belongs to. */
+static shb_status read_interfaces(hid_t at, const char *path, modal_model *model) {
+  h5_shape pairs = H5_SHAPE((hsize_t)model->n_pairs);
+  if (!h5_exists(at, "contact/interface")) return SHB_OK;
+  SHB_TRY(
+      h5_read_strings(at, "contact/interface_name", &model->n_interfaces, &model->interface_name));
+  SHB_TRY(h5_read_int(at, "contact/interface", &pairs, &model->interface));
+  for (int i = 0; i < model->n_pairs; i++)
+    SHB_CHECK(model->interface[i] >= 0 && model->interface[i] < model->n_interfaces, SHB_ERR_INPUT,
+              "%s: /contact/interface: value %d (from 0) is %d; 0 to %d are wanted, as "
+              "/contact/interface_name has names",
+              path, i, model->interface[i], model->n_interfaces - 1);
+  return SHB_OK;
+}
+
+static shb_status read_load(hid_t at, const char *path, modal_model *model) {
+  h5_shape shape = H5_SHAPE(0, (hsize_t)model->n_modes);
+  SHB_TRY(h5_read_complex(at, "load/modal_force", &shape, &model->modal_force));
+  SHB_CHECK(shape.dim[0] > 0 && shape.dim[0] <= MAX_HARMONICS, SHB_ERR_INPUT,
+            "%s: /load/modal_force holds %llu harmonics; 1 to %d are wanted, the first being the "
+            "mean (k = 0)",
+            path, (unsigned long long)shape.dim[0], MAX_HARMONICS);
+  model->n_load     = (int)shape.dim[0] - 1;
+  h5_shape residual = H5_SHAPE(shape.dim[0], (hsize_t)n_contact(model));
+  if (h5_exists(at, "load/residual_response"))
+    SHB_TRY(h5_read_complex(at, "load/residual_response", &residual, &model->load_residual));
+  if (h5_exists(at, "load/residual_inertia"))
+    SHB_TRY(h5_read_complex(at, "load/residual_inertia", &residual, &model->load_inertia));
+  if (h5_exists(at, "load/residual_fourth"))
+    SHB_TRY(h5_read_complex(at, "load/residual_fourth", &residual, &model->load_fourth));
+  return read_tail(at, path, "load/residual_tail", model->n_load + 1, &model->load_tail);
+}
+
+static shb_status read_probes(hid_t at, modal_model *model) {
+  if (!h5_exists(at, "probe")) return SHB_OK;
+  SHB_TRY(h5_read_strings(at, "probe/name", &model->n_probes, &model->probe_name));
+  const hsize_t q = (hsize_t)model->n_probes, c = (hsize_t)n_contact(model);
+  if (q == 0) return SHB_OK;
+  h5_shape shape = H5_SHAPE(q, 3, (hsize_t)model->n_modes);
+  SHB_TRY(h5_read_double(at, "probe/shape", &shape, &model->probe));
+  h5_shape contact = H5_SHAPE(3 * q, c), load = H5_SHAPE((hsize_t)model->n_load + 1, 3 * q);
+  if (h5_exists(at, "probe/contact_residual"))
+    SHB_TRY(h5_read_double(at, "probe/contact_residual", &contact, &model->probe_contact_residual));
+  if (h5_exists(at, "probe/load_residual"))
+    SHB_TRY(h5_read_complex(at, "probe/load_residual", &load, &model->probe_load_residual));
+  if (h5_exists(at, "probe/contact_inertia"))
+    SHB_TRY(h5_read_double(at, "probe/contact_inertia", &contact, &model->probe_contact_inertia));
+  if (h5_exists(at, "probe/load_inertia"))
+    SHB_TRY(h5_read_complex(at, "probe/load_inertia", &load, &model->probe_load_inertia));
+  if (h5_exists(at, "probe/contact_fourth"))
+    SHB_TRY(h5_read_double(at, "probe/contact_fourth", &contact, &model->probe_contact_fourth));
+  if (h5_exists(at, "probe/load_fourth"))
+    SHB_TRY(h5_read_complex(at, "probe/load_fourth", &load, &model->probe_load_fourth));
+  return SHB_OK;
+}
+
+static shb_status read_order(hid_t at, const char *path, int *order) {
+  SHB_TRY(h5_read_attribute_int(at, "contact/residual_tail", "order", 3, order));
+  SHB_CHECK(*order >= 3 && *order <= 64, SHB_ERR_INPUT,
+            "%s: /contact/residual_tail: attribute order is %d; 3 to 64 are wanted", path, *order);
+  return SHB_OK;
+}
+
+static shb_status check_residual_modes(const char *path, const modal_model *model) {
+  SHB_CHECK(model->residual_flexibility && model->residual_inertia && model->residual_fourth,
+            SHB_ERR_INPUT,
+            "%s: /residual_modes count beside /contact/residual_flexibility, residual_inertia and "
+            "residual_fourth only; write those too, or leave the residual modes out",
+            path);
+  for (int i = 0; i < model->n_residual; i++)
+    SHB_CHECK(
+        model->residual_frequency[i] > 0 &&
+            (i == 0 || model->residual_frequency[i] >= model->residual_frequency[i - 1]),
+        SHB_ERR_INPUT,
+        "%s: /residual_modes/frequency: value %d (from 0) is %g Hz; all must be positive, and "
+        "ascend",
+        path, i, model->residual_frequency[i]);
+  const double last = model->frequency[model->n_modes - 1];
+  SHB_CHECK(model->n_residual == 0 || model->residual_frequency[0] >= .999 * last, SHB_ERR_INPUT,
+            "%s: /residual_modes/frequency: value 0 is %g Hz, below the last of /modes/frequency, "
+            "%g Hz; a mode among those kept belongs to /modes",
+            path, model->residual_frequency[0], last);
+  return SHB_OK;
+}
+
+/* Load and probes are zero where the file says nothing of them. */
+static shb_status read_residual_modes(hid_t at, const char *path, modal_model *model) {
+  static const char *const load = "residual_modes/load", *const probe = "residual_modes/probe";
+  const size_t K = (size_t)model->n_load + 1, q = 3 * (size_t)model->n_probes;
+  h5_shape     shape = H5_SHAPE(0);
+  if (!h5_exists(at, "residual_modes")) return SHB_OK;
+  SHB_TRY(h5_read_double(at, "residual_modes/frequency", &shape, &model->residual_frequency));
+  SHB_CHECK(shape.dim[0] <= MAX_MODES, SHB_ERR_INPUT,
+            "%s: /residual_modes holds %llu modes; %d are the most", path,
+            (unsigned long long)shape.dim[0], MAX_MODES);
+  model->n_residual   = (int)shape.dim[0];
+  h5_shape by_contact = H5_SHAPE((hsize_t)n_contact(model), shape.dim[0]),
+           by_load = H5_SHAPE(K, shape.dim[0]), by_probe = H5_SHAPE(q, shape.dim[0]);
+  SHB_TRY(h5_read_double(at, "residual_modes/contact", &by_contact, &model->residual_shape));
+  if (h5_exists(at, load)) SHB_TRY(h5_read_complex(at, load, &by_load, &model->residual_force));
+  if (q && h5_exists(at, probe))
+    SHB_TRY(h5_read_double(at, probe, &by_probe, &model->residual_probe));
+  if (!model->residual_force)
+    model->residual_force = calloc(K * shape.dim[0] + 1, sizeof(double complex));
+  if (!model->residual_probe) model->residual_probe = calloc(q * shape.dim[0] + 1, sizeof(double));
+  SHB_CHECK(model->residual_force && model->residual_probe, SHB_ERR_IO, "out of memory");
+  return check_residual_modes(path, model);
+}
+
+shb_status modal_model_read_at(hid_t at, const char *path, modal_model *model) {
+  SHB_TRY(read_modes(at, path, model));
+  SHB_TRY(read_contact(at, path, model));
+  SHB_TRY(read_interfaces(at, path, model));
+  SHB_TRY(read_load(at, path, model));
+  SHB_TRY(read_probes(at, model));
+  if (model->contact_tail) SHB_TRY(read_order(at, path, &model->tail_order));
+  return read_residual_modes(at, path, model);
+}
+
+static shb_status read_parts(hid_t file, const char *path, modal_model *model) {
+  SHB_TRY(h5_check_format(file, model_format, MODEL_NEWEST));
+  return modal_model_read_at(file, path, model);
+}
+
+shb_status modal_model_read(const char *path, modal_model *model) {
+  *model = (modal_model){0};
+  hid_t file;
+  SHB_TRY(h5_open(path, &file));
+  shb_status status = read_parts(file, path, model);
+  h5_close(file);
+  if (status != SHB_OK) modal_model_free(model);
+  return status;
+}
+
+void modal_model_free(modal_model *model) {
+  if (!model) return;
+  for (int i = 0; model->probe_name && i < model->n_probes; i++) free(model->probe_name[i]);
+  for (int i = 0; model->interface_name && i < model->n_interfaces; i++)
+    free(model->interface_name[i]);
+  void *part[] = {model->interface_name,
+                  model->interface,
+                  model->frequency,
+                  model->damping_ratio,
+                  model->right,
+                  model->left,
+                  model->residual_flexibility,
+                  model->residual_inertia,
+                  model->residual_fourth,
+                  model->residual_frequency,
+                  model->residual_shape,
+                  model->residual_force,
+                  model->residual_probe,
+                  model->contact_tail,
+                  model->load_tail,
+                  model->load_fourth,
+                  model->probe_contact_fourth,
+                  model->probe_load_fourth,
+                  model->modal_force,
+                  model->load_residual,
+                  model->load_inertia,
+                  model->probe_name,
+                  model->probe,
+                  model->probe_contact_residual,
+                  model->probe_load_residual,
+                  model->probe_contact_inertia,
+                  model->probe_load_inertia,
+                  model->normal,
+                  model->area,
+                  model->mode_residual};
+  for (size_t i = 0; i < sizeof part / sizeof *part; i++) free(part[i]);
+  *model = (modal_model){0};
+}

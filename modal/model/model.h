@@ -1,0 +1,69 @@
+/* The modal model of one blade and its file: all that the harmonic balance needs to know of the structure.
+ *
+ * Cylindrical axes (tangential x, axial y, radial z) at contact and probe nodes. Contact dofs are ordered
+ * c = (side * n_pairs + pair) * 3 + axis, side 0 right, 1 left; n_contact = 3 n_pairs * (has_left ? 2 : 1).
+ * The modes left out answer by residual + omega^2 inertia + omega^4 fourth, on each way from contact and load to contact and probes, and
+ * from there on by residual modes (modal/model/residual_series.h).
+ * Optional parts are NULL. Free of PETSc. */
+#ifndef MODAL_MODEL_MODEL_H
+#define MODAL_MODEL_MODEL_H
+
+#include <complex.h>
+#include <stdbool.h>
+
+#include "modal/hdf5/h5.h"
+
+typedef struct {
+  int     n_modes, n_pairs, n_probes, n_load; /* n_load = K: load harmonics 0..K */
+  int     n_interfaces;                       /* 0: one, without a name */
+  char  **interface_name;                     /* [n_interfaces] */
+  int    *interface;                          /* [pair] which one; NULL without */
+  bool    has_left;                           /* false: contact to ground */
+  double *frequency;                          /* [m] Hz */
+  double *damping_ratio;                      /* [m] */
+  double *right, *left;                       /* [pair][3][m] kg^-1/2 */
+  double *residual_flexibility;               /* [n_contact][n_contact] m/N, or NULL */
+  double *residual_inertia;   /* [n_contact][n_contact] m s2/N, or NULL: coefficient of omega^2 */
+  double *residual_fourth;    /* [n_contact][n_contact] m s4/N, or NULL: coefficient of omega^4 */
+  int     n_residual;         /* residual modes that stand for the modes left out; 0: none */
+  double *residual_frequency; /* [r] Hz, ascending */
+  double *residual_shape;     /* [n_contact][r] kg^-1/2 */
+  double complex *residual_force; /* [K+1][r] N kg^-1/2 */
+  double         *residual_probe; /* [3 q][r] kg^-1/2 */
+  int             tail_order; /* r of what terms and residual modes leave out, a w^2r + b w^(2r+2) + .. (modal/model/residual_series.h) */
+  double         *contact_tail;  /* [n_contact][2] a, b of a contact dof with itself, or NULL */
+  double         *load_tail;     /* [K+1][2] of a load harmonic, or NULL */
+  double complex *modal_force;   /* [K+1][m] N kg^-1/2 */
+  double complex *load_residual; /* /load/residual_response [K+1][n_contact] m, or NULL */
+  double complex *load_inertia;  /* /load/residual_inertia [K+1][n_contact] m s2, or NULL */
+  double complex *load_fourth;   /* /load/residual_fourth [K+1][n_contact] m s4, or NULL */
+  char          **probe_name;    /* [q] */
+  double         *probe;         /* [q][3][m] kg^-1/2 */
+  double         *probe_contact_residual; /* [3 q][n_contact] m/N, or NULL */
+  double complex *probe_load_residual;    /* [K+1][3 q] m, or NULL */
+  double         *probe_contact_inertia;  /* [3 q][n_contact] m s2/N, or NULL */
+  double complex *probe_load_inertia;     /* [K+1][3 q] m s2, or NULL */
+  double         *probe_contact_fourth;   /* [3 q][n_contact] m s4/N, or NULL */
+  double complex *probe_load_fourth;      /* [K+1][3 q] m s4, or NULL */
+  double         *normal;        /* [pair][3] v axis in the pair's cylindrical axes, or NULL */
+  double         *area;          /* [pair] m2, or NULL */
+  double         *mode_residual; /* [m] relative eigen residual, or NULL */
+} modal_model;
+
+/* Write the datasets of docs/files.md into an open file (attributes format and provenance included). */
+shb_status modal_model_write(hid_t file, const modal_model *model,
+                             const shb_provenance *provenance);
+
+/* The same datasets in a group of an open file, without attributes. */
+shb_status modal_model_write_at(hid_t at, const modal_model *model);
+
+/* Read them from a group; path names it in messages. model: zeroed before, to be freed in any case. */
+shb_status modal_model_read_at(hid_t at, const char *path, modal_model *model);
+
+/* Read and check a modal file, whoever wrote it. Errors: SHB_ERR_IO missing / not HDF5 / truncated; SHB_ERR_INPUT
+ * foreign format, missing dataset, wrong shape, non-finite, frequency <= 0 or descending, damping outside [0, 1). */
+shb_status modal_model_read(const char *path, modal_model *model);
+
+void modal_model_free(modal_model *model);
+
+#endif

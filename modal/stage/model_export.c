@@ -1,0 +1,147 @@
+#include "modal/stage/model_export.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "modal/model/receptance.h"
+
+enum { SAMPLES = 201, MAX_BYTES = 64 << 20 };
+
+static shb_status export_regions(hid_t file, const mesh_fe *mesh) {
+  const char *name[MESH_MAX_VOLUMES];
+  for (int i = 0; i < mesh->n_regions; i++) name[i] = mesh->region_name[i];
+  SHB_TRY(h5_write_strings(file, "mesh/volume", mesh->n_regions, name, "volumes by material"));
+  return h5_write_int(file, "mesh/material", H5_SHAPE((hsize_t)mesh->n_elements), mesh->region, "-",
+                      "volume that each element lies in, from 0");
+}
+
+shb_status modal_export_mesh(hid_t file, const mesh_fe *mesh) {
+  const mesh_topology *topology = mesh_topology_of(mesh->kind);
+  char                 text[80];
+  SHB_TRY(h5_write_double(file, "mesh/nodes", H5_SHAPE((hsize_t)mesh->n_nodes, 3),
+                          mesh->coordinates, "m", "node coordinates"));
+  snprintf(text, sizeof text, "nodes of each %s, from 0, gmsh order", topology->name);
+  SHB_TRY(h5_write_int(file, "mesh/connectivity",
+                       H5_SHAPE((hsize_t)mesh->n_elements, (hsize_t)topology->nodes),
+                       mesh->connectivity, "-", text));
+  snprintf(text, sizeof text, "nodes of each %s, outward", topology->face_name);
+  for (int s = 0; s < mesh_fe_sets(mesh); s++) {
+    char path[128];
+    if (mesh->set[s].n == 0) continue;
+    snprintf(path, sizeof path, "mesh/sets/%s", mesh_fe_set_name(mesh, s));
+    SHB_TRY(h5_write_int(file, path,
+                         H5_SHAPE((hsize_t)mesh->set[s].n, (hsize_t)topology->face_nodes),
+                         mesh->set[s].nodes, "-", text));
+  }
+  return mesh->region ? export_regions(file, mesh) : SHB_OK;
+}
+
+shb_status modal_export_shapes(hid_t file, int n_modes, int n_nodes, const double *shape) {
+  SHB_TRY(h5_write_double(file, "modes/shape", H5_SHAPE((hsize_t)n_modes, (hsize_t)n_nodes, 3),
+                          shape, "kg^-1/2",
+                          "mass-normalised mode shapes at every node, mesh axes (x, y, z)"));
+  return h5_attach_scale(file, "modes/shape", 0, "modes/frequency");
+}
+
+shb_status modal_export_check(hid_t file, const modal_check *check) {
+  SHB_TRY(h5_write_attribute_text(file, "/modes", "checked", check->by));
+  SHB_TRY(h5_write_attribute_int(file, "/modes", "checked_count", check->count));
+  SHB_TRY(h5_write_attribute_double(file, "/modes", "checked_below", modal_check_below(check)));
+  return h5_write_attribute_double(file, "/modes", "missed_chance", check->chance);
+}
+
+shb_status modal_export_contact(hid_t file, const modal_interface *interface) {
+  const size_t pairs = (size_t)interface->n_pairs;
+  const int    n = interface->start[interface->n_pairs], sides = interface->has_left ? 2 : 1;
+  int         *nodes       = malloc(3 * (size_t)n * sizeof *nodes + 1);
+  double      *coordinates = malloc(6 * pairs * sizeof *coordinates + 1);
+  shb_status   status      = SHB_OK;
+  if (!nodes || !coordinates)
+    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for the contact patches");
+  for (int p = 0; status == SHB_OK && p < interface->n_pairs; p++)
+    for (int e = interface->start[p]; e < interface->start[p + 1]; e++) {
+      nodes[3 * e]     = p;
+      nodes[3 * e + 1] = interface->node[0][e];
+      nodes[3 * e + 2] = interface->has_left ? interface->node[1][e] : -1;
+    }
+  for (int side = 0; status == SHB_OK && side < sides; side++)
+    memcpy(coordinates + 3 * pairs * (size_t)side, interface->centroid[side],
+           3 * pairs * sizeof *coordinates);
+  if (status == SHB_OK)
+    status = h5_write_int(file, "contact/nodes", H5_SHAPE((hsize_t)n, 3), nodes, "-",
+                          "patch, right node, left node (-1: ground) of each entry");
+  if (status == SHB_OK)
+    status = h5_write_double(file, "contact/weight", H5_SHAPE((hsize_t)n), interface->weight, "-",
+                             "share of each entry in its patch's mean displacement");
+  if (status == SHB_OK && interface->projected)
+    status = h5_write_double(
+        file, "contact/left_weight", H5_SHAPE((hsize_t)n), interface->left_weight, "-",
+        "the same of the left nodes: the faces do not match and are projected");
+  if (status == SHB_OK)
+    status =
+        h5_write_double(file, "contact/coordinates", H5_SHAPE((hsize_t)sides, (hsize_t)pairs, 3),
+                        coordinates, "m", "centroids of the patches, right then left, mesh axes");
+  free(nodes);
+  free(coordinates);
+  return status;
+}
+
+static int compare(const void *a, const void *b) {
+  const double *p = a, *q = b;
+  return (*p > *q) - (*p < *q);
+}
+
+/* Estimated relative error of each sample, where the model tells. */
+static shb_status write_error(hid_t file, const modal_model *model, int n, int count,
+                              const double *frequency, const double complex *value) {
+  double *error = malloc((size_t)count * sizeof *error);
+  SHB_CHECK(error, SHB_ERR_IO, "out of memory for the receptance");
+  for (int f = 0; f < count; f++)
+    error[f] = modal_receptance_error(model, 6.28318530717958647692 * frequency[f],
+                                      value + (size_t)f * (size_t)n * (size_t)n);
+  shb_status status = SHB_OK;
+  if (error[0] >= 0)
+    status = h5_write_double(file, "receptance/error", H5_SHAPE((hsize_t)count), error, "-",
+                             "estimated relative error of the contact receptance");
+  if (status == SHB_OK && error[0] >= 0)
+    status = h5_attach_scale(file, "receptance/error", 0, "receptance/frequency");
+  free(error);
+  return status;
+}
+
+static shb_status write_receptance(hid_t file, const modal_model *model, int n, double *frequency,
+                                   double complex *value) {
+  const int    m = model->n_modes, count = SAMPLES + m;
+  const double top = 1.1 * model->frequency[m - 1];
+  for (int f = 0; f < SAMPLES; f++) frequency[f] = top * f / (SAMPLES - 1);
+  memcpy(frequency + SAMPLES, model->frequency, (size_t)m * sizeof *frequency);
+  qsort(frequency, (size_t)count, sizeof *frequency, compare);
+  for (int f = 0; f < count; f++)
+    modal_receptance(model, 6.28318530717958647692 * frequency[f],
+                     value + (size_t)f * (size_t)n * (size_t)n);
+  SHB_TRY(h5_write_double(file, "receptance/frequency", H5_SHAPE((hsize_t)count), frequency, "Hz",
+                          "frequency"));
+  SHB_TRY(h5_write_complex(file, "receptance/contact",
+                           H5_SHAPE((hsize_t)count, (hsize_t)n, (hsize_t)n), value, "m/N",
+                           "receptance of the contact dofs, damped, with residual terms"));
+  SHB_TRY(write_error(file, model, n, count, frequency, value));
+  SHB_TRY(h5_attach_scale(file, "receptance/contact", 0, "receptance/frequency"));
+  SHB_TRY(h5_attach_scale(file, "receptance/contact", 1, "contact/dof"));
+  return h5_attach_scale(file, "receptance/contact", 2, "contact/dof");
+}
+
+shb_status modal_export_receptance(hid_t file, const modal_model *model) {
+  const int    n     = 3 * model->n_pairs * (model->has_left ? 2 : 1);
+  const size_t steps = (size_t)(SAMPLES + model->n_modes), count = steps * (size_t)n * (size_t)n;
+  if (count * sizeof(double complex) > MAX_BYTES) return SHB_OK;
+  double         *frequency = malloc(steps * sizeof *frequency);
+  double complex *value     = malloc(count * sizeof *value + 1);
+  shb_status      status    = SHB_OK;
+  if (!frequency || !value)
+    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for the receptance");
+  if (status == SHB_OK) status = write_receptance(file, model, n, frequency, value);
+  free(frequency);
+  free(value);
+  return status;
+}

@@ -1,0 +1,463 @@
+#include "postproc/analysis/findings.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "postproc/draw/number_format.h"
+
+static const post_unit NEWTON = {"N", 1};
+
+static char *preload(char out[POST_NUMBER], double n0) {
+  post_plain(out, n0, 6);
+  strcat(out, "\u00a0N");
+  return out;
+}
+
+/* ---------------------------------------------------------------- key figures */
+
+static void put_figure(post_buffer *out, const char *label, const char *value, const char *note) {
+  post_put(out, "<div class=\"figure\"><dt>%s</dt><dd><b>%s</b><span>%s</span></dd></div>\n", label,
+           value, note);
+}
+
+/* "116.06 Hz", "μ = 0.3"; "every μ" where it does not matter. */
+static char *place(const post_study *study, const post_track_point *p, char out[POST_PLACE]) {
+  if (!p->level)
+    return post_abscissa_place(&study->abscissa, p->at, post_at_one_frequency(study) ? 4 : 5, out);
+  snprintf(out, POST_PLACE, "every %s", study->abscissa.symbol);
+  return out;
+}
+
+/* The largest value is no peak, but where the range ends. */
+static bool at_end(const post_track_point *p) {
+  return p->edge && !p->level;
+}
+
+static void put_peak_figure(const post_study *study, post_buffer *out, const char *label,
+                            const post_track_point *p) {
+  char a[POST_NUMBER], at[POST_PLACE], note[160];
+  if (!(p->amplitude > 0)) return;
+  snprintf(note, sizeof note, "at %s%s", place(study, p, at),
+           p->edge && !p->level ? ", the edge of the range" : "");
+  put_figure(out, label, post_measure(a, p->amplitude, post_unit_length(p->amplitude), 3), note);
+}
+
+/* The lower of the two limits' peaks; NAN if neither was computed. */
+static double lower_limit(const post_tracking *t) {
+  return fmin(t->open.amplitude, t->stuck.amplitude);
+}
+
+/* Of all nonlinear curves: where the amplitude is largest, or least (valleys) at points where a machine can stay. */
+static post_track_point extreme(const post_study *study, bool valleys) {
+  post_track_point best = {NAN, NAN, NAN, -1, -1, false, false, true};
+  for (int b = 0; b < study->response->n_branches; b++) {
+    const mhb_branch *branch = &study->response->branch[b];
+    const post_curve *c      = &study->curve[b];
+    const post_peak  *peak   = valleys ? c->valley : c->peak;
+    for (int i = 0; i < (valleys ? c->n_valleys : c->n_peaks); i++) {
+      bool better =
+          valleys ? peak[i].amplitude < best.amplitude : peak[i].amplitude > best.amplitude;
+      if (branch->kind != MHB_BRANCH_NONLINEAR) continue;
+      if (valleys && branch->stable[peak[i].point] == 0) continue;
+      if (best.branch >= 0 && !better) continue;
+      best = (post_track_point){study->group[c->group].n0,
+                                peak[i].at,
+                                peak[i].amplitude,
+                                b,
+                                peak[i].point,
+                                peak[i].edge,
+                                peak[i].level,
+                                branch->complete};
+    }
+  }
+  return best;
+}
+
+static void put_gain(double amplitude, const post_tracking *t, post_buffer *out) {
+  char   percent[POST_NUMBER];
+  double gain = 1 - amplitude / lower_limit(t);
+  if (isfinite(gain))
+    put_figure(out, gain >= 0 ? "Reduction" : "Increase", post_percent(percent, fabs(gain)),
+               "against the better linear limit");
+}
+
+void post_figures(const post_study *study, post_buffer *out) {
+  const post_tracking *t = &study->tracking;
+  const bool one         = post_at_one_frequency(study); /* there the largest need not be a peak */
+  post_put(out, "<dl class=\"figures\">\n");
+  put_peak_figure(study, out,
+                  one || at_end(&t->open) ? "Largest, shrouds open" : "Peak, shrouds open",
+                  &t->open);
+  put_peak_figure(study, out,
+                  one || at_end(&t->stuck) ? "Largest, shrouds stuck" : "Peak, shrouds stuck",
+                  &t->stuck);
+  if (study->abscissa.parameter == MHB_IN_N0) {
+    post_track_point lowest = extreme(study, true);
+    put_peak_figure(study, out, "Lowest with friction", &lowest);
+    put_gain(lowest.amplitude, t, out);
+  }
+  if (t->best >= 0) {
+    const post_track_point *best = &t->point[t->best];
+    char                    label[160], n0[POST_NUMBER];
+    snprintf(label, sizeof label, "Lowest peak, n₀ = %s", preload(n0, best->n0));
+    put_peak_figure(study, out, label, best);
+    put_gain(best->amplitude, t, out);
+  }
+  post_put(out, "</dl>\n");
+}
+
+/* ---------------------------------------------------------------- sentences */
+
+/* ": 71 % below open" */
+static void put_ratio(const char *joint, double ratio, const char *limit, post_buffer *out) {
+  char percent[POST_NUMBER];
+  if (fabs(1 - ratio) < 1e-6)
+    post_put(out, "%sas %s", joint, limit);
+  else
+    post_put(out, "%s%s %s %s", joint, post_percent(percent, fabs(1 - ratio)),
+             ratio <= 1 ? "below" : "above", limit);
+}
+
+static void put_optimum(const post_study *study, post_buffer *out) {
+  const post_tracking *t = &study->tracking;
+  char                 n0[POST_NUMBER], a[POST_NUMBER], f[POST_NUMBER], at[POST_PLACE];
+  if (t->best < 0) {
+    if (study->abscissa.parameter == MHB_IN_N0 && study->largest > 0) return;
+    post_put(out, study->largest > 0
+                      ? "<li>No nonlinear curve was computed at one preload: there is no "
+                        "peak to compare.</li>\n"
+                      : "<li>Nothing moves: every amplitude is zero. Check the "
+                        "excitation.</li>\n");
+    return;
+  }
+  const post_track_point *best = &t->point[t->best];
+  post_put(out, "<li><b>%s</b> of the %d preloads computed gives the lowest peak, %s at %s",
+           preload(n0, best->n0), t->n,
+           post_measure(a, best->amplitude, post_unit_length(best->amplitude), 3),
+           place(study, best, at));
+  const char *joint = ": ";
+  for (int i = 0; i < 2; i++) {
+    double ratio = best->amplitude / (i ? t->stuck : t->open).amplitude;
+    if (!isfinite(ratio)) continue;
+    put_ratio(joint, ratio, i ? "stuck" : "open", out);
+    joint = ", ";
+  }
+  post_put(out, "%s.", best->complete ? "" : " (but its curve is not complete)");
+  if (isfinite(t->bracket[0]) && isfinite(t->bracket[1]))
+    post_put(out, " The optimum lies between %s and %s", post_plain(n0, t->bracket[0], 6),
+             preload(a, t->bracket[1]));
+  else if (t->n > 1)
+    post_put(out, " It is the %s preload computed: the optimum may lie beyond it.",
+             t->best == 0 ? "lowest" : "highest");
+  if (isfinite(t->optimum_n0))
+    post_put(out, "; a parabola through these three puts it near %s",
+             post_measure(f, t->optimum_n0, NEWTON, 2));
+  if (isfinite(t->bracket[0]) && isfinite(t->bracket[1])) post_put(out, ".");
+  post_put(out, "</li>\n");
+}
+
+/* Where the amplitude is least and where largest; not for the excitation's level, on which it hangs as it must. */
+static void put_extremes(const post_study *study, post_buffer *out) {
+  const post_tracking *t      = &study->tracking;
+  post_track_point     lowest = extreme(study, true), highest = extreme(study, false);
+  char                 a[POST_NUMBER], n0[POST_NUMBER], at[POST_PLACE];
+  bool                 named = study->n_ranks > 1;
+  if (!post_at_one_frequency(study) || study->abscissa.parameter == MHB_IN_SCALE) return;
+  if (!(lowest.amplitude > 0) || !(highest.amplitude > 0)) return;
+  post_put(out, "<li>The amplitude is least at <b>%s</b>%s", place(study, &lowest, at),
+           lowest.edge && !lowest.level ? ", the edge of the range" : "");
+  if (named) post_put(out, " and %s of preload", preload(n0, lowest.n0));
+  post_put(out, ", %s", post_measure(a, lowest.amplitude, post_unit_length(lowest.amplitude), 3));
+  const char *joint = ": ";
+  for (int i = 0; i < 2; i++) {
+    const post_track_point *limit = i ? &t->stuck : &t->open;
+    double                  ratio = lowest.amplitude / limit->amplitude;
+    if (!isfinite(ratio) || !limit->level) continue;
+    put_ratio(joint, ratio, i ? "stuck" : "open", out);
+    joint = ", ";
+  }
+  post_put(out, ". It is largest at %s%s", place(study, &highest, at),
+           highest.edge && !highest.level ? ", the edge of the range" : "");
+  if (named) post_put(out, " and %s", preload(n0, highest.n0));
+  post_put(out, ", %s.</li>\n",
+           post_measure(a, highest.amplitude, post_unit_length(highest.amplitude), 3));
+}
+
+static void put_shift(const post_study *study, post_buffer *out) {
+  const post_tracking *t = &study->tracking;
+  const post_abscissa *x = &study->abscissa;
+  char                 from[POST_PLACE], to[POST_PLACE], n0[POST_NUMBER], n1[POST_NUMBER];
+  double               limits = post_at_one_frequency(study) ? NAN : t->stuck.at - t->open.at;
+  int                  digits = post_at_one_frequency(study) ? 4 : 5;
+  int                  first = 0, last = t->n - 1; /* a value at the edge of the range is no peak */
+  while (first < t->n && t->point[first].edge) first++;
+  while (last > first && t->point[last].edge) last--;
+  if (last > first) {
+    const post_track_point *a = &t->point[first], *b = &t->point[last];
+    post_put(out, "<li>From %s to %s of preload the highest peak moves from %s to %s",
+             post_plain(n0, a->n0, 5), preload(n1, b->n0),
+             post_abscissa_number(x, a->at, digits, from),
+             post_abscissa_value(x, b->at, digits, to));
+    if (isfinite(limits))
+      post_put(out, " (open to stuck: %s by %s, %s)", limits >= 0 ? "up" : "down",
+               post_abscissa_value(x, fabs(limits), 3, from),
+               post_percent(to, fabs(limits) / t->open.at));
+    post_put(out, ".</li>\n");
+  } else if (isfinite(limits)) {
+    post_put(out, "<li>Sticking shrouds move the highest peak from %s to %s.</li>\n",
+             post_abscissa_number(x, t->open.at, 5, from),
+             post_abscissa_value(x, t->stuck.at, 5, to));
+  }
+}
+
+/* Where a curve turns: at a fold, or at an end of the range beyond which it folds. Walks along it. */
+typedef struct {
+  int fold, point, outside; /* the next ones; times it was outside so far */
+} walk;
+
+static bool next_turn(const post_study *study, int b, walk *w, double *at) {
+  const mhb_branch *branch = &study->response->branch[b];
+  const post_curve *c      = &study->curve[b];
+  const double     *x      = post_abscissa_values(study->response, branch);
+  for (;; w->point++) {
+    if (w->fold < c->n_folds &&
+        (c->fold[w->fold].point <= w->point || w->point >= branch->n_points)) {
+      *at = c->fold[w->fold++].at;
+      return true;
+    }
+    if (w->point >= branch->n_points) return false;
+    if (!post_left_range(branch->n_points, x, c->amplitude, w->point)) continue;
+    *at = x[w->point++];
+    w->outside++;
+    return true;
+  }
+}
+
+/* The next two turns and what lies between them; false if there are no more. *visible: wide enough for a jump to be seen (20 ppm). */
+static bool next_span(const post_study *study, int b, walk *w, double span[2], bool *visible) {
+  double one, two;
+  if (!next_turn(study, b, w, &one)) return false;
+  if (!next_turn(study, b, w, &two)) two = one;
+  span[0]  = fmin(one, two);
+  span[1]  = fmax(one, two);
+  *visible = one == two || span[1] - span[0] > 2e-5 * fmax(fabs(span[0]), fabs(span[1]));
+  return true;
+}
+
+/* " (103.81 to 103.96, 212.2 to 213.7 Hz)" of a group's curves; returns how many (out NULL: only counts). *outside counts the turns
+ * that lie outside the range. */
+static int put_spans(const post_study *study, int g, post_buffer *out, int *outside) {
+  const post_abscissa *x     = &study->abscissa;
+  int                  spans = 0;
+  for (int b = 0; b < study->response->n_branches; b++) {
+    walk   w = {0};
+    double span[2];
+    bool   visible;
+    while (study->curve[b].group == g && next_span(study, b, &w, span, &visible)) {
+      char from[POST_NUMBER], to[POST_NUMBER];
+      if (!visible || ++spans > 4 || !out) continue;
+      post_put(out, "%s%s", spans > 1 ? ", " : " (", post_abscissa_number(x, span[0], 6, from));
+      if (span[1] > span[0]) post_put(out, " to %s", post_abscissa_number(x, span[1], 6, to));
+    }
+    *outside += w.outside;
+  }
+  if (out && spans > 4) post_put(out, ", …");
+  if (out && spans > 0) post_put(out, "%s%s)", *x->unit.name ? "\u00a0" : "", x->unit.name);
+  return spans;
+}
+
+static void put_folds(const post_study *study, post_buffer *out) {
+  int groups = 0, outside = 0, counted = 0;
+  for (int g = 0; g < study->n_groups; g++) {
+    char name[64];
+    if (put_spans(study, g, NULL, &outside) == 0 || ++groups > 6) continue;
+    post_group_name(&study->group[g], name);
+    post_put(out, "%s%s", groups > 1 ? "; " : "<li><b>Jumps.</b> Folds on ", name);
+    put_spans(study, g, out, &counted);
+  }
+  if (groups > 6) post_put(out, "; and %d more", groups - 6);
+  if (groups > 0)
+    post_put(out,
+             ". In between several answers exist at one %s, and a slow sweep jumps from one "
+             "to another.%s</li>\n",
+             study->abscissa.symbol,
+             outside ? " Where one of these is an end of the range, the fold lies beyond it." : "");
+  else if (study->tracking.n > 0)
+    post_put(
+        out,
+        "<li>No curve folds visibly: no jumps on the curves that were followed. Curves that do "
+        "not hang together with them are found by <code>mhb.search</code> only.</li>\n");
+}
+
+/* What the multipliers told beyond the folds. */
+static void put_multipliers(const post_study *study, post_buffer *out) {
+  int judged = 0, total = 0, curves = 0, lost[MHB_N_LOSSES] = {0};
+  for (int b = 0; b < study->response->n_branches; b++) {
+    const mhb_branch *branch = &study->response->branch[b];
+    int               before = lost[MHB_LOSS_FLIP] + lost[MHB_LOSS_NEIMARK_SACKER];
+    for (int p = 0; branch->kind == MHB_BRANCH_NONLINEAR && p < branch->n_points; p++) {
+      total++;
+      judged += branch->judged[p] != MHB_BY_FOLDS;
+      lost[branch->loss[p]]++;
+    }
+    curves += lost[MHB_LOSS_FLIP] + lost[MHB_LOSS_NEIMARK_SACKER] > before;
+  }
+  int flips = lost[MHB_LOSS_FLIP], waves = lost[MHB_LOSS_NEIMARK_SACKER];
+  if (curves > 0) {
+    post_put(out,
+             "<li><b>Motion that does not repeat.</b> On %d curve%s a part is unstable other than "
+             "by a fold: ",
+             curves, curves > 1 ? "s" : "");
+    if (flips > 0)
+      post_put(out, "%d points by period doubling (flip)%s", flips, waves > 0 ? ", " : "");
+    if (waves > 0) post_put(out, "%d by a modulation (Neimark-Sacker)", waves);
+    post_put(out,
+             ". The motion there settles on another one, of several periods or modulated.</li>\n");
+  }
+  if (judged > 0 && judged < total)
+    post_put(
+        out,
+        "<li>Floquet multipliers were computed at %d of %d points; the others are taken to be as "
+        "the last of these before them along the curve, but for folds in between. "
+        "<code>mhb.stability: "
+        "always</code> computes all.</li>\n",
+        judged, total);
+}
+
+static void put_stability(const post_study *study, post_buffer *out) {
+  int unstable = 0, unknown = 0, total = 0;
+  for (int b = 0; b < study->response->n_branches; b++) {
+    const mhb_branch *branch = &study->response->branch[b];
+    for (int p = 0; branch->kind == MHB_BRANCH_NONLINEAR && p < branch->n_points; p++) {
+      total++;
+      unstable += branch->stable[p] == 0;
+      unknown += branch->stable[p] < 0;
+    }
+  }
+  if (total == 0) return;
+  if (unknown == total)
+    post_put(
+        out,
+        "<li>Stability was not computed; between the folds of a curve it is usually lost.</li>\n");
+  else if (unstable > 0)
+    post_put(out,
+             "<li>%d of %d points are unstable (dotted): a machine does not stay there.</li>\n",
+             unstable, total);
+  put_multipliers(study, out);
+}
+
+static void put_edges(const post_study *study, post_buffer *out) {
+  const post_tracking *t = &study->tracking;
+  if (post_at_one_frequency(study)) return; /* there the largest value need not be a peak */
+  int edges = (t->open.edge && t->open.complete) + (t->stuck.edge && t->stuck.complete);
+  for (int i = 0; i < t->n; i++) edges += t->point[i].edge && t->point[i].complete;
+  if (edges == 0) return;
+  post_put(out,
+           "<li class=\"caution\">On %d curve%s the largest value is at the edge of the frequency "
+           "range: the "
+           "true peak may lie outside. Widen <code>mhb.frequency</code>.</li>\n",
+           edges, edges > 1 ? "s" : "");
+}
+
+static void put_incomplete(const post_study *study, post_buffer *out) {
+  for (int b = 0; b < study->response->n_branches; b++) {
+    const mhb_branch *branch = &study->response->branch[b];
+    char              name[64], note[64], at[POST_PLACE];
+    if (branch->complete) continue;
+    post_group_name(&study->group[study->curve[b].group], name);
+    post_branch_note(study->response, branch, note);
+    post_put(out, "<li class=\"caution\"><b>Not complete:</b> %s%s (curve %d)", name, note, b);
+    if (branch->n_points > 0)
+      post_put(out, " stopped at %s after %d points",
+               post_abscissa_place(
+                   &study->abscissa,
+                   post_abscissa_values(study->response, branch)[branch->n_points - 1], 6, at),
+               branch->n_points);
+    post_put(out, ": ");
+    post_put_escaped(out, branch->reason && *branch->reason ? branch->reason : "no reason given");
+    post_put(out, ".</li>\n");
+  }
+}
+
+/* Curves that a sweep from the end of the range does not come to. */
+static void put_further(const post_study *study, post_buffer *out) {
+  int n = 0;
+  for (int b = 0; b < study->response->n_branches; b++) {
+    const mhb_branch *branch = &study->response->branch[b];
+    char              name[64], note[64], from[POST_NUMBER], to[POST_NUMBER];
+    if (branch->origin == MHB_FROM_END || branch->n_points == 0 || ++n > 6) continue;
+    const double *x  = post_abscissa_values(study->response, branch);
+    double        lo = INFINITY, hi = -INFINITY;
+    for (int p = 0; p < branch->n_points; p++) {
+      lo = fmin(lo, x[p]);
+      hi = fmax(hi, x[p]);
+    }
+    post_group_name(&study->group[study->curve[b].group], name);
+    post_branch_note(study->response, branch, note);
+    post_put(out, "%s%s%s (%s to %s)", n > 1 ? "; " : "<li><b>Further curves</b>: ", name, note,
+             post_abscissa_number(&study->abscissa, lo, 6, from),
+             post_abscissa_value(&study->abscissa, hi, 6, to));
+  }
+  if (n > 6) post_put(out, "; and %d more", n - 6);
+  if (n > 0)
+    post_put(out,
+             ". A sweep does not come to them by itself; a disturbance can. Motion of order n "
+             "repeats after n periods of the excitation.</li>\n");
+}
+
+static void put_accuracy(const post_study *study, post_buffer *out) {
+  double worst = NAN, at_peak = NAN;
+  for (int b = 0; b < study->response->n_branches; b++)
+    for (int p = 0; p < study->response->branch[b].n_points; p++)
+      worst = fmax(worst, post_error(&study->response->branch[b], p));
+  for (int i = 0; i < study->tracking.n; i++) {
+    const post_track_point *p = &study->tracking.point[i];
+    at_peak = fmax(at_peak, post_error(&study->response->branch[p->branch], p->point));
+  }
+  if (!(worst > 0)) return;
+  char a[POST_NUMBER], b[POST_NUMBER];
+  post_put(out, "<li>Estimated error of the harmonic balance: at most %s anywhere",
+           post_percent(a, worst));
+  if (at_peak > 0) post_put(out, ", %s at the peaks", post_percent(b, at_peak));
+  post_put(out, ".</li>\n");
+}
+
+void post_findings(const post_study *study, post_buffer *out) {
+  post_put(out, "<ul class=\"findings\">\n");
+  put_incomplete(study, out);
+  put_edges(study, out);
+  put_optimum(study, out);
+  put_extremes(study, out);
+  put_shift(study, out);
+  put_folds(study, out);
+  put_further(study, out);
+  put_stability(study, out);
+  put_accuracy(study, out);
+  post_put(out, "</ul>\n");
+}
+
+/* ---------------------------------------------------------------- terminal */
+
+static void put_brief(const post_study *study, post_buffer *out, const char *name,
+                      const post_track_point *p) {
+  char a[POST_NUMBER], at[POST_PLACE];
+  if (!(p->amplitude > 0)) return;
+  post_put(out, "%s%s %s at %s%s", out->length ? "; " : "", name,
+           post_measure(a, p->amplitude, post_unit_length(p->amplitude), 3), place(study, p, at),
+           at_end(p) ? ", the end of the range" : "");
+}
+
+void post_summary(const post_study *study, post_buffer *out) {
+  const post_tracking *t = &study->tracking;
+  put_brief(study, out, at_end(&t->open) ? "open, largest" : "open peak", &t->open);
+  put_brief(study, out, at_end(&t->stuck) ? "stuck, largest" : "stuck peak", &t->stuck);
+  if (study->abscissa.parameter == MHB_IN_N0) {
+    post_track_point lowest = extreme(study, true);
+    put_brief(study, out, "lowest", &lowest);
+  }
+  if (t->best < 0) return;
+  char name[96], n0[POST_NUMBER];
+  snprintf(name, sizeof name, "lowest (n0 = %s) peak", preload(n0, t->point[t->best].n0));
+  put_brief(study, out, name, &t->point[t->best]);
+}

@@ -1,0 +1,190 @@
+#include "postproc/analysis/outputs.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { AXES = 3, NEWTON_STEPS = 20 };
+
+/* A harmonic this small beside the largest changes no figure. */
+static const double ROUNDING = 1e-13;
+
+double post_ellipse(int n, const double complex *a, int stride) {
+  double         sum    = 0;
+  double complex square = 0;
+  for (int i = 0; i < n; i++) {
+    double complex z = a[i * stride];
+    sum += creal(z) * creal(z) + cimag(z) * cimag(z);
+    square += z * z;
+  }
+  return sqrt((sum + cabs(square)) / 2);
+}
+
+/* Position, velocity and acceleration at phase t (harmonic k turns k times in 2 pi). */
+static void orbit_at(int n, int m, const double complex *a, double t, double x[][AXES]) {
+  double complex turn = cexp(I * t);
+  for (int i = 0; i < n; i++) {
+    double complex power = 1, sum[3] = {0};
+    for (int k = 0; k <= m; k++, power *= turn) {
+      double complex term = a[i * (m + 1) + k] * power;
+      sum[0] += term;
+      sum[1] += I * k * term;
+      sum[2] -= (double)k * k * term;
+    }
+    for (int d = 0; d < 3; d++) x[d][i] = creal(sum[d]);
+  }
+}
+
+static double dot(int n, const double *x, const double *y) {
+  double sum = 0;
+  for (int i = 0; i < n; i++) sum += x[i] * y[i];
+  return sum;
+}
+
+/* Newton on g(t, s) = |x(t) - x(s)|^2 from a sampled maximum; a step that lowers g ends it. */
+static double refine_distance(int n, int m, const double complex *a, double t, double s) {
+  double best = 0;
+  for (int step = 0; step < NEWTON_STEPS; step++) {
+    double x[3][AXES], y[3][AXES], d[AXES];
+    orbit_at(n, m, a, t, x);
+    orbit_at(n, m, a, s, y);
+    for (int i = 0; i < n; i++) d[i] = x[0][i] - y[0][i];
+    double g = dot(n, d, d);
+    if (step > 0 && g <= best) break;
+    best      = g;
+    double gt = dot(n, d, x[1]), gs = -dot(n, d, y[1]);
+    double tt = dot(n, x[1], x[1]) + dot(n, d, x[2]), ss = dot(n, y[1], y[1]) - dot(n, d, y[2]);
+    double ts = -dot(n, x[1], y[1]), det = tt * ss - ts * ts;
+    if (tt >= 0 || det <= 0) break; /* not a strict maximum of the quadratic model */
+    t -= (ss * gt - ts * gs) / det;
+    s -= (tt * gs - ts * gt) / det;
+  }
+  return sqrt(best);
+}
+
+/* Farthest pair of samples, [samples][n]. */
+static void farthest(int n, int samples, const double *x, int pair[2]) {
+  double best = -1;
+  for (int i = 0; i < samples; i++)
+    for (int j = 0; j <= i; j++) {
+      double g = 0;
+      for (int k = 0; k < n; k++)
+        g += (x[i * n + k] - x[j * n + k]) * (x[i * n + k] - x[j * n + k]);
+      if (g > best) {
+        best    = g;
+        pair[0] = i;
+        pair[1] = j;
+      }
+    }
+}
+
+static double extent(int n, int m, const double complex *a) {
+  int     samples = 8 * (m + 1);
+  double *x       = malloc((size_t)(samples * n) * sizeof *x);
+  if (!x) return NAN;
+  for (int i = 0; i < samples; i++) {
+    double complex turn = cexp(I * (2 * M_PI * i / samples));
+    for (int axis = 0; axis < n; axis++) {
+      double complex sum = 0;
+      for (int k = m; k >= 1; k--) sum = (sum + a[axis * (m + 1) + k]) * turn;
+      x[i * n + axis] = creal(sum); /* the mean cancels in a distance */
+    }
+  }
+  int pair[2] = {0, 0};
+  farthest(n, samples, x, pair);
+  free(x);
+  double step = 2 * M_PI / samples;
+  return refine_distance(n, m, a, pair[0] * step, pair[1] * step);
+}
+
+/* Highest harmonic of a [n][m + 1] that is more than rounding beside the others. */
+static int highest(int n, int m, const double complex *a) {
+  double most = 0;
+  for (int i = 0; i < n * (m + 1); i++)
+    if (i % (m + 1)) most = fmax(most, cabs(a[i]));
+  for (int k = m; k > 1; k--)
+    for (int axis = 0; axis < n; axis++)
+      if (cabs(a[axis * (m + 1) + k]) > ROUNDING * most) return k;
+  return m < 1 ? m : 1;
+}
+
+/* The search for the farthest pair goes with the square of the harmonics: those that are not there are left out. */
+double post_peak_to_peak(int n, int m, const double complex *a) {
+  int            top = highest(n, m, a);
+  double complex held[n * (top + 1)];
+  for (int axis = 0; axis < n; axis++)
+    memcpy(held + axis * (top + 1), a + axis * (m + 1), sizeof *held * (size_t)(top + 1));
+  return extent(n, top, held);
+}
+
+post_output post_output_primary(const mhb_response *response) {
+  return (post_output){response->n_probes > 0 ? POST_PROBE : POST_CONTACT, 0, POST_WHOLE};
+}
+
+int post_first_harmonic(const mhb_branch *branch) {
+  int first = branch->order > 1 ? branch->order : 1;
+  return first <= branch->n_harmonics ? first : branch->n_harmonics;
+}
+
+/* The harmonics of output at a point: [n][m + 1]. */
+static const double complex *harmonics_of(const mhb_response *response, const mhb_branch *branch,
+                                          int point, post_output output, int *n) {
+  bool                  probe  = output.place == POST_PROBE;
+  size_t                places = (size_t)(probe ? response->n_probes : response->n_pairs);
+  const double complex *all    = probe ? branch->probe : branch->motion;
+  size_t                at     = ((size_t)point * places + (size_t)output.index) * AXES +
+              (size_t)(output.axis < 0 ? 0 : output.axis);
+  *n = output.axis < 0 ? AXES : 1;
+  return all + at * (size_t)(branch->n_harmonics + 1);
+}
+
+double post_amplitude(const mhb_response *response, const mhb_branch *branch, int point,
+                      post_output output, int k) {
+  int                   n;
+  const double complex *a = harmonics_of(response, branch, point, output, &n);
+  return k > branch->n_harmonics ? 0 : post_ellipse(n, a + k, branch->n_harmonics + 1);
+}
+
+shb_status post_series(const mhb_response *response, const mhb_branch *branch, post_output output,
+                       post_quantity quantity, double **values) {
+  int     points = branch->n_points, first = post_first_harmonic(branch), m = branch->n_harmonics;
+  double *out = malloc((size_t)(points > 0 ? points : 1) * sizeof *out);
+  SHB_CHECK(out, SHB_ERR_IO, "not enough memory for a curve of %d points", points);
+  for (int p = 0; p < points; p++) {
+    int                   n;
+    const double complex *a = harmonics_of(response, branch, p, output, &n);
+    out[p]                  = quantity == POST_PEAK_TO_PEAK ? post_peak_to_peak(n, m, a)
+                                                            : post_ellipse(n, a + first, m + 1);
+  }
+  *values = out;
+  return SHB_OK;
+}
+
+void post_place_name(const mhb_response *response, post_output output, char out[128]) {
+  if (output.place == POST_PROBE)
+    snprintf(out, 128, "%s", response->probe_name[output.index]);
+  else
+    post_contact_name(response, output.index, " ", out);
+}
+
+void post_contact_name(const mhb_response *response, int pair, const char *gap, char out[128]) {
+  const int  *which = response->interface;
+  const char *name  = which ? response->interface_name[which[pair]] : "contact";
+  int         n = 0, place = 0;
+  for (int p = 0; p < response->n_pairs; p++) {
+    if (which && which[p] != which[pair]) continue;
+    n++;
+    place += p <= pair;
+  }
+  if (n == 1)
+    snprintf(out, 128, "%s", name);
+  else
+    snprintf(out, 128, "%s%s%d", name, gap, place);
+}
+
+const char *post_axis_name(post_output output) {
+  static const char *const probe[]   = {"motion", "tangential", "axial", "radial"};
+  static const char *const contact[] = {"relative motion", "v, normal", "u, sliding", "w, sliding"};
+  return (output.place == POST_PROBE ? probe : contact)[output.axis + 1];
+}

@@ -1,7 +1,0 @@
-/* The page's style sheet and script, page.css and page.js, built into the program. */
-#ifndef POSTPROC_PAGE_H
-#define POSTPROC_PAGE_H
-
-extern const char post_page_css[], post_page_js[];
-
-#endif

@@ -1,0 +1,144 @@
+#include "postproc/report/csv.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "postproc/analysis/outputs.h"
+
+static void put_text(post_buffer *out, const char *text) {
+  if (!strpbrk(text, ",\"\r\n")) {
+    post_put(out, "%s", text);
+    return;
+  }
+  post_put(out, "\"");
+  for (const char *c = text; *c; c++) post_put(out, *c == '"' ? "\"\"" : "%c", *c);
+  post_put(out, "\"");
+}
+
+static void put_number(post_buffer *out, double value) {
+  post_put(out, isfinite(value) ? ",%.12g" : ",", value);
+}
+
+/* ",PLACE_SUFFIX" */
+static void put_name(post_buffer *out, const char *place, const char *part, const char *suffix) {
+  char name[256];
+  snprintf(name, sizeof name, "%s%s%s", place, part, suffix);
+  post_put(out, ",");
+  put_text(out, name);
+}
+
+static void place_names(post_buffer *out, const char *place, const char *const axis[3]) {
+  for (int i = 0; i < 3; i++) {
+    put_name(out, place, axis[i], "_amplitude_m");
+    put_name(out, place, axis[i], "_phase_deg");
+    put_name(out, place, axis[i], "_peak_to_peak_m");
+  }
+  put_name(out, place, "_motion", "_amplitude_m");
+  put_name(out, place, "_motion", "_peak_to_peak_m");
+}
+
+/* The column of what is followed, if it has none of its own. */
+static const char *followed(const mhb_response *response) {
+  static const char *const names[MHB_N_PARAMETERS] = {NULL, NULL,     "scale",
+                                                      "mu", "ku_N_m", "kv_N_m"};
+  return names[response->parameter];
+}
+
+static void put_header(const mhb_response *response, post_buffer *out) {
+  static const char *const probe[3]   = {"_tangential", "_axial", "_radial"};
+  static const char *const contact[3] = {"_v", "_u", "_w"};
+  post_put(out, "branch,kind,n0_N,frequency_Hz");
+  if (response->run_up) post_put(out, ",speed_rpm");
+  for (int i = 0; i < response->n_interfaces; i++)
+    put_name(out, "n0_", response->interface_name[i], "_N");
+  if (followed(response)) post_put(out, ",%s", followed(response));
+  for (int q = 0; q < response->n_probes; q++) place_names(out, response->probe_name[q], probe);
+  for (int p = 0; p < response->n_pairs; p++) {
+    char place[128];
+    post_contact_name(response, p, "", place);
+    place_names(out, place, contact);
+    put_name(out, place, "_stuck", "");
+    put_name(out, place, "_slipping", "");
+    put_name(out, place, "_open", "");
+    put_name(out, place, "_dissipation_J", "");
+  }
+  post_put(out,
+           ",stable,special,judged,loss,largest_multiplier,iterations,seconds,error_newton,error_"
+           "truncation,error_sampling,"
+           "error_modal,origin,order\r\n");
+}
+
+/* The columns of one place from its harmonics, [3][m + 1]. */
+static void put_place(const mhb_branch *branch, const double complex *a, post_buffer *out) {
+  int m = branch->n_harmonics, first = post_first_harmonic(branch);
+  for (int i = 0; i < 3; i++) {
+    const double complex *axis = a + i * (m + 1);
+    put_number(out, cabs(axis[first]));
+    put_number(out, carg(axis[first]) * 180 / M_PI);
+    put_number(out, post_peak_to_peak(1, m, axis));
+  }
+  put_number(out, post_ellipse(3, a + first, m + 1));
+  put_number(out, post_peak_to_peak(3, m, a));
+}
+
+/* What stable rests on, what was lost, the largest multiplier; nothing for the linear limits. */
+static void put_stability(const mhb_response *response, const mhb_branch *branch, int point,
+                          post_buffer *out) {
+  static const char *const judged[] = {"folds", "multipliers", "marginal", "undecided"};
+  static const char *const loss[]   = {"", "fold", "flip", "Neimark-Sacker"};
+  int                      kept     = response->n_multipliers;
+  if (branch->kind != MHB_BRANCH_NONLINEAR) {
+    post_put(out, ",,,");
+    return;
+  }
+  int  how      = branch->judged[point];
+  bool computed = kept > 0 && (how == MHB_BY_MULTIPLIERS || how == MHB_MARGINAL_BY_FOLDS);
+  post_put(out, ",%s,%s", judged[how], loss[branch->loss[point]]);
+  put_number(out, computed ? cabs(branch->multipliers[(size_t)point * (size_t)kept]) : NAN);
+}
+
+static void put_quality(const mhb_response *response, const mhb_branch *branch, int point,
+                        post_buffer *out) {
+  static const char *const special[] = {"", "fold", "peak", "flip", "Neimark-Sacker"};
+  static const char *const origin[]  = {"end", "search", "flip", "aside"};
+  post_put(out, branch->stable[point] < 0 ? "," : ",%d", branch->stable[point]);
+  post_put(out, ",%s", special[branch->special[point]]);
+  put_stability(response, branch, point, out);
+  post_put(out, ",%d", branch->iterations[point]);
+  put_number(out, branch->seconds[point]);
+  put_number(out, branch->error_newton[point]);
+  put_number(out, branch->error_truncation[point]);
+  put_number(out, branch->error_sampling[point]);
+  put_number(out, branch->error_modal[point]);
+  post_put(out, ",%s,%d\r\n", origin[branch->origin], branch->order);
+}
+
+static void put_point(const mhb_response *response, int b, int point, post_buffer *out) {
+  static const char *const kind[] = {"nonlinear", "open", "stuck", "integration"};
+  const mhb_branch        *branch = &response->branch[b];
+  size_t                   m1 = (size_t)branch->n_harmonics + 1, i = (size_t)point;
+  size_t                   pairs = (size_t)response->n_pairs, probes = (size_t)response->n_probes;
+  post_put(out, "%d,%s", b, kind[branch->kind]);
+  bool nonlinear = branch->kind == MHB_BRANCH_NONLINEAR || branch->kind == MHB_BRANCH_INTEGRATION;
+  put_number(out, nonlinear || response->parameter == MHB_IN_N0 ? branch->n0[point] : NAN);
+  put_number(out, branch->frequency[point]);
+  if (response->run_up) put_number(out, 60 * branch->frequency[point] / response->engine_order);
+  for (size_t k = 0; k < (size_t)response->n_interfaces; k++)
+    put_number(out, branch->interface_n0[i * (size_t)response->n_interfaces + k]);
+  if (followed(response)) put_number(out, branch->value[point]);
+  for (size_t q = 0; q < probes; q++)
+    put_place(branch, branch->probe + (i * probes + q) * 3 * m1, out);
+  for (size_t p = 0; p < pairs; p++) {
+    put_place(branch, branch->motion + (i * pairs + p) * 3 * m1, out);
+    for (size_t s = 0; s < 3; s++) put_number(out, branch->state[(i * pairs + p) * 3 + s]);
+    put_number(out, branch->dissipation[i * pairs + p]);
+  }
+  put_quality(response, branch, point, out);
+}
+
+void post_csv(const mhb_response *response, post_buffer *out) {
+  put_header(response, out);
+  for (int b = 0; b < response->n_branches; b++)
+    for (int p = 0; p < response->branch[b].n_points; p++) put_point(response, b, p, out);
+}

@@ -1,0 +1,347 @@
+#include "postproc/report/page_data.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "mhb/problem/parameter.h"
+#include "postproc/report/charts.h"
+
+enum {
+  BUDGET        = 400000,
+  FIXED_ROWS    = 8,
+  LEAST_ROWS    = 12,
+  MAX_COLUMNS   = 256,
+  MAX_PLACES    = 8,
+  MAX_HARMONICS = 16
+};
+
+/* One output, or (n > 0) the amplitudes of harmonics 0..n-1 of a place. */
+typedef struct {
+  post_output   output;
+  post_quantity quantity;
+  int           n, row;
+} column;
+
+typedef struct {
+  int    n, rows, left_out;
+  column column[MAX_COLUMNS];
+} plan;
+
+/* The numbers of one branch: its kept points and their rows. */
+typedef struct {
+  int    n;
+  int   *kept; /* [n] */
+  float *data; /* [rows][n] */
+} sheet;
+
+/* ---------------------------------------------------------------- what fits */
+
+static void propose(plan *p, int rows, column wanted) {
+  int needed = wanted.n > 0 ? wanted.n : 1;
+  if (p->n == MAX_COLUMNS || p->rows + needed > rows) {
+    p->left_out++;
+    return;
+  }
+  wanted.row        = p->rows;
+  p->column[p->n++] = wanted;
+  p->rows += needed;
+}
+
+static void propose_place(plan *p, int rows, post_place place, int index, int pass, int harmonics) {
+  post_output whole = {place, index, POST_WHOLE};
+  if (pass == 0) {
+    propose(p, rows, (column){whole, POST_FIRST_HARMONIC, 0, 0});
+    propose(p, rows, (column){whole, POST_PEAK_TO_PEAK, 0, 0});
+  } else if (pass == 1) {
+    propose(p, rows, (column){whole, POST_FIRST_HARMONIC, harmonics, 0});
+  } else {
+    for (int axis = 0; axis < 3; axis++)
+      for (int q = POST_FIRST_HARMONIC; q <= POST_PEAK_TO_PEAK; q++)
+        propose(p, rows, (column){{place, index, axis}, (post_quantity)q, 0, 0});
+  }
+}
+
+static plan make_plan(const mhb_response *response, int n_points) {
+  int rows      = BUDGET / (n_points > 0 ? n_points : 1);
+  int harmonics = response->n_harmonics + 1;
+  for (int b = 0; b < response->n_branches; b++)
+    if (response->branch[b].n_harmonics >= harmonics)
+      harmonics = response->branch[b].n_harmonics + 1;
+  if (harmonics > MAX_HARMONICS) harmonics = MAX_HARMONICS;
+  plan p = {.rows = FIXED_ROWS};
+  for (int pass = 0; pass < 3; pass++) {
+    for (int q = 0; q < response->n_probes; q++) {
+      if (q < MAX_PLACES)
+        propose_place(&p, rows, POST_PROBE, q, pass, harmonics);
+      else
+        p.left_out += pass == 2 ? 6 : 2 - pass;
+    }
+    for (int c = 0; c < response->n_pairs; c++) {
+      if (c < MAX_PLACES)
+        propose_place(&p, rows, POST_CONTACT, c, pass, harmonics);
+      else
+        p.left_out += pass == 2 ? 6 : 2 - pass;
+    }
+  }
+  return p;
+}
+
+/* ---------------------------------------------------------------- which points */
+
+/* Ends, special points, turns of amplitude or abscissa, changes of stability, and every stride-th. */
+static bool is_kept(const mhb_branch *branch, const double *x, const double *a, int i, int stride) {
+  if (i % stride == 0 || i == branch->n_points - 1 || branch->special[i]) return true;
+  bool top  = (a[i] - a[i - 1]) * (a[i + 1] - a[i]) <= 0;
+  bool turn = (x[i] - x[i - 1]) * (x[i + 1] - x[i]) <= 0;
+  return top || turn || branch->stable[i] != branch->stable[i - 1];
+}
+
+/* ---------------------------------------------------------------- writing */
+
+static void put_value(post_buffer *out, double value) {
+  post_put(out, isfinite(value) ? "%.7g" : "null", value);
+}
+
+static void put_triple(post_buffer *out, bool *first, int group, double at, double amplitude) {
+  post_put(out, "%s[%d,", *first ? "" : ",", group);
+  put_value(out, at);
+  post_put(out, ",");
+  put_value(out, amplitude);
+  post_put(out, "]");
+  *first = false;
+}
+
+static void put_track_point(const post_study *study, const post_track_point *p, int group,
+                            post_buffer *out) {
+  const mhb_branch *branch = &study->response->branch[p->branch];
+  double            all[]  = {p->n0,
+                              p->amplitude,
+                              p->at,
+                              p->edge,
+                              post_state(study->response, branch, p->point, 0),
+                              post_state(study->response, branch, p->point, 1),
+                              post_state(study->response, branch, p->point, 2),
+                              post_dissipation(study->response, branch, p->point)};
+  post_put(out, "[%d", group);
+  for (int i = 0; i < 8; i++) {
+    post_put(out, ",");
+    put_value(out, all[i]);
+  }
+  post_put(out, "]");
+}
+
+static shb_status put_track(const post_study *study, double *const *values, post_buffer *out) {
+  post_tracking t;
+  SHB_TRY(post_track(study, values, &t));
+  post_put(out, ",\"track\":[");
+  for (int i = 0; i < t.n; i++) {
+    post_put(out, i ? "," : "");
+    put_track_point(study, &t.point[i], study->curve[t.point[i].branch].group, out);
+  }
+  post_put(out, "],\"limits\":[");
+  bool first = true;
+  if (t.open.branch >= 0)
+    put_triple(out, &first, study->curve[t.open.branch].group, t.open.at, t.open.amplitude);
+  if (t.stuck.branch >= 0)
+    put_triple(out, &first, study->curve[t.stuck.branch].group, t.stuck.at, t.stuck.amplitude);
+  post_put(out, "]");
+  post_tracking_free(&t);
+  return SHB_OK;
+}
+
+static shb_status put_peaks(const post_study *study, double *const *values, post_buffer *out) {
+  bool first = true;
+  post_put(out, ",\"peaks\":[");
+  for (int b = 0; b < study->response->n_branches; b++) {
+    const mhb_branch *branch = &study->response->branch[b];
+    post_peak        *peak;
+    int               n;
+    const double     *x = post_abscissa_values(study->response, branch);
+    SHB_TRY(post_find_peaks(branch->n_points, x, values[b], &peak, &n));
+    for (int i = 0; i < n; i++)
+      put_triple(out, &first, study->curve[b].group, peak[i].at, peak[i].amplitude);
+    free(peak);
+  }
+  post_put(out, "]");
+  return SHB_OK;
+}
+
+static shb_status put_folds(const post_study *study, double *const *values, post_buffer *out) {
+  bool first = true;
+  post_put(out, ",\"folds\":[");
+  for (int b = 0; b < study->response->n_branches; b++) {
+    const mhb_branch *branch = &study->response->branch[b];
+    post_fold        *fold;
+    int               n;
+    if (study->curve[b].n_folds == 0) continue;
+    const double *x = post_abscissa_values(study->response, branch);
+    SHB_TRY(post_find_folds(branch->n_points, x, values[b], branch->special, &fold, &n));
+    for (int i = 0; i < n; i++)
+      put_triple(out, &first, study->curve[b].group, fold[i].at, fold[i].amplitude);
+    free(fold);
+  }
+  post_put(out, "]");
+  return SHB_OK;
+}
+
+/* The analysis of an output, and its row in every sheet. */
+static shb_status put_output(const post_study *study, const column *c, sheet *sheets,
+                             post_buffer *out) {
+  double **values;
+  SHB_TRY(post_values(study->response, c->output, c->quantity, &values));
+  post_put(out, ",\"axis\":\"%s\",\"quantity\":\"%s\"", post_axis_name(c->output),
+           c->quantity == POST_FIRST_HARMONIC ? "first harmonic" : "peak to peak");
+  shb_status status = put_track(study, values, out);
+  if (status == SHB_OK) status = put_peaks(study, values, out);
+  if (status == SHB_OK) status = put_folds(study, values, out);
+  for (int b = 0; b < study->response->n_branches; b++) {
+    sheet *s = &sheets[b];
+    for (int i = 0; i < s->n; i++)
+      s->data[(size_t)c->row * (size_t)s->n + (size_t)i] = (float)values[b][s->kept[i]];
+  }
+  post_values_free(study->response, values);
+  return status;
+}
+
+static void fill_spectrum(const mhb_response *response, const column *c, sheet *sheets) {
+  for (int b = 0; b < response->n_branches; b++)
+    for (int k = 0; k < c->n; k++)
+      for (int i = 0; i < sheets[b].n; i++)
+        sheets[b].data[(size_t)(c->row + k) * (size_t)sheets[b].n + (size_t)i] =
+            (float)post_amplitude(response, &response->branch[b], sheets[b].kept[i], c->output, k);
+}
+
+static shb_status put_columns(const post_study *study, const plan *p, bool spectra, sheet *sheets,
+                              post_buffer *out) {
+  const char *comma = "";
+  for (int i = 0; i < p->n; i++) {
+    const column *c = &p->column[i];
+    char          place[128];
+    if ((c->n > 0) != spectra) continue;
+    post_put(out, "%s\n{\"place\":", comma);
+    comma = ",";
+    post_place_name(study->response, c->output, place);
+    post_put_json(out, place);
+    post_put(out, ",\"row\":%d", c->row);
+    if (spectra) {
+      post_put(out, ",\"n\":%d", c->n);
+      fill_spectrum(study->response, c, sheets);
+    } else {
+      SHB_TRY(put_output(study, c, sheets, out));
+    }
+    post_put(out, "}");
+  }
+  return SHB_OK;
+}
+
+static double fixed_value(const post_study *study, const mhb_branch *branch, int point, int row) {
+  switch (row) {
+    case 0:
+      return post_abscissa_values(study->response, branch)[point];
+    case 1:
+    case 2:
+    case 3:
+      return post_state(study->response, branch, point, row - 1);
+    case 4:
+      return post_dissipation(study->response, branch, point);
+    case 5:
+      return post_error(branch, point);
+    case 6:
+      return branch->stable[point];
+    default:
+      return branch->special[point];
+  }
+}
+
+/* Choose the points of a branch and fill its fixed rows. */
+static shb_status make_sheet(const post_study *study, int b, int rows, int stride, sheet *s) {
+  const mhb_branch *branch = &study->response->branch[b];
+  const double     *x      = post_abscissa_values(study->response, branch);
+  size_t            points = (size_t)branch->n_points;
+  s->kept                  = malloc((points + 1) * sizeof *s->kept);
+  s->data                  = malloc((points * (size_t)rows + 1) * sizeof *s->data);
+  SHB_CHECK(s->kept && s->data, SHB_ERR_IO, "not enough memory for the report");
+  for (int i = 0; i < branch->n_points; i++)
+    if (is_kept(branch, x, study->curve[b].amplitude, i, stride)) s->kept[s->n++] = i;
+  for (int row = 0; row < FIXED_ROWS; row++)
+    for (int i = 0; i < s->n; i++)
+      s->data[(size_t)row * (size_t)s->n + (size_t)i] =
+          (float)fixed_value(study, branch, s->kept[i], row);
+  return SHB_OK;
+}
+
+static void put_branches(const post_study *study, int rows, const sheet *sheets, post_buffer *out) {
+  for (int b = 0; b < study->response->n_branches; b++) {
+    const mhb_branch *branch = &study->response->branch[b];
+    char              note[64];
+    post_branch_note(study->response, branch, note);
+    post_put(out,
+             "%s\n{\"group\":%d,\"n\":%d,\"complete\":%s,\"dots\":%s,\"reason\":", b ? "," : "",
+             study->curve[b].group, sheets[b].n, branch->complete ? "true" : "false",
+             branch->kind == MHB_BRANCH_INTEGRATION ? "true" : "false");
+    post_put_json(out, branch->reason ? branch->reason : "");
+    post_put(out, ",\"order\":%d,\"note\":", branch->order);
+    post_put_json(out, note);
+    post_put(out, ",\"data\":\"");
+    post_put_base64(out, (size_t)rows * (size_t)sheets[b].n, sheets[b].data);
+    post_put(out, "\"}");
+  }
+}
+
+static void put_groups(const post_study *study, post_buffer *out) {
+  static const char *const kind[] = {"nonlinear", "open", "stuck"};
+  for (int g = 0; g < study->n_groups; g++) {
+    const post_group *group = &study->group[g];
+    char              name[64];
+    post_group_name(group, name);
+    post_put(out, "%s{\"kind\":\"%s\",\"rank\":%d,\"n0\":", g ? "," : "", kind[group->kind],
+             group->rank);
+    put_value(out, group->n0);
+    post_put(out, ",\"name\":");
+    post_put_json(out, name);
+    post_put(out, "}");
+  }
+}
+
+static void put_abscissa(const post_abscissa *x, post_buffer *out) {
+  post_put(out,
+           "{\"parameter\":\"%s\",\"name\":\"%s\",\"unit\":\"%s\",\"scale\":%g,\"log\":%s,"
+           "\"range\":[%.9g,%.9g]}",
+           mhb_parameter_name(x->parameter), x->name, x->unit.name, x->unit.scale,
+           x->log ? "true" : "false", x->range[0], x->range[1]);
+}
+
+static shb_status put_all(const post_study *study, int chosen, sheet *sheets, post_buffer *out,
+                          int *left_out) {
+  int  stride = 1 + LEAST_ROWS * study->n_points / (BUDGET + 1);
+  plan p      = make_plan(study->response, study->n_points / stride);
+  *left_out   = p.left_out;
+  for (int b = 0; b < study->response->n_branches; b++)
+    SHB_TRY(make_sheet(study, b, p.rows, stride, &sheets[b]));
+  post_put(out, "{\"rows\":%d,\"chosen\":%d,\"log\":%s,\"abscissa\":", p.rows, chosen,
+           post_wants_log(study) ? "true" : "false");
+  put_abscissa(&study->abscissa, out);
+  post_put(out, ",\"groups\":[");
+  put_groups(study, out);
+  post_put(out, "],\"outputs\":[");
+  SHB_TRY(put_columns(study, &p, false, sheets, out));
+  post_put(out, "],\"spectra\":[");
+  SHB_TRY(put_columns(study, &p, true, sheets, out));
+  post_put(out, "],\"branches\":[");
+  put_branches(study, p.rows, sheets, out);
+  post_put(out, "]}");
+  return SHB_OK;
+}
+
+shb_status post_page_data(const post_study *study, int chosen, post_buffer *out, int *left_out) {
+  int    n      = study->response->n_branches;
+  sheet *sheets = calloc((size_t)n + 1, sizeof *sheets);
+  SHB_CHECK(sheets, SHB_ERR_IO, "not enough memory for the report");
+  shb_status status = put_all(study, chosen, sheets, out, left_out);
+  for (int b = 0; b < n; b++) {
+    free(sheets[b].kept);
+    free(sheets[b].data);
+  }
+  free(sheets);
+  return status;
+}

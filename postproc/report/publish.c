@@ -1,0 +1,110 @@
+#include "postproc/report/publish.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "postproc/analysis/findings.h"
+#include "postproc/report/csv.h"
+#include "postproc/report/picture.h"
+#include "postproc/report/report.h"
+
+typedef struct {
+  mhb_response    *response;
+  post_source      source;
+  post_study      *study;
+  post_convergence convergence;
+  modal_speeds     speeds;
+  post_campbell    campbell;
+  post_buffer      html, csv, svg, diagram;
+} work;
+
+/* The study's complaint with the file's name before it. */
+static shb_status make_study(const post_job *job, work *w) {
+  shb_status status = post_study_create(w->response, &w->study);
+  if (status != SHB_ERR_INPUT) return status;
+  char why[256];
+  snprintf(why, sizeof why, "%s", shb_message());
+  SHB_FAIL(status, "%s: %s", job->response, why);
+}
+
+/* The points by time integration become branches of the response. */
+static shb_status add_integration(const post_job *job, work *w) {
+  mhb_response *points;
+  if (!job->integration) return SHB_OK;
+  SHB_TRY(mhb_response_read(job->integration, &points));
+  shb_status status = mhb_response_merge(w->response, points);
+  mhb_response_destroy(points);
+  if (status != SHB_ERR_INPUT) return status;
+  char why[256];
+  snprintf(why, sizeof why, "%s", shb_message());
+  SHB_FAIL(status, "%s: %s", job->integration, why);
+}
+
+static shb_status add_campbell(const post_job *job, work *w) {
+  if (!job->modal) return SHB_OK;
+  SHB_TRY(modal_speeds_read(job->modal, &w->speeds));
+  if (w->speeds.n < 2) return SHB_OK;
+  w->campbell        = (post_campbell){&w->speeds, w->response->engine_order};
+  w->study->campbell = &w->campbell;
+  post_campbell_picture(&w->campbell, job->case_name, &w->diagram);
+  return SHB_OK;
+}
+
+static shb_status compose(const post_job *job, shb_progress *progress, work *w) {
+  double started = shb_seconds();
+  shb_progress_show(progress, 0, "reading %s", job->response);
+  SHB_TRY(mhb_response_read(job->response, &w->response));
+  SHB_TRY(add_integration(job, w));
+  SHB_TRY(post_source_open(job->response, &w->source));
+  SHB_TRY(make_study(job, w));
+  if (job->convergence) {
+    SHB_TRY(post_convergence_read(job->convergence, &w->convergence));
+    w->study->convergence = &w->convergence;
+  }
+  SHB_TRY(add_campbell(job, w));
+  shb_progress_note(progress, "read %d points on %d curves in %.2f s", w->study->n_points,
+                    w->response->n_branches, shb_seconds() - started);
+  started = shb_seconds();
+  shb_progress_show(progress, 30, "page");
+  SHB_TRY(post_report(w->study, &w->source, job->case_name, &w->html));
+  shb_progress_note(progress, "page, %.1f MB, in %.2f s", 1e-6 * (double)w->html.length,
+                    shb_seconds() - started);
+  started = shb_seconds();
+  shb_progress_show(progress, 70, "table");
+  post_csv(w->response, &w->csv);
+  post_picture(w->study, job->case_name, &w->svg);
+  shb_progress_note(progress, "table, %.1f MB, and picture in %.2f s", 1e-6 * (double)w->csv.length,
+                    shb_seconds() - started);
+  bool failed = w->html.failed || w->csv.failed || w->svg.failed || w->diagram.failed;
+  SHB_CHECK(!failed, SHB_ERR_IO, "%s: not enough memory for its report", job->response);
+  return SHB_OK;
+}
+
+static shb_status write_all(const post_job *job, const work *w) {
+  SHB_TRY(post_buffer_publish(&w->csv, job->csv));
+  SHB_TRY(post_buffer_publish(&w->svg, job->svg));
+  if (job->campbell && w->study->campbell) SHB_TRY(post_buffer_publish(&w->diagram, job->campbell));
+  return post_buffer_publish(&w->html, job->html);
+}
+
+shb_status post_publish(const post_job *job, shb_progress *progress, char **summary) {
+  work       w      = {0};
+  shb_status status = compose(job, progress, &w);
+  if (status == SHB_OK) status = write_all(job, &w);
+  if (status == SHB_OK && summary) {
+    post_buffer text = {0};
+    post_summary(w.study, &text);
+    *summary = text.text; /* NULL when there is nothing to say */
+  }
+  shb_progress_clear(progress);
+  post_study_destroy(w.study);
+  post_convergence_free(&w.convergence);
+  post_source_free(&w.source);
+  mhb_response_destroy(w.response);
+  post_buffer_free(&w.html);
+  post_buffer_free(&w.csv);
+  post_buffer_free(&w.svg);
+  post_buffer_free(&w.diagram);
+  modal_speeds_free(&w.speeds);
+  return status;
+}

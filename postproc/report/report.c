@@ -1,0 +1,281 @@
+#include "postproc/report/report.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "postproc/analysis/campbell.h"
+#include "postproc/analysis/findings.h"
+#include "postproc/draw/colour.h"
+#include "postproc/draw/number_format.h"
+#include "postproc/report/charts.h"
+#include "postproc/report/convergence_chart.h"
+#include "postproc/report/page.h"
+#include "postproc/report/page_data.h"
+#include "postproc/report/tables.h"
+
+/* ---------------------------------------------------------------- head */
+
+static void put_ramp(const post_study *study, bool dark, post_buffer *out) {
+  for (int i = 0; i < study->n_ranks; i++) {
+    char colour[8];
+    post_colour(study->n_ranks > 1 ? i / (study->n_ranks - 1.0) : 0.5, dark, colour);
+    post_put(out, ".c%d{color:%s}", i, colour);
+  }
+}
+
+/* A script in a document that may not reach anything else: the policy forbids every load from elsewhere. */
+static void put_head(const post_study *study, const char *case_name, post_buffer *out) {
+  post_put(out,
+           "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+           "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+           "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src "
+           "'unsafe-inline'; script-src 'unsafe-inline'; img-src data:\">\n<title>");
+  post_put_escaped(out, case_name);
+  post_put(out, " · forced response</title>\n<style>\n");
+  post_put_bytes(out, post_page_css, strlen(post_page_css));
+  put_ramp(study, false, out);
+  post_put(out, "\n@media screen and (prefers-color-scheme: dark){");
+  put_ramp(study, true, out);
+  post_put(out, "}\n%s%s</style>\n</head>\n", study->campbell ? post_campbell_css : "",
+           study->convergence ? post_convergence_css : "");
+}
+
+/* Rounded to a thousandth, so that rounding errors of an angle read 0. */
+static double degrees(double angle) {
+  return round(angle * 180e3 / M_PI) / 1e3;
+}
+
+static void put_lede(const post_study *study, const post_source *source, post_buffer *out) {
+  const mhb_response  *r = study->response;
+  const post_abscissa *x = &study->abscissa;
+  char                 lo[POST_NUMBER], hi[POST_NUMBER], deg[POST_NUMBER], frequency[POST_PLACE];
+  post_put(out, "<p class=\"lede\">");
+  if (study->n_ranks > 0)
+    post_put(out, "%d preload%s, ", study->n_ranks, study->n_ranks > 1 ? "s" : "");
+  if (post_at_one_frequency(study))
+    post_put(out, "%c%s ", study->n_ranks > 0 ? x->name[0] : toupper(x->name[0]), x->name + 1);
+  post_put(out, "%s to %s%s%s%s", post_plain(lo, x->range[0] / x->unit.scale, 5),
+           post_plain(hi, x->range[1] / x->unit.scale, 5), *x->unit.name ? "\u00a0" : "",
+           x->unit.name, post_frequency_text(study, frequency));
+  if (r->engine_order > 0) post_put(out, ", engine order %d", r->engine_order);
+  if (r->blades > 0) post_put(out, " on %d blades", r->blades);
+  post_put(out, ", ");
+  post_put_harmonics(r, out);
+  if (r->subharmonics > 1) post_put(out, " of ω/%d", r->subharmonics);
+  post_put(out, ", %d contact%s", r->n_pairs, r->n_pairs == 1 ? "" : "s");
+  for (int i = 0; i < r->n_interfaces; i++) {
+    post_put(out, i ? ", " : " (");
+    post_put_escaped(out, r->interface_name[i]);
+    if (i == r->lead) post_put(out, ", whose preloads are named");
+    if (i == r->n_interfaces - 1) post_put(out, ")");
+  }
+  post_put(out, ", ψ\u00a0=\u00a0%s°", post_plain(deg, degrees(r->psi), 3));
+  post_put(out, ", φ\u00a0=\u00a0%s°", post_plain(deg, degrees(r->phi), 3));
+  if (r->run_up) post_put(out, "; ");
+  post_put_run_up(study, out);
+  if (*source->created) {
+    post_put(out, ". Computed ");
+    post_put_escaped(out, source->created);
+  }
+  post_put(out, ".</p>\n");
+}
+
+static void put_header(const post_study *study, const post_source *source, const char *case_name,
+                       post_buffer *out) {
+  post_put(out,
+           "<body>\n<a class=\"skip\" href=\"#chart\">To the chart</a>\n<header class=\"top\">\n"
+           "<p class=\"kicker\">Shrouded blade · forced response</p>\n<h1>");
+  post_put_escaped(out, case_name);
+  post_put(out, "</h1>\n");
+  put_lede(study, source, out);
+  post_figures(study, out);
+  post_findings(study, out);
+  post_put(out, "</header>\n<main>\n");
+}
+
+/* ---------------------------------------------------------------- main chart */
+
+static void put_tools(post_buffer *out) {
+  post_put(out,
+           "<div class=\"tools\">\n<label>Where<select id=\"place\"></select></label>\n"
+           "<label>Motion<select id=\"axis\"></select></label>\n"
+           "<fieldset><legend>Measure</legend><span class=\"switch\">"
+           "<button type=\"button\" data-quantity=\"first harmonic\">First harmonic</button>"
+           "<button type=\"button\" data-quantity=\"peak to peak\">Peak to "
+           "peak</button></span></fieldset>\n"
+           "<fieldset><legend>Amplitude</legend><span class=\"switch\">"
+           "<button type=\"button\" data-scale=\"linear\">Linear</button>"
+           "<button type=\"button\" data-scale=\"log\">Logarithmic</button></span></fieldset>\n"
+           "<button type=\"button\" id=\"whole\">Whole range</button>\n</div>\n");
+}
+
+static void put_key(const post_group *group, int index, post_buffer *out) {
+  char classes[80] = "varying", name[64];
+  post_group_name(group, name);
+  if (group->kind != MHB_BRANCH_NONLINEAR)
+    snprintf(classes, sizeof classes, "limit %s", name);
+  else if (group->rank >= 0)
+    snprintf(classes, sizeof classes, "c%d", group->rank);
+  if (group->rank >= 0) {
+    char n0[POST_NUMBER];
+    snprintf(name, sizeof name, "%s\u00a0N", post_plain(n0, group->n0, 5));
+  }
+  post_put(out,
+           "<li><span class=\"key %s\" data-group=\"%d\"><svg viewBox=\"0 0 26 10\" "
+           "aria-hidden=\"true\">"
+           "<path class=\"line %s\" d=\"M1 5h24\"/></svg><span>%s</span></span></li>\n",
+           classes, index, classes, name);
+}
+
+static void put_keys(const post_study *study, post_buffer *out) {
+  post_put(out, "<ul class=\"keys\" aria-label=\"Curves shown\">\n<li class=\"lead\">%s</li>\n",
+           study->n_ranks > 0 ? "Preload n₀" : "Curves");
+  for (int g = 0; g < study->n_groups; g++)
+    if (!study->group[g].empty) put_key(&study->group[g], g, out);
+  post_put(out, "</ul>\n");
+}
+
+static void put_main(const post_study *study, const char *case_name, post_buffer *out) {
+  char frequency[POST_PLACE];
+  post_put(out,
+           "<section id=\"chart\">\n<h2>Forced response%s</h2>\n<div class=\"card\"><figure>\n",
+           post_frequency_text(study, frequency));
+  put_tools(out);
+  post_put(out, "<div class=\"chart\">\n");
+  post_chart_response(study, case_name, out);
+  post_put(out, "<div id=\"readout\" class=\"readout\" hidden></div>\n</div>\n");
+  put_keys(study, out);
+  post_put(
+      out,
+      "<figcaption class=\"note\">Solid: stable, or stability not known. Dotted: unstable. Small "
+      "circles: folds; full ones: flips (period doubling) and Neimark-Sacker points. "
+      "Dashed: the linear limits, contact open (long) and stuck (short). Amplitude of the first "
+      "harmonic: the largest displacement it reaches in a cycle.</figcaption>\n"
+      "<p class=\"hint\">Point at a curve to read it, click it to see its contact and harmonics "
+      "below, drag across "
+      "to zoom, double-click for the whole range. Keyboard: arrows move along and between curves, "
+      "Enter "
+      "chooses, Escape resets.</p>\n<p id=\"spoken\" class=\"hidden\" aria-live=\"polite\"></p>\n"
+      "</figure></div>\n</section>\n");
+}
+
+/* ---------------------------------------------------------------- the other charts */
+
+static void put_tracking(const post_study *study, post_buffer *out) {
+  if (study->tracking.n < 2) return;
+  post_put(
+      out,
+      "<section>\n<h2>Peak against preload</h2>\n<p class=\"note\">Each preload’s highest peak, "
+      "joined; lesser peaks are the "
+      "faint dots. An open ring marks a largest value at the edge of the %s range.</p>\n"
+      "<div class=\"card\"><figure><div class=\"chart\">\n",
+      post_at_one_frequency(study) ? "parameter’s" : "frequency");
+  post_chart_tracking(study, out);
+  post_put(out, "</div></figure></div>\n</section>\n");
+}
+
+static void put_contact(const post_study *study, int chosen, post_buffer *out) {
+  if (study->response->n_pairs < 1) return;
+  post_put(out, "<div class=\"pair\">\n");
+  if (study->tracking.n > 0) {
+    post_put(out,
+             "<div class=\"card\"><figure><h3>At the highest peak, by preload</h3><div "
+             "class=\"chart\">\n");
+    post_chart_state(study, out);
+    post_put(out, "</div></figure></div>\n");
+  }
+  post_put(out, "<div class=\"card\"><figure><h3>Along the curve</h3><div class=\"chart\">\n");
+  post_chart_along(study, chosen, out);
+  post_put(out,
+           "</div></figure></div>\n</div>\n"
+           "<ul class=\"legend\"><li class=\"stick\"><i></i><span>stuck</span></li>"
+           "<li class=\"slip\"><i></i><span>slipping</span></li>"
+           "<li class=\"gap\"><i></i><span>open</span></li>"
+           "<li>Mean over the contacts; energy of all contacts.</li></ul>\n");
+}
+
+static void put_details(const post_study *study, int chosen, post_buffer *out) {
+  if (chosen < 0) return;
+  char name[64];
+  bool followed = study->abscissa.parameter == MHB_IN_N0;
+  post_group_name(&study->group[study->curve[chosen].group], name);
+  post_put(out,
+           "<section>\n<h2>Contact and harmonics</h2>\n<p class=\"note\">To begin with along the "
+           "%scurve%s%s%s.</p>\n"
+           "<div class=\"tools\"><label>Curve<select id=\"curve\"></select></label></div>\n",
+           followed ? "first " : "", followed ? "" : " of ", followed ? "" : name,
+           study->tracking.best >= 0 ? ", the one with the lowest peak" : "");
+  put_contact(study, chosen, out);
+  post_put(out,
+           "<div class=\"card\"><figure><h3>Harmonics along the curve</h3><div class=\"chart\">\n");
+  post_chart_harmonics(study, chosen, out);
+  post_put(out, "</div></figure></div>\n</section>\n");
+}
+
+/* ---------------------------------------------------------------- tables and provenance */
+
+static void put_source_row(const char *label, const char *text, post_buffer *out) {
+  if (!*text) return;
+  post_put(out, "<dt>%s</dt><dd>", label);
+  post_put_escaped(out, text);
+  post_put(out, "</dd>\n");
+}
+
+static void put_source(const post_source *source, post_buffer *out) {
+  post_put(out, "<section>\n<h2>Case and provenance</h2>\n<dl class=\"source\">\n");
+  put_source_row("Case file", source->case_path, out);
+  put_source_row("Computed by", source->command, out);
+  put_source_row("Revision", source->revision, out);
+  put_source_row("Computed", source->created, out);
+  put_source_row("Page made by", shb_revision(), out);
+  post_put(out, "</dl>\n<h3>Settings</h3>\n");
+  post_table_settings(source->settings, out);
+  if (*source->case_text) {
+    post_put(out,
+             "<h3>The case, verbatim</h3>\n<pre tabindex=\"0\" aria-label=\"Case file\"><code>");
+    post_put_escaped(out, source->case_text);
+    post_put(out, "</code></pre>\n");
+  }
+  post_put(out, "</section>\n");
+}
+
+static void put_tables(const post_study *study, post_buffer *out) {
+  post_put(out, "<section>\n<h2>Peaks and folds</h2>\n");
+  post_table_peaks(study, out);
+  post_put(out, "</section>\n<section>\n<h2>Numerical quality</h2>\n");
+  post_table_quality(study, out);
+  post_put(out, "</section>\n<section>\n<h2>Modes</h2>\n");
+  post_table_modes(study->response, out);
+  post_put(out, "</section>\n");
+}
+
+shb_status post_report(const post_study *study, const post_source *source, const char *case_name,
+                       post_buffer *out) {
+  int chosen = post_chosen_branch(study), left_out = 0;
+  put_head(study, case_name, out);
+  put_header(study, source, case_name, out);
+  put_main(study, case_name, out);
+  put_tracking(study, out);
+  put_details(study, chosen, out);
+  if (study->campbell) post_campbell_section(study->campbell, out);
+  if (study->convergence) post_convergence_section(study->convergence, out);
+  put_tables(study, out);
+  put_source(source, out);
+  post_put(out, "</main>\n<script type=\"application/json\" id=\"data\">\n");
+  SHB_TRY(post_page_data(study, chosen, out, &left_out));
+  post_put(out, "\n</script>\n<footer>");
+  if (left_out > 0)
+    post_put(out,
+             "To keep this page small its charts leave out %d outputs; the response file and the "
+             "CSV have all. ",
+             left_out);
+  post_put(out,
+           "Displacements in SI in the CSV beside this page. Works without "
+           "network.</footer>\n<script>\n");
+  post_put_bytes(out, post_page_js, strlen(post_page_js));
+  post_put(out, "</script>\n</body>\n</html>\n");
+  SHB_CHECK(!out->failed, SHB_ERR_IO, "not enough memory for the report");
+  return SHB_OK;
+}

@@ -1,0 +1,224 @@
+#include "postproc/report/tables.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "postproc/draw/number_format.h"
+
+/* A verdict's bounds on the largest error estimate of a curve. */
+static const double FINE = 1e-3, USABLE = 1e-2;
+
+/* First cell of a row: swatch and name of the branch's group. */
+static void put_curve_cell(const post_study *study, int b, post_buffer *out) {
+  const post_group *group = &study->group[study->curve[b].group];
+  char              name[64], note[64];
+  post_group_name(group, name);
+  post_branch_note(study->response, &study->response->branch[b], note);
+  if (group->rank >= 0)
+    post_put(out, "<tr><th scope=\"row\"><i class=\"swatch c%d\"></i>%s%s</th>", group->rank, name,
+             note);
+  else
+    post_put(out, "<tr><th scope=\"row\"><i class=\"swatch\"></i>%s%s</th>", name, note);
+}
+
+static void put_cell(post_buffer *out, const char *text) {
+  post_put(out, "<td>%s</td>", text);
+}
+
+static void put_peak_row(const post_study *study, int b, const post_peak *peak, post_unit unit,
+                         post_buffer *out) {
+  char number[POST_NUMBER];
+  put_curve_cell(study, b, out);
+  post_put(out, "<td class=\"words\">%s</td>",
+           !peak->edge                           ? "peak"
+           : peak->level                         ? "everywhere"
+           : study->response->branch[b].complete ? "edge of range"
+                                                 : "end of curve");
+  put_cell(out, post_abscissa_number(&study->abscissa, peak->level ? NAN : peak->at, 6, number));
+  put_cell(out, post_number(number, peak->amplitude / unit.scale, 4));
+  if (!post_at_one_frequency(study)) {
+    put_cell(out, post_number(number, peak->bandwidth, 3));
+    put_cell(out, post_percent(number, peak->damping));
+  }
+  post_put(out, "</tr>\n");
+}
+
+static void put_valley_row(const post_study *study, int b, const post_peak *valley, post_unit unit,
+                           post_buffer *out) {
+  char number[POST_NUMBER];
+  if (valley->edge) return;
+  put_curve_cell(study, b, out);
+  post_put(out, "<td class=\"words\">valley</td>");
+  put_cell(out, post_abscissa_number(&study->abscissa, valley->at, 6, number));
+  put_cell(out, post_number(number, valley->amplitude / unit.scale, 4));
+  post_put(out, "</tr>\n");
+}
+
+static void put_fold_row(const post_study *study, int b, const post_fold *fold, post_unit unit,
+                         post_buffer *out) {
+  char number[POST_NUMBER];
+  put_curve_cell(study, b, out);
+  post_put(out, "<td class=\"words\">fold, sweeping %s</td>", fold->upper ? "up" : "down");
+  put_cell(out, post_abscissa_number(&study->abscissa, fold->at, 6, number));
+  put_cell(out, post_number(number, fold->amplitude / unit.scale, 4));
+  post_put(out, "%s</tr>\n", post_at_one_frequency(study) ? "" : "<td></td><td></td>");
+}
+
+void post_table_peaks(const post_study *study, post_buffer *out) {
+  post_unit unit = post_unit_length(study->largest);
+  char      place[128], label[POST_LABEL], frequency[POST_PLACE];
+  bool      widths = !post_at_one_frequency(study);
+  post_place_name(study->response, study->primary, place);
+  post_abscissa_label(&study->abscissa, "", label);
+  label[0] = (char)toupper(label[0]);
+  post_put(out, "<div class=\"scroll\"><table><caption>Peaks%s and folds of ",
+           widths ? "" : ", valleys");
+  post_put_escaped(out, place);
+  post_put(out,
+           " %s%s, first harmonic.%s</caption>\n<thead><tr>"
+           "<th scope=\"col\">Curve</th><th scope=\"col\" class=\"words\">What</th><th "
+           "scope=\"col\">%s</th><th scope=\"col\">Amplitude, %s</th>%s</tr></thead>\n<tbody>\n",
+           post_axis_name(study->primary), post_frequency_text(study, frequency),
+           widths ? " Damping is that of a linear resonance as wide at half power; &ldquo;–&rdquo; "
+                    "where the curve does not fall that far on both sides."
+                  : "",
+           label, unit.name,
+           widths ? "<th scope=\"col\">Half-power width, Hz</th><th scope=\"col\">Equivalent "
+                    "damping</th>"
+                  : "");
+  for (int g = 0; g < study->n_groups; g++)
+    for (int b = 0; b < study->response->n_branches; b++) {
+      const post_curve *c = &study->curve[b];
+      if (c->group != g) continue;
+      for (int i = 0; i < c->n_peaks; i++) put_peak_row(study, b, &c->peak[i], unit, out);
+      for (int i = 0; i < c->n_valleys; i++) put_valley_row(study, b, &c->valley[i], unit, out);
+      for (int i = 0; i < c->n_folds; i++) put_fold_row(study, b, &c->fold[i], unit, out);
+    }
+  post_put(out, "</tbody></table></div>\n");
+}
+
+/* Largest finite value, NAN if none; 0 counts as not estimated. */
+static double largest(int n, const double *x) {
+  double most = NAN;
+  for (int i = 0; i < n; i++)
+    if (isfinite(x[i]) && x[i] > 0) most = fmax(most, x[i]);
+  return most;
+}
+
+static const char *verdict(const mhb_branch *branch, double worst) {
+  if (!branch->complete) return "<td class=\"bad\">incomplete</td>";
+  if (branch->kind == MHB_BRANCH_OPEN || branch->kind == MHB_BRANCH_STUCK)
+    return "<td class=\"good\">linear</td>";
+  if (isnan(worst)) return "<td>not estimated</td>";
+  return worst <= FINE     ? "<td class=\"good\">fine</td>"
+         : worst <= USABLE ? "<td class=\"fair\">usable</td>"
+                           : "<td class=\"bad\">coarse</td>";
+}
+
+static int sum_of(int n, const int *x) {
+  int sum = 0;
+  for (int i = 0; i < n; i++) sum += x[i];
+  return sum;
+}
+
+static void put_quality_row(const post_study *study, int b, post_buffer *out) {
+  const mhb_branch *branch = &study->response->branch[b];
+  const double *part[] = {branch->error_newton, branch->error_truncation, branch->error_sampling,
+                          branch->error_modal};
+  char          number[POST_NUMBER];
+  int           n = branch->n_points, iterations = 0;
+  double        seconds = 0, worst = NAN;
+  for (int p = 0; p < n; p++) {
+    iterations += branch->iterations[p];
+    seconds += branch->seconds[p];
+  }
+  put_curve_cell(study, b, out);
+  if (branch->kind == MHB_BRANCH_INTEGRATION) iterations = sum_of(n, branch->periods);
+  post_put(out, "<td>%d</td><td>%d</td><td>%s</td>", n, iterations,
+           post_number(number, seconds, 2));
+  for (int e = 0; e < 4; e++) {
+    double most = largest(n, part[e]);
+    worst       = fmax(worst, most);
+    put_cell(out, post_number(number, most, 2));
+  }
+  post_put(out, "%s<td class=\"words\">", verdict(branch, worst));
+  post_put_escaped(out, branch->reason ? branch->reason : "");
+  post_put(out, "</td></tr>\n");
+}
+
+void post_table_quality(const post_study *study, post_buffer *out) {
+  post_put(
+      out,
+      "<div class=\"scroll\"><table><caption>Largest error estimates along each curve, relative to "
+      "the "
+      "motion. Time integration: periods for iterations, the return map for Newton, steps for "
+      "sampling. Fine: all at most 0.1&nbsp;%%; usable: at most 1&nbsp;%%; coarse: above (more "
+      "harmonics or "
+      "modes are needed); &ldquo;–&rdquo;: not estimated.</caption>\n<thead><tr><th "
+      "scope=\"col\">Curve</th>"
+      "<th scope=\"col\">Points</th><th scope=\"col\">Iterations</th><th scope=\"col\">Time, s</th>"
+      "<th scope=\"col\">Newton</th><th scope=\"col\">Truncation</th><th "
+      "scope=\"col\">Sampling</th>"
+      "<th scope=\"col\">Modal</th><th scope=\"col\">Verdict</th><th "
+      "scope=\"col\" class=\"words\">Ended</th></tr></thead>"
+      "\n<tbody>\n");
+  for (int g = 0; g < study->n_groups; g++)
+    for (int b = 0; b < study->response->n_branches; b++)
+      if (study->curve[b].group == g) put_quality_row(study, b, out);
+  post_put(out, "</tbody></table></div>\n");
+}
+
+void post_table_modes(const mhb_response *response, post_buffer *out) {
+  if (response->n_modes == 0) {
+    post_put(out, "<p>The response file does not list the modes it was computed from.</p>\n");
+    return;
+  }
+  post_put(out,
+           "<div class=\"scroll\"><table><caption>Modes of the blade with its shrouds "
+           "free%s.</caption>\n"
+           "<thead><tr><th scope=\"col\">Mode</th><th scope=\"col\">Frequency, Hz</th>"
+           "<th scope=\"col\">Damping ratio, %%</th><th scope=\"col\">Relative "
+           "residual</th></tr></thead>\n<tbody>\n",
+           response->run_up ? ", at the highest speed of the run-up" : "");
+  for (int i = 0; i < response->n_modes; i++) {
+    char number[POST_NUMBER];
+    post_put(out, "<tr><th scope=\"row\">%d</th>", i + 1);
+    put_cell(out, post_number(number, response->mode_frequency[i], 7));
+    put_cell(out, post_plain(number, 100 * response->mode_damping[i], 4));
+    put_cell(out,
+             post_number(number, response->mode_residual ? response->mode_residual[i] : NAN, 2));
+    post_put(out, "</tr>\n");
+  }
+  post_put(out, "</tbody></table></div>\n");
+}
+
+static void put_setting(const char *line, size_t n, post_buffer *out) {
+  char text[512];
+  snprintf(text, sizeof text, "%.*s", (int)(n < 500 ? n : 500), line);
+  char *equal = strstr(text, " = ");
+  post_put(out, "<tr><th scope=\"row\"><code>");
+  if (equal) *equal = '\0';
+  post_put_escaped(out, text);
+  post_put(out, "</code></th><td class=\"words\">");
+  if (equal) post_put_escaped(out, equal + 3);
+  post_put(out, "</td></tr>\n");
+}
+
+void post_table_settings(const char *settings, post_buffer *out) {
+  if (!*settings) {
+    post_put(out, "<p>The response file holds no settings.</p>\n");
+    return;
+  }
+  post_put(out,
+           "<div class=\"scroll\"><table class=\"settings\"><caption>Every key the harmonic "
+           "balance depends on, "
+           "in SI units.</caption><tbody>\n");
+  while (*settings) {
+    size_t n = strcspn(settings, "\n");
+    if (n > 0) put_setting(settings, n, out);
+    settings += n + (settings[n] == '\n');
+  }
+  post_put(out, "</tbody></table></div>\n");
+}

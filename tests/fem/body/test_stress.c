@@ -1,0 +1,183 @@
+/* Stresses at the nodes, reactions at the clamp. */
+#include "fem/body/stress.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+#include "fem/body/equilibrium.h"
+#include "fem/element/finite_strain.h"
+#include "tests/support/fem.h"
+
+static const double size[3] = {.21, .13, .08};
+static fem_element *element;
+
+typedef void (*motion)(const double x[3], double u[3]);
+
+/* Greatest difference from the stress wanted, relative to its greatest value. */
+static double stress_error(const int cells[3], double shake, const fem_material *material,
+                           motion move, motion normal, motion shear) {
+  mesh_fe mesh = make_box(size, cells);
+  shake_inside(&mesh, size, shake);
+  const fem_body body = {&mesh, material, element, {MESH_AXIS_X, 0}, 0};
+  double        *u = calloc(3 * (size_t)mesh.n_nodes, sizeof *u), error = 0, most = 0;
+  double(*stress)[FEM_STRESSES] = calloc((size_t)mesh.n_nodes, sizeof *stress);
+  for (int i = 0; i < mesh.n_nodes; i++) move(mesh.coordinates + 3 * i, u + 3 * i);
+  assert_int_equal(fem_nodal_stress(&body, u, stress), 0);
+  for (int i = 0; i < mesh.n_nodes; i++) {
+    double wanted[6];
+    normal(mesh.coordinates + 3 * i, wanted);
+    shear(mesh.coordinates + 3 * i, wanted + 3);
+    for (int c = 0; c < 6; c++) {
+      error = fmax(error, fabs(stress[i][c] - wanted[c]));
+      most  = fmax(most, fabs(wanted[c]));
+    }
+  }
+  free(u), free(stress);
+  mesh_fe_free(&mesh);
+  return error / most;
+}
+
+static void nothing(const double x[3], double s[3]) {
+  (void)x;
+  s[0] = s[1] = s[2] = 0;
+}
+
+/* Stretched by 1.1, .95, 1.02 and turned by 90 degrees about z. */
+static void stretch(const double x[3], double u[3]) {
+  u[0] = -.95 * x[1] - x[0];
+  u[1] = 1.1 * x[0] - x[1];
+  u[2] = .02 * x[2];
+}
+
+/* sigma_i = l_i^2 S_i / (l_1 l_2 l_3); turned, x and y change places. */
+static void stretched(const double x[3], double s[3]) {
+  const double   l[3] = {1.1, .95, 1.02}, volume = l[0] * l[1] * l[2];
+  const fem_lame c = fem_lame_of(&steel);
+  double         E[3], sigma[3], trace = 0;
+  (void)x;
+  for (int d = 0; d < 3; d++) trace += E[d] = (l[d] * l[d] - 1) / 2;
+  for (int d = 0; d < 3; d++)
+    sigma[d] = l[d] * l[d] * (c.lambda * trace + 2 * c.mu * E[d]) / volume;
+  s[0] = sigma[1], s[1] = sigma[0], s[2] = sigma[2];
+}
+
+static void constant_stress_is_exact(void **state) {
+  (void)state;
+  const int cells[3] = {3, 2, 2};
+  check_below(stress_error(cells, .004, &steel, stretch, stretched, nothing), 1e-12, "stretch");
+}
+
+static const fem_material cork = {.E = 2.1e11, .rho = 7850};
+static const double       bend = 1e-9;
+
+/* Pure bending in the plane x, z. */
+static void bending(const double x[3], double u[3]) {
+  u[0] = bend * x[0] * x[2];
+  u[1] = 0;
+  u[2] = -bend * x[0] * x[0] / 2;
+}
+
+static void bent(const double x[3], double s[3]) {
+  s[0] = cork.E * bend * x[2];
+  s[1] = s[2] = 0;
+}
+
+/* Down to the surface: corners and edges of the box too. */
+static void linear_stress_is_exact(void **state) {
+  (void)state;
+  const int cells[3] = {3, 2, 2};
+  check_below(stress_error(cells, 0, &cork, bending, bent, nothing), 1e-8, "bending");
+}
+
+static void wave(const double x[3], double u[3]) {
+  u[0] = bend * sin(14 * x[1]);
+  u[1] = u[2] = 0;
+}
+
+static void waved(const double x[3], double s[3]) { /* xy, yz, xz */
+  s[0] = cork.E / 2 * bend * 14 * cos(14 * x[1]);
+  s[1] = s[2] = 0;
+}
+
+static void error_is_of_second_order(void **state) {
+  (void)state;
+  const int cells[3] = {2, 3, 1}, finer[3] = {4, 6, 2}, finest[3] = {8, 12, 4};
+  double    error[3] = {stress_error(cells, 0, &cork, wave, nothing, waved),
+                        stress_error(finer, 0, &cork, wave, nothing, waved),
+                        stress_error(finest, 0, &cork, wave, nothing, waved)};
+  print_message("stress at the nodes, errors %.1e %.1e %.1e\n", error[0], error[1], error[2]);
+  for (int i = 0; i < 2; i++) assert_true(error[i] / error[i + 1] > 3.4);
+}
+
+/* What the clamp bears is the centrifugal force of the deformed body, to its moment about the engine axis. */
+static void reactions_add_up_to_the_load(void **state) {
+  (void)state;
+  const int       cells[3] = {3, 2, 2};
+  mesh_fe         mesh     = make_box(size, cells);
+  const fem_body  body     = {&mesh, &steel, element, {MESH_AXIS_Z, 4000}, 0};
+  fem_system      system;
+  fem_equilibrium at;
+  double          load[3], sum[3] = {0}, turn = 0, most = 0;
+  double(*force)[3] = calloc((size_t)mesh.n_nodes, sizeof *force);
+  shake_inside(&mesh, size, .004);
+  assert_int_equal(fem_system_create(PETSC_COMM_SELF, &mesh, &steel, FEM_STANDARD, &system), 0);
+  assert_int_equal(fem_equilibrium_solve(&body, &system, NULL, &at), 0);
+  assert_int_equal(fem_balance(&body, at.displacement, force, load), 0);
+  for (int i = 0; i < mesh.n_nodes; i++) {
+    const double *x = mesh.coordinates + 3 * i;
+    for (int d = 0; d < 3; d++) {
+      if (system.row[i] < 0)
+        sum[d] += force[i][d];
+      else
+        most = fmax(most, fabs(force[i][d]));
+    }
+    if (system.row[i] < 0) turn += x[0] * force[i][1] - x[1] * force[i][0];
+  }
+  check_below(most, 1e-9 * fabs(load[0]), "out of balance at free nodes");
+  for (int d = 0; d < 3; d++)
+    check_below(sum[d] + load[d], 1e-9 * fabs(load[0]), "reaction and load");
+  check_below(turn, 1e-9 * fabs(load[0]) * size[0], "moment about the engine axis");
+  /* mass times Omega^2 times the centre's distance: at rest it is known, and a stretched body's is greater */
+  double mass = steel.rho * size[0] * size[1] * size[2], rest = mass * 4000. * 4000 * size[0] / 2;
+  assert_true(load[0] > rest && load[0] < 1.01 * rest);
+  check_below(load[2], 1e-12 * load[0], "load along the axis");
+  print_message("load %.10g N (at rest %.10g), reaction off by %.1e\n", load[0], rest,
+                fabs(sum[0] + load[0]) / load[0]);
+  free(force);
+  fem_equilibrium_free(&at);
+  fem_system_destroy(&system);
+  mesh_fe_free(&mesh);
+}
+
+static int tables(void **state) {
+  (void)state;
+  element = malloc(sizeof *element);
+  return !element || fem_element_create(used_elements(), FEM_STANDARD, element) != 0;
+}
+
+static int hexahedra(void **state) {
+  use_elements(MESH_HEX20);
+  return tables(state);
+}
+
+static int free_tables(void **state) {
+  (void)state;
+  free(element);
+  return 0;
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(constant_stress_is_exact), cmocka_unit_test(linear_stress_is_exact),
+      cmocka_unit_test(error_is_of_second_order), cmocka_unit_test(reactions_add_up_to_the_load)};
+  if (PetscInitialize(NULL, NULL, NULL, NULL)) return 1;
+  int failures = cmocka_run_group_tests_name("tet10", tests, tables, free_tables);
+  failures += cmocka_run_group_tests_name("hex20", tests, hexahedra, free_tables);
+  PetscFinalize();
+  return failures;
+}

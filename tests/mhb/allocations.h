@@ -1,9 +1,0 @@
-/* Allocations by a test program, counted by the linker's --wrap of malloc, calloc, realloc and aligned_alloc. */
-#ifndef TESTS_MHB_ALLOCATIONS_H
-#define TESTS_MHB_ALLOCATIONS_H
-
-#include <stddef.h>
-
-extern long allocations;
-
-#endif

@@ -1,0 +1,133 @@
+/* What leaving out modes does to a solution: the estimate against the solution with all modes, through a resonance of the blade with its contact, where
+ * the contact answers with many times what the receptance lacks. */
+#include "mhb/balance/modal_error.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "mhb/balance/truncation_error.h"
+#include "mhb/branches/main_branch.h"
+#include "modal/model/reduce.h"
+#include "tests/support/periodic.h"
+#include "tests/support/three_degree.h"
+
+static const double PI = 3.14159265358979323846;
+
+enum { STEPS = 41 };
+
+typedef struct {
+  mhb_residual   *residual;
+  mhb_newton     *newton;
+  mhb_truncation *truncation;
+  double         *x;
+} balance;
+
+static void balance_create(const modal_model *model, const mhb_settings *s, balance *b) {
+  assert_int_equal(mhb_residual_create(model, s, &b->residual), SHB_OK);
+  mhb_residual_preload(b->residual, s->n0[0]);
+  assert_int_equal(mhb_newton_create(b->residual->n, &b->newton), SHB_OK);
+  assert_int_equal(mhb_truncation_create(b->residual, &b->truncation), SHB_OK);
+  b->x = calloc((size_t)b->residual->n, sizeof *b->x);
+}
+
+static void balance_destroy(balance *b) {
+  mhb_truncation_destroy(b->truncation);
+  mhb_newton_destroy(b->newton);
+  mhb_residual_destroy(b->residual);
+  free(b->x);
+}
+
+/* The lowest modes of the beam and three terms for the others, which are not damped; the tail from its definition. */
+static void few_modes(int modes, modal_model *all, modal_model *few) {
+  tip_contact_beam_model(1, all);
+  tip_contact_beam_model(1, few);
+  for (int i = modes; i < all->n_modes; i++) all->damping_ratio[i] = few->damping_ratio[i] = 0;
+  assert_int_equal(modal_model_keep(few, modes, true), SHB_OK);
+  modal_model_drop_residual_modes(few);
+  few->tail_order   = 3;
+  few->contact_tail = calloc(6, sizeof *few->contact_tail);
+  few->load_tail    = calloc(2 * ((size_t)few->n_load + 1), sizeof *few->load_tail);
+  for (int c = 0; c < 3; c++)
+    for (int i = modes; i < all->n_modes; i++) {
+      double lambda = pow(2 * PI * all->frequency[i], 2), phi = all->right[c * all->n_modes + i];
+      few->contact_tail[2 * c] += phi * phi / pow(lambda, 4);
+      few->contact_tail[2 * c + 1] += phi * phi / pow(lambda, 5);
+    }
+}
+
+static void solve(balance *b, double omega) {
+  int iterations;
+  assert_int_equal(mhb_first_solution(b->newton, b->residual, omega, 1e-11, b->x, &iterations),
+                   MHB_CONVERGED);
+  mhb_residual_evaluate(b->residual, b->x, omega, b->newton->r, NULL, NULL);
+}
+
+/* Greatest error over the resonance, and how far the estimate is from it there and at worst. */
+static void compare(const char *where, int modes, double level, double n0, double from, double to,
+                    double least_error, double least_gain) {
+  modal_model all, few;
+  balance     exact, rough;
+  few_modes(modes, &all, &few);
+  mhb_settings s = ground_settings(.3, 2e6, 1e6, n0, 5);
+  s.engine_order = 1;
+  s.scale        = level;
+  balance_create(&all, &s, &exact);
+  balance_create(&few, &s, &rough);
+  double worst = 0, low = INFINITY, high = 0, gain = 0, slips = 0;
+  for (int i = 0; i < STEPS; i++) {
+    const double omega = 2 * PI * (from + (to - from) * i / (STEPS - 1));
+    solve(&exact, omega);
+    solve(&rough, omega);
+    mhb_truncation_error(rough.truncation, rough.x);
+    mhb_truncation *t        = rough.truncation;
+    double          estimate = mhb_modal_error(rough.residual, rough.x,
+                                      t->kind == MHB_TRUNCATION_NEWTON ? t->system : NULL);
+    double          off = 0, size = mhb_residual_vibration(rough.residual, rough.x), bare = 0;
+    for (int j = 0; j < rough.residual->n; j++) off += pow(rough.x[j] - exact.x[j], 2);
+    double error = sqrt(off) / size;
+    for (int c = 0; c < 3; c++)
+      bare = fmax(bare, modal_series_error(&few, omega, c) / few.residual_flexibility[4 * c + !c]);
+    slips = fmax(slips, rough.residual->info[0].share[MHB_SLIDE]);
+    worst = fmax(worst, error);
+    gain  = fmax(gain, error / bare);
+    if (error < 1e-9) continue;
+    low  = fmin(low, estimate / error);
+    high = fmax(high, estimate / error);
+  }
+  print_message(
+      "%s: slips for %.2f, error to %.1e, up to %.1f times that of the receptance; "
+      "estimate over error %.2f to %.2f\n",
+      where, slips, worst, gain, low, high);
+  assert_true(worst > least_error && gain > least_gain);
+  assert_true(low > 1. / 3 && high < 5);
+  balance_destroy(&exact);
+  balance_destroy(&rough);
+  modal_model_free(&all);
+  modal_model_free(&few);
+}
+
+static void stuck(void **state) {
+  (void)state;
+  compare("stuck, 3 modes of 20", 3, 1, 1e5, 700, 1050, 1e-2, 5);
+  compare("stuck, 6 modes", 6, 1, 1e5, 1500, 3500, 1e-4, 0);
+}
+
+static void slipping(void **state) {
+  (void)state;
+  compare("slip, 6 modes", 6, 100, 60, 600, 1100, 1e-7, 0);
+  compare("slip, 6 modes, hard", 6, 400, 60, 600, 1100, 1e-7, 0);
+  compare("slip, 4 modes", 4, 100, 60, 600, 900, 1e-5, 3);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(stuck), cmocka_unit_test(slipping)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,251 @@
+/* Where the linear limits resonate, and that a path finds what hardly moves the contact. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "mhb/branches/forced_response.h"
+#include "mhb/branches/record.h"
+#include "mhb/continuation/event_location.h"
+#include "tests/support/random_model.h"
+#include "tests/support/solution.h"
+#include "tests/support/three_degree.h"
+
+static const double PI = 3.14159265358979323846, SECOND = 1.437;
+
+enum { M = 5, UNKNOWNS = 3 * (2 * M + 1) };
+
+/* Contact along u alone. */
+static mhb_settings ground(double n0) {
+  mhb_settings s = random_settings(M);
+  s.to_ground    = true;
+  s.mu           = .3;
+  s.kv           = 1;
+  s.ku[0] = s.ku[2] = 1;
+  s.ku[1]           = 0;
+  s.n0[0]           = n0;
+  s.frequency[0]    = .8 / (2 * PI);
+  s.frequency[1]    = 2 / (2 * PI);
+  s.stability       = MHB_STABILITY_NEVER;
+  return s;
+}
+
+/* ---------------------------------------------------------------- places */
+
+static int has(const mhb_resonances *all, double value, double half, int k) {
+  for (int i = 0; i < all->n; i++) {
+    const mhb_resonance *a = &all->at[i];
+    if (a->k == k && fabs(a->value / value - 1) < 1e-9 && fabs(a->half / half - 1) < 1e-9) return 1;
+  }
+  return 0;
+}
+
+/* Two modes on a spring: w^2 of [1 + a^2, a b; a b, w2^2 + b^2] in closed form, the damping by the eigenvector. */
+static void places_are_those_of_both_limits(void **state) {
+  (void)state;
+  modal_model    model;
+  mhb_settings   s = ground(.1);
+  mhb_residual  *residual;
+  mhb_resonances all;
+  double         b = .7, z2 = .003, p = 2, q = SECOND * SECOND + b * b;
+  two_mode_model(SECOND, z2, b, 1, .02, &model);
+  assert_int_equal(mhb_residual_create(&model, &s, &residual), SHB_OK);
+  assert_int_equal(mhb_resonances_create(residual, .25, 2, &all), SHB_OK);
+  for (int i = 0; i < 2; i++) {
+    double square = .5 * (p + q) + (i ? .5 : -.5) * sqrt((p - q) * (p - q) + 4 * b * b);
+    double part   = b * b / (b * b + (square - p) * (square - p)); /* of the first mode */
+    assert_true(has(&all, sqrt(square), part * .01 + (1 - part) * z2 * SECOND, 1));
+  }
+  for (int k = 1; k <= 3; k++) {
+    assert_true(has(&all, 1. / k, .01 / k, k));
+    assert_true(has(&all, SECOND / k, z2 * SECOND / k, k));
+  }
+  for (int i = 1; i < all.n; i++) assert_true(all.at[i].value >= all.at[i - 1].value);
+  mhb_resonances_destroy(&all);
+  mhb_residual_follow(residual, MHB_IN_N0);
+  assert_int_equal(mhb_resonances_create(residual, .25, 2, &all), SHB_OK);
+  assert_int_equal(all.n, 0);
+  mhb_resonances_destroy(&all);
+  mhb_residual_destroy(residual);
+  modal_model_free(&model);
+}
+
+/* Upper root of the closed form above. */
+static double upper(double p, double q, double b) {
+  return sqrt(.5 * (p + q) + .5 * sqrt((p - q) * (p - q) + 4 * b * b));
+}
+
+/* From its free to its stuck place, as far apart as 32 half widths, the places of a mode leave no gap wider than two. */
+static void near_limits_leave_no_gap(void **state) {
+  (void)state;
+  for (double contact = .003; contact < .2; contact *= 1.5) {
+    modal_model    model;
+    mhb_settings   s = ground(.1);
+    mhb_residual  *residual;
+    mhb_resonances all;
+    two_mode_model(SECOND, 1e-3, contact, 1, .02, &model);
+    assert_int_equal(mhb_residual_create(&model, &s, &residual), SHB_OK);
+    assert_int_equal(mhb_resonances_create(residual, .8, 2, &all), SHB_OK);
+    double half = 1e-3 * SECOND, last = SECOND,
+           gap = upper(2, SECOND * SECOND + contact * contact, contact) - SECOND;
+    for (int i = 0; i < all.n && gap < 31 * half; i++) {
+      if (all.at[i].k != 1 || all.at[i].mode != 1) continue;
+      assert_true(all.at[i].value - last <= 2.001 * half);
+      last = all.at[i].value;
+    }
+    print_message("contact %.3f: %.2f half widths apart, places over %.2f\n", contact, gap / half,
+                  (last - SECOND) / half);
+    if (gap < 31 * half) assert_true(fabs(last - SECOND - gap) < .5 * half);
+    mhb_resonances_destroy(&all);
+    mhb_residual_destroy(residual);
+    modal_model_free(&model);
+  }
+}
+
+/* ---------------------------------------------------------------- curves */
+
+/* Axis c at probe[c stride]. */
+static double probe_at(const double complex *probe, int stride) {
+  double sum = 0;
+  for (int axis = 0; axis < 3; axis++) sum += pow(cabs(probe[axis * stride]), 2);
+  return sqrt(sum);
+}
+
+static mhb_response *sweep(const modal_model *model, const mhb_settings *s) {
+  mhb_response *r = NULL;
+  if (mhb_sweep(model, s, NULL, NULL, NULL, &r) != SHB_OK) fail_msg("%s", shb_message());
+  return r;
+}
+
+/* Largest motion of the probe about the second mode, and the peaks located there. */
+static double highest(const mhb_response *r, double width, int *peaks) {
+  const mhb_branch *b   = &r->branch[2];
+  int               K   = b->n_harmonics + 1;
+  double            top = 0;
+  *peaks                = 0;
+  for (int p = 0; p < b->n_points; p++) {
+    if (fabs(2 * PI * b->frequency[p] - SECOND) > width) continue;
+    top = fmax(top, probe_at(b->probe + (size_t)p * 3 * (size_t)K + 1, K));
+    *peaks += b->special[p] == MHB_PEAK;
+  }
+  return top;
+}
+
+/* Solutions at fixed frequencies, each without a guess. */
+static double truth(const modal_model *model, const mhb_settings *s, double half) {
+  double         top = 0, x[UNKNOWNS], r[UNKNOWNS];
+  mhb_residual  *residual;
+  double complex p[3], q[3];
+  assert_int_equal(mhb_residual_create(model, s, &residual), SHB_OK);
+  mhb_residual_preload(residual, s->n0[0]);
+  for (int i = -4; i <= 4; i++) {
+    double omega = SECOND + .1 * i * half;
+    cold_solution(model, s, omega, 1e-10, x);
+    mhb_residual_evaluate(residual, x, omega, r, NULL, NULL);
+    mhb_residual_force(residual, 1, p);
+    mhb_receptance_need(residual->receptance, 1);
+    mhb_receptance_probe(residual->receptance, 1, p, q);
+    top = fmax(top, probe_at(q, 1));
+  }
+  mhb_residual_destroy(residual);
+  return top;
+}
+
+/* Steps are up to .1 of the range, the resonance 1e-3 to 1e-4 of it: its peak is on the curve, and located. */
+static void light_modes_are_not_passed_over(void **state) {
+  (void)state;
+  static const double zeta[] = {2e-3, 3e-4, 5e-5}, contact[] = {1e-4, 7e-4, 3e-3}, n0[] = {.05, .2};
+  for (int i = 0; i < 18; i++) {
+    modal_model  model;
+    mhb_settings s    = ground(n0[i / 9]);
+    double       half = zeta[i % 3] * SECOND;
+    int          peaks;
+    two_mode_model(SECOND, zeta[i % 3], contact[i / 3 % 3], 1, .02, &model);
+    mhb_response *r   = sweep(&model, &s);
+    double        top = highest(r, half, &peaks), wanted = truth(&model, &s, half);
+    print_message("zeta %.0e, contact %.0e, n0 %.2f: %.5f of %.5f, %d points\n", zeta[i % 3],
+                  contact[i / 3 % 3], s.n0[0], top, wanted, r->branch[2].n_points);
+    assert_true(r->branch[2].complete && r->branch[2].n_points < 250);
+    assert_true(top > .999 * wanted && top < 1.01 * wanted);
+    assert_true(peaks >= 1);
+    mhb_response_destroy(r);
+    modal_model_free(&model);
+  }
+}
+
+/* A mode that nothing drives or that nothing shows changes no point of the curve. */
+static void what_is_not_felt_costs_nothing(void **state) {
+  (void)state;
+  modal_model   model;
+  mhb_settings  s = ground(.1);
+  mhb_response *r[3];
+  for (int i = 0; i < 3; i++) {
+    if (i == 0)
+      one_degree_model(.01, 1, .05, &model);
+    else
+      two_mode_model(SECOND, 1e-3, 0, i == 1 ? 1 : 0, i == 1 ? 0 : .02, &model);
+    r[i] = sweep(&model, &s);
+    modal_model_free(&model);
+  }
+  for (int i = 1; i < 3; i++) {
+    const mhb_branch *a = &r[0]->branch[2], *b = &r[i]->branch[2];
+    assert_int_equal(a->n_points, b->n_points);
+    for (int p = 0; p < a->n_points; p++)
+      assert_true(fabs(a->frequency[p] - b->frequency[p]) < 1e-9 * a->frequency[p]);
+  }
+  for (int i = 0; i < 3; i++) mhb_response_destroy(r[i]);
+}
+
+/* ---------------------------------------------------------------- locating */
+
+/* Jumps from -1000 to 1 at a value: Illinois gains a thousandth at a time, and halves every fourth step.
+ * As the tangent does where a curve folds in a kink. */
+static double jumping(const mhb_path *path, const mhb_path_point *point, void *context) {
+  (void)path;
+  return point->value < *(double *)context ? -1e3 : 1;
+}
+
+static void jumps_are_located(void **state) {
+  (void)state;
+  modal_model   model;
+  mhb_settings  s = ground(.1);
+  mhb_residual *residual;
+  mhb_path     *path;
+  double        x[UNKNOWNS], at;
+  one_degree_model(.01, 1, .05, &model);
+  assert_int_equal(mhb_residual_create(&model, &s, &residual), SHB_OK);
+  mhb_residual_preload(residual, .1);
+  assert_int_equal(mhb_path_create(residual, .8, 2, &path), SHB_OK);
+  cold_solution(&model, &s, 1.6, 1e-10, x);
+  assert_int_equal(mhb_path_start(path, x, 1.6, 1), MHB_CONVERGED);
+  for (int i = 0; i < 6; i++) {
+    assert_int_equal(mhb_path_step(path), MHB_PATH_ON);
+    double width = path->next.value - path->now.value;
+    for (int j = 1; j < 20; j++) {
+      double place = path->now.value + .05 * j * width;
+      assert_int_equal(mhb_path_locate(path, jumping, &place, -1e3, 1, &at), 1);
+      if (!(fabs(path->probe.value - place) < 1e-5 * width))
+        fail_msg("told as located %.1e of the step away", (path->probe.value - place) / width);
+    }
+    mhb_path_advance(path);
+  }
+  mhb_path_destroy(path);
+  mhb_residual_destroy(residual);
+  modal_model_free(&model);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(places_are_those_of_both_limits),
+      cmocka_unit_test(near_limits_leave_no_gap),
+      cmocka_unit_test(light_modes_are_not_passed_over),
+      cmocka_unit_test(what_is_not_felt_costs_nothing),
+      cmocka_unit_test(jumps_are_located),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,122 @@
+/* Campbell diagram of modes whose frequencies are known: f^2 = a + b Omega^2 exactly. */
+#include "postproc/analysis/campbell.h"
+#include "tests/support/check.h"
+
+enum { MODES = 4, SPEEDS = 4 };
+
+static const double TWO_PI         = 6.28318530717958647692;
+static const double a[MODES]       = {100. * 100, 300. * 300, 310. * 310, 900. * 900};
+static const double b[MODES]       = {.08, .05, .01, .02};
+static const double speeds[SPEEDS] = {0, 100, 350, 600};
+static double       value[SPEEDS][MODES], damping[MODES], shape[3 * MODES];
+static double _Complex force[4 * MODES];
+
+/* Modes 2 and 3 cross: the file holds them by frequency, the tracks say which is which. The load has harmonics 1 and 3. */
+static void make(modal_speeds *s) {
+  assert_ok(modal_speeds_create(SPEEDS, MODES, s));
+  for (int t = 0; t < MODES; t++) force[MODES + t] = force[3 * MODES + t] = 1;
+  for (int i = 0; i < SPEEDS; i++) {
+    s->speed[i] = speeds[i];
+    s->model[i] = (modal_model){.n_modes       = MODES,
+                                .n_pairs       = 1,
+                                .n_load        = 3,
+                                .frequency     = value[i],
+                                .damping_ratio = damping,
+                                .right         = shape,
+                                .modal_force   = force};
+    for (int t = 0; t < MODES; t++) {
+      int mode = t;
+      if (a[1] + b[1] * speeds[i] * speeds[i] > a[2] + b[2] * speeds[i] * speeds[i])
+        mode = t == 1 ? 2 : t == 2 ? 1 : t;
+      s->mode[i * MODES + t] = mode;
+      s->mac[i * MODES + t]  = .97;
+      value[i][mode]         = sqrt(a[t] + b[t] * speeds[i] * speeds[i]);
+    }
+  }
+}
+
+static void release(modal_speeds *s) {
+  memset(s->model, 0, SPEEDS * sizeof *s->model); /* not the tests' to free */
+  modal_speeds_free(s);
+}
+
+/* e^2 Omega^2 / (2 pi)^2 = a + b Omega^2, all that lie in the range. */
+static void crossings_are_exact(void **state) {
+  (void)state;
+  modal_speeds   s;
+  post_crossing *found;
+  int            n, wanted = 0, seen = 0;
+  make(&s);
+  assert_int_equal(s.mode[3 * MODES + 1], 2); /* they do cross */
+  const post_campbell campbell = {&s, 2};
+  assert_ok(post_campbell_crossings(&campbell, &n, &found));
+  for (int k = 1; k <= 3; k += 2)
+    for (int t = 0; t < MODES; t++) {
+      double slope = 2 * k / TWO_PI, square = a[t] / (slope * slope - b[t]);
+      bool   inside = square > 0 && square <= 600. * 600;
+      wanted += inside;
+      for (int i = 0; i < n && inside; i++) {
+        if (found[i].order != 2 * k || found[i].track != t) continue;
+        seen++;
+        assert_near(found[i].speed, sqrt(square), 1e-9 * 600);
+        assert_near(found[i].frequency, slope * sqrt(square), 1e-6);
+      }
+    }
+  assert_true(wanted >= 3);
+  assert_int_equal(seen, wanted);
+  assert_int_equal(n, wanted);
+  for (int i = 1; i < n; i++) assert_true(found[i].speed >= found[i - 1].speed);
+  free(found);
+  release(&s);
+}
+
+static void picture_and_section(void **state) {
+  (void)state;
+  modal_speeds s;
+  post_buffer  svg = {0}, html = {0}, text = {0};
+  make(&s);
+  const post_campbell campbell = {&s, 2};
+  post_campbell_picture(&campbell, "<x>", &svg);
+  assert_has(svg.text, "Campbell diagram: &lt;x&gt;");
+  assert_has(svg.text, "speed, rpm");
+  assert_has(svg.text, "order excited");
+  assert_has(svg.text, "class=\"crossing\"");
+  assert_has(svg.text, ">mode 3<");
+  assert_has(svg.text, ">6E<");
+  assert_has_not(svg.text, "nan");
+  post_campbell_section(&campbell, &html);
+  assert_has(html.text, "<td>6E</td><td>1</td>");
+  post_campbell_table(&s, false, &text);
+  assert_has(text.text, "4 speeds; frequencies of the tracked modes");
+  assert_has(text.text, "       2       300    300.832     310.04    328.634 \n"); /* the track */
+  post_buffer_free(&svg);
+  post_buffer_free(&html);
+  post_buffer_free(&text);
+  release(&s);
+}
+
+/* Where a track is lost there is no crossing, and the table says so. */
+static void lost_tracks_are_left_out(void **state) {
+  (void)state;
+  modal_speeds   s;
+  post_crossing *found;
+  post_buffer    text = {0};
+  int            n;
+  make(&s);
+  for (int i = 1; i < SPEEDS; i++) s.mac[i * MODES] = .3;
+  const post_campbell campbell = {&s, 2};
+  assert_ok(post_campbell_crossings(&campbell, &n, &found));
+  for (int i = 0; i < n; i++) assert_int_not_equal(found[i].track, 0);
+  free(found);
+  post_campbell_table(&s, false, &text);
+  assert_has(text.text, "103.923*");
+  post_buffer_free(&text);
+  release(&s);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(crossings_are_exact),
+                                     cmocka_unit_test(picture_and_section),
+                                     cmocka_unit_test(lost_tracks_are_left_out)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,87 @@
+#include "tests/support/fem.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "tests/support/box.h"
+
+const fem_material steel = {.E = 2.1e11, .nu = 0.3, .rho = 7850};
+
+void check_close(double a, double b, double relative, const char *what) {
+  if (!(fabs(a - b) <= relative * fabs(b)))
+    fail_msg("%s: %.12g, wanted %.12g to %.1e, off by %.2e", what, a, b, relative,
+             fabs(a - b) / fabs(b));
+}
+
+void check_below(double a, double bound, const char *what) {
+  if (!(fabs(a) <= bound)) fail_msg("%s: %.3e, wanted below %.3e", what, a, bound);
+}
+
+static mesh_kind kind = MESH_TET10;
+
+void use_elements(mesh_kind wanted) {
+  kind = wanted;
+}
+
+mesh_kind used_elements(void) {
+  return kind;
+}
+
+mesh_fe make_box(const double size[3], const int n[3]) {
+  mesh_fe    mesh;
+  shb_status status = kind == MESH_HEX20 ? box_hex(size, n, &mesh) : box_mesh(size, n, &mesh);
+  if (status != SHB_OK) fail_msg("%s", shb_message());
+  return mesh;
+}
+
+mesh_fe make_sector(const double size[3], double inner, int blades, const int n[3]) {
+  mesh_fe mesh = make_box(size, n);
+  assert_int_equal(box_set(&mesh, MESH_ROOT, 2, 0), SHB_OK);
+  assert_int_equal(box_set(&mesh, MESH_CONTACT_RIGHT, 1, 0), SHB_OK);
+  assert_int_equal(box_set(&mesh, MESH_CONTACT_LEFT, 1, size[1]), SHB_OK);
+  const double sector = 2 * acos(-1) / blades;
+  for (int i = 0; i < mesh.n_nodes; i++) {
+    double *x = mesh.coordinates + 3 * i, radius = inner + x[2];
+    /* tangential is axial x radial: at z > 0, -y; the angle about x grows from z towards -y */
+    double angle = (0.5 - x[1] / size[1]) * sector;
+    x[1]         = -radius * sin(angle);
+    x[2]         = radius * cos(angle);
+  }
+  return mesh;
+}
+
+static double random_unit(uint64_t *state) {
+  *state = *state * 6364136223846793005u + 1442695040888963407u;
+  return (double)(*state >> 11) * 0x1p-52 - 1;
+}
+
+static void straighten(mesh_fe *mesh) {
+  const mesh_topology *topology = mesh_topology_of(mesh->kind);
+  double              *x        = mesh->coordinates;
+  for (int e = 0; e < mesh->n_elements; e++) {
+    const int *node = mesh->connectivity + topology->nodes * e;
+    for (int s = 0; s < topology->edges; s++) {
+      const int a = node[topology->edge[s][0]], b = node[topology->edge[s][1]];
+      for (int d = 0; d < 3; d++)
+        x[3 * node[topology->corners + s] + d] = (x[3 * a + d] + x[3 * b + d]) / 2;
+    }
+  }
+}
+
+void shake_inside(mesh_fe *mesh, const double size[3], double amount) {
+  uint64_t state = 7;
+  for (int i = 0; i < mesh->n_nodes; i++) {
+    double *x      = mesh->coordinates + 3 * i;
+    int     inside = 1;
+    for (int d = 0; d < 3; d++) inside = inside && x[d] > 1e-12 && x[d] < size[d] - 1e-12;
+    for (int d = 0; d < 3 && inside; d++) x[d] += amount * random_unit(&state);
+  }
+  if (mesh->kind == MESH_HEX20) straighten(mesh);
+}

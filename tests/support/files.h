@@ -1,0 +1,133 @@
+/* For tests of files: a scratch folder, a walk that checks every dataset's attributes, small file tools. */
+#ifndef TESTS_SUPPORT_FILES_H
+#define TESTS_SUPPORT_FILES_H
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "modal/hdf5/h5.h"
+
+#define assert_ok(call)                                                        \
+  do {                                                                         \
+    shb_status ok_ = (call);                                                   \
+    if (ok_ != SHB_OK) fail_msg("%s: %d: %s", #call, (int)ok_, shb_message()); \
+  } while (0)
+
+/* call must fail with code and a message of one line that holds text */
+#define assert_refused(call, code, text)                                                       \
+  do {                                                                                         \
+    shb_status refused_ = (call);                                                              \
+    if (refused_ != (code)) fail_msg("%s gave %d, not %d", #call, (int)refused_, (int)(code)); \
+    if (!strstr(shb_message(), (text)) || strchr(shb_message(), '\n'))                         \
+      fail_msg("\"%s\" does not say \"%s\"", shb_message(), (text));                           \
+  } while (0)
+
+static char scratch_folder[256];
+
+static inline int scratch_make(void **state) {
+  (void)state;
+  const char *root = getenv("TMPDIR");
+  snprintf(scratch_folder, sizeof scratch_folder, "%s/shroudhb.XXXXXX", root ? root : "/tmp");
+  return mkdtemp(scratch_folder) == NULL;
+}
+
+static inline int scratch_remove(void **state) {
+  (void)state;
+  char command[300];
+  snprintf(command, sizeof command, "rm -r '%s'", scratch_folder);
+  return system(command);
+}
+
+/* Path of a file in the scratch folder; up to four at a time. */
+static inline const char *scratch(const char *name) {
+  static char path[4][512];
+  static int  turn;
+  turn = (turn + 1) % 4;
+  snprintf(path[turn], sizeof path[turn], "%s/%s", scratch_folder, name);
+  return path[turn];
+}
+
+static inline char *slurp(const char *path, size_t *size) {
+  FILE *file = fopen(path, "rb");
+  assert_non_null(file);
+  fseek(file, 0, SEEK_END);
+  *size      = (size_t)ftell(file);
+  char *data = malloc(*size + 1);
+  assert_non_null(data);
+  rewind(file);
+  assert_int_equal(fread(data, 1, *size, file), *size);
+  fclose(file);
+  return data;
+}
+
+static inline void spill(const char *path, const void *data, size_t size) {
+  FILE *file = fopen(path, "wb");
+  assert_non_null(file);
+  assert_int_equal(fwrite(data, 1, size, file), size);
+  assert_int_equal(fclose(file), 0);
+}
+
+static inline int files_in_scratch(void) {
+  char command[300];
+  snprintf(command, sizeof command, "ls -A '%s' | wc -l", scratch_folder);
+  FILE *pipe  = popen(command, "r");
+  int   count = -1;
+  assert_non_null(pipe);
+  assert_int_equal(fscanf(pipe, "%d", &count), 1);
+  pclose(pipe);
+  return count;
+}
+
+static inline herr_t check_described(hid_t at, const char *name, const H5O_info_t *info,
+                                     void *count) {
+  if (info->type != H5O_TYPE_DATASET) return 0;
+  for (int i = 0; i < 2; i++) {
+    const char *attribute = i ? "long_name" : "units";
+    char       *text      = NULL;
+    assert_ok(h5_read_attribute_text(at, name, attribute, &text));
+    if (!text || !*text) fail_msg("dataset %s has no attribute %s", name, attribute);
+    free(text);
+  }
+  ++*(int *)count;
+  return 0;
+}
+
+/* Every dataset has units and long_name; returns their number. */
+static inline int assert_described(const char *path) {
+  hid_t file;
+  int   count = 0;
+  assert_ok(h5_open(path, &file));
+  assert_true(H5Ovisit(file, H5_INDEX_NAME, H5_ITER_INC, check_described, &count) >= 0);
+  assert_ok(h5_close(file));
+  return count;
+}
+
+/* reader must refuse every proper prefix of file path, and say why. */
+static inline void assert_prefixes_refused(const char *path, size_t step,
+                                           shb_status (*reader)(const char *)) {
+  size_t      size;
+  char       *data   = slurp(path, &size);
+  const char *short_ = scratch("prefix.h5");
+  for (size_t n = size - 1;; n = n > step ? n - step : 0) {
+    spill(short_, data, n);
+    shb_status status = reader(short_);
+    if (status != SHB_ERR_IO) fail_msg("%zu of %zu bytes: status %d", n, size, (int)status);
+    const char *text = shb_message();
+    if (!strstr(text, "truncated") && !strstr(text, "not an HDF5 file"))
+      fail_msg("%zu of %zu bytes: \"%s\"", n, size, text);
+    if (n == 0) break;
+  }
+  free(data);
+  unlink(short_);
+}
+
+#endif

@@ -1,0 +1,84 @@
+#include "tests/support/periodic.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "mhb/branches/main_branch.h"
+
+mhb_settings ground_settings(double mu, double kv, double ku, double n0, int harmonics) {
+  mhb_settings s = {.to_ground    = true,
+                    .blades       = 1,
+                    .mu           = mu,
+                    .kv           = kv,
+                    .ku           = {ku, 0, ku},
+                    .n_preloads   = 1,
+                    .n0           = {n0},
+                    .harmonics    = harmonics,
+                    .subharmonics = 1,
+                    .scale        = 1,
+                    .tolerance    = 1e-8,
+                    .max_points   = 5000};
+  return s;
+}
+
+void periodic_create(const modal_model *model, const mhb_settings *settings, double omega,
+                     const double *guess, periodic *p) {
+  mhb_newton *newton;
+  int         iterations;
+  *p = (periodic){.settings = *settings, .omega = omega};
+  assert_int_equal(mhb_residual_create(model, &p->settings, &p->residual), SHB_OK);
+  mhb_residual *b = p->residual;
+  assert_int_equal(mhb_newton_create(b->n, &newton), SHB_OK);
+  mhb_residual_preload(b, settings->n0[0]);
+  p->x = calloc((size_t)b->n, sizeof(double));
+  if (guess) {
+    memcpy(p->x, guess, sizeof(double) * (size_t)b->n);
+    assert_int_equal(mhb_newton_solve(newton, b, omega, 1e-10, p->x, &iterations), MHB_CONVERGED);
+  } else {
+    assert_int_equal(mhb_first_solution(newton, b, omega, 1e-10, p->x, &iterations), MHB_CONVERGED);
+  }
+  mhb_residual_evaluate(b, p->x, omega, newton->r, NULL, NULL);
+  mhb_newton_destroy(newton);
+  p->solution = (mhb_solution){omega, b->law, b->info, p->x, b->p};
+}
+
+void periodic_destroy(periodic *p) {
+  mhb_residual_destroy(p->residual);
+  free(p->x);
+}
+
+mhb_multipliers periodic_multipliers(const periodic *p, int substeps, double complex *copy) {
+  mhb_stability  *stability;
+  mhb_multipliers out;
+  assert_int_equal(
+      mhb_stability_create(p->residual->receptance, &p->settings, substeps, 0, &stability), SHB_OK);
+  mhb_stability_evaluate(stability, &p->solution, &out);
+  for (int i = 0; i < out.n; i++) copy[i] = out.multiplier[i];
+  out.multiplier = copy;
+  mhb_stability_destroy(stability);
+  return out;
+}
+
+double distance_to(const double complex *wanted, int n_wanted, const double complex *there,
+                   int n_there) {
+  int    taken[n_there + 1];
+  double worst = 0;
+  memset(taken, 0, sizeof taken);
+  for (int i = 0; i < n_wanted; i++) {
+    int best = -1;
+    for (int j = 0; j < n_there; j++)
+      if (!taken[j] && (best < 0 || cabs(there[j] - wanted[i]) < cabs(there[best] - wanted[i])))
+        best = j;
+    if (best < 0) return INFINITY;
+    taken[best] = 1;
+    worst       = fmax(worst, cabs(there[best] - wanted[i]));
+  }
+  return worst;
+}

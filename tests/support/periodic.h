@@ -1,0 +1,31 @@
+/* A periodic solution with everything that its stability is computed from. */
+#ifndef TESTS_SUPPORT_PERIODIC_H
+#define TESTS_SUPPORT_PERIODIC_H
+
+#include "mhb/balance/balance.h"
+#include "mhb/floquet/floquet.h"
+
+typedef struct {
+  mhb_settings  settings;
+  mhb_residual *residual; /* evaluated at the solution */
+  double       *x;
+  double        omega; /* rad/s */
+  mhb_solution  solution;
+} periodic;
+
+/* Contact to ground: ku in both directions, engine order 0, tolerance 1e-8. */
+mhb_settings ground_settings(double mu, double kv, double ku, double n0, int harmonics);
+
+/* From a guess, or cold where it is NULL; fails the test if there is none. */
+void periodic_create(const modal_model *model, const mhb_settings *settings, double omega,
+                     const double *guess, periodic *p);
+void periodic_destroy(periodic *p);
+
+/* Multipliers with N sub-steps into copy[n]; the summary is returned (its multiplier points to copy). */
+mhb_multipliers periodic_multipliers(const periodic *p, int substeps, double complex *copy);
+
+/* Largest distance of a wanted multiplier to the nearest that is there; each serves once. */
+double distance_to(const double complex *wanted, int n_wanted, const double complex *there,
+                   int n_there);
+
+#endif
