@@ -49,18 +49,18 @@ static int by_phase(const void *a, const void *b) {
 
 /* One motion and the contact's answer. */
 typedef struct {
-  int               m, H;
-  mhb_law           law;
-  mhb_contact      *contact;
-  double           *motion, *force; /* [3][2m+1], [3][2H+1] */
-  mhb_contact_info *info;
+  int                    m, H;
+  mhb_law                law;
+  mhb_contact_evaluator *contact;
+  double                *motion, *force; /* [3][2m+1], [3][2H+1] */
+  mhb_contact_info      *info;
 } evaluation;
 
 static void evaluation_free(evaluation *e) {
   free(e->motion);
   free(e->force);
   free(e->info);
-  mhb_contact_destroy(e->contact);
+  mhb_contact_evaluator_destroy(e->contact);
 }
 
 static shb_status evaluate(const case_motion *given, evaluation *e) {
@@ -69,7 +69,7 @@ static shb_status evaluate(const case_motion *given, evaluation *e) {
                                        .law = {.mu = s->mu, .kv = s->kv, .n0 = s->n0[0]}};
   e->H                  = e->m > HARMONICS ? e->m : HARMONICS;
   size_t nb = (size_t)mhb_real_size(e->m), nf = (size_t)mhb_real_size(e->H);
-  SHB_TRY(mhb_contact_create(e->m, e->H, s->tolerance, &e->contact));
+  SHB_TRY(mhb_contact_evaluator_create(e->m, e->H, s->tolerance, &e->contact));
   e->motion = calloc(3 * nb, sizeof(double));
   e->force  = calloc(3 * nf, sizeof(double));
   e->info   = calloc(1, sizeof *e->info);

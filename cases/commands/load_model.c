@@ -12,11 +12,11 @@ static shb_status read_speeds(const char *path, int modes, bool residuals, case_
   for (int i = 0; i < speeds.n && modes > 0 && status == SHB_OK; i++)
     status = modal_model_keep(&speeds.model[i], modes, residuals);
   if (status == SHB_OK)
-    status = mhb_run_up_create(&speeds, path, m->settings.engine_order, f, &m->run_up);
+    status = mhb_speed_table_create(&speeds, path, m->settings.engine_order, f, &m->run_up);
   modal_speeds_free(&speeds);
-  if (status == SHB_OK) status = mhb_at_speed_create(m->run_up, &m->top);
+  if (status == SHB_OK) status = mhb_speed_model_create(m->run_up, &m->top);
   SHB_TRY(status);
-  mhb_at_speed_go(m->top, TWO_PI * f[1]);
+  mhb_speed_model_set(m->top, TWO_PI * f[1]);
   m->model           = m->top->model;
   m->settings.run_up = m->run_up;
   return SHB_OK;
@@ -32,7 +32,7 @@ shb_status case_model_read(const case_file *file, const char *path, int modes, b
 
 void case_model_free(case_model *m) {
   if (!m->run_up) modal_model_free(&m->model);
-  mhb_at_speed_destroy(m->top);
-  mhb_run_up_destroy(m->run_up);
+  mhb_speed_model_destroy(m->top);
+  mhb_speed_table_destroy(m->run_up);
   *m = (case_model){0};
 }

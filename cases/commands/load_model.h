@@ -6,14 +6,14 @@
 #include "mhb/structure/speed_model.h"
 
 typedef struct {
-  modal_model   model;    /* in a run-up that at the upper end of mhb.frequency; freed with this */
-  mhb_settings  settings; /* the case's, with the run-up */
-  mhb_run_up   *run_up;   /* NULL: one speed */
-  mhb_at_speed *top;      /* whose model it is then */
+  modal_model      model; /* in a run-up that at the upper end of mhb.frequency; freed with this */
+  mhb_settings     settings; /* the case's, with the run-up */
+  mhb_speed_table *run_up;   /* NULL: one speed */
+  mhb_speed_model *top;      /* whose model it is then */
 } case_model;
 
 /* modes  in   keep that many (residuals: those left out answer statically, else not at all); 0: as they are
- * Errors: as modal_speeds_read, mhb_run_up_create. To be freed in any case. */
+ * Errors: as modal_speeds_read, mhb_speed_table_create. To be freed in any case. */
 shb_status case_model_read(const case_file *file, const char *path, int modes, bool residuals,
                            case_model *model);
 void       case_model_free(case_model *model);

@@ -112,8 +112,8 @@ static void integrate(contact_period *p, const source *from, const mhb_contact_s
     if (fabs(p->work[k]) <= 1e-10 * size[k] && isfinite(size[k])) p->work[k] = 0;
 }
 
-shb_status period_create(mhb_contact *contact, const mhb_law *law, int m, const double *motion,
-                         const mhb_contact_info *info, contact_period *p) {
+shb_status period_create(mhb_contact_evaluator *contact, const mhb_law *law, int m,
+                         const double *motion, const mhb_contact_info *info, contact_period *p) {
   int steps = A_HARMONIC * m > LEAST ? A_HARMONIC * m : LEAST, n = steps + 1 + info->n_transitions;
   const source from          = {m, motion};
   *p                         = (contact_period){0};
@@ -124,11 +124,11 @@ shb_status period_create(mhb_contact *contact, const mhb_law *law, int m, const 
     place(p, steps, info);
     sum_motion(p, &from);
     for (int i = 0; i < p->n; i++) sample[i].phase = p->phase[i];
-    mhb_contact_trace(contact, law, motion, p->n, sample, again);
+    mhb_contact_time_history(contact, law, motion, p->n, sample, again);
     take(p, law, sample);
     /* states halfway: at a transition itself rounding would decide */
     for (int i = 1; i < p->n; i++) sample[i - 1].phase = .5 * (p->phase[i - 1] + p->phase[i]);
-    mhb_contact_trace(contact, law, motion, p->n - 1, sample, again);
+    mhb_contact_time_history(contact, law, motion, p->n - 1, sample, again);
     for (int i = 1; i < p->n; i++) p->during[sample[i - 1].state][i] = true;
     integrate(p, &from, sample);
   }

@@ -20,8 +20,9 @@ typedef struct {
 
 /* motion: [3][2m+1] as in mhb_contact_force; info: of the same law and motion, says where the transitions are.
  * SHB_ERR_IO: no memory. */
-shb_status period_create(mhb_contact *contact, const mhb_law *law, int m, const double *motion,
-                         const mhb_contact_info *info, contact_period *period);
+shb_status period_create(mhb_contact_evaluator *contact, const mhb_law *law, int m,
+                         const double *motion, const mhb_contact_info *info,
+                         contact_period *period);
 void       period_free(contact_period *period);
 
 #endif

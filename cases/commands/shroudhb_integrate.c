@@ -88,8 +88,8 @@ static shb_status solve(const case_file *file, const char *modal, const mhb_resp
   shb_status     status     = case_model_read(file, modal, 0, true, &model);
   if (status == SHB_OK && !progress->quiet) warn_of_ring(file, &model.model);
   if (status == SHB_OK)
-    status = mhb_witness(&model.model, &model.settings, &file->integrate, balance, output,
-                         &provenance, progress, &response);
+    status = mhb_integration_sweep(&model.model, &model.settings, &file->integrate, balance, output,
+                                   &provenance, progress, &response);
   shb_progress_clear(progress);
   if (response && !progress->quiet) summarise(file, response, output);
   shb_progress_note(progress, "%.2f s in all", shb_seconds() - progress->started);
@@ -120,7 +120,7 @@ static shb_status run(const case_file *file, const command_options *options) {
   char         *modal = case_modal_path(file), *output = case_output(file, ".integration.h5");
   char         *start = case_output(file, ".response.h5"), *settings = NULL;
   mhb_response *balance = NULL;
-  bool          needed  = file->integrate.start == MHB_FROM_BALANCE;
+  bool          needed  = file->integrate.start == MHB_START_FROM_BALANCE;
   shb_status    status =
       modal && output && start ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   if (status == SHB_OK && !file->modal_file) fresh_warn(file, CASE_MODAL, modal);

@@ -59,7 +59,7 @@ static void summarise(shb_progress *progress, const mhb_response *response) {
 }
 
 static void note_run_up(shb_progress *progress, const case_model *model) {
-  const mhb_run_up *r = model->run_up;
+  const mhb_speed_table *r = model->run_up;
   shb_progress_note(progress, "run-up: engine order %d, %.6g to %.6g rpm, %d speeds, %d modes",
                     r->engine_order, 60 * model->settings.frequency[0] / r->engine_order,
                     60 * model->settings.frequency[1] / r->engine_order, r->n, r->n_modes);
@@ -81,7 +81,8 @@ static shb_status solve(const case_file *file, const char *modal, char *settings
   shb_status     status     = case_model_read(file, modal, 0, true, &model);
   if (status == SHB_OK && model.run_up) note_run_up(progress, &model);
   if (status == SHB_OK)
-    status = mhb_sweep(&model.model, &model.settings, output, &provenance, progress, &response);
+    status = mhb_forced_response(&model.model, &model.settings, output, &provenance, progress,
+                                 &response);
   shb_progress_clear(progress);
   if (response) summarise(progress, response);
   shb_progress_note(progress, "%.2f s in all", shb_seconds() - progress->started);

@@ -160,9 +160,9 @@ static double predict(double seconds, int from, int to) {
 
 static shb_status harmonics_ladder(study *s) {
   mhb_settings wide = s->file->mhb;
-  int          m[MHB_MAX_RUNGS + 1], first = s->result.n, own = s->file->mhb.harmonics;
+  int          m[MHB_MAX_LEVELS + 1], first = s->result.n, own = s->file->mhb.harmonics;
   wide.motion_tolerance = 1;
-  int  n                = mhb_harmonics_ladder(&s->model, &wide, m);
+  int  n                = mhb_harmonic_levels_ladder(&s->model, &wide, m);
   bool there            = own == 0;
   for (int i = 0; i < n; i++) there = there || m[i] == own;
   if (!there) m[n++] = own;

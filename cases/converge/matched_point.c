@@ -10,7 +10,7 @@ static const double PI = 3.14159265358979323846;
 
 struct witness {
   mhb_settings    settings;
-  mhb_residual   *residual;
+  mhb_balance    *residual;
   mhb_newton     *newton;
   post_output     output;
   double         *x, *normal;     /* [n], [n+1] */
@@ -18,7 +18,7 @@ struct witness {
 };
 
 static shb_status make(const modal_model *model, witness *w) {
-  SHB_TRY(mhb_residual_create(model, &w->settings, &w->residual));
+  SHB_TRY(mhb_balance_create(model, &w->settings, &w->residual));
   size_t n  = (size_t)w->residual->n;
   w->x      = calloc(n, sizeof *w->x);
   w->normal = calloc(n + 1, sizeof *w->normal);
@@ -45,7 +45,7 @@ shb_status witness_create(const modal_model *model, const mhb_settings *settings
 void witness_destroy(witness *w) {
   if (!w) return;
   mhb_newton_destroy(w->newton);
-  mhb_residual_destroy(w->residual);
+  mhb_balance_destroy(w->residual);
   free(w->x);
   free(w->normal);
   free(w->force);
@@ -56,7 +56,7 @@ void witness_destroy(witness *w) {
 /* to += factor times the motion of a point, less harmonics or more. */
 static void add_motion(const witness *w, const witness_place *place, int point, double factor,
                        double *to) {
-  const mhb_residual   *b = w->residual;
+  const mhb_balance    *b = w->residual;
   int                   K = place->branch->n_harmonics, rows = 3 * b->n_pairs;
   const double complex *u = place->branch->motion + (size_t)point * (size_t)rows * (size_t)(K + 1);
   for (int row = 0; row < rows; row++)
@@ -70,10 +70,10 @@ static void add_motion(const witness *w, const witness_place *place, int point, 
 
 /* At the solution that the residual was just evaluated at. */
 static double amplitude(const witness *w) {
-  const mhb_residual *b = w->residual;
-  int                 k = w->settings.subharmonics <= b->m ? w->settings.subharmonics : b->m;
+  const mhb_balance *b = w->residual;
+  int                k = w->settings.subharmonics <= b->m ? w->settings.subharmonics : b->m;
   if (w->output.place == POST_PROBE) {
-    mhb_residual_force(b, k, w->force);
+    mhb_balance_contact_force(b, k, w->force);
     mhb_receptance_probe(b->receptance, k, w->force, w->motion);
     return post_ellipse(3, w->motion + 3 * (size_t)w->output.index, 1);
   }
@@ -87,7 +87,7 @@ static double amplitude(const witness *w) {
 
 int witness_solve(witness *w, const witness_place *place, bool same_frequency, double found[2]) {
   const mhb_settings *s    = &w->settings;
-  mhb_residual       *b    = w->residual;
+  mhb_balance        *b    = w->residual;
   const double       *f    = place->branch->frequency;
   size_t              n    = (size_t)b->n;
   double              span = 2 * PI * (s->frequency[1] - s->frequency[0]);
@@ -102,8 +102,9 @@ int witness_solve(witness *w, const witness_place *place, bool same_frequency, d
   w->normal[n] = same_frequency ? span : 2 * PI * (f[place->high] - f[place->low]);
   double omega = 2 * PI * ((1 - place->part) * f[place->from] + place->part * f[place->to]);
   double scale = mhb_norm(w->x, b->n);
-  mhb_residual_preload(b, place->branch->n0[place->from]);
-  if (!(scale > 0) || !mhb_nearest(w->newton, b, w->normal, scale, span, w->x, &omega)) return 0;
+  mhb_balance_set_preload(b, place->branch->n0[place->from]);
+  if (!(scale > 0) || !mhb_nearest_solution(w->newton, b, w->normal, scale, span, w->x, &omega))
+    return 0;
   found[0] = omega / (2 * PI);
   found[1] = amplitude(w);
   return 1;

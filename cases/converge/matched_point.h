@@ -19,7 +19,7 @@ typedef struct {
 } witness_place;
 
 /* A balance of that many harmonics (the settings' own number and tolerance do not count). The model must outlive it.
- * Errors: as mhb_residual_create. */
+ * Errors: as mhb_balance_create. */
 shb_status witness_create(const modal_model *model, const mhb_settings *settings, int harmonics,
                           post_output output, witness **out);
 void       witness_destroy(witness *w);

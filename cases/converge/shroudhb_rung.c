@@ -69,7 +69,7 @@ static shb_status run_sweeps(job *j, rung_cost *cost, mhb_response **response) {
   for (cost->runs = 0; cost->runs < MAX_RUNS && all < ENOUGH;) {
     mhb_response_destroy(*response);
     double began = cpu_seconds();
-    status       = mhb_sweep(&j->source.model, &j->source.settings, NULL, NULL, NULL, response);
+    status = mhb_forced_response(&j->source.model, &j->source.settings, NULL, NULL, NULL, response);
     if (status != SHB_OK && status != SHB_NOT_CONVERGED) return status;
     double seconds = cpu_seconds() - began;
     cost->seconds  = cost->runs++ == 0 ? seconds : fmin(cost->seconds, seconds);

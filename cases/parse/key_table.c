@@ -328,7 +328,7 @@ bool case_key_applies(const case_key *key, const case_file *file) {
     case CASE_IF_SEARCH_AT:
       return file->mhb.search.starts > 0 && file->mhb.search.n_at > 0;
     case CASE_IF_SWEEP:
-      return file->integrate.start == MHB_FROM_STATE;
+      return file->integrate.start == MHB_START_FROM_STATE;
     case CASE_IF_NOT_SCALED:
       return file->mhb.parameter != MHB_IN_SCALE;
     case CASE_ALWAYS:

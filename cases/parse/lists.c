@@ -127,10 +127,10 @@ bool case_list_orders(const case_reading *c, const case_node *node, void *slot) 
 /* Points over the range of the sweep, or the frequencies themselves. */
 bool case_list_frequencies(const case_reading *c, const case_node *node, void *slot) {
   (void)slot;
-  mhb_witness_settings *asked = &c->file->integrate;
-  char                  why[CASE_WHY];
-  int                   n = node->kind == CASE_SEQUENCE ? node->n : 0;
-  asked->listed           = node->kind == CASE_SEQUENCE;
+  mhb_integration_settings *asked = &c->file->integrate;
+  char                      why[CASE_WHY];
+  int                       n = node->kind == CASE_SEQUENCE ? node->n : 0;
+  asked->listed               = node->kind == CASE_SEQUENCE;
   if (!asked->listed && node->kind != CASE_SCALAR) return case_reading_refuse(c, node);
   if (!asked->listed && !case_integer(node->text, &n, why)) {
     case_issue_add(c->issues, node->line, node->column, c->path,

@@ -105,7 +105,7 @@ typedef struct {
   double converge_seconds; /* the most that a rung's balance may take */
   char  *converge_output;  /* name of a probe or "contact"; NULL: the first */
 
-  mhb_witness_settings integrate;
+  mhb_integration_settings integrate;
 } case_file;
 
 /* Read and check a case file. All errors of the file are printed to errors at once, each as

@@ -187,7 +187,7 @@ static void check_run_up(case_reader *r) {
     case_reader_issue(r, "mhb.run_up", "needs excitation.engine_order of 1 or more");
     return;
   }
-  if (case_reader_given(r, "integrate.start") && file->integrate.start == MHB_FROM_STATE)
+  if (case_reader_given(r, "integrate.start") && file->integrate.start == MHB_START_FROM_STATE)
     case_reader_issue(r, "integrate.start",
                       "must be balance or rest in a run-up (mhb.run_up): the structure is another "
                       "one at each frequency");
@@ -217,12 +217,13 @@ static void check_search(case_reader *r) {
 
 /* There are no solutions of the balance to start on outside its range. */
 static void check_integrate(case_reader *r) {
-  static const char           path[] = "integrate.frequencies";
-  const mhb_settings         *mhb    = &r->file->mhb;
-  const mhb_witness_settings *asked  = &r->file->integrate;
-  const case_node            *node   = case_reader_given(r, path);
+  static const char               path[] = "integrate.frequencies";
+  const mhb_settings             *mhb    = &r->file->mhb;
+  const mhb_integration_settings *asked  = &r->file->integrate;
+  const case_node                *node   = case_reader_given(r, path);
   if (!node || !case_reader_good(r, path) || !case_reader_good(r, "mhb.frequency")) return;
-  if (!asked->listed || asked->start != MHB_FROM_BALANCE || mhb->parameter != MHB_IN_FREQUENCY)
+  if (!asked->listed || asked->start != MHB_START_FROM_BALANCE ||
+      mhb->parameter != MHB_IN_FREQUENCY)
     return;
   for (int i = 0; i < asked->n_frequencies; i++) {
     char full[CASE_PATH];

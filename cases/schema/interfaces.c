@@ -140,7 +140,7 @@ static void check_varied(case_reader *r) {
   for (int i = 0; i < mhb->n_interfaces; i++)
     known = known || strcmp(mhb->interface[i].name, r->file->vary_interface) == 0;
   if (!known) case_reader_issue(r, vary_path, "is none of contact.interfaces, nor all");
-  mhb_condition at = mhb_condition_of(mhb);
+  mhb_operating_point at = mhb_operating_point_of(mhb);
   if (mhb->together && mhb_parameter_get(&at, mhb->parameter) == 0)
     case_reader_issue(r, vary_path, "all keeps the proportions to %s of %s, which is 0",
                       mhb_parameter_name(mhb->parameter), mhb->interface[mhb->lead].name);

@@ -13,33 +13,33 @@
 enum { WORTH_THREADS = 24 };
 
 /* One workspace a thread; where threads are busy already (one a branch) just one. */
-static shb_status create_contacts(mhb_residual *b) {
+static shb_status create_contacts(mhb_balance *b) {
   int threads  = omp_in_parallel() || b->n_pairs < WORTH_THREADS ? 1 : omp_get_max_threads();
   b->contacts  = calloc((size_t)threads, sizeof *b->contacts);
   b->n_threads = threads;
   SHB_CHECK(b->contacts, SHB_ERR_IO, "out of memory");
   for (int i = 0; i < threads; i++)
-    SHB_TRY(mhb_contact_create(b->m, b->m, b->settings->tolerance, &b->contacts[i]));
+    SHB_TRY(mhb_contact_evaluator_create(b->m, b->m, b->settings->tolerance, &b->contacts[i]));
   b->contact = b->contacts[0];
   return SHB_OK;
 }
 
-static void set_laws(mhb_residual *b) {
+static void set_laws(mhb_balance *b) {
   b->n_laws++;
   for (int i = 0; i < b->n_interfaces; i++)
-    b->own[i] = mhb_interface_condition(&b->at, b->settings, i);
+    b->own[i] = mhb_interface_operating_point(&b->at, b->settings, i);
   for (int a = 0; a < b->n_pairs; a++) {
-    const mhb_condition *own = &b->own[b->receptance->interface[a]];
-    b->law[a]       = mhb_condition_law(own, b->settings->preload, b->receptance->share[a]);
+    const mhb_operating_point *own = &b->own[b->receptance->interface[a]];
+    b->law[a]       = mhb_operating_point_law(own, b->settings->preload, b->receptance->share[a]);
     b->linear_dp[a] = -1;
   }
 }
 
-shb_status mhb_residual_create(const modal_model *model, const mhb_settings *settings,
-                               mhb_residual **out) {
+shb_status mhb_balance_create(const modal_model *model, const mhb_settings *settings,
+                              mhb_balance **out) {
   mhb_receptance *receptance;
   SHB_TRY(mhb_receptance_create(model, settings, settings->harmonics, &receptance));
-  shb_status status = mhb_residual_create_on(receptance, settings, out);
+  shb_status status = mhb_balance_create_on(receptance, settings, out);
   if (status == SHB_OK)
     (*out)->owns_receptance = 1;
   else
@@ -47,9 +47,9 @@ shb_status mhb_residual_create(const modal_model *model, const mhb_settings *set
   return status;
 }
 
-shb_status mhb_residual_create_on(mhb_receptance *receptance, const mhb_settings *settings,
-                                  mhb_residual **out) {
-  mhb_residual *b = calloc(1, sizeof *b);
+shb_status mhb_balance_create_on(mhb_receptance *receptance, const mhb_settings *settings,
+                                 mhb_balance **out) {
+  mhb_balance *b = calloc(1, sizeof *b);
   SHB_CHECK(b, SHB_ERR_IO, "out of memory");
   int m           = settings->harmonics;
   b->settings     = settings;
@@ -75,19 +75,20 @@ shb_status mhb_residual_create_on(mhb_receptance *receptance, const mhb_settings
     status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for %d unknowns", b->n);
   if (status == SHB_OK) status = create_contacts(b);
   if (status != SHB_OK) {
-    mhb_residual_destroy(b);
+    mhb_balance_destroy(b);
     return status;
   }
-  b->at = mhb_condition_of(settings);
+  b->at = mhb_operating_point_of(settings);
   set_laws(b);
   *out = b;
   return SHB_OK;
 }
 
-void mhb_residual_destroy(mhb_residual *b) {
+void mhb_balance_destroy(mhb_balance *b) {
   if (!b) return;
   if (b->owns_receptance) mhb_receptance_destroy(b->receptance);
-  for (int i = 0; b->contacts && i < b->n_threads; i++) mhb_contact_destroy(b->contacts[i]);
+  for (int i = 0; b->contacts && i < b->n_threads; i++)
+    mhb_contact_evaluator_destroy(b->contacts[i]);
   free(b->contacts);
   free(b->kind);
   free(b->linear_dp);
@@ -101,27 +102,27 @@ void mhb_residual_destroy(mhb_residual *b) {
   free(b);
 }
 
-void mhb_residual_condition(mhb_residual *b, const mhb_condition *condition) {
+void mhb_balance_set_operating_point(mhb_balance *b, const mhb_operating_point *condition) {
   b->at = *condition;
   set_laws(b);
   mhb_receptance_scale(b->receptance, b->at.scale);
 }
 
-void mhb_residual_preload(mhb_residual *b, double n0) {
+void mhb_balance_set_preload(mhb_balance *b, double n0) {
   b->at.n0 = n0;
   set_laws(b);
 }
 
-void mhb_residual_anchor(mhb_residual *b, int anchored) {
+void mhb_balance_tie_preloads(mhb_balance *b, int anchored) {
   b->at.anchored = anchored;
   b->at.anchor   = b->at.n0;
 }
 
-void mhb_residual_follow(mhb_residual *b, mhb_parameter parameter) {
+void mhb_balance_set_parameter(mhb_balance *b, mhb_parameter parameter) {
   b->parameter = parameter;
 }
 
-void mhb_residual_place(mhb_residual *b, double value) {
+void mhb_balance_set_value(mhb_balance *b, double value) {
   if (value == mhb_parameter_get(&b->at, b->parameter)) return;
   mhb_parameter_set(&b->at, b->parameter, value);
   if (b->parameter == MHB_IN_FREQUENCY) return;
@@ -133,14 +134,14 @@ void mhb_residual_place(mhb_residual *b, double value) {
 }
 
 /* Complex harmonic k of a vector in real form. */
-static void harmonic(const mhb_residual *b, const double *x, int k, double complex *out) {
+static void harmonic(const mhb_balance *b, const double *x, int k, double complex *out) {
   for (int row = 0; row < 3 * b->n_pairs; row++) {
     const double *a = x + (size_t)row * (size_t)b->nb;
     out[row]        = k == 0 ? a[0] : CMPLX(a[2 * k - 1], a[2 * k]);
   }
 }
 
-static void store(const mhb_residual *b, double *x, int k, const double complex *in) {
+static void store(const mhb_balance *b, double *x, int k, const double complex *in) {
   for (int row = 0; row < 3 * b->n_pairs; row++) {
     double *a = x + (size_t)row * (size_t)b->nb;
     if (k == 0) {
@@ -164,8 +165,8 @@ MHB_HOT static void combine(int block, const double *d, size_t stride, const dou
   }
 }
 
-void mhb_residual_combine(const mhb_residual *b, const double complex R[3], int pair, int k,
-                          double *re, double *im) {
+void mhb_balance_row_times_dp(const mhb_balance *b, const double complex R[3], int pair, int k,
+                              double *re, double *im) {
   int           block  = 3 * b->nb;
   size_t        stride = (size_t)b->nb * (size_t)block;
   const double *d      = b->dp + (size_t)pair * 3 * stride + (k ? 2 * k - 1 : 0) * block;
@@ -179,19 +180,19 @@ void mhb_residual_combine(const mhb_residual *b, const double complex R[3], int 
 }
 
 /* Columns of one pair of I + R dp, from rows. */
-static void assemble_columns(const mhb_residual *b, int pair, double *jacobian) {
+static void assemble_columns(const mhb_balance *b, int pair, double *jacobian) {
   int    block = 3 * b->nb, n3 = 3 * b->n_pairs;
   size_t n = (size_t)b->n, first = (size_t)pair * (size_t)block;
   double re[block], im[block];
   for (int row = 0; row < n3; row++)
     for (int k = 0; k <= b->m; k++) {
-      mhb_receptance_need(b->receptance, k);
+      mhb_receptance_update(b->receptance, k);
       const double complex *R =
           b->receptance->R + ((size_t)k * (size_t)n3 + (size_t)row) * (size_t)n3 + 3 * pair;
       double *J = jacobian + first * n + row * b->nb + (k ? 2 * k - 1 : 0);
       memset(re, 0, sizeof re);
       memset(im, 0, sizeof im);
-      mhb_residual_combine(b, R, pair, k, re, im);
+      mhb_balance_row_times_dp(b, R, pair, k, re, im);
       for (size_t j = 0; j < (size_t)block; j++) {
         J[j * n] = re[j];
         if (k) J[j * n + 1] = im[j];
@@ -200,17 +201,17 @@ static void assemble_columns(const mhb_residual *b, int pair, double *jacobian) 
   for (size_t i = first; i < first + (size_t)block; i++) jacobian[i * n + i] += 1;
 }
 
-static mhb_pair_kind kind_of(const mhb_residual *b, int a) {
+static mhb_pair_kind kind_of(const mhb_balance *b, int a) {
   const mhb_contact_info *info = &b->info[a];
   const double           *p    = b->p + 3 * (size_t)a * (size_t)b->nb;
   if (info->share[MHB_SEPARATE] == 1 && !info->lost) return MHB_PAIR_OPEN;
-  if (info->share[MHB_STICK] < 1 || !info->undetermined) return MHB_PAIR_MOVING;
-  return p[b->nb] == 0 && p[2 * b->nb] == 0 ? MHB_PAIR_STUCK : MHB_PAIR_HELD;
+  if (info->share[MHB_STICK] < 1 || !info->undetermined) return MHB_PAIR_NONLINEAR;
+  return p[b->nb] == 0 && p[2 * b->nb] == 0 ? MHB_PAIR_STUCK : MHB_PAIR_AT_LIMIT;
 }
 
 /* The derivative of a pair that is stuck or open, from the law itself: the same to the last bit however it was found. Written
  * once, but for the mean friction. */
-static void set_linear_derivative(const mhb_residual *b, int a) {
+static void set_linear_derivative(const mhb_balance *b, int a) {
   const mhb_law *law = &b->law[a];
   size_t         nb = (size_t)b->nb, block = 3 * nb;
   double        *d = b->dp + (size_t)a * block * block;
@@ -229,27 +230,27 @@ static void set_linear_derivative(const mhb_residual *b, int a) {
 }
 
 /* A pair that was stuck or open will mostly be so again: then its derivative need not be worked out. */
-static void evaluate_pair(mhb_residual *b, mhb_contact *contact, const double *x, int a,
+static void evaluate_pair(mhb_balance *b, mhb_contact_evaluator *contact, const double *x, int a,
                           int derivative) {
   size_t  block = 3 * (size_t)b->nb, at = (size_t)a * block;
   double *dp = b->dp + at * block;
-  if (!derivative || b->kind[a] != MHB_PAIR_MOVING) {
+  if (!derivative || b->kind[a] != MHB_PAIR_NONLINEAR) {
     mhb_contact_force(contact, &b->law[a], x + at, b->p + at, NULL, &b->info[a]);
     if (!derivative) return;
     b->kind[a] = kind_of(b, a);
   }
-  if (b->kind[a] == MHB_PAIR_MOVING) {
+  if (b->kind[a] == MHB_PAIR_NONLINEAR) {
     mhb_contact_force(contact, &b->law[a], x + at, b->p + at, dp, &b->info[a]);
     b->linear_dp[a] = -1;
     b->kind[a]      = kind_of(b, a);
   }
-  if (b->kind[a] != MHB_PAIR_MOVING) set_linear_derivative(b, a);
-  if (b->kind[a] == MHB_PAIR_HELD)
-    mhb_contact_mean_gradient(contact, (double *const[2]){mhb_residual_mean_row(b, a, 1),
-                                                          mhb_residual_mean_row(b, a, 2)});
+  if (b->kind[a] != MHB_PAIR_NONLINEAR) set_linear_derivative(b, a);
+  if (b->kind[a] == MHB_PAIR_AT_LIMIT)
+    mhb_contact_mean_gradient(contact, (double *const[2]){mhb_balance_mean_friction_row(b, a, 1),
+                                                          mhb_balance_mean_friction_row(b, a, 2)});
 }
 
-static void evaluate_pairs(mhb_residual *b, const double *x, int derivative) {
+static void evaluate_pairs(mhb_balance *b, const double *x, int derivative) {
   for (int a = 0; a < b->n_pairs && b->n_threads == 1; a++)
     evaluate_pair(b, b->contact, x, a, derivative);
   if (b->n_threads == 1) return;
@@ -259,14 +260,14 @@ static void evaluate_pairs(mhb_residual *b, const double *x, int derivative) {
 }
 
 /* Harmonic k neither drives the contact nor is pushed at by it: its receptance does not matter. */
-static int at_rest(const mhb_residual *b, int k) {
+static int at_rest(const mhb_balance *b, int k) {
   for (int i = 0; i < 3 * b->n_pairs; i++)
     if (creal(b->pk[i]) != 0 || cimag(b->pk[i]) != 0) return 0;
   return !b->receptance->driven[k];
 }
 
 /* uk <- uk - free + R_k pk */
-static void balance(const mhb_residual *b, int k) {
+static void balance(const mhb_balance *b, int k) {
   int                   n3   = 3 * b->n_pairs;
   const double complex *R    = b->receptance->R + (size_t)k * (size_t)n3 * (size_t)n3;
   const double complex *free = b->receptance->free + k * n3;
@@ -282,7 +283,7 @@ static void balance(const mhb_residual *b, int k) {
 }
 
 /* Harmonic k of r does not change with the parameter: rest, or no force that does. */
-static int stays(const mhb_residual *b, int k, int rest) {
+static int stays(const mhb_balance *b, int k, int rest) {
   if (b->parameter == MHB_IN_FREQUENCY) return rest;
   for (int i = 0; i < 3 * b->n_pairs; i++)
     if (creal(b->pk[i]) != 0 || cimag(b->pk[i]) != 0) return 0;
@@ -290,12 +291,12 @@ static int stays(const mhb_residual *b, int k, int rest) {
 }
 
 /* uk <- dr_k/dvalue, pk the forces at x. */
-static void slope_of(mhb_residual *b, int k, int rest) {
+static void slope_of(mhb_balance *b, int k, int rest) {
   int n3 = 3 * b->n_pairs;
   if (b->parameter != MHB_IN_FREQUENCY) harmonic(b, b->by_parameter, k, b->pk);
   for (int i = 0; i < n3; i++) b->uk[i] = 0;
   if (stays(b, k, rest)) return;
-  mhb_receptance_need(b->receptance, k);
+  mhb_receptance_update(b->receptance, k);
   if (b->parameter == MHB_IN_FREQUENCY) {
     mhb_receptance_slope(b->receptance, k, b->pk, b->uk);
     for (int i = 0; i < n3; i++) b->uk[i] = -b->uk[i];
@@ -309,7 +310,7 @@ static void slope_of(mhb_residual *b, int k, int rest) {
   }
 }
 
-static void force_by_parameter(mhb_residual *b, const double *x) {
+static void force_by_parameter(mhb_balance *b, const double *x) {
   size_t block = 3 * (size_t)b->nb;
   for (int a = 0; a < b->n_pairs; a++) {
     size_t at   = (size_t)a * block;
@@ -321,11 +322,11 @@ static void force_by_parameter(mhb_residual *b, const double *x) {
   }
 }
 
-static void evaluate(mhb_residual *b, const double *x, double value, int derivative, double *r,
+static void evaluate(mhb_balance *b, const double *x, double value, int derivative, double *r,
                      double *slope) {
   int followed = slope && b->parameter != MHB_IN_FREQUENCY;
-  mhb_residual_place(b, value);
-  mhb_receptance_move(b->receptance, b->at.omega);
+  mhb_balance_set_value(b, value);
+  mhb_receptance_set_frequency(b->receptance, b->at.omega);
   evaluate_pairs(b, x, derivative || followed);
   if (followed) force_by_parameter(b, x);
   for (int k = 0; k <= b->m; k++) {
@@ -333,7 +334,7 @@ static void evaluate(mhb_residual *b, const double *x, double value, int derivat
     harmonic(b, x, k, b->uk);
     int rest = at_rest(b, k);
     if (!rest) {
-      mhb_receptance_need(b->receptance, k);
+      mhb_receptance_update(b->receptance, k);
       balance(b, k);
     }
     store(b, r, k, b->uk);
@@ -343,23 +344,24 @@ static void evaluate(mhb_residual *b, const double *x, double value, int derivat
   }
 }
 
-void mhb_residual_derive(mhb_residual *b, const double *x, double value, double *r, double *slope) {
+void mhb_balance_linearise(mhb_balance *b, const double *x, double value, double *r,
+                           double *slope) {
   evaluate(b, x, value, 1, r, slope);
 }
 
-void mhb_residual_evaluate(mhb_residual *b, const double *x, double value, double *r,
-                           double *jacobian, double *slope) {
+void mhb_balance_evaluate(mhb_balance *b, const double *x, double value, double *r,
+                          double *jacobian, double *slope) {
   evaluate(b, x, value, jacobian != NULL, r, slope);
   for (int pair = 0; jacobian && pair < b->n_pairs; pair++) assemble_columns(b, pair, jacobian);
 }
 
-static int holds(const mhb_residual *b, int pair, int stuck) {
+static int holds(const mhb_balance *b, int pair, int stuck) {
   return stuck == MHB_BY_PRELOAD ? b->law[pair].n0 > 0 : stuck;
 }
 
 /* Stuck: (I + R_k S) u_k = free_k - R_k s0, S = diag(kv, Ku), s0 the unbalanced preload at k = 0. The mean friction is
  * zero there (static_friction.h: the smallest admissible one), so that S_0 = diag(kv, 0). */
-static shb_status linear_harmonic(const mhb_residual *b, int k, int stuck, double complex *u) {
+static shb_status linear_harmonic(const mhb_balance *b, int k, int stuck, double complex *u) {
   int                   n = 3 * b->n_pairs;
   const double complex *R = b->receptance->R + (size_t)k * (size_t)n * (size_t)n;
   memcpy(u, b->receptance->free + k * n, sizeof(double complex) * (size_t)n);
@@ -386,8 +388,8 @@ static shb_status linear_harmonic(const mhb_residual *b, int k, int stuck, doubl
   return SHB_OK;
 }
 
-shb_status mhb_residual_linear(mhb_residual *b, double value, int stuck, double *x) {
-  mhb_residual_place(b, value);
+shb_status mhb_balance_linear_limit(mhb_balance *b, double value, int stuck, double *x) {
+  mhb_balance_set_value(b, value);
   mhb_receptance_at(b->receptance, b->at.omega, b->m);
   for (int k = 0; k <= b->m; k++) {
     SHB_TRY(linear_harmonic(b, k, stuck, b->uk));
@@ -407,11 +409,11 @@ shb_status mhb_residual_linear(mhb_residual *b, double value, int stuck, double 
   return SHB_OK;
 }
 
-void mhb_residual_force(const mhb_residual *b, int k, double complex *p) {
+void mhb_balance_contact_force(const mhb_balance *b, int k, double complex *p) {
   harmonic(b, b->p, k, p);
 }
 
-double mhb_residual_vibration(const mhb_residual *b, const double *x) {
+double mhb_balance_vibration(const mhb_balance *b, const double *x) {
   double moving = 0, still = 0;
   for (int i = 0; i < b->n; i++) *(i % b->nb ? &moving : &still) += x[i] * x[i];
   return sqrt(moving > 0 ? moving : still);

@@ -12,90 +12,91 @@
 
 /* What a pair did over the period, as far as its derivative is concerned. */
 typedef enum {
-  MHB_PAIR_MOVING, /* slips or opens for a part of it */
-  MHB_PAIR_STUCK,  /* dp_k/du_k = diag(kv, Ku), for k = 0 diag(kv, 0) */
-  MHB_PAIR_HELD,   /* the same, but that the mean friction depends on all of u */
-  MHB_PAIR_OPEN    /* dp/du = 0 */
+  MHB_PAIR_NONLINEAR, /* slips or opens for a part of it */
+  MHB_PAIR_STUCK,     /* dp_k/du_k = diag(kv, Ku), for k = 0 diag(kv, 0) */
+  MHB_PAIR_AT_LIMIT,  /* the same, but that the mean friction depends on all of u */
+  MHB_PAIR_OPEN       /* dp/du = 0 */
 } mhb_pair_kind;
 
 enum { MHB_BY_PRELOAD = 2 };
 
 typedef struct {
-  const mhb_settings *settings;
-  mhb_receptance     *receptance; /* harmonics 0..m at least */
-  int                 owns_receptance;
-  mhb_contact        *contact;  /* forces to harmonic m: that of thread 0 */
-  mhb_contact       **contacts; /* [thread] */
-  int                 n_threads;
-  mhb_law            *law;               /* [pair] shares of the interface */
-  mhb_contact_info   *info;              /* [pair] of the last evaluation */
-  int                 m, n_pairs, nb, n; /* nb = 2m+1, n = 3 pairs nb unknowns */
-  mhb_parameter       parameter;         /* what the argument `value` of the functions below is */
-  mhb_condition       at;                /* of the last evaluation */
-  double             *p;                 /* [n] force in real form, as x */
-  double             *dp;                /* [pair][3 nb][3 nb] */
-  int                *linear_dp; /* [pair] kind whose derivative dp holds, -1: another one */
-  mhb_pair_kind      *kind;      /* [pair] of the last evaluation with derivatives */
-  int                 n_interfaces;
-  mhb_condition       own[MHB_MAX_INTERFACES]; /* of each, for the laws */
-  int                 n_laws;                  /* counts changes of law */
-  double complex     *pk, *uk;                 /* [3 pairs] one harmonic */
-  double             *by_parameter; /* [n] dp/dparameter, of the last evaluation with slope */
-} mhb_residual;
+  const mhb_settings     *settings;
+  mhb_receptance         *receptance; /* harmonics 0..m at least */
+  int                     owns_receptance;
+  mhb_contact_evaluator  *contact;  /* forces to harmonic m: that of thread 0 */
+  mhb_contact_evaluator **contacts; /* [thread] */
+  int                     n_threads;
+  mhb_law                *law;               /* [pair] shares of the interface */
+  mhb_contact_info       *info;              /* [pair] of the last evaluation */
+  int                     m, n_pairs, nb, n; /* nb = 2m+1, n = 3 pairs nb unknowns */
+  mhb_parameter           parameter; /* what the argument `value` of the functions below is */
+  mhb_operating_point     at;        /* of the last evaluation */
+  double                 *p;         /* [n] force in real form, as x */
+  double                 *dp;        /* [pair][3 nb][3 nb] */
+  int                    *linear_dp; /* [pair] kind whose derivative dp holds, -1: another one */
+  mhb_pair_kind          *kind;      /* [pair] of the last evaluation with derivatives */
+  int                     n_interfaces;
+  mhb_operating_point     own[MHB_MAX_INTERFACES]; /* of each, for the laws */
+  int                     n_laws;                  /* counts changes of law */
+  double complex         *pk, *uk;                 /* [3 pairs] one harmonic */
+  double                 *by_parameter; /* [n] dp/dparameter, of the last evaluation with slope */
+} mhb_balance;
 
-shb_status mhb_residual_create(const modal_model *model, const mhb_settings *settings,
-                               mhb_residual **residual);
+shb_status mhb_balance_create(const modal_model *model, const mhb_settings *settings,
+                              mhb_balance **residual);
 
 /* On a receptance of the same settings, for as many harmonics or more, which must outlive it and may serve others. */
-shb_status mhb_residual_create_on(mhb_receptance *receptance, const mhb_settings *settings,
-                                  mhb_residual **residual);
-void       mhb_residual_destroy(mhb_residual *residual);
+shb_status mhb_balance_create_on(mhb_receptance *receptance, const mhb_settings *settings,
+                                 mhb_balance **residual);
+void       mhb_balance_destroy(mhb_balance *residual);
 
 /* Everything that evaluations do not set by `value`. */
-void mhb_residual_condition(mhb_residual *residual, const mhb_condition *condition);
+void mhb_balance_set_operating_point(mhb_balance *residual, const mhb_operating_point *condition);
 
 /* Preload of the (leading) interface, N: shared out to the pairs. */
-void mhb_residual_preload(mhb_residual *residual, double n0);
+void mhb_balance_set_preload(mhb_balance *residual, double n0);
 
 /* From here on `value` is that of the parameter: rad/s for the frequency (as after creation), else as in the case. */
-void mhb_residual_follow(mhb_residual *residual, mhb_parameter parameter);
+void mhb_balance_set_parameter(mhb_balance *residual, mhb_parameter parameter);
 
 /* The condition at a value of the parameter. */
-void mhb_residual_place(mhb_residual *residual, double value);
+void mhb_balance_set_value(mhb_balance *residual, double value);
 
 /* As below, and always the derivatives dp and the kinds; the Jacobian is left to mhb/condensed. */
-void mhb_residual_derive(mhb_residual *residual, const double *x, double value, double *r,
-                         double *slope);
+void mhb_balance_linearise(mhb_balance *residual, const double *x, double value, double *r,
+                           double *slope);
 
 /* The rows of dp that are the mean friction of a pair, [3 nb]: axis 1 u, 2 w. */
-static inline double *mhb_residual_mean_row(const mhb_residual *residual, int pair, int axis) {
+static inline double *mhb_balance_mean_friction_row(const mhb_balance *residual, int pair,
+                                                    int axis) {
   size_t nb = (size_t)residual->nb;
   return residual->dp + ((size_t)(3 * pair + axis) * nb) * 3 * nb;
 }
 
 /* Two real rows, dp of harmonic k of a pair times the complex row R[3] over its axes:
  *   re, im  inout  [3 nb] += Re, Im of sum_c R[c] dp[c, k]; im is untouched for k = 0 */
-void mhb_residual_combine(const mhb_residual *residual, const double complex R[3], int pair, int k,
-                          double *re, double *im);
+void mhb_balance_row_times_dp(const mhb_balance *residual, const double complex R[3], int pair,
+                              int k, double *re, double *im);
 
 /* Evaluate at (x, value).
  *   r        out  [n] m
  *   jacobian out  [n][n] column-major dr/dx, or NULL
  *   slope    out  [n] dr/dvalue, or NULL */
-void mhb_residual_evaluate(mhb_residual *residual, const double *x, double value, double *r,
-                           double *jacobian, double *slope);
+void mhb_balance_evaluate(mhb_balance *residual, const double *x, double value, double *r,
+                          double *jacobian, double *slope);
 
 /* From here on the preloads of all interfaces move with it alike, or no longer. */
-void mhb_residual_anchor(mhb_residual *residual, int anchored);
+void mhb_balance_tie_preloads(mhb_balance *residual, int anchored);
 
 /* Linear limits at a value: harmonics of the relative motion with the contact open everywhere, or stuck everywhere; or each pair
  * as its preload says (stuck: MHB_BY_PRELOAD). */
-shb_status mhb_residual_linear(mhb_residual *residual, double value, int stuck, double *x);
+shb_status mhb_balance_linear_limit(mhb_balance *residual, double value, int stuck, double *x);
 
 /* Forces of the last evaluation as complex harmonic k of all pairs. */
-void mhb_residual_force(const mhb_residual *residual, int k, double complex *p);
+void mhb_balance_contact_force(const mhb_balance *residual, int k, double complex *p);
 
 /* |x| of harmonics 1..m, which errors are measured by: a static part says nothing of the vibration. |x| if there is no other. */
-double mhb_residual_vibration(const mhb_residual *residual, const double *x);
+double mhb_balance_vibration(const mhb_balance *residual, const double *x);
 
 #endif

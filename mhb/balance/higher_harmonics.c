@@ -13,7 +13,7 @@ static int most(int a, int b) {
   return a > b ? a : b;
 }
 
-static int allocate(mhb_beyond *b) {
+static int allocate(mhb_higher_harmonics *b) {
   size_t K = (size_t)(b->last - b->first + 1), n = (size_t)b->n, m = (size_t)b->n_modes;
   size_t row = 3 * (size_t)mhb_real_size(b->last);
   b->x       = calloc(row, sizeof(double));
@@ -31,9 +31,9 @@ static int allocate(mhb_beyond *b) {
          b->pivot;
 }
 
-shb_status mhb_beyond_create(const mhb_residual *balance, mhb_receptance *receptance,
-                             mhb_beyond **out) {
-  mhb_beyond *b = calloc(1, sizeof *b);
+shb_status mhb_higher_harmonics_create(const mhb_balance *balance, mhb_receptance *receptance,
+                                       mhb_higher_harmonics **out) {
+  mhb_higher_harmonics *b = calloc(1, sizeof *b);
   SHB_CHECK(b, SHB_ERR_IO, "out of memory");
   b->first          = balance->m + 1;
   b->last           = receptance->n_harmonics;
@@ -45,18 +45,19 @@ shb_status mhb_beyond_create(const mhb_residual *balance, mhb_receptance *recept
   if (!allocate(b))
     status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for %d harmonics", b->last);
   if (status == SHB_OK)
-    status = mhb_contact_create(b->last, b->last, balance->settings->tolerance, &b->contact);
+    status =
+        mhb_contact_evaluator_create(b->last, b->last, balance->settings->tolerance, &b->contact);
   if (status != SHB_OK) {
-    mhb_beyond_destroy(b);
+    mhb_higher_harmonics_destroy(b);
     return status;
   }
   *out = b;
   return SHB_OK;
 }
 
-void mhb_beyond_destroy(mhb_beyond *b) {
+void mhb_higher_harmonics_destroy(mhb_higher_harmonics *b) {
   if (!b) return;
-  mhb_contact_destroy(b->contact);
+  mhb_contact_evaluator_destroy(b->contact);
   free(b->x);
   free(b->p);
   free(b->force);
@@ -72,12 +73,12 @@ void mhb_beyond_destroy(mhb_beyond *b) {
 }
 
 /* Harmonic k of an array [k - first][n]. */
-static double complex *at(const mhb_beyond *b, double complex *array, int k) {
+static double complex *at(const mhb_higher_harmonics *b, double complex *array, int k) {
   return array + (size_t)(k - b->first) * (size_t)b->n;
 }
 
 /* Stiffness of a pair at the last harmonic that turns with the motion: what couples k with -k is left out. */
-static void stiffness(const mhb_residual *b, int pair, double complex D[3][3]) {
+static void stiffness(const mhb_balance *b, int pair, double complex D[3][3]) {
   size_t        block = 3 * (size_t)b->nb;
   const double *dp    = b->dp + (size_t)pair * block * block;
   for (int c = 0; c < 3; c++) {
@@ -90,8 +91,8 @@ static void stiffness(const mhb_residual *b, int pair, double complex D[3][3]) {
 }
 
 /* b->p <- forces of a pair under x, with the harmonics beyond or without them. */
-static void pair_force(mhb_beyond *b, const mhb_residual *balance, const double *x, int pair,
-                       int with) {
+static void pair_force(mhb_higher_harmonics *b, const mhb_balance *balance, const double *x,
+                       int pair, int with) {
   int              wide = mhb_real_size(b->last), nb = balance->nb;
   mhb_contact_info info;
   memset(b->x, 0, sizeof(double) * 3 * (size_t)wide);
@@ -106,12 +107,12 @@ static void pair_force(mhb_beyond *b, const mhb_residual *balance, const double 
   mhb_contact_force(b->contact, &balance->law[pair], b->x, b->p, NULL, &info);
 }
 
-static void set_forces(mhb_beyond *b, const mhb_residual *balance, const double *x) {
+static void set_forces(mhb_higher_harmonics *b, const mhb_balance *balance, const double *x) {
   int wide = mhb_real_size(b->last);
   memset(b->force, 0, sizeof *b->force * (size_t)(b->last - b->first + 1) * (size_t)b->n);
   for (int a = 0; a < balance->n_pairs; a++) {
     stiffness(balance, a, (double complex(*)[3])(b->D + 9 * a));
-    if (balance->kind[a] != MHB_PAIR_MOVING) continue;
+    if (balance->kind[a] != MHB_PAIR_NONLINEAR) continue;
     pair_force(b, balance, x, a, 0);
     for (int k = b->first; k <= b->last; k++)
       for (int c = 0; c < 3; c++)
@@ -128,9 +129,9 @@ static double power_of(int n, const double complex *u) {
 /* ---- as it stands ---- */
 
 /* A <- I + R_k D, column-major. */
-static void fill(mhb_beyond *b, int k) {
+static void fill(mhb_higher_harmonics *b, int k) {
   int n = b->n;
-  mhb_receptance_need(b->receptance, k);
+  mhb_receptance_update(b->receptance, k);
   const double complex *R = b->receptance->R + (size_t)k * (size_t)n * (size_t)n;
   for (int i = 0; i < n; i++, R += n)
     for (int j = 0; j < n; j++) {
@@ -140,7 +141,7 @@ static void fill(mhb_beyond *b, int k) {
 }
 
 /* u <- (I + R_k D)^-1 c; 0: singular. */
-static int solve_pairs(mhb_beyond *b, int k, double complex *u) {
+static int solve_pairs(mhb_higher_harmonics *b, int k, double complex *u) {
   fill(b, k);
   memcpy(u, b->c, sizeof *u * (size_t)b->n);
   return mhb_factor_complex(b->n, b->A, b->pivot) && mhb_solve_complex(b->n, b->A, b->pivot, 1, u);
@@ -149,12 +150,12 @@ static int solve_pairs(mhb_beyond *b, int k, double complex *u) {
 /* ---- in the modes ---- */
 
 /* W of a pair. */
-static void set_own(mhb_beyond *b, int k, int pair, double complex W[3][3]) {
+static void set_own(mhb_higher_harmonics *b, int k, int pair, double complex W[3][3]) {
   const mhb_receptance *r       = b->receptance;
   const double complex *D       = b->D + 9 * pair;
   double complex        G[3][3] = {{0}}, A[9];
   int                   pivot[3];
-  mhb_left_out_block(r->left_out, k, k * r->omega / r->nu, pair, G);
+  mhb_residual_terms_block(r->left_out, k, k * r->omega / r->nu, pair, G);
   for (int c = 0; c < 3; c++)
     for (int d = 0; d < 3; d++)
       A[3 * d + c] = G[c][0] * D[d] + G[c][1] * D[3 + d] + G[c][2] * D[6 + d] + (c == d);
@@ -173,7 +174,7 @@ static double complex mode(const mhb_receptance *r, int k, int i) {
 }
 
 /* A, y += those of a pair, before L. */
-static void add_pair(mhb_beyond *b, const double complex *B, int pair) {
+static void add_pair(mhb_higher_harmonics *b, const double complex *B, int pair) {
   int                   m = b->n_modes;
   const double complex *D = b->D + 9 * pair, *W = b->W + 9 * pair, *c = b->c + 3 * pair;
   for (int i = 0; i < 3; i++) {
@@ -190,7 +191,7 @@ static void add_pair(mhb_beyond *b, const double complex *B, int pair) {
                          conj(B[2 * m + l]) * b->V[2 * m + j];
 }
 
-static int solve_modes(mhb_beyond *b, int k, double complex *u) {
+static int solve_modes(mhb_higher_harmonics *b, int k, double complex *u) {
   int                   m = b->n_modes;
   const double complex *B = b->receptance->B + (size_t)k * (size_t)b->n * (size_t)m;
   memset(b->A, 0, sizeof *b->A * (size_t)m * (size_t)m);
@@ -217,7 +218,8 @@ static int solve_modes(mhb_beyond *b, int k, double complex *u) {
 
 /* ---- */
 
-double mhb_beyond_look(mhb_beyond *b, const mhb_residual *balance, const double *x) {
+double mhb_higher_harmonics_estimate(mhb_higher_harmonics *b, const mhb_balance *balance,
+                                     const double *x) {
   double sum = 0;
   set_forces(b, balance, x);
   for (int k = b->first; k <= b->last; k++) {
@@ -230,20 +232,20 @@ double mhb_beyond_look(mhb_beyond *b, const mhb_residual *balance, const double 
   return sqrt(sum);
 }
 
-void mhb_beyond_answer(mhb_beyond *b, const mhb_residual *balance, const double *x,
-                       double *change) {
+void mhb_higher_harmonics_feedback(mhb_higher_harmonics *b, const mhb_balance *balance,
+                                   const double *x, double *change) {
   int    wide = mhb_real_size(b->last), nb = balance->nb, n = b->n;
   size_t size = sizeof(double) * (size_t)balance->n;
   memset(change, 0, size);
   for (int a = 0; a < balance->n_pairs; a++) { /* first the forces */
-    if (balance->kind[a] != MHB_PAIR_MOVING) continue;
+    if (balance->kind[a] != MHB_PAIR_NONLINEAR) continue;
     pair_force(b, balance, x, a, 1);
     for (int row = 3 * a, c = 0; c < 3; c++, row++)
       for (int i = 0; i < nb; i++)
         change[row * nb + i] = b->p[c * wide + i] - balance->p[row * nb + i];
   }
   for (int k = 0; k <= balance->m; k++) {
-    mhb_receptance_need(b->receptance, k);
+    mhb_receptance_update(b->receptance, k);
     const double complex *R = b->receptance->R + (size_t)k * (size_t)n * (size_t)n;
     for (int row = 0; row < n; row++)
       b->c[row] =
@@ -260,6 +262,6 @@ void mhb_beyond_answer(mhb_beyond *b, const mhb_residual *balance, const double 
   }
 }
 
-double mhb_beyond_power(const mhb_beyond *b, int k) {
+double mhb_higher_harmonics_power(const mhb_higher_harmonics *b, int k) {
   return k < b->first || k > b->last ? 0 : power_of(b->n, at(b, b->u, k));
 }

@@ -11,33 +11,34 @@
 #include "mhb/balance/balance.h"
 
 typedef struct {
-  int             first, last; /* harmonics */
-  int             n, n_modes;  /* n = 3 pairs */
-  int             by_modes;
-  mhb_receptance *receptance; /* harmonics 0..last at least */
-  mhb_contact    *contact;    /* harmonics 0..last */
-  double         *x, *p;      /* [3][2 last + 1] of one pair */
-  double complex *force, *u;  /* [k - first][n] p_k, and the motion found */
-  double complex *D, *W;      /* [pair][3][3] */
-  double complex *A, *c;      /* [n][n] or [modes][modes], [n] of one harmonic */
-  double complex *y, *V;      /* [modes], [3][modes] */
-  int            *pivot;      /* [n or modes] */
-} mhb_beyond;
+  int                    first, last; /* harmonics */
+  int                    n, n_modes;  /* n = 3 pairs */
+  int                    by_modes;
+  mhb_receptance        *receptance; /* harmonics 0..last at least */
+  mhb_contact_evaluator *contact;    /* harmonics 0..last */
+  double                *x, *p;      /* [3][2 last + 1] of one pair */
+  double complex        *force, *u;  /* [k - first][n] p_k, and the motion found */
+  double complex        *D, *W;      /* [pair][3][3] */
+  double complex        *A, *c;      /* [n][n] or [modes][modes], [n] of one harmonic */
+  double complex        *y, *V;      /* [modes], [3][modes] */
+  int                   *pivot;      /* [n or modes] */
+} mhb_higher_harmonics;
 
 /* For a balance on the given receptance, whose harmonics beyond the balance's are looked at. Not thread safe (FFTW's planner).
  * SHB_ERR_IO: no memory. */
-shb_status mhb_beyond_create(const mhb_residual *balance, mhb_receptance *receptance,
-                             mhb_beyond **beyond);
-void       mhb_beyond_destroy(mhb_beyond *beyond);
+shb_status mhb_higher_harmonics_create(const mhb_balance *balance, mhb_receptance *receptance,
+                                       mhb_higher_harmonics **beyond);
+void       mhb_higher_harmonics_destroy(mhb_higher_harmonics *beyond);
 
 /* The harmonics beyond at the point x[n] where the balance was evaluated last, with derivatives: their size |u|. */
-double mhb_beyond_look(mhb_beyond *beyond, const mhb_residual *balance, const double *x);
+double mhb_higher_harmonics_estimate(mhb_higher_harmonics *beyond, const mhb_balance *balance,
+                                     const double *x);
 
 /* change[n] <- what they do to the residual of the balance at x. */
-void mhb_beyond_answer(mhb_beyond *beyond, const mhb_residual *balance, const double *x,
-                       double *change);
+void mhb_higher_harmonics_feedback(mhb_higher_harmonics *beyond, const mhb_balance *balance,
+                                   const double *x, double *change);
 
 /* |u_k|^2; 0 for other harmonics. */
-double mhb_beyond_power(const mhb_beyond *beyond, int k);
+double mhb_higher_harmonics_power(const mhb_higher_harmonics *beyond, int k);
 
 #endif

@@ -36,18 +36,19 @@ static int last_of(void *const term[MODAL_TERMS]) {
 }
 
 /* e[k][n] of one part; ratio[k] as above. */
-static void lacking(const mhb_residual *b, const double *ratio, part by, double complex *e) {
-  const mhb_receptance *r = b->receptance;
-  const mhb_left_out   *l = r->left_out;
-  const int             t = last_of((void *const *)l->contact), u = last_of((void *const *)l->load);
-  double complex        p[r->n];
+static void lacking(const mhb_balance *b, const double *ratio, part by, double complex *e) {
+  const mhb_receptance     *r = b->receptance;
+  const mhb_residual_terms *l = r->left_out;
+  const int      t = last_of((void *const *)l->contact), u = last_of((void *const *)l->load);
+  double complex p[r->n];
   for (int k = 1; k <= b->m; k++) {
     const modal_series s  = modal_series_at(r->model, k * r->omega / r->nu);
     double complex    *to = e + k * r->n;
-    if (by == BY_CONTACT) mhb_residual_force(b, k, p);
+    if (by == BY_CONTACT) mhb_balance_contact_force(b, k, p);
     for (int i = 0; i < r->n; i++)
       if (by == BY_CONTACT)
-        to[i] = -ratio[k] * s.weight[t] * mhb_flexibility_row(l->contact[t], r->phase[k], i, p);
+        to[i] =
+            -ratio[k] * s.weight[t] * mhb_cyclic_flexibility_row(l->contact[t], r->phase[k], i, p);
       else
         to[i] = l->load[u] ? ratio[k] * s.load_weight[u] * r->scale * l->load[u][k * r->n + i] : 0;
   }
@@ -60,40 +61,40 @@ static double length_of(int n, const double complex *e) {
 }
 
 /* As the whole balance answers; e[k][n]. */
-static double by_system(const mhb_residual *b, mhb_condensed *system, const double complex *e) {
-  const mhb_residual *wide   = system->b;
-  const int           n      = 3 * b->n_pairs;
-  double             *rhs    = calloc((size_t)wide->n, sizeof *rhs);
-  double              length = 0;
+static double by_system(const mhb_balance *b, mhb_condensation *system, const double complex *e) {
+  const mhb_balance *wide   = system->b;
+  const int          n      = 3 * b->n_pairs;
+  double            *rhs    = calloc((size_t)wide->n, sizeof *rhs);
+  double             length = 0;
   for (int k = 1; rhs && k <= b->m; k++)
     for (int i = 0; i < n; i++) {
       rhs[(size_t)i * (size_t)wide->nb + (size_t)(2 * k - 1)] = creal(e[k * n + i]);
       rhs[(size_t)i * (size_t)wide->nb + (size_t)(2 * k)]     = cimag(e[k * n + i]);
     }
-  if (rhs && mhb_condensed_solve(system, rhs)) length = mhb_norm(rhs, wide->n);
+  if (rhs && mhb_condensation_solve(system, rhs)) length = mhb_norm(rhs, wide->n);
   free(rhs);
   return length;
 }
 
 /* Harmonic by harmonic, where all pairs are open or stuck. */
-static void answer(const mhb_residual *b, double complex *A, int *pivot, double complex *e) {
+static void answer(const mhb_balance *b, double complex *A, int *pivot, double complex *e) {
   const int     n = 3 * b->n_pairs;
   mhb_pair_kind kind[b->n_pairs];
   for (int a = 0; a < b->n_pairs; a++)
     kind[a] = b->info[a].share[MHB_STICK] >= 1 ? MHB_PAIR_STUCK : MHB_PAIR_OPEN;
   for (int k = 1; k <= b->m; k++) {
     if (!(length_of(n, e + k * n) > 0)) continue;
-    mhb_receptance_need(b->receptance, k);
-    mhb_springs_matrix(b, k, kind, A);
+    mhb_receptance_update(b->receptance, k);
+    mhb_stick_matrix(b, k, kind, A);
     if (mhb_factor_complex(n, A, pivot)) mhb_solve_complex(n, A, pivot, 1, e + k * n);
   }
 }
 
-double mhb_modal_error(const mhb_residual *b, const double *x, mhb_condensed *system) {
+double mhb_modal_error(const mhb_balance *b, const double *x, mhb_condensation *system) {
   const mhb_receptance *r = b->receptance;
   const int             n = r->n, all = (b->m + 1) * n;
-  const bool            linear = !system && n <= MOST_SOLVED && mhb_springs_throughout(b);
-  const double          size   = mhb_residual_vibration(b, x);
+  const bool            linear = !system && n <= MOST_SOLVED && mhb_all_pairs_linear(b);
+  const double          size   = mhb_balance_vibration(b, x);
   double                ratio[b->m + 1], sum = 0;
   int                   pivot[n];
   if (!r->left_out->contact[0]) return -1;

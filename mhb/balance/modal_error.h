@@ -12,6 +12,6 @@
 /* Estimated |du| of the solution x[n] that the balance was just evaluated at, relative to its vibration; -1 if the file holds no residual flexibility.
  *   system  in  the linearised balance, factored at x, of as many harmonics or more; NULL: where every pair is open or stuck harmonics are
  *               solved one by one (up to 20 pairs), elsewhere |e| itself is given */
-double mhb_modal_error(const mhb_residual *balance, const double *x, mhb_condensed *system);
+double mhb_modal_error(const mhb_balance *balance, const double *x, mhb_condensation *system);
 
 #endif

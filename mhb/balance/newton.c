@@ -55,42 +55,43 @@ void mhb_newton_destroy(mhb_newton *w) {
   free(w->trial);
   free(w->slope);
   free(w->row);
-  mhb_condensed_destroy(w->system);
+  mhb_condensation_destroy(w->system);
   free(w);
 }
 
-shb_status mhb_newton_bind(mhb_newton *w, const mhb_residual *b) {
-  const mhb_condensed *s = w->system;
+shb_status mhb_newton_bind(mhb_newton *w, const mhb_balance *b) {
+  const mhb_condensation *s = w->system;
   if (s && s->b == b && s->m == b->m && s->n_pairs == b->n_pairs) return SHB_OK;
-  mhb_condensed_destroy(w->system);
+  mhb_condensation_destroy(w->system);
   w->system = NULL;
-  return mhb_condensed_create(b, &w->system);
+  return mhb_condensation_create(b, &w->system);
 }
 
 /* Halve the step until |r| falls; leaves r and derivatives at the new x. */
-static int line_search(mhb_newton *w, mhb_residual *b, double value, double *x, double *size) {
+static int line_search(mhb_newton *w, mhb_balance *b, double value, double *x, double *size) {
   int n = w->n;
   memcpy(w->trial, x, sizeof(double) * (size_t)n);
   double before = *size, fraction = 1;
   for (int i = 0; i < MAX_HALVINGS; i++, fraction *= .5) {
     for (int j = 0; j < n; j++) x[j] = w->trial[j] - fraction * w->step[j];
-    mhb_residual_derive(b, x, value, w->r, NULL);
+    mhb_balance_linearise(b, x, value, w->r, NULL);
     *size = mhb_norm(w->r, n);
     if (*size < (1 - .1 * fraction) * before) return 1;
   }
   return 0;
 }
 
-mhb_reason mhb_newton_solve(mhb_newton *w, mhb_residual *b, double value, double tolerance,
+mhb_reason mhb_newton_solve(mhb_newton *w, mhb_balance *b, double value, double tolerance,
                             double *x, int *iterations) {
   int n = w->n;
   if (mhb_newton_bind(w, b) != SHB_OK) return MHB_SINGULAR;
-  mhb_residual_derive(b, x, value, w->r, NULL);
+  mhb_balance_linearise(b, x, value, w->r, NULL);
   double size = mhb_norm(w->r, n);
   for (*iterations = 0; *iterations < MAX_ITERATIONS; ++*iterations) {
     if (size <= tolerance * fmax(mhb_norm(x, n), DBL_MIN)) return MHB_CONVERGED;
     memcpy(w->step, w->r, sizeof(double) * (size_t)n);
-    if (!mhb_condensed_factor(w->system, NULL, NULL) || !mhb_condensed_solve(w->system, w->step))
+    if (!mhb_condensation_factor(w->system, NULL, NULL) ||
+        !mhb_condensation_solve(w->system, w->step))
       return MHB_SINGULAR;
     if (!line_search(w, b, value, x, &size))
       return size <= 100 * tolerance * mhb_norm(x, n) ? MHB_CONVERGED

@@ -7,7 +7,7 @@
 
 static const double PI = 3.14159265358979323846, NOTHING = 1e-6;
 
-void mhb_order_widen(int rows, const double *x, int m, int factor, double *to, int wide) {
+void mhb_subharmonic_embed(int rows, const double *x, int m, int factor, double *to, int wide) {
   int nb = 2 * m + 1, room = 2 * wide + 1;
   memset(to, 0, sizeof(double) * (size_t)(rows * room));
   for (int row = 0; row < rows; row++) {
@@ -21,7 +21,8 @@ void mhb_order_widen(int rows, const double *x, int m, int factor, double *to, i
   }
 }
 
-void mhb_order_narrow(int rows, const double *x, int m, int factor, double *to, int narrow) {
+void mhb_subharmonic_restrict(int rows, const double *x, int m, int factor, double *to,
+                              int narrow) {
   int nb = 2 * m + 1, room = 2 * narrow + 1;
   memset(to, 0, sizeof(double) * (size_t)(rows * room));
   for (int row = 0; row < rows; row++) {
@@ -35,7 +36,7 @@ void mhb_order_narrow(int rows, const double *x, int m, int factor, double *to, 
   }
 }
 
-void mhb_order_shift(const mhb_residual *b, const double *x, int j, double *to) {
+void mhb_subharmonic_shift(const mhb_balance *b, const double *x, int j, double *to) {
   int nu = b->receptance->nu;
   for (int row = 0; row < 3 * b->n_pairs; row++) {
     const double *a = x + row * b->nb;
@@ -50,7 +51,7 @@ void mhb_order_shift(const mhb_residual *b, const double *x, int j, double *to) 
   }
 }
 
-void mhb_order_part(const mhb_residual *b, const double *x, int d, double *part) {
+void mhb_subharmonic_component(const mhb_balance *b, const double *x, int d, double *part) {
   int stride = b->receptance->nu / d;
   memcpy(part, x, sizeof(double) * (size_t)b->n);
   for (int row = 0; row < 3 * b->n_pairs; row++) {
@@ -60,12 +61,12 @@ void mhb_order_part(const mhb_residual *b, const double *x, int d, double *part)
   }
 }
 
-int mhb_order_least(const mhb_residual *b, const double *x) {
+int mhb_subharmonic_period(const mhb_balance *b, const double *x) {
   int    nu = b->receptance->nu;
   double part[b->n], size = mhb_norm(x, b->n);
   for (int d = 1; d < nu; d++) {
     if (nu % d) continue;
-    mhb_order_part(b, x, d, part);
+    mhb_subharmonic_component(b, x, d, part);
     if (mhb_norm(part, b->n) <= NOTHING * size) return d;
   }
   return nu;

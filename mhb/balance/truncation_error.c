@@ -18,7 +18,7 @@ static int most(int a, int b) {
   return a > b ? a : b;
 }
 
-shb_status mhb_truncation_create(const mhb_residual *residual, mhb_truncation **out) {
+shb_status mhb_truncation_create(const mhb_balance *residual, mhb_truncation **out) {
   mhb_truncation *t = calloc(1, sizeof *t);
   SHB_CHECK(t, SHB_ERR_IO, "out of memory");
   int m                 = residual->m;
@@ -28,7 +28,7 @@ shb_status mhb_truncation_create(const mhb_residual *residual, mhb_truncation **
   t->settings.harmonics = 2 * m;
   shb_status status =
       mhb_receptance_create(residual->receptance->model, &t->settings, looked_at, &t->receptance);
-  if (status == SHB_OK) status = mhb_residual_create_on(t->receptance, &t->settings, &t->doubled);
+  if (status == SHB_OK) status = mhb_balance_create_on(t->receptance, &t->settings, &t->doubled);
   if (status == SHB_OK) {
     size_t n    = (size_t)t->doubled->n;
     t->x        = calloc(n, sizeof(double));
@@ -39,9 +39,9 @@ shb_status mhb_truncation_create(const mhb_residual *residual, mhb_truncation **
     if (!(t->x && t->step && t->residual && t->trial && t->change))
       status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   }
-  if (status == SHB_OK) status = mhb_beyond_create(t->doubled, t->receptance, &t->beyond);
+  if (status == SHB_OK) status = mhb_higher_harmonics_create(t->doubled, t->receptance, &t->beyond);
   if (status == SHB_OK)
-    status = mhb_condensed_create_within(t->doubled, MHB_MOST_DOUBLED, &t->system);
+    status = mhb_condensation_create_within(t->doubled, MHB_MOST_DOUBLED, &t->system);
   if (status != SHB_OK) {
     mhb_truncation_destroy(t);
     return status;
@@ -52,9 +52,9 @@ shb_status mhb_truncation_create(const mhb_residual *residual, mhb_truncation **
 
 void mhb_truncation_destroy(mhb_truncation *t) {
   if (!t) return;
-  mhb_condensed_destroy(t->system);
-  mhb_beyond_destroy(t->beyond);
-  mhb_residual_destroy(t->doubled);
+  mhb_condensation_destroy(t->system);
+  mhb_higher_harmonics_destroy(t->beyond);
+  mhb_balance_destroy(t->doubled);
   mhb_receptance_destroy(t->receptance);
   free(t->x);
   free(t->step);
@@ -73,13 +73,13 @@ static void copy_rows(int rows, const double *from, int nb, double *to, int wide
 
 /* The residual along the step, -1 + tau + kappa tau^2 in units of it: kappa from one more evaluation, near by. */
 static double bend(mhb_truncation *t, double length, double size) {
-  mhb_residual *b    = t->doubled;
-  double        part = fmin(1, NEAR_BY * size / length), product = 0;
+  mhb_balance *b    = t->doubled;
+  double       part = fmin(1, NEAR_BY * size / length), product = 0;
   for (int i = 0; i < b->n; i++) t->trial[i] = t->x[i] + part * t->step[i];
   double *r = t->trial;
-  mhb_residual_evaluate(b, t->trial, t->narrow->at.omega, t->residual, NULL, NULL);
+  mhb_balance_evaluate(b, t->trial, t->narrow->at.omega, t->residual, NULL, NULL);
   for (int i = 0; i < b->n; i++) r[i] = t->residual[i] + t->change[i];
-  if (!mhb_condensed_solve(t->system, r)) return 0;
+  if (!mhb_condensation_solve(t->system, r)) return 0;
   for (int i = 0; i < b->n; i++)
     product += (r[i] + (1 - part) * t->step[i]) / length * (t->step[i] / length);
   return product / (part * part);
@@ -101,21 +101,21 @@ static void scale_step(mhb_truncation *t, double size) {
 
 /* step <- -r, then the Newton step where there is room for it and it exists. */
 static mhb_truncation_kind set_step(mhb_truncation *t, double size) {
-  mhb_residual *b     = t->doubled;
-  double        omega = t->narrow->at.omega;
-  size_t        bytes = sizeof(double) * (size_t)b->n;
-  mhb_residual_derive(b, t->x, omega, t->residual, NULL);
+  mhb_balance *b     = t->doubled;
+  double       omega = t->narrow->at.omega;
+  size_t       bytes = sizeof(double) * (size_t)b->n;
+  mhb_balance_linearise(b, t->x, omega, t->residual, NULL);
   for (int i = 0; i < b->n; i++) t->step[i] = -t->residual[i];
-  if (!mhb_condensed_factor(t->system, NULL, NULL)) return MHB_TRUNCATION_FIRST_ORDER;
+  if (!mhb_condensation_factor(t->system, NULL, NULL)) return MHB_TRUNCATION_FIRST_ORDER;
   memcpy(t->trial, t->step, bytes);
-  if (!mhb_condensed_solve(t->system, t->trial)) return MHB_TRUNCATION_FIRST_ORDER;
+  if (!mhb_condensation_solve(t->system, t->trial)) return MHB_TRUNCATION_FIRST_ORDER;
   memset(t->change, 0, bytes);
   double length = mhb_norm(t->trial, b->n);
-  t->far        = mhb_beyond_look(t->beyond, b, t->x);
+  t->far        = mhb_higher_harmonics_estimate(t->beyond, b, t->x);
   if (t->far > NEGLIGIBLE * length) {
-    mhb_beyond_answer(t->beyond, b, t->x, t->change);
+    mhb_higher_harmonics_feedback(t->beyond, b, t->x, t->change);
     for (int i = 0; i < b->n; i++) t->trial[i] = -t->residual[i] - t->change[i];
-    mhb_condensed_solve(t->system, t->trial);
+    mhb_condensation_solve(t->system, t->trial);
   }
   memcpy(t->step, t->trial, bytes);
   scale_step(t, size);
@@ -123,22 +123,23 @@ static mhb_truncation_kind set_step(mhb_truncation *t, double size) {
 }
 
 double mhb_truncation_error(mhb_truncation *t, const double *x) {
-  mhb_residual *b    = t->doubled;
-  double        size = mhb_residual_vibration(t->narrow, x);
+  mhb_balance *b    = t->doubled;
+  double       size = mhb_balance_vibration(t->narrow, x);
   copy_rows(3 * b->n_pairs, x, t->narrow->nb, t->x, b->nb);
   memset(t->step, 0, sizeof(double) * (size_t)b->n);
   t->far  = 0;
   t->kind = MHB_TRUNCATION_NONE;
-  if (mhb_springs_throughout(t->narrow)) return 0;
-  mhb_residual_condition(b, &t->narrow->at);
+  if (mhb_all_pairs_linear(t->narrow)) return 0;
+  mhb_balance_set_operating_point(b, &t->narrow->at);
   t->kind = set_step(t, size);
   return size > 0 ? hypot(mhb_norm(t->step, b->n), t->far) / size : 0;
 }
 
 double mhb_truncation_power(const mhb_truncation *t, int k) {
-  const mhb_residual *b = t->doubled;
+  const mhb_balance *b = t->doubled;
   if (t->kind == MHB_TRUNCATION_NONE) return 0;
-  if (k > b->m) return t->kind == MHB_TRUNCATION_NEWTON ? mhb_beyond_power(t->beyond, k) : 0;
+  if (k > b->m)
+    return t->kind == MHB_TRUNCATION_NEWTON ? mhb_higher_harmonics_power(t->beyond, k) : 0;
   double sum = 0;
   for (int row = 0; row < 3 * b->n_pairs; row++) {
     const double *a = t->step + (size_t)row * (size_t)b->nb;

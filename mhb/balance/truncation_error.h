@@ -26,21 +26,21 @@ typedef enum {
 } mhb_truncation_kind;
 
 typedef struct {
-  const mhb_residual *narrow;
-  mhb_settings        settings;
-  mhb_receptance     *receptance; /* all harmonics looked at */
-  mhb_residual       *doubled;    /* harmonics 0..2m */
-  mhb_condensed      *system;     /* of the doubled balance */
-  mhb_beyond         *beyond;
-  double             *x,
+  const mhb_balance    *narrow;
+  mhb_settings          settings;
+  mhb_receptance       *receptance; /* all harmonics looked at */
+  mhb_balance          *doubled;    /* harmonics 0..2m */
+  mhb_condensation     *system;     /* of the doubled balance */
+  mhb_higher_harmonics *beyond;
+  double               *x,
       *step; /* [doubled->n] the solution, zero beyond m; delta of the last estimate, or -r, or zero */
   double             *residual, *trial, *change; /* [doubled->n] */
   double              far;                       /* |u_k|, k > 2m, of the last estimate */
   mhb_truncation_kind kind;                      /* of the last estimate */
 } mhb_truncation;
 
-/* Not thread safe (FFTW's planner). The residual must outlive it. Errors: as mhb_residual_create. */
-shb_status mhb_truncation_create(const mhb_residual *residual, mhb_truncation **truncation);
+/* Not thread safe (FFTW's planner). The residual must outlive it. Errors: as mhb_balance_create. */
+shb_status mhb_truncation_create(const mhb_balance *residual, mhb_truncation **truncation);
 void       mhb_truncation_destroy(mhb_truncation *truncation);
 
 /* Estimated error of the solution x[n] that the residual was just evaluated at, from the harmonics left

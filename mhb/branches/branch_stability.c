@@ -35,28 +35,28 @@ typedef struct {
   int    turn;       /* what crosses there: MHB_FLIP, MHB_NEIMARK_SACKER */
 } look;
 
-struct mhb_judge {
-  mhb_residual  *residual;
-  mhb_stability *stability;
-  int            states, all; /* all: every point of the branch at work */
-  double        *x, *r;       /* [n] */
+struct mhb_branch_stability {
+  mhb_balance *residual;
+  mhb_floquet *stability;
+  int          states, all; /* all: every point of the branch at work */
+  double      *x, *r;       /* [n] */
   /* the branch at work */
-  mhb_path       *path;
-  mhb_response   *response;
-  int             branch;
-  mhb_judge_host *host;
-  look           *look; /* [point] */
-  int             n;
+  mhb_arclength     *path;
+  mhb_response      *response;
+  int                branch;
+  mhb_branch_editor *host;
+  look              *look; /* [point] */
+  int                n;
 };
 
 /* States of the blade or ring with all its modes, each contact sticking. */
-static int count_states(const mhb_residual *b) {
+static int count_states(const mhb_balance *b) {
   int blades = b->settings->to_ground ? 1 : b->settings->blades;
   return 2 * blades * (b->receptance->n_modes + b->n_pairs);
 }
 
-shb_status mhb_judge_create(mhb_residual *b, mhb_judge **out) {
-  mhb_judge *j = calloc(1, sizeof *j);
+shb_status mhb_branch_stability_create(mhb_balance *b, mhb_branch_stability **out) {
+  mhb_branch_stability *j = calloc(1, sizeof *j);
   SHB_CHECK(j, SHB_ERR_IO, "out of memory");
   j->residual = b;
   j->states   = count_states(b);
@@ -66,19 +66,19 @@ shb_status mhb_judge_create(mhb_residual *b, mhb_judge **out) {
   shb_status status =
       j->x && j->r ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   if (status == SHB_OK)
-    status = mhb_stability_create(b->receptance, b->settings, fine ? SUBSTEPS : FEWER_SUBSTEPS,
-                                  fine ? 0 : FEWER_STATES, &j->stability);
+    status = mhb_floquet_create(b->receptance, b->settings, fine ? SUBSTEPS : FEWER_SUBSTEPS,
+                                fine ? 0 : FEWER_STATES, &j->stability);
   if (status != SHB_OK) {
-    mhb_judge_destroy(j);
+    mhb_branch_stability_destroy(j);
     return status;
   }
   *out = j;
   return SHB_OK;
 }
 
-void mhb_judge_destroy(mhb_judge *j) {
+void mhb_branch_stability_destroy(mhb_branch_stability *j) {
   if (!j) return;
-  mhb_stability_destroy(j->stability);
+  mhb_floquet_destroy(j->stability);
   free(j->x);
   free(j->r);
   free(j);
@@ -86,20 +86,20 @@ void mhb_judge_destroy(mhb_judge *j) {
 
 /* ---- one point ---- */
 
-static mhb_branch *branch_of(const mhb_judge *j) {
+static mhb_branch *branch_of(const mhb_branch_stability *j) {
   return &j->response->branch[j->branch];
 }
 
-static double value_of(const mhb_judge *j, int point) {
+static double value_of(const mhb_branch_stability *j, int point) {
   return mhb_parameter_value(j->residual->parameter, branch_of(j)->value[point]);
 }
 
 /* Multipliers at the solution that the residual was last evaluated at. */
-static void evaluate(mhb_judge *j, const double *x, mhb_multipliers *out) {
-  const mhb_residual *b        = j->residual;
-  mhb_solution        solution = {b->at.omega, b->law, b->info, x, b->p};
-  if (b->settings->run_up) mhb_stability_move(j->stability, b->receptance);
-  mhb_stability_evaluate(j->stability, &solution, out);
+static void evaluate(mhb_branch_stability *j, const double *x, mhb_multipliers *out) {
+  const mhb_balance *b        = j->residual;
+  mhb_solution       solution = {b->at.omega, b->law, b->info, x, b->p};
+  if (b->settings->run_up) mhb_floquet_move(j->stability, b->receptance);
+  mhb_floquet_evaluate(j->stability, &solution, out);
 }
 
 /* The largest multiplier that is not on the positive axis; -1: none. */
@@ -125,7 +125,7 @@ static look look_of(const mhb_multipliers *m) {
 }
 
 /* Into the branch; locked by the caller. */
-static void put(const mhb_judge *j, int point, const mhb_multipliers *m) {
+static void put(const mhb_branch_stability *j, int point, const mhb_multipliers *m) {
   static const int judged[] = {MHB_BY_MULTIPLIERS, MHB_MARGINAL_BY_FOLDS, MHB_BY_MULTIPLIERS,
                                MHB_UNDECIDED_BY_FOLDS};
   mhb_branch      *branch   = branch_of(j);
@@ -136,11 +136,11 @@ static void put(const mhb_judge *j, int point, const mhb_multipliers *m) {
 }
 
 /* false: the host wants to stop. */
-static bool judge_point(mhb_judge *j, int point) {
+static bool judge_point(mhb_branch_stability *j, int point) {
   mhb_multipliers m;
   double          started = shb_seconds(), value = value_of(j, point);
   mhb_recorded_motion(branch_of(j), point, j->residual, j->x);
-  mhb_residual_evaluate(j->residual, j->x, value, j->r, NULL, NULL);
+  mhb_balance_evaluate(j->residual, j->x, value, j->r, NULL, NULL);
   evaluate(j, j->x, &m);
   j->look[point] = look_of(&m);
   j->host->lock(j->host, true);
@@ -154,7 +154,7 @@ static bool judge_point(mhb_judge *j, int point) {
 /* ---- which points ---- */
 
 /* Stuck or open throughout: the exponents are kept from point to point, and cost little; but not where the speed changes. */
-static bool is_linear(const mhb_judge *j, int point) {
+static bool is_linear(const mhb_branch_stability *j, int point) {
   if (j->residual->settings->run_up) return false;
   size_t        pairs = (size_t)j->response->n_pairs;
   const double *share = branch_of(j)->state + 3 * (size_t)point * pairs;
@@ -164,7 +164,7 @@ static bool is_linear(const mhb_judge *j, int point) {
 }
 
 /* Of the points left, the middle one of the longest stretch between judged ones and folds; -1: none. */
-static int next_of_few(const mhb_judge *j) {
+static int next_of_few(const mhb_branch_stability *j) {
   const int *special = branch_of(j)->special;
   int        from = 0, longest = 0, best = -1;
   for (int i = 0; i <= j->n; i++) {
@@ -179,7 +179,7 @@ static int next_of_few(const mhb_judge *j) {
 }
 
 /* The largest motion at a point that is left; -1: none. */
-static int largest_motion(const mhb_judge *j) {
+static int largest_motion(const mhb_branch_stability *j) {
   double top  = -1;
   int    best = -1;
   for (int i = 0; i < j->n; i++) {
@@ -194,8 +194,8 @@ static int largest_motion(const mhb_judge *j) {
 }
 
 /* Points that the budget allows, by the states that are integrated and the cells of the ring that share them (bloch.h). */
-static int affordable(const mhb_judge *j) {
-  int    few = j->states > FINE, g = mhb_stability_cells(j->stability);
+static int affordable(const mhb_branch_stability *j) {
+  int    few = j->states > FINE, g = mhb_floquet_cells(j->stability);
   double states = few && j->states > FEWER_STATES ? FEWER_STATES : j->states;
   double cube   = SECONDS_A_CUBE * states * states * states * (g > 2 ? 2. : 1.) / (g * g);
   int    n      = (int)((few ? FEWER_BUDGET : BUDGET) / (cube + SECONDS_A_STATE * states));
@@ -203,12 +203,12 @@ static int affordable(const mhb_judge *j) {
 }
 
 /* Decided by the branch alone, never by the clock: the same on every machine and for any number of threads. */
-static int judges_all(const mhb_judge *j) {
+static int judges_all(const mhb_branch_stability *j) {
   return j->states <= CHEAP || j->residual->settings->stability == MHB_STABILITY_ALWAYS ||
          (j->states <= FINE && affordable(j) >= j->n);
 }
 
-static bool judge_points(mhb_judge *j) {
+static bool judge_points(mhb_branch_stability *j) {
   bool go_on = true;
   for (int i = 0; i < j->n && go_on; i++)
     if (j->all || is_linear(j, i)) go_on = judge_point(j, i);
@@ -224,12 +224,13 @@ static bool judge_points(mhb_judge *j) {
 /* ---- flips and Neimark-Sacker points ---- */
 
 typedef struct {
-  mhb_judge      *judge;
-  mhb_multipliers last;
-  look            look;
+  mhb_branch_stability *judge;
+  mhb_multipliers       last;
+  look                  look;
 } search;
 
-static double swing_indicator(const mhb_path *path, const mhb_path_point *point, void *context) {
+static double swing_indicator(const mhb_arclength *path, const mhb_curve_point *point,
+                              void *context) {
   search *s = context;
   (void)path;
   evaluate(s->judge, point->x, &s->last);
@@ -238,15 +239,16 @@ static double swing_indicator(const mhb_path *path, const mhb_path_point *point,
 }
 
 /* Where the swing passes 1 between points i - 1 and i; inserted there. A jump across 1 is not marked. */
-static shb_status locate(mhb_judge *j, int i) {
-  mhb_path *path = j->path;
-  search    s    = {.judge = j};
-  double    at;
+static shb_status locate(mhb_branch_stability *j, int i) {
+  mhb_arclength *path = j->path;
+  search         s    = {.judge = j};
+  double         at;
   mhb_recorded_motion(branch_of(j), i - 1, j->residual, path->now.x);
   mhb_recorded_motion(branch_of(j), i, j->residual, path->next.x);
   path->now.value  = value_of(j, i - 1);
   path->next.value = value_of(j, i);
-  if (!mhb_path_locate(path, swing_indicator, &s, j->look[i - 1].swing, j->look[i].swing, &at) ||
+  if (!mhb_arclength_locate(path, swing_indicator, &s, j->look[i - 1].swing, j->look[i].swing,
+                            &at) ||
       !(fabs(s.look.swing) < ON_CIRCLE))
     return SHB_OK;
   int turn = s.look.turn;
@@ -268,14 +270,14 @@ static bool begins(const int *first, int n_first, int point) {
 
 /* Points first..last - 1 in a row have a swing above 1, one of them well above. Slip onset brings multipliers close to 1: not
  * marked. */
-static bool is_in_earnest(const mhb_judge *j, int from, int to) {
+static bool is_in_earnest(const mhb_branch_stability *j, int from, int to) {
   for (int i = from; i < to; i++)
     if (j->look[i].swings) return true;
   return false;
 }
 
 /* From the end, so that places before stay valid. */
-static shb_status mark_turns(mhb_judge *j, const int *first, int n_first) {
+static shb_status mark_turns(mhb_branch_stability *j, const int *first, int n_first) {
   int located = 0, to = j->n;
   while (to > 0 && located + 2 <= MAX_LOCATED) {
     int from = to - 1;
@@ -338,12 +340,13 @@ static void decide(mhb_branch *branch, const look *looks, int stable_at) {
   }
 }
 
-void mhb_judge_by_folds(mhb_branch *branch, int stable_at) {
+void mhb_branch_stability_by_folds(mhb_branch *branch, int stable_at) {
   decide(branch, NULL, stable_at);
 }
 
-shb_status mhb_judge_branch(mhb_judge *j, mhb_path *path, mhb_response *response, int index,
-                            const int *first, int n_first, mhb_judge_host *host, bool *finished) {
+shb_status mhb_branch_stability_judge(mhb_branch_stability *j, mhb_arclength *path,
+                                      mhb_response *response, int index, const int *first,
+                                      int n_first, mhb_branch_editor *host, bool *finished) {
   j->path     = path;
   j->response = response;
   j->branch   = index;

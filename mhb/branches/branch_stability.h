@@ -14,37 +14,38 @@
 #include "mhb/response/response.h"
 
 /* How a located point gets into the branch at a place; the residual's workspace is at it. */
-typedef struct mhb_judge_host mhb_judge_host;
-struct mhb_judge_host {
+typedef struct mhb_branch_editor mhb_branch_editor;
+struct mhb_branch_editor {
   /* Insert it. Errors: SHB_ERR_IO no memory. */
-  shb_status (*insert)(mhb_judge_host *host, mhb_path_point *point, int special, int at);
+  shb_status (*insert)(mhb_branch_editor *host, mhb_curve_point *point, int special, int at);
   /* Called before (true) and after (false) the branch's arrays are written. */
-  void (*lock)(mhb_judge_host *host, bool locked);
+  void (*lock)(mhb_branch_editor *host, bool locked);
   /* After each point, locked; false: stop. */
-  bool (*point)(mhb_judge_host *host, double value);
+  bool (*point)(mhb_branch_editor *host, double value);
   int stable_at; /* by folds: this point is stable, unless multipliers tell otherwise */
 };
 
-typedef struct mhb_judge mhb_judge; /* workspace; one a thread */
+typedef struct mhb_branch_stability mhb_branch_stability; /* workspace; one a thread */
 
 /* Multipliers kept a point. */
-enum { MHB_JUDGE_MULTIPLIERS = 8 };
+enum { MHB_KEPT_MULTIPLIERS = 8 };
 
 /* settings->stability must not be never. Not thread safe (FFTW planner); the residual must outlive it.
  * Errors: SHB_ERR_IO no memory. */
-shb_status mhb_judge_create(mhb_residual *residual, mhb_judge **judge);
-void       mhb_judge_destroy(mhb_judge *judge);
+shb_status mhb_branch_stability_create(mhb_balance *residual, mhb_branch_stability **judge);
+void       mhb_branch_stability_destroy(mhb_branch_stability *judge);
 
 /* Fill judged, loss, multipliers and stable of a branch, and insert flips and Neimark-Sacker points.
  *   path      its now, next and probe are overwritten
  *   first     [n_first] where the branch begins anew after a gap, ascending; no point is sought across
  *   finished  out  false: the host stopped it; what is not judged yet goes by folds
  * Errors: SHB_ERR_IO no memory. */
-shb_status mhb_judge_branch(mhb_judge *judge, mhb_path *path, mhb_response *response, int branch,
-                            const int *first, int n_first, mhb_judge_host *host, bool *finished);
+shb_status mhb_branch_stability_judge(mhb_branch_stability *judge, mhb_arclength *path,
+                                      mhb_response *response, int branch, const int *first,
+                                      int n_first, mhb_branch_editor *host, bool *finished);
 
 /* stable and loss by the parity of folds alone, counted from a point that is stable; where the curve left the range and came
  * back to the same end (two points in a row at one value) it has passed another one. */
-void mhb_judge_by_folds(mhb_branch *branch, int stable_at);
+void mhb_branch_stability_by_folds(mhb_branch *branch, int stable_at);
 
 #endif

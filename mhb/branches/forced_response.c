@@ -51,7 +51,7 @@ static void note_failure(sweep *s, shb_status status) {
   snprintf(s->fault, sizeof s->fault, "%s", shb_message());
 }
 
-static bool point(mhb_monitor *monitor, int branch, const mhb_path_point *at) {
+static bool point(mhb_monitor *monitor, int branch, const mhb_curve_point *at) {
   sweep              *s    = (sweep *)monitor;
   const mhb_settings *c    = s->settings;
   const mhb_branch   *b    = &s->response->branch[branch];
@@ -101,8 +101,8 @@ static shb_status describe_interfaces(mhb_response *response, const modal_model 
   return status;
 }
 
-shb_status mhb_sweep_describe(mhb_response *response, const modal_model *model,
-                              const mhb_settings *settings) {
+shb_status mhb_response_describe(mhb_response *response, const modal_model *model,
+                                 const mhb_settings *settings) {
   size_t m                 = (size_t)model->n_modes;
   response->n_modes        = model->n_modes;
   response->subharmonics   = settings->subharmonics;
@@ -110,7 +110,7 @@ shb_status mhb_sweep_describe(mhb_response *response, const modal_model *model,
   response->blades         = settings->blades;
   response->run_up         = settings->run_up != NULL;
   response->parameter      = settings->parameter;
-  response->n_multipliers  = settings->stability == MHB_STABILITY_NEVER ? 0 : MHB_JUDGE_MULTIPLIERS;
+  response->n_multipliers  = settings->stability == MHB_STABILITY_NEVER ? 0 : MHB_KEPT_MULTIPLIERS;
   response->mode_frequency = malloc(sizeof(double) * m);
   response->mode_damping   = malloc(sizeof(double) * m);
   SHB_CHECK(response->mode_frequency && response->mode_damping, SHB_ERR_IO, "out of memory");
@@ -132,36 +132,36 @@ shb_status mhb_sweep_describe(mhb_response *response, const modal_model *model,
 
 static shb_status linear_limits(const modal_model *model, const mhb_settings *settings,
                                 mhb_response *response) {
-  mhb_residual *residual = NULL;
-  SHB_TRY(mhb_residual_create(model, settings, &residual));
+  mhb_balance *residual = NULL;
+  SHB_TRY(mhb_balance_create(model, settings, &residual));
   response->psi = residual->receptance->psi;
   response->phi = residual->receptance->phi;
   double most   = settings->n0[0];
   for (int i = 1; i < settings->n_preloads; i++) most = fmax(most, settings->n0[i]);
-  mhb_residual_preload(residual, most);
-  mhb_residual_follow(residual, settings->parameter);
-  shb_status status = mhb_rigid_check(residual->receptance, settings);
+  mhb_balance_set_preload(residual, most);
+  mhb_balance_set_parameter(residual, settings->parameter);
+  shb_status status = mhb_stiffness_check(residual->receptance, settings);
   for (int stuck = 0; stuck < 2 && status == SHB_OK; stuck++) {
     int branch;
     status = mhb_response_branch(response, stuck ? MHB_BRANCH_STUCK : MHB_BRANCH_OPEN, &branch);
-    if (status == SHB_OK) status = mhb_follow_linear(residual, response, branch);
+    if (status == SHB_OK) status = mhb_linear_limits(residual, response, branch);
   }
-  mhb_residual_destroy(residual);
+  mhb_balance_destroy(residual);
   return status;
 }
 
 /* The main branch of a preload. */
 static shb_status main_branch(sweep *s, const modal_model *model, int i) {
-  mhb_residual *residual = NULL;
+  mhb_balance *residual = NULL;
   lock(&s->base, true); /* FFTW's planner */
-  shb_status status = mhb_residual_create(model, s->settings, &residual);
+  shb_status status = mhb_balance_create(model, s->settings, &residual);
   lock(&s->base, false);
   if (status != SHB_OK) return status;
-  mhb_residual_preload(residual, s->settings->n0[i]);
-  mhb_residual_follow(residual, s->settings->parameter);
-  status = mhb_follow(residual, s->response, 2 + i, &s->base);
+  mhb_balance_set_preload(residual, s->settings->n0[i]);
+  mhb_balance_set_parameter(residual, s->settings->parameter);
+  status = mhb_trace_main_branch(residual, s->response, 2 + i, &s->base);
   lock(&s->base, true);
-  mhb_residual_destroy(residual);
+  mhb_balance_destroy(residual);
   lock(&s->base, false);
   return status;
 }
@@ -171,7 +171,7 @@ static shb_status one_preload(sweep *s, const modal_model *model, int i) {
   mhb_branch *main   = &s->response->branch[2 + i];
   shb_status  status = main->complete ? SHB_OK : main_branch(s, model, i);
   if (status == SHB_OK && !main->searched && !shb_interrupted())
-    status = mhb_further(model, s->settings, s->response, 2 + i, &s->base);
+    status = mhb_secondary_branches(model, s->settings, s->response, 2 + i, &s->base);
   lock(&s->base, true);
   s->done[i] = 1;
   if (status == SHB_OK && s->path && shb_seconds() - s->published > BRANCH_END_EVERY)
@@ -207,7 +207,7 @@ static void resume(sweep *s) {
     int main = old->branch[i].main, index;
     if (main == i || main >= 2 + s->settings->n_preloads) continue;
     const mhb_branch *trunk = &s->response->branch[main];
-    bool              whole = trunk->searched || old->branch[i].origin == MHB_ASIDE;
+    bool              whole = trunk->searched || old->branch[i].origin == MHB_FROM_DETACHED;
     if (!trunk->complete || !whole ||
         mhb_response_branch(s->response, MHB_BRANCH_NONLINEAR, &index) != SHB_OK)
       continue;
@@ -226,13 +226,14 @@ static void drop_empty(mhb_response *response) {
 
 static shb_status all_preloads(sweep *s, const modal_model *model) {
   int  n      = s->settings->n_preloads;
-  bool wanted = mhb_further_wanted(s->settings);
+  bool wanted = mhb_secondary_branches_wanted(s->settings);
   for (int i = 0; i < n; i++) {
     int branch;
     SHB_TRY(mhb_response_branch(s->response, MHB_BRANCH_NONLINEAR, &branch));
     s->response->branch[branch].searched = !wanted;
   }
-  SHB_TRY(mhb_response_reserve(s->response, n * (MHB_MAX_ASIDE + (wanted ? MHB_MAX_FURTHER : 0))));
+  SHB_TRY(
+      mhb_response_reserve(s->response, n * (MHB_MAX_DETACHED + (wanted ? MHB_MAX_SECONDARY : 0))));
   if (s->settings->resume) resume(s);
 #pragma omp parallel for schedule(dynamic, 1) if (n > 1) /* else the threads go to the pairs */
   for (int i = 0; i < n; i++) {
@@ -274,9 +275,10 @@ static shb_status check_load(const modal_model *model, const mhb_settings *setti
   return SHB_OK;
 }
 
-shb_status mhb_sweep(const modal_model *model, const mhb_settings *asked, const char *path,
-                     const shb_provenance *provenance, shb_progress *progress, mhb_response **out) {
-  int          m[MHB_MAX_RUNGS], rungs = mhb_harmonics_ladder(model, asked, m);
+shb_status mhb_forced_response(const modal_model *model, const mhb_settings *asked,
+                               const char *path, const shb_provenance *provenance,
+                               shb_progress *progress, mhb_response **out) {
+  int          m[MHB_MAX_LEVELS], rungs = mhb_harmonic_levels_ladder(model, asked, m);
   mhb_settings first = *asked, *settings = &first;
   *out            = NULL;
   first.harmonics = m[rungs - 1];
@@ -294,7 +296,7 @@ shb_status mhb_sweep(const modal_model *model, const mhb_settings *asked, const 
   s.done     = calloc((size_t)settings->n_preloads, sizeof(double));
   shb_status status =
       s.response && s.done ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  if (status == SHB_OK) status = mhb_sweep_describe(s.response, model, settings);
+  if (status == SHB_OK) status = mhb_response_describe(s.response, model, settings);
   if (status == SHB_OK) status = linear_limits(model, settings, s.response);
   omp_init_lock(&s.mutex);
   if (status == SHB_OK) status = all_preloads(&s, model);

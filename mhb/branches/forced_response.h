@@ -13,12 +13,12 @@
  * settings->resume: branches that an earlier file of the same settings holds complete are not computed again.
  *   response  out  the caller destroys it (NULL on error)
  * Returns SHB_OK; SHB_NOT_CONVERGED if a branch ended before the range was covered; SHB_INTERRUPTED; SHB_ERR_*. */
-shb_status mhb_sweep(const modal_model *model, const mhb_settings *settings, const char *path,
-                     const shb_provenance *provenance, shb_progress *progress,
-                     mhb_response **response);
+shb_status mhb_forced_response(const modal_model *model, const mhb_settings *settings,
+                               const char *path, const shb_provenance *provenance,
+                               shb_progress *progress, mhb_response **response);
 
 /* What a response tells of the model and the settings besides its branches. SHB_ERR_IO: no memory. */
-shb_status mhb_sweep_describe(mhb_response *response, const modal_model *model,
-                              const mhb_settings *settings);
+shb_status mhb_response_describe(mhb_response *response, const modal_model *model,
+                                 const mhb_settings *settings);
 
 #endif

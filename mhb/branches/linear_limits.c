@@ -11,7 +11,7 @@
 static const double TOLERANCE = 2e-3;
 
 typedef struct {
-  mhb_residual *residual;
+  mhb_balance  *residual;
   mhb_response *response;
   int           branch, stuck, n_outputs;
   double       *x, *r;
@@ -19,12 +19,12 @@ typedef struct {
 
 /* Amplitudes of all outputs at a value of the parameter; leaves the residual's forces there. */
 static shb_status amplitudes(sampler *s, double value, double *out) {
-  mhb_residual         *b      = s->residual;
+  mhb_balance          *b      = s->residual;
   const mhb_receptance *r      = b->receptance;
   int                   probes = r->model->n_probes, k = r->nu <= b->m ? r->nu : b->m;
-  SHB_TRY(mhb_residual_linear(b, value, s->stuck, s->x));
+  SHB_TRY(mhb_balance_linear_limit(b, value, s->stuck, s->x));
   double complex p[r->n], q[3 * probes + 1];
-  mhb_residual_force(b, k, p);
+  mhb_balance_contact_force(b, k, p);
   mhb_receptance_probe(r, k, p, q);
   for (int o = 0; o < probes; o++) {
     double sum = 0;
@@ -47,8 +47,8 @@ static shb_status record(sampler *s, double value) {
     memset(info, 0, offsetof(mhb_contact_info, transition));
     info->share[s->stuck ? MHB_STICK : MHB_SEPARATE] = 1;
   }
-  mhb_path_point point = {.x = s->x, .value = value};
-  point.modal          = mhb_modal_error(s->residual, s->x, NULL);
+  mhb_curve_point point = {.x = s->x, .value = value};
+  point.modal           = mhb_modal_error(s->residual, s->x, NULL);
   SHB_TRY(mhb_record(s->response, s->branch, s->residual, &point, MHB_ORDINARY,
                      shb_seconds() - started));
   mhb_branch *branch                   = &s->response->branch[s->branch];
@@ -73,7 +73,7 @@ static shb_status refine(sampler *s, double lo, const double *at_lo, double hi, 
 }
 
 /* First grid: in frequency a quarter of the narrowest half-power width, within reason. */
-static int first_grid(const mhb_residual *b) {
+static int first_grid(const mhb_balance *b) {
   const modal_model *model = b->receptance->model;
   const double      *f     = b->settings->frequency;
   double             least = .1;
@@ -84,11 +84,11 @@ static int first_grid(const mhb_residual *b) {
 }
 
 static shb_status sample(sampler *s) {
-  const mhb_residual *b    = s->residual;
-  int                 grid = first_grid(b);
-  double              from = mhb_parameter_end(b->settings, b->parameter, 0), lo = from;
-  double              to = mhb_parameter_end(b->settings, b->parameter, 1);
-  double              at_lo[s->n_outputs + 1], at_hi[s->n_outputs + 1];
+  const mhb_balance *b    = s->residual;
+  int                grid = first_grid(b);
+  double             from = mhb_parameter_end(b->settings, b->parameter, 0), lo = from;
+  double             to = mhb_parameter_end(b->settings, b->parameter, 1);
+  double             at_lo[s->n_outputs + 1], at_hi[s->n_outputs + 1];
   SHB_TRY(amplitudes(s, lo, at_lo));
   SHB_TRY(record(s, lo));
   for (int i = 1; i <= grid; i++) {
@@ -103,7 +103,7 @@ static shb_status sample(sampler *s) {
 }
 
 /* A grid point is a peak where an output is larger than at both neighbours: marked for the report. */
-static void mark_peaks(mhb_branch *branch, const mhb_residual *b, int n_probes, int n_harmonics) {
+static void mark_peaks(mhb_branch *branch, const mhb_balance *b, int n_probes, int n_harmonics) {
   int K = n_harmonics + 1, k = b->receptance->nu <= b->m ? b->receptance->nu : b->m;
   for (int o = 0; o < n_probes; o++) {
     double a[3] = {0, 0, 0};
@@ -123,7 +123,7 @@ static void mark_peaks(mhb_branch *branch, const mhb_residual *b, int n_probes, 
   }
 }
 
-shb_status mhb_follow_linear(mhb_residual *residual, mhb_response *response, int branch) {
+shb_status mhb_linear_limits(mhb_balance *residual, mhb_response *response, int branch) {
   sampler s = {.residual  = residual,
                .response  = response,
                .branch    = branch,

@@ -11,20 +11,20 @@
 /* Called after every recorded point; the one place where threads meet. Returns false to stop (interrupted). */
 typedef struct mhb_monitor mhb_monitor;
 struct mhb_monitor {
-  bool (*point)(mhb_monitor *monitor, int branch, const mhb_path_point *point);
+  bool (*point)(mhb_monitor *monitor, int branch, const mhb_curve_point *point);
   void (*lock)(mhb_monitor *monitor, bool locked);
   /* Called, locked, while further branches are looked for at a value of the parameter, a share of it done; false: stop. */
   bool (*looking)(mhb_monitor *monitor, int branch, double value, double share);
 };
 
-/* Branches at most that mhb_follow appends: the response needs room reserved for them. */
-enum { MHB_MAX_ASIDE = 4 };
+/* Branches at most that mhb_trace_main_branch appends: the response needs room reserved for them. */
+enum { MHB_MAX_DETACHED = 4 };
 
 /* Follow the branch at the residual's preload from the low to the high end of the range. A curve that closes or leaves by the low
- * end becomes a branch of its own (MHB_ASIDE), and what reaches the high end is followed from beyond it, both ways; so is a curve that
+ * end becomes a branch of its own (MHB_FROM_DETACHED), and what reaches the high end is followed from beyond it, both ways; so is a curve that
  * was lost. Never fails for want of convergence: the branch then ends with its reason. Errors: SHB_ERR_IO no memory. */
-shb_status mhb_follow(mhb_residual *residual, mhb_response *response, int branch,
-                      mhb_monitor *monitor);
+shb_status mhb_trace_main_branch(mhb_balance *residual, mhb_response *response, int branch,
+                                 mhb_monitor *monitor);
 
 /* Where a further branch begins. */
 typedef struct {
@@ -36,14 +36,14 @@ typedef struct {
 /* Follow the branch through a solution both ways until the curve closes, leaves the range or joins one of lower order; the points
  * are in order along it. It is complete if one of these happened. A branch that leaves
  * another one must be on its way already: *none tells that there was no such branch, and nothing is recorded. Errors: as above. */
-shb_status mhb_follow_from(mhb_residual *residual, mhb_response *response, int branch,
-                           mhb_monitor *monitor, const mhb_start *start, bool *none);
+shb_status mhb_trace_branch(mhb_balance *residual, mhb_response *response, int branch,
+                            mhb_monitor *monitor, const mhb_start *start, bool *none);
 
 /* The open or stuck limit, sampled until linear interpolation of every output is within .2 % of its local value. */
-shb_status mhb_follow_linear(mhb_residual *residual, mhb_response *response, int branch);
+shb_status mhb_linear_limits(mhb_balance *residual, mhb_response *response, int branch);
 
 /* A solution at a value of the parameter from nothing: the open and stuck limits, zero, then homotopy in the preload from both sides. */
-mhb_reason mhb_first_solution(mhb_newton *newton, mhb_residual *residual, double value,
+mhb_reason mhb_first_solution(mhb_newton *newton, mhb_balance *residual, double value,
                               double tolerance, double *x, int *iterations);
 
 #endif

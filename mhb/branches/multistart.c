@@ -9,12 +9,12 @@
 static const double TOLERANCE = 1e-10, SAME = 1e-5, SMALL = 1e-6;
 enum { MAX_STEPS = 40, MAX_HALVINGS = 6 };
 
-void mhb_found_free(mhb_found *found) {
+void mhb_solution_set_free(mhb_solution_set *found) {
   free(found->x);
-  *found = (mhb_found){0};
+  *found = (mhb_solution_set){0};
 }
 
-shb_status mhb_found_add(mhb_found *found, int n, const double *x) {
+shb_status mhb_solution_set_add(mhb_solution_set *found, int n, const double *x) {
   if (found->n_found == found->capacity) {
     int     room = 2 * found->capacity + 8;
     double *more = realloc(found->x, sizeof(double) * (size_t)room * (size_t)n);
@@ -33,7 +33,7 @@ static double uniform(unsigned long long *seed) {
 }
 
 /* Harmonic k of any size up to that of the fundamental over k^2: as of a motion with jumps of acceleration. */
-static void draw(const mhb_residual *b, double size, unsigned long long *seed, double *x) {
+static void draw(const mhb_balance *b, double size, unsigned long long *seed, double *x) {
   for (int row = 0; row < b->n / b->nb; row++)
     for (int j = 0; j < b->nb; j++) {
       int k              = (j + 1) / 2;
@@ -48,23 +48,24 @@ static double distance(const double *a, const double *b, int n) {
 }
 
 /* Newton from x with steps of 2 size at most; 1: |r| has become small. */
-static int descend(mhb_newton *w, mhb_residual *b, double value, double size, double *x) {
+static int descend(mhb_newton *w, mhb_balance *b, double value, double size, double *x) {
   int    n = b->n;
   double kept[n];
   for (int step = 0; step < MAX_STEPS; step++) {
-    mhb_residual_derive(b, x, value, w->r, NULL);
+    mhb_balance_linearise(b, x, value, w->r, NULL);
     double before = mhb_norm(w->r, n), part = 1;
     if (!isfinite(before)) return 0;
     if (before <= SMALL * mhb_norm(x, n)) return 1;
     memcpy(w->step, w->r, sizeof(double) * (size_t)n);
-    if (!mhb_condensed_factor(w->system, NULL, NULL) || !mhb_condensed_solve(w->system, w->step))
+    if (!mhb_condensation_factor(w->system, NULL, NULL) ||
+        !mhb_condensation_solve(w->system, w->step))
       return 0;
     double length = mhb_norm(w->step, n), r = INFINITY;
     if (length > 2 * size) part = 2 * size / length;
     memcpy(kept, x, sizeof kept);
     for (int k = 0; k <= MAX_HALVINGS && !(r < before); k++, part *= .5) {
       for (int i = 0; i < n; i++) x[i] = kept[i] - part * w->step[i];
-      mhb_residual_evaluate(b, x, value, w->r, NULL, NULL);
+      mhb_balance_evaluate(b, x, value, w->r, NULL, NULL);
       r = mhb_norm(w->r, n);
     }
     if (!(r < before)) return 0;
@@ -72,7 +73,7 @@ static int descend(mhb_newton *w, mhb_residual *b, double value, double size, do
   return 0;
 }
 
-bool mhb_found_has(const mhb_found *found, const double *x) {
+bool mhb_solution_set_has(const mhb_solution_set *found, const double *x) {
   for (int f = 0; f < found->n_found; f++) {
     const double *y = found->x + (size_t)f * (size_t)found->n;
     if (distance(x, y, found->n) <= SAME * fmax(mhb_norm(x, found->n), mhb_norm(y, found->n)))
@@ -81,18 +82,20 @@ bool mhb_found_has(const mhb_found *found, const double *x) {
   return false;
 }
 
-shb_status mhb_found_add_shifts(mhb_found *found, const mhb_residual *b, const double *x) {
+shb_status mhb_solution_set_add_shifts(mhb_solution_set *found, const mhb_balance *b,
+                                       const double *x) {
   double later[b->n];
   found->n = b->n;
   for (int j = 0; j < b->receptance->nu; j++) {
-    mhb_order_shift(b, x, j, later);
-    if (!mhb_found_has(found, later)) SHB_TRY(mhb_found_add(found, b->n, later));
+    mhb_subharmonic_shift(b, x, j, later);
+    if (!mhb_solution_set_has(found, later)) SHB_TRY(mhb_solution_set_add(found, b->n, later));
   }
   return SHB_OK;
 }
 
-shb_status mhb_search_once(mhb_newton *w, mhb_residual *b, double value, double size,
-                           unsigned long long *seed, mhb_found *found, double *x, bool *found_new) {
+shb_status mhb_multistart_once(mhb_newton *w, mhb_balance *b, double value, double size,
+                               unsigned long long *seed, mhb_solution_set *found, double *x,
+                               bool *found_new) {
   int iterations;
   *found_new = false;
   SHB_TRY(mhb_newton_bind(w, b));
@@ -100,15 +103,15 @@ shb_status mhb_search_once(mhb_newton *w, mhb_residual *b, double value, double 
   draw(b, size, seed, x);
   if (!descend(w, b, value, size, x)) return SHB_OK;
   if (mhb_newton_solve(w, b, value, TOLERANCE, x, &iterations) != MHB_CONVERGED) return SHB_OK;
-  *found_new = !mhb_found_has(found, x);
-  return *found_new ? mhb_found_add_shifts(found, b, x) : SHB_OK;
+  *found_new = !mhb_solution_set_has(found, x);
+  return *found_new ? mhb_solution_set_add_shifts(found, b, x) : SHB_OK;
 }
 
-shb_status mhb_search(mhb_newton *w, mhb_residual *b, double value, double size, int starts,
-                      unsigned long long seed, mhb_found *found) {
+shb_status mhb_multistart(mhb_newton *w, mhb_balance *b, double value, double size, int starts,
+                          unsigned long long seed, mhb_solution_set *found) {
   double x[b->n];
   bool   unused;
   for (int i = 0; i < starts; i++)
-    SHB_TRY(mhb_search_once(w, b, value, size, &seed, found, x, &unused));
+    SHB_TRY(mhb_multistart_once(w, b, value, size, &seed, found, x, &unused));
   return SHB_OK;
 }

@@ -21,10 +21,10 @@ static void release(workspace *w) {
   free(w->r);
 }
 
-static shb_status decompose(mhb_residual *b, workspace *w, int size, const double *x, double value,
+static shb_status decompose(mhb_balance *b, workspace *w, int size, const double *x, double value,
                             double *along, double *least) {
   size_t n = (size_t)b->n, m = (size_t)size;
-  mhb_residual_evaluate(b, x, value, w->r, w->jacobian, NULL);
+  mhb_balance_evaluate(b, x, value, w->r, w->jacobian, NULL);
   for (size_t j = 0; j < m; j++)
     for (size_t i = 0; i < m; i++)
       w->odd[j * m + i] = w->jacobian[(size_t)w->at[j] * n + (size_t)w->at[i]];
@@ -36,8 +36,8 @@ static shb_status decompose(mhb_residual *b, workspace *w, int size, const doubl
   return SHB_OK;
 }
 
-shb_status mhb_doubling_direction(mhb_residual *b, const double *x, double value, double *along,
-                                  double *least) {
+shb_status mhb_period_doubling_direction(mhb_balance *b, const double *x, double value,
+                                         double *along, double *least) {
   int    size = 0;
   size_t n = (size_t)b->n, room = (size_t)(b->n / b->nb) * 2 * (size_t)((b->m + 1) / 2);
 

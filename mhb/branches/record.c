@@ -6,11 +6,11 @@
 static const double PI = 3.14159265358979323846, FLAT = 1e-9;
 
 static void record_signals(mhb_response *response, mhb_branch *branch, int point,
-                           const mhb_residual *b, const double *x) {
+                           const mhb_balance *b, const double *x) {
   int            K = branch->n_harmonics + 1, n3 = 3 * b->n_pairs, q = 3 * response->n_probes;
   double complex p[n3], motion[q + 1];
   for (int k = 0; k <= b->m; k++) {
-    mhb_residual_force(b, k, p);
+    mhb_balance_contact_force(b, k, p);
     for (int row = 0; row < n3; row++) {
       const double *a    = x + (size_t)row * (size_t)b->nb;
       size_t        at   = ((size_t)point * (size_t)n3 + (size_t)row) * (size_t)K + (size_t)k;
@@ -23,7 +23,7 @@ static void record_signals(mhb_response *response, mhb_branch *branch, int point
   }
 }
 
-static void record_states(mhb_branch *branch, int point, const mhb_residual *b) {
+static void record_states(mhb_branch *branch, int point, const mhb_balance *b) {
   double worst = 0;
   for (int a = 0; a < b->n_pairs; a++) {
     size_t at = (size_t)point * (size_t)b->n_pairs + (size_t)a;
@@ -34,8 +34,8 @@ static void record_states(mhb_branch *branch, int point, const mhb_residual *b) 
   branch->error_sampling[point] = worst;
 }
 
-shb_status mhb_record(mhb_response *response, int index, mhb_residual *b,
-                      const mhb_path_point *point, int special, double seconds) {
+shb_status mhb_record(mhb_response *response, int index, mhb_balance *b,
+                      const mhb_curve_point *point, int special, double seconds) {
   int at;
   SHB_TRY(mhb_response_point(response, index, &at));
   mhb_branch *branch    = &response->branch[index];
@@ -58,13 +58,13 @@ shb_status mhb_record(mhb_response *response, int index, mhb_residual *b,
   return SHB_OK;
 }
 
-int mhb_outputs(const mhb_residual *b) {
+int mhb_outputs(const mhb_balance *b) {
   int pairs = b->n_pairs < 2 ? b->n_pairs : 2;
   return b->receptance->model->n_probes + 3 * pairs;
 }
 
 /* Change of the contact forces along dx and with the parameter by dvalue, harmonic k. */
-static void force_change(const mhb_residual *b, const double *dx, double dvalue, int k,
+static void force_change(const mhb_balance *b, const double *dx, double dvalue, int k,
                          double complex *dp) {
   int block = 3 * b->nb;
   for (int row = 0; row < 3 * b->n_pairs; row++) {
@@ -89,13 +89,13 @@ static double unless_flat(double slope, double square) {
   return fabs(slope) > FLAT * square ? slope : 0;
 }
 
-void mhb_probe_change(const mhb_path *path, const mhb_path_point *point, int k, double complex *q,
-                      double complex *dq) {
-  const mhb_residual *b      = path->residual;
-  double              dvalue = point->tangent[path->n];
-  double complex      p[b->receptance->n], dp[b->receptance->n];
-  mhb_receptance_need(b->receptance, k);
-  mhb_residual_force(b, k, p);
+void mhb_probe_change(const mhb_arclength *path, const mhb_curve_point *point, int k,
+                      double complex *q, double complex *dq) {
+  const mhb_balance *b      = path->residual;
+  double             dvalue = point->tangent[path->n];
+  double complex     p[b->receptance->n], dp[b->receptance->n];
+  mhb_receptance_update(b->receptance, k);
+  mhb_balance_contact_force(b, k, p);
   force_change(b, point->tangent, dvalue, k, dp);
   mhb_receptance_probe(b->receptance, k, p, q);
   mhb_receptance_probe_change(b->receptance, k, p, dp,
@@ -103,8 +103,8 @@ void mhb_probe_change(const mhb_path *path, const mhb_path_point *point, int k, 
                               b->parameter == MHB_IN_SCALE ? dvalue : 0, dq);
 }
 
-double mhb_output_slope(const mhb_path *path, const mhb_path_point *point, int o) {
-  const mhb_residual   *b      = path->residual;
+double mhb_output_slope(const mhb_arclength *path, const mhb_curve_point *point, int o) {
+  const mhb_balance    *b      = path->residual;
   const mhb_receptance *r      = b->receptance;
   int                   probes = r->model->n_probes, k = r->nu <= b->m ? r->nu : b->m;
   if (o >= probes) {
@@ -122,7 +122,7 @@ double mhb_output_slope(const mhb_path *path, const mhb_path_point *point, int o
   return unless_flat(sum, square);
 }
 
-void mhb_recorded_motion(const mhb_branch *branch, int point, const mhb_residual *b, double *x) {
+void mhb_recorded_motion(const mhb_branch *branch, int point, const mhb_balance *b, double *x) {
   size_t                K = (size_t)branch->n_harmonics + 1, rows = 3 * (size_t)b->n_pairs;
   size_t                held = K < (size_t)b->m + 1 ? K : (size_t)b->m + 1;
   const double complex *A    = branch->motion + (size_t)point * rows * K;

@@ -23,11 +23,11 @@ enum { LOOK_HARMONICS = 7, N_PLACES = 6, MAX_SITES = 16 };
 
 /* Everything for one order. */
 typedef struct {
-  int           order; /* in all: times the main branch's */
-  mhb_settings  settings;
-  mhb_residual *residual;
-  mhb_newton   *newton;
-  mhb_found     found; /* at the value at hand */
+  int              order; /* in all: times the main branch's */
+  mhb_settings     settings;
+  mhb_balance     *residual;
+  mhb_newton      *newton;
+  mhb_solution_set found; /* at the value at hand */
 } site;
 
 typedef struct {
@@ -38,11 +38,11 @@ typedef struct {
   mhb_monitor        *monitor;
   int                 n_sites;
   site               *sites[MAX_SITES];
-  int                 n_further, further[MHB_MAX_FURTHER]; /* branches appended */
+  int                 n_further, further[MHB_MAX_SECONDARY]; /* branches appended */
   bool                go_on;
 } hunt;
 
-bool mhb_further_wanted(const mhb_settings *s) {
+bool mhb_secondary_branches_wanted(const mhb_settings *s) {
   return s->search.starts > 0 || (s->flips && s->stability != MHB_STABILITY_NEVER);
 }
 
@@ -57,20 +57,20 @@ static mhb_branch *branch_at(const hunt *h, int index) {
 /* ---- the balance of an order ---- */
 
 static void site_destroy(site *s) {
-  mhb_found_free(&s->found);
+  mhb_solution_set_free(&s->found);
   mhb_newton_destroy(s->newton);
-  mhb_residual_destroy(s->residual);
+  mhb_balance_destroy(s->residual);
   free(s);
 }
 
 /* Highest harmonic that a branch of this order may have. */
 static int most_harmonics(const hunt *h, const site *s) {
-  int m[MHB_MAX_RUNGS], n = mhb_harmonics_ladder(h->model, &s->settings, m);
+  int m[MHB_MAX_LEVELS], n = mhb_harmonic_levels_ladder(h->model, &s->settings, m);
   return m[n - 1];
 }
 
 static int look_harmonics(const hunt *h, const site *s) {
-  int m[MHB_MAX_RUNGS], n = mhb_harmonics_ladder(h->model, &s->settings, m), i = 0;
+  int m[MHB_MAX_LEVELS], n = mhb_harmonic_levels_ladder(h->model, &s->settings, m), i = 0;
   if (!(s->settings.motion_tolerance > 0)) return m[0];
   while (i + 1 < n && m[i] < LOOK_HARMONICS * s->order) i++;
   return m[i];
@@ -83,9 +83,9 @@ static shb_status site_fill(hunt *h, site *s) {
   s->settings.subharmonics  = s->order;
   s->settings.harmonics     = asked->harmonics * s->order / asked->subharmonics;
   s->settings.harmonics     = look_harmonics(h, s);
-  SHB_TRY(mhb_residual_create(h->model, &s->settings, &s->residual));
-  mhb_residual_preload(s->residual, branch_at(h, h->main)->n0[0]);
-  mhb_residual_follow(s->residual, asked->parameter);
+  SHB_TRY(mhb_balance_create(h->model, &s->settings, &s->residual));
+  mhb_balance_set_preload(s->residual, branch_at(h, h->main)->n0[0]);
+  mhb_balance_set_parameter(s->residual, asked->parameter);
   return mhb_newton_create(s->residual->n, &s->newton);
 }
 
@@ -125,7 +125,7 @@ static void take(const hunt *h, const mhb_branch *b, int i, double share, const 
     for (int k = 0; k <= m; k++) A[k] = (1 - share) * a[k] + share * c[k];
     mhb_to_real(m, A, own + row * nb);
   }
-  mhb_order_widen(rows, own, m, s->order / b->order, x, s->residual->m);
+  mhb_subharmonic_embed(rows, own, m, s->order / b->order, x, s->residual->m);
 }
 
 /* A point's value of the parameter, as the residual takes it. */
@@ -142,7 +142,7 @@ static shb_status know_crossing(const hunt *h, const mhb_branch *b, int i, doubl
   for (int k = 0; k < 3; k++) {
     take(h, b, i, shares[k], s, x);
     if (mhb_newton_solve(s->newton, s->residual, value, TOLERANCE, x, &iterations) == MHB_CONVERGED)
-      return mhb_found_add_shifts(&s->found, s->residual, x);
+      return mhb_solution_set_add_shifts(&s->found, s->residual, x);
   }
   return SHB_OK;
 }
@@ -192,7 +192,7 @@ static shb_status is_another(hunt *h, site *s, int index, bool *another) {
   if (mhb_newton_solve(s->newton, s->residual, value, TOLERANCE, x, &iterations) != MHB_CONVERGED)
     return SHB_OK;
   SHB_TRY(know_all(h, s, value, index));
-  *another = mhb_found_has(&s->found, x);
+  *another = mhb_solution_set_has(&s->found, x);
   return SHB_OK;
 }
 
@@ -206,10 +206,10 @@ static void forget(hunt *h, int index) {
 static shb_status follow(hunt *h, site *s, mhb_origin origin, const mhb_start *start) {
   int  index;
   bool none, another = false;
-  if (h->n_further == MHB_MAX_FURTHER) return SHB_OK;
+  if (h->n_further == MHB_MAX_SECONDARY) return SHB_OK;
   SHB_TRY(append(h, s, origin, &index));
   h->further[h->n_further++] = index;
-  SHB_TRY(mhb_follow_from(s->residual, h->response, index, h->monitor, start, &none));
+  SHB_TRY(mhb_trace_branch(s->residual, h->response, index, h->monitor, start, &none));
   const char *reason = branch_at(h, index)->reason;
   if (reason && strncmp(reason, "interrupted", 11) == 0) h->go_on = false;
   if (!none && h->go_on) SHB_TRY(is_another(h, s, index, &another));
@@ -242,9 +242,9 @@ static shb_status follow_flip(hunt *h, site *s, int point) {
   if (is_followed(h, s, x, value)) return SHB_OK;
   if (mhb_newton_solve(s->newton, s->residual, value, TOLERANCE, x, &iterations) != MHB_CONVERGED)
     return SHB_OK;
-  mhb_order_part(s->residual, x, s->order / 2, part);
+  mhb_subharmonic_component(s->residual, x, s->order / 2, part);
   for (int i = 0; i < n; i++) x[i] -= part[i];
-  SHB_TRY(mhb_doubling_direction(s->residual, x, value, along, &least));
+  SHB_TRY(mhb_period_doubling_direction(s->residual, x, value, along, &least));
   if (!(least < SINGULAR)) return SHB_OK;
   return follow(h, s, MHB_FROM_FLIP, &(mhb_start){x, value, along});
 }
@@ -264,14 +264,15 @@ static shb_status follow_flips(hunt *h) {
 
 /* A solution of the site is followed as one of the lowest order that it is, of those that the main branch's divides. */
 static shb_status follow_found(hunt *h, site *s, const double *x, double value) {
-  int   least = mhb_order_least(s->residual, x), base = h->settings->subharmonics, order = base;
+  int least = mhb_subharmonic_period(s->residual, x), base = h->settings->subharmonics,
+      order = base;
   site *own = s;
   while (order < s->order && (s->order % order || order % least)) order += base;
   if (order < s->order) SHB_TRY(site_of(h, order, &own));
   if (!own) return SHB_OK;
   double narrow[own->residual->n];
-  mhb_order_narrow(3 * s->residual->n_pairs, x, s->residual->m, s->order / order, narrow,
-                   own->residual->m);
+  mhb_subharmonic_restrict(3 * s->residual->n_pairs, x, s->residual->m, s->order / order, narrow,
+                           own->residual->m);
   return follow(h, own, MHB_FROM_SEARCH, &(mhb_start){narrow, value, NULL});
 }
 
@@ -303,12 +304,12 @@ static shb_status look_at(hunt *h, site *s, double value, unsigned long long see
   if (!(size > 0)) return SHB_OK;
   for (int i = 0; i < h->settings->search.starts && still_looking(h, value, share); i++) {
     bool is_new;
-    SHB_TRY(mhb_search_once(s->newton, s->residual, value, size * sizes[i % 4], &seed, &s->found, x,
-                            &is_new));
+    SHB_TRY(mhb_multistart_once(s->newton, s->residual, value, size * sizes[i % 4], &seed,
+                                &s->found, x, &is_new));
     if (!is_new) continue;
     SHB_TRY(follow_found(h, s, x, value));
     SHB_TRY(know_all(h, s, value, -1));
-    SHB_TRY(mhb_found_add_shifts(&s->found, s->residual, x)); /* whatever became of it */
+    SHB_TRY(mhb_solution_set_add_shifts(&s->found, s->residual, x)); /* whatever became of it */
   }
   return SHB_OK;
 }
@@ -333,8 +334,8 @@ static shb_status look_everywhere(hunt *h) {
   return SHB_OK;
 }
 
-shb_status mhb_further(const modal_model *model, const mhb_settings *settings,
-                       mhb_response *response, int main, mhb_monitor *monitor) {
+shb_status mhb_secondary_branches(const modal_model *model, const mhb_settings *settings,
+                                  mhb_response *response, int main, mhb_monitor *monitor) {
   hunt       h      = {.model    = model,
                        .settings = settings,
                        .response = response,

@@ -18,8 +18,9 @@ static void *aligned(size_t size) {
   return memory;
 }
 
-shb_status mhb_contact_create(int m, int H, double tolerance, mhb_contact **out) {
-  mhb_contact *c = aligned(sizeof *c);
+shb_status mhb_contact_evaluator_create(int m, int H, double tolerance,
+                                        mhb_contact_evaluator **out) {
+  mhb_contact_evaluator *c = aligned(sizeof *c);
   SHB_CHECK(c, SHB_ERR_IO, "out of memory");
   c->m         = m;
   c->H         = H;
@@ -52,13 +53,13 @@ shb_status mhb_contact_create(int m, int H, double tolerance, mhb_contact **out)
                 {(void **)&c->basis0, 2 * nb},
                 {(void **)&c->traced, 3 * nf}};
   int ok     = mhb_signals_create(m, &c->signals) == SHB_OK;
-  ok &= mhb_closed_create(m, &c->closed) == SHB_OK;
+  ok &= mhb_contact_intervals_create(m, &c->closed) == SHB_OK;
   for (size_t i = 0; i < sizeof wanted / sizeof wanted[0]; i++)
     ok &= (*wanted[i].array = aligned(wanted[i].size * sizeof(double))) != NULL;
   mhb_collocation_create(&c->rule);
-  ok &= mhb_pieces_create(&c->rule, &c->pieces) == SHB_OK;
+  ok &= mhb_dense_output_create(&c->rule, &c->pieces) == SHB_OK;
   if (!ok) {
-    mhb_contact_destroy(c);
+    mhb_contact_evaluator_destroy(c);
     SHB_FAIL(SHB_ERR_IO, "out of memory for a contact of %d harmonics", m);
   }
   c->pieces.signals = &c->signals;
@@ -66,14 +67,14 @@ shb_status mhb_contact_create(int m, int H, double tolerance, mhb_contact **out)
   return SHB_OK;
 }
 
-void mhb_contact_destroy(mhb_contact *c) {
+void mhb_contact_evaluator_destroy(mhb_contact_evaluator *c) {
   if (!c) return;
   void *arrays[] = {c->scaled, c->sum,   c->load,    c->f,          c->f_slider, c->first,
                     c->stick,  c->piece, c->product, c->J,          c->Z[0],     c->Z[1],
                     c->T,      c->drive, c->node_T,  c->node_basis, c->basis0,   c->traced};
   for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; i++) free(arrays[i]);
-  mhb_pieces_destroy(&c->pieces);
-  mhb_closed_destroy(&c->closed);
+  mhb_dense_output_destroy(&c->pieces);
+  mhb_contact_intervals_destroy(&c->closed);
   mhb_signals_destroy(&c->signals);
   free(c);
 }
@@ -81,7 +82,7 @@ void mhb_contact_destroy(mhb_contact *c) {
 /* ---- scaling ---- */
 
 /* Divide by the largest force in sight, so that tolerances are relative and units do not matter. 0: no force at all. */
-static int set_signals(mhb_contact *c, const mhb_law *law, const double *motion) {
+static int set_signals(mhb_contact_evaluator *c, const mhb_law *law, const double *motion) {
   const double *v = motion, *u = v + c->nb, *w = u + c->nb;
   double        load = fabs(law->n0), friction = 0;
   for (int i = 0; i < c->nb; i++) {
@@ -118,7 +119,7 @@ static double content_of(const mhb_signals *s, double mu) {
 }
 
 /* Where the contact closes for less than a few cells of the grid, which may pass over it: n there is about a parabola. */
-static double brief_load(mhb_contact *c) {
+static double brief_load(mhb_contact_evaluator *c) {
   double load = 0, brief = 4 * TWO_PI / c->signals.n_grid;
   for (int i = 0; i < c->closed.n; i++) {
     double y[3], dy[3], length = c->closed.opening[i] - c->closed.closing[i];
@@ -131,7 +132,7 @@ static double brief_load(mhb_contact *c) {
 }
 
 /* What the forces will be like: the mean and the peak of n over the period, and the friction. */
-static void set_reference(mhb_contact *c) {
+static void set_reference(mhb_contact_evaluator *c) {
   const mhb_signals *s    = &c->signals;
   double             load = 0, swing = 0;
   c->slip.peak = 0;
@@ -147,7 +148,7 @@ static void set_reference(mhb_contact *c) {
   c->force     = load > c->friction ? load : c->friction;
 }
 
-static void set_slip(mhb_contact *c, const mhb_law *law, int derivative) {
+static void set_slip(mhb_contact_evaluator *c, const mhb_law *law, int derivative) {
   c->slip    = (mhb_slip){.signals    = &c->signals,
                           .rule       = &c->rule,
                           .mean       = .5 * (c->K[0][0] + c->K[1][1]),
@@ -166,7 +167,7 @@ static double quadrature_scale(int i) {
   return i == 0 ? 1 / TWO_PI : 2 / TWO_PI;
 }
 
-void mhb_sums_clear(mhb_contact *c) {
+void mhb_force_integrals_clear(mhb_contact_evaluator *c) {
   size_t nf = (size_t)c->nf, sums = (size_t)mhb_real_size(c->H + c->m);
   memset(c->f, 0, sizeof(double) * 2 * nf);
   memset(c->f_slider, 0, sizeof(double) * 2 * nf);
@@ -181,7 +182,7 @@ void mhb_sums_clear(mhb_contact *c) {
   memset(c->load, 0, sizeof(mhb_lanes) * 2 * sums);
 }
 
-void mhb_sums_collect(mhb_contact *c) {
+void mhb_force_integrals_collect(mhb_contact_evaluator *c) {
   for (int i = 0; i < c->nf; i++) {
     const mhb_lanes *sum = c->sum + 4 * i;
     for (int k = 0; k < 2; k++) {
@@ -194,7 +195,7 @@ void mhb_sums_collect(mhb_contact *c) {
 /* ---- assembly ---- */
 
 /* What the load does to slip at a fixed direction: J += integrals of mu kv e b_i b_j. */
-MHB_HOT static void finish_load(mhb_contact *c) {
+MHB_HOT static void finish_load(mhb_contact_evaluator *c) {
   int nb = c->nb, nf = c->nf, sums = mhb_real_size(c->H + c->m);
   for (int k = 0; k < 2; k++) {
     for (int i = 0; i < sums; i++) c->piece[i] = lanes_sum(c->load[2 * i + k]);
@@ -207,7 +208,7 @@ MHB_HOT static void finish_load(mhb_contact *c) {
 }
 
 /* f += Ku s over the stick pieces; scale to Fourier coefficients. */
-MHB_HOT static void finish_friction(mhb_contact *c) {
+MHB_HOT static void finish_friction(mhb_contact_evaluator *c) {
   int nb = c->nb, nf = c->nf, all = c->columns == MHB_ALL_COLUMNS;
   int used = all ? nb : mhb_real_size(c->signals.used);
   if (all) finish_load(c);
@@ -230,12 +231,12 @@ MHB_HOT static void finish_friction(mhb_contact *c) {
 }
 
 /* row[k] += factor dc_k/d(motion) of the mean friction of a stuck contact; the mean of s does not enter. */
-static void add_mean_gradient(const mhb_contact *c, double factor, double *const row[2]) {
-  const mhb_stuck *stuck = &c->stuck;
-  int              nb    = c->nb;
-  double           weight[2][2][6], b[nb], db[nb];
+static void add_mean_gradient(const mhb_contact_evaluator *c, double factor, double *const row[2]) {
+  const mhb_static_friction *stuck = &c->stuck;
+  int                        nb    = c->nb;
+  double                     weight[2][2][6], b[nb], db[nb];
   if (stuck->n_active == 0) return;
-  mhb_stuck_gradient(&c->signals, c->slip.mu, stuck, weight);
+  mhb_static_friction_gradient(&c->signals, c->slip.mu, stuck, weight);
   for (int a = 0; a < stuck->n_active; a++) {
     mhb_basis(c->m, stuck->time[a], b, db);
     for (int k = 0; k < 2; k++) {
@@ -250,19 +251,19 @@ static void add_mean_gradient(const mhb_contact *c, double factor, double *const
   }
 }
 
-void mhb_contact_mean_gradient(const mhb_contact *c, double *const gradient[2]) {
+void mhb_contact_mean_gradient(const mhb_contact_evaluator *c, double *const gradient[2]) {
   for (int k = 0; k < 2; k++) memset(gradient[k], 0, sizeof(double) * 3 * (size_t)c->nb);
   add_mean_gradient(c, c->scale, gradient);
 }
 
 /* Stuck throughout: f = Ku (s - mean s) + c. */
-static void finish_stuck(mhb_contact *c) {
-  const mhb_stuck *stuck = &c->stuck;
-  int              nb = c->nb, nf = c->nf, derivative = c->columns == MHB_ALL_COLUMNS;
+static void finish_stuck(mhb_contact_evaluator *c) {
+  const mhb_static_friction *stuck = &c->stuck;
+  int                        nb = c->nb, nf = c->nf, derivative = c->columns == MHB_ALL_COLUMNS;
   c->info->share[MHB_STICK] = 1;
   c->info->undetermined     = 1;
-  mhb_pieces_stick(&c->pieces, 0,
-                   (double[2]){c->scaled[nb] - stuck->c[0], c->scaled[2 * nb] - stuck->c[1]});
+  mhb_dense_output_stick(&c->pieces, 0,
+                         (double[2]){c->scaled[nb] - stuck->c[0], c->scaled[2 * nb] - stuck->c[1]});
   for (int k = 0; k < 2; k++) {
     for (int i = 1; i < nb; i++) {
       c->f[k * nf + i] = c->scaled[(1 + k) * nb + i];
@@ -278,7 +279,7 @@ static void finish_stuck(mhb_contact *c) {
 }
 
 /* Always closed: n is linear in v, and a huge preload must not drown it. */
-static void normal_force_closed(const mhb_contact *c, const mhb_law *law, const double *v,
+static void normal_force_closed(const mhb_contact_evaluator *c, const mhb_law *law, const double *v,
                                 double *force, double *jacobian) {
   for (int i = 0; i < c->nb; i++) {
     force[i] = law->kv * v[i];
@@ -288,7 +289,8 @@ static void normal_force_closed(const mhb_contact *c, const mhb_law *law, const 
 }
 
 /* Normal load: the harmonics of n over the closed intervals. */
-static void normal_force(mhb_contact *c, const mhb_law *law, double *force, double *jacobian) {
+static void normal_force(mhb_contact_evaluator *c, const mhb_law *law, double *force,
+                         double *jacobian) {
   int nb = c->nb, nf = c->nf, sums = mhb_real_size(c->H + c->m);
   memset(c->piece, 0, sizeof(double) * (size_t)sums);
   for (int i = 0; i < c->closed.n; i++)
@@ -307,7 +309,7 @@ static void normal_force(mhb_contact *c, const mhb_law *law, double *force, doub
 }
 
 /* Loop integral of f.s' dt: pi sum_k k (Im F_k Re S_k - Re F_k Im S_k) for x = Re X_k exp(jkt). */
-static double loop_work(const mhb_contact *c, const double *motion, const double *force) {
+static double loop_work(const mhb_contact_evaluator *c, const double *motion, const double *force) {
   double sum = 0;
   for (int i = 1; i < 3; i++) {
     const double *s = motion + i * c->nb, *f = force + i * c->nf;
@@ -317,15 +319,15 @@ static double loop_work(const mhb_contact *c, const double *motion, const double
 }
 
 /* mu = 0: slip wherever it is closed. */
-static void without_friction(mhb_contact *c) {
+static void without_friction(mhb_contact_evaluator *c) {
   double closed = c->closed.always_closed;
-  if (closed > 0) mhb_pieces_frictionless(&c->pieces, 0);
+  if (closed > 0) mhb_dense_output_frictionless(&c->pieces, 0);
   for (int i = 0; i < c->closed.n; i++) {
     closed += (c->closed.opening[i] - c->closed.closing[i]) / TWO_PI;
     mhb_note_transition(c, c->closed.closing[i], MHB_SLIDE);
-    mhb_pieces_frictionless(&c->pieces, c->closed.closing[i]);
+    mhb_dense_output_frictionless(&c->pieces, c->closed.closing[i]);
     mhb_note_transition(c, c->closed.opening[i], MHB_SEPARATE);
-    mhb_pieces_open(&c->pieces, c->closed.opening[i]);
+    mhb_dense_output_open(&c->pieces, c->closed.opening[i]);
   }
   c->info->share[MHB_SLIDE]    = closed;
   c->info->share[MHB_SEPARATE] = 1 - closed;
@@ -333,7 +335,7 @@ static void without_friction(mhb_contact *c) {
 
 /* A lap beyond what double precision resolves (Ku s 1e12 times mu n, Ku all but singular): no friction is better than none
  * of a number. */
-static void drop_friction(mhb_contact *c) {
+static void drop_friction(mhb_contact_evaluator *c) {
   size_t nf  = (size_t)c->nf;
   double sum = 0;
   for (size_t i = 0; i < 2 * nf; i++) sum += fabs(c->f[i]);
@@ -346,7 +348,7 @@ static void drop_friction(mhb_contact *c) {
   c->info->lost                                    = 1;
 }
 
-static void friction_force(mhb_contact *c) {
+static void friction_force(mhb_contact_evaluator *c) {
   if (c->closed.always_open) {
     c->info->share[MHB_SEPARATE] = 1;
     return;
@@ -357,16 +359,16 @@ static void friction_force(mhb_contact *c) {
   }
   int ok;
   if (c->closed.always_closed) {
-    mhb_stuck_solve(&c->signals, c->slip.mu, &c->stuck);
+    mhb_static_friction_solve(&c->signals, c->slip.mu, &c->stuck);
     if (c->stuck.feasible) {
       finish_stuck(c);
       return;
     }
-    ok = mhb_lap_closed(
+    ok = mhb_slider_periodic(
         c, (double[2]){c->scaled[c->nb] - c->stuck.c[0], c->scaled[2 * c->nb] - c->stuck.c[1]});
   } else {
-    ok = mhb_lap_openings(c);
-    mhb_sums_collect(c);
+    ok = mhb_slider_with_openings(c);
+    mhb_force_integrals_collect(c);
   }
   finish_friction(c);
   c->info->lost = !ok;
@@ -374,8 +376,8 @@ static void friction_force(mhb_contact *c) {
   if (!ok || c->info->laps > 20) drop_friction(c);
 }
 
-static void normal_load(mhb_contact *c, const mhb_law *law, const double *motion, double *force,
-                        double *jacobian) {
+static void normal_load(mhb_contact_evaluator *c, const mhb_law *law, const double *motion,
+                        double *force, double *jacobian) {
   if (c->closed.always_closed) {
     normal_force_closed(c, law, motion, force, jacobian);
   } else if (c->closed.always_open) {
@@ -387,15 +389,16 @@ static void normal_load(mhb_contact *c, const mhb_law *law, const double *motion
 
 /* The errors of the integrals, as harmonics and relative to the largest of them. Those of the panels have changing signs:
  * they add up like squares; half of that is what the suite of motions shows (tests/mhb/test_accuracy). */
-static double relative_error(const mhb_contact *c, const mhb_law *law, const double *force) {
+static double relative_error(const mhb_contact_evaluator *c, const mhb_law *law,
+                             const double *force) {
   double top = fabs(force[0] + law->balance), sum = .5 * sqrt(c->squares) + c->info->error;
   for (int i = 1; i < 3 * c->nf; i++) top = fabs(force[i]) > top ? fabs(force[i]) : top;
   if (c->info->lost && sum == 0) return 1;
   return top > 0 ? fmin(1, 2 / TWO_PI * sum * c->scale / top) : 0;
 }
 
-void mhb_contact_force(mhb_contact *c, const mhb_law *law, const double *motion, double *force,
-                       double *jacobian, mhb_contact_info *info) {
+void mhb_contact_force(mhb_contact_evaluator *c, const mhb_law *law, const double *motion,
+                       double *force, double *jacobian, mhb_contact_info *info) {
   int    nb = c->nb, nf = c->nf;
   size_t size = (size_t)nf * 3;
   memset(info, 0, offsetof(mhb_contact_info, transition));
@@ -408,11 +411,11 @@ void mhb_contact_force(mhb_contact *c, const mhb_law *law, const double *motion,
     for (size_t i = 0; info->lost && i < size; i++) force[i] = NAN;
     return;
   }
-  mhb_closed_intervals(&c->signals, &c->closed);
+  mhb_contact_intervals_find(&c->signals, &c->closed);
   set_slip(c, law, jacobian != NULL);
   c->columns = jacobian ? MHB_ALL_COLUMNS : MHB_NO_COLUMNS;
   c->record  = 1;
-  mhb_sums_clear(c);
+  mhb_force_integrals_clear(c);
   friction_force(c);
   for (int i = 0; i < 2 * nf; i++) {
     force[nf + i] = c->scale * c->f[i];
@@ -428,8 +431,8 @@ void mhb_contact_force(mhb_contact *c, const mhb_law *law, const double *motion,
   info->error       = relative_error(c, law, force);
 }
 
-const mhb_pieces *mhb_contact_pieces(mhb_contact *c, const mhb_law *law, const double *motion,
-                                     mhb_contact_info *info) {
+const mhb_dense_output *mhb_contact_dense_output(mhb_contact_evaluator *c, const mhb_law *law,
+                                                 const double *motion, mhb_contact_info *info) {
   c->pieces.n = c->pieces.full = 0;
   c->pieces.on                 = 1;
   mhb_contact_force(c, law, motion, c->traced, NULL, info);

@@ -45,12 +45,14 @@ typedef struct {
   mhb_transition transition[MHB_MAX_TRANSITIONS];
 } mhb_contact_info;
 
-typedef struct mhb_contact mhb_contact; /* workspace: FFTW plans and all arrays; one a thread */
+typedef struct mhb_contact_evaluator
+    mhb_contact_evaluator; /* workspace: FFTW plans and all arrays; one a thread */
 
 /* Room for motions of up to m harmonics and forces of up to H >= m; tolerance relative (1e-8: seven-node panels that
  * resolve harmonic H). SHB_ERR_IO: no memory. Not thread safe (FFTW planner). */
-shb_status mhb_contact_create(int m, int H, double tolerance, mhb_contact **contact);
-void       mhb_contact_destroy(mhb_contact *contact);
+shb_status mhb_contact_evaluator_create(int m, int H, double tolerance,
+                                        mhb_contact_evaluator **contact);
+void       mhb_contact_evaluator_destroy(mhb_contact_evaluator *contact);
 
 /* Force harmonics (n - balance, fu, fw).
  *   motion    in   [3][2m+1], m
@@ -58,11 +60,11 @@ void       mhb_contact_destroy(mhb_contact *contact);
  *   jacobian  out  d force / d motion, [3 (2H+1)][3 (2m+1)] row-major, N/m, or NULL. Where slip just begins the derivative
  *                  of the periodic slider is unbounded: det(I - DP) is held above 1e-7.
  * Never fails: a periodicity not reached shows in info->lost and info->error; a motion that is not finite gives NaN. */
-void mhb_contact_force(mhb_contact *contact, const mhb_law *law, const double *motion,
+void mhb_contact_force(mhb_contact_evaluator *contact, const mhb_law *law, const double *motion,
                        double *force, double *jacobian, mhb_contact_info *info);
 
 /* Where the last evaluation found the contact stuck throughout: the derivative of its mean friction, which is all that the
  * stiffnesses do not tell. gradient[2] -> [3 (2m+1)] out, N/m. */
-void mhb_contact_mean_gradient(const mhb_contact *contact, double *const gradient[2]);
+void mhb_contact_mean_gradient(const mhb_contact_evaluator *contact, double *const gradient[2]);
 
 #endif

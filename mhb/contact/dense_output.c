@@ -8,8 +8,8 @@ static const double TWO_PI = 6.283185307179586476925;
 
 enum { POINTS = 1 + MHB_NODES };
 
-shb_status mhb_pieces_create(const mhb_collocation *rule, mhb_pieces *pieces) {
-  *pieces       = (mhb_pieces){0};
+shb_status mhb_dense_output_create(const mhb_collocation *rule, mhb_dense_output *pieces) {
+  *pieces       = (mhb_dense_output){0};
   pieces->piece = calloc(MHB_MAX_PIECES, sizeof *pieces->piece);
   SHB_CHECK(pieces->piece, SHB_ERR_IO, "out of memory");
   for (int i = 0; i < MHB_NODES; i++) pieces->node[1 + i] = rule->node[i];
@@ -22,49 +22,49 @@ shb_status mhb_pieces_create(const mhb_collocation *rule, mhb_pieces *pieces) {
   return SHB_OK;
 }
 
-void mhb_pieces_destroy(mhb_pieces *pieces) {
+void mhb_dense_output_destroy(mhb_dense_output *pieces) {
   free(pieces->piece);
-  *pieces = (mhb_pieces){0};
+  *pieces = (mhb_dense_output){0};
 }
 
-static mhb_piece *add(mhb_pieces *pieces, mhb_state state, double t0) {
+static mhb_dense_piece *add(mhb_dense_output *pieces, mhb_state state, double t0) {
   if (!pieces->on) return NULL;
   if (pieces->n == MHB_MAX_PIECES) {
     pieces->full = 1;
     return NULL;
   }
-  mhb_piece *piece = &pieces->piece[pieces->n++];
-  piece->state     = state;
-  piece->t0        = t0;
+  mhb_dense_piece *piece = &pieces->piece[pieces->n++];
+  piece->state           = state;
+  piece->t0              = t0;
   return piece;
 }
 
-void mhb_pieces_stick(mhb_pieces *pieces, double t0, const double z[2]) {
-  mhb_piece *piece = add(pieces, MHB_STICK, t0);
+void mhb_dense_output_stick(mhb_dense_output *pieces, double t0, const double z[2]) {
+  mhb_dense_piece *piece = add(pieces, MHB_STICK, t0);
   if (piece) memcpy(piece->z, z, sizeof piece->z);
 }
 
-void mhb_pieces_slip(mhb_pieces *pieces, const mhb_panel *panel) {
-  mhb_piece *piece = panel->h > 0 ? add(pieces, MHB_SLIDE, panel->t0) : NULL;
+void mhb_dense_output_slip(mhb_dense_output *pieces, const mhb_panel *panel) {
+  mhb_dense_piece *piece = panel->h > 0 ? add(pieces, MHB_SLIDE, panel->t0) : NULL;
   if (!piece) return;
   piece->h        = panel->h;
   piece->theta[0] = panel->theta0;
   lanes_store(piece->theta + 1, panel->theta);
 }
 
-void mhb_pieces_open(mhb_pieces *pieces, double t0) {
+void mhb_dense_output_open(mhb_dense_output *pieces, double t0) {
   add(pieces, MHB_SEPARATE, t0);
 }
 
-void mhb_pieces_frictionless(mhb_pieces *pieces, double t0) {
-  mhb_piece *piece = add(pieces, MHB_SLIDE, t0);
+void mhb_dense_output_frictionless(mhb_dense_output *pieces, double t0) {
+  mhb_dense_piece *piece = add(pieces, MHB_SLIDE, t0);
   if (!piece) return;
   piece->h = TWO_PI; /* any direction: mu = 0 */
   memset(piece->theta, 0, sizeof piece->theta);
 }
 
 /* The collocation polynomial at fraction s of the panel, by the barycentric formula. */
-static double direction_at(const mhb_pieces *pieces, const mhb_piece *piece, double s) {
+static double direction_at(const mhb_dense_output *pieces, const mhb_dense_piece *piece, double s) {
   double sum = 0, total = 0;
   for (int i = 0; i < POINTS; i++) {
     double distance = s - pieces->node[i];
@@ -78,7 +78,7 @@ static double direction_at(const mhb_pieces *pieces, const mhb_piece *piece, dou
 
 /* The last piece that has begun at t; t is lifted by periods to the first (the lap of a contact that opens begins at a
  * closing, which may be one period on). */
-static const mhb_piece *find(const mhb_pieces *pieces, double *t) {
+static const mhb_dense_piece *find(const mhb_dense_output *pieces, double *t) {
   while (*t < pieces->piece[0].t0) *t += TWO_PI;
   int low = 0, high = pieces->n;
   while (high - low > 1) {
@@ -92,11 +92,11 @@ static const mhb_piece *find(const mhb_pieces *pieces, double *t) {
   return &pieces->piece[low];
 }
 
-mhb_state mhb_pieces_at(const mhb_pieces *pieces, double t, double force[3]) {
+mhb_state mhb_dense_output_at(const mhb_dense_output *pieces, double t, double force[3]) {
   force[0] = force[1] = force[2] = 0;
   if (pieces->n == 0) return MHB_SEPARATE;
-  double           y[3], dy[3];
-  const mhb_piece *piece = find(pieces, &t);
+  double                 y[3], dy[3];
+  const mhb_dense_piece *piece = find(pieces, &t);
   if (piece->state == MHB_SEPARATE) return MHB_SEPARATE;
   mhb_signals_at(pieces->signals, t, y, dy, NULL);
   force[0] = fmax(0, y[0]);

@@ -19,34 +19,34 @@ typedef struct {
   double    t0, h;                /* start; length of a slip panel */
   double    z[2];                 /* stick: the slider */
   double    theta[1 + MHB_NODES]; /* slip: at the start and at the panel's nodes */
-} mhb_piece;
+} mhb_dense_piece;
 
 typedef struct {
   int                on;   /* pieces are wanted */
   int                full; /* some had no room */
   int                n;
-  mhb_piece         *piece;                 /* [MHB_MAX_PIECES] */
+  mhb_dense_piece   *piece;                 /* [MHB_MAX_PIECES] */
   double             node[1 + MHB_NODES];   /* 0 and the nodes on [0, 1] */
   double             weight[1 + MHB_NODES]; /* barycentric */
   const mhb_signals *signals;               /* (n, x_1, x_2) */
   double             mu, scale;             /* force scale, N */
-} mhb_pieces;
+} mhb_dense_output;
 
 /* SHB_ERR_IO: no memory. */
-shb_status mhb_pieces_create(const mhb_collocation *rule, mhb_pieces *pieces);
-void       mhb_pieces_destroy(mhb_pieces *pieces);
+shb_status mhb_dense_output_create(const mhb_collocation *rule, mhb_dense_output *pieces);
+void       mhb_dense_output_destroy(mhb_dense_output *pieces);
 
 /* What the law tells as it goes along; nothing happens unless pieces->on. */
-void mhb_pieces_stick(mhb_pieces *pieces, double t0, const double z[2]);
-void mhb_pieces_slip(mhb_pieces *pieces, const mhb_panel *panel);
-void mhb_pieces_open(mhb_pieces *pieces, double t0);
-void mhb_pieces_frictionless(mhb_pieces *pieces, double t0);
+void mhb_dense_output_stick(mhb_dense_output *pieces, double t0, const double z[2]);
+void mhb_dense_output_slip(mhb_dense_output *pieces, const mhb_panel *panel);
+void mhb_dense_output_open(mhb_dense_output *pieces, double t0);
+void mhb_dense_output_frictionless(mhb_dense_output *pieces, double t0);
 
 /* State and force (n, fu, fw) in units of the force scale at t in [0, 2 pi]. */
-mhb_state mhb_pieces_at(const mhb_pieces *pieces, double t, double force[3]);
+mhb_state mhb_dense_output_at(const mhb_dense_output *pieces, double t, double force[3]);
 
 /* Evaluate the law (contact.h) and keep its pieces: valid until the contact is used again. */
-const mhb_pieces *mhb_contact_pieces(mhb_contact *contact, const mhb_law *law, const double *motion,
-                                     mhb_contact_info *info);
+const mhb_dense_output *mhb_contact_dense_output(mhb_contact_evaluator *contact, const mhb_law *law,
+                                                 const double *motion, mhb_contact_info *info);
 
 #endif

@@ -14,7 +14,7 @@
 #include "mhb/contact/transitions.h"
 #include "mhb/numerics/fourier.h"
 
-typedef enum { MHB_NO_COLUMNS, MHB_SLIDER_COLUMN, MHB_ALL_COLUMNS } mhb_columns_mode;
+typedef enum { MHB_NO_COLUMNS, MHB_SLIDER_COLUMN, MHB_ALL_COLUMNS } mhb_sensitivity_mode;
 
 /* The slider's own derivative in a lap. */
 typedef struct {
@@ -22,99 +22,102 @@ typedef struct {
   double v[2];    /* dtheta at the first slip of the lap is v.dz */
   double work;    /* change of the slip work by v.dz, and before that by dz itself */
   double onset[2];
-} mhb_memory;
+} mhb_slider_sensitivity;
 
-struct mhb_contact {
-  int             m, H, nb, nf; /* nb = 2m+1, nf = 2H+1 */
-  int             slider;       /* the slider's column, 3 nb */
-  int             stride;       /* columns, rounded up to lanes */
-  double          tolerance;
-  mhb_signals     signals;
-  mhb_collocation rule;
-  mhb_slip        slip;
-  mhb_panel       panel;
-  mhb_closed      closed;
-  mhb_stuck       stuck;   /* of a contact that stays closed */
-  double          scale;   /* force scale, N */
-  double          K[2][2]; /* Ku/scale */
-  double          kv;      /* kv/scale */
+struct mhb_contact_evaluator {
+  int                   m, H, nb, nf; /* nb = 2m+1, nf = 2H+1 */
+  int                   slider;       /* the slider's column, 3 nb */
+  int                   stride;       /* columns, rounded up to lanes */
+  double                tolerance;
+  mhb_signals           signals;
+  mhb_collocation       rule;
+  mhb_slip              slip;
+  mhb_panel             panel;
+  mhb_contact_intervals closed;
+  mhb_static_friction   stuck;   /* of a contact that stays closed */
+  double                scale;   /* force scale, N */
+  double                K[2][2]; /* Ku/scale */
+  double                kv;      /* kv/scale */
   double  force; /* the mean normal load or the friction it allows: what errors are relative to */
   double  friction; /* the friction it allows, or all the motion can do; both in units of scale */
   double  content;  /* harmonic that stands for the motion's, amplitude weighted */
   double *scaled;   /* [3][nb] coefficients of (n, x_1, x_2) */
   mhb_lanes
       *sum; /* [nf][4] slip: integrals of friction times basis, and their change by the slider */
-  mhb_lanes        *load;     /* [2(H+m)+1][2] slip: integrals of mu kv e times basis */
-  double           *f;        /* [2][nf] integrals of friction times basis */
-  double           *f_slider; /* [2][nf] their change by v.dz */
-  double           *first;    /* [2(H+m)+1] integrals of the basis until the first slip of a lap */
-  double           *stick;    /* [2(H+m)+1] the same over all stick pieces */
-  double           *piece;    /* the same, one piece */
-  double           *product;  /* [nf][nb] */
-  double           *J;        /* [2][nf][stride] */
-  double           *Z[2];     /* [stride] derivative of the slider while stuck */
-  double           *T;        /* [stride] derivative of theta while slipping */
-  double           *drive;    /* [nodes][stride] of the linearised slip equation */
-  double           *node_T;   /* [nodes][stride] */
-  mhb_lanes        *node_basis; /* [nf], then [2][nf] weighted by the direction across */
-  double           *basis0;     /* [2][nb] basis and slope at an event */
-  mhb_columns_mode  columns;
-  mhb_memory        memory;
-  int               record;  /* this lap's force is wanted */
-  double            squares; /* sum of the squares of the panels' errors */
-  mhb_contact_info *info;
-  mhb_pieces        pieces; /* of the recorded lap, for a trace */
-  double           *traced; /* [3][nf] force of a trace */
+  mhb_lanes           *load;     /* [2(H+m)+1][2] slip: integrals of mu kv e times basis */
+  double              *f;        /* [2][nf] integrals of friction times basis */
+  double              *f_slider; /* [2][nf] their change by v.dz */
+  double              *first; /* [2(H+m)+1] integrals of the basis until the first slip of a lap */
+  double              *stick; /* [2(H+m)+1] the same over all stick pieces */
+  double              *piece; /* the same, one piece */
+  double              *product;    /* [nf][nb] */
+  double              *J;          /* [2][nf][stride] */
+  double              *Z[2];       /* [stride] derivative of the slider while stuck */
+  double              *T;          /* [stride] derivative of theta while slipping */
+  double              *drive;      /* [nodes][stride] of the linearised slip equation */
+  double              *node_T;     /* [nodes][stride] */
+  mhb_lanes           *node_basis; /* [nf], then [2][nf] weighted by the direction across */
+  double              *basis0;     /* [2][nb] basis and slope at an event */
+  mhb_sensitivity_mode columns;
+  mhb_slider_sensitivity memory;
+  int                    record;  /* this lap's force is wanted */
+  double                 squares; /* sum of the squares of the panels' errors */
+  mhb_contact_info      *info;
+  mhb_dense_output       pieces; /* of the recorded lap, for a trace */
+  double                *traced; /* [3][nf] force of a trace */
 };
 
 /* The integrals of a recorded lap: emptied, and the lanes of the slip pieces added into f and f_slider. */
-void mhb_sums_clear(mhb_contact *contact);
-void mhb_sums_collect(mhb_contact *contact);
+void mhb_force_integrals_clear(mhb_contact_evaluator *contact);
+void mhb_force_integrals_collect(mhb_contact_evaluator *contact);
 
 /* ---- slider.c ---- */
 
 /* Friction over the closed intervals: every closing is a fresh start (eqs. 13-15). 0: a panel was lost. */
-int mhb_lap_openings(mhb_contact *contact);
+int mhb_slider_with_openings(mhb_contact_evaluator *contact);
 
 /* Friction of a contact that never opens and slips: the periodic slider, first guess z. 0: not reached. */
-int mhb_lap_closed(mhb_contact *contact, const double guess[2]);
+int mhb_slider_periodic(mhb_contact_evaluator *contact, const double guess[2]);
 
-void mhb_note_transition(mhb_contact *contact, double t, mhb_state state);
+void mhb_note_transition(mhb_contact_evaluator *contact, double t, mhb_state state);
 
 /* ---- sensitivity.c; all heed contact->columns ---- */
 
-void mhb_columns_clear(mhb_contact *contact);
+void mhb_sensitivity_clear(mhb_contact_evaluator *contact);
 
 /* Stick to slip at theta, |f| = mu n. Z -> T. */
-void mhb_columns_stick_to_slip(mhb_contact *contact, double t, double theta, double n);
+void mhb_sensitivity_stick_to_slip(mhb_contact_evaluator *contact, double t, double theta,
+                                   double n);
 
 /* Slip to stick. T -> Z. */
-void mhb_columns_slip_to_stick(mhb_contact *contact, double t, double theta, double n);
+void mhb_sensitivity_slip_to_stick(mhb_contact_evaluator *contact, double t, double theta,
+                                   double n);
 
 /* Closing at t into state, at theta if that is slip: sets Z or T. */
-void mhb_columns_closing(mhb_contact *contact, double t, mhb_state state, double theta);
+void mhb_sensitivity_closing(mhb_contact_evaluator *contact, double t, mhb_state state,
+                             double theta);
 
 /* T through contact->panel and, in a recorded lap, its share of the integrals. */
-void mhb_columns_panel(mhb_contact *contact);
+void mhb_sensitivity_panel(mhb_contact_evaluator *contact);
 
 /* The share of a stick piece, whose integrals of the basis are contact->piece. */
-void mhb_columns_stick(mhb_contact *contact);
+void mhb_sensitivity_stick(mhb_contact_evaluator *contact);
 
 /* |DP|: how much of a change of the slider is left after a lap. */
-double mhb_columns_gain(const mhb_contact *contact);
+double mhb_sensitivity_contraction(const mhb_contact_evaluator *contact);
 
 /* What rounding leaves of the slider, in units of the friction: a lap is good to some 4e-13, its fixed point to that by
  * det(I - DP), where slip just begins (a double root) to the square root. */
-double mhb_columns_doubt(const mhb_contact *contact);
+double mhb_sensitivity_roundoff(const mhb_contact_evaluator *contact);
 
 /* What a change r of the lap's result means for its start: dz = (I - DP)^-1 r, det(I - DP) held above 1e-7. */
-void mhb_columns_close(const mhb_contact *contact, const double r[2], double dz[2]);
+void mhb_sensitivity_close(const mhb_contact_evaluator *contact, const double r[2], double dz[2]);
 
 /* J += the columns' way through the periodic slider. */
-void mhb_columns_eliminate_slider(mhb_contact *contact);
+void mhb_sensitivity_eliminate_slider(mhb_contact_evaluator *contact);
 
 /* delta x_1, delta x_2, delta n of motion column j when the basis (or its slope) at the time is b. */
-void mhb_column_change(const mhb_contact *contact, const double *b, int j, double dx[2],
+void mhb_column_change(const mhb_contact_evaluator *contact, const double *b, int j, double dx[2],
                        double *dn);
 
 #endif

@@ -4,7 +4,7 @@
 
 #include "mhb/contact/internal.h"
 
-void mhb_columns_clear(mhb_contact *c) {
+void mhb_sensitivity_clear(mhb_contact_evaluator *c) {
   size_t size = sizeof(double) * (size_t)c->stride;
   memset(c->T, 0, size);
   memset(c->Z[0], 0, size);
@@ -12,7 +12,8 @@ void mhb_columns_clear(mhb_contact *c) {
   memset(&c->memory, 0, sizeof c->memory);
 }
 
-void mhb_column_change(const mhb_contact *c, const double *b, int j, double dx[2], double *dn) {
+void mhb_column_change(const mhb_contact_evaluator *c, const double *b, int j, double dx[2],
+                       double *dn) {
   int nb = c->nb, kind = j / nb, i = j - kind * nb;
   dx[0] = dx[1] = *dn = 0;
   if (kind == 0) {
@@ -24,7 +25,7 @@ void mhb_column_change(const mhb_contact *c, const double *b, int j, double dx[2
 }
 
 /* out = sum_k keep[k] from[k] + value[kind] basis + slope[kind] basis' (kinds v, u, w). */
-static void combine(const mhb_contact *c, double *out, int terms, const double *keep,
+static void combine(const mhb_contact_evaluator *c, double *out, int terms, const double *keep,
                     double *const *from, const double value[3], const double slope[3]) {
   int           begin = c->columns == MHB_ALL_COLUMNS ? 0 : c->slider, nb = c->nb;
   const double *b = c->basis0, *db = b + nb;
@@ -37,13 +38,13 @@ static void combine(const mhb_contact *c, double *out, int terms, const double *
     for (int i = 0; i < nb; i++) out[i] += value[kind] * b[i] + (slope ? slope[kind] * db[i] : 0);
 }
 
-static void basis_at(mhb_contact *c, double t) {
+static void basis_at(mhb_contact_evaluator *c, double t) {
   if (c->columns == MHB_ALL_COLUMNS) mhb_basis(c->m, t, c->basis0, c->basis0 + c->nb);
 }
 
 /* delta f is projected obliquely onto the circle (free of the onset speed, so that nothing blows up at grazing):
  *   df+ = df - Kf (f.df - mu^2 n dn)/(f.Kf),  hence  dtheta = [g.(dx - dz) + mu beta dn]/(mu n),  g = q - beta e. */
-void mhb_columns_stick_to_slip(mhb_contact *c, double t, double theta, double n) {
+void mhb_sensitivity_stick_to_slip(mhb_contact_evaluator *c, double t, double theta, double n) {
   if (c->columns == MHB_NO_COLUMNS) return;
   mhb_direction d        = mhb_slip_direction(c->K, theta);
   double        limit    = c->slip.mu * n;
@@ -59,13 +60,13 @@ void mhb_columns_stick_to_slip(mhb_contact *c, double t, double theta, double n)
   combine(c, c->T, 2, (double[2]){-g[0], -g[1]}, c->Z, value, NULL);
   c->memory.work += work * (d.e[0] * dz[0] + d.e[1] * dz[1]);
   if (c->memory.slipped) return;
-  c->memory =
-      (mhb_memory){.slipped = 1, .v = {-g[0], -g[1]}, .onset = {work * d.e[0], work * d.e[1]}};
+  c->memory = (mhb_slider_sensitivity){
+      .slipped = 1, .v = {-g[0], -g[1]}, .onset = {work * d.e[0], work * d.e[1]}};
   c->T[c->slider] = 1;
 }
 
 /* df does not jump: dz = dx - (mu dn e + mu n q dtheta). */
-void mhb_columns_slip_to_stick(mhb_contact *c, double t, double theta, double n) {
+void mhb_sensitivity_slip_to_stick(mhb_contact_evaluator *c, double t, double theta, double n) {
   if (c->columns == MHB_NO_COLUMNS) return;
   double mu = c->slip.mu, e[2] = {cos(theta), sin(theta)}, q[2] = {-e[1], e[0]};
   basis_at(c, t);
@@ -77,7 +78,7 @@ void mhb_columns_slip_to_stick(mhb_contact *c, double t, double theta, double n)
 
 /* Stick: z = x(t), dz = dx + x' dt with dt = -dn/n'. Slip: the regular solution
  *   dtheta = [(q - beta e).dx' + mu beta dn' - mu theta' dn]/D with theta', D of slip.h. */
-void mhb_columns_closing(mhb_contact *c, double t, mhb_state state, double theta) {
+void mhb_sensitivity_closing(mhb_contact_evaluator *c, double t, mhb_state state, double theta) {
   if (c->columns == MHB_NO_COLUMNS) return;
   double y[3], dy[3], ddy[3], mu = c->slip.mu;
   basis_at(c, t);
@@ -118,7 +119,7 @@ MHB_INLINE void add_to_sums(const mhb_panel *p, int harmonics, int n, int stride
 }
 
 /* The force of a panel: mu n e, weighted; with the slider column also mu n q dtheta. */
-MHB_HOT static void add_force(mhb_contact *c, double growth) {
+MHB_HOT static void add_force(mhb_contact_evaluator *c, double growth) {
   const mhb_panel *p      = &c->panel;
   mhb_lanes        weight = p->h * c->slip.mu * c->rule.weight * p->y[0];
   mhb_lanes        g[4]   = {weight * p->e[0], weight * p->e[1]};
@@ -136,7 +137,7 @@ MHB_HOT static void add_force(mhb_contact *c, double growth) {
 }
 
 /* dtheta(end) for dtheta(start) = 1: 1 + h sum w F_th (I - h A F_th)^-1 1. */
-MHB_HOT static double panel_growth(const mhb_contact *c) {
+MHB_HOT static double panel_growth(const mhb_contact_evaluator *c) {
   const mhb_panel *p    = &c->panel;
   mhb_lanes        ones = p->inverse[0];
   for (int j = 1; j < MHB_NODES; j++) ones += p->inverse[j];
@@ -145,7 +146,7 @@ MHB_HOT static double panel_growth(const mhb_contact *c) {
 }
 
 /* The basis at the nodes by lanes, [nf], and its rows weighted across the friction, mu n w q_k, [2][nf]. */
-MHB_INLINE void basis_lanes(const mhb_contact *c) {
+MHB_INLINE void basis_lanes(const mhb_contact_evaluator *c) {
   const mhb_panel *p = &c->panel;
   mhb_lanes       *b = c->node_basis, cs = lanes_all(1), sn = lanes_all(0);
   b[0] = cs;
@@ -164,7 +165,7 @@ MHB_INLINE void basis_lanes(const mhb_contact *c) {
 
 /* Right-hand side of the linearised slip equation, rows by node: for columns v_i, u_i, w_i
  *   kv (beta/n b'_i - F/n b_i),  a_u b'_i,  a_w b'_i  with a = ((q - beta e) K)/(mu n). */
-MHB_INLINE void fill_drive(const mhb_contact *c) {
+MHB_INLINE void fill_drive(const mhb_contact_evaluator *c) {
   const mhb_panel *p    = &c->panel;
   mhb_lanes        over = p->frozen ? lanes_all(0) : 1 / p->y[0], limit = over * (1 / c->slip.mu);
   mhb_lanes g0 = (-p->e[1] - p->beta * p->e[0]) * limit, g1 = (p->e[0] - p->beta * p->e[1]) * limit;
@@ -184,7 +185,7 @@ MHB_INLINE void fill_drive(const mhb_contact *c) {
 }
 
 /* dtheta at the nodes (node_T) and at the panel's end (T): the collocation equations linearised, same matrix. */
-MHB_INLINE void columns_through(const mhb_contact *c) {
+MHB_INLINE void columns_through(const mhb_contact_evaluator *c) {
   const mhb_panel *p    = &c->panel;
   mhb_lanes        ones = p->inverse[0], hA[MHB_NODES], end = p->h * c->rule.weight;
   mhb_lanes        last = p->stiff ? c->rule.end : end * p->F_theta;
@@ -238,7 +239,7 @@ MHB_INLINE void add_outer(int rows, int stride, const mhb_lanes *b, const double
   for (; row < rows; row++) add_rows(1, stride, b + row, y, J + row * stride);
 }
 
-MHB_HOT static void add_derivative(const mhb_contact *c) {
+MHB_HOT static void add_derivative(const mhb_contact_evaluator *c) {
   const mhb_panel *p      = &c->panel;
   mhb_lanes        weight = p->h * c->slip.mu * c->kv * c->rule.weight,
             g[2]          = {weight * p->e[0], weight * p->e[1]};
@@ -249,7 +250,7 @@ MHB_HOT static void add_derivative(const mhb_contact *c) {
   add_outer(2 * c->nf, c->stride, c->node_basis + c->nf, c->node_T, c->J);
 }
 
-void mhb_columns_panel(mhb_contact *c) {
+void mhb_sensitivity_panel(mhb_contact_evaluator *c) {
   double growth = c->T[c->slider], before = growth;
   if (growth != 0) growth *= panel_growth(c);
   if (c->record) add_force(c, before);
@@ -259,7 +260,7 @@ void mhb_columns_panel(mhb_contact *c) {
 
 /* ---- a piece of stick ---- */
 
-MHB_HOT static void add_stick_derivative(const mhb_contact *c) {
+MHB_HOT static void add_stick_derivative(const mhb_contact_evaluator *c) {
   for (int k = 0; k < 2; k++) {
     for (int i = 0; i < c->nf; i++) {
       double *row = c->J + (size_t)(k * c->nf + i) * (size_t)c->stride;
@@ -269,7 +270,7 @@ MHB_HOT static void add_stick_derivative(const mhb_contact *c) {
   }
 }
 
-void mhb_columns_stick(mhb_contact *c) {
+void mhb_sensitivity_stick(mhb_contact_evaluator *c) {
   if (c->columns == MHB_NO_COLUMNS) return;
   if (!c->memory.slipped) {
     for (int i = 0; i < c->nf; i++) c->first[i] += c->piece[i];
@@ -285,28 +286,28 @@ void mhb_columns_stick(mhb_contact *c) {
 
 /* DP = d v^T: (I - DP)^-1 r = r + d v.r/(1 - v.d), the denominator held above a floor: for Newton rounding's, for the
  * derivative one that keeps it bounded where slip just begins. */
-static double closure(const mhb_contact *c, double floor) {
+static double closure(const mhb_contact_evaluator *c, double floor) {
   double det = 1 - c->memory.v[0] * c->Z[0][c->slider] - c->memory.v[1] * c->Z[1][c->slider];
   return fabs(det) < floor ? copysign(floor, det) : det;
 }
 
-double mhb_columns_gain(const mhb_contact *c) {
+double mhb_sensitivity_contraction(const mhb_contact_evaluator *c) {
   const double *v = c->memory.v;
   return c->memory.slipped ? hypot(v[0], v[1]) * hypot(c->Z[0][c->slider], c->Z[1][c->slider]) : 1;
 }
 
-double mhb_columns_doubt(const mhb_contact *c) {
+double mhb_sensitivity_roundoff(const mhb_contact_evaluator *c) {
   return c->memory.slipped ? fmin(4e-6, 4e-13 / fabs(closure(c, 1e-12))) : 0;
 }
 
-void mhb_columns_close(const mhb_contact *c, const double r[2], double dz[2]) {
-  const mhb_memory *memory = &c->memory;
-  double            part =
+void mhb_sensitivity_close(const mhb_contact_evaluator *c, const double r[2], double dz[2]) {
+  const mhb_slider_sensitivity *memory = &c->memory;
+  double                        part =
       memory->slipped ? (memory->v[0] * r[0] + memory->v[1] * r[1]) / closure(c, 1e-12) : 0;
   for (int k = 0; k < 2; k++) dz[k] = r[k] + c->Z[k][c->slider] * part;
 }
 
-MHB_HOT static void eliminate(mhb_contact *c) {
+MHB_HOT static void eliminate(mhb_contact_evaluator *c) {
   const double *v = c->memory.v, det = closure(c, 1e-7);
   for (int j = 0; j < c->slider; j++) {
     double G[2] = {c->Z[0][j], c->Z[1][j]}, part = (v[0] * G[0] + v[1] * G[1]) / det;
@@ -322,6 +323,6 @@ MHB_HOT static void eliminate(mhb_contact *c) {
   }
 }
 
-void mhb_columns_eliminate_slider(mhb_contact *c) {
+void mhb_sensitivity_eliminate_slider(mhb_contact_evaluator *c) {
   eliminate(c);
 }

@@ -13,7 +13,7 @@ typedef struct {
   double    onset; /* when slip began out of stick; z is from before */
 } slider;
 
-void mhb_note_transition(mhb_contact *c, double t, mhb_state state) {
+void mhb_note_transition(mhb_contact_evaluator *c, double t, mhb_state state) {
   mhb_contact_info *info = c->info;
   if (!c->record || info->n_transitions == MHB_MAX_TRANSITIONS) return;
   double phase = t / TWO_PI + 1e-14; /* the end of the period is its beginning */
@@ -23,9 +23,9 @@ void mhb_note_transition(mhb_contact *c, double t, mhb_state state) {
 
 /* ---- pieces ---- */
 
-static void add_stick(mhb_contact *c, double t0, double t1, const double z[2]) {
+static void add_stick(mhb_contact_evaluator *c, double t0, double t1, const double z[2]) {
   if (!c->record || t1 <= t0) return;
-  mhb_pieces_stick(&c->pieces, t0, z);
+  mhb_dense_output_stick(&c->pieces, t0, z);
   int sums = mhb_real_size(c->H + c->m);
   memset(c->piece, 0, sizeof(double) * (size_t)sums);
   mhb_basis_integral(c->H + (c->columns == MHB_ALL_COLUMNS ? c->m : c->signals.used), t0, t1,
@@ -33,19 +33,19 @@ static void add_stick(mhb_contact *c, double t0, double t1, const double z[2]) {
   for (int i = 0; i < sums; i++) c->stick[i] += c->piece[i];
   for (int k = 0; k < 2; k++)
     for (int i = 0; i < c->nf; i++) c->f[k * c->nf + i] -= z[k] * c->piece[i];
-  mhb_columns_stick(c);
+  mhb_sensitivity_stick(c);
   c->info->share[MHB_STICK] += (t1 - t0) / TWO_PI;
 }
 
 /* f K^-1 f/2, what the spring holds. */
-static double held_energy(const mhb_contact *c, const double f[2]) {
+static double held_energy(const mhb_contact_evaluator *c, const double f[2]) {
   double det = c->K[0][0] * c->K[1][1] - c->K[0][1] * c->K[0][1];
   return .5 * (c->K[1][1] * f[0] * f[0] - 2 * c->K[0][1] * f[0] * f[1] + c->K[0][0] * f[1] * f[1]) /
          det;
 }
 
 /* What it holds in a contact that sticks. */
-static double held_at(const mhb_contact *c, const slider *s) {
+static double held_at(const mhb_contact_evaluator *c, const slider *s) {
   double y[3], dy[3];
   mhb_signals_at(&c->signals, s->t, y, dy, NULL);
   return held_energy(c, (double[2]){y[1] - s->z[0], y[2] - s->z[1]});
@@ -54,7 +54,7 @@ static double held_at(const mhb_contact *c, const slider *s) {
 /* J. The power of slip is lambda |f|^2 = gamma mu n/eKe. In the last sliver before an opening, whose direction is held, it
  * is what the motion does and the spring gives back: f.s' less the change of f K^-1 f/2, f = 0 at its end; f is x - z where
  * the contact has stuck until then, for mu n may be all rounding. */
-static double panel_work(const mhb_contact *c, const slider *s) {
+static double panel_work(const mhb_contact_evaluator *c, const slider *s) {
   const mhb_panel *p      = &c->panel;
   mhb_lanes        weight = p->h * c->slip.mu * c->rule.weight * p->y[0];
   if (!p->frozen) return lanes_sum(weight * lanes_max(p->gamma, lanes_all(0)) / p->eKe);
@@ -68,12 +68,12 @@ static double panel_work(const mhb_contact *c, const slider *s) {
          lanes_sum(weight * (p->e[0] * rate[0] + p->e[1] * rate[1]));
 }
 
-static void add_slip(mhb_contact *c, const slider *s) {
+static void add_slip(mhb_contact_evaluator *c, const slider *s) {
   const mhb_panel *p = &c->panel;
   if (p->h <= 0) return;
-  mhb_columns_panel(c);
+  mhb_sensitivity_panel(c);
   if (!c->record) return;
-  mhb_pieces_slip(&c->pieces, p);
+  mhb_dense_output_slip(&c->pieces, p);
   c->info->slip_work += panel_work(c, s);
   c->info->share[MHB_SLIDE] += p->h / TWO_PI;
   c->squares += p->error * p->error;
@@ -82,7 +82,7 @@ static void add_slip(mhb_contact *c, const slider *s) {
 enum { MAX_EVENTS = 400, MAX_PANELS = 5000 };
 
 /* Stick until the friction limit is reached or the interval ends. */
-static void run_stick(mhb_contact *c, slider *s, double end) {
+static void run_stick(mhb_contact_evaluator *c, slider *s, double end) {
   double onset = mhb_slip_onset(&c->signals, c->slip.mu, s->z, s->t, end);
   int    slips = onset <= end;
   double until = slips ? onset : end;
@@ -96,11 +96,11 @@ static void run_stick(mhb_contact *c, slider *s, double end) {
   s->onset = until;
   mhb_note_transition(c, until, MHB_SLIDE);
   c->slip.begins = mhb_slip_rate(&c->slip, s->theta, y, dy);
-  mhb_columns_stick_to_slip(c, until, s->theta, y[0]);
+  mhb_sensitivity_stick_to_slip(c, until, s->theta, y[0]);
 }
 
 /* Slip until its rate is zero or the interval ends. 0: a panel was lost. */
-static int run_slip(mhb_contact *c, slider *s, double end, int opening) {
+static int run_slip(mhb_contact_evaluator *c, slider *s, double end, int opening) {
   double           suggested = c->slip.longest;
   mhb_slip_outcome outcome   = MHB_SLIP_ON;
   for (int panels = 0; outcome == MHB_SLIP_ON; panels++) {
@@ -122,11 +122,11 @@ static int run_slip(mhb_contact *c, slider *s, double end, int opening) {
   s->z[1]      = y[2] - limit * sin(s->theta);
   s->state     = MHB_STICK;
   mhb_note_transition(c, s->t, MHB_STICK);
-  mhb_columns_slip_to_stick(c, s->t, s->theta, y[0]);
+  mhb_sensitivity_slip_to_stick(c, s->t, s->theta, y[0]);
   return 1;
 }
 
-static int run_closed(mhb_contact *c, slider *s, double end, int opening) {
+static int run_closed(mhb_contact_evaluator *c, slider *s, double end, int opening) {
   c->panel.h = 0; /* nothing to predict from */
   for (int events = 0; s->t < end; events++) {
     if (events > MAX_EVENTS) return 0;
@@ -141,7 +141,7 @@ static int run_closed(mhb_contact *c, slider *s, double end, int opening) {
 
 /* How long and how accurate panels are. A lap whose force is wanted must resolve the highest harmonic too: panel_error
  * in slip.c. */
-static void set_panels(mhb_contact *c, double tolerance) {
+static void set_panels(mhb_contact_evaluator *c, double tolerance) {
   double reach      = sqrt(sqrt(sqrt(sqrt(.2 * tolerance / 1.7e-23))));
   double wanted     = c->record ? c->H : 0;
   c->slip.harmonic  = wanted + .5 * c->content;
@@ -150,7 +150,7 @@ static void set_panels(mhb_contact *c, double tolerance) {
 }
 
 /* The direction may be held over tau before an opening: what it misses is some mu n' tau^2/2. */
-static void set_sliver(mhb_contact *c, double opening) {
+static void set_sliver(mhb_contact_evaluator *c, double opening) {
   double y[3], dy[3];
   mhb_signals_at(&c->signals, opening, y, dy, NULL);
   c->slip.sliver = fmin(.05, fmax(1e-10, sqrt(c->slip.tolerance / (c->slip.mu * fabs(dy[0])))));
@@ -158,10 +158,10 @@ static void set_sliver(mhb_contact *c, double opening) {
 
 /* ---- the contact opens: every closing is a fresh start (eqs. 13-15) ---- */
 
-int mhb_lap_openings(mhb_contact *c) {
+int mhb_slider_with_openings(mhb_contact_evaluator *c) {
   int    ok   = 1;
   double open = 1;
-  mhb_columns_clear(c);
+  mhb_sensitivity_clear(c);
   c->record         = 1;
   c->memory.slipped = 1; /* there is no slider at the start of the lap to remember */
   set_panels(c, c->tolerance);
@@ -179,14 +179,14 @@ int mhb_lap_openings(mhb_contact *c) {
       mhb_direction at = mhb_slip_direction(c->K, s.theta);
       c->slip.begins   = mhb_slip_closing_rate(&c->slip, &at, dy, ddy, &D);
     }
-    mhb_columns_closing(c, s.t, s.state, s.theta);
+    mhb_sensitivity_closing(c, s.t, s.state, s.theta);
     mhb_note_transition(c, s.t, s.state);
     set_sliver(c, c->closed.opening[i]);
     ok &= run_closed(c, &s, c->closed.opening[i], 1);
     if (s.state == MHB_STICK || s.onset == s.t)
       c->info->slip_work += held_at(c, &s); /* let go at once: mu n' is too steep to see */
     mhb_note_transition(c, c->closed.opening[i], MHB_SEPARATE);
-    mhb_pieces_open(&c->pieces, c->closed.opening[i]);
+    mhb_dense_output_open(&c->pieces, c->closed.opening[i]);
     open -= (c->closed.opening[i] - c->closed.closing[i]) / TWO_PI;
   }
   c->info->share[MHB_SEPARATE] = fmax(0, open);
@@ -198,20 +198,20 @@ int mhb_lap_openings(mhb_contact *c) {
 enum { MAX_LAPS = 100, MAX_RECORDS = 5 };
 
 /* One lap from slider z0; P(z0) and, in the columns, its derivative. 0: a panel was lost. */
-static int run_lap(mhb_contact *c, const double z0[2], double P[2]) {
+static int run_lap(mhb_contact_evaluator *c, const double z0[2], double P[2]) {
   slider s = {.state = MHB_STICK, .t = 0, .z = {z0[0], z0[1]}, .onset = -1};
   double y[3], dy[3];
   mhb_signals_at(&c->signals, 0, y, dy, NULL);
   double f[2] = {y[1] - z0[0], y[2] - z0[1]}, limit = c->slip.mu * y[0], size = hypot(f[0], f[1]);
-  mhb_columns_clear(c);
+  mhb_sensitivity_clear(c);
   if (size >= limit * (1 - 1e-9)) { /* begins on the circle: project, slip if it pulls outwards */
     double d[2], over[2] = {f[0] / limit, f[1] / limit};
     mhb_slip_return(c->K, 1, over, d);
     s.theta            = atan2(d[1], d[0]);
     mhb_direction at   = mhb_slip_direction(c->K, s.theta);
     int           pull = mhb_slip_gamma(&c->slip, &at, dy) > 0;
-    if (pull || size > limit) mhb_columns_stick_to_slip(c, 0, s.theta, y[0]);
-    if (!pull && size > limit) mhb_columns_slip_to_stick(c, 0, s.theta, y[0]);
+    if (pull || size > limit) mhb_sensitivity_stick_to_slip(c, 0, s.theta, y[0]);
+    if (!pull && size > limit) mhb_sensitivity_slip_to_stick(c, 0, s.theta, y[0]);
     if (pull) s.state = MHB_SLIDE;
     if (pull) c->slip.begins = mhb_slip_rate(&c->slip, s.theta, y, dy);
     if (!pull && size > limit)
@@ -223,7 +223,7 @@ static int run_lap(mhb_contact *c, const double z0[2], double P[2]) {
   if (s.state == MHB_SLIDE) {
     P[0] = y[1] - limit * cos(s.theta);
     P[1] = y[2] - limit * sin(s.theta);
-    mhb_columns_slip_to_stick(c, 0, s.theta, y[0]);
+    mhb_sensitivity_slip_to_stick(c, 0, s.theta, y[0]);
   } else {
     P[0] = s.z[0];
     P[1] = s.z[1];
@@ -240,17 +240,17 @@ typedef struct {
 
 /* What a step leaves: its square, times the gain of the lap, for a lap that forgets its start bends little too, but not
  * less than the lap's own error; or, where steps shrink by a ratio, that part of it. */
-static double left_by(const mhb_contact *c, approach *a, double length, double accuracy) {
+static double left_by(const mhb_contact_evaluator *c, approach *a, double length, double accuracy) {
   double ratio = length / a->last;
   a->slow      = ratio > .1 && a->last < 1;
   a->last      = length;
   if (a->slow) return length * fmin(1, ratio);
-  return fmax(fmin(length * length, 4) * fmin(1, mhb_columns_gain(c)), 1e-4 * accuracy);
+  return fmax(fmin(length * length, 4) * fmin(1, mhb_sensitivity_contraction(c)), 1e-4 * accuracy);
 }
 
 /* Newton on P(z) = z; a plain lap, which never expands, where Newton does not gain; a longer step at a double root, where
  * slip just begins. Each lap is as accurate as the step it is taken for deserves. 0: not reached. */
-static int close_slider(mhb_contact *c, approach *a, double z[2]) {
+static int close_slider(mhb_contact_evaluator *c, approach *a, double z[2]) {
   double before = INFINITY, left = a->last < 1 ? a->last : .03, P[2], step[2];
   int    plain = 0, newton = 0;
   c->record  = 0;
@@ -269,7 +269,7 @@ static int close_slider(mhb_contact *c, approach *a, double z[2]) {
       z[1] = P[1];
       continue;
     }
-    mhb_columns_close(c, r, step);
+    mhb_sensitivity_close(c, r, step);
     double length = hypot(step[0], step[1]) / c->friction, ratio = length / a->last;
     double stretch = ratio > .3 && ratio < .7 ? 1 / (1 - ratio) : 1;
     double beyond  = hypot(step[0] - r[0], step[1] - r[1]) / c->friction;
@@ -287,16 +287,16 @@ static int close_slider(mhb_contact *c, approach *a, double z[2]) {
 /* The lap whose force is wanted, from z. The last Newton step is taken on the force, not by another lap:
  * f += (df/dz) dz, dz = (I - DP)^-1 (P(z) - z). Returns how much that changed the force, in units of the friction;
  * negative: the lap was lost. gap: between the lap's ends, |P(z) - z|, step: |dz|, in the same units. */
-static double record_lap(mhb_contact *c, mhb_columns_mode columns, double z[2], double *gap,
-                         double *step) {
+static double record_lap(mhb_contact_evaluator *c, mhb_sensitivity_mode columns, double z[2],
+                         double *gap, double *step) {
   double P[2], dz[2], most = 0;
   c->record  = 1;
   c->columns = columns;
-  mhb_sums_clear(c);
+  mhb_force_integrals_clear(c);
   set_panels(c, c->tolerance);
   int ok = run_lap(c, z, P);
-  mhb_columns_close(c, (double[2]){P[0] - z[0], P[1] - z[1]}, dz);
-  mhb_sums_collect(c);
+  mhb_sensitivity_close(c, (double[2]){P[0] - z[0], P[1] - z[1]}, dz);
+  mhb_force_integrals_collect(c);
   *gap         = hypot(P[0] - z[0], P[1] - z[1]) / c->friction;
   *step        = hypot(dz[0], dz[1]) / c->friction;
   double along = c->memory.v[0] * dz[0] + c->memory.v[1] * dz[1], work = c->memory.work * along;
@@ -313,8 +313,8 @@ static double record_lap(mhb_contact *c, mhb_columns_mode columns, double z[2], 
   return ok ? 2 / TWO_PI * most / c->friction : -1;
 }
 
-int mhb_lap_closed(mhb_contact *c, const double guess[2]) {
-  mhb_columns_mode wanted = c->columns == MHB_ALL_COLUMNS ? MHB_ALL_COLUMNS : MHB_SLIDER_COLUMN;
+int mhb_slider_periodic(mhb_contact_evaluator *c, const double guess[2]) {
+  mhb_sensitivity_mode wanted = c->columns == MHB_ALL_COLUMNS ? MHB_ALL_COLUMNS : MHB_SLIDER_COLUMN;
   double   z[2] = {guess[0], guess[1]}, left = 0, gap = 0, step = 0, sharp = .1 * c->tolerance;
   approach a       = {.enough = wanted == MHB_ALL_COLUMNS ? sharp : .1 * sqrt(c->tolerance),
                       .last   = INFINITY};
@@ -335,7 +335,7 @@ int mhb_lap_closed(mhb_contact *c, const double guess[2]) {
   double miss = left < 0             ? TWO_PI * c->force / c->friction
                 : reached && !a.slow ? fmax(left * left, step * step)
                                      : left;
-  c->info->error += c->friction * (miss + mhb_columns_doubt(c));
-  if (wanted == MHB_ALL_COLUMNS) mhb_columns_eliminate_slider(c);
+  c->info->error += c->friction * (miss + mhb_sensitivity_roundoff(c));
+  if (wanted == MHB_ALL_COLUMNS) mhb_sensitivity_eliminate_slider(c);
   return left >= 0 && left < sqrt(c->tolerance);
 }

@@ -134,7 +134,8 @@ static int worst_disc(const discs *set, const double c[2], double *worst) {
 }
 
 /* The discs known so far: add the worst violated one until none is. |c| grows at every step. */
-static int solve_known(const discs *set, mhb_stuck *stuck, disc active[3], int *n_active) {
+static int solve_known(const discs *set, mhb_static_friction *stuck, disc active[3],
+                       int *n_active) {
   double slack = 1e-13 * set->scale, worst;
   for (int i = 0; i < 400; i++) {
     int at = worst_disc(set, stuck->c, &worst);
@@ -226,7 +227,7 @@ static summit summit_at(const discs *set, double t) {
 }
 
 /* |c| is stationary in the time of one active disc, its direction is not: Newton on g. */
-static void sharpen(const discs *set, mhb_stuck *stuck) {
+static void sharpen(const discs *set, mhb_static_friction *stuck) {
   summit s = summit_at(set, stuck->time[0]);
   for (int i = 0; i < 6 && s.bending < 0; i++) {
     double step = -s.slope / s.bending;
@@ -250,8 +251,8 @@ MHB_HOT static int hopeless(const mhb_signals *s, double mu) {
   return lanes_top(most) > 0;
 }
 
-void mhb_stuck_solve(const mhb_signals *signals, double mu, mhb_stuck *stuck) {
-  *stuck = (mhb_stuck){0};
+void mhb_static_friction_solve(const mhb_signals *signals, double mu, mhb_static_friction *stuck) {
+  *stuck = (mhb_static_friction){0};
   if (hopeless(signals, mu)) return;
   discs set       = {.signals = signals, .mu = mu};
   set.scale       = signals->bound[1][0] + signals->bound[2][0] + DBL_MIN;
@@ -288,7 +289,7 @@ static void one_disc(const discs *set, double t, double weight[2][2][6]) {
 }
 
 /* Two: (c + f_i).dc = r_i dr_i - (c + f_i).df_i; the times drop out, for each constraint is stationary at its own. */
-static void two_discs(const discs *set, const mhb_stuck *stuck, double weight[2][2][6]) {
+static void two_discs(const discs *set, const mhb_static_friction *stuck, double weight[2][2][6]) {
   double row[2][2], limit[2], v[3], dv[3];
   for (int i = 0; i < 2; i++) {
     mhb_signals_at(set->signals, stuck->time[i], v, dv, NULL);
@@ -309,8 +310,8 @@ static void two_discs(const discs *set, const mhb_stuck *stuck, double weight[2]
     }
 }
 
-void mhb_stuck_gradient(const mhb_signals *signals, double mu, const mhb_stuck *stuck,
-                        double weight[2][2][6]) {
+void mhb_static_friction_gradient(const mhb_signals *signals, double mu,
+                                  const mhb_static_friction *stuck, double weight[2][2][6]) {
   discs set = {.signals = signals, .mu = mu};
   memset(weight, 0, sizeof(double) * 24);
   if (stuck->n_active == 1) one_disc(&set, stuck->time[0], weight);

@@ -16,14 +16,14 @@ typedef struct {
   double c[2];     /* mean friction, in units of x */
   int    n_active; /* 0, 1 or 2 */
   double time[2];  /* when the friction limit is touched */
-} mhb_stuck;
+} mhb_static_friction;
 
 /* signals: (n, x_1, x_2) with n > 0 throughout. */
-void mhb_stuck_solve(const mhb_signals *signals, double mu, mhb_stuck *stuck);
+void mhb_static_friction_solve(const mhb_signals *signals, double mu, mhb_static_friction *stuck);
 
 /* dc = weight . (dn, dx_1, dx_2, dn', dx_1', dx_2') at the active times, dx without its mean.
  *   weight  out  [2][n_active][6] */
-void mhb_stuck_gradient(const mhb_signals *signals, double mu, const mhb_stuck *stuck,
-                        double weight[2][2][6]);
+void mhb_static_friction_gradient(const mhb_signals *signals, double mu,
+                                  const mhb_static_friction *stuck, double weight[2][2][6]);
 
 #endif

@@ -17,7 +17,8 @@ typedef struct {
  *   info    out     as in mhb_contact_force; lost is set too where the pieces found no room
  * Not finite: NaN. Here laps are repeated until one closes to 1e-12 of the friction, or as
  * near as their tolerance lets them. */
-void mhb_contact_trace(mhb_contact *contact, const mhb_law *law, const double *motion, int count,
-                       mhb_contact_sample *sample, mhb_contact_info *info);
+void mhb_contact_time_history(mhb_contact_evaluator *contact, const mhb_law *law,
+                              const double *motion, int count, mhb_contact_sample *sample,
+                              mhb_contact_info *info);
 
 #endif

@@ -148,21 +148,21 @@ MHB_HOT static int next_suspect(const event_function *f, double sign, int from, 
   return to;
 }
 
-shb_status mhb_closed_create(int m, mhb_closed *closed) {
+shb_status mhb_contact_intervals_create(int m, mhb_contact_intervals *closed) {
   int room        = m > 0 ? m : 1;
-  *closed         = (mhb_closed){.room = room};
+  *closed         = (mhb_contact_intervals){.room = room};
   closed->closing = calloc(2 * ((size_t)room + 1), sizeof(double));
   SHB_CHECK(closed->closing, SHB_ERR_IO, "out of memory for %d openings", room);
   closed->opening = closed->closing + room + 1;
   return SHB_OK;
 }
 
-void mhb_closed_destroy(mhb_closed *closed) {
+void mhb_contact_intervals_destroy(mhb_contact_intervals *closed) {
   free(closed->closing);
-  *closed = (mhb_closed){0};
+  *closed = (mhb_contact_intervals){0};
 }
 
-void mhb_closed_intervals(const mhb_signals *signals, mhb_closed *closed) {
+void mhb_contact_intervals_find(const mhb_signals *signals, mhb_contact_intervals *closed) {
   event_function f     = {.signals = signals, .is_load = 1, .bound4 = signals->bound[0][4]};
   double         slack = 8 * DBL_EPSILON * signals->bound[0][0];
   closed->n = closed->always_closed = closed->always_open = 0;

@@ -17,14 +17,14 @@ typedef struct {
   int     always_closed, always_open;
   double *closing; /* [room + 1] in [0, 2 pi), ascending */
   double *opening; /* [room + 1] the opening after closing[i], up to closing[i] + 2 pi */
-} mhb_closed;
+} mhb_contact_intervals;
 
 /* For loads of up to m harmonics. SHB_ERR_IO: no memory. */
-shb_status mhb_closed_create(int m, mhb_closed *closed);
-void       mhb_closed_destroy(mhb_closed *closed);
+shb_status mhb_contact_intervals_create(int m, mhb_contact_intervals *closed);
+void       mhb_contact_intervals_destroy(mhb_contact_intervals *closed);
 
 /* Roots of n (eqs. 11, 12). Touching zero without crossing counts as closed (n >= 0). */
-void mhb_closed_intervals(const mhb_signals *signals, mhb_closed *closed);
+void mhb_contact_intervals_find(const mhb_signals *signals, mhb_contact_intervals *closed);
 
 /* First t in (from, to] at which |x - z| reaches mu n from below (eq. 7); to + 1 if there is none.
  * from may be a double zero (slip has just ended, or the contact has just closed): it is stepped over. */

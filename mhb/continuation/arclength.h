@@ -20,55 +20,63 @@ typedef struct {
   double residual;          /* |r|/|x| */
   double truncation, modal; /* relative error estimates, see truncation_error.h */
   int    truncation_kind;   /* mhb_truncation_kind */
-} mhb_path_point;
+} mhb_curve_point;
 
 typedef struct {
-  mhb_residual *residual;
-  mhb_newton   *newton;
-  mhb_still    *still;
-  int           n;
-  double        low, high; /* range of the value */
-  double        span;      /* unit of the value */
-  double        least;     /* below it no value makes sense */
+  mhb_balance          *residual;
+  mhb_newton           *newton;
+  mhb_linear_corrector *still;
+  int                   n;
+  double                low, high; /* range of the value */
+  double                span;      /* unit of the value */
+  double                least;     /* below it no value makes sense */
   double
       rest; /* m: unit of x where nothing moves, by the motion that the tangent leads to over the span */
   double step, longest;
   double tolerance;
   double
       stagnant; /* a residual below it that Newton no longer betters is rounding, or the law's own */
-  int orientation, against;        /* of the path; ordinary steps in a row that had the other one */
-  mhb_path_point now, next, probe; /* probe: scratch for located points */
-  double        *chord;            /* [n+1] */
-  double        *bracket[2];       /* [n+1] x and value on both sides of a point being located */
-  double        *kept;             /* [n+1] an end of it */
-  mhb_resonances resonances;       /* in the range */
-} mhb_path;
+  int orientation, against; /* of the path; ordinary steps in a row that had the other one */
+  mhb_curve_point now, next, probe; /* probe: scratch for located points */
+  double         *chord;            /* [n+1] */
+  double         *bracket[2];       /* [n+1] x and value on both sides of a point being located */
+  double         *kept;             /* [n+1] an end of it */
+  mhb_resonances  resonances;       /* in the range */
+} mhb_arclength;
 
-typedef enum { MHB_PATH_ON, MHB_PATH_AT_END, MHB_PATH_AT_START, MHB_PATH_STALLED } mhb_path_outcome;
+typedef enum {
+  MHB_ARCLENGTH_ON,
+  MHB_ARCLENGTH_AT_END,
+  MHB_ARCLENGTH_AT_START,
+  MHB_ARCLENGTH_STALLED
+} mhb_arclength_outcome;
 
-shb_status mhb_path_create(mhb_residual *residual, double low, double high, mhb_path **path);
-void       mhb_path_destroy(mhb_path *path);
+shb_status mhb_arclength_create(mhb_balance *residual, double low, double high,
+                                mhb_arclength **path);
+void       mhb_arclength_destroy(mhb_arclength *path);
 
 /* Begin at a solution x at a value, towards rising (+1) or falling (-1) ones. Leaves the residual there. */
-mhb_reason mhb_path_start(mhb_path *path, const double *x, double value, int direction);
+mhb_reason mhb_arclength_start(mhb_arclength *path, const double *x, double value, int direction);
 
 /* Begin where two curves cross, at a solution x that lies on the one, along[n] the other: now becomes its first point,
  * .001 to .03 of |x| away. Not converged: there is none. Leaves the residual there. */
-mhb_reason mhb_path_depart(mhb_path *path, const double *x, double value, const double *along);
+mhb_reason mhb_arclength_depart(mhb_arclength *path, const double *x, double value,
+                                const double *along);
 
 /* One step: path->next becomes the new point, path->now stays the old one. AT_END, AT_START: next lies exactly on the
  * range's high or low end. The residual's workspace is left at next. */
-mhb_path_outcome mhb_path_step(mhb_path *path);
+mhb_arclength_outcome mhb_arclength_step(mhb_arclength *path);
 
 /* next lies on the end of the range that outcome (AT_START, AT_END) tells: go on outside the range until the path comes back
  * to that end. ON: next is there, heading inwards; STALLED: it does not come back. */
-mhb_path_outcome mhb_path_outside(mhb_path *path, mhb_path_outcome outcome);
+mhb_arclength_outcome mhb_arclength_excursion(mhb_arclength *path, mhb_arclength_outcome outcome);
 
 /* The same from path->now, a solution on that end, but no farther than half a range beyond it (frequency: at least one, at most
  * three tenths of it) and with few steps while a contact slips or opens. now is the point before next then. */
-mhb_path_outcome mhb_path_beyond(mhb_path *path, mhb_path_outcome outcome);
+mhb_arclength_outcome mhb_arclength_excursion_within_budget(mhb_arclength        *path,
+                                                            mhb_arclength_outcome outcome);
 
 /* now <- next */
-void mhb_path_advance(mhb_path *path);
+void mhb_arclength_advance(mhb_arclength *path);
 
 #endif

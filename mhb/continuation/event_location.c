@@ -22,8 +22,8 @@ typedef struct {
 } range;
 
 /* Which guess at fraction s, between the solved ends lo and hi of a bracket: the line between them, or one end, shifted. */
-static void guess_at(const mhb_path *path, double s, double lo, double hi, int which,
-                     mhb_path_point *probe) {
+static void guess_at(const mhb_arclength *path, double s, double lo, double hi, int which,
+                     mhb_curve_point *probe) {
   const double *a = path->bracket[0], *b = path->bracket[1];
   double        part = which == 0 ? (s - lo) / (hi - lo) : which - 1;
   double        rest = which == 0 ? 0 : which == 1 ? s - lo : s - hi;
@@ -37,30 +37,30 @@ static void guess_at(const mhb_path *path, double s, double lo, double hi, int w
 }
 
 /* probe <- what a guess converges to; 0 if it does not. The fourth is the first one by the damped Newton. */
-static int from_guess(mhb_path *path, double s, double lo, double hi, int which) {
-  mhb_path_point *probe = &path->probe;
+static int from_guess(mhb_arclength *path, double s, double lo, double hi, int which) {
+  mhb_curve_point *probe = &path->probe;
   guess_at(path, s, lo, hi, which % 3, probe);
-  if (which < 3) return mhb_path_correct(path, path->chord, 1, probe);
+  if (which < 3) return mhb_arclength_correct(path, path->chord, 1, probe);
   if (mhb_newton_solve(path->newton, path->residual, probe->value, path->tolerance, probe->x,
                        &probe->iterations) != MHB_CONVERGED)
     return 0;
-  mhb_path_measure(path, probe);
+  mhb_arclength_measure(path, probe);
   return 1;
 }
 
 /* Which fraction of the chord the probe is at; a solution at fixed value need not be in the plane it was sought in. */
-static double fraction_of(mhb_path *path) {
-  double scale = mhb_path_unit(path), away[path->n + 1];
+static double fraction_of(mhb_arclength *path) {
+  double scale = mhb_arclength_unit(path), away[path->n + 1];
   for (int i = 0; i < path->n; i++) away[i] = path->probe.x[i] - path->now.x[i];
   away[path->n] = path->probe.value - path->now.value;
-  return mhb_path_inner(path, scale, path->chord, away) /
-         mhb_path_inner(path, scale, path->chord, path->chord);
+  return mhb_arclength_inner(path, scale, path->chord, away) /
+         mhb_arclength_inner(path, scale, path->chord, path->chord);
 }
 
 /* probe <- the solution in the plane across the chord at fraction *s. In the square-root zone of slip onset the plane's
  * Newton can fail; the damped one at fixed frequency then stands in, if it stays in the bracket, and is tried first from there on.
  * What rounding stopped is taken if nothing is better. */
-static int at_fraction(mhb_path *path, range *r, double *s) {
+static int at_fraction(mhb_arclength *path, range *r, double *s) {
   int rounded = -1;
   for (int i = 0; i < GUESSES; i++) {
     int which = (r->guess + i) % GUESSES;
@@ -68,7 +68,7 @@ static int at_fraction(mhb_path *path, range *r, double *s) {
     double at = which < 3 ? *s : fraction_of(path);
     if (!(at > r->at[0] && at < r->at[1])) continue;
     if (path->probe.residual <= path->tolerance &&
-        mhb_path_set_tangent(path, path->chord, &path->probe)) {
+        mhb_arclength_set_tangent(path, path->chord, &path->probe)) {
       r->guess = which;
       *s       = at;
       return 1;
@@ -76,20 +76,20 @@ static int at_fraction(mhb_path *path, range *r, double *s) {
     if (path->probe.residual <= ROUNDED && rounded < 0) rounded = which;
   }
   return rounded >= 0 && from_guess(path, *s, r->at[0], r->at[1], rounded) &&
-         mhb_path_set_tangent(path, path->chord, &path->probe);
+         mhb_arclength_set_tangent(path, path->chord, &path->probe);
 }
 
 /* probe <- an end of the bracket as it was found: Newton need not come back to it. */
-static int at_end(mhb_path *path, int side) {
-  mhb_path_point *probe = &path->probe;
+static int at_end(mhb_arclength *path, int side) {
+  mhb_curve_point *probe = &path->probe;
   memcpy(probe->x, path->bracket[side], sizeof(double) * (size_t)path->n);
   probe->value = path->bracket[side][path->n];
-  mhb_path_measure(path, probe);
-  return mhb_path_set_tangent(path, path->chord, probe);
+  mhb_arclength_measure(path, probe);
+  return mhb_arclength_set_tangent(path, path->chord, probe);
 }
 
 /* Somewhere else in the bracket, then at *s. */
-static int somewhere(mhb_path *path, range *r, double *s) {
+static int somewhere(mhb_arclength *path, range *r, double *s) {
   static const double other[] = {.5, .2, .8, .05, .95};
   for (int i = 0; i < 5; i++) {
     *s = r->at[0] + other[i] * (r->at[1] - r->at[0]);
@@ -98,7 +98,7 @@ static int somewhere(mhb_path *path, range *r, double *s) {
   return 0;
 }
 
-static void set_bracket(mhb_path *path, int side, const mhb_path_point *point) {
+static void set_bracket(mhb_arclength *path, int side, const mhb_curve_point *point) {
   memcpy(path->bracket[side], point->x, sizeof(double) * (size_t)path->n);
   path->bracket[side][path->n] = point->value;
 }
@@ -109,25 +109,25 @@ static int is_narrow(const range *r) {
 }
 
 /* No pair slips or opens for a part of the period: the law is exact there. */
-static int is_still(const mhb_residual *b) {
+static int is_still(const mhb_balance *b) {
   for (int a = 0; a < b->n_pairs; a++)
-    if (b->kind[a] == MHB_PAIR_MOVING) return 0;
+    if (b->kind[a] == MHB_PAIR_NONLINEAR) return 0;
   return 1;
 }
 
 /* The side of the bracket that is still, if the other is not; else -1. */
-static int still_side(mhb_path *path) {
+static int still_side(mhb_arclength *path) {
   int still[2];
   for (int side = 0; side < 2; side++) still[side] = at_end(path, side) && is_still(path->residual);
   return still[0] == still[1] ? -1 : still[1];
 }
 
 /* probe <- a point in the plane at the chord's fraction s, along the tangent of the probe as it was at an end. */
-static void along_tangent(mhb_path *path, int side, double ahead) {
-  mhb_path_point *probe = &path->probe;
-  double          scale = mhb_path_unit(path),
-         length         = mhb_path_inner(path, scale, path->chord, path->chord) * ahead /
-                  mhb_path_inner(path, scale, path->chord, probe->tangent);
+static void along_tangent(mhb_arclength *path, int side, double ahead) {
+  mhb_curve_point *probe = &path->probe;
+  double           scale = mhb_arclength_unit(path),
+         length          = mhb_arclength_inner(path, scale, path->chord, path->chord) * ahead /
+                  mhb_arclength_inner(path, scale, path->chord, probe->tangent);
   for (int i = 0; i < path->n; i++)
     probe->x[i] = path->bracket[side][i] + length * probe->tangent[i];
   probe->value = path->bracket[side][path->n] + length * probe->tangent[path->n];
@@ -135,15 +135,16 @@ static void along_tangent(mhb_path *path, int side, double ahead) {
 
 /* Where contacts begin to slip, that side is known to the root of rounding only and Newton may fail, the still side is exact: its
  * last point, in steps that are halved, becomes that end of the bracket (the old one is kept) and the probe. */
-static int go_to_kink(mhb_path *path, int side, range *r) {
+static int go_to_kink(mhb_arclength *path, int side, range *r) {
   double step = .5 * (r->at[1 - side] - r->at[side]);
   memcpy(path->kept, path->bracket[side], sizeof(double) * ((size_t)path->n + 1));
-  if (!at_end(path, side) || !mhb_still_note(path->still, path->residual)) return 0;
+  if (!at_end(path, side) || !mhb_linear_set_states(path->still, path->residual)) return 0;
   for (int i = 0; i < MAX_TO_KINK && fabs(step) > 1e-9; i++) {
     double s = r->at[side] + step;
     along_tangent(path, side, step);
-    if (s > r->at[0] && s < r->at[1] && mhb_path_correct_still(path, path->chord, &path->probe) &&
-        mhb_path_set_tangent(path, path->chord, &path->probe)) {
+    if (s > r->at[0] && s < r->at[1] &&
+        mhb_arclength_correct_still(path, path->chord, &path->probe) &&
+        mhb_arclength_set_tangent(path, path->chord, &path->probe)) {
       r->at[side] = s;
       set_bracket(path, side, &path->probe);
     } else {
@@ -161,19 +162,20 @@ static void swap(double **a, double **b) {
 
 /* probe <- a point on the still side of the kink that the probe is at: so near that it does not matter, so far that Newton comes
  * back to it. */
-static int beside_kink(mhb_path *path, int side, double before, range *r) {
+static int beside_kink(mhb_arclength *path, int side, double before, range *r) {
   double way = before - r->at[side], most = BESIDE / fmax(r->wide, BESIDE);
   double back = copysign(fmin(most, .5 * fabs(way)), way);
   along_tangent(path, side, back);
-  if (!mhb_path_correct_still(path, path->chord, &path->probe) ||
-      !mhb_path_set_tangent(path, path->chord, &path->probe))
+  if (!mhb_arclength_correct_still(path, path->chord, &path->probe) ||
+      !mhb_arclength_set_tangent(path, path->chord, &path->probe))
     return at_end(path, side);
   r->at[side] += back;
   return 1;
 }
 
 /* 1: a kink, and the probe beside it, is the event. Else the bracket ends there, if it holds one. */
-static int at_kink(mhb_path *path, mhb_path_indicator indicator, void *context, range *r) {
+static int at_kink(mhb_arclength *path, mhb_arclength_indicator indicator, void *context,
+                   range *r) {
   int side = still_side(path);
   if (side < 0) return 0;
   double before = r->at[side];
@@ -191,13 +193,13 @@ static int at_kink(mhb_path *path, mhb_path_indicator indicator, void *context, 
   return 0;
 }
 
-int mhb_path_locate(mhb_path *path, mhb_path_indicator indicator, void *context, double at_now,
-                    double at_next, double *fraction) {
+int mhb_arclength_locate(mhb_arclength *path, mhb_arclength_indicator indicator, void *context,
+                         double at_now, double at_next, double *fraction) {
   for (int i = 0; i < path->n; i++) path->chord[i] = path->next.x[i] - path->now.x[i];
   path->chord[path->n] = path->next.value - path->now.value;
   range r              = {.at   = {0, 1},
                           .f    = {at_now, at_next},
-                          .wide = fabs(path->chord[path->n]) / mhb_path_size(path)};
+                          .wide = fabs(path->chord[path->n]) / mhb_arclength_size(path)};
   int   last = -1, kinks = 0;
   set_bracket(path, 0, &path->now);
   set_bracket(path, 1, &path->next);

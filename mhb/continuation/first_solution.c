@@ -8,7 +8,7 @@
 enum { MAX_STAGES = 200 };
 
 /* Natural continuation of the preload from one whose linear limit x solves, to the one asked for. */
-static mhb_reason homotopy(mhb_newton *newton, mhb_residual *b, double omega, double tolerance,
+static mhb_reason homotopy(mhb_newton *newton, mhb_balance *b, double omega, double tolerance,
                            double from, double *x) {
   double     to = b->at.n0, part = 0, step = .25;
   double     kept[b->n];
@@ -17,7 +17,7 @@ static mhb_reason homotopy(mhb_newton *newton, mhb_residual *b, double omega, do
     double next = fmin(1, part + step);
     int    iterations;
     memcpy(kept, x, sizeof kept);
-    mhb_residual_preload(b, from + next * (to - from));
+    mhb_balance_set_preload(b, from + next * (to - from));
     reason = mhb_newton_solve(newton, b, omega, tolerance, x, &iterations);
     if (reason == MHB_CONVERGED) {
       part = next;
@@ -27,18 +27,18 @@ static mhb_reason homotopy(mhb_newton *newton, mhb_residual *b, double omega, do
       step *= .4;
     }
   }
-  mhb_residual_preload(b, to);
+  mhb_balance_set_preload(b, to);
   if (part >= 1) return MHB_CONVERGED;
   return reason == MHB_CONVERGED ? MHB_MAX_ITERATIONS : reason; /* out of stages on the way */
 }
 
 /* A preload beyond which the linear limit holds: no motion of size x can open it, or close it. */
-static double far_preload(const mhb_residual *b, const double *x, int stuck) {
+static double far_preload(const mhb_balance *b, const double *x, int stuck) {
   double size = mhb_norm(x, b->n), most = 0;
   for (int i = 0; i < b->n_interfaces; i++) {
-    const mhb_condition *own      = &b->own[i];
-    double               friction = (fabs(own->ku[0]) + fabs(own->ku[2])) / fmax(own->mu, 1e-6);
-    double               reach    = 4 * size * (own->kv + (stuck ? friction : 0)) + fabs(own->n0);
+    const mhb_operating_point *own = &b->own[i];
+    double friction                = (fabs(own->ku[0]) + fabs(own->ku[2])) / fmax(own->mu, 1e-6);
+    double reach                   = 4 * size * (own->kv + (stuck ? friction : 0)) + fabs(own->n0);
     if (b->n_interfaces > 1) reach += fabs(b->at.n0); /* all move by what this one does */
     most = fmax(most, reach);
   }
@@ -46,13 +46,13 @@ static double far_preload(const mhb_residual *b, const double *x, int stuck) {
 }
 
 /* From the linear limits and from zero. */
-static mhb_reason directly(mhb_newton *newton, mhb_residual *b, double omega, double tolerance,
+static mhb_reason directly(mhb_newton *newton, mhb_balance *b, double omega, double tolerance,
                            double *x, int *iterations) {
   mhb_reason reason   = MHB_MAX_ITERATIONS;
   double     n0       = b->at.n0;
   int        order[3] = {n0 > 0, n0 <= 0, MHB_BY_PRELOAD}; /* the likelier limit first */
   for (int i = b->n_interfaces > 1 ? -1 : 0; i < 2; i++) {
-    if (mhb_residual_linear(b, omega, order[i < 0 ? 2 : i], x) != SHB_OK) continue;
+    if (mhb_balance_linear_limit(b, omega, order[i < 0 ? 2 : i], x) != SHB_OK) continue;
     reason = mhb_newton_solve(newton, b, omega, tolerance, x, iterations);
     if (reason == MHB_CONVERGED) return reason;
   }
@@ -61,38 +61,39 @@ static mhb_reason directly(mhb_newton *newton, mhb_residual *b, double omega, do
 }
 
 /* By Newton's method at omega alone. */
-static mhb_reason solve_here(mhb_newton *newton, mhb_residual *b, double omega, double tolerance,
+static mhb_reason solve_here(mhb_newton *newton, mhb_balance *b, double omega, double tolerance,
                              double *x, int *iterations) {
   mhb_reason reason = directly(newton, b, omega, tolerance, x, iterations);
   for (int i = 0; i < 2 && reason != MHB_CONVERGED; i++) {
     int stuck = b->at.n0 > 0 ? 1 - i : i; /* the likelier limit first */
-    if (mhb_residual_linear(b, omega, stuck, x) != SHB_OK) continue;
-    mhb_residual_anchor(b, 1);
+    if (mhb_balance_linear_limit(b, omega, stuck, x) != SHB_OK) continue;
+    mhb_balance_tie_preloads(b, 1);
     reason = homotopy(newton, b, omega, tolerance, far_preload(b, x, stuck), x);
-    mhb_residual_anchor(b, 0);
+    mhb_balance_tie_preloads(b, 0);
   }
   return reason;
 }
 
 /* Along the path from a solution x at `from` to one at `to`. */
-static int follow_to(mhb_residual *b, double from, double to, double *x) {
-  mhb_path        *path;
-  mhb_path_outcome outcome = MHB_PATH_STALLED,
-                   wanted  = to > from ? MHB_PATH_AT_END : MHB_PATH_AT_START;
-  if (mhb_path_create(b, fmin(from, to), fmax(from, to), &path) != SHB_OK) return 0;
-  if (mhb_path_start(path, x, from, to > from ? 1 : -1) == MHB_CONVERGED) outcome = MHB_PATH_ON;
-  for (int i = 0; i < MAX_STAGES && outcome == MHB_PATH_ON && !shb_interrupted(); i++) {
-    outcome = mhb_path_step(path);
-    if (outcome != MHB_PATH_ON && outcome != MHB_PATH_STALLED && outcome != wanted)
-      outcome = mhb_path_outside(path, outcome);
-    mhb_path_advance(path);
+static int follow_to(mhb_balance *b, double from, double to, double *x) {
+  mhb_arclength        *path;
+  mhb_arclength_outcome outcome = MHB_ARCLENGTH_STALLED,
+                        wanted  = to > from ? MHB_ARCLENGTH_AT_END : MHB_ARCLENGTH_AT_START;
+  if (mhb_arclength_create(b, fmin(from, to), fmax(from, to), &path) != SHB_OK) return 0;
+  if (mhb_arclength_start(path, x, from, to > from ? 1 : -1) == MHB_CONVERGED)
+    outcome = MHB_ARCLENGTH_ON;
+  for (int i = 0; i < MAX_STAGES && outcome == MHB_ARCLENGTH_ON && !shb_interrupted(); i++) {
+    outcome = mhb_arclength_step(path);
+    if (outcome != MHB_ARCLENGTH_ON && outcome != MHB_ARCLENGTH_STALLED && outcome != wanted)
+      outcome = mhb_arclength_excursion(path, outcome);
+    mhb_arclength_advance(path);
   }
   memcpy(x, path->now.x, sizeof(double) * (size_t)b->n);
-  mhb_path_destroy(path);
+  mhb_arclength_destroy(path);
   return outcome == wanted;
 }
 
-static mhb_reason by_frequency(mhb_newton *newton, mhb_residual *b, double omega, double tolerance,
+static mhb_reason by_frequency(mhb_newton *newton, mhb_balance *b, double omega, double tolerance,
                                double *x, int *iterations) {
   static const double elsewhere[] = {.98, 1.02, .95, 1.05, .9, 1.1, .8, .6};
   mhb_reason          reason      = solve_here(newton, b, omega, tolerance, x, iterations);
@@ -106,34 +107,34 @@ static mhb_reason by_frequency(mhb_newton *newton, mhb_residual *b, double omega
 }
 
 /* Along the path in the preload, past its folds, from one at which the contact is stuck, or open, throughout. */
-static mhb_reason by_preload(mhb_newton *newton, mhb_residual *b, double omega, double tolerance,
+static mhb_reason by_preload(mhb_newton *newton, mhb_balance *b, double omega, double tolerance,
                              double *x, int *iterations) {
   double     n0     = b->at.n0;
   mhb_reason reason = MHB_MAX_ITERATIONS;
   for (int stuck = 1; stuck >= 0 && reason != MHB_CONVERGED; stuck--) {
-    if (mhb_residual_linear(b, omega, stuck, x) != SHB_OK) continue;
+    if (mhb_balance_linear_limit(b, omega, stuck, x) != SHB_OK) continue;
     double from = far_preload(b, x, stuck);
-    mhb_residual_anchor(b, 1);
-    mhb_residual_follow(b, MHB_IN_N0);
+    mhb_balance_tie_preloads(b, 1);
+    mhb_balance_set_parameter(b, MHB_IN_N0);
     int found = follow_to(b, from, n0, x);
-    mhb_residual_follow(b, MHB_IN_FREQUENCY);
-    mhb_residual_preload(b, n0);
-    mhb_residual_anchor(b, 0);
+    mhb_balance_set_parameter(b, MHB_IN_FREQUENCY);
+    mhb_balance_set_preload(b, n0);
+    mhb_balance_tie_preloads(b, 0);
     if (found) reason = mhb_newton_solve(newton, b, omega, tolerance, x, iterations);
   }
   return reason;
 }
 
 /* The parameter stands; a first solution is sought as if the frequency were followed. */
-mhb_reason mhb_first_solution(mhb_newton *newton, mhb_residual *b, double value, double tolerance,
+mhb_reason mhb_first_solution(mhb_newton *newton, mhb_balance *b, double value, double tolerance,
                               double *x, int *iterations) {
   mhb_parameter parameter = b->parameter;
-  mhb_residual_place(b, value);
-  mhb_residual_follow(b, MHB_IN_FREQUENCY);
+  mhb_balance_set_value(b, value);
+  mhb_balance_set_parameter(b, MHB_IN_FREQUENCY);
   double     omega  = b->at.omega;
   mhb_reason reason = directly(newton, b, omega, tolerance, x, iterations);
   if (reason != MHB_CONVERGED) reason = by_preload(newton, b, omega, tolerance, x, iterations);
   if (reason != MHB_CONVERGED) reason = by_frequency(newton, b, omega, tolerance, x, iterations);
-  mhb_residual_follow(b, parameter);
+  mhb_balance_set_parameter(b, parameter);
   return reason;
 }

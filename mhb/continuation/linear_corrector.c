@@ -9,8 +9,8 @@
 
 enum { MAX_ITERATIONS = 8 };
 
-shb_status mhb_still_create(const mhb_residual *b, mhb_still **out) {
-  mhb_still *s = calloc(1, sizeof *s);
+shb_status mhb_linear_corrector_create(const mhb_balance *b, mhb_linear_corrector **out) {
+  mhb_linear_corrector *s = calloc(1, sizeof *s);
   SHB_CHECK(s, SHB_ERR_IO, "out of memory");
   size_t pairs = (size_t)b->n_pairs, n = 3 * pairs;
   s->n     = (int)n;
@@ -21,14 +21,14 @@ shb_status mhb_still_create(const mhb_residual *b, mhb_still **out) {
   s->slope = calloc((size_t)b->n, sizeof(double));
   s->kind  = calloc(pairs, sizeof *s->kind);
   if (!(s->A && s->pivot && s->u && s->p && s->slope && s->kind)) {
-    mhb_still_destroy(s);
+    mhb_linear_corrector_destroy(s);
     SHB_FAIL(SHB_ERR_IO, "out of memory for %zu pairs", pairs);
   }
   *out = s;
   return SHB_OK;
 }
 
-void mhb_still_destroy(mhb_still *s) {
+void mhb_linear_corrector_destroy(mhb_linear_corrector *s) {
   if (!s) return;
   free(s->A);
   free(s->pivot);
@@ -39,12 +39,12 @@ void mhb_still_destroy(mhb_still *s) {
   free(s);
 }
 
-static int factor(mhb_still *s, const mhb_residual *b, int k) {
-  mhb_springs_matrix(b, k, s->kind, s->A);
+static int factor(mhb_linear_corrector *s, const mhb_balance *b, int k) {
+  mhb_stick_matrix(b, k, s->kind, s->A);
   return mhb_factor_complex(s->n, s->A, s->pivot);
 }
 
-static void store(const mhb_residual *b, int k, const double complex *in, double *x) {
+static void store(const mhb_balance *b, int k, const double complex *in, double *x) {
   for (int i = 0; i < 3 * b->n_pairs; i++) {
     x[i * b->nb + 2 * k - 1] = creal(in[i]);
     x[i * b->nb + 2 * k]     = cimag(in[i]);
@@ -52,7 +52,7 @@ static void store(const mhb_residual *b, int k, const double complex *in, double
 }
 
 /* Harmonic k > 0 of x and slope at the receptance's omega. */
-static int harmonic(mhb_still *s, const mhb_residual *b, int k, double *x) {
+static int harmonic(mhb_linear_corrector *s, const mhb_balance *b, int k, double *x) {
   int n = s->n;
   if (!b->receptance->driven[k]) {
     memset(s->u, 0, sizeof(double complex) * (size_t)n);
@@ -60,13 +60,13 @@ static int harmonic(mhb_still *s, const mhb_residual *b, int k, double *x) {
     store(b, k, s->u, s->slope);
     return 1;
   }
-  mhb_receptance_need(b->receptance, k);
+  mhb_receptance_update(b->receptance, k);
   memcpy(s->u, b->receptance->free + k * n, sizeof(double complex) * (size_t)n);
   if (!factor(s, b, k) || !mhb_solve_complex(n, s->A, s->pivot, 1, s->u)) return 0;
   store(b, k, s->u, x);
   memset(s->p, 0, sizeof(double complex) * (size_t)n);
   for (int a = 0; a < b->n_pairs; a++)
-    if (s->kind[a] == MHB_PAIR_STUCK) mhb_springs_force(&b->law[a], k, s->u + 3 * a, s->p + 3 * a);
+    if (s->kind[a] == MHB_PAIR_STUCK) mhb_stick_force(&b->law[a], k, s->u + 3 * a, s->p + 3 * a);
   mhb_receptance_slope(b->receptance, k, s->p, s->u);
   if (!mhb_solve_complex(n, s->A, s->pivot, 1, s->u)) return 0;
   store(b, k, s->u, s->slope);
@@ -75,36 +75,37 @@ static int harmonic(mhb_still *s, const mhb_residual *b, int k, double *x) {
 
 /* How a pair that stays as it is answers: as a spring, or not at all. */
 static mhb_pair_kind class_of(mhb_pair_kind kind) {
-  return kind == MHB_PAIR_HELD ? MHB_PAIR_STUCK : kind;
+  return kind == MHB_PAIR_AT_LIMIT ? MHB_PAIR_STUCK : kind;
 }
 
-int mhb_still_note(mhb_still *s, const mhb_residual *b) {
+int mhb_linear_set_states(mhb_linear_corrector *s, const mhb_balance *b) {
   for (int a = 0; a < b->n_pairs; a++) {
     s->kind[a] = class_of(b->kind[a]);
-    if (s->kind[a] == MHB_PAIR_MOVING) return 0;
+    if (s->kind[a] == MHB_PAIR_NONLINEAR) return 0;
   }
   return b->parameter == MHB_IN_FREQUENCY;
 }
 
-int mhb_still_holds(const mhb_still *s, const mhb_residual *b) {
+int mhb_linear_states_hold(const mhb_linear_corrector *s, const mhb_balance *b) {
   for (int a = 0; a < b->n_pairs; a++)
     if (class_of(b->kind[a]) != s->kind[a]) return 0;
   return 1;
 }
 
 /* sum over k > 0 */
-static double product(const mhb_residual *b, const double *x, const double *y) {
+static double product(const mhb_balance *b, const double *x, const double *y) {
   double sum = 0;
   for (int row = 0; row < 3 * b->n_pairs; row++)
     for (int i = row * b->nb + 1; i < (row + 1) * b->nb; i++) sum += x[i] * y[i];
   return sum;
 }
 
-int mhb_still_slide(mhb_still *s, const mhb_residual *b, const double *normal, double x_weight,
-                    double value_weight, double *x, double *omega, int *iterations) {
+int mhb_linear_correct(mhb_linear_corrector *s, const mhb_balance *b, const double *normal,
+                       double x_weight, double value_weight, double *x, double *omega,
+                       int *iterations) {
   double plane = x_weight * product(b, normal, x) + value_weight * normal[b->n] * *omega;
   for (*iterations = 1; *iterations <= MAX_ITERATIONS; ++*iterations) {
-    mhb_receptance_move(b->receptance, *omega);
+    mhb_receptance_set_frequency(b->receptance, *omega);
     for (int k = 1; k <= b->m; k++)
       if (!harmonic(s, b, k, x)) return 0;
     double off  = x_weight * product(b, normal, x) + value_weight * normal[b->n] * *omega - plane;
@@ -118,10 +119,10 @@ int mhb_still_slide(mhb_still *s, const mhb_residual *b, const double *normal, d
 }
 
 /* A <- I + R_0 dp_0/du_0, column-major, factored. */
-static int factor_means(mhb_still *s, const mhb_residual *b) {
+static int factor_means(mhb_linear_corrector *s, const mhb_balance *b) {
   int    n     = s->n;
   size_t block = 3 * (size_t)b->nb;
-  mhb_receptance_need(b->receptance, 0);
+  mhb_receptance_update(b->receptance, 0);
   for (int a = 0; a < b->n_pairs; a++)
     for (int d = 0; d < 3;
          d++) { /* dp[c]: how the mean force c of a pair follows its mean motion d */
@@ -136,7 +137,8 @@ static int factor_means(mhb_still *s, const mhb_residual *b) {
   return mhb_factor_complex(n, s->A, s->pivot);
 }
 
-int mhb_still_settle(mhb_still *s, const mhb_residual *b, const double *r, int again, double *x) {
+int mhb_linear_correct_means(mhb_linear_corrector *s, const mhb_balance *b, const double *r,
+                             int again, double *x) {
   if (!again && !factor_means(s, b)) return 0;
   for (int row = 0; row < s->n; row++) s->u[row] = r[row * b->nb];
   if (!mhb_solve_complex(s->n, s->A, s->pivot, 1, s->u)) return 0;

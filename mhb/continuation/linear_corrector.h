@@ -15,29 +15,29 @@ typedef struct {
   double complex *u, *p; /* [n] */
   double         *slope; /* [3 pairs nb] dx/domega, real form */
   mhb_pair_kind  *kind;  /* [pairs] noted */
-} mhb_still;
+} mhb_linear_corrector;
 
-shb_status mhb_still_create(const mhb_residual *residual, mhb_still **still);
-void       mhb_still_destroy(mhb_still *still);
+shb_status mhb_linear_corrector_create(const mhb_balance *residual, mhb_linear_corrector **still);
+void       mhb_linear_corrector_destroy(mhb_linear_corrector *still);
 
 /* Note which pairs the residual's last evaluation found stuck, which open. 0: a pair moves, or the path is not one in the
  * frequency. */
-int mhb_still_note(mhb_still *still, const mhb_residual *residual);
+int mhb_linear_set_states(mhb_linear_corrector *still, const mhb_balance *residual);
 
 /* Slide (x, omega) within the plane
  *   x_weight normal_x.dx + value_weight normal[n] domega = 0
  * to where the harmonics k > 0 balance, with the pairs as noted; the means stay. 0: no such point; x and omega may then be
  * changed. */
-int mhb_still_slide(mhb_still *still, const mhb_residual *residual, const double *normal,
-                    double x_weight, double value_weight, double *x, double *omega,
-                    int *iterations);
+int mhb_linear_correct(mhb_linear_corrector *still, const mhb_balance *residual,
+                       const double *normal, double x_weight, double value_weight, double *x,
+                       double *omega, int *iterations);
 
 /* A Newton step of the means x_0 alone, at the frequency where the residual r[n] was evaluated last, with derivatives; again: with
  * the derivatives of the last step. 0: singular. */
-int mhb_still_settle(mhb_still *still, const mhb_residual *residual, const double *r, int again,
-                     double *x);
+int mhb_linear_correct_means(mhb_linear_corrector *still, const mhb_balance *residual,
+                             const double *r, int again, double *x);
 
 /* Whether the residual's last evaluation found the pairs as noted. */
-int mhb_still_holds(const mhb_still *still, const mhb_residual *residual);
+int mhb_linear_states_hold(const mhb_linear_corrector *still, const mhb_balance *residual);
 
 #endif

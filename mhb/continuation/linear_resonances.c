@@ -17,12 +17,12 @@ static const double LEAST_STEEP = .1;
 
 /* The eigenproblem of one harmonic. */
 typedef struct {
-  const mhb_residual *b;
-  double              low, high;
-  double complex     *R, *A, *X; /* [n][n], [n][n], [n][modes] */
-  double complex     *M;         /* [modes][modes] */
-  double             *square;    /* [modes] */
-  int                *pivot;
+  const mhb_balance *b;
+  double             low, high;
+  double complex    *R, *A, *X; /* [n][n], [n][n], [n][modes] */
+  double complex    *M;         /* [modes][modes] */
+  double            *square;    /* [modes] */
+  int               *pivot;
 } stuck_modes;
 
 static shb_status add(mhb_resonances *s, mhb_resonance place) {
@@ -50,11 +50,11 @@ static mhb_resonance free_one(const mhb_receptance *r, int k, int i) {
 
 /* X = K B, by (I + S R) X = S B, column-major. 0: singular. */
 static int stiffen(const stuck_modes *w, int k) {
-  const mhb_residual   *b = w->b;
+  const mhb_balance    *b = w->b;
   const mhb_receptance *r = b->receptance;
   int                   n = r->n, m = r->n_modes;
   const double complex *B = r->B + (size_t)k * (size_t)n * (size_t)m;
-  mhb_receptance_residual(r, k, k * .5 * (w->low + w->high) / r->nu, w->R);
+  mhb_receptance_residual_terms(r, k, k * .5 * (w->low + w->high) / r->nu, w->R);
   for (int row = 0; row < n; row++) {
     const mhb_law *law     = &b->law[row / 3];
     double         slips   = law->mu == 0 ? 0 : 1;
@@ -153,7 +153,7 @@ typedef struct {
 static void look_at(const stuck_modes *w, double omega, mode_at *out) {
   mhb_receptance *r = w->b->receptance;
   int             m = r->n_modes;
-  mhb_receptance_move(r, omega);
+  mhb_receptance_set_frequency(r, omega);
   for (int k = 1; k <= w->b->m; k++) {
     mode_at *of    = out + (size_t)k * (size_t)m;
     int      found = r->driven[k] && solve(w, k);
@@ -232,7 +232,7 @@ static shb_status add_all(const stuck_modes *w, mhb_resonances *s) {
   return SHB_OK;
 }
 
-shb_status mhb_resonances_create(const mhb_residual *b, double low, double high,
+shb_status mhb_resonances_create(const mhb_balance *b, double low, double high,
                                  mhb_resonances *out) {
   *out = (mhb_resonances){0};
   if (b->parameter != MHB_IN_FREQUENCY) return SHB_OK;
@@ -262,7 +262,7 @@ void mhb_resonances_destroy(mhb_resonances *s) {
   *s = (mhb_resonances){0};
 }
 
-double mhb_resonances_way(const mhb_resonances *s, double value, int sense) {
+double mhb_resonances_step_limit(const mhb_resonances *s, double value, int sense) {
   double way = INFINITY;
   for (int i = 0; i < s->n; i++) {
     if (!s->at[i].felt) continue;

@@ -25,12 +25,12 @@ typedef struct {
 } mhb_resonances;
 
 /* Those of harmonics 1..m between low and high; none unless the residual follows the frequency. SHB_ERR_IO: no memory. */
-shb_status mhb_resonances_create(const mhb_residual *residual, double low, double high,
+shb_status mhb_resonances_create(const mhb_balance *residual, double low, double high,
                                  mhb_resonances *resonances);
 void       mhb_resonances_destroy(mhb_resonances *resonances);
 
 /* The longest way from a value on, sense +1 or -1, that resolves those that are felt: from four half widths on a few points each.
  * INFINITY: any. */
-double mhb_resonances_way(const mhb_resonances *resonances, double value, int sense);
+double mhb_resonances_step_limit(const mhb_resonances *resonances, double value, int sense);
 
 #endif

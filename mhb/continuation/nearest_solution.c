@@ -7,15 +7,15 @@ static const double TOLERANCE = 1e-10, ROUNDING = 1e-8, FARTHEST = .5;
 enum { MAX_ITERATIONS = 20, MAX_HALVINGS = 4 };
 
 typedef struct {
-  mhb_newton   *newton;
-  mhb_residual *residual;
-  double        scale, span;
+  mhb_newton  *newton;
+  mhb_balance *residual;
+  double       scale, span;
 } plane;
 
 /* |r|/|x| at a point. */
 static double measure(const plane *p, const double *x, double omega) {
   int n = p->residual->n;
-  mhb_residual_derive(p->residual, x, omega, p->newton->r, p->newton->slope);
+  mhb_balance_linearise(p->residual, x, omega, p->newton->r, p->newton->slope);
   double size = mhb_norm(x, n);
   return mhb_norm(p->newton->r, n) / (size > 0 ? size : 1);
 }
@@ -31,8 +31,8 @@ static int find_step(const plane *p, const double *normal) {
   }
   w->row[n] = w->trial[n] = normal[n] / p->span;
   w->step[n]              = 0; /* every iterate stays in the plane */
-  return mhb_condensed_factor(w->system, w->trial, w->row) &&
-         mhb_condensed_solve(w->system, w->step);
+  return mhb_condensation_factor(w->system, w->trial, w->row) &&
+         mhb_condensation_solve(w->system, w->step);
 }
 
 static void move(const plane *p, double fraction, double *x, double *omega) {
@@ -42,8 +42,8 @@ static void move(const plane *p, double fraction, double *x, double *omega) {
   *omega += fraction * p->span * step[n];
 }
 
-int mhb_nearest(mhb_newton *newton, mhb_residual *residual, const double *normal, double scale,
-                double span, double *x, double *omega) {
+int mhb_nearest_solution(mhb_newton *newton, mhb_balance *residual, const double *normal,
+                         double scale, double span, double *x, double *omega) {
   plane  p   = {newton, residual, scale, span};
   double way = 0;
   if (mhb_newton_bind(newton, residual) != SHB_OK) return 0;

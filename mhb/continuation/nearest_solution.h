@@ -11,7 +11,7 @@
  *   omega   inout  rad/s
  * Returns 1 if |r| <= 1e-10 |x| (1e-8 where rounding lets it fall no further) within a distance of .5 in y; the residual is
  * then left evaluated there. 0 if not; x and omega are then of no use. */
-int mhb_nearest(mhb_newton *newton, mhb_residual *residual, const double *normal, double scale,
-                double span, double *x, double *omega);
+int mhb_nearest_solution(mhb_newton *newton, mhb_balance *residual, const double *normal,
+                         double scale, double span, double *x, double *omega);
 
 #endif

@@ -16,13 +16,13 @@ static double square(double complex z) {
 }
 
 /* Motions of the probes under the forces of the last evaluation, [k][3 probes]; size[probes], if any: all harmonics k > 0 together. */
-static void probes(const mhb_residual *b, double complex *q, double *size) {
+static void probes(const mhb_balance *b, double complex *q, double *size) {
   mhb_receptance *r = b->receptance;
   int             n = 3 * r->model->n_probes;
   double complex  p[r->n];
   for (int k = 1; k <= b->m; k++) {
-    mhb_residual_force(b, k, p);
-    mhb_receptance_need(r, k);
+    mhb_balance_contact_force(b, k, p);
+    mhb_receptance_update(r, k);
     mhb_receptance_probe(r, k, p, q + k * n);
   }
   for (int o = 0; size && o < n / 3; o++) {
@@ -34,14 +34,14 @@ static void probes(const mhb_residual *b, double complex *q, double *size) {
 }
 
 /* Peak of the mode under the forces of the last evaluation, against the motions of the contact and of the probes. */
-static int may_be_felt(const mhb_path *path, const mhb_resonance *place, const double *probe,
+static int may_be_felt(const mhb_arclength *path, const mhb_resonance *place, const double *probe,
                        double contact) {
   const mhb_receptance *r = path->residual->receptance;
   const modal_model    *m = r->model;
   int                   i = place->mode, k = place->k;
   double complex        p[r->n];
   if (i < 0) return 1;
-  mhb_residual_force(path->residual, k, p);
+  mhb_balance_contact_force(path->residual, k, p);
   double complex drive = r->scale * r->F[k * r->n_modes + i];
   double         shape = 0, omega = TWO_PI * m->frequency[i];
   for (int row = 0; row < r->n; row++) {
@@ -61,13 +61,13 @@ static int may_be_felt(const mhb_path *path, const mhb_resonance *place, const d
 }
 
 /* The response at the probe, with its tangent, changes within a half width, more than along the chord. q: at now and next. */
-static int changes(const mhb_path *path, const mhb_resonance *place, const double complex *q_now,
-                   const double complex *q_next) {
-  const mhb_path_point *probe = &path->probe, *now = &path->now, *next = &path->next;
-  const mhb_residual   *b = path->residual;
-  int                   n = 3 * b->receptance->model->n_probes, all = n * (b->m + 1);
-  double                way = next->value - now->value, part = place->half / way, sum = 0;
-  double                along = place->half / probe->tangent[path->n], size[n / 3 + 1];
+static int changes(const mhb_arclength *path, const mhb_resonance *place,
+                   const double complex *q_now, const double complex *q_next) {
+  const mhb_curve_point *probe = &path->probe, *now = &path->now, *next = &path->next;
+  const mhb_balance     *b = path->residual;
+  int                    n = 3 * b->receptance->model->n_probes, all = n * (b->m + 1);
+  double                 way = next->value - now->value, part = place->half / way, sum = 0;
+  double                 along = place->half / probe->tangent[path->n], size[n / 3 + 1];
   for (int i = 0; i < path->n; i++)
     sum += pow(along * probe->tangent[i] - part * (next->x[i] - now->x[i]), 2);
   if (sqrt(sum) >= FELT * mhb_norm(probe->x, path->n)) return 1;
@@ -86,40 +86,40 @@ static int changes(const mhb_path *path, const mhb_resonance *place, const doubl
 }
 
 /* probe <- the solution at the place, from the chord, with its tangent. */
-static int go_there(mhb_path *path, const mhb_resonance *place) {
-  const mhb_path_point *now = &path->now, *next = &path->next;
-  double                part = (place->value - now->value) / (next->value - now->value);
-  double                axis[path->n + 1];
+static int go_there(mhb_arclength *path, const mhb_resonance *place) {
+  const mhb_curve_point *now = &path->now, *next = &path->next;
+  double                 part = (place->value - now->value) / (next->value - now->value);
+  double                 axis[path->n + 1];
   memset(axis, 0, sizeof axis);
   axis[path->n] = path->span;
   for (int i = 0; i < path->n; i++) path->probe.x[i] = now->x[i] + part * (next->x[i] - now->x[i]);
   path->probe.value = place->value;
-  return mhb_path_correct(path, axis, .5, &path->probe) &&
-         mhb_path_set_tangent(path, axis, &path->probe);
+  return mhb_arclength_correct(path, axis, .5, &path->probe) &&
+         mhb_arclength_set_tangent(path, axis, &path->probe);
 }
 
 /* Whether one of those in list is felt. Where there is no solution, nothing is smooth. */
-static int look(mhb_path *path, mhb_resonance *const *list, int n) {
-  const mhb_residual *b   = path->residual;
-  int                 all = 3 * b->receptance->model->n_probes * (b->m + 1), known = 0;
-  double              unused[path->n], contact = mhb_norm(path->next.x, path->n),
+static int look(mhb_arclength *path, mhb_resonance *const *list, int n) {
+  const mhb_balance *b   = path->residual;
+  int                all = 3 * b->receptance->model->n_probes * (b->m + 1), known = 0;
+  double             unused[path->n], contact = mhb_norm(path->next.x, path->n),
                           size[b->receptance->model->n_probes + 1];
   double complex q_now[all + 1], q_next[all + 1];
   probes(b, q_next, size);
   for (int i = 0; i < n; i++) {
     if (!may_be_felt(path, list[i], size, contact)) continue;
     if (known++ == 0) {
-      mhb_residual_evaluate(path->residual, path->now.x, path->now.value, unused, NULL, NULL);
+      mhb_balance_evaluate(path->residual, path->now.x, path->now.value, unused, NULL, NULL);
       probes(b, q_now, NULL);
     }
     list[i]->felt = !go_there(path, list[i]) || changes(path, list[i], q_now, q_next);
     if (list[i]->felt) return 1;
   }
-  if (known) mhb_path_measure(path, &path->next);
+  if (known) mhb_arclength_measure(path, &path->next);
   return 0;
 }
 
-int mhb_narrow_passed(mhb_path *path) {
+int mhb_resonance_skipped(mhb_arclength *path) {
   const mhb_resonances *all  = &path->resonances;
   double                from = path->now.value, way = path->next.value - from;
   mhb_resonance        *list[all->n + 1];

@@ -14,6 +14,6 @@
 /* Whether a step from now to next passes over a resonance that the contact's or a probe's motion feels; noted in
  * path->resonances. A mode whose peak under the forces at next would be lost in the response is not looked at. Leaves the
  * residual at next, if none is felt. */
-int mhb_narrow_passed(mhb_path *path);
+int mhb_resonance_skipped(mhb_arclength *path);
 
 #endif

@@ -18,40 +18,40 @@ static const double DISTANCE = .5, ROUGH = 2e-2, FINE = 1e-3;
 static const double SHIFTED = .1, A_CYCLE = 3;
 enum { MAX_STATES = 600, FINEST = 32 };
 
-struct mhb_stability {
-  mhb_structure   structure; /* all modes */
-  mhb_structure   reduced;   /* those that are integrated */
-  mhb_timetable   timetable;
-  mhb_exponents   exponents;
-  mhb_contact    *contact;
-  mhb_monodromy  *monodromy; /* NULL: too many states even with one mode */
-  mhb_bloch       bloch;
-  double         *coarse; /* the matrix of twice the sub-step */
-  int             nu, max_states;
-  int            *state;      /* [pair] */
-  double complex *multiplier; /* [states] */
+struct mhb_floquet {
+  mhb_modal_structure     structure; /* all modes */
+  mhb_modal_structure     reduced;   /* those that are integrated */
+  mhb_transition_schedule timetable;
+  mhb_linear_exponents    exponents;
+  mhb_contact_evaluator  *contact;
+  mhb_monodromy          *monodromy; /* NULL: too many states even with one mode */
+  mhb_bloch               bloch;
+  double                 *coarse; /* the matrix of twice the sub-step */
+  int                     nu, max_states;
+  int                    *state;      /* [pair] */
+  double complex         *multiplier; /* [states] */
 };
 
 /* Modes a blade that max_states leaves room for. */
-static int affordable(const mhb_stability *s) {
+static int affordable(const mhb_floquet *s) {
   int left = s->max_states - 2 * s->structure.contacts, a_mode = 2 * s->structure.blades;
   int most = left > 0 ? left / a_mode : 0;
   return most < s->structure.modes ? most : s->structure.modes;
 }
 
-static shb_status fill(mhb_stability *s, const mhb_receptance *receptance,
+static shb_status fill(mhb_floquet *s, const mhb_receptance *receptance,
                        const mhb_settings *settings, int substeps) {
-  SHB_TRY(mhb_structure_create(receptance, settings, receptance->n_modes, &s->structure));
-  const mhb_structure *whole = &s->structure;
+  SHB_TRY(mhb_modal_structure_create(receptance, settings, receptance->n_modes, &s->structure));
+  const mhb_modal_structure *whole = &s->structure;
   int m = settings->harmonics, all = 2 * (whole->modes * whole->blades + whole->contacts);
-  SHB_TRY(mhb_timetable_create(whole->blades, whole->pairs, whole->wave, &s->timetable));
-  SHB_TRY(mhb_exponents_create(whole, &s->exponents));
-  SHB_TRY(mhb_contact_create(m, m, settings->tolerance, &s->contact));
+  SHB_TRY(mhb_transition_schedule_create(whole->blades, whole->pairs, whole->wave, &s->timetable));
+  SHB_TRY(mhb_linear_exponents_create(whole, &s->exponents));
+  SHB_TRY(mhb_contact_evaluator_create(m, m, settings->tolerance, &s->contact));
   if (affordable(s) > 0) {
-    SHB_TRY(mhb_structure_create(receptance, settings, affordable(s), &s->reduced));
+    SHB_TRY(mhb_modal_structure_create(receptance, settings, affordable(s), &s->reduced));
     SHB_TRY(mhb_monodromy_create(&s->reduced, &s->timetable, s->contact, m, (substeps + 1) / 2,
                                  FINEST, &s->monodromy));
-    int cells  = mhb_stability_cells(s),
+    int cells  = mhb_floquet_cells(s),
         states = 2 * s->timetable.chunks * (s->reduced.modes + whole->pairs);
     SHB_TRY(mhb_bloch_create(cells, states, &s->bloch));
     s->coarse = calloc((size_t)cells * (size_t)states * (size_t)states + 1, sizeof *s->coarse);
@@ -65,46 +65,46 @@ static shb_status fill(mhb_stability *s, const mhb_receptance *receptance,
   return SHB_OK;
 }
 
-shb_status mhb_stability_create(const mhb_receptance *receptance, const mhb_settings *settings,
-                                int substeps, int max_states, mhb_stability **out) {
+shb_status mhb_floquet_create(const mhb_receptance *receptance, const mhb_settings *settings,
+                              int substeps, int max_states, mhb_floquet **out) {
   SHB_CHECK(substeps >= 1, SHB_ERR_INPUT, "stability needs at least one sub-step a period, not %d",
             substeps);
-  mhb_stability *s = calloc(1, sizeof *s);
+  mhb_floquet *s = calloc(1, sizeof *s);
   SHB_CHECK(s, SHB_ERR_IO, "out of memory");
   s->max_states     = max_states > 0 ? max_states : MAX_STATES;
   shb_status status = fill(s, receptance, settings, substeps);
   if (status != SHB_OK) {
-    mhb_stability_destroy(s);
+    mhb_floquet_destroy(s);
     return status;
   }
   *out = s;
   return SHB_OK;
 }
 
-void mhb_stability_destroy(mhb_stability *s) {
+void mhb_floquet_destroy(mhb_floquet *s) {
   if (!s) return;
   mhb_bloch_destroy(&s->bloch);
   mhb_monodromy_destroy(s->monodromy);
-  mhb_contact_destroy(s->contact);
-  mhb_exponents_destroy(&s->exponents);
-  mhb_timetable_destroy(&s->timetable);
-  mhb_structure_destroy(&s->reduced);
-  mhb_structure_destroy(&s->structure);
+  mhb_contact_evaluator_destroy(s->contact);
+  mhb_linear_exponents_destroy(&s->exponents);
+  mhb_transition_schedule_destroy(&s->timetable);
+  mhb_modal_structure_destroy(&s->reduced);
+  mhb_modal_structure_destroy(&s->structure);
   free(s->state);
   free(s->coarse);
   free(s->multiplier);
   free(s);
 }
 
-void mhb_stability_move(mhb_stability *s, const mhb_receptance *receptance) {
-  mhb_structure_set(receptance, &s->structure);
+void mhb_floquet_move(mhb_floquet *s, const mhb_receptance *receptance) {
+  mhb_modal_structure_set(receptance, &s->structure);
   s->exponents.known = 0;
   if (!s->monodromy) return;
-  mhb_structure_set(receptance, &s->reduced);
+  mhb_modal_structure_set(receptance, &s->reduced);
   s->monodromy->variation->h = -1; /* propagators of no step length */
 }
 
-int mhb_stability_cells(const mhb_stability *s) {
+int mhb_floquet_cells(const mhb_floquet *s) {
   return s->structure.blades / s->timetable.chunks;
 }
 
@@ -119,7 +119,7 @@ static void sort(int n, double complex *x) {
   }
 }
 
-static void take(mhb_stability *s, int n, mhb_multipliers *out) {
+static void take(mhb_floquet *s, int n, mhb_multipliers *out) {
   sort(n, s->multiplier);
   out->n          = n;
   out->multiplier = s->multiplier;
@@ -132,7 +132,7 @@ static void take(mhb_stability *s, int n, mhb_multipliers *out) {
 }
 
 /* Nothing slips, opens or closes. */
-static int is_linear(const mhb_stability *s, const mhb_solution *solution) {
+static int is_linear(const mhb_floquet *s, const mhb_solution *solution) {
   for (int a = 0; a < s->structure.pairs; a++)
     if (!s->timetable.permanent[a] ||
         (s->timetable.state[a] == MHB_SLIDE && solution->law[a].mu > 0))
@@ -140,11 +140,11 @@ static int is_linear(const mhb_stability *s, const mhb_solution *solution) {
   return 1;
 }
 
-static const char *linear(mhb_stability *s, const mhb_solution *solution, double period,
+static const char *linear(mhb_floquet *s, const mhb_solution *solution, double period,
                           mhb_multipliers *out) {
-  mhb_exponents *x = &s->exponents;
+  mhb_linear_exponents *x = &s->exponents;
   for (int a = 0; a < s->structure.pairs; a++) s->state[a] = s->timetable.state[a];
-  if (!mhb_exponents_set(x, s->state, solution->law)) return "the eigensolver failed";
+  if (!mhb_linear_exponents_set(x, s->state, solution->law)) return "the eigensolver failed";
   for (int i = 0; i < x->n; i++) s->multiplier[i] = cexp(x->exponent[i] * period);
   out->modes = s->structure.modes;
   take(s, x->n, out);
@@ -152,9 +152,9 @@ static const char *linear(mhb_stability *s, const mhb_solution *solution, double
 }
 
 /* Multipliers of the matrix S. */
-static const char *multipliers_of(mhb_stability *s, const double *S, mhb_multipliers *out) {
-  const mhb_timetable *t = &s->timetable;
-  int                  n = s->monodromy->n;
+static const char *multipliers_of(mhb_floquet *s, const double *S, mhb_multipliers *out) {
+  const mhb_transition_schedule *t = &s->timetable;
+  int                            n = s->monodromy->n;
   if (!mhb_bloch_multipliers(&s->bloch, n, S, t->chunks, t->shift % s->bloch.cells, s->multiplier))
     return "the eigensolver failed";
   out->modes = s->reduced.modes;
@@ -163,7 +163,7 @@ static const char *multipliers_of(mhb_stability *s, const double *S, mhb_multipl
 }
 
 /* The matrix of a refinement into the monodromy's M, the one before into coarse. */
-static const char *refine(mhb_stability *s, const mhb_solution *solution, double omega,
+static const char *refine(mhb_floquet *s, const mhb_solution *solution, double omega,
                           int refinement) {
   mhb_monodromy *d    = s->monodromy;
   double        *swap = d->M;
@@ -177,7 +177,7 @@ static const char *refine(mhb_stability *s, const mhb_solution *solution, double
 }
 
 /* coarse <- (4 M - coarse)/3: the sub-steps' error is of second order and even, what is left of fourth. */
-static const double *extrapolated(mhb_stability *s) {
+static const double *extrapolated(mhb_floquet *s) {
   const mhb_monodromy *d = s->monodromy;
   for (int i = 0; i < s->bloch.cells * d->n * d->n; i++)
     s->coarse[i] = d->M[i] + (d->M[i] - s->coarse[i]) / 3;
@@ -189,7 +189,7 @@ static int settled(const mhb_multipliers *out, double most) {
 }
 
 /* |phi|^2 S of a mode of a blade: what sticking contacts add to its squared frequency. */
-static double stiffening(const mhb_structure *structure, const mhb_law *law, int mode) {
+static double stiffening(const mhb_modal_structure *structure, const mhb_law *law, int mode) {
   double sum = 0;
   for (int k = 0; k < structure->sides * structure->pairs; k++) {
     int           side = k / structure->pairs, pair = k % structure->pairs;
@@ -205,10 +205,10 @@ static double stiffening(const mhb_structure *structure, const mhb_law *law, int
 }
 
 /* Where to begin: A_CYCLE sub-steps to a cycle of the fastest mode that its contacts shift. */
-static int first_refinement(const mhb_stability *s, const mhb_law *law, double omega) {
-  const mhb_structure *structure  = &s->reduced;
-  double               square     = 0;
-  int                  refinement = 1;
+static int first_refinement(const mhb_floquet *s, const mhb_law *law, double omega) {
+  const mhb_modal_structure *structure  = &s->reduced;
+  double                     square     = 0;
+  int                        refinement = 1;
   for (int i = 0; i < structure->modes; i++) {
     double own = structure->omega[i] * structure->omega[i], more = stiffening(structure, law, i);
     if (more > SHIFTED * own) square = fmax(square, own + more);
@@ -220,7 +220,7 @@ static int first_refinement(const mhb_stability *s, const mhb_law *law, double o
 }
 
 /* Slip, opening, closing: sub-steps halved until the answer no longer hangs on them. */
-static const char *nonlinear(mhb_stability *s, const mhb_solution *solution, double omega,
+static const char *nonlinear(mhb_floquet *s, const mhb_solution *solution, double omega,
                              mhb_multipliers *out) {
   if (!s->monodromy) return "more states than max_states";
   int         first = first_refinement(s, solution->law, omega);
@@ -241,9 +241,9 @@ static const char *nonlinear(mhb_stability *s, const mhb_solution *solution, dou
 }
 
 /* What was left out: ones of contacts that always stick, zeros of those that forget. */
-static void count_left_out(const mhb_stability *s, const mhb_solution *solution,
+static void count_left_out(const mhb_floquet *s, const mhb_solution *solution,
                            mhb_multipliers *out) {
-  const mhb_timetable *t = &s->timetable;
+  const mhb_transition_schedule *t = &s->timetable;
   for (int j = 0; j < s->structure.contacts; j++) {
     double mu = solution->law[j % s->structure.pairs].mu;
     if (mu == 0 || (t->permanent[j] && t->state[j] == MHB_SEPARATE)) continue;
@@ -267,10 +267,10 @@ static void judge(mhb_multipliers *out) {
   }
 }
 
-void mhb_stability_evaluate(mhb_stability *s, const mhb_solution *solution, mhb_multipliers *out) {
+void mhb_floquet_evaluate(mhb_floquet *s, const mhb_solution *solution, mhb_multipliers *out) {
   double omega = solution->omega / s->nu;
   *out         = (mhb_multipliers){.change = -1};
-  if (!mhb_timetable_set(&s->timetable, solution->info)) {
+  if (!mhb_transition_schedule_set(&s->timetable, solution->info)) {
     out->reason = "the contact law lost its way, or has too many transitions";
   } else if (is_linear(s, solution)) {
     out->reason = linear(s, solution, TWO_PI / omega, out);

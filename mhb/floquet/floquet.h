@@ -36,23 +36,23 @@ typedef struct {
   const char *reason;  /* of MHB_UNDECIDED, else NULL */
 } mhb_multipliers;
 
-typedef struct mhb_stability mhb_stability; /* workspace; one a thread */
+typedef struct mhb_floquet mhb_floquet; /* workspace; one a thread */
 
 /* For the harmonics of settings and N = substeps to a period of the fundamental, to begin with; max_states 0: 600.
  * The receptance must outlive it. Errors: SHB_ERR_INPUT substeps < 1; SHB_ERR_IO no memory. Not thread safe (FFTW planner). */
-shb_status mhb_stability_create(const mhb_receptance *receptance, const mhb_settings *settings,
-                                int substeps, int max_states, mhb_stability **stability);
-void       mhb_stability_destroy(mhb_stability *stability);
+shb_status mhb_floquet_create(const mhb_receptance *receptance, const mhb_settings *settings,
+                              int substeps, int max_states, mhb_floquet **stability);
+void       mhb_floquet_destroy(mhb_floquet *stability);
 
 /* A receptance in a run-up has moved: the structure is that at its speed from now on. */
-void mhb_stability_move(mhb_stability *stability, const mhb_receptance *receptance);
+void mhb_floquet_move(mhb_floquet *stability, const mhb_receptance *receptance);
 
 /* Equal cells of the ring, gcd(E, N); the work goes with 1/cells^2. 1: a blade on the ground. */
-int mhb_stability_cells(const mhb_stability *stability);
+int mhb_floquet_cells(const mhb_floquet *stability);
 
 /* Multipliers of a solution. Unstable: largest > 1 + max(1e-3, change); marginal: above 1 but not beyond that; undecided: the
  * contact law was lost at the solution, 16 N sub-steps do not settle it, or max_states is too small for one mode a blade. No allocation. */
-void mhb_stability_evaluate(mhb_stability *stability, const mhb_solution *solution,
-                            mhb_multipliers *multipliers);
+void mhb_floquet_evaluate(mhb_floquet *stability, const mhb_solution *solution,
+                          mhb_multipliers *multipliers);
 
 #endif

@@ -11,26 +11,26 @@ static const double TWO_PI = 6.283185307179586476925;
 
 /* Index of (harmonic k, row or mode i of n): (k + m) n + i. */
 typedef struct {
-  const mhb_structure *s;
-  int                  m, K, n3; /* K = 2m+1 */
-  double               omega;
-  double complex      *B;      /* [k][n3][mode] */
-  double complex      *J, *JR; /* [K n3][K n3] column-major */
-  double complex      *A;      /* [2 K modes][.] column-major */
-  double complex      *exponent, *work;
-  double              *rwork;
-  int                 *pivot;
+  const mhb_modal_structure *s;
+  int                        m, K, n3; /* K = 2m+1 */
+  double                     omega;
+  double complex            *B;      /* [k][n3][mode] */
+  double complex            *J, *JR; /* [K n3][K n3] column-major */
+  double complex            *A;      /* [2 K modes][.] column-major */
+  double complex            *exponent, *work;
+  double                    *rwork;
+  int                       *pivot;
 } hill;
 
 static double complex neighbour_phase(const hill *h, int d, int k, int blades_on) {
-  const mhb_structure *s     = h->s;
-  long                 turns = (d + (long)k * s->wave) % s->blades * blades_on;
+  const mhb_modal_structure *s     = h->s;
+  long                       turns = (d + (long)k * s->wave) % s->blades * blades_on;
   return cexp(-I * TWO_PI * (double)turns / s->blades);
 }
 
 static void set_shapes(hill *h, int d) {
-  const mhb_structure *s     = h->s;
-  int                  modes = s->modes;
+  const mhb_modal_structure *s     = h->s;
+  int                        modes = s->modes;
   for (int k = -h->m; k <= h->m; k++) {
     double complex phase = neighbour_phase(h, d, k, 1), *B = h->B + (k + h->m) * h->n3 * modes;
     for (int r = 0; r < h->n3; r++)
@@ -82,9 +82,9 @@ static void set_derivative(hill *h, const double *dp) {
 
 /* R of harmonic k between rows of blade 0. */
 static double complex flexibility(const hill *h, int d, int k, int r, int c) {
-  const mhb_structure *s   = h->s;
-  size_t               n   = 3 * (size_t)s->contacts;
-  double complex       sum = 0;
+  const mhb_modal_structure *s   = h->s;
+  size_t                     n   = 3 * (size_t)s->contacts;
+  double complex             sum = 0;
   for (int b = 0; b < s->blades; b++)
     sum += neighbour_phase(h, d, k, b) * s->flexibility[(size_t)r * n + (size_t)(b * h->n3 + c)];
   return sum;
@@ -122,9 +122,9 @@ static double complex coupling(const hill *h, int k, int l, int i, int j) {
 
 /* s (a, b) = A (a, b) with b_k = (s + jkw) a_k. */
 static void set_matrix(hill *h) {
-  const mhb_structure *s    = h->s;
-  int                  half = h->K * s->modes;
-  size_t               n    = 2 * (size_t)half;
+  const mhb_modal_structure *s    = h->s;
+  int                        half = h->K * s->modes;
+  size_t                     n    = 2 * (size_t)half;
   memset(h->A, 0, sizeof *h->A * n * n);
   for (int row = 0; row < half; row++) {
     int            k = row / s->modes, i = row % s->modes;
@@ -164,7 +164,7 @@ static int solve(hill *h, double complex *multiplier) {
   return 1;
 }
 
-shb_status mhb_hill(const mhb_structure *s, int d, double omega, int m, const double *dp,
+shb_status mhb_hill(const mhb_modal_structure *s, int d, double omega, int m, const double *dp,
                     double complex *multiplier) {
   hill   h = {.s = s, .m = m, .K = mhb_real_size(m), .n3 = 3 * s->pairs, .omega = omega};
   size_t n = (size_t)(h.K * h.n3), states = 2 * (size_t)(h.K * s->modes);

@@ -16,7 +16,7 @@
  *   omega  in  rad/s, of the fundamental
  *   dp     in  [pair][3 (2m+1)][3 (2m+1)] of mhb_contact_force, row-major, real form
  * Errors: SHB_ERR_IO no memory; SHB_NOT_CONVERGED the eigensolver failed. Cost: the cube of 2 modes (2m+1). */
-shb_status mhb_hill(const mhb_structure *structure, int d, double omega, int m, const double *dp,
-                    double complex *multiplier);
+shb_status mhb_hill(const mhb_modal_structure *structure, int d, double omega, int m,
+                    const double *dp, double complex *multiplier);
 
 #endif

@@ -7,9 +7,9 @@
 
 static const double TWO_PI = 6.283185307179586476925;
 
-shb_status mhb_exponents_create(const mhb_structure *s, mhb_exponents *x) {
+shb_status mhb_linear_exponents_create(const mhb_modal_structure *s, mhb_linear_exponents *x) {
   size_t m = (size_t)s->modes, pairs = (size_t)s->pairs, n3 = 3 * pairs;
-  *x          = (mhb_exponents){.structure = s, .n = 2 * s->modes * s->blades};
+  *x          = (mhb_linear_exponents){.structure = s, .n = 2 * s->modes * s->blades};
   x->state    = calloc(pairs, sizeof *x->state);
   x->law      = calloc(pairs, sizeof *x->law);
   x->exponent = calloc((size_t)x->n, sizeof *x->exponent);
@@ -23,11 +23,11 @@ shb_status mhb_exponents_create(const mhb_structure *s, mhb_exponents *x) {
   if (x->state && x->law && x->exponent && x->A && x->left && x->R && x->S && x->work && x->rwork &&
       x->pivot)
     return SHB_OK;
-  mhb_exponents_destroy(x);
+  mhb_linear_exponents_destroy(x);
   SHB_FAIL(SHB_ERR_IO, "out of memory for the exponents of %d modes", s->modes);
 }
 
-void mhb_exponents_destroy(mhb_exponents *x) {
+void mhb_linear_exponents_destroy(mhb_linear_exponents *x) {
   free(x->state);
   free(x->law);
   free(x->exponent);
@@ -38,7 +38,7 @@ void mhb_exponents_destroy(mhb_exponents *x) {
   free(x->work);
   free(x->rwork);
   free(x->pivot);
-  *x = (mhb_exponents){0};
+  *x = (mhb_linear_exponents){0};
 }
 
 /* Stiffness of a contact that stays in its state. */
@@ -53,9 +53,9 @@ static void stiffness(int state, const mhb_law *law, double S[3][3]) {
 }
 
 /* B[3 pairs][mode] of nodal diameter d, into left. */
-static void relative_shapes(mhb_exponents *x, double complex step) {
-  const mhb_structure *s = x->structure;
-  int                  m = s->modes, n3 = 3 * s->pairs;
+static void relative_shapes(mhb_linear_exponents *x, double complex step) {
+  const mhb_modal_structure *s = x->structure;
+  int                        m = s->modes, n3 = 3 * s->pairs;
   for (int r = 0; r < n3; r++) {
     for (int i = 0; i < m; i++) {
       double complex sum = s->shape[i * n3 + r];
@@ -66,10 +66,10 @@ static void relative_shapes(mhb_exponents *x, double complex step) {
 }
 
 /* Residual flexibility of nodal diameter d: the first row of blocks, each with its phase. */
-static void relative_flexibility(mhb_exponents *x, double complex step) {
-  const mhb_structure *s  = x->structure;
-  int                  n3 = 3 * s->pairs, n = 3 * s->contacts;
-  double complex       phase = 1;
+static void relative_flexibility(mhb_linear_exponents *x, double complex step) {
+  const mhb_modal_structure *s  = x->structure;
+  int                        n3 = 3 * s->pairs, n = 3 * s->contacts;
+  double complex             phase = 1;
   memset(x->R, 0, sizeof *x->R * (size_t)(n3 * n3));
   for (int b = 0; b < s->blades && s->flexibility; b++, phase *= step)
     for (int r = 0; r < n3; r++)
@@ -78,7 +78,8 @@ static void relative_flexibility(mhb_exponents *x, double complex step) {
 }
 
 /* Row r of contact a of K [R B], K its stiffness; element c of n3 + modes. */
-static double complex stiffness_row(const mhb_exponents *x, const double K[3], int a, int c) {
+static double complex stiffness_row(const mhb_linear_exponents *x, const double K[3], int a,
+                                    int c) {
   int            n3 = 3 * x->structure->pairs, m = x->structure->modes;
   double complex sum = 0;
   for (int k = 0; k < 3; k++) {
@@ -89,7 +90,7 @@ static double complex stiffness_row(const mhb_exponents *x, const double K[3], i
 }
 
 /* Column-major: S[0..n3) = I + diag R, S[n3..) = diag B  ->  S B in the second part. 0: singular. */
-static int contact_stiffness(mhb_exponents *x) {
+static int contact_stiffness(mhb_linear_exponents *x) {
   int    n3 = 3 * x->structure->pairs, m = x->structure->modes;
   size_t rows = (size_t)n3;
   double K[3][3];
@@ -102,10 +103,10 @@ static int contact_stiffness(mhb_exponents *x) {
          0;
 }
 
-static int nodal_diameter(mhb_exponents *x, int d) {
-  const mhb_structure *s  = x->structure;
-  int                  n3 = 3 * s->pairs, m = s->modes, n = 2 * m;
-  double complex       step = cexp(-I * TWO_PI * d / s->blades);
+static int nodal_diameter(mhb_linear_exponents *x, int d) {
+  const mhb_modal_structure *s  = x->structure;
+  int                        n3 = 3 * s->pairs, m = s->modes, n = 2 * m;
+  double complex             step = cexp(-I * TWO_PI * d / s->blades);
   relative_shapes(x, step);
   relative_flexibility(x, step);
   if (!contact_stiffness(x)) return 0;
@@ -125,7 +126,7 @@ static int nodal_diameter(mhb_exponents *x, int d) {
                             x->rwork) == 0;
 }
 
-static int same(const mhb_exponents *x, const int *state, const mhb_law *law) {
+static int same(const mhb_linear_exponents *x, const int *state, const mhb_law *law) {
   for (int a = 0; a < x->structure->pairs; a++) {
     const mhb_law *old = &x->law[a];
     if (state[a] != x->state[a] || law[a].kv != old->kv || (law[a].mu == 0) != (old->mu == 0) ||
@@ -141,8 +142,8 @@ static int by_growth(const void *a, const void *b) {
   return (x < y) - (x > y);
 }
 
-int mhb_exponents_set(mhb_exponents *x, const int *state, const mhb_law *law) {
-  const mhb_structure *s = x->structure;
+int mhb_linear_exponents_set(mhb_linear_exponents *x, const int *state, const mhb_law *law) {
+  const mhb_modal_structure *s = x->structure;
   if (x->known && same(x, state, law)) return 1;
   memcpy(x->state, state, sizeof *state * (size_t)s->pairs);
   memcpy(x->law, law, sizeof *law * (size_t)s->pairs);

@@ -13,21 +13,22 @@
 #include "mhb/floquet/variational.h"
 
 typedef struct {
-  const mhb_structure *structure;
-  int                  n, known; /* 2 modes blades; known: for the states and laws below */
-  int                 *state;    /* [pair] */
-  mhb_law             *law;      /* [pair] */
-  double complex      *exponent; /* [n] 1/s */
-  double complex      *A, *left, *R, *S, *work; /* one nodal diameter */
-  double              *rwork;
-  int                 *pivot;
-} mhb_exponents;
+  const mhb_modal_structure *structure;
+  int                        n, known; /* 2 modes blades; known: for the states and laws below */
+  int                       *state;    /* [pair] */
+  mhb_law                   *law;      /* [pair] */
+  double complex            *exponent; /* [n] 1/s */
+  double complex            *A, *left, *R, *S, *work; /* one nodal diameter */
+  double                    *rwork;
+  int                       *pivot;
+} mhb_linear_exponents;
 
 /* SHB_ERR_IO: no memory. The structure must outlive it. */
-shb_status mhb_exponents_create(const mhb_structure *structure, mhb_exponents *exponents);
-void       mhb_exponents_destroy(mhb_exponents *exponents);
+shb_status mhb_linear_exponents_create(const mhb_modal_structure *structure,
+                                       mhb_linear_exponents      *exponents);
+void       mhb_linear_exponents_destroy(mhb_linear_exponents *exponents);
 
 /* For states and laws of the pairs (the same on all blades). 0: the eigensolver failed. */
-int mhb_exponents_set(mhb_exponents *exponents, const int *state, const mhb_law *law);
+int mhb_linear_exponents_set(mhb_linear_exponents *exponents, const int *state, const mhb_law *law);
 
 #endif

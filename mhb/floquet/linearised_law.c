@@ -22,7 +22,7 @@ static double dot2(const double *a, const double *b) {
   return a[0] * b[0] + a[1] * b[1];
 }
 
-static slip_terms terms_of(const mhb_touch *touch) {
+static slip_terms terms_of(const mhb_contact_state *touch) {
   const mhb_law *law = touch->law;
   slip_terms     t   = {.e = {touch->e[0], touch->e[1]}, .q = {-touch->e[1], touch->e[0]}};
   double         x[2], Kq[2], n = law->kv * touch->rate[0], limit = law->mu * touch->n;
@@ -41,7 +41,7 @@ static slip_terms terms_of(const mhb_touch *touch) {
   return t;
 }
 
-static void stick_relation(const mhb_law *law, mhb_relation *r) {
+static void stick_relation(const mhb_law *law, mhb_linearised_law *r) {
   const double K[2][2] = {{law->ku[0], law->ku[1]}, {law->ku[1], law->ku[2]}};
   for (int i = 0; i < 2; i++) {
     r->a[1 + i][1 + i] = r->keep[i][1 + i] = 1;
@@ -51,7 +51,7 @@ static void stick_relation(const mhb_law *law, mhb_relation *r) {
 }
 
 /* Midpoint rule: tau mean = T.y + M.D/2,  mean force (along) mu n mean e + tau mean q. */
-static void slip_relation(const mhb_touch *touch, double h, mhb_relation *r) {
+static void slip_relation(const mhb_contact_state *touch, double h, mhb_linearised_law *r) {
   const mhb_law *law   = touch->law;
   slip_terms     t     = terms_of(touch);
   double         mu_kv = law->mu * law->kv, turn = h * t.turn;
@@ -73,7 +73,7 @@ static void slip_relation(const mhb_touch *touch, double h, mhb_relation *r) {
   }
 }
 
-void mhb_tangent_relation(const mhb_touch *touch, double h, mhb_relation *r) {
+void mhb_linearised_law_at(const mhb_contact_state *touch, double h, mhb_linearised_law *r) {
   memset(r, 0, sizeof *r);
   if (touch->state == MHB_SEPARATE) return;
   r->a[0][0] = r->hold[0][0] = r->grow[0][0] = touch->law->kv;
@@ -82,19 +82,19 @@ void mhb_tangent_relation(const mhb_touch *touch, double h, mhb_relation *r) {
   if (touch->state == MHB_SLIDE) slip_relation(touch, h, r);
 }
 
-static void jump_from_open(const mhb_touch *touch, mhb_jump *jump) {
+static void jump_from_open(const mhb_contact_state *touch, mhb_saltation *jump) {
   double x[2];
   times_ku(touch->law->ku, touch->rate + 1, x);
   for (int i = 0; i < 2; i++) jump->set[i][0] = x[i] / touch->rate[0]; /* dn/n' = dv/v' */
 }
 
-static void jump_to_slip(const mhb_touch *touch, mhb_jump *jump) {
+static void jump_to_slip(const mhb_contact_state *touch, mhb_saltation *jump) {
   slip_terms t    = terms_of(touch);
   jump->set[0][0] = t.beta * touch->law->mu * touch->law->kv;
   for (int k = 0; k < 2; k++) jump->set[0][1 + k] = t.q[k] - t.beta * t.e[k];
 }
 
-static void jump_to_stick(const mhb_touch *touch, mhb_jump *jump) {
+static void jump_to_stick(const mhb_contact_state *touch, mhb_saltation *jump) {
   const double *e = touch->e, q[2] = {-e[1], e[0]};
   for (int i = 0; i < 2; i++) {
     jump->set[i][0] = touch->law->mu * touch->law->kv * e[i];
@@ -102,7 +102,7 @@ static void jump_to_stick(const mhb_touch *touch, mhb_jump *jump) {
   }
 }
 
-void mhb_tangent_jump(const mhb_touch *touch, mhb_state to, mhb_jump *jump) {
+void mhb_saltation_at(const mhb_contact_state *touch, mhb_state to, mhb_saltation *jump) {
   memset(jump->set, 0, sizeof jump->set);
   if (to == MHB_SEPARATE || touch->law->mu == 0) return;
   if (touch->state == MHB_SEPARATE) {
@@ -115,7 +115,7 @@ void mhb_tangent_jump(const mhb_touch *touch, mhb_state to, mhb_jump *jump) {
 }
 
 /* f' = Ku s' - Ku e (e.Ku s' - mu n')/(e.Ku e);  where n = 0 the friction can only grow along e. */
-static void slip_rate(const mhb_touch *touch, double G[3][3]) {
+static void slip_rate(const mhb_contact_state *touch, double G[3][3]) {
   slip_terms    t  = terms_of(touch);
   const double *ku = touch->law->ku, K[2][2] = {{ku[0], ku[1]}, {ku[1], ku[2]}};
   double        mu_kv = touch->law->mu * touch->law->kv;
@@ -126,7 +126,7 @@ static void slip_rate(const mhb_touch *touch, double G[3][3]) {
   }
 }
 
-void mhb_tangent_rate(const mhb_touch *touch, double G[3][3]) {
+void mhb_linearised_law_rate(const mhb_contact_state *touch, double G[3][3]) {
   memset(G, 0, sizeof(double) * 9);
   if (touch->state == MHB_SEPARATE) return;
   const mhb_law *law = touch->law;

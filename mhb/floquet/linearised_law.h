@@ -24,15 +24,15 @@ typedef struct {
   mhb_state      state;
   double         n, e[2]; /* slip: normal load, N, and direction of the friction */
   double         rate[3]; /* (v, u, w)' m/s */
-} mhb_touch;
+} mhb_contact_state;
 
 /* Over a sub-step h, touch at its middle. */
-void mhb_tangent_relation(const mhb_touch *touch, double h, mhb_relation *relation);
+void mhb_linearised_law_at(const mhb_contact_state *touch, double h, mhb_linearised_law *relation);
 
 /* Jump of the rows of one contact when it passes to a state (no residual flexibility). */
-void mhb_tangent_jump(const mhb_touch *touch, mhb_state to, mhb_jump *jump);
+void mhb_saltation_at(const mhb_contact_state *touch, mhb_state to, mhb_saltation *jump);
 
 /* Force rate by motion rate, G[3][3], in the state of touch. */
-void mhb_tangent_rate(const mhb_touch *touch, double G[3][3]);
+void mhb_linearised_law_rate(const mhb_contact_state *touch, double G[3][3]);
 
 #endif

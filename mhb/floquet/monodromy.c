@@ -9,8 +9,9 @@ static const double TWO_PI = 6.283185307179586476925;
 /* Pieces shorter than this, in periods, are passed over. */
 static const double SHORT = 1e-13;
 
-shb_status mhb_monodromy_create(const mhb_structure *s, const mhb_timetable *timetable,
-                                mhb_contact *contact, int m, int substeps, int finest,
+shb_status mhb_monodromy_create(const mhb_modal_structure     *s,
+                                const mhb_transition_schedule *timetable,
+                                mhb_contact_evaluator *contact, int m, int substeps, int finest,
                                 mhb_monodromy **out) {
   mhb_monodromy *d = calloc(1, sizeof *d);
   SHB_CHECK(d, SHB_ERR_IO, "out of memory");
@@ -31,9 +32,9 @@ shb_status mhb_monodromy_create(const mhb_structure *s, const mhb_timetable *tim
   if (!(d->column && d->u && d->matrix && d->pivot && d->M))
     status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__,
                       "out of memory for the stability of %d states", capacity);
-  if (status == SHB_OK) status = mhb_variation_create(s, capacity, &d->variation);
+  if (status == SHB_OK) status = mhb_variational_create(s, capacity, &d->variation);
   if (status == SHB_OK)
-    status = mhb_passage_create(s, timetable, contact, m, steps + pieces + 1, &d->passage);
+    status = mhb_orbit_contacts_create(s, timetable, contact, m, steps + pieces + 1, &d->passage);
   if (status != SHB_OK) {
     mhb_monodromy_destroy(d);
     return status;
@@ -44,8 +45,8 @@ shb_status mhb_monodromy_create(const mhb_structure *s, const mhb_timetable *tim
 
 void mhb_monodromy_destroy(mhb_monodromy *d) {
   if (!d) return;
-  mhb_variation_destroy(d->variation);
-  mhb_passage_destroy(d->passage);
+  mhb_variational_destroy(d->variation);
+  mhb_orbit_contacts_destroy(d->passage);
   free(d->column);
   free(d->u);
   free(d->matrix);
@@ -55,7 +56,7 @@ void mhb_monodromy_destroy(mhb_monodromy *d) {
 }
 
 /* Rows q and v of all blades. */
-static int modal_states(const mhb_structure *s) {
+static int modal_states(const mhb_modal_structure *s) {
   return 2 * s->modes * s->blades;
 }
 
@@ -67,7 +68,7 @@ static int friction_states(const mhb_monodromy *d, int contact) {
 /* ---- columns ---- */
 
 /* Forces of a contact by its rows at the start: p = of_u (v, u, w) + of_sigma sigma. */
-static void start_force(const mhb_touch *touch, int permanent, double of_u[3][3],
+static void start_force(const mhb_contact_state *touch, int permanent, double of_u[3][3],
                         double of_sigma[3][2]) {
   const mhb_law *law = touch->law;
   memset(of_u, 0, sizeof(double) * 9);
@@ -75,7 +76,7 @@ static void start_force(const mhb_touch *touch, int permanent, double of_u[3][3]
   if (touch->state == MHB_SEPARATE) return;
   of_u[0][0] = law->kv;
   if (law->mu == 0) return;
-  if (touch->state == MHB_STICK && permanent) mhb_tangent_rate(touch, of_u);
+  if (touch->state == MHB_STICK && permanent) mhb_linearised_law_rate(touch, of_u);
   for (int i = 0; i < 2; i++) {
     if (touch->state == MHB_STICK && !permanent) of_sigma[1 + i][i] = 1;
     if (touch->state != MHB_SLIDE) continue;
@@ -86,8 +87,8 @@ static void start_force(const mhb_touch *touch, int permanent, double of_u[3][3]
 
 /* With residual flexibility u solves u = B q - R p(u, sigma): d->matrix = I + R p_u, factorized. */
 static int start_matrix(mhb_monodromy *d) {
-  const mhb_structure *s = d->structure;
-  int                  n = 3 * s->contacts;
+  const mhb_modal_structure *s = d->structure;
+  int                        n = 3 * s->contacts;
   for (int column = 0; column < n; column++) {
     double of_u[3][3], of_sigma[3][2];
     int    j = column / 3, c = column % 3;
@@ -104,11 +105,11 @@ static int start_matrix(mhb_monodromy *d) {
 
 /* Motion of the contacts at the start for a unit of mode i of a blade (contact < 0), or of friction state i of a contact. */
 static void start_motion(mhb_monodromy *d, int contact, int blade, int i, double *u) {
-  const mhb_structure *s  = d->structure;
-  int                  n3 = 3 * s->pairs, n = 3 * s->contacts;
+  const mhb_modal_structure *s  = d->structure;
+  int                        n3 = 3 * s->pairs, n = 3 * s->contacts;
   memset(u, 0, sizeof(double) * (size_t)n);
   for (int side = 0; contact < 0 && side < s->sides; side++) {
-    int first = 3 * mhb_structure_contact(s, blade, side);
+    int first = 3 * mhb_modal_structure_contact(s, blade, side);
     for (int r = 0; r < n3; r++)
       u[first + r] += s->shape[(size_t)(side * s->modes + i) * (size_t)n3 + (size_t)r];
   }
@@ -125,48 +126,48 @@ static void start_motion(mhb_monodromy *d, int contact, int blade, int i, double
 
 /* Rows u, and the friction of contacts that stick throughout. */
 static void put_motion(mhb_monodromy *d, int column, const double *u) {
-  const mhb_structure *s     = d->structure;
-  int                  first = modal_states(s), n = 3 * s->contacts;
-  for (int r = 0; r < n; r++) *mhb_variation_at(d->variation, first + r, column) = u[r];
+  const mhb_modal_structure *s     = d->structure;
+  int                        first = modal_states(s), n = 3 * s->contacts;
+  for (int r = 0; r < n; r++) *mhb_variational_at(d->variation, first + r, column) = u[r];
   for (int j = 0; j < s->contacts; j++) {
     const mhb_law *law = d->passage->touch[j].law;
     if (!d->timetable->permanent[j] || d->passage->touch[j].state != MHB_STICK || law->mu == 0)
       continue;
     const double *su = u + 3 * j + 1;
-    *mhb_variation_at(d->variation, first + n + 2 * j, column) =
+    *mhb_variational_at(d->variation, first + n + 2 * j, column) =
         law->ku[0] * su[0] + law->ku[1] * su[1];
-    *mhb_variation_at(d->variation, first + n + 2 * j + 1, column) =
+    *mhb_variational_at(d->variation, first + n + 2 * j + 1, column) =
         law->ku[1] * su[0] + law->ku[2] * su[1];
   }
 }
 
 /* A unit of mode i of a blade: of q in one column, of v in another. */
 static void start_mode(mhb_monodromy *d, int blade, int i) {
-  const mhb_structure *s = d->structure;
+  const mhb_modal_structure *s = d->structure;
   int state = blade * s->modes + i, half = s->modes * d->blades, rows = s->modes * s->blades;
-  *mhb_variation_at(d->variation, state, state)               = 1;
-  *mhb_variation_at(d->variation, rows + state, half + state) = 1;
+  *mhb_variational_at(d->variation, state, state)               = 1;
+  *mhb_variational_at(d->variation, rows + state, half + state) = 1;
   start_motion(d, -1, blade, i, d->u);
   put_motion(d, state, d->u);
 }
 
 /* Columns: q of the cell's blades, v, frictions. */
 static int start_columns(mhb_monodromy *d) {
-  const mhb_structure *s     = d->structure;
-  int                  first = modal_states(s) + 3 * s->contacts, contacts = d->blades * s->pairs;
+  const mhb_modal_structure *s = d->structure;
+  int first = modal_states(s) + 3 * s->contacts, contacts = d->blades * s->pairs;
   d->n = 2 * s->modes * d->blades;
   for (int j = 0; j < contacts; j++) {
     d->column[j] = d->n;
     d->n += friction_states(d, j);
   }
-  mhb_variation_clear(d->variation, d->n);
+  mhb_variational_clear(d->variation, d->n);
   if (s->flexibility && !start_matrix(d)) return 0;
   for (int i = 0; i < s->modes * d->blades; i++) start_mode(d, i / s->modes, i % s->modes);
   for (int j = 0; j < contacts; j++)
     for (int i = 0; i < friction_states(d, j); i++) {
       start_motion(d, j, 0, i, d->u);
       put_motion(d, d->column[j] + i, d->u);
-      *mhb_variation_at(d->variation, first + 2 * j + i, d->column[j] + i) = 1;
+      *mhb_variational_at(d->variation, first + 2 * j + i, d->column[j] + i) = 1;
     }
   return 1;
 }
@@ -176,13 +177,13 @@ static void put_row(mhb_monodromy *d, int from, int cell, int state) {
   size_t  n = (size_t)d->n;
   double *S = d->M + (size_t)cell * n * n + state;
   for (int column = 0; column < d->n; column++)
-    S[(size_t)column * n] = *mhb_variation_at(d->variation, from, column);
+    S[(size_t)column * n] = *mhb_variational_at(d->variation, from, column);
 }
 
 /* The end of the stretch, blades renamed: what blade b holds is now blade b - shift. */
 static void take_matrix(mhb_monodromy *d) {
-  const mhb_structure *s    = d->structure;
-  int                  rows = s->modes * s->blades, half = s->modes * d->blades;
+  const mhb_modal_structure *s    = d->structure;
+  int                        rows = s->modes * s->blades, half = s->modes * d->blades;
   for (int b = 0; b < s->blades; b++) {
     int name = ((b - d->timetable->shift) % s->blades + s->blades) % s->blades;
     int cell = name / d->blades, to = name % d->blades;
@@ -203,43 +204,43 @@ static void take_matrix(mhb_monodromy *d) {
 static int run_piece(mhb_monodromy *d, double from, double to, int refinement) {
   double length = to - from, period = TWO_PI / d->passage->omega;
   if (length < SHORT) return 1;
-  int    noting = d->passage->collecting, slip = mhb_passage_slips(d->passage);
+  int    noting = d->passage->collecting, slip = mhb_orbit_contacts_slips(d->passage);
   int    steps = refinement * (int)ceil(d->substeps * length - 1e-9);
   double h     = length / steps;
-  if (!noting) mhb_variation_length(d->variation, h * period);
+  if (!noting) mhb_variational_length(d->variation, h * period);
   for (int i = 0; i < steps; i++) {
     if (slip || i == 0) {
-      if (!mhb_passage_relate(d->passage, from + (i + .5) * h, h * period, i == 0,
-                              d->variation->relation))
+      if (!mhb_orbit_contacts_relate(d->passage, from + (i + .5) * h, h * period, i == 0,
+                                     d->variation->relation))
         return 0;
-      if (!noting && !mhb_variation_couple(d->variation)) return 0;
+      if (!noting && !mhb_variational_couple(d->variation)) return 0;
     }
-    if (!noting) mhb_variation_step(d->variation);
+    if (!noting) mhb_variational_step(d->variation);
   }
   return 1;
 }
 
 /* One stretch: note where the contacts must be looked at, or integrate. 0: something was singular. */
 static int walk(mhb_monodromy *d, int noting, int refinement) {
-  const mhb_timetable *t = d->timetable;
-  mhb_passage_begin(d->passage, noting);
+  const mhb_transition_schedule *t = d->timetable;
+  mhb_orbit_contacts_begin(d->passage, noting);
   if (!noting && !start_columns(d)) return 0;
   double now = 0;
   for (int i = 0; i < t->n_events; i++) {
     if (!run_piece(d, now, t->event[i].at, refinement)) return 0;
-    if (!mhb_passage_event(d->passage, &t->event[i], d->variation)) return 0;
+    if (!mhb_orbit_contacts_event(d->passage, &t->event[i], d->variation)) return 0;
     now = t->event[i].at;
   }
   if (!run_piece(d, now, t->span, refinement)) return 0;
-  if (!noting) mhb_variation_settle(d->variation);
+  if (!noting) mhb_variational_settle(d->variation);
   return 1;
 }
 
 const char *mhb_monodromy_set(mhb_monodromy *d, const mhb_solution *solution, double omega,
                               int refinement) {
-  mhb_passage_solution(d->passage, solution, omega);
+  mhb_orbit_contacts_solution(d->passage, solution, omega);
   walk(d, 1, refinement);
-  if (!mhb_passage_trace(d->passage)) return "the contact law lost its way";
+  if (!mhb_orbit_contacts_trace(d->passage)) return "the contact law lost its way";
   if (!walk(d, 0, refinement)) return "the equations of the contacts are singular";
   take_matrix(d);
   return NULL;

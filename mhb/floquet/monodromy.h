@@ -10,21 +10,22 @@
 #include "mhb/floquet/orbit_contacts.h"
 
 typedef struct {
-  const mhb_structure *structure;
-  const mhb_timetable *timetable;
-  mhb_variation       *variation;
-  mhb_passage         *passage;
-  int                  substeps;   /* a period of the fundamental */
-  int                 *column;     /* [contact] its first friction state */
-  double              *u, *matrix; /* [3 contacts], [.][.] the start with residual flexibility */
-  int                 *pivot;      /* [3 contacts] */
-  int                  blades, n;  /* of a cell; its states */
-  double              *M;          /* [cell][n][n] column-major */
+  const mhb_modal_structure     *structure;
+  const mhb_transition_schedule *timetable;
+  mhb_variational               *variation;
+  mhb_orbit_contacts            *passage;
+  int                            substeps; /* a period of the fundamental */
+  int                           *column;   /* [contact] its first friction state */
+  double *u, *matrix; /* [3 contacts], [.][.] the start with residual flexibility */
+  int    *pivot;      /* [3 contacts] */
+  int     blades, n;  /* of a cell; its states */
+  double *M;          /* [cell][n][n] column-major */
 } mhb_monodromy;
 
 /* finest: the greatest refinement there is room for. SHB_ERR_IO: no memory. Structure, timetable and contact must outlive it. */
-shb_status mhb_monodromy_create(const mhb_structure *structure, const mhb_timetable *timetable,
-                                mhb_contact *contact, int m, int substeps, int finest,
+shb_status mhb_monodromy_create(const mhb_modal_structure     *structure,
+                                const mhb_transition_schedule *timetable,
+                                mhb_contact_evaluator *contact, int m, int substeps, int finest,
                                 mhb_monodromy **monodromy);
 void       mhb_monodromy_destroy(mhb_monodromy *monodromy);
 

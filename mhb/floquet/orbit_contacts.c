@@ -13,9 +13,11 @@ static const double TWO_PI = 6.283185307179586476925;
 /* How far from an opening or closing the direction of the friction is taken, in periods. */
 static const double NEAR = 1e-8;
 
-shb_status mhb_passage_create(const mhb_structure *s, const mhb_timetable *timetable,
-                              mhb_contact *contact, int m, int looks, mhb_passage **out) {
-  mhb_passage *d = calloc(1, sizeof *d);
+shb_status mhb_orbit_contacts_create(const mhb_modal_structure     *s,
+                                     const mhb_transition_schedule *timetable,
+                                     mhb_contact_evaluator *contact, int m, int looks,
+                                     mhb_orbit_contacts **out) {
+  mhb_orbit_contacts *d = calloc(1, sizeof *d);
   SHB_CHECK(d, SHB_ERR_IO, "out of memory");
   size_t contacts = (size_t)s->contacts, n = 3 * contacts;
   d->structure = s;
@@ -41,14 +43,14 @@ shb_status mhb_passage_create(const mhb_structure *s, const mhb_timetable *timet
   for (size_t i = 0; i < sizeof wanted / sizeof wanted[0]; i++)
     ok &= (*wanted[i].array = calloc(1, wanted[i].size)) != NULL;
   if (!ok) {
-    mhb_passage_destroy(d);
+    mhb_orbit_contacts_destroy(d);
     SHB_FAIL(SHB_ERR_IO, "out of memory for the stability of %d contacts", s->contacts);
   }
   *out = d;
   return SHB_OK;
 }
 
-void mhb_passage_destroy(mhb_passage *d) {
+void mhb_orbit_contacts_destroy(mhb_orbit_contacts *d) {
   if (!d) return;
   void *arrays[] = {d->motion, d->sample, d->count, d->touch,  d->matrix,
                     d->pivot,  d->rate,   d->other, d->recoil, d->basis};
@@ -56,17 +58,17 @@ void mhb_passage_destroy(mhb_passage *d) {
   free(d);
 }
 
-static int pair_of(const mhb_passage *d, int contact) {
+static int pair_of(const mhb_orbit_contacts *d, int contact) {
   return contact % d->structure->pairs;
 }
 
 /* ---- the periodic motion ---- */
 
 /* Harmonic k of (R p)_r of blade 0; the force of blade b lags by k b phi. */
-static double complex flexed(const mhb_passage *d, int k, int r) {
-  const mhb_structure *s = d->structure;
-  size_t               n = 3 * (size_t)s->contacts, n3 = 3 * (size_t)s->pairs, nb = (size_t)d->nb;
-  double complex       sum = 0;
+static double complex flexed(const mhb_orbit_contacts *d, int k, int r) {
+  const mhb_modal_structure *s = d->structure;
+  size_t         n = 3 * (size_t)s->contacts, n3 = 3 * (size_t)s->pairs, nb = (size_t)d->nb;
+  double complex sum = 0;
   for (size_t c = 0; c < n; c++) {
     const double  *a  = d->solution->p + c % n3 * nb;
     double complex pk = k ? CMPLX(a[2 * k - 1], a[2 * k]) : a[0];
@@ -77,7 +79,7 @@ static double complex flexed(const mhb_passage *d, int k, int r) {
 }
 
 /* w = u + R p */
-static void free_of_flexibility(mhb_passage *d) {
+static void free_of_flexibility(mhb_orbit_contacts *d) {
   int n3 = 3 * d->structure->pairs, nb = d->nb;
   memcpy(d->motion, d->solution->x, sizeof(double) * (size_t)n3 * (size_t)nb);
   if (!d->structure->flexibility) return;
@@ -92,9 +94,10 @@ static void free_of_flexibility(mhb_passage *d) {
 }
 
 /* Time derivative of the motion of a contact, of x[pair][3][nb]. */
-static void motion_rate(mhb_passage *d, const double *x, int contact, double at, double rate[3]) {
+static void motion_rate(mhb_orbit_contacts *d, const double *x, int contact, double at,
+                        double rate[3]) {
   double *basis = d->basis, *slope = basis + d->nb;
-  mhb_basis(d->m, TWO_PI * mhb_timetable_phase(d->timetable, contact, at), basis, slope);
+  mhb_basis(d->m, TWO_PI * mhb_transition_schedule_phase(d->timetable, contact, at), basis, slope);
   const double *of = x + (size_t)(3 * pair_of(d, contact)) * (size_t)d->nb;
   for (int i = 0; i < 3; i++) {
     double sum = 0;
@@ -104,31 +107,31 @@ static void motion_rate(mhb_passage *d, const double *x, int contact, double at,
 }
 
 /* Load and direction of a slipping contact. While collecting, only the phase is noted. */
-static void look(mhb_passage *d, int contact, double at) {
+static void look(mhb_orbit_contacts *d, int contact, double at) {
   int                 pair   = pair_of(d, contact);
   mhb_contact_sample *sample = &d->sample[(size_t)pair * (size_t)d->room + (size_t)d->count[pair]];
   d->count[pair]++;
   if (d->collecting) {
-    sample->phase = mhb_timetable_phase(d->timetable, contact, at);
+    sample->phase = mhb_transition_schedule_phase(d->timetable, contact, at);
     return;
   }
-  mhb_touch *touch = &d->touch[contact];
-  double     size  = hypot(sample->f[0], sample->f[1]);
-  touch->n         = sample->n;
+  mhb_contact_state *touch = &d->touch[contact];
+  double             size  = hypot(sample->f[0], sample->f[1]);
+  touch->n                 = sample->n;
   for (int k = 0; k < 2; k++) touch->e[k] = size > 0 ? sample->f[k] / size : k == 0;
 }
 
-static int slips(const mhb_touch *touch) {
+static int slips(const mhb_contact_state *touch) {
   return touch->state == MHB_SLIDE && touch->law->mu > 0;
 }
 
 /* ---- rates with residual flexibility: p' = (I + G R)^-1 G w',  u' = w' - R p' ---- */
 
 /* Rows of contact j of I + G R, and of G w'. */
-static void rate_rows(mhb_passage *d, int j, double at, double *rate) {
+static void rate_rows(mhb_orbit_contacts *d, int j, double at, double *rate) {
   int    n = 3 * d->structure->contacts;
   double G[3][3], w[3];
-  mhb_tangent_rate(&d->touch[j], G);
+  mhb_linearised_law_rate(&d->touch[j], G);
   motion_rate(d, d->motion, j, at, w);
   for (int r = 0; r < 3; r++) {
     const double *R   = d->structure->flexibility + (size_t)(3 * j) * (size_t)n;
@@ -140,7 +143,7 @@ static void rate_rows(mhb_passage *d, int j, double at, double *rate) {
 }
 
 /* I + G R, factorized; and p' into rate[n]. 0: singular. */
-static int force_rates(mhb_passage *d, double at, double *rate) {
+static int force_rates(mhb_orbit_contacts *d, double at, double *rate) {
   int n = 3 * d->structure->contacts;
   for (int j = 0; j < d->structure->contacts; j++) rate_rows(d, j, at, rate);
   if (!mhb_lu(n, d->matrix, d->pivot)) return 0;
@@ -149,7 +152,7 @@ static int force_rates(mhb_passage *d, double at, double *rate) {
 }
 
 /* out = -R p */
-static void recoil(const mhb_structure *s, const double *p, double *out) {
+static void recoil(const mhb_modal_structure *s, const double *p, double *out) {
   int n = 3 * s->contacts;
   for (int r = 0; r < n; r++) {
     out[r] = 0;
@@ -158,8 +161,8 @@ static void recoil(const mhb_structure *s, const double *p, double *out) {
 }
 
 /* Rates of the motion of one contact, or of all of them where they are coupled. */
-static int set_rates(mhb_passage *d, int contact, double at) {
-  const mhb_structure *s = d->structure;
+static int set_rates(mhb_orbit_contacts *d, int contact, double at) {
+  const mhb_modal_structure *s = d->structure;
   if (!s->flexibility) {
     motion_rate(d, d->motion, contact, at, d->touch[contact].rate);
     return 1;
@@ -173,55 +176,57 @@ static int set_rates(mhb_passage *d, int contact, double at) {
   return 1;
 }
 
-void mhb_passage_solution(mhb_passage *d, const mhb_solution *solution, double omega) {
+void mhb_orbit_contacts_solution(mhb_orbit_contacts *d, const mhb_solution *solution,
+                                 double omega) {
   d->solution = solution;
   d->omega    = omega;
   free_of_flexibility(d);
 }
 
-void mhb_passage_begin(mhb_passage *d, int collecting) {
-  const mhb_structure *s = d->structure;
-  d->collecting          = collecting;
+void mhb_orbit_contacts_begin(mhb_orbit_contacts *d, int collecting) {
+  const mhb_modal_structure *s = d->structure;
+  d->collecting                = collecting;
   memset(d->count, 0, sizeof *d->count * (size_t)s->pairs);
   for (int j = 0; j < s->contacts; j++) {
-    mhb_touch *touch = &d->touch[j];
-    *touch           = (mhb_touch){.law   = &d->solution->law[pair_of(d, j)],
-                                   .state = (mhb_state)d->timetable->state[j]};
+    mhb_contact_state *touch = &d->touch[j];
+    *touch                   = (mhb_contact_state){.law   = &d->solution->law[pair_of(d, j)],
+                                                   .state = (mhb_state)d->timetable->state[j]};
     if (s->flexibility && slips(touch)) look(d, j, NEAR);
   }
 }
 
-int mhb_passage_trace(mhb_passage *d) {
+int mhb_orbit_contacts_trace(mhb_orbit_contacts *d) {
   for (int a = 0; a < d->structure->pairs; a++) {
     if (d->count[a] == 0) continue;
     const double *x = d->solution->x + (size_t)(3 * a) * (size_t)d->nb;
-    mhb_contact_trace(d->contact, &d->solution->law[a], x, d->count[a],
-                      d->sample + (size_t)a * (size_t)d->room, &d->info);
-    if (!mhb_timetable_usable(&d->info)) return 0;
+    mhb_contact_time_history(d->contact, &d->solution->law[a], x, d->count[a],
+                             d->sample + (size_t)a * (size_t)d->room, &d->info);
+    if (!mhb_transition_schedule_usable(&d->info)) return 0;
   }
   return 1;
 }
 
 /* ---- sub-steps ---- */
 
-int mhb_passage_slips(const mhb_passage *d) {
+int mhb_orbit_contacts_slips(const mhb_orbit_contacts *d) {
   for (int j = 0; j < d->structure->contacts; j++)
     if (slips(&d->touch[j])) return 1;
   return 0;
 }
 
 /* Relations of all contacts over a sub-step with this middle; those that do not slip only at the first. */
-int mhb_passage_relate(mhb_passage *d, double middle, double h, int first, mhb_relation *relation) {
-  const mhb_structure *s = d->structure;
+int mhb_orbit_contacts_relate(mhb_orbit_contacts *d, double middle, double h, int first,
+                              mhb_linearised_law *relation) {
+  const mhb_modal_structure *s = d->structure;
   for (int j = 0; j < s->contacts; j++)
     if (slips(&d->touch[j])) look(d, j, middle);
   if (d->collecting) return 1;
-  if (s->flexibility && mhb_passage_slips(d) && !set_rates(d, 0, middle)) return 0;
+  if (s->flexibility && mhb_orbit_contacts_slips(d) && !set_rates(d, 0, middle)) return 0;
   for (int j = 0; j < s->contacts; j++) {
     int slipping = slips(&d->touch[j]);
     if (!slipping && !first) continue;
     if (slipping && !s->flexibility) set_rates(d, j, middle);
-    mhb_tangent_relation(&d->touch[j], h, &relation[j]);
+    mhb_linearised_law_at(&d->touch[j], h, &relation[j]);
   }
   return 1;
 }
@@ -229,11 +234,11 @@ int mhb_passage_relate(mhb_passage *d, double middle, double h, int first, mhb_r
 /* ---- events ---- */
 
 /* The direction in which slip begins at a closing (eq. 15), from the motion that the law saw. */
-static void closing_direction(mhb_passage *d, int contact, double at) {
-  mhb_touch     *touch   = &d->touch[contact];
-  const mhb_law *law     = touch->law;
-  const double   K[2][2] = {{law->ku[0], law->ku[1]}, {law->ku[1], law->ku[2]}};
-  double         u[3];
+static void closing_direction(mhb_orbit_contacts *d, int contact, double at) {
+  mhb_contact_state *touch   = &d->touch[contact];
+  const mhb_law     *law     = touch->law;
+  const double       K[2][2] = {{law->ku[0], law->ku[1]}, {law->ku[1], law->ku[2]}};
+  double             u[3];
   motion_rate(d, d->solution->x, contact, at, u);
   double x[2] = {K[0][0] * u[1] + K[0][1] * u[2], K[1][0] * u[1] + K[1][1] * u[2]};
   mhb_slip_return(K, law->mu * law->kv * u[0], x, touch->e);
@@ -241,12 +246,12 @@ static void closing_direction(mhb_passage *d, int contact, double at) {
 }
 
 /* Rows of all contacts change by jump[n] times alpha. */
-static void share_jump(mhb_passage *d, int contact, const double *jump, mhb_variation *v) {
+static void share_jump(mhb_orbit_contacts *d, int contact, const double *jump, mhb_variational *v) {
   recoil(d->structure, jump, v->du);
   for (int j = 0; j < d->structure->contacts; j++) {
-    const mhb_touch *touch = &d->touch[j];
-    const double    *f     = jump + 3 * j + 1;
-    double          *out   = v->dsigma + 2 * j;
+    const mhb_contact_state *touch = &d->touch[j];
+    const double            *f     = jump + 3 * j + 1;
+    double                  *out   = v->dsigma + 2 * j;
     out[0] = out[1] = 0;
     if (j == contact || touch->state == MHB_SEPARATE || touch->law->mu == 0) continue;
     out[0] = touch->state == MHB_STICK ? f[0] : touch->e[0] * f[1] - touch->e[1] * f[0];
@@ -255,10 +260,11 @@ static void share_jump(mhb_passage *d, int contact, const double *jump, mhb_vari
 }
 
 /* Stick to slip: dp jumps along (I + G R)^-1 (0, Ku e) until it obeys the friction limit. G: still stuck. */
-static int elastic_onset(mhb_passage *d, double at, mhb_jump *jump, mhb_variation *v) {
-  const mhb_touch *touch = &d->touch[jump->contact];
-  const double    *e = touch->e, *ku = touch->law->ku, mu = touch->law->mu;
-  int              n = 3 * d->structure->contacts, a = 3 * jump->contact;
+static int elastic_onset(mhb_orbit_contacts *d, double at, mhb_saltation *jump,
+                         mhb_variational *v) {
+  const mhb_contact_state *touch = &d->touch[jump->contact];
+  const double            *e = touch->e, *ku = touch->law->ku, mu = touch->law->mu;
+  int                      n = 3 * d->structure->contacts, a = 3 * jump->contact;
   if (!force_rates(d, at, d->rate)) return 0;
   memset(d->other, 0, sizeof(double) * (size_t)n);
   d->other[a + 1] = ku[0] * e[0] + ku[1] * e[1];
@@ -277,11 +283,11 @@ static int elastic_onset(mhb_passage *d, double at, mhb_jump *jump, mhb_variatio
 }
 
 /* Opening and closing: the event shifts by -dv/v', and with it the step of p' from one state to the next. */
-static int elastic_contact(mhb_passage *d, double at, mhb_state to, mhb_jump *jump,
-                           mhb_variation *v) {
-  mhb_touch *touch = &d->touch[jump->contact];
-  mhb_state  from  = touch->state;
-  int        n = 3 * d->structure->contacts, a = 3 * jump->contact;
+static int elastic_contact(mhb_orbit_contacts *d, double at, mhb_state to, mhb_saltation *jump,
+                           mhb_variational *v) {
+  mhb_contact_state *touch = &d->touch[jump->contact];
+  mhb_state          from  = touch->state;
+  int                n = 3 * d->structure->contacts, a = 3 * jump->contact;
   if (!set_rates(d, jump->contact, at)) return 0;
   double speed = touch->rate[0];
   touch->state = to;
@@ -297,7 +303,7 @@ static int elastic_contact(mhb_passage *d, double at, mhb_state to, mhb_jump *ju
 
 /* With residual flexibility the direction of every slipping contact is needed, else of one that turns to or from slip. At n = 0
  * friction has no direction: shortly before. */
-static void look_around(mhb_passage *d, const mhb_event *event, int turns) {
+static void look_around(mhb_orbit_contacts *d, const mhb_event *event, int turns) {
   double at = event->state == MHB_SEPARATE ? event->at - NEAR : event->at;
   for (int j = 0; j < d->structure->contacts; j++) {
     int coupled = d->structure->flexibility && slips(&d->touch[j]);
@@ -305,25 +311,25 @@ static void look_around(mhb_passage *d, const mhb_event *event, int turns) {
   }
 }
 
-int mhb_passage_event(mhb_passage *d, const mhb_event *event, mhb_variation *v) {
-  mhb_touch *touch = &d->touch[event->contact];
-  mhb_state  from = touch->state, to = (mhb_state)event->state;
-  int        friction = touch->law->mu > 0, ok = 1;
-  int        turns = friction && from != MHB_SEPARATE && to != MHB_SEPARATE;
-  mhb_jump   jump  = {.contact = event->contact};
+int mhb_orbit_contacts_event(mhb_orbit_contacts *d, const mhb_event *event, mhb_variational *v) {
+  mhb_contact_state *touch = &d->touch[event->contact];
+  mhb_state          from = touch->state, to = (mhb_state)event->state;
+  int                friction = touch->law->mu > 0, ok = 1;
+  int                turns = friction && from != MHB_SEPARATE && to != MHB_SEPARATE;
+  mhb_saltation      jump  = {.contact = event->contact};
   look_around(d, event, turns);
   if (!d->collecting) {
     if (friction && from == MHB_SEPARATE && to == MHB_SLIDE)
       closing_direction(d, event->contact, event->at);
     if (!d->structure->flexibility || (turns && to == MHB_STICK)) {
       ok = set_rates(d, event->contact, event->at);
-      mhb_tangent_jump(touch, to, &jump); /* measure 0: no other contact takes notice */
+      mhb_saltation_at(touch, to, &jump); /* measure 0: no other contact takes notice */
     } else if (turns) {
       ok = elastic_onset(d, event->at, &jump, v);
     } else {
       ok = elastic_contact(d, event->at, to, &jump, v);
     }
-    mhb_variation_jump(v, &jump);
+    mhb_variational_saltation(v, &jump);
   }
   touch->state = to;
   return ok;

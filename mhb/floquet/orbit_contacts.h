@@ -22,46 +22,50 @@ typedef struct {
 } mhb_solution;
 
 typedef struct {
-  const mhb_structure *structure;
-  const mhb_timetable *timetable;
-  mhb_contact         *contact;
-  int                  m, nb; /* harmonics; 2m+1 */
-  const mhb_solution  *solution;
-  double               omega;                 /* rad/s, fundamental */
-  double              *motion;                /* [pair][3][nb] w = u + R p */
-  mhb_contact_sample  *sample;                /* [pair][room] */
-  int                  room, collecting;      /* looks a pair; noted now, not used */
-  int                 *count;                 /* [pair] looks noted, or used */
-  mhb_contact_info     info;                  /* of a trace */
-  mhb_touch           *touch;                 /* [contact] now */
-  double              *matrix;                /* [n][n] I + G R, n = 3 contacts */
-  int                 *pivot;                 /* [n] */
-  double              *rate, *other, *recoil; /* [n] p' before and after, -R p' */
-  double              *basis;                 /* [2][nb] */
-} mhb_passage;
+  const mhb_modal_structure     *structure;
+  const mhb_transition_schedule *timetable;
+  mhb_contact_evaluator         *contact;
+  int                            m, nb; /* harmonics; 2m+1 */
+  const mhb_solution            *solution;
+  double                         omega;                 /* rad/s, fundamental */
+  double                        *motion;                /* [pair][3][nb] w = u + R p */
+  mhb_contact_sample            *sample;                /* [pair][room] */
+  int                            room, collecting;      /* looks a pair; noted now, not used */
+  int                           *count;                 /* [pair] looks noted, or used */
+  mhb_contact_info               info;                  /* of a trace */
+  mhb_contact_state             *touch;                 /* [contact] now */
+  double                        *matrix;                /* [n][n] I + G R, n = 3 contacts */
+  int                           *pivot;                 /* [n] */
+  double                        *rate, *other, *recoil; /* [n] p' before and after, -R p' */
+  double                        *basis;                 /* [2][nb] */
+} mhb_orbit_contacts;
 
 /* Room for a number of looks at each contact of a pair. SHB_ERR_IO: no memory. */
-shb_status mhb_passage_create(const mhb_structure *structure, const mhb_timetable *timetable,
-                              mhb_contact *contact, int m, int looks, mhb_passage **passage);
-void       mhb_passage_destroy(mhb_passage *passage);
+shb_status mhb_orbit_contacts_create(const mhb_modal_structure     *structure,
+                                     const mhb_transition_schedule *timetable,
+                                     mhb_contact_evaluator *contact, int m, int looks,
+                                     mhb_orbit_contacts **passage);
+void       mhb_orbit_contacts_destroy(mhb_orbit_contacts *passage);
 
 /* The solution to walk along; omega: of the fundamental. */
-void mhb_passage_solution(mhb_passage *passage, const mhb_solution *solution, double omega);
+void mhb_orbit_contacts_solution(mhb_orbit_contacts *passage, const mhb_solution *solution,
+                                 double omega);
 
 /* Go to the start of the timetable. */
-void mhb_passage_begin(mhb_passage *passage, int collecting);
+void mhb_orbit_contacts_begin(mhb_orbit_contacts *passage, int collecting);
 
 /* The looks that were noted. 0: the contact law was lost. */
-int mhb_passage_trace(mhb_passage *passage);
+int mhb_orbit_contacts_trace(mhb_orbit_contacts *passage);
 
 /* Does any contact slip now? */
-int mhb_passage_slips(const mhb_passage *passage);
+int mhb_orbit_contacts_slips(const mhb_orbit_contacts *passage);
 
 /* Relations of the contacts over h seconds around the phase middle; unless first, only of those that slip. 0: singular. */
-int mhb_passage_relate(mhb_passage *passage, double middle, double h, int first,
-                       mhb_relation *relation);
+int mhb_orbit_contacts_relate(mhb_orbit_contacts *passage, double middle, double h, int first,
+                              mhb_linearised_law *relation);
 
 /* Pass a transition, and the variation with it. 0: singular. */
-int mhb_passage_event(mhb_passage *passage, const mhb_event *event, mhb_variation *variation);
+int mhb_orbit_contacts_event(mhb_orbit_contacts *passage, const mhb_event *event,
+                             mhb_variational *variation);
 
 #endif

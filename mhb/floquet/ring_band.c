@@ -7,9 +7,9 @@ static int least(int a, int b) {
   return a < b ? a : b;
 }
 
-int mhb_band_create(int blades, int block, mhb_band *b) {
+int mhb_ring_band_create(int blades, int block, mhb_ring_band *b) {
   int n    = blades * block;
-  *b       = (mhb_band){.n = n, .block = block, .blades = blades};
+  *b       = (mhb_ring_band){.n = n, .block = block, .blades = blades};
   b->width = least(3 * block - 1, n - 1);
   b->row   = calloc((size_t)n * (size_t)(3 * b->width + 1), sizeof *b->row);
   b->pivot = calloc((size_t)n, sizeof *b->pivot);
@@ -22,26 +22,26 @@ int mhb_band_create(int blades, int block, mhb_band *b) {
   return 1;
 }
 
-void mhb_band_destroy(mhb_band *b) {
+void mhb_ring_band_destroy(mhb_ring_band *b) {
   free(b->row);
   free(b->pivot);
   free(b->place);
-  *b = (mhb_band){0};
+  *b = (mhb_ring_band){0};
 }
 
-int mhb_band_near(const mhb_band *b, int blade, int near[3]) {
+int mhb_ring_band_near(const mhb_ring_band *b, int blade, int near[3]) {
   int n = 0;
   for (int step = -1; step <= 1 && n < b->blades; step++)
     near[n++] = (blade + step + b->blades) % b->blades;
   return n;
 }
 
-void mhb_band_clear(mhb_band *b) {
+void mhb_ring_band_clear(mhb_ring_band *b) {
   memset(b->row, 0, sizeof *b->row * (size_t)b->n * (size_t)(3 * b->width + 1));
 }
 
 /* Rows are exchanged from column k on only: the multipliers of earlier columns stay where they were made. */
-int mhb_band_factor(mhb_band *b) {
+int mhb_ring_band_factor(mhb_ring_band *b) {
   int w = b->width, next = 3 * w; /* from an entry to the one below it */
   for (int k = 0; k < b->n; k++) {
     double *top = b->row + (long)k * (3 * w + 1) + w, *best = top;
@@ -81,17 +81,17 @@ MHB_INLINE void solve(int n, int w, const double *row, const int *pivot, mhb_lan
   }
 }
 
-MHB_HOT static void solve_one(const mhb_band *b, mhb_lanes *x) {
+MHB_HOT static void solve_one(const mhb_ring_band *b, mhb_lanes *x) {
   solve(3, 2, b->row, b->pivot, x);
 }
 
-MHB_HOT static void solve_folded(const mhb_band *b, mhb_lanes *x, mhb_lanes *folded) {
+MHB_HOT static void solve_folded(const mhb_ring_band *b, mhb_lanes *x, mhb_lanes *folded) {
   for (int i = 0; i < b->n; i++) folded[b->place[i]] = x[i];
   solve(b->n, b->width, b->row, b->pivot, folded);
   for (int i = 0; i < b->n; i++) x[i] = folded[b->place[i]];
 }
 
-void mhb_band_solve(const mhb_band *b, mhb_lanes *x, mhb_lanes *folded) {
+void mhb_ring_band_solve(const mhb_ring_band *b, mhb_lanes *x, mhb_lanes *folded) {
   if (b->n == 3) {
     solve_one(b, x);
   } else {

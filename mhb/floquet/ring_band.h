@@ -11,27 +11,27 @@ typedef struct {
   double *row;                     /* [n][3 w + 1] of the folded matrix */
   int    *pivot;                   /* [n] */
   int    *place;                   /* [n] where an unknown stands in the folded order */
-} mhb_band;
+} mhb_ring_band;
 
 /* blades of block unknowns each, blade by blade. 0: no memory. */
-int  mhb_band_create(int blades, int block, mhb_band *band);
-void mhb_band_destroy(mhb_band *band);
+int  mhb_ring_band_create(int blades, int block, mhb_ring_band *band);
+void mhb_ring_band_destroy(mhb_ring_band *band);
 
 /* Blades a blade meets, itself among them, each once: up to three. */
-int mhb_band_near(const mhb_band *band, int blade, int near[3]);
+int mhb_ring_band_near(const mhb_ring_band *band, int blade, int near[3]);
 
 /* All zero; then each entry of the matrix is set at its row and column, which must be of blades that meet. */
-void mhb_band_clear(mhb_band *band);
+void mhb_ring_band_clear(mhb_ring_band *band);
 
-static inline double *mhb_band_at(mhb_band *b, int row, int column) {
+static inline double *mhb_ring_band_at(mhb_ring_band *b, int row, int column) {
   return b->row + (long)b->place[row] * (3 * b->width + 1) + b->place[column] - b->place[row] +
          b->width;
 }
 
 /* LU in place. 0: singular. */
-int mhb_band_factor(mhb_band *band);
+int mhb_ring_band_factor(mhb_ring_band *band);
 
 /* x [n] <- matrix^-1 x; folded [n] is scratch. */
-void mhb_band_solve(const mhb_band *band, mhb_lanes *x, mhb_lanes *folded);
+void mhb_ring_band_solve(const mhb_ring_band *band, mhb_lanes *x, mhb_lanes *folded);
 
 #endif

@@ -19,9 +19,10 @@ static int common_divisor(int a, int b) {
   return a;
 }
 
-shb_status mhb_timetable_create(int blades, int pairs, int wave, mhb_timetable *t) {
+shb_status mhb_transition_schedule_create(int blades, int pairs, int wave,
+                                          mhb_transition_schedule *t) {
   int E = ((wave % blades) + blades) % blades, g = common_divisor(blades, E);
-  *t      = (mhb_timetable){.blades = blades, .pairs = pairs, .wave = E, .chunks = blades / g};
+  *t = (mhb_transition_schedule){.blades = blades, .pairs = pairs, .wave = E, .chunks = blades / g};
   t->span = 1. / t->chunks;
   while (((long)t->shift * E - g) % blades) t->shift++;
   t->capacity  = 64 + 64 * pairs * g;
@@ -30,15 +31,15 @@ shb_status mhb_timetable_create(int blades, int pairs, int wave, mhb_timetable *
   t->state     = calloc(n, sizeof *t->state);
   t->permanent = calloc(n, sizeof *t->permanent);
   if (t->event && t->state && t->permanent) return SHB_OK;
-  mhb_timetable_destroy(t);
+  mhb_transition_schedule_destroy(t);
   SHB_FAIL(SHB_ERR_IO, "out of memory for the stability of %d contacts", blades * pairs);
 }
 
-void mhb_timetable_destroy(mhb_timetable *t) {
+void mhb_transition_schedule_destroy(mhb_transition_schedule *t) {
   free(t->event);
   free(t->state);
   free(t->permanent);
-  *t = (mhb_timetable){0};
+  *t = (mhb_transition_schedule){0};
 }
 
 static double fraction(double x) {
@@ -47,11 +48,11 @@ static double fraction(double x) {
 }
 
 /* Phase by which a contact's blade is behind. */
-static double lag(const mhb_timetable *t, int contact) {
+static double lag(const mhb_transition_schedule *t, int contact) {
   return (double)((long)(contact / t->pairs) * t->wave % t->blades) / t->blades;
 }
 
-double mhb_timetable_phase(const mhb_timetable *t, int contact, double at) {
+double mhb_transition_schedule_phase(const mhb_transition_schedule *t, int contact, double at) {
   return fraction(t->start + at - lag(t, contact));
 }
 
@@ -79,7 +80,7 @@ static int stays(const mhb_contact_info *info) {
 }
 
 /* Friction states that a start at this phase would carry along. */
-static int burden(const mhb_timetable *t, const mhb_contact_info *info, double phase) {
+static int burden(const mhb_transition_schedule *t, const mhb_contact_info *info, double phase) {
   int sum = 0;
   for (int j = 0; j < t->blades * t->pairs; j++) {
     const mhb_contact_info *of = &info[j % t->pairs];
@@ -88,7 +89,7 @@ static int burden(const mhb_timetable *t, const mhb_contact_info *info, double p
   return sum;
 }
 
-static void choose_start(mhb_timetable *t, const mhb_contact_info *info) {
+static void choose_start(mhb_transition_schedule *t, const mhb_contact_info *info) {
   int least = -1;
   t->start  = 0;
   for (int a = 0; a < t->pairs; a++) {
@@ -106,7 +107,7 @@ static int later(const mhb_event *a, const mhb_event *b) {
 }
 
 /* Insertion sort: no allocation, few events. */
-static void sort_events(mhb_timetable *t) {
+static void sort_events(mhb_transition_schedule *t) {
   for (int i = 1; i < t->n_events; i++) {
     mhb_event event = t->event[i];
     int       j     = i;
@@ -116,7 +117,7 @@ static void sort_events(mhb_timetable *t) {
 }
 
 /* Events at the very start are over; they come again at its end. */
-static int list_events(mhb_timetable *t, const mhb_contact_info *info) {
+static int list_events(mhb_transition_schedule *t, const mhb_contact_info *info) {
   t->n_events = 0;
   for (int j = 0; j < t->blades * t->pairs; j++) {
     const mhb_contact_info *of = &info[j % t->pairs];
@@ -133,13 +134,13 @@ static int list_events(mhb_timetable *t, const mhb_contact_info *info) {
   return 1;
 }
 
-int mhb_timetable_usable(const mhb_contact_info *info) {
+int mhb_transition_schedule_usable(const mhb_contact_info *info) {
   return (!info->lost || info->error <= TOO_FAR) && info->n_transitions < MHB_MAX_TRANSITIONS;
 }
 
-int mhb_timetable_set(mhb_timetable *t, const mhb_contact_info *info) {
+int mhb_transition_schedule_set(mhb_transition_schedule *t, const mhb_contact_info *info) {
   for (int a = 0; a < t->pairs; a++)
-    if (!mhb_timetable_usable(&info[a])) return 0;
+    if (!mhb_transition_schedule_usable(&info[a])) return 0;
   choose_start(t, info);
   for (int j = 0; j < t->blades * t->pairs; j++) {
     const mhb_contact_info *of = &info[j % t->pairs];

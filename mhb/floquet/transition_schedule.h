@@ -23,21 +23,23 @@ typedef struct {
   mhb_event *event;     /* by time */
   int       *state;     /* [contact] right after start */
   int       *permanent; /* [contact] 1: this state throughout */
-} mhb_timetable;
+} mhb_transition_schedule;
 
 /* SHB_ERR_IO: no memory. */
-shb_status mhb_timetable_create(int blades, int pairs, int wave, mhb_timetable *timetable);
-void       mhb_timetable_destroy(mhb_timetable *timetable);
+shb_status mhb_transition_schedule_create(int blades, int pairs, int wave,
+                                          mhb_transition_schedule *timetable);
+void       mhb_transition_schedule_destroy(mhb_transition_schedule *timetable);
 
 /* Whether the law was evaluated well enough: not lost, or its error below 1e-5 of the force scale; transitions complete. */
-int mhb_timetable_usable(const mhb_contact_info *info);
+int mhb_transition_schedule_usable(const mhb_contact_info *info);
 
 /* From the transitions of the pairs, info[pair]. The start lies right after the event that leaves the fewest friction
  * states. 0: more events than there is room for, or a contact not usable. */
-int mhb_timetable_set(mhb_timetable *timetable, const mhb_contact_info *info);
+int mhb_transition_schedule_set(mhb_transition_schedule *timetable, const mhb_contact_info *info);
 
 /* Phase of contact j's own blade at a phase after the start, in [0, 1). */
-double mhb_timetable_phase(const mhb_timetable *timetable, int contact, double at);
+double mhb_transition_schedule_phase(const mhb_transition_schedule *timetable, int contact,
+                                     double at);
 
 /* Friction states of a contact in a state: stick 2, slip 1, open or permanently stuck 0. */
 static inline int mhb_friction_states(int state, int permanent, double mu) {

@@ -7,11 +7,11 @@
 /* Coefficients of a mode over h: change of q by (q, v), v by (q, v), and the answer to a unit force. */
 enum { DQ_Q, DQ_V, V_Q, V_V, DQ_P, V_P, PROPAGATOR };
 
-static int unknowns(const mhb_structure *s) {
+static int unknowns(const mhb_modal_structure *s) {
   return 3 * s->contacts;
 }
 
-static int modal_rows(const mhb_structure *s) {
+static int modal_rows(const mhb_modal_structure *s) {
   return s->blades * s->modes;
 }
 
@@ -21,8 +21,9 @@ static mhb_lanes *lanes(size_t n) {
   return x;
 }
 
-shb_status mhb_variation_create(const mhb_structure *s, int capacity, mhb_variation **out) {
-  mhb_variation *v = calloc(1, sizeof *v);
+shb_status mhb_variational_create(const mhb_modal_structure *s, int capacity,
+                                  mhb_variational **out) {
+  mhb_variational *v = calloc(1, sizeof *v);
   SHB_CHECK(v, SHB_ERR_IO, "out of memory");
   size_t n = (size_t)unknowns(s), contacts = (size_t)s->contacts;
   size_t blocks = ((size_t)capacity + MHB_LANES - 1) / MHB_LANES;
@@ -39,18 +40,18 @@ shb_status mhb_variation_create(const mhb_structure *s, int capacity, mhb_variat
   v->near       = calloc((size_t)s->blades, sizeof *v->near);
   v->du         = calloc(n, sizeof(double));
   v->dsigma     = calloc(2 * contacts, sizeof(double));
-  int ok        = mhb_band_create(s->blades, 3 * s->pairs, &v->band);
+  int ok        = mhb_ring_band_create(s->blades, 3 * s->pairs, &v->band);
   if (!(ok && v->Y && v->P && v->work && v->relation && v->propagator && v->compliance && v->near &&
         v->du && v->dsigma)) {
-    mhb_variation_destroy(v);
+    mhb_variational_destroy(v);
     SHB_FAIL(SHB_ERR_IO, "out of memory for the stability of %d columns", capacity);
   }
-  for (int b = 0; b < s->blades; b++) v->meets = mhb_band_near(&v->band, b, v->near[b]);
+  for (int b = 0; b < s->blades; b++) v->meets = mhb_ring_band_near(&v->band, b, v->near[b]);
   *out = v;
   return SHB_OK;
 }
 
-void mhb_variation_destroy(mhb_variation *v) {
+void mhb_variational_destroy(mhb_variational *v) {
   if (!v) return;
   free(v->Y);
   free(v->P);
@@ -59,13 +60,13 @@ void mhb_variation_destroy(mhb_variation *v) {
   free(v->propagator);
   free(v->compliance);
   free(v->near);
-  mhb_band_destroy(&v->band);
+  mhb_ring_band_destroy(&v->band);
   free(v->du);
   free(v->dsigma);
   free(v);
 }
 
-void mhb_variation_clear(mhb_variation *v, int columns) {
+void mhb_variational_clear(mhb_variational *v, int columns) {
   v->columns    = columns;
   v->blocks     = (columns + MHB_LANES - 1) / MHB_LANES;
   size_t blocks = (size_t)v->blocks;
@@ -88,16 +89,17 @@ static void set_propagator(double w, double zeta, double h, double *e) {
   e[V_P]        = decay * ratio;
 }
 
-static void set_compliance(mhb_variation *v) {
-  const mhb_structure *s = v->structure;
-  int                  n = unknowns(s), n3 = 3 * s->pairs;
+static void set_compliance(mhb_variational *v) {
+  const mhb_modal_structure *s = v->structure;
+  int                        n = unknowns(s), n3 = 3 * s->pairs;
   memset(v->compliance, 0, sizeof(double) * (size_t)n * (size_t)n);
   for (int k = 0; k < s->blades * s->sides * s->sides; k++) {
     int blade = k / (s->sides * s->sides), to = k / s->sides % s->sides, by = k % s->sides;
     const double *phi = s->shape + (size_t)to * (size_t)(s->modes * n3);
     const double *psi = s->shape + (size_t)by * (size_t)(s->modes * n3);
-    double *C = v->compliance + (size_t)(3 * mhb_structure_contact(s, blade, to)) * (size_t)n +
-                3 * mhb_structure_contact(s, blade, by);
+    double       *C   = v->compliance +
+                (size_t)(3 * mhb_modal_structure_contact(s, blade, to)) * (size_t)n +
+                3 * mhb_modal_structure_contact(s, blade, by);
     for (int i = 0; i < s->modes; i++) {
       double answer = v->propagator[i * PROPAGATOR + DQ_P];
       for (int r = 0; r < n3; r++)
@@ -107,10 +109,10 @@ static void set_compliance(mhb_variation *v) {
   }
 }
 
-void mhb_variation_length(mhb_variation *v, double h) {
-  const mhb_structure *s = v->structure;
+void mhb_variational_length(mhb_variational *v, double h) {
+  const mhb_modal_structure *s = v->structure;
   if (h == v->h) return;
-  mhb_variation_settle(v);
+  mhb_variational_settle(v);
   v->h = h;
   for (int i = 0; i < s->modes; i++)
     set_propagator(s->omega[i], s->zeta[i], h, v->propagator + i * PROPAGATOR);
@@ -136,22 +138,23 @@ MHB_INLINE void advance_blade(int sides, int n3, int modes, const double *propag
   }
 }
 
-MHB_HOT static void advance_one(const mhb_variation *v, mhb_lanes *Y, const mhb_lanes *P,
+MHB_HOT static void advance_one(const mhb_variational *v, mhb_lanes *Y, const mhb_lanes *P,
                                 mhb_lanes *W) {
-  const mhb_structure *s      = v->structure;
-  mhb_lanes            sum[3] = {W[0], W[1], W[2]};
+  const mhb_modal_structure *s      = v->structure;
+  mhb_lanes                  sum[3] = {W[0], W[1], W[2]};
   advance_blade(1, 3, s->modes, v->propagator, (const double *const[2]){s->shape, NULL},
                 (mhb_lanes *const[2]){Y, Y + s->modes}, (const mhb_lanes *const[2]){P, NULL},
                 (mhb_lanes *const[2]){sum, NULL});
   for (int r = 0; r < 3; r++) W[r] = sum[r];
 }
 
-MHB_HOT static void advance_any(const mhb_variation *v, mhb_lanes *Y, const mhb_lanes *P,
+MHB_HOT static void advance_any(const mhb_variational *v, mhb_lanes *Y, const mhb_lanes *P,
                                 mhb_lanes *W) {
-  const mhb_structure *s  = v->structure;
-  int                  n3 = 3 * s->pairs, m = s->modes;
+  const mhb_modal_structure *s  = v->structure;
+  int                        n3 = 3 * s->pairs, m = s->modes;
   for (int b = 0; b < s->blades; b++) {
-    int at[2] = {3 * mhb_structure_contact(s, b, 0), 3 * mhb_structure_contact(s, b, s->sides - 1)};
+    int at[2] = {3 * mhb_modal_structure_contact(s, b, 0),
+                 3 * mhb_modal_structure_contact(s, b, s->sides - 1)};
     advance_blade(s->sides, n3, m, v->propagator,
                   (const double *const[2]){s->shape, s->shape + (s->sides - 1) * m * n3},
                   (mhb_lanes *const[2]){Y + b * m, Y + (s->blades + b) * m},
@@ -160,13 +163,13 @@ MHB_HOT static void advance_any(const mhb_variation *v, mhb_lanes *Y, const mhb_
   }
 }
 
-MHB_HOT static void feel(const mhb_variation *v, mhb_lanes *Y, const mhb_lanes *P) {
-  const mhb_structure *s  = v->structure;
-  int                  n3 = 3 * s->pairs, m = s->modes;
+MHB_HOT static void feel(const mhb_variational *v, mhb_lanes *Y, const mhb_lanes *P) {
+  const mhb_modal_structure *s  = v->structure;
+  int                        n3 = 3 * s->pairs, m = s->modes;
   for (int k = 0; k < s->blades * s->sides; k++) {
     int              b = k / s->sides, side = k % s->sides;
     const double    *shape = s->shape + side * m * n3;
-    const mhb_lanes *p     = P + 3 * mhb_structure_contact(s, b, side);
+    const mhb_lanes *p     = P + 3 * mhb_modal_structure_contact(s, b, side);
     for (int i = 0; i < m; i++) {
       mhb_lanes force = {0};
       for (int r = 0; r < n3; r++) force += shape[i * n3 + r] * p[r];
@@ -176,7 +179,7 @@ MHB_HOT static void feel(const mhb_variation *v, mhb_lanes *Y, const mhb_lanes *
   }
 }
 
-void mhb_variation_settle(mhb_variation *v) {
+void mhb_variational_settle(mhb_variational *v) {
   if (v->h < 0) return;
   int n = unknowns(v->structure);
   for (int k = 0; k < v->blocks; k++) {
@@ -225,11 +228,11 @@ void mhb_lu_solve(int n, const double *A, const int *pivot, double *x) {
 }
 
 /* Element of I + compliance hold/2 + R grow. */
-static double coupling(const mhb_variation *v, int row, int column) {
-  const mhb_relation *relation = &v->relation[column / 3];
-  long                first    = (long)row * v->band.n + column - column % 3;
-  const double       *C = v->compliance + first, *R = v->structure->flexibility;
-  double              sum = row == column;
+static double coupling(const mhb_variational *v, int row, int column) {
+  const mhb_linearised_law *relation = &v->relation[column / 3];
+  long                      first    = (long)row * v->band.n + column - column % 3;
+  const double             *C = v->compliance + first, *R = v->structure->flexibility;
+  double                    sum = row == column;
   for (int k = 0; k < 3; k++) {
     sum += .5 * C[k] * relation->hold[k][column % 3];
     if (R) sum += R[first + k] * relation->grow[k][column % 3];
@@ -237,16 +240,16 @@ static double coupling(const mhb_variation *v, int row, int column) {
   return sum;
 }
 
-int mhb_variation_couple(mhb_variation *v) {
+int mhb_variational_couple(mhb_variational *v) {
   int block = v->band.block;
-  mhb_band_clear(&v->band);
+  mhb_ring_band_clear(&v->band);
   for (int row = 0; row < v->band.n; row++)
     for (int i = 0; i < v->meets; i++) {
       int first = v->near[row / block][i] * block;
       for (int column = first; column < first + block; column++)
-        *mhb_band_at(&v->band, row, column) = coupling(v, row, column);
+        *mhb_ring_band_at(&v->band, row, column) = coupling(v, row, column);
     }
-  return mhb_band_factor(&v->band);
+  return mhb_ring_band_factor(&v->band);
 }
 
 /* y = (v, sigma) of contact j */
@@ -261,7 +264,7 @@ MHB_INLINE mhb_lanes dot3(const double a[3], const mhb_lanes *x) {
 }
 
 /* D <- D - M x, M [n][n] between contacts of blades that meet */
-MHB_INLINE void subtract_product(const mhb_variation *v, int n, int block, int meets,
+MHB_INLINE void subtract_product(const mhb_variational *v, int n, int block, int meets,
                                  const double *M, const mhb_lanes *x, mhb_lanes *D) {
   for (int r = 0; r < n; r++) {
     const double *row = M + (long)r * n;
@@ -275,11 +278,11 @@ MHB_INLINE void subtract_product(const mhb_variation *v, int n, int block, int m
 }
 
 /* The change of du from that without contact (D), the mean forces P, and sigma at the end. */
-MHB_INLINE void solve_contacts(const mhb_variation *v, int n, int block, int meets, mhb_lanes *u,
+MHB_INLINE void solve_contacts(const mhb_variational *v, int n, int block, int meets, mhb_lanes *u,
                                mhb_lanes *P, mhb_lanes *D, mhb_lanes *other) {
   mhb_lanes *sigma = u + n, y[3];
   for (int j = 0; j < n / 3; j++) {
-    const mhb_relation *relation = &v->relation[j];
+    const mhb_linearised_law *relation = &v->relation[j];
     contact_rows(u, sigma, j, y);
     for (int r = 0; r < 3; r++) {
       P[3 * j + r]     = dot3(relation->a[r], y);
@@ -289,9 +292,9 @@ MHB_INLINE void solve_contacts(const mhb_variation *v, int n, int block, int mee
   subtract_product(v, n, block, meets, v->compliance, P, D);
   if (v->structure->flexibility)
     subtract_product(v, n, block, meets, v->structure->flexibility, other, D);
-  mhb_band_solve(&v->band, D, other);
+  mhb_ring_band_solve(&v->band, D, other);
   for (int j = 0; j < n / 3; j++) {
-    const mhb_relation *relation = &v->relation[j];
+    const mhb_linearised_law *relation = &v->relation[j];
     contact_rows(u, sigma, j, y);
     for (int r = 0; r < 3; r++) P[3 * j + r] += .5 * dot3(relation->hold[r], D + 3 * j);
     for (int i = 0; i < 2; i++)
@@ -300,19 +303,19 @@ MHB_INLINE void solve_contacts(const mhb_variation *v, int n, int block, int mee
   }
 }
 
-MHB_HOT static void solve_one(const mhb_variation *v, mhb_lanes *u, mhb_lanes *P, mhb_lanes *D) {
+MHB_HOT static void solve_one(const mhb_variational *v, mhb_lanes *u, mhb_lanes *P, mhb_lanes *D) {
   mhb_lanes other[3];
   solve_contacts(v, 3, 3, 1, u, P, D, other);
 }
 
-MHB_HOT static void solve_any(const mhb_variation *v, mhb_lanes *u, mhb_lanes *P, mhb_lanes *D) {
+MHB_HOT static void solve_any(const mhb_variational *v, mhb_lanes *u, mhb_lanes *P, mhb_lanes *D) {
   int n = unknowns(v->structure);
   solve_contacts(v, n, v->band.block, v->meets, u, P, D, v->work + n);
 }
 
-void mhb_variation_step(mhb_variation *v) {
-  const mhb_structure *s = v->structure;
-  int                  n = unknowns(s), one = n == 3 && s->sides == 1;
+void mhb_variational_step(mhb_variational *v) {
+  const mhb_modal_structure *s = v->structure;
+  int                        n = unknowns(s), one = n == 3 && s->sides == 1;
   for (int k = 0; k < v->blocks; k++) {
     mhb_lanes *Y = v->Y + (long)k * v->rows, *P = v->P + (long)k * n;
     mhb_lanes *u = Y + 2 * modal_rows(s);
@@ -327,9 +330,9 @@ void mhb_variation_step(mhb_variation *v) {
   }
 }
 
-void mhb_variation_jump(mhb_variation *v, const mhb_jump *jump) {
-  const mhb_structure *s = v->structure;
-  int                  n = unknowns(s), j = jump->contact;
+void mhb_variational_saltation(mhb_variational *v, const mhb_saltation *jump) {
+  const mhb_modal_structure *s = v->structure;
+  int                        n = unknowns(s), j = jump->contact;
   for (int k = 0; k < v->blocks; k++) {
     mhb_lanes *u = v->Y + (long)k * v->rows + 2 * modal_rows(s), *sigma = u + n, y[3];
     contact_rows(u, sigma, j, y);

@@ -19,56 +19,56 @@
 typedef struct {
   double a[3][3], hold[3][3], b[3][3], grow[3][3];
   double keep[2][3], gain[2][3];
-} mhb_relation;
+} mhb_linearised_law;
 
 /* What an event does to the rows of contact j: sigma = set y; and with residual flexibility, alpha = measure . y times
  * the workspace's du and dsigma to all rows. */
 typedef struct {
   int    contact;
   double set[2][3], measure[3];
-} mhb_jump;
+} mhb_saltation;
 
 typedef struct {
-  const mhb_structure *structure;
-  int                  columns, blocks, rows, capacity; /* in use; room for capacity columns */
-  mhb_lanes           *Y;                               /* [block][rows] */
-  mhb_lanes    *P;    /* [block][n] mean force of the last sub-step, not yet felt by the modes */
-  mhb_lanes    *work; /* [3][n] */
-  mhb_relation *relation;   /* [contact] of the coming sub-step */
-  double        h;          /* s, of the propagator */
-  double       *propagator; /* [mode][6] */
-  double       *compliance; /* [n][n] change of du by a unit mean force */
-  int (*near)[3];           /* [blade] the blades that its contacts meet */
-  int      meets;           /* how many */
-  mhb_band band;            /* what a change of du meets */
-  double  *du, *dsigma;     /* [n], [2 contacts] of a jump */
-} mhb_variation;
+  const mhb_modal_structure *structure;
+  int                 columns, blocks, rows, capacity; /* in use; room for capacity columns */
+  mhb_lanes          *Y;                               /* [block][rows] */
+  mhb_lanes          *P; /* [block][n] mean force of the last sub-step, not yet felt by the modes */
+  mhb_lanes          *work;       /* [3][n] */
+  mhb_linearised_law *relation;   /* [contact] of the coming sub-step */
+  double              h;          /* s, of the propagator */
+  double             *propagator; /* [mode][6] */
+  double             *compliance; /* [n][n] change of du by a unit mean force */
+  int (*near)[3];                 /* [blade] the blades that its contacts meet */
+  int           meets;            /* how many */
+  mhb_ring_band band;             /* what a change of du meets */
+  double       *du, *dsigma;      /* [n], [2 contacts] of a jump */
+} mhb_variational;
 
 /* Room for capacity columns. SHB_ERR_IO: no memory. The structure must outlive it. */
-shb_status mhb_variation_create(const mhb_structure *structure, int capacity,
-                                mhb_variation **variation);
-void       mhb_variation_destroy(mhb_variation *variation);
+shb_status mhb_variational_create(const mhb_modal_structure *structure, int capacity,
+                                  mhb_variational **variation);
+void       mhb_variational_destroy(mhb_variational *variation);
 
 /* All rows zero, for a number of columns. */
-void mhb_variation_clear(mhb_variation *variation, int columns);
+void mhb_variational_clear(mhb_variational *variation, int columns);
 
-static inline double *mhb_variation_at(mhb_variation *v, int row, int column) {
+static inline double *mhb_variational_at(mhb_variational *v, int row, int column) {
   return (double *)&v->Y[(long)(column / MHB_LANES) * v->rows + row] + column % MHB_LANES;
 }
 
 /* Sub-steps of length h from here on. */
-void mhb_variation_length(mhb_variation *variation, double h);
+void mhb_variational_length(mhb_variational *variation, double h);
 
 /* Take the relations into use. 0: singular. */
-int mhb_variation_couple(mhb_variation *variation);
+int mhb_variational_couple(mhb_variational *variation);
 
 /* One sub-step of all columns. */
-void mhb_variation_step(mhb_variation *variation);
+void mhb_variational_step(mhb_variational *variation);
 
-void mhb_variation_jump(mhb_variation *variation, const mhb_jump *jump);
+void mhb_variational_saltation(mhb_variational *variation, const mhb_saltation *jump);
 
 /* Let the modes feel the last mean force: q and v are valid only after this. */
-void mhb_variation_settle(mhb_variation *variation);
+void mhb_variational_settle(mhb_variational *variation);
 
 /* Row-major LU with row exchanges, in place. 0: singular. */
 int  mhb_lu(int n, double *A, int *pivot);

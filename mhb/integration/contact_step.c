@@ -9,7 +9,7 @@ enum { S = MHB_STAGES, F = MHB_STAGE_FORCES, SAMPLES = 8, ITERATIONS = 20 };
 
 static const double PI = 3.14159265358979323846;
 
-mhb_law mhb_rub_law(const mhb_law *law) {
+mhb_law mhb_contact_step_law(const mhb_law *law) {
   mhb_law out = *law;
   if (!(law->mu > 0)) out.mu = out.ku[0] = out.ku[1] = out.ku[2] = 0;
   return out;
@@ -22,7 +22,7 @@ static void spring(const mhb_law *law, const double *s, double x[2]) {
 }
 
 /* u = y - S p */
-static void answer(const double *matrix, const double *y, mhb_rub_step *step) {
+static void answer(const double *matrix, const double *y, mhb_contact_step *step) {
   for (int i = 0; i < F; i++) {
     double sum = y[i];
     for (int k = 0; k < F; k++) sum -= matrix[i * F + k] * step->p[k];
@@ -47,8 +47,8 @@ static void factor_stick(const mhb_law *law, const double *matrix, double *stick
   mhb_lu(F, stick, pivot);
 }
 
-static void solve_stick(const mhb_law *law, const mhb_rub *rub, const double *matrix, double *stick,
-                        int *pivot, const double *y, mhb_rub_step *step) {
+static void solve_stick(const mhb_law *law, const mhb_contact_point *rub, const double *matrix,
+                        double *stick, int *pivot, const double *y, mhb_contact_step *step) {
   if (pivot[0] < 0) factor_stick(law, matrix, stick, pivot);
   for (int i = 0; i < S; i++) {
     const double *at = y + 3 * i;
@@ -68,7 +68,7 @@ typedef struct {
   double e[S][2], Ke[S][2], Kq[S][2];
 } heading;
 
-static void set_forces(const mhb_law *law, mhb_rub_step *step, heading *d) {
+static void set_forces(const mhb_law *law, mhb_contact_step *step, heading *d) {
   for (int i = 0; i < S; i++) {
     double c = cos(step->theta[i]), s = sin(step->theta[i]), q[2] = {-s, c};
     d->e[i][0] = c;
@@ -82,8 +82,8 @@ static void set_forces(const mhb_law *law, mhb_rub_step *step, heading *d) {
 }
 
 /* Its size, less what rounding may leave. */
-static double slip_residual(const mhb_radau *rule, const mhb_law *law, const mhb_rub *rub,
-                            const mhb_rub_step *step, const heading *d, double r[F]) {
+static double slip_residual(const mhb_radau *rule, const mhb_law *law, const mhb_contact_point *rub,
+                            const mhb_contact_step *step, const heading *d, double r[F]) {
   double worst = 0;
   for (int i = 0; i < S; i++) {
     const double *u = step->u + 3 * i;
@@ -102,7 +102,7 @@ static double slip_residual(const mhb_radau *rule, const mhb_law *law, const mhb
 }
 
 static void slip_jacobian(const mhb_radau *rule, const mhb_law *law, const double *matrix,
-                          const mhb_rub_step *step, const heading *d, double J[F * F]) {
+                          const mhb_contact_step *step, const heading *d, double J[F * F]) {
   for (int j = 0; j < S; j++) {
     double c = d->e[j][0], s = d->e[j][1], mn = law->mu * step->n[j];
     double by_n[3] = {1, law->mu * c, law->mu * s}, by_theta[3] = {0, -mn * s, mn * c};
@@ -130,7 +130,7 @@ static void slip_jacobian(const mhb_radau *rule, const mhb_law *law, const doubl
   }
 }
 
-static int slip_update(const double r[F], mhb_rub_step *step) {
+static int slip_update(const double r[F], mhb_contact_step *step) {
   double turn = 0;
   for (int i = 0; i < F; i++)
     if (!isfinite(r[i])) return 0;
@@ -145,8 +145,9 @@ static int slip_update(const double r[F], mhb_rub_step *step) {
 }
 
 /* Where slip begins: the normal load and the slider's path for friction of a fixed direction. */
-static void begin_slip(const mhb_radau *rule, const mhb_law *law, const mhb_rub *rub,
-                       const double *matrix, const double *y, double scale, mhb_rub_step *step) {
+static void begin_slip(const mhb_radau *rule, const mhb_law *law, const mhb_contact_point *rub,
+                       const double *matrix, const double *y, double scale,
+                       mhb_contact_step *step) {
   heading d;
   double  rest[S];
   for (int round = 0; round < 3; round++) {
@@ -168,8 +169,8 @@ static void begin_slip(const mhb_radau *rule, const mhb_law *law, const mhb_rub 
   }
 }
 
-static int solve_slip(const mhb_radau *rule, const mhb_law *law, const mhb_rub *rub,
-                      const double *matrix, const double *y, double scale, mhb_rub_step *step) {
+static int solve_slip(const mhb_radau *rule, const mhb_law *law, const mhb_contact_point *rub,
+                      const double *matrix, const double *y, double scale, mhb_contact_step *step) {
   heading d;
   double  r[F], J[F * F], last = INFINITY;
   int     pivot[F];
@@ -190,7 +191,8 @@ static int solve_slip(const mhb_radau *rule, const mhb_law *law, const mhb_rub *
 
 /* ---- a step ---- */
 
-void mhb_rub_guess(const mhb_law *law, const mhb_rub *rub, double h, mhb_rub_step *step) {
+void mhb_contact_step_guess(const mhb_law *law, const mhb_contact_point *rub, double h,
+                            mhb_contact_step *step) {
   for (int i = 0; i < S; i++) {
     memcpy(step->p + 3 * i, rub->p, sizeof rub->p);
     memcpy(step->u + 3 * i, rub->u, sizeof rub->u);
@@ -200,8 +202,9 @@ void mhb_rub_guess(const mhb_law *law, const mhb_rub *rub, double h, mhb_rub_ste
   }
 }
 
-int mhb_rub_solve(const mhb_radau *rule, const mhb_law *law, const mhb_rub *rub, const double *S_,
-                  double *stick, int *pivot, const double *y, double scale, mhb_rub_step *step) {
+int mhb_contact_step_solve(const mhb_radau *rule, const mhb_law *law, const mhb_contact_point *rub,
+                           const double *S_, double *stick, int *pivot, const double *y,
+                           double scale, mhb_contact_step *step) {
   switch (rub->state) {
     case MHB_STICK:
       solve_stick(law, rub, S_, stick, pivot, y, step);
@@ -239,27 +242,28 @@ static double slider_speed(const mhb_radau *rule, const double kappa[S], double 
   return value;
 }
 
-double mhb_rub_excess(const mhb_radau *rule, const mhb_law *law, const mhb_rub *rub,
-                      const mhb_rub_step *step, mhb_rub_event event, double tau) {
-  if (event == MHB_GRIPS)
+double mhb_contact_step_excess(const mhb_radau *rule, const mhb_law *law,
+                               const mhb_contact_point *rub, const mhb_contact_step *step,
+                               mhb_contact_event event, double tau) {
+  if (event == MHB_SLIP_TO_STICK)
     return -.5 * (law->ku[0] + law->ku[2]) * slider_speed(rule, step->kappa, tau);
   double n = law->n0 + law->kv * cubic(rule, rub->u[0], step->u, 3, tau);
-  if (event == MHB_CLOSES) return n;
-  if (event == MHB_OPENS) return -n;
+  if (event == MHB_CONTACT_CLOSES) return n;
+  if (event == MHB_CONTACT_OPENS) return -n;
   double fu = cubic(rule, rub->p[1], step->p + 1, 3, tau);
   double fw = cubic(rule, rub->p[2], step->p + 2, 3, tau);
   return hypot(fu, fw) - law->mu * n;
 }
 
 /* The root between a (no excess) and b (excess), by Illinois. */
-static double root_of(const mhb_radau *rule, const mhb_law *law, const mhb_rub *rub,
-                      const mhb_rub_step *step, mhb_rub_event event, double a, double b) {
-  double fa = mhb_rub_excess(rule, law, rub, step, event, a);
-  double fb = mhb_rub_excess(rule, law, rub, step, event, b);
+static double root_of(const mhb_radau *rule, const mhb_law *law, const mhb_contact_point *rub,
+                      const mhb_contact_step *step, mhb_contact_event event, double a, double b) {
+  double fa = mhb_contact_step_excess(rule, law, rub, step, event, a);
+  double fb = mhb_contact_step_excess(rule, law, rub, step, event, b);
   if (fa >= 0) return a;
   for (int k = 0, side = 0; k < 60 && b - a > 1e-14; k++) {
     double c = (fb * a - fa * b) / (fb - fa);
-    double f = mhb_rub_excess(rule, law, rub, step, event, c);
+    double f = mhb_contact_step_excess(rule, law, rub, step, event, c);
     if (f == 0) return c;
     if (f > 0) {
       b  = c;
@@ -276,32 +280,34 @@ static double root_of(const mhb_radau *rule, const mhb_law *law, const mhb_rub *
   return b;
 }
 
-static double first_of(const mhb_radau *rule, const mhb_law *law, const mhb_rub *rub,
-                       const mhb_rub_step *step, double tolerance, mhb_rub_event event) {
+static double first_of(const mhb_radau *rule, const mhb_law *law, const mhb_contact_point *rub,
+                       const mhb_contact_step *step, double tolerance, mhb_contact_event event) {
   for (int k = 1; k <= SAMPLES; k++) {
     double tau = (double)k / SAMPLES;
-    if (mhb_rub_excess(rule, law, rub, step, event, tau) > tolerance)
+    if (mhb_contact_step_excess(rule, law, rub, step, event, tau) > tolerance)
       return root_of(rule, law, rub, step, event, (double)(k - 1) / SAMPLES, tau);
   }
   return 2;
 }
 
-double mhb_rub_first(const mhb_radau *rule, const mhb_law *law, const mhb_rub *rub,
-                     const mhb_rub_step *step, double tolerance, mhb_rub_event *event) {
+double mhb_contact_step_first(const mhb_radau *rule, const mhb_law *law,
+                              const mhb_contact_point *rub, const mhb_contact_step *step,
+                              double tolerance, mhb_contact_event *event) {
   if (rub->state == MHB_SEPARATE) {
-    *event = MHB_CLOSES;
-    return first_of(rule, law, rub, step, tolerance, MHB_CLOSES);
+    *event = MHB_CONTACT_CLOSES;
+    return first_of(rule, law, rub, step, tolerance, MHB_CONTACT_CLOSES);
   }
-  mhb_rub_event other = rub->state == MHB_STICK ? MHB_SLIPS : MHB_GRIPS;
-  double        opens = first_of(rule, law, rub, step, tolerance, MHB_OPENS), ends = 2;
+  mhb_contact_event other = rub->state == MHB_STICK ? MHB_STICK_TO_SLIP : MHB_SLIP_TO_STICK;
+  double            opens = first_of(rule, law, rub, step, tolerance, MHB_CONTACT_OPENS), ends = 2;
   if (law->mu > 0) ends = first_of(rule, law, rub, step, tolerance, other);
-  *event = ends <= opens ? other : MHB_OPENS;
+  *event = ends <= opens ? other : MHB_CONTACT_OPENS;
   return ends <= opens ? ends : opens;
 }
 
 /* ---- between steps ---- */
 
-void mhb_rub_advance(const mhb_law *law, const mhb_rub_step *step, double h, mhb_rub *rub) {
+void mhb_contact_step_advance(const mhb_law *law, const mhb_contact_step *step, double h,
+                              mhb_contact_point *rub) {
   const int end = 3 * (S - 1);
   memcpy(rub->u, step->u + end, sizeof rub->u);
   memcpy(rub->p, step->p + end, sizeof rub->p);
@@ -313,7 +319,8 @@ void mhb_rub_advance(const mhb_law *law, const mhb_rub_step *step, double h, mhb
   rub->lambda = step->kappa[S - 1] / h;
 }
 
-void mhb_rub_change(const mhb_law *law, mhb_state state, double direction, mhb_rub *rub) {
+void mhb_contact_step_change(const mhb_law *law, mhb_state state, double direction,
+                             mhb_contact_point *rub) {
   double x[2];
   spring(law, rub->u + 1, x);
   if (state == MHB_SEPARATE || rub->state == MHB_SEPARATE) {
@@ -328,8 +335,9 @@ void mhb_rub_change(const mhb_law *law, mhb_state state, double direction, mhb_r
   rub->state = state;
 }
 
-double mhb_rub_closing(const mhb_radau *rule, const mhb_law *law, const mhb_rub *rub,
-                       const mhb_rub_step *step, double *direction) {
+double mhb_contact_step_closing(const mhb_radau *rule, const mhb_law *law,
+                                const mhb_contact_point *rub, const mhb_contact_step *step,
+                                double *direction) {
   double rate[3]; /* of the cubic at 0 */
   for (int c = 0; c < 3; c++) {
     rate[c] = rule->dense[1][0] * rub->p[c];

@@ -19,19 +19,24 @@ typedef struct {
   double    theta;      /* slip: direction of the friction */
   double    lambda;     /* slip: speed of the slider at the end of the last step, m/s */
   double    u[3], p[3]; /* now: m, N */
-} mhb_rub;
+} mhb_contact_point;
 
 /* And over a step, at the stages. */
 typedef struct {
   double u[MHB_STAGE_FORCES], p[MHB_STAGE_FORCES];            /* [stage][axis] */
   double n[MHB_STAGES], theta[MHB_STAGES], kappa[MHB_STAGES]; /* slip */
-} mhb_rub_step;
+} mhb_contact_step;
 
 /* What may end a piece. */
-typedef enum { MHB_CLOSES, MHB_OPENS, MHB_SLIPS, MHB_GRIPS } mhb_rub_event;
+typedef enum {
+  MHB_CONTACT_CLOSES,
+  MHB_CONTACT_OPENS,
+  MHB_STICK_TO_SLIP,
+  MHB_SLIP_TO_STICK
+} mhb_contact_event;
 
 /* The law without friction has none: mu = 0 sticks by no spring. */
-mhb_law mhb_rub_law(const mhb_law *law);
+mhb_law mhb_contact_step_law(const mhb_law *law);
 
 /* The forces of a step that starts at rub, given y = u - (own forces' part), u = y - S p.
  *   S      in      [9][9] m/N
@@ -39,28 +44,35 @@ mhb_law mhb_rub_law(const mhb_law *law);
  *   scale  in      N, forces are found to 1e-13 of it
  *   step   in out  a guess of p, n, theta, kappa; the result
  * 0: not found. */
-int mhb_rub_solve(const mhb_radau *rule, const mhb_law *law, const mhb_rub *rub, const double *S,
-                  double *stick, int *pivot, const double *y, double scale, mhb_rub_step *step);
+int mhb_contact_step_solve(const mhb_radau *rule, const mhb_law *law, const mhb_contact_point *rub,
+                           const double *S, double *stick, int *pivot, const double *y,
+                           double scale, mhb_contact_step *step);
 
 /* A guess for a step of h seconds, from what the contact did before it. */
-void mhb_rub_guess(const mhb_law *law, const mhb_rub *rub, double h, mhb_rub_step *step);
+void mhb_contact_step_guess(const mhb_law *law, const mhb_contact_point *rub, double h,
+                            mhb_contact_step *step);
 
 /* The excess of an event at tau in [0, 1], N: the state has ended where it is positive. */
-double mhb_rub_excess(const mhb_radau *rule, const mhb_law *law, const mhb_rub *rub,
-                      const mhb_rub_step *step, mhb_rub_event event, double tau);
+double mhb_contact_step_excess(const mhb_radau *rule, const mhb_law *law,
+                               const mhb_contact_point *rub, const mhb_contact_step *step,
+                               mhb_contact_event event, double tau);
 
 /* The first event of a step whose excess passes the tolerance (N): its place in [0, 1]; 2: none. */
-double mhb_rub_first(const mhb_radau *rule, const mhb_law *law, const mhb_rub *rub,
-                     const mhb_rub_step *step, double tolerance, mhb_rub_event *event);
+double mhb_contact_step_first(const mhb_radau *rule, const mhb_law *law,
+                              const mhb_contact_point *rub, const mhb_contact_step *step,
+                              double tolerance, mhb_contact_event *event);
 
 /* To the end of a step of h seconds. */
-void mhb_rub_advance(const mhb_law *law, const mhb_rub_step *step, double h, mhb_rub *rub);
+void mhb_contact_step_advance(const mhb_law *law, const mhb_contact_step *step, double h,
+                              mhb_contact_point *rub);
 
 /* Into another state, where it is now. direction: of the friction, for a slip that begins without any. */
-void mhb_rub_change(const mhb_law *law, mhb_state state, double direction, mhb_rub *rub);
+void mhb_contact_step_change(const mhb_law *law, mhb_state state, double direction,
+                             mhb_contact_point *rub);
 
 /* Rates of (|f|, n) and direction of f at the start of a step: what decides whether a closing contact sticks. */
-double mhb_rub_closing(const mhb_radau *rule, const mhb_law *law, const mhb_rub *rub,
-                       const mhb_rub_step *step, double *direction);
+double mhb_contact_step_closing(const mhb_radau *rule, const mhb_law *law,
+                                const mhb_contact_point *rub, const mhb_contact_step *step,
+                                double *direction);
 
 #endif

@@ -32,14 +32,14 @@ static void settle(mhb_integrator *g) {
     mhb_integrator_free(g, b, 0, w + b * n3);
     for (int side = 0; side < g->chain.s.sides; side++) {
       const double *shape = g->chain.shape + side * n3 * m;
-      double       *at    = w + 3 * mhb_structure_contact(&g->chain.s, b, side);
+      double       *at    = w + 3 * mhb_modal_structure_contact(&g->chain.s, b, side);
       for (int k = 0; k < n3 * m; k++) at[k / m] += shape[k] * g->z[b * m + k % m];
     }
   }
   for (int round = 0; round < (R ? 400 : 2); round++)
     for (int j = 0; j < g->contacts; j++) {
-      const mhb_law *law = &g->law[j % g->pairs];
-      mhb_rub       *rub = &g->rub[j];
+      const mhb_law     *law = &g->law[j % g->pairs];
+      mhb_contact_point *rub = &g->rub[j];
       for (int c = 0; c < 3; c++) {
         rub->u[c] = w[3 * j + c];
         for (int k = 0; R && k < n; k++)
@@ -55,10 +55,10 @@ static void settle(mhb_integrator *g) {
       for (int c = 1; c < 3 && friction > limit; c++) rub->p[c] *= limit / friction;
     }
   for (int j = 0; j < g->contacts; j++) {
-    const mhb_law *law = &g->law[j % g->pairs];
-    mhb_rub       *rub = &g->rub[j];
-    rub->state         = MHB_STICK;
-    mhb_rub_change(law, rub->p[0] + law->balance > 0 ? MHB_STICK : MHB_SEPARATE, 0, rub);
+    const mhb_law     *law = &g->law[j % g->pairs];
+    mhb_contact_point *rub = &g->rub[j];
+    rub->state             = MHB_STICK;
+    mhb_contact_step_change(law, rub->p[0] + law->balance > 0 ? MHB_STICK : MHB_SEPARATE, 0, rub);
     for (int c = 0; c < 3; c++) g->scale = fmax(g->scale, fabs(rub->p[c]));
     g->idle[j] = g->hush[j] = 0;
   }
@@ -66,14 +66,14 @@ static void settle(mhb_integrator *g) {
 
 static void set_laws(mhb_integrator *g, double n0) {
   const mhb_settings *s  = &g->settings;
-  mhb_condition       at = mhb_condition_of(s);
+  mhb_operating_point at = mhb_operating_point_of(s);
   at.n0 = g->n0 = n0;
   g->scale      = 0;
   for (int a = 0; a < g->pairs; a++) {
-    mhb_condition own = mhb_interface_condition(&at, s, g->receptance->interface[a]);
-    mhb_law       law = mhb_condition_law(&own, s->preload, g->receptance->share[a]);
-    g->law[a]         = mhb_rub_law(&law);
-    g->scale          = fmax(g->scale, fabs(law.n0));
+    mhb_operating_point own = mhb_interface_operating_point(&at, s, g->receptance->interface[a]);
+    mhb_law             law = mhb_operating_point_law(&own, s->preload, g->receptance->share[a]);
+    g->law[a]               = mhb_contact_step_law(&law);
+    g->scale                = fmax(g->scale, fabs(law.n0));
   }
 }
 
@@ -86,7 +86,7 @@ void mhb_integrator_set(mhb_integrator *g, double omega, double n0, int steps) {
   g->t      = 0;
   set_laws(g, n0);
   mhb_receptance_at(g->receptance, omega, g->n_harmonics);
-  mhb_span_length(&g->chain, g->period / steps, &g->nominal);
+  mhb_modal_step_length(&g->chain, g->period / steps, &g->nominal);
   g->cut.h = NAN;
   if (!known) return;
   add_free_modes(g, -1);

@@ -31,13 +31,13 @@ typedef struct {
 
 /* What the threads share: cells that are not their own under the lock only. */
 typedef struct {
-  const modal_model          *model;
-  const mhb_settings         *settings;
-  const mhb_witness_settings *asked;
-  const mhb_response         *balance;
-  int                         harmonics; /* kept */
-  int                         n, room, n_branches, n_done;
-  cell                       *cells;
+  const modal_model              *model;
+  const mhb_settings             *settings;
+  const mhb_integration_settings *asked;
+  const mhb_response             *balance;
+  int                             harmonics; /* kept */
+  int                             n, room, n_branches, n_done;
+  cell                           *cells;
   int        *chain, n_chains; /* [n_chains + 1] cells of a chain go one after the other */
   const char *path;
   const shb_provenance *provenance;
@@ -135,17 +135,17 @@ static shb_status ask_state(witness *w, int branch, double n0, bool down) {
 }
 
 static shb_status ask(witness *w) {
-  const mhb_witness_settings *a = w->asked;
+  const mhb_integration_settings *a = w->asked;
   for (int i = 0; i < w->settings->n_preloads; i++) {
     double n0 = w->settings->n0[i];
-    if (a->start == MHB_FROM_STATE) {
-      if (a->direction != MHB_DOWN) SHB_TRY(ask_state(w, w->n_branches++, n0, false));
-      if (a->direction != MHB_UP) SHB_TRY(ask_state(w, w->n_branches++, n0, true));
+    if (a->start == MHB_START_FROM_STATE) {
+      if (a->direction != MHB_SWEEP_DOWN) SHB_TRY(ask_state(w, w->n_branches++, n0, false));
+      if (a->direction != MHB_SWEEP_UP) SHB_TRY(ask_state(w, w->n_branches++, n0, true));
       continue;
     }
     for (int k = 0; k < a->n_frequencies; k++) {
       cell *c;
-      if (a->start == MHB_FROM_BALANCE) {
+      if (a->start == MHB_START_FROM_BALANCE) {
         SHB_TRY(start_on_balance(w, w->n_branches, n0, frequency_of(w, k)));
       } else {
         SHB_TRY(add_cell(w, w->n_branches, n0, frequency_of(w, k), &c));
@@ -156,7 +156,7 @@ static shb_status ask(witness *w) {
   w->chain = calloc((size_t)w->n + 1, sizeof(int));
   SHB_CHECK(w->chain, SHB_ERR_IO, "out of memory");
   for (int i = 0; i < w->n; i++)
-    if (a->start != MHB_FROM_STATE || i == 0 || w->cells[i].branch != w->cells[i - 1].branch)
+    if (a->start != MHB_START_FROM_STATE || i == 0 || w->cells[i].branch != w->cells[i - 1].branch)
       w->chain[w->n_chains++] = i;
   w->chain[w->n_chains] = w->n;
   return SHB_OK;
@@ -180,16 +180,17 @@ static double difference(const double complex *a, const double complex *b, int n
 }
 
 /* Twice the steps until two runs agree. */
-static const mhb_orbit_result *refine(const witness *w, mhb_integrator *g, mhb_orbit *orbit,
-                                      const mhb_orbit_settings *settings, const mhb_orbit_result *r,
-                                      cell *c) {
+static const mhb_steady_state_result *refine(const witness *w, mhb_integrator *g,
+                                             mhb_steady_state                *orbit,
+                                             const mhb_steady_state_settings *settings,
+                                             const mhb_steady_state_result *r, cell *c) {
   int             n = 3 * r->n_pairs * (r->n_harmonics + 1), periods = r->periods;
   double complex *last = malloc(sizeof *last * (size_t)n);
   for (int steps = 2 * g->steps; last && r->multiple && !r->lost && steps <= MOST_STEPS;
        steps *= 2) {
     memcpy(last, r->motion, sizeof *last * (size_t)n);
     mhb_integrator_set(g, g->omega, g->n0, steps);
-    r        = mhb_orbit_run(orbit, settings, go_on, NULL);
+    r        = mhb_steady_state_run(orbit, settings, go_on, NULL);
     c->error = difference(r->motion, last, n);
     periods += r->periods;
     if (c->error <= w->asked->tolerance || shb_interrupted()) break;
@@ -204,7 +205,7 @@ static void keep_rows(int rows, int from, int to, const double complex *in, doub
     memcpy(out + i * (to + 1), in + i * (from + 1), sizeof *in * (size_t)(to + 1));
 }
 
-static int keep(const witness *w, const mhb_orbit_result *r, cell *c) {
+static int keep(const witness *w, const mhb_steady_state_result *r, cell *c) {
   int    K = w->harmonics + 1, n3 = 3 * r->n_pairs, q = 3 * r->n_probes;
   size_t rows = 2 * (size_t)n3 + (size_t)q;
   c->motion   = malloc(sizeof *c->motion * rows * (size_t)K + 1);
@@ -224,19 +225,19 @@ static int keep(const witness *w, const mhb_orbit_result *r, cell *c) {
 }
 
 /* first: of its chain. */
-static shb_status run_cell(const witness *w, mhb_integrator *g, mhb_orbit *orbit, bool first,
+static shb_status run_cell(const witness *w, mhb_integrator *g, mhb_steady_state *orbit, bool first,
                            cell *c) {
-  const mhb_witness_settings *a        = w->asked;
-  mhb_orbit_settings          settings = {.1 * a->tolerance, a->max_periods};
-  double                      began    = shb_seconds();
+  const mhb_integration_settings *a        = w->asked;
+  mhb_steady_state_settings       settings = {.1 * a->tolerance, a->max_periods};
+  double                          began    = shb_seconds();
   mhb_integrator_set(g, 2 * PI * c->hz, c->n0, a->steps);
   if (c->start) {
     mhb_integrator_balance(g, c->m, c->start);
-  } else if (a->start == MHB_FROM_REST || first) {
+  } else if (a->start == MHB_START_FROM_REST || first) {
     mhb_integrator_rest(g);
   }
-  const mhb_orbit_result *r = mhb_orbit_run(orbit, &settings, go_on, NULL);
-  c->periods                = r->periods;
+  const mhb_steady_state_result *r = mhb_steady_state_run(orbit, &settings, go_on, NULL);
+  c->periods                       = r->periods;
   if (r->multiple && !r->lost) r = refine(w, g, orbit, &settings, r, c);
   if (shb_interrupted()) return SHB_OK;
   if (!r->lost) SHB_CHECK(keep(w, r, c), SHB_ERR_IO, "out of memory");
@@ -251,10 +252,10 @@ static shb_status run_cell(const witness *w, mhb_integrator *g, mhb_orbit *orbit
 /* ---- the response ---- */
 
 static void record_preloads(const witness *w, int n, mhb_branch *b, int at, double n0) {
-  mhb_condition c = mhb_condition_of(w->settings);
-  c.n0            = n0;
+  mhb_operating_point c = mhb_operating_point_of(w->settings);
+  c.n0                  = n0;
   for (int i = 0; i < n; i++)
-    b->interface_n0[at * n + i] = mhb_interface_condition(&c, w->settings, i).n0;
+    b->interface_n0[at * n + i] = mhb_interface_operating_point(&c, w->settings, i).n0;
 }
 
 static shb_status put_cell(const witness *w, mhb_response *response, const cell *c) {
@@ -289,15 +290,16 @@ static shb_status put_cell(const witness *w, mhb_response *response, const cell 
 }
 
 static const char *name_of(const witness *w, int branch) {
-  static const char *const name[] = {"from the balance", "from rest", "up, from the state before",
-                                     "down, from the state before"};
-  const mhb_witness_settings *a   = w->asked;
-  if (a->start != MHB_FROM_STATE) return name[a->start];
-  return name[a->direction == MHB_DOWN || (a->direction == MHB_BOTH && branch % 2) ? 3 : 2];
+  static const char *const name[]   = {"from the balance", "from rest", "up, from the state before",
+                                       "down, from the state before"};
+  const mhb_integration_settings *a = w->asked;
+  if (a->start != MHB_START_FROM_STATE) return name[a->start];
+  return name[a->direction == MHB_SWEEP_DOWN || (a->direction == MHB_SWEEP_BOTH && branch % 2) ? 3
+                                                                                               : 2];
 }
 
 static shb_status fill(const witness *w, mhb_response *response) {
-  SHB_TRY(mhb_sweep_describe(response, w->model, w->settings));
+  SHB_TRY(mhb_response_describe(response, w->model, w->settings));
   response->n_multipliers = 0;
   response->n_lines       = MHB_SPECTRUM_LINES;
   for (int i = 0; i < w->n_branches; i++) {
@@ -354,15 +356,15 @@ static void note(witness *w, shb_status status) {
 
 /* What a thread has. In a run-up each frequency has a structure of its own, which stays as it is while it is integrated. */
 typedef struct {
-  mhb_at_speed   *at; /* NULL: one speed */
-  mhb_settings    settings;
-  mhb_integrator *g;
-  mhb_orbit      *orbit;
-  int             harmonics;
+  mhb_speed_model  *at; /* NULL: one speed */
+  mhb_settings      settings;
+  mhb_integrator   *g;
+  mhb_steady_state *orbit;
+  int               harmonics;
 } worker;
 
 static void worker_drop(worker *k) {
-  mhb_orbit_destroy(k->orbit);
+  mhb_steady_state_destroy(k->orbit);
   mhb_integrator_destroy(k->g);
   k->orbit = NULL;
   k->g     = NULL;
@@ -370,20 +372,20 @@ static void worker_drop(worker *k) {
 
 static shb_status worker_take(worker *k, const modal_model *model) {
   SHB_TRY(mhb_integrator_create(model, &k->settings, k->harmonics, &k->g));
-  return mhb_orbit_create(k->g, &k->orbit);
+  return mhb_steady_state_create(k->g, &k->orbit);
 }
 
 static shb_status worker_create(const witness *w, int harmonics, worker *k) {
   *k                 = (worker){.settings = *w->settings, .harmonics = harmonics};
   k->settings.run_up = NULL;
-  return w->settings->run_up ? mhb_at_speed_create(w->settings->run_up, &k->at)
+  return w->settings->run_up ? mhb_speed_model_create(w->settings->run_up, &k->at)
                              : worker_take(k, w->model);
 }
 
 static shb_status worker_go(worker *k, double hz) {
   if (!k->at) return SHB_OK;
   worker_drop(k);
-  mhb_at_speed_go(k->at, 2 * PI * hz);
+  mhb_speed_model_set(k->at, 2 * PI * hz);
   return worker_take(k, &k->at->model);
 }
 
@@ -421,7 +423,7 @@ static shb_status run_all(witness *w) {
     for (int i = 0; i < w->n_chains; i++)
       if (status == SHB_OK) run_chain(w, &k, i);
     worker_drop(&k);
-    mhb_at_speed_destroy(k.at);
+    mhb_speed_model_destroy(k.at);
   }
   if (w->status != SHB_OK) return shb_fail(w->status, __FILE__, __LINE__, "%s", w->fault);
   return SHB_OK;
@@ -444,27 +446,27 @@ static shb_status outcome(const witness *w) {
 }
 
 static int harmonics_of(const modal_model *model, const mhb_settings *settings,
-                        const mhb_witness_settings *asked, const mhb_response *balance) {
+                        const mhb_integration_settings *asked, const mhb_response *balance) {
   int m = asked->harmonics, load = settings->subharmonics * model->n_load;
   if (m == 0) m = balance ? balance->n_harmonics : settings->harmonics ? settings->harmonics : 31;
   return m > load ? m : load;
 }
 
-shb_status mhb_witness(const modal_model *model, const mhb_settings *settings,
-                       const mhb_witness_settings *asked, const mhb_response *balance,
-                       const char *path, const shb_provenance *provenance, shb_progress *progress,
-                       mhb_response **out) {
+shb_status mhb_integration_sweep(const modal_model *model, const mhb_settings *settings,
+                                 const mhb_integration_settings *asked, const mhb_response *balance,
+                                 const char *path, const shb_provenance *provenance,
+                                 shb_progress *progress, mhb_response **out) {
   witness w = {.model      = model,
                .settings   = settings,
                .asked      = asked,
-               .balance    = asked->start == MHB_FROM_BALANCE ? balance : NULL,
+               .balance    = asked->start == MHB_START_FROM_BALANCE ? balance : NULL,
                .harmonics  = harmonics_of(model, settings, asked, balance),
                .path       = path,
                .provenance = provenance,
                .progress   = progress,
                .published  = shb_seconds()};
   *out      = NULL;
-  SHB_CHECK(!settings->run_up || asked->start != MHB_FROM_STATE, SHB_ERR_INPUT,
+  SHB_CHECK(!settings->run_up || asked->start != MHB_START_FROM_STATE, SHB_ERR_INPUT,
             "integrate.start: state takes the state of one structure to the next, but in a run-up "
             "(mhb.run_up) each frequency has its own; set it to balance or rest");
   SHB_CHECK(

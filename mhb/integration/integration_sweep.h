@@ -21,9 +21,10 @@
  * In a run-up the structure at each point is that at its speed, and stays so while it is integrated.
  * Errors: SHB_ERR_INPUT state in a run-up; no solution of the balance at a preload, load harmonics beyond those kept; SHB_ERR_IO; SHB_NOT_CONVERGED the forces
  * of a step were not found at some point, which is left out; SHB_INTERRUPTED. */
-shb_status mhb_witness(const modal_model *model, const mhb_settings *settings,
-                       const mhb_witness_settings *witness, const mhb_response *balance,
-                       const char *path, const shb_provenance *provenance, shb_progress *progress,
-                       mhb_response **response);
+shb_status mhb_integration_sweep(const modal_model *model, const mhb_settings *settings,
+                                 const mhb_integration_settings *witness,
+                                 const mhb_response *balance, const char *path,
+                                 const shb_provenance *provenance, shb_progress *progress,
+                                 mhb_response **response);
 
 #endif

@@ -54,14 +54,14 @@ MHB_HOT static void stage_contacts(int n3, int m, const double *shape, const dou
 }
 
 /* y without contact forces. */
-static void set_motion(mhb_integrator *g, const mhb_span *span) {
+static void set_motion(mhb_integrator *g, const mhb_modal_step *span) {
   int m = g->modes, n3 = 3 * g->pairs;
   memset(g->y, 0, sizeof(double) * F * (size_t)g->contacts);
   for (int b = 0; b < g->blades; b++) {
     stage_modes(m, span->mode, g->z + b * m, g->z + (g->blades + b) * m, g->stage);
     for (int side = 0; side < g->chain.s.sides; side++)
       stage_contacts(n3, m, g->chain.shape + side * n3 * m, g->stage,
-                     g->y + mhb_structure_contact(&g->chain.s, b, side) * F);
+                     g->y + mhb_modal_structure_contact(&g->chain.s, b, side) * F);
     for (int k = 0; k < S; k++) {
       double u[n3];
       memset(u, 0, sizeof u);
@@ -80,31 +80,32 @@ MHB_HOT static void subtract(const double *S_, const double *p, double *y) {
 }
 
 /* One contact, given the others. Returns the change of its force, N; < 0: none was found. */
-static double relax(mhb_integrator *g, mhb_span *span, int contact) {
+static double relax(mhb_integrator *g, mhb_modal_step *span, int contact) {
   int    group = contact / g->pairs, pair = contact % g->pairs;
   double y[F], before[F], change = 0;
   memcpy(y, g->y + contact * F, sizeof y);
   for (int slot = 0; slot < g->chain.slots; slot++) {
     const double *S_ = span->compliance + (size_t)((slot * g->pairs + pair) * g->pairs) * F * F;
-    int           by = mhb_chain_group(&g->chain, group, slot) * g->pairs;
+    int           by = mhb_ring_step_sector(&g->chain, group, slot) * g->pairs;
     for (int b = 0; b < g->pairs; b++)
       if (by + b != contact) subtract(S_ + b * F * F, g->step[by + b].p, y);
   }
-  mhb_rub_step *step = &g->step[contact];
+  mhb_contact_step *step = &g->step[contact];
   memcpy(before, step->p, sizeof before);
-  if (!mhb_rub_solve(&g->chain.rule, &g->law[pair], &g->rub[contact],
-                     span->compliance + (size_t)(pair * g->pairs + pair) * F * F,
-                     span->stick + pair * F * F, span->pivot + pair * F, y, g->scale, step))
+  if (!mhb_contact_step_solve(&g->chain.rule, &g->law[pair], &g->rub[contact],
+                              span->compliance + (size_t)(pair * g->pairs + pair) * F * F,
+                              span->stick + pair * F * F, span->pivot + pair * F, y, g->scale,
+                              step))
     return -1;
   for (int i = 0; i < F; i++) change = fmax(change, fabs(step->p[i] - before[i]));
   return change;
 }
 
 /* All contacts, block by block until nothing changes. 0: not found. */
-static int solve(mhb_integrator *g, mhb_span *span) {
+static int solve(mhb_integrator *g, mhb_modal_step *span) {
   set_motion(g, span);
   for (int j = 0; j < g->contacts; j++)
-    mhb_rub_guess(&g->law[j % g->pairs], &g->rub[j], span->h, &g->step[j]);
+    mhb_contact_step_guess(&g->law[j % g->pairs], &g->rub[j], span->h, &g->step[j]);
   for (int k = 0; k < SWEEPS; k++) {
     double worst = 0;
     for (int j = 0; j < g->contacts; j++) {
@@ -118,7 +119,7 @@ static int solve(mhb_integrator *g, mhb_span *span) {
 }
 
 /* force += shape^T p of a side */
-MHB_HOT static void gather(int n3, int m, const double *shape, const mhb_rub_step *step,
+MHB_HOT static void gather(int n3, int m, const double *shape, const mhb_contact_step *step,
                            double *force) {
   for (int r = 0; r < n3; r++)
     for (int k = 0; k < S; k++) {
@@ -141,19 +142,19 @@ MHB_HOT static void end_modes(int m, const double *a, const double *force, doubl
   }
 }
 
-static void accept(mhb_integrator *g, const mhb_span *span) {
+static void accept(mhb_integrator *g, const mhb_modal_step *span) {
   int m = g->modes, n3 = 3 * g->pairs;
   if (g->watch) g->watch(g->context, g, g->t, span->h);
   for (int b = 0; b < g->blades; b++) {
     memset(g->stage, 0, sizeof(double) * S * (size_t)m);
     for (int side = 0; side < g->chain.s.sides; side++)
       gather(n3, m, g->chain.shape + side * n3 * m,
-             g->step + mhb_structure_contact(&g->chain.s, b, side), g->stage);
+             g->step + mhb_modal_structure_contact(&g->chain.s, b, side), g->stage);
     end_modes(m, span->mode, g->stage, g->z + b * m, g->z + (g->blades + b) * m);
   }
   int progress = span->h > NO_PROGRESS * g->nominal.h;
   for (int j = 0; j < g->contacts; j++) {
-    mhb_rub_advance(&g->law[j % g->pairs], &g->step[j], span->h, &g->rub[j]);
+    mhb_contact_step_advance(&g->law[j % g->pairs], &g->step[j], span->h, &g->rub[j]);
     for (int c = 0; c < 3; c++) g->scale = fmax(g->scale, fabs(g->rub[j].p[c]));
     if (progress) g->idle[j] = g->hush[j] = 0;
   }
@@ -164,18 +165,18 @@ static void accept(mhb_integrator *g, const mhb_span *span) {
 /* ---- steps that end where a contact changes its state ---- */
 
 typedef struct {
-  int           contact;
-  mhb_rub_event kind;
-  double        tau; /* in the step; 2: none */
+  int               contact;
+  mhb_contact_event kind;
+  double            tau; /* in the step; 2: none */
 } occasion;
 
 static occasion first_occasion(const mhb_integrator *g) {
   occasion first = {.tau = 2};
   for (int j = 0; j < g->contacts; j++) {
-    mhb_rub_event kind;
+    mhb_contact_event kind;
     if (g->hush[j]) continue;
-    double tau = mhb_rub_first(&g->chain.rule, &g->law[j % g->pairs], &g->rub[j], &g->step[j],
-                               OVERSTEP * g->scale, &kind);
+    double tau = mhb_contact_step_first(&g->chain.rule, &g->law[j % g->pairs], &g->rub[j],
+                                        &g->step[j], OVERSTEP * g->scale, &kind);
     if (tau < first.tau) first = (occasion){j, kind, tau};
   }
   return first;
@@ -183,47 +184,47 @@ static occasion first_occasion(const mhb_integrator *g) {
 
 static double excess(const mhb_integrator *g, const occasion *o, double tau) {
   int j = o->contact;
-  return mhb_rub_excess(&g->chain.rule, &g->law[j % g->pairs], &g->rub[j], &g->step[j], o->kind,
-                        tau);
+  return mhb_contact_step_excess(&g->chain.rule, &g->law[j % g->pairs], &g->rub[j], &g->step[j],
+                                 o->kind, tau);
 }
 
-static mhb_span *span_of(mhb_integrator *g, double h) {
+static mhb_modal_step *span_of(mhb_integrator *g, double h) {
   if (fabs(h - g->nominal.h) < 1e-12 * g->nominal.h) return &g->nominal;
-  if (h != g->cut.h) mhb_span_length(&g->chain, h, &g->cut);
+  if (h != g->cut.h) mhb_modal_step_length(&g->chain, h, &g->cut);
   return &g->cut;
 }
 
 /* A contact that closes sticks if the friction it would then have grows more slowly than its limit (eq. 13). */
 static void close_contact(mhb_integrator *g, int contact) {
-  const mhb_law *law = &g->law[contact % g->pairs];
-  mhb_rub       *rub = &g->rub[contact];
-  double         direction;
-  mhb_rub_change(law, MHB_STICK, 0, rub);
+  const mhb_law     *law = &g->law[contact % g->pairs];
+  mhb_contact_point *rub = &g->rub[contact];
+  double             direction;
+  mhb_contact_step_change(law, MHB_STICK, 0, rub);
   if (!(law->mu > 0) || !solve(g, span_of(g, .01 * g->nominal.h))) return;
-  if (mhb_rub_closing(&g->chain.rule, law, rub, &g->step[contact], &direction) > 0)
-    mhb_rub_change(law, MHB_SLIDE, direction, rub);
+  if (mhb_contact_step_closing(&g->chain.rule, law, rub, &g->step[contact], &direction) > 0)
+    mhb_contact_step_change(law, MHB_SLIDE, direction, rub);
 }
 
 static void take_occasion(mhb_integrator *g, const occasion *o) {
-  const mhb_law *law = &g->law[o->contact % g->pairs];
-  mhb_rub       *rub = &g->rub[o->contact];
+  const mhb_law     *law = &g->law[o->contact % g->pairs];
+  mhb_contact_point *rub = &g->rub[o->contact];
   g->count.events++;
   if (++g->idle[o->contact] > IDLE) {
     g->hush[o->contact] = 1;
     g->count.forced++;
   }
   switch (o->kind) {
-    case MHB_CLOSES:
+    case MHB_CONTACT_CLOSES:
       close_contact(g, o->contact);
       break;
-    case MHB_OPENS:
-      mhb_rub_change(law, MHB_SEPARATE, 0, rub);
+    case MHB_CONTACT_OPENS:
+      mhb_contact_step_change(law, MHB_SEPARATE, 0, rub);
       break;
-    case MHB_SLIPS:
-      mhb_rub_change(law, MHB_SLIDE, atan2(rub->p[2], rub->p[1]), rub);
+    case MHB_STICK_TO_SLIP:
+      mhb_contact_step_change(law, MHB_SLIDE, atan2(rub->p[2], rub->p[1]), rub);
       break;
-    case MHB_GRIPS:
-      mhb_rub_change(law, MHB_STICK, 0, rub);
+    case MHB_SLIP_TO_STICK:
+      mhb_contact_step_change(law, MHB_STICK, 0, rub);
       break;
   }
 }
@@ -236,17 +237,17 @@ static double correction(const mhb_integrator *g, const occasion *o) {
 
 /* Towards an opening the direction of slip may turn like a power of the time that is left: steps shrink with it. */
 static int turns(const mhb_integrator *g, const occasion *o) {
-  const mhb_rub      *rub  = &g->rub[o->contact];
-  const mhb_rub_step *step = &g->step[o->contact];
-  return o->kind == MHB_OPENS && rub->state == MHB_SLIDE &&
+  const mhb_contact_point *rub  = &g->rub[o->contact];
+  const mhb_contact_step  *step = &g->step[o->contact];
+  return o->kind == MHB_CONTACT_OPENS && rub->state == MHB_SLIDE &&
          fabs(remainder(step->theta[S - 1] - rub->theta, PI)) > 1e-9;
 }
 
 /* A step that ends at the occasion, or before it. want: longest. 0: failed. */
 static int approach(mhb_integrator *g, occasion o, double h, double want) {
   for (int k = 0; k < CUTS; k++) {
-    h              = fmin(h, want);
-    mhb_span *span = span_of(g, h);
+    h                    = fmin(h, want);
+    mhb_modal_step *span = span_of(g, h);
     if (!solve(g, span)) return 0;
     occasion earlier = first_occasion(g);
     if (earlier.tau < .999) {
@@ -269,7 +270,7 @@ static int approach(mhb_integrator *g, occasion o, double h, double want) {
 static int take(mhb_integrator *g, double want) {
   double h = want;
   for (int k = 0; k < 40; k++, h /= 2) {
-    mhb_span *span = span_of(g, h);
+    mhb_modal_step *span = span_of(g, h);
     if (!solve(g, span)) continue;
     occasion o = first_occasion(g);
     if (o.tau > 1) {
@@ -337,7 +338,7 @@ shb_status mhb_integrator_create(const modal_model *model, const mhb_settings *s
   }
   if (status == SHB_OK)
     status = mhb_receptance_create(model, &g->settings, g->n_harmonics, &g->receptance);
-  if (status == SHB_OK) status = mhb_chain_create(g->receptance, &g->settings, &g->chain);
+  if (status == SHB_OK) status = mhb_ring_step_create(g->receptance, &g->settings, &g->chain);
   if (status == SHB_OK) {
     g->blades   = g->chain.s.blades;
     g->modes    = g->chain.s.modes;
@@ -345,8 +346,8 @@ shb_status mhb_integrator_create(const modal_model *model, const mhb_settings *s
     g->contacts = g->chain.s.contacts;
     if (!allocate(g)) status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   }
-  if (status == SHB_OK) status = mhb_span_create(&g->chain, &g->nominal);
-  if (status == SHB_OK) status = mhb_span_create(&g->chain, &g->cut);
+  if (status == SHB_OK) status = mhb_modal_step_create(&g->chain, &g->nominal);
+  if (status == SHB_OK) status = mhb_modal_step_create(&g->chain, &g->cut);
   if (status != SHB_OK) {
     mhb_integrator_destroy(g);
     return status;
@@ -357,9 +358,9 @@ shb_status mhb_integrator_create(const modal_model *model, const mhb_settings *s
 
 void mhb_integrator_destroy(mhb_integrator *g) {
   if (!g) return;
-  mhb_span_destroy(&g->nominal);
-  mhb_span_destroy(&g->cut);
-  mhb_chain_destroy(&g->chain);
+  mhb_modal_step_destroy(&g->nominal);
+  mhb_modal_step_destroy(&g->cut);
+  mhb_ring_step_destroy(&g->chain);
   mhb_receptance_destroy(g->receptance);
   mhb_inertia_free(&g->model);
   free(g->law);

@@ -29,7 +29,7 @@ struct mhb_integrator {
   mhb_settings settings;
   modal_model  model; /* with residual modes, if the model given has residual inertia; else empty */
   mhb_receptance *receptance; /* harmonics 0..n_harmonics, at omega */
-  mhb_chain       chain;
+  mhb_ring_step   chain;
   int             n_harmonics, n_load; /* of outputs and starts; highest one of the free motion */
   int             blades, modes, pairs, contacts;
   mhb_law        *law;           /* [pair] */
@@ -38,12 +38,12 @@ struct mhb_integrator {
   int             steps;         /* a period */
   double          t;             /* s, in [0, period] */
   double         *z;             /* [2 (z, z')][blade][mode] */
-  mhb_rub        *rub;           /* [contact] */
-  mhb_rub_step   *step;          /* [contact] of the last step */
+  mhb_contact_point *rub;        /* [contact] */
+  mhb_contact_step  *step;       /* [contact] of the last step */
   int *idle, *hush; /* [contact] changes without progress; events not heeded in the coming step */
   double              *y; /* [contact][9] motion at the stages without contact forces of the step */
   double              *stage; /* [6][modes] */
-  mhb_span             nominal, cut;
+  mhb_modal_step       nominal, cut;
   double               scale; /* N, largest force so far */
   mhb_integrator_count count;
   mhb_integrator_watch watch;

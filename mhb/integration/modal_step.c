@@ -102,7 +102,7 @@ static void responses(double a, double b, double G[GAMMAS]) {
   }
 }
 
-static void set_mode(const mhb_chain *chain, double h, int i, mhb_span *span) {
+static void set_mode(const mhb_ring_step *chain, double h, int i, mhb_modal_step *span) {
   const mhb_radau *r = &chain->rule;
   int              m = chain->s.modes;
   double           w = chain->s.omega[i] * h, a = chain->s.zeta[i] * w, b = w * w, G[GAMMAS];
@@ -142,12 +142,12 @@ MHB_HOT static void add_moments(int m, const double *to, const double *by, const
 }
 
 /* The slot in which the contacts on side `by` of a blade stand, seen from those on side `to`. */
-static int slot_of(const mhb_chain *c, int to, int by) {
+static int slot_of(const mhb_ring_step *c, int to, int by) {
   if (to == by) return 0;
   return c->s.blades == 1 ? 0 : c->s.blades == 2 || to == 0 ? 1 : 2;
 }
 
-static void set_moments(const mhb_chain *c, const mhb_span *span) {
+static void set_moments(const mhb_ring_step *c, const mhb_modal_step *span) {
   int n3 = 3 * c->s.pairs, m = c->s.modes, sides = c->s.sides;
   memset(c->moment, 0, sizeof(double) * (size_t)(c->slots * n3 * n3 * MOMENTS));
   for (int k = 0; k < sides * sides; k++) {
@@ -161,14 +161,14 @@ static void set_moments(const mhb_chain *c, const mhb_span *span) {
 }
 
 /* R between the rows of group 0 and those of the group in a slot. */
-static double flexibility(const mhb_chain *c, int slot, int row, int column) {
+static double flexibility(const mhb_ring_step *c, int slot, int row, int column) {
   int n3 = 3 * c->s.pairs, n = 3 * c->s.contacts;
   if (!c->s.flexibility) return 0;
-  return c->s
-      .flexibility[(size_t)row * (size_t)n + (size_t)(mhb_chain_group(c, 0, slot) * n3 + column)];
+  return c->s.flexibility[(size_t)row * (size_t)n +
+                          (size_t)(mhb_ring_step_sector(c, 0, slot) * n3 + column)];
 }
 
-static void set_compliance(const mhb_chain *c, mhb_span *span) {
+static void set_compliance(const mhb_ring_step *c, mhb_modal_step *span) {
   const mhb_radau *r  = &c->rule;
   int              n3 = 3 * c->s.pairs, pairs = c->s.pairs;
   double           weight[S][S][MOMENTS] = {{{0}}};
@@ -191,7 +191,7 @@ static void set_compliance(const mhb_chain *c, mhb_span *span) {
   }
 }
 
-void mhb_span_length(const mhb_chain *chain, double h, mhb_span *span) {
+void mhb_modal_step_length(const mhb_ring_step *chain, double h, mhb_modal_step *span) {
   span->h = h;
   for (int i = 0; i < chain->s.modes; i++) set_mode(chain, h, i, span);
   set_moments(chain, span);
@@ -201,18 +201,18 @@ void mhb_span_length(const mhb_chain *chain, double h, mhb_span *span) {
 
 /* ---- life cycle ---- */
 
-shb_status mhb_chain_create(const mhb_receptance *receptance, const mhb_settings *settings,
-                            mhb_chain *chain) {
-  *chain = (mhb_chain){.slots = 1};
+shb_status mhb_ring_step_create(const mhb_receptance *receptance, const mhb_settings *settings,
+                                mhb_ring_step *chain) {
+  *chain = (mhb_ring_step){.slots = 1};
   mhb_radau_create(&chain->rule);
-  SHB_TRY(mhb_structure_create(receptance, settings, receptance->n_modes, &chain->s));
-  const mhb_structure *s  = &chain->s;
-  int                  n3 = 3 * s->pairs, m = s->modes;
+  SHB_TRY(mhb_modal_structure_create(receptance, settings, receptance->n_modes, &chain->s));
+  const mhb_modal_structure *s  = &chain->s;
+  int                        n3 = 3 * s->pairs, m = s->modes;
   if (s->sides == 2) chain->slots = s->blades < 3 ? s->blades : 3;
   chain->shape  = calloc((size_t)(s->sides * n3 * m), sizeof(double));
   chain->moment = calloc((size_t)(chain->slots * n3 * n3 * MOMENTS), sizeof(double));
   if (!chain->shape || !chain->moment) {
-    mhb_chain_destroy(chain);
+    mhb_ring_step_destroy(chain);
     SHB_FAIL(SHB_ERR_IO, "out of memory");
   }
   for (int k = 0; k < s->sides * n3 * m; k++)
@@ -220,29 +220,29 @@ shb_status mhb_chain_create(const mhb_receptance *receptance, const mhb_settings
   return SHB_OK;
 }
 
-void mhb_chain_destroy(mhb_chain *chain) {
-  mhb_structure_destroy(&chain->s);
+void mhb_ring_step_destroy(mhb_ring_step *chain) {
+  mhb_modal_structure_destroy(&chain->s);
   free(chain->shape);
   free(chain->moment);
-  *chain = (mhb_chain){0};
+  *chain = (mhb_ring_step){0};
 }
 
-shb_status mhb_span_create(const mhb_chain *c, mhb_span *span) {
+shb_status mhb_modal_step_create(const mhb_ring_step *c, mhb_modal_step *span) {
   size_t pairs = (size_t)c->s.pairs, square = MHB_STAGE_FORCES * MHB_STAGE_FORCES;
-  *span            = (mhb_span){.h = NAN};
-  span->mode       = calloc(MHB_SPAN_ROWS * (size_t)c->s.modes, sizeof(double));
+  *span            = (mhb_modal_step){.h = NAN};
+  span->mode       = calloc(MHB_MODAL_STEP_ROWS * (size_t)c->s.modes, sizeof(double));
   span->compliance = calloc((size_t)c->slots * pairs * pairs * square, sizeof(double));
   span->stick      = calloc(pairs * square, sizeof(double));
   span->pivot      = calloc(pairs * MHB_STAGE_FORCES, sizeof(int));
   if (span->mode && span->compliance && span->stick && span->pivot) return SHB_OK;
-  mhb_span_destroy(span);
+  mhb_modal_step_destroy(span);
   SHB_FAIL(SHB_ERR_IO, "out of memory");
 }
 
-void mhb_span_destroy(mhb_span *span) {
+void mhb_modal_step_destroy(mhb_modal_step *span) {
   free(span->mode);
   free(span->compliance);
   free(span->stick);
   free(span->pivot);
-  *span = (mhb_span){0};
+  *span = (mhb_modal_step){0};
 }

@@ -35,40 +35,40 @@ typedef enum {
   MHB_RATE_Z = MHB_END_F + MHB_STAGES, /* z' at the end */
   MHB_RATE_V,
   MHB_RATE_F,
-  MHB_MOMENT    = MHB_RATE_F + MHB_STAGES, /* [5] h^2 G_1..5, see modal_step.c */
-  MHB_SPAN_ROWS = MHB_MOMENT + 5
-} mhb_span_row;
+  MHB_MOMENT          = MHB_RATE_F + MHB_STAGES, /* [5] h^2 G_1..5, see modal_step.c */
+  MHB_MODAL_STEP_ROWS = MHB_MOMENT + 5
+} mhb_modal_step_row;
 
 /* The structure as the steps use it. */
 typedef struct {
-  mhb_radau     rule;
-  mhb_structure s;
-  double       *shape; /* [side][3 pairs][modes] */
-  int           slots; /* groups (the contacts of a blade's right side) that a group feels: itself, previous, next */
-  double       *moment; /* [slot][3 pairs][3 pairs][5] scratch */
-} mhb_chain;
+  mhb_radau           rule;
+  mhb_modal_structure s;
+  double             *shape; /* [side][3 pairs][modes] */
+  int                 slots; /* groups (the contacts of a blade's right side) that a group feels: itself, previous, next */
+  double             *moment; /* [slot][3 pairs][3 pairs][5] scratch */
+} mhb_ring_step;
 
 /* Errors: SHB_ERR_IO no memory. */
-shb_status mhb_chain_create(const mhb_receptance *receptance, const mhb_settings *settings,
-                            mhb_chain *chain);
-void       mhb_chain_destroy(mhb_chain *chain);
+shb_status mhb_ring_step_create(const mhb_receptance *receptance, const mhb_settings *settings,
+                                mhb_ring_step *chain);
+void       mhb_ring_step_destroy(mhb_ring_step *chain);
 
 /* The group in a slot of a group. */
-static inline int mhb_chain_group(const mhb_chain *c, int group, int slot) {
+static inline int mhb_ring_step_sector(const mhb_ring_step *c, int group, int slot) {
   int n = c->s.blades;
   return slot == 0 ? group : slot == 1 ? (group + n - 1) % n : (group + 1) % n;
 }
 
 typedef struct {
   double  h;          /* s */
-  double *mode;       /* [MHB_SPAN_ROWS][modes] */
+  double *mode;       /* [MHB_MODAL_STEP_ROWS][modes] */
   double *compliance; /* [slot][pair][pair by][9 (stage, axis)][9 by]: w - R p by p, m/N */
   double *stick;      /* [pair][9][9] factored matrix of a stuck contact */
   int    *pivot;      /* [pair][9]; pivot[9 pair] < 0: not made yet */
-} mhb_span;
+} mhb_modal_step;
 
-shb_status mhb_span_create(const mhb_chain *chain, mhb_span *span);
-void       mhb_span_destroy(mhb_span *span);
-void       mhb_span_length(const mhb_chain *chain, double h, mhb_span *span);
+shb_status mhb_modal_step_create(const mhb_ring_step *chain, mhb_modal_step *span);
+void       mhb_modal_step_destroy(mhb_modal_step *span);
+void       mhb_modal_step_length(const mhb_ring_step *chain, double h, mhb_modal_step *span);
 
 #endif

@@ -4,20 +4,20 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { S = MHB_STAGES, HISTORY = 2 * MHB_ORBIT_MULTIPLE + 1, TREND = 8 };
+enum { S = MHB_STAGES, HISTORY = 2 * MHB_STEADY_STATE_MULTIPLE + 1, TREND = 8 };
 
 static const double PI = 3.14159265358979323846;
 
 /* How far apart, in tolerances, the periods of a motion of higher order are at least. */
 static const double APART = 1e3;
 
-struct mhb_orbit {
-  mhb_integrator  *g;
-  mhb_orbit_result result;
-  double          *history;      /* [HISTORY][size] states at the ends of the last periods */
-  double          *distance;     /* [TREND][multiple] the last distances */
-  double complex  *force;        /* [k][3 contacts] of the period that is recorded */
-  double          *share, *work; /* [contact][3], [contact] */
+struct mhb_steady_state {
+  mhb_integrator         *g;
+  mhb_steady_state_result result;
+  double                 *history;      /* [HISTORY][size] states at the ends of the last periods */
+  double                 *distance;     /* [TREND][multiple] the last distances */
+  double complex         *force;        /* [k][3 contacts] of the period that is recorded */
+  double                 *share, *work; /* [contact][3], [contact] */
 };
 
 /* ---- distance ---- */
@@ -33,7 +33,7 @@ static double free_size(const mhb_integrator *g) {
   return size;
 }
 
-double mhb_orbit_distance(const mhb_integrator *g, const double *a, const double *b) {
+double mhb_steady_state_distance(const mhb_integrator *g, const double *a, const double *b) {
   int    n     = g->blades * g->modes;
   double apart = 0, size = free_size(g), friction = 0, force = 0;
   for (int k = 0; k < n; k++) {
@@ -71,9 +71,9 @@ static void fourier_moments(double x, double complex J[S]) {
 }
 
 static void record(void *context, const mhb_integrator *g, double t0, double h) {
-  mhb_orbit       *o = context;
-  const mhb_radau *r = &g->chain.rule;
-  int              n = 3 * g->contacts;
+  mhb_steady_state *o = context;
+  const mhb_radau  *r = &g->chain.rule;
+  int               n = 3 * g->contacts;
   for (int k = 0; k <= o->result.n_harmonics; k++) {
     double         w = 2 * PI * k / g->period;
     double complex J[S], weight[S] = {0}, turn = cexp(-I * w * t0) * h * (k ? 2 : 1) / g->period;
@@ -94,24 +94,25 @@ static void record(void *context, const mhb_integrator *g, double t0, double h) 
 
 /* Harmonic k of z of a blade's mode, from the equation of motion integrated with exp(-jkwt): exact, whether or not the end
  * is like the start. */
-static double complex mode_harmonic(const mhb_orbit *o, int k, int blade, int i, const double *z0) {
-  const mhb_integrator *g = o->g;
-  const mhb_structure  *s = &g->chain.s;
-  int                   m = g->modes, n3 = 3 * g->pairs, at = blade * m + i, modal = g->blades * m;
-  double                w    = 2 * PI * k / g->period;
-  double complex        rise = (g->z[modal + at] - z0[modal + at]) +
+static double complex mode_harmonic(const mhb_steady_state *o, int k, int blade, int i,
+                                    const double *z0) {
+  const mhb_integrator      *g = o->g;
+  const mhb_modal_structure *s = &g->chain.s;
+  int            m = g->modes, n3 = 3 * g->pairs, at = blade * m + i, modal = g->blades * m;
+  double         w    = 2 * PI * k / g->period;
+  double complex rise = (g->z[modal + at] - z0[modal + at]) +
                         CMPLX(2 * s->zeta[i] * s->omega[i], w) * (g->z[at] - z0[at]);
   double complex force = -(k ? 2 : 1) / g->period * rise;
   for (int side = 0; side < s->sides; side++) {
     const double complex *p =
-        o->force + k * 3 * g->contacts + 3 * mhb_structure_contact(s, blade, side);
+        o->force + k * 3 * g->contacts + 3 * mhb_modal_structure_contact(s, blade, side);
     for (int r = 0; r < n3; r++) force -= g->chain.shape[(side * n3 + r) * m + i] * p[r];
   }
   return g->receptance->lambda[k * m + i] * force;
 }
 
 /* Motion of the contacts of blade 0's right side. */
-static void set_motion(mhb_orbit *o, int k, const double *z0) {
+static void set_motion(mhb_steady_state *o, int k, const double *z0) {
   const mhb_integrator *g = o->g;
   const mhb_receptance *r = g->receptance;
   int m = g->modes, n3 = 3 * g->pairs, n = 3 * g->contacts, K = o->result.n_harmonics + 1;
@@ -131,7 +132,7 @@ static void set_motion(mhb_orbit *o, int k, const double *z0) {
 }
 
 /* Probes of blade 0: those of the wave with these forces, and what the modes lack to it. */
-static void set_probes(mhb_orbit *o, int k, const double *z0) {
+static void set_probes(mhb_steady_state *o, int k, const double *z0) {
   const mhb_integrator *g = o->g;
   const mhb_receptance *r = g->receptance;
   int                   m = g->modes, q = 3 * r->model->n_probes, K = o->result.n_harmonics + 1;
@@ -147,7 +148,7 @@ static void set_probes(mhb_orbit *o, int k, const double *z0) {
 }
 
 /* One more period, recorded. */
-static int record_period(mhb_orbit *o) {
+static int record_period(mhb_steady_state *o) {
   mhb_integrator *g  = o->g;
   double         *z0 = o->history; /* no longer needed */
   size_t          n  = 3 * (size_t)g->contacts;
@@ -171,16 +172,16 @@ static int record_period(mhb_orbit *o) {
 
 /* ---- until it repeats ---- */
 
-static double *state_at(const mhb_orbit *o, int period) {
+static double *state_at(const mhb_steady_state *o, int period) {
   return o->history + (size_t)(period % HISTORY) * (size_t)mhb_integrator_size(o->g);
 }
 
 /* Whether the motion repeats after `multiple` periods, within the tolerance of where it is going. */
-static int repeats(mhb_orbit *o, int period, int multiple, double tolerance) {
+static int repeats(mhb_steady_state *o, int period, int multiple, double tolerance) {
   if (period < multiple) return 0;
   double *trend = o->distance + (multiple - 1) * TREND;
-  double  d     = mhb_orbit_distance(o->g, state_at(o, period), state_at(o, period - multiple));
-  double  past  = trend[period % TREND];
+  double  d = mhb_steady_state_distance(o->g, state_at(o, period), state_at(o, period - multiple));
+  double  past          = trend[period % TREND];
   trend[period % TREND] = d;
   if (multiple == 1) o->result.distance = d;
   if (d < 1e-14) return 1;
@@ -190,10 +191,11 @@ static int repeats(mhb_orbit *o, int period, int multiple, double tolerance) {
   return rate < 1 && d / (1 - rate) < tolerance;
 }
 
-const mhb_orbit_result *mhb_orbit_run(mhb_orbit *o, const mhb_orbit_settings *settings,
-                                      int (*go_on)(void *), void             *context) {
-  mhb_integrator   *g = o->g;
-  mhb_orbit_result *r = &o->result;
+const mhb_steady_state_result *mhb_steady_state_run(mhb_steady_state                *o,
+                                                    const mhb_steady_state_settings *settings,
+                                                    int (*go_on)(void *), void *context) {
+  mhb_integrator          *g = o->g;
+  mhb_steady_state_result *r = &o->result;
   r->multiple = r->lost = r->periods = 0;
   r->distance                        = INFINITY;
   mhb_integrator_get(g, state_at(o, 0));
@@ -204,7 +206,7 @@ const mhb_orbit_result *mhb_orbit_run(mhb_orbit *o, const mhb_orbit_settings *se
     }
     r->periods++;
     mhb_integrator_get(g, state_at(o, r->periods));
-    for (int k = 1; k <= MHB_ORBIT_MULTIPLE && !r->multiple; k++)
+    for (int k = 1; k <= MHB_STEADY_STATE_MULTIPLE && !r->multiple; k++)
       if (repeats(o, r->periods, k, settings->tolerance)) r->multiple = k;
     if (go_on && !go_on(context)) break;
   }
@@ -215,14 +217,14 @@ const mhb_orbit_result *mhb_orbit_run(mhb_orbit *o, const mhb_orbit_settings *se
 
 /* ---- life cycle ---- */
 
-shb_status mhb_orbit_create(mhb_integrator *g, mhb_orbit **out) {
-  mhb_orbit *o = calloc(1, sizeof *o);
+shb_status mhb_steady_state_create(mhb_integrator *g, mhb_steady_state **out) {
+  mhb_steady_state *o = calloc(1, sizeof *o);
   SHB_CHECK(o, SHB_ERR_IO, "out of memory");
-  mhb_orbit_result *r = &o->result;
-  o->g                = g;
-  r->n_harmonics      = g->n_harmonics;
-  r->n_pairs          = g->pairs;
-  r->n_probes         = g->receptance->model->n_probes;
+  mhb_steady_state_result *r = &o->result;
+  o->g                       = g;
+  r->n_harmonics             = g->n_harmonics;
+  r->n_pairs                 = g->pairs;
+  r->n_probes                = g->receptance->model->n_probes;
   size_t K = (size_t)r->n_harmonics + 1, n3 = 3 * (size_t)g->pairs, n = 3 * (size_t)g->contacts;
   size_t q       = 3 * (size_t)r->n_probes;
   r->motion      = calloc(n3 * K, sizeof *r->motion);
@@ -231,20 +233,20 @@ shb_status mhb_orbit_create(mhb_integrator *g, mhb_orbit **out) {
   r->state       = calloc(n3, sizeof(double));
   r->dissipation = calloc(n3, sizeof(double));
   o->history     = calloc(HISTORY * (size_t)mhb_integrator_size(g), sizeof(double));
-  o->distance    = calloc(TREND * MHB_ORBIT_MULTIPLE, sizeof(double));
+  o->distance    = calloc(TREND * MHB_STEADY_STATE_MULTIPLE, sizeof(double));
   o->force       = calloc(n * K, sizeof *o->force);
   o->share       = calloc(n, sizeof(double));
   o->work        = calloc(n, sizeof(double));
   if (!(r->motion && r->force && r->probe && r->state && r->dissipation && o->history &&
         o->distance && o->force && o->share && o->work)) {
-    mhb_orbit_destroy(o);
+    mhb_steady_state_destroy(o);
     SHB_FAIL(SHB_ERR_IO, "out of memory");
   }
   *out = o;
   return SHB_OK;
 }
 
-void mhb_orbit_destroy(mhb_orbit *o) {
+void mhb_steady_state_destroy(mhb_steady_state *o) {
   if (!o) return;
   free(o->result.motion);
   free(o->result.force);

@@ -20,19 +20,20 @@ static double in_proportion(double own, double now, double lead) {
   return lead != 0 ? own * (now / lead) : own;
 }
 
-static double preload_of(const mhb_condition *c, const mhb_settings *s, const mhb_interface *own) {
+static double preload_of(const mhb_operating_point *c, const mhb_settings *s,
+                         const mhb_interface *own) {
   double lead = c->anchored ? c->anchor : c->n0, moved = c->anchored ? c->n0 - c->anchor : 0;
   if (s->parameter == MHB_IN_N0)
     return moved + (s->together ? in_proportion(own->n0[0], lead, s->n0[0]) : own->n0[0]);
   return moved + own->n0[own->n_preloads > 1 ? preload_at(s, lead) : 0];
 }
 
-mhb_condition mhb_interface_condition(const mhb_condition *c, const mhb_settings *s,
-                                      int interface) {
+mhb_operating_point mhb_interface_operating_point(const mhb_operating_point *c,
+                                                  const mhb_settings *s, int interface) {
   if (s->n_interfaces < 2 || interface == s->lead) return *c;
   const mhb_interface *own   = &s->interface[interface];
   mhb_parameter        moves = s->together ? s->parameter : MHB_IN_FREQUENCY;
-  mhb_condition        out   = *c;
+  mhb_operating_point  out   = *c;
   out.n0                     = preload_of(c, s, own);
   out.mu                     = moves == MHB_IN_MU ? in_proportion(own->mu, c->mu, s->mu) : own->mu;
   out.kv                     = moves == MHB_IN_KV ? in_proportion(own->kv, c->kv, s->kv) : own->kv;
@@ -41,7 +42,7 @@ mhb_condition mhb_interface_condition(const mhb_condition *c, const mhb_settings
   return out;
 }
 
-double mhb_interface_rate(const mhb_condition *c, const mhb_settings *s, int interface,
+double mhb_interface_rate(const mhb_operating_point *c, const mhb_settings *s, int interface,
                           mhb_parameter parameter) {
   if (s->n_interfaces < 2 || interface == s->lead) return 1;
   if (parameter == MHB_IN_N0 && c->anchored) return 1;

@@ -13,11 +13,11 @@
 int mhb_interfaces(const mhb_settings *settings);
 
 /* The condition as an interface sees it; where there is one, or it leads, the condition itself. */
-mhb_condition mhb_interface_condition(const mhb_condition *condition, const mhb_settings *settings,
-                                      int interface);
+mhb_operating_point mhb_interface_operating_point(const mhb_operating_point *condition,
+                                                  const mhb_settings *settings, int interface);
 
 /* Change of the interface's own parameter with that of the leading one. */
-double mhb_interface_rate(const mhb_condition *condition, const mhb_settings *settings,
+double mhb_interface_rate(const mhb_operating_point *condition, const mhb_settings *settings,
                           int interface, mhb_parameter parameter);
 
 /* interface[pair] of the model, in the order of the settings.

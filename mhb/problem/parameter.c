@@ -6,12 +6,12 @@
 
 static const double PI = 3.14159265358979323846;
 
-mhb_condition mhb_condition_of(const mhb_settings *s) {
-  mhb_condition c = {.omega = 2 * PI * s->frequency[0],
-                     .n0    = s->n0[0],
-                     .scale = s->scale,
-                     .mu    = s->mu,
-                     .kv    = s->kv};
+mhb_operating_point mhb_operating_point_of(const mhb_settings *s) {
+  mhb_operating_point c = {.omega = 2 * PI * s->frequency[0],
+                           .n0    = s->n0[0],
+                           .scale = s->scale,
+                           .mu    = s->mu,
+                           .kv    = s->kv};
   memcpy(c.ku, s->ku, sizeof c.ku);
   return c;
 }
@@ -38,17 +38,17 @@ double mhb_parameter_end(const mhb_settings *s, mhb_parameter parameter, int hig
   return parameter == MHB_IN_FREQUENCY ? 2 * PI * s->frequency[high] : s->range[high];
 }
 
-static double *field(mhb_condition *c, mhb_parameter parameter) {
+static double *field(mhb_operating_point *c, mhb_parameter parameter) {
   double *fields[MHB_N_PARAMETERS] = {&c->omega, &c->n0, &c->scale, &c->mu, c->ku, &c->kv};
   return fields[parameter];
 }
 
-double mhb_parameter_get(const mhb_condition *condition, mhb_parameter parameter) {
-  mhb_condition c = *condition;
+double mhb_parameter_get(const mhb_operating_point *condition, mhb_parameter parameter) {
+  mhb_operating_point c = *condition;
   return *field(&c, parameter);
 }
 
-void mhb_parameter_set(mhb_condition *condition, mhb_parameter parameter, double value) {
+void mhb_parameter_set(mhb_operating_point *condition, mhb_parameter parameter, double value) {
   double old = *field(condition, parameter);
   for (int i = 1; parameter == MHB_IN_KU && i < 3; i++) condition->ku[i] *= value / old;
   *field(condition, parameter) = value;
@@ -59,7 +59,7 @@ double mhb_parameter_least(mhb_parameter parameter) {
   return parameter == MHB_IN_MU || parameter == MHB_IN_KV ? 0 : DBL_MIN;
 }
 
-mhb_law mhb_condition_law(const mhb_condition *c, mhb_preload preload, double share) {
+mhb_law mhb_operating_point_law(const mhb_operating_point *c, mhb_preload preload, double share) {
   mhb_law law = {.mu = c->mu, .kv = share * c->kv, .n0 = share * c->n0};
   for (int i = 0; i < 3; i++) law.ku[i] = share * c->ku[i];
   if (preload == MHB_EQUILIBRIUM) law.balance = fmax(law.n0, 0);
@@ -87,7 +87,7 @@ static void by_constant_load(const mhb_law *law, int nb, const double *u, const 
   change[0] += law->balance / law->n0; /* of n, not of n - balance */
 }
 
-void mhb_parameter_force(const mhb_condition *c, mhb_parameter parameter, const mhb_law *law,
+void mhb_parameter_force(const mhb_operating_point *c, mhb_parameter parameter, const mhb_law *law,
                          double share, int nb, const double *u, const double *p, const double *dp,
                          double *change) {
   int block = 3 * nb;

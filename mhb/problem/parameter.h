@@ -19,10 +19,10 @@ typedef struct {
   double ku[3], kv; /* N/m */
   int    anchored;  /* the preloads of all interfaces move alike from where this one's is anchor */
   double anchor;    /* N */
-} mhb_condition;
+} mhb_operating_point;
 
 /* That of the settings, at the low end of the range and the first preload. */
-mhb_condition mhb_condition_of(const mhb_settings *settings);
+mhb_operating_point mhb_operating_point_of(const mhb_settings *settings);
 
 /* As in a case file: frequency, n0, scale, mu, ku, kv. */
 const char *mhb_parameter_name(mhb_parameter parameter);
@@ -36,19 +36,20 @@ double mhb_parameter_value(mhb_parameter parameter, double shown);
 double mhb_parameter_end(const mhb_settings *settings, mhb_parameter parameter, int high);
 
 /* ku: the first of its three, the others stay in proportion. */
-double mhb_parameter_get(const mhb_condition *condition, mhb_parameter parameter);
-void   mhb_parameter_set(mhb_condition *condition, mhb_parameter parameter, double value);
+double mhb_parameter_get(const mhb_operating_point *condition, mhb_parameter parameter);
+void   mhb_parameter_set(mhb_operating_point *condition, mhb_parameter parameter, double value);
 
 /* The least value that makes sense. A negative scale is half a turn of the phase. */
 double mhb_parameter_least(mhb_parameter parameter);
 
 /* The law of a pair that has this share of the interface. */
-mhb_law mhb_condition_law(const mhb_condition *condition, mhb_preload preload, double share);
+mhb_law mhb_operating_point_law(const mhb_operating_point *condition, mhb_preload preload,
+                                double share);
 
 /* Change of the force on a pair with the parameter, at fixed motion; nothing for frequency and scale.
  *   u, p   in   [3 (v, u, w)][nb] motion and force in real form; dp [3 nb][3 nb] its derivative
  *   change out  [3][nb] N per unit */
-void mhb_parameter_force(const mhb_condition *condition, mhb_parameter parameter,
+void mhb_parameter_force(const mhb_operating_point *condition, mhb_parameter parameter,
                          const mhb_law *law, double share, int nb, const double *u, const double *p,
                          const double *dp, double *change);
 

@@ -71,27 +71,31 @@ typedef struct {
   mhb_search_settings search;
   bool                flips;     /* branches of doubled period are followed from where they leave */
   mhb_stability_when  stability; /* which points are judged by their multipliers */
-  const struct mhb_run_up *
+  const struct mhb_speed_table *
       run_up; /* the modal model follows the frequency (mhb/structure/speed_table.h); NULL: one speed */
   bool resume; /* take over what an interrupted run of equal settings finished */
 } mhb_settings;
 
 /* Points by time integration, see integration_sweep.h. */
-typedef enum { MHB_FROM_BALANCE, MHB_FROM_REST, MHB_FROM_STATE } mhb_witness_start;
-typedef enum { MHB_UP, MHB_DOWN, MHB_BOTH } mhb_witness_direction;
+typedef enum {
+  MHB_START_FROM_BALANCE,
+  MHB_START_FROM_REST,
+  MHB_START_FROM_STATE
+} mhb_integration_start;
+typedef enum { MHB_SWEEP_UP, MHB_SWEEP_DOWN, MHB_SWEEP_BOTH } mhb_integration_direction;
 
 enum { MHB_MAX_FREQUENCIES = 1000 };
 
 typedef struct {
-  int                   n_frequencies;
-  bool                  listed; /* frequency holds them; else evenly over the range */
-  double                frequency[MHB_MAX_FREQUENCIES]; /* Hz, of the excitation */
-  mhb_witness_start     start;
-  mhb_witness_direction direction; /* of state */
-  int                   steps;     /* a period of the fundamental, to begin with */
-  double                tolerance; /* relative to the motion */
-  int                   max_periods,
+  int                       n_frequencies;
+  bool                      listed; /* frequency holds them; else evenly over the range */
+  double                    frequency[MHB_MAX_FREQUENCIES]; /* Hz, of the excitation */
+  mhb_integration_start     start;
+  mhb_integration_direction direction; /* of state */
+  int                       steps;     /* a period of the fundamental, to begin with */
+  double                    tolerance; /* relative to the motion */
+  int                       max_periods,
       harmonics; /* harmonics of the fundamental that are kept; 0: as many as the balance */
-} mhb_witness_settings;
+} mhb_integration_settings;
 
 #endif

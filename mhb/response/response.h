@@ -20,7 +20,7 @@ typedef enum {
 
 /* How a branch was come by: followed from the low end of the range, from a solution found by search, from a flip; aside: on the way of
  * the main branch, a curve that is closed or leaves by the low end. */
-typedef enum { MHB_FROM_END, MHB_FROM_SEARCH, MHB_FROM_FLIP, MHB_ASIDE } mhb_origin;
+typedef enum { MHB_FROM_END, MHB_FROM_SEARCH, MHB_FROM_FLIP, MHB_FROM_DETACHED } mhb_origin;
 
 /* special of mhb_branch; the last two: where a multiplier leaves or enters the unit circle at -1, or a pair does */
 enum { MHB_ORDINARY, MHB_FOLD, MHB_PEAK, MHB_FLIP, MHB_NEIMARK_SACKER, MHB_N_SPECIALS };

@@ -25,7 +25,7 @@ static void block(const source *s, int side_i, int i, int side_j, int j, double 
       for (int d = 0; d < 3; d++) out[c][d] += Ti[3 * a + c] * half[a][d];
 }
 
-static void set_pairs(const source *s, int i, int j, mhb_flexibility *f) {
+static void set_pairs(const source *s, int i, int j, mhb_cyclic_flexibility *f) {
   double rr[3][3], ll[3][3] = {{0}}, rl[3][3] = {{0}}, lr[3][3] = {{0}};
   block(s, 0, i, 0, j, rr);
   if (f->both) {
@@ -43,9 +43,9 @@ static void set_pairs(const source *s, int i, int j, mhb_flexibility *f) {
     }
 }
 
-shb_status mhb_flexibility_create(const double *matrix, int nc, const double *T0, int n_pairs,
-                                  int sides, mhb_flexibility **out) {
-  mhb_flexibility *f = calloc(1, sizeof *f);
+shb_status mhb_cyclic_flexibility_create(const double *matrix, int nc, const double *T0,
+                                         int n_pairs, int sides, mhb_cyclic_flexibility **out) {
+  mhb_cyclic_flexibility *f = calloc(1, sizeof *f);
   SHB_CHECK(f, SHB_ERR_IO, "out of memory");
   size_t square = 9 * (size_t)n_pairs * (size_t)n_pairs;
   f->n          = 3 * n_pairs;
@@ -53,21 +53,22 @@ shb_status mhb_flexibility_create(const double *matrix, int nc, const double *T0
   if (sides == 2) f->both = malloc(square * sizeof(double));
   if (sides == 2) f->odd = malloc(square * sizeof(double));
   if (!f->own || (sides == 2 && !(f->both && f->odd))) {
-    mhb_flexibility_destroy(f);
+    mhb_cyclic_flexibility_destroy(f);
     SHB_FAIL(SHB_ERR_IO, "out of memory for the residual flexibility of %d pairs", n_pairs);
   }
-  mhb_flexibility_set(f, matrix, nc, T0);
+  mhb_cyclic_flexibility_set(f, matrix, nc, T0);
   *out = f;
   return SHB_OK;
 }
 
-void mhb_flexibility_set(mhb_flexibility *f, const double *matrix, int nc, const double *T0) {
+void mhb_cyclic_flexibility_set(mhb_cyclic_flexibility *f, const double *matrix, int nc,
+                                const double *T0) {
   const source s = {.matrix = matrix, .T0 = T0, .nc = nc, .n = f->n};
   for (int i = 0; i < f->n / 3; i++)
     for (int j = 0; j < f->n / 3; j++) set_pairs(&s, i, j, f);
 }
 
-void mhb_flexibility_destroy(mhb_flexibility *f) {
+void mhb_cyclic_flexibility_destroy(mhb_cyclic_flexibility *f) {
   if (!f) return;
   free(f->own);
   free(f->both);
@@ -75,8 +76,8 @@ void mhb_flexibility_destroy(mhb_flexibility *f) {
   free(f);
 }
 
-MHB_HOT void mhb_flexibility_add(const mhb_flexibility *f, double complex phase, double factor,
-                                 double complex *R) {
+MHB_HOT void mhb_cyclic_flexibility_add(const mhb_cyclic_flexibility *f, double complex phase,
+                                        double factor, double complex *R) {
   size_t square = (size_t)f->n * (size_t)f->n;
   double re = factor * creal(phase), im = factor * cimag(phase);
   if (!f->both) {
@@ -87,8 +88,8 @@ MHB_HOT void mhb_flexibility_add(const mhb_flexibility *f, double complex phase,
     R[i] = CMPLX(creal(R[i]) + factor * f->own[i] - re * f->both[i], cimag(R[i]) - im * f->odd[i]);
 }
 
-double complex mhb_flexibility_row(const mhb_flexibility *f, double complex phase, int i,
-                                   const double complex *p) {
+double complex mhb_cyclic_flexibility_row(const mhb_cyclic_flexibility *f, double complex phase,
+                                          int i, const double complex *p) {
   size_t at = (size_t)i * (size_t)f->n;
   double re = 0, im = 0;
   for (int j = 0; j < f->n; j++) {
@@ -103,8 +104,8 @@ double complex mhb_flexibility_row(const mhb_flexibility *f, double complex phas
   return CMPLX(re, im);
 }
 
-void mhb_flexibility_add_block(const mhb_flexibility *f, double complex phase, double factor,
-                               int pair, double complex R[3][3]) {
+void mhb_cyclic_flexibility_add_block(const mhb_cyclic_flexibility *f, double complex phase,
+                                      double factor, int pair, double complex R[3][3]) {
   for (int c = 0; c < 3; c++)
     for (int d = 0; d < 3; d++) {
       size_t at = (size_t)(3 * pair + c) * (size_t)f->n + (size_t)(3 * pair + d);

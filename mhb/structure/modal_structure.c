@@ -41,12 +41,12 @@ static double flexibility(const mhb_receptance *r, int s, int row, int t, int co
   return sum;
 }
 
-static void set_flexibility(const mhb_receptance *r, mhb_structure *s) {
+static void set_flexibility(const mhb_receptance *r, mhb_modal_structure *s) {
   int n3 = r->n, n = 3 * s->contacts;
   for (int k = 0; k < s->blades * s->sides * s->sides; k++) {
     int blade = k / (s->sides * s->sides), to = k / s->sides % s->sides, by = k % s->sides;
-    int row0    = 3 * mhb_structure_contact(s, blade, to);
-    int column0 = 3 * mhb_structure_contact(s, blade, by);
+    int row0    = 3 * mhb_modal_structure_contact(s, blade, to);
+    int column0 = 3 * mhb_modal_structure_contact(s, blade, by);
     for (int row = 0; row < n3; row++)
       for (int column = 0; column < n3; column++)
         s->flexibility[(size_t)(row0 + row) * (size_t)n + (size_t)(column0 + column)] +=
@@ -54,15 +54,15 @@ static void set_flexibility(const mhb_receptance *r, mhb_structure *s) {
   }
 }
 
-shb_status mhb_structure_create(const mhb_receptance *r, const mhb_settings *settings, int modes,
-                                mhb_structure *s) {
+shb_status mhb_modal_structure_create(const mhb_receptance *r, const mhb_settings *settings,
+                                      int modes, mhb_modal_structure *s) {
   const modal_model *model = r->model;
   int                m = modes < r->n_modes ? modes : r->n_modes, ground = settings->to_ground;
-  *s          = (mhb_structure){.blades = ground ? 1 : settings->blades,
-                                .sides  = ground ? 1 : 2,
-                                .modes  = m,
-                                .pairs  = model->n_pairs,
-                                .wave   = ground ? 0 : wave_of(settings)};
+  *s          = (mhb_modal_structure){.blades = ground ? 1 : settings->blades,
+                                      .sides  = ground ? 1 : 2,
+                                      .modes  = m,
+                                      .pairs  = model->n_pairs,
+                                      .wave   = ground ? 0 : wave_of(settings)};
   s->contacts = s->blades * s->pairs;
   size_t n = 3 * (size_t)s->contacts, side = (size_t)m * (size_t)r->n;
   s->omega = calloc((size_t)m, sizeof(double));
@@ -72,14 +72,14 @@ shb_status mhb_structure_create(const mhb_receptance *r, const mhb_settings *set
   if (model->residual_flexibility || m < r->n_modes)
     ok &= (s->flexibility = calloc(n * n, sizeof(double))) != NULL;
   if (!ok) {
-    mhb_structure_destroy(s);
+    mhb_modal_structure_destroy(s);
     SHB_FAIL(SHB_ERR_IO, "out of memory for the structure of %d contacts", s->contacts);
   }
-  mhb_structure_set(r, s);
+  mhb_modal_structure_set(r, s);
   return SHB_OK;
 }
 
-void mhb_structure_set(const mhb_receptance *r, mhb_structure *s) {
+void mhb_modal_structure_set(const mhb_receptance *r, mhb_modal_structure *s) {
   const size_t side = (size_t)s->modes * (size_t)r->n, n = 3 * (size_t)s->contacts;
   for (int i = 0; i < s->modes; i++) {
     s->omega[i] = TWO_PI * r->model->frequency[i];
@@ -92,10 +92,10 @@ void mhb_structure_set(const mhb_receptance *r, mhb_structure *s) {
   set_flexibility(r, s);
 }
 
-void mhb_structure_destroy(mhb_structure *s) {
+void mhb_modal_structure_destroy(mhb_modal_structure *s) {
   free(s->omega);
   free(s->zeta);
   free(s->shape);
   free(s->flexibility);
-  *s = (mhb_structure){0};
+  *s = (mhb_modal_structure){0};
 }

@@ -14,18 +14,19 @@ typedef struct {
   double *omega, *zeta; /* [modes] rad/s, - */
   double *shape;        /* [side][mode][3 pairs] (v, u, w) by the mode, kg^-1/2; left: negative */
   double *flexibility;  /* [3 contacts][3 contacts] R, m/N, or NULL */
-} mhb_structure;
+} mhb_modal_structure;
 
 /* The lowest modes keep their dynamics; the others answer statically and are added to R, as is residual flexibility. Residual
  * inertia is left out: u = B q - R p + R2 p'' cannot be integrated forward in time. SHB_ERR_IO: no memory. */
-shb_status mhb_structure_create(const mhb_receptance *receptance, const mhb_settings *settings,
-                                int modes, mhb_structure *structure);
+shb_status mhb_modal_structure_create(const mhb_receptance *receptance,
+                                      const mhb_settings *settings, int modes,
+                                      mhb_modal_structure *structure);
 /* The same modes once the receptance has moved to another speed of a run-up. */
-void mhb_structure_set(const mhb_receptance *receptance, mhb_structure *structure);
-void mhb_structure_destroy(mhb_structure *structure);
+void mhb_modal_structure_set(const mhb_receptance *receptance, mhb_modal_structure *structure);
+void mhb_modal_structure_destroy(mhb_modal_structure *structure);
 
 /* First contact of the side of a blade. */
-static inline int mhb_structure_contact(const mhb_structure *s, int blade, int side) {
+static inline int mhb_modal_structure_contact(const mhb_modal_structure *s, int blade, int side) {
   return (side == 0 || blade > 0 ? blade - side : s->blades - 1) * s->pairs;
 }
 

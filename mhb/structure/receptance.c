@@ -105,7 +105,7 @@ static void set_modes(mhb_receptance *r, int k) {
 static void set_load(mhb_receptance *r, int k) {
   const modal_model *model = r->model;
   const int          h = k / r->nu, m = r->n_modes;
-  r->driven[k] = mhb_left_out_driven(r->left_out, k);
+  r->driven[k] = mhb_residual_terms_driven(r->left_out, k);
   if (k % r->nu || h > model->n_load) return;
   for (int i = 0; i < m; i++) {
     r->F[k * m + i] = model->modal_force[h * m + i];
@@ -169,7 +169,7 @@ static void set_harmonics(mhb_receptance *r) {
 }
 
 void mhb_receptance_set(mhb_receptance *r) {
-  mhb_left_out_set(r->left_out);
+  mhb_residual_terms_set(r->left_out);
   set_harmonics(r);
 }
 
@@ -186,7 +186,8 @@ static shb_status set_blade(mhb_receptance *r, const mhb_settings *settings) {
     r->made_at[k] = NAN;
     r->phase[k]   = cexp(-I * fmod(k * step, 2 * PI));
   }
-  SHB_TRY(mhb_left_out_create(r->model, relative, r->nu, r->n_harmonics, r->phase, &r->left_out));
+  SHB_TRY(
+      mhb_residual_terms_create(r->model, relative, r->nu, r->n_harmonics, r->phase, &r->left_out));
   set_harmonics(r);
   return SHB_OK;
 }
@@ -223,15 +224,15 @@ shb_status mhb_receptance_create(const modal_model *model, const mhb_settings *s
             settings->subharmonics, settings->blades, settings->engine_order);
   mhb_receptance *r = NULL;
   if (!settings->run_up) return create(model, settings, n_harmonics, out);
-  mhb_at_speed *at = NULL;
-  SHB_TRY(mhb_at_speed_create(settings->run_up, &at));
-  mhb_at_speed_go(at, 0);
-  mhb_at_speed_differentiate(at);
+  mhb_speed_model *at = NULL;
+  SHB_TRY(mhb_speed_model_create(settings->run_up, &at));
+  mhb_speed_model_set(at, 0);
+  mhb_speed_model_differentiate(at);
   shb_status status = create(&at->model, settings, n_harmonics, &r);
   if (status == SHB_OK) status = create(&at->slope, settings, n_harmonics, &r->rate);
   if (status != SHB_OK) {
     mhb_receptance_destroy(r);
-    mhb_at_speed_destroy(at);
+    mhb_speed_model_destroy(at);
     return status;
   }
   r->at          = at;
@@ -243,13 +244,13 @@ shb_status mhb_receptance_create(const modal_model *model, const mhb_settings *s
 void mhb_receptance_destroy(mhb_receptance *r) {
   if (!r) return;
   mhb_receptance_destroy(r->rate);
-  mhb_at_speed_destroy(r->at);
+  mhb_speed_model_destroy(r->at);
   free(r->T0);
   free(r->share);
   free(r->interface);
   free(r->B);
   free(r->F);
-  mhb_left_out_destroy(r->left_out);
+  mhb_residual_terms_destroy(r->left_out);
   free(r->phase);
   free(r->parts);
   free(r->scratch);
@@ -299,9 +300,9 @@ MHB_HOT static void modal_row(const mhb_receptance *r, int k, const double *yr, 
   *u += product(m, yr, yi, re + n * m, im + n * m, 1);
 }
 
-void mhb_receptance_residual(const mhb_receptance *r, int k, double w, double complex *R) {
+void mhb_receptance_residual_terms(const mhb_receptance *r, int k, double w, double complex *R) {
   memset(R, 0, sizeof *R * (size_t)r->n * (size_t)r->n);
-  mhb_left_out_matrix(r->left_out, k, w, R);
+  mhb_residual_terms_matrix(r->left_out, k, w, R);
 }
 
 static void harmonic_at(mhb_receptance *r, int k) {
@@ -313,8 +314,8 @@ static void harmonic_at(mhb_receptance *r, int k) {
   set_lambda(r, w, L, L + m);
   for (int i = 0; i < m; i++) r->lambda[k * m + i] = CMPLX(L[i], L[m + i]);
   memset(u, 0, sizeof *u * (size_t)n);
-  mhb_receptance_residual(r, k, w, R);
-  mhb_left_out_load(r->left_out, k, w, 1, u);
+  mhb_receptance_residual_terms(r, k, w, R);
+  mhb_residual_terms_load(r->left_out, k, w, 1, u);
   for (int a = 0; a < n; a++, re += m, im += m) {
     for (int i = 0; i < m; i++) {
       y[i]     = re[i] * L[i] - im[i] * L[m + i];
@@ -329,14 +330,14 @@ static void harmonic_at(mhb_receptance *r, int k) {
                 r->B + (size_t)k * (size_t)n * (size_t)m, m, &one, R, n);
 }
 
-void mhb_receptance_move(mhb_receptance *r, double omega) {
+void mhb_receptance_set_frequency(mhb_receptance *r, double omega) {
   r->omega = omega;
   if (!r->at || r->at->omega == omega) return;
-  mhb_at_speed_go(r->at, omega);
+  mhb_speed_model_set(r->at, omega);
   mhb_receptance_set(r);
 }
 
-void mhb_receptance_need(mhb_receptance *r, int k) {
+void mhb_receptance_update(mhb_receptance *r, int k) {
   double w = k == 0 && !r->at ? 0 : r->omega; /* the mean knows no frequency, but a speed */
   if (r->made_at[k] == w) return;
   harmonic_at(r, k);
@@ -344,8 +345,8 @@ void mhb_receptance_need(mhb_receptance *r, int k) {
 }
 
 void mhb_receptance_at(mhb_receptance *r, double omega, int top) {
-  mhb_receptance_move(r, omega);
-  for (int k = 0; k <= top; k++) mhb_receptance_need(r, k);
+  mhb_receptance_set_frequency(r, omega);
+  for (int k = 0; k <= top; k++) mhb_receptance_update(r, k);
 }
 
 void mhb_receptance_scale(mhb_receptance *r, double scale) {
@@ -354,8 +355,8 @@ void mhb_receptance_scale(mhb_receptance *r, double scale) {
 }
 
 /* Modal amplitudes before L: load F - B^H p. */
-double complex mhb_receptance_drive(const mhb_receptance *r, int k, const double complex *p, int i,
-                                    double load) {
+double complex mhb_receptance_modal_load(const mhb_receptance *r, int k, const double complex *p,
+                                         int i, double load) {
   const double complex *B = r->B + (size_t)k * (size_t)r->n * (size_t)r->n_modes;
   double complex        a = load * r->F[k * r->n_modes + i];
   for (int row = 0; row < r->n; row++) a -= conj(B[row * r->n_modes + i]) * p[row];
@@ -430,7 +431,7 @@ void mhb_receptance_motion(const mhb_receptance *r, int k, const double complex 
   double w = k * r->omega / r->nu, yr[r->n_modes], yi[r->n_modes];
   motion_drive(r, k, w, p, yr, yi);
   modal_sums(r, k, yr, yi, motion);
-  mhb_left_out_motion(r->left_out, k, w, r->scale, p, motion);
+  mhb_residual_terms_motion(r->left_out, k, w, r->scale, p, motion);
 }
 
 void mhb_receptance_slope(const mhb_receptance *r, int k, const double complex *p,
@@ -438,8 +439,8 @@ void mhb_receptance_slope(const mhb_receptance *r, int k, const double complex *
   double kk = (double)k / r->nu, dw2 = 2 * kk * kk * r->omega, yr[r->n_modes], yi[r->n_modes];
   slope_drive(r, k, p, yr, yi);
   modal_sums(r, k, yr, yi, slope);
-  mhb_left_out_slope(r->left_out, k, kk * r->omega, dw2, r->scale, p, slope);
-  if (r->at) mhb_rate_slope(r, k, p, slope);
+  mhb_residual_terms_slope(r->left_out, k, kk * r->omega, dw2, r->scale, p, slope);
+  if (r->at) mhb_speed_derivative_slope(r, k, p, slope);
 }
 
 void mhb_receptance_probe_change(const mhb_receptance *r, int k, const double complex *p,
@@ -448,14 +449,15 @@ void mhb_receptance_probe_change(const mhb_receptance *r, int k, const double co
   int    q = 3 * r->model->n_probes, m = r->n_modes;
   double kk = (double)k / r->nu, dw2 = 2 * kk * kk * r->omega * d_omega;
   memset(change, 0, sizeof *change * (size_t)q);
-  mhb_left_out_probe_change(r->left_out, k, kk * r->omega, r->scale, p, dp, dw2, d_scale, change);
+  mhb_residual_terms_probe_change(r->left_out, k, kk * r->omega, r->scale, p, dp, dw2, d_scale,
+                                  change);
   for (int i = 0; i < m; i++) {
-    double complex a = r->lambda[k * m + i] * mhb_receptance_drive(r, k, dp, i, d_scale);
+    double complex a = r->lambda[k * m + i] * mhb_receptance_modal_load(r, k, dp, i, d_scale);
     if (d_omega != 0)
-      a += d_omega * lambda_slope(r, k, i) * mhb_receptance_drive(r, k, p, i, r->scale);
+      a += d_omega * lambda_slope(r, k, i) * mhb_receptance_modal_load(r, k, p, i, r->scale);
     for (int s = 0; s < q; s++) change[s] += r->model->probe[s * m + i] * a;
   }
-  if (r->at && d_omega != 0) mhb_rate_probe(r, k, p, d_omega, change);
+  if (r->at && d_omega != 0) mhb_speed_derivative_probe(r, k, p, d_omega, change);
 }
 
 /* Neither driven nor pushed at by the contact. */

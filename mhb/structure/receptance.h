@@ -22,7 +22,7 @@
 
 typedef struct mhb_receptance {
   const modal_model     *model; /* in a run-up the one at omega */
-  mhb_at_speed          *at;    /* run-up: whose model that is; else NULL */
+  mhb_speed_model       *at;    /* run-up: whose model that is; else NULL */
   struct mhb_receptance *rate;  /* run-up: B, F and residual terms of d model/d omega; else NULL */
   int                    n, n_modes, n_harmonics, nu; /* n = 3 pairs; harmonics 0..n_harmonics */
   double                *T0; /* [pair][3][3], columns v, u, w in (tangential, axial, radial) */
@@ -32,17 +32,17 @@ typedef struct mhb_receptance {
   double complex        *B;         /* [k][n][modes] */
   double                 scale;     /* of the excitation */
   double complex        *F;         /* [k][modes] modal force at scale 1, as all loads below */
-  double         *parts;   /* [k][2 (re, im)][n + 1][modes] B, then F: for the loops over modes */
-  double         *scratch; /* [4][modes] */
-  double complex *BL;      /* [n][modes] B L of one harmonic */
-  mhb_left_out   *left_out;
-  double complex *phase;       /* [k] e_k */
-  int            *driven;      /* [k] whether the load has this harmonic */
-  double          omega;       /* rad/s, of mhb_receptance_move */
-  double         *made_at;     /* [k] rad/s for which the arrays below were made, NAN: never */
-  double complex *lambda;      /* [k][modes] */
-  double complex *R;           /* [k][n][n] */
-  double complex *free, *unit; /* [k][n] response without contact; the same at scale 1 */
+  double             *parts; /* [k][2 (re, im)][n + 1][modes] B, then F: for the loops over modes */
+  double             *scratch; /* [4][modes] */
+  double complex     *BL;      /* [n][modes] B L of one harmonic */
+  mhb_residual_terms *left_out;
+  double complex     *phase;       /* [k] e_k */
+  int                *driven;      /* [k] whether the load has this harmonic */
+  double              omega;       /* rad/s, of mhb_receptance_set_frequency */
+  double             *made_at;     /* [k] rad/s for which the arrays below were made, NAN: never */
+  double complex     *lambda;      /* [k][modes] */
+  double complex     *R;           /* [k][n][n] */
+  double complex     *free, *unit; /* [k][n] response without contact; the same at scale 1 */
 } mhb_receptance;
 
 /* Errors: SHB_ERR_INPUT psi, phi do not agree with the file's normals within a degree, load harmonic above n_harmonics
@@ -53,10 +53,10 @@ shb_status mhb_receptance_create(const modal_model *model, const mhb_settings *s
 void       mhb_receptance_destroy(mhb_receptance *receptance);
 
 /* Go to the excitation frequency omega (rad/s). lambda, R and free of a harmonic are made when they are needed. */
-void mhb_receptance_move(mhb_receptance *receptance, double omega);
+void mhb_receptance_set_frequency(mhb_receptance *receptance, double omega);
 
 /* lambda, R and free of harmonic k. Not for two threads at once. */
-void mhb_receptance_need(mhb_receptance *receptance, int k);
+void mhb_receptance_update(mhb_receptance *receptance, int k);
 
 /* Both, harmonics 0..top. */
 void mhb_receptance_at(mhb_receptance *receptance, double omega, int top);
@@ -68,8 +68,8 @@ void mhb_receptance_scale(mhb_receptance *receptance, double scale);
 void mhb_receptance_set(mhb_receptance *receptance);
 
 /* What acts on mode i at harmonic k: load F - B^H p. */
-double complex mhb_receptance_drive(const mhb_receptance *receptance, int k,
-                                    const double complex *p, int i, double load);
+double complex mhb_receptance_modal_load(const mhb_receptance *receptance, int k,
+                                         const double complex *p, int i, double load);
 
 /* motion[n] <- harmonic k of free - R p, without making R: what a single product costs. */
 void mhb_receptance_motion(const mhb_receptance *receptance, int k, const double complex *p,
@@ -80,7 +80,8 @@ void mhb_receptance_slope(const mhb_receptance *receptance, int k, const double 
                           double complex *slope);
 
 /* R[n][n] <- the residual terms alone of harmonic k, at w rad/s of its own. */
-void mhb_receptance_residual(const mhb_receptance *receptance, int k, double w, double complex *R);
+void mhb_receptance_residual_terms(const mhb_receptance *receptance, int k, double w,
+                                   double complex *R);
 
 /* Motion of the probes [3 q] at harmonic k under contact force p[n] (both at the omega of the last call). */
 void mhb_receptance_probe(const mhb_receptance *receptance, int k, const double complex *p,

@@ -33,7 +33,7 @@ static terms terms_of(const modal_model *m) {
                  {m->probe_load_residual, m->probe_load_inertia, m->probe_load_fourth}};
 }
 
-static bool allocate(mhb_left_out *l, const terms *from) {
+static bool allocate(mhb_residual_terms *l, const terms *from) {
   const size_t n = (size_t)l->relative.n, K = (size_t)l->n_harmonics + 1;
   const size_t q = 3 * (size_t)l->model->n_probes, r = (size_t)l->model->n_residual;
   bool         made = true;
@@ -45,7 +45,7 @@ static bool allocate(mhb_left_out *l, const terms *from) {
 }
 
 /* S = T times the residual modes. */
-static void set_shapes(mhb_left_out *l, int k) {
+static void set_shapes(mhb_residual_terms *l, int k) {
   const size_t    n = (size_t)l->relative.n, r = (size_t)l->model->n_residual;
   const int       nc = n_contact(l->model);
   double complex *S  = l->S + (size_t)k * n * r, column[nc];
@@ -56,7 +56,7 @@ static void set_shapes(mhb_left_out *l, int k) {
 }
 
 /* Load harmonic h drives harmonic nu h. */
-static void set_load(mhb_left_out *l, int k, const terms *from) {
+static void set_load(mhb_residual_terms *l, int k, const terms *from) {
   const modal_model *model = l->model;
   const int          h = k / l->nu, q = 3 * model->n_probes, r = model->n_residual;
   if (k % l->nu || h > model->n_load) return;
@@ -71,7 +71,8 @@ static void set_load(mhb_left_out *l, int k, const terms *from) {
 }
 
 /* Probe motion per contact force p: a residual matrix [3 q][nc] times T^H. */
-static void set_probe(const mhb_left_out *l, int k, const double *matrix, double complex *out) {
+static void set_probe(const mhb_residual_terms *l, int k, const double *matrix,
+                      double complex *out) {
   const int      q = 3 * l->model->n_probes, nc = n_contact(l->model), n = l->relative.n;
   double complex column[nc];
   for (int i = 0; i < q; i++) {
@@ -82,11 +83,12 @@ static void set_probe(const mhb_left_out *l, int k, const double *matrix, double
   }
 }
 
-void mhb_left_out_set(mhb_left_out *l) {
+void mhb_residual_terms_set(mhb_residual_terms *l) {
   const terms from = terms_of(l->model);
   for (int t = 0; t < MODAL_TERMS; t++)
     if (l->contact[t])
-      mhb_flexibility_set(l->contact[t], from.contact[t], n_contact(l->model), l->relative.T0);
+      mhb_cyclic_flexibility_set(l->contact[t], from.contact[t], n_contact(l->model),
+                                 l->relative.T0);
   for (int k = 0; k <= l->n_harmonics; k++) {
     if (l->S) set_shapes(l, k);
     set_load(l, k, &from);
@@ -95,20 +97,21 @@ void mhb_left_out_set(mhb_left_out *l) {
   }
 }
 
-static shb_status make(mhb_left_out *l) {
+static shb_status make(mhb_residual_terms *l) {
   const terms from = terms_of(l->model);
   SHB_CHECK(allocate(l, &from), SHB_ERR_IO, "out of memory for the residual terms");
   for (int t = 0; t < MODAL_TERMS; t++)
     if (from.contact[t])
-      SHB_TRY(mhb_flexibility_create(from.contact[t], n_contact(l->model), l->relative.T0,
-                                     l->model->n_pairs, l->relative.sides, &l->contact[t]));
-  mhb_left_out_set(l);
+      SHB_TRY(mhb_cyclic_flexibility_create(from.contact[t], n_contact(l->model), l->relative.T0,
+                                            l->model->n_pairs, l->relative.sides, &l->contact[t]));
+  mhb_residual_terms_set(l);
   return SHB_OK;
 }
 
-shb_status mhb_left_out_create(const modal_model *model, mhb_relative relative, int nu,
-                               int n_harmonics, const double complex *phase, mhb_left_out **out) {
-  mhb_left_out *l = calloc(1, sizeof *l);
+shb_status mhb_residual_terms_create(const modal_model *model, mhb_relative relative, int nu,
+                                     int n_harmonics, const double complex *phase,
+                                     mhb_residual_terms **out) {
+  mhb_residual_terms *l = calloc(1, sizeof *l);
   SHB_CHECK(l, SHB_ERR_IO, "out of memory");
   l->model          = model;
   l->relative       = relative;
@@ -119,14 +122,14 @@ shb_status mhb_left_out_create(const modal_model *model, mhb_relative relative, 
   if (status == SHB_OK)
     *out = l;
   else
-    mhb_left_out_destroy(l);
+    mhb_residual_terms_destroy(l);
   return status;
 }
 
-void mhb_left_out_destroy(mhb_left_out *l) {
+void mhb_residual_terms_destroy(mhb_residual_terms *l) {
   if (!l) return;
   for (int t = 0; t < MODAL_TERMS; t++) {
-    mhb_flexibility_destroy(l->contact[t]);
+    mhb_cyclic_flexibility_destroy(l->contact[t]);
     free(l->load[t]);
     free(l->probe_load[t]);
     free(l->probe_contact[t]);
@@ -143,7 +146,7 @@ static bool any(const double complex *x, int n) {
   return false;
 }
 
-bool mhb_left_out_driven(const mhb_left_out *l, int k) {
+bool mhb_residual_terms_driven(const mhb_residual_terms *l, int k) {
   const int n = l->relative.n, q = 3 * l->model->n_probes, r = l->model->n_residual;
   bool      driven = l->F && any(l->F + k * r, r);
   for (int t = 0; t < MODAL_TERMS; t++)
@@ -154,7 +157,7 @@ bool mhb_left_out_driven(const mhb_left_out *l, int k) {
 
 /* ---- at a frequency ---- */
 
-static const double complex *shapes(const mhb_left_out *l, int k) {
+static const double complex *shapes(const mhb_residual_terms *l, int k) {
   return l->S + (size_t)k * (size_t)l->relative.n * (size_t)l->model->n_residual;
 }
 
@@ -171,7 +174,7 @@ MHB_INLINE double complex series(double complex *const x[MODAL_TERMS],
 }
 
 /* R += S g S^H by rows */
-MHB_HOT static void add_small(const mhb_left_out *l, const double complex *S, const double *g,
+MHB_HOT static void add_small(const mhb_residual_terms *l, const double complex *S, const double *g,
                               double complex *R) {
   const int n = l->relative.n, r = l->model->n_residual;
   for (int a = 0; a < n; a++)
@@ -186,7 +189,7 @@ MHB_HOT static void add_small(const mhb_left_out *l, const double complex *S, co
     }
 }
 
-static void add_large(const mhb_left_out *l, const double complex *S, const double *g,
+static void add_large(const mhb_residual_terms *l, const double complex *S, const double *g,
                       double complex *R) {
   const int      n = l->relative.n, r = l->model->n_residual;
   double complex one = 1;
@@ -196,23 +199,25 @@ static void add_large(const mhb_left_out *l, const double complex *S, const doub
               n);
 }
 
-void mhb_left_out_matrix(const mhb_left_out *l, int k, double w, double complex *R) {
+void mhb_residual_terms_matrix(const mhb_residual_terms *l, int k, double w, double complex *R) {
   const int    r = l->model->n_residual;
   modal_series s = modal_series_at(l->model, w);
   double       g[r + 1], slope;
   for (int t = 0; t < MODAL_TERMS; t++)
-    if (l->contact[t]) mhb_flexibility_add(l->contact[t], l->phase[k], s.weight[t], R);
+    if (l->contact[t]) mhb_cyclic_flexibility_add(l->contact[t], l->phase[k], s.weight[t], R);
   for (int i = 0; i < r; i++) g[i] = modal_series_mode(l->model, i, &s, &slope);
   if (r > 0 && w > 0) (l->relative.n < WORTH_BLAS ? add_small : add_large)(l, shapes(l, k), g, R);
 }
 
-void mhb_left_out_block(const mhb_left_out *l, int k, double w, int pair, double complex R[3][3]) {
+void mhb_residual_terms_block(const mhb_residual_terms *l, int k, double w, int pair,
+                              double complex R[3][3]) {
   const int             r = l->model->n_residual;
   modal_series          s = modal_series_at(l->model, w);
   const double complex *S = shapes(l, k) + 3 * pair * r;
   double                slope;
   for (int t = 0; t < MODAL_TERMS; t++)
-    if (l->contact[t]) mhb_flexibility_add_block(l->contact[t], l->phase[k], s.weight[t], pair, R);
+    if (l->contact[t])
+      mhb_cyclic_flexibility_add_block(l->contact[t], l->phase[k], s.weight[t], pair, R);
   for (int i = 0; i < r; i++) {
     double g = modal_series_mode(l->model, i, &s, &slope);
     for (int a = 0; a < 3; a++)
@@ -221,7 +226,7 @@ void mhb_left_out_block(const mhb_left_out *l, int k, double w, int pair, double
 }
 
 /* What acts on residual mode i: load F - S^H p. */
-static double complex drive(const mhb_left_out *l, int k, int i, double load,
+static double complex drive(const mhb_residual_terms *l, int k, int i, double load,
                             const double complex *p) {
   const int             r = l->model->n_residual;
   const double complex *S = shapes(l, k) + i;
@@ -231,7 +236,7 @@ static double complex drive(const mhb_left_out *l, int k, int i, double load,
 }
 
 /* to[n] += factor (load x - matrix p), of the terms, with their weights or slopes. */
-static void add_terms(const mhb_left_out *l, int k, const modal_series *s, bool slopes,
+static void add_terms(const mhb_residual_terms *l, int k, const modal_series *s, bool slopes,
                       double factor, double load, const double complex *p, double complex *to) {
   const int     n       = l->relative.n;
   const double *contact = slopes ? s->slope : s->weight;
@@ -240,12 +245,12 @@ static void add_terms(const mhb_left_out *l, int k, const modal_series *s, bool 
     to[a] += factor * load * series(l->load, loaded, (size_t)(k * n + a));
     for (int t = 0; t < MODAL_TERMS; t++)
       if (l->contact[t] && contact[t] != 0)
-        to[a] -= factor * contact[t] * mhb_flexibility_row(l->contact[t], l->phase[k], a, p);
+        to[a] -= factor * contact[t] * mhb_cyclic_flexibility_row(l->contact[t], l->phase[k], a, p);
   }
 }
 
 /* The same of the residual modes. */
-static void add_modes(const mhb_left_out *l, int k, const modal_series *s, bool slopes,
+static void add_modes(const mhb_residual_terms *l, int k, const modal_series *s, bool slopes,
                       double factor, double load, const double complex *p, double complex *to) {
   const int             n = l->relative.n, r = l->model->n_residual;
   const double complex *S = shapes(l, k);
@@ -256,13 +261,13 @@ static void add_modes(const mhb_left_out *l, int k, const modal_series *s, bool 
   }
 }
 
-void mhb_left_out_motion_by(const mhb_left_out *l, int k, const modal_series *s, double scale,
-                            const double complex *p, double complex *motion) {
+void mhb_residual_terms_motion_by(const mhb_residual_terms *l, int k, const modal_series *s,
+                                  double scale, const double complex *p, double complex *motion) {
   add_terms(l, k, s, false, 1, scale, p, motion);
 }
 
-void mhb_left_out_load(const mhb_left_out *l, int k, double w, double scale,
-                       double complex *motion) {
+void mhb_residual_terms_load(const mhb_residual_terms *l, int k, double w, double scale,
+                             double complex *motion) {
   const int             n = l->relative.n, r = l->model->n_residual;
   const double complex *S = shapes(l, k);
   modal_series          s = modal_series_at(l->model, w);
@@ -275,22 +280,22 @@ void mhb_left_out_load(const mhb_left_out *l, int k, double w, double scale,
   }
 }
 
-void mhb_left_out_motion(const mhb_left_out *l, int k, double w, double scale,
-                         const double complex *p, double complex *motion) {
+void mhb_residual_terms_motion(const mhb_residual_terms *l, int k, double w, double scale,
+                               const double complex *p, double complex *motion) {
   modal_series s = modal_series_at(l->model, w);
   add_terms(l, k, &s, false, 1, scale, p, motion);
   add_modes(l, k, &s, false, 1, scale, p, motion);
 }
 
-void mhb_left_out_slope(const mhb_left_out *l, int k, double w, double dw2, double scale,
-                        const double complex *p, double complex *slope) {
+void mhb_residual_terms_slope(const mhb_residual_terms *l, int k, double w, double dw2,
+                              double scale, const double complex *p, double complex *slope) {
   modal_series s = modal_series_at(l->model, w);
   add_terms(l, k, &s, true, dw2, scale, p, slope);
   add_modes(l, k, &s, true, dw2, scale, p, slope);
 }
 
 /* change[3 q] += P_i (g drive of the change + dw2 g' drive). */
-static void add_probe_modes(const mhb_left_out *l, int k, const modal_series *s, double scale,
+static void add_probe_modes(const mhb_residual_terms *l, int k, const modal_series *s, double scale,
                             const double complex *p, const double complex *dp, double dw2,
                             double d_scale, double complex *change) {
   const int q = 3 * l->model->n_probes, r = l->model->n_residual;
@@ -303,7 +308,7 @@ static void add_probe_modes(const mhb_left_out *l, int k, const modal_series *s,
 }
 
 /* change[3 q] += scale load - matrix p, of the terms. */
-static void add_probe_terms(const mhb_left_out *l, int k, const double weight[MODAL_TERMS],
+static void add_probe_terms(const mhb_residual_terms *l, int k, const double weight[MODAL_TERMS],
                             double scale, const double complex *p, double complex *change) {
   const size_t n = (size_t)l->relative.n, q = 3 * (size_t)l->model->n_probes;
   for (size_t c = 0; c < q; c++) {
@@ -313,14 +318,14 @@ static void add_probe_terms(const mhb_left_out *l, int k, const double weight[MO
   }
 }
 
-void mhb_left_out_probe_by(const mhb_left_out *l, int k, const modal_series *s, double scale,
-                           const double complex *p, double complex *motion) {
+void mhb_residual_terms_probe_by(const mhb_residual_terms *l, int k, const modal_series *s,
+                                 double scale, const double complex *p, double complex *motion) {
   add_probe_terms(l, k, s->load_weight, scale, p, motion);
 }
 
-void mhb_left_out_probe_change(const mhb_left_out *l, int k, double w, double scale,
-                               const double complex *p, const double complex *dp, double dw2,
-                               double d_scale, double complex *change) {
+void mhb_residual_terms_probe_change(const mhb_residual_terms *l, int k, double w, double scale,
+                                     const double complex *p, const double complex *dp, double dw2,
+                                     double d_scale, double complex *change) {
   modal_series s = modal_series_at(l->model, w);
   add_probe_terms(l, k, s.load_weight, d_scale, dp, change);
   for (int t = 0; t < MODAL_TERMS; t++) s.load_slope[t] *= dw2;

@@ -17,59 +17,60 @@
 #include "modal/model/residual_series.h"
 
 typedef struct {
-  const modal_model    *model;
-  mhb_relative          relative;
-  int                   n_harmonics, nu;
-  const double complex *phase;                      /* [k] e_k, the caller's */
-  mhb_flexibility      *contact[MODAL_TERMS];       /* R, R2, R3; each or NULL, as below */
-  double complex       *load[MODAL_TERMS];          /* [k][n] */
-  double complex       *probe_load[MODAL_TERMS];    /* [k][3 q] */
-  double complex       *probe_contact[MODAL_TERMS]; /* [k][3 q][n] */
-  double complex       *S, *F;                      /* [k][n][r], [k][r] of r residual modes */
-  double complex       *Sg;                         /* [n][r] S g of one harmonic */
-} mhb_left_out;
+  const modal_model      *model;
+  mhb_relative            relative;
+  int                     n_harmonics, nu;
+  const double complex   *phase;                      /* [k] e_k, the caller's */
+  mhb_cyclic_flexibility *contact[MODAL_TERMS];       /* R, R2, R3; each or NULL, as below */
+  double complex         *load[MODAL_TERMS];          /* [k][n] */
+  double complex         *probe_load[MODAL_TERMS];    /* [k][3 q] */
+  double complex         *probe_contact[MODAL_TERMS]; /* [k][3 q][n] */
+  double complex         *S, *F;                      /* [k][n][r], [k][r] of r residual modes */
+  double complex         *Sg;                         /* [n][r] S g of one harmonic */
+} mhb_residual_terms;
 
 /* phase[n_harmonics + 1] must outlive it, as the model and T0. Load harmonic h drives harmonic nu h. SHB_ERR_IO: no memory. */
-shb_status mhb_left_out_create(const modal_model *model, mhb_relative relative, int nu,
-                               int n_harmonics, const double complex *phase, mhb_left_out **out);
-void       mhb_left_out_destroy(mhb_left_out *left);
+shb_status mhb_residual_terms_create(const modal_model *model, mhb_relative relative, int nu,
+                                     int n_harmonics, const double complex *phase,
+                                     mhb_residual_terms **out);
+void       mhb_residual_terms_destroy(mhb_residual_terms *left);
 
 /* The model's arrays have other values. */
-void mhb_left_out_set(mhb_left_out *left);
+void mhb_residual_terms_set(mhb_residual_terms *left);
 
 /* Whether the load has this harmonic. */
-bool mhb_left_out_driven(const mhb_left_out *left, int k);
+bool mhb_residual_terms_driven(const mhb_residual_terms *left, int k);
 
 /* R[n][n] += matrix. Not for two threads at once. */
-void mhb_left_out_matrix(const mhb_left_out *left, int k, double w, double complex *R);
+void mhb_residual_terms_matrix(const mhb_residual_terms *left, int k, double w, double complex *R);
 
 /* R[3][3] += the block of a pair with itself. */
-void mhb_left_out_block(const mhb_left_out *left, int k, double w, int pair,
-                        double complex R[3][3]);
+void mhb_residual_terms_block(const mhb_residual_terms *left, int k, double w, int pair,
+                              double complex R[3][3]);
 
 /* motion[n] += scale load */
-void mhb_left_out_load(const mhb_left_out *left, int k, double w, double scale,
-                       double complex *motion);
+void mhb_residual_terms_load(const mhb_residual_terms *left, int k, double w, double scale,
+                             double complex *motion);
 
 /* motion[n] += scale load - matrix p */
-void mhb_left_out_motion(const mhb_left_out *left, int k, double w, double scale,
-                         const double complex *p, double complex *motion);
+void mhb_residual_terms_motion(const mhb_residual_terms *left, int k, double w, double scale,
+                               const double complex *p, double complex *motion);
 
 /* The same with weights of one's own, without residual modes. */
-void mhb_left_out_motion_by(const mhb_left_out *left, int k, const modal_series *series,
-                            double scale, const double complex *p, double complex *motion);
+void mhb_residual_terms_motion_by(const mhb_residual_terms *left, int k, const modal_series *series,
+                                  double scale, const double complex *p, double complex *motion);
 
 /* slope[n] += d/d(w^2) of that, times dw2. */
-void mhb_left_out_slope(const mhb_left_out *left, int k, double w, double dw2, double scale,
-                        const double complex *p, double complex *slope);
+void mhb_residual_terms_slope(const mhb_residual_terms *left, int k, double w, double dw2,
+                              double scale, const double complex *p, double complex *slope);
 
 /* change[3 q] += the change of the probes' motion with p by dp, w^2 by dw2 and the scale by d_scale. */
-void mhb_left_out_probe_change(const mhb_left_out *left, int k, double w, double scale,
-                               const double complex *p, const double complex *dp, double dw2,
-                               double d_scale, double complex *change);
+void mhb_residual_terms_probe_change(const mhb_residual_terms *left, int k, double w, double scale,
+                                     const double complex *p, const double complex *dp, double dw2,
+                                     double d_scale, double complex *change);
 
 /* motion[3 q] += the motion of the probes with weights of one's own, without residual modes. */
-void mhb_left_out_probe_by(const mhb_left_out *left, int k, const modal_series *series,
-                           double scale, const double complex *p, double complex *motion);
+void mhb_residual_terms_probe_by(const mhb_residual_terms *left, int k, const modal_series *series,
+                                 double scale, const double complex *p, double complex *motion);
 
 #endif

@@ -7,7 +7,7 @@ static const double PI = 3.14159265358979323846;
 /* The rate at the model's omega. */
 static const mhb_receptance *rate_of(const mhb_receptance *r) {
   if (r->rate->omega == r->omega) return r->rate;
-  mhb_at_speed_differentiate(r->at);
+  mhb_speed_model_differentiate(r->at);
   mhb_receptance_set(r->rate);
   r->rate->omega = r->omega;
   return r->rate;
@@ -20,10 +20,10 @@ static void modal_rate(const mhb_receptance *r, int k, const double complex *p, 
   const int             m    = r->n_modes;
   const double          w    = k * r->omega / r->nu;
   for (int i = 0; i < m; i++)
-    a[i] = r->lambda[k * m + i] * mhb_receptance_drive(r, k, p, i, r->scale);
+    a[i] = r->lambda[k * m + i] * mhb_receptance_modal_load(r, k, p, i, r->scale);
   for (int i = 0; i < m; i++) {
     const double  *dK = r->at->stiffness + i * m, *dN = r->at->damping + i * m;
-    double complex sum = mhb_receptance_drive(rate, k, p, i, r->scale);
+    double complex sum = mhb_receptance_modal_load(rate, k, p, i, r->scale);
     for (int j = 0; j < m; j++) sum -= CMPLX(dK[j], w * dN[j]) * a[j];
     change[i] = r->lambda[k * m + i] * sum;
   }
@@ -42,8 +42,8 @@ static modal_series weight_rate(const mhb_receptance *r, const modal_series *s, 
   return rate;
 }
 
-void mhb_rate_slope(const mhb_receptance *r, int k, const double complex *p,
-                    double complex *slope) {
+void mhb_speed_derivative_slope(const mhb_receptance *r, int k, const double complex *p,
+                                double complex *slope) {
   const int             m = r->n_modes, n = r->n;
   const double          w    = k * r->omega / r->nu;
   const mhb_receptance *rate = rate_of(r);
@@ -54,12 +54,12 @@ void mhb_rate_slope(const mhb_receptance *r, int k, const double complex *p,
   modal_rate(r, k, p, a, change);
   for (int row = 0; row < n; row++, B += m, dB += m)
     for (int i = 0; i < m; i++) slope[row] += dB[i] * a[i] + B[i] * change[i];
-  mhb_left_out_motion_by(rate->left_out, k, &s, r->scale, p, slope);
-  mhb_left_out_motion_by(r->left_out, k, &by_weights, r->scale, p, slope);
+  mhb_residual_terms_motion_by(rate->left_out, k, &s, r->scale, p, slope);
+  mhb_residual_terms_motion_by(r->left_out, k, &by_weights, r->scale, p, slope);
 }
 
-void mhb_rate_probe(const mhb_receptance *r, int k, const double complex *p, double d_omega,
-                    double complex *change) {
+void mhb_speed_derivative_probe(const mhb_receptance *r, int k, const double complex *p,
+                                double d_omega, double complex *change) {
   const int             m = r->n_modes, q = 3 * r->model->n_probes;
   const double          w    = k * r->omega / r->nu;
   const mhb_receptance *rate = rate_of(r);
@@ -67,8 +67,8 @@ void mhb_rate_probe(const mhb_receptance *r, int k, const double complex *p, dou
   double complex        a[m], by[m], residual[q + 1];
   memset(residual, 0, sizeof residual);
   modal_rate(r, k, p, a, by);
-  mhb_left_out_probe_by(rate->left_out, k, &s, r->scale, p, residual);
-  mhb_left_out_probe_by(r->left_out, k, &by_weights, r->scale, p, residual);
+  mhb_residual_terms_probe_by(rate->left_out, k, &s, r->scale, p, residual);
+  mhb_residual_terms_probe_by(r->left_out, k, &by_weights, r->scale, p, residual);
   for (int c = 0; c < q; c++) {
     const double *psi = r->model->probe + c * m, *d_psi = rate->model->probe + c * m;
     for (int i = 0; i < m; i++) residual[c] += d_psi[i] * a[i] + psi[i] * by[i];

@@ -5,11 +5,11 @@
 #include "mhb/structure/receptance.h"
 
 /* slope[n] += what changes with the model in harmonic k of [free - R p] at fixed p[n]. */
-void mhb_rate_slope(const mhb_receptance *receptance, int k, const double complex *p,
-                    double complex *slope);
+void mhb_speed_derivative_slope(const mhb_receptance *receptance, int k, const double complex *p,
+                                double complex *slope);
 
 /* change[3 q] += d_omega times the same of the probes. */
-void mhb_rate_probe(const mhb_receptance *receptance, int k, const double complex *p,
-                    double d_omega, double complex *change);
+void mhb_speed_derivative_probe(const mhb_receptance *receptance, int k, const double complex *p,
+                                double d_omega, double complex *change);
 
 #endif

@@ -12,17 +12,18 @@ static const double TWO_PI = 6.283185307179586476925;
 static const double SAME = 1e-12, LEAST = 1e-12;
 
 /* The model's arrays <- those of an entry whose rows are turned. */
-static void point(const mhb_run_up *r, double *entry, double *turned, modal_model *model) {
+static void point(const mhb_speed_table *r, double *entry, double *turned, modal_model *model) {
   const int side = 3 * model->n_pairs, m = r->n_modes;
-  double   *plain[MHB_RUN_UP_PLAIN];
-  for (int i = 0; i < MHB_RUN_UP_PLAIN; i++) plain[i] = r->count[i] ? entry + r->plain[i] : NULL;
-  mhb_run_up_set_plain(model, plain);
+  double   *plain[MHB_SPEED_TABLE_UNROTATED];
+  for (int i = 0; i < MHB_SPEED_TABLE_UNROTATED; i++)
+    plain[i] = r->count[i] ? entry + r->plain[i] : NULL;
+  mhb_speed_table_set_unrotated(model, plain);
   model->right = turned;
   model->left  = model->has_left ? turned + side * m : NULL;
   model->probe = turned + (model->has_left ? 2 : 1) * side * m;
 }
 
-static shb_status make_model(const mhb_run_up *r, double *entry, double *turned,
+static shb_status make_model(const mhb_speed_table *r, double *entry, double *turned,
                              modal_model *model) {
   const modal_model *given = r->given;
   *model                   = (modal_model){.n_modes        = r->n_modes,
@@ -53,8 +54,8 @@ static void free_model(modal_model *model) {
   free(model->modal_force);
 }
 
-shb_status mhb_at_speed_create(const mhb_run_up *r, mhb_at_speed **out) {
-  mhb_at_speed *a = calloc(1, sizeof *a);
+shb_status mhb_speed_model_create(const mhb_speed_table *r, mhb_speed_model **out) {
+  mhb_speed_model *a = calloc(1, sizeof *a);
   SHB_CHECK(a, SHB_ERR_IO, "out of memory");
   const size_t m = (size_t)r->n_modes, rows = (size_t)r->rows, n = (size_t)r->n;
   a->run_up = r;
@@ -74,14 +75,14 @@ shb_status mhb_at_speed_create(const mhb_run_up *r, mhb_at_speed **out) {
   shb_status status = ok ? make_model(r, a->entry, a->turned, &a->model) : SHB_ERR_IO;
   if (status == SHB_OK) status = make_model(r, a->d_entry, a->d_turned, &a->slope);
   if (status != SHB_OK) {
-    mhb_at_speed_destroy(a);
+    mhb_speed_model_destroy(a);
     SHB_FAIL(SHB_ERR_IO, "out of memory for %zu modes", m);
   }
   *out = a;
   return SHB_OK;
 }
 
-void mhb_at_speed_destroy(mhb_at_speed *a) {
+void mhb_speed_model_destroy(mhb_speed_model *a) {
   if (!a) return;
   free_model(&a->model);
   free_model(&a->slope);
@@ -92,13 +93,14 @@ void mhb_at_speed_destroy(mhb_at_speed *a) {
 }
 
 /* out += sum_i weight_i table_i */
-static void combine(const mhb_run_up *r, const double *weight, double *out) {
+static void combine(const mhb_speed_table *r, const double *weight, double *out) {
   for (int i = 1; i < r->n; i++) /* the first is base itself */
     cblas_daxpy((int)r->size, weight[i], r->table + (size_t)i * r->size, 1, out, 1);
 }
 
 /* Rows of an entry times U, and the load of the model from them. */
-static void turn(const mhb_at_speed *a, const double *entry, double *turned, modal_model *model) {
+static void turn(const mhb_speed_model *a, const double *entry, double *turned,
+                 modal_model *model) {
   const int     m = a->run_up->n_modes, rows = a->run_up->rows, K = model->n_load + 1;
   const double *re = turned + (rows - 2 * K) * m, *im = re + K * m;
   cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasTrans, rows, m, m, 1, entry + 2 * m * m, m, a->U, m,
@@ -107,7 +109,7 @@ static void turn(const mhb_at_speed *a, const double *entry, double *turned, mod
 }
 
 /* out[m][m] = U^T X U, X symmetric; work: m^2 */
-static void congruent(const mhb_at_speed *a, const double *X, double *work, double *out) {
+static void congruent(const mhb_speed_model *a, const double *X, double *work, double *out) {
   const int m = a->run_up->n_modes;
   cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, m, m, m, 1, a->U, m, X, m, 0, work, m);
   cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasTrans, m, m, m, 1, work, m, a->U, m, 0, out, m);
@@ -132,11 +134,11 @@ static int find_modes(int m, const double *K, double *work, double *square, doub
   return 1;
 }
 
-void mhb_at_speed_go(mhb_at_speed *a, double omega) {
-  const mhb_run_up *r = a->run_up;
-  const int         m = r->n_modes;
+void mhb_speed_model_set(mhb_speed_model *a, double omega) {
+  const mhb_speed_table *r = a->run_up;
+  const int              m = r->n_modes;
   if (a->omega == omega) return;
-  const double speed  = mhb_run_up_speed(r, omega);
+  const double speed  = mhb_speed_table_speed(r, omega);
   double      *square = a->work, *rest = a->work + m, *Z = rest + m * m;
   modal_spline_weights(&r->spline, speed * speed, a->weight, a->d_weight);
   memcpy(a->entry, r->base, r->size * sizeof *a->entry);
@@ -155,7 +157,7 @@ void mhb_at_speed_go(mhb_at_speed *a, double omega) {
 }
 
 /* dN from dK, Z in the modes, and U^T Z' U. */
-static void differentiate_damping(mhb_at_speed *a, const double *Z, const double *dZ) {
+static void differentiate_damping(mhb_speed_model *a, const double *Z, const double *dZ) {
   const int     m    = a->run_up->n_modes;
   const double *zeta = a->model.damping_ratio, *dK = a->stiffness;
   for (int i = 0; i < m; i++) {
@@ -172,9 +174,9 @@ static void differentiate_damping(mhb_at_speed *a, const double *Z, const double
   }
 }
 
-void mhb_at_speed_differentiate(mhb_at_speed *a) {
-  const mhb_run_up *r = a->run_up;
-  const int         m = r->n_modes;
+void mhb_speed_model_differentiate(mhb_speed_model *a) {
+  const mhb_speed_table *r = a->run_up;
+  const int              m = r->n_modes;
   if (a->slope_at == a->omega) return;
   const double own = a->omega / r->engine_order, square = (double)r->engine_order * r->engine_order;
   const bool   inside = own >= r->low * (1 - SAME) && own <= r->high * (1 + SAME);

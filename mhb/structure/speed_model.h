@@ -10,10 +10,10 @@
 #include "mhb/structure/speed_table.h"
 
 typedef struct {
-  const mhb_run_up *run_up;
-  double            omega, slope_at; /* rad/s of model, of slope; NAN: never */
-  double            least; /* of the eigenvalues of K; model has positive ones whatever it is */
-  modal_model       model; /* arrays are its own, or the run-up's */
+  const mhb_speed_table *run_up;
+  double                 omega, slope_at; /* rad/s of model, of slope; NAN: never */
+  double      least; /* of the eigenvalues of K; model has positive ones whatever it is */
+  modal_model model; /* arrays are its own, or the run-up's */
   modal_model
           slope; /* d/d omega of Q U, U^T Q^T f and the residual terms, U held; not of frequency and damping_ratio */
   double *stiffness, *damping; /* [m][m] dK, dN */
@@ -22,16 +22,16 @@ typedef struct {
   double *U;                   /* [mode][m] */
   double *weight, *d_weight;   /* [speeds] */
   double *work;                /* [4 m^2 + 40 m] */
-} mhb_at_speed;
+} mhb_speed_model;
 
 /* At no frequency yet. SHB_ERR_IO: no memory. */
-shb_status mhb_at_speed_create(const mhb_run_up *run_up, mhb_at_speed **at_speed);
-void       mhb_at_speed_destroy(mhb_at_speed *at_speed);
+shb_status mhb_speed_model_create(const mhb_speed_table *run_up, mhb_speed_model **at_speed);
+void       mhb_speed_model_destroy(mhb_speed_model *at_speed);
 
 /* model <- at an excitation frequency, rad/s. Beyond the speeds covered it is that of the last of them. */
-void mhb_at_speed_go(mhb_at_speed *at_speed, double omega);
+void mhb_speed_model_set(mhb_speed_model *at_speed, double omega);
 
 /* slope, stiffness, damping <- where go went. */
-void mhb_at_speed_differentiate(mhb_at_speed *at_speed);
+void mhb_speed_model_differentiate(mhb_speed_model *at_speed);
 
 #endif

@@ -19,40 +19,40 @@ static double rpm(double speed) {
   return speed * 60 / TWO_PI;
 }
 
-double mhb_run_up_speed(const mhb_run_up *r, double omega) {
+double mhb_speed_table_speed(const mhb_speed_table *r, double omega) {
   return fmin(fmax(omega / r->engine_order, r->low), r->high);
 }
 
 /* ---------------------------------------------------------------- what an entry holds */
 
-void mhb_run_up_plain(const modal_model *m, const void *data[MHB_RUN_UP_PLAIN],
-                      size_t count[MHB_RUN_UP_PLAIN]) {
+void mhb_speed_table_unrotated(const modal_model *m, const void *data[MHB_SPEED_TABLE_UNROTATED],
+                               size_t count[MHB_SPEED_TABLE_UNROTATED]) {
   const size_t c = 3 * (size_t)m->n_pairs * (m->has_left ? 2 : 1), q = 3 * (size_t)m->n_probes;
   const size_t k = 2 * ((size_t)m->n_load + 1);
   const struct {
     const void *data;
     size_t      count;
-  } part[MHB_RUN_UP_PLAIN] = {{m->load_residual, k * c},
-                              {m->load_inertia, k * c},
-                              {m->load_fourth, k * c},
-                              {m->probe_load_residual, k * q},
-                              {m->probe_load_inertia, k * q},
-                              {m->probe_load_fourth, k * q},
-                              {m->residual_flexibility, c * c},
-                              {m->residual_inertia, c * c},
-                              {m->residual_fourth, c * c},
-                              {m->contact_tail, 2 * c},
-                              {m->load_tail, k},
-                              {m->probe_contact_residual, q * c},
-                              {m->probe_contact_inertia, q * c},
-                              {m->probe_contact_fourth, q * c}};
-  for (int i = 0; i < MHB_RUN_UP_PLAIN; i++) {
+  } part[MHB_SPEED_TABLE_UNROTATED] = {{m->load_residual, k * c},
+                                       {m->load_inertia, k * c},
+                                       {m->load_fourth, k * c},
+                                       {m->probe_load_residual, k * q},
+                                       {m->probe_load_inertia, k * q},
+                                       {m->probe_load_fourth, k * q},
+                                       {m->residual_flexibility, c * c},
+                                       {m->residual_inertia, c * c},
+                                       {m->residual_fourth, c * c},
+                                       {m->contact_tail, 2 * c},
+                                       {m->load_tail, k},
+                                       {m->probe_contact_residual, q * c},
+                                       {m->probe_contact_inertia, q * c},
+                                       {m->probe_contact_fourth, q * c}};
+  for (int i = 0; i < MHB_SPEED_TABLE_UNROTATED; i++) {
     data[i]  = part[i].data;
     count[i] = part[i].data ? part[i].count : 0;
   }
 }
 
-void mhb_run_up_set_plain(modal_model *m, double *const data[MHB_RUN_UP_PLAIN]) {
+void mhb_speed_table_set_unrotated(modal_model *m, double *const data[MHB_SPEED_TABLE_UNROTATED]) {
   m->load_residual          = (double complex *)data[0];
   m->load_inertia           = (double complex *)data[1];
   m->load_fourth            = (double complex *)data[2];
@@ -69,14 +69,14 @@ void mhb_run_up_set_plain(modal_model *m, double *const data[MHB_RUN_UP_PLAIN]) 
   m->probe_contact_fourth   = data[13];
 }
 
-static void lay_out(mhb_run_up *r) {
+static void lay_out(mhb_speed_table *r) {
   const modal_model *m = r->given;
-  const void        *unused[MHB_RUN_UP_PLAIN];
+  const void        *unused[MHB_SPEED_TABLE_UNROTATED];
   r->rows = 3 * m->n_pairs * (m->has_left ? 2 : 1) + 3 * m->n_probes + 2 * (m->n_load + 1);
   r->size = (2 * (size_t)r->n_modes + (size_t)r->rows) * (size_t)r->n_modes;
   r->size += r->size % 2; /* complex numbers follow */
-  mhb_run_up_plain(m, unused, r->count);
-  for (int i = 0; i < MHB_RUN_UP_PLAIN; i++) {
+  mhb_speed_table_unrotated(m, unused, r->count);
+  for (int i = 0; i < MHB_SPEED_TABLE_UNROTATED; i++) {
     r->plain[i] = r->size;
     r->size += r->count[i];
   }
@@ -107,11 +107,11 @@ static double *turn_rows(int m, const double *V, const double *rows, int n, doub
 }
 
 /* An entry from a speed's model and V[mode][place]. */
-static void fill_entry(const mhb_run_up *r, const modal_model *model, const double *V, double *out,
-                       double *scratch) {
+static void fill_entry(const mhb_speed_table *r, const modal_model *model, const double *V,
+                       double *out, double *scratch) {
   const int   m = r->n_modes, side = 3 * model->n_pairs;
-  const void *data[MHB_RUN_UP_PLAIN];
-  size_t      count[MHB_RUN_UP_PLAIN];
+  const void *data[MHB_SPEED_TABLE_UNROTATED];
+  size_t      count[MHB_SPEED_TABLE_UNROTATED];
   for (int i = 0; i < m; i++) scratch[i] = pow(TWO_PI * model->frequency[i], 2);
   turn_diagonal(m, V, scratch, out);
   turn_diagonal(m, V, model->damping_ratio, out + m * m);
@@ -121,8 +121,8 @@ static void fill_entry(const mhb_run_up *r, const modal_model *model, const doub
   for (int part = 0; part < 2; part++)
     for (int k = 0; k <= model->n_load; k++, at += m)
       turn_row(m, V, (const double *)(model->modal_force + (size_t)(k * m)) + part, 2, at);
-  mhb_run_up_plain(model, data, count);
-  for (int i = 0; i < MHB_RUN_UP_PLAIN; i++)
+  mhb_speed_table_unrotated(model, data, count);
+  for (int i = 0; i < MHB_SPEED_TABLE_UNROTATED; i++)
     if (count[i]) memcpy(out + r->plain[i], data[i], count[i] * sizeof *out);
 }
 
@@ -212,7 +212,7 @@ static shb_status choose_tracks(const modal_speeds *s, const char *path, int fro
 }
 
 /* V[mode][place] of a speed. */
-static void basis(const mhb_run_up *r, int speed, double *work, double *V) {
+static void basis(const mhb_speed_table *r, int speed, double *work, double *V) {
   const modal_speeds *s = &r->speeds;
   const int           m = r->n_modes;
   if (s->overlap) {
@@ -225,7 +225,7 @@ static void basis(const mhb_run_up *r, int speed, double *work, double *V) {
 
 /* ---------------------------------------------------------------- life cycle */
 
-static shb_status check_range(const mhb_run_up *r, const char *path) {
+static shb_status check_range(const mhb_speed_table *r, const char *path) {
   const modal_speeds *s = &r->speeds;
   const double        E = r->engine_order, first = s->speed[0], last = s->speed[s->n - 1];
   SHB_CHECK(
@@ -238,7 +238,7 @@ static shb_status check_range(const mhb_run_up *r, const char *path) {
 }
 
 /* The entries of speeds from .. to. */
-static shb_status fill(mhb_run_up *r, int from, double *work) {
+static shb_status fill(mhb_speed_table *r, int from, double *work) {
   const size_t m = (size_t)r->n_modes;
   double      *V = work, *square = calloc((size_t)r->n, sizeof *square);
   work += m * m;
@@ -261,18 +261,18 @@ static shb_status fill(mhb_run_up *r, int from, double *work) {
 }
 
 /* Between the speeds too the structure must be stable. */
-static shb_status check_between(const mhb_run_up *r, const char *path) {
-  mhb_at_speed *here  = NULL;
-  double        least = INFINITY, at = 0;
-  SHB_TRY(mhb_at_speed_create(r, &here));
+static shb_status check_between(const mhb_speed_table *r, const char *path) {
+  mhb_speed_model *here  = NULL;
+  double           least = INFINITY, at = 0;
+  SHB_TRY(mhb_speed_model_create(r, &here));
   for (int i = 0; i < LOOKS; i++) {
     double omega = r->band[0] + (r->band[1] - r->band[0]) * i / (LOOKS - 1);
-    mhb_at_speed_go(here, omega);
+    mhb_speed_model_set(here, omega);
     if (here->least >= least) continue;
     least = here->least;
-    at    = mhb_run_up_speed(r, omega);
+    at    = mhb_speed_table_speed(r, omega);
   }
-  mhb_at_speed_destroy(here);
+  mhb_speed_model_destroy(here);
   SHB_CHECK(least > 0, SHB_ERR_INPUT,
             "mhb.run_up: %s: the speeds are too far apart: interpolated to %.6g rpm the blade is "
             "not stable; give more speeds",
@@ -287,7 +287,7 @@ static shb_status keep_terms(modal_model *model, int modes) {
   return SHB_OK;
 }
 
-static shb_status make(mhb_run_up *r, const char *path) {
+static shb_status make(mhb_speed_table *r, const char *path) {
   modal_speeds *s    = &r->speeds;
   int           from = 0, to = s->n - 1;
   SHB_CHECK(r->engine_order >= 1, SHB_ERR_INPUT,
@@ -324,9 +324,9 @@ static shb_status make(mhb_run_up *r, const char *path) {
   return status == SHB_OK ? check_between(r, path) : status;
 }
 
-shb_status mhb_run_up_create(modal_speeds *speeds, const char *path, int engine_order,
-                             const double frequency[2], mhb_run_up **out) {
-  mhb_run_up *r = calloc(1, sizeof *r);
+shb_status mhb_speed_table_create(modal_speeds *speeds, const char *path, int engine_order,
+                                  const double frequency[2], mhb_speed_table **out) {
+  mhb_speed_table *r = calloc(1, sizeof *r);
   SHB_CHECK(r, SHB_ERR_IO, "out of memory");
   r->speeds         = *speeds;
   *speeds           = (modal_speeds){0};
@@ -335,14 +335,14 @@ shb_status mhb_run_up_create(modal_speeds *speeds, const char *path, int engine_
   r->band[1]        = TWO_PI * frequency[1];
   shb_status status = make(r, path);
   if (status != SHB_OK) {
-    mhb_run_up_destroy(r);
+    mhb_speed_table_destroy(r);
     return status;
   }
   *out = r;
   return SHB_OK;
 }
 
-void mhb_run_up_destroy(mhb_run_up *r) {
+void mhb_speed_table_destroy(mhb_speed_table *r) {
   if (!r) return;
   modal_speeds_free(&r->speeds);
   modal_spline_free(&r->spline);

@@ -16,11 +16,11 @@
 #include "modal/model/spline.h"
 
 enum {
-  MHB_RUN_UP_PLAIN = 14
+  MHB_SPEED_TABLE_UNROTATED = 14
 }; /* arrays of a model that do not depend on which modes are kept apart */
 
 /* Does not change once made: threads may share it. An entry: K [m][m], Z [m][m], rows [rows][m], plain. */
-typedef struct mhb_run_up {
+typedef struct mhb_speed_table {
   int                n, n_modes, engine_order; /* n: speeds used */
   int                n_dropped;    /* modes that the files has and that answer statically */
   double             low, high;    /* rad/s, speeds covered */
@@ -31,24 +31,26 @@ typedef struct mhb_run_up {
   const modal_model *given;        /* one of them: what does not change with the speed */
   modal_spline       spline;       /* over Omega^2 */
   double            *base, *table; /* [size] the first entry; [n][size] the others less that */
-  size_t             plain[MHB_RUN_UP_PLAIN],
-      count[MHB_RUN_UP_PLAIN]; /* where in an entry, and how many; 0: not there */
-} mhb_run_up;
+  size_t             plain[MHB_SPEED_TABLE_UNROTATED],
+      count[MHB_SPEED_TABLE_UNROTATED]; /* where in an entry, and how many; 0: not there */
+} mhb_speed_table;
 
 /* speeds  in   taken over, and empty afterwards
  *   path  in   of the modal file, for messages
  *   frequency  in  Hz, range of the excitation (both alike: one frequency)
  * Errors: SHB_ERR_INPUT engine order below 1; one speed only; speeds needed beyond those there are; a mode that cannot be followed; SHB_ERR_IO no memory. */
-shb_status mhb_run_up_create(modal_speeds *speeds, const char *path, int engine_order,
-                             const double frequency[2], mhb_run_up **run_up);
-void       mhb_run_up_destroy(mhb_run_up *run_up);
+shb_status mhb_speed_table_create(modal_speeds *speeds, const char *path, int engine_order,
+                                  const double frequency[2], mhb_speed_table **run_up);
+void       mhb_speed_table_destroy(mhb_speed_table *run_up);
 
 /* Speed that goes with an excitation frequency, rad/s each; no less and no more than the speeds covered. */
-double mhb_run_up_speed(const mhb_run_up *run_up, double omega);
+double mhb_speed_table_speed(const mhb_speed_table *run_up, double omega);
 
-/* The arrays [MHB_RUN_UP_PLAIN] of a model and their numbers of doubles; and a model's set to others. */
-void mhb_run_up_plain(const modal_model *model, const void *data[MHB_RUN_UP_PLAIN],
-                      size_t count[MHB_RUN_UP_PLAIN]);
-void mhb_run_up_set_plain(modal_model *model, double *const data[MHB_RUN_UP_PLAIN]);
+/* The arrays [MHB_SPEED_TABLE_UNROTATED] of a model and their numbers of doubles; and a model's set to others. */
+void mhb_speed_table_unrotated(const modal_model *model,
+                               const void        *data[MHB_SPEED_TABLE_UNROTATED],
+                               size_t             count[MHB_SPEED_TABLE_UNROTATED]);
+void mhb_speed_table_set_unrotated(modal_model  *model,
+                                   double *const data[MHB_SPEED_TABLE_UNROTATED]);
 
 #endif

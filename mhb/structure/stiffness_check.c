@@ -12,12 +12,12 @@ static double stiffest(const mhb_settings *settings, mhb_parameter what, double 
 static shb_status check(const char *key, const char *interface, double stiffness,
                         double flexibility) {
   double ratio = stiffness * flexibility;
-  SHB_CHECK(!(ratio > MHB_RIGID_LIMIT) || isinf(ratio), SHB_ERR_INPUT,
+  SHB_CHECK(!(ratio > MHB_STIFFNESS_LIMIT) || isinf(ratio), SHB_ERR_INPUT,
             "contact.%s%s%s: %.4g N/m is %.2g times as stiff as the blade at its contact (%.3g "
             "N/m); beyond %g times it is rigid for every purpose and takes minutes to follow: give "
             "at most %.2g N/m",
             key, interface ? " of interface " : "", interface ? interface : "", stiffness, ratio,
-            1 / flexibility, MHB_RIGID_LIMIT, .99 * MHB_RIGID_LIMIT / flexibility);
+            1 / flexibility, MHB_STIFFNESS_LIMIT, .99 * MHB_STIFFNESS_LIMIT / flexibility);
   return SHB_OK;
 }
 
@@ -32,10 +32,10 @@ static void softest(const mhb_receptance *receptance, int interface, double most
   }
 }
 
-shb_status mhb_rigid_check(mhb_receptance *receptance, const mhb_settings *settings) {
+shb_status mhb_stiffness_check(mhb_receptance *receptance, const mhb_settings *settings) {
   const int several = settings->n_interfaces > 1;
-  mhb_receptance_move(receptance, 1e-6 * receptance->model->frequency[0]);
-  mhb_receptance_need(receptance, 1);
+  mhb_receptance_set_frequency(receptance, 1e-6 * receptance->model->frequency[0]);
+  mhb_receptance_update(receptance, 1);
   for (int i = 0; i < (several ? settings->n_interfaces : 1); i++) {
     const mhb_interface *own  = &settings->interface[i];
     const bool           lead = !several || i == settings->lead;

@@ -59,35 +59,35 @@ static row finish(int n, double *seconds, double worst) {
 
 /* ---- integration ---- */
 
-static void first_harmonics(const mhb_orbit_result *r, double complex u[3]) {
+static void first_harmonics(const mhb_steady_state_result *r, double complex u[3]) {
   for (int c = 0; c < 3; c++) u[c] = r->motion[c * (r->n_harmonics + 1) + 1];
 }
 
 /* rest: each point from rest, else from the state at the frequency .2 % away. */
 static row integrate(const scene *s, int steps, double tolerance, int rest,
                      double complex (*out)[3]) {
-  mhb_integrator    *g;
-  mhb_orbit         *orbit;
-  mhb_orbit_settings settings = {tolerance, 100000};
-  double             seconds[MAX_POINTS], worst = 0;
+  mhb_integrator           *g;
+  mhb_steady_state         *orbit;
+  mhb_steady_state_settings settings = {tolerance, 100000};
+  double                    seconds[MAX_POINTS], worst = 0;
   if (mhb_integrator_create(&s->model, &s->settings, 1, &g) != SHB_OK ||
-      mhb_orbit_create(g, &orbit) != SHB_OK)
+      mhb_steady_state_create(g, &orbit) != SHB_OK)
     return (row){NAN, NAN};
   for (int i = 0; i < s->n; i++) {
     double complex u[3];
     mhb_integrator_set(g, AWAY * s->w[i], s->settings.n0[0], steps);
     mhb_integrator_rest(g);
-    if (!rest) mhb_orbit_run(orbit, &settings, NULL, NULL);
+    if (!rest) mhb_steady_state_run(orbit, &settings, NULL, NULL);
     double began = shb_seconds();
     mhb_integrator_set(g, s->w[i], s->settings.n0[0], steps);
     if (rest) mhb_integrator_rest(g);
-    const mhb_orbit_result *r = mhb_orbit_run(orbit, &settings, NULL, NULL);
-    seconds[i]                = shb_seconds() - began;
+    const mhb_steady_state_result *r = mhb_steady_state_run(orbit, &settings, NULL, NULL);
+    seconds[i]                       = shb_seconds() - began;
     first_harmonics(r, out ? out[i] : u);
     if (r->lost || r->multiple != 1) worst = INFINITY;
     if (!out) worst = fmax(worst, error_of(s, i, u));
   }
-  mhb_orbit_destroy(orbit);
+  mhb_steady_state_destroy(orbit);
   mhb_integrator_destroy(g);
   return finish(s->n, seconds, worst);
 }
@@ -95,15 +95,15 @@ static row integrate(const scene *s, int steps, double tolerance, int rest,
 /* ---- balance ---- */
 
 static row balance(const scene *s, int harmonics, double tolerance) {
-  mhb_settings  settings = s->settings;
-  mhb_residual *b;
-  mhb_newton   *newton;
-  double        seconds[MAX_POINTS], worst = 0;
+  mhb_settings settings = s->settings;
+  mhb_balance *b;
+  mhb_newton  *newton;
+  double       seconds[MAX_POINTS], worst = 0;
   settings.harmonics = harmonics;
-  if (mhb_residual_create(&s->model, &settings, &b) != SHB_OK ||
+  if (mhb_balance_create(&s->model, &settings, &b) != SHB_OK ||
       mhb_newton_create(b->n, &newton) != SHB_OK)
     return (row){NAN, NAN};
-  mhb_residual_preload(b, settings.n0[0]);
+  mhb_balance_set_preload(b, settings.n0[0]);
   double *x = calloc((size_t)b->n, sizeof *x);
   for (int i = 0; x && i < s->n; i++) {
     int            iterations;
@@ -118,7 +118,7 @@ static row balance(const scene *s, int harmonics, double tolerance) {
   }
   free(x);
   mhb_newton_destroy(newton);
-  mhb_residual_destroy(b);
+  mhb_balance_destroy(b);
   return finish(s->n, seconds, worst);
 }
 

@@ -56,7 +56,7 @@ static void no_lock(mhb_monitor *monitor, bool locked) {
   (void)locked;
 }
 
-static bool go_on(mhb_monitor *monitor, int branch, const mhb_path_point *point) {
+static bool go_on(mhb_monitor *monitor, int branch, const mhb_curve_point *point) {
   (void)monitor;
   (void)branch;
   (void)point;
@@ -86,24 +86,24 @@ static mhb_settings beam_settings(int harmonics, double tolerance) {
 }
 
 static shb_status sweep_once(const modal_model *model, const mhb_settings *s, sweep_row *row) {
-  mhb_monitor   monitor = {.point = go_on, .lock = no_lock};
-  mhb_residual *residual;
-  int           branch;
-  SHB_TRY(mhb_residual_create(model, s, &residual));
-  mhb_residual_preload(residual, s->n0[0]);
+  mhb_monitor  monitor = {.point = go_on, .lock = no_lock};
+  mhb_balance *residual;
+  int          branch;
+  SHB_TRY(mhb_balance_create(model, s, &residual));
+  mhb_balance_set_preload(residual, s->n0[0]);
   mhb_response *response = mhb_response_create(1, model->n_probes, s->harmonics);
   shb_status    status   = mhb_response_branch(response, MHB_BRANCH_NONLINEAR, &branch);
   double        started  = shb_seconds();
-  if (status == SHB_OK) status = mhb_follow(residual, response, branch, &monitor);
+  if (status == SHB_OK) status = mhb_trace_main_branch(residual, response, branch, &monitor);
   double seconds = shb_seconds() - started;
   if (status == SHB_OK) *row = read_branch(&response->branch[branch], s->harmonics + 1);
   row->seconds = seconds;
   mhb_response_destroy(response);
-  mhb_residual_destroy(residual);
+  mhb_balance_destroy(residual);
   return status;
 }
 
-static int moves(const mhb_residual *b) {
+static int moves(const mhb_balance *b) {
   int n = 0;
   for (int a = 0; a < b->n_pairs; a++)
     n += b->info[a].share[MHB_STICK] < 1 && b->info[a].share[MHB_SEPARATE] < 1;
@@ -112,35 +112,35 @@ static int moves(const mhb_residual *b) {
 
 /* The same path without records, events and estimates. */
 static shb_status time_steps(const modal_model *model, const mhb_settings *s, sweep_row *row) {
-  static double moving[MAX_POINTS], linear[MAX_POINTS];
-  mhb_residual *b;
-  mhb_path     *path;
-  int           iterations, n[2] = {0, 0};
-  double        low = 2 * PI * s->frequency[0];
-  SHB_TRY(mhb_residual_create(model, s, &b));
-  mhb_residual_preload(b, s->n0[0]);
-  SHB_TRY(mhb_path_create(b, low, 2 * PI * s->frequency[1], &path));
-  double          *x       = calloc((size_t)b->n, sizeof(double));
-  mhb_path_outcome outcome = MHB_PATH_STALLED;
+  static double  moving[MAX_POINTS], linear[MAX_POINTS];
+  mhb_balance   *b;
+  mhb_arclength *path;
+  int            iterations, n[2] = {0, 0};
+  double         low = 2 * PI * s->frequency[0];
+  SHB_TRY(mhb_balance_create(model, s, &b));
+  mhb_balance_set_preload(b, s->n0[0]);
+  SHB_TRY(mhb_arclength_create(b, low, 2 * PI * s->frequency[1], &path));
+  double               *x       = calloc((size_t)b->n, sizeof(double));
+  mhb_arclength_outcome outcome = MHB_ARCLENGTH_STALLED;
   if (mhb_first_solution(path->newton, b, low, path->tolerance, x, &iterations) == MHB_CONVERGED &&
-      mhb_path_start(path, x, low, 1) == MHB_CONVERGED)
-    outcome = MHB_PATH_ON;
-  while (outcome == MHB_PATH_ON && n[0] + n[1] < MAX_POINTS) {
+      mhb_arclength_start(path, x, low, 1) == MHB_CONVERGED)
+    outcome = MHB_ARCLENGTH_ON;
+  while (outcome == MHB_ARCLENGTH_ON && n[0] + n[1] < MAX_POINTS) {
     double started = shb_seconds();
-    outcome        = mhb_path_step(path);
+    outcome        = mhb_arclength_step(path);
     double ms      = 1e3 * (shb_seconds() - started);
     if (moves(b))
       moving[n[0]++] = ms;
     else
       linear[n[1]++] = ms;
-    mhb_path_advance(path);
+    mhb_arclength_advance(path);
   }
   row->solver = median(moving, n[0]);
   row->linear = median(linear, n[1]);
   free(x);
-  mhb_path_destroy(path);
-  mhb_residual_destroy(b);
-  SHB_CHECK(outcome == MHB_PATH_AT_END, SHB_NOT_CONVERGED, "the path of the beam was lost");
+  mhb_arclength_destroy(path);
+  mhb_balance_destroy(b);
+  SHB_CHECK(outcome == MHB_ARCLENGTH_AT_END, SHB_NOT_CONVERGED, "the path of the beam was lost");
   return SHB_OK;
 }
 
@@ -262,23 +262,23 @@ typedef struct {
 } pairs_row;
 
 /* Some short steps from 255 Hz on, up the flank of the resonance. */
-static shb_status walk(mhb_path *path, mhb_residual *b, double *x, pairs_row *row) {
+static shb_status walk(mhb_arclength *path, mhb_balance *b, double *x, pairs_row *row) {
   int    iterations;
   double started = shb_seconds(), omega = 2 * PI * 255, ms[STEPS];
   SHB_CHECK(
       mhb_first_solution(path->newton, b, omega, path->tolerance, x, &iterations) == MHB_CONVERGED,
       SHB_NOT_CONVERGED, "no first solution of %d pairs", b->n_pairs);
-  SHB_CHECK(mhb_path_start(path, x, omega, 1) == MHB_CONVERGED, SHB_NOT_CONVERGED,
+  SHB_CHECK(mhb_arclength_start(path, x, omega, 1) == MHB_CONVERGED, SHB_NOT_CONVERGED,
             "no start for %d pairs", b->n_pairs);
   row->first    = shb_seconds() - started;
   path->longest = .01;
   for (row->steps = 0; row->steps < STEPS; row->steps++) {
     started = shb_seconds();
-    SHB_CHECK(mhb_path_step(path) == MHB_PATH_ON, SHB_NOT_CONVERGED, "step %d of %d pairs failed",
-              row->steps, b->n_pairs);
+    SHB_CHECK(mhb_arclength_step(path) == MHB_ARCLENGTH_ON, SHB_NOT_CONVERGED,
+              "step %d of %d pairs failed", row->steps, b->n_pairs);
     ms[row->steps] = 1e3 * (shb_seconds() - started);
     row->residual  = fmax(row->residual, path->next.residual);
-    mhb_path_advance(path);
+    mhb_arclength_advance(path);
   }
   row->ms     = median(ms, STEPS);
   row->moving = moves(b);
@@ -286,20 +286,20 @@ static shb_status walk(mhb_path *path, mhb_residual *b, double *x, pairs_row *ro
 }
 
 static shb_status run_pairs(int pairs, int harmonics, pairs_row *row) {
-  modal_model   model;
-  mhb_settings  s = shroud_face_settings(harmonics);
-  mhb_residual *b;
-  mhb_path     *path;
+  modal_model    model;
+  mhb_settings   s = shroud_face_settings(harmonics);
+  mhb_balance   *b;
+  mhb_arclength *path;
   shroud_face_model(pairs, 150, &model);
-  SHB_TRY(mhb_residual_create(&model, &s, &b));
-  mhb_residual_preload(b, s.n0[0]);
-  SHB_TRY(mhb_path_create(b, 2 * PI * 215, 2 * PI * 320, &path));
+  SHB_TRY(mhb_balance_create(&model, &s, &b));
+  mhb_balance_set_preload(b, s.n0[0]);
+  SHB_TRY(mhb_arclength_create(b, 2 * PI * 215, 2 * PI * 320, &path));
   *row              = (pairs_row){.pairs = pairs};
   double    *x      = calloc((size_t)b->n, sizeof(double));
   shb_status status = walk(path, b, x, row);
   free(x);
-  mhb_path_destroy(path);
-  mhb_residual_destroy(b);
+  mhb_arclength_destroy(path);
+  mhb_balance_destroy(b);
   modal_model_free(&model);
   return status;
 }

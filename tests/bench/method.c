@@ -24,7 +24,7 @@ static shb_status add_law(double tolerance, int H, method *m) {
   for (int i = 0; i < 3; i++)
     if (accuracies[i].tolerance == tolerance) m->accuracy = accuracies[i].name;
   snprintf(m->name, sizeof m->name, "%s %.0e", m->accuracy ? m->accuracy : "tolerance", tolerance);
-  return mhb_contact_create(SUITE_HARMONICS, H, tolerance, &m->contact);
+  return mhb_contact_evaluator_create(SUITE_HARMONICS, H, tolerance, &m->contact);
 }
 
 shb_status methods_create(int quick, method all[METHOD_MAX], int *n) {
@@ -44,7 +44,7 @@ shb_status methods_create(int quick, method all[METHOD_MAX], int *n) {
 void methods_destroy(method *all, int n) {
   for (int i = 0; i < n; i++) {
     baseline_destroy(&all[i].baseline);
-    mhb_contact_destroy(all[i].contact);
+    mhb_contact_evaluator_destroy(all[i].contact);
   }
 }
 

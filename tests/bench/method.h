@@ -12,14 +12,14 @@ typedef enum { METHOD_RETURN, METHOD_CLOSED, METHOD_LAW, METHOD_FAMILIES } metho
 enum { METHOD_H = 15, METHOD_MAX = 64 }; /* highest harmonic compared; methods at most */
 
 typedef struct {
-  method_family family;
-  int           N;         /* samples a period; the law: 0 */
-  double        tolerance; /* of the law; a baseline: 0 */
-  int           H;         /* force harmonics 0..H */
-  const char   *accuracy;  /* "fast", "balanced", "exact", or NULL */
-  char          name[32];
-  baseline      baseline;
-  mhb_contact  *contact;
+  method_family          family;
+  int                    N;         /* samples a period; the law: 0 */
+  double                 tolerance; /* of the law; a baseline: 0 */
+  int                    H;         /* force harmonics 0..H */
+  const char            *accuracy;  /* "fast", "balanced", "exact", or NULL */
+  char                   name[32];
+  baseline               baseline;
+  mhb_contact_evaluator *contact;
 } method;
 
 /* One method on one motion. */

@@ -32,7 +32,7 @@ static void no_lock(mhb_monitor *monitor, bool locked) {
   (void)locked;
 }
 
-static bool go_on(mhb_monitor *monitor, int branch, const mhb_path_point *point) {
+static bool go_on(mhb_monitor *monitor, int branch, const mhb_curve_point *point) {
   (void)monitor;
   (void)branch;
   (void)point;
@@ -47,23 +47,23 @@ static int ascending(const void *a, const void *b) {
 /* One curve of a branch of its own; room for harmonics. */
 static shb_status follow(const modal_model *model, const mhb_settings *s, int room, double *seconds,
                          mhb_response **out) {
-  mhb_monitor   monitor  = {.point = go_on, .lock = no_lock};
-  mhb_residual *residual = NULL;
-  int           branch;
-  SHB_TRY(mhb_residual_create(model, s, &residual));
-  mhb_residual_preload(residual, s->n0[0]);
+  mhb_monitor  monitor  = {.point = go_on, .lock = no_lock};
+  mhb_balance *residual = NULL;
+  int          branch;
+  SHB_TRY(mhb_balance_create(model, s, &residual));
+  mhb_balance_set_preload(residual, s->n0[0]);
   *out = mhb_response_create(model->n_pairs, model->n_probes, room);
   SHB_CHECK(*out, SHB_ERR_IO, "out of memory");
   shb_status status  = mhb_response_branch(*out, MHB_BRANCH_NONLINEAR, &branch);
   double     started = cpu_seconds();
-  if (status == SHB_OK) status = mhb_follow(residual, *out, branch, &monitor);
+  if (status == SHB_OK) status = mhb_trace_main_branch(residual, *out, branch, &monitor);
   *seconds = cpu_seconds() - started;
-  mhb_residual_destroy(residual);
+  mhb_balance_destroy(residual);
   return status;
 }
 
 /* Relative error of point p; negative: no solution near by. */
-static double error_at(const mhb_response *r, int p, mhb_newton *newton, mhb_residual *fine) {
+static double error_at(const mhb_response *r, int p, mhb_newton *newton, mhb_balance *fine) {
   const mhb_branch *b = &r->branch[0];
   int               K = r->n_harmonics + 1, rows = 3 * r->n_pairs, nb = fine->nb, iterations;
   size_t            size = sizeof(double) * (size_t)fine->n;
@@ -82,7 +82,7 @@ static double error_at(const mhb_response *r, int p, mhb_newton *newton, mhb_res
   return error > NEAR_BY ? -1 : error;
 }
 
-static void compare(const mhb_response *r, mhb_newton *newton, mhb_residual *fine, row *out) {
+static void compare(const mhb_response *r, mhb_newton *newton, mhb_balance *fine, row *out) {
   static double     error[MOST_COMPARED];
   const mhb_branch *b = &r->branch[0];
   int               n = 0, step = 1 + b->n_points / MOST_COMPARED;
@@ -102,7 +102,7 @@ static void compare(const mhb_response *r, mhb_newton *newton, mhb_residual *fin
 }
 
 static shb_status measure(const modal_model *model, const mhb_settings *s, int room,
-                          mhb_newton *newton, mhb_residual *fine, row *out) {
+                          mhb_newton *newton, mhb_balance *fine, row *out) {
   *out = (row){.seconds = INFINITY};
   for (int i = 0; i < REPEATS; i++) {
     double        seconds = 0;
@@ -129,7 +129,7 @@ static int reaches(const row *r, double tolerance) {
 
 /* The fixed numbers; seconds of the cheapest that reaches the tolerance. */
 static shb_status fixed_rows(const modal_model *model, mhb_settings s, mhb_newton *newton,
-                             mhb_residual *fine, double *cheapest, int *at) {
+                             mhb_balance *fine, double *cheapest, int *at) {
   static const int H[] = {1, 3, 5, 7, 9, 13, 17, 21, 31};
   *cheapest            = INFINITY;
   s.motion_tolerance   = 0;
@@ -148,7 +148,7 @@ static shb_status fixed_rows(const modal_model *model, mhb_settings s, mhb_newto
 }
 
 static shb_status chosen_rows(const modal_model *model, mhb_settings s, mhb_newton *newton,
-                              mhb_residual *fine, double cheapest, int at, int *failed) {
+                              mhb_balance *fine, double cheapest, int at, int *failed) {
   static const double wanted[] = {1e-3, 1e-4, 1e-5};
   for (int i = 0; i < 3; i++) {
     row  r;
@@ -167,7 +167,7 @@ static shb_status chosen_rows(const modal_model *model, mhb_settings s, mhb_newt
 }
 
 static shb_status accuracy_rows(const modal_model *model, mhb_settings s, mhb_newton *newton,
-                                mhb_residual *fine) {
+                                mhb_balance *fine) {
   static const struct {
     const char *name;
     double      tolerance;
@@ -185,15 +185,15 @@ static shb_status accuracy_rows(const modal_model *model, mhb_settings s, mhb_ne
 
 shb_status bench_precision(const char *name, const modal_model *model, const mhb_settings *settings,
                            int *failed) {
-  mhb_settings  s = *settings, reference = *settings;
-  mhb_residual *fine   = NULL;
-  mhb_newton   *newton = NULL;
-  double        cheapest;
-  int           at    = 0;
+  mhb_settings s = *settings, reference = *settings;
+  mhb_balance *fine   = NULL;
+  mhb_newton  *newton = NULL;
+  double       cheapest;
+  int          at     = 0;
   s.stability         = MHB_STABILITY_NEVER; /* the seconds are those of the balance */
   reference.harmonics = FINE;
-  SHB_TRY(mhb_residual_create(model, &reference, &fine));
-  mhb_residual_preload(fine, s.n0[0]);
+  SHB_TRY(mhb_balance_create(model, &reference, &fine));
+  mhb_balance_set_preload(fine, s.n0[0]);
   shb_status status = mhb_newton_create(fine->n, &newton);
   printf("\n%s\n  %-14s %6s %5s %5s %10s %10s %10s\n", name, "", "points", "lost", "to H", "s",
          "error 95 %", "worst");
@@ -201,6 +201,6 @@ shb_status bench_precision(const char *name, const modal_model *model, const mhb
   if (status == SHB_OK) status = chosen_rows(model, s, newton, fine, cheapest, at, failed);
   if (status == SHB_OK) status = accuracy_rows(model, s, newton, fine);
   mhb_newton_destroy(newton);
-  mhb_residual_destroy(fine);
+  mhb_balance_destroy(fine);
   return status;
 }

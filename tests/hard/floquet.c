@@ -21,23 +21,23 @@ static floquet summary(const mhb_multipliers *m) {
 
 void floquet_branch(const modal_model *model, const mhb_settings *s, const mhb_response *r,
                     const mhb_branch *branch, int substeps, floquet *out) {
-  mhb_residual   *b;
-  mhb_stability  *stability;
+  mhb_balance    *b;
+  mhb_floquet    *stability;
   mhb_multipliers m;
-  assert_int_equal(mhb_residual_create(model, s, &b), SHB_OK);
-  assert_int_equal(mhb_stability_create(b->receptance, s, substeps, 0, &stability), SHB_OK);
+  assert_int_equal(mhb_balance_create(model, s, &b), SHB_OK);
+  assert_int_equal(mhb_floquet_create(b->receptance, s, substeps, 0, &stability), SHB_OK);
   double x[b->n], unused[b->n];
   for (int i = 0; i < branch->n_points; i++) {
     double omega = 2 * PI * branch->frequency[i];
-    mhb_residual_preload(b, branch->n0[i]);
+    mhb_balance_set_preload(b, branch->n0[i]);
     point_of(r, branch, i, 0, x);
-    mhb_residual_evaluate(b, x, omega, unused, NULL, NULL);
+    mhb_balance_evaluate(b, x, omega, unused, NULL, NULL);
     mhb_solution solution = {omega, b->law, b->info, x, b->p};
-    mhb_stability_evaluate(stability, &solution, &m);
+    mhb_floquet_evaluate(stability, &solution, &m);
     out[i] = summary(&m);
   }
-  mhb_stability_destroy(stability);
-  mhb_residual_destroy(b);
+  mhb_floquet_destroy(stability);
+  mhb_balance_destroy(b);
 }
 
 double floquet_crossing(const modal_model *model, const mhb_settings *s, const mhb_response *r,

@@ -6,14 +6,14 @@
 static const double PI = 3.14159265358979323846;
 
 /* q_k = L_k (F_k - B_k^H p_k). Work of F on q in a cycle: pi k Im(F conj q); of the damper c = 2 zeta w: pi c k^2 w_1 |q|^2. */
-power power_of(const mhb_residual *b, double omega) {
+power power_of(const mhb_balance *b, double omega) {
   const mhb_receptance *r = b->receptance;
   int                   m = r->n_modes, n3 = r->n;
   double                w1  = omega / r->nu;
   power                 out = {0, 0, 0};
   for (int k = 1; k <= b->m; k++) {
     double complex p[n3];
-    mhb_residual_force(b, k, p);
+    mhb_balance_contact_force(b, k, p);
     for (int i = 0; i < m; i++) {
       const double complex *B = r->B + (size_t)k * (size_t)(n3 * m);
       double complex        F = r->F[k * m + i], q = F;

@@ -9,6 +9,6 @@ typedef struct {
 } power;
 
 /* At the solution the residual was last evaluated at; the model without residual response to the load. */
-power power_of(const mhb_residual *b, double omega);
+power power_of(const mhb_balance *b, double omega);
 
 #endif

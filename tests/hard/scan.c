@@ -40,7 +40,7 @@ int main(int argc, char **argv) {
   }
   mhb_settings s       = settings(argc, argv);
   double       started = shb_seconds();
-  mhb_sweep(&model, &s, NULL, NULL, NULL, &response);
+  mhb_forced_response(&model, &s, NULL, NULL, NULL, &response);
   if (!response) {
     fprintf(stderr, "%s\n", shb_message());
     return 3;

@@ -103,16 +103,16 @@ static void units(void **state) {
 static void balance(const modal_model *model, mhb_settings *s, double from, double to,
                     const char *name) {
   mhb_response *r = covered_sweep(model, s, from, to);
-  mhb_residual *b;
+  mhb_balance  *b;
   double        worst[2] = {0, 0}, share = 0;
-  assert_int_equal(mhb_residual_create(model, s, &b), SHB_OK);
+  assert_int_equal(mhb_balance_create(model, s, &b), SHB_OK);
   double            x[b->n], unused[b->n];
   const mhb_branch *branch = &r->branch[2];
   for (int i = 0; i < branch->n_points; i++) {
     double omega = 2 * PI * branch->frequency[i], loop = 0;
-    mhb_residual_preload(b, branch->n0[i]);
+    mhb_balance_set_preload(b, branch->n0[i]);
     point_of(r, branch, i, 0, x);
-    mhb_residual_evaluate(b, x, omega, unused, NULL, NULL);
+    mhb_balance_evaluate(b, x, omega, unused, NULL, NULL);
     power p = power_of(b, omega);
     for (int a = 0; a < b->n_pairs; a++) loop += b->info[a].dissipation;
     worst[0] = fmax(worst[0], fabs(p.input - p.damping - loop) / p.input);
@@ -122,7 +122,7 @@ static void balance(const modal_model *model, mhb_settings *s, double from, doub
   verdict(worst[0], 1e-8, "13 %s: %d points, friction up to %.2f", name, branch->n_points, share);
   /* next to slip onset the slider is known to the square root of the law's tolerance only */
   if (s->tolerance < 1e-11) verdict(worst[1], 1e-8, "13 %s: by the pieces in slip", name);
-  mhb_residual_destroy(b);
+  mhb_balance_destroy(b);
   mhb_response_destroy(r);
 }
 

@@ -23,7 +23,7 @@ static int gaps(const modal_model *model, mhb_settings *s, double from, double t
   int           n = 0;
   s->frequency[0] = from / (2 * PI);
   s->frequency[1] = to / (2 * PI);
-  mhb_sweep(model, s, NULL, NULL, NULL, &r);
+  mhb_forced_response(model, s, NULL, NULL, NULL, &r);
   if (!r) fail_msg("%s", shb_message());
   for (int i = 2; i < r->n_branches; i++) {
     const mhb_branch *b = &r->branch[i];

@@ -140,7 +140,7 @@ static void fine_point(const modal_model *model, const mhb_settings *s, const mh
   double       own[3 * (2 * s->harmonics + 1)], x[3 * 43];
   fine.harmonics = 21;
   point_of(r, b, i, 0, own);
-  mhb_order_widen(3, own, s->harmonics, 1, x, 21);
+  mhb_subharmonic_embed(3, own, s->harmonics, 1, x, 21);
   periodic_create(model, &fine, 2 * PI * b->frequency[i], x, p);
 }
 

@@ -37,7 +37,7 @@ static int gaps(const modal_model *model, const scene *c, mhb_parameter paramete
     s.frequency[0]         = s.frequency[1] =
         (c->from + (i + .5) * (c->to - c->from) / FREQUENCIES) / (2 * PI);
     memcpy(s.range, c->range[parameter], sizeof s.range);
-    mhb_sweep(model, &s, NULL, NULL, NULL, &response);
+    mhb_forced_response(model, &s, NULL, NULL, NULL, &response);
     if (!response) fail_msg("%s", shb_message());
     const mhb_branch *b = &response->branch[2];
     *folds += count_special(b, MHB_FOLD);

@@ -16,25 +16,25 @@
 
 static const double PI = 3.14159265358979323846;
 
-static double amplitude(const mhb_path *path, const mhb_path_point *point, int c) {
+static double amplitude(const mhb_arclength *path, const mhb_curve_point *point, int c) {
   int nb = path->residual->nb;
   return hypot(point->x[c * nb + 1], point->x[c * nb + 2]);
 }
 
 /* How far the top of the parabola through a point and its neighbours on the path is, relative to w; a step is 1e-4 of |x|, and of
  * the part of w. INFINITY: a neighbour is higher, or could not be reached. */
-static double off_parabola(mhb_residual *b, const double *x, double w, int c, double part) {
+static double off_parabola(mhb_balance *b, const double *x, double w, int c, double part) {
   double a[3], at[3];
   for (int k = 0; k < 2; k++) {
-    mhb_path *path;
-    assert_int_equal(mhb_path_create(b, (1 - part) * w, (1 + part) * w, &path), SHB_OK);
-    int ok     = mhb_path_start(path, x, w, k ? 1 : -1) == MHB_CONVERGED;
+    mhb_arclength *path;
+    assert_int_equal(mhb_arclength_create(b, (1 - part) * w, (1 + part) * w, &path), SHB_OK);
+    int ok     = mhb_arclength_start(path, x, w, k ? 1 : -1) == MHB_CONVERGED;
     a[1]       = amplitude(path, &path->now, c);
     path->step = 1e-4;
-    ok         = ok && mhb_path_step(path) != MHB_PATH_STALLED;
+    ok         = ok && mhb_arclength_step(path) != MHB_ARCLENGTH_STALLED;
     a[2 * k]   = ok ? amplitude(path, &path->next, c) : INFINITY;
     at[2 * k]  = path->next.value;
-    mhb_path_destroy(path);
+    mhb_arclength_destroy(path);
   }
   double bend = a[0] - 2 * a[1] + a[2], tiny = 1e-13 * a[1];
   if (a[0] > a[1] + tiny || a[2] > a[1] + tiny || !(bend < 0)) return INFINITY;
@@ -42,29 +42,29 @@ static double off_parabola(mhb_residual *b, const double *x, double w, int c, do
 }
 
 /* How far the highest of the points a few tiny steps around is, relative to w; INFINITY: it is the last. For kinks. */
-static double off_highest(mhb_residual *b, const double *x, double w, int c) {
+static double off_highest(mhb_balance *b, const double *x, double w, int c) {
   enum { STEPS = 6 };
   double top = -INFINITY, at = INFINITY;
   for (int k = 0; k < 2; k++) {
-    mhb_path *path;
-    assert_int_equal(mhb_path_create(b, .999 * w, 1.001 * w, &path), SHB_OK);
-    int ok = mhb_path_start(path, x, w, k ? 1 : -1) == MHB_CONVERGED;
+    mhb_arclength *path;
+    assert_int_equal(mhb_arclength_create(b, .999 * w, 1.001 * w, &path), SHB_OK);
+    int ok = mhb_arclength_start(path, x, w, k ? 1 : -1) == MHB_CONVERGED;
     for (int i = 0; i <= STEPS && ok; i++) {
       if (amplitude(path, &path->now, c) > top) {
         top = amplitude(path, &path->now, c);
         at  = i == STEPS ? INFINITY : path->now.value;
       }
       path->step = 1e-4;
-      ok         = mhb_path_step(path) != MHB_PATH_STALLED;
-      mhb_path_advance(path);
+      ok         = mhb_arclength_step(path) != MHB_ARCLENGTH_STALLED;
+      mhb_arclength_advance(path);
     }
-    mhb_path_destroy(path);
+    mhb_arclength_destroy(path);
   }
   return fabs(at / w - 1);
 }
 
 /* Of the narrow ones, fit for kinks, and the wide ones, where rounding does not matter, the least. */
-static double off_top(mhb_residual *b, const double *x, double w, int c) {
+static double off_top(mhb_balance *b, const double *x, double w, int c) {
   double best = off_highest(b, x, w, c);
   for (double part = .001; part < .5; part *= 4) best = fmin(best, off_parabola(b, x, w, c, part));
   return best;
@@ -72,12 +72,12 @@ static double off_top(mhb_residual *b, const double *x, double w, int c) {
 
 static void check(const modal_model *model, mhb_settings *s, double from, double to,
                   const char *name) {
-  mhb_residual *b;
+  mhb_balance  *b;
   mhb_response *r        = covered_sweep(model, s, from, to);
   int           unmarked = 0, tops = 0;
   double        worst = 0;
-  assert_int_equal(mhb_residual_create(model, s, &b), SHB_OK);
-  mhb_residual_preload(b, s->n0[0]);
+  assert_int_equal(mhb_balance_create(model, s, &b), SHB_OK);
+  mhb_balance_set_preload(b, s->n0[0]);
   const mhb_branch *branch = &r->branch[2];
   double            x[b->n];
   for (int c = 0; c < 3; c++)
@@ -105,7 +105,7 @@ static void check(const modal_model *model, mhb_settings *s, double from, double
     }
   verdict_count(unmarked, 0, "peaks of %s: %d of v, u, w; not located", name, tops);
   verdict(worst, 1e-6, "peaks of %s: distance from the top", name);
-  mhb_residual_destroy(b);
+  mhb_balance_destroy(b);
   mhb_response_destroy(r);
 }
 

@@ -52,7 +52,7 @@ mhb_response *covered_sweep(const modal_model *model, mhb_settings *s, double fr
   mhb_response *r = NULL;
   s->frequency[0] = from / (2 * PI);
   s->frequency[1] = to / (2 * PI);
-  int status      = mhb_sweep(model, s, NULL, NULL, NULL, &r);
+  int status      = mhb_forced_response(model, s, NULL, NULL, NULL, &r);
   if (!r) fail_msg("no response: %s", shb_message());
   assert_true(status == SHB_OK || status == SHB_NOT_CONVERGED);
   for (int i = 2; i < r->n_branches; i++)

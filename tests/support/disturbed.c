@@ -12,7 +12,7 @@
 static const double PI = 3.14159265358979323846;
 
 void disturbed_create(const modal_model *model, const mhb_settings *settings,
-                      const mhb_residual *residual, const double *x, double omega, int steps,
+                      const mhb_balance *residual, const double *x, double omega, int steps,
                       disturbed *d) {
   *d          = (disturbed){.model    = model,
                             .settings = settings,
@@ -177,16 +177,16 @@ void disturbed_period(disturbed *d, double *state) {
 }
 
 void disturbed_start(disturbed *d, double *state) {
-  const modal_model  *model = d->model;
-  const mhb_residual *b     = d->residual;
-  int              m = model->n_modes, modal = d->blades * m, nb = b->nb, n3 = 3 * model->n_pairs;
-  double           base = d->omega / d->settings->subharmonics;
-  mhb_contact     *contact;
-  mhb_contact_info info;
+  const modal_model *model = d->model;
+  const mhb_balance *b     = d->residual;
+  int                m = model->n_modes, modal = d->blades * m, nb = b->nb, n3 = 3 * model->n_pairs;
+  double             base = d->omega / d->settings->subharmonics;
+  mhb_contact_evaluator *contact;
+  mhb_contact_info       info;
   memset(state, 0, sizeof(double) * (size_t)d->n);
   for (int k = 0; k <= b->m; k++) {
     double complex p[n3];
-    mhb_residual_force(b, k, p);
+    mhb_balance_contact_force(b, k, p);
     for (int i = 0; i < m; i++) {
       const double complex *B = b->receptance->B + (size_t)(k * n3 * m);
       double complex        a = b->receptance->F[k * m + i];
@@ -199,15 +199,16 @@ void disturbed_start(disturbed *d, double *state) {
       }
     }
   }
-  if (mhb_contact_create(b->m, b->m, 1e-10, &contact) != SHB_OK) abort();
+  if (mhb_contact_evaluator_create(b->m, b->m, 1e-10, &contact) != SHB_OK) abort();
   for (int j = 0; j < d->contacts; j++) {
     int                pair   = j % model->n_pairs;
     double             phase  = -lag(d, j / model->n_pairs);
     mhb_contact_sample sample = {.phase = phase - floor(phase)};
-    mhb_contact_trace(contact, &b->law[pair], d->x + (size_t)(3 * pair * nb), 1, &sample, &info);
+    mhb_contact_time_history(contact, &b->law[pair], d->x + (size_t)(3 * pair * nb), 1, &sample,
+                             &info);
     for (int k = 0; k < 2; k++) state[2 * modal + 2 * j + k] = sample.f[k];
   }
-  mhb_contact_destroy(contact);
+  mhb_contact_evaluator_destroy(contact);
   memset(d->p, 0, sizeof(double) * 3 * (size_t)d->contacts);
 }
 

@@ -10,7 +10,7 @@
 typedef struct {
   const modal_model  *model;
   const mhb_settings *settings;
-  const mhb_residual *residual;                          /* at the solution: axes, laws, forces */
+  const mhb_balance  *residual;                          /* at the solution: axes, laws, forces */
   const double       *x;                                 /* the solution */
   double              omega;                             /* rad/s, excitation */
   int                 blades, sides, contacts, n, steps; /* steps a period of the fundamental */
@@ -21,7 +21,7 @@ typedef struct {
 
 /* residual last evaluated at (x, omega). */
 void disturbed_create(const modal_model *model, const mhb_settings *settings,
-                      const mhb_residual *residual, const double *x, double omega, int steps,
+                      const mhb_balance *residual, const double *x, double omega, int steps,
                       disturbed *d);
 void disturbed_destroy(disturbed *d);
 

@@ -33,10 +33,10 @@ void periodic_create(const modal_model *model, const mhb_settings *settings, dou
   mhb_newton *newton;
   int         iterations;
   *p = (periodic){.settings = *settings, .omega = omega};
-  assert_int_equal(mhb_residual_create(model, &p->settings, &p->residual), SHB_OK);
-  mhb_residual *b = p->residual;
+  assert_int_equal(mhb_balance_create(model, &p->settings, &p->residual), SHB_OK);
+  mhb_balance *b = p->residual;
   assert_int_equal(mhb_newton_create(b->n, &newton), SHB_OK);
-  mhb_residual_preload(b, settings->n0[0]);
+  mhb_balance_set_preload(b, settings->n0[0]);
   p->x = calloc((size_t)b->n, sizeof(double));
   if (guess) {
     memcpy(p->x, guess, sizeof(double) * (size_t)b->n);
@@ -44,25 +44,25 @@ void periodic_create(const modal_model *model, const mhb_settings *settings, dou
   } else {
     assert_int_equal(mhb_first_solution(newton, b, omega, 1e-10, p->x, &iterations), MHB_CONVERGED);
   }
-  mhb_residual_evaluate(b, p->x, omega, newton->r, NULL, NULL);
+  mhb_balance_evaluate(b, p->x, omega, newton->r, NULL, NULL);
   mhb_newton_destroy(newton);
   p->solution = (mhb_solution){omega, b->law, b->info, p->x, b->p};
 }
 
 void periodic_destroy(periodic *p) {
-  mhb_residual_destroy(p->residual);
+  mhb_balance_destroy(p->residual);
   free(p->x);
 }
 
 mhb_multipliers periodic_multipliers(const periodic *p, int substeps, double complex *copy) {
-  mhb_stability  *stability;
+  mhb_floquet    *stability;
   mhb_multipliers out;
   assert_int_equal(
-      mhb_stability_create(p->residual->receptance, &p->settings, substeps, 0, &stability), SHB_OK);
-  mhb_stability_evaluate(stability, &p->solution, &out);
+      mhb_floquet_create(p->residual->receptance, &p->settings, substeps, 0, &stability), SHB_OK);
+  mhb_floquet_evaluate(stability, &p->solution, &out);
   for (int i = 0; i < out.n; i++) copy[i] = out.multiplier[i];
   out.multiplier = copy;
-  mhb_stability_destroy(stability);
+  mhb_floquet_destroy(stability);
   return out;
 }
 

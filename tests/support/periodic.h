@@ -6,11 +6,11 @@
 #include "mhb/floquet/floquet.h"
 
 typedef struct {
-  mhb_settings  settings;
-  mhb_residual *residual; /* evaluated at the solution */
-  double       *x;
-  double        omega; /* rad/s */
-  mhb_solution  solution;
+  mhb_settings settings;
+  mhb_balance *residual; /* evaluated at the solution */
+  double      *x;
+  double       omega; /* rad/s */
+  mhb_solution solution;
 } periodic;
 
 /* Contact to ground: ku in both directions, engine order 0, tolerance 1e-8. */

@@ -11,14 +11,14 @@
 
 void cold_solution(const modal_model *model, const mhb_settings *settings, double omega,
                    double tolerance, double *x) {
-  mhb_residual *residual;
-  mhb_newton   *newton;
-  int           iterations;
-  assert_int_equal(mhb_residual_create(model, settings, &residual), SHB_OK);
+  mhb_balance *residual;
+  mhb_newton  *newton;
+  int          iterations;
+  assert_int_equal(mhb_balance_create(model, settings, &residual), SHB_OK);
   assert_int_equal(mhb_newton_create(residual->n, &newton), SHB_OK);
-  mhb_residual_preload(residual, settings->n0[0]);
+  mhb_balance_set_preload(residual, settings->n0[0]);
   assert_int_equal(mhb_first_solution(newton, residual, omega, tolerance, x, &iterations),
                    MHB_CONVERGED);
   mhb_newton_destroy(newton);
-  mhb_residual_destroy(residual);
+  mhb_balance_destroy(residual);
 }

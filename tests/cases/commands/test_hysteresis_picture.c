@@ -89,9 +89,9 @@ static scene scene_of(int i) {
 }
 
 static void draw(const scene *s, picture *p) {
-  double       force[3 * NB];
-  mhb_contact *contact;
-  assert_int_equal(mhb_contact_create(M, M, 1e-10, &contact), SHB_OK);
+  double                 force[3 * NB];
+  mhb_contact_evaluator *contact;
+  assert_int_equal(mhb_contact_evaluator_create(M, M, 1e-10, &contact), SHB_OK);
   mhb_contact_force(contact, &s->law, &s->motion[0][0], force, NULL, &p->info);
   assert_int_equal(period_create(contact, &s->law, M, &s->motion[0][0], &p->info, &p->period),
                    SHB_OK);
@@ -99,7 +99,7 @@ static void draw(const scene *s, picture *p) {
   loops_draw(&(loops_view){.name = s->name, .law = &s->law, .info = &p->info, .period = &p->period},
              &p->svg);
   assert_false(p->svg.failed);
-  mhb_contact_destroy(contact);
+  mhb_contact_evaluator_destroy(contact);
 }
 
 static void clear(picture *p) {

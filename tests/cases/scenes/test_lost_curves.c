@@ -73,7 +73,7 @@ static void no_curve_is_lost(void **state) {
     assert_int_equal(r->n_branches, scene[i].aside ? 4 : 3);
     if (scene[i].aside) {
       const mhb_branch *b = &r->branch[3];
-      assert_true(b->origin == MHB_ASIDE && b->main == 2 && b->complete);
+      assert_true(b->origin == MHB_FROM_DETACHED && b->main == 2 && b->complete);
       assert_string_equal(b->reason, scene[i].aside);
       assert_within(b->frequency[0], low, 1e-12);
       assert_within(b->frequency[b->n_points - 1], low, 1e-12);

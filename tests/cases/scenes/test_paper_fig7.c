@@ -55,22 +55,22 @@ static int clean(void **state) {
 
 /* The balance of some harmonics at the frequencies of the dots. */
 typedef struct {
-  mhb_settings  settings;
-  mhb_residual *residual;
-  mhb_newton   *newton;
+  mhb_settings settings;
+  mhb_balance *residual;
+  mhb_newton  *newton;
 } balance;
 
 static void create_balance(const modal_model *of, int harmonics, balance *b) {
   b->settings           = file.mhb;
   b->settings.harmonics = harmonics;
-  check(mhb_residual_create(of, &b->settings, &b->residual));
+  check(mhb_balance_create(of, &b->settings, &b->residual));
   check(mhb_newton_create(b->residual->n, &b->newton));
   check(mhb_newton_bind(b->newton, b->residual));
 }
 
 static void destroy_balance(balance *b) {
   mhb_newton_destroy(b->newton);
-  mhb_residual_destroy(b->residual);
+  mhb_balance_destroy(b->residual);
 }
 
 /* Its solution next to a dot: the probe's first harmonic, relative error of the amplitude and of the motion as a vector. */
@@ -79,7 +79,7 @@ static void compare(balance *b, const mhb_branch *dots, int p, double error[2]) 
   double         x[3 * nb], off = 0, norm = 0;
   double complex force[3], probe[3];
   int            iterations;
-  mhb_residual_preload(b->residual, dots->n0[p]);
+  mhb_balance_set_preload(b->residual, dots->n0[p]);
   for (int c = 0; c < 3; c++)
     for (int k = 0; k <= m; k++) {
       double complex z = dots->motion[(p * 3 + c) * K + k];
@@ -91,7 +91,7 @@ static void compare(balance *b, const mhb_branch *dots, int p, double error[2]) 
       mhb_newton_solve(b->newton, b->residual, two_pi * dots->frequency[p], 1e-11, x, &iterations);
   if (reason != MHB_CONVERGED)
     fail_msg("%g N, %g Hz: %s", dots->n0[p], dots->frequency[p], mhb_reason_text(reason));
-  mhb_residual_force(b->residual, 1, force);
+  mhb_balance_contact_force(b->residual, 1, force);
   mhb_receptance_probe(b->residual->receptance, 1, force, probe);
   const double complex *dot = dots->probe + (size_t)(p * 3 * K);
   double complex        there[3];

@@ -24,14 +24,14 @@ static const double PI = 3.14159265358979323846;
     if (!(v_ <= b_)) fail_msg("%s = %.3e, above %.3e", #value, v_, b_); \
   } while (0)
 
-static mhb_residual *residual_of(const modal_model *model, const mhb_settings *s) {
-  mhb_residual *b;
-  if (mhb_residual_create(model, s, &b) != SHB_OK) fail_msg("%s", shb_message());
-  mhb_residual_preload(b, s->n0[0]);
+static mhb_balance *residual_of(const modal_model *model, const mhb_settings *s) {
+  mhb_balance *b;
+  if (mhb_balance_create(model, s, &b) != SHB_OK) fail_msg("%s", shb_message());
+  mhb_balance_set_preload(b, s->n0[0]);
   return b;
 }
 
-static void random_motion(const mhb_residual *b, double size, unsigned long long seed, double *x) {
+static void random_motion(const mhb_balance *b, double size, unsigned long long seed, double *x) {
   for (int row = 0; row < 3 * b->n_pairs; row++)
     for (int i = 0; i < b->nb; i++) {
       int k              = (i + 1) / 2;
@@ -42,7 +42,7 @@ static void random_motion(const mhb_residual *b, double size, unsigned long long
 /* ---------------------------------------------------------------- derivatives */
 
 /* d r/ds along (dx, d_omega), sixth order. */
-static void difference(mhb_residual *b, const double *x, double omega, const double *dx,
+static void difference(mhb_balance *b, const double *x, double omega, const double *dx,
                        double d_omega, double h, double *slope) {
   static const double weight[] = {3. / 4, -3. / 20, 1. / 60};
   double              moved[b->n], r[b->n];
@@ -50,18 +50,18 @@ static void difference(mhb_residual *b, const double *x, double omega, const dou
   for (int step = -3; step <= 3; step++) {
     if (step == 0) continue;
     for (int i = 0; i < b->n; i++) moved[i] = x[i] + step * h * dx[i];
-    mhb_residual_evaluate(b, moved, omega + step * h * d_omega, r, NULL, NULL);
+    mhb_balance_evaluate(b, moved, omega + step * h * d_omega, r, NULL, NULL);
     for (int i = 0; i < b->n; i++)
       slope[i] += (step > 0 ? 1 : -1) * weight[abs(step) - 1] * r[i] / h;
   }
 }
 
 /* Relative errors of Jacobian (worst column) and slope by omega at x. */
-static void derivative_errors(mhb_residual *b, const double *x, double omega, double error[2]) {
+static void derivative_errors(mhb_balance *b, const double *x, double omega, double error[2]) {
   int     n    = b->n;
   double *J    = malloc(sizeof(double) * (size_t)n * (size_t)n), r[n], slope[n], wanted[n], unit[n];
   double  size = 0;
-  mhb_residual_evaluate(b, x, omega, r, J, slope);
+  mhb_balance_evaluate(b, x, omega, r, J, slope);
   memset(unit, 0, sizeof unit);
   for (int i = 0; i < n * n; i++) size = fmax(size, fabs(J[i]));
   error[0] = error[1] = 0;
@@ -92,13 +92,13 @@ static void derivatives_are_exact(void **state) {
     mhb_settings s = random_settings(4);
     random_model(rows[i].pairs, WITH_LEFT | WITH_RESIDUAL | WITH_NORMALS | WITH_AREAS, 31 + i,
                  &model);
-    s.to_ground     = rows[i].ground;
-    s.subharmonics  = rows[i].nu;
-    s.engine_order  = 2;
-    s.preload       = (mhb_preload)rows[i].preload;
-    s.n0[0]         = rows[i].n0;
-    mhb_residual *b = residual_of(&model, &s);
-    double        x[b->n], error[2];
+    s.to_ground    = rows[i].ground;
+    s.subharmonics = rows[i].nu;
+    s.engine_order = 2;
+    s.preload      = (mhb_preload)rows[i].preload;
+    s.n0[0]        = rows[i].n0;
+    mhb_balance *b = residual_of(&model, &s);
+    double       x[b->n], error[2];
     random_motion(b, rows[i].size, 7 * i + 1, x);
     derivative_errors(b, x, 1.23, error);
     for (int a = 0; a < b->n_pairs; a++)
@@ -109,7 +109,7 @@ static void derivatives_are_exact(void **state) {
         b->info[0].share[2]);
     assert_below(error[0], 1e-7);
     assert_below(error[1], 1e-8);
-    mhb_residual_destroy(b);
+    mhb_balance_destroy(b);
     modal_model_free(&model);
   }
   for (int c = 0; c < 3; c++) assert_true(most[c] > .1); /* all three states were met */
@@ -121,30 +121,30 @@ static void no_memory(void **state) {
   modal_model  model;
   mhb_settings s = random_settings(5);
   random_model(2, WITH_LEFT | WITH_RESIDUAL, 5, &model);
-  mhb_residual *b = residual_of(&model, &s);
-  size_t        n = (size_t)b->n, square = n * n;
-  double        x[n], other[n], first[n], again[n], slope[2][n];
-  double       *J = malloc(2 * square * sizeof(double));
+  mhb_balance *b = residual_of(&model, &s);
+  size_t       n = (size_t)b->n, square = n * n;
+  double       x[n], other[n], first[n], again[n], slope[2][n];
+  double      *J = malloc(2 * square * sizeof(double));
   for (unsigned long long trial = 0; trial < 20; trial++) {
     random_motion(b, .3 + .1 * (double)trial, 2 * trial, x);
     random_motion(b, 1, 2 * trial + 1, other);
-    mhb_residual_evaluate(b, x, 1.1, first, J, slope[0]);
-    mhb_residual_evaluate(b, other, 1.4, again, J + square, NULL);
-    mhb_residual_evaluate(b, x, 1.1, again, J + square, slope[1]);
+    mhb_balance_evaluate(b, x, 1.1, first, J, slope[0]);
+    mhb_balance_evaluate(b, other, 1.4, again, J + square, NULL);
+    mhb_balance_evaluate(b, x, 1.1, again, J + square, slope[1]);
     assert_memory_equal(first, again, sizeof first);
     assert_memory_equal(slope[0], slope[1], sizeof slope[0]);
     assert_memory_equal(J, J + square, square * sizeof(double));
   }
   free(J);
-  mhb_residual_destroy(b);
+  mhb_balance_destroy(b);
   modal_model_free(&model);
 }
 
 /* ---------------------------------------------------------------- linear limits, shares */
 
-static double relative_residual(mhb_residual *b, const double *x, double omega) {
+static double relative_residual(mhb_balance *b, const double *x, double omega) {
   double r[b->n];
-  mhb_residual_evaluate(b, x, omega, r, NULL, NULL);
+  mhb_balance_evaluate(b, x, omega, r, NULL, NULL);
   return mhb_norm(r, b->n) / mhb_norm(x, b->n);
 }
 
@@ -156,18 +156,18 @@ static void linear_limits_solve_the_residual(void **state) {
         modal_model  model;
         mhb_settings s = random_settings(4);
         random_model(pairs, WITH_LEFT | WITH_RESIDUAL | WITH_NORMALS | WITH_AREAS, 41, &model);
-        s.preload       = (mhb_preload)preload;
-        s.n0[0]         = stuck ? 1e3 : -1e3;
-        mhb_residual *b = residual_of(&model, &s);
-        double        x[b->n];
-        assert_int_equal(mhb_residual_linear(b, .93, stuck, x), SHB_OK);
+        s.preload      = (mhb_preload)preload;
+        s.n0[0]        = stuck ? 1e3 : -1e3;
+        mhb_balance *b = residual_of(&model, &s);
+        double       x[b->n];
+        assert_int_equal(mhb_balance_linear_limit(b, .93, stuck, x), SHB_OK);
         double error = relative_residual(b, x, .93);
         for (int a = 0; a < pairs; a++) {
           int wanted = stuck ? MHB_STICK : MHB_SEPARATE;
           assert_true(b->info[a].share[wanted] == 1);
         }
         assert_below(error, 1e-12);
-        mhb_residual_destroy(b);
+        mhb_balance_destroy(b);
         modal_model_free(&model);
       }
 }
@@ -214,24 +214,24 @@ static void equal_pairs_share_the_totals(void **state) {
   mhb_settings s = random_settings(3);
   random_model(1, WITH_LEFT | WITH_RESIDUAL | WITH_NORMALS, 77, &one);
   repeat_pair(&one, &four);
-  mhb_residual  *a = residual_of(&one, &s), *b = residual_of(&four, &s);
+  mhb_balance   *a = residual_of(&one, &s), *b = residual_of(&four, &s);
   double         x[a->n], y[b->n], r[a->n], q[b->n], dissipation = 0;
   double complex p[12], motion[2][6];
   random_motion(a, .8, 3, x);
   for (int i = 0; i < b->n; i++) y[i] = x[i % a->n];
-  mhb_residual_evaluate(a, x, 1.2, r, NULL, NULL);
-  mhb_residual_evaluate(b, y, 1.2, q, NULL, NULL);
+  mhb_balance_evaluate(a, x, 1.2, r, NULL, NULL);
+  mhb_balance_evaluate(b, y, 1.2, q, NULL, NULL);
   for (int i = 0; i < b->n; i++) assert_below(fabs(q[i] - r[i % a->n]), 1e-12);
   for (int i = 0; i < 4; i++) dissipation += b->info[i].dissipation;
   assert_true(dissipation > 1e-3);
   assert_below(fabs(dissipation / a->info[0].dissipation - 1), 1e-12);
-  mhb_residual_force(a, 1, p);
+  mhb_balance_contact_force(a, 1, p);
   mhb_receptance_probe(a->receptance, 1, p, motion[0]);
-  mhb_residual_force(b, 1, p);
+  mhb_balance_contact_force(b, 1, p);
   mhb_receptance_probe(b->receptance, 1, p, motion[1]);
   for (int i = 0; i < 6; i++) assert_below(cabs(motion[0][i] - motion[1][i]), 1e-12);
-  mhb_residual_destroy(a);
-  mhb_residual_destroy(b);
+  mhb_balance_destroy(a);
+  mhb_balance_destroy(b);
   modal_model_free(&one);
   modal_model_free(&four);
 }
@@ -362,13 +362,13 @@ static void stuck_ring_is_the_sector(void **state) {
   ring_model(&model);
   for (size_t e = 0; e < sizeof order / sizeof *order; e++)
     for (int preload = 0; preload < 2; preload++) {
-      mhb_settings s  = random_settings(2);
-      s.engine_order  = order[e];
-      s.preload       = (mhb_preload)preload;
-      s.n0[0]         = 50;
-      mhb_residual *b = residual_of(&model, &s);
-      double        x[b->n], worst = 0, size = 0;
-      assert_int_equal(mhb_residual_linear(b, 1.17, 1, x), SHB_OK);
+      mhb_settings s = random_settings(2);
+      s.engine_order = order[e];
+      s.preload      = (mhb_preload)preload;
+      s.n0[0]        = 50;
+      mhb_balance *b = residual_of(&model, &s);
+      double       x[b->n], worst = 0, size = 0;
+      assert_int_equal(mhb_balance_linear_limit(b, 1.17, 1, x), SHB_OK);
       for (int k = 0; k <= 2; k++) {
         blade          one;
         double complex motion[BLADES][DOFS], u[SIDE];
@@ -387,13 +387,13 @@ static void stuck_ring_is_the_sector(void **state) {
       }
       print_message("E %2d: ring against sector %.1e\n", order[e], worst / size);
       assert_below(worst / size, 1e-10);
-      mhb_residual_destroy(b);
+      mhb_balance_destroy(b);
     }
   modal_model_free(&model);
 }
 
 /* Sector motion x shifted in time to interface b, and the law's force there. */
-static void force_at_interface(const mhb_residual *b, const double *x, double phase, int blade_no,
+static void force_at_interface(const mhb_balance *b, const double *x, double phase, int blade_no,
                                double *moved, double *p) {
   int block = 3 * b->nb;
   for (int row = 0; row < 3 * b->n_pairs; row++) {
@@ -409,12 +409,12 @@ static void force_at_interface(const mhb_residual *b, const double *x, double ph
 
 /* Largest difference between the ring's residual u - u(x(load, p(u))) at any interface, where every interface's force is
  * evaluated by itself, and the sector's residual shifted to it; and the ring's residual itself. */
-static void ring_errors(mhb_residual *b, const modal_model *model, const double *x, double omega,
+static void ring_errors(mhb_balance *b, const modal_model *model, const double *x, double omega,
                         double error[2]) {
   const mhb_settings *s     = b->settings;
   double              phase = 2 * PI * s->engine_order / s->blades / s->subharmonics;
   double              r[b->n], moved[BLADES][b->n], p[BLADES][b->n];
-  mhb_residual_evaluate(b, x, omega, r, NULL, NULL);
+  mhb_balance_evaluate(b, x, omega, r, NULL, NULL);
   for (int i = 0; i < BLADES; i++) force_at_interface(b, x, phase, i, moved[i], p[i]);
   error[0] = error[1] = 0;
   for (int k = 0; k <= b->m; k++) {
@@ -451,17 +451,17 @@ static void slipping_ring_is_the_sector(void **state) {
   modal_model model;
   ring_model(&model);
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-    mhb_settings s  = random_settings(5);
-    s.engine_order  = rows[i].E;
-    s.subharmonics  = rows[i].nu;
-    s.n0[0]         = .6;
-    mhb_residual *b = residual_of(&model, &s);
-    double        x[b->n], error[2];
+    mhb_settings s = random_settings(5);
+    s.engine_order = rows[i].E;
+    s.subharmonics = rows[i].nu;
+    s.n0[0]        = .6;
+    mhb_balance *b = residual_of(&model, &s);
+    double       x[b->n], error[2];
     random_motion(b, .6, i, x);
     ring_errors(b, &model, x, 1.17, error);
     print_message("E %2d, nu %d: ring against sector %.1e\n", rows[i].E, rows[i].nu, error[0]);
     assert_below(error[0], 5e-8); /* the law itself is asked for 1e-8 */
-    mhb_residual_destroy(b);
+    mhb_balance_destroy(b);
   }
   modal_model_free(&model);
 }
@@ -469,7 +469,7 @@ static void slipping_ring_is_the_sector(void **state) {
 /* ---------------------------------------------------------------- solutions */
 
 /* Mean power into the blade from the load, less what its modes and the friction take; relative to the first. */
-static double power_imbalance(const mhb_residual *b, double omega) {
+static double power_imbalance(const mhb_balance *b, double omega) {
   const mhb_receptance *r     = b->receptance;
   const modal_model    *model = r->model;
   double                in = 0, damping = 0, friction = 0;
@@ -477,7 +477,7 @@ static double power_imbalance(const mhb_residual *b, double omega) {
   for (int k = 1; k <= b->m; k++) {
     double         w = k * omega / r->nu;
     double complex p[r->n], residual = 0;
-    mhb_residual_force(b, k, p);
+    mhb_balance_contact_force(b, k, p);
     for (int i = 0; i < m; i++) {
       double         wi = 2 * PI * model->frequency[i];
       double complex F = r->F[k * m + i], drive = F;
@@ -486,7 +486,7 @@ static double power_imbalance(const mhb_residual *b, double omega) {
       in += .5 * creal(conj(F) * I * w * q);
       damping += model->damping_ratio[i] * wi * w * w * creal(q * conj(q));
     }
-    const mhb_left_out *left = r->left_out;
+    const mhb_residual_terms *left = r->left_out;
     for (int row = 0; left->load[0] && row < r->n; row++)
       residual +=
           conj(left->load[0][k * r->n + row] + w * w * left->load[1][k * r->n + row]) * p[row];
@@ -511,11 +511,11 @@ static void solutions_balance_forces_and_power(void **state) {
   ring_model(&model);
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
     mhb_newton  *newton;
-    mhb_settings s  = random_settings(7);
-    s.engine_order  = rows[i].E;
-    s.preload       = (mhb_preload)rows[i].preload;
-    s.n0[0]         = rows[i].n0;
-    mhb_residual *b = residual_of(&model, &s);
+    mhb_settings s = random_settings(7);
+    s.engine_order = rows[i].E;
+    s.preload      = (mhb_preload)rows[i].preload;
+    s.n0[0]        = rows[i].n0;
+    mhb_balance *b = residual_of(&model, &s);
     assert_int_equal(mhb_newton_create(b->n, &newton), SHB_OK);
     double x[b->n], error[2];
     int    iterations;
@@ -523,7 +523,7 @@ static void solutions_balance_forces_and_power(void **state) {
                      MHB_CONVERGED);
     ring_errors(b, &model, x, rows[i].omega, error);
     double size = mhb_norm(x, b->n);
-    mhb_residual_evaluate(b, x, rows[i].omega, newton->r, NULL, NULL);
+    mhb_balance_evaluate(b, x, rows[i].omega, newton->r, NULL, NULL);
     double lost = power_imbalance(b, rows[i].omega);
     print_message(
         "E %d n0 %5.2f: ring's balance %.1e, power %.1e (pair 0: stuck %.2f slip %.2f open %.2f)\n",
@@ -532,7 +532,7 @@ static void solutions_balance_forces_and_power(void **state) {
     assert_below(error[1] / size, 1e-8);
     assert_below(lost, 1e-8);
     mhb_newton_destroy(newton);
-    mhb_residual_destroy(b);
+    mhb_balance_destroy(b);
   }
   modal_model_free(&model);
 }

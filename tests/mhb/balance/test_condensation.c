@@ -31,11 +31,11 @@ static const double PI = 3.14159265358979323846;
 enum { PAIRS = 30, M = 2, N = 3 * PAIRS * (2 * M + 1) };
 
 /* Kinds of the pairs: m moving, s stuck, h stuck with a mean friction that depends on the motion, o open. */
-static mhb_residual *mixed_residual(const modal_model *model, const mhb_settings *s,
-                                    const char *kinds) {
-  mhb_residual *b;
-  if (mhb_residual_create(model, s, &b) != SHB_OK) fail_msg("%s", shb_message());
-  mhb_residual_preload(b, s->n0[0]);
+static mhb_balance *mixed_residual(const modal_model *model, const mhb_settings *s,
+                                   const char *kinds) {
+  mhb_balance *b;
+  if (mhb_balance_create(model, s, &b) != SHB_OK) fail_msg("%s", shb_message());
+  mhb_balance_set_preload(b, s->n0[0]);
   for (int a = 0; a < b->n_pairs; a++) {
     char kind         = kinds[a % (int)strlen(kinds)];
     b->law[a].n0      = strchr("sh", kind) ? 1e3 : kind == 'o' ? -1e3 : .001 * (a % 3);
@@ -55,7 +55,7 @@ static void random_motion(unsigned long long seed, double *x) {
 }
 
 /* The load is least when the friction is largest: zero is no admissible mean. */
-static void hold_pairs(const mhb_residual *b, const char *kinds, double *x) {
+static void hold_pairs(const mhb_balance *b, const char *kinds, double *x) {
   for (int a = 0; a < b->n_pairs; a++) {
     const mhb_law *law = &b->law[a];
     double        *v = x + 3 * a * b->nb, *u = v + b->nb;
@@ -91,24 +91,24 @@ static double difference(const double *a, const double *b, int n) {
   return worst / mhb_norm(b, n);
 }
 
-static void check_kinds(const mhb_residual *b, const char *kinds) {
+static void check_kinds(const mhb_balance *b, const char *kinds) {
   for (int a = 0; a < b->n_pairs; a++) {
     char          c      = kinds[a % (int)strlen(kinds)];
     mhb_pair_kind wanted = c == 's'   ? MHB_PAIR_STUCK
-                           : c == 'h' ? MHB_PAIR_HELD
+                           : c == 'h' ? MHB_PAIR_AT_LIMIT
                            : c == 'o' ? MHB_PAIR_OPEN
-                                      : MHB_PAIR_MOVING;
+                                      : MHB_PAIR_NONLINEAR;
     assert_int_equal(b->kind[a], wanted);
   }
 }
 
 /* At one motion: with and without a border, evaluated twice so that pairs known to be still are met too. */
-static double compare_at(mhb_residual *b, const char *kinds, unsigned long long seed) {
-  static double  x[N], r[N + 1], column[N + 1], row[N + 1], rhs[N + 1], wanted[N + 1];
-  mhb_condensed *s;
+static double compare_at(mhb_balance *b, const char *kinds, unsigned long long seed) {
+  static double     x[N], r[N + 1], column[N + 1], row[N + 1], rhs[N + 1], wanted[N + 1];
+  mhb_condensation *s;
   double *J = malloc(sizeof(double) * N * N), worst = 0, omega = 1.1 + .01 * (double)(seed % 7);
   assert_int_equal(b->n, N);
-  assert_int_equal(mhb_condensed_create(b, &s), SHB_OK);
+  assert_int_equal(mhb_condensation_create(b, &s), SHB_OK);
   random_motion(seed, x);
   hold_pairs(b, kinds, x);
   random_vector(N + 1, 1, seed + 1, column);
@@ -116,18 +116,18 @@ static double compare_at(mhb_residual *b, const char *kinds, unsigned long long 
   row[N] = column[N];
   for (int round = 0; round < 2; round++)
     for (int border = 0; border < 2; border++) {
-      mhb_residual_evaluate(b, x, omega, r, J, NULL);
+      mhb_balance_evaluate(b, x, omega, r, J, NULL);
       check_kinds(b, kinds);
       random_vector(N + 1, 1, seed + 3, rhs);
       memcpy(wanted, rhs, sizeof rhs);
       int sign = solve_whole(N, J, border ? column : NULL, border ? row : NULL, wanted);
-      mhb_residual_derive(b, x, omega, r, NULL);
-      assert_true(mhb_condensed_factor(s, border ? column : NULL, border ? row : NULL));
-      assert_true(mhb_condensed_solve(s, rhs));
-      assert_int_equal(mhb_condensed_sign(s), sign);
+      mhb_balance_linearise(b, x, omega, r, NULL);
+      assert_true(mhb_condensation_factor(s, border ? column : NULL, border ? row : NULL));
+      assert_true(mhb_condensation_solve(s, rhs));
+      assert_int_equal(mhb_condensation_sign(s), sign);
       worst = fmax(worst, difference(rhs, wanted, N + border));
     }
-  mhb_condensed_destroy(s);
+  mhb_condensation_destroy(s);
   free(J);
   return worst;
 }
@@ -152,14 +152,14 @@ static void condensed_is_whole(void **state) {
   modal_model              model;
   random_model(PAIRS, WITH_LEFT | WITH_RESIDUAL | WITH_NORMALS | WITH_AREAS, 77, &model);
   for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
-    mhb_settings  s     = random_settings(M);
-    double        worst = 0;
-    mhb_residual *b     = mixed_residual(&model, &s, kinds[i]);
+    mhb_settings s     = random_settings(M);
+    double       worst = 0;
+    mhb_balance *b     = mixed_residual(&model, &s, kinds[i]);
     for (unsigned long long seed = 0; seed < 3; seed++)
       worst = fmax(worst, compare_at(b, kinds[i], 10 * seed + i));
     print_message("%-20s %.1e\n", kinds[i], worst);
     assert_below(worst, 1e-12);
-    mhb_residual_destroy(b);
+    mhb_balance_destroy(b);
   }
   modal_model_free(&model);
 }
@@ -167,28 +167,28 @@ static void condensed_is_whole(void **state) {
 /* A change of stiffness at the same frequency must not meet old factors. */
 static void a_new_law_is_factored_anew(void **state) {
   (void)state;
-  modal_model    model;
-  mhb_settings   s = random_settings(M);
-  static double  x[N], r[N], first[N], again[N];
-  mhb_condensed *system;
+  modal_model       model;
+  mhb_settings      s = random_settings(M);
+  static double     x[N], r[N], first[N], again[N];
+  mhb_condensation *system;
   random_model(PAIRS, WITH_LEFT | WITH_RESIDUAL, 78, &model);
-  s.n0[0]         = 1e4;
-  mhb_residual *b = mixed_residual(&model, &s, "s");
-  assert_int_equal(mhb_condensed_create(b, &system), SHB_OK);
+  s.n0[0]        = 1e4;
+  mhb_balance *b = mixed_residual(&model, &s, "s");
+  assert_int_equal(mhb_condensation_create(b, &system), SHB_OK);
   random_vector(N, .1, 1, x);
   for (int round = 0; round < 2; round++) {
-    double       *out = round ? again : first;
-    mhb_condition at  = b->at;
-    at.kv             = round ? 1.6 : .8;
-    at.n0             = 1e4;
-    mhb_residual_condition(b, &at);
-    mhb_residual_derive(b, x, 1.2, r, NULL);
+    double             *out = round ? again : first;
+    mhb_operating_point at  = b->at;
+    at.kv                   = round ? 1.6 : .8;
+    at.n0                   = 1e4;
+    mhb_balance_set_operating_point(b, &at);
+    mhb_balance_linearise(b, x, 1.2, r, NULL);
     random_vector(N, 1, 2, out);
-    assert_true(mhb_condensed_factor(system, NULL, NULL) && mhb_condensed_solve(system, out));
+    assert_true(mhb_condensation_factor(system, NULL, NULL) && mhb_condensation_solve(system, out));
   }
   assert_true(difference(first, again, N) > 1e-3);
-  mhb_condensed_destroy(system);
-  mhb_residual_destroy(b);
+  mhb_condensation_destroy(system);
+  mhb_balance_destroy(b);
   modal_model_free(&model);
 }
 
@@ -200,23 +200,24 @@ typedef struct {
 } outcome;
 
 static void evaluate_with(int threads, const modal_model *model, outcome *out) {
-  mhb_settings   s = random_settings(M);
-  static double  x[N], column[N + 1], row[N + 1];
-  mhb_condensed *system;
+  mhb_settings      s = random_settings(M);
+  static double     x[N], column[N + 1], row[N + 1];
+  mhb_condensation *system;
   omp_set_num_threads(threads);
-  mhb_residual *b = mixed_residual(model, &s, "sssmo");
+  mhb_balance *b = mixed_residual(model, &s, "sssmo");
   assert_int_equal(b->n_threads, threads);
-  assert_int_equal(mhb_condensed_create(b, &system), SHB_OK);
+  assert_int_equal(mhb_condensation_create(b, &system), SHB_OK);
   random_motion(5, x);
   random_vector(N + 1, 1, 6, column);
   random_vector(N + 1, 1, 7, row);
   random_vector(N + 1, 1, 8, out->step);
-  mhb_residual_derive(b, x, 1.3, out->r, out->slope);
+  mhb_balance_linearise(b, x, 1.3, out->r, out->slope);
   memcpy(out->p, b->p, sizeof out->p);
-  assert_true(mhb_condensed_factor(system, column, row) && mhb_condensed_solve(system, out->step));
-  out->sign = mhb_condensed_sign(system);
-  mhb_condensed_destroy(system);
-  mhb_residual_destroy(b);
+  assert_true(mhb_condensation_factor(system, column, row) &&
+              mhb_condensation_solve(system, out->step));
+  out->sign = mhb_condensation_sign(system);
+  mhb_condensation_destroy(system);
+  mhb_balance_destroy(b);
 }
 
 static void threads_change_no_bit(void **state) {
@@ -241,22 +242,22 @@ static void threads_change_no_bit(void **state) {
 /* ---------------------------------------------------------------- the loop */
 
 static void walk(const modal_model *model, const mhb_settings *s, double start, int steps) {
-  mhb_residual *b;
-  mhb_path     *path;
-  int           iterations, moved = 0;
-  assert_int_equal(mhb_residual_create(model, s, &b), SHB_OK);
-  mhb_residual_preload(b, s->n0[0]);
-  assert_int_equal(mhb_path_create(b, 2 * PI * s->frequency[0], 2 * PI * s->frequency[1], &path),
-                   SHB_OK);
+  mhb_balance   *b;
+  mhb_arclength *path;
+  int            iterations, moved = 0;
+  assert_int_equal(mhb_balance_create(model, s, &b), SHB_OK);
+  mhb_balance_set_preload(b, s->n0[0]);
+  assert_int_equal(
+      mhb_arclength_create(b, 2 * PI * s->frequency[0], 2 * PI * s->frequency[1], &path), SHB_OK);
   double *x = calloc((size_t)b->n, sizeof(double));
   assert_int_equal(mhb_first_solution(path->newton, b, start, path->tolerance, x, &iterations),
                    MHB_CONVERGED);
-  assert_int_equal(mhb_path_start(path, x, start, 1), MHB_CONVERGED);
+  assert_int_equal(mhb_arclength_start(path, x, start, 1), MHB_CONVERGED);
   allocations = 0;
   for (int i = 0; i < steps; i++) {
-    assert_int_equal(mhb_path_step(path), MHB_PATH_ON);
-    for (int a = 0; a < b->n_pairs; a++) moved += b->kind[a] == MHB_PAIR_MOVING;
-    mhb_path_advance(path);
+    assert_int_equal(mhb_arclength_step(path), MHB_ARCLENGTH_ON);
+    for (int a = 0; a < b->n_pairs; a++) moved += b->kind[a] == MHB_PAIR_NONLINEAR;
+    mhb_arclength_advance(path);
   }
   int counted = allocations;
   print_message("%d pairs, %d steps, %d with a moving pair: %d allocations\n", b->n_pairs, steps,
@@ -264,8 +265,8 @@ static void walk(const modal_model *model, const mhb_settings *s, double start, 
   assert_true(moved > 0);
   assert_int_equal(counted, 0);
   free(x);
-  mhb_path_destroy(path);
-  mhb_residual_destroy(b);
+  mhb_arclength_destroy(path);
+  mhb_balance_destroy(b);
 }
 
 static void the_loop_allocates_nothing(void **state) {

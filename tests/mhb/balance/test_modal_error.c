@@ -24,15 +24,15 @@ static const double PI = 3.14159265358979323846;
 enum { STEPS = 41 };
 
 typedef struct {
-  mhb_residual   *residual;
+  mhb_balance    *residual;
   mhb_newton     *newton;
   mhb_truncation *truncation;
   double         *x;
 } balance;
 
 static void balance_create(const modal_model *model, const mhb_settings *s, balance *b) {
-  assert_int_equal(mhb_residual_create(model, s, &b->residual), SHB_OK);
-  mhb_residual_preload(b->residual, s->n0[0]);
+  assert_int_equal(mhb_balance_create(model, s, &b->residual), SHB_OK);
+  mhb_balance_set_preload(b->residual, s->n0[0]);
   assert_int_equal(mhb_newton_create(b->residual->n, &b->newton), SHB_OK);
   assert_int_equal(mhb_truncation_create(b->residual, &b->truncation), SHB_OK);
   b->x = calloc((size_t)b->residual->n, sizeof *b->x);
@@ -41,7 +41,7 @@ static void balance_create(const modal_model *model, const mhb_settings *s, bala
 static void balance_destroy(balance *b) {
   mhb_truncation_destroy(b->truncation);
   mhb_newton_destroy(b->newton);
-  mhb_residual_destroy(b->residual);
+  mhb_balance_destroy(b->residual);
   free(b->x);
 }
 
@@ -67,7 +67,7 @@ static void solve(balance *b, double omega) {
   int iterations;
   assert_int_equal(mhb_first_solution(b->newton, b->residual, omega, 1e-11, b->x, &iterations),
                    MHB_CONVERGED);
-  mhb_residual_evaluate(b->residual, b->x, omega, b->newton->r, NULL, NULL);
+  mhb_balance_evaluate(b->residual, b->x, omega, b->newton->r, NULL, NULL);
 }
 
 /* Greatest error over the resonance, and how far the estimate is from it there and at worst. */
@@ -90,7 +90,7 @@ static void compare(const char *where, int modes, double level, double n0, doubl
     mhb_truncation *t        = rough.truncation;
     double          estimate = mhb_modal_error(rough.residual, rough.x,
                                       t->kind == MHB_TRUNCATION_NEWTON ? t->system : NULL);
-    double          off = 0, size = mhb_residual_vibration(rough.residual, rough.x), bare = 0;
+    double          off = 0, size = mhb_balance_vibration(rough.residual, rough.x), bare = 0;
     for (int j = 0; j < rough.residual->n; j++) off += pow(rough.x[j] - exact.x[j], 2);
     double error = sqrt(off) / size;
     for (int c = 0; c < 3; c++)

@@ -29,14 +29,14 @@ typedef struct {
 } comparison;
 
 typedef struct {
-  mhb_residual   *residual;
+  mhb_balance    *residual;
   mhb_newton     *newton;
   mhb_truncation *truncation;
 } workspace;
 
 static void workspace_create(const modal_model *model, const mhb_settings *s, workspace *out) {
-  assert_int_equal(mhb_residual_create(model, s, &out->residual), SHB_OK);
-  mhb_residual_preload(out->residual, s->n0[0]);
+  assert_int_equal(mhb_balance_create(model, s, &out->residual), SHB_OK);
+  mhb_balance_set_preload(out->residual, s->n0[0]);
   assert_int_equal(mhb_newton_create(out->residual->n, &out->newton), SHB_OK);
   assert_int_equal(mhb_truncation_create(out->residual, &out->truncation), SHB_OK);
 }
@@ -44,7 +44,7 @@ static void workspace_create(const modal_model *model, const mhb_settings *s, wo
 static void workspace_destroy(workspace *s) {
   mhb_truncation_destroy(s->truncation);
   mhb_newton_destroy(s->newton);
-  mhb_residual_destroy(s->residual);
+  mhb_balance_destroy(s->residual);
 }
 
 /* Motion of one pair at a point in real form, [3][2 FINE + 1]. */
@@ -74,9 +74,9 @@ static int near_fold(const mhb_branch *b, int point) {
 
 /* Points near folds, or all others. */
 static void compare(workspace *s, const mhb_branch *b, int folds, comparison *out) {
-  mhb_residual *r  = s->residual;
-  int           nb = r->nb, iterations;
-  double        x[3 * nb], fine[3 * mhb_real_size(FINE)];
+  mhb_balance *r  = s->residual;
+  int          nb = r->nb, iterations;
+  double       x[3 * nb], fine[3 * mhb_real_size(FINE)];
   *out = (comparison){.n = 0};
   for (int p = 0; p < b->n_points && out->n < MAX_RATIOS; p++) {
     double omega = 2 * PI * b->frequency[p];
@@ -91,7 +91,7 @@ static void compare(workspace *s, const mhb_branch *b, int folds, comparison *ou
       out->lost++;
       continue;
     }
-    mhb_residual_evaluate(r, x, omega, s->newton->r, NULL, NULL);
+    mhb_balance_evaluate(r, x, omega, s->newton->r, NULL, NULL);
     double estimate = mhb_truncation_error(s->truncation, x);
     out->worst      = fmax(out->worst, error);
     if (fmax(error, estimate) > 1e-7) out->ratio[out->n++] = estimate / error; /* else: noise */
@@ -134,7 +134,7 @@ static void check_curve(const char *name, const modal_model *model, mhb_settings
   mhb_response     *r;
   s.frequency[0] = from / (2 * PI);
   s.frequency[1] = to / (2 * PI);
-  assert_int_equal(mhb_sweep(model, &s, NULL, NULL, NULL, &r), SHB_OK);
+  assert_int_equal(mhb_forced_response(model, &s, NULL, NULL, NULL, &r), SHB_OK);
   check_finest(name, &r->branch[2]);
   for (int h = 0; h < 4; h++) {
     workspace at;
@@ -209,19 +209,19 @@ static void step_leads_on(void **state) {
   workspace    narrow, wide;
   int          iterations;
   workspace_create(&model, &s, &narrow);
-  mhb_residual *b = narrow.residual;
-  double        x[b->n], omega = 1.42;
+  mhb_balance *b = narrow.residual;
+  double       x[b->n], omega = 1.42;
   assert_int_equal(mhb_first_solution(narrow.newton, b, omega, 1e-11, x, &iterations),
                    MHB_CONVERGED);
-  mhb_residual_evaluate(b, x, omega, narrow.newton->r, NULL, NULL);
+  mhb_balance_evaluate(b, x, omega, narrow.newton->r, NULL, NULL);
   mhb_truncation_error(narrow.truncation, x);
   s.harmonics = 10;
   workspace_create(&model, &s, &wide);
   int    n = wide.residual->n;
   double before[n], after[n];
   for (int i = 0; i < n; i++) narrow.truncation->step[i] += narrow.truncation->x[i];
-  mhb_residual_evaluate(wide.residual, narrow.truncation->x, omega, before, NULL, NULL);
-  mhb_residual_evaluate(wide.residual, narrow.truncation->step, omega, after, NULL, NULL);
+  mhb_balance_evaluate(wide.residual, narrow.truncation->x, omega, before, NULL, NULL);
+  mhb_balance_evaluate(wide.residual, narrow.truncation->step, omega, after, NULL, NULL);
   print_message("residual %.1e before the step, %.1e after\n", mhb_norm(before, n),
                 mhb_norm(after, n));
   assert_true(mhb_norm(after, n) < .1 * mhb_norm(before, n));
@@ -247,11 +247,11 @@ static void kinds(void **state) {
     random_model(rows[i].pairs, 0, 5, &model);
     workspace at;
     workspace_create(&model, &s, &at);
-    mhb_residual *b = at.residual;
-    double        x[b->n], r[b->n];
+    mhb_balance *b = at.residual;
+    double       x[b->n], r[b->n];
     memset(x, 0, sizeof x);
     for (int row = 0; row < 3 * b->n_pairs; row++) x[row * b->nb + 1] = 1 + .1 * row;
-    mhb_residual_evaluate(b, x, 1.23, r, NULL, NULL);
+    mhb_balance_evaluate(b, x, 1.23, r, NULL, NULL);
     double error = mhb_truncation_error(at.truncation, x);
     print_message("%2d pairs, n0 %g: kind %d, %.2e\n", rows[i].pairs, rows[i].n0,
                   at.truncation->kind, error);

@@ -30,7 +30,8 @@ static mhb_response *sweep(const modal_model *model, mhb_settings *s, double fro
   mhb_response *response;
   s->frequency[0] = from / (2 * PI);
   s->frequency[1] = to / (2 * PI);
-  if (mhb_sweep(model, s, NULL, NULL, NULL, &response) != SHB_OK) fail_msg("%s", shb_message());
+  if (mhb_forced_response(model, s, NULL, NULL, NULL, &response) != SHB_OK)
+    fail_msg("%s", shb_message());
   return response;
 }
 
@@ -197,7 +198,7 @@ static void threads_change_nothing(void **state) {
     mhb_response *r[2] = {NULL, NULL};
     for (int k = 0; k < 2; k++) {
       omp_set_num_threads(1 + 2 * k);
-      shb_status status = mhb_sweep(&model, &s, NULL, NULL, NULL, &r[k]);
+      shb_status status = mhb_forced_response(&model, &s, NULL, NULL, NULL, &r[k]);
       if (status != SHB_OK && status != SHB_NOT_CONVERGED) fail_msg("%s", shb_message());
     }
     int count[MHB_N_JUDGED] = {0};

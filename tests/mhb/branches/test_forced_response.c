@@ -83,7 +83,7 @@ static mhb_response *sweep(const modal_model *model, mhb_settings *s, double fro
   mhb_response *response;
   s->frequency[0]   = from / (2 * PI);
   s->frequency[1]   = to / (2 * PI);
-  shb_status status = mhb_sweep(model, s, NULL, NULL, NULL, &response);
+  shb_status status = mhb_forced_response(model, s, NULL, NULL, NULL, &response);
   if (status != SHB_OK) fail_msg("%s", shb_message());
   return response;
 }
@@ -309,7 +309,7 @@ static void curves_go_on_beyond_a_gap(void **state) {
   s.frequency[0] = .8 / (2 * PI);
   s.frequency[1] = 1.7 / (2 * PI);
   mhb_response *r;
-  shb_status    status = mhb_sweep(&model, &s, NULL, NULL, NULL, &r);
+  shb_status    status = mhb_forced_response(&model, &s, NULL, NULL, NULL, &r);
   int           gaps   = 0;
   for (int i = 2; i < r->n_branches; i++) {
     const mhb_branch *b = &r->branch[i];
@@ -350,9 +350,9 @@ static void rigid_contacts_are_refused(void **state) {
       mhb_settings    s          = ground(.4, .8, .5, .3, 3);
       double         *k          = axis == 0 ? &s.kv : &s.ku[axis - 1 ? 2 : 0];
       mhb_receptance *receptance = NULL;
-      *k                         = (over ? 1.001 : .999) * MHB_RIGID_LIMIT / R[axis];
+      *k                         = (over ? 1.001 : .999) * MHB_STIFFNESS_LIMIT / R[axis];
       assert_int_equal(mhb_receptance_create(&model, &s, 3, &receptance), SHB_OK);
-      assert_int_equal(mhb_rigid_check(receptance, &s), over ? SHB_ERR_INPUT : SHB_OK);
+      assert_int_equal(mhb_stiffness_check(receptance, &s), over ? SHB_ERR_INPUT : SHB_OK);
       if (over) assert_int_equal(strncmp(shb_message(), word[axis], 12), 0);
       mhb_receptance_destroy(receptance);
     }
@@ -361,7 +361,7 @@ static void rigid_contacts_are_refused(void **state) {
   s.frequency[0] = s.frequency[1] = .2;
   s.parameter                     = MHB_IN_KV;
   s.range[1]                      = 1e9;
-  assert_int_equal(mhb_sweep(&model, &s, NULL, NULL, NULL, &response), SHB_ERR_INPUT);
+  assert_int_equal(mhb_forced_response(&model, &s, NULL, NULL, NULL, &response), SHB_ERR_INPUT);
   assert_non_null(strstr(shb_message(), "contact.kv: 1e+09 N/m is 1e+09 times as stiff"));
   mhb_response_destroy(response);
   modal_model_free(&model);

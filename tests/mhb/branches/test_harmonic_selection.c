@@ -27,7 +27,7 @@ static void no_lock(mhb_monitor *monitor, bool locked) {
   (void)locked;
 }
 
-static bool go_on(mhb_monitor *monitor, int branch, const mhb_path_point *point) {
+static bool go_on(mhb_monitor *monitor, int branch, const mhb_curve_point *point) {
   (void)monitor;
   (void)branch;
   (void)point;
@@ -41,17 +41,17 @@ static mhb_response *follow(const modal_model *model, const mhb_settings *s, int
   mhb_response *response = NULL;
   *seconds               = INFINITY;
   for (int i = 0; i < 2; i++) {
-    mhb_residual *residual;
-    int           branch;
+    mhb_balance *residual;
+    int          branch;
     mhb_response_destroy(response);
-    assert_int_equal(mhb_residual_create(model, s, &residual), SHB_OK);
-    mhb_residual_preload(residual, s->n0[0]);
+    assert_int_equal(mhb_balance_create(model, s, &residual), SHB_OK);
+    mhb_balance_set_preload(residual, s->n0[0]);
     response = mhb_response_create(model->n_pairs, model->n_probes, most);
     assert_int_equal(mhb_response_branch(response, MHB_BRANCH_NONLINEAR, &branch), SHB_OK);
     double started = shb_seconds();
-    assert_int_equal(mhb_follow(residual, response, branch, &monitor), SHB_OK);
+    assert_int_equal(mhb_trace_main_branch(residual, response, branch, &monitor), SHB_OK);
     *seconds = fmin(*seconds, shb_seconds() - started);
-    mhb_residual_destroy(residual);
+    mhb_balance_destroy(residual);
   }
   return response;
 }
@@ -88,12 +88,12 @@ static truth compare(const modal_model *model, mhb_settings s, const mhb_respons
   const mhb_branch *b = &r->branch[0];
   int               K = r->n_harmonics + 1, nb = mhb_real_size(FINE), iterations;
   double            x[3 * nb], fine[3 * nb];
-  mhb_residual     *residual;
+  mhb_balance      *residual;
   mhb_newton       *newton;
   truth             out = {.n = 0};
   s.harmonics           = FINE;
-  assert_int_equal(mhb_residual_create(model, &s, &residual), SHB_OK);
-  mhb_residual_preload(residual, s.n0[0]);
+  assert_int_equal(mhb_balance_create(model, &s, &residual), SHB_OK);
+  mhb_balance_set_preload(residual, s.n0[0]);
   assert_int_equal(mhb_newton_create(residual->n, &newton), SHB_OK);
   for (int p = 0; p < b->n_points; p++) {
     memset(x, 0, sizeof x);
@@ -103,7 +103,7 @@ static truth compare(const modal_model *model, mhb_settings s, const mhb_respons
     count_kinds(b, p, &out);
     mhb_reason reason =
         mhb_newton_solve(newton, residual, 2 * PI * b->frequency[p], 1e-11, fine, &iterations);
-    double error = distance(x, fine, 3 * nb) / mhb_residual_vibration(residual, fine);
+    double error = distance(x, fine, 3 * nb) / mhb_balance_vibration(residual, fine);
     if (reason != MHB_CONVERGED || !(error < .1)) {
       out.lost++;
       continue;
@@ -114,7 +114,7 @@ static truth compare(const modal_model *model, mhb_settings s, const mhb_respons
     *worst        = fmax(*worst, error);
   }
   mhb_newton_destroy(newton);
-  mhb_residual_destroy(residual);
+  mhb_balance_destroy(residual);
   return out;
 }
 
@@ -124,9 +124,9 @@ static int reached(const truth *t) {
 
 /* The cheapest fixed number of harmonics that reaches the tolerance: of the ladder, and its seconds. */
 static int cheapest(const modal_model *model, mhb_settings s, double *seconds, truth *t) {
-  int m[MHB_MAX_RUNGS], n;
+  int m[MHB_MAX_LEVELS], n;
   s.motion_tolerance = TOLERANCE;
-  n                  = mhb_harmonics_ladder(model, &s, m);
+  n                  = mhb_harmonic_levels_ladder(model, &s, m);
   s.motion_tolerance = 0;
   for (int i = 1; i < n; i++) {
     s.harmonics     = m[i];
@@ -240,14 +240,14 @@ static void ladders(void **state) {
   static const struct {
     int    nu, load, given;
     double tolerance;
-    int    n, m[MHB_MAX_RUNGS];
+    int    n, m[MHB_MAX_LEVELS];
   } rows[] = {{1, 1, 6, 0, 1, {6}},
               {1, 1, 1, 1e-3, 9, {1, 3, 5, 7, 9, 13, 17, 21, 31}},
               {2, 1, 1, 1e-3, 7, {2, 6, 10, 14, 18, 26, 31}},
               {1, 2, 1, 1e-3, 8, {3, 5, 7, 9, 13, 17, 21, 31}},
               {16, 2, 1, 1e-3, 1, {32}}};
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-    int          m[MHB_MAX_RUNGS];
+    int          m[MHB_MAX_LEVELS];
     modal_model  model;
     mhb_settings s     = random_settings(rows[i].given);
     s.subharmonics     = rows[i].nu;
@@ -255,7 +255,7 @@ static void ladders(void **state) {
     random_model(1, 0, 3, &model); /* load harmonics 0, 1, 2 */
     for (int k = 0; rows[i].load < 2 && k < model.n_modes; k++)
       model.modal_force[2 * model.n_modes + k] = 0;
-    assert_int_equal(mhb_harmonics_ladder(&model, &s, m), rows[i].n);
+    assert_int_equal(mhb_harmonic_levels_ladder(&model, &s, m), rows[i].n);
     for (int k = 0; k < rows[i].n; k++) assert_int_equal(m[k], rows[i].m[k]);
     modal_model_free(&model);
   }

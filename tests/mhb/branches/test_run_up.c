@@ -31,18 +31,19 @@ static void assert_ok(shb_status status) {
   if (status != SHB_OK) fail_msg("%s", shb_message());
 }
 
-static mhb_run_up *make_run_up(spinning_kind kind, int n, mhb_settings *s) {
-  modal_speeds speeds;
-  mhb_run_up  *run_up = NULL;
+static mhb_speed_table *make_run_up(spinning_kind kind, int n, mhb_settings *s) {
+  modal_speeds     speeds;
+  mhb_speed_table *run_up = NULL;
   spinning_speeds(kind, n, 0, 1, true, &speeds);
-  assert_ok(mhb_run_up_create(&speeds, "blade.modal.h5", s->engine_order, s->frequency, &run_up));
+  assert_ok(
+      mhb_speed_table_create(&speeds, "blade.modal.h5", s->engine_order, s->frequency, &run_up));
   s->run_up = run_up;
   return run_up;
 }
 
 static mhb_response *sweep(const modal_model *model, const mhb_settings *s) {
   mhb_response *response = NULL;
-  assert_ok(mhb_sweep(model, s, NULL, NULL, NULL, &response));
+  assert_ok(mhb_forced_response(model, s, NULL, NULL, NULL, &response));
   return response;
 }
 
@@ -63,11 +64,11 @@ static void check_point(const mhb_settings *plain, spinning_kind kind, const mhb
   modal_model       model;
   periodic          at;
   spinning_model(kind, omega / plain->engine_order, &model, NULL);
-  double        guess[3 * (2 * b->n_harmonics + 1)];
-  mhb_residual *shape;
-  assert_ok(mhb_residual_create(&model, plain, &shape));
+  double       guess[3 * (2 * b->n_harmonics + 1)];
+  mhb_balance *shape;
+  assert_ok(mhb_balance_create(&model, plain, &shape));
   mhb_recorded_motion(b, point, shape, guess);
-  mhb_residual_destroy(shape);
+  mhb_balance_destroy(shape);
   periodic_create(&model, plain, omega, guess, &at);
   double sum = 0;
   for (int i = 0; i < at.residual->n; i++) sum += pow(at.x[i] - guess[i], 2);
@@ -98,10 +99,10 @@ static void what_does_not_change_gives_the_plain_curve(void **state) {
   mhb_settings plain = spinning_settings(), s = plain;
   modal_model  model;
   spinning_model(SPINNING_STEADY, 0, &model, NULL);
-  mhb_run_up   *run_up = make_run_up(SPINNING_STEADY, 3, &s);
-  mhb_response *a = sweep(&model, &plain), *b = sweep(&model, &s);
-  double        worst[2] = {0, 0};
-  int           judged = 0, n3 = 3 * (plain.harmonics + 1);
+  mhb_speed_table *run_up = make_run_up(SPINNING_STEADY, 3, &s);
+  mhb_response    *a = sweep(&model, &plain), *b = sweep(&model, &s);
+  double           worst[2] = {0, 0};
+  int              judged = 0, n3 = 3 * (plain.harmonics + 1);
   assert_int_equal(a->n_branches, b->n_branches);
   for (int i = 0; i < a->n_branches; i++) {
     const mhb_branch *p = &a->branch[i], *q = &b->branch[i];
@@ -128,7 +129,7 @@ static void what_does_not_change_gives_the_plain_curve(void **state) {
   mhb_response_destroy(a);
   mhb_response_destroy(b);
   modal_model_free(&model);
-  mhb_run_up_destroy(run_up);
+  mhb_speed_table_destroy(run_up);
 }
 
 static void points_are_solutions_at_their_speed(void **state) {
@@ -147,7 +148,7 @@ static void points_are_solutions_at_their_speed(void **state) {
     plain.subharmonics         = all[c].subharmonics;
     plain.to_ground            = all[c].to_ground;
     s                          = plain;
-    mhb_run_up       *run_up   = make_run_up(all[c].kind, all[c].n, &s);
+    mhb_speed_table  *run_up   = make_run_up(all[c].kind, all[c].n, &s);
     mhb_response     *response = sweep(run_up->given, &s);
     const mhb_branch *b        = &response->branch[MAIN];
     double            worst[2] = {0, 0};
@@ -161,7 +162,7 @@ static void points_are_solutions_at_their_speed(void **state) {
     assert_below(worst[0], all[c].bound);
     assert_below(worst[1], 1e-3);
     mhb_response_destroy(response);
-    mhb_run_up_destroy(run_up);
+    mhb_speed_table_destroy(run_up);
   }
 }
 
@@ -176,7 +177,7 @@ static void other_parameters_take_one_speed(void **state) {
   plain.range[1]                          = 2;
   s                                       = plain;
   spinning_model(SPINNING_TURNING, 1.21 / plain.engine_order, &model, NULL);
-  mhb_run_up       *run_up = make_run_up(SPINNING_TURNING, 33, &s);
+  mhb_speed_table  *run_up = make_run_up(SPINNING_TURNING, 33, &s);
   mhb_response     *a = sweep(&model, &plain), *b = sweep(&model, &s);
   const mhb_branch *p = &a->branch[MAIN], *q = &b->branch[MAIN];
   int               n3 = 3 * (p->n_harmonics + 1);
@@ -188,23 +189,23 @@ static void other_parameters_take_one_speed(void **state) {
   mhb_response_destroy(a);
   mhb_response_destroy(b);
   modal_model_free(&model);
-  mhb_run_up_destroy(run_up);
+  mhb_speed_table_destroy(run_up);
 }
 
 /* The same point by the structure of that speed alone. */
-static void check_alone(const mhb_settings *s, const mhb_witness_settings *asked,
+static void check_alone(const mhb_settings *s, const mhb_integration_settings *asked,
                         const mhb_response *from, const mhb_branch *b, int point, int n3,
                         double *off) {
-  modal_model          model;
-  mhb_settings         plain = *s;
-  mhb_witness_settings one   = *asked;
-  mhb_response        *alone = NULL;
-  plain.run_up               = NULL;
-  one.n_frequencies          = 1;
-  one.listed                 = true;
-  one.frequency[0]           = b->frequency[point];
+  modal_model              model;
+  mhb_settings             plain = *s;
+  mhb_integration_settings one   = *asked;
+  mhb_response            *alone = NULL;
+  plain.run_up                   = NULL;
+  one.n_frequencies              = 1;
+  one.listed                     = true;
+  one.frequency[0]               = b->frequency[point];
   spinning_model(SPINNING_VEERING, TWO_PI * b->frequency[point] / s->engine_order, &model, NULL);
-  assert_ok(mhb_witness(&model, &plain, &one, from, NULL, NULL, NULL, &alone));
+  assert_ok(mhb_integration_sweep(&model, &plain, &one, from, NULL, NULL, NULL, &alone));
   *off = apart(alone->branch[0].motion, b->motion + point * n3, n3);
   mhb_response_destroy(alone);
   modal_model_free(&model);
@@ -213,24 +214,25 @@ static void check_alone(const mhb_settings *s, const mhb_witness_settings *asked
 /* From rest, at the speed of each frequency, and from the curve of the balance. A state is that of one structure. */
 static void integration_agrees(void **state) {
   (void)state;
-  mhb_settings s               = spinning_settings();
-  s.to_ground                  = true;
-  s.harmonics                  = 7;
-  mhb_run_up          *run_up  = make_run_up(SPINNING_VEERING, 17, &s);
-  mhb_response        *balance = sweep(run_up->given, &s), *points = NULL;
-  mhb_witness_settings asked = {.n_frequencies = 3,
-                                .start         = MHB_FROM_STATE,
-                                .direction     = MHB_BOTH,
-                                .steps         = 64,
-                                .tolerance     = 1e-7,
-                                .max_periods   = 4000};
-  assert_int_equal(mhb_witness(run_up->given, &s, &asked, NULL, NULL, NULL, NULL, &points),
-                   SHB_ERR_INPUT);
+  mhb_settings s                   = spinning_settings();
+  s.to_ground                      = true;
+  s.harmonics                      = 7;
+  mhb_speed_table         *run_up  = make_run_up(SPINNING_VEERING, 17, &s);
+  mhb_response            *balance = sweep(run_up->given, &s), *points = NULL;
+  mhb_integration_settings asked = {.n_frequencies = 3,
+                                    .start         = MHB_START_FROM_STATE,
+                                    .direction     = MHB_SWEEP_BOTH,
+                                    .steps         = 64,
+                                    .tolerance     = 1e-7,
+                                    .max_periods   = 4000};
+  assert_int_equal(
+      mhb_integration_sweep(run_up->given, &s, &asked, NULL, NULL, NULL, NULL, &points),
+      SHB_ERR_INPUT);
   assert_non_null(strstr(shb_message(), "integrate.start"));
-  for (int start = MHB_FROM_BALANCE; start <= MHB_FROM_REST; start++) {
-    const mhb_response *from = start == MHB_FROM_BALANCE ? balance : NULL;
-    asked.start              = (mhb_witness_start)start;
-    assert_ok(mhb_witness(run_up->given, &s, &asked, from, NULL, NULL, NULL, &points));
+  for (int start = MHB_START_FROM_BALANCE; start <= MHB_START_FROM_REST; start++) {
+    const mhb_response *from = start == MHB_START_FROM_BALANCE ? balance : NULL;
+    asked.start              = (mhb_integration_start)start;
+    assert_ok(mhb_integration_sweep(run_up->given, &s, &asked, from, NULL, NULL, NULL, &points));
     const mhb_branch *b = &points->branch[0];
     assert_int_equal(b->n_points, 3);
     for (int i = 0; i < b->n_points; i++) {
@@ -244,20 +246,20 @@ static void integration_agrees(void **state) {
     mhb_response_destroy(points);
   }
   mhb_response_destroy(balance);
-  mhb_run_up_destroy(run_up);
+  mhb_speed_table_destroy(run_up);
 }
 
 /* omega = nu w_i(omega)/k, all of them; as wide as the angle of the curves makes them. */
 static void resonances_are_where_curves_meet(void **state) {
   (void)state;
-  mhb_settings   s      = spinning_settings();
-  mhb_run_up    *run_up = make_run_up(SPINNING_STRAIGHT, 5, &s);
-  mhb_residual  *b;
-  mhb_resonances all;
-  int            found = 0, wanted = 0;
-  const double   low = .4, high = 1.9, E = s.engine_order;
-  assert_ok(mhb_residual_create(run_up->given, &s, &b));
-  mhb_residual_follow(b, MHB_IN_FREQUENCY);
+  mhb_settings     s      = spinning_settings();
+  mhb_speed_table *run_up = make_run_up(SPINNING_STRAIGHT, 5, &s);
+  mhb_balance     *b;
+  mhb_resonances   all;
+  int              found = 0, wanted = 0;
+  const double     low = .4, high = 1.9, E = s.engine_order;
+  assert_ok(mhb_balance_create(run_up->given, &s, &b));
+  mhb_balance_set_parameter(b, MHB_IN_FREQUENCY);
   assert_ok(mhb_resonances_create(b, low, high, &all));
   for (int mode = 0; mode < SPINNING_MODES; mode++) /* a + slope omega^2 = (k omega)^2 */
     for (int k = 1; k <= s.harmonics; k++) {
@@ -287,8 +289,8 @@ static void resonances_are_where_curves_meet(void **state) {
   assert_true(wanted > 5);
   assert_int_equal(found, wanted);
   mhb_resonances_destroy(&all);
-  mhb_residual_destroy(b);
-  mhb_run_up_destroy(run_up);
+  mhb_balance_destroy(b);
+  mhb_speed_table_destroy(run_up);
 }
 
 int main(void) {

@@ -46,7 +46,7 @@ static mhb_settings settings(double mu, double kv, double n0, int harmonics, dou
 
 static mhb_response *sweep(const modal_model *model, const mhb_settings *s) {
   mhb_response *r = NULL;
-  if (mhb_sweep(model, s, NULL, NULL, NULL, &r) != SHB_OK) fail_msg("%s", shb_message());
+  if (mhb_forced_response(model, s, NULL, NULL, NULL, &r) != SHB_OK) fail_msg("%s", shb_message());
   return r;
 }
 
@@ -228,7 +228,8 @@ static void threads_and_files_do_not_matter(void **state) {
   one_degree_model(.02, 0, .5, &model);
   for (int i = 0; i < 2; i++) {
     omp_set_num_threads(i + 1);
-    assert_int_equal(mhb_sweep(&model, &s, i ? path : NULL, &provenance, NULL, &r[i]), SHB_OK);
+    assert_int_equal(mhb_forced_response(&model, &s, i ? path : NULL, &provenance, NULL, &r[i]),
+                     SHB_OK);
   }
   omp_set_num_threads(before);
   assert_same(r[0], r[1]);
@@ -240,7 +241,7 @@ static void threads_and_files_do_not_matter(void **state) {
   assert_int_equal(mhb_response_read(path, &r[2]), SHB_OK);
   assert_same(r[0], r[2]);
   s.resume = true; /* all is there */
-  assert_int_equal(mhb_sweep(&model, &s, path, &provenance, NULL, &r[3]), SHB_OK);
+  assert_int_equal(mhb_forced_response(&model, &s, path, &provenance, NULL, &r[3]), SHB_OK);
   assert_same(r[0], r[3]);
   remove(path);
   for (int i = 0; i < 4; i++) mhb_response_destroy(r[i]);
@@ -258,7 +259,7 @@ static void a_search_is_resumed(void **state) {
   snprintf(path, sizeof path, "resumed_%d.response.h5", (int)getpid());
   one_degree_model(.02, 0, .5, &model);
   s.n_preloads = 1;
-  assert_int_equal(mhb_sweep(&model, &s, path, &provenance, NULL, &r[0]), SHB_OK);
+  assert_int_equal(mhb_forced_response(&model, &s, path, &provenance, NULL, &r[0]), SHB_OK);
   assert_true(r[0]->n_branches > 4);
   r[0]->branch[2].searched = false; /* as if interrupted after the first one found */
   int all                  = r[0]->n_branches;
@@ -267,7 +268,7 @@ static void a_search_is_resumed(void **state) {
   r[0]->branch[2].searched = true;
   r[0]->n_branches         = all;
   s.resume                 = true;
-  assert_int_equal(mhb_sweep(&model, &s, path, &provenance, NULL, &r[1]), SHB_OK);
+  assert_int_equal(mhb_forced_response(&model, &s, path, &provenance, NULL, &r[1]), SHB_OK);
   assert_same(r[0], r[1]);
   assert_memory_equal(r[0]->branch[2].seconds, r[1]->branch[2].seconds,
                       sizeof(double) * (size_t)r[0]->branch[2].n_points); /* not computed again */
@@ -289,7 +290,7 @@ static int interrupted(const char *path) {
   struct sigaction kept;
   if (sigaction(SIGTERM, NULL, &kept) != 0 || sigaction(SIGALRM, &kept, NULL) != 0) return 1;
   alarm(1);
-  if (mhb_sweep(&model, &s, path, &provenance, NULL, &r) != SHB_INTERRUPTED) return 2;
+  if (mhb_forced_response(&model, &s, path, &provenance, NULL, &r) != SHB_INTERRUPTED) return 2;
   if (mhb_response_read(path, &back) != SHB_OK) return 3;
   if (!back->branch[2].complete || back->branch[2].searched) return 4;
   return 0;

@@ -20,13 +20,14 @@ typedef struct {
   mhb_contact_info info;
 } answer;
 
-static void evaluate(mhb_contact *contact, const suite_motion *s, double *jacobian, answer *a) {
+static void evaluate(mhb_contact_evaluator *contact, const suite_motion *s, double *jacobian,
+                     answer *a) {
   mhb_contact_force(contact, &s->law, &s->motion[0][0], &a->force[0][0], jacobian, &a->info);
 }
 
-static mhb_contact *workspace_of(double tolerance) {
-  mhb_contact *contact;
-  assert_int_equal(mhb_contact_create(M, H, tolerance, &contact), SHB_OK);
+static mhb_contact_evaluator *workspace_of(double tolerance) {
+  mhb_contact_evaluator *contact;
+  assert_int_equal(mhb_contact_evaluator_create(M, H, tolerance, &contact), SHB_OK);
   return contact;
 }
 
@@ -77,7 +78,7 @@ static void tolerance_is_met(void **state) {
   (void)state;
   int failed = 0;
   for (int k = 0; k < ASKED; k++) {
-    mhb_contact *contact = workspace_of(asked[k]);
+    mhb_contact_evaluator *contact = workspace_of(asked[k]);
     for (int i = 0; i < suite_size(); i++) {
       suite_motion s = suite_at(i);
       answer       a;
@@ -88,7 +89,7 @@ static void tolerance_is_met(void **state) {
                     a.info.lost);
       failed++;
     }
-    mhb_contact_destroy(contact);
+    mhb_contact_evaluator_destroy(contact);
   }
   assert_int_equal(failed, 0);
 }
@@ -100,7 +101,7 @@ static void estimate_is_honest(void **state) {
   (void)state;
   int failed = 0;
   for (int k = 0; k < ASKED; k++) {
-    mhb_contact *contact = workspace_of(asked[k]);
+    mhb_contact_evaluator *contact = workspace_of(asked[k]);
     for (int i = 0; i < suite_size(); i++) {
       suite_motion s = suite_at(i);
       answer       a;
@@ -113,14 +114,14 @@ static void estimate_is_honest(void **state) {
                     estimate);
       failed++;
     }
-    mhb_contact_destroy(contact);
+    mhb_contact_evaluator_destroy(contact);
   }
   assert_int_equal(failed, 0);
 }
 
 static void work_and_states_agree(void **state) {
   (void)state;
-  mhb_contact *contact = workspace_of(1e-12);
+  mhb_contact_evaluator *contact = workspace_of(1e-12);
   for (int i = 0; i < suite_size(); i++) {
     suite_motion     s = suite_at(i);
     const reference *r = witness(i);
@@ -136,7 +137,7 @@ static void work_and_states_agree(void **state) {
     if (s.room > 0 && a.info.n_transitions != r->n_transitions)
       fail_msg("%s: %d transitions, not %d", s.name, a.info.n_transitions, r->n_transitions);
   }
-  mhb_contact_destroy(contact);
+  mhb_contact_evaluator_destroy(contact);
 }
 
 /* ---- identities ---- */
@@ -158,8 +159,8 @@ static void flip(suite_motion *s, double force[3][NF], const int sign[3]) {
 
 static void mirrored_motion_mirrors_the_force(void **state) {
   (void)state;
-  static const int sign[3][3] = {{1, -1, -1}, {1, -1, 1}, {1, 1, -1}};
-  mhb_contact     *contact    = workspace_of(1e-12);
+  static const int       sign[3][3] = {{1, -1, -1}, {1, -1, 1}, {1, 1, -1}};
+  mhb_contact_evaluator *contact    = workspace_of(1e-12);
   for (int i = 0; i < suite_size(); i++) {
     for (int k = 0; k < 3; k++) {
       suite_motion s = suite_at(i);
@@ -170,7 +171,7 @@ static void mirrored_motion_mirrors_the_force(void **state) {
       same(s.name, "mirrored", a.force, b.force, 1e-12);
     }
   }
-  mhb_contact_destroy(contact);
+  mhb_contact_evaluator_destroy(contact);
 }
 
 static void shift(double *a, int harmonics, double angle) {
@@ -183,8 +184,8 @@ static void shift(double *a, int harmonics, double angle) {
 
 static void shifted_motion_shifts_the_force(void **state) {
   (void)state;
-  static const double angle[] = {.7312, 2.9, 5.77};
-  mhb_contact        *contact = workspace_of(1e-12);
+  static const double    angle[] = {.7312, 2.9, 5.77};
+  mhb_contact_evaluator *contact = workspace_of(1e-12);
   for (int i = 0; i < suite_size(); i++) {
     for (int k = 0; k < 3; k++) {
       suite_motion s = suite_at(i);
@@ -198,14 +199,14 @@ static void shifted_motion_shifts_the_force(void **state) {
       same(s.name, "shifted", a.force, b.force, 1e-10);
     }
   }
-  mhb_contact_destroy(contact);
+  mhb_contact_evaluator_destroy(contact);
 }
 
 /* (m, N) -> (um, MN) */
 static void units_do_not_matter(void **state) {
   (void)state;
   for (int k = 0; k < ASKED; k++) {
-    mhb_contact *contact = workspace_of(asked[k]);
+    mhb_contact_evaluator *contact = workspace_of(asked[k]);
     for (int i = 0; i < suite_size(); i++) {
       suite_motion s = suite_at(i);
       answer       a, b;
@@ -218,15 +219,15 @@ static void units_do_not_matter(void **state) {
       evaluate(contact, &s, NULL, &b);
       same(s.name, "other units", a.force, b.force, 1e-12);
     }
-    mhb_contact_destroy(contact);
+    mhb_contact_evaluator_destroy(contact);
   }
 }
 
 /* Ku, motion and force in axes turned by an angle. */
 static void turned_axes_turn_the_force(void **state) {
   (void)state;
-  double       c = cos(.831), n = sin(.831);
-  mhb_contact *contact = workspace_of(1e-12);
+  double                 c = cos(.831), n = sin(.831);
+  mhb_contact_evaluator *contact = workspace_of(1e-12);
   for (int i = 0; i < suite_size(); i++) {
     suite_motion s = suite_at(i), t = s;
     double       k[3];
@@ -248,7 +249,7 @@ static void turned_axes_turn_the_force(void **state) {
     }
     same(s.name, "turned", a.force, b.force, 1e-10);
   }
-  mhb_contact_destroy(contact);
+  mhb_contact_evaluator_destroy(contact);
 }
 
 /* ---- derivative ---- */
@@ -256,7 +257,7 @@ static void turned_axes_turn_the_force(void **state) {
 enum { LEVELS = 4 };
 
 /* Central differences of steps d, d/2, d/4, d/8, extrapolated; *spread: what the last extrapolation changed. */
-static void difference(mhb_contact *contact, const suite_motion *s, int column, double d,
+static void difference(mhb_contact_evaluator *contact, const suite_motion *s, int column, double d,
                        double out[3 * NF], double *spread) {
   double table[LEVELS][3 * NF];
   answer plus, minus;
@@ -286,9 +287,9 @@ static void difference(mhb_contact *contact, const suite_motion *s, int column, 
 
 static void derivative_is_exact(void **state) {
   (void)state;
-  static double jacobian[3 * NF * COLUMNS];
-  mhb_contact  *contact = workspace_of(1e-13);
-  int           failed  = 0;
+  static double          jacobian[3 * NF * COLUMNS];
+  mhb_contact_evaluator *contact = workspace_of(1e-13);
+  int                    failed  = 0;
   for (int i = 0; i < suite_size(); i++) {
     suite_motion s = suite_at(i);
     answer       a;
@@ -310,7 +311,7 @@ static void derivative_is_exact(void **state) {
                   doubt / norm);
     failed++;
   }
-  mhb_contact_destroy(contact);
+  mhb_contact_evaluator_destroy(contact);
   assert_int_equal(failed, 0);
 }
 
@@ -331,7 +332,7 @@ static suite_motion scaled(int i, double factor) {
 }
 
 /* Amplitude at which slip begins, to rounding. */
-static double onset_of(mhb_contact *contact, int i) {
+static double onset_of(mhb_contact_evaluator *contact, int i) {
   double low = .01, high = 1;
   answer a;
   while (high - low > 1e-16 * high) {
@@ -353,10 +354,10 @@ static double onset_of(mhb_contact *contact, int i) {
  * divided by are held above 1e-7 and 1e-8). The force is continuous up to what its estimate admits. */
 static void derivative_is_capped_where_slip_begins(void **state) {
   (void)state;
-  static double    jacobian[3 * NF * COLUMNS];
-  static const int motion[] = {16, 10, 9};
-  mhb_contact     *contact  = workspace_of(1e-12);
-  int              failed   = 0;
+  static double          jacobian[3 * NF * COLUMNS];
+  static const int       motion[] = {16, 10, 9};
+  mhb_contact_evaluator *contact  = workspace_of(1e-12);
+  int                    failed   = 0;
   for (int i = 0; i < 3; i++) {
     double onset = onset_of(contact, motion[i]), highest = 0;
     for (double d = 1e-1; d > 1e-16; d *= .1) {
@@ -379,7 +380,7 @@ static void derivative_is_capped_where_slip_begins(void **state) {
     }
     assert_true(highest > 100); /* it is a square root */
   }
-  mhb_contact_destroy(contact);
+  mhb_contact_evaluator_destroy(contact);
   assert_int_equal(failed, 0);
 }
 

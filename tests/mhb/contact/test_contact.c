@@ -30,16 +30,16 @@ typedef struct {
   mhb_contact_info info;
 } evaluation;
 
-static mhb_contact *workspace;
+static mhb_contact_evaluator *workspace;
 
 static int make_workspace(void **state) {
   (void)state;
-  return mhb_contact_create(M, H, 1e-10, &workspace) != SHB_OK;
+  return mhb_contact_evaluator_create(M, H, 1e-10, &workspace) != SHB_OK;
 }
 
 static int free_workspace(void **state) {
   (void)state;
-  mhb_contact_destroy(workspace);
+  mhb_contact_evaluator_destroy(workspace);
   return 0;
 }
 
@@ -103,19 +103,19 @@ static void every_opening_counts(void **state) {
   (void)state;
   static const int many[] = {1, 63, 65, 128};
   for (int i = 0; i < 4; i++) {
-    int              k = many[i], n = 2 * k + 1;
-    mhb_contact     *own;
-    mhb_law          law = {.mu = .3, .kv = 1, .ku = {1, 0, 1}};
-    mhb_contact_info info;
-    double          *motion = calloc(6 * (size_t)n, sizeof(double)), *force = motion + 3 * n;
-    assert_int_equal(mhb_contact_create(k, k, 1e-8, &own), SHB_OK);
+    int                    k = many[i], n = 2 * k + 1;
+    mhb_contact_evaluator *own;
+    mhb_law                law = {.mu = .3, .kv = 1, .ku = {1, 0, 1}};
+    mhb_contact_info       info;
+    double                *motion = calloc(6 * (size_t)n, sizeof(double)), *force = motion + 3 * n;
+    assert_int_equal(mhb_contact_evaluator_create(k, k, 1e-8, &own), SHB_OK);
     motion[2 * k - 1] = 1;
     mhb_contact_force(own, &law, motion, force, NULL, &info);
     assert_near(force[0], 1 / PI, 1e-8);
     assert_near(force[2 * k - 1], .5, 1e-8);
     assert_near(info.share[MHB_SEPARATE], .5, 1e-10);
     assert_int_equal(info.lost, 0);
-    mhb_contact_destroy(own);
+    mhb_contact_evaluator_destroy(own);
     free(motion);
   }
 }
@@ -303,9 +303,9 @@ static void against_marching(void **state) {
 /* Refined panels must not move the result: the order of the error is what a wrong formula spoils. */
 static void tolerance_is_met(void **state) {
   (void)state;
-  mhb_contact *coarse, *fine;
-  assert_int_equal(mhb_contact_create(M, H, 1e-8, &coarse), SHB_OK);
-  assert_int_equal(mhb_contact_create(M, H, 1e-14, &fine), SHB_OK);
+  mhb_contact_evaluator *coarse, *fine;
+  assert_int_equal(mhb_contact_evaluator_create(M, H, 1e-8, &coarse), SHB_OK);
+  assert_int_equal(mhb_contact_evaluator_create(M, H, 1e-14, &fine), SHB_OK);
   for (int i = 0; i < SUITE; i++) {
     evaluation  e, f;
     const char *name = suite(i, &e);
@@ -317,15 +317,16 @@ static void tolerance_is_met(void **state) {
       for (int j = 0; j < NF; j++) worst = fmax(worst, fabs(e.force[a][j] - f.force[a][j]));
     if (worst > 1e-8 * largest(&f)) fail_msg("%s: %.2e", name, worst / largest(&f));
   }
-  mhb_contact_destroy(coarse);
-  mhb_contact_destroy(fine);
+  mhb_contact_evaluator_destroy(coarse);
+  mhb_contact_evaluator_destroy(fine);
 }
 
 static void derivative_against_differences(void **state) {
   (void)state;
-  static evaluation e, p, q;
-  mhb_contact      *sharp, *usual = workspace; /* differences magnify what the tolerance leaves */
-  assert_int_equal(mhb_contact_create(M, H, 1e-14, &sharp), SHB_OK);
+  static evaluation      e, p, q;
+  mhb_contact_evaluator *sharp,
+      *usual = workspace; /* differences magnify what the tolerance leaves */
+  assert_int_equal(mhb_contact_evaluator_create(M, H, 1e-14, &sharp), SHB_OK);
   for (int i = 0; i < SUITE; i++) {
     const char *name = suite(i, &e);
     workspace        = usual;
@@ -356,7 +357,7 @@ static void derivative_against_differences(void **state) {
     workspace = usual;
     if (!(worst < 1e-7 * norm)) fail_msg("%s: %.2e of %.2e", name, worst, norm);
   }
-  mhb_contact_destroy(sharp);
+  mhb_contact_evaluator_destroy(sharp);
 }
 
 static void time_shift_shifts_the_force(void **state) {

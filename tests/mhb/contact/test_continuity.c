@@ -33,16 +33,16 @@ typedef struct {
   mhb_contact_info info;
 } answer;
 
-static mhb_contact *contact;
+static mhb_contact_evaluator *contact;
 
 static int make_workspace(void **state) {
   (void)state;
-  return mhb_contact_create(M, H, 1e-9, &contact) != SHB_OK;
+  return mhb_contact_evaluator_create(M, H, 1e-9, &contact) != SHB_OK;
 }
 
 static int free_workspace(void **state) {
   (void)state;
-  mhb_contact_destroy(contact);
+  mhb_contact_evaluator_destroy(contact);
   return 0;
 }
 

@@ -39,10 +39,10 @@ static const char *const fault_text[FAULTS] = {
     "slower than 20 ms"};
 
 typedef struct {
-  unsigned long seed, first, cases;
-  mhb_contact  *contact[RANDOM_SIZES];
-  unsigned long count[FAULTS], shown[FAULTS][SHOWN];
-  double        worst[FAULTS];
+  unsigned long          seed, first, cases;
+  mhb_contact_evaluator *contact[RANDOM_SIZES];
+  unsigned long          count[FAULTS], shown[FAULTS][SHOWN];
+  double                 worst[FAULTS];
 } run;
 
 static unsigned long from_environment(const char *name, unsigned long otherwise) {
@@ -87,12 +87,12 @@ static int all_finite(const double *a, size_t n) {
 }
 
 /* |f| <= mu n at many phases, and no force while open. */
-static double beyond_limit(const random_motion *c, mhb_contact *contact, double scale) {
+static double beyond_limit(const random_motion *c, mhb_contact_evaluator *contact, double scale) {
   mhb_contact_sample      sample[PHASES];
   static mhb_contact_info info;
   double                  worst = 0;
   for (int i = 0; i < PHASES; i++) sample[i].phase = (i + .37) / PHASES;
-  mhb_contact_trace(contact, &c->law, c->motion, PHASES, sample, &info);
+  mhb_contact_time_history(contact, &c->law, c->motion, PHASES, sample, &info);
   if (info.lost) return 0; /* counted where the force is evaluated */
   for (int i = 0; i < PHASES; i++) {
     double size = hypot(sample[i].f[0], sample[i].f[1]);
@@ -150,8 +150,8 @@ static void whole_range(void **state) {
            .first = from_environment("SHROUDHB_RANDOM_FROM", 0),
            .cases = from_environment("SHROUDHB_RANDOM_CASES", 30000)};
   for (int i = 0; i < RANDOM_SIZES; i++)
-    assert_int_equal(mhb_contact_create(random_size[i], random_size[i], TOLERANCE, &r.contact[i]),
-                     0);
+    assert_int_equal(
+        mhb_contact_evaluator_create(random_size[i], random_size[i], TOLERANCE, &r.contact[i]), 0);
   signal(SIGALRM, hung);
   for (unsigned long i = r.first; i < r.first + r.cases; i++) {
     random_motion c = random_motion_of(r.seed, i, 0);
@@ -160,7 +160,7 @@ static void whole_range(void **state) {
     judge(&r, &c);
   }
   alarm(0);
-  for (int i = 0; i < RANDOM_SIZES; i++) mhb_contact_destroy(r.contact[i]);
+  for (int i = 0; i < RANDOM_SIZES; i++) mhb_contact_evaluator_destroy(r.contact[i]);
   report(&r);
   for (int i = 0; i < WORK_DIFFERS; i++) assert_int_equal(r.count[i], 0);
   assert_true(r.count[WORK_DIFFERS] <=
@@ -175,10 +175,10 @@ static void mild_motions_are_accurate(void **state) {
   static mhb_contact_info info;
   static double           force[3][WIDTH];
   static reference        r;
-  mhb_contact            *contact[RANDOM_SIZES] = {NULL};
+  mhb_contact_evaluator  *contact[RANDOM_SIZES] = {NULL};
   int                     compared = 0, failed = 0;
   for (int i = 1; i < 3; i++)
-    assert_int_equal(mhb_contact_create(random_size[i], H, TOLERANCE, &contact[i]), 0);
+    assert_int_equal(mhb_contact_evaluator_create(random_size[i], H, TOLERANCE, &contact[i]), 0);
   for (unsigned long i = 0; i < MILD; i++) {
     random_motion c = random_motion_of(1, i, 1);
     mhb_contact_force(contact[c.size], &c.law, c.motion, &force[0][0], NULL, &info);
@@ -197,7 +197,7 @@ static void mild_motions_are_accurate(void **state) {
     print_message("mild, index %lu: error %.1e of the largest, lost %d\n", i, off / top, info.lost);
     failed++;
   }
-  for (int i = 1; i < 3; i++) mhb_contact_destroy(contact[i]);
+  for (int i = 1; i < 3; i++) mhb_contact_evaluator_destroy(contact[i]);
   assert_true(compared > MILD / 2);
   assert_int_equal(failed, 0);
 }

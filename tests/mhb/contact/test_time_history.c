@@ -24,17 +24,17 @@ typedef struct {
   double           top; /* largest force, N */
 } scene;
 
-static mhb_contact       *workspace;
-static mhb_contact_sample sample[DENSE];
+static mhb_contact_evaluator *workspace;
+static mhb_contact_sample     sample[DENSE];
 
 static int make_workspace(void **state) {
   (void)state;
-  return mhb_contact_create(M, H, 1e-10, &workspace) != SHB_OK;
+  return mhb_contact_evaluator_create(M, H, 1e-10, &workspace) != SHB_OK;
 }
 
 static int free_workspace(void **state) {
   (void)state;
-  mhb_contact_destroy(workspace);
+  mhb_contact_evaluator_destroy(workspace);
   return 0;
 }
 
@@ -105,7 +105,7 @@ static void evaluate(scene *s) {
 }
 
 static void trace(scene *s, int n) {
-  mhb_contact_trace(workspace, &s->law, &s->motion[0][0], n, sample, &s->info);
+  mhb_contact_time_history(workspace, &s->law, &s->motion[0][0], n, sample, &s->info);
   if (s->info.lost) fail_msg("%s: lost", s->name);
 }
 
@@ -318,7 +318,7 @@ static void random_motions(void **state) {
     scene s;
     put_random(&s);
     for (int l = 0; l < N; l++) sample[l].phase = (double)l / (N - 1);
-    mhb_contact_trace(workspace, &s.law, &s.motion[0][0], N, sample, &s.info);
+    mhb_contact_time_history(workspace, &s.law, &s.motion[0][0], N, sample, &s.info);
     if (s.info.lost) continue; /* told, and bounded by test_contact */
     double scale = force_scale(&s), share[3] = {0};
     for (int l = 0; l < N; l++) {
@@ -343,7 +343,7 @@ static void hostile_input(void **state) {
   sample[0].phase = .2;
   sample[1].phase = .7;
   set(&s, 1, 1, NAN, 0);
-  mhb_contact_trace(workspace, &s.law, &s.motion[0][0], 2, sample, &s.info);
+  mhb_contact_time_history(workspace, &s.law, &s.motion[0][0], 2, sample, &s.info);
   assert_true(isnan(sample[1].n) && isnan(sample[0].f[0]) && s.info.lost);
   s = (scene){.name = "nothing", .law = {.mu = .4, .kv = 5e5, .ku = {1e6, 0, 1e6}}};
   trace(&s, 2);

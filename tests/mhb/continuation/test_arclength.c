@@ -41,7 +41,7 @@ static mhb_settings ground(double n0, int harmonics, double from, double to) {
 
 static mhb_response *sweep(const modal_model *model, const mhb_settings *s, shb_status wanted) {
   mhb_response *r      = NULL;
-  shb_status    status = mhb_sweep(model, s, NULL, NULL, NULL, &r);
+  shb_status    status = mhb_forced_response(model, s, NULL, NULL, NULL, &r);
   if (status != wanted) fail_msg("%d instead of %d: %s", status, wanted, shb_message());
   return r;
 }
@@ -55,38 +55,38 @@ typedef struct {
   double fold[MAX_FOLDS], end, worst;
 } walked;
 
-static double turning(const mhb_path *path, const mhb_path_point *point, void *context) {
+static double turning(const mhb_arclength *path, const mhb_curve_point *point, void *context) {
   (void)context;
   return point->tangent[path->n];
 }
 
 /* From one end of the range to the other; folds in order of passing. */
-static walked walk(mhb_residual *residual, double low, double high, int direction) {
-  walked      w = {0};
-  mhb_path   *path;
-  mhb_newton *newton;
-  int         iterations;
-  double      x[residual->n], start = direction > 0 ? low : high, at;
-  assert_int_equal(mhb_path_create(residual, low, high, &path), SHB_OK);
+static walked walk(mhb_balance *residual, double low, double high, int direction) {
+  walked         w = {0};
+  mhb_arclength *path;
+  mhb_newton    *newton;
+  int            iterations;
+  double         x[residual->n], start = direction > 0 ? low : high, at;
+  assert_int_equal(mhb_arclength_create(residual, low, high, &path), SHB_OK);
   assert_int_equal(mhb_newton_create(residual->n, &newton), SHB_OK);
   assert_int_equal(mhb_first_solution(newton, residual, start, 1e-11, x, &iterations),
                    MHB_CONVERGED);
-  assert_int_equal(mhb_path_start(path, x, start, direction), MHB_CONVERGED);
-  mhb_path_outcome outcome = MHB_PATH_ON;
-  while (outcome == MHB_PATH_ON && w.n_points++ < 2000) {
-    outcome  = mhb_path_step(path);
+  assert_int_equal(mhb_arclength_start(path, x, start, direction), MHB_CONVERGED);
+  mhb_arclength_outcome outcome = MHB_ARCLENGTH_ON;
+  while (outcome == MHB_ARCLENGTH_ON && w.n_points++ < 2000) {
+    outcome  = mhb_arclength_step(path);
     w.worst  = fmax(w.worst, path->next.residual);
     double a = path->now.tangent[path->n], b = path->next.tangent[path->n];
     if (a * b < 0 && w.n_folds < MAX_FOLDS) {
-      assert_int_equal(mhb_path_locate(path, turning, NULL, a, b, &at), 1);
+      assert_int_equal(mhb_arclength_locate(path, turning, NULL, a, b, &at), 1);
       w.fold[w.n_folds++] = path->probe.value;
     }
-    mhb_path_advance(path);
+    mhb_arclength_advance(path);
   }
-  assert_int_equal(outcome, direction > 0 ? MHB_PATH_AT_END : MHB_PATH_AT_START);
+  assert_int_equal(outcome, direction > 0 ? MHB_ARCLENGTH_AT_END : MHB_ARCLENGTH_AT_START);
   w.end = path->now.value;
   mhb_newton_destroy(newton);
-  mhb_path_destroy(path);
+  mhb_arclength_destroy(path);
   return w;
 }
 
@@ -100,11 +100,11 @@ static void both_directions_see_the_same_folds(void **state) {
   for (int i = 0; i < 2; i++) {
     modal_model model;
     one_degree_model(.02, 0, rows[i].force, &model);
-    mhb_settings  s = ground(rows[i].n0, 15, .5, 3.6);
-    mhb_residual *residual;
+    mhb_settings s = ground(rows[i].n0, 15, .5, 3.6);
+    mhb_balance *residual;
     s.kv = 9;
-    assert_int_equal(mhb_residual_create(&model, &s, &residual), SHB_OK);
-    mhb_residual_preload(residual, rows[i].n0);
+    assert_int_equal(mhb_balance_create(&model, &s, &residual), SHB_OK);
+    mhb_balance_set_preload(residual, rows[i].n0);
     walked up = walk(residual, .5, 3.6, 1), down = walk(residual, .5, 3.6, -1);
     print_message("%d and %d points, folds %.9f %.9f and %.9f %.9f\n", up.n_points, down.n_points,
                   up.fold[0], up.fold[1], down.fold[1], down.fold[0]);
@@ -113,7 +113,7 @@ static void both_directions_see_the_same_folds(void **state) {
     assert_int_equal(down.n_folds, 2);
     for (int k = 0; k < 2; k++) assert_below(fabs(up.fold[k] - down.fold[1 - k]), 1e-7);
     assert_below(fmax(up.worst, down.worst), 1e-8);
-    mhb_residual_destroy(residual);
+    mhb_balance_destroy(residual);
     modal_model_free(&model);
   }
 }
@@ -144,12 +144,12 @@ static void at_a_resonance_is_as_beside(void **state) {
   one_degree_model(0, 0, .1, &model);
   mhb_settings s     = ground(-1, 3, 1, 1.5);
   model.frequency[0] = s.frequency[0] = .25; /* the same in every rounding */
-  mhb_residual *residual;
-  mhb_newton   *newton;
-  int           iterations;
-  assert_int_equal(mhb_residual_create(&model, &s, &residual), SHB_OK);
+  mhb_balance *residual;
+  mhb_newton  *newton;
+  int          iterations;
+  assert_int_equal(mhb_balance_create(&model, &s, &residual), SHB_OK);
   assert_int_equal(mhb_newton_create(residual->n, &newton), SHB_OK);
-  mhb_residual_preload(residual, -1);
+  mhb_balance_set_preload(residual, -1);
   double x[3][residual->n];
   for (int i = 0; i < 3; i++) {
     assert_int_equal(mhb_first_solution(newton, residual, 2 * PI * .25 * (1 + aside[i]), 1e-10,
@@ -160,7 +160,7 @@ static void at_a_resonance_is_as_beside(void **state) {
   print_message("at a resonance: %.6f\n", mhb_norm(x[0], residual->n));
   assert_true(mhb_norm(x[0], residual->n) > .1 && mhb_norm(x[0], residual->n) < 10);
   mhb_newton_destroy(newton);
-  mhb_residual_destroy(residual);
+  mhb_balance_destroy(residual);
   modal_model_free(&model);
 }
 
@@ -209,19 +209,19 @@ static void a_motion_that_is_no_number_ends(void **state) {
   static const double bad[] = {NAN, INFINITY, -INFINITY, 1e308};
   modal_model         model;
   three_degree_model(&model);
-  mhb_settings  s = ground(.3, 3, .8, 1.7);
-  mhb_residual *residual;
-  assert_int_equal(mhb_residual_create(&model, &s, &residual), SHB_OK);
-  mhb_residual_preload(residual, .3);
+  mhb_settings s = ground(.3, 3, .8, 1.7);
+  mhb_balance *residual;
+  assert_int_equal(mhb_balance_create(&model, &s, &residual), SHB_OK);
+  mhb_balance_set_preload(residual, .3);
   double x[residual->n], r[residual->n];
   for (int i = 0; i < residual->n; i++)
     for (int k = 0; k < 4; k++) {
       for (int j = 0; j < residual->n; j++) x[j] = .3 / (1 + j % 7);
       x[i] = bad[k];
-      mhb_residual_evaluate(residual, x, 1.1, r, NULL, NULL);
+      mhb_balance_evaluate(residual, x, 1.1, r, NULL, NULL);
       assert_false(isfinite(mhb_norm(r, residual->n)) && k < 3);
     }
-  mhb_residual_destroy(residual);
+  mhb_balance_destroy(residual);
   modal_model_free(&model);
 }
 
@@ -435,7 +435,7 @@ static int interrupted_sweep(const char *path) {
   s.n0[2]      = -.1;
   shb_interrupt_catch();
   raise(SIGINT);
-  if (mhb_sweep(&model, &s, path, &provenance, NULL, &r) != SHB_INTERRUPTED) return 1;
+  if (mhb_forced_response(&model, &s, path, &provenance, NULL, &r) != SHB_INTERRUPTED) return 1;
   if (mhb_response_read(path, &back) != SHB_OK) return 2;
   if (back->n_branches != 5 || !back->branch[0].complete || back->branch[3].complete) return 3;
   mhb_response_destroy(r);
@@ -469,7 +469,8 @@ static void a_failed_write_is_told(void **state) {
   three_degree_model(&model);
   s.n_preloads = 8;
   for (int i = 0; i < 8; i++) s.n0[i] = .05 * i;
-  assert_int_equal(mhb_sweep(&model, &s, "no/such/folder.h5", &provenance, NULL, &r), SHB_ERR_IO);
+  assert_int_equal(mhb_forced_response(&model, &s, "no/such/folder.h5", &provenance, NULL, &r),
+                   SHB_ERR_IO);
   assert_non_null(strstr(shb_message(), "no/such/folder.h5"));
   assert_null(r);
   modal_model_free(&model);

@@ -16,7 +16,7 @@
 
 enum { PAIRS = 3, H = 5 };
 
-static int count(const mhb_residual *b, mhb_pair_kind kind) {
+static int count(const mhb_balance *b, mhb_pair_kind kind) {
   int n = 0;
   for (int a = 0; a < b->n_pairs; a++) n += b->kind[a] == kind;
   return n;
@@ -25,7 +25,7 @@ static int count(const mhb_residual *b, mhb_pair_kind kind) {
 static void solve(const modal_model *model, const mhb_settings *s, double omega, periodic *p) {
   periodic_create(model, s, omega, NULL, p);
   double r[p->residual->n];
-  mhb_residual_derive(p->residual, p->x, omega, r, NULL);
+  mhb_balance_linearise(p->residual, p->x, omega, r, NULL);
 }
 
 /* A solution at which no pair moves, and the mean friction of some is on the limit: in the middle of such preloads. */
@@ -34,8 +34,8 @@ static void held_solution(const modal_model *model, mhb_settings *s, double omeg
   int    moving = 0;
   for (s->n0[0] = 40; !moving && s->n0[0] > .01; s->n0[0] *= .98) {
     solve(model, s, omega, p);
-    moving = count(p->residual, MHB_PAIR_MOVING);
-    if (!moving && count(p->residual, MHB_PAIR_HELD) > 0) {
+    moving = count(p->residual, MHB_PAIR_NONLINEAR);
+    if (!moving && count(p->residual, MHB_PAIR_AT_LIMIT) > 0) {
       least = s->n0[0];
       if (most == 0) most = least;
     }
@@ -47,7 +47,7 @@ static void held_solution(const modal_model *model, mhb_settings *s, double omeg
 }
 
 /* Largest residual of the means, and of the rest. */
-static void largest(const mhb_residual *b, const double *r, double *means, double *rest) {
+static void largest(const mhb_balance *b, const double *r, double *means, double *rest) {
   *means = *rest = 0;
   for (int i = 0; i < b->n; i++) {
     double *to = i % b->nb ? rest : means;
@@ -57,34 +57,34 @@ static void largest(const mhb_residual *b, const double *r, double *means, doubl
 
 /* From a solution to another frequency: slide, then settle with a new derivative each time. */
 static void means_converge(const modal_model *model, mhb_settings *s, double omega) {
-  periodic   p;
-  mhb_still *still;
-  int        steps;
+  periodic              p;
+  mhb_linear_corrector *still;
+  int                   steps;
   held_solution(model, s, omega, &p);
-  mhb_residual *b = p.residual;
-  double        x[b->n], r[b->n], normal[b->n + 1], there = 1.0005 * omega, means[5], rest;
-  assert_int_equal(mhb_still_create(b, &still), SHB_OK);
-  assert_true(mhb_still_note(still, b));
+  mhb_balance *b = p.residual;
+  double       x[b->n], r[b->n], normal[b->n + 1], there = 1.0005 * omega, means[5], rest;
+  assert_int_equal(mhb_linear_corrector_create(b, &still), SHB_OK);
+  assert_true(mhb_linear_set_states(still, b));
   memcpy(x, p.x, sizeof x);
   memset(normal, 0, sizeof normal);
   normal[b->n] = 1; /* the plane of one frequency */
-  assert_true(mhb_still_slide(still, b, normal, 1, 1, x, &there, &steps));
+  assert_true(mhb_linear_correct(still, b, normal, 1, 1, x, &there, &steps));
   double size = mhb_norm(x, b->n);
   for (int i = 0; i < 5; i++) {
-    mhb_residual_derive(b, x, there, r, NULL);
-    assert_true(mhb_still_holds(still, b));
+    mhb_balance_linearise(b, x, there, r, NULL);
+    assert_true(mhb_linear_states_hold(still, b));
     largest(b, r, &means[i], &rest);
     assert_true(rest < 1e-12 * size);
-    assert_true(mhb_still_settle(still, b, r, 0, x));
+    assert_true(mhb_linear_correct_means(still, b, r, 0, x));
   }
   print_message("n0 %.3g, %d held: residual of the means %.1e %.1e %.1e %.1e of the motion\n",
-                s->n0[0], count(b, MHB_PAIR_HELD), means[0] / size, means[1] / size,
+                s->n0[0], count(b, MHB_PAIR_AT_LIMIT), means[0] / size, means[1] / size,
                 means[2] / size, means[3] / size);
   assert_true(means[0] > 1e-8 * size); /* they had to move */
   assert_true(means[1] < 1e-2 * means[0]);
   assert_true(means[2] < fmax(1e-2 * means[1], 1e-13 * size));
   assert_true(means[4] < 1e-12 * size);
-  mhb_still_destroy(still);
+  mhb_linear_corrector_destroy(still);
   periodic_destroy(&p);
 }
 

@@ -50,11 +50,11 @@ static void places_are_those_of_both_limits(void **state) {
   (void)state;
   modal_model    model;
   mhb_settings   s = ground(.1);
-  mhb_residual  *residual;
+  mhb_balance   *residual;
   mhb_resonances all;
   double         b = .7, z2 = .003, p = 2, q = SECOND * SECOND + b * b;
   two_mode_model(SECOND, z2, b, 1, .02, &model);
-  assert_int_equal(mhb_residual_create(&model, &s, &residual), SHB_OK);
+  assert_int_equal(mhb_balance_create(&model, &s, &residual), SHB_OK);
   assert_int_equal(mhb_resonances_create(residual, .25, 2, &all), SHB_OK);
   for (int i = 0; i < 2; i++) {
     double square = .5 * (p + q) + (i ? .5 : -.5) * sqrt((p - q) * (p - q) + 4 * b * b);
@@ -67,11 +67,11 @@ static void places_are_those_of_both_limits(void **state) {
   }
   for (int i = 1; i < all.n; i++) assert_true(all.at[i].value >= all.at[i - 1].value);
   mhb_resonances_destroy(&all);
-  mhb_residual_follow(residual, MHB_IN_N0);
+  mhb_balance_set_parameter(residual, MHB_IN_N0);
   assert_int_equal(mhb_resonances_create(residual, .25, 2, &all), SHB_OK);
   assert_int_equal(all.n, 0);
   mhb_resonances_destroy(&all);
-  mhb_residual_destroy(residual);
+  mhb_balance_destroy(residual);
   modal_model_free(&model);
 }
 
@@ -86,10 +86,10 @@ static void near_limits_leave_no_gap(void **state) {
   for (double contact = .003; contact < .2; contact *= 1.5) {
     modal_model    model;
     mhb_settings   s = ground(.1);
-    mhb_residual  *residual;
+    mhb_balance   *residual;
     mhb_resonances all;
     two_mode_model(SECOND, 1e-3, contact, 1, .02, &model);
-    assert_int_equal(mhb_residual_create(&model, &s, &residual), SHB_OK);
+    assert_int_equal(mhb_balance_create(&model, &s, &residual), SHB_OK);
     assert_int_equal(mhb_resonances_create(residual, .8, 2, &all), SHB_OK);
     double half = 1e-3 * SECOND, last = SECOND,
            gap = upper(2, SECOND * SECOND + contact * contact, contact) - SECOND;
@@ -102,7 +102,7 @@ static void near_limits_leave_no_gap(void **state) {
                   (last - SECOND) / half);
     if (gap < 31 * half) assert_true(fabs(last - SECOND - gap) < .5 * half);
     mhb_resonances_destroy(&all);
-    mhb_residual_destroy(residual);
+    mhb_balance_destroy(residual);
     modal_model_free(&model);
   }
 }
@@ -118,7 +118,7 @@ static double probe_at(const double complex *probe, int stride) {
 
 static mhb_response *sweep(const modal_model *model, const mhb_settings *s) {
   mhb_response *r = NULL;
-  if (mhb_sweep(model, s, NULL, NULL, NULL, &r) != SHB_OK) fail_msg("%s", shb_message());
+  if (mhb_forced_response(model, s, NULL, NULL, NULL, &r) != SHB_OK) fail_msg("%s", shb_message());
   return r;
 }
 
@@ -139,20 +139,20 @@ static double highest(const mhb_response *r, double width, int *peaks) {
 /* Solutions at fixed frequencies, each without a guess. */
 static double truth(const modal_model *model, const mhb_settings *s, double half) {
   double         top = 0, x[UNKNOWNS], r[UNKNOWNS];
-  mhb_residual  *residual;
+  mhb_balance   *residual;
   double complex p[3], q[3];
-  assert_int_equal(mhb_residual_create(model, s, &residual), SHB_OK);
-  mhb_residual_preload(residual, s->n0[0]);
+  assert_int_equal(mhb_balance_create(model, s, &residual), SHB_OK);
+  mhb_balance_set_preload(residual, s->n0[0]);
   for (int i = -4; i <= 4; i++) {
     double omega = SECOND + .1 * i * half;
     cold_solution(model, s, omega, 1e-10, x);
-    mhb_residual_evaluate(residual, x, omega, r, NULL, NULL);
-    mhb_residual_force(residual, 1, p);
-    mhb_receptance_need(residual->receptance, 1);
+    mhb_balance_evaluate(residual, x, omega, r, NULL, NULL);
+    mhb_balance_contact_force(residual, 1, p);
+    mhb_receptance_update(residual->receptance, 1);
     mhb_receptance_probe(residual->receptance, 1, p, q);
     top = fmax(top, probe_at(q, 1));
   }
-  mhb_residual_destroy(residual);
+  mhb_balance_destroy(residual);
   return top;
 }
 
@@ -205,37 +205,37 @@ static void what_is_not_felt_costs_nothing(void **state) {
 
 /* Jumps from -1000 to 1 at a value: Illinois gains a thousandth at a time, and halves every fourth step.
  * As the tangent does where a curve folds in a kink. */
-static double jumping(const mhb_path *path, const mhb_path_point *point, void *context) {
+static double jumping(const mhb_arclength *path, const mhb_curve_point *point, void *context) {
   (void)path;
   return point->value < *(double *)context ? -1e3 : 1;
 }
 
 static void jumps_are_located(void **state) {
   (void)state;
-  modal_model   model;
-  mhb_settings  s = ground(.1);
-  mhb_residual *residual;
-  mhb_path     *path;
-  double        x[UNKNOWNS], at;
+  modal_model    model;
+  mhb_settings   s = ground(.1);
+  mhb_balance   *residual;
+  mhb_arclength *path;
+  double         x[UNKNOWNS], at;
   one_degree_model(.01, 1, .05, &model);
-  assert_int_equal(mhb_residual_create(&model, &s, &residual), SHB_OK);
-  mhb_residual_preload(residual, .1);
-  assert_int_equal(mhb_path_create(residual, .8, 2, &path), SHB_OK);
+  assert_int_equal(mhb_balance_create(&model, &s, &residual), SHB_OK);
+  mhb_balance_set_preload(residual, .1);
+  assert_int_equal(mhb_arclength_create(residual, .8, 2, &path), SHB_OK);
   cold_solution(&model, &s, 1.6, 1e-10, x);
-  assert_int_equal(mhb_path_start(path, x, 1.6, 1), MHB_CONVERGED);
+  assert_int_equal(mhb_arclength_start(path, x, 1.6, 1), MHB_CONVERGED);
   for (int i = 0; i < 6; i++) {
-    assert_int_equal(mhb_path_step(path), MHB_PATH_ON);
+    assert_int_equal(mhb_arclength_step(path), MHB_ARCLENGTH_ON);
     double width = path->next.value - path->now.value;
     for (int j = 1; j < 20; j++) {
       double place = path->now.value + .05 * j * width;
-      assert_int_equal(mhb_path_locate(path, jumping, &place, -1e3, 1, &at), 1);
+      assert_int_equal(mhb_arclength_locate(path, jumping, &place, -1e3, 1, &at), 1);
       if (!(fabs(path->probe.value - place) < 1e-5 * width))
         fail_msg("told as located %.1e of the step away", (path->probe.value - place) / width);
     }
-    mhb_path_advance(path);
+    mhb_arclength_advance(path);
   }
-  mhb_path_destroy(path);
-  mhb_residual_destroy(residual);
+  mhb_arclength_destroy(path);
+  mhb_balance_destroy(residual);
   modal_model_free(&model);
 }
 

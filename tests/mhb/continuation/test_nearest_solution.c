@@ -44,10 +44,10 @@ static void guess_at(const modal_model *model, double w, double *x) {
 }
 
 typedef struct {
-  modal_model   model;
-  mhb_settings  settings;
-  mhb_residual *residual;
-  mhb_newton   *newton;
+  modal_model  model;
+  mhb_settings settings;
+  mhb_balance *residual;
+  mhb_newton  *newton;
 } fixture;
 
 static fixture begin(void) {
@@ -57,20 +57,20 @@ static fixture begin(void) {
 }
 
 static void make(fixture *f) {
-  assert_int_equal(mhb_residual_create(&f->model, &f->settings, &f->residual), SHB_OK);
-  mhb_residual_preload(f->residual, .3);
+  assert_int_equal(mhb_balance_create(&f->model, &f->settings, &f->residual), SHB_OK);
+  mhb_balance_set_preload(f->residual, .3);
   assert_int_equal(mhb_newton_create(N, &f->newton), SHB_OK);
 }
 
 static void end(fixture *f) {
   mhb_newton_destroy(f->newton);
-  mhb_residual_destroy(f->residual);
+  mhb_balance_destroy(f->residual);
   modal_model_free(&f->model);
 }
 
 static double residual_at(fixture *f, const double *x, double omega) {
   double r[N];
-  mhb_residual_evaluate(f->residual, x, omega, r, NULL, NULL);
+  mhb_balance_evaluate(f->residual, x, omega, r, NULL, NULL);
   return mhb_norm(r, N) / mhb_norm(x, N);
 }
 
@@ -83,7 +83,8 @@ static void at_the_same_frequency(void **state) {
   cold_solution(&f.model, &f.settings, omega, 1e-12, wanted);
   assert_true(residual_at(&f, x, omega) > 1e-4);
   normal[N] = 1;
-  assert_int_equal(mhb_nearest(f.newton, f.residual, normal, mhb_norm(x, N), .8, x, &omega), 1);
+  assert_int_equal(
+      mhb_nearest_solution(f.newton, f.residual, normal, mhb_norm(x, N), .8, x, &omega), 1);
   assert_true(fabs(omega - 1.37) < 1e-14);
   assert_true(residual_at(&f, x, omega) <= 1e-10);
   for (int i = 0; i < N; i++) assert_true(fabs(x[i] - wanted[i]) < 1e-8 * mhb_norm(wanted, N));
@@ -106,7 +107,7 @@ static void in_the_plane_across(void **state) {
     normal[N]    = .02;
     double scale = mhb_norm(x, N);
     memcpy(y, x, sizeof y);
-    assert_int_equal(mhb_nearest(f.newton, f.residual, normal, scale, .8, y, &omega), 1);
+    assert_int_equal(mhb_nearest_solution(f.newton, f.residual, normal, scale, .8, y, &omega), 1);
     assert_true(residual_at(&f, y, omega) <= 1e-10);
     for (int k = 0; k < N; k++) {
       sum += normal[k] / scale * (y[k] - x[k]) / scale;
@@ -128,7 +129,7 @@ static void nothing_near(void **state) {
   make(&f);
   x[1]      = 50; /* far beyond any solution */
   normal[N] = 1;
-  assert_int_equal(mhb_nearest(f.newton, f.residual, normal, 1, .8, x, &omega), 0);
+  assert_int_equal(mhb_nearest_solution(f.newton, f.residual, normal, 1, .8, x, &omega), 0);
   end(&f);
 }
 

@@ -253,7 +253,7 @@ static void limits(void **state) {
   modal_model    model;
   mhb_settings   s = random_settings(9);
   periodic       p;
-  mhb_stability *stability;
+  mhb_floquet   *stability;
   double complex full[MOST];
   random_model(1, WITH_LEFT, 11, &model);
   s.blades = 3;
@@ -263,24 +263,24 @@ static void limits(void **state) {
   assert_int_equal(whole.modes, 6);
   const mhb_receptance *r = p.residual->receptance;
   for (int modes = 5; modes >= 3; modes--) {
-    assert_int_equal(mhb_stability_create(r, &s, N, 6 * modes + 6, &stability), SHB_OK);
-    mhb_stability_evaluate(stability, &p.solution, &out);
+    assert_int_equal(mhb_floquet_create(r, &s, N, 6 * modes + 6, &stability), SHB_OK);
+    mhb_floquet_evaluate(stability, &p.solution, &out);
     print_message("%d modes: largest %.5f (%.5f)\n", modes, out.largest, whole.largest);
     assert_int_equal(out.modes, modes);
     assert_int_equal(out.n + out.n_zero, 6 * modes + 6);
     assert_near(out.largest, whole.largest, 3e-2);
-    mhb_stability_destroy(stability);
+    mhb_floquet_destroy(stability);
   }
-  assert_int_equal(mhb_stability_create(r, &s, N, 11, &stability), SHB_OK);
-  mhb_stability_evaluate(stability, &p.solution, &out);
+  assert_int_equal(mhb_floquet_create(r, &s, N, 11, &stability), SHB_OK);
+  mhb_floquet_evaluate(stability, &p.solution, &out);
   assert_int_equal(out.verdict, MHB_UNDECIDED);
   assert_non_null(strstr(out.reason, "max_states"));
-  mhb_stability_destroy(stability);
+  mhb_floquet_destroy(stability);
   p.residual->info[0].lost = 1;
   assert_int_equal(periodic_multipliers(&p, N, full).verdict, whole.verdict);
   p.residual->info[0].error = 1e-3;
   assert_int_equal(periodic_multipliers(&p, N, full).verdict, MHB_UNDECIDED);
-  assert_int_equal(mhb_stability_create(r, &s, 0, 0, &stability), SHB_ERR_INPUT);
+  assert_int_equal(mhb_floquet_create(r, &s, 0, 0, &stability), SHB_ERR_INPUT);
   assert_non_null(strstr(shb_message(), "sub-step"));
   periodic_destroy(&p);
   modal_model_free(&model);
@@ -297,16 +297,16 @@ static void nothing_is_allocated(void **state) {
   mhb_settings s = ground_settings(.3, 2e5, 2e5, 100, 7);
   for (int i = 0; i < 2; i++) {
     periodic        p;
-    mhb_stability  *stability;
+    mhb_floquet    *stability;
     mhb_multipliers out;
     double          best = INFINITY;
     periodic_create(&model, &s, 2 * PI * rows[i].hertz, NULL, &p);
-    assert_int_equal(mhb_stability_create(p.residual->receptance, &s, N, 0, &stability), SHB_OK);
-    mhb_stability_evaluate(stability, &p.solution, &out);
+    assert_int_equal(mhb_floquet_create(p.residual->receptance, &s, N, 0, &stability), SHB_OK);
+    mhb_floquet_evaluate(stability, &p.solution, &out);
     long before = allocations;
     for (int k = 0; k < 20; k++) {
       double start = shb_seconds();
-      mhb_stability_evaluate(stability, &p.solution, &out);
+      mhb_floquet_evaluate(stability, &p.solution, &out);
       best = fmin(best, shb_seconds() - start);
     }
     assert_int_equal(allocations, before);
@@ -316,7 +316,7 @@ static void nothing_is_allocated(void **state) {
 #ifdef NDEBUG /* an optimised build */
     assert_true(best < rows[i].most);
 #endif
-    mhb_stability_destroy(stability);
+    mhb_floquet_destroy(stability);
     periodic_destroy(&p);
   }
   modal_model_free(&model);

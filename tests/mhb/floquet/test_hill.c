@@ -26,18 +26,18 @@ enum { MOST = 64 };
 
 /* All nodal diameters, one after the other. */
 static int hill_multipliers(periodic *p, double complex *mu) {
-  mhb_residual *b = p->residual;
-  mhb_structure structure;
-  int           n = 0;
+  mhb_balance        *b = p->residual;
+  mhb_modal_structure structure;
+  int                 n = 0;
   double *r = calloc((size_t)b->n, sizeof *r), *J = calloc((size_t)b->n * (size_t)b->n, sizeof *J);
-  mhb_residual_evaluate(b, p->x, p->omega, r, J, NULL); /* for dp */
+  mhb_balance_evaluate(b, p->x, p->omega, r, J, NULL); /* for dp */
   assert_int_equal(
-      mhb_structure_create(b->receptance, &p->settings, b->receptance->n_modes, &structure),
+      mhb_modal_structure_create(b->receptance, &p->settings, b->receptance->n_modes, &structure),
       SHB_OK);
   for (int d = 0; d < structure.blades; d++, n += 2 * structure.modes)
     assert_int_equal(
         mhb_hill(&structure, d, p->omega / p->settings.subharmonics, b->m, b->dp, mu + n), SHB_OK);
-  mhb_structure_destroy(&structure);
+  mhb_modal_structure_destroy(&structure);
   free(r);
   free(J);
   return n;

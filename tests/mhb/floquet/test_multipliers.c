@@ -108,7 +108,7 @@ static mhb_response *sweep(const modal_model *model, mhb_settings *s, double fro
   mhb_response *response;
   s->frequency[0] = from / (2 * PI);
   s->frequency[1] = to / (2 * PI);
-  assert_int_equal(mhb_sweep(model, s, NULL, NULL, NULL, &response), SHB_OK);
+  assert_int_equal(mhb_forced_response(model, s, NULL, NULL, NULL, &response), SHB_OK);
   return response;
 }
 
@@ -217,11 +217,11 @@ static void product_without_friction(void **state) {
 static void march_to(const modal_model *model, const mhb_settings *s, double omega,
                      const double start[2], double *x) {
   enum { STEPS = 400 };
-  mhb_residual *b;
-  disturbed     d;
-  double        y[4] = {start[0], start[1], 0, 0};
-  assert_int_equal(mhb_residual_create(model, s, &b), SHB_OK);
-  mhb_residual_preload(b, s->n0[0]);
+  mhb_balance *b;
+  disturbed    d;
+  double       y[4] = {start[0], start[1], 0, 0};
+  assert_int_equal(mhb_balance_create(model, s, &b), SHB_OK);
+  mhb_balance_set_preload(b, s->n0[0]);
   disturbed_create(model, s, b, x, omega, STEPS, &d);
   for (int i = 0; i < 250; i++) disturbed_period(&d, y);
   double basis[b->nb];
@@ -232,26 +232,26 @@ static void march_to(const modal_model *model, const mhb_settings *s, double ome
     disturbed_step(&d, y, i);
   }
   disturbed_destroy(&d);
-  mhb_residual_destroy(b);
+  mhb_balance_destroy(b);
 }
 
 /* Along the branch through its fold at the lower end and back to where it began. */
 static void other_side(periodic *p, double low, double high, double *x) {
-  mhb_path *path;
-  assert_int_equal(mhb_path_create(p->residual, low, high, &path), SHB_OK);
-  assert_int_equal(mhb_path_start(path, p->x, p->omega, -1), MHB_CONVERGED);
+  mhb_arclength *path;
+  assert_int_equal(mhb_arclength_create(p->residual, low, high, &path), SHB_OK);
+  assert_int_equal(mhb_arclength_start(path, p->x, p->omega, -1), MHB_CONVERGED);
   for (int i = 0; i < 1000; i++) {
-    assert_int_equal(mhb_path_step(path), MHB_PATH_ON);
+    assert_int_equal(mhb_arclength_step(path), MHB_ARCLENGTH_ON);
     double now = path->now.value, next = path->next.value, share = (p->omega - now) / (next - now);
     if (now < p->omega && next >= p->omega) {
       for (int k = 0; k < path->n; k++)
         x[k] = (1 - share) * path->now.x[k] + share * path->next.x[k];
       break;
     }
-    mhb_path_advance(path);
+    mhb_arclength_advance(path);
     assert_true(i < 999);
   }
-  mhb_path_destroy(path);
+  mhb_arclength_destroy(path);
 }
 
 /* Branches of order 2 and 3 that nothing connects to the open one: period-doubled and -tripled motions, a stable and an unstable. */

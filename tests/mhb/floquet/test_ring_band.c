@@ -20,42 +20,42 @@ static void bands_give_the_ring(void **state) {
   unsigned seed = 3;
   for (int blades = 1; blades <= 12; blades++)
     for (int block = 3; block <= 6; block += 3) {
-      int       n          = blades * block, near[3], pivot[72];
-      double    A[72 * 72] = {0}, x[72], most = 0;
-      mhb_lanes y[72], folded[72];
-      mhb_band  band;
-      assert_true(mhb_band_create(blades, block, &band));
-      mhb_band_clear(&band);
+      int           n          = blades * block, near[3], pivot[72];
+      double        A[72 * 72] = {0}, x[72], most = 0;
+      mhb_lanes     y[72], folded[72];
+      mhb_ring_band band;
+      assert_true(mhb_ring_band_create(blades, block, &band));
+      mhb_ring_band_clear(&band);
       for (int row = 0; row < n; row++) {
-        int meets = mhb_band_near(&band, row / block, near);
+        int meets = mhb_ring_band_near(&band, row / block, near);
         for (int k = 0; k < meets * block; k++) {
           int column          = near[k / block] * block + k % block;
-          A[row * n + column] = *mhb_band_at(&band, row, column) = noise(&seed);
+          A[row * n + column] = *mhb_ring_band_at(&band, row, column) = noise(&seed);
         }
         x[row] = noise(&seed);
         for (int l = 0; l < MHB_LANES; l++) y[row][l] = (l + 1) * x[row];
       }
       assert_true(mhb_lu(n, A, pivot));
       mhb_lu_solve(n, A, pivot, x);
-      assert_true(mhb_band_factor(&band));
-      mhb_band_solve(&band, y, folded);
+      assert_true(mhb_ring_band_factor(&band));
+      mhb_ring_band_solve(&band, y, folded);
       double size = 0;
       for (int row = 0; row < n; row++) {
         size = fmax(size, fabs(x[row]));
         for (int l = 0; l < MHB_LANES; l++) most = fmax(most, fabs(y[row][l] / (l + 1) - x[row]));
       }
       assert_true(most < 1e-9 * size);
-      mhb_band_destroy(&band);
+      mhb_ring_band_destroy(&band);
     }
 }
 
 static void singular_ones_are_refused(void **state) {
   (void)state;
-  mhb_band band;
-  assert_true(mhb_band_create(7, 3, &band));
-  mhb_band_clear(&band);
-  assert_false(mhb_band_factor(&band));
-  mhb_band_destroy(&band);
+  mhb_ring_band band;
+  assert_true(mhb_ring_band_create(7, 3, &band));
+  mhb_ring_band_clear(&band);
+  assert_false(mhb_ring_band_factor(&band));
+  mhb_ring_band_destroy(&band);
 }
 
 int main(void) {

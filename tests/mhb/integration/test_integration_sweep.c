@@ -18,19 +18,19 @@
 
 static const double PI = 3.14159265358979323846;
 
-static mhb_witness_settings asked(mhb_witness_start start, int n) {
-  return (mhb_witness_settings){.n_frequencies = n,
-                                .start         = start,
-                                .direction     = MHB_BOTH,
-                                .steps         = 32,
-                                .tolerance     = 1e-6,
-                                .max_periods   = 3000};
+static mhb_integration_settings asked(mhb_integration_start start, int n) {
+  return (mhb_integration_settings){.n_frequencies = n,
+                                    .start         = start,
+                                    .direction     = MHB_SWEEP_BOTH,
+                                    .steps         = 32,
+                                    .tolerance     = 1e-6,
+                                    .max_periods   = 3000};
 }
 
 static mhb_response *witness(const modal_model *model, const mhb_settings *s,
-                             const mhb_witness_settings *a, const mhb_response *balance) {
+                             const mhb_integration_settings *a, const mhb_response *balance) {
   mhb_response *response;
-  if (mhb_witness(model, s, a, balance, NULL, NULL, NULL, &response) != SHB_OK)
+  if (mhb_integration_sweep(model, s, a, balance, NULL, NULL, NULL, &response) != SHB_OK)
     fail_msg("%s", shb_message());
   return response;
 }
@@ -78,11 +78,11 @@ static double off_balance(const modal_model *model, const mhb_settings *s, const
 static void on_the_balance(void **state) {
   (void)state;
   for (int scene = 0; scene < 2; scene++) {
-    modal_model          model;
-    mhb_settings         s = three_degree_settings(31);
-    mhb_witness_settings a = asked(MHB_FROM_BALANCE, 9);
-    mhb_response        *balance;
-    double               worst = 0;
+    modal_model              model;
+    mhb_settings             s = three_degree_settings(31);
+    mhb_integration_settings a = asked(MHB_START_FROM_BALANCE, 9);
+    mhb_response            *balance;
+    double                   worst = 0;
     if (scene == 0) three_degree_model(&model);
     if (scene == 1) {
       tip_contact_beam_model(8, &model);
@@ -90,7 +90,7 @@ static void on_the_balance(void **state) {
       s.frequency[0] = 240;
       s.frequency[1] = 280;
     }
-    assert_int_equal(mhb_sweep(&model, &s, NULL, NULL, NULL, &balance), SHB_OK);
+    assert_int_equal(mhb_forced_response(&model, &s, NULL, NULL, NULL, &balance), SHB_OK);
     mhb_response *r = witness(&model, &s, &a, balance);
     assert_int_equal(r->n_branches, s.n_preloads);
     assert_int_equal(r->n_harmonics, 31);
@@ -119,10 +119,10 @@ static void sweeps_that_jump(void **state) {
   modal_model  model;
   mhb_settings s = ground_settings(.3, 9, 1, -4.5, 31);
   one_degree_model(.02, 0, .1, &model);
-  s.frequency[0]         = 1.05 / (2 * PI);
-  s.frequency[1]         = 1.45 / (2 * PI);
-  mhb_witness_settings a = asked(MHB_FROM_STATE, 81); /* .005 rad/s */
-  mhb_response        *r = witness(&model, &s, &a, NULL);
+  s.frequency[0]             = 1.05 / (2 * PI);
+  s.frequency[1]             = 1.45 / (2 * PI);
+  mhb_integration_settings a = asked(MHB_START_FROM_STATE, 81); /* .005 rad/s */
+  mhb_response            *r = witness(&model, &s, &a, NULL);
   assert_int_equal(r->n_branches, 2);
   double jump[2] = {0, 0};
   for (int i = 0; i < 2; i++) {
@@ -152,16 +152,16 @@ static void adrift(void **state) {
   mhb_settings   s    = ground_settings(.4, .8, .5, .1, 7);
   shb_provenance from = {"case.yaml", "text", "settings", "test"};
   three_degree_model(&model);
-  s.frequency[0]         = .8 / (2 * PI);
-  s.frequency[1]         = 1.6 / (2 * PI);
-  mhb_witness_settings a = asked(MHB_FROM_REST, 2);
-  mhb_response        *r, *read;
+  s.frequency[0]             = .8 / (2 * PI);
+  s.frequency[1]             = 1.6 / (2 * PI);
+  mhb_integration_settings a = asked(MHB_START_FROM_REST, 2);
+  mhb_response            *r, *read;
   assert_true(fd >= 0);
   close(fd);
   a.listed       = true;
   a.frequency[0] = 1.0 / (2 * PI);
   a.frequency[1] = 1.25 / (2 * PI);
-  assert_int_equal(mhb_witness(&model, &s, &a, NULL, path, &from, NULL, &r), SHB_OK);
+  assert_int_equal(mhb_integration_sweep(&model, &s, &a, NULL, path, &from, NULL, &r), SHB_OK);
   assert_int_equal(mhb_response_read(path, &read), SHB_OK);
   const mhb_branch *b = &read->branch[0];
   assert_int_equal(b->n_points, 2);
@@ -190,12 +190,12 @@ static void adrift(void **state) {
 /* Points go to a response of another number of harmonics. */
 static void merged(void **state) {
   (void)state;
-  modal_model          model;
-  mhb_settings         s = three_degree_settings(5);
-  mhb_witness_settings a = asked(MHB_FROM_REST, 2);
-  mhb_response        *balance, *less, *other = mhb_response_create(2, 0, 5);
+  modal_model              model;
+  mhb_settings             s = three_degree_settings(5);
+  mhb_integration_settings a = asked(MHB_START_FROM_REST, 2);
+  mhb_response            *balance, *less, *other = mhb_response_create(2, 0, 5);
   three_degree_model(&model);
-  assert_int_equal(mhb_sweep(&model, &s, NULL, NULL, NULL, &balance), SHB_OK);
+  assert_int_equal(mhb_forced_response(&model, &s, NULL, NULL, NULL, &balance), SHB_OK);
   a.harmonics     = 3;
   mhb_response *r = witness(&model, &s, &a, NULL);
   a.harmonics     = 9;
@@ -220,18 +220,20 @@ static void merged(void **state) {
 
 static void faults(void **state) {
   (void)state;
-  modal_model          model;
-  mhb_settings         s = three_degree_settings(3);
-  mhb_witness_settings a = asked(MHB_FROM_BALANCE, 3);
-  mhb_response        *balance, *r;
+  modal_model              model;
+  mhb_settings             s = three_degree_settings(3);
+  mhb_integration_settings a = asked(MHB_START_FROM_BALANCE, 3);
+  mhb_response            *balance, *r;
   three_degree_model(&model);
-  assert_int_equal(mhb_sweep(&model, &s, NULL, NULL, NULL, &balance), SHB_OK);
+  assert_int_equal(mhb_forced_response(&model, &s, NULL, NULL, NULL, &balance), SHB_OK);
   s.n0[1] = .17;
-  assert_int_equal(mhb_witness(&model, &s, &a, balance, NULL, NULL, NULL, &r), SHB_ERR_INPUT);
+  assert_int_equal(mhb_integration_sweep(&model, &s, &a, balance, NULL, NULL, NULL, &r),
+                   SHB_ERR_INPUT);
   assert_non_null(strstr(shb_message(), "no curve at n0 = 0.17 N"));
   s.to_ground = false;
-  a.start     = MHB_FROM_REST;
-  assert_int_equal(mhb_witness(&model, &s, &a, NULL, NULL, NULL, NULL, &r), SHB_ERR_INPUT);
+  a.start     = MHB_START_FROM_REST;
+  assert_int_equal(mhb_integration_sweep(&model, &s, &a, NULL, NULL, NULL, NULL, &r),
+                   SHB_ERR_INPUT);
   assert_non_null(strstr(shb_message(), "set it to ground"));
   mhb_response_destroy(balance);
   modal_model_free(&model);

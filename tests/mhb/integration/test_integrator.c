@@ -26,28 +26,28 @@ static const double PI = 3.14159265358979323846;
   } while (0)
 
 typedef struct {
-  mhb_integrator         *g;
-  mhb_orbit              *orbit;
-  const mhb_orbit_result *r;
+  mhb_integrator                *g;
+  mhb_steady_state              *orbit;
+  const mhb_steady_state_result *r;
 } run;
 
 static run prepare(const modal_model *model, const mhb_settings *s, double w, int steps) {
   run a;
   assert_int_equal(mhb_integrator_create(model, s, s->harmonics, &a.g), SHB_OK);
-  assert_int_equal(mhb_orbit_create(a.g, &a.orbit), SHB_OK);
+  assert_int_equal(mhb_steady_state_create(a.g, &a.orbit), SHB_OK);
   mhb_integrator_set(a.g, w, s->n0[0], steps);
   mhb_integrator_rest(a.g);
   return a;
 }
 
 static void until_periodic(run *a, double tolerance, int max_periods) {
-  mhb_orbit_settings settings = {tolerance, max_periods};
-  a->r                        = mhb_orbit_run(a->orbit, &settings, NULL, NULL);
+  mhb_steady_state_settings settings = {tolerance, max_periods};
+  a->r                               = mhb_steady_state_run(a->orbit, &settings, NULL, NULL);
   assert_false(a->r->lost);
 }
 
 static void finish(run *a) {
-  mhb_orbit_destroy(a->orbit);
+  mhb_steady_state_destroy(a->orbit);
   mhb_integrator_destroy(a->g);
 }
 
@@ -106,7 +106,7 @@ static double apart(const run *a, const periodic *p, int from) {
 static void from_balance(run *a, const periodic *p) {
   int             n = 3 * p->residual->n_pairs, m = p->residual->m;
   double complex *force = calloc((size_t)(n * (m + 1)), sizeof *force);
-  for (int k = 0; k <= m; k++) mhb_residual_force(p->residual, k, force + k * n);
+  for (int k = 0; k <= m; k++) mhb_balance_contact_force(p->residual, k, force + k * n);
   mhb_integrator_balance(a->g, m, force);
   free(force);
 }
@@ -224,7 +224,7 @@ static void probes_agree(const run *a, const periodic *p) {
   int            q = 3 * p->residual->receptance->model->n_probes, K = p->residual->m + 1;
   double complex probe[q], force[6];
   for (int k = 0; k < 4; k++) {
-    mhb_residual_force(p->residual, k, force);
+    mhb_balance_contact_force(p->residual, k, force);
     mhb_receptance_probe(p->residual->receptance, k, force, probe);
     for (int i = 0; i < q; i++)
       assert_near(cabs(a->r->probe[i * K + k] - probe[i]), 0, 1e-5 * cabs(probe[0]) + 1e-5);
@@ -235,8 +235,8 @@ static void probes_agree(const run *a, const periodic *p) {
 static void free_and_probes_are_the_same(mhb_receptance *a, mhb_receptance *b) {
   double complex force[6] = {.3, -.2 * I, .1, .5 + .1 * I, 0, .4}, probe[2][6];
   for (int k = 0; k < 4; k++) {
-    mhb_receptance_need(a, k);
-    mhb_receptance_need(b, k);
+    mhb_receptance_update(a, k);
+    mhb_receptance_update(b, k);
     mhb_receptance_probe(a, k, force, probe[0]);
     mhb_receptance_probe(b, k, force, probe[1]);
     for (int i = 0; i < 6; i++) {
@@ -455,11 +455,11 @@ static double growth(run *a, const modal_model *model, const mhb_settings *s, in
   for (int i = 0; i < modal; i++) y[i] += 1e-7 * random_unit(&seed);
   for (int period = 0; period < 2 * periods; period++) {
     mhb_integrator_put(other, y);
-    double before = mhb_orbit_distance(g, y, x);
+    double before = mhb_steady_state_distance(g, y, x);
     assert_true(mhb_integrator_period(g) && mhb_integrator_period(other));
     mhb_integrator_get(g, x);
     mhb_integrator_get(other, y);
-    double now = mhb_orbit_distance(g, y, x);
+    double now = mhb_steady_state_distance(g, y, x);
     if (period >= periods) sum += log(now / before);
     for (int i = 0; i < n; i++) y[i] = x[i] + (y[i] - x[i]) * 1e-7 / now;
   }
@@ -516,8 +516,8 @@ static void passive(void **state) {
   for (int period = 0; period < 200; period++) {
     assert_true(mhb_integrator_period(a.g));
     mhb_integrator_get(a.g, x);
-    const mhb_rub *rub  = &a.g->rub[0];
-    double         load = rub->p[0] + a.g->law[0].balance;
+    const mhb_contact_point *rub  = &a.g->rub[0];
+    double                   load = rub->p[0] + a.g->law[0].balance;
     double energy = load * load / 2e4 + (rub->p[1] * rub->p[1] + rub->p[2] * rub->p[2]) / 1.4e4 -
                     a.g->law[0].balance * rub->u[0];
     for (int i = 0; i < 3; i++) {

@@ -164,7 +164,7 @@ static void an_open_one_is_none(void **state) {
     periodic a, b;
     periodic_create(&model, &two, omega, NULL, &a);
     periodic_create(&one, &single, omega, a.x + a.residual->n / 2, &b);
-    slips += b.residual->kind[0] == MHB_PAIR_MOVING;
+    slips += b.residual->kind[0] == MHB_PAIR_NONLINEAR;
     assert_true(a.residual->info[0].share[MHB_SEPARATE] == 1);
     assert_below(apart(b.residual->n, a.x + b.residual->n, b.x), 1e-12);
     periodic_destroy(&a);
@@ -176,17 +176,17 @@ static void an_open_one_is_none(void **state) {
 }
 
 /* dr/dparameter at a motion that slips and opens, by central differences. */
-static double slope_error(mhb_residual *b, const double *x, mhb_parameter parameter) {
+static double slope_error(mhb_balance *b, const double *x, mhb_parameter parameter) {
   const int n  = b->n;
   double    at = mhb_parameter_get(&b->at, parameter), h = 1e-4 * fmax(fabs(at), .1);
   double    r[4][n], slope[n], wanted[n], J[(size_t)n * (size_t)n];
-  mhb_residual_follow(b, parameter);
-  mhb_residual_evaluate(b, x, at, r[0], J, slope);
+  mhb_balance_set_parameter(b, parameter);
+  mhb_balance_evaluate(b, x, at, r[0], J, slope);
   for (int i = 0; i < 4; i++)
-    mhb_residual_evaluate(b, x, at + (i < 2 ? i - 2 : i - 1) * h, r[i], NULL, NULL);
+    mhb_balance_evaluate(b, x, at + (i < 2 ? i - 2 : i - 1) * h, r[i], NULL, NULL);
   for (int i = 0; i < n; i++)
     wanted[i] = (r[0][i] - 8 * r[1][i] + 8 * r[2][i] - r[3][i]) / (12 * h);
-  mhb_residual_evaluate(b, x, at, r[0], NULL, NULL);
+  mhb_balance_evaluate(b, x, at, r[0], NULL, NULL);
   return apart(n, slope, wanted);
 }
 
@@ -199,31 +199,31 @@ static void slopes_are_exact(void **state) {
   for (int which = 0; which < 4; which++)
     for (int p = 0; p < 5; p++) {
       mhb_settings       s = two_settings(4, .23, .11, 1.7);
-      mhb_residual      *b;
+      mhb_balance       *b;
       unsigned long long seed = 3;
       double             x[2 * 3 * 9];
       s.parameter = parameters[p];
       s.together  = which % 2;
       lead_with(&s, which / 2);
       s.range[0] = -10, s.range[1] = 10;
-      assert_int_equal(mhb_residual_create(&model, &s, &b), SHB_OK);
+      assert_int_equal(mhb_balance_create(&model, &s, &b), SHB_OK);
       for (int i = 0; i < b->n; i++) x[i] = (i % 9 ? .5 : .1) * random_unit(&seed) / (1 + i % 9);
       double error = slope_error(b, x, parameters[p]);
-      if (!(b->kind[0] == MHB_PAIR_MOVING && b->kind[1] == MHB_PAIR_MOVING))
+      if (!(b->kind[0] == MHB_PAIR_NONLINEAR && b->kind[1] == MHB_PAIR_NONLINEAR))
         fail_msg("kinds %d %d", b->kind[0], b->kind[1]);
-      assert_true(b->kind[0] == MHB_PAIR_MOVING && b->kind[1] == MHB_PAIR_MOVING);
+      assert_true(b->kind[0] == MHB_PAIR_NONLINEAR && b->kind[1] == MHB_PAIR_NONLINEAR);
       if (p < 4 && which == 0)
         print_message("%s: slope %.1e\n", mhb_parameter_name(parameters[p]), error);
       assert_below(error, 1e-7);
       if (p == 0) { /* all preloads alike, as on the way to a first solution */
-        mhb_residual_anchor(b, 1);
+        mhb_balance_tie_preloads(b, 1);
         assert_below(slope_error(b, x, MHB_IN_N0), 1e-7);
         double before = b->law[0].n0 - b->law[1].n0;
-        mhb_residual_place(b, 3.3);
+        mhb_balance_set_value(b, 3.3);
         assert_below(b->law[0].n0 - b->law[1].n0 - before, 1e-14);
         assert_below(b->law[model.interface[0] == 0 ? 1 - which / 2 : which / 2].n0 - 3.3, 1e-14);
       }
-      mhb_residual_destroy(b);
+      mhb_balance_destroy(b);
     }
   modal_model_free(&model);
 }
@@ -231,18 +231,18 @@ static void slopes_are_exact(void **state) {
 /* What a pair's law is: its own interface's, shared out by area. */
 static void laws_are_their_own(void **state) {
   (void)state;
-  modal_model   model;
-  mhb_settings  s = two_settings(2, .23, .11, 1.7);
-  mhb_residual *b;
+  modal_model  model;
+  mhb_settings s = two_settings(2, .23, .11, 1.7);
+  mhb_balance *b;
   two_faced_model(3, WITH_LEFT | WITH_AREAS, 5, &model);
   s.n_preloads = s.interface[0].n_preloads = s.interface[1].n_preloads = 3;
   for (int i = 0; i < 3; i++) {
     s.n0[i] = s.interface[0].n0[i] = .3 + .2 * i;
     s.interface[1].n0[i]           = .1 - .4 * i;
   }
-  assert_int_equal(mhb_residual_create(&model, &s, &b), SHB_OK);
+  assert_int_equal(mhb_balance_create(&model, &s, &b), SHB_OK);
   for (int i = 0; i < 3; i++) {
-    mhb_residual_preload(b, s.n0[i]);
+    mhb_balance_set_preload(b, s.n0[i]);
     double share = model.area[0] / (model.area[0] + model.area[2]);
     assert_below(b->law[0].n0 - share * s.interface[1].n0[i], 1e-15);
     assert_below(b->law[2].n0 - (1 - share) * s.interface[1].n0[i], 1e-15);
@@ -251,15 +251,15 @@ static void laws_are_their_own(void **state) {
   }
   assert_true(b->law[0].mu == .23 && b->law[1].mu == .4 && b->law[1].kv == .8);
   assert_below(b->law[0].kv + b->law[2].kv - 1.7 * .8, 1e-15);
-  mhb_residual_destroy(b);
+  mhb_balance_destroy(b);
 
   s.parameter  = MHB_IN_N0; /* follows: in proportion, or not at all */
   s.n_preloads = 1;
   for (s.together = 0;; s.together = 1) {
-    assert_int_equal(mhb_residual_create(&model, &s, &b), SHB_OK);
-    mhb_residual_preload(b, .9);
+    assert_int_equal(mhb_balance_create(&model, &s, &b), SHB_OK);
+    mhb_balance_set_preload(b, .9);
     assert_below(b->law[0].n0 + b->law[2].n0 - .1 * (s.together ? 3 : 1), 1e-15);
-    mhb_residual_destroy(b);
+    mhb_balance_destroy(b);
     if (s.together) break;
   }
   modal_model_free(&model);
@@ -278,17 +278,18 @@ static void time_integration_agrees(void **state) {
     periodic p;
     double   omega = 1.13;
     periodic_create(&model, &s, omega, NULL, &p);
-    mhb_integrator *g;
-    mhb_orbit      *orbit;
+    mhb_integrator   *g;
+    mhb_steady_state *orbit;
     assert_int_equal(mhb_integrator_create(&model, &s, 31, &g), SHB_OK);
-    assert_int_equal(mhb_orbit_create(g, &orbit), SHB_OK);
+    assert_int_equal(mhb_steady_state_create(g, &orbit), SHB_OK);
     mhb_integrator_set(g, omega, s.n0[0], 256);
     int             n = 3 * model.n_pairs, m = p.residual->m, nb = p.residual->nb;
     double complex *force = calloc((size_t)(n * (m + 1)), sizeof *force);
-    for (int k = 0; k <= m; k++) mhb_residual_force(p.residual, k, force + k * n);
+    for (int k = 0; k <= m; k++) mhb_balance_contact_force(p.residual, k, force + k * n);
     mhb_integrator_balance(g, m, force);
     free(force);
-    const mhb_orbit_result *r = mhb_orbit_run(orbit, &(mhb_orbit_settings){1e-9, 3000}, NULL, NULL);
+    const mhb_steady_state_result *r =
+        mhb_steady_state_run(orbit, &(mhb_steady_state_settings){1e-9, 3000}, NULL, NULL);
     assert_true(r->multiple == 1 && !r->lost);
     double worst = 0, size = 0;
     for (int row = 0; row < n; row++)
@@ -304,7 +305,7 @@ static void time_integration_agrees(void **state) {
         ring ? "ring" : "ground", worst / size, r->state[1], r->state[4], r->state[2], r->state[5]);
     assert_below(worst / size, 2e-4);
     assert_true(r->state[1] + r->state[4] > .1 && r->state[2] > .1);
-    mhb_orbit_destroy(orbit);
+    mhb_steady_state_destroy(orbit);
     mhb_integrator_destroy(g);
     periodic_destroy(&p);
     modal_model_free(&model);
@@ -314,19 +315,19 @@ static void time_integration_agrees(void **state) {
 /* Names of the model and of the settings must be the same ones. */
 static void names_must_agree(void **state) {
   (void)state;
-  modal_model   model;
-  mhb_settings  s = two_settings(2, .2, .1, 1);
-  mhb_residual *b;
+  modal_model  model;
+  mhb_settings s = two_settings(2, .2, .1, 1);
+  mhb_balance *b;
   two_faced_model(2, WITH_LEFT, 5, &model);
   strcpy(s.interface[1].name, "tip");
-  assert_int_equal(mhb_residual_create(&model, &s, &b), SHB_ERR_INPUT);
+  assert_int_equal(mhb_balance_create(&model, &s, &b), SHB_ERR_INPUT);
   assert_non_null(
       strstr(shb_message(), "the contact interface 'shroud', which contact.interfaces"));
   s.n_interfaces = 0;
-  assert_int_equal(mhb_residual_create(&model, &s, &b), SHB_ERR_INPUT);
+  assert_int_equal(mhb_balance_create(&model, &s, &b), SHB_ERR_INPUT);
   s = two_settings(2, .2, .1, 1);
   forget_interfaces(&model);
-  assert_int_equal(mhb_residual_create(&model, &s, &b), SHB_ERR_INPUT);
+  assert_int_equal(mhb_balance_create(&model, &s, &b), SHB_ERR_INPUT);
   assert_non_null(
       strstr(shb_message(), "contact.interfaces has 'mid', which the modal file does not"));
   modal_model_free(&model);
@@ -358,7 +359,7 @@ static void files_tell_which(void **state) {
   s.frequency[0] = .17, s.frequency[1] = .2;
   s.stability        = MHB_STABILITY_NEVER;
   shb_progress quiet = shb_progress_start("test", true, false);
-  assert_int_equal(mhb_sweep(&again, &s, path, &origin, &quiet, &response), SHB_OK);
+  assert_int_equal(mhb_forced_response(&again, &s, path, &origin, &quiet, &response), SHB_OK);
   assert_int_equal(mhb_response_read(path, &read), SHB_OK);
   assert_int_equal(read->n_interfaces, 2);
   assert_string_equal(read->interface_name[0], "mid");

@@ -22,10 +22,10 @@ static void assert_below(double value, double most) {
 }
 
 /* Central difference of the residual in the parameter, at fixed x. */
-static void difference(mhb_residual *b, const double *x, double value, double h, double *out) {
+static void difference(mhb_balance *b, const double *x, double value, double h, double *out) {
   double r[2][N];
   for (int side = 0; side < 2; side++)
-    mhb_residual_evaluate(b, x, value + (side ? h : -h), r[side], NULL, NULL);
+    mhb_balance_evaluate(b, x, value + (side ? h : -h), r[side], NULL, NULL);
   for (int i = 0; i < N; i++) out[i] = (r[1][i] - r[0][i]) / (2 * h);
 }
 
@@ -42,21 +42,21 @@ static void slopes_are_exact(void **state) {
       s.preload               = seed % 2 ? MHB_EQUILIBRIUM : MHB_INTERFERENCE;
       s.tolerance             = 1e-12;
       s.kv                    = seed % 5 ? s.kv : 0;
-      mhb_residual *b;
-      double        x[N], r[N], exact[N], wanted[N], size = 0, far = 0;
-      assert_int_equal(mhb_residual_create(&model, &s, &b), SHB_OK);
-      mhb_residual_preload(b, seed % 3 || seed % 5 == 0 ? .3 : -.1);
-      mhb_condition at = b->at;
-      at.omega         = 1.13;
-      mhb_residual_condition(b, &at);
-      mhb_residual_follow(b, (mhb_parameter)what);
+      mhb_balance *b;
+      double       x[N], r[N], exact[N], wanted[N], size = 0, far = 0;
+      assert_int_equal(mhb_balance_create(&model, &s, &b), SHB_OK);
+      mhb_balance_set_preload(b, seed % 3 || seed % 5 == 0 ? .3 : -.1);
+      mhb_operating_point at = b->at;
+      at.omega               = 1.13;
+      mhb_balance_set_operating_point(b, &at);
+      mhb_balance_set_parameter(b, (mhb_parameter)what);
       for (int i = 0; i < N; i++) {
         int k = (i % (2 * M + 1) + 1) / 2;
         x[i]  = (double)(seed % 4 + 1) * .2 * random_unit(&draw) / (k ? k * k : 4);
       }
       double value = mhb_parameter_get(&b->at, b->parameter);
       if (value > 0 || what == MHB_IN_N0) {
-        mhb_residual_derive(b, x, value, r, exact);
+        mhb_balance_linearise(b, x, value, r, exact);
         for (int a = 0; a < PAIRS; a++)
           for (int i = 0; i < 3; i++) shares[i] += b->info[a].share[i] / (24 * PAIRS);
         difference(b, x, value, 1e-5, wanted);
@@ -66,7 +66,7 @@ static void slopes_are_exact(void **state) {
         }
         worst = fmax(worst, far / fmax(size, 1e-3));
       }
-      mhb_residual_destroy(b);
+      mhb_balance_destroy(b);
     }
     print_message("%-9s %.1e (stuck %.2f, slipping %.2f, open %.2f)\n", mhb_parameter_name(what),
                   worst, shares[0], shares[1], shares[2]);
@@ -93,7 +93,8 @@ static mhb_settings ground(double mu, double kv, double ku, double n0, int harmo
 
 static mhb_response *sweep(const modal_model *model, const mhb_settings *s) {
   mhb_response *response;
-  if (mhb_sweep(model, s, NULL, NULL, NULL, &response) != SHB_OK) fail_msg("%s", shb_message());
+  if (mhb_forced_response(model, s, NULL, NULL, NULL, &response) != SHB_OK)
+    fail_msg("%s", shb_message());
   return response;
 }
 
@@ -103,7 +104,7 @@ static double residual_of(const modal_model *model, mhb_settings s, const mhb_re
   const mhb_branch *branch = &response->branch[2];
   int               K = response->n_harmonics + 1, nb = 2 * K - 1;
   double            x[3 * nb], r[3 * nb], value = branch->value[point];
-  mhb_residual     *b;
+  mhb_balance      *b;
   for (int c = 0; c < 3; c++)
     for (int k = 0; k < K; k++) {
       double complex a                = branch->motion[(point * 3 + c) * K + k];
@@ -115,10 +116,10 @@ static double residual_of(const modal_model *model, mhb_settings s, const mhb_re
   if (s.parameter == MHB_IN_MU) s.mu = value;
   if (s.parameter == MHB_IN_KV) s.kv = value;
   for (int i = 0; s.parameter == MHB_IN_KU && i < 3; i += 2) s.ku[i] = value;
-  assert_int_equal(mhb_residual_create(model, &s, &b), SHB_OK);
-  mhb_residual_evaluate(b, x, 2 * PI * s.frequency[0], r, NULL, NULL);
+  assert_int_equal(mhb_balance_create(model, &s, &b), SHB_OK);
+  mhb_balance_evaluate(b, x, 2 * PI * s.frequency[0], r, NULL, NULL);
   double size = mhb_norm(r, 3 * nb) / mhb_norm(x, 3 * nb);
-  mhb_residual_destroy(b);
+  mhb_balance_destroy(b);
   return size;
 }
 

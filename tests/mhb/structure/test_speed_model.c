@@ -26,11 +26,12 @@ static void assert_ok(shb_status status) {
   if (status != SHB_OK) fail_msg("%s", shb_message());
 }
 
-static mhb_run_up *make_run_up(spinning_kind kind, int n, bool overlap, mhb_settings *s) {
-  modal_speeds speeds;
-  mhb_run_up  *run_up = NULL;
+static mhb_speed_table *make_run_up(spinning_kind kind, int n, bool overlap, mhb_settings *s) {
+  modal_speeds     speeds;
+  mhb_speed_table *run_up = NULL;
   spinning_speeds(kind, n, 0, 1, overlap, &speeds);
-  assert_ok(mhb_run_up_create(&speeds, "blade.modal.h5", s->engine_order, s->frequency, &run_up));
+  assert_ok(
+      mhb_speed_table_create(&speeds, "blade.modal.h5", s->engine_order, s->frequency, &run_up));
   s->run_up = run_up;
   return run_up;
 }
@@ -84,10 +85,10 @@ static double place(int i) {
 
 /* The worst over the range against a model of each speed. */
 static double error(spinning_kind kind, int n, bool overlap) {
-  mhb_settings    plain = spinning_settings(), s = plain;
-  mhb_run_up     *run_up = make_run_up(kind, n, overlap, &s);
-  mhb_receptance *r, *exact;
-  double          worst = 0;
+  mhb_settings     plain = spinning_settings(), s = plain;
+  mhb_speed_table *run_up = make_run_up(kind, n, overlap, &s);
+  mhb_receptance  *r, *exact;
+  double           worst = 0;
   assert_ok(mhb_receptance_create(run_up->given, &s, K, &r));
   for (int i = 0; i < PLACES; i++) {
     double complex a[VALUES], b[VALUES];
@@ -103,7 +104,7 @@ static double error(spinning_kind kind, int n, bool overlap) {
     modal_model_free(&model);
   }
   mhb_receptance_destroy(r);
-  mhb_run_up_destroy(run_up);
+  mhb_speed_table_destroy(run_up);
   return worst;
 }
 
@@ -163,11 +164,11 @@ static void slopes_are_derivatives(void **state) {
   static const spinning_kind kind[] = {SPINNING_STRAIGHT, SPINNING_TURNING, SPINNING_VEERING};
   for (int c = 0; c < 3; c++)
     for (int nu = 1; nu <= 2; nu++) {
-      mhb_settings s         = spinning_settings();
-      s.subharmonics         = nu;
-      mhb_run_up     *run_up = make_run_up(kind[c], 9, true, &s);
-      mhb_receptance *r;
-      double          worst = 0;
+      mhb_settings s          = spinning_settings();
+      s.subharmonics          = nu;
+      mhb_speed_table *run_up = make_run_up(kind[c], 9, true, &s);
+      mhb_receptance  *r;
+      double           worst = 0;
       assert_ok(mhb_receptance_create(run_up->given, &s, K, &r));
       for (int i = 0; i < PLACES; i++) {
         double complex exact[VALUES], wanted[VALUES];
@@ -178,7 +179,7 @@ static void slopes_are_derivatives(void **state) {
       print_message("kind %d, nu %d: slopes differ by %.1e\n", (int)kind[c], nu, worst);
       assert_below(worst, 1e-8);
       mhb_receptance_destroy(r);
-      mhb_run_up_destroy(run_up);
+      mhb_speed_table_destroy(run_up);
     }
 }
 
@@ -186,11 +187,11 @@ static void slopes_are_derivatives(void **state) {
 static void modes_that_leave_are_static(void **state) {
   (void)state;
   for (int overlap = 0; overlap < 2; overlap++) {
-    mhb_settings s      = spinning_settings();
-    mhb_run_up  *run_up = make_run_up(SPINNING_LEAVING, 9, overlap, &s);
+    mhb_settings     s      = spinning_settings();
+    mhb_speed_table *run_up = make_run_up(SPINNING_LEAVING, 9, overlap, &s);
     assert_int_equal(run_up->n_modes, SPINNING_MODES - 1);
     assert_int_equal(run_up->n_dropped, 1);
-    mhb_run_up_destroy(run_up);
+    mhb_speed_table_destroy(run_up);
     assert_below(error(SPINNING_LEAVING, 33, overlap), 1e-5);
   }
 }
@@ -198,25 +199,26 @@ static void modes_that_leave_are_static(void **state) {
 /* Only the speeds about the range count, two more on each side. */
 static void speeds_far_away_do_not_count(void **state) {
   (void)state;
-  mhb_settings s = spinning_settings();
-  modal_speeds speeds;
-  mhb_run_up  *run_up = NULL;
+  mhb_settings     s = spinning_settings();
+  modal_speeds     speeds;
+  mhb_speed_table *run_up = NULL;
   spinning_speeds(SPINNING_TURNING, 41, 0, 1, false, &speeds);
   speeds.mac[5 * SPINNING_MODES] = .1; /* a track lost far below */
   s.frequency[0]                 = .81 / (2 * 3.14159265358979323846);
   s.frequency[1]                 = 1.19 / (2 * 3.14159265358979323846);
-  assert_ok(mhb_run_up_create(&speeds, "blade", 2, s.frequency, &run_up));
+  assert_ok(mhb_speed_table_create(&speeds, "blade", 2, s.frequency, &run_up));
   assert_below(fabs(run_up->low - .35), 1e-12);
   assert_below(fabs(run_up->high - .65), 1e-12);
-  assert_below(fabs(mhb_run_up_speed(run_up, .8) - .4), 1e-12);
-  assert_true(mhb_run_up_speed(run_up, 2) == run_up->high); /* nothing is extrapolated */
-  mhb_run_up_destroy(run_up);
+  assert_below(fabs(mhb_speed_table_speed(run_up, .8) - .4), 1e-12);
+  assert_true(mhb_speed_table_speed(run_up, 2) == run_up->high); /* nothing is extrapolated */
+  mhb_speed_table_destroy(run_up);
 }
 
 static void refuse(modal_speeds *speeds, int order, double from, double to, const char *text) {
-  const double two_pi = 2 * 3.14159265358979323846, range[2] = {from / two_pi, to / two_pi};
-  mhb_run_up  *run_up = NULL;
-  assert_int_equal(mhb_run_up_create(speeds, "blade.h5", order, range, &run_up), SHB_ERR_INPUT);
+  const double     two_pi = 2 * 3.14159265358979323846, range[2] = {from / two_pi, to / two_pi};
+  mhb_speed_table *run_up = NULL;
+  assert_int_equal(mhb_speed_table_create(speeds, "blade.h5", order, range, &run_up),
+                   SHB_ERR_INPUT);
   if (!strstr(shb_message(), text)) fail_msg("'%s' does not say '%s'", shb_message(), text);
   assert_int_equal(speeds->n, 0); /* taken over */
 }
