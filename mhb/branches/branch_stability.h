@@ -27,9 +27,6 @@ struct mhb_branch_editor {
 
 typedef struct mhb_branch_stability mhb_branch_stability; /* workspace; one a thread */
 
-/* Multipliers kept a point. */
-enum { MHB_KEPT_MULTIPLIERS = 8 };
-
 /* settings->stability must not be never. Not thread safe (FFTW planner); the residual must outlive it.
  * Errors: SHB_ERR_IO no memory. */
 shb_status mhb_branch_stability_create(mhb_balance *residual, mhb_branch_stability **judge);

@@ -7,8 +7,10 @@
 
 #include "mhb/branches/branch_stability.h"
 #include "mhb/branches/harmonic_selection.h"
+#include "mhb/branches/linear_limits.h"
 #include "mhb/branches/main_branch.h"
 #include "mhb/branches/secondary_branches.h"
+#include "mhb/response/describe.h"
 #include "mhb/structure/stiffness_check.h"
 
 static const double PUBLISH_EVERY = 10, BRANCH_END_EVERY = 1; /* s */
@@ -84,50 +86,6 @@ static bool looking(mhb_monitor *monitor, int branch, double value, double share
                     s->response->branch[branch].n0[0], mhb_parameter_shown(what, value),
                     mhb_parameter_unit(what));
   return !shb_interrupted() && s->status == SHB_OK;
-}
-
-/* In the order of the case. */
-static shb_status describe_interfaces(mhb_response *response, const modal_model *model,
-                                      const mhb_settings *settings) {
-  const int n = settings->n_interfaces;
-  char     *name[MHB_MAX_INTERFACES];
-  int      *interface = malloc((size_t)model->n_pairs * sizeof *interface + 1);
-  SHB_CHECK(interface, SHB_ERR_IO, "out of memory");
-  for (int i = 0; i < n; i++) name[i] = (char *)settings->interface[i].name;
-  shb_status status = mhb_interfaces_match(model, settings, interface);
-  if (status == SHB_OK)
-    status = mhb_response_interfaces(response, n, name, interface, settings->lead);
-  free(interface);
-  return status;
-}
-
-shb_status mhb_response_describe(mhb_response *response, const modal_model *model,
-                                 const mhb_settings *settings) {
-  size_t m                 = (size_t)model->n_modes;
-  response->n_modes        = model->n_modes;
-  response->subharmonics   = settings->subharmonics;
-  response->engine_order   = settings->engine_order;
-  response->blades         = settings->blades;
-  response->run_up         = settings->run_up != NULL;
-  response->parameter      = settings->parameter;
-  response->n_multipliers  = settings->stability == MHB_STABILITY_NEVER ? 0 : MHB_KEPT_MULTIPLIERS;
-  response->mode_frequency = malloc(sizeof(double) * m);
-  response->mode_damping   = malloc(sizeof(double) * m);
-  SHB_CHECK(response->mode_frequency && response->mode_damping, SHB_ERR_IO, "out of memory");
-  memcpy(response->mode_frequency, model->frequency, sizeof(double) * m);
-  memcpy(response->mode_damping, model->damping_ratio, sizeof(double) * m);
-  if (model->mode_residual) {
-    response->mode_residual = malloc(sizeof(double) * m);
-    SHB_CHECK(response->mode_residual, SHB_ERR_IO, "out of memory");
-    memcpy(response->mode_residual, model->mode_residual, sizeof(double) * m);
-  }
-  if (settings->n_interfaces > 1) SHB_TRY(describe_interfaces(response, model, settings));
-  for (int q = 0; q < model->n_probes; q++) {
-    free(response->probe_name[q]);
-    response->probe_name[q] = strdup(model->probe_name[q]);
-    SHB_CHECK(response->probe_name[q], SHB_ERR_IO, "out of memory");
-  }
-  return SHB_OK;
 }
 
 static shb_status linear_limits(const modal_model *model, const mhb_settings *settings,

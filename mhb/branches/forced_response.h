@@ -17,8 +17,4 @@ shb_status mhb_forced_response(const modal_model *model, const mhb_settings *set
                                const char *path, const shb_provenance *provenance,
                                shb_progress *progress, mhb_response **response);
 
-/* What a response tells of the model and the settings besides its branches. SHB_ERR_IO: no memory. */
-shb_status mhb_response_describe(mhb_response *response, const modal_model *model,
-                                 const mhb_settings *settings);
-
 #endif

@@ -1,12 +1,12 @@
-/* The linear limits: contact open everywhere, stuck everywhere. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "mesh/base/progress.h"
 #include "mhb/balance/modal_error.h"
-#include "mhb/branches/main_branch.h"
+#include "mhb/branches/linear_limits.h"
 #include "mhb/branches/record.h"
+#include "mhb/continuation/outputs.h"
 
 static const double TOLERANCE = 2e-3;
 

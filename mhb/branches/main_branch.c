@@ -8,6 +8,7 @@
 #include "mesh/base/progress.h"
 #include "mhb/branches/record.h"
 #include "mhb/branches/tracer.h"
+#include "mhb/continuation/first_solution.h"
 
 enum { MAX_GAPS = 8, MAX_RETURNS = 8 };
 

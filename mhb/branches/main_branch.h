@@ -5,17 +5,8 @@
 
 #include <stdbool.h>
 
-#include "mhb/continuation/arclength.h"
+#include "mhb/branches/monitor.h"
 #include "mhb/response/response.h"
-
-/* Called after every recorded point; the one place where threads meet. Returns false to stop (interrupted). */
-typedef struct mhb_monitor mhb_monitor;
-struct mhb_monitor {
-  bool (*point)(mhb_monitor *monitor, int branch, const mhb_curve_point *point);
-  void (*lock)(mhb_monitor *monitor, bool locked);
-  /* Called, locked, while further branches are looked for at a value of the parameter, a share of it done; false: stop. */
-  bool (*looking)(mhb_monitor *monitor, int branch, double value, double share);
-};
 
 /* Branches at most that mhb_trace_main_branch appends: the response needs room reserved for them. */
 enum { MHB_MAX_DETACHED = 4 };
@@ -38,12 +29,5 @@ typedef struct {
  * another one must be on its way already: *none tells that there was no such branch, and nothing is recorded. Errors: as above. */
 shb_status mhb_trace_branch(mhb_balance *residual, mhb_response *response, int branch,
                             mhb_monitor *monitor, const mhb_start *start, bool *none);
-
-/* The open or stuck limit, sampled until linear interpolation of every output is within .2 % of its local value. */
-shb_status mhb_linear_limits(mhb_balance *residual, mhb_response *response, int branch);
-
-/* A solution at a value of the parameter from nothing: the open and stuck limits, zero, then homotopy in the preload from both sides. */
-mhb_reason mhb_first_solution(mhb_newton *newton, mhb_balance *residual, double value,
-                              double tolerance, double *x, int *iterations);
 
 #endif

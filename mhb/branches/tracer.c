@@ -7,6 +7,7 @@
 #include "mesh/base/progress.h"
 #include "mhb/branches/record.h"
 #include "mhb/continuation/corrector.h"
+#include "mhb/continuation/outputs.h"
 
 /* A path whose steps stay below CRAWL this often is as good as stalled. */
 static const double CRAWL = 2e-3;

@@ -3,7 +3,8 @@
 #include <string.h>
 
 #include "mesh/base/progress.h"
-#include "mhb/branches/main_branch.h"
+#include "mhb/continuation/arclength.h"
+#include "mhb/continuation/first_solution.h"
 
 enum { MAX_STAGES = 200 };
 

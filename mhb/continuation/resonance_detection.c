@@ -3,8 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "mhb/branches/record.h"
 #include "mhb/continuation/corrector.h"
+#include "mhb/continuation/outputs.h"
 
 static const double TWO_PI = 6.283185307179586476925;
 

@@ -4,9 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "mhb/branches/record.h"
 #include "mhb/continuation/corrector.h"
 #include "mhb/continuation/event_location.h"
+#include "mhb/continuation/outputs.h"
 #include "mhb/response/response.h"
 
 /* Locating ends at 1e-9 of the chord or 1e-10 of the value, and 3e-8 beside a kink: nearer than this is the same place. */

@@ -1,4 +1,5 @@
 #include "mhb/floquet/monodromy.h"
+#include "mhb/numerics/lu.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -100,7 +101,7 @@ static int start_matrix(mhb_monodromy *d) {
       d->matrix[(size_t)r * (size_t)n + (size_t)column] = sum;
     }
   }
-  return mhb_lu(n, d->matrix, d->pivot);
+  return mhb_factor_real(n, d->matrix, d->pivot);
 }
 
 /* Motion of the contacts at the start for a unit of mode i of a blade (contact < 0), or of friction state i of a contact. */
@@ -121,7 +122,7 @@ static void start_motion(mhb_monodromy *d, int contact, int blade, int i, double
       for (int k = 0; k < 3; k++)
         u[r] -= s->flexibility[(size_t)r * (size_t)n + (size_t)(3 * contact + k)] * of_sigma[k][i];
   }
-  mhb_lu_solve(n, d->matrix, d->pivot, u);
+  mhb_solve_real(n, d->matrix, d->pivot, u);
 }
 
 /* Rows u, and the friction of contacts that stick throughout. */

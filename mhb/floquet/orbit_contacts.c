@@ -7,6 +7,7 @@
 
 #include "mhb/contact/slip.h"
 #include "mhb/numerics/fourier.h"
+#include "mhb/numerics/lu.h"
 
 static const double TWO_PI = 6.283185307179586476925;
 
@@ -146,8 +147,8 @@ static void rate_rows(mhb_orbit_contacts *d, int j, double at, double *rate) {
 static int force_rates(mhb_orbit_contacts *d, double at, double *rate) {
   int n = 3 * d->structure->contacts;
   for (int j = 0; j < d->structure->contacts; j++) rate_rows(d, j, at, rate);
-  if (!mhb_lu(n, d->matrix, d->pivot)) return 0;
-  mhb_lu_solve(n, d->matrix, d->pivot, rate);
+  if (!mhb_factor_real(n, d->matrix, d->pivot)) return 0;
+  mhb_solve_real(n, d->matrix, d->pivot, rate);
   return 1;
 }
 
@@ -269,7 +270,7 @@ static int elastic_onset(mhb_orbit_contacts *d, double at, mhb_saltation *jump,
   memset(d->other, 0, sizeof(double) * (size_t)n);
   d->other[a + 1] = ku[0] * e[0] + ku[1] * e[1];
   d->other[a + 2] = ku[1] * e[0] + ku[2] * e[1];
-  mhb_lu_solve(n, d->matrix, d->pivot, d->other);
+  mhb_solve_real(n, d->matrix, d->pivot, d->other);
   const double *k = d->other + a;
   double        s = e[0] * k[1] + e[1] * k[2] - mu * k[0], across = e[0] * k[2] - e[1] * k[1];
   double measure[3] = {-mu * touch->law->kv / s, e[0] / s, e[1] / s}, q[3] = {0, -e[1], e[0]};

@@ -190,43 +190,6 @@ void mhb_variational_settle(mhb_variational *v) {
 
 /* ---- contacts ---- */
 
-int mhb_lu(int n, double *A, int *pivot) {
-  for (int k = 0; k < n; k++) {
-    double *row = A + (long)k * n;
-    int     p   = k;
-    for (int i = k + 1; i < n; i++)
-      if (fabs(A[(long)i * n + k]) > fabs(A[(long)p * n + k])) p = i;
-    pivot[k] = p;
-    if (!(fabs(A[(long)p * n + k]) > 1e-300)) return 0;
-    for (int j = 0; p != k && j < n; j++) {
-      double swap        = row[j];
-      row[j]             = A[(long)p * n + j];
-      A[(long)p * n + j] = swap;
-    }
-    row[k] = 1 / row[k];
-    for (int i = k + 1; i < n; i++) {
-      double *other = A + (long)i * n, l = other[k] *= row[k];
-      for (int j = k + 1; l != 0 && j < n; j++) other[j] -= l * row[j];
-    }
-  }
-  return 1;
-}
-
-void mhb_lu_solve(int n, const double *A, const int *pivot, double *x) {
-  for (int k = 0; k < n; k++) {
-    const double *row = A + (long)k * n;
-    double        xk  = x[pivot[k]];
-    x[pivot[k]]       = x[k];
-    for (int j = 0; j < k; j++) xk -= row[j] * x[j];
-    x[k] = xk;
-  }
-  for (int k = n - 1; k >= 0; k--) {
-    const double *row = A + (long)k * n;
-    for (int j = k + 1; j < n; j++) x[k] -= row[j] * x[j];
-    x[k] *= row[k];
-  }
-}
-
 /* Element of I + compliance hold/2 + R grow. */
 static double coupling(const mhb_variational *v, int row, int column) {
   const mhb_linearised_law *relation = &v->relation[column / 3];

@@ -70,8 +70,4 @@ void mhb_variational_saltation(mhb_variational *variation, const mhb_saltation *
 /* Let the modes feel the last mean force: q and v are valid only after this. */
 void mhb_variational_settle(mhb_variational *variation);
 
-/* Row-major LU with row exchanges, in place. 0: singular. */
-int  mhb_lu(int n, double *A, int *pivot);
-void mhb_lu_solve(int n, const double *A, const int *pivot, double *x);
-
 #endif

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "mhb/floquet/variational.h"
+#include "mhb/numerics/lu.h"
 
 enum { S = MHB_STAGES, F = MHB_STAGE_FORCES, SAMPLES = 8, ITERATIONS = 20 };
 
@@ -44,7 +45,7 @@ static void factor_stick(const mhb_law *law, const double *matrix, double *stick
       row[2 * F] = x[1];
     }
   for (int i = 0; i < F; i++) stick[i * F + i] += 1;
-  mhb_lu(F, stick, pivot);
+  mhb_factor_real(F, stick, pivot);
 }
 
 static void solve_stick(const mhb_law *law, const mhb_contact_point *rub, const double *matrix,
@@ -58,7 +59,7 @@ static void solve_stick(const mhb_law *law, const mhb_contact_point *rub, const 
     step->p[3 * i + 1] = x[0] - rub->zeta[0];
     step->p[3 * i + 2] = x[1] - rub->zeta[1];
   }
-  mhb_lu_solve(F, stick, pivot, step->p);
+  mhb_solve_real(F, stick, pivot, step->p);
   answer(matrix, y, step);
 }
 
@@ -182,8 +183,8 @@ static int solve_slip(const mhb_radau *rule, const mhb_law *law, const mhb_conta
     if (size <= 1e-13 * scale || (size <= 1e-11 * scale && size > .1 * last)) return 1;
     last = size;
     slip_jacobian(rule, law, matrix, step, &d, J);
-    if (!mhb_lu(F, J, pivot)) return 0;
-    mhb_lu_solve(F, J, pivot, r);
+    if (!mhb_factor_real(F, J, pivot)) return 0;
+    mhb_solve_real(F, J, pivot, r);
     if (!slip_update(r, step)) return 0;
   }
   return 0;

@@ -5,11 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "mhb/branches/forced_response.h"
 #include "mhb/integration/spectrum.h"
 #include "mhb/integration/steady_state.h"
 #include "mhb/problem/interfaces.h"
 #include "mhb/problem/parameter.h"
+#include "mhb/response/describe.h"
 
 static const double PI = 3.14159265358979323846, PUBLISH_EVERY = 10; /* s */
 

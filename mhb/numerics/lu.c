@@ -61,3 +61,12 @@ int mhb_solve_complex(int n, const double complex *A, const int *pivot, int colu
   return n <= SMALL ||
          LAPACKE_zgetrs_work(LAPACK_COL_MAJOR, 'N', n, columns, A, n, pivot, x, n) == 0;
 }
+
+/* LAPACK's columns are the rows here: it factors the transpose and solves with its transpose. */
+int mhb_factor_real(int n, double *A, int *pivot) {
+  return LAPACKE_dgetrf_work(LAPACK_COL_MAJOR, n, n, A, n, pivot) == 0;
+}
+
+void mhb_solve_real(int n, const double *A, const int *pivot, double *x) {
+  LAPACKE_dgetrs_work(LAPACK_COL_MAJOR, 'T', n, 1, A, n, pivot, x, n);
+}

@@ -37,6 +37,9 @@ enum {
 /* loss of mhb_branch: what made an unstable point so. */
 enum { MHB_NO_LOSS, MHB_LOSS_FOLD, MHB_LOSS_FLIP, MHB_LOSS_NEIMARK_SACKER, MHB_N_LOSSES };
 
+/* Multipliers kept a point. */
+enum { MHB_KEPT_MULTIPLIERS = 8 };
+
 /* One curve. Array layouts: motion, force [point][pair][3 (v,u,w)][k = 0..m]; probe [point][probe][3 (tangential,
  * axial, radial)][k]; state [point][pair][3 (stuck, slipping, open)]; signals x(t) = Re sum_k A_k exp(j k w t / nu), with m and
  * nu of the branch: the harmonic of the excitation is k = nu. */

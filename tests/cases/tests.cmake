@@ -53,7 +53,7 @@ shb_scene_test(snubber_blade snubber_blade)
 # The example of cases/bring_your_own; skipped where python3 has no h5py.
 if(SHROUDHB_PYTHON)
   add_executable(test_cases_scenes_bring_your_own cases/scenes/test_bring_your_own.c)
-  target_link_libraries(test_cases_scenes_bring_your_own PRIVATE shb_response tests_support)
+  target_link_libraries(test_cases_scenes_bring_your_own PRIVATE shb_mhb_response tests_support)
   add_test(NAME cases.scenes.bring_your_own COMMAND test_cases_scenes_bring_your_own
     ${SHROUDHB_PYTHON} ${PROJECT_SOURCE_DIR}/cases/bring_your_own $<TARGET_FILE:shroudhb-mhb>)
   set_tests_properties(cases.scenes.bring_your_own PROPERTIES

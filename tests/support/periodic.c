@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "mhb/branches/main_branch.h"
+#include "mhb/continuation/first_solution.h"
 
 mhb_settings ground_settings(double mu, double kv, double ku, double n0, int harmonics) {
   mhb_settings s = {.to_ground    = true,

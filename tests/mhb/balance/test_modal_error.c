@@ -14,7 +14,7 @@
 #include <cmocka.h>
 
 #include "mhb/balance/truncation_error.h"
-#include "mhb/branches/main_branch.h"
+#include "mhb/continuation/first_solution.h"
 #include "modal/model/reduce.h"
 #include "tests/support/periodic.h"
 #include "tests/support/three_degree.h"

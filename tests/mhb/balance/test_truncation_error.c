@@ -12,7 +12,7 @@
 
 #include "mhb/balance/truncation_error.h"
 #include "mhb/branches/forced_response.h"
-#include "mhb/branches/main_branch.h"
+#include "mhb/continuation/first_solution.h"
 #include "mhb/numerics/fourier.h"
 #include "tests/support/periodic.h"
 #include "tests/support/random_model.h"

@@ -1,0 +1,70 @@
+#include "mhb/continuation/outputs.h"
+
+#include <math.h>
+
+/* Relative slope below which an output counts as flat. */
+static const double FLAT = 1e-9;
+
+int mhb_outputs(const mhb_balance *b) {
+  int pairs = b->n_pairs < 2 ? b->n_pairs : 2;
+  return b->receptance->model->n_probes + 3 * pairs;
+}
+
+/* Change of the contact forces along dx and with the parameter by dvalue, harmonic k. */
+static void force_change(const mhb_balance *b, const double *dx, double dvalue, int k,
+                         double complex *dp) {
+  int block = 3 * b->nb;
+  for (int row = 0; row < 3 * b->n_pairs; row++) {
+    int           pair = row / 3, first = (row % 3) * b->nb + (k ? 2 * k - 1 : 0);
+    const double *re     = b->dp + ((size_t)pair * (size_t)block + (size_t)first) * (size_t)block;
+    const double *by     = b->by_parameter + (size_t)pair * (size_t)block + first;
+    double        sum[2] = {dvalue * by[0], k ? dvalue * by[1] : 0};
+    for (int j = 0; j < block; j++) {
+      sum[0] += re[j] * dx[pair * block + j];
+      if (k) sum[1] += re[block + j] * dx[pair * block + j];
+    }
+    dp[row] = CMPLX(sum[0], sum[1]);
+  }
+}
+
+static double dot(double complex a, double complex b) {
+  return creal(a) * creal(b) + cimag(a) * cimag(b);
+}
+
+/* Along a stretch on which nothing changes (another parameter than the frequency, stuck) the sign of a slope is noise. */
+static double unless_flat(double slope, double square) {
+  return fabs(slope) > FLAT * square ? slope : 0;
+}
+
+void mhb_probe_change(const mhb_arclength *path, const mhb_curve_point *point, int k,
+                      double complex *q, double complex *dq) {
+  const mhb_balance *b      = path->residual;
+  double             dvalue = point->tangent[path->n];
+  double complex     p[b->receptance->n], dp[b->receptance->n];
+  mhb_receptance_update(b->receptance, k);
+  mhb_balance_contact_force(b, k, p);
+  force_change(b, point->tangent, dvalue, k, dp);
+  mhb_receptance_probe(b->receptance, k, p, q);
+  mhb_receptance_probe_change(b->receptance, k, p, dp,
+                              b->parameter == MHB_IN_FREQUENCY ? dvalue : 0,
+                              b->parameter == MHB_IN_SCALE ? dvalue : 0, dq);
+}
+
+double mhb_output_slope(const mhb_arclength *path, const mhb_curve_point *point, int o) {
+  const mhb_balance    *b      = path->residual;
+  const mhb_receptance *r      = b->receptance;
+  int                   probes = r->model->n_probes, k = r->nu <= b->m ? r->nu : b->m;
+  if (o >= probes) {
+    size_t        at = (size_t)(o - probes) * (size_t)b->nb + (size_t)(2 * k - 1);
+    const double *a = point->x + at, *da = point->tangent + at;
+    return unless_flat(2 * (a[0] * da[0] + a[1] * da[1]), a[0] * a[0] + a[1] * a[1]);
+  }
+  double complex q[3 * probes], dq[3 * probes];
+  mhb_probe_change(path, point, k, q, dq);
+  double sum = 0, square = 0;
+  for (int axis = 0; axis < 3; axis++) {
+    sum += 2 * dot(q[3 * o + axis], dq[3 * o + axis]);
+    square += dot(q[3 * o + axis], q[3 * o + axis]);
+  }
+  return unless_flat(sum, square);
+}
