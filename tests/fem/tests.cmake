@@ -2,7 +2,7 @@
 add_library(tests_fem STATIC fem/support.c)
 target_link_libraries(tests_fem PUBLIC tests_box shb_fem PkgConfig::CMOCKA)
 
-shb_test(fem tet10 fast tests_fem)
+shb_test(fem tet10 fast tests_fem PkgConfig::OPENBLAS)
 shb_test(fem hex20 fast tests_fem PkgConfig::OPENBLAS)
 shb_test(fem finite fast tests_fem)
 shb_test(fem material fast tests_fem)
