@@ -7,7 +7,8 @@
  *
  * Signals are in real form (fourier.h): motion[3][2m+1] for (v, u, w), force[3][2H+1] for (n, fu, fw), H >= m.
  * Source: Chen, Yang, Menq 1999, eqs. 4-15. Differs: event times from the harmonics with bounds, slip by Gauss
- * collocation, force by quadrature of each smooth piece (no sampling, no aliasing). Derivation: docs/contact.md. */
+ * collocation, force by quadrature of each smooth piece (no sampling, no aliasing).
+ * Derivation: docs/theory/contact.md. */
 #ifndef MHB_CONTACT_H
 #define MHB_CONTACT_H
 
@@ -47,8 +48,8 @@ typedef struct {
 
 typedef struct mhb_contact mhb_contact; /* workspace: FFTW plans and all arrays; one a thread */
 
-/* Room for motions of up to m harmonics and forces of up to H >= m; tolerance relative (1e-8: seven-node panels that
- * resolve harmonic H). SHB_ERR_IO: no memory. Not thread safe (FFTW planner). */
+/* Room for motions of up to m harmonics and forces of up to H >= m, to a relative tolerance
+ * (panels resolve harmonic H). SHB_ERR_IO: no memory. Not thread safe (FFTW planner). */
 shb_status mhb_contact_create(int m, int H, double tolerance, mhb_contact **contact);
 void       mhb_contact_destroy(mhb_contact *contact);
 
