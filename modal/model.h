@@ -50,7 +50,7 @@ typedef struct {
   double         *mode_residual; /* [m] relative eigen residual, or NULL */
 } modal_model;
 
-/* Write the datasets of docs/files.md into an open file (attributes format and provenance included). */
+/* Write the datasets of docs/user/own_modes.md into an open file, with format and provenance. */
 shb_status modal_model_write(hid_t file, const modal_model *model,
                              const shb_provenance *provenance);
 

@@ -1,7 +1,8 @@
 /* Modal models at several speeds of the rotor, their modes tracked from one speed to the next. Free of PETSc.
  *
- * In the file: groups /speed_0, /speed_1, ... with a model each, by ascending speed, and /speeds (docs/files.md). Track t is mode t of the
- * first speed, carried on by the mode most like it at the next: MAC = (phi^T M psi)^2, every mode taken once. Signs follow the tracks. */
+ * In the file: groups /speed_0, /speed_1, ... with a model each, by ascending speed, and /speeds
+ * (docs/user/own_modes.md). Track t is mode t of the first speed, carried on by the mode most like
+ * it at the next: MAC = (phi^T M psi)^2, every mode taken once. Signs follow the tracks. */
 #ifndef MODAL_SPEEDS_H
 #define MODAL_SPEEDS_H
 

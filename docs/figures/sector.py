@@ -17,7 +17,8 @@ def text(x, y, words, size=14, colour=INK, anchor="start", weight="normal", styl
     out, lower = [], False
     for piece in words.split("~"):
         if lower:
-            out.append(f'<tspan dy="4" font-size="{size - 3}">{piece}</tspan><tspan dy="-4">\u200b</tspan>')
+            down = f'<tspan dy="4" font-size="{size - 3}">{piece}</tspan>'
+            out.append(down + '<tspan dy="-4">\u200b</tspan>')
         else:
             out.append(piece)
         lower = not lower
@@ -98,7 +99,8 @@ def ring():
 
     for b in (-1, 0, 1):
         a, fill = b * sector, BLADE if b == 0 else NEIGHBOUR
-        line([at(a, 185, -13), at(a, 318, -6), at(a, 318, 6), at(a, 185, 13)], fill=fill, close=True)
+        sides = [at(a, 185, -13), at(a, 318, -6), at(a, 318, 6), at(a, 185, 13)]
+        line(sides, fill=fill, close=True)
         half = sector / 2 - 0.5
         outer = [at(a - half + i * half / 10, 335) for i in range(21)]
         inner = [at(a + half - i * half / 10, 318) for i in range(21)]
@@ -178,8 +180,9 @@ def inclination():
     dx, h = 84 * sin(phi), 84 * cos(phi)
     top, bottom = cy - h * 0.72, cy + h * 0.72
     lean = dx * 0.72
-    line([(450, top), (cx + lean - 2, top), (cx - lean - 2, bottom), (450, bottom)], fill=BLADE, close=True)
-    line([(752, top), (cx + lean + 2, top), (cx - lean + 2, bottom), (752, bottom)], fill=NEIGHBOUR, close=True)
+    for edge, gap, fill in ((450, -2, BLADE), (752, 2, NEIGHBOUR)):
+        face = [(cx + lean + gap, top), (cx - lean + gap, bottom)]
+        line([(edge, top), *face, (edge, bottom)], fill=fill, close=True)
     text(462, bottom - 10, "blade 0")
     text(740, top + 20, "blade 1", anchor="end")
     line([(cx, cy), (cx + 116, cy)], INK, 1, dash="4 3")
@@ -226,22 +229,24 @@ def signs():
     text(x, y + 53, "+v, +u, +w, and on blade 0 the other way.", 13)
 
 
-def main():
+def page():
+    """The whole drawing as text."""
+    parts.clear()
     ring()
     shrouds()
     inclination()
     signs()
     for rule in ([(24, 366), (776, 366)], [(24, 670), (776, 670)], [(404, 384), (404, 656)]):
         line(rule, "#d4d9df", 1)
-    page = (
+    return (
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{WIDTH}" height="{HEIGHT}" '
         f'viewBox="0 0 {WIDTH} {HEIGHT}" font-family="DejaVu Sans, Arial, sans-serif">\n'
         "<title>Axes, angles, signs and the wave of a shrouded sector</title>\n"
-        f'<rect width="{WIDTH}" height="{HEIGHT}" fill="white"/>\n' + "\n".join(parts) + "\n</svg>\n"
+        f'<rect width="{WIDTH}" height="{HEIGHT}" fill="white"/>\n'
+        + "\n".join(parts) + "\n</svg>\n"
     )
-    out = Path(__file__).resolve().parent.parent / "user" / "sector.svg"
-    out.write_text(page, encoding="utf-8")
 
 
 if __name__ == "__main__":
-    main()
+    out = Path(__file__).resolve().parent.parent / "user" / "sector.svg"
+    out.write_text(page(), encoding="utf-8")
