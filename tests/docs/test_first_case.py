@@ -27,7 +27,8 @@ def computed(path):
 
 def main():
     program, root, folder = sys.argv[1], Path(sys.argv[2]), Path(sys.argv[3])
-    folder.mkdir(parents=True, exist_ok=True)
+    shutil.rmtree(folder, ignore_errors=True)  # nothing is up to date
+    folder.mkdir(parents=True)
     shutil.copy(root / "cases/first_case/case.yaml", folder / "case.yaml")
     subprocess.run([program, "run", "--quiet", str(folder / "case.yaml")], check=True)
     page = printed((root / "docs/user/first_case.md").read_text(encoding="utf-8"))
