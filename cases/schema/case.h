@@ -128,4 +128,7 @@ char *case_settings(const case_file *file, case_stage stage);
 /* Every key with unit, range, default and help. */
 void case_print_keys(FILE *out);
 
+/* The same as the page docs/user/case_reference.md: Markdown, a table a block. */
+void case_print_reference(FILE *out);
+
 #endif
