@@ -13,6 +13,7 @@
 
 #include "mhb/balance/balance.h"
 #include "mhb/branches/main_branch.h"
+#include "mhb/continuation/first_solution.h"
 #include "mhb/numerics/fourier.h"
 #include "tests/support/random_model.h"
 

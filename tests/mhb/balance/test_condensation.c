@@ -13,6 +13,7 @@
 #include <cmocka.h>
 
 #include "mhb/branches/main_branch.h"
+#include "mhb/continuation/first_solution.h"
 #include "tests/bench/shroud_face.h"
 #include "tests/support/allocations.h"
 #include "tests/support/random_model.h"
