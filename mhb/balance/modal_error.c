@@ -4,9 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "mhb/balance/newton.h"
 #include "mhb/balance/stick_stiffness.h"
 #include "mhb/numerics/lu.h"
+#include "mhb/numerics/vector.h"
 
 static const double PI = 3.14159265358979323846;
 

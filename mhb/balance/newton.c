@@ -20,16 +20,6 @@ const char *mhb_reason_text(mhb_reason reason) {
   }
 }
 
-double mhb_norm(const double *x, int n) {
-  double top = 0, sum = 0;
-  for (int i = 0; i < n; i++) top = fmax(top, fabs(x[i]));
-  for (int i = 0; i < n && top == 0; i++) /* fmax passes over NaN */
-    if (isnan(x[i])) return NAN;
-  if (top == 0) return 0;
-  for (int i = 0; i < n; i++) sum += (x[i] / top) * (x[i] / top);
-  return top * sqrt(sum);
-}
-
 shb_status mhb_newton_create(int n, mhb_newton **out) {
   mhb_newton *w = calloc(1, sizeof *w);
   SHB_CHECK(w, SHB_ERR_IO, "out of memory");

@@ -3,6 +3,7 @@
 #define MHB_BALANCE_NEWTON_H
 
 #include "mhb/balance/condensation.h"
+#include "mhb/numerics/vector.h"
 
 /* Why it stopped: > 0 converged. */
 typedef enum {
@@ -30,7 +31,5 @@ shb_status mhb_newton_bind(mhb_newton *newton, const mhb_balance *residual);
 /* Solve r(x, value) = 0 from x: |r| <= tolerance max(|x|, floor). *iterations counts Newton steps. */
 mhb_reason mhb_newton_solve(mhb_newton *newton, mhb_balance *residual, double value,
                             double tolerance, double *x, int *iterations);
-
-double mhb_norm(const double *x, int n);
 
 #endif

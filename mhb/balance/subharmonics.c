@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "mhb/balance/newton.h"
+#include "mhb/numerics/vector.h"
 
 static const double PI = 3.14159265358979323846, NOTHING = 1e-6;
 

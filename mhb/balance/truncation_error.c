@@ -4,9 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "mhb/balance/newton.h"
 #include "mhb/balance/stick_stiffness.h"
 #include "mhb/numerics/fourier.h"
+#include "mhb/numerics/vector.h"
 
 static const double NEGLIGIBLE = .1, NEAR_BY = .1;
 
