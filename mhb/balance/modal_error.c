@@ -62,7 +62,7 @@ static double length_of(int n, const double complex *e) {
 
 /* As the whole balance answers; e[k][n]. */
 static double by_system(const mhb_balance *b, mhb_condensation *system, const double complex *e) {
-  const mhb_balance *wide   = system->b;
+  const mhb_balance *wide   = system->balance;
   const int          n      = 3 * b->n_pairs;
   double            *rhs    = calloc((size_t)wide->n, sizeof *rhs);
   double             length = 0;

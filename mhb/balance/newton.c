@@ -51,7 +51,7 @@ void mhb_newton_destroy(mhb_newton *w) {
 
 shb_status mhb_newton_bind(mhb_newton *w, const mhb_balance *b) {
   const mhb_condensation *s = w->system;
-  if (s && s->b == b && s->m == b->m && s->n_pairs == b->n_pairs) return SHB_OK;
+  if (s && s->balance == b && s->m == b->m && s->n_pairs == b->n_pairs) return SHB_OK;
   mhb_condensation_destroy(w->system);
   w->system = NULL;
   return mhb_condensation_create(b, &w->system);
