@@ -277,7 +277,8 @@ static int condense_stuck(mhb_condensation *s) {
   int ok = 1, last = s->n_nonlinear > 0 ? s->balance->m : -1;
   if (!factors_are_valid(s)) memset(s->is_factored, 0, (size_t)s->balance->m + 1);
   for (int k = 0; k <= last; k++) mhb_receptance_update(s->balance->receptance, k);
-#pragma omp parallel for schedule(dynamic, 1) reduction(&& : ok) if (3 * s->n_stuck >= WORTH_THREADS)
+  int team = 3 * s->n_stuck >= WORTH_THREADS;
+#pragma omp parallel for schedule(dynamic, 1) reduction(&& : ok) if (team)
   for (int k = 0; k <= last; k++) ok = ok && factor_stuck(s, k) && set_schur(s, k);
   s->omega      = ok ? s->balance->receptance->omega : NAN;
   s->n_factored = s->n_stuck;

@@ -3,8 +3,8 @@
  *   (I + R D) x + column sigma = rhs,   row . x + corner sigma = rhs_border
  *
  * A stuck pair (L) answers linearly, harmonic by harmonic: p_k = S u_k, S = diag(kv, Ku), at k = 0
- * diag(kv, 0). An open pair (O) has no force. Only the nonlinear pairs (N), whose D = dp/du is full,
- * couple the harmonics. Harmonic k, with q = D x_N and A = I + R_LL S:
+ * diag(kv, 0). An open pair (O) has no force. Only the nonlinear pairs (N), whose D = dp/du is
+ * full, couple the harmonics. Harmonic k, with q = D x_N and A = I + R_LL S:
  *
  *   L:  A x_L = rhs_L - R_LN q - c_L sigma
  *   N:  x_N + C q + (c_N - R_NL S A^-1 c_L) sigma = rhs_N - R_NL S A^-1 rhs_L,
@@ -16,8 +16,8 @@
  * the sign of the determinant, because det A > 0 in real form.
  *
  * A pair stuck at the friction limit has a mean friction g = G u that depends on its motion. It is
- * a stuck pair with two borders more: unknowns g, columns R_0 of its axes u and w, rows -G, corner I.
- * Harmonics whose right-hand side is zero cost nothing. */
+ * a stuck pair with two borders more: unknowns g, columns R_0 of its axes u and w, rows -G, corner
+ * I. Harmonics whose right-hand side is zero cost nothing. */
 #ifndef MHB_BALANCE_CONDENSATION_H
 #define MHB_BALANCE_CONDENSATION_H
 
@@ -46,7 +46,8 @@ typedef struct {
   double complex *A;           /* [k][3 stuck][3 stuck] column-major LU */
   int            *A_pivot;     /* [k][3 stuck] */
 
-  /* between the pairs, with harmonics at the strides of all pairs nonlinear or half of them stuck */
+  /* between the pairs, with harmonics at the strides of all pairs nonlinear or half of them
+   * stuck */
   double complex *schur;              /* [k][3 nonlinear][3 nonlinear] C, row-major */
   double complex *stuck_to_nonlinear; /* [k][3 nonlinear][3 stuck] columns of A^-1 R_LN */
   double complex *nonlinear_to_stuck; /* [k][3 nonlinear][3 stuck] rows of R_NL S */

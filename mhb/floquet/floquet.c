@@ -12,10 +12,10 @@ static const double MARGIN = 1e-3;
 
 /* Sub-steps are halved until they change the largest multiplier by less than half its distance from 1, and by less than ROUGH the
  * first time, where the change is that of the coarser of two orders, FINE later. FINEST: of half the sub-steps asked for. */
-static const double DISTANCE = .5, ROUGH = 2e-2, FINE = 1e-3;
+static const double DISTANCE = 0.5, ROUGH = 2e-2, FINE = 1e-3;
 
 /* Modes whose squared frequency a contact raises by this part count; sub-steps to a cycle of theirs. */
-static const double SHIFTED = .1, A_CYCLE = 3;
+static const double SHIFTED = 0.1, A_CYCLE = 3;
 enum { MAX_STATES = 600, FINEST = 32 };
 
 struct mhb_floquet {
@@ -185,7 +185,7 @@ static const double *extrapolated(mhb_floquet *s) {
 }
 
 static int settled(const mhb_multipliers *out, double most) {
-  return out->change <= fmax(.1 * MARGIN, fmin(most, DISTANCE * fabs(out->largest - 1)));
+  return out->change <= fmax(0.1 * MARGIN, fmin(most, DISTANCE * fabs(out->largest - 1)));
 }
 
 /* |phi|^2 S of a mode of a blade: what sticking contacts add to its squared frequency. */

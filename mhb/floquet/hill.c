@@ -45,8 +45,8 @@ static void set_shapes(hill *h, int d) {
 static double complex to_exponential(int k, int i) {
   if (k == 0) return i == 0;
   int j = k > 0 ? k : -k;
-  if (i == 2 * j - 1) return .5;
-  return i == 2 * j ? (k > 0 ? .5 * I : -.5 * I) : 0;
+  if (i == 2 * j - 1) return 0.5;
+  return i == 2 * j ? (k > 0 ? 0.5 * I : -0.5 * I) : 0;
 }
 
 /* Weight of exponential k in real coefficient i. */

@@ -55,16 +55,17 @@ static void slip_relation(const mhb_contact_state *touch, double h, mhb_linearis
   const mhb_law *law   = touch->law;
   slip_terms     t     = terms_of(touch);
   double         mu_kv = law->mu * law->kv, turn = h * t.turn;
-  double         ease = 1 / (1 + .5 * fmax(h * t.kappa, -1.8));
-  double         T[3] = {-.5 * ease * turn * mu_kv, ease, 0};
-  double M[3] = {ease * (t.beta - .5 * turn) * mu_kv, ease * t.across[0], ease * t.across[1]};
+  double         ease = 1 / (1 + 0.5 * fmax(h * t.kappa, -1.8));
+  double         T[3] = {-0.5 * ease * turn * mu_kv, ease, 0};
+  double M[3] = {ease * (t.beta - 0.5 * turn) * mu_kv, ease * t.across[0], ease * t.across[1]};
   for (int i = 0; i < 2; i++) {
     for (int k = 0; k < 3; k++) {
       double along = k == 0 ? mu_kv : 0, before = k == 1;
       r->a[1 + i][k]    = along * t.e[i] + T[k] * t.q[i];
       r->hold[1 + i][k] = along * t.e[i] + M[k] * t.q[i];
       r->b[1 + i][k]    = (2 * (T[k] - before) + turn * along) * t.q[i] - turn * T[k] * t.e[i];
-      r->grow[1 + i][k] = (M[k] + .5 * turn * along) * t.q[i] + (along - .5 * turn * M[k]) * t.e[i];
+      r->grow[1 + i][k] =
+          (M[k] + 0.5 * turn * along) * t.q[i] + (along - 0.5 * turn * M[k]) * t.e[i];
     }
   }
   for (int k = 0; k < 3; k++) {

@@ -211,7 +211,7 @@ static int run_piece(mhb_monodromy *d, double from, double to, int refinement) {
   if (!noting) mhb_variational_length(d->variation, h * period);
   for (int i = 0; i < steps; i++) {
     if (slip || i == 0) {
-      if (!mhb_orbit_contacts_relate(d->passage, from + (i + .5) * h, h * period, i == 0,
+      if (!mhb_orbit_contacts_relate(d->passage, from + (i + 0.5) * h, h * period, i == 0,
                                      d->variation->relation))
         return 0;
       if (!noting && !mhb_variational_couple(d->variation)) return 0;

@@ -79,7 +79,7 @@ void mhb_variational_clear(mhb_variational *v, int columns) {
 /* Damped oscillator over h, exactly; force constant. */
 static void set_propagator(double w, double zeta, double h, double *e) {
   double a = zeta * w, wd = w * sqrt(1 - zeta * zeta), decay = exp(-a * h);
-  double s = sin(wd * h), half = sin(.5 * wd * h), ratio = s / wd;
+  double s = sin(wd * h), half = sin(0.5 * wd * h), ratio = s / wd;
   double change = expm1(-a * h) + decay * (a * ratio - 2 * half * half); /* of q by q */
   e[DQ_Q]       = change;
   e[DQ_V]       = decay * ratio;
@@ -197,7 +197,7 @@ static double coupling(const mhb_variational *v, int row, int column) {
   const double             *C = v->compliance + first, *R = v->structure->flexibility;
   double                    sum = row == column;
   for (int k = 0; k < 3; k++) {
-    sum += .5 * C[k] * relation->hold[k][column % 3];
+    sum += 0.5 * C[k] * relation->hold[k][column % 3];
     if (R) sum += R[first + k] * relation->grow[k][column % 3];
   }
   return sum;
@@ -259,7 +259,7 @@ MHB_INLINE void solve_contacts(const mhb_variational *v, int n, int block, int m
   for (int j = 0; j < n / 3; j++) {
     const mhb_linearised_law *relation = &v->relation[j];
     contact_rows(u, sigma, j, y);
-    for (int r = 0; r < 3; r++) P[3 * j + r] += .5 * dot3(relation->hold[r], D + 3 * j);
+    for (int r = 0; r < 3; r++) P[3 * j + r] += 0.5 * dot3(relation->hold[r], D + 3 * j);
     for (int i = 0; i < 2; i++)
       sigma[2 * j + i] = dot3(relation->keep[i], y) + dot3(relation->gain[i], D + 3 * j);
     for (int r = 0; r < 3; r++) u[3 * j + r] += D[3 * j + r];

@@ -180,7 +180,7 @@ static int solve_slip(const mhb_radau *rule, const mhb_law *law, const mhb_conta
     set_forces(law, step, &d);
     answer(matrix, y, step);
     double size = slip_residual(rule, law, rub, step, &d, r);
-    if (size <= 1e-13 * scale || (size <= 1e-11 * scale && size > .1 * last)) return 1;
+    if (size <= 1e-13 * scale || (size <= 1e-11 * scale && size > 0.1 * last)) return 1;
     last = size;
     slip_jacobian(rule, law, matrix, step, &d, J);
     if (!mhb_factor_real(F, J, pivot)) return 0;
@@ -247,7 +247,7 @@ double mhb_contact_step_excess(const mhb_radau *rule, const mhb_law *law,
                                const mhb_contact_point *rub, const mhb_contact_step *step,
                                mhb_contact_event event, double tau) {
   if (event == MHB_SLIP_TO_STICK)
-    return -.5 * (law->ku[0] + law->ku[2]) * slider_speed(rule, step->kappa, tau);
+    return -0.5 * (law->ku[0] + law->ku[2]) * slider_speed(rule, step->kappa, tau);
   double n = law->n0 + law->kv * cubic(rule, rub->u[0], step->u, 3, tau);
   if (event == MHB_CONTACT_CLOSES) return n;
   if (event == MHB_CONTACT_OPENS) return -n;

@@ -54,7 +54,7 @@ static double frequency_of(const witness *w, int i) {
   const double *range = w->settings->frequency;
   if (w->asked->listed) return w->asked->frequency[i];
   int n = w->asked->n_frequencies;
-  return n > 1 ? range[0] + (range[1] - range[0]) * i / (n - 1) : .5 * (range[0] + range[1]);
+  return n > 1 ? range[0] + (range[1] - range[0]) * i / (n - 1) : 0.5 * (range[0] + range[1]);
 }
 
 static shb_status add_cell(witness *w, int branch, double n0, double hz, cell **out) {
@@ -228,7 +228,7 @@ static int keep(const witness *w, const mhb_steady_state_result *r, cell *c) {
 static shb_status run_cell(const witness *w, mhb_integrator *g, mhb_steady_state *orbit, bool first,
                            cell *c) {
   const mhb_integration_settings *a        = w->asked;
-  mhb_steady_state_settings       settings = {.1 * a->tolerance, a->max_periods};
+  mhb_steady_state_settings       settings = {0.1 * a->tolerance, a->max_periods};
   double                          began    = shb_seconds();
   mhb_integrator_set(g, 2 * PI * c->hz, c->n0, a->steps);
   if (c->start) {

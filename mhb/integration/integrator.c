@@ -200,7 +200,7 @@ static void close_contact(mhb_integrator *g, int contact) {
   mhb_contact_point *rub = &g->rub[contact];
   double             direction;
   mhb_contact_step_change(law, MHB_STICK, 0, rub);
-  if (!(law->mu > 0) || !solve(g, span_of(g, .01 * g->nominal.h))) return;
+  if (!(law->mu > 0) || !solve(g, span_of(g, 0.01 * g->nominal.h))) return;
   if (mhb_contact_step_closing(&g->chain.rule, law, rub, &g->step[contact], &direction) > 0)
     mhb_contact_step_change(law, MHB_SLIDE, direction, rub);
 }
@@ -231,7 +231,7 @@ static void take_occasion(mhb_integrator *g, const occasion *o) {
 
 /* The step of length h was solved and holds an occasion at its end: by how much of h the end should move. */
 static double correction(const mhb_integrator *g, const occasion *o) {
-  double at = excess(g, o, 1), slope = (at - excess(g, o, .99)) / .01;
+  double at = excess(g, o, 1), slope = (at - excess(g, o, 0.99)) / 0.01;
   return slope > 0 ? -at / slope : 0;
 }
 
@@ -250,7 +250,7 @@ static int approach(mhb_integrator *g, occasion o, double h, double want) {
     mhb_modal_step *span = span_of(g, h);
     if (!solve(g, span)) return 0;
     occasion earlier = first_occasion(g);
-    if (earlier.tau < .999) {
+    if (earlier.tau < 0.999) {
       o = earlier;
       h *= fmax(o.tau, 1e-3);
       continue;
@@ -261,7 +261,7 @@ static int approach(mhb_integrator *g, occasion o, double h, double want) {
       take_occasion(g, &o);
       return 1;
     }
-    h *= 1 + fmin(fmax(part, -.5), .5);
+    h *= 1 + fmin(fmax(part, -0.5), 0.5);
   }
   return 0;
 }
@@ -282,7 +282,7 @@ static int take(mhb_integrator *g, double want) {
       return 1;
     }
     if (turns(g, &o) && o.tau * h > 1e-3 * g->nominal.h) {
-      span = span_of(g, .7 * o.tau * h);
+      span = span_of(g, 0.7 * o.tau * h);
       if (!solve(g, span)) continue;
       if (first_occasion(g).tau > 1) {
         accept(g, span);

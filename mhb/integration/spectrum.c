@@ -25,7 +25,7 @@ static double prepare(int n, double *x) {
   double mean = 0, size = 0;
   for (int i = 0; i < n; i++) mean += x[i] / n;
   for (int i = 0; i < n; i++) {
-    x[i] = (x[i] - mean) * (1 - cos(2 * PI * (i + .5) / n));
+    x[i] = (x[i] - mean) * (1 - cos(2 * PI * (i + 0.5) / n));
     size += x[i] * x[i] / n;
   }
   return size;
