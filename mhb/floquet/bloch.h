@@ -14,21 +14,21 @@
 #include "mesh/base/status.h"
 
 typedef struct {
-  int             cells, room; /* g; states a cell */
-  double         *real;        /* [room][room] */
-  double         *re, *im;     /* [room] */
-  double complex *matrix;      /* [room][room], and what follows for complex problems only */
-  double complex *value;       /* [room] */
-  double         *work;        /* [size] */
+  int             cells, capacity; /* g; states a cell */
+  double         *real;            /* [room][room] */
+  double         *re, *im;         /* [room] */
+  double complex *matrix;          /* [room][room], and what follows for complex problems only */
+  double complex *value;           /* [room] */
+  double         *work;            /* [size] */
   int             size;
 } mhb_bloch;
 
 /* For up to room states a cell. SHB_ERR_IO: no memory. */
-shb_status mhb_bloch_create(int cells, int room, mhb_bloch *bloch);
+shb_status mhb_bloch_create(int cells, int capacity, mhb_bloch *bloch);
 void       mhb_bloch_destroy(mhb_bloch *bloch);
 
 /* S [cells][n][n], column-major -> multiplier [cells n], conjugates side by side. names: k. 0: the eigensolver failed. */
-int mhb_bloch_multipliers(mhb_bloch *bloch, int n, const double *S, int chunks, int names,
+int mhb_bloch_multipliers(mhb_bloch *bloch, int n, const double *S, int n_segments, int cell_shift,
                           double complex *multiplier);
 
 #endif

@@ -21,7 +21,7 @@ enum { MAX_STATES = 600, FINEST = 32 };
 struct mhb_floquet {
   mhb_modal_structure     structure; /* all modes */
   mhb_modal_structure     reduced;   /* those that are integrated */
-  mhb_transition_schedule timetable;
+  mhb_transition_schedule schedule;
   mhb_linear_exponents    exponents;
   mhb_contact_evaluator  *contact;
   mhb_monodromy          *monodromy; /* NULL: too many states even with one mode */
@@ -42,23 +42,25 @@ static int affordable(const mhb_floquet *s) {
 static shb_status fill(mhb_floquet *s, const mhb_receptance *receptance,
                        const mhb_settings *settings, int substeps) {
   SHB_TRY(mhb_modal_structure_create(receptance, settings, receptance->n_modes, &s->structure));
-  const mhb_modal_structure *whole = &s->structure;
-  int m = settings->harmonics, all = 2 * (whole->modes * whole->blades + whole->contacts);
-  SHB_TRY(mhb_transition_schedule_create(whole->blades, whole->pairs, whole->wave, &s->timetable));
-  SHB_TRY(mhb_linear_exponents_create(whole, &s->exponents));
+  const mhb_modal_structure *all_modes = &s->structure;
+  int                        m         = settings->harmonics,
+      all = 2 * (all_modes->modes * all_modes->blades + all_modes->contacts);
+  SHB_TRY(mhb_transition_schedule_create(all_modes->blades, all_modes->pairs, all_modes->wave,
+                                         &s->schedule));
+  SHB_TRY(mhb_linear_exponents_create(all_modes, &s->exponents));
   SHB_TRY(mhb_contact_evaluator_create(m, m, settings->tolerance, &s->contact));
   if (affordable(s) > 0) {
     SHB_TRY(mhb_modal_structure_create(receptance, settings, affordable(s), &s->reduced));
-    SHB_TRY(mhb_monodromy_create(&s->reduced, &s->timetable, s->contact, m, (substeps + 1) / 2,
+    SHB_TRY(mhb_monodromy_create(&s->reduced, &s->schedule, s->contact, m, (substeps + 1) / 2,
                                  FINEST, &s->monodromy));
     int cells  = mhb_floquet_cells(s),
-        states = 2 * s->timetable.chunks * (s->reduced.modes + whole->pairs);
+        states = 2 * s->schedule.n_segments * (s->reduced.modes + all_modes->pairs);
     SHB_TRY(mhb_bloch_create(cells, states, &s->bloch));
     s->coarse = calloc((size_t)cells * (size_t)states * (size_t)states + 1, sizeof *s->coarse);
     SHB_CHECK(s->coarse, SHB_ERR_IO, "out of memory for the stability of %d states", all);
   }
   s->nu         = settings->subharmonics;
-  s->state      = calloc((size_t)whole->pairs, sizeof(int));
+  s->state      = calloc((size_t)all_modes->pairs, sizeof(int));
   s->multiplier = calloc((size_t)all, sizeof(double complex));
   SHB_CHECK(s->state && s->multiplier, SHB_ERR_IO, "out of memory for the stability of %d states",
             all);
@@ -87,7 +89,7 @@ void mhb_floquet_destroy(mhb_floquet *s) {
   mhb_monodromy_destroy(s->monodromy);
   mhb_contact_evaluator_destroy(s->contact);
   mhb_linear_exponents_destroy(&s->exponents);
-  mhb_transition_schedule_destroy(&s->timetable);
+  mhb_transition_schedule_destroy(&s->schedule);
   mhb_modal_structure_destroy(&s->reduced);
   mhb_modal_structure_destroy(&s->structure);
   free(s->state);
@@ -101,11 +103,11 @@ void mhb_floquet_move(mhb_floquet *s, const mhb_receptance *receptance) {
   s->exponents.known = 0;
   if (!s->monodromy) return;
   mhb_modal_structure_set(receptance, &s->reduced);
-  s->monodromy->variation->h = -1; /* propagators of no step length */
+  s->monodromy->variational->h = -1; /* propagators of no step length */
 }
 
 int mhb_floquet_cells(const mhb_floquet *s) {
-  return s->structure.blades / s->timetable.chunks;
+  return s->structure.blades / s->schedule.n_segments;
 }
 
 /* By falling modulus; conjugates have equal ones, and an insertion sort keeps their order. */
@@ -119,7 +121,7 @@ static void sort(int n, double complex *x) {
   }
 }
 
-static void take(mhb_floquet *s, int n, mhb_multipliers *out) {
+static void set_multipliers(mhb_floquet *s, int n, mhb_multipliers *out) {
   sort(n, s->multiplier);
   out->n          = n;
   out->multiplier = s->multiplier;
@@ -134,8 +136,8 @@ static void take(mhb_floquet *s, int n, mhb_multipliers *out) {
 /* Nothing slips, opens or closes. */
 static int is_linear(const mhb_floquet *s, const mhb_solution *solution) {
   for (int a = 0; a < s->structure.pairs; a++)
-    if (!s->timetable.permanent[a] ||
-        (s->timetable.state[a] == MHB_SLIDE && solution->law[a].mu > 0))
+    if (!s->schedule.constant_state[a] ||
+        (s->schedule.state[a] == MHB_SLIDE && solution->law[a].mu > 0))
       return 0;
   return 1;
 }
@@ -143,22 +145,23 @@ static int is_linear(const mhb_floquet *s, const mhb_solution *solution) {
 static const char *linear(mhb_floquet *s, const mhb_solution *solution, double period,
                           mhb_multipliers *out) {
   mhb_linear_exponents *x = &s->exponents;
-  for (int a = 0; a < s->structure.pairs; a++) s->state[a] = s->timetable.state[a];
+  for (int a = 0; a < s->structure.pairs; a++) s->state[a] = s->schedule.state[a];
   if (!mhb_linear_exponents_set(x, s->state, solution->law)) return "the eigensolver failed";
   for (int i = 0; i < x->n; i++) s->multiplier[i] = cexp(x->exponent[i] * period);
   out->modes = s->structure.modes;
-  take(s, x->n, out);
+  set_multipliers(s, x->n, out);
   return NULL;
 }
 
 /* Multipliers of the matrix S. */
 static const char *multipliers_of(mhb_floquet *s, const double *S, mhb_multipliers *out) {
-  const mhb_transition_schedule *t = &s->timetable;
+  const mhb_transition_schedule *t = &s->schedule;
   int                            n = s->monodromy->n;
-  if (!mhb_bloch_multipliers(&s->bloch, n, S, t->chunks, t->shift % s->bloch.cells, s->multiplier))
+  if (!mhb_bloch_multipliers(&s->bloch, n, S, t->n_segments, t->blade_shift % s->bloch.cells,
+                             s->multiplier))
     return "the eigensolver failed";
   out->modes = s->reduced.modes;
-  take(s, s->bloch.cells * n, out);
+  set_multipliers(s, s->bloch.cells * n, out);
   return NULL;
 }
 
@@ -243,14 +246,14 @@ static const char *nonlinear(mhb_floquet *s, const mhb_solution *solution, doubl
 /* What was left out: ones of contacts that always stick, zeros of those that forget. */
 static void count_left_out(const mhb_floquet *s, const mhb_solution *solution,
                            mhb_multipliers *out) {
-  const mhb_transition_schedule *t = &s->timetable;
+  const mhb_transition_schedule *t = &s->schedule;
   for (int j = 0; j < s->structure.contacts; j++) {
     double mu = solution->law[j % s->structure.pairs].mu;
-    if (mu == 0 || (t->permanent[j] && t->state[j] == MHB_SEPARATE)) continue;
-    if (t->permanent[j] && t->state[j] == MHB_STICK) {
+    if (mu == 0 || (t->constant_state[j] && t->state[j] == MHB_SEPARATE)) continue;
+    if (t->constant_state[j] && t->state[j] == MHB_STICK) {
       out->n_stuck += 2;
     } else {
-      out->n_zero += 2 - mhb_friction_states(t->state[j], t->permanent[j], mu);
+      out->n_zero += 2 - mhb_friction_states(t->state[j], t->constant_state[j], mu);
     }
   }
 }
@@ -270,7 +273,7 @@ static void judge(mhb_multipliers *out) {
 void mhb_floquet_evaluate(mhb_floquet *s, const mhb_solution *solution, mhb_multipliers *out) {
   double omega = solution->omega / s->nu;
   *out         = (mhb_multipliers){.change = -1};
-  if (!mhb_transition_schedule_set(&s->timetable, solution->info)) {
+  if (!mhb_transition_schedule_set(&s->schedule, solution->info)) {
     out->reason = "the contact law lost its way, or has too many transitions";
   } else if (is_linear(s, solution)) {
     out->reason = linear(s, solution, TWO_PI / omega, out);

@@ -27,12 +27,13 @@ typedef struct {
 } mhb_contact_state;
 
 /* Over a sub-step h, touch at its middle. */
-void mhb_linearised_law_at(const mhb_contact_state *touch, double h, mhb_linearised_law *relation);
+void mhb_linearised_law_at(const mhb_contact_state *point, double h,
+                           mhb_linearised_law *linearised);
 
 /* Jump of the rows of one contact when it passes to a state (no residual flexibility). */
-void mhb_saltation_at(const mhb_contact_state *touch, mhb_state to, mhb_saltation *jump);
+void mhb_saltation_at(const mhb_contact_state *point, mhb_state to, mhb_saltation *jump);
 
 /* Force rate by motion rate, G[3][3], in the state of touch. */
-void mhb_linearised_law_rate(const mhb_contact_state *touch, double G[3][3]);
+void mhb_linearised_law_rate(const mhb_contact_state *point, double G[3][3]);
 
 #endif

@@ -11,9 +11,9 @@
 
 typedef struct {
   const mhb_modal_structure     *structure;
-  const mhb_transition_schedule *timetable;
-  mhb_variational               *variation;
-  mhb_orbit_contacts            *passage;
+  const mhb_transition_schedule *schedule;
+  mhb_variational               *variational;
+  mhb_orbit_contacts            *orbit;
   int                            substeps; /* a period of the fundamental */
   int                           *column;   /* [contact] its first friction state */
   double *u, *matrix; /* [3 contacts], [.][.] the start with residual flexibility */
@@ -24,7 +24,7 @@ typedef struct {
 
 /* finest: the greatest refinement there is room for. SHB_ERR_IO: no memory. Structure, timetable and contact must outlive it. */
 shb_status mhb_monodromy_create(const mhb_modal_structure     *structure,
-                                const mhb_transition_schedule *timetable,
+                                const mhb_transition_schedule *schedule,
                                 mhb_contact_evaluator *contact, int m, int substeps, int finest,
                                 mhb_monodromy **monodromy);
 void       mhb_monodromy_destroy(mhb_monodromy *monodromy);

@@ -29,10 +29,10 @@ void mhb_ring_band_destroy(mhb_ring_band *b) {
   *b = (mhb_ring_band){0};
 }
 
-int mhb_ring_band_near(const mhb_ring_band *b, int blade, int near[3]) {
+int mhb_ring_band_neighbours(const mhb_ring_band *b, int blade, int neighbour[3]) {
   int n = 0;
   for (int step = -1; step <= 1 && n < b->blades; step++)
-    near[n++] = (blade + step + b->blades) % b->blades;
+    neighbour[n++] = (blade + step + b->blades) % b->blades;
   return n;
 }
 

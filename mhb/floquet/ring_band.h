@@ -18,7 +18,7 @@ int  mhb_ring_band_create(int blades, int block, mhb_ring_band *band);
 void mhb_ring_band_destroy(mhb_ring_band *band);
 
 /* Blades a blade meets, itself among them, each once: up to three. */
-int mhb_ring_band_near(const mhb_ring_band *band, int blade, int near[3]);
+int mhb_ring_band_neighbours(const mhb_ring_band *band, int blade, int neighbour[3]);
 
 /* All zero; then each entry of the matrix is set at its row and column, which must be of blades that meet. */
 void mhb_ring_band_clear(mhb_ring_band *band);

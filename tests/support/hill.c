@@ -1,4 +1,4 @@
-#include "mhb/floquet/hill.h"
+#include "tests/support/hill.h"
 
 #include <lapacke.h>
 #include <math.h>
@@ -164,8 +164,8 @@ static int solve(hill *h, double complex *multiplier) {
   return 1;
 }
 
-shb_status mhb_hill(const mhb_modal_structure *s, int d, double omega, int m, const double *dp,
-                    double complex *multiplier) {
+shb_status hill_multipliers(const mhb_modal_structure *s, int d, double omega, int m,
+                            const double *dp, double complex *multiplier) {
   hill   h = {.s = s, .m = m, .K = mhb_real_size(m), .n3 = 3 * s->pairs, .omega = omega};
   size_t n = (size_t)(h.K * h.n3), states = 2 * (size_t)(h.K * s->modes);
   h.B               = calloc(n * (size_t)s->modes, sizeof *h.B);
