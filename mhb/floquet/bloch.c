@@ -7,7 +7,7 @@
 
 static const double TWO_PI = 6.283185307179586476925;
 
-/* An imaginary part this small beside the modulus is the rounding of a power. */
+/* An imaginary part below this share of the modulus is the rounding of a power. */
 static const double REAL = 1e-11;
 
 shb_status mhb_bloch_create(int cells, int capacity, mhb_bloch *b) {
@@ -42,14 +42,14 @@ static double complex power(double complex z, int n) {
   return fabs(cimag(out)) <= REAL * cabs(out) ? creal(out) : out;
 }
 
-/* kappa = 0 or pi: the sum is real, and so is the turn. */
-static int real_problem(mhb_bloch *b, int n, const double *S, int alternate,
+/* kappa = 0 or pi: S(kappa) is real. */
+static int real_problem(mhb_bloch *b, int n, const double *S, int alternating,
                         double complex *value) {
   int square = n * n;
   memcpy(b->real, S, sizeof *S * (size_t)square);
   for (int c = 1; c < b->cells; c++)
     for (int i = 0; i < square; i++)
-      b->real[i] += alternate && c % 2 ? -S[c * square + i] : S[c * square + i];
+      b->real[i] += alternating && c % 2 ? -S[c * square + i] : S[c * square + i];
   if (LAPACKE_dgeev_work(LAPACK_COL_MAJOR, 'N', 'N', n, b->real, n, b->re, b->im, NULL, 1, NULL, 1,
                          b->work, b->size) != 0)
     return 0;
@@ -57,6 +57,7 @@ static int real_problem(mhb_bloch *b, int n, const double *S, int alternate,
   return 1;
 }
 
+/* Other kappa: complex. */
 static int complex_problem(mhb_bloch *b, int n, const double *S, double kappa) {
   int square = n * n;
   for (int i = 0; i < square; i++) b->matrix[i] = S[i];

@@ -10,12 +10,15 @@
 static const double TWO_PI = 6.283185307179586476925;
 static const double MARGIN = 1e-3;
 
-/* Sub-steps are halved until they change the largest multiplier by less than half its distance from 1, and by less than ROUGH the
- * first time, where the change is that of the coarser of two orders, FINE later. FINEST: of half the sub-steps asked for. */
+/* Sub-steps are halved until the largest multiplier changes by less than DISTANCE times its
+ * distance from 1. The change must also be below ROUGH at the first comparison, below FINE later.
+ * The first comparison is with a result of lower order. FINEST: refinement of half the sub-steps in
+ * the settings. */
 static const double DISTANCE = 0.5, ROUGH = 2e-2, FINE = 1e-3;
 
-/* Modes whose squared frequency a contact raises by this part count; sub-steps to a cycle of theirs. */
-static const double SHIFTED = 0.1, A_CYCLE = 3;
+/* A mode counts for the first sub-steps if contacts raise its squared frequency by this share.
+ * CYCLE: sub-steps a cycle of the fastest such mode. */
+static const double SHIFTED = 0.1, CYCLE = 3;
 enum { MAX_STATES = 600, FINEST = 32 };
 
 struct mhb_floquet {
@@ -32,7 +35,7 @@ struct mhb_floquet {
   double complex         *multiplier; /* [states] */
 };
 
-/* Modes a blade that max_states leaves room for. */
+/* Number of modes a blade within max_states. */
 static int affordable(const mhb_floquet *s) {
   int left = s->max_states - 2 * s->structure.contacts, a_mode = 2 * s->structure.blades;
   int most = left > 0 ? left / a_mode : 0;
@@ -110,7 +113,7 @@ int mhb_floquet_cells(const mhb_floquet *s) {
   return s->structure.blades / s->schedule.n_segments;
 }
 
-/* By falling modulus; conjugates have equal ones, and an insertion sort keeps their order. */
+/* By falling modulus. Insertion sort is stable: conjugates, of equal modulus, stay side by side. */
 static void sort(int n, double complex *x) {
   for (int i = 1; i < n; i++) {
     double complex z    = x[i];
@@ -133,7 +136,7 @@ static void set_multipliers(mhb_floquet *s, int n, mhb_multipliers *out) {
   }
 }
 
-/* Nothing slips, opens or closes. */
+/* No contact slips, opens or closes. */
 static int is_linear(const mhb_floquet *s, const mhb_solution *solution) {
   for (int a = 0; a < s->structure.pairs; a++)
     if (!s->schedule.constant_state[a] ||
@@ -165,7 +168,7 @@ static const char *multipliers_of(mhb_floquet *s, const double *S, mhb_multiplie
   return NULL;
 }
 
-/* The matrix of a refinement into the monodromy's M, the one before into coarse. */
+/* M of a refinement; the last one goes to coarse. Returns NULL, or the reason of a failure. */
 static const char *refine(mhb_floquet *s, const mhb_solution *solution, double omega,
                           int refinement) {
   mhb_monodromy *d    = s->monodromy;
@@ -179,7 +182,7 @@ static const char *refine(mhb_floquet *s, const mhb_solution *solution, double o
   return NULL;
 }
 
-/* coarse <- (4 M - coarse)/3: the sub-steps' error is of second order and even, what is left of fourth. */
+/* coarse <- (4 M - coarse)/3. The error is even in h and of second order; of fourth after this. */
 static const double *extrapolated(mhb_floquet *s) {
   const mhb_monodromy *d = s->monodromy;
   for (int i = 0; i < s->bloch.cells * d->n * d->n; i++)
@@ -187,11 +190,11 @@ static const double *extrapolated(mhb_floquet *s) {
   return s->coarse;
 }
 
-static int settled(const mhb_multipliers *out, double most) {
+static int is_accurate(const mhb_multipliers *out, double most) {
   return out->change <= fmax(0.1 * MARGIN, fmin(most, DISTANCE * fabs(out->largest - 1)));
 }
 
-/* |phi|^2 S of a mode of a blade: what sticking contacts add to its squared frequency. */
+/* phi^T S phi of a mode of a blade: the squared frequency that sticking contacts add. */
 static double stiffening(const mhb_modal_structure *structure, const mhb_law *law, int mode) {
   double sum = 0;
   for (int k = 0; k < structure->sides * structure->pairs; k++) {
@@ -207,7 +210,7 @@ static double stiffening(const mhb_modal_structure *structure, const mhb_law *la
   return sum;
 }
 
-/* Where to begin: A_CYCLE sub-steps to a cycle of the fastest mode that its contacts shift. */
+/* First refinement: CYCLE sub-steps a cycle of the fastest mode that the contacts stiffen. */
 static int first_refinement(const mhb_floquet *s, const mhb_law *law, double omega) {
   const mhb_modal_structure *structure  = &s->reduced;
   double                     square     = 0;
@@ -216,13 +219,13 @@ static int first_refinement(const mhb_floquet *s, const mhb_law *law, double ome
     double own = structure->omega[i] * structure->omega[i], more = stiffening(structure, law, i);
     if (more > SHIFTED * own) square = fmax(square, own + more);
   }
-  while (s->monodromy->substeps * refinement * omega < A_CYCLE * sqrt(square) &&
+  while (s->monodromy->substeps * refinement * omega < CYCLE * sqrt(square) &&
          4 * refinement < FINEST)
     refinement *= 2;
   return refinement;
 }
 
-/* Slip, opening, closing: sub-steps halved until the answer no longer hangs on them. */
+/* Slip, opening, closing: sub-steps are halved until the largest multiplier is accurate. */
 static const char *nonlinear(mhb_floquet *s, const mhb_solution *solution, double omega,
                              mhb_multipliers *out) {
   if (!s->monodromy) return "more states than max_states";
@@ -234,7 +237,7 @@ static const char *nonlinear(mhb_floquet *s, const mhb_solution *solution, doubl
     double before = out->largest;
     why           = multipliers_of(s, extrapolated(s), out);
     out->change   = fabs(out->largest - before);
-    if (why || settled(out, refinement == 2 * first ? ROUGH : FINE)) return why;
+    if (why || is_accurate(out, refinement == 2 * first ? ROUGH : FINE)) return why;
     if (refinement == FINEST) break;
     why = refine(s, solution, omega, 2 * refinement);
   }
@@ -243,7 +246,7 @@ static const char *nonlinear(mhb_floquet *s, const mhb_solution *solution, doubl
   return why;
 }
 
-/* What was left out: ones of contacts that always stick, zeros of those that forget. */
+/* Multipliers left out: ones of constantly stuck contacts, zeros of missing friction states. */
 static void count_left_out(const mhb_floquet *s, const mhb_solution *solution,
                            mhb_multipliers *out) {
   const mhb_transition_schedule *t = &s->schedule;
@@ -258,12 +261,12 @@ static void count_left_out(const mhb_floquet *s, const mhb_solution *solution,
   }
 }
 
-static void judge(mhb_multipliers *out) {
-  double beyond = 1 + fmax(MARGIN, out->change);
-  for (int i = 0; i < out->n; i++) out->n_unstable += cabs(out->multiplier[i]) > beyond;
+static void set_verdict(mhb_multipliers *out) {
+  double margin = 1 + fmax(MARGIN, out->change);
+  for (int i = 0; i < out->n; i++) out->n_unstable += cabs(out->multiplier[i]) > margin;
   if (out->reason) {
     out->verdict = MHB_UNDECIDED;
-  } else if (out->largest > beyond) {
+  } else if (out->largest > margin) {
     out->verdict = MHB_UNSTABLE;
   } else {
     out->verdict = out->largest > 1 ? MHB_MARGINAL : MHB_STABLE;
@@ -281,5 +284,5 @@ void mhb_floquet_evaluate(mhb_floquet *s, const mhb_solution *solution, mhb_mult
     out->reason = nonlinear(s, solution, omega, out);
   }
   if (!out->reason) count_left_out(s, solution, out);
-  judge(out);
+  set_verdict(out);
 }

@@ -5,12 +5,12 @@
 
 #include "mhb/contact/slip.h"
 
-/* What slip needs to know of its direction. */
+/* Terms of slip by its direction; header for the symbols. */
 typedef struct {
   double e[2], q[2], beta, beta_theta;
   double across[2]; /* (q - beta e)^T Ku */
   double Ke[2], eKe;
-  double gamma, turn, kappa; /* turn: theta' */
+  double gamma, theta_rate, kappa;
 } slip_terms;
 
 static void times_ku(const double ku[3], const double x[2], double y[2]) {
@@ -35,8 +35,8 @@ static slip_terms terms_of(const mhb_contact_state *point) {
   for (int i = 0; i < 2; i++) t.across[i] = Kq[i] - t.beta * t.Ke[i];
   t.gamma = dot2(t.e, x) - law->mu * n;
   if (limit > 0) {
-    t.turn  = (dot2(t.q, x) - t.beta * t.gamma) / limit;
-    t.kappa = (t.gamma * (1 + t.beta_theta) + t.beta * dot2(t.q, x)) / limit;
+    t.theta_rate = (dot2(t.q, x) - t.beta * t.gamma) / limit;
+    t.kappa      = (t.gamma * (1 + t.beta_theta) + t.beta * dot2(t.q, x)) / limit;
   }
   return t;
 }
@@ -50,22 +50,23 @@ static void stick_law(const mhb_law *law, mhb_linearised_law *r) {
   }
 }
 
-/* Midpoint rule: tau mean = T.y + M.D/2,  mean force (along) mu n mean e + tau mean q. */
+/* Midpoint rule: mean of tau = T.y + M.D/2, mean force = mu (mean dn) e + (mean tau) q. */
 static void slip_law(const mhb_contact_state *point, double h, mhb_linearised_law *r) {
   const mhb_law *law   = point->law;
   slip_terms     t     = terms_of(point);
-  double         mu_kv = law->mu * law->kv, turn = h * t.turn;
-  double         ease = 1 / (1 + 0.5 * fmax(h * t.kappa, -1.8));
-  double         T[3] = {-0.5 * ease * turn * mu_kv, ease, 0};
-  double M[3] = {ease * (t.beta - 0.5 * turn) * mu_kv, ease * t.across[0], ease * t.across[1]};
+  double         mu_kv = law->mu * law->kv, angle = h * t.theta_rate;
+  double         relaxation = 1 / (1 + 0.5 * fmax(h * t.kappa, -1.8));
+  double         T[3]       = {-0.5 * relaxation * angle * mu_kv, relaxation, 0};
+  double         M[3] = {relaxation * (t.beta - 0.5 * angle) * mu_kv, relaxation * t.across[0],
+                         relaxation * t.across[1]};
   for (int i = 0; i < 2; i++) {
     for (int k = 0; k < 3; k++) {
       double along = k == 0 ? mu_kv : 0, before = k == 1;
       r->mean_y[1 + i][k]  = along * t.e[i] + T[k] * t.q[i];
       r->mean_du[1 + i][k] = along * t.e[i] + M[k] * t.q[i];
-      r->df_y[1 + i][k]    = (2 * (T[k] - before) + turn * along) * t.q[i] - turn * T[k] * t.e[i];
+      r->df_y[1 + i][k]    = (2 * (T[k] - before) + angle * along) * t.q[i] - angle * T[k] * t.e[i];
       r->df_du[1 + i][k] =
-          (M[k] + 0.5 * turn * along) * t.q[i] + (along - 0.5 * turn * M[k]) * t.e[i];
+          (M[k] + 0.5 * angle * along) * t.q[i] + (along - 0.5 * angle * M[k]) * t.e[i];
     }
   }
   for (int k = 0; k < 3; k++) {
@@ -115,7 +116,7 @@ void mhb_saltation_at(const mhb_contact_state *point, mhb_state to, mhb_saltatio
   }
 }
 
-/* f' = Ku s' - Ku e (e.Ku s' - mu n')/(e.Ku e);  where n = 0 the friction can only grow along e. */
+/* f' = Ku s' - Ku e (e.Ku s' - mu n')/(e.Ku e);  where n = 0 friction can only increase along e. */
 static void slip_rate(const mhb_contact_state *point, double G[3][3]) {
   slip_terms    t  = terms_of(point);
   const double *ku = point->law->ku, K[2][2] = {{ku[0], ku[1]}, {ku[1], ku[2]}};

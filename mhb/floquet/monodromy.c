@@ -7,7 +7,7 @@
 
 static const double TWO_PI = 6.283185307179586476925;
 
-/* Pieces shorter than this, in periods, are passed over. */
+/* Shorter intervals between events, in periods, are skipped. */
 static const double SHORT = 1e-13;
 
 shb_status mhb_monodromy_create(const mhb_modal_structure     *s,
@@ -68,7 +68,7 @@ static int friction_states(const mhb_monodromy *d, int contact) {
 
 /* ---- columns ---- */
 
-/* Forces of a contact by its rows at the start: p = of_u (v, u, w) + of_sigma sigma. */
+/* Forces of a contact at the start: dp = of_u (v, u, w) + of_sigma sigma. */
 static void start_force(const mhb_contact_state *point, int constant_state, double of_u[3][3],
                         double of_sigma[3][2]) {
   const mhb_law *law = point->law;
@@ -86,7 +86,7 @@ static void start_force(const mhb_contact_state *point, int constant_state, doub
   }
 }
 
-/* With residual flexibility u solves u = B q - R p(u, sigma): d->matrix = I + R p_u, factorized. */
+/* With residual flexibility du = B dq - R dp(du, sigma): factors of d->matrix = I + R of_u. */
 static int start_matrix(mhb_monodromy *d) {
   const mhb_modal_structure *s = d->structure;
   int                        n = 3 * s->contacts;
@@ -104,7 +104,8 @@ static int start_matrix(mhb_monodromy *d) {
   return mhb_factor_real(n, d->matrix, d->pivot);
 }
 
-/* Motion of the contacts at the start for a unit of mode i of a blade (contact < 0), or of friction state i of a contact. */
+/* Motion u of the contacts at the start by a unit disturbance: of mode i of a blade if contact < 0,
+ * else of friction state i of the contact. */
 static void start_motion(mhb_monodromy *d, int contact, int blade, int i, double *u) {
   const mhb_modal_structure *s  = d->structure;
   int                        n3 = 3 * s->pairs, n = 3 * s->contacts;
@@ -125,7 +126,7 @@ static void start_motion(mhb_monodromy *d, int contact, int blade, int i, double
   mhb_solve_real(n, d->matrix, d->pivot, u);
 }
 
-/* Rows u, and the friction of contacts that stick throughout. */
+/* Rows u of a column, and sigma of contacts that stick for the whole period. */
 static void put_motion(mhb_monodromy *d, int column, const double *u) {
   const mhb_modal_structure *s     = d->structure;
   int                        first = modal_states(s), n = 3 * s->contacts;
@@ -173,7 +174,7 @@ static int start_columns(mhb_monodromy *d) {
   return 1;
 }
 
-/* State of a cell <- a row of the variation. */
+/* Row of M: a state of a cell <- a variational row. */
 static void put_row(mhb_monodromy *d, int from, int cell, int state) {
   size_t  n = (size_t)d->n;
   double *S = d->M + (size_t)cell * n * n + state;
@@ -181,7 +182,7 @@ static void put_row(mhb_monodromy *d, int from, int cell, int state) {
     S[(size_t)column * n] = *mhb_variational_at(d->variational, from, column);
 }
 
-/* The end of the stretch, blades renamed: what blade b holds is now blade b - shift. */
+/* M from the rows at the end, blades renamed: blade b becomes blade b - blade_shift. */
 static void set_matrix(mhb_monodromy *d) {
   const mhb_modal_structure *s    = d->structure;
   int                        rows = s->modes * s->blades, half = s->modes * d->blades;
@@ -200,8 +201,9 @@ static void set_matrix(mhb_monodromy *d) {
   }
 }
 
-/* ---- the stretch ---- */
+/* ---- integration ---- */
 
+/* The interval between two events. Returns 0 if a system was singular. */
 static int integrate_interval(mhb_monodromy *d, double from, double to, int refinement) {
   double length = to - from, period = TWO_PI / d->orbit->omega;
   if (length < SHORT) return 1;
@@ -221,7 +223,8 @@ static int integrate_interval(mhb_monodromy *d, double from, double to, int refi
   return 1;
 }
 
-/* One stretch: note where the contacts must be looked at, or integrate. 0: something was singular. */
+/* The segment: in the first pass phases of samples are collected, in the second it is integrated.
+ * Returns 0 if a system was singular. */
 static int run_pass(mhb_monodromy *d, int first_pass, int refinement) {
   const mhb_transition_schedule *t = d->schedule;
   mhb_orbit_contacts_begin(d->orbit, first_pass);

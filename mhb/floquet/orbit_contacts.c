@@ -11,7 +11,7 @@
 
 static const double TWO_PI = 6.283185307179586476925;
 
-/* How far from an opening or closing the direction of the friction is taken, in periods. */
+/* Distance from an opening, in periods, at which the direction of friction is sampled. */
 static const double NEAR = 1e-8;
 
 shb_status mhb_orbit_contacts_create(const mhb_modal_structure     *s,
@@ -66,7 +66,7 @@ static int pair_of(const mhb_orbit_contacts *d, int contact) {
 
 /* ---- the periodic motion ---- */
 
-/* Harmonic k of (R p)_r of blade 0; the force of blade b lags by k b phi. */
+/* Harmonic k of (R p)_r of blade 0; the force of blade b lags by k b 2 pi E/N. */
 static double complex flexibility_motion(const mhb_orbit_contacts *d, int k, int r) {
   const mhb_modal_structure *s = d->structure;
   size_t         n = 3 * (size_t)s->contacts, n3 = 3 * (size_t)s->pairs, nb = (size_t)d->nb;
@@ -108,7 +108,8 @@ static void motion_rate(mhb_orbit_contacts *d, const double *x, int contact, dou
   }
 }
 
-/* Load and direction of a slipping contact. While collecting, only the phase is noted. */
+/* Normal load and friction direction of a slipping contact; in the first pass only the phase is
+ * collected. */
 static void take_sample(mhb_orbit_contacts *d, int contact, double at) {
   int                 pair = pair_of(d, contact);
   mhb_contact_sample *sample =
@@ -128,7 +129,7 @@ static int is_slipping(const mhb_contact_state *point) {
   return point->state == MHB_SLIDE && point->law->mu > 0;
 }
 
-/* ---- rates with residual flexibility: p' = (I + G R)^-1 G w',  u' = w' - R p' ---- */
+/* ---- rates with residual flexibility: p' = (I + G R)^-1 G w', u' = w' - R p' ---- */
 
 /* Rows of contact j of I + G R, and of G w'. */
 static void rate_rows(mhb_orbit_contacts *d, int j, double at, double *rate) {
@@ -145,7 +146,7 @@ static void rate_rows(mhb_orbit_contacts *d, int j, double at, double *rate) {
   }
 }
 
-/* I + G R, factorized; and p' into rate[n]. 0: singular. */
+/* Factors of I + G R, and p' into rate[n]. Returns 0 if singular. */
 static int force_rates(mhb_orbit_contacts *d, double at, double *rate) {
   int n = 3 * d->structure->contacts;
   for (int j = 0; j < d->structure->contacts; j++) rate_rows(d, j, at, rate);
@@ -163,7 +164,7 @@ static void elastic_feedback(const mhb_modal_structure *s, const double *p, doub
   }
 }
 
-/* Rates of the motion of one contact, or of all of them where they are coupled. */
+/* Rates of the motion of one contact; with residual flexibility of all. Returns 0 if singular. */
 static int set_rates(mhb_orbit_contacts *d, int contact, double at) {
   const mhb_modal_structure *s = d->structure;
   if (!s->flexibility) {
@@ -217,7 +218,6 @@ int mhb_orbit_contacts_any_slips(const mhb_orbit_contacts *d) {
   return 0;
 }
 
-/* Relations of all contacts over a sub-step with this middle; those that do not slip only at the first. */
 int mhb_orbit_contacts_linearise(mhb_orbit_contacts *d, double middle, double h, int first,
                                  mhb_linearised_law *linearised) {
   const mhb_modal_structure *s = d->structure;
@@ -236,7 +236,7 @@ int mhb_orbit_contacts_linearise(mhb_orbit_contacts *d, double middle, double h,
 
 /* ---- events ---- */
 
-/* The direction in which slip begins at a closing (eq. 15), from the motion that the law saw. */
+/* Direction of slip at a closing (eq. 15), by the rate of the solution's motion. */
 static void closing_direction(mhb_orbit_contacts *d, int contact, double at) {
   mhb_contact_state *point   = &d->point[contact];
   const mhb_law     *law     = point->law;
@@ -248,7 +248,8 @@ static void closing_direction(mhb_orbit_contacts *d, int contact, double at) {
   point->n = 0;
 }
 
-/* Rows of all contacts change by jump[n] times alpha. */
+/* du, dsigma of all contacts by the force jump[n] alpha; sigma of the contact itself is set by
+ * mhb_saltation. */
 static void set_coupled_jump(mhb_orbit_contacts *d, int contact, const double *jump,
                              mhb_variational *v) {
   elastic_feedback(d->structure, jump, v->du);
@@ -263,7 +264,8 @@ static void set_coupled_jump(mhb_orbit_contacts *d, int contact, const double *j
   }
 }
 
-/* Stick to slip: dp jumps along (I + G R)^-1 (0, Ku e) until it obeys the friction limit. G: still stuck. */
+/* Stick to slip: dp jumps along (I + G R)^-1 (0, Ku e) to the friction limit; G of the stuck
+ * state. */
 static int elastic_onset(mhb_orbit_contacts *d, double at, mhb_saltation *jump,
                          mhb_variational *v) {
   const mhb_contact_state *point = &d->point[jump->contact];
@@ -286,7 +288,7 @@ static int elastic_onset(mhb_orbit_contacts *d, double at, mhb_saltation *jump,
   return 1;
 }
 
-/* Opening and closing: the event shifts by -dv/v', and with it the step of p' from one state to the next. */
+/* Opening and closing: the event shifts by -dv/v', and with it the jump of p'. */
 static int elastic_contact(mhb_orbit_contacts *d, double at, mhb_state to, mhb_saltation *jump,
                            mhb_variational *v) {
   mhb_contact_state *point = &d->point[jump->contact];
@@ -305,13 +307,13 @@ static int elastic_contact(mhb_orbit_contacts *d, double at, mhb_state to, mhb_s
   return ok;
 }
 
-/* With residual flexibility the direction of every slipping contact is needed, else of one that turns to or from slip. At n = 0
- * friction has no direction: shortly before. */
-static void sample_slipping(mhb_orbit_contacts *d, const mhb_event *event, int turns) {
+/* Sample the direction of a contact between stick and slip; with residual flexibility of every
+ * slipping contact. At an opening, where n = 0, shortly before it. */
+static void sample_slipping(mhb_orbit_contacts *d, const mhb_event *event, int changes_slip) {
   double at = event->state == MHB_SEPARATE ? event->at - NEAR : event->at;
   for (int j = 0; j < d->structure->contacts; j++) {
     int coupled = d->structure->flexibility && is_slipping(&d->point[j]);
-    if (coupled || (turns && j == event->contact)) take_sample(d, j, at);
+    if (coupled || (changes_slip && j == event->contact)) take_sample(d, j, at);
   }
 }
 
@@ -319,16 +321,16 @@ int mhb_orbit_contacts_event(mhb_orbit_contacts *d, const mhb_event *event, mhb_
   mhb_contact_state *point = &d->point[event->contact];
   mhb_state          from = point->state, to = (mhb_state)event->state;
   int                friction = point->law->mu > 0, ok = 1;
-  int                turns = friction && from != MHB_SEPARATE && to != MHB_SEPARATE;
-  mhb_saltation      jump  = {.contact = event->contact};
-  sample_slipping(d, event, turns);
+  int                changes_slip = friction && from != MHB_SEPARATE && to != MHB_SEPARATE;
+  mhb_saltation      jump         = {.contact = event->contact};
+  sample_slipping(d, event, changes_slip);
   if (!d->first_pass) {
     if (friction && from == MHB_SEPARATE && to == MHB_SLIDE)
       closing_direction(d, event->contact, event->at);
-    if (!d->structure->flexibility || (turns && to == MHB_STICK)) {
+    if (!d->structure->flexibility || (changes_slip && to == MHB_STICK)) {
       ok = set_rates(d, event->contact, event->at);
-      mhb_saltation_at(point, to, &jump); /* measure 0: no other contact takes notice */
-    } else if (turns) {
+      mhb_saltation_at(point, to, &jump); /* measure 0: no other contact jumps */
+    } else if (changes_slip) {
       ok = elastic_onset(d, event->at, &jump, v);
     } else {
       ok = elastic_contact(d, event->at, to, &jump, v);

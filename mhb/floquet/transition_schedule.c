@@ -4,11 +4,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Events closer than this, in periods, are of one time. */
+/* Events closer than this, in periods, are simultaneous. */
 static const double CLOSE = 1e-12;
 
-/* A contact that missed its tolerance by little still has its transitions in the right places. */
-static const double TOO_FAR = 1e-5;
+/* Largest error of the contact law, relative to the force scale, at which its transitions can still
+ * be used. */
+static const double USABLE_ERROR = 1e-5;
 
 static int common_divisor(int a, int b) {
   while (b) {
@@ -48,7 +49,7 @@ static double fraction(double x) {
   return x < 1 ? x : 0;
 }
 
-/* Phase by which a contact's blade is behind. */
+/* Phase by which a contact's blade lags. */
 static double lag(const mhb_transition_schedule *t, int contact) {
   return (double)((long)(contact / t->pairs) * t->wave % t->blades) / t->blades;
 }
@@ -80,7 +81,7 @@ static int is_constant(const mhb_contact_info *info) {
   return info->n_transitions == 0;
 }
 
-/* Friction states that a start at this phase would carry along. */
+/* Number of friction states of all contacts at a phase. */
 static int friction_states_at(const mhb_transition_schedule *t, const mhb_contact_info *info,
                               double phase) {
   int sum = 0;
@@ -108,7 +109,7 @@ static int later(const mhb_event *a, const mhb_event *b) {
   return a->at != b->at ? a->at > b->at : a->order > b->order;
 }
 
-/* Insertion sort: no allocation, few events. */
+/* Insertion sort: there are few events, and nothing is allocated. */
 static void sort_events(mhb_transition_schedule *t) {
   for (int i = 1; i < t->n_events; i++) {
     mhb_event event = t->event[i];
@@ -118,7 +119,7 @@ static void sort_events(mhb_transition_schedule *t) {
   }
 }
 
-/* Events at the very start are over; they come again at its end. */
+/* Events of the interval. One at the start belongs to its end. */
 static int list_events(mhb_transition_schedule *t, const mhb_contact_info *info) {
   t->n_events = 0;
   for (int j = 0; j < t->blades * t->pairs; j++) {
@@ -137,7 +138,7 @@ static int list_events(mhb_transition_schedule *t, const mhb_contact_info *info)
 }
 
 int mhb_transition_schedule_usable(const mhb_contact_info *info) {
-  return (!info->lost || info->error <= TOO_FAR) && info->n_transitions < MHB_MAX_TRANSITIONS;
+  return (!info->lost || info->error <= USABLE_ERROR) && info->n_transitions < MHB_MAX_TRANSITIONS;
 }
 
 int mhb_transition_schedule_set(mhb_transition_schedule *t, const mhb_contact_info *info) {

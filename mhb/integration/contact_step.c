@@ -3,7 +3,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "mhb/floquet/variational.h"
 #include "mhb/numerics/lu.h"
 
 enum { S = MHB_STAGES, F = MHB_STAGE_FORCES, SAMPLES = 8, ITERATIONS = 20 };
