@@ -44,35 +44,35 @@ mhb_law mhb_contact_step_law(const mhb_law *law);
  *   scale  in      N, forces are found to 1e-13 of it
  *   step   in out  a guess of p, n, theta, kappa; the result
  * 0: not found. */
-int mhb_contact_step_solve(const mhb_radau *rule, const mhb_law *law, const mhb_contact_point *rub,
-                           const double *S, double *stick, int *pivot, const double *y,
-                           double scale, mhb_contact_step *step);
+int mhb_contact_step_solve(const mhb_radau *rule, const mhb_law *law,
+                           const mhb_contact_point *point, const double *S, double *stick,
+                           int *pivot, const double *y, double scale, mhb_contact_step *step);
 
 /* A guess for a step of h seconds, from what the contact did before it. */
-void mhb_contact_step_guess(const mhb_law *law, const mhb_contact_point *rub, double h,
+void mhb_contact_step_guess(const mhb_law *law, const mhb_contact_point *point, double h,
                             mhb_contact_step *step);
 
 /* The excess of an event at tau in [0, 1], N: the state has ended where it is positive. */
 double mhb_contact_step_excess(const mhb_radau *rule, const mhb_law *law,
-                               const mhb_contact_point *rub, const mhb_contact_step *step,
+                               const mhb_contact_point *point, const mhb_contact_step *step,
                                mhb_contact_event event, double tau);
 
 /* The first event of a step whose excess passes the tolerance (N): its place in [0, 1]; 2: none. */
 double mhb_contact_step_first(const mhb_radau *rule, const mhb_law *law,
-                              const mhb_contact_point *rub, const mhb_contact_step *step,
+                              const mhb_contact_point *point, const mhb_contact_step *step,
                               double tolerance, mhb_contact_event *event);
 
 /* To the end of a step of h seconds. */
 void mhb_contact_step_advance(const mhb_law *law, const mhb_contact_step *step, double h,
-                              mhb_contact_point *rub);
+                              mhb_contact_point *point);
 
 /* Into another state, where it is now. direction: of the friction, for a slip that begins without any. */
 void mhb_contact_step_change(const mhb_law *law, mhb_state state, double direction,
-                             mhb_contact_point *rub);
+                             mhb_contact_point *point);
 
 /* Rates of (|f|, n) and direction of f at the start of a step: what decides whether a closing contact sticks. */
 double mhb_contact_step_closing(const mhb_radau *rule, const mhb_law *law,
-                                const mhb_contact_point *rub, const mhb_contact_step *step,
+                                const mhb_contact_point *point, const mhb_contact_step *step,
                                 double *direction);
 
 #endif

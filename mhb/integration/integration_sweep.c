@@ -186,7 +186,7 @@ static const mhb_steady_state_result *refine(const witness *w, mhb_integrator *g
                                              const mhb_steady_state_result *r, cell *c) {
   int             n = 3 * r->n_pairs * (r->n_harmonics + 1), periods = r->periods;
   double complex *last = malloc(sizeof *last * (size_t)n);
-  for (int steps = 2 * g->steps; last && r->multiple && !r->lost && steps <= MOST_STEPS;
+  for (int steps = 2 * g->steps; last && r->multiple && !r->failed && steps <= MOST_STEPS;
        steps *= 2) {
     memcpy(last, r->motion, sizeof *last * (size_t)n);
     mhb_integrator_set(g, g->omega, g->n0, steps);
@@ -238,10 +238,10 @@ static shb_status run_cell(const witness *w, mhb_integrator *g, mhb_steady_state
   }
   const mhb_steady_state_result *r = mhb_steady_state_run(orbit, &settings, go_on, NULL);
   c->periods                       = r->periods;
-  if (r->multiple && !r->lost) r = refine(w, g, orbit, &settings, r, c);
+  if (r->multiple && !r->failed) r = refine(w, g, orbit, &settings, r, c);
   if (shb_interrupted()) return SHB_OK;
-  if (!r->lost) SHB_CHECK(keep(w, r, c), SHB_ERR_IO, "out of memory");
-  c->done = r->lost ? -1 : 1;
+  if (!r->failed) SHB_CHECK(keep(w, r, c), SHB_ERR_IO, "out of memory");
+  c->done = r->failed ? -1 : 1;
   if (c->done > 0 && !c->multiple &&
       !mhb_spectrum(g, SPECTRUM_PERIODS, c->line_frequency, c->line_amplitude))
     c->line_amplitude[0] = 0;

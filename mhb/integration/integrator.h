@@ -29,7 +29,7 @@ struct mhb_integrator {
   mhb_settings settings;
   modal_model  model; /* with residual modes, if the model given has residual inertia; else empty */
   mhb_receptance *receptance; /* harmonics 0..n_harmonics, at omega */
-  mhb_ring_step   chain;
+  mhb_ring_step   ring;
   int             n_harmonics, n_load; /* of outputs and starts; highest one of the free motion */
   int             blades, modes, pairs, contacts;
   mhb_law        *law;           /* [pair] */
@@ -38,9 +38,10 @@ struct mhb_integrator {
   int             steps;         /* a period */
   double          t;             /* s, in [0, period] */
   double         *z;             /* [2 (z, z')][blade][mode] */
-  mhb_contact_point *rub;        /* [contact] */
+  mhb_contact_point *point;      /* [contact] */
   mhb_contact_step  *step;       /* [contact] of the last step */
-  int *idle, *hush; /* [contact] changes without progress; events not heeded in the coming step */
+  int               *n_stalled,
+      *suppressed; /* [contact] changes without progress; events not heeded in the coming step */
   double              *y; /* [contact][9] motion at the stages without contact forces of the step */
   double              *stage; /* [6][modes] */
   mhb_modal_step       nominal, cut;
@@ -80,6 +81,5 @@ void mhb_integrator_free(const mhb_integrator *integrator, int blade, double t, 
 /* The state as numbers, for differences and disturbances: z, z' and friction. */
 int  mhb_integrator_size(const mhb_integrator *integrator);
 void mhb_integrator_get(const mhb_integrator *integrator, double *state);
-void mhb_integrator_put(mhb_integrator *integrator, const double *state);
 
 #endif

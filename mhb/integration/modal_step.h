@@ -44,19 +44,19 @@ typedef struct {
   mhb_radau           rule;
   mhb_modal_structure s;
   double             *shape; /* [side][3 pairs][modes] */
-  int                 slots; /* groups (the contacts of a blade's right side) that a group feels: itself, previous, next */
+  int                 n_neighbours; /* groups (the contacts of a blade's right side) that a group feels: itself, previous, next */
   double             *moment; /* [slot][3 pairs][3 pairs][5] scratch */
 } mhb_ring_step;
 
 /* Errors: SHB_ERR_IO no memory. */
 shb_status mhb_ring_step_create(const mhb_receptance *receptance, const mhb_settings *settings,
-                                mhb_ring_step *chain);
-void       mhb_ring_step_destroy(mhb_ring_step *chain);
+                                mhb_ring_step *ring);
+void       mhb_ring_step_destroy(mhb_ring_step *ring);
 
 /* The group in a slot of a group. */
-static inline int mhb_ring_step_sector(const mhb_ring_step *c, int group, int slot) {
+static inline int mhb_ring_step_sector(const mhb_ring_step *c, int sector, int neighbour) {
   int n = c->s.blades;
-  return slot == 0 ? group : slot == 1 ? (group + n - 1) % n : (group + 1) % n;
+  return neighbour == 0 ? sector : neighbour == 1 ? (sector + n - 1) % n : (sector + 1) % n;
 }
 
 typedef struct {
@@ -67,8 +67,8 @@ typedef struct {
   int    *pivot;      /* [pair][9]; pivot[9 pair] < 0: not made yet */
 } mhb_modal_step;
 
-shb_status mhb_modal_step_create(const mhb_ring_step *chain, mhb_modal_step *span);
-void       mhb_modal_step_destroy(mhb_modal_step *span);
-void       mhb_modal_step_length(const mhb_ring_step *chain, double h, mhb_modal_step *span);
+shb_status mhb_modal_step_create(const mhb_ring_step *ring, mhb_modal_step *step);
+void       mhb_modal_step_destroy(mhb_modal_step *step);
+void       mhb_modal_step_length(const mhb_ring_step *ring, double h, mhb_modal_step *step);
 
 #endif

@@ -18,7 +18,7 @@ typedef struct {
 typedef struct {
   int    n_harmonics, n_pairs, n_probes;
   int    multiple; /* the motion repeats after so many periods; 0: it does not */
-  int    lost;     /* the forces of a step were not found: nothing else is valid */
+  int    failed;   /* the forces of a step were not found: nothing else is valid */
   int    periods;  /* that were integrated */
   double distance; /* of the return map, relative; after `multiple` periods, or after one */
   double complex *motion, *force, *probe; /* [pair][3][k], [probe][3][k] as in the response file */
@@ -28,11 +28,11 @@ typedef struct {
 typedef struct mhb_steady_state mhb_steady_state; /* workspace */
 
 /* Outputs with the integrator's n_harmonics. SHB_ERR_IO: no memory. The integrator must outlive it. */
-shb_status mhb_steady_state_create(mhb_integrator *integrator, mhb_steady_state **orbit);
-void       mhb_steady_state_destroy(mhb_steady_state *orbit);
+shb_status mhb_steady_state_create(mhb_integrator *integrator, mhb_steady_state **steady);
+void       mhb_steady_state_destroy(mhb_steady_state *steady);
 
 /* Integrate from the integrator's state. go_on: asked after every period, NULL: never stops. */
-const mhb_steady_state_result *mhb_steady_state_run(mhb_steady_state                *orbit,
+const mhb_steady_state_result *mhb_steady_state_run(mhb_steady_state                *steady,
                                                     const mhb_steady_state_settings *settings,
                                                     int (*go_on)(void *), void *context);
 

@@ -43,7 +43,7 @@ static run prepare(const modal_model *model, const mhb_settings *s, double w, in
 static void until_periodic(run *a, double tolerance, int max_periods) {
   mhb_steady_state_settings settings = {tolerance, max_periods};
   a->r                               = mhb_steady_state_run(a->orbit, &settings, NULL, NULL);
-  assert_false(a->r->lost);
+  assert_false(a->r->failed);
 }
 
 static void finish(run *a) {
@@ -443,6 +443,14 @@ static void rings(void **state) {
   }
 }
 
+/* The state that mhb_integrator_get gave, disturbed. */
+static void put_state(mhb_integrator *g, const double *state) {
+  int n = 2 * g->blades * g->modes;
+  memcpy(g->z, state, sizeof(double) * (size_t)n);
+  for (int k = 0; k < 2 * g->contacts; k++) g->point[k / 2].p[1 + k % 2] = state[n + k];
+  mhb_integrator_set(g, g->omega, g->n0, g->steps);
+}
+
 /* Mean growth a period of a small disturbance of a motion: integrated beside it, and scaled back after every period. */
 static double growth(run *a, const modal_model *model, const mhb_settings *s, int periods) {
   mhb_integrator    *g = a->g, *other;
@@ -455,7 +463,7 @@ static double growth(run *a, const modal_model *model, const mhb_settings *s, in
   memcpy(y, x, sizeof(double) * (size_t)n);
   for (int i = 0; i < modal; i++) y[i] += 1e-7 * random_unit(&seed);
   for (int period = 0; period < 2 * periods; period++) {
-    mhb_integrator_put(other, y);
+    put_state(other, y);
     double before = mhb_steady_state_distance(g, y, x);
     assert_true(mhb_integrator_period(g) && mhb_integrator_period(other));
     mhb_integrator_get(g, x);
@@ -513,14 +521,15 @@ static void passive(void **state) {
   double x[8], before = INFINITY;
   mhb_integrator_get(a.g, x);
   for (int i = 0; i < 3; i++) x[3 + i] = .3 - .2 * i;
-  mhb_integrator_put(a.g, x);
+  put_state(a.g, x);
   for (int period = 0; period < 200; period++) {
     assert_true(mhb_integrator_period(a.g));
     mhb_integrator_get(a.g, x);
-    const mhb_contact_point *rub  = &a.g->rub[0];
-    double                   load = rub->p[0] + a.g->law[0].balance;
-    double energy = load * load / 2e4 + (rub->p[1] * rub->p[1] + rub->p[2] * rub->p[2]) / 1.4e4 -
-                    a.g->law[0].balance * rub->u[0];
+    const mhb_contact_point *point  = &a.g->point[0];
+    double                   load   = point->p[0] + a.g->law[0].balance;
+    double                   energy = load * load / 2e4 +
+                    (point->p[1] * point->p[1] + point->p[2] * point->p[2]) / 1.4e4 -
+                    a.g->law[0].balance * point->u[0];
     for (int i = 0; i < 3; i++) {
       double w = 2 * PI * model.frequency[i];
       energy += .5 * (x[3 + i] * x[3 + i] + w * w * x[i] * x[i]);
