@@ -1,5 +1,5 @@
 /* The contact law linearised about a periodic motion: over a sub-step, and its jumps at transitions
- * (saltation; Mueller 1995, Leine 2004).
+ * (saltation; Mueller 1995, Leine and Nijmeijer 2004).
  *
  * Slip (contact/slip.h for beta, gamma, theta'), e along the friction and q across it:
  *   df = mu dn e + tau q,

@@ -68,6 +68,7 @@ typedef struct {
   double e[S][2], Ke[S][2], Kq[S][2];
 } slip_directions;
 
+/* Directions of slip at the stages, and the forces p by n and theta. */
 static void set_forces(const mhb_law *law, mhb_contact_step *step, slip_directions *d) {
   for (int i = 0; i < S; i++) {
     double c = cos(step->theta[i]), s = sin(step->theta[i]), q[2] = {-s, c};
@@ -81,7 +82,7 @@ static void set_forces(const mhb_law *law, mhb_contact_step *step, slip_directio
   }
 }
 
-/* Its size, less what rounding may leave. */
+/* r[9] of the slip equations. Returns its largest element less the rounding it may contain. */
 static double slip_residual(const mhb_radau *rule, const mhb_law *law,
                             const mhb_contact_point *point, const mhb_contact_step *step,
                             const slip_directions *d, double r[F]) {
@@ -131,12 +132,13 @@ static void slip_jacobian(const mhb_radau *rule, const mhb_law *law, const doubl
   }
 }
 
+/* n, theta, kappa -= r, no angle by more than 1 rad. Returns 0 if r is not finite. */
 static int slip_update(const double r[F], mhb_contact_step *step) {
-  double turn = 0;
+  double largest = 0;
   for (int i = 0; i < F; i++)
     if (!isfinite(r[i])) return 0;
-  for (int i = 0; i < S; i++) turn = fmax(turn, fabs(r[3 * i + 1]));
-  double part = turn > 1 ? 1 / turn : 1;
+  for (int i = 0; i < S; i++) largest = fmax(largest, fabs(r[3 * i + 1]));
+  double part = largest > 1 ? 1 / largest : 1;
   for (int i = 0; i < S; i++) {
     step->n[i] -= part * r[3 * i];
     step->theta[i] -= part * r[3 * i + 1];
@@ -145,7 +147,7 @@ static int slip_update(const double r[F], mhb_contact_step *step) {
   return 1;
 }
 
-/* Where slip begins: the normal load and the slider's path for friction of a fixed direction. */
+/* Guess at an onset of slip: normal load and slider path for a friction of constant direction. */
 static void begin_slip(const mhb_radau *rule, const mhb_law *law, const mhb_contact_point *point,
                        const double *matrix, const double *y, double scale,
                        mhb_contact_step *step) {
@@ -170,6 +172,7 @@ static void begin_slip(const mhb_radau *rule, const mhb_law *law, const mhb_cont
   }
 }
 
+/* Newton's method. Returns 0 if it does not converge. */
 static int solve_slip(const mhb_radau *rule, const mhb_law *law, const mhb_contact_point *point,
                       const double *matrix, const double *y, double scale, mhb_contact_step *step) {
   slip_directions d;
@@ -222,7 +225,7 @@ int mhb_contact_step_solve(const mhb_radau *rule, const mhb_law *law,
 
 /* ---- events ---- */
 
-/* The cubic through the start and the stages. */
+/* Value at tau of the cubic through the start and the stages. */
 static double cubic(const mhb_radau *rule, double start, const double *stage, int stride,
                     double tau) {
   double value = 0;
@@ -234,6 +237,7 @@ static double cubic(const mhb_radau *rule, double start, const double *stage, in
   return value;
 }
 
+/* Speed of the slider times h, at tau. */
 static double slider_speed(const mhb_radau *rule, const double kappa[S], double tau) {
   double value = 0, weight = 1;
   for (int m = 0; m < S; m++) {
@@ -256,7 +260,7 @@ double mhb_contact_step_excess(const mhb_radau *rule, const mhb_law *law,
   return hypot(fu, fw) - law->mu * n;
 }
 
-/* The root between a (no excess) and b (excess), by Illinois. */
+/* Root of the event function between a (negative) and b (positive), by the Illinois method. */
 static double root_of(const mhb_radau *rule, const mhb_law *law, const mhb_contact_point *point,
                       const mhb_contact_step *step, mhb_contact_event event, double a, double b) {
   double fa = mhb_contact_step_excess(rule, law, point, step, event, a);
@@ -281,6 +285,7 @@ static double root_of(const mhb_radau *rule, const mhb_law *law, const mhb_conta
   return b;
 }
 
+/* First place where the event function exceeds the tolerance; 2: none. */
 static double first_excess(const mhb_radau *rule, const mhb_law *law,
                            const mhb_contact_point *point, const mhb_contact_step *step,
                            double tolerance, mhb_contact_event event) {

@@ -76,8 +76,8 @@ static bool settle_contact(mhb_integrator *g, int j, const double *w) {
   return false;
 }
 
-/* Motion, forces and states of the contacts at z: Gauss-Seidel rounds over the contacts until nothing
- * changes. Every closed contact begins stuck. */
+/* Motion, forces and states of the contacts at z: Gauss-Seidel rounds over the contacts until
+ * nothing changes. Every closed contact begins stuck. */
 static void settle_contacts(mhb_integrator *g) {
   double *w       = g->y;
   int     rounds  = g->ring.s.flexibility ? MAX_ROUNDS : UNCOUPLED_ROUNDS;

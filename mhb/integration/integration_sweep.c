@@ -90,8 +90,8 @@ static shb_status plan_between(sweep *s, const mhb_branch *b, int p, int branch,
   return SHB_OK;
 }
 
-/* Whether a branch can start points at a preload. Those of another order cannot: their harmonics are
- * of another fundamental. */
+/* Whether a branch can start points at a preload. Those of another order cannot: their harmonics
+ * are of another fundamental. */
 static bool is_start(const sweep *s, const mhb_branch *b, double n0) {
   return b->kind == MHB_BRANCH_NONLINEAR && b->n_points > 1 &&
          b->order == s->settings->subharmonics &&

@@ -10,9 +10,13 @@ enum { S = MHB_STAGES, F = MHB_STAGE_FORCES, MAX_SWEEPS = 400, MAX_CUTS = 8, MAX
 
 static const double PI = 3.14159265358979323846;
 
-/* Of the force scale: what contacts are solved to, and what a state may be overstepped by. Of a nominal step: how exactly
- * events are met, and what counts as no progress. */
-static const double SOLVED = 1e-12, OVERSTEP = 1e-10, ON_EVENT = 1e-11, NO_PROGRESS = 1e-9;
+/* Tolerances relative to the force scale: change of the forces in the last sweep; event
+ * function. */
+static const double SOLVED = 1e-12, OVERSTEP = 1e-10;
+
+/* Tolerances relative to a nominal step: time of an event; shortest step that counts as
+ * progress. */
+static const double ON_EVENT = 1e-11, NO_PROGRESS = 1e-9;
 
 /* ---- the motion without contact forces ---- */
 
@@ -53,7 +57,7 @@ MHB_HOT static void add_stage_motion(int n3, int m, const double *shape, const d
     }
 }
 
-/* y without contact forces. */
+/* y: motion of all contacts at the stages without contact forces of the step. */
 static void set_motion(mhb_integrator *g, const mhb_modal_step *modal) {
   int m = g->modes, n3 = 3 * g->pairs;
   memset(g->y, 0, sizeof(double) * F * (size_t)g->contacts);
@@ -79,7 +83,8 @@ MHB_HOT static void subtract(const double *S_, const double *p, double *y) {
   }
 }
 
-/* One contact, given the others. Returns the change of its force, N; < 0: none was found. */
+/* One contact with the forces of the others as they are. Returns the change of its force, N;
+ * negative if none was found. */
 static double solve_contact(mhb_integrator *g, mhb_modal_step *modal, int contact) {
   int    sector = contact / g->pairs, pair = contact % g->pairs;
   double y[F], before[F], change = 0;
@@ -102,7 +107,8 @@ static double solve_contact(mhb_integrator *g, mhb_modal_step *modal, int contac
   return change;
 }
 
-/* All contacts, block by block until nothing changes. 0: not found. */
+/* All contacts, block Gauss-Seidel until the forces are constant. Returns 0 if they do not
+ * settle. */
 static int solve(mhb_integrator *g, mhb_modal_step *modal) {
   set_motion(g, modal);
   for (int j = 0; j < g->contacts; j++)
@@ -119,7 +125,7 @@ static int solve(mhb_integrator *g, mhb_modal_step *modal) {
   return 0;
 }
 
-/* force += shape^T p of a side */
+/* force -= shape^T p of a side */
 MHB_HOT static void add_modal_force(int n3, int m, const double *shape,
                                     const mhb_contact_step *step, double *force) {
   for (int r = 0; r < n3; r++)
@@ -163,7 +169,7 @@ static void accept(mhb_integrator *g, const mhb_modal_step *modal) {
   g->count.steps++;
 }
 
-/* ---- steps that end where a contact changes its state ---- */
+/* ---- steps that end at events ---- */
 
 typedef struct {
   int               contact;
@@ -195,7 +201,8 @@ static mhb_modal_step *modal_step_of(mhb_integrator *g, double h) {
   return &g->cut;
 }
 
-/* A contact that closes sticks if the friction it would then have grows more slowly than its limit (eq. 13). */
+/* A closing contact sticks if the friction of sticking increases more slowly than its limit (eq.
+ * 13). */
 static void close_contact(mhb_integrator *g, int contact) {
   const mhb_law     *law   = &g->law[contact % g->pairs];
   mhb_contact_point *point = &g->point[contact];
@@ -230,13 +237,14 @@ static void apply_event(mhb_integrator *g, const step_event *o) {
   }
 }
 
-/* The step of length h was solved and holds an occasion at its end: by how much of h the end should move. */
+/* Relative change of the step's length that moves its end to the event. */
 static double correction(const mhb_integrator *g, const step_event *o) {
   double at = excess(g, o, 1), slope = (at - excess(g, o, 0.99)) / 0.01;
   return slope > 0 ? -at / slope : 0;
 }
 
-/* Towards an opening the direction of slip may turn like a power of the time that is left: steps shrink with it. */
+/* Whether the direction of slip turns in a step that ends with an opening. It may turn like a power
+ * of the time left; the steps then shrink with that time. */
 static int direction_turns(const mhb_integrator *g, const step_event *o) {
   const mhb_contact_point *point = &g->point[o->contact];
   const mhb_contact_step  *step  = &g->step[o->contact];
@@ -244,7 +252,7 @@ static int direction_turns(const mhb_integrator *g, const step_event *o) {
          fabs(remainder(step->theta[S - 1] - point->theta, PI)) > 1e-9;
 }
 
-/* A step that ends at the occasion, or before it. want: longest. 0: failed. */
+/* One step that ends at the event, or at an earlier one; longest in s. Returns 0 if it failed. */
 static int step_to_event(mhb_integrator *g, step_event o, double h, double longest) {
   for (int k = 0; k < MAX_CUTS; k++) {
     h                     = fmin(h, longest);
@@ -267,7 +275,7 @@ static int step_to_event(mhb_integrator *g, step_event o, double h, double longe
   return 0;
 }
 
-/* One step of at most want seconds. 0: failed. */
+/* One step of at most `longest` seconds. Returns 0 if it failed. */
 static int advance(mhb_integrator *g, double longest) {
   double h = longest;
   for (int k = 0; k < 40; k++, h /= 2) {

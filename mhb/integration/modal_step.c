@@ -10,7 +10,7 @@ enum { S = MHB_STAGES, MOMENTS = 5, GAMMAS = MOMENTS + 2 };
 
 /* ---- the rule ---- */
 
-/* Coefficients by powers of tau of the Lagrange polynomial j through n points. */
+/* Coefficients of the powers of tau in Lagrange's polynomial j through n points. */
 static void lagrange(int n, const double *x, int j, double *power) {
   memset(power, 0, sizeof(double) * (size_t)n);
   power[0]   = 1;
@@ -59,11 +59,14 @@ void mhb_radau_create(mhb_radau *r) {
 }
 
 /* ---- modes ----
- * In tau the impulse response G_0 solves G'' + 2a G' + b G = delta, a = zeta w h, b = (w h)^2; G_k is its k-th integral from 0,
- * G_-1 its derivative, all taken at tau = 1. The answer to tau^m/m! is G_m+1, with velocity G_m, and
- * int (1 - tau)^l/l! G_m = G_m+l+1: nothing else is needed. Integrating the equation k times,
- *   G_k-2 + 2a G_k-1 + b G_k = 1/(k-1)!,   k >= 1,
- * which is used downwards (stable where b is small) from the Taylor series of G_5 and G_4, or upwards from G_-1 and G_0. */
+ *
+ * In tau the impulse response G_0 solves G'' + 2a G' + b G = delta, a = zeta w h, b = (w h)^2. G_k
+ * is its k-th integral from 0, G_-1 its derivative; all are taken at tau = 1. The response to
+ * tau^m/m! is G_m+1, its velocity G_m, and int (1 - tau)^l/l! G_m = G_m+l+1. So G_-1 .. G_5 give
+ * all coefficients. Integrating the equation k times:
+ *   G_k-2 + 2a G_k-1 + b G_k = 1/(k-1)!,   k >= 1.
+ * For small b this is used downwards, where it is stable, from the Taylor series of G_5 and G_4;
+ * else upwards from G_-1 and G_0. */
 
 static const double inverse_factorial[] = {1, 1, 1. / 2, 1. / 6, 1. / 24, 1. / 120, 1. / 720};
 
@@ -93,7 +96,7 @@ static void closed_form(double a, double b, double G[GAMMAS]) {
     G[k + 1] = (inverse_factorial[k - 1] - G[k - 1] - 2 * a * G[k]) / b;
 }
 
-/* G[k + 1] = G_k(1) */
+/* G[k + 1] = G_k, k = -1..5. */
 static void responses(double a, double b, double G[GAMMAS]) {
   if (b < 4) {
     series(a, b, G);
@@ -128,9 +131,9 @@ static void set_mode(const mhb_ring_step *ring, double h, int i, mhb_modal_step 
   for (int k = 0; k < MOMENTS; k++) row[(MHB_MOMENT + k) * m] = h * h * G[k + 2];
 }
 
-/* ---- what the contacts meet ---- */
+/* ---- compliance of the contacts ---- */
 
-/* moment[5] += sum over modes of to by' G_1..5 */
+/* sum[5] += sum over modes of to by G_1..5 */
 MHB_HOT static void add_moments(int m, const double *to, const double *by, const double *moments,
                                 double *sum) {
   for (int k = 0; k < MOMENTS; k++) {
@@ -141,7 +144,7 @@ MHB_HOT static void add_moments(int m, const double *to, const double *by, const
   }
 }
 
-/* The slot in which the contacts on side `by` of a blade stand, seen from those on side `to`. */
+/* Neighbour whose contacts are on side `by` of a blade, seen from the contacts on side `to`. */
 static int neighbour_of(const mhb_ring_step *c, int to, int by) {
   if (to == by) return 0;
   return c->s.blades == 1 ? 0 : c->s.blades == 2 || to == 0 ? 1 : 2;
@@ -160,7 +163,7 @@ static void set_moments(const mhb_ring_step *c, const mhb_modal_step *step) {
   }
 }
 
-/* R between the rows of group 0 and those of the group in a slot. */
+/* R between a row of sector 0 and one of its neighbour. */
 static double flexibility(const mhb_ring_step *c, int neighbour, int row, int column) {
   int n3 = 3 * c->s.pairs, n = 3 * c->s.contacts;
   if (!c->s.flexibility) return 0;

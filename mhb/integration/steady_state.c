@@ -8,7 +8,7 @@ enum { S = MHB_STAGES, HISTORY = 2 * MHB_STEADY_STATE_MULTIPLE + 1, TREND = 8 };
 
 static const double PI = 3.14159265358979323846;
 
-/* How far apart, in tolerances, the periods of a motion of higher order are at least. */
+/* Least distance, in tolerances, of the periods of a motion of higher order. */
 static const double APART = 1e3;
 
 struct mhb_steady_state {
@@ -92,8 +92,8 @@ static void record(void *context, const mhb_integrator *g, double t0, double h) 
   }
 }
 
-/* Harmonic k of z of a blade's mode, from the equation of motion integrated with exp(-jkwt): exact, whether or not the end
- * is like the start. */
+/* Harmonic k of a mode of a blade, by the equation of motion integrated with exp(-jkwt): exact even
+ * if the end differs from the start. */
 static double complex mode_harmonic(const mhb_steady_state *o, int k, int blade, int i,
                                     const double *z0) {
   const mhb_integrator      *g = o->g;
@@ -131,7 +131,7 @@ static void set_motion(mhb_steady_state *o, int k, const double *z0) {
     }
 }
 
-/* Probes of blade 0: those of the wave with these forces, and what the modes lack to it. */
+/* Probes of blade 0: those of the wave with these forces, and the modes' difference from it. */
 static void set_probes(mhb_steady_state *o, int k, const double *z0) {
   const mhb_integrator *g = o->g;
   const mhb_receptance *r = g->receptance;
@@ -139,10 +139,10 @@ static void set_probes(mhb_steady_state *o, int k, const double *z0) {
   double complex       *p = o->force + k * 3 * g->contacts, motion[q + 1];
   mhb_receptance_probe(r, k, p, motion);
   for (int i = 0; i < m; i++) {
-    double complex lacks = mode_harmonic(o, k, 0, i, z0), wave = 0;
+    double complex difference = mode_harmonic(o, k, 0, i, z0), wave = 0;
     for (int row = 0; row < r->n; row++) wave -= conj(r->B[(k * r->n + row) * m + i]) * p[row];
-    lacks -= r->lambda[k * m + i] * wave;
-    for (int s = 0; s < q; s++) motion[s] += r->model->probe[s * m + i] * lacks;
+    difference -= r->lambda[k * m + i] * wave;
+    for (int s = 0; s < q; s++) motion[s] += r->model->probe[s * m + i] * difference;
   }
   for (int s = 0; s < q; s++) o->result.probe[s * K + k] = motion[s];
 }
@@ -150,7 +150,7 @@ static void set_probes(mhb_steady_state *o, int k, const double *z0) {
 /* One more period, recorded. */
 static int record_period(mhb_steady_state *o) {
   mhb_integrator *g  = o->g;
-  double         *z0 = o->history; /* no longer needed */
+  double         *z0 = o->history; /* its states are no longer needed */
   size_t          n  = 3 * (size_t)g->contacts;
   memset(o->force, 0, sizeof *o->force * n * ((size_t)o->result.n_harmonics + 1));
   memset(o->share, 0, sizeof(double) * n);
@@ -176,7 +176,8 @@ static double *state_at(const mhb_steady_state *o, int period) {
   return o->history + (size_t)(period % HISTORY) * (size_t)mhb_integrator_size(o->g);
 }
 
-/* Whether the motion repeats after `multiple` periods, within the tolerance of where it is going. */
+/* Whether the motion repeats after `multiple` periods, with the distance to go below the
+ * tolerance. */
 static int repeats(mhb_steady_state *o, int period, int multiple, double tolerance) {
   if (period < multiple) return 0;
   double *trend = o->distance + (multiple - 1) * TREND;
@@ -186,7 +187,8 @@ static int repeats(mhb_steady_state *o, int period, int multiple, double toleran
   if (multiple == 1) o->result.distance = d;
   if (d < 1e-14) return 1;
   if (period < multiple + TREND || !(d < tolerance)) return 0;
-  if (multiple > 1 && o->result.distance < APART * tolerance) return 0; /* it goes to order one */
+  if (multiple > 1 && o->result.distance < APART * tolerance)
+    return 0;                                            /* it converges to order one */
   double rate = pow(d / past, (double)multiple / TREND); /* over `multiple` periods */
   return rate < 1 && d / (1 - rate) < tolerance;
 }
