@@ -1,3 +1,5 @@
+shb_test(mesh/base arena fast shb_base)
+shb_test(mesh/base root fast shb_base)
 shb_test(mesh/base phases fast shb_base)
 shb_test(mesh/core fe_mesh fast tests_box ${GMSH_LIBRARY})
 target_include_directories(test_mesh_core_fe_mesh PRIVATE ${GMSH_INCLUDE})
