@@ -8,6 +8,7 @@
 
 #include <cmocka.h>
 
+#include "mhb/balance/newton.h"
 #include "mhb/branches/main_branch.h"
 #include "mhb/numerics/fourier.h"
 #include "tests/hard/verdict.h"

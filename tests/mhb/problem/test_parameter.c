@@ -8,6 +8,7 @@
 
 #include <cmocka.h>
 
+#include "mhb/balance/newton.h"
 #include "mhb/branches/forced_response.h"
 #include "mhb/branches/main_branch.h"
 #include "tests/support/random_model.h"
