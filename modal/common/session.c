@@ -30,3 +30,10 @@ void modal_session_end(modal_session *session, shb_status status) {
   PetscPopErrorHandler();
   SlepcFinalize();
 }
+
+shb_status modal_agree(MPI_Comm comm, shb_status status) {
+  int mine = status, worst = status;
+  MPI_Allreduce(&mine, &worst, 1, MPI_INT, MPI_MAX, comm);
+  if (worst != SHB_OK && mine == SHB_OK) SHB_FAIL((shb_status)worst, "another rank failed");
+  return (shb_status)worst;
+}

@@ -20,4 +20,7 @@ shb_status modal_session_start(int *argc, char ***argv, modal_session *session);
  * wait forever: then print the last text and abort them. Otherwise finalise. */
 void modal_session_end(modal_session *session, shb_status status);
 
+/* The worst status of all ranks. Collective. */
+shb_status modal_agree(MPI_Comm comm, shb_status status);
+
 #endif

@@ -3,7 +3,7 @@
 #define MODAL_STAGE_SPEED_RANGE_H
 
 #include "modal/model/speeds.h"
-#include "modal/stage/stage.h"
+#include "modal/stage/solve.h"
 
 /* modal_solve at each of settings->speeds, ascending; with modes: auto as many modes at every speed as the lowest or the highest needs. MAC = (phi^T M psi)^2 of all modes of neighbouring speeds, the greatest first, each
  * mode taken once; signs continue along the tracks.
