@@ -11,13 +11,13 @@ typedef enum {
 
 /* limit: the last eigenvalue less 1e-6 (or the solver's tolerance) of its distance from the shift. */
 typedef struct {
-  const char *by;     /* "inertia", "restart" (modal/eigen/missed_modes.h), "no" */
-  int         count;  /* eigenvalues below limit: all of them are among those found */
-  double      limit;  /* rad2/s2 */
-  double      chance; /* that one is missing nevertheless, at most; 1: not checked */
+  const char *method;      /* "inertia", "restart" (modal/eigen/missed_modes.h), "no" */
+  int         count;       /* eigenvalues below limit: all of them are among those found */
+  double      limit;       /* rad2/s2 */
+  double      probability; /* that one is missing nevertheless, at most; 1: not checked */
 } modal_check;
 
 /* Frequency of the limit, Hz. */
-double modal_check_below(const modal_check *check);
+double modal_check_frequency(const modal_check *check);
 
 #endif

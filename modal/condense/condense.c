@@ -11,7 +11,7 @@
 
 /* Right-hand sides a solve: beyond BATCH nothing is gained, memory grows; and the most that residual modes are made of, all at once, in the memory of
  * TOGETHER numbers. */
-enum { BATCH = 32, MOST = 96, LINKS = MODAL_RITZ_BLOCKS, TOGETHER = 1 << 27 };
+enum { BATCH = 32, MOST = 96, LINKS = MODAL_RESIDUAL_BLOCKS, TOGETHER = 1 << 27 };
 
 static const double two_pi = 6.28318530717958647692;
 
@@ -47,7 +47,7 @@ static shb_status allocate(const modal_condensation *to, int n_modes, modal_mode
     size_t   n;
   } real[]                           = {{&model->frequency, m},
                                         {&model->damping_ratio, m},
-                                        {&model->mode_residual, m},
+                                        {&model->eigen_residual, m},
                                         {&model->right, 3 * pairs * m},
                                         {&model->left, to->has_left ? 3 * pairs * m : 0},
                                         {&model->probe, q3 * m + 1},
@@ -94,8 +94,8 @@ static PetscErrorCode fill_shapes(const workspace *w, modal_model *model) {
       for (int i = 0; i < m; i++)
         model->modal_force[k * m + i] += load->weight[k * load->dofs.n + c] * force[c * m + i];
   for (int i = 0; i < m; i++) {
-    model->frequency[i]     = sqrt(w->eigen->lambda[i]) / two_pi;
-    model->mode_residual[i] = w->eigen->residual[i];
+    model->frequency[i]      = sqrt(w->eigen->lambda[i]) / two_pi;
+    model->eigen_residual[i] = w->eigen->eigen_residual[i];
   }
   PetscCall(PetscFree2(shape, force));
   PetscFunctionReturn(0);
@@ -105,7 +105,7 @@ static PetscErrorCode fill_shapes(const workspace *w, modal_model *model) {
 static PetscErrorCode solve(workspace *w, Mat X) {
   PetscFunctionBeginUser;
   PetscCall(modal_eigen_inverse(w->eigen, w->B, X));
-  PetscCall(modal_eigen_remove(w->system, w->eigen, X));
+  PetscCall(modal_eigen_project_out(w->system, w->eigen, X));
   PetscFunctionReturn(0);
 }
 
@@ -231,7 +231,7 @@ static void store_tails(const workspace *w, int order, modal_model *model) {
 }
 
 /* psi[rows][n] = sum_i sample_i weight_i */
-static void ritz_shapes(const workspace *w, const modal_ritz *ritz, int rows,
+static void ritz_shapes(const workspace *w, const modal_residual_modes *ritz, int rows,
                         double *const sample[LINKS], double *psi) {
   const int b = w->batch, n = ritz->n;
   for (int i = 0; i < LINKS && rows > 0 && n > 0; i++)
@@ -240,7 +240,7 @@ static void ritz_shapes(const workspace *w, const modal_ritz *ritz, int rows,
 }
 
 /* The tail behind all Ritz modes: mu_7 and mu_8 less theirs. Rounding of the moments is no tail. */
-static void lessen_tails(workspace *w, const modal_ritz *ritz, const double *psi) {
+static void lessen_tails(workspace *w, const modal_residual_modes *ritz, const double *psi) {
   static const double rounding = 1e-11;
   for (int c = 0; c < w->n_column; c++) {
     double a = w->tail[0][c], b = w->tail[1][c];
@@ -255,8 +255,8 @@ static void lessen_tails(workspace *w, const modal_ritz *ritz, const double *psi
   }
 }
 
-static void keep_ritz(const workspace *w, const modal_ritz *ritz, int kept, const double *psi,
-                      const double *at_probe, modal_model *model) {
+static void keep_ritz(const workspace *w, const modal_residual_modes *ritz, int kept,
+                      const double *psi, const double *at_probe, modal_model *model) {
   const modal_load *load = &w->to->load;
   const int         n = ritz->n, nc = w->n_contact;
   for (int i = 0; i < kept; i++) {
@@ -280,17 +280,17 @@ static void set_scales(const workspace *w, double *scale) {
     scale[c] = c < w->n_contact ? most : w->moment[0][(size_t)c * next];
 }
 
-static shb_status store_ritz(workspace *w, const modal_ritz *ritz, double *psi, double *at_probe,
-                             modal_model *model) {
+static shb_status store_ritz(workspace *w, const modal_residual_modes *ritz, double *psi,
+                             double *at_probe, modal_model *model) {
   const double last = w->eigen->lambda[w->eigen->n - 1];
   double       scale[MOST];
   ritz_shapes(w, ritz, w->n_column, w->sample, psi);
   ritz_shapes(w, ritz, w->to->probe.n, w->probe, at_probe);
   lessen_tails(w, ritz, psi);
   set_scales(w, scale);
-  const int    kept = modal_ritz_needed(ritz, w->n_column, psi, scale, last / 2, negligible);
-  const size_t r    = (size_t)kept;
-  model->n_residual = kept;
+  const int kept = modal_residual_modes_needed(ritz, w->n_column, psi, scale, last / 2, negligible);
+  const size_t r = (size_t)kept;
+  model->n_residual         = kept;
   model->residual_frequency = calloc(r + 1, sizeof(double));
   model->residual_shape     = calloc((size_t)w->n_contact * r + 1, sizeof(double));
   model->residual_probe     = calloc((size_t)w->to->probe.n * r + 1, sizeof(double));
@@ -303,8 +303,8 @@ static shb_status store_ritz(workspace *w, const modal_ritz *ritz, double *psi, 
 }
 
 static shb_status make_ritz(workspace *w, modal_model *model) {
-  modal_ritz ritz;
-  SHB_TRY(modal_ritz_create(w->n_column, w->moment, &ritz));
+  modal_residual_modes ritz;
+  SHB_TRY(modal_residual_modes_create(w->n_column, w->moment, &ritz));
   const size_t n    = (size_t)ritz.n;
   double      *psi  = malloc(((size_t)w->n_column * n + 1) * sizeof *psi),
          *at_probe  = malloc(((size_t)w->to->probe.n * n + 1) * sizeof *psi);
@@ -314,7 +314,7 @@ static shb_status make_ritz(workspace *w, modal_model *model) {
   if (status == SHB_OK && ritz.n > 0) status = store_ritz(w, &ritz, psi, at_probe, model);
   free(psi);
   free(at_probe);
-  modal_ritz_free(&ritz);
+  modal_residual_modes_free(&ritz);
   return status;
 }
 

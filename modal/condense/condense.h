@@ -21,7 +21,7 @@ typedef struct {
 
 /* Fill model (zeroed before): frequency, damping_ratio, right, left, residual_flexibility, residual_inertia, residual_fourth, moment_fourth, moment_fifth,
  * modal_force, load_residual, load_inertia, probe, probe_contact_residual, probe_contact_inertia, probe_load_residual,
- * probe_load_inertia, mode_residual. With P = I - phi phi^T M, b a column of the contact dofs or the load and a one of
+ * probe_load_inertia, eigen_residual. With P = I - phi phi^T M, b a column of the contact dofs or the load and a one of
  * the contact or probe dofs, the modes left out, which are not damped, answer by
  *   sum_left out (a phi)(phi b)/(lambda - w^2) = a^T P [K^-1 + w^2 K^-1 M P K^-1 + O(w^4)] b:
  *   residual = a^T P K^-1 b            = a^T [K^-1 - sum phi phi^T / lambda] b

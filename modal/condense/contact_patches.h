@@ -16,7 +16,7 @@ enum { MODAL_MAX_INTERFACES = 8 };
 
 typedef struct {
   int     n_pairs;
-  int    *which;       /* [n_pairs] of several that were joined; else NULL */
+  int    *interface;   /* [n_pairs] of several that were joined; else NULL */
   bool    has_left;    /* contact to the neighbour */
   int    *start;       /* [n_pairs + 1] entries of patch p: start[p] .. start[p + 1] - 1 */
   int    *node[2];     /* [entry] mesh node, right and left (NULL without left) */
@@ -33,26 +33,26 @@ typedef struct {
   double psi,
       phi; /* rad, of the whole face's mean normal, axes at the face's centroid; paper's eq. 2:
                               v = (cos psi cos phi, sin psi cos phi, -sin phi) */
-} modal_interface;
+} modal_patches;
 
 /* Divide the contact face. The mesh's sets must be oriented (mesh_fe_orient).
  *   points  0: one patch a node that carries weight; 1: the whole face; n: n patches of about equal area
  * Errors: SHB_ERR_INPUT group contact_right (or, to the neighbour, contact_left) missing, faces that do not match,
  * more patches than facets. */
-shb_status modal_interface_create(const mesh_fe *mesh, mesh_axis axis, int blades, bool to_ground,
-                                  int points, modal_interface *out);
+shb_status modal_patches_create(const mesh_fe *mesh, mesh_axis axis, int blades, bool to_ground,
+                                int points, modal_patches *out);
 
 /* The patches of n interfaces one after the other, as those of one: all to ground or all to the neighbour. psi, phi are the first's,
  * gap is the largest. SHB_ERR_IO no memory. */
-shb_status modal_interface_join(int n, const modal_interface *part, modal_interface *out);
+shb_status modal_patches_join(int n, const modal_patches *part, modal_patches *out);
 
 /* Do the angles given in the case (NULL: not given) agree with the face within a degree? SHB_ERR_INPUT. */
-shb_status modal_interface_check(const modal_interface *interface, const double *psi,
-                                 const double *phi);
+shb_status modal_patches_check_angles(const modal_patches *patches, const double *psi,
+                                      const double *phi);
 
 /* Append the contact dofs, (side * n_pairs + pair) * 3 + axis. */
-shb_status modal_interface_dofs(const modal_interface *interface, modal_dofs *dofs);
+shb_status modal_patches_dofs(const modal_patches *patches, modal_dofs *dofs);
 
-void modal_interface_free(modal_interface *interface); /* also on a zeroed struct */
+void modal_patches_free(modal_patches *patches); /* also on a zeroed struct */
 
 #endif

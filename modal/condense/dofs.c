@@ -36,7 +36,7 @@ static int is_loaded(const double force[3]) {
   return force[0] != 0 || force[1] != 0 || force[2] != 0;
 }
 
-shb_status modal_dofs_add_field(modal_dofs *dofs, int n_nodes, const double *force) {
+shb_status modal_dofs_add_forces(modal_dofs *dofs, int n_nodes, const double *force) {
   int n_entries = 0, entry = dofs->n_entries;
   for (int i = 0; i < n_nodes; i++) n_entries += is_loaded(force + 3 * (size_t)i);
   SHB_TRY(grow(dofs, n_entries));
@@ -112,7 +112,7 @@ PetscErrorCode modal_dofs_sample(const modal_dofs *dofs, const fem_system *syste
   PetscFunctionReturn(0);
 }
 
-void modal_dofs_of_nodes(const modal_dofs *dofs, const double *nodal, double *value) {
+void modal_dofs_sample_nodal(const modal_dofs *dofs, const double *nodal, double *value) {
   for (int c = 0; c < dofs->n; c++) {
     value[c] = 0;
     for (int e = dofs->start[c]; e < dofs->start[c + 1]; e++)

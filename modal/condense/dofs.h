@@ -20,7 +20,7 @@ shb_status modal_dofs_add(modal_dofs *dofs, int n_entries, const int *node, cons
                           const double direction[3]);
 
 /* Append one dof that is the work of nodal forces [n_nodes][3]; zeros are left out. */
-shb_status modal_dofs_add_field(modal_dofs *dofs, int n_nodes, const double *force);
+shb_status modal_dofs_add_forces(modal_dofs *dofs, int n_nodes, const double *force);
 
 /* Append all dofs of another. */
 shb_status modal_dofs_append(modal_dofs *dofs, const modal_dofs *more);
@@ -35,7 +35,7 @@ PetscErrorCode modal_dofs_sample(const modal_dofs *dofs, const fem_system *syste
                                  int n_columns, int stride, double *value);
 
 /* value[c] = b_c^T u of nodal displacements [n_nodes][3]. */
-void modal_dofs_of_nodes(const modal_dofs *dofs, const double *nodal, double *value);
+void modal_dofs_sample_nodal(const modal_dofs *dofs, const double *nodal, double *value);
 
 void modal_dofs_free(modal_dofs *dofs);
 

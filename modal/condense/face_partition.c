@@ -102,7 +102,7 @@ static shb_status bisect(modal_facets *facets, site *sites, int n, int first, in
   return bisect(facets, sites + cut, n - cut, first + lower, patches - lower);
 }
 
-shb_status modal_facets_divide(modal_facets *facets, int n_patches) {
+shb_status modal_facets_partition(modal_facets *facets, int n_patches) {
   SHB_CHECK(
       n_patches <= facets->n, SHB_ERR_INPUT,
       "contact.points: %d patches asked of a contact face of %d facets; ask for fewer, refine "

@@ -20,7 +20,7 @@ shb_status modal_facets_create(const mesh_fe *mesh, const mesh_face_set *set, mo
 
 /* Share the facets out to n_patches: recursive bisection, each cut across the longest principal direction of the
  * facets' centroids, areas in proportion. SHB_ERR_INPUT if there are fewer facets than patches. */
-shb_status modal_facets_divide(modal_facets *facets, int n_patches);
+shb_status modal_facets_partition(modal_facets *facets, int n_patches);
 
 void modal_facets_free(modal_facets *facets);
 

@@ -161,7 +161,7 @@ static shb_status add_patterns(const mesh_fe *mesh, const field *f, double *forc
       kind[out->dofs.n][0] = f->harmonic[i];
       kind[out->dofs.n][1] = imaginary;
       if (f->harmonic[i] > out->n_harmonics) out->n_harmonics = f->harmonic[i];
-      SHB_TRY(modal_dofs_add_field(&out->dofs, mesh->n_nodes, force));
+      SHB_TRY(modal_dofs_add_forces(&out->dofs, mesh->n_nodes, force));
     }
   SHB_CHECK(out->dofs.n > 0, SHB_ERR_INPUT, "%s: all loads are 0; nothing would move", f->path);
   return SHB_OK;
@@ -180,7 +180,7 @@ static shb_status from_field(const mesh_fe *mesh, const field *f, double *force,
 static shb_status from_case(const mesh_fe *mesh, const fem_load *load, const double *fallback,
                             double *force, modal_load *out) {
   SHB_TRY(fem_load_pattern(mesh, load, fallback, force));
-  SHB_TRY(modal_dofs_add_field(&out->dofs, mesh->n_nodes, force));
+  SHB_TRY(modal_dofs_add_forces(&out->dofs, mesh->n_nodes, force));
   out->n_harmonics = load->n_harmonics;
   out->weight      = calloc((size_t)load->n_harmonics + 1, sizeof *out->weight);
   SHB_CHECK(out->weight, SHB_ERR_IO, "out of memory for the load");

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BLOCKS = MODAL_RITZ_BLOCKS };
+enum { BLOCKS = MODAL_RESIDUAL_BLOCKS };
 
 static const double dependent = 1e-12;
 
@@ -67,7 +67,7 @@ static int reduce(problem *p) {
   return m == 0 || LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'V', 'U', m, A, m, p->value) == 0;
 }
 
-static shb_status store(const problem *p, modal_ritz *ritz) {
+static shb_status store(const problem *p, modal_residual_modes *ritz) {
   const int n = p->n, m = p->kept;
   ritz->n      = m;
   ritz->lambda = malloc(((size_t)m + 1) * sizeof(double));
@@ -82,7 +82,8 @@ static shb_status store(const problem *p, modal_ritz *ritz) {
   return SHB_OK;
 }
 
-shb_status modal_ritz_create(int columns, double *const moment[2 * BLOCKS], modal_ritz *ritz) {
+shb_status modal_residual_modes_create(int columns, double *const moment[2 * BLOCKS],
+                                       modal_residual_modes *ritz) {
   const size_t n     = BLOCKS * (size_t)columns;
   double      *space = calloc(3 * n * n + 2 * n + 1, sizeof *space);
   memset(ritz, 0, sizeof *ritz);
@@ -102,18 +103,18 @@ shb_status modal_ritz_create(int columns, double *const moment[2 * BLOCKS], moda
                           : shb_fail(SHB_ERR_IO, __FILE__, __LINE__,
                                      "the eigenvalues of the residual modes were not found");
   free(space);
-  if (status != SHB_OK) modal_ritz_free(ritz);
+  if (status != SHB_OK) modal_residual_modes_free(ritz);
   return status;
 }
 
-void modal_ritz_free(modal_ritz *ritz) {
+void modal_residual_modes_free(modal_residual_modes *ritz) {
   free(ritz->lambda);
   free(ritz->weight);
-  *ritz = (modal_ritz){0};
+  *ritz = (modal_residual_modes){0};
 }
 
-int modal_ritz_needed(const modal_ritz *ritz, int columns, const double *psi, const double *scale,
-                      double s, double tolerance) {
+int modal_residual_modes_needed(const modal_residual_modes *ritz, int columns, const double *psi,
+                                const double *scale, double s, double tolerance) {
   int needed = 0;
   for (int c = 0; c < columns; c++) {
     int    n    = ritz->n;

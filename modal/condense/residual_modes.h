@@ -11,23 +11,23 @@
 
 #include "mesh/base/status.h"
 
-enum { MODAL_RITZ_BLOCKS = 3 }; /* q */
+enum { MODAL_RESIDUAL_BLOCKS = 3 }; /* q */
 
 typedef struct {
   int     n;      /* modes, at most blocks times columns */
   double *lambda; /* [n] rad2/s2, ascending */
   double *weight; /* [blocks * columns][n] y: what the mode takes of each column of V_0, V_1, V_2 */
-} modal_ritz;
+} modal_residual_modes;
 
 /* moment[j]: mu_(j+1), [columns][columns], j < 2 blocks; made symmetric. Directions of which less than 1e-12 is independent of the others
  * are left out. SHB_ERR_IO: no memory; the eigensolver failed. */
-shb_status modal_ritz_create(int columns, double *const moment[2 * MODAL_RITZ_BLOCKS],
-                             modal_ritz *ritz);
-void       modal_ritz_free(modal_ritz *ritz); /* also on a zeroed struct */
+shb_status modal_residual_modes_create(int columns, double *const moment[2 * MODAL_RESIDUAL_BLOCKS],
+                                       modal_residual_modes *ritz);
+void       modal_residual_modes_free(modal_residual_modes *ritz); /* also on a zeroed struct */
 
 /* Keep the lowest modes only: so many that those left out, shape psi [columns][n] of the modes, change no receptance of a column with itself at s
  * (below lambda[0]) by more than tolerance times scale[column] through the terms that no residual term holds, psi^2 s^3/(lambda^3 (lambda - s)). */
-int modal_ritz_needed(const modal_ritz *ritz, int columns, const double *psi, const double *scale,
-                      double s, double tolerance);
+int modal_residual_modes_needed(const modal_residual_modes *ritz, int columns, const double *psi,
+                                const double *scale, double s, double tolerance);
 
 #endif

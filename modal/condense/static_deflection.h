@@ -18,15 +18,15 @@ typedef struct {
                               all blades alike; kv times it is the interference load of the shroud */
   double *
       stress; /* [n_elements] Pa, greatest von Mises stress of each element (rank 0; NULL elsewhere) */
-  modal_statics statics;                                /* rank 0; zero elsewhere */
-  double        greatest_displacement, greatest_stress; /* m; Pa */
+  modal_static_results statics;                                /* rank 0; zero elsewhere */
+  double               greatest_displacement, greatest_stress; /* m; Pa */
 } modal_deflection;
 
 /* Solve the equilibrium (fem_equilibrium_solve) and sample it. system->K becomes the tangent there.
  * Errors: those of fem_equilibrium_solve; SHB_ERR_INPUT a stress above a tenth of E; SHB_ERR_IO no memory; SHB_INTERRUPTED. Collective. */
-shb_status modal_deflect(const fem_body *body, fem_system *system, const modal_condensation *to,
-                         const modal_interface *interface, shb_progress *progress,
-                         modal_deflection *out);
+shb_status modal_deflection_solve(const fem_body *body, fem_system *system,
+                                  const modal_condensation *to, const modal_patches *patches,
+                                  shb_progress *progress, modal_deflection *out);
 
 /* Writes the root attributes rotor_speed, rotor_pressure and, unless both are 0, the group /static; modal_model_write comes first. */
 shb_status modal_deflection_write(hid_t file, const modal_deflection *deflection, int n_nodes,

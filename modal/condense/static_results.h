@@ -16,15 +16,15 @@ typedef struct {
   double force[3],
       moment[3];  /* their sums, N and N m, about the origin at the deformed positions */
   double load[3]; /* resultant of the loads, N: -force but for what is out of balance */
-} modal_statics;
+} modal_static_results;
 
 /* Fill out (zeroed before) from the displacement [n_nodes][3]. On one rank. Errors: SHB_ERR_IO no memory. */
-shb_status modal_statics_create(const fem_body *body, const double *displacement,
-                                modal_statics *out);
+shb_status modal_static_results_create(const fem_body *body, const double *displacement,
+                                       modal_static_results *out);
 
 /* /static/{nodal_stress, nodal_von_mises, reaction_node, reaction, reaction_force, reaction_moment, load_force}; nothing of a zeroed one. */
-shb_status modal_statics_write(hid_t file, const modal_statics *statics);
+shb_status modal_static_results_write(hid_t file, const modal_static_results *statics);
 
-void modal_statics_free(modal_statics *statics); /* also on a zeroed struct */
+void modal_static_results_free(modal_static_results *statics); /* also on a zeroed struct */
 
 #endif

@@ -28,20 +28,21 @@ PetscErrorCode modal_block_basis_create(Mat M, KSP ksp, int p, int room, modal_b
 PetscErrorCode modal_block_basis_destroy(modal_block_basis *b); /* also on a zeroed struct */
 
 /* W: numbers without structure, of variance 1; others for each seed. */
-PetscErrorCode modal_block_basis_noise(const modal_block_basis *b, uint64_t seed);
+PetscErrorCode modal_block_basis_randomise(const modal_block_basis *b, uint64_t seed);
 
 /* MW = M W */
-PetscErrorCode modal_block_basis_weigh(const modal_block_basis *b);
+PetscErrorCode modal_block_basis_apply_mass(const modal_block_basis *b);
 
 /* out = X^T Y, [p][p] by columns, summed over the ranks; X, Y [p][rows]. */
 PetscErrorCode modal_block_basis_inner(const modal_block_basis *b, const double *X, const double *Y,
                                        double *out);
 
 /* MW = M W, W -= Q Q^T M W; what the last block took of it is added to last (NULL: not wanted). */
-PetscErrorCode modal_block_basis_remove(const modal_block_basis *b, double *last);
+PetscErrorCode modal_block_basis_project_out(const modal_block_basis *b, double *last);
 
 /* W = W' R, W'^T M W' = 1, and MW (M W on entry) with it; product = R product. *good false: W has not full rank. */
-PetscErrorCode modal_block_basis_scale(const modal_block_basis *b, double *product, bool *good);
+PetscErrorCode modal_block_basis_cholesky_qr(const modal_block_basis *b, double *product,
+                                             bool *good);
 
 /* Make W orthonormal to the basis and in itself: W = Q C + W' R. D: what the last block takes of it is added (NULL: not wanted). */
 PetscErrorCode modal_block_basis_orthonormalise(const modal_block_basis *b, double *D, double *R,
@@ -51,6 +52,6 @@ PetscErrorCode modal_block_basis_orthonormalise(const modal_block_basis *b, doub
 PetscErrorCode modal_block_basis_append(modal_block_basis *b);
 
 /* H [p n][p n], lower triangle by columns, from its n blocks D, B. */
-void modal_block_basis_project(int p, int n, const double *D, const double *B, double *H);
+void modal_block_basis_projection(int p, int n, const double *D, const double *B, double *H);
 
 #endif

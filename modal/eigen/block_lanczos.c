@@ -36,7 +36,7 @@ static PetscErrorCode find_pairs(const modal_block_basis *b, int wanted, double 
   double            *work;
 
   PetscFunctionBeginUser;
-  modal_block_basis_project((int)b->p, b->n, b->D, b->B, b->H);
+  modal_block_basis_projection((int)b->p, b->n, b->D, b->B, b->H);
   PetscCall(PetscMalloc1((size_t)size, &work));
   PetscCallBLAS("LAPACKsyev", LAPACKsyev_("V", "L", &m, b->H, &m, b->theta, work, &size, &info));
   PetscCall(PetscFree(work));
@@ -87,7 +87,7 @@ static PetscErrorCode combine(const modal_block_basis *b, Mat X) {
 static PetscErrorCode start(modal_block_basis *b, bool *good) {
   double *unused;
   PetscFunctionBeginUser;
-  PetscCall(modal_block_basis_noise(b, 0));
+  PetscCall(modal_block_basis_randomise(b, 0));
   PetscCall(PetscCalloc1((size_t)(b->p * b->p), &unused));
   PetscCall(modal_block_basis_orthonormalise(b, NULL, unused, good));
   PetscCall(PetscFree(unused));

@@ -152,7 +152,7 @@ PetscErrorCode modal_mass_multiply(const fem_system *system, Mat X, Mat Y) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode modal_eigen_remove(const fem_system *system, const modal_eigen *eigen, Mat X) {
+PetscErrorCode modal_eigen_project_out(const fem_system *system, const modal_eigen *eigen, Mat X) {
   const PetscScalar *phi, *m_phi;
   PetscScalar       *x, *coefficient, one = 1, minus = -1, zero = 0;
   PetscBLASInt       rows, lda, ldx, n = eigen->n, columns;
@@ -194,7 +194,7 @@ static PetscErrorCode sign_of(const fem_system *system, Vec phi, double *sign) {
     PetscInt row = system->row[i];
     if (row < system->first || row >= system->last) continue;
     for (int d = 0; d < 3; d++)
-      sum += modal_noise(3 * (uint64_t)i + (uint64_t)d) * x[3 * (row - system->first) + d];
+      sum += modal_random(3 * (uint64_t)i + (uint64_t)d) * x[3 * (row - system->first) + d];
   }
   PetscCall(VecRestoreArrayRead(phi, &x));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM, system->comm));
@@ -245,7 +245,7 @@ static PetscErrorCode find_some_residuals(const fem_system *system, double shift
     PetscCall(VecAYPX(x, -(eigen->lambda[first + i] - shift), phi));
     PetscCall(MatMult(system->M, x, work));
     PetscCall(VecDot(x, work, &square));
-    eigen->residual[first + i] = sqrt(PetscMax(square, 0));
+    eigen->eigen_residual[first + i] = sqrt(PetscMax(square, 0));
     PetscCall(MatDenseRestoreColumnVec(X, i, &x));
     PetscCall(MatDenseRestoreColumnVecRead(eigen->phi, first + i, &phi));
   }
@@ -285,10 +285,10 @@ static PetscErrorCode check_by_inertia(const fem_system *system, modal_check *ch
                                        modal_verdict *verdict) {
   const int found = check->count;
   PetscFunctionBeginUser;
-  PetscCall(modal_inertia_below(system, check->limit, &check->count));
-  check->by     = "inertia";
-  check->chance = 0;
-  *verdict      = check->count == found ? MODAL_COMPLETE : MODAL_MISSING;
+  PetscCall(modal_inertia_count(system, check->limit, &check->count));
+  check->method      = "inertia";
+  check->probability = 0;
+  *verdict           = check->count == found ? MODAL_VERDICT_COMPLETE : MODAL_VERDICT_MISSING;
   PetscFunctionReturn(0);
 }
 
@@ -296,17 +296,17 @@ static PetscErrorCode check_by_inertia(const fem_system *system, modal_check *ch
 static PetscErrorCode check_by_restart(EPS eps, double shift, modal_check *check,
                                        modal_verdict *verdict) {
   const modal_block_basis *basis;
-  modal_complement         rest;
+  modal_missed_modes       rest;
   PetscBool                block;
   PetscFunctionBeginUser;
-  *verdict = MODAL_OPEN;
+  *verdict = MODAL_VERDICT_UNDECIDED;
   PetscCall(PetscObjectTypeCompare((PetscObject)eps, MODAL_BLOCK_LANCZOS, &block));
   if (!block) PetscFunctionReturn(0);
   PetscCall(modal_block_lanczos_basis(eps, &basis));
-  PetscCall(modal_complement_search(basis, 1 / (check->limit - shift), &rest));
+  PetscCall(modal_missed_modes_search(basis, 1 / (check->limit - shift), &rest));
   if (rest.count == check->count) *verdict = rest.verdict;
-  check->by     = "restart";
-  check->chance = rest.chance;
+  check->method      = "restart";
+  check->probability = rest.probability;
   PetscFunctionReturn(0);
 }
 
@@ -318,18 +318,18 @@ static PetscErrorCode check_modes(const fem_system *system, const modal_eigen_se
   PetscCall(EPSGetTolerances(eps, &margin, NULL));
   PetscCall(EPSGetEigenvalue(eps, settings->modes - 1, &last, NULL));
   margin   = PetscMax(margin, 1e-6); /* above the error and the rounding of an eigenvalue */
-  *verdict = MODAL_COMPLETE;
-  *check =
-      (modal_check){.by = "no", .limit = last - margin * (last - settings->shift), .chance = 1};
+  *verdict = MODAL_VERDICT_COMPLETE;
+  *check   = (modal_check){
+        .method = "no", .limit = last - margin * (last - settings->shift), .probability = 1};
   PetscCall(count_found(eps, settings->modes, check->limit, &check->count));
   if (settings->check == MODAL_CHECK_NEVER) PetscFunctionReturn(0);
-  *verdict = MODAL_OPEN;
+  *verdict = MODAL_VERDICT_UNDECIDED;
   if (settings->check == MODAL_CHECK_AUTO)
     PetscCall(check_by_restart(eps, settings->shift, check, verdict));
-  if (*verdict == MODAL_OPEN) PetscCall(check_by_inertia(system, check, verdict));
+  if (*verdict == MODAL_VERDICT_UNDECIDED) PetscCall(check_by_inertia(system, check, verdict));
   modal_phase(system->comm, settings->progress, "check", "%s, %d below %.6g Hz by %s",
-              *verdict == MODAL_COMPLETE ? "no mode is missing" : "a mode is missing", check->count,
-              modal_check_below(check), check->by);
+              *verdict == MODAL_VERDICT_COMPLETE ? "no mode is missing" : "a mode is missing",
+              check->count, modal_check_frequency(check), check->method);
   PetscFunctionReturn(0);
 }
 
@@ -345,7 +345,7 @@ static PetscErrorCode enlarge(const fem_system *system, const modal_eigen *eigen
   PetscCheck(*size <= MOST && *size <= 3 * system->n_free, system->comm, PETSC_ERR_NOT_CONVERGED,
              "modal: the eigensolver missed a mode below %.6g Hz (checked by %s); ask for more or "
              "fewer modes, or try -eps_ncv",
-             modal_check_below(&eigen->check), eigen->check.by);
+             modal_check_frequency(&eigen->check), eigen->check.method);
   PetscFunctionReturn(0);
 }
 
@@ -379,15 +379,15 @@ static PetscErrorCode run(const fem_system *system, const modal_eigen_settings *
 /* Modes of which none is missing. *found false: interrupted. */
 static PetscErrorCode run_checked(const fem_system *system, const modal_eigen_settings *settings,
                                   modal_eigen *eigen, bool *found) {
-  modal_verdict verdict = MODAL_MISSING;
+  modal_verdict verdict = MODAL_VERDICT_MISSING;
   PetscInt      size    = 0;
   PetscBool     block;
   PetscFunctionBeginUser;
-  while (verdict == MODAL_MISSING) {
+  while (verdict == MODAL_VERDICT_MISSING) {
     PetscCall(run(system, settings, size, eigen, found));
     if (!*found) PetscFunctionReturn(0);
     PetscCall(check_modes(system, settings, eigen->eps, &eigen->check, &verdict));
-    if (verdict == MODAL_MISSING) PetscCall(enlarge(system, eigen, &size));
+    if (verdict == MODAL_VERDICT_MISSING) PetscCall(enlarge(system, eigen, &size));
   }
   PetscCall(PetscObjectTypeCompare((PetscObject)eigen->eps, MODAL_BLOCK_LANCZOS, &block));
   if (block) PetscCall(modal_block_lanczos_release(eigen->eps));
@@ -408,7 +408,7 @@ PetscErrorCode modal_eigen_solve(const fem_system *system, const modal_eigen_set
   PetscCall(run_checked(system, settings, eigen, &found));
   if (!found) PetscFunctionReturn(0);
   eigen->n = settings->modes;
-  PetscCall(PetscMalloc2(eigen->n, &eigen->lambda, eigen->n, &eigen->residual));
+  PetscCall(PetscMalloc2(eigen->n, &eigen->lambda, eigen->n, &eigen->eigen_residual));
   PetscCall(collect(system, eigen));
   PetscCall(find_residuals(system, settings->shift, eigen));
   modal_phase(system->comm, settings->progress, "mode residuals", "%d", eigen->n);
@@ -417,7 +417,7 @@ PetscErrorCode modal_eigen_solve(const fem_system *system, const modal_eigen_set
 
 PetscErrorCode modal_eigen_destroy(modal_eigen *eigen) {
   PetscFunctionBeginUser;
-  PetscCall(PetscFree2(eigen->lambda, eigen->residual));
+  PetscCall(PetscFree2(eigen->lambda, eigen->eigen_residual));
   PetscCall(MatDestroy(&eigen->phi));
   PetscCall(MatDestroy(&eigen->m_phi));
   PetscCall(EPSDestroy(&eigen->eps));

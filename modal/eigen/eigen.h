@@ -22,7 +22,7 @@ typedef struct {
   int     n;
   double *lambda; /* [n] rad2/s2, ascending */
   double *
-      residual; /* [n] |phi - (lambda - shift) (K - shift M)^-1 M phi| in the M norm, |phi| = 1: an eigenvalue
+      eigen_residual; /* [n] |phi - (lambda - shift) (K - shift M)^-1 M phi| in the M norm, |phi| = 1: an eigenvalue
                        lies within that relative distance of lambda - shift. (The plain residual |K phi - lambda M phi| is
                        drowned by rounding of the stiffest directions.) */
   Mat phi;   /* dense [3 n_free][n], phi^T M phi = 1; sign fixed by the mesh, not by the solver */
@@ -46,7 +46,7 @@ PetscErrorCode modal_eigen_inverse(const modal_eigen *eigen, Mat B, Mat X);
 PetscErrorCode modal_mass_multiply(const fem_system *system, Mat X, Mat Y);
 
 /* X -= phi phi^T M X: take the modes out of every column. */
-PetscErrorCode modal_eigen_remove(const fem_system *system, const modal_eigen *eigen, Mat X);
+PetscErrorCode modal_eigen_project_out(const fem_system *system, const modal_eigen *eigen, Mat X);
 
 /* A dense matrix of n columns, distributed like the system's vectors. */
 PetscErrorCode modal_dense_create(const fem_system *system, int n, Mat *X);

@@ -42,7 +42,7 @@ static PetscErrorCode count_negative(Mat A, int *count) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode modal_inertia_below(const fem_system *system, double sigma, int *count) {
+PetscErrorCode modal_inertia_count(const fem_system *system, double sigma, int *count) {
   Mat A;
   PetscFunctionBeginUser;
   PetscCall(fem_system_shifted(system, sigma, &A));

@@ -7,6 +7,6 @@
 /* Counted by an indefinite factorisation (MUMPS, with pivoting) whose factor is not kept: a quarter of its memory.
  *   sigma  rad2/s2, no eigenvalue
  * Collective. Errors: PETSC_ERR_USER_INPUT not enough memory; PETSC_ERR_MEM; PETSC_ERR_LIB it failed. */
-PetscErrorCode modal_inertia_below(const fem_system *system, double sigma, int *count);
+PetscErrorCode modal_inertia_count(const fem_system *system, double sigma, int *count);
 
 #endif

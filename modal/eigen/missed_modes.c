@@ -18,7 +18,7 @@ typedef struct {
   double                  *H, *theta;           /* [MOST p][MOST p], [MOST p] */
 } search;
 
-double modal_complement_chance(double ratio, int steps, int columns, double order) {
+double modal_missed_modes_probability(double ratio, int steps, int columns, double order) {
   if (!(ratio < 1)) return 1;
   const double x         = fmax(ratio, 1e-6);
   const double chebyshev = log(cosh(fmin((steps - 1) * acosh(2 / x - 1), 300)));
@@ -114,7 +114,7 @@ static PetscErrorCode apply(const search *s) {
   PetscFunctionBeginUser;
   PetscCall(against(b, s->next, s->Y));
   PetscCall(KSPMatSolve(b->ksp, b->MW, b->W));
-  PetscCall(modal_block_basis_remove(b, NULL));
+  PetscCall(modal_block_basis_project_out(b, NULL));
   PetscCallBLAS("BLASgemm", BLASgemm_("N", "N", &b->p, &b->p, &b->p, &one, s->F, &b->p, s->Y, &b->p,
                                       &zero, s->C, &b->p));
   PetscCall(add(b, one, s->next, s->C, false));
@@ -126,7 +126,7 @@ static PetscErrorCode clear_of(const search *s, const double *X) {
   PetscFunctionBeginUser;
   PetscCall(against(s->b, X, s->C));
   PetscCall(add(s->b, minus, X, s->C, false));
-  PetscCall(modal_block_basis_weigh(s->b));
+  PetscCall(modal_block_basis_apply_mass(s->b));
   PetscFunctionReturn(0);
 }
 
@@ -136,15 +136,15 @@ static PetscErrorCode normalise(const search *s, int k, double t, double *B, boo
   double                   least;
   PetscFunctionBeginUser;
   for (int i = 0; i < b->p * b->p; i++) B[i] = i % (b->p + 1) == 0;
-  PetscCall(modal_block_basis_scale(b, B, good));
+  PetscCall(modal_block_basis_cholesky_qr(b, B, good));
   least = fabs(B[0]);
   for (int i = 1; i < b->p; i++) least = fmin(least, fabs(B[i * (b->p + 1)]));
   if (!*good || least > 1e-3 * t) PetscFunctionReturn(0);
-  PetscCall(modal_block_basis_remove(b, NULL));
-  PetscCall(modal_block_basis_weigh(b));
+  PetscCall(modal_block_basis_project_out(b, NULL));
+  PetscCall(modal_block_basis_apply_mass(b));
   PetscCall(clear_of(s, s->now));
   if (k > 0) PetscCall(clear_of(s, s->before));
-  PetscCall(modal_block_basis_scale(b, B, good));
+  PetscCall(modal_block_basis_cholesky_qr(b, B, good));
   PetscFunctionReturn(0);
 }
 
@@ -154,11 +154,11 @@ static PetscErrorCode step(search *s, int k, double t, bool *good) {
   const size_t             each = (size_t)(b->p * b->p), at = (size_t)k * each;
   PetscFunctionBeginUser;
   PetscCall(apply(s));
-  PetscCall(modal_block_basis_weigh(b));
+  PetscCall(modal_block_basis_apply_mass(b));
   PetscCall(against(b, s->now, s->D + at));
   PetscCall(add(b, minus, s->now, s->D + at, false));
   if (k > 0) PetscCall(add(b, minus, s->before, s->B + at - each, true));
-  PetscCall(modal_block_basis_weigh(b));
+  PetscCall(modal_block_basis_apply_mass(b));
   PetscCall(normalise(s, k, t, s->B + at, good));
   double *oldest = s->before;
   s->before      = s->now;
@@ -173,7 +173,7 @@ static PetscErrorCode greatest(const search *s, int blocks, double *value) {
   PetscBLASInt       size = 8 * m, info;
   double            *work;
   PetscFunctionBeginUser;
-  modal_block_basis_project((int)s->b->p, blocks, s->D, s->B, s->H);
+  modal_block_basis_projection((int)s->b->p, blocks, s->D, s->B, s->H);
   PetscCall(PetscMalloc1((size_t)size, &work));
   PetscCallBLAS("LAPACKsyev", LAPACKsyev_("N", "L", &m, s->H, &m, s->theta, work, &size, &info));
   PetscCall(PetscFree(work));
@@ -182,36 +182,36 @@ static PetscErrorCode greatest(const search *s, int blocks, double *value) {
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode follow(search *s, double t, modal_complement *out) {
+static PetscErrorCode follow(search *s, double t, modal_missed_modes *out) {
   const modal_block_basis *b    = s->b;
   bool                     good = true;
   PetscFunctionBeginUser;
   PetscCall(copy_block(b, s->next));
-  PetscCall(modal_block_basis_noise(b, 1));
+  PetscCall(modal_block_basis_randomise(b, 1));
   PetscCall(scale_rows(b));
   PetscCall(modal_block_basis_orthonormalise(b, NULL, s->C, &good));
   PetscCall(copy_block(b, s->now));
-  while (good && out->verdict == MODAL_OPEN && out->steps < MOST) {
+  while (good && out->verdict == MODAL_VERDICT_UNDECIDED && out->steps < MOST) {
     const double before = out->ratio;
     PetscCall(step(s, out->steps++, t, &good));
     PetscCall(greatest(s, out->steps, &out->ratio));
     out->ratio /= t;
-    out->chance = modal_complement_chance(out->ratio, out->steps, (int)b->p, b->order);
-    if (out->ratio > 1 + rounding) out->verdict = MODAL_MISSING;
-    if (out->chance <= allowed) out->verdict = MODAL_COMPLETE;
+    out->probability = modal_missed_modes_probability(out->ratio, out->steps, (int)b->p, b->order);
+    if (out->ratio > 1 + rounding) out->verdict = MODAL_VERDICT_MISSING;
+    if (out->probability <= allowed) out->verdict = MODAL_VERDICT_COMPLETE;
     if (out->ratio > touching && out->ratio - before < rounding)
       break; /* an eigenvalue at t itself */
   }
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode modal_complement_search(const modal_block_basis *b, double t,
-                                       modal_complement *out) {
+PetscErrorCode modal_missed_modes_search(const modal_block_basis *b, double t,
+                                         modal_missed_modes *out) {
   const size_t size = (size_t)b->rows * (size_t)b->p, each = (size_t)(b->p * b->p);
   const size_t most = (size_t)b->p * MOST;
   search       s    = {.b = b};
   PetscFunctionBeginUser;
-  *out = (modal_complement){.verdict = MODAL_OPEN, .chance = 1};
+  *out = (modal_missed_modes){.verdict = MODAL_VERDICT_UNDECIDED, .probability = 1};
   PetscCall(PetscMalloc3(size, &s.next, size, &s.now, size, &s.before));
   PetscCall(PetscCalloc7(each, &s.F, each, &s.Y, each, &s.C, MOST * each, &s.D, MOST * each, &s.B,
                          most * most, &s.H, most, &s.theta));

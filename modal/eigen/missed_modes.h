@@ -25,23 +25,24 @@
 #include "modal/eigen/block_basis.h"
 
 typedef enum {
-  MODAL_COMPLETE, /* every eigenvalue above t is a Ritz value, but for the chance */
-  MODAL_MISSING,  /* one is not */
-  MODAL_OPEN      /* not decided in as many steps as are worth it */
+  MODAL_VERDICT_COMPLETE, /* every eigenvalue above t is a Ritz value, but for the chance */
+  MODAL_VERDICT_MISSING,  /* one is not */
+  MODAL_VERDICT_UNDECIDED /* not decided in as many steps as are worth it */
 } modal_verdict;
 
 typedef struct {
   modal_verdict verdict;
-  int           count;  /* Ritz values above t */
-  int           steps;  /* block solves */
-  double        chance; /* that an eigenvalue is missing nevertheless, at most */
-  double        ratio;  /* the greatest Ritz value of G, to t */
-} modal_complement;
+  int           count;       /* Ritz values above t */
+  int           steps;       /* block solves */
+  double        probability; /* that an eigenvalue is missing nevertheless, at most */
+  double        ratio;       /* the greatest Ritz value of G, to t */
+} modal_missed_modes;
 
 /* b: after a run that converged: H holds the eigenvectors, theta the Ritz values, W the next block (it is overwritten). */
-PetscErrorCode modal_complement_search(const modal_block_basis *b, double t, modal_complement *out);
+PetscErrorCode modal_missed_modes_search(const modal_block_basis *b, double t,
+                                         modal_missed_modes *out);
 
 /* The chance above; 1 where ratio = x / t is 1 or more. */
-double modal_complement_chance(double ratio, int steps, int columns, double order);
+double modal_missed_modes_probability(double ratio, int steps, int columns, double order);
 
 #endif

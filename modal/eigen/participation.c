@@ -21,9 +21,9 @@ static PetscErrorCode project(const fem_body *body, const double *displacement,
   PetscFunctionReturn(0);
 }
 
-shb_status modal_participate(const fem_body *body, const double *displacement,
-                             const fem_system *system, const modal_eigen *eigen,
-                             modal_participation *out) {
+shb_status modal_participation_create(const fem_body *body, const double *displacement,
+                                      const fem_system *system, const modal_eigen *eigen,
+                                      modal_participation *out) {
   out->n_modes = eigen->n;
   out->gamma   = calloc((size_t)eigen->n, FEM_RIGID * sizeof *out->gamma);
   SHB_CHECK(out->gamma, SHB_ERR_IO, "out of memory for the participation of the modes");

@@ -19,9 +19,9 @@ typedef struct {
 } modal_participation;
 
 /* Fill out (zeroed before). displacement: [n_nodes][3] of the equilibrium, NULL at rest. Collective; every rank gets it. */
-shb_status modal_participate(const fem_body *body, const double *displacement,
-                             const fem_system *system, const modal_eigen *eigen,
-                             modal_participation *out);
+shb_status modal_participation_create(const fem_body *body, const double *displacement,
+                                      const fem_system *system, const modal_eigen *eigen,
+                                      modal_participation *out);
 
 /* /modes/participation, effective_mass [m, 3]; rotation_participation, effective_inertia [m]; root attributes mass, inertia.
  * /modes/frequency must be there. */

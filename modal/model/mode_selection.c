@@ -83,7 +83,7 @@ static shb_status count(search *s, double tolerance, modal_model *left, int *mod
   if (*error > tolerance || left->frequency[left->n_modes - 1] < margin * s->band) return SHB_OK;
   for (*modes = left->n_modes; *modes > 1; *modes = left->n_modes) {
     if (left->frequency[*modes - 1] <= margin * s->band) return SHB_OK;
-    SHB_TRY(modal_model_keep(left, *modes - 1, true));
+    SHB_TRY(modal_model_reduce(left, *modes - 1, true));
     double next = error_of(s, left);
     if (next > tolerance) return SHB_OK;
     *error = next;
@@ -91,8 +91,8 @@ static shb_status count(search *s, double tolerance, modal_model *left, int *mod
   return SHB_OK;
 }
 
-shb_status modal_enough(const modal_model *model, double band, double tolerance, int *modes,
-                        double *error) {
+shb_status modal_select_modes(const modal_model *model, double band, double tolerance, int *modes,
+                              double *error) {
   search s = {.model = model, .n = 3 * model->n_pairs * (model->has_left ? 2 : 1), .band = band};
   modal_model left;
   SHB_CHECK(modal_series_has_fourth(model) && model->contact_tail, SHB_ERR_INPUT,

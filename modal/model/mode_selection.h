@@ -10,7 +10,7 @@
  *   modes  out  0: the model has too few
  *   error  out  of those modes; of all of them if they are too few
  * Errors: SHB_ERR_INPUT a model without residual terms and their tail; SHB_ERR_IO no memory. */
-shb_status modal_enough(const modal_model *model, double band, double tolerance, int *modes,
-                        double *error);
+shb_status modal_select_modes(const modal_model *model, double band, double tolerance, int *modes,
+                              double *error);
 
 #endif

@@ -129,7 +129,7 @@ shb_status modal_model_write_at(hid_t at, const modal_model *model) {
        model->frequency},
       {"modes/damping_ratio", "m", "-", "modal damping ratio", false, model->damping_ratio},
       {"modes/residual", "m", "-", "relative residual of the eigenpair", false,
-       model->mode_residual},
+       model->eigen_residual},
       {"contact/right/shape", "p3m", "kg^-1/2", "mass-normalised modes at the right contact", false,
        model->right},
       {"contact/left/shape", "p3m", "kg^-1/2", "mass-normalised modes at the left contact", false,
@@ -231,7 +231,7 @@ static shb_status read_modes(hid_t at, const char *path, modal_model *model) {
   model->n_modes = (int)shape.dim[0];
   SHB_TRY(h5_read_double(at, "modes/damping_ratio", &shape, &model->damping_ratio));
   if (h5_exists(at, "modes/residual"))
-    SHB_TRY(h5_read_double(at, "modes/residual", &shape, &model->mode_residual));
+    SHB_TRY(h5_read_double(at, "modes/residual", &shape, &model->eigen_residual));
   return check_modes(path, model);
 }
 
@@ -503,7 +503,7 @@ void modal_model_free(modal_model *model) {
                   model->probe_load_inertia,
                   model->normal,
                   model->area,
-                  model->mode_residual};
+                  model->eigen_residual};
   for (size_t i = 0; i < sizeof part / sizeof *part; i++) free(part[i]);
   *model = (modal_model){0};
 }

@@ -45,9 +45,9 @@ typedef struct {
   double complex *probe_load_inertia;     /* [K+1][3 q] m s2, or NULL */
   double         *probe_contact_fourth;   /* [3 q][n_contact] m s4/N, or NULL */
   double complex *probe_load_fourth;      /* [K+1][3 q] m s4, or NULL */
-  double         *normal;        /* [pair][3] v axis in the pair's cylindrical axes, or NULL */
-  double         *area;          /* [pair] m2, or NULL */
-  double         *mode_residual; /* [m] relative eigen residual, or NULL */
+  double         *normal;         /* [pair][3] v axis in the pair's cylindrical axes, or NULL */
+  double         *area;           /* [pair] m2, or NULL */
+  double         *eigen_residual; /* [m] relative eigen residual, or NULL */
 } modal_model;
 
 /* Write the datasets of docs/files.md into an open file (attributes format and provenance included). */

@@ -175,7 +175,7 @@ static void narrow(void *data, size_t rows, size_t from, size_t to, size_t size)
     memmove(bytes + i * to * size, bytes + i * from * size, to * size);
 }
 
-shb_status modal_model_keep(modal_model *model, int modes, bool residuals) {
+shb_status modal_model_reduce(modal_model *model, int modes, bool residuals) {
   SHB_CHECK(modes >= 1 && modes <= model->n_modes, SHB_ERR_INPUT,
             "%d modes are to be kept; there are 1 to %d", modes, model->n_modes);
   if (!residuals) drop_residuals(model);

@@ -13,7 +13,7 @@
  *              R3 is there, as residual modes: as themselves, but for their damping; false: they are gone, and all of that too
  * With all modes and residuals nothing changes.
  * Errors: SHB_ERR_INPUT modes out of range, SHB_ERR_IO no memory (the model is then still to be freed, and no longer of use). */
-shb_status modal_model_keep(modal_model *model, int modes, bool residuals);
+shb_status modal_model_reduce(modal_model *model, int modes, bool residuals);
 
 /* The three terms alone: residual modes go into their tail, which is of third order then. */
 void modal_model_drop_residual_modes(modal_model *model);

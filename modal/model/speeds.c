@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-const double modal_speeds_alike = .5;
+const double modal_speeds_mac_limit = .5;
 
 enum { MAX_SPEEDS = 256 };
 

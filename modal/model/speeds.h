@@ -20,7 +20,7 @@ typedef struct {
 } modal_speeds;
 
 /* Below this MAC a track is not the same mode any more. */
-extern const double modal_speeds_alike;
+extern const double modal_speeds_mac_limit;
 
 /* Room for n speeds of n_modes modes; models zeroed. SHB_ERR_IO no memory. */
 shb_status modal_speeds_create(int n, int n_modes, modal_speeds *speeds);

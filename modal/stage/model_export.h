@@ -19,7 +19,7 @@ shb_status modal_export_check(hid_t file, const modal_check *check);
 
 /* Writes /contact/nodes [entry][3] (pair, right node, left node or -1), /contact/weight [entry] and
  * /contact/coordinates [side][pair][3]. */
-shb_status modal_export_contact(hid_t file, const modal_interface *interface);
+shb_status modal_export_contact(hid_t file, const modal_patches *patches);
 
 /* Writes /receptance/frequency [201 + m] Hz, even steps from 0 to 1.1 times the highest mode and the modes' own, and
  * /receptance/contact [201 + m][n_contact][n_contact]; nothing when that would exceed 64 MB. */

@@ -45,19 +45,19 @@ static shb_status name_probes(const modal_settings *settings, modal_model *model
   return SHB_OK;
 }
 
-static shb_status copy_patches(const modal_interface *interface, modal_model *model) {
-  const size_t n = (size_t)interface->n_pairs;
+static shb_status copy_patches(const modal_patches *patches, modal_model *model) {
+  const size_t n = (size_t)patches->n_pairs;
   model->normal  = malloc(3 * n * sizeof(double));
   model->area    = malloc(n * sizeof(double));
   SHB_CHECK(model->normal && model->area, SHB_ERR_IO, "out of memory for the contact patches");
-  memcpy(model->normal, interface->normal, 3 * n * sizeof(double));
-  memcpy(model->area, interface->area, n * sizeof(double));
+  memcpy(model->normal, patches->normal, 3 * n * sizeof(double));
+  memcpy(model->area, patches->area, n * sizeof(double));
   return SHB_OK;
 }
 
 /* An interface by its groups; its name heads error texts. */
 static shb_status create_contact(const mesh_fe *mesh, const modal_settings *settings,
-                                 const modal_contact *contact, modal_interface *out) {
+                                 const modal_contact *contact, modal_patches *out) {
   int        right = mesh_fe_set_named(mesh, contact->right);
   int        left  = settings->to_ground ? -1 : mesh_fe_set_named(mesh, contact->left);
   const bool there = right >= 0 && (left >= 0 || settings->to_ground);
@@ -65,42 +65,42 @@ static shb_status create_contact(const mesh_fe *mesh, const modal_settings *sett
   SHB_CHECK(there, SHB_ERR_INPUT, "contact interface %s: the mesh has no group \"%s\"; %s",
             contact->name, right < 0 ? contact->right : contact->left, mesh_fe_found(mesh, found));
   mesh_fe    view   = mesh_fe_facing(mesh, right, left);
-  shb_status status = modal_interface_create(&view, settings->axis, settings->blades,
-                                             settings->to_ground, contact->points, out);
-  if (status == SHB_OK) status = modal_interface_check(out, contact->psi, contact->phi);
+  shb_status status = modal_patches_create(&view, settings->axis, settings->blades,
+                                           settings->to_ground, contact->points, out);
+  if (status == SHB_OK) status = modal_patches_check_angles(out, contact->psi, contact->phi);
   if (status == SHB_OK) return SHB_OK;
-  modal_interface_free(out);
+  modal_patches_free(out);
   return shb_fail(status, __FILE__, __LINE__, "contact interface %s: %s", contact->name,
                   shb_message());
 }
 
 static shb_status create_interfaces(const mesh_fe *mesh, const modal_settings *settings,
-                                    modal_interface *out) {
-  const int       n                          = settings->n_contacts;
-  modal_interface part[MODAL_MAX_INTERFACES] = {{0}};
-  shb_status      status                     = SHB_OK;
+                                    modal_patches *out) {
+  const int     n                          = settings->n_contacts;
+  modal_patches part[MODAL_MAX_INTERFACES] = {{0}};
+  shb_status    status                     = SHB_OK;
   if (n == 0) {
-    SHB_TRY(modal_interface_create(mesh, settings->axis, settings->blades, settings->to_ground,
-                                   settings->points, out));
-    return modal_interface_check(out, settings->psi, settings->phi);
+    SHB_TRY(modal_patches_create(mesh, settings->axis, settings->blades, settings->to_ground,
+                                 settings->points, out));
+    return modal_patches_check_angles(out, settings->psi, settings->phi);
   }
   for (int i = 0; i < n && status == SHB_OK; i++)
     status = create_contact(mesh, settings, &settings->contact[i], &part[i]);
-  if (status == SHB_OK) status = modal_interface_join(n, part, out);
-  for (int i = 0; i < n; i++) modal_interface_free(&part[i]);
+  if (status == SHB_OK) status = modal_patches_join(n, part, out);
+  for (int i = 0; i < n; i++) modal_patches_free(&part[i]);
   return status;
 }
 
 /* Which interface each pair belongs to; one alone needs no name. */
-static shb_status name_interfaces(const modal_settings *settings, const modal_interface *interface,
+static shb_status name_interfaces(const modal_settings *settings, const modal_patches *patches,
                                   modal_model *model) {
   const int n = settings->n_contacts;
   if (n < 2) return SHB_OK;
-  model->interface      = malloc((size_t)interface->n_pairs * sizeof *model->interface);
+  model->interface      = malloc((size_t)patches->n_pairs * sizeof *model->interface);
   model->interface_name = calloc((size_t)n, sizeof *model->interface_name);
   SHB_CHECK(model->interface && model->interface_name, SHB_ERR_IO,
             "out of memory for the contact patches");
-  memcpy(model->interface, interface->which, (size_t)interface->n_pairs * sizeof *model->interface);
+  memcpy(model->interface, patches->interface, (size_t)patches->n_pairs * sizeof *model->interface);
   for (model->n_interfaces = 0; model->n_interfaces < n; model->n_interfaces++) {
     char *name = strdup(settings->contact[model->n_interfaces].name);
     SHB_CHECK(name, SHB_ERR_IO, "out of memory for the contact patches");
@@ -111,18 +111,18 @@ static shb_status name_interfaces(const modal_settings *settings, const modal_in
 
 /* What can be wrong with the input is found here, before any time is spent. */
 static shb_status prepare(const mesh_fe *mesh, const modal_settings *settings,
-                          modal_interface *interface, modal_condensation *to) {
+                          modal_patches *patches, modal_condensation *to) {
   char found[MESH_FOUND + 40];
   SHB_TRY(fem_clamp_check(mesh));
   if (!settings->full_integration) SHB_TRY(fem_hourglass_check(mesh));
   SHB_CHECK(settings->pressure == 0 || mesh->set[MESH_LOAD].n > 0, SHB_ERR_INPUT,
             "the mesh has no group \"%s\" for rotor.pressure; name the loaded faces so; %s",
             mesh_set_name(MESH_LOAD), mesh_fe_found(mesh, found));
-  SHB_TRY(create_interfaces(mesh, settings, interface));
-  to->n_pairs  = interface->n_pairs;
-  to->has_left = interface->has_left;
+  SHB_TRY(create_interfaces(mesh, settings, patches));
+  to->n_pairs  = patches->n_pairs;
+  to->has_left = patches->has_left;
   to->damping  = settings->damping;
-  SHB_TRY(modal_interface_dofs(interface, &to->contact));
+  SHB_TRY(modal_patches_dofs(patches, &to->contact));
   SHB_TRY(probe_dofs(mesh, settings, &to->probe));
   const double *fallback = settings->n_probes > 0 ? settings->probe[0].at : NULL;
   return modal_load_create(mesh, settings->n_loads ? settings->n_loads : 1,
@@ -167,8 +167,8 @@ static shb_status assemble(MPI_Comm comm, const fem_body *body, const modal_cond
   modal_phase(comm, progress, "assembly", "%d elements, %d dofs", body->mesh->n_elements,
               (int)(3 * result->system.n_free));
   if (body->rotation.speed == 0 && body->pressure == 0) return SHB_OK;
-  return modal_deflect(body, &result->system, to, &result->interface, progress,
-                       &result->deflection);
+  return modal_deflection_solve(body, &result->system, to, &result->patches, progress,
+                                &result->deflection);
 }
 
 /* That many modes, condensed. */
@@ -196,7 +196,8 @@ static shb_status find_enough(const fem_body *body, const modal_settings *settin
   double    error = 0;
   for (;; modes = PetscMin(2 * modes, most)) {
     SHB_TRY(find_modes(body, settings, to, modes, progress, result));
-    SHB_TRY(modal_enough(&result->model, settings->band, settings->tolerance, &enough, &error));
+    SHB_TRY(
+        modal_select_modes(&result->model, settings->band, settings->tolerance, &enough, &error));
     if (enough > 0) break;
     SHB_CHECK(modes < most, SHB_ERR_INPUT,
               "modal.modes: auto: with %d modes, to %.6g Hz, the receptance at the contact errs by "
@@ -211,7 +212,7 @@ static shb_status find_enough(const fem_body *body, const modal_settings *settin
                     "%d of %d modes kept: the receptance at the contact errs by %.1e up to %.6g Hz",
                     enough, modes, error, settings->band);
   result->eigen.n = enough;
-  return modal_model_keep(&result->model, enough, true);
+  return modal_model_reduce(&result->model, enough, true);
 }
 
 static shb_status solve(MPI_Comm comm, const fem_body *body, const modal_settings *settings,
@@ -222,12 +223,12 @@ static shb_status solve(MPI_Comm comm, const fem_body *body, const modal_setting
     SHB_TRY(find_modes(body, settings, to, settings->modes, progress, result));
   else
     SHB_TRY(find_enough(body, settings, to, progress, result));
-  SHB_TRY(modal_participate(body, result->deflection.at.displacement, &result->system,
-                            &result->eigen, &result->participation));
+  SHB_TRY(modal_participation_create(body, result->deflection.at.displacement, &result->system,
+                                     &result->eigen, &result->participation));
   modal_phase(comm, progress, "participation", "effective masses");
   SHB_TRY(name_probes(settings, &result->model));
-  SHB_TRY(name_interfaces(settings, &result->interface, &result->model));
-  return copy_patches(&result->interface, &result->model);
+  SHB_TRY(name_interfaces(settings, &result->patches, &result->model));
+  return copy_patches(&result->patches, &result->model);
 }
 
 static shb_status solve_body(MPI_Comm comm, const mesh_fe *mesh, const modal_settings *settings,
@@ -250,7 +251,7 @@ shb_status modal_solve(MPI_Comm comm, const mesh_fe *mesh, const modal_settings 
                        shb_progress *progress, modal_result *result) {
   modal_condensation to = {0};
   memset(result, 0, sizeof *result);
-  shb_status status = modal_agree(comm, prepare(mesh, settings, &result->interface, &to));
+  shb_status status = modal_agree(comm, prepare(mesh, settings, &result->patches, &to));
   if (status == SHB_OK) status = solve_body(comm, mesh, settings, &to, progress, result);
   modal_dofs_free(&to.contact);
   modal_dofs_free(&to.probe);
@@ -260,7 +261,7 @@ shb_status modal_solve(MPI_Comm comm, const mesh_fe *mesh, const modal_settings 
 
 void modal_result_free(modal_result *result) {
   modal_model_free(&result->model);
-  modal_interface_free(&result->interface);
+  modal_patches_free(&result->patches);
   modal_deflection_free(&result->deflection);
   modal_participation_free(&result->participation);
   (void)modal_eigen_destroy(&result->eigen);

@@ -64,7 +64,7 @@ typedef struct {
 typedef struct {
   fem_system          system;
   modal_eigen         eigen;
-  modal_interface     interface; /* all patches, interface by interface */
+  modal_patches       patches; /* all patches, interface by interface */
   modal_model         model;
   modal_deflection    deflection; /* static, under the centrifugal load; zero at rest */
   modal_participation participation;

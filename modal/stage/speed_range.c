@@ -169,9 +169,9 @@ static shb_status choose_modes(MPI_Comm comm, const mesh_fe *mesh, const modal_s
   return SHB_OK;
 }
 
-shb_status modal_campbell_solve(MPI_Comm comm, const mesh_fe *mesh, const modal_settings *settings,
-                                shb_progress *progress, modal_speeds *speeds,
-                                modal_result *result) {
+shb_status modal_speed_range_solve(MPI_Comm comm, const mesh_fe *mesh,
+                                   const modal_settings *settings, shb_progress *progress,
+                                   modal_speeds *speeds, modal_result *result) {
   Mat            kept[2] = {NULL, NULL};
   modal_settings each    = *settings;
   memset(result, 0, sizeof *result);
@@ -190,7 +190,7 @@ shb_status modal_campbell_solve(MPI_Comm comm, const mesh_fe *mesh, const modal_
   return status;
 }
 
-void modal_campbell_free(modal_speeds *speeds, const modal_result *result) {
+void modal_speed_range_free(modal_speeds *speeds, const modal_result *result) {
   for (int s = 0; speeds->model && s < speeds->n; s++)
     if (speeds->model[s].frequency && speeds->model[s].frequency == result->model.frequency)
       memset(&speeds->model[s], 0, sizeof speeds->model[s]);

@@ -38,7 +38,7 @@ static shb_status write_all(hid_t file, const mesh_fe *mesh, const modal_result 
   SHB_TRY(modal_export_shapes(file, result->model.n_modes, mesh->n_nodes, shape));
   SHB_TRY(modal_export_check(file, &result->eigen.check));
   SHB_TRY(modal_participation_write(file, &result->participation));
-  SHB_TRY(modal_export_contact(file, &result->interface));
+  SHB_TRY(modal_export_contact(file, &result->patches));
   SHB_TRY(modal_export_receptance(file, &result->model));
   SHB_TRY(modal_deflection_write(file, &result->deflection, mesh->n_nodes, mesh->n_elements,
                                  &result->model));
@@ -95,9 +95,9 @@ static shb_status run(MPI_Comm comm, int rank, const char *out_path, const mesh_
   modal_result result;
   modal_speeds speeds = {0};
   double      *shape  = NULL;
-  shb_status   status = settings->n_speeds > 1
-                            ? modal_campbell_solve(comm, mesh, settings, progress, &speeds, &result)
-                            : modal_solve(comm, mesh, settings, progress, &result);
+  shb_status   status = settings->n_speeds > 1 ? modal_speed_range_solve(comm, mesh, settings,
+                                                                         progress, &speeds, &result)
+                                               : modal_solve(comm, mesh, settings, progress, &result);
   if (status == SHB_OK) status = gather_shapes(&result, rank, &shape);
   if (status == SHB_OK) {
     shb_progress_show(progress, 96, "writing %s", out_path);
@@ -107,7 +107,7 @@ static shb_status run(MPI_Comm comm, int rank, const char *out_path, const mesh_
     if (status == SHB_OK) modal_phase(comm, progress, "write", "%s", out_path);
   }
   free(shape);
-  modal_campbell_free(&speeds, &result);
+  modal_speed_range_free(&speeds, &result);
   modal_result_free(&result);
   return status;
 }

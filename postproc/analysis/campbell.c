@@ -56,7 +56,7 @@ static double frequency_at(curves *c, int track, double speed) {
   double              f2 = 0;
   int                 i  = 1;
   while (i < s->n - 1 && speed > s->speed[i]) i++;
-  if (s->mac[i * s->n_modes + track] < modal_speeds_alike) return NAN;
+  if (s->mac[i * s->n_modes + track] < modal_speeds_mac_limit) return NAN;
   modal_spline_weights(&c->spline, speed * speed, c->weight, NULL);
   for (int k = 0; k < s->n; k++) {
     double f = modal_speeds_frequency(s, k, track);
@@ -359,7 +359,7 @@ void post_campbell_table(const modal_speeds *s, bool all, post_buffer *out) {
   int  step  = all || s->n <= 10 ? 1 : (s->n + 8) / 9;
   char text[POST_NUMBER];
   post_put(out, "  %d speeds; frequencies of the tracked modes, Hz (*: MAC below %g)\n  %6s", s->n,
-           modal_speeds_alike, "rpm");
+           modal_speeds_mac_limit, "rpm");
   for (int i = 0; i < s->n; i += step)
     post_put(out, "%10s ", post_plain(text, s->speed[i] * 60 / TWO_PI, 5));
   post_put(out, "\n");
@@ -367,7 +367,7 @@ void post_campbell_table(const modal_speeds *s, bool all, post_buffer *out) {
     post_put(out, "  %6d", t + 1);
     for (int i = 0; i < s->n; i += step)
       post_put(out, "%10s%s", post_plain(text, modal_speeds_frequency(s, i, t), 6),
-               s->mac[i * s->n_modes + t] < modal_speeds_alike ? "*" : " ");
+               s->mac[i * s->n_modes + t] < modal_speeds_mac_limit ? "*" : " ");
     post_put(out, "\n");
   }
   if (shown < s->n_modes) post_put(out, "  … %d more (--verbose shows them)\n", s->n_modes - shown);

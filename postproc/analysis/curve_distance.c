@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-double post_apart(const double one[2], const double other[2], double unit) {
+double post_point_distance(const double one[2], const double other[2], double unit) {
   return fmax(fabs(log(one[0] / other[0])), fabs(one[1] - other[1]) / unit);
 }
 
@@ -21,7 +21,8 @@ static double from_segment(double x, double y, double dx, double dy, double *at)
   return least;
 }
 
-double post_distance(const double point[2], const post_polyline *line, double unit, int *nearest) {
+double post_curve_distance(const double point[2], const post_polyline *line, double unit,
+                           int *nearest) {
   double least = INFINITY, x0 = 0, y0 = 0;
   for (int i = 0; i < line->n; i++) {
     double x = log(line->frequency[i] / point[0]), y = (line->amplitude[i] - point[1]) / unit;
@@ -48,7 +49,7 @@ static double bulge(const double a[2], const double b[2], const double c[2]) {
   return most;
 }
 
-double post_sag(const post_polyline *line, int i, double unit) {
+double post_chord_deviation(const post_polyline *line, int i, double unit) {
   double p[4][2];
   for (int k = 0; k < 4; k++) {
     int j   = i - 1 + k < 0 ? 0 : i - 1 + k >= line->n ? line->n - 1 : i - 1 + k;

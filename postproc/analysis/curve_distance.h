@@ -12,14 +12,15 @@ typedef struct {
 } post_polyline;
 
 /* Of two points (f, a). */
-double post_apart(const double one[2], const double other[2], double unit);
+double post_point_distance(const double one[2], const double other[2], double unit);
 
 /* Of a point from the nearest place of a polyline; INFINITY if that has no point. *nearest: the end of the segment that is
  * nearer to it, or the point (may be NULL). */
-double post_distance(const double point[2], const post_polyline *line, double unit, int *nearest);
+double post_curve_distance(const double point[2], const post_polyline *line, double unit,
+                           int *nearest);
 
 /* How far the curve may be from the chord between points i and i + 1: the deviation of the middle from the parabolas through a
  * third point on either side, the larger of the two. */
-double post_sag(const post_polyline *line, int i, double unit);
+double post_chord_deviation(const post_polyline *line, int i, double unit);
 
 #endif

@@ -321,7 +321,7 @@ shb_status post_find_folds(int n, const double *x, const double *amplitude, cons
   return SHB_OK;
 }
 
-int post_highest(int n_peaks, const post_peak *peaks) {
+int post_highest_peak(int n_peaks, const post_peak *peaks) {
   int best = n_peaks > 0 ? 0 : -1;
   for (int i = 1; i < n_peaks; i++)
     if (peaks[i].amplitude > peaks[best].amplitude) best = i;

@@ -47,6 +47,6 @@ shb_status post_find_folds(int n, const double *x, const double *amplitude, cons
                            post_fold **folds, int *n_folds);
 
 /* Index of the highest peak, -1 if none. */
-int post_highest(int n_peaks, const post_peak *peaks);
+int post_highest_peak(int n_peaks, const post_peak *peaks);
 
 #endif

@@ -10,12 +10,12 @@
 typedef struct {
   char *format, *revision, *command, *created, *case_path, *case_text, *settings;
   int   version; /* 0: not said */
-} post_source;
+} post_origin;
 
 /* at: an open file. Errors: SHB_ERR_IO (no memory, cannot be read). */
-shb_status post_source_read(hid_t file, post_source *source);
+shb_status post_origin_read(hid_t file, post_origin *source);
 /* The same for a file by name. Errors: as h5_open. */
-shb_status post_source_open(const char *path, post_source *source);
-void       post_source_free(post_source *source);
+shb_status post_origin_open(const char *path, post_origin *source);
+void       post_origin_free(post_origin *source);
 
 #endif

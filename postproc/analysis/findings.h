@@ -6,11 +6,11 @@
 #include "postproc/draw/text_buffer.h"
 
 /* The key figures as HTML (open peak, stuck peak, lowest peak and its preload, reduction). */
-void post_figures(const post_study *study, post_buffer *out);
+void post_key_figures(const post_analysis *analysis, post_buffer *out);
 /* The findings as an HTML list: optimum, frequency shift, folds, stability, range, what is incomplete, accuracy. */
-void post_findings(const post_study *study, post_buffer *out);
+void post_findings(const post_analysis *analysis, post_buffer *out);
 
 /* The findings in one or two plain lines for the terminal, without newline at the end. */
-void post_summary(const post_study *study, post_buffer *out);
+void post_summary(const post_analysis *analysis, post_buffer *out);
 
 #endif

@@ -10,7 +10,7 @@ enum { AXES = 3, NEWTON_STEPS = 20 };
 /* A harmonic this small beside the largest changes no figure. */
 static const double ROUNDING = 1e-13;
 
-double post_ellipse(int n, const double complex *a, int stride) {
+double post_semi_major_axis(int n, const double complex *a, int stride) {
   double         sum    = 0;
   double complex square = 0;
   for (int i = 0; i < n; i++) {
@@ -119,7 +119,8 @@ double post_peak_to_peak(int n, int m, const double complex *a) {
 }
 
 post_output post_output_primary(const mhb_response *response) {
-  return (post_output){response->n_probes > 0 ? POST_PROBE : POST_CONTACT, 0, POST_WHOLE};
+  return (post_output){response->n_probes > 0 ? POST_PLACE_PROBE : POST_PLACE_CONTACT, 0,
+                       POST_WHOLE};
 }
 
 int post_first_harmonic(const mhb_branch *branch) {
@@ -130,7 +131,7 @@ int post_first_harmonic(const mhb_branch *branch) {
 /* The harmonics of output at a point: [n][m + 1]. */
 static const double complex *harmonics_of(const mhb_response *response, const mhb_branch *branch,
                                           int point, post_output output, int *n) {
-  bool                  probe  = output.place == POST_PROBE;
+  bool                  probe  = output.place == POST_PLACE_PROBE;
   size_t                places = (size_t)(probe ? response->n_probes : response->n_pairs);
   const double complex *all    = probe ? branch->probe : branch->motion;
   size_t                at     = ((size_t)point * places + (size_t)output.index) * AXES +
@@ -143,7 +144,7 @@ double post_amplitude(const mhb_response *response, const mhb_branch *branch, in
                       post_output output, int k) {
   int                   n;
   const double complex *a = harmonics_of(response, branch, point, output, &n);
-  return k > branch->n_harmonics ? 0 : post_ellipse(n, a + k, branch->n_harmonics + 1);
+  return k > branch->n_harmonics ? 0 : post_semi_major_axis(n, a + k, branch->n_harmonics + 1);
 }
 
 shb_status post_series(const mhb_response *response, const mhb_branch *branch, post_output output,
@@ -154,15 +155,15 @@ shb_status post_series(const mhb_response *response, const mhb_branch *branch, p
   for (int p = 0; p < points; p++) {
     int                   n;
     const double complex *a = harmonics_of(response, branch, p, output, &n);
-    out[p]                  = quantity == POST_PEAK_TO_PEAK ? post_peak_to_peak(n, m, a)
-                                                            : post_ellipse(n, a + first, m + 1);
+    out[p]                  = quantity == POST_QUANTITY_PEAK_TO_PEAK ? post_peak_to_peak(n, m, a)
+                                                                     : post_semi_major_axis(n, a + first, m + 1);
   }
   *values = out;
   return SHB_OK;
 }
 
 void post_place_name(const mhb_response *response, post_output output, char out[128]) {
-  if (output.place == POST_PROBE)
+  if (output.place == POST_PLACE_PROBE)
     snprintf(out, 128, "%s", response->probe_name[output.index]);
   else
     post_contact_name(response, output.index, " ", out);
@@ -186,5 +187,5 @@ void post_contact_name(const mhb_response *response, int pair, const char *gap, 
 const char *post_axis_name(post_output output) {
   static const char *const probe[]   = {"motion", "tangential", "axial", "radial"};
   static const char *const contact[] = {"relative motion", "v, normal", "u, sliding", "w, sliding"};
-  return (output.place == POST_PROBE ? probe : contact)[output.axis + 1];
+  return (output.place == POST_PLACE_PROBE ? probe : contact)[output.axis + 1];
 }

@@ -6,8 +6,8 @@
 
 #include "mhb/response/response.h"
 
-typedef enum { POST_PROBE, POST_CONTACT } post_place;
-typedef enum { POST_FIRST_HARMONIC, POST_PEAK_TO_PEAK } post_quantity;
+typedef enum { POST_PLACE_PROBE, POST_PLACE_CONTACT } post_place;
+typedef enum { POST_QUANTITY_FIRST_HARMONIC, POST_QUANTITY_PEAK_TO_PEAK } post_quantity;
 
 enum { POST_WHOLE = -1 }; /* axis: the displacement vector itself */
 
@@ -20,7 +20,7 @@ typedef struct {
 /* Largest length a vector x(t) = Re a e^{jt} reaches in a cycle, the semi-major axis of its ellipse:
  * |x|max^2 = (sum |a_i|^2 + |sum a_i^2|)/2. For n = 1 it is |a|.
  *   a  in  [n], stride apart; n <= 3 */
-double post_ellipse(int n, const double complex *a, int stride);
+double post_semi_major_axis(int n, const double complex *a, int stride);
 
 /* Largest distance between two instants of a cycle of x(t) = Re sum_{k=0..m} a_k e^{jkt}; for n = 1 max - min.
  *   a  in  [n][m + 1]; n <= 3

@@ -68,11 +68,11 @@ typedef struct {
   const post_convergence
       *convergence; /* speed against error, if the case was studied; set by the caller */
   const post_campbell *campbell; /* modes over the speed, if there are several; set by the caller */
-} post_study;
+} post_analysis;
 
-/* Errors: SHB_ERR_INPUT (no branch with a point), SHB_ERR_IO (no memory). The response must outlive the study. */
-shb_status post_study_create(const mhb_response *response, post_study **study);
-void       post_study_destroy(post_study *study);
+/* Errors: SHB_ERR_INPUT (no branch with a point), SHB_ERR_IO (no memory). The response must outlive the analysis. */
+shb_status post_analysis_create(const mhb_response *response, post_analysis **analysis);
+void       post_analysis_destroy(post_analysis *analysis);
 
 /* quantity of output on every branch, [n_branches][n_points of the branch] m; free with post_values_free. */
 shb_status post_values(const mhb_response *response, post_output output, post_quantity quantity,
@@ -80,7 +80,8 @@ shb_status post_values(const mhb_response *response, post_output output, post_qu
 void       post_values_free(const mhb_response *response, double **values);
 
 /* Tracking of an output from its values on every branch; free with post_tracking_free. */
-shb_status post_track(const post_study *study, double *const *values, post_tracking *tracking);
+shb_status post_track(const post_analysis *analysis, double *const *values,
+                      post_tracking *tracking);
 void       post_tracking_free(post_tracking *tracking);
 
 /* Largest of the error estimates of a point that are finite; NAN if none is. */
@@ -91,9 +92,9 @@ double post_state(const mhb_response *response, const mhb_branch *branch, int po
 double post_dissipation(const mhb_response *response, const mhb_branch *branch, int point);
 
 /* The curves are drawn against another parameter, at one frequency. */
-bool post_at_one_frequency(const post_study *study);
+bool post_at_one_frequency(const post_analysis *analysis);
 /* " at 240 Hz" if so, else "". */
-char *post_frequency_text(const post_study *study, char out[POST_PLACE]);
+char *post_frequency_text(const post_analysis *analysis, char out[POST_PLACE]);
 
 /* What tells a curve from the main one of its group: "", ", found by search", ", order 2, from a flip". */
 void post_branch_note(const mhb_response *response, const mhb_branch *branch, char out[64]);
@@ -105,6 +106,6 @@ void post_group_name(const post_group *group, char out[64]);
 void post_put_harmonics(const mhb_response *response, post_buffer *out);
 
 /* "run-up: speed 1080 to 3480 rpm along E = 5", or at one speed; nothing where the speed does not go with the frequency. */
-void post_put_run_up(const post_study *study, post_buffer *out);
+void post_put_run_up(const post_analysis *analysis, post_buffer *out);
 
 #endif

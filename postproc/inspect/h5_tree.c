@@ -16,7 +16,7 @@ enum { NAME = 256, MAX_DEPTH = 24, ATTRIBUTE = 80 };
 typedef struct {
   char lead[3 * MAX_DEPTH * 4]; /* branches of the tree */
   char name[NAME];
-  char type[POST_RANGE], shape[POST_RANGE], range[POST_RANGE];
+  char type[POST_VALUE_RANGE], shape[POST_VALUE_RANGE], range[POST_VALUE_RANGE];
   char units[ATTRIBUTE], about[2 * NAME]; /* units; long_name, or of a group its attributes */
   bool group;
 } line;
@@ -133,7 +133,7 @@ static herr_t scale_name(hid_t dataset, unsigned dim, hid_t scale, void *data) {
 }
 
 /* "[point 312, pair 1, 3]" */
-static void put_shape(hid_t dataset, char out[POST_RANGE]) {
+static void put_shape(hid_t dataset, char out[POST_VALUE_RANGE]) {
   hid_t   space             = H5Dget_space(dataset);
   hsize_t dim[H5S_MAX_RANK] = {0};
   int     rank              = H5Sget_simple_extent_dims(space, dim, NULL);
@@ -145,10 +145,10 @@ static void put_shape(hid_t dataset, char out[POST_RANGE]) {
     text_room room     = {name, sizeof name};
     if (!scale && H5DSget_num_scales(dataset, (unsigned)d) > 0)
       H5DSiterate_scales(dataset, (unsigned)d, NULL, scale_name, &room);
-    used += (size_t)snprintf(out + used, POST_RANGE - used, "%s%s%s%llu", d ? ", " : "[", name,
-                             *name ? " " : "", (unsigned long long)dim[d]);
+    used += (size_t)snprintf(out + used, POST_VALUE_RANGE - used, "%s%s%s%llu", d ? ", " : "[",
+                             name, *name ? " " : "", (unsigned long long)dim[d]);
   }
-  if (rank > 0) snprintf(out + used, POST_RANGE - used, "]");
+  if (rank > 0) snprintf(out + used, POST_VALUE_RANGE - used, "]");
   H5Sclose(space);
 }
 
@@ -207,7 +207,7 @@ static void describe_dataset(hid_t dataset, post_tree_style style, line *l) {
   post_type_name(type, l->type);
   H5Tclose(type);
   put_shape(dataset, l->shape);
-  post_range(dataset, l->range);
+  post_value_range(dataset, l->range);
   attribute_text(dataset, "units", l->units, sizeof l->units);
   attribute_text(dataset, "long_name", l->about, sizeof l->about);
   if (style.verbose) all_attributes(dataset, l->about, sizeof l->about);

@@ -93,7 +93,7 @@ static shb_status put_check(hid_t file, post_buffer *out) {
   return status;
 }
 
-shb_status post_modes(hid_t file, const modal_model *model, bool all, post_buffer *out) {
+shb_status post_mode_table(hid_t file, const modal_model *model, bool all, post_buffer *out) {
   shares     s      = {0};
   shb_status status = read_shares(file, model, &s);
   if (status == SHB_OK) put_table(model, &s, all, out);

@@ -11,6 +11,6 @@
 
 /* One line a mode, the first 24 unless all; effective masses as shares of the mass in the file, and their sums over all modes of the
  * file, where it holds them. Errors: SHB_ERR_INPUT effective masses of another shape; SHB_ERR_IO no memory. */
-shb_status post_modes(hid_t file, const modal_model *model, bool all, post_buffer *out);
+shb_status post_mode_table(hid_t file, const modal_model *model, bool all, post_buffer *out);
 
 #endif

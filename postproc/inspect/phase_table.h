@@ -9,6 +9,6 @@
 
 /* One line a phase and one for all; nothing where the file holds none (docs/files.md, /phases).
  * Errors: SHB_ERR_INPUT columns of different lengths; SHB_ERR_IO no memory. */
-shb_status post_phases(hid_t file, post_buffer *out);
+shb_status post_phase_table(hid_t file, post_buffer *out);
 
 #endif

@@ -78,7 +78,7 @@ static void put_place(const mhb_branch *branch, const double complex *a, post_bu
     put_number(out, carg(axis[first]) * 180 / M_PI);
     put_number(out, post_peak_to_peak(1, m, axis));
   }
-  put_number(out, post_ellipse(3, a + first, m + 1));
+  put_number(out, post_semi_major_axis(3, a + first, m + 1));
   put_number(out, post_peak_to_peak(3, m, a));
 }
 

@@ -208,7 +208,7 @@ function drawResponse() {
     const b = D.branches[i], g = groupOf(b), a = b.row(o.row), stable = b.row(ROW.stable);
     if (hidden.has(b.group)) continue;
     if (b.dots) {
-      for (let k = 0; k < b.n; k++) main.dot((stable[k] === 1 ? "witness " : "witness adrift ") + classOf(g), b.f[k], a[k], 2.6);
+      for (let k = 0; k < b.n; k++) main.dot((stable[k] === 1 ? "integration " : "integration aperiodic ") + classOf(g), b.f[k], a[k], 2.6);
       continue;
     }
     const classes = classOf(g) + (i === state.branch ? " chosen" : "");
@@ -218,7 +218,7 @@ function drawResponse() {
     main.line("line " + classes, b.f, a, k => !unstable(k) && !left(k));
     main.line("line unstable " + classes, b.f, a, k => unstable(k) && !left(k));
     if (b.n === 1) main.dot("dot " + classes, b.f[0], a[0], 3);
-    b.row(ROW.special).forEach((special, k) => { if (special > 2) main.dot("turn " + classes, b.f[k], a[k], 2.6); });
+    b.row(ROW.special).forEach((special, k) => { if (special > 2) main.dot("bifurcation " + classes, b.f[k], a[k], 2.6); });
   }
   for (const [g, f, a] of o.folds) if (!hidden.has(g)) main.dot("fold " + classOf(D.groups[g]), f, a, 2.6);
   for (const [g, f, a] of o.limits) if (!hidden.has(g)) main.text("mark " + D.groups[g].kind, f, a, 0, -7, anchor(f), D.groups[g].kind);

@@ -17,6 +17,7 @@
  * they do not fit; beyond some 30 000 points ordinary points between the special ones are thinned.
  *   left_out  out  number of columns left out
  * Errors: SHB_ERR_IO (no memory). */
-shb_status post_page_data(const post_study *study, int chosen, post_buffer *out, int *left_out);
+shb_status post_page_data(const post_analysis *analysis, int chosen, post_buffer *out,
+                          int *left_out);
 
 #endif

@@ -6,6 +6,6 @@
 #include "postproc/draw/text_buffer.h"
 
 /* White background, title, legend and style inside; needs nothing else. */
-void post_picture(const post_study *study, const char *case_name, post_buffer *out);
+void post_picture(const post_analysis *analysis, const char *case_name, post_buffer *out);
 
 #endif

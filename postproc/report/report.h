@@ -8,7 +8,7 @@
 #include "postproc/draw/text_buffer.h"
 
 /* case_name, and every text of source, may hold anything. Errors: SHB_ERR_IO (no memory). */
-shb_status post_report(const post_study *study, const post_source *source, const char *case_name,
-                       post_buffer *out);
+shb_status post_report(const post_analysis *analysis, const post_origin *source,
+                       const char *case_name, post_buffer *out);
 
 #endif

@@ -76,7 +76,7 @@ static void copies_are_found(void **state) {
     for (int i = 0; i < MODES; i++)
       check_close(eigen.lambda[i], single.lambda[i / copies[k]], 1e-6, "one of many");
     print_message("%d copies: blocks of %d, checked by %s\n", copies[k], (int)block_size(&eigen),
-                  eigen.check.by);
+                  eigen.check.method);
     assert_int_equal(eigen.check.count,
                      (MODES - 1) / copies[k] * copies[k]); /* equals are not below */
     modal_eigen_destroy(&eigen);
@@ -109,7 +109,7 @@ static void pairs_are_found(void **state) {
     solve(&system, &settings, &eigen);
     PetscOptionsClearValue(NULL, "-eps_block_size");
     assert_int_equal(block_size(&eigen), 2);
-    assert_string_equal(eigen.check.by, k == 0 ? "restart" : "inertia");
+    assert_string_equal(eigen.check.method, k == 0 ? "restart" : "inertia");
     for (int i = 0; i < 4; i++) check_close(eigen.lambda[i], good.lambda[i], 1e-6, "eigenvalue");
     modal_eigen_destroy(&eigen);
   }
@@ -159,20 +159,20 @@ static void hidden_mode_is_noticed(void **state) {
   assemble(&mesh, &system);
   solve(&system, &settings, &reference);
   for (int hidden = 0; hidden < WHOLE; hidden++) {
-    const double      last = reference.lambda[hidden == WHOLE - 1 ? WHOLE - 2 : WHOLE - 1];
-    modal_block_basis basis;
-    modal_complement  rest;
+    const double       last = reference.lambda[hidden == WHOLE - 1 ? WHOLE - 2 : WHOLE - 1];
+    modal_block_basis  basis;
+    modal_missed_modes rest;
     make_basis(&system, &reference, hidden, &basis);
-    assert_int_equal(modal_complement_search(&basis, 1 / (last * (1 - 1e-6)), &rest), 0);
+    assert_int_equal(modal_missed_modes_search(&basis, 1 / (last * (1 - 1e-6)), &rest), 0);
     print_message("mode %d hidden: ratio %.6f after %d solves, chance %.1e\n", hidden + 1,
-                  rest.ratio, rest.steps, rest.chance);
+                  rest.ratio, rest.steps, rest.probability);
     assert_int_equal(rest.count, KEPT - 1);
     if (hidden < WHOLE - 1) {
-      assert_int_equal(rest.verdict, MODAL_MISSING);
+      assert_int_equal(rest.verdict, MODAL_VERDICT_MISSING);
       assert_true(rest.ratio <= last / reference.lambda[hidden] * (1 + 1e-9)); /* a lower bound */
     } else {
-      assert_int_equal(rest.verdict, MODAL_COMPLETE);
-      assert_true(rest.chance <= 1e-9);
+      assert_int_equal(rest.verdict, MODAL_VERDICT_COMPLETE);
+      assert_true(rest.probability <= 1e-9);
       check_close(rest.ratio, last / reference.lambda[WHOLE - 1], .05, "the next mode");
     }
     modal_block_basis_destroy(&basis);
@@ -197,11 +197,11 @@ static void inertia_counts(void **state) {
     if (!clamped) mesh.set[MESH_ROOT].n = 0;
     assemble(&mesh, &system);
     solve(&system, &settings, &eigen);
-    assert_string_equal(eigen.check.by, "restart");
+    assert_string_equal(eigen.check.method, "restart");
     for (int i = clamped ? 0 : 6; i < 8; i++) {
       int count;
       assert_int_equal(
-          modal_inertia_below(&system, (eigen.lambda[i] + eigen.lambda[i + 1]) / 2, &count), 0);
+          modal_inertia_count(&system, (eigen.lambda[i] + eigen.lambda[i + 1]) / 2, &count), 0);
       assert_int_equal(count, i + 1);
     }
     modal_eigen_destroy(&eigen);
@@ -223,15 +223,15 @@ static void others_are_counted(void **state) {
   PetscOptionsSetValue(NULL, "-eps_type", EPSKRYLOVSCHUR);
   solve(&system, &settings, &eigen);
   PetscOptionsClearValue(NULL, "-eps_type");
-  assert_string_equal(eigen.check.by, "inertia");
+  assert_string_equal(eigen.check.method, "inertia");
   assert_int_equal(eigen.check.count, 9);
-  assert_true(eigen.check.chance == 0);
+  assert_true(eigen.check.probability == 0);
   check_close(eigen.check.limit, eigen.lambda[9] * (1 - 1e-6), 1e-9, "limit");
   modal_eigen_destroy(&eigen);
   settings.check = MODAL_CHECK_NEVER;
   solve(&system, &settings, &eigen);
-  assert_string_equal(eigen.check.by, "no");
-  assert_true(eigen.check.chance == 1);
+  assert_string_equal(eigen.check.method, "no");
+  assert_true(eigen.check.probability == 1);
   modal_eigen_destroy(&eigen);
   fem_system_destroy(&system);
   mesh_fe_free(&mesh);
@@ -281,15 +281,18 @@ static void chance_holds(void **state) {
     const double ratio = .3;
     int          blind = 0;
     for (int d = 0; d < DRAWS; d++) blind += ritz(N, value, steps, &random) <= ratio;
-    const double drawn = (double)blind / DRAWS, bound = modal_complement_chance(ratio, steps, 1, N);
+    const double drawn = (double)blind / DRAWS,
+                 bound = modal_missed_modes_probability(ratio, steps, 1, N);
     print_message("%d steps: blind in %.1e of the draws, bound %.1e\n", steps, drawn, bound);
     assert_true(drawn <= bound);
     assert_true(blind == 0 || bound < 1000 * drawn);
     assert_true(steps > 2 || blind > 0);
   }
-  assert_true(modal_complement_chance(1, 9, 4, 1e5) == 1);
-  assert_true(modal_complement_chance(.5, 9, 4, 1e5) < modal_complement_chance(.5, 8, 4, 1e5));
-  assert_true(modal_complement_chance(.5, 9, 4, 1e5) > modal_complement_chance(.4, 9, 4, 1e5));
+  assert_true(modal_missed_modes_probability(1, 9, 4, 1e5) == 1);
+  assert_true(modal_missed_modes_probability(.5, 9, 4, 1e5) <
+              modal_missed_modes_probability(.5, 8, 4, 1e5));
+  assert_true(modal_missed_modes_probability(.5, 9, 4, 1e5) >
+              modal_missed_modes_probability(.4, 9, 4, 1e5));
 }
 
 int main(int argc, char **argv) {

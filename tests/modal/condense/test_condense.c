@@ -89,10 +89,10 @@ static double *damping_matrix(const modal_eigen *eigen, int n) {
 /* b_c written out from the interface, the probes and the load's own nodal forces. */
 static double *condensed_dofs(const mesh_fe *mesh, const modal_settings *settings,
                               const modal_result *result, int n, int n_dofs) {
-  double                *B    = calloc((size_t)n * (size_t)n_dofs, sizeof *B);
-  const modal_interface *face = &result->interface;
-  const PetscInt        *row  = result->system.row;
-  int                    c    = 0;
+  double              *B    = calloc((size_t)n * (size_t)n_dofs, sizeof *B);
+  const modal_patches *face = &result->patches;
+  const PetscInt      *row  = result->system.row;
+  int                  c    = 0;
   for (int side = 0; side <= (int)face->has_left; side++)
     for (int p = 0; p < face->n_pairs; p++)
       for (int a = 0; a < 3; a++, c++)
@@ -413,7 +413,7 @@ static void error_is_estimated(void **state) {
   for (int i = 0; i < result.model.n_modes; i++) result.model.damping_ratio[i] = 0;
   memcpy(frequency, result.model.frequency, sizeof frequency);
   for (int modes = 20; modes > 2; modes -= 5) {
-    assert_int_equal(modal_model_keep(&result.model, modes, true), SHB_OK);
+    assert_int_equal(modal_model_reduce(&result.model, modes, true), SHB_OK);
     double top = frequency[modes < 20 ? modes : 19]; /* the first left out */
     for (int i = 0; i < 6; i++) {
       double         omega = two_pi * share[i] * top;
@@ -466,7 +466,7 @@ static void modes_are_just_enough(void **state) {
     memset(whole.C, 0, (size_t)whole.n * (size_t)whole.n * sizeof *whole.C);
     for (int i = 0; i < n; i++) result.model.damping_ratio[i] = 0;
     double error = worst_in_band(&result.model, &whole, settings.band);
-    assert_int_equal(modal_model_keep(&result.model, n - 1, true), SHB_OK);
+    assert_int_equal(modal_model_reduce(&result.model, n - 1, true), SHB_OK);
     double fewer = worst_in_band(&result.model, &whole, settings.band);
     print_message("tolerance %.0e: %d modes err by %.1e, one less by %.1e\n", settings.tolerance, n,
                   error, fewer);
@@ -545,7 +545,7 @@ static void patches_add_up_to_the_face(void **state) {
     for (int a = 0; a < 3; a++) {
       double mean = 0;
       for (int p = 0; p < model->n_pairs; p++)
-        mean += model->area[p] / result.interface.total_area * model->right[(3 * p + a) * m];
+        mean += model->area[p] / result.patches.total_area * model->right[(3 * p + a) * m];
       if (i < 0)
         whole[a] = mean;
       else

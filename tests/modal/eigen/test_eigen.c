@@ -33,7 +33,7 @@ static void check_modes(const fem_system *system, const modal_eigen *eigen) {
   double value;
   assert_int_equal(MatCreateVecs(system->K, NULL, &k_phi), 0);
   for (int i = 0; i < eigen->n; i++) {
-    check_below(eigen->residual[i], 1e-9, "residual of a mode");
+    check_below(eigen->eigen_residual[i], 1e-9, "residual of a mode");
     MatDenseGetColumnVecRead(eigen->phi, i, &a);
     MatMult(system->K, a, k_phi);
     VecDot(a, k_phi, &value);

@@ -30,7 +30,8 @@ static model *make(const mesh_fe *mesh, const fem_material *material, int modes)
   assert_int_equal(fem_system_create(PETSC_COMM_SELF, mesh, material, FEM_FULL, &m->system), 0);
   if (modes <= 0) settings.modes = 3 * (int)m->system.n_free;
   if (modal_eigen_solve(&m->system, &settings, &m->eigen) != 0) fail_msg("%s", shb_message());
-  assert_int_equal(modal_participate(&m->body, NULL, &m->system, &m->eigen, &m->share), SHB_OK);
+  assert_int_equal(modal_participation_create(&m->body, NULL, &m->system, &m->eigen, &m->share),
+                   SHB_OK);
   return m;
 }
 

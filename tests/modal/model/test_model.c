@@ -79,7 +79,7 @@ static modal_model sample(bool full) {
   model.probe_load_inertia    = waves((LOADS + 1) * 3 * PROBES, 18);
   model.normal                = numbers(PAIRS * 3, 12);
   model.area                  = numbers(PAIRS, 13);
-  model.mode_residual         = numbers(MODES, 14);
+  model.eigen_residual        = numbers(MODES, 14);
   model.probe_name            = calloc(PROBES, sizeof *model.probe_name);
   for (int i = 0; i < PROBES; i++) model.probe_name[i] = strdup(name[i]);
   for (int i = 0; i < PAIRS; i++) {
@@ -127,7 +127,7 @@ static void test_round_trip(void **state) {
   assert_true(read.has_left);
   assert_same(wrote, read, frequency, MODES);
   assert_same(wrote, read, damping_ratio, MODES);
-  assert_same(wrote, read, mode_residual, MODES);
+  assert_same(wrote, read, eigen_residual, MODES);
   assert_same(wrote, read, right, PAIRS * 3 * MODES);
   assert_same(wrote, read, left, PAIRS * 3 * MODES);
   assert_same(wrote, read, residual_flexibility, CONTACTS * CONTACTS);

@@ -61,7 +61,7 @@ static void errors_at(int parts, int modes, bool residuals, double omega, double
     drop_fourth(&all);
     drop_fourth(&few);
   }
-  if (modal_model_keep(&few, modes, residuals) != SHB_OK) fail_msg("%s", shb_message());
+  if (modal_model_reduce(&few, modes, residuals) != SHB_OK) fail_msg("%s", shb_message());
   assert_int_equal(few.n_modes, modes);
   mhb_receptance *a = receptance_of(&all, &s, omega), *b = receptance_of(&few, &s, omega);
   double complex  p[ROWS], q[2][6];
@@ -128,7 +128,7 @@ static void bare(void **state) {
   modal_model  with, without;
   mhb_settings s = random_settings(2);
   random_model(PAIRS, PARTS, 71, &with);
-  assert_int_equal(modal_model_keep(&with, 6, false), SHB_OK);
+  assert_int_equal(modal_model_reduce(&with, 6, false), SHB_OK);
   assert_null(with.residual_flexibility);
   assert_true(!with.residual_fourth && !with.load_inertia && !with.probe_load_residual &&
               !with.probe_load_inertia);
@@ -154,8 +154,8 @@ static void wrong_numbers(void **state) {
   (void)state;
   modal_model model;
   random_model(1, PARTS, 5, &model);
-  assert_int_equal(modal_model_keep(&model, 0, true), SHB_ERR_INPUT);
-  assert_int_equal(modal_model_keep(&model, 7, true), SHB_ERR_INPUT);
+  assert_int_equal(modal_model_reduce(&model, 0, true), SHB_ERR_INPUT);
+  assert_int_equal(modal_model_reduce(&model, 7, true), SHB_ERR_INPUT);
   assert_string_equal(shb_message(), "7 modes are to be kept; there are 1 to 6");
   assert_int_equal(model.n_modes, 6);
   modal_model_free(&model);

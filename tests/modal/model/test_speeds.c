@@ -125,14 +125,14 @@ static void crossing_modes_are_tracked(void **state) {
   mesh_fe        mesh     = make_beam();
   modal_speeds   s;
   modal_result   result;
-  assert_ok(modal_campbell_solve(PETSC_COMM_SELF, &mesh, &settings, NULL, &s, &result));
+  assert_ok(modal_speed_range_solve(PETSC_COMM_SELF, &mesh, &settings, NULL, &s, &result));
   for (int i = 1; i < SPEEDS; i++) assert_true(s.speed[i] > s.speed[i - 1]);
   check_tracks(&s);
   check_overlaps(&s);
   check_models(&mesh, &s);
   assert_true(result.deflection.speed == 400);
   assert_true(s.model[2].frequency == result.model.frequency);
-  modal_campbell_free(&s, &result);
+  modal_speed_range_free(&s, &result);
   modal_result_free(&result);
   mesh_fe_free(&mesh);
 }
@@ -151,7 +151,7 @@ static void auto_modes_suit_every_speed(void **state) {
     modal_result result;
     int          single[2];
     settings.band = band[k];
-    assert_ok(modal_campbell_solve(PETSC_COMM_SELF, &mesh, &settings, NULL, &s, &result));
+    assert_ok(modal_speed_range_solve(PETSC_COMM_SELF, &mesh, &settings, NULL, &s, &result));
     for (int i = 0; i < 2; i++) {
       modal_settings one = settings;
       modal_result   at;
@@ -167,7 +167,7 @@ static void auto_modes_suit_every_speed(void **state) {
     for (int i = 0; i < SPEEDS; i++) assert_int_equal(s.model[i].n_modes, s.n_modes);
     assert_true(s.n_modes > before);
     before = s.n_modes;
-    modal_campbell_free(&s, &result);
+    modal_speed_range_free(&s, &result);
     modal_result_free(&result);
   }
   mesh_fe_free(&mesh);

@@ -42,10 +42,10 @@ static void check_ranks(double speed) {
   assert_int_equal(modal_solve(PETSC_COMM_WORLD, &mesh, &settings, NULL, &all), SHB_OK);
   for (int i = 0; i < settings.modes; i++) {
     check_close(all.model.frequency[i], one.model.frequency[i], 1e-11, "frequency");
-    check_below(all.model.mode_residual[i], 1e-9, "residual of a mode");
+    check_below(all.model.eigen_residual[i], 1e-9, "residual of a mode");
   }
   assert_int_equal(all.eigen.check.count, one.eigen.check.count);
-  assert_true(all.eigen.check.chance <= 1e-9 && one.eigen.check.chance <= 1e-9);
+  assert_true(all.eigen.check.probability <= 1e-9 && one.eigen.check.probability <= 1e-9);
   for (int i = 0; i < 9 * settings.modes; i++)                           /* signs included */
     check_below(all.model.right[i] - one.model.right[i], 1e-5, "shape"); /* of order 1 */
   for (int i = 0; i < FEM_RIGID * settings.modes; i++)
@@ -72,7 +72,7 @@ static void world_counts_alike(void **state) {
   modal_eigen                eigen;
   assert_int_equal(fem_system_create(PETSC_COMM_WORLD, &mesh, &steel, FEM_STANDARD, &system), 0);
   assert_int_equal(modal_eigen_solve(&system, &settings, &eigen), 0);
-  assert_string_equal(eigen.check.by, "inertia");
+  assert_string_equal(eigen.check.method, "inertia");
   assert_int_equal(eigen.check.count, 11);
   modal_eigen_destroy(&eigen);
   fem_system_destroy(&system);

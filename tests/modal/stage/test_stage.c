@@ -83,7 +83,7 @@ static void file_is_complete(void **state) {
   assert_true(model.residual_fourth && model.load_inertia && model.probe_contact_inertia &&
               model.probe_load_inertia);
   assert_true(model.probe_contact_residual && model.probe_load_residual && model.normal);
-  for (int i = 0; i < 8; i++) check_below(model.mode_residual[i], 1e-9, "mode residual");
+  for (int i = 0; i < 8; i++) check_below(model.eigen_residual[i], 1e-9, "mode residual");
   modal_model_free(&model);
   assert_true(assert_described(out) >= 30);
   check_is_in_the_file(out);

@@ -137,7 +137,7 @@ static int peaks_of(int n, const double *a, int top[8]) {
     assert_true(isfinite(peaks[i].at) && isfinite(peaks[i].amplitude));
     assert_true(peaks[i].amplitude >= a[peaks[i].point]);
   }
-  if (found) assert_int_equal(peaks[post_highest(found, peaks)].point >= 0, 1);
+  if (found) assert_int_equal(peaks[post_highest_peak(found, peaks)].point >= 0, 1);
   free(peaks);
   return found;
 }
@@ -196,7 +196,7 @@ static void edge(void **state) {
   assert_near(peaks[0].at, 90, 0);
   assert_true(isnan(peaks[0].bandwidth) && isnan(peaks[0].damping));
   free(peaks);
-  assert_int_equal(post_highest(0, NULL), -1);
+  assert_int_equal(post_highest_peak(0, NULL), -1);
 }
 
 /* A fold pair a millionth apart is left out, wider ones stay. */

@@ -15,14 +15,14 @@ static mhb_response *small(void) {
 
 static void groups(void **state) {
   (void)state;
-  mhb_response *r = small();
-  post_study   *study;
-  char          name[64];
+  mhb_response  *r = small();
+  post_analysis *study;
+  char           name[64];
   assert_non_null(r);
   for (int p = 0; p < r->branch[2].n_points; p++)
     r->branch[2].n0[p] = 100 * (1 + 1e-13 * p); /* as good as 100 */
   for (int p = 0; p < r->branch[3].n_points; p++) r->branch[3].n0[p] = p;
-  assert_ok(post_study_create(r, &study));
+  assert_ok(post_analysis_create(r, &study));
   assert_int_equal(study->n_groups, 4); /* 100 N twice, varying, open, stuck */
   assert_int_equal(study->n_ranks, 1);
   assert_near(study->group[0].n0, 100, 1e-9);
@@ -35,16 +35,16 @@ static void groups(void **state) {
   post_group_name(&study->group[study->curve[0].group], name);
   assert_string_equal(name, "open");
   assert_int_equal(study->tracking.n, 1);
-  post_study_destroy(study);
+  post_analysis_destroy(study);
   mhb_response_destroy(r);
 }
 
 static void tracking(void **state) {
   (void)state;
-  mhb_response *r = small();
-  post_study   *study;
+  mhb_response  *r = small();
+  post_analysis *study;
   assert_non_null(r);
-  assert_ok(post_study_create(r, &study));
+  assert_ok(post_analysis_create(r, &study));
   const post_tracking *t = &study->tracking;
   assert_int_equal(t->n, 3);
   assert_near(t->point[0].n0, 20, 0); /* ascending, whatever the order of the branches */
@@ -56,7 +56,7 @@ static void tracking(void **state) {
   assert_true(t->optimum_amplitude <= t->point[1].amplitude);
   assert_true(t->open.amplitude > t->stuck.amplitude && t->stuck.at > t->open.at);
   assert_int_equal(t->point[1].branch, 4);
-  post_study_destroy(study);
+  post_analysis_destroy(study);
   mhb_response_destroy(r);
 }
 
@@ -69,13 +69,13 @@ static void optimum(void **state) {
   o.n0                     = n0;
   o.n_points               = 61;
   o.incomplete             = false;
-  mhb_response *r          = fixture_response(&o);
-  post_study   *study;
-  post_tracking t;
+  mhb_response  *r         = fixture_response(&o);
+  post_analysis *study;
+  post_tracking  t;
   assert_non_null(r);
-  assert_ok(post_study_create(r, &study));
+  assert_ok(post_analysis_create(r, &study));
   double **values;
-  assert_ok(post_values(r, study->primary, POST_FIRST_HARMONIC, &values));
+  assert_ok(post_values(r, study->primary, POST_QUANTITY_FIRST_HARMONIC, &values));
   for (int b = 2; b < 5; b++)
     for (int p = 0; p < 61; p++) { /* symmetric about its middle point, so that the peak is exact */
       double height             = 3e-4 * exp(2 * pow(log(n0[b - 2] / 70), 2));
@@ -87,19 +87,19 @@ static void optimum(void **state) {
   assert_near(t.optimum_amplitude, 3e-4, 1e-15);
   post_tracking_free(&t);
   post_values_free(r, values);
-  post_study_destroy(study);
+  post_analysis_destroy(study);
   mhb_response_destroy(r);
 }
 
 /* A branch that stopped on its way up must not win as the lowest peak. */
 static void incomplete(void **state) {
   (void)state;
-  mhb_response *r = small();
-  post_study   *study;
+  mhb_response  *r = small();
+  post_analysis *study;
   assert_non_null(r);
   r->branch[4].n_points = 40; /* 100 N, the lowest: now cut far below its peak */
   r->branch[4].complete = false;
-  assert_ok(post_study_create(r, &study));
+  assert_ok(post_analysis_create(r, &study));
   const post_tracking *t = &study->tracking;
   assert_true(t->point[1].edge && !t->point[1].complete);
   assert_true(t->point[1].amplitude < t->point[0].amplitude &&
@@ -111,7 +111,7 @@ static void incomplete(void **state) {
   assert_has(text.text, "Not complete:");
   assert_has_not(text.text, "Widen"); /* a wider range would not help */
   post_buffer_free(&text);
-  post_study_destroy(study);
+  post_analysis_destroy(study);
   mhb_response_destroy(r);
 }
 
@@ -127,14 +127,14 @@ static void errors(void **state) {
   b->error_sampling[5] = b->error_truncation[5] = NAN;
   assert_true(isnan(post_error(b, 5)));
   mhb_response_destroy(r);
-  post_study *study = NULL;
-  r                 = mhb_response_create(1, 0, 3);
-  assert_int_equal(post_study_create(r, &study), SHB_ERR_INPUT);
+  post_analysis *study = NULL;
+  r                    = mhb_response_create(1, 0, 3);
+  assert_int_equal(post_analysis_create(r, &study), SHB_ERR_INPUT);
   assert_has(shb_message(), "no point");
   assert_null(study);
   mhb_response_destroy(r);
   r = mhb_response_create(0, 0, 3);
-  assert_int_equal(post_study_create(r, &study), SHB_ERR_INPUT);
+  assert_int_equal(post_analysis_create(r, &study), SHB_ERR_INPUT);
   assert_has(shb_message(), "neither a probe nor a contact");
   mhb_response_destroy(r);
 }
@@ -142,10 +142,10 @@ static void errors(void **state) {
 /* Two folds a millionth apart are in the tables but no jump; a pair of its own is named by its own span. */
 static void jumps(void **state) {
   (void)state;
-  mhb_response *r = small();
-  post_study   *study;
-  post_buffer   text = {0};
-  assert_ok(post_study_create(r, &study));
+  mhb_response  *r = small();
+  post_analysis *study;
+  post_buffer    text = {0};
+  assert_ok(post_analysis_create(r, &study));
   for (int b = 0; b < r->n_branches; b++) study->curve[b].n_folds = 0;
   post_curve *c = &study->curve[3];
   free(c->fold);
@@ -162,7 +162,7 @@ static void jumps(void **state) {
   post_findings(study, &text);
   assert_has(text.text, "No curve folds visibly");
   post_buffer_free(&text);
-  post_study_destroy(study);
+  post_analysis_destroy(study);
   mhb_response_destroy(r);
 }
 
@@ -170,7 +170,7 @@ static void jumps(void **state) {
 static void followed(void **state) {
   (void)state;
   fixture_options o = fixture_usual();
-  post_study     *study;
+  post_analysis  *study;
   post_buffer     text = {0};
   o.n_preloads         = 1;
   o.incomplete         = false;
@@ -186,7 +186,7 @@ static void followed(void **state) {
     double now             = post_amplitude(r, b, p, post_output_primary(r), 1);
     for (int i = 0; i < 2 * 3 * 4; i++) b->probe[p * 24 + i] *= a[p] / now;
   }
-  assert_ok(post_study_create(r, &study));
+  assert_ok(post_analysis_create(r, &study));
   assert_int_equal(study->n_groups, 3);
   assert_int_equal(study->n_ranks, 0);
   assert_int_equal(study->tracking.n, 0);
@@ -201,18 +201,18 @@ static void followed(void **state) {
   assert_has(text.text, "largest at n₀ = 1000\u00a0N, the edge of the range");
   assert_has_not(text.text, "Widen");
   post_buffer_free(&text);
-  post_figures(study, &text);
+  post_key_figures(study, &text);
   assert_has(text.text, "at every n₀");
   assert_has(text.text, "Lowest with friction");
   post_buffer_free(&text);
-  post_study_destroy(study);
+  post_analysis_destroy(study);
   /* where a machine does not stay nothing is to be gained */
   for (int p = 50; p < 80; p++) b->stable[p] = 0;
-  assert_ok(post_study_create(r, &study));
+  assert_ok(post_analysis_create(r, &study));
   post_findings(study, &text);
   assert_has_not(text.text, "87.5");
   post_buffer_free(&text);
-  post_study_destroy(study);
+  post_analysis_destroy(study);
   mhb_response_destroy(r);
 }
 
@@ -220,20 +220,20 @@ static void followed(void **state) {
 static void followed_by_preload(void **state) {
   (void)state;
   fixture_options o = fixture_usual();
-  post_study     *study, *swept;
+  post_analysis  *study, *swept;
   mhb_response   *sweep = fixture_response(&o);
   o.parameter           = MHB_IN_KV;
   mhb_response *r       = fixture_response(&o);
-  assert_ok(post_study_create(r, &study));
-  assert_ok(post_study_create(sweep, &swept));
+  assert_ok(post_analysis_create(r, &study));
+  assert_ok(post_analysis_create(sweep, &swept));
   assert_int_equal(study->n_ranks, 7);
   for (int i = 0; i < study->tracking.n; i++) {
     double share = (swept->tracking.point[i].at - 92) / 46;
     assert_near(study->tracking.point[i].at, 1e5 + 1.9e6 * share, 1);
     assert_near(study->tracking.point[i].amplitude, swept->tracking.point[i].amplitude, 1e-12);
   }
-  post_study_destroy(study);
-  post_study_destroy(swept);
+  post_analysis_destroy(study);
+  post_analysis_destroy(swept);
   mhb_response_destroy(r);
   mhb_response_destroy(sweep);
 }
@@ -241,10 +241,10 @@ static void followed_by_preload(void **state) {
 /* What the page says agrees with the numbers. */
 static void words(void **state) {
   (void)state;
-  mhb_response *r = small();
-  post_study   *study;
-  post_buffer   text = {0};
-  assert_ok(post_study_create(r, &study));
+  mhb_response  *r = small();
+  post_analysis *study;
+  post_buffer    text = {0};
+  assert_ok(post_analysis_create(r, &study));
   double best = study->tracking.point[1].amplitude, open = study->tracking.open.amplitude;
   char   below[64];
   snprintf(below, sizeof below, "%.0f\u00a0%% below open", 100 * (1 - best / open));
@@ -254,10 +254,10 @@ static void words(void **state) {
   assert_has(text.text, "between 20 and 300\u00a0N");
   assert_has(text.text, "<b>Jumps.</b>");
   post_buffer_free(&text);
-  post_figures(study, &text);
+  post_key_figures(study, &text);
   assert_has(text.text, "Lowest peak, n₀ = 100\u00a0N");
   post_buffer_free(&text);
-  post_study_destroy(study);
+  post_analysis_destroy(study);
   mhb_response_destroy(r);
 }
 

@@ -112,8 +112,8 @@ static void with_points(void **state) {
   assert_ok(publish(NULL));
   integration = NULL;
   char *text  = contents(svg);
-  assert_int_equal(count(text, "<circle class=\"witness adrift c"), 1);
-  assert_int_equal(count(text, "<circle class=\"witness c"), 2);
+  assert_int_equal(count(text, "<circle class=\"integration aperiodic c"), 1);
+  assert_int_equal(count(text, "<circle class=\"integration c"), 2);
   assert_has(text, "time integration</text>");
   free(text);
   text = contents(csv);

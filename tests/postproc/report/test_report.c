@@ -5,11 +5,11 @@
 
 static char hostile[sizeof(char) * 2048];
 
-static post_source source(void) {
+static post_origin source(void) {
   static char text[] = "x", settings[] = "mhb.frequency = 92 138\ncontact.mu = 0.3 <&>\n",
               created[] = "2026-01-02T03:04:05Z";
   snprintf(hostile, sizeof hostile, "%s", fixture_hostile);
-  return (post_source){.format    = text,
+  return (post_origin){.format    = text,
                        .revision  = text,
                        .command   = text,
                        .created   = created,
@@ -95,13 +95,13 @@ static void check_self_contained(const char *html) {
 
 /* Takes the response. */
 static char *page_of(mhb_response *r, const char *name) {
-  post_study *study;
-  post_buffer html = {0};
-  post_source s    = source();
+  post_analysis *study;
+  post_buffer    html = {0};
+  post_origin    s    = source();
   assert_non_null(r);
-  assert_ok(post_study_create(r, &study));
+  assert_ok(post_analysis_create(r, &study));
   assert_ok(post_report(study, &s, name, &html));
-  post_study_destroy(study);
+  post_analysis_destroy(study);
   mhb_response_destroy(r);
   return html.text;
 }
@@ -151,11 +151,11 @@ static void turns(void **state) {
   fixture_options o      = fixture_usual();
   char           *before = page(&o, "scene");
   mhb_response   *r      = fixture_response(&o);
-  post_study     *study;
+  post_analysis  *study;
   post_buffer     html = {0};
-  post_source     s    = source();
+  post_origin     s    = source();
   assert_has_not(before, "does not repeat");
-  assert_has_not(before, "class=\"turn");
+  assert_has_not(before, "class=\"bifurcation");
   assert_has_not(before, "Floquet multipliers were computed");
   free(before);
   for (int i = 10; i < 15; i++) {
@@ -165,14 +165,14 @@ static void turns(void **state) {
   }
   r->branch[3].special[10] = MHB_FLIP;
   r->branch[3].special[14] = MHB_NEIMARK_SACKER;
-  assert_ok(post_study_create(r, &study));
+  assert_ok(post_analysis_create(r, &study));
   assert_ok(post_report(study, &s, "scene", &html));
   check_tags(html.text);
   assert_has(html.text, "On 1 curve a part");
   assert_has(html.text, "2 points by period doubling (flip), 3 by a modulation");
   assert_has(html.text, "multipliers were computed at 5 of 1560 points");
-  assert_int_equal(count(html.text, "class=\"turn"), 2);
-  post_study_destroy(study);
+  assert_int_equal(count(html.text, "class=\"bifurcation"), 2);
+  post_analysis_destroy(study);
   mhb_response_destroy(r);
   free(html.text);
 }
@@ -330,20 +330,20 @@ static void not_estimated(void **state) {
   (void)state;
   fixture_options o = fixture_usual();
   mhb_response   *r = fixture_response(&o);
-  post_study     *study;
+  post_analysis  *study;
   post_buffer     html = {0};
-  post_source     s    = source();
+  post_origin     s    = source();
   for (int b = 2; b < r->n_branches; b++)
     for (int p = 0; p < r->branch[b].n_points; p++)
       r->branch[b].error_newton[p]       = r->branch[b].error_truncation[p] =
           r->branch[b].error_sampling[p] = r->branch[b].error_modal[p] = NAN;
-  assert_ok(post_study_create(r, &study));
+  assert_ok(post_analysis_create(r, &study));
   assert_ok(post_report(study, &s, "x", &html));
   check_tags(html.text);
   assert_int_equal(count(html.text, "<td>not estimated</td>"), 6); /* the seventh is incomplete */
   assert_has_not(html.text, "Estimated error");
   post_buffer_free(&html);
-  post_study_destroy(study);
+  post_analysis_destroy(study);
   mhb_response_destroy(r);
 }
 
@@ -369,10 +369,10 @@ static void picture(void **state) {
   fixture_options o = fixture_usual();
   for (int many = 0; many <= 1; many++) {
     if (many) o.n_preloads = 30, o.n0 = n0;
-    mhb_response *r = fixture_response(&o);
-    post_study   *study;
-    post_buffer   svg = {0};
-    assert_ok(post_study_create(r, &study));
+    mhb_response  *r = fixture_response(&o);
+    post_analysis *study;
+    post_buffer    svg = {0};
+    assert_ok(post_analysis_create(r, &study));
     post_picture(study, "a <b> & \"c\"", &svg);
     check_tags(svg.text);
     assert_has(svg.text, "xmlns=\"http://www.w3.org/2000/svg\"");
@@ -381,7 +381,7 @@ static void picture(void **state) {
     assert_has_not(svg.text, "var(");
     assert_int_equal(count(svg.text, "class=\"line c0\""), 2); /* curve and key */
     post_buffer_free(&svg);
-    post_study_destroy(study);
+    post_analysis_destroy(study);
     mhb_response_destroy(r);
   }
 }
@@ -405,8 +405,8 @@ static void names_of_limits(void **state) {
   (void)state;
   fixture_options o = fixture_usual();
   mhb_response   *r = fixture_response(&o);
-  post_study     *study;
-  assert_ok(post_study_create(r, &study));
+  post_analysis  *study;
+  assert_ok(post_analysis_create(r, &study));
   const double *range = study->abscissa.range;
   for (int i = 0; i <= 40; i += 4)
     for (int j = 0; j <= 40; j++) {
@@ -423,7 +423,7 @@ static void names_of_limits(void **state) {
       assert_true(open[1] <= stuck[0] || stuck[1] <= open[0] || fabs(open[2] - stuck[2]) >= 13);
       post_buffer_free(&svg);
     }
-  post_study_destroy(study);
+  post_analysis_destroy(study);
   mhb_response_destroy(r);
 }
 
