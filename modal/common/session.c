@@ -5,7 +5,7 @@
 
 #include "fem/solver/petsc_error.h"
 
-/* Of OpenBLAS, whichever library provides BLAS; its header clashes with PETSc's LAPACK declarations. */
+/* OpenBLAS's own declaration: its header clashes with PETSc's declarations of LAPACK. */
 extern void openblas_set_num_threads(int);
 
 shb_status modal_session_start(int *argc, char ***argv, modal_session *session) {

@@ -7,17 +7,17 @@
 #include "mesh/core/face_pairing.h"
 #include "modal/condense/face_partition.h"
 
-static const double degree = 3.14159265358979323846 / 180;
+static const double degree = M_PI / 180;
 
-/* What the builders share. */
+/* Shared data of the builders. */
 typedef struct {
   const mesh_fe       *mesh;
   const mesh_face_set *right;
-  const mesh_pairing  *pairing; /* what the right nodes meet, or NULL */
+  const mesh_pairing  *pairing; /* partners of the right nodes, or NULL */
   double               sector;  /* rad */
   mesh_axis            axis;
   modal_facets         facets;
-  double              *node_area; /* [n_nodes] m2, zero outside the patch in hand */
+  double              *node_area; /* [n_nodes] m2, zero outside the current patch */
 } builder;
 
 static double norm(const double v[3]) {
@@ -54,8 +54,8 @@ static int compare(const void *a, const void *b) {
   return (p > q) - (p < q);
 }
 
-/* A right node in the patch being built (the last), with the left nodes it meets: as many entries, the node's own weight
- * in the first. */
+/* Add a right node to the last patch, one entry for each left node that it meets. The first entry
+ * carries the weight of the right node. */
 static void add_entry(const builder *b, int patch, int node, double weight, modal_patches *out) {
   const mesh_pairing *pairing = b->pairing;
   if (!pairing) {
@@ -74,8 +74,8 @@ static void add_entry(const builder *b, int patch, int node, double weight, moda
   }
 }
 
-/* Mean position of a patch. On projected faces the left one is the right one turned back, so that their axes correspond
- * although the faces are apart. */
+/* Mean position of a patch. On projected faces the left centroid is the right one rotated back:
+ * their axes then correspond although the faces are apart. */
 static void find_centroid(const builder *b, int patch, int side, modal_patches *out) {
   const double *weight   = side ? out->left_weight : out->weight;
   double       *centroid = out->centroid[side] + 3 * patch;
@@ -115,7 +115,7 @@ static int entries_each(const builder *b) {
   return b->pairing && b->pairing->projected ? b->facets.nodes : 1;
 }
 
-/* points >= 1: facets of the same index form a patch. Entries in order of nodes. */
+/* points >= 1: facets of equal index form a patch. Entries are in the order of the nodes. */
 static shb_status build_patch(builder *b, int patch, modal_patches *out) {
   double normal[3] = {0};
   for (int f = 0; f < b->facets.n; f++) {
@@ -135,9 +135,9 @@ static shb_status build_patch(builder *b, int patch, modal_patches *out) {
   return finish_patch(b, patch, normal, out);
 }
 
-/* points = 0: a node that carries more than a thousandth of the largest nodal area is a patch. The corners of triangles
- * on a slightly curved face carry a little, of either sign, those of quadrangles a negative area: left out, the rest
- * scaled to the face's area. */
+/* points = 0: a patch for each node with more than a thousandth of the largest nodal area. Corner
+ * nodes are left out: their area is small on slightly curved triangles and negative on quadrangles.
+ * The other areas are scaled to the area of the face. */
 static shb_status build_nodes(builder *b, double (*normal)[3], modal_patches *out) {
   double largest = 0, kept = 0;
   int    n = 0, n_nodes = b->mesh->n_nodes;
@@ -238,7 +238,7 @@ shb_status modal_patches_create(const mesh_fe *mesh, mesh_axis axis, int blades,
   return status;
 }
 
-/* Patches of a part behind those that are there already. */
+/* Append the patches of one interface. */
 static void append(const modal_patches *part, int which, int pairs, modal_patches *out) {
   const size_t entries = (size_t)part->start[part->n_pairs], n = (size_t)part->n_pairs;
   const int    first = out->start[pairs], sides = part->has_left ? 2 : 1;

@@ -8,7 +8,7 @@
 
 enum { BLOCKS = MODAL_RESIDUAL_BLOCKS };
 
-static const double dependent = 1e-12;
+static const double DEPENDENT = 1e-12;
 
 /* Square matrices [n][n], row-major. */
 typedef struct {
@@ -30,7 +30,7 @@ static void fill(const problem *p, double *const *moment, int first, double *G) 
         memcpy(G + (i * c + a) * n + j * c, moment[i + j + (size_t)first] + a * c, c * sizeof *G);
 }
 
-/* Columns of unit mass; one without any stays out. */
+/* Scale the columns to unit mass; a column without mass is dropped. */
 static void scale_columns(problem *p) {
   const int n = p->n;
   for (int i = 0; i < n; i++) {
@@ -49,7 +49,7 @@ static int orthonormal(problem *p) {
   const int n = p->n;
   if (LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'V', 'U', n, p->M, n, p->value) != 0) return 0;
   int first = 0;
-  while (first < n && !(p->value[first] > dependent * p->value[n - 1])) first++;
+  while (first < n && !(p->value[first] > DEPENDENT * p->value[n - 1])) first++;
   p->kept = n - first;
   for (int i = 0; i < n; i++)
     for (int k = 0; k < p->kept; k++)
@@ -57,10 +57,10 @@ static int orthonormal(problem *p) {
   return 1;
 }
 
-/* theta into value, vectors into M [kept][kept]: of T^T K T. */
+/* Eigenvalues of T^T K T into value, its eigenvectors into K [kept][kept]. */
 static int reduce(problem *p) {
   const int n = p->n, m = p->kept;
-  double   *KT = p->M, *A = p->K; /* K is used up by the first product */
+  double   *KT = p->M, *A = p->K; /* the first product is the last use of K */
   cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, n, m, n, 1, p->K, n, p->T, m, 0, KT, m);
   cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, m, m, n, 1, p->T, m, KT, m, 0, A, m);
   make_symmetric(A, m);

@@ -6,9 +6,10 @@
 
 #include "fem/solver/petsc_error.h"
 #include "modal/common/phases.h"
+#include "modal/common/session.h"
 
-/* Beyond this the St. Venant-Kirchhoff law, and any metal, has long failed. */
-static const double greatest_strain = .1;
+/* Strain limit: beyond it neither the St. Venant-Kirchhoff law nor any metal is elastic. */
+static const double LARGEST_STRAIN = 0.1;
 
 static void sample(const fem_body *body, const modal_condensation *to, const modal_patches *patches,
                    modal_deflection *out) {
@@ -38,7 +39,7 @@ static shb_status allocate(const fem_body *body, const modal_condensation *to, i
   return SHB_OK;
 }
 
-static void tell(const modal_deflection *d, MPI_Comm comm, shb_progress *progress) {
+static void report(const modal_deflection *d, MPI_Comm comm, shb_progress *progress) {
   const fem_equilibrium *at = &d->at;
   modal_phase(comm, progress, "equilibrium",
               "%.6g rad/s, load steps %d, Newton iterations %d, factors %d, solves %d, last "
@@ -50,17 +51,15 @@ static void tell(const modal_deflection *d, MPI_Comm comm, shb_progress *progres
                     d->statics.force[1], d->statics.force[2]);
 }
 
-/* Stresses and reactions, on rank 0; its status everywhere. */
+/* Stresses and reactions on rank 0; its status on every rank. */
 static shb_status find_statics(const fem_body *body, MPI_Comm comm, int rank,
                                modal_deflection *out) {
-  int code = SHB_OK;
+  shb_status status = SHB_OK;
   if (rank == 0) {
     fem_body_stress(body, out->at.displacement, out->stress);
-    code = modal_static_results_create(body, out->at.displacement, &out->statics);
+    status = modal_static_results_create(body, out->at.displacement, &out->statics);
   }
-  MPI_Bcast(&code, 1, MPI_INT, 0, comm);
-  if (code != SHB_OK && rank != 0) SHB_FAIL((shb_status)code, "another rank failed");
-  return (shb_status)code;
+  return modal_agree(comm, status);
 }
 
 shb_status modal_deflection_solve(const fem_body *body, fem_system *system,
@@ -83,12 +82,12 @@ shb_status modal_deflection_solve(const fem_body *body, fem_system *system,
   }
   MPI_Bcast(greatest, 2, MPI_DOUBLE, 0, system->comm);
   out->greatest_stress = greatest[0];
-  SHB_CHECK(greatest[1] < greatest_strain, SHB_ERR_INPUT,
+  SHB_CHECK(greatest[1] < LARGEST_STRAIN, SHB_ERR_INPUT,
             "rotor.%s: at %.6g rad/s the static stress reaches %.3g MPa, above a tenth of "
             "material.E: no elastic blade bears that; give a lower load, or check material and "
             "the mesh's unit (m)",
             out->speed == 0 ? "pressure" : "speed", out->speed, out->greatest_stress / 1e6);
-  tell(out, system->comm, progress);
+  report(out, system->comm, progress);
   return SHB_OK;
 }
 
@@ -104,8 +103,9 @@ static shb_status write_attributes(hid_t file, const modal_deflection *d) {
 }
 
 static shb_status write_samples(hid_t file, const modal_deflection *d, const modal_model *model) {
-  const hsize_t pairs = (hsize_t)model->n_pairs, contact = 3 * pairs * (model->has_left ? 2 : 1);
-  const hsize_t probe = 3 * (hsize_t)model->n_probes;
+  const hsize_t pairs   = (hsize_t)model->n_pairs;
+  const hsize_t contact = (hsize_t)modal_model_contact_dofs(model);
+  const hsize_t probe   = 3 * (hsize_t)model->n_probes;
   SHB_TRY(h5_write_double(file, "/static/contact", H5_SHAPE(contact), d->contact, "m",
                           "static displacement of the contact patches, cylindrical axes"));
   SHB_TRY(h5_attach_scale(file, "/static/contact", 0, "/contact/dof"));

@@ -8,23 +8,23 @@
 
 static const PetscScalar one = 1, minus = -1, zero = 0;
 
-PetscErrorCode modal_block_basis_create(Mat M, KSP ksp, int p, int room, modal_block_basis *b) {
+PetscErrorCode modal_block_basis_create(Mat M, KSP ksp, int p, int capacity, modal_block_basis *b) {
   PetscInt rows;
   PetscFunctionBeginUser;
   memset(b, 0, sizeof *b);
-  b->p    = (PetscBLASInt)p;
-  b->room = room;
-  b->comm = PetscObjectComm((PetscObject)M);
-  b->M    = M;
-  b->ksp  = ksp;
+  b->p        = (PetscBLASInt)p;
+  b->capacity = capacity;
+  b->comm     = PetscObjectComm((PetscObject)M);
+  b->M        = M;
+  b->ksp      = ksp;
   PetscCall(MatGetSize(M, &b->order, NULL));
   PetscCall(MatGetLocalSize(M, &rows, NULL));
   b->rows = (PetscBLASInt)rows;
   PetscCall(MatCreateDense(b->comm, rows, PETSC_DECIDE, b->order, p, NULL, &b->W));
   PetscCall(MatCreateDense(b->comm, rows, PETSC_DECIDE, b->order, p, NULL, &b->MW));
-  const size_t m = (size_t)p * (size_t)room, each = (size_t)p * (size_t)p;
-  PetscCall(PetscCalloc5((size_t)room, &b->Q, (size_t)room * each, &b->D, (size_t)room * each,
-                         &b->B, m * m, &b->H, m, &b->theta));
+  const size_t m = (size_t)p * (size_t)capacity, each = (size_t)p * (size_t)p;
+  PetscCall(PetscCalloc5((size_t)capacity, &b->Q, (size_t)capacity * each, &b->D,
+                         (size_t)capacity * each, &b->B, m * m, &b->H, m, &b->theta));
   PetscFunctionReturn(0);
 }
 
@@ -38,7 +38,7 @@ PetscErrorCode modal_block_basis_destroy(modal_block_basis *b) {
   PetscFunctionReturn(0);
 }
 
-/* Normally distributed, after Box and Muller. */
+/* Normally distributed number (Box and Muller 1958). */
 static double normal(uint64_t key) {
   const double u = (modal_random(2 * key) + 1) / 2, v = modal_random(2 * key + 1);
   return sqrt(-2 * log(1 - u)) * cos(PETSC_PI * v);
@@ -108,7 +108,7 @@ PetscErrorCode modal_block_basis_project_out(const modal_block_basis *b, double 
   PetscFunctionReturn(0);
 }
 
-/* P = R P, R upper triangular, by columns. */
+/* P = R P; R is upper triangular, both by columns. */
 static void multiply_triangle(int p, const double *R, double *P) {
   for (int c = 0; c < p; c++)
     for (int r = 0; r < p; r++) {
@@ -142,7 +142,8 @@ PetscErrorCode modal_block_basis_cholesky_qr(const modal_block_basis *b, double 
   PetscFunctionReturn(0);
 }
 
-/* What the second pass takes out is rounding, and MW need not follow; what a single one does would grow from step to step. */
+/* The second pass removes rounding errors only, so MW need not be updated. With a single pass the
+ * rounding errors would grow from step to step. */
 PetscErrorCode modal_block_basis_orthonormalise(const modal_block_basis *b, double *D, double *R,
                                                 bool *good) {
   PetscFunctionBeginUser;

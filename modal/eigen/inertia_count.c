@@ -2,7 +2,7 @@
 
 #include "fem/solver/memory.h"
 
-/* Its root is not handed to ScaLAPACK, which tells no signs. */
+/* MUMPS must not hand the root to ScaLAPACK, which does not report the signs of pivots. */
 static PetscErrorCode analyse(Mat A, Mat *factor) {
   enum { ROOT = 13, DISCARD = 31 };
   MatFactorInfo info;

@@ -31,7 +31,7 @@ shb_status modal_participation_create(const fem_body *body, const double *displa
   return SHB_OK;
 }
 
-/* Columns first .. first + n - 1 of gamma, to a power of 1 or 2, as a dataset. */
+/* Write the columns first .. first + n - 1 of gamma, to the power 1 or 2, as a dataset. */
 static shb_status write_columns(hid_t file, const modal_participation *p, const char *path,
                                 int first, int n, int power, const char *const text[2]) {
   const size_t m    = (size_t)p->n_modes;

@@ -92,13 +92,13 @@ static int compare(const void *a, const void *b) {
   return (*p > *q) - (*p < *q);
 }
 
-/* Estimated relative error of each sample, where the model tells. */
+/* Write the estimated relative error of each sample, if the model holds it. */
 static shb_status write_error(hid_t file, const modal_model *model, int n, int count,
                               const double *frequency, const double complex *value) {
   double *error = malloc((size_t)count * sizeof *error);
   SHB_CHECK(error, SHB_ERR_IO, "out of memory for the receptance");
   for (int f = 0; f < count; f++)
-    error[f] = modal_receptance_error(model, 6.28318530717958647692 * frequency[f],
+    error[f] = modal_receptance_error(model, 2 * M_PI * frequency[f],
                                       value + (size_t)f * (size_t)n * (size_t)n);
   shb_status status = SHB_OK;
   if (error[0] >= 0)
@@ -118,8 +118,7 @@ static shb_status write_receptance(hid_t file, const modal_model *model, int n, 
   memcpy(frequency + SAMPLES, model->frequency, (size_t)m * sizeof *frequency);
   qsort(frequency, (size_t)count, sizeof *frequency, compare);
   for (int f = 0; f < count; f++)
-    modal_receptance(model, 6.28318530717958647692 * frequency[f],
-                     value + (size_t)f * (size_t)n * (size_t)n);
+    modal_receptance(model, 2 * M_PI * frequency[f], value + (size_t)f * (size_t)n * (size_t)n);
   SHB_TRY(h5_write_double(file, "receptance/frequency", H5_SHAPE((hsize_t)count), frequency, "Hz",
                           "frequency"));
   SHB_TRY(h5_write_complex(file, "receptance/contact",
@@ -132,7 +131,7 @@ static shb_status write_receptance(hid_t file, const modal_model *model, int n, 
 }
 
 shb_status modal_export_receptance(hid_t file, const modal_model *model) {
-  const int    n     = 3 * model->n_pairs * (model->has_left ? 2 : 1);
+  const int    n     = modal_model_contact_dofs(model);
   const size_t steps = (size_t)(SAMPLES + model->n_modes), count = steps * (size_t)n * (size_t)n;
   if (count * sizeof(double complex) > MAX_BYTES) return SHB_OK;
   double         *frequency = malloc(steps * sizeof *frequency);

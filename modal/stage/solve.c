@@ -14,9 +14,9 @@
 #include "modal/model/mode_selection.h"
 #include "modal/model/reduce.h"
 
-enum { FIRST_MODES = 20, MOST_MODES = 1000 }; /* with modes: auto */
+enum { FIRST_MODES = 20, MOST_MODES = 1000 }; /* with modal.modes: auto */
 
-/* Three dofs a probe: its nearest node in that node's cylindrical axes. */
+/* Three dofs for each probe: its nearest node in that node's cylindrical axes. */
 static shb_status probe_dofs(const mesh_fe *mesh, const modal_settings *settings,
                              modal_dofs *dofs) {
   const double one = 1;
@@ -55,14 +55,14 @@ static shb_status copy_patches(const modal_patches *patches, modal_model *model)
   return SHB_OK;
 }
 
-/* An interface by its groups; its name heads error texts. */
+/* Create an interface from its groups; error texts start with its name. */
 static shb_status create_contact(const mesh_fe *mesh, const modal_settings *settings,
                                  const modal_contact *contact, modal_patches *out) {
   int        right = mesh_fe_set_named(mesh, contact->right);
   int        left  = settings->to_ground ? -1 : mesh_fe_set_named(mesh, contact->left);
-  const bool there = right >= 0 && (left >= 0 || settings->to_ground);
+  const bool exist = right >= 0 && (left >= 0 || settings->to_ground);
   char       found[MESH_FOUND + 40];
-  SHB_CHECK(there, SHB_ERR_INPUT, "contact interface %s: the mesh has no group \"%s\"; %s",
+  SHB_CHECK(exist, SHB_ERR_INPUT, "contact interface %s: the mesh has no group \"%s\"; %s",
             contact->name, right < 0 ? contact->right : contact->left, mesh_fe_found(mesh, found));
   mesh_fe    view   = mesh_fe_facing(mesh, right, left);
   shb_status status = modal_patches_create(&view, settings->axis, settings->blades,
@@ -91,7 +91,7 @@ static shb_status create_interfaces(const mesh_fe *mesh, const modal_settings *s
   return status;
 }
 
-/* Which interface each pair belongs to; one alone needs no name. */
+/* Copy the interface of each pair; a single interface has no name. */
 static shb_status name_interfaces(const modal_settings *settings, const modal_patches *patches,
                                   modal_model *model) {
   const int n = settings->n_contacts;
@@ -109,7 +109,7 @@ static shb_status name_interfaces(const modal_settings *settings, const modal_pa
   return SHB_OK;
 }
 
-/* What can be wrong with the input is found here, before any time is spent. */
+/* Check the input before any lengthy computation, and create patches, probes and load patterns. */
 static shb_status prepare(const mesh_fe *mesh, const modal_settings *settings,
                           modal_patches *patches, modal_condensation *to) {
   char found[MESH_FOUND + 40];
@@ -130,8 +130,9 @@ static shb_status prepare(const mesh_fe *mesh, const modal_settings *settings,
                            &to->load);
 }
 
-/* Eigenvalues as Rayleigh quotients from the strains, on rank 0: the solver's own carry the rounding of K, which in a
- * slender body reaches 1e-9 and changes with the number of ranks; these are good to about 1e-12. */
+/* Recompute the eigenvalues as Rayleigh quotients from the strains, on rank 0. The solver's
+ * eigenvalues contain rounding errors of K: up to 1e-9 in a slender body, varying with the number
+ * of ranks. The quotients are accurate to about 1e-12. */
 static PetscErrorCode refine(const fem_body *body, const double *state, const fem_system *system,
                              modal_eigen *eigen) {
   const size_t stride = 3 * (size_t)body->mesh->n_nodes;
@@ -151,14 +152,14 @@ static PetscErrorCode refine(const fem_body *body, const double *state, const fe
     }
     if (rank == 0) fem_tangent_energies(body, state, count, u, eigen->lambda + first);
   }
-  for (int i = 1; i < eigen->n; i++) /* equal pairs */
+  for (int i = 1; i < eigen->n; i++) /* repeated eigenvalues stay in order */
     eigen->lambda[i] = PetscMax(eigen->lambda[i], eigen->lambda[i - 1]);
   PetscCallMPI(MPI_Bcast(eigen->lambda, eigen->n, MPI_DOUBLE, 0, system->comm));
   PetscCall(PetscFree(u));
   PetscFunctionReturn(0);
 }
 
-/* Matrices of the body, at its equilibrium if it rotates. */
+/* Assemble the matrices of the body, at its equilibrium if it rotates. */
 static shb_status assemble(MPI_Comm comm, const fem_body *body, const modal_condensation *to,
                            shb_progress *progress, modal_result *result) {
   shb_progress_show(progress, 5, "assembling %d elements", body->mesh->n_elements);
@@ -171,7 +172,7 @@ static shb_status assemble(MPI_Comm comm, const fem_body *body, const modal_cond
                                 &result->deflection);
 }
 
-/* That many modes, condensed. */
+/* Compute that many modes and condense. */
 static shb_status find_modes(const fem_body *body, const modal_settings *settings,
                              const modal_condensation *to, int modes, shb_progress *progress,
                              modal_result *result) {
@@ -187,7 +188,7 @@ static shb_status find_modes(const fem_body *body, const modal_settings *setting
   return modal_condense(&result->system, &result->eigen, to, progress, &result->model);
 }
 
-/* As many modes as the tolerance needs: twice as many until there are enough, then the fewest of them. */
+/* Double the number of modes until the tolerance is met; then keep the fewest that meet it. */
 static shb_status find_enough(const fem_body *body, const modal_settings *settings,
                               const modal_condensation *to, shb_progress *progress,
                               modal_result *result) {

@@ -28,7 +28,7 @@ static shb_status gather_shapes(const modal_result *result, int rank, double **s
   return SHB_OK;
 }
 
-/* speeds: n = 0 with one speed. */
+/* speeds: n = 0 for one speed. */
 static shb_status write_all(hid_t file, const mesh_fe *mesh, const modal_result *result,
                             const modal_speeds *speeds, const double *shape,
                             const shb_provenance *provenance) {
@@ -45,7 +45,7 @@ static shb_status write_all(hid_t file, const mesh_fe *mesh, const modal_result 
   return modal_export_vtk(file, mesh, result->model.n_modes);
 }
 
-/* progress: its phases go into the file. */
+/* The phases of progress are written to the file. */
 static shb_status publish(const char *path, const mesh_fe *mesh, const modal_result *result,
                           const modal_speeds *speeds, const double *shape,
                           const shb_provenance *provenance, const shb_progress *progress) {
@@ -95,9 +95,11 @@ static shb_status run(MPI_Comm comm, int rank, const char *out_path, const mesh_
   modal_result result;
   modal_speeds speeds = {0};
   double      *shape  = NULL;
-  shb_status   status = settings->n_speeds > 1 ? modal_speed_range_solve(comm, mesh, settings,
-                                                                         progress, &speeds, &result)
-                                               : modal_solve(comm, mesh, settings, progress, &result);
+  shb_status   status;
+  if (settings->n_speeds > 1)
+    status = modal_speed_range_solve(comm, mesh, settings, progress, &speeds, &result);
+  else
+    status = modal_solve(comm, mesh, settings, progress, &result);
   if (status == SHB_OK) status = gather_shapes(&result, rank, &shape);
   if (status == SHB_OK) {
     shb_progress_show(progress, 96, "writing %s", out_path);

@@ -11,7 +11,7 @@
 
 enum { WIDTH = 1000, HEIGHT = 600, SAMPLES = 241, COLOURS = 6, MOST_ORDERS = 16, AT_FIRST = 12 };
 
-static const double TWO_PI = 6.28318530717958647692;
+static const double TWO_PI = 2 * M_PI;
 
 const char post_campbell_css[] =
     ".k0{color:#0b6e75}.k1{color:#a3540f}.k2{color:#6a4aa5}.k3{color:#2f6f2f}.k4{color:#a83250}"

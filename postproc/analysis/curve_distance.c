@@ -29,7 +29,7 @@ double post_curve_distance(const double point[2], const post_polyline *line, dou
     double at = 1, d = i == 0 ? fmax(fabs(x), fabs(y)) : from_segment(x0, y0, x - x0, y - y0, &at);
     if (d < least) {
       least = d;
-      if (nearest) *nearest = at < .5 ? i - 1 : i;
+      if (nearest) *nearest = at < 0.5 ? i - 1 : i;
     }
     x0 = x;
     y0 = y;

@@ -1,6 +1,6 @@
 /* How far apart two curves are, amplitude against frequency.
  *
- * The distance of two points is the greater of |ln f1 - ln f2| and |a1 - a2|/unit: both relative, so that a distance of .01
+ * The distance of two points is the greater of |ln f1 - ln f2| and |a1 - a2|/unit: both relative, so that a distance of 0.01
  * is one per cent, of frequency or of the largest amplitude. Unlike a difference at equal frequency it does not jump where a curve
  * does: it is defined on folded curves, and goes to zero with the shift of a steep flank. */
 #ifndef POSTPROC_ANALYSIS_CURVE_DISTANCE_H

@@ -21,7 +21,7 @@ char *post_number(char out[POST_NUMBER], double value, int digits);
 char *post_plain(char out[POST_NUMBER], double value, int digits);
 /* post_number, a no-break space, the unit. */
 char *post_measure(char out[POST_NUMBER], double value, post_unit unit, int digits);
-/* A negative power of ten as one ("10⁻⁸"); all else, and .1, as post_plain of three digits. */
+/* A negative power of ten as one ("10⁻⁸"); all else, and 0.1, as post_plain of three digits. */
 char *post_power(char out[POST_NUMBER], double value);
 /* A ratio in percent: two significant digits, "71 %", "0.034 %"; not finite: "–". */
 char *post_percent(char out[POST_NUMBER], double ratio);

@@ -9,7 +9,7 @@
 
 enum { MATRIX = 12 }; /* modes up to which the whole matrix is shown */
 
-static const double alike = .5; /* below, a mode of the other file is not the same one */
+static const double alike = 0.5; /* below, a mode of the other file is not the same one */
 
 /* ---------------------------------------------------------------- shapes */
 
@@ -97,7 +97,7 @@ static shb_status condensed_shapes(const modal_model m[2], post_mac *out, double
   int *at = calloc((size_t)m[0].n_probes + 1, sizeof *at);
   SHB_CHECK(at, SHB_ERR_IO, "not enough memory to compare the mode shapes");
   out->probes = common_probes(m, at);
-  out->values = (out->contact ? 3 * m[0].n_pairs * (m[0].has_left ? 2 : 1) : 0) + 3 * out->probes;
+  out->values = (out->contact ? modal_model_contact_dofs(&m[0]) : 0) + 3 * out->probes;
   for (int s = 0; s < 2 && out->values > 0; s++) {
     shape[s] = malloc((size_t)m[s].n_modes * (size_t)out->values * sizeof(double));
     if (!shape[s]) break;

@@ -13,7 +13,7 @@
  * what stable rests on: judged (multipliers; marginal, undecided, folds: parity of folds), loss (fold, flip, Neimark-Sacker, empty),
  * largest_multiplier (modulus; empty where none was computed); iterations, seconds, error_newton, _truncation, _sampling,
  * _modal; origin (end of the range, search, flip) and order nu: it repeats after nu periods. The amplitudes and phases are those of the
- * excitation's harmonic, peak to peak that of all. Numbers as %.12g, phase of Re a e^{jwt} in degrees; a number that is not finite is left empty. */
+ * excitation's harmonic, peak to peak that of all. Numbers as %0.12g, phase of Re a e^{jwt} in degrees; a number that is not finite is left empty. */
 void post_csv(const mhb_response *response, post_buffer *out);
 
 #endif

@@ -61,7 +61,7 @@ static mesh_fe repeat(const mesh_fe *one, int copies, double pitch) {
 static void copies_are_found(void **state) {
   (void)state;
   enum { MODES = 12 };
-  const double size[3]  = {.2, .031, .011};
+  const double size[3]  = {0.2, 0.031, 0.011};
   const int    cells[3] = {7, 2, 1}, copies[2] = {6, 9};
   mesh_fe      bar = make_box(size, cells);
   for (int k = 0; k < 2; k++) {
@@ -91,7 +91,7 @@ static void copies_are_found(void **state) {
 /* A square bar's pairs, for a solver that sees one of each. */
 static void pairs_are_found(void **state) {
   (void)state;
-  const double               size[3]  = {.2, .02, .02};
+  const double               size[3]  = {0.2, 0.02, 0.02};
   const int                  cells[3] = {12, 3, 3};
   const modal_check_kind     kind[2]  = {MODAL_CHECK_AUTO, MODAL_CHECK_INERTIA};
   const modal_eigen_settings usual    = {.modes = 4};
@@ -150,7 +150,7 @@ static void make_basis(const fem_system *system, const modal_eigen *reference, i
 /* Each of nine modes in turn: missing below the last kept one, which is noticed, but for that last one itself. */
 static void hidden_mode_is_noticed(void **state) {
   (void)state;
-  const double               size[3]  = {.2, .031, .011};
+  const double               size[3]  = {0.2, 0.031, 0.011};
   const int                  cells[3] = {14, 4, 2};
   const modal_eigen_settings settings = {.modes = WHOLE};
   mesh_fe                    mesh     = make_box(size, cells);
@@ -173,7 +173,7 @@ static void hidden_mode_is_noticed(void **state) {
     } else {
       assert_int_equal(rest.verdict, MODAL_VERDICT_COMPLETE);
       assert_true(rest.probability <= 1e-9);
-      check_close(rest.ratio, last / reference.lambda[WHOLE - 1], .05, "the next mode");
+      check_close(rest.ratio, last / reference.lambda[WHOLE - 1], 0.05, "the next mode");
     }
     modal_block_basis_destroy(&basis);
   }
@@ -187,7 +187,7 @@ static void hidden_mode_is_noticed(void **state) {
 /* Between any two modes the negative pivots are as many as the modes below, of a clamped body and of a free one. */
 static void inertia_counts(void **state) {
   (void)state;
-  const double size[3]  = {.11, .07, .05};
+  const double size[3]  = {0.11, 0.07, 0.05};
   const int    cells[3] = {4, 3, 2};
   for (int clamped = 0; clamped < 2; clamped++) {
     modal_eigen_settings settings = {.modes = 9, .shift = clamped ? 0 : -1e8};
@@ -213,7 +213,7 @@ static void inertia_counts(void **state) {
 /* Krylov-Schur keeps no basis to go by, and its modes are counted. */
 static void others_are_counted(void **state) {
   (void)state;
-  const double         size[3]  = {.2, .031, .011};
+  const double         size[3]  = {0.2, 0.031, 0.011};
   const int            cells[3] = {12, 3, 2};
   modal_eigen_settings settings = {.modes = 10};
   mesh_fe              mesh     = make_box(size, cells);
@@ -269,16 +269,16 @@ static double ritz(int n, const double *value, int steps, uint64_t *random) {
   return w[steps - 1];
 }
 
-/* The bound against 100,000 draws, one column: how often no Ritz value tells of an eigenvalue at 1 when the others reach .3. The bound holds,
+/* The bound against 100,000 draws, one column: how often no Ritz value tells of an eigenvalue at 1 when the others reach 0.3. The bound holds,
  * and is not empty: within two orders of what is drawn (one is the share a). */
 static void chance_holds(void **state) {
   (void)state;
   enum { N = 40, DRAWS = 100000 };
   double   value[N] = {1};
   uint64_t random   = 5;
-  for (int i = 1; i < N; i++) value[i] = .3 * i / (N - 1);
+  for (int i = 1; i < N; i++) value[i] = 0.3 * i / (N - 1);
   for (int steps = 2; steps <= 4; steps++) {
-    const double ratio = .3;
+    const double ratio = 0.3;
     int          blind = 0;
     for (int d = 0; d < DRAWS; d++) blind += ritz(N, value, steps, &random) <= ratio;
     const double drawn = (double)blind / DRAWS,
@@ -289,10 +289,10 @@ static void chance_holds(void **state) {
     assert_true(steps > 2 || blind > 0);
   }
   assert_true(modal_missed_modes_probability(1, 9, 4, 1e5) == 1);
-  assert_true(modal_missed_modes_probability(.5, 9, 4, 1e5) <
-              modal_missed_modes_probability(.5, 8, 4, 1e5));
-  assert_true(modal_missed_modes_probability(.5, 9, 4, 1e5) >
-              modal_missed_modes_probability(.4, 9, 4, 1e5));
+  assert_true(modal_missed_modes_probability(0.5, 9, 4, 1e5) <
+              modal_missed_modes_probability(0.5, 8, 4, 1e5));
+  assert_true(modal_missed_modes_probability(0.5, 9, 4, 1e5) >
+              modal_missed_modes_probability(0.4, 9, 4, 1e5));
 }
 
 int main(int argc, char **argv) {

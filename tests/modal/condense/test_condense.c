@@ -18,8 +18,8 @@
 
 enum { BLADES = 23 };
 
-static const double size[3] = {.04, 1, .12}, inner = .1, zeta = .003, two_pi = 6.283185307179586;
-static const modal_probe probe[2] = {{"tip", {.04, .0, .22}}, {"middle", {0, .01, .16}}};
+static const double size[3] = {0.04, 1, 0.12}, inner = 0.1, zeta = 0.003, two_pi = 6.283185307179586;
+static const modal_probe probe[2] = {{"tip", {0.04, 0.0, 0.22}}, {"middle", {0, 0.01, 0.16}}};
 
 static modal_settings default_settings(int points) {
   return (modal_settings){
@@ -31,7 +31,7 @@ static modal_settings default_settings(int points) {
       .load     = {.kind        = FEM_LOAD_PRESSURE,
                    .pressure    = 2385,
                    .n_harmonics = 2,
-                   .factor      = {.3, 1, -.2 + .1 * I}},
+                   .factor      = {0.3, 1, -0.2 + 0.1 * I}},
       .n_probes = 2,
       .probe    = probe,
       .points   = points,
@@ -178,7 +178,7 @@ static void check_receptance(double speed) {
   modal_result  result    = solve(&mesh, &settings);
   body          whole     = create_body(&mesh, &settings, &result);
   const double *f         = result.model.frequency;
-  const double  test[3]   = {.4 * f[0], (f[1] + f[2]) / 2, 1.01 * f[2]};
+  const double  test[3]   = {0.4 * f[0], (f[1] + f[2]) / 2, 1.01 * f[2]};
   const int     nc        = 12;
   for (int i = 0; i < 3; i++) {
     double complex *exact = direct(&whole, two_pi * test[i]);
@@ -312,7 +312,7 @@ static void every_receptance_errs_by_the_first_term_left_out(void **state) {
       double order = log2(error / least);
       print_message("%s, %d term(s), %.0f Hz: error %.1e, order %.3f\n", ways[w].name, terms,
                     omega / two_pi, error / norm, order);
-      assert_true(fabs(order - 2 * terms) < .1);
+      assert_true(fabs(order - 2 * terms) < 0.1);
       if (terms > 1) check_below(error / norm, 1e-4, ways[w].name);
     }
   free(exact);
@@ -333,7 +333,7 @@ static void residual_modes_double_the_order(void **state) {
   body                whole      = create_body(&mesh, &settings, &result);
   const double        top        = two_pi * result.model.frequency[19];
   static const double allowed[4] = {1e-10, 1e-10, 2e-6, 2e-6}, order_of[4] = {12, 12, 6, 6};
-  static const double share[3] = {1. / 3, .4, .32};
+  static const double share[3] = {1. / 3, 0.4, 0.32};
   double complex     *exact[3];
   for (int i = 0; i < 3; i++) exact[i] = direct(&whole, share[i] * top);
   for (int w = 0; w < 4; w++) {
@@ -344,7 +344,7 @@ static void residual_modes_double_the_order(void **state) {
     print_message("%s, a third of the last of 20 modes: error %.1e, order %.1f\n", ways[w].name,
                   error[0] / norm[0], order);
     check_below(error[0] / norm[0], allowed[w], ways[w].name);
-    assert_true(order > order_of[w] - .5);
+    assert_true(order > order_of[w] - 0.5);
   }
   double complex model[NC * NC];
   modal_receptance(&result.model, top / 3, model);
@@ -402,7 +402,7 @@ static double worst_error(const double complex *model, const double complex *exa
  * and with many; and no entry of the matrix is worse than the estimate allows. */
 static void error_is_estimated(void **state) {
   (void)state;
-  static const double share[]  = {.1, .2, 1. / 3, .5, .7, .85};
+  static const double share[]  = {0.1, 0.2, 1. / 3, 0.5, 0.7, 0.85};
   const int           cells[3] = {2, 2, 4};
   mesh_fe             mesh     = make_sector(size, inner, BLADES, cells);
   modal_settings      settings = default_settings(2);
@@ -472,7 +472,7 @@ static void modes_are_just_enough(void **state) {
                   error, fewer);
     assert_true(n > before);
     check_below(error, 1.1 * settings.tolerance, "error in the band");
-    assert_true(fewer > .9 * settings.tolerance);
+    assert_true(fewer > 0.9 * settings.tolerance);
     before = n;
     free_body(&whole);
     modal_result_free(&result);
@@ -568,7 +568,7 @@ static void receptance_converges_with_the_mesh(void **state) {
     modal_settings settings = default_settings(1);
     double complex r[36];
     modal_result   result = solve(&mesh, &settings);
-    modal_receptance(&result.model, .5 * two_pi * result.model.frequency[0], r);
+    modal_receptance(&result.model, 0.5 * two_pi * result.model.frequency[0], r);
     flexibility[level] = cabs(r[0]);
     modal_result_free(&result);
     mesh_fe_free(&mesh);

@@ -14,7 +14,7 @@
 
 enum { BLADES = 23 };
 
-static const double size[3] = {.04, 1, .11}, inner = .2, degree = 0.017453292519943295;
+static const double size[3] = {0.04, 1, 0.11}, inner = 0.2, degree = 0.017453292519943295;
 static const int    cells[3] = {4, 3, 6};
 
 static modal_patches create(const mesh_fe *mesh, bool to_ground, int points) {
@@ -95,7 +95,7 @@ static void all_nodes(void **state) {
   mesh_fe       mesh = make_sector(size, inner, BLADES, cells);
   modal_patches face = create(&mesh, false, 0);
   const bool    hex  = used_elements() == MESH_HEX20;
-  const double  part = hex ? .25 : 1. / 3;
+  const double  part = hex ? 0.25 : 1. / 3;
   assert_int_equal(face.n_pairs, hex ? 58 : 82);
   check_totals(&face);
   check_pairs(&mesh, &face);
@@ -130,7 +130,7 @@ static void angles_must_agree_with_the_faces(void **state) {
   (void)state;
   mesh_fe       mesh = make_sector(size, inner, BLADES, cells);
   modal_patches face = create(&mesh, false, 1);
-  const double  zero = .5 * degree, full = 359.5 * degree, wrong = 35 * degree, steep = -2 * degree;
+  const double  zero = 0.5 * degree, full = 359.5 * degree, wrong = 35 * degree, steep = -2 * degree;
   check_below(face.psi, 1e-12, "psi");
   check_below(face.phi, 1e-12, "phi");
   assert_int_equal(modal_patches_check_angles(&face, NULL, NULL), SHB_OK);
@@ -146,18 +146,18 @@ static void angles_must_agree_with_the_faces(void **state) {
 /* psi and phi of a skewed face by the paper's convention, v = (cos psi cos phi, sin psi cos phi, -sin phi). */
 static void angles_of_a_skewed_face(void **state) {
   (void)state;
-  const double psi = 31 * degree, phi = 8 * degree, thin[3] = {.01, 1, .01};
+  const double psi = 31 * degree, phi = 8 * degree, thin[3] = {0.01, 1, 0.01};
   const int    one[3] = {1, 1, 1};
   mesh_fe      mesh   = make_sector(thin, inner, 3600, one); /* nearly a box: tangential is -y */
   for (int i = 0; i < mesh.n_nodes; i++) {
     double *x = mesh.coordinates + 3 * i;
     /* plane through the centroid: v . (tangential, axial, radial) = 0 with tangential = -y */
-    x[1] += ((x[0] - .005) * sin(psi) * cos(phi) - (x[2] - inner - .005) * sin(phi)) /
+    x[1] += ((x[0] - 0.005) * sin(psi) * cos(phi) - (x[2] - inner - 0.005) * sin(phi)) /
             (cos(psi) * cos(phi));
   }
   modal_patches face = create(&mesh, true, 1);
-  check_below(face.psi - psi, .06 * degree, "psi"); /* the centroid is .05 deg off the z axis */
-  check_below(face.phi - phi, .06 * degree, "phi");
+  check_below(face.psi - psi, 0.06 * degree, "psi"); /* the centroid is 0.05 deg off the z axis */
+  check_below(face.phi - phi, 0.06 * degree, "phi");
   modal_patches_free(&face);
   mesh_fe_free(&mesh);
 }
@@ -187,7 +187,7 @@ static void bad_faces_are_one_line(void **state) {
   mesh_fe_free(&mesh);
   mesh = make_sector(size, inner, BLADES, cells);
   for (int i = 0; i < 8; i++) /* off by a tenth of the face */
-    mesh.coordinates[3 * mesh.set[MESH_CONTACT_LEFT].nodes[i] + 1] += .1 * size[2];
+    mesh.coordinates[3 * mesh.set[MESH_CONTACT_LEFT].nodes[i] + 1] += 0.1 * size[2];
   assert_int_equal(modal_patches_create(&mesh, MESH_AXIS_X, BLADES, false, 1, &face),
                    SHB_ERR_INPUT);
   mesh_fe_free(&mesh);
@@ -200,7 +200,7 @@ static void faces_that_do_not_match_are_projected(void **state) {
   mesh_fe mesh = make_sector(size, inner, BLADES, cells);
   for (int i = 0; i < mesh.n_nodes; i++) {
     double *x = mesh.coordinates + 3 * i, r = hypot(x[1], x[2]), high = (r - inner) / size[2];
-    double  bump = .05 * sin(acos(-1) * x[0] / size[0]) * sin(acos(-1) * high);
+    double  bump = 0.05 * sin(acos(-1) * x[0] / size[0]) * sin(acos(-1) * high);
     if (x[1] / x[2] < tan(acos(-1) / BLADES) * (1 - 1e-9)) continue; /* not on the left side */
     x[0] += bump * size[0];
     for (int d = 1; d < 3; d++) x[d] *= 1 + bump * size[2] / r;

@@ -78,7 +78,7 @@ static void compare(const double size[3], const int cells[3], double *gap) {
 
 static void modes_are_krylov_schurs(void **state) {
   (void)state;
-  const double size[3]  = {.2, .031, .011};
+  const double size[3]  = {0.2, 0.031, 0.011};
   const int    cells[3] = {12, 3, 2};
   double       gap;
   compare(size, cells, &gap);
@@ -88,7 +88,7 @@ static void modes_are_krylov_schurs(void **state) {
 /* Of hexahedra a square bar bends alike in both directions. */
 static void pairs_are_found(void **state) {
   (void)state;
-  const double size[3]  = {.2, .02, .02};
+  const double size[3]  = {0.2, 0.02, 0.02};
   const int    cells[3] = {12, 3, 3};
   double       gap;
   use_elements(MESH_HEX20);

@@ -57,7 +57,7 @@ static void steel_bar(void **state) {
   const double calculix[6]   = {210.0503197, 618.2204161, 1301.270084,
                                 2317.657808, 3534.732999, 3582.520868};
   const double timoshenko[3] = {208.47, 615.89, 1291.46};
-  const double size[3]       = {.2, .03, .01};
+  const double size[3]       = {0.2, 0.03, 0.01};
   const int    cells[3]      = {40, 6, 4};
   mesh_fe      mesh          = make_box(size, cells);
   for (int rule = FEM_STANDARD; rule <= FEM_CALCULIX; rule++) {
@@ -94,7 +94,7 @@ static double strain_frequency(const mesh_fe *mesh, const fem_system *system,
 /* A body held nowhere: six zeros, then the first elastic mode well above. */
 static void free_body_has_six_rigid_modes(void **state) {
   (void)state;
-  const double size[3] = {.11, .07, .05}, shift = -1e8;
+  const double size[3] = {0.11, 0.07, 0.05}, shift = -1e8;
   const int    cells[3] = {4, 3, 2};
   mesh_fe      mesh     = make_box(size, cells);
   fem_system   system;
@@ -147,7 +147,7 @@ static double axial_frequency(const double size[3], const int cells[3]) {
 
 static void smooth_mode_converges_with_order_four(void **state) {
   (void)state;
-  const double size[3] = {.1, .04, .03}, exact = sqrt(2.1e11 / 7850) / (4 * size[0]);
+  const double size[3] = {0.1, 0.04, 0.03}, exact = sqrt(2.1e11 / 7850) / (4 * size[0]);
   double       error[3];
   for (int level = 0; level < 3; level++) {
     const int n        = 2 << level;
@@ -166,7 +166,7 @@ static void smooth_mode_converges_with_order_four(void **state) {
 
 static void too_many_modes_is_one_line(void **state) {
   (void)state;
-  const double         size[3]  = {.1, .1, .1};
+  const double         size[3]  = {0.1, 0.1, 0.1};
   const int            cells[3] = {1, 1, 1};
   mesh_fe              mesh     = make_box(size, cells);
   modal_eigen_settings settings = {.modes = 55};
@@ -185,7 +185,7 @@ static void too_many_modes_is_one_line(void **state) {
 
 /* Six frequencies of the steel bar with a number of hexahedra along. */
 static void bar_frequencies(int n, fem_rules rules, double frequency[6]) {
-  const double size[3]  = {.2, .03, .01};
+  const double size[3]  = {0.2, 0.03, 0.01};
   const int    cells[3] = {n, 3 * n / 20, n / 10};
   mesh_fe      mesh     = make_box(size, cells);
   fem_system   system;
@@ -210,7 +210,7 @@ static void both_rules_of_hexahedra_meet(void **state) {
   for (int i = 0; i < 6; i++) {
     print_message("mode %d: %.4f Hz, 3x3x3 points %.1e above, half as fine %.1e\n", i + 1,
                   reduced[i], gap[1][i], gap[0][i]);
-    assert_true(gap[1][i] > 0 && gap[1][i] < 1e-3 && gap[1][i] < .5 * gap[0][i]);
+    assert_true(gap[1][i] > 0 && gap[1][i] < 1e-3 && gap[1][i] < 0.5 * gap[0][i]);
     if (i < 3) check_close(reduced[i], timoshenko[i], 1e-2, "frequency against Timoshenko");
   }
 }

@@ -50,15 +50,15 @@ static double effective(const model *m, int mode, int r) {
 /* The modes that carry most of direction r, in order: their shares. */
 static void greatest(const model *m, int r, int n, double *share) {
   for (int found = 0, i = 0; i < m->eigen.n && found < n; i++)
-    if (effective(m, i, r) > .01) share[found++] = effective(m, i, r);
+    if (effective(m, i, r) > 0.01) share[found++] = effective(m, i, r);
 }
 
 /* A slender clamped bar (Euler-Bernoulli: 4 (sigma_i/beta_i)^2; axially, without Poisson's ratio, 8/(2i - 1)^2 pi^2). */
 static void slender_bar(void **state) {
   (void)state;
   const fem_material cork        = {.E = 2.1e11, .rho = 7850};
-  const double       bending[3]  = {.613065, .188302, .064739};
-  const double       size[3]     = {1, .012, .021};
+  const double       bending[3]  = {0.613065, 0.188302, 0.064739};
+  const double       size[3]     = {1, 0.012, 0.021};
   const int          cells[3]    = {24, 1, 1};
   double             found[2][3] = {{0}}, axial[1] = {0};
   use_elements(MESH_HEX20);
@@ -103,7 +103,7 @@ static double all_modes(const model *m, int r) {
 /* All modes of a mesh: the sums are b^T M^-1 b. */
 static void all_modes_add_up(void **state) {
   (void)state;
-  const double size[3]  = {.11, .07, .05};
+  const double size[3]  = {0.11, 0.07, 0.05};
   const int    cells[3] = {2, 1, 1};
   for (int kind = 0; kind < 2; kind++) {
     use_elements(kind ? MESH_HEX20 : MESH_TET10);
@@ -124,7 +124,7 @@ static void all_modes_add_up(void **state) {
 /* What is missing of the mass rests on the clamped nodes: of first order in the element's length. */
 static void what_is_missing_vanishes(void **state) {
   (void)state;
-  const double size[3] = {.11, .07, .05};
+  const double size[3] = {0.11, 0.07, 0.05};
   double       missing[3];
   for (int i = 0; i < 3; i++) {
     const int cells[3] = {2 << i, 2, 1};
@@ -135,7 +135,7 @@ static void what_is_missing_vanishes(void **state) {
     mesh_fe_free(&mesh);
   }
   print_message("missing of the mass: %.4f %.4f %.4f\n", missing[0], missing[1], missing[2]);
-  for (int i = 0; i < 2; i++) check_close(missing[i] / missing[i + 1], 2, .1, "first order");
+  for (int i = 0; i < 2; i++) check_close(missing[i] / missing[i + 1], 2, 0.1, "first order");
 }
 
 int main(int argc, char **argv) {

@@ -216,7 +216,7 @@ static hid_t foreign_complex(void) {
 
 static void test_foreign_numbers(void **state) {
   (void)state;
-  const double    pairs[4] = {.25, -3, 8, 1.5}; /* imag, real */
+  const double    pairs[4] = {0.25, -3, 8, 1.5}; /* imag, real */
   const long      big[2]   = {3, 1L << 40};
   hid_t           file = create("foreign.h5"), stored = foreign_complex();
   hid_t           memory = H5Tcreate(H5T_COMPOUND, 16);
@@ -231,10 +231,10 @@ static void test_foreign_numbers(void **state) {
   put(file, "short", H5T_STD_I16BE, H5T_NATIVE_LONG, H5_SHAPE(1), big);
   put(file, "long", H5T_STD_I64LE, H5T_NATIVE_LONG, two, big);
   assert_ok(h5_read_complex(file, "wave", &two, &wave));
-  assert_true(wave[0] == -3 + .25 * I && wave[1] == 1.5 + 8 * I);
+  assert_true(wave[0] == -3 + 0.25 * I && wave[1] == 1.5 + 8 * I);
   free(wave);
   assert_ok(h5_read_complex(file, "float", &two, &wave));
-  assert_true(wave[0] == .25 && wave[1] == -3);
+  assert_true(wave[0] == 0.25 && wave[1] == -3);
   free(wave);
   h5_shape one = H5_SHAPE(1);
   assert_ok(h5_read_double(file, "short", &one, &real));

@@ -45,7 +45,7 @@ static modal_model sample(bool full) {
   model.frequency                 = numbers(MODES, 1);
   model.damping_ratio             = numbers(MODES, 2);
   for (int i = 0; i < MODES; i++) model.frequency[i] = 103.25 * (i + 1);
-  for (int i = 0; i < MODES; i++) model.damping_ratio[i] = .002 * i;
+  for (int i = 0; i < MODES; i++) model.damping_ratio[i] = 0.002 * i;
   model.right       = numbers(PAIRS * 3 * MODES, 3);
   model.modal_force = waves((LOADS + 1) * MODES, 4);
   if (!full) return model;
@@ -84,7 +84,7 @@ static modal_model sample(bool full) {
   for (int i = 0; i < PROBES; i++) model.probe_name[i] = strdup(name[i]);
   for (int i = 0; i < PAIRS; i++) {
     model.area[i] = 1e-5 * (i + 1);
-    for (int j = 0; j < 3; j++) model.normal[3 * i + j] = (double[]){.6, .8, 0}[j];
+    for (int j = 0; j < 3; j++) model.normal[3 * i + j] = (double[]){0.6, 0.8, 0}[j];
   }
   return model;
 }
@@ -341,7 +341,7 @@ static void test_shapes(void **state) {
   };
   modal_model model = sample(true);
   double     *ones  = numbers(200, 1);
-  for (int i = 0; i < 200; i++) ones[i] = .5;
+  for (int i = 0; i < 200; i++) ones[i] = 0.5;
   for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
     write_model("shape.h5", &model);
     replace("shape.h5", wrong[i].path, wrong[i].shape, ones);
@@ -391,7 +391,7 @@ static void test_values(void **state) {
       {IN(load_inertia), 2, NAN, "/load/residual_inertia: the value at [0, 1]"},
       {IN(probe_contact_inertia), 12, NAN, "/probe/contact_inertia: the value at [1, 0]"},
       {IN(probe_load_inertia), 0, NAN, "/probe/load_inertia: the value at [0, 0]"},
-      {IN(normal), 3, .7, "/contact/normal: row 1 (from 0) has length 1.06301; unit vectors"},
+      {IN(normal), 3, 0.7, "/contact/normal: row 1 (from 0) has length 1.06301; unit vectors"},
       {IN(area), 1, 0, "/contact/area: value 1 (from 0) is 0 m^2; all must be positive"},
   };
   for (size_t i = 0; i < sizeof faults / sizeof *faults; i++) {

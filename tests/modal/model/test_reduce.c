@@ -65,7 +65,7 @@ static void errors_at(int parts, int modes, bool residuals, double omega, double
   assert_int_equal(few.n_modes, modes);
   mhb_receptance *a = receptance_of(&all, &s, omega), *b = receptance_of(&few, &s, omega);
   double complex  p[ROWS], q[2][6];
-  for (int i = 0; i < ROWS; i++) p[i] = .3 + .1 * i - .07 * I * i * i;
+  for (int i = 0; i < ROWS; i++) p[i] = 0.3 + 0.1 * i - 0.07 * I * i * i;
   mhb_receptance_probe(a, 1, p, q[0]);
   mhb_receptance_probe(b, 1, p, q[1]);
   error[0] = difference(ROWS * ROWS, a->R + ROWS * ROWS, b->R + ROWS * ROWS);
@@ -87,17 +87,17 @@ static void errors_have_their_order(void **state) {
   const int order[4][3] = {{0, 0, 0}, {0, 0, 0}, {6, 0, 0}, {4, 4, 4}}; /* 0: exact */
   for (int i = 0; i < 4; i++) {
     double at[3], half[3];
-    errors_at(parts[i], 3, true, .16, at);
-    errors_at(parts[i], 3, true, .08, half);
+    errors_at(parts[i], 3, true, 0.16, at);
+    errors_at(parts[i], 3, true, 0.08, half);
     for (int k = 0; k < 3; k++) {
       print_message("error %.2e, %.2e at half the frequency: order %.3f\n", at[k], half[k],
                     log2(at[k] / half[k]));
-      assert_true(order[i][k] ? fabs(log2(at[k] / half[k]) - order[i][k]) < .05 : at[k] < 1e-13);
+      assert_true(order[i][k] ? fabs(log2(at[k] / half[k]) - order[i][k]) < 0.05 : at[k] < 1e-13);
     }
   }
 }
 
-/* The modes left out are damped, what stands for them is not: an error that goes with omega. Damping of .01 to .03
+/* The modes left out are damped, what stands for them is not: an error that goes with omega. Damping of 0.01 to 0.03
  * gives 2 zeta omega/omega_i. */
 static void statics_stay(void **state) {
   (void)state;
@@ -105,11 +105,11 @@ static void statics_stay(void **state) {
   for (int i = 0; i < 2; i++) {
     double at[3], half[3], none[3];
     errors_at(parts[i], 3, true, 1e-4, at);
-    errors_at(parts[i], 3, true, .5e-4, half);
+    errors_at(parts[i], 3, true, 0.5e-4, half);
     errors_at(parts[i], 3, false, 1e-4, none);
     for (int k = 0; k < 3; k++) {
       assert_true(at[k] < 1e-5);
-      assert_true(fabs(log2(at[k] / half[k]) - 1) < .05);
+      assert_true(fabs(log2(at[k] / half[k]) - 1) < 0.05);
       assert_true(none[k] > 1e-2);
     }
   }
@@ -118,7 +118,7 @@ static void statics_stay(void **state) {
 static void all_modes_change_nothing(void **state) {
   (void)state;
   double error[3];
-  errors_at(PARTS, 6, true, .7, error);
+  errors_at(PARTS, 6, true, 0.7, error);
   for (int k = 0; k < 3; k++) assert_true(error[k] == 0);
 }
 
@@ -142,7 +142,7 @@ static void bare(void **state) {
   without.probe_contact_residual = without.probe_contact_inertia = NULL;
   without.load_residual = without.load_inertia = NULL;
   without.probe_load_residual = without.probe_load_inertia = NULL;
-  mhb_receptance *a = receptance_of(&with, &s, .9), *b = receptance_of(&without, &s, .9);
+  mhb_receptance *a = receptance_of(&with, &s, 0.9), *b = receptance_of(&without, &s, 0.9);
   assert_true(difference(3 * ROWS * ROWS, a->R, b->R) == 0);
   mhb_receptance_destroy(a);
   mhb_receptance_destroy(b);

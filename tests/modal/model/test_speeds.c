@@ -11,7 +11,7 @@ enum { MODES = 5, SPEEDS = 4 };
 
 /* A nearly square beam that points outward along z, its flap (along x, the engine axis) a little softer than the motion in the plane of rotation:
  * flap stiffens by Omega^2 more, so that they cross. */
-static const double size[3]  = {.0200, .0202, .3};
+static const double size[3]  = {0.0200, 0.0202, 0.3};
 static const int    cells[3] = {1, 1, 6};
 
 static const double speeds[SPEEDS] = {700, 0, 100, 400};
@@ -25,12 +25,12 @@ static mesh_fe make_beam(void) {
   assert_int_equal(box_set(&mesh, MESH_LOAD, 2, size[2]), SHB_OK);
   for (int i = 0; i < mesh.n_nodes; i++) {
     mesh.coordinates[3 * i + 1] -= size[1] / 2;
-    mesh.coordinates[3 * i + 2] += .2;
+    mesh.coordinates[3 * i + 2] += 0.2;
   }
   return mesh;
 }
 
-static const modal_probe probe = {"tip", {.01, 0, .5}};
+static const modal_probe probe = {"tip", {0.01, 0, 0.5}};
 
 static modal_settings make_settings(void) {
   return (modal_settings){
@@ -41,7 +41,7 @@ static modal_settings make_settings(void) {
       .n_speeds         = SPEEDS,
       .speeds           = speeds,
       .modes            = MODES,
-      .damping          = {.ratio = .002},
+      .damping          = {.ratio = 0.002},
       .full_integration = true,
       .load             = {.kind        = FEM_LOAD_TRACTION,
                            .traction    = {100, 70, 5},
@@ -66,7 +66,7 @@ static void check_tracks(const modal_speeds *s) {
     double square = s->speed[i] * s->speed[i];
     check_below(eigenvalue(s, i, 0) - eigenvalue(s, i, 1) - rest - square,
                 1e-2 * square + 1e-9 * eigenvalue(s, i, 0), "flap less in-plane eigenvalue");
-    for (int t = 0; t < 2; t++) assert_true(s->mac[i * MODES + t] > .99);
+    for (int t = 0; t < 2; t++) assert_true(s->mac[i * MODES + t] > 0.99);
     assert_int_equal(s->mode[i * MODES], eigenvalue(s, i, 0) > eigenvalue(s, i, 1));
   }
   assert_int_equal(s->mode[3 * MODES], 1); /* they have crossed */
@@ -82,7 +82,7 @@ static void check_overlaps(const modal_speeds *s) {
       double inside = 0;
       for (int b = 0; b < MODES; b++) inside += C[a * MODES + b] * C[a * MODES + b];
       assert_true(inside < 1 + 1e-9);
-      if (a < 2) assert_true(inside > .99 && C[a * MODES + s->mode[i * MODES + a]] > .99);
+      if (a < 2) assert_true(inside > 0.99 && C[a * MODES + s->mode[i * MODES + a]] > 0.99);
     }
   }
 }

@@ -17,14 +17,14 @@
 
 enum { MODES = 6 };
 
-static const double size[3] = {.2, .03, .005}, hub = .15, twist = .7;
+static const double size[3] = {0.2, 0.03, 0.005}, hub = 0.15, twist = 0.7;
 static const int    cells[3] = {10, 2, 1};
 static const double two_pi   = 6.28318530717958647692;
 static const char  *program;
 static char         folder[] = "/tmp/shroudhb-calculix-XXXXXX";
 
 static const fem_orthotropic crystal = {
-    {127e9, 141e9, 118e9}, {.38, .31, .27}, {120e9, 97e9, 71e9}, {.3, -.8, .52}, {.9, .2, -.4}};
+    {127e9, 141e9, 118e9}, {0.38, 0.31, 0.27}, {120e9, 97e9, 71e9}, {0.3, -0.8, 0.52}, {0.9, 0.2, -0.4}};
 
 /* An element of CalculiX, and ours with the same rules. */
 typedef struct {
@@ -40,7 +40,7 @@ static mesh_fe make_blade(mesh_kind kind) {
   mesh_fe              mesh     = make_box(size, cells);
   const mesh_topology *topology = mesh_topology_of(kind);
   for (int i = 0; i < mesh.n_nodes; i++) {
-    double *x = mesh.coordinates + 3 * i, angle = .3 + twist * x[0] / size[0];
+    double *x = mesh.coordinates + 3 * i, angle = 0.3 + twist * x[0] / size[0];
     double  y = x[1] - size[1] / 2, z = x[2] - size[2] / 2;
     x[0] += hub;
     x[1] = y * cos(angle) - z * sin(angle);
@@ -277,7 +277,7 @@ static void crystals_agree(void **state) {
 /* A steel blade with a tip of titanium, twice as light. */
 static void two_materials_agree(void **state) {
   (void)state;
-  const fem_material parts[]   = {steel, {.E = 1.14e11, .nu = .33, .rho = 4430}};
+  const fem_material parts[]   = {steel, {.E = 1.14e11, .nu = 0.33, .rho = 4430}};
   const element_kind element[] = {{"C3D10", MESH_TET10, FEM_CALCULIX},
                                   {"C3D20R", MESH_HEX20, FEM_CALCULIX}};
   for (int k = 0; k < 2; k++) {
@@ -293,7 +293,7 @@ static void two_materials_agree(void **state) {
       double x = 0;
       for (int i = 0; i < topology->corners; i++)
         x += mesh.coordinates[3 * mesh.connectivity[topology->nodes * e + i]] / topology->corners;
-      mesh.region[e] = x > hub + .6 * size[0];
+      mesh.region[e] = x > hub + 0.6 * size[0];
     }
     compare_on(&element[k], &mesh, parts);
     mesh_fe_free(&mesh);

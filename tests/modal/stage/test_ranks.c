@@ -15,8 +15,8 @@
 
 enum { BLADES = 23 };
 
-static const double      size[3] = {.04, 1, .12}, inner = .1;
-static const modal_probe probe = {"tip", {.04, .0, .22}};
+static const double      size[3] = {0.04, 1, 0.12}, inner = 0.1;
+static const modal_probe probe = {"tip", {0.04, 0.0, 0.22}};
 
 /* Only rank 0 has the mesh at first, as in the stage. */
 static void check_ranks(double speed) {
@@ -28,7 +28,7 @@ static void check_ranks(double speed) {
       .blades   = BLADES,
       .speed    = speed,
       .modes    = 12,
-      .damping  = {.ratio = .002},
+      .damping  = {.ratio = 0.002},
       .load     = {.kind = FEM_LOAD_PRESSURE, .pressure = 200, .n_harmonics = 1, .factor = {0, 1}},
       .n_probes = 1,
       .probe    = &probe,

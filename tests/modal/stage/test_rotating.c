@@ -115,26 +115,26 @@ static void stiffening_is_southwells(void **state) {
   check_close(southwell(0), 1.193, 5e-4, "Southwell's coefficient, hub 0");
   for (int level = 0; level < 3; level++) {
     const int    parts = 10 << level;
-    const beam   b     = {.4, .4 / parts, .3, parts};
-    const double speed = .02 * slender_frequency(&b), square = speed * speed;
+    const beam   b     = {0.4, 0.4 / parts, 0.3, parts};
+    const double speed = 0.02 * slender_frequency(&b), square = speed * speed;
     double       flap[2][MODES], plane[2][MODES];
     assert_int_equal(solve(&b, 0, flap[0], plane[0]), SHB_OK);
     assert_int_equal(solve(&b, speed, flap[1], plane[1]), SHB_OK);
     S[level]           = (flap[1][0] - flap[0][0]) / square;
     double in_plane    = (plane[1][0] - plane[0][0]) / square;
-    flap_error[level]  = S[level] / southwell(.75) - 1;
+    flap_error[level]  = S[level] / southwell(0.75) - 1;
     plane_error[level] = S[level] - in_plane - 1;
     print_message("width/length 1/%d: S %.6f (beam theory %.6f), flap less in-plane %.6f (1)\n",
-                  parts, S[level], southwell(.75), S[level] - in_plane);
+                  parts, S[level], southwell(0.75), S[level] - in_plane);
   }
   for (int i = 0; i < 2; i++) {
     double order[2] = {log2(flap_error[i] / flap_error[i + 1]),
                        log2(plane_error[i] / plane_error[i + 1])};
     print_message("orders in the width: %.2f, %.2f\n", order[0], order[1]);
     assert_true(order[0] > 1.5);
-    check_below(order[1] - 2, .3, "order of the difference of the planes");
+    check_below(order[1] - 2, 0.3, "order of the difference of the planes");
   }
-  check_close(S[2] + (S[2] - S[1]) / 3, southwell(.75), 2e-5,
+  check_close(S[2] + (S[2] - S[1]) / 3, southwell(0.75), 2e-5,
               "Southwell's coefficient, extrapolated");
   check_below(plane_error[2], 1e-3, "difference of the planes");
 }
@@ -144,7 +144,7 @@ static void stiffening_is_southwells(void **state) {
 static void frequencies_are_the_published_ones(void **state) {
   (void)state;
   const double published[3][3] = {{0, 3.5160, 22.0345}, {3, 4.7973, 23.3203}, {6, 7.3604, 26.8091}};
-  const beam   b               = {.5, .005, 0, 60};
+  const beam   b               = {0.5, 0.005, 0, 60};
   const double unit            = slender_frequency(&b) / 3.5160152685;
   double       flap[3][MODES], plane[MODES];
   for (int i = 0; i < 3; i++)
@@ -162,15 +162,15 @@ static void frequencies_are_the_published_ones(void **state) {
  * to 0: below it there are modes, above it one line. */
 static void buckling_is_refused(void **state) {
   (void)state;
-  const beam b = {.2, .004, -.5, 12};
+  const beam b = {0.2, 0.004, -0.5, 12};
   double     low[MODES], high[MODES], last[MODES], plane[MODES];
   assert_int_equal(solve(&b, 150, low, plane), SHB_OK);
   assert_int_equal(solve(&b, 250, high, plane), SHB_OK);
   assert_true(high[0] < plane[0]);
   double critical = sqrt(250. * 250 + high[0] * (250. * 250 - 150. * 150) / (low[0] - high[0]));
   print_message("buckles near %.4g rad/s\n", critical);
-  assert_int_equal(solve(&b, .98 * critical, last, plane), SHB_OK);
-  assert_true(last[0] > 0 && last[0] < .2 * high[0]);
+  assert_int_equal(solve(&b, 0.98 * critical, last, plane), SHB_OK);
+  assert_true(last[0] > 0 && last[0] < 0.2 * high[0]);
   assert_int_equal(solve(&b, 1.02 * critical, last, plane), SHB_ERR_INPUT);
   assert_non_null(strstr(shb_message(), "rotor.speed"));
 }

@@ -12,9 +12,9 @@
 
 enum { BLADES = 23 };
 
-static const double      size[3] = {.04, 1, .12}, inner = .1;
+static const double      size[3] = {0.04, 1, 0.12}, inner = 0.1;
 static const int         cells[3] = {2, 2, 4};
-static const modal_probe probe[2] = {{"tip", {.04, .0, .22}}, {"middle", {0, .01, .16}}};
+static const modal_probe probe[2] = {{"tip", {0.04, 0.0, 0.22}}, {"middle", {0, 0.01, 0.16}}};
 
 static modal_settings default_settings(void) {
   return (modal_settings){
@@ -22,7 +22,7 @@ static modal_settings default_settings(void) {
       .axis     = MESH_AXIS_X,
       .blades   = BLADES,
       .modes    = 8,
-      .damping  = {.ratio = .002},
+      .damping  = {.ratio = 0.002},
       .load     = {.kind = FEM_LOAD_PRESSURE, .pressure = 200, .n_harmonics = 1, .factor = {0, 1}},
       .n_probes = 2,
       .probe    = probe,
@@ -129,7 +129,7 @@ static void phases_are_in_the_file(void **state) {
     sum += seconds[i];
     free(name[i]);
   }
-  assert_true(sum <= whole && sum > .5 * whole);
+  assert_true(sum <= whole && sum > 0.5 * whole);
   free(name), free(seconds), free(cpu), free(memory), free(greatest);
   remove(out);
 }
@@ -204,7 +204,7 @@ static void vtk_group_shows_the_modes(void **state) {
     assert_true(coordinates[i] == linked[i]);
     largest = fmax(largest, fabs(mode[i]));
   }
-  assert_true(largest > .1);
+  assert_true(largest > 0.1);
   assert_ok(h5_read_int(file, "/mesh/connectivity", &cells_shape, &gmsh));
   assert_ok(h5_read_int(file, "/VTKHDF/Connectivity", &flat, &vtk));
   assert_ok(h5_read_int(file, "/VTKHDF/Types", &types, &type));
@@ -428,7 +428,7 @@ static void statics_are_in_the_file(void **state) {
   assert_true(load[2] > 1e5); /* the blade points along z */
   for (size_t i = 0; i < n_mises; i++) most = fmax(most, mises[i]);
   assert_ok(h5_read_attribute_double(file, "/static", "greatest_stress", 0, &greatest));
-  assert_true(most > .5 * greatest && most < 2 * greatest);
+  assert_true(most > 0.5 * greatest && most < 2 * greatest);
   assert_ok(h5_close(file));
   free(node), free(force), free(whole), free(load), free(stress), free(mises);
   unlink(out);
@@ -448,7 +448,7 @@ static void refused(const modal_settings *settings, const char *mesh, shb_status
 
 static void failures_leave_the_file_alone(void **state) {
   (void)state;
-  const double   psi      = .6;
+  const double   psi      = 0.6;
   modal_settings settings = default_settings();
   refused(&settings, "missing.msh", SHB_ERR_IO, "missing.msh");
   settings.speed = 9e4;
@@ -483,7 +483,7 @@ static mesh_face_set part_of(const mesh_fe *mesh, mesh_set_id id, bool outer) {
       const double *x = mesh->coordinates + 3 * face[i];
       far             = fmax(far, hypot(x[1], x[2]));
     }
-    if ((far > inner + .55 * size[2]) != outer) continue;
+    if ((far > inner + 0.55 * size[2]) != outer) continue;
     memcpy(out.nodes + each * out.n++, face, (size_t)each * sizeof(int));
   }
   return out;

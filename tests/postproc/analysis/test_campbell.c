@@ -6,7 +6,7 @@ enum { MODES = 4, SPEEDS = 4 };
 
 static const double TWO_PI         = 6.28318530717958647692;
 static const double a[MODES]       = {100. * 100, 300. * 300, 310. * 310, 900. * 900};
-static const double b[MODES]       = {.08, .05, .01, .02};
+static const double b[MODES]       = {0.08, 0.05, 0.01, 0.02};
 static const double speeds[SPEEDS] = {0, 100, 350, 600};
 static double       value[SPEEDS][MODES], damping[MODES], shape[3 * MODES];
 static double _Complex force[4 * MODES];
@@ -29,7 +29,7 @@ static void make(modal_speeds *s) {
       if (a[1] + b[1] * speeds[i] * speeds[i] > a[2] + b[2] * speeds[i] * speeds[i])
         mode = t == 1 ? 2 : t == 2 ? 1 : t;
       s->mode[i * MODES + t] = mode;
-      s->mac[i * MODES + t]  = .97;
+      s->mac[i * MODES + t]  = 0.97;
       value[i][mode]         = sqrt(a[t] + b[t] * speeds[i] * speeds[i]);
     }
   }
@@ -103,7 +103,7 @@ static void lost_tracks_are_left_out(void **state) {
   post_buffer    text = {0};
   int            n;
   make(&s);
-  for (int i = 1; i < SPEEDS; i++) s.mac[i * MODES] = .3;
+  for (int i = 1; i < SPEEDS; i++) s.mac[i * MODES] = 0.3;
   const post_campbell campbell = {&s, 2};
   assert_ok(post_campbell_crossings(&campbell, &n, &found));
   for (int i = 0; i < n; i++) assert_int_not_equal(found[i].track, 0);

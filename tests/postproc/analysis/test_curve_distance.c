@@ -9,7 +9,7 @@ enum { N = 60 };
 static void folded(int n, double *f, double *a) {
   for (int i = 0; i < n; i++) {
     double s = (double)i / (n - 1) * 3;
-    f[i]     = 130 + 17 * (s + .9 * sin(2.1 * s));
+    f[i]     = 130 + 17 * (s + 0.9 * sin(2.1 * s));
     a[i]     = 3e-4 * (1.3 + sin(1.7 * s));
   }
 }
@@ -18,7 +18,7 @@ static void of_points(void **state) {
   (void)state;
   double a[2] = {100, 2e-3}, b[2] = {100.7, 2.013e-3};
   assert_near(post_point_distance(a, b, 2e-3), log(1.007), 1e-15);
-  assert_near(post_point_distance(b, a, 5e-4), .026, 1e-13);
+  assert_near(post_point_distance(b, a, 5e-4), 0.026, 1e-13);
 }
 
 /* The nearest place among a hundred thousand on the polyline. */
@@ -40,13 +40,13 @@ static void of_a_point_from_a_folded_line(void **state) {
   post_polyline line = {N, f, a};
   folded(N, f, a);
   for (int i = 0; i < 40; i++) {
-    double point[2] = {120 + 1.7 * i, 3e-4 * (.2 + .061 * ((i * 7) % 40))};
+    double point[2] = {120 + 1.7 * i, 3e-4 * (0.2 + 0.061 * ((i * 7) % 40))};
     int    near     = -1;
     double d        = post_curve_distance(point, &line, 7e-4, &near);
     assert_near(d, brute(point, &line, 7e-4), 2e-5);
     double at[2] = {f[near], a[near]}; /* an end of the nearest segment */
     assert_true(post_point_distance(point, at, 7e-4) >= d - 1e-12);
-    assert_true(post_point_distance(point, at, 7e-4) <= d + .04);
+    assert_true(post_point_distance(point, at, 7e-4) <= d + 0.04);
   }
   for (int i = 0; i < N; i++) {
     double point[2] = {f[i], a[i]};
@@ -56,11 +56,11 @@ static void of_a_point_from_a_folded_line(void **state) {
 
 static void of_degenerate_lines(void **state) {
   (void)state;
-  double        f[3] = {100, 100, 100}, a[3] = {1, 1, 1}, point[2] = {100 * exp(.2), 1.1};
+  double        f[3] = {100, 100, 100}, a[3] = {1, 1, 1}, point[2] = {100 * exp(0.2), 1.1};
   post_polyline none = {0, f, a}, one = {1, f, a}, same = {3, f, a};
   assert_true(isinf(post_curve_distance(point, &none, 1, NULL)));
-  assert_near(post_curve_distance(point, &one, 1, NULL), .2, 1e-14);
-  assert_near(post_curve_distance(point, &same, 1, NULL), .2, 1e-14);
+  assert_near(post_curve_distance(point, &one, 1, NULL), 0.2, 1e-14);
+  assert_near(post_curve_distance(point, &same, 1, NULL), 0.2, 1e-14);
   assert_near(post_chord_deviation(&same, 0, 1), 0, 0);
 }
 

@@ -177,7 +177,7 @@ static void closed(void **state) {
   assert_ok(post_find_peaks(41, f, a, &peaks, &n));
   for (int i = 0; i < n; i++) assert_false(peaks[i].edge);
   free(peaks);
-  f[40] += .1; /* open */
+  f[40] += 0.1; /* open */
   assert_ok(post_find_peaks(41, f, a, &peaks, &n));
   assert_int_equal(n, 1);
   assert_true(peaks[0].edge);
@@ -235,7 +235,7 @@ static void ripples_are_no_folds(void **state) {
  * edge, and there is no fold where it turns in the points only. */
 static void left_the_range(void **state) {
   (void)state;
-  double     f[] = {100, 104, 108, 108, 103, 101, 105, 108}, a[] = {1, 2, 4, 3, 2, 1, .5, .2};
+  double     f[] = {100, 104, 108, 108, 103, 101, 105, 108}, a[] = {1, 2, 4, 3, 2, 1, 0.5, 0.2};
   int        special[8] = {0, 0, 0, 0, 0, 1, 0, 0}, n;
   post_fold *folds;
   post_peak *peaks;
@@ -267,7 +267,7 @@ static void plateaus(void **state) {
     int        n;
     assert_ok(post_find_peaks(5, x, curve[i], &peaks, &n));
     assert_int_equal(n, 1);
-    assert_near(peaks[0].at, at[i], i == 2 ? .5 : 0);
+    assert_near(peaks[0].at, at[i], i == 2 ? 0.5 : 0);
     assert_int_equal(peaks[0].edge, i < 2);
     assert_int_equal(peaks[0].level, i == 0);
     free(peaks);

@@ -174,7 +174,7 @@ static void modal(void **state) {
 
 static void write_phases(hid_t file, int n, int ranks) {
   static const char *const name[]    = {"mesh", "factor"};
-  static const double      seconds[] = {.125, 2.5}, cpu[] = {.25, 4.75}, memory[] = {8e7, 3.21e9};
+  static const double      seconds[] = {0.125, 2.5}, cpu[] = {0.25, 4.75}, memory[] = {8e7, 3.21e9};
   static const double      most[] = {5e7, 1.7e9};
   const h5_shape           shape  = H5_SHAPE((hsize_t)n);
   assert_ok(h5_write_strings(file, "/phases/name", 2, name, "phase"));

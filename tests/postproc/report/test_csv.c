@@ -90,7 +90,7 @@ static void whole(void **state) {
   r->branch[3].special[5]      = MHB_NEIMARK_SACKER;
   r->branch[3].judged[5]       = MHB_BY_MULTIPLIERS;
   r->branch[3].loss[5]         = MHB_LOSS_NEIMARK_SACKER;
-  r->branch[3].multipliers[10] = CMPLX(.3, 1.4);
+  r->branch[3].multipliers[10] = CMPLX(0.3, 1.4);
   post_csv(r, &text);
   const char *at = record(text.text, names, name, &n);
   assert_int_equal(n, 4 + 2 * 11 + 15 + 13);
@@ -119,7 +119,7 @@ static void whole(void **state) {
       assert_string_equal(cell[column(name, n, "loss")], turn ? "Neimark-Sacker" : "");
       if (turn) {
         assert_string_equal(cell[column(name, n, "special")], "Neimark-Sacker");
-        assert_near(value(cell[column(name, n, "largest_multiplier")]), hypot(.3, 1.4), 1e-11);
+        assert_near(value(cell[column(name, n, "largest_multiplier")]), hypot(0.3, 1.4), 1e-11);
       } else {
         assert_string_equal(cell[column(name, n, "largest_multiplier")], "");
       }

@@ -415,7 +415,7 @@ static void names_of_limits(void **state) {
       study->tracking.open.at  = range[0] + (range[1] - range[0]) * i / 40;
       study->tracking.stuck.at = range[0] + (range[1] - range[0]) * (j < 39 ? i + j - 20 : i) / 40;
       study->tracking.stuck.at = fmin(range[1], fmax(range[0], study->tracking.stuck.at));
-      study->tracking.open.amplitude = study->tracking.stuck.amplitude = .9 * study->largest;
+      study->tracking.open.amplitude = study->tracking.stuck.amplitude = 0.9 * study->largest;
       post_picture(study, "x", &svg);
       place_of(svg.text, "open", open);
       place_of(svg.text, "stuck", stuck);
