@@ -6,8 +6,9 @@ double post_point_distance(const double one[2], const double other[2], double un
   return fmax(fabs(log(one[0] / other[0])), fabs(one[1] - other[1]) / unit);
 }
 
-/* Of the origin from (x, y) + t (dx, dy), t in [0, 1], in the maximum norm. It is convex and piecewise linear in t: least where one
- * part vanishes, where both are equal, or at an end. */
+/* Maximum-norm distance of the origin from the segment (x, y) + t (dx, dy), t in [0, 1]. It is
+ * convex and piecewise linear in t: its minimum is at an end, or where a coordinate vanishes, or
+ * where both have equal magnitude. */
 static double from_segment(double x, double y, double dx, double dy, double *at) {
   double t[6]  = {0, 1, -x / dx, -y / dy, (y - x) / (dx - dy), -(x + y) / (dx + dy)};
   double least = INFINITY;
@@ -37,8 +38,8 @@ double post_curve_distance(const double point[2], const post_polyline *line, dou
   return least;
 }
 
-/* Deviation at the middle of [a, b] of the parabola through a, b and c from the chord, per coordinate, by arclength s:
- * (s_b - s_a)^2/4 times the second divided difference. */
+/* Deviation from the chord, at the middle of [a, b], of the parabola through a, b and c. Per
+ * coordinate it is (s_b - s_a)^2/4 times the second divided difference over arclength s. */
 static double bulge(const double a[2], const double b[2], const double c[2]) {
   double ab = hypot(b[0] - a[0], b[1] - a[1]), bc = hypot(c[0] - b[0], c[1] - b[1]), most = 0;
   if (!(ab > 0 && bc > 0)) return 0;

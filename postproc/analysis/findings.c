@@ -21,7 +21,7 @@ static void put_figure(post_buffer *out, const char *label, const char *value, c
            value, note);
 }
 
-/* "116.06 Hz", "μ = 0.3"; "every μ" where it does not matter. */
+/* "116.06 Hz", "μ = 0.3"; "every μ" if the value is constant. */
 static char *place(const post_analysis *analysis, const post_track_point *p, char out[POST_PLACE]) {
   if (!p->level)
     return post_abscissa_place(&analysis->abscissa, p->at, post_at_one_frequency(analysis) ? 4 : 5,
@@ -30,7 +30,7 @@ static char *place(const post_analysis *analysis, const post_track_point *p, cha
   return out;
 }
 
-/* The largest value is no peak, but where the range ends. */
+/* True if the largest value is at the end of the range and thus no peak. */
 static bool at_end(const post_track_point *p) {
   return p->edge && !p->level;
 }
@@ -44,12 +44,12 @@ static void put_peak_figure(const post_analysis *analysis, post_buffer *out, con
   put_figure(out, label, post_measure(a, p->amplitude, post_unit_length(p->amplitude), 3), note);
 }
 
-/* The lower of the two limits' peaks; NAN if neither was computed. */
+/* Lower peak of the two linear limits; NAN if neither was computed. */
 static double lower_limit(const post_tracking *t) {
   return fmin(t->open.amplitude, t->stuck.amplitude);
 }
 
-/* Of all nonlinear curves: where the amplitude is largest, or least (valleys) at points where a machine can stay. */
+/* Largest amplitude of all nonlinear curves, or (valleys) the least one at stable points. */
 static post_track_point extreme(const post_analysis *analysis, bool valleys) {
   post_track_point best = {NAN, NAN, NAN, -1, -1, false, false, true};
   for (int b = 0; b < analysis->response->n_branches; b++) {
@@ -158,7 +158,8 @@ static void put_optimum(const post_analysis *analysis, post_buffer *out) {
   post_put(out, "</li>\n");
 }
 
-/* Where the amplitude is least and where largest; not for the excitation's level, on which it hangs as it must. */
+/* Least and largest amplitude. Omitted for the excitation level, with which amplitudes rise
+ * trivially. */
 static void put_extremes(const post_analysis *analysis, post_buffer *out) {
   const post_tracking *t      = &analysis->tracking;
   post_track_point     lowest = extreme(analysis, true), highest = extreme(analysis, false);
@@ -212,9 +213,10 @@ static void put_shift(const post_analysis *analysis, post_buffer *out) {
   }
 }
 
-/* Where a curve turns: at a fold, or at an end of the range beyond which it folds. Walks along it. */
+/* Walk along the turning points of a curve: folds, and ends of the range beyond which the curve
+ * folds. */
 typedef struct {
-  int fold, point, outside; /* the next ones; times it was outside so far */
+  int fold, point, outside; /* next fold and point; number of turns outside the range */
 } walk;
 
 static bool next_turn(const post_analysis *analysis, int b, walk *w, double *at) {
@@ -235,7 +237,8 @@ static bool next_turn(const post_analysis *analysis, int b, walk *w, double *at)
   }
 }
 
-/* The next two turns and what lies between them; false if there are no more. *visible: wide enough for a jump to be seen (20 ppm). */
+/* Interval between the next two turns; false if there are no more. *visible: wide enough for a
+ * visible jump (20 ppm). */
 static bool next_span(const post_analysis *analysis, int b, walk *w, double span[2],
                       bool *visible) {
   double one, two;
@@ -247,8 +250,8 @@ static bool next_span(const post_analysis *analysis, int b, walk *w, double span
   return true;
 }
 
-/* " (103.81 to 103.96, 212.2 to 213.7 Hz)" of a group's curves; returns how many (out NULL: only counts). *outside counts the turns
- * that lie outside the range. */
+/* Write " (103.81 to 103.96, 212.2 to 213.7 Hz)" for the curves of a group; returns the number (out
+ * NULL: count only). *outside: incremented by the turns outside the range. */
 static int put_spans(const post_analysis *analysis, int g, post_buffer *out, int *outside) {
   const post_abscissa *x     = &analysis->abscissa;
   int                  spans = 0;
@@ -292,7 +295,7 @@ static void put_folds(const post_analysis *analysis, post_buffer *out) {
         "not hang together with them are found by <code>mhb.search</code> only.</li>\n");
 }
 
-/* What the multipliers told beyond the folds. */
+/* Instabilities other than folds, from the multipliers. */
 static void put_multipliers(const post_analysis *analysis, post_buffer *out) {
   int judged = 0, total = 0, curves = 0, lost[MHB_N_LOSSES] = {0};
   for (int b = 0; b < analysis->response->n_branches; b++) {
@@ -382,7 +385,7 @@ static void put_incomplete(const post_analysis *analysis, post_buffer *out) {
   }
 }
 
-/* Curves that a sweep from the end of the range does not come to. */
+/* Curves that a sweep from the end of the range does not reach. */
 static void put_further(const post_analysis *analysis, post_buffer *out) {
   int n = 0;
   for (int b = 0; b < analysis->response->n_branches; b++) {

@@ -52,7 +52,7 @@ void post_branch_note(const mhb_response *response, const mhb_branch *branch, ch
   snprintf(out + used, (size_t)(64 - used), "%s", origin[branch->origin]);
 }
 
-/* Points by integration belong to the curves of their preload. */
+/* Points by time integration belong to the curves of their preload. */
 static mhb_branch_kind group_kind(const mhb_branch *branch) {
   return branch->kind == MHB_BRANCH_INTEGRATION ? MHB_BRANCH_NONLINEAR : branch->kind;
 }
@@ -69,7 +69,7 @@ char *post_frequency_text(const post_analysis *analysis, char out[POST_PLACE]) {
   return out;
 }
 
-/* The one preload of a branch, NAN if it varies, is what is followed, or there is no point. */
+/* Preload of a branch; NAN if it varies, is the followed parameter, or there is no point. */
 static double branch_n0(const mhb_response *response, const mhb_branch *branch) {
   if (response->parameter == MHB_IN_N0) return NAN;
   if (branch->n_points == 0 || group_kind(branch) != MHB_BRANCH_NONLINEAR) return NAN;
@@ -85,7 +85,7 @@ static bool same_group(const post_group *a, const post_group *b) {
   return fabs(a->n0 - b->n0) <= 1e-9 * fmax(fabs(a->n0), fabs(b->n0));
 }
 
-/* Nonlinear with known n0 ascending, nonlinear varying, open, stuck. */
+/* Order: nonlinear by ascending n0, nonlinear with varying n0, open, stuck. */
 static int order_groups(const void *left, const void *right) {
   const post_group *a = left, *b = right;
   if (a->kind != b->kind) return (int)a->kind - (int)b->kind;
@@ -109,7 +109,7 @@ static void make_groups(post_analysis *analysis) {
                            -1};
       int        at     = find_group(analysis, &wanted);
       if (at < 0) analysis->group[at = analysis->n_groups++] = wanted;
-      analysis->curve[b].group = at; /* right in the second pass, when the groups are sorted */
+      analysis->curve[b].group = at; /* final in the second pass, after sorting */
     }
     if (pass == 0)
       qsort(analysis->group, (size_t)analysis->n_groups, sizeof *analysis->group, order_groups);
@@ -166,8 +166,8 @@ static shb_status track_group(const post_analysis *analysis, int group, double *
   return SHB_OK;
 }
 
-/* Vertex of log amplitude over n0 (or log n0) through best and its neighbours. The largest value at an edge of the range
- * (any_edge: of a parameter other than the frequency) need not be less than a peak. */
+/* Vertex of log amplitude over n0 (or log n0) through best and its neighbours. any_edge: a largest
+ * value at an edge of the range counts (parameter other than the frequency). */
 static void find_optimum(bool any_edge, post_tracking *t) {
   t->best       = -1;
   t->bracket[0] = t->bracket[1] = t->optimum_n0 = t->optimum_amplitude = NAN;
@@ -225,7 +225,7 @@ void post_tracking_free(post_tracking *tracking) {
   *tracking = (post_tracking){0};
 }
 
-/* Peaks of the reciprocal. */
+/* Minima: peaks of the reciprocal amplitude. */
 static shb_status find_valleys(int n, const double *x, post_curve *c) {
   const double *amplitude  = c->amplitude;
   double       *reciprocal = malloc((size_t)(n > 0 ? n : 1) * sizeof *reciprocal);

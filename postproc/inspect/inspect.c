@@ -17,7 +17,7 @@
 #include "postproc/inspect/mode_table.h"
 #include "postproc/inspect/phase_table.h"
 
-/* ---------------------------------------------------------------- in a sentence */
+/* ---------------------------------------------------------------- summary */
 
 static void put_names(post_buffer *out, int n, char *const *name) {
   if (n == 0) {
@@ -36,7 +36,7 @@ static void put_count(post_buffer *out, int n, const char *noun) {
   post_put(out, "%d %s%s", n, noun, n == 1 ? "" : "s");
 }
 
-/* " (2 shroud, 1 snubber)"; nothing for one interface. */
+/* " (2 shroud, 1 snubber)"; nothing for a single interface. */
 static void put_interfaces(post_buffer *out, int n_pairs, const int *which, int n,
                            char *const *name) {
   for (int i = 0; i < n; i++) {
@@ -46,7 +46,7 @@ static void put_interfaces(post_buffer *out, int n_pairs, const int *which, int 
   }
 }
 
-/* "lo … hi unit", or one value. */
+/* "lo … hi unit", or a single value. */
 static void put_span(post_buffer *out, double lo, double hi, const char *unit) {
   char a[POST_NUMBER], b[POST_NUMBER];
   if (lo == hi)
@@ -55,7 +55,7 @@ static void put_span(post_buffer *out, double lo, double hi, const char *unit) {
     post_put(out, "%s … %s %s", post_plain(a, lo, 6), post_plain(b, hi, 6), unit);
 }
 
-/* Files of earlier versions hold the inertia of the contact alone. */
+/* Earlier versions wrote the inertia of the contact only. */
 static const char *inertia_of(const modal_model *m) {
   bool load   = m->load_inertia || !m->load_residual;
   bool probes = m->n_probes == 0 || !m->probe_contact_residual ||
@@ -177,7 +177,7 @@ static int count_lines(const char *text) {
   return n;
 }
 
-/* Indented. */
+/* Write the text indented. */
 static void put_quoted(const char *text, post_buffer *out) {
   while (*text) {
     char   line[1024];
@@ -250,7 +250,7 @@ static shb_status inspect_open(hid_t file, const char *path, post_tree_style sty
   post_origin_free(&source);
   post_put(out, "\n");
   char *message =
-      verdict != SHB_OK ? strdup(shb_message()) : NULL; /* the tree may record another */
+      verdict != SHB_OK ? strdup(shb_message()) : NULL; /* the tree may record another message */
   shb_status status = post_tree(file, style, out);
   if (status == SHB_OK && verdict != SHB_OK)
     status = shb_fail(verdict, __FILE__, __LINE__, "%s", message ? message : "not usable");

@@ -15,7 +15,7 @@ typedef struct {
   unsigned long long finite, other;
 } extent;
 
-/* The names of the two doubles of a complex compound, as {r, i} or {real, imag}; false if it is not one. */
+/* Member names of a complex compound, {r, i} or {real, imag}; false if the type is none. */
 static bool complex_members(hid_t type, char *name[2]) {
   if (H5Tget_class(type) != H5T_COMPOUND || H5Tget_nmembers(type) != 2) return false;
   if (H5Tget_member_class(type, 0) != H5T_FLOAT || H5Tget_member_class(type, 1) != H5T_FLOAT)
@@ -88,7 +88,7 @@ char *post_type_name(hid_t type, char out[POST_VALUE_RANGE]) {
   return out;
 }
 
-/* Memory type of one or two doubles an element for what can be read as numbers; < 0 if it cannot. */
+/* Memory type of an element that can be read as one or two doubles; < 0 if it cannot. */
 static hid_t number_type(hid_t type, int *parts) {
   H5T_class_t kind = H5Tget_class(type);
   char       *name[2];
@@ -117,7 +117,8 @@ static void widen(extent *e, const double *values, size_t n, int parts) {
   }
 }
 
-/* Size of a piece: whole trailing dimensions as far as they fit, part of the next, one of the rest. */
+/* Size of a piece: as many whole trailing dimensions as fit, a part of the next, one of the
+ * rest. */
 static void piece_of(int rank, const hsize_t *dim, hsize_t *piece) {
   hsize_t room = PIECE;
   for (int d = rank - 1; d >= 0; d--) {

@@ -10,14 +10,14 @@
 
 enum { SHOWN_HARMONICS = 8 };
 
-/* "tip motion, first harmonic, µm" */
+/* Label such as "tip motion, first harmonic, µm". */
 static void amplitude_label(const post_analysis *analysis, const char *unit, char out[256]) {
   char place[128];
   post_place_name(analysis->response, analysis->primary, place);
   snprintf(out, 256, "%s %s, first harmonic, %s", place, post_axis_name(analysis->primary), unit);
 }
 
-/* Least and greatest of the groups' highest peaks. */
+/* Range of the groups' highest peaks. */
 static void peak_range(const post_analysis *analysis, double range[2]) {
   const post_tracking *t = &analysis->tracking;
   range[0]               = INFINITY;
@@ -32,7 +32,7 @@ static void peak_range(const post_analysis *analysis, double range[2]) {
   }
 }
 
-/* Least and greatest amplitude of all nonlinear points. */
+/* Range of amplitudes over all nonlinear points. */
 static void whole_range(const post_analysis *analysis, double range[2]) {
   range[0] = INFINITY;
   range[1] = 0;
@@ -45,7 +45,7 @@ static void whole_range(const post_analysis *analysis, double range[2]) {
     }
 }
 
-/* The level of the excitation: as its axis, so that a linear response is a straight line. */
+/* The excitation level has the scale of its axis: a linear response is then a straight line. */
 bool post_amplitude_is_log(const post_analysis *analysis) {
   double range[2];
   if (analysis->abscissa.parameter == MHB_IN_SCALE) return analysis->abscissa.log;
@@ -71,7 +71,7 @@ static plot_axis amplitude_axis(const post_analysis *analysis, double unit, cons
       fmax(least / 1.2, 1e-4 * analysis->largest), 1.4 * analysis->largest, true, 0, unit, label};
 }
 
-static void group_classes(const post_group *group, char out[40]) {
+void post_group_class(const post_group *group, char out[POST_CLASS]) {
   if (group->kind == MHB_BRANCH_OPEN)
     strcpy(out, "limit open");
   else if (group->kind == MHB_BRANCH_STUCK)
@@ -79,14 +79,14 @@ static void group_classes(const post_group *group, char out[40]) {
   else if (group->rank < 0)
     strcpy(out, "varying");
   else
-    snprintf(out, 40, "c%d", group->rank);
+    snprintf(out, POST_CLASS, "c%d", group->rank);
 }
 
-/* Points by integration: full dots, rings where the motion does not repeat itself. */
+/* Points by time integration: dots, or rings where the motion is not periodic. */
 static void draw_points(const post_analysis *analysis, const post_plot *plot, int b) {
   const mhb_branch *branch = &analysis->response->branch[b];
-  char              group[40], classes[64];
-  group_classes(&analysis->group[analysis->curve[b].group], group);
+  char              group[POST_CLASS], classes[64];
+  post_group_class(&analysis->group[analysis->curve[b].group], group);
   for (int i = 0; i < branch->n_points; i++) {
     snprintf(classes, sizeof classes, "integration %s%s", branch->multiple[i] ? "" : "aperiodic ",
              group);
@@ -95,14 +95,14 @@ static void draw_points(const post_analysis *analysis, const post_plot *plot, in
   }
 }
 
-/* One branch: a piece that touches an unstable point is dotted; folds are small circles, flips and Neimark-Sacker
- * points full ones. */
+/* Draw one branch. Pieces next to an unstable point are dotted. Folds are small circles; flips and
+ * Neimark-Sacker points are dots. */
 static void draw_branch(const post_analysis *analysis, const post_plot *plot, int b) {
   const mhb_branch *branch = &analysis->response->branch[b];
   const post_curve *c      = &analysis->curve[b];
   const double     *x      = post_abscissa_values(analysis->response, branch);
   int               n      = branch->n_points;
-  char              group[40], classes[64];
+  char              group[POST_CLASS], classes[64];
   bool             *stable = malloc((size_t)(n > 0 ? n : 1) * 2 * sizeof *stable);
   if (!stable) {
     plot->out->failed = true;
@@ -114,7 +114,7 @@ static void draw_branch(const post_analysis *analysis, const post_plot *plot, in
     stable[i]   = !unstable[i];
     if (post_left_range(n, x, c->amplitude, i - 1)) stable[i] = unstable[i] = false;
   }
-  group_classes(&analysis->group[c->group], group);
+  post_group_class(&analysis->group[c->group], group);
   snprintf(classes, sizeof classes, "line %s", group);
   plot_line(plot, classes, n, x, c->amplitude, stable);
   snprintf(classes, sizeof classes, "line unstable %s", group);
@@ -131,9 +131,9 @@ static void draw_branch(const post_analysis *analysis, const post_plot *plot, in
       plot_dot(plot, classes, x[i], c->amplitude[i], 2.6);
 }
 
-/* Names of the limits above their peaks: within the frame, and moved aside where they would cover each other. */
+/* Label the limits above their peaks, inside the frame, and apart from each other. */
 static void name_limits(const post_analysis *analysis, const post_plot *plot) {
-  enum { NAME = 44, ABOVE = 7 }; /* a name's room, px; what it is lifted by */
+  enum { NAME = 44, ABOVE = 7 }; /* width of a label and its height above the peak, px */
   const post_track_point *limit[2] = {&analysis->tracking.open, &analysis->tracking.stuck};
   const double           *range    = analysis->abscissa.range;
   double                  peak[2], centre[2];
@@ -157,7 +157,8 @@ static void name_limits(const post_analysis *analysis, const post_plot *plot) {
 }
 
 static void draw_curves(const post_analysis *analysis, const post_plot *plot) {
-  for (int pass = 0; pass < 2; pass++) /* limits below, points by integration on top */
+  /* first the limits, then nonlinear curves, last points by time integration */
+  for (int pass = 0; pass < 2; pass++)
     for (int b = 0; b < analysis->response->n_branches; b++) {
       mhb_branch_kind kind = analysis->response->branch[b].kind;
       if (kind != MHB_BRANCH_INTEGRATION && (kind == MHB_BRANCH_NONLINEAR) == (pass == 1))
@@ -212,7 +213,8 @@ int post_chosen_branch(const post_analysis *analysis) {
   return -1;
 }
 
-/* Logarithmic over decades; with gaps (n0 < 0) among them, of both signs about the smallest. */
+/* Logarithmic axis over decades; with gaps (n0 < 0), an axis of both signs about the smallest
+ * value. */
 static plot_axis preload_axis(const post_tracking *t, double unit, const char *label) {
   double lo = t->point[0].n0, hi = t->point[t->n - 1].n0, least = INFINITY;
   for (int i = 0; i < t->n; i++)
@@ -222,14 +224,14 @@ static plot_axis preload_axis(const post_tracking *t, double unit, const char *l
   return plot_axis_around(lo, hi, wide, unit, label);
 }
 
-/* Room below for the words under the lowest peak. */
+/* Axis with space for the text below the lowest peak. */
 static plot_axis peak_axis(const double range[2], bool log_scale, double unit, const char *label) {
   if (!log_scale) return (plot_axis){0, 1.1 * range[1], false, 0, unit, label};
   double air = 1.15 * pow(range[1] / range[0], 0.14);
   return (plot_axis){range[0] / air, 1.2 * range[1], true, 0, unit, label};
 }
 
-/* The limits' level with its name at one end. */
+/* Horizontal line of a limit, with its label at one end. */
 static void draw_level(const post_plot *plot, double value, bool open) {
   if (!isfinite(value)) return;
   const double move[2] = {open ? 6 : -6, -5};
@@ -238,7 +240,7 @@ static void draw_level(const post_plot *plot, double value, bool open) {
             open ? "start" : "end", open ? "open" : "stuck");
 }
 
-/* All the lesser peaks of the preloads, faint; the highest ones joined. */
+/* Draw all lower peaks of the preloads, faint, and join the highest ones. */
 static void draw_track(const post_analysis *analysis, const post_plot *plot, bool place) {
   const post_tracking *t = &analysis->tracking;
   if (!place || !post_at_one_frequency(analysis)) {
@@ -312,7 +314,7 @@ void post_chart_tracking(const post_analysis *analysis, post_buffer *out) {
   plot_svg_close(out);
 }
 
-/* Names of the preloads under the bars, as many as fit. */
+/* Label the preloads under the bars, as many as fit. */
 static void draw_categories(const post_plot *plot, const post_tracking *t) {
   int every = 1 + (t->n - 1) / 12;
   for (int i = 0; i < t->n; i += every) {
@@ -345,33 +347,46 @@ static void draw_state_bars(const post_analysis *analysis, const post_plot *shar
   }
 }
 
-void post_chart_state(const post_analysis *analysis, post_buffer *out) {
-  const post_tracking *t = &analysis->tracking;
-  if (t->n < 1 || analysis->response->n_pairs < 1) return;
-  double most = 0;
-  for (int i = 0; i < t->n; i++)
-    most = fmax(
-        most, post_dissipation(analysis->response, &analysis->response->branch[t->point[i].branch],
-                               t->point[i].point));
+/* Two data areas, one above the other: shares of the period, and energy up to most (J). */
+typedef struct {
+  post_plot shares, energy;
+  char      id[2][16], label[64];
+} contact_panels;
+
+static void open_panels(contact_panels *p, const char *id, const char *title, const char *text,
+                        double most, post_buffer *out) {
   post_unit unit = post_unit_energy(most);
-  char      label[64];
-  snprintf(label, sizeof label, "dissipated a cycle, %s", unit.name);
-  plot_svg_open(
-      out, "state", 540, 470, "Contact at the highest peak, by preload",
-      "Above: share of the period stuck, slipping, open (mean of the contacts). Below: energy "
-      "dissipated a cycle (all contacts).");
-  post_plot shares = {
-      .out = out, .id = "state-s", .left = 60, .top = 34, .width = 464, .height = 180};
-  post_plot energy = {
-      .out = out, .id = "state-d", .left = 60, .top = 266, .width = 464, .height = 150};
-  shares.x = energy.x = (plot_axis){-0.6, t->n - 0.4, false, 0, 1, NULL};
-  shares.y            = (plot_axis){0, 1, false, 0, 0.01, "share of the period, %"};
-  energy.y      = (plot_axis){0, most > 0 ? 1.08 * most : unit.scale, false, 0, unit.scale, label};
-  shares.x.unit = energy.x.unit = 0; /* categories: no ticks */
-  plot_frame(&shares);
-  plot_frame(&energy);
-  draw_state_bars(analysis, &shares, &energy);
-  draw_categories(&energy, t);
+  snprintf(p->id[0], sizeof p->id[0], "%s-s", id);
+  snprintf(p->id[1], sizeof p->id[1], "%s-d", id);
+  snprintf(p->label, sizeof p->label, "dissipated a cycle, %s", unit.name);
+  p->shares =
+      (post_plot){.out = out, .id = p->id[0], .left = 60, .top = 34, .width = 464, .height = 180};
+  p->energy =
+      (post_plot){.out = out, .id = p->id[1], .left = 60, .top = 266, .width = 464, .height = 150};
+  p->energy.y = (plot_axis){0, most > 0 ? 1.08 * most : unit.scale, false, 0, unit.scale, p->label};
+  plot_svg_open(out, id, 540, 470, title, text);
+}
+
+void post_chart_state(const post_analysis *analysis, post_buffer *out) {
+  const post_tracking *t    = &analysis->tracking;
+  double               most = 0;
+  contact_panels       panels;
+  if (t->n < 1 || analysis->response->n_pairs < 1) return;
+  for (int i = 0; i < t->n; i++) {
+    const mhb_branch *branch = &analysis->response->branch[t->point[i].branch];
+    most = fmax(most, post_dissipation(analysis->response, branch, t->point[i].point));
+  }
+  open_panels(&panels, "state", "Contact at the highest peak, by preload",
+              "Above: share of the period stuck, slipping, open (mean of the contacts). Below: "
+              "energy dissipated a cycle (all contacts).",
+              most, out);
+  const plot_axis categories = {-0.6, t->n - 0.4, false, 0, 0, NULL}; /* unit 0: no ticks */
+  panels.shares.x = panels.energy.x = categories;
+  panels.shares.y                   = (plot_axis){0, 1, false, 0, 0.01, "share of the period, %"};
+  plot_frame(&panels.shares);
+  plot_frame(&panels.energy);
+  draw_state_bars(analysis, &panels.shares, &panels.energy);
+  draw_categories(&panels.energy, t);
   plot_svg_close(out);
 }
 
@@ -391,35 +406,27 @@ void post_chart_along(const post_analysis *analysis, int b, post_buffer *out) {
     y[3 * n + i] = post_dissipation(analysis->response, branch, i);
     most         = fmax(most, y[3 * n + i]);
   }
-  post_unit unit = post_unit_energy(most);
-  char      label[64];
-  snprintf(label, sizeof label, "dissipated a cycle, %s", unit.name);
-  char below[POST_LABEL], text[320];
+  char           below[POST_LABEL], text[320], group[POST_CLASS], line[64];
+  contact_panels panels;
   snprintf(text, sizeof text,
            "Above: share of the period stuck, slipping, open against %s. Below: energy "
            "dissipated a cycle.",
            analysis->abscissa.name);
-  plot_svg_open(out, "along", 540, 470, "Contact along one curve", text);
-  post_plot shares = {
-      .out = out, .id = "along-s", .left = 60, .top = 34, .width = 464, .height = 180};
-  post_plot energy = {
-      .out = out, .id = "along-d", .left = 60, .top = 266, .width = 464, .height = 150};
-  shares.x = energy.x = post_abscissa_axis(&analysis->abscissa, NULL);
-  energy.x.label      = post_abscissa_label(&analysis->abscissa, "", below);
-  shares.y            = (plot_axis){-0.02, 1.02, false, 0, 0.01, "share of the period, %"};
-  energy.y = (plot_axis){0, most > 0 ? 1.08 * most : unit.scale, false, 0, unit.scale, label};
-  plot_frame(&shares);
-  plot_frame(&energy);
-  for (int s = 0; s < 3; s++) plot_line(&shares, classes[s], n, x, y + s * n, NULL);
-  char group[40], line[64];
-  group_classes(&analysis->group[analysis->curve[b].group], group);
+  open_panels(&panels, "along", "Contact along one curve", text, most, out);
+  panels.shares.x = panels.energy.x = post_abscissa_axis(&analysis->abscissa, NULL);
+  panels.energy.x.label             = post_abscissa_label(&analysis->abscissa, "", below);
+  panels.shares.y = (plot_axis){-0.02, 1.02, false, 0, 0.01, "share of the period, %"};
+  plot_frame(&panels.shares);
+  plot_frame(&panels.energy);
+  for (int s = 0; s < 3; s++) plot_line(&panels.shares, classes[s], n, x, y + s * n, NULL);
+  post_group_class(&analysis->group[analysis->curve[b].group], group);
   snprintf(line, sizeof line, "line %s", group);
-  plot_line(&energy, line, n, x, y + 3 * n, NULL);
+  plot_line(&panels.energy, line, n, x, y + 3 * n, NULL);
   free(y);
   plot_svg_close(out);
 }
 
-/* "k = 1" at the end of each curve, y [m + 1][n_points]; one that would cover another moves down. */
+/* Label each curve of y [m + 1][n_points] at its end, "k = 1". Overlapping labels move down. */
 static void name_harmonics(const post_plot *plot, int m, const mhb_branch *branch, const double *x,
                            const double *y) {
   int    n = branch->n_points, used = 0;

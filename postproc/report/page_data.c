@@ -15,7 +15,7 @@ enum {
   MAX_HARMONICS = 16
 };
 
-/* One output, or (n > 0) the amplitudes of harmonics 0..n-1 of a place. */
+/* One output; if n > 0, the amplitudes of harmonics 0 .. n - 1 of a place. */
 typedef struct {
   post_output   output;
   post_quantity quantity;
@@ -27,14 +27,14 @@ typedef struct {
   column column[MAX_COLUMNS];
 } plan;
 
-/* The numbers of one branch: its kept points and their rows. */
+/* Numbers of one branch: the points written and their rows. */
 typedef struct {
   int    n;
   int   *kept; /* [n] */
   float *data; /* [rows][n] */
 } sheet;
 
-/* ---------------------------------------------------------------- what fits */
+/* ---------------------------------------------------------------- choice of columns */
 
 static void propose(plan *p, int rows, column wanted) {
   int needed = wanted.n > 0 ? wanted.n : 1;
@@ -86,9 +86,10 @@ static plan make_plan(const mhb_response *response, int n_points) {
   return p;
 }
 
-/* ---------------------------------------------------------------- which points */
+/* ---------------------------------------------------------------- choice of points */
 
-/* Ends, special points, turns of amplitude or abscissa, changes of stability, and every stride-th. */
+/* True for ends, special points, extrema of amplitude and abscissa, changes of stability, and every
+ * stride-th point. */
 static bool is_kept(const mhb_branch *branch, const double *x, const double *a, int i, int stride) {
   if (i % stride == 0 || i == branch->n_points - 1 || branch->special[i]) return true;
   bool top  = (a[i] - a[i - 1]) * (a[i + 1] - a[i]) <= 0;
@@ -187,7 +188,7 @@ static shb_status put_folds(const post_analysis *analysis, double *const *values
   return SHB_OK;
 }
 
-/* The analysis of an output, and its row in every sheet. */
+/* Write the analysis of an output, and fill its row in every sheet. */
 static shb_status put_output(const post_analysis *analysis, const column *c, sheet *sheets,
                              post_buffer *out) {
   double **values;

@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "postproc/draw/colour.h"
 #include "postproc/draw/number_format.h"
@@ -26,11 +27,7 @@ static void put_style(const post_analysis *analysis, post_buffer *out) {
       ".varying{color:#0b6e75}.plain{color:#56606c}.mark{font-style:italic;paint-order:stroke;"
       "stroke:#fff;stroke-width:"
       "4px}");
-  for (int i = 0; i < analysis->n_ranks; i++) {
-    char colour[8];
-    post_colour(analysis->n_ranks > 1 ? i / (analysis->n_ranks - 1.0) : 0.5, false, colour);
-    post_put(out, ".c%d{color:%s}", i, colour);
-  }
+  post_put_ramp(analysis->n_ranks, false, out);
   post_put(out, "</style>\n");
 }
 
@@ -53,20 +50,16 @@ static void put_legend(const post_analysis *analysis, post_buffer *out) {
   }
   for (int g = 0; g < analysis->n_groups; g++) {
     const post_group *group = &analysis->group[g];
-    char              number[POST_NUMBER], classes[40];
+    char              number[POST_NUMBER], text[POST_NUMBER + 8], classes[POST_CLASS];
     if (group->empty) continue;
-    if (group->rank >= 0) {
-      snprintf(classes, sizeof classes, "c%d", group->rank);
-      char text[POST_NUMBER + 8];
+    post_group_class(group, classes);
+    if (group->rank >= 0)
       snprintf(text, sizeof text, "%s\u00a0N", post_plain(number, group->n0, 5));
-      put_entry(out, y, classes, text);
-    } else if (group->kind == MHB_BRANCH_NONLINEAR) {
-      bool followed = analysis->abscissa.parameter == MHB_IN_N0;
-      put_entry(out, y, "varying", followed ? "n₀ varying" : "varying");
-    } else {
-      bool open = group->kind == MHB_BRANCH_OPEN;
-      put_entry(out, y, open ? "limit open" : "limit stuck", open ? "fully open" : "fully stuck");
-    }
+    else if (group->kind == MHB_BRANCH_NONLINEAR)
+      strcpy(text, analysis->abscissa.parameter == MHB_IN_N0 ? "n₀ varying" : "varying");
+    else
+      strcpy(text, group->kind == MHB_BRANCH_OPEN ? "fully open" : "fully stuck");
+    put_entry(out, y, classes, text);
     y += step;
   }
   if (unstable) put_entry(out, y, "unstable plain", "unstable");

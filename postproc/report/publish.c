@@ -18,7 +18,7 @@ typedef struct {
   post_buffer      html, csv, svg, diagram;
 } work;
 
-/* The analysis's complaint with the file's name before it. */
+/* Put the file's name before an error text of the analysis. */
 static shb_status make_analysis(const post_job *job, work *w) {
   shb_status status = post_analysis_create(w->response, &w->analysis);
   if (status != SHB_ERR_INPUT) return status;
@@ -95,7 +95,7 @@ shb_status post_publish(const post_job *job, shb_progress *progress, char **summ
   if (status == SHB_OK && summary) {
     post_buffer text = {0};
     post_summary(w.analysis, &text);
-    *summary = text.text; /* NULL when there is nothing to say */
+    *summary = text.text; /* NULL if the summary is empty */
   }
   shb_progress_clear(progress);
   post_analysis_destroy(w.analysis);

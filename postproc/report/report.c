@@ -17,15 +17,7 @@
 
 /* ---------------------------------------------------------------- head */
 
-static void put_ramp(const post_analysis *analysis, bool dark, post_buffer *out) {
-  for (int i = 0; i < analysis->n_ranks; i++) {
-    char colour[8];
-    post_colour(analysis->n_ranks > 1 ? i / (analysis->n_ranks - 1.0) : 0.5, dark, colour);
-    post_put(out, ".c%d{color:%s}", i, colour);
-  }
-}
-
-/* A script in a document that may not reach anything else: the policy forbids every load from elsewhere. */
+/* The content security policy forbids every load from elsewhere. */
 static void put_head(const post_analysis *analysis, const char *case_name, post_buffer *out) {
   post_put(out,
            "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
@@ -35,14 +27,14 @@ static void put_head(const post_analysis *analysis, const char *case_name, post_
   post_put_escaped(out, case_name);
   post_put(out, " · forced response</title>\n<style>\n");
   post_put_bytes(out, post_page_css, strlen(post_page_css));
-  put_ramp(analysis, false, out);
+  post_put_ramp(analysis->n_ranks, false, out);
   post_put(out, "\n@media screen and (prefers-color-scheme: dark){");
-  put_ramp(analysis, true, out);
+  post_put_ramp(analysis->n_ranks, true, out);
   post_put(out, "}\n%s%s</style>\n</head>\n", analysis->campbell ? post_campbell_css : "",
            analysis->convergence ? post_convergence_css : "");
 }
 
-/* Rounded to a thousandth, so that rounding errors of an angle read 0. */
+/* Angle in degrees, rounded to 0.001, so that rounding errors print as 0. */
 static double degrees(double angle) {
   return round(angle * 180e3 / M_PI) / 1e3;
 }
@@ -112,12 +104,9 @@ static void put_tools(post_buffer *out) {
 }
 
 static void put_key(const post_group *group, int index, post_buffer *out) {
-  char classes[80] = "varying", name[64];
+  char classes[POST_CLASS], name[64];
+  post_group_class(group, classes);
   post_group_name(group, name);
-  if (group->kind != MHB_BRANCH_NONLINEAR)
-    snprintf(classes, sizeof classes, "limit %s", name);
-  else if (group->rank >= 0)
-    snprintf(classes, sizeof classes, "c%d", group->rank);
   if (group->rank >= 0) {
     char n0[POST_NUMBER];
     snprintf(name, sizeof name, "%s\u00a0N", post_plain(n0, group->n0, 5));

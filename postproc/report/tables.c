@@ -7,7 +7,7 @@
 
 #include "postproc/draw/number_format.h"
 
-/* A verdict's bounds on the largest error estimate of a curve. */
+/* Bounds of the verdict on the largest error estimate of a curve. */
 static const double FINE = 1e-3, USABLE = 1e-2;
 
 /* First cell of a row: swatch and name of the branch's group. */
