@@ -18,7 +18,8 @@
 
 enum { BLADES = 23 };
 
-static const double size[3] = {0.04, 1, 0.12}, inner = 0.1, zeta = 0.003, two_pi = 6.283185307179586;
+static const double size[3] = {0.04, 1, 0.12}, inner = 0.1, zeta = 0.003,
+                    two_pi        = 6.283185307179586;
 static const modal_probe probe[2] = {{"tip", {0.04, 0.0, 0.22}}, {"middle", {0, 0.01, 0.16}}};
 
 static modal_settings default_settings(int points) {

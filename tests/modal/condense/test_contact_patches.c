@@ -130,7 +130,7 @@ static void angles_must_agree_with_the_faces(void **state) {
   (void)state;
   mesh_fe       mesh = make_sector(size, inner, BLADES, cells);
   modal_patches face = create(&mesh, false, 1);
-  const double  zero = 0.5 * degree, full = 359.5 * degree, wrong = 35 * degree, steep = -2 * degree;
+  const double zero = 0.5 * degree, full = 359.5 * degree, wrong = 35 * degree, steep = -2 * degree;
   check_below(face.psi, 1e-12, "psi");
   check_below(face.phi, 1e-12, "phi");
   assert_int_equal(modal_patches_check_angles(&face, NULL, NULL), SHB_OK);

@@ -23,8 +23,11 @@ static const double two_pi   = 6.28318530717958647692;
 static const char  *program;
 static char         folder[] = "/tmp/shroudhb-calculix-XXXXXX";
 
-static const fem_orthotropic crystal = {
-    {127e9, 141e9, 118e9}, {0.38, 0.31, 0.27}, {120e9, 97e9, 71e9}, {0.3, -0.8, 0.52}, {0.9, 0.2, -0.4}};
+static const fem_orthotropic crystal = {{127e9, 141e9, 118e9},
+                                        {0.38, 0.31, 0.27},
+                                        {120e9, 97e9, 71e9},
+                                        {0.3, -0.8, 0.52},
+                                        {0.9, 0.2, -0.4}};
 
 /* An element of CalculiX, and ours with the same rules. */
 typedef struct {

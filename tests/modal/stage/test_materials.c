@@ -18,7 +18,7 @@ enum { MODES = 8 };
 
 /* No lateral contraction: motion along the bar alone solves the equations of the solid. */
 static const fem_material parts[2] = {{.E = 2.1e11, .rho = 7850}, {.E = 0.7e11, .rho = 4430}};
-static const double       size[3] = {0.31, 0.1, 0.12}, share = 0.4; /* of the length, the first part */
+static const double size[3] = {0.31, 0.1, 0.12}, share = 0.4; /* of the length, the first part */
 
 /* Cells 5 n along the bar, so that the cut is between cells. */
 static mesh_fe make_bar(int n) {
