@@ -49,7 +49,7 @@ static void ranges(void **state) {
   } row[] = {{MHB_IN_N0, 10, 1000, true, "N"},       {MHB_IN_N0, 0, 1000, false, "N"},
              {MHB_IN_N0, -20e3, 100, false, "kN"},   {MHB_IN_N0, -5, -1, false, "N"},
              {MHB_IN_N0, 0, 0, false, "N"},          {MHB_IN_SCALE, -1, 1, false, ""},
-             {MHB_IN_SCALE, 0.5, 2, false, ""},       {MHB_IN_KU, 1e3, 2e9, true, "GN/m"},
+             {MHB_IN_SCALE, 0.5, 2, false, ""},      {MHB_IN_KU, 1e3, 2e9, true, "GN/m"},
              {MHB_IN_FREQUENCY, 1, 500, false, "Hz"}};
   for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
     mhb_response *r = response(row[i].parameter, false);

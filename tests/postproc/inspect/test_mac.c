@@ -112,7 +112,8 @@ static void modes_are_found_again(void **state) {
   assert_ok(compare(&b, &text));
   assert_has(text, "      1        107.5      2      214.455       +99.5   1.000\n");
   assert_has(text, "      2       210.25      1       109.65       -47.8   1.000\n");
-  assert_has(text, "      3          499      3       508.98          +2   0.848\n"); /* cos^2 0.4 */
+  assert_has(text,
+             "      3          499      3       508.98          +2   0.848\n"); /* cos^2 0.4 */
   assert_has(text, "      1  0.000 1.000 0.152\n");
   free(text);
 }
