@@ -1,4 +1,4 @@
-/* Missed modes are noticed and found: repeated ones, one hidden from the solver on purpose; the count is the inertia's. */
+/* The completeness check finds missed modes: repeated ones, and pairs hidden from the solver. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -29,13 +29,14 @@ static PetscInt block_size(const modal_eigen *eigen) {
   return size;
 }
 
-/* The body side by side with itself, copies of it that touch nowhere. */
+/* Several copies of the body side by side, without contact. */
 static mesh_fe repeat(const mesh_fe *one, int copies, double pitch) {
-  const int nodes = mesh_topology_of(one->kind)->nodes;
-  const int face  = mesh_topology_of(one->kind)->face_nodes;
-  const int root  = one->set[MESH_ROOT].n;
-  mesh_fe   all   = {
-          .kind = one->kind, .n_nodes = copies * one->n_nodes, .n_elements = copies * one->n_elements};
+  const int nodes          = mesh_topology_of(one->kind)->nodes;
+  const int face           = mesh_topology_of(one->kind)->face_nodes;
+  const int root           = one->set[MESH_ROOT].n;
+  mesh_fe   all            = {.kind = one->kind};
+  all.n_nodes              = copies * one->n_nodes;
+  all.n_elements           = copies * one->n_elements;
   all.coordinates          = malloc(3 * (size_t)all.n_nodes * sizeof *all.coordinates);
   all.node_tag             = calloc((size_t)all.n_nodes, sizeof *all.node_tag);
   all.connectivity         = malloc((size_t)(nodes * all.n_elements) * sizeof *all.connectivity);
@@ -54,8 +55,8 @@ static mesh_fe repeat(const mesh_fe *one, int copies, double pitch) {
   return all;
 }
 
-/* Bars that know nothing of each other have every frequency as often as there are bars; a block of four sees four of them, unless it
- * goes on until rounding brings the others. */
+/* Independent bars have every frequency as often as there are bars. A block of four columns finds
+ * four of them, until rounding errors bring in the others. */
 static void copies_are_found(void **state) {
   (void)state;
   enum { MODES = 12 };
@@ -76,7 +77,8 @@ static void copies_are_found(void **state) {
     print_message("%d copies: blocks of %d, checked by %s\n", copies[k], (int)block_size(&eigen),
                   eigen.check.method);
     assert_int_equal(eigen.check.count,
-                     (MODES - 1) / copies[k] * copies[k]); /* equals are not below */
+                     /* modes equal to the limit are not below it */
+                     (MODES - 1) / copies[k] * copies[k]);
     modal_eigen_destroy(&eigen);
     modal_eigen_destroy(&single);
     fem_system_destroy(&all);
@@ -86,7 +88,7 @@ static void copies_are_found(void **state) {
   mesh_fe_free(&bar);
 }
 
-/* A square bar's pairs, for a solver that sees one of each. */
+/* Pairs of a square bar, with blocks of one column: the solver finds one of each pair. */
 static void pairs_are_found(void **state) {
   (void)state;
   const double               size[3]  = {0.2, 0.02, 0.02};
@@ -116,7 +118,7 @@ static void pairs_are_found(void **state) {
   mesh_fe_free(&mesh);
 }
 
-/* Krylov-Schur keeps no basis to go by, and its modes are counted. */
+/* Krylov-Schur has no block basis: its modes are counted by inertia. */
 static void others_are_counted(void **state) {
   (void)state;
   const double         size[3]  = {0.2, 0.031, 0.011};

@@ -29,10 +29,11 @@ static void ratios(void **state) {
   assert_same(ratio(&each, 0, 700), 0.001);
   assert_same(ratio(&each, 1, 700), 0.004);
   assert_same(ratio(&each, 2, 700), 0.0025);
-  assert_same(ratio(&each, 17, 700), 0.0025); /* the last for those beyond */
+  assert_same(ratio(&each, 17, 700), 0.0025); /* further modes take the last ratio */
 }
 
-/* At resonance K (1 + j eta) loses pi eta K |q|^2 a cycle, the viscous damper 2 pi zeta K |q|^2. */
+/* At resonance K (1 + j eta) dissipates pi eta K |q|^2 per cycle, a viscous damper 2 pi zeta K
+ * |q|^2. */
 static void loss_factor(void **state) {
   (void)state;
   const modal_damping loss = {.kind = MODAL_DAMPING_LOSS, .loss = 0.006};

@@ -1,9 +1,11 @@
-/* Reproducible random numbers: the known sequence of splitmix64, and the moments of a uniform one. */
+/* Reproducible random numbers: the known sequence of splitmix64, and the moments of a uniform
+ * one. */
 #include "modal/common/random_vector.h"
 
 #include "tests/support/check.h"
 
-/* The first outputs of splitmix64 from state 0 (Steele, Lea, Flood 2014), top 53 bits in [-1, 1). */
+/* The first outputs of splitmix64 from state 0 (Steele, Lea, Flood 2014), top 53 bits in [-1,
+ * 1). */
 static void first_numbers_are_known(void **state) {
   (void)state;
   const uint64_t known[3] = {0xe220a8397b1dcdafu, 0x6e789e6aa1b965f4u, 0x06c45d188009454fu};

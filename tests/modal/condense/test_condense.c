@@ -1,4 +1,4 @@
-/* Condensed model against direct solutions of the whole body. */
+/* The condensed model against direct solutions of the whole body. */
 #include <lapacke.h>
 #include <math.h>
 #include <setjmp.h>
@@ -46,7 +46,7 @@ static modal_result solve(const mesh_fe *mesh, const modal_settings *settings) {
   return result;
 }
 
-/* The whole matrix, column by column. */
+/* The whole matrix as a dense array, by columns. */
 static double *dense_of(Mat A, int n) {
   double *full = malloc((size_t)n * (size_t)n * sizeof *full);
   Vec     unit, column;
@@ -67,13 +67,13 @@ static double *dense_of(Mat A, int n) {
   return full;
 }
 
-/* Everything of the body as dense arrays: the independent witness. Column-major. */
+/* All matrices of the body as dense arrays for the reference solution. Column-major. */
 typedef struct {
   int     n, n_dofs; /* order, condensed dofs (contact, probes, load) */
   double *K, *M, *C, *B;
 } body;
 
-/* C = sum 2 zeta w_i M phi phi^T M: each retained mode damped, the rest not. */
+/* C = sum 2 zeta w_i M phi phi^T M: kept modes are damped, the others are not. */
 static double *damping_matrix(const modal_eigen *eigen, int n) {
   double            *C = calloc((size_t)n * (size_t)n, sizeof *C);
   const PetscScalar *m_phi;
@@ -87,7 +87,7 @@ static double *damping_matrix(const modal_eigen *eigen, int n) {
   return C;
 }
 
-/* b_c written out from the interface, the probes and the load's own nodal forces. */
+/* b_c from the patches, the probes and the load's own nodal forces. */
 static double *condensed_dofs(const mesh_fe *mesh, const modal_settings *settings,
                               const modal_result *result, int n, int n_dofs) {
   double              *B    = calloc((size_t)n * (size_t)n_dofs, sizeof *B);
@@ -204,7 +204,8 @@ static void receptance_matches_a_direct_solve(void **state) {
   check_receptance(0);
 }
 
-/* At speed every part uses the tangent at the equilibrium: K of the whole body is that one. */
+/* At speed every part uses the tangent stiffness of the equilibrium, which is K of the whole
+ * body. */
 static void receptance_at_speed_matches_a_direct_solve(void **state) {
   (void)state;
   check_receptance(6000);
@@ -226,7 +227,7 @@ static double residual_shape_at(const modal_model *model, int dof, int i) {
   return dof < NC ? model->residual_shape[dof * r + i] : model->residual_probe[(dof - NC) * r + i];
 }
 
-/* What the residual modes add to the three terms. */
+/* Contribution of the residual modes beyond the three terms. */
 static double by_modes(const modal_model *model, double w2, int to, int by) {
   double sum = 0;
   for (int i = 0; i < model->n_residual; i++) {
@@ -237,8 +238,8 @@ static double by_modes(const modal_model *model, double w2, int to, int by) {
   return sum;
 }
 
-/* What the modes left out answer at `to` (contact, probe) when `by` (contact, load) is pushed; terms: 1 static, 2 inertia,
- * 3 the term of w^4, 4 the residual modes. */
+/* Contribution of the modes left out at dof to (contact, probe) under a force at by (contact,
+ * load). terms: 1 static, 2 with inertia, 3 with the term of w^4, 4 with residual modes. */
 static double left_out(const modal_model *model, double omega, int to, int by, int terms) {
   const int q    = to - NC;
   double    x[3] = {0, 0, 0}, w2 = omega * omega;
@@ -263,7 +264,7 @@ static double left_out(const modal_model *model, double omega, int to, int by, i
          (terms > 3 ? by_modes(model, w2, to, by) : 0);
 }
 
-/* Ranges of dofs [first, end) that are pushed and looked at. */
+/* Ranges of loaded and of observed dofs, [first, end). */
 typedef struct {
   const char *name;
   int         to, to_end, by, by_end;
@@ -274,7 +275,7 @@ static const way ways[4] = {{"contact to contact", 0, NC, 0, NC},
                             {"contact to probe", NC, LOAD, 0, NC},
                             {"load to probe", NC, LOAD, LOAD, LOAD + 1}};
 
-/* Frobenius distance of the model from the direct solution; length: of the latter. */
+/* Frobenius distance of the model from the direct solution; length: norm of the latter. */
 static double error_of(const modal_model *model, double omega, const way *w, int terms,
                        const double complex *exact, double *length) {
   double off = 0, norm = 0;
@@ -294,8 +295,9 @@ static double error_of(const modal_model *model, double omega, const way *w, int
   return sqrt(off);
 }
 
-/* The modes left out as a series in w^2: the first term that is not held gives the order of the error, 2 with the static
- * part alone, 4 with inertia, 6 with the third term, on every way from contact and load to contact and probes. */
+/* The modes left out form a series in w^2. The first missing term gives the order of the error in
+ * w: 2 with the static term, 4 with inertia, 6 with the third term. This holds from contact and
+ * load to contact and probes. */
 static void every_receptance_errs_by_the_first_term_left_out(void **state) {
   (void)state;
   const int      cells[3] = {2, 2, 4};
@@ -323,8 +325,9 @@ static void every_receptance_errs_by_the_first_term_left_out(void **state) {
   mesh_fe_free(&mesh);
 }
 
-/* With residual modes: at a third of the last mode kept 1e-10 from contact to contact and from load to contact, whose columns they are made of, and of
- * order 12 in omega, twice that of the three terms. The probes, which are not, have the order of the terms. */
+/* With residual modes, built from the contact and load columns: at a third of the last kept mode
+ * the contact receptances are accurate to 1e-10, with an error of order 12 in omega. That is twice
+ * the order of the three terms. The probes have the order of the terms. */
 static void residual_modes_double_the_order(void **state) {
   (void)state;
   const int           cells[3]   = {2, 2, 4};
@@ -356,7 +359,8 @@ static void residual_modes_double_the_order(void **state) {
   mesh_fe_free(&mesh);
 }
 
-/* More contact dofs than residual modes are made of: the three terms alone, and their tail says what they lack. */
+/* Above the limit of columns there are no residual modes, and the tail estimates the error of the
+ * terms. */
 static void many_contact_dofs_have_three_terms(void **state) {
   (void)state;
   const int      cells[3]   = {2, 3, 6};
@@ -389,7 +393,7 @@ static void many_contact_dofs_have_three_terms(void **state) {
   mesh_fe_free(&mesh);
 }
 
-/* Greatest error of a contact dof with itself, relative to the greatest such receptance. */
+/* Largest error of a contact dof with itself, relative to the largest such receptance. */
 static double worst_error(const double complex *model, const double complex *exact) {
   double off = 0, most = 0;
   for (int c = 0; c < NC; c++) {
@@ -399,8 +403,8 @@ static double worst_error(const double complex *model, const double complex *exa
   return off / most;
 }
 
-/* The estimate against a direct solve without damping: from far below the modes left out up to just below them, with few modes
- * and with many; and no entry of the matrix is worse than the estimate allows. */
+/* The error estimate against direct solutions without damping, from low frequencies to just below
+ * the modes left out, for few and many modes. No entry of the matrix exceeds the estimate. */
 static void error_is_estimated(void **state) {
   (void)state;
   static const double share[]  = {0.1, 0.2, 1. / 3, 0.5, 0.7, 0.85};
@@ -415,7 +419,7 @@ static void error_is_estimated(void **state) {
   memcpy(frequency, result.model.frequency, sizeof frequency);
   for (int modes = 20; modes > 2; modes -= 5) {
     assert_int_equal(modal_model_reduce(&result.model, modes, true), SHB_OK);
-    double top = frequency[modes < 20 ? modes : 19]; /* the first left out */
+    double top = frequency[modes < 20 ? modes : 19]; /* first mode left out */
     for (int i = 0; i < 6; i++) {
       double         omega = two_pi * share[i] * top;
       double complex model[NC * NC], *exact = direct(&whole, omega);
@@ -437,7 +441,7 @@ static void error_is_estimated(void **state) {
   mesh_fe_free(&mesh);
 }
 
-/* Greatest error over the band, against direct solves without damping. */
+/* Largest error over the band, against direct solutions without damping. */
 static double worst_in_band(modal_model *model, const body *whole, double band) {
   double worst = 0;
   for (int i = 1; i <= 10; i++) {
@@ -450,7 +454,7 @@ static double worst_in_band(modal_model *model, const body *whole, double band) 
   return worst;
 }
 
-/* modes: auto keeps what the tolerance and the band ask for, and not one mode more. */
+/* modal.modes: auto keeps exactly the modes that tolerance and band need. */
 static void modes_are_just_enough(void **state) {
   (void)state;
   const int      cells[3] = {2, 2, 4};
@@ -531,7 +535,8 @@ static void static_response_is_exact(void **state) {
   check_static_response(6000);
 }
 
-/* Patches are finer divisions of the same face: the area-weighted mean of their flexibilities is the whole's. */
+/* Patches divide the same face: the area-weighted mean of their flexibilities is that of the
+ * face. */
 static void patches_add_up_to_the_face(void **state) {
   (void)state;
   const int cells[3] = {2, 2, 4}, points[3] = {4, 7, 0};
@@ -557,8 +562,8 @@ static void patches_add_up_to_the_face(void **state) {
   mesh_fe_free(&mesh);
 }
 
-/* Spread over the face's area, the flexibility has a limit: differences between meshes fall (not with the order of
- * smooth solutions: the face ends at the clamped edge, which is singular). */
+/* The flexibility under a load spread over the face converges with the mesh. The order is not that
+ * of smooth solutions, since the face ends at the singular clamped edge. */
 static void receptance_converges_with_the_mesh(void **state) {
   (void)state;
   double flexibility[4];
@@ -591,8 +596,8 @@ static double relative_change(const double *a, const double *b, int n) {
   return sqrt(off / norm);
 }
 
-/* Turning at a milliradian a second is standing still, by another road; 6000 rad/s is not: stiffer in flap, and by
- * Omega^2 softer in the plane of rotation. */
+/* A speed of 0.001 rad/s equals rest, through the equilibrium solver. At 6000 rad/s the blade is
+ * stiffer in flap and, by Omega^2, softer in the plane of rotation. */
 static void speed_leads_back_to_rest(void **state) {
   (void)state;
   const int      cells[3] = {2, 2, 4};

@@ -1,4 +1,4 @@
-/* Contact patches: shares, areas, axes, normals, images, and what can be wrong with them. */
+/* Contact patches: weights, areas, axes, normals, images, and errors of the input. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -24,7 +24,7 @@ static modal_patches create(const mesh_fe *mesh, bool to_ground, int points) {
   return face;
 }
 
-/* Centroid of the whole right face from the patches; totals, whatever the division. */
+/* Centroid of the right face from the patches, and totals, for any division. */
 static void check_totals(const modal_patches *face) {
   double area = 0, centroid[3] = {0};
   for (int p = 0; p < face->n_pairs; p++) {
@@ -43,7 +43,8 @@ static void check_totals(const modal_patches *face) {
   check_close(centroid[2] / area, radius * cos(half), 1e-12, "centroid");
 }
 
-/* The sides are planes of constant angle: normal purely tangential; the left image is one sector back. */
+/* The sides are planes of constant angle: their normals are tangential. The left image lies one
+ * sector back. */
 static void check_pairs(const mesh_fe *mesh, const modal_patches *face) {
   const double sector = 2 * acos(-1) / BLADES;
   for (int p = 0; p < face->n_pairs; p++) {
@@ -66,7 +67,7 @@ static void check_pairs(const mesh_fe *mesh, const modal_patches *face) {
   }
 }
 
-/* Of the side's 24 cells, each one quadrangle or two triangles. */
+/* The side has 24 cells, each one quadrangle or two triangles. */
 static int facets(void) {
   return used_elements() == MESH_HEX20 ? 24 : 48;
 }
@@ -88,8 +89,9 @@ static void any_division_keeps_the_totals(void **state) {
   mesh_fe_free(&mesh);
 }
 
-/* Flat straight-sided faces: mid-side nodes alone; 48 triangles have (3*48 + 20 boundary)/2 = 82 sides, 24 quadrangles
- * (4*24 + 20)/2 = 58. A side has its part, a third or a quarter, of one facet, or of two. */
+/* Flat straight-sided faces: only mid-side nodes carry weight. 48 triangles have (3*48 + 20)/2 = 82
+ * sides, 20 of them on the boundary; 24 quadrangles have (4*24 + 20)/2 = 58. A side carries a third
+ * or a quarter of each of its facets. */
 static void all_nodes(void **state) {
   (void)state;
   mesh_fe       mesh = make_sector(size, inner, BLADES, cells);
@@ -107,7 +109,7 @@ static void all_nodes(void **state) {
   mesh_fe_free(&mesh);
 }
 
-/* A patch moves as the mean of its face: the exact mean of a quadratic field. */
+/* A patch moves as the mean of its face: exact for a quadratic field. */
 static void patch_is_the_mean_of_its_face(void **state) {
   (void)state;
   mesh_fe       mesh = make_sector(size, inner, BLADES, cells);
@@ -143,7 +145,8 @@ static void angles_must_agree_with_the_faces(void **state) {
   mesh_fe_free(&mesh);
 }
 
-/* psi and phi of a skewed face by the paper's convention, v = (cos psi cos phi, sin psi cos phi, -sin phi). */
+/* psi and phi of a skewed face by the paper's convention, v = (cos psi cos phi, sin psi cos phi,
+ * -sin phi). */
 static void angles_of_a_skewed_face(void **state) {
   (void)state;
   const double psi = 31 * degree, phi = 8 * degree, thin[3] = {0.01, 1, 0.01};
@@ -193,8 +196,8 @@ static void bad_faces_are_one_line(void **state) {
   mesh_fe_free(&mesh);
 }
 
-/* The left face's nodes moved within it: patches still see a field that is linear in position as their right halves do, turned
- * back by a sector. */
+/* With displaced nodes on the left face, left patches reproduce a linear field as their right
+ * counterparts do, rotated back by a sector. */
 static void faces_that_do_not_match_are_projected(void **state) {
   (void)state;
   mesh_fe mesh = make_sector(size, inner, BLADES, cells);

@@ -1,4 +1,4 @@
-/* Loads from a file of nodal values: equal to the case's own where those can say the same, exact where the elements are. */
+/* Loads from field files: equal to those of a case where both can describe them, else exact. */
 #include "modal/condense/load_patterns.h"
 
 #include <complex.h>
@@ -67,7 +67,7 @@ static void check_equal(const modal_model *a, const modal_model *b) {
   check_same(k * nc, a->load_inertia, b->load_inertia, "its inertia");
 }
 
-/* The same pressure at every node, with factor and phase a harmonic. */
+/* Equal pressure at every node, with a factor and a phase for each harmonic. */
 static void even_pressure_is_the_case_s(void **state) {
   (void)state;
   const int            harmonic[2] = {3, 1}; /* in any order */
@@ -185,7 +185,8 @@ static void faults_are_one_line(void **state) {
   mesh_fe_free(&mesh);
 }
 
-/* Moduli and phases of their own a harmonic, together: the sum of what each does alone. */
+/* Loads with moduli and phases for each harmonic: together they give the sum of their separate
+ * effects. */
 static void loads_add_up(void **state) {
   (void)state;
   const double complex turn    = cexp(0.9 * I);
@@ -227,7 +228,7 @@ static void loads_add_up(void **state) {
   }
   modal_result_free(&result);
 
-  /* a quarter turn of both turns the sum; opposite loads leave nothing but rounding */
+  /* a phase shift of both shifts the sum; opposite loads cancel to rounding */
   load[1].n_harmonics = 1, load[1].factor[0] = 0, load[1].factor[1] = I;
   load[0].factor[1] = I;
   settings.n_loads  = 2;
@@ -256,7 +257,7 @@ static void loads_add_up(void **state) {
   mesh_fe_free(&mesh);
 }
 
-/* Each load on a group of its own. */
+/* Loads on groups of their own. */
 static void loads_have_groups(void **state) {
   (void)state;
   mesh_fe    mesh    = make_sector(size, inner, BLADES, cells);
@@ -283,7 +284,7 @@ static void loads_have_groups(void **state) {
     for (int e = 0; e < 3 * made[i].dofs.n_entries; e++) sum[i][e % 3] += made[i].dofs.weight[e];
     modal_load_free(&made[i]);
   }
-  /* the resultant of a pressure: on the outer face along the radius, on the flat side across it */
+  /* resultant of a pressure: radial on the outer face, tangential on the flat side */
   double half = acos(-1) / BLADES, outer = inner + size[2];
   check_close(sum[1][2], -210 * size[0] * 2 * outer * sin(half), 1e-6,
               "resultant on the outer face");

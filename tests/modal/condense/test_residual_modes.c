@@ -1,4 +1,5 @@
-/* Residual modes from the moments of known modes: exact with few of them, moments matched with many. */
+/* Residual modes from the moments of known modes: exact with few of them, moments matched with
+ * many. */
 #include "modal/condense/residual_modes.h"
 
 #include "tests/support/check.h"
@@ -84,8 +85,8 @@ static void moments_are_matched(void **state) {
   modal_residual_modes_free(&found);
 }
 
-/* psi = 1 at lambda = 10, 20, 40 and s = 5: left out, they change the receptance by s^3/lambda^3/(lambda - s), 2.5e-2, 1.04e-3
- * and 5.6e-5. */
+/* psi = 1 at lambda = 10, 20, 40 and s = 5. Left out, these modes change the receptance by
+ * s^3/lambda^3/(lambda - s): 2.5e-2, 1.04e-3 and 5.6e-5. */
 static void fewest_modes_are_kept(void **state) {
   (void)state;
   double                     lambda[3] = {10, 20, 40}, psi[3] = {1, 1, 1}, scale = 1;

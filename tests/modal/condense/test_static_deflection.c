@@ -1,4 +1,5 @@
-/* Static deflection of a rotating rod against the closed form, and the group /static of the file. */
+/* Static deflection of a rotating rod against the closed form, and the group /static of the
+ * file. */
 #include "modal/condense/static_deflection.h"
 
 #include "modal/common/session.h"

@@ -27,7 +27,8 @@ static void solve_with(const fem_system *system, const char *type, const char *b
   assert_int_equal(eigen->n, MODES);
 }
 
-/* Greatest part of a mode of the one that is not in the span of the other's modes, in the M norm. */
+/* Largest component of a mode of one solution outside the span of the other's modes, in the M
+ * norm. */
 static double outside(const fem_system *system, const modal_eigen *one, const modal_eigen *other) {
   Mat    X;
   double worst = 0, square;
@@ -57,7 +58,7 @@ static void compare(const double size[3], const int cells[3], double *gap) {
   *gap = INFINITY;
   for (int i = 1; i < MODES; i++)
     *gap = fmin(*gap, reference.lambda[i] / reference.lambda[i - 1] - 1);
-  for (int k = *gap < 1e-6 ? 1 : 0; k < 4; k++) { /* single vectors do not see pairs */
+  for (int k = *gap < 1e-6 ? 1 : 0; k < 4; k++) { /* single vectors miss pairs */
     modal_eigen eigen;
     solve_with(&system, "block_lanczos", block[k], &eigen);
     double worst = 0;
@@ -85,7 +86,7 @@ static void modes_are_krylov_schurs(void **state) {
   assert_true(gap > 1e-6);
 }
 
-/* Of hexahedra a square bar bends alike in both directions. */
+/* With hexahedra a square bar bends alike in both directions. */
 static void pairs_are_found(void **state) {
   (void)state;
   const double size[3]  = {0.2, 0.02, 0.02};

@@ -51,7 +51,7 @@ static void check_modes(const fem_system *system, const modal_eigen *eigen) {
   VecDestroy(&k_phi);
 }
 
-/* CalculiX C3D10, 9684 nodes, same bar; Timoshenko's first three. */
+/* CalculiX C3D10, 9684 nodes, same bar; the first three by Timoshenko's theory. */
 static void steel_bar(void **state) {
   (void)state;
   const double calculix[6]   = {210.0503197, 618.2204161, 1301.270084,
@@ -75,7 +75,8 @@ static void steel_bar(void **state) {
   mesh_fe_free(&mesh);
 }
 
-/* Frequency of a mode from its strains, which know a rigid motion exactly; of the solver's own only rounding is left. */
+/* Frequency of a mode from its strains, which are exact for a rigid motion. The solver's own
+ * frequency differs by rounding. */
 static double strain_frequency(const mesh_fe *mesh, const fem_system *system,
                                const modal_eigen *eigen, int mode) {
   fem_element *element = malloc(sizeof *element);
@@ -91,7 +92,7 @@ static double strain_frequency(const mesh_fe *mesh, const fem_system *system,
   return sqrt(lambda) / two_pi;
 }
 
-/* A body held nowhere: six zeros, then the first elastic mode well above. */
+/* A free body: six zero frequencies, then the first elastic mode. */
 static void free_body_has_six_rigid_modes(void **state) {
   (void)state;
   const double size[3] = {0.11, 0.07, 0.05}, shift = -1e8;
@@ -113,7 +114,8 @@ static void free_body_has_six_rigid_modes(void **state) {
   mesh_fe_free(&mesh);
 }
 
-/* Frequency of the mode that moves most along x; nu = 0: the bar's axial mode is exact, sin(pi x / 2L). */
+/* Frequency of the mode with the largest motion along x. For nu = 0 the axial mode sin(pi x / 2L)
+ * is exact. */
 static double axial_frequency(const double size[3], const int cells[3]) {
   const fem_material cork = {.E = 2.1e11, .rho = 7850};
   mesh_fe            mesh = make_box(size, cells);
@@ -183,7 +185,7 @@ static void too_many_modes_is_one_line(void **state) {
   mesh_fe_free(&mesh);
 }
 
-/* Six frequencies of the steel bar with a number of hexahedra along. */
+/* Six frequencies of the steel bar for a number of hexahedra along it. */
 static void bar_frequencies(int n, fem_rules rules, double frequency[6]) {
   const double size[3]  = {0.2, 0.03, 0.01};
   const int    cells[3] = {n, 3 * n / 20, n / 10};
@@ -197,7 +199,8 @@ static void bar_frequencies(int n, fem_rules rules, double frequency[6]) {
   mesh_fe_free(&mesh);
 }
 
-/* 2x2x2 and 3x3x3 points go to the same frequencies, the former from below the latter; Timoshenko's first three. */
+/* Rules of 2x2x2 and 3x3x3 points converge to the same frequencies, the former from below the
+ * latter. The first three agree with Timoshenko's theory. */
 static void both_rules_of_hexahedra_meet(void **state) {
   (void)state;
   const double timoshenko[3] = {208.47, 615.89, 1291.46};

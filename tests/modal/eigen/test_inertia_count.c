@@ -24,7 +24,8 @@ static void solve(const fem_system *system, const modal_eigen_settings *settings
   assert_int_equal(eigen->n, settings->modes);
 }
 
-/* Between any two modes the negative pivots are as many as the modes below, of a clamped body and of a free one. */
+/* Between two modes the number of negative pivots is that of the modes below, for a clamped and a
+ * free body. */
 static void inertia_counts(void **state) {
   (void)state;
   const double size[3]  = {0.11, 0.07, 0.05};

@@ -26,7 +26,7 @@ static void solve(const fem_system *system, const modal_eigen_settings *settings
 
 enum { WHOLE = 9, KEPT = 8, COLUMNS = 4 };
 
-/* A basis of the reference's modes without one, as if a run had converged to it. */
+/* A basis of the reference's modes without one of them, as after a converged run. */
 static void make_basis(const fem_system *system, const modal_eigen *reference, int hidden,
                        modal_block_basis *b) {
   const double *phi;
@@ -51,7 +51,7 @@ static void make_basis(const fem_system *system, const modal_eigen *reference, i
   MatDenseRestoreArrayRead(reference->phi, &phi);
 }
 
-/* Each of nine modes in turn: missing below the last kept one, which is noticed, but for that last one itself. */
+/* Each of nine modes is hidden in turn. It is found to be missing unless it is the last one. */
 static void hidden_mode_is_noticed(void **state) {
   (void)state;
   const double               size[3]  = {0.2, 0.031, 0.011};
@@ -86,8 +86,8 @@ static void hidden_mode_is_noticed(void **state) {
   mesh_fe_free(&mesh);
 }
 
-/* One column, one step: T_0 = 1, so the bound is sqrt(eta^2 N / 2a) / Gamma(3/2) with eta^2 = x/(1 - x).
- * Two columns, two steps: eta^2 N / 2a with eta^2 = x/(1 - x)/(2/x - 1)^2. */
+/* One column, one step: T_0 = 1, so the bound is sqrt(eta^2 N / 2a) / Gamma(3/2) with eta^2 = x/(1
+ * - x). Two columns, two steps: eta^2 N / 2a with eta^2 = x/(1 - x)/(2/x - 1)^2. */
 static void probability_is_the_closed_form(void **state) {
   (void)state;
   const double N = 3, a = 0.05, x = 1e-3;
@@ -97,7 +97,8 @@ static void probability_is_the_closed_form(void **state) {
               1e-12, "two columns, two steps");
 }
 
-/* Greatest Ritz value of so many Krylov vectors of diag(value) from a random one, n <= 64: Lanczos with full orthogonalisation. */
+/* Largest Ritz value of diag(value) after the given steps from a random vector, n <= 64, by Lanczos
+ * with full orthogonalisation. */
 static double ritz(int n, const double *value, int steps, uint64_t *random) {
   double Q[8][64], T[64] = {0}, w[8], work[64];
   for (int i = 0; i < n; i++) { /* normal: twelve uniform ones */
@@ -127,8 +128,9 @@ static double ritz(int n, const double *value, int steps, uint64_t *random) {
   return w[steps - 1];
 }
 
-/* The bound against 100,000 draws, one column: how often no Ritz value tells of an eigenvalue at 1 when the others reach 0.3. The bound holds,
- * and is not empty: within two orders of what is drawn (one is the share a). */
+/* The bound against 100,000 draws with one column. Counted are draws in which no Ritz value reveals
+ * the eigenvalue 1 while the others reach 0.3. The bound holds within a factor of 1000, of which
+ * the mass ratio a makes about ten. */
 static void chance_holds(void **state) {
   (void)state;
   enum { N = 40, DRAWS = 100000 };

@@ -47,13 +47,14 @@ static double effective(const model *m, int mode, int r) {
   return gamma * gamma / m->share.inertia[r];
 }
 
-/* The modes that carry most of direction r, in order: their shares. */
+/* Shares of the modes with the largest effective mass in direction r, in order. */
 static void greatest(const model *m, int r, int n, double *share) {
   for (int found = 0, i = 0; i < m->eigen.n && found < n; i++)
     if (effective(m, i, r) > 0.01) share[found++] = effective(m, i, r);
 }
 
-/* A slender clamped bar (Euler-Bernoulli: 4 (sigma_i/beta_i)^2; axially, without Poisson's ratio, 8/(2i - 1)^2 pi^2). */
+/* A slender clamped bar (Euler-Bernoulli: 4 (sigma_i/beta_i)^2; axially, without Poisson's ratio,
+ * 8/(2i - 1)^2 pi^2). */
 static void slender_bar(void **state) {
   (void)state;
   const fem_material cork        = {.E = 2.1e11, .rho = 7850};
@@ -80,7 +81,7 @@ static void slender_bar(void **state) {
   mesh_fe_free(&mesh);
 }
 
-/* b^T M^-1 b, b the inertia forces of motion r: what all modes of the mesh add up to. */
+/* b^T M^-1 b, b the inertia forces of motion r: the sum over all modes of the mesh. */
 static double all_modes(const model *m, int r) {
   Vec    load[FEM_RIGID], x;
   double inertia[FEM_RIGID], sum;
@@ -121,7 +122,7 @@ static void all_modes_add_up(void **state) {
   use_elements(MESH_TET10);
 }
 
-/* What is missing of the mass rests on the clamped nodes: of first order in the element's length. */
+/* The mass missing in the sum is that of the clamped nodes, of first order in the element size. */
 static void what_is_missing_vanishes(void **state) {
   (void)state;
   const double size[3] = {0.11, 0.07, 0.05};

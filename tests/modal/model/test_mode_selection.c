@@ -18,7 +18,8 @@ static double shape_of(int dof, int mode) {
   return (0.5 + 0.1 * dof) * cos(1.7 * mode + dof);
 }
 
-/* A model of modes at 50, 100, ... Hz; the modes from MODES to BEYOND are its residual terms and tail. */
+/* A model of modes at 50, 100, ... Hz; the modes from MODES to BEYOND are its residual terms and
+ * tail. */
 static modal_model make(void) {
   memset(R, 0, sizeof R);
   memset(tail, 0, sizeof tail);

@@ -1,4 +1,4 @@
-/* The modal file: exact round trip, what other writers may leave out, and every fault by name. */
+/* The modal file: exact round trip, optional parts, and faults named in the message. */
 #include <math.h>
 
 #include "modal/model/model.h"
@@ -38,7 +38,7 @@ static double *squares(int n, double seed) {
   return out;
 }
 
-/* Every part present when full; the least a file may hold otherwise. */
+/* All parts if full; else the fewest that a file may hold. */
 static modal_model sample(bool full) {
   static const char *const name[] = {"tip", "mi-corde \xc3\xa9", "root"};
   modal_model              model  = {.n_modes = MODES, .n_pairs = PAIRS, .n_load = LOADS};
@@ -98,7 +98,7 @@ static void write_model(const char *name, const modal_model *model) {
   assert_ok(h5_close(file));
 }
 
-/* Open for change in place, as another program might. */
+/* Open for changes in place, as another program might. */
 static hid_t edit(const char *name) {
   hid_t file = H5Fopen(scratch(name), H5F_ACC_RDWR, H5P_DEFAULT);
   assert_true(file >= 0);
@@ -226,7 +226,7 @@ static void test_truncated(void **state) {
   modal_model_free(&model);
 }
 
-/* Without a required dataset the file is refused, by name; without an optional one it is read. */
+/* Without a required dataset the file is refused by name; without an optional one it is read. */
 static void test_missing(void **state) {
   (void)state;
   static const struct {
@@ -276,7 +276,7 @@ static void test_missing(void **state) {
   modal_model_free(&model);
 }
 
-/* Residual terms are optional, but not below residual modes, which stand for what they leave out. */
+/* Residual terms are optional, except below residual modes, which need them. */
 static void test_residual_modes_need_terms(void **state) {
   (void)state;
   static const char *const term[] = {"/contact/residual_flexibility", "/contact/residual_inertia",
@@ -298,7 +298,7 @@ static void test_residual_modes_need_terms(void **state) {
   modal_model_free(&model);
 }
 
-/* Put other reals where a dataset was. */
+/* Replace a dataset by other reals. */
 static void replace(const char *name, const char *path, h5_shape shape, const double *data) {
   hid_t file = edit(name);
   assert_true(H5Ldelete(file, path, H5P_DEFAULT) >= 0);
@@ -351,7 +351,7 @@ static void test_shapes(void **state) {
   modal_model_free(&model);
 }
 
-/* One number of one array made wrong. */
+/* One wrong number in one array. */
 typedef struct {
   size_t      offset; /* of the array in modal_model */
   size_t      index;
@@ -405,7 +405,7 @@ static void test_values(void **state) {
   }
 }
 
-/* Rounding of another program's symmetric matrix is let pass: 1e-7 of the largest, not 1e-5. */
+/* Asymmetry by rounding is accepted: 1e-7 of the largest value, not 1e-5. */
 static void test_symmetry_bound(void **state) {
   (void)state;
   modal_model model = sample(true);
@@ -421,7 +421,7 @@ static void test_symmetry_bound(void **state) {
   modal_model_free(&model);
 }
 
-/* Real numbers where complex ones are wanted, a few bits fewer, and texts instead of numbers. */
+/* Real numbers in place of complex ones, single precision, and texts in place of numbers. */
 static void test_other_types(void **state) {
   (void)state;
   modal_model model = sample(false), read;

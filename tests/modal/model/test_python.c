@@ -1,5 +1,7 @@
-/* The modal file between programs: h5py writes and we read, we write and h5py and h5dump read.
- * Arguments: python, tests/modal/model/foreign.py, cases/bring_your_own/write_modal.py. Exit 77: no h5py here. */
+/* The modal file between programs: h5py writes and we read; we write and h5py and h5dump read.
+ *
+ * Arguments: python, tests/modal/model/foreign.py, cases/bring_your_own/write_modal.py. Exit code
+ * 77 without h5py. */
 #include <math.h>
 
 #include "modal/model/model.h"

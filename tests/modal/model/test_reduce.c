@@ -1,4 +1,4 @@
-/* Fewer modes: the statics stay, the dynamics of the modes left out go with the fourth power of the frequency. */
+/* Fewer modes: exact statics, and an error of fourth order in the frequency. */
 #include "modal/model/reduce.h"
 
 #include <math.h>
@@ -47,7 +47,8 @@ static void drop_fourth(modal_model *model) {
   model->residual_fourth = NULL;
 }
 
-/* Errors at harmonic 1 of R, of the free response and of the probes, model against all its modes. */
+/* Errors at harmonic 1 of R, of the free response and of the probes, against the model with all
+ * modes. */
 static void errors_at(int parts, int modes, bool residuals, double omega, double error[3]) {
   modal_model  all, few;
   mhb_settings s = random_settings(2);
@@ -77,9 +78,9 @@ static void errors_at(int parts, int modes, bool residuals, double omega, double
   modal_model_free(&few);
 }
 
-/* Without damping modes that are left out answer as themselves: in a file with residual terms and modes, and in one without either. Beside
- * residual terms alone R differs with omega^6: the series is then bounded by other means. In a file of earlier versions, without the term of omega^4,
- * all errors go with omega^4. */
+/* Without damping the modes left out stay exact, in files with residual terms and modes and in
+ * files without either. With residual terms only, R errs with omega^6, since its series is bounded.
+ * In files of earlier versions, without the term of omega^4, all errors are of order omega^4. */
 static void errors_have_their_order(void **state) {
   (void)state;
   const int parts[]     = {PARTS | WITH_RESIDUAL_MODES | UNDAMPED, WITH_LEFT | UNDAMPED,
@@ -97,8 +98,8 @@ static void errors_have_their_order(void **state) {
   }
 }
 
-/* The modes left out are damped, what stands for them is not: an error that goes with omega. Damping of 0.01 to 0.03
- * gives 2 zeta omega/omega_i. */
+/* The modes left out are damped, their residual terms are not: the error is 2 zeta omega/omega_i,
+ * for damping of 0.01 to 0.03. */
 static void statics_stay(void **state) {
   (void)state;
   const int parts[] = {PARTS, WITH_LEFT};
@@ -122,7 +123,7 @@ static void all_modes_change_nothing(void **state) {
   for (int k = 0; k < 3; k++) assert_true(error[k] == 0);
 }
 
-/* Without the file's residual parts, and with no mode left out: what a file without them gives. */
+/* Without residual parts, all modes kept: the result of a file without them. */
 static void bare(void **state) {
   (void)state;
   modal_model  with, without;

@@ -7,8 +7,8 @@ enum { OUT = 3 };
 
 static const double lambda[OUT] = {400, 900, 2500}, phi[OUT] = {0.8, -0.5, 0.3};
 
-/* A model to ground of one kept mode and one contact pair; its residual terms are those of the modes
- * above at dof 0. */
+/* A model to ground of one kept mode and one contact pair; its residual terms are those of the
+ * modes above at dof 0. */
 typedef struct {
   modal_model model;
   double      frequency[1], damping[1], right[3];
@@ -127,7 +127,7 @@ static void slopes_are_derivatives(void **state) {
   }
 }
 
-/* The estimate of the first mode's tail is within a factor of the true error, and needs the tail. */
+/* The estimate is within a factor of two of the true error, and needs the tail. */
 static void error_is_estimated(void **state) {
   (void)state;
   scene        s;

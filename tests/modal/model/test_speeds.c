@@ -1,4 +1,4 @@
-/* Modes at several speeds: tracked through a crossing, kept in a file of their own version. */
+/* Modes at several speeds: tracked through a crossing, written and read. */
 #include <math.h>
 
 #include "modal/common/session.h"
@@ -9,8 +9,9 @@
 
 enum { MODES = 5, SPEEDS = 4 };
 
-/* A nearly square beam that points outward along z, its flap (along x, the engine axis) a little softer than the motion in the plane of rotation:
- * flap stiffens by Omega^2 more, so that they cross. */
+/* A nearly square radial beam along z. Its flap motion (along x, the engine axis) is slightly
+ * softer than its motion in the plane of rotation. Flap stiffens by Omega^2 more, so the two
+ * frequencies cross. */
 static const double size[3]  = {0.0200, 0.0202, 0.3};
 static const int    cells[3] = {1, 1, 6};
 
@@ -72,7 +73,8 @@ static void check_tracks(const modal_speeds *s) {
   assert_int_equal(s->mode[3 * MODES], 1); /* they have crossed */
 }
 
-/* With the first speed's modes: the same space, and where shapes hardly change the tracks. */
+/* Overlap with the modes of the first speed: the same space, and the tracks where shapes hardly
+ * change. */
 static void check_overlaps(const modal_speeds *s) {
   for (int i = 0; i < SPEEDS; i++) {
     const double *C = s->overlap + i * MODES * MODES;
@@ -87,7 +89,7 @@ static void check_overlaps(const modal_speeds *s) {
   }
 }
 
-/* Every model is that of its speed alone, but for signs; those are continued. */
+/* Every model is that of its speed alone, except for the signs of modes. */
 static void check_models(const mesh_fe *mesh, const modal_speeds *s) {
   modal_settings settings = make_settings();
   for (int i = 0; i < SPEEDS; i++) {
@@ -137,7 +139,7 @@ static void crossing_modes_are_tracked(void **state) {
   mesh_fe_free(&mesh);
 }
 
-/* modes: auto: one number for all speeds, enough for the lowest and for the highest. */
+/* modal.modes: auto gives one number of modes, enough for the lowest and the highest speed. */
 static void auto_modes_suit_every_speed(void **state) {
   (void)state;
   static const double band[2]  = {900, 2500};
@@ -203,7 +205,7 @@ static void file_keeps_every_speed(void **state) {
   modal_model_free(&model);
   modal_speeds_free(&s);
   assert_true(assert_described(path) > 80);
-  assert_ok(h5_open(path, &file)); /* a program that knows version 1 only */
+  assert_ok(h5_open(path, &file)); /* a program of version 1 only */
   assert_refused(h5_check_format(file, "shroudhb modal model", 1), SHB_ERR_INPUT,
                  "format_version is 2; this program reads versions 1 to 1");
   assert_ok(h5_close(file));
@@ -223,7 +225,7 @@ static void one_speed_changes_nothing(void **state) {
   assert_ok(h5_close(file));
 }
 
-/* A file that was tampered with is refused. */
+/* A file with altered tracks is refused. */
 static void damage_is_told(void **state) {
   (void)state;
   const char  *path                  = scratch("speeds.modal.h5");

@@ -25,7 +25,7 @@ static double at(const modal_spline *s, const double *y, double x, double *slope
   return value;
 }
 
-/* Polynomials of degree n - 1, at most 3, at odd places, beyond the ends too. */
+/* Polynomials up to degree n - 1 <= 3 are exact on an uneven grid, also beyond its ends. */
 static void polynomials_are_exact(void **state) {
   (void)state;
   const double x[7] = {-0.7, 0.2, 0.35, 1.9, 2.385, 4, 4.1};
@@ -44,7 +44,7 @@ static void polynomials_are_exact(void **state) {
   }
 }
 
-/* The error of a smooth function falls with h^4, its slope's with h^3. */
+/* The error for a smooth function is of order h^4, that of its slope of order h^3. */
 static void order_is_four(void **state) {
   (void)state;
   double error[3] = {0}, tilt[3] = {0};

@@ -1,4 +1,5 @@
-/* Modes of a twisted blade at speed, against CalculiX on the same mesh and with its rules; argument: the program ccx. */
+/* Modes of a twisted blade at speed against CalculiX, on the same mesh with its integration rules.
+ * Argument: the program ccx. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -29,15 +30,15 @@ static const fem_orthotropic crystal = {{127e9, 141e9, 118e9},
                                         {0.3, -0.8, 0.52},
                                         {0.9, 0.2, -0.4}};
 
-/* An element of CalculiX, and ours with the same rules. */
+/* A CalculiX element, and ours with the same integration rules. */
 typedef struct {
   const char *name;
   mesh_kind   kind;
   fem_rules   rules;
 } element_kind;
 
-/* A blade along x from the hub's radius on, twisted. Tetrahedra have straight sides: CalculiX integrates every C3D10 at
- * four points. */
+/* A twisted blade along x from the hub radius on. Tetrahedra have straight sides: CalculiX
+ * integrates every C3D10 at four points. */
 static mesh_fe make_blade(mesh_kind kind) {
   use_elements(kind);
   mesh_fe              mesh     = make_box(size, cells);
@@ -59,7 +60,7 @@ static mesh_fe make_blade(mesh_kind kind) {
   return mesh;
 }
 
-/* The mesh is written as C3D20R where it is of hexahedra. */
+/* Write the mesh; hexahedra as C3D20R. */
 static void use_type(const char *name) {
   char command[256];
   snprintf(command, sizeof command, "sed -i 's/TYPE=C3D20R/TYPE=%s/' %s/blade.inp", name, folder);
@@ -84,7 +85,7 @@ static void write_crystal(FILE *deck) {
   fprintf(deck, "*DENSITY\n8500\n*SOLID SECTION, ELSET=body, MATERIAL=CRYSTAL, ORIENTATION=AXES\n");
 }
 
-/* One material a region of the mesh. */
+/* A material for each region of the mesh. */
 static void write_parts(const mesh_fe *mesh, const fem_material *part, FILE *deck) {
   for (int i = 0; i < mesh->n_regions; i++)
     fprintf(deck,
@@ -104,7 +105,8 @@ static void write_material(const fem_material *material, FILE *deck) {
           material->E, material->nu, material->rho);
 }
 
-/* The static step's controls are tightened: CalculiX's own leave 1e-4 in the frequencies. */
+/* The controls of the static step are tightened: CalculiX's default leaves errors of 1e-4 in
+ * frequencies. */
 static void write_deck(const element_kind *element, const mesh_fe *mesh,
                        const fem_material *material, double speed, double pressure) {
   char path[128];
@@ -130,8 +132,9 @@ static void write_deck(const element_kind *element, const mesh_fe *mesh,
   fclose(deck);
 }
 
-/* blade.eig: three integers, the last 1 after a static step; then four numbers a node of that step; the number of modes, their
- * eigenvalues in full. blade.dat prints seven digits. */
+/* blade.eig holds three integers, the last 1 after a static step; then four numbers for each node
+ * of that step; then the number of modes and their eigenvalues. blade.dat prints seven digits
+ * only. */
 static void read_frequencies(const mesh_fe *mesh, double frequency[MODES]) {
   char    path[128];
   int32_t head[3], n = 0;
@@ -202,7 +205,7 @@ static void compare(const element_kind *element, const fem_material *material) {
   mesh_fe_free(&mesh);
 }
 
-/* Displacements of group load at the end of the static step, by node; the rest stay as they are. */
+/* Displacements of group load at the end of the static step, by node; others stay unchanged. */
 static void read_displacements(const mesh_fe *mesh, double *u) {
   char   path[128], line[512];
   long   tag, last = 0;
@@ -220,9 +223,10 @@ static void read_displacements(const mesh_fe *mesh, double *u) {
   assert_true(last > 0);
 }
 
-/* Rotation and a pressure that follows the surface: displacements. Of the frequencies no more than 1e-2 is asked: the pressure's load stiffness
- * is not symmetric, CalculiX's eigensolver takes it for symmetric as it stands, and tests/fem/body/test_pressure.c holds ours against
- * the eigenvalues with all of it. */
+/* Displacements under rotation and a follower pressure. Frequencies must agree to 1e-2 only: the
+ * load stiffness of the pressure is not symmetric, and CalculiX's eigensolver treats it as
+ * symmetric. tests/fem/body/test_pressure.c compares ours with the eigenvalues of the full load
+ * stiffness. */
 static void pressure_agrees(void **state) {
   (void)state;
   const element_kind kinds[] = {{"C3D10", MESH_TET10, FEM_CALCULIX},
@@ -268,7 +272,8 @@ static void full_hexahedra_agree(void **state) {
   compare(&(element_kind){"C3D20", MESH_HEX20, FEM_FULL}, &steel);
 }
 
-/* CalculiX gets the constants in the material's axes and their orientation, ours are turned beforehand. */
+/* CalculiX gets the constants in material axes and their orientation; ours are rotated
+ * beforehand. */
 static void crystals_agree(void **state) {
   (void)state;
   fem_material material;
@@ -277,7 +282,7 @@ static void crystals_agree(void **state) {
   compare(&(element_kind){"C3D20R", MESH_HEX20, FEM_CALCULIX}, &material);
 }
 
-/* A steel blade with a tip of titanium, twice as light. */
+/* A steel blade with a lighter titanium tip. */
 static void two_materials_agree(void **state) {
   (void)state;
   const fem_material parts[]   = {steel, {.E = 1.14e11, .nu = 0.33, .rho = 4430}};

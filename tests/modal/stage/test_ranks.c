@@ -1,4 +1,5 @@
-/* The same answer on any number of ranks: the world against this rank alone. Run under mpiexec -n 1, 2, 3. */
+/* Equal results on any number of ranks: all ranks against this rank alone. Run under mpiexec -n 1,
+ * 2, 3. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -62,7 +63,7 @@ static void check_ranks(double speed) {
   mesh_fe_free(&mesh);
 }
 
-/* Counted by inertia too: the pivots of all ranks. */
+/* The inertia count sums the pivots of all ranks. */
 static void world_counts_alike(void **state) {
   (void)state;
   const modal_eigen_settings settings = {.modes = 12, .check = MODAL_CHECK_INERTIA};

@@ -1,4 +1,5 @@
-/* Modes of rotating beams: stiffening and softening against beam theory and published frequencies. */
+/* Modes of rotating beams: stiffening and softening against beam theory and published
+ * frequencies. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -17,11 +18,12 @@
 
 enum { MODES = 6 };
 
-/* No lateral contraction: a clamp that hinders it shortens the beam by a share of its width. */
+/* No lateral contraction: a clamp that hinders it would shorten the beam by a fraction of its
+ * width. */
 static const fem_material material = {.E = 2.1e11, .rho = 7850};
 
-/* A beam along x, clamped at x = hub, turning about y: flapping is along y, in-plane motion along z. The section is
- * width along y, 1.3 width along z, so that the two do not mix. */
+/* A beam along x, clamped at x = hub, rotating about y: flap is along y, in-plane motion along z.
+ * The section is width along y and 1.3 width along z, so that the two motions do not couple. */
 typedef struct {
   double length, width, hub;
   int    cells;
@@ -39,7 +41,8 @@ static mesh_fe make_beam(const beam *b) {
   return mesh;
 }
 
-/* Eigenvalues at a speed, those of motion along y in flap, along z in plane (twist and stretch are left out). */
+/* Eigenvalues at a speed: flap modes (along y) and in-plane modes (along z). Torsion and axial
+ * modes are omitted. */
 static shb_status solve(const beam *b, double speed, double flap[MODES], double plane[MODES]) {
   mesh_fe              mesh    = make_beam(b);
   fem_element         *element = malloc(sizeof *element);
@@ -88,8 +91,10 @@ static double mode(double s, double *slope) {
   return cosh(b * s) - cos(b * s) - ratio * (sinh(b * s) - sin(b * s));
 }
 
-/* Southwell's coefficient of the first flapping mode at a small speed, w^2 = w0^2 + S Omega^2:
- * S = integral of T phi'^2 / integral of phi^2, T = (1 - s^2)/2 + hub (1 - s), hub in lengths (Simpson's rule). */
+/* Southwell's coefficient of the first flap mode at low speed, w^2 = w0^2 + S Omega^2, by Simpson's
+ * rule:
+ *
+ *   S = int T phi'^2 / int phi^2,   T = (1 - s^2)/2 + hub (1 - s), hub in beam lengths. */
 static double southwell(double hub) {
   enum { STEPS = 2000 };
   double top = 0, bottom = 0;
@@ -102,13 +107,14 @@ static double southwell(double hub) {
   return top / bottom;
 }
 
-/* w0 of the beam in theory, rad/s. */
+/* w0 by beam theory, rad/s. */
 static double slender_frequency(const beam *b) {
   return 3.5160152685 * b->width / sqrt(12) / (b->length * b->length) *
          sqrt(material.E / material.rho);
 }
 
-/* The published value for hub 0, 1.193. Beams of one length: what the theory leaves out falls with the width squared. */
+/* The published value for hub 0 is 1.193. For beams of equal length the error of the theory falls
+ * with the square of the width. */
 static void stiffening_is_southwells(void **state) {
   (void)state;
   double flap_error[3], plane_error[3], S[3];
@@ -139,8 +145,8 @@ static void stiffening_is_southwells(void **state) {
   check_below(plane_error[2], 1e-3, "difference of the planes");
 }
 
-/* Wright, Smith, Thresher, Wang 1982, J. Appl. Mech. 49, 197: flapping of a uniform beam, hub 0; frequencies in units
- * of sqrt(EI/(rho A L^4)), by the speed in the same units. */
+/* Flap frequencies of a uniform beam, hub 0, in units of sqrt(EI/(rho A L^4)), over the speed in
+ * the same unit. Source: Wright, Smith, Thresher, Wang 1982, J. Appl. Mech. 49, 197. */
 static void frequencies_are_the_published_ones(void **state) {
   (void)state;
   const double published[3][3] = {{0, 3.5160, 22.0345}, {3, 4.7973, 23.3203}, {6, 7.3604, 26.8091}};
@@ -158,8 +164,8 @@ static void frequencies_are_the_published_ones(void **state) {
     }
 }
 
-/* Clamped at its outer end the beam is squeezed and buckles where its lowest eigenvalue, nearly linear in Omega^2, falls
- * to 0: below it there are modes, above it one line. */
+/* Clamped at its outer end the beam is compressed. It buckles where its lowest eigenvalue, nearly
+ * linear in Omega^2, becomes 0. Below that speed there are modes, above it an error. */
 static void buckling_is_refused(void **state) {
   (void)state;
   const beam b = {0.2, 0.004, -0.5, 12};

@@ -1,4 +1,4 @@
-/* The whole stage: a mesh file in, a complete modal file out; nothing touched when it fails. */
+/* The whole stage: a mesh file in, a complete modal file out, nothing written on failure. */
 #include <math.h>
 
 #include "fem/element/surface.h"
@@ -33,7 +33,8 @@ static modal_settings default_settings(void) {
 static const shb_provenance provenance = {"case.yaml", "name: case\n", "modal.modes = 8\n",
                                           "shroudhb-modal"};
 
-/* Write the sector as a .msh, with the two sides exchanged if swap: the stage must turn them round. */
+/* Write the sector as a .msh file. With swap the two sides are exchanged: the stage must swap them
+ * back. */
 static void write_mesh(const char *path, bool swap) {
   mesh_fe mesh = make_sector(size, inner, BLADES, cells);
   if (swap) {
@@ -89,7 +90,8 @@ static void file_is_complete(void **state) {
   check_is_in_the_file(out);
 }
 
-/* Every phase is there once, in the order in which it was; peaks never fall; with two speeds times add up. */
+/* Every phase occurs once and in order. Peak memory never falls. With two speeds the times add
+ * up. */
 static void phases_are_in_the_file(void **state) {
   (void)state;
   static const char *const wanted[] = {"mesh",       "assembly",  "equilibrium",   "analysis",
@@ -134,7 +136,7 @@ static void phases_are_in_the_file(void **state) {
   remove(out);
 }
 
-/* Rayleigh's law in the file, mode by mode. */
+/* Rayleigh damping in the file, mode by mode. */
 static void damping_follows_its_law(void **state) {
   (void)state;
   modal_settings settings = default_settings();
@@ -158,7 +160,7 @@ static void damping_follows_its_law(void **state) {
   assert_int_equal(access(out, F_OK), -1);
 }
 
-/* The same body from an .inp file: the same modes and the same receptance. */
+/* The same body from an .inp file gives the same modes and receptance. */
 static void abaqus_mesh_gives_the_same(void **state) {
   (void)state;
   modal_settings settings = default_settings();
@@ -182,7 +184,7 @@ static void abaqus_mesh_gives_the_same(void **state) {
   remove(out);
 }
 
-/* /VTKHDF: what ParaView reads; mode_00i is /modes/shape[i]. */
+/* /VTKHDF as ParaView reads it; mode_00i is /modes/shape[i]. */
 static void vtk_group_shows_the_modes(void **state) {
   (void)state;
   hid_t    file;
@@ -223,7 +225,7 @@ static void vtk_group_shows_the_modes(void **state) {
   free(shape), free(mode), free(coordinates), free(linked), free(gmsh), free(vtk), free(type);
 }
 
-/* The same of hexahedra: cells of VTK's type 25, whose edges go ring by ring. */
+/* The same with hexahedra: VTK cells of type 25, whose edges are numbered ring by ring. */
 static void hexahedra_go_through(void **state) {
   (void)state;
   static const int ends[12][2] = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6},
@@ -268,7 +270,8 @@ static void hexahedra_go_through(void **state) {
   free(x), free(face), free(vtk), free(type);
 }
 
-/* A column of single hexahedra has motions without energy: refused, and allowed with all points. */
+/* A column of single hexahedra has motions without strain energy: refused, unless fully
+ * integrated. */
 static void columns_need_all_points(void **state) {
   (void)state;
   modal_settings settings  = default_settings();
@@ -287,7 +290,7 @@ static void columns_need_all_points(void **state) {
   mesh_fe_free(&mesh);
 }
 
-/* The sampled receptance is the model's own. */
+/* The sampled receptance equals that of the model. */
 static void receptance_is_sampled(void **state) {
   (void)state;
   hid_t           file;
@@ -310,7 +313,7 @@ static void receptance_is_sampled(void **state) {
   modal_model_free(&model);
 }
 
-/* Sides named the other way round give the same model. */
+/* Exchanged names of the sides give the same model. */
 static void sides_are_turned_round(void **state) {
   (void)state;
   modal_settings settings = default_settings();
@@ -339,7 +342,7 @@ static double *read_static(hid_t file, const char *path, size_t *n) {
   return value;
 }
 
-/* /static: the deflection everywhere, and as the contact and the probes see it. */
+/* /static: the deflection at every node, at the contact and at the probes. */
 static void deflection_is_in_the_file(void **state) {
   (void)state;
   modal_settings settings = default_settings();
@@ -396,7 +399,7 @@ static void deflection_is_in_the_file(void **state) {
   unlink(out);
 }
 
-/* Reactions and nodal stresses: sums, and what ParaView sees. */
+/* Reactions and nodal stresses: their sums, and the links for ParaView. */
 static void statics_are_in_the_file(void **state) {
   (void)state;
   modal_settings settings = default_settings();
@@ -471,7 +474,7 @@ static void failures_leave_the_file_alone(void **state) {
   refused(&settings, "sector.msh", SHB_ERR_INPUT, "excitation.force");
 }
 
-/* The faces of a group whose first corner is on one side of a radius: a group of its own. */
+/* A new group of the faces of a group whose first corner lies on one side of a radius. */
 static mesh_face_set part_of(const mesh_fe *mesh, mesh_set_id id, bool outer) {
   const int     each = mesh_topology_of(mesh->kind)->face_nodes;
   mesh_face_set out  = {0, malloc((size_t)(each * mesh->set[id].n) * sizeof(int))};
@@ -489,7 +492,7 @@ static mesh_face_set part_of(const mesh_fe *mesh, mesh_set_id id, bool outer) {
   return out;
 }
 
-/* Two interfaces, of one and two patches: each as when it is alone, and the coupling symmetric. */
+/* Two interfaces of one and two patches: each as if alone, with symmetric coupling. */
 static void interfaces_are_condensed_together(void **state) {
   (void)state;
   mesh_fe             mesh       = make_sector(size, inner, BLADES, cells);
@@ -523,7 +526,7 @@ static void interfaces_are_condensed_together(void **state) {
     assert_int_equal(own->n_interfaces, 0);
     double most = 0;
     for (int k = 0; k < 3 * pairs * m; k++) most = fmax(most, fabs(own->right[k]));
-    for (int k = 0; k < 3 * pairs * m; k++) { /* signs of modes are the solver's */
+    for (int k = 0; k < 3 * pairs * m; k++) { /* the solver chooses the signs of modes */
       check_below(fabs(all->right[3 * first * m + k]) - fabs(own->right[k]), 1e-7 * most, "right");
       check_below(fabs(all->left[3 * first * m + k]) - fabs(own->left[k]), 1e-7 * most, "left");
     }

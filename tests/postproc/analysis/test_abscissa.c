@@ -10,7 +10,7 @@ static mhb_response *response(mhb_parameter parameter, bool limits) {
   return r;
 }
 
-/* Each parameter as a user reads it. */
+/* Names, units and values of each parameter. */
 static void words(void **state) {
   (void)state;
   static const struct {
@@ -38,7 +38,8 @@ static void words(void **state) {
   }
 }
 
-/* Logarithmic over decades of positive values only, never for the frequency; the unit fits the larger end. */
+/* Logarithmic only over decades of positive values, never for the frequency. The unit fits the
+ * upper end. */
 static void ranges(void **state) {
   (void)state;
   static const struct {

@@ -1,4 +1,4 @@
-/* What a convergence study says: verdicts, the cheapest, table, CSV, file, plot, section. */
+/* A convergence study: verdicts, fastest rung, table, CSV, file, plot, section. */
 #include "postproc/analysis/convergence.h"
 
 #include <unistd.h>
@@ -24,7 +24,7 @@ static void add(post_convergence *s, post_ladder ladder, const char *name, doubl
   snprintf(r->name, sizeof r->name, "%s", name);
 }
 
-/* 5 errs too much, 9 is slow, 7 is the one. */
+/* 5 is too inaccurate, 9 is slow, 7 is best. */
 static post_convergence sample(void) {
   post_convergence s = {.tolerance = 2e-3, .n_preloads = 3};
   snprintf(s.output, sizeof s.output, "tip <&> motion");
@@ -49,10 +49,10 @@ static void verdicts(void **state) {
   assert_int_equal(post_reference(&s, POST_LADDER_ACCURACY), -1);
   s.rung[1].state = POST_RUNG_INCOMPLETE;
   assert_int_equal(post_cheapest(&s, POST_LADDER_HARMONICS), 2);
-  s.rung[2].frequency = NAN; /* one error not known: nothing is */
+  s.rung[2].frequency = NAN; /* one unknown error makes the result unknown */
   assert_true(isnan(post_rung_error(&s.rung[2])));
   assert_int_equal(post_cheapest(&s, POST_LADDER_HARMONICS), -1);
-  s.rung[2].frequency = 2.2e-3; /* any of the three may be the greatest */
+  s.rung[2].frequency = 2.2e-3; /* each of the three may be the largest */
   assert_near(post_rung_error(&s.rung[2]), 2.2e-3, 0);
   assert_false(post_rung_meets(&s, &s.rung[2]));
   post_convergence_free(&s);
@@ -130,7 +130,7 @@ static void plot_and_section(void **state) {
   post_convergence_picture(&s, "a<b", &text);
   assert_has(text.text, "Speed against error: a&lt;b");
   assert_has(text.text, "tolerance 0.2 %");
-  assert_has(text.text, ">9 mm</text>"); /* a mesh by its size alone */
+  assert_has(text.text, ">9 mm</text>"); /* the label of a mesh is its size */
   assert_has_not(text.text, "nan");
   post_buffer_free(&text);
   s.note = strdup("Ends at 21.\n");

@@ -1,4 +1,4 @@
-/* Distance of curves: the definition by brute force, and what it must not depend on. */
+/* Distance of curves: the definition by brute force, and its invariances. */
 #include "postproc/analysis/curve_distance.h"
 
 #include "tests/support/check.h"
@@ -21,7 +21,7 @@ static void of_points(void **state) {
   assert_near(post_point_distance(b, a, 5e-4), 0.026, 1e-13);
 }
 
-/* The nearest place among a hundred thousand on the polyline. */
+/* The nearest of a hundred thousand points on the polyline. */
 static double brute(const double point[2], const post_polyline *line, double unit) {
   double least = INFINITY;
   for (int i = 0; i + 1 < line->n; i++)
@@ -64,7 +64,8 @@ static void of_degenerate_lines(void **state) {
   assert_near(post_chord_deviation(&same, 0, 1), 0, 0);
 }
 
-/* The distance of the true curve from the chords is told by the sag, which falls with the square of the spacing. */
+/* The estimated deviation bounds the distance of the true curve from its chords, and falls with the
+ * square of the spacing. */
 static void sag_bounds_the_interpolation(void **state) {
   (void)state;
   double        worst[2] = {0, 0};

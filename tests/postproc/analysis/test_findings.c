@@ -1,4 +1,5 @@
-/* Findings of the closed-form response: the sentences, the key figures and the lines for a terminal. */
+/* Findings of the closed-form response: the sentences, the key figures and the lines for a
+ * terminal. */
 #include "postproc/analysis/findings.h"
 
 #include "tests/support/check.h"

@@ -4,7 +4,7 @@
 #include "postproc/analysis/response_analysis.h"
 #include "tests/support/check.h"
 
-/* Largest |x(t)| over a fine scan, for comparison only. */
+/* Largest |x(t)| over a fine scan. */
 static double scan(int n, const double complex *a) {
   double most = 0;
   for (int i = 0; i < 200000; i++) {
@@ -37,7 +37,8 @@ static void peak_to_peak(void **state) {
   /* the mean does not count; one harmonic: twice its amplitude */
   const double complex plain[2] = {17, 2.385 * cexp(1.1 * I)};
   assert_near(post_peak_to_peak(1, 1, plain), 4.77, 1e-13);
-  /* cos t - a cos 3t with a > 1/9: extreme at cos^2 t = (1 + 3a)/(12a), value (1 + 3a)^1.5/(3 sqrt(3a)) */
+  /* cos t - a cos 3t with a > 1/9: extreme at cos^2 t = (1 + 3a)/(12a), value (1 + 3a)^1.5/(3
+   * sqrt(3a)) */
   const double         a       = 0.45;
   const double complex flat[4] = {0, 1, 0, -a};
   assert_near(post_peak_to_peak(1, 3, flat), 2 * pow(1 + 3 * a, 1.5) / (3 * sqrt(3 * a)), 1e-12);
@@ -70,7 +71,8 @@ static void invariance(void **state) {
   assert_true(wanted > 2 * post_semi_major_axis(3, &x[0][1], 4) * 0.7);
 }
 
-/* A curve of order 2 beside one of order 1: its own harmonics, the excitation's at k = 2, none beyond the last. */
+/* A curve of order 2 beside one of order 1: it has its own harmonics, the excitation's first at k =
+ * 2, and zero beyond the last. */
 static void orders(void **state) {
   (void)state;
   mhb_response *r = mhb_response_create(1, 0, 3);

@@ -15,7 +15,8 @@ static double luminance(const char *hex) {
   return sum;
 }
 
-/* The ramp is sequential in lightness and stands out from its page: 2 to 1 at its faintest on light, 3 to 1 on dark. */
+/* Lightness falls along the ramp. The contrast to the page is at least 2 to 1 (light) and 3 to 1
+ * (dark). */
 static void lightness_falls(void **state) {
   (void)state;
   for (int dark = 0; dark <= 1; dark++) {
@@ -51,7 +52,7 @@ static void rules_name_the_colours(void **state) {
   }
 }
 
-/* Outside 0 .. 1 the end colours hold. */
+/* Outside 0 .. 1 the colour is that of the end. */
 static void ends_are_limits(void **state) {
   (void)state;
   char inside[8], outside[8];

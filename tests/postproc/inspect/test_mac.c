@@ -1,4 +1,4 @@
-/* Two modal files against each other, made here with shapes whose MAC is known. */
+/* Comparison of two modal files with known MAC. */
 #include <unistd.h>
 
 #include "modal/model/model.h"
@@ -25,10 +25,10 @@ static int remove_folder(void **state) {
 
 typedef struct {
   double factor;  /* of the frequencies */
-  bool   swapped; /* modes 1 and 2, and the sign of the first */
-  double angle;   /* by which mode 3 is turned towards mode 1 */
+  bool   swapped; /* modes 1 and 2 exchanged, sign of the first changed */
+  double angle;   /* rotation of mode 3 towards mode 1 */
   int    pairs, nodes;
-  double stretch; /* of the mesh */
+  double stretch; /* factor of the mesh coordinates */
   char   probe[8];
 } variant;
 
@@ -101,7 +101,8 @@ static void a_file_is_like_itself(void **state) {
   free(text);
 }
 
-/* Modes that changed places, sign and frequency are found again; one that is turned has the square of the cosine. */
+/* Modes of other order, sign and frequency are matched; a rotated one has the square of the
+ * cosine. */
 static void modes_are_found_again(void **state) {
   (void)state;
   variant b = usual;
@@ -133,7 +134,7 @@ static void other_meshes_compare_what_is_condensed(void **state) {
   b.pairs = 1;
   assert_ok(compare(&b, &text));
   assert_has(text, "MAC of 3 condensed values: 1 common probe\n");
-  assert_has(text, "none alike"); /* the probe stands still in this file */
+  assert_has(text, "none alike"); /* the probe does not move in this file */
   free(text);
 }
 

@@ -17,7 +17,8 @@ static modal_model make(int n_modes) {
   return (modal_model){.n_modes = n_modes, .frequency = frequency, .damping_ratio = damping};
 }
 
-/* A file with effective masses of 1/4, 1/8, ... of 2 kg, or without; the check by inertia, or none. */
+/* A file with effective masses of 1/4, 1/8, ... of 2 kg, or without; the check by inertia, or
+ * none. */
 static void write(int n_modes, bool masses, bool check) {
   double mass[3 * MODES], inertia[MODES];
   hid_t  file;

@@ -7,7 +7,8 @@
 
 enum { MOST = 200 };
 
-/* One record of RFC 4180 from text into cells (pointers into room); returns what follows, NULL at the end. */
+/* One record of RFC 4180 from text into cells (pointers into room); returns what follows, NULL at
+ * the end. */
 static const char *record(const char *text, char *room, char *cell[MOST], int *n) {
   *n = 0;
   if (!*text) return NULL;
@@ -132,7 +133,7 @@ static void whole(void **state) {
   mhb_response_destroy(r);
 }
 
-/* A column more, and only then. */
+/* One more column, in this case only. */
 static void run_up(void **state) {
   (void)state;
   fixture_options o    = fixture_usual();
@@ -168,7 +169,7 @@ static void many_contacts(void **state) {
   mhb_response_destroy(r);
 }
 
-/* What is followed has a column, after the frequency; the frequency and n0 have theirs anyway. */
+/* A followed parameter has a column after the frequency; frequency and n0 always have theirs. */
 static void parameter(void **state) {
   (void)state;
   static const char *const wanted[MHB_N_PARAMETERS] = {NULL, "n0_N",   "scale",
