@@ -3,6 +3,7 @@
 
 #include "modal/common/session.h"
 #include "modal/stage/speed_range.h"
+#include "modal/stage/stage.h"
 #include "tests/support/box.h"
 #include "tests/support/fem.h"
 #include "tests/support/files.h"
