@@ -57,7 +57,7 @@ typedef struct {
 /* Number of contact dofs, 3 n_pairs for each side. */
 int modal_model_contact_dofs(const modal_model *model);
 
-/* Write the datasets of docs/files.md into an open file, with the attributes format and
+/* Write the datasets of docs/user/files.md into an open file, with the attributes format and
  * provenance. */
 shb_status modal_model_write(hid_t file, const modal_model *model,
                              const shb_provenance *provenance);
