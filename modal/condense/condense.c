@@ -9,8 +9,9 @@
 #include "modal/common/phases.h"
 #include "modal/condense/residual_modes.h"
 
-/* BATCH: right-hand sides per solve; more save no time but need memory. MAX_COLUMNS: columns of which
- * residual modes are made at most, all at once. MAX_NUMBERS: numbers in their vectors, at most. */
+/* BATCH: right-hand sides per solve; more save no time but need memory. MAX_COLUMNS: columns of
+ * which residual modes are made at most, all at once. MAX_NUMBERS: numbers in their vectors, at
+ * most. */
 enum { BATCH = 32, MAX_COLUMNS = 96, BLOCKS = MODAL_RESIDUAL_BLOCKS, MAX_NUMBERS = 1 << 27 };
 
 static const double TWO_PI = 2 * M_PI;
@@ -19,8 +20,8 @@ static const double TWO_PI = 2 * M_PI;
  * eigenvalue of the last mode. */
 static const double NEGLIGIBLE = 1e-10;
 
-/* Right-hand sides: contact dofs, then load patterns; and the matrices of one batch of them. V_i and
- * mu_i are those of modal/condense/residual_modes.h. */
+/* Right-hand sides: contact dofs, then load patterns; and the matrices of one batch of them. V_i
+ * and mu_i are those of modal/condense/residual_modes.h. */
 typedef struct {
   int                       batch; /* columns */
   const fem_system         *system;

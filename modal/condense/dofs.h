@@ -1,6 +1,6 @@
 /* Generalised dofs: weighted sums of nodal displacements, such as the mean of a patch, a component
  * along an axis, or the work of a load. A unit force on a dof is spread over the nodes by the same
- * weights, so displacement u_c = b_c^T u and force f_c b_c are conjugate. */
+ * weights. Displacement u_c = b_c^T u and force f_c b_c are thus conjugate. */
 #ifndef MODAL_CONDENSE_DOFS_H
 #define MODAL_CONDENSE_DOFS_H
 

@@ -1,10 +1,10 @@
 /* Block Lanczos as an eigensolver of SLEPc: EPS type MODAL_BLOCK_LANCZOS, for EPS_GHEP with
  * shift-and-invert.
  *
- * The Krylov space span{X, T X, T^2 X, ...}, T = (K - shift M)^-1 M, starts from a fixed random
- * block X and grows by one block a step. The basis is M-orthonormal with full reorthogonalisation
- * and without restarts. The run ends when all wanted Ritz pairs satisfy |T x - theta x| <=
- * tolerance theta.
+ * With T = (K - shift M)^-1 M the Krylov space is span{X, T X, T^2 X, ...}. It starts from a fixed
+ * random block X and grows by one block a step. The basis is M-orthonormal with full
+ * reorthogonalisation and without restarts. The run ends when all wanted Ritz pairs satisfy |T x -
+ * theta x| <= tolerance theta.
  *
  * Solving for a block takes about a third of the time of its columns one by one. Modes converge in
  * order, since X has a component along every mode. In exact arithmetic a repeated mode is found as

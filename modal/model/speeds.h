@@ -2,9 +2,9 @@
  * PETSc.
  *
  * In the file: groups /speed_0, /speed_1, ... hold one model each, by ascending speed; /speeds
- * holds the tracks (docs/user/own_modes.md). Track t starts at mode t of the first speed. At the next speed
- * it takes the mode with the largest MAC = (phi^T M psi)^2, every mode once. Mode signs follow the
- * tracks. */
+ * holds the tracks (docs/user/own_modes.md). Track t starts at mode t of the first speed. At the
+ * next speed it takes the mode with the largest MAC = (phi^T M psi)^2, every mode once. Mode signs
+ * follow the tracks. */
 #ifndef MODAL_MODEL_SPEEDS_H
 #define MODAL_MODEL_SPEEDS_H
 

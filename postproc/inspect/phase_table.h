@@ -7,8 +7,9 @@
 #include "mesh/base/status.h"
 #include "postproc/draw/text_buffer.h"
 
-/* Write a line for each phase and one for all; nothing if the file holds no phases (docs/user/files.md).
- * Errors: SHB_ERR_INPUT columns of different lengths; SHB_ERR_IO no memory. */
+/* Write a line for each phase and one for all; nothing if the file holds no phases
+ * (docs/user/files.md). Errors: SHB_ERR_INPUT columns of different lengths; SHB_ERR_IO no
+ * memory. */
 shb_status post_phase_table(hid_t file, post_buffer *out);
 
 #endif

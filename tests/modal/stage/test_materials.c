@@ -123,8 +123,8 @@ static void energies(void **state) {
   }
 }
 
-/* At slow rotation about z the tip displacement is u = Omega^2 int (1/E) int rho x, the inner
- * integral over the outer part of the bar. */
+/* At slow rotation about z the tip displacement is u = Omega^2 int (1/E) int rho x. The inner
+ * integral is over the outer part of the bar. */
 static void stretch_under_rotation(void **state) {
   (void)state;
   const double    speed = 40, a = share * size[0], L = size[0];
