@@ -5,7 +5,7 @@
 
 /* Append one dof of n_entries entries, to be filled by the caller. */
 static shb_status append_dof(modal_dofs *dofs, int n_entries) {
-  const size_t total = (size_t)(dofs->n_entries + n_entries);
+  const size_t total = (size_t)dofs->n_entries + (size_t)n_entries;
   int         *start = realloc(dofs->start, (size_t)(dofs->n + 2) * sizeof *start);
   if (start) dofs->start = start;
   int *node = realloc(dofs->node, (total + 1) * sizeof *node);

@@ -153,7 +153,7 @@ static PetscErrorCode normalise(const search *s, int k, double t, double *B, boo
 /* One step of the three-term recurrence. The steps are too few for a loss of orthogonality. */
 static PetscErrorCode step(search *s, int k, double t, bool *good) {
   const modal_block_basis *b    = s->b;
-  const size_t             each = (size_t)(b->p * b->p), at = (size_t)k * each;
+  const size_t             each = (size_t)b->p * (size_t)b->p, at = (size_t)k * each;
   PetscFunctionBeginUser;
   PetscCall(apply(s));
   PetscCall(modal_block_basis_apply_mass(b));
@@ -209,7 +209,7 @@ static PetscErrorCode iterate(search *s, double t, modal_missed_modes *out) {
 
 PetscErrorCode modal_missed_modes_search(const modal_block_basis *b, double t,
                                          modal_missed_modes *out) {
-  const size_t size = (size_t)b->rows * (size_t)b->p, each = (size_t)(b->p * b->p);
+  const size_t size = (size_t)b->rows * (size_t)b->p, each = (size_t)b->p * (size_t)b->p;
   const size_t columns = (size_t)b->p * MAX_STEPS;
   search       s       = {.b = b};
   PetscFunctionBeginUser;

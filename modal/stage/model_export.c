@@ -132,7 +132,7 @@ static shb_status write_receptance(hid_t file, const modal_model *model, int n, 
 
 shb_status modal_export_receptance(hid_t file, const modal_model *model) {
   const int    n     = modal_model_contact_dofs(model);
-  const size_t steps = (size_t)(SAMPLES + model->n_modes), count = steps * (size_t)n * (size_t)n;
+  const size_t steps = SAMPLES + (size_t)model->n_modes, count = steps * (size_t)n * (size_t)n;
   if (count * sizeof(double complex) > MAX_BYTES) return SHB_OK;
   double         *frequency = malloc(steps * sizeof *frequency);
   double complex *value     = malloc(count * sizeof *value + 1);

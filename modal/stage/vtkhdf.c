@@ -53,7 +53,7 @@ static shb_status write_cells(hid_t group, const mesh_fe *mesh) {
   unsigned char       *type         = malloc(n + 1);
   shb_status           status = connectivity && offset && type ? SHB_OK : failed("Connectivity");
   for (size_t e = 0; status == SHB_OK && e <= n; e++) {
-    offset[e] = (long long)(each * e);
+    offset[e] = (long long)each * (long long)e;
     if (e == n) break;
     type[e] = (unsigned char)topology->vtk;
     for (size_t i = 0; i < each; i++)

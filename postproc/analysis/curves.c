@@ -3,11 +3,11 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const double RIPPLE       = 0.02; /* relative to the peak's height */
-static const double LARGEST_GAIN = 1.05; /* of a refined peak relative to its highest point */
-static const double HAIRLINE     = 1e-5; /* relative to x, as in the solver */
-static const double ROUNDING     = 1e-9; /* relative to x: no reversal */
-static const double LEVEL        = 1e-6; /* relative to the amplitude: no visible difference */
+static const double RIPPLE         = 0.02; /* relative to the peak's height */
+static const double LARGEST_GAIN   = 1.05; /* of a refined peak relative to its highest point */
+static const double LEAST_FOLD_GAP = 1e-5; /* relative to x, as in the solver */
+static const double ROUNDING       = 1e-9; /* relative to x: no reversal */
+static const double LEVEL          = 1e-6; /* relative to the amplitude: no visible difference */
 
 /* A curve with the scales of its dimensionless arclength. */
 typedef struct {
@@ -41,13 +41,13 @@ bool post_left_range(int n, const double *x, const double *amplitude, int i) {
          fabs(amplitude[i + 1] - amplitude[i]) > LEVEL * fmax(amplitude[i], amplitude[i + 1]);
 }
 
-static bool is_parted(const curve *c, int i) {
+static bool is_interrupted(const curve *c, int i) {
   return post_left_range(c->n, c->x, c->a, i);
 }
 
 /* The same between point i and the next one in direction step. */
-static bool is_parted_to(const curve *c, int i, int step) {
-  return is_parted(c, step > 0 ? i : i - 1);
+static bool is_interrupted_to(const curve *c, int i, int step) {
+  return is_interrupted(c, step > 0 ? i : i - 1);
 }
 
 /* Divided differences of the parabola through (s[i], y[i]): y = y0 + d1 (s - s0) + d2 (s - s0)(s -
@@ -75,7 +75,7 @@ static double vertex(const double s[3], const double y[3]) {
 /* Abscissa s of the parabola through i - 1, i, i + 1, with s[1] = 0. It is the coordinate x where x
  * is monotone and not too unevenly spaced: this is exact to third order near a resonance or a
  * smooth fold. Else it is arclength. False at an end of the curve or where points coincide. */
-static bool three_points(const curve *c, int i, const double *x, double s[3]) {
+static bool parabola_abscissa(const curve *c, int i, const double *x, double s[3]) {
   if (i <= 0 || i >= c->n - 1) return false;
   double before = x[i] - x[i - 1], after = x[i + 1] - x[i], ratio = after / before;
   s[0] = -chord(c, i - 1, i);
@@ -92,7 +92,7 @@ static void refine_peak(const curve *c, int i, post_peak *peak) {
   double s[3], a[3], q[3];
   peak->at        = c->x[i];
   peak->amplitude = c->a[i];
-  if (!three_points(c, i, c->x, s) || s[2] > -10 * s[0] || -s[0] > 10 * s[2]) return;
+  if (!parabola_abscissa(c, i, c->x, s) || s[2] > -10 * s[0] || -s[0] > 10 * s[2]) return;
   for (int k = 0; k < 3; k++) {
     a[k] = c->a[i - 1 + k] / c->a[i];
     q[k] = -1 / fmax(a[k] * a[k], 1e-30);
@@ -117,7 +117,7 @@ static double crossing(const curve *c, const post_peak *peak, int step, double l
   double from = peak->at, sign = 0;
   for (int i = peak->point; i + step >= 0 && i + step < c->n; i += step) {
     double f0 = c->x[i], f1 = c->x[i + step], a0 = c->a[i], a1 = c->a[i + step];
-    if (is_parted_to(c, i, step)) return NAN;
+    if (is_interrupted_to(c, i, step)) return NAN;
     if (i == peak->point) { /* the refined peak lies within a point of here */
       f0 = from;
       a0 = peak->amplitude;
@@ -149,8 +149,8 @@ static double prominence(const curve *c, int i) {
   double deeper = c->a[i];
   for (int step = -1; step <= 1; step += 2) {
     double valley = c->a[i];
-    for (int j = i + step; j >= 0 && j < c->n && c->a[j] <= c->a[i] && !is_parted_to(c, j, -step);
-         j += step)
+    for (int j = i + step;
+         j >= 0 && j < c->n && c->a[j] <= c->a[i] && !is_interrupted_to(c, j, -step); j += step)
       valley = fmin(valley, c->a[j]);
     deeper = step < 0 ? valley : fmax(deeper, valley);
   }
@@ -161,7 +161,7 @@ static double prominence(const curve *c, int i) {
  * fall must exceed a ripple, except for the highest point. */
 static bool is_maximum(const curve *c, int i, int top) {
   if (i <= 0 || i >= c->n - 1 || !(c->a[i] > c->a[i - 1])) return false;
-  if (is_parted(c, i - 1) || is_parted(c, i)) return false;
+  if (is_interrupted(c, i - 1) || is_interrupted(c, i)) return false;
   int j = i + 1;
   while (j < c->n - 1 && c->a[j] == c->a[i]) j++;
   return c->a[j] < c->a[i] && prominence(c, i) >= (i == top ? LEVEL : RIPPLE) * c->a[i];
@@ -195,7 +195,7 @@ static int edge_point(const curve *c, int top) {
   if (c->n == 0 || !(c->a[top] > 0) || is_closed(c)) return -1;
   double least = (1 - LEVEL) * c->a[top];
   if (c->a[0] >= least) return 0;
-  if (is_parted(c, top) || is_parted(c, top - 1)) return top;
+  if (is_interrupted(c, top) || is_interrupted(c, top - 1)) return top;
   if (c->a[top] == c->a[c->n - 1]) return top;
   return c->a[c->n - 1] >= least ? c->n - 1 : -1;
 }
@@ -242,7 +242,7 @@ static bool is_same(const curve *c, int i, int j) {
 /* Direction in which x leaves point i in direction step; 0 at the end of the curve or of the
  * range. */
 static int leaving(const curve *c, int i, int step) {
-  for (int j = i + step; j >= 0 && j < c->n && !is_parted_to(c, j, -step); j += step)
+  for (int j = i + step; j >= 0 && j < c->n && !is_interrupted_to(c, j, -step); j += step)
     if (!is_same(c, i, j)) return c->x[j] > c->x[i] ? 1 : -1;
   return 0;
 }
@@ -262,14 +262,14 @@ static void refine_fold(const curve *c, int i, post_fold *fold) {
   double s[3];
   fold->at        = c->x[i];
   fold->amplitude = c->a[i];
-  if (!three_points(c, i, c->a, s)) return;
+  if (!parabola_abscissa(c, i, c->a, s)) return;
   double at       = vertex(s, c->x + i - 1);
   fold->at        = parabola(s, c->x + i - 1, at);
   fold->amplitude = parabola(s, c->a + i - 1, at);
 }
 
 /* True for a flagged point at which x does not turn: rounding moved the turn to a neighbour. */
-static bool lost_its_turn(const curve *c, const int *special, int i) {
+static bool turn_moved(const curve *c, const int *special, int i) {
   return special[i] == 1 && sense(c, i) == 0;
 }
 
@@ -277,7 +277,7 @@ static bool lost_its_turn(const curve *c, const int *special, int i) {
 static bool is_fold(const curve *c, const int *special, int i) {
   if (special && special[i] == 1) return true;
   if (!turning(c, i)) return false;
-  return !special || !(lost_its_turn(c, special, i - 1) || lost_its_turn(c, special, i + 1));
+  return !special || !(turn_moved(c, special, i - 1) || turn_moved(c, special, i + 1));
 }
 
 static post_fold fold_at(const curve *c, int i) {
@@ -289,12 +289,12 @@ static post_fold fold_at(const curve *c, int i) {
 }
 
 /* Drop neighbouring pairs too close for a visible jump; returns the number left. */
-static int drop_hairlines(const curve *c, post_fold *fold, int n) {
+static int drop_close_folds(const curve *c, post_fold *fold, int n) {
   int kept = 0;
   for (int i = 0; i < n; i++) {
     double before = kept ? fold[kept - 1].at : INFINITY;
     double size   = fmax(fabs(fold[i].at), 1e-2 * c->x_span);
-    if (fabs(fold[i].at - before) < HAIRLINE * size) {
+    if (fabs(fold[i].at - before) < LEAST_FOLD_GAP * size) {
       kept--;
     } else {
       fold[kept++] = fold[i];
@@ -316,11 +316,11 @@ shb_status post_find_folds(int n, const double *x, const double *amplitude, cons
   for (int i = 0, p = 0; i < n; i++)
     if (is_fold(&c, special, i)) out[p++] = fold_at(&c, i);
   /* before refinement, which would separate the two turns of a ripple */
-  count = drop_hairlines(&c, out, count);
+  count = drop_close_folds(&c, out, count);
   for (int i = 0; i < count; i++)
     if (!special || special[out[i].point] != 1) refine_fold(&c, out[i].point, &out[i]);
   *folds   = out;
-  *n_folds = drop_hairlines(&c, out, count);
+  *n_folds = drop_close_folds(&c, out, count);
   return SHB_OK;
 }
 

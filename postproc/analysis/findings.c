@@ -386,7 +386,7 @@ static void put_incomplete(const post_analysis *analysis, post_buffer *out) {
 }
 
 /* Curves that a sweep from the end of the range does not reach. */
-static void put_further(const post_analysis *analysis, post_buffer *out) {
+static void put_other_curves(const post_analysis *analysis, post_buffer *out) {
   int n = 0;
   for (int b = 0; b < analysis->response->n_branches; b++) {
     const mhb_branch *branch = &analysis->response->branch[b];
@@ -436,7 +436,7 @@ void post_findings(const post_analysis *analysis, post_buffer *out) {
   put_extremes(analysis, out);
   put_shift(analysis, out);
   put_folds(analysis, out);
-  put_further(analysis, out);
+  put_other_curves(analysis, out);
   put_stability(analysis, out);
   put_accuracy(analysis, out);
   post_put(out, "</ul>\n");

@@ -26,12 +26,12 @@ typedef struct {
 typedef struct {
   haddr_t address;
   char    path[NAME];
-} met;
+} visited;
 
 typedef struct {
   post_tree_style style;
   line           *lines;
-  met            *seen;
+  visited        *seen;
   int             n_lines, n_seen;
   bool            failed; /* out of memory */
 } walk;
@@ -79,7 +79,7 @@ static void attribute_text(hid_t object, const char *name, char *out, size_t siz
 }
 
 /* Attributes that are already part of a dataset's line, or HDF5's own. */
-static bool is_plumbing(const char *name) {
+static bool is_internal_attribute(const char *name) {
   static const char *const known[] = {
       "units",          "long_name",        "CLASS",     "NAME",    "REFERENCE_LIST",
       "DIMENSION_LIST", "DIMENSION_LABELS", "case_text", "settings"};
@@ -97,7 +97,7 @@ static herr_t add_attribute(hid_t object, const char *name, const H5A_info_t *in
   (void)info;
   text_room *room = data;
   char       value[ATTRIBUTE];
-  if (is_plumbing(name)) return 0;
+  if (is_internal_attribute(name)) return 0;
   attribute_text(object, name, value, sizeof value);
   size_t used = strlen(room->out);
   if (*value && used + 4 < room->size)
@@ -187,18 +187,18 @@ static bool same_series(const char *a, const char *b) {
 }
 
 /* First path of an object that was found before, or NULL; the object is then remembered. */
-static const char *met_before(walk *w, hid_t object) {
+static const char *visited_before(walk *w, hid_t object) {
   H5O_info_t info;
   if (H5Oget_info(object, &info) < 0 || info.rc < 2) return NULL;
   for (int i = 0; i < w->n_seen; i++)
     if (w->seen[i].address == info.addr) return w->seen[i].path;
-  met *seen = realloc(w->seen, (size_t)(w->n_seen + 1) * sizeof *seen);
+  visited *seen = realloc(w->seen, (size_t)(w->n_seen + 1) * sizeof *seen);
   if (!seen) {
     w->failed = true;
     return NULL;
   }
   w->seen         = seen;
-  seen[w->n_seen] = (met){.address = info.addr};
+  seen[w->n_seen] = (visited){.address = info.addr};
   H5Iget_name(object, seen[w->n_seen++].path, NAME);
   return NULL;
 }
@@ -251,7 +251,7 @@ static void walk_member(walk *w, hid_t group, const char *name, const char *lead
     return;
   }
   H5I_type_t  kind  = H5Iget_type(object);
-  const char *first = met_before(w, object);
+  const char *first = visited_before(w, object);
   l->group          = kind == H5I_GROUP;
   if (first) {
     snprintf(l->about, sizeof l->about, "= %s", first);

@@ -139,14 +139,14 @@ static void name_limits(const post_analysis *analysis, const post_plot *plot) {
   double                  peak[2], centre[2];
   for (int i = 0; i < 2; i++) {
     peak[i]   = (limit[i]->at - range[0]) / (range[1] - range[0]) * plot->width;
-    centre[i] = fmin(fmax(peak[i], NAME / 2), plot->width - NAME / 2);
+    centre[i] = fmin(fmax(peak[i], NAME / 2.0), plot->width - NAME / 2.0);
   }
   const int first = peak[0] > peak[1], second = 1 - first;
   if (limit[0]->amplitude > 0 && limit[1]->amplitude > 0 && centre[second] - centre[first] < NAME) {
     double middle  = (centre[0] + centre[1]) / 2;
     middle         = fmin(fmax(middle, NAME), plot->width - NAME);
-    centre[first]  = middle - NAME / 2;
-    centre[second] = middle + NAME / 2;
+    centre[first]  = middle - NAME / 2.0;
+    centre[second] = middle + NAME / 2.0;
   }
   for (int i = 0; i < 2; i++) {
     const double move[2] = {centre[i] - peak[i], -ABOVE};
