@@ -4,7 +4,7 @@
 
 #include <stdbool.h>
 
-#include "cases/schema/case.h"
+#include "cases/parse/case_file.h"
 #include "mesh/base/publish.h"
 #include "mesh/base/status.h"
 

@@ -2,7 +2,7 @@
 #ifndef CASES_COMMANDS_LOAD_MODEL_H
 #define CASES_COMMANDS_LOAD_MODEL_H
 
-#include "cases/schema/case.h"
+#include "cases/parse/case_file.h"
 #include "mhb/structure/speed_model.h"
 
 typedef struct {

@@ -7,6 +7,8 @@
 
 #include "cases/commands/subprocess.h"
 #include "cases/parse/damping.h"
+#include "cases/schema/case.h"
+#include "cases/schema/case_paths.h"
 
 enum { N_STAGES = 4 };
 

@@ -5,7 +5,7 @@
 #include <stdio.h>
 
 #include "cases/commands/command.h"
-#include "cases/schema/case.h"
+#include "cases/parse/case_file.h"
 
 enum { RUN_ALL = CASE_MESH | CASE_MODAL | CASE_MHB | CASE_POST };
 

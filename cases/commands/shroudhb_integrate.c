@@ -9,7 +9,9 @@
 #include "cases/commands/load_model.h"
 #include "cases/commands/up_to_date.h"
 #include "cases/schema/case.h"
+#include "cases/schema/case_paths.h"
 #include "mesh/base/progress.h"
+#include "mesh/base/publish.h"
 #include "mhb/integration/integration_sweep.h"
 
 static const char usage[] =

@@ -6,7 +6,10 @@
 
 #include "cases/commands/command.h"
 #include "cases/schema/case.h"
+#include "cases/schema/case_paths.h"
+#include "cases/schema/stage_settings.h"
 #include "mesh/base/progress.h"
+#include "mesh/base/publish.h"
 #include "mesh/blade/airfoil.h"
 #include "mesh/blade/blade.h"
 #include "mesh/core/face_pairing.h"

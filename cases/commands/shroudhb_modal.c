@@ -8,6 +8,8 @@
 #include "cases/commands/command.h"
 #include "cases/commands/up_to_date.h"
 #include "cases/schema/case.h"
+#include "cases/schema/case_paths.h"
+#include "mesh/base/publish.h"
 #include "modal/common/session.h"
 #include "modal/stage/stage.h"
 

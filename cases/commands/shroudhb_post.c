@@ -6,8 +6,9 @@
 
 #include "cases/commands/command.h"
 #include "cases/commands/up_to_date.h"
-#include "cases/converge/converge.h"
 #include "cases/schema/case.h"
+#include "cases/schema/case_paths.h"
+#include "cases/schema/converge_settings.h"
 #include "mesh/base/progress.h"
 #include "postproc/inspect/inspect.h"
 #include "postproc/inspect/mac.h"

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cases/schema/stage_settings.h"
+#include "mesh/base/publish.h"
 #include "modal/hdf5/h5.h"
 
 /* A line for a load's field, if it is one. */

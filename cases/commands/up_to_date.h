@@ -4,7 +4,7 @@
 
 #include <stdbool.h>
 
-#include "cases/schema/case.h"
+#include "cases/parse/case_file.h"
 
 /* All that the output of stage depends on: its keys and the contents of its input file. malloc'ed *text. SHB_ERR_IO. */
 shb_status fresh_settings(const case_file *file, case_stage stage, const char *input, char **text);

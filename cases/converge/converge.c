@@ -2,12 +2,16 @@
 
 #include <dirent.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "cases/commands/up_to_date.h"
 #include "cases/converge/ladders.h"
+#include "cases/schema/case_paths.h"
+#include "cases/schema/converge_settings.h"
+#include "mesh/base/publish.h"
 #include "postproc/report/convergence_chart.h"
 
 static bool has_mode(const study *s, const char *mode) {

@@ -3,12 +3,7 @@
 #define CASES_CONVERGE_CONVERGE_H
 
 #include "cases/commands/command.h"
-#include "cases/schema/case.h"
-
-enum { CONVERGE_STAGES = CASE_MESH | CASE_MODAL | CASE_MHB | CASE_CONVERGE };
-
-/* All that a study depends on, to be compared with what it was made from; malloc'ed. SHB_ERR_IO. */
-shb_status converge_settings(const case_file *file, char **text);
+#include "cases/parse/case_file.h"
 
 /* Run the ladders (options->mode "no-mesh", "finer" or NULL), print table and conclusion, write NAME.converge.{h5,csv,svg}.
  * Interrupted: reports what is finished. Returns SHB_OK, SHB_NOT_CONVERGED (see the usage text), SHB_INTERRUPTED or an error. */

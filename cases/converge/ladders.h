@@ -5,7 +5,7 @@
 #include "cases/commands/command.h"
 #include "cases/converge/mesh_variant.h"
 #include "cases/converge/rung.h"
-#include "cases/schema/case.h"
+#include "cases/parse/case_file.h"
 #include "mesh/base/progress.h"
 #include "modal/model/model.h"
 #include "postproc/analysis/convergence.h"

@@ -2,12 +2,16 @@
 
 #include <errno.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
 #include "cases/commands/subprocess.h"
 #include "cases/converge/resized_case.h"
+#include "cases/schema/case.h"
+#include "cases/schema/case_paths.h"
+#include "mesh/base/publish.h"
 #include "modal/hdf5/h5.h"
 #include "postproc/draw/text_buffer.h"
 

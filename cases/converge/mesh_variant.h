@@ -3,7 +3,7 @@
 #define CASES_CONVERGE_MESH_VARIANT_H
 
 #include "cases/commands/command.h"
-#include "cases/schema/case.h"
+#include "cases/parse/case_file.h"
 
 typedef struct {
   double factor;          /* of the case's element sizes */

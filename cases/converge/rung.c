@@ -1,9 +1,11 @@
 #include "cases/converge/rung.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/publish.h"
 #include "postproc/draw/text_buffer.h"
 
 void rung_words(const rung_setting *s, char words[RUNG_SETTING_WORDS][RUNG_WORD]) {

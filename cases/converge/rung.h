@@ -8,7 +8,7 @@
 #ifndef CASES_CONVERGE_RUNG_H
 #define CASES_CONVERGE_RUNG_H
 
-#include "cases/schema/case.h"
+#include "cases/parse/case_file.h"
 #include "mhb/response/response.h"
 #include "postproc/analysis/outputs.h"
 

@@ -15,7 +15,9 @@
 #include "cases/converge/compare.h"
 #include "cases/converge/matched_point.h"
 #include "cases/converge/rung.h"
+#include "cases/schema/case.h"
 #include "mesh/base/progress.h"
+#include "mesh/base/publish.h"
 #include "mhb/branches/forced_response.h"
 #include "postproc/analysis/curves.h"
 

@@ -7,7 +7,7 @@
 #include <stddef.h>
 #include <stdio.h>
 
-#include "cases/schema/case.h"
+#include "cases/parse/case_file.h"
 
 /* What a key holds in the file, and (after the colon) what its slot is. */
 typedef enum {
@@ -131,5 +131,8 @@ void case_append(char *buffer, size_t size, const char *format, ...)
 
 /* "0 to 10", "above 0", ... ; "" for any */
 void case_key_range(const case_key *key, char *text, size_t size);
+
+/* Every key with unit, range, default and help. */
+void case_print_keys(FILE *out);
 
 #endif

@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "cases/parse/units.h"
-#include "cases/parse/value.h"
 
 static bool preload_room(const case_reading *c, const case_node *node, int n) {
   if (n >= 1 && n <= MHB_MAX_PRELOADS) return true;

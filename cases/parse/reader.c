@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "cases/parse/value.h"
+#include "cases/parse/value_context.h"
 
 static int index_of(const case_reader *r, const char *path) {
   const case_key *key = case_key_find(r->keys, path);

@@ -7,7 +7,6 @@
 #include "cases/parse/diagnostics.h"
 #include "cases/parse/keys.h"
 #include "cases/parse/yaml.h"
-#include "cases/schema/case.h"
 
 enum { CASE_MAX_KEYS = 192, CASE_MAX_BLOCKS = 32 };
 

@@ -31,4 +31,11 @@ bool case_reading_numbers(const case_reading *c, const char *path, const case_no
 /* slot: int */
 bool case_reading_integer(const case_reading *c, const case_node *node, void *slot);
 
+/* What the key wants, for messages: "a number in N/m", "one of neighbour, ground", "[x, y, z] in m". */
+void case_value_expected(const case_key *key, char *text, size_t size);
+
+/* A pair [number in unit, phase] (phase optional, rad); for load factors and signals. */
+bool case_value_polar(case_issues *issues, const char *path, const case_node *node,
+                      const char *unit, double polar[2]);
+
 #endif

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "cases/parse/unused_keys.h"
+#include "cases/schema/case_paths.h"
 #include "cases/schema/interfaces.h"
 #include "cases/schema/loads.h"
 #include "cases/schema/materials.h"

@@ -1,9 +1,11 @@
 #include "cases/schema/interfaces.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "cases/parse/value.h"
+#include "cases/parse/value_context.h"
 #include "mhb/problem/parameter.h"
 
 static const char list_path[] = "contact.interfaces", vary_path[] = "mhb.vary.interface";

@@ -6,6 +6,7 @@
 
 #include "cases/parse/reader.h"
 #include "cases/parse/value.h"
+#include "cases/parse/value_context.h"
 
 static const case_key signal_rows[] = {
     {"motion.v", CASE_SIGNAL, "m", .required = true, .stages = CASE_MHB},

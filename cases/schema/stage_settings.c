@@ -1,11 +1,13 @@
-/* The settings of a stage, key by key in SI: what decides whether a stage must run again. */
+#include "cases/schema/stage_settings.h"
+
 #include <complex.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "cases/parse/damping.h"
 #include "cases/parse/groups.h"
-#include "cases/parse/value.h"
+#include "cases/parse/keys.h"
 
 static void print_numbers(FILE *out, int n, const double *value) {
   for (int i = 0; i < n; i++) fprintf(out, "%s%.17g", i ? " " : "", value[i]);
@@ -134,7 +136,8 @@ static void print_list(FILE *out, const case_key *list, const case_file *file, i
     }
 }
 
-void case_value_print(FILE *out, const case_key *key, const case_file *file, int stages) {
+/* One row of the key table; of a list the rows that one of stages depends on. */
+static void print_key(FILE *out, const case_key *key, const case_file *file, int stages) {
   if (strstr(key->path, "[].")) return; /* printed by its list */
   if (key->type == CASE_LIST) {
     print_list(out, key, file, stages);
@@ -151,7 +154,7 @@ char *case_settings(const case_file *file, case_stage stage) {
   case_keys keys = case_key_table();
   for (int i = 0; i < keys.n; i++)
     if ((keys.key[i].stages & (int)stage) && case_key_applies(&keys.key[i], file))
-      case_value_print(out, &keys.key[i], file, (int)stage);
+      print_key(out, &keys.key[i], file, (int)stage);
   if (fclose(out) != 0) {
     free(text);
     return NULL;

@@ -5,7 +5,7 @@ foreach(noun case faults stage_settings motion)
   shb_test(cases/schema ${noun} fast shb_case)
 endforeach()
 
-shb_test(cases/commands hysteresis_picture fast shb_loops)
+shb_test(cases/commands hysteresis_picture fast shb_cases_commands)
 add_test(NAME cases.commands.commands
   COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/cases/commands/test_commands.sh $<TARGET_FILE:shroudhb>)
 add_test(NAME cases.commands.contact
@@ -28,9 +28,7 @@ shb_test(cases/converge converge fast shb_post tests_models)
 target_compile_definitions(test_cases_converge_converge PRIVATE
   SHROUDHB="$<TARGET_FILE:shroudhb>")
 add_dependencies(test_cases_converge_converge programs)
-shb_test(cases/converge resized_case fast shb_case shb_post)
-target_sources(test_cases_converge_resized_case PRIVATE
-  ${PROJECT_SOURCE_DIR}/cases/converge/resized_case.c)
+shb_test(cases/converge resized_case fast shb_cases_converge)
 
 # shb_scene_test(noun scene libraries...): a shipped scene from mesh to curves.
 function(shb_scene_test noun scene)

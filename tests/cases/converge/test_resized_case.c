@@ -1,5 +1,7 @@
 /* Another mesh size in the text of a case: two numbers change and nothing else. */
 #include "cases/converge/resized_case.h"
+#include "cases/schema/case.h"
+#include "cases/schema/stage_settings.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -12,6 +12,8 @@
 #include <cmocka.h>
 
 #include "cases/schema/case.h"
+#include "cases/schema/case_paths.h"
+#include "cases/schema/stage_settings.h"
 #include "tests/support/scratch.h"
 
 enum { ALL = CASE_MESH | CASE_MODAL | CASE_MHB };

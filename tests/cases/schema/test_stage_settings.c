@@ -10,6 +10,7 @@
 #include <cmocka.h>
 
 #include "cases/schema/case.h"
+#include "cases/schema/stage_settings.h"
 #include "tests/support/scratch.h"
 
 enum { ALL = CASE_MESH | CASE_MODAL | CASE_MHB | CASE_POST, N_STAGES = 3 };
