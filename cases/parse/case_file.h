@@ -77,7 +77,7 @@ typedef struct {
   double           tolerance, band; /* with modes: auto; Hz */
   modal_damping    damping;
   modal_check_kind check;
-  bool             full_integration; /* of hexahedra: stiffness with 3x3x3 points */
+  bool             full_integration; /* modal.integration: full */
   char            *modal_file;       /* resolved path of modal.file, or NULL */
 
   int        engine_order;

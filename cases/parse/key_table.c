@@ -112,7 +112,7 @@ static const case_key table[] = {
     {"modal.check", CASE_CHOICE, "", .words = "auto inertia never", .fallback = "auto", AT(check), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
      .help = "that no mode is missing: by a search of what the modes leave out (auto), or by counting with a second factorisation"},
     {"modal.integration", CASE_SWITCH, "", .words = "reduced full", .fallback = "reduced", AT(full_integration), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
-     .help = "stiffness of hexahedra with 2x2x2 points, or 3x3x3; tetrahedra: no difference"},
+     .help = "points of the stiffness: hexahedra 2x2x2 or 3x3x3, curved tetrahedra 4 or 27"},
     {"modal.file", CASE_FILE_NAME, "", AT(modal_file), .stages = CASE_MHB, .when = CASE_IF_MODAL_FILE,
      .help = "modal file to use; mesh, material, rotor.speed and the load are then not needed"},
 
