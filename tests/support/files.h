@@ -15,21 +15,7 @@
 #include <cmocka.h>
 
 #include "modal/hdf5/h5.h"
-
-#define assert_ok(call)                                                        \
-  do {                                                                         \
-    shb_status ok_ = (call);                                                   \
-    if (ok_ != SHB_OK) fail_msg("%s: %d: %s", #call, (int)ok_, shb_message()); \
-  } while (0)
-
-/* call must fail with code and a message of one line that holds text */
-#define assert_refused(call, code, text)                                                       \
-  do {                                                                                         \
-    shb_status refused_ = (call);                                                              \
-    if (refused_ != (code)) fail_msg("%s gave %d, not %d", #call, (int)refused_, (int)(code)); \
-    if (!strstr(shb_message(), (text)) || strchr(shb_message(), '\n'))                         \
-      fail_msg("\"%s\" does not say \"%s\"", shb_message(), (text));                           \
-  } while (0)
+#include "tests/support/check.h"
 
 static char scratch_folder[256];
 

@@ -11,14 +11,8 @@
 #include <cmocka.h>
 
 #include "mhb/response/response.h"
+#include "tests/support/check.h"
 #include "tests/support/scratch.h"
-
-#define assert_within(value, wanted, relative)                                       \
-  do {                                                                               \
-    double v_ = (value), w_ = (wanted);                                              \
-    if (!(fabs(v_ - w_) <= (relative)*fabs(w_)))                                     \
-      fail_msg("%s = %.6g, not %.6g (%.2g off)", #value, v_, w_, fabs(v_ / w_ - 1)); \
-  } while (0)
 
 typedef struct {
   double frequency, amplitude; /* Hz, m */
