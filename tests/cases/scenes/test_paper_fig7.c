@@ -7,6 +7,7 @@
 #include "mhb/balance/newton.h"
 #include "mhb/integration/inertia_modes.h"
 #include "postproc/analysis/outputs.h"
+#include "tests/support/check.h"
 #include "tests/support/scene.h"
 
 enum { PRELOADS = 7, FREQUENCIES = 24 };
@@ -19,10 +20,6 @@ static mhb_response *three, *one, *time_domain;
 static case_file     file;
 static modal_model   model, structure;
 
-static void check(shb_status status) {
-  if (status != SHB_OK) fail_msg("%s", shb_message());
-}
-
 static int run_scene(void **state) {
   (void)state;
   char line[3 * SCRATCH_PATH];
@@ -32,12 +29,12 @@ static int run_scene(void **state) {
   snprintf(line, sizeof line, "'%s' integrate --quiet '%s/case.yaml'", SHROUDHB, folder);
   assert_int_equal(system(line), 0);
   snprintf(line, sizeof line, "%s/paper_fig7.integration.h5", folder);
-  check(mhb_response_read(line, &time_domain));
+  assert_ok(mhb_response_read(line, &time_domain));
   snprintf(line, sizeof line, "%s/case.yaml", folder);
-  check(case_read(line, CASE_MHB, stderr, &file));
+  assert_ok(case_read(line, CASE_MHB, stderr, &file));
   snprintf(line, sizeof line, "%s/paper_fig7.modal.h5", folder);
-  check(modal_model_read(line, &model));
-  check(mhb_inertia_modes(&model, &structure));
+  assert_ok(modal_model_read(line, &model));
+  assert_ok(mhb_inertia_modes(&model, &structure));
   return 0;
 }
 
@@ -63,9 +60,9 @@ typedef struct {
 static void create_balance(const modal_model *of, int harmonics, balance *b) {
   b->settings           = file.mhb;
   b->settings.harmonics = harmonics;
-  check(mhb_balance_create(of, &b->settings, &b->residual));
-  check(mhb_newton_create(b->residual->n, &b->newton));
-  check(mhb_newton_bind(b->newton, b->residual));
+  assert_ok(mhb_balance_create(of, &b->settings, &b->residual));
+  assert_ok(mhb_newton_create(b->residual->n, &b->newton));
+  assert_ok(mhb_newton_bind(b->newton, b->residual));
 }
 
 static void destroy_balance(balance *b) {

@@ -15,6 +15,7 @@
 #include "fem/element/surface.h"
 #include "modal/common/session.h"
 #include "modal/eigen/eigen.h"
+#include "tests/support/check.h"
 #include "tests/support/scene.h"
 
 static const double two_pi = 6.28318530717958647692;
@@ -42,10 +43,6 @@ static body          whole;
 
 static void ok(PetscErrorCode code) {
   if (code != 0) fail_msg("PETSc error %d", (int)code);
-}
-
-static void check(shb_status status) {
-  if (status != SHB_OK) fail_msg("%s", shb_message());
 }
 
 /* Rows tangential, axial, radial at a point; the engine axis is x. */
@@ -124,10 +121,10 @@ static int create_body(void **state) {
   scratch_create(folder);
   scene_run(folder, SCENE, "case.yaml", "paper_fig8", &response);
   snprintf(path, sizeof path, "%s/case.yaml", folder);
-  check(case_read(path, CASE_MODAL | CASE_MHB, stderr, &whole.file));
+  assert_ok(case_read(path, CASE_MODAL | CASE_MHB, stderr, &whole.file));
   snprintf(path, sizeof path, "%s/paper_fig8.msh", folder);
-  check(mesh_fe_read(path, &whole.mesh));
-  check(mesh_fe_orient(&whole.mesh, whole.file.axis));
+  assert_ok(mesh_fe_read(path, &whole.mesh));
+  assert_ok(mesh_fe_orient(&whole.mesh, whole.file.axis));
   ok(fem_system_create(PETSC_COMM_SELF, &whole.mesh, &whole.file.material, FEM_STANDARD,
                        &whole.system));
   ok(MatConvert(whole.system.K, MATSEQAIJ, MAT_INITIAL_MATRIX, &whole.K));
@@ -253,7 +250,7 @@ static PetscErrorCode apply(Mat shell, Vec x, Vec y) {
 static Vec load_vector(const body *w, Mat A) {
   Vec     f;
   double *force = malloc(3 * (size_t)w->mesh.n_nodes * sizeof *force);
-  check(fem_load_pattern(&w->mesh, &w->file.load, w->file.probe[0].at, force));
+  assert_ok(fem_load_pattern(&w->mesh, &w->file.load, w->file.probe[0].at, force));
   ok(MatCreateVecs(A, &f, NULL));
   for (int i = 0; i < 3 * w->mesh.n_nodes; i++)
     if (w->system.row[i / 3] >= 0)
