@@ -13,17 +13,11 @@
 #include "mhb/branches/main_branch.h"
 #include "mhb/numerics/fourier.h"
 #include "mhb/structure/stiffness_check.h"
+#include "tests/support/check.h"
 #include "tests/support/solution.h"
 #include "tests/support/three_degree.h"
 
 static const double PI = 3.14159265358979323846;
-
-#define assert_near(value, wanted, tolerance)                                                  \
-  do {                                                                                         \
-    double v_ = (value), w_ = (wanted), t_ = (tolerance);                                      \
-    if (!(fabs(v_ - w_) <= t_))                                                                \
-      fail_msg("%s = %.9g, not %.9g (off by %.2e > %.2e)", #value, v_, w_, fabs(v_ - w_), t_); \
-  } while (0)
 
 static mhb_settings ground(double mu, double kv, double ku, double n0, int harmonics) {
   mhb_settings s = {.to_ground    = true,

@@ -17,14 +17,10 @@
 
 #include "mhb/branches/forced_response.h"
 #include "mhb/branches/secondary_branches.h"
+#include "tests/support/check.h"
 #include "tests/support/three_degree.h"
 
 static const double PI = 3.14159265358979323846;
-
-#define assert_below(value, bound)                                                                 \
-  do {                                                                                             \
-    if (!((value) <= (bound))) fail_msg("%s is %.3e, above %.1e", #value, value, (double)(bound)); \
-  } while (0)
 
 static mhb_settings settings(double mu, double kv, double n0, int harmonics, double from,
                              double to) {

@@ -10,16 +10,13 @@
 
 #include "mhb/branches/forced_response.h"
 #include "mhb/branches/main_branch.h"
+#include "tests/support/check.h"
 #include "tests/support/random_model.h"
 #include "tests/support/three_degree.h"
 
 static const double PI = 3.14159265358979323846;
 
 enum { PAIRS = 2, M = 4, N = 3 * PAIRS * (2 * M + 1) };
-
-static void assert_below(double value, double most) {
-  if (!(value <= most)) fail_msg("%.3e is above %.3e", value, most);
-}
 
 /* Central difference of the residual in the parameter, at fixed x. */
 static void difference(mhb_balance *b, const double *x, double value, double h, double *out) {
