@@ -4,6 +4,7 @@
 
 #include "mhb/balance/balance.h"
 #include "mhb/floquet/floquet.h"
+#include "tests/support/settings.h"
 
 typedef struct {
   mhb_settings settings;
@@ -12,9 +13,6 @@ typedef struct {
   double       omega; /* rad/s */
   mhb_solution solution;
 } periodic;
-
-/* Contact to ground: ku in both directions, engine order 0, tolerance 1e-8. */
-mhb_settings ground_settings(double mu, double kv, double ku, double n0, int harmonics);
 
 /* From a guess, or cold where it is NULL; fails the test if there is none. */
 void periodic_create(const modal_model *model, const mhb_settings *settings, double omega,
