@@ -1,5 +1,5 @@
 /* The rows of the key table. */
-#include "cases/parse/keys.h"
+#include "cases/parse/key_table.h"
 
 #include "mesh/core/file_format.h"
 
@@ -47,7 +47,7 @@ static const case_key table[] = {
     {"mesh.blade.sections[].camber", CASE_NUMBER, "m", -100, 100, .fallback = "0 m", SECTION(camber), .stages = CASE_MESH,
      .help = "height of the mean line over the chord, at most 40 % of the chord either way"},
     {"mesh.blade.sections[].twist", CASE_NUMBER, "rad", -RIGHT_ANGLE, RIGHT_ANGLE, true, true, .fallback = "0 deg", SECTION(twist), .stages = CASE_MESH,
-     .help = "stagger from the axial direction, trailing edge towards rotation; -80 to 80 deg"},
+     .help = "stagger from the axial direction; positive: trailing edge towards +tangential; -80 to 80 deg"},
     {"mesh.blade.shroud.length", CASE_NUMBER, "m", 0, 100, true, .required = true, AT(blade.shroud_length), .stages = CASE_MESH, .when = CASE_IF_BLADE,
      .help = "shroud, axial"},
     {"mesh.blade.shroud.thickness", CASE_NUMBER, "m", 0, 100, true, .required = true, AT(blade.shroud_thickness), .stages = CASE_MESH, .when = CASE_IF_BLADE,
@@ -117,7 +117,7 @@ static const case_key table[] = {
      .help = "modal file to use; mesh, material, rotor.speed and the load are then not needed"},
 
     {"excitation.engine_order", CASE_INTEGER, "", 0, 10000, .required = true, AT(engine_order), .stages = CASE_MHB, .when = CASE_IF_ORDER,
-     .help = "engine order E; the inter-blade phase is 2 pi E / blades"},
+     .help = "engine order E; the right neighbour lags by 2 pi E / blades (rotor turning towards +tangential: give blades - E)"},
     {"excitation.pressure", CASE_NUMBER, "Pa", -1e12, 1e12, .required = true, .instead = "traction, force, field or loads", AT(load.pressure), .stages = CASE_MODAL, .when = CASE_IF_PRESSURE,
      .help = "on the group load, into the surface; one of pressure, traction, force, field"},
     {"excitation.traction", CASE_VECTOR, "Pa", -1e12, 1e12, .required = true, AT(load.traction), .stages = CASE_MODAL, .when = CASE_IF_TRACTION,
@@ -153,9 +153,9 @@ static const case_key table[] = {
     {"contact.to", CASE_SWITCH, "", .words = "neighbour ground", .fallback = "neighbour", AT(mhb.to_ground), .stages = CASE_MODAL | CASE_MHB,
      .help = "what the right contact face meets"},
     {"contact.psi", CASE_NUMBER, "rad", -RIGHT_ANGLE, RIGHT_ANGLE, true, true, AT(mhb.psi), .stages = CASE_MESH | CASE_MODAL | CASE_MHB, .when = CASE_IF_PSI,
-     .help = "shroud angle; default: from the faces (parametric blade: 0)"},
+     .help = "shroud angle: turns the normal v of the right face from tangential towards axial; default: from the faces (parametric blade: 0)"},
     {"contact.phi", CASE_NUMBER, "rad", -RIGHT_ANGLE, RIGHT_ANGLE, true, true, AT(mhb.phi), .stages = CASE_MESH | CASE_MODAL | CASE_MHB, .when = CASE_IF_PHI,
-     .help = "inclination of the contact face; default: from the faces (parametric blade: 0)"},
+     .help = "inclination: turns that normal towards the engine axis; default: from the faces (parametric blade: 0)"},
     {"contact.points", CASE_COUNT, "", 1, 100000, .fallback = "1", AT(points), .stages = CASE_MODAL, .when = CASE_IF_POINTS,
      .help = "patches of the contact face, or all: one a node"},
     {"contact.mu", CASE_NUMBER, "", 0, 1e6, .required = true, AT(mhb.mu), .stages = CASE_MHB, .when = CASE_IF_INTERFACE,

@@ -2,6 +2,7 @@
 
 #include <limits.h>
 #include <stdarg.h>
+#include <stdio.h>
 #include <string.h>
 
 const case_key *case_key_find(case_keys keys, const char *path) {
@@ -10,8 +11,7 @@ const case_key *case_key_find(case_keys keys, const char *path) {
   return NULL;
 }
 
-/* What follows "block." in path; path itself for the top; NULL if path is not in block. */
-static const char *below(const char *path, const char *block) {
+const char *case_key_below(const char *path, const char *block) {
   size_t n = strlen(block);
   if (n == 0) return path;
   return strncmp(path, block, n) == 0 && path[n] == '.' ? path + n + 1 : NULL;
@@ -19,7 +19,7 @@ static const char *below(const char *path, const char *block) {
 
 bool case_key_is_block(case_keys keys, const char *path) {
   for (int i = 0; i < keys.n; i++)
-    if (below(keys.key[i].path, path)) return true;
+    if (case_key_below(keys.key[i].path, path)) return true;
   return false;
 }
 
@@ -62,9 +62,8 @@ int case_edit_distance(const char *a, const char *b) {
   return d[n][m];
 }
 
-/* First part of what follows block in path ("sections" of "mesh.blade.sections[].radius"). */
-static bool next_part(const char *path, const char *block, char part[CASE_LONGEST_WORD]) {
-  const char *rest = below(path, block);
+bool case_key_part(const char *path, const char *block, char part[CASE_LONGEST_WORD]) {
+  const char *rest = case_key_below(path, block);
   if (!rest) return false;
   size_t n = strcspn(rest, ".[");
   if (n >= CASE_LONGEST_WORD) n = CASE_LONGEST_WORD - 1;
@@ -77,7 +76,7 @@ static void list_block(case_keys keys, const char *block, char *text, size_t siz
   char part[CASE_LONGEST_WORD], last[CASE_LONGEST_WORD] = "";
   case_append(text, size, "; known here: ");
   for (int i = 0; i < keys.n; i++) {
-    if (!next_part(keys.key[i].path, block, part) || strcmp(part, last) == 0) continue;
+    if (!case_key_part(keys.key[i].path, block, part) || strcmp(part, last) == 0) continue;
     case_append(text, size, "%s%s", last[0] ? ", " : "", part);
     strcpy(last, part);
   }
@@ -88,7 +87,7 @@ bool case_key_nearest(case_keys keys, const char *block, const char *word, char 
   int  least = strlen(word) < 6 ? 2 : 1 + (int)strlen(word) / 3;
   best[0]    = '\0';
   for (int i = 0; i < keys.n; i++) {
-    if (!next_part(keys.key[i].path, block, part)) continue;
+    if (!case_key_part(keys.key[i].path, block, part)) continue;
     int distance = case_edit_distance(word, part);
     if (distance >= least || distance >= (int)strlen(part)) continue;
     least = distance;
@@ -125,59 +124,4 @@ void case_key_range(const case_key *key, char *text, size_t size) {
   }
   case_append(text, size, key->above ? "above %g" : "%g", key->least);
   case_append(text, size, key->below ? " and below %g" : " to %g", key->most);
-}
-
-static const char *type_name(const case_key *key) {
-  static const char *const names[CASE_N_TYPES] = {[CASE_NUMBER]    = "number",
-                                                  [CASE_INTEGER]   = "integer",
-                                                  [CASE_COUNT]     = "integer or all",
-                                                  [CASE_AUTO]      = "integer or auto",
-                                                  [CASE_CHOICE]    = "word",
-                                                  [CASE_SWITCH]    = "word",
-                                                  [CASE_ACCURACY]  = "word or number",
-                                                  [CASE_WORD]      = "word",
-                                                  [CASE_LABEL]     = "word",
-                                                  [CASE_FILE_NAME] = "file",
-                                                  [CASE_VECTOR]    = "[x, y, z]",
-                                                  [CASE_TRIPLE]    = "number or list",
-                                                  [CASE_INTERVAL]  = "[from, to]",
-                                                  [CASE_SWEEP]     = "[from, to] or number",
-                                                  [CASE_STIFFNESS] = "number or list",
-                                                  [CASE_PRELOADS]  = "number(s)",
-                                                  [CASE_PLACES]    = "list",
-                                                  [CASE_ORDERS]    = "list",
-                                                  [CASE_POINTS]    = "integer or list",
-                                                  [CASE_FACTORS]   = "mapping",
-                                                  [CASE_PROBES]    = "mapping",
-                                                  [CASE_DAMPING]   = "number(s), mapping",
-                                                  [CASE_GROUPS]    = "mapping",
-                                                  [CASE_LIST]      = "list",
-                                                  [CASE_SIGNAL]    = "list"};
-  return names[key->type];
-}
-
-static void print_key(const case_key *key, FILE *out) {
-  char range[128];
-  case_key_range(key, range, sizeof range);
-  if (key->words) snprintf(range, sizeof range, "%s", key->words);
-  for (char *c = range; key->words && *c; c++)
-    if (*c == ' ') *c = '|';
-  const char *fallback = key->fallback ? key->fallback : key->required ? "required" : "-";
-  fprintf(out, "%-31s %-14s %-6s %-30s %-16s %s\n", key->path, type_name(key),
-          key->unit[0] ? key->unit : "-", range[0] ? range : "-", fallback, key->help);
-}
-
-void case_print_keys(FILE *out) {
-  case_keys keys = case_key_table();
-  fprintf(out, "%-31s %-14s %-6s %-30s %-16s %s\n", "key", "value", "unit", "range (in SI)",
-          "default", "meaning");
-  for (int i = 0; i < keys.n; i++) {
-    size_t n = strcspn(keys.key[i].path, ".");
-    if (i == 0 || strncmp(keys.key[i].path, keys.key[i - 1].path, n + 1) != 0) fputc('\n', out);
-    print_key(&keys.key[i], out);
-  }
-  fputs(
-      "\nNumbers may carry a unit (6000 rpm, 35 deg, 2 MN/m, 7.85 g/cm3, 0.2 %); bare numbers are "
-      "SI.\n",
-      out);
 }

@@ -5,7 +5,6 @@
 
 #include <stdbool.h>
 #include <stddef.h>
-#include <stdio.h>
 
 #include "cases/parse/case_file.h"
 
@@ -100,20 +99,23 @@ typedef struct {
   const case_key *key; /* [n], in the order of the manual; keys of a block follow each other */
 } case_keys;
 
-case_keys case_key_table(void);
-
 /* Row of path (with "[]" for indices), or NULL. */
 const case_key *case_key_find(case_keys keys, const char *path);
 
 /* Whether path is a block of keys: a proper prefix of some row. */
 bool case_key_is_block(case_keys keys, const char *path);
 
-bool case_key_applies(const case_key *key, const case_file *file);
+/* The rest of path below a block ("" for the top, which gives path itself); NULL if path is not in it. */
+const char *case_key_below(const char *path, const char *block);
+
+enum { CASE_LONGEST_WORD = 64 };
+
+/* First part of path below a block: "sections" of "mesh.blade.sections[].radius" in "mesh.blade". False if path
+ * is not in the block. */
+bool case_key_part(const char *path, const char *block, char part[CASE_LONGEST_WORD]);
 
 /* The last part of a path. */
 const char *case_key_leaf(const char *path);
-
-enum { CASE_LONGEST_WORD = 64 };
 
 /* The part of block ("" for the top) most like word; false if none is. best holds CASE_LONGEST_WORD bytes. */
 bool case_key_nearest(case_keys keys, const char *block, const char *word, char *best);
@@ -131,8 +133,5 @@ void case_append(char *buffer, size_t size, const char *format, ...)
 
 /* "0 to 10", "above 0", ... ; "" for any */
 void case_key_range(const case_key *key, char *text, size_t size);
-
-/* Every key with unit, range, default and help. */
-void case_print_keys(FILE *out);
 
 #endif

@@ -4,6 +4,7 @@
 #include <stdarg.h>
 #include <string.h>
 
+#include "cases/parse/key_table.h"
 #include "cases/parse/value.h"
 #include "cases/parse/value_context.h"
 

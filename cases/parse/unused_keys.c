@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "cases/parse/key_table.h"
+
 /* What would have to be for a key of this condition to be read; NULL: not told here. */
 static const char *needed(case_condition when) {
   switch (when) {

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "cases/parse/diagnostics.h"
+#include "cases/parse/key_table.h"
 #include "cases/parse/reader.h"
 #include "cases/parse/yaml.h"
 #include "cases/schema/checks.h"

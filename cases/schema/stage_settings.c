@@ -7,6 +7,7 @@
 
 #include "cases/parse/damping.h"
 #include "cases/parse/groups.h"
+#include "cases/parse/key_table.h"
 #include "cases/parse/keys.h"
 
 static void print_numbers(FILE *out, int n, const double *value) {

@@ -1,4 +1,5 @@
-/* The exact derivative of friction, carried along the lap (docs/contact.md, Derivative). */
+/* The exact derivative of friction, carried along the lap.
+ * Derivation: docs/theory/contact.md, Exact sensitivities. */
 #include <math.h>
 #include <string.h>
 

@@ -8,7 +8,7 @@
  * are interpolated by cubic splines, fourth order. The model at a speed: K = U diag(w_i^2) U^T, Phi = Q U, zeta_i = u_i^T Z u_i.
  * Without overlaps in the file V takes mode[t] to place t, the tracks: veering pairs then need a speed where both shapes are mixed.
  * Modes that change places with one left out are left out too: they answer statically (modal/model/reduce.h).
- * Derivation, orders: docs/rotation.md. */
+ * Derivation, orders: docs/theory/rotation.md. */
 #ifndef MHB_STRUCTURE_SPEED_TABLE_H
 #define MHB_STRUCTURE_SPEED_TABLE_H
 

@@ -21,6 +21,7 @@
 
 #include "mesh/base/progress.h"
 #include "mhb/branches/main_branch.h"
+#include "mhb/continuation/first_solution.h"
 #include "precision.h"
 #include "shroud_face.h"
 #include "tests/support/three_degree.h"

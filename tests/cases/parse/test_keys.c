@@ -8,6 +8,8 @@
 
 #include <cmocka.h>
 
+#include "cases/parse/key_listing.h"
+#include "cases/parse/key_table.h"
 #include "cases/parse/keys.h"
 #include "cases/parse/units.h"
 #include "cases/parse/value.h"

@@ -15,8 +15,8 @@
 
 #include "mhb/branches/forced_response.h"
 #include "mhb/branches/main_branch.h"
-#include "mhb/continuation/first_solution.h"
 #include "mhb/continuation/event_location.h"
+#include "mhb/continuation/first_solution.h"
 #include "tests/support/check.h"
 #include "tests/support/random_model.h"
 #include "tests/support/solution.h"
