@@ -1,4 +1,4 @@
-"""CPU seconds of each test and the label that fits it: what the labels in the tests.cmake files follow.
+"""CPU seconds of each test and the label that fits it; the tests.cmake files follow it.
 
 cpu_times.py BUILD [REGEX]   runs the tests of a build folder one by one, without the house tests
 
@@ -14,7 +14,7 @@ import resource
 import subprocess
 import sys
 
-UNIT, SLOW = 1.0, 60.0
+UNIT, SLOW = 1.0, 20.0
 
 
 def tests_of(build):
@@ -46,9 +46,9 @@ def main(build, pattern='.'):
         fits = 'unit' if seconds < UNIT else 'integration' if seconds < SLOW else 'slow'
         now = ' '.join(properties.get('LABELS', []))
         total[fits] = total.get(fits, 0) + seconds
-        failed = '' if code == properties.get('SKIP_RETURN_CODE', 0) or code == 0 else f' exit {code}'
-        print(f'{seconds:8.2f} {fits:12}{name}{failed}{"" if now == fits else f", now {now}"}',
-              flush=True)
+        failed = f' exit {code}' if code not in (0, properties.get('SKIP_RETURN_CODE', 0)) else ''
+        other = f', now {now}' if now != fits else ''
+        print(f'{seconds:8.2f} {fits:12}{name}{failed}{other}', flush=True)
     for label, seconds in total.items():
         print(f'{seconds:8.2f} {label} together')
 

@@ -13,8 +13,8 @@ Faults, one line each, with the file and line of the include:
   readme    a room has no README.md
   size      a room has fewer than 3 or more than 14 modules
 
-One circle is allowed: a private header and its owner. A private header is a header without source
-named internal.h (its owner is the module named like the room) or NAME_internal.h (its owner is NAME).
+One circle is allowed: a private header and its owner. A private header is a header without source,
+named internal.h (its owner is the module named like the room) or NAME_internal.h (its owner: NAME).
 It may include its owner; only its own room includes it.
 """
 import os
@@ -138,7 +138,7 @@ def check_never(tree, rooms):
 
 
 def strong_components(edges):
-    """Sets of nodes that reach each other (Tarjan 1972, without recursion by two depth-first walks)."""
+    """Sets of nodes that reach each other, by two depth-first walks (Kosaraju, Sharir 1981)."""
     def walk(graph, start, seen):
         order, stack = [], [(start, iter(sorted(graph.get(start, ()))))]
         seen.add(start)
