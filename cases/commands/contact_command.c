@@ -92,17 +92,18 @@ static char *title(const char *path) {
 }
 
 static shb_status draw(const char *path, const char *svg, const evaluation *e) {
-  contact_period period;
-  SHB_TRY(period_create(e->contact, &e->law, e->m, e->motion, e->info, &period));
+  sampled_period period;
+  SHB_TRY(sampled_period_create(e->contact, &e->law, e->m, e->motion, e->info, &period));
   char       *name = title(path);
   post_buffer out  = {0};
-  loops_draw(
-      &(loops_view){.name = name ? name : "", .law = &e->law, .info = e->info, .period = &period},
+  hysteresis_draw(
+      &(hysteresis_view){
+          .name = name ? name : "", .law = &e->law, .info = e->info, .period = &period},
       &out);
   shb_status status = post_buffer_publish(&out, svg);
   post_buffer_free(&out);
   free(name);
-  period_free(&period);
+  sampled_period_free(&period);
   return status;
 }
 

@@ -89,16 +89,16 @@ static double extent(int n, const double *x) {
 
 /* What the panels share. */
 typedef struct {
-  const loops_view     *view;
-  const contact_period *period;
-  post_buffer          *out;
-  post_unit             length, force, energy;
-  double                friction, limit; /* largest |f| and mu n */
+  const hysteresis_view *view;
+  const sampled_period  *period;
+  post_buffer           *out;
+  post_unit              length, force, energy;
+  double                 friction, limit; /* largest |f| and mu n */
 } sheet;
 
 /* ---- pieces of a panel ---- */
 
-static void draw_states(const post_plot *plot, const contact_period *p, const double *x,
+static void draw_states(const post_plot *plot, const sampled_period *p, const double *x,
                         const double *y) {
   static const char *const classes[] = {"line stick", "line slip", "line open"};
   for (int k = PERIOD_STATES - 1; k >= 0; k--)
@@ -106,7 +106,7 @@ static void draw_states(const post_plot *plot, const contact_period *p, const do
 }
 
 /* Arrowhead at sample i, along the way to a sample some pixels further on. */
-static void put_arrow(const post_plot *plot, const contact_period *p, const double *x,
+static void put_arrow(const post_plot *plot, const sampled_period *p, const double *x,
                       const double *y, int i) {
   double at[2] = {plot_x(plot, x[i]), plot_y(plot, y[i])}, d[2] = {0, 0}, size = 0;
   for (int j = i + 1; j < p->n && size < 3; j++) {
@@ -123,7 +123,7 @@ static void put_arrow(const post_plot *plot, const contact_period *p, const doub
 
 /* Sample of transition i. */
 static int sample_of(const sheet *s, int i) {
-  const contact_period *p   = s->period;
+  const sampled_period *p   = s->period;
   int                   low = 0, high = p->n - 1;
   while (low < high) {
     int middle = (low + high) / 2;
@@ -194,7 +194,7 @@ static void put_note(const post_plot *plot, const char *text, const char *number
 typedef enum { LOOP_U, LOOP_W, PATH, APPROACH } panel;
 
 static void draw_loop(const sheet *s, post_plot *plot, int k) {
-  const contact_period *p = s->period;
+  const sampled_period *p = s->period;
   const double         *x = p->motion[1 + k], *y = p->friction[k];
   range                 rx = range_of(p->n, x), ry = range_of(p->n, y);
   char                  lx[64], ly[64];
@@ -209,7 +209,7 @@ static void draw_loop(const sheet *s, post_plot *plot, int k) {
 }
 
 static void draw_approach(const sheet *s, post_plot *plot) {
-  const contact_period *p  = s->period;
+  const sampled_period *p  = s->period;
   range                 rx = range_of(p->n, p->motion[0]), ry = range_of(p->n, p->load);
   post_unit             unit = force_unit(ry.hi);
   char                  lx[64], ly[64];
@@ -231,7 +231,7 @@ static void put_circle(const post_plot *plot, const char *classes, double radius
 
 /* (fu, fw) within the circles of the largest and the smallest mu n; equal scales. */
 static void draw_path(const sheet *s, post_plot *plot) {
-  const contact_period *p = s->period;
+  const sampled_period *p = s->period;
   double high = 1.1 * fmax(s->friction, fmin(s->limit, 2 * s->friction)), wide = high;
   wide *= plot->width / plot->height;
   char lx[64], ly[64];
@@ -251,7 +251,7 @@ static void draw_path(const sheet *s, post_plot *plot) {
 }
 
 /* The panels that have something to show; one at least. */
-static int choose_panels(const contact_period *p, panel chosen[MOST_PANELS]) {
+static int choose_panels(const sampled_period *p, panel chosen[MOST_PANELS]) {
   double v = extent(p->n, p->motion[0]), u = extent(p->n, p->motion[1]);
   double w = extent(p->n, p->motion[2]), least = 1e-12 * fmax(u, w);
   bool   fu = most(p->n, p->friction[0]) > 0, fw = most(p->n, p->friction[1]) > 0;
@@ -284,7 +284,7 @@ static void draw_panels(const sheet *s) {
 /* ---- time: state bar, friction and its limit ---- */
 
 /* Below mu n. */
-static void put_limit_area(const post_plot *plot, const contact_period *p) {
+static void put_limit_area(const post_plot *plot, const sampled_period *p) {
   double bottom = plot_y(plot, 0), last = NAN;
   post_put(plot->out, "<path class=\"limit\" clip-path=\"url(#%s-clip)\" d=\"M%.1f %.1f", plot->id,
            plot_x(plot, 0), bottom);
@@ -358,7 +358,7 @@ static void put_transitions(const post_plot *bar, const mhb_contact_info *info, 
 
 /* |f| under mu n; n itself where there is no friction at all. */
 static void draw_time(const sheet *s) {
-  const contact_period *p    = s->period;
+  const sampled_period *p    = s->period;
   bool                  any  = s->limit > 0;
   const double         *y    = any ? p->size : p->load;
   post_unit             unit = any ? s->force : force_unit(most(p->n, y));
@@ -457,8 +457,8 @@ static void put_legend(const sheet *s) {
            x + 6, x + 16, x + 80, x + 90);
 }
 
-void loops_draw(const loops_view *view, post_buffer *out) {
-  const contact_period *p = view->period;
+void hysteresis_draw(const hysteresis_view *view, post_buffer *out) {
+  const sampled_period *p = view->period;
   sheet                 s = {.view = view, .period = p, .out = out};
   double                path[3];
   for (int i = 0; i < 3; i++) path[i] = most(p->n, p->motion[i]);

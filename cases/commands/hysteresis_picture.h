@@ -9,11 +9,11 @@ typedef struct {
   const char             *name; /* of the motion file */
   const mhb_law          *law;
   const mhb_contact_info *info; /* transitions ascending */
-  const contact_period   *period;
-} loops_view;
+  const sampled_period   *period;
+} hysteresis_view;
 
 /* A whole SVG file that needs nothing else; light or dark as the reader's page is. Stick, slip and open differ in
  * colour and in line style, so that it reads in grey too. */
-void loops_draw(const loops_view *view, post_buffer *out);
+void hysteresis_draw(const hysteresis_view *view, post_buffer *out);
 
 #endif

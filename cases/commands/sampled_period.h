@@ -16,13 +16,13 @@ typedef struct {
   double *load, *size, *limit;   /* [n] n, |f|, mu n, N */
   bool   *during[PERIOD_STATES]; /* [n] the state holds from sample i - 1 to i */
   double  work[2];               /* what the loops (u, fu) and (w, fw) enclose, J; 0 for rounding */
-} contact_period;
+} sampled_period;
 
 /* motion: [3][2m+1] as in mhb_contact_force; info: of the same law and motion, says where the transitions are.
  * SHB_ERR_IO: no memory. */
-shb_status period_create(mhb_contact_evaluator *contact, const mhb_law *law, int m,
-                         const double *motion, const mhb_contact_info *info,
-                         contact_period *period);
-void       period_free(contact_period *period);
+shb_status sampled_period_create(mhb_contact_evaluator *contact, const mhb_law *law, int m,
+                                 const double *motion, const mhb_contact_info *info,
+                                 sampled_period *period);
+void       sampled_period_free(sampled_period *period);
 
 #endif

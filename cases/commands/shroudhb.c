@@ -51,8 +51,8 @@ static int replace_by(char **argv) {
 
 /* HDF5's reader can crash on files whose bytes were damaged in place: watch, and say so. */
 static int watch(char **argv) {
-  child_result result;
-  if (child_run(argv, &result) == SHB_OK) return result.code;
+  subprocess_result result;
+  if (subprocess_run(argv, &result) == SHB_OK) return result.code;
   fprintf(stderr, "shroudhb: error: %s; the file may be damaged\n", shb_message());
   return SHB_ERR_IO;
 }
@@ -63,7 +63,7 @@ static int become(const char *stage, char *mode, int argc, char **argv, int (*en
   snprintf(name, sizeof name, "shroudhb-%s", stage);
   char **words = calloc((size_t)argc + 2, sizeof *words);
   int    n = 0, code = SHB_ERR_IO;
-  char  *path = child_program(name);
+  char  *path = subprocess_program(name);
   if (words && path) {
     words[n++] = path;
     if (mode) words[n++] = mode;

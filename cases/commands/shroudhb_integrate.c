@@ -28,7 +28,7 @@ static const char usage[] =
 static shb_status settings_of(const case_file *file, const char *modal, const char *balance,
                               char **text) {
   char *keys, fingerprint[17];
-  SHB_TRY(fresh_settings(file, (case_stage)(CASE_MHB | CASE_INTEGRATE), modal, &keys));
+  SHB_TRY(up_to_date_settings(file, (case_stage)(CASE_MHB | CASE_INTEGRATE), modal, &keys));
   *text = keys;
   if (!balance) return SHB_OK;
   size_t     size   = strlen(keys) + 64;
@@ -46,7 +46,7 @@ static shb_status settings_of(const case_file *file, const char *modal, const ch
 
 /* Whether path holds the finished answer to these settings. */
 static bool up_to_date(const char *path, const char *settings) {
-  bool          same     = fresh_equal(path, settings);
+  bool          same     = up_to_date_with(path, settings);
   mhb_response *response = NULL;
   same                   = same && mhb_response_read(path, &response) == SHB_OK;
   for (int i = 0; same && i < response->n_branches; i++) same = response->branch[i].complete;
@@ -113,7 +113,7 @@ static shb_status read_balance(const case_file *file, const char *path, mhb_resp
       "%s: not there to start on; run `shroudhb mhb %s` first, or set integrate.start to rest "
       "or state",
       path, file->path);
-  fresh_warn(file, CASE_MHB, path);
+  up_to_date_warn(file, CASE_MHB, path);
   return mhb_response_read(path, balance);
 }
 
@@ -125,7 +125,7 @@ static shb_status run(const case_file *file, const command_options *options) {
   bool          needed  = file->integrate.start == MHB_START_FROM_BALANCE;
   shb_status    status =
       modal && output && start ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  if (status == SHB_OK && !file->modal_file) fresh_warn(file, CASE_MODAL, modal);
+  if (status == SHB_OK && !file->modal_file) up_to_date_warn(file, CASE_MODAL, modal);
   if (status == SHB_OK && needed) status = read_balance(file, start, &balance);
   if (status == SHB_OK) status = settings_of(file, modal, needed ? start : NULL, &settings);
   if (status == SHB_OK) {

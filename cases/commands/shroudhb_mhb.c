@@ -27,7 +27,7 @@ static const char usage[] =
 
 /* Whether path holds the finished answer to these settings. */
 static bool up_to_date(const char *path, const char *settings) {
-  bool          same     = fresh_equal(path, settings);
+  bool          same     = up_to_date_with(path, settings);
   mhb_response *response = NULL;
   same                   = same && mhb_response_read(path, &response) == SHB_OK;
   for (int i = 0; same && i < response->n_branches; i++) {
@@ -99,8 +99,8 @@ static shb_status run(const case_file *file, const command_options *options) {
   char        *settings = NULL;
   shb_status   status =
       modal && output ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  if (status == SHB_OK && !file->modal_file) fresh_warn(file, CASE_MODAL, modal);
-  if (status == SHB_OK) status = fresh_settings(file, CASE_MHB, modal, &settings);
+  if (status == SHB_OK && !file->modal_file) up_to_date_warn(file, CASE_MODAL, modal);
+  if (status == SHB_OK) status = up_to_date_settings(file, CASE_MHB, modal, &settings);
   if (status == SHB_OK) {
     if (!options->force && up_to_date(output, settings)) {
       shb_progress_note(&progress, "%s is up to date", output);

@@ -139,8 +139,8 @@ static shb_status decide(const case_file *file, bool force, const char *mesh, co
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
   *settings = NULL;
   if (rank == 0) {
-    answer[0] = fresh_settings(file, CASE_MODAL, mesh, settings);
-    answer[1] = answer[0] == SHB_OK && !force && fresh_equal(output, *settings);
+    answer[0] = up_to_date_settings(file, CASE_MODAL, mesh, settings);
+    answer[1] = answer[0] == SHB_OK && !force && up_to_date_with(output, *settings);
   }
   MPI_Bcast(answer, 2, MPI_INT, 0, PETSC_COMM_WORLD);
   *skip = answer[1];

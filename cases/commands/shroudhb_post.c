@@ -43,10 +43,10 @@ static shb_status inspect(const command_options *options) {
 }
 
 /* NAME.converge.h5 if it was made from the case as it is now; malloc'ed, NULL if not. */
-static char *fresh_convergence(const case_file *file) {
+static char *current_convergence(const case_file *file) {
   char *path = case_output(file, ".converge.h5"), *settings = NULL;
   bool  fresh = path && access(path, R_OK) == 0 && converge_settings(file, &settings) == SHB_OK &&
-               fresh_equal(path, settings);
+               up_to_date_with(path, settings);
   free(settings);
   if (fresh) return path;
   free(path);
@@ -56,7 +56,7 @@ static char *fresh_convergence(const case_file *file) {
 /* Whether there are points by time integration that belong to the case as it is now. */
 static bool has_points(const case_file *file, const char *path) {
   if (access(path, R_OK) != 0) return false;
-  if (fresh_keys(file, (case_stage)(CASE_MHB | CASE_INTEGRATE), path)) return true;
+  if (up_to_date_keys(file, (case_stage)(CASE_MHB | CASE_INTEGRATE), path)) return true;
   fprintf(stderr,
           "shroudhb: warning: %s was made from other settings and is left out; run `shroudhb "
           "integrate` again\n",
@@ -65,10 +65,10 @@ static bool has_points(const case_file *file, const char *path) {
 }
 
 /* The modal file that belongs to the case as it is now; malloc'ed, NULL if there is none. */
-static char *fresh_modal(const case_file *file) {
+static char *current_modal(const case_file *file) {
   char *path  = case_modal_path(file);
   bool  there = path && access(path, R_OK) == 0;
-  if (there && (file->modal_file || fresh_keys(file, CASE_MODAL, path))) return path;
+  if (there && (file->modal_file || up_to_date_keys(file, CASE_MODAL, path))) return path;
   free(path);
   return NULL;
 }
@@ -77,13 +77,13 @@ static shb_status publish(const case_file *file, const command_options *options)
   shb_progress progress = shb_progress_start("post", options->quiet, options->verbose);
   char        *response = case_output(file, ".response.h5"), *html = case_output(file, ".html");
   char        *csv = case_output(file, ".csv"), *svg = case_output(file, ".svg"), *summary = NULL;
-  char        *convergence = fresh_convergence(file);
+  char        *convergence = current_convergence(file);
   char        *points      = case_output(file, ".integration.h5");
   char        *diagram     = case_output(file, ".campbell.svg");
-  char        *modal       = fresh_modal(file);
+  char        *modal       = current_modal(file);
   shb_status   status;
   if (response && html && csv && svg && points && diagram) {
-    fresh_warn(file, CASE_MHB, response);
+    up_to_date_warn(file, CASE_MHB, response);
     const post_job job = {
         file->name, response, html, csv, svg, convergence, has_points(file, points) ? points : NULL,
         modal,      diagram};

@@ -15,7 +15,7 @@
 
 extern char **environ;
 
-char *child_program(const char *name) {
+char *subprocess_program(const char *name) {
   char    here[4096];
   ssize_t n = readlink("/proc/self/exe", here, sizeof here - 1);
   if (n > 0) {
@@ -76,8 +76,8 @@ static const char *leaf(const char *path) {
   return slash ? slash + 1 : path;
 }
 
-shb_status child_run(char *const argv[], child_result *result) {
-  *result          = (child_result){.code = SHB_ERR_IO};
+shb_status subprocess_run(char *const argv[], subprocess_result *result) {
+  *result          = (subprocess_result){.code = SHB_ERR_IO};
   sigset_t signals = waited_signals(), before;
   signal(SIGCHLD, SIG_DFL); /* if it came in ignored, the kernel would reap the child for us */
   sigprocmask(SIG_BLOCK, &signals, &before);

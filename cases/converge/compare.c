@@ -26,7 +26,7 @@ typedef struct {
   const modal_model  *model;
   const mhb_settings *settings;
   post_output         output;
-  witness            *witness[MOST_HARMONICS]; /* by harmonics, made when first needed */
+  point_matcher      *matcher[MOST_HARMONICS]; /* by harmonics, made when first needed */
   side                rung, reference;
   double              unit; /* m */
   rung_error         *error;
@@ -49,29 +49,30 @@ static shb_status choose(post_output output, int b, side *s) {
   return SHB_OK;
 }
 
-static shb_status witness_of(comparison *c, int harmonics, witness **out) {
+static shb_status matcher_of(comparison *c, int harmonics, point_matcher **out) {
   SHB_CHECK(harmonics >= 1 && harmonics < MOST_HARMONICS, SHB_ERR_INPUT,
             "the response has a point of %d harmonics; 1 to %d are wanted", harmonics,
             MOST_HARMONICS - 1);
-  if (!c->witness[harmonics])
-    SHB_TRY(witness_create(c->model, c->settings, harmonics, c->output, &c->witness[harmonics]));
-  *out = c->witness[harmonics];
+  if (!c->matcher[harmonics])
+    SHB_TRY(
+        point_matcher_create(c->model, c->settings, harmonics, c->output, &c->matcher[harmonics]));
+  *out = c->matcher[harmonics];
   return SHB_OK;
 }
 
 /* From point i of the reference. */
 static shb_status from_reference(comparison *c, int i, double *distance) {
-  const side   *r    = &c->reference;
-  int           last = r->branch->n_points - 1, near = 0;
-  double        point[2] = {r->branch->frequency[i], r->amplitude[i]}, found[2];
-  double        drawn    = post_distance(point, &c->rung.line, c->unit, &near);
-  witness_place place    = {r->branch, i, i, i > 0 ? i - 1 : 0, i < last ? i + 1 : last, 0};
-  *distance              = INFINITY;
+  const side *r    = &c->reference;
+  int         last = r->branch->n_points - 1, near = 0;
+  double      point[2] = {r->branch->frequency[i], r->amplitude[i]}, found[2];
+  double      drawn    = post_distance(point, &c->rung.line, c->unit, &near);
+  curve_place place    = {r->branch, i, i, i > 0 ? i - 1 : 0, i < last ? i + 1 : last, 0};
+  *distance            = INFINITY;
   c->error->n++;
   if (r->response->n_pairs == c->rung.response->n_pairs) {
-    witness *w = NULL;
-    SHB_TRY(witness_of(c, c->rung.branch->harmonics[near], &w));
-    if (witness_solve(w, &place, i == 0 || i == last, found))
+    point_matcher *matcher = NULL;
+    SHB_TRY(matcher_of(c, c->rung.branch->harmonics[near], &matcher));
+    if (point_matcher_solve(matcher, &place, i == 0 || i == last, found))
       *distance = post_apart(point, found, c->unit);
   }
   c->error->lost += !isfinite(*distance);
@@ -122,14 +123,14 @@ static shb_status compare_all(comparison *c, const char *stem, const char *refer
 
 /* From point i of the reference, whose curve the rung's chosen one is. */
 static shb_status from_integration(comparison *c, int i) {
-  const side   *r        = &c->reference;
-  double        point[2] = {r->branch->frequency[i], r->amplitude[i]}, found[2];
-  witness_place place    = {r->branch, i, i, i, i, 0};
-  int           near     = 0;
-  double        drawn    = post_distance(point, &c->rung.line, c->unit, &near);
-  witness      *w        = NULL;
-  SHB_TRY(witness_of(c, c->rung.branch->harmonics[near], &w));
-  bool solved = witness_solve(w, &place, true, found);
+  const side    *r        = &c->reference;
+  double         point[2] = {r->branch->frequency[i], r->amplitude[i]}, found[2];
+  curve_place    place    = {r->branch, i, i, i, i, 0};
+  int            near     = 0;
+  double         drawn    = post_distance(point, &c->rung.line, c->unit, &near);
+  point_matcher *matcher  = NULL;
+  SHB_TRY(matcher_of(c, c->rung.branch->harmonics[near], &matcher));
+  bool solved = point_matcher_solve(matcher, &place, true, found);
   c->error->n++;
   c->error->lost += !solved;
   c->error->curve = fmax(c->error->curve, solved ? fabs(found[1] - point[1]) / c->unit : drawn);
@@ -173,7 +174,7 @@ static shb_status compare_all_points(comparison *c, const char *stem, const char
 /* ---------------------------------------------------------------- both */
 
 static void end(comparison *c) {
-  for (int i = 0; i < MOST_HARMONICS; i++) witness_destroy(c->witness[i]);
+  for (int i = 0; i < MOST_HARMONICS; i++) point_matcher_destroy(c->matcher[i]);
   side *both[] = {&c->rung, &c->reference};
   for (int i = 0; i < 2; i++) {
     free(both[i]->amplitude);

@@ -18,27 +18,27 @@ typedef struct {
   int          variant;
   char        *stem;
   rung_cost    cost;
-} study_place;
+} study_row;
 
 typedef struct {
   case_file             *file;
   const command_options *options;
   shb_progress           progress;
   char                  *folder; /* NAME.converge */
-  variant                variant[STUDY_VARIANTS];
+  mesh_variant           variant[STUDY_VARIANTS];
   int                    n_variants;
   modal_model            model;  /* of the first */
   char                  *points; /* NAME.integration.h5, if it belongs to the case; or NULL */
   rung_setting           base;   /* in which the ladders stand: all at its finest */
   post_convergence       result;
   int                    capacity;
-  study_place           *place; /* [result.n] */
-  post_buffer            note;  /* what must be known besides; lines */
-  bool short_of_rungs;          /* a ladder has no rung but the finest that meets the tolerance */
-} study;
+  study_row             *row;  /* [result.n] */
+  post_buffer            note; /* what must be known besides; lines */
+  bool short_of_rungs;         /* a ladder has no rung but the finest that meets the tolerance */
+} convergence_study;
 
 /* Every ladder in turn. A rung that fails costs its row only.
  * Errors: SHB_INTERRUPTED, the rows so far are good; SHB_ERR_INPUT a rung's program has told it (no text); SHB_ERR_IO. */
-shb_status ladders_run(study *study);
+shb_status ladders_run(convergence_study *study);
 
 #endif

@@ -63,7 +63,7 @@ static shb_status find_patches(const case_file *file, const case_node *root, dou
   return SHB_OK;
 }
 
-shb_status case_derive_mesh(const case_file *file, double factor, const char *path) {
+shb_status case_resize_mesh(const case_file *file, double factor, const char *path) {
   case_issues issues = case_issues_start(file->path, file->text, strlen(file->text));
   case_node  *root   = case_document_parse(&issues);
   patch       patches[2];

@@ -85,18 +85,19 @@ static shb_status run_sweeps(job *j, rung_cost *cost, mhb_response **response) {
 /* ---------------------------------------------------------------- peaks */
 
 /* Amplitude at fraction t of 2 segments, from point i - 1 to i + 1; -1 if there is no solution. */
-static double on_segments(witness *w, const mhb_branch *branch, int i, double t, double found[2]) {
-  int           from  = t < 1 ? i - 1 : i;
-  witness_place place = {branch, from, from + 1, i - 1, i + 1, t < 1 ? t : t - 1};
-  return witness_solve(w, &place, false, found) ? found[1] : -1;
+static double on_segments(point_matcher *matcher, const mhb_branch *branch, int i, double t,
+                          double found[2]) {
+  int         from  = t < 1 ? i - 1 : i;
+  curve_place place = {branch, from, from + 1, i - 1, i + 1, t < 1 ? t : t - 1};
+  return point_matcher_solve(matcher, &place, false, found) ? found[1] : -1;
 }
 
 /* The top of the curve about point i, by golden section on solutions of the balance itself. */
-static void refine(witness *w, const mhb_branch *branch, int i, rung_peak *peak) {
+static void refine(point_matcher *matcher, const mhb_branch *branch, int i, rung_peak *peak) {
   const double golden = .6180339887498949;
   double       lo = 0, hi = 2, found[2], best[2] = {0, -1};
   double       t[2] = {hi - golden * (hi - lo), lo + golden * (hi - lo)}, a[2];
-  for (int k = 0; k < 2; k++) a[k] = on_segments(w, branch, i, t[k], found);
+  for (int k = 0; k < 2; k++) a[k] = on_segments(matcher, branch, i, t[k], found);
   for (int n = 0; n < 34 && a[0] >= 0 && a[1] >= 0; n++) {
     int right = a[1] > a[0]; /* the top lies in the right part */
     if (right) lo = t[0];
@@ -104,7 +105,7 @@ static void refine(witness *w, const mhb_branch *branch, int i, rung_peak *peak)
     t[!right] = t[right];
     a[!right] = a[right];
     t[right]  = right ? lo + golden * (hi - lo) : hi - golden * (hi - lo);
-    a[right]  = on_segments(w, branch, i, t[right], found);
+    a[right]  = on_segments(matcher, branch, i, t[right], found);
     if (a[right] > best[1]) memcpy(best, found, sizeof best);
   }
   double near = fabs(best[0] / peak->frequency - 1), gain = best[1] / peak->amplitude;
@@ -129,12 +130,12 @@ static shb_status find_peak(job *j, const mhb_response *response, const mhb_bran
     peak->amplitude = peaks[top].amplitude;
   }
   if (top >= 0 && !peaks[top].edge) {
-    int      i = peaks[top].point;
-    witness *w = NULL;
-    status =
-        witness_create(&j->source.model, &j->source.settings, branch->harmonics[i], j->output, &w);
-    if (status == SHB_OK) refine(w, branch, i, peak);
-    witness_destroy(w);
+    int            i       = peaks[top].point;
+    point_matcher *matcher = NULL;
+    status = point_matcher_create(&j->source.model, &j->source.settings, branch->harmonics[i],
+                                  j->output, &matcher);
+    if (status == SHB_OK) refine(matcher, branch, i, peak);
+    point_matcher_destroy(matcher);
   }
   free(peaks);
   return status;
@@ -158,7 +159,7 @@ static shb_status describe(job *j, const mhb_response *response, rung_cost *cost
 /* All that the curve and its cost depend on. */
 static shb_status settings_of(const job *j, char **text) {
   char *keys = NULL;
-  SHB_TRY(fresh_settings(&j->file, CASE_MHB, j->modal, &keys));
+  SHB_TRY(up_to_date_settings(&j->file, CASE_MHB, j->modal, &keys));
   size_t size = strlen(keys) + 256;
   *text       = malloc(size);
   if (*text)
@@ -212,7 +213,7 @@ static shb_status work(job *j) {
   SHB_CHECK(path, SHB_ERR_IO, "out of memory");
   shb_status status = settings_of(j, &settings);
   if (status == SHB_OK &&
-      !(fresh_equal(path, settings) && rung_cost_read(j->stem, &cost) == SHB_OK))
+      !(up_to_date_with(path, settings) && rung_cost_read(j->stem, &cost) == SHB_OK))
     status = compute(j, settings, path);
   free(settings);
   free(path);

@@ -5,11 +5,11 @@
 #include "cases/parse/value_context.h"
 
 /* CASE_PRELOADS, CASE_PLACES, CASE_ORDERS, CASE_POINTS, CASE_FACTORS, CASE_PROBES: as keys.h says. */
-bool case_list_preloads(const case_reading *c, const case_node *node, void *slot);
-bool case_list_places(const case_reading *c, const case_node *node, void *slot);
-bool case_list_orders(const case_reading *c, const case_node *node, void *slot);
-bool case_list_frequencies(const case_reading *c, const case_node *node, void *slot);
-bool case_list_factors(const case_reading *c, const case_node *node, void *slot);
-bool case_list_probes(const case_reading *c, const case_node *node, void *slot);
+bool case_list_preloads(const case_value_context *c, const case_node *node, void *slot);
+bool case_list_places(const case_value_context *c, const case_node *node, void *slot);
+bool case_list_orders(const case_value_context *c, const case_node *node, void *slot);
+bool case_list_frequencies(const case_value_context *c, const case_node *node, void *slot);
+bool case_list_factors(const case_value_context *c, const case_node *node, void *slot);
+bool case_list_probes(const case_value_context *c, const case_node *node, void *slot);
 
 #endif

@@ -58,7 +58,7 @@ static bool told(const case_reader *r, const case_key *key) {
   return false;
 }
 
-void case_check_unread(const case_reader *r) {
+void case_check_unused(const case_reader *r) {
   char last[CASE_PATH] = "", path[CASE_PATH];
   for (int i = 0; i < r->keys.n; i++) {
     const case_key *key = &r->keys.key[i];

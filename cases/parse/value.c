@@ -11,16 +11,16 @@
 #include "cases/parse/units.h"
 #include "cases/parse/value_context.h"
 
-static bool read_number(const case_reading *c, const case_node *node, void *slot) {
-  return case_reading_number(c, c->path, node, slot);
+static bool read_number(const case_value_context *c, const case_node *node, void *slot) {
+  return case_value_number(c, c->path, node, slot);
 }
 
 /* A whole number, or the word that stands for 0. */
-static bool read_count(const case_reading *c, const case_node *node, void *slot) {
+static bool read_count(const case_value_context *c, const case_node *node, void *slot) {
   const char *word = c->key->type == CASE_AUTO ? "auto" : "all";
   bool        zero = node->kind == CASE_SCALAR && strcmp(node->text, word) == 0;
   if (zero) *(int *)slot = 0;
-  return zero || case_reading_integer(c, node, slot);
+  return zero || case_value_integer(c, node, slot);
 }
 
 /* Place of text in words separated by spaces, or -1. */
@@ -34,9 +34,9 @@ static int word_index(const char *words, const char *text) {
   return -1;
 }
 
-static int choose(const case_reading *c, const case_node *node) {
+static int choose(const case_value_context *c, const case_node *node) {
   if (node->kind != CASE_SCALAR) {
-    case_reading_refuse(c, node);
+    case_value_refuse(c, node);
     return -1;
   }
   int index = word_index(c->key->words, node->text);
@@ -48,31 +48,30 @@ static int choose(const case_reading *c, const case_node *node) {
   return -1;
 }
 
-static bool read_choice(const case_reading *c, const case_node *node, void *slot) {
+static bool read_choice(const case_value_context *c, const case_node *node, void *slot) {
   int index = choose(c, node);
   if (index >= 0) *(int *)slot = index;
   return index >= 0;
 }
 
-static bool read_switch(const case_reading *c, const case_node *node, void *slot) {
+static bool read_switch(const case_value_context *c, const case_node *node, void *slot) {
   int index = choose(c, node);
   if (index >= 0) *(bool *)slot = index == 1;
   return index >= 0;
 }
 
 /* The words' tolerances, in the order of the row's words; what begins like a number is one. */
-static bool read_accuracy(const case_reading *c, const case_node *node, void *slot) {
+static bool read_accuracy(const case_value_context *c, const case_node *node, void *slot) {
   static const double tolerance[] = {1e-3, 1e-5, 1e-8};
 
   const char *text = node->kind == CASE_SCALAR ? node->text : "";
-  if (text[0] && strchr("+-.0123456789", text[0]))
-    return case_reading_number(c, c->path, node, slot);
+  if (text[0] && strchr("+-.0123456789", text[0])) return case_value_number(c, c->path, node, slot);
   int index = choose(c, node);
   if (index >= 0) *(double *)slot = tolerance[index];
   return index >= 0;
 }
 
-static bool keep_text(const case_reading *c, const case_node *node, void *slot, char *copy) {
+static bool keep_text(const case_value_context *c, const case_node *node, void *slot, char *copy) {
   if (!copy) case_issue_add(c->issues, node->line, node->column, c->path, "out of memory");
   free(*(char **)slot);
   *(char **)slot = copy;
@@ -83,8 +82,8 @@ static bool is_control(unsigned char c) {
   return c < 0x20 || c == 0x7F;
 }
 
-static bool read_word(const case_reading *c, const case_node *node, void *slot) {
-  if (node->kind != CASE_SCALAR) return case_reading_refuse(c, node);
+static bool read_word(const case_value_context *c, const case_node *node, void *slot) {
+  if (node->kind != CASE_SCALAR) return case_value_refuse(c, node);
   const char *text = node->text;
   bool        good = text[0] && text[0] != '.' && text[0] != '-' && strlen(text) <= 100;
   for (const char *at = text; *at; at++)
@@ -98,8 +97,8 @@ static bool read_word(const case_reading *c, const case_node *node, void *slot) 
   return keep_text(c, node, slot, strdup(text));
 }
 
-static bool read_label(const case_reading *c, const case_node *node, void *slot) {
-  if (node->kind != CASE_SCALAR) return case_reading_refuse(c, node);
+static bool read_label(const case_value_context *c, const case_node *node, void *slot) {
+  if (node->kind != CASE_SCALAR) return case_value_refuse(c, node);
   const char *text = node->text;
   bool        good = text[0] && strlen(text) < MESH_WORD;
   for (const char *at = text; *at; at++)
@@ -114,8 +113,8 @@ static bool read_label(const case_reading *c, const case_node *node, void *slot)
   return good;
 }
 
-static bool read_file_name(const case_reading *c, const case_node *node, void *slot) {
-  if (node->kind != CASE_SCALAR) return case_reading_refuse(c, node);
+static bool read_file_name(const case_value_context *c, const case_node *node, void *slot) {
+  if (node->kind != CASE_SCALAR) return case_value_refuse(c, node);
   if (node->text[0] == '\0') {
     case_issue_add(c->issues, node->line, node->column, c->path, "is empty; expected a file name");
     return false;
@@ -128,13 +127,13 @@ static bool read_file_name(const case_reading *c, const case_node *node, void *s
   return keep_text(c, node, slot, path);
 }
 
-static bool read_vector(const case_reading *c, const case_node *node, void *slot) {
-  return case_reading_numbers(c, c->path, node, 3, slot);
+static bool read_vector(const case_value_context *c, const case_node *node, void *slot) {
+  return case_value_numbers(c, c->path, node, 3, slot);
 }
 
-static bool read_interval(const case_reading *c, const case_node *node, void *slot) {
+static bool read_interval(const case_value_context *c, const case_node *node, void *slot) {
   double *value = slot;
-  if (!case_reading_numbers(c, c->path, node, 2, value)) return false;
+  if (!case_value_numbers(c, c->path, node, 2, value)) return false;
   if (value[0] < value[1]) return true;
   case_issue_add(c->issues, node->line, node->column, c->path,
                  "goes from %g to %g %s; the second must be above the first", value[0], value[1],
@@ -142,43 +141,43 @@ static bool read_interval(const case_reading *c, const case_node *node, void *sl
   return false;
 }
 
-static bool read_sweep(const case_reading *c, const case_node *node, void *slot) {
+static bool read_sweep(const case_value_context *c, const case_node *node, void *slot) {
   double *value = slot;
   if (node->kind != CASE_SCALAR) return read_interval(c, node, slot);
-  if (!case_reading_number(c, c->path, node, &value[0])) return false;
+  if (!case_value_number(c, c->path, node, &value[0])) return false;
   value[1] = value[0];
   return true;
 }
 
 /* A list may leave the range: it is that of an isotropic material. */
-static bool read_triple(const case_reading *c, const case_node *node, void *slot) {
+static bool read_triple(const case_value_context *c, const case_node *node, void *slot) {
   double *v = slot;
   if (node->kind == CASE_SCALAR) {
-    if (!case_reading_number(c, c->path, node, v)) return false;
+    if (!case_value_number(c, c->path, node, v)) return false;
     v[1] = v[2] = v[0];
     return true;
   }
   case_key free_key = *c->key;
-  free_key.least = free_key.most = 0;
-  case_reading free_context      = *c;
-  free_context.key               = &free_key;
-  return case_reading_numbers(&free_context, c->path, node, 3, v);
+  free_key.least = free_key.most  = 0;
+  case_value_context free_context = *c;
+  free_context.key                = &free_key;
+  return case_value_numbers(&free_context, c->path, node, 3, v);
 }
 
-static bool read_stiffness(const case_reading *c, const case_node *node, void *slot) {
+static bool read_stiffness(const case_value_context *c, const case_node *node, void *slot) {
   double *k = slot;
   if (node->kind == CASE_SCALAR) {
-    if (!case_reading_number(c, c->path, node, &k[0])) return false;
+    if (!case_value_number(c, c->path, node, &k[0])) return false;
     k[1] = 0;
     k[2] = k[0];
     return true;
   }
-  if (node->kind != CASE_SEQUENCE) return case_reading_refuse(c, node);
+  if (node->kind != CASE_SEQUENCE) return case_value_refuse(c, node);
   case_key free_key = *c->key; /* kuw may have any sign: the range holds for a single number */
-  free_key.least = free_key.most = 0;
-  case_reading free_context      = *c;
-  free_context.key               = &free_key;
-  if (!case_reading_numbers(&free_context, c->path, node, 3, k)) return false;
+  free_key.least = free_key.most  = 0;
+  case_value_context free_context = *c;
+  free_context.key                = &free_key;
+  if (!case_value_numbers(&free_context, c->path, node, 3, k)) return false;
   if (k[0] > 0 && k[2] > 0 && k[0] * k[2] > k[1] * k[1]) return true;
   case_issue_add(
       c->issues, node->line, node->column, c->path,
@@ -188,46 +187,46 @@ static bool read_stiffness(const case_reading *c, const case_node *node, void *s
   return false;
 }
 
-static bool read_damping(const case_reading *c, const case_node *node, void *slot) {
+static bool read_damping(const case_value_context *c, const case_node *node, void *slot) {
   return case_damping_read(c->issues, c->path, node, slot);
 }
 
-static bool read_groups(const case_reading *c, const case_node *node, void *slot) {
+static bool read_groups(const case_value_context *c, const case_node *node, void *slot) {
   return case_groups_read(c->issues, c->path, node, slot);
 }
 
-static bool read_signal(const case_reading *c, const case_node *node, void *slot) {
+static bool read_signal(const case_value_context *c, const case_node *node, void *slot) {
   (void)slot;
-  return node->kind == CASE_SEQUENCE || case_reading_refuse(c, node);
+  return node->kind == CASE_SEQUENCE || case_value_refuse(c, node);
 }
 
 bool case_value_read(case_issues *issues, const case_key *key, const char *path,
                      const case_node *node, case_file *file, void *slot) {
-  static bool (*const readers[CASE_N_TYPES])(const case_reading *, const case_node *, void *) = {
-      [CASE_NUMBER]    = read_number,
-      [CASE_INTEGER]   = case_reading_integer,
-      [CASE_COUNT]     = read_count,
-      [CASE_CHOICE]    = read_choice,
-      [CASE_SWITCH]    = read_switch,
-      [CASE_ACCURACY]  = read_accuracy,
-      [CASE_WORD]      = read_word,
-      [CASE_LABEL]     = read_label,
-      [CASE_FILE_NAME] = read_file_name,
-      [CASE_VECTOR]    = read_vector,
-      [CASE_TRIPLE]    = read_triple,
-      [CASE_INTERVAL]  = read_interval,
-      [CASE_SWEEP]     = read_sweep,
-      [CASE_STIFFNESS] = read_stiffness,
-      [CASE_PRELOADS]  = case_list_preloads,
-      [CASE_FACTORS]   = case_list_factors,
-      [CASE_PROBES]    = case_list_probes,
-      [CASE_DAMPING]   = read_damping,
-      [CASE_GROUPS]    = read_groups,
-      [CASE_SIGNAL]    = read_signal,
-      [CASE_AUTO]      = read_count,
-      [CASE_PLACES]    = case_list_places,
-      [CASE_ORDERS]    = case_list_orders,
-      [CASE_POINTS]    = case_list_frequencies};
-  const case_reading c = {.issues = issues, .key = key, .path = path, .file = file};
+  static bool (*const readers[CASE_N_TYPES])(const case_value_context *, const case_node *,
+                                             void *) = {[CASE_NUMBER]    = read_number,
+                                                        [CASE_INTEGER]   = case_value_integer,
+                                                        [CASE_COUNT]     = read_count,
+                                                        [CASE_CHOICE]    = read_choice,
+                                                        [CASE_SWITCH]    = read_switch,
+                                                        [CASE_ACCURACY]  = read_accuracy,
+                                                        [CASE_WORD]      = read_word,
+                                                        [CASE_LABEL]     = read_label,
+                                                        [CASE_FILE_NAME] = read_file_name,
+                                                        [CASE_VECTOR]    = read_vector,
+                                                        [CASE_TRIPLE]    = read_triple,
+                                                        [CASE_INTERVAL]  = read_interval,
+                                                        [CASE_SWEEP]     = read_sweep,
+                                                        [CASE_STIFFNESS] = read_stiffness,
+                                                        [CASE_PRELOADS]  = case_list_preloads,
+                                                        [CASE_FACTORS]   = case_list_factors,
+                                                        [CASE_PROBES]    = case_list_probes,
+                                                        [CASE_DAMPING]   = read_damping,
+                                                        [CASE_GROUPS]    = read_groups,
+                                                        [CASE_SIGNAL]    = read_signal,
+                                                        [CASE_AUTO]      = read_count,
+                                                        [CASE_PLACES]    = case_list_places,
+                                                        [CASE_ORDERS]    = case_list_orders,
+                                                        [CASE_POINTS]    = case_list_frequencies};
+  const case_value_context c = {.issues = issues, .key = key, .path = path, .file = file};
   return readers[key->type](&c, node, slot);
 }

@@ -41,8 +41,8 @@ void case_value_expected(const case_key *key, char *text, size_t size) {
   if (key->unit[0]) case_append(text, size, " in %s", key->unit);
 }
 
-bool case_reading_refuse_kind(const case_reading *c, const char *path, const case_node *node,
-                              const char *expected) {
+bool case_value_refuse_kind(const case_value_context *c, const char *path, const case_node *node,
+                            const char *expected) {
   if (node->kind != CASE_BROKEN)
     case_issue_add(c->issues, node->line, node->column, path, "%s; expected %s",
                    node->kind == CASE_NULL       ? "has no value"
@@ -53,10 +53,10 @@ bool case_reading_refuse_kind(const case_reading *c, const char *path, const cas
   return false;
 }
 
-bool case_reading_refuse(const case_reading *c, const case_node *node) {
+bool case_value_refuse(const case_value_context *c, const case_node *node) {
   char expected[256];
   case_value_expected(c->key, expected, sizeof expected);
-  return case_reading_refuse_kind(c, c->path, node, expected);
+  return case_value_refuse_kind(c, c->path, node, expected);
 }
 
 static bool in_range(const case_key *key, double value) {
@@ -66,7 +66,7 @@ static bool in_range(const case_key *key, double value) {
   return !low && !high;
 }
 
-static bool check_range(const case_reading *c, const char *path, const case_node *node,
+static bool check_range(const case_value_context *c, const char *path, const case_node *node,
                         double value) {
   if (in_range(c->key, value)) return true;
   char range[128];
@@ -77,11 +77,11 @@ static bool check_range(const case_reading *c, const char *path, const case_node
   return false;
 }
 
-bool case_reading_number(const case_reading *c, const char *path, const case_node *node,
-                         double *value) {
+bool case_value_number(const case_value_context *c, const char *path, const case_node *node,
+                       double *value) {
   char why[CASE_WHY], expected[128] = "a number";
   if (c->key->unit[0]) case_append(expected, sizeof expected, " in %s", c->key->unit);
-  if (node->kind != CASE_SCALAR) return case_reading_refuse_kind(c, path, node, expected);
+  if (node->kind != CASE_SCALAR) return case_value_refuse_kind(c, path, node, expected);
   if (!case_quantity(node->text, c->key->unit, value, why)) {
     case_issue_add(c->issues, node->line, node->column, path, "%s", why);
     return false;
@@ -89,9 +89,9 @@ bool case_reading_number(const case_reading *c, const char *path, const case_nod
   return check_range(c, path, node, *value);
 }
 
-bool case_reading_integer(const case_reading *c, const case_node *node, void *slot) {
+bool case_value_integer(const case_value_context *c, const case_node *node, void *slot) {
   char why[CASE_WHY];
-  if (node->kind != CASE_SCALAR) return case_reading_refuse(c, node);
+  if (node->kind != CASE_SCALAR) return case_value_refuse(c, node);
   if (!case_integer(node->text, slot, why)) {
     case_issue_add(c->issues, node->line, node->column, c->path, "%s", why);
     return false;
@@ -100,13 +100,13 @@ bool case_reading_integer(const case_reading *c, const case_node *node, void *sl
 }
 
 /* A list of n numbers; names the shape if it is none. */
-bool case_reading_numbers(const case_reading *c, const char *path, const case_node *node, int n,
-                          double *value) {
+bool case_value_numbers(const case_value_context *c, const char *path, const case_node *node, int n,
+                        double *value) {
   if (node->kind != CASE_SEQUENCE || node->n != n) {
     char expected[256] = "";
     case_append(expected, sizeof expected, "%d numbers", n);
     if (c->key->unit[0]) case_append(expected, sizeof expected, " in %s", c->key->unit);
-    if (node->kind != CASE_SEQUENCE) return case_reading_refuse_kind(c, path, node, expected);
+    if (node->kind != CASE_SEQUENCE) return case_value_refuse_kind(c, path, node, expected);
     case_issue_add(c->issues, node->line, node->column, path, "has %d numbers, expected %d",
                    node->n, n);
     return false;
@@ -115,28 +115,28 @@ bool case_reading_numbers(const case_reading *c, const char *path, const case_no
   for (int i = 0; i < n; i++) {
     char inner[CASE_PATH];
     case_path(inner, "%s[%d]", path, i);
-    good = case_reading_number(c, inner, &node->child[i], &value[i]) && good;
+    good = case_value_number(c, inner, &node->child[i], &value[i]) && good;
   }
   return good;
 }
 
 bool case_value_polar(case_issues *issues, const char *path, const case_node *node,
                       const char *unit, double polar[2]) {
-  case_key           keys[2] = {{.unit = unit}, {.unit = "rad"}};
-  const case_reading c       = {.issues = issues, .key = &keys[0], .path = path};
-  const case_reading phase   = {.issues = issues, .key = &keys[1], .path = path};
-  char               inner[CASE_PATH];
+  case_key                 keys[2] = {{.unit = unit}, {.unit = "rad"}};
+  const case_value_context c       = {.issues = issues, .key = &keys[0], .path = path};
+  const case_value_context phase   = {.issues = issues, .key = &keys[1], .path = path};
+  char                     inner[CASE_PATH];
   polar[0] = polar[1] = 0;
-  if (node->kind == CASE_SCALAR) return case_reading_number(&c, path, node, &polar[0]);
+  if (node->kind == CASE_SCALAR) return case_value_number(&c, path, node, &polar[0]);
   if (node->kind != CASE_SEQUENCE)
-    return case_reading_refuse_kind(&c, path, node, "[amplitude, phase]");
+    return case_value_refuse_kind(&c, path, node, "[amplitude, phase]");
   if (node->n != 2) {
     case_issue_add(issues, node->line, node->column, path,
                    "has %d value%s; expected [amplitude, phase]", node->n, node->n == 1 ? "" : "s");
     return false;
   }
   case_path(inner, "%s[0]", path);
-  bool good = case_reading_number(&c, inner, &node->child[0], &polar[0]);
+  bool good = case_value_number(&c, inner, &node->child[0], &polar[0]);
   case_path(inner, "%s[1]", path);
-  return case_reading_number(&phase, inner, &node->child[1], &polar[1]) && good;
+  return case_value_number(&phase, inner, &node->child[1], &polar[1]) && good;
 }

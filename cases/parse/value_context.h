@@ -13,23 +13,23 @@ typedef struct {
   const case_key *key;
   const char     *path;
   case_file      *file;
-} case_reading;
+} case_value_context;
 
 /* Record that node is of the wrong kind (nothing if it is broken); false. The first says what the key wants. */
-bool case_reading_refuse(const case_reading *c, const case_node *node);
-bool case_reading_refuse_kind(const case_reading *c, const char *path, const case_node *node,
-                              const char *expected);
+bool case_value_refuse(const case_value_context *c, const case_node *node);
+bool case_value_refuse_kind(const case_value_context *c, const char *path, const case_node *node,
+                            const char *expected);
 
 /* A number in the key's unit and range. */
-bool case_reading_number(const case_reading *c, const char *path, const case_node *node,
-                         double *value);
+bool case_value_number(const case_value_context *c, const char *path, const case_node *node,
+                       double *value);
 
 /* A list of n of them. */
-bool case_reading_numbers(const case_reading *c, const char *path, const case_node *node, int n,
-                          double *value);
+bool case_value_numbers(const case_value_context *c, const char *path, const case_node *node, int n,
+                        double *value);
 
 /* slot: int */
-bool case_reading_integer(const case_reading *c, const case_node *node, void *slot);
+bool case_value_integer(const case_value_context *c, const case_node *node, void *slot);
 
 /* What the key wants, for messages: "a number in N/m", "one of neighbour, ground", "[x, y, z] in m". */
 void case_value_expected(const case_key *key, char *text, size_t size);

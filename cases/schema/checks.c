@@ -280,7 +280,7 @@ bool case_check_values(case_reader *r, int stages) {
     check_sections(r);
     check_sizes(r);
   }
-  case_check_unread(r);
+  case_check_unused(r);
   case_check_load_values(r, stages);
   check_blade(r, stages);
   check_tolerance(r);

@@ -27,7 +27,7 @@ typedef struct {
 
 typedef struct {
   mhb_contact_info info;
-  contact_period   period;
+  sampled_period   period;
   post_buffer      svg;
 } picture;
 
@@ -93,17 +93,18 @@ static void draw(const scene *s, picture *p) {
   mhb_contact_evaluator *contact;
   assert_int_equal(mhb_contact_evaluator_create(M, M, 1e-10, &contact), SHB_OK);
   mhb_contact_force(contact, &s->law, &s->motion[0][0], force, NULL, &p->info);
-  assert_int_equal(period_create(contact, &s->law, M, &s->motion[0][0], &p->info, &p->period),
-                   SHB_OK);
+  assert_int_equal(
+      sampled_period_create(contact, &s->law, M, &s->motion[0][0], &p->info, &p->period), SHB_OK);
   p->svg = (post_buffer){0};
-  loops_draw(&(loops_view){.name = s->name, .law = &s->law, .info = &p->info, .period = &p->period},
-             &p->svg);
+  hysteresis_draw(
+      &(hysteresis_view){.name = s->name, .law = &s->law, .info = &p->info, .period = &p->period},
+      &p->svg);
   assert_false(p->svg.failed);
   mhb_contact_evaluator_destroy(contact);
 }
 
 static void clear(picture *p) {
-  period_free(&p->period);
+  sampled_period_free(&p->period);
   post_buffer_free(&p->svg);
 }
 
