@@ -47,7 +47,7 @@ static int by_phase(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-/* One motion and the contact's answer. */
+/* A motion and the contact forces that follow from it. */
 typedef struct {
   int                    m, H;
   mhb_law                law;
@@ -84,7 +84,7 @@ static shb_status evaluate(const case_motion *given, evaluation *e) {
   return SHB_OK;
 }
 
-/* The file's name without folder and .yaml: malloc'ed, NULL when out of memory. */
+/* The file's name without folder and .yaml; malloc'ed, NULL if memory is short. */
 static char *title(const char *path) {
   const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path,
              *dot = strrchr(name, '.');

@@ -1,4 +1,5 @@
-/* Picture of a contact over one period: hysteresis loops, the friction path within its limit, the states in time. */
+/* Picture of a contact over one period: hysteresis loops, friction path and its limit, states in
+ * time. */
 #ifndef CASES_COMMANDS_HYSTERESIS_PICTURE_H
 #define CASES_COMMANDS_HYSTERESIS_PICTURE_H
 
@@ -12,8 +13,8 @@ typedef struct {
   const sampled_period   *period;
 } hysteresis_view;
 
-/* A whole SVG file that needs nothing else; light or dark as the reader's page is. Stick, slip and open differ in
- * colour and in line style, so that it reads in grey too. */
+/* Draw a complete SVG file; its colours follow the light or dark page of the reader. Stick, slip
+ * and open differ in colour and in line style, so the picture is legible in grey. */
 void hysteresis_draw(const hysteresis_view *view, post_buffer *out);
 
 #endif

@@ -14,7 +14,7 @@ enum { N_STAGES = 4 };
 
 static const char *const stage_name[N_STAGES] = {"mesh", "modal", "mhb", "post"};
 
-/* --verbose: where the time went. */
+/* --verbose: prints the time of each stage. */
 static void print_times(const subprocess_result result[N_STAGES]) {
   double seconds = 0, cpu = 0, peak = 0;
   fprintf(stderr, "%-8s %10s %10s %10s\n", "stage", "seconds", "cpu s", "peak MB");
@@ -67,12 +67,15 @@ static shb_status run_stage(const char *stage, const command_options *options,
   return status;
 }
 
-/* A response that did not converge everywhere is still worth a report; modes that did not are no result. */
+/* A response that has not converged everywhere is still reported. Modes that have not converged
+ * stop the run. */
 static bool goes_on(int stage, int code) {
   return code == SHB_OK || (code == SHB_NOT_CONVERGED && strcmp(stage_name[stage], "mhb") == 0);
 }
 
-/* *code: of the stage that ended the run, else 3 if the response did not converge everywhere, else 0. */
+/* Runs the stages in turn.
+ *   *code  out  exit code of the stage that ended the run; else 3 if the response has not converged
+ *               everywhere; else 0 */
 static shb_status run_stages(const case_file *file, const command_options *options, int *code,
                              subprocess_result result[N_STAGES]) {
   *code = SHB_OK;

@@ -10,7 +10,7 @@ static const double TWO_PI = 6.283185307179586476925;
 
 enum { SIGNALS = 9, LEAST = 1440, A_HARMONIC = 32 };
 
-/* What integrating over the period takes. */
+/* The integrand over the period. */
 typedef struct {
   int           m;
   const double *motion; /* [3][2m+1] */
@@ -41,7 +41,7 @@ void sampled_period_free(sampled_period *p) {
   *p = (sampled_period){0};
 }
 
-/* Even steps from 0 to 1 and the transitions. */
+/* Places samples at equal steps from 0 to 1 and at the transitions. */
 static void place(sampled_period *p, int steps, const mhb_contact_info *info) {
   int n = 0;
   for (int i = 0; i <= steps; i++) p->phase[n++] = (double)i / steps;
@@ -62,7 +62,7 @@ static void sum_motion(sampled_period *p, const source *from) {
   }
 }
 
-/* A component that is mere rounding of the other. */
+/* Sets a component to zero if it is only round-off of the other. */
 static void drop_rounding(sampled_period *p) {
   double most[2] = {0, 0};
   for (int i = 0; i < p->n; i++)
@@ -92,7 +92,8 @@ static void velocity(const source *from, double phase, double v[2]) {
   }
 }
 
-/* Work of the friction by Simpson's rule, smooth between samples; middle: [n - 1] the samples halfway. */
+/* Work of friction by Simpson's rule; friction is smooth between samples. middle: [n - 1]
+ * midpoints. */
 static void integrate(sampled_period *p, const source *from, const mhb_contact_sample *middle) {
   double size[2] = {0, 0}, before[2], half[2], after[2];
   velocity(from, 0, after);
@@ -127,7 +128,7 @@ shb_status sampled_period_create(mhb_contact_evaluator *contact, const mhb_law *
     for (int i = 0; i < p->n; i++) sample[i].phase = p->phase[i];
     mhb_contact_time_history(contact, law, motion, p->n, sample, again);
     take(p, law, sample);
-    /* states halfway: at a transition itself rounding would decide */
+    /* states are taken at midpoints: at a transition round-off would decide */
     for (int i = 1; i < p->n; i++) sample[i - 1].phase = .5 * (p->phase[i - 1] + p->phase[i]);
     mhb_contact_time_history(contact, law, motion, p->n - 1, sample, again);
     for (int i = 1; i < p->n; i++) p->during[sample[i - 1].state][i] = true;

@@ -24,7 +24,7 @@ static const char usage[] =
     "dots on the curves of NAME.response.h5. Does nothing if that file is up to date (unless "
     "--force).\n";
 
-/* Keys of the stage; that on which it starts. malloc'ed. */
+/* The keys of the stage and the file of its initial states, as text; malloc'ed. */
 static shb_status settings_of(const case_file *file, const char *modal, const char *balance,
                               char **text) {
   char *keys, fingerprint[17];
@@ -44,7 +44,7 @@ static shb_status settings_of(const case_file *file, const char *modal, const ch
   return status;
 }
 
-/* Whether path holds the finished answer to these settings. */
+/* Does the file at path hold the complete result of these settings? */
 static bool up_to_date(const char *path, const char *settings) {
   bool          same     = up_to_date_with(path, settings);
   mhb_response *response = NULL;
@@ -72,7 +72,7 @@ static void summarise(const case_file *file, const mhb_response *response, const
   puts("");
 }
 
-/* Rings take long, and longest where the wave that the balance finds is left. */
+/* Warns that rings take long, most of all where the waves differ from those of the balance. */
 static void warn_of_ring(const case_file *file, const modal_model *model) {
   if (file->mhb.to_ground || file->mhb.blades * model->n_modes < 200) return;
   fprintf(
@@ -106,7 +106,7 @@ static shb_status solve(const case_file *file, const char *modal, const mhb_resp
   return status;
 }
 
-/* The response file to start on. */
+/* Reads the response file that holds the initial states. */
 static shb_status read_balance(const case_file *file, const char *path, mhb_response **balance) {
   SHB_CHECK(
       access(path, R_OK) == 0, SHB_ERR_INPUT,
@@ -151,7 +151,7 @@ int main(int argc, char **argv) {
   shb_status status = case_read(options.path, CASE_MHB | CASE_INTEGRATE, stderr, &file);
   if (status != SHB_OK) return command_finish(status);
   shb_interrupt_catch();
-  openblas_set_num_threads(1); /* threads go to the points */
+  openblas_set_num_threads(1); /* the points run in parallel, so BLAS uses one thread */
   status = run(&file, &options);
   case_free(&file);
   return command_finish(status);

@@ -1,4 +1,5 @@
-/* shroudhb-mhb: the harmonic balance of a case, or the contact law for a prescribed motion. Starts no MPI. */
+/* shroudhb-mhb: the harmonic balance of a case, or the contact law for a prescribed motion. No
+ * MPI. */
 #include <cblas.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -25,7 +26,7 @@ static const char usage[] =
     "its\n"
     "hysteresis loops, friction path and states.\n";
 
-/* Whether path holds the finished answer to these settings. */
+/* Does the file at path hold the complete result of these settings? */
 static bool up_to_date(const char *path, const char *settings) {
   bool          same     = up_to_date_with(path, settings);
   mhb_response *response = NULL;
@@ -128,7 +129,8 @@ int main(int argc, char **argv) {
   shb_status status = case_read(options.path, CASE_MHB, stderr, &file);
   if (status != SHB_OK) return command_finish(status);
   shb_interrupt_catch();
-  openblas_set_num_threads(1); /* threads go to the preloads; the systems are small */
+  /* the preloads run in parallel and their systems are small, so BLAS uses one thread */
+  openblas_set_num_threads(1);
   file.mhb.resume = !options.force;
   status          = run(&file, &options);
   case_free(&file);

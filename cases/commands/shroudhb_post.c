@@ -1,4 +1,5 @@
-/* shroudhb-post: the report of a case from its response file, or what an HDF5 file holds. Starts no MPI. */
+/* shroudhb-post: the report of a case from its response file, or the contents of an HDF5 file. No
+ * MPI. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -42,7 +43,7 @@ static shb_status inspect(const command_options *options) {
   return status;
 }
 
-/* NAME.converge.h5 if it was made from the case as it is now; malloc'ed, NULL if not. */
+/* NAME.converge.h5 if it belongs to the present case; malloc'ed, else NULL. */
 static char *current_convergence(const case_file *file) {
   char *path = case_output(file, ".converge.h5"), *settings = NULL;
   bool  fresh = path && access(path, R_OK) == 0 && converge_settings(file, &settings) == SHB_OK &&
@@ -53,7 +54,7 @@ static char *current_convergence(const case_file *file) {
   return NULL;
 }
 
-/* Whether there are points by time integration that belong to the case as it is now. */
+/* Are there points by time integration that belong to the present case? */
 static bool has_points(const case_file *file, const char *path) {
   if (access(path, R_OK) != 0) return false;
   if (up_to_date_keys(file, (case_stage)(CASE_MHB | CASE_INTEGRATE), path)) return true;
@@ -64,7 +65,7 @@ static bool has_points(const case_file *file, const char *path) {
   return false;
 }
 
-/* The modal file that belongs to the case as it is now; malloc'ed, NULL if there is none. */
+/* The modal file if it belongs to the present case; malloc'ed, else NULL. */
 static char *current_modal(const case_file *file) {
   char *path  = case_modal_path(file);
   bool  there = path && access(path, R_OK) == 0;
@@ -119,7 +120,8 @@ int main(int argc, char **argv) {
   case_file  file;
   shb_status status = case_read(options.path, CASE_POST, stderr, &file);
   if (status != SHB_OK) return command_finish(status);
-  shb_interrupt_catch(); /* a fraction of a second: finish rather than leave a temporary file */
+  /* the stage takes a fraction of a second: it finishes and leaves no temporary file */
+  shb_interrupt_catch();
   status = publish(&file, &options);
   case_free(&file);
   return command_finish(status);

@@ -8,7 +8,7 @@
 #include "mesh/base/publish.h"
 #include "modal/hdf5/h5.h"
 
-/* A line for a load's field, if it is one. */
+/* Adds a line for the field of a load, if it has one. */
 static shb_status add_field(const char *path, int load, char *text, size_t size) {
   char fingerprint[17], which[24] = "";
   if (!path) return SHB_OK;
@@ -36,7 +36,7 @@ shb_status up_to_date_settings(const case_file *file, case_stage stage, const ch
   return SHB_OK;
 }
 
-/* The settings a file was made from; malloc'ed, NULL if it cannot be told. */
+/* The settings a file was made from; malloc'ed, NULL if unknown. */
 static char *written(const char *path) {
   hid_t file;
   char *text = NULL;

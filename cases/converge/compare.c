@@ -9,12 +9,12 @@
 #include "postproc/analysis/curve_distance.h"
 
 static const double FAR =
-    2e-3; /* from here on the polyline is looked at too: its own error is of this size */
+    2e-3; /* distance above which the polyline is compared too: its own error is of this size */
 static const double SAGS = 4;
 
 enum { MOST_HARMONICS = 256 };
 
-/* One of the two curves. */
+/* One of the two curves compared. */
 typedef struct {
   mhb_response     *response;
   const mhb_branch *branch;
@@ -26,7 +26,7 @@ typedef struct {
   const modal_model  *model;
   const mhb_settings *settings;
   post_output         output;
-  point_matcher      *matcher[MOST_HARMONICS]; /* by harmonics, made when first needed */
+  point_matcher      *matcher[MOST_HARMONICS]; /* by number of harmonics, created at first use */
   side                rung, reference;
   double              unit; /* m */
   rung_error         *error;
@@ -60,7 +60,7 @@ static shb_status matcher_of(comparison *c, int harmonics, point_matcher **out) 
   return SHB_OK;
 }
 
-/* From point i of the reference. */
+/* Distance from point i of the reference to the curve of the rung. */
 static shb_status from_reference(comparison *c, int i, double *distance) {
   const side *r    = &c->reference;
   int         last = r->branch->n_points - 1, near = 0;
@@ -80,7 +80,7 @@ static shb_status from_reference(comparison *c, int i, double *distance) {
   return SHB_OK;
 }
 
-/* From point i of the rung. */
+/* Distance from point i of the rung to the reference curve. */
 static double from_rung(const comparison *c, int i) {
   const side *s        = &c->rung;
   double      point[2] = {s->branch->frequency[i], s->amplitude[i]};
@@ -121,7 +121,7 @@ static shb_status compare_all(comparison *c, const char *stem, const char *refer
 
 /* ---------------------------------------------------------------- points of time integration */
 
-/* From point i of the reference, whose curve the rung's chosen one is. */
+/* Error at point i by time integration, whose preload is that of the rung's curve. */
 static shb_status from_integration(comparison *c, int i) {
   const side    *r        = &c->reference;
   double         point[2] = {r->branch->frequency[i], r->amplitude[i]}, found[2];
@@ -137,7 +137,7 @@ static shb_status from_integration(comparison *c, int i) {
   return SHB_OK;
 }
 
-/* The rung's main curve of a preload; -1: there is none. */
+/* Index of the rung's main curve of a preload; -1 if there is none. */
 static int curve_of(const mhb_response *response, double n0) {
   for (int b = 0; b < response->n_branches; b++) {
     const mhb_branch *branch = &response->branch[b];

@@ -18,7 +18,8 @@ static bool has_mode(const convergence_study *s, const char *mode) {
   return s->options->mode && strcmp(s->options->mode, mode) == 0;
 }
 
-/* The modal files; of a parametric blade also those of coarser meshes, and its own anew, so that its cost is known. */
+/* Makes the modal files. For a parametric blade these include coarser meshes, and the case's own
+ * mesh again, so that its cost is measured. */
 static shb_status make_variants(convergence_study *s) {
   static const double factor[STUDY_VARIANTS] = {1, 1.6, 1.26, .8};
   const case_file    *file                   = s->file;
@@ -35,7 +36,8 @@ static shb_status make_variants(convergence_study *s) {
   return SHB_OK;
 }
 
-/* --force: forget what earlier runs left beside the meshes, whose stages heed --force themselves. */
+/* --force: removes what earlier runs left beside the meshes. The stages treat --force
+ * themselves. */
 static void forget(const char *folder) {
   static const char *const endings[] = {".response.h5", ".cost", ".error"};
   DIR                     *all       = opendir(folder);
@@ -48,7 +50,7 @@ static void forget(const char *folder) {
   if (all) closedir(all);
 }
 
-/* Points by time integration that belong to the case as it is now; malloc'ed, NULL if there are none. */
+/* Points by time integration that belong to the present case; malloc'ed, NULL if there are none. */
 static char *current_points(const case_file *file) {
   char *path = case_output(file, ".integration.h5");
   if (path && access(path, R_OK) == 0) {
@@ -71,7 +73,7 @@ static shb_status prepare(convergence_study *s) {
                            .accuracy  = fmin(1e-8, s->file->mhb.tolerance),
                            .modes     = 1,
                            .residuals = true};
-  SHB_TRY(rung_apply(&s->base, &copy)); /* of its preloads only */
+  SHB_TRY(rung_apply(&s->base, &copy)); /* limits the preloads */
   s->folder = case_output(s->file, ".converge");
   SHB_CHECK(s->folder, SHB_ERR_IO, "out of memory");
   SHB_TRY(mesh_variant_folder(s->folder));
@@ -124,7 +126,7 @@ static void print_report(const convergence_study *s) {
   post_buffer_free(&text);
 }
 
-/* Whether a rung failed, or one that others are compared with has a gap. */
+/* Did a rung fail, or does a reference curve have a gap? */
 static bool in_doubt(const post_convergence *result) {
   for (int i = 0; i < result->n; i++) {
     const post_rung *r = &result->rung[i];
@@ -165,7 +167,7 @@ shb_status converge_case(case_file *file, const command_options *options) {
   post_buffer_free(&s.note);
   modal_model_free(&s.model);
   free(s.row);
-  if (s.folder) rmdir(s.folder); /* stays unless it is empty */
+  if (s.folder) rmdir(s.folder); /* remains unless it is empty */
   free(s.folder);
   return status;
 }

@@ -9,10 +9,10 @@
 
 enum { MAX_TOGETHER = 6 };
 
-static const double ALIKE = .15; /* seconds that differ by less say nothing */
+static const double ALIKE = .15; /* relative difference of times that is within their scatter */
 
 static const double DEFAULT_TOLERANCE =
-    1e-4; /* of the motion, with auto, where the case has none */
+    1e-4; /* tolerance of the motion with auto, if the case has none */
 
 /* ---------------------------------------------------------------- one rung */
 
@@ -60,14 +60,15 @@ static void take_cost(convergence_study *s, int i) {
   row->memory              = mesh ? fmax(p->cost.memory, v->memory) : p->cost.memory;
 }
 
-/* Ladders whose errors go all the way to the finest harmonics: time integration is a measure of theirs. */
+/* Points by time integration are the reference of ladders that reach the finest harmonics. */
 static const char *points_for(const convergence_study *s, const post_rung *row) {
   bool whole = row->ladder == POST_LADDER_HARMONICS || row->ladder == POST_LADDER_AUTO ||
                row->ladder == POST_LADDER_TOGETHER;
   return whole ? s->points : NULL;
 }
 
-/* The child's words; the last ones the reference's stem or "-", and the points of time integration. */
+/* Starts the program of a rung. Its last words are the stem of the reference or "-", and the points
+ * of time integration. */
 static shb_status start_rung(convergence_study *s, const study_row *p, const char *reference,
                              const char *points, subprocess_result *result) {
   char  setting[RUNG_SETTING_WORDS][RUNG_WORD], none[] = "-";
@@ -88,7 +89,7 @@ static shb_status start_rung(convergence_study *s, const study_row *p, const cha
   return status;
 }
 
-/* Errors that the rung's program has left. */
+/* Reads the errors that the program of the rung has written. */
 static void take_errors(convergence_study *s, int i, int reference) {
   study_row  *p   = &s->row[i];
   post_rung  *row = &s->result.rung[i];
@@ -108,7 +109,7 @@ static void take_errors(convergence_study *s, int i, int reference) {
   free(path);
 }
 
-/* Work row i out, and compare it with row reference (-1: with none). A rung that fails costs its row only. */
+/* Runs row i and compares it with row reference (-1: none). A failure affects only its row. */
 static shb_status run(convergence_study *s, int i, int reference) {
   study_row        *p   = &s->row[i];
   post_rung        *row = &s->result.rung[i];
@@ -120,8 +121,8 @@ static shb_status run(convergence_study *s, int i, int reference) {
     SHB_FAIL(SHB_INTERRUPTED, "interrupted; the rungs so far are kept and used again");
   shb_progress_clear(&s->progress);
   if (status != SHB_OK) fprintf(stderr, "shroudhb: warning: %s\n", shb_message());
-  if (status == SHB_OK && result.code == SHB_ERR_INPUT)
-    return shb_fail(SHB_ERR_INPUT, __FILE__, __LINE__, "%s", ""); /* the child has told it */
+  if (status == SHB_OK && result.code == SHB_ERR_INPUT) /* the child has printed its message */
+    return shb_fail(SHB_ERR_INPUT, __FILE__, __LINE__, "%s", "");
   if (status != SHB_OK || result.code != 0 || rung_cost_read(p->stem, &p->cost) != SHB_OK) {
     row->state = POST_RUNG_FAILED;
     return SHB_OK;
@@ -133,7 +134,7 @@ static shb_status run(convergence_study *s, int i, int reference) {
   return SHB_OK;
 }
 
-/* Rows from first on: the last is the reference of all of them. */
+/* Runs the rows from first on; the last one is their reference. */
 static shb_status run_ladder(convergence_study *s, int first) {
   int last                       = s->result.n - 1;
   s->result.rung[last].reference = true;
@@ -153,7 +154,7 @@ static int by_size(const void *a, const void *b) {
   return *(const int *)a - *(const int *)b;
 }
 
-/* Seconds that the next rung may take, from those of the one before: the solver's cost grows no faster than H^1.8. */
+/* Predicted seconds of the next rung: the cost of the solver grows at most like H^1.8. */
 static double predict(double seconds, int from, int to) {
   return seconds * pow((double)to / from, 1.8);
 }
@@ -172,8 +173,9 @@ static shb_status harmonics_ladder(convergence_study *s) {
     rung_setting setting = s->base;
     setting.harmonics    = m[i];
     setting.tolerance    = 0;
-    double next   = i == 0 ? 0 : predict(s->row[s->result.n - 1].cost.seconds, m[i - 1], m[i]);
-    bool   enough = i >= 2 && m[i - 1] >= own; /* a reference beside another rung, and the case */
+    double next = i == 0 ? 0 : predict(s->row[s->result.n - 1].cost.seconds, m[i - 1], m[i]);
+    /* one rung, its reference, and the setting of the case */
+    bool enough = i >= 2 && m[i - 1] >= own;
     if (enough && next > s->file->converge_seconds) {
       post_put(&s->note,
                "The ladder of harmonics ends at %d: %d would take about %.2g s "
@@ -185,7 +187,8 @@ static shb_status harmonics_ladder(convergence_study *s) {
     SHB_TRY(add(s, POST_LADDER_HARMONICS, &setting, 0, name));
     s->result.rung[s->result.n - 1].of_case = m[i] == own;
     SHB_TRY(
-        run(s, s->result.n - 1, -1)); /* upwards: its seconds tell whether the next is affordable */
+        /* upwards, because the time of a rung decides whether the next is affordable */
+        run(s, s->result.n - 1, -1));
   }
   return run_ladder(s, first);
 }
@@ -222,7 +225,7 @@ static shb_status accuracy_ladder(convergence_study *s) {
   double value[4] = {1e-3, 1e-5, 1e-8}, own = s->file->mhb.tolerance;
   int    n = 3, first = s->result.n, at = 0;
   while (at < n && value[at] > own) at++;
-  if (at == n || value[at] != own) { /* the case's own between them, descending */
+  if (at == n || value[at] != own) { /* the setting of the case among them, descending */
     memmove(value + at + 1, value + at, (size_t)(n - at) * sizeof *value);
     value[at] = own;
     n++;
@@ -247,7 +250,7 @@ static shb_status modes_ladder(convergence_study *s, bool residuals) {
     int          modes = i < sizeof wanted / sizeof *wanted && wanted[i] < all ? wanted[i] : all;
     char         name[16];
     rung_setting setting = s->base;
-    if (!residuals && !has && modes == all) break; /* the reference itself */
+    if (!residuals && !has && modes == all) break; /* this is the reference */
     setting.modes     = modes;
     setting.residuals = residuals;
     snprintf(name, sizeof name, "%d", modes);
@@ -261,7 +264,7 @@ static shb_status modes_ladder(convergence_study *s, bool residuals) {
   return SHB_OK;
 }
 
-/* From the coarsest on. */
+/* Runs the meshes from the coarsest on. */
 static shb_status mesh_ladder(convergence_study *s) {
   const mesh_blade *blade = &s->file->blade;
   int               first = s->result.n, order[STUDY_VARIANTS];
@@ -291,8 +294,8 @@ static double error_at(const convergence_study *s, int i) {
   return isnan(error) ? 0 : error;
 }
 
-/* The cheaper of the best of two ladders, or where they take about as long the one that errs less; the reference of the first
- * if neither has one. */
+/* Of the best rungs of two ladders the cheaper one. If their times are alike, the one with the
+ * smaller error. If neither has a best rung, the reference of the first. */
 static int pick(const convergence_study *s, post_ladder one, post_ladder other) {
   int a = post_cheapest(&s->result, one), b = post_cheapest(&s->result, other);
   if (a < 0 && b < 0) return post_reference(&s->result, one);
@@ -303,7 +306,7 @@ static int pick(const convergence_study *s, post_ladder one, post_ladder other) 
   return ra->seconds < rb->seconds ? a : b;
 }
 
-/* The rung of the same ladder that errs next less; the finest if there is none. */
+/* The rung of the same ladder with the next smaller error; the finest if there is none. */
 static int finer(const convergence_study *s, int i) {
   int              best = -1;
   const post_rung *from = &s->result.rung[i];
@@ -316,7 +319,7 @@ static int finer(const convergence_study *s, int i) {
   return best >= 0 ? best : i;
 }
 
-/* The setting that takes its parts from three rungs, and what it is called. */
+/* Combines the parts of three rungs to one setting with a name. */
 static rung_setting combine(const convergence_study *s, const int part[3],
                             char name[POST_RUNG_NAME]) {
   const rung_setting *h   = &s->row[part[0]].setting;
@@ -334,7 +337,8 @@ static rung_setting combine(const convergence_study *s, const int part[3],
   return out;
 }
 
-/* The cheapest of each ladder, all at once; where the errors add up to too much, the worst part a rung finer. */
+/* Combines the cheapest rung of each ladder. While the sum of the errors is too large, the part
+ * with the largest error is taken one rung finer. */
 static shb_status together(convergence_study *s) {
   int reference = post_reference(&s->result, POST_LADDER_HARMONICS);
   int part[3]   = {pick(s, POST_LADDER_HARMONICS, POST_LADDER_AUTO),
@@ -359,7 +363,8 @@ static shb_status together(convergence_study *s) {
 
 /* ---------------------------------------------------------------- all */
 
-/* The setting in which the other ladders stand: all at its finest, harmonics as in the case, or what the first ladder found. */
+/* The base setting of the other ladders: everything at its finest, with the harmonics of the case
+ * or those that the first ladder has found. */
 static void settle_base(convergence_study *s) {
   int best = post_cheapest(&s->result, POST_LADDER_HARMONICS);
   if (best < 0) best = post_reference(&s->result, POST_LADDER_HARMONICS);

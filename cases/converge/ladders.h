@@ -1,4 +1,4 @@
-/* The ladders of a convergence study: which rungs there are, and running them. */
+/* The ladders of a convergence study: choice of the rungs, and their runs. */
 #ifndef CASES_CONVERGE_LADDERS_H
 #define CASES_CONVERGE_LADDERS_H
 
@@ -12,7 +12,7 @@
 
 enum { STUDY_VARIANTS = 4 };
 
-/* What a row of the result needs to be run. */
+/* What is needed to run a row of the result. */
 typedef struct {
   rung_setting setting;
   int          variant;
@@ -27,18 +27,20 @@ typedef struct {
   char                  *folder; /* NAME.converge */
   mesh_variant           variant[STUDY_VARIANTS];
   int                    n_variants;
-  modal_model            model;  /* of the first */
-  char                  *points; /* NAME.integration.h5, if it belongs to the case; or NULL */
-  rung_setting           base;   /* in which the ladders stand: all at its finest */
-  post_convergence       result;
-  int                    capacity;
-  study_row             *row;  /* [result.n] */
-  post_buffer            note; /* what must be known besides; lines */
-  bool short_of_rungs;         /* a ladder has no rung but the finest that meets the tolerance */
+  modal_model            model; /* of the first mesh */
+  /* NAME.integration.h5 if it belongs to the present case, else NULL */
+  char            *points;
+  rung_setting     base; /* base setting of the ladders: everything at its finest */
+  post_convergence result;
+  int              capacity;
+  study_row       *row;  /* [result.n] */
+  post_buffer      note; /* remarks, one a line */
+  /* a ladder has no rung besides the finest that meets the tolerance */
+  bool short_of_rungs;
 } convergence_study;
 
-/* Every ladder in turn. A rung that fails costs its row only.
- * Errors: SHB_INTERRUPTED, the rows so far are good; SHB_ERR_INPUT a rung's program has told it (no text); SHB_ERR_IO. */
+/* Run every ladder. A rung that fails affects only its row. Errors: SHB_INTERRUPTED, the rows so
+ * far are valid; SHB_ERR_INPUT, the program of a rung has printed the message; SHB_ERR_IO. */
 shb_status ladders_run(convergence_study *study);
 
 #endif

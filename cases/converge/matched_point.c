@@ -54,7 +54,7 @@ void point_matcher_destroy(point_matcher *matcher) {
   free(matcher);
 }
 
-/* to += factor times the motion of a point, less harmonics or more. */
+/* Adds factor times the motion of a point, truncated or padded to the harmonics of the balance. */
 static void add_motion(const point_matcher *matcher, const curve_place *place, int point,
                        double factor, double *to) {
   const mhb_balance    *b = matcher->balance;
@@ -69,7 +69,7 @@ static void add_motion(const point_matcher *matcher, const curve_place *place, i
     }
 }
 
-/* At the solution that the residual was just evaluated at. */
+/* Amplitude at the solution at which the balance was evaluated last. */
 static double amplitude(const point_matcher *matcher) {
   const mhb_balance *b = matcher->balance;
   int k = matcher->settings.subharmonics <= b->m ? matcher->settings.subharmonics : b->m;

@@ -28,7 +28,7 @@ static char *join(const char *folder, const char *leaf) {
   return path;
 }
 
-/* One stage of a case file; what it says on stderr is its own. */
+/* Runs one stage of a case file, which prints its own messages on stderr. */
 static shb_status run_stage(const char *stage, const char *path, bool force,
                             subprocess_result *result) {
   char  quiet[] = "--quiet", forced[] = "--force", end[] = "--", name[32];
@@ -50,7 +50,7 @@ static shb_status run_stage(const char *stage, const char *path, bool force,
   return status;
 }
 
-/* FE unknowns of a modal file of our own. */
+/* Unknowns of the finite-element model in a modal file written by the modal stage. */
 static double unknowns_of(const char *path) {
   hid_t    file;
   h5_shape shape;
@@ -62,7 +62,8 @@ static double unknowns_of(const char *path) {
   return n;
 }
 
-/* MODAL.cost beside the modal file: seconds, memory and what the file was when they were measured. */
+/* Writes MODAL.cost beside the modal file: seconds, memory, and the fingerprint of the measured
+ * file. */
 static void remember(mesh_variant *v, bool made) {
   char  print[17] = "", found[17] = "", *path = join(v->folder, "modes.cost");
   FILE *in;
@@ -73,7 +74,8 @@ static void remember(mesh_variant *v, bool made) {
   if (made) {
     post_buffer out = {0};
     post_put(&out, "%s %.9g %.9g\n", print, v->seconds, v->memory);
-    post_buffer_publish(&out, path); /* without it the seconds are not known next time */
+    /* a failure is harmless: the next run does not know the seconds */
+    post_buffer_publish(&out, path);
     post_buffer_free(&out);
   } else if ((in = fopen(path, "r")) != NULL) {
     double seconds, memory;
@@ -91,7 +93,7 @@ static struct timespec changed(const char *path) {
   return stat(path, &info) == 0 ? info.st_mtim : (struct timespec){0};
 }
 
-/* Mesh and modes of the case at path, and what they cost if both had to be made. */
+/* Makes mesh and modes of the case at path, and measures their cost if both had to be made. */
 static shb_status run_stages(const char *path, bool force, mesh_variant *v) {
   subprocess_result mesh, modal;
   struct timespec   before = changed(v->modal), after;

@@ -1,4 +1,4 @@
-/* A case file in memory: the settings of every stage in SI units. */
+/* A case file in memory: the settings of all stages, in SI units. */
 #ifndef CASES_PARSE_CASE_FILE_H
 #define CASES_PARSE_CASE_FILE_H
 
@@ -45,8 +45,8 @@ typedef struct {
 /* A volume of the mesh and what it is made of. */
 typedef struct {
   char            group[MESH_WORD];
-  fem_orthotropic constants; /* E, nu, G, axes */
-  fem_material    material;  /* what they make */
+  fem_orthotropic constants; /* as given: E, nu, G, axes */
+  fem_material    material;  /* stiffness and density in mesh axes */
 } case_material;
 
 typedef struct {
@@ -58,11 +58,11 @@ typedef struct {
   bool        has_mesh;  /* block mesh present (needed unless modal.file) */
   char       *mesh_file; /* resolved path of mesh.file, or NULL: parametric blade */
   int         mesh_unit; /* place in the words of mesh.unit */
-  mesh_source source;    /* mesh.file, all that is said of it */
+  mesh_source source;    /* mesh.file and the keys that belong to it */
   mesh_blade  blade;
 
   fem_orthotropic constants; /* material.E, nu, G, axes */
-  fem_material    material;  /* what they make */
+  fem_material    material;  /* stiffness and density in mesh axes */
   bool            has_materials;
   int             n_materials; /* with materials, instead of material */
   case_material   materials[MESH_MAX_VOLUMES];

@@ -61,7 +61,7 @@ void case_print_keys(FILE *out) {
 
 /* ---------------------------------------------------------------- the reference page */
 
-/* When a key is read, for the page's readers; NULL: always, or it is this very key that decides. */
+/* The condition of a key in words. NULL if there is none, or if the key decides it itself. */
 static const char *applies_text(const case_key *key) {
   static const char *const text[] = {
       [CASE_IF_BLADE]      = "parametric blade",
@@ -100,7 +100,7 @@ static const char *applies_text(const case_key *key) {
   return when && strcmp(when, own) == 0 ? NULL : when;
 }
 
-/* A cell of a Markdown table: | would end it. */
+/* Prints a cell of a Markdown table, in which | must be escaped. */
 static void print_cell(const char *text, FILE *out) {
   for (; *text; text++) {
     if (*text == '|') fputc('\\', out);

@@ -1,4 +1,4 @@
-/* The key table as people read it. */
+/* The key table as text: the list of `shroudhb keys` and the page of the case reference. */
 #ifndef CASES_PARSE_KEY_LISTING_H
 #define CASES_PARSE_KEY_LISTING_H
 

@@ -1,4 +1,4 @@
-/* The rows of the key table, and when a row has a meaning. */
+/* The rows of the key table, and the conditions under which a key is read. */
 #ifndef CASES_PARSE_KEY_TABLE_H
 #define CASES_PARSE_KEY_TABLE_H
 

@@ -44,7 +44,7 @@ static int lower(char c) {
   return c >= 'A' && c <= 'Z' ? c + ('a' - 'A') : c;
 }
 
-/* Optimal string alignment; words longer than CASE_LONGEST_WORD are as far as can be. */
+/* Optimal string alignment distance. Words above CASE_LONGEST_WORD have the largest distance. */
 int case_edit_distance(const char *a, const char *b) {
   size_t n = strlen(a), m = strlen(b);
   if (n > CASE_LONGEST_WORD || m > CASE_LONGEST_WORD) return INT_MAX;

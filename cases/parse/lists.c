@@ -13,7 +13,7 @@ static bool preload_room(const case_value_context *c, const case_node *node, int
   return false;
 }
 
-/* {from, to, points}: both ends included. */
+/* Reads {from, to, points}; both ends are included. */
 static bool read_preload_range(const case_value_context *c, const case_node *node, int *n,
                                double *n0) {
   static const case_key names[] = {
@@ -60,7 +60,8 @@ static bool read_preload_range(const case_value_context *c, const case_node *nod
   return true;
 }
 
-/* The same preload twice gives the same curve twice. With several interfaces the lists go together: paths of their own. */
+/* Refuses a preload that is listed twice. The lists of several interfaces may repeat a value, since
+ * only their combination counts. */
 static bool all_differ(const case_value_context *c, const case_node *node, const double *n0) {
   for (int i = 1; strcmp(c->path, "contact.n0") == 0 && i < node->n; i++)
     for (int j = 0; j < i; j++) {
@@ -123,7 +124,7 @@ bool case_list_orders(const case_value_context *c, const case_node *node, void *
   return good;
 }
 
-/* Points over the range of the sweep, or the frequencies themselves. */
+/* Reads the number of points over the range of the sweep, or the list of frequencies. */
 bool case_list_frequencies(const case_value_context *c, const case_node *node, void *slot) {
   (void)slot;
   mhb_integration_settings *asked = &c->file->integrate;

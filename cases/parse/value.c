@@ -15,7 +15,7 @@ static bool read_number(const case_value_context *c, const case_node *node, void
   return case_value_number(c, c->path, node, slot);
 }
 
-/* A whole number, or the word that stands for 0. */
+/* Reads a whole number, or the word that stands for 0. */
 static bool read_count(const case_value_context *c, const case_node *node, void *slot) {
   const char *word = c->key->type == CASE_AUTO ? "auto" : "all";
   bool        zero = node->kind == CASE_SCALAR && strcmp(node->text, word) == 0;
@@ -23,7 +23,7 @@ static bool read_count(const case_value_context *c, const case_node *node, void 
   return zero || case_value_integer(c, node, slot);
 }
 
-/* Place of text in words separated by spaces, or -1. */
+/* Index of text in words separated by spaces, or -1. */
 static int word_index(const char *words, const char *text) {
   int index = 0;
   for (const char *word = words; *word; index++) {
@@ -60,7 +60,7 @@ static bool read_switch(const case_value_context *c, const case_node *node, void
   return index >= 0;
 }
 
-/* The words' tolerances, in the order of the row's words; what begins like a number is one. */
+/* Reads a number, or one of the words; tolerance is in the order of the words of the row. */
 static bool read_accuracy(const case_value_context *c, const case_node *node, void *slot) {
   static const double tolerance[] = {1e-3, 1e-5, 1e-8};
 
@@ -149,7 +149,8 @@ static bool read_sweep(const case_value_context *c, const case_node *node, void 
   return true;
 }
 
-/* A list may leave the range: it is that of an isotropic material. */
+/* Reads one number or three. The range holds for an isotropic material, so not for three
+ * numbers. */
 static bool read_triple(const case_value_context *c, const case_node *node, void *slot) {
   double *v = slot;
   if (node->kind == CASE_SCALAR) {
@@ -173,7 +174,8 @@ static bool read_stiffness(const case_value_context *c, const case_node *node, v
     return true;
   }
   if (node->kind != CASE_SEQUENCE) return case_value_refuse(c, node);
-  case_key free_key = *c->key; /* kuw may have any sign: the range holds for a single number */
+  /* kuw may have any sign, so the range holds for a single number only */
+  case_key free_key = *c->key;
   free_key.least = free_key.most  = 0;
   case_value_context free_context = *c;
   free_context.key                = &free_key;

@@ -99,7 +99,6 @@ bool case_value_integer(const case_value_context *c, const case_node *node, void
   return check_range(c, c->path, node, *(int *)slot);
 }
 
-/* A list of n numbers; names the shape if it is none. */
 bool case_value_numbers(const case_value_context *c, const char *path, const case_node *node, int n,
                         double *value) {
   if (node->kind != CASE_SEQUENCE || node->n != n) {

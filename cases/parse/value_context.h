@@ -1,4 +1,4 @@
-/* A value in hand: what its reader needs to know, and what readers share. */
+/* What the readers of values share: the value being read, and checks of kind and range. */
 #ifndef CASES_PARSE_VALUE_CONTEXT_H
 #define CASES_PARSE_VALUE_CONTEXT_H
 
@@ -15,26 +15,28 @@ typedef struct {
   case_file      *file;
 } case_value_context;
 
-/* Record that node is of the wrong kind (nothing if it is broken); false. The first says what the key wants. */
+/* Record that node is of the wrong kind, unless it is broken, and return false. The first function
+ * says what the key expects. */
 bool case_value_refuse(const case_value_context *c, const case_node *node);
 bool case_value_refuse_kind(const case_value_context *c, const char *path, const case_node *node,
                             const char *expected);
 
-/* A number in the key's unit and range. */
+/* Read a number in the unit and the range of the key. */
 bool case_value_number(const case_value_context *c, const char *path, const case_node *node,
                        double *value);
 
-/* A list of n of them. */
+/* Read a list of n such numbers. */
 bool case_value_numbers(const case_value_context *c, const char *path, const case_node *node, int n,
                         double *value);
 
-/* slot: int */
+/* Read a whole number; slot is an int. */
 bool case_value_integer(const case_value_context *c, const case_node *node, void *slot);
 
-/* What the key wants, for messages: "a number in N/m", "one of neighbour, ground", "[x, y, z] in m". */
+/* Text for messages: "a number in N/m", "one of neighbour, ground", "[x, y, z] in m". */
 void case_value_expected(const case_key *key, char *text, size_t size);
 
-/* A pair [number in unit, phase] (phase optional, rad); for load factors and signals. */
+/* Read a pair [number in unit, phase] for load factors and signals. The phase is optional, in
+ * rad. */
 bool case_value_polar(case_issues *issues, const char *path, const case_node *node,
                       const char *unit, double polar[2]);
 

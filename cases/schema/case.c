@@ -19,7 +19,7 @@ static char *folder_of(const char *path) {
   return strndup(path, slash == path ? 1 : (size_t)(slash - path));
 }
 
-/* The file's name without its ending; for case.yaml the name of its folder, which tells more. */
+/* Name of the case: the file's name without its ending, or for case.yaml the name of its folder. */
 static char *default_name(const char *path, const char *folder) {
   const char *leaf = strrchr(path, '/');
   leaf             = leaf ? leaf + 1 : path;
@@ -33,7 +33,7 @@ static char *default_name(const char *path, const char *folder) {
   return name;
 }
 
-/* What curves are followed in: the frequency, unless mhb.vary names something else. */
+/* The continuation parameter: the frequency, unless mhb.vary names another one. */
 static void share_parameter(case_reader *r) {
   mhb_settings *mhb = &r->file->mhb;
   for (int i = MHB_IN_FREQUENCY + 1; i < MHB_N_PARAMETERS; i++) {
@@ -45,7 +45,7 @@ static void share_parameter(case_reader *r) {
   }
 }
 
-/* Copies of a value for those who look for it elsewhere. */
+/* Copies values that several structs hold. */
 static void share(case_reader *r) {
   case_file *file        = r->file;
   file->mhb.has_psi      = case_reader_given(r, "contact.psi") != NULL;
@@ -81,7 +81,7 @@ static void share(case_reader *r) {
 /* Returns true if an input file named in the case cannot be read. */
 static bool read_document(case_issues *issues, int stages, case_file *out) {
   case_node *root = case_document_parse(issues);
-  if (!root && issues->n > 0) return false; /* not YAML: nothing more can be said */
+  if (!root && issues->n > 0) return false; /* not YAML, so there is nothing to check */
   case_reader reader = {.issues = issues, .keys = case_key_table(), .file = out};
   case_reader_walk(&reader, root);
   bool lost = false;
@@ -116,7 +116,8 @@ shb_status case_read(const char *path, int stages, FILE *errors, case_file *out)
   case_issues_free(&issues);
   if (n == 0) return SHB_OK;
   case_free(out);
-  /* all is said: no text for the closing line. A lone file that cannot be read is not the case file's fault. */
+  /* The errors are printed, so the closing line has no text. If the only error is an input file
+   * that cannot be read, the case file itself is in order: SHB_ERR_IO. */
   return shb_fail(lost && n == 1 ? SHB_ERR_IO : SHB_ERR_INPUT, __FILE__, __LINE__, "%s", "");
 }
 

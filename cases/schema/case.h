@@ -7,9 +7,12 @@
 #include "cases/parse/case_file.h"
 #include "mesh/base/status.h"
 
-/* Read and check a case file. All errors of the file are printed to errors at once, each as
- * "file:line:col: error: key: text" with the source line and a caret; returns SHB_ERR_INPUT (SHB_ERR_IO if it
- * cannot be opened). stages: bit mask of case_stage that will run; a stage's required keys are only required then. */
+/* Read and check a case file. All errors of the file are printed to errors, each as "file:line:col:
+ * error: key: text" with the source line and a caret.
+ *
+ *   stages  in  mask of the stages that will run; keys that only others require may be missing
+ *
+ * Errors: SHB_ERR_INPUT a fault in the file; SHB_ERR_IO the file cannot be opened. */
 shb_status case_read(const char *path, int stages, FILE *errors, case_file *out);
 void       case_free(case_file *file);
 

@@ -7,7 +7,7 @@
 
 enum { CONVERGE_STAGES = CASE_MESH | CASE_MODAL | CASE_MHB | CASE_CONVERGE };
 
-/* All that a study depends on, to be compared with what it was made from; malloc'ed. SHB_ERR_IO. */
+/* Everything that the result of a study depends on, as text; malloc'ed. Errors: SHB_ERR_IO. */
 shb_status converge_settings(const case_file *file, char **text);
 
 #endif

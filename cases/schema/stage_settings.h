@@ -4,7 +4,8 @@
 
 #include "cases/parse/case_file.h"
 
-/* "key = value" lines in SI, sorted as in the key table, of every key that stage depends on; malloc'ed. */
+/* Lines "key = value" in SI of every key on which stage depends, in the order of the key table;
+ * malloc'ed. */
 char *case_settings(const case_file *file, case_stage stage);
 
 #endif
