@@ -21,8 +21,8 @@ packages_missing() {
   done
 }
 
-# packages_install NAME...: installs the missing ones. A user without the right to do so is told which
-# they are; the result is then 1. With nothing missing neither network nor package lists are touched.
+# packages_install NAME...: installs the missing ones. Lists them and returns 1 if the user may not.
+# If nothing is missing, neither the network nor the package lists are touched.
 packages_install() {
   command -v dpkg-query >/dev/null || {
     echo "shroudhb: this script installs Debian packages; elsewhere install the like of: $*" >&2

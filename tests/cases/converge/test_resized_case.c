@@ -1,4 +1,4 @@
-/* Another mesh size in the text of a case: two numbers change and nothing else. */
+/* Another mesh size in the text of a case: two numbers change and the rest stays. */
 #include "cases/converge/resized_case.h"
 #include "cases/schema/case.h"
 #include "cases/schema/stage_settings.h"
@@ -37,7 +37,7 @@ static void read(const char *path, case_file *file) {
   if (case_read(path, STAGES, stderr, file) != SHB_OK) fail_msg("%s: %s", path, shb_message());
 }
 
-/* sizes: as the text has them, in m */
+/* sizes: as in the text, m */
 static void check(char *text, const double sizes[2], double factor) {
   case_file a, b;
   scratch_write(folder, "from.yaml", text, strlen(text));

@@ -1,10 +1,13 @@
-/* cases/paper_fig8: the linear limits against direct solutions of the whole finite-element model, without modes.
+/* cases/paper_fig8: the linear limits against direct solutions of the full finite-element model.
  *
- * At omega, with the blade's K and M (free dofs), the neighbour coupled by springs and one phase from blade to blade,
+ * At omega, with K and M of the blade (free dofs), the neighbour coupled by springs and one phase
+ * from blade to blade,
  *   (K - omega^2 M + j omega C + B^H diag(kv, ku, ku) B) x = f,   B = D_right - exp(-j phi) D_left
- * D: mean displacement of a contact face along v, u, w, which psi and the face's place fix. The damping of the case is modal, so
- * C = sum 2 zeta w_i (M phi_i)(M phi_i)^T over the modes kept: they enter as the definition of C alone. C is dense: GMRES
- * applies it, preconditioned by a sparse LU of all the rest. Complex numbers as pairs: A = [Re -Im; Im Re]. */
+ * D is the mean displacement of a contact face along v, u, w, given by psi and the place of the
+ * face. The damping of the case is modal, so C is defined by the modes kept:
+ *   C = sum 2 zeta w_i (M phi_i)(M phi_i)^T
+ * C is dense. GMRES applies it, preconditioned by a sparse LU of the other terms. Complex numbers
+ * are pairs of real ones: A = [Re -Im; Im Re]. */
 #include <complex.h>
 #include <petscksp.h>
 #include <stdlib.h>
@@ -55,8 +58,8 @@ static void axes_at(const double at[3], double axes[3][3]) {
   }
 }
 
-/* Area and centroid of a face's flat parallelograms; every node's share of the mean: the middles of the sides get a third of
- * each one, its corners take a twelfth away. */
+/* Area and centroid of a face of flat parallelograms, and every node's share of the mean. A midside
+ * node gets a third of an element's share; each corner subtracts a twelfth. */
 static double face_mean(const mesh_fe *mesh, const mesh_face_set *set, double centroid[3],
                         double *share) {
   double area = 0;
@@ -84,7 +87,7 @@ static double face_mean(const mesh_fe *mesh, const mesh_face_set *set, double ce
   return area;
 }
 
-/* Append one side's part of B: factor times the mean displacement along v, u, w. */
+/* Appends the part of one side to B: factor times the mean displacement along v, u, w. */
 static void add_side(body *w, mesh_set_id side, double complex factor) {
   double *share = calloc((size_t)w->mesh.n_nodes, sizeof *share), centroid[3], axes[3][3];
   double  psi   = w->file.mhb.psi;
@@ -208,7 +211,7 @@ static Mat undamped(const body *w, double omega, bool stuck) {
   return A;
 }
 
-/* The undamped matrix and, around it, damping. */
+/* The undamped matrix, and the matrix with damping. */
 typedef struct {
   const body *w;
   double      omega;
@@ -328,8 +331,9 @@ static int nearest_point(const mhb_branch *b, double frequency) {
   return best;
 }
 
-/* Below the first resonance, near the three, between and above them; all below a third of mode 20 (12.2 kHz). On the third
- * stuck resonance the contact's term of omega^4 is felt: without it 5e-6. */
+/* Frequencies below the first resonance, near the three, between and above them, all below a third
+ * of mode 20 (12.2 kHz). On the third stuck resonance the contact's term of omega^4 matters:
+ * without it the error is 5e-6. */
 static void limit_is_the_direct_solution(bool stuck, int n, const double *frequency,
                                          const double *bound) {
   const mhb_branch *b = scene_branch(response, stuck ? MHB_BRANCH_STUCK : MHB_BRANCH_OPEN, 0);
