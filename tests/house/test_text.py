@@ -33,7 +33,7 @@ NOT_YET = {
         tests/mhb/floquet tests/mhb/integration tests/mhb/problem tests/mhb/response
         tests/mhb/structure tests/modal/common tests/modal/condense tests/modal/eigen
         tests/modal/hdf5 tests/modal/model tests/modal/stage tests/postproc/analysis
-        tests/postproc/draw tests/postproc/inspect tests/postproc/report tests/support
+        tests/postproc/draw tests/postproc/inspect tests/postproc/report
     '''.split(),
     'sentences': '''
         fem/body fem/element fem/solver mesh/base mesh/blade mesh/core mesh/gmsh mesh/io
@@ -44,7 +44,7 @@ NOT_YET = {
         tests/mesh/core tests/mhb/balance tests/mhb/branches tests/mhb/contact tests/mhb/floquet
         tests/mhb/integration tests/mhb/response tests/mhb/structure tests/modal/common
         tests/modal/condense tests/modal/model tests/modal/stage tests/postproc/analysis
-        tests/support
+       
     '''.split(),
 }
 

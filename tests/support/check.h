@@ -1,6 +1,6 @@
-/* Assertions on numbers, statuses and texts; brings cmocka.
+/* Assertions on numbers, statuses and texts; includes cmocka.
  *
- * cmocka's assert_float_equal compares in single precision, so numbers are compared here in double precision.
+ * cmocka's assert_float_equal compares in single precision; these compare in double precision.
  * Every argument is evaluated once. A NaN fails.
  *
  *   assert_near(value, wanted, tolerance)   |value - wanted| <= tolerance
@@ -9,10 +9,9 @@
  *   assert_below_at(value, bound, where)    the same; the message names the place
  *   assert_small(value, bound)              |value| <= bound
  *   assert_ok(call)                         call returns SHB_OK
- *   assert_refused(call, code, part)        call returns code; its message is one line and holds part
+ *   assert_refused(call, code, part)        call returns code; its message is one line and has part
  *   assert_has(text, part)                  part is in text
- *   assert_has_not(text, part)              it is not
- */
+ *   assert_has_not(text, part)              part is not in text */
 #ifndef TESTS_SUPPORT_CHECK_H
 #define TESTS_SUPPORT_CHECK_H
 

@@ -1,4 +1,4 @@
-/* For tests of files: a scratch folder, a walk that checks every dataset's attributes, small file tools. */
+/* For tests of files: a scratch folder, a check of every dataset's attributes, small file tools. */
 #ifndef TESTS_SUPPORT_FILES_H
 #define TESTS_SUPPORT_FILES_H
 
@@ -33,7 +33,7 @@ static inline int scratch_remove(void **state) {
   return system(command);
 }
 
-/* Path of a file in the scratch folder; up to four at a time. */
+/* Path of a file in the scratch folder. Up to four paths are valid at a time. */
 static inline const char *scratch(const char *name) {
   static char path[4][512];
   static int  turn;
@@ -97,7 +97,7 @@ static inline int assert_described(const char *path) {
   return count;
 }
 
-/* reader must refuse every proper prefix of file path, and say why. */
+/* The reader must refuse every proper prefix of the file at path, with a message. */
 static inline void assert_prefixes_refused(const char *path, size_t step,
                                            shb_status (*reader)(const char *)) {
   size_t      size;
