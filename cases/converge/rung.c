@@ -1,9 +1,11 @@
 #include "cases/converge/rung.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/publish.h"
 #include "postproc/draw/text_buffer.h"
 
 void rung_words(const rung_setting *s, char words[RUNG_SETTING_WORDS][RUNG_WORD]) {
@@ -33,7 +35,7 @@ void rung_name(const rung_setting *s, char name[RUNG_WORD]) {
            s->residuals ? "" : "_bare");
 }
 
-/* A preload, with those of the other interfaces that go with it, to another place. */
+/* Moves a preload, and those of the other interfaces that belong to it, to another index. */
 static void keep_preload(mhb_settings *mhb, int to, int from) {
   mhb->n0[to] = mhb->n0[from];
   for (int k = 0; k < mhb->n_interfaces; k++)
@@ -92,7 +94,7 @@ char *rung_response(const char *stem) {
   return join(stem, ".response.h5");
 }
 
-/* ---------------------------------------------------------------- the small files: a word and numbers a line */
+/* ---------------------------------------------------------------- the small files */
 
 static shb_status publish(post_buffer *text, char *path) {
   shb_status status = path ? post_buffer_publish(text, path)
@@ -139,7 +141,8 @@ shb_status rung_cost_read(const char *stem, rung_cost *cost) {
   return SHB_OK;
 }
 
-/* STEM.NAME.error, with what both files held: another curve makes it void. */
+/* Path of STEM.NAME.error. The file names the contents of both response files and is void if one of
+ * them has changed. */
 static char *error_path(const char *stem, const char *name, const char *file, char prints[64]) {
   char *mine  = rung_response(stem);
   char  a[17] = "", b[17] = "";
