@@ -26,7 +26,7 @@ typedef struct {
   int                   *pivot; /* [n or modes] */
 } mhb_higher_harmonics;
 
-/* For the harmonics of the receptance above those of the balance. Not thread safe (FFTW's planner).
+/* For the harmonics of the receptance above those of the balance.
  * SHB_ERR_IO: no memory. */
 shb_status mhb_higher_harmonics_create(const mhb_balance *balance, mhb_receptance *receptance,
                                        mhb_higher_harmonics **higher);

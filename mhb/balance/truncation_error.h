@@ -41,7 +41,7 @@ typedef struct {
   mhb_truncation_kind   kind;                 /* of the last estimate */
 } mhb_truncation;
 
-/* Not thread safe (FFTW's planner). The balance must outlive it. Errors: as mhb_balance_create. */
+/* The balance must outlive it. Errors: as mhb_balance_create. */
 shb_status mhb_truncation_create(const mhb_balance *balance, mhb_truncation **truncation);
 void       mhb_truncation_destroy(mhb_truncation *truncation);
 

@@ -45,7 +45,7 @@ typedef struct mhb_floquet mhb_floquet; /* workspace; one a thread */
 /* For the harmonics of settings.
  *   substeps    in  of a period of the fundamental, to begin with
  *   max_states  in  0: 600
- * The receptance must outlive it. Not thread safe (FFTW's planner).
+ * The receptance must outlive it.
  * Errors: SHB_ERR_INPUT substeps < 1; SHB_ERR_IO no memory. */
 shb_status mhb_floquet_create(const mhb_receptance *receptance, const mhb_settings *settings,
                               int substeps, int max_states, mhb_floquet **floquet);

@@ -1,16 +1,19 @@
-/* The harmonic balance: seconds against error, and how the cost grows with harmonics and contact pairs.
+/* The harmonic balance: seconds against error, and growth of the cost with harmonics and contact
+ * pairs.
  *
- *   bench_response            the tables
- *   bench_response --quick    errors only, in a second or so
- *   bench_response --pairs N  the row of N pairs alone
+ *   bench_response                the tables
+ *   bench_response --quick        errors only, in a second or so
+ *   bench_response --pairs N      the row of N pairs alone
  *   bench_response --harmonics H  the beam's rows of H harmonics alone, against themselves
  *   bench_response --precision    error against seconds alone (precision.h)
- *   bench_response --blade FILE N0 FROM TO  the same of a modal file: contact to the neighbour, preload N, range Hz
+ *   bench_response --blade FILE N0 FROM TO   the same of a modal file: contact to the neighbour,
+ *                                 preload N, range Hz
  *
- * Beam: the tip-contact beam (tests/support/three_degree.h), one row a force and number of harmonics: the whole sweep 215-320 Hz, the
- * median of a point, and the error of the located peak against H = 31. Then the three accuracies of the contact law, and the
- * growth with pairs (shroud_face.h), each row in a process of its own so that its memory can be told. Goals carry verdicts; the
- * exit code tells of errors only, for times depend on the machine. */
+ * Beam: the tip-contact beam (tests/support/three_degree.h), a row for each force and number of
+ * harmonics. A row gives the whole sweep 215-320 Hz, the median of a point, and the error of the
+ * located peak against H = 31. The three accuracies of the contact law follow, then the growth with
+ * pairs (shroud_face.h). Each row has a process of its own, so its memory can be measured. Goals
+ * have verdicts. The exit code depends on errors only, because times depend on the machine. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -21,9 +24,11 @@
 
 #include "mesh/base/progress.h"
 #include "mhb/branches/main_branch.h"
+#include "mhb/continuation/balance_curve.h"
 #include "mhb/continuation/first_solution.h"
 #include "precision.h"
 #include "shroud_face.h"
+#include "tests/support/main_curve.h"
 #include "tests/support/three_degree.h"
 
 static const double PI = 3.14159265358979323846;
@@ -34,8 +39,8 @@ enum { REPEATS = 3, MAX_POINTS = 4000 };
 typedef struct {
   double seconds, ms,
       evaluations; /* whole branch; median point with its error estimates; Newton steps + 1, mean */
-  double solver,
-      linear; /* ms a step of the path alone, median; and the same of steps in the stuck or open range */
+  double solver;   /* ms a step of the path alone, median */
+  double linear;   /* the same of steps in the stuck or open range */
   double peak, at; /* m, Hz: highest first harmonic of u */
   int    points, peaks, folds, complete;
 } sweep_row;
@@ -50,18 +55,6 @@ static double median(const double *t, int n) {
   memcpy(sorted, t, sizeof(double) * (size_t)n);
   qsort(sorted, (size_t)n, sizeof *sorted, ascending);
   return n ? sorted[n / 2] : NAN;
-}
-
-static void no_lock(mhb_monitor *monitor, bool locked) {
-  (void)monitor;
-  (void)locked;
-}
-
-static bool go_on(mhb_monitor *monitor, int branch, const mhb_curve_point *point) {
-  (void)monitor;
-  (void)branch;
-  (void)point;
-  return true;
 }
 
 static sweep_row read_branch(const mhb_branch *b, int K) {
@@ -87,20 +80,12 @@ static mhb_settings beam_settings(int harmonics, double tolerance) {
 }
 
 static shb_status sweep_once(const modal_model *model, const mhb_settings *s, sweep_row *row) {
-  mhb_monitor  monitor = {.point = go_on, .lock = no_lock};
-  mhb_balance *residual;
-  int          branch;
-  SHB_TRY(mhb_balance_create(model, s, &residual));
-  mhb_balance_set_preload(residual, s->n0[0]);
-  mhb_response *response = mhb_response_create(1, model->n_probes, s->harmonics);
-  shb_status    status   = mhb_response_branch(response, MHB_BRANCH_NONLINEAR, &branch);
-  double        started  = shb_seconds();
-  if (status == SHB_OK) status = mhb_trace_main_branch(residual, response, branch, &monitor);
-  double seconds = shb_seconds() - started;
-  if (status == SHB_OK) *row = read_branch(&response->branch[branch], s->harmonics + 1);
+  mhb_response *response;
+  double        seconds = 0;
+  shb_status    status  = main_curve(model, s, s->harmonics, &seconds, &response);
+  if (status == SHB_OK) *row = read_branch(&response->branch[0], s->harmonics + 1);
   row->seconds = seconds;
   mhb_response_destroy(response);
-  mhb_balance_destroy(residual);
   return status;
 }
 
@@ -120,10 +105,11 @@ static shb_status time_steps(const modal_model *model, const mhb_settings *s, sw
   double         low = 2 * PI * s->frequency[0];
   SHB_TRY(mhb_balance_create(model, s, &b));
   mhb_balance_set_preload(b, s->n0[0]);
-  SHB_TRY(mhb_arclength_create(b, low, 2 * PI * s->frequency[1], &path));
+  SHB_TRY(mhb_balance_curve_create(b, low, 2 * PI * s->frequency[1], &path));
   double               *x       = calloc((size_t)b->n, sizeof(double));
   mhb_arclength_outcome outcome = MHB_ARCLENGTH_STALLED;
-  if (mhb_first_solution(path->newton, b, low, path->tolerance, x, &iterations) == MHB_CONVERGED &&
+  if (mhb_first_solution(mhb_balance_curve_of(path)->newton, b, low, path->tolerance, x,
+                         &iterations) == MHB_CONVERGED &&
       mhb_arclength_start(path, x, low, 1) == MHB_CONVERGED)
     outcome = MHB_ARCLENGTH_ON;
   while (outcome == MHB_ARCLENGTH_ON && n[0] + n[1] < MAX_POINTS) {
@@ -266,9 +252,9 @@ typedef struct {
 static shb_status walk(mhb_arclength *path, mhb_balance *b, double *x, pairs_row *row) {
   int    iterations;
   double started = shb_seconds(), omega = 2 * PI * 255, ms[STEPS];
-  SHB_CHECK(
-      mhb_first_solution(path->newton, b, omega, path->tolerance, x, &iterations) == MHB_CONVERGED,
-      SHB_NOT_CONVERGED, "no first solution of %d pairs", b->n_pairs);
+  SHB_CHECK(mhb_first_solution(mhb_balance_curve_of(path)->newton, b, omega, path->tolerance, x,
+                               &iterations) == MHB_CONVERGED,
+            SHB_NOT_CONVERGED, "no first solution of %d pairs", b->n_pairs);
   SHB_CHECK(mhb_arclength_start(path, x, omega, 1) == MHB_CONVERGED, SHB_NOT_CONVERGED,
             "no start for %d pairs", b->n_pairs);
   row->first    = shb_seconds() - started;
@@ -294,7 +280,7 @@ static shb_status run_pairs(int pairs, int harmonics, pairs_row *row) {
   shroud_face_model(pairs, 150, &model);
   SHB_TRY(mhb_balance_create(&model, &s, &b));
   mhb_balance_set_preload(b, s.n0[0]);
-  SHB_TRY(mhb_arclength_create(b, 2 * PI * 215, 2 * PI * 320, &path));
+  SHB_TRY(mhb_balance_curve_create(b, 2 * PI * 215, 2 * PI * 320, &path));
   *row              = (pairs_row){.pairs = pairs};
   double    *x      = calloc((size_t)b->n, sizeof(double));
   shb_status status = walk(path, b, x, row);

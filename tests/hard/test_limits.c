@@ -9,6 +9,7 @@
 
 #include <cmocka.h>
 
+#include "mhb/balance/newton.h"
 #include "mhb/branches/main_branch.h"
 #include "tests/hard/verdict.h"
 #include "tests/support/periodic.h"
@@ -57,7 +58,8 @@ static void preload_next_to_zero(void **state) {
   verdict_all();
 }
 
-/* One direction, open: amplitude F/|1 - W^2 + 2j zeta W|. The gap differs from it by a relative 1e-9, both ways. */
+/* One direction, open: amplitude F/|1 - W^2 + 2j zeta W|. The gap differs from it by a relative
+ * 1e-9, in both directions. */
 static void grazing_gap(void **state) {
   (void)state;
   static const double off[] = {1e-9, 0, -1e-9}, w[] = {.7, 1, 1.4};

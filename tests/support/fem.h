@@ -1,4 +1,4 @@
-/* Meshes and comparisons that the tests of fem/ and modal/ share. */
+/* Meshes and comparisons that the tests of fem and modal share. */
 #ifndef TESTS_SUPPORT_FEM_H
 #define TESTS_SUPPORT_FEM_H
 
@@ -7,28 +7,29 @@
 
 extern const fem_material steel; /* 210 GPa, .3, 7850 kg/m3 */
 
-/* |a - b| <= relative |b|, in double (cmocka's own comparison casts to float). */
+/* Fails unless |a - b| <= relative |b|. */
 void check_close(double a, double b, double relative, const char *what);
-/* |a| <= bound */
+/* Fails unless |a| <= bound. */
 void check_below(double a, double bound, const char *what);
 
-/* The elements of the meshes made from here on; tetrahedra at first. */
+/* The kind of elements of the meshes made from here on; initially tetrahedra. */
 void      use_elements(mesh_kind kind);
 mesh_kind used_elements(void);
 
-/* Box, failing the test when it cannot be made. */
+/* A box; fails the test if it cannot be made. */
 mesh_fe make_box(const double size[3], const int n[3]);
 
-/* An annular sector about the x axis: box coordinates (x, y, z) become axial x, angle (y / width - 1/2) sector,
- * radius inner + z; group root is the inner face, contact_right and contact_left the two sides (right the one
- * whose normal is tangential), load the outer face. Curved elements. */
+/* An annular sector about the x axis, of curved elements. Box coordinates (x, y, z) become the
+ * axial coordinate x, the angle (y / width - 1/2) sector and the radius inner + z. Group root is
+ * the inner face and load the outer one. contact_right and contact_left are the sides; the normal
+ * of the right one is tangential. */
 mesh_fe make_sector(const double size[3], double inner, int blades, const int n[3]);
 
-/* Put every node of an edge in the middle between the edge's corners. */
+/* Move every midside node to the middle between the corners of its edge. */
 void straighten(mesh_fe *mesh);
 
-/* Move every node that is not on the box's surface by up to amount in each direction, repeatably. Hexahedra keep
- * straight edges: 2x2x2 points integrate the stiffness exactly then, under constant stress. */
+/* Move every interior node by up to amount in each direction, repeatably. Hexahedra keep straight
+ * edges: then 2x2x2 points integrate the stiffness exactly under constant stress. */
 void shake_inside(mesh_fe *mesh, const double size[3], double amount);
 
 #endif

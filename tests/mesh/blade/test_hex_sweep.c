@@ -17,6 +17,7 @@
 #include "mesh/blade/section_mesh.h"
 #include "mesh/core/fe_mesh.h"
 #include "mesh/core/jacobian.h"
+#include "tests/support/check.h"
 
 static const double degree = M_PI / 180;
 
@@ -36,10 +37,6 @@ static int tear_down(void **state) {
   unlink(path);
   unlink(other);
   return rmdir(folder);
-}
-
-static void assert_near(double a, double b, double tolerance) {
-  if (!(fabs(a - b) <= tolerance)) fail_msg("%.17g is not %.17g within %g", a, b, tolerance);
 }
 
 static mesh_blade sample(void) {

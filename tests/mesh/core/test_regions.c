@@ -18,6 +18,7 @@
 #include "mesh/io/inp_read.h"
 #include "mesh/io/msh_write.h"
 #include "tests/support/box.h"
+#include "tests/support/check.h"
 
 /* Three blocks along x, cut at these places, of which the middle one is "shank". */
 static const double cut[4] = {0, .013, .029, .037};
@@ -47,10 +48,6 @@ static int tear_down(void **state) {
   (void)state;
   snprintf(command, sizeof command, "rm -r %s", folder);
   return system(command);
-}
-
-static void assert_ok(shb_status status) {
-  if (status != SHB_OK) fail_msg("%s", shb_message());
 }
 
 static void put(const char *path, const char *text, const char *more) {

@@ -12,20 +12,17 @@
 
 #include <cmocka.h>
 
+#include "mhb/balance/newton.h"
 #include "mhb/branches/main_branch.h"
+#include "mhb/continuation/balance_curve.h"
 #include "mhb/continuation/first_solution.h"
 #include "tests/bench/shroud_face.h"
 #include "tests/support/allocations.h"
+#include "tests/support/check.h"
 #include "tests/support/random_model.h"
 #include "tests/support/three_degree.h"
 
 static const double PI = 3.14159265358979323846;
-
-#define assert_below(value, bound)                                      \
-  do {                                                                  \
-    double v_ = (value), b_ = (bound);                                  \
-    if (!(v_ <= b_)) fail_msg("%s = %.3e, above %.3e", #value, v_, b_); \
-  } while (0)
 
 /* ---------------------------------------------------------------- the same solution */
 
@@ -249,9 +246,11 @@ static void walk(const modal_model *model, const mhb_settings *s, double start, 
   assert_int_equal(mhb_balance_create(model, s, &b), SHB_OK);
   mhb_balance_set_preload(b, s->n0[0]);
   assert_int_equal(
-      mhb_arclength_create(b, 2 * PI * s->frequency[0], 2 * PI * s->frequency[1], &path), SHB_OK);
+      mhb_balance_curve_create(b, 2 * PI * s->frequency[0], 2 * PI * s->frequency[1], &path),
+      SHB_OK);
   double *x = calloc((size_t)b->n, sizeof(double));
-  assert_int_equal(mhb_first_solution(path->newton, b, start, path->tolerance, x, &iterations),
+  assert_int_equal(mhb_first_solution(mhb_balance_curve_of(path)->newton, b, start, path->tolerance,
+                                      x, &iterations),
                    MHB_CONVERGED);
   assert_int_equal(mhb_arclength_start(path, x, start, 1), MHB_CONVERGED);
   allocations = 0;
