@@ -16,8 +16,8 @@
  * the sign of the determinant, because det A > 0 in real form.
  *
  * A pair stuck at the friction limit has a mean friction g = G u that depends on its motion. It is
- * a stuck pair with two borders more: unknowns g, columns R_0 of its axes u and w, rows -G, corner
- * I. Harmonics whose right-hand side is zero cost nothing. */
+ * a stuck pair with two borders more. Their unknowns are g. Their columns are R_0 of axes u and w,
+ * their rows -G, their corner I. Harmonics whose right-hand side is zero cost nothing. */
 #ifndef MHB_BALANCE_CONDENSATION_H
 #define MHB_BALANCE_CONDENSATION_H
 

@@ -11,8 +11,9 @@
 
 #include "mhb/balance/condensation.h"
 
-/* Estimated |du| of the solution x[n], the point of the balance's evaluation in use, relative to
- * its vibration; -1 if the file has no residual flexibility.
+/* Estimated |du| of a solution relative to its vibration; -1 if the file has no residual
+ * flexibility.
+ *   x       in  [n] the solution, point of the balance's evaluation in use
  *   system  in  condensation factored at x, with as many harmonics or more. NULL: with up to 20
  *               pairs, all linear, harmonics are solved one by one; otherwise |e| is returned */
 double mhb_modal_error(const mhb_balance *balance, const double *x, mhb_condensation *system);

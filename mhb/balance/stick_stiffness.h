@@ -20,7 +20,7 @@ static inline void mhb_stick_force(const mhb_law *law, int k, const double compl
 void mhb_stick_matrix(const mhb_balance *balance, int k, const mhb_pair_kind *kind,
                       double complex *A);
 
-/* Whether every pair of the evaluation in use is stuck or open over the whole period: the forces
+/* Whether every pair of the evaluation in use is stuck or open over the whole period. The forces
  * then have the harmonics of the motion and no others. */
 bool mhb_all_pairs_linear(const mhb_balance *balance);
 

@@ -104,8 +104,8 @@ static int start_matrix(mhb_monodromy *d) {
   return mhb_factor_real(n, d->matrix, d->pivot);
 }
 
-/* Motion u of the contacts at the start by a unit disturbance: of mode i of a blade if contact < 0,
- * else of friction state i of the contact. */
+/* Motion u of the contacts at the start by a unit disturbance. contact < 0: of mode i of a blade,
+ * otherwise of friction state i of the contact. */
 static void start_motion(mhb_monodromy *d, int contact, int blade, int i, double *u) {
   const mhb_modal_structure *s  = d->structure;
   int                        n3 = 3 * s->pairs, n = 3 * s->contacts;

@@ -1,11 +1,11 @@
 /* The map of small disturbances of (q, q', friction) over a segment of the period
- * (transition_schedule.h): the monodromy matrix of a blade on the ground; for a ring the columns of
- * one cell's disturbances, blades renamed (bloch.h).
+ * (transition_schedule.h). For a blade on the ground it is the monodromy matrix. For a ring it is
+ * the columns of one cell's disturbances, blades renamed (bloch.h).
  *
  * Sub-steps (variational.h) end at the transitions of every contact. The law is linearised at their
- * middles (linearised_law.h, orbit_contacts.h). States: q and q' of every mode and blade; at the
- * start two frictions of a contact that sticks, one of a contact that slips, none of one that
- * sticks for the whole period. */
+ * middles (linearised_law.h, orbit_contacts.h). The states are q and q' of every mode and blade,
+ * and the frictions at the start. A sticking contact has two of these, a slipping one has one. A
+ * contact that sticks for the whole period has none. */
 #ifndef MHB_FLOQUET_MONODROMY_H
 #define MHB_FLOQUET_MONODROMY_H
 

@@ -5,9 +5,9 @@
  * on each side. Gaussian elimination with partial pivoting costs 3 w^2 n, a solution 3 w n. Up to
  * five blades the band is the whole matrix.
  *
- * LAPACK's dgbtrf and dgbtrs solve column by column and were measured slower here (CPU time of all
- * multipliers of a curve, busy machine): 1.6 and 1.8 times for a blade on the ground with 1 and 4
- * contact points, 1.2 times for a ring of 40 blades. */
+ * LAPACK's dgbtrf and dgbtrs solve column by column. With them all multipliers of a curve took more
+ * CPU time. A blade on the ground took 1.6 times as long with 1 contact point, 1.8 times with 4. A
+ * ring of 40 blades took 1.2 times as long (on a busy machine). */
 #ifndef MHB_FLOQUET_RING_BAND_H
 #define MHB_FLOQUET_RING_BAND_H
 

@@ -1,8 +1,8 @@
 /* Transitions of all contacts, in the order of time, over the interval that is integrated.
  *
  * Phases are t/T, T the period of the motion. In a travelling wave blade b at phase s is where
- * blade 0 is at s - b E/N. With g = gcd(E, N) and k E = g (mod N), blade b at s + g/N is where
- * blade b - k was at s. So g/N of a period is integrated, one segment, after which blade b becomes
+ * blade 0 is at s - b E/N. Let g = gcd(E, N) and k E = g (mod N). Then blade b at s + g/N is where
+ * blade b - k was at s. So one segment, g/N of a period, is integrated. After it blade b becomes
  * blade b - k. A blade on the ground: E = 0, N = 1. */
 #ifndef MHB_FLOQUET_TRANSITION_SCHEDULE_H
 #define MHB_FLOQUET_TRANSITION_SCHEDULE_H

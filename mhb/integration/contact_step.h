@@ -75,8 +75,9 @@ void mhb_contact_step_advance(const mhb_law *law, const mhb_contact_step *step, 
 void mhb_contact_step_change(const mhb_law *law, mhb_state state, double direction,
                              mhb_contact_point *point);
 
-/* Rate of |f| - mu n, N per step, and direction of f at the start of a step that sticks: a closing
- * contact slips if the rate is positive (eq. 13). */
+/* Whether a closing contact slips (eq. 13): rate of |f| - mu n at the start of a step that sticks,
+ * N a step. Slip if positive.
+ *   direction  out  of f, rad */
 double mhb_contact_step_closing(const mhb_radau *rule, const mhb_law *law,
                                 const mhb_contact_point *point, const mhb_contact_step *step,
                                 double *direction);

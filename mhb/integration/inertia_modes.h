@@ -11,9 +11,9 @@
  * sum (a x phi)(a x phi)^T/w^2, a = (1, 1/w^2), over the modes left out.
  *
  * The residual terms of load and probes stay. The response to the load is steady, at known
- * frequencies; the probes follow from the harmonics of the forces, and the new modes are zero
- * there. Residual modes of the file (modal/model/residual_series.h) are not integrated: they are
- * more, and their frequencies far higher. */
+ * frequencies. The probes follow from the harmonics of the forces; the new modes are zero there.
+ * Residual modes of the file (modal/model/residual_series.h) are not integrated: they are more, and
+ * their frequencies far higher. */
 #ifndef MHB_INTEGRATION_INERTIA_MODES_H
 #define MHB_INTEGRATION_INERTIA_MODES_H
 

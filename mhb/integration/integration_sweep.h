@@ -22,9 +22,10 @@
  *   provenance  in   for path
  *   response    out  the caller's
  * In a run-up the structure of a point is that at its speed, constant while it is integrated.
- * Errors: SHB_ERR_INPUT start state in a run-up, no solution of the balance at a preload, fewer
- * harmonics than the load has; SHB_ERR_IO; SHB_NOT_CONVERGED the forces of a step were not found at
- * some point, which is left out; SHB_INTERRUPTED. */
+ * Errors: SHB_ERR_IO, SHB_INTERRUPTED, and
+ *   SHB_ERR_INPUT      start state in a run-up; no solution of the balance at a preload; fewer
+ *                      harmonics than the load has
+ *   SHB_NOT_CONVERGED  the forces of a step were not found at some point, which is left out */
 shb_status mhb_integration_sweep(const modal_model *model, const mhb_settings *settings,
                                  const mhb_integration_settings *integration,
                                  const mhb_response *balance, const char *path,

@@ -1,5 +1,5 @@
 /* Direct time integration of the blade on the ground, or of all blades of a ring, with the contact
- * law: an independent reference for the harmonic balance.
+ * law. It is an independent reference for the harmonic balance.
  *
  * The steady response without contact is known exactly; z is the part by the contact forces:
  *   z'' + 2 zeta w z' + w^2 z = -B^T p,   u = u_free(t) + B z - R p

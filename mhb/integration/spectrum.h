@@ -16,8 +16,8 @@ enum { MHB_SPECTRUM_LINES = 8 };
 int mhb_spectrum_lines(int n, double *x, double duration, int top, double *frequency,
                        double *amplitude);
 
-/* Integrate over a number of periods of the fundamental; lines of the axis of contact 0 that moves
- * most, up to ten times the excitation's frequency.
+/* Integrate over a number of periods of the fundamental. The lines are those of the axis of contact
+ * 0 that moves most, up to ten times the excitation's frequency.
  *   frequency, amplitude  out  [MHB_SPECTRUM_LINES] Hz, m, as above
  * Returns 0 without memory, or if the forces of a step were not found. */
 int mhb_spectrum(mhb_integrator *integrator, int periods, double *frequency, double *amplitude);

@@ -1,7 +1,7 @@
 /* Time integration until the motion repeats itself, and the harmonics of its last period.
  *
  * The state is compared with that of up to MHB_STEADY_STATE_MULTIPLE periods of the fundamental
- * before: a motion that returns after two is periodic of order two. The distance still to go is
+ * before. A motion that returns after two is periodic of order two. The distance still to go is
  * estimated from the rate at which the distance of the states decreases, d/(1 - rate). */
 #ifndef MHB_INTEGRATION_STEADY_STATE_H
 #define MHB_INTEGRATION_STEADY_STATE_H

@@ -57,7 +57,8 @@ static double complex to_real(int i, int k) {
   return i == 2 * j - 1 ? 1 : k > 0 ? -I : I;
 }
 
-/* One element of J: row (k, r), column (l, c), both of pair a. At most two real coefficients meet each exponential. */
+/* One element of J: row (k, r), column (l, c), both of pair a. At most two real coefficients meet
+ * each exponential. */
 static double complex element(const hill *h, const double *dp, int k, int l, int r, int c) {
   int            nb = h->K, first = abs(k) ? 2 * abs(k) - 1 : 0, from = abs(l) ? 2 * abs(l) - 1 : 0;
   double complex sum = 0;
@@ -149,8 +150,8 @@ static int by_growth(const void *a, const void *b) {
   return (x < y) - (x > y);
 }
 
-/* Every exponent comes with its shifts by j omega; those that turn least are kept. Of a negative multiplier two turn by half of
- * omega, one each way: leaning to one side takes one of them. */
+/* Every exponent comes with its shifts by j omega; those that turn least are kept. Of a negative
+ * multiplier two turn by half of omega, one each way: leaning to one side takes one of them. */
 static int solve(hill *h, double complex *multiplier) {
   int            n = 2 * h->K * h->s->modes, kept = 2 * h->s->modes;
   double complex lean = 1e-3 * I * h->omega;

@@ -1,5 +1,5 @@
-/* The balance of harmonics: derivatives against differences, linear limits, area shares, power, and an explicit ring of
- * blades without cyclic reduction. */
+/* The balance of harmonics: derivatives against differences, linear limits, area shares, power, and
+ * an explicit ring of blades without cyclic reduction. */
 #include <lapacke.h>
 #include <math.h>
 #include <setjmp.h>
@@ -111,7 +111,8 @@ static void derivatives_are_exact(void **state) {
   for (int c = 0; c < 3; c++) assert_true(most[c] > .1); /* all three states were met */
 }
 
-/* The residual is a function of (x, omega) alone, to the last bit, whatever was evaluated before. */
+/* The residual is a function of (x, omega) alone, to the last bit, whatever was evaluated
+ * before. */
 static void no_memory(void **state) {
   (void)state;
   modal_model  model;
@@ -236,7 +237,8 @@ static void equal_pairs_share_the_totals(void **state) {
 
 enum { BLADES = 6, PAIRS = 2, SIDE = 3 * PAIRS, DOFS = 2 * SIDE, ALL = BLADES * DOFS };
 
-/* One blade at harmonic k, by hand: receptance over its contact dofs, response to blade 0's load, axes. */
+/* One blade at harmonic k, by hand: receptance over its contact dofs, response to blade 0's load,
+ * axes. */
 typedef struct {
   double complex H[DOFS][DOFS], load[DOFS];
   double         axes[PAIRS][3][3]; /* rows v, u, w */
@@ -273,7 +275,8 @@ static void blade_at(const modal_model *model, int k, double omega, int nu, blad
   }
 }
 
-/* Forces p[SIDE] (v, u, w) that press interface b: on blade b's right -p, on blade b + 1's left +p, as f[blade][dof]. */
+/* Forces p[SIDE] (v, u, w) that press interface b: on blade b's right -p, on blade b + 1's left +p,
+ * as f[blade][dof]. */
 static void add_interface(const blade *one, int b, const double complex *p,
                           double complex (*f)[DOFS]) {
   int next = (b + 1) % BLADES;
@@ -297,8 +300,8 @@ static void across(const blade *one, int b, double complex (*x)[DOFS], double co
     }
 }
 
-/* Motion of all contact dofs under the travelling load and f. Blade b meets at phase theta what blade 0 met at
- * theta - b phi. */
+/* Motion of all contact dofs under the travelling load and f. Blade b meets at phase theta what
+ * blade 0 met at theta - b phi. */
 static void ring_motion(const blade *one, double phase, double complex (*f)[DOFS],
                         double complex (*x)[DOFS]) {
   for (int b = 0; b < BLADES; b++)
@@ -317,7 +320,8 @@ static void spring(const mhb_law *law, int mean, const double complex *u, double
   p[2] = law->ku[1] * u[1] + law->ku[2] * u[2];
 }
 
-/* The ring with all interfaces stuck: x = load + H f(x) + H f0 as one dense system; preload[pair]: force at rest. */
+/* The ring with all interfaces stuck: x = load + H f(x) + H f0 as one dense system; preload[pair]:
+ * force at rest. */
 static void solve_stuck_ring(const blade *one, const mhb_law *law, double phase, int mean,
                              double complex (*x)[DOFS]) {
   static double complex A[ALL][ALL]; /* column-major */
@@ -403,8 +407,9 @@ static void force_at_interface(const mhb_balance *b, const double *x, double pha
     mhb_contact_force(b->contact, &b->law[a], moved + a * block, p + a * block, NULL, &info);
 }
 
-/* Largest difference between the ring's residual u - u(x(load, p(u))) at any interface, where every interface's force is
- * evaluated by itself, and the sector's residual shifted to it; and the ring's residual itself. */
+/* error[0]: largest difference at any interface between the ring's residual and the shifted one of
+ * the sector. error[1]: the ring's residual u - u(x(load, p(u))) itself. Every interface's force is
+ * evaluated by itself. */
 static void ring_errors(mhb_balance *b, const modal_model *model, const double *x, double omega,
                         double error[2]) {
   const mhb_settings *s     = b->settings;
@@ -464,7 +469,8 @@ static void slipping_ring_is_the_sector(void **state) {
 
 /* ---------------------------------------------------------------- solutions */
 
-/* Mean power into the blade from the load, less what its modes and the friction take; relative to the first. */
+/* Mean power into the blade from the load, less what its modes and the friction take; relative to
+ * the first. */
 static double power_imbalance(const mhb_balance *b, double omega) {
   const mhb_receptance *r     = b->receptance;
   const modal_model    *model = r->model;

@@ -1,5 +1,5 @@
-/* The linear system without stuck and open pairs: the solution of the whole one, whatever the number of threads; and no
- * allocation while a path is followed. */
+/* The condensed linear system has the solution of the whole one for any number of threads. Tracing
+ * a curve allocates nothing. */
 #include <lapacke.h>
 #include <math.h>
 #include <omp.h>
@@ -28,7 +28,8 @@ static const double PI = 3.14159265358979323846;
 
 enum { PAIRS = 30, M = 2, N = 3 * PAIRS * (2 * M + 1) };
 
-/* Kinds of the pairs: m moving, s stuck, h stuck with a mean friction that depends on the motion, o open. */
+/* Kinds of the pairs: m moving, s stuck, h stuck with a mean friction that depends on the motion, o
+ * open. */
 static mhb_balance *mixed_residual(const modal_model *model, const mhb_settings *s,
                                    const char *kinds) {
   mhb_balance *b;
@@ -63,7 +64,8 @@ static void hold_pairs(const mhb_balance *b, const char *kinds, double *x) {
   }
 }
 
-/* x <- the solution of [J column; row] x = rhs by a dense factorization; sign of the determinant. */
+/* x <- the solution of [J column; row] x = rhs by a dense factorization; sign of the
+ * determinant. */
 static int solve_whole(int n, const double *J, const double *column, const double *row, double *x) {
   int     one = n + (column != NULL), sign = 1;
   int    *pivot = calloc((size_t)one, sizeof(int));
@@ -100,7 +102,8 @@ static void check_kinds(const mhb_balance *b, const char *kinds) {
   }
 }
 
-/* At one motion: with and without a border, evaluated twice so that pairs known to be still are met too. */
+/* At one motion: with and without a border, evaluated twice so that pairs known to be still are met
+ * too. */
 static double compare_at(mhb_balance *b, const char *kinds, unsigned long long seed) {
   static double     x[N], r[N + 1], column[N + 1], row[N + 1], rhs[N + 1], wanted[N + 1];
   mhb_condensation *s;

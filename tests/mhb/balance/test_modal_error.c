@@ -1,5 +1,6 @@
-/* What leaving out modes does to a solution: the estimate against the solution with all modes, through a resonance of the blade with its contact, where
- * the contact answers with many times what the receptance lacks. */
+/* The estimated error by the modes left out against the solution with all modes. The points go
+ * through a resonance of the blade with its contact, where the motion's error is many times that of
+ * the receptance. */
 #include "mhb/balance/modal_error.h"
 
 #include <math.h>
@@ -45,7 +46,8 @@ static void balance_destroy(balance *b) {
   free(b->x);
 }
 
-/* The lowest modes of the beam and three terms for the others, which are not damped; the tail from its definition. */
+/* The lowest modes of the beam and three terms for the others, which are not damped; the tail from
+ * its definition. */
 static void few_modes(int modes, modal_model *all, modal_model *few) {
   tip_contact_beam_model(1, all);
   tip_contact_beam_model(1, few);

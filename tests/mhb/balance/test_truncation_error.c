@@ -1,4 +1,5 @@
-/* The truncation estimate against the error it estimates: the difference to 31 harmonics at the same frequency. */
+/* The truncation estimate against the error it estimates: the difference to 31 harmonics at the
+ * same frequency. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -116,7 +117,8 @@ static void check_folds(comparison *seen) {
   assert_true(seen->ratio[0] > .08 && seen->ratio[seen->n - 1] < 15);
 }
 
-/* With 31 harmonics little is left out, at folds as elsewhere: there a Newton step alone would go any distance. */
+/* With 31 harmonics little is left out, at folds as elsewhere: there a Newton step alone would go
+ * any distance. */
 static void check_finest(const char *name, const mhb_branch *b) {
   double worst = 0, at_folds = 0;
   for (int i = 0; i < b->n_points; i++) {
@@ -230,7 +232,8 @@ static void step_leads_on(void **state) {
   modal_model_free(&model);
 }
 
-/* Which kind of estimate it was: none needed when stuck throughout, of first order for many moving unknowns. */
+/* Which kind of estimate it was: none needed when stuck throughout, of first order for many moving
+ * unknowns. */
 static void kinds(void **state) {
   (void)state;
   static const struct {

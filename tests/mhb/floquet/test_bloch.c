@@ -29,7 +29,8 @@ static void multiply(int n, const double *A, const double *B, double *C) {
     }
 }
 
-/* The block-circulant matrix of a stretch, to the power chunks, cells then renamed: what cell c holds is cell c + names. */
+/* The block-circulant matrix of a stretch, to the power chunks, cells then renamed: what cell c
+ * holds is cell c + names. */
 static void whole_ring(int cells, const double *S, int chunks, int names, double *out) {
   int    n                 = cells * STATES;
   double once[MOST * MOST] = {0}, power[MOST * MOST];

@@ -1,4 +1,5 @@
-/* Verdicts and their margin, bifurcation points, identities, limits, what cannot be decided, allocation and time. */
+/* Verdicts and their margin, bifurcation points, identities, limits, what cannot be decided,
+ * allocation and time. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -35,7 +36,8 @@ static mhb_multipliers at(const modal_model *model, const mhb_settings *s, doubl
 
 enum { UNKNOWNS = 3 * 63 };
 
-/* Where the largest modulus is `level` on the branch that begins with a cold start at `low`: small steps, then bisection. */
+/* Where the largest modulus is `level` on the branch that begins with a cold start at `low`: small
+ * steps, then bisection. */
 static double crossing_of(const modal_model *model, const mhb_settings *s, double level, double low,
                           double step, double complex *mu) {
   double   x[UNKNOWNS], next[UNKNOWNS];
@@ -109,8 +111,9 @@ static void margin(void **state) {
   modal_model_free(&model);
 }
 
-/* Far below its resonance a closed contact vibrates ten times a period: however few sub-steps it begins with, the verdict is that
- * of many. A fixed number of 32 calls most of the unstable ones stable. */
+/* Far below its resonance a closed contact vibrates ten times a period: however few sub-steps it
+ * begins with, the verdict is that of many. A fixed number of 32 calls most of the unstable ones
+ * stable. */
 static void slow_motions_are_resolved(void **state) {
   (void)state;
   modal_model    model;
@@ -161,7 +164,8 @@ static void flip(void **state) {
   modal_model_free(&model);
 }
 
-/* A constant normal load makes friction a contraction: no multiplier is beyond 1, however stiff the contact and coarse the steps. */
+/* A constant normal load makes friction a contraction: no multiplier is beyond 1, however stiff the
+ * contact and coarse the steps. */
 static void friction_alone_is_stable(void **state) {
   (void)state;
   unsigned long long seed    = 5;
@@ -241,7 +245,8 @@ static void identities(void **state) {
   modal_model_free(&plain);
 }
 
-/* A ring with fewer modes than the model has; none at all; a contact that was lost; no sub-steps. */
+/* A ring with fewer modes than the model has; none at all; a contact that was lost; no
+ * sub-steps. */
 static void limits(void **state) {
   (void)state;
   modal_model    model;

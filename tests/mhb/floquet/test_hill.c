@@ -1,4 +1,5 @@
-/* Hill's method beside the integrated multipliers: equal without friction, on the same side of 1 with it. */
+/* Hill's method beside the integrated multipliers: equal without friction, on the same side of 1
+ * with it. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

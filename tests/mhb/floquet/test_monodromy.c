@@ -1,4 +1,5 @@
-/* Multipliers against brute force: every direction of the state disturbed and integrated through one period, or many. */
+/* Multipliers against brute force: every direction of the state disturbed and integrated through
+ * one period, or many. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -16,7 +17,8 @@
 #include "tests/support/random_model.h"
 #include "tests/support/three_degree.h"
 
-/* What the variational problem cannot hold is taken off the model: residual inertia, residual response to the load. */
+/* What the variational problem cannot hold is taken off the model: residual inertia, residual
+ * response to the load. */
 static void integrable(modal_model *model) {
   free(model->residual_inertia);
   free(model->load_residual);
@@ -71,8 +73,9 @@ static void tell(const periodic *p, char text[64]) {
            seen[0][2] + seen[1][2], seen[0][1], seen[1][0]);
 }
 
-/* Everything at once: several pairs, skew stiffness, residual flexibility, rings with and without common divisors. The march is of
- * first order where friction slips, and where a soft contact closes it errs a little at any step. */
+/* Everything at once: several pairs, skew stiffness, residual flexibility, rings with and without
+ * common divisors. The march is of first order where friction slips, and where a soft contact
+ * closes it errs a little at any step. */
 static void one_period_by_brute_force(void **state) {
   (void)state;
   enum { RESIDUAL = WITH_RESIDUAL, AREAS = WITH_AREAS };
@@ -82,7 +85,7 @@ static void one_period_by_brute_force(void **state) {
       {"two pairs", 2, AREAS, 0, 0, .4, .05, 1, 0, 3e-4},
       {"one of two pairs stuck", 2, AREAS, 0, 0, .4, .05, 1, 2, 3e-4},
       {"residual", 1, RESIDUAL, 0, 0, .4, .05, 1, 0, 3e-4},
-      {"residual, two pairs", 2, RESIDUAL, 0, 0, .4, .05, 1, 0, 5e-4},
+      {"2 pairs, residual", 2, RESIDUAL, 0, 0, .4, .05, 1, 0, 5e-4},
       {"residual, one of two stuck", 2, RESIDUAL, 0, 0, .4, .05, 1, 2, 1e-3},
       {"soft, closing to stick", 1, RESIDUAL, 0, 0, 3, .05, 5, 0, 3e-3},
       {"soft, two pairs", 2, RESIDUAL, 0, 0, 3, .05, 5, 0, 3e-3},
@@ -122,8 +125,8 @@ static void one_period_by_brute_force(void **state) {
   }
 }
 
-/* Two runs from neighbouring starts, period by period; their distance obeys d[k+2] = a d[k+1] - b d[k] once the largest pair of
- * multipliers is left, b = |mu|^2. */
+/* Two runs from neighbouring starts, period by period; their distance obeys d[k+2] = a d[k+1] - b
+ * d[k] once the largest pair of multipliers is left, b = |mu|^2. */
 static double growth(disturbed *d, int from, int to) {
   int    n = d->n, rows = to - from;
   double a[n], b[n], history[rows][n], xx = 0, xy = 0, yy = 0, xz = 0, yz = 0;
@@ -174,13 +177,14 @@ static void many_periods_by_brute_force(void **state) {
   modal_model_free(&model);
 }
 
-/* Extrapolated, the error falls with the fourth power of the sub-step. With residual flexibility what is left is not the sub-steps': the
- * slip directions of the balance, of finitely many harmonics, do not meet at the events. */
+/* After extrapolation the error decreases with the fourth power of the sub-step. With residual
+ * flexibility another error remains: the balance has finitely many harmonics, so its slip
+ * directions do not agree at the events. */
 static void fourth_order(void **state) {
   (void)state;
   static const scene  scenes[] = {{"one pair", 1, 0, 0, 0, .4, .05, 1, 0, 0},
                                   {"ring of 3, order 1", 1, 0, 3, 1, .4, .05, 1, 0, 0},
-                                  {"residual, two pairs", 2, WITH_RESIDUAL, 0, 0, .4, .05, 1, 0, 0}};
+                                  {"2 pairs, residual", 2, WITH_RESIDUAL, 0, 0, .4, .05, 1, 0, 0}};
   static const double least[] = {3.4, 3, 0}, most[] = {1e-5, 3e-4, 1e-4};
   for (int i = 0; i < 3; i++) {
     modal_model    model;

@@ -160,7 +160,8 @@ static void one_degree_with_jumps(void **state) {
   }
 }
 
-/* Multipliers of the period map between exact events, the oscillator being linear from one to the next. */
+/* Multipliers of the period map between exact events, the oscillator being linear from one to the
+ * next. */
 static void friction_oscillator(void **state) {
   (void)state;
   static const double rows[2][3] = {{1.18, .599848, .317776}, {1.30, .428216, .428216}};
@@ -183,7 +184,8 @@ static void friction_oscillator(void **state) {
   modal_model_free(&model);
 }
 
-/* Without friction nothing but the dampers changes volumes in the space of the state: the product is exp(-2 sum zeta_i w_i T). */
+/* Without friction nothing but the dampers changes volumes in the space of the state: the product
+ * is exp(-2 sum zeta_i w_i T). */
 static void product_without_friction(void **state) {
   (void)state;
   static const double rows[][2] = {{-.05, 1.2}, {0, .96}, {.02, 1.1}, {-.1, 1.15}};
@@ -250,7 +252,8 @@ static void other_side(periodic *p, double low, double high, double *x) {
   mhb_arclength_destroy(path);
 }
 
-/* Branches of order 2 and 3 that nothing connects to the open one: period-doubled and -tripled motions, a stable and an unstable. */
+/* Branches of order 2 and 3 that nothing connects to the open one: period-doubled and -tripled
+ * motions, a stable and an unstable. */
 static void detached_subharmonics(void **state) {
   (void)state;
   static const struct {

@@ -1,4 +1,5 @@
-/* Points by time integration beside the curves of the balance: starts, sweeps that jump, motion that does not repeat, the file. */
+/* Points by time integration beside the curves of the balance: starts, sweeps that jump, motion
+ * that does not repeat, the file. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -49,7 +50,8 @@ static mhb_settings three_degree_settings(int harmonics) {
   return s;
 }
 
-/* Largest difference of the first harmonics of a point from the balance that Newton's method finds from them, relative. */
+/* Largest difference of the first harmonics of a point from the balance that Newton's method finds
+ * from them, relative. */
 static double off_balance(const modal_model *model, const mhb_settings *s, const mhb_branch *b,
                           int point) {
   int          K = b->n_harmonics + 1, nb = 2 * K - 1;
@@ -74,7 +76,8 @@ static double off_balance(const modal_model *model, const mhb_settings *s, const
   return away / size;
 }
 
-/* On every stable solution, where it is, of three degrees (open to stuck) and of the beam: against the balance of 31 harmonics. */
+/* On every stable solution, where it is, of three degrees (open to stuck) and of the beam: against
+ * the balance of 31 harmonics. */
 static void on_the_balance(void **state) {
   (void)state;
   for (int scene = 0; scene < 2; scene++) {
@@ -113,7 +116,8 @@ static void on_the_balance(void **state) {
   }
 }
 
-/* One degree with a gap: up and down jump at different frequencies, near the folds 1.389887 and 1.093215. */
+/* One degree with a gap: up and down jump at different frequencies, near the folds 1.389887 and
+ * 1.093215. */
 static void sweeps_that_jump(void **state) {
   (void)state;
   modal_model  model;

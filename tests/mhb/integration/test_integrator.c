@@ -1,4 +1,5 @@
-/* Direct time integration: published numbers, order, the balance on the same models, orbits that do not last, rings. */
+/* Direct time integration: published numbers, order, the balance on the same models, orbits that do
+ * not last, rings. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -61,7 +62,8 @@ static double largest(const run *a, int component) {
   return best;
 }
 
-/* One slider under a constant load, from rest. The amplitudes are those of an event-driven integration, to 1e-8. */
+/* One slider under a constant load, from rest. The amplitudes are those of an event-driven
+ * integration, to 1e-8. */
 static void friction_oscillator(void **state) {
   (void)state;
   static const double w[2] = {1.18, 1.30}, wanted[2] = {2.39365184, 2.02243853};
@@ -137,7 +139,8 @@ static void three_degrees(void **state) {
   modal_model_free(&model);
 }
 
-/* With stick, slip and separation in every period: errors fall with the fifth power, while they are above the events' floor. */
+/* With stick, slip and separation in every period: errors fall with the fifth power, while they are
+ * above the events' floor. */
 static void order(void **state) {
   (void)state;
   static const double n0[2] = {.3, 0}, w[2] = {1.42, 1.05};
@@ -226,7 +229,8 @@ static void probes_agree(const run *a, const periodic *p) {
   }
 }
 
-/* Residual modes change neither the response to the load nor what the probes show of forces, inertia included. */
+/* Residual modes change neither the response to the load nor what the probes show of forces,
+ * inertia included. */
 static void free_and_probes_are_the_same(mhb_receptance *a, mhb_receptance *b) {
   double complex force[6] = {.3, -.2 * I, .1, .5 + .1 * I, 0, .4}, probe[2][6];
   for (int k = 0; k < 4; k++) {
@@ -241,7 +245,8 @@ static void free_and_probes_are_the_same(mhb_receptance *a, mhb_receptance *b) {
   }
 }
 
-/* Two pairs with skew springs, residual flexibility and static response to the load; load harmonics 0 to 2. */
+/* Two pairs with skew springs, residual flexibility and static response to the load; load harmonics
+ * 0 to 2. */
 static void residual_flexibility(void **state) {
   (void)state;
   modal_model  model;
@@ -269,8 +274,8 @@ static void drop_fourth(modal_model *model) {
   model->residual_fourth = NULL;
 }
 
-/* Residual modes have the flexibility and inertia they stand for; integrated, they give what the balance of the same modes gives, and that
- * of R + w^2 R2 as far as w is below them. */
+/* Residual modes have the flexibility and inertia of the file. Their integration agrees with the
+ * balance of the same modes. Far below their frequencies it agrees with that of R + w^2 R2. */
 static void residual_inertia(void **state) {
   (void)state;
   modal_model  model, with;
@@ -330,7 +335,8 @@ static void stiff_model(modal_model *model) {
   assert_int_equal(modal_model_reduce(model, 2, true), SHB_OK);
 }
 
-/* Largest error of sum psi psi^T/nu^(2 power), from mode 2 on, against a matrix [3][3], relative to its first entry. */
+/* Largest error of sum psi psi^T/nu^(2 power), from mode 2 on, against a matrix [3][3], relative to
+ * its first entry. */
 static double moment_error(const modal_model *with, int power, const double *left,
                            const double *wanted) {
   double worst = 0;
@@ -344,7 +350,8 @@ static double moment_error(const modal_model *with, int power, const double *lef
   return worst / fabs(wanted[0]);
 }
 
-/* Largest difference at harmonic 1 between what the balance and the integration see, residual modes undamped. */
+/* Largest difference at harmonic 1 between what the balance and the integration see, residual modes
+ * undamped. */
 static double receptance_gap(const modal_model *model, double omega) {
   modal_model     with;
   mhb_receptance *r[2];
@@ -363,8 +370,8 @@ static double receptance_gap(const modal_model *model, double omega) {
   return worst;
 }
 
-/* With the term of omega^4 residual modes have all three terms, and some of the flexibility stays; what the integration sees
- * differs from what the balance does by omega^6, with two terms by omega^4. */
+/* With the term of omega^4 residual modes have all three terms, and a part of the flexibility
+ * stays. Integration and balance then differ by omega^6, with two terms by omega^4. */
 static void fourth_term(void **state) {
   (void)state;
   modal_model  three, two, with;
@@ -407,7 +414,8 @@ static void fourth_term(void **state) {
   modal_model_free(&two);
 }
 
-/* Rings of two, three and five blades, all blades of them in time, against the wave of the balance. */
+/* Rings of two, three and five blades, all blades of them in time, against the wave of the
+ * balance. */
 static void rings(void **state) {
   (void)state;
   static const int blades[3] = {2, 3, 5};
@@ -445,7 +453,8 @@ static void put_state(mhb_integrator *g, const double *state) {
   mhb_integrator_set(g, g->omega, g->n0, g->steps);
 }
 
-/* Mean growth a period of a small disturbance of a motion: integrated beside it, and scaled back after every period. */
+/* Mean growth a period of a small disturbance of a motion: integrated beside it, and scaled back
+ * after every period. */
 static double growth(run *a, const modal_model *model, const mhb_settings *s, int periods) {
   mhb_integrator    *g = a->g, *other;
   int                n = mhb_integrator_size(g), modal = 2 * g->blades * g->modes;
@@ -471,8 +480,8 @@ static double growth(run *a, const modal_model *model, const mhb_settings *s, in
   return exp(sum / periods);
 }
 
-/* The largest multiplier, from the linearised problem along the balance's solution, and how fast disturbances of the integrated motion
- * grow or decay: of a blade that leaves its orbit, and of rings. */
+/* The largest multiplier against the growth or decay of disturbances of the integrated motion.
+ * Cases: a blade that leaves its orbit, and rings. */
 static void disturbances(void **state) {
   (void)state;
   for (int i = 0; i < 3; i++) {
@@ -502,8 +511,8 @@ static void disturbances(void **state) {
   }
 }
 
-/* Without load a contact ten thousand times stiffer than the structure, and steps far too long for it, feed nothing into a
- * motion that starts with a push. */
+/* Motion without load after a push: its energy never increases. The contact is ten thousand times
+ * stiffer than the structure, and the steps are far too long for it. */
 static void passive(void **state) {
   (void)state;
   modal_model  model;
