@@ -1,8 +1,7 @@
 #include "cases/commands/load_model.h"
 
+#include "mesh/base/constants.h"
 #include "modal/model/reduce.h"
-
-static const double TWO_PI = 6.283185307179586476925;
 
 static shb_status read_speeds(const char *path, int modes, bool residuals, case_model *m) {
   const double *f = m->settings.frequency;
@@ -16,7 +15,7 @@ static shb_status read_speeds(const char *path, int modes, bool residuals, case_
   modal_speeds_free(&speeds);
   if (status == SHB_OK) status = mhb_speed_model_create(m->run_up, &m->top);
   SHB_TRY(status);
-  mhb_speed_model_set(m->top, TWO_PI * f[1]);
+  mhb_speed_model_set(m->top, SHB_TWO_PI * f[1]);
   m->model           = m->top->model;
   m->settings.run_up = m->run_up;
   return SHB_OK;

@@ -4,9 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/continuation/nearest_solution.h"
-
-static const double PI = 3.14159265358979323846;
 
 struct witness {
   mhb_settings    settings;
@@ -90,7 +89,7 @@ int witness_solve(witness *w, const witness_place *place, bool same_frequency, d
   mhb_balance        *b    = w->residual;
   const double       *f    = place->branch->frequency;
   size_t              n    = (size_t)b->n;
-  double              span = 2 * PI * (s->frequency[1] - s->frequency[0]);
+  double              span = SHB_TWO_PI * (s->frequency[1] - s->frequency[0]);
   memset(w->x, 0, n * sizeof *w->x);
   memset(w->normal, 0, (n + 1) * sizeof *w->normal);
   add_motion(w, place, place->from, 1 - place->part, w->x);
@@ -99,13 +98,13 @@ int witness_solve(witness *w, const witness_place *place, bool same_frequency, d
     add_motion(w, place, place->low, -1, w->normal);
     add_motion(w, place, place->high, 1, w->normal);
   }
-  w->normal[n] = same_frequency ? span : 2 * PI * (f[place->high] - f[place->low]);
-  double omega = 2 * PI * ((1 - place->part) * f[place->from] + place->part * f[place->to]);
+  w->normal[n] = same_frequency ? span : SHB_TWO_PI * (f[place->high] - f[place->low]);
+  double omega = SHB_TWO_PI * ((1 - place->part) * f[place->from] + place->part * f[place->to]);
   double scale = mhb_norm(w->x, b->n);
   mhb_balance_set_preload(b, place->branch->n0[place->from]);
   if (!(scale > 0) || !mhb_nearest_solution(w->newton, b, w->normal, scale, span, w->x, &omega))
     return 0;
-  found[0] = omega / (2 * PI);
+  found[0] = omega / SHB_TWO_PI;
   found[1] = amplitude(w);
   return 1;
 }

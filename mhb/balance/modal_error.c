@@ -4,11 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/balance/newton.h"
 #include "mhb/balance/stick_stiffness.h"
 #include "mhb/numerics/lu.h"
-
-static const double PI = 3.14159265358979323846;
 
 enum { MOST_SOLVED = 60 };
 
@@ -17,7 +16,7 @@ typedef enum { BY_LOAD, BY_CONTACT, PARTS } part;
 /* What the series leaves out, relative to its last term: by its estimated error, the worst dof; without one (w/w_m)^2. */
 static double ratio_of(const modal_model *model, double w) {
   const int    n     = 3 * model->n_pairs * (model->has_left ? 2 : 1);
-  const double top   = 2 * PI * model->frequency[model->n_modes - 1];
+  const double top   = SHB_TWO_PI * model->frequency[model->n_modes - 1];
   double       worst = 0, weight = modal_series_at(model, w).weight[2];
   for (int i = 0; i < n; i++) {
     double error = modal_series_error(model, w, i);

@@ -6,9 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/contact/internal.h"
-
-static const double TWO_PI = 6.283185307179586476925;
 
 /* Memory that vectors may be loaded from, zeroed. */
 static void *aligned(size_t size) {
@@ -120,12 +119,12 @@ static double content_of(const mhb_signals *s, double mu) {
 
 /* Where the contact closes for less than a few cells of the grid, which may pass over it: n there is about a parabola. */
 static double brief_load(mhb_contact_evaluator *c) {
-  double load = 0, brief = 4 * TWO_PI / c->signals.n_grid;
+  double load = 0, brief = 4 * SHB_TWO_PI / c->signals.n_grid;
   for (int i = 0; i < c->closed.n; i++) {
     double y[3], dy[3], length = c->closed.opening[i] - c->closed.closing[i];
     if (length > brief) continue;
     mhb_signals_at(&c->signals, c->closed.closing[i] + .5 * length, y, dy, NULL);
-    load += 2. / 3 * fmax(0, y[0]) * length / TWO_PI;
+    load += 2. / 3 * fmax(0, y[0]) * length / SHB_TWO_PI;
     c->slip.peak = fmax(c->slip.peak, y[0]);
   }
   return load;
@@ -164,7 +163,7 @@ static void set_slip(mhb_contact_evaluator *c, const mhb_law *law, int derivativ
 /* ---- sums ---- */
 
 static double quadrature_scale(int i) {
-  return i == 0 ? 1 / TWO_PI : 2 / TWO_PI;
+  return i == 0 ? 1 / SHB_TWO_PI : 2 / SHB_TWO_PI;
 }
 
 void mhb_force_integrals_clear(mhb_contact_evaluator *c) {
@@ -315,7 +314,7 @@ static double loop_work(const mhb_contact_evaluator *c, const double *motion, co
     const double *s = motion + i * c->nb, *f = force + i * c->nf;
     for (int k = 1; k <= c->m; k++) sum += k * (f[2 * k] * s[2 * k - 1] - f[2 * k - 1] * s[2 * k]);
   }
-  return .5 * TWO_PI * sum;
+  return .5 * SHB_TWO_PI * sum;
 }
 
 /* mu = 0: slip wherever it is closed. */
@@ -323,7 +322,7 @@ static void without_friction(mhb_contact_evaluator *c) {
   double closed = c->closed.always_closed;
   if (closed > 0) mhb_dense_output_frictionless(&c->pieces, 0);
   for (int i = 0; i < c->closed.n; i++) {
-    closed += (c->closed.opening[i] - c->closed.closing[i]) / TWO_PI;
+    closed += (c->closed.opening[i] - c->closed.closing[i]) / SHB_TWO_PI;
     mhb_note_transition(c, c->closed.closing[i], MHB_SLIDE);
     mhb_dense_output_frictionless(&c->pieces, c->closed.closing[i]);
     mhb_note_transition(c, c->closed.opening[i], MHB_SEPARATE);
@@ -372,7 +371,8 @@ static void friction_force(mhb_contact_evaluator *c) {
   }
   finish_friction(c);
   c->info->lost = !ok;
-  if (!ok) c->info->error = fmax(c->info->error, c->closed.always_closed ? 0 : TWO_PI * c->force);
+  if (!ok)
+    c->info->error = fmax(c->info->error, c->closed.always_closed ? 0 : SHB_TWO_PI * c->force);
   if (!ok || c->info->laps > 20) drop_friction(c);
 }
 
@@ -394,7 +394,7 @@ static double relative_error(const mhb_contact_evaluator *c, const mhb_law *law,
   double top = fabs(force[0] + law->balance), sum = .5 * sqrt(c->squares) + c->info->error;
   for (int i = 1; i < 3 * c->nf; i++) top = fabs(force[i]) > top ? fabs(force[i]) : top;
   if (c->info->lost && sum == 0) return 1;
-  return top > 0 ? fmin(1, 2 / TWO_PI * sum * c->scale / top) : 0;
+  return top > 0 ? fmin(1, 2 / SHB_TWO_PI * sum * c->scale / top) : 0;
 }
 
 void mhb_contact_force(mhb_contact_evaluator *c, const mhb_law *law, const double *motion,

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double TWO_PI = 6.283185307179586476925;
+#include "mesh/base/constants.h"
 
 enum { POINTS = 1 + MHB_NODES };
 
@@ -59,7 +59,7 @@ void mhb_dense_output_open(mhb_dense_output *pieces, double t0) {
 void mhb_dense_output_frictionless(mhb_dense_output *pieces, double t0) {
   mhb_dense_piece *piece = add(pieces, MHB_SLIDE, t0);
   if (!piece) return;
-  piece->h = TWO_PI; /* any direction: mu = 0 */
+  piece->h = SHB_TWO_PI; /* any direction: mu = 0 */
   memset(piece->theta, 0, sizeof piece->theta);
 }
 
@@ -79,7 +79,7 @@ static double direction_at(const mhb_dense_output *pieces, const mhb_dense_piece
 /* The last piece that has begun at t; t is lifted by periods to the first (the lap of a contact that opens begins at a
  * closing, which may be one period on). */
 static const mhb_dense_piece *find(const mhb_dense_output *pieces, double *t) {
-  while (*t < pieces->piece[0].t0) *t += TWO_PI;
+  while (*t < pieces->piece[0].t0) *t += SHB_TWO_PI;
   int low = 0, high = pieces->n;
   while (high - low > 1) {
     int middle = low + (high - low) / 2;

@@ -2,9 +2,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/contact/internal.h"
-
-static const double TWO_PI = 6.283185307179586476925;
 
 /* The slider at a time of the lap. */
 typedef struct {
@@ -16,7 +15,7 @@ typedef struct {
 void mhb_note_transition(mhb_contact_evaluator *c, double t, mhb_state state) {
   mhb_contact_info *info = c->info;
   if (!c->record || info->n_transitions == MHB_MAX_TRANSITIONS) return;
-  double phase = t / TWO_PI + 1e-14; /* the end of the period is its beginning */
+  double phase = t / SHB_TWO_PI + 1e-14; /* the end of the period is its beginning */
   info->transition[info->n_transitions++] =
       (mhb_transition){.phase = fmax(0, phase - floor(phase) - 1e-14), .state = (int)state};
 }
@@ -34,7 +33,7 @@ static void add_stick(mhb_contact_evaluator *c, double t0, double t1, const doub
   for (int k = 0; k < 2; k++)
     for (int i = 0; i < c->nf; i++) c->f[k * c->nf + i] -= z[k] * c->piece[i];
   mhb_sensitivity_stick(c);
-  c->info->share[MHB_STICK] += (t1 - t0) / TWO_PI;
+  c->info->share[MHB_STICK] += (t1 - t0) / SHB_TWO_PI;
 }
 
 /* f K^-1 f/2, what the spring holds. */
@@ -75,7 +74,7 @@ static void add_slip(mhb_contact_evaluator *c, const slider *s) {
   if (!c->record) return;
   mhb_dense_output_slip(&c->pieces, p);
   c->info->slip_work += panel_work(c, s);
-  c->info->share[MHB_SLIDE] += p->h / TWO_PI;
+  c->info->share[MHB_SLIDE] += p->h / SHB_TWO_PI;
   c->squares += p->error * p->error;
 }
 
@@ -187,7 +186,7 @@ int mhb_slider_with_openings(mhb_contact_evaluator *c) {
       c->info->slip_work += held_at(c, &s); /* let go at once: mu n' is too steep to see */
     mhb_note_transition(c, c->closed.opening[i], MHB_SEPARATE);
     mhb_dense_output_open(&c->pieces, c->closed.opening[i]);
-    open -= (c->closed.opening[i] - c->closed.closing[i]) / TWO_PI;
+    open -= (c->closed.opening[i] - c->closed.closing[i]) / SHB_TWO_PI;
   }
   c->info->share[MHB_SEPARATE] = fmax(0, open);
   return ok;
@@ -218,7 +217,7 @@ static int run_lap(mhb_contact_evaluator *c, const double z0[2], double P[2]) {
       for (int k = 0; k < 2; k++) s.z[k] = y[1 + k] - limit * d[k];
   }
   mhb_state began = s.state;
-  int       ok    = run_closed(c, &s, TWO_PI, 0);
+  int       ok    = run_closed(c, &s, SHB_TWO_PI, 0);
   if (s.state != began) mhb_note_transition(c, 0, began);
   if (s.state == MHB_SLIDE) {
     P[0] = y[1] - limit * cos(s.theta);
@@ -310,7 +309,7 @@ static double record_lap(mhb_contact_evaluator *c, mhb_sensitivity_mode columns,
     work += c->memory.onset[k] * dz[k];
   }
   if (fabs(work) <= c->info->slip_work) c->info->slip_work += work; /* else beyond first order */
-  return ok ? 2 / TWO_PI * most / c->friction : -1;
+  return ok ? 2 / SHB_TWO_PI * most / c->friction : -1;
 }
 
 int mhb_slider_periodic(mhb_contact_evaluator *c, const double guess[2]) {
@@ -332,7 +331,7 @@ int mhb_slider_periodic(mhb_contact_evaluator *c, const double guess[2]) {
   /* a trace shows the lap itself: repeat it until it needs no correction */
   for (int tries = 0; c->pieces.on && gap > 1e-12 && tries < MAX_RECORDS; tries++)
     left = record_lap(c, wanted, z, &gap, &step);
-  double miss = left < 0             ? TWO_PI * c->force / c->friction
+  double miss = left < 0             ? SHB_TWO_PI * c->force / c->friction
                 : reached && !a.slow ? fmax(left * left, step * step)
                                      : left;
   c->info->error += c->friction * (miss + mhb_sensitivity_roundoff(c));

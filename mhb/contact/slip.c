@@ -2,6 +2,8 @@
 
 #include <float.h>
 
+#include "mesh/base/constants.h"
+
 /* ---- the rule ---- */
 
 /* Legendre polynomial of degree n and its derivative at x. */
@@ -65,10 +67,9 @@ static void table_column(mhb_collocation *rule, const double *node, const double
 }
 
 void mhb_collocation_create(mhb_collocation *rule) {
-  const double pi = 3.141592653589793238463;
-  double       node[MHB_NODES], weight[MHB_NODES];
+  double node[MHB_NODES], weight[MHB_NODES];
   for (int i = 0; i < MHB_NODES; i++) {
-    double x = -cos(pi * (i + .75) / (MHB_NODES + .5)), slope = 1;
+    double x = -cos(SHB_PI * (i + .75) / (MHB_NODES + .5)), slope = 1;
     for (int k = 0; k < 20; k++) x -= legendre(MHB_NODES, x, &slope) / slope;
     legendre(MHB_NODES, x, &slope);
     node[i]   = .5 * (1 + x);

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-static const double TWO_PI = 6.283185307179586476925;
+#include "mesh/base/constants.h"
 
 /* |c + f| <= r at time t */
 typedef struct {
@@ -30,7 +30,7 @@ static disc disc_at(const discs *set, int i) {
   int n = set->signals->n_grid;
   if (i >= n) return set->extra[i - n];
   double *const *value = set->signals->value;
-  return disc_of(set, TWO_PI * i / n, (double[3]){value[0][i], value[1][i], value[2][i]});
+  return disc_of(set, SHB_TWO_PI * i / n, (double[3]){value[0][i], value[1][i], value[2][i]});
 }
 
 static double violation(const disc *d, const double c[2]) {
@@ -114,7 +114,7 @@ MHB_HOT static int worst_on_grid(const discs *set, const double c[2], double *si
  * second derivatives bounds how far f and n are off theirs. */
 static double rise_in_cell(const discs *set) {
   const mhb_signals *s = set->signals;
-  double             h = TWO_PI / s->n_grid;
+  double             h = SHB_TWO_PI / s->n_grid;
   return h * h / 8 * (hypot(s->bound[1][2], s->bound[2][2]) + set->mu * s->bound[0][2]);
 }
 
@@ -190,7 +190,7 @@ static double scan(const discs *set, const double c[2], double t, double width) 
 /* Add refined times of local maxima that violate; the number added. */
 static int add_violated(discs *set, const double c[2]) {
   int    n = set->signals->n_grid, added = 0;
-  double width = TWO_PI / n, enough = -rise_in_cell(set), most;
+  double width = SHB_TWO_PI / n, enough = -rise_in_cell(set), most;
   worst_on_grid(set, c, &most);
   for (int i = 0; i < n && set->n_extra < EXTRA && most >= enough; i++) {
     disc   mid  = disc_at(set, i);
@@ -265,7 +265,7 @@ void mhb_static_friction_solve(const mhb_signals *signals, double mu, mhb_static
   }
   stuck->n_active = n_active;
   for (int i = 0; i < n_active; i++) stuck->time[i] = active[i].t;
-  int merge = n_active == 2 && fabs(remainder(active[0].t - active[1].t, TWO_PI)) < 1e-4;
+  int merge = n_active == 2 && fabs(remainder(active[0].t - active[1].t, SHB_TWO_PI)) < 1e-4;
   if (merge) stuck->n_active = 1; /* two cuts at one summit */
   if (stuck->feasible && stuck->n_active == 1) sharpen(&set, stuck);
 }

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const double TWO_PI = 6.283185307179586476925;
+#include "mesh/base/constants.h"
 
 /* A scalar function of the signals: n itself, or g = |x - z|^2 - mu^2 n^2. */
 typedef struct {
@@ -40,7 +40,7 @@ static sample sample_at(const event_function *f, double t) {
 /* Grid point i (any integer; the grid is periodic). */
 static sample sample_grid(const event_function *f, int i) {
   int    n  = f->signals->n_grid;
-  sample s  = {.t = TWO_PI * i / n};
+  sample s  = {.t = SHB_TWO_PI * i / n};
   int    at = ((i % n) + n) % n;
   double v[3], dv[3];
   for (int k = 0; k < 3; k++) {
@@ -133,7 +133,7 @@ MHB_INLINE void grid_lanes(const event_function *f, int i, mhb_lanes *y, mhb_lan
  * integer; eight are looked at together. */
 MHB_HOT static int next_suspect(const event_function *f, double sign, int from, int to) {
   int    n = f->signals->n_grid;
-  double h = TWO_PI / n, third = sign * h / 3, slack = h * h * h * h * f->bound4 / 384;
+  double h = SHB_TWO_PI / n, third = sign * h / 3, slack = h * h * h * h * f->bound4 / 384;
   for (int i = from; i < to;) {
     int       base = (i % n + n) % n / MHB_LANES * MHB_LANES, skip = (i % n + n) % n - base;
     mhb_lanes y, dy, y1, dy1;
@@ -210,7 +210,7 @@ void mhb_contact_intervals_find(const mhb_signals *signals, mhb_contact_interval
   }
   if (!began_open) {
     /* openings and closings alternate o_0 c_1 o_1 ... c_n: pair each closing with the next opening */
-    double last = closed->opening[0] + TWO_PI;
+    double last = closed->opening[0] + SHB_TWO_PI;
     for (int i = 0; i < closed->n; i++) {
       closed->closing[i] = closed->closing[i + 1];
       closed->opening[i] = i + 1 < closed->n ? closed->opening[i + 1] : last;
@@ -263,7 +263,7 @@ double mhb_slip_onset(const mhb_signals *signals, double mu, const double z[2], 
   if (a.t >= to) return to + 1;
   if (a.y > 0 && a.dy > 0) return a.t;
   a.y         = fmin(a.y, 0); /* coming back from beyond: rounding */
-  double cell = TWO_PI / signals->n_grid;
+  double cell = SHB_TWO_PI / signals->n_grid;
   int    i = (int)floor(a.t / cell) + 1, last = (int)floor(to / cell);
   for (double root; a.t < to; i++) {
     sample b = cell * i < to ? sample_grid(&f, i) : sample_at(&f, to);

@@ -3,12 +3,11 @@
 #include <math.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/floquet/variational.h"
 #include "mhb/numerics/lu.h"
 
 enum { S = MHB_STAGES, F = MHB_STAGE_FORCES, SAMPLES = 8, ITERATIONS = 20 };
-
-static const double PI = 3.14159265358979323846;
 
 mhb_law mhb_contact_step_law(const mhb_law *law) {
   mhb_law out = *law;
@@ -316,7 +315,7 @@ void mhb_contact_step_advance(const mhb_law *law, const mhb_contact_step *step, 
   double x[2];
   spring(law, rub->u + 1, x);
   for (int c = 0; c < 2; c++) rub->zeta[c] = x[c] - rub->p[1 + c];
-  rub->theta  = remainder(step->theta[S - 1], 2 * PI);
+  rub->theta  = remainder(step->theta[S - 1], SHB_TWO_PI);
   rub->lambda = step->kappa[S - 1] / h;
 }
 

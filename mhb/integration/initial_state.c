@@ -2,10 +2,9 @@
 #include <math.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/integration/integrator.h"
 #include "mhb/problem/interfaces.h"
-
-static const double PI = 3.14159265358979323846;
 
 /* q_free and its rate at phase 0, times sign, to z. */
 static void add_free_modes(mhb_integrator *g, double sign) {
@@ -13,7 +12,7 @@ static void add_free_modes(mhb_integrator *g, double sign) {
   for (int k = 0; k <= g->n_load; k += r->nu)
     for (int b = 0; b < g->blades; b++) {
       double complex turn = cexp(-I * k * mhb_integrator_lag(g, b)),
-                     rate = I * (k * 2 * PI / g->period);
+                     rate = I * (k * SHB_TWO_PI / g->period);
       for (int i = 0; i < g->modes; i++) {
         double complex a = r->lambda[k * g->modes + i] * r->F[k * g->modes + i] * turn;
         g->z[b * g->modes + i] += sign * creal(a);
@@ -81,7 +80,7 @@ void mhb_integrator_set(mhb_integrator *g, double omega, double n0, int steps) {
   int known = g->period > 0;
   if (known) add_free_modes(g, 1);
   g->omega  = omega;
-  g->period = 2 * PI * g->settings.subharmonics / omega;
+  g->period = SHB_TWO_PI * g->settings.subharmonics / omega;
   g->steps  = steps;
   g->t      = 0;
   set_laws(g, n0);
@@ -110,7 +109,7 @@ void mhb_integrator_balance(mhb_integrator *g, int n_harmonics, const double com
     const double complex *p = force + (size_t)(k * r->n);
     for (int b = 0; b < g->blades; b++) {
       double complex turn = cexp(-I * k * mhb_integrator_lag(g, b)),
-                     rate = I * (k * 2 * PI / g->period);
+                     rate = I * (k * SHB_TWO_PI / g->period);
       for (int i = 0; i < g->modes; i++) {
         double complex a = 0;
         for (int row = 0; row < r->n; row++)

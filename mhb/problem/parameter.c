@@ -4,10 +4,10 @@
 #include <math.h>
 #include <string.h>
 
-static const double PI = 3.14159265358979323846;
+#include "mesh/base/constants.h"
 
 mhb_operating_point mhb_operating_point_of(const mhb_settings *s) {
-  mhb_operating_point c = {.omega = 2 * PI * s->frequency[0],
+  mhb_operating_point c = {.omega = SHB_TWO_PI * s->frequency[0],
                            .n0    = s->n0[0],
                            .scale = s->scale,
                            .mu    = s->mu,
@@ -27,15 +27,15 @@ const char *mhb_parameter_unit(mhb_parameter parameter) {
 }
 
 double mhb_parameter_shown(mhb_parameter parameter, double value) {
-  return parameter == MHB_IN_FREQUENCY ? value / (2 * PI) : value;
+  return parameter == MHB_IN_FREQUENCY ? value / SHB_TWO_PI : value;
 }
 
 double mhb_parameter_value(mhb_parameter parameter, double shown) {
-  return parameter == MHB_IN_FREQUENCY ? 2 * PI * shown : shown;
+  return parameter == MHB_IN_FREQUENCY ? SHB_TWO_PI * shown : shown;
 }
 
 double mhb_parameter_end(const mhb_settings *s, mhb_parameter parameter, int high) {
-  return parameter == MHB_IN_FREQUENCY ? 2 * PI * s->frequency[high] : s->range[high];
+  return parameter == MHB_IN_FREQUENCY ? SHB_TWO_PI * s->frequency[high] : s->range[high];
 }
 
 static double *field(mhb_operating_point *c, mhb_parameter parameter) {

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/problem/parameter.h"
 #include "mhb/response/response.h"
 #include "mhb/response/response_fields.h"
@@ -142,12 +143,11 @@ static shb_status write_field(hid_t group, const mhb_response *response, const m
 
 /* Of the rotor in a run-up; not read back. */
 static shb_status write_speed(hid_t group, const mhb_response *response, const mhb_branch *branch) {
-  static const double two_pi = 6.283185307179586476925;
   if (!response->run_up) return SHB_OK;
   double *speed = malloc(sizeof *speed * (size_t)branch->n_points + 1);
   SHB_CHECK(speed, SHB_ERR_IO, "no memory for %d response points", branch->n_points);
   for (int i = 0; i < branch->n_points; i++)
-    speed[i] = two_pi * branch->frequency[i] / response->engine_order;
+    speed[i] = SHB_TWO_PI * branch->frequency[i] / response->engine_order;
   shb_status status = h5_write_double(group, "speed", H5_SHAPE((hsize_t)branch->n_points), speed,
                                       "rad/s", "speed of the rotor, frequency/engine_order");
   free(speed);

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double TWO_PI = 6.283185307179586476925;
+#include "mesh/base/constants.h"
 
 /* The wave of nu periods lags by (2 pi/nu)(E/N + l), l the least for which it closes around the ring: E' = (E + N l)/nu. */
 static int wave_of(const mhb_settings *s) {
@@ -35,7 +35,7 @@ static double flexibility(const mhb_receptance *r, int s, int row, int t, int co
   }
   if (s != t) sum = -sum;
   for (int i = first; i < r->n_modes; i++) {
-    double w = TWO_PI * model->frequency[i];
+    double w = SHB_TWO_PI * model->frequency[i];
     sum += shape_of(r, s, row, i) * shape_of(r, t, column, i) / (w * w);
   }
   return sum;
@@ -82,7 +82,7 @@ shb_status mhb_modal_structure_create(const mhb_receptance *r, const mhb_setting
 void mhb_modal_structure_set(const mhb_receptance *r, mhb_modal_structure *s) {
   const size_t side = (size_t)s->modes * (size_t)r->n, n = 3 * (size_t)s->contacts;
   for (int i = 0; i < s->modes; i++) {
-    s->omega[i] = TWO_PI * r->model->frequency[i];
+    s->omega[i] = SHB_TWO_PI * r->model->frequency[i];
     s->zeta[i]  = r->model->damping_ratio[i];
   }
   for (size_t k = 0; k < (size_t)s->sides * side; k++)

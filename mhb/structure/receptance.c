@@ -5,11 +5,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/numerics/simd.h"
 #include "mhb/problem/interfaces.h"
 #include "mhb/structure/speed_derivative.h"
 
-static const double PI = 3.14159265358979323846, NUDGE = 1e-8;
+static const double NUDGE = 1e-8;
 
 /* From this many relative motions on, products of matrices are left to BLAS. */
 enum { WORTH_BLAS = 12 };
@@ -39,7 +40,7 @@ static angles angles_of(const mhb_settings *s, int interface) {
 
 static shb_status check_angle(const char *name, const char *interface, bool given, double wanted,
                               double found, double degree) {
-  SHB_CHECK(!given || fabs(remainder(found - wanted, 2 * PI)) * degree <= 1, SHB_ERR_INPUT,
+  SHB_CHECK(!given || fabs(remainder(found - wanted, SHB_TWO_PI)) * degree <= 1, SHB_ERR_INPUT,
             "contact.%s is %.2f deg, but the contact faces of the modal file stand at %.2f deg%s%s",
             name, wanted * degree, found * degree, interface ? ", interface " : "",
             interface ? interface : "");
@@ -64,7 +65,7 @@ static shb_status set_axes(mhb_receptance *r, const mhb_settings *s, int interfa
     for (int i = 0; i < 3; i++) mean[i] += r->share[a] * T0[a][i][0];
   }
   double psi = atan2(mean[1], mean[0]), phi = -atan2(mean[2], hypot(mean[0], mean[1]));
-  double degree = 180 / PI;
+  double degree = 180 / SHB_PI;
   if (s->n_interfaces < 2 || interface == s->lead) {
     r->psi = psi;
     r->phi = phi;
@@ -155,7 +156,7 @@ static int allocate(mhb_receptance *r) {
 static double wave_step(const mhb_settings *s) {
   for (int l = 0; l < s->subharmonics; l++)
     if ((s->engine_order + (long)s->blades * l) % s->subharmonics == 0)
-      return 2 * PI / s->subharmonics * ((double)s->engine_order / s->blades + l);
+      return SHB_TWO_PI / s->subharmonics * ((double)s->engine_order / s->blades + l);
   return NAN;
 }
 
@@ -184,7 +185,7 @@ static shb_status set_blade(mhb_receptance *r, const mhb_settings *settings) {
   }
   for (int k = 0; k <= r->n_harmonics; k++) {
     r->made_at[k] = NAN;
-    r->phase[k]   = cexp(-I * fmod(k * step, 2 * PI));
+    r->phase[k]   = cexp(-I * fmod(k * step, SHB_TWO_PI));
   }
   SHB_TRY(
       mhb_residual_terms_create(r->model, relative, r->nu, r->n_harmonics, r->phase, &r->left_out));
@@ -270,7 +271,8 @@ MHB_HOT static void set_lambda(const mhb_receptance *r, double w, double *restri
                                double *restrict im) {
   const double *restrict hz = r->model->frequency, *restrict zeta = r->model->damping_ratio;
   for (int i = 0; i < r->n_modes; i++) {
-    double wi = 2 * PI * hz[i], a = wi * wi - w * w, b = 2 * zeta[i] * wi * w, size = a * a + b * b;
+    double wi = SHB_TWO_PI * hz[i], a = wi * wi - w * w, b = 2 * zeta[i] * wi * w,
+           size  = a * a + b * b;
     double least = NUDGE * wi * wi, at = size < least * least ? copysign(least, a) : a;
     size  = at * at + b * b;
     re[i] = at / size;
@@ -365,7 +367,7 @@ double complex mhb_receptance_modal_load(const mhb_receptance *r, int k, const d
 
 /* dL/d omega = L^2 (2 k^2 w - 2 j zeta w_i k), k counted in the excitation frequency. */
 static double complex lambda_slope(const mhb_receptance *r, int k, int i) {
-  double         kk = (double)k / r->nu, wi = 2 * PI * r->model->frequency[i];
+  double         kk = (double)k / r->nu, wi = SHB_TWO_PI * r->model->frequency[i];
   double complex L = r->lambda[k * r->n_modes + i];
   return L * L * (2 * kk * kk * r->omega - 2 * I * r->model->damping_ratio[i] * wi * kk);
 }
@@ -398,7 +400,7 @@ MHB_HOT static void slope_drive(const mhb_receptance *r, int k, const double com
   for (int i = 0; i < m; i++) {
     double a = creal(lambda[i]), b = cimag(lambda[i]);
     double sr = a * a - b * b, si = 2 * a * b;
-    double loss = -4 * PI * r->model->damping_ratio[i] * r->model->frequency[i] * kk;
+    double loss = -4 * SHB_PI * r->model->damping_ratio[i] * r->model->frequency[i] * kk;
     double dr = sr * spring - si * loss, di = si * spring + sr * loss, x = yr[i];
     yr[i] = dr * x - di * yi[i];
     yi[i] = dr * yi[i] + di * x;

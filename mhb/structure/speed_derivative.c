@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-static const double PI = 3.14159265358979323846;
+#include "mesh/base/constants.h"
 
 /* The rate at the model's omega. */
 static const mhb_receptance *rate_of(const mhb_receptance *r) {
@@ -32,7 +32,7 @@ static void modal_rate(const mhb_receptance *r, int k, const double complex *p, 
 /* d/d omega of the weights of the residual terms by w_m, the last mode kept: weight t is of degree t in (w^2, w_m^2). */
 static modal_series weight_rate(const mhb_receptance *r, const modal_series *s, double w) {
   const int    last = r->n_modes - 1;
-  const double top  = 2 * PI * r->model->frequency[last];
+  const double top  = SHB_TWO_PI * r->model->frequency[last];
   const double dc   = r->at->stiffness[last * r->n_modes + last] / (top * top);
   modal_series rate = {.x = 0};
   for (int t = 0; t < MODAL_TERMS; t++) {

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double TWO_PI = 6.283185307179586476925;
+#include "mesh/base/constants.h"
 
 /* Relative distance of eigenvalues that count as one; the least eigenvalue of a model, of the greatest. */
 static const double SAME = 1e-12, LEAST = 1e-12;
@@ -149,7 +149,7 @@ void mhb_speed_model_set(mhb_speed_model *a, double omega) {
   }
   a->least = square[0];
   for (int i = 0; i < m; i++)
-    a->model.frequency[i] = sqrt(fmax(square[i], LEAST * square[m - 1])) / TWO_PI;
+    a->model.frequency[i] = sqrt(fmax(square[i], LEAST * square[m - 1])) / SHB_TWO_PI;
   congruent(a, a->entry + m * m, rest, Z);
   for (int i = 0; i < m; i++) a->model.damping_ratio[i] = fmax(0, Z[i * (m + 1)]);
   turn(a, a->entry, a->turned, &a->model);
@@ -161,10 +161,10 @@ static void differentiate_damping(mhb_speed_model *a, const double *Z, const dou
   const int     m    = a->run_up->n_modes;
   const double *zeta = a->model.damping_ratio, *dK = a->stiffness;
   for (int i = 0; i < m; i++) {
-    const double w = TWO_PI * a->model.frequency[i];
+    const double w = SHB_TWO_PI * a->model.frequency[i];
     double       d = dZ[i * (m + 1)];
     for (int j = 0; j < m; j++) {
-      const double v = TWO_PI * a->model.frequency[j], apart = w * w - v * v;
+      const double v = SHB_TWO_PI * a->model.frequency[j], apart = w * w - v * v;
       const bool   same     = i == j || fabs(apart) <= SAME * w * w;
       const double steep    = same ? 0 : 2 * (zeta[i] - zeta[j]) * w / apart;
       a->damping[i * m + j] = dK[i * m + j] * (steep + 2 * zeta[j] / (w + v));

@@ -5,10 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/structure/speed_model.h"
 #include "modal/model/reduce.h"
 
-static const double TWO_PI = 6.283185307179586476925, HAIR = 1e-9;
+static const double HAIR = 1e-9;
 
 /* Of the speeds beyond the range, these many on each side shape the splines; the least part of a mode's mass, squared cosine, that
  * stays among the modes kept; places where the interpolated stiffness is looked at. */
@@ -16,7 +17,7 @@ enum { BESIDE = 2, LOOKS = 33 };
 static const double STAYS = .8;
 
 static double rpm(double speed) {
-  return speed * 60 / TWO_PI;
+  return speed * 60 / SHB_TWO_PI;
 }
 
 double mhb_speed_table_speed(const mhb_speed_table *r, double omega) {
@@ -112,7 +113,7 @@ static void fill_entry(const mhb_speed_table *r, const modal_model *model, const
   const int   m = r->n_modes, side = 3 * model->n_pairs;
   const void *data[MHB_SPEED_TABLE_UNROTATED];
   size_t      count[MHB_SPEED_TABLE_UNROTATED];
-  for (int i = 0; i < m; i++) scratch[i] = pow(TWO_PI * model->frequency[i], 2);
+  for (int i = 0; i < m; i++) scratch[i] = pow(SHB_TWO_PI * model->frequency[i], 2);
   turn_diagonal(m, V, scratch, out);
   turn_diagonal(m, V, model->damping_ratio, out + m * m);
   double *at = turn_rows(m, V, model->right, side, out + 2 * m * m);
@@ -228,12 +229,13 @@ static void basis(const mhb_speed_table *r, int speed, double *work, double *V) 
 static shb_status check_range(const mhb_speed_table *r, const char *path) {
   const modal_speeds *s = &r->speeds;
   const double        E = r->engine_order, first = s->speed[0], last = s->speed[s->n - 1];
-  SHB_CHECK(
-      r->band[0] / E >= first * (1 - HAIR) && r->band[1] / E <= last * (1 + HAIR), SHB_ERR_INPUT,
-      "mhb.run_up: %.6g to %.6g Hz on engine order %d is a rotor of %.6g to %.6g rpm, but "
-      "%s has speeds from %.6g to %.6g rpm, which cover %.6g to %.6g Hz",
-      r->band[0] / TWO_PI, r->band[1] / TWO_PI, r->engine_order, rpm(r->band[0] / E),
-      rpm(r->band[1] / E), path, rpm(first), rpm(last), E * first / TWO_PI, E * last / TWO_PI);
+  SHB_CHECK(r->band[0] / E >= first * (1 - HAIR) && r->band[1] / E <= last * (1 + HAIR),
+            SHB_ERR_INPUT,
+            "mhb.run_up: %.6g to %.6g Hz on engine order %d is a rotor of %.6g to %.6g rpm, but "
+            "%s has speeds from %.6g to %.6g rpm, which cover %.6g to %.6g Hz",
+            r->band[0] / SHB_TWO_PI, r->band[1] / SHB_TWO_PI, r->engine_order, rpm(r->band[0] / E),
+            rpm(r->band[1] / E), path, rpm(first), rpm(last), E * first / SHB_TWO_PI,
+            E * last / SHB_TWO_PI);
   return SHB_OK;
 }
 
@@ -331,8 +333,8 @@ shb_status mhb_speed_table_create(modal_speeds *speeds, const char *path, int en
   r->speeds         = *speeds;
   *speeds           = (modal_speeds){0};
   r->engine_order   = engine_order;
-  r->band[0]        = TWO_PI * frequency[0];
-  r->band[1]        = TWO_PI * frequency[1];
+  r->band[0]        = SHB_TWO_PI * frequency[0];
+  r->band[1]        = SHB_TWO_PI * frequency[1];
   shb_status status = make(r, path);
   if (status != SHB_OK) {
     mhb_speed_table_destroy(r);

@@ -6,14 +6,13 @@
 #include <string.h>
 
 #include "fem/solver/petsc_error.h"
+#include "mesh/base/constants.h"
 #include "modal/common/phases.h"
 #include "modal/condense/residual_modes.h"
 
 /* Right-hand sides a solve: beyond BATCH nothing is gained, memory grows; and the most that residual modes are made of, all at once, in the memory of
  * TOGETHER numbers. */
 enum { BATCH = 32, MOST = 96, LINKS = MODAL_RITZ_BLOCKS, TOGETHER = 1 << 27 };
-
-static const double two_pi = 6.28318530717958647692;
 
 /* Receptance, relative to the greatest, that residual modes may lack which are not kept, at a half of the last mode's eigenvalue. */
 static const double negligible = 1e-10;
@@ -94,7 +93,7 @@ static PetscErrorCode fill_shapes(const workspace *w, modal_model *model) {
       for (int i = 0; i < m; i++)
         model->modal_force[k * m + i] += load->weight[k * load->dofs.n + c] * force[c * m + i];
   for (int i = 0; i < m; i++) {
-    model->frequency[i]     = sqrt(w->eigen->lambda[i]) / two_pi;
+    model->frequency[i]     = sqrt(w->eigen->lambda[i]) / SHB_TWO_PI;
     model->mode_residual[i] = w->eigen->residual[i];
   }
   PetscCall(PetscFree2(shape, force));
@@ -260,7 +259,7 @@ static void keep_ritz(const workspace *w, const modal_ritz *ritz, int kept, cons
   const modal_load *load = &w->to->load;
   const int         n = ritz->n, nc = w->n_contact;
   for (int i = 0; i < kept; i++) {
-    model->residual_frequency[i] = sqrt(ritz->lambda[i]) / two_pi;
+    model->residual_frequency[i] = sqrt(ritz->lambda[i]) / SHB_TWO_PI;
     for (int c = 0; c < nc; c++) model->residual_shape[c * kept + i] = psi[c * n + i];
     for (int c = 0; c < w->to->probe.n; c++)
       model->residual_probe[c * kept + i] = at_probe[c * n + i];

@@ -4,13 +4,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
 #include "modal/model/receptance.h"
 #include "modal/model/reduce.h"
 #include "modal/model/residual_series.h"
 
 enum { SAMPLES = 100 };
 
-static const double TWO_PI = 6.28318530717958647692, margin = 1.2;
+static const double margin = 1.2;
 
 typedef struct {
   const modal_model *model;
@@ -20,7 +21,7 @@ typedef struct {
 } search;
 
 static double omega_at(const search *s, int sample) {
-  return TWO_PI * s->band * (sample + 1) / SAMPLES;
+  return SHB_TWO_PI * s->band * (sample + 1) / SAMPLES;
 }
 
 /* The receptance that errors are relative to, from all modes there are. */

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double PI = 3.14159265358979323846;
+#include "mesh/base/constants.h"
 
 static int n_contact(const modal_model *model) {
   return 3 * model->n_pairs * (model->has_left ? 2 : 1);
@@ -91,7 +91,7 @@ static void add_forced(double complex *const term[3], size_t at, int n, const do
 /* One mode's answer to w^4, phi and psi its shape at contact and probes. */
 static void add_terms(modal_model *model, int mode, const double *phi, const double *psi) {
   int             c = n_contact(model), q = 3 * model->n_probes;
-  double          w = 2 * PI * model->frequency[mode], w2 = w * w, power = w2;
+  double          w = SHB_TWO_PI * model->frequency[mode], w2 = w * w, power = w2;
   double         *contact[]    = {model->residual_flexibility, model->residual_inertia,
                                   model->residual_fourth};
   double         *probe[]      = {model->probe_contact_residual, model->probe_contact_inertia,
@@ -193,7 +193,7 @@ shb_status modal_model_keep(modal_model *model, int modes, bool residuals) {
 static void widen_tail(const modal_model *model, const double complex *shape, double *tail) {
   double sum[2] = {0, 0};
   for (int i = 0; i < model->n_residual; i++) {
-    double lambda = pow(2 * PI * model->residual_frequency[i], 2);
+    double lambda = pow(SHB_TWO_PI * model->residual_frequency[i], 2);
     double term   = pow(cabs(shape[i]), 2) / pow(lambda, 4);
     sum[0] += term;
     sum[1] += term / lambda;

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
 #include "postproc/analysis/campbell.h"
 #include "postproc/analysis/findings.h"
 #include "postproc/draw/colour.h"
@@ -44,7 +45,7 @@ static void put_head(const post_study *study, const char *case_name, post_buffer
 
 /* Rounded to a thousandth, so that rounding errors of an angle read 0. */
 static double degrees(double angle) {
-  return round(angle * 180e3 / M_PI) / 1e3;
+  return round(angle * 180e3 / SHB_PI) / 1e3;
 }
 
 static void put_lede(const post_study *study, const post_source *source, post_buffer *out) {

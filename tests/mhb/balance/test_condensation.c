@@ -12,13 +12,12 @@
 
 #include <cmocka.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/branches/main_branch.h"
 #include "tests/bench/shroud_face.h"
 #include "tests/support/allocations.h"
 #include "tests/support/random_model.h"
 #include "tests/support/three_degree.h"
-
-static const double PI = 3.14159265358979323846;
 
 #define assert_below(value, bound)                                      \
   do {                                                                  \
@@ -248,7 +247,8 @@ static void walk(const modal_model *model, const mhb_settings *s, double start, 
   assert_int_equal(mhb_balance_create(model, s, &b), SHB_OK);
   mhb_balance_set_preload(b, s->n0[0]);
   assert_int_equal(
-      mhb_arclength_create(b, 2 * PI * s->frequency[0], 2 * PI * s->frequency[1], &path), SHB_OK);
+      mhb_arclength_create(b, SHB_TWO_PI * s->frequency[0], SHB_TWO_PI * s->frequency[1], &path),
+      SHB_OK);
   double *x = calloc((size_t)b->n, sizeof(double));
   assert_int_equal(mhb_first_solution(path->newton, b, start, path->tolerance, x, &iterations),
                    MHB_CONVERGED);
@@ -275,11 +275,11 @@ static void the_loop_allocates_nothing(void **state) {
   mhb_settings s = shroud_face_settings(5);
   s.n0[0]        = 100;
   tip_contact_beam_model(20, &model);
-  walk(&model, &s, 2 * PI * 215, 40);
+  walk(&model, &s, SHB_TWO_PI * 215, 40);
   modal_model_free(&model);
   s = shroud_face_settings(3);
   shroud_face_model(10, 150, &model);
-  walk(&model, &s, 2 * PI * 255, 8);
+  walk(&model, &s, SHB_TWO_PI * 255, 8);
   modal_model_free(&model);
 }
 

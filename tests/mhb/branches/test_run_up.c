@@ -10,14 +10,13 @@
 
 #include <cmocka.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/branches/forced_response.h"
 #include "mhb/branches/record.h"
 #include "mhb/continuation/linear_resonances.h"
 #include "mhb/integration/integration_sweep.h"
 #include "tests/support/periodic.h"
 #include "tests/support/spinning.h"
-
-static const double TWO_PI = 6.283185307179586476925;
 
 enum { MAIN = 2 }; /* after the linear limits */
 
@@ -60,7 +59,7 @@ static double apart(const double complex *a, const double complex *b, int n) {
 static void check_point(const mhb_settings *plain, spinning_kind kind, const mhb_response *response,
                         int branch, int point, double worst[2], int *judged) {
   const mhb_branch *b     = &response->branch[branch];
-  double            omega = TWO_PI * b->frequency[point];
+  double            omega = SHB_TWO_PI * b->frequency[point];
   modal_model       model;
   periodic          at;
   spinning_model(kind, omega / plain->engine_order, &model, NULL);
@@ -171,7 +170,7 @@ static void other_parameters_take_one_speed(void **state) {
   (void)state;
   mhb_settings plain = spinning_settings(), s;
   modal_model  model;
-  plain.frequency[0] = plain.frequency[1] = 1.21 / TWO_PI;
+  plain.frequency[0] = plain.frequency[1] = 1.21 / SHB_TWO_PI;
   plain.parameter                         = MHB_IN_SCALE;
   plain.range[0]                          = .2;
   plain.range[1]                          = 2;
@@ -204,7 +203,8 @@ static void check_alone(const mhb_settings *s, const mhb_integration_settings *a
   one.n_frequencies              = 1;
   one.listed                     = true;
   one.frequency[0]               = b->frequency[point];
-  spinning_model(SPINNING_VEERING, TWO_PI * b->frequency[point] / s->engine_order, &model, NULL);
+  spinning_model(SPINNING_VEERING, SHB_TWO_PI * b->frequency[point] / s->engine_order, &model,
+                 NULL);
   assert_ok(mhb_integration_sweep(&model, &plain, &one, from, NULL, NULL, NULL, &alone));
   *off = apart(alone->branch[0].motion, b->motion + point * n3, n3);
   mhb_response_destroy(alone);
@@ -239,7 +239,7 @@ static void integration_agrees(void **state) {
       const int n3  = 3 * (b->n_harmonics + 1);
       double    off = INFINITY;
       check_alone(&s, &asked, from, b, i, n3, &off);
-      print_message("start %d at %.4f rad/s: differ by %.1e\n", start, TWO_PI * b->frequency[i],
+      print_message("start %d at %.4f rad/s: differ by %.1e\n", start, SHB_TWO_PI * b->frequency[i],
                     off);
       assert_below(off, 1e-6);
     }
@@ -269,7 +269,7 @@ static void resonances_are_where_curves_meet(void **state) {
         spinning_model(SPINNING_STRAIGHT, at[i], &model, NULL);
         /* the second and third cross at .7: below it by place, above by the other's */
         int place = i == 1 && (mode == 1 || mode == 2) ? 3 - mode : mode;
-        lambda[i] = pow(TWO_PI * model.frequency[place], 2);
+        lambda[i] = pow(SHB_TWO_PI * model.frequency[place], 2);
         square[i] = at[i] * at[i];
         modal_model_free(&model);
       }

@@ -9,10 +9,9 @@
 
 #include <cmocka.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/contact/time_history.h"
 #include "mhb/numerics/fourier.h"
-
-static const double PI = 3.14159265358979323846;
 
 enum { M = 5, H = 15, NB = 2 * M + 1, NF = 2 * H + 1, DENSE = 1 << 14, SCENES = 12 };
 
@@ -123,7 +122,7 @@ static double harmonics_off(scene *s, int n) {
   double sum[3][NF] = {{0}}, b[NF], worst = 0;
   trace_uniform(s, n);
   for (int i = 0; i < n; i++) {
-    mhb_basis(H, 2 * PI * sample[i].phase, b, NULL);
+    mhb_basis(H, SHB_TWO_PI * sample[i].phase, b, NULL);
     for (int a = 0; a < 3; a++)
       for (int j = 0; j < NF; j++) sum[a][j] += (j ? 2. : 1.) / n * b[j] * component(&sample[i], a);
   }
@@ -191,13 +190,13 @@ static void harmonics_and_work_by_pieces(void **state) {
     trace(&s, n);
     for (int l = 0; l < n; l++) {
       double b[NF], slope[NF];
-      mhb_basis(H, 2 * PI * sample[l].phase, b, slope);
+      mhb_basis(H, SHB_TWO_PI * sample[l].phase, b, slope);
       for (int a = 0; a < 3; a++)
         for (int j = 0; j < NF; j++)
           sum[a][j] += (j ? 2 : 1) * weight[l] * b[j] * component(&sample[l], a);
       for (int a = 1; a < 3; a++)
         for (int j = 0; j < NB; j++)
-          work += 2 * PI * weight[l] * s.motion[a][j] * slope[j] * component(&sample[l], a);
+          work += SHB_TWO_PI * weight[l] * s.motion[a][j] * slope[j] * component(&sample[l], a);
     }
     sum[0][0] -= s.law.balance;
     for (int a = 0; a < 3; a++)
@@ -256,7 +255,7 @@ static void continuous_across_transitions(void **state) {
       for (int a = 0; a < 3;
            a++) /* the slope of the force is at most M load a radian, times cond(Ku) */
         assert_true(fabs(component(&sample[1], a) - component(&sample[0], a)) <=
-                    2 * PI * 2 * step * 4 * M * load);
+                    SHB_TWO_PI * 2 * step * 4 * M * load);
     }
   }
   assert_true(total >= 20);
@@ -277,7 +276,7 @@ static void continuous_throughout(void **state) {
       for (int l = 1; l < DENSE; l++)
         jump = fmax(jump, fabs(component(&sample[l], a) - component(&sample[l - 1], a)));
     }
-    if (!(jump <= 2 * PI / DENSE * 4 * M * load)) fail_msg("%s: jump of %g N", s.name, jump);
+    if (!(jump <= SHB_TWO_PI / DENSE * 4 * M * load)) fail_msg("%s: jump of %g N", s.name, jump);
   }
 }
 
@@ -295,7 +294,7 @@ static void put_random(scene *s) {
   if (uniform() < .5) s->law.ku[1] = (1.8 * uniform() - .9) * k * sqrt(r);
   int top = 1 + (int)(M * uniform());
   for (int a = 0; a < 3; a++)
-    for (int h = 0; h <= top; h++) set(s, a, h, uniform() / (1 + h * h), 2 * PI * uniform());
+    for (int h = 0; h <= top; h++) set(s, a, h, uniform() / (1 + h * h), SHB_TWO_PI * uniform());
   s->law.n0 = s->law.kv * (3 * uniform() - 1);
 }
 

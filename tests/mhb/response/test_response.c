@@ -3,6 +3,7 @@
 #include <signal.h>
 #include <sys/resource.h>
 
+#include "mesh/base/constants.h"
 #include "mesh/base/progress.h"
 #include "mhb/response/response.h"
 #include "tests/support/files.h"
@@ -156,7 +157,7 @@ static void run_up_tells_its_speeds(void **state) {
   assert_ok(h5_open(scratch("speeds.h5"), &file));
   assert_ok(h5_read_double(file, "/branch_0/speed", &shape, &speed));
   for (int i = 0; i < 7; i++)
-    assert_true(fabs(speed[i] * 5 / (2 * M_PI * wrote->branch[0].frequency[i]) - 1) < 1e-14);
+    assert_true(fabs(speed[i] * 5 / (SHB_TWO_PI * wrote->branch[0].frequency[i]) - 1) < 1e-14);
   assert_ok(h5_close(file));
   free(speed);
   mhb_response_destroy(read);

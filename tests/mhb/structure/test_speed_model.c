@@ -9,6 +9,7 @@
 
 #include <cmocka.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/structure/receptance.h"
 #include "modal/model/reduce.h"
 #include "tests/support/random_model.h"
@@ -204,8 +205,8 @@ static void speeds_far_away_do_not_count(void **state) {
   mhb_speed_table *run_up = NULL;
   spinning_speeds(SPINNING_TURNING, 41, 0, 1, false, &speeds);
   speeds.mac[5 * SPINNING_MODES] = .1; /* a track lost far below */
-  s.frequency[0]                 = .81 / (2 * 3.14159265358979323846);
-  s.frequency[1]                 = 1.19 / (2 * 3.14159265358979323846);
+  s.frequency[0]                 = .81 / SHB_TWO_PI;
+  s.frequency[1]                 = 1.19 / SHB_TWO_PI;
   assert_ok(mhb_speed_table_create(&speeds, "blade", 2, s.frequency, &run_up));
   assert_below(fabs(run_up->low - .35), 1e-12);
   assert_below(fabs(run_up->high - .65), 1e-12);
@@ -215,8 +216,8 @@ static void speeds_far_away_do_not_count(void **state) {
 }
 
 static void refuse(modal_speeds *speeds, int order, double from, double to, const char *text) {
-  const double     two_pi = 2 * 3.14159265358979323846, range[2] = {from / two_pi, to / two_pi};
-  mhb_speed_table *run_up = NULL;
+  const double     range[2] = {from / SHB_TWO_PI, to / SHB_TWO_PI};
+  mhb_speed_table *run_up   = NULL;
   assert_int_equal(mhb_speed_table_create(speeds, "blade.h5", order, range, &run_up),
                    SHB_ERR_INPUT);
   if (!strstr(shb_message(), text)) fail_msg("'%s' does not say '%s'", shb_message(), text);
