@@ -377,7 +377,7 @@ static shb_status linear_harmonic(const mhb_balance *b, int k, int stuck, double
                              k ? r[1] * law->ku[1] + r[2] * law->ku[2] : 0};
       for (int c = 0; c < 3; c++)
         A[(size_t)(3 * pair + c) * (size_t)n + (size_t)i] = on * s[c] + (i == 3 * pair + c);
-      if (k == 0 && on > 0) u[i] -= r[0] * (fmax(law->n0, 0) - law->balance);
+      if (k == 0 && on > 0) u[i] -= r[0] * (fmax(law->n0, 0) - law->mean_offset);
     }
   }
   lapack_int bad = 1;
@@ -399,7 +399,7 @@ shb_status mhb_balance_linear_limit(mhb_balance *b, double value, int stuck, dou
       if (!holds(b, a, stuck)) continue;
       const mhb_law        *law = &b->law[a];
       const double complex *u   = b->uk + 3 * a;
-      b->pk[3 * a]              = law->kv * u[0] + (k == 0 ? fmax(law->n0, 0) - law->balance : 0);
+      b->pk[3 * a]              = law->kv * u[0] + (k == 0 ? fmax(law->n0, 0) - law->mean_offset : 0);
       if (k == 0) continue;
       b->pk[3 * a + 1] = law->ku[0] * u[1] + law->ku[1] * u[2];
       b->pk[3 * a + 2] = law->ku[1] * u[1] + law->ku[2] * u[2];

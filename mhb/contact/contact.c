@@ -7,7 +7,9 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mhb/contact/force_integrals.h"
 #include "mhb/contact/internal.h"
+#include "mhb/contact/slider.h"
 
 /* Memory that vectors may be loaded from, zeroed. */
 static void *aligned(size_t size) {
@@ -160,74 +162,7 @@ static void set_slip(mhb_contact_evaluator *c, const mhb_law *law, int derivativ
   set_reference(c);
 }
 
-/* ---- sums ---- */
-
-static double quadrature_scale(int i) {
-  return i == 0 ? 1 / SHB_TWO_PI : 2 / SHB_TWO_PI;
-}
-
-void mhb_force_integrals_clear(mhb_contact_evaluator *c) {
-  size_t nf = (size_t)c->nf, sums = (size_t)mhb_real_size(c->H + c->m);
-  memset(c->f, 0, sizeof(double) * 2 * nf);
-  memset(c->f_slider, 0, sizeof(double) * 2 * nf);
-  memset(c->sum, 0, sizeof(mhb_lanes) * 4 * nf);
-  memset(c->stick, 0, sizeof(double) * sums);
-  memset(c->first, 0, sizeof(double) * sums);
-  memset(c->info->share, 0, sizeof c->info->share);
-  c->squares = c->info->slip_work = c->info->error = c->info->n_transitions = 0;
-  c->pieces.n                                                               = 0;
-  if (c->columns != MHB_ALL_COLUMNS) return;
-  memset(c->J, 0, sizeof(double) * 2 * nf * (size_t)c->stride);
-  memset(c->load, 0, sizeof(mhb_lanes) * 2 * sums);
-}
-
-void mhb_force_integrals_collect(mhb_contact_evaluator *c) {
-  for (int i = 0; i < c->nf; i++) {
-    const mhb_lanes *sum = c->sum + 4 * i;
-    for (int k = 0; k < 2; k++) {
-      c->f[k * c->nf + i] += lanes_sum(sum[k]);
-      if (c->columns != MHB_NO_COLUMNS) c->f_slider[k * c->nf + i] += lanes_sum(sum[2 + k]);
-    }
-  }
-}
-
 /* ---- assembly ---- */
-
-/* What the load does to slip at a fixed direction: J += integrals of mu kv e b_i b_j. */
-MHB_HOT static void finish_load(mhb_contact_evaluator *c) {
-  int nb = c->nb, nf = c->nf, sums = mhb_real_size(c->H + c->m);
-  for (int k = 0; k < 2; k++) {
-    for (int i = 0; i < sums; i++) c->piece[i] = lanes_sum(c->load[2 * i + k]);
-    mhb_basis_product(c->H, c->m, c->piece, c->product, nb);
-    for (int i = 0; i < nf; i++) {
-      double *row = c->J + (size_t)(k * nf + i) * (size_t)c->stride;
-      for (int j = 0; j < nb; j++) row[j] += c->product[i * nb + j];
-    }
-  }
-}
-
-/* f += Ku s over the stick pieces; scale to Fourier coefficients. */
-MHB_HOT static void finish_friction(mhb_contact_evaluator *c) {
-  int nb = c->nb, nf = c->nf, all = c->columns == MHB_ALL_COLUMNS;
-  int used = all ? nb : mhb_real_size(c->signals.used);
-  if (all) finish_load(c);
-  mhb_basis_product(c->H, all ? c->m : c->signals.used, c->stick, c->product, nb);
-  for (int i = 0; i < nf; i++) {
-    const double *S = c->product + (size_t)i * (size_t)nb;
-    double        q = quadrature_scale(i);
-    for (int k = 0; k < 2; k++) {
-      double *f = &c->f[k * nf + i], *row = c->J + (size_t)(k * nf + i) * (size_t)c->stride;
-      for (int j = 0; j < used; j++) *f += S[j] * c->scaled[(1 + k) * nb + j];
-      *f *= q;
-      if (!all) continue;
-      for (int j = 0; j < nb; j++) {
-        row[nb + j] += c->K[k][0] * S[j];
-        row[2 * nb + j] += c->K[k][1] * S[j];
-      }
-      for (int j = 0; j < 3 * nb; j++) row[j] *= q;
-    }
-  }
-}
 
 /* row[k] += factor dc_k/d(motion) of the mean friction of a stuck contact; the mean of s does not enter. */
 static void add_mean_gradient(const mhb_contact_evaluator *c, double factor, double *const row[2]) {
@@ -284,7 +219,7 @@ static void normal_force_closed(const mhb_contact_evaluator *c, const mhb_law *l
     force[i] = law->kv * v[i];
     if (jacobian) jacobian[(size_t)i * 3 * (size_t)c->nb + (size_t)i] = law->kv;
   }
-  force[0] += law->n0 - law->balance;
+  force[0] += law->n0 - law->mean_offset;
 }
 
 /* Normal load: the harmonics of n over the closed intervals. */
@@ -297,14 +232,14 @@ static void normal_force(mhb_contact_evaluator *c, const mhb_law *law, double *f
   mhb_basis_product(c->H, c->m, c->piece, c->product, nb);
   for (int i = 0; i < nf; i++) {
     const double *S = c->product + (size_t)i * (size_t)nb;
-    double        q = quadrature_scale(i), sum = 0;
+    double        q = mhb_force_integrals_factor(i), sum = 0;
     for (int j = 0; j < nb; j++) sum += S[j] * c->scaled[j];
     force[i] = c->scale * q * sum;
     if (!jacobian) continue;
     double *row = jacobian + (size_t)i * 3 * (size_t)nb;
     for (int j = 0; j < nb; j++) row[j] = c->scale * c->kv * q * S[j];
   }
-  force[0] -= law->balance;
+  force[0] -= law->mean_offset;
 }
 
 /* Loop integral of f.s' dt: pi sum_k k (Im F_k Re S_k - Re F_k Im S_k) for x = Re X_k exp(jkt). */
@@ -369,7 +304,7 @@ static void friction_force(mhb_contact_evaluator *c) {
     ok = mhb_slider_with_openings(c);
     mhb_force_integrals_collect(c);
   }
-  finish_friction(c);
+  mhb_force_integrals_finish(c);
   c->info->lost = !ok;
   if (!ok)
     c->info->error = fmax(c->info->error, c->closed.always_closed ? 0 : SHB_TWO_PI * c->force);
@@ -381,7 +316,7 @@ static void normal_load(mhb_contact_evaluator *c, const mhb_law *law, const doub
   if (c->closed.always_closed) {
     normal_force_closed(c, law, motion, force, jacobian);
   } else if (c->closed.always_open) {
-    force[0] = -law->balance;
+    force[0] = -law->mean_offset;
   } else {
     normal_force(c, law, force, jacobian);
   }
@@ -391,7 +326,7 @@ static void normal_load(mhb_contact_evaluator *c, const mhb_law *law, const doub
  * they add up like squares; half of that is what the suite of motions shows (tests/mhb/test_accuracy). */
 static double relative_error(const mhb_contact_evaluator *c, const mhb_law *law,
                              const double *force) {
-  double top = fabs(force[0] + law->balance), sum = .5 * sqrt(c->squares) + c->info->error;
+  double top = fabs(force[0] + law->mean_offset), sum = .5 * sqrt(c->squares) + c->info->error;
   for (int i = 1; i < 3 * c->nf; i++) top = fabs(force[i]) > top ? fabs(force[i]) : top;
   if (c->info->lost && sum == 0) return 1;
   return top > 0 ? fmin(1, 2 / SHB_TWO_PI * sum * c->scale / top) : 0;
@@ -429,16 +364,4 @@ void mhb_contact_force(mhb_contact_evaluator *c, const mhb_law *law, const doubl
   info->slip_work *= c->scale;
   info->dissipation = loop_work(c, motion, force);
   info->error       = relative_error(c, law, force);
-}
-
-const mhb_dense_output *mhb_contact_dense_output(mhb_contact_evaluator *c, const mhb_law *law,
-                                                 const double *motion, mhb_contact_info *info) {
-  c->pieces.n = c->pieces.full = 0;
-  c->pieces.on                 = 1;
-  mhb_contact_force(c, law, motion, c->traced, NULL, info);
-  c->pieces.on    = 0;
-  c->pieces.mu    = law->mu;
-  c->pieces.scale = c->scale;
-  info->lost |= c->pieces.full;
-  return &c->pieces;
 }

@@ -12,25 +12,9 @@
 #define MHB_CONTACT_CONTACT_H
 
 #include "mesh/base/status.h"
-
-typedef enum { MHB_STICK, MHB_SLIDE, MHB_SEPARATE } mhb_state;
-
-/* One contact pair. */
-typedef struct {
-  double mu;    /* friction coefficient, >= 0 */
-  double kv;    /* normal stiffness, N/m, >= 0 */
-  double ku[3]; /* kuu, kuw, kww, N/m; positive definite */
-  double n0;    /* preload, N; negative: initial gap -n0/kv */
-  double
-      balance; /* subtracted from the mean of n, N: max(n0, 0) for a preload stated at equilibrium, else 0 */
-} mhb_law;
+#include "mhb/contact/law.h"
 
 enum { MHB_MAX_TRANSITIONS = 512 };
-
-typedef struct {
-  double phase; /* t/2 pi, in [0, 1) */
-  int    state; /* mhb_state that begins */
-} mhb_transition;
 
 /* What one evaluation tells besides the force. */
 typedef struct {

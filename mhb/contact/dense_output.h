@@ -8,7 +8,8 @@
 #ifndef MHB_CONTACT_DENSE_OUTPUT_H
 #define MHB_CONTACT_DENSE_OUTPUT_H
 
-#include "mhb/contact/contact.h"
+#include "mesh/base/status.h"
+#include "mhb/contact/law.h"
 #include "mhb/contact/slip.h"
 #include "mhb/numerics/fourier.h"
 
@@ -44,9 +45,5 @@ void mhb_dense_output_frictionless(mhb_dense_output *pieces, double t0);
 
 /* State and force (n, fu, fw) in units of the force scale at t in [0, 2 pi]. */
 mhb_state mhb_dense_output_at(const mhb_dense_output *pieces, double t, double force[3]);
-
-/* Evaluate the law (contact.h) and keep its pieces: valid until the contact is used again. */
-const mhb_dense_output *mhb_contact_dense_output(mhb_contact_evaluator *contact, const mhb_law *law,
-                                                 const double *motion, mhb_contact_info *info);
 
 #endif

@@ -1,8 +1,7 @@
-/* The exact derivative of friction, carried along the lap (docs/contact.md, Derivative). */
+#include "mhb/contact/sensitivity.h"
+
 #include <math.h>
 #include <string.h>
-
-#include "mhb/contact/internal.h"
 
 void mhb_sensitivity_clear(mhb_contact_evaluator *c) {
   size_t size = sizeof(double) * (size_t)c->stride;
@@ -10,18 +9,6 @@ void mhb_sensitivity_clear(mhb_contact_evaluator *c) {
   memset(c->Z[0], 0, size);
   memset(c->Z[1], 0, size);
   memset(&c->memory, 0, sizeof c->memory);
-}
-
-void mhb_column_change(const mhb_contact_evaluator *c, const double *b, int j, double dx[2],
-                       double *dn) {
-  int nb = c->nb, kind = j / nb, i = j - kind * nb;
-  dx[0] = dx[1] = *dn = 0;
-  if (kind == 0) {
-    *dn = c->kv * b[i];
-  } else {
-    dx[0] = c->K[0][kind - 1] * b[i];
-    dx[1] = c->K[1][kind - 1] * b[i];
-  }
 }
 
 /* out = sum_k keep[k] from[k] + value[kind] basis + slope[kind] basis' (kinds v, u, w). */

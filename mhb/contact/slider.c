@@ -1,9 +1,11 @@
-/* The slider through one period: stick, slip and what follows each; the periodic slider. */
+#include "mhb/contact/slider.h"
+
 #include <math.h>
 #include <string.h>
 
 #include "mesh/base/constants.h"
-#include "mhb/contact/internal.h"
+#include "mhb/contact/force_integrals.h"
+#include "mhb/contact/sensitivity.h"
 
 /* The slider at a time of the lap. */
 typedef struct {
@@ -11,14 +13,6 @@ typedef struct {
   double    t, z[2], theta;
   double    onset; /* when slip began out of stick; z is from before */
 } slider;
-
-void mhb_note_transition(mhb_contact_evaluator *c, double t, mhb_state state) {
-  mhb_contact_info *info = c->info;
-  if (!c->record || info->n_transitions == MHB_MAX_TRANSITIONS) return;
-  double phase = t / SHB_TWO_PI + 1e-14; /* the end of the period is its beginning */
-  info->transition[info->n_transitions++] =
-      (mhb_transition){.phase = fmax(0, phase - floor(phase) - 1e-14), .state = (int)state};
-}
 
 /* ---- pieces ---- */
 

@@ -47,9 +47,9 @@ static void settle(mhb_integrator *g) {
       double own  = R ? R[3 * j * n + 3 * j] : 0;
       double free = rub->u[0] + own * rub->p[0]; /* without its own normal force */
       double load =
-          fmax(0, (law->n0 + law->kv * (free + own * law->balance)) / (1 + law->kv * own));
+          fmax(0, (law->n0 + law->kv * (free + own * law->mean_offset)) / (1 + law->kv * own));
       double limit = law->mu * load, friction = hypot(rub->p[1], rub->p[2]);
-      rub->p[0] = load - law->balance;
+      rub->p[0] = load - law->mean_offset;
       rub->u[0] = free - own * rub->p[0];
       for (int c = 1; c < 3 && friction > limit; c++) rub->p[c] *= limit / friction;
     }
@@ -57,7 +57,7 @@ static void settle(mhb_integrator *g) {
     const mhb_law     *law = &g->law[j % g->pairs];
     mhb_contact_point *rub = &g->rub[j];
     rub->state             = MHB_STICK;
-    mhb_contact_step_change(law, rub->p[0] + law->balance > 0 ? MHB_STICK : MHB_SEPARATE, 0, rub);
+    mhb_contact_step_change(law, rub->p[0] + law->mean_offset > 0 ? MHB_STICK : MHB_SEPARATE, 0, rub);
     for (int c = 0; c < 3; c++) g->scale = fmax(g->scale, fabs(rub->p[c]));
     g->idle[j] = g->hush[j] = 0;
   }

@@ -62,7 +62,7 @@ double mhb_parameter_least(mhb_parameter parameter) {
 mhb_law mhb_operating_point_law(const mhb_operating_point *c, mhb_preload preload, double share) {
   mhb_law law = {.mu = c->mu, .kv = share * c->kv, .n0 = share * c->n0};
   for (int i = 0; i < 3; i++) law.ku[i] = share * c->ku[i];
-  if (preload == MHB_EQUILIBRIUM) law.balance = fmax(law.n0, 0);
+  if (preload == MHB_EQUILIBRIUM) law.mean_offset = fmax(law.n0, 0);
   return law;
 }
 
@@ -84,7 +84,7 @@ static void by_constant_load(const mhb_law *law, int nb, const double *u, const 
   if (law->n0 <= 0) return;
   times(nb, dp, u, 0, 3, -1 / law->n0, change);
   for (int i = 0; i < 3 * nb; i++) change[i] += p[i] / law->n0;
-  change[0] += law->balance / law->n0; /* of n, not of n - balance */
+  change[0] += law->mean_offset / law->n0; /* of n, not of n - balance */
 }
 
 void mhb_parameter_force(const mhb_operating_point *c, mhb_parameter parameter, const mhb_law *law,
@@ -105,6 +105,6 @@ void mhb_parameter_force(const mhb_operating_point *c, mhb_parameter parameter, 
   } else {
     by_constant_load(law, nb, u, p, dp, change);
   }
-  if (law->balance > 0) change[0] -= 1;
+  if (law->mean_offset > 0) change[0] -= 1;
   for (int i = 0; i < block; i++) change[i] *= share;
 }

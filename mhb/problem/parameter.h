@@ -9,7 +9,7 @@
 #ifndef MHB_PROBLEM_PARAMETER_H
 #define MHB_PROBLEM_PARAMETER_H
 
-#include "mhb/contact/contact.h"
+#include "mhb/contact/law.h"
 #include "mhb/problem/settings.h"
 
 typedef struct {

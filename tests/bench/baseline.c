@@ -227,6 +227,6 @@ int baseline_force(baseline *b, const mhb_law *law, const double *motion, double
     force[out + j]     = axis[0] * f[0] - axis[1] * f[1];
     force[2 * out + j] = axis[1] * f[0] + axis[0] * f[1];
   }
-  force[0] -= law->balance;
+  force[0] -= law->mean_offset;
   return laps;
 }

@@ -92,7 +92,7 @@ static void contact_law(const mhb_law *law, const double u[3], const double u0[3
     mhb_slip_return((const double(*)[2])K, limit, f, e);
     for (int k = 0; k < 2; k++) f[k] = limit * e[k];
   }
-  p[0] = n - law->balance;
+  p[0] = n - law->mean_offset;
   p[1] = f[0];
   p[2] = f[1];
 }
@@ -164,7 +164,7 @@ static void settle(disturbed *d, const double *state) {
     for (int j = 0; j < d->contacts; j++) {
       const mhb_law *law = &d->residual->law[j % model->n_pairs];
       double         n   = fmax(0, law->n0 + law->kv * d->u[3 * j]);
-      d->p[3 * j]        = n - law->balance;
+      d->p[3 * j]        = n - law->mean_offset;
       for (int k = 0; k < 2; k++) d->p[3 * j + 1 + k] = n > 0 ? f[2 * j + k] : 0;
     }
   }

@@ -330,7 +330,7 @@ static void solve_stuck_ring(const blade *one, const mhb_law *law, double phase,
   memset(unloaded.load, 0, sizeof unloaded.load);
   memset(f, 0, sizeof f);
   for (int b = 0; mean && b < BLADES; b++) {
-    for (int i = 0; i < SIDE; i++) p[i] = i % 3 ? 0 : law[i / 3].n0 - law[i / 3].balance;
+    for (int i = 0; i < SIDE; i++) p[i] = i % 3 ? 0 : law[i / 3].n0 - law[i / 3].mean_offset;
     add_interface(one, b, p, f);
   }
   ring_motion(one, phase, f, x);

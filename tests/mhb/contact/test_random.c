@@ -187,7 +187,7 @@ static void mild_motions_are_accurate(void **state) {
     double top = 0, off = 0;
     for (int k = 0; k < 3; k++) {
       for (int j = 0; j < WIDTH; j++) {
-        double load = k == 0 && j == 0 ? c.law.balance : 0, e = fabs(force[k][j] - r.force[k][j]);
+        double load = k == 0 && j == 0 ? c.law.mean_offset : 0, e = fabs(force[k][j] - r.force[k][j]);
         top = fmax(top, fabs(r.force[k][j] + load));
         if (!(e <= off)) off = e;
       }

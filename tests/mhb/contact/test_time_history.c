@@ -89,7 +89,7 @@ static void put_scene(int i, scene *s) {
       set(s, 1, 0, 3e-5, 0);
       set(s, 2, 2, 1.7e-4, 2);
       set(s, 1, 5, .1e-4, 2);
-      s->law.balance = 100;
+      s->law.mean_offset = 100;
       break;
     default:
       break;
@@ -126,7 +126,7 @@ static double harmonics_off(scene *s, int n) {
     for (int a = 0; a < 3; a++)
       for (int j = 0; j < NF; j++) sum[a][j] += (j ? 2. : 1.) / n * b[j] * component(&sample[i], a);
   }
-  sum[0][0] -= s->law.balance;
+  sum[0][0] -= s->law.mean_offset;
   for (int a = 0; a < 3; a++)
     for (int j = 0; j < NF; j++) worst = fmax(worst, fabs(sum[a][j] - s->force[a][j]));
   return worst;
@@ -198,7 +198,7 @@ static void harmonics_and_work_by_pieces(void **state) {
         for (int j = 0; j < NB; j++)
           work += SHB_TWO_PI * weight[l] * s.motion[a][j] * slope[j] * component(&sample[l], a);
     }
-    sum[0][0] -= s.law.balance;
+    sum[0][0] -= s.law.mean_offset;
     for (int a = 0; a < 3; a++)
       for (int j = 0; j < NF; j++) worst = fmax(worst, fabs(sum[a][j] - s.force[a][j]));
     if (!(worst <= 1e-9 * s.top))
