@@ -13,6 +13,7 @@ static shb_status read_speeds(const char *path, int modes, bool residuals, case_
   if (status == SHB_OK)
     status = mhb_speed_table_create(&speeds, path, m->settings.engine_order, f, &m->run_up);
   modal_speeds_free(&speeds);
+  if (status == SHB_OK) status = mhb_speed_model_check(m->run_up, path);
   if (status == SHB_OK) status = mhb_speed_model_create(m->run_up, &m->top);
   SHB_TRY(status);
   mhb_speed_model_set(m->top, SHB_TWO_PI * f[1]);

@@ -5,12 +5,9 @@
 
 #include "mesh/base/constants.h"
 
-/* The wave of nu periods lags by (2 pi/nu)(E/N + l), l the least for which it closes around the ring: E' = (E + N l)/nu. */
+/* Wave number E' = (E + N l)/nu of the fundamental. */
 static int wave_of(const mhb_settings *s) {
-  for (int l = 0; l < s->subharmonics; l++)
-    if ((s->engine_order + (long)s->blades * l) % s->subharmonics == 0)
-      return (int)((s->engine_order + (long)s->blades * l) / s->subharmonics);
-  return 0;
+  return (int)((s->engine_order + (long)s->blades * mhb_wave_shift(s)) / s->subharmonics);
 }
 
 /* T0^T x of a pair by a mode, negative on the left. */

@@ -8,12 +8,8 @@
 #include "mesh/base/constants.h"
 #include "mhb/numerics/simd.h"
 #include "mhb/problem/interfaces.h"
-#include "mhb/structure/speed_derivative.h"
 
 static const double NUDGE = 1e-8;
-
-/* From this many relative motions on, products of matrices are left to BLAS. */
-enum { WORTH_BLAS = 12 };
 
 /* Columns v, u, w of eq. 2. */
 static void shroud_axes(double psi, double phi, double T0[3][3]) {
@@ -83,130 +79,78 @@ static void set_shares(mhb_receptance *r, int interface) {
     if (r->interface[a] == interface) r->share[a] = (model->area ? model->area[a] : 1) / total;
 }
 
-static void set_modes(mhb_receptance *r, int k) {
-  const modal_model  *model    = r->model;
-  const mhb_relative *relative = &r->left_out->relative;
-  int                 m        = r->n_modes;
-  double complex     *B        = r->B + (size_t)k * (size_t)r->n * (size_t)m;
-  for (int row = 0; row < r->n; row++) {
-    for (int i = 0; i < m; i++) {
-      double complex sum = 0;
-      for (int axis = 0; axis < 3; axis++) {
-        size_t at = ((size_t)(row / 3) * 3 + (size_t)axis) * (size_t)m + (size_t)i;
-        sum += mhb_relative_weight(relative, row, 0, axis, r->phase[k]) * model->right[at];
-        if (relative->sides == 2)
-          sum += mhb_relative_weight(relative, row, 1, axis, r->phase[k]) * model->left[at];
-      }
-      B[(size_t)row * (size_t)m + (size_t)i] = sum;
-    }
-  }
-}
-
-/* Load harmonic h drives harmonic nu h. */
-static void set_load(mhb_receptance *r, int k) {
-  const modal_model *model = r->model;
-  const int          h = k / r->nu, m = r->n_modes;
-  r->driven[k] = mhb_residual_terms_driven(r->left_out, k);
-  if (k % r->nu || h > model->n_load) return;
-  for (int i = 0; i < m; i++) {
-    r->F[k * m + i] = model->modal_force[h * m + i];
-    r->driven[k] |= r->F[k * m + i] != 0;
-  }
-}
-
-static double *part(const mhb_receptance *r, int k, int imaginary) {
-  return r->parts + (size_t)(2 * k + imaginary) * ((size_t)r->n + 1) * (size_t)r->n_modes;
-}
-
-/* B and F by real and imaginary parts. */
-static void set_parts(mhb_receptance *r, int k) {
-  size_t                m = (size_t)r->n_modes, nm = (size_t)r->n * m;
-  double               *re = part(r, k, 0), *im = part(r, k, 1);
-  const double complex *B = r->B + (size_t)k * nm, *F = r->F + (size_t)k * m;
-  for (size_t i = 0; i < nm + m; i++) {
-    double complex z = i < nm ? B[i] : F[i - nm];
-    re[i]            = creal(z);
-    im[i]            = cimag(z);
-  }
-}
-
 static int allocate(mhb_receptance *r) {
-  size_t n = (size_t)r->n, m = (size_t)r->n_modes, K = (size_t)r->n_harmonics + 1, pairs = n / 3;
-  r->T0        = calloc(9 * pairs, sizeof(double));
-  r->share     = calloc(pairs, sizeof(double));
-  r->interface = calloc(pairs, sizeof(int));
-  r->B         = calloc(K * n * m, sizeof(double complex));
-  r->F         = calloc(K * m, sizeof(double complex));
-  r->parts     = calloc(K * 2 * (n + 1) * m, sizeof(double));
-  r->scratch   = calloc(4 * m, sizeof(double));
-  r->BL        = calloc(n * m, sizeof(double complex));
-  r->lambda    = calloc(K * m, sizeof(double complex));
-  r->driven    = calloc(K, sizeof(int));
-  r->made_at   = calloc(K, sizeof(double));
-  r->phase     = calloc(K, sizeof(double complex));
-  r->R         = calloc(K * n * n, sizeof(double complex));
-  r->free      = calloc(K * n, sizeof(double complex));
-  r->unit      = calloc(K * n, sizeof(double complex));
-  return r->T0 && r->share && r->interface && r->B && r->F && r->parts && r->scratch && r->BL &&
-         r->lambda && r->driven && r->made_at && r->phase && r->R && r->free && r->unit;
+  size_t     n = (size_t)r->n, m = (size_t)r->n_modes, K = (size_t)r->n_harmonics + 1;
+  shb_arena *a  = &r->arena;
+  r->T0         = shb_arena_take(a, 3 * n, sizeof *r->T0);
+  r->share      = shb_arena_take(a, n / 3, sizeof *r->share);
+  r->interface  = shb_arena_take(a, n / 3, sizeof *r->interface);
+  r->phase      = shb_arena_take(a, K, sizeof *r->phase);
+  r->updated_at = shb_arena_take(a, K, sizeof *r->updated_at);
+  r->lambda     = shb_arena_take(a, K * m, sizeof *r->lambda);
+  r->R          = shb_arena_take(a, K * n * n, sizeof *r->R);
+  r->free       = shb_arena_take(a, K * n, sizeof *r->free);
+  r->unit       = shb_arena_take(a, K * n, sizeof *r->unit);
+  r->scratch    = shb_arena_take(a, 4 * m, sizeof *r->scratch);
+  r->BL         = shb_arena_take(a, n * m, sizeof *r->BL);
+  return !a->failed;
 }
 
-/* Inter-blade phase of the fundamental omega/nu. A neighbour lags by phi and any whole number l of periods,
- * (2 pi/nu)(E/N + l); around the ring that closes if nu divides E + N l. NAN: for no l. */
-static double wave_step(const mhb_settings *s) {
-  for (int l = 0; l < s->subharmonics; l++)
-    if ((s->engine_order + (long)s->blades * l) % s->subharmonics == 0)
-      return SHB_TWO_PI / s->subharmonics * ((double)s->engine_order / s->blades + l);
-  return NAN;
-}
-
-/* Modes and loads of every harmonic. */
-static void set_harmonics(mhb_receptance *r) {
-  for (int k = 0; k <= r->n_harmonics; k++) {
-    set_modes(r, k);
-    set_load(r, k);
-    set_parts(r, k);
-  }
-}
-
-void mhb_receptance_set(mhb_receptance *r) {
-  mhb_residual_terms_set(r->left_out);
-  set_harmonics(r);
+/* Inter-blade phase of the fundamental, rad. */
+static double phase_step(const mhb_settings *s) {
+  return SHB_TWO_PI / s->subharmonics * ((double)s->engine_order / s->blades + mhb_wave_shift(s));
 }
 
 /* Everything that does not depend on omega. */
 static shb_status set_blade(mhb_receptance *r, const mhb_settings *settings) {
   const mhb_relative relative = {r->n, settings->to_ground ? 1 : 2, r->T0};
-  const double       step     = settings->to_ground ? 0 : wave_step(settings);
+  const double       step     = settings->to_ground ? 0 : phase_step(settings);
   SHB_TRY(mhb_interfaces_match(r->model, settings, r->interface));
   for (int i = 0; i < mhb_interfaces(settings); i++) {
     set_shares(r, i);
     SHB_TRY(set_axes(r, settings, i));
   }
   for (int k = 0; k <= r->n_harmonics; k++) {
-    r->made_at[k] = NAN;
-    r->phase[k]   = cexp(-I * fmod(k * step, SHB_TWO_PI));
+    r->updated_at[k] = NAN;
+    r->phase[k]      = cexp(-I * fmod(k * step, SHB_TWO_PI));
   }
-  SHB_TRY(
-      mhb_residual_terms_create(r->model, relative, r->nu, r->n_harmonics, r->phase, &r->left_out));
-  set_harmonics(r);
+  SHB_TRY(mhb_modal_part_create(r->model, relative, r->nu, r->n_harmonics, r->phase, &r->part));
+  r->B        = r->part->B;
+  r->F        = r->part->F;
+  r->driven   = r->part->driven;
+  r->left_out = r->part->residual_terms;
   return SHB_OK;
 }
 
-static shb_status create(const modal_model *model, const mhb_settings *settings, int n_harmonics,
-                         mhb_receptance **out) {
+static shb_status make(mhb_receptance *r, const modal_model *model, const mhb_settings *settings) {
+  r->model = model;
+  if (settings->run_up) {
+    SHB_TRY(mhb_speed_model_create(settings->run_up, &r->at));
+    mhb_speed_model_set(r->at, 0);
+    r->model = &r->at->model;
+  }
+  r->n       = 3 * r->model->n_pairs;
+  r->n_modes = r->model->n_modes;
+  SHB_CHECK(allocate(r), SHB_ERR_IO, "out of memory for the receptance");
+  SHB_TRY(set_blade(r, settings));
+  if (r->at) SHB_TRY(mhb_speed_derivative_create(r->at, r->part, &r->speed_derivative));
+  return SHB_OK;
+}
+
+shb_status mhb_receptance_create(const modal_model *model, const mhb_settings *settings,
+                                 int n_harmonics, mhb_receptance **out) {
+  SHB_CHECK(settings->to_ground || model->has_left, SHB_ERR_INPUT,
+            "contact.to is neighbour, but the modal file has no /contact/left; set it to ground");
+  SHB_CHECK(settings->to_ground || mhb_wave_shift(settings) >= 0, SHB_ERR_INPUT,
+            "mhb.subharmonics is %d, but a wave of that many periods does not close around %d "
+            "blades at engine order %d; set it to 1",
+            settings->subharmonics, settings->blades, settings->engine_order);
   mhb_receptance *r = calloc(1, sizeof *r);
   SHB_CHECK(r, SHB_ERR_IO, "out of memory");
-  r->model          = model;
-  r->n              = 3 * model->n_pairs;
-  r->n_modes        = model->n_modes;
   r->n_harmonics    = n_harmonics;
   r->nu             = settings->subharmonics;
   r->scale          = settings->scale;
-  shb_status status = SHB_OK;
-  if (!allocate(r))
-    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for the receptance");
-  if (status == SHB_OK) status = set_blade(r, settings);
+  shb_status status = make(r, model, settings);
   if (status != SHB_OK) {
     mhb_receptance_destroy(r);
     return status;
@@ -215,53 +159,12 @@ static shb_status create(const modal_model *model, const mhb_settings *settings,
   return SHB_OK;
 }
 
-shb_status mhb_receptance_create(const modal_model *model, const mhb_settings *settings,
-                                 int n_harmonics, mhb_receptance **out) {
-  SHB_CHECK(settings->to_ground || model->has_left, SHB_ERR_INPUT,
-            "contact.to is neighbour, but the modal file has no /contact/left; set it to ground");
-  SHB_CHECK(settings->to_ground || isfinite(wave_step(settings)), SHB_ERR_INPUT,
-            "mhb.subharmonics is %d, but a wave of that many periods does not close around %d "
-            "blades at engine order %d; set it to 1",
-            settings->subharmonics, settings->blades, settings->engine_order);
-  mhb_receptance *r = NULL;
-  if (!settings->run_up) return create(model, settings, n_harmonics, out);
-  mhb_speed_model *at = NULL;
-  SHB_TRY(mhb_speed_model_create(settings->run_up, &at));
-  mhb_speed_model_set(at, 0);
-  mhb_speed_model_differentiate(at);
-  shb_status status = create(&at->model, settings, n_harmonics, &r);
-  if (status == SHB_OK) status = create(&at->slope, settings, n_harmonics, &r->rate);
-  if (status != SHB_OK) {
-    mhb_receptance_destroy(r);
-    mhb_speed_model_destroy(at);
-    return status;
-  }
-  r->at          = at;
-  r->rate->omega = NAN;
-  *out           = r;
-  return SHB_OK;
-}
-
 void mhb_receptance_destroy(mhb_receptance *r) {
   if (!r) return;
-  mhb_receptance_destroy(r->rate);
+  mhb_speed_derivative_destroy(r->speed_derivative);
+  mhb_modal_part_destroy(r->part);
   mhb_speed_model_destroy(r->at);
-  free(r->T0);
-  free(r->share);
-  free(r->interface);
-  free(r->B);
-  free(r->F);
-  mhb_residual_terms_destroy(r->left_out);
-  free(r->phase);
-  free(r->parts);
-  free(r->scratch);
-  free(r->BL);
-  free(r->lambda);
-  free(r->driven);
-  free(r->made_at);
-  free(r->R);
-  free(r->free);
-  free(r->unit);
+  shb_arena_free(&r->arena);
   free(r);
 }
 
@@ -296,8 +199,8 @@ MHB_INLINE double complex product(int m, const double *xr, const double *xi, con
 MHB_HOT static void modal_row(const mhb_receptance *r, int k, const double *yr, const double *yi,
                               double complex *R, double complex *u) {
   int           m = r->n_modes, n = r->n;
-  const double *re = part(r, k, 0), *im = part(r, k, 1);
-  for (int b = 0; b < n && n < WORTH_BLAS; b++)
+  const double *re = mhb_modal_part_split(r->part, k, 0), *im = mhb_modal_part_split(r->part, k, 1);
+  for (int b = 0; b < n && n < MHB_WORTH_BLAS; b++)
     R[b] += product(m, yr, yi, re + b * m, im + b * m, -1);
   *u += product(m, yr, yi, re + n * m, im + n * m, 1);
 }
@@ -311,7 +214,7 @@ static void harmonic_at(mhb_receptance *r, int k) {
   int             n = r->n, m = r->n_modes;
   double          w = k * r->omega / r->nu, *L = r->scratch, *y = L + 2 * m;
   double complex *R = r->R + (size_t)k * (size_t)n * (size_t)n, *u = r->unit + k * n;
-  const double   *re = part(r, k, 0), *im = part(r, k, 1);
+  const double *re = mhb_modal_part_split(r->part, k, 0), *im = mhb_modal_part_split(r->part, k, 1);
   double complex *all = r->BL, one = 1;
   set_lambda(r, w, L, L + m);
   for (int i = 0; i < m; i++) r->lambda[k * m + i] = CMPLX(L[i], L[m + i]);
@@ -322,12 +225,12 @@ static void harmonic_at(mhb_receptance *r, int k) {
     for (int i = 0; i < m; i++) {
       y[i]     = re[i] * L[i] - im[i] * L[m + i];
       y[m + i] = re[i] * L[m + i] + im[i] * L[i];
-      if (n >= WORTH_BLAS) all[a * m + i] = CMPLX(y[i], y[m + i]);
+      if (n >= MHB_WORTH_BLAS) all[a * m + i] = CMPLX(y[i], y[m + i]);
     }
     modal_row(r, k, y, y + m, R + (size_t)a * (size_t)n, &u[a]);
     r->free[k * n + a] = r->scale * u[a];
   }
-  if (n >= WORTH_BLAS)
+  if (n >= MHB_WORTH_BLAS)
     cblas_zgemm(CblasRowMajor, CblasNoTrans, CblasConjTrans, n, n, m, &one, all, m,
                 r->B + (size_t)k * (size_t)n * (size_t)m, m, &one, R, n);
 }
@@ -336,14 +239,14 @@ void mhb_receptance_set_frequency(mhb_receptance *r, double omega) {
   r->omega = omega;
   if (!r->at || r->at->omega == omega) return;
   mhb_speed_model_set(r->at, omega);
-  mhb_receptance_set(r);
+  mhb_modal_part_update(r->part);
 }
 
 void mhb_receptance_update(mhb_receptance *r, int k) {
   double w = k == 0 && !r->at ? 0 : r->omega; /* the mean knows no frequency, but a speed */
-  if (r->made_at[k] == w) return;
+  if (r->updated_at[k] == w) return;
   harmonic_at(r, k);
-  r->made_at[k] = w;
+  r->updated_at[k] = w;
 }
 
 void mhb_receptance_at(mhb_receptance *r, double omega, int top) {
@@ -354,15 +257,6 @@ void mhb_receptance_at(mhb_receptance *r, double omega, int top) {
 void mhb_receptance_scale(mhb_receptance *r, double scale) {
   r->scale = scale;
   for (int i = 0; i < (r->n_harmonics + 1) * r->n; i++) r->free[i] = scale * r->unit[i];
-}
-
-/* Modal amplitudes before L: load F - B^H p. */
-double complex mhb_receptance_modal_load(const mhb_receptance *r, int k, const double complex *p,
-                                         int i, double load) {
-  const double complex *B = r->B + (size_t)k * (size_t)r->n * (size_t)r->n_modes;
-  double complex        a = load * r->F[k * r->n_modes + i];
-  for (int row = 0; row < r->n; row++) a -= conj(B[row * r->n_modes + i]) * p[row];
-  return a;
 }
 
 /* dL/d omega = L^2 (2 k^2 w - 2 j zeta w_i k), k counted in the excitation frequency. */
@@ -376,7 +270,9 @@ static double complex lambda_slope(const mhb_receptance *r, int k, int i) {
 MHB_INLINE void drive(const mhb_receptance *r, int k, const double complex *p, double *restrict yr,
                       double *restrict yi) {
   int m = r->n_modes, n = r->n;
-  const double *restrict re = part(r, k, 0), *restrict im = part(r, k, 1);
+  const double *restrict re = mhb_modal_part_split(r->part, k, 0), *restrict im =
+                                                                       mhb_modal_part_split(r->part,
+                                                                                            k, 1);
   for (int i = 0; i < m; i++) {
     yr[i] = r->scale * re[n * m + i];
     yi[i] = r->scale * im[n * m + i];
@@ -424,7 +320,7 @@ MHB_HOT static void motion_drive(const mhb_receptance *r, int k, double w, const
 MHB_HOT static void modal_sums(const mhb_receptance *r, int k, const double *yr, const double *yi,
                                double complex *out) {
   int           m  = r->n_modes;
-  const double *re = part(r, k, 0), *im = part(r, k, 1);
+  const double *re = mhb_modal_part_split(r->part, k, 0), *im = mhb_modal_part_split(r->part, k, 1);
   for (int a = 0; a < r->n; a++, re += m, im += m) out[a] = product(m, yr, yi, re, im, 1);
 }
 
@@ -442,7 +338,9 @@ void mhb_receptance_slope(const mhb_receptance *r, int k, const double complex *
   slope_drive(r, k, p, yr, yi);
   modal_sums(r, k, yr, yi, slope);
   mhb_residual_terms_slope(r->left_out, k, kk * r->omega, dw2, r->scale, p, slope);
-  if (r->at) mhb_speed_derivative_slope(r, k, p, slope);
+  if (r->at)
+    mhb_speed_derivative_slope(r->speed_derivative, k, k * r->omega / r->nu,
+                               r->lambda + k * r->n_modes, r->scale, p, slope);
 }
 
 void mhb_receptance_probe_change(const mhb_receptance *r, int k, const double complex *p,
@@ -454,12 +352,14 @@ void mhb_receptance_probe_change(const mhb_receptance *r, int k, const double co
   mhb_residual_terms_probe_change(r->left_out, k, kk * r->omega, r->scale, p, dp, dw2, d_scale,
                                   change);
   for (int i = 0; i < m; i++) {
-    double complex a = r->lambda[k * m + i] * mhb_receptance_modal_load(r, k, dp, i, d_scale);
+    double complex a = r->lambda[k * m + i] * mhb_modal_part_force(r->part, k, dp, i, d_scale);
     if (d_omega != 0)
-      a += d_omega * lambda_slope(r, k, i) * mhb_receptance_modal_load(r, k, p, i, r->scale);
+      a += d_omega * lambda_slope(r, k, i) * mhb_modal_part_force(r->part, k, p, i, r->scale);
     for (int s = 0; s < q; s++) change[s] += r->model->probe[s * m + i] * a;
   }
-  if (r->at && d_omega != 0) mhb_speed_derivative_probe(r, k, p, d_omega, change);
+  if (r->at && d_omega != 0)
+    mhb_speed_derivative_probe(r->speed_derivative, k, k * r->omega / r->nu, r->lambda + k * m,
+                               r->scale, p, d_omega, change);
 }
 
 /* Neither driven nor pushed at by the contact. */

@@ -5,9 +5,6 @@
 
 #include "mhb/numerics/simd.h"
 
-/* From this many relative motions on, products of matrices are left to BLAS. */
-enum { WORTH_BLAS = 12 };
-
 static int n_contact(const modal_model *model) {
   return 3 * model->n_pairs * (model->has_left ? 2 : 1);
 }
@@ -83,7 +80,7 @@ static void set_probe(const mhb_residual_terms *l, int k, const double *matrix,
   }
 }
 
-void mhb_residual_terms_set(mhb_residual_terms *l) {
+void mhb_residual_terms_update(mhb_residual_terms *l) {
   const terms from = terms_of(l->model);
   for (int t = 0; t < MODAL_TERMS; t++)
     if (l->contact[t])
@@ -104,7 +101,7 @@ static shb_status make(mhb_residual_terms *l) {
     if (from.contact[t])
       SHB_TRY(mhb_cyclic_flexibility_create(from.contact[t], n_contact(l->model), l->relative.T0,
                                             l->model->n_pairs, l->relative.sides, &l->contact[t]));
-  mhb_residual_terms_set(l);
+  mhb_residual_terms_update(l);
   return SHB_OK;
 }
 
@@ -206,7 +203,8 @@ void mhb_residual_terms_matrix(const mhb_residual_terms *l, int k, double w, dou
   for (int t = 0; t < MODAL_TERMS; t++)
     if (l->contact[t]) mhb_cyclic_flexibility_add(l->contact[t], l->phase[k], s.weight[t], R);
   for (int i = 0; i < r; i++) g[i] = modal_series_mode(l->model, i, &s, &slope);
-  if (r > 0 && w > 0) (l->relative.n < WORTH_BLAS ? add_small : add_large)(l, shapes(l, k), g, R);
+  if (r > 0 && w > 0)
+    (l->relative.n < MHB_WORTH_BLAS ? add_small : add_large)(l, shapes(l, k), g, R);
 }
 
 void mhb_residual_terms_block(const mhb_residual_terms *l, int k, double w, int pair,

@@ -36,7 +36,7 @@ shb_status mhb_residual_terms_create(const modal_model *model, mhb_relative rela
 void       mhb_residual_terms_destroy(mhb_residual_terms *left);
 
 /* The model's arrays have other values. */
-void mhb_residual_terms_set(mhb_residual_terms *left);
+void mhb_residual_terms_update(mhb_residual_terms *left);
 
 /* Whether the load has this harmonic. */
 bool mhb_residual_terms_driven(const mhb_residual_terms *left, int k);

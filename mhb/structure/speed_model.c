@@ -191,3 +191,23 @@ void mhb_speed_model_differentiate(mhb_speed_model *a) {
   turn(a, a->d_entry, a->d_turned, &a->slope);
   a->slope_at = a->omega;
 }
+
+shb_status mhb_speed_model_check(const mhb_speed_table *table, const char *path) {
+  enum { SAMPLES = 33 };
+  mhb_speed_model *here  = NULL;
+  double           least = INFINITY, speed = 0;
+  SHB_TRY(mhb_speed_model_create(table, &here));
+  for (int i = 0; i < SAMPLES; i++) {
+    double omega = table->band[0] + (table->band[1] - table->band[0]) * i / (SAMPLES - 1);
+    mhb_speed_model_set(here, omega);
+    if (here->least >= least) continue;
+    least = here->least;
+    speed = mhb_speed_table_speed(table, omega);
+  }
+  mhb_speed_model_destroy(here);
+  SHB_CHECK(least > 0, SHB_ERR_INPUT,
+            "mhb.run_up: %s: the speeds are too far apart: interpolated to %.6g rpm the blade is "
+            "not stable; give more speeds",
+            path, speed * 60 / SHB_TWO_PI);
+  return SHB_OK;
+}

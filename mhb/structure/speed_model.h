@@ -34,4 +34,8 @@ void mhb_speed_model_set(mhb_speed_model *at_speed, double omega);
 /* slope, stiffness, damping <- where go went. */
 void mhb_speed_model_differentiate(mhb_speed_model *at_speed);
 
+/* The stiffness stays positive definite between the speeds of the table.
+ * SHB_ERR_INPUT: it does not; path of the modal file, for the message. SHB_ERR_IO: no memory. */
+shb_status mhb_speed_model_check(const mhb_speed_table *table, const char *path);
+
 #endif

@@ -6,14 +6,13 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
-#include "mhb/structure/speed_model.h"
 #include "modal/model/reduce.h"
 
 static const double HAIR = 1e-9;
 
 /* Of the speeds beyond the range, these many on each side shape the splines; the least part of a mode's mass, squared cosine, that
  * stays among the modes kept; places where the interpolated stiffness is looked at. */
-enum { BESIDE = 2, LOOKS = 33 };
+enum { BESIDE = 2 };
 static const double STAYS = .8;
 
 static double rpm(double speed) {
@@ -262,26 +261,6 @@ static shb_status fill(mhb_speed_table *r, int from, double *work) {
   return status;
 }
 
-/* Between the speeds too the structure must be stable. */
-static shb_status check_between(const mhb_speed_table *r, const char *path) {
-  mhb_speed_model *here  = NULL;
-  double           least = INFINITY, at = 0;
-  SHB_TRY(mhb_speed_model_create(r, &here));
-  for (int i = 0; i < LOOKS; i++) {
-    double omega = r->band[0] + (r->band[1] - r->band[0]) * i / (LOOKS - 1);
-    mhb_speed_model_set(here, omega);
-    if (here->least >= least) continue;
-    least = here->least;
-    at    = mhb_speed_table_speed(r, omega);
-  }
-  mhb_speed_model_destroy(here);
-  SHB_CHECK(least > 0, SHB_ERR_INPUT,
-            "mhb.run_up: %s: the speeds are too far apart: interpolated to %.6g rpm the blade is "
-            "not stable; give more speeds",
-            path, rpm(at));
-  return SHB_OK;
-}
-
 /* Residual modes, which cross and turn with the speed, are not interpolated: the three terms stay. */
 static shb_status keep_terms(modal_model *model, int modes) {
   SHB_TRY(modal_model_keep(model, modes, true));
@@ -323,7 +302,7 @@ static shb_status make(mhb_speed_table *r, const char *path) {
     status = fill(r, from, work);
   }
   free(work);
-  return status == SHB_OK ? check_between(r, path) : status;
+  return status;
 }
 
 shb_status mhb_speed_table_create(modal_speeds *speeds, const char *path, int engine_order,

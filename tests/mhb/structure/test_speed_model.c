@@ -33,6 +33,7 @@ static mhb_speed_table *make_run_up(spinning_kind kind, int n, bool overlap, mhb
   spinning_speeds(kind, n, 0, 1, overlap, &speeds);
   assert_ok(
       mhb_speed_table_create(&speeds, "blade.modal.h5", s->engine_order, s->frequency, &run_up));
+  assert_ok(mhb_speed_model_check(run_up, "blade.modal.h5"));
   s->run_up = run_up;
   return run_up;
 }
@@ -246,7 +247,13 @@ static void what_cannot_be_is_refused(void **state) {
   spinning_speeds(SPINNING_TURNING, 3, 0, 1, true, &s);
   for (int i = 0; i < SPINNING_MODES; i++) s.model[1].frequency[i] *= i ? 1 : 1e-2;
   for (int i = 0; i < SPINNING_MODES; i++) s.model[2].frequency[i] *= i ? 1 : 5;
-  refuse(&s, 2, .4, 1.9, "the speeds are too far apart");
+  const double     range[2] = {.4 / SHB_TWO_PI, 1.9 / SHB_TWO_PI};
+  mhb_speed_table *table    = NULL;
+  assert_ok(mhb_speed_table_create(&s, "blade.h5", 2, range, &table));
+  assert_int_equal(mhb_speed_model_check(table, "blade.h5"), SHB_ERR_INPUT);
+  if (!strstr(shb_message(), "blade.h5: the speeds are too far apart"))
+    fail_msg("'%s'", shb_message());
+  mhb_speed_table_destroy(table);
 }
 
 int main(void) {
