@@ -11,71 +11,60 @@
 #include "mhb/contact/internal.h"
 #include "mhb/contact/slider.h"
 
-/* Memory that vectors may be loaded from, zeroed. */
-static void *aligned(size_t size) {
-  size_t room   = (size + 63) / 64 * 64;
-  void  *memory = aligned_alloc(64, room);
-  if (memory) memset(memory, 0, room);
-  return memory;
+static void take_arrays(mhb_contact_evaluator *c) {
+  size_t     nb = (size_t)c->nb, nf = (size_t)c->nf, stride = (size_t)c->stride;
+  size_t     sums = (size_t)mhb_real_size(c->H + c->m), real = sizeof(double);
+  shb_arena *a       = &c->arena;
+  c->coefficients    = shb_arena_take(a, 3 * nb, real);
+  c->slip_sums       = shb_arena_take(a, 4 * nf, sizeof(mhb_lanes));
+  c->load_sums       = shb_arena_take(a, 2 * sums, sizeof(mhb_lanes));
+  c->f               = shb_arena_take(a, 2 * nf, real);
+  c->f_slider        = shb_arena_take(a, 2 * nf, real);
+  c->first_stick     = shb_arena_take(a, sums, real);
+  c->stick_integrals = shb_arena_take(a, sums, real);
+  c->basis_integrals = shb_arena_take(a, sums, real);
+  c->basis_products  = shb_arena_take(a, nf * nb, real);
+  c->J               = shb_arena_take(a, 2 * nf * stride, real);
+  c->Z[0]            = shb_arena_take(a, stride, real);
+  c->Z[1]            = shb_arena_take(a, stride, real);
+  c->T               = shb_arena_take(a, stride, real);
+  c->rhs             = shb_arena_take(a, MHB_NODES * stride, real);
+  c->T_nodes         = shb_arena_take(a, MHB_NODES * stride, real);
+  c->node_basis      = shb_arena_take(a, 3 * nf, sizeof(mhb_lanes));
+  c->event_basis     = shb_arena_take(a, 2 * nb, real);
+  c->history_force   = shb_arena_take(a, 3 * nf, real);
 }
 
 shb_status mhb_contact_evaluator_create(int m, int H, double tolerance,
                                         mhb_contact_evaluator **out) {
-  mhb_contact_evaluator *c = aligned(sizeof *c);
+  mhb_contact_evaluator *c = aligned_alloc(64, (sizeof *c + 63) / 64 * 64); /* it holds vectors */
   SHB_CHECK(c, SHB_ERR_IO, "out of memory");
-  c->m         = m;
-  c->H         = H;
-  c->nb        = mhb_real_size(m);
-  c->nf        = mhb_real_size(H);
-  c->slider    = 3 * c->nb;
-  c->stride    = (c->slider + MHB_LANES) / MHB_LANES * MHB_LANES;
-  c->tolerance = tolerance;
-  size_t nb = (size_t)c->nb, nf = (size_t)c->nf, stride = (size_t)c->stride;
-  size_t sums = (size_t)mhb_real_size(H + m), lanes = MHB_LANES;
-  struct {
-    void **array;
-    size_t size;
-  } wanted[] = {{(void **)&c->scaled, 3 * nb},
-                {(void **)&c->sum, 4 * nf * lanes},
-                {(void **)&c->load, 2 * sums * lanes},
-                {(void **)&c->f, 2 * nf},
-                {(void **)&c->f_slider, 2 * nf},
-                {(void **)&c->first, sums},
-                {(void **)&c->stick, sums},
-                {(void **)&c->piece, sums},
-                {(void **)&c->product, nf * nb},
-                {(void **)&c->J, 2 * nf * stride},
-                {(void **)&c->Z[0], stride},
-                {(void **)&c->Z[1], stride},
-                {(void **)&c->T, stride},
-                {(void **)&c->drive, MHB_NODES * stride},
-                {(void **)&c->node_T, MHB_NODES * stride},
-                {(void **)&c->node_basis, 3 * nf * lanes},
-                {(void **)&c->basis0, 2 * nb},
-                {(void **)&c->traced, 3 * nf}};
-  int ok     = mhb_signals_create(m, &c->signals) == SHB_OK;
-  ok &= mhb_contact_intervals_create(m, &c->closed) == SHB_OK;
-  for (size_t i = 0; i < sizeof wanted / sizeof wanted[0]; i++)
-    ok &= (*wanted[i].array = aligned(wanted[i].size * sizeof(double))) != NULL;
+  memset(c, 0, sizeof *c);
+  c->m             = m;
+  c->H             = H;
+  c->nb            = mhb_real_size(m);
+  c->nf            = mhb_real_size(H);
+  c->slider_column = 3 * c->nb;
+  c->stride        = (c->slider_column + MHB_LANES) / MHB_LANES * MHB_LANES;
+  c->tolerance     = tolerance;
   mhb_collocation_create(&c->rule);
-  ok &= mhb_dense_output_create(&c->rule, &c->pieces) == SHB_OK;
-  if (!ok) {
+  take_arrays(c);
+  if (c->arena.failed || mhb_signals_create(m, &c->signals) != SHB_OK ||
+      mhb_contact_intervals_create(m, &c->intervals) != SHB_OK ||
+      mhb_dense_output_create(&c->rule, &c->dense_output) != SHB_OK) {
     mhb_contact_evaluator_destroy(c);
     SHB_FAIL(SHB_ERR_IO, "out of memory for a contact of %d harmonics", m);
   }
-  c->pieces.signals = &c->signals;
-  *out              = c;
+  c->dense_output.signals = &c->signals;
+  *out                    = c;
   return SHB_OK;
 }
 
 void mhb_contact_evaluator_destroy(mhb_contact_evaluator *c) {
   if (!c) return;
-  void *arrays[] = {c->scaled, c->sum,   c->load,    c->f,          c->f_slider, c->first,
-                    c->stick,  c->piece, c->product, c->J,          c->Z[0],     c->Z[1],
-                    c->T,      c->drive, c->node_T,  c->node_basis, c->basis0,   c->traced};
-  for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; i++) free(arrays[i]);
-  mhb_dense_output_destroy(&c->pieces);
-  mhb_contact_intervals_destroy(&c->closed);
+  shb_arena_free(&c->arena);
+  mhb_dense_output_destroy(&c->dense_output);
+  mhb_contact_intervals_destroy(&c->intervals);
   mhb_signals_destroy(&c->signals);
   free(c);
 }
@@ -93,7 +82,7 @@ static int set_signals(mhb_contact_evaluator *c, const mhb_law *law, const doubl
   }
   c->scale = load + friction < INFINITY ? fmax(load, friction) : NAN;
   if (!(c->scale > 1e-290)) return 0; /* its inverse would overflow */
-  double one = 1 / c->scale, *n = c->scaled, *x1 = n + c->nb, *x2 = x1 + c->nb;
+  double one = 1 / c->scale, *n = c->coefficients, *x1 = n + c->nb, *x2 = x1 + c->nb;
   c->kv      = law->kv * one;
   c->K[0][0] = law->ku[0] * one;
   c->K[0][1] = c->K[1][0] = law->ku[1] * one;
@@ -122,10 +111,10 @@ static double content_of(const mhb_signals *s, double mu) {
 /* Where the contact closes for less than a few cells of the grid, which may pass over it: n there is about a parabola. */
 static double brief_load(mhb_contact_evaluator *c) {
   double load = 0, brief = 4 * SHB_TWO_PI / c->signals.n_grid;
-  for (int i = 0; i < c->closed.n; i++) {
-    double y[3], dy[3], length = c->closed.opening[i] - c->closed.closing[i];
+  for (int i = 0; i < c->intervals.n; i++) {
+    double y[3], dy[3], length = c->intervals.opening[i] - c->intervals.closing[i];
     if (length > brief) continue;
-    mhb_signals_at(&c->signals, c->closed.closing[i] + .5 * length, y, dy, NULL);
+    mhb_signals_at(&c->signals, c->intervals.closing[i] + .5 * length, y, dy, NULL);
     load += 2. / 3 * fmax(0, y[0]) * length / SHB_TWO_PI;
     c->slip.peak = fmax(c->slip.peak, y[0]);
   }
@@ -144,20 +133,20 @@ static void set_reference(mhb_contact_evaluator *c) {
   }
   load = fmax(load / s->n_grid, brief_load(c));
   for (int i = 1; i < 3; i++) swing += s->bound[i][0] - fabs(s->coefficient[i]);
-  double limit = c->slip.mu * load;
-  c->friction  = fmax(limit < swing ? limit : swing, 1e-300);
-  c->force     = load > c->friction ? load : c->friction;
+  double limit      = c->slip.mu * load;
+  c->friction_level = fmax(limit < swing ? limit : swing, 1e-300);
+  c->force_level    = load > c->friction_level ? load : c->friction_level;
 }
 
 static void set_slip(mhb_contact_evaluator *c, const mhb_law *law, int derivative) {
-  c->slip    = (mhb_slip){.signals    = &c->signals,
-                          .rule       = &c->rule,
-                          .mean       = .5 * (c->K[0][0] + c->K[1][1]),
-                          .half       = .5 * (c->K[0][0] - c->K[1][1]),
-                          .skew       = c->K[0][1],
-                          .mu         = law->mu,
-                          .linearized = derivative};
-  c->content = content_of(&c->signals, law->mu);
+  c->slip          = (mhb_slip){.signals    = &c->signals,
+                                .rule       = &c->rule,
+                                .mean       = .5 * (c->K[0][0] + c->K[1][1]),
+                                .half       = .5 * (c->K[0][0] - c->K[1][1]),
+                                .skew       = c->K[0][1],
+                                .mu         = law->mu,
+                                .linearized = derivative};
+  c->mean_harmonic = content_of(&c->signals, law->mu);
   memcpy(c->slip.K, c->K, sizeof c->K);
   set_reference(c);
 }
@@ -166,7 +155,7 @@ static void set_slip(mhb_contact_evaluator *c, const mhb_law *law, int derivativ
 
 /* row[k] += factor dc_k/d(motion) of the mean friction of a stuck contact; the mean of s does not enter. */
 static void add_mean_gradient(const mhb_contact_evaluator *c, double factor, double *const row[2]) {
-  const mhb_static_friction *stuck = &c->stuck;
+  const mhb_static_friction *stuck = &c->static_friction;
   int                        nb    = c->nb;
   double                     weight[2][2][6], b[nb], db[nb];
   if (stuck->n_active == 0) return;
@@ -192,15 +181,16 @@ void mhb_contact_mean_gradient(const mhb_contact_evaluator *c, double *const gra
 
 /* Stuck throughout: f = Ku (s - mean s) + c. */
 static void finish_stuck(mhb_contact_evaluator *c) {
-  const mhb_static_friction *stuck = &c->stuck;
-  int                        nb = c->nb, nf = c->nf, derivative = c->columns == MHB_ALL_COLUMNS;
+  const mhb_static_friction *stuck = &c->static_friction;
+  int                        nb = c->nb, nf = c->nf, derivative = c->mode == MHB_ALL_COLUMNS;
   c->info->share[MHB_STICK] = 1;
   c->info->undetermined     = 1;
-  mhb_dense_output_stick(&c->pieces, 0,
-                         (double[2]){c->scaled[nb] - stuck->c[0], c->scaled[2 * nb] - stuck->c[1]});
+  mhb_dense_output_stick(
+      &c->dense_output, 0,
+      (double[2]){c->coefficients[nb] - stuck->c[0], c->coefficients[2 * nb] - stuck->c[1]});
   for (int k = 0; k < 2; k++) {
     for (int i = 1; i < nb; i++) {
-      c->f[k * nf + i] = c->scaled[(1 + k) * nb + i];
+      c->f[k * nf + i] = c->coefficients[(1 + k) * nb + i];
       if (!derivative) continue;
       double *row     = c->J + (size_t)(k * nf + i) * (size_t)c->stride;
       row[nb + i]     = c->K[k][0];
@@ -226,14 +216,15 @@ static void normal_force_closed(const mhb_contact_evaluator *c, const mhb_law *l
 static void normal_force(mhb_contact_evaluator *c, const mhb_law *law, double *force,
                          double *jacobian) {
   int nb = c->nb, nf = c->nf, sums = mhb_real_size(c->H + c->m);
-  memset(c->piece, 0, sizeof(double) * (size_t)sums);
-  for (int i = 0; i < c->closed.n; i++)
-    mhb_basis_integral(c->H + c->m, c->closed.closing[i], c->closed.opening[i], c->piece);
-  mhb_basis_product(c->H, c->m, c->piece, c->product, nb);
+  memset(c->basis_integrals, 0, sizeof(double) * (size_t)sums);
+  for (int i = 0; i < c->intervals.n; i++)
+    mhb_basis_integral(c->H + c->m, c->intervals.closing[i], c->intervals.opening[i],
+                       c->basis_integrals);
+  mhb_basis_product(c->H, c->m, c->basis_integrals, c->basis_products, nb);
   for (int i = 0; i < nf; i++) {
-    const double *S = c->product + (size_t)i * (size_t)nb;
+    const double *S = c->basis_products + (size_t)i * (size_t)nb;
     double        q = mhb_force_integrals_factor(i), sum = 0;
-    for (int j = 0; j < nb; j++) sum += S[j] * c->scaled[j];
+    for (int j = 0; j < nb; j++) sum += S[j] * c->coefficients[j];
     force[i] = c->scale * q * sum;
     if (!jacobian) continue;
     double *row = jacobian + (size_t)i * 3 * (size_t)nb;
@@ -254,14 +245,14 @@ static double loop_work(const mhb_contact_evaluator *c, const double *motion, co
 
 /* mu = 0: slip wherever it is closed. */
 static void without_friction(mhb_contact_evaluator *c) {
-  double closed = c->closed.always_closed;
-  if (closed > 0) mhb_dense_output_frictionless(&c->pieces, 0);
-  for (int i = 0; i < c->closed.n; i++) {
-    closed += (c->closed.opening[i] - c->closed.closing[i]) / SHB_TWO_PI;
-    mhb_note_transition(c, c->closed.closing[i], MHB_SLIDE);
-    mhb_dense_output_frictionless(&c->pieces, c->closed.closing[i]);
-    mhb_note_transition(c, c->closed.opening[i], MHB_SEPARATE);
-    mhb_dense_output_open(&c->pieces, c->closed.opening[i]);
+  double closed = c->intervals.always_closed;
+  if (closed > 0) mhb_dense_output_frictionless(&c->dense_output, 0);
+  for (int i = 0; i < c->intervals.n; i++) {
+    closed += (c->intervals.opening[i] - c->intervals.closing[i]) / SHB_TWO_PI;
+    mhb_note_transition(c, c->intervals.closing[i], MHB_SLIDE);
+    mhb_dense_output_frictionless(&c->dense_output, c->intervals.closing[i]);
+    mhb_note_transition(c, c->intervals.opening[i], MHB_SEPARATE);
+    mhb_dense_output_open(&c->dense_output, c->intervals.opening[i]);
   }
   c->info->share[MHB_SLIDE]    = closed;
   c->info->share[MHB_SEPARATE] = 1 - closed;
@@ -273,17 +264,17 @@ static void drop_friction(mhb_contact_evaluator *c) {
   size_t nf  = (size_t)c->nf;
   double sum = 0;
   for (size_t i = 0; i < 2 * nf; i++) sum += fabs(c->f[i]);
-  for (size_t i = 0; c->columns == MHB_ALL_COLUMNS && i < 2 * nf * (size_t)c->stride; i++)
+  for (size_t i = 0; c->mode == MHB_ALL_COLUMNS && i < 2 * nf * (size_t)c->stride; i++)
     sum += fabs(c->J[i]);
   if (isfinite(sum + c->info->slip_work)) return;
   memset(c->f, 0, sizeof(double) * 2 * nf);
   memset(c->J, 0, sizeof(double) * 2 * nf * (size_t)c->stride);
-  c->info->slip_work = c->info->error = c->squares = 0;
-  c->info->lost                                    = 1;
+  c->info->slip_work = c->info->error = c->squared_error = 0;
+  c->info->lost                                          = 1;
 }
 
 static void friction_force(mhb_contact_evaluator *c) {
-  if (c->closed.always_open) {
+  if (c->intervals.always_open) {
     c->info->share[MHB_SEPARATE] = 1;
     return;
   }
@@ -292,14 +283,14 @@ static void friction_force(mhb_contact_evaluator *c) {
     return;
   }
   int ok;
-  if (c->closed.always_closed) {
-    mhb_static_friction_solve(&c->signals, c->slip.mu, &c->stuck);
-    if (c->stuck.feasible) {
+  if (c->intervals.always_closed) {
+    mhb_static_friction_solve(&c->signals, c->slip.mu, &c->static_friction);
+    if (c->static_friction.feasible) {
       finish_stuck(c);
       return;
     }
-    ok = mhb_slider_periodic(
-        c, (double[2]){c->scaled[c->nb] - c->stuck.c[0], c->scaled[2 * c->nb] - c->stuck.c[1]});
+    ok = mhb_slider_periodic(c, (double[2]){c->coefficients[c->nb] - c->static_friction.c[0],
+                                            c->coefficients[2 * c->nb] - c->static_friction.c[1]});
   } else {
     ok = mhb_slider_with_openings(c);
     mhb_force_integrals_collect(c);
@@ -307,15 +298,16 @@ static void friction_force(mhb_contact_evaluator *c) {
   mhb_force_integrals_finish(c);
   c->info->lost = !ok;
   if (!ok)
-    c->info->error = fmax(c->info->error, c->closed.always_closed ? 0 : SHB_TWO_PI * c->force);
+    c->info->error =
+        fmax(c->info->error, c->intervals.always_closed ? 0 : SHB_TWO_PI * c->force_level);
   if (!ok || c->info->laps > 20) drop_friction(c);
 }
 
 static void normal_load(mhb_contact_evaluator *c, const mhb_law *law, const double *motion,
                         double *force, double *jacobian) {
-  if (c->closed.always_closed) {
+  if (c->intervals.always_closed) {
     normal_force_closed(c, law, motion, force, jacobian);
-  } else if (c->closed.always_open) {
+  } else if (c->intervals.always_open) {
     force[0] = -law->mean_offset;
   } else {
     normal_force(c, law, force, jacobian);
@@ -326,7 +318,8 @@ static void normal_load(mhb_contact_evaluator *c, const mhb_law *law, const doub
  * they add up like squares; half of that is what the suite of motions shows (tests/mhb/test_accuracy). */
 static double relative_error(const mhb_contact_evaluator *c, const mhb_law *law,
                              const double *force) {
-  double top = fabs(force[0] + law->mean_offset), sum = .5 * sqrt(c->squares) + c->info->error;
+  double top = fabs(force[0] + law->mean_offset),
+         sum = .5 * sqrt(c->squared_error) + c->info->error;
   for (int i = 1; i < 3 * c->nf; i++) top = fabs(force[i]) > top ? fabs(force[i]) : top;
   if (c->info->lost && sum == 0) return 1;
   return top > 0 ? fmin(1, 2 / SHB_TWO_PI * sum * c->scale / top) : 0;
@@ -346,10 +339,10 @@ void mhb_contact_force(mhb_contact_evaluator *c, const mhb_law *law, const doubl
     for (size_t i = 0; info->lost && i < size; i++) force[i] = NAN;
     return;
   }
-  mhb_contact_intervals_find(&c->signals, &c->closed);
+  mhb_contact_intervals_find(&c->signals, &c->intervals);
   set_slip(c, law, jacobian != NULL);
-  c->columns = jacobian ? MHB_ALL_COLUMNS : MHB_NO_COLUMNS;
-  c->record  = 1;
+  c->mode   = jacobian ? MHB_ALL_COLUMNS : MHB_NO_COLUMNS;
+  c->record = 1;
   mhb_force_integrals_clear(c);
   friction_force(c);
   for (int i = 0; i < 2 * nf; i++) {

@@ -1,5 +1,5 @@
 /* The exact derivative of friction by the motion: forward sensitivities along one period
- * (docs/contact.md, Derivative). All functions heed contact->columns. */
+ * (docs/contact.md, Derivative). All functions heed contact->mode. */
 #ifndef MHB_CONTACT_SENSITIVITY_H
 #define MHB_CONTACT_SENSITIVITY_H
 
@@ -23,7 +23,7 @@ void mhb_sensitivity_closing(mhb_contact_evaluator *contact, double t, mhb_state
 /* T through contact->panel and, in a recorded lap, the panel's part of the integrals. */
 void mhb_sensitivity_panel(mhb_contact_evaluator *contact);
 
-/* The part of a stick piece, whose integrals of the basis are contact->piece. */
+/* The part of a stick piece, whose integrals of the basis are contact->basis_integrals. */
 void mhb_sensitivity_stick(mhb_contact_evaluator *contact);
 
 /* |DP|: the factor by which a lap contracts a change of the slider. */

@@ -18,14 +18,14 @@ typedef struct {
 
 static void add_stick(mhb_contact_evaluator *c, double t0, double t1, const double z[2]) {
   if (!c->record || t1 <= t0) return;
-  mhb_dense_output_stick(&c->pieces, t0, z);
+  mhb_dense_output_stick(&c->dense_output, t0, z);
   int sums = mhb_real_size(c->H + c->m);
-  memset(c->piece, 0, sizeof(double) * (size_t)sums);
-  mhb_basis_integral(c->H + (c->columns == MHB_ALL_COLUMNS ? c->m : c->signals.used), t0, t1,
-                     c->piece);
-  for (int i = 0; i < sums; i++) c->stick[i] += c->piece[i];
+  memset(c->basis_integrals, 0, sizeof(double) * (size_t)sums);
+  mhb_basis_integral(c->H + (c->mode == MHB_ALL_COLUMNS ? c->m : c->signals.used), t0, t1,
+                     c->basis_integrals);
+  for (int i = 0; i < sums; i++) c->stick_integrals[i] += c->basis_integrals[i];
   for (int k = 0; k < 2; k++)
-    for (int i = 0; i < c->nf; i++) c->f[k * c->nf + i] -= z[k] * c->piece[i];
+    for (int i = 0; i < c->nf; i++) c->f[k * c->nf + i] -= z[k] * c->basis_integrals[i];
   mhb_sensitivity_stick(c);
   c->info->share[MHB_STICK] += (t1 - t0) / SHB_TWO_PI;
 }
@@ -66,10 +66,10 @@ static void add_slip(mhb_contact_evaluator *c, const slider *s) {
   if (p->h <= 0) return;
   mhb_sensitivity_panel(c);
   if (!c->record) return;
-  mhb_dense_output_slip(&c->pieces, p);
+  mhb_dense_output_slip(&c->dense_output, p);
   c->info->slip_work += panel_work(c, s);
   c->info->share[MHB_SLIDE] += p->h / SHB_TWO_PI;
-  c->squares += p->error * p->error;
+  c->squared_error += p->error * p->error;
 }
 
 enum { MAX_EVENTS = 400, MAX_PANELS = 5000 };
@@ -137,9 +137,9 @@ static int run_closed(mhb_contact_evaluator *c, slider *s, double end, int openi
 static void set_panels(mhb_contact_evaluator *c, double tolerance) {
   double reach      = sqrt(sqrt(sqrt(sqrt(.2 * tolerance / 1.7e-23))));
   double wanted     = c->record ? c->H : 0;
-  c->slip.harmonic  = wanted + .5 * c->content;
-  c->slip.longest   = fmin(1.5, reach / (wanted + 2 * c->content + 1));
-  c->slip.tolerance = .2 * tolerance * c->force;
+  c->slip.harmonic  = wanted + .5 * c->mean_harmonic;
+  c->slip.longest   = fmin(1.5, reach / (wanted + 2 * c->mean_harmonic + 1));
+  c->slip.tolerance = .2 * tolerance * c->force_level;
 }
 
 /* The direction may be held over tau before an opening: what it misses is some mu n' tau^2/2. */
@@ -155,11 +155,11 @@ int mhb_slider_with_openings(mhb_contact_evaluator *c) {
   int    ok   = 1;
   double open = 1;
   mhb_sensitivity_clear(c);
-  c->record         = 1;
-  c->memory.slipped = 1; /* there is no slider at the start of the lap to remember */
+  c->record      = 1;
+  c->lap.slipped = 1; /* there is no slider at the start of the lap to remember */
   set_panels(c, c->tolerance);
-  for (int i = 0; i < c->closed.n; i++) {
-    slider s = {.t = c->closed.closing[i], .onset = -1};
+  for (int i = 0; i < c->intervals.n; i++) {
+    slider s = {.t = c->intervals.closing[i], .onset = -1};
     double y[3], dy[3], ddy[3], d[2], D;
     mhb_signals_at(&c->signals, s.t, y, dy, ddy);
     double pull = hypot(dy[1], dy[2]), limit = c->slip.mu * dy[0];
@@ -174,13 +174,13 @@ int mhb_slider_with_openings(mhb_contact_evaluator *c) {
     }
     mhb_sensitivity_closing(c, s.t, s.state, s.theta);
     mhb_note_transition(c, s.t, s.state);
-    set_sliver(c, c->closed.opening[i]);
-    ok &= run_closed(c, &s, c->closed.opening[i], 1);
+    set_sliver(c, c->intervals.opening[i]);
+    ok &= run_closed(c, &s, c->intervals.opening[i], 1);
     if (s.state == MHB_STICK || s.onset == s.t)
       c->info->slip_work += held_at(c, &s); /* let go at once: mu n' is too steep to see */
-    mhb_note_transition(c, c->closed.opening[i], MHB_SEPARATE);
-    mhb_dense_output_open(&c->pieces, c->closed.opening[i]);
-    open -= (c->closed.opening[i] - c->closed.closing[i]) / SHB_TWO_PI;
+    mhb_note_transition(c, c->intervals.opening[i], MHB_SEPARATE);
+    mhb_dense_output_open(&c->dense_output, c->intervals.opening[i]);
+    open -= (c->intervals.opening[i] - c->intervals.closing[i]) / SHB_TWO_PI;
   }
   c->info->share[MHB_SEPARATE] = fmax(0, open);
   return ok;
@@ -246,8 +246,8 @@ static double left_by(const mhb_contact_evaluator *c, approach *a, double length
 static int close_slider(mhb_contact_evaluator *c, approach *a, double z[2]) {
   double before = INFINITY, left = a->last < 1 ? a->last : .03, P[2], step[2];
   int    plain = 0, newton = 0;
-  c->record  = 0;
-  c->columns = MHB_SLIDER_COLUMN;
+  c->record = 0;
+  c->mode   = MHB_SLIDER_COLUMN;
   for (; c->info->laps < MAX_LAPS; c->info->laps++) {
     double accuracy = fmax(a->enough, fmin(1e-2, .3 * left));
     set_panels(c, accuracy);
@@ -263,9 +263,9 @@ static int close_slider(mhb_contact_evaluator *c, approach *a, double z[2]) {
       continue;
     }
     mhb_sensitivity_close(c, r, step);
-    double length = hypot(step[0], step[1]) / c->friction, ratio = length / a->last;
+    double length = hypot(step[0], step[1]) / c->friction_level, ratio = length / a->last;
     double stretch = ratio > .3 && ratio < .7 ? 1 / (1 - ratio) : 1;
-    double beyond  = hypot(step[0] - r[0], step[1] - r[1]) / c->friction;
+    double beyond  = hypot(step[0] - r[0], step[1] - r[1]) / c->friction_level;
     double cut     = beyond > 1 ? 1 / beyond : 1; /* of what goes beyond a plain lap */
     for (int k = 0; k < 2; k++) z[k] += stretch * (r[k] + cut * (step[k] - r[k]));
     left = left_by(c, a, length, accuracy);
@@ -283,31 +283,31 @@ static int close_slider(mhb_contact_evaluator *c, approach *a, double z[2]) {
 static double record_lap(mhb_contact_evaluator *c, mhb_sensitivity_mode columns, double z[2],
                          double *gap, double *step) {
   double P[2], dz[2], most = 0;
-  c->record  = 1;
-  c->columns = columns;
+  c->record = 1;
+  c->mode   = columns;
   mhb_force_integrals_clear(c);
   set_panels(c, c->tolerance);
   int ok = run_lap(c, z, P);
   mhb_sensitivity_close(c, (double[2]){P[0] - z[0], P[1] - z[1]}, dz);
   mhb_force_integrals_collect(c);
-  *gap         = hypot(P[0] - z[0], P[1] - z[1]) / c->friction;
-  *step        = hypot(dz[0], dz[1]) / c->friction;
-  double along = c->memory.v[0] * dz[0] + c->memory.v[1] * dz[1], work = c->memory.work * along;
+  *gap         = hypot(P[0] - z[0], P[1] - z[1]) / c->friction_level;
+  *step        = hypot(dz[0], dz[1]) / c->friction_level;
+  double along = c->lap.v[0] * dz[0] + c->lap.v[1] * dz[1], work = c->lap.work * along;
   for (int k = 0; k < 2; k++) {
     for (int i = 0; i < c->nf; i++) {
-      double change = c->f_slider[k * c->nf + i] * along - c->first[i] * dz[k];
+      double change = c->f_slider[k * c->nf + i] * along - c->first_stick[i] * dz[k];
       c->f[k * c->nf + i] += change;
       most = fmax(most, fabs(change));
     }
     z[k] += dz[k];
-    work += c->memory.onset[k] * dz[k];
+    work += c->lap.onset[k] * dz[k];
   }
   if (fabs(work) <= c->info->slip_work) c->info->slip_work += work; /* else beyond first order */
-  return ok ? 2 / SHB_TWO_PI * most / c->friction : -1;
+  return ok ? 2 / SHB_TWO_PI * most / c->friction_level : -1;
 }
 
 int mhb_slider_periodic(mhb_contact_evaluator *c, const double guess[2]) {
-  mhb_sensitivity_mode wanted = c->columns == MHB_ALL_COLUMNS ? MHB_ALL_COLUMNS : MHB_SLIDER_COLUMN;
+  mhb_sensitivity_mode wanted = c->mode == MHB_ALL_COLUMNS ? MHB_ALL_COLUMNS : MHB_SLIDER_COLUMN;
   double   z[2] = {guess[0], guess[1]}, left = 0, gap = 0, step = 0, sharp = .1 * c->tolerance;
   approach a       = {.enough = wanted == MHB_ALL_COLUMNS ? sharp : .1 * sqrt(c->tolerance),
                       .last   = INFINITY};
@@ -323,12 +323,12 @@ int mhb_slider_periodic(mhb_contact_evaluator *c, const double guess[2]) {
     a.enough    = sharp;
   }
   /* a trace shows the lap itself: repeat it until it needs no correction */
-  for (int tries = 0; c->pieces.on && gap > 1e-12 && tries < MAX_RECORDS; tries++)
+  for (int tries = 0; c->dense_output.on && gap > 1e-12 && tries < MAX_RECORDS; tries++)
     left = record_lap(c, wanted, z, &gap, &step);
-  double miss = left < 0             ? SHB_TWO_PI * c->force / c->friction
+  double miss = left < 0             ? SHB_TWO_PI * c->force_level / c->friction_level
                 : reached && !a.slow ? fmax(left * left, step * step)
                                      : left;
-  c->info->error += c->friction * (miss + mhb_sensitivity_roundoff(c));
+  c->info->error += c->friction_level * (miss + mhb_sensitivity_roundoff(c));
   if (wanted == MHB_ALL_COLUMNS) mhb_sensitivity_eliminate_slider(c);
   return left >= 0 && left < sqrt(c->tolerance);
 }

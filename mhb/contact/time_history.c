@@ -6,14 +6,14 @@
 /* Evaluates the law and keeps its pieces, valid until the evaluator is used again. */
 static const mhb_dense_output *evaluate(mhb_contact_evaluator *c, const mhb_law *law,
                                         const double *motion, mhb_contact_info *info) {
-  c->pieces.n = c->pieces.full = 0;
-  c->pieces.on                 = 1;
-  mhb_contact_force(c, law, motion, c->traced, NULL, info);
-  c->pieces.on    = 0;
-  c->pieces.mu    = law->mu;
-  c->pieces.scale = c->scale;
-  info->lost |= c->pieces.full;
-  return &c->pieces;
+  c->dense_output.n = c->dense_output.full = 0;
+  c->dense_output.on                       = 1;
+  mhb_contact_force(c, law, motion, c->history_force, NULL, info);
+  c->dense_output.on    = 0;
+  c->dense_output.mu    = law->mu;
+  c->dense_output.scale = c->scale;
+  info->lost |= c->dense_output.full;
+  return &c->dense_output;
 }
 
 void mhb_contact_time_history(mhb_contact_evaluator *contact, const mhb_law *law,
