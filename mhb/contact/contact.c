@@ -71,7 +71,7 @@ void mhb_contact_evaluator_destroy(mhb_contact_evaluator *c) {
 
 /* ---- scaling ---- */
 
-/* Divide by the largest force in sight, so that tolerances are relative and units do not matter. 0: no force at all. */
+/* Divides by the largest force in sight, so that tolerances are relative. 0: no force at all. */
 static int set_signals(mhb_contact_evaluator *c, const mhb_law *law, const double *motion) {
   const double *v = motion, *u = v + c->nb, *w = u + c->nb;
   double        load = fabs(law->n0), friction = 0;
@@ -81,7 +81,7 @@ static int set_signals(mhb_contact_evaluator *c, const mhb_law *law, const doubl
     friction += sqrt(x1 * x1 + x2 * x2);
   }
   c->scale = load + friction < INFINITY ? fmax(load, friction) : NAN;
-  if (!(c->scale > 1e-290)) return 0; /* its inverse would overflow */
+  if (!(c->scale > 1e-290)) return 0; /* the inverse of a smaller one overflows */
   double one = 1 / c->scale, *n = c->coefficients, *x1 = n + c->nb, *x2 = x1 + c->nb;
   c->kv      = law->kv * one;
   c->K[0][0] = law->ku[0] * one;
@@ -97,7 +97,7 @@ static int set_signals(mhb_contact_evaluator *c, const mhb_law *law, const doubl
   return 1;
 }
 
-/* The harmonic that stands for all: (sum k^4 |A_k|/sum |A_k|)^(1/4) over n and x in force units. */
+/* Mean harmonic (sum k^4 |A_k|/sum |A_k|)^(1/4) over n and x in force units. */
 static double content_of(const mhb_signals *s, double mu) {
   double high = 0, all = 0;
   for (int i = 0; i < 3; i++) {
@@ -108,7 +108,8 @@ static double content_of(const mhb_signals *s, double mu) {
   return all > 0 && high < INFINITY ? sqrt(sqrt(high / all)) : 1;
 }
 
-/* Where the contact closes for less than a few cells of the grid, which may pass over it: n there is about a parabola. */
+/* Mean load of the intervals shorter than four cells of the grid, which may miss them: n is about a
+ * parabola there. */
 static double brief_load(mhb_contact_evaluator *c) {
   double load = 0, brief = 4 * SHB_TWO_PI / c->signals.n_grid;
   for (int i = 0; i < c->intervals.n; i++) {
@@ -116,20 +117,20 @@ static double brief_load(mhb_contact_evaluator *c) {
     if (length > brief) continue;
     mhb_signals_at(&c->signals, c->intervals.closing[i] + .5 * length, y, dy, NULL);
     load += 2. / 3 * fmax(0, y[0]) * length / SHB_TWO_PI;
-    c->slip.peak = fmax(c->slip.peak, y[0]);
+    c->slip.peak_load = fmax(c->slip.peak_load, y[0]);
   }
   return load;
 }
 
-/* What the forces will be like: the mean and the peak of n over the period, and the friction. */
+/* Force and friction levels: from the mean and the peak of n over the period and the swing of x. */
 static void set_reference(mhb_contact_evaluator *c) {
   const mhb_signals *s    = &c->signals;
   double             load = 0, swing = 0;
-  c->slip.peak = 0;
+  c->slip.peak_load = 0;
   for (int i = 0; i < s->n_grid; i++) {
-    double n     = s->value[0][i];
-    load         = n > 0 ? load + n : load;
-    c->slip.peak = n > c->slip.peak ? n : c->slip.peak;
+    double n          = s->value[0][i];
+    load              = n > 0 ? load + n : load;
+    c->slip.peak_load = n > c->slip.peak_load ? n : c->slip.peak_load;
   }
   load = fmax(load / s->n_grid, brief_load(c));
   for (int i = 1; i < 3; i++) swing += s->bound[i][0] - fabs(s->coefficient[i]);
@@ -153,7 +154,8 @@ static void set_slip(mhb_contact_evaluator *c, const mhb_law *law, int derivativ
 
 /* ---- assembly ---- */
 
-/* row[k] += factor dc_k/d(motion) of the mean friction of a stuck contact; the mean of s does not enter. */
+/* row[k] += factor dc_k/d(motion) of the mean friction c of a stuck contact; the mean of s has no
+ * influence. */
 static void add_mean_gradient(const mhb_contact_evaluator *c, double factor, double *const row[2]) {
   const mhb_static_friction *stuck = &c->static_friction;
   int                        nb    = c->nb;
@@ -202,7 +204,7 @@ static void finish_stuck(mhb_contact_evaluator *c) {
     add_mean_gradient(c, 1, (double *const[2]){c->J, c->J + (size_t)nf * (size_t)c->stride});
 }
 
-/* Always closed: n is linear in v, and a huge preload must not drown it. */
+/* Always closed: n is linear in v. The preload is added last, for it may be huge. */
 static void normal_force_closed(const mhb_contact_evaluator *c, const mhb_law *law, const double *v,
                                 double *force, double *jacobian) {
   for (int i = 0; i < c->nb; i++) {
@@ -212,7 +214,7 @@ static void normal_force_closed(const mhb_contact_evaluator *c, const mhb_law *l
   force[0] += law->n0 - law->mean_offset;
 }
 
-/* Normal load: the harmonics of n over the closed intervals. */
+/* Harmonics of n over the closed intervals. */
 static void normal_force(mhb_contact_evaluator *c, const mhb_law *law, double *force,
                          double *jacobian) {
   int nb = c->nb, nf = c->nf, sums = mhb_real_size(c->H + c->m);
@@ -243,7 +245,7 @@ static double loop_work(const mhb_contact_evaluator *c, const double *motion, co
   return .5 * SHB_TWO_PI * sum;
 }
 
-/* mu = 0: slip wherever it is closed. */
+/* mu = 0: slip wherever the contact is closed. */
 static void without_friction(mhb_contact_evaluator *c) {
   double closed = c->intervals.always_closed;
   if (closed > 0) mhb_dense_output_frictionless(&c->dense_output, 0);
@@ -258,8 +260,8 @@ static void without_friction(mhb_contact_evaluator *c) {
   c->info->share[MHB_SEPARATE] = 1 - closed;
 }
 
-/* A lap beyond what double precision resolves (Ku s 1e12 times mu n, Ku all but singular): no friction is better than none
- * of a number. */
+/* Friction is set to zero if a lap is beyond double precision: Ku s 1e12 times mu n, Ku almost
+ * singular. */
 static void drop_friction(mhb_contact_evaluator *c) {
   size_t nf  = (size_t)c->nf;
   double sum = 0;
@@ -314,8 +316,9 @@ static void normal_load(mhb_contact_evaluator *c, const mhb_law *law, const doub
   }
 }
 
-/* The errors of the integrals, as harmonics and relative to the largest of them. Those of the panels have changing signs:
- * they add up like squares; half of that is what the suite of motions shows (tests/mhb/test_accuracy). */
+/* Error of the integrals, as harmonics and relative to the largest of them. Those of the panels
+ * have changing signs and add up like squares. The factor 0.5 is calibrated on the motions of
+ * tests/mhb/contact/test_accuracy. */
 static double relative_error(const mhb_contact_evaluator *c, const mhb_law *law,
                              const double *force) {
   double top = fabs(force[0] + law->mean_offset),
@@ -332,7 +335,7 @@ void mhb_contact_force(mhb_contact_evaluator *c, const mhb_law *law, const doubl
   memset(info, 0, offsetof(mhb_contact_info, transition));
   memset(force, 0, sizeof(double) * size);
   c->info = info;
-  if (!set_signals(c, law, motion)) { /* at rest, without preload; or not a number */
+  if (!set_signals(c, law, motion)) { /* at rest without preload, or not finite */
     if (jacobian) memset(jacobian, 0, sizeof(double) * size * 3 * (size_t)nb);
     info->share[MHB_SEPARATE] = 1;
     info->lost                = isnan(c->scale);

@@ -34,7 +34,7 @@ void mhb_force_integrals_collect(mhb_contact_evaluator *c) {
   }
 }
 
-/* What the load does to slip at a fixed direction: J += integrals of mu kv e b_i b_j. */
+/* The normal load in slip at a fixed direction: J += integrals of mu kv e b_i b_j. */
 MHB_HOT static void finish_load(mhb_contact_evaluator *c) {
   int nb = c->nb, nf = c->nf, sums = mhb_real_size(c->H + c->m);
   for (int k = 0; k < 2; k++) {
@@ -47,12 +47,11 @@ MHB_HOT static void finish_load(mhb_contact_evaluator *c) {
   }
 }
 
-/* f += Ku s over the stick pieces; scale to Fourier coefficients. */
 MHB_HOT void mhb_force_integrals_finish(mhb_contact_evaluator *c) {
   int nb = c->nb, nf = c->nf, all = c->mode == MHB_ALL_COLUMNS;
-  int used = all ? nb : mhb_real_size(c->signals.used);
+  int used = all ? nb : mhb_real_size(c->signals.top);
   if (all) finish_load(c);
-  mhb_basis_product(c->H, all ? c->m : c->signals.used, c->stick_integrals, c->basis_products, nb);
+  mhb_basis_product(c->H, all ? c->m : c->signals.top, c->stick_integrals, c->basis_products, nb);
   for (int i = 0; i < nf; i++) {
     const double *S = c->basis_products + (size_t)i * (size_t)nb;
     double        q = mhb_force_integrals_factor(i);
@@ -73,7 +72,7 @@ MHB_HOT void mhb_force_integrals_finish(mhb_contact_evaluator *c) {
 void mhb_note_transition(mhb_contact_evaluator *c, double t, mhb_state state) {
   mhb_contact_info *info = c->info;
   if (!c->record || info->n_transitions == MHB_MAX_TRANSITIONS) return;
-  double phase = t / SHB_TWO_PI + 1e-14; /* the end of the period is its beginning */
+  double phase = t / SHB_TWO_PI + 1e-14; /* phase 1 is phase 0 */
   info->transition[info->n_transitions++] =
       (mhb_transition){.phase = fmax(0, phase - floor(phase) - 1e-14), .state = (int)state};
 }

@@ -6,12 +6,11 @@ typedef enum { MHB_STICK, MHB_SLIDE, MHB_SEPARATE } mhb_state;
 
 /* n = max(n0 + kv v, 0); stick f = Ku (s - s0) + f0 while |f| < mu n; slip |f| = mu n. */
 typedef struct {
-  double mu;    /* friction coefficient, >= 0 */
-  double kv;    /* normal stiffness, N/m, >= 0 */
-  double ku[3]; /* tangential stiffness kuu, kuw, kww, N/m; positive definite */
-  double n0;    /* preload, N; negative: initial gap -n0/kv */
-  double
-      mean_offset; /* subtracted from the mean of n, N: max(n0, 0) if n0 is the static load, else 0 */
+  double mu;          /* friction coefficient, >= 0 */
+  double kv;          /* normal stiffness, N/m, >= 0 */
+  double ku[3];       /* tangential stiffness kuu, kuw, kww, N/m; positive definite */
+  double n0;          /* preload, N; negative: initial gap -n0/kv */
+  double mean_offset; /* N, subtracted from the mean of n: max(n0, 0) or 0, see mhb_preload */
 } mhb_law;
 
 typedef struct {

@@ -11,7 +11,7 @@ void mhb_sensitivity_clear(mhb_contact_evaluator *c) {
   memset(&c->lap, 0, sizeof c->lap);
 }
 
-/* out = sum_k keep[k] from[k] + value[kind] basis + slope[kind] basis' (kinds v, u, w). */
+/* out = sum_k keep[k] from[k] + value[kind] basis + slope[kind] basis', kinds v, u, w. */
 static void combine(const mhb_contact_evaluator *c, double *out, int terms, const double *keep,
                     double *const *from, const double value[3], const double slope[3]) {
   int           begin = c->mode == MHB_ALL_COLUMNS ? 0 : c->slider_column, nb = c->nb;
@@ -29,8 +29,10 @@ static void basis_at(mhb_contact_evaluator *c, double t) {
   if (c->mode == MHB_ALL_COLUMNS) mhb_basis(c->m, t, c->event_basis, c->event_basis + c->nb);
 }
 
-/* delta f is projected obliquely onto the circle (free of the onset speed, so that nothing blows up at grazing):
- *   df+ = df - Kf (f.df - mu^2 n dn)/(f.Kf),  hence  dtheta = [g.(dx - dz) + mu beta dn]/(mu n),  g = q - beta e. */
+/* The change of f is projected obliquely onto the circle, free of the onset speed, so that nothing
+ * diverges at grazing:
+ *   df+ = df - Kf (f.df - mu^2 n dn)/(f.Kf),
+ *   dtheta = [g.(dx - dz) + mu beta dn]/(mu n),  g = q - beta e. */
 void mhb_sensitivity_stick_to_slip(mhb_contact_evaluator *c, double t, double theta, double n) {
   if (c->mode == MHB_NO_COLUMNS) return;
   mhb_direction d        = mhb_slip_direction(c->K, theta);
@@ -38,7 +40,7 @@ void mhb_sensitivity_stick_to_slip(mhb_contact_evaluator *c, double t, double th
   double        g[2]     = {(d.q[0] - d.beta * d.e[0]) / limit, (d.q[1] - d.beta * d.e[1]) / limit};
   double        value[3] = {d.beta / n * c->kv, g[0] * c->K[0][0] + g[1] * c->K[1][0],
                             g[0] * c->K[0][1] + g[1] * c->K[1][1]};
-  /* the power begins with gamma mu n/eKe, dt = -(e.df - mu dn)/gamma earlier */
+  /* power at the onset gamma mu n/eKe; the onset is earlier by (e.df - mu dn)/gamma */
   double eKe =
       d.e[0] * (c->K[0][0] * d.e[0] + 2 * c->K[0][1] * d.e[1]) + c->K[1][1] * d.e[1] * d.e[1];
   double work  = -limit / eKe;
@@ -52,7 +54,7 @@ void mhb_sensitivity_stick_to_slip(mhb_contact_evaluator *c, double t, double th
   c->T[c->slider_column] = 1;
 }
 
-/* df does not jump: dz = dx - (mu dn e + mu n q dtheta). */
+/* The force is continuous: dz = dx - (mu dn e + mu n q dtheta). */
 void mhb_sensitivity_slip_to_stick(mhb_contact_evaluator *c, double t, double theta, double n) {
   if (c->mode == MHB_NO_COLUMNS) return;
   double mu = c->slip.mu, e[2] = {cos(theta), sin(theta)}, q[2] = {-e[1], e[0]};
@@ -105,12 +107,12 @@ MHB_INLINE void add_to_sums(const mhb_panel *p, int harmonics, int n, int stride
   }
 }
 
-/* The force of a panel: mu n e, weighted; with the slider column also mu n q dtheta. */
+/* The force of a panel, mu n e, weighted; with the slider column also mu n q dtheta. */
 MHB_HOT static void add_force(mhb_contact_evaluator *c, double growth) {
   const mhb_panel *p      = &c->panel;
   mhb_lanes        weight = p->h * c->slip.mu * c->rule.weight * p->y[0];
   mhb_lanes        g[4]   = {weight * p->e[0], weight * p->e[1]};
-  if (growth == 0) { /* no slider to remember */
+  if (growth == 0) { /* the slider of the start has no influence */
     add_to_sums(p, c->H, 2, 4, g, c->slip_sums);
     return;
   }
@@ -132,7 +134,7 @@ MHB_HOT static double panel_growth(const mhb_contact_evaluator *c) {
   return 1 + p->h * lanes_sum(c->rule.weight * p->F_theta * ones);
 }
 
-/* The basis at the nodes by lanes, [nf], and its rows weighted across the friction, mu n w q_k, [2][nf]. */
+/* The basis at the nodes by lanes, [nf], and its rows times mu n w q_k, [2][nf]. */
 MHB_INLINE void basis_lanes(const mhb_contact_evaluator *c) {
   const mhb_panel *p = &c->panel;
   mhb_lanes       *b = c->node_basis, cs = lanes_all(1), sn = lanes_all(0);
@@ -150,7 +152,7 @@ MHB_INLINE void basis_lanes(const mhb_contact_evaluator *c) {
     for (int i = 0; i < c->nf; i++) b[(1 + k) * c->nf + i] = across[k] * b[i];
 }
 
-/* Right-hand side of the linearised slip equation, rows by node: for columns v_i, u_i, w_i
+/* Right-hand side of the linearised slip equation, rows by node, for columns v_i, u_i, w_i:
  *   kv (beta/n b'_i - F/n b_i),  a_u b'_i,  a_w b'_i  with a = ((q - beta e) K)/(mu n). */
 MHB_INLINE void fill_drive(const mhb_contact_evaluator *c) {
   const mhb_panel *p    = &c->panel;
@@ -171,7 +173,7 @@ MHB_INLINE void fill_drive(const mhb_contact_evaluator *c) {
   }
 }
 
-/* dtheta at the nodes (node_T) and at the panel's end (T): the collocation equations linearised, same matrix. */
+/* T_nodes and T at the panel's end: the collocation equations linearised, with the same matrix. */
 MHB_INLINE void columns_through(const mhb_contact_evaluator *c) {
   const mhb_panel *p    = &c->panel;
   mhb_lanes        ones = p->inverse[0], hA[MHB_NODES], end = p->h * c->rule.weight;
@@ -204,7 +206,7 @@ MHB_INLINE void columns_through(const mhb_contact_evaluator *c) {
   }
 }
 
-/* J[row][j] += sum_l b[row][l] y[l][j], some rows together. */
+/* J[row][j] += sum_l b[row][l] y[l][j] for a few rows at once. */
 MHB_INLINE void add_rows(int rows, int stride, const mhb_lanes *b, const double *y, double *J) {
   for (int j = 0; j < stride; j += MHB_LANES) {
     mhb_lanes sum[6];
@@ -218,7 +220,8 @@ MHB_INLINE void add_rows(int rows, int stride, const mhb_lanes *b, const double 
   }
 }
 
-/* The hot loop of the derivative. Six rows hide the latency of a multiplication, two and one make up the rest. */
+/* The hot loop of the derivative. Six rows hide the latency of a multiplication; two and one make
+ * up the rest. */
 MHB_INLINE void add_outer(int rows, int stride, const mhb_lanes *b, const double *y, double *J) {
   int row = 0;
   for (; row + 6 <= rows; row += 6) add_rows(6, stride, b + row, y, J + row * stride);
@@ -271,8 +274,8 @@ void mhb_sensitivity_stick(mhb_contact_evaluator *c) {
 
 /* ---- the periodic slider ---- */
 
-/* DP = d v^T: (I - DP)^-1 r = r + d v.r/(1 - v.d), the denominator held above a floor: for Newton rounding's, for the
- * derivative one that keeps it bounded where slip just begins. */
+/* DP = d v^T: (I - DP)^-1 r = r + d v.r/(1 - v.d), the denominator held above a floor. For Newton
+ * that is rounding; for the derivative it bounds the result where slip just begins. */
 static double closure(const mhb_contact_evaluator *c, double floor) {
   double det =
       1 - c->lap.v[0] * c->Z[0][c->slider_column] - c->lap.v[1] * c->Z[1][c->slider_column];
@@ -302,7 +305,7 @@ MHB_HOT static void eliminate(mhb_contact_evaluator *c) {
   for (int j = 0; j < c->slider_column; j++) {
     double G[2] = {c->Z[0][j], c->Z[1][j]}, part = (v[0] * G[0] + v[1] * G[1]) / det;
     for (int k = 0; k < 2; k++) c->Z[k][j] = G[k] + c->Z[k][c->slider_column] * part;
-    c->T[j] = part; /* v.dz, since v.d part + v.G = part */
+    c->T[j] = part; /* v.dz: v.d part + v.G = part */
   }
   for (int k = 0; k < 2; k++) {
     for (int i = 0; i < c->nf; i++) {

@@ -29,15 +29,16 @@ void mhb_sensitivity_stick(mhb_contact_evaluator *contact);
 /* |DP|: the factor by which a lap contracts a change of the slider. */
 double mhb_sensitivity_contraction(const mhb_contact_evaluator *contact);
 
-/* Error of the periodic slider due to rounding, in units of the friction. A lap is good to some 4e-13,
- * its fixed point to that divided by det(I - DP). Where slip just begins, a double root, that is the
- * square root of the lap's error. */
+/* Error of the periodic slider due to rounding, in units of the friction. A lap is good to some
+ * 4e-13, its fixed point to that divided by det(I - DP). Where slip just begins, a double root,
+ * that is the square root of the error of a lap. */
 double mhb_sensitivity_roundoff(const mhb_contact_evaluator *contact);
 
-/* Newton step of the periodic slider: dz = (I - DP)^-1 r, r = P(z) - z, |det(I - DP)| held above 1e-12. */
+/* Newton step of the periodic slider: dz = (I - DP)^-1 r, r = P(z) - z. |det(I - DP)| is held above
+ * 1e-12. */
 void mhb_sensitivity_close(const mhb_contact_evaluator *contact, const double r[2], double dz[2]);
 
-/* J += the derivative by way of the periodic slider, |det(I - DP)| held above 1e-7. */
+/* J += the derivative by way of the periodic slider. |det(I - DP)| is held above 1e-7. */
 void mhb_sensitivity_eliminate_slider(mhb_contact_evaluator *contact);
 
 #endif

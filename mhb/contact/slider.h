@@ -4,7 +4,8 @@
 
 #include "mhb/contact/internal.h"
 
-/* Friction over the closed intervals: every closing is a fresh start (eqs. 13-15). 0: a panel failed. */
+/* Friction over the closed intervals, every closing a fresh start (eqs. 13-15). 0: a panel
+ * failed. */
 int mhb_slider_with_openings(mhb_contact_evaluator *contact);
 
 /* Friction of a contact that stays closed and slips: the fixed point of the lap map P(z) = z by

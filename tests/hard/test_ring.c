@@ -13,6 +13,7 @@
 #include "mhb/balance/newton.h"
 #include "mhb/numerics/fourier.h"
 #include "tests/hard/verdict.h"
+#include "tests/support/complex_form.h"
 #include "tests/support/periodic.h"
 #include "tests/support/random_model.h"
 
@@ -74,7 +75,7 @@ static void spread(const double *x, int engine_order, double *all) {
   double complex A[M + 1];
   for (int b = 0; b < BLADES; b++)
     for (int c = 0; c < 3; c++) {
-      mhb_to_complex(M, x + c * nb, A);
+      to_complex(M, x + c * nb, A);
       for (int k = 0; k <= M; k++) A[k] *= cexp(-SHB_TWO_PI * I * k * b * engine_order / BLADES);
       mhb_to_real(M, A, all + (3 * b + c) * nb);
     }

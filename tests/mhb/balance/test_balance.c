@@ -15,6 +15,7 @@
 #include "mhb/balance/balance.h"
 #include "mhb/branches/main_branch.h"
 #include "mhb/numerics/fourier.h"
+#include "tests/support/complex_form.h"
 #include "tests/support/random_model.h"
 
 #define assert_below(value, bound)                                      \
@@ -397,7 +398,7 @@ static void force_at_interface(const mhb_balance *b, const double *x, double pha
   int block = 3 * b->nb;
   for (int row = 0; row < 3 * b->n_pairs; row++) {
     double complex A[b->m + 1];
-    mhb_to_complex(b->m, x + row * b->nb, A);
+    to_complex(b->m, x + row * b->nb, A);
     for (int k = 0; k <= b->m; k++) A[k] *= cexp(-I * k * phase * blade_no);
     mhb_to_real(b->m, A, moved + row * b->nb);
   }
