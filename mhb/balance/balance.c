@@ -114,8 +114,8 @@ void mhb_balance_set_preload(mhb_balance *b, double n0) {
 }
 
 void mhb_balance_tie_preloads(mhb_balance *b, int anchored) {
-  b->at.anchored = anchored;
-  b->at.anchor   = b->at.n0;
+  b->at.preloads_tied = anchored;
+  b->at.tied_n0       = b->at.n0;
 }
 
 void mhb_balance_set_parameter(mhb_balance *b, mhb_parameter parameter) {
@@ -303,7 +303,7 @@ static void slope_of(mhb_balance *b, int k, int rest) {
     return;
   }
   const double complex *R    = b->receptance->R + (size_t)k * (size_t)n3 * (size_t)n3;
-  const double complex *unit = b->receptance->unit + k * n3;
+  const double complex *unit = b->receptance->free_response_unit + k * n3;
   for (int i = 0; i < n3; i++, R += n3) {
     if (b->parameter == MHB_IN_SCALE) b->uk[i] = -unit[i];
     for (int j = 0; j < n3; j++) b->uk[i] += R[j] * b->pk[j];
@@ -399,7 +399,7 @@ shb_status mhb_balance_linear_limit(mhb_balance *b, double value, int stuck, dou
       if (!holds(b, a, stuck)) continue;
       const mhb_law        *law = &b->law[a];
       const double complex *u   = b->uk + 3 * a;
-      b->pk[3 * a]              = law->kv * u[0] + (k == 0 ? fmax(law->n0, 0) - law->mean_offset : 0);
+      b->pk[3 * a] = law->kv * u[0] + (k == 0 ? fmax(law->n0, 0) - law->mean_offset : 0);
       if (k == 0) continue;
       b->pk[3 * a + 1] = law->ku[0] * u[1] + law->ku[1] * u[2];
       b->pk[3 * a + 2] = law->ku[1] * u[1] + law->ku[2] * u[2];

@@ -154,7 +154,7 @@ static void set_own(mhb_higher_harmonics *b, int k, int pair, double complex W[3
   const double complex *D       = b->D + 9 * pair;
   double complex        G[3][3] = {{0}}, A[9];
   int                   pivot[3];
-  mhb_residual_terms_block(r->left_out, k, k * r->omega / r->nu, pair, G);
+  mhb_residual_terms_block(r->residual_terms, k, k * r->omega / r->nu, pair, G);
   for (int c = 0; c < 3; c++)
     for (int d = 0; d < 3; d++)
       A[3 * d + c] = G[c][0] * D[d] + G[c][1] * D[3 + d] + G[c][2] * D[6 + d] + (c == d);

@@ -37,7 +37,7 @@ static int last_of(void *const term[MODAL_TERMS]) {
 /* e[k][n] of one part; ratio[k] as above. */
 static void lacking(const mhb_balance *b, const double *ratio, part by, double complex *e) {
   const mhb_receptance     *r = b->receptance;
-  const mhb_residual_terms *l = r->left_out;
+  const mhb_residual_terms *l = r->residual_terms;
   const int      t = last_of((void *const *)l->contact), u = last_of((void *const *)l->load);
   double complex p[r->n];
   for (int k = 1; k <= b->m; k++) {
@@ -96,7 +96,7 @@ double mhb_modal_error(const mhb_balance *b, const double *x, mhb_condensation *
   const double          size   = mhb_balance_vibration(b, x);
   double                ratio[b->m + 1], sum = 0;
   int                   pivot[n];
-  if (!r->left_out->contact[0]) return -1;
+  if (!r->residual_terms->contact[0]) return -1;
   double complex *e = calloc((size_t)all + (linear ? (size_t)(n * n) : 0), sizeof *e);
   if (!e || !(size > 0)) {
     free(e);

@@ -22,7 +22,8 @@ static double in_proportion(double own, double now, double lead) {
 
 static double preload_of(const mhb_operating_point *c, const mhb_settings *s,
                          const mhb_interface *own) {
-  double lead = c->anchored ? c->anchor : c->n0, moved = c->anchored ? c->n0 - c->anchor : 0;
+  double lead  = c->preloads_tied ? c->tied_n0 : c->n0,
+         moved = c->preloads_tied ? c->n0 - c->tied_n0 : 0;
   if (s->parameter == MHB_IN_N0)
     return moved + (s->together ? in_proportion(own->n0[0], lead, s->n0[0]) : own->n0[0]);
   return moved + own->n0[own->n_preloads > 1 ? preload_at(s, lead) : 0];
@@ -45,7 +46,7 @@ mhb_operating_point mhb_interface_operating_point(const mhb_operating_point *c,
 double mhb_interface_rate(const mhb_operating_point *c, const mhb_settings *s, int interface,
                           mhb_parameter parameter) {
   if (s->n_interfaces < 2 || interface == s->lead) return 1;
-  if (parameter == MHB_IN_N0 && c->anchored) return 1;
+  if (parameter == MHB_IN_N0 && c->preloads_tied) return 1;
   if (parameter != s->parameter || !s->together) return 0;
   const mhb_interface *own = &s->interface[interface];
   switch (parameter) {

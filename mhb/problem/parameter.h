@@ -13,12 +13,12 @@
 #include "mhb/problem/settings.h"
 
 typedef struct {
-  double omega;     /* rad/s, of the excitation */
-  double n0;        /* N, of the interface, as all below */
-  double scale, mu; /* - */
-  double ku[3], kv; /* N/m */
-  int    anchored;  /* the preloads of all interfaces move alike from where this one's is anchor */
-  double anchor;    /* N */
+  double omega;      /* rad/s, of the excitation */
+  double n0;         /* N, of the interface, as all below */
+  double scale, mu;  /* - */
+  double ku[3], kv;  /* N/m */
+  int preloads_tied; /* the preloads of all interfaces move alike, from where this one is tied_n0 */
+  double tied_n0;    /* N */
 } mhb_operating_point;
 
 /* That of the settings, at the low end of the range and the first preload. */

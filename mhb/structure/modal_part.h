@@ -1,10 +1,11 @@
 /* One modal model as the contact sees it: the part of the receptance without the frequency.
  *
- * At harmonic k, with the shroud axes T0 of each pair (columns v, u, w; eq. 2) and e_k = exp(-j k phi/nu):
+ * At harmonic k, with the shroud axes T0 of each pair (columns v, u, w; eq. 2) and e_k = exp(-j k
+ * phi/nu):
  *   B_k[3 a + c][i] = T0^T (right - e_k left)      relative motion of pair a in mode i, kg^-1/2
  *   F_k[i]                                         modal force of the load at scale 1, N kg^-1/2
- * and the residual terms (residual_terms.h). In a run-up the derivative of the model by the frequency is
- * a second modal part. */
+ * and the residual terms (residual_terms.h). In a run-up the derivative of the model by the
+ * frequency is a second modal part. */
 #ifndef MHB_STRUCTURE_MODAL_PART_H
 #define MHB_STRUCTURE_MODAL_PART_H
 
@@ -28,8 +29,8 @@ typedef struct {
   shb_arena           arena;
 } mhb_modal_part;
 
-/* model, relative.T0 and phase[n_harmonics + 1] must outlive it. Load harmonic h drives harmonic nu h.
- * SHB_ERR_IO: no memory. */
+/* model, relative.T0 and phase[n_harmonics + 1] must outlive it. Load harmonic h drives harmonic nu
+ * h. SHB_ERR_IO: no memory. */
 shb_status mhb_modal_part_create(const modal_model *model, mhb_relative relative, int nu,
                                  int n_harmonics, const double complex *phase,
                                  mhb_modal_part **part);

@@ -10,7 +10,7 @@ static int wave_of(const mhb_settings *s) {
   return (int)((s->engine_order + (long)s->blades * mhb_wave_shift(s)) / s->subharmonics);
 }
 
-/* T0^T x of a pair by a mode, negative on the left. */
+/* T0^T x of a pair in a mode, negative on the left. */
 static double shape_of(const mhb_receptance *r, int side, int row, int mode) {
   const double *x   = side ? r->model->left : r->model->right;
   double        sum = 0;
@@ -19,7 +19,8 @@ static double shape_of(const mhb_receptance *r, int side, int row, int mode) {
   return side ? -sum : sum;
 }
 
-/* Motion on side s by a unit contact force on side t of the same blade: modes from `first` on, and the residual. */
+/* Motion on side s by a unit contact force on side t of the same blade: modes from `first` on, and
+ * residual flexibility. */
 static double flexibility(const mhb_receptance *r, int s, int row, int t, int column, int first) {
   const modal_model *model = r->model;
   int                n = r->n, nc = n * (model->has_left ? 2 : 1);

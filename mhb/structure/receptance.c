@@ -18,7 +18,7 @@ static void shroud_axes(double psi, double phi, double T0[3][3]) {
   memcpy(T0, T, sizeof T);
 }
 
-/* Angles of an interface as the case has them; 0 if not given. */
+/* Angles of an interface in the case; 0 if not given. */
 typedef struct {
   bool        has_psi, has_phi;
   double      psi, phi;
@@ -43,7 +43,7 @@ static shb_status check_angle(const char *name, const char *interface, bool give
   return SHB_OK;
 }
 
-/* Axes of each pair: from its own normal where the file has one, else psi and phi of the case. */
+/* Axes of each pair: from its normal if the file has one, else from psi and phi of the case. */
 static shb_status set_axes(mhb_receptance *r, const mhb_settings *s, int interface) {
   const modal_model *model = r->model;
   const angles       given = angles_of(s, interface);
@@ -81,18 +81,18 @@ static void set_shares(mhb_receptance *r, int interface) {
 
 static int allocate(mhb_receptance *r) {
   size_t     n = (size_t)r->n, m = (size_t)r->n_modes, K = (size_t)r->n_harmonics + 1;
-  shb_arena *a  = &r->arena;
-  r->T0         = shb_arena_take(a, 3 * n, sizeof *r->T0);
-  r->share      = shb_arena_take(a, n / 3, sizeof *r->share);
-  r->interface  = shb_arena_take(a, n / 3, sizeof *r->interface);
-  r->phase      = shb_arena_take(a, K, sizeof *r->phase);
-  r->updated_at = shb_arena_take(a, K, sizeof *r->updated_at);
-  r->lambda     = shb_arena_take(a, K * m, sizeof *r->lambda);
-  r->R          = shb_arena_take(a, K * n * n, sizeof *r->R);
-  r->free       = shb_arena_take(a, K * n, sizeof *r->free);
-  r->unit       = shb_arena_take(a, K * n, sizeof *r->unit);
-  r->scratch    = shb_arena_take(a, 4 * m, sizeof *r->scratch);
-  r->BL         = shb_arena_take(a, n * m, sizeof *r->BL);
+  shb_arena *a          = &r->arena;
+  r->T0                 = shb_arena_take(a, 3 * n, sizeof *r->T0);
+  r->share              = shb_arena_take(a, n / 3, sizeof *r->share);
+  r->interface          = shb_arena_take(a, n / 3, sizeof *r->interface);
+  r->phase              = shb_arena_take(a, K, sizeof *r->phase);
+  r->updated_at         = shb_arena_take(a, K, sizeof *r->updated_at);
+  r->lambda             = shb_arena_take(a, K * m, sizeof *r->lambda);
+  r->R                  = shb_arena_take(a, K * n * n, sizeof *r->R);
+  r->free               = shb_arena_take(a, K * n, sizeof *r->free);
+  r->free_response_unit = shb_arena_take(a, K * n, sizeof *r->free_response_unit);
+  r->scratch            = shb_arena_take(a, 4 * m, sizeof *r->scratch);
+  r->BL                 = shb_arena_take(a, n * m, sizeof *r->BL);
   return !a->failed;
 }
 
@@ -115,10 +115,10 @@ static shb_status set_blade(mhb_receptance *r, const mhb_settings *settings) {
     r->phase[k]      = cexp(-I * fmod(k * step, SHB_TWO_PI));
   }
   SHB_TRY(mhb_modal_part_create(r->model, relative, r->nu, r->n_harmonics, r->phase, &r->part));
-  r->B        = r->part->B;
-  r->F        = r->part->F;
-  r->driven   = r->part->driven;
-  r->left_out = r->part->residual_terms;
+  r->B              = r->part->B;
+  r->F              = r->part->F;
+  r->driven         = r->part->driven;
+  r->residual_terms = r->part->residual_terms;
   return SHB_OK;
 }
 
@@ -168,8 +168,8 @@ void mhb_receptance_destroy(mhb_receptance *r) {
   free(r);
 }
 
-/* 1/(w_i^2 - w^2 + 2 j zeta_i w_i w), w half of NUDGE off a resonance that nothing damps: so far that the other modes keep
- * half of their digits in the sums. */
+/* L_i = 1/(w_i^2 - w^2 + 2 j zeta_i w_i w). At a resonance without damping w is moved by half of
+ * NUDGE: far enough that the other modes keep half of their digits in the sums. */
 MHB_HOT static void set_lambda(const mhb_receptance *r, double w, double *restrict re,
                                double *restrict im) {
   const double *restrict hz = r->model->frequency, *restrict zeta = r->model->damping_ratio;
@@ -195,7 +195,7 @@ MHB_INLINE double complex product(int m, const double *xr, const double *xi, con
   return CMPLX(re, im);
 }
 
-/* One row of R += B L B^H, and of the free motion: y = row of B L. */
+/* One row of R += B L B^H, and of the response to the load. y: that row of B L. */
 MHB_HOT static void modal_row(const mhb_receptance *r, int k, const double *yr, const double *yi,
                               double complex *R, double complex *u) {
   int           m = r->n_modes, n = r->n;
@@ -207,20 +207,20 @@ MHB_HOT static void modal_row(const mhb_receptance *r, int k, const double *yr, 
 
 void mhb_receptance_residual_terms(const mhb_receptance *r, int k, double w, double complex *R) {
   memset(R, 0, sizeof *R * (size_t)r->n * (size_t)r->n);
-  mhb_residual_terms_matrix(r->left_out, k, w, R);
+  mhb_residual_terms_matrix(r->residual_terms, k, w, R);
 }
 
 static void harmonic_at(mhb_receptance *r, int k) {
   int             n = r->n, m = r->n_modes;
   double          w = k * r->omega / r->nu, *L = r->scratch, *y = L + 2 * m;
-  double complex *R = r->R + (size_t)k * (size_t)n * (size_t)n, *u = r->unit + k * n;
+  double complex *R = r->R + (size_t)k * (size_t)n * (size_t)n, *u = r->free_response_unit + k * n;
   const double *re = mhb_modal_part_split(r->part, k, 0), *im = mhb_modal_part_split(r->part, k, 1);
   double complex *all = r->BL, one = 1;
   set_lambda(r, w, L, L + m);
   for (int i = 0; i < m; i++) r->lambda[k * m + i] = CMPLX(L[i], L[m + i]);
   memset(u, 0, sizeof *u * (size_t)n);
   mhb_receptance_residual_terms(r, k, w, R);
-  mhb_residual_terms_load(r->left_out, k, w, 1, u);
+  mhb_residual_terms_load(r->residual_terms, k, w, 1, u);
   for (int a = 0; a < n; a++, re += m, im += m) {
     for (int i = 0; i < m; i++) {
       y[i]     = re[i] * L[i] - im[i] * L[m + i];
@@ -243,7 +243,9 @@ void mhb_receptance_set_frequency(mhb_receptance *r, double omega) {
 }
 
 void mhb_receptance_update(mhb_receptance *r, int k) {
-  double w = k == 0 && !r->at ? 0 : r->omega; /* the mean knows no frequency, but a speed */
+  double w = k == 0 && !r->at
+                 ? 0
+                 : r->omega; /* without a run-up the mean does not depend on the frequency */
   if (r->updated_at[k] == w) return;
   harmonic_at(r, k);
   r->updated_at[k] = w;
@@ -256,17 +258,18 @@ void mhb_receptance_at(mhb_receptance *r, double omega, int top) {
 
 void mhb_receptance_scale(mhb_receptance *r, double scale) {
   r->scale = scale;
-  for (int i = 0; i < (r->n_harmonics + 1) * r->n; i++) r->free[i] = scale * r->unit[i];
+  for (int i = 0; i < (r->n_harmonics + 1) * r->n; i++)
+    r->free[i] = scale * r->free_response_unit[i];
 }
 
-/* dL/d omega = L^2 (2 k^2 w - 2 j zeta w_i k), k counted in the excitation frequency. */
+/* dL/d omega = L^2 (2 k^2 omega - 2 j zeta w_i k), k counted in the excitation frequency. */
 static double complex lambda_slope(const mhb_receptance *r, int k, int i) {
   double         kk = (double)k / r->nu, wi = SHB_TWO_PI * r->model->frequency[i];
   double complex L = r->lambda[k * r->n_modes + i];
   return L * L * (2 * kk * kk * r->omega - 2 * I * r->model->damping_ratio[i] * wi * kk);
 }
 
-/* y = scale F - B^H p by modes. */
+/* y = scale F - B^H p, by modes. */
 MHB_INLINE void drive(const mhb_receptance *r, int k, const double complex *p, double *restrict yr,
                       double *restrict yi) {
   int m = r->n_modes, n = r->n;
@@ -286,7 +289,7 @@ MHB_INLINE void drive(const mhb_receptance *r, int k, const double complex *p, d
   }
 }
 
-/* y = dL/d omega (scale F - B^H p) by modes. */
+/* y = dL/d omega (scale F - B^H p), by modes. */
 MHB_HOT static void slope_drive(const mhb_receptance *r, int k, const double complex *p,
                                 double *restrict yr, double *restrict yi) {
   int    m  = r->n_modes;
@@ -303,7 +306,7 @@ MHB_HOT static void slope_drive(const mhb_receptance *r, int k, const double com
   }
 }
 
-/* y = L (scale F - B^H p) by modes, at w rad/s. */
+/* y = L (scale F - B^H p), by modes, at w rad/s. */
 MHB_HOT static void motion_drive(const mhb_receptance *r, int k, double w, const double complex *p,
                                  double *restrict yr, double *restrict yi) {
   int    m = r->n_modes;
@@ -329,7 +332,7 @@ void mhb_receptance_motion(const mhb_receptance *r, int k, const double complex 
   double w = k * r->omega / r->nu, yr[r->n_modes], yi[r->n_modes];
   motion_drive(r, k, w, p, yr, yi);
   modal_sums(r, k, yr, yi, motion);
-  mhb_residual_terms_motion(r->left_out, k, w, r->scale, p, motion);
+  mhb_residual_terms_motion(r->residual_terms, k, w, r->scale, p, motion);
 }
 
 void mhb_receptance_slope(const mhb_receptance *r, int k, const double complex *p,
@@ -337,7 +340,7 @@ void mhb_receptance_slope(const mhb_receptance *r, int k, const double complex *
   double kk = (double)k / r->nu, dw2 = 2 * kk * kk * r->omega, yr[r->n_modes], yi[r->n_modes];
   slope_drive(r, k, p, yr, yi);
   modal_sums(r, k, yr, yi, slope);
-  mhb_residual_terms_slope(r->left_out, k, kk * r->omega, dw2, r->scale, p, slope);
+  mhb_residual_terms_slope(r->residual_terms, k, kk * r->omega, dw2, r->scale, p, slope);
   if (r->at)
     mhb_speed_derivative_slope(r->speed_derivative, k, k * r->omega / r->nu,
                                r->lambda + k * r->n_modes, r->scale, p, slope);
@@ -349,8 +352,8 @@ void mhb_receptance_probe_change(const mhb_receptance *r, int k, const double co
   int    q = 3 * r->model->n_probes, m = r->n_modes;
   double kk = (double)k / r->nu, dw2 = 2 * kk * kk * r->omega * d_omega;
   memset(change, 0, sizeof *change * (size_t)q);
-  mhb_residual_terms_probe_change(r->left_out, k, kk * r->omega, r->scale, p, dp, dw2, d_scale,
-                                  change);
+  mhb_residual_terms_probe_change(r->residual_terms, k, kk * r->omega, r->scale, p, dp, dw2,
+                                  d_scale, change);
   for (int i = 0; i < m; i++) {
     double complex a = r->lambda[k * m + i] * mhb_modal_part_force(r->part, k, dp, i, d_scale);
     if (d_omega != 0)
@@ -362,7 +365,7 @@ void mhb_receptance_probe_change(const mhb_receptance *r, int k, const double co
                                r->scale, p, d_omega, change);
 }
 
-/* Neither driven nor pushed at by the contact. */
+/* The harmonic has neither load nor contact force. */
 static int at_rest(const mhb_receptance *r, int k, const double complex *p) {
   for (int i = 0; i < r->n; i++)
     if (creal(p[i]) != 0 || cimag(p[i]) != 0) return 0;

@@ -1,14 +1,14 @@
 /* The blade as the contact sees it: receptance between the relative motions at the contact pairs
  * (eqs. 19-27, 34-35).
  *
- * Harmonic k of the fundamental omega/nu, w = k omega/nu. The inter-blade phase is
- * e_k = exp(-j k phi/nu), phi = 2 pi E/N + 2 pi l (eq. 16). l is 0 for nu = 1, else the least for which a
- * wave of nu periods closes around the ring. With B_k and F_k of modal_part.h:
+ * Harmonic k of the fundamental omega/nu, w = k omega/nu. The inter-blade phase is e_k = exp(-j k
+ * phi/nu), phi = 2 pi E/N + 2 pi l (eq. 16). l is 0 for nu = 1, else the least for which a wave of
+ * nu periods closes around the ring. With B_k and F_k of modal_part.h:
  *   L_i = 1/(w_i^2 - w^2 + 2 j zeta_i w_i w)                          eq. 20
  *   R_k = B L B^H + residual terms (residual_terms.h)                 eqs. 34, 35
  *   u_k = B L F_k + residual terms of the load - R_k p_k              eq. 33
- * and the probes by the same with their own shapes. |L_i| is at most 1e8/w_i^2: without damping, at a
- * resonance, it is that of a frequency 5e-9 beside it.
+ * and the probes by the same with their own shapes. |L_i| is at most 1e8/w_i^2: without damping, at
+ * a resonance, it is that of a frequency 5e-9 beside it.
  *
  * Motions are [3 pairs] in the order pair, (v, u, w). The modal part is made once; in a run-up
  * (settings->run_up), where the model depends on omega, anew at every frequency. */
@@ -38,16 +38,16 @@ typedef struct {
   const double complex *B;         /* [k][n][modes] */
   const double complex *F;         /* [k][modes] modal force at scale 1 */
   const int            *driven;    /* [k] whether the load has this harmonic */
-  mhb_residual_terms   *left_out;
-  double                scale;      /* of the excitation */
-  double                omega;      /* rad/s, of mhb_receptance_set_frequency */
-  double               *updated_at; /* [k] rad/s of the arrays below, NAN: never */
-  double complex       *lambda;     /* [k][modes] L */
-  double complex       *R;          /* [k][n][n] m/N */
-  double complex       *free;       /* [k][n] m, response without contact */
-  double complex       *unit;       /* the same at scale 1 */
-  double               *scratch;    /* [4][modes] */
-  double complex       *BL;         /* [n][modes] B L of one harmonic */
+  mhb_residual_terms   *residual_terms;
+  double                scale;              /* of the excitation */
+  double                omega;              /* rad/s, of mhb_receptance_set_frequency */
+  double               *updated_at;         /* [k] rad/s of the arrays below, NAN: never */
+  double complex       *lambda;             /* [k][modes] L */
+  double complex       *R;                  /* [k][n][n] m/N */
+  double complex       *free;               /* [k][n] m, response without contact */
+  double complex       *free_response_unit; /* the same at scale 1 */
+  double               *scratch;            /* [4][modes] */
+  double complex       *BL;                 /* [n][modes] B L of one harmonic */
   shb_arena             arena;
 } mhb_receptance;
 
@@ -58,7 +58,8 @@ shb_status mhb_receptance_create(const modal_model *model, const mhb_settings *s
                                  int n_harmonics, mhb_receptance **receptance);
 void       mhb_receptance_destroy(mhb_receptance *receptance);
 
-/* Go to the excitation frequency omega (rad/s). lambda, R and free are made when they are needed. */
+/* Go to the excitation frequency omega (rad/s). lambda, R and free are made when they are
+ * needed. */
 void mhb_receptance_set_frequency(mhb_receptance *receptance, double omega);
 
 /* lambda, R and free of harmonic k. Not for two threads at once. */
@@ -78,7 +79,8 @@ void mhb_receptance_motion(const mhb_receptance *receptance, int k, const double
 void mhb_receptance_slope(const mhb_receptance *receptance, int k, const double complex *p,
                           double complex *slope);
 
-/* R[n][n] <- the residual terms alone of harmonic k, at w rad/s (k omega/nu for any other omega). */
+/* R[n][n] <- the residual terms alone of harmonic k, at w rad/s (k omega/nu for any other
+ * omega). */
 void mhb_receptance_residual_terms(const mhb_receptance *receptance, int k, double w,
                                    double complex *R);
 

@@ -1,5 +1,5 @@
-/* Relative motion at the contact: T = T0^T T1,k (eqs. 2, 24, 25), with the shroud axes T0 of a pair and
- * the inter-blade phase of the wave. */
+/* Relative motion at the contact: T = T0^T T1,k (eqs. 2, 24, 25), with the shroud axes T0 of a pair
+ * and the inter-blade phase of the wave. */
 #ifndef MHB_STRUCTURE_RELATIVE_MOTION_H
 #define MHB_STRUCTURE_RELATIVE_MOTION_H
 
@@ -11,8 +11,8 @@
 /* From this many relative motions on, products of matrices are left to BLAS. */
 enum { MHB_WORTH_BLAS = 12 };
 
-/* A neighbour lags in the fundamental by (2 pi/nu)(E/N + l), l any whole number of periods. The least l
- * for which the wave closes around the ring: nu divides E + N l. -1: none does. */
+/* A neighbour lags in the fundamental by (2 pi/nu)(E/N + l), l any whole number of periods. The
+ * least l for which the wave closes around the ring: nu divides E + N l. -1: none does. */
 static inline int mhb_wave_shift(const mhb_settings *s) {
   for (int l = 0; l < s->subharmonics; l++)
     if ((s->engine_order + (long)s->blades * l) % s->subharmonics == 0) return l;

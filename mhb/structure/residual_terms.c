@@ -9,9 +9,9 @@ static int n_contact(const modal_model *model) {
   return 3 * model->n_pairs * (model->has_left ? 2 : 1);
 }
 
-/* ---- made once ---- */
+/* ---- independent of the frequency ---- */
 
-/* True if there is nothing to hold, or room for it. */
+/* True if the array is not wanted, or there is memory for it. */
 static bool room(const void *wanted, size_t n, double complex **array) {
   if (wanted && n) *array = calloc(n, sizeof **array);
   return !wanted || !n || *array;
@@ -158,7 +158,7 @@ static const double complex *shapes(const mhb_residual_terms *l, int k) {
   return l->S + (size_t)k * (size_t)l->relative.n * (size_t)l->model->n_residual;
 }
 
-/* sum_t weight_t x_t at i, of the terms that there are. */
+/* sum_t weight_t x_t at i, over the terms there are. */
 MHB_INLINE double complex series(double complex *const x[MODAL_TERMS],
                                  const double weight[MODAL_TERMS], size_t i) {
   double re = 0, im = 0;
@@ -223,7 +223,7 @@ void mhb_residual_terms_block(const mhb_residual_terms *l, int k, double w, int 
   }
 }
 
-/* What acts on residual mode i: load F - S^H p. */
+/* Force on residual mode i: load F - S^H p. */
 static double complex drive(const mhb_residual_terms *l, int k, int i, double load,
                             const double complex *p) {
   const int             r = l->model->n_residual;
@@ -233,7 +233,7 @@ static double complex drive(const mhb_residual_terms *l, int k, int i, double lo
   return f;
 }
 
-/* to[n] += factor (load x - matrix p), of the terms, with their weights or slopes. */
+/* to[n] += factor (load x - matrix p), by the terms, with their weights or slopes. */
 static void add_terms(const mhb_residual_terms *l, int k, const modal_series *s, bool slopes,
                       double factor, double load, const double complex *p, double complex *to) {
   const int     n       = l->relative.n;
@@ -247,7 +247,7 @@ static void add_terms(const mhb_residual_terms *l, int k, const modal_series *s,
   }
 }
 
-/* The same of the residual modes. */
+/* The same by the residual modes. */
 static void add_modes(const mhb_residual_terms *l, int k, const modal_series *s, bool slopes,
                       double factor, double load, const double complex *p, double complex *to) {
   const int             n = l->relative.n, r = l->model->n_residual;
@@ -292,7 +292,7 @@ void mhb_residual_terms_slope(const mhb_residual_terms *l, int k, double w, doub
   add_modes(l, k, &s, true, dw2, scale, p, slope);
 }
 
-/* change[3 q] += P_i (g drive of the change + dw2 g' drive). */
+/* change[3 q] += P_i (g F(change) + dw2 g' F), F the force on residual mode i of shape P_i. */
 static void add_probe_modes(const mhb_residual_terms *l, int k, const modal_series *s, double scale,
                             const double complex *p, const double complex *dp, double dw2,
                             double d_scale, double complex *change) {
@@ -305,7 +305,7 @@ static void add_probe_modes(const mhb_residual_terms *l, int k, const modal_seri
   }
 }
 
-/* change[3 q] += scale load - matrix p, of the terms. */
+/* change[3 q] += scale load - matrix p, by the terms. */
 static void add_probe_terms(const mhb_residual_terms *l, int k, const double weight[MODAL_TERMS],
                             double scale, const double complex *p, double complex *change) {
   const size_t n = (size_t)l->relative.n, q = 3 * (size_t)l->model->n_probes;

@@ -30,7 +30,7 @@ void mhb_speed_derivative_destroy(mhb_speed_derivative *d) {
 
 /* The slope at the model's omega. */
 static void update(const mhb_speed_derivative *d) {
-  if (d->model->slope_at == d->model->omega) return;
+  if (d->model->slope_omega == d->model->omega) return;
   mhb_speed_model_differentiate(d->model);
   mhb_modal_part_update(d->slope);
 }
@@ -49,8 +49,8 @@ static void modal_change(const mhb_speed_derivative *d, int k, double w,
   }
 }
 
-/* d/d omega of the weights of the residual terms by w_m, the last mode kept. The weight of term t is
- * homogeneous of degree t in (w^2, w_m^2). */
+/* d/d omega of the weights of the residual terms by w_m, the last mode kept. The weight of term t
+ * is homogeneous of degree t in (w^2, w_m^2). */
 static modal_series weight_slope(const mhb_speed_derivative *d, const modal_series *s, double w) {
   const modal_model *model = d->part->model;
   const int          last  = model->n_modes - 1;

@@ -486,7 +486,7 @@ static double power_imbalance(const mhb_balance *b, double omega) {
       in += .5 * creal(conj(F) * I * w * q);
       damping += model->damping_ratio[i] * wi * w * w * creal(q * conj(q));
     }
-    const mhb_residual_terms *left = r->left_out;
+    const mhb_residual_terms *left = r->residual_terms;
     for (int row = 0; left->load[0] && row < r->n; row++)
       residual +=
           conj(left->load[0][k * r->n + row] + w * w * left->load[1][k * r->n + row]) * p[row];

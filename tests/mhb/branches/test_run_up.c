@@ -148,7 +148,7 @@ static void points_are_solutions_at_their_speed(void **state) {
     plain.to_ground            = all[c].to_ground;
     s                          = plain;
     mhb_speed_table  *run_up   = make_run_up(all[c].kind, all[c].n, &s);
-    mhb_response     *response = sweep(run_up->given, &s);
+    mhb_response     *response = sweep(run_up->common, &s);
     const mhb_branch *b        = &response->branch[MAIN];
     double            worst[2] = {0, 0};
     int               judged = 0, looked = 0;
@@ -218,7 +218,7 @@ static void integration_agrees(void **state) {
   s.to_ground                      = true;
   s.harmonics                      = 7;
   mhb_speed_table         *run_up  = make_run_up(SPINNING_VEERING, 17, &s);
-  mhb_response            *balance = sweep(run_up->given, &s), *points = NULL;
+  mhb_response            *balance = sweep(run_up->common, &s), *points = NULL;
   mhb_integration_settings asked = {.n_frequencies = 3,
                                     .start         = MHB_START_FROM_STATE,
                                     .direction     = MHB_SWEEP_BOTH,
@@ -226,13 +226,13 @@ static void integration_agrees(void **state) {
                                     .tolerance     = 1e-7,
                                     .max_periods   = 4000};
   assert_int_equal(
-      mhb_integration_sweep(run_up->given, &s, &asked, NULL, NULL, NULL, NULL, &points),
+      mhb_integration_sweep(run_up->common, &s, &asked, NULL, NULL, NULL, NULL, &points),
       SHB_ERR_INPUT);
   assert_non_null(strstr(shb_message(), "integrate.start"));
   for (int start = MHB_START_FROM_BALANCE; start <= MHB_START_FROM_REST; start++) {
     const mhb_response *from = start == MHB_START_FROM_BALANCE ? balance : NULL;
     asked.start              = (mhb_integration_start)start;
-    assert_ok(mhb_integration_sweep(run_up->given, &s, &asked, from, NULL, NULL, NULL, &points));
+    assert_ok(mhb_integration_sweep(run_up->common, &s, &asked, from, NULL, NULL, NULL, &points));
     const mhb_branch *b = &points->branch[0];
     assert_int_equal(b->n_points, 3);
     for (int i = 0; i < b->n_points; i++) {
@@ -258,7 +258,7 @@ static void resonances_are_where_curves_meet(void **state) {
   mhb_resonances   all;
   int              found = 0, wanted = 0;
   const double     low = .4, high = 1.9, E = s.engine_order;
-  assert_ok(mhb_balance_create(run_up->given, &s, &b));
+  assert_ok(mhb_balance_create(run_up->common, &s, &b));
   mhb_balance_set_parameter(b, MHB_IN_FREQUENCY);
   assert_ok(mhb_resonances_create(b, low, high, &all));
   for (int mode = 0; mode < SPINNING_MODES; mode++) /* a + slope omega^2 = (k omega)^2 */

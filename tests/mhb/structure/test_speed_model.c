@@ -91,7 +91,7 @@ static double error(spinning_kind kind, int n, bool overlap) {
   mhb_speed_table *run_up = make_run_up(kind, n, overlap, &s);
   mhb_receptance  *r, *exact;
   double           worst = 0;
-  assert_ok(mhb_receptance_create(run_up->given, &s, K, &r));
+  assert_ok(mhb_receptance_create(run_up->common, &s, K, &r));
   for (int i = 0; i < PLACES; i++) {
     double complex a[VALUES], b[VALUES];
     modal_model    model;
@@ -171,7 +171,7 @@ static void slopes_are_derivatives(void **state) {
       mhb_speed_table *run_up = make_run_up(kind[c], 9, true, &s);
       mhb_receptance  *r;
       double           worst = 0;
-      assert_ok(mhb_receptance_create(run_up->given, &s, K, &r));
+      assert_ok(mhb_receptance_create(run_up->common, &s, K, &r));
       for (int i = 0; i < PLACES; i++) {
         double complex exact[VALUES], wanted[VALUES];
         difference(r, place(i), wanted);
