@@ -98,6 +98,10 @@ size_t mhb_field_width(const mhb_response *response, const mhb_branch *branch, c
   return h5_count(mhb_field_shape(response, branch, f, 1));
 }
 
+size_t mhb_field_row(const mhb_response *response, const mhb_branch *branch, const mhb_field *f) {
+  return mhb_field_width(response, branch, f) * mhb_field_bytes(f->kind);
+}
+
 mhb_branch_kind mhb_field_owner(const mhb_field *f) {
   long from_end = mhb_fields + MHB_N_FIELDS - f;
   return from_end <= N_INTEGRATION             ? MHB_BRANCH_INTEGRATION

@@ -50,10 +50,10 @@ shb_status mhb_cyclic_flexibility_create(const double *matrix, int nc, const dou
   SHB_CHECK(f, SHB_ERR_IO, "out of memory");
   size_t square = 9 * (size_t)n_pairs * (size_t)n_pairs;
   f->n          = 3 * n_pairs;
-  f->self       = malloc(square * sizeof(double));
-  if (sides == 2) f->even_coupling = malloc(square * sizeof(double));
-  if (sides == 2) f->odd_coupling = malloc(square * sizeof(double));
-  if (!f->self || (sides == 2 && !(f->even_coupling && f->odd_coupling))) {
+  f->self       = shb_arena_take(&f->arena, square, sizeof(double));
+  if (sides == 2) f->even_coupling = shb_arena_take(&f->arena, square, sizeof(double));
+  if (sides == 2) f->odd_coupling = shb_arena_take(&f->arena, square, sizeof(double));
+  if (f->arena.failed) {
     mhb_cyclic_flexibility_destroy(f);
     SHB_FAIL(SHB_ERR_IO, "out of memory for the residual flexibility of %d pairs", n_pairs);
   }
@@ -71,9 +71,7 @@ void mhb_cyclic_flexibility_set(mhb_cyclic_flexibility *f, const double *matrix,
 
 void mhb_cyclic_flexibility_destroy(mhb_cyclic_flexibility *f) {
   if (!f) return;
-  free(f->self);
-  free(f->even_coupling);
-  free(f->odd_coupling);
+  shb_arena_free(&f->arena);
   free(f);
 }
 

@@ -11,11 +11,13 @@
 
 #include <complex.h>
 
+#include "mesh/base/arena.h"
 #include "mesh/base/status.h"
 
 typedef struct {
-  int     n;                                   /* 3 pairs */
-  double *self, *even_coupling, *odd_coupling; /* [n][n]; couplings are NULL to ground */
+  int       n;                                   /* 3 pairs */
+  double   *self, *even_coupling, *odd_coupling; /* [n][n]; couplings are NULL to ground */
+  shb_arena arena;
 } mhb_cyclic_flexibility;
 
 /* matrix[nc][nc] over (side, pair, axis), nc = n or 2n, m/N.

@@ -1,6 +1,5 @@
 #include "mhb/structure/modal_structure.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "mesh/base/constants.h"
@@ -63,13 +62,12 @@ shb_status mhb_modal_structure_create(const mhb_receptance *r, const mhb_setting
                                       .wave   = ground ? 0 : wave_of(settings)};
   s->contacts = s->blades * s->pairs;
   size_t n = 3 * (size_t)s->contacts, side = (size_t)m * (size_t)r->n;
-  s->omega = calloc((size_t)m, sizeof(double));
-  s->zeta  = calloc((size_t)m, sizeof(double));
-  s->shape = calloc((size_t)s->sides * side, sizeof(double));
-  int ok   = s->omega && s->zeta && s->shape;
+  s->omega = shb_arena_take(&s->arena, (size_t)m, sizeof(double));
+  s->zeta  = shb_arena_take(&s->arena, (size_t)m, sizeof(double));
+  s->shape = shb_arena_take(&s->arena, (size_t)s->sides * side, sizeof(double));
   if (model->residual_flexibility || m < r->n_modes)
-    ok &= (s->flexibility = calloc(n * n, sizeof(double))) != NULL;
-  if (!ok) {
+    s->flexibility = shb_arena_take(&s->arena, n * n, sizeof(double));
+  if (s->arena.failed) {
     mhb_modal_structure_destroy(s);
     SHB_FAIL(SHB_ERR_IO, "out of memory for the structure of %d contacts", s->contacts);
   }
@@ -91,9 +89,6 @@ void mhb_modal_structure_set(const mhb_receptance *r, mhb_modal_structure *s) {
 }
 
 void mhb_modal_structure_destroy(mhb_modal_structure *s) {
-  free(s->omega);
-  free(s->zeta);
-  free(s->shape);
-  free(s->flexibility);
+  shb_arena_free(&s->arena);
   *s = (mhb_modal_structure){0};
 }

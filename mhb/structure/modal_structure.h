@@ -6,15 +6,17 @@
 #ifndef MHB_STRUCTURE_MODAL_STRUCTURE_H
 #define MHB_STRUCTURE_MODAL_STRUCTURE_H
 
+#include "mesh/base/arena.h"
 #include "mhb/problem/settings.h"
 #include "mhb/structure/receptance.h"
 
 typedef struct {
-  int     blades, sides, modes, pairs, contacts;
-  int     wave;         /* E of the fundamental: the next blade lags by 2 pi E/N */
-  double *omega, *zeta; /* [modes] rad/s, - */
-  double *shape;        /* [side][mode][3 pairs] (v, u, w) by the mode, kg^-1/2; left: negative */
-  double *flexibility;  /* [3 contacts][3 contacts] R, m/N, or NULL */
+  int       blades, sides, modes, pairs, contacts;
+  int       wave;         /* E of the fundamental: the next blade lags by 2 pi E/N */
+  double   *omega, *zeta; /* [modes] rad/s, - */
+  double   *shape;        /* [side][mode][3 pairs] (v, u, w) by the mode, kg^-1/2; left: negative */
+  double   *flexibility;  /* [3 contacts][3 contacts] R, m/N, or NULL */
+  shb_arena arena;
 } mhb_modal_structure;
 
 /* The lowest modes stay dynamic. The others answer statically and are added to R, as is residual

@@ -11,12 +11,6 @@ static int n_contact(const modal_model *model) {
 
 /* ---- independent of the frequency ---- */
 
-/* True if the array is not wanted, or there is memory for it. */
-static bool room(const void *wanted, size_t n, double complex **array) {
-  if (wanted && n) *array = calloc(n, sizeof **array);
-  return !wanted || !n || *array;
-}
-
 typedef struct {
   const double         *contact[MODAL_TERMS], *probe_contact[MODAL_TERMS];
   const double complex *load[MODAL_TERMS], *probe_load[MODAL_TERMS];
@@ -30,15 +24,23 @@ static terms terms_of(const modal_model *m) {
                  {m->probe_load_residual, m->probe_load_inertia, m->probe_load_fourth}};
 }
 
-static bool allocate(mhb_residual_terms *l, const terms *from) {
+/* NULL if there is nothing to hold. */
+static double complex *array(mhb_residual_terms *l, const void *wanted, size_t n) {
+  return wanted && n ? shb_arena_take(&l->arena, n, sizeof(double complex)) : NULL;
+}
+
+static bool take_arrays(mhb_residual_terms *l, const terms *from) {
   const size_t n = (size_t)l->relative.n, K = (size_t)l->n_harmonics + 1;
   const size_t q = 3 * (size_t)l->model->n_probes, r = (size_t)l->model->n_residual;
-  bool         made = true;
-  for (int t = 0; t < MODAL_TERMS; t++)
-    made = made && room(from->load[t], K * n, &l->load[t]) &&
-           room(from->probe_load[t], K * q, &l->probe_load[t]) &&
-           room(from->probe_contact[t], K * q * n, &l->probe_contact[t]);
-  return made && room(l, K * n * r, &l->S) && room(l, K * r, &l->F) && room(l, n * r, &l->Sg);
+  for (int t = 0; t < MODAL_TERMS; t++) {
+    l->load[t]          = array(l, from->load[t], K * n);
+    l->probe_load[t]    = array(l, from->probe_load[t], K * q);
+    l->probe_contact[t] = array(l, from->probe_contact[t], K * q * n);
+  }
+  l->S  = array(l, l, K * n * r);
+  l->F  = array(l, l, K * r);
+  l->Sg = array(l, l, n * r);
+  return !l->arena.failed;
 }
 
 /* S = T times the residual modes. */
@@ -96,7 +98,7 @@ void mhb_residual_terms_update(mhb_residual_terms *l) {
 
 static shb_status make(mhb_residual_terms *l) {
   const terms from = terms_of(l->model);
-  SHB_CHECK(allocate(l, &from), SHB_ERR_IO, "out of memory for the residual terms");
+  SHB_CHECK(take_arrays(l, &from), SHB_ERR_IO, "out of memory for the residual terms");
   for (int t = 0; t < MODAL_TERMS; t++)
     if (from.contact[t])
       SHB_TRY(mhb_cyclic_flexibility_create(from.contact[t], n_contact(l->model), l->relative.T0,
@@ -125,15 +127,8 @@ shb_status mhb_residual_terms_create(const modal_model *model, mhb_relative rela
 
 void mhb_residual_terms_destroy(mhb_residual_terms *l) {
   if (!l) return;
-  for (int t = 0; t < MODAL_TERMS; t++) {
-    mhb_cyclic_flexibility_destroy(l->contact[t]);
-    free(l->load[t]);
-    free(l->probe_load[t]);
-    free(l->probe_contact[t]);
-  }
-  free(l->S);
-  free(l->F);
-  free(l->Sg);
+  for (int t = 0; t < MODAL_TERMS; t++) mhb_cyclic_flexibility_destroy(l->contact[t]);
+  shb_arena_free(&l->arena);
   free(l);
 }
 

@@ -13,6 +13,7 @@
 #include <complex.h>
 #include <stdbool.h>
 
+#include "mesh/base/arena.h"
 #include "mesh/base/status.h"
 #include "mhb/structure/cyclic_flexibility.h"
 #include "mhb/structure/relative_motion.h"
@@ -29,6 +30,7 @@ typedef struct {
   double complex         *probe_contact[MODAL_TERMS]; /* [k][3 q][n] */
   double complex         *S, *F;                      /* [k][n][r], [k][r] of r residual modes */
   double complex         *Sg;                         /* [n][r] S g of one harmonic */
+  shb_arena               arena;
 } mhb_residual_terms;
 
 /* model, relative.T0 and phase[n_harmonics + 1] must outlive it. Load harmonic h drives harmonic nu
