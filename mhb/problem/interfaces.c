@@ -7,7 +7,7 @@ int mhb_interfaces(const mhb_settings *s) {
   return s->n_interfaces > 1 ? s->n_interfaces : 1;
 }
 
-/* Place of a preload of the leading interface in its list. */
+/* Index of the preload n0 of the leading interface in its list. */
 static int preload_at(const mhb_settings *s, double n0) {
   int nearest = 0;
   for (int i = 1; i < s->n_preloads; i++)
@@ -15,7 +15,7 @@ static int preload_at(const mhb_settings *s, double n0) {
   return nearest;
 }
 
-/* Value of the case times what the leading one has become of its own. */
+/* The interface's value in the case, scaled as the leading one has changed from its own. */
 static double in_proportion(double own, double now, double lead) {
   return lead != 0 ? own * (now / lead) : own;
 }
@@ -63,7 +63,7 @@ double mhb_interface_rate(const mhb_operating_point *c, const mhb_settings *s, i
   }
 }
 
-/* Place of a name in the settings, -1 if it is not there. */
+/* Index of a name in the settings; -1: not there. */
 static int named(const mhb_settings *s, const char *name) {
   for (int i = 0; i < s->n_interfaces; i++)
     if (strcmp(s->interface[i].name, name) == 0) return i;

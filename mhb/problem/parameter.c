@@ -77,14 +77,14 @@ static void times(int nb, const double *dp, const double *x, int from, int to, d
   }
 }
 
-/* Constant normal load: all is homogeneous in (u, n0). */
+/* Constant normal load (kv = 0): all is homogeneous in (u, n0). */
 static void by_constant_load(const mhb_law *law, int nb, const double *u, const double *p,
                              const double *dp, double *change) {
   memset(change, 0, sizeof(double) * 3 * (size_t)nb);
   if (law->n0 <= 0) return;
   times(nb, dp, u, 0, 3, -1 / law->n0, change);
   for (int i = 0; i < 3 * nb; i++) change[i] += p[i] / law->n0;
-  change[0] += law->mean_offset / law->n0; /* of n, not of n - balance */
+  change[0] += law->mean_offset / law->n0; /* of n, not of n - mean_offset */
 }
 
 void mhb_parameter_force(const mhb_operating_point *c, mhb_parameter parameter, const mhb_law *law,
