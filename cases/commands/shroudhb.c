@@ -25,7 +25,8 @@ static const char usage[] =
     "  post CASE.yaml     report, curves                    -> NAME.html, NAME.csv, NAME.svg\n"
     "  converge CASE.yaml error against time, setting by setting; `shroudhb converge --help`\n"
     "  check CASE.yaml    check a case file, run nothing\n"
-    "  keys               every key of a case file: unit, range, default, meaning\n"
+    "  keys               every key of a case file: unit, range, default, meaning; --markdown\n"
+    "                     prints the page docs/user/case_reference.md\n"
     "  inspect FILE.h5    what a modal or response file holds; of two modal files: A.h5 B.h5\n"
     "  contact FILE.yaml  contact forces for a prescribed motion; --svg OUT.svg draws the loops\n"
     "\n"
@@ -101,11 +102,14 @@ static int keys_main(const char *name, int argc, char **argv) {
     fputs(usage, stdout);
     return command_finish(SHB_OK);
   }
-  if (argc > 1) {
-    fprintf(stderr, "shroudhb: error: keys takes nothing more; unexpected '%s'\n", argv[1]);
+  bool page = argc > 1 && strcmp(argv[1], "--markdown") == 0;
+  if (argc > 1 + page) {
+    fprintf(stderr, "shroudhb: error: keys takes --markdown only; unexpected '%s'\n",
+            argv[1 + page]);
     return SHB_ERR_INPUT;
   }
-  case_print_keys(stdout);
+  if (page) case_print_reference(stdout);
+  if (!page) case_print_keys(stdout);
   return command_finish(SHB_OK);
 }
 

@@ -181,3 +181,107 @@ void case_print_keys(FILE *out) {
       "SI.\n",
       out);
 }
+
+/* ---------------------------------------------------------------- the reference page */
+
+/* When a key is read, for the page's readers; NULL: always, or it is this very key that decides. */
+static const char *applies_text(const case_key *key) {
+  static const char *const text[] = {
+      [CASE_IF_BLADE]      = "parametric blade",
+      [CASE_IF_MESH_FILE]  = "with `mesh.file`",
+      [CASE_IF_SIZE]       = "`mesh.file` is a solid",
+      [CASE_IF_OWN_MODES]  = "without `modal.file`",
+      [CASE_IF_MODAL_FILE] = "instead of `mesh`",
+      [CASE_IF_MATERIAL]   = "one material",
+      [CASE_IF_MATERIALS]  = "several materials",
+      [CASE_IF_AUTO_MODES] = "`modal.modes: auto`",
+      [CASE_IF_CRYSTAL]    = "with `material.G`",
+      [CASE_IF_INTERFACE]  = "one interface",
+      [CASE_IF_POINTS]     = "one interface, without `modal.file`",
+      [CASE_IF_INTERFACES] = "several interfaces",
+      [CASE_IF_VARIED]     = "several interfaces, with `mhb.vary`",
+      [CASE_IF_ORDER]      = "contact to the neighbour, or a run-up",
+      [CASE_IF_RUN_UP]     = NULL,
+      [CASE_IF_SECTOR]     = "contact to the neighbour, or parametric blade",
+      [CASE_IF_PRESSURE]   = "one of four loads",
+      [CASE_IF_TRACTION]   = "one of four loads",
+      [CASE_IF_FORCE]      = "one of four loads",
+      [CASE_IF_FIELD]      = "one of four loads",
+      [CASE_IF_LOADS]      = "several loads",
+      [CASE_IF_FACTORS]    = "not with `field` or `loads`",
+      [CASE_IF_FORCE_AT]   = "with `force`",
+      [CASE_IF_AUTO]       = "`mhb.harmonics: auto`",
+      [CASE_IF_FOLLOWED]   = "one of five",
+      [CASE_IF_STABILITY]  = "`mhb.stability` not `never`",
+      [CASE_IF_SEARCH]     = "`mhb.search.starts` above 0",
+      [CASE_IF_SEARCH_AT]  = "`mhb.search.starts` above 0",
+      [CASE_IF_SWEEP]      = "`integrate.start: state`",
+      [CASE_IF_NOT_SCALED] = "not with `mhb.vary.scale`"};
+  const char *when = (size_t)key->when < sizeof text / sizeof *text ? text[key->when] : NULL;
+  char        own[96];
+  snprintf(own, sizeof own, "with `%s`", key->path);
+  return when && strcmp(when, own) == 0 ? NULL : when;
+}
+
+/* A cell of a Markdown table: | would end it. */
+static void print_cell(const char *text, FILE *out) {
+  for (; *text; text++) {
+    if (*text == '|') fputc('\\', out);
+    fputc(*text, out);
+  }
+}
+
+static void print_row(const case_key *key, const char *block, FILE *out) {
+  char        range[128];
+  const char *path = below(key->path, block), *applies = applies_text(key);
+  case_key_range(key, range, sizeof range);
+  fprintf(out, "| `%s` | ", path ? path : key->path);
+  print_cell(type_name(key), out);
+  fprintf(out, " | %s | ", key->unit);
+  for (const char *c = key->words; c && *c; c++) fputs(*c == ' ' ? ", " : (char[2]){*c, 0}, out);
+  if (key->words && range[0]) fputs(", ", out);
+  fprintf(out, "%s | ", range);
+  if (key->fallback) fprintf(out, "`%s`", key->fallback);
+  if (!key->fallback && key->required) fputs("required", out);
+  fprintf(out, " | %s | ", applies ? applies : "");
+  print_cell(key->help, out);
+  fputs(" |\n", out);
+}
+
+static void print_block(const char *block, FILE *out) {
+  fprintf(out, "\n## %s\n\n", block);
+  fputs("| key | value | unit | range, words | default | when | meaning |\n", out);
+  fputs("|---|---|---|---|---|---|---|\n", out);
+}
+
+void case_print_reference(FILE *out) {
+  static const char head[] =
+      "# Case reference\n"
+      "\n"
+      "`shroudhb keys --markdown` prints this page, and a test compares the two.\n"
+      "\n"
+      "Every key of a case file is listed, block by block, with the block's name left out.\n"
+      "`[]` stands for an entry of a list: `blade.sections[].radius` in the table of `mesh` is "
+      "the\n"
+      "radius of each section in the list `mesh.blade.sections`.\n"
+      "\n"
+      "- **unit, range**: SI units; angles are in rad, so 1.5708 is 90 deg.\n"
+      "- **default**: *required* means that the file must give the key where it applies.\n"
+      "- **when**: the key is read only then; an empty cell means always.\n"
+      "\n"
+      "A number may carry a unit: `6000 rpm`, `35 deg`, `2 MN/m`, `7.85 g/cm3`, `0.2 %`.\n"
+      "A bare number is in the SI unit of its key, which is rad/s for the speed and rad for "
+      "angles.\n"
+      "The units are m, g, t, s, N, Pa, bar, Hz, rad, deg, °, rev, rpm and %.\n"
+      "Prefixes are n, u (or µ), m, c, k, M and G where they are customary.\n"
+      "`shroudhb check CASE.yaml` finds all errors of a file at once and runs nothing.\n";
+  case_keys keys = case_key_table();
+  char      block[CASE_LONGEST_WORD], last[CASE_LONGEST_WORD] = "";
+  fputs(head, out);
+  for (int i = 0; i < keys.n; i++) {
+    next_part(keys.key[i].path, "", block);
+    if (strcmp(block, last) != 0) print_block(block, out);
+    print_row(&keys.key[i], block, out);
+    strcpy(last, block);
+  }
+}

@@ -80,7 +80,7 @@ typedef struct {
   double           tolerance, band; /* with modes: auto; Hz */
   modal_damping    damping;
   modal_check_kind check;
-  bool             full_integration; /* of hexahedra: stiffness with 3x3x3 points */
+  bool             full_integration; /* modal.integration: full */
   char            *modal_file;       /* resolved path of modal.file, or NULL */
 
   int        engine_order;
@@ -127,5 +127,8 @@ char *case_settings(const case_file *file, case_stage stage);
 
 /* Every key with unit, range, default and help. */
 void case_print_keys(FILE *out);
+
+/* The same as the page docs/user/case_reference.md: Markdown, a table a block. */
+void case_print_reference(FILE *out);
 
 #endif

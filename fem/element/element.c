@@ -43,9 +43,8 @@ static PetscErrorCode create_rules(fem_element *element) {
   fem_tet_rule_4(&element->straight);
   fem_tet_rule_4(&element->curved);
   fem_tet_rule_4(&element->mass);
-  if (rules == FEM_CALCULIX) PetscFunctionReturn(0);
-  PetscCall(fem_tet_rule_conical(3, &element->curved));
-  PetscCall(fem_tet_rule_conical(4, &element->mass));
+  if (rules == FEM_FULL) PetscCall(fem_tet_rule_conical(3, &element->curved));
+  if (rules != FEM_CALCULIX) PetscCall(fem_tet_rule_conical(4, &element->mass));
   PetscFunctionReturn(0);
 }
 

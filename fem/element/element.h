@@ -11,15 +11,24 @@
 
 enum { FEM_DOFS = 3 * MESH_NODES }; /* of the largest element */
 
-/* Quadrature. The mass is exact (degree 7 in curved tetrahedra, 3x3x3 points in hexahedra) unless it is CalculiX's.
- * The stiffness of a hexahedron with 2x2x2 points converges faster than with 3x3x3, which stiffen bending, but has rank
- * 48 of 54: where elements lie in a column one by one, motions without energy are left (fem/element/hourglass.h); with two
- * elements across, or more, none is. */
+/* Quadrature. The mass is exact (degree 7 in curved tetrahedra, 3x3x3 points in hexahedra) unless
+ * it is CalculiX's.
+ *
+ * The stiffness of a hexahedron with 2x2x2 points converges faster than with 3x3x3 points, which
+ * stiffen bending. Its rank is 48 of 54. Where elements lie in a column one by one, motions without
+ * energy are left (fem/element/hourglass.h). With two or more elements across, none is left.
+ *
+ * Four points integrate the stiffness of a tetrahedron with straight sides exactly. Where sides are
+ * curved, 27 points are stiffer, and in coarse meshes farther from the converged frequencies. A
+ * rule exact to degree 2 keeps the order of convergence (Ciarlet and Raviart 1972, isoparametric
+ * elements). Six strains at four points give the rank 24 = 30 - 6: only rigid motions are without
+ * energy. Under constant stress four points leave forces inside a body of curved tetrahedra, as
+ * shape gradients times the cofactors of J are cubics. The forces fall as the mesh is refined; 27
+ * points leave none. */
 typedef enum {
-  FEM_STANDARD, /* stiffness: tetrahedra 4 points (27 where curved), hexahedra 2x2x2 */
-  FEM_CALCULIX, /* as CalculiX's C3D10 and C3D20R: the mass with the points of the stiffness too, tetrahedra 4 points
-                   also where curved */
-  FEM_FULL,     /* stiffness of hexahedra with 3x3x3 points (CalculiX's C3D20) */
+  FEM_STANDARD, /* stiffness: tetrahedra 4 points, hexahedra 2x2x2 */
+  FEM_CALCULIX, /* CalculiX's C3D10 and C3D20R: the mass too has the points of FEM_STANDARD */
+  FEM_FULL,     /* stiffness: tetrahedra 27 points where curved, hexahedra 3x3x3 (C3D20) */
 } fem_rules;
 
 /* The rules an assembly needs, tabulated once. */

@@ -23,7 +23,7 @@ typedef struct {
   double gradient[FEM_FACE_POINTS][MESH_FACE_NODES][2]; /* dN_i / d(r, s) */
 } fem_face_rule;
 
-/* Four symmetric points, exact to degree 2: the stiffness of straight-sided tetrahedra, and CalculiX's C3D10. */
+/* Four symmetric points, exact to degree 2; CalculiX's C3D10. */
 void fem_tet_rule_4(fem_rule *rule);
 
 /* Conical product of n Gauss points a direction, exact to degree 2n - 1; n = 1..4. Needs PETSc initialised. */

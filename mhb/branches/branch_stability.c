@@ -97,7 +97,7 @@ static double value_of(const mhb_branch_stability *j, int point) {
 /* Multipliers at the solution that the residual was last evaluated at. */
 static void evaluate(mhb_branch_stability *j, const double *x, mhb_multipliers *out) {
   const mhb_balance *b        = j->residual;
-  mhb_solution       solution = {b->at.omega, b->law, b->info, x, b->p};
+  mhb_solution       solution = {b->eval->at.omega, b->law, b->eval->info, x, b->eval->p};
   if (b->settings->run_up) mhb_floquet_move(j->stability, b->receptance);
   mhb_floquet_evaluate(j->stability, &solution, out);
 }

@@ -78,7 +78,7 @@ shb_status mhb_harmonic_levels_create(mhb_balance *residual, mhb_harmonic_levels
   SHB_CHECK(h, SHB_ERR_IO, "out of memory");
   h->settings  = residual->settings;
   h->model     = residual->receptance->model;
-  h->at_start  = residual->at;
+  h->at_start  = residual->eval->at;
   h->parameter = residual->parameter;
   h->low       = mhb_parameter_end(h->settings, h->parameter, 0);
   h->high      = mhb_parameter_end(h->settings, h->parameter, 1);
@@ -154,7 +154,7 @@ int mhb_harmonic_levels_most_unknowns(const mhb_harmonic_levels *h) {
  * different places, however small the estimate. */
 static bool barely_moves(const mhb_balance *b) {
   for (int a = 0; a < b->n_pairs; a++)
-    if (b->info[a].share[MHB_STICK] < MOSTLY && b->info[a].share[MHB_SEPARATE] < MOSTLY)
+    if (b->eval->info[a].share[MHB_STICK] < MOSTLY && b->eval->info[a].share[MHB_SEPARATE] < MOSTLY)
       return false;
   return true;
 }

@@ -11,7 +11,7 @@
  * Signals are in real form (fourier.h): motion[3][2m+1] for (v, u, w), force[3][2H+1] for (n, fu,
  * fw), H >= m. Source: Chen, Yang, Menq 1999, eqs. 4-15. Differs: event times from the harmonics
  * with bounds, slip by Gauss collocation, force by quadrature of each smooth piece (no sampling, no
- * aliasing). Derivation: docs/contact.md. */
+ * aliasing). Derivation: docs/theory/contact.md. */
 #ifndef MHB_CONTACT_CONTACT_H
 #define MHB_CONTACT_CONTACT_H
 

@@ -1,5 +1,5 @@
 /* The exact derivative of friction by the motion: forward sensitivities along one period
- * (docs/contact.md, Derivative). All functions heed contact->mode. */
+ * (docs/theory/contact.md, Exact sensitivities). All functions heed contact->mode. */
 #ifndef MHB_CONTACT_SENSITIVITY_H
 #define MHB_CONTACT_SENSITIVITY_H
 

@@ -332,7 +332,7 @@ static void set_unit_of_preload(mhb_arclength *path) {
   static const double WIDE  = 4;
   mhb_curve_point    *now   = &path->now;
   double              scale = mhb_arclength_unit(path),
-         moved              = path->residual->at.kv * mhb_norm(now->x, path->n),
+         moved              = path->residual->eval->at.kv * mhb_norm(now->x, path->n),
          own                = WIDE * fmax(fabs(now->value), moved);
   path->span                = fmin(path->high - path->low, own > 0 ? own : INFINITY);
   double length             = sqrt(mhb_arclength_inner(path, scale, now->tangent, now->tangent));
@@ -374,7 +374,7 @@ static double near_room(const mhb_arclength *path, double end) {
 static bool is_linear(const mhb_arclength *path) {
   const mhb_balance *b = path->residual;
   for (int i = 0; i < b->n_pairs; i++)
-    if (b->info[i].share[0] < 1 && b->info[i].share[2] < 1) return false;
+    if (b->eval->info[i].share[0] < 1 && b->eval->info[i].share[2] < 1) return false;
   return true;
 }
 

@@ -111,7 +111,7 @@ static int is_narrow(const range *r) {
 /* No pair slips or opens for a part of the period: the law is exact there. */
 static int is_still(const mhb_balance *b) {
   for (int a = 0; a < b->n_pairs; a++)
-    if (b->kind[a] == MHB_PAIR_NONLINEAR) return 0;
+    if (b->eval->kind[a] == MHB_PAIR_NONLINEAR) return 0;
   return 1;
 }
 

@@ -11,7 +11,7 @@ enum { MAX_STAGES = 200 };
 /* Natural continuation of the preload from one whose linear limit x solves, to the one asked for. */
 static mhb_reason homotopy(mhb_newton *newton, mhb_balance *b, double omega, double tolerance,
                            double from, double *x) {
-  double     to = b->at.n0, part = 0, step = .25;
+  double     to = b->eval->at.n0, part = 0, step = .25;
   double     kept[b->n];
   mhb_reason reason = MHB_MAX_ITERATIONS;
   for (int i = 0; i < MAX_STAGES && part < 1 && step > 1e-5 && !shb_interrupted(); i++) {
@@ -37,10 +37,10 @@ static mhb_reason homotopy(mhb_newton *newton, mhb_balance *b, double omega, dou
 static double far_preload(const mhb_balance *b, const double *x, int stuck) {
   double size = mhb_norm(x, b->n), most = 0;
   for (int i = 0; i < b->n_interfaces; i++) {
-    const mhb_operating_point *own = &b->own[i];
+    const mhb_operating_point *own = &b->eval->own[i];
     double friction                = (fabs(own->ku[0]) + fabs(own->ku[2])) / fmax(own->mu, 1e-6);
     double reach                   = 4 * size * (own->kv + (stuck ? friction : 0)) + fabs(own->n0);
-    if (b->n_interfaces > 1) reach += fabs(b->at.n0); /* all move by what this one does */
+    if (b->n_interfaces > 1) reach += fabs(b->eval->at.n0); /* all move by what this one does */
     most = fmax(most, reach);
   }
   return stuck ? most : -most;
@@ -50,7 +50,7 @@ static double far_preload(const mhb_balance *b, const double *x, int stuck) {
 static mhb_reason directly(mhb_newton *newton, mhb_balance *b, double omega, double tolerance,
                            double *x, int *iterations) {
   mhb_reason reason   = MHB_MAX_ITERATIONS;
-  double     n0       = b->at.n0;
+  double     n0       = b->eval->at.n0;
   int        order[3] = {n0 > 0, n0 <= 0, MHB_BY_PRELOAD}; /* the likelier limit first */
   for (int i = b->n_interfaces > 1 ? -1 : 0; i < 2; i++) {
     if (mhb_balance_linear_limit(b, omega, order[i < 0 ? 2 : i], x) != SHB_OK) continue;
@@ -66,7 +66,7 @@ static mhb_reason solve_here(mhb_newton *newton, mhb_balance *b, double omega, d
                              double *x, int *iterations) {
   mhb_reason reason = directly(newton, b, omega, tolerance, x, iterations);
   for (int i = 0; i < 2 && reason != MHB_CONVERGED; i++) {
-    int stuck = b->at.n0 > 0 ? 1 - i : i; /* the likelier limit first */
+    int stuck = b->eval->at.n0 > 0 ? 1 - i : i; /* the likelier limit first */
     if (mhb_balance_linear_limit(b, omega, stuck, x) != SHB_OK) continue;
     mhb_balance_tie_preloads(b, 1);
     reason = homotopy(newton, b, omega, tolerance, far_preload(b, x, stuck), x);
@@ -110,7 +110,7 @@ static mhb_reason by_frequency(mhb_newton *newton, mhb_balance *b, double omega,
 /* Along the path in the preload, past its folds, from one at which the contact is stuck, or open, throughout. */
 static mhb_reason by_preload(mhb_newton *newton, mhb_balance *b, double omega, double tolerance,
                              double *x, int *iterations) {
-  double     n0     = b->at.n0;
+  double     n0     = b->eval->at.n0;
   mhb_reason reason = MHB_MAX_ITERATIONS;
   for (int stuck = 1; stuck >= 0 && reason != MHB_CONVERGED; stuck--) {
     if (mhb_balance_linear_limit(b, omega, stuck, x) != SHB_OK) continue;
@@ -132,7 +132,7 @@ mhb_reason mhb_first_solution(mhb_newton *newton, mhb_balance *b, double value, 
   mhb_parameter parameter = b->parameter;
   mhb_balance_set_value(b, value);
   mhb_balance_set_parameter(b, MHB_IN_FREQUENCY);
-  double     omega  = b->at.omega;
+  double     omega  = b->eval->at.omega;
   mhb_reason reason = directly(newton, b, omega, tolerance, x, iterations);
   if (reason != MHB_CONVERGED) reason = by_preload(newton, b, omega, tolerance, x, iterations);
   if (reason != MHB_CONVERGED) reason = by_frequency(newton, b, omega, tolerance, x, iterations);

@@ -16,8 +16,8 @@ static void force_change(const mhb_balance *b, const double *dx, double dvalue, 
   int block = 3 * b->nb;
   for (int row = 0; row < 3 * b->n_pairs; row++) {
     int           pair = row / 3, first = (row % 3) * b->nb + (k ? 2 * k - 1 : 0);
-    const double *re     = b->dp + ((size_t)pair * (size_t)block + (size_t)first) * (size_t)block;
-    const double *by     = b->by_parameter + (size_t)pair * (size_t)block + first;
+    const double *re = b->eval->dp + ((size_t)pair * (size_t)block + (size_t)first) * (size_t)block;
+    const double *by = b->eval->by_parameter + (size_t)pair * (size_t)block + first;
     double        sum[2] = {dvalue * by[0], k ? dvalue * by[1] : 0};
     for (int j = 0; j < block; j++) {
       sum[0] += re[j] * dx[pair * block + j];

@@ -8,7 +8,7 @@
  * A wave around the ring: any disturbance of any blade is followed (it need not keep the wave's form), over g/N of a period,
  * after which the blades change names (transition_schedule.h). States grow with the blades, 2 modes + 2 contacts each: where they are
  * more than max_states, the lowest modes are kept and the others answer statically.
- * Derivation: docs/harmonic_balance.md. */
+ * Derivation: docs/theory/stability.md. */
 #ifndef MHB_FLOQUET_FLOQUET_H
 #define MHB_FLOQUET_FLOQUET_H
 

@@ -11,7 +11,7 @@
  *   open -> stick   df = Ku s' dn/n';    open -> slip  df = mu d dn, tau = 0
  * With residual flexibility the contacts share the jump: force rates follow from p' = G (w' - R p'), w the motion without
  * R p and G the tangents, and each jump is the difference of two such rates times the shift of the event.
- * Derivation: docs/harmonic_balance.md. Source: Chen, Yang, Menq 1999, eqs. 4-15, linearised. */
+ * Derivation: docs/theory/stability.md. Source: Chen, Yang, Menq 1999, eqs. 4-15, linearised. */
 #ifndef MHB_FLOQUET_LINEARISED_LAW_H
 #define MHB_FLOQUET_LINEARISED_LAW_H
 

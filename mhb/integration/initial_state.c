@@ -57,7 +57,8 @@ static void settle(mhb_integrator *g) {
     const mhb_law     *law = &g->law[j % g->pairs];
     mhb_contact_point *rub = &g->rub[j];
     rub->state             = MHB_STICK;
-    mhb_contact_step_change(law, rub->p[0] + law->mean_offset > 0 ? MHB_STICK : MHB_SEPARATE, 0, rub);
+    mhb_contact_step_change(law, rub->p[0] + law->mean_offset > 0 ? MHB_STICK : MHB_SEPARATE, 0,
+                            rub);
     for (int c = 0; c < 3; c++) g->scale = fmax(g->scale, fabs(rub->p[c]));
     g->idle[j] = g->hush[j] = 0;
   }

@@ -6,7 +6,7 @@
  * A step propagates every mode exactly under the collocated force (modal_step.h); all contacts are solved together, block by block
  * (contact_step.h). A step in which a contact changes its state is cut at the change; nominal steps divide the period
  * of the fundamental, 2 pi nu/omega. Fifth order; nothing is linearised, nothing assumed periodic.
- * Blade b of a ring lags by b times the wave's phase, as in the balance. Derivation: docs/time_integration.md. */
+ * Blade b of a ring lags by b times the wave's phase, as in the balance. Derivation: docs/theory/time_integration.md. */
 #ifndef MHB_INTEGRATION_INTEGRATOR_H
 #define MHB_INTEGRATION_INTEGRATOR_H
 

@@ -5,7 +5,7 @@
  * derivative is the least-squares fit of w' by degree two. Then
  *   int f . w' dt = sum_i b_i f_i . w_i'   (Radau's weights; exact, degree four),
  * so that a spring takes at least what it stores and friction at least what it dissipates: no step length makes a passive
- * contact active. At the ends of steps the error is of order five. Derivation: docs/time_integration.md. */
+ * contact active. At the ends of steps the error is of order five. Derivation: docs/theory/time_integration.md. */
 #ifndef MHB_INTEGRATION_MODAL_STEP_H
 #define MHB_INTEGRATION_MODAL_STEP_H
 

@@ -12,7 +12,8 @@
  *
  * Without overlaps in the file V takes mode[t] to place t, the tracks. Veering pairs then need a
  * speed at which both shapes are mixed. Modes that change places with one left out are left out
- * too: they answer statically (modal/model/reduce.h). Derivation, orders: docs/rotation.md. */
+ * too: they answer statically (modal/model/reduce.h). Derivation, orders:
+ * docs/theory/rotation.md. */
 #ifndef MHB_STRUCTURE_SPEED_TABLE_H
 #define MHB_STRUCTURE_SPEED_TABLE_H
 

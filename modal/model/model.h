@@ -50,7 +50,8 @@ typedef struct {
   double         *mode_residual; /* [m] relative eigen residual, or NULL */
 } modal_model;
 
-/* Write the datasets of docs/files.md into an open file (attributes format and provenance included). */
+/* Write the datasets of docs/user/files.md into an open file, with attributes format and
+ * provenance. */
 shb_status modal_model_write(hid_t file, const modal_model *model,
                              const shb_provenance *provenance);
 

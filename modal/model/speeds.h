@@ -1,6 +1,6 @@
 /* Modal models at several speeds of the rotor, their modes tracked from one speed to the next. Free of PETSc.
  *
- * In the file: groups /speed_0, /speed_1, ... with a model each, by ascending speed, and /speeds (docs/files.md). Track t is mode t of the
+ * In the file: groups /speed_0, /speed_1, ... with a model each, by ascending speed, and /speeds (docs/user/own_modes.md). Track t is mode t of the
  * first speed, carried on by the mode most like it at the next: MAC = (phi^T M psi)^2, every mode taken once. Signs follow the tracks. */
 #ifndef MODAL_MODEL_SPEEDS_H
 #define MODAL_MODEL_SPEEDS_H

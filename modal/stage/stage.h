@@ -46,7 +46,7 @@ typedef struct {
   double           tolerance, band; /* of the contact receptance; Hz */
   modal_damping    damping;
   modal_check_kind check;            /* that no mode is missing */
-  bool             full_integration; /* stiffness of hexahedra with 3x3x3 points, not 2x2x2 */
+  bool             full_integration; /* stiffness with FEM_FULL, not FEM_STANDARD */
   fem_load         load;
   int              n_loads;  /* 0: load alone */
   const fem_load  *loads;    /* that act together */

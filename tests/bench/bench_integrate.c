@@ -17,6 +17,7 @@
 #include "mesh/base/constants.h"
 #include "mesh/base/progress.h"
 #include "mhb/branches/main_branch.h"
+#include "mhb/continuation/first_solution.h"
 #include "mhb/integration/inertia_modes.h"
 #include "mhb/integration/steady_state.h"
 #include "tests/support/three_degree.h"

@@ -22,6 +22,7 @@
 #include "mesh/base/constants.h"
 #include "mesh/base/progress.h"
 #include "mhb/branches/main_branch.h"
+#include "mhb/continuation/first_solution.h"
 #include "precision.h"
 #include "shroud_face.h"
 #include "tests/support/three_degree.h"
@@ -105,7 +106,7 @@ static shb_status sweep_once(const modal_model *model, const mhb_settings *s, sw
 static int moves(const mhb_balance *b) {
   int n = 0;
   for (int a = 0; a < b->n_pairs; a++)
-    n += b->info[a].share[MHB_STICK] < 1 && b->info[a].share[MHB_SEPARATE] < 1;
+    n += b->eval->info[a].share[MHB_STICK] < 1 && b->eval->info[a].share[MHB_SEPARATE] < 1;
   return n;
 }
 

@@ -1,6 +1,7 @@
-foreach(noun tet10 finite_strain material surface)
+foreach(noun finite_strain material surface)
   shb_test(fem/element ${noun} fast tests_fem)
 endforeach()
+shb_test(fem/element tet10 fast tests_fem PkgConfig::OPENBLAS)
 shb_test(fem/element hex20 fast tests_fem PkgConfig::OPENBLAS)
 foreach(noun rotation stress assemble)
   shb_test(fem/body ${noun} fast tests_fem)

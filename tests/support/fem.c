@@ -62,7 +62,7 @@ static double random_unit(uint64_t *state) {
   return (double)(*state >> 11) * 0x1p-52 - 1;
 }
 
-static void straighten(mesh_fe *mesh) {
+void straighten(mesh_fe *mesh) {
   const mesh_topology *topology = mesh_topology_of(mesh->kind);
   double              *x        = mesh->coordinates;
   for (int e = 0; e < mesh->n_elements; e++) {

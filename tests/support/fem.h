@@ -24,6 +24,9 @@ mesh_fe make_box(const double size[3], const int n[3]);
  * whose normal is tangential), load the outer face. Curved elements. */
 mesh_fe make_sector(const double size[3], double inner, int blades, const int n[3]);
 
+/* Put every node of an edge in the middle between the edge's corners. */
+void straighten(mesh_fe *mesh);
+
 /* Move every node that is not on the box's surface by up to amount in each direction, repeatably. Hexahedra keep
  * straight edges: 2x2x2 points integrate the stiffness exactly then, under constant stress. */
 void shake_inside(mesh_fe *mesh, const double size[3], double amount);

@@ -8,6 +8,7 @@
 #include <cmocka.h>
 
 #include "mhb/branches/main_branch.h"
+#include "mhb/continuation/first_solution.h"
 
 void cold_solution(const modal_model *model, const mhb_settings *settings, double omega,
                    double tolerance, double *x) {

@@ -113,6 +113,8 @@ done
 
 # keys, check
 run 0 keys; says out 'contact.mu '; says out 'friction coefficient'; silent err
+run 0 keys --markdown; says out '# Case reference'; says out '| `mu` | number |'; silent err
+run 2 keys --markdown more; says err "unexpected 'more'"
 run 0 check good.yaml; says out 'good.yaml: ok'; says out '37 blades, engine order 7'; silent err
 run 0 check --quiet good.yaml; silent out; silent err
 run 0 check brought.yaml; says out 'from given.modal.h5'

@@ -174,6 +174,11 @@ static int tetrahedron(void **state) {
   return tables(MESH_TET10, FEM_STANDARD);
 }
 
+static int full_tetrahedron(void **state) {
+  (void)state;
+  return tables(MESH_TET10, FEM_FULL);
+}
+
 static int reduced_hexahedron(void **state) {
   (void)state;
   return tables(MESH_HEX20, FEM_STANDARD);
@@ -198,7 +203,8 @@ int main(int argc, char **argv) {
       cmocka_unit_test(tangent_is_the_derivative_of_the_force),
   };
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
-  int failures = cmocka_run_group_tests_name("tet10", tests, tetrahedron, free_tables);
+  int failures = cmocka_run_group_tests_name("tet10, 4", tests, tetrahedron, free_tables);
+  failures += cmocka_run_group_tests_name("tet10, 27", tests, full_tetrahedron, free_tables);
   failures += cmocka_run_group_tests_name("hex20, 2x2x2", tests, reduced_hexahedron, free_tables);
   failures += cmocka_run_group_tests_name("hex20, 3x3x3", tests, full_hexahedron, free_tables);
   PetscFinalize();

@@ -4,11 +4,14 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include <cmocka.h>
 
 #include "fem/element/element.h"
 #include "tests/support/fem.h"
+
+#include <petscblaslapack.h>
 
 /* A straight-sided element, and the same with its mid-side nodes pulled out of line. */
 static void straight_element(double x[10][3]) {
@@ -21,10 +24,10 @@ static void straight_element(double x[10][3]) {
     for (int d = 0; d < 3; d++) x[4 + e][d] = (x[edge[e][0]][d] + x[edge[e][1]][d]) / 2;
 }
 
-static void curved_element(double x[10][3]) {
+static void curved_element(double amount, double x[10][3]) {
   straight_element(x);
   for (int e = 4; e < 10; e++)
-    for (int d = 0; d < 3; d++) x[e][d] += .04 * sin(3.7 * e + 1.9 * d);
+    for (int d = 0; d < 3; d++) x[e][d] += amount * sin((3.7 + d) * e + 1.9 * d);
 }
 
 static double factorial(int n) {
@@ -138,14 +141,11 @@ static double work(double K[30][30], const double *u, const double *v) {
   return sum;
 }
 
-static void check_stiffness(const fem_element *element, const double x[10][3]) {
-  double K[30][30], m[10][10], u[30], volume = 0, largest = 0;
+/* Symmetric; no force under a rotation about a skew axis through a skew point. */
+static void check_rigid(const fem_element *element, const double x[10][3]) {
+  double K[30][30], u[30], largest = 0;
   fem_element_stiffness(element, &steel, x, &K[0][0]);
-  fem_element_mass(element, 1, x, &m[0][0]);
-  for (int i = 0; i < 10; i++)
-    for (int j = 0; j < 10; j++) volume += m[i][j];
   for (int i = 0; i < 30; i++) largest = fmax(largest, K[i][i]);
-  /* a rotation about a skew axis through a skew point */
   for (int i = 0; i < 10; i++) {
     u[3 * i]     = .7 + .3 * x[i][2] - 1.1 * x[i][1];
     u[3 * i + 1] = -.2 + 1.1 * x[i][0] - .5 * x[i][2];
@@ -159,9 +159,17 @@ static void check_stiffness(const fem_element *element, const double x[10][3]) {
     }
     check_below(force, 1e-12 * largest, "force of a rigid motion");
   }
-  /* homogeneous strain: twice the energy is sigma : epsilon V */
+}
+
+/* Homogeneous strain: twice the energy over sigma : epsilon V, less 1. V is that of the mass. */
+static double energy_error(const fem_element *element, const double x[10][3]) {
   const double e[3][3] = {{1.3e-3, .2e-3, -.4e-3}, {.2e-3, -.7e-3, .6e-3}, {-.4e-3, .6e-3, .9e-3}};
-  double       mu = 2.1e11 / 2.6, lambda = 2 * mu * .3 / .4, trace = 0, square = 0;
+  double       mu = 2.1e11 / 2.6, lambda = 2 * mu * .3 / .4, trace = 0, square = 0, volume = 0;
+  double       K[30][30], m[10][10], u[30];
+  fem_element_stiffness(element, &steel, x, &K[0][0]);
+  fem_element_mass(element, 1, x, &m[0][0]);
+  for (int i = 0; i < 10; i++)
+    for (int j = 0; j < 10; j++) volume += m[i][j];
   for (int a = 0; a < 3; a++) {
     trace += e[a][a];
     for (int b = 0; b < 3; b++) square += e[a][b] * e[a][b];
@@ -169,20 +177,80 @@ static void check_stiffness(const fem_element *element, const double x[10][3]) {
   for (int i = 0; i < 10; i++)
     for (int a = 0; a < 3; a++)
       u[3 * i + a] = e[a][0] * x[i][0] + e[a][1] * x[i][1] + e[a][2] * x[i][2];
-  check_close(work(K, u, u), (lambda * trace * trace + 2 * mu * square) * volume, 1e-12, "energy");
+  return work(K, u, u) / ((lambda * trace * trace + 2 * mu * square) * volume) - 1;
 }
 
+/* The determinant of J is a cubic where sides are curved: four points err in the volume. */
 static void stiffness_knows_rigid_motions_and_constant_strain(void **state) {
   (void)state;
-  fem_element element;
-  double      x[10][3];
-  assert_int_equal(fem_element_create(MESH_TET10, FEM_STANDARD, &element), 0);
+  const fem_rules rules[2] = {FEM_STANDARD, FEM_FULL};
+  for (int r = 0; r < 2; r++) {
+    fem_element element;
+    double      x[10][3];
+    assert_int_equal(fem_element_create(MESH_TET10, rules[r], &element), 0);
+    straight_element(x);
+    assert_true(fem_element_is_straight(&element, x));
+    check_rigid(&element, x);
+    check_below(energy_error(&element, x), 1e-12, "energy");
+    curved_element(.04, x);
+    assert_false(fem_element_is_straight(&element, x));
+    check_rigid(&element, x);
+    double error = fabs(energy_error(&element, x));
+    print_message("error of the energy of a constant strain: %.1e\n", error);
+    if (rules[r] == FEM_FULL)
+      check_below(error, 1e-12, "energy");
+    else
+      assert_true(error > 1e-6 && error < 1e-2);
+  }
+}
+
+static void four_points_unless_full(void **state) {
+  (void)state;
+  fem_element standard, calculix, full;
+  double      x[10][3], K[3][30][30], m[3][10][10];
+  assert_int_equal(fem_element_create(MESH_TET10, FEM_STANDARD, &standard), 0);
+  assert_int_equal(fem_element_create(MESH_TET10, FEM_CALCULIX, &calculix), 0);
+  assert_int_equal(fem_element_create(MESH_TET10, FEM_FULL, &full), 0);
+  const fem_element *element[3] = {&standard, &calculix, &full};
+  curved_element(.04, x);
+  for (int r = 0; r < 3; r++) {
+    assert_int_equal(fem_element_stiffness_rule(element[r], x)->n, r < 2 ? 4 : 27);
+    fem_element_stiffness(element[r], &steel, x, &K[r][0][0]);
+    fem_element_mass(element[r], steel.rho, x, &m[r][0][0]);
+  }
+  assert_memory_equal(K[0], K[1], sizeof K[0]); /* C3D10's stiffness */
+  assert_memory_equal(m[0], m[2], sizeof m[0]); /* the exact mass */
+  assert_true(memcmp(m[0], m[1], sizeof m[0]) != 0);
   straight_element(x);
-  assert_true(fem_element_is_straight(&element, x));
-  check_stiffness(&element, x);
-  curved_element(x);
-  assert_false(fem_element_is_straight(&element, x));
-  check_stiffness(&element, x);
+  assert_int_equal(fem_element_stiffness_rule(&full, x)->n, 4);
+}
+
+/* Eigenvalues of the stiffness, ascending. */
+static void eigenvalues(const fem_element *element, const double x[10][3], double value[30]) {
+  double       K[30][30], space[30 * 30];
+  PetscBLASInt info, n = 30, size = 30 * 30;
+  fem_element_stiffness(element, &steel, x, &K[0][0]);
+  LAPACKsyev_("N", "U", &n, &K[0][0], &n, value, space, &size, &info);
+  assert_int_equal(info, 0);
+}
+
+/* Six strains at four points are 24 = 30 - 6: no motion but the rigid ones is without energy. */
+static void four_points_leave_only_rigid_motions(void **state) {
+  (void)state;
+  fem_element reduced, full;
+  double      x[10][3], value[30], other[30], least = 1;
+  assert_int_equal(fem_element_create(MESH_TET10, FEM_STANDARD, &reduced), 0);
+  assert_int_equal(fem_element_create(MESH_TET10, FEM_FULL, &full), 0);
+  for (int level = 0; level <= 8; level++) {
+    curved_element(.01 * level, x);
+    eigenvalues(&reduced, x, value);
+    eigenvalues(&full, x, other);
+    for (int i = 0; i < 6; i++) check_below(value[i], 1e-13 * value[29], "rigid motion");
+    least = fmin(least, value[6] / other[6]);
+    assert_true(value[6] > 1e-3 * value[29]);
+  }
+  print_message("least elastic eigenvalue, 4 points over 27: %.3f\n", least);
+  assert_true(least > .7);
 }
 
 int main(void) {
@@ -191,6 +259,8 @@ int main(void) {
       cmocka_unit_test(triangle_rule_is_exact_to_degree_seven),
       cmocka_unit_test(mass_matches_the_closed_form),
       cmocka_unit_test(stiffness_knows_rigid_motions_and_constant_strain),
+      cmocka_unit_test(four_points_unless_full),
+      cmocka_unit_test(four_points_leave_only_rigid_motions),
   };
   if (PetscInitialize(NULL, NULL, NULL, NULL) != 0) return 1;
   int failures = cmocka_run_group_tests(tests, NULL, NULL);

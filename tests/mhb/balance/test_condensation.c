@@ -14,6 +14,7 @@
 
 #include "mesh/base/constants.h"
 #include "mhb/branches/main_branch.h"
+#include "mhb/continuation/first_solution.h"
 #include "tests/bench/shroud_face.h"
 #include "tests/support/allocations.h"
 #include "tests/support/random_model.h"
@@ -36,8 +37,8 @@ static mhb_balance *mixed_residual(const modal_model *model, const mhb_settings 
   if (mhb_balance_create(model, s, &b) != SHB_OK) fail_msg("%s", shb_message());
   mhb_balance_set_preload(b, s->n0[0]);
   for (int a = 0; a < b->n_pairs; a++) {
-    char kind         = kinds[a % (int)strlen(kinds)];
-    b->law[a].n0      = strchr("sh", kind) ? 1e3 : kind == 'o' ? -1e3 : .001 * (a % 3);
+    char kind             = kinds[a % (int)strlen(kinds)];
+    b->law[a].n0          = strchr("sh", kind) ? 1e3 : kind == 'o' ? -1e3 : .001 * (a % 3);
     b->law[a].mean_offset = 0;
   }
   return b;
@@ -97,7 +98,7 @@ static void check_kinds(const mhb_balance *b, const char *kinds) {
                            : c == 'h' ? MHB_PAIR_AT_LIMIT
                            : c == 'o' ? MHB_PAIR_OPEN
                                       : MHB_PAIR_NONLINEAR;
-    assert_int_equal(b->kind[a], wanted);
+    assert_int_equal(b->eval->kind[a], wanted);
   }
 }
 
@@ -177,7 +178,7 @@ static void a_new_law_is_factored_anew(void **state) {
   random_vector(N, .1, 1, x);
   for (int round = 0; round < 2; round++) {
     double             *out = round ? again : first;
-    mhb_operating_point at  = b->at;
+    mhb_operating_point at  = b->eval->at;
     at.kv                   = round ? 1.6 : .8;
     at.n0                   = 1e4;
     mhb_balance_set_operating_point(b, &at);
@@ -211,7 +212,7 @@ static void evaluate_with(int threads, const modal_model *model, outcome *out) {
   random_vector(N + 1, 1, 7, row);
   random_vector(N + 1, 1, 8, out->step);
   mhb_balance_linearise(b, x, 1.3, out->r, out->slope);
-  memcpy(out->p, b->p, sizeof out->p);
+  memcpy(out->p, b->eval->p, sizeof out->p);
   assert_true(mhb_condensation_factor(system, column, row) &&
               mhb_condensation_solve(system, out->step));
   out->sign = mhb_condensation_sign(system);
@@ -256,7 +257,7 @@ static void walk(const modal_model *model, const mhb_settings *s, double start, 
   allocations = 0;
   for (int i = 0; i < steps; i++) {
     assert_int_equal(mhb_arclength_step(path), MHB_ARCLENGTH_ON);
-    for (int a = 0; a < b->n_pairs; a++) moved += b->kind[a] == MHB_PAIR_NONLINEAR;
+    for (int a = 0; a < b->n_pairs; a++) moved += b->eval->kind[a] == MHB_PAIR_NONLINEAR;
     mhb_arclength_advance(path);
   }
   int counted = allocations;

@@ -187,8 +187,9 @@ static void mild_motions_are_accurate(void **state) {
     double top = 0, off = 0;
     for (int k = 0; k < 3; k++) {
       for (int j = 0; j < WIDTH; j++) {
-        double load = k == 0 && j == 0 ? c.law.mean_offset : 0, e = fabs(force[k][j] - r.force[k][j]);
-        top = fmax(top, fabs(r.force[k][j] + load));
+        double load = k == 0 && j == 0 ? c.law.mean_offset : 0,
+               e    = fabs(force[k][j] - r.force[k][j]);
+        top         = fmax(top, fabs(r.force[k][j] + load));
         if (!(e <= off)) off = e;
       }
     }

@@ -17,6 +17,7 @@
 #include "mhb/branches/forced_response.h"
 #include "mhb/branches/main_branch.h"
 #include "mhb/continuation/event_location.h"
+#include "mhb/continuation/first_solution.h"
 #include "tests/support/random_model.h"
 #include "tests/support/solution.h"
 #include "tests/support/three_degree.h"

@@ -18,7 +18,7 @@ enum { PAIRS = 3, H = 5 };
 
 static int count(const mhb_balance *b, mhb_pair_kind kind) {
   int n = 0;
-  for (int a = 0; a < b->n_pairs; a++) n += b->kind[a] == kind;
+  for (int a = 0; a < b->n_pairs; a++) n += b->eval->kind[a] == kind;
   return n;
 }
 

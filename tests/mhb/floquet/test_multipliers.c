@@ -204,9 +204,9 @@ static void product_without_friction(void **state) {
     for (int k = 0; k < 3; k++) rate += SHB_TWO_PI * model.frequency[k] * model.damping_ratio[k];
     double wanted = exp(-2 * rate * SHB_TWO_PI / p.omega);
     print_message("n0 %5.2f: product %.8f (%.8f), open %.2f\n", rows[i][0], creal(product), wanted,
-                  p.residual->info[0].share[MHB_SEPARATE]);
+                  p.residual->eval->info[0].share[MHB_SEPARATE]);
     assert_near(cabs(product / wanted - 1), 0, 1e-5);
-    assert_true(p.residual->info[0].share[MHB_SEPARATE] > .1);
+    assert_true(p.residual->eval->info[0].share[MHB_SEPARATE] > .1);
     periodic_destroy(&p);
   }
   modal_model_free(&model);

@@ -214,6 +214,58 @@ static void both_rules_of_hexahedra_meet(void **state) {
   }
 }
 
+/* A box bent to an arc across and twisted along: a cambered blade of curved elements. */
+static mesh_fe cambered_blade(const int cells[3]) {
+  const double size[3] = {.12, .05, .004}, radius = .035, twist = .6;
+  mesh_fe      mesh = make_box(size, cells);
+  for (int i = 0; i < mesh.n_nodes; i++) {
+    double *x   = mesh.coordinates + 3 * i;
+    double  arc = (x[1] - size[1] / 2) / radius, turn = twist * x[0] / size[0];
+    double  outer = radius + x[2] - size[2] / 2, y = outer * sin(arc);
+    double  z = outer * cos(arc) - radius;
+    x[1]      = y * cos(turn) - z * sin(turn);
+    x[2]      = y * sin(turn) + z * cos(turn);
+  }
+  return mesh;
+}
+
+static void blade_frequencies(mesh_kind kind, const int cells[3], fem_rules rules,
+                              double frequency[6]) {
+  fem_system  system;
+  modal_eigen eigen;
+  use_elements(kind);
+  mesh_fe mesh = cambered_blade(cells);
+  use_elements(MESH_TET10);
+  solve(&mesh, &steel, rules, 6, 0, &system, &eigen);
+  check_modes(&system, &eigen);
+  for (int i = 0; i < 6; i++) frequency[i] = sqrt(eigen.lambda[i]) / SHB_TWO_PI;
+  release(&system, &eigen);
+  mesh_fe_free(&mesh);
+}
+
+/* Curved tetrahedra converge from above; four points are nearer than 27, in every mode. */
+static void four_points_stiffen_curved_tetrahedra_less(void **state) {
+  (void)state;
+  const int finest[3] = {24, 12, 3}, cells[2][3] = {{8, 4, 1}, {16, 8, 1}};
+  double    reference[6], reduced[2][6], full[2][6];
+  blade_frequencies(MESH_HEX20, finest, FEM_STANDARD, reference);
+  for (int level = 0; level < 2; level++) {
+    blade_frequencies(MESH_TET10, cells[level], FEM_STANDARD, reduced[level]);
+    blade_frequencies(MESH_TET10, cells[level], FEM_FULL, full[level]);
+  }
+  for (int i = 0; i < 6; i++) {
+    double above[2], more[2];
+    for (int level = 0; level < 2; level++) {
+      above[level] = reduced[level][i] / reference[i] - 1;
+      more[level]  = full[level][i] / reference[i] - 1;
+      assert_true(above[level] > 0 && more[level] > 1.03 * above[level]);
+    }
+    print_message("mode %d: 4 points %.2e and %.2e above, 27 points %.2e and %.2e\n", i + 1,
+                  above[0], above[1], more[0], more[1]);
+    assert_true(above[1] < .3 * above[0]);
+  }
+}
+
 static int hexahedra(void **state) {
   (void)state;
   use_elements(MESH_HEX20);
@@ -226,6 +278,7 @@ int main(int argc, char **argv) {
       cmocka_unit_test(free_body_has_six_rigid_modes),
       cmocka_unit_test(smooth_mode_converges_with_order_four),
       cmocka_unit_test(too_many_modes_is_one_line),
+      cmocka_unit_test(four_points_stiffen_curved_tetrahedra_less),
   };
   const struct CMUnitTest of_hexahedra[] = {
       cmocka_unit_test(both_rules_of_hexahedra_meet),

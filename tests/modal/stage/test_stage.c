@@ -288,6 +288,22 @@ static void columns_need_all_points(void **state) {
   mesh_fe_free(&mesh);
 }
 
+/* A sector of curved tetrahedra: 27 points are stiffer than four in every mode. */
+static void full_integration_is_stiffer(void **state) {
+  (void)state;
+  modal_settings settings = default_settings();
+  modal_result   reduced, full;
+  mesh_fe        mesh = make_sector(size, inner, BLADES, cells);
+  assert_ok(modal_solve(PETSC_COMM_WORLD, &mesh, &settings, NULL, &reduced));
+  settings.full_integration = true;
+  assert_ok(modal_solve(PETSC_COMM_WORLD, &mesh, &settings, NULL, &full));
+  for (int i = 0; i < settings.modes; i++)
+    assert_true(full.eigen.lambda[i] > (1 + 1e-7) * reduced.eigen.lambda[i]);
+  modal_result_free(&reduced);
+  modal_result_free(&full);
+  mesh_fe_free(&mesh);
+}
+
 /* The sampled receptance is the model's own. */
 static void receptance_is_sampled(void **state) {
   (void)state;
@@ -565,6 +581,7 @@ int main(int argc, char **argv) {
       cmocka_unit_test(failures_leave_the_file_alone),
       cmocka_unit_test(hexahedra_go_through),
       cmocka_unit_test(columns_need_all_points),
+      cmocka_unit_test(full_integration_is_stiffer),
       cmocka_unit_test(interfaces_are_condensed_together),
   };
   modal_session session;

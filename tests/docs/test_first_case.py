@@ -1,0 +1,45 @@
+"""The peaks that docs/user/first_case.md prints: test_first_case.py SHROUDHB ROOT WORK_FOLDER"""
+import csv
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+
+def printed(page):
+    """{n0: (peak um, Hz)} of the page."""
+    rows = re.findall(r"^ +(\d+) N +([\d.]+) um at +([\d.]+) Hz$", page, re.M)
+    return {float(n0): (float(a), float(f)) for n0, a, f in rows}
+
+
+def computed(path):
+    peaks = {}
+    with open(path, newline="", encoding="utf-8") as file:
+        for row in csv.DictReader(file):
+            if row["kind"] != "nonlinear":
+                continue
+            n0, a = float(row["n0_N"]), 1e6 * float(row["tip_motion_amplitude_m"])
+            if a > peaks.get(n0, (0, 0))[0]:
+                peaks[n0] = a, float(row["frequency_Hz"])
+    return peaks
+
+
+def main():
+    program, root, folder = sys.argv[1], Path(sys.argv[2]), Path(sys.argv[3])
+    shutil.rmtree(folder, ignore_errors=True)  # nothing is up to date
+    folder.mkdir(parents=True)
+    shutil.copy(root / "cases/first_case/case.yaml", folder / "case.yaml")
+    subprocess.run([program, "run", "--quiet", str(folder / "case.yaml")], check=True)
+    page = printed((root / "docs/user/first_case.md").read_text(encoding="utf-8"))
+    found = computed(folder / "first_case.csv")
+    assert len(page) == 7 and sorted(page) == sorted(found), (page, found)
+    for n0, (a, f) in page.items():
+        assert abs(found[n0][0] - a) < 5e-3 * a, (n0, a, found[n0])
+        assert abs(found[n0][1] - f) < 5e-2 * f, (n0, f, found[n0])  # tops are flat
+    least = min(found, key=lambda n0: found[n0][0])
+    assert least == 15, least
+
+
+if __name__ == "__main__":
+    main()
