@@ -44,7 +44,8 @@ static const struct {
     {U, 6, .056e-4, -2.89}, {U, 7, .041e-4, 1.07},
     {W, 1, 1.3e-4, 1.37}, {W, 2, .325e-4, -.83}, {W, 3, .144e-4, .19}, {W, 4, .081e-4, 2.23}, {W, 5, .052e-4, -2.11},
     {W, 6, .036e-4, .97}, {W, 7, .027e-4, -.47}}, 2e-7},
-  /* |f| just touches mu n inside a stick, from either side of it; lambda just touches zero inside a slip */
+  /* |f| just touches mu n inside a stick, from either side of it; lambda just touches zero inside a
+   * slip */
   {"slip grazed",     LAW(.4, 100, ROUND), {{V, 1, 1e-4, .9}, {U, 1, 2e-4, 0}, {U, 3, 1.08047302e-4, .5}, {W, 1, .7e-4, 2}}, 0},
   {"slip touched",    LAW(.4, 100, ROUND), {{V, 1, 1e-4, .9}, {U, 1, 2e-4, 0}, {U, 3, 1.08047518e-4, .5}, {W, 1, .7e-4, 2}}, 0},
   {"stick touched",   LAW(.4, 100, ROUND), {{V, 1, 1e-4, .9}, {U, 1, 2e-4, 0}, {U, 3, 3.22507047e-5, .5}, {W, 1, .7e-4, 2}}, 0},

@@ -1,6 +1,7 @@
 /* Motions on which the contact law is judged: every kind of state, transition and near miss.
  *
- * The first ten are those of the benchmark's table. Amplitudes are of the order of 1e-4 m on 1e6 N/m and 100 N. */
+ * The first ten are those of the benchmark's table. Amplitudes are of the order of 1e-4 m on 1e6
+ * N/m and 100 N. */
 #ifndef TESTS_SUPPORT_MOTION_SUITE_H
 #define TESTS_SUPPORT_MOTION_SUITE_H
 

@@ -47,7 +47,8 @@ static void add_normals(modal_model *model, unsigned long long *seed) {
   }
 }
 
-/* Inertia of load and probes, the term of w^4, from a seed of its own: the normals that follow stay the same without it. */
+/* Inertia of load and probes, the term of w^4, from a seed of its own: the normals that follow stay
+ * the same without it. */
 static void add_inertia(modal_model *model, unsigned long long seed) {
   int    nc = 3 * model->n_pairs * (model->has_left ? 2 : 1), q = 3 * model->n_probes;
   size_t loads                 = (size_t)model->n_load + 1;

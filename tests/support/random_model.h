@@ -24,7 +24,8 @@ void random_model(int n_pairs, int parts, unsigned long long seed, modal_model *
 /* What the modes left out add to the receptance between contact dofs a and b, w in rad/s. */
 double residual_by_hand(const modal_model *model, double w, int a, int b);
 
-/* The same of a way from the load or to the probes, by its three terms and the shapes [n_residual] at both ends (NULL without); load: complex. */
+/* The same of a way from the load or to the probes, by its three terms and the shapes [n_residual]
+ * at both ends (NULL without); load: complex. */
 double complex loaded_by_hand(const modal_model *model, double w, double complex still,
                               double complex inertia, double complex fourth, const double *to,
                               const double complex *by);

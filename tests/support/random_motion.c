@@ -59,7 +59,8 @@ static void draw_law(int mild, mhb_law *law, unsigned long *state) {
   law->ku[1] = (one_in(2, state) ? -1 : 1) * skew * sqrt(law->ku[0]) * sqrt(law->ku[2]);
 }
 
-/* Preload, then the tangential motion scaled so that friction reaches for about `reach` times its limit. */
+/* Preload, then the tangential motion scaled so that friction reaches for about `reach` times its
+ * limit. */
 static void draw_scales(int mild, int m, random_motion *r, unsigned long *state) {
   int     width = 2 * m + 1;
   double *v = r->motion, *u = v + width, *w = u + width, wave = r->law.kv * size_of(v, m);

@@ -1,4 +1,5 @@
-/* Random laws and motions over the whole range the program admits, each known by (seed, index) alone. */
+/* Random laws and motions over the whole range the program admits, each known by (seed, index)
+ * alone. */
 #ifndef TESTS_SUPPORT_RANDOM_MOTION_H
 #define TESTS_SUPPORT_RANDOM_MOTION_H
 
@@ -6,7 +7,8 @@
 
 enum { RANDOM_HARMONICS = 20, RANDOM_SIZES = 4 };
 
-/* Motions come in these sizes: harmonics in use are drawn up to m, so that a workspace a size serves all. */
+/* Motions come in these sizes: harmonics in use are drawn up to m, so that a workspace a size
+ * serves all. */
 extern const int random_size[RANDOM_SIZES];
 
 typedef struct {

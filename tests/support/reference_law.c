@@ -17,7 +17,8 @@ typedef struct {
   reference *out;
 } walk;
 
-/* State at a time. Stick: f = x - z; fresh: f.f - mu^2 n^2 has a double zero at t. Slip: f; fresh: n = 0 at t. */
+/* State at a time. Stick: f = x - z; fresh: f.f - mu^2 n^2 has a double zero at t. Slip: f; fresh:
+ * n = 0 at t. */
 typedef struct {
   mhb_state state;
   int       fresh;
@@ -99,7 +100,8 @@ static real closing_rate(const walk *w, const series *s, real F[2]) {
   return high;
 }
 
-/* ((j+1) + L_0 K) F_j + L_j K F_0 = rest,  2 F_0.F_j = mu^2 (n^2)_{j+2} - sum F_i.F_{j-i}; then f = t F. */
+/* ((j+1) + L_0 K) F_j + L_j K F_0 = rest,  2 F_0.F_j = mu^2 (n^2)_{j+2} - sum F_i.F_{j-i}; then f =
+ * t F. */
 static void closing_series(const walk *w, series *s) {
   real F0[2], KF[2], a[2], b[2], r[2], L0 = closing_rate(w, s, F0);
   times_K(w, F0, KF);
@@ -217,7 +219,8 @@ static int step_slip(walk *w, place *p, real end, int opening) {
   return stop >= 0;
 }
 
-/* Slip until it ends or the interval does. The last 1e-10 rad before an opening: force falling to zero on a line. */
+/* Slip until it ends or the interval does. The last 1e-10 rad before an opening: force falling to
+ * zero on a line. */
 static void run_slip(walk *w, place *p, real end, int opening) {
   real begin = p->t;
   int  ended = 0;
@@ -336,7 +339,8 @@ static void run_lap(walk *w, place *p) {
   p->t = end - TWO_PI;
 }
 
-/* From the middle of the longest slip of the last lap: the angle after a lap. 0: it does not slip there. */
+/* From the middle of the longest slip of the last lap: the angle after a lap. 0: it does not slip
+ * there. */
 static int reach_middle(walk *w, place *p) {
   real middle = w->middle > p->t ? w->middle : w->middle + TWO_PI;
   clear_lap(w);
@@ -433,7 +437,8 @@ static void finish(const walk *w, const mhb_law *law, const real *load_sum, refe
     out->force[0][i] = (double)(factor * load_sum[i] - (i == 0 ? *shift : 0));
     for (int k = 0; k < 2; k++) out->force[1 + k][i] = (double)(factor * w->sum[k][i]);
   }
-  /* f.s' in slip is lambda f.f over a stiffness: lambda here belongs to K = Ku/(kuu + kww), f to units of scale */
+  /* f.s' in slip is lambda f.f over a stiffness: lambda here belongs to K = Ku/(kuu + kww), f to
+   * units of scale */
   out->work = (double)(w->work * w->scale * w->scale / ((real)law->ku[0] + law->ku[2]));
   for (int i = 0; i < 3; i++) out->share[i] = (double)w->share[i];
 }

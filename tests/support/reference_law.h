@@ -1,15 +1,17 @@
-/* Independent witness of the contact law: Taylor series of high order from event to event, in long double.
+/* Independent witness of the contact law: Taylor series of high order from event to event, in long
+ * double.
  *
- * Shares no code and no method with mhb/: the law there follows the slip angle by collocation; here the friction
- * itself is followed in the plane, with x = Ku s and K the shape of Ku,
+ * Shares no code and no method with mhb/: the law there follows the slip angle by collocation; here
+ * the friction itself is followed in the plane, with x = Ku s and K the shape of Ku,
  *   stick  f = x - z;   slip  f' = x' - lambda K f,  f.f = mu^2 n^2  (eq. 9),
- * an equation with a constraint, solved for the series of f and lambda coefficient by coefficient. At a closing n = 0,
- * f = t F and lambda = L/t, and the same is done for F and L: the regular solution, no start-up error (eqs. 13-15).
- * Events are roots of the series: |x - z| = mu n (eq. 7), lambda = 0 (eq. 10). Towards an opening the steps shrink with
- * the radius of convergence. Two solutions never part in the norm of 1/K, so that errors of a step are not amplified.
+ * an equation with a constraint, solved for the series of f and lambda coefficient by coefficient.
+ * At a closing n = 0, f = t F and lambda = L/t, and the same is done for F and L: the regular
+ * solution, no start-up error (eqs. 13-15). Events are roots of the series: |x - z| = mu n (eq. 7),
+ * lambda = 0 (eq. 10). Towards an opening the steps shrink with the radius of convergence. Two
+ * solutions never part in the norm of 1/K, so that errors of a step are not amplified.
  *
- * A contact that stays closed and slips: the state in the middle of a slip is one angle; the lap map of that angle is
- * solved by secants. Slow (milliseconds), good to 1e-13 or so. */
+ * A contact that stays closed and slips: the state in the middle of a slip is one angle; the lap
+ * map of that angle is solved by secants. Slow (milliseconds), good to 1e-13 or so. */
 #ifndef TESTS_SUPPORT_REFERENCE_LAW_H
 #define TESTS_SUPPORT_REFERENCE_LAW_H
 

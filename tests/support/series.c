@@ -49,7 +49,8 @@ real series_product(const real *a, const real *b, int j) {
   return sum;
 }
 
-/* The end of [low, high] that the change of sign of value (or slope) closes in on; low keeps its sign. */
+/* The end of [low, high] that the change of sign of value (or slope) closes in on; low keeps its
+ * sign. */
 static real bisect_series(const real *c, int order, int slope, real low, real high) {
   real (*f)(const real *, int, real) = slope ? series_slope : series_at;
   int sign                           = f(c, order, low) > 0;

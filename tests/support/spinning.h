@@ -1,5 +1,6 @@
-/* A structure of 12 dofs whose stiffness changes with the speed, K(Omega^2), condensed as the modal stage would: 6 modes, what is left out
- * in residual terms. Dofs 0-2 are the right contact, 3-5 the left, 6-8 the probe; mass 1 each; harmonics 0 to 2 of a load on all. */
+/* A structure of 12 dofs whose stiffness changes with the speed, K(Omega^2), condensed as the modal
+ * stage would: 6 modes, what is left out in residual terms. Dofs 0-2 are the right contact, 3-5 the
+ * left, 6-8 the probe; mass 1 each; harmonics 0 to 2 of a load on all. */
 #ifndef TESTS_SUPPORT_SPINNING_H
 #define TESTS_SUPPORT_SPINNING_H
 

@@ -1,4 +1,5 @@
-/* The contact law: closed forms, identities, derivative, hostile input, an independent march. */
+/* The contact law: closed forms, identities, derivative, extreme input, comparison with time
+ * marching. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -97,7 +98,8 @@ static void normal_force_of_opening_contact(void **state) {
   assert_near(e.info.share[MHB_SEPARATE], 1 - tc / SHB_PI, 1e-12);
 }
 
-/* v = cos kt at n0 = 0 opens k times a period: n = max(v, 0) has mean 1/pi and amplitude 1/2, however large k. */
+/* v = cos kt at n0 = 0 opens k times a period: n = max(v, 0) has mean 1/pi and amplitude 0.5 at any
+ * k. */
 static void every_opening_counts(void **state) {
   (void)state;
   static const int many[] = {1, 63, 65, 128};
@@ -251,7 +253,8 @@ static const char *suite(int i, evaluation *e) {
   }
 }
 
-/* Radial return on N samples until periodic: first order, so that two grids extrapolate. Isotropic Ku only. */
+/* Radial return on N samples until periodic: first order, so that two grids extrapolate. Isotropic
+ * Ku. */
 static void march(const evaluation *e, int N, double out[3][NF]) {
   double f[2] = {0, 0}, x0[2] = {0, 0}, n = 0, before = 0;
   memset(out, 0, sizeof(double) * 3 * NF);
@@ -300,7 +303,7 @@ static void against_marching(void **state) {
   }
 }
 
-/* Refined panels must not move the result: the order of the error is what a wrong formula spoils. */
+/* Refined panels must not change the result: the order of the error shows a wrong formula. */
 static void tolerance_is_met(void **state) {
   (void)state;
   mhb_contact_evaluator *coarse, *fine;
@@ -324,8 +327,7 @@ static void tolerance_is_met(void **state) {
 static void derivative_against_differences(void **state) {
   (void)state;
   static evaluation      e, p, q;
-  mhb_contact_evaluator *sharp,
-      *usual = workspace; /* differences magnify what the tolerance leaves */
+  mhb_contact_evaluator *sharp, *usual = workspace; /* differences magnify the error */
   assert_int_equal(mhb_contact_evaluator_create(M, H, 1e-14, &sharp), SHB_OK);
   for (int i = 0; i < SUITE; i++) {
     const char *name = suite(i, &e);
@@ -464,8 +466,10 @@ static double uniform(void) {
   return (double)(seed >> 11) / 9007199254740992.;
 }
 
-/* Closed for less than a cell of any grid: n is a parabola of height g, slip keeps its direction, so that
- *   mean n = (4/3) g sqrt(2 g/n'')/(2 pi),   |mean f| = mu mean n,   but for g itself and what rounding leaves of n. */
+/* Closed for less than a cell of any grid: n is a parabola of height g, and slip keeps its
+ * direction, so that
+ *   mean n = (4/3) g sqrt(2 g/n'')/(2 pi),   |mean f| = mu mean n,
+ * up to terms of order g and the rounding of n. */
 static void grazing(void **state) {
   (void)state;
   double kv = 3e5, B = 2.385e-4, mu = .3;

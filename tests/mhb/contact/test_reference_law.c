@@ -1,4 +1,5 @@
-/* The witness itself: closed forms, two orders and tolerances on every motion of the suite, turned axes. */
+/* The reference law itself: closed forms, two orders and tolerances on every motion of the suite,
+ * rotated axes. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -154,7 +155,8 @@ static void two_tolerances_agree(void **state) {
   }
 }
 
-/* A seventh of the tolerance's digits must be seen in the result: the error is not hidden by something common. */
+/* Two tolerances must differ in the result by at least a seventh of their digits: both would
+ * otherwise share an error. */
 static void coarse_steps_are_seen(void **state) {
   (void)state;
   suite_motion s = suite_at(7);
@@ -168,7 +170,7 @@ static void coarse_steps_are_seen(void **state) {
   assert_true(worst < 1e-3 * largest(&fine));
 }
 
-/* Ku, motion and force in turned axes. */
+/* Ku, motion and force in rotated axes. */
 static void turn(suite_motion *s, double angle) {
   double c = cos(angle), n = sin(angle), a = s->law.ku[0], b = s->law.ku[1], d = s->law.ku[2];
   s->law.ku[0] = c * c * a - 2 * c * n * b + n * n * d;

@@ -1,4 +1,5 @@
-/* The contact over one period: against the force harmonics, the friction limit, the transitions and the work. */
+/* The contact over one period: against the force harmonics, the friction limit, the transitions and
+ * the work. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -132,7 +133,8 @@ static double harmonics_off(scene *s, int n) {
   return worst;
 }
 
-/* A continuous force with kinks: the sampled harmonics err by 1/n^2, down to the law's own tolerance. */
+/* The force is continuous with kinks: the sampled harmonics err by 1/n^2, down to the tolerance of
+ * the law. */
 static void harmonics_at_second_order(void **state) {
   (void)state;
   for (int i = 0; i < SCENES; i++) {
@@ -148,7 +150,8 @@ static void harmonics_at_second_order(void **state) {
 
 enum { GAUSS = 5, CUTS = 150 };
 
-/* Gauss points between transitions: what is smooth there is integrated far below the tolerance of the law. */
+/* Gauss points between transitions: smooth pieces are integrated far below the tolerance of the
+ * law. */
 static int gauss_points(const scene *s, double *weight) {
   static const double x[GAUSS] = {-.9061798459386640, -.5384693101056831, 0, .5384693101056831,
                                   .9061798459386640},
@@ -233,7 +236,7 @@ static void within_the_friction_limit(void **state) {
   }
 }
 
-/* Either side of a transition: the state changes as told, the force does not. */
+/* On either side of a transition the state changes as reported, the force does not. */
 static void continuous_across_transitions(void **state) {
   (void)state;
   const double step  = 1e-10;
@@ -261,7 +264,7 @@ static void continuous_across_transitions(void **state) {
   assert_true(total >= 20);
 }
 
-/* No jump anywhere: between panels, at the period's end, which is its start. */
+/* No jump between panels, nor at the end of the period. */
 static void continuous_throughout(void **state) {
   (void)state;
   for (int i = 0; i < SCENES; i++) {
@@ -298,7 +301,7 @@ static void put_random(scene *s) {
   s->law.n0 = s->law.kv * (3 * uniform() - 1);
 }
 
-/* What the law's tolerance is relative to: the largest force in sight. */
+/* The scale of the law's tolerance: the largest force in sight. */
 static double force_scale(const scene *s) {
   const double *ku = s->law.ku, *v = s->motion[0], *u = s->motion[1], *w = s->motion[2];
   double        load = fabs(s->law.n0), friction = 0;
@@ -309,7 +312,8 @@ static double force_scale(const scene *s) {
   return fmax(load, friction);
 }
 
-/* Wherever the lap begins and whatever it meets: periodic, within the limit, states as long as told. */
+/* For any start of the lap and any events: periodic, within the limit, shares of states as
+ * reported. */
 static void random_motions(void **state) {
   (void)state;
   enum { N = 401 };
@@ -318,7 +322,7 @@ static void random_motions(void **state) {
     put_random(&s);
     for (int l = 0; l < N; l++) sample[l].phase = (double)l / (N - 1);
     mhb_contact_time_history(workspace, &s.law, &s.motion[0][0], N, sample, &s.info);
-    if (s.info.lost) continue; /* told, and bounded by test_contact */
+    if (s.info.lost) continue; /* reported, and bounded */
     double scale = force_scale(&s), share[3] = {0};
     for (int l = 0; l < N; l++) {
       double size = hypot(sample[l].f[0], sample[l].f[1]);
@@ -328,7 +332,7 @@ static void random_motions(void **state) {
       if (l > 0) share[sample[l].state] += 1. / (N - 1);
     }
     for (int a = 0; a < 3;
-         a++) /* where slip is stiff a lap's end is less accurate than its force */
+         a++) /* where slip is stiff the end of a lap is less accurate than its force */
       assert_true(fabs(component(&sample[0], a) - component(&sample[N - 1], a)) <= 5e-9 * scale);
     for (int k = 0; k < 3; k++)
       assert_true(fabs(share[k] - s.info.share[k]) <= (1. + s.info.n_transitions) / (N - 1));

@@ -1,4 +1,5 @@
-/* Several contact interfaces: against one where they are one, against time integration, derivatives against differences, files. */
+/* Several contact interfaces: equal ones against one, time integration, derivatives against
+ * differences, files. */
 #include "mhb/problem/interfaces.h"
 
 #include <math.h>
@@ -25,7 +26,8 @@
     if (!(fabs(v_) <= b_)) fail_msg("%s = %.3e, wanted below %.1e", #value, fabs(v_), b_); \
   } while (0)
 
-/* A random model whose pair a belongs to interface a % 2: "mid" is the first of the settings, the second of the model. */
+/* A random model whose pair a belongs to interface a % 2. "mid" is the first of the settings and
+ * the second of the model. */
 static void two_faced_model(int n_pairs, int parts, unsigned long long seed, modal_model *model) {
   random_model(n_pairs, parts, seed, model);
   model->n_interfaces   = 2;
@@ -152,7 +154,7 @@ static void free_pair(modal_model *one) {
   free(one->load_inertia);
 }
 
-/* What never meets is not there. */
+/* An interface that never closes has no influence. */
 static void an_open_one_is_none(void **state) {
   (void)state;
   modal_model  model, one;
@@ -215,7 +217,7 @@ static void slopes_are_exact(void **state) {
       if (p < 4 && which == 0)
         print_message("%s: slope %.1e\n", mhb_parameter_name(parameters[p]), error);
       assert_below(error, 1e-7);
-      if (p == 0) { /* all preloads alike, as on the way to a first solution */
+      if (p == 0) { /* all preloads move alike, as on the way to a first solution */
         mhb_balance_tie_preloads(b, 1);
         assert_below(slope_error(b, x, MHB_IN_N0), 1e-7);
         double before = b->law[0].n0 - b->law[1].n0;
@@ -228,7 +230,7 @@ static void slopes_are_exact(void **state) {
   modal_model_free(&model);
 }
 
-/* What a pair's law is: its own interface's, shared out by area. */
+/* The law of a pair is that of its interface, shared by area. */
 static void laws_are_their_own(void **state) {
   (void)state;
   modal_model  model;
@@ -265,7 +267,8 @@ static void laws_are_their_own(void **state) {
   modal_model_free(&model);
 }
 
-/* Different friction, preload (one gap) and stiffness against a march in time, to ground and around a ring. */
+/* Different friction, preload (one gap) and stiffness against a march in time, to ground and around
+ * a ring. */
 static void time_integration_agrees(void **state) {
   (void)state;
   for (int ring = 0; ring < 2; ring++) {

@@ -1,4 +1,5 @@
-/* Curves followed in another parameter than the frequency: exact slopes, and the same solutions as at fixed parameters. */
+/* Curves in another parameter than the frequency: exact slopes, and the same solutions as at fixed
+ * parameters. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -97,7 +98,8 @@ static mhb_response *sweep(const modal_model *model, const mhb_settings *s) {
   return response;
 }
 
-/* |r| of a recorded point in the balance of a case that has the point's value as its own; relative to the motion. */
+/* |r| of a recorded point in the balance of a case with the value of the point as its own; relative
+ * to the motion. */
 static double residual_of(const modal_model *model, mhb_settings s, const mhb_response *response,
                           int point) {
   const mhb_branch *branch = &response->branch[2];
@@ -122,7 +124,7 @@ static double residual_of(const modal_model *model, mhb_settings s, const mhb_re
   return size;
 }
 
-/* Three degrees of freedom on the ground: every parameter, from next to nothing to a lot. */
+/* Three degrees of freedom to ground: every parameter over a wide range. */
 static void every_parameter_is_followed(void **state) {
   (void)state;
   static const double ranges[MHB_N_PARAMETERS][2] = {[MHB_IN_N0]    = {-.3, 1},
@@ -158,7 +160,7 @@ static void every_parameter_is_followed(void **state) {
   modal_model_free(&model);
 }
 
-/* Stuck, nothing changes with mu: no peaks there, and no way back. */
+/* While stuck nothing changes with mu: no peaks there, and no turning back. */
 static void stuck_means_nothing_changes(void **state) {
   (void)state;
   modal_model model;
@@ -201,7 +203,8 @@ static double fold_in_frequency(const modal_model *model, mhb_settings s, double
   return best;
 }
 
-/* A fold of the curve in the level lies on the same edge of the folded surface as one in frequency; the middle is unstable. */
+/* A fold of the curve in the scale lies on the same edge of the folded surface as one in frequency;
+ * the middle part is unstable. */
 static void folds_are_those_in_frequency(void **state) {
   (void)state;
   modal_model model;
@@ -229,7 +232,7 @@ static void folds_are_those_in_frequency(void **state) {
   modal_model_free(&model);
 }
 
-/* Where the contact opens and slips is a millionth of the range: it is not stepped over. */
+/* The contact opens and slips over a millionth of the range only: it must not be stepped over. */
 static void wide_ranges_of_preload_are_resolved(void **state) {
   (void)state;
   static const double wide[] = {1, 50, 1e6, 1e12};

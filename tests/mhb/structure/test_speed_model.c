@@ -1,4 +1,5 @@
-/* The modal model of a run-up against models made at the exact speed: values, orders, derivatives, refusals. */
+/* The modal model of a run-up against models made at the exact speed: values, orders, derivatives,
+ * refusals. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -67,7 +68,7 @@ static void outputs(mhb_receptance *r, double omega, bool slope, double complex 
   }
 }
 
-/* Of each harmonic and kind of output by itself; the worst. */
+/* The worst over harmonics and kinds of output, each relative to itself. */
 static double distance(const double complex *a, const double complex *b) {
   double worst = 0;
   for (int g = 0; g < VALUES / 3; g++) {
@@ -125,7 +126,8 @@ static void straight_lines_are_exact(void **state) {
       assert_below(error(SPINNING_STRAIGHT, n, overlap), 1e-11);
 }
 
-/* From 8 speeds on: twice as many are 16 times as good, or better. Splines of tracks go through a veering blindly. */
+/* From 8 speeds on: the error falls by 16 at least with twice as many. Splines over tracks ignore a
+ * veering. */
 static void order_is_four(void **state) {
   (void)state;
   static const struct {
@@ -160,7 +162,7 @@ static void difference(mhb_receptance *r, double omega, double complex out[VALUE
   }
 }
 
-/* The mean too has a slope. Between the second and third mode's crossing nothing is lost either. */
+/* The mean has a slope too. At the crossing of the second and third mode the derivative holds. */
 static void slopes_are_derivatives(void **state) {
   (void)state;
   static const spinning_kind kind[] = {SPINNING_STRAIGHT, SPINNING_TURNING, SPINNING_VEERING};
@@ -185,7 +187,7 @@ static void slopes_are_derivatives(void **state) {
     }
 }
 
-/* Modes that change places with ones left out are left out as well. */
+/* Modes that change places with ones left out are left out too. */
 static void modes_that_leave_are_static(void **state) {
   (void)state;
   for (int overlap = 0; overlap < 2; overlap++) {
