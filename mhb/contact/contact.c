@@ -97,59 +97,48 @@ static int set_signals(mhb_contact_evaluator *c, const mhb_law *law, const doubl
   return 1;
 }
 
-/* Mean harmonic (sum k^4 |A_k|/sum |A_k|)^(1/4) over n and x in force units. */
-static double content_of(const mhb_signals *s, double mu) {
-  double high = 0, all = 0;
-  for (int i = 0; i < 3; i++) {
-    double weight = i ? 1 : mu;
-    high += weight * s->bound[i][4];
-    all += weight * (s->bound[i][0] - fabs(s->coefficient[i]));
-  }
-  return all > 0 && high < INFINITY ? sqrt(sqrt(high / all)) : 1;
-}
+/* The slip problem of the period, and the levels of force that errors refer to. */
+static void set_slip(mhb_contact_evaluator *c, const mhb_law *law, int derivative) {
+  const mhb_signals *s = &c->signals;
+  c->slip              = (mhb_slip){.signals    = s,
+                                    .rule       = &c->rule,
+                                    .mean       = .5 * (c->K[0][0] + c->K[1][1]),
+                                    .half       = .5 * (c->K[0][0] - c->K[1][1]),
+                                    .skew       = c->K[0][1],
+                                    .mu         = law->mu,
+                                    .linearized = derivative};
+  memcpy(c->slip.K, c->K, sizeof c->K);
 
-/* Mean load of the intervals shorter than four cells of the grid, which may miss them: n is about a
- * parabola there. */
-static double brief_load(mhb_contact_evaluator *c) {
-  double load = 0, brief = 4 * SHB_TWO_PI / c->signals.n_grid;
+  /* mean harmonic (sum k^4 |A_k|/sum |A_k|)^(1/4) over mu n and x; swing of x */
+  double high = 0, all = 0, swing = 0;
+  for (int i = 0; i < 3; i++) {
+    double weight = i ? 1 : law->mu, amplitude = s->bound[i][0] - fabs(s->coefficient[i]);
+    high += weight * s->bound[i][4];
+    all += weight * amplitude;
+    if (i) swing += amplitude;
+  }
+  c->mean_harmonic = all > 0 && high < INFINITY ? sqrt(sqrt(high / all)) : 1;
+
+  /* mean and peak of n on the grid */
+  double load = 0, peak = 0, short_load = 0;
+  for (int i = 0; i < s->n_grid; i++) {
+    double n = s->value[0][i];
+    load     = n > 0 ? load + n : load;
+    peak     = n > peak ? n : peak;
+  }
+  /* the grid may miss intervals shorter than four cells: n is about a parabola there */
   for (int i = 0; i < c->intervals.n; i++) {
     double y[3], dy[3], length = c->intervals.opening[i] - c->intervals.closing[i];
-    if (length > brief) continue;
-    mhb_signals_at(&c->signals, c->intervals.closing[i] + .5 * length, y, dy, NULL);
-    load += 2. / 3 * fmax(0, y[0]) * length / SHB_TWO_PI;
-    c->slip.peak_load = fmax(c->slip.peak_load, y[0]);
+    if (length > 4 * SHB_TWO_PI / s->n_grid) continue;
+    mhb_signals_at(s, c->intervals.closing[i] + .5 * length, y, dy, NULL);
+    short_load += 2. / 3 * fmax(0, y[0]) * length / SHB_TWO_PI;
+    peak = fmax(peak, y[0]);
   }
-  return load;
-}
-
-/* Force and friction levels: from the mean and the peak of n over the period and the swing of x. */
-static void set_reference(mhb_contact_evaluator *c) {
-  const mhb_signals *s    = &c->signals;
-  double             load = 0, swing = 0;
-  c->slip.peak_load = 0;
-  for (int i = 0; i < s->n_grid; i++) {
-    double n          = s->value[0][i];
-    load              = n > 0 ? load + n : load;
-    c->slip.peak_load = n > c->slip.peak_load ? n : c->slip.peak_load;
-  }
-  load = fmax(load / s->n_grid, brief_load(c));
-  for (int i = 1; i < 3; i++) swing += s->bound[i][0] - fabs(s->coefficient[i]);
-  double limit      = c->slip.mu * load;
+  load              = fmax(load / s->n_grid, short_load);
+  double limit      = law->mu * load;
+  c->slip.peak_load = peak;
   c->friction_level = fmax(limit < swing ? limit : swing, 1e-300);
   c->force_level    = load > c->friction_level ? load : c->friction_level;
-}
-
-static void set_slip(mhb_contact_evaluator *c, const mhb_law *law, int derivative) {
-  c->slip          = (mhb_slip){.signals    = &c->signals,
-                                .rule       = &c->rule,
-                                .mean       = .5 * (c->K[0][0] + c->K[1][1]),
-                                .half       = .5 * (c->K[0][0] - c->K[1][1]),
-                                .skew       = c->K[0][1],
-                                .mu         = law->mu,
-                                .linearized = derivative};
-  c->mean_harmonic = content_of(&c->signals, law->mu);
-  memcpy(c->slip.K, c->K, sizeof c->K);
-  set_reference(c);
 }
 
 /* ---- assembly ---- */
@@ -204,35 +193,33 @@ static void finish_stuck(mhb_contact_evaluator *c) {
     add_mean_gradient(c, 1, (double *const[2]){c->J, c->J + (size_t)nf * (size_t)c->stride});
 }
 
-/* Always closed: n is linear in v. The preload is added last, for it may be huge. */
-static void normal_force_closed(const mhb_contact_evaluator *c, const mhb_law *law, const double *v,
-                                double *force, double *jacobian) {
-  for (int i = 0; i < c->nb; i++) {
-    force[i] = law->kv * v[i];
-    if (jacobian) jacobian[(size_t)i * 3 * (size_t)c->nb + (size_t)i] = law->kv;
+/* Harmonics of n - mean_offset, and their derivative. */
+static void normal_load(mhb_contact_evaluator *c, const mhb_law *law, const double *v,
+                        double *force, double *jacobian) {
+  int    nb = c->nb, nf = c->nf, top = c->H + c->m;
+  double offset = -law->mean_offset;
+  if (c->intervals.always_closed) { /* linear in v; a huge preload must not enter the rounding */
+    for (int i = 0; i < nb; i++) {
+      force[i] = law->kv * v[i];
+      if (jacobian) jacobian[(size_t)i * 3 * (size_t)nb + (size_t)i] = law->kv;
+    }
+    offset = law->n0 - law->mean_offset;
+  } else if (!c->intervals.always_open) { /* integrals over the closed intervals */
+    memset(c->basis_integrals, 0, sizeof(double) * (size_t)mhb_real_size(top));
+    for (int i = 0; i < c->intervals.n; i++)
+      mhb_basis_integral(top, c->intervals.closing[i], c->intervals.opening[i], c->basis_integrals);
+    mhb_basis_product(c->H, c->m, c->basis_integrals, c->basis_products, nb);
+    for (int i = 0; i < nf; i++) {
+      const double *S = c->basis_products + (size_t)i * (size_t)nb;
+      double        q = mhb_force_integrals_factor(i), sum = 0;
+      for (int j = 0; j < nb; j++) sum += S[j] * c->coefficients[j];
+      force[i] = c->scale * q * sum;
+      if (!jacobian) continue;
+      double *row = jacobian + (size_t)i * 3 * (size_t)nb;
+      for (int j = 0; j < nb; j++) row[j] = c->scale * c->kv * q * S[j];
+    }
   }
-  force[0] += law->n0 - law->mean_offset;
-}
-
-/* Harmonics of n over the closed intervals. */
-static void normal_force(mhb_contact_evaluator *c, const mhb_law *law, double *force,
-                         double *jacobian) {
-  int nb = c->nb, nf = c->nf, sums = mhb_real_size(c->H + c->m);
-  memset(c->basis_integrals, 0, sizeof(double) * (size_t)sums);
-  for (int i = 0; i < c->intervals.n; i++)
-    mhb_basis_integral(c->H + c->m, c->intervals.closing[i], c->intervals.opening[i],
-                       c->basis_integrals);
-  mhb_basis_product(c->H, c->m, c->basis_integrals, c->basis_products, nb);
-  for (int i = 0; i < nf; i++) {
-    const double *S = c->basis_products + (size_t)i * (size_t)nb;
-    double        q = mhb_force_integrals_factor(i), sum = 0;
-    for (int j = 0; j < nb; j++) sum += S[j] * c->coefficients[j];
-    force[i] = c->scale * q * sum;
-    if (!jacobian) continue;
-    double *row = jacobian + (size_t)i * 3 * (size_t)nb;
-    for (int j = 0; j < nb; j++) row[j] = c->scale * c->kv * q * S[j];
-  }
-  force[0] -= law->mean_offset;
+  force[0] += offset;
 }
 
 /* Loop integral of f.s' dt: pi sum_k k (Im F_k Re S_k - Re F_k Im S_k) for x = Re X_k exp(jkt). */
@@ -303,17 +290,6 @@ static void friction_force(mhb_contact_evaluator *c) {
     c->info->error =
         fmax(c->info->error, c->intervals.always_closed ? 0 : SHB_TWO_PI * c->force_level);
   if (!ok || c->info->laps > 20) drop_friction(c);
-}
-
-static void normal_load(mhb_contact_evaluator *c, const mhb_law *law, const double *motion,
-                        double *force, double *jacobian) {
-  if (c->intervals.always_closed) {
-    normal_force_closed(c, law, motion, force, jacobian);
-  } else if (c->intervals.always_open) {
-    force[0] = -law->mean_offset;
-  } else {
-    normal_force(c, law, force, jacobian);
-  }
 }
 
 /* Error of the integrals, as harmonics and relative to the largest of them. Those of the panels

@@ -27,8 +27,8 @@ void mhb_basis(int m, double t, double *basis, double *slope);
 /* integral[0..2n] += integrals over [t0, t1] of the basis up to harmonic n. */
 void mhb_basis_integral(int n, double t0, double t1, double *integral);
 
-/* product[i * ld + j] <- integral over a set of intervals of b_i b_j, i < 2p+1, j < 2q+1, from the
- * integrals of the basis up to harmonic p + q (Toeplitz + Hankel). */
+/* product[i * ld + j] <- integral over a set of intervals of b_i b_j, i < 2p+1, j < 2q+1 (Toeplitz
+ * + Hankel). integral: of the basis up to harmonic p + q. */
 void mhb_basis_product(int p, int q, const double *integral, double *product, int ld);
 
 /* Grids of 64, 128, ... points. */

@@ -1,8 +1,8 @@
 /* The blade on the ground, or the ring of N blades, as one linear structure in modal coordinates.
  *
- * Contact j = blade * pairs + pair lies between the right side of its blade and the left side of
- * the next one (sides = 2), or the ground (sides = 1, one blade). Motion du = B dq - R dp, force on
- * the modes -B^T dp. */
+ * To the neighbour (sides = 2) contact j = blade * pairs + pair lies between the right side of its
+ * blade and the left side of the next one. To ground (sides = 1) there is one blade. Motion du = B
+ * dq - R dp, force on the modes -B^T dp. */
 #ifndef MHB_STRUCTURE_MODAL_STRUCTURE_H
 #define MHB_STRUCTURE_MODAL_STRUCTURE_H
 

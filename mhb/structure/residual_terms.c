@@ -235,7 +235,7 @@ static void add_terms(const mhb_residual_terms *l, int k, const modal_series *s,
   const double *contact = slopes ? s->slope : s->weight;
   const double *loaded  = slopes ? s->load_slope : s->load_weight;
   for (int a = 0; a < n; a++) {
-    to[a] += factor * load * series(l->load, loaded, (size_t)(k * n + a));
+    to[a] += factor * load * series(l->load, loaded, (size_t)k * (size_t)n + (size_t)a);
     for (int t = 0; t < MODAL_TERMS; t++)
       if (l->contact[t] && contact[t] != 0)
         to[a] -= factor * contact[t] * mhb_cyclic_flexibility_row(l->contact[t], l->phase[k], a, p);
@@ -265,7 +265,7 @@ void mhb_residual_terms_load(const mhb_residual_terms *l, int k, double w, doubl
   const double complex *S = shapes(l, k);
   modal_series          s = modal_series_at(l->model, w);
   for (int a = 0; a < n; a++)
-    motion[a] += scale * series(l->load, s.load_weight, (size_t)(k * n + a));
+    motion[a] += scale * series(l->load, s.load_weight, (size_t)k * (size_t)n + (size_t)a);
   for (int i = 0; i < r; i++) {
     double         slope;
     double complex f = scale * modal_series_mode(l->model, i, &s, &slope) * l->F[k * r + i];

@@ -32,7 +32,7 @@ typedef struct mhb_speed_table {
   int                rows;                     /* right, left, probe, load re, load im: [rows][m] */
   size_t             size;                     /* of an entry, doubles */
   modal_speeds       speeds;                   /* its models, in part */
-  const modal_model *common;      /* one of them: what does not change with the speed */
+  const modal_model *common;      /* one of them, for all that is the same at every speed */
   modal_spline       spline;      /* over Omega^2 */
   double            *first_entry; /* [size] */
   double            *entries;     /* [n][size] less the first entry */

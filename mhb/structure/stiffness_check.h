@@ -1,4 +1,4 @@
-/* Penalty stiffnesses beyond which the blade cannot tell a contact from a rigid one. */
+/* Penalty stiffnesses so large that a contact is rigid for every purpose. */
 #ifndef MHB_STRUCTURE_STIFFNESS_CHECK_H
 #define MHB_STRUCTURE_STIFFNESS_CHECK_H
 
