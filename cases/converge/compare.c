@@ -44,7 +44,7 @@ static shb_status choose(post_output output, int b, side *s) {
   s->branch = &s->response->branch[b];
   free(s->amplitude);
   s->amplitude = NULL;
-  SHB_TRY(post_series(s->response, s->branch, output, POST_FIRST_HARMONIC, &s->amplitude));
+  SHB_TRY(post_series(s->response, s->branch, output, POST_QUANTITY_FIRST_HARMONIC, &s->amplitude));
   s->line = (post_polyline){s->branch->n_points, s->branch->frequency, s->amplitude};
   return SHB_OK;
 }
@@ -64,7 +64,7 @@ static shb_status from_reference(comparison *c, int i, double *distance) {
   const side   *r    = &c->reference;
   int           last = r->branch->n_points - 1, near = 0;
   double        point[2] = {r->branch->frequency[i], r->amplitude[i]}, found[2];
-  double        drawn    = post_distance(point, &c->rung.line, c->unit, &near);
+  double        drawn    = post_curve_distance(point, &c->rung.line, c->unit, &near);
   witness_place place    = {r->branch, i, i, i > 0 ? i - 1 : 0, i < last ? i + 1 : last, 0};
   *distance              = INFINITY;
   c->error->n++;
@@ -72,7 +72,7 @@ static shb_status from_reference(comparison *c, int i, double *distance) {
     witness *w = NULL;
     SHB_TRY(witness_of(c, c->rung.branch->harmonics[near], &w));
     if (witness_solve(w, &place, i == 0 || i == last, found))
-      *distance = post_apart(point, found, c->unit);
+      *distance = post_point_distance(point, found, c->unit);
   }
   c->error->lost += !isfinite(*distance);
   if (*distance > FAR) *distance = fmin(*distance, drawn);
@@ -84,9 +84,9 @@ static double from_rung(const comparison *c, int i) {
   const side *s        = &c->rung;
   double      point[2] = {s->branch->frequency[i], s->amplitude[i]};
   int         near     = 0;
-  double      d        = post_distance(point, &c->reference.line, c->unit, &near);
-  double      sag      = fmax(post_sag(&c->reference.line, near, c->unit),
-                    near > 0 ? post_sag(&c->reference.line, near - 1, c->unit) : 0);
+  double      d        = post_curve_distance(point, &c->reference.line, c->unit, &near);
+  double      sag      = fmax(post_chord_deviation(&c->reference.line, near, c->unit),
+                    near > 0 ? post_chord_deviation(&c->reference.line, near - 1, c->unit) : 0);
   return d > fmax(FAR, SAGS * sag) ? d : 0;
 }
 
@@ -126,7 +126,7 @@ static shb_status from_integration(comparison *c, int i) {
   double        point[2] = {r->branch->frequency[i], r->amplitude[i]}, found[2];
   witness_place place    = {r->branch, i, i, i, i, 0};
   int           near     = 0;
-  double        drawn    = post_distance(point, &c->rung.line, c->unit, &near);
+  double        drawn    = post_curve_distance(point, &c->rung.line, c->unit, &near);
   witness      *w        = NULL;
   SHB_TRY(witness_of(c, c->rung.branch->harmonics[near], &w));
   bool solved = witness_solve(w, &place, true, found);

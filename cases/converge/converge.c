@@ -81,8 +81,8 @@ static shb_status prepare(study *s) {
   s->result.tolerance  = s->file->converge_tolerance;
   s->result.n_preloads = copy.mhb.n_preloads;
   snprintf(s->result.output, sizeof s->result.output, "%s %smotion",
-           output.place == POST_PROBE ? s->model.probe_name[output.index] : "contact",
-           output.place == POST_PROBE ? "" : "relative ");
+           output.place == POST_PLACE_PROBE ? s->model.probe_name[output.index] : "contact",
+           output.place == POST_PLACE_PROBE ? "" : "relative ");
   return SHB_OK;
 }
 

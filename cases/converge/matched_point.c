@@ -71,17 +71,17 @@ static void add_motion(const witness *w, const witness_place *place, int point, 
 static double amplitude(const witness *w) {
   const mhb_balance *b = w->residual;
   int                k = w->settings.subharmonics <= b->m ? w->settings.subharmonics : b->m;
-  if (w->output.place == POST_PROBE) {
+  if (w->output.place == POST_PLACE_PROBE) {
     mhb_balance_contact_force(b, k, w->force);
     mhb_receptance_probe(b->receptance, k, w->force, w->motion);
-    return post_ellipse(3, w->motion + 3 * (size_t)w->output.index, 1);
+    return post_semi_major_axis(3, w->motion + 3 * (size_t)w->output.index, 1);
   }
   double complex u[3];
   for (int c = 0; c < 3; c++) {
     const double *a = w->x + (size_t)(3 * w->output.index + c) * (size_t)b->nb + (2 * k - 1);
     u[c]            = CMPLX(a[0], a[1]);
   }
-  return post_ellipse(3, u, 1);
+  return post_semi_major_axis(3, u, 1);
 }
 
 int witness_solve(witness *w, const witness_place *place, bool same_frequency, double found[2]) {

@@ -66,7 +66,7 @@ shb_status rung_apply(const rung_setting *s, case_file *file) {
 shb_status rung_output(const case_file *file, int n_probes, char *const *names,
                        post_output *output) {
   const char *wanted = file->converge_output;
-  *output            = (post_output){n_probes > 0 ? POST_PROBE : POST_CONTACT, 0, POST_WHOLE};
+  *output = (post_output){n_probes > 0 ? POST_PLACE_PROBE : POST_PLACE_CONTACT, 0, POST_WHOLE};
   if (!wanted) return SHB_OK;
   char known[512] = "";
   for (int i = 0; i < n_probes; i++) {
@@ -74,7 +74,7 @@ shb_status rung_output(const case_file *file, int n_probes, char *const *names,
     if (strcmp(names[i], wanted) == 0) return SHB_OK;
     if (strlen(known) + strlen(names[i]) + 8 < sizeof known) strcat(strcat(known, names[i]), ", ");
   }
-  *output = (post_output){POST_CONTACT, 0, POST_WHOLE};
+  *output = (post_output){POST_PLACE_CONTACT, 0, POST_WHOLE};
   SHB_CHECK(strcmp(wanted, "contact") == 0, SHB_ERR_INPUT,
             "%s: converge.output: '%s' is not known; expected one of %scontact", file->path, wanted,
             known);

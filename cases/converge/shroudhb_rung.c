@@ -116,11 +116,11 @@ static shb_status find_peak(job *j, const mhb_response *response, const mhb_bran
   double    *amplitude = NULL;
   post_peak *peaks     = NULL;
   int        n         = 0;
-  SHB_TRY(post_series(response, branch, j->output, POST_FIRST_HARMONIC, &amplitude));
+  SHB_TRY(post_series(response, branch, j->output, POST_QUANTITY_FIRST_HARMONIC, &amplitude));
   shb_status status = post_find_peaks(branch->n_points, branch->frequency, amplitude, &peaks, &n);
   free(amplitude);
   SHB_TRY(status);
-  int top = post_highest(n, peaks);
+  int top = post_highest_peak(n, peaks);
   *peak   = (rung_peak){branch->n_points > 0 ? branch->n0[0] : NAN, NAN, NAN};
   if (top >= 0) {
     peak->frequency = peaks[top].at;

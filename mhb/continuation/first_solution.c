@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "mesh/base/progress.h"
-#include "mhb/continuation/arclength.h"
+#include "mhb/continuation/balance_curve.h"
 #include "mhb/continuation/first_solution.h"
 
 enum { MAX_STAGES = 200 };
@@ -75,23 +75,27 @@ static mhb_reason solve_here(mhb_newton *newton, mhb_balance *b, double omega, d
   return reason;
 }
 
-/* Along the path from a solution x at `from` to one at `to`. */
-static int follow_to(mhb_balance *b, double from, double to, double *x) {
-  mhb_arclength        *path;
-  mhb_arclength_outcome outcome = MHB_ARCLENGTH_STALLED,
-                        wanted  = to > from ? MHB_ARCLENGTH_AT_END : MHB_ARCLENGTH_AT_START;
-  if (mhb_arclength_create(b, fmin(from, to), fmax(from, to), &path) != SHB_OK) return 0;
-  if (mhb_arclength_start(path, x, from, to > from ? 1 : -1) == MHB_CONVERGED)
-    outcome = MHB_ARCLENGTH_ON;
-  for (int i = 0; i < MAX_STAGES && outcome == MHB_ARCLENGTH_ON && !shb_interrupted(); i++) {
-    outcome = mhb_arclength_step(path);
-    if (outcome != MHB_ARCLENGTH_ON && outcome != MHB_ARCLENGTH_STALLED && outcome != wanted)
-      outcome = mhb_arclength_excursion(path, outcome);
-    mhb_arclength_advance(path);
+/* x <- the solution at `to`, along the curve from a solution x at `from`. */
+static bool continue_to(mhb_balance *b, double from, double to, double *x) {
+  mhb_arclength *curve;
+  int            direction = to > from ? 1 : -1;
+  bool           arrived   = false;
+  if (mhb_balance_curve_create(b, fmin(from, to), fmax(from, to), &curve) != SHB_OK) return false;
+  bool goes_on = mhb_arclength_start(curve, x, from, direction) == MHB_CONVERGED;
+  for (int i = 0; i < MAX_STAGES && goes_on && !arrived && !shb_interrupted(); i++) {
+    mhb_arclength_outcome outcome = mhb_arclength_step(curve);
+    int end = outcome == MHB_ARCLENGTH_AT_END ? 1 : outcome == MHB_ARCLENGTH_AT_START ? -1 : 0;
+    arrived = end == direction;
+    goes_on = outcome != MHB_ARCLENGTH_STALLED;
+    mhb_arclength_advance(curve);
+    if (end == -direction) { /* back at `from` */
+      goes_on = mhb_arclength_excursion(curve, end, MHB_EXCURSION_FAR);
+      mhb_arclength_advance(curve);
+    }
   }
-  memcpy(x, path->now.x, sizeof(double) * (size_t)b->n);
-  mhb_arclength_destroy(path);
-  return outcome == wanted;
+  memcpy(x, curve->current.x, sizeof(double) * (size_t)b->n);
+  mhb_arclength_destroy(curve);
+  return arrived;
 }
 
 static mhb_reason by_frequency(mhb_newton *newton, mhb_balance *b, double omega, double tolerance,
@@ -101,7 +105,7 @@ static mhb_reason by_frequency(mhb_newton *newton, mhb_balance *b, double omega,
   for (int i = 0; i < 8 && reason != MHB_CONVERGED && !shb_interrupted(); i++) {
     double from = elsewhere[i] * omega;
     if (solve_here(newton, b, from, tolerance, x, iterations) != MHB_CONVERGED) continue;
-    if (!follow_to(b, from, omega, x)) continue;
+    if (!continue_to(b, from, omega, x)) continue;
     reason = mhb_newton_solve(newton, b, omega, tolerance, x, iterations);
   }
   return reason;
@@ -117,7 +121,7 @@ static mhb_reason by_preload(mhb_newton *newton, mhb_balance *b, double omega, d
     double from = far_preload(b, x, stuck);
     mhb_balance_tie_preloads(b, 1);
     mhb_balance_set_parameter(b, MHB_IN_N0);
-    int found = follow_to(b, from, n0, x);
+    bool found = continue_to(b, from, n0, x);
     mhb_balance_set_parameter(b, MHB_IN_FREQUENCY);
     mhb_balance_set_preload(b, n0);
     mhb_balance_tie_preloads(b, 0);

@@ -78,18 +78,14 @@ static mhb_pair_kind class_of(mhb_pair_kind kind) {
   return kind == MHB_PAIR_AT_LIMIT ? MHB_PAIR_STUCK : kind;
 }
 
-int mhb_linear_set_states(mhb_linear_corrector *s, const mhb_balance *b) {
-  for (int a = 0; a < b->n_pairs; a++) {
-    s->kind[a] = class_of(b->eval->kind[a]);
-    if (s->kind[a] == MHB_PAIR_NONLINEAR) return 0;
-  }
-  return b->parameter == MHB_IN_FREQUENCY;
+void mhb_linear_set_states(mhb_linear_corrector *s, const mhb_evaluation *e, int n_pairs) {
+  for (int a = 0; a < n_pairs; a++) s->kind[a] = class_of(e->kind[a]);
 }
 
-int mhb_linear_states_hold(const mhb_linear_corrector *s, const mhb_balance *b) {
-  for (int a = 0; a < b->n_pairs; a++)
-    if (class_of(b->eval->kind[a]) != s->kind[a]) return 0;
-  return 1;
+bool mhb_linear_states_hold(const mhb_linear_corrector *s, const mhb_evaluation *e, int n_pairs) {
+  for (int a = 0; a < n_pairs; a++)
+    if (class_of(e->kind[a]) != s->kind[a]) return false;
+  return true;
 }
 
 /* sum over k > 0 */

@@ -97,6 +97,7 @@ shb_status mhb_signals_create(int m, mhb_signals *signals) {
   bool ok               = !arena->failed;
   for (int i = 0; i <= grid && ok; i++) {
     int n = MHB_LEAST_GRID << i;
+#pragma omp critical(fftw_planner) /* FFTW's planner is not thread safe */
     signals->plan[i] =
         fftw_plan_many_dft_c2r(1, &n, 6, signals->spectrum, NULL, 1, half, signals->samples, NULL,
                                1, room, FFTW_ESTIMATE | FFTW_DESTROY_INPUT);
@@ -113,6 +114,7 @@ shb_status mhb_signals_create(int m, mhb_signals *signals) {
 
 void mhb_signals_destroy(mhb_signals *signals) {
   if (!signals) return;
+#pragma omp critical(fftw_planner)
   for (int i = 0; i < MHB_GRIDS; i++)
     if (signals->plan[i]) fftw_destroy_plan(signals->plan[i]);
   shb_arena_free(&signals->arena);

@@ -52,8 +52,8 @@ typedef struct {
   shb_arena     arena;
 } mhb_signals;
 
-/* FFTW plans are made here and only here. Not thread safe (FFTW's planner). SHB_ERR_IO: no memory,
- * or more harmonics than the largest grid serves. */
+/* FFTW plans are made here and only here. SHB_ERR_IO: no memory, or more harmonics than the largest
+ * grid serves. */
 shb_status mhb_signals_create(int m, mhb_signals *signals);
 void       mhb_signals_destroy(mhb_signals *signals);
 

@@ -98,7 +98,7 @@ typedef struct {
   int           n_lines;        /* of spectra of integrated points; 0: none, set likewise */
   /* copied from the modal model for the report */
   int     n_modes;
-  double *mode_frequency, *mode_damping, *mode_residual; /* [m]; mode_residual may be NULL */
+  double *mode_frequency, *mode_damping, *eigen_residual; /* [m]; eigen_residual may be NULL */
   int     engine_order, blades;
   bool    run_up; /* the speed follows the frequency on the engine order; modes of the top speed */
   double  psi, phi; /* rad, mean of the pairs */
@@ -107,22 +107,25 @@ typedef struct {
 mhb_response *mhb_response_create(int n_pairs, int n_probes, int n_harmonics); /* NULL: no memory */
 void          mhb_response_destroy(mhb_response *response);
 
+/* A response without branches for the same pairs, probes, interfaces and kept multipliers, for work
+ * that is not to be seen yet. NULL: no memory. */
+mhb_response *mhb_response_like(const mhb_response *response);
+
 /* Interfaces of the pairs, n >= 2: name[n] and interface[pair] are copied. SHB_ERR_IO. */
 shb_status mhb_response_interfaces(mhb_response *response, int n, char *const *name,
                                    const int *interface, int lead);
 
-/* Room for n more branches: until it is used up, branches keep their place in memory. */
-shb_status mhb_response_reserve(mhb_response *response, int n);
 /* Appends an empty branch, its own main one, with index *index. */
 shb_status mhb_response_branch(mhb_response *response, mhb_branch_kind kind, int *index);
 /* Appends a point of zeros with index *point; the arrays of the branch may move. */
 shb_status mhb_response_point(mhb_response *response, int branch, int *point);
 /* Moves the last point of a branch to place at; those from there on move up by one. */
 void mhb_response_place(mhb_response *response, int branch, int at);
-/* Reverses the points of a branch from `from` on. */
-void mhb_response_reverse(mhb_response *response, int branch, int from);
-/* Moves the points of a branch from `from` on to `to`, an empty branch of the same kind. */
-shb_status mhb_response_split(mhb_response *response, int branch, int from, int to);
+/* Appends points first..last of a branch of another response of the same shape, in this order: from
+ * the last to the first if first > last. Both branches have as many harmonics. SHB_ERR_IO: no
+ * memory. */
+shb_status mhb_response_copy_points(mhb_response *to, int to_branch, const mhb_response *from,
+                                    int from_branch, int first, int last);
 /* Removes the branches for which drop[n_branches] is true; main is adjusted. */
 void mhb_response_drop(mhb_response *response, const bool *drop);
 /* Puts secondary branches behind all main ones, those of one main branch together, in the order in

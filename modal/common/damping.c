@@ -1,5 +1,7 @@
 #include "modal/common/damping.h"
 
+#include <math.h>
+
 #include "mesh/base/constants.h"
 
 static double ratio_of(const modal_damping *damping, int i, double omega) {

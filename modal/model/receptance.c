@@ -22,7 +22,7 @@ static double complex modal_sum(const modal_model *model, double omega, const do
   return sum;
 }
 
-/* sum psi_p psi_l times the weight of each residual mode */
+/* sum_i psi_ip psi_il times the weight of residual mode i */
 static double residual_sum(const modal_model *model, const modal_series *series, int p, int l) {
   const size_t r   = (size_t)model->n_residual;
   double       sum = 0, unused;
@@ -33,7 +33,7 @@ static double residual_sum(const modal_model *model, const modal_series *series,
 }
 
 void modal_receptance(const modal_model *model, double omega, double complex *receptance) {
-  const int          n      = 3 * model->n_pairs * (model->has_left ? 2 : 1);
+  const int          n      = modal_model_contact_dofs(model);
   const modal_series series = modal_series_at(model, omega);
   for (int p = 0; p < n; p++)
     for (int l = 0; l <= p; l++) {
@@ -49,7 +49,7 @@ void modal_receptance(const modal_model *model, double omega, double complex *re
 
 double modal_receptance_error(const modal_model *model, double omega,
                               const double complex *receptance) {
-  const int n    = 3 * model->n_pairs * (model->has_left ? 2 : 1);
+  const int n    = modal_model_contact_dofs(model);
   double    most = 0, error = 0;
   for (int p = 0; p < n; p++) {
     double here = modal_series_error(model, omega, p);

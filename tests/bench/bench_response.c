@@ -22,9 +22,11 @@
 #include "mesh/base/constants.h"
 #include "mesh/base/progress.h"
 #include "mhb/branches/main_branch.h"
+#include "mhb/continuation/balance_curve.h"
 #include "mhb/continuation/first_solution.h"
 #include "precision.h"
 #include "shroud_face.h"
+#include "tests/support/main_curve.h"
 #include "tests/support/three_degree.h"
 
 enum { REPEATS = 3, MAX_POINTS = 4000 };
@@ -51,18 +53,6 @@ static double median(const double *t, int n) {
   return n ? sorted[n / 2] : NAN;
 }
 
-static void no_lock(mhb_monitor *monitor, bool locked) {
-  (void)monitor;
-  (void)locked;
-}
-
-static bool go_on(mhb_monitor *monitor, int branch, const mhb_curve_point *point) {
-  (void)monitor;
-  (void)branch;
-  (void)point;
-  return true;
-}
-
 static sweep_row read_branch(const mhb_branch *b, int K) {
   sweep_row row = {
       .points = b->n_points, .complete = b->complete, .ms = 1e3 * median(b->seconds, b->n_points)};
@@ -86,20 +76,12 @@ static mhb_settings beam_settings(int harmonics, double tolerance) {
 }
 
 static shb_status sweep_once(const modal_model *model, const mhb_settings *s, sweep_row *row) {
-  mhb_monitor  monitor = {.point = go_on, .lock = no_lock};
-  mhb_balance *residual;
-  int          branch;
-  SHB_TRY(mhb_balance_create(model, s, &residual));
-  mhb_balance_set_preload(residual, s->n0[0]);
-  mhb_response *response = mhb_response_create(1, model->n_probes, s->harmonics);
-  shb_status    status   = mhb_response_branch(response, MHB_BRANCH_NONLINEAR, &branch);
-  double        started  = shb_seconds();
-  if (status == SHB_OK) status = mhb_trace_main_branch(residual, response, branch, &monitor);
-  double seconds = shb_seconds() - started;
-  if (status == SHB_OK) *row = read_branch(&response->branch[branch], s->harmonics + 1);
+  mhb_response *response;
+  double        seconds = 0;
+  shb_status    status  = main_curve(model, s, s->harmonics, &seconds, &response);
+  if (status == SHB_OK) *row = read_branch(&response->branch[0], s->harmonics + 1);
   row->seconds = seconds;
   mhb_response_destroy(response);
-  mhb_balance_destroy(residual);
   return status;
 }
 
@@ -119,10 +101,11 @@ static shb_status time_steps(const modal_model *model, const mhb_settings *s, sw
   double         low = SHB_TWO_PI * s->frequency[0];
   SHB_TRY(mhb_balance_create(model, s, &b));
   mhb_balance_set_preload(b, s->n0[0]);
-  SHB_TRY(mhb_arclength_create(b, low, SHB_TWO_PI * s->frequency[1], &path));
+  SHB_TRY(mhb_balance_curve_create(b, low, SHB_TWO_PI * s->frequency[1], &path));
   double               *x       = calloc((size_t)b->n, sizeof(double));
   mhb_arclength_outcome outcome = MHB_ARCLENGTH_STALLED;
-  if (mhb_first_solution(path->newton, b, low, path->tolerance, x, &iterations) == MHB_CONVERGED &&
+  if (mhb_first_solution(mhb_balance_curve_of(path)->newton, b, low, path->tolerance, x,
+                         &iterations) == MHB_CONVERGED &&
       mhb_arclength_start(path, x, low, 1) == MHB_CONVERGED)
     outcome = MHB_ARCLENGTH_ON;
   while (outcome == MHB_ARCLENGTH_ON && n[0] + n[1] < MAX_POINTS) {
@@ -265,9 +248,9 @@ typedef struct {
 static shb_status walk(mhb_arclength *path, mhb_balance *b, double *x, pairs_row *row) {
   int    iterations;
   double started = shb_seconds(), omega = SHB_TWO_PI * 255, ms[STEPS];
-  SHB_CHECK(
-      mhb_first_solution(path->newton, b, omega, path->tolerance, x, &iterations) == MHB_CONVERGED,
-      SHB_NOT_CONVERGED, "no first solution of %d pairs", b->n_pairs);
+  SHB_CHECK(mhb_first_solution(mhb_balance_curve_of(path)->newton, b, omega, path->tolerance, x,
+                               &iterations) == MHB_CONVERGED,
+            SHB_NOT_CONVERGED, "no first solution of %d pairs", b->n_pairs);
   SHB_CHECK(mhb_arclength_start(path, x, omega, 1) == MHB_CONVERGED, SHB_NOT_CONVERGED,
             "no start for %d pairs", b->n_pairs);
   row->first    = shb_seconds() - started;
@@ -293,7 +276,7 @@ static shb_status run_pairs(int pairs, int harmonics, pairs_row *row) {
   shroud_face_model(pairs, 150, &model);
   SHB_TRY(mhb_balance_create(&model, &s, &b));
   mhb_balance_set_preload(b, s.n0[0]);
-  SHB_TRY(mhb_arclength_create(b, SHB_TWO_PI * 215, SHB_TWO_PI * 320, &path));
+  SHB_TRY(mhb_balance_curve_create(b, SHB_TWO_PI * 215, SHB_TWO_PI * 320, &path));
   *row              = (pairs_row){.pairs = pairs};
   double    *x      = calloc((size_t)b->n, sizeof(double));
   shb_status status = walk(path, b, x, row);

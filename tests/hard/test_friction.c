@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "mesh/base/constants.h"
+#include "mhb/balance/newton.h"
 #include "mhb/branches/main_branch.h"
 #include "mhb/numerics/fourier.h"
 #include "tests/hard/verdict.h"

@@ -9,6 +9,7 @@
 
 #include <cmocka.h>
 
+#include "mhb/balance/newton.h"
 #include "mhb/branches/main_branch.h"
 #include "tests/hard/verdict.h"
 #include "tests/support/periodic.h"

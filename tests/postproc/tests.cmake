@@ -1,13 +1,14 @@
-foreach(noun number_format text_buffer plot)
+foreach(noun colour number_format text_buffer plot)
   shb_test(postproc/draw ${noun} fast shb_post)
 endforeach()
-foreach(noun outputs abscissa curves curve_distance convergence response_analysis campbell)
+foreach(noun outputs abscissa curves curve_distance convergence response_analysis campbell
+    file_origin findings)
   shb_test(postproc/analysis ${noun} fast tests_responses)
 endforeach()
-foreach(noun csv report publish)
+foreach(noun csv report publish page_data tables picture)
   shb_test(postproc/report ${noun} fast tests_responses)
 endforeach()
-foreach(noun inspect mac)
+foreach(noun inspect mac mode_table phase_table)
   shb_test(postproc/inspect ${noun} fast tests_responses)
 endforeach()
 

@@ -136,12 +136,12 @@ static shb_status fill_modes(mhb_response *r) {
   r->n_modes        = 8;
   r->mode_frequency = calloc(8, sizeof(double));
   r->mode_damping   = calloc(8, sizeof(double));
-  r->mode_residual  = calloc(8, sizeof(double));
-  SHB_CHECK(r->mode_frequency && r->mode_damping && r->mode_residual, SHB_ERR_IO, "no memory");
+  r->eigen_residual = calloc(8, sizeof(double));
+  SHB_CHECK(r->mode_frequency && r->mode_damping && r->eigen_residual, SHB_ERR_IO, "no memory");
   for (int i = 0; i < 8; i++) {
     r->mode_frequency[i] = 103.62 * (1 + 1.9 * i + 0.21 * i * i);
     r->mode_damping[i]   = 0.002;
-    r->mode_residual[i]  = 3e-13 * (i + 1);
+    r->eigen_residual[i] = 3e-13 * (i + 1);
   }
   return SHB_OK;
 }

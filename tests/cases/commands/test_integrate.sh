@@ -52,7 +52,7 @@ stamp=$(cksum three_degree.integration.h5)
 run 0 integrate case.yaml; silent out; silent err
 [ "$stamp" = "$(cksum three_degree.integration.h5)" ] || fail 'written again though up to date'
 run 0 post case.yaml; silent err
-[ "$(grep -c '<circle class="witness c' three_degree.svg)" -eq 84 ] || fail 'not 84 dots'
+[ "$(grep -c '<circle class="integration c' three_degree.svg)" -eq 84 ] || fail 'not 84 dots'
 [ "$(grep -c ',integration,' three_degree.csv)" -eq 84 ] || fail 'not 84 rows'
 
 # a balance computed anew, with its points left, and the other way round
@@ -62,7 +62,7 @@ add '  frequencies: [0.15 Hz, 0.2 Hz]
   direction: down
   tolerance: 1e-7'
 run 0 post case.yaml; says err 'three_degree.integration.h5 was made from other settings and is left out'
-grep -q '<circle class="witness c' three_degree.svg && fail 'old points are drawn'
+grep -q '<circle class="integration c' three_degree.svg && fail 'old points are drawn'
 run 0 integrate --quiet case.yaml; silent out; silent err
 run 0 post case.yaml
 [ "$(grep -c ',integration,' three_degree.csv)" -eq 8 ] || fail 'not 8 rows'

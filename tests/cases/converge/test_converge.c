@@ -166,7 +166,7 @@ typedef struct {
 static curves sweep(int harmonics, double tolerance) {
   curves       c;
   modal_model  model;
-  post_output  output = {POST_PROBE, 0, POST_WHOLE};
+  post_output  output = {POST_PLACE_PROBE, 0, POST_WHOLE};
   mhb_settings s      = {.to_ground    = true,
                          .blades       = 1,
                          .mu           = .4,
@@ -186,7 +186,7 @@ static curves sweep(int harmonics, double tolerance) {
     fail_msg("%s", shb_message());
   for (int i = 0; i < 2; i++)
     assert_int_equal(post_series(c.response, &c.response->branch[2 + i], output,
-                                 POST_FIRST_HARMONIC, &c.amplitude[i]),
+                                 POST_QUANTITY_FIRST_HARMONIC, &c.amplitude[i]),
                      SHB_OK);
   modal_model_free(&model);
   return c;
@@ -203,7 +203,7 @@ static post_peak highest(const curves *c, int i) {
   int               n;
   assert_int_equal(post_find_peaks(b->n_points, b->frequency, c->amplitude[i], &peaks, &n), SHB_OK);
   assert_true(n > 0);
-  post_peak top = peaks[post_highest(n, peaks)];
+  post_peak top = peaks[post_highest_peak(n, peaks)];
   free(peaks);
   return top;
 }
@@ -214,8 +214,8 @@ static double one_way(const curves *from, const curves *to, int i, double unit) 
   post_polyline     line = {o->n_points, o->frequency, to->amplitude[i]};
   double            most = 0;
   for (int p = 0; p < b->n_points; p++)
-    most = fmax(most, post_distance((double[2]){b->frequency[p], from->amplitude[i][p]}, &line,
-                                    unit, NULL));
+    most = fmax(most, post_curve_distance((double[2]){b->frequency[p], from->amplitude[i][p]},
+                                          &line, unit, NULL));
   return most;
 }
 

@@ -100,7 +100,7 @@ static void compare(balance *b, const mhb_branch *dots, int p, double error[2]) 
     off += pow(cabs(probe[a] - there[a]), 2);
     norm += pow(cabs(there[a]), 2);
   }
-  error[0] = fabs(post_ellipse(3, probe, 1) / post_ellipse(3, there, 1) - 1);
+  error[0] = fabs(post_semi_major_axis(3, probe, 1) / post_semi_major_axis(3, there, 1) - 1);
   error[1] = sqrt(off / norm);
 }
 

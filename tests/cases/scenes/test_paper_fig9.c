@@ -55,8 +55,8 @@ static void the_peak_has_an_optimum(void **state) {
   (void)state;
   const mhb_response *response[2] = {three, one};
   for (int j = 0; j < 2; j++) {
-    post_study *study;
-    assert_int_equal(post_study_create(response[j], &study), SHB_OK);
+    post_analysis *study;
+    assert_int_equal(post_analysis_create(response[j], &study), SHB_OK);
     const post_tracking *t = &study->tracking;
     assert_int_equal(t->n, PRELOADS);
     for (int i = 0; i < t->n; i++) {
@@ -69,7 +69,7 @@ static void the_peak_has_an_optimum(void **state) {
     assert_within(t->optimum_n0, optimum[j][0], .05);
     assert_true(t->bracket[0] == optimum[j][1] && t->bracket[1] == optimum[j][2]);
     assert_within(t->optimum_amplitude, optimum[j][3], .02);
-    post_study_destroy(study);
+    post_analysis_destroy(study);
   }
 }
 
@@ -157,12 +157,12 @@ static void one_harmonic_has_one_peak(void **state) {
   const mhb_response *response[2] = {one, three};
   int                 n[2];
   for (int j = 0; j < 2; j++) {
-    post_study *study;
-    assert_int_equal(post_study_create(response[j], &study), SHB_OK);
+    post_analysis *study;
+    assert_int_equal(post_analysis_create(response[j], &study), SHB_OK);
     for (int i = 0; i < response[j]->n_branches; i++)
       if (response[j]->branch[i].kind == MHB_BRANCH_NONLINEAR && response[j]->branch[i].n0[0] == 0)
         n[j] = study->curve[i].n_peaks;
-    post_study_destroy(study);
+    post_analysis_destroy(study);
   }
   print_message("peaks: %d with one harmonic, %d with three\n", n[0], n[1]);
   assert_int_equal(n[0], 1);

@@ -13,7 +13,9 @@
 #include <cmocka.h>
 
 #include "mesh/base/constants.h"
+#include "mhb/balance/newton.h"
 #include "mhb/branches/main_branch.h"
+#include "mhb/continuation/balance_curve.h"
 #include "mhb/continuation/first_solution.h"
 #include "tests/bench/shroud_face.h"
 #include "tests/support/allocations.h"
@@ -247,11 +249,12 @@ static void walk(const modal_model *model, const mhb_settings *s, double start, 
   int            iterations, moved = 0;
   assert_int_equal(mhb_balance_create(model, s, &b), SHB_OK);
   mhb_balance_set_preload(b, s->n0[0]);
-  assert_int_equal(
-      mhb_arclength_create(b, SHB_TWO_PI * s->frequency[0], SHB_TWO_PI * s->frequency[1], &path),
-      SHB_OK);
+  assert_int_equal(mhb_balance_curve_create(b, SHB_TWO_PI * s->frequency[0],
+                                            SHB_TWO_PI * s->frequency[1], &path),
+                   SHB_OK);
   double *x = calloc((size_t)b->n, sizeof(double));
-  assert_int_equal(mhb_first_solution(path->newton, b, start, path->tolerance, x, &iterations),
+  assert_int_equal(mhb_first_solution(mhb_balance_curve_of(path)->newton, b, start, path->tolerance,
+                                      x, &iterations),
                    MHB_CONVERGED);
   assert_int_equal(mhb_arclength_start(path, x, start, 1), MHB_CONVERGED);
   allocations = 0;

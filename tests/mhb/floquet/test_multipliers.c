@@ -13,6 +13,7 @@
 #include "mesh/base/constants.h"
 #include "mhb/branches/forced_response.h"
 #include "mhb/branches/main_branch.h"
+#include "mhb/continuation/balance_curve.h"
 #include "mhb/numerics/fourier.h"
 #include "tests/support/disturbed.h"
 #include "tests/support/periodic.h"
@@ -237,14 +238,15 @@ static void march_to(const modal_model *model, const mhb_settings *s, double ome
 /* Along the branch through its fold at the lower end and back to where it began. */
 static void other_side(periodic *p, double low, double high, double *x) {
   mhb_arclength *path;
-  assert_int_equal(mhb_arclength_create(p->residual, low, high, &path), SHB_OK);
+  assert_int_equal(mhb_balance_curve_create(p->residual, low, high, &path), SHB_OK);
   assert_int_equal(mhb_arclength_start(path, p->x, p->omega, -1), MHB_CONVERGED);
   for (int i = 0; i < 1000; i++) {
     assert_int_equal(mhb_arclength_step(path), MHB_ARCLENGTH_ON);
-    double now = path->now.value, next = path->next.value, share = (p->omega - now) / (next - now);
+    double now = path->current.value, next = path->next.value,
+           share = (p->omega - now) / (next - now);
     if (now < p->omega && next >= p->omega) {
       for (int k = 0; k < path->n; k++)
-        x[k] = (1 - share) * path->now.x[k] + share * path->next.x[k];
+        x[k] = (1 - share) * path->current.x[k] + share * path->next.x[k];
       break;
     }
     mhb_arclength_advance(path);

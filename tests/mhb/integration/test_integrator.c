@@ -332,7 +332,7 @@ static void stiff_model(modal_model *model) {
     model->damping_ratio[i] = 0;
     for (int c = 0; c < 3; c++) model->right[c * 6 + i] *= 5;
   }
-  assert_int_equal(modal_model_keep(model, 2, true), SHB_OK);
+  assert_int_equal(modal_model_reduce(model, 2, true), SHB_OK);
 }
 
 /* Largest error of sum psi psi^T/nu^(2 power), from mode 2 on, against a matrix [3][3], relative to its first entry. */

@@ -10,6 +10,7 @@
 #include <cmocka.h>
 
 #include "mesh/base/constants.h"
+#include "mhb/balance/newton.h"
 #include "mhb/branches/forced_response.h"
 #include "mhb/branches/main_branch.h"
 #include "tests/support/random_model.h"

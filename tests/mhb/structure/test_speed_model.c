@@ -97,7 +97,7 @@ static double error(spinning_kind kind, int n, bool overlap) {
     double complex a[VALUES], b[VALUES];
     modal_model    model;
     spinning_model(kind, place(i) / s.engine_order, &model, NULL);
-    assert_ok(modal_model_keep(&model, run_up->n_modes, true));
+    assert_ok(modal_model_reduce(&model, run_up->n_modes, true));
     modal_model_drop_residual_modes(&model);
     assert_ok(mhb_receptance_create(&model, &plain, K, &exact));
     outputs(r, place(i), false, a);
