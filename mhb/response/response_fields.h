@@ -30,8 +30,7 @@ size_t mhb_field_bytes(mhb_number kind);
 h5_shape mhb_field_shape(const mhb_response *response, const mhb_branch *branch, const mhb_field *f,
                          int n_points);
 
-/* Numbers, and bytes, a point. */
-size_t mhb_field_width(const mhb_response *response, const mhb_branch *branch, const mhb_field *f);
+/* Bytes a point. */
 size_t mhb_field_row(const mhb_response *response, const mhb_branch *branch, const mhb_field *f);
 
 /* Kind of branch that alone has the field; MHB_N_BRANCH_KINDS: all have it. */
