@@ -4,11 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/balance/stick_stiffness.h"
 #include "mhb/numerics/lu.h"
 #include "mhb/numerics/vector.h"
-
-static const double PI = 3.14159265358979323846;
 
 /* Most axes of linear pairs whose harmonics are solved one by one: 20 pairs. */
 enum { MOST_SOLVED = 60 };
@@ -20,7 +19,7 @@ typedef enum { BY_LOAD, BY_CONTACT, PARTS } part;
  * dof. Without an estimate: (w/w_m)^2, w_m the highest mode. */
 static double series_ratio(const modal_model *model, double w) {
   const int    n     = 3 * model->n_pairs * (model->has_left ? 2 : 1);
-  const double top   = 2 * PI * model->frequency[model->n_modes - 1];
+  const double top   = 2 * SHB_PI * model->frequency[model->n_modes - 1];
   double       worst = 0, weight = modal_series_at(model, w).weight[2];
   for (int i = 0; i < n; i++) {
     double error = modal_series_error(model, w, i);
@@ -42,7 +41,7 @@ static int last_term(void *const term[MODAL_TERMS]) {
 static void set_missing_motion(const mhb_balance *b, const double *ratio, part by,
                                double complex *e) {
   const mhb_receptance     *r     = b->receptance;
-  const mhb_residual_terms *terms = r->left_out;
+  const mhb_residual_terms *terms = r->residual_terms;
   const int t = last_term((void *const *)terms->contact), u = last_term((void *const *)terms->load);
   double complex p[r->n];
   for (int k = 1; k <= b->m; k++) {
@@ -105,7 +104,7 @@ double mhb_modal_error(const mhb_balance *b, const double *x, mhb_condensation *
   const double          size   = mhb_balance_vibration(b, x);
   double                ratio[b->m + 1], sum = 0;
   int                   pivot[n];
-  if (!r->left_out->contact[0]) return -1;
+  if (!r->residual_terms->contact[0]) return -1;
   double complex *e = calloc((size_t)all + (linear ? (size_t)(n * n) : 0), sizeof *e);
   if (!e || !(size > 0)) {
     free(e);

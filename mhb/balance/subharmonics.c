@@ -3,9 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/numerics/vector.h"
-
-static const double PI = 3.14159265358979323846;
 
 /* A subharmonic part below this share of |x| is zero. */
 static const double NEGLIGIBLE = 1e-6;
@@ -46,7 +45,7 @@ void mhb_subharmonic_shift(const mhb_balance *b, const double *x, int j, double 
     double       *c = to + row * b->nb;
     c[0]            = a[0];
     for (int k = 1; k <= b->m; k++) {
-      double angle = 2 * PI * (k * j % nu) / nu, cosine = cos(angle), sine = sin(angle);
+      double angle = 2 * SHB_PI * (k * j % nu) / nu, cosine = cos(angle), sine = sin(angle);
       double re = a[2 * k - 1], im = a[2 * k];
       c[2 * k - 1] = re * cosine - im * sine;
       c[2 * k]     = re * sine + im * cosine;

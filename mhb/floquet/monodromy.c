@@ -1,11 +1,10 @@
 #include "mhb/floquet/monodromy.h"
+#include "mesh/base/constants.h"
 #include "mhb/numerics/lu.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-static const double TWO_PI = 6.283185307179586476925;
 
 /* Shorter intervals between events, in periods, are skipped. */
 static const double SHORT = 1e-13;
@@ -205,7 +204,7 @@ static void set_matrix(mhb_monodromy *d) {
 
 /* The interval between two events. Returns 0 if a system was singular. */
 static int integrate_interval(mhb_monodromy *d, double from, double to, int refinement) {
-  double length = to - from, period = TWO_PI / d->orbit->omega;
+  double length = to - from, period = SHB_TWO_PI / d->orbit->omega;
   if (length < SHORT) return 1;
   int    first_pass = d->orbit->first_pass, slip = mhb_orbit_contacts_any_slips(d->orbit);
   int    steps = refinement * (int)ceil(d->substeps * length - 1e-9);

@@ -3,11 +3,10 @@
 #include <math.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/numerics/lu.h"
 
 enum { S = MHB_STAGES, F = MHB_STAGE_FORCES, SAMPLES = 8, ITERATIONS = 20 };
-
-static const double PI = 3.14159265358979323846;
 
 mhb_law mhb_contact_step_law(const mhb_law *law) {
   mhb_law out = *law;
@@ -54,7 +53,7 @@ static void solve_stick(const mhb_law *law, const mhb_contact_point *point, cons
     const double *at = y + 3 * i;
     double        x[2];
     times_ku(law, at + 1, x);
-    step->p[3 * i]     = law->kv * at[0] + law->n0 - law->balance;
+    step->p[3 * i]     = law->kv * at[0] + law->n0 - law->mean_offset;
     step->p[3 * i + 1] = x[0] - point->zeta[0];
     step->p[3 * i + 2] = x[1] - point->zeta[1];
   }
@@ -76,7 +75,7 @@ static void set_forces(const mhb_law *law, mhb_contact_step *step, slip_directio
     d->e[i][1] = s;
     times_ku(law, d->e[i], d->Ke[i]);
     times_ku(law, q, d->Kq[i]);
-    step->p[3 * i]     = step->n[i] - law->balance;
+    step->p[3 * i]     = step->n[i] - law->mean_offset;
     step->p[3 * i + 1] = law->mu * step->n[i] * c;
     step->p[3 * i + 2] = law->mu * step->n[i] * s;
   }
@@ -200,7 +199,7 @@ void mhb_contact_step_guess(const mhb_law *law, const mhb_contact_point *point, 
   for (int i = 0; i < S; i++) {
     memcpy(step->p + 3 * i, point->p, sizeof point->p);
     memcpy(step->u + 3 * i, point->u, sizeof point->u);
-    step->n[i]     = point->p[0] + law->balance;
+    step->n[i]     = point->p[0] + law->mean_offset;
     step->theta[i] = point->theta;
     step->kappa[i] = point->lambda * h;
   }
@@ -217,7 +216,7 @@ int mhb_contact_step_solve(const mhb_radau *rule, const mhb_law *law,
       return solve_slip(rule, law, point, S_, y, scale, step);
     default:
       memset(step->p, 0, sizeof step->p);
-      for (int i = 0; i < S; i++) step->p[3 * i] = -law->balance;
+      for (int i = 0; i < S; i++) step->p[3 * i] = -law->mean_offset;
       set_motion(S_, y, step);
       return 1;
   }
@@ -322,7 +321,7 @@ void mhb_contact_step_advance(const mhb_law *law, const mhb_contact_step *step, 
   double x[2];
   times_ku(law, point->u + 1, x);
   for (int c = 0; c < 2; c++) point->zeta[c] = x[c] - point->p[1 + c];
-  point->theta  = remainder(step->theta[S - 1], 2 * PI);
+  point->theta  = remainder(step->theta[S - 1], 2 * SHB_PI);
   point->lambda = step->kappa[S - 1] / h;
 }
 
@@ -331,7 +330,7 @@ void mhb_contact_step_change(const mhb_law *law, mhb_state state, double directi
   double x[2];
   times_ku(law, point->u + 1, x);
   if (state == MHB_SEPARATE || point->state == MHB_SEPARATE) {
-    point->p[0] = -law->balance;
+    point->p[0] = -law->mean_offset;
     point->p[1] = point->p[2] = 0;
   }
   for (int c = 0; c < 2; c++) point->zeta[c] = x[c] - point->p[1 + c];

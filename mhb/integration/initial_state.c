@@ -3,10 +3,9 @@
 #include <stdbool.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/integration/integrator.h"
 #include "mhb/problem/interfaces.h"
-
-static const double PI = 3.14159265358979323846;
 
 /* Most rounds over the contacts that residual flexibility couples; without it two are enough. */
 enum { MAX_ROUNDS = 400, UNCOUPLED_ROUNDS = 2 };
@@ -20,7 +19,7 @@ static void clear_state(mhb_integrator *g) {
 /* z, z' at phase 0 += sign times harmonic k of a mode, amplitude a. */
 static void add_harmonic(mhb_integrator *g, int k, int blade, int mode, double sign,
                          double complex a) {
-  double complex rate = I * (k * 2 * PI / g->period);
+  double complex rate = I * (k * 2 * SHB_PI / g->period);
   g->z[blade * g->modes + mode] += sign * creal(a);
   g->z[(g->blades + blade) * g->modes + mode] += sign * creal(rate * a);
 }
@@ -64,11 +63,12 @@ static bool settle_contact(mhb_integrator *g, int j, const double *w) {
     for (int k = 0; R && k < n; k++)
       point->u[c] -= R[(3 * j + c) * n + k] * g->point[k / 3].p[k % 3];
   }
-  double R_vv  = R ? R[3 * j * n + 3 * j] : 0;
-  double free  = point->u[0] + R_vv * point->p[0]; /* without its own normal force */
-  double load  = fmax(0, (law->n0 + law->kv * (free + R_vv * law->balance)) / (1 + law->kv * R_vv));
+  double R_vv = R ? R[3 * j * n + 3 * j] : 0;
+  double free = point->u[0] + R_vv * point->p[0]; /* without its own normal force */
+  double load =
+      fmax(0, (law->n0 + law->kv * (free + R_vv * law->mean_offset)) / (1 + law->kv * R_vv));
   double limit = law->mu * load, friction = hypot(point->p[1], point->p[2]);
-  point->p[0] = load - law->balance;
+  point->p[0] = load - law->mean_offset;
   point->u[0] = free - R_vv * point->p[0];
   for (int c = 1; c < 3 && friction > limit; c++) point->p[c] *= limit / friction;
   for (int c = 0; c < 3; c++)
@@ -91,7 +91,7 @@ static void settle_contacts(mhb_integrator *g) {
   for (int j = 0; j < g->contacts; j++) {
     const mhb_law     *law   = &g->law[j % g->pairs];
     mhb_contact_point *point = &g->point[j];
-    bool               open  = !(point->p[0] + law->balance > 0);
+    bool               open  = !(point->p[0] + law->mean_offset > 0);
     point->state             = MHB_STICK;
     mhb_contact_step_change(law, open ? MHB_SEPARATE : MHB_STICK, 0, point);
     for (int c = 0; c < 3; c++) g->scale = fmax(g->scale, fabs(point->p[c]));
@@ -116,7 +116,7 @@ void mhb_integrator_set(mhb_integrator *g, double omega, double n0, int steps) {
   bool has_state = g->period > 0;
   if (has_state) add_free_response(g, 1);
   g->omega  = omega;
-  g->period = 2 * PI * g->settings.subharmonics / omega;
+  g->period = 2 * SHB_PI * g->settings.subharmonics / omega;
   g->steps  = steps;
   g->t      = 0;
   set_laws(g, n0);

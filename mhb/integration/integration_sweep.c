@@ -4,14 +4,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/integration/spectrum.h"
 #include "mhb/integration/steady_state.h"
 #include "mhb/problem/interfaces.h"
 #include "mhb/problem/parameter.h"
 #include "mhb/response/describe.h"
 #include "mhb/response/publisher.h"
-
-static const double PI = 3.14159265358979323846;
 
 /* Interval of writing the response file, s. */
 static const double PUBLISH_EVERY = 10;
@@ -234,7 +233,7 @@ static shb_status run_point(const sweep *s, mhb_integrator *g, mhb_steady_state 
   const mhb_integration_settings *a        = s->request;
   mhb_steady_state_settings       settings = {0.1 * a->tolerance, a->max_periods};
   double                          began    = shb_seconds();
-  mhb_integrator_set(g, 2 * PI * c->hz, c->n0, a->steps);
+  mhb_integrator_set(g, 2 * SHB_PI * c->hz, c->n0, a->steps);
   if (c->start) {
     mhb_integrator_balance(g, c->m, c->start);
   } else if (a->start == MHB_START_FROM_REST || first) {
@@ -384,7 +383,7 @@ static shb_status worker_create(const sweep *s, int harmonics, worker *k) {
 static shb_status worker_set_frequency(worker *k, double hz) {
   if (!k->at) return SHB_OK;
   worker_release(k);
-  mhb_speed_model_set(k->at, 2 * PI * hz);
+  mhb_speed_model_set(k->at, 2 * SHB_PI * hz);
   return worker_attach(k, &k->at->model);
 }
 

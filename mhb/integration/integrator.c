@@ -4,11 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/numerics/simd.h"
 
 enum { S = MHB_STAGES, F = MHB_STAGE_FORCES, MAX_SWEEPS = 400, MAX_CUTS = 8, MAX_STALLED = 4 };
-
-static const double PI = 3.14159265358979323846;
 
 /* Tolerances relative to the force scale: change of the forces in the last sweep; event
  * function. */
@@ -21,12 +20,12 @@ static const double ON_EVENT = 1e-11, NO_PROGRESS = 1e-9;
 /* ---- the motion without contact forces ---- */
 
 double mhb_integrator_lag(const mhb_integrator *g, int blade) {
-  return 2 * PI * g->ring.s.wave * blade / g->blades;
+  return 2 * SHB_PI * g->ring.s.wave * blade / g->blades;
 }
 
 void mhb_integrator_free(const mhb_integrator *g, int sector, double t, double *u) {
   const mhb_receptance *r     = g->receptance;
-  double                angle = 2 * PI * t / g->period - mhb_integrator_lag(g, sector);
+  double                angle = 2 * SHB_PI * t / g->period - mhb_integrator_lag(g, sector);
   for (int k = 0; k <= g->n_load; k += r->nu) {
     double c = cos(k * angle), s = sin(k * angle);
     for (int row = 0; row < r->n; row++) {
@@ -249,7 +248,7 @@ static int direction_turns(const mhb_integrator *g, const step_event *o) {
   const mhb_contact_point *point = &g->point[o->contact];
   const mhb_contact_step  *step  = &g->step[o->contact];
   return o->kind == MHB_CONTACT_OPENS && point->state == MHB_SLIDE &&
-         fabs(remainder(step->theta[S - 1] - point->theta, PI)) > 1e-9;
+         fabs(remainder(step->theta[S - 1] - point->theta, SHB_PI)) > 1e-9;
 }
 
 /* One step that ends at the event, or at an earlier one; longest in s. Returns 0 if it failed. */

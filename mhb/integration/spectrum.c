@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double PI = 3.14159265358979323846;
+#include "mesh/base/constants.h"
 
 /* Peaks below this share of the largest so far are no lines. */
 static const double SMALLEST = 1e-4;
@@ -16,7 +16,7 @@ static double apply_window(int n, double *x) {
   double mean = 0, square = 0;
   for (int i = 0; i < n; i++) mean += x[i] / n;
   for (int i = 0; i < n; i++) {
-    x[i] = (x[i] - mean) * (1 - cos(2 * PI * (i + 0.5) / n));
+    x[i] = (x[i] - mean) * (1 - cos(2 * SHB_PI * (i + 0.5) / n));
     square += x[i] * x[i] / n;
   }
   return square;

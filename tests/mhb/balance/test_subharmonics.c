@@ -1,4 +1,5 @@
 /* Subharmonic embedding, restriction, time shift and order of a motion. */
+#include "mesh/base/constants.h"
 #include "mhb/balance/subharmonics.h"
 #include "mhb/numerics/vector.h"
 #include "tests/support/check.h"
@@ -48,8 +49,7 @@ static void shifts_and_orders(void **state) {
   double x[n], y[n], z[n], part[n];
   fill(n, x);
   mhb_subharmonic_shift(b, x, 1, y);
-  assert_near(value_at(y, b->m, 0.4), value_at(x, b->m, 0.4 + 2 * 3.14159265358979323846 / 6),
-              1e-13);
+  assert_near(value_at(y, b->m, 0.4), value_at(x, b->m, 0.4 + SHB_TWO_PI / 6), 1e-13);
   memcpy(z, x, sizeof z);
   for (int j = 0; j < 6; j++) {
     mhb_subharmonic_shift(b, z, 1, y);

@@ -1,13 +1,14 @@
 /* Lines of sampled signals with known frequencies and amplitudes. */
+#include "mesh/base/constants.h"
 #include "mhb/integration/spectrum.h"
 #include "tests/support/check.h"
 
 enum { N = 3072 };
 
-static const double PI = 3.14159265358979323846, DURATION = 7.3;
+static const double DURATION = 7.3;
 
 static void add_tone(double hz, double amplitude, double *x) {
-  for (int i = 0; i < N; i++) x[i] += amplitude * cos(2 * PI * hz * DURATION * i / N + 0.4);
+  for (int i = 0; i < N; i++) x[i] += amplitude * cos(2 * SHB_PI * hz * DURATION * i / N + 0.4);
 }
 
 /* Tones on bins: exact. A constant is no line. */
