@@ -16,7 +16,7 @@ enum { WORTH_THREADS = 24 };
 /* One evaluator a thread. Inside a parallel region, where a thread traces a branch, just one. */
 static shb_status create_contacts(mhb_balance *b) {
   int threads  = omp_in_parallel() || b->n_pairs < WORTH_THREADS ? 1 : omp_get_max_threads();
-  b->contacts  = calloc((size_t)threads, sizeof *b->contacts);
+  b->contacts  = shb_arena_take(&b->arena, (size_t)threads, sizeof *b->contacts);
   b->n_threads = threads;
   SHB_CHECK(b->contacts, SHB_ERR_IO, "out of memory");
   for (int i = 0; i < threads; i++)
@@ -66,12 +66,11 @@ shb_status mhb_balance_create_on(mhb_receptance *receptance, const mhb_settings 
   b->nb             = mhb_real_size(m);
   b->n              = 3 * b->n_pairs * b->nb;
   size_t pairs      = (size_t)b->n_pairs;
-  b->law            = calloc(pairs, sizeof *b->law);
-  b->force_k        = calloc(3 * pairs, sizeof(double complex));
-  b->motion_k       = calloc(3 * pairs, sizeof(double complex));
+  b->law            = shb_arena_take(&b->arena, pairs, sizeof *b->law);
+  b->force_k        = shb_arena_take(&b->arena, 3 * pairs, sizeof(double complex));
+  b->motion_k       = shb_arena_take(&b->arena, 3 * pairs, sizeof(double complex));
   shb_status status = SHB_OK;
-  if (!(b->law && b->force_k && b->motion_k))
-    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  if (b->arena.failed) status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   if (status == SHB_OK) status = mhb_evaluation_create(b, &b->default_evaluation);
   if (status == SHB_OK) status = create_contacts(b);
   if (status != SHB_OK) {
@@ -91,10 +90,7 @@ void mhb_balance_destroy(mhb_balance *b) {
   for (int i = 0; b->contacts && i < b->n_threads; i++)
     mhb_contact_evaluator_destroy(b->contacts[i]);
   mhb_evaluation_destroy(b->default_evaluation);
-  free(b->contacts);
-  free(b->law);
-  free(b->force_k);
-  free(b->motion_k);
+  shb_arena_free(&b->arena);
   free(b);
 }
 
@@ -102,13 +98,13 @@ shb_status mhb_evaluation_create(const mhb_balance *b, mhb_evaluation **out) {
   mhb_evaluation *e = calloc(1, sizeof *e);
   SHB_CHECK(e, SHB_ERR_IO, "out of memory");
   size_t pairs = (size_t)b->n_pairs, block = 3 * (size_t)b->nb;
-  e->p            = calloc((size_t)b->n, sizeof(double));
-  e->dp           = calloc(pairs * block * block, sizeof(double));
-  e->linear_dp    = calloc(pairs, sizeof *e->linear_dp);
-  e->kind         = calloc(pairs, sizeof *e->kind);
-  e->info         = calloc(pairs, sizeof *e->info);
-  e->by_parameter = calloc((size_t)b->n, sizeof(double));
-  if (!(e->p && e->dp && e->linear_dp && e->kind && e->info && e->by_parameter)) {
+  e->p            = shb_arena_take(&e->arena, (size_t)b->n, sizeof(double));
+  e->dp           = shb_arena_take(&e->arena, pairs * block * block, sizeof(double));
+  e->linear_dp    = shb_arena_take(&e->arena, pairs, sizeof *e->linear_dp);
+  e->kind         = shb_arena_take(&e->arena, pairs, sizeof *e->kind);
+  e->info         = shb_arena_take(&e->arena, pairs, sizeof *e->info);
+  e->by_parameter = shb_arena_take(&e->arena, (size_t)b->n, sizeof(double));
+  if (e->arena.failed) {
     mhb_evaluation_destroy(e);
     SHB_FAIL(SHB_ERR_IO, "out of memory for %d unknowns", b->n);
   }
@@ -123,12 +119,7 @@ shb_status mhb_evaluation_create(const mhb_balance *b, mhb_evaluation **out) {
 
 void mhb_evaluation_destroy(mhb_evaluation *e) {
   if (!e) return;
-  free(e->p);
-  free(e->dp);
-  free(e->linear_dp);
-  free(e->kind);
-  free(e->info);
-  free(e->by_parameter);
+  shb_arena_free(&e->arena);
   free(e);
 }
 

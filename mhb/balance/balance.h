@@ -8,6 +8,7 @@
 #ifndef MHB_BALANCE_BALANCE_H
 #define MHB_BALANCE_BALANCE_H
 
+#include "mesh/base/arena.h"
 #include "mhb/contact/contact.h"
 #include "mhb/problem/interfaces.h"
 #include "mhb/problem/settings.h"
@@ -36,6 +37,7 @@ typedef struct {
   mhb_pair_kind      *kind;      /* [pair] of the last linearisation */
   mhb_contact_info   *info;      /* [pair] */
   double             *by_parameter; /* [n] dp/dparameter, of the last evaluation with slope */
+  shb_arena           arena;
 } mhb_evaluation;
 
 typedef struct {
@@ -53,6 +55,7 @@ typedef struct {
   double complex         *force_k, *motion_k; /* [3 pairs] one harmonic */
   mhb_evaluation         *eval;               /* in use: evaluations write it */
   mhb_evaluation         *default_evaluation; /* in use after creation; owned */
+  shb_arena               arena;
 } mhb_balance;
 
 shb_status mhb_balance_create(const modal_model *model, const mhb_settings *settings,

@@ -15,19 +15,18 @@ static int most(int a, int b) {
 static int allocate(mhb_higher_harmonics *h) {
   size_t K = (size_t)(h->last - h->first + 1), n = (size_t)h->n, m = (size_t)h->n_modes;
   size_t row = 3 * (size_t)mhb_real_size(h->last);
-  h->x       = calloc(row, sizeof(double));
-  h->p       = calloc(row, sizeof(double));
-  h->force   = calloc(K * n, sizeof(double complex));
-  h->u       = calloc(K * n, sizeof(double complex));
-  h->D       = calloc(3 * n, sizeof(double complex));
-  h->W       = calloc(3 * n, sizeof(double complex));
-  h->c       = calloc(n, sizeof(double complex));
-  h->A       = calloc(h->by_modes ? m * m : n * n, sizeof(double complex));
-  h->y       = calloc(m, sizeof(double complex));
-  h->V       = calloc(3 * m, sizeof(double complex));
-  h->pivot   = calloc((size_t)most(h->n, h->n_modes), sizeof(int));
-  return h->x && h->p && h->force && h->u && h->D && h->W && h->c && h->A && h->y && h->V &&
-         h->pivot;
+  h->x       = shb_arena_take(&h->arena, row, sizeof(double));
+  h->p       = shb_arena_take(&h->arena, row, sizeof(double));
+  h->force   = shb_arena_take(&h->arena, K * n, sizeof(double complex));
+  h->u       = shb_arena_take(&h->arena, K * n, sizeof(double complex));
+  h->D       = shb_arena_take(&h->arena, 3 * n, sizeof(double complex));
+  h->W       = shb_arena_take(&h->arena, 3 * n, sizeof(double complex));
+  h->c       = shb_arena_take(&h->arena, n, sizeof(double complex));
+  h->A       = shb_arena_take(&h->arena, h->by_modes ? m * m : n * n, sizeof(double complex));
+  h->y       = shb_arena_take(&h->arena, m, sizeof(double complex));
+  h->V       = shb_arena_take(&h->arena, 3 * m, sizeof(double complex));
+  h->pivot   = shb_arena_take(&h->arena, (size_t)most(h->n, h->n_modes), sizeof(int));
+  return !h->arena.failed;
 }
 
 shb_status mhb_higher_harmonics_create(const mhb_balance *balance, mhb_receptance *receptance,
@@ -57,17 +56,7 @@ shb_status mhb_higher_harmonics_create(const mhb_balance *balance, mhb_receptanc
 void mhb_higher_harmonics_destroy(mhb_higher_harmonics *h) {
   if (!h) return;
   mhb_contact_evaluator_destroy(h->contact);
-  free(h->x);
-  free(h->p);
-  free(h->force);
-  free(h->u);
-  free(h->D);
-  free(h->W);
-  free(h->A);
-  free(h->c);
-  free(h->y);
-  free(h->V);
-  free(h->pivot);
+  shb_arena_free(&h->arena);
   free(h);
 }
 

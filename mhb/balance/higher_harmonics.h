@@ -10,6 +10,7 @@
 #ifndef MHB_BALANCE_HIGHER_HARMONICS_H
 #define MHB_BALANCE_HIGHER_HARMONICS_H
 
+#include "mesh/base/arena.h"
 #include "mhb/balance/balance.h"
 
 typedef struct {
@@ -24,6 +25,7 @@ typedef struct {
   double complex        *A, *c; /* matrix [n][n] or [modes][modes] and c [n] of one harmonic */
   double complex        *y, *V; /* [modes], [3][modes] D W B of one pair */
   int                   *pivot; /* [n or modes] */
+  shb_arena              arena;
 } mhb_higher_harmonics;
 
 /* For the harmonics of the receptance above those of the balance.

@@ -12,12 +12,12 @@ shb_status mhb_newton_create(int n, mhb_newton **out) {
   SHB_CHECK(w, SHB_ERR_IO, "out of memory");
   size_t one = (size_t)n + 1;
   w->n       = n;
-  w->r       = malloc(sizeof(double) * one);
-  w->step    = malloc(sizeof(double) * one);
-  w->trial   = malloc(sizeof(double) * one);
-  w->slope   = malloc(sizeof(double) * one);
-  w->row     = malloc(sizeof(double) * one);
-  if (!(w->r && w->step && w->trial && w->slope && w->row)) {
+  w->r       = shb_arena_take(&w->arena, one, sizeof(double));
+  w->step    = shb_arena_take(&w->arena, one, sizeof(double));
+  w->trial   = shb_arena_take(&w->arena, one, sizeof(double));
+  w->slope   = shb_arena_take(&w->arena, one, sizeof(double));
+  w->row     = shb_arena_take(&w->arena, one, sizeof(double));
+  if (w->arena.failed) {
     mhb_newton_destroy(w);
     SHB_FAIL(SHB_ERR_IO, "out of memory for %d unknowns", n);
   }
@@ -27,11 +27,7 @@ shb_status mhb_newton_create(int n, mhb_newton **out) {
 
 void mhb_newton_destroy(mhb_newton *w) {
   if (!w) return;
-  free(w->r);
-  free(w->step);
-  free(w->trial);
-  free(w->slope);
-  free(w->row);
+  shb_arena_free(&w->arena);
   mhb_condensation_destroy(w->system);
   free(w);
 }

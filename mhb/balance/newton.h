@@ -2,6 +2,7 @@
 #ifndef MHB_BALANCE_NEWTON_H
 #define MHB_BALANCE_NEWTON_H
 
+#include "mesh/base/arena.h"
 #include "mhb/balance/condensation.h"
 #include "mhb/numerics/vector.h"
 
@@ -18,6 +19,7 @@ typedef struct {
   int               n;
   mhb_condensation *system;                         /* of the balance last bound; NULL before */
   double           *r, *step, *trial, *slope, *row; /* [n+1] */
+  shb_arena         arena;
 } mhb_newton;
 
 shb_status mhb_newton_create(int n, mhb_newton **newton);

@@ -35,13 +35,12 @@ shb_status mhb_truncation_create(const mhb_balance *balance, mhb_truncation **ou
   if (status == SHB_OK) status = mhb_balance_create_on(t->receptance, &t->settings, &t->doubled);
   if (status == SHB_OK) {
     size_t n    = (size_t)t->doubled->n;
-    t->x        = calloc(n, sizeof(double));
-    t->step     = calloc(n, sizeof(double));
-    t->r        = calloc(n, sizeof(double));
-    t->trial    = calloc(n, sizeof(double));
-    t->feedback = calloc(n, sizeof(double));
-    if (!(t->x && t->step && t->r && t->trial && t->feedback))
-      status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+    t->x        = shb_arena_take(&t->arena, n, sizeof(double));
+    t->step     = shb_arena_take(&t->arena, n, sizeof(double));
+    t->r        = shb_arena_take(&t->arena, n, sizeof(double));
+    t->trial    = shb_arena_take(&t->arena, n, sizeof(double));
+    t->feedback = shb_arena_take(&t->arena, n, sizeof(double));
+    if (t->arena.failed) status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   }
   if (status == SHB_OK) status = mhb_higher_harmonics_create(t->doubled, t->receptance, &t->higher);
   if (status == SHB_OK)
@@ -60,11 +59,7 @@ void mhb_truncation_destroy(mhb_truncation *t) {
   mhb_higher_harmonics_destroy(t->higher);
   mhb_balance_destroy(t->doubled);
   mhb_receptance_destroy(t->receptance);
-  free(t->x);
-  free(t->step);
-  free(t->r);
-  free(t->trial);
-  free(t->feedback);
+  shb_arena_free(&t->arena);
   free(t);
 }
 

@@ -10,6 +10,7 @@
 #ifndef MHB_BALANCE_TRUNCATION_ERROR_H
 #define MHB_BALANCE_TRUNCATION_ERROR_H
 
+#include "mesh/base/arena.h"
 #include "mhb/balance/condensation.h"
 #include "mhb/balance/higher_harmonics.h"
 
@@ -39,6 +40,7 @@ typedef struct {
   double               *r, *trial, *feedback; /* [doubled->n] */
   double                higher_size;          /* |u_k|, k > 2m, of the last estimate */
   mhb_truncation_kind   kind;                 /* of the last estimate */
+  shb_arena             arena;
 } mhb_truncation;
 
 /* The balance must outlive it. Errors: as mhb_balance_create. */

@@ -13,25 +13,19 @@ static const double REAL = 1e-11;
 shb_status mhb_bloch_create(int cells, int capacity, mhb_bloch *b) {
   size_t n = (size_t)capacity, square = n * n;
   *b      = (mhb_bloch){.cells = cells, .capacity = capacity, .size = 34 * capacity};
-  b->real = calloc(square + 1, sizeof *b->real);
-  b->re   = calloc(n + 1, sizeof *b->re);
-  b->im   = calloc(n + 1, sizeof *b->im);
-  b->work = calloc((size_t)b->size + 2 * n + 1, sizeof *b->work);
-  if (cells > 2) b->matrix = calloc(square + 1, sizeof *b->matrix);
-  if (cells > 2) b->value = calloc(n + 1, sizeof *b->value);
-  if (b->real && b->re && b->im && b->work && (cells <= 2 || (b->matrix && b->value)))
-    return SHB_OK;
+  b->real = shb_arena_take(&b->arena, square + 1, sizeof *b->real);
+  b->re   = shb_arena_take(&b->arena, n + 1, sizeof *b->re);
+  b->im   = shb_arena_take(&b->arena, n + 1, sizeof *b->im);
+  b->work = shb_arena_take(&b->arena, (size_t)b->size + 2 * n + 1, sizeof *b->work);
+  if (cells > 2) b->matrix = shb_arena_take(&b->arena, square + 1, sizeof *b->matrix);
+  if (cells > 2) b->value = shb_arena_take(&b->arena, n + 1, sizeof *b->value);
+  if (!b->arena.failed) return SHB_OK;
   mhb_bloch_destroy(b);
   SHB_FAIL(SHB_ERR_IO, "out of memory for the multipliers of %d states", capacity);
 }
 
 void mhb_bloch_destroy(mhb_bloch *b) {
-  free(b->real);
-  free(b->re);
-  free(b->im);
-  free(b->matrix);
-  free(b->value);
-  free(b->work);
+  shb_arena_free(&b->arena);
   *b = (mhb_bloch){0};
 }
 

@@ -14,6 +14,7 @@
 
 #include <complex.h>
 
+#include "mesh/base/arena.h"
 #include "mesh/base/status.h"
 
 typedef struct {
@@ -24,6 +25,7 @@ typedef struct {
   double complex *value;           /* [capacity] */
   double         *work;            /* [size] */
   int             size;
+  shb_arena       arena;
 } mhb_bloch;
 
 /* For up to capacity states a cell. SHB_ERR_IO: no memory. */

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/arena.h"
 #include "mesh/base/constants.h"
 #include "mhb/floquet/bloch.h"
 #include "mhb/floquet/linear_exponents.h"
@@ -33,6 +34,7 @@ struct mhb_floquet {
   int                     nu, max_states;
   int                    *state;      /* [pair] */
   double complex         *multiplier; /* [states] */
+  shb_arena               arena; /* of coarse too, which changes places with the monodromy's M */
 };
 
 /* Number of modes a blade within max_states. */
@@ -59,14 +61,13 @@ static shb_status fill(mhb_floquet *s, const mhb_receptance *receptance,
     int cells  = mhb_floquet_cells(s),
         states = 2 * s->schedule.n_segments * (s->reduced.modes + all_modes->pairs);
     SHB_TRY(mhb_bloch_create(cells, states, &s->bloch));
-    s->coarse = calloc((size_t)cells * (size_t)states * (size_t)states + 1, sizeof *s->coarse);
-    SHB_CHECK(s->coarse, SHB_ERR_IO, "out of memory for the stability of %d states", all);
+    s->coarse = shb_arena_take(&s->arena, (size_t)cells * (size_t)states * (size_t)states,
+                               sizeof *s->coarse);
   }
   s->nu         = settings->subharmonics;
-  s->state      = calloc((size_t)all_modes->pairs, sizeof(int));
-  s->multiplier = calloc((size_t)all, sizeof(double complex));
-  SHB_CHECK(s->state && s->multiplier, SHB_ERR_IO, "out of memory for the stability of %d states",
-            all);
+  s->state      = shb_arena_take(&s->arena, (size_t)all_modes->pairs, sizeof(int));
+  s->multiplier = shb_arena_take(&s->arena, (size_t)all, sizeof(double complex));
+  SHB_CHECK(!s->arena.failed, SHB_ERR_IO, "out of memory for the stability of %d states", all);
   return SHB_OK;
 }
 
@@ -95,9 +96,7 @@ void mhb_floquet_destroy(mhb_floquet *s) {
   mhb_transition_schedule_destroy(&s->schedule);
   mhb_modal_structure_destroy(&s->reduced);
   mhb_modal_structure_destroy(&s->structure);
-  free(s->state);
-  free(s->coarse);
-  free(s->multiplier);
+  shb_arena_free(&s->arena);
   free(s);
 }
 

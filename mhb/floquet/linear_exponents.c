@@ -10,34 +10,23 @@
 shb_status mhb_linear_exponents_create(const mhb_modal_structure *s, mhb_linear_exponents *x) {
   size_t m = (size_t)s->modes, pairs = (size_t)s->pairs, n3 = 3 * pairs;
   *x          = (mhb_linear_exponents){.structure = s, .n = 2 * s->modes * s->blades};
-  x->state    = calloc(pairs, sizeof *x->state);
-  x->law      = calloc(pairs, sizeof *x->law);
-  x->exponent = calloc((size_t)x->n, sizeof *x->exponent);
-  x->A        = calloc(4 * m * m, sizeof *x->A);
-  x->left     = calloc(n3 * m, sizeof *x->left);
-  x->R        = calloc(n3 * n3, sizeof *x->R);
-  x->S        = calloc(n3 * (n3 + m), sizeof *x->S);
-  x->work     = calloc(40 * m, sizeof *x->work);
-  x->rwork    = calloc(4 * m, sizeof *x->rwork);
-  x->pivot    = calloc(n3, sizeof *x->pivot);
-  if (x->state && x->law && x->exponent && x->A && x->left && x->R && x->S && x->work && x->rwork &&
-      x->pivot)
-    return SHB_OK;
+  x->state    = shb_arena_take(&x->arena, pairs, sizeof *x->state);
+  x->law      = shb_arena_take(&x->arena, pairs, sizeof *x->law);
+  x->exponent = shb_arena_take(&x->arena, (size_t)x->n, sizeof *x->exponent);
+  x->A        = shb_arena_take(&x->arena, 4 * m * m, sizeof *x->A);
+  x->left     = shb_arena_take(&x->arena, n3 * m, sizeof *x->left);
+  x->R        = shb_arena_take(&x->arena, n3 * n3, sizeof *x->R);
+  x->S        = shb_arena_take(&x->arena, n3 * (n3 + m), sizeof *x->S);
+  x->work     = shb_arena_take(&x->arena, 40 * m, sizeof *x->work);
+  x->rwork    = shb_arena_take(&x->arena, 4 * m, sizeof *x->rwork);
+  x->pivot    = shb_arena_take(&x->arena, n3, sizeof *x->pivot);
+  if (!x->arena.failed) return SHB_OK;
   mhb_linear_exponents_destroy(x);
   SHB_FAIL(SHB_ERR_IO, "out of memory for the exponents of %d modes", s->modes);
 }
 
 void mhb_linear_exponents_destroy(mhb_linear_exponents *x) {
-  free(x->state);
-  free(x->law);
-  free(x->exponent);
-  free(x->A);
-  free(x->left);
-  free(x->R);
-  free(x->S);
-  free(x->work);
-  free(x->rwork);
-  free(x->pivot);
+  shb_arena_free(&x->arena);
   *x = (mhb_linear_exponents){0};
 }
 

@@ -12,6 +12,7 @@
 
 #include <complex.h>
 
+#include "mesh/base/arena.h"
 #include "mhb/contact/contact.h"
 #include "mhb/floquet/variational.h"
 
@@ -25,6 +26,7 @@ typedef struct {
   double complex            *A, *left, *R, *S, *work; /* of one nodal diameter */
   double                    *rwork;
   int                       *pivot;
+  shb_arena                  arena;
 } mhb_linear_exponents;
 
 /* SHB_ERR_IO: no memory. The structure must outlive it. */

@@ -16,20 +16,21 @@ shb_status mhb_monodromy_create(const mhb_modal_structure     *s,
   mhb_monodromy *d = calloc(1, sizeof *d);
   SHB_CHECK(d, SHB_ERR_IO, "out of memory");
   int    blades = schedule->n_segments, capacity = 2 * blades * (s->modes + s->pairs);
-  int    pieces     = schedule->capacity + 1;
-  int    steps      = finest * ((int)(substeps * schedule->span) + 1 + pieces);
-  size_t cells      = (size_t)(s->blades / blades);
-  d->blades         = blades;
-  d->structure      = s;
-  d->schedule       = schedule;
-  d->substeps       = substeps;
-  d->column         = calloc((size_t)s->contacts, sizeof *d->column);
-  d->u              = calloc(3 * (size_t)s->contacts, sizeof *d->u);
-  d->matrix         = calloc(9 * (size_t)s->contacts * (size_t)s->contacts, sizeof *d->matrix);
-  d->pivot          = calloc(3 * (size_t)s->contacts, sizeof *d->pivot);
-  d->M              = calloc(cells * (size_t)capacity * (size_t)capacity, sizeof *d->M);
+  int    pieces = schedule->capacity + 1;
+  int    steps  = finest * ((int)(substeps * schedule->span) + 1 + pieces);
+  size_t cells  = (size_t)(s->blades / blades);
+  d->blades     = blades;
+  d->structure  = s;
+  d->schedule   = schedule;
+  d->substeps   = substeps;
+  d->column     = shb_arena_take(&d->arena, (size_t)s->contacts, sizeof *d->column);
+  d->u          = shb_arena_take(&d->arena, 3 * (size_t)s->contacts, sizeof *d->u);
+  d->matrix =
+      shb_arena_take(&d->arena, 9 * (size_t)s->contacts * (size_t)s->contacts, sizeof *d->matrix);
+  d->pivot = shb_arena_take(&d->arena, 3 * (size_t)s->contacts, sizeof *d->pivot);
+  d->M     = shb_arena_take(&d->arena, cells * (size_t)capacity * (size_t)capacity, sizeof *d->M);
   shb_status status = SHB_OK;
-  if (!(d->column && d->u && d->matrix && d->pivot && d->M))
+  if (d->arena.failed)
     status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__,
                       "out of memory for the stability of %d states", capacity);
   if (status == SHB_OK) status = mhb_variational_create(s, capacity, &d->variational);
@@ -47,11 +48,7 @@ void mhb_monodromy_destroy(mhb_monodromy *d) {
   if (!d) return;
   mhb_variational_destroy(d->variational);
   mhb_orbit_contacts_destroy(d->orbit);
-  free(d->column);
-  free(d->u);
-  free(d->matrix);
-  free(d->pivot);
-  free(d->M);
+  shb_arena_free(&d->arena);
   free(d);
 }
 

@@ -9,6 +9,7 @@
 #ifndef MHB_FLOQUET_MONODROMY_H
 #define MHB_FLOQUET_MONODROMY_H
 
+#include "mesh/base/arena.h"
 #include "mhb/floquet/orbit_contacts.h"
 
 typedef struct {
@@ -18,10 +19,11 @@ typedef struct {
   mhb_orbit_contacts            *orbit;
   int                            substeps; /* a period of the fundamental */
   int                           *column;   /* [contact] its first friction state */
-  double *u, *matrix;                      /* [3 contacts]; its square, I + R dp/du at the start */
-  int    *pivot;                           /* [3 contacts] */
-  int     blades, n;                       /* of a cell; its states */
-  double *M;                               /* [cell][n][n] column-major */
+  double   *u, *matrix;                    /* [3 contacts]; its square, I + R dp/du at the start */
+  int      *pivot;                         /* [3 contacts] */
+  int       blades, n;                     /* of a cell; its states */
+  double   *M;                             /* [cell][n][n] column-major */
+  shb_arena arena;
 } mhb_monodromy;
 
 /* finest: the greatest refinement. SHB_ERR_IO: no memory. Structure, schedule and contact must

@@ -20,29 +20,24 @@ shb_status mhb_orbit_contacts_create(const mhb_modal_structure     *s,
   mhb_orbit_contacts *d = calloc(1, sizeof *d);
   SHB_CHECK(d, SHB_ERR_IO, "out of memory");
   size_t contacts = (size_t)s->contacts, n = 3 * contacts;
-  d->structure = s;
-  d->schedule  = schedule;
-  d->contact   = contact;
-  d->m         = m;
-  d->nb        = mhb_real_size(m);
-  d->capacity  = s->blades * n_samples;
-  struct {
-    void **array;
-    size_t size;
-  } wanted[] = {{(void **)&d->motion, n * (size_t)d->nb * sizeof(double)},
-                {(void **)&d->sample, (size_t)s->pairs * (size_t)d->capacity * sizeof *d->sample},
-                {(void **)&d->n_taken, (size_t)s->pairs * sizeof(int)},
-                {(void **)&d->point, contacts * sizeof *d->point},
-                {(void **)&d->matrix, n * n * sizeof(double)},
-                {(void **)&d->pivot, n * sizeof(int)},
-                {(void **)&d->force_rate, n * sizeof(double)},
-                {(void **)&d->force_jump, n * sizeof(double)},
-                {(void **)&d->elastic_feedback, n * sizeof(double)},
-                {(void **)&d->basis, 2 * (size_t)d->nb * sizeof(double)}};
-  int ok     = 1;
-  for (size_t i = 0; i < sizeof wanted / sizeof wanted[0]; i++)
-    ok &= (*wanted[i].array = calloc(1, wanted[i].size)) != NULL;
-  if (!ok) {
+  d->structure     = s;
+  d->schedule      = schedule;
+  d->contact       = contact;
+  d->m             = m;
+  d->nb            = mhb_real_size(m);
+  d->capacity      = s->blades * n_samples;
+  shb_arena *arena = &d->arena;
+  d->motion        = shb_arena_take(arena, n * (size_t)d->nb, sizeof(double));
+  d->sample     = shb_arena_take(arena, (size_t)s->pairs * (size_t)d->capacity, sizeof *d->sample);
+  d->n_taken    = shb_arena_take(arena, (size_t)s->pairs, sizeof(int));
+  d->point      = shb_arena_take(arena, contacts, sizeof *d->point);
+  d->matrix     = shb_arena_take(arena, n * n, sizeof(double));
+  d->pivot      = shb_arena_take(arena, n, sizeof(int));
+  d->force_rate = shb_arena_take(arena, n, sizeof(double));
+  d->force_jump = shb_arena_take(arena, n, sizeof(double));
+  d->elastic_feedback = shb_arena_take(arena, n, sizeof(double));
+  d->basis            = shb_arena_take(arena, 2 * (size_t)d->nb, sizeof(double));
+  if (arena->failed) {
     mhb_orbit_contacts_destroy(d);
     SHB_FAIL(SHB_ERR_IO, "out of memory for the stability of %d contacts", s->contacts);
   }
@@ -52,10 +47,7 @@ shb_status mhb_orbit_contacts_create(const mhb_modal_structure     *s,
 
 void mhb_orbit_contacts_destroy(mhb_orbit_contacts *d) {
   if (!d) return;
-  void *arrays[] = {d->motion,           d->sample, d->n_taken,    d->point,
-                    d->matrix,           d->pivot,  d->force_rate, d->force_jump,
-                    d->elastic_feedback, d->basis};
-  for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; i++) free(arrays[i]);
+  shb_arena_free(&d->arena);
   free(d);
 }
 

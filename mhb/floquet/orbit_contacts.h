@@ -7,6 +7,7 @@
 #ifndef MHB_FLOQUET_ORBIT_CONTACTS_H
 #define MHB_FLOQUET_ORBIT_CONTACTS_H
 
+#include "mesh/base/arena.h"
 #include "mhb/contact/contact.h"
 #include "mhb/contact/time_history.h"
 #include "mhb/floquet/linearised_law.h"
@@ -42,6 +43,7 @@ typedef struct {
   double                        *force_jump; /* [n] jump of the forces at a transition */
   double                        *elastic_feedback; /* [n] -R p' */
   double                        *basis;            /* [2][nb] */
+  shb_arena                      arena;
 } mhb_orbit_contacts;
 
 /* For n_samples samples of each contact of a pair. SHB_ERR_IO: no memory. */

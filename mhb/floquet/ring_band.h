@@ -11,13 +11,15 @@
 #ifndef MHB_FLOQUET_RING_BAND_H
 #define MHB_FLOQUET_RING_BAND_H
 
+#include "mesh/base/arena.h"
 #include "mhb/numerics/simd.h"
 
 typedef struct {
-  int     n, block, blades, width; /* order; unknowns a blade; w */
-  double *row;                     /* [n][3 w + 1] of the folded matrix, then its LU factors */
-  int    *pivot;                   /* [n] */
-  int    *place;                   /* [n] position of an unknown in the folded order */
+  int       n, block, blades, width; /* order; unknowns a blade; w */
+  double   *row;                     /* [n][3 w + 1] of the folded matrix, then its LU factors */
+  int      *pivot;                   /* [n] */
+  int      *place;                   /* [n] position of an unknown in the folded order */
+  shb_arena arena;
 } mhb_ring_band;
 
 /* For blades of block unknowns each, blade by blade. Returns 0 without memory. */

@@ -29,18 +29,16 @@ shb_status mhb_transition_schedule_create(int blades, int pairs, int wave,
   while (((long)t->blade_shift * E - g) % blades) t->blade_shift++;
   t->capacity       = 64 + 64 * pairs * g;
   size_t n          = (size_t)(blades * pairs);
-  t->event          = calloc((size_t)t->capacity, sizeof *t->event);
-  t->state          = calloc(n, sizeof *t->state);
-  t->constant_state = calloc(n, sizeof *t->constant_state);
-  if (t->event && t->state && t->constant_state) return SHB_OK;
+  t->event          = shb_arena_take(&t->arena, (size_t)t->capacity, sizeof *t->event);
+  t->state          = shb_arena_take(&t->arena, n, sizeof *t->state);
+  t->constant_state = shb_arena_take(&t->arena, n, sizeof *t->constant_state);
+  if (!t->arena.failed) return SHB_OK;
   mhb_transition_schedule_destroy(t);
   SHB_FAIL(SHB_ERR_IO, "out of memory for the stability of %d contacts", blades * pairs);
 }
 
 void mhb_transition_schedule_destroy(mhb_transition_schedule *t) {
-  free(t->event);
-  free(t->state);
-  free(t->constant_state);
+  shb_arena_free(&t->arena);
   *t = (mhb_transition_schedule){0};
 }
 

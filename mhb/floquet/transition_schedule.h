@@ -7,6 +7,7 @@
 #ifndef MHB_FLOQUET_TRANSITION_SCHEDULE_H
 #define MHB_FLOQUET_TRANSITION_SCHEDULE_H
 
+#include "mesh/base/arena.h"
 #include "mhb/contact/contact.h"
 
 typedef struct {
@@ -24,6 +25,7 @@ typedef struct {
   mhb_event *event;          /* by time */
   int       *state;          /* [contact] mhb_state right after start */
   int       *constant_state; /* [contact] 1: the state lasts the whole period */
+  shb_arena  arena;
 } mhb_transition_schedule;
 
 /* SHB_ERR_IO: no memory. */

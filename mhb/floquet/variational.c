@@ -15,12 +15,6 @@ static int modal_rows(const mhb_modal_structure *s) {
   return s->blades * s->modes;
 }
 
-static mhb_lanes *lanes(size_t n) {
-  mhb_lanes *x = aligned_alloc(sizeof *x, (n + 1) * sizeof *x);
-  if (x) memset(x, 0, (n + 1) * sizeof *x);
-  return x;
-}
-
 shb_status mhb_variational_create(const mhb_modal_structure *s, int capacity,
                                   mhb_variational **out) {
   mhb_variational *v = calloc(1, sizeof *v);
@@ -31,18 +25,17 @@ shb_status mhb_variational_create(const mhb_modal_structure *s, int capacity,
   v->capacity   = capacity;
   v->rows       = 2 * modal_rows(s) + 5 * s->contacts;
   v->h          = -1;
-  v->Y          = lanes(blocks * (size_t)v->rows);
-  v->P          = lanes(blocks * n);
-  v->work       = lanes(3 * n);
-  v->linearised = calloc(contacts, sizeof *v->linearised);
-  v->propagator = calloc((size_t)s->modes * PROPAGATOR, sizeof(double));
-  v->compliance = calloc(n * n, sizeof(double));
-  v->neighbour  = calloc((size_t)s->blades, sizeof *v->neighbour);
-  v->du         = calloc(n, sizeof(double));
-  v->dsigma     = calloc(2 * contacts, sizeof(double));
+  v->Y          = shb_arena_take(&v->arena, blocks * (size_t)v->rows, sizeof(mhb_lanes));
+  v->P          = shb_arena_take(&v->arena, blocks * n, sizeof(mhb_lanes));
+  v->work       = shb_arena_take(&v->arena, 3 * n, sizeof(mhb_lanes));
+  v->linearised = shb_arena_take(&v->arena, contacts, sizeof *v->linearised);
+  v->propagator = shb_arena_take(&v->arena, (size_t)s->modes * PROPAGATOR, sizeof(double));
+  v->compliance = shb_arena_take(&v->arena, n * n, sizeof(double));
+  v->neighbour  = shb_arena_take(&v->arena, (size_t)s->blades, sizeof *v->neighbour);
+  v->du         = shb_arena_take(&v->arena, n, sizeof(double));
+  v->dsigma     = shb_arena_take(&v->arena, 2 * contacts, sizeof(double));
   int ok        = mhb_ring_band_create(s->blades, 3 * s->pairs, &v->band);
-  if (!(ok && v->Y && v->P && v->work && v->linearised && v->propagator && v->compliance &&
-        v->neighbour && v->du && v->dsigma)) {
+  if (!ok || v->arena.failed) {
     mhb_variational_destroy(v);
     SHB_FAIL(SHB_ERR_IO, "out of memory for the stability of %d columns", capacity);
   }
@@ -54,16 +47,8 @@ shb_status mhb_variational_create(const mhb_modal_structure *s, int capacity,
 
 void mhb_variational_destroy(mhb_variational *v) {
   if (!v) return;
-  free(v->Y);
-  free(v->P);
-  free(v->work);
-  free(v->linearised);
-  free(v->propagator);
-  free(v->compliance);
-  free(v->neighbour);
+  shb_arena_free(&v->arena);
   mhb_ring_band_destroy(&v->band);
-  free(v->du);
-  free(v->dsigma);
   free(v);
 }
 

@@ -19,6 +19,7 @@
 #ifndef MHB_FLOQUET_VARIATIONAL_H
 #define MHB_FLOQUET_VARIATIONAL_H
 
+#include "mesh/base/arena.h"
 #include "mhb/floquet/ring_band.h"
 #include "mhb/structure/modal_structure.h"
 
@@ -53,6 +54,7 @@ typedef struct {
   int           n_neighbours;
   mhb_ring_band band;        /* I + C mean_du/2 + R df_du, factored */
   double       *du, *dsigma; /* [n], [2 contacts] of a jump */
+  shb_arena     arena;
 } mhb_variational;
 
 /* Room for capacity columns. SHB_ERR_IO: no memory. The structure must outlive it. */

@@ -320,15 +320,15 @@ int mhb_integrator_period(mhb_integrator *g) {
 
 static int allocate(mhb_integrator *g) {
   size_t modal = (size_t)(g->blades * g->modes), contacts = (size_t)g->contacts;
-  g->law        = calloc((size_t)g->pairs, sizeof *g->law);
-  g->z          = calloc(2 * modal, sizeof(double));
-  g->point      = calloc(contacts, sizeof *g->point);
-  g->step       = calloc(contacts, sizeof *g->step);
-  g->n_stalled  = calloc(contacts, sizeof(int));
-  g->suppressed = calloc(contacts, sizeof(int));
-  g->y          = calloc(contacts * F, sizeof(double));
-  g->stage      = calloc(S * (size_t)g->modes, sizeof(double));
-  return g->law && g->z && g->point && g->step && g->n_stalled && g->suppressed && g->y && g->stage;
+  g->law        = shb_arena_take(&g->arena, (size_t)g->pairs, sizeof *g->law);
+  g->z          = shb_arena_take(&g->arena, 2 * modal, sizeof(double));
+  g->point      = shb_arena_take(&g->arena, contacts, sizeof *g->point);
+  g->step       = shb_arena_take(&g->arena, contacts, sizeof *g->step);
+  g->n_stalled  = shb_arena_take(&g->arena, contacts, sizeof(int));
+  g->suppressed = shb_arena_take(&g->arena, contacts, sizeof(int));
+  g->y          = shb_arena_take(&g->arena, contacts * F, sizeof(double));
+  g->stage      = shb_arena_take(&g->arena, S * (size_t)g->modes, sizeof(double));
+  return !g->arena.failed;
 }
 
 shb_status mhb_integrator_create(const modal_model *model, const mhb_settings *settings,
@@ -371,13 +371,6 @@ void mhb_integrator_destroy(mhb_integrator *g) {
   mhb_ring_step_destroy(&g->ring);
   mhb_receptance_destroy(g->receptance);
   mhb_inertia_free(&g->model);
-  free(g->law);
-  free(g->z);
-  free(g->point);
-  free(g->step);
-  free(g->n_stalled);
-  free(g->suppressed);
-  free(g->y);
-  free(g->stage);
+  shb_arena_free(&g->arena);
   free(g);
 }

@@ -11,6 +11,7 @@
 #ifndef MHB_INTEGRATION_INTEGRATOR_H
 #define MHB_INTEGRATION_INTEGRATOR_H
 
+#include "mesh/base/arena.h"
 #include "mhb/integration/contact_step.h"
 #include "mhb/integration/inertia_modes.h"
 
@@ -51,6 +52,7 @@ struct mhb_integrator {
   mhb_integrator_count count;
   mhb_integrator_watch watch;
   void                *context;
+  shb_arena            arena;
 };
 
 /* n_harmonics: of outputs and of starts on a balance, counted in the fundamental. The model must

@@ -213,9 +213,10 @@ shb_status mhb_ring_step_create(const mhb_receptance *receptance, const mhb_sett
   const mhb_modal_structure *s  = &ring->s;
   int                        n3 = 3 * s->pairs, m = s->modes;
   if (s->sides == 2) ring->n_neighbours = s->blades < 3 ? s->blades : 3;
-  ring->shape  = calloc((size_t)(s->sides * n3 * m), sizeof(double));
-  ring->moment = calloc((size_t)(ring->n_neighbours * n3 * n3 * MOMENTS), sizeof(double));
-  if (!ring->shape || !ring->moment) {
+  ring->shape  = shb_arena_take(&ring->arena, (size_t)(s->sides * n3 * m), sizeof(double));
+  ring->moment = shb_arena_take(&ring->arena, (size_t)(ring->n_neighbours * n3 * n3 * MOMENTS),
+                                sizeof(double));
+  if (ring->arena.failed) {
     mhb_ring_step_destroy(ring);
     SHB_FAIL(SHB_ERR_IO, "out of memory");
   }
@@ -226,27 +227,25 @@ shb_status mhb_ring_step_create(const mhb_receptance *receptance, const mhb_sett
 
 void mhb_ring_step_destroy(mhb_ring_step *ring) {
   mhb_modal_structure_destroy(&ring->s);
-  free(ring->shape);
-  free(ring->moment);
+  shb_arena_free(&ring->arena);
   *ring = (mhb_ring_step){0};
 }
 
 shb_status mhb_modal_step_create(const mhb_ring_step *c, mhb_modal_step *step) {
   size_t pairs = (size_t)c->s.pairs, square = MHB_STAGE_FORCES * MHB_STAGE_FORCES;
-  *step            = (mhb_modal_step){.h = NAN};
-  step->mode       = calloc(MHB_MODAL_STEP_ROWS * (size_t)c->s.modes, sizeof(double));
-  step->compliance = calloc((size_t)c->n_neighbours * pairs * pairs * square, sizeof(double));
-  step->stick      = calloc(pairs * square, sizeof(double));
-  step->pivot      = calloc(pairs * MHB_STAGE_FORCES, sizeof(int));
-  if (step->mode && step->compliance && step->stick && step->pivot) return SHB_OK;
+  *step = (mhb_modal_step){.h = NAN};
+  step->mode =
+      shb_arena_take(&step->arena, MHB_MODAL_STEP_ROWS * (size_t)c->s.modes, sizeof(double));
+  step->compliance = shb_arena_take(&step->arena, (size_t)c->n_neighbours * pairs * pairs * square,
+                                    sizeof(double));
+  step->stick      = shb_arena_take(&step->arena, pairs * square, sizeof(double));
+  step->pivot      = shb_arena_take(&step->arena, pairs * MHB_STAGE_FORCES, sizeof(int));
+  if (!step->arena.failed) return SHB_OK;
   mhb_modal_step_destroy(step);
   SHB_FAIL(SHB_ERR_IO, "out of memory");
 }
 
 void mhb_modal_step_destroy(mhb_modal_step *step) {
-  free(step->mode);
-  free(step->compliance);
-  free(step->stick);
-  free(step->pivot);
+  shb_arena_free(&step->arena);
   *step = (mhb_modal_step){0};
 }

@@ -13,6 +13,7 @@
 #ifndef MHB_INTEGRATION_MODAL_STEP_H
 #define MHB_INTEGRATION_MODAL_STEP_H
 
+#include "mesh/base/arena.h"
 #include "mhb/structure/modal_structure.h"
 
 enum { MHB_STAGES = 3, MHB_STAGE_FORCES = 3 * MHB_STAGES };
@@ -48,9 +49,10 @@ typedef struct {
   mhb_radau           rule;
   mhb_modal_structure s;
   double             *shape; /* [side][3 pairs][modes] */
-  int     n_neighbours;      /* sectors coupled to a sector: itself, previous, next. A sector is the
+  int       n_neighbours;    /* sectors coupled to a sector: itself, previous, next. A sector is the
  contacts on the right side of a blade */
-  double *moment;            /* [neighbour][3 pairs][3 pairs][5] scratch */
+  double   *moment;          /* [neighbour][3 pairs][3 pairs][5] scratch */
+  shb_arena arena;
 } mhb_ring_step;
 
 /* Errors: SHB_ERR_IO no memory. */
@@ -70,6 +72,7 @@ typedef struct {
   double *compliance; /* [neighbour][pair][pair by][9 (stage, axis)][9 by]: w_i - R p_i by p, m/N */
   double *stick;      /* [pair][9][9] factored matrix of a stuck contact */
   int    *pivot;      /* [pair][9]; pivot[9 pair] < 0: not factored yet */
+  shb_arena arena;
 } mhb_modal_step;
 
 shb_status mhb_modal_step_create(const mhb_ring_step *ring, mhb_modal_step *step);

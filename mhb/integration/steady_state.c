@@ -1,4 +1,5 @@
 #include "mhb/integration/steady_state.h"
+#include "mesh/base/arena.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -18,6 +19,7 @@ struct mhb_steady_state {
   double                 *distance;     /* [TREND][multiple] the last distances */
   double complex         *force;        /* [k][3 contacts] of the period that is recorded */
   double                 *share, *work; /* [contact][3], [contact] */
+  shb_arena               arena;
 };
 
 /* ---- distance ---- */
@@ -229,18 +231,17 @@ shb_status mhb_steady_state_create(mhb_integrator *g, mhb_steady_state **out) {
   r->n_probes                = g->receptance->model->n_probes;
   size_t K = (size_t)r->n_harmonics + 1, n3 = 3 * (size_t)g->pairs, n = 3 * (size_t)g->contacts;
   size_t q       = 3 * (size_t)r->n_probes;
-  r->motion      = calloc(n3 * K, sizeof *r->motion);
-  r->force       = calloc(n3 * K, sizeof *r->force);
-  r->probe       = calloc(q * K + 1, sizeof *r->probe);
-  r->state       = calloc(n3, sizeof(double));
-  r->dissipation = calloc(n3, sizeof(double));
-  o->history     = calloc(HISTORY * (size_t)mhb_integrator_size(g), sizeof(double));
-  o->distance    = calloc(TREND * MHB_STEADY_STATE_MULTIPLE, sizeof(double));
-  o->force       = calloc(n * K, sizeof *o->force);
-  o->share       = calloc(n, sizeof(double));
-  o->work        = calloc(n, sizeof(double));
-  if (!(r->motion && r->force && r->probe && r->state && r->dissipation && o->history &&
-        o->distance && o->force && o->share && o->work)) {
+  r->motion      = shb_arena_take(&o->arena, n3 * K, sizeof *r->motion);
+  r->force       = shb_arena_take(&o->arena, n3 * K, sizeof *r->force);
+  r->probe       = shb_arena_take(&o->arena, q * K + 1, sizeof *r->probe);
+  r->state       = shb_arena_take(&o->arena, n3, sizeof(double));
+  r->dissipation = shb_arena_take(&o->arena, n3, sizeof(double));
+  o->history  = shb_arena_take(&o->arena, HISTORY * (size_t)mhb_integrator_size(g), sizeof(double));
+  o->distance = shb_arena_take(&o->arena, TREND * MHB_STEADY_STATE_MULTIPLE, sizeof(double));
+  o->force    = shb_arena_take(&o->arena, n * K, sizeof *o->force);
+  o->share    = shb_arena_take(&o->arena, n, sizeof(double));
+  o->work     = shb_arena_take(&o->arena, n, sizeof(double));
+  if (o->arena.failed) {
     mhb_steady_state_destroy(o);
     SHB_FAIL(SHB_ERR_IO, "out of memory");
   }
@@ -250,15 +251,6 @@ shb_status mhb_steady_state_create(mhb_integrator *g, mhb_steady_state **out) {
 
 void mhb_steady_state_destroy(mhb_steady_state *o) {
   if (!o) return;
-  free(o->result.motion);
-  free(o->result.force);
-  free(o->result.probe);
-  free(o->result.state);
-  free(o->result.dissipation);
-  free(o->history);
-  free(o->distance);
-  free(o->force);
-  free(o->share);
-  free(o->work);
+  shb_arena_free(&o->arena);
   free(o);
 }
