@@ -10,7 +10,7 @@
 #include "mesh/base/publish.h"
 #include "mesh/base/status.h"
 #include "mesh/blade/blade.h"
-#include "mesh/gmsh/source.h"
+#include "mesh/gmsh/source_settings.h"
 #include "mhb/problem/settings.h"
 #include "modal/common/completeness.h"
 #include "modal/common/damping.h"

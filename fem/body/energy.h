@@ -2,7 +2,7 @@
 #ifndef FEM_BODY_ENERGY_H
 #define FEM_BODY_ENERGY_H
 
-#include "fem/body/tangent.h"
+#include "fem/body/rotating_body.h"
 
 enum { FEM_FIELDS = 10 }; /* that share the gradients of an element */
 

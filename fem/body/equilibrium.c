@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "fem/body/tangent.h"
 #include "fem/solver/factor.h"
 
 enum {

@@ -9,7 +9,8 @@
 #ifndef FEM_BODY_EQUILIBRIUM_H
 #define FEM_BODY_EQUILIBRIUM_H
 
-#include "fem/body/tangent.h"
+#include "fem/body/assemble.h"
+#include "fem/body/rotating_body.h"
 #include "mesh/base/progress.h"
 
 typedef struct {

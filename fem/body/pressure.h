@@ -8,7 +8,7 @@
 #define FEM_BODY_PRESSURE_H
 
 #include "fem/body/assemble.h"
-#include "fem/body/tangent.h"
+#include "fem/body/rotating_body.h"
 #include "fem/element/quadrature.h"
 
 /* Forces of pressure p on the nodes of one face, N.  x, f: [nodes][3], x of the deformed face, m. */

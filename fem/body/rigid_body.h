@@ -4,7 +4,8 @@
 #ifndef FEM_BODY_RIGID_BODY_H
 #define FEM_BODY_RIGID_BODY_H
 
-#include "fem/body/tangent.h"
+#include "fem/body/assemble.h"
+#include "fem/body/rotating_body.h"
 
 enum { FEM_RIGID = 4 };
 

@@ -2,7 +2,9 @@
 #ifndef FEM_BODY_STRESS_H
 #define FEM_BODY_STRESS_H
 
-#include "fem/body/tangent.h"
+#include <petscsys.h>
+
+#include "fem/body/rotating_body.h"
 
 enum { FEM_STRESSES = 6 }; /* xx, yy, zz, xy, yz, xz, as VTK orders a symmetric tensor */
 

@@ -6,20 +6,7 @@
 #define FEM_BODY_TANGENT_H
 
 #include "fem/body/assemble.h"
-#include "fem/body/rotation.h"
-
-/* What is assembled; nothing is owned. */
-typedef struct {
-  const mesh_fe      *mesh;
-  const fem_material *material; /* one, or one a region */
-  const fem_element  *element;
-  fem_rotation        rotation;
-  double              pressure; /* Pa, steady, on group load, into the deformed surface */
-} fem_body;
-
-/* Coordinates and displacements of an element's nodes, m: [n][3]. u: [n_nodes][3], NULL for none. */
-void fem_body_element(const fem_body *body, int element, const double *u, double x[][3],
-                      double v[][3]);
+#include "fem/body/rotating_body.h"
 
 /* R = F(u) - Omega^2 P M (X + u) - f_p(u), N, at the free dofs; f_p of fem/body/pressure.h.
  *   u  in  [n_nodes][3] m, the same on every rank, zero at clamped nodes

@@ -4,16 +4,10 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
+#include "mesh/base/clock.h"
 #include "mesh/base/publish.h"
-
-double shb_seconds(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 shb_progress shb_progress_start(const char *stage, bool quiet, bool verbose) {
   shb_progress progress = {.quiet    = quiet,

@@ -5,6 +5,7 @@
 
 #include <stdbool.h>
 
+#include "mesh/base/clock.h"
 #include "mesh/base/phases.h"
 
 typedef struct {
@@ -16,8 +17,6 @@ typedef struct {
   double      shown;    /* shb_seconds() of the last line drawn */
   shb_phases  phases;   /* of the stage so far */
 } shb_progress;
-
-double shb_seconds(void); /* monotonic clock, s */
 
 shb_progress shb_progress_start(const char *stage, bool quiet, bool verbose);
 

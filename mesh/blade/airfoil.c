@@ -2,6 +2,7 @@
 
 #include <gmshc.h>
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 #include "mesh/gmsh/session.h"

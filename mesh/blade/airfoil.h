@@ -9,7 +9,8 @@
 #ifndef MESH_BLADE_AIRFOIL_H
 #define MESH_BLADE_AIRFOIL_H
 
-#include "mesh/blade/blade.h"
+#include "mesh/base/status.h"
+#include "mesh/blade/blade_parameters.h"
 #include "mesh/blade/frame.h"
 
 enum { MESH_AIRFOIL_POINTS = 13 };

@@ -10,6 +10,7 @@
 #include "mesh/blade/frame.h"
 #include "mesh/blade/hex_sweep.h"
 #include "mesh/blade/shroud.h"
+#include "mesh/core/face_match.h"
 #include "mesh/core/fe_mesh.h"
 #include "mesh/core/jacobian.h"
 #include "mesh/gmsh/export.h"

@@ -2,7 +2,8 @@
 #ifndef MESH_BLADE_FACE_GROUPS_H
 #define MESH_BLADE_FACE_GROUPS_H
 
-#include "mesh/blade/blade.h"
+#include "mesh/base/status.h"
+#include "mesh/blade/blade_parameters.h"
 #include "mesh/blade/frame.h"
 
 /* Name the physical groups root, contact_right, contact_left, load and body on gmsh's current model (one

@@ -10,6 +10,7 @@
 #include "mesh/blade/layers.h"
 #include "mesh/blade/loft.h"
 #include "mesh/blade/section_mesh.h"
+#include "mesh/blade/section_outline.h"
 #include "mesh/blade/section_smoothing.h"
 #include "mesh/blade/shroud.h"
 #include "mesh/core/fe_mesh.h"

@@ -2,7 +2,9 @@
 #ifndef MESH_BLADE_HEX_SWEEP_H
 #define MESH_BLADE_HEX_SWEEP_H
 
-#include "mesh/blade/blade.h"
+#include "mesh/base/progress.h"
+#include "mesh/base/status.h"
+#include "mesh/blade/blade_parameters.h"
 #include "mesh/blade/frame.h"
 
 /* Make the mesh in gmsh's current model, with the physical groups root, contact_right, contact_left, load and body. The

@@ -4,7 +4,8 @@
 
 #include <stdbool.h>
 
-#include "mesh/blade/blade.h"
+#include "mesh/base/status.h"
+#include "mesh/blade/blade_parameters.h"
 #include "mesh/blade/frame.h"
 
 typedef enum { MESH_PRESSURE, MESH_SUCTION } mesh_side;

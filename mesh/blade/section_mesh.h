@@ -40,16 +40,6 @@ shb_status mesh_plan_section(const mesh_section_grid *grid, mesh_plan *plan,
 /* After places were given: turn the quadrangles round if they run clockwise. */
 void mesh_plan_orient(mesh_plan *section);
 
-/* The plan of an outline around the section: gmsh's triangles (and, if recombine, quadrangles) at twice the size, each cut
- * through the middles of its sides, so that only quadrangles remain.
- *   section  in   at[] are the places in this plan, m
- *   corner   in   [n_corners][2] m, anticlockwise; parts[i] elements (even) between corners i and i + 1
- *   size     in   element size away from the section, m
- * A gmsh session must be open; its current model is left as it was. Errors: SHB_ERR_INPUT gmsh fails, what heads the text. */
-shb_status mesh_plan_outline(const mesh_plan *section, int n_corners, const double corner[][2],
-                             const int *parts, double size, bool recombine, const char *what,
-                             mesh_plan *plan);
-
 void mesh_plan_free(mesh_plan *plan); /* also on a zeroed struct */
 
 #endif

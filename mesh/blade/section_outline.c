@@ -1,11 +1,11 @@
-/* The plan of an outline around the airfoil's section. */
+#include "mesh/blade/section_outline.h"
+
 #include <gmshc.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "mesh/blade/section_mesh.h"
 #include "mesh/blade/section_smoothing.h"
 #include "mesh/gmsh/session.h"
 

@@ -11,7 +11,8 @@
 
 #include <stdbool.h>
 
-#include "mesh/blade/blade.h"
+#include "mesh/base/status.h"
+#include "mesh/blade/blade_parameters.h"
 #include "mesh/blade/frame.h"
 
 enum { MESH_SHROUD_LEGS = 3, MESH_SHROUD_CONTACT = 1 /* the middle leg */ };

@@ -1,8 +1,7 @@
-/* Left node on each right node, after the left face is turned by the sector angle. */
+#include "mesh/core/face_match.h"
+
 #include <math.h>
 #include <stdlib.h>
-
-#include "mesh/core/fe_mesh.h"
 
 static const double tolerance = 1e-9; /* m */
 

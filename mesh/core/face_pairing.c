@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/core/face_match.h"
 #include "mesh/core/triangle.h"
 
 /* The left face, for looking up the nearest point. */

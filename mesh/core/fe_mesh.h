@@ -82,24 +82,6 @@ const char *mesh_fe_found(const mesh_fe *mesh, char text[MESH_FOUND + 40]);
 /* Name of a group in the file; names may be NULL. */
 const char *mesh_names_set(const mesh_names *names, int set);
 
-/* Read a gmsh .msh file (2.2 or 4.1) with those physical groups, or an .inp file (mesh/io/inp_read.h). Only nodes that an element
- * uses are kept.
- * Errors: SHB_ERR_IO unreadable; SHB_ERR_INPUT neither all tet10 nor all hex20, no volume elements, group root absent or empty,
- * inverted elements (det J <= 0 at a quadrature or corner point; the first five tags are named), a group's
- * face not on the surface of the body. */
-shb_status mesh_fe_read(const char *path, mesh_fe *mesh);
-
-/* The same by other names, with further groups and volumes (names NULL: none); groups may be absent: root and the further ones
- * are mesh_fe_check_groups' to tell. SHB_ERR_INPUT too: a volume that is absent, elements in no volume or in two. */
-shb_status mesh_fe_read_named(const char *path, const mesh_names *names, mesh_fe *mesh);
-shb_status mesh_fe_check_groups(const mesh_fe *mesh, const char *name);
-
-/* Which left node lies on each right node after rotating the left face by the sector angle 2 pi/blades.
- *   match  out  [n_right_unique] pairs are returned through right_nodes/left_nodes, malloc'ed, sorted by right
- * Errors: SHB_ERR_INPUT if counts differ or a distance exceeds 1e-9 m (the distance and node are named). */
-shb_status mesh_fe_match(const mesh_fe *mesh, mesh_axis axis, int blades, int *n_pairs,
-                         int **right_nodes, int **left_nodes);
-
 /* Swap contact_right and contact_left if the outward normal of contact_right has a negative tangential
  * component (right is the side whose normal has a positive one); nothing if either group is empty.
  * Errors: SHB_ERR_INPUT if both point alike. */

@@ -2,7 +2,7 @@
 #ifndef MESH_GMSH_SIZE_ESTIMATE_H
 #define MESH_GMSH_SIZE_ESTIMATE_H
 
-#include "mesh/gmsh/source.h"
+#include "mesh/gmsh/source_settings.h"
 
 /* What there is to mesh, in the file's unit: of OpenCASCADE's solids exact, else guessed from boxes, the volume 0. */
 typedef struct {

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/core/face_match.h"
 #include "mesh/core/file_format.h"
 #include "mesh/core/jacobian.h"
 #include "mesh/gmsh/import.h"

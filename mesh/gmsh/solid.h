@@ -2,8 +2,9 @@
 #ifndef MESH_GMSH_SOLID_H
 #define MESH_GMSH_SOLID_H
 
+#include "mesh/base/progress.h"
 #include "mesh/gmsh/session.h"
-#include "mesh/gmsh/source.h"
+#include "mesh/gmsh/source_settings.h"
 
 /* An open gmsh session with the solid in it. */
 typedef struct {

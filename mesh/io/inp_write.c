@@ -1,3 +1,5 @@
+#include "mesh/io/inp_write.h"
+
 #include <errno.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -7,7 +9,6 @@
 #include <unistd.h>
 
 #include "mesh/base/publish.h"
-#include "mesh/io/inp_read.h"
 #include "mesh/io/inp_table.h"
 
 /* S1, S2, ... of element e where its corners are the group's face, or 0. */

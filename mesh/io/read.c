@@ -1,5 +1,6 @@
-/* Reading a mesh file: gmsh's own, or Abaqus' and CalculiX'. */
 #define _GNU_SOURCE /* memmem */
+#include "mesh/io/read.h"
+
 #include <errno.h>
 #include <gmshc.h>
 #include <stdbool.h>
@@ -7,9 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "mesh/core/fe_mesh.h"
 #include "mesh/core/file_format.h"
-#include "mesh/core/group_checks.h"
 #include "mesh/core/jacobian.h"
 #include "mesh/gmsh/import.h"
 #include "mesh/gmsh/session.h"
@@ -80,7 +79,7 @@ static shb_status read_msh(const char *path, const mesh_names *names, mesh_fe *m
   return status;
 }
 
-shb_status mesh_fe_read_named(const char *path, const mesh_names *names, mesh_fe *mesh) {
+shb_status mesh_fe_read(const char *path, const mesh_names *names, mesh_fe *mesh) {
   memset(mesh, 0, sizeof *mesh);
   bool msh = mesh_format_of(path) == MESH_FORMAT_MSH;
   SHB_CHECK(msh || mesh_format_of(path) == MESH_FORMAT_INP, SHB_ERR_INPUT,
@@ -88,27 +87,6 @@ shb_status mesh_fe_read_named(const char *path, const mesh_names *names, mesh_fe
             path);
   SHB_TRY(msh ? read_msh(path, names, mesh) : mesh_inp_read(path, names, mesh));
   shb_status status = mesh_jacobian_check(mesh, path);
-  if (status != SHB_OK) mesh_fe_free(mesh);
-  return status;
-}
-
-shb_status mesh_fe_check_groups(const mesh_fe *mesh, const char *name) {
-  char found[MESH_FOUND + 40];
-  SHB_CHECK(mesh->set[MESH_ROOT].n > 0, SHB_ERR_INPUT,
-            "%s: group root is absent or empty; a physical surface (in .inp a *SURFACE or *NSET) "
-            "of that name, or a rule in mesh.groups, says which faces are clamped; %s",
-            name, mesh_fe_found(mesh, found));
-  for (int s = MESH_N_SETS; s < mesh_fe_sets(mesh); s++)
-    SHB_CHECK(mesh->set[s].n > 0, SHB_ERR_INPUT,
-              "%s: group %s is absent or empty; a physical surface (in .inp a *SURFACE or *NSET) "
-              "of that name, or a rule in mesh.groups, says which faces it is; %s",
-              name, mesh_fe_set_name(mesh, s), mesh_fe_found(mesh, found));
-  return mesh_overlap_check(mesh, name);
-}
-
-shb_status mesh_fe_read(const char *path, mesh_fe *mesh) {
-  SHB_TRY(mesh_fe_read_named(path, NULL, mesh));
-  shb_status status = mesh_fe_check_groups(mesh, path);
   if (status != SHB_OK) mesh_fe_free(mesh);
   return status;
 }

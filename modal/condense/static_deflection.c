@@ -6,6 +6,7 @@
 
 #include "fem/solver/petsc_error.h"
 #include "modal/common/phases.h"
+#include "fem/body/tangent.h"
 
 /* Beyond this the St. Venant-Kirchhoff law, and any metal, has long failed. */
 static const double greatest_strain = .1;

@@ -16,6 +16,8 @@
 #include "modal/model/reduce.h"
 #include "modal/stage/model_export.h"
 #include "modal/stage/speed_range.h"
+#include "mesh/io/read.h"
+#include "mesh/core/group_checks.h"
 
 enum { FIRST_MODES = 20, MOST_MODES = 1000 }; /* with modes: auto */
 
@@ -344,7 +346,7 @@ static shb_status read_mesh(const char *path, const modal_settings *settings, me
     names.more[i].label = names.more[i].name = settings->group[i];
   for (int i = 0; i < settings->n_regions; i++)
     names.volume[i].label = names.volume[i].name = settings->region[i].name;
-  SHB_TRY(mesh_fe_read_named(path, &names, mesh));
+  SHB_TRY(mesh_fe_read(path, &names, mesh));
   SHB_TRY(mesh_fe_check_groups(mesh, path));
   for (int i = 0; i < settings->n_contacts && !settings->to_ground; i++) {
     int right = mesh_fe_set_named(mesh, settings->contact[i].right);

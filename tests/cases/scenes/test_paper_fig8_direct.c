@@ -16,6 +16,7 @@
 #include "modal/common/session.h"
 #include "modal/eigen/eigen.h"
 #include "tests/support/scene.h"
+#include "tests/support/read_mesh.h"
 
 static const double two_pi = 6.28318530717958647692;
 
@@ -126,7 +127,7 @@ static int create_body(void **state) {
   snprintf(path, sizeof path, "%s/case.yaml", folder);
   check(case_read(path, CASE_MODAL | CASE_MHB, stderr, &whole.file));
   snprintf(path, sizeof path, "%s/paper_fig8.msh", folder);
-  check(mesh_fe_read(path, &whole.mesh));
+  check(read_mesh(path, &whole.mesh));
   check(mesh_fe_orient(&whole.mesh, whole.file.axis));
   ok(fem_system_create(PETSC_COMM_SELF, &whole.mesh, &whole.file.material, FEM_STANDARD,
                        &whole.system));

@@ -16,6 +16,7 @@
 #include "fem/body/stress.h"
 #include "tests/support/box.h"
 #include "tests/support/fem.h"
+#include "fem/body/tangent.h"
 
 enum { MOST = 3 * MESH_FACE_NODES };
 

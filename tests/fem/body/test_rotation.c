@@ -13,6 +13,7 @@
 #include "fem/solver/petsc_error.h"
 #include "tests/support/box.h"
 #include "tests/support/fem.h"
+#include "fem/body/tangent.h"
 
 static fem_element *element;
 

@@ -11,6 +11,7 @@
 
 #include "mesh/base/phases.h"
 #include "mesh/base/progress.h"
+#include "mesh/base/clock.h"
 
 /* Busy until the processor, then idle until the clock, has gone on that far. */
 static void spend(double busy, double idle) {

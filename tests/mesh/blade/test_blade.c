@@ -16,6 +16,8 @@
 #include "mesh/core/fe_mesh.h"
 #include "mesh/core/jacobian.h"
 #include "mesh/gmsh/provenance.h"
+#include "tests/support/read_mesh.h"
+#include "mesh/core/face_match.h"
 
 static const double degree = M_PI / 180;
 
@@ -74,7 +76,7 @@ static shb_status write_blade(const mesh_blade *blade) {
 
 static void make(const mesh_blade *blade, mesh_fe *mesh) {
   if (write_blade(blade) != SHB_OK) fail_msg("%s", shb_message());
-  if (mesh_fe_read(path, mesh) != SHB_OK) fail_msg("%s", shb_message());
+  if (read_mesh(path, mesh) != SHB_OK) fail_msg("%s", shb_message());
 }
 
 /* Unit normal and area centroid of a set of planar triangles. */

@@ -17,6 +17,8 @@
 #include "mesh/blade/section_mesh.h"
 #include "mesh/core/fe_mesh.h"
 #include "mesh/core/jacobian.h"
+#include "tests/support/read_mesh.h"
+#include "mesh/core/face_match.h"
 
 static const double degree = M_PI / 180;
 
@@ -68,7 +70,7 @@ static const shb_provenance origin = {.case_path = "case.yaml",
 
 static void make(const mesh_blade *blade, mesh_fe *mesh) {
   if (mesh_blade_write(blade, path, &origin, NULL) != SHB_OK) fail_msg("%s", shb_message());
-  if (mesh_fe_read(path, mesh) != SHB_OK) fail_msg("%s", shb_message());
+  if (read_mesh(path, mesh) != SHB_OK) fail_msg("%s", shb_message());
 }
 
 /* det J of one element at a reference point, and the point. */

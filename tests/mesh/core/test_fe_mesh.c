@@ -18,6 +18,8 @@
 #include "mesh/base/progress.h"
 #include "mesh/core/jacobian.h"
 #include "tests/support/box.h"
+#include "tests/support/read_mesh.h"
+#include "mesh/core/face_match.h"
 
 static const double size[3]  = {0.237, 0.041, 0.023};
 static const int    cells[3] = {5, 3, 2};
@@ -110,7 +112,7 @@ static void reads_back_what_was_written(void **state) {
   assert_int_equal(box_mesh(size, cells, &box), SHB_OK);
   assert_int_equal(box_write(&box, path), SHB_OK);
   for (int again = 0; again < 2; again++) {
-    assert_int_equal(mesh_fe_read(path, &mesh), SHB_OK);
+    assert_int_equal(read_mesh(path, &mesh), SHB_OK);
     assert_int_equal(mesh.n_nodes, box.n_nodes);
     assert_int_equal(mesh.n_elements, box.n_elements);
     assert_near(volume(&mesh), size[0] * size[1] * size[2], 1e-17);
@@ -137,7 +139,7 @@ static void faces_are_turned_outward(void **state) {
     n[5] = middle;
   }
   assert_int_equal(box_write(&box, path), SHB_OK);
-  assert_int_equal(mesh_fe_read(path, &mesh), SHB_OK);
+  assert_int_equal(read_mesh(path, &mesh), SHB_OK);
   double sum[3];
   area(&mesh, MESH_ROOT, sum);
   assert_near(sum[0], -size[1] * size[2], 1e-17);
@@ -199,7 +201,7 @@ static void hexahedra_are_read(void **state) {
   assert_int_equal(box.n_elements, 30);
   assert_int_equal(box_set(&box, MESH_CONTACT_LEFT, 1, size[1]), SHB_OK);
   assert_int_equal(box_write(&box, path), SHB_OK);
-  assert_int_equal(mesh_fe_read(path, &mesh), SHB_OK);
+  assert_int_equal(read_mesh(path, &mesh), SHB_OK);
   assert_int_equal(mesh.kind, MESH_HEX20);
   assert_int_equal(mesh.n_nodes, box.n_nodes);
   assert_int_equal(mesh.n_elements, box.n_elements);
@@ -221,13 +223,13 @@ static void hexahedra_are_read(void **state) {
     face[7 - i] = middle;
   }
   assert_int_equal(box_write(&box, path), SHB_OK);
-  assert_int_equal(mesh_fe_read(path, &mesh), SHB_OK);
+  assert_int_equal(read_mesh(path, &mesh), SHB_OK);
   area(&mesh, MESH_ROOT, sum);
   assert_near(sum[0], -size[1] * size[2], 1e-15);
   mesh_fe_free(&mesh);
   box.coordinates[3 * box.connectivity[20 * 7 + 6]] -= size[0]; /* a corner through its element */
   assert_int_equal(box_write(&box, path), SHB_OK);
-  assert_says(mesh_fe_read(path, &mesh), SHB_ERR_INPUT, "elements inverted");
+  assert_says(read_mesh(path, &mesh), SHB_ERR_INPUT, "elements inverted");
   mesh_fe_free(&box);
 }
 
@@ -252,7 +254,7 @@ static void hexahedra_of_other_orders_are_refused(void **state) {
     gmshWrite(path, &ierr);
     assert_int_equal(ierr, 0);
     gmshFinalize(&ierr);
-    assert_says(mesh_fe_read(path, &mesh), SHB_ERR_INPUT,
+    assert_says(read_mesh(path, &mesh), SHB_ERR_INPUT,
                 order == 1 ? "linear (eight-node) hexahedra" : "hexahedra of 27 nodes");
   }
 }
@@ -264,7 +266,7 @@ static void unused_nodes_are_dropped(void **state) {
   box.n_elements -= 6; /* the last cell, at the far corner: three of its faces were outside */
   box.set[MESH_LOAD].n = 0;
   assert_int_equal(box_write(&box, path), SHB_OK);
-  assert_int_equal(mesh_fe_read(path, &mesh), SHB_OK);
+  assert_int_equal(read_mesh(path, &mesh), SHB_OK);
   assert_in_range(mesh.n_nodes, box.n_nodes - 26, box.n_nodes - 1);
   for (int i = 0; i < 10 * mesh.n_elements; i++)
     assert_int_equal(mesh.node_tag[mesh.connectivity[i]], box.node_tag[box.connectivity[i]]);
@@ -371,19 +373,19 @@ static void bad_files_are_refused(void **state) {
   (void)state;
   mesh_fe mesh;
   unlink(path);
-  assert_says(mesh_fe_read(path, &mesh), SHB_ERR_IO, "No such file");
-  assert_says(mesh_fe_read("blade.step", &mesh), SHB_ERR_INPUT, "end in .msh");
+  assert_says(read_mesh(path, &mesh), SHB_ERR_IO, "No such file");
+  assert_says(read_mesh("blade.step", &mesh), SHB_ERR_INPUT, "end in .msh");
   put("");
-  assert_says(mesh_fe_read(path, &mesh), SHB_ERR_INPUT, "not a gmsh mesh file");
+  assert_says(read_mesh(path, &mesh), SHB_ERR_INPUT, "not a gmsh mesh file");
   put("Point(1) = {0, 0, 0};\nSystemCall \"false\";\n");
-  assert_says(mesh_fe_read(path, &mesh), SHB_ERR_INPUT, "not a gmsh mesh file");
+  assert_says(read_mesh(path, &mesh), SHB_ERR_INPUT, "not a gmsh mesh file");
   put("$MeshFormat\n4 0 8\n$EndMeshFormat\n");
-  assert_says(mesh_fe_read(path, &mesh), SHB_ERR_INPUT, "mesh format 4;");
+  assert_says(read_mesh(path, &mesh), SHB_ERR_INPUT, "mesh format 4;");
   put("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n");
-  assert_says(mesh_fe_read(path, &mesh), SHB_ERR_INPUT, "no $EndNodes");
+  assert_says(read_mesh(path, &mesh), SHB_ERR_INPUT, "no $EndNodes");
   put("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\ngarbage\n$EndNodes\n$Elements\n1 2 3\n"
       "$EndElements\n");
-  assert_int_equal(mesh_fe_read(path, &mesh), SHB_ERR_INPUT);
+  assert_int_equal(read_mesh(path, &mesh), SHB_ERR_INPUT);
   assert_null(strchr(shb_message(), '\n'));
   assert_non_null(strstr(shb_message(), path));
 }
@@ -402,7 +404,7 @@ static void truncated_files_are_refused(void **state) {
   fclose(file);
   for (int part = 19; part >= 0; part--) {
     assert_int_equal(truncate(path, whole * part / 20), 0);
-    assert_int_equal(mesh_fe_read(path, &mesh), SHB_ERR_INPUT);
+    assert_int_equal(read_mesh(path, &mesh), SHB_ERR_INPUT);
     assert_null(mesh.coordinates);
   }
 }
@@ -413,7 +415,7 @@ static void first_order_is_refused(void **state) {
   put("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n2 1 \"root\"\n3 2 \"body\"\n"
       "$EndPhysicalNames\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n$EndNodes\n"
       "$Elements\n2\n1 2 2 1 1 1 2 3\n2 4 2 2 1 1 2 3 4\n$EndElements\n");
-  assert_says(mesh_fe_read(path, &mesh), SHB_ERR_INPUT, "second order is needed");
+  assert_says(read_mesh(path, &mesh), SHB_ERR_INPUT, "second order is needed");
 }
 
 static void surface_only_is_refused(void **state) {
@@ -422,7 +424,7 @@ static void surface_only_is_refused(void **state) {
   put("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n2 1 \"root\"\n"
       "$EndPhysicalNames\n$Nodes\n3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n$EndNodes\n"
       "$Elements\n1\n1 2 2 1 1 1 2 3\n$EndElements\n");
-  assert_says(mesh_fe_read(path, &mesh), SHB_ERR_INPUT, "no volume elements");
+  assert_says(read_mesh(path, &mesh), SHB_ERR_INPUT, "no volume elements");
 }
 
 static void an_element_without_its_node_is_refused(void **state) {
@@ -431,7 +433,7 @@ static void an_element_without_its_node_is_refused(void **state) {
   put("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n2 1 \"root\"\n3 2 \"body\"\n"
       "$EndPhysicalNames\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n$EndNodes\n"
       "$Elements\n2\n1 2 2 1 1 1 2 3\n2 4 2 2 1 1 2 3 99\n$EndElements\n");
-  assert_says(mesh_fe_read(path, &mesh), SHB_ERR_INPUT, "99");
+  assert_says(read_mesh(path, &mesh), SHB_ERR_INPUT, "99");
 }
 
 /* As many as fit into a line, in one line whatever they are called. */
@@ -470,13 +472,13 @@ static void bad_groups_are_refused(void **state) {
   int roots            = box.set[MESH_ROOT].n;
   box.set[MESH_ROOT].n = 0;
   assert_int_equal(box_write(&box, path), SHB_OK);
-  assert_says(mesh_fe_read(path, &mesh), SHB_ERR_INPUT, "group root is absent");
-  assert_says(mesh_fe_read(path, &mesh), SHB_ERR_INPUT, "; the mesh has the groups load");
+  assert_says(read_mesh(path, &mesh), SHB_ERR_INPUT, "group root is absent");
+  assert_says(read_mesh(path, &mesh), SHB_ERR_INPUT, "; the mesh has the groups load");
   box.set[MESH_ROOT].n = roots;
   assert_int_equal(box_set(&box, MESH_LOAD, 0, size[0] * 2 / cells[0]), SHB_OK);
   assert_true(box.set[MESH_LOAD].n > 0);
   assert_int_equal(box_write(&box, path), SHB_OK);
-  assert_says(mesh_fe_read(path, &mesh), SHB_ERR_INPUT, "group load: the face on nodes");
+  assert_says(read_mesh(path, &mesh), SHB_ERR_INPUT, "group load: the face on nodes");
   mesh_fe_free(&box);
 }
 
@@ -492,7 +494,7 @@ static void inverted_elements_are_named(void **state) {
         0.1 * box.coordinates[3 * n[0] + d] + 0.9 * box.coordinates[3 * n[1] + d];
   assert_true(mesh_jacobian_least(&box, 77) < 0);
   assert_int_equal(box_write(&box, path), SHB_OK);
-  assert_says(mesh_fe_read(path, &mesh), SHB_ERR_INPUT, "inverted");
+  assert_says(read_mesh(path, &mesh), SHB_ERR_INPUT, "inverted");
   assert_null(mesh.coordinates);
   char tag[16];
   int  named = 0;
@@ -514,7 +516,7 @@ static void signals_stay_ours(void **state) {
   mesh_fe box, mesh;
   assert_int_equal(box_mesh(size, cells, &box), SHB_OK);
   assert_int_equal(box_write(&box, path), SHB_OK);
-  assert_int_equal(mesh_fe_read(path, &mesh), SHB_OK);
+  assert_int_equal(read_mesh(path, &mesh), SHB_OK);
   sigaction(SIGINT, NULL, &after);
   assert_true(before.sa_handler == after.sa_handler);
   mesh_fe_free(&mesh);

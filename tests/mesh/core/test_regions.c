@@ -14,10 +14,13 @@
 #include <cmocka.h>
 
 #include "mesh/gmsh/session.h"
-#include "mesh/gmsh/source.h"
-#include "mesh/io/inp_read.h"
+#include "mesh/gmsh/source_settings.h"
 #include "mesh/io/msh_write.h"
 #include "tests/support/box.h"
+#include "tests/support/read_mesh.h"
+#include "mesh/io/read.h"
+#include "mesh/io/inp_write.h"
+#include "mesh/io/source.h"
 
 /* Three blocks along x, cut at these places, of which the middle one is "shank". */
 static const double cut[4] = {0, .013, .029, .037};
@@ -117,11 +120,11 @@ static void volumes_by_name(void **state) {
   assert_ok(mesh_inp_write(&mesh, written[1]));
   for (int i = 0; i < 2; i++) {
     mesh_names names = mesh_rules_labels(&source.rules);
-    assert_ok(mesh_fe_read_named(written[i], &names, &again));
+    assert_ok(mesh_fe_read(written[i], &names, &again));
     assert_int_equal(again.n_elements, mesh.n_elements);
     check_blocks(&again, (const int[]){0, 1, 0});
     mesh_fe_free(&again);
-    assert_ok(mesh_fe_read(written[i], &again)); /* one material: volumes do not matter */
+    assert_ok(read_mesh(written[i], &again)); /* one material: volumes do not matter */
     assert_null(again.region);
     mesh_fe_free(&again);
   }
@@ -194,18 +197,18 @@ static void element_sets(void **state) {
   fclose(file);
   mesh_names names = {.n_volumes = 2,
                       .volume = {{.label = "low", .name = "LOW"}, {.label = "up", .name = "high"}}};
-  assert_int_equal(mesh_fe_read_named(path, &names, &mesh), SHB_ERR_INPUT);
+  assert_int_equal(mesh_fe_read(path, &names, &mesh), SHB_ERR_INPUT);
   assert_non_null(
       strstr(shb_message(), "1 of 12 elements is in no volume of materials, such as element 12;"));
   file = fopen(path, "a");
   fputs("*ELSET, ELSET=high\n12\n", file);
   fclose(file);
-  assert_ok(mesh_fe_read_named(path, &names, &mesh));
+  assert_ok(mesh_fe_read(path, &names, &mesh));
   for (int e = 0; e < 12; e++) assert_int_equal(mesh.region[e], e >= 6);
   assert_string_equal(mesh.region_name[1], "up");
   mesh_fe_free(&mesh);
   names.volume[1].name = "none";
-  assert_int_equal(mesh_fe_read_named(path, &names, &mesh), SHB_ERR_INPUT);
+  assert_int_equal(mesh_fe_read(path, &names, &mesh), SHB_ERR_INPUT);
   assert_non_null(strstr(shb_message(), "no element set 'none'"));
 }
 

@@ -1,5 +1,4 @@
 /* Abaqus and CalculiX meshes: written and read back, every way to name a group, every fault with its line. */
-#include "mesh/io/inp_read.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -14,6 +13,8 @@
 #include <cmocka.h>
 
 #include "tests/support/box.h"
+#include "tests/support/read_mesh.h"
+#include "mesh/io/inp_write.h"
 
 static const double size[3]  = {0.237, 0.041, 0.023};
 static const int    cells[3] = {3, 2, 1};
@@ -45,7 +46,7 @@ static void put(const char *text) {
 static void refused(int line, const char *words) {
   mesh_fe    mesh;
   char       head[96];
-  shb_status status = mesh_fe_read(path, &mesh);
+  shb_status status = read_mesh(path, &mesh);
   snprintf(head, sizeof head, line ? "%s:%d: " : "%s: ", path, line);
   if (status != SHB_ERR_INPUT || !strstr(shb_message(), words) ||
       strncmp(shb_message(), head, strlen(head)) != 0)
@@ -100,7 +101,7 @@ static void what_was_written_comes_back(void **state) {
     full_box((mesh_kind)kind, &box);
     for (int i = 0; i < box.n_nodes; i++) box.node_tag[i] = 7 + 3L * i;
     assert_int_equal(mesh_inp_write(&box, path), SHB_OK);
-    assert_int_equal(mesh_fe_read(path, &mesh), SHB_OK);
+    assert_int_equal(read_mesh(path, &mesh), SHB_OK);
     same_mesh(&mesh, &box); /* bit for bit */
     mesh_fe_free(&mesh);
     mesh_fe_free(&box);
@@ -129,7 +130,7 @@ static void other_ends_of_lines_are_read(void **state) {
     }
     fclose(file);
     free(text);
-    shb_status status = mesh_fe_read(path, &mesh);
+    shb_status status = read_mesh(path, &mesh);
     if (status != SHB_OK) fail_msg("way %d: %s", way, shb_message());
     same_mesh(&box, &mesh);
     mesh_fe_free(&mesh);
@@ -154,7 +155,7 @@ static void numbers_fit_calculix(void **state) {
     for (char *word = strtok(line, ", \n"); word; word = strtok(NULL, ", \n"))
       assert_true(strlen(word) <= 20 || strncmp(word, "TYPE=", 5) == 0);
   fclose(file);
-  assert_int_equal(mesh_fe_read(path, &mesh), SHB_OK);
+  assert_int_equal(read_mesh(path, &mesh), SHB_OK);
   for (int i = 0; i < 3 * box.n_nodes; i++)
     assert_true(fabs(mesh.coordinates[i] - box.coordinates[i]) <=
                 6e-16 * fabs(box.coordinates[i]) + 1e-18); /* m */
@@ -230,7 +231,7 @@ static void other_ways_to_write_are_read(void **state) {
     write_otherwise(&box, file);
     write_sets(&box, file);
     fclose(file);
-    assert_int_equal(mesh_fe_read(path, &mesh), SHB_OK);
+    assert_int_equal(read_mesh(path, &mesh), SHB_OK);
     same_mesh(&mesh, &box);
     mesh_fe_free(&mesh);
     mesh_fe_free(&box);
@@ -257,7 +258,7 @@ static void every_face_label_is_right(void **state) {
     mesh_fe mesh;
     snprintf(text, sizeof text, NODES ELEMENT "*SURFACE, NAME=root\nE, S%d\n", s + 1);
     put(text);
-    assert_int_equal(mesh_fe_read(path, &mesh), SHB_OK);
+    assert_int_equal(read_mesh(path, &mesh), SHB_OK);
     assert_int_equal(mesh.set[MESH_ROOT].n, 1);
     int same = 0;
     for (int i = 0; i < 3; i++)
@@ -289,7 +290,7 @@ static void every_label_of_a_hexahedron_is_right(void **state) {
     fclose(from);
     fclose(to);
     assert_int_equal(rename(other, path), 0);
-    assert_int_equal(mesh_fe_read(path, &mesh), SHB_OK);
+    assert_int_equal(read_mesh(path, &mesh), SHB_OK);
     assert_int_equal(mesh.set[MESH_ROOT].n, 1);
     for (int i = 0; i < 8; i++)
       assert_true(mesh.coordinates[3 * mesh.set[MESH_ROOT].nodes[i] + direction[s]] == value[s]);
@@ -379,7 +380,7 @@ static void cut_files_are_refused(void **state) {
   fclose(file);
   for (int part = 15; part >= 0; part--) {
     assert_int_equal(truncate(path, whole * part / 20), 0);
-    assert_int_equal(mesh_fe_read(path, &mesh), SHB_ERR_INPUT);
+    assert_int_equal(read_mesh(path, &mesh), SHB_ERR_INPUT);
     assert_null(mesh.coordinates);
   }
 }

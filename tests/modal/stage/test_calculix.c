@@ -11,9 +11,9 @@
 #include <cmocka.h>
 
 #include "fem/body/equilibrium.h"
-#include "mesh/io/inp_read.h"
 #include "modal/eigen/eigen.h"
 #include "tests/support/fem.h"
+#include "mesh/io/inp_write.h"
 
 enum { MODES = 6 };
 

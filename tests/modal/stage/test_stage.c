@@ -2,13 +2,13 @@
 #include <math.h>
 
 #include "fem/element/surface.h"
-#include "mesh/io/inp_read.h"
 #include "modal/common/session.h"
 #include "modal/model/receptance.h"
 #include "modal/stage/stage.h"
 #include "tests/support/box.h"
 #include "tests/support/fem.h"
 #include "tests/support/files.h"
+#include "mesh/io/inp_write.h"
 
 enum { BLADES = 23 };
 

@@ -1,10 +1,12 @@
-#include "mesh/gmsh/source.h"
+#include "mesh/io/source.h"
 
 #include <stdbool.h>
 #include <string.h>
 
 #include "mesh/core/file_format.h"
+#include "mesh/core/group_checks.h"
 #include "mesh/gmsh/solid.h"
+#include "mesh/io/read.h"
 
 /* Groups, and m, for a mesh as it was read. */
 static shb_status finish(const mesh_source *source, mesh_fe *mesh) {
@@ -16,7 +18,7 @@ static shb_status finish(const mesh_source *source, mesh_fe *mesh) {
 
 static shb_status read_mesh(const mesh_source *source, mesh_fe *mesh) {
   mesh_names names = mesh_rules_names(&source->rules, source->unit);
-  SHB_TRY(mesh_fe_read_named(source->path, &names, mesh));
+  SHB_TRY(mesh_fe_read(source->path, &names, mesh));
   shb_status status = finish(source, mesh);
   if (status != SHB_OK) mesh_fe_free(mesh);
   return status;

@@ -1,5 +1,5 @@
 /* Meshes in every format of gmsh, solids meshed here, groups by rule, units; and what cannot be. */
-#include "mesh/gmsh/source.h"
+#include "mesh/io/source.h"
 
 #include <gmshc.h>
 #include <math.h>
@@ -17,9 +17,11 @@
 #include "mesh/core/jacobian.h"
 #include "mesh/gmsh/session.h"
 #include "mesh/gmsh/size_estimate.h"
-#include "mesh/io/inp_read.h"
 #include "mesh/io/msh_write.h"
 #include "tests/support/box.h"
+#include "tests/support/read_mesh.h"
+#include "mesh/core/face_match.h"
+#include "mesh/io/inp_write.h"
 
 enum { BLADES = 23 };
 
@@ -129,7 +131,7 @@ static void every_msh_format_is_read(void **state) {
       fclose(file);
       snprintf(head, sizeof head, "%g %d 8", version, format % 2);
       assert_int_equal(strncmp(line, head, strlen(head)), 0); /* it is what it should be */
-      assert_ok(mesh_fe_read(to, &mesh));
+      assert_ok(read_mesh(to, &mesh));
       assert_int_equal(mesh.kind, kind);
       assert_int_equal(mesh.n_nodes, box.n_nodes);
       assert_int_equal(mesh.n_elements, box.n_elements);
@@ -151,7 +153,7 @@ static void what_is_written_comes_back(void **state) {
     const char *path = scratch("own.msh");
     assert_ok(kind == MESH_HEX20 ? box_hex(size, cells, &box) : box_mesh(size, cells, &box));
     assert_ok(mesh_msh_write(&box, path, &origin));
-    assert_ok(mesh_fe_read(path, &mesh));
+    assert_ok(read_mesh(path, &mesh));
     assert_int_equal(mesh.n_nodes, box.n_nodes);
     assert_memory_equal(mesh.coordinates, box.coordinates, 3 * (size_t)box.n_nodes * 8);
     assert_area(&mesh, MESH_ROOT, -size[1] * size[2], 0, 0);

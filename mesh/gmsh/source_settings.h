@@ -1,8 +1,7 @@
-/* Where a blade's mesh comes from when it is not the parametric one: a mesh, or a solid that is meshed here. */
-#ifndef MESH_GMSH_SOURCE_H
-#define MESH_GMSH_SOURCE_H
+/* Where the mesh of a blade comes from when it is not the parametric one. */
+#ifndef MESH_GMSH_SOURCE_SETTINGS_H
+#define MESH_GMSH_SOURCE_SETTINGS_H
 
-#include "mesh/base/progress.h"
 #include "mesh/core/group_rules.h"
 
 typedef struct {
@@ -17,8 +16,5 @@ typedef struct {
     char right[MESH_WORD], left[MESH_WORD];
   } contact[MESH_MAX_MORE / 2];
 } mesh_source;
-
-/* Read, or mesh, and give every group its faces; coordinates in m. SHB_ERR_INPUT, SHB_ERR_IO, SHB_INTERRUPTED. */
-shb_status mesh_source_read(const mesh_source *source, shb_progress *progress, mesh_fe *mesh);
 
 #endif
