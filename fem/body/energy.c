@@ -110,15 +110,3 @@ void fem_tangent_energies(const fem_body *body, const double *state, int n, cons
   }
   for (int i = 0; i < n; i++) energy[i] += fem_pressure_energy(body, state, u + (size_t)i * stride);
 }
-
-double fem_tangent_energy(const fem_body *body, const double *state, const double *u) {
-  double energy;
-  fem_tangent_energies(body, state, 1, u, &energy);
-  return energy;
-}
-
-double fem_strain_energy(const mesh_fe *mesh, const fem_material *material,
-                         const fem_element *element, const double *u) {
-  const fem_body body = {.mesh = mesh, .material = material, .element = element};
-  return fem_tangent_energy(&body, NULL, u);
-}

@@ -84,15 +84,3 @@ shb_status fem_material_orthotropic(const fem_orthotropic *from, double rho, fem
                                            pair[p][0], pair[p][1], pair[q][0], pair[q][1]);
   return SHB_OK;
 }
-
-void fem_material_stiffness(const fem_material *material, double C[6][6]) {
-  memcpy(C, material->C, sizeof material->C);
-  if (material->anisotropic) return;
-  double mu     = material->E / (2 * (1 + material->nu));
-  double lambda = 2 * mu * material->nu / (1 - 2 * material->nu);
-  memset(C, 0, 36 * sizeof(double));
-  for (int i = 0; i < 3; i++) {
-    for (int j = 0; j < 3; j++) C[i][j] = lambda + (i == j ? 2 * mu : 0);
-    C[3 + i][3 + i] = mu;
-  }
-}

@@ -29,9 +29,6 @@ typedef struct {
 /* C in mesh axes. SHB_ERR_INPUT: not positive definite, or axes without a direction. */
 shb_status fem_material_orthotropic(const fem_orthotropic *from, double rho, fem_material *out);
 
-/* Stiffness of any material, isotropic ones included. */
-void fem_material_stiffness(const fem_material *material, double C[6][6]);
-
 /* Material of an element: materials[mesh->region], one for each of the mesh's regions; the one where it has none. */
 static inline const fem_material *fem_material_at(const fem_material *materials,
                                                   const mesh_fe *mesh, int element) {

@@ -4,10 +4,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "fem/solver/sbaij_blocks.h"
 #include "fem/solver/supernodal_solve.h"
 
 enum { MANY = 12 }; /* right-hand sides for which calls to BLAS are the faster way */
+
+/* Upper triangle of a symmetric matrix (sequential SBAIJ, block size 3) by block rows. */
+typedef struct {
+  PetscInt        n;
+  const PetscInt *start, *column;
+  const double   *value; /* [block][9], each by columns */
+} block_rows;
 
 struct fem_cholesky {
   int             n;     /* block rows */
@@ -20,6 +26,27 @@ struct fem_cholesky {
   cholmod_common  common;
 };
 
+/* Look at the blocks of A in place; A must not change until they are given back. */
+static PetscErrorCode borrow_blocks(Mat A, block_rows *b) {
+  PetscBool done;
+  double   *value;
+  PetscFunctionBeginUser;
+  PetscCall(MatGetRowIJ(A, 0, PETSC_FALSE, PETSC_TRUE, &b->n, &b->start, &b->column, &done));
+  PetscCheck(done, PETSC_COMM_SELF, PETSC_ERR_SUP, "no rows");
+  PetscCall(MatSeqSBAIJGetArray(A, &value));
+  b->value = value;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode give_back_blocks(Mat A, block_rows *b) {
+  PetscBool done;
+  double   *value = (double *)b->value;
+  PetscFunctionBeginUser;
+  PetscCall(MatSeqSBAIJRestoreArray(A, &value));
+  PetscCall(MatRestoreRowIJ(A, 0, PETSC_FALSE, PETSC_TRUE, &b->n, &b->start, &b->column, &done));
+  PetscFunctionReturn(0);
+}
+
 static void start_common(cholmod_common *common) {
   cholmod_start(common);
   common->print                      = 0;
@@ -29,7 +56,7 @@ static void start_common(cholmod_common *common) {
 }
 
 /* Nested dissection of the graph of the nodes: three times smaller than that of the dofs, and as good. */
-static bool order_nodes(const fem_blocks *b, cholmod_common *common, int *place) {
+static bool order_nodes(const block_rows *b, cholmod_common *common, int *place) {
   const size_t    n = (size_t)b->n, count = (size_t)b->start[n];
   cholmod_sparse *graph = cholmod_allocate_sparse(n, n, count, 1, 1, -1, CHOLMOD_PATTERN, common);
   if (!graph) return false;
@@ -48,7 +75,7 @@ static bool order_nodes(const fem_blocks *b, cholmod_common *common, int *place)
 }
 
 /* Columns of the permuted lower triangle: of block column b the blocks below its diagonal follow that. next: [n] zeros. */
-static void count_columns(const fem_blocks *b, const int *place, int *next, int *start) {
+static void count_columns(const block_rows *b, const int *place, int *next, int *start) {
   int total = 0;
   for (PetscInt r = 0; r < b->n; r++)
     for (PetscInt q = b->start[r]; q < b->start[r + 1]; q++) {
@@ -86,7 +113,7 @@ static void put_block(const double *B, bool turned, int low, int high, int slot,
 }
 
 /* The permuted lower triangle; NULL: out of memory. */
-static cholmod_sparse *permute(const fem_blocks *b, const int *place, cholmod_common *common) {
+static cholmod_sparse *permute(const block_rows *b, const int *place, cholmod_common *common) {
   const size_t    n = (size_t)b->n, entries = 9 * (size_t)b->start[n] - 3 * n;
   cholmod_sparse *A =
       cholmod_allocate_sparse(3 * n, 3 * n, entries, 0, 1, -1, CHOLMOD_REAL, common);
@@ -111,7 +138,7 @@ static cholmod_sparse *permute(const fem_blocks *b, const int *place, cholmod_co
 }
 
 /* Supernodes of the permuted matrix. */
-static void analyse(const fem_blocks *b, fem_cholesky *factor) {
+static void analyse(const block_rows *b, fem_cholesky *factor) {
   cholmod_common *common = &factor->common;
   cholmod_sparse *A;
   if (!order_nodes(b, common, factor->place)) return;
@@ -125,18 +152,18 @@ static void analyse(const fem_blocks *b, fem_cholesky *factor) {
 }
 
 PetscErrorCode fem_cholesky_create(Mat A, bool *fits, fem_cholesky **out) {
-  fem_blocks    b;
+  block_rows    b;
   fem_cholesky *factor = calloc(1, sizeof *factor);
 
   PetscFunctionBeginUser;
   *out = NULL;
   PetscCheck(factor, PETSC_COMM_SELF, PETSC_ERR_MEM, "CHOLMOD");
   start_common(&factor->common);
-  PetscCall(fem_blocks_borrow(A, &b));
+  PetscCall(borrow_blocks(A, &b));
   factor->n     = (int)b.n;
   factor->place = malloc((size_t)b.n * sizeof *factor->place);
   if (factor->place) analyse(&b, factor);
-  PetscCall(fem_blocks_give_back(A, &b));
+  PetscCall(give_back_blocks(A, &b));
   *fits = factor->common.status != CHOLMOD_TOO_LARGE;
   if (factor->L) {
     *out = factor;
@@ -164,12 +191,12 @@ static void factorise(cholmod_sparse *A, cholmod_factor *L, cholmod_common *comm
 
 PetscErrorCode fem_cholesky_update(fem_cholesky *factor, Mat A, bool *definite) {
   cholmod_common *common = &factor->common;
-  fem_blocks      b;
+  block_rows      b;
 
   PetscFunctionBeginUser;
-  PetscCall(fem_blocks_borrow(A, &b));
+  PetscCall(borrow_blocks(A, &b));
   cholmod_sparse *permuted = permute(&b, factor->place, common);
-  PetscCall(fem_blocks_give_back(A, &b));
+  PetscCall(give_back_blocks(A, &b));
   PetscCheck(permuted, PETSC_COMM_SELF, PETSC_ERR_MEM, "CHOLMOD");
   factorise(permuted, factor->L, common);
   cholmod_free_sparse(&permuted, common);

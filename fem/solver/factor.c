@@ -5,13 +5,11 @@
 
 #include "fem/solver/cholesky.h"
 #include "fem/solver/memory.h"
-#include "fem/solver/mixed_precision.h"
 
 struct fem_factor {
   MPI_Comm      comm;
-  fem_cholesky *cholesky; /* or */
-  fem_single   *single;   /* or */
-  Mat           mumps;
+  fem_cholesky *cholesky; /* NULL where MUMPS factorises */
+  Mat           mumps;    /* NULL where CHOLMOD does */
   double        foreseen; /* bytes, all ranks */
 };
 
@@ -107,32 +105,16 @@ static PetscErrorCode analyse(fem_factor *factor, Mat A, double *mine) {
   PetscFunctionReturn(0);
 }
 
-/* In place of CHOLMOD's factor one of half its size, which takes longer to solve with; mine: what it takes. */
-static PetscErrorCode take_single(fem_factor *factor, Mat A, double *mine) {
-  PetscFunctionBeginUser;
-  fem_cholesky_destroy(factor->cholesky);
-  factor->cholesky = NULL;
-  PetscCall(fem_single_create(A, &factor->single));
-  *mine = fem_single_foreseen(factor->single);
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode fem_factor_create(Mat A, double beside, fem_factor **out) {
-  double    mine, needed, there;
-  int       n_ranks;
-  PetscBool asked = PETSC_FALSE;
+  double mine, needed, there;
+  int    n_ranks;
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(out));
   (*out)->comm = PetscObjectComm((PetscObject)A);
   PetscCallMPI(MPI_Comm_size((*out)->comm, &n_ranks));
-  PetscCall(PetscOptionsGetBool(NULL, "st_", "-single_precision", &asked, NULL));
   PetscCall(analyse(*out, A, &mine));
   PetscCall(compare((*out)->comm, mine + beside / n_ranks, &needed, &there));
-  if ((*out)->cholesky && (asked || needed > there)) {
-    PetscCall(take_single(*out, A, &mine));
-    PetscCall(compare((*out)->comm, mine + beside, &needed, &there));
-  }
   PetscCallMPI(MPI_Allreduce(&mine, &(*out)->foreseen, 1, MPI_DOUBLE, MPI_SUM, (*out)->comm));
   PetscCall(check_memory(A, needed, there));
   PetscFunctionReturn(0);
@@ -143,7 +125,6 @@ double fem_factor_foreseen(const fem_factor *factor) {
 }
 
 const char *fem_factor_by(const fem_factor *factor) {
-  if (factor->single) return "SMUMPS in single precision";
   return factor->cholesky ? "CHOLMOD" : "MUMPS";
 }
 
@@ -168,22 +149,10 @@ static PetscErrorCode update_mumps(Mat mumps, Mat A, bool *definite) {
 
 PetscErrorCode fem_factor_update(fem_factor *factor, Mat A, bool *definite) {
   PetscFunctionBeginUser;
-  if (factor->single)
-    PetscCall(fem_single_update(factor->single, A, definite));
-  else if (factor->cholesky)
+  if (factor->cholesky)
     PetscCall(fem_cholesky_update(factor->cholesky, A, definite));
   else
     PetscCall(update_mumps(factor->mumps, A, definite));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode solve_columns(fem_factor *factor, int count, const double *b, size_t ldb,
-                                    double *x, size_t ldx) {
-  PetscFunctionBeginUser;
-  if (factor->single)
-    PetscCall(fem_single_solve(factor->single, count, b, ldb, x, ldx));
-  else
-    PetscCall(fem_cholesky_solve(factor->cholesky, count, b, ldb, x, ldx));
   PetscFunctionReturn(0);
 }
 
@@ -200,7 +169,7 @@ PetscErrorCode fem_factor_solve(fem_factor *factor, Vec b, Vec x) {
   PetscCall(VecGetLocalSize(b, &n));
   PetscCall(VecGetArrayRead(b, &from));
   PetscCall(VecGetArrayWrite(x, &to));
-  PetscCall(solve_columns(factor, 1, from, (size_t)n, to, (size_t)n));
+  PetscCall(fem_cholesky_solve(factor->cholesky, 1, from, (size_t)n, to, (size_t)n));
   PetscCall(VecRestoreArrayWrite(x, &to));
   PetscCall(VecRestoreArrayRead(b, &from));
   PetscFunctionReturn(0);
@@ -221,7 +190,7 @@ PetscErrorCode fem_factor_solve_many(fem_factor *factor, Mat B, Mat X) {
   PetscCall(MatDenseGetLDA(X, &ldx));
   PetscCall(MatDenseGetArrayRead(B, &from));
   PetscCall(MatDenseGetArrayWrite(X, &to));
-  PetscCall(solve_columns(factor, (int)count, from, (size_t)ldb, to, (size_t)ldx));
+  PetscCall(fem_cholesky_solve(factor->cholesky, (int)count, from, (size_t)ldb, to, (size_t)ldx));
   PetscCall(MatDenseRestoreArrayWrite(X, &to));
   PetscCall(MatDenseRestoreArrayRead(B, &from));
   PetscFunctionReturn(0);
@@ -257,7 +226,6 @@ PetscErrorCode fem_factor_destroy(fem_factor **factor) {
   PetscFunctionBeginUser;
   if (!*factor) PetscFunctionReturn(0);
   fem_cholesky_destroy((*factor)->cholesky);
-  PetscCall(fem_single_destroy(&(*factor)->single));
   PetscCall(MatDestroy(&(*factor)->mumps));
   PetscCall(PetscFree(*factor));
   PetscFunctionReturn(0);

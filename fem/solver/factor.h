@@ -1,8 +1,8 @@
-/* Factor of a symmetric positive definite matrix: who factorises, and what it will take.
+/* Factor of a symmetric positive definite matrix: choice of the program, and the memory it needs.
  *
- * One rank: CHOLMOD (fem/solver/cholesky.h), whose solves are twice as fast as MUMPS's. Several ranks, a factor too large for
- * CHOLMOD, or the option -st_pc_factor_mat_solver_type mumps: MUMPS, which takes the options -st_mat_mumps_.... One rank
- * without the memory for that, or the option -st_single_precision: a factor in single precision (fem/solver/mixed_precision.h). */
+ * On one rank: CHOLMOD (fem/solver/cholesky.h), whose solves are twice as fast as MUMPS's. On several
+ * ranks, for a factor too large for CHOLMOD, or with the option -st_pc_factor_mat_solver_type mumps:
+ * MUMPS, which takes the options -st_mat_mumps_.... */
 #ifndef FEM_SOLVER_FACTOR_H
 #define FEM_SOLVER_FACTOR_H
 
@@ -11,9 +11,11 @@
 
 typedef struct fem_factor fem_factor;
 
-/* Order and analyse the pattern of A (SBAIJ, block size 3). Collective, as all that follows.
- *   beside  bytes that will be wanted beside the factor, all ranks
- * Errors: PETSC_ERR_USER_INPUT this machine has not the memory, in single precision either (what is needed, what there is, and what to do). */
+/* Order and analyse the pattern of A. Collective, as all functions below.
+ *   A       in  SBAIJ, block size 3
+ *   beside  in  bytes that will be needed besides the factor, sum of all ranks
+ * Errors: PETSC_ERR_USER_INPUT this machine lacks the memory; the text gives the bytes needed, the
+ * bytes left and the remedy. */
 PetscErrorCode fem_factor_create(Mat A, double beside, fem_factor **out);
 
 /* Factorise A; again after its values have changed. *definite false: it is not positive definite; there may be no factor

@@ -2,8 +2,7 @@
 #ifndef TESTS_SUPPORT_FEM_H
 #define TESTS_SUPPORT_FEM_H
 
-#include "fem/element/material.h"
-#include "mesh/core/fe_mesh.h"
+#include "fem/body/rotating_body.h"
 
 extern const fem_material steel; /* 210 GPa, .3, 7850 kg/m3 */
 
@@ -11,6 +10,14 @@ extern const fem_material steel; /* 210 GPa, .3, 7850 kg/m3 */
 void check_close(double a, double b, double relative, const char *what);
 /* |a| <= bound */
 void check_below(double a, double bound, const char *what);
+
+/* u^T K u of one field, J: about a state of a body (NULL: at rest); of a body without loads. */
+double tangent_energy(const fem_body *body, const double *state, const double *u);
+double strain_energy(const mesh_fe *mesh, const fem_material *material, const fem_element *element,
+                     const double *u);
+
+/* Stiffness of an isotropic material, Pa: strains 11, 22, 33, 12, 13, 23, shear strains doubled. */
+void isotropic_stiffness(const fem_material *material, double C[6][6]);
 
 /* The elements of the meshes made from here on; tetrahedra at first. */
 void      use_elements(mesh_kind kind);

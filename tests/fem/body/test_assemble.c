@@ -10,7 +10,6 @@
 
 #include "fem/body/assemble.h"
 #include "fem/body/clamp_check.h"
-#include "fem/body/energy.h"
 #include "fem/body/partition.h"
 #include "tests/support/box.h"
 #include "tests/support/fem.h"
@@ -161,14 +160,14 @@ static void strain_energy_is_the_quadratic_form(void **state) {
   assert_int_equal(VecAssemblyEnd(x), 0);
   assert_int_equal(MatMult(system.K, x, f), 0);
   assert_int_equal(VecDot(x, f, &product), 0);
-  check_close(fem_strain_energy(&mesh, &steel, element, u), product, 1e-12, "energy");
+  check_close(strain_energy(&mesh, &steel, element, u), product, 1e-12, "energy");
   for (int i = 0; i < mesh.n_nodes; i++) {
     const double *at = mesh.coordinates + 3 * i;
     u[3 * i]         = 1 - 3 * at[1];
     u[3 * i + 1]     = 2 + 3 * at[0];
     u[3 * i + 2]     = 3;
   }
-  check_below(fem_strain_energy(&mesh, &steel, element, u), 1e-25 * product, "rigid energy");
+  check_below(strain_energy(&mesh, &steel, element, u), 1e-25 * product, "rigid energy");
   VecDestroy(&x);
   VecDestroy(&f);
   fem_system_destroy(&system);

@@ -8,7 +8,6 @@
 
 #include <cmocka.h>
 
-#include "fem/body/energy.h"
 #include "fem/body/equilibrium.h"
 #include "fem/solver/petsc_error.h"
 #include "modal/eigen/eigen.h"
@@ -67,7 +66,7 @@ static shb_status solve(const beam *b, double speed, double flap[MODES], double 
       z += u[3 * k + 2] * u[3 * k + 2];
     }
     double *to = y > 10 * (x + z) ? flap + n[0]++ : z > 10 * (x + y) ? plane + n[1]++ : NULL;
-    if (to) *to = fem_tangent_energy(&body, at.displacement, u);
+    if (to) *to = tangent_energy(&body, at.displacement, u);
   }
   modal_eigen_destroy(&eigen);
   fem_equilibrium_free(&at);
