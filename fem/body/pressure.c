@@ -3,13 +3,9 @@
 #include <string.h>
 
 #include "fem/element/surface.h"
+#include "mesh/base/vec3.h"
 
 enum { FACE_DOFS = 3 * MESH_FACE_NODES };
-
-static void cross(const double a[3], const double b[3], double c[3]) {
-  for (int d = 0; d < 3; d++)
-    c[d] = a[(d + 1) % 3] * b[(d + 2) % 3] - a[(d + 2) % 3] * b[(d + 1) % 3];
-}
 
 /* x,r and x,s at a point of the rule. */
 static void tangents(const fem_face_rule *rule, int point, const double x[][3], double r[3],
@@ -28,7 +24,7 @@ void fem_face_pressure(const fem_face_rule *rule, double p, const double x[][3],
   for (int q = 0; q < rule->n; q++) {
     double r[3], s[3], n[3];
     tangents(rule, q, x, r, s);
-    cross(r, s, n);
+    vec3_cross(r, s, n);
     for (int i = 0; i < rule->nodes; i++)
       for (int d = 0; d < 3; d++) f[i][d] -= p * rule->weight[q] * rule->shape[q][i] * n[d];
   }

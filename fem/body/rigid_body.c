@@ -1,13 +1,11 @@
 #include "fem/body/rigid_body.h"
 
+#include "mesh/base/vec3.h"
+
 /* Motion r of a point at x. */
 static void rigid_motion(int r, const double axis[3], const double x[3], double v[3]) {
   for (int d = 0; d < 3; d++) v[d] = r == d;
-  if (r < 3) return;
-  for (int d = 0; d < 3; d++) {
-    int b = (d + 1) % 3, c = (d + 2) % 3;
-    v[d] = axis[b] * x[c] - axis[c] * x[b];
-  }
+  if (r == 3) vec3_cross(axis, x, v);
 }
 
 /* f_i = sum_j m_ij r(x_j); returns sum_ij r_i m_ij r_j */

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "mesh/base/vec3.h"
+
 /* Compiled for each number of nodes. */
 #define KERNEL static inline __attribute__((always_inline))
 
@@ -51,17 +53,13 @@ static void multiply(const double A[3][3], const double B[3][3], double C[3][3])
 }
 
 static void apply(const double A[3][3], const double v[3], double out[3]) {
-  for (int a = 0; a < 3; a++) out[a] = A[a][0] * v[0] + A[a][1] * v[1] + A[a][2] * v[2];
+  for (int a = 0; a < 3; a++) out[a] = vec3_dot(A[a], v);
 }
 
 /* F F^T */
 static void left_cauchy(const double F[3][3], double B[3][3]) {
   for (int a = 0; a < 3; a++)
     for (int b = 0; b < 3; b++) B[a][b] = F[a][0] * F[b][0] + F[a][1] * F[b][1] + F[a][2] * F[b][2];
-}
-
-static double inner(const double a[3], const double b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
 void fem_element_force(const fem_element *element, const fem_material *material,
@@ -94,7 +92,7 @@ KERNEL void add_point(int n, const fem_lame *lame, double volume, const fem_defo
   }
   for (int i = 0; i < n; i++)
     for (int j = i; j < n; j++) {
-      double geometric = volume * inner(g[i], Sg[j]), shear = mu * inner(g[i], g[j]);
+      double geometric = volume * vec3_dot(g[i], Sg[j]), shear = mu * vec3_dot(g[i], g[j]);
       for (int a = 0; a < 3; a++) {
         double *row = K + (3 * i + a) * 3 * n + 3 * j;
         for (int b = 0; b < 3; b++)
@@ -111,7 +109,7 @@ static void add_anisotropic(int n, const fem_material *material, double volume,
     double Sg[3];
     apply(at->S, g[j], Sg);
     for (int i = 0; i <= j; i++)
-      for (int a = 0; a < 3; a++) K[(3 * i + a) * 3 * n + 3 * j + a] += volume * inner(g[i], Sg);
+      for (int a = 0; a < 3; a++) K[(3 * i + a) * 3 * n + 3 * j + a] += volume * vec3_dot(g[i], Sg);
   }
 }
 
@@ -148,7 +146,7 @@ void fem_cauchy(const fem_deformation *at, double stress[6]) {
   static const int place[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {0, 2}};
   double           P[3][3], J = determinant(at->F);
   multiply(at->F, at->S, P);
-  for (int c = 0; c < 6; c++) stress[c] = inner(P[place[c][0]], at->F[place[c][1]]) / J;
+  for (int c = 0; c < 6; c++) stress[c] = vec3_dot(P[place[c][0]], at->F[place[c][1]]) / J;
 }
 
 double fem_von_mises(const double stress[6]) {

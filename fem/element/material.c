@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "mesh/base/vec3.h"
+
 static const int place[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
 
 /* Inverse of the compliance's normal part; false unless it is positive definite. */
@@ -42,21 +44,15 @@ static shb_status own_stiffness(const fem_orthotropic *from, double C[6][6]) {
 
 /* Rows: the material's axes in mesh axes. */
 static shb_status find_axes(const fem_orthotropic *from, double axes[3][3]) {
-  double first = 0, dot = 0, second = 0;
-  for (int d = 0; d < 3; d++) first += from->axis[d] * from->axis[d];
-  for (int d = 0; d < 3; d++) axes[0][d] = from->axis[d] / sqrt(first);
-  for (int d = 0; d < 3; d++) dot += axes[0][d] * from->in_plane[d];
-  for (int d = 0; d < 3; d++) {
-    axes[1][d] = from->in_plane[d] - dot * axes[0][d];
-    second += axes[1][d] * axes[1][d];
-  }
-  SHB_CHECK(first > 0 && second > 1e-12 * dot * dot && second > 0, SHB_ERR_INPUT,
+  const double first = vec3_norm(from->axis);
+  for (int d = 0; d < 3; d++) axes[0][d] = from->axis[d] / first;
+  const double along = vec3_dot(axes[0], from->in_plane);
+  for (int d = 0; d < 3; d++) axes[1][d] = from->in_plane[d] - along * axes[0][d];
+  const double second = vec3_norm(axes[1]);
+  SHB_CHECK(first > 0 && second > 1e-6 * fabs(along), SHB_ERR_INPUT,
             "axis_1 and axis_2 must be two directions, not along one line");
-  for (int d = 0; d < 3; d++) axes[1][d] /= sqrt(second);
-  for (int d = 0; d < 3; d++) {
-    int a = (d + 1) % 3, b = (d + 2) % 3;
-    axes[2][d] = axes[0][a] * axes[1][b] - axes[0][b] * axes[1][a];
-  }
+  for (int d = 0; d < 3; d++) axes[1][d] /= second;
+  vec3_cross(axes[0], axes[1], axes[2]);
   return SHB_OK;
 }
 

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "mesh/base/vec3.h"
 #include "mesh/blade/airfoil.h"
 #include "mesh/blade/face_groups.h"
 #include "mesh/blade/frame.h"
@@ -180,7 +181,7 @@ static double element_size(int dim, int tag, double x, double y, double z, void 
   (void)tag;
   const sizing     *s      = data;
   const mesh_blade *blade  = s->blade;
-  const double      radial = x * s->radial[0] + y * s->radial[1] + z * s->radial[2];
+  const double      radial = vec3_dot((const double[]){x, y, z}, s->radial);
   const double      edge   = edge_limit(blade, radial);
   if (!(blade->shroud_size > 0)) return fmin(edge, blade->size);
   double from  = blade->section[blade->n_sections - 1].radius - 4 * blade->size;
@@ -263,7 +264,7 @@ static shb_status check_swept(const mesh_blade *blade, const mesh_fe *mesh) {
     for (int c = 0; c < 8; c++) {
       const double *x =
           mesh->coordinates + 3 * (size_t)mesh->connectivity[MESH_NODES * (size_t)e + (size_t)c];
-      const double at = x[0] * radial[0] + x[1] * radial[1] + x[2] * radial[2];
+      const double at = vec3_dot(x, radial);
       low             = fmin(low, at);
       high            = fmax(high, at);
     }

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "mesh/base/vec3.h"
 #include "mesh/blade/airfoil.h"
 #include "mesh/blade/shroud.h"
 #include "mesh/core/fe_mesh.h"
@@ -72,7 +73,7 @@ static shb_status distance_to(const mesh_frame *frame, int tag, const double own
   mesh_frame_out(frame, own, at);
   GMSH_TRY("mesh.blade", gmshModelGetClosestPoint(2, tag, at, 3, &closest, &n, &parameters,
                                                   &n_parameters, &ierr));
-  *distance = hypot(hypot(at[0] - closest[0], at[1] - closest[1]), at[2] - closest[2]);
+  *distance = vec3_distance(at, closest);
   gmshFree(closest);
   gmshFree(parameters);
   return SHB_OK;

@@ -3,6 +3,7 @@
 #include <gmshc.h>
 #include <math.h>
 
+#include "mesh/base/vec3.h"
 #include "mesh/gmsh/session.h"
 
 mesh_frame mesh_frame_at(mesh_axis axis) {
@@ -19,8 +20,7 @@ void mesh_frame_out(const mesh_frame *frame, const double own[3], double at[3]) 
 }
 
 void mesh_frame_own(const mesh_frame *frame, const double at[3], double own[3]) {
-  for (int i = 0; i < 3; i++)
-    own[i] = at[0] * frame->axes[i][0] + at[1] * frame->axes[i][1] + at[2] * frame->axes[i][2];
+  for (int i = 0; i < 3; i++) own[i] = vec3_dot(at, frame->axes[i]);
 }
 
 void mesh_frame_turn(double angle, const double own[3], double out[3]) {

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "mesh/base/vec3.h"
+
 static const double tolerance = 1e-9; /* m */
 
 typedef struct {
@@ -50,16 +52,11 @@ static place *turned(const mesh_fe *mesh, const int *nodes, int n, mesh_axis axi
   return places;
 }
 
-static double distance(const double a[3], const double b[3]) {
-  return sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) +
-              (a[2] - b[2]) * (a[2] - b[2]));
-}
-
 /* Nearest place to at among first..last-1. */
 static const place *nearest(const place *places, int first, int last, const double at[3]) {
   const place *best = NULL;
   for (int i = first; i < last; i++)
-    if (!best || distance(places[i].at, at) < distance(best->at, at)) best = &places[i];
+    if (!best || vec3_distance(places[i].at, at) < vec3_distance(best->at, at)) best = &places[i];
   return best;
 }
 
@@ -77,9 +74,9 @@ static int find(const place *places, int n, const double at[3], double *gap) {
   }
   while (high < n && places[high].key <= key + 2 * tolerance) high++;
   const place *best = nearest(places, low, high, at);
-  if (best && distance(best->at, at) <= tolerance) return best->node;
+  if (best && vec3_distance(best->at, at) <= tolerance) return best->node;
   best = nearest(places, 0, n, at);
-  *gap = distance(best->at, at);
+  *gap = vec3_distance(best->at, at);
   return -1;
 }
 

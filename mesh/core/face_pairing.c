@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/vec3.h"
 #include "mesh/core/face_match.h"
 #include "mesh/core/triangle.h"
 
@@ -27,12 +28,6 @@ static const int *face_nodes(const target *t, int face) {
   return t->set->nodes + t->topology->face_nodes * (size_t)face;
 }
 
-static double apart(const double a[3], const double b[3]) {
-  double sum = 0;
-  for (int d = 0; d < 3; d++) sum += (a[d] - b[d]) * (a[d] - b[d]);
-  return sqrt(sum);
-}
-
 static void enclose(const target *t, int face) {
   const int  n    = t->topology->face_nodes;
   const int *node = face_nodes(t, face);
@@ -41,7 +36,7 @@ static void enclose(const target *t, int face) {
   for (int i = 0; i < n; i++)
     for (int d = 0; d < 3; d++) ball[d] += t->mesh->coordinates[3 * (size_t)node[i] + d] / n;
   for (int i = 0; i < n; i++)
-    ball[3] = fmax(ball[3], apart(ball, t->mesh->coordinates + 3 * (size_t)node[i]));
+    ball[3] = fmax(ball[3], vec3_distance(ball, t->mesh->coordinates + 3 * (size_t)node[i]));
 }
 
 /* Reference coordinates of a face's local node. */
@@ -57,7 +52,7 @@ static void look_up(const target *t, const double x[3], contact_place *best) {
   best->distance = INFINITY;
   for (int f = 0; f < t->set->n; f++) {
     mesh_triangle part[MESH_TRIANGLES];
-    if (apart(t->ball[f], x) - t->ball[f][3] >= best->distance) continue;
+    if (vec3_distance(t->ball[f], x) - t->ball[f][3] >= best->distance) continue;
     int n = mesh_triangles(t->mesh, face_nodes(t, f), part);
     for (int p = 0; p < n; p++) {
       double foot[3], weight[3], corner[2];
@@ -101,17 +96,14 @@ static void residual(const target *t, const double x[3], contact_place *p, doubl
   }
 }
 
-static double dot(const double a[3], const double b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* The nearest point of the curved face by Gauss and Newton: J^T J d = J^T (x - X). */
 static void settle(const target *t, const double x[3], contact_place *p) {
   double off[3], J[2][3];
   for (int i = 0; i < 30; i++) {
     residual(t, x, p, off, J);
-    double a = dot(J[0], J[0]), b = dot(J[0], J[1]), c = dot(J[1], J[1]), det = a * c - b * b;
-    double r = dot(J[0], off), s = dot(J[1], off), before[2] = {p->at[0], p->at[1]};
+    double a = vec3_dot(J[0], J[0]), b = vec3_dot(J[0], J[1]), c = vec3_dot(J[1], J[1]),
+           det = a * c - b * b;
+    double r = vec3_dot(J[0], off), s = vec3_dot(J[1], off), before[2] = {p->at[0], p->at[1]};
     if (!(det > 0)) break;
     p->at[0] += (c * r - b * s) / det;
     p->at[1] += (a * s - b * r) / det;
@@ -119,7 +111,7 @@ static void settle(const target *t, const double x[3], contact_place *p) {
     if (hypot(p->at[0] - before[0], p->at[1] - before[1]) < 1e-14) break;
   }
   residual(t, x, p, off, J);
-  p->distance = sqrt(dot(off, off));
+  p->distance = vec3_norm(off);
 }
 
 static double area(const mesh_fe *mesh, const mesh_face_set *set) {
@@ -131,7 +123,7 @@ static double area(const mesh_fe *mesh, const mesh_face_set *set) {
     for (int p = 0; p < n; p++) {
       double one[3];
       mesh_triangle_area(&part[p], one);
-      sum += sqrt(dot(one, one));
+      sum += vec3_norm(one);
     }
   }
   return sum;

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/vec3.h"
 #include "mesh/core/faces.h"
 #include "mesh/core/triangle.h"
 
@@ -54,22 +55,18 @@ static const int *face_nodes(const surface *s, int face) {
   return s->outer.nodes + s->topology->face_nodes * (size_t)face;
 }
 
-static double length(const double v[3]) {
-  return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
-
 /* How far a point is off the rule's plane or radius, m. */
 static double off(const surface *s, const mesh_rule *rule, const double x[3]) {
   if (rule->kind == MESH_RULE_PLANE) {
-    double sum = 0;
-    for (int d = 0; d < 3; d++) sum += rule->normal[d] * (x[d] - rule->at[d]);
-    return fabs(sum) / length(rule->normal);
+    double from[3];
+    vec3_minus(x, rule->at, from);
+    return fabs(vec3_dot(rule->normal, from)) / vec3_norm(rule->normal);
   }
-  double along[3], across[3], dot = 0;
-  mesh_axis_vector(s->axis, along);
-  for (int d = 0; d < 3; d++) dot += along[d] * x[d];
-  for (int d = 0; d < 3; d++) across[d] = x[d] - dot * along[d];
-  return fabs(length(across) - rule->radius);
+  double axial[3], across[3];
+  mesh_axis_vector(s->axis, axial);
+  const double along = vec3_dot(axial, x);
+  for (int d = 0; d < 3; d++) across[d] = x[d] - along * axial[d];
+  return fabs(vec3_norm(across) - rule->radius);
 }
 
 /* taken[face] = 1 where all nodes fit; *least: the greatest deviation of the face that fits best. */
@@ -116,7 +113,7 @@ static void face_normal(const surface *s, int face, double normal[3]) {
     mesh_triangle_area(&part[i], one);
     for (int d = 0; d < 3; d++) normal[d] += one[d];
   }
-  double size = length(normal);
+  double size = vec3_norm(normal);
   for (int d = 0; d < 3; d++) normal[d] /= size;
 }
 
@@ -125,7 +122,7 @@ static bool smooth(const surface *s, int a, int b) {
   double p[3], q[3];
   face_normal(s, a, p);
   face_normal(s, b, q);
-  return p[0] * q[0] + p[1] * q[1] + p[2] * q[2] > cos(MESH_RULE_EDGE);
+  return vec3_dot(p, q) > cos(MESH_RULE_EDGE);
 }
 
 /* Sides of all faces, sorted: the two of an edge are neighbours. NULL when out of memory. */
@@ -216,7 +213,7 @@ static shb_status apply_one(const surface *s, const mesh_rule *rule, int id, mes
     SHB_TRY(take_nearest(s, rule, id, taken));
   } else {
     double least;
-    SHB_CHECK(rule->kind != MESH_RULE_PLANE || length(rule->normal) > 0, SHB_ERR_INPUT,
+    SHB_CHECK(rule->kind != MESH_RULE_PLANE || vec3_norm(rule->normal) > 0, SHB_ERR_INPUT,
               "mesh.groups.%s.normal: has no direction", mesh_fe_set_name(s->mesh, id));
     SHB_CHECK(rule->tolerance <= MESH_RULE_WIDEST * s->extent, SHB_ERR_INPUT,
               "mesh.groups.%s.tolerance: %g m is too wide for the body of %s, which measures %.3g "

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "mesh/base/vec3.h"
 #include "mesh/gmsh/session.h"
 
 enum { GMSH_LINE = 1, GMSH_TRIANGLE = 2, MOST = 3000000, BYTES_EACH = 1500 };
@@ -50,7 +51,7 @@ static double measure(int dimension, int tag) {
   if (ierr) return 0;
   for (int d = 0; d < 3; d++) span[d] = high[d] - low[d];
   double xy = span[0] * span[1], yz = span[1] * span[2], zx = span[2] * span[0];
-  if (dimension == 1) return hypot(hypot(span[0], span[1]), span[2]);
+  if (dimension == 1) return vec3_norm(span);
   /* a face fills half of its box's largest side at least, or so */
   return dimension == 2 ? fmax(xy, fmax(yz, zx)) / 2 : 0;
 }
@@ -106,16 +107,13 @@ static shb_status corners(const char *path, int dimension, int tag, double **xyz
 
 /* Length of a line, area of a triangle; *cone: six times the volume between a triangle and the origin. */
 static double size_of(int dimension, const double *x, double *cone) {
-  double a[3], b[3] = {0}, c[3];
-  for (int d = 0; d < 3; d++) {
-    a[d] = x[3 + d] - x[d];
-    if (dimension == 2) b[d] = x[6 + d] - x[d];
-  }
-  if (dimension == 1) return hypot(hypot(a[0], a[1]), a[2]);
-  for (int d = 0; d < 3; d++)
-    c[d] = a[(d + 1) % 3] * b[(d + 2) % 3] - a[(d + 2) % 3] * b[(d + 1) % 3];
-  *cone += x[0] * c[0] + x[1] * c[1] + x[2] * c[2];
-  return hypot(hypot(c[0], c[1]), c[2]) / 2;
+  double a[3], b[3], c[3];
+  vec3_minus(x + 3, x, a);
+  if (dimension == 1) return vec3_norm(a);
+  vec3_minus(x + 6, x, b);
+  vec3_cross(a, b, c);
+  *cone += vec3_dot(x, c);
+  return vec3_norm(c) / 2;
 }
 
 /* Sum over an entity of the sizes, of size times element size h, and of the cones. */

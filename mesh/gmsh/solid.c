@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/vec3.h"
 #include "mesh/core/face_match.h"
 #include "mesh/core/file_format.h"
 #include "mesh/core/jacobian.h"
@@ -174,11 +175,11 @@ static void put_in_order(const patch *right, patch *left, mesh_axis axis, double
     int    best  = i;
     double least = INFINITY;
     for (int j = i; j < left->n; j++) {
-      double at[3], sum = 0;
+      double at[3];
       mesh_axis_rotate(axis, angle, left->centre[j], at);
-      for (int d = 0; d < 3; d++) sum += pow(at[d] - right->centre[i][d], 2);
-      if (sum < least) best = j;
-      least = fmin(least, sum);
+      const double distance = vec3_distance(at, right->centre[i]);
+      if (distance < least) best = j;
+      least = fmin(least, distance);
     }
     int swap        = left->tag[i];
     left->tag[i]    = left->tag[best];

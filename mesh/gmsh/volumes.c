@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/vec3.h"
 #include "mesh/core/regions.h"
 #include "mesh/core/triangle.h"
 #include "mesh/gmsh/session.h"
@@ -77,13 +78,11 @@ static double outside(const mesh_fe *mesh, int element, const double at[3]) {
     int           face[MESH_FACE_NODES];
     for (int i = 0; i < topology->face_nodes; i++) face[i] = nodes[topology->face[f][i]];
     for (int i = mesh_triangles(mesh, face, part) - 1; i >= 0; i--) {
-      double area[3], sum = 0, size = 0;
+      double area[3], from[3];
       mesh_triangle_area(&part[i], area);
-      for (int d = 0; d < 3; d++) {
-        sum += area[d] * (at[d] - part[i].x[0][d]);
-        size += area[d] * area[d];
-      }
-      if (size > 0) worst = fmax(worst, sum / sqrt(size));
+      vec3_minus(at, part[i].x[0], from);
+      const double size = vec3_norm(area);
+      if (size > 0) worst = fmax(worst, vec3_dot(area, from) / size);
     }
   }
   return worst;
