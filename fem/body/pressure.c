@@ -125,8 +125,8 @@ double fem_pressure_energy(const fem_body *body, const double *state, const doub
   return sum;
 }
 
-PetscErrorCode fem_pressure_balance(const fem_body *body, const double *u, double (*balance)[3],
-                                    double load[3]) {
+PetscErrorCode fem_pressure_unbalanced(const fem_body *body, const double *u,
+                                       double (*unbalanced)[3], double     load[3]) {
   const mesh_face_set *set = &body->mesh->set[MESH_LOAD];
   fem_face_rule        rule;
   PetscFunctionBeginUser;
@@ -136,7 +136,7 @@ PetscErrorCode fem_pressure_balance(const fem_body *body, const double *u, doubl
     face_at(body, face, u, x);
     fem_face_pressure(&rule, body->pressure, (const double(*)[3])x, f);
     for (int i = 0; i < 3 * rule.nodes; i++) {
-      balance[set->nodes[rule.nodes * face + i / 3]][i % 3] -= f[i / 3][i % 3];
+      unbalanced[set->nodes[rule.nodes * face + i / 3]][i % 3] -= f[i / 3][i % 3];
       load[i % 3] += f[i / 3][i % 3];
     }
   }

@@ -29,7 +29,7 @@ PetscErrorCode fem_pressure_tangent(const fem_body *body, const double *u, fem_s
 double fem_pressure_energy(const fem_body *body, const double *state, const double *u);
 
 /* balance -= f at all nodes, load += its resultant: [n_nodes][3], [3]. */
-PetscErrorCode fem_pressure_balance(const fem_body *body, const double *u, double (*balance)[3],
-                                    double load[3]);
+PetscErrorCode fem_pressure_unbalanced(const fem_body *body, const double *u,
+                                       double (*unbalanced)[3], double     load[3]);
 
 #endif

@@ -20,7 +20,7 @@ PetscErrorCode fem_nodal_stress(const fem_body *body, const double *u,
  * at free nodes; at clamped ones they are what the clamp exerts on the body.
  *   balance  out  [n_nodes][3]
  *   load     out  [3] resultant of the loads */
-PetscErrorCode fem_balance(const fem_body *body, const double *u, double (*balance)[3],
-                           double load[3]);
+PetscErrorCode fem_unbalanced_forces(const fem_body *body, const double *u, double (*unbalanced)[3],
+                                     double load[3]);
 
 #endif

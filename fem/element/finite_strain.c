@@ -28,7 +28,7 @@ static void anisotropic_stress(const fem_material *material, const double E[3][3
 }
 
 /* E from H, not from F^T F - I, which would lose the digits of small strains. */
-void fem_deform(const fem_material *material, const double H[3][3], fem_deformation *at) {
+void fem_deformation_at(const fem_material *material, const double H[3][3], fem_deformation *at) {
   const fem_lame lame = fem_lame_of(material);
   double         E[3][3], trace;
   for (int a = 0; a < 3; a++)
@@ -71,7 +71,7 @@ void fem_element_force(const fem_element *element, const fem_material *material,
     double          g[MESH_NODES][3], H[3][3], P[3][3], nodal[3];
     double          volume = rule->weight[p] * fem_element_gradient(element, rule, p, x, g);
     fem_displacement_gradient(element->n, (const double(*)[3])g, u, H);
-    fem_deform(material, (const double(*)[3])H, &at);
+    fem_deformation_at(material, (const double(*)[3])H, &at);
     multiply((const double(*)[3])at.F, (const double(*)[3])at.S, P);
     for (int i = 0; i < element->n; i++) {
       apply((const double(*)[3])P, g[i], nodal);
@@ -124,7 +124,7 @@ void fem_element_tangent(const fem_element *element, const fem_material *materia
     double          g[MESH_NODES][3], H[3][3];
     double          volume = rule->weight[p] * fem_element_gradient(element, rule, p, x, g);
     fem_displacement_gradient(element->n, (const double(*)[3])g, u, H);
-    fem_deform(material, (const double(*)[3])H, &at);
+    fem_deformation_at(material, (const double(*)[3])H, &at);
     if (material->anisotropic)
       add_anisotropic(element->n, material, volume, &at, (const double(*)[3])g, K);
     else if (element->n == 10)
@@ -167,7 +167,7 @@ double fem_element_stress(const fem_element *element, const fem_material *materi
     double          g[MESH_NODES][3], H[3][3], stress[6];
     fem_element_gradient(element, rule, p, x, g);
     fem_displacement_gradient(element->n, (const double(*)[3])g, u, H);
-    fem_deform(material, (const double(*)[3])H, &at);
+    fem_deformation_at(material, (const double(*)[3])H, &at);
     fem_cauchy(&at, stress);
     greatest = fmax(greatest, fem_von_mises(stress));
   }

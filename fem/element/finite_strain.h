@@ -20,7 +20,7 @@ typedef struct {
 /* H[a][d] = du_a/dX_d = sum_i u_i[a] g_i[d], free of rigid translation. */
 void fem_displacement_gradient(int n, const double g[][3], const double u[][3], double H[3][3]);
 
-void fem_deform(const fem_material *material, const double H[3][3], fem_deformation *at);
+void fem_deformation_at(const fem_material *material, const double H[3][3], fem_deformation *at);
 
 /* Internal forces of the nodes, N.  x, u in m. */
 void fem_element_force(const fem_element *element, const fem_material *material,

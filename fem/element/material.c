@@ -23,7 +23,7 @@ static bool invert(const double S[3][3], double C[3][3]) {
 }
 
 /* Stiffness in the material's own axes. The compliance is scaled by E1: determinants near 1. */
-static shb_status own_stiffness(const fem_orthotropic *from, double C[6][6]) {
+static shb_status stiffness_in_own_axes(const fem_orthotropic *from, double C[6][6]) {
   const double *E = from->E, *nu = from->nu, scale = E[0];
   double        S[3][3], normal[3][3];
   memset(C, 0, 36 * sizeof(double));
@@ -57,7 +57,7 @@ static shb_status find_axes(const fem_orthotropic *from, double axes[3][3]) {
 }
 
 /* c_ijkl = r_ai r_bj r_ck r_dl C_abcd for one (ij, kl). */
-static double turned(const double C[6][6], const double axes[3][3], int i, int j, int k, int l) {
+static double rotated(const double C[6][6], const double axes[3][3], int i, int j, int k, int l) {
   double sum = 0;
   for (int a = 0; a < 3; a++)
     for (int b = 0; b < 3; b++)
@@ -70,13 +70,13 @@ static double turned(const double C[6][6], const double axes[3][3], int i, int j
 shb_status fem_material_orthotropic(const fem_orthotropic *from, double rho, fem_material *out) {
   static const int pair[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
   double           C[6][6], axes[3][3];
-  SHB_TRY(own_stiffness(from, C));
+  SHB_TRY(stiffness_in_own_axes(from, C));
   SHB_TRY(find_axes(from, axes));
   *out = (fem_material){
       .E = fmax(from->E[0], fmax(from->E[1], from->E[2])), .rho = rho, .anisotropic = true};
   for (int p = 0; p < 6; p++)
     for (int q = p; q < 6; q++)
-      out->C[p][q] = out->C[q][p] = turned((const double(*)[6])C, (const double(*)[3])axes,
-                                           pair[p][0], pair[p][1], pair[q][0], pair[q][1]);
+      out->C[p][q] = out->C[q][p] = rotated((const double(*)[6])C, (const double(*)[3])axes,
+                                            pair[p][0], pair[p][1], pair[q][0], pair[q][1]);
   return SHB_OK;
 }

@@ -174,10 +174,10 @@ PetscErrorCode fem_cholesky_create(Mat A, bool *fits, fem_cholesky **out) {
   PetscFunctionReturn(0);
 }
 
-void fem_cholesky_foresee(const fem_cholesky *factor, double *kept, double *passing) {
+void fem_cholesky_bytes(const fem_cholesky *factor, double *factor_bytes, double *workspace) {
   const cholmod_factor *L = factor->L;
-  *kept                   = 8. * (double)L->xsize + 4. * (double)L->ssize;
-  *passing                = 8. * (double)L->maxcsize + 12. * factor->common.anz;
+  *factor_bytes           = 8. * (double)L->xsize + 4. * (double)L->ssize;
+  *workspace              = 8. * (double)L->maxcsize + 12. * factor->common.anz;
 }
 
 /* On one thread: CHOLMOD copies panels with four threads of OpenMP that wait for each other in between, which on a busy machine takes more processor
@@ -243,7 +243,7 @@ static PetscErrorCode make_room_for_few(fem_cholesky *factor) {
   PetscFunctionBeginUser;
   if (factor->few) PetscFunctionReturn(0);
   factor->few      = aligned_alloc(alignment, 3 * (size_t)factor->n * sizeof(fem_lanes));
-  factor->few_work = aligned_alloc(alignment, fem_supernodes_rows(factor->L) * sizeof(fem_lanes));
+  factor->few_work = aligned_alloc(alignment, fem_supernodal_rows(factor->L) * sizeof(fem_lanes));
   PetscCheck(factor->few && factor->few_work, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory");
   PetscFunctionReturn(0);
 }
@@ -259,7 +259,7 @@ static PetscErrorCode solve_few(fem_cholesky *factor, size_t count, const double
       fem_lanes *at = factor->few + 3 * (size_t)factor->place[i] + d;
       for (size_t c = 0; c < FEM_LANES; c++) (*at)[c] = c < count ? b[c * ldb + 3 * i + d] : 0;
     }
-  fem_supernodes_solve(factor->L, factor->few, factor->few_work);
+  fem_supernodal_solve(factor->L, factor->few, factor->few_work);
   for (size_t i = 0; i < n; i++)
     for (size_t d = 0; d < 3; d++) {
       const fem_lanes *at = factor->few + 3 * (size_t)factor->place[i] + d;

@@ -16,7 +16,7 @@ typedef struct fem_cholesky fem_cholesky;
 PetscErrorCode fem_cholesky_create(Mat A, bool *fits, fem_cholesky **out);
 
 /* Bytes of the factor, and of the work that making it takes beside. */
-void fem_cholesky_foresee(const fem_cholesky *factor, double *kept, double *passing);
+void fem_cholesky_bytes(const fem_cholesky *factor, double *factor_bytes, double *workspace);
 
 /* Factorise A, whose pattern is that of _create; again after its values have changed. *definite false: it is not
  * positive definite, and there is no factor. PETSC_ERR_MEM. */

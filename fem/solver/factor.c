@@ -10,7 +10,7 @@ struct fem_factor {
   MPI_Comm      comm;
   fem_cholesky *cholesky; /* NULL where MUMPS factorises */
   Mat           mumps;    /* NULL where CHOLMOD does */
-  double        foreseen; /* bytes, all ranks */
+  double        bytes;    /* bytes, all ranks */
 };
 
 static const double giga = 1e9;
@@ -32,7 +32,7 @@ static PetscErrorCode wants_mumps(MPI_Comm comm, bool *yes) {
 /* ------------------------------------------------------------------ memory */
 
 /* All ranks of a machine share what it has: the worst machine decides. mine: bytes that this rank will take. */
-static PetscErrorCode compare(MPI_Comm comm, double mine, double *needed, double *there) {
+static PetscErrorCode compare(MPI_Comm comm, double mine, double *needed, double *available) {
   MPI_Comm machine;
   struct {
     double margin;
@@ -41,15 +41,15 @@ static PetscErrorCode compare(MPI_Comm comm, double mine, double *needed, double
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_split_type(comm, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine));
   PetscCallMPI(MPI_Allreduce(&mine, needed, 1, MPI_DOUBLE, MPI_SUM, machine));
-  *there = fem_memory_available();
+  *available = fem_memory_available();
   PetscCallMPI(MPI_Comm_free(&machine));
-  own.margin = *there - *needed;
+  own.margin = *available - *needed;
   PetscCallMPI(MPI_Comm_rank(comm, &own.rank));
   PetscCallMPI(MPI_Allreduce(&own, &worst, 1, MPI_DOUBLE_INT, MPI_MINLOC, comm));
-  double both[2] = {*needed, *there};
+  double both[2] = {*needed, *available};
   PetscCallMPI(MPI_Bcast(both, 2, MPI_DOUBLE, worst.rank, comm));
-  *needed = both[0];
-  *there  = both[1];
+  *needed    = both[0];
+  *available = both[1];
   PetscFunctionReturn(0);
 }
 
@@ -60,15 +60,15 @@ static double nodes_that_fit(double nodes, double share) {
   return floor(fit / by) * by;
 }
 
-static PetscErrorCode check_memory(Mat A, double needed, double there) {
+static PetscErrorCode check_memory(Mat A, double needed, double available) {
   PetscInt order;
   PetscFunctionBeginUser;
   PetscCall(MatGetSize(A, &order, NULL));
-  PetscCheck(needed <= there, PetscObjectComm((PetscObject)A), PETSC_ERR_USER_INPUT,
+  PetscCheck(needed <= available, PetscObjectComm((PetscObject)A), PETSC_ERR_USER_INPUT,
              "the modes of this mesh (%d free nodes) need %.3g GB more memory, and %.3g GB are "
              "left; make a coarser mesh (about %.0f nodes fit), or use more machines (mpiexec)",
-             (int)(order / 3), needed / giga, there / giga,
-             nodes_that_fit((double)order / 3, there / needed));
+             (int)(order / 3), needed / giga, available / giga,
+             nodes_that_fit((double)order / 3, available / needed));
   PetscFunctionReturn(0);
 }
 
@@ -89,7 +89,7 @@ static PetscErrorCode analyse_mumps(fem_factor *factor, Mat A, double *mine) {
 
 static PetscErrorCode analyse(fem_factor *factor, Mat A, double *mine) {
   bool   mumps = false, fits = false;
-  double kept, passing;
+  double own, workspace;
   PetscFunctionBeginUser;
   PetscCall(wants_mumps(factor->comm, &mumps));
   if (!mumps) {
@@ -100,13 +100,13 @@ static PetscErrorCode analyse(fem_factor *factor, Mat A, double *mine) {
     PetscCall(analyse_mumps(factor, A, mine));
     PetscFunctionReturn(0);
   }
-  fem_cholesky_foresee(factor->cholesky, &kept, &passing);
-  *mine = kept + passing;
+  fem_cholesky_bytes(factor->cholesky, &own, &workspace);
+  *mine = own + workspace;
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode fem_factor_create(Mat A, double beside, fem_factor **out) {
-  double mine, needed, there;
+  double mine, needed, available;
   int    n_ranks;
 
   PetscFunctionBeginUser;
@@ -114,17 +114,17 @@ PetscErrorCode fem_factor_create(Mat A, double beside, fem_factor **out) {
   (*out)->comm = PetscObjectComm((PetscObject)A);
   PetscCallMPI(MPI_Comm_size((*out)->comm, &n_ranks));
   PetscCall(analyse(*out, A, &mine));
-  PetscCall(compare((*out)->comm, mine + beside / n_ranks, &needed, &there));
-  PetscCallMPI(MPI_Allreduce(&mine, &(*out)->foreseen, 1, MPI_DOUBLE, MPI_SUM, (*out)->comm));
-  PetscCall(check_memory(A, needed, there));
+  PetscCall(compare((*out)->comm, mine + beside / n_ranks, &needed, &available));
+  PetscCallMPI(MPI_Allreduce(&mine, &(*out)->bytes, 1, MPI_DOUBLE, MPI_SUM, (*out)->comm));
+  PetscCall(check_memory(A, needed, available));
   PetscFunctionReturn(0);
 }
 
-double fem_factor_foreseen(const fem_factor *factor) {
-  return factor->foreseen;
+double fem_factor_bytes(const fem_factor *factor) {
+  return factor->bytes;
 }
 
-const char *fem_factor_by(const fem_factor *factor) {
+const char *fem_factor_program(const fem_factor *factor) {
   return factor->cholesky ? "CHOLMOD" : "MUMPS";
 }
 
@@ -212,13 +212,13 @@ static PetscErrorCode apply_many(PC pc, Mat B, Mat X) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode fem_factor_serve(fem_factor *factor, PC pc) {
+PetscErrorCode fem_factor_set_pc(fem_factor *factor, PC pc) {
   PetscFunctionBeginUser;
   PetscCall(PCSetType(pc, PCSHELL));
   PetscCall(PCShellSetContext(pc, factor));
   PetscCall(PCShellSetApply(pc, apply));
   PetscCall(PCShellSetMatApply(pc, apply_many));
-  PetscCall(PCShellSetName(pc, fem_factor_by(factor)));
+  PetscCall(PCShellSetName(pc, fem_factor_program(factor)));
   PetscFunctionReturn(0);
 }
 

@@ -27,11 +27,11 @@ PetscErrorCode fem_factor_solve(fem_factor *factor, Vec b, Vec x);
 PetscErrorCode fem_factor_solve_many(fem_factor *factor, Mat B, Mat X);
 
 /* Make pc apply the factor, one vector or many; the factor must outlive it. */
-PetscErrorCode fem_factor_serve(fem_factor *factor, PC pc);
+PetscErrorCode fem_factor_set_pc(fem_factor *factor, PC pc);
 
 /* Bytes of the factor and of its making, all ranks, known from the analysis; who factorises. */
-double      fem_factor_foreseen(const fem_factor *factor);
-const char *fem_factor_by(const fem_factor *factor);
+double      fem_factor_bytes(const fem_factor *factor);
+const char *fem_factor_program(const fem_factor *factor);
 
 PetscErrorCode fem_factor_destroy(fem_factor **factor); /* NULL: nothing */
 

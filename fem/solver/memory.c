@@ -6,7 +6,7 @@
 #include <sys/resource.h>
 
 /* The number after "name" in a file of lines "name number kB"; bytes; infinite if there is none. */
-static double line_of(const char *path, const char *name) {
+static double kilobytes_of(const char *path, const char *name) {
   char   line[256];
   double value = INFINITY, read;
   FILE  *file  = fopen(path, "r");
@@ -41,7 +41,7 @@ static double reclaimable(const char *folder) {
   return value;
 }
 
-static double left_in(const char *folder, const char *limit, const char *usage) {
+static double left_in_group(const char *folder, const char *limit, const char *usage) {
   const double most = number_of(folder, limit), used = number_of(folder, usage);
   return isfinite(most) && isfinite(used) ? fmax(most - used + reclaimable(folder), 0) : INFINITY;
 }
@@ -53,7 +53,7 @@ static double left_in_tree(const char *root, const char *path, const char *limit
   double least = INFINITY;
   snprintf(folder, sizeof folder, "%s%s", root, strcmp(path, "/") == 0 ? "" : path);
   for (;;) {
-    least       = fmin(least, left_in(folder, limit, usage));
+    least       = fmin(least, left_in_group(folder, limit, usage));
     char *slash = strrchr(folder, '/');
     if (!slash || strlen(folder) <= strlen(root)) return least;
     *slash = 0;
@@ -81,12 +81,13 @@ static double left_in_groups(void) {
 /* Of ulimit -v. */
 static double left_to_address(void) {
   struct rlimit limit;
-  double        used = line_of("/proc/self/status", "VmSize:");
+  double        used = kilobytes_of("/proc/self/status", "VmSize:");
   if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY || !isfinite(used))
     return INFINITY;
   return fmax((double)limit.rlim_cur - used, 0);
 }
 
 double fem_memory_available(void) {
-  return fmin(fmin(line_of("/proc/meminfo", "MemAvailable:"), left_in_groups()), left_to_address());
+  return fmin(fmin(kilobytes_of("/proc/meminfo", "MemAvailable:"), left_in_groups()),
+              left_to_address());
 }

@@ -18,7 +18,7 @@ KERNEL supernode get(const cholmod_factor *L, size_t s) {
                      (const double *)L->x + px[s]};
 }
 
-size_t fem_supernodes_rows(const cholmod_factor *L) {
+size_t fem_supernodal_rows(const cholmod_factor *L) {
   size_t most = 1;
   for (size_t s = 0; s < L->nsuper; s++) {
     size_t rows = (size_t)get(L, s).rows;
@@ -86,7 +86,7 @@ KERNEL void backward(const supernode *s, fem_lanes *w) {
   }
 }
 
-HOT void fem_supernodes_solve(const cholmod_factor *L, fem_lanes *x, fem_lanes *work) {
+HOT void fem_supernodal_solve(const cholmod_factor *L, fem_lanes *x, fem_lanes *work) {
   for (size_t k = 0; k < L->nsuper; k++) {
     const supernode s = get(L, k);
     for (int i = 0; i < s.rows; i++) work[i] = x[s.row[i]];

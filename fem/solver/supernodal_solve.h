@@ -14,12 +14,12 @@ enum { FEM_LANES = 4 };
 typedef double fem_lanes __attribute__((vector_size(8 * FEM_LANES)));
 
 /* Rows of the largest supernode. */
-size_t fem_supernodes_rows(const cholmod_factor *L);
+size_t fem_supernodal_rows(const cholmod_factor *L);
 
 /* L L^T x = b in place, in the factor's order.
  *   L     in      supernodal, numeric, int
  *   x     in/out  [n]
- *   work          [fem_supernodes_rows] */
-void fem_supernodes_solve(const cholmod_factor *L, fem_lanes *x, fem_lanes *work);
+ *   work          [fem_supernodal_rows] */
+void fem_supernodal_solve(const cholmod_factor *L, fem_lanes *x, fem_lanes *work);
 
 #endif

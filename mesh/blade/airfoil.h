@@ -31,8 +31,8 @@ mesh_section mesh_airfoil_at(const mesh_blade *blade, double radius);
 double mesh_airfoil_chord(const mesh_blade *blade); /* greatest, m */
 
 /* Radii at which the lofted solid begins (inside the root block) and ends (inside the shroud). */
-double mesh_airfoil_begin(const mesh_blade *blade);
-double mesh_airfoil_end(const mesh_blade *blade);
+double mesh_airfoil_low_radius(const mesh_blade *blade);
+double mesh_airfoil_high_radius(const mesh_blade *blade);
 
 /* SHB_ERR_INPUT for sections that are not an airfoil, in words of the case. */
 shb_status mesh_airfoil_check(const mesh_blade *blade);

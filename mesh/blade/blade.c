@@ -18,7 +18,7 @@
 #include "mesh/gmsh/import.h"
 #include "mesh/gmsh/session.h"
 
-static const char *const who = "mesh.blade";
+static const char *const case_key = "mesh.blade";
 
 static shb_status check_root(const mesh_blade *blade) {
   const struct {
@@ -43,23 +43,23 @@ static shb_status check_root(const mesh_blade *blade) {
 
 /* The block must hold the airfoil's foot, with 2 % to spare all round. */
 static shb_status check_foot(const mesh_blade *blade) {
-  double radius[2] = {blade->section[0].radius, mesh_airfoil_begin(blade)}, reach[2] = {0, 0};
+  double radius[2] = {blade->section[0].radius, mesh_airfoil_low_radius(blade)}, extent[2] = {0, 0};
   for (int k = 0; k < 2; k++) {
     mesh_section section = mesh_airfoil_at(blade, radius[k]);
     mesh_outline outline;
     mesh_airfoil_outline(blade, &section, &outline);
     for (int i = 0; i < MESH_AIRFOIL_POINTS; i++)
       for (int d = 0; d < 2; d++) {
-        reach[d] = fmax(reach[d], fabs(outline.suction[i][d]));
-        reach[d] = fmax(reach[d], fabs(outline.pressure[i][d]));
+        extent[d] = fmax(extent[d], fabs(outline.suction[i][d]));
+        extent[d] = fmax(extent[d], fabs(outline.pressure[i][d]));
       }
   }
-  SHB_CHECK(reach[1] <= 0.49 * blade->root_length, SHB_ERR_INPUT,
+  SHB_CHECK(extent[1] <= 0.49 * blade->root_length, SHB_ERR_INPUT,
             "mesh.blade.root.length: %g mm does not hold the first section; give at least %.4g mm",
-            1e3 * blade->root_length, 1e3 * reach[1] / 0.49);
-  SHB_CHECK(reach[0] <= 0.49 * blade->root_width, SHB_ERR_INPUT,
+            1e3 * blade->root_length, 1e3 * extent[1] / 0.49);
+  SHB_CHECK(extent[0] <= 0.49 * blade->root_width, SHB_ERR_INPUT,
             "mesh.blade.root.width: %g mm does not hold the first section; give at least %.4g mm",
-            1e3 * blade->root_width, 1e3 * reach[0] / 0.49);
+            1e3 * blade->root_width, 1e3 * extent[0] / 0.49);
   return SHB_OK;
 }
 
@@ -100,7 +100,7 @@ static shb_status check(const mesh_blade *blade) {
 static shb_status build_root(const mesh_blade *blade, const mesh_frame *frame, int *volume) {
   double l = blade->root_length / 2, w = blade->root_width / 2, top = blade->section[0].radius;
   double own[2][3] = {{-w, -l, top - blade->root_height}, {w, l, top}}, at[2][3], low[3], span[3];
-  for (int i = 0; i < 2; i++) mesh_frame_out(frame, own[i], at[i]);
+  for (int i = 0; i < 2; i++) mesh_frame_to_mesh(frame, own[i], at[i]);
   for (int d = 0; d < 3; d++) {
     low[d]  = fmin(at[0][d], at[1][d]);
     span[d] = fabs(at[1][d] - at[0][d]);
@@ -119,8 +119,8 @@ static shb_status fuse(int airfoil, int root, const int shroud[MESH_SHROUD_LEGS]
     tools[2 * i + 2] = 3;
     tools[2 * i + 3] = shroud[i];
   }
-  GMSH_TRY(who, gmshModelOccFuse(object, 2, tools, 2 * MESH_SHROUD_LEGS + 2, &made, &n_made, &map,
-                                 &n_map, &nn_map, -1, 1, 1, &ierr));
+  GMSH_TRY(case_key, gmshModelOccFuse(object, 2, tools, 2 * MESH_SHROUD_LEGS + 2, &made, &n_made,
+                                      &map, &n_map, &nn_map, -1, 1, 1, &ierr));
   int solids = 0;
   for (size_t i = 0; i + 1 < n_made; i += 2) {
     if (made[i] != 3) continue;
@@ -141,10 +141,10 @@ static shb_status prune(void) {
   for (int dimension = 2; dimension >= 0; dimension--) {
     int   *tags = NULL, fault = 0;
     size_t n = 0;
-    GMSH_TRY(who, gmshModelGetEntities(&tags, &n, dimension, &ierr));
+    GMSH_TRY(case_key, gmshModelGetEntities(&tags, &n, dimension, &ierr));
     gmshModelRemoveEntities(tags, n, 0, &fault); /* keeps those on the boundary of others */
     gmshFree(tags);
-    if (fault) return mesh_kernel_fail(SHB_ERR_INPUT, __FILE__, __LINE__, who);
+    if (fault) return mesh_session_fail(SHB_ERR_INPUT, __FILE__, __LINE__, case_key);
   }
   return SHB_OK;
 }
@@ -155,9 +155,9 @@ static shb_status build(const mesh_blade *blade, const mesh_frame *frame) {
   SHB_TRY(build_root(blade, frame, &root));
   SHB_TRY(mesh_shroud_build(blade, frame, shroud));
   SHB_TRY(fuse(airfoil, root, shroud, &volume));
-  GMSH_TRY(who, gmshModelOccSynchronize(&ierr));
+  GMSH_TRY(case_key, gmshModelOccSynchronize(&ierr));
   SHB_TRY(prune());
-  return mesh_groups_set(blade, frame, volume);
+  return mesh_face_groups_set(blade, frame, volume);
 }
 
 /* What the size callback needs. */
@@ -209,7 +209,7 @@ static shb_status set_options(void) {
                 /* joining faces that lie on one surface would merge the legs of a straight Z */
                 {"Geometry.OCCUnionUnify", 0}};
   for (size_t i = 0; i < sizeof option / sizeof *option; i++)
-    GMSH_TRY(who, gmshOptionSetNumber(option[i].name, option[i].value, &ierr));
+    GMSH_TRY(case_key, gmshOptionSetNumber(option[i].name, option[i].value, &ierr));
   return SHB_OK;
 }
 
@@ -217,7 +217,7 @@ static shb_status set_options(void) {
 static shb_status check_filled(const mesh_blade *blade) {
   int   *types = NULL;
   size_t n     = 0;
-  GMSH_TRY(who, gmshModelMeshGetElementTypes(&types, &n, 3, -1, &ierr));
+  GMSH_TRY(case_key, gmshModelMeshGetElementTypes(&types, &n, 3, -1, &ierr));
   gmshFree(types);
   SHB_CHECK(n > 0, SHB_ERR_INPUT,
             "mesh.blade.size: gmsh cannot fill the blade with tetrahedra of %g mm: faces cross at "
@@ -230,16 +230,16 @@ static shb_status mesh_volume(const mesh_blade *blade, const mesh_frame *frame,
                               shb_progress *progress) {
   sizing s = {.blade = blade};
   mesh_axis_stacking(frame->axis, s.radial);
-  GMSH_TRY(who, gmshModelMeshSetSizeCallback(element_size, &s, &ierr));
+  GMSH_TRY(case_key, gmshModelMeshSetSizeCallback(element_size, &s, &ierr));
   for (int dimension = 1; dimension <= 3; dimension++) {
     shb_progress_show(progress, 25 * dimension, "meshing %s",
                       (const char *[]){"curves", "faces", "the volume"}[dimension - 1]);
-    GMSH_TRY(who, gmshModelMeshGenerate(dimension, &ierr));
+    GMSH_TRY(case_key, gmshModelMeshGenerate(dimension, &ierr));
     SHB_CHECK(!shb_interrupted(), SHB_INTERRUPTED, "interrupted while meshing; nothing written");
   }
-  GMSH_TRY(who, gmshModelMeshRemoveSizeCallback(&ierr));
+  GMSH_TRY(case_key, gmshModelMeshRemoveSizeCallback(&ierr));
   SHB_TRY(check_filled(blade));
-  GMSH_TRY(who, gmshModelMeshSetOrder(2, &ierr));
+  GMSH_TRY(case_key, gmshModelMeshSetOrder(2, &ierr));
   return SHB_OK;
 }
 
@@ -247,8 +247,9 @@ static shb_status mesh_volume(const mesh_blade *blade, const mesh_frame *frame,
 static shb_status move_nodes(const mesh_fe *mesh, const char *moved) {
   for (int i = 0; i < mesh->n_nodes; i++)
     if (moved[i])
-      GMSH_TRY(who, gmshModelMeshSetNode((size_t)mesh->node_tag[i],
-                                         mesh->coordinates + 3 * (size_t)i, 3, NULL, 0, &ierr));
+      GMSH_TRY(case_key,
+               gmshModelMeshSetNode((size_t)mesh->node_tag[i], mesh->coordinates + 3 * (size_t)i, 3,
+                                    NULL, 0, &ierr));
   return SHB_OK;
 }
 
@@ -300,9 +301,9 @@ static shb_status straighten(const mesh_blade *blade, mesh_fe *mesh, shb_progres
   return status;
 }
 
-static void note_corner(const mesh_fe *mesh, shb_progress *progress) {
+static void note_worst_corner(const mesh_fe *mesh, shb_progress *progress) {
   double       x[3];
-  const double sine = mesh_jacobian_sharpest(mesh, x);
+  const double sine = mesh_jacobian_worst_corner(mesh, x);
   shb_progress_note(progress,
                     "sharpest corner of an element %.2g of a right one, at %.4g %.4g %.4g mm", sine,
                     1e3 * x[0], 1e3 * x[1], 1e3 * x[2]);
@@ -332,14 +333,14 @@ static shb_status make(const mesh_blade *blade, const char *path, const shb_prov
   mesh_frame frame = mesh_frame_at(blade->axis);
   mesh_fe    mesh  = {0};
   SHB_TRY(set_options());
-  SHB_TRY(blade->elements == MESH_HEX20 ? mesh_sweep_build(blade, &frame, progress)
+  SHB_TRY(blade->elements == MESH_HEX20 ? mesh_hex_sweep_build(blade, &frame, progress)
                                         : fill(blade, &frame, progress));
-  SHB_TRY(mesh_import(who, NULL, &mesh));
+  SHB_TRY(mesh_import(case_key, NULL, &mesh));
   shb_status status = verify(blade, &mesh, progress);
   if (status == SHB_OK)
     shb_progress_phase(progress, "mesh", "%d nodes, %d elements, %d contact faces a side",
                        mesh.n_nodes, mesh.n_elements, mesh.set[MESH_CONTACT_RIGHT].n);
-  if (status == SHB_OK) note_corner(&mesh, progress);
+  if (status == SHB_OK) note_worst_corner(&mesh, progress);
   mesh_fe_free(&mesh);
   SHB_TRY(status);
   SHB_TRY(mesh_export(path, provenance));
@@ -350,10 +351,10 @@ static shb_status make(const mesh_blade *blade, const char *path, const shb_prov
 shb_status mesh_blade_write(const mesh_blade *blade, const char *path,
                             const shb_provenance *provenance, shb_progress *progress) {
   SHB_TRY(check(blade));
-  mesh_kernel kernel;
-  SHB_TRY(mesh_kernel_open(&kernel));
+  mesh_session session;
+  SHB_TRY(mesh_session_open(&session));
   shb_status status = make(blade, path, provenance, progress);
-  mesh_kernel_close(&kernel);
+  mesh_session_close(&session);
   shb_progress_clear(progress);
   return status;
 }

@@ -7,11 +7,11 @@
 
 /* What a section may be: thickness and camber in per cent of the chord, twist in degrees either way. */
 enum {
-  MESH_MAX_SECTIONS    = 16,
-  MESH_LEAST_THICKNESS = 1,
-  MESH_MOST_THICKNESS  = 50,
-  MESH_MOST_CAMBER     = 40,
-  MESH_MOST_TWIST      = 80
+  MESH_MAX_SECTIONS  = 16,
+  MESH_MIN_THICKNESS = 1,
+  MESH_MAX_THICKNESS = 50,
+  MESH_MAX_CAMBER    = 40,
+  MESH_MAX_TWIST     = 80
 };
 
 /* Airfoil section at a radius; lengths in m, twist in rad (stagger of the chord from the axial direction,

@@ -9,9 +9,9 @@
 /* Name the physical groups root, contact_right, contact_left, load and body on gmsh's current model (one
  * volume), and make each leg of the shroud's right side a periodic copy of the left one.
  * SHB_ERR_INPUT if a face is not found exactly once: the parts of the blade cut into each other. */
-shb_status mesh_groups_set(const mesh_blade *blade, const mesh_frame *frame, int volume);
+shb_status mesh_face_groups_set(const mesh_blade *blade, const mesh_frame *frame, int volume);
 
 /* A physical group of one entity. */
-shb_status mesh_groups_name(int dimension, int entity, const char *name);
+shb_status mesh_face_groups_name(int dimension, int entity, const char *name);
 
 #endif

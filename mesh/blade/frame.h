@@ -14,11 +14,11 @@ typedef struct {
 mesh_frame mesh_frame_at(mesh_axis axis);
 
 /* own (tangential, axial, radial) to mesh axes, and back. */
-void mesh_frame_out(const mesh_frame *frame, const double own[3], double at[3]);
-void mesh_frame_own(const mesh_frame *frame, const double at[3], double own[3]);
+void mesh_frame_to_mesh(const mesh_frame *frame, const double own[3], double at[3]);
+void mesh_frame_to_own(const mesh_frame *frame, const double at[3], double own[3]);
 
 /* own turned by angle (rad) about the engine axis, still in own coordinates; out may be own. */
-void mesh_frame_turn(double angle, const double own[3], double out[3]);
+void mesh_frame_rotate(double angle, const double own[3], double out[3]);
 
 /* A point of gmsh's OpenCASCADE model at own. */
 shb_status mesh_frame_add_point(const mesh_frame *frame, const double own[3], int *tag);

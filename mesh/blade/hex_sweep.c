@@ -20,9 +20,9 @@ enum { ROOT, AIRFOIL, SHROUD, PARTS };
 
 /* A part of the blade: a plan swept through layers. */
 typedef struct {
-  const mesh_plan *plan;
-  mesh_layers      layers;
-  int             *id; /* [2 layers + 1][plan nodes] node, -1: none */
+  const mesh_planar *plan;
+  mesh_layers        layers;
+  int               *id; /* [2 layers + 1][plan nodes] node, -1: none */
 } part;
 
 typedef struct {
@@ -30,7 +30,7 @@ typedef struct {
   mesh_loft           loft;
   mesh_section_place *place;  /* [section nodes] */
   double             *height; /* [section nodes] radial extent of the airfoil there, m */
-  mesh_plan           section, root_plan, shroud_plan;
+  mesh_planar         section, root_plan, shroud_plan;
   part                parts[PARTS];
   mesh_fe             mesh; /* what is made; sets in order */
 } sweep;
@@ -74,7 +74,7 @@ static shb_status point_at(const sweep *s, int which, int node, double share, do
     return section_point(s, node, blade->section[0].radius + share * s->height[node], own);
   const double *at = s->parts[which].plan->at[node];
   if (which == SHROUD) {
-    mesh_shroud_point(blade, at, share, own);
+    mesh_shroud_roll_up(blade, at, share, own);
     return SHB_OK;
   }
   own[0] = at[0];
@@ -106,7 +106,7 @@ static int parts_of(const double a[2], const double b[2], double size) {
 /* Where the section lies close to the outline, elements of this size can be slivers: other meshes, of triangles and smaller
  * ones, are tried, and the best is kept. */
 static shb_status plan_outline(const sweep *s, int n, const double (*corner)[2], double size,
-                               const char *what, mesh_plan *plan) {
+                               const char *what, mesh_planar *plan) {
   static const struct {
     double share; /* of the size */
     bool   recombine;
@@ -116,12 +116,13 @@ static shb_status plan_outline(const sweep *s, int n, const double (*corner)[2],
   double       best = -2;
   for (size_t t = 0; t < sizeof way / sizeof *way && best < good; t++) {
     const double here = way[t].share * size;
-    mesh_plan    next = {0};
+    mesh_planar  next = {0};
     int          parts[2 * (MESH_SHROUD_LEGS + 1)];
     for (int i = 0; i < n; i++) parts[i] = parts_of(corner[i], corner[(i + 1) % n], here);
-    SHB_TRY(mesh_plan_outline(&s->section, n, corner, parts, here, way[t].recombine, what, &next));
-    const double worst = mesh_plan_worst(&next);
-    mesh_plan_free(worst > best ? plan : &next);
+    SHB_TRY(mesh_section_outline_create(&s->section, n, corner, parts, here, way[t].recombine, what,
+                                        &next));
+    const double worst = mesh_planar_least_sine(&next);
+    mesh_planar_free(worst > best ? plan : &next);
     if (worst > best) *plan = next;
     best = fmax(best, worst);
   }
@@ -136,7 +137,7 @@ static shb_status make_root_plan(sweep *s) {
     SHB_TRY(section_point(s, i, s->blade->section[0].radius, own));
     memcpy(s->section.at[i], own, sizeof s->section.at[i]);
   }
-  mesh_plan_orient(&s->section);
+  mesh_section_mesh_orient(&s->section);
   return plan_outline(s, 4, corner, s->blade->size, "mesh.blade.root", &s->root_plan);
 }
 
@@ -147,7 +148,7 @@ static shb_status make_shroud_plan(sweep *s) {
   for (int i = 0; i < s->section.n_nodes; i++) {
     double own[3];
     SHB_TRY(find_height(s, i, own));
-    mesh_shroud_plan(s->blade, own, s->section.at[i]);
+    mesh_shroud_unroll(s->blade, own, s->section.at[i]);
   }
   return plan_outline(s, 2 * (MESH_SHROUD_LEGS + 1), (const double(*)[2])corner, size,
                       "mesh.blade.shroud", &s->shroud_plan);
@@ -155,7 +156,7 @@ static shb_status make_shroud_plan(sweep *s) {
 
 static shb_status make_plans(sweep *s) {
   mesh_section_grid grid = section_grid(s->blade);
-  SHB_TRY(mesh_plan_section(&grid, &s->section, &s->place));
+  SHB_TRY(mesh_section_mesh_create(&grid, &s->section, &s->place));
   s->height = calloc((size_t)s->section.n_nodes, sizeof *s->height);
   SHB_CHECK(s->height, SHB_ERR_IO, "no memory for the airfoil's mesh");
   SHB_TRY(make_root_plan(s));
@@ -167,10 +168,10 @@ static shb_status make_plans(sweep *s) {
 /* Thin layers on both sides of the re-entrant edges, where the airfoil meets root and shroud. (At the clamp they gained less
  * than 1e-4 of a frequency, for root blocks of 4 to 18 mm.) The shroud bends as a plate: two layers for one size. */
 static shb_status prepare_parts(sweep *s) {
-  const mesh_blade *blade = s->blade;
-  const double      size = blade->size, fine = blade->shroud_size > 0 ? blade->shroud_size : size;
-  const double      span = blade->section[blade->n_sections - 1].radius - blade->section[0].radius;
-  const mesh_plan  *plan[PARTS] = {&s->root_plan, &s->section, &s->shroud_plan};
+  const mesh_blade  *blade = s->blade;
+  const double       size = blade->size, fine = blade->shroud_size > 0 ? blade->shroud_size : size;
+  const double       span = blade->section[blade->n_sections - 1].radius - blade->section[0].radius;
+  const mesh_planar *plan[PARTS] = {&s->root_plan, &s->section, &s->shroud_plan};
   mesh_layers_make(blade->root_height, size, 0, 1, &s->parts[ROOT].layers);
   mesh_layers_make(span, size, 1, 1, &s->parts[AIRFOIL].layers);
   mesh_layers_make(blade->shroud_thickness, fine / 2, 1, 0, &s->parts[SHROUD].layers);
@@ -206,7 +207,7 @@ static shb_status make_level(sweep *s, int which, int level, const int *known, i
       double own[3];
       SHB_TRY(point_at(s, which, node, p->layers.at[level], own));
       id[node] = s->mesh.n_nodes++;
-      mesh_frame_out(&s->loft.frame, own, s->mesh.coordinates + 3 * (size_t)id[node]);
+      mesh_frame_to_mesh(&s->loft.frame, own, s->mesh.coordinates + 3 * (size_t)id[node]);
     }
   return SHB_OK;
 }
@@ -233,11 +234,11 @@ static shb_status make_nodes(sweep *s, shb_progress *progress) {
 
 /* A hexahedron's nodes by their level in the layer and their place in the quadrangle. */
 static void hexahedron(const part *p, int layer, const int *quad, int nodes[MESH_NODES]) {
-  static const int where[MESH_NODES][2] = {{0, 0}, {0, 1}, {0, 2}, {0, 3}, {2, 0}, {2, 1}, {2, 2},
+  static const int local[MESH_NODES][2] = {{0, 0}, {0, 1}, {0, 2}, {0, 3}, {2, 0}, {2, 1}, {2, 2},
                                            {2, 3}, {0, 4}, {0, 7}, {1, 0}, {0, 5}, {1, 1}, {0, 6},
                                            {1, 2}, {1, 3}, {2, 4}, {2, 7}, {2, 5}, {2, 6}};
   for (int i = 0; i < MESH_NODES; i++)
-    nodes[i] = level_of(p, 2 * layer + where[i][0])[quad[where[i][1]]];
+    nodes[i] = level_of(p, 2 * layer + local[i][0])[quad[local[i][1]]];
 }
 
 /* The group that the face above a quadrangle's side belongs to, or MESH_N_SETS. */
@@ -300,7 +301,7 @@ static shb_status put_elements(int entity, int type, int each, int n, const int 
   free(tag);
   free(node);
   SHB_CHECK(complete, SHB_ERR_IO, "no memory for the blade's mesh");
-  if (ierr) return mesh_kernel_fail(SHB_ERR_INPUT, __FILE__, __LINE__, "mesh.blade");
+  if (ierr) return mesh_session_fail(SHB_ERR_INPUT, __FILE__, __LINE__, "mesh.blade");
   return SHB_OK;
 }
 
@@ -312,11 +313,11 @@ static shb_status put_nodes(const mesh_fe *mesh) {
   for (size_t i = 0; i < n; i++) tag[i] = i + 1;
   gmshModelMeshAddNodes(3, 1, tag, n, mesh->coordinates, 3 * n, NULL, 0, &ierr);
   free(tag);
-  if (ierr) return mesh_kernel_fail(SHB_ERR_INPUT, __FILE__, __LINE__, "mesh.blade");
+  if (ierr) return mesh_session_fail(SHB_ERR_INPUT, __FILE__, __LINE__, "mesh.blade");
   return SHB_OK;
 }
 
-static shb_status put(const mesh_fe *mesh) {
+static shb_status put_mesh(const mesh_fe *mesh) {
   const mesh_topology *topology = mesh_topology_of(MESH_HEX20);
   size_t               next     = 1;
   GMSH_TRY("mesh.blade", gmshModelAddDiscreteEntity(3, 1, NULL, 0, &ierr));
@@ -326,11 +327,11 @@ static shb_status put(const mesh_fe *mesh) {
     SHB_TRY(put_elements(g + 1, topology->gmsh_face, topology->face_nodes, mesh->set[g].n,
                          mesh->set[g].nodes, next));
     next += (size_t)mesh->set[g].n;
-    SHB_TRY(mesh_groups_name(2, g + 1, mesh_set_name((mesh_set_id)g)));
+    SHB_TRY(mesh_face_groups_name(2, g + 1, mesh_set_name((mesh_set_id)g)));
   }
   SHB_TRY(
       put_elements(1, topology->gmsh, topology->nodes, mesh->n_elements, mesh->connectivity, next));
-  return mesh_groups_name(3, 1, "body");
+  return mesh_face_groups_name(3, 1, "body");
 }
 
 static shb_status make(sweep *s, shb_progress *progress) {
@@ -341,7 +342,7 @@ static shb_status make(sweep *s, shb_progress *progress) {
 }
 
 /* The loft has a model of its own, so that the mesh alone is left in the current one. */
-static shb_status make_beside(sweep *s, const mesh_frame *frame, shb_progress *progress) {
+static shb_status make_in_model(sweep *s, const mesh_frame *frame, shb_progress *progress) {
   char *current = NULL;
   GMSH_TRY("mesh.blade", gmshModelGetCurrent(&current, &ierr));
   int ierr = 0;
@@ -354,16 +355,16 @@ static shb_status make_beside(sweep *s, const mesh_frame *frame, shb_progress *p
   return status;
 }
 
-shb_status mesh_sweep_build(const mesh_blade *blade, const mesh_frame *frame,
-                            shb_progress *progress) {
+shb_status mesh_hex_sweep_build(const mesh_blade *blade, const mesh_frame *frame,
+                                shb_progress *progress) {
   sweep *s = calloc(1, sizeof *s);
   SHB_CHECK(s, SHB_ERR_IO, "no memory for the blade's mesh");
   s->blade          = blade;
-  shb_status status = make_beside(s, frame, progress);
-  if (status == SHB_OK) status = put(&s->mesh);
-  mesh_plan_free(&s->section);
-  mesh_plan_free(&s->root_plan);
-  mesh_plan_free(&s->shroud_plan);
+  shb_status status = make_in_model(s, frame, progress);
+  if (status == SHB_OK) status = put_mesh(&s->mesh);
+  mesh_planar_free(&s->section);
+  mesh_planar_free(&s->root_plan);
+  mesh_planar_free(&s->shroud_plan);
   for (int p = 0; p < PARTS; p++) free(s->parts[p].id);
   free(s->place);
   free(s->height);

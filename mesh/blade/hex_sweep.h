@@ -11,7 +11,7 @@
  * solid is the one that mesh/blade/blade.c fuses for tetrahedra: the airfoil is OpenCASCADE's loft between root block and
  * shroud. A gmsh session must be open and blade be checked.
  * Errors: SHB_ERR_INPUT what gmsh cannot build or mesh; SHB_ERR_IO; SHB_INTERRUPTED. */
-shb_status mesh_sweep_build(const mesh_blade *blade, const mesh_frame *frame,
-                            shb_progress *progress);
+shb_status mesh_hex_sweep_build(const mesh_blade *blade, const mesh_frame *frame,
+                                shb_progress *progress);
 
 #endif

@@ -6,7 +6,7 @@ static const double thin[2] = {.08, .30};
 
 void mesh_layers_make(double length, double size, int thin_low, int thin_high,
                       mesh_layers *layers) {
-  const double most = MESH_MOST_LAYERS - 4, wanted = fmax(1, round(length / size));
+  const double most = MESH_MAX_LAYERS - 4, wanted = fmax(1, round(length / size));
   const int    n  = (int)fmin(most, wanted);
   double      *at = layers->at;
   int          k  = 0;

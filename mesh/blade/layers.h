@@ -2,11 +2,11 @@
 #ifndef MESH_BLADE_LAYERS_H
 #define MESH_BLADE_LAYERS_H
 
-enum { MESH_MOST_LAYERS = 4000 };
+enum { MESH_MAX_LAYERS = 4000 };
 
 typedef struct {
   int    n; /* layers */
-  double at[2 * MESH_MOST_LAYERS +
+  double at[2 * MESH_MAX_LAYERS +
             1]; /* shares of the length: ends and middles of the layers, 0 to 1 */
 } mesh_layers;
 

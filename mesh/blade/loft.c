@@ -7,7 +7,7 @@
 #include "mesh/blade/airfoil.h"
 #include "mesh/gmsh/session.h"
 
-static const char *const who = "mesh.blade.sections";
+static const char *const case_key = "mesh.blade.sections";
 
 /* Own coordinates at parameters (chord, radial), 0 to 1 from low to high. */
 static shb_status evaluate(const mesh_loft *loft, const mesh_loft_side *side, double chord,
@@ -16,8 +16,8 @@ static shb_status evaluate(const mesh_loft *loft, const mesh_loft_side *side, do
   size_t n             = 0;
   at[1 - side->radial] = side->low[0] + chord * (side->high[0] - side->low[0]);
   at[side->radial]     = side->low[1] + radial * (side->high[1] - side->low[1]);
-  GMSH_TRY(who, gmshModelGetValue(2, side->face, at, 2, &xyz, &n, &ierr));
-  mesh_frame_own(&loft->frame, xyz, own);
+  GMSH_TRY(case_key, gmshModelGetValue(2, side->face, at, 2, &xyz, &n, &ierr));
+  mesh_frame_to_own(&loft->frame, xyz, own);
   gmshFree(xyz);
   return SHB_OK;
 }
@@ -29,10 +29,11 @@ static void swap(double *a, double *b) {
 }
 
 /* Parameters of a side put in order: which is radial, and their directions. */
-static shb_status learn(const mesh_blade *blade, const mesh_loft *loft, mesh_loft_side *side) {
+static shb_status orient_parameters(const mesh_blade *blade, const mesh_loft *loft,
+                                    mesh_loft_side *side) {
   double *low = NULL, *high = NULL, own[4][3];
   size_t  n_low = 0, n_high = 0;
-  GMSH_TRY(who,
+  GMSH_TRY(case_key,
            gmshModelGetParametrizationBounds(2, side->face, &low, &n_low, &high, &n_high, &ierr));
   side->radial = 1;
   for (int i = 0; i < 2; i++) {
@@ -51,7 +52,7 @@ static shb_status learn(const mesh_blade *blade, const mesh_loft *loft, mesh_lof
   SHB_TRY(evaluate(loft, side, 0, 0, own[0]));
   SHB_TRY(evaluate(loft, side, 0, 1, own[1]));
   if (own[0][2] > own[1][2]) swap(&side->low[1], &side->high[1]);
-  mesh_section section = mesh_airfoil_at(blade, mesh_airfoil_begin(blade));
+  mesh_section section = mesh_airfoil_at(blade, mesh_airfoil_low_radius(blade));
   mesh_outline outline;
   mesh_airfoil_outline(blade, &section, &outline);
   SHB_TRY(evaluate(loft, side, 0, 0, own[0]));
@@ -72,7 +73,7 @@ static shb_status find_sides(const mesh_blade *blade, mesh_loft *loft) {
   int   *tags = NULL, found = 0;
   size_t n = 0;
   double middle[2][3];
-  GMSH_TRY(who, gmshModelGetEntities(&tags, &n, 2, &ierr));
+  GMSH_TRY(case_key, gmshModelGetEntities(&tags, &n, 2, &ierr));
   for (size_t i = 0; i + 1 < n; i += 2) {
     char *type = NULL;
     int   ierr = 0;
@@ -84,13 +85,14 @@ static shb_status find_sides(const mesh_blade *blade, mesh_loft *loft) {
     gmshFree(type);
   }
   gmshFree(tags);
-  SHB_CHECK(found == 2, SHB_ERR_INPUT, "%s: the lofted airfoil has %d sides, not 2", who, found);
-  mesh_section section = mesh_airfoil_at(blade, mesh_airfoil_begin(blade));
+  SHB_CHECK(found == 2, SHB_ERR_INPUT, "%s: the lofted airfoil has %d sides, not 2", case_key,
+            found);
+  mesh_section section = mesh_airfoil_at(blade, mesh_airfoil_low_radius(blade));
   mesh_outline outline;
   mesh_airfoil_outline(blade, &section, &outline);
   const double *at = outline.pressure[MESH_AIRFOIL_POINTS / 2];
   for (int s = 0; s < 2; s++) {
-    SHB_TRY(learn(blade, loft, &loft->side[s]));
+    SHB_TRY(orient_parameters(blade, loft, &loft->side[s]));
     SHB_TRY(evaluate(loft, &loft->side[s], .5, 0, middle[s]));
   }
   if (hypot(middle[0][0] - at[0], middle[0][1] - at[1]) >
@@ -107,7 +109,7 @@ shb_status mesh_loft_create(const mesh_blade *blade, const mesh_frame *frame, me
   memset(loft, 0, sizeof *loft);
   loft->frame = *frame;
   SHB_TRY(mesh_airfoil_build(blade, frame, &volume));
-  GMSH_TRY(who, gmshModelOccSynchronize(&ierr));
+  GMSH_TRY(case_key, gmshModelOccSynchronize(&ierr));
   return find_sides(blade, loft);
 }
 

@@ -17,7 +17,7 @@ typedef struct {
 
 /* What is built: nodes so far with their (u, y). */
 typedef struct {
-  mesh_plan *plan;
+  mesh_planar *plan;
   double (*uy)[2];
   int capacity;
 } drawing;
@@ -33,7 +33,7 @@ static int node_at(drawing *d, double u, double y) {
 }
 
 /* Cells of a block from its lattice, anticlockwise. */
-static void add_cells(mesh_plan *plan, int n, int m, const int *node) {
+static void add_cells(mesh_planar *plan, int n, int m, const int *node) {
   static const int step[8][2] = {{0, 0}, {2, 0}, {2, 2}, {0, 2}, {1, 0}, {2, 1}, {1, 2}, {0, 1}};
   for (int j = 0; j < m; j++)
     for (int i = 0; i < n; i++) {
@@ -80,14 +80,14 @@ static void add_tip(drawing *d, int k, double share, int mirror, int *node) {
   int along[3][4] = {{-1, 0, 0, 1}, {-1, 0, 0, 0}, {0, 0, 1, 0}};
   for (int b = 0; b < 3; b++) {
     double p[4][2];
-    int    way[4];
+    int    curved[4];
     for (int c = 0; c < 4; c++) { /* mirrored: corners in the other order, sides with them */
       const double *from = block[b][mirror ? (4 - c) % 4 : c];
       p[c][0]            = mirror ? 1 - from[0] : from[0];
       p[c][1]            = from[1];
-      way[c]             = along[b][mirror ? 3 - c : c];
+      curved[c]          = along[b][mirror ? 3 - c : c];
     }
-    add_block(d, k, k, p, way, node);
+    add_block(d, k, k, p, curved, node);
   }
 }
 
@@ -110,8 +110,8 @@ static int by_key(const void *a, const void *b) {
 
 /* Nodes on the lens: upper side by rising u, then lower side by falling u. */
 static void find_contour(drawing *d, double (*key)[2]) {
-  mesh_plan *plan = d->plan;
-  plan->n_contour = 0;
+  mesh_planar *plan = d->plan;
+  plan->n_contour   = 0;
   for (int i = 0; i < plan->n_nodes; i++) {
     double u = d->uy[i][0], y = d->uy[i][1];
     if (fabs(fabs(y) - lens(u)) > 1e-9) continue;
@@ -124,7 +124,7 @@ static void find_contour(drawing *d, double (*key)[2]) {
 
 static void draw(const mesh_section_grid *grid, drawing *d, int *node, double (*key)[2],
                  mesh_section_place *place) {
-  mesh_plan *plan = d->plan;
+  mesh_planar *plan = d->plan;
   add_tip(d, grid->half, grid->tip[0], 0, node);
   add_middle(d, grid, node);
   add_tip(d, grid->half, grid->tip[1], 1, node);
@@ -138,8 +138,8 @@ static void draw(const mesh_section_grid *grid, drawing *d, int *node, double (*
   }
 }
 
-shb_status mesh_plan_section(const mesh_section_grid *grid, mesh_plan *plan,
-                             mesh_section_place **place) {
+shb_status mesh_section_mesh_create(const mesh_section_grid *grid, mesh_planar *plan,
+                                    mesh_section_place **place) {
   const int k = grid->half, n = grid->chord;
   const int quads = 6 * k * k + 2 * k * n, most = 8 * quads + 1;
   double(*key)[2] = malloc((size_t)most * sizeof *key);
@@ -159,11 +159,11 @@ shb_status mesh_plan_section(const mesh_section_grid *grid, mesh_plan *plan,
   if (complete) return SHB_OK;
   free(*place);
   *place = NULL;
-  mesh_plan_free(plan);
+  mesh_planar_free(plan);
   SHB_FAIL(SHB_ERR_IO, "no memory for the airfoil's mesh");
 }
 
-void mesh_plan_orient(mesh_plan *section) {
+void mesh_section_mesh_orient(mesh_planar *section) {
   static const int back[8] = {0, 3, 2, 1, 7, 6, 5, 4};
   double           area    = 0;
   for (int q = 0; q < section->n_quads; q++)
@@ -179,7 +179,7 @@ void mesh_plan_orient(mesh_plan *section) {
   }
 }
 
-void mesh_plan_free(mesh_plan *plan) {
+void mesh_planar_free(mesh_planar *plan) {
   free(plan->at);
   free(plan->quad);
   free(plan->contour);

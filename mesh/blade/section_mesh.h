@@ -16,12 +16,12 @@ typedef struct {
 
 typedef struct {
   int n_nodes, n_quads;
-  double (*at)[2]; /* [n_nodes] m, or the places of mesh_plan_section */
+  double (*at)[2]; /* [n_nodes] m, or the places of mesh_section_mesh_create */
   int (*quad)[8];  /* [n_quads] corners, anticlockwise, then middles of 01, 12, 23, 30 */
   int  n_section_nodes, n_section_quads;
   int  n_contour; /* nodes around the section: corner, middle, corner, ...; a multiple of 4 */
   int *contour;   /* [n_contour] from the leading edge along the suction side and back */
-} mesh_plan;
+} mesh_planar;
 
 /* Numbers of elements of a section. */
 typedef struct {
@@ -34,12 +34,12 @@ typedef struct {
 /* The section alone: a middle part of chord x 2 half elements; in each tip three blocks of half x half around a point,
  * so that no corner of an element is flat.
  *   place  out  [n_nodes], malloc'ed */
-shb_status mesh_plan_section(const mesh_section_grid *grid, mesh_plan *plan,
-                             mesh_section_place **place);
+shb_status mesh_section_mesh_create(const mesh_section_grid *grid, mesh_planar *plan,
+                                    mesh_section_place **place);
 
 /* After places were given: turn the quadrangles round if they run clockwise. */
-void mesh_plan_orient(mesh_plan *section);
+void mesh_section_mesh_orient(mesh_planar *section);
 
-void mesh_plan_free(mesh_plan *plan); /* also on a zeroed struct */
+void mesh_planar_free(mesh_planar *plan); /* also on a zeroed struct */
 
 #endif

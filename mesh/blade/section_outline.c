@@ -21,8 +21,8 @@ typedef struct {
 
 /* What is built: corners first, with the middle of an edge in a hash of its ends. */
 typedef struct {
-  mesh_plan *plan;
-  int        capacity, n_slots;
+  mesh_planar *plan;
+  int          capacity, n_slots;
   int (*slot)[3]; /* lower end, upper end, middle; -1: free */
 } builder;
 
@@ -40,8 +40,8 @@ static int *find_slot(builder *b, int p, int q) {
 
 /* Middle of an edge, made half way if there is none yet. */
 static int middle_of(builder *b, int p, int q) {
-  mesh_plan *plan   = b->plan;
-  int       *middle = find_slot(b, p, q);
+  mesh_planar *plan   = b->plan;
+  int         *middle = find_slot(b, p, q);
   if (*middle < 0) {
     *middle = plan->n_nodes++;
     for (int x = 0; x < 2; x++) plan->at[*middle][x] = (plan->at[p][x] + plan->at[q][x]) / 2;
@@ -50,8 +50,8 @@ static int middle_of(builder *b, int p, int q) {
 }
 
 /* The section's own edges; and of its contour, pairs of edges as one coarse edge. */
-static void seed(builder *b) {
-  mesh_plan *plan = b->plan;
+static void insert_section_edges(builder *b) {
+  mesh_planar *plan = b->plan;
   for (int q = 0; q < plan->n_section_quads; q++)
     for (int c = 0; c < 4; c++)
       *find_slot(b, plan->quad[q][c], plan->quad[q][(c + 1) % 4]) = plan->quad[q][4 + c];
@@ -98,7 +98,7 @@ static shb_status set_plan_options(bool plan) {
   return SHB_OK;
 }
 
-static shb_status mesh_region(const mesh_plan *section, int n_corners, const double corner[][2],
+static shb_status mesh_region(const mesh_planar *section, int n_corners, const double corner[][2],
                               const int *parts, double size, bool recombine, const char *what) {
   const int n        = section->n_contour / 4;
   int       loops[2] = {0, 0}, half[16], surface = 0;
@@ -135,7 +135,7 @@ static shb_status take_cells(const int *index, int type, int corners, coarse *me
 }
 
 /* The section's node at a point of its contour, or -1. */
-static int on_contour(const mesh_plan *section, const double *at) {
+static int on_contour(const mesh_planar *section, const double *at) {
   for (int i = 0; i < section->n_contour; i += 4) {
     const double *c = section->at[section->contour[i]];
     if (hypot(c[0] - at[0], c[1] - at[1]) < 1e-9) return section->contour[i];
@@ -144,7 +144,7 @@ static int on_contour(const mesh_plan *section, const double *at) {
 }
 
 /* Nodes are numbered after the section's, those on its contour as they are there. */
-static shb_status take_coarse(const mesh_plan *section, coarse *mesh) {
+static shb_status take_coarse(const mesh_planar *section, coarse *mesh) {
   size_t *tags = NULL, n = 0, n_xyz = 0, n_unused = 0, top = 0;
   double *xyz = NULL, *unused = NULL;
   GMSH_TRY("mesh.blade.size",
@@ -170,8 +170,8 @@ static shb_status take_coarse(const mesh_plan *section, coarse *mesh) {
 
 /* ------------------------------------------------------------------ the fine plan */
 
-static shb_status allocate(const mesh_plan *section, const coarse *mesh, builder *b) {
-  mesh_plan   *plan  = b->plan;
+static shb_status allocate(const mesh_planar *section, const coarse *mesh, builder *b) {
+  mesh_planar *plan  = b->plan;
   const size_t quads = (size_t)(section->n_quads + 6 * mesh->n_cells);
   const size_t nodes = (size_t)section->n_nodes + 24 * (size_t)mesh->n_cells + 64;
   b->n_slots         = (int)(8 * quads + 64);
@@ -191,10 +191,10 @@ static shb_status allocate(const mesh_plan *section, const coarse *mesh, builder
 }
 
 /* Each corner of a polygon becomes a quadrangle with the middles of its two sides and the polygon's middle. */
-static void cut(builder *b, const int *corner, int n) {
-  mesh_plan *plan   = b->plan;
-  const int  centre = plan->n_nodes++;
-  double    *middle = plan->at[centre];
+static void split_polygon(builder *b, const int *corner, int n) {
+  mesh_planar *plan   = b->plan;
+  const int    centre = plan->n_nodes++;
+  double      *middle = plan->at[centre];
   middle[0] = middle[1] = 0;
   for (int c = 0; c < n; c++)
     for (int x = 0; x < 2; x++) middle[x] += plan->at[corner[c]][x] / n;
@@ -213,7 +213,7 @@ static double sine(const double *p, const double *q, const double *r) {
   return (a[0] * b[1] - a[1] * b[0]) / (hypot(a[0], a[1]) * hypot(b[0], b[1]) + 1e-300);
 }
 
-static double flattest(const mesh_plan *plan, const int *corner, int n) {
+static double least_sine(const mesh_planar *plan, const int *corner, int n) {
   double least = 1;
   for (int c = 0; c < n; c++)
     least = fmin(least, sine(plan->at[corner[c]], plan->at[corner[(c + 1) % n]],
@@ -222,10 +222,10 @@ static double flattest(const mesh_plan *plan, const int *corner, int n) {
 }
 
 /* gmsh's quadrangles can be hollow next to a sharp edge: those are cut in two before. */
-static void cut_cell(builder *b, const int *cell) {
-  const double hollow = .1;
-  if (cell[3] < 0 || flattest(b->plan, cell, 4) > hollow) {
-    cut(b, cell, cell[3] < 0 ? 3 : 4);
+static void split_cell(builder *b, const int *cell) {
+  const double limit = .1;
+  if (cell[3] < 0 || least_sine(b->plan, cell, 4) > limit) {
+    split_polygon(b, cell, cell[3] < 0 ? 3 : 4);
     return;
   }
   double best  = -2;
@@ -233,38 +233,38 @@ static void cut_cell(builder *b, const int *cell) {
   for (int c = 0; c < 2; c++) {
     const int half[2][3] = {{cell[c], cell[c + 1], cell[c + 2]},
                             {cell[c], cell[c + 2], cell[(c + 3) % 4]}};
-    double    worst      = fmin(flattest(b->plan, half[0], 3), flattest(b->plan, half[1], 3));
+    double    worst      = fmin(least_sine(b->plan, half[0], 3), least_sine(b->plan, half[1], 3));
     if (worst <= best) continue;
     best  = worst;
     start = c;
   }
   const int half[2][3] = {{cell[start], cell[start + 1], cell[start + 2]},
                           {cell[start], cell[start + 2], cell[(start + 3) % 4]}};
-  for (int k = 0; k < 2; k++) cut(b, half[k], 3);
+  for (int k = 0; k < 2; k++) split_polygon(b, half[k], 3);
 }
 
-static shb_status refine(const mesh_plan *section, const coarse *mesh, mesh_plan *plan) {
+static shb_status refine(const mesh_planar *section, const coarse *mesh, mesh_planar *plan) {
   builder b = {.plan = plan};
   memset(plan, 0, sizeof *plan);
   shb_status status = allocate(section, mesh, &b);
   if (status == SHB_OK) {
     memcpy(plan->at + section->n_nodes, mesh->at, (size_t)mesh->n_nodes * sizeof *mesh->at);
     plan->n_nodes += mesh->n_nodes;
-    seed(&b);
-    for (int e = 0; e < mesh->n_cells; e++) cut_cell(&b, mesh->cell[e]);
+    insert_section_edges(&b);
+    for (int e = 0; e < mesh->n_cells; e++) split_cell(&b, mesh->cell[e]);
     for (int q = plan->n_section_quads; q < plan->n_quads; q++)
       for (int c = 0; c < 4; c++)
         plan->quad[q][4 + c] = middle_of(&b, plan->quad[q][c], plan->quad[q][(c + 1) % 4]);
-    status = mesh_plan_relax(plan);
+    status = mesh_planar_smooth(plan);
   }
   free(b.slot);
-  if (status != SHB_OK) mesh_plan_free(plan);
+  if (status != SHB_OK) mesh_planar_free(plan);
   return status;
 }
 
-static shb_status in_own_model(const mesh_plan *section, int n_corners, const double corner[][2],
-                               const int *parts, double size, bool recombine, const char *what,
-                               mesh_plan *plan) {
+static shb_status create_in_model(const mesh_planar *section, int n_corners,
+                                  const double corner[][2], const int *parts, double size,
+                                  bool recombine, const char *what, mesh_planar *plan) {
   coarse     mesh   = {0};
   shb_status status = set_plan_options(true);
   if (status == SHB_OK)
@@ -277,14 +277,15 @@ static shb_status in_own_model(const mesh_plan *section, int n_corners, const do
   return status;
 }
 
-shb_status mesh_plan_outline(const mesh_plan *section, int n_corners, const double corner[][2],
-                             const int *parts, double size, bool recombine, const char *what,
-                             mesh_plan *plan) {
+shb_status mesh_section_outline_create(const mesh_planar *section, int n_corners,
+                                       const double corner[][2], const int *parts, double size,
+                                       bool recombine, const char *what, mesh_planar *plan) {
   char *current = NULL;
   GMSH_TRY(what, gmshModelGetCurrent(&current, &ierr));
   int ierr = 0;
   gmshModelAdd("plan", &ierr);
-  shb_status status = in_own_model(section, n_corners, corner, parts, size, recombine, what, plan);
+  shb_status status =
+      create_in_model(section, n_corners, corner, parts, size, recombine, what, plan);
   gmshModelRemove(&ierr);
   gmshModelSetCurrent(current, &ierr);
   gmshFree(current);

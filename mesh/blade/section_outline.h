@@ -10,8 +10,8 @@
  *   corner   in   [n_corners][2] m, anticlockwise; parts[i] elements (even) between corners i and i + 1
  *   size     in   element size away from the section, m
  * A gmsh session must be open; its current model is left as it was. Errors: SHB_ERR_INPUT gmsh fails, what heads the text. */
-shb_status mesh_plan_outline(const mesh_plan *section, int n_corners, const double corner[][2],
-                             const int *parts, double size, bool recombine, const char *what,
-                             mesh_plan *plan);
+shb_status mesh_section_outline_create(const mesh_planar *section, int n_corners,
+                                       const double corner[][2], const int *parts, double size,
+                                       bool recombine, const char *what, mesh_planar *plan);
 
 #endif

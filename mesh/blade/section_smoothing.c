@@ -7,13 +7,13 @@
 
 /* Quadrangles around each node: start[node] .. start[node + 1] - 1. */
 typedef struct {
-  mesh_plan *plan;
-  int       *start, *quad;
-  char      *fixed; /* [n_nodes] not to be moved */
-} ring;
+  mesh_planar *plan;
+  int         *start, *quad;
+  char        *fixed; /* [n_nodes] not to be moved */
+} adjacency;
 
 /* Sine of the angle at corner c, from the sides as they bend: from the corner to the middles next to it and on. */
-static double corner_sine(const mesh_plan *plan, const int *quad, int c) {
+static double corner_sine(const mesh_planar *plan, const int *quad, int c) {
   const double *at = plan->at[quad[c]], *next = plan->at[quad[(c + 1) % 4]],
                *last  = plan->at[quad[(c + 3) % 4]];
   const double *after = plan->at[quad[4 + c]], *before = plan->at[quad[4 + (c + 3) % 4]];
@@ -28,7 +28,7 @@ static double corner_sine(const mesh_plan *plan, const int *quad, int c) {
 }
 
 /* The worst corner of the quadrangles around a node. */
-static double worst_of(const ring *r, int node) {
+static double least_sine_at(const adjacency *r, int node) {
   double worst = 1;
   for (int i = r->start[node]; i < r->start[node + 1]; i++)
     for (int c = 0; c < 4; c++)
@@ -36,7 +36,7 @@ static double worst_of(const ring *r, int node) {
   return worst;
 }
 
-static void mean_of(const ring *r, int node, double mean[2]) {
+static void mean_of(const adjacency *r, int node, double mean[2]) {
   int count = 0;
   mean[0] = mean[1] = 0;
   for (int i = r->start[node]; i < r->start[node + 1]; i++) {
@@ -53,27 +53,27 @@ static void mean_of(const ring *r, int node, double mean[2]) {
 }
 
 /* Tries the mean, half the way, a quarter, and steps aside; keeps the best. */
-static void move(const ring *r, int node) {
+static void move(const adjacency *r, int node) {
   static const double step[8][2] = {{1, 0},   {.5, 0},   {.25, 0}, {.1, 0},
                                     {.3, .3}, {.3, -.3}, {0, .2},  {0, -.2}};
-  double *at = r->plan->at[node], from[2] = {at[0], at[1]}, keep[2] = {at[0], at[1]}, mean[2];
-  double  best = worst_of(r, node);
+  double *at = r->plan->at[node], from[2] = {at[0], at[1]}, best_place[2] = {at[0], at[1]}, mean[2];
+  double  best = least_sine_at(r, node);
   mean_of(r, node, mean);
   const double along[2] = {mean[0] - from[0], mean[1] - from[1]};
   for (int k = 0; k < 8; k++) {
     at[0]        = from[0] + step[k][0] * along[0] - step[k][1] * along[1];
     at[1]        = from[1] + step[k][0] * along[1] + step[k][1] * along[0];
-    double worst = worst_of(r, node);
+    double worst = least_sine_at(r, node);
     if (worst <= best) continue;
     best = worst;
-    memcpy(keep, at, sizeof keep);
+    memcpy(best_place, at, sizeof best_place);
   }
-  memcpy(at, keep, sizeof keep);
+  memcpy(at, best_place, sizeof best_place);
 }
 
 /* The section's nodes, and the ends of edges that one quadrangle alone has. */
-static void find_fixed(const ring *r, int *uses) {
-  const mesh_plan *plan = r->plan;
+static void find_fixed(const adjacency *r, int *uses) {
+  const mesh_planar *plan = r->plan;
   memset(uses, 0, (size_t)plan->n_nodes * sizeof *uses);
   for (int q = 0; q < plan->n_quads; q++)
     for (int c = 4; c < 8; c++) uses[plan->quad[q][c]]++;
@@ -84,8 +84,8 @@ static void find_fixed(const ring *r, int *uses) {
         r->fixed[plan->quad[q][c]] = r->fixed[plan->quad[q][(c + 1) % 4]] = 1;
 }
 
-static void find_rings(ring *r, int *next) {
-  const mesh_plan *plan = r->plan;
+static void find_quads(adjacency *r, int *next) {
+  const mesh_planar *plan = r->plan;
   memset(r->start, 0, ((size_t)plan->n_nodes + 1) * sizeof *r->start);
   for (int q = 0; q < plan->n_quads; q++)
     for (int c = 0; c < 4; c++) r->start[plan->quad[q][c] + 1]++;
@@ -95,7 +95,7 @@ static void find_rings(ring *r, int *next) {
     for (int c = 0; c < 4; c++) r->quad[next[plan->quad[q][c]]++] = q;
 }
 
-static void set_middles(mesh_plan *plan) {
+static void set_middles(mesh_planar *plan) {
   for (int q = plan->n_section_quads; q < plan->n_quads; q++)
     for (int c = 0; c < 4; c++) {
       const int *quad = plan->quad[q];
@@ -105,10 +105,10 @@ static void set_middles(mesh_plan *plan) {
     }
 }
 
-shb_status mesh_plan_relax(mesh_plan *plan) {
+shb_status mesh_planar_smooth(mesh_planar *plan) {
   enum { PASSES = 30 };
   const size_t n        = (size_t)plan->n_nodes;
-  ring         r        = {.plan  = plan,
+  adjacency    r        = {.plan  = plan,
                            .start = malloc((n + 1) * sizeof(int)),
                            .quad  = malloc(4 * (size_t)plan->n_quads * sizeof(int)),
                            .fixed = malloc(n)};
@@ -116,7 +116,7 @@ shb_status mesh_plan_relax(mesh_plan *plan) {
   bool         complete = r.start && r.quad && r.fixed && work;
   if (complete) {
     find_fixed(&r, work);
-    find_rings(&r, work);
+    find_quads(&r, work);
     for (int pass = 0; pass < PASSES; pass++)
       for (int i = 0; i < plan->n_nodes; i++)
         if (!r.fixed[i] && r.start[i] < r.start[i + 1]) move(&r, i);
@@ -130,7 +130,7 @@ shb_status mesh_plan_relax(mesh_plan *plan) {
   return SHB_OK;
 }
 
-double mesh_plan_worst(const mesh_plan *plan) {
+double mesh_planar_least_sine(const mesh_planar *plan) {
   double worst = 1;
   int    met   = 0;
   for (int q = plan->n_section_quads; q < plan->n_quads; q++)

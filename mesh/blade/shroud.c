@@ -22,7 +22,7 @@ static double underside(const mesh_blade *blade) {
 }
 
 /* Corners (tangential, axial) of the Z at mid thickness, about the contact leg's centre. */
-static void plan(const mesh_blade *blade, double z[CORNERS][2]) {
+static void z_corners(const mesh_blade *blade, double z[CORNERS][2]) {
   double t                  = blade->shroud_contact / 2 * sin(blade->psi);
   double a                  = blade->shroud_contact / 2 * cos(blade->psi);
   double l                  = blade->shroud_length / 2;
@@ -32,15 +32,15 @@ static void plan(const mesh_blade *blade, double z[CORNERS][2]) {
 }
 
 /* Tangential shift a unit of radius: tan phi/cos psi. */
-static double lean(const mesh_blade *blade) {
+static double radial_slope(const mesh_blade *blade) {
   return tan(blade->phi) / cos(blade->psi);
 }
 
 /* Corner i of the Z at the underside (level 0) or top (level 1), about the side's own radial plane. */
 static void corner(const mesh_blade *blade, int i, int level, double own[3]) {
   double z[CORNERS][2], up = (level ? 0.5 : -0.5) * blade->shroud_thickness;
-  plan(blade, z);
-  own[0] = z[i][0] + up * lean(blade);
+  z_corners(blade, z);
+  own[0] = z[i][0] + up * radial_slope(blade);
   own[1] = z[i][1];
   own[2] = underside(blade) + 0.5 * blade->shroud_thickness + up;
 }
@@ -48,12 +48,12 @@ static void corner(const mesh_blade *blade, int i, int level, double own[3]) {
 /* Tangential place of the side's surface at (axial, radial), about its own radial plane. */
 static double side_at(const mesh_blade *blade, double axial, double radial) {
   double z[CORNERS][2];
-  plan(blade, z);
+  z_corners(blade, z);
   int leg = 0;
   while (leg < MESH_SHROUD_LEGS - 1 && axial > z[leg + 1][1]) leg++;
   double x  = (axial - z[leg][1]) / (z[leg + 1][1] - z[leg][1]);
   double up = radial - underside(blade) - 0.5 * blade->shroud_thickness;
-  return z[leg][0] + x * (z[leg + 1][0] - z[leg][0]) + up * lean(blade);
+  return z[leg][0] + x * (z[leg + 1][0] - z[leg][0]) + up * radial_slope(blade);
 }
 
 void mesh_shroud_centre(const mesh_blade *blade, int leg, bool right, double own[3]) {
@@ -63,7 +63,7 @@ void mesh_shroud_centre(const mesh_blade *blade, int leg, bool right, double own
       corner(blade, i, level, c);
       for (int d = 0; d < 3; d++) sum[d] += c[d] / 4;
     }
-  mesh_frame_turn(right ? half_sector(blade) : -half_sector(blade), sum, own);
+  mesh_frame_rotate(right ? half_sector(blade) : -half_sector(blade), sum, own);
 }
 
 static double middle_radius(const mesh_blade *blade) {
@@ -73,7 +73,7 @@ static double middle_radius(const mesh_blade *blade) {
 void mesh_shroud_outline(const mesh_blade *blade, double out[2 * CORNERS][2]) {
   const double half = middle_radius(blade) * half_sector(blade);
   double       z[CORNERS][2];
-  plan(blade, z);
+  z_corners(blade, z);
   for (int i = 0; i < CORNERS; i++) {
     double *right = out[i], *left = out[2 * CORNERS - 1 - i];
     right[0] = z[i][0] + half;
@@ -89,14 +89,14 @@ int mesh_shroud_contact_side(const mesh_blade *blade, const double at[2]) {
   return fabs(from - half) < 1e-9 ? 1 : fabs(from + half) < 1e-9 ? -1 : 0;
 }
 
-void mesh_shroud_point(const mesh_blade *blade, const double at[2], double share, double own[3]) {
+void mesh_shroud_roll_up(const mesh_blade *blade, const double at[2], double share, double own[3]) {
   const double radial = underside(blade) + share * blade->shroud_thickness;
   const double angle = (at[0] - side_at(blade, at[1], middle_radius(blade))) / middle_radius(blade);
   const double side[3] = {side_at(blade, at[1], radial), at[1], radial};
-  mesh_frame_turn(angle, side, own);
+  mesh_frame_rotate(angle, side, own);
 }
 
-void mesh_shroud_plan(const mesh_blade *blade, const double own[3], double at[2]) {
+void mesh_shroud_unroll(const mesh_blade *blade, const double own[3], double at[2]) {
   const double side  = side_at(blade, own[1], underside(blade));
   const double angle = atan2(own[0], own[2]) - atan2(side, underside(blade));
   at[0]              = middle_radius(blade) * angle + side_at(blade, own[1], middle_radius(blade));
@@ -144,7 +144,7 @@ static shb_status check_cover(const mesh_blade *blade, const double own[3]) {
   for (int s = -1; s <= 1;
        s += 2) { /* s = -1 left, 1 right: seen from the side's own radial plane */
     double seen[3];
-    mesh_frame_turn(-s * half_sector(blade), own, seen);
+    mesh_frame_rotate(-s * half_sector(blade), own, seen);
     double inside = s * (side_at(blade, seen[1], seen[2]) - seen[0]);
     SHB_CHECK(inside >= margin, SHB_ERR_INPUT,
               "mesh.blade.sections[%d]: the last section reaches %s the shroud's %s side (at %g mm "
@@ -170,7 +170,7 @@ static shb_status check_depth(const mesh_blade *blade, const double own[3]) {
 
 shb_status mesh_shroud_check(const mesh_blade *blade) {
   SHB_TRY(check_sizes(blade));
-  double       radius[2] = {underside(blade), mesh_airfoil_end(blade)};
+  double       radius[2] = {underside(blade), mesh_airfoil_high_radius(blade)};
   mesh_outline outline;
   for (int k = 0; k < 2; k++) {
     mesh_section section = mesh_airfoil_at(blade, radius[k]);
@@ -209,7 +209,7 @@ shb_status mesh_shroud_build(const mesh_blade *blade, const mesh_frame *frame,
     for (int level = 0; level < 2; level++) {
       double own[3];
       corner(blade, i, level, own);
-      mesh_frame_turn(-half_sector(blade), own, own);
+      mesh_frame_rotate(-half_sector(blade), own, own);
       SHB_TRY(mesh_frame_add_point(frame, own, &point[i][level]));
     }
     GMSH_TRY("mesh.blade.shroud",

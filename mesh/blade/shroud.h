@@ -30,10 +30,11 @@ void mesh_shroud_outline(const mesh_blade *blade, double corner[2 * (MESH_SHROUD
 int mesh_shroud_contact_side(const mesh_blade *blade, const double plan[2]);
 
 /* Own coordinates at a share (0 underside, 1 top) of the thickness. */
-void mesh_shroud_point(const mesh_blade *blade, const double plan[2], double share, double own[3]);
+void mesh_shroud_roll_up(const mesh_blade *blade, const double plan[2], double share,
+                         double own[3]);
 
 /* Plan coordinates of a point of the underside; and the radial coordinate of the underside above or below own. */
-void   mesh_shroud_plan(const mesh_blade *blade, const double own[3], double plan[2]);
+void   mesh_shroud_unroll(const mesh_blade *blade, const double own[3], double plan[2]);
 double mesh_shroud_underside(const mesh_blade *blade, const double own[3]);
 
 /* SHB_ERR_INPUT for a shroud that cannot be built or does not cover the last section. */

@@ -14,7 +14,7 @@ typedef struct {
   const mesh_topology *topology;
   const mesh_face_set *set;
   double (*ball)[4]; /* [faces] centre and radius around a face's nodes */
-} target;
+} left_face;
 
 /* A place on the left face. */
 typedef struct {
@@ -24,11 +24,11 @@ typedef struct {
   double distance; /* m */
 } contact_place;
 
-static const int *face_nodes(const target *t, int face) {
+static const int *face_nodes(const left_face *t, int face) {
   return t->set->nodes + t->topology->face_nodes * (size_t)face;
 }
 
-static void enclose(const target *t, int face) {
+static void bounding_ball(const left_face *t, int face) {
   const int  n    = t->topology->face_nodes;
   const int *node = face_nodes(t, face);
   double    *ball = t->ball[face];
@@ -40,7 +40,7 @@ static void enclose(const target *t, int face) {
 }
 
 /* Reference coordinates of a face's local node. */
-static void reference(const target *t, int local, double at[2]) {
+static void reference(const left_face *t, int local, double at[2]) {
   static const double six[6][2]   = {{0, 0}, {1, 0}, {0, 1}, {.5, 0}, {.5, .5}, {0, .5}};
   static const double eight[8][2] = {{0, 0},  {1, 0},  {1, 1},  {0, 1},
                                      {.5, 0}, {1, .5}, {.5, 1}, {0, .5}};
@@ -48,7 +48,7 @@ static void reference(const target *t, int local, double at[2]) {
 }
 
 /* Nearest point of the flat triangles of all faces: a start for settle. */
-static void look_up(const target *t, const double x[3], contact_place *best) {
+static void nearest_triangle(const left_face *t, const double x[3], contact_place *best) {
   best->distance = INFINITY;
   for (int f = 0; f < t->set->n; f++) {
     mesh_triangle part[MESH_TRIANGLES];
@@ -70,7 +70,7 @@ static void look_up(const target *t, const double x[3], contact_place *best) {
 }
 
 /* Back into the face. */
-static void clamp(mesh_kind kind, double at[2]) {
+static void clamp_to_face(mesh_kind kind, double at[2]) {
   for (int d = 0; d < 2; d++) at[d] = fmin(1, fmax(0, at[d]));
   double over = at[0] + at[1] - 1;
   if (kind == MESH_HEX20 || over <= 0) return;
@@ -79,8 +79,8 @@ static void clamp(mesh_kind kind, double at[2]) {
 }
 
 /* x - X(r, s) and its derivatives' columns. */
-static void residual(const target *t, const double x[3], contact_place *p, double off[3],
-                     double J[2][3]) {
+static void offset_at(const left_face *t, const double x[3], contact_place *p, double off[3],
+                      double J[2][3]) {
   double     gradient[MESH_FACE_NODES][2];
   const int *node = face_nodes(t, p->face);
   mesh_face_shape(t->mesh->kind, p->at, p->shape, gradient);
@@ -97,20 +97,20 @@ static void residual(const target *t, const double x[3], contact_place *p, doubl
 }
 
 /* The nearest point of the curved face by Gauss and Newton: J^T J d = J^T (x - X). */
-static void settle(const target *t, const double x[3], contact_place *p) {
+static void project_to_face(const left_face *t, const double x[3], contact_place *p) {
   double off[3], J[2][3];
   for (int i = 0; i < 30; i++) {
-    residual(t, x, p, off, J);
+    offset_at(t, x, p, off, J);
     double a = vec3_dot(J[0], J[0]), b = vec3_dot(J[0], J[1]), c = vec3_dot(J[1], J[1]),
            det = a * c - b * b;
-    double r = vec3_dot(J[0], off), s = vec3_dot(J[1], off), before[2] = {p->at[0], p->at[1]};
+    double r = vec3_dot(J[0], off), s = vec3_dot(J[1], off), previous[2] = {p->at[0], p->at[1]};
     if (!(det > 0)) break;
     p->at[0] += (c * r - b * s) / det;
     p->at[1] += (a * s - b * r) / det;
-    clamp(t->mesh->kind, p->at);
-    if (hypot(p->at[0] - before[0], p->at[1] - before[1]) < 1e-14) break;
+    clamp_to_face(t->mesh->kind, p->at);
+    if (hypot(p->at[0] - previous[0], p->at[1] - previous[1]) < 1e-14) break;
   }
-  residual(t, x, p, off, J);
+  offset_at(t, x, p, off, J);
   p->distance = vec3_norm(off);
 }
 
@@ -159,7 +159,7 @@ static shb_status take_right(const mesh_fe *mesh, mesh_pairing *out) {
   return status;
 }
 
-static shb_status project_all(const target *t, mesh_axis axis, double angle, mesh_pairing *out) {
+static shb_status project_all(const left_face *t, mesh_axis axis, double angle, mesh_pairing *out) {
   const mesh_fe *mesh  = t->mesh;
   const int      each  = t->topology->face_nodes;
   const double   limit = MESH_PAIRING_GAP * sqrt(area(mesh, &mesh->set[MESH_CONTACT_RIGHT]));
@@ -168,8 +168,8 @@ static shb_status project_all(const target *t, mesh_axis axis, double angle, mes
     double        back[3];
     contact_place p;
     mesh_axis_rotate(axis, -angle, x, back);
-    look_up(t, back, &p);
-    settle(t, back, &p);
+    nearest_triangle(t, back, &p);
+    project_to_face(t, back, &p);
     SHB_CHECK(
         p.distance <= limit, SHB_ERR_INPUT,
         "contact faces do not match: node %ld of contact_right at (%g, %g, %g) m is %.3g m "
@@ -184,12 +184,12 @@ static shb_status project_all(const target *t, mesh_axis axis, double angle, mes
 }
 
 static shb_status project(const mesh_fe *mesh, mesh_axis axis, int blades, mesh_pairing *out) {
-  target t       = {mesh, mesh_topology_of(mesh->kind), &mesh->set[MESH_CONTACT_LEFT], NULL};
+  left_face t    = {mesh, mesh_topology_of(mesh->kind), &mesh->set[MESH_CONTACT_LEFT], NULL};
   out->projected = true;
   SHB_TRY(take_right(mesh, out));
   t.ball = malloc(((size_t)t.set->n + 1) * sizeof *t.ball);
   SHB_CHECK(t.ball, SHB_ERR_IO, "no memory to match the contact faces");
-  for (int f = 0; f < t.set->n; f++) enclose(&t, f);
+  for (int f = 0; f < t.set->n; f++) bounding_ball(&t, f);
   shb_status status = project_all(&t, axis, 2 * M_PI / blades, out);
   free(t.ball);
   return status;

@@ -38,8 +38,8 @@ typedef struct {
 #define MESH_RULE_EDGE 0.35
 
 /* The most a tolerance may be, and a point off the face that it names, in diagonals of the body's box. */
-#define MESH_RULE_WIDEST 0.01
-#define MESH_RULE_FARTHEST 0.5
+#define MESH_RULE_MAX_TOLERANCE 0.01
+#define MESH_RULE_MAX_DISTANCE 0.5
 
 /* Names of the groups and volumes in the file, whose coordinates count unit m; they stay the rules'. */
 mesh_names mesh_rules_names(const mesh_rules *rules, double unit);

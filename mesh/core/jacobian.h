@@ -13,7 +13,7 @@ int mesh_jacobian_inverted(const mesh_fe *mesh);
 
 /* The sharpest corner of all elements: det J over the lengths of the three edges' tangents, 1 for a brick, 0 for a flat corner;
  * x out: where, m. */
-double mesh_jacobian_sharpest(const mesh_fe *mesh, double x[3]);
+double mesh_jacobian_worst_corner(const mesh_fe *mesh, double x[3]);
 
 /* Put the mid-side nodes of inverted elements half way between their corners, again for any neighbour that
  * this inverts, until none is left or nothing moves; moved[n_nodes] is set to 1 for those nodes. */

@@ -19,7 +19,7 @@ shb_status mesh_regions_begin(const char *path, const mesh_names *names, mesh_fe
                               mesh_regions *regions);
 
 /* An element lies in volume i. */
-void mesh_regions_put(mesh_regions *regions, int element, int volume);
+void mesh_regions_assign(mesh_regions *regions, int element, int volume);
 
 /* SHB_ERR_INPUT: elements in no volume, or in two; their number and one of them are named. */
 shb_status mesh_regions_end(const mesh_regions *regions);

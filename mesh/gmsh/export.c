@@ -42,7 +42,7 @@ static shb_status write_raw(const char *raw, const char *path) {
   fclose(file);
   int ierr = 0;
   gmshWrite(raw, &ierr);
-  if (ierr) return mesh_kernel_fail(SHB_ERR_IO, __FILE__, __LINE__, path);
+  if (ierr) return mesh_session_fail(SHB_ERR_IO, __FILE__, __LINE__, path);
   return SHB_OK;
 }
 

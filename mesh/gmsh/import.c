@@ -257,7 +257,8 @@ shb_status mesh_import(const char *name, const mesh_names *names, mesh_fe *mesh)
   if (status == SHB_OK) status = take_volume(name, &table, mesh);
   if (status == SHB_OK) status = take_groups(name, names, &table, mesh);
   if (status == SHB_OK) status = mesh_faces_orient(mesh, name);
-  if (status == SHB_OK && names && names->n_volumes) status = mesh_volumes_take(name, names, mesh);
+  if (status == SHB_OK && names && names->n_volumes)
+    status = mesh_volumes_assign(name, names, mesh);
   table_free(&table);
   if (status != SHB_OK) mesh_fe_free(mesh);
   return status;

@@ -10,17 +10,17 @@
 
 enum { GMSH_LINE = 1, GMSH_TRIANGLE = 2, MOST = 3000000, BYTES_EACH = 1500 };
 
-double mesh_foresee_nodes(const mesh_extent *extent, double h) {
+double mesh_estimate_nodes(const mesh_extent *extent, double h) {
   return 2 * extent->length / h + 4.6 * extent->area / (h * h) + 6 * extent->volume / (h * h * h);
 }
 
-double mesh_foresee_size(const mesh_extent *extent, double nodes) {
+double mesh_estimate_size(const mesh_extent *extent, double nodes) {
   double high = extent->length + sqrt(extent->area) + cbrt(extent->volume), low = 0;
   for (int i = 0; i < 200 && high - low > 1e-3 * high; i++) {
     double middle = low > 0 ? sqrt(low * high) : high / 2;
-    if (low == 0 && mesh_foresee_nodes(extent, middle) <= nodes) {
+    if (low == 0 && mesh_estimate_nodes(extent, middle) <= nodes) {
       high = middle;
-    } else if (mesh_foresee_nodes(extent, middle) > nodes) {
+    } else if (mesh_estimate_nodes(extent, middle) > nodes) {
       low = middle;
     } else {
       high = middle;
@@ -29,7 +29,7 @@ double mesh_foresee_size(const mesh_extent *extent, double nodes) {
   return high;
 }
 
-double mesh_foresee_most(void) {
+double mesh_estimate_most_nodes(void) {
   double kilobytes = 0;
   FILE  *info      = fopen("/proc/meminfo", "r");
   char   line[256];
@@ -70,24 +70,24 @@ static shb_status measure_all(const char *path, mesh_extent *extent) {
 }
 
 static shb_status check(const mesh_source *source, const mesh_extent *extent, double h) {
-  double most = mesh_foresee_most(), nodes = mesh_foresee_nodes(extent, h);
+  double most = mesh_estimate_most_nodes(), nodes = mesh_estimate_nodes(extent, h);
   SHB_CHECK(
       nodes <= most, SHB_ERR_INPUT,
       "%s: %s %.3g m would give about %.2g nodes; with %.2g m they are %.2g, the most that %s",
       source->path,
       h * source->unit > .9 * source->size && source->size > 0 ? "mesh.size"
                                                                : "its own element size of",
-      h * source->unit, nodes, 1.02 * source->unit * mesh_foresee_size(extent, most), most,
+      h * source->unit, nodes, 1.02 * source->unit * mesh_estimate_size(extent, most), most,
       most < MOST ? "the free memory holds" : "can be computed with");
   return SHB_OK;
 }
 
-shb_status mesh_foresee_solid(const mesh_source *source, mesh_extent *extent) {
+shb_status mesh_estimate_check_solid(const mesh_source *source, mesh_extent *extent) {
   double floor = 0;
   SHB_TRY(measure_all(source->path, extent));
   if (source->size > 0) SHB_TRY(check(source, extent, source->size / source->unit));
   GMSH_TRY(source->path, gmshOptionGetNumber("Mesh.MeshSizeMin", &floor, &ierr));
-  floor = fmax(floor, mesh_foresee_size(&(mesh_extent){.length = extent->length}, MOST));
+  floor = fmax(floor, mesh_estimate_size(&(mesh_extent){.length = extent->length}, MOST));
   GMSH_TRY(source->path, gmshOptionSetNumber("Mesh.MeshSizeMin", floor, &ierr));
   return SHB_OK;
 }
@@ -153,7 +153,8 @@ static shb_status enclose(const char *path, double *volume) {
   return status;
 }
 
-shb_status mesh_foresee_next(const mesh_source *source, int dimension, mesh_extent *extent) {
+shb_status mesh_estimate_check_dimension(const mesh_source *source, int dimension,
+                                         mesh_extent *extent) {
   int   *tags   = NULL;
   size_t n      = 0;
   double sum[3] = {0};

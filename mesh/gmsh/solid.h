@@ -10,7 +10,7 @@
 typedef struct {
   const mesh_source *source;
   shb_progress      *progress;
-  mesh_kernel        kernel;
+  mesh_session       session;
 } mesh_solid;
 
 /* Start gmsh and load the solid. SHB_ERR_INPUT: not readable as such, no volume; SHB_ERR_IO. After success close it. */

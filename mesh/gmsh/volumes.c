@@ -47,7 +47,7 @@ static shb_status find_entities(model *m) {
     gmshFree(nodes);
   }
   gmshFree(entities);
-  return ierr ? mesh_kernel_fail(SHB_ERR_INPUT, __FILE__, __LINE__, m->path) : SHB_OK;
+  return ierr ? mesh_session_fail(SHB_ERR_INPUT, __FILE__, __LINE__, m->path) : SHB_OK;
 }
 
 static shb_status fill(model *m) {
@@ -65,7 +65,7 @@ static shb_status fill(model *m) {
 
 static void put_entity(const model *m, mesh_regions *regions, int entity, int volume) {
   for (int e = 0; e < m->mesh->n_elements; e++)
-    if (m->entity[e] == entity) mesh_regions_put(regions, e, volume);
+    if (m->entity[e] == entity) mesh_regions_assign(regions, e, volume);
 }
 
 /* How far the point is outside the element, beyond the planes of its faces; negative inside. */
@@ -154,7 +154,7 @@ static shb_status take_all(model *m, const mesh_names *names) {
   return mesh_regions_end(&regions);
 }
 
-shb_status mesh_volumes_take(const char *path, const mesh_names *names, mesh_fe *mesh) {
+shb_status mesh_volumes_assign(const char *path, const mesh_names *names, mesh_fe *mesh) {
   model      m      = {.path = path, .mesh = mesh};
   shb_status status = take_all(&m, names);
   free(m.by_tag);

@@ -58,8 +58,8 @@ static char *trim(char *text) {
 /* The next line that is neither empty nor a comment into deck->text; *found: false at the end. */
 static shb_status next_line(mesh_deck *deck, bool *found) {
   *found = true;
-  if (deck->held) {
-    deck->held = false;
+  if (deck->pushed_back) {
+    deck->pushed_back = false;
     return SHB_OK;
   }
   for (ssize_t n; (n = getdelim(&deck->text, &deck->size, deck->end, deck->file)) >= 0;) {
@@ -105,8 +105,8 @@ shb_status mesh_deck_card(mesh_deck *deck, mesh_card *card, bool *found) {
     bool more;
     SHB_TRY(next_line(deck, &more));
     if (!more) return SHB_OK;
-    deck->held = deck->text[0] == '*';
-    if (deck->held) return SHB_OK;
+    deck->pushed_back = deck->text[0] == '*';
+    if (deck->pushed_back) return SHB_OK;
   }
 }
 
@@ -114,9 +114,9 @@ shb_status mesh_deck_row(mesh_deck *deck, mesh_row *row, bool *found) {
   row->n = 0;
   SHB_TRY(next_line(deck, found));
   if (!*found) return SHB_OK;
-  row->line  = deck->line;
-  deck->held = deck->text[0] == '*';
-  *found     = !deck->held;
+  row->line         = deck->line;
+  deck->pushed_back = deck->text[0] == '*';
+  *found            = !deck->pushed_back;
   for (char *at = deck->text, *end = at; *found && end; at = end + 1) {
     end = strchr(at, ',');
     if (end) *end = '\0';

@@ -14,9 +14,9 @@ typedef struct {
   FILE       *file;
   char       *text; /* the line in hand, without its end */
   size_t      size;
-  long        line; /* its number, from 1 */
-  bool        held; /* it was looked at but not taken */
-  int         end;  /* what ends a line: LF (also CR LF), or CR */
+  long        line;        /* its number, from 1 */
+  bool        pushed_back; /* it was looked at but not taken */
+  int         end;         /* what ends a line: LF (also CR LF), or CR */
 } mesh_deck;
 
 /* "*NSET, NSET=root, GENERATE" */

@@ -197,7 +197,7 @@ static shb_status take_volume(builder *b, mesh_regions *regions, int i) {
                     "element set %s: element %ld is not in the file", name, member->id);
     MESH_DECK_CHECK(b->volume[at] >= 0, b->deck, member->line,
                     "element set %s: element %ld is a face, not a volume", name, member->id);
-    mesh_regions_put(regions, b->volume[at], i);
+    mesh_regions_assign(regions, b->volume[at], i);
   }
   return SHB_OK;
 }

@@ -27,38 +27,39 @@ static int face_label(const mesh_fe *mesh, int e, const int *face) {
 
 typedef struct {
   int set, face, corner; /* corner: the least of the face's */
-} wanted;
+} group_face;
 
 static int by_corner(const void *a, const void *b) {
-  return ((const wanted *)a)->corner - ((const wanted *)b)->corner;
+  return ((const group_face *)a)->corner - ((const group_face *)b)->corner;
 }
 
 /* Every face of every set, sorted by its least corner; NULL when out of memory. */
-static wanted *list_faces(const mesh_fe *mesh, int *n) {
+static group_face *list_faces(const mesh_fe *mesh, int *n) {
   const mesh_topology *topology = mesh_topology_of(mesh->kind);
   size_t               total    = 0;
   for (int s = 0; s < mesh_fe_sets(mesh); s++) total += (size_t)mesh->set[s].n;
-  wanted *list = malloc((total + 1) * sizeof *list);
-  *n           = 0;
+  group_face *list = malloc((total + 1) * sizeof *list);
+  *n               = 0;
   for (int s = 0; list && s < MESH_N_SETS; s++)
     for (int f = 0; f < mesh->set[s].n; f++) {
       const int *node  = mesh->set[s].nodes + (size_t)topology->face_nodes * (size_t)f;
       int        least = node[0];
       for (int i = 1; i < topology->face_corners; i++) least = node[i] < least ? node[i] : least;
-      list[(*n)++] = (wanted){s, f, least};
+      list[(*n)++] = (group_face){s, f, least};
     }
   if (list) qsort(list, total, sizeof *list, by_corner);
   return list;
 }
 
 /* element[set][face], label[set][face]: where each face of a group lies. */
-static void locate(const mesh_fe *mesh, const wanted *list, int n,
+static void locate(const mesh_fe *mesh, const group_face *list, int n,
                    int *const element[MESH_MAX_SETS], int *const label[MESH_MAX_SETS]) {
   const mesh_topology *topology = mesh_topology_of(mesh->kind);
   for (int e = 0; e < mesh->n_elements; e++)
     for (int c = 0; c < topology->corners; c++) {
-      wanted  key = {.corner = mesh->connectivity[(size_t)topology->nodes * (size_t)e + (size_t)c]};
-      wanted *found = bsearch(&key, list, (size_t)n, sizeof *list, by_corner);
+      group_face  key   = {.corner =
+                               mesh->connectivity[(size_t)topology->nodes * (size_t)e + (size_t)c]};
+      group_face *found = bsearch(&key, list, (size_t)n, sizeof *list, by_corner);
       while (found && found > list && found[-1].corner == key.corner) found--;
       for (; found && found < list + n && found->corner == key.corner; found++) {
         int s = found->set, f = found->face;
@@ -144,10 +145,10 @@ static void write_groups(const mesh_fe *mesh, int *const element[MESH_MAX_SETS],
 }
 
 static shb_status write_all(const mesh_fe *mesh, FILE *file) {
-  int    *element[MESH_MAX_SETS] = {0}, *label[MESH_MAX_SETS] = {0}, n = 0;
-  wanted *list     = list_faces(mesh, &n);
-  char   *marked   = malloc((size_t)mesh->n_nodes + 1);
-  bool    complete = list && marked;
+  int        *element[MESH_MAX_SETS] = {0}, *label[MESH_MAX_SETS] = {0}, n = 0;
+  group_face *list     = list_faces(mesh, &n);
+  char       *marked   = malloc((size_t)mesh->n_nodes + 1);
+  bool        complete = list && marked;
   for (int s = 0; s < mesh_fe_sets(mesh); s++) {
     element[s] = calloc((size_t)mesh->set[s].n + 1, sizeof **element);
     label[s]   = calloc((size_t)mesh->set[s].n + 1, sizeof **label);

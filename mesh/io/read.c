@@ -66,16 +66,17 @@ static shb_status check_file(const char *path) {
 
 static shb_status read_msh(const char *path, const mesh_names *names, mesh_fe *mesh) {
   SHB_TRY(check_file(path));
-  mesh_kernel kernel;
-  SHB_TRY(mesh_kernel_open(&kernel));
+  mesh_session session;
+  SHB_TRY(mesh_session_open(&session));
   int ierr = 0;
-  mesh_kernel_listen(path);
+  mesh_session_log_start(path);
   gmshMerge(path, &ierr);
-  shb_status heard  = mesh_kernel_heard(path); /* gmsh reads on where an element lacks its nodes */
-  shb_status status = ierr              ? mesh_kernel_fail(SHB_ERR_INPUT, __FILE__, __LINE__, path)
-                      : heard != SHB_OK ? heard
-                                        : mesh_import(path, names, mesh);
-  mesh_kernel_close(&kernel);
+  shb_status logged =
+      mesh_session_log_check(path); /* gmsh reads on where an element lacks its nodes */
+  shb_status status = ierr ? mesh_session_fail(SHB_ERR_INPUT, __FILE__, __LINE__, path)
+                      : logged != SHB_OK ? logged
+                                         : mesh_import(path, names, mesh);
+  mesh_session_close(&session);
   return status;
 }
 

@@ -10,14 +10,14 @@
 #include "fem/element/hourglass.h"
 #include "fem/element/surface.h"
 #include "fem/solver/petsc_error.h"
+#include "mesh/core/group_checks.h"
+#include "mesh/io/read.h"
 #include "modal/common/phases.h"
 #include "modal/condense/condense.h"
 #include "modal/model/mode_selection.h"
 #include "modal/model/reduce.h"
 #include "modal/stage/model_export.h"
 #include "modal/stage/speed_range.h"
-#include "mesh/io/read.h"
-#include "mesh/core/group_checks.h"
 
 enum { FIRST_MODES = 20, MOST_MODES = 1000 }; /* with modes: auto */
 
@@ -253,7 +253,7 @@ static shb_status solve_body(MPI_Comm comm, const mesh_fe *mesh, const modal_set
   for (int i = 0; i < settings->n_regions; i++) materials[i] = settings->region[i].material;
   fem_body body = {mesh, materials, element, {settings->axis, settings->speed}, settings->pressure};
   fem_rules  rules  = settings->full_integration ? FEM_FULL : FEM_STANDARD;
-  shb_status status = fem_fault_status(fem_element_create(mesh->kind, rules, element));
+  shb_status status = fem_petsc_status(fem_element_create(mesh->kind, rules, element));
   if (status == SHB_OK) status = solve(comm, &body, settings, to, progress, result);
   free(element);
   return status;
@@ -391,7 +391,7 @@ shb_status modal_stage(MPI_Comm comm, const char *mesh_path, const char *out_pat
   MPI_Comm_rank(comm, &rank);
   shb_progress_show(progress, 0, "reading %s", mesh_path);
   shb_status status = agree(comm, rank == 0 ? read_mesh(mesh_path, settings, &mesh) : SHB_OK);
-  if (status == SHB_OK) status = fem_fault_status(fem_mesh_broadcast(comm, &mesh));
+  if (status == SHB_OK) status = fem_petsc_status(fem_mesh_broadcast(comm, &mesh));
   if (status == SHB_OK)
     modal_phase(comm, progress, "mesh", "%d nodes, %d elements", mesh.n_nodes, mesh.n_elements);
   if (status == SHB_OK) status = run(comm, rank, out_path, &mesh, settings, provenance, progress);

@@ -9,10 +9,10 @@
 #include <cmocka.h>
 
 #include "fem/body/equilibrium.h"
+#include "fem/body/tangent.h"
 #include "fem/solver/petsc_error.h"
 #include "tests/support/box.h"
 #include "tests/support/fem.h"
-#include "fem/body/tangent.h"
 
 static fem_element *element;
 
@@ -206,8 +206,8 @@ static void no_equilibrium_is_told(void **state) {
   fem_system      system;
   fem_equilibrium at;
   assert_int_equal(fem_system_create(PETSC_COMM_SELF, &mesh, &steel, FEM_STANDARD, &system), 0);
-  PetscPushErrorHandler(fem_fault_handler, NULL);
-  assert_int_equal(fem_fault_status(fem_equilibrium_solve(&body, &system, NULL, &at)),
+  PetscPushErrorHandler(fem_petsc_error_handler, NULL);
+  assert_int_equal(fem_petsc_status(fem_equilibrium_solve(&body, &system, NULL, &at)),
                    SHB_ERR_INPUT);
   PetscPopErrorHandler();
   print_message("%s\n", shb_message());

@@ -127,7 +127,7 @@ static void reactions_add_up_to_the_load(void **state) {
   shake_inside(&mesh, size, .004);
   assert_int_equal(fem_system_create(PETSC_COMM_SELF, &mesh, &steel, FEM_STANDARD, &system), 0);
   assert_int_equal(fem_equilibrium_solve(&body, &system, NULL, &at), 0);
-  assert_int_equal(fem_balance(&body, at.displacement, force, load), 0);
+  assert_int_equal(fem_unbalanced_forces(&body, at.displacement, force, load), 0);
   for (int i = 0; i < mesh.n_nodes; i++) {
     const double *x = mesh.coordinates + 3 * i;
     for (int d = 0; d < 3; d++) {

@@ -85,7 +85,7 @@ static void columns_solve_the_system(void **state) {
   fem_factor *factor;
   bool        definite;
   assert_int_equal(fem_factor_create(b->system.K, 0, &factor), 0);
-  assert_string_equal(fem_factor_by(factor), "CHOLMOD");
+  assert_string_equal(fem_factor_program(factor), "CHOLMOD");
   assert_int_equal(fem_factor_update(factor, b->system.K, &definite), 0);
   assert_true(definite);
   for (int i = 0; i < 10; i++) {
@@ -112,7 +112,7 @@ static void both_programs_agree(void **state) {
   PetscOptionsSetValue(NULL, mumps, "mumps");
   assert_int_equal(fem_factor_create(b->system.K, 0, &other), 0);
   PetscOptionsClearValue(NULL, mumps);
-  assert_string_equal(fem_factor_by(other), "MUMPS");
+  assert_string_equal(fem_factor_program(other), "MUMPS");
   for (int pass = 0; pass < 2; pass++) {
     assert_int_equal(fem_factor_update(one, b->system.K, &definite), 0);
     assert_true(definite);
@@ -172,7 +172,7 @@ static void memory_is_foreseen(void **state) {
   bool         definite;
   assert_int_equal(fem_system_create(PETSC_COMM_SELF, &mesh, &steel, FEM_STANDARD, &system), 0);
   assert_int_equal(fem_factor_create(system.K, 0, &factor), 0);
-  const double before = shb_memory_peak(), foreseen = fem_factor_foreseen(factor);
+  const double before = shb_memory_peak(), foreseen = fem_factor_bytes(factor);
   assert_int_equal(fem_factor_update(factor, system.K, &definite), 0);
   const double taken = shb_memory_peak() - before;
   print_message("%.3g MB foreseen, %.3g MB taken\n", 1e-6 * foreseen, 1e-6 * taken);
@@ -191,7 +191,7 @@ static void too_little_memory_is_one_line(void **state) {
   const double  most   = fem_memory_available();
   assert_true(most > 1e8 && most < 1e16);
   getrlimit(RLIMIT_AS, &was);
-  PetscPushErrorHandler(fem_fault_handler, NULL);
+  PetscPushErrorHandler(fem_petsc_error_handler, NULL);
   assert_int_not_equal(fem_factor_create(b->system.K, 1e15, &factor), 0);
   print_message("%s\n", shb_message());
   assert_non_null(strstr(shb_message(), "GB"));

@@ -15,10 +15,10 @@
 #include "mesh/blade/blade.h"
 #include "mesh/blade/layers.h"
 #include "mesh/blade/section_mesh.h"
+#include "mesh/core/face_match.h"
 #include "mesh/core/fe_mesh.h"
 #include "mesh/core/jacobian.h"
 #include "tests/support/read_mesh.h"
-#include "mesh/core/face_match.h"
 
 static const double degree = M_PI / 180;
 
@@ -327,7 +327,7 @@ static void sharpest_corner(void **state) {
   mesh_fe    mesh;
   double     x[3], sine;
   make(&blade, &mesh);
-  sine = mesh_jacobian_sharpest(&mesh, x);
+  sine = mesh_jacobian_worst_corner(&mesh, x);
   assert_true(sine > .1 && sine < .5);
   assert_true(hypot(x[1], x[2]) > blade.section[0].radius - 1e-9);
   mesh_fe_free(&mesh);
@@ -346,7 +346,7 @@ static void sharpest_corner(void **state) {
                  .n_elements   = 1,
                  .coordinates  = at[0],
                  .connectivity = node};
-  assert_near(mesh_jacobian_sharpest(&one, x), 1.1 / hypot(.7, 1.1) * 3 / sqrt(.16 + .09 + 9),
+  assert_near(mesh_jacobian_worst_corner(&one, x), 1.1 / hypot(.7, 1.1) * 3 / sqrt(.16 + .09 + 9),
               1e-14);
 }
 
@@ -366,9 +366,9 @@ static void section_covers_the_lens(void **state) {
   (void)state;
   const mesh_section_grid grid[3] = {{4, 1, {.2, .2}}, {6, 2, {.15, .1}}, {10, 3, {.1, .2}}};
   for (int g = 0; g < 3; g++) {
-    mesh_plan           plan;
+    mesh_planar         plan;
     mesh_section_place *place;
-    assert_int_equal(mesh_plan_section(&grid[g], &plan, &place), SHB_OK);
+    assert_int_equal(mesh_section_mesh_create(&grid[g], &plan, &place), SHB_OK);
     const int k = grid[g].half, n = grid[g].chord;
     assert_int_equal(plan.n_quads, 6 * k * k + 2 * k * n);
     assert_int_equal(plan.n_contour, 4 * (4 * k + n));
@@ -387,7 +387,7 @@ static void section_covers_the_lens(void **state) {
       }
     assert_true(area < 4. / 3 && area > 4. / 3 * .93);
     free(place);
-    mesh_plan_free(&plan);
+    mesh_planar_free(&plan);
   }
 }
 

@@ -15,12 +15,12 @@
 
 #include "mesh/gmsh/session.h"
 #include "mesh/gmsh/source_settings.h"
+#include "mesh/io/inp_write.h"
 #include "mesh/io/msh_write.h"
+#include "mesh/io/read.h"
+#include "mesh/io/source.h"
 #include "tests/support/box.h"
 #include "tests/support/read_mesh.h"
-#include "mesh/io/read.h"
-#include "mesh/io/inp_write.h"
-#include "mesh/io/source.h"
 
 /* Three blocks along x, cut at these places, of which the middle one is "shank". */
 static const double cut[4] = {0, .013, .029, .037};
@@ -134,18 +134,18 @@ static void volumes_by_name(void **state) {
 /* A solid without names: three bodies that touch, told apart by points in them. */
 static void volumes_by_point(void **state) {
   (void)state;
-  mesh_kernel kernel;
-  mesh_fe     mesh;
-  int         ierr = 0;
-  const char *geo = scratch("solid.geo"), *step = scratch("solid.step"),
+  mesh_session kernel;
+  mesh_fe      mesh;
+  int          ierr = 0;
+  const char  *geo = scratch("solid.geo"), *step = scratch("solid.step"),
              *brep = scratch("solid.brep");
   put(geo, blocks, "");
-  assert_ok(mesh_kernel_open(&kernel));
+  assert_ok(mesh_session_open(&kernel));
   gmshOpen(geo, &ierr);
   gmshModelOccSynchronize(&ierr);
   gmshWrite(step, &ierr);
   gmshWrite(brep, &ierr);
-  mesh_kernel_close(&kernel);
+  mesh_session_close(&kernel);
   assert_int_equal(ierr, 0);
   for (int i = 0; i < 2;
        i++) { /* gmsh writes STEP files in mm: a number in the file is a metre of ours here */

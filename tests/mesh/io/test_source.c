@@ -14,14 +14,14 @@
 
 #include <cmocka.h>
 
+#include "mesh/core/face_match.h"
 #include "mesh/core/jacobian.h"
 #include "mesh/gmsh/session.h"
 #include "mesh/gmsh/size_estimate.h"
+#include "mesh/io/inp_write.h"
 #include "mesh/io/msh_write.h"
 #include "tests/support/box.h"
 #include "tests/support/read_mesh.h"
-#include "mesh/core/face_match.h"
-#include "mesh/io/inp_write.h"
 
 enum { BLADES = 23 };
 
@@ -102,15 +102,15 @@ static double volume(const mesh_fe *mesh) {
 
 /* The box through gmsh into one of its formats. */
 static void convert(const char *from, const char *to, double version, double binary) {
-  mesh_kernel kernel;
-  int         ierr = 0;
-  assert_ok(mesh_kernel_open(&kernel));
+  mesh_session kernel;
+  int          ierr = 0;
+  assert_ok(mesh_session_open(&kernel));
   gmshOpen(from, &ierr);
   gmshOptionSetNumber("Mesh.MshFileVersion", version, &ierr);
   gmshOptionSetNumber("Mesh.Binary", binary, &ierr);
   gmshWrite(to, &ierr);
   assert_int_equal(ierr, 0);
-  mesh_kernel_close(&kernel);
+  mesh_session_close(&kernel);
 }
 
 static void every_msh_format_is_read(void **state) {
@@ -296,14 +296,14 @@ static void solids_are_meshed(void **state) {
   (void)state;
   const char *const name[3] = {"block.geo", "block.step", "block.brep"};
   put(scratch("block.geo"), "SetFactory(\"OpenCASCADE\");\nBox(1) = {0, -10, 300, 40, 20, 50};\n");
-  mesh_kernel kernel;
-  int         ierr = 0;
-  assert_ok(mesh_kernel_open(&kernel));
+  mesh_session kernel;
+  int          ierr = 0;
+  assert_ok(mesh_session_open(&kernel));
   gmshOpen(scratch("block.geo"), &ierr);
   gmshWrite(scratch("block.step"), &ierr);
   gmshWrite(scratch("block.brep"), &ierr);
   assert_int_equal(ierr, 0);
-  mesh_kernel_close(&kernel);
+  mesh_session_close(&kernel);
   for (int i = 0; i < 3; i++) {
     mesh_fe     mesh;
     mesh_source source = {.path = scratch(name[i]), .unit = 1e-3, .size = .01, .axis = MESH_AXIS_X};
@@ -384,12 +384,12 @@ static void nodes_are_foreseen(void **state) {
     put_block(source.path, i % 2 ? 1e3 * h : 5);
     source.size = i % 2 ? 0 : h;
     assert_ok(mesh_source_read(&source, NULL, &mesh));
-    double ratio = mesh_foresee_nodes(&block, h) / mesh.n_nodes;
+    double ratio = mesh_estimate_nodes(&block, h) / mesh.n_nodes;
     if (!(ratio > .7 && ratio < 1.5)) fail_msg("size %g: %g of the nodes foreseen", h, ratio);
     mesh_fe_free(&mesh);
   }
-  double least = mesh_foresee_size(&block, 1e5);
-  assert_near(mesh_foresee_nodes(&block, least), 1e5, 500);
+  double least = mesh_estimate_size(&block, 1e5);
+  assert_near(mesh_estimate_nodes(&block, least), 1e5, 500);
   source.size = 1e-9;
   refused(&source, "many.geo: mesh.size 1e-09 m would give about 2.5e+16 nodes; with ");
   source.size = 0;

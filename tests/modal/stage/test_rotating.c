@@ -74,7 +74,7 @@ static shb_status solve(const beam *b, double speed, double flap[MODES], double 
   mesh_fe_free(&mesh);
   free(element);
   free(u);
-  return fem_fault_status(code);
+  return fem_petsc_status(code);
 }
 
 /* ------------------------------------------------------------------ beam theory */
@@ -187,7 +187,7 @@ int main(void) {
       cmocka_unit_test(buckling_is_refused),
   };
   if (SlepcInitialize(NULL, NULL, NULL, NULL)) return 1;
-  PetscPushErrorHandler(fem_fault_handler, NULL);
+  PetscPushErrorHandler(fem_petsc_error_handler, NULL);
   int failures = cmocka_run_group_tests_name("tet10", tests, NULL, NULL);
   failures += cmocka_run_group_tests_name("hex20", tests, hexahedra, NULL);
   PetscPopErrorHandler();
