@@ -3,7 +3,7 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
-/* Union-find over nodes, paths halved on the way up. */
+/* Root of a node in the union-find forest, with path halving. */
 static int find(int *parent, int i) {
   while (parent[i] != i) {
     parent[i] = parent[parent[i]];

@@ -19,7 +19,7 @@ static double anisotropic(const double C[6][6], const double pulled[3][3]) {
   return sum;
 }
 
-/* lambda (tr e)^2 + 2 mu e : e, or e C e, e = sym(F^T H). */
+/* lambda (tr e)^2 + 2 mu e : e, or e C e if anisotropic; e = sym(F^T H). */
 static double elastic(const fem_material *material, const double F[3][3], const double H[3][3]) {
   const fem_lame lame = fem_lame_of(material);
   double         pulled[3][3], trace = 0, square = 0;
@@ -46,7 +46,7 @@ static double geometric(const double S[3][3], const double H[3][3]) {
   return sum;
 }
 
-/* What a point holds of the state: nothing, at rest. */
+/* Deformation of the state at a point. */
 typedef struct {
   bool            rest;
   fem_deformation at;
@@ -60,7 +60,10 @@ static double density(const fem_material *material, const point_state *state_her
          geometric((const double(*)[3])state_here->at.S, h);
 }
 
-/* energy[i] += that of the element, of n fields u[i][node][3]; state: NULL at rest. */
+/* Add the stored energy of an element for n fields.
+ *   state   in      [nodes][3], NULL at rest
+ *   u       in      [n][nodes][3]
+ *   energy  in/out  [n] */
 static void add_stored(const fem_element *element, const fem_material *material,
                        const double x[][3], const double state[][3], int n,
                        const double u[][MESH_NODES][3], double *energy) {

@@ -9,13 +9,14 @@
 #include "fem/solver/factor.h"
 
 enum {
-  MAX_ITERATIONS = 25, /* Newton, a load step */
-  MAX_HALVINGS   = 6,  /* of the load step */
-  MAX_KEPT   = 12, /* conjugate gradients up to which a factor is kept: one costs 30 to 70 solves */
-  MAX_SOLVES = 100, /* conjugate gradients, a linear system */
+  MAX_ITERATIONS = 25,  /* Newton iterations in a load step */
+  MAX_HALVINGS   = 6,   /* halvings of the load step */
+  MAX_KEPT       = 12,  /* CG iterations with a kept factor; a new one costs 30 to 70 solves */
+  MAX_SOLVES     = 100, /* CG iterations in a linear system */
 };
 
-static const double tolerance_u = 1e-9; /* relative correction; what is left is about its square */
+/* Relative correction; the remaining error is about its square. */
+static const double tolerance_u = 1e-9;
 
 typedef enum { WORKING, CONVERGED, FAILED, INTERRUPTED } newton_outcome;
 
@@ -26,9 +27,9 @@ typedef struct {
   fem_equilibrium *out;
   fem_factor      *factor;
   KSP              ksp;
-  Vec              R, d;             /* out of balance; direction */
+  Vec              R, d;             /* unbalanced forces; direction */
   double          *u, *step, *trial; /* [n_nodes][3]: displacement, direction, u + alpha step */
-  double           slope;            /* d.R at u */
+  double           slope;            /* d . R at u */
 } newton;
 
 /* ------------------------------------------------------------------ linear systems */
@@ -45,7 +46,7 @@ static PetscErrorCode create_solver(newton *n) {
   PetscFunctionReturn(0);
 }
 
-/* One solve with the factor at hand, or with a new one. */
+/* Solve once, with the existing factor or a new one. */
 static PetscErrorCode solve_with(newton *n, bool refactor, KSPConvergedReason *reason,
                                  PetscInt *count) {
   bool definite = true;
@@ -66,7 +67,7 @@ static PetscErrorCode solve_with(newton *n, bool refactor, KSPConvergedReason *r
   PetscFunctionReturn(0);
 }
 
-/* d = -K^-1 R to a relative tolerance; false if K is not positive definite. */
+/* d = -K^-1 R to a relative tolerance. found: false if K is not positive definite. */
 static PetscErrorCode find_direction(newton *n, double tolerance, bool *refactor, bool *found) {
   KSPConvergedReason reason;
   PetscInt           count;
@@ -84,7 +85,7 @@ static PetscErrorCode find_direction(newton *n, double tolerance, bool *refactor
 
 /* ------------------------------------------------------------------ line search */
 
-/* The derivative of the potential at u + alpha d along d; R is left there. */
+/* Slope of the potential at u + alpha d along d. Leaves R at u + alpha d. */
 static PetscErrorCode slope_at(newton *n, double alpha, double *slope) {
   const size_t size = 3 * (size_t)n->system->n_nodes;
   PetscFunctionBeginUser;
@@ -94,10 +95,11 @@ static PetscErrorCode slope_at(newton *n, double alpha, double *slope) {
   PetscFunctionReturn(0);
 }
 
-/* First zero in (0, 1) of the cubic through (0, g[0]), (1/3, g[1]), (2/3, g[2]), (1, g[3]), g[0] < 0 < g[3]. */
+/* First zero in (0, 1) of the cubic through (0, g[0]), (1/3, g[1]), (2/3, g[2]), (1, g[3]) with
+ * g[0] < 0 < g[3]. */
 static double first_zero(const double g[4]) {
   enum { SAMPLES = 64 };
-  double c[4]; /* Newton's form: differences */
+  double c[4]; /* divided differences */
   memcpy(c, g, sizeof c);
   for (int order = 1; order < 4; order++)
     for (int i = 3; i >= order; i--) c[i] = (c[i] - c[i - 1]) * 3 / order;
@@ -118,7 +120,8 @@ static double first_zero(const double g[4]) {
   return (low + high) / 2;
 }
 
-/* How far to go along d: all the way unless that passes the least potential by much. R is left at u + alpha d. */
+/* Step length along d: 1, unless the step passes the minimum of the potential by far. Leaves R at u
+ * + alpha d. */
 static PetscErrorCode line_search(newton *n, double *alpha) {
   double g[4], at;
 
@@ -139,7 +142,7 @@ static PetscErrorCode line_search(newton *n, double *alpha) {
 static double max_norm(const double *v, size_t n) {
   double most = 0;
   for (size_t i = 0; i < n; i++)
-    if (!(fabs(v[i]) <= most)) most = fabs(v[i]); /* keeps NaN */
+    if (!(fabs(v[i]) <= most)) most = fabs(v[i]); /* also true for NaN */
   return most;
 }
 
@@ -151,7 +154,7 @@ static PetscErrorCode is_interrupted(const newton *n, bool *yes) {
   PetscFunctionReturn(0);
 }
 
-/* One Newton step with the K at hand; *change: |alpha d| / |u|. */
+/* One Newton step with the current K. change: |alpha d| / |u|. */
 static PetscErrorCode newton_step(newton *n, bool *refactor, double *change,
                                   newton_outcome *result) {
   const size_t size      = 3 * (size_t)n->system->n_nodes;
@@ -177,7 +180,8 @@ static PetscErrorCode newton_step(newton *n, bool *refactor, double *change,
   PetscFunctionReturn(0);
 }
 
-/* Equilibrium at body.rotation, from u and with the tangent at hand; K ends as the tangent there. */
+/* Newton iterations at the load of body, from u and the current tangent. Leaves K at the
+ * solution. */
 static PetscErrorCode iterate(newton *n, bool *refactor, newton_outcome *result) {
   double change = 1;
   PetscFunctionBeginUser;
@@ -195,7 +199,7 @@ static PetscErrorCode iterate(newton *n, bool *refactor, newton_outcome *result)
 
 /* ------------------------------------------------------------------ load steps */
 
-/* The loads of the case, a share of them. */
+/* A share of the loads of the case. */
 static void set_load(newton *n, const fem_body *whole, double share) {
   n->body.rotation.speed = whole->rotation.speed * sqrt(share);
   n->body.pressure       = whole->pressure * share;
@@ -205,7 +209,7 @@ static PetscErrorCode raise_load(newton *n, const fem_body *whole, newton_outcom
   const size_t size  = 3 * (size_t)n->system->n_nodes;
   const double speed = whole->rotation.speed;
   const char  *name  = speed == 0 ? "pressure" : "speed";
-  double       load = 0, step = 1, *u_converged; /* load: share of Omega^2 and p */
+  double       load = 0, step = 1, *u_converged; /* load: share of Omega^2 and pressure */
   bool         refactor = true;
 
   PetscFunctionBeginUser;
@@ -232,7 +236,7 @@ static PetscErrorCode raise_load(newton *n, const fem_body *whole, newton_outcom
     PetscCall(PetscArraycpy(n->u, u_converged, size));
     set_load(n, whole, load);
     PetscCall(fem_tangent_assemble(&n->body, n->u, n->system));
-    refactor = n->out->factorisations > made; /* the factor is of a state that was given up */
+    refactor = n->out->factorisations > made; /* the factor belongs to a rejected state */
   }
   PetscCall(PetscFree(u_converged));
   PetscFunctionReturn(0);

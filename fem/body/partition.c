@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* malloc, not PetscMalloc: the mesh is freed by mesh_fe_free. */
+/* Uses malloc, as mesh_fe_free frees the mesh. */
 static PetscErrorCode share(MPI_Comm comm, int rank, void **data, size_t count, MPI_Datatype type) {
   int size;
   PetscFunctionBeginUser;
@@ -61,7 +61,7 @@ typedef struct {
   int    node;
 } free_node;
 
-/* Ties by node number: the order, hence the partition, is the same everywhere. */
+/* Node numbers break ties, so every rank sorts alike. */
 static int compare(const void *a, const void *b, int d) {
   const free_node *p = a, *q = b;
   if (p->x[d] != q->x[d]) return p->x[d] < q->x[d] ? -1 : 1;

@@ -7,7 +7,7 @@
 
 enum { FACE_DOFS = 3 * MESH_FACE_NODES };
 
-/* x,r and x,s at a point of the rule. */
+/* Tangent vectors x,r and x,s at a point of the rule. */
 static void tangents(const fem_face_rule *rule, int point, const double x[][3], double r[3],
                      double s[3]) {
   memset(r, 0, 3 * sizeof *r);
@@ -42,7 +42,7 @@ void fem_face_pressure_stiffness(const fem_face_rule *rule, double p, const doub
         double half = p * rule->weight[q] * rule->shape[q][i] / 2, v[3];
         for (int d = 0; d < 3; d++)
           v[d] = half * (rule->gradient[q][j][0] * s[d] - rule->gradient[q][j][1] * r[d]);
-        for (int d = 0; d < 3; d++) { /* (e_b cross v)_a is v_d, or -v_d if (a, b, d) is odd */
+        for (int d = 0; d < 3; d++) { /* (e_b x v)_a is v_d, or -v_d if (a, b, d) is odd */
           int    b = (d + 1) % 3, c = (d + 2) % 3;
           double sign[2]  = {v[d], -v[d]};
           int    at[2][2] = {{b, c}, {c, b}};

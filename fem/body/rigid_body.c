@@ -2,13 +2,13 @@
 
 #include "mesh/base/vec3.h"
 
-/* Motion r of a point at x. */
+/* Velocity of rigid motion r at a point x. */
 static void rigid_motion(int r, const double axis[3], const double x[3], double v[3]) {
   for (int d = 0; d < 3; d++) v[d] = r == d;
   if (r == 3) vec3_cross(axis, x, v);
 }
 
-/* f_i = sum_j m_ij r(x_j); returns sum_ij r_i m_ij r_j */
+/* f_i = sum_j m_ij r(x_j). Returns sum_ij r_i m_ij r_j. */
 static double element_load(int n, int r, const double *m, const double axis[3], const double x[][3],
                            double f[][3]) {
   double v[MESH_NODES][3], sum = 0;
@@ -22,7 +22,8 @@ static double element_load(int n, int r, const double *m, const double axis[3], 
   return sum;
 }
 
-/* The rank that counts an element in the sums: that of its first node that is free. Elements with none: rank 0. */
+/* Does this rank count the element in the sums? The owner of its first free node does; rank 0 if it
+ * has none. */
 static bool counts(const fem_system *system, int n, const PetscInt *columns, int rank) {
   for (int i = 0; i < n; i++)
     if (columns[i] >= 0) return columns[i] >= system->first && columns[i] < system->last;

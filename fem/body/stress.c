@@ -5,13 +5,13 @@
 #include "fem/body/pressure.h"
 #include "fem/element/finite_strain.h"
 
-/* Linear functions of the reference coordinates fitted to values at the points of a rule: node value = sum_p
- * at[node][p] value_p. */
+/* Extrapolation from the points of a rule to the nodes by a linear function of the reference
+ * coordinates: node value = sum_p at[node][p] value_p. */
 typedef struct {
   double at[MESH_NODES][FEM_POINTS];
 } extrapolation;
 
-/* Inverse of a symmetric positive definite 4x4 matrix, by Gauss and Jordan. */
+/* Inverse of a symmetric positive definite 4x4 matrix by Gauss-Jordan elimination. */
 static void invert(double A[4][4], double X[4][4]) {
   for (int i = 0; i < 4; i++)
     for (int j = 0; j < 4; j++) X[i][j] = i == j;
@@ -25,7 +25,7 @@ static void invert(double A[4][4], double X[4][4]) {
   }
 }
 
-/* (1, r, s, t) of a point: the map of the reference element onto itself. */
+/* Basis (1, r, s, t) at a point with these shape functions. */
 static void linear_at(const mesh_topology *topology, const double *shape, double b[4]) {
   b[0] = 1;
   b[1] = b[2] = b[3] = 0;
@@ -54,7 +54,7 @@ static void fit(const mesh_topology *topology, const fem_rule *rule, extrapolati
   }
 }
 
-/* Add the element's volume times its nodal stresses; returns the volume. */
+/* Volume of the element times its nodal stresses. Returns the volume. */
 static double add_element(const fem_body *body, const fem_material *own, const double x[][3],
                           const double u[][3], const fem_rule *rule, const extrapolation *to,
                           double nodal[][FEM_STRESSES]) {

@@ -5,12 +5,12 @@
 
 #include "mesh/base/vec3.h"
 
-/* Compiled for each number of nodes. */
+/* Inlined, so that each number of nodes is compiled separately. */
 #define KERNEL static inline __attribute__((always_inline))
 
 void fem_displacement_gradient(int n, const double g[][3], const double u[][3], double H[3][3]) {
   memset(H, 0, 9 * sizeof(double));
-  for (int i = 1; i < n; i++) /* from node 0: a translation leaves no trace */
+  for (int i = 1; i < n; i++) /* relative to node 0, so that a translation cancels */
     for (int a = 0; a < 3; a++)
       for (int d = 0; d < 3; d++) H[a][d] += (u[i][a] - u[0][a]) * g[i][d];
 }
@@ -27,7 +27,7 @@ static void anisotropic_stress(const fem_material *material, const double E[3][3
   S[1][2] = S[2][1] = stress[5];
 }
 
-/* E from H, not from F^T F - I, which would lose the digits of small strains. */
+/* E is computed from H. F^T F - I would lose the digits of small strains. */
 void fem_deformation_at(const fem_material *material, const double H[3][3], fem_deformation *at) {
   const fem_lame lame = fem_lame_of(material);
   double         E[3][3], trace;
@@ -80,7 +80,7 @@ void fem_element_force(const fem_element *element, const fem_material *material,
   }
 }
 
-/* The upper triangle of one point's share. */
+/* Add the contribution of one point to the upper triangle. */
 KERNEL void add_point(int n, const fem_lame *lame, double volume, const fem_deformation *at,
                       const double g[][3], double *K) {
   const double lambda = volume * lame->lambda, mu = volume * lame->mu;

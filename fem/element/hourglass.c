@@ -5,7 +5,7 @@
 
 enum { FACES = 6, CORNERS = 4 };
 
-/* Opposite faces of mesh_topology's hexahedron. */
+/* Opposite faces of the hexahedron of mesh_topology. */
 static const int opposite[3][2] = {{0, 5}, {1, 4}, {2, 3}};
 
 typedef struct {
@@ -31,7 +31,7 @@ static face_key make_key(const int *nodes, const int *local, int face) {
   return s;
 }
 
-/* held[FACES * element + face] = 1 where another face, or the clamp, has the same corners. */
+/* supported[FACES * element + face] = 1 where another face, or the clamp, has the same corners. */
 static void find_supported(const mesh_fe *mesh, face_key *keys, char *supported) {
   const mesh_face_set *root = &mesh->set[MESH_ROOT];
   size_t               n    = 0;

@@ -7,7 +7,7 @@
 
 static const int place[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
 
-/* Inverse of the compliance's normal part; false unless it is positive definite. */
+/* Inverse of the normal part of the compliance. False unless it is positive definite. */
 static bool invert(const double S[3][3], double C[3][3]) {
   double minor = S[0][0] * S[1][1] - S[0][1] * S[1][0], det = 0;
   for (int i = 0; i < 3; i++)
@@ -22,7 +22,7 @@ static bool invert(const double S[3][3], double C[3][3]) {
   return true;
 }
 
-/* Stiffness in the material's own axes. The compliance is scaled by E1: determinants near 1. */
+/* Stiffness in material axes. The compliance is scaled by E1, so that determinants are near 1. */
 static shb_status stiffness_in_own_axes(const fem_orthotropic *from, double C[6][6]) {
   const double *E = from->E, *nu = from->nu, scale = E[0];
   double        S[3][3], normal[3][3];
@@ -42,7 +42,7 @@ static shb_status stiffness_in_own_axes(const fem_orthotropic *from, double C[6]
   return SHB_OK;
 }
 
-/* Rows: the material's axes in mesh axes. */
+/* Rows: the material axes in mesh axes. */
 static shb_status find_axes(const fem_orthotropic *from, double axes[3][3]) {
   const double first = vec3_norm(from->axis);
   for (int d = 0; d < 3; d++) axes[0][d] = from->axis[d] / first;

@@ -6,7 +6,7 @@
 
 #include "fem/solver/supernodal_solve.h"
 
-enum { MANY = 12 }; /* right-hand sides for which calls to BLAS are the faster way */
+enum { MANY = 12 }; /* number of right-hand sides from which calls to BLAS are faster */
 
 /* Upper triangle of a symmetric matrix (sequential SBAIJ, block size 3) by block rows. */
 typedef struct {
@@ -17,16 +17,16 @@ typedef struct {
 
 struct fem_cholesky {
   int             n;     /* block rows */
-  int            *place; /* [n] of a block row in the factor */
+  int            *place; /* [n] index of a block row in the factor */
   cholmod_factor *L;
   fem_lanes      *few;      /* [3 n] right-hand sides in the factor's order */
   fem_lanes      *few_work; /* [largest supernode] */
-  cholmod_dense  *x;        /* [3 n][columns] many of them */
-  cholmod_dense  *work;     /* CHOLMOD's own */
+  cholmod_dense  *x;        /* [3 n][columns] many right-hand sides */
+  cholmod_dense  *work;     /* workspace of CHOLMOD */
   cholmod_common  common;
 };
 
-/* Look at the blocks of A in place; A must not change until they are given back. */
+/* Access the blocks of A in place. A must not change until give_back_blocks. */
 static PetscErrorCode borrow_blocks(Mat A, block_rows *b) {
   PetscBool done;
   double   *value;
@@ -55,7 +55,8 @@ static void start_common(cholmod_common *common) {
   common->zrelax[0] = .3, common->zrelax[1] = .05, common->zrelax[2] = .02;
 }
 
-/* Nested dissection of the graph of the nodes: three times smaller than that of the dofs, and as good. */
+/* Nested dissection of the graph of the nodes. It is three times smaller than that of the dofs and
+ * as good. */
 static bool order_nodes(const block_rows *b, cholmod_common *common, int *place) {
   const size_t    n = (size_t)b->n, count = (size_t)b->start[n];
   cholmod_sparse *graph = cholmod_allocate_sparse(n, n, count, 1, 1, -1, CHOLMOD_PATTERN, common);
@@ -74,7 +75,9 @@ static bool order_nodes(const block_rows *b, cholmod_common *common, int *place)
   return good;
 }
 
-/* Columns of the permuted lower triangle: of block column b the blocks below its diagonal follow that. next: [n] zeros. */
+/* Column starts of the permuted lower triangle. In block column b the blocks below the diagonal
+ * follow the diagonal block.
+ *   next  scratch  [n], zero on entry and exit */
 static void count_columns(const block_rows *b, const int *place, int *next, int *start) {
   int total = 0;
   for (PetscInt r = 0; r < b->n; r++)
@@ -100,7 +103,8 @@ static void put_diagonal(const double *B, int c, const int *start, int *row, dou
     }
 }
 
-/* Block of rows low and columns high (or turned round) as the slot-th below the diagonal of column low. */
+/* Put a block of rows low and columns high, or its transpose, as the slot-th block below the
+ * diagonal of column low. */
 static void put_block(const double *B, bool turned, int low, int high, int slot, const int *start,
                       int *row, double *value) {
   for (int d = 0; d < 3; d++) {
@@ -112,7 +116,7 @@ static void put_block(const double *B, bool turned, int low, int high, int slot,
   }
 }
 
-/* The permuted lower triangle; NULL: out of memory. */
+/* The permuted lower triangle; NULL when out of memory. */
 static cholmod_sparse *permute(const block_rows *b, const int *place, cholmod_common *common) {
   const size_t    n = (size_t)b->n, entries = 9 * (size_t)b->start[n] - 3 * n;
   cholmod_sparse *A =
@@ -137,7 +141,7 @@ static cholmod_sparse *permute(const block_rows *b, const int *place, cholmod_co
   return A;
 }
 
-/* Supernodes of the permuted matrix. */
+/* Symbolic factorisation of the permuted matrix. */
 static void analyse(const block_rows *b, fem_cholesky *factor) {
   cholmod_common *common = &factor->common;
   cholmod_sparse *A;
@@ -180,8 +184,9 @@ void fem_cholesky_bytes(const fem_cholesky *factor, double *factor_bytes, double
   *workspace              = 8. * (double)L->maxcsize + 12. * factor->common.anz;
 }
 
-/* On one thread: CHOLMOD copies panels with four threads of OpenMP that wait for each other in between, which on a busy machine takes more processor
- * time than the arithmetic. Without active levels its parallel regions are of one thread. */
+/* Factorise on one thread. CHOLMOD copies panels with four OpenMP threads that wait for each other.
+ * On a busy machine this takes more processor time than the arithmetic. With no active levels its
+ * parallel regions have one thread. */
 static void factorise(cholmod_sparse *A, cholmod_factor *L, cholmod_common *common) {
   const int levels = omp_get_max_active_levels();
   omp_set_max_active_levels(0);
@@ -205,7 +210,7 @@ PetscErrorCode fem_cholesky_update(fem_cholesky *factor, Mat A, bool *definite) 
   PetscFunctionReturn(0);
 }
 
-/* Room for count right-hand sides; kept from solve to solve. */
+/* Workspace for count right-hand sides, kept between solves. */
 static PetscErrorCode make_room(fem_cholesky *factor, size_t count) {
   cholmod_common *common = &factor->common;
   PetscFunctionBeginUser;
@@ -248,7 +253,7 @@ static PetscErrorCode make_room_for_few(fem_cholesky *factor) {
   PetscFunctionReturn(0);
 }
 
-/* count <= FEM_LANES; the lanes that are left over are zero. */
+/* Solve for count <= FEM_LANES columns; unused lanes are zero. */
 static PetscErrorCode solve_few(fem_cholesky *factor, size_t count, const double *b, size_t ldb,
                                 double *x, size_t ldx) {
   const size_t n = (size_t)factor->n;

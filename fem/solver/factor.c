@@ -15,7 +15,7 @@ struct fem_factor {
 
 static const double giga = 1e9;
 
-/* Does the user want MUMPS on one rank? */
+/* True on several ranks, or if the user asks for MUMPS. */
 static PetscErrorCode wants_mumps(MPI_Comm comm, bool *yes) {
   char      name[32] = "";
   PetscBool given, is_mumps;
@@ -31,7 +31,9 @@ static PetscErrorCode wants_mumps(MPI_Comm comm, bool *yes) {
 
 /* ------------------------------------------------------------------ memory */
 
-/* All ranks of a machine share what it has: the worst machine decides. mine: bytes that this rank will take. */
+/* Bytes needed and available on the machine with the smallest margin. Ranks of a machine share its
+ * memory.
+ *   mine  in  bytes that this rank needs */
 static PetscErrorCode compare(MPI_Comm comm, double mine, double *needed, double *available) {
   MPI_Comm machine;
   struct {
@@ -53,7 +55,7 @@ static PetscErrorCode compare(MPI_Comm comm, double mine, double *needed, double
   PetscFunctionReturn(0);
 }
 
-/* Nodes that fit, to two digits: memory grows as nodes^1.4 on blades. */
+/* Number of nodes that fit, to two digits: on blades memory grows as nodes^1.4. */
 static double nodes_that_fit(double nodes, double share) {
   const double fit = nodes * pow(share, 1 / 1.4);
   const double by  = pow(10, fmax(floor(log10(fmax(fit, 1))) - 1, 0));
@@ -130,8 +132,8 @@ const char *fem_factor_program(const fem_factor *factor) {
 
 /* ------------------------------------------------------------------ factor and solves */
 
-/* Negative pivots that MUMPS met (on one rank all of them; on more, its dense root is not counted but must be
- * positive definite too). */
+/* definite: MUMPS met no negative pivots. On several ranks its dense root is not counted, but must
+ * be positive definite as well. */
 static PetscErrorCode update_mumps(Mat mumps, Mat A, bool *definite) {
   MatFactorInfo  info;
   MatFactorError error;

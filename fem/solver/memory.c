@@ -5,7 +5,7 @@
 #include <string.h>
 #include <sys/resource.h>
 
-/* The number after "name" in a file of lines "name number kB"; bytes; infinite if there is none. */
+/* Value of a line "name number kB" of a file, bytes; infinite if there is none. */
 static double kilobytes_of(const char *path, const char *name) {
   char   line[256];
   double value = INFINITY, read;
@@ -17,7 +17,7 @@ static double kilobytes_of(const char *path, const char *name) {
   return value;
 }
 
-/* The only number of a file; infinite where there is none ("max"). */
+/* The number in a file; infinite if there is none ("max"). */
 static double number_of(const char *folder, const char *name) {
   char   path[1100];
   double value = INFINITY;
@@ -29,7 +29,7 @@ static double number_of(const char *folder, const char *name) {
   return value;
 }
 
-/* "key number" lines of memory.stat: pages of files that can be dropped are not lost to us. */
+/* Bytes of file pages that the kernel can drop, from memory.stat. */
 static double reclaimable(const char *folder) {
   char   path[1100], line[256];
   double value = 0, read;
@@ -46,7 +46,7 @@ static double left_in_group(const char *folder, const char *limit, const char *u
   return isfinite(most) && isfinite(used) ? fmax(most - used + reclaimable(folder), 0) : INFINITY;
 }
 
-/* What the group at root + path and those around it leave. */
+/* Least memory left in the group at root + path and the groups around it. */
 static double left_in_tree(const char *root, const char *path, const char *limit,
                            const char *usage) {
   char   folder[1024];
@@ -60,7 +60,8 @@ static double left_in_tree(const char *root, const char *path, const char *limit
   }
 }
 
-/* Lines "number:controllers:path"; of version 2 "0::path". */
+/* Memory left in the control groups of this process. Lines of /proc/self/cgroup are
+ * "number:controllers:path", in version 2 "0::path". */
 static double left_in_groups(void) {
   char   line[600];
   double least = INFINITY;
@@ -78,7 +79,7 @@ static double left_in_groups(void) {
   return least;
 }
 
-/* Of ulimit -v. */
+/* Address space left by ulimit -v. */
 static double left_to_address(void) {
   struct rlimit limit;
   double        used = kilobytes_of("/proc/self/status", "VmSize:");

@@ -28,6 +28,15 @@ void mesh_axis_rotate(mesh_axis axis, double angle, const double point[3], doubl
   for (int i = 0; i < 3; i++) out[i] = c * point[i] + s * axp[i] + (1 - c) * along * a[i];
 }
 
+void mesh_axis_matrix(mesh_axis axis, double angle, double matrix[16]) {
+  for (int i = 0; i < 16; i++) matrix[i] = i == 15;
+  for (int column = 0; column < 3; column++) {
+    double unit[3] = {column == 0, column == 1, column == 2};
+    mesh_axis_rotate(axis, angle, unit, unit);
+    for (int row = 0; row < 3; row++) matrix[4 * row + column] = unit[row];
+  }
+}
+
 void mesh_axis_stacking(mesh_axis axis, double radial[3]) {
   int component = axis % 3 == MESH_AXIS_Z ? 0 : 2;
   for (int i = 0; i < 3; i++) radial[i] = i == component;

@@ -6,7 +6,7 @@
 
 #include "mesh/base/clock.h"
 
-/* Of this program alone: what getrusage tells counts whoever started it too. */
+/* VmHWM counts this program alone. The peak of getrusage includes the process that started it. */
 double shb_memory_peak(void) {
   char          line[256];
   double        kilobytes = -1;

@@ -70,7 +70,7 @@ void shb_progress_phase(shb_progress *progress, const char *name, const char *fo
 static volatile sig_atomic_t interrupted; /* number of the first signal */
 static volatile sig_atomic_t grace_seconds;
 
-/* Only calls that a signal handler may make. */
+/* Calls only functions that are safe in a signal handler. */
 static void exit_now(void) {
   static const char text[] = "shroudhb: ended at once; what was published before is kept\n";
   shb_publish_abandon();
@@ -102,7 +102,7 @@ void shb_interrupt_catch(void) {
   install(SIGINT, on_signal);
   install(SIGTERM, on_signal);
   install(SIGALRM, on_alarm);
-  signal(SIGXFSZ, SIG_IGN); /* a file size limit shall fail the write, not kill the process */
+  signal(SIGXFSZ, SIG_IGN); /* a file over the size limit fails the write, not the process */
 }
 
 void shb_interrupt_grace(int seconds) {

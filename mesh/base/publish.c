@@ -13,7 +13,8 @@
 
 enum { MAX_TEMPORARY = 8 };
 
-/* Temporary files that may exist; one that was published or removed does no harm here. Longer names are not kept. */
+/* Names of temporary files that may exist. Names of published or removed files do no harm. Longer
+ * names are not registered. */
 static struct {
   volatile sig_atomic_t used;
   char                  name[1024];
@@ -34,7 +35,7 @@ void shb_publish_abandon(void) {
 }
 
 char *shb_publish_temporary(const char *path) {
-  signal(SIGXFSZ, SIG_IGN); /* a limit on file sizes is then an error like a full disk */
+  signal(SIGXFSZ, SIG_IGN); /* a write beyond the file size limit is then an error */
   size_t size = strlen(path) + 32;
   char  *name = malloc(size);
   if (name) snprintf(name, size, "%s.tmp.%ld", path, (long)getpid());
@@ -52,7 +53,7 @@ static int sync_path(const char *path, int flags) {
   return ret;
 }
 
-/* Make the rename itself durable; file systems that cannot sync a folder are let be. */
+/* Make the rename itself durable. File systems that cannot sync a folder are skipped. */
 static void sync_folder(const char *path) {
   const char *slash = strrchr(path, '/');
   if (!slash) {
@@ -65,7 +66,7 @@ static void sync_folder(const char *path) {
   free(folder);
 }
 
-/* Renaming onto a device, a pipe or a link would take its place. */
+/* A rename would replace a device, a pipe or a link. */
 static int can_be_replaced(const char *path) {
   struct stat about;
   return lstat(path, &about) != 0 || S_ISREG(about.st_mode) || S_ISDIR(about.st_mode);

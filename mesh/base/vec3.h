@@ -1,4 +1,4 @@
-/* Vectors of three components. */
+/* Vectors with three components. */
 #ifndef MESH_BASE_VEC3_H
 #define MESH_BASE_VEC3_H
 

@@ -9,14 +9,14 @@
 
 enum { N = MESH_AIRFOIL_POINTS };
 
-/* Thickness over its greatest value; the greatest is where 1.3 - 3.8 s + 1.8 s^2 = 0. */
+/* Thickness divided by its maximum, which lies where 1.3 - 3.8 s + 1.8 s^2 = 0. */
 static double thickness_at(double s) {
   const double skew = 0.3, top = (3.8 - sqrt(3.8 * 3.8 - 4 * 1.3 * 1.8)) / 3.6;
   double       here = s * (1 - s) * (1 + skew * (1 - 2 * s));
   return here / (top * (1 - top) * (1 + skew * (1 - 2 * top)));
 }
 
-/* Centroid of the closed polygon suction forward, pressure back, in (xi, eta). */
+/* Centroid in (xi, eta) of the closed polygon: suction side forward, pressure side back. */
 static void centroid(double suction[N][2], double pressure[N][2], double centre[2]) {
   double loop[2 * N - 2][2], area = 0;
   for (int i = 0; i < N; i++) memcpy(loop[i], suction[i], sizeof loop[i]);
@@ -31,7 +31,7 @@ static void centroid(double suction[N][2], double pressure[N][2], double centre[
   for (int d = 0; d < 2; d++) centre[d] /= area;
 }
 
-/* The first section that bends, or -1. */
+/* Index of the first section with camber, or -1. */
 static int cambered_section(const mesh_blade *blade) {
   for (int i = 0; i < blade->n_sections; i++)
     if (blade->section[i].camber != 0) return i;
@@ -119,7 +119,7 @@ static shb_status check_section(const mesh_blade *blade, int i) {
   return SHB_OK;
 }
 
-/* Both ends run a little on, into root and shroud: there must still be an airfoil. */
+/* The loft extends into root and shroud; the sections at its ends must still have a thickness. */
 static shb_status check_extension(const mesh_blade *blade) {
   int          last  = blade->n_sections - 1;
   mesh_section below = mesh_airfoil_at(blade, mesh_airfoil_low_radius(blade));
@@ -142,7 +142,7 @@ shb_status mesh_airfoil_check(const mesh_blade *blade) {
   return check_extension(blade);
 }
 
-/* Spline through one side's points; the edges' points are shared with the other side. */
+/* Spline through the points of one side; both sides share the points of the edges. */
 static shb_status add_side(const mesh_frame *frame, double side[N][3], const int edge[2],
                            int *curve) {
   int tags[N];
@@ -174,7 +174,7 @@ shb_status mesh_airfoil_build(const mesh_blade *blade, const mesh_frame *frame, 
   for (int i = 0; i < blade->n_sections; i++)
     SHB_TRY(add_wire(blade, &blade->section[i], frame, &wires[n++]));
   SHB_TRY(add_wire(blade, &above, frame, &wires[n++]));
-  enum { DEGREE = 3 }; /* along the radius; more makes the joining three times slower */
+  enum { DEGREE = 3 }; /* radial degree; a higher one makes the fusion three times slower */
   int   *made   = NULL;
   size_t n_made = 0;
   GMSH_TRY("mesh.blade.sections",

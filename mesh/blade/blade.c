@@ -41,7 +41,7 @@ static shb_status check_root(const mesh_blade *blade) {
   return SHB_OK;
 }
 
-/* The block must hold the airfoil's foot, with 2 % to spare all round. */
+/* The root block must contain the foot of the airfoil, with a margin of 2 % on each side. */
 static shb_status check_foot(const mesh_blade *blade) {
   double radius[2] = {blade->section[0].radius, mesh_airfoil_low_radius(blade)}, extent[2] = {0, 0};
   for (int k = 0; k < 2; k++) {
@@ -70,7 +70,7 @@ static shb_status check_size(const mesh_blade *blade) {
   SHB_CHECK(blade->shroud_size >= 0 && isfinite(blade->shroud_size), SHB_ERR_INPUT,
             "mesh.blade.shroud_size: %g mm; it must be positive (0: as mesh.blade.size)",
             1e3 * blade->shroud_size);
-  /* 12 nodes a cube of the size: about 8.5 tetrahedra, 1.4 nodes each */
+  /* 12 nodes in a cube of the element size: about 8.5 tetrahedra with 1.4 nodes each */
   double volume = blade->root_length * blade->root_width * blade->root_height;
   for (int i = 1; i < blade->n_sections; i++) {
     const mesh_section *a = &blade->section[i - 1], *b = &blade->section[i];
@@ -110,7 +110,7 @@ static shb_status build_root(const mesh_blade *blade, const mesh_frame *frame, i
   return SHB_OK;
 }
 
-/* Join airfoil, root and the shroud's legs into one volume. */
+/* Fuse airfoil, root and the legs of the shroud into one volume. */
 static shb_status fuse(int airfoil, int root, const int shroud[MESH_SHROUD_LEGS], int *volume) {
   int    object[2] = {3, airfoil}, tools[2 * MESH_SHROUD_LEGS + 2] = {3, root};
   int   *made = NULL, **map = NULL;
@@ -136,13 +136,13 @@ static shb_status fuse(int airfoil, int root, const int shroud[MESH_SHROUD_LEGS]
   return SHB_OK;
 }
 
-/* Drop the points and curves that the parts were drawn with: whatever bounds nothing. */
+/* Remove construction points and curves that bound nothing. */
 static shb_status prune(void) {
   for (int dimension = 2; dimension >= 0; dimension--) {
     int   *tags = NULL, fault = 0;
     size_t n = 0;
     GMSH_TRY(case_key, gmshModelGetEntities(&tags, &n, dimension, &ierr));
-    gmshModelRemoveEntities(tags, n, 0, &fault); /* keeps those on the boundary of others */
+    gmshModelRemoveEntities(tags, n, 0, &fault); /* entities that bound others stay */
     gmshFree(tags);
     if (fault) return mesh_session_fail(SHB_ERR_INPUT, __FILE__, __LINE__, case_key);
   }
@@ -160,22 +160,24 @@ static shb_status build(const mesh_blade *blade, const mesh_frame *frame) {
   return mesh_face_groups_set(blade, frame, volume);
 }
 
-/* What the size callback needs. */
+/* Data of the size callback. */
 typedef struct {
   const mesh_blade *blade;
   double            radial[3]; /* unit vector of the stacking line */
 } sizing;
 
-/* edge_size where the airfoil meets root and shroud, growing by a half of the distance along the stacking line. */
+/* Size at the re-entrant edges (edge_size), growing by half the distance along the stacking
+ * line. */
 static double edge_limit(const mesh_blade *blade, double radial) {
   const double low  = fabs(radial - blade->section[0].radius);
   const double high = fabs(radial - blade->section[blade->n_sections - 1].radius);
   return blade->edge_size > 0 ? blade->edge_size + fmin(low, high) / 2 : INFINITY;
 }
 
-/* size on the airfoil and root, shroud_size from the shroud's underside up, linear over 4 sizes between.
- * Along the stacking line, not the radius: for a shroud side and its copy this differs by the sector's
- * turn, but gmsh copies the periodic side's mesh. */
+/* Element size: size on airfoil and root, shroud_size in the shroud, linear over 4 sizes below it.
+ *
+ * The distance runs along the stacking line, not the radius. A side of the shroud and its rotated
+ * copy therefore differ, but gmsh copies the mesh of the periodic side. */
 static double element_size(int dim, int tag, double x, double y, double z, void *data) {
   (void)dim;
   (void)tag;
@@ -204,16 +206,16 @@ static shb_status set_options(void) {
                 {"Mesh.MshFileVersion", 4.1},
                 {"Mesh.Binary", 0},
                 {"Mesh.SaveAll", 0},
-                /* 15 times faster placing of mid-side nodes on the lofted surface */
+                /* mid-side nodes on the loft are placed 15 times faster */
                 {"Geometry.OCCUseGenericClosestPoint", 1},
-                /* joining faces that lie on one surface would merge the legs of a straight Z */
+                /* unifying coplanar faces would merge the legs of a straight Z */
                 {"Geometry.OCCUnionUnify", 0}};
   for (size_t i = 0; i < sizeof option / sizeof *option; i++)
     GMSH_TRY(case_key, gmshOptionSetNumber(option[i].name, option[i].value, &ierr));
   return SHB_OK;
 }
 
-/* gmsh can give up on a volume without an error. */
+/* gmsh can fail to fill a volume without reporting an error. */
 static shb_status check_filled(const mesh_blade *blade) {
   int   *types = NULL;
   size_t n     = 0;
@@ -243,7 +245,7 @@ static shb_status mesh_volume(const mesh_blade *blade, const mesh_frame *frame,
   return SHB_OK;
 }
 
-/* Hand the moved nodes back to gmsh. */
+/* Pass the moved nodes to gmsh. */
 static shb_status move_nodes(const mesh_fe *mesh, const char *moved) {
   for (int i = 0; i < mesh->n_nodes; i++)
     if (moved[i])
@@ -253,8 +255,8 @@ static shb_status move_nodes(const mesh_fe *mesh, const char *moved) {
   return SHB_OK;
 }
 
-/* Hexahedra that are inverted lie where the loft crosses itself: radii between which they are. Tetrahedra were never seen to
- * fill a blade that hexahedra do not. */
+/* Hexahedra are inverted where the loft crosses itself. The message gives the range of radii. No
+ * blade is known that tetrahedra fill and hexahedra do not. */
 static shb_status check_swept(const mesh_blade *blade, const mesh_fe *mesh) {
   double radial[3], low = INFINITY, high = 0;
   int    bad = 0;
@@ -286,8 +288,9 @@ static shb_status check_shape(const mesh_blade *blade, const mesh_fe *mesh) {
                                   : mesh_jacobian_check(mesh, "mesh.blade.size");
 }
 
-/* Curved edges can invert a few elements where the airfoil is thin: those edges are made straight, at the cost
- * of their sag. More than 1 % of them means that the mesh does not resolve the blade: an error. */
+/* Curved edges can invert a few elements where the airfoil is thin. These edges are straightened,
+ * which loses their sag. More than 1 % of such elements is an error: the mesh does not resolve the
+ * blade. */
 static shb_status straighten(const mesh_blade *blade, mesh_fe *mesh, shb_progress *progress) {
   int bad = mesh_jacobian_inverted(mesh);
   if (bad == 0 || bad > mesh->n_elements / 100) return check_shape(blade, mesh);
@@ -309,7 +312,7 @@ static void note_worst_corner(const mesh_fe *mesh, shb_progress *progress) {
                     1e3 * x[0], 1e3 * x[1], 1e3 * x[2]);
 }
 
-/* The mesh as it will be read: no element inverted, contact faces matching. */
+/* Check the mesh as it will be read: no element inverted, contact faces match. */
 static shb_status verify(const mesh_blade *blade, mesh_fe *mesh, shb_progress *progress) {
   int pairs = 0, *right = NULL, *left = NULL;
   SHB_TRY(straighten(blade, mesh, progress));
@@ -319,7 +322,7 @@ static shb_status verify(const mesh_blade *blade, mesh_fe *mesh, shb_progress *p
   return SHB_OK;
 }
 
-/* The solid, filled with tetrahedra. */
+/* Build the solid and fill it with tetrahedra. */
 static shb_status fill(const mesh_blade *blade, const mesh_frame *frame, shb_progress *progress) {
   shb_progress_show(progress, 0, "building the solid");
   SHB_TRY(build(blade, frame));

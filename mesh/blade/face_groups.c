@@ -13,7 +13,7 @@
 /* A face of the fused solid. */
 typedef struct {
   int    tag;
-  double centre[3]; /* of mass, own coordinates, m */
+  double centre[3]; /* centre of mass, blade coordinates, m */
   double low, high; /* radial extent, m */
   double width;     /* tangential extent, m */
 } face;
@@ -48,7 +48,7 @@ static shb_status list_faces(const mesh_frame *frame, face **faces, int *n) {
   return status;
 }
 
-/* The only face whose centre of mass is at own. */
+/* The only face with its centre of mass at own. */
 static shb_status find_centre(const face *faces, int n, const double own[3], const char *what,
                               int *tag) {
   int found = 0;
@@ -79,7 +79,8 @@ static shb_status distance_to(const mesh_frame *frame, int tag, const double own
   return SHB_OK;
 }
 
-/* Of the two faces that span root to shroud (a wide shroud's may too), the one through the first section's pressure side. */
+/* Of the two faces between root and shroud, the one through the pressure side of the first section.
+ * Sides of a wide shroud are excluded by their width. */
 static shb_status find_pressure(const mesh_blade *blade, const mesh_frame *frame, const face *faces,
                                 int n, int *tag) {
   double       bottom = blade->section[0].radius;
@@ -112,20 +113,10 @@ shb_status mesh_face_groups_name(int dimension, int entity, const char *name) {
   return SHB_OK;
 }
 
-/* Rows of the 4x4 matrix that turns the left side onto the right one. */
-static void rotation_matrix(const mesh_blade *blade, mesh_axis axis, double matrix[16]) {
-  for (int i = 0; i < 16; i++) matrix[i] = i == 15;
-  for (int column = 0; column < 3; column++) {
-    double unit[3] = {column == 0, column == 1, column == 2};
-    mesh_axis_rotate(axis, 2 * M_PI / blade->blades, unit, unit);
-    for (int row = 0; row < 3; row++) matrix[4 * row + column] = unit[row];
-  }
-}
-
 static shb_status make_periodic(const mesh_blade *blade, const mesh_frame *frame, int *right,
                                 int *left) {
   double matrix[16];
-  rotation_matrix(blade, frame->axis, matrix);
+  mesh_axis_matrix(frame->axis, 2 * M_PI / blade->blades, matrix);
   GMSH_TRY("mesh.blade.shroud", gmshModelMeshSetPeriodic(2, right, MESH_SHROUD_LEGS, left,
                                                          MESH_SHROUD_LEGS, matrix, 16, &ierr));
   return SHB_OK;

@@ -18,11 +18,11 @@
 
 enum { ROOT, AIRFOIL, SHROUD, PARTS };
 
-/* A part of the blade: a plan swept through layers. */
+/* A part of the blade: a planar mesh swept through layers. */
 typedef struct {
   const mesh_planar *plan;
   mesh_layers        layers;
-  int               *id; /* [2 layers + 1][plan nodes] node, -1: none */
+  int               *id; /* [2 layers + 1][plan nodes] node of the mesh, -1: none */
 } part;
 
 typedef struct {
@@ -32,12 +32,12 @@ typedef struct {
   double             *height; /* [section nodes] radial extent of the airfoil there, m */
   mesh_planar         section, root_plan, shroud_plan;
   part                parts[PARTS];
-  mesh_fe             mesh; /* what is made; sets in order */
+  mesh_fe             mesh; /* the mesh that is made */
 } sweep;
 
 /* ------------------------------------------------------------------ places */
 
-/* Between the sides at a radius. */
+/* Point of the section at a radius, interpolated between the two sides. */
 static shb_status section_point(const sweep *s, int node, double radius, double own[3]) {
   const mesh_section_place *at = &s->place[node];
   double                    side[2][3];
@@ -53,7 +53,8 @@ static shb_status section_point(const sweep *s, int node, double radius, double 
   return SHB_OK;
 }
 
-/* Where the airfoil meets the shroud's curved underside. */
+/* Height at which the airfoil meets the curved underside of the shroud, by fixed-point
+ * iteration. */
 static shb_status find_height(sweep *s, int node, double own[3]) {
   enum { STEPS = 50 };
   const double bottom = s->blade->section[0].radius;
@@ -98,17 +99,17 @@ static mesh_section_grid section_grid(const mesh_blade *blade) {
   return grid;
 }
 
-/* Elements on a straight side, even. */
+/* Number of elements on a straight side, even. */
 static int parts_of(const double a[2], const double b[2], double size) {
   return 2 * (int)fmax(1, round(hypot(b[0] - a[0], b[1] - a[1]) / (2 * size)));
 }
 
-/* Where the section lies close to the outline, elements of this size can be slivers: other meshes, of triangles and smaller
- * ones, are tried, and the best is kept. */
+/* Elements can be slivers where the section is close to the outline. Meshes of triangles and of
+ * smaller elements are then tried; the best is used. */
 static shb_status plan_outline(const sweep *s, int n, const double (*corner)[2], double size,
                                const char *what, mesh_planar *plan) {
   static const struct {
-    double share; /* of the size */
+    double share; /* of the element size */
     bool   recombine;
   } way[]           = {{1, true},    {1, false}, {.8, true},  {.8, false},  {.65, true},
                        {.65, false}, {.5, true}, {.5, false}, {.35, false}, {.25, false}};
@@ -165,8 +166,9 @@ static shb_status make_plans(sweep *s) {
 
 /* ------------------------------------------------------------------ nodes */
 
-/* Thin layers on both sides of the re-entrant edges, where the airfoil meets root and shroud. (At the clamp they gained less
- * than 1e-4 of a frequency, for root blocks of 4 to 18 mm.) The shroud bends as a plate: two layers for one size. */
+/* Thin layers lie on both sides of the re-entrant edges, where the airfoil meets root and shroud.
+ * Thin layers at the clamp changed frequencies by less than 1e-4 for root blocks of 4 to 18 mm. The
+ * shroud has two layers an element size, as it bends like a plate. */
 static shb_status prepare_parts(sweep *s) {
   const mesh_blade  *blade = s->blade;
   const double       size = blade->size, fine = blade->shroud_size > 0 ? blade->shroud_size : size;
@@ -182,7 +184,7 @@ static shb_status prepare_parts(sweep *s) {
     SHB_CHECK(s->parts[p].id, SHB_ERR_IO, "no memory for the blade's mesh");
     for (size_t i = 0; i < n; i++) s->parts[p].id[i] = -1;
     s->mesh.n_elements += s->parts[p].layers.n * plan[p]->n_quads;
-    s->mesh.n_nodes += (int)n; /* at most */
+    s->mesh.n_nodes += (int)n; /* upper bound */
   }
   return SHB_OK;
 }
@@ -191,8 +193,9 @@ static int *level_of(const part *p, int level) {
   return p->id + (size_t)level * (size_t)p->plan->n_nodes;
 }
 
-/* Nodes of one level: all of the plan at the ends of a layer, the corners in its middle. known: ids of the first nodes of
- * the plan, from the part below. */
+/* Make the nodes of one level: all nodes of the plan at the ends of a layer, its corners in the
+ * middle.
+ *   known  in  ids of the first n_known nodes of the plan, from the part below */
 static shb_status make_level(sweep *s, int which, int level, const int *known, int n_known) {
   const part *p  = &s->parts[which];
   int        *id = level_of(p, level);
@@ -232,7 +235,7 @@ static shb_status make_nodes(sweep *s, shb_progress *progress) {
 
 /* ------------------------------------------------------------------ elements and faces */
 
-/* A hexahedron's nodes by their level in the layer and their place in the quadrangle. */
+/* Nodes of a hexahedron by their level in the layer and their index in the quadrangle. */
 static void hexahedron(const part *p, int layer, const int *quad, int nodes[MESH_NODES]) {
   static const int local[MESH_NODES][2] = {{0, 0}, {0, 1}, {0, 2}, {0, 3}, {2, 0}, {2, 1}, {2, 2},
                                            {2, 3}, {0, 4}, {0, 7}, {1, 0}, {0, 5}, {1, 1}, {0, 6},
@@ -241,7 +244,7 @@ static void hexahedron(const part *p, int layer, const int *quad, int nodes[MESH
     nodes[i] = level_of(p, 2 * layer + local[i][0])[quad[local[i][1]]];
 }
 
-/* The group that the face above a quadrangle's side belongs to, or MESH_N_SETS. */
+/* Group of the face above a side of a quadrangle, or MESH_N_SETS. */
 static mesh_set_id side_group(const sweep *s, int which, int middle) {
   if (which == AIRFOIL && s->place[middle].w == -1) return MESH_LOAD;
   if (which != SHROUD || middle < s->section.n_nodes) return MESH_N_SETS;
@@ -288,7 +291,7 @@ static shb_status make_elements(sweep *s) {
 
 /* ------------------------------------------------------------------ to gmsh */
 
-/* n elements of a type on a discrete entity; node tags are index + 1. */
+/* Add n elements of a type to a discrete entity; node tags are index + 1. */
 static shb_status put_elements(int entity, int type, int each, int n, const int *nodes,
                                size_t first) {
   const size_t count = (size_t)n, total = count * (size_t)each;
@@ -341,7 +344,7 @@ static shb_status make(sweep *s, shb_progress *progress) {
   return make_elements(s);
 }
 
-/* The loft has a model of its own, so that the mesh alone is left in the current one. */
+/* The loft has a gmsh model of its own, so that the current model holds the mesh alone. */
 static shb_status make_in_model(sweep *s, const mesh_frame *frame, shb_progress *progress) {
   char *current = NULL;
   GMSH_TRY("mesh.blade", gmshModelGetCurrent(&current, &ierr));

@@ -10,7 +10,7 @@ void mesh_layers_make(double length, double size, int thin_low, int thin_high,
   const int    n  = (int)fmin(most, wanted);
   double      *at = layers->at;
   int          k  = 0;
-  /* one interval thin at both ends: 8, 30, 70, 92 % */
+  /* an interval with thin layers at both ends is cut at 8, 30, 70 and 92 % */
   for (int i = 0; i < n; i++) {
     at[2 * k++] = (double)i / n;
     if (i == 0 && thin_low)

@@ -9,7 +9,8 @@
 
 static const char *const case_key = "mesh.blade.sections";
 
-/* Own coordinates at parameters (chord, radial), 0 to 1 from low to high. */
+/* Point of a side at parameters (chord, radial), each from 0 at low to 1 at high; blade
+ * coordinates. */
 static shb_status evaluate(const mesh_loft *loft, const mesh_loft_side *side, double chord,
                            double radial, double own[3]) {
   double at[2], *xyz = NULL;
@@ -28,7 +29,7 @@ static void swap(double *a, double *b) {
   *b         = was;
 }
 
-/* Parameters of a side put in order: which is radial, and their directions. */
+/* Find the radial parameter of a side and the directions of both parameters. */
 static shb_status orient_parameters(const mesh_blade *blade, const mesh_loft *loft,
                                     mesh_loft_side *side) {
   double *low = NULL, *high = NULL, own[4][3];
@@ -68,7 +69,8 @@ static shb_status orient_parameters(const mesh_blade *blade, const mesh_loft *lo
   return SHB_OK;
 }
 
-/* The solid's two faces that are not flat ends; the pressure side is the one through the outline's. */
+/* The two faces of the solid that are not planar. The pressure side is the one through the pressure
+ * side of the outline. */
 static shb_status find_sides(const mesh_blade *blade, mesh_loft *loft) {
   int   *tags = NULL, found = 0;
   size_t n = 0;

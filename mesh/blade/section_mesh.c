@@ -4,25 +4,26 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The section is drawn in the plane (u, y), |y| <= 4 u (1 - u): sharp at both ends as the airfoil is, w = y over that. */
+/* Half thickness of the section in the plane (u, y), |y| <= 4 u (1 - u). It is sharp at both ends
+ * like the airfoil; w = y / (4 u (1 - u)). */
 static double lens(double u) {
   return 4 * u * (1 - u);
 }
 
-/* A sheet of n x m cells: quadratic nodes on a lattice of half cells, -1 where a cell's middle would be. */
+/* A block of n x m cells: quadratic nodes on a lattice of half cells, -1 in the middle of cells. */
 typedef struct {
   int  n, m;
   int *node; /* [2 m + 1][2 n + 1] */
 } sheet;
 
-/* What is built: nodes so far with their (u, y). */
+/* Nodes made so far and their coordinates. */
 typedef struct {
   mesh_planar *plan;
   double (*uy)[2];
   int capacity;
 } drawing;
 
-/* The node at (u, y), found or made: blocks share their sides. */
+/* Node at (u, y), found or made, so that blocks share their sides. */
 static int node_at(drawing *d, double u, double y) {
   for (int i = d->plan->n_nodes - 1; i >= 0; i--)
     if (fabs(d->uy[i][0] - u) < 1e-10 && fabs(d->uy[i][1] - y) < 1e-10) return i;
@@ -32,7 +33,7 @@ static int node_at(drawing *d, double u, double y) {
   return i;
 }
 
-/* Cells of a block from its lattice, anticlockwise. */
+/* Add the cells of a block, anticlockwise. */
 static void add_cells(mesh_planar *plan, int n, int m, const int *node) {
   static const int step[8][2] = {{0, 0}, {2, 0}, {2, 2}, {0, 2}, {1, 0}, {2, 1}, {1, 2}, {0, 1}};
   for (int j = 0; j < m; j++)
@@ -43,14 +44,15 @@ static void add_cells(mesh_planar *plan, int n, int m, const int *node) {
     }
 }
 
-/* The side between two points: along the lens if both are on it and it is a side of it, else straight. */
+/* Point on the side from a to b: on the lens (along 1 upper, -1 lower) or straight (0). */
 static void side_at(const double a[2], const double b[2], int along, double s, double at[2]) {
   at[0] = a[0] + s * (b[0] - a[0]);
   at[1] = along ? along * lens(at[0]) : a[1] + s * (b[1] - a[1]);
 }
 
-/* A block of n x m cells with corners p[0..3] anticlockwise; its side i, from p[i] on, lies on the lens' upper (1) or
- * lower (-1) side where along[i] says so: transfinite interpolation. */
+/* Add a block of n x m cells with corners p[0..3] anticlockwise, by transfinite interpolation. Side
+ * i begins at p[i] and lies on the upper (1) or lower (-1) side of the lens, or is straight (0), by
+ * along[i]. */
 static void add_block(drawing *d, int n, int m, double p[4][2], const int along[4], int *node) {
   for (int j = 0; j <= 2 * m; j++)
     for (int i = 0; i <= 2 * n; i++) {
@@ -69,7 +71,7 @@ static void add_block(drawing *d, int n, int m, double p[4][2], const int along[
   add_cells(d->plan, n, m, node);
 }
 
-/* Three blocks at the edge u = 0 (or, mirrored, u = 1), the tip taking a share of u. */
+/* Add three blocks at the edge u = 0, or mirrored at u = 1; the tip takes a share of u. */
 static void add_tip(drawing *d, int k, double share, int mirror, int *node) {
   const double half = .5 * share, middle = .55 * share;
   double       edge[2] = {0, 0}, centre[2] = {middle, 0}, cross[2] = {share, 0};
@@ -81,7 +83,7 @@ static void add_tip(drawing *d, int k, double share, int mirror, int *node) {
   for (int b = 0; b < 3; b++) {
     double p[4][2];
     int    curved[4];
-    for (int c = 0; c < 4; c++) { /* mirrored: corners in the other order, sides with them */
+    for (int c = 0; c < 4; c++) { /* mirrored: corners and sides in reverse order */
       const double *from = block[b][mirror ? (4 - c) % 4 : c];
       p[c][0]            = mirror ? 1 - from[0] : from[0];
       p[c][1]            = from[1];

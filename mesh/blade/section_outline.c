@@ -19,7 +19,7 @@ typedef struct {
   int (*cell)[4]; /* the last is -1 in a triangle */
 } coarse;
 
-/* What is built: corners first, with the middle of an edge in a hash of its ends. */
+/* The refined mesh: corners first; a hash table gives the middle of an edge by its ends. */
 typedef struct {
   mesh_planar *plan;
   int          capacity, n_slots;
@@ -49,7 +49,7 @@ static int middle_of(builder *b, int p, int q) {
   return *middle;
 }
 
-/* The section's own edges; and of its contour, pairs of edges as one coarse edge. */
+/* Insert the edges of the section; pairs of edges of its contour also count as one coarse edge. */
 static void insert_section_edges(builder *b) {
   mesh_planar *plan = b->plan;
   for (int q = 0; q < plan->n_section_quads; q++)
@@ -69,7 +69,7 @@ static shb_status add_line(int from, int to, int parts, int *line) {
   return SHB_OK;
 }
 
-/* A loop of straight lines through n points. */
+/* Add a loop of straight lines through n points. */
 static shb_status add_loop(int n, const double (*at)[2], const int *parts, double size, int *loop) {
   int       *point = malloc((size_t)n * sizeof *point), *line = malloc((size_t)n * sizeof *line);
   shb_status status = point && line ? SHB_OK : SHB_ERR_IO;
@@ -134,7 +134,7 @@ static shb_status take_cells(const int *index, int type, int corners, coarse *me
   return SHB_OK;
 }
 
-/* The section's node at a point of its contour, or -1. */
+/* Node of the section at a point of its contour, or -1. */
 static int on_contour(const mesh_planar *section, const double *at) {
   for (int i = 0; i < section->n_contour; i += 4) {
     const double *c = section->at[section->contour[i]];
@@ -143,7 +143,7 @@ static int on_contour(const mesh_planar *section, const double *at) {
   return -1;
 }
 
-/* Nodes are numbered after the section's, those on its contour as they are there. */
+/* Number the nodes after those of the section; nodes on its contour keep their numbers. */
 static shb_status take_coarse(const mesh_planar *section, coarse *mesh) {
   size_t *tags = NULL, n = 0, n_xyz = 0, n_unused = 0, top = 0;
   double *xyz = NULL, *unused = NULL;
@@ -190,7 +190,8 @@ static shb_status allocate(const mesh_planar *section, const coarse *mesh, build
   return SHB_OK;
 }
 
-/* Each corner of a polygon becomes a quadrangle with the middles of its two sides and the polygon's middle. */
+/* Split a polygon into quadrangles: one at each corner, with the middles of its two sides and the
+ * centre. */
 static void split_polygon(builder *b, const int *corner, int n) {
   mesh_planar *plan   = b->plan;
   const int    centre = plan->n_nodes++;
@@ -221,7 +222,8 @@ static double least_sine(const mesh_planar *plan, const int *corner, int n) {
   return least;
 }
 
-/* gmsh's quadrangles can be hollow next to a sharp edge: those are cut in two before. */
+/* gmsh's quadrangles can be concave next to a sharp edge. Those are first cut into two
+ * triangles. */
 static void split_cell(builder *b, const int *cell) {
   const double limit = .1;
   if (cell[3] < 0 || least_sine(b->plan, cell, 4) > limit) {

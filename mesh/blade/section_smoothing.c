@@ -5,14 +5,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Quadrangles around each node: start[node] .. start[node + 1] - 1. */
+/* Quadrangles around each node: quad[start[node]] .. quad[start[node + 1] - 1]. */
 typedef struct {
   mesh_planar *plan;
   int         *start, *quad;
-  char        *fixed; /* [n_nodes] not to be moved */
+  char        *fixed; /* [n_nodes] the node must not move */
 } adjacency;
 
-/* Sine of the angle at corner c, from the sides as they bend: from the corner to the middles next to it and on. */
+/* Sine of the angle at corner c between the tangents of its curved sides. */
 static double corner_sine(const mesh_planar *plan, const int *quad, int c) {
   const double *at = plan->at[quad[c]], *next = plan->at[quad[(c + 1) % 4]],
                *last  = plan->at[quad[(c + 3) % 4]];
@@ -27,7 +27,7 @@ static double corner_sine(const mesh_planar *plan, const int *quad, int c) {
   return (a[0] * b[1] - a[1] * b[0]) / (hypot(a[0], a[1]) * hypot(b[0], b[1]) + 1e-300);
 }
 
-/* The worst corner of the quadrangles around a node. */
+/* Smallest sine of the quadrangles around a node. */
 static double least_sine_at(const adjacency *r, int node) {
   double worst = 1;
   for (int i = r->start[node]; i < r->start[node + 1]; i++)
@@ -52,7 +52,7 @@ static void mean_of(const adjacency *r, int node, double mean[2]) {
   for (int x = 0; x < 2; x++) mean[x] /= count;
 }
 
-/* Tries the mean, half the way, a quarter, and steps aside; keeps the best. */
+/* Try the mean of the neighbours, fractions of the way to it, and steps aside; use the best. */
 static void move(const adjacency *r, int node) {
   static const double step[8][2] = {{1, 0},   {.5, 0},   {.25, 0}, {.1, 0},
                                     {.3, .3}, {.3, -.3}, {0, .2},  {0, -.2}};
@@ -71,7 +71,7 @@ static void move(const adjacency *r, int node) {
   memcpy(at, best_place, sizeof best_place);
 }
 
-/* The section's nodes, and the ends of edges that one quadrangle alone has. */
+/* Fix the nodes of the section and the ends of edges with one quadrangle only. */
 static void find_fixed(const adjacency *r, int *uses) {
   const mesh_planar *plan = r->plan;
   memset(uses, 0, (size_t)plan->n_nodes * sizeof *uses);

@@ -10,7 +10,7 @@ enum { CORNERS = MESH_SHROUD_LEGS + 1 };
 
 static const double degree = M_PI / 180;
 
-/* Least distance kept between the airfoil and the shroud's edges, as a share of the shroud's length. */
+/* Least distance between the airfoil and the edges of the shroud, as a share of its length. */
 static const double margin_share = 0.03;
 
 static double half_sector(const mesh_blade *blade) {
@@ -21,7 +21,8 @@ static double underside(const mesh_blade *blade) {
   return blade->section[blade->n_sections - 1].radius;
 }
 
-/* Corners (tangential, axial) of the Z at mid thickness, about the contact leg's centre. */
+/* Corners (tangential, axial) of the Z at mid thickness; origin at the centre of the contact
+ * leg. */
 static void z_corners(const mesh_blade *blade, double z[CORNERS][2]) {
   double t                  = blade->shroud_contact / 2 * sin(blade->psi);
   double a                  = blade->shroud_contact / 2 * cos(blade->psi);
@@ -31,12 +32,13 @@ static void z_corners(const mesh_blade *blade, double z[CORNERS][2]) {
     for (int d = 0; d < 2; d++) z[i][d] = corner[i][d];
 }
 
-/* Tangential shift a unit of radius: tan phi/cos psi. */
+/* Tangential shift for a unit of radius: tan phi/cos psi. */
 static double radial_slope(const mesh_blade *blade) {
   return tan(blade->phi) / cos(blade->psi);
 }
 
-/* Corner i of the Z at the underside (level 0) or top (level 1), about the side's own radial plane. */
+/* Corner i of the Z at the underside (level 0) or top (level 1), relative to the radial plane of
+ * the side. */
 static void corner(const mesh_blade *blade, int i, int level, double own[3]) {
   double z[CORNERS][2], up = (level ? 0.5 : -0.5) * blade->shroud_thickness;
   z_corners(blade, z);
@@ -45,7 +47,8 @@ static void corner(const mesh_blade *blade, int i, int level, double own[3]) {
   own[2] = underside(blade) + 0.5 * blade->shroud_thickness + up;
 }
 
-/* Tangential place of the side's surface at (axial, radial), about its own radial plane. */
+/* Tangential coordinate of the side at (axial, radial), relative to the radial plane of the
+ * side. */
 static double side_at(const mesh_blade *blade, double axial, double radial) {
   double z[CORNERS][2];
   z_corners(blade, z);
@@ -133,7 +136,7 @@ static shb_status check_sizes(const mesh_blade *blade) {
   return SHB_OK;
 }
 
-/* One point of the airfoil under the shroud: inside both sides, front and rear? */
+/* Check that a point of the airfoil lies under the shroud, with the margin on all four sides. */
 static shb_status check_cover(const mesh_blade *blade, const double own[3]) {
   double margin = margin_share * blade->shroud_length;
   SHB_CHECK(fabs(own[1]) <= blade->shroud_length / 2 - margin, SHB_ERR_INPUT,
@@ -141,8 +144,7 @@ static shb_status check_cover(const mesh_blade *blade, const double own[3]) {
             "from its stacking line; give at least %.4g mm",
             1e3 * blade->shroud_length, 1e3 * fabs(own[1]),
             2e3 * fabs(own[1]) / (1 - 2 * margin_share));
-  for (int s = -1; s <= 1;
-       s += 2) { /* s = -1 left, 1 right: seen from the side's own radial plane */
+  for (int s = -1; s <= 1; s += 2) { /* s = -1 left, 1 right, in the radial plane of the side */
     double seen[3];
     mesh_frame_rotate(-s * half_sector(blade), own, seen);
     double inside = s * (side_at(blade, seen[1], seen[2]) - seen[0]);
@@ -156,7 +158,7 @@ static shb_status check_cover(const mesh_blade *blade, const double own[3]) {
   return SHB_OK;
 }
 
-/* The airfoil's end must stay within the thickness, though the ring is curved and the end flat. */
+/* The end of the airfoil must lie within the thickness; the ring is curved, the end is flat. */
 static shb_status check_depth(const mesh_blade *blade, const double own[3]) {
   double h = blade->shroud_thickness, bottom = underside(blade), r = hypot(own[0], own[2]);
   double low  = hypot(bottom, side_at(blade, own[1], bottom)) + 0.1 * h;
@@ -185,7 +187,7 @@ shb_status mesh_shroud_check(const mesh_blade *blade) {
   return SHB_OK;
 }
 
-/* Revolve one leg's planar face of the left side by the sector angle. */
+/* Revolve the planar face of one leg of the left side by the sector angle. */
 static shb_status revolve(const mesh_blade *blade, const mesh_frame *frame, int face, int *volume) {
   double axial[3];
   int    from[2] = {2, face}, *made = NULL;

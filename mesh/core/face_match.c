@@ -8,8 +8,8 @@
 static const double tolerance = 1e-9; /* m */
 
 typedef struct {
-  double at[3]; /* m, in the right face's place */
-  double key;   /* coordinate along a direction in no particular plane of the mesh */
+  double at[3]; /* m, rotated onto the right face */
+  double key;   /* coordinate along a direction that lies in no plane of symmetry of the mesh */
   int    node;
 } left_node;
 
@@ -53,7 +53,7 @@ static left_node *rotated_left(const mesh_fe *mesh, const int *nodes, int n, mes
   return places;
 }
 
-/* Nearest place to at among first..last-1. */
+/* Node nearest to at among first .. last - 1. */
 static const left_node *nearest(const left_node *places, int first, int last, const double at[3]) {
   const left_node *best = NULL;
   for (int i = first; i < last; i++)
@@ -61,11 +61,11 @@ static const left_node *nearest(const left_node *places, int first, int last, co
   return best;
 }
 
-/* Left node at point at, or -1 with gap the distance to the nearest. */
+/* Left node at point at, or -1; gap is then the distance to the nearest. */
 static int find_left(const left_node *places, int n, const double at[3], double *gap) {
   double key = sort_key(at);
   int    low = 0, high = n;
-  while (low < high) { /* first place within the tolerance in key */
+  while (low < high) { /* first node within the tolerance in key */
     int middle = (low + high) / 2;
     if (places[middle].key < key - 2 * tolerance) {
       low = middle + 1;

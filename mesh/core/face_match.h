@@ -4,9 +4,12 @@
 
 #include "mesh/core/fe_mesh.h"
 
-/* Which left node lies on each right node after rotating the left face by the sector angle 2 pi/blades.
- *   match  out  [n_right_unique] pairs are returned through right_nodes/left_nodes, malloc'ed, sorted by right
- * Errors: SHB_ERR_INPUT if counts differ or a distance exceeds 1e-9 m (the distance and node are named). */
+/* Left node on each right node after the left face is rotated by the sector angle 2 pi/blades.
+ *   n_pairs      out  right nodes, each counted once
+ *   right_nodes  out  [n_pairs] ascending, malloc'ed
+ *   left_nodes   out  [n_pairs] malloc'ed
+ * Errors: SHB_ERR_INPUT if a group is empty, the counts differ or a distance exceeds 1e-9 m; the
+ * message names the distance and the node. SHB_ERR_IO no memory. */
 shb_status mesh_fe_match(const mesh_fe *mesh, mesh_axis axis, int blades, int *n_pairs,
                          int **right_nodes, int **left_nodes);
 

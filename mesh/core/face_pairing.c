@@ -8,15 +8,15 @@
 #include "mesh/core/face_match.h"
 #include "mesh/core/triangle.h"
 
-/* The left face, for looking up the nearest point. */
+/* The left face, prepared for the search of the nearest point. */
 typedef struct {
   const mesh_fe       *mesh;
   const mesh_topology *topology;
   const mesh_face_set *set;
-  double (*ball)[4]; /* [faces] centre and radius around a face's nodes */
+  double (*ball)[4]; /* [faces] centre and radius of a ball around the nodes of a face */
 } left_face;
 
-/* A place on the left face. */
+/* A point on the left face. */
 typedef struct {
   int    face;
   double at[2]; /* reference coordinates */
@@ -39,7 +39,7 @@ static void bounding_ball(const left_face *t, int face) {
     ball[3] = fmax(ball[3], vec3_distance(ball, t->mesh->coordinates + 3 * (size_t)node[i]));
 }
 
-/* Reference coordinates of a face's local node. */
+/* Reference coordinates of a local node of a face. */
 static void reference(const left_face *t, int local, double at[2]) {
   static const double six[6][2]   = {{0, 0}, {1, 0}, {0, 1}, {.5, 0}, {.5, .5}, {0, .5}};
   static const double eight[8][2] = {{0, 0},  {1, 0},  {1, 1},  {0, 1},
@@ -47,7 +47,7 @@ static void reference(const left_face *t, int local, double at[2]) {
   memcpy(at, t->mesh->kind == MESH_HEX20 ? eight[local] : six[local], 2 * sizeof *at);
 }
 
-/* Nearest point of the flat triangles of all faces: a start for settle. */
+/* Nearest point of the flat triangles of all faces: the start of project_to_face. */
 static void nearest_triangle(const left_face *t, const double x[3], contact_place *best) {
   best->distance = INFINITY;
   for (int f = 0; f < t->set->n; f++) {
@@ -69,7 +69,7 @@ static void nearest_triangle(const left_face *t, const double x[3], contact_plac
   }
 }
 
-/* Back into the face. */
+/* Clamp reference coordinates to the face. */
 static void clamp_to_face(mesh_kind kind, double at[2]) {
   for (int d = 0; d < 2; d++) at[d] = fmin(1, fmax(0, at[d]));
   double over = at[0] + at[1] - 1;
@@ -78,7 +78,7 @@ static void clamp_to_face(mesh_kind kind, double at[2]) {
   at[1] = 1 - at[0];
 }
 
-/* x - X(r, s) and its derivatives' columns. */
+/* Offset x - X(r, s) and the derivatives X,r and X,s. */
 static void offset_at(const left_face *t, const double x[3], contact_place *p, double off[3],
                       double J[2][3]) {
   double     gradient[MESH_FACE_NODES][2];
@@ -96,7 +96,7 @@ static void offset_at(const left_face *t, const double x[3], contact_place *p, d
   }
 }
 
-/* The nearest point of the curved face by Gauss and Newton: J^T J d = J^T (x - X). */
+/* Nearest point of the curved face by the Gauss-Newton method: J^T J d = J^T (x - X). */
 static void project_to_face(const left_face *t, const double x[3], contact_place *p) {
   double off[3], J[2][3];
   for (int i = 0; i < 30; i++) {
@@ -142,7 +142,7 @@ static shb_status allocate(int n, int each, mesh_pairing *out) {
   return SHB_OK;
 }
 
-/* The right face's nodes, each once, ascending. */
+/* Nodes of the right face, each once, ascending. */
 static shb_status take_right(const mesh_fe *mesh, mesh_pairing *out) {
   const mesh_topology *topology = mesh_topology_of(mesh->kind);
   const mesh_face_set *set      = &mesh->set[MESH_CONTACT_RIGHT];
@@ -195,7 +195,7 @@ static shb_status project(const mesh_fe *mesh, mesh_axis axis, int blades, mesh_
   return status;
 }
 
-/* Node for node: right and left become the pairing's. */
+/* Node for node. Takes right and left over and frees them. */
 static shb_status take_match(int n, int *right, int *left, mesh_pairing *out) {
   shb_status status = allocate(n, 1, out);
   for (int i = 0; i < n && status == SHB_OK; i++) {

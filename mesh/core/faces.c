@@ -4,14 +4,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* One face of one set, known by its corners. */
+/* A face, identified by its corners. */
 typedef struct {
   int corner[4]; /* ascending; the first is -1 in a triangle */
   int set, face;
-  int hits; /* elements found behind it */
+  int hits; /* number of elements with this face */
 } face_key;
 
-/* Corners of a face, ascending; a triangle's fourth is -1, which comes first. */
+/* Corners of a face, ascending. The fourth of a triangle is -1, which comes first. */
 static void sort_corners(const int *nodes, int n, int corner[4]) {
   for (int i = 0; i < 4; i++) corner[i] = i < n ? nodes[i] : -1;
   for (int i = 0; i < 3; i++)
@@ -30,7 +30,7 @@ static int by_corner(const void *a, const void *b) {
   return 0;
 }
 
-/* Keys of all sets, sorted; flag marks their corner nodes. */
+/* Keys of the faces of all sets, sorted. flag marks their corner nodes. */
 static int list_set_faces(const mesh_fe *mesh, face_key *keys, char *flag) {
   const mesh_topology *topology = mesh_topology_of(mesh->kind);
   int                  n        = 0;
@@ -48,7 +48,7 @@ static int list_set_faces(const mesh_fe *mesh, face_key *keys, char *flag) {
   return n;
 }
 
-/* Hand an element's face (its nodes, outward) to every set that holds it. */
+/* Copy the nodes of an element's face, ordered outward, to every set that contains it. */
 static void copy_to_sets(mesh_fe *mesh, face_key *keys, int n, const int *face) {
   const mesh_topology *topology = mesh_topology_of(mesh->kind);
   const size_t         size     = (size_t)topology->face_nodes;
@@ -78,7 +78,7 @@ static shb_status check_hits(const mesh_fe *mesh, const face_key *keys, int n, c
   return SHB_OK;
 }
 
-/* Every face all of whose corners belong to some set. */
+/* Visit every face all corners of which belong to some set. */
 static void visit_elements(mesh_fe *mesh, face_key *keys, int n, const char *flag) {
   const mesh_topology *topology = mesh_topology_of(mesh->kind);
   for (int e = 0; e < mesh->n_elements; e++) {
@@ -110,7 +110,7 @@ shb_status mesh_faces_orient(mesh_fe *mesh, const char *name) {
   return status;
 }
 
-/* Nodes of face f of an element; false if one is not marked (NULL: all are). */
+/* Nodes of face f of element e. False if one is not marked; marked NULL: all are. */
 static bool marked_face(const mesh_fe *mesh, const char *marked, int e, int f, int *nodes) {
   const mesh_topology *topology = mesh_topology_of(mesh->kind);
   bool                 all      = true;
@@ -121,7 +121,8 @@ static bool marked_face(const mesh_fe *mesh, const char *marked, int e, int f, i
   return all;
 }
 
-/* Candidates as keys (set: element, face: local face) sorted by corners, unless keys is NULL; their number. */
+/* Count the faces with all nodes marked; unless keys is NULL, list them sorted by corners. A key
+ * holds the element in set and the local face in face. */
 static int list_candidates(const mesh_fe *mesh, const char *marked, face_key *keys) {
   const mesh_topology *topology = mesh_topology_of(mesh->kind);
   int                  n        = 0, nodes[MESH_FACE_NODES];
@@ -143,7 +144,7 @@ static int by_element(const void *a, const void *b) {
   return p->set != q->set ? (p->set > q->set) - (p->set < q->set) : p->face - q->face;
 }
 
-/* Keys that are alone with their corners, in the order of elements. */
+/* Remove the keys that occur twice; sort the others by element. Returns their number. */
 static int remove_pairs(face_key *keys, int n) {
   int kept = 0;
   for (int i = 0, next; i < n; i = next) {

@@ -50,7 +50,7 @@ const char *mesh_names_set(const mesh_names *names, int set) {
   return names->more[set - MESH_N_SETS].name;
 }
 
-/* Tangential component of the sum of a set's area vectors, m2; each face counts by the triangle of
+/* Tangential component of the summed area vectors of a set, m2. Each face counts by the triangle of
  * its first three corners. */
 static double tangential_area(const mesh_fe *mesh, const mesh_face_set *set, mesh_axis axis) {
   const int width = mesh_topology_of(mesh->kind)->face_nodes;

@@ -4,7 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Faces of set a with all their nodes in set b: how many, and the first. marked: [n_nodes] scratch. */
+/* Number of faces of set a all nodes of which are in set b, and the first of them.
+ *   marked  scratch  [n_nodes] */
 static int count(const mesh_fe *mesh, int a, int b, char *marked, int *first) {
   const mesh_face_set *inner = &mesh->set[a], *outer = &mesh->set[b];
   const int            each = mesh_topology_of(mesh->kind)->face_nodes;

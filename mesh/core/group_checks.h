@@ -1,15 +1,16 @@
-/* Groups that a computation cannot do without, and groups that exclude each other. */
+/* Checks of groups: those that must have faces, and those that exclude each other. */
 #ifndef MESH_CORE_GROUP_CHECKS_H
 #define MESH_CORE_GROUP_CHECKS_H
 
 #include "mesh/core/fe_mesh.h"
 
-/* Groups root and the further ones must have faces.
+/* Check that group root and the groups besides the usual four have faces, and that no groups
+ * overlap.
  *
- * Refused besides: a contact face all nodes of which are in group root; another group that lies in
- * root as a whole; a face that is both contact_right and contact_left. The text names the groups,
- * the number of faces and the place of the first. Faces that meet along an edge are allowed.
- *   name  in  heads the text
+ * Refused are a contact face all nodes of which are in group root, another group that lies in root
+ * as a whole, and a face that is both contact_right and contact_left. Faces that meet along an edge
+ * are allowed. The message names the groups, the number of faces and the place of the first.
+ *   name  in  heads the message
  * Errors: SHB_ERR_INPUT; SHB_ERR_IO no memory. */
 shb_status mesh_fe_check_groups(const mesh_fe *mesh, const char *name);
 

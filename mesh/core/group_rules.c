@@ -37,13 +37,13 @@ mesh_names mesh_rules_labels(const mesh_rules *rules) {
   return names;
 }
 
-/* What the rules look at. */
+/* The surface of the body, on which rules select faces. */
 typedef struct {
   const mesh_fe       *mesh;
   const mesh_topology *topology;
   const char          *file;
   mesh_axis            axis;
-  mesh_face_set        outer;  /* the surface of the body */
+  mesh_face_set        outer;
   double               extent; /* m, diagonal of the body's box */
 } surface;
 
@@ -55,7 +55,7 @@ static const int *face_nodes(const surface *s, int face) {
   return s->outer.nodes + s->topology->face_nodes * (size_t)face;
 }
 
-/* How far a point is off the rule's plane or radius, m. */
+/* Distance of a point from the plane or the radius of a rule, m. */
 static double deviation(const surface *s, const mesh_rule *rule, const double x[3]) {
   if (rule->kind == MESH_RULE_PLANE) {
     double from[3];
@@ -69,7 +69,8 @@ static double deviation(const surface *s, const mesh_rule *rule, const double x[
   return fabs(vec3_norm(across) - rule->radius);
 }
 
-/* taken[face] = 1 where all nodes fit; *least: the greatest deviation of the face that fits best. */
+/* taken[face] = 1 where all nodes are within the tolerance. Returns the number of these faces.
+ *   least  out  deviation of the face that fits best, m */
 static int take_fitting(const surface *s, const mesh_rule *rule, char *taken, double *least) {
   int n  = 0;
   *least = INFINITY;
@@ -93,7 +94,7 @@ static double face_distance(const surface *s, int face, const double at[3]) {
   return least;
 }
 
-/* Side of a face by its two corners. */
+/* Edge of a face by its two corners. */
 typedef struct {
   int low, high, face;
 } edge;
@@ -117,7 +118,7 @@ static void face_normal(const surface *s, int face, double normal[3]) {
   for (int d = 0; d < 3; d++) normal[d] /= size;
 }
 
-/* Do the two faces go on without an edge? */
+/* Do the two faces meet without an edge (MESH_RULE_EDGE)? */
 static bool is_smooth(const surface *s, int a, int b) {
   double p[3], q[3];
   face_normal(s, a, p);
@@ -125,7 +126,8 @@ static bool is_smooth(const surface *s, int a, int b) {
   return vec3_dot(p, q) > cos(MESH_RULE_EDGE);
 }
 
-/* Sides of all faces, sorted: the two of an edge are neighbours. NULL when out of memory. */
+/* Edges of all faces, sorted, so that the two faces of an edge are neighbours. NULL when out of
+ * memory. */
 static edge *list_edges(const surface *s) {
   const int n    = s->topology->face_corners;
   edge     *list = malloc(((size_t)n * (size_t)s->outer.n + 1) * sizeof *list);
@@ -138,7 +140,8 @@ static edge *list_edges(const surface *s) {
   return list;
 }
 
-/* Spread from face first across smooth edges; queue: [faces]. */
+/* Take face first and all faces reached from it across smooth edges.
+ *   queue  scratch  [faces] */
 static void flood_fill(const surface *s, const edge *list, int first, int *queue, char *taken) {
   const int corners = s->topology->face_corners;
   const int total   = corners * s->outer.n;

@@ -6,7 +6,7 @@
 
 enum { POINTS = 43 };
 
-/* Shape function gradients at the points that are looked at. */
+/* Gradients of the shape functions at the points where J is checked. */
 typedef struct {
   int    n;
   double gradient[POINTS][MESH_NODES][3];
@@ -42,7 +42,7 @@ static void make_points(mesh_kind kind, sample_points *p) {
   }
 }
 
-/* J = dx/d(reference) of an element at a probe; its determinant. */
+/* J = dx/d(r, s, t) of an element at a point; returns its determinant. */
 static double jacobian_at(const mesh_fe *mesh, int element, const sample_points *p, int q,
                           double J[3][3]) {
   const int  nodes = mesh_topology_of(mesh->kind)->nodes;
@@ -99,7 +99,7 @@ int mesh_jacobian_inverted(const mesh_fe *mesh) {
   return bad;
 }
 
-/* Straighten the edges of an element; number of nodes that moved. */
+/* Straighten the edges of an element. Returns the number of nodes that moved. */
 static int straighten_edges(mesh_fe *mesh, int element, char *moved) {
   const mesh_topology *topology = mesh_topology_of(mesh->kind);
   const int           *node     = mesh->connectivity + topology->nodes * (size_t)element;

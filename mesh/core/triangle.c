@@ -35,7 +35,7 @@ static double distance(const mesh_triangle *triangle, const double at[3], const 
   return vec3_distance(foot, at);
 }
 
-/* Nearest point of the side from corner c to the next. */
+/* Barycentric coordinates of the nearest point on the side from corner c to the next. */
 static void on_side(const mesh_triangle *triangle, const double at[3], int c, double weight[3]) {
   double along[3], from[3];
   int    next = (c + 1) % 3;
@@ -48,7 +48,7 @@ static void on_side(const mesh_triangle *triangle, const double at[3], int c, do
   weight[(c + 2) % 3] = 0;
 }
 
-/* The foot of the perpendicular if it is inside, else the nearest point of a side. */
+/* The foot of the perpendicular if it lies inside, else the nearest point of a side. */
 double mesh_triangle_closest(const mesh_triangle *triangle, const double at[3], double foot[3],
                              double weight[3]) {
   double a[3], b[3], v[3], w[3];

@@ -20,7 +20,7 @@ static void restore_handlers(const mesh_session *session) {
     sigaction(saved_signals[i], &session->handler[i], NULL);
 }
 
-/* OpenCASCADE tells its faults on standard output, in colours; gmsh's logger has them too. */
+/* OpenCASCADE prints errors on standard output. gmsh's logger holds them as well. */
 static int saved_stdout = -1;
 
 static void mute_stdout(void) {
@@ -39,10 +39,10 @@ static void unmute_stdout(void) {
   saved_stdout = -1;
 }
 
-/* gmsh is up, and what it reads: exit handlers have no arguments. */
+/* The file that gmsh reads, "" without a session. A global, as exit handlers have no arguments. */
 static char reading[512];
 
-/* "Exit" in a script makes gmsh call exit(0), as if all were done. */
+/* "Exit" in a script makes gmsh call exit(0), which would report success. */
 static void refuse_exit(void) {
   if (!reading[0]) return;
   fprintf(stderr,
@@ -70,7 +70,7 @@ shb_status mesh_session_open(mesh_session *session) {
   for (size_t i = 0; i < sizeof option / sizeof *option; i++)
     gmshOptionSetNumber(option[i], 0, &ierr);
   gmshOptionSetNumber("General.NumThreads", 1, &ierr);
-  gmshOptionSetNumber("General.ExpertMode", 1, &ierr); /* asks nothing on the terminal */
+  gmshOptionSetNumber("General.ExpertMode", 1, &ierr); /* no questions on the terminal */
   guard_exit("gmsh");
   return SHB_OK;
 }

@@ -39,7 +39,7 @@ double mesh_estimate_most_nodes(void) {
   return kilobytes > 0 ? fmin(MOST, 1e3 * kilobytes / BYTES_EACH) : MOST;
 }
 
-/* Length, area or volume of an entity: OpenCASCADE's own, else from its box. */
+/* Length, area or volume of an entity: exact from OpenCASCADE, else estimated from its box. */
 static double measure(int dimension, int tag) {
   double size = -1, low[3], high[3], span[3];
   int    ierr = 0;
@@ -52,7 +52,7 @@ static double measure(int dimension, int tag) {
   for (int d = 0; d < 3; d++) span[d] = high[d] - low[d];
   double xy = span[0] * span[1], yz = span[1] * span[2], zx = span[2] * span[0];
   if (dimension == 1) return vec3_norm(span);
-  /* a face fills half of its box's largest side at least, or so */
+  /* a face fills at least about half of the largest side of its box */
   return dimension == 2 ? fmax(xy, fmax(yz, zx)) / 2 : 0;
 }
 
@@ -92,7 +92,8 @@ shb_status mesh_estimate_check_solid(const mesh_source *source, mesh_extent *ext
   return SHB_OK;
 }
 
-/* Corners of the lines or triangles on an entity, [n][dimension + 1][3]; the caller frees. */
+/* Corners of the lines or triangles on an entity.
+ *   xyz  out  [n][dimension + 1][3]; the caller frees */
 static shb_status corners(const char *path, int dimension, int tag, double **xyz, size_t *n) {
   const int type = dimension == 1 ? GMSH_LINE : GMSH_TRIANGLE;
   size_t   *tags = NULL, n_tags = 0, n_xyz = 0, n_unused = 0;
@@ -105,7 +106,8 @@ static shb_status corners(const char *path, int dimension, int tag, double **xyz
   return SHB_OK;
 }
 
-/* Length of a line, area of a triangle; *cone: six times the volume between a triangle and the origin. */
+/* Length of a line or area of a triangle.
+ *   cone  in/out  plus six times the signed volume between the triangle and the origin */
 static double size_of(int dimension, const double *x, double *cone) {
   double a[3], b[3], c[3];
   vec3_minus(x + 3, x, a);
@@ -116,7 +118,7 @@ static double size_of(int dimension, const double *x, double *cone) {
   return vec3_norm(c) / 2;
 }
 
-/* Sum over an entity of the sizes, of size times element size h, and of the cones. */
+/* Sums over the elements of an entity: sizes, sizes times element size h, cones. */
 static shb_status add(const char *path, int dimension, int tag, double sum[3]) {
   double *xyz = NULL;
   size_t  n   = 0;
@@ -124,13 +126,15 @@ static shb_status add(const char *path, int dimension, int tag, double sum[3]) {
   for (size_t i = 0; i < n; i++) {
     double one = size_of(dimension, xyz + i * (size_t)(3 * (dimension + 1)), &sum[2]);
     sum[0] += one;
-    sum[1] += one * (dimension == 1 ? one : sqrt(2.3 * one)); /* 2.3 triangles a square of h */
+    sum[1] +=
+        one * (dimension == 1 ? one : sqrt(2.3 * one)); /* 2.3 triangles in a square of side h */
   }
   gmshFree(xyz);
   return SHB_OK;
 }
 
-/* Volume within the meshed faces, by the theorem of Gauss; the boundary of each solid has its signs. */
+/* Volume enclosed by the meshed faces, by the divergence theorem. gmsh signs the faces of a
+ * boundary by their orientation. */
 static shb_status enclose(const char *path, double *volume) {
   int   *solids = NULL;
   size_t n      = 0;

@@ -35,14 +35,14 @@ static shb_status load(const mesh_source *source) {
   SHB_TRY(set_options(source));
   mesh_session_log_start(source->path);
   GMSH_TRY(source->path, gmshOpen(source->path, &ierr));
-  SHB_TRY(mesh_session_log_check(source->path)); /* gmsh goes on after a fault of syntax */
+  SHB_TRY(mesh_session_log_check(source->path)); /* gmsh continues after a syntax error */
   int   *tags = NULL;
   size_t n    = 0;
   GMSH_TRY(source->path, gmshModelGetEntities(&tags, &n, 3, &ierr));
   gmshFree(tags);
   SHB_CHECK(n > 0, SHB_ERR_INPUT, "%s: holds no solid (volume)", source->path);
   if (n == 2 || mesh_format_of(source->path) == MESH_FORMAT_GEO) return SHB_OK;
-  /* solids that touch each have a face of their own there: one mesh needs one face */
+  /* solids in contact have one face each there; a common mesh needs a common face */
   GMSH_TRY(source->path, gmshModelOccRemoveAllDuplicates(&ierr));
   GMSH_TRY(source->path, gmshModelOccSynchronize(&ierr));
   return SHB_OK;
@@ -61,7 +61,7 @@ void mesh_solid_close(mesh_solid *solid) {
   mesh_session_close(&solid->session);
 }
 
-/* A script may have set sizes of its own: ours is then the greatest. */
+/* A script may set smaller sizes of its own: ours is the maximum. */
 static shb_status set_size(const mesh_source *source) {
   if (!(source->size > 0)) return SHB_OK;
   double size = source->size / source->unit;
@@ -107,7 +107,7 @@ shb_status mesh_solid_mesh(mesh_solid *solid, mesh_fe *mesh) {
   return status;
 }
 
-/* Faces (entities) of the solid that make up a group, and where they are. */
+/* Faces (entities) of the solid that form a group. */
 typedef struct {
   int n, *tag;
   double (*centre)[3]; /* mean of the nodes, in the file's unit */
@@ -123,7 +123,9 @@ static int by_tag(const void *a, const void *b) {
   return (p > q) - (p < q);
 }
 
-/* Are all nodes of face tag marked ([n_nodes] of mesh)? Their mean position. */
+/* Are all nodes of face tag marked? Mean position of its nodes.
+ *   marked  in   [n_nodes]
+ *   centre  out  in the file's unit */
 static shb_status measure_face(const mesh_solid *solid, const mesh_fe *mesh, const char *marked,
                                int tag, bool *whole, double centre[3]) {
   size_t *nodes = NULL, n = 0, n_xyz = 0, n_unused = 0;
@@ -169,7 +171,8 @@ static shb_status find_patch(const mesh_solid *solid, const mesh_fe *mesh, int i
   return status;
 }
 
-/* Order left's faces so that each, turned, is nearest to the right one in its place. */
+/* Order the left faces so that each, rotated by angle, is nearest to the right face of the same
+ * index. */
 static void put_in_order(const patch *right, patch *left, mesh_axis axis, double angle) {
   for (int i = 0; i < right->n; i++) {
     int    best  = i;
@@ -192,16 +195,6 @@ static void put_in_order(const patch *right, patch *left, mesh_axis axis, double
   }
 }
 
-/* Rows of the 4x4 matrix that turns the left side onto the right one. */
-static void rotation_matrix(mesh_axis axis, double angle, double matrix[16]) {
-  for (int i = 0; i < 16; i++) matrix[i] = i == 15;
-  for (int column = 0; column < 3; column++) {
-    double unit[3] = {column == 0, column == 1, column == 2};
-    mesh_axis_rotate(axis, angle, unit, unit);
-    for (int row = 0; row < 3; row++) matrix[4 * row + column] = unit[row];
-  }
-}
-
 static bool matches(const mesh_fe *mesh, mesh_axis axis, int blades) {
   int pairs = 0, *right = NULL, *left = NULL;
   if (mesh_fe_match(mesh, axis, blades, &pairs, &right, &left) != SHB_OK) return false;
@@ -210,7 +203,7 @@ static bool matches(const mesh_fe *mesh, mesh_axis axis, int blades) {
   return true;
 }
 
-/* One pair of faces; *again as mesh_solid_tie. */
+/* One pair of faces; again as in mesh_solid_make_periodic. */
 static shb_status make_periodic(mesh_solid *solid, mesh_fe *mesh, int right_set, int left_set,
                                 bool *again) {
   const mesh_source *source = solid->source;
@@ -227,7 +220,7 @@ static shb_status make_periodic(mesh_solid *solid, mesh_fe *mesh, int right_set,
     double matrix[16];
     int    ierr = 0;
     put_in_order(&right, &left, source->axis, angle);
-    rotation_matrix(source->axis, angle, matrix);
+    mesh_axis_matrix(source->axis, angle, matrix);
     gmshModelMeshSetPeriodic(2, right.tag, (size_t)right.n, left.tag, (size_t)left.n, matrix, 16,
                              &ierr);
     periodic = ierr == 0;
@@ -239,7 +232,7 @@ static shb_status make_periodic(mesh_solid *solid, mesh_fe *mesh, int right_set,
   return status;
 }
 
-shb_status mesh_solid_tie(mesh_solid *solid, mesh_fe *mesh, bool *again) {
+shb_status mesh_solid_make_periodic(mesh_solid *solid, mesh_fe *mesh, bool *again) {
   const mesh_source *source = solid->source;
   *again                    = false;
   if (source->blades == 0) return SHB_OK;

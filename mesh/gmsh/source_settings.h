@@ -1,4 +1,4 @@
-/* Where the mesh of a blade comes from when it is not the parametric one. */
+/* Settings of a blade's mesh that is read, or made from a solid. */
 #ifndef MESH_GMSH_SOURCE_SETTINGS_H
 #define MESH_GMSH_SOURCE_SETTINGS_H
 
@@ -6,12 +6,12 @@
 
 typedef struct {
   const char *path;
-  double      unit; /* m: length of one unit of the file's coordinates; STEP files arrive in mm */
-  double      size; /* m, element size of a solid; 0: as the file says (.geo) */
+  double      unit; /* m: length of one unit of the file; STEP files are read in mm */
+  double      size; /* m, element size of a solid; 0: as in the file (.geo) */
   mesh_axis   axis;
-  int blades; /* contact faces of a solid are made to match after this sector; 0: contact to ground */
-  mesh_rules rules;
-  int        n_contacts; /* several contact interfaces, 0: contact_right and contact_left */
+  int         blades; /* periodic contact faces of a solid; 0: contact to ground */
+  mesh_rules  rules;
+  int         n_contacts; /* number of contact interfaces; 0: contact_right and contact_left */
   struct {
     char right[MESH_WORD], left[MESH_WORD];
   } contact[MESH_MAX_MORE / 2];

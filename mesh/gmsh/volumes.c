@@ -11,7 +11,7 @@
 #include "mesh/core/triangle.h"
 #include "mesh/gmsh/session.h"
 
-/* gmsh's volume (entity) of every element. */
+/* gmsh's volume (entity) of each element. */
 typedef struct {
   const char *path;
   mesh_fe    *mesh;
@@ -68,7 +68,7 @@ static void put_entity(const model *m, mesh_regions *regions, int entity, int vo
     if (m->entity[e] == entity) mesh_regions_assign(regions, e, volume);
 }
 
-/* How far the point is outside the element, beyond the planes of its faces; negative inside. */
+/* Largest signed distance of a point from the planes of an element's faces, m; negative inside. */
 static double outside(const mesh_fe *mesh, int element, const double at[3]) {
   const mesh_topology *topology = mesh_topology_of(mesh->kind);
   const int           *nodes    = mesh->connectivity + topology->nodes * (size_t)element;
@@ -99,7 +99,7 @@ static int element_at(const mesh_fe *mesh, const double at[3]) {
   return nearest;
 }
 
-/* The names that are there, for a text. */
+/* Fail with the list of the physical volumes in the file. */
 static shb_status refuse_absent(const model *m, const char *name) {
   int   *groups = NULL;
   size_t n = 0, used = 0;

@@ -5,7 +5,7 @@
 #include <string.h>
 #include <strings.h>
 
-/* Room for one more. */
+/* Make room for one more item. */
 static shb_status reserve(void **array, int n, int *room, size_t size) {
   if (n < *room) return SHB_OK;
   int   wanted = *room > INT_MAX / 2 ? INT_MAX : *room ? 2 * *room : 64;
@@ -68,7 +68,7 @@ static int by_element(const void *a, const void *b) {
   return compare(((const mesh_inp_element *)a)->id, ((const mesh_inp_element *)b)->id);
 }
 
-/* The line to name: the later of the two. */
+/* Name the later of the two lines. */
 static shb_status refuse_duplicate(const mesh_deck *deck, const char *what, long id, long a,
                                    long b) {
   MESH_DECK_FAIL(deck, a > b ? a : b, "%s %ld is given twice, first in line %ld", what, id,
@@ -106,12 +106,11 @@ int mesh_inp_element_at(const mesh_inp *inp, long id) {
   return found ? (int)(found - inp->element) : -1;
 }
 
-/* Corners of S1, S2, ..., from 0; a triangle's fourth is its first. */
+/* Corners of S1, S2, ..., counted from 0; the fourth of a triangle repeats the first. */
 static const int tet_label[4][4] = {{0, 1, 2, 0}, {0, 3, 1, 0}, {1, 3, 2, 1}, {2, 3, 0, 2}};
 static const int hex_label[6][4] = {{0, 1, 2, 3}, {4, 7, 6, 5}, {0, 4, 5, 1},
                                     {1, 5, 6, 2}, {2, 6, 7, 3}, {3, 7, 4, 0}};
 
-/* Is the corner one of the label's? */
 static bool contains(const int label[4], int corner) {
   for (int i = 0; i < 4; i++)
     if (label[i] == corner) return true;

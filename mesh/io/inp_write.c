@@ -11,7 +11,7 @@
 #include "mesh/base/publish.h"
 #include "mesh/io/inp_table.h"
 
-/* S1, S2, ... of element e where its corners are the group's face, or 0. */
+/* Label 1, 2, ... of the face of element e with the corners of face, or 0. */
 static int face_label(const mesh_fe *mesh, int e, const int *face) {
   const mesh_topology *topology = mesh_topology_of(mesh->kind);
   const int           *node     = mesh->connectivity + (size_t)topology->nodes * (size_t)e;
@@ -26,21 +26,21 @@ static int face_label(const mesh_fe *mesh, int e, const int *face) {
 }
 
 typedef struct {
-  int set, face, corner; /* corner: the least of the face's */
+  int set, face, corner; /* corner: the smallest node index of the face's corners */
 } group_face;
 
 static int by_corner(const void *a, const void *b) {
   return ((const group_face *)a)->corner - ((const group_face *)b)->corner;
 }
 
-/* Every face of every set, sorted by its least corner; NULL when out of memory. */
+/* Faces of all sets, sorted by their smallest corner; NULL when out of memory. */
 static group_face *list_faces(const mesh_fe *mesh, int *n) {
   const mesh_topology *topology = mesh_topology_of(mesh->kind);
   size_t               total    = 0;
   for (int s = 0; s < mesh_fe_sets(mesh); s++) total += (size_t)mesh->set[s].n;
   group_face *list = malloc((total + 1) * sizeof *list);
   *n               = 0;
-  for (int s = 0; list && s < MESH_N_SETS; s++)
+  for (int s = 0; list && s < mesh_fe_sets(mesh); s++)
     for (int f = 0; f < mesh->set[s].n; f++) {
       const int *node  = mesh->set[s].nodes + (size_t)topology->face_nodes * (size_t)f;
       int        least = node[0];
@@ -51,7 +51,7 @@ static group_face *list_faces(const mesh_fe *mesh, int *n) {
   return list;
 }
 
-/* element[set][face], label[set][face]: where each face of a group lies. */
+/* Element and label of each face of each group: element[set][face], label[set][face]. */
 static void locate(const mesh_fe *mesh, const group_face *list, int n,
                    int *const element[MESH_MAX_SETS], int *const label[MESH_MAX_SETS]) {
   const mesh_topology *topology = mesh_topology_of(mesh->kind);
@@ -71,7 +71,8 @@ static void locate(const mesh_fe *mesh, const group_face *list, int n,
     }
 }
 
-/* The fewest digits that give the number back, but not more than fit in 20 characters, where CalculiX stops reading. */
+/* Print the fewest digits that reproduce the number, within the 20 characters that CalculiX
+ * reads. */
 static void print_real(FILE *file, double value) {
   char text[40];
   for (int digits = 15; digits <= 17; digits++) {
@@ -87,7 +88,7 @@ static void print_real(FILE *file, double value) {
   fprintf(file, ", %s", text);
 }
 
-/* Name of the set of all elements: not that of a volume. */
+/* Name of the set of all elements, different from the volumes' names. */
 static const char *body_name(const mesh_fe *mesh) {
   for (int i = 0; i < mesh->n_regions; i++)
     if (strcasecmp(mesh->region_name[i], "body") == 0) return "whole_body";
@@ -121,7 +122,7 @@ static void write_volumes(const mesh_fe *mesh, FILE *file) {
   }
 }
 
-/* The nodes of each group, for *BOUNDARY and the like. */
+/* Node sets of the groups, for *BOUNDARY and similar cards. */
 static void write_node_sets(const mesh_fe *mesh, char *marked, FILE *file) {
   const size_t each = (size_t)mesh_topology_of(mesh->kind)->face_nodes;
   for (int s = 0; s < mesh_fe_sets(mesh); s++) {

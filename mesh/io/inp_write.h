@@ -1,12 +1,15 @@
-/* A mesh in memory to a file of Abaqus and CalculiX (.inp). */
+/* A mesh in memory written to a file of Abaqus and CalculiX (.inp). */
 #ifndef MESH_IO_INP_WRITE_H
 #define MESH_IO_INP_WRITE_H
 
 #include "mesh/core/fe_mesh.h"
 
-/* Write the mesh with its groups, as surfaces and as node sets, and publish it. Numbers of nodes and elements stay;
- * coordinates, in m, are read back as they were, or to 14 to 16 digits where 17 do not fit into the 20 characters that
- * CalculiX reads. The body is the element set "body", volumes are element sets, all nodes are "nodes"; nothing but the mesh is written. SHB_ERR_IO. */
+/* Write the mesh and publish it as path. Groups are written as surfaces and as node sets, volumes
+ * as element sets. The set "body" holds all elements, "nodes" all nodes. Numbers of nodes and
+ * elements are kept.
+ *
+ * Coordinates, in m, are reproduced exactly where 17 digits fit into the 20 characters that
+ * CalculiX reads. Otherwise 14 to 16 digits are written. SHB_ERR_IO. */
 shb_status mesh_inp_write(const mesh_fe *mesh, const char *path);
 
 #endif

@@ -14,8 +14,8 @@
 #include "mesh/gmsh/session.h"
 #include "mesh/io/inp_read.h"
 
-/* First line $MeshFormat (comments may come before it), then version 2.2 or 4.1. gmsh takes anything else
- * for a script of its own language, so it must not see a file that fails here. */
+/* Check the head: $MeshFormat, possibly after comments, then version 2.2 or 4.1. gmsh takes any
+ * other file for a script, so it must not open a file that fails here. */
 static shb_status check_head(FILE *file, const char *path) {
   char line[256] = "";
   bool comment   = false;
@@ -33,7 +33,7 @@ static shb_status check_head(FILE *file, const char *path) {
   return SHB_OK;
 }
 
-/* Is mark anywhere in the file? Blocks overlap by the mark's length. */
+/* Does the file contain mark? Blocks overlap by the length of mark. */
 static bool holds(FILE *file, const char *mark) {
   enum { BLOCK = 1 << 18 };
   size_t length = strlen(mark), kept = 0;
@@ -72,7 +72,7 @@ static shb_status read_msh(const char *path, const mesh_names *names, mesh_fe *m
   mesh_session_log_start(path);
   gmshMerge(path, &ierr);
   shb_status logged =
-      mesh_session_log_check(path); /* gmsh reads on where an element lacks its nodes */
+      mesh_session_log_check(path); /* gmsh continues where an element lacks nodes */
   shb_status status = ierr ? mesh_session_fail(SHB_ERR_INPUT, __FILE__, __LINE__, path)
                       : logged != SHB_OK ? logged
                                          : mesh_import(path, names, mesh);
