@@ -9,9 +9,9 @@
 
 #include <cmocka.h>
 
+#include "mesh/base/clock.h"
 #include "mesh/base/phases.h"
 #include "mesh/base/progress.h"
-#include "mesh/base/clock.h"
 
 /* Busy until the processor, then idle until the clock, has gone on that far. */
 static void spend(double busy, double idle) {

@@ -13,11 +13,11 @@
 
 #include <cmocka.h>
 
+#include "mesh/core/face_match.h"
 #include "mesh/core/fe_mesh.h"
 #include "mesh/core/jacobian.h"
 #include "mesh/gmsh/provenance.h"
 #include "tests/support/read_mesh.h"
-#include "mesh/core/face_match.h"
 
 static const double degree = M_PI / 180;
 

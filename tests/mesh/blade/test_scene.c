@@ -11,9 +11,9 @@
 
 #include "cases/schema/case.h"
 #include "mesh/blade/blade.h"
+#include "mesh/core/face_match.h"
 #include "mesh/core/fe_mesh.h"
 #include "tests/support/read_mesh.h"
-#include "mesh/core/face_match.h"
 
 static void scene_blade_is_about_six_thousand_nodes(void **state) {
   (void)state;

@@ -16,10 +16,10 @@
 #include <gmshc.h>
 
 #include "mesh/base/progress.h"
+#include "mesh/core/face_match.h"
 #include "mesh/core/jacobian.h"
 #include "tests/support/box.h"
 #include "tests/support/read_mesh.h"
-#include "mesh/core/face_match.h"
 
 static const double size[3]  = {0.237, 0.041, 0.023};
 static const int    cells[3] = {5, 3, 2};

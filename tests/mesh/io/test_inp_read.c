@@ -12,9 +12,9 @@
 
 #include <cmocka.h>
 
+#include "mesh/io/inp_write.h"
 #include "tests/support/box.h"
 #include "tests/support/read_mesh.h"
-#include "mesh/io/inp_write.h"
 
 static const double size[3]  = {0.237, 0.041, 0.023};
 static const int    cells[3] = {3, 2, 1};
