@@ -1,4 +1,5 @@
-/* Assembled matrices: patch test, rigid motions, mass, clamp, preallocation; partition and floating parts. */
+/* Assembled matrices: patch test, rigid motions, mass, clamp, preallocation; partition and floating
+ * parts. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -38,7 +39,7 @@ static mesh_fe free_body(void) {
   return mesh;
 }
 
-/* Constant stress: the greatest force on an inner node over the greatest on the surface. */
+/* Constant stress: the largest force on an inner node divided by the largest on the surface. */
 static double force_inside(const mesh_fe *mesh, fem_rules rules) {
   fem_system system;
   Vec        u, f;
@@ -95,7 +96,8 @@ static mesh_fe smooth_body(int finer) {
   return mesh;
 }
 
-/* Fewer points leave forces inside a body of curved elements, which fall as it is refined. */
+/* Four points leave forces inside a body of curved elements. The forces fall as the mesh is
+ * refined. */
 static void patch_test_of_curved_elements(void **state) {
   (void)state;
   double inside[2];
@@ -140,7 +142,8 @@ static void mass_and_inertia_are_exact(void **state) {
   mesh_fe_free(&mesh);
 }
 
-/* Energy from the strains is u^T K u; of a rigid motion it is nothing, where u^T K u is rounding. */
+/* The energy from the strains is u^T K u. For a rigid motion it vanishes, where u^T K u is
+ * rounding. */
 static void strain_energy_is_the_quadratic_form(void **state) {
   (void)state;
   mesh_fe      mesh    = free_body();

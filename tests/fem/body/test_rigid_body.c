@@ -1,4 +1,5 @@
-/* Mass and moment of inertia of a bar, at rest and displaced, and the inertia forces that go with them. */
+/* Mass and moment of inertia of a bar at rest and displaced, and the inertia forces of its
+ * motions. */
 #include "fem/body/rigid_body.h"
 
 #include "mesh/base/vec3.h"

@@ -26,7 +26,7 @@ static double sum_monomial(mesh_kind kind, const fem_rule *rule, int i, int j, i
   return sum;
 }
 
-/* Largest error over the monomials of total degree (tetrahedra) or degree a direction (hexahedra). */
+/* Largest error of the monomials of total degree (tetrahedra) or degree a direction (hexahedra). */
 static double worst(mesh_kind kind, const fem_rule *rule, int degree) {
   double error = 0;
   for (int i = 0; i <= degree; i++)

@@ -1,4 +1,4 @@
-/* The factor: CHOLMOD against MUMPS and the matrix itself, matrices that have none, memory that is not there. */
+/* The factor: CHOLMOD against MUMPS and the matrix itself, indefinite matrices, lack of memory. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -153,14 +153,14 @@ static void indefinite_matrices_are_told(void **state) {
   }
 }
 
-/* A sanitizer's allocator takes memory, and address space, as it likes. */
+/* The allocator of a sanitizer takes additional memory and address space. */
 #ifdef __SANITIZE_ADDRESS__
 #define SKIP_UNDER_SANITIZER() skip()
 #else
 #define SKIP_UNDER_SANITIZER() (void)0
 #endif
 
-/* What the analysis foresees is what the process then takes. */
+/* The process takes the memory that the analysis estimates. */
 static void memory_is_foreseen(void **state) {
   (void)state;
   SKIP_UNDER_SANITIZER();
@@ -183,7 +183,7 @@ static void memory_is_foreseen(void **state) {
   mesh_fe_free(&mesh);
 }
 
-/* With the address space cut short: one line, before anything is factorised. */
+/* With too little memory, one line is reported before anything is factorised. */
 static void too_little_memory_is_one_line(void **state) {
   const body   *b = *state;
   struct rlimit was, now;

@@ -1,4 +1,4 @@
-/* The parametric blade: contact geometry, groups, volume, reproducibility, and what it refuses. */
+/* The parametric blade: contact geometry, groups, volume, reproducibility, refused input. */
 #include "mesh/blade/blade.h"
 
 #include <math.h>
@@ -108,7 +108,7 @@ static void normal_and_centre(const mesh_fe *mesh, mesh_set_id id, double normal
   }
 }
 
-/* v of eq. 2 in the cylindrical axes at the right face's centre; minus that on the left. */
+/* v of eq. 2 in the cylindrical axes at the centre of the right face, and -v on the left. */
 static void check_contact(const mesh_blade *blade, mesh_fe *mesh) {
   double psi = blade->psi, phi = blade->phi;
   double v[3] = {cos(psi) * cos(phi), sin(psi) * cos(phi), -sin(phi)};
@@ -286,7 +286,7 @@ static void groups_lie_where_they_should(void **state) {
   mesh_fe_free(&mesh);
 }
 
-/* The loaded side is the hollow one: seen along its normal its middle lies behind its edges. */
+/* The loaded side is concave: seen along its normal, its middle lies behind its edges. */
 static void check_hollow(const mesh_blade *blade, const mesh_fe *mesh, double bulge) {
   double normal[3], centre[3], axes[3][3], edge[2][2] = {{INFINITY, 0}, {-INFINITY, 0}};
   double middle[2] = {INFINITY, 0}, stacking[3];
@@ -426,7 +426,7 @@ static void few_inverted_elements_are_straightened(void **state) {
   mesh_fe_free(&mesh);
 }
 
-/* status, and a one-line text that has the words; nothing is written. */
+/* Status, and a one-line message with the words; no file is written. */
 static void assert_refused(const mesh_blade *blade, const char *words) {
   shb_status status = write_blade(blade);
   if (status != SHB_ERR_INPUT || !strstr(shb_message(), words))
@@ -443,7 +443,7 @@ static void unresolved_blades_are_refused(void **state) {
   assert_refused(&blade, "mesh.blade.size: gmsh cannot fill");
 }
 
-/* One number of the sample made wrong, and the key that the text must name. */
+/* One invalid number of the sample, and the key that the message must name. */
 typedef struct {
   size_t      offset;
   double      value;
@@ -516,7 +516,7 @@ static void unwritable_folder_is_an_io_error(void **state) {
   assert_non_null(strstr(shb_message(), "/nowhere/blade.msh: cannot be written: No such file"));
 }
 
-/* A failure leaves the earlier mesh as it was. */
+/* A failure leaves the earlier mesh unchanged. */
 static void earlier_mesh_survives_a_failure(void **state) {
   (void)state;
   mesh_blade blade = sample();

@@ -1,4 +1,4 @@
-/* The shipped scene's blade: its size, its contact faces, its elements. */
+/* The blade of the shipped case: its size, contact faces and elements. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

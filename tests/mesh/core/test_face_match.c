@@ -7,8 +7,8 @@
 
 enum { BLADES = 29 };
 
-/* Box coordinates (x, y, z) become axial x, angle (1/2 - y / width) sector, radius 0.4 + z: the right
- * side is y = 0. */
+/* Box coordinates (x, y, z) become axial x, angle (1/2 - y / width) sector, radius 0.4 + z. The
+ * right side is y = 0. */
 static mesh_fe sector(mesh_kind kind) {
   const double size[3]  = {0.03, 0.05, 0.04};
   const int    cells[3] = {3, 2, 4};

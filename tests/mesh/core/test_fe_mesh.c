@@ -1,4 +1,4 @@
-/* Reading meshes, matching contact faces, orientation, and every bad file. */
+/* Reading meshes, matching contact faces, orientation, and faulty files. */
 #include "mesh/core/fe_mesh.h"
 
 #include <math.h>
@@ -126,7 +126,7 @@ static void reads_back_what_was_written(void **state) {
   mesh_fe_free(&box);
 }
 
-/* Faces written inside out come back outward, with their middles in step. */
+/* Faces written inward are read outward, with their middles in step. */
 static void faces_are_turned_outward(void **state) {
   (void)state;
   mesh_fe box, mesh;
@@ -155,7 +155,7 @@ static void faces_are_turned_outward(void **state) {
   mesh_fe_free(&box);
 }
 
-/* The places of a hexahedron's nodes are those that gmsh itself states for its type 17, and of its faces for 16. */
+/* The places of the nodes agree with gmsh's types 17 (hexahedron) and 16 (its faces). */
 static void node_order_is_gmshs(void **state) {
   (void)state;
   const mesh_kind both[2] = {MESH_TET10, MESH_HEX20};
@@ -192,7 +192,7 @@ static void node_order_is_gmshs(void **state) {
   gmshFinalize(&ierr);
 }
 
-/* Hexahedra through a file and back; the volume, the area of each group, and what lies on the far side. */
+/* Hexahedra written and read: the volume, the area of each group, the far side. */
 static void hexahedra_are_read(void **state) {
   (void)state;
   mesh_fe box, mesh;
@@ -274,7 +274,7 @@ static void unused_nodes_are_dropped(void **state) {
   mesh_fe_free(&box);
 }
 
-/* A block between two radial planes of a ring of n: its sides match after one pitch. */
+/* A block between two radial planes of a ring of n sectors: its sides match after one pitch. */
 static void wedge(int n, mesh_fe *mesh) {
   const double block[3] = {0.013, 0.02, 0.011};
   const int    few[3]   = {2, 3, 2};
@@ -390,7 +390,7 @@ static void bad_files_are_refused(void **state) {
   assert_non_null(strstr(shb_message(), path));
 }
 
-/* Cut a good file at many lengths: never a crash, never a mesh. */
+/* A good file cut at many lengths: never a crash, never a mesh. */
 static void truncated_files_are_refused(void **state) {
   (void)state;
   mesh_fe box, mesh;
@@ -436,7 +436,7 @@ static void an_element_without_its_node_is_refused(void **state) {
   assert_says(read_mesh(path, &mesh), SHB_ERR_INPUT, "99");
 }
 
-/* As many as fit into a line, in one line whatever they are called. */
+/* As many names as fit, in one line whatever their characters. */
 static void groups_are_listed(void **state) {
   (void)state;
   mesh_fe mesh = {0};
@@ -487,7 +487,7 @@ static void inverted_elements_are_named(void **state) {
   mesh_fe box, mesh;
   assert_int_equal(box_mesh(size, cells, &box), SHB_OK);
   for (int e = 0; e < box.n_elements; e++) box.element_tag[e] = 1000 + 3 * e;
-  /* pull one mid-side node far along its edge: det J < 0 near that edge's end */
+  /* move one mid-side node far along its edge: det J < 0 near that end */
   const int *n = box.connectivity + 10 * 77;
   for (int d = 0; d < 3; d++)
     box.coordinates[3 * n[4] + d] =
@@ -507,7 +507,7 @@ static void inverted_elements_are_named(void **state) {
   mesh_fe_free(&box);
 }
 
-/* gmsh leaves the program's own signal handling in place. */
+/* gmsh leaves the program's signal handlers in place. */
 static void signals_stay_ours(void **state) {
   (void)state;
   shb_interrupt_catch();

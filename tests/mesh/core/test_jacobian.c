@@ -12,7 +12,8 @@ static mesh_fe box(mesh_kind kind) {
   return mesh;
 }
 
-/* det J is the volume over that of the reference element: 30 of the cube, 6 * 30 / 6 of six tetrahedra. */
+/* det J is the volume divided by that of the reference element: 30 for the cube, 5 / (1/6) for each
+ * of six tetrahedra. */
 static void determinants_of_a_brick(void **state) {
   (void)state;
   for (int kind = MESH_TET10; kind <= MESH_HEX20; kind++) {

@@ -1,5 +1,5 @@
-/* Several volumes in a mesh: from gmsh, from solids by name or by a point, from element sets; and what is told of those that
- * leave elements without a material. */
+/* Several volumes in a mesh: from gmsh, from solids by name or by a point, from element sets.
+ * Elements without a material are refused. */
 #include <gmshc.h>
 #include <math.h>
 #include <setjmp.h>
@@ -81,7 +81,7 @@ static double middle(const mesh_fe *mesh, int e) {
   return sum;
 }
 
-/* Every element is in the region of the block in which its middle lies. */
+/* Every element is in the region of the block that contains its middle. */
 static void check_blocks(const mesh_fe *mesh, const int region_of_block[3]) {
   int seen[3] = {0};
   assert_non_null(mesh->region);
@@ -131,7 +131,7 @@ static void volumes_by_name(void **state) {
   mesh_fe_free(&mesh);
 }
 
-/* A solid without names: three bodies that touch, told apart by points in them. */
+/* A solid without names: three bodies in contact, identified by points inside. */
 static void volumes_by_point(void **state) {
   (void)state;
   mesh_session kernel;
@@ -147,8 +147,7 @@ static void volumes_by_point(void **state) {
   gmshWrite(brep, &ierr);
   mesh_session_close(&kernel);
   assert_int_equal(ierr, 0);
-  for (int i = 0; i < 2;
-       i++) { /* gmsh writes STEP files in mm: a number in the file is a metre of ours here */
+  for (int i = 0; i < 2; i++) { /* gmsh writes STEP files in mm; here a number of the file is 1 m */
     mesh_source source     = source_of(i ? step : brep, 1);
     source.size            = .004;
     source.rules.n_volumes = 3;

@@ -1,4 +1,5 @@
-/* Abaqus and CalculiX meshes: written and read back, every way to name a group, every fault with its line. */
+/* Abaqus and CalculiX meshes: written and read back, all ways to name a group, faults with their
+ * line. */
 
 #include <math.h>
 #include <setjmp.h>
@@ -42,7 +43,8 @@ static void put(const char *text) {
   fclose(file);
 }
 
-/* Reading fails with these words, in one line that begins with the file and, unless line is 0, its line. */
+/* Reading fails with these words in one line, headed by the file and, unless line is 0, its
+ * line. */
 static void refused(int line, const char *words) {
   mesh_fe    mesh;
   char       head[96];
@@ -56,7 +58,7 @@ static void refused(int line, const char *words) {
   assert_null(mesh.connectivity);
 }
 
-/* The same nodes in any order: outward or not is for other tests. */
+/* The same nodes in any order; other tests check the orientation. */
 static int same_nodes(const int *a, const int *b, int n) {
   int same = 0;
   for (int i = 0; i < n; i++)
@@ -86,7 +88,7 @@ static void same_mesh(const mesh_fe *a, const mesh_fe *b) {
   for (int id = 0; id < MESH_N_SETS; id++) same_faces(a, b, (mesh_set_id)id);
 }
 
-/* All four groups, on sides that use each of a tetrahedron's faces. */
+/* All four groups, on sides that use each face of a tetrahedron. */
 static void full_box(mesh_kind kind, mesh_fe *box) {
   shb_status status = kind == MESH_HEX20 ? box_hex(size, cells, box) : box_mesh(size, cells, box);
   assert_int_equal(status, SHB_OK);
@@ -108,8 +110,9 @@ static void what_was_written_comes_back(void **state) {
   }
 }
 
-/* Coordinates of 17 digits of any size and sign: next to what they were, in 20 characters each. */
-/* A byte order mark before all; lines that end in CR LF, or in CR. */
+/* Coordinates of 17 digits of any size and sign: neighbours of the originals, in 20 characters
+ * each. */
+/* A byte order mark first; lines that end in CR LF, or in CR. */
 static void other_ends_of_lines_are_read(void **state) {
   (void)state;
   mesh_fe box, mesh;
@@ -172,7 +175,8 @@ static void cannot_be_written_nowhere(void **state) {
   mesh_fe_free(&box);
 }
 
-/* As other programs write: capitals, several rows an element, sets of sets, ranges, triangles, an instance's name. */
+/* As other programs write: capitals, several rows an element, sets of sets, ranges, triangles, the
+ * name of an instance. */
 static void write_otherwise(const mesh_fe *box, FILE *file) {
   const mesh_topology *topology = mesh_topology_of(box->kind);
   fprintf(file, "** a comment\n*Heading\n a, b, c\n*Part, name=P\n*NODE\n");
@@ -199,7 +203,7 @@ static void write_otherwise(const mesh_fe *box, FILE *file) {
   fprintf(file, "*End Part\n*Assembly, name=A\n*Instance, name=P-1, part=P\n*End Instance\n");
 }
 
-/* Nodes of x = 0 as two ranges and single ones, those of y = 0 as a surface of nodes. */
+/* Nodes of x = 0 as two ranges and single ones; nodes of y = 0 as a surface of nodes. */
 static void write_sets(const mesh_fe *box, FILE *file) {
   int first = 0;
   fprintf(file, "*NSET, NSET=half\n");
@@ -238,7 +242,7 @@ static void other_ways_to_write_are_read(void **state) {
   }
 }
 
-/* A unit tetrahedron with its middles: lines 1 to 11 the nodes, 12 and 13 the element. */
+/* A unit tetrahedron with its middles: lines 1 to 11 hold the nodes, 12 and 13 the element. */
 #define NODES                                                                            \
   "*NODE\n1,0,0,0\n2,1,0,0\n3,0,1,0\n4,0,0,1\n5,.5,0,0\n6,.5,.5,0\n7,0,.5,0\n8,0,0,.5\n" \
   "9,.5,0,.5\n10,0,.5,.5\n"
@@ -366,7 +370,7 @@ static void face_inside_is_refused(void **state) {
   mesh_fe_free(&box);
 }
 
-/* A file that ends before its groups is never read as a smaller mesh. */
+/* A file that ends before its groups is not read as a smaller mesh. */
 static void cut_files_are_refused(void **state) {
   (void)state;
   mesh_fe box, mesh;

@@ -1,4 +1,4 @@
-/* Meshes in every format of gmsh, solids meshed here, groups by rule, units; and what cannot be. */
+/* Meshes in every format of gmsh, solids meshed here, groups by rule, units; refused input. */
 #include "mesh/io/source.h"
 
 #include <gmshc.h>
@@ -197,7 +197,8 @@ static void rules_find_the_faces(void **state) {
     }
 }
 
-/* The curved inner face of a ring's piece, whose facets bend by some degrees: by radius, and as the nearest face. */
+/* The curved inner face of a ring segment, whose facets bend by some degrees: by radius, and as the
+ * nearest face. */
 static void curved_faces_are_found(void **state) {
   (void)state;
   const int   many[3] = {2, 6, 2};
@@ -257,7 +258,7 @@ static void groups_may_have_other_names(void **state) {
   mesh_fe_free(&box);
 }
 
-/* Contact on clamped faces, the same face twice; rules that cannot mean what they say. */
+/* Contact on clamped faces, one face in two groups, and rules without sense are refused. */
 static void groups_that_cannot_be_right(void **state) {
   (void)state;
   mesh_fe         box, mesh;
@@ -270,7 +271,8 @@ static void groups_that_cannot_be_right(void **state) {
   source.rules.usual[MESH_CONTACT_RIGHT] = clamp;
   refused(&source, "groups contact_right and root share 8 of 8 faces, one at (0, ");
   source.rules.usual[MESH_CONTACT_RIGHT].normal[0] = 0;
-  source.rules.usual[MESH_CONTACT_RIGHT].normal[1] = 1; /* it meets the clamp along an edge: well */
+  source.rules.usual[MESH_CONTACT_RIGHT].normal[1] =
+      1; /* it meets the clamp along an edge, which is allowed */
   assert_ok(mesh_source_read(&source, NULL, &mesh));
   mesh_fe_free(&mesh);
   source.rules.usual[MESH_CONTACT_LEFT] = source.rules.usual[MESH_CONTACT_RIGHT];
@@ -291,7 +293,7 @@ static void put(const char *path, const char *text) {
   fclose(file);
 }
 
-/* A block as a script in mm, and out of it as STEP (mm) and BREP (numbers only). */
+/* A block as a script in mm, and exported as STEP (mm) and BREP (numbers only). */
 static void solids_are_meshed(void **state) {
   (void)state;
   const char *const name[3] = {"block.geo", "block.step", "block.brep"};
@@ -324,7 +326,7 @@ static void solids_are_meshed(void **state) {
   }
 }
 
-/* A sector whose sides are meshed apart unless they are tied: node for node after the pitch. */
+/* A sector whose sides are meshed independently unless they are made periodic. */
 static void sides_are_made_to_match(void **state) {
   (void)state;
   mesh_fe     mesh;
@@ -370,7 +372,7 @@ static void put_block(const char *path, double h) {
   fclose(file);
 }
 
-/* What is foreseen is near what comes; what no memory holds is refused before it is made. */
+/* The estimate is near the mesh; a mesh that no memory holds is refused before it is made. */
 static void nodes_are_foreseen(void **state) {
   (void)state;
   const mesh_extent block       = {.length = .6, .area = 10.8e-3, .volume = 4e-5};
