@@ -27,7 +27,7 @@ shb_status fem_clamp_check(const mesh_fe *mesh) {
   for (int e = 0; e < mesh->n_elements; e++)
     join(parent, mesh->connectivity + nodes * (size_t)e, nodes);
   for (int f = 1; f < root->n; f++) {
-    int ends[2] = {root->nodes[0], root->nodes[topology->face_nodes * f]};
+    int ends[2] = {root->nodes[0], root->nodes[topology->face_nodes * (size_t)f]};
     join(parent, ends, 2);
   }
   int floating = 0, first = -1;

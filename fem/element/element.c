@@ -122,7 +122,7 @@ KERNEL void add_point(int n, double lambda, double mu, const double g[][3], doub
     for (int j = i; j < n; j++) {
       double inner = mu * (g[i][0] * g[j][0] + g[i][1] * g[j][1] + g[i][2] * g[j][2]);
       for (int a = 0; a < 3; a++) {
-        double *row = K + (3 * i + a) * 3 * n + 3 * j;
+        double *row = K + (size_t)((3 * i + a) * 3 * n + 3 * j);
         for (int b = 0; b < 3; b++) row[b] += lambda * g[i][a] * g[j][b] + mu * g[i][b] * g[j][a];
         row[a] += inner;
       }

@@ -94,7 +94,7 @@ KERNEL void add_point(int n, const fem_lame *lame, double volume, const fem_defo
     for (int j = i; j < n; j++) {
       double geometric = volume * vec3_dot(g[i], Sg[j]), shear = mu * vec3_dot(g[i], g[j]);
       for (int a = 0; a < 3; a++) {
-        double *row = K + (3 * i + a) * 3 * n + 3 * j;
+        double *row = K + (size_t)((3 * i + a) * 3 * n + 3 * j);
         for (int b = 0; b < 3; b++)
           row[b] += lambda * p[i][a] * p[j][b] + mu * p[j][a] * p[i][b] + shear * B[a][b];
         row[a] += geometric;

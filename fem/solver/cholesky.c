@@ -92,7 +92,7 @@ static void count_columns(const block_rows *b, const int *place, int *next, int 
     }
     next[c] = 0;
   }
-  start[3 * b->n] = total;
+  start[3 * (size_t)b->n] = total;
 }
 
 static void put_diagonal(const double *B, int c, const int *start, int *row, double *value) {
@@ -127,13 +127,14 @@ static cholmod_sparse *permute(const block_rows *b, const int *place, cholmod_co
     count_columns(b, place, next, start);
     for (PetscInt r = 0; r < b->n; r++)
       for (PetscInt q = b->start[r]; q < b->start[r + 1]; q++) {
-        int here = place[r], there = place[b->column[q]];
+        int           here = place[r], there = place[b->column[q]];
+        const double *block = b->value + 9 * (size_t)q;
         if (here == there)
-          put_diagonal(b->value + 9 * q, here, start, A->i, A->x);
+          put_diagonal(block, here, start, A->i, A->x);
         else if (here < there)
-          put_block(b->value + 9 * q, false, here, there, next[here]++, start, A->i, A->x);
+          put_block(block, false, here, there, next[here]++, start, A->i, A->x);
         else
-          put_block(b->value + 9 * q, true, there, here, next[there]++, start, A->i, A->x);
+          put_block(block, true, there, here, next[there]++, start, A->i, A->x);
       }
   } else
     cholmod_free_sparse(&A, common);

@@ -1,6 +1,7 @@
 #include "mesh/blade/layers.h"
 
 #include <math.h>
+#include <stddef.h>
 
 static const double thin[2] = {.08, .30};
 
@@ -9,7 +10,7 @@ void mesh_layers_make(double length, double size, int thin_low, int thin_high,
   const double most = MESH_MAX_LAYERS - 4, wanted = fmax(1, round(length / size));
   const int    n  = (int)fmin(most, wanted);
   double      *at = layers->at;
-  int          k  = 0;
+  size_t       k  = 0;
   /* an interval with thin layers at both ends is cut at 8, 30, 70 and 92 % */
   for (int i = 0; i < n; i++) {
     at[2 * k++] = (double)i / n;
@@ -19,6 +20,6 @@ void mesh_layers_make(double length, double size, int thin_low, int thin_high,
       for (int t = 1; t >= 0; t--) at[2 * k++] = 1 - thin[t] / n;
   }
   at[2 * k] = 1;
-  for (int i = 0; i < k; i++) at[2 * i + 1] = (at[2 * i] + at[2 * i + 2]) / 2;
-  layers->n = k;
+  for (size_t i = 0; i < k; i++) at[2 * i + 1] = (at[2 * i] + at[2 * i + 2]) / 2;
+  layers->n = (int)k;
 }

@@ -104,7 +104,8 @@ static shb_status mesh_region(const mesh_planar *section, int n_corners, const d
   int       loops[2] = {0, 0}, half[16], surface = 0;
   double(*hole)[2] = malloc((size_t)n * sizeof *hole);
   SHB_CHECK(hole, SHB_ERR_IO, "no memory for a plan");
-  for (int i = 0; i < n; i++) memcpy(hole[i], section->at[section->contour[4 * i]], sizeof *hole);
+  for (int i = 0; i < n; i++)
+    memcpy(hole[i], section->at[section->contour[4 * (size_t)i]], sizeof *hole);
   for (int i = 0; i < n_corners; i++) half[i] = parts[i] / 2;
   shb_status status = add_loop(n_corners, corner, half, 2 * size, &loops[0]);
   if (status == SHB_OK) status = add_loop(n, (const double(*)[2])hole, NULL, 2 * size, &loops[1]);
@@ -172,7 +173,7 @@ static shb_status take_coarse(const mesh_planar *section, coarse *mesh) {
 
 static shb_status allocate(const mesh_planar *section, const coarse *mesh, builder *b) {
   mesh_planar *plan  = b->plan;
-  const size_t quads = (size_t)(section->n_quads + 6 * mesh->n_cells);
+  const size_t quads = (size_t)section->n_quads + 6 * (size_t)mesh->n_cells;
   const size_t nodes = (size_t)section->n_nodes + 24 * (size_t)mesh->n_cells + 64;
   b->n_slots         = (int)(8 * quads + 64);
   b->slot            = malloc((size_t)b->n_slots * sizeof *b->slot);

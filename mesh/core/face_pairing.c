@@ -177,8 +177,9 @@ static shb_status project_all(const left_face *t, mesh_axis axis, double angle, 
         "face's size)",
         mesh->node_tag[out->right[i]], x[0], x[1], x[2], p.distance, limit);
     out->gap = fmax(out->gap, p.distance);
-    memcpy(out->left + each * i, face_nodes(t, p.face), (size_t)each * sizeof *out->left);
-    memcpy(out->share + each * i, p.shape, (size_t)each * sizeof *out->share);
+    memcpy(out->left + (size_t)each * (size_t)i, face_nodes(t, p.face),
+           (size_t)each * sizeof *out->left);
+    memcpy(out->share + (size_t)each * (size_t)i, p.shape, (size_t)each * sizeof *out->share);
   }
   return SHB_OK;
 }

@@ -37,7 +37,7 @@ static int list_set_faces(const mesh_fe *mesh, face_key *keys, char *flag) {
   for (int s = 0; s < mesh_fe_sets(mesh); s++)
     for (int f = 0; f < mesh->set[s].n; f++) {
       face_key  *key  = &keys[n++];
-      const int *face = mesh->set[s].nodes + topology->face_nodes * f;
+      const int *face = mesh->set[s].nodes + topology->face_nodes * (size_t)f;
       for (int i = 0; i < topology->face_corners; i++) flag[face[i]] = 1;
       sort_corners(face, topology->face_corners, key->corner);
       key->set  = s;

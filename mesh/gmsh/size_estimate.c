@@ -18,13 +18,10 @@ double mesh_estimate_size(const mesh_extent *extent, double nodes) {
   double high = extent->length + sqrt(extent->area) + cbrt(extent->volume), low = 0;
   for (int i = 0; i < 200 && high - low > 1e-3 * high; i++) {
     double middle = low > 0 ? sqrt(low * high) : high / 2;
-    if (low == 0 && mesh_estimate_nodes(extent, middle) <= nodes) {
-      high = middle;
-    } else if (mesh_estimate_nodes(extent, middle) > nodes) {
+    if (mesh_estimate_nodes(extent, middle) > nodes)
       low = middle;
-    } else {
+    else
       high = middle;
-    }
   }
   return high;
 }
