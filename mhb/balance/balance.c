@@ -3,6 +3,7 @@
 #include <lapacke.h>
 #include <math.h>
 #include <omp.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -24,15 +25,20 @@ static shb_status create_contacts(mhb_balance *b) {
   return SHB_OK;
 }
 
+/* The laws of the pairs at the interfaces' operating points. */
 static void set_laws(mhb_balance *b) {
   b->n_laws++;
+  for (int a = 0; a < b->n_pairs; a++)
+    b->law[a] = mhb_operating_point_law(&b->eval->own[b->receptance->interface[a]],
+                                        b->settings->preload, b->receptance->share[a]);
+}
+
+/* The operating point has changed: so have the interfaces' own, the laws and linear derivatives. */
+static void operating_point_changed(mhb_balance *b) {
   for (int i = 0; i < b->n_interfaces; i++)
-    b->own[i] = mhb_interface_operating_point(&b->at, b->settings, i);
-  for (int a = 0; a < b->n_pairs; a++) {
-    const mhb_operating_point *own = &b->own[b->receptance->interface[a]];
-    b->law[a]       = mhb_operating_point_law(own, b->settings->preload, b->receptance->share[a]);
-    b->linear_dp[a] = -1;
-  }
+    b->eval->own[i] = mhb_interface_operating_point(&b->eval->at, b->settings, i);
+  for (int a = 0; a < b->n_pairs; a++) b->eval->linear_dp[a] = -1;
+  set_laws(b);
 }
 
 shb_status mhb_balance_create(const modal_model *model, const mhb_settings *settings,
@@ -51,35 +57,30 @@ shb_status mhb_balance_create_on(mhb_receptance *receptance, const mhb_settings 
                                  mhb_balance **out) {
   mhb_balance *b = calloc(1, sizeof *b);
   SHB_CHECK(b, SHB_ERR_IO, "out of memory");
-  int m           = settings->harmonics;
-  b->settings     = settings;
-  b->receptance   = receptance;
-  b->m            = m;
-  b->n_pairs      = receptance->model->n_pairs;
-  b->n_interfaces = mhb_interfaces(settings);
-  b->nb           = mhb_real_size(m);
-  b->n            = 3 * b->n_pairs * b->nb;
-  size_t pairs = (size_t)b->n_pairs, block = 3 * (size_t)b->nb;
+  int m             = settings->harmonics;
+  b->settings       = settings;
+  b->receptance     = receptance;
+  b->m              = m;
+  b->n_pairs        = receptance->model->n_pairs;
+  b->n_interfaces   = mhb_interfaces(settings);
+  b->nb             = mhb_real_size(m);
+  b->n              = 3 * b->n_pairs * b->nb;
+  size_t pairs      = (size_t)b->n_pairs;
   b->law            = calloc(pairs, sizeof *b->law);
-  b->info           = calloc(pairs, sizeof *b->info);
-  b->kind           = calloc(pairs, sizeof *b->kind);
-  b->linear_dp      = calloc(pairs, sizeof *b->linear_dp);
-  b->p              = calloc((size_t)b->n, sizeof(double));
-  b->dp             = calloc(pairs * block * block, sizeof(double));
   b->pk             = calloc(3 * pairs, sizeof(double complex));
   b->uk             = calloc(3 * pairs, sizeof(double complex));
-  b->by_parameter   = calloc((size_t)b->n, sizeof(double));
   shb_status status = SHB_OK;
-  if (!(b->law && b->info && b->kind && b->linear_dp && b->p && b->dp && b->pk && b->uk &&
-        b->by_parameter))
-    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for %d unknowns", b->n);
+  if (!(b->law && b->pk && b->uk))
+    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  if (status == SHB_OK) status = mhb_evaluation_create(b, &b->first);
   if (status == SHB_OK) status = create_contacts(b);
   if (status != SHB_OK) {
     mhb_balance_destroy(b);
     return status;
   }
-  b->at = mhb_operating_point_of(settings);
-  set_laws(b);
+  b->eval     = b->first;
+  b->eval->at = mhb_operating_point_of(settings);
+  operating_point_changed(b);
   *out = b;
   return SHB_OK;
 }
@@ -89,33 +90,82 @@ void mhb_balance_destroy(mhb_balance *b) {
   if (b->owns_receptance) mhb_receptance_destroy(b->receptance);
   for (int i = 0; b->contacts && i < b->n_threads; i++)
     mhb_contact_evaluator_destroy(b->contacts[i]);
+  mhb_evaluation_destroy(b->first);
   free(b->contacts);
-  free(b->kind);
-  free(b->linear_dp);
   free(b->law);
-  free(b->info);
-  free(b->p);
-  free(b->dp);
   free(b->pk);
   free(b->uk);
-  free(b->by_parameter);
   free(b);
 }
 
+shb_status mhb_evaluation_create(const mhb_balance *b, mhb_evaluation **out) {
+  mhb_evaluation *e = calloc(1, sizeof *e);
+  SHB_CHECK(e, SHB_ERR_IO, "out of memory");
+  size_t pairs = (size_t)b->n_pairs, block = 3 * (size_t)b->nb;
+  e->p            = calloc((size_t)b->n, sizeof(double));
+  e->dp           = calloc(pairs * block * block, sizeof(double));
+  e->linear_dp    = calloc(pairs, sizeof *e->linear_dp);
+  e->kind         = calloc(pairs, sizeof *e->kind);
+  e->info         = calloc(pairs, sizeof *e->info);
+  e->by_parameter = calloc((size_t)b->n, sizeof(double));
+  if (!(e->p && e->dp && e->linear_dp && e->kind && e->info && e->by_parameter)) {
+    mhb_evaluation_destroy(e);
+    SHB_FAIL(SHB_ERR_IO, "out of memory for %d unknowns", b->n);
+  }
+  for (size_t a = 0; a < pairs; a++) e->linear_dp[a] = -1;
+  if (b->eval) {
+    e->at = b->eval->at;
+    memcpy(e->own, b->eval->own, sizeof e->own);
+  }
+  *out = e;
+  return SHB_OK;
+}
+
+void mhb_evaluation_destroy(mhb_evaluation *e) {
+  if (!e) return;
+  free(e->p);
+  free(e->dp);
+  free(e->linear_dp);
+  free(e->kind);
+  free(e->info);
+  free(e->by_parameter);
+  free(e);
+}
+
+/* The interfaces' own operating points decide of the laws; frequency and scale are not theirs. */
+static bool same_laws(const mhb_balance *b, const mhb_evaluation *x, const mhb_evaluation *y) {
+  for (int i = 0; i < b->n_interfaces; i++) {
+    const mhb_operating_point *p = &x->own[i], *q = &y->own[i];
+    if (p->n0 != q->n0 || p->mu != q->mu || p->kv != q->kv ||
+        memcmp(p->ku, q->ku, sizeof p->ku) != 0)
+      return false;
+  }
+  return true;
+}
+
+void mhb_balance_use(mhb_balance *b, mhb_evaluation *evaluation) {
+  const mhb_evaluation *last = b->eval;
+  b->eval                    = evaluation ? evaluation : b->first;
+  if (b->eval == last) return;
+  if (!same_laws(b, last, b->eval)) set_laws(b);
+  if (last->at.scale != b->eval->at.scale) mhb_receptance_scale(b->receptance, b->eval->at.scale);
+  mhb_receptance_set_frequency(b->receptance, b->eval->at.omega);
+}
+
 void mhb_balance_set_operating_point(mhb_balance *b, const mhb_operating_point *condition) {
-  b->at = *condition;
-  set_laws(b);
-  mhb_receptance_scale(b->receptance, b->at.scale);
+  b->eval->at = *condition;
+  operating_point_changed(b);
+  mhb_receptance_scale(b->receptance, b->eval->at.scale);
 }
 
 void mhb_balance_set_preload(mhb_balance *b, double n0) {
-  b->at.n0 = n0;
-  set_laws(b);
+  b->eval->at.n0 = n0;
+  operating_point_changed(b);
 }
 
 void mhb_balance_tie_preloads(mhb_balance *b, int anchored) {
-  b->at.anchored = anchored;
-  b->at.anchor   = b->at.n0;
+  b->eval->at.anchored = anchored;
+  b->eval->at.anchor   = b->eval->at.n0;
 }
 
 void mhb_balance_set_parameter(mhb_balance *b, mhb_parameter parameter) {
@@ -123,13 +173,13 @@ void mhb_balance_set_parameter(mhb_balance *b, mhb_parameter parameter) {
 }
 
 void mhb_balance_set_value(mhb_balance *b, double value) {
-  if (value == mhb_parameter_get(&b->at, b->parameter)) return;
-  mhb_parameter_set(&b->at, b->parameter, value);
+  if (value == mhb_parameter_get(&b->eval->at, b->parameter)) return;
+  mhb_parameter_set(&b->eval->at, b->parameter, value);
   if (b->parameter == MHB_IN_FREQUENCY) return;
   if (b->parameter == MHB_IN_SCALE) {
     mhb_receptance_scale(b->receptance, value);
   } else {
-    set_laws(b);
+    operating_point_changed(b);
   }
 }
 
@@ -169,7 +219,7 @@ void mhb_balance_row_times_dp(const mhb_balance *b, const double complex R[3], i
                               double *re, double *im) {
   int           block  = 3 * b->nb;
   size_t        stride = (size_t)b->nb * (size_t)block;
-  const double *d      = b->dp + (size_t)pair * 3 * stride + (k ? 2 * k - 1 : 0) * block;
+  const double *d      = b->eval->dp + (size_t)pair * 3 * stride + (k ? 2 * k - 1 : 0) * block;
   if (k) {
     combine(block, d, stride, R, re, im);
     return;
@@ -202,8 +252,8 @@ static void assemble_columns(const mhb_balance *b, int pair, double *jacobian) {
 }
 
 static mhb_pair_kind kind_of(const mhb_balance *b, int a) {
-  const mhb_contact_info *info = &b->info[a];
-  const double           *p    = b->p + 3 * (size_t)a * (size_t)b->nb;
+  const mhb_contact_info *info = &b->eval->info[a];
+  const double           *p    = b->eval->p + 3 * (size_t)a * (size_t)b->nb;
   if (info->share[MHB_SEPARATE] == 1 && !info->lost) return MHB_PAIR_OPEN;
   if (info->share[MHB_STICK] < 1 || !info->undetermined) return MHB_PAIR_NONLINEAR;
   return p[b->nb] == 0 && p[2 * b->nb] == 0 ? MHB_PAIR_STUCK : MHB_PAIR_AT_LIMIT;
@@ -214,11 +264,11 @@ static mhb_pair_kind kind_of(const mhb_balance *b, int a) {
 static void set_linear_derivative(const mhb_balance *b, int a) {
   const mhb_law *law = &b->law[a];
   size_t         nb = (size_t)b->nb, block = 3 * nb;
-  double        *d = b->dp + (size_t)a * block * block;
-  if (b->linear_dp[a] == (int)b->kind[a]) return;
-  b->linear_dp[a] = (int)b->kind[a];
+  double        *d = b->eval->dp + (size_t)a * block * block;
+  if (b->eval->linear_dp[a] == (int)b->eval->kind[a]) return;
+  b->eval->linear_dp[a] = (int)b->eval->kind[a];
   memset(d, 0, sizeof(double) * block * block);
-  if (b->kind[a] == MHB_PAIR_OPEN) return;
+  if (b->eval->kind[a] == MHB_PAIR_OPEN) return;
   for (size_t i = 0; i < nb; i++) d[i * block + i] = law->kv;
   for (size_t i = 1; i < nb; i++) {
     double *u = d + (nb + i) * block, *w = d + (2 * nb + i) * block;
@@ -233,19 +283,19 @@ static void set_linear_derivative(const mhb_balance *b, int a) {
 static void evaluate_pair(mhb_balance *b, mhb_contact_evaluator *contact, const double *x, int a,
                           int derivative) {
   size_t  block = 3 * (size_t)b->nb, at = (size_t)a * block;
-  double *dp = b->dp + at * block;
-  if (!derivative || b->kind[a] != MHB_PAIR_NONLINEAR) {
-    mhb_contact_force(contact, &b->law[a], x + at, b->p + at, NULL, &b->info[a]);
+  double *dp = b->eval->dp + at * block;
+  if (!derivative || b->eval->kind[a] != MHB_PAIR_NONLINEAR) {
+    mhb_contact_force(contact, &b->law[a], x + at, b->eval->p + at, NULL, &b->eval->info[a]);
     if (!derivative) return;
-    b->kind[a] = kind_of(b, a);
+    b->eval->kind[a] = kind_of(b, a);
   }
-  if (b->kind[a] == MHB_PAIR_NONLINEAR) {
-    mhb_contact_force(contact, &b->law[a], x + at, b->p + at, dp, &b->info[a]);
-    b->linear_dp[a] = -1;
-    b->kind[a]      = kind_of(b, a);
+  if (b->eval->kind[a] == MHB_PAIR_NONLINEAR) {
+    mhb_contact_force(contact, &b->law[a], x + at, b->eval->p + at, dp, &b->eval->info[a]);
+    b->eval->linear_dp[a] = -1;
+    b->eval->kind[a]      = kind_of(b, a);
   }
-  if (b->kind[a] != MHB_PAIR_NONLINEAR) set_linear_derivative(b, a);
-  if (b->kind[a] == MHB_PAIR_AT_LIMIT)
+  if (b->eval->kind[a] != MHB_PAIR_NONLINEAR) set_linear_derivative(b, a);
+  if (b->eval->kind[a] == MHB_PAIR_AT_LIMIT)
     mhb_contact_mean_gradient(contact, (double *const[2]){mhb_balance_mean_friction_row(b, a, 1),
                                                           mhb_balance_mean_friction_row(b, a, 2)});
 }
@@ -293,7 +343,7 @@ static int stays(const mhb_balance *b, int k, int rest) {
 /* uk <- dr_k/dvalue, pk the forces at x. */
 static void slope_of(mhb_balance *b, int k, int rest) {
   int n3 = 3 * b->n_pairs;
-  if (b->parameter != MHB_IN_FREQUENCY) harmonic(b, b->by_parameter, k, b->pk);
+  if (b->parameter != MHB_IN_FREQUENCY) harmonic(b, b->eval->by_parameter, k, b->pk);
   for (int i = 0; i < n3; i++) b->uk[i] = 0;
   if (stays(b, k, rest)) return;
   mhb_receptance_update(b->receptance, k);
@@ -315,10 +365,11 @@ static void force_by_parameter(mhb_balance *b, const double *x) {
   for (int a = 0; a < b->n_pairs; a++) {
     size_t at   = (size_t)a * block;
     int    i    = b->receptance->interface[a];
-    double rate = mhb_interface_rate(&b->at, b->settings, i, b->parameter);
-    mhb_parameter_force(&b->own[i], b->parameter, &b->law[a], b->receptance->share[a], b->nb,
-                        x + at, b->p + at, b->dp + at * block, b->by_parameter + at);
-    for (size_t j = at; j < at + block && rate != 1; j++) b->by_parameter[j] *= rate;
+    double rate = mhb_interface_rate(&b->eval->at, b->settings, i, b->parameter);
+    mhb_parameter_force(&b->eval->own[i], b->parameter, &b->law[a], b->receptance->share[a], b->nb,
+                        x + at, b->eval->p + at, b->eval->dp + at * block,
+                        b->eval->by_parameter + at);
+    for (size_t j = at; j < at + block && rate != 1; j++) b->eval->by_parameter[j] *= rate;
   }
 }
 
@@ -326,11 +377,11 @@ static void evaluate(mhb_balance *b, const double *x, double value, int derivati
                      double *slope) {
   int followed = slope && b->parameter != MHB_IN_FREQUENCY;
   mhb_balance_set_value(b, value);
-  mhb_receptance_set_frequency(b->receptance, b->at.omega);
+  mhb_receptance_set_frequency(b->receptance, b->eval->at.omega);
   evaluate_pairs(b, x, derivative || followed);
   if (followed) force_by_parameter(b, x);
   for (int k = 0; k <= b->m; k++) {
-    harmonic(b, b->p, k, b->pk);
+    harmonic(b, b->eval->p, k, b->pk);
     harmonic(b, x, k, b->uk);
     int rest = at_rest(b, k);
     if (!rest) {
@@ -390,7 +441,7 @@ static shb_status linear_harmonic(const mhb_balance *b, int k, int stuck, double
 
 shb_status mhb_balance_linear_limit(mhb_balance *b, double value, int stuck, double *x) {
   mhb_balance_set_value(b, value);
-  mhb_receptance_at(b->receptance, b->at.omega, b->m);
+  mhb_receptance_at(b->receptance, b->eval->at.omega, b->m);
   for (int k = 0; k <= b->m; k++) {
     SHB_TRY(linear_harmonic(b, k, stuck, b->uk));
     store(b, x, k, b->uk);
@@ -404,13 +455,13 @@ shb_status mhb_balance_linear_limit(mhb_balance *b, double value, int stuck, dou
       b->pk[3 * a + 1] = law->ku[0] * u[1] + law->ku[1] * u[2];
       b->pk[3 * a + 2] = law->ku[1] * u[1] + law->ku[2] * u[2];
     }
-    store(b, b->p, k, b->pk);
+    store(b, b->eval->p, k, b->pk);
   }
   return SHB_OK;
 }
 
 void mhb_balance_contact_force(const mhb_balance *b, int k, double complex *p) {
-  harmonic(b, b->p, k, p);
+  harmonic(b, b->eval->p, k, p);
 }
 
 double mhb_balance_vibration(const mhb_balance *b, const double *x) {

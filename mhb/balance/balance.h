@@ -20,6 +20,18 @@ typedef enum {
 
 enum { MHB_BY_PRELOAD = 2 };
 
+/* Everything that an evaluation leaves. A point of a curve that owns one can be linearised again. */
+typedef struct {
+  mhb_operating_point at;                      /* where; `value` below sets its parameter */
+  mhb_operating_point own[MHB_MAX_INTERFACES]; /* of each interface, for the laws */
+  double             *p;                       /* [n] force in real form, as x */
+  double             *dp;           /* [pair][3 nb][3 nb] dp/dx, of the last linearisation */
+  int                *linear_dp;    /* [pair] kind whose derivative dp holds, -1: another one */
+  mhb_pair_kind      *kind;         /* [pair] of the last linearisation */
+  mhb_contact_info   *info;         /* [pair] */
+  double             *by_parameter; /* [n] dp/dparameter, of the last evaluation with slope */
+} mhb_evaluation;
+
 typedef struct {
   const mhb_settings     *settings;
   mhb_receptance         *receptance; /* harmonics 0..m at least */
@@ -27,20 +39,14 @@ typedef struct {
   mhb_contact_evaluator  *contact;  /* forces to harmonic m: that of thread 0 */
   mhb_contact_evaluator **contacts; /* [thread] */
   int                     n_threads;
-  mhb_law                *law;               /* [pair] shares of the interface */
-  mhb_contact_info       *info;              /* [pair] of the last evaluation */
+  mhb_law                *law;               /* [pair] shares of the interface, at eval->at */
   int                     m, n_pairs, nb, n; /* nb = 2m+1, n = 3 pairs nb unknowns */
   mhb_parameter           parameter; /* what the argument `value` of the functions below is */
-  mhb_operating_point     at;        /* of the last evaluation */
-  double                 *p;         /* [n] force in real form, as x */
-  double                 *dp;        /* [pair][3 nb][3 nb] */
-  int                    *linear_dp; /* [pair] kind whose derivative dp holds, -1: another one */
-  mhb_pair_kind          *kind;      /* [pair] of the last evaluation with derivatives */
   int                     n_interfaces;
-  mhb_operating_point     own[MHB_MAX_INTERFACES]; /* of each, for the laws */
-  int                     n_laws;                  /* counts changes of law */
-  double complex         *pk, *uk;                 /* [3 pairs] one harmonic */
-  double                 *by_parameter; /* [n] dp/dparameter, of the last evaluation with slope */
+  int                     n_laws;  /* counts changes of law */
+  double complex         *pk, *uk; /* [3 pairs] one harmonic */
+  mhb_evaluation         *eval;    /* the one in use: evaluations write it, condensation reads it */
+  mhb_evaluation         *first;   /* in use after creation, owned */
 } mhb_balance;
 
 shb_status mhb_balance_create(const modal_model *model, const mhb_settings *settings,
@@ -50,6 +56,15 @@ shb_status mhb_balance_create(const modal_model *model, const mhb_settings *sett
 shb_status mhb_balance_create_on(mhb_receptance *receptance, const mhb_settings *settings,
                                  mhb_balance **residual);
 void       mhb_balance_destroy(mhb_balance *residual);
+
+/* An evaluation for this balance, at its operating point and not made yet. SHB_ERR_IO: no memory. */
+shb_status mhb_evaluation_create(const mhb_balance *balance, mhb_evaluation **evaluation);
+void       mhb_evaluation_destroy(mhb_evaluation *evaluation);
+
+/* Use this evaluation from here on; NULL: the balance's own. The operating point becomes the one
+ * it was made at: laws and receptance follow. An operating point, a preload or a tie that was set
+ * while another evaluation was in use is not known to it. */
+void mhb_balance_use(mhb_balance *balance, mhb_evaluation *evaluation);
 
 /* Everything that evaluations do not set by `value`. */
 void mhb_balance_set_operating_point(mhb_balance *residual, const mhb_operating_point *condition);
@@ -71,7 +86,7 @@ void mhb_balance_linearise(mhb_balance *residual, const double *x, double value,
 static inline double *mhb_balance_mean_friction_row(const mhb_balance *residual, int pair,
                                                     int axis) {
   size_t nb = (size_t)residual->nb;
-  return residual->dp + ((size_t)(3 * pair + axis) * nb) * 3 * nb;
+  return residual->eval->dp + ((size_t)(3 * pair + axis) * nb) * 3 * nb;
 }
 
 /* Two real rows, dp of harmonic k of a pair times the complex row R[3] over its axes:

@@ -144,7 +144,7 @@ static int is_zero(size_t n, const double complex *x) {
 static void list_pairs(mhb_condensation *s) {
   s->n_moving = s->n_stuck = s->n_held = 0;
   for (int a = 0; a < s->b->n_pairs; a++) {
-    mhb_pair_kind kind = s->b->kind[a];
+    mhb_pair_kind kind = s->b->eval->kind[a];
     if (kind == MHB_PAIR_AT_LIMIT) {
       kind = s->n_held < MHB_MOST_AT_LIMIT ? MHB_PAIR_STUCK : MHB_PAIR_NONLINEAR;
       if (kind == MHB_PAIR_STUCK) s->held[s->n_held++] = a;
@@ -448,7 +448,7 @@ static int reduce(mhb_condensation *s, double last) {
 static void moving_forces(mhb_condensation *s) {
   int nb = s->b->nb, block = 3 * nb;
   for (int i = 0; i < s->n_moving; i++) {
-    const double *D = s->b->dp + (size_t)s->moving[i] * (size_t)block * (size_t)block,
+    const double *D = s->b->eval->dp + (size_t)s->moving[i] * (size_t)block * (size_t)block,
                  *x = s->y + i * block;
     double p[block];
     cblas_dgemv(CblasRowMajor, CblasNoTrans, block, block, 1, D, block, x, 1, 0, p, 1);

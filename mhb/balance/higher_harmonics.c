@@ -80,7 +80,7 @@ static double complex *at(const mhb_higher_harmonics *b, double complex *array, 
 /* Stiffness of a pair at the last harmonic that turns with the motion: what couples k with -k is left out. */
 static void stiffness(const mhb_balance *b, int pair, double complex D[3][3]) {
   size_t        block = 3 * (size_t)b->nb;
-  const double *dp    = b->dp + (size_t)pair * block * block;
+  const double *dp    = b->eval->dp + (size_t)pair * block * block;
   for (int c = 0; c < 3; c++) {
     const double *re = dp + ((size_t)((c + 1) * b->nb) - 2) * block, *im = re + block;
     for (int d = 0; d < 3; d++) {
@@ -112,7 +112,7 @@ static void set_forces(mhb_higher_harmonics *b, const mhb_balance *balance, cons
   memset(b->force, 0, sizeof *b->force * (size_t)(b->last - b->first + 1) * (size_t)b->n);
   for (int a = 0; a < balance->n_pairs; a++) {
     stiffness(balance, a, (double complex(*)[3])(b->D + 9 * a));
-    if (balance->kind[a] != MHB_PAIR_NONLINEAR) continue;
+    if (balance->eval->kind[a] != MHB_PAIR_NONLINEAR) continue;
     pair_force(b, balance, x, a, 0);
     for (int k = b->first; k <= b->last; k++)
       for (int c = 0; c < 3; c++)
@@ -238,11 +238,11 @@ void mhb_higher_harmonics_feedback(mhb_higher_harmonics *b, const mhb_balance *b
   size_t size = sizeof(double) * (size_t)balance->n;
   memset(change, 0, size);
   for (int a = 0; a < balance->n_pairs; a++) { /* first the forces */
-    if (balance->kind[a] != MHB_PAIR_NONLINEAR) continue;
+    if (balance->eval->kind[a] != MHB_PAIR_NONLINEAR) continue;
     pair_force(b, balance, x, a, 1);
     for (int row = 3 * a, c = 0; c < 3; c++, row++)
       for (int i = 0; i < nb; i++)
-        change[row * nb + i] = b->p[c * wide + i] - balance->p[row * nb + i];
+        change[row * nb + i] = b->p[c * wide + i] - balance->eval->p[row * nb + i];
   }
   for (int k = 0; k <= balance->m; k++) {
     mhb_receptance_update(b->receptance, k);

@@ -24,7 +24,7 @@ typedef struct {
   int                   *pivot;      /* [n or modes] */
 } mhb_higher_harmonics;
 
-/* For a balance on the given receptance, whose harmonics beyond the balance's are looked at. Not thread safe (FFTW's planner).
+/* For a balance on the given receptance, whose harmonics beyond the balance's are looked at.
  * SHB_ERR_IO: no memory. */
 shb_status mhb_higher_harmonics_create(const mhb_balance *balance, mhb_receptance *receptance,
                                        mhb_higher_harmonics **beyond);

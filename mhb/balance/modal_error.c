@@ -81,7 +81,7 @@ static void answer(const mhb_balance *b, double complex *A, int *pivot, double c
   const int     n = 3 * b->n_pairs;
   mhb_pair_kind kind[b->n_pairs];
   for (int a = 0; a < b->n_pairs; a++)
-    kind[a] = b->info[a].share[MHB_STICK] >= 1 ? MHB_PAIR_STUCK : MHB_PAIR_OPEN;
+    kind[a] = b->eval->info[a].share[MHB_STICK] >= 1 ? MHB_PAIR_STUCK : MHB_PAIR_OPEN;
   for (int k = 1; k <= b->m; k++) {
     if (!(length_of(n, e + k * n) > 0)) continue;
     mhb_receptance_update(b->receptance, k);

@@ -13,6 +13,7 @@ void mhb_stick_matrix(const mhb_balance *b, int k, const mhb_pair_kind *kind, do
 
 bool mhb_all_pairs_linear(const mhb_balance *b) {
   for (int a = 0; a < b->n_pairs; a++)
-    if (b->info[a].share[MHB_STICK] < 1 && b->info[a].share[MHB_SEPARATE] < 1) return false;
+    if (b->eval->info[a].share[MHB_STICK] < 1 && b->eval->info[a].share[MHB_SEPARATE] < 1)
+      return false;
   return true;
 }

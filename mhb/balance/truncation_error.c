@@ -77,7 +77,7 @@ static double bend(mhb_truncation *t, double length, double size) {
   double       part = fmin(1, NEAR_BY * size / length), product = 0;
   for (int i = 0; i < b->n; i++) t->trial[i] = t->x[i] + part * t->step[i];
   double *r = t->trial;
-  mhb_balance_evaluate(b, t->trial, t->narrow->at.omega, t->residual, NULL, NULL);
+  mhb_balance_evaluate(b, t->trial, t->narrow->eval->at.omega, t->residual, NULL, NULL);
   for (int i = 0; i < b->n; i++) r[i] = t->residual[i] + t->change[i];
   if (!mhb_condensation_solve(t->system, r)) return 0;
   for (int i = 0; i < b->n; i++)
@@ -102,7 +102,7 @@ static void scale_step(mhb_truncation *t, double size) {
 /* step <- -r, then the Newton step where there is room for it and it exists. */
 static mhb_truncation_kind set_step(mhb_truncation *t, double size) {
   mhb_balance *b     = t->doubled;
-  double       omega = t->narrow->at.omega;
+  double       omega = t->narrow->eval->at.omega;
   size_t       bytes = sizeof(double) * (size_t)b->n;
   mhb_balance_linearise(b, t->x, omega, t->residual, NULL);
   for (int i = 0; i < b->n; i++) t->step[i] = -t->residual[i];
@@ -130,7 +130,7 @@ double mhb_truncation_error(mhb_truncation *t, const double *x) {
   t->far  = 0;
   t->kind = MHB_TRUNCATION_NONE;
   if (mhb_all_pairs_linear(t->narrow)) return 0;
-  mhb_balance_set_operating_point(b, &t->narrow->at);
+  mhb_balance_set_operating_point(b, &t->narrow->eval->at);
   t->kind = set_step(t, size);
   return size > 0 ? hypot(mhb_norm(t->step, b->n), t->far) / size : 0;
 }

@@ -39,7 +39,7 @@ typedef struct {
   mhb_truncation_kind kind;                      /* of the last estimate */
 } mhb_truncation;
 
-/* Not thread safe (FFTW's planner). The residual must outlive it. Errors: as mhb_balance_create. */
+/* The residual must outlive it. Errors: as mhb_balance_create. */
 shb_status mhb_truncation_create(const mhb_balance *residual, mhb_truncation **truncation);
 void       mhb_truncation_destroy(mhb_truncation *truncation);
 

@@ -6,7 +6,9 @@
 
 #include "mesh/base/progress.h"
 #include "mhb/branches/record.h"
+#include "mhb/continuation/corrector.h"
 #include "mhb/continuation/event_location.h"
+#include "mhb/floquet/floquet.h"
 
 /* Up to CHEAP states every point is judged, up to FINE those that the budget a branch allows, by the measured cost; above that
  * with fewer modes and sub-steps. */
@@ -20,33 +22,33 @@ enum {
 };
 static const double BUDGET = .5, FEWER_BUDGET = .1, SECONDS_A_CUBE = 4e-9, SECONDS_A_STATE = 1e-5;
 
-/* Beyond the circle in earnest, and on it after a search. */
+/* Distances of a modulus from 1: outside by a margin that counts as unstable, on the circle after a
+ * search, and where the search ends. */
 static const double MARGIN = 1e-3, ON_CIRCLE = 1e-3, NEAR_ENOUGH = 1e-6;
 enum { MAX_LOCATED = 32 };
 
-/* What the multipliers said of a point. */
+/* What the multipliers tell of a point. */
 typedef struct {
-  int    known;      /* 0: not computed */
-  int    verdict;    /* mhb_verdict */
-  int    loss;       /* MHB_LOSS_FOLD ... of the largest */
-  int    n_unstable; /* beyond the margin */
-  int    swings;     /* the largest other than on the positive axis is beyond the margin */
-  double swing;      /* its modulus, less 1; NAN: undecided */
-  int    turn;       /* what crosses there: MHB_FLIP, MHB_NEIMARK_SACKER */
-} look;
+  int    known;          /* 0: not computed */
+  int    verdict;        /* mhb_verdict */
+  int    loss;           /* MHB_LOSS_FOLD ... of the largest */
+  int    n_unstable;     /* outside the unit circle by more than the margin */
+  int    leaves_complex; /* the largest other than on the positive axis is outside by the margin */
+  double complex_excess; /* its modulus, less 1; NAN: undecided */
+  int    bifurcation;    /* what it crosses the circle at: MHB_FLIP, MHB_NEIMARK_SACKER */
+} point_stability;
 
 struct mhb_branch_stability {
-  mhb_balance *residual;
-  mhb_floquet *stability;
-  int          states, all; /* all: every point of the branch at work */
+  mhb_balance *balance;
+  mhb_floquet *floquet;
+  int          states, all; /* all: every point of the branch at work is judged */
   double      *x, *r;       /* [n] */
   /* the branch at work */
-  mhb_arclength     *path;
-  mhb_response      *response;
-  int                branch;
-  mhb_branch_editor *host;
-  look              *look; /* [point] */
-  int                n;
+  mhb_tracer      *tracer;
+  mhb_response    *response;
+  int              branch;
+  point_stability *at; /* [point] */
+  int              n;
 };
 
 /* States of the blade or ring with all its modes, each contact sticking. */
@@ -58,16 +60,16 @@ static int count_states(const mhb_balance *b) {
 shb_status mhb_branch_stability_create(mhb_balance *b, mhb_branch_stability **out) {
   mhb_branch_stability *j = calloc(1, sizeof *j);
   SHB_CHECK(j, SHB_ERR_IO, "out of memory");
-  j->residual = b;
-  j->states   = count_states(b);
-  int fine    = j->states <= FINE || b->settings->stability == MHB_STABILITY_ALWAYS;
-  j->x        = calloc((size_t)b->n, sizeof(double));
-  j->r        = calloc((size_t)b->n, sizeof(double));
+  j->balance = b;
+  j->states  = count_states(b);
+  int fine   = j->states <= FINE || b->settings->stability == MHB_STABILITY_ALWAYS;
+  j->x       = calloc((size_t)b->n, sizeof(double));
+  j->r       = calloc((size_t)b->n, sizeof(double));
   shb_status status =
       j->x && j->r ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   if (status == SHB_OK)
     status = mhb_floquet_create(b->receptance, b->settings, fine ? SUBSTEPS : FEWER_SUBSTEPS,
-                                fine ? 0 : FEWER_STATES, &j->stability);
+                                fine ? 0 : FEWER_STATES, &j->floquet);
   if (status != SHB_OK) {
     mhb_branch_stability_destroy(j);
     return status;
@@ -78,7 +80,7 @@ shb_status mhb_branch_stability_create(mhb_balance *b, mhb_branch_stability **ou
 
 void mhb_branch_stability_destroy(mhb_branch_stability *j) {
   if (!j) return;
-  mhb_floquet_destroy(j->stability);
+  mhb_floquet_destroy(j->floquet);
   free(j->x);
   free(j->r);
   free(j);
@@ -91,40 +93,41 @@ static mhb_branch *branch_of(const mhb_branch_stability *j) {
 }
 
 static double value_of(const mhb_branch_stability *j, int point) {
-  return mhb_parameter_value(j->residual->parameter, branch_of(j)->value[point]);
+  return mhb_parameter_value(j->balance->parameter, branch_of(j)->value[point]);
 }
 
 /* Multipliers at the solution that the residual was last evaluated at. */
 static void evaluate(mhb_branch_stability *j, const double *x, mhb_multipliers *out) {
-  const mhb_balance *b        = j->residual;
-  mhb_solution       solution = {b->at.omega, b->law, b->info, x, b->p};
-  if (b->settings->run_up) mhb_floquet_move(j->stability, b->receptance);
-  mhb_floquet_evaluate(j->stability, &solution, out);
+  const mhb_balance    *b        = j->balance;
+  const mhb_evaluation *e        = b->eval;
+  mhb_solution          solution = {e->at.omega, b->law, e->info, x, e->p};
+  if (b->settings->run_up) mhb_floquet_move(j->floquet, b->receptance);
+  mhb_floquet_evaluate(j->floquet, &solution, out);
 }
 
 /* The largest multiplier that is not on the positive axis; -1: none. */
-static int largest_swing(const mhb_multipliers *m) {
+static int largest_complex(const mhb_multipliers *m) {
   for (int i = 0; i < m->n; i++)
     if (cimag(m->multiplier[i]) != 0 || creal(m->multiplier[i]) < 0) return i;
   return -1;
 }
 
-static look look_of(const mhb_multipliers *m) {
+static point_stability stability_of(const mhb_multipliers *m) {
   static const int loss[] = {MHB_LOSS_FOLD, MHB_LOSS_FLIP, MHB_LOSS_NEIMARK_SACKER};
-  look             out    = {.known      = 1,
-                             .verdict    = (int)m->verdict,
-                             .loss       = loss[m->crossing],
-                             .n_unstable = m->n_unstable,
-                             .swing      = NAN};
-  int              i      = largest_swing(m);
+  point_stability  out    = {.known          = 1,
+                             .verdict        = (int)m->verdict,
+                             .loss           = loss[m->crossing],
+                             .n_unstable     = m->n_unstable,
+                             .complex_excess = NAN};
+  int              i      = largest_complex(m);
   if (m->verdict == MHB_UNDECIDED) return out;
-  out.swing  = i < 0 ? -1 : cabs(m->multiplier[i]) - 1;
-  out.turn   = i < 0 || cimag(m->multiplier[i]) != 0 ? MHB_NEIMARK_SACKER : MHB_FLIP;
-  out.swings = m->verdict == MHB_UNSTABLE && out.swing > fmax(MARGIN, m->change);
+  out.complex_excess = i < 0 ? -1 : cabs(m->multiplier[i]) - 1;
+  out.bifurcation    = i < 0 || cimag(m->multiplier[i]) != 0 ? MHB_NEIMARK_SACKER : MHB_FLIP;
+  out.leaves_complex = m->verdict == MHB_UNSTABLE && out.complex_excess > fmax(MARGIN, m->change);
   return out;
 }
 
-/* Into the branch; locked by the caller. */
+/* Into the branch. */
 static void put(const mhb_branch_stability *j, int point, const mhb_multipliers *m) {
   static const int judged[] = {MHB_BY_MULTIPLIERS, MHB_MARGINAL_BY_FOLDS, MHB_BY_MULTIPLIERS,
                                MHB_UNDECIDED_BY_FOLDS};
@@ -135,27 +138,26 @@ static void put(const mhb_branch_stability *j, int point, const mhb_multipliers 
     branch->multipliers[(size_t)point * (size_t)kept + (size_t)i] = i < m->n ? m->multiplier[i] : 0;
 }
 
-/* false: the host wants to stop. */
+/* false: the monitor stops it. */
 static bool judge_point(mhb_branch_stability *j, int point) {
   mhb_multipliers m;
+  mhb_monitor    *monitor = j->tracer->monitor;
   double          started = shb_seconds(), value = value_of(j, point);
-  mhb_recorded_motion(branch_of(j), point, j->residual, j->x);
-  mhb_balance_evaluate(j->residual, j->x, value, j->r, NULL, NULL);
+  mhb_balance_use(j->balance, NULL);
+  mhb_recorded_motion(branch_of(j), point, j->balance, j->x);
+  mhb_balance_evaluate(j->balance, j->x, value, j->r, NULL, NULL);
   evaluate(j, j->x, &m);
-  j->look[point] = look_of(&m);
-  j->host->lock(j->host, true);
+  j->at[point] = stability_of(&m);
   put(j, point, &m);
   branch_of(j)->seconds[point] += shb_seconds() - started;
-  bool go_on = j->host->point(j->host, value);
-  j->host->lock(j->host, false);
-  return go_on;
+  return monitor->point(monitor, j->response, j->branch, point);
 }
 
 /* ---- which points ---- */
 
 /* Stuck or open throughout: the exponents are kept from point to point, and cost little; but not where the speed changes. */
 static bool is_linear(const mhb_branch_stability *j, int point) {
-  if (j->residual->settings->run_up) return false;
+  if (j->balance->settings->run_up) return false;
   size_t        pairs = (size_t)j->response->n_pairs;
   const double *share = branch_of(j)->state + 3 * (size_t)point * pairs;
   for (size_t a = 0; a < pairs; a++)
@@ -168,7 +170,7 @@ static int next_of_few(const mhb_branch_stability *j) {
   const int *special = branch_of(j)->special;
   int        from = 0, longest = 0, best = -1;
   for (int i = 0; i <= j->n; i++) {
-    if (i < j->n && !j->look[i].known && special[i] != MHB_FOLD) continue;
+    if (i < j->n && !j->at[i].known && special[i] != MHB_FOLD) continue;
     if (i - from > longest) {
       longest = i - from;
       best    = from + longest / 2;
@@ -183,9 +185,9 @@ static int largest_motion(const mhb_branch_stability *j) {
   double top  = -1;
   int    best = -1;
   for (int i = 0; i < j->n; i++) {
-    if (j->look[i].known) continue;
-    mhb_recorded_motion(branch_of(j), i, j->residual, j->x);
-    double size = mhb_norm(j->x, j->residual->n);
+    if (j->at[i].known) continue;
+    mhb_recorded_motion(branch_of(j), i, j->balance, j->x);
+    double size = mhb_norm(j->x, j->balance->n);
     if (size <= top) continue;
     top  = size;
     best = i;
@@ -195,7 +197,7 @@ static int largest_motion(const mhb_branch_stability *j) {
 
 /* Points that the budget allows, by the states that are integrated and the cells of the ring that share them (bloch.h). */
 static int affordable(const mhb_branch_stability *j) {
-  int    few = j->states > FINE, g = mhb_floquet_cells(j->stability);
+  int    few = j->states > FINE, g = mhb_floquet_cells(j->floquet);
   double states = few && j->states > FEWER_STATES ? FEWER_STATES : j->states;
   double cube   = SECONDS_A_CUBE * states * states * states * (g > 2 ? 2. : 1.) / (g * g);
   int    n      = (int)((few ? FEWER_BUDGET : BUDGET) / (cube + SECONDS_A_STATE * states));
@@ -204,7 +206,7 @@ static int affordable(const mhb_branch_stability *j) {
 
 /* Decided by the branch alone, never by the clock: the same on every machine and for any number of threads. */
 static int judges_all(const mhb_branch_stability *j) {
-  return j->states <= CHEAP || j->residual->settings->stability == MHB_STABILITY_ALWAYS ||
+  return j->states <= CHEAP || j->balance->settings->stability == MHB_STABILITY_ALWAYS ||
          (j->states <= FINE && affordable(j) >= j->n);
 }
 
@@ -224,40 +226,49 @@ static bool judge_points(mhb_branch_stability *j) {
 /* ---- flips and Neimark-Sacker points ---- */
 
 typedef struct {
-  mhb_branch_stability *judge;
+  mhb_branch_stability *stability;
   mhb_multipliers       last;
-  look                  look;
+  point_stability       at;
 } search;
 
-static double swing_indicator(const mhb_arclength *path, const mhb_curve_point *point,
-                              void *context) {
+static double excess_test(mhb_arclength *curve, const mhb_curve_point *point, void *context) {
   search *s = context;
-  (void)path;
-  evaluate(s->judge, point->x, &s->last);
-  s->look = look_of(&s->last);
-  return fabs(s->look.swing) < NEAR_ENOUGH ? 0 : s->look.swing;
+  (void)curve;
+  mhb_balance_use(s->stability->balance, point->evaluation);
+  evaluate(s->stability, point->x, &s->last);
+  s->at = stability_of(&s->last);
+  return fabs(s->at.complex_excess) < NEAR_ENOUGH ? 0 : s->at.complex_excess;
 }
 
-/* Where the swing passes 1 between points i - 1 and i; inserted there. A jump across 1 is not marked. */
+/* A recorded point, linearised. */
+static void set_point(mhb_branch_stability *j, int i, mhb_curve_point *point) {
+  mhb_recorded_motion(branch_of(j), i, j->balance, point->x);
+  point->value = value_of(j, i);
+  mhb_arclength_measure(mhb_tracer_curve(j->tracer), point);
+}
+
+/* Where the excess passes 0 between points i - 1 and i; inserted there. A jump across it is not
+ * marked. */
 static shb_status locate(mhb_branch_stability *j, int i) {
-  mhb_arclength *path = j->path;
-  search         s    = {.judge = j};
-  double         at;
-  mhb_recorded_motion(branch_of(j), i - 1, j->residual, path->now.x);
-  mhb_recorded_motion(branch_of(j), i, j->residual, path->next.x);
-  path->now.value  = value_of(j, i - 1);
-  path->next.value = value_of(j, i);
-  if (!mhb_arclength_locate(path, swing_indicator, &s, j->look[i - 1].swing, j->look[i].swing,
-                            &at) ||
-      !(fabs(s.look.swing) < ON_CIRCLE))
+  mhb_arclength *curve = mhb_tracer_curve(j->tracer);
+  search         s     = {.stability = j};
+  double         at, chord[curve->n + 1];
+  set_point(j, i - 1, &curve->current);
+  set_point(j, i, &curve->next);
+  for (int k = 0; k < curve->n; k++) chord[k] = curve->next.x[k] - curve->current.x[k];
+  chord[curve->n] = curve->next.value - curve->current.value;
+  if (!mhb_arclength_set_tangent(curve, chord, &curve->current) ||
+      !mhb_arclength_set_tangent(curve, chord, &curve->next) ||
+      !mhb_arclength_locate(curve, excess_test, &s, j->at[i - 1].complex_excess,
+                            j->at[i].complex_excess, &at) ||
+      !(fabs(s.at.complex_excess) < ON_CIRCLE))
     return SHB_OK;
-  int turn = s.look.turn;
-  SHB_TRY(j->host->insert(j->host, &path->probe, turn, i));
-  j->host->lock(j->host, true);
+  mhb_harmonic_levels_errors(j->tracer->levels, &curve->trial);
+  SHB_TRY(mhb_record(j->response, j->branch, j->balance, &curve->trial, s.at.bifurcation, 0));
+  mhb_response_place(j->response, j->branch, i);
   put(j, i, &s.last);
-  j->host->lock(j->host, false);
-  memmove(j->look + i + 1, j->look + i, sizeof *j->look * (size_t)(j->n - i));
-  j->look[i] = s.look;
+  memmove(j->at + i + 1, j->at + i, sizeof *j->at * (size_t)(j->n - i));
+  j->at[i] = s.at;
   j->n++;
   return SHB_OK;
 }
@@ -268,30 +279,30 @@ static bool begins(const int *first, int n_first, int point) {
   return false;
 }
 
-/* Points first..last - 1 in a row have a swing above 1, one of them well above. Slip onset brings multipliers close to 1: not
- * marked. */
-static bool is_in_earnest(const mhb_branch_stability *j, int from, int to) {
+/* One of points from..to - 1 has a complex or negative multiplier outside the unit circle by more than
+ * the margin. The onset of slip brings multipliers close to 1: that is not marked. */
+static bool leaves_by_margin(const mhb_branch_stability *j, int from, int to) {
   for (int i = from; i < to; i++)
-    if (j->look[i].swings) return true;
+    if (j->at[i].leaves_complex) return true;
   return false;
 }
 
 /* From the end, so that places before stay valid. */
-static shb_status mark_turns(mhb_branch_stability *j, const int *first, int n_first) {
+static shb_status mark_bifurcations(mhb_branch_stability *j, const int *first, int n_first) {
   int located = 0, to = j->n;
   while (to > 0 && located + 2 <= MAX_LOCATED) {
     int from = to - 1;
-    if (!(j->look[from].swing > 0) || !j->look[from].known) {
+    if (!(j->at[from].complex_excess > 0) || !j->at[from].known) {
       to--;
       continue;
     }
-    while (from > 0 && j->look[from - 1].known && j->look[from - 1].swing > 0 &&
+    while (from > 0 && j->at[from - 1].known && j->at[from - 1].complex_excess > 0 &&
            !begins(first, n_first, from))
       from--;
-    if (is_in_earnest(j, from, to)) {
-      bool ends   = to < j->n && j->look[to].known && j->look[to].swing <= 0;
-      bool starts = from > 0 && j->look[from - 1].known && j->look[from - 1].swing <= 0;
-      for (int i = from; i < to; i++) j->look[i].swings = 1;
+    if (leaves_by_margin(j, from, to)) {
+      bool ends   = to < j->n && j->at[to].known && j->at[to].complex_excess <= 0;
+      bool starts = from > 0 && j->at[from - 1].known && j->at[from - 1].complex_excess <= 0;
+      for (int i = from; i < to; i++) j->at[i].leaves_complex = 1;
       if (ends && !begins(first, n_first, to)) SHB_TRY(locate(j, to));
       if (starts && !begins(first, n_first, from)) SHB_TRY(locate(j, from));
       located += 2;
@@ -318,21 +329,22 @@ static int parity(const mhb_branch *branch, int to) {
   return odd;
 }
 
-/* looks: NULL, or [point]. */
-static void decide(mhb_branch *branch, const look *looks, int stable_at) {
+/* at: NULL, or [point]. */
+static void decide(mhb_branch *branch, const point_stability *at, int stable_at) {
   int n_unstable = parity(branch, stable_at), loss = n_unstable ? MHB_LOSS_FOLD : MHB_NO_LOSS;
   for (int i = 0; i < branch->n_points; i++) {
     if (comes_back(branch, i)) {
       if (n_unstable == 0) loss = MHB_LOSS_FOLD;
       n_unstable = n_unstable == 0 ? 1 : n_unstable == 1 ? 0 : n_unstable;
     }
-    const look *l = looks && looks[i].known ? &looks[i] : NULL;
+    const point_stability *l = at && at[i].known ? &at[i] : NULL;
     if (l && (l->verdict == MHB_STABLE || l->verdict == MHB_UNSTABLE)) {
       n_unstable = l->verdict == MHB_STABLE ? 0 : l->n_unstable;
       loss       = l->loss;
     }
-    bool swings       = l && l->swings; /* marginal, between a crossing and a point beyond doubt */
-    branch->stable[i] = n_unstable == 0 && !swings;
+    bool leaves =
+        l && l->leaves_complex; /* marginal, between a crossing and a point beyond doubt */
+    branch->stable[i] = n_unstable == 0 && !leaves;
     branch->loss[i]   = branch->stable[i] ? MHB_NO_LOSS : n_unstable ? loss : l->loss;
     if (branch->special[i] != MHB_FOLD) continue;
     if (n_unstable == 0) loss = MHB_LOSS_FOLD;
@@ -344,23 +356,20 @@ void mhb_branch_stability_by_folds(mhb_branch *branch, int stable_at) {
   decide(branch, NULL, stable_at);
 }
 
-shb_status mhb_branch_stability_judge(mhb_branch_stability *j, mhb_arclength *path,
-                                      mhb_response *response, int index, const int *first,
-                                      int n_first, mhb_branch_editor *host, bool *finished) {
-  j->path     = path;
+shb_status mhb_branch_stability_judge(mhb_branch_stability *j, mhb_tracer *tracer,
+                                      mhb_response *response, int index, const int *begins,
+                                      int n_begins, int stable_at, bool *finished) {
+  j->tracer   = tracer;
   j->response = response;
   j->branch   = index;
-  j->host     = host;
   j->n        = branch_of(j)->n_points;
-  j->look     = calloc((size_t)j->n + MAX_LOCATED, sizeof *j->look);
-  SHB_CHECK(j->look, SHB_ERR_IO, "out of memory");
+  j->at       = calloc((size_t)j->n + MAX_LOCATED, sizeof *j->at);
+  SHB_CHECK(j->at, SHB_ERR_IO, "out of memory");
   j->all            = judges_all(j);
   *finished         = judge_points(j);
-  shb_status status = *finished && j->all ? mark_turns(j, first, n_first) : SHB_OK;
-  host->lock(host, true);
-  decide(branch_of(j), j->look, host->stable_at);
-  host->lock(host, false);
-  free(j->look);
-  j->look = NULL;
+  shb_status status = *finished && j->all ? mark_bifurcations(j, begins, n_begins) : SHB_OK;
+  decide(branch_of(j), j->at, stable_at);
+  free(j->at);
+  j->at = NULL;
   return status;
 }

@@ -15,34 +15,69 @@
 
 static const double PUBLISH_EVERY = 10, BRANCH_END_EVERY = 1; /* s */
 
-/* What the threads share: all of it touched under the lock only. */
+/* Share of a preload's work that is the main branch where other branches are searched for. */
+static const double MAIN_SHARE = 0.3;
+
+/* The curves of a preload: branch 0 the main one. The thread at work on it owns them; what it has
+ * handed over is copied. */
+typedef struct {
+  mhb_response *own, *handed;
+  double        done; /* share of its work */
+  double        handed_at;
+} preload_curves;
+
+/* What the threads share: touched under the lock only, but for each preload's own curves. */
 typedef struct {
   mhb_monitor           base;     /* first: the callbacks get it back */
   const mhb_settings   *settings; /* harmonics: the first number tried */
-  mhb_response         *response;
+  mhb_response         *response; /* the linear limits; at publication all of it */
   const char           *path;
   const shb_provenance *provenance;
   shb_progress         *progress;
-  omp_lock_t            mutex;
-  double               *done;       /* [preload] share of its work that is done */
-  double                main_share; /* of that: the main branch */
-  double                published;
-  shb_status            status; /* first failure, and its text: messages are per thread */
+  omp_lock_t            lock;
+  preload_curves       *preload;    /* [preload] */
+  double                main_share; /* of a preload's work: the main branch */
+  double                published;  /* s */
+  shb_status            status;     /* first failure, and its text: messages are per thread */
   char                  fault[512];
 } sweep;
 
-static void lock(mhb_monitor *monitor, bool locked) {
-  sweep *s = (sweep *)monitor;
-  if (locked) {
-    omp_set_lock(&s->mutex);
-  } else {
-    omp_unset_lock(&s->mutex);
+/* ---- publication ---- */
+
+static void take(mhb_branch *to, mhb_branch *from) {
+  mhb_branch old = *to;
+  *to            = *from;
+  *from          = old;
+}
+
+/* The curves handed over so far become the response's branches 2.. for the time of a call: main
+ * branches in the order of the preloads, then the others, grouped by their main one. */
+static shb_status gather(sweep *s) {
+  mhb_response *r = s->response;
+  for (int i = 0; i < s->settings->n_preloads; i++) {
+    int index;
+    SHB_TRY(mhb_response_branch(r, MHB_BRANCH_NONLINEAR, &index));
+    if (!s->preload[i].handed) continue;
+    r->branch[index]      = s->preload[i].handed->branch[0];
+    r->branch[index].main = index;
   }
+  for (int i = 0; i < s->settings->n_preloads; i++) {
+    const mhb_response *handed = s->preload[i].handed;
+    for (int k = 1; handed && k < handed->n_branches; k++) {
+      int index;
+      SHB_TRY(mhb_response_branch(r, MHB_BRANCH_NONLINEAR, &index));
+      r->branch[index]      = handed->branch[k];
+      r->branch[index].main = 2 + i;
+    }
+  }
+  return SHB_OK;
 }
 
 static shb_status publish(sweep *s) {
-  shb_status status = s->path ? mhb_response_write(s->response, s->path, s->provenance) : SHB_OK;
-  s->published      = shb_seconds();
+  shb_status status = gather(s);
+  if (status == SHB_OK && s->path) status = mhb_response_write(s->response, s->path, s->provenance);
+  s->response->n_branches = 2; /* the others belong to those who handed them over */
+  s->published            = shb_seconds();
   return status;
 }
 
@@ -53,40 +88,111 @@ static void note_failure(sweep *s, shb_status status) {
   snprintf(s->fault, sizeof s->fault, "%s", shb_message());
 }
 
-static bool point(mhb_monitor *monitor, int branch, const mhb_curve_point *at) {
-  sweep              *s    = (sweep *)monitor;
-  const mhb_settings *c    = s->settings;
-  const mhb_branch   *b    = &s->response->branch[branch];
-  mhb_parameter       what = c->parameter;
-  double low = mhb_parameter_end(c, what, 0), high = mhb_parameter_end(c, what, 1), total = 0;
-  if (b->main == branch) s->done[branch - 2] = s->main_share * (at->value - low) / (high - low);
-  for (int i = 0; i < c->n_preloads; i++) total += s->done[i];
-  int                   K = b->n_harmonics + 1, first = b->order < K ? b->order : K - 1;
-  const double complex *u =
-      b->motion + (size_t)(b->n_points - 1) * 3 * (size_t)s->response->n_pairs * (size_t)K;
-  double amplitude =
-      sqrt(pow(cabs(u[first]), 2) + pow(cabs(u[K + first]), 2) + pow(cabs(u[2 * K + first]), 2));
-  shb_progress_show(s->progress, 100 * total / c->n_preloads,
-                    "n0 %-8.4g N  point %-4d  %s %9.6g %s  %.3e m", b->n0[b->n_points - 1],
-                    b->n_points, what == MHB_IN_FREQUENCY ? "at" : mhb_parameter_name(what),
-                    mhb_parameter_shown(what, at->value), mhb_parameter_unit(what), amplitude);
-  if (s->path && shb_seconds() - s->published > PUBLISH_EVERY && s->status == SHB_OK)
-    note_failure(s, publish(s));
+/* Copy a preload's own curves. SHB_ERR_IO: no memory. */
+static shb_status copy_curves(const mhb_response *own, mhb_response **out) {
+  mhb_response *copy   = mhb_response_like(own);
+  shb_status    status = copy ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  for (int k = 0; k < own->n_branches && status == SHB_OK; k++) {
+    const mhb_branch *from = &own->branch[k];
+    int               index;
+    status = mhb_response_branch(copy, from->kind, &index);
+    if (status != SHB_OK) break;
+    mhb_branch *to  = &copy->branch[index];
+    to->origin      = from->origin;
+    to->order       = from->order;
+    to->n_harmonics = from->n_harmonics;
+    to->main        = from->main;
+    to->searched    = from->searched;
+    to->complete    = from->complete;
+    to->reason      = from->reason ? strdup(from->reason) : NULL;
+    if (from->n_points > 0)
+      status = mhb_response_copy_points(copy, index, own, k, 0, from->n_points - 1);
+  }
+  if (status != SHB_OK) {
+    mhb_response_destroy(copy);
+    return status;
+  }
+  *out = copy;
+  return SHB_OK;
+}
+
+static preload_curves *preload_of(sweep *s, const mhb_response *own) {
+  for (int i = 0; i < s->settings->n_preloads; i++)
+    if (s->preload[i].own == own) return &s->preload[i];
+  return NULL;
+}
+
+/* ---- the monitor ---- */
+
+static bool go_on(const sweep *s) {
   return !shb_interrupted() && s->status == SHB_OK;
 }
 
-static bool looking(mhb_monitor *monitor, int branch, double value, double share) {
-  sweep        *s     = (sweep *)monitor;
-  mhb_parameter what  = s->settings->parameter;
-  double        total = 0;
-  s->done[branch - 2] = s->main_share + (1 - s->main_share) * share;
-  for (int i = 0; i < s->settings->n_preloads; i++) total += s->done[i];
-  shb_progress_show(s->progress, 100 * total / s->settings->n_preloads,
-                    "n0 %-8.4g N  looking for other curves at %.6g %s",
-                    s->response->branch[branch].n0[0], mhb_parameter_shown(what, value),
-                    mhb_parameter_unit(what));
-  return !shb_interrupted() && s->status == SHB_OK;
+static bool point(mhb_monitor *monitor, const mhb_response *own, int branch, int at) {
+  sweep                *s    = (sweep *)monitor;
+  const mhb_settings   *c    = s->settings;
+  const mhb_branch     *b    = &own->branch[branch];
+  mhb_parameter         what = c->parameter;
+  int                   K = b->n_harmonics + 1, first = b->order < K ? b->order : K - 1;
+  const double complex *u = b->motion + (size_t)at * 3 * (size_t)own->n_pairs * (size_t)K + first;
+  double amplitude        = sqrt(pow(cabs(u[0]), 2) + pow(cabs(u[K]), 2) + pow(cabs(u[2 * K]), 2));
+  double low              = mhb_parameter_shown(what, mhb_parameter_end(c, what, 0));
+  double high = mhb_parameter_shown(what, mhb_parameter_end(c, what, 1)), total = 0;
+  omp_set_lock(&s->lock);
+  for (int i = 0; i < c->n_preloads; i++) {
+    if (c->n0[i] == b->n0[at] && s->preload[i].done < s->main_share)
+      s->preload[i].done = s->main_share * (b->value[at] - low) / (high - low);
+    total += s->preload[i].done;
+  }
+  shb_progress_show(s->progress, 100 * total / c->n_preloads,
+                    "n0 %-8.4g N  point %-4d  %s %9.6g %s  %.3e m", b->n0[at], at + 1,
+                    what == MHB_IN_FREQUENCY ? "at" : mhb_parameter_name(what), b->value[at],
+                    mhb_parameter_unit(what), amplitude);
+  bool on = go_on(s);
+  omp_unset_lock(&s->lock);
+  return on;
 }
+
+static bool searching(mhb_monitor *monitor, double n0, double value, double share) {
+  sweep              *s     = (sweep *)monitor;
+  const mhb_settings *c     = s->settings;
+  double              total = 0;
+  omp_set_lock(&s->lock);
+  for (int i = 0; i < c->n_preloads; i++) {
+    if (c->n0[i] == n0) s->preload[i].done = s->main_share + (1 - s->main_share) * share;
+    total += s->preload[i].done;
+  }
+  shb_progress_show(s->progress, 100 * total / c->n_preloads,
+                    "n0 %-8.4g N  looking for other curves at %.6g %s", n0, value,
+                    mhb_parameter_unit(c->parameter));
+  bool on = go_on(s);
+  omp_unset_lock(&s->lock);
+  return on;
+}
+
+static bool is_due(mhb_monitor *monitor, const mhb_response *own) {
+  sweep          *s = (sweep *)monitor;
+  preload_curves *p = preload_of(s, own);
+  return s->path && p && shb_seconds() - p->handed_at > PUBLISH_EVERY;
+}
+
+/* Hand over a copy of a preload's curves, and write the file if it is old. */
+static shb_status hand_over(mhb_monitor *monitor, const mhb_response *own) {
+  sweep          *s = (sweep *)monitor;
+  preload_curves *p = preload_of(s, own);
+  mhb_response   *copy;
+  SHB_TRY(copy_curves(own, &copy));
+  omp_set_lock(&s->lock);
+  mhb_response_destroy(p->handed);
+  p->handed        = copy;
+  p->handed_at     = shb_seconds();
+  bool       write = s->path && s->status == SHB_OK && shb_seconds() - s->published > PUBLISH_EVERY;
+  shb_status status = write ? publish(s) : SHB_OK;
+  omp_unset_lock(&s->lock);
+  return status;
+}
+
+/* ---- the work ---- */
 
 static shb_status linear_limits(const modal_model *model, const mhb_settings *settings,
                                 mhb_response *response) {
@@ -110,101 +216,117 @@ static shb_status linear_limits(const modal_model *model, const mhb_settings *se
 
 /* The main branch of a preload. */
 static shb_status main_branch(sweep *s, const modal_model *model, int i) {
-  mhb_balance *residual = NULL;
-  lock(&s->base, true); /* FFTW's planner */
-  shb_status status = mhb_balance_create(model, s->settings, &residual);
-  lock(&s->base, false);
-  if (status != SHB_OK) return status;
-  mhb_balance_set_preload(residual, s->settings->n0[i]);
-  mhb_balance_set_parameter(residual, s->settings->parameter);
-  status = mhb_trace_main_branch(residual, s->response, 2 + i, &s->base);
-  lock(&s->base, true);
-  mhb_balance_destroy(residual);
-  lock(&s->base, false);
+  mhb_balance *balance;
+  SHB_TRY(mhb_balance_create(model, s->settings, &balance));
+  mhb_balance_set_preload(balance, s->settings->n0[i]);
+  mhb_balance_set_parameter(balance, s->settings->parameter);
+  shb_status status = mhb_trace_main_branch(balance, s->preload[i].own, &s->base);
+  mhb_balance_destroy(balance);
   return status;
+}
+
+/* Branches that turned out not to be there. */
+static void drop_empty(mhb_response *own) {
+  bool drop[own->n_branches];
+  for (int k = 0; k < own->n_branches; k++) drop[k] = k > 0 && own->branch[k].n_points == 0;
+  mhb_response_drop(own, drop);
 }
 
 /* One preload on this thread; what an earlier run finished is there already. */
 static shb_status one_preload(sweep *s, const modal_model *model, int i) {
-  mhb_branch *main   = &s->response->branch[2 + i];
-  shb_status  status = main->complete ? SHB_OK : main_branch(s, model, i);
-  if (status == SHB_OK && !main->searched && !shb_interrupted())
-    status = mhb_secondary_branches(model, s->settings, s->response, 2 + i, &s->base);
-  lock(&s->base, true);
-  s->done[i] = 1;
-  if (status == SHB_OK && s->path && shb_seconds() - s->published > BRANCH_END_EVERY)
-    status = publish(s);
-  lock(&s->base, false);
+  preload_curves *p      = &s->preload[i];
+  shb_status      status = SHB_OK;
+  p->handed_at           = shb_seconds();
+  if (!p->own->branch[0].complete) status = main_branch(s, model, i);
+  if (status == SHB_OK && !p->own->branch[0].searched && !shb_interrupted())
+    status = mhb_secondary_branches(model, s->settings, p->own, &s->base);
+  if (status != SHB_OK) return status;
+  drop_empty(p->own);
+  omp_set_lock(&s->lock);
+  mhb_response_destroy(p->handed);
+  p->handed = p->own;
+  p->own    = NULL;
+  p->done   = 1;
+  if (s->path && shb_seconds() - s->published > BRANCH_END_EVERY) status = publish(s);
+  omp_unset_lock(&s->lock);
   return status;
 }
 
-static void take_over(mhb_response *response, int index, mhb_branch *old) {
-  mhb_branch fresh        = response->branch[index];
-  response->branch[index] = *old;
-  *old                    = fresh;
-}
-
 /* Take over the branches that an interrupted run of the same settings finished. */
-static void resume(sweep *s) {
+static shb_status resume(sweep *s) {
   hid_t         file;
   char         *settings = NULL;
   mhb_response *old      = NULL;
-  if (!s->path || h5_open(s->path, &file) != SHB_OK) return;
+  shb_status    status   = SHB_OK;
+  if (!s->path || h5_open(s->path, &file) != SHB_OK) return SHB_OK;
   bool same = h5_read_attribute_text(file, "/", "settings", &settings) == SHB_OK && settings &&
               strcmp(settings, s->provenance->settings) == 0;
   h5_close(file);
   free(settings);
-  if (!same || mhb_response_read(s->path, &old) != SHB_OK) return;
+  if (!same || mhb_response_read(s->path, &old) != SHB_OK) return SHB_OK;
   bool fits = old->n_multipliers == s->response->n_multipliers;
-  for (int i = 2; fits && i < s->response->n_branches && i < old->n_branches; i++) {
-    if (!old->branch[i].complete) continue;
-    take_over(s->response, i, &old->branch[i]);
-    s->done[i - 2] = s->response->branch[i].searched ? 1 : s->main_share;
+  int  n = fits ? old->n_branches : 0, past = 2 + s->settings->n_preloads;
+  for (int i = 2; i < n && i < past; i++) {
+    preload_curves *p = &s->preload[i - 2];
+    if (old->branch[i].main != i || !old->branch[i].complete) continue;
+    take(&p->own->branch[0], &old->branch[i]);
+    p->own->branch[0].main = 0;
+    p->done                = p->own->branch[0].searched ? 1 : s->main_share;
   }
-  for (int i = 2 + s->settings->n_preloads; fits && i < old->n_branches; i++) {
+  for (int i = past; i < n && status == SHB_OK; i++) {
     int main = old->branch[i].main, index;
-    if (main == i || main >= 2 + s->settings->n_preloads) continue;
-    const mhb_branch *trunk = &s->response->branch[main];
-    bool              whole = trunk->searched || old->branch[i].origin == MHB_FROM_DETACHED;
-    if (!trunk->complete || !whole ||
-        mhb_response_branch(s->response, MHB_BRANCH_NONLINEAR, &index) != SHB_OK)
+    if (main < 2 || main >= past) continue;
+    mhb_response     *own   = s->preload[main - 2].own;
+    const mhb_branch *first = &own->branch[0];
+    if (!first->complete || !(first->searched || old->branch[i].origin == MHB_FROM_DETACHED))
       continue;
-    take_over(s->response, index, &old->branch[i]);
+    status = mhb_response_branch(own, MHB_BRANCH_NONLINEAR, &index);
+    if (status != SHB_OK) break;
+    take(&own->branch[index], &old->branch[i]);
+    own->branch[index].main = 0;
   }
   mhb_response_destroy(old);
-}
-
-/* Branches that turned out not to be there. */
-static void drop_empty(mhb_response *response) {
-  bool drop[response->n_branches];
-  for (int i = 0; i < response->n_branches; i++)
-    drop[i] = response->branch[i].main != i && response->branch[i].n_points == 0;
-  mhb_response_drop(response, drop);
+  return status;
 }
 
 static shb_status all_preloads(sweep *s, const modal_model *model) {
-  int  n      = s->settings->n_preloads;
-  bool wanted = mhb_secondary_branches_wanted(s->settings);
+  int n = s->settings->n_preloads;
   for (int i = 0; i < n; i++) {
-    int branch;
-    SHB_TRY(mhb_response_branch(s->response, MHB_BRANCH_NONLINEAR, &branch));
-    s->response->branch[branch].searched = !wanted;
+    preload_curves *p = &s->preload[i];
+    int             index;
+    p->own = mhb_response_like(s->response);
+    SHB_CHECK(p->own, SHB_ERR_IO, "out of memory");
+    SHB_TRY(mhb_response_branch(p->own, MHB_BRANCH_NONLINEAR, &index));
+    p->own->branch[0].searched    = !mhb_secondary_branches_wanted(s->settings);
+    p->own->branch[0].n_harmonics = s->response->n_harmonics;
   }
-  SHB_TRY(
-      mhb_response_reserve(s->response, n * (MHB_MAX_DETACHED + (wanted ? MHB_MAX_SECONDARY : 0))));
-  if (s->settings->resume) resume(s);
+  if (s->settings->resume) SHB_TRY(resume(s));
 #pragma omp parallel for schedule(dynamic, 1) if (n > 1) /* else the threads go to the pairs */
   for (int i = 0; i < n; i++) {
-    const mhb_branch *main = &s->response->branch[2 + i];
-    if (shb_interrupted() || (main->complete && main->searched)) continue;
+    if (shb_interrupted()) continue;
     shb_status status = one_preload(s, model, i);
-    lock(&s->base, true);
+    omp_set_lock(&s->lock);
     note_failure(s, status);
-    lock(&s->base, false);
+    omp_unset_lock(&s->lock);
   }
   if (s->status != SHB_OK) return shb_fail(s->status, __FILE__, __LINE__, "%s", s->fault);
-  drop_empty(s->response);
-  mhb_response_sort(s->response);
+  for (int i = 0; i < n; i++) {
+    if (!s->preload[i].own) continue; /* not begun */
+    mhb_response_destroy(s->preload[i].handed);
+    s->preload[i].handed = s->preload[i].own;
+    s->preload[i].own    = NULL;
+  }
+  return SHB_OK;
+}
+
+/* The response takes over the curves of all preloads. */
+static shb_status take_curves(sweep *s) {
+  SHB_TRY(gather(s));
+  for (int i = 0; i < s->settings->n_preloads; i++) {
+    s->preload[i].handed->n_branches = 0;
+    mhb_response_destroy(s->preload[i].handed);
+    s->preload[i].handed = NULL;
+  }
   return SHB_OK;
 }
 
@@ -243,24 +365,30 @@ shb_status mhb_forced_response(const modal_model *model, const mhb_settings *ask
   SHB_TRY(check_load(model, settings));
   first.harmonics = m[0];
   if (first.parameter == MHB_IN_N0) first.n_preloads = 1;
-  sweep s    = {.base       = {.point = point, .lock = lock, .looking = looking},
-                .settings   = settings,
-                .path       = path,
-                .provenance = provenance,
-                .progress   = progress,
-                .main_share = settings->search.starts > 0 ? .3 : 1,
-                .published  = shb_seconds()};
+  sweep s = {
+      .base     = {.point = point, .searching = searching, .is_due = is_due, .publish = hand_over},
+      .settings = settings,
+      .path     = path,
+      .provenance = provenance,
+      .progress   = progress,
+      .main_share = settings->search.starts > 0 ? MAIN_SHARE : 1,
+      .published  = shb_seconds()};
   s.response = mhb_response_create(model->n_pairs, model->n_probes, m[rungs - 1]);
-  s.done     = calloc((size_t)settings->n_preloads, sizeof(double));
+  s.preload  = calloc((size_t)settings->n_preloads, sizeof *s.preload);
   shb_status status =
-      s.response && s.done ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+      s.response && s.preload ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   if (status == SHB_OK) status = mhb_response_describe(s.response, model, settings);
   if (status == SHB_OK) status = linear_limits(model, settings, s.response);
-  omp_init_lock(&s.mutex);
+  omp_init_lock(&s.lock);
   if (status == SHB_OK) status = all_preloads(&s, model);
   if (status == SHB_OK) status = publish(&s);
-  omp_destroy_lock(&s.mutex);
-  free(s.done);
+  if (status == SHB_OK) status = take_curves(&s);
+  omp_destroy_lock(&s.lock);
+  for (int i = 0; s.preload && i < settings->n_preloads; i++) {
+    mhb_response_destroy(s.preload[i].own);
+    mhb_response_destroy(s.preload[i].handed);
+  }
+  free(s.preload);
   if (status != SHB_OK) {
     mhb_response_destroy(s.response);
     return status;

@@ -4,16 +4,23 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Of the tolerance: what an estimate may be; what a lower rung must promise; error of the first-order estimate. */
-static const double SAFETY = .7, PROMISE = .35, FIRST_ORDER = 3;
+/* Parts of the tolerance: an estimate that is accepted, and one that a lower level must keep. */
+static const double SAFETY = 0.7, DOWNWARD_MARGIN = 0.35;
+
+/* Factor on an estimate of first order. */
+static const double FIRST_ORDER = 3;
 
 /* Share of the period that is nearly all of it. */
-static const double MOSTLY = .75;
+static const double NEARLY_ALL = 0.75;
 
 /* A move that ends farther off, relative to the motion, has met another branch. */
-static const double NEAR                  = .3;
+static const double NEAR                  = 0.3;
 static const int    STEPS[MHB_MAX_LEVELS] = {1, 3, 5, 7, 9, 13, 17, 21, 31};
-enum { QUIET = 3, HOLD = 6, ONSET = 7 };
+enum {
+  LOWER_AFTER       = 3, /* points in a row that ask for a lower level */
+  LOWER_AFTER_ONSET = 6, /* more of them after the level was raised */
+  AT_ONSET          = 7  /* harmonics where slip begins */
+};
 
 /* Highest harmonic of the fundamental that the load has, at least nu. */
 static int load_harmonics(const modal_model *model, const mhb_settings *s) {
@@ -40,53 +47,61 @@ int mhb_harmonic_levels_ladder(const modal_model *model, const mhb_settings *s,
   return n;
 }
 
-static void rung_destroy(mhb_harmonic_level *r) {
-  if (!r) return;
-  mhb_truncation_destroy(r->truncation);
-  mhb_arclength_destroy(r->path);
-  if (r->owned) mhb_balance_destroy(r->residual);
-  free(r);
+static void level_destroy(mhb_harmonic_level *level) {
+  if (!level) return;
+  mhb_truncation_destroy(level->truncation);
+  mhb_events_destroy(&level->events);
+  mhb_arclength_destroy(level->curve);
+  if (level->owns_balance) mhb_balance_destroy(level->balance);
+  free(level);
 }
 
-/* residual: NULL, or the one to use. */
-static shb_status rung_create(const mhb_harmonic_levels *h, int m, mhb_balance *residual,
-                              mhb_harmonic_level **out) {
-  mhb_harmonic_level *r = calloc(1, sizeof *r);
-  SHB_CHECK(r, SHB_ERR_IO, "out of memory");
-  r->settings           = *h->settings;
-  r->settings.harmonics = m;
-  r->residual           = residual;
-  r->owned              = !residual;
-  shb_status status     = SHB_OK;
-  if (!residual) status = mhb_balance_create(h->model, &r->settings, &r->residual);
-  if (status == SHB_OK && !residual) {
-    mhb_balance_set_operating_point(r->residual, &h->at_start);
-    mhb_balance_set_parameter(r->residual, h->parameter);
+/* balance: NULL, or the one to use. */
+static shb_status level_create(const mhb_harmonic_levels *h, int m, mhb_balance *balance,
+                               mhb_harmonic_level **out) {
+  mhb_harmonic_level *level = calloc(1, sizeof *level);
+  SHB_CHECK(level, SHB_ERR_IO, "out of memory");
+  level->settings           = *h->settings;
+  level->settings.harmonics = m;
+  level->balance            = balance;
+  level->owns_balance       = !balance;
+  shb_status status         = SHB_OK;
+  if (!balance) status = mhb_balance_create(h->model, &level->settings, &level->balance);
+  if (status == SHB_OK && !balance) {
+    mhb_balance_set_operating_point(level->balance, &h->at_start);
+    mhb_balance_set_parameter(level->balance, h->parameter);
   }
-  if (status == SHB_OK) status = mhb_truncation_create(r->residual, &r->truncation);
-  if (status == SHB_OK) status = mhb_arclength_create(r->residual, h->low, h->high, &r->path);
+  if (status == SHB_OK) status = mhb_truncation_create(level->balance, &level->truncation);
+  if (status == SHB_OK)
+    status = mhb_balance_curve_create(level->balance, h->low, h->high, &level->curve);
   if (status != SHB_OK) {
-    rung_destroy(r);
+    level_destroy(level);
     return status;
   }
-  *out = r;
+  *out = level;
   return SHB_OK;
 }
 
-shb_status mhb_harmonic_levels_create(mhb_balance *residual, mhb_harmonic_levels **out) {
+int mhb_harmonic_levels_of(const mhb_harmonic_levels *h, int m) {
+  int level = 0;
+  while (level + 1 < h->n && h->m[level] < m) level++;
+  return level;
+}
+
+shb_status mhb_harmonic_levels_create(mhb_balance *balance, mhb_harmonic_levels **out) {
   mhb_harmonic_levels *h = calloc(1, sizeof *h);
   SHB_CHECK(h, SHB_ERR_IO, "out of memory");
-  h->settings  = residual->settings;
-  h->model     = residual->receptance->model;
-  h->at_start  = residual->at;
-  h->parameter = residual->parameter;
+  h->settings  = balance->settings;
+  h->model     = balance->receptance->model;
+  h->at_start  = balance->eval->at;
+  h->parameter = balance->parameter;
   h->low       = mhb_parameter_end(h->settings, h->parameter, 0);
   h->high      = mhb_parameter_end(h->settings, h->parameter, 1);
   h->n         = mhb_harmonic_levels_ladder(h->model, h->settings, h->m);
-  while (h->at + 1 < h->n && h->m[h->at] < residual->m) h->at++;
-  h->m[h->at] = residual->m;
+  h->at        = mhb_harmonic_levels_of(h, balance->m);
+  h->m[h->at]  = balance->m;
   h->highest = h->wanted = h->at;
-  shb_status status      = rung_create(h, residual->m, residual, &h->rung[h->at]);
+  shb_status status      = level_create(h, balance->m, balance, &h->level[h->at]);
   if (status != SHB_OK) {
     mhb_harmonic_levels_destroy(h);
     return status;
@@ -97,12 +112,15 @@ shb_status mhb_harmonic_levels_create(mhb_balance *residual, mhb_harmonic_levels
 
 void mhb_harmonic_levels_destroy(mhb_harmonic_levels *h) {
   if (!h) return;
-  for (int i = 0; i < h->n; i++) rung_destroy(h->rung[i]);
+  for (int i = 0; i < h->n; i++) level_destroy(h->level[i]);
   free(h);
 }
 
-shb_status mhb_harmonic_levels_make(mhb_harmonic_levels *h, int rung) {
-  return h->rung[rung] ? SHB_OK : rung_create(h, h->m[rung], NULL, &h->rung[rung]);
+shb_status mhb_harmonic_levels_use(mhb_harmonic_levels *h, int level) {
+  if (!h->level[level]) SHB_TRY(level_create(h, h->m[level], NULL, &h->level[level]));
+  h->at = level;
+  if (level > h->highest) h->highest = level;
+  return SHB_OK;
 }
 
 /* Sum of squares of harmonic k over rows of nb coefficients. */
@@ -113,17 +131,19 @@ static double power(const double *x, int rows, int nb, int k) {
   return sum;
 }
 
-/* share[k] = |all harmonics above k|^2, k = 0..MHB_MOST_LOOKED_AT: the solution's up to m, the estimate's beyond. */
-static void tail(const mhb_harmonic_level *r, const double *x, double *share) {
-  const mhb_balance *b   = r->residual;
+/* share[k] = |all harmonics above k|^2, k = 0..MHB_MOST_LOOKED_AT: the solution's up to m, the
+ * estimate's beyond. */
+static void tail(const mhb_harmonic_level *level, const double *x, double *share) {
+  const mhb_balance *b   = level->balance;
   double             sum = 0;
   for (int k = MHB_MOST_LOOKED_AT; k > 0; k--) {
     share[k] = sum;
-    sum += k <= b->m ? power(x, 3 * b->n_pairs, b->nb, k) : mhb_truncation_power(r->truncation, k);
+    sum +=
+        k <= b->m ? power(x, 3 * b->n_pairs, b->nb, k) : mhb_truncation_power(level->truncation, k);
   }
 }
 
-/* The lowest rung that promises the tolerance; above the rung in use it has no margin. */
+/* The lowest level that keeps the tolerance; above the one in use without a margin. */
 static int choose(const mhb_harmonic_levels *h, const double *x, double error, double size) {
   double share[MHB_MOST_LOOKED_AT + 1], tolerance = h->settings->motion_tolerance * size;
   int    m = h->m[h->at];
@@ -132,53 +152,48 @@ static int choose(const mhb_harmonic_levels *h, const double *x, double error, d
   int    enough = error * size <= SAFETY * tolerance;
   for (int i = 0; i < h->n; i++) {
     double promised = gain * sqrt(share[h->m[i]]);
-    if (i < h->at && promised <= PROMISE * tolerance) return i;
+    if (i < h->at && promised <= DOWNWARD_MARGIN * tolerance) return i;
     if (i == h->at && enough) return i;
     if (i > h->at && (promised <= SAFETY * tolerance || h->m[i] > 2 * m)) return i;
   }
   return h->n - 1;
 }
 
-/* Where slip or opening begins. */
-static int at_onset(const mhb_harmonic_levels *h) {
-  int rung = 0;
-  while (rung + 1 < h->n && h->m[rung] < ONSET * h->settings->subharmonics) rung++;
-  return rung;
-}
-
 int mhb_harmonic_levels_most_unknowns(const mhb_harmonic_levels *h) {
   return 3 * h->model->n_pairs * (2 * h->m[h->n - 1] + 1);
 }
 
-/* Every pair sticks, or is open, but for a small part of the period: near where that begins or ends curves of few and of many harmonics may turn at
- * different places, however small the estimate. */
-static bool barely_moves(const mhb_balance *b) {
-  for (int a = 0; a < b->n_pairs; a++)
-    if (b->info[a].share[MHB_STICK] < MOSTLY && b->info[a].share[MHB_SEPARATE] < MOSTLY)
+/* Every pair sticks, or is open, for all but a small part of the period. Where slip or opening begins
+ * or ends, curves of few and of many harmonics may turn at different places, however small the
+ * estimate. */
+static bool is_nearly_linear(const mhb_evaluation *e, int n_pairs) {
+  for (int a = 0; a < n_pairs; a++)
+    if (e->info[a].share[MHB_STICK] < NEARLY_ALL && e->info[a].share[MHB_SEPARATE] < NEARLY_ALL)
       return false;
   return true;
 }
 
 void mhb_harmonic_levels_errors(mhb_harmonic_levels *h, mhb_curve_point *point) {
-  mhb_harmonic_level *r  = mhb_harmonic_levels_current(h);
-  point->truncation      = mhb_truncation_error(r->truncation, point->x);
-  point->truncation_kind = r->truncation->kind;
-  point->modal           = mhb_modal_error(
-                r->residual, point->x,
-      point->truncation_kind == MHB_TRUNCATION_NEWTON ? r->truncation->system : NULL);
+  mhb_harmonic_level *level = mhb_harmonic_levels_current(h);
+  mhb_balance_use(level->balance, point->evaluation);
+  point->truncation      = mhb_truncation_error(level->truncation, point->x);
+  point->truncation_kind = level->truncation->kind;
+  mhb_condensation *system =
+      point->truncation_kind == MHB_TRUNCATION_NEWTON ? level->truncation->system : NULL;
+  point->modal = mhb_modal_error(level->balance, point->x, system);
 }
 
 void mhb_harmonic_levels_estimate(mhb_harmonic_levels *h, mhb_curve_point *point) {
-  mhb_harmonic_level *r = mhb_harmonic_levels_current(h);
+  mhb_balance *b = mhb_harmonic_levels_current(h)->balance;
   mhb_harmonic_levels_errors(h, point);
   h->wanted = h->at;
   h->linear = point->truncation_kind == MHB_TRUNCATION_NONE;
   if (h->n == 1) return;
   double factor = point->truncation_kind == MHB_TRUNCATION_FIRST_ORDER ? FIRST_ORDER : 1;
-  h->wanted =
-      choose(h, point->x, factor * point->truncation, mhb_balance_vibration(r->residual, point->x));
-  if (!h->linear && (h->from_linear || barely_moves(r->residual)) && h->wanted < at_onset(h))
-    h->wanted = at_onset(h);
+  h->wanted  = choose(h, point->x, factor * point->truncation, mhb_balance_vibration(b, point->x));
+  bool onset = h->from_linear || is_nearly_linear(point->evaluation, b->n_pairs);
+  int  least = mhb_harmonic_levels_of(h, AT_ONSET * h->settings->subharmonics);
+  if (!h->linear && onset && h->wanted < least) h->wanted = least;
 }
 
 int mhb_harmonic_levels_higher(const mhb_harmonic_levels *h) {
@@ -190,39 +205,43 @@ void mhb_harmonic_levels_accept(mhb_harmonic_levels *h) {
 }
 
 int mhb_harmonic_levels_lower(mhb_harmonic_levels *h) {
-  if (!h->linear && h->quiet < 0) h->quiet = 0; /* past where slip begins */
-  h->quiet = h->wanted < h->at ? h->quiet + 1 : 0;
-  return h->quiet >= (h->linear ? 1 : QUIET) ? h->wanted : -1;
+  if (!h->linear && h->n_lower_wanted < 0) h->n_lower_wanted = 0; /* past the onset of slip */
+  h->n_lower_wanted = h->wanted < h->at ? h->n_lower_wanted + 1 : 0;
+  return h->n_lower_wanted >= (h->linear ? 1 : LOWER_AFTER) ? h->wanted : -1;
 }
 
-/* Rows of a solution into those of another number of harmonics; missing ones are left as they are. */
+/* Rows of a solution into those of another number of harmonics; missing ones stay as they are. */
 static void copy_rows(int rows, const double *from, int nb, double *to, int wide) {
   size_t length = sizeof(double) * (size_t)(nb < wide ? nb : wide);
   for (int i = 0; i < rows; i++)
     memcpy(to + (size_t)i * (size_t)wide, from + (size_t)i * (size_t)nb, length);
 }
 
-mhb_reason mhb_harmonic_levels_move(mhb_harmonic_levels *h, int rung, int step) {
-  mhb_harmonic_level *from = mhb_harmonic_levels_current(h), *to = h->rung[rung];
-  mhb_balance        *a = from->residual, *b = to->residual;
-  mhb_curve_point    *now  = &from->path->now;
-  int                 rows = 3 * a->n_pairs, wide = from->truncation->doubled->nb;
-  double              x[b->n], near[b->n];
+shb_status mhb_harmonic_levels_move(mhb_harmonic_levels *h, int index, bool with_step,
+                                    bool *moved) {
+  mhb_harmonic_level *from = mhb_harmonic_levels_current(h);
+  int                 old  = h->at;
+  SHB_TRY(mhb_harmonic_levels_use(h, index));
+  mhb_harmonic_level    *to = h->level[index];
+  mhb_balance           *a = from->balance, *b = to->balance;
+  const mhb_curve_point *current = &from->curve->current;
+  int                    rows = 3 * a->n_pairs, wide = from->truncation->doubled->nb;
+  double                 x[b->n], near[b->n], away = 0;
   memset(x, 0, sizeof x);
-  copy_rows(rows, now->x, a->nb, x, b->nb);
+  copy_rows(rows, current->x, a->nb, x, b->nb);
   memcpy(near, x, sizeof near);
-  for (int row = 0; step && row < rows; row++)
+  for (int row = 0; with_step && row < rows; row++)
     for (int i = 0; i < wide && i < b->nb; i++)
       x[row * b->nb + i] += from->truncation->step[row * wide + i];
-  mhb_reason reason =
-      mhb_arclength_start(to->path, x, now->value, now->tangent[from->path->n] < 0 ? -1 : 1);
-  if (reason != MHB_CONVERGED) return reason;
-  double away = 0, size = mhb_norm(near, b->n);
-  for (int i = 0; i < b->n; i++) away = fmax(away, fabs(to->path->now.x[i] - near[i]));
-  if (away > NEAR * size) return MHB_NO_DESCENT; /* another branch */
-  to->path->step = from->path->step;
-  h->quiet       = rung > h->at ? -HOLD : 0; /* where slip begins few harmonics lead astray */
-  h->at          = rung;
-  if (rung > h->highest) h->highest = rung;
-  return MHB_CONVERGED;
+  int sense = current->tangent[from->curve->n] < 0 ? -1 : 1;
+  *moved    = mhb_arclength_start(to->curve, x, current->value, sense) == MHB_CONVERGED;
+  for (int i = 0; i < b->n; i++) away = fmax(away, fabs(to->curve->current.x[i] - near[i]));
+  if (away > NEAR * mhb_norm(near, b->n)) *moved = false; /* another branch */
+  if (!*moved) {
+    h->at = old;
+    return SHB_OK;
+  }
+  to->curve->step   = from->curve->step;
+  h->n_lower_wanted = index > old ? -LOWER_AFTER_ONSET : 0; /* at onset few harmonics lead astray */
+  return SHB_OK;
 }

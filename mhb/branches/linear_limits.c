@@ -43,7 +43,7 @@ static shb_status record(sampler *s, double value) {
   double started = shb_seconds();
   SHB_TRY(amplitudes(s, value, unused));
   for (int a = 0; a < s->residual->n_pairs; a++) {
-    mhb_contact_info *info = &s->residual->info[a];
+    mhb_contact_info *info = &s->residual->eval->info[a];
     memset(info, 0, offsetof(mhb_contact_info, transition));
     info->share[s->stuck ? MHB_STICK : MHB_SEPARATE] = 1;
   }

@@ -1,18 +1,22 @@
-/* How a branch under way reports its points, and is stopped. */
+/* How the work on a preload reports itself, and is stopped. */
 #ifndef MHB_BRANCHES_MONITOR_H
 #define MHB_BRANCHES_MONITOR_H
 
 #include <stdbool.h>
 
-#include "mhb/continuation/arclength.h"
+#include "mhb/response/response.h"
 
-/* Called after every recorded point; the one place where threads meet. Returns false to stop (interrupted). */
+/* Its functions may be called from any thread. */
 typedef struct mhb_monitor mhb_monitor;
 struct mhb_monitor {
-  bool (*point)(mhb_monitor *monitor, int branch, const mhb_curve_point *point);
-  void (*lock)(mhb_monitor *monitor, bool locked);
-  /* Called, locked, while further branches are looked for at a value of the parameter, a share of it done; false: stop. */
-  bool (*looking)(mhb_monitor *monitor, int branch, double value, double share);
+  /* A point of a branch was recorded, or judged. false: stop. */
+  bool (*point)(mhb_monitor *monitor, const mhb_response *response, int branch, int point);
+  /* Other curves of a preload (N) are searched for at a value of the parameter, as the file shows
+   * it; share: of the search. false: stop. */
+  bool (*searching)(mhb_monitor *monitor, double n0, double value, double share);
+  /* Whether the curves so far of a preload's response are to be published, and their publication. */
+  bool (*is_due)(mhb_monitor *monitor, const mhb_response *response);
+  shb_status (*publish)(mhb_monitor *monitor, const mhb_response *response);
 };
 
 #endif

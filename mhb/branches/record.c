@@ -27,9 +27,9 @@ static void record_states(mhb_branch *branch, int point, const mhb_balance *b) {
   double worst = 0;
   for (int a = 0; a < b->n_pairs; a++) {
     size_t at = (size_t)point * (size_t)b->n_pairs + (size_t)a;
-    memcpy(branch->state + 3 * at, b->info[a].share, sizeof b->info[a].share);
-    branch->dissipation[at] = b->info[a].dissipation;
-    worst                   = fmax(worst, b->info[a].error);
+    memcpy(branch->state + 3 * at, b->eval->info[a].share, sizeof b->eval->info[a].share);
+    branch->dissipation[at] = b->eval->info[a].dissipation;
+    worst                   = fmax(worst, b->eval->info[a].error);
   }
   branch->error_sampling[point] = worst;
 }
@@ -37,12 +37,13 @@ static void record_states(mhb_branch *branch, int point, const mhb_balance *b) {
 shb_status mhb_record(mhb_response *response, int index, mhb_balance *b,
                       const mhb_curve_point *point, int special, double seconds) {
   int at;
+  mhb_balance_use(b, point->evaluation);
   SHB_TRY(mhb_response_point(response, index, &at));
   mhb_branch *branch    = &response->branch[index];
-  branch->frequency[at] = b->at.omega / (2 * PI);
-  branch->n0[at]        = b->at.n0;
+  branch->frequency[at] = b->eval->at.omega / (2 * PI);
+  branch->n0[at]        = b->eval->at.n0;
   for (int i = 0; i < response->n_interfaces; i++)
-    branch->interface_n0[at * response->n_interfaces + i] = b->own[i].n0;
+    branch->interface_n0[at * response->n_interfaces + i] = b->eval->own[i].n0;
   branch->value[at]        = mhb_parameter_shown(b->parameter, point->value);
   branch->special[at]      = special;
   branch->stable[at]       = -1; /* until the branch is judged */

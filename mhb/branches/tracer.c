@@ -5,326 +5,308 @@
 #include <string.h>
 
 #include "mesh/base/progress.h"
+#include "mhb/balance/subharmonics.h"
 #include "mhb/branches/record.h"
-#include "mhb/continuation/corrector.h"
 #include "mhb/continuation/outputs.h"
 
-/* A path whose steps stay below CRAWL this often is as good as stalled. */
-static const double CRAWL = 2e-3;
-enum { MAX_CRAWL = 150, MAX_SHORTER = 5 };
-
-/* A curve has closed if it comes as near as this to its beginning, relative to the motion. */
+/* A curve has closed if it comes as near as this to its start, relative to the motion. */
 static const double SAME = 1e-5;
 
-const char MHB_WHOLE[] = "end of range", MHB_CLOSED[] = "closed curve",
-           MHB_JOINED[]      = "joins a curve of lower order",
-           MHB_TURNED_BACK[] = "turned back to the start of the range";
+/* A recorded point is known if its motion is within so many of the distance above. */
+static const double KNOWN = 10;
 
-void mhb_tracer_lock(const mhb_tracer *f, bool locked) {
-  f->monitor->lock(f->monitor, locked);
+/* Of the motion: the part of higher order where the curve meets another. */
+static const double VANISHED = 2e-3;
+
+static mhb_tracer *of(mhb_segment_host *host) {
+  return (mhb_tracer *)host;
 }
 
-shb_status mhb_tracer_record(mhb_tracer *f, mhb_curve_point *point, int special, bool *go_on) {
-  double now = shb_seconds();
-  mhb_tracer_lock(f, true);
-  shb_status status =
-      mhb_record(f->response, f->branch, f->residual, point, special, now - f->clock);
-  if (status == SHB_OK) *go_on = f->monitor->point(f->monitor, f->branch, point);
-  mhb_tracer_lock(f, false);
-  f->clock = shb_seconds();
-  return status;
+mhb_arclength *mhb_tracer_curve(const mhb_tracer *t) {
+  return mhb_harmonic_levels_current(t->levels)->curve;
 }
 
-static void slopes(const mhb_tracer *f, const mhb_curve_point *point, double *out) {
-  for (int o = 0; o < f->n_outputs; o++) out[o] = mhb_output_slope(f->path, point, o);
+mhb_balance *mhb_tracer_balance(const mhb_tracer *t) {
+  return mhb_harmonic_levels_current(t->levels)->balance;
 }
 
-void mhb_tracer_revisit(mhb_tracer *f, const mhb_curve_point *point) {
-  mhb_newton *w = f->path->newton;
-  mhb_balance_linearise(f->residual, point->x, point->value, w->r, NULL);
+double mhb_tracer_same(const mhb_tracer *t) {
+  return fmax(SAME, 20 * t->levels->settings->motion_tolerance);
 }
 
-/* Leaves the residual's workspace at next, as mhb_arclength_step did. */
-static shb_status record_landmarks(mhb_tracer *f, bool *go_on) {
-  const mhb_special_points *l = &f->landmarks;
-  for (int i = 0; i < l->n && *go_on; i++) {
-    mhb_special_points_visit(l, f->path, i);
-    mhb_harmonic_levels_errors(f->harmonics, &f->path->probe);
-    SHB_TRY(mhb_tracer_record(f, &f->path->probe, l->mark[i].special, go_on));
-  }
-  if (l->away) mhb_tracer_revisit(f, &f->path->next);
+/* The level in use is the host's. */
+static void use_level(mhb_tracer *t) {
+  mhb_harmonic_level *level = mhb_harmonic_levels_current(t->levels);
+  t->host.curve             = level->curve;
+  t->host.events            = &level->events;
+}
+
+/* ---- what segments ask for ---- */
+
+static shb_status estimate(mhb_segment_host *host, mhb_curve_point *point, bool *raised) {
+  mhb_tracer *t        = of(host);
+  bool        is_start = point == &host->curve->current;
+  *raised              = false;
+  mhb_harmonic_levels_estimate(t->levels, point);
+  if (is_start) mhb_harmonic_levels_accept(t->levels);
+  int higher = mhb_harmonic_levels_higher(t->levels);
+  if (higher < 0) return SHB_OK;
+  SHB_TRY(mhb_harmonic_levels_move(t->levels, higher, is_start, raised));
+  use_level(t);
   return SHB_OK;
 }
 
-/* The point recorded next does not follow the one before along the curve. */
-static void begin_anew(mhb_tracer *f) {
-  if (f->n_first < MHB_MAX_BEGINS) f->first[f->n_first++] = f->response->branch[f->branch].n_points;
+static void estimate_event(mhb_segment_host *host, mhb_curve_point *point) {
+  mhb_harmonic_levels_errors(of(host)->levels, point);
 }
 
-void mhb_tracer_use_rung(mhb_tracer *f) {
-  f->residual = mhb_harmonic_levels_current(f->harmonics)->residual;
-  f->path     = mhb_harmonic_levels_current(f->harmonics)->path;
-}
-
-static shb_status make_rung(mhb_tracer *f, int rung) {
-  mhb_tracer_lock(f, true); /* FFTW's planner */
-  shb_status status = mhb_harmonic_levels_make(f->harmonics, rung);
-  mhb_tracer_lock(f, false);
-  return status;
-}
-
-/* Go on from now with another number of harmonics. *moved: 0 if that cannot be. */
-static shb_status move(mhb_tracer *f, int rung, int step, int *moved) {
-  SHB_TRY(make_rung(f, rung));
-  *moved = mhb_harmonic_levels_move(f->harmonics, rung, step) == MHB_CONVERGED;
-  if (!*moved) return SHB_OK;
-  mhb_tracer_use_rung(f);
-  slopes(f, &f->path->now, f->before);
+static shb_status accept(mhb_segment_host *host, bool *moved) {
+  mhb_tracer *t = of(host);
+  *moved        = false;
+  mhb_harmonic_levels_accept(t->levels);
+  int lower = mhb_harmonic_levels_lower(t->levels);
+  if (lower < 0) return SHB_OK;
+  SHB_TRY(mhb_harmonic_levels_move(t->levels, lower, false, moved));
+  use_level(t);
   return SHB_OK;
 }
 
-/* A step at a number of harmonics that suffices at its end: where it does not, the step is taken anew from now, with more.
- * The errors of next are estimated. */
-static shb_status sufficient_step(mhb_tracer *f, mhb_arclength_outcome *outcome) {
-  for (int moved = 1;;) {
-    *outcome = mhb_arclength_step(f->path);
-    if (*outcome == MHB_ARCLENGTH_STALLED) return SHB_OK;
-    mhb_harmonic_levels_estimate(f->harmonics, &f->path->next);
-    int higher = mhb_harmonic_levels_higher(f->harmonics);
-    if (higher < 0 || !moved) return SHB_OK;
-    SHB_TRY(move(f, higher, 0, &moved));
-  }
-}
-
-/* The start of a curve: now at a number of harmonics that suffices, errors estimated. */
-static shb_status sufficient_start(mhb_tracer *f) {
-  for (int moved = 1;;) {
-    mhb_harmonic_levels_estimate(f->harmonics, &f->path->now);
-    mhb_harmonic_levels_accept(f->harmonics);
-    int higher = mhb_harmonic_levels_higher(f->harmonics);
-    if (higher < 0 || !moved) return SHB_OK;
-    SHB_TRY(move(f, higher, 1, &moved));
-  }
-}
-
-double mhb_tracer_closeness(const mhb_tracer *f) {
-  return fmax(SAME, 20 * f->residual->settings->motion_tolerance);
-}
-
-shb_status mhb_tracer_arrive(mhb_tracer *f) {
-  slopes(f, &f->path->now, f->before);
-  return sufficient_start(f);
-}
-
-shb_status mhb_tracer_begin(mhb_tracer *f, double value, int direction, bool recorded, bool *found,
-                            bool *go_on) {
-  f->crawling = 0;
-  *found      = mhb_arclength_start(f->path, f->x, value, direction) == MHB_CONVERGED;
-  if (!*found) return SHB_OK;
-  f->farthest = fmax(f->farthest, value);
-  mhb_curve_start_free(&f->closed);
-  SHB_TRY(mhb_curve_start_begin(&f->closed, f->path, mhb_tracer_closeness(f)));
-  SHB_TRY(mhb_tracer_arrive(f));
-  if (!recorded) return SHB_OK;
-  begin_anew(f);
-  return mhb_tracer_record(f, &f->path->now, MHB_ORDINARY, go_on);
-}
-
-/* Why the curve ends at next; NULL: it does not. A curve that leaves by the low end and may come back is set on its way back. */
-static const char *end_at(mhb_tracer *f, mhb_arclength_outcome outcome) {
-  f->crawling = f->path->step < CRAWL ? f->crawling + 1 : 0;
-  if (outcome == MHB_ARCLENGTH_STALLED) return "no step converged";
-  if (outcome == MHB_ARCLENGTH_AT_END || (f->either && outcome == MHB_ARCLENGTH_AT_START))
-    return MHB_WHOLE;
-  if (f->closed.x && mhb_curve_start_passes(&f->closed, f->path)) {
-    mhb_harmonic_levels_errors(f->harmonics, &f->path->next);
-    return MHB_CLOSED;
-  }
-  return f->crawling > MAX_CRAWL ? "the steps stayed tiny" : NULL;
-}
-
-/* The motion recorded at a point of any curve is that of path->next, as near as a curve comes to itself. */
-static bool is_recorded(const mhb_tracer *f, const mhb_branch *b, int point) {
-  const mhb_balance    *r = f->residual;
-  int                   K = b->n_harmonics + 1, rows = 3 * r->n_pairs;
-  const double complex *A    = b->motion + (size_t)point * (size_t)rows * (size_t)K;
+/* The recorded motion at a point is that of the curve's current point. */
+static bool is_recorded_at(const mhb_tracer *t, const mhb_branch *branch, int point) {
+  const mhb_balance    *b = mhb_tracer_balance(t);
+  const double         *x = mhb_tracer_curve(t)->current.x;
+  int                   K = branch->n_harmonics + 1, rows = 3 * b->n_pairs;
+  const double complex *A    = branch->motion + (size_t)point * (size_t)rows * (size_t)K;
   double                away = 0, size = 0;
   for (int row = 0; row < rows; row++)
-    for (int k = 0; k < K || k <= r->m; k++) {
-      const double  *x    = f->path->next.x + (size_t)row * (size_t)r->nb;
-      double complex here = k > r->m ? 0 : k ? CMPLX(x[2 * k - 1], x[2 * k]) : x[0];
+    for (int k = 0; k < K || k <= b->m; k++) {
+      const double  *a    = x + (size_t)row * (size_t)b->nb;
+      double complex here = k > b->m ? 0 : k ? CMPLX(a[2 * k - 1], a[2 * k]) : a[0];
       double complex then = k < K ? A[row * K + k] : 0;
       away += pow(cabs(here - then), 2);
       size += pow(cabs(here), 2);
     }
-  return sqrt(away) <= 10 * mhb_tracer_closeness(f) * sqrt(size);
+  return sqrt(away) <= KNOWN * mhb_tracer_same(t) * sqrt(size);
 }
 
-/* path->next, on an end of the range, has been passed before: by this curve, or by one set aside. */
-static bool is_known(mhb_tracer *f) {
-  const mhb_response *r     = f->response;
-  double              value = mhb_parameter_shown(f->residual->parameter, f->path->next.value);
-  bool                known = false;
-  mhb_tracer_lock(f, true);
-  for (int i = 0; i < r->n_branches && !known; i++) {
-    const mhb_branch *b = &r->branch[i];
-    if (b->kind != MHB_BRANCH_NONLINEAR || b->main != r->branch[f->branch].main) continue;
-    for (int p = 0; p < b->n_points && !known; p++)
-      known = fabs(b->value[p] - value) <= 1e-12 * fabs(value) && is_recorded(f, b, p);
+/* The curve's current point, on an end of the range, is a recorded point of some segment. */
+static bool is_recorded(const mhb_tracer *t) {
+  double value =
+      mhb_parameter_shown(mhb_tracer_balance(t)->parameter, mhb_tracer_curve(t)->current.value);
+  for (int i = 0; i < t->store->n_branches; i++) {
+    const mhb_branch *branch = &t->store->branch[i];
+    for (int p = 0; p < branch->n_points; p++)
+      if (fabs(branch->value[p] - value) <= 1e-12 * fabs(value) && is_recorded_at(t, branch, p))
+        return true;
   }
-  mhb_tracer_lock(f, false);
-  return known;
+  return false;
 }
 
-/* The curve is back in the range at path->next, which is to be recorded and followed from. */
-static shb_status begin_back(mhb_tracer *f, bool *go_on) {
-  mhb_arclength_advance(f->path);
-  begin_anew(f);
-  SHB_TRY(mhb_tracer_arrive(f));
-  return mhb_tracer_record(f, &f->path->now, MHB_ORDINARY, go_on);
-}
-
-/* next, recorded, is on the low end of the range: go on where the curve comes back into it. */
-static shb_status come_back(mhb_tracer *f, bool *go_on, const char **end) {
-  if (mhb_arclength_excursion(f->path, MHB_ARCLENGTH_AT_START) != MHB_ARCLENGTH_ON)
-    *end = MHB_TURNED_BACK;
-  if (!*end && f->closed.x &&
-      mhb_curve_start_distance(&f->closed, f->path, &f->path->next) <= f->closed.tolerance)
-    *end = MHB_CLOSED;
-  return *end ? SHB_OK : begin_back(f, go_on);
-}
-
-/* Begin at the last recorded point of the branch, as it was solved. */
-static shb_status begin_at_last(mhb_tracer *f, int direction, bool *found) {
-  const mhb_branch *b    = &f->response->branch[f->branch];
-  int               last = b->n_points - 1, rung = 0;
-  while (rung + 1 < f->harmonics->n && f->harmonics->m[rung] < b->harmonics[last]) rung++;
-  SHB_TRY(make_rung(f, rung));
-  f->harmonics->at = rung;
-  mhb_tracer_use_rung(f);
-  const mhb_balance *r = f->residual;
-  mhb_recorded_motion(b, last, r, f->x);
-  double value = mhb_parameter_value(r->parameter, b->value[last]);
-  value        = direction < 0 ? fmax(value, f->path->low) : fmin(value, f->path->high);
-  f->crawling  = 0;
-  *found       = mhb_arclength_start(f->path, f->x, value, direction) == MHB_CONVERGED;
+/* Where the segment is to end by its motion: at its own start, at a target, at the place where the
+ * curve started that it goes on with, or nowhere. */
+static shb_status started(mhb_segment_host *host, const mhb_seed *seed, mhb_end *end) {
+  mhb_tracer             *t     = of(host);
+  const mhb_curve_point  *first = &host->curve->current;
+  const mhb_segment_plan *plan  = &t->plan;
+  if (seed->kind == MHB_SEED_EXCURSION && !plan->known && is_recorded(t)) {
+    *end = MHB_END_NO_START;
+    return SHB_OK;
+  }
+  if (seed->kind == MHB_SEED_SOLUTION || (seed->kind == MHB_SEED_EXCURSION && !plan->known))
+    SHB_TRY(mhb_curve_place_note(&t->start, host->curve->system, first, mhb_tracer_same(t)));
+  else if (seed->kind == MHB_SEED_CROSSING)
+    mhb_curve_place_free(&t->start);
+  const mhb_curve_place *place = plan->target ? plan->target : plan->closes ? &t->start : NULL;
+  if (place && !place->x) place = NULL;
+  for (int j = 0; j < host->curve->system->copies; j++)
+    t->returns[j] = (mhb_curve_return){place, j};
+  if (seed->kind == MHB_SEED_SOLUTION) t->farthest = fmax(t->farthest, seed->value);
+  if (seed->kind == MHB_SEED_EXCURSION && plan->known && place &&
+      mhb_curve_place_distance(place, host->curve, first) <= place->tolerance)
+    *end = MHB_END_CLOSED;
   return SHB_OK;
 }
 
-shb_status mhb_tracer_return(mhb_tracer *f, bool *back, bool *go_on) {
-  const mhb_branch *b    = &f->response->branch[f->branch];
-  double            last = b->value[b->n_points - 1];
-  double            lo   = mhb_parameter_shown(f->residual->parameter, f->path->low),
-         hi              = mhb_parameter_shown(f->residual->parameter, f->path->high);
-  bool low = fabs(last - lo) <= 1e-9 * (hi - lo), high = fabs(last - hi) <= 1e-9 * (hi - lo);
-  *back = low || high;
-  if (*back) SHB_TRY(begin_at_last(f, low ? -1 : 1, back));
-  mhb_curve_start_free(&f->closed);
-  *back = *back &&
-          mhb_arclength_excursion_within_budget(
-              f->path, low ? MHB_ARCLENGTH_AT_START : MHB_ARCLENGTH_AT_END) == MHB_ARCLENGTH_ON;
-  *back = *back && !is_known(f);
-  if (!*back) return SHB_OK;
-  SHB_TRY(begin_back(f, go_on));
-  return mhb_curve_start_begin(&f->closed, f->path, mhb_tracer_closeness(f));
-}
-
-/* A step, why the curve ends there, and its folds and peaks, not yet recorded. */
-static shb_status look_ahead(mhb_tracer *f, mhb_arclength_outcome *outcome, const char **end,
-                             bool *folds_hidden) {
-  *folds_hidden = false;
-  SHB_TRY(sufficient_step(f, outcome));
-  *end = end_at(f, *outcome);
-  if (*outcome == MHB_ARCLENGTH_STALLED) return SHB_OK;
-  slopes(f, &f->path->next, f->after);
-  mhb_special_points_find(&f->landmarks, f->path, f->n_outputs, f->before, f->after);
-  *folds_hidden = !*end && mhb_special_points_miss_fold(&f->landmarks, f->path);
+static shb_status record(mhb_segment_host *host, mhb_curve_point *point, int special, bool *go_on) {
+  mhb_tracer *t   = of(host);
+  double      now = shb_seconds();
+  SHB_TRY(mhb_record(t->store, t->segment, mhb_tracer_balance(t), point, special, now - t->clock));
+  if (special == MHB_ORDINARY) t->farthest = fmax(t->farthest, point->value);
+  const mhb_branch *branch = &t->store->branch[t->segment];
+  *go_on = t->monitor->point(t->monitor, t->store, t->segment, branch->n_points - 1);
+  if (t->publish) SHB_TRY(t->publish(t->context));
+  t->clock = shb_seconds();
   return SHB_OK;
 }
 
-/* From now to next. */
-static double length(const mhb_arclength *path) {
-  for (int i = 0; i < path->n; i++) path->chord[i] = path->next.x[i] - path->now.x[i];
-  path->chord[path->n] = path->next.value - path->now.value;
-  return sqrt(mhb_arclength_inner(path, mhb_arclength_unit(path), path->chord, path->chord));
+/* ---- the table of events ---- */
+
+static double beyond_high(mhb_arclength *curve, const mhb_curve_point *point, void *context) {
+  (void)context;
+  return point->value - curve->high;
 }
 
-/* The same, with shorter steps where folds are hidden in it; as it was if that does not help. */
-static shb_status open_step(mhb_tracer *f, mhb_arclength_outcome *outcome, const char **end) {
-  bool hidden;
-  SHB_TRY(look_ahead(f, outcome, end, &hidden));
-  if (!hidden) return SHB_OK;
-  double whole = length(f->path), part = whole;
-  for (int i = 0; i < MAX_SHORTER; i++) {
-    f->path->step = part *= .25;
-    SHB_TRY(look_ahead(f, outcome, end, &hidden));
-    if (!hidden && *outcome != MHB_ARCLENGTH_STALLED) return SHB_OK;
+static double beyond_low(mhb_arclength *curve, const mhb_curve_point *point, void *context) {
+  (void)context;
+  return curve->low - point->value;
+}
+
+/* No place: far from it. */
+static double ahead_of_place(mhb_arclength *curve, const mhb_curve_point *point, void *context) {
+  const mhb_curve_return *at = context;
+  return at->place ? mhb_curve_return_ahead(curve, point, context) : 1;
+}
+
+static double slope_of_output(mhb_arclength *curve, const mhb_curve_point *point, void *context) {
+  return mhb_output_slope(curve, point, *(const int *)context);
+}
+
+/* Part of a motion that does not repeat after d periods: its size |z| and the size's rate
+ * z.dz/|z| along the tangent. */
+static double part_of_order(const mhb_balance *b, const mhb_curve_point *point, int d,
+                            double *rate) {
+  double z[b->n], dz[b->n];
+  mhb_subharmonic_component(b, point->x, d, z);
+  mhb_subharmonic_component(b, point->tangent, d, dz);
+  double size = mhb_norm(z, b->n);
+  *rate       = 0;
+  for (int i = 0; i < b->n && size > 0; i++) *rate += z[i] * dz[i] / size;
+  return size;
+}
+
+/* Where its subharmonic part vanishes the curve meets one of lower order, or its own time-shifted
+ * copy: VANISHED less the smallest falling part, relative to the motion. */
+static double vanished(mhb_arclength *curve, const mhb_curve_point *point, void *context) {
+  const mhb_balance *b    = mhb_curve_balance(curve);
+  int                nu   = b->receptance->nu;
+  double             size = mhb_norm(point->x, b->n), most = -1;
+  (void)context;
+  for (int d = 1; d < nu; d++) {
+    double rate, part = nu % d == 0 ? part_of_order(b, point, d, &rate) : INFINITY;
+    if (nu % d == 0 && rate < 0) most = fmax(most, VANISHED - part / size);
   }
-  f->path->step = whole;
-  return look_ahead(f, outcome, end, &hidden);
+  return most;
 }
 
-shb_status mhb_tracer_step(mhb_tracer *f, bool *go_on, const char **end) {
-  mhb_arclength_outcome outcome;
-  if (f->joins && mhb_subharmonic_part_vanishes(f->path)) *end = MHB_JOINED;
-  if (*end) return SHB_OK;
-  SHB_TRY(open_step(f, &outcome, end));
-  if (outcome == MHB_ARCLENGTH_STALLED) return SHB_OK;
-  SHB_TRY(record_landmarks(f, go_on));
-  int special = f->landmarks.unmarked ? MHB_FOLD : MHB_ORDINARY; /* as near as it is known */
-  if (*go_on) SHB_TRY(mhb_tracer_record(f, &f->path->next, special, go_on));
-  f->farthest = fmax(f->farthest, f->path->next.value);
-  if (*end || !*go_on) return SHB_OK;
-  if (outcome == MHB_ARCLENGTH_AT_START) return come_back(f, go_on, end);
-  mhb_arclength_advance(f->path);
-  mhb_harmonic_levels_accept(f->harmonics);
-  double *swap = f->before;
-  f->before    = f->after;
-  f->after     = swap;
-  int lower    = mhb_harmonic_levels_lower(f->harmonics), moved;
-  return lower < 0 ? SHB_OK : move(f, lower, 0, &moved);
-}
-
-shb_status mhb_tracer_run(mhb_tracer *f, bool *go_on, const char **end) {
-  int most = f->residual->settings->max_points;
-  while (*go_on && !*end) {
-    if (f->response->branch[f->branch].n_points >= most) *end = "mhb.max_points reached";
-    if (!*end) SHB_TRY(mhb_tracer_step(f, go_on, end));
+/* Stay before the place where a part vanishes. */
+static void limit_step(mhb_segment_host *host) {
+  const mhb_balance     *b     = mhb_curve_balance(host->curve);
+  const mhb_curve_point *point = &host->curve->current;
+  int                    nu    = b->receptance->nu;
+  for (int d = 1; d < nu; d++) {
+    double rate = 0, part = nu % d == 0 ? part_of_order(b, point, d, &rate) : 0;
+    if (rate < 0 && part / -rate < 2 * host->curve->step) host->curve->step = 0.5 * part / -rate;
   }
+}
+
+static shb_status make_tests(mhb_tracer *t, const mhb_balance *b) {
+  int copies = b->receptance->nu, outputs = mhb_outputs(b), n = 0;
+  t->returns   = calloc((size_t)copies, sizeof *t->returns);
+  t->output    = calloc((size_t)outputs + 1, sizeof *t->output);
+  t->host.test = calloc((size_t)(copies + outputs) + 4, sizeof *t->host.test);
+  SHB_CHECK(t->returns && t->output && t->host.test, SHB_ERR_IO, "out of memory");
+  mhb_event_test *test = t->host.test;
+  for (int j = 0; j < copies; j++)
+    test[n++] = (mhb_event_test){.name      = "closed curve",
+                                 .g         = ahead_of_place,
+                                 .context   = &t->returns[j],
+                                 .direction = 1,
+                                 .is_near   = mhb_curve_return_is_near,
+                                 .accept    = mhb_curve_return_arrived,
+                                 .end       = MHB_END_CLOSED};
+  test[n++] = (mhb_event_test){.name      = "high end of the range",
+                               .g         = beyond_high,
+                               .direction = 1,
+                               .at_next   = true,
+                               .end       = MHB_END_HIGH};
+  test[n++] = (mhb_event_test){.name      = "low end of the range",
+                               .g         = beyond_low,
+                               .direction = 1,
+                               .at_next   = true,
+                               .end       = MHB_END_LOW};
+  if (t->joins)
+    test[n++] = (mhb_event_test){.name      = "curve of lower order",
+                                 .g         = vanished,
+                                 .direction = 1,
+                                 .at_next   = true,
+                                 .end       = MHB_END_JOINED};
+  test[n++] = (mhb_event_test){.name = "fold", .g = mhb_fold_test, .special = MHB_FOLD};
+  for (int o = 0; o < outputs; o++) {
+    t->output[o] = o;
+    test[n++]    = (mhb_event_test){.name      = "peak",
+                                    .g         = slope_of_output,
+                                    .context   = &t->output[o],
+                                    .direction = -1,
+                                    .special   = MHB_PEAK};
+  }
+  t->host.n_tests = n;
   return SHB_OK;
 }
 
-shb_status mhb_tracer_create(mhb_tracer *f, mhb_balance *residual, mhb_response *response,
-                             int branch, mhb_monitor *monitor) {
-  const mhb_settings *s = residual->settings;
-  *f                    = (mhb_tracer){.residual  = residual,
-                                       .response  = response,
-                                       .branch    = branch,
-                                       .monitor   = monitor,
-                                       .n_outputs = mhb_outputs(residual),
-                                       .clock     = shb_seconds(),
-                                       .farthest  = mhb_parameter_end(s, residual->parameter, 0)};
-  size_t outputs        = (size_t)f->n_outputs + 1;
-  mhb_tracer_lock(f, true); /* FFTW's planner */
-  shb_status status = mhb_harmonic_levels_create(residual, &f->harmonics);
-  mhb_tracer_lock(f, false);
-  SHB_TRY(status);
-  mhb_tracer_use_rung(f);
-  f->before = calloc(outputs, sizeof(double));
-  f->after  = calloc(outputs, sizeof(double));
-  f->x      = calloc((size_t)mhb_harmonic_levels_most_unknowns(f->harmonics), sizeof(double));
-  SHB_CHECK(f->before && f->after && f->x, SHB_ERR_IO, "out of memory");
-  return mhb_special_points_create(&f->landmarks, mhb_harmonic_levels_most_unknowns(f->harmonics));
+/* ---- the tracer ---- */
+
+shb_status mhb_tracer_create(mhb_balance *balance, const mhb_response *response, int branch,
+                             bool joins, mhb_monitor *monitor, mhb_tracer **out) {
+  mhb_tracer *t = calloc(1, sizeof *t);
+  SHB_CHECK(t, SHB_ERR_IO, "out of memory");
+  t->host           = (mhb_segment_host){.estimate       = estimate,
+                                         .estimate_event = estimate_event,
+                                         .accept         = accept,
+                                         .started        = started,
+                                         .record         = record};
+  t->monitor        = monitor;
+  t->segment        = -1;
+  t->joins          = joins;
+  t->clock          = shb_seconds();
+  t->farthest       = mhb_parameter_end(balance->settings, balance->parameter, 0);
+  t->store          = mhb_response_like(response);
+  shb_status status = t->store ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  if (status == SHB_OK) status = mhb_harmonic_levels_create(balance, &t->levels);
+  if (status == SHB_OK) status = make_tests(t, balance);
+  if (status != SHB_OK) {
+    mhb_tracer_destroy(t);
+    return status;
+  }
+  t->store->n_harmonics  = response->branch[branch].n_harmonics;
+  t->store->subharmonics = response->branch[branch].order;
+  if (joins) t->host.limit_step = limit_step;
+  *out = t;
+  return SHB_OK;
 }
 
-void mhb_tracer_destroy(mhb_tracer *f) {
-  mhb_tracer_lock(f, true);
-  mhb_branch_stability_destroy(f->judge);
-  mhb_harmonic_levels_destroy(f->harmonics);
-  mhb_tracer_lock(f, false);
-  mhb_curve_start_free(&f->closed);
-  mhb_special_points_destroy(&f->landmarks);
-  free(f->before);
-  free(f->after);
-  free(f->x);
+void mhb_tracer_destroy(mhb_tracer *t) {
+  if (!t) return;
+  mhb_harmonic_levels_destroy(t->levels);
+  mhb_response_destroy(t->store);
+  mhb_curve_place_free(&t->start);
+  free(t->returns);
+  free(t->output);
+  free(t->host.test);
+  free(t);
+}
+
+shb_status mhb_tracer_trace(mhb_tracer *t, const mhb_segment_plan *plan, int *segment,
+                            mhb_end *end) {
+  const mhb_settings *settings = t->levels->settings;
+  int                 recorded = 0;
+  for (int i = 0; i < t->store->n_branches; i++) recorded += t->store->branch[i].n_points;
+  SHB_TRY(mhb_response_branch(t->store, MHB_BRANCH_NONLINEAR, segment));
+  SHB_TRY(mhb_harmonic_levels_use(t->levels, mhb_harmonic_levels_of(t->levels, plan->m)));
+  use_level(t);
+  t->plan            = *plan;
+  t->segment         = *segment;
+  t->host.max_points = settings->max_points - recorded;
+  return mhb_trace_segment(&t->host, &t->plan.seed, end);
+}
+
+void mhb_tracer_forget(mhb_tracer *t, int segment) {
+  t->store->branch[segment].n_points = 0;
+}
+
+shb_status mhb_tracer_recorded(mhb_tracer *t, int segment, int point, double *x) {
+  const mhb_branch *branch = &t->store->branch[segment];
+  SHB_TRY(mhb_harmonic_levels_use(t->levels,
+                                  mhb_harmonic_levels_of(t->levels, branch->harmonics[point])));
+  mhb_recorded_motion(branch, point, mhb_tracer_balance(t), x);
+  return SHB_OK;
 }

@@ -1,79 +1,69 @@
-/* A curve of the response under way: it is followed step by step, its folds and peaks are located, each point is recorded with its
- * forces, states and error estimates. What the steps lead to, branches, is main_branch.h. */
+/* Traces segments of a balance's curves: chooses the harmonics, looks for folds, peaks and the ends
+ * of segments, and records each point with its forces, states and error estimates.
+ *
+ * Segments become branches of a store of the tracer's own; what they add up to is chain.h. */
 #ifndef MHB_BRANCHES_TRACER_H
 #define MHB_BRANCHES_TRACER_H
 
-#include "mhb/branches/branch_stability.h"
+#include "mhb/branches/chain.h"
 #include "mhb/branches/harmonic_selection.h"
-#include "mhb/branches/main_branch.h"
-#include "mhb/continuation/closed_curve.h"
-#include "mhb/continuation/special_points.h"
+#include "mhb/branches/monitor.h"
+#include "mhb/continuation/segment.h"
 
-enum { MHB_MAX_BEGINS = 64 };
+typedef struct mhb_tracer mhb_tracer;
 
+/* What a segment is to be, beside its seed. */
 typedef struct {
-  mhb_branch_editor    host; /* first: the callbacks get it back */
-  mhb_harmonic_levels *harmonics;
-  mhb_balance         *residual; /* of the rung in use, as the path */
-  mhb_arclength       *path;
-  mhb_response        *response;
-  int                  branch;
+  mhb_seed seed;   /* x of a balance of m harmonics */
+  int      m;      /* harmonics to start with */
+  bool     closes; /* it ends where it comes back to its start */
+  bool     known;  /* EXCURSION: it may come back to a point that is recorded already; else that
+                      * counts as no start */
+  const mhb_curve_place *target; /* it ends where it arrives there (closes: false); or NULL */
+} mhb_segment_plan;
+
+struct mhb_tracer {
+  mhb_segment_host     host; /* first: the host's functions get it back */
+  mhb_harmonic_levels *levels;
+  mhb_response        *store;   /* the segments */
+  int                  segment; /* under way; -1: none */
   mhb_monitor         *monitor;
-  int                  n_outputs;
-  double              *before, *after; /* [outputs] slopes of the amplitudes at now and next */
-  double              *x;              /* [n] a first solution */
-  mhb_special_points   landmarks;
-  double               clock;
-  double               farthest;                       /* highest value of the parameter reached */
-  int                  crawling;                       /* tiny steps in a row */
-  int                  first[MHB_MAX_BEGINS], n_first; /* where the curve begins, and begins anew */
-  bool                 either; /* it ends at either end of the range, and does not leave it */
-  bool                 joins;  /* it ends where it passes over into a curve of lower order */
-  mhb_curve_start      closed; /* where it began, or is to arrive; empty: it cannot close */
-  mhb_branch_stability *judge; /* NULL: stability by folds */
-} mhb_tracer;
+  bool              joins; /* curves of higher order: they end where they meet one of lower order */
+  mhb_segment_plan  plan;
+  mhb_curve_place   start;    /* of the curve under way */
+  mhb_curve_return *returns;  /* [copies] contexts of the tests of closure */
+  int              *output;   /* [outputs] contexts of the tests of peaks */
+  double            clock;    /* s, when the last point was recorded */
+  double            farthest; /* highest value of a point so far */
+  /* Called after each point, to publish the curves so far; NULL: never. */
+  shb_status (*publish)(void *context);
+  void *context;
+};
 
-/* How a curve ends that is complete. */
-extern const char MHB_WHOLE[], MHB_CLOSED[], MHB_JOINED[], MHB_TURNED_BACK[];
+/* For a branch of a response; joins: segments end where they meet a curve of lower order.
+ * SHB_ERR_IO: no memory. */
+shb_status mhb_tracer_create(mhb_balance *balance, const mhb_response *response, int branch,
+                             bool joins, mhb_monitor *monitor, mhb_tracer **tracer);
+void       mhb_tracer_destroy(mhb_tracer *tracer);
 
-/* What it needs, all made before the first point. Errors: SHB_ERR_IO no memory; destroy it then too. */
-shb_status mhb_tracer_create(mhb_tracer *f, mhb_balance *residual, mhb_response *response,
-                             int branch, mhb_monitor *monitor);
-void       mhb_tracer_destroy(mhb_tracer *f);
+/* Trace a segment.
+ *   segment  out  branch of the store, perhaps without points
+ * SHB_ERR_IO: no memory. */
+shb_status mhb_tracer_trace(mhb_tracer *tracer, const mhb_segment_plan *plan, int *segment,
+                            mhb_end *end);
 
-/* Begin, or begin anew, at f->x, a solution at a value of the parameter, towards rising (+1) or falling (-1) ones; recorded: as
- * the first point of a piece. *found: it was a solution. */
-shb_status mhb_tracer_begin(mhb_tracer *f, double value, int direction, bool recorded, bool *found,
-                            bool *go_on);
+/* The curve under way, at the last point of the last segment. */
+mhb_arclength *mhb_tracer_curve(const mhb_tracer *tracer);
+mhb_balance   *mhb_tracer_balance(const mhb_tracer *tracer);
 
-/* How near a curve comes to a point of its own that it passes again, relative to the motion: what a change of the number of
- * harmonics may do. */
-double mhb_tracer_closeness(const mhb_tracer *f);
+/* A segment counts no longer: it is left without points. */
+void mhb_tracer_forget(mhb_tracer *tracer, int segment);
 
-/* What lies at path->now, as the rest of a start: slopes, a number of harmonics that suffices, errors. */
-shb_status mhb_tracer_arrive(mhb_tracer *f);
+/* x[n] <- a recorded point as unknowns of the balance that recorded it, made the one in use. */
+shb_status mhb_tracer_recorded(mhb_tracer *tracer, int segment, int point, double *x);
 
-/* One step and what lies on it. *end, NULL at entry: why the curve ends here, one of the above or an obstacle; a curve that ends
- * at the low end of the range only leaves and comes back (mhb_arclength_excursion). *go_on false: interrupted. */
-shb_status mhb_tracer_step(mhb_tracer *f, bool *go_on, const char **end);
-
-/* The last recorded point is an end of the range at which a curve with `either` ended: follow it outside, a little (mhb_arclength_excursion_within_budget).
- * *back: it has come back into the range where no curve of this preload was before; that point is recorded, as the first of a
- * piece, and is path->now. */
-shb_status mhb_tracer_return(mhb_tracer *f, bool *back, bool *go_on);
-
-/* Steps until the curve ends. */
-shb_status mhb_tracer_run(mhb_tracer *f, bool *go_on, const char **end);
-
-/* Record a point whose errors are estimated. */
-shb_status mhb_tracer_record(mhb_tracer *f, mhb_curve_point *point, int special, bool *go_on);
-
-/* Leave the residual's workspace at a point that was corrected earlier. */
-void mhb_tracer_revisit(mhb_tracer *f, const mhb_curve_point *point);
-
-/* The rung in use is the harmonics' again. */
-void mhb_tracer_use_rung(mhb_tracer *f);
-
-void mhb_tracer_lock(const mhb_tracer *f, bool locked);
+/* Distance in y, relative to the motion, at which points count as the same: the effect of a change of
+ * the number of harmonics. */
+double mhb_tracer_same(const mhb_tracer *tracer);
 
 #endif

@@ -49,7 +49,7 @@ typedef struct mhb_contact_evaluator
     mhb_contact_evaluator; /* workspace: FFTW plans and all arrays; one a thread */
 
 /* Room for motions of up to m harmonics and forces of up to H >= m; tolerance relative (1e-8: seven-node panels that
- * resolve harmonic H). SHB_ERR_IO: no memory. Not thread safe (FFTW planner). */
+ * resolve harmonic H). SHB_ERR_IO: no memory. */
 shb_status mhb_contact_evaluator_create(int m, int H, double tolerance,
                                         mhb_contact_evaluator **contact);
 void       mhb_contact_evaluator_destroy(mhb_contact_evaluator *contact);

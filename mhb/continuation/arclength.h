@@ -1,82 +1,70 @@
-/* Pseudo-arclength continuation of r(x, value) = 0 through folds; value: of the parameter that the residual follows, the frequency mostly.
+/* Pseudo-arclength continuation of r(x, value) = 0 through folds (Keller 1977, Seydel 2010).
  *
- * Arclength is measured in y = [x/|x_current|, value/span]. A tangent predictor, then Newton in the plane normal to
- * it; the step follows the number of iterations and the angle between tangents. The law is only piecewise smooth: an
- * angle that halving the step hardly lessens is a kink of the curve, not curvature, and is accepted. Resonances of modes that
- * hardly move the contact, and are felt all the same (mhb/continuation/resonance_detection.h), are not stepped over. */
+ * Arclength is measured in y = [x/|x_current|, value/parameter_scale]. The predictor follows the
+ * tangent. The corrector is Newton's method in the plane normal to it. The step size follows the
+ * number of corrections and the angle between tangents. The contact law is smooth only piecewise:
+ * an angle that halving the step hardly lessens is a kink of the curve, and is accepted. */
 #ifndef MHB_CONTINUATION_ARCLENGTH_H
 #define MHB_CONTINUATION_ARCLENGTH_H
 
-#include "mhb/balance/newton.h"
-#include "mhb/continuation/linear_corrector.h"
-#include "mhb/continuation/linear_resonances.h"
+#include "mhb/continuation/curve_system.h"
 
-typedef struct {
-  double *x;       /* [n] m */
-  double  value;   /* of the parameter; rad/s for the frequency */
-  double *tangent; /* [n+1] d(x, value) along the path, unit length in y */
-  int orientation; /* sign of det [J r_value; tangent]: the same all along a path, but for bifurcations */
-  int    iterations;
-  double residual;          /* |r|/|x| */
-  double truncation, modal; /* relative error estimates, see truncation_error.h */
-  int    truncation_kind;   /* mhb_truncation_kind */
-} mhb_curve_point;
-
-typedef struct {
-  mhb_balance          *residual;
-  mhb_newton           *newton;
-  mhb_linear_corrector *still;
-  int                   n;
-  double                low, high; /* range of the value */
-  double                span;      /* unit of the value */
-  double                least;     /* below it no value makes sense */
-  double
-      rest; /* m: unit of x where nothing moves, by the motion that the tangent leads to over the span */
-  double step, longest;
-  double tolerance;
-  double
-      stagnant; /* a residual below it that Newton no longer betters is rounding, or the law's own */
-  int orientation, against; /* of the path; ordinary steps in a row that had the other one */
-  mhb_curve_point now, next, probe; /* probe: scratch for located points */
-  double         *chord;            /* [n+1] */
-  double         *bracket[2];       /* [n+1] x and value on both sides of a point being located */
-  double         *kept;             /* [n+1] an end of it */
-  mhb_resonances  resonances;       /* in the range */
-} mhb_arclength;
+struct mhb_arclength {
+  mhb_curve_system *system; /* owned */
+  int               n;
+  double            low, high;       /* range of the value */
+  double            parameter_scale; /* unit of the value */
+  double          amplitude_at_rest; /* unit of x where nothing moves: |dx/dvalue| over the range */
+  double          step, longest;     /* the next step's length; the longest allowed */
+  double          tolerance;         /* of |r|/|x| */
+  double          roundoff_level; /* a residual below it that stagnates is accepted as round-off */
+  int             orientation;    /* of the curve */
+  int             n_reversed;     /* points in a row with the other orientation */
+  mhb_curve_point current, next;  /* the ends of the last step */
+  mhb_curve_point trial;          /* a point located on it */
+  mhb_curve_point bracket[3];     /* of a search on it: both ends, and a former one */
+  double         *chord;          /* [n + 1] direction of a step or a search */
+  double         *column, *row, *delta; /* [n + 1] of the bordered system */
+};
 
 typedef enum {
-  MHB_ARCLENGTH_ON,
-  MHB_ARCLENGTH_AT_END,
-  MHB_ARCLENGTH_AT_START,
-  MHB_ARCLENGTH_STALLED
+  MHB_ARCLENGTH_ON,       /* next is a further point in the range */
+  MHB_ARCLENGTH_AT_END,   /* next lies exactly on the high end of the range */
+  MHB_ARCLENGTH_AT_START, /* next lies exactly on the low end of the range */
+  MHB_ARCLENGTH_STALLED   /* no step converged */
 } mhb_arclength_outcome;
 
-shb_status mhb_arclength_create(mhb_balance *residual, double low, double high,
-                                mhb_arclength **path);
-void       mhb_arclength_destroy(mhb_arclength *path);
+/* Takes over the system, also if it fails. SHB_ERR_IO: no memory. */
+shb_status mhb_arclength_create(mhb_curve_system *system, double low, double high,
+                                mhb_arclength **curve);
+void       mhb_arclength_destroy(mhb_arclength *curve);
 
-/* Begin at a solution x at a value, towards rising (+1) or falling (-1) ones. Leaves the residual there. */
-mhb_reason mhb_arclength_start(mhb_arclength *path, const double *x, double value, int direction);
+/* A point of a curve with arrays of its own; destroy accepts a zeroed one. SHB_ERR_IO: no memory. */
+shb_status mhb_curve_point_create(mhb_curve_system *system, mhb_curve_point *point);
+void       mhb_curve_point_destroy(mhb_curve_system *system, mhb_curve_point *point);
 
-/* Begin where two curves cross, at a solution x that lies on the one, along[n] the other: now becomes its first point,
- * .001 to .03 of |x| away. Not converged: there is none. Leaves the residual there. */
-mhb_reason mhb_arclength_depart(mhb_arclength *path, const double *x, double value,
+/* current <- the solution at a value, from x[n], towards rising (+1) or falling (-1) values. */
+mhb_reason mhb_arclength_start(mhb_arclength *curve, const double *x, double value, int direction);
+
+/* x[n] is the crossing of two curves; along[n] is the direction of the one to be traced. current
+ * becomes its first point, 0.001 to 0.03 of |x| away. Not converged: there is no such curve. */
+mhb_reason mhb_arclength_depart(mhb_arclength *curve, const double *x, double value,
                                 const double *along);
 
-/* One step: path->next becomes the new point, path->now stays the old one. AT_END, AT_START: next lies exactly on the
- * range's high or low end. The residual's workspace is left at next. */
-mhb_arclength_outcome mhb_arclength_step(mhb_arclength *path);
+/* One step from current: next becomes the new point. */
+mhb_arclength_outcome mhb_arclength_step(mhb_arclength *curve);
 
-/* next lies on the end of the range that outcome (AT_START, AT_END) tells: go on outside the range until the path comes back
- * to that end. ON: next is there, heading inwards; STALLED: it does not come back. */
-mhb_arclength_outcome mhb_arclength_excursion(mhb_arclength *path, mhb_arclength_outcome outcome);
+/* current <- next */
+void mhb_arclength_advance(mhb_arclength *curve);
 
-/* The same from path->now, a solution on that end, but no farther than half a range beyond it (frequency: at least one, at most
- * three tenths of it) and with few steps while a contact slips or opens. now is the point before next then. */
-mhb_arclength_outcome mhb_arclength_excursion_within_budget(mhb_arclength        *path,
-                                                            mhb_arclength_outcome outcome);
+/* How far an excursion beyond an end of the range may go. */
+typedef enum {
+  MHB_EXCURSION_FAR, /* five times the frequency, or four ranges */
+  MHB_EXCURSION_NEAR /* half a range, at 10 to 30 % of the frequency, with few nonlinear steps */
+} mhb_excursion_reach;
 
-/* now <- next */
-void mhb_arclength_advance(mhb_arclength *path);
+/* current lies on an end of the range, the low (-1) or the high one (+1), heading outwards: follow
+ * the curve outside until it comes back. True: next lies on that end, heading inwards. */
+bool mhb_arclength_excursion(mhb_arclength *curve, int end, mhb_excursion_reach reach);
 
 #endif

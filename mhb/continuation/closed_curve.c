@@ -4,162 +4,109 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "mhb/balance/subharmonics.h"
-#include "mhb/continuation/event_location.h"
+/* Closure is tested only if the chord passes the place within so many step lengths. */
+static const double NEAR_CHORD = 0.3;
 
-/* Of a step: how far off the beginning it may pass for a closer look. */
-static const double WORTH_A_LOOK = .3;
-
-/* Of the motion: what is left of the part of higher order where the curve joins another. */
-static const double VANISHED = 2e-3;
-
-/* What is measured of a point: its place in y along and off the direction in which the curve began. */
-typedef struct {
-  const mhb_curve_start *curve;
-  int                    shift;
-  double                 scale; /* m */
-} view;
-
-void mhb_curve_start_free(mhb_curve_start *c) {
-  free(c->x);
-  free(c->tangent);
-  *c = (mhb_curve_start){0};
+void mhb_curve_place_free(mhb_curve_place *place) {
+  free(place->x);
+  free(place->tangent);
+  *place = (mhb_curve_place){0};
 }
 
-shb_status mhb_curve_start_begin(mhb_curve_start *c, const mhb_arclength *path, double tolerance) {
-  const mhb_balance     *b    = path->residual;
-  const mhb_curve_point *now  = &path->now;
-  size_t                 size = (size_t)b->n * (size_t)b->receptance->nu;
-  *c                          = (mhb_curve_start){.rows      = 3 * b->n_pairs,
-                                                  .m         = b->m,
-                                                  .order     = b->receptance->nu,
-                                                  .x         = calloc(size, sizeof(double)),
-                                                  .tangent   = calloc(size, sizeof(double)),
-                                                  .value     = now->value,
-                                                  .rise      = now->tangent[path->n],
-                                                  .tolerance = tolerance};
-  if (!c->x || !c->tangent) {
-    mhb_curve_start_free(c);
+shb_status mhb_curve_place_note(mhb_curve_place *place, const mhb_curve_system *s,
+                                const mhb_curve_point *point, double tolerance) {
+  int    copies = s->copies > 1 ? s->copies : 1;
+  size_t n      = (size_t)s->n;
+  double size   = mhb_norm(point->x, s->n);
+  mhb_curve_place_free(place);
+  *place = (mhb_curve_place){.rows       = s->n / s->row_length,
+                             .row_length = s->row_length,
+                             .copies     = copies,
+                             .x          = calloc(n * (size_t)copies, sizeof(double)),
+                             .tangent    = calloc(n * (size_t)copies, sizeof(double)),
+                             .value      = point->value,
+                             .rate       = point->tangent[s->n],
+                             .size       = size > 0 ? size : 1,
+                             .tolerance  = tolerance};
+  if (!place->x || !place->tangent) {
+    mhb_curve_place_free(place);
     SHB_FAIL(SHB_ERR_IO, "out of memory");
   }
-  for (int j = 0; j < c->order; j++) {
-    mhb_subharmonic_shift(b, now->x, j, c->x + j * b->n);
-    mhb_subharmonic_shift(b, now->tangent, j, c->tangent + j * b->n);
+  memcpy(place->x, point->x, sizeof(double) * n);
+  memcpy(place->tangent, point->tangent, sizeof(double) * n);
+  for (int j = 1; j < copies; j++) {
+    s->copy(s, point->x, j, place->x + (size_t)j * n);
+    s->copy(s, point->tangent, j, place->tangent + (size_t)j * n);
   }
   return SHB_OK;
 }
 
-/* Where the beginning's coefficient i of a row of m harmonics is kept; -1: it has none. */
-static long kept_at(const view *v, int nb, int i) {
-  int wide = 2 * v->curve->m + 1, row = i / nb, k = i % nb;
-  return k < wide ? ((long)v->shift * v->curve->rows + row) * wide + k : -1;
+void mhb_curve_place_turn(mhb_curve_place *place) {
+  int n = place->copies * place->rows * place->row_length;
+  for (int i = 0; i < n; i++) place->tangent[i] = -place->tangent[i];
+  place->rate = -place->rate;
 }
 
-/* (x, value) - beginning along the direction in which it was left. */
-static double ahead(const view *v, const mhb_arclength *path, const mhb_curve_point *point) {
-  const mhb_curve_start *c   = v->curve;
-  double                 sum = c->rise * (point->value - c->value) / (path->span * path->span);
-  for (int i = 0; i < path->n; i++) {
-    long at = kept_at(v, path->residual->nb, i);
-    if (at >= 0) sum += c->tangent[at] * (point->x[i] - c->x[at]) / (v->scale * v->scale);
+/* Index of the unknown i of a system, perhaps of another number of harmonics, in the place's arrays;
+ * -1: the place has no such harmonic, it is 0 there. */
+static long index_in(const mhb_curve_return *at, const mhb_curve_system *s, int i) {
+  const mhb_curve_place *p   = at->place;
+  int                    row = i / s->row_length, k = i % s->row_length;
+  return k < p->row_length ? ((long)at->copy * p->rows + row) * p->row_length + k : -1;
+}
+
+double mhb_curve_return_ahead(mhb_arclength *curve, const mhb_curve_point *point, void *context) {
+  const mhb_curve_return *at    = context;
+  const mhb_curve_place  *p     = at->place;
+  double                  scale = curve->parameter_scale;
+  double                  sum   = p->rate * (point->value - p->value) / (scale * scale);
+  for (int i = 0; i < curve->n; i++) {
+    long k = index_in(at, curve->system, i);
+    if (k >= 0) sum += p->tangent[k] * (point->x[i] - p->x[k]) / (p->size * p->size);
   }
   return sum;
 }
 
-/* Distance of now + part (next - now) from the beginning. */
-static double off(const view *v, const mhb_arclength *path, const mhb_curve_point *now,
-                  const mhb_curve_point *next, double part) {
-  const mhb_curve_start *c     = v->curve;
-  double                 value = now->value + part * (next->value - now->value);
-  double                 sum   = pow((value - c->value) / path->span, 2);
-  for (int i = 0; i < path->n; i++) {
-    long   at = kept_at(v, path->residual->nb, i);
-    double x  = now->x[i] + part * (next->x[i] - now->x[i]);
-    sum += pow((x - (at >= 0 ? c->x[at] : 0)) / v->scale, 2);
+static double unit_of(const mhb_arclength *curve) {
+  double size = mhb_norm(curve->current.x, curve->n);
+  return size > 0 ? size : 1;
+}
+
+/* Distance in y of from + part (to - from) from the copy. */
+static double distance(const mhb_curve_return *at, const mhb_arclength *curve,
+                       const mhb_curve_point *from, const mhb_curve_point *to, double part) {
+  const mhb_curve_place *p     = at->place;
+  double                 unit  = unit_of(curve);
+  double                 value = from->value + part * (to->value - from->value);
+  double                 sum   = pow((value - p->value) / curve->parameter_scale, 2);
+  for (int i = 0; i < curve->n; i++) {
+    long   k = index_in(at, curve->system, i);
+    double x = from->x[i] + part * (to->x[i] - from->x[i]);
+    sum += pow((x - (k >= 0 ? p->x[k] : 0)) / unit, 2);
   }
   return sqrt(sum);
 }
 
-void mhb_curve_start_turn(mhb_curve_start *c) {
-  int n = c->order * c->rows * (2 * c->m + 1);
-  for (int i = 0; i < n; i++) c->tangent[i] = -c->tangent[i];
-  c->rise = -c->rise;
-}
-
-static double size_of_motion(const mhb_arclength *path) {
-  double size = mhb_norm(path->now.x, path->n);
-  return size > 0 ? size : 1;
-}
-
-double mhb_curve_start_distance(const mhb_curve_start *c, const mhb_arclength *path,
+double mhb_curve_place_distance(const mhb_curve_place *place, const mhb_arclength *curve,
                                 const mhb_curve_point *point) {
   double least = INFINITY;
-  for (int j = 0; j < c->order; j++) {
-    view v = {c, j, size_of_motion(path)};
-    least  = fmin(least, off(&v, path, point, point, 0));
+  for (int j = 0; j < place->copies; j++) {
+    mhb_curve_return at = {place, j};
+    least               = fmin(least, distance(&at, curve, point, point, 0));
   }
   return least;
 }
 
-static double length(const mhb_arclength *path, double scale) {
-  double sum = pow((path->next.value - path->now.value) / path->span, 2);
-  for (int i = 0; i < path->n; i++) sum += pow((path->next.x[i] - path->now.x[i]) / scale, 2);
-  return sqrt(sum);
-}
-
-static double ahead_indicator(const mhb_arclength *path, const mhb_curve_point *point,
+bool mhb_curve_return_is_near(mhb_arclength *curve, double at_current, double at_next,
                               void *context) {
-  return ahead(context, path, point);
+  const mhb_curve_point *from = &curve->current, *to = &curve->next;
+  double                 unit = unit_of(curve), part = at_current / (at_current - at_next);
+  double                 sum = pow((to->value - from->value) / curve->parameter_scale, 2);
+  for (int i = 0; i < curve->n; i++) sum += pow((to->x[i] - from->x[i]) / unit, 2);
+  return distance(context, curve, from, to, part) <= NEAR_CHORD * sqrt(sum);
 }
 
-static void copy_point(const mhb_arclength *path, const mhb_curve_point *from,
-                       mhb_curve_point *to) {
-  double *x = to->x, *tangent = to->tangent;
-  memcpy(x, from->x, sizeof(double) * (size_t)path->n);
-  memcpy(tangent, from->tangent, sizeof(double) * ((size_t)path->n + 1));
-  *to         = *from;
-  to->x       = x;
-  to->tangent = tangent;
-}
-
-static int passes(view *v, mhb_arclength *path) {
-  double from = ahead(v, path, &path->now), to = ahead(v, path, &path->next), at;
-  if (!(from < 0 && to >= 0)) return 0;
-  double step = length(path, v->scale), part = from / (from - to);
-  if (off(v, path, &path->now, &path->next, part) > WORTH_A_LOOK * step) return 0;
-  int found = mhb_arclength_locate(path, ahead_indicator, v, from, to, &at) &&
-              off(v, path, &path->probe, &path->probe, 0) <= v->curve->tolerance;
-  if (found) copy_point(path, &path->probe, &path->next);
-  mhb_balance_linearise(path->residual, path->next.x, path->next.value, path->newton->r, NULL);
-  return found;
-}
-
-int mhb_curve_start_passes(mhb_curve_start *c, mhb_arclength *path) {
-  for (int j = 0; j < c->order; j++) {
-    view v = {c, j, size_of_motion(path)};
-    if (passes(&v, path)) return 1;
-  }
-  return 0;
-}
-
-/* The part's size |z| falls by z.dz/|z| a unit of arclength. */
-static int part_vanishes(mhb_arclength *path, int d) {
-  const mhb_balance *b = path->residual;
-  double             z[b->n], dz[b->n], slope = 0;
-  mhb_subharmonic_component(b, path->now.x, d, z);
-  mhb_subharmonic_component(b, path->now.tangent, d, dz);
-  double size = mhb_norm(z, b->n);
-  for (int i = 0; i < b->n && size > 0; i++) slope += z[i] * dz[i] / size;
-  if (!(slope < 0)) return 0;
-  if (size < VANISHED * mhb_norm(path->now.x, b->n)) return 1;
-  double left = size / -slope;
-  if (left < 2 * path->step) path->step = .5 * left;
-  return 0;
-}
-
-int mhb_subharmonic_part_vanishes(mhb_arclength *path) {
-  int nu = path->residual->receptance->nu;
-  for (int d = 1; d < nu; d++)
-    if (nu % d == 0 && part_vanishes(path, d)) return 1;
-  return 0;
+bool mhb_curve_return_arrived(mhb_arclength *curve, const mhb_curve_point *point, void *context) {
+  const mhb_curve_return *at = context;
+  return distance(at, curve, point, point, 0) <= at->place->tolerance;
 }

@@ -1,34 +1,46 @@
-/* When a curve has come back to where it began: in the same motion, or in that motion some periods of the excitation later. */
+/* Closed curves: whether a curve has come back to its start, in the same motion or in its own copy
+ * some periods of the excitation later. */
 #ifndef MHB_CONTINUATION_CLOSED_CURVE_H
 #define MHB_CONTINUATION_CLOSED_CURVE_H
 
 #include "mhb/continuation/arclength.h"
 
+/* A place of a curve, and the direction in which the curve is to pass it. */
 typedef struct {
-  int     rows, m, order;
-  double *x, *tangent; /* [order][rows][2m+1] m: where it began and which way, later by j periods */
-  double  value, rise; /* of the parameter; tangent in it */
-  double  tolerance;   /* of the motion, relative */
-} mhb_curve_start;
+  int     rows, row_length, copies; /* as of the system (curve_system.h) where it was noted */
+  double *x, *tangent;              /* [copy][rows][row_length] */
+  double  value, rate;              /* of the parameter; the tangent in it */
+  double  size;                     /* |x| of the place; 1 at rest */
+  double  tolerance;                /* distance in y that counts as the same place */
+} mhb_curve_place;
 
-/* The curve begins at path->now. tolerance: what a change of the number of harmonics may do to the motion. SHB_ERR_IO: no memory. */
-shb_status mhb_curve_start_begin(mhb_curve_start *curve, const mhb_arclength *path,
-                                 double tolerance);
-void       mhb_curve_start_free(mhb_curve_start *curve);
+/* The place and direction of a point. tolerance: of the motion, relative. SHB_ERR_IO: no memory. */
+shb_status mhb_curve_place_note(mhb_curve_place *place, const mhb_curve_system *system,
+                                const mhb_curve_point *point, double tolerance);
+/* The place is empty then: a zeroed one. */
+void mhb_curve_place_free(mhb_curve_place *place);
 
-/* It is to be passed the other way. */
-void mhb_curve_start_turn(mhb_curve_start *curve);
+/* The place is to be passed in the other direction. */
+void mhb_curve_place_turn(mhb_curve_place *place);
 
-/* Of a point of the path from the beginning, in y. */
-double mhb_curve_start_distance(const mhb_curve_start *curve, const mhb_arclength *path,
+/* Distance in y of a point from the nearest copy. */
+double mhb_curve_place_distance(const mhb_curve_place *place, const mhb_arclength *curve,
                                 const mhb_curve_point *point);
 
-/* Whether the step from path->now to next passes the beginning in the direction in which it was left. If so path->next
- * becomes that point, solved for; else it is as it was. The residual's workspace is left at next either way. */
-int mhb_curve_start_passes(mhb_curve_start *curve, mhb_arclength *path);
+/* One copy of a place, as the context of the functions below (events.h). */
+typedef struct {
+  const mhb_curve_place *place;
+  int                    copy;
+} mhb_curve_return;
 
-/* Whether the curve has come to where its part of higher order vanishes: there it passes over into one of lower order, or into
- * itself some periods later. Shortens the next step so that it stays before that place. */
-int mhb_subharmonic_part_vanishes(mhb_arclength *path);
+/* Test function: how far a point lies beyond the copy, in the direction of passing. */
+double mhb_curve_return_ahead(mhb_arclength *curve, const mhb_curve_point *point, void *context);
+
+/* Whether the chord of the step passes the copy within 0.3 of its length. */
+bool mhb_curve_return_is_near(mhb_arclength *curve, double at_current, double at_next,
+                              void *context);
+
+/* Whether a point is the copy, to the place's tolerance. */
+bool mhb_curve_return_arrived(mhb_arclength *curve, const mhb_curve_point *point, void *context);
 
 #endif

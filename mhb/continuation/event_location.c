@@ -5,229 +5,235 @@
 
 #include "mhb/continuation/corrector.h"
 
-static const double ROUNDED = 1e-9;
+/* Relative widths of a bracket. */
+static const double CHORD_FOUND = 1e-9, VALUE_FOUND = 1e-10;  /* the event is located */
+static const double VALUE_NARROW = 2e-7, CHORD_NARROW = 0.01; /* a kink is the event */
+static const double VALUE_BESIDE      = 3e-8;                 /* distance kept from a kink */
+static const double VALUE_LAST_RESORT = 1e-4;                 /* accepted if nothing converges */
+static const double ROUNDED           = 1e-9;                 /* residual of round-off */
+enum {
+  BISECTED_FROM = 24, /* a test function that jumps leads Illinois astray: halve from here on */
+  MAX_STEPS     = 64,
+  MAX_TO_KINK   = 100,
+  GUESSES       = 4
+};
 
-/* Of the value, of the chord: brackets in which a kink is the event; how far from it the point is taken. */
-static const double NARROW = 2e-7, NARROW_CHORD = .01, BESIDE = 3e-8;
-enum { MAX_TO_KINK = 100, GUESSES = 4 };
-
-/* An indicator that jumps leads Illinois astray: from HALVED on the bracket is halved. */
-enum { HALVED = 24, MAX_STEPS = 64 };
-
-/* The bracket being narrowed: fractions of the chord and the indicator at its ends; the chord's part of the value; which guess
- * was good last. */
+/* The bracket: its ends, their places on the chord, the test function there. */
 typedef struct {
-  double at[2], f[2], wide;
-  int    guess;
-} range;
+  mhb_arclength         *curve;
+  const mhb_curve_point *end[2];
+  double                 at[2], g[2];
+  double                 relative_value; /* the chord's change of the value, relative */
+  int                    guess;          /* which one converged last */
+} search;
 
-/* Which guess at fraction s, between the solved ends lo and hi of a bracket: the line between them, or one end, shifted. */
-static void guess_at(const mhb_arclength *path, double s, double lo, double hi, int which,
-                     mhb_curve_point *probe) {
-  const double *a = path->bracket[0], *b = path->bracket[1];
-  double        part = which == 0 ? (s - lo) / (hi - lo) : which - 1;
-  double        rest = which == 0 ? 0 : which == 1 ? s - lo : s - hi;
-  for (int i = 0; i <= path->n; i++) {
-    double y = a[i] + part * (b[i] - a[i]) + rest * path->chord[i];
-    if (i < path->n)
-      probe->x[i] = y;
-    else
-      probe->value = y;
-  }
+static void swap_points(mhb_curve_point *a, mhb_curve_point *b) {
+  mhb_curve_point old = *a;
+  *a                  = *b;
+  *b                  = old;
 }
 
-/* probe <- what a guess converges to; 0 if it does not. The fourth is the first one by the damped Newton. */
-static int from_guess(mhb_arclength *path, double s, double lo, double hi, int which) {
-  mhb_curve_point *probe = &path->probe;
-  guess_at(path, s, lo, hi, which % 3, probe);
-  if (which < 3) return mhb_arclength_correct(path, path->chord, 1, probe);
-  if (mhb_newton_solve(path->newton, path->residual, probe->value, path->tolerance, probe->x,
-                       &probe->iterations) != MHB_CONVERGED)
+/* The trial becomes an end of the bracket. */
+static void set_end(search *s, int side, double at) {
+  swap_points(&s->curve->trial, &s->curve->bracket[side]);
+  s->end[side] = &s->curve->bracket[side];
+  s->at[side]  = at;
+}
+
+/* trial <- an end of the bracket. */
+static int take_end(search *s, int side) {
+  mhb_arclength   *curve = s->curve;
+  mhb_curve_point *trial = &curve->trial;
+  if (s->end[side] == &curve->bracket[side]) {
+    swap_points(trial, &curve->bracket[side]);
+    return 1;
+  }
+  memcpy(trial->x, s->end[side]->x, sizeof(double) * (size_t)curve->n);
+  trial->value = s->end[side]->value;
+  mhb_arclength_measure(curve, trial);
+  return mhb_arclength_set_tangent(curve, curve->chord, trial);
+}
+
+/* ---- a point at a fraction of the chord ---- */
+
+/* trial <- what guess `which` converges to in the plane across the chord at fraction at: from the
+ * line between the ends (0), from an end shifted along the chord (1, 2), and from the line by the
+ * damped Newton method at fixed value (3). */
+static int correct_guess(search *s, double at, int which) {
+  mhb_arclength         *curve = s->curve;
+  mhb_curve_point       *trial = &curve->trial;
+  const mhb_curve_point *a = s->end[0], *b = s->end[1];
+  int                    kind = which % 3, n = curve->n;
+  double                 part = kind == 0 ? (at - s->at[0]) / (s->at[1] - s->at[0]) : kind - 1;
+  double                 rest = kind == 0 ? 0 : at - s->at[kind - 1];
+  for (int i = 0; i < n; i++)
+    trial->x[i] = a->x[i] + part * (b->x[i] - a->x[i]) + rest * curve->chord[i];
+  trial->value = a->value + part * (b->value - a->value) + rest * curve->chord[n];
+  if (which < 3) return mhb_arclength_correct(curve, curve->chord, 1, trial);
+  if (curve->system->solve_at_value(curve->system, curve->tolerance, trial) != MHB_CONVERGED)
     return 0;
-  mhb_arclength_measure(path, probe);
+  mhb_arclength_measure(curve, trial);
   return 1;
 }
 
-/* Which fraction of the chord the probe is at; a solution at fixed value need not be in the plane it was sought in. */
-static double fraction_of(mhb_arclength *path) {
-  double scale = mhb_arclength_unit(path), away[path->n + 1];
-  for (int i = 0; i < path->n; i++) away[i] = path->probe.x[i] - path->now.x[i];
-  away[path->n] = path->probe.value - path->now.value;
-  return mhb_arclength_inner(path, scale, path->chord, away) /
-         mhb_arclength_inner(path, scale, path->chord, path->chord);
+/* The trial's place on the chord; a solution at fixed value need not lie in the plane sought. */
+static double place_of_trial(const search *s) {
+  const mhb_arclength *curve = s->curve;
+  double               unit  = mhb_arclength_unit(curve), away[curve->n + 1];
+  for (int i = 0; i < curve->n; i++) away[i] = curve->trial.x[i] - curve->current.x[i];
+  away[curve->n] = curve->trial.value - curve->current.value;
+  return mhb_arclength_inner(curve, unit, curve->chord, away) /
+         mhb_arclength_inner(curve, unit, curve->chord, curve->chord);
 }
 
-/* probe <- the solution in the plane across the chord at fraction *s. In the square-root zone of slip onset the plane's
- * Newton can fail; the damped one at fixed frequency then stands in, if it stays in the bracket, and is tried first from there on.
- * What rounding stopped is taken if nothing is better. */
-static int at_fraction(mhb_arclength *path, range *r, double *s) {
-  int rounded = -1;
+/* trial <- the solution in the plane across the chord at fraction *at, and *at its true place. A
+ * guess that only round-off stopped is taken if no other converges. */
+static int solve_at(search *s, double *at) {
+  mhb_arclength *curve   = s->curve;
+  int            rounded = -1;
   for (int i = 0; i < GUESSES; i++) {
-    int which = (r->guess + i) % GUESSES;
-    if (!from_guess(path, *s, r->at[0], r->at[1], which)) continue;
-    double at = which < 3 ? *s : fraction_of(path);
-    if (!(at > r->at[0] && at < r->at[1])) continue;
-    if (path->probe.residual <= path->tolerance &&
-        mhb_arclength_set_tangent(path, path->chord, &path->probe)) {
-      r->guess = which;
-      *s       = at;
+    int which = (s->guess + i) % GUESSES;
+    if (!correct_guess(s, *at, which)) continue;
+    double place = which < 3 ? *at : place_of_trial(s);
+    if (!(place > s->at[0] && place < s->at[1])) continue;
+    if (curve->trial.residual <= curve->tolerance &&
+        mhb_arclength_set_tangent(curve, curve->chord, &curve->trial)) {
+      s->guess = which;
+      *at      = place;
       return 1;
     }
-    if (path->probe.residual <= ROUNDED && rounded < 0) rounded = which;
+    if (curve->trial.residual <= ROUNDED && rounded < 0) rounded = which;
   }
-  return rounded >= 0 && from_guess(path, *s, r->at[0], r->at[1], rounded) &&
-         mhb_arclength_set_tangent(path, path->chord, &path->probe);
+  return rounded >= 0 && correct_guess(s, *at, rounded) &&
+         mhb_arclength_set_tangent(curve, curve->chord, &curve->trial);
 }
 
-/* probe <- an end of the bracket as it was found: Newton need not come back to it. */
-static int at_end(mhb_arclength *path, int side) {
-  mhb_curve_point *probe = &path->probe;
-  memcpy(probe->x, path->bracket[side], sizeof(double) * (size_t)path->n);
-  probe->value = path->bracket[side][path->n];
-  mhb_arclength_measure(path, probe);
-  return mhb_arclength_set_tangent(path, path->chord, probe);
-}
-
-/* Somewhere else in the bracket, then at *s. */
-static int somewhere(mhb_arclength *path, range *r, double *s) {
-  static const double other[] = {.5, .2, .8, .05, .95};
+/* The same at other places of the bracket; *at: where. */
+static int solve_somewhere(search *s, double *at) {
+  static const double other[] = {0.5, 0.2, 0.8, 0.05, 0.95};
   for (int i = 0; i < 5; i++) {
-    *s = r->at[0] + other[i] * (r->at[1] - r->at[0]);
-    if (at_fraction(path, r, s)) return 1;
+    *at = s->at[0] + other[i] * (s->at[1] - s->at[0]);
+    if (solve_at(s, at)) return 1;
   }
   return 0;
 }
 
-static void set_bracket(mhb_arclength *path, int side, const mhb_curve_point *point) {
-  memcpy(path->bracket[side], point->x, sizeof(double) * (size_t)path->n);
-  path->bracket[side][path->n] = point->value;
+/* ---- kinks: the law is linear on one side ---- */
+
+/* trial <- a point in the plane `ahead` of a linear end, along that end's tangent, corrected in the
+ * end's regime. */
+static int step_in_regime(search *s, const mhb_curve_point *end, const mhb_curve_point *regime,
+                          double ahead) {
+  mhb_arclength   *curve  = s->curve;
+  mhb_curve_point *trial  = &curve->trial;
+  double           unit   = mhb_arclength_unit(curve);
+  double           length = mhb_arclength_inner(curve, unit, curve->chord, curve->chord) * ahead /
+                  mhb_arclength_inner(curve, unit, curve->chord, end->tangent);
+  for (int i = 0; i < curve->n; i++) trial->x[i] = end->x[i] + length * end->tangent[i];
+  trial->value = end->value + length * end->tangent[curve->n];
+  return curve->system->correct_linear(curve, regime, curve->chord, trial) &&
+         mhb_arclength_set_tangent(curve, curve->chord, trial);
 }
 
-static int is_narrow(const range *r) {
-  double length = r->at[1] - r->at[0];
-  return length < NARROW_CHORD && length * r->wide < NARROW;
+static bool is_narrow(const search *s) {
+  double length = s->at[1] - s->at[0];
+  return length < CHORD_NARROW && length * s->relative_value < VALUE_NARROW;
 }
 
-/* No pair slips or opens for a part of the period: the law is exact there. */
-static int is_still(const mhb_balance *b) {
-  for (int a = 0; a < b->n_pairs; a++)
-    if (b->kind[a] == MHB_PAIR_NONLINEAR) return 0;
-  return 1;
+/* The side of the bracket that is linear, if the other is not; else -1. */
+static int linear_side(const search *s) {
+  mhb_curve_system *system = s->curve->system;
+  if (!system->correct_linear) return -1;
+  bool linear[2];
+  for (int side = 0; side < 2; side++) linear[side] = system->is_linear(system, s->end[side]);
+  return linear[0] == linear[1] ? -1 : linear[1];
 }
 
-/* The side of the bracket that is still, if the other is not; else -1. */
-static int still_side(mhb_arclength *path) {
-  int still[2];
-  for (int side = 0; side < 2; side++) still[side] = at_end(path, side) && is_still(path->residual);
-  return still[0] == still[1] ? -1 : still[1];
-}
-
-/* probe <- a point in the plane at the chord's fraction s, along the tangent of the probe as it was at an end. */
-static void along_tangent(mhb_arclength *path, int side, double ahead) {
-  mhb_curve_point *probe = &path->probe;
-  double           scale = mhb_arclength_unit(path),
-         length          = mhb_arclength_inner(path, scale, path->chord, path->chord) * ahead /
-                  mhb_arclength_inner(path, scale, path->chord, probe->tangent);
-  for (int i = 0; i < path->n; i++)
-    probe->x[i] = path->bracket[side][i] + length * probe->tangent[i];
-  probe->value = path->bracket[side][path->n] + length * probe->tangent[path->n];
-}
-
-/* Where contacts begin to slip, that side is known to the root of rounding only and Newton may fail, the still side is exact: its
- * last point, in steps that are halved, becomes that end of the bracket (the old one is kept) and the probe. */
-static int go_to_kink(mhb_arclength *path, int side, range *r) {
-  double step = .5 * (r->at[1 - side] - r->at[side]);
-  memcpy(path->kept, path->bracket[side], sizeof(double) * ((size_t)path->n + 1));
-  if (!at_end(path, side) || !mhb_linear_set_states(path->still, path->residual)) return 0;
-  for (int i = 0; i < MAX_TO_KINK && fabs(step) > 1e-9; i++) {
-    double s = r->at[side] + step;
-    along_tangent(path, side, step);
-    if (s > r->at[0] && s < r->at[1] &&
-        mhb_arclength_correct_still(path, path->chord, &path->probe) &&
-        mhb_arclength_set_tangent(path, path->chord, &path->probe)) {
-      r->at[side] = s;
-      set_bracket(path, side, &path->probe);
-    } else {
-      step *= .5;
-    }
+/* Where contacts begin to slip, the slipping side is known to the root of round-off only, and Newton
+ * may fail there; the linear side is exact. The linear end moves on to the last linear point, in
+ * steps that are halved, and the test function there decides:
+ *   true: the kink is the event, and the trial lies VALUE_BESIDE of it on the linear side, which is
+ *         negligible and yet far enough for Newton to converge
+ *   false: the bracket now ends at the kink */
+static bool locate_at_kink(search *s, mhb_test_function g, void *context) {
+  mhb_arclength *curve = s->curve;
+  int            side  = linear_side(s);
+  if (side < 0) return false;
+  double                 start = s->at[side], step = 0.5 * (s->at[1 - side] - s->at[side]);
+  const mhb_curve_point *former = s->end[side];
+  if (former == &curve->bracket[side]) { /* the slot will be overwritten */
+    swap_points(&curve->bracket[side], &curve->bracket[2]);
+    former = s->end[side] = &curve->bracket[2];
   }
-  return at_end(path, side);
-}
-
-static void swap(double **a, double **b) {
-  double *old = *a;
-  *a          = *b;
-  *b          = old;
-}
-
-/* probe <- a point on the still side of the kink that the probe is at: so near that it does not matter, so far that Newton comes
- * back to it. */
-static int beside_kink(mhb_arclength *path, int side, double before, range *r) {
-  double way = before - r->at[side], most = BESIDE / fmax(r->wide, BESIDE);
-  double back = copysign(fmin(most, .5 * fabs(way)), way);
-  along_tangent(path, side, back);
-  if (!mhb_arclength_correct_still(path, path->chord, &path->probe) ||
-      !mhb_arclength_set_tangent(path, path->chord, &path->probe))
-    return at_end(path, side);
-  r->at[side] += back;
-  return 1;
-}
-
-/* 1: a kink, and the probe beside it, is the event. Else the bracket ends there, if it holds one. */
-static int at_kink(mhb_arclength *path, mhb_arclength_indicator indicator, void *context,
-                   range *r) {
-  int side = still_side(path);
-  if (side < 0) return 0;
-  double before = r->at[side];
-  if (!go_to_kink(path, side, r)) return 0;
-  double f = indicator(path, &path->probe, context);
-  if ((f > 0) == (r->f[side] > 0)) {
-    r->f[side] = f;
-    return is_narrow(r) && beside_kink(path, side, before, r);
+  for (int i = 0; i < MAX_TO_KINK && fabs(step) > CHORD_FOUND; i++) {
+    double at = s->at[side] + step;
+    if (at > s->at[0] && at < s->at[1] && step_in_regime(s, s->end[side], former, step))
+      set_end(s, side, at);
+    else
+      step *= 0.5;
   }
-  swap(&path->bracket[1 - side], &path->bracket[side]); /* the event is on the still side */
-  swap(&path->bracket[side], &path->kept);
-  r->at[1 - side] = r->at[side];
-  r->f[1 - side]  = f;
-  r->at[side]     = before;
-  return 0;
+  double at_kink = g(curve, s->end[side], context);
+  if ((at_kink > 0) == (s->g[side] > 0)) {
+    s->g[side] = at_kink;
+    if (!is_narrow(s)) return false;
+    double way  = start - s->at[side];
+    double most = VALUE_BESIDE / fmax(s->relative_value, VALUE_BESIDE);
+    double back = copysign(fmin(most, 0.5 * fabs(way)), way);
+    if (!step_in_regime(s, s->end[side], former, back)) return take_end(s, side);
+    s->at[side] += back;
+    return true;
+  }
+  /* the event lies on the linear side: between the former end and the kink */
+  if (s->end[side] == &curve->bracket[side])
+    swap_points(&curve->bracket[side], &curve->bracket[1 - side]);
+  s->end[1 - side] = s->end[side] == &curve->bracket[side] ? &curve->bracket[1 - side] : former;
+  s->at[1 - side]  = s->at[side];
+  s->g[1 - side]   = at_kink;
+  s->end[side]     = former;
+  s->at[side]      = start;
+  return false;
 }
 
-int mhb_arclength_locate(mhb_arclength *path, mhb_arclength_indicator indicator, void *context,
-                         double at_now, double at_next, double *fraction) {
-  for (int i = 0; i < path->n; i++) path->chord[i] = path->next.x[i] - path->now.x[i];
-  path->chord[path->n] = path->next.value - path->now.value;
-  range r              = {.at   = {0, 1},
-                          .f    = {at_now, at_next},
-                          .wide = fabs(path->chord[path->n]) / mhb_arclength_size(path)};
-  int   last = -1, kinks = 0;
-  set_bracket(path, 0, &path->now);
-  set_bracket(path, 1, &path->next);
+/* ---- the search ---- */
+
+bool mhb_arclength_locate(mhb_arclength *curve, mhb_test_function g, void *context,
+                          double at_current, double at_next, double *fraction) {
+  for (int i = 0; i < curve->n; i++) curve->chord[i] = curve->next.x[i] - curve->current.x[i];
+  curve->chord[curve->n] = curve->next.value - curve->current.value;
+  search s               = {.curve          = curve,
+                            .end            = {&curve->current, &curve->next},
+                            .at             = {0, 1},
+                            .g              = {at_current, at_next},
+                            .relative_value = fabs(curve->chord[curve->n]) / mhb_arclength_size(curve)};
+  int    last_side = -1, kinks = 0;
   for (int i = 0; i < MAX_STEPS; i++) {
-    double s = (r.at[0] * r.f[1] - r.at[1] * r.f[0]) / (r.f[1] - r.f[0]);
-    if (i % 4 == 3 || i >= HALVED || !(s > r.at[0] && s < r.at[1])) s = .5 * (r.at[0] + r.at[1]);
-    int ok = (kinks > 0 || !is_narrow(&r)) && at_fraction(path, &r, &s);
-    if (!ok && kinks++ == 0) {
-      *fraction = s;
-      if (at_kink(path, indicator, context, &r)) return 1;
+    double at = (s.at[0] * s.g[1] - s.at[1] * s.g[0]) / (s.g[1] - s.g[0]);
+    if (i % 4 == 3 || i >= BISECTED_FROM || !(at > s.at[0] && at < s.at[1]))
+      at = 0.5 * (s.at[0] + s.at[1]);
+    bool solved = (kinks > 0 || !is_narrow(&s)) && solve_at(&s, &at);
+    if (!solved && kinks++ == 0) {
+      *fraction = at;
+      if (locate_at_kink(&s, g, context)) return true;
       continue;
     }
-    if (!ok && (is_narrow(&r) || !somewhere(path, &r, &s))) {
-      *fraction = r.at[0]; /* as near as can be had */
-      return i > 2 && (r.at[1] - r.at[0]) * r.wide < 1e-4 && at_end(path, 0);
+    if (!solved && (is_narrow(&s) || !solve_somewhere(&s, &at))) {
+      *fraction = s.at[0]; /* as near as Newton's method gets */
+      return i > 2 && (s.at[1] - s.at[0]) * s.relative_value < VALUE_LAST_RESORT && take_end(&s, 0);
     }
-    double f  = indicator(path, &path->probe, context);
-    *fraction = s;
-    if (f == 0) return 1;
-    int side = (f > 0) != (r.f[0] > 0);
-    set_bracket(path, side, &path->probe);
-    double moved = fabs(s - r.at[side]);
-    r.at[side]   = s;
-    r.f[side]    = f;
-    if (side == last) r.f[1 - side] *= .5;
-    last        = side;
-    double left = fmin(r.at[1] - r.at[0], moved);
-    if (left < 1e-9 || (i > 2 && left * r.wide < 1e-10 && left < 1e-4)) return 1;
+    double value = g(curve, &curve->trial, context);
+    *fraction    = at;
+    if (value == 0) return true;
+    int    side  = (value > 0) != (s.g[0] > 0);
+    double moved = fabs(at - s.at[side]), left;
+    /* Illinois: an end that stays twice has its value halved */
+    if (side == last_side) s.g[1 - side] *= 0.5;
+    s.g[side] = value;
+    left      = fmin(s.at[1 - side] > at ? s.at[1 - side] - at : at - s.at[1 - side], moved);
+    if (left < CHORD_FOUND ||
+        (i > 2 && left * s.relative_value < VALUE_FOUND && left < VALUE_LAST_RESORT))
+      return true;
+    set_end(&s, side, at);
+    last_side = side;
   }
-  return 0;
+  return false;
 }

@@ -1,16 +1,21 @@
-/* Points of a path between two steps: folds, peaks, crossings of the unit circle. */
+/* Location of an event between two points of a curve: where a test function changes its sign. */
 #ifndef MHB_CONTINUATION_EVENT_LOCATION_H
 #define MHB_CONTINUATION_EVENT_LOCATION_H
 
 #include "mhb/continuation/arclength.h"
 
-/* A scalar that is followed along the path at a point just corrected; its sign change marks an event. */
-typedef double (*mhb_arclength_indicator)(const mhb_arclength *path, const mhb_curve_point *point,
-                                          void *context);
+/* A test function: a scalar along the curve at a corrected point, with its tangent. */
+typedef double (*mhb_test_function)(mhb_arclength *curve, const mhb_curve_point *point,
+                                    void *context);
 
-/* Locate the sign change of indicator between now and next, into path->probe. Illinois with planes across the chord,
- * never Newton on a function that jumps at kinks. 1: found, to 1e-9 of the chord or 1e-8 of the value. */
-int mhb_arclength_locate(mhb_arclength *path, mhb_arclength_indicator indicator, void *context,
-                         double at_now, double at_next, double *fraction);
+/* Locate the sign change of g between current and next, where it is at_current and at_next.
+ *
+ *   trial     out  the point located, with its evaluation and tangent
+ *   fraction  out  its place on the chord from current to next, 0 to 1
+ * Returns true if it was found to 1e-9 of the chord, to 1e-10 of the value, or beside a kink.
+ * Method: Illinois with planes across the chord, then bisection: g may jump at kinks, where Newton's
+ * method on g would fail. */
+bool mhb_arclength_locate(mhb_arclength *curve, mhb_test_function g, void *context,
+                          double at_current, double at_next, double *fraction);
 
 #endif

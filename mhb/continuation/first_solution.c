@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "mesh/base/progress.h"
-#include "mhb/continuation/arclength.h"
+#include "mhb/continuation/balance_curve.h"
 #include "mhb/continuation/first_solution.h"
 
 enum { MAX_STAGES = 200 };
@@ -11,7 +11,7 @@ enum { MAX_STAGES = 200 };
 /* Natural continuation of the preload from one whose linear limit x solves, to the one asked for. */
 static mhb_reason homotopy(mhb_newton *newton, mhb_balance *b, double omega, double tolerance,
                            double from, double *x) {
-  double     to = b->at.n0, part = 0, step = .25;
+  double     to = b->eval->at.n0, part = 0, step = .25;
   double     kept[b->n];
   mhb_reason reason = MHB_MAX_ITERATIONS;
   for (int i = 0; i < MAX_STAGES && part < 1 && step > 1e-5 && !shb_interrupted(); i++) {
@@ -37,10 +37,10 @@ static mhb_reason homotopy(mhb_newton *newton, mhb_balance *b, double omega, dou
 static double far_preload(const mhb_balance *b, const double *x, int stuck) {
   double size = mhb_norm(x, b->n), most = 0;
   for (int i = 0; i < b->n_interfaces; i++) {
-    const mhb_operating_point *own = &b->own[i];
+    const mhb_operating_point *own = &b->eval->own[i];
     double friction                = (fabs(own->ku[0]) + fabs(own->ku[2])) / fmax(own->mu, 1e-6);
     double reach                   = 4 * size * (own->kv + (stuck ? friction : 0)) + fabs(own->n0);
-    if (b->n_interfaces > 1) reach += fabs(b->at.n0); /* all move by what this one does */
+    if (b->n_interfaces > 1) reach += fabs(b->eval->at.n0); /* all move by what this one does */
     most = fmax(most, reach);
   }
   return stuck ? most : -most;
@@ -50,7 +50,7 @@ static double far_preload(const mhb_balance *b, const double *x, int stuck) {
 static mhb_reason directly(mhb_newton *newton, mhb_balance *b, double omega, double tolerance,
                            double *x, int *iterations) {
   mhb_reason reason   = MHB_MAX_ITERATIONS;
-  double     n0       = b->at.n0;
+  double     n0       = b->eval->at.n0;
   int        order[3] = {n0 > 0, n0 <= 0, MHB_BY_PRELOAD}; /* the likelier limit first */
   for (int i = b->n_interfaces > 1 ? -1 : 0; i < 2; i++) {
     if (mhb_balance_linear_limit(b, omega, order[i < 0 ? 2 : i], x) != SHB_OK) continue;
@@ -66,7 +66,7 @@ static mhb_reason solve_here(mhb_newton *newton, mhb_balance *b, double omega, d
                              double *x, int *iterations) {
   mhb_reason reason = directly(newton, b, omega, tolerance, x, iterations);
   for (int i = 0; i < 2 && reason != MHB_CONVERGED; i++) {
-    int stuck = b->at.n0 > 0 ? 1 - i : i; /* the likelier limit first */
+    int stuck = b->eval->at.n0 > 0 ? 1 - i : i; /* the likelier limit first */
     if (mhb_balance_linear_limit(b, omega, stuck, x) != SHB_OK) continue;
     mhb_balance_tie_preloads(b, 1);
     reason = homotopy(newton, b, omega, tolerance, far_preload(b, x, stuck), x);
@@ -75,23 +75,27 @@ static mhb_reason solve_here(mhb_newton *newton, mhb_balance *b, double omega, d
   return reason;
 }
 
-/* Along the path from a solution x at `from` to one at `to`. */
-static int follow_to(mhb_balance *b, double from, double to, double *x) {
-  mhb_arclength        *path;
-  mhb_arclength_outcome outcome = MHB_ARCLENGTH_STALLED,
-                        wanted  = to > from ? MHB_ARCLENGTH_AT_END : MHB_ARCLENGTH_AT_START;
-  if (mhb_arclength_create(b, fmin(from, to), fmax(from, to), &path) != SHB_OK) return 0;
-  if (mhb_arclength_start(path, x, from, to > from ? 1 : -1) == MHB_CONVERGED)
-    outcome = MHB_ARCLENGTH_ON;
-  for (int i = 0; i < MAX_STAGES && outcome == MHB_ARCLENGTH_ON && !shb_interrupted(); i++) {
-    outcome = mhb_arclength_step(path);
-    if (outcome != MHB_ARCLENGTH_ON && outcome != MHB_ARCLENGTH_STALLED && outcome != wanted)
-      outcome = mhb_arclength_excursion(path, outcome);
-    mhb_arclength_advance(path);
+/* x <- the solution at `to`, along the curve from a solution x at `from`. */
+static bool continue_to(mhb_balance *b, double from, double to, double *x) {
+  mhb_arclength *curve;
+  int            direction = to > from ? 1 : -1;
+  bool           arrived   = false;
+  if (mhb_balance_curve_create(b, fmin(from, to), fmax(from, to), &curve) != SHB_OK) return false;
+  bool goes_on = mhb_arclength_start(curve, x, from, direction) == MHB_CONVERGED;
+  for (int i = 0; i < MAX_STAGES && goes_on && !arrived && !shb_interrupted(); i++) {
+    mhb_arclength_outcome outcome = mhb_arclength_step(curve);
+    int end = outcome == MHB_ARCLENGTH_AT_END ? 1 : outcome == MHB_ARCLENGTH_AT_START ? -1 : 0;
+    arrived = end == direction;
+    goes_on = outcome != MHB_ARCLENGTH_STALLED;
+    mhb_arclength_advance(curve);
+    if (end == -direction) { /* back at `from` */
+      goes_on = mhb_arclength_excursion(curve, end, MHB_EXCURSION_FAR);
+      mhb_arclength_advance(curve);
+    }
   }
-  memcpy(x, path->now.x, sizeof(double) * (size_t)b->n);
-  mhb_arclength_destroy(path);
-  return outcome == wanted;
+  memcpy(x, curve->current.x, sizeof(double) * (size_t)b->n);
+  mhb_arclength_destroy(curve);
+  return arrived;
 }
 
 static mhb_reason by_frequency(mhb_newton *newton, mhb_balance *b, double omega, double tolerance,
@@ -101,7 +105,7 @@ static mhb_reason by_frequency(mhb_newton *newton, mhb_balance *b, double omega,
   for (int i = 0; i < 8 && reason != MHB_CONVERGED && !shb_interrupted(); i++) {
     double from = elsewhere[i] * omega;
     if (solve_here(newton, b, from, tolerance, x, iterations) != MHB_CONVERGED) continue;
-    if (!follow_to(b, from, omega, x)) continue;
+    if (!continue_to(b, from, omega, x)) continue;
     reason = mhb_newton_solve(newton, b, omega, tolerance, x, iterations);
   }
   return reason;
@@ -110,14 +114,14 @@ static mhb_reason by_frequency(mhb_newton *newton, mhb_balance *b, double omega,
 /* Along the path in the preload, past its folds, from one at which the contact is stuck, or open, throughout. */
 static mhb_reason by_preload(mhb_newton *newton, mhb_balance *b, double omega, double tolerance,
                              double *x, int *iterations) {
-  double     n0     = b->at.n0;
+  double     n0     = b->eval->at.n0;
   mhb_reason reason = MHB_MAX_ITERATIONS;
   for (int stuck = 1; stuck >= 0 && reason != MHB_CONVERGED; stuck--) {
     if (mhb_balance_linear_limit(b, omega, stuck, x) != SHB_OK) continue;
     double from = far_preload(b, x, stuck);
     mhb_balance_tie_preloads(b, 1);
     mhb_balance_set_parameter(b, MHB_IN_N0);
-    int found = follow_to(b, from, n0, x);
+    bool found = continue_to(b, from, n0, x);
     mhb_balance_set_parameter(b, MHB_IN_FREQUENCY);
     mhb_balance_set_preload(b, n0);
     mhb_balance_tie_preloads(b, 0);
@@ -132,7 +136,7 @@ mhb_reason mhb_first_solution(mhb_newton *newton, mhb_balance *b, double value, 
   mhb_parameter parameter = b->parameter;
   mhb_balance_set_value(b, value);
   mhb_balance_set_parameter(b, MHB_IN_FREQUENCY);
-  double     omega  = b->at.omega;
+  double     omega  = b->eval->at.omega;
   mhb_reason reason = directly(newton, b, omega, tolerance, x, iterations);
   if (reason != MHB_CONVERGED) reason = by_preload(newton, b, omega, tolerance, x, iterations);
   if (reason != MHB_CONVERGED) reason = by_frequency(newton, b, omega, tolerance, x, iterations);

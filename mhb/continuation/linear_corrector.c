@@ -78,18 +78,14 @@ static mhb_pair_kind class_of(mhb_pair_kind kind) {
   return kind == MHB_PAIR_AT_LIMIT ? MHB_PAIR_STUCK : kind;
 }
 
-int mhb_linear_set_states(mhb_linear_corrector *s, const mhb_balance *b) {
-  for (int a = 0; a < b->n_pairs; a++) {
-    s->kind[a] = class_of(b->kind[a]);
-    if (s->kind[a] == MHB_PAIR_NONLINEAR) return 0;
-  }
-  return b->parameter == MHB_IN_FREQUENCY;
+void mhb_linear_set_states(mhb_linear_corrector *s, const mhb_evaluation *e, int n_pairs) {
+  for (int a = 0; a < n_pairs; a++) s->kind[a] = class_of(e->kind[a]);
 }
 
-int mhb_linear_states_hold(const mhb_linear_corrector *s, const mhb_balance *b) {
-  for (int a = 0; a < b->n_pairs; a++)
-    if (class_of(b->kind[a]) != s->kind[a]) return 0;
-  return 1;
+bool mhb_linear_states_hold(const mhb_linear_corrector *s, const mhb_evaluation *e, int n_pairs) {
+  for (int a = 0; a < n_pairs; a++)
+    if (class_of(e->kind[a]) != s->kind[a]) return false;
+  return true;
 }
 
 /* sum over k > 0 */
@@ -126,7 +122,7 @@ static int factor_means(mhb_linear_corrector *s, const mhb_balance *b) {
   for (int a = 0; a < b->n_pairs; a++)
     for (int d = 0; d < 3;
          d++) { /* dp[c]: how the mean force c of a pair follows its mean motion d */
-      const double *dp = b->dp + (size_t)a * block * block + d * b->nb;
+      const double *dp = b->eval->dp + (size_t)a * block * block + d * b->nb;
       double        p[3];
       for (int c = 0; c < 3; c++) p[c] = dp[(size_t)(c * b->nb) * block];
       const double complex *R = b->receptance->R + 3 * a;

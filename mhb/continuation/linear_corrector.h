@@ -1,10 +1,14 @@
-/* The balance where every pair stays stuck or open: its harmonics k > 0 know nothing of each other, nor of the mean friction,
+/* The linear regime: every pair is stuck or open throughout the period.
  *
- *   u_k(omega) = A_k^-1 free_k,   A_k = I + R_k S,   du_k/domega = A_k^-1 d(free_k - R_k p_k)/domega at p_k = S u_k
- * (S = diag(kv, Ku) of the stuck pairs), zero where no load is. So a point of the path is found without the contact law, but for
- * the means: the mean friction follows the other harmonics, and the mean normal load. */
+ * The harmonics k > 0 then decouple from each other and from the static friction:
+ *   u_k(omega) = A_k^-1 free_k,   A_k = I + R_k S,   S = diag(kv, Ku) of the stuck pairs,
+ *   du_k/domega = A_k^-1 d(free_k - R_k p_k)/domega   at p_k = S u_k,
+ * and are zero without a load. They need no contact law. The means do: the mean friction follows the
+ * other harmonics and the mean normal load. */
 #ifndef MHB_CONTINUATION_LINEAR_CORRECTOR_H
 #define MHB_CONTINUATION_LINEAR_CORRECTOR_H
+
+#include <stdbool.h>
 
 #include "mhb/balance/balance.h"
 
@@ -20,9 +24,9 @@ typedef struct {
 shb_status mhb_linear_corrector_create(const mhb_balance *residual, mhb_linear_corrector **still);
 void       mhb_linear_corrector_destroy(mhb_linear_corrector *still);
 
-/* Note which pairs the residual's last evaluation found stuck, which open. 0: a pair moves, or the path is not one in the
- * frequency. */
-int mhb_linear_set_states(mhb_linear_corrector *still, const mhb_balance *residual);
+/* Set the regime: which pairs are stuck and which open at a linear evaluation. */
+void mhb_linear_set_states(mhb_linear_corrector *linear, const mhb_evaluation *evaluation,
+                           int n_pairs);
 
 /* Slide (x, omega) within the plane
  *   x_weight normal_x.dx + value_weight normal[n] domega = 0
@@ -37,7 +41,8 @@ int mhb_linear_correct(mhb_linear_corrector *still, const mhb_balance *residual,
 int mhb_linear_correct_means(mhb_linear_corrector *still, const mhb_balance *residual,
                              const double *r, int again, double *x);
 
-/* Whether the residual's last evaluation found the pairs as noted. */
-int mhb_linear_states_hold(const mhb_linear_corrector *still, const mhb_balance *residual);
+/* Whether the pairs of an evaluation are stuck and open as in the regime. */
+bool mhb_linear_states_hold(const mhb_linear_corrector *linear, const mhb_evaluation *evaluation,
+                            int n_pairs);
 
 #endif

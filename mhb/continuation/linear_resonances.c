@@ -265,7 +265,7 @@ void mhb_resonances_destroy(mhb_resonances *s) {
 double mhb_resonances_step_limit(const mhb_resonances *s, double value, int sense) {
   double way = INFINITY;
   for (int i = 0; i < s->n; i++) {
-    if (!s->at[i].felt) continue;
+    if (!s->at[i].significant) continue;
     double half = s->at[i].half, ahead = sense * (s->at[i].value - value), edge = WINDOW * half;
     if (ahead > edge) way = fmin(way, fmax(ahead - edge, half));
     if (fabs(ahead) <= edge) way = fmin(way, fmax(SHORTEST * half, .5 * fabs(ahead)));

@@ -16,7 +16,7 @@
 typedef struct {
   double value, half; /* rad/s of omega: the place, half the half-power width */
   int    k, mode;     /* harmonic; free mode that it is, or is near to, -1: none */
-  bool   felt;        /* the response changes within its width: by who looks */
+  bool   significant; /* the response changes within its width: by who looks */
 } mhb_resonance;
 
 typedef struct {
@@ -29,7 +29,7 @@ shb_status mhb_resonances_create(const mhb_balance *residual, double low, double
                                  mhb_resonances *resonances);
 void       mhb_resonances_destroy(mhb_resonances *resonances);
 
-/* The longest way from a value on, sense +1 or -1, that resolves those that are felt: from four half widths on a few points each.
+/* The longest way from a value on, sense +1 or -1, that resolves those that are significant: from four half widths on a few points each.
  * INFINITY: any. */
 double mhb_resonances_step_limit(const mhb_resonances *resonances, double value, int sense);
 

@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "mhb/continuation/balance_curve.h"
+
 /* Relative slope below which an output counts as flat. */
 static const double FLAT = 1e-9;
 
@@ -16,8 +18,8 @@ static void force_change(const mhb_balance *b, const double *dx, double dvalue, 
   int block = 3 * b->nb;
   for (int row = 0; row < 3 * b->n_pairs; row++) {
     int           pair = row / 3, first = (row % 3) * b->nb + (k ? 2 * k - 1 : 0);
-    const double *re     = b->dp + ((size_t)pair * (size_t)block + (size_t)first) * (size_t)block;
-    const double *by     = b->by_parameter + (size_t)pair * (size_t)block + first;
+    const double *re = b->eval->dp + ((size_t)pair * (size_t)block + (size_t)first) * (size_t)block;
+    const double *by = b->eval->by_parameter + (size_t)pair * (size_t)block + first;
     double        sum[2] = {dvalue * by[0], k ? dvalue * by[1] : 0};
     for (int j = 0; j < block; j++) {
       sum[0] += re[j] * dx[pair * block + j];
@@ -31,16 +33,18 @@ static double dot(double complex a, double complex b) {
   return creal(a) * creal(b) + cimag(a) * cimag(b);
 }
 
-/* Along a stretch on which nothing changes (another parameter than the frequency, stuck) the sign of a slope is noise. */
+/* Where nothing changes (another parameter than the frequency, all stuck) the sign of a slope is
+ * noise. */
 static double unless_flat(double slope, double square) {
   return fabs(slope) > FLAT * square ? slope : 0;
 }
 
-void mhb_probe_change(const mhb_arclength *path, const mhb_curve_point *point, int k,
-                      double complex *q, double complex *dq) {
-  const mhb_balance *b      = path->residual;
-  double             dvalue = point->tangent[path->n];
-  double complex     p[b->receptance->n], dp[b->receptance->n];
+void mhb_probe_change(mhb_arclength *curve, const mhb_curve_point *point, int k, double complex *q,
+                      double complex *dq) {
+  mhb_balance   *b      = mhb_curve_balance(curve);
+  double         dvalue = point->tangent[curve->n];
+  double complex p[b->receptance->n], dp[b->receptance->n];
+  mhb_balance_use(b, point->evaluation);
   mhb_receptance_update(b->receptance, k);
   mhb_balance_contact_force(b, k, p);
   force_change(b, point->tangent, dvalue, k, dp);
@@ -50,8 +54,8 @@ void mhb_probe_change(const mhb_arclength *path, const mhb_curve_point *point, i
                               b->parameter == MHB_IN_SCALE ? dvalue : 0, dq);
 }
 
-double mhb_output_slope(const mhb_arclength *path, const mhb_curve_point *point, int o) {
-  const mhb_balance    *b      = path->residual;
+double mhb_output_slope(mhb_arclength *curve, const mhb_curve_point *point, int o) {
+  mhb_balance          *b      = mhb_curve_balance(curve);
   const mhb_receptance *r      = b->receptance;
   int                   probes = r->model->n_probes, k = r->nu <= b->m ? r->nu : b->m;
   if (o >= probes) {
@@ -60,7 +64,7 @@ double mhb_output_slope(const mhb_arclength *path, const mhb_curve_point *point,
     return unless_flat(2 * (a[0] * da[0] + a[1] * da[1]), a[0] * a[0] + a[1] * a[1]);
   }
   double complex q[3 * probes], dq[3 * probes];
-  mhb_probe_change(path, point, k, q, dq);
+  mhb_probe_change(curve, point, k, q, dq);
   double sum = 0, square = 0;
   for (int axis = 0; axis < 3; axis++) {
     sum += 2 * dot(q[3 * o + axis], dq[3 * o + axis]);

@@ -3,23 +3,29 @@
 #include <math.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
+#include "mhb/continuation/balance_curve.h"
 #include "mhb/continuation/corrector.h"
 #include "mhb/continuation/outputs.h"
 
-static const double TWO_PI = 6.283185307179586476925;
+/* Share of the response, at the peak and within a width, that counts. */
+static const double SIGNIFICANT = 0.05;
 
-/* What is felt: part of the response, at the peak and within a width. A step of so many half widths passes nothing. */
-static const double FELT = .05, RESOLVED = 2;
+/* A step of so many half widths skips nothing. */
+static const double RESOLVED = 2;
 
 static double square(double complex z) {
   return creal(z) * creal(z) + cimag(z) * cimag(z);
 }
 
-/* Motions of the probes under the forces of the last evaluation, [k][3 probes]; size[probes], if any: all harmonics k > 0 together. */
-static void probes(const mhb_balance *b, double complex *q, double *size) {
+/* Motions of the probes at a point, [k][3 probes]; size[probes], or NULL: the root of the sum of
+ * squares over k > 0. */
+static void probe_motions(mhb_balance *b, const mhb_curve_point *point, double complex *q,
+                          double *size) {
   mhb_receptance *r = b->receptance;
   int             n = 3 * r->model->n_probes;
   double complex  p[r->n];
+  mhb_balance_use(b, point->evaluation);
   for (int k = 1; k <= b->m; k++) {
     mhb_balance_contact_force(b, k, p);
     mhb_receptance_update(r, k);
@@ -28,107 +34,101 @@ static void probes(const mhb_balance *b, double complex *q, double *size) {
   for (int o = 0; size && o < n / 3; o++) {
     double sum = 0;
     for (int k = 1; k <= b->m; k++)
-      for (int s = 0; s < 3; s++) sum += square(q[k * n + 3 * o + s]);
+      for (int axis = 0; axis < 3; axis++) sum += square(q[k * n + 3 * o + axis]);
     size[o] = sqrt(sum);
   }
 }
 
-/* Peak of the mode under the forces of the last evaluation, against the motions of the contact and of the probes. */
-static int may_be_felt(const mhb_arclength *path, const mhb_resonance *place, const double *probe,
-                       double contact) {
-  const mhb_receptance *r = path->residual->receptance;
-  const modal_model    *m = r->model;
-  int                   i = place->mode, k = place->k;
+/* Whether the mode's peak under the forces of the evaluation in use is significant beside the motions
+ * of the contact and of the probes. */
+static bool may_be_significant(const mhb_balance *b, const mhb_resonance *resonance,
+                               const double *probe, double contact) {
+  const mhb_receptance *r    = b->receptance;
+  const modal_model    *m    = r->model;
+  int                   mode = resonance->mode, k = resonance->k;
   double complex        p[r->n];
-  if (i < 0) return 1;
-  mhb_balance_contact_force(path->residual, k, p);
-  double complex drive = r->scale * r->F[k * r->n_modes + i];
-  double         shape = 0, omega = TWO_PI * m->frequency[i];
+  if (mode < 0) return true;
+  mhb_balance_contact_force(b, k, p);
+  double complex load  = r->scale * r->F[k * r->n_modes + mode];
+  double         shape = 0, omega = SHB_TWO_PI * m->frequency[mode];
   for (int row = 0; row < r->n; row++) {
-    double complex b = r->B[((size_t)k * (size_t)r->n + (size_t)row) * (size_t)r->n_modes + i];
-    drive -= conj(b) * p[row];
-    shape += square(b);
+    double complex B = r->B[((size_t)k * (size_t)r->n + (size_t)row) * (size_t)r->n_modes + mode];
+    load -= conj(B) * p[row];
+    shape += square(B);
   }
-  double peak = cabs(drive) / (2 * m->damping_ratio[i] * omega * omega);
-  if (peak == 0) return 0;
-  int felt = peak * sqrt(shape) >= FELT * contact;
-  for (int o = 0; o < m->n_probes && !felt; o++) {
+  double peak = cabs(load) / (2 * m->damping_ratio[mode] * omega * omega);
+  if (peak == 0) return false;
+  bool significant = peak * sqrt(shape) >= SIGNIFICANT * contact;
+  for (int o = 0; o < m->n_probes && !significant; o++) {
     double own = 0;
-    for (int axis = 0; axis < 3; axis++) own += pow(m->probe[(3 * o + axis) * r->n_modes + i], 2);
-    felt = peak * sqrt(own) >= FELT * probe[o];
+    for (int axis = 0; axis < 3; axis++)
+      own += pow(m->probe[(3 * o + axis) * r->n_modes + mode], 2);
+    significant = peak * sqrt(own) >= SIGNIFICANT * probe[o];
   }
-  return felt;
+  return significant;
 }
 
-/* The response at the probe, with its tangent, changes within a half width, more than along the chord. q: at now and next. */
-static int changes(const mhb_arclength *path, const mhb_resonance *place,
-                   const double complex *q_now, const double complex *q_next) {
-  const mhb_curve_point *probe = &path->probe, *now = &path->now, *next = &path->next;
-  const mhb_balance     *b = path->residual;
+/* trial <- the solution at the resonance's place, from the chord, with its tangent. */
+static bool solve_at_resonance(mhb_arclength *curve, const mhb_resonance *resonance) {
+  const mhb_curve_point *current = &curve->current, *next = &curve->next;
+  double part = (resonance->value - current->value) / (next->value - current->value);
+  double axis[curve->n + 1];
+  memset(axis, 0, sizeof axis);
+  axis[curve->n] = curve->parameter_scale;
+  for (int i = 0; i < curve->n; i++)
+    curve->trial.x[i] = current->x[i] + part * (next->x[i] - current->x[i]);
+  curve->trial.value = resonance->value;
+  return mhb_arclength_correct(curve, axis, 0.5, &curve->trial) &&
+         mhb_arclength_set_tangent(curve, axis, &curve->trial);
+}
+
+/* Whether the response at the trial changes within a half width, beyond the change along the chord,
+ * by a significant part. q: probe motions at current and next. */
+static bool changes(mhb_arclength *curve, const mhb_resonance *resonance,
+                    const double complex *q_current, const double complex *q_next) {
+  const mhb_curve_point *trial = &curve->trial, *current = &curve->current, *next = &curve->next;
+  mhb_balance           *b = mhb_curve_balance(curve);
   int                    n = 3 * b->receptance->model->n_probes, all = n * (b->m + 1);
-  double                 way = next->value - now->value, part = place->half / way, sum = 0;
-  double                 along = place->half / probe->tangent[path->n], size[n / 3 + 1];
-  for (int i = 0; i < path->n; i++)
-    sum += pow(along * probe->tangent[i] - part * (next->x[i] - now->x[i]), 2);
-  if (sqrt(sum) >= FELT * mhb_norm(probe->x, path->n)) return 1;
+  double                 part = resonance->half / (next->value - current->value), sum = 0;
+  double                 along = resonance->half / trial->tangent[curve->n], size[n / 3 + 1];
+  for (int i = 0; i < curve->n; i++)
+    sum += pow(along * trial->tangent[i] - part * (next->x[i] - current->x[i]), 2);
+  if (sqrt(sum) >= SIGNIFICANT * mhb_norm(trial->x, curve->n)) return true;
   double complex q[all + 1], own[n + 1], dq[n + 1];
-  probes(b, q, size);
-  mhb_probe_change(path, probe, place->k, own, dq);
+  probe_motions(b, trial, q, size);
+  mhb_probe_change(curve, trial, resonance->k, own, dq);
   for (int o = 0; o < n / 3; o++) {
     sum = 0;
-    for (int s = 3 * o; s < 3 * o + 3; s++) {
-      int at = place->k * n + s;
-      sum += square(along * dq[s] - part * (q_next[at] - q_now[at]));
+    for (int axis = 3 * o; axis < 3 * o + 3; axis++) {
+      int at = resonance->k * n + axis;
+      sum += square(along * dq[axis] - part * (q_next[at] - q_current[at]));
     }
-    if (size[o] > 0 && sqrt(sum) >= FELT * size[o]) return 1;
+    if (size[o] > 0 && sqrt(sum) >= SIGNIFICANT * size[o]) return true;
   }
-  return 0;
+  return false;
 }
 
-/* probe <- the solution at the place, from the chord, with its tangent. */
-static int go_there(mhb_arclength *path, const mhb_resonance *place) {
-  const mhb_curve_point *now = &path->now, *next = &path->next;
-  double                 part = (place->value - now->value) / (next->value - now->value);
-  double                 axis[path->n + 1];
-  memset(axis, 0, sizeof axis);
-  axis[path->n] = path->span;
-  for (int i = 0; i < path->n; i++) path->probe.x[i] = now->x[i] + part * (next->x[i] - now->x[i]);
-  path->probe.value = place->value;
-  return mhb_arclength_correct(path, axis, .5, &path->probe) &&
-         mhb_arclength_set_tangent(path, axis, &path->probe);
-}
-
-/* Whether one of those in list is felt. Where there is no solution, nothing is smooth. */
-static int look(mhb_arclength *path, mhb_resonance *const *list, int n) {
-  const mhb_balance *b   = path->residual;
-  int                all = 3 * b->receptance->model->n_probes * (b->m + 1), known = 0;
-  double             unused[path->n], contact = mhb_norm(path->next.x, path->n),
-                          size[b->receptance->model->n_probes + 1];
-  double complex q_now[all + 1], q_next[all + 1];
-  probes(b, q_next, size);
-  for (int i = 0; i < n; i++) {
-    if (!may_be_felt(path, list[i], size, contact)) continue;
-    if (known++ == 0) {
-      mhb_balance_evaluate(path->residual, path->now.x, path->now.value, unused, NULL, NULL);
-      probes(b, q_now, NULL);
-    }
-    list[i]->felt = !go_there(path, list[i]) || changes(path, list[i], q_now, q_next);
-    if (list[i]->felt) return 1;
+bool mhb_resonance_skipped(mhb_arclength *curve, const mhb_resonances *resonances) {
+  mhb_balance   *b    = mhb_curve_balance(curve);
+  double         from = curve->current.value, way = curve->next.value - from;
+  int            n = 0, probes = b->receptance->model->n_probes, all = 3 * probes * (b->m + 1);
+  double         size[probes + 1], contact = mhb_norm(curve->next.x, curve->n);
+  double complex q_current[all + 1], q_next[all + 1];
+  bool           have_current = false;
+  for (int i = 0; i < resonances->n; i++) {
+    mhb_resonance *resonance = &resonances->at[way > 0 ? i : resonances->n - 1 - i];
+    double         part      = (resonance->value - from) / way;
+    if (!(part > 0 && part < 1) || resonance->significant ||
+        !(fabs(way) >= RESOLVED * resonance->half))
+      continue;
+    if (n++ == 0) probe_motions(b, &curve->next, q_next, size);
+    mhb_balance_use(b, curve->next.evaluation);
+    if (!may_be_significant(b, resonance, size, contact)) continue;
+    if (!have_current) probe_motions(b, &curve->current, q_current, NULL);
+    have_current = true;
+    resonance->significant =
+        !solve_at_resonance(curve, resonance) || changes(curve, resonance, q_current, q_next);
+    if (resonance->significant) return true;
   }
-  if (known) mhb_arclength_measure(path, &path->next);
-  return 0;
-}
-
-int mhb_resonance_skipped(mhb_arclength *path) {
-  const mhb_resonances *all  = &path->resonances;
-  double                from = path->now.value, way = path->next.value - from;
-  mhb_resonance        *list[all->n + 1];
-  int                   n = 0;
-  for (int i = 0; i < all->n; i++) {
-    mhb_resonance *place = &all->at[way > 0 ? i : all->n - 1 - i];
-    double         part  = (place->value - from) / way;
-    if (part > 0 && part < 1 && !place->felt && fabs(way) >= RESOLVED * place->half)
-      list[n++] = place;
-  }
-  return n > 0 && look(path, list, n);
+  return false;
 }

@@ -39,7 +39,7 @@ typedef struct {
 typedef struct mhb_floquet mhb_floquet; /* workspace; one a thread */
 
 /* For the harmonics of settings and N = substeps to a period of the fundamental, to begin with; max_states 0: 600.
- * The receptance must outlive it. Errors: SHB_ERR_INPUT substeps < 1; SHB_ERR_IO no memory. Not thread safe (FFTW planner). */
+ * The receptance must outlive it. Errors: SHB_ERR_INPUT substeps < 1; SHB_ERR_IO no memory. */
 shb_status mhb_floquet_create(const mhb_receptance *receptance, const mhb_settings *settings,
                               int substeps, int max_states, mhb_floquet **stability);
 void       mhb_floquet_destroy(mhb_floquet *stability);

@@ -101,6 +101,7 @@ shb_status mhb_signals_create(int m, mhb_signals *signals) {
   int ok = signals->coefficient && signals->rate && signals->spectrum && signals->samples;
   for (int i = 0; i <= grid && ok; i++) {
     int n = MHB_LEAST_GRID << i;
+#pragma omp critical(fftw_planner) /* FFTW's planner is not thread safe */
     signals->plan[i] =
         fftw_plan_many_dft_c2r(1, &n, 6, signals->spectrum, NULL, 1, half, signals->samples, NULL,
                                1, room, FFTW_ESTIMATE | FFTW_DESTROY_INPUT);
@@ -117,6 +118,7 @@ shb_status mhb_signals_create(int m, mhb_signals *signals) {
 
 void mhb_signals_destroy(mhb_signals *signals) {
   if (!signals) return;
+#pragma omp critical(fftw_planner)
   for (int i = 0; i < MHB_GRIDS; i++)
     if (signals->plan[i]) fftw_destroy_plan(signals->plan[i]);
   fftw_free(signals->spectrum);

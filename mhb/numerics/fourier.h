@@ -50,7 +50,7 @@ typedef struct {
   fftw_plan     plan[MHB_GRIDS]; /* of 64 points, 128, ... as far as m needs them */
 } mhb_signals;
 
-/* FFTW plans are made here and only here. Not thread safe (FFTW's planner). SHB_ERR_IO: no memory, or too many harmonics. */
+/* FFTW plans are made here and only here. SHB_ERR_IO: no memory, or too many harmonics. */
 shb_status mhb_signals_create(int m, mhb_signals *signals);
 void       mhb_signals_destroy(mhb_signals *signals);
 

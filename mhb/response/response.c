@@ -22,6 +22,17 @@ mhb_response *mhb_response_create(int n_pairs, int n_probes, int n_harmonics) {
   return NULL;
 }
 
+mhb_response *mhb_response_like(const mhb_response *response) {
+  mhb_response *like =
+      mhb_response_create(response->n_pairs, response->n_probes, response->n_harmonics);
+  if (!like) return NULL;
+  like->subharmonics  = response->subharmonics;
+  like->parameter     = response->parameter;
+  like->n_multipliers = response->n_multipliers;
+  like->n_interfaces  = response->n_interfaces;
+  return like;
+}
+
 static void free_branch(mhb_branch *branch) {
   for (int i = 0; i < MHB_N_FIELDS; i++) free(mhb_field_get(branch, &mhb_fields[i]));
   free(branch->reason);
@@ -60,19 +71,15 @@ shb_status mhb_response_interfaces(mhb_response *response, int n, char *const *n
   return SHB_OK;
 }
 
-shb_status mhb_response_reserve(mhb_response *response, int n) {
-  if (response->n_branches + n <= response->capacity) return SHB_OK;
-  int         capacity = response->n_branches + n;
-  mhb_branch *branch   = realloc(response->branch, (size_t)capacity * sizeof *branch);
-  SHB_CHECK(branch, SHB_ERR_IO, "no memory for %d response branches", capacity);
-  response->branch   = branch;
-  response->capacity = capacity;
-  return SHB_OK;
-}
-
 shb_status mhb_response_branch(mhb_response *response, mhb_branch_kind kind, int *index) {
   int n = response->n_branches;
-  if (n == response->capacity) SHB_TRY(mhb_response_reserve(response, n > 8 ? n : 8));
+  if (n == response->capacity) {
+    int         capacity = n > 8 ? 2 * n : 16;
+    mhb_branch *branch   = realloc(response->branch, (size_t)capacity * sizeof *branch);
+    SHB_CHECK(branch, SHB_ERR_IO, "no memory for %d response branches", capacity);
+    response->branch   = branch;
+    response->capacity = capacity;
+  }
   response->branch[n] = (mhb_branch){.kind        = kind,
                                      .order       = response->subharmonics,
                                      .n_harmonics = response->n_harmonics,
@@ -128,42 +135,22 @@ void mhb_response_place(mhb_response *response, int branch, int at) {
              (size_t)at, (size_t)b->n_points);
 }
 
-static void swap_rows(char *a, char *b, size_t row) {
-  for (size_t k = 0; k < row; k++) {
-    char swap = a[k];
-    a[k]      = b[k];
-    b[k]      = swap;
-  }
-}
-
-void mhb_response_reverse(mhb_response *response, int branch, int from) {
-  mhb_branch *b = &response->branch[branch];
-  for (int i = 0; i < MHB_N_FIELDS; i++) {
-    if (!mhb_field_kept(response, b, &mhb_fields[i])) continue;
-    size_t row = mhb_field_width(response, b, &mhb_fields[i]) * mhb_field_bytes(mhb_fields[i].kind);
-    char  *data = mhb_field_get(b, &mhb_fields[i]);
-    for (int p = from, q = b->n_points - 1; p < q; p++, q--)
-      swap_rows(data + (size_t)p * row, data + (size_t)q * row, row);
-  }
-}
-
-shb_status mhb_response_split(mhb_response *response, int branch, int from, int to) {
-  const mhb_branch *a = &response->branch[branch];
-  mhb_branch       *b = &response->branch[to];
-  b->order            = a->order;
-  b->n_harmonics      = a->n_harmonics;
-  for (int i = from; i < a->n_points; i++) {
+shb_status mhb_response_copy_points(mhb_response *to, int to_branch, const mhb_response *from,
+                                    int from_branch, int first, int last) {
+  const mhb_branch *a    = &from->branch[from_branch];
+  mhb_branch       *b    = &to->branch[to_branch];
+  int               step = first <= last ? 1 : -1;
+  for (int i = first; i != last + step; i += step) {
     int point;
-    SHB_TRY(mhb_response_point(response, to, &point));
+    SHB_TRY(mhb_response_point(to, to_branch, &point));
     for (int k = 0; k < MHB_N_FIELDS; k++) {
       const mhb_field *f = &mhb_fields[k];
-      if (!mhb_field_kept(response, b, f)) continue;
-      size_t row = mhb_field_width(response, b, f) * mhb_field_bytes(f->kind);
+      if (!mhb_field_kept(to, b, f)) continue;
+      size_t row = mhb_field_width(to, b, f) * mhb_field_bytes(f->kind);
       memcpy((char *)mhb_field_get(b, f) + (size_t)point * row,
              (char *)mhb_field_get(a, f) + (size_t)i * row, row);
     }
   }
-  response->branch[branch].n_points = from;
   return SHB_OK;
 }
 

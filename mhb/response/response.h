@@ -104,22 +104,24 @@ typedef struct {
 mhb_response *mhb_response_create(int n_pairs, int n_probes, int n_harmonics); /* NULL: no memory */
 void          mhb_response_destroy(mhb_response *response);
 
+/* A response without branches for the same pairs, probes, interfaces and kept multipliers, for work
+ * that is not to be seen yet. NULL: no memory. */
+mhb_response *mhb_response_like(const mhb_response *response);
+
 /* Takes over names and places of n >= 2 interfaces: name[n], interface[pair] are copied. SHB_ERR_IO. */
 shb_status mhb_response_interfaces(mhb_response *response, int n, char *const *name,
                                    const int *interface, int lead);
 
-/* Room for n more branches: until it is used up, branches keep their place in memory. */
-shb_status mhb_response_reserve(mhb_response *response, int n);
 /* Append an empty branch, its own main one; its index through *index. */
 shb_status mhb_response_branch(mhb_response *response, mhb_branch_kind kind, int *index);
 /* Make room for one more point (zeroed) and return its index through *point; branch arrays may move. */
 shb_status mhb_response_point(mhb_response *response, int branch, int *point);
 /* Move the last point of a branch to place at; those from there on move up by one. */
 void mhb_response_place(mhb_response *response, int branch, int at);
-/* The points of a branch from `from` on in the opposite order. */
-void mhb_response_reverse(mhb_response *response, int branch, int from);
-/* The points of a branch from `from` on become those of `to`, an empty branch of the same kind. */
-shb_status mhb_response_split(mhb_response *response, int branch, int from, int to);
+/* Append points first..last of a branch of another response of the same shape, in this order: from the
+ * last to the first if first > last. Both branches have as many harmonics. SHB_ERR_IO: no memory. */
+shb_status mhb_response_copy_points(mhb_response *to, int to_branch, const mhb_response *from,
+                                    int from_branch, int first, int last);
 /* Drop the branches for which drop is true, [n_branches]; main follows. */
 void mhb_response_drop(mhb_response *response, const bool *drop);
 /* Further branches after all others, those of one main branch together, in the order in which they were found. */

@@ -21,9 +21,11 @@
 
 #include "mesh/base/progress.h"
 #include "mhb/branches/main_branch.h"
+#include "mhb/continuation/balance_curve.h"
 #include "mhb/continuation/first_solution.h"
 #include "precision.h"
 #include "shroud_face.h"
+#include "tests/support/main_curve.h"
 #include "tests/support/three_degree.h"
 
 static const double PI = 3.14159265358979323846;
@@ -52,18 +54,6 @@ static double median(const double *t, int n) {
   return n ? sorted[n / 2] : NAN;
 }
 
-static void no_lock(mhb_monitor *monitor, bool locked) {
-  (void)monitor;
-  (void)locked;
-}
-
-static bool go_on(mhb_monitor *monitor, int branch, const mhb_curve_point *point) {
-  (void)monitor;
-  (void)branch;
-  (void)point;
-  return true;
-}
-
 static sweep_row read_branch(const mhb_branch *b, int K) {
   sweep_row row = {
       .points = b->n_points, .complete = b->complete, .ms = 1e3 * median(b->seconds, b->n_points)};
@@ -87,27 +77,19 @@ static mhb_settings beam_settings(int harmonics, double tolerance) {
 }
 
 static shb_status sweep_once(const modal_model *model, const mhb_settings *s, sweep_row *row) {
-  mhb_monitor  monitor = {.point = go_on, .lock = no_lock};
-  mhb_balance *residual;
-  int          branch;
-  SHB_TRY(mhb_balance_create(model, s, &residual));
-  mhb_balance_set_preload(residual, s->n0[0]);
-  mhb_response *response = mhb_response_create(1, model->n_probes, s->harmonics);
-  shb_status    status   = mhb_response_branch(response, MHB_BRANCH_NONLINEAR, &branch);
-  double        started  = shb_seconds();
-  if (status == SHB_OK) status = mhb_trace_main_branch(residual, response, branch, &monitor);
-  double seconds = shb_seconds() - started;
-  if (status == SHB_OK) *row = read_branch(&response->branch[branch], s->harmonics + 1);
+  mhb_response *response;
+  double        seconds = 0;
+  shb_status    status  = main_curve(model, s, s->harmonics, &seconds, &response);
+  if (status == SHB_OK) *row = read_branch(&response->branch[0], s->harmonics + 1);
   row->seconds = seconds;
   mhb_response_destroy(response);
-  mhb_balance_destroy(residual);
   return status;
 }
 
 static int moves(const mhb_balance *b) {
   int n = 0;
   for (int a = 0; a < b->n_pairs; a++)
-    n += b->info[a].share[MHB_STICK] < 1 && b->info[a].share[MHB_SEPARATE] < 1;
+    n += b->eval->info[a].share[MHB_STICK] < 1 && b->eval->info[a].share[MHB_SEPARATE] < 1;
   return n;
 }
 
@@ -120,10 +102,11 @@ static shb_status time_steps(const modal_model *model, const mhb_settings *s, sw
   double         low = 2 * PI * s->frequency[0];
   SHB_TRY(mhb_balance_create(model, s, &b));
   mhb_balance_set_preload(b, s->n0[0]);
-  SHB_TRY(mhb_arclength_create(b, low, 2 * PI * s->frequency[1], &path));
+  SHB_TRY(mhb_balance_curve_create(b, low, 2 * PI * s->frequency[1], &path));
   double               *x       = calloc((size_t)b->n, sizeof(double));
   mhb_arclength_outcome outcome = MHB_ARCLENGTH_STALLED;
-  if (mhb_first_solution(path->newton, b, low, path->tolerance, x, &iterations) == MHB_CONVERGED &&
+  if (mhb_first_solution(mhb_balance_curve_of(path)->newton, b, low, path->tolerance, x,
+                         &iterations) == MHB_CONVERGED &&
       mhb_arclength_start(path, x, low, 1) == MHB_CONVERGED)
     outcome = MHB_ARCLENGTH_ON;
   while (outcome == MHB_ARCLENGTH_ON && n[0] + n[1] < MAX_POINTS) {
@@ -266,9 +249,9 @@ typedef struct {
 static shb_status walk(mhb_arclength *path, mhb_balance *b, double *x, pairs_row *row) {
   int    iterations;
   double started = shb_seconds(), omega = 2 * PI * 255, ms[STEPS];
-  SHB_CHECK(
-      mhb_first_solution(path->newton, b, omega, path->tolerance, x, &iterations) == MHB_CONVERGED,
-      SHB_NOT_CONVERGED, "no first solution of %d pairs", b->n_pairs);
+  SHB_CHECK(mhb_first_solution(mhb_balance_curve_of(path)->newton, b, omega, path->tolerance, x,
+                               &iterations) == MHB_CONVERGED,
+            SHB_NOT_CONVERGED, "no first solution of %d pairs", b->n_pairs);
   SHB_CHECK(mhb_arclength_start(path, x, omega, 1) == MHB_CONVERGED, SHB_NOT_CONVERGED,
             "no start for %d pairs", b->n_pairs);
   row->first    = shb_seconds() - started;
@@ -294,7 +277,7 @@ static shb_status run_pairs(int pairs, int harmonics, pairs_row *row) {
   shroud_face_model(pairs, 150, &model);
   SHB_TRY(mhb_balance_create(&model, &s, &b));
   mhb_balance_set_preload(b, s.n0[0]);
-  SHB_TRY(mhb_arclength_create(b, 2 * PI * 215, 2 * PI * 320, &path));
+  SHB_TRY(mhb_balance_curve_create(b, 2 * PI * 215, 2 * PI * 320, &path));
   *row              = (pairs_row){.pairs = pairs};
   double    *x      = calloc((size_t)b->n, sizeof(double));
   shb_status status = walk(path, b, x, row);

@@ -6,9 +6,10 @@
 #include <string.h>
 #include <time.h>
 
+#include "mhb/balance/newton.h"
 #include "mhb/branches/harmonic_selection.h"
-#include "mhb/branches/main_branch.h"
 #include "mhb/numerics/fourier.h"
+#include "tests/support/main_curve.h"
 
 static const double PI = 3.14159265358979323846, TOLERANCE = 1e-4, GOAL = 1.5, NEAR_BY = .1;
 
@@ -21,45 +22,9 @@ typedef struct {
 } row;
 
 /* Of the processor: others may be at work on the machine. */
-static double cpu_seconds(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-static void no_lock(mhb_monitor *monitor, bool locked) {
-  (void)monitor;
-  (void)locked;
-}
-
-static bool go_on(mhb_monitor *monitor, int branch, const mhb_curve_point *point) {
-  (void)monitor;
-  (void)branch;
-  (void)point;
-  return true;
-}
-
 static int ascending(const void *a, const void *b) {
   double x = *(const double *)a, y = *(const double *)b;
   return (x > y) - (x < y);
-}
-
-/* One curve of a branch of its own; room for harmonics. */
-static shb_status follow(const modal_model *model, const mhb_settings *s, int room, double *seconds,
-                         mhb_response **out) {
-  mhb_monitor  monitor  = {.point = go_on, .lock = no_lock};
-  mhb_balance *residual = NULL;
-  int          branch;
-  SHB_TRY(mhb_balance_create(model, s, &residual));
-  mhb_balance_set_preload(residual, s->n0[0]);
-  *out = mhb_response_create(model->n_pairs, model->n_probes, room);
-  SHB_CHECK(*out, SHB_ERR_IO, "out of memory");
-  shb_status status  = mhb_response_branch(*out, MHB_BRANCH_NONLINEAR, &branch);
-  double     started = cpu_seconds();
-  if (status == SHB_OK) status = mhb_trace_main_branch(residual, *out, branch, &monitor);
-  *seconds = cpu_seconds() - started;
-  mhb_balance_destroy(residual);
-  return status;
 }
 
 /* Relative error of point p; negative: no solution near by. */
@@ -107,7 +72,7 @@ static shb_status measure(const modal_model *model, const mhb_settings *s, int r
   for (int i = 0; i < REPEATS; i++) {
     double        seconds = 0;
     mhb_response *r       = NULL;
-    shb_status    status  = follow(model, s, room, &seconds, &r);
+    shb_status    status  = main_curve(model, s, room, &seconds, &r);
     if (status == SHB_OK && i == 0) compare(r, newton, fine, out);
     mhb_response_destroy(r);
     SHB_TRY(status);

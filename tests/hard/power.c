@@ -24,6 +24,6 @@ power power_of(const mhb_balance *b, double omega) {
       out.damping += PI * 2 * r->model->damping_ratio[i] * w * k * k * w1 * pow(cabs(q), 2);
     }
   }
-  for (int a = 0; a < b->n_pairs; a++) out.friction += b->info[a].slip_work;
+  for (int a = 0; a < b->n_pairs; a++) out.friction += b->eval->info[a].slip_work;
   return out;
 }

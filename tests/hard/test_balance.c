@@ -114,7 +114,7 @@ static void balance(const modal_model *model, mhb_settings *s, double from, doub
     point_of(r, branch, i, 0, x);
     mhb_balance_evaluate(b, x, omega, unused, NULL, NULL);
     power p = power_of(b, omega);
-    for (int a = 0; a < b->n_pairs; a++) loop += b->info[a].dissipation;
+    for (int a = 0; a < b->n_pairs; a++) loop += b->eval->info[a].dissipation;
     worst[0] = fmax(worst[0], fabs(p.input - p.damping - loop) / p.input);
     worst[1] = fmax(worst[1], fabs(p.input - p.damping - p.friction) / p.input);
     share    = fmax(share, p.friction / p.input);

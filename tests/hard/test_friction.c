@@ -8,6 +8,7 @@
 
 #include <cmocka.h>
 
+#include "mhb/balance/newton.h"
 #include "mhb/branches/main_branch.h"
 #include "mhb/numerics/fourier.h"
 #include "tests/hard/verdict.h"
@@ -103,7 +104,7 @@ static void stiff_friction(void **state) {
 static double solved(const modal_model *model, const mhb_settings *s, double w, double *x) {
   periodic p;
   periodic_create(model, s, w, NULL, &p);
-  double slip = p.residual->info[0].share[MHB_SLIDE];
+  double slip = p.residual->eval->info[0].share[MHB_SLIDE];
   for (int i = 0; i < p.residual->n; i++) x[i] = p.x[i];
   periodic_destroy(&p);
   return slip;

@@ -9,6 +9,7 @@
 
 #include <cmocka.h>
 
+#include "mhb/balance/newton.h"
 #include "mhb/branches/main_branch.h"
 #include "tests/hard/verdict.h"
 #include "tests/support/periodic.h"
@@ -71,7 +72,7 @@ static void grazing_gap(void **state) {
     periodic_create(&model, &s, W, NULL, &p);
     verdict(fabs(hypot(p.x[1], p.x[2]) / open - 1), 1e-8, "5 W %.1f, gap %+.0e of the peak", W,
             off[i % 3]);
-    verdict_count(p.residual->info[0].lost, 0, "5 W %.1f, gap %+.0e: contact law lost", W,
+    verdict_count(p.residual->eval->info[0].lost, 0, "5 W %.1f, gap %+.0e: contact law lost", W,
                   off[i % 3]);
     periodic_destroy(&p);
   }

@@ -36,7 +36,7 @@ static void reverse(double *x, int width) {
 static void states(const mhb_balance *b, int count[3]) {
   count[0] = count[1] = count[2] = 0;
   for (int a = 0; a < b->n_pairs; a++) {
-    const double *share = b->info[a].share;
+    const double *share = b->eval->info[a].share;
     count[share[MHB_SEPARATE] > 0 ? 2 : share[MHB_SLIDE] > 0]++;
   }
 }
@@ -147,7 +147,7 @@ static void estimates(void **state) {
     periodic_create(&model, &s, 2 * PI * row->frequency, NULL, &p);
     assert_int_equal(mhb_truncation_create(p.residual, &t), SHB_OK);
     double estimate = mhb_truncation_error(t, p.x);
-    for (int a = 0; a < row->pairs; a++) moving += t->doubled->kind[a] == MHB_PAIR_NONLINEAR;
+    for (int a = 0; a < row->pairs; a++) moving += t->doubled->eval->kind[a] == MHB_PAIR_NONLINEAR;
     assert_in_range(moving, row->few, row->many);
     assert_int_equal(t->kind, MHB_TRUNCATION_NEWTON);
     mhb_truncation_destroy(t);

@@ -10,14 +10,15 @@
 #include <cmocka.h>
 
 #include "mhb/branches/main_branch.h"
+#include "mhb/continuation/balance_curve.h"
 #include "tests/hard/verdict.h"
 #include "tests/support/periodic.h"
 #include "tests/support/three_degree.h"
 
 static const double PI = 3.14159265358979323846;
 
-static double amplitude(const mhb_arclength *path, const mhb_curve_point *point, int c) {
-  int nb = path->residual->nb;
+static double amplitude(mhb_arclength *path, const mhb_curve_point *point, int c) {
+  int nb = mhb_curve_balance(path)->nb;
   return hypot(point->x[c * nb + 1], point->x[c * nb + 2]);
 }
 
@@ -27,9 +28,9 @@ static double off_parabola(mhb_balance *b, const double *x, double w, int c, dou
   double a[3], at[3];
   for (int k = 0; k < 2; k++) {
     mhb_arclength *path;
-    assert_int_equal(mhb_arclength_create(b, (1 - part) * w, (1 + part) * w, &path), SHB_OK);
+    assert_int_equal(mhb_balance_curve_create(b, (1 - part) * w, (1 + part) * w, &path), SHB_OK);
     int ok     = mhb_arclength_start(path, x, w, k ? 1 : -1) == MHB_CONVERGED;
-    a[1]       = amplitude(path, &path->now, c);
+    a[1]       = amplitude(path, &path->current, c);
     path->step = 1e-4;
     ok         = ok && mhb_arclength_step(path) != MHB_ARCLENGTH_STALLED;
     a[2 * k]   = ok ? amplitude(path, &path->next, c) : INFINITY;
@@ -47,12 +48,12 @@ static double off_highest(mhb_balance *b, const double *x, double w, int c) {
   double top = -INFINITY, at = INFINITY;
   for (int k = 0; k < 2; k++) {
     mhb_arclength *path;
-    assert_int_equal(mhb_arclength_create(b, .999 * w, 1.001 * w, &path), SHB_OK);
+    assert_int_equal(mhb_balance_curve_create(b, .999 * w, 1.001 * w, &path), SHB_OK);
     int ok = mhb_arclength_start(path, x, w, k ? 1 : -1) == MHB_CONVERGED;
     for (int i = 0; i <= STEPS && ok; i++) {
-      if (amplitude(path, &path->now, c) > top) {
-        top = amplitude(path, &path->now, c);
-        at  = i == STEPS ? INFINITY : path->now.value;
+      if (amplitude(path, &path->current, c) > top) {
+        top = amplitude(path, &path->current, c);
+        at  = i == STEPS ? INFINITY : path->current.value;
       }
       path->step = 1e-4;
       ok         = mhb_arclength_step(path) != MHB_ARCLENGTH_STALLED;

@@ -99,7 +99,7 @@ static void compare(const modal_model *sector, int engine_order, double n0, doub
   periodic_create(&ring, &one, w, NULL, &q);
   spread(p.x, engine_order, wanted);
   for (int i = 0; i < n; i++) worst = fmax(worst, fabs(q.x[i] - wanted[i]));
-  const double *share = p.residual->info[0].share;
+  const double *share = p.residual->eval->info[0].share;
   verdict(worst / mhb_norm(wanted, n), 1e-8, "8 E %d n0 %5.2f W %.1f (slip %.2f open %.2f)",
           engine_order, n0, w, share[MHB_SLIDE], share[MHB_SEPARATE]);
   periodic_destroy(&p);

@@ -1,4 +1,4 @@
-foreach(noun axes phases progress publish)
+foreach(noun arena axes phases progress publish root)
   shb_test(mesh/base ${noun} fast shb_mesh_base)
 endforeach()
 foreach(noun face_match group_checks group_rules jacobian triangle)

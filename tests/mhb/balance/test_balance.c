@@ -103,11 +103,11 @@ static void derivatives_are_exact(void **state) {
     random_motion(b, rows[i].size, 7 * i + 1, x);
     derivative_errors(b, x, 1.23, error);
     for (int a = 0; a < b->n_pairs; a++)
-      for (int c = 0; c < 3; c++) most[c] = fmax(most[c], b->info[a].share[c]);
+      for (int c = 0; c < 3; c++) most[c] = fmax(most[c], b->eval->info[a].share[c]);
     print_message(
         "%d pairs, n0 %4.1f: Jacobian %.1e, slope %.1e (pair 0: stuck %.2f slip %.2f open %.2f)\n",
-        rows[i].pairs, rows[i].n0, error[0], error[1], b->info[0].share[0], b->info[0].share[1],
-        b->info[0].share[2]);
+        rows[i].pairs, rows[i].n0, error[0], error[1], b->eval->info[0].share[0],
+        b->eval->info[0].share[1], b->eval->info[0].share[2]);
     assert_below(error[0], 1e-7);
     assert_below(error[1], 1e-8);
     mhb_balance_destroy(b);
@@ -165,7 +165,7 @@ static void linear_limits_solve_the_residual(void **state) {
         double error = relative_residual(b, x, .93);
         for (int a = 0; a < pairs; a++) {
           int wanted = stuck ? MHB_STICK : MHB_SEPARATE;
-          assert_true(b->info[a].share[wanted] == 1);
+          assert_true(b->eval->info[a].share[wanted] == 1);
         }
         assert_below(error, 1e-12);
         mhb_balance_destroy(b);
@@ -223,9 +223,9 @@ static void equal_pairs_share_the_totals(void **state) {
   mhb_balance_evaluate(a, x, 1.2, r, NULL, NULL);
   mhb_balance_evaluate(b, y, 1.2, q, NULL, NULL);
   for (int i = 0; i < b->n; i++) assert_below(fabs(q[i] - r[i % a->n]), 1e-12);
-  for (int i = 0; i < 4; i++) dissipation += b->info[i].dissipation;
+  for (int i = 0; i < 4; i++) dissipation += b->eval->info[i].dissipation;
   assert_true(dissipation > 1e-3);
-  assert_below(fabs(dissipation / a->info[0].dissipation - 1), 1e-12);
+  assert_below(fabs(dissipation / a->eval->info[0].dissipation - 1), 1e-12);
   mhb_balance_contact_force(a, 1, p);
   mhb_receptance_probe(a->receptance, 1, p, motion[0]);
   mhb_balance_contact_force(b, 1, p);
@@ -494,7 +494,7 @@ static double power_imbalance(const mhb_balance *b, double omega) {
     in -= .5 * creal(I * w * residual);
   }
   for (int a = 0; a < b->n_pairs; a++)
-    friction += b->info[a].dissipation * omega / (2 * PI * r->nu);
+    friction += b->eval->info[a].dissipation * omega / (2 * PI * r->nu);
   assert_true(friction > 1e-3 * in);
   return fabs(in - damping - friction) / in;
 }
@@ -528,8 +528,8 @@ static void solutions_balance_forces_and_power(void **state) {
     double lost = power_imbalance(b, rows[i].omega);
     print_message(
         "E %d n0 %5.2f: ring's balance %.1e, power %.1e (pair 0: stuck %.2f slip %.2f open %.2f)\n",
-        rows[i].E, rows[i].n0, error[1] / size, lost, b->info[0].share[0], b->info[0].share[1],
-        b->info[0].share[2]);
+        rows[i].E, rows[i].n0, error[1] / size, lost, b->eval->info[0].share[0],
+        b->eval->info[0].share[1], b->eval->info[0].share[2]);
     assert_below(error[1] / size, 1e-8);
     assert_below(lost, 1e-8);
     mhb_newton_destroy(newton);
@@ -538,10 +538,52 @@ static void solutions_balance_forces_and_power(void **state) {
   modal_model_free(&model);
 }
 
+/* ---------------------------------------------------------------- evaluations */
+
+/* Two points with evaluations of their own: each keeps force, derivative and laws of its own. */
+static void points_own_their_evaluations(void **state) {
+  (void)state;
+  modal_model model;
+  random_model(2, WITH_LEFT | WITH_RESIDUAL, 11, &model);
+  mhb_settings    s = random_settings(3);
+  mhb_balance    *b = residual_of(&model, &s);
+  mhb_evaluation *second;
+  mhb_balance_set_parameter(b, MHB_IN_N0);
+  int     n = b->n, block = 3 * b->nb;
+  size_t  size = (size_t)b->n_pairs * (size_t)block * (size_t)block * sizeof(double);
+  double  x[n], y[n], r[n], again[n], n0 = s.n0[0];
+  double *dp = malloc(size), *J = malloc(sizeof(double[n]) * (size_t)n),
+         *K = malloc(sizeof(double[n]) * (size_t)n);
+  random_motion(b, 0.8, 3, x);
+  random_motion(b, 1.1, 4, y);
+  mhb_balance_evaluate(b, x, n0, r, J, NULL);
+  memcpy(dp, b->eval->dp, size);
+
+  assert_int_equal(mhb_evaluation_create(b, &second), SHB_OK);
+  mhb_balance_use(b, second);
+  mhb_balance_evaluate(b, y, 1.7 * n0, again, K, NULL);
+  assert_memory_not_equal(dp, b->eval->dp, size);
+  assert_true(b->law[0].n0 == b->receptance->share[0] * (1.7 * n0));
+
+  mhb_balance_use(b, NULL);
+  assert_true(b->law[0].n0 == b->receptance->share[0] * n0 && b->eval->at.n0 == n0);
+  assert_memory_equal(dp, b->eval->dp, size);
+  mhb_balance_evaluate(b, x, n0, again, K, NULL);
+  assert_memory_equal(r, again, sizeof r);
+  assert_memory_equal(J, K, sizeof(double[n]) * (size_t)n);
+  free(dp);
+  free(J);
+  free(K);
+  mhb_evaluation_destroy(second);
+  mhb_balance_destroy(b);
+  modal_model_free(&model);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(derivatives_are_exact),
       cmocka_unit_test(no_memory),
+      cmocka_unit_test(points_own_their_evaluations),
       cmocka_unit_test(linear_limits_solve_the_residual),
       cmocka_unit_test(equal_pairs_share_the_totals),
       cmocka_unit_test(stuck_ring_is_the_sector),

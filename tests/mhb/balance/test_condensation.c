@@ -12,7 +12,9 @@
 
 #include <cmocka.h>
 
+#include "mhb/balance/newton.h"
 #include "mhb/branches/main_branch.h"
+#include "mhb/continuation/balance_curve.h"
 #include "mhb/continuation/first_solution.h"
 #include "tests/bench/shroud_face.h"
 #include "tests/support/allocations.h"
@@ -99,7 +101,7 @@ static void check_kinds(const mhb_balance *b, const char *kinds) {
                            : c == 'h' ? MHB_PAIR_AT_LIMIT
                            : c == 'o' ? MHB_PAIR_OPEN
                                       : MHB_PAIR_NONLINEAR;
-    assert_int_equal(b->kind[a], wanted);
+    assert_int_equal(b->eval->kind[a], wanted);
   }
 }
 
@@ -179,7 +181,7 @@ static void a_new_law_is_factored_anew(void **state) {
   random_vector(N, .1, 1, x);
   for (int round = 0; round < 2; round++) {
     double             *out = round ? again : first;
-    mhb_operating_point at  = b->at;
+    mhb_operating_point at  = b->eval->at;
     at.kv                   = round ? 1.6 : .8;
     at.n0                   = 1e4;
     mhb_balance_set_operating_point(b, &at);
@@ -213,7 +215,7 @@ static void evaluate_with(int threads, const modal_model *model, outcome *out) {
   random_vector(N + 1, 1, 7, row);
   random_vector(N + 1, 1, 8, out->step);
   mhb_balance_linearise(b, x, 1.3, out->r, out->slope);
-  memcpy(out->p, b->p, sizeof out->p);
+  memcpy(out->p, b->eval->p, sizeof out->p);
   assert_true(mhb_condensation_factor(system, column, row) &&
               mhb_condensation_solve(system, out->step));
   out->sign = mhb_condensation_sign(system);
@@ -249,15 +251,17 @@ static void walk(const modal_model *model, const mhb_settings *s, double start, 
   assert_int_equal(mhb_balance_create(model, s, &b), SHB_OK);
   mhb_balance_set_preload(b, s->n0[0]);
   assert_int_equal(
-      mhb_arclength_create(b, 2 * PI * s->frequency[0], 2 * PI * s->frequency[1], &path), SHB_OK);
+      mhb_balance_curve_create(b, 2 * PI * s->frequency[0], 2 * PI * s->frequency[1], &path),
+      SHB_OK);
   double *x = calloc((size_t)b->n, sizeof(double));
-  assert_int_equal(mhb_first_solution(path->newton, b, start, path->tolerance, x, &iterations),
+  assert_int_equal(mhb_first_solution(mhb_balance_curve_of(path)->newton, b, start, path->tolerance,
+                                      x, &iterations),
                    MHB_CONVERGED);
   assert_int_equal(mhb_arclength_start(path, x, start, 1), MHB_CONVERGED);
   allocations = 0;
   for (int i = 0; i < steps; i++) {
     assert_int_equal(mhb_arclength_step(path), MHB_ARCLENGTH_ON);
-    for (int a = 0; a < b->n_pairs; a++) moved += b->kind[a] == MHB_PAIR_NONLINEAR;
+    for (int a = 0; a < b->n_pairs; a++) moved += b->eval->kind[a] == MHB_PAIR_NONLINEAR;
     mhb_arclength_advance(path);
   }
   int counted = allocations;

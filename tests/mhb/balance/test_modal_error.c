@@ -95,7 +95,7 @@ static void compare(const char *where, int modes, double level, double n0, doubl
     double error = sqrt(off) / size;
     for (int c = 0; c < 3; c++)
       bare = fmax(bare, modal_series_error(&few, omega, c) / few.residual_flexibility[4 * c + !c]);
-    slips = fmax(slips, rough.residual->info[0].share[MHB_SLIDE]);
+    slips = fmax(slips, rough.residual->eval->info[0].share[MHB_SLIDE]);
     worst = fmax(worst, error);
     gain  = fmax(gain, error / bare);
     if (error < 1e-9) continue;

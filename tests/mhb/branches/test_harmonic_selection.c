@@ -14,6 +14,7 @@
 #include "mhb/branches/harmonic_selection.h"
 #include "mhb/branches/main_branch.h"
 #include "mhb/numerics/fourier.h"
+#include "tests/support/main_curve.h"
 #include "tests/support/periodic.h"
 #include "tests/support/random_model.h"
 #include "tests/support/three_degree.h"
@@ -22,36 +23,16 @@ static const double PI = 3.14159265358979323846, TOLERANCE = 1e-4;
 
 enum { FINE = MHB_MOST_HARMONICS, MAX_POINTS = 3000 };
 
-static void no_lock(mhb_monitor *monitor, bool locked) {
-  (void)monitor;
-  (void)locked;
-}
-
-static bool go_on(mhb_monitor *monitor, int branch, const mhb_curve_point *point) {
-  (void)monitor;
-  (void)branch;
-  (void)point;
-  return true;
-}
-
-/* The branch alone, without the linear limits; seconds of the better of two runs. */
+/* The main branch; seconds of the better of two runs. */
 static mhb_response *follow(const modal_model *model, const mhb_settings *s, int most,
                             double *seconds) {
-  mhb_monitor   monitor  = {.point = go_on, .lock = no_lock};
   mhb_response *response = NULL;
   *seconds               = INFINITY;
   for (int i = 0; i < 2; i++) {
-    mhb_balance *residual;
-    int          branch;
+    double own;
     mhb_response_destroy(response);
-    assert_int_equal(mhb_balance_create(model, s, &residual), SHB_OK);
-    mhb_balance_set_preload(residual, s->n0[0]);
-    response = mhb_response_create(model->n_pairs, model->n_probes, most);
-    assert_int_equal(mhb_response_branch(response, MHB_BRANCH_NONLINEAR, &branch), SHB_OK);
-    double started = shb_seconds();
-    assert_int_equal(mhb_trace_main_branch(residual, response, branch, &monitor), SHB_OK);
-    *seconds = fmin(*seconds, shb_seconds() - started);
-    mhb_balance_destroy(residual);
+    assert_int_equal(main_curve(model, s, most, &own, &response), SHB_OK);
+    *seconds = fmin(*seconds, own);
   }
   return response;
 }
@@ -140,7 +121,7 @@ static int cheapest(const modal_model *model, mhb_settings s, double *seconds, t
 
 static void check_curve(const char *name, const modal_model *model, mhb_settings s, double from,
                         double to) {
-  double seconds, fixed;
+  double seconds, fixed = INFINITY;
   truth  best;
   s.frequency[0]     = from / (2 * PI);
   s.frequency[1]     = to / (2 * PI);

@@ -13,8 +13,10 @@
 
 #include <cmocka.h>
 
+#include "mhb/balance/newton.h"
 #include "mhb/branches/forced_response.h"
 #include "mhb/branches/main_branch.h"
+#include "mhb/continuation/balance_curve.h"
 #include "mhb/continuation/event_location.h"
 #include "mhb/continuation/first_solution.h"
 #include "tests/support/random_model.h"
@@ -56,7 +58,7 @@ typedef struct {
   double fold[MAX_FOLDS], end, worst;
 } walked;
 
-static double turning(const mhb_arclength *path, const mhb_curve_point *point, void *context) {
+static double turning(mhb_arclength *path, const mhb_curve_point *point, void *context) {
   (void)context;
   return point->tangent[path->n];
 }
@@ -68,7 +70,7 @@ static walked walk(mhb_balance *residual, double low, double high, int direction
   mhb_newton    *newton;
   int            iterations;
   double         x[residual->n], start = direction > 0 ? low : high, at;
-  assert_int_equal(mhb_arclength_create(residual, low, high, &path), SHB_OK);
+  assert_int_equal(mhb_balance_curve_create(residual, low, high, &path), SHB_OK);
   assert_int_equal(mhb_newton_create(residual->n, &newton), SHB_OK);
   assert_int_equal(mhb_first_solution(newton, residual, start, 1e-11, x, &iterations),
                    MHB_CONVERGED);
@@ -77,15 +79,15 @@ static walked walk(mhb_balance *residual, double low, double high, int direction
   while (outcome == MHB_ARCLENGTH_ON && w.n_points++ < 2000) {
     outcome  = mhb_arclength_step(path);
     w.worst  = fmax(w.worst, path->next.residual);
-    double a = path->now.tangent[path->n], b = path->next.tangent[path->n];
+    double a = path->current.tangent[path->n], b = path->next.tangent[path->n];
     if (a * b < 0 && w.n_folds < MAX_FOLDS) {
       assert_int_equal(mhb_arclength_locate(path, turning, NULL, a, b, &at), 1);
-      w.fold[w.n_folds++] = path->probe.value;
+      w.fold[w.n_folds++] = path->trial.value;
     }
     mhb_arclength_advance(path);
   }
   assert_int_equal(outcome, direction > 0 ? MHB_ARCLENGTH_AT_END : MHB_ARCLENGTH_AT_START);
-  w.end = path->now.value;
+  w.end = path->current.value;
   mhb_newton_destroy(newton);
   mhb_arclength_destroy(path);
   return w;

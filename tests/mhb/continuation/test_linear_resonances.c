@@ -11,6 +11,7 @@
 
 #include "mhb/branches/forced_response.h"
 #include "mhb/branches/record.h"
+#include "mhb/continuation/balance_curve.h"
 #include "mhb/continuation/event_location.h"
 #include "tests/support/random_model.h"
 #include "tests/support/solution.h"
@@ -205,7 +206,7 @@ static void what_is_not_felt_costs_nothing(void **state) {
 
 /* Jumps from -1000 to 1 at a value: Illinois gains a thousandth at a time, and halves every fourth step.
  * As the tangent does where a curve folds in a kink. */
-static double jumping(const mhb_arclength *path, const mhb_curve_point *point, void *context) {
+static double jumping(mhb_arclength *path, const mhb_curve_point *point, void *context) {
   (void)path;
   return point->value < *(double *)context ? -1e3 : 1;
 }
@@ -220,17 +221,17 @@ static void jumps_are_located(void **state) {
   one_degree_model(.01, 1, .05, &model);
   assert_int_equal(mhb_balance_create(&model, &s, &residual), SHB_OK);
   mhb_balance_set_preload(residual, .1);
-  assert_int_equal(mhb_arclength_create(residual, .8, 2, &path), SHB_OK);
+  assert_int_equal(mhb_balance_curve_create(residual, .8, 2, &path), SHB_OK);
   cold_solution(&model, &s, 1.6, 1e-10, x);
   assert_int_equal(mhb_arclength_start(path, x, 1.6, 1), MHB_CONVERGED);
   for (int i = 0; i < 6; i++) {
     assert_int_equal(mhb_arclength_step(path), MHB_ARCLENGTH_ON);
-    double width = path->next.value - path->now.value;
+    double width = path->next.value - path->current.value;
     for (int j = 1; j < 20; j++) {
-      double place = path->now.value + .05 * j * width;
+      double place = path->current.value + .05 * j * width;
       assert_int_equal(mhb_arclength_locate(path, jumping, &place, -1e3, 1, &at), 1);
-      if (!(fabs(path->probe.value - place) < 1e-5 * width))
-        fail_msg("told as located %.1e of the step away", (path->probe.value - place) / width);
+      if (!(fabs(path->trial.value - place) < 1e-5 * width))
+        fail_msg("told as located %.1e of the step away", (path->trial.value - place) / width);
     }
     mhb_arclength_advance(path);
   }

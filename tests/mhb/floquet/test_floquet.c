@@ -195,7 +195,7 @@ static void friction_alone_is_stable(void **state) {
       assert_int_equal(out.verdict, MHB_STABLE);
       top = fmax(top, out.largest);
     }
-    slipped += p.residual->info[0].share[MHB_SLIDE] > .05;
+    slipped += p.residual->eval->info[0].share[MHB_SLIDE] > .05;
     periodic_destroy(&p);
     modal_model_free(&model);
   }
@@ -276,9 +276,9 @@ static void limits(void **state) {
   assert_int_equal(out.verdict, MHB_UNDECIDED);
   assert_non_null(strstr(out.reason, "max_states"));
   mhb_floquet_destroy(stability);
-  p.residual->info[0].lost = 1;
+  p.residual->eval->info[0].lost = 1;
   assert_int_equal(periodic_multipliers(&p, N, full).verdict, whole.verdict);
-  p.residual->info[0].error = 1e-3;
+  p.residual->eval->info[0].error = 1e-3;
   assert_int_equal(periodic_multipliers(&p, N, full).verdict, MHB_UNDECIDED);
   assert_int_equal(mhb_floquet_create(r, &s, 0, 0, &stability), SHB_ERR_INPUT);
   assert_non_null(strstr(shb_message(), "sub-step"));
@@ -312,7 +312,7 @@ static void nothing_is_allocated(void **state) {
     assert_int_equal(allocations, before);
     assert_true(before > 0);
     print_message("%.0f Hz, %d multipliers, slip %.2f: %.0f us\n", rows[i].hertz, out.n,
-                  p.residual->info[0].share[MHB_SLIDE], 1e6 * best);
+                  p.residual->eval->info[0].share[MHB_SLIDE], 1e6 * best);
 #ifdef NDEBUG /* an optimised build */
     assert_true(best < rows[i].most);
 #endif

@@ -36,7 +36,8 @@ static int hill_multipliers(periodic *p, double complex *mu) {
       SHB_OK);
   for (int d = 0; d < structure.blades; d++, n += 2 * structure.modes)
     assert_int_equal(
-        mhb_hill(&structure, d, p->omega / p->settings.subharmonics, b->m, b->dp, mu + n), SHB_OK);
+        mhb_hill(&structure, d, p->omega / p->settings.subharmonics, b->m, b->eval->dp, mu + n),
+        SHB_OK);
   mhb_modal_structure_destroy(&structure);
   free(r);
   free(J);

@@ -69,7 +69,7 @@ static periodic solve(const scene *s, modal_model *model) {
 static void tell(const periodic *p, char text[64]) {
   int seen[3][3] = {{0}};
   for (int a = 0; a < p->residual->n_pairs; a++) {
-    const mhb_contact_info *info = &p->residual->info[a];
+    const mhb_contact_info *info = &p->residual->eval->info[a];
     for (int i = 0, n = info->n_transitions; i < n; i++)
       seen[info->transition[(i + n - 1) % n].state][info->transition[i].state]++;
   }

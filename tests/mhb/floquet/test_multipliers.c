@@ -12,6 +12,7 @@
 
 #include "mhb/branches/forced_response.h"
 #include "mhb/branches/main_branch.h"
+#include "mhb/continuation/balance_curve.h"
 #include "mhb/numerics/fourier.h"
 #include "tests/support/disturbed.h"
 #include "tests/support/periodic.h"
@@ -205,9 +206,9 @@ static void product_without_friction(void **state) {
     for (int k = 0; k < 3; k++) rate += 2 * PI * model.frequency[k] * model.damping_ratio[k];
     double wanted = exp(-2 * rate * 2 * PI / p.omega);
     print_message("n0 %5.2f: product %.8f (%.8f), open %.2f\n", rows[i][0], creal(product), wanted,
-                  p.residual->info[0].share[MHB_SEPARATE]);
+                  p.residual->eval->info[0].share[MHB_SEPARATE]);
     assert_near(cabs(product / wanted - 1), 0, 1e-5);
-    assert_true(p.residual->info[0].share[MHB_SEPARATE] > .1);
+    assert_true(p.residual->eval->info[0].share[MHB_SEPARATE] > .1);
     periodic_destroy(&p);
   }
   modal_model_free(&model);
@@ -238,14 +239,15 @@ static void march_to(const modal_model *model, const mhb_settings *s, double ome
 /* Along the branch through its fold at the lower end and back to where it began. */
 static void other_side(periodic *p, double low, double high, double *x) {
   mhb_arclength *path;
-  assert_int_equal(mhb_arclength_create(p->residual, low, high, &path), SHB_OK);
+  assert_int_equal(mhb_balance_curve_create(p->residual, low, high, &path), SHB_OK);
   assert_int_equal(mhb_arclength_start(path, p->x, p->omega, -1), MHB_CONVERGED);
   for (int i = 0; i < 1000; i++) {
     assert_int_equal(mhb_arclength_step(path), MHB_ARCLENGTH_ON);
-    double now = path->now.value, next = path->next.value, share = (p->omega - now) / (next - now);
+    double now = path->current.value, next = path->next.value,
+           share = (p->omega - now) / (next - now);
     if (now < p->omega && next >= p->omega) {
       for (int k = 0; k < path->n; k++)
-        x[k] = (1 - share) * path->now.x[k] + share * path->next.x[k];
+        x[k] = (1 - share) * path->current.x[k] + share * path->next.x[k];
       break;
     }
     mhb_arclength_advance(path);

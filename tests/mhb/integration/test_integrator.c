@@ -133,9 +133,10 @@ static void three_degrees(void **state) {
                   apart(&a, &p, 0));
     for (int c = 0; c < 3; c++) assert_near(first_harmonic(&a, c), rows[i].a[c], 1e-6);
     assert_near(apart(&a, &p, 0), 0, 1e-5);
-    for (int c = 0; c < 3; c++) assert_near(a.r->state[c], p.residual->info[0].share[c], 1e-3);
-    assert_near(a.r->dissipation[0], p.residual->info[0].slip_work,
-                1e-4 * p.residual->info[0].slip_work + 1e-12);
+    for (int c = 0; c < 3; c++)
+      assert_near(a.r->state[c], p.residual->eval->info[0].share[c], 1e-3);
+    assert_near(a.r->dissipation[0], p.residual->eval->info[0].slip_work,
+                1e-4 * p.residual->eval->info[0].slip_work + 1e-12);
     periodic_destroy(&p);
     finish(&a);
   }
@@ -490,7 +491,7 @@ static void disturbances(void **state) {
     if (i > 0) until_periodic(&a, 1e-10, 2000);
     double rate = growth(&a, &model, &s, i ? 300 : 150);
     print_message("%d blades, slip %.2f: growth %.5f, largest multiplier %.5f\n", a.g->blades,
-                  p.residual->info[0].share[1], rate, m.largest);
+                  p.residual->eval->info[0].share[1], rate, m.largest);
     assert_near(rate, m.largest, 3e-3 * m.largest);
     assert_true(i > 0 || rate > 1.005);
     finish(&a);

@@ -106,8 +106,8 @@ static void halves_make_a_whole(void **state) {
     periodic_create(&one, &whole, omega, NULL, &b);
     double difference = apart(a.residual->n, a.x, b.x);
     print_message("omega %.1f: halves and whole differ by %.1e; slipping %.2f, open %.2f\n", omega,
-                  difference, a.residual->info[0].share[MHB_SLIDE],
-                  a.residual->info[0].share[MHB_SEPARATE]);
+                  difference, a.residual->eval->info[0].share[MHB_SLIDE],
+                  a.residual->eval->info[0].share[MHB_SEPARATE]);
     assert_below(difference, 1e-12);
     periodic_destroy(&a);
     periodic_destroy(&b);
@@ -164,8 +164,8 @@ static void an_open_one_is_none(void **state) {
     periodic a, b;
     periodic_create(&model, &two, omega, NULL, &a);
     periodic_create(&one, &single, omega, a.x + a.residual->n / 2, &b);
-    slips += b.residual->kind[0] == MHB_PAIR_NONLINEAR;
-    assert_true(a.residual->info[0].share[MHB_SEPARATE] == 1);
+    slips += b.residual->eval->kind[0] == MHB_PAIR_NONLINEAR;
+    assert_true(a.residual->eval->info[0].share[MHB_SEPARATE] == 1);
     assert_below(apart(b.residual->n, a.x + b.residual->n, b.x), 1e-12);
     periodic_destroy(&a);
     periodic_destroy(&b);
@@ -178,7 +178,7 @@ static void an_open_one_is_none(void **state) {
 /* dr/dparameter at a motion that slips and opens, by central differences. */
 static double slope_error(mhb_balance *b, const double *x, mhb_parameter parameter) {
   const int n  = b->n;
-  double    at = mhb_parameter_get(&b->at, parameter), h = 1e-4 * fmax(fabs(at), .1);
+  double    at = mhb_parameter_get(&b->eval->at, parameter), h = 1e-4 * fmax(fabs(at), .1);
   double    r[4][n], slope[n], wanted[n], J[(size_t)n * (size_t)n];
   mhb_balance_set_parameter(b, parameter);
   mhb_balance_evaluate(b, x, at, r[0], J, slope);
@@ -209,9 +209,9 @@ static void slopes_are_exact(void **state) {
       assert_int_equal(mhb_balance_create(&model, &s, &b), SHB_OK);
       for (int i = 0; i < b->n; i++) x[i] = (i % 9 ? .5 : .1) * random_unit(&seed) / (1 + i % 9);
       double error = slope_error(b, x, parameters[p]);
-      if (!(b->kind[0] == MHB_PAIR_NONLINEAR && b->kind[1] == MHB_PAIR_NONLINEAR))
-        fail_msg("kinds %d %d", b->kind[0], b->kind[1]);
-      assert_true(b->kind[0] == MHB_PAIR_NONLINEAR && b->kind[1] == MHB_PAIR_NONLINEAR);
+      if (!(b->eval->kind[0] == MHB_PAIR_NONLINEAR && b->eval->kind[1] == MHB_PAIR_NONLINEAR))
+        fail_msg("kinds %d %d", b->eval->kind[0], b->eval->kind[1]);
+      assert_true(b->eval->kind[0] == MHB_PAIR_NONLINEAR && b->eval->kind[1] == MHB_PAIR_NONLINEAR);
       if (p < 4 && which == 0)
         print_message("%s: slope %.1e\n", mhb_parameter_name(parameters[p]), error);
       assert_below(error, 1e-7);

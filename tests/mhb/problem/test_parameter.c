@@ -8,6 +8,7 @@
 
 #include <cmocka.h>
 
+#include "mhb/balance/newton.h"
 #include "mhb/branches/forced_response.h"
 #include "mhb/branches/main_branch.h"
 #include "tests/support/random_model.h"
@@ -46,7 +47,7 @@ static void slopes_are_exact(void **state) {
       double       x[N], r[N], exact[N], wanted[N], size = 0, far = 0;
       assert_int_equal(mhb_balance_create(&model, &s, &b), SHB_OK);
       mhb_balance_set_preload(b, seed % 3 || seed % 5 == 0 ? .3 : -.1);
-      mhb_operating_point at = b->at;
+      mhb_operating_point at = b->eval->at;
       at.omega               = 1.13;
       mhb_balance_set_operating_point(b, &at);
       mhb_balance_set_parameter(b, (mhb_parameter)what);
@@ -54,11 +55,11 @@ static void slopes_are_exact(void **state) {
         int k = (i % (2 * M + 1) + 1) / 2;
         x[i]  = (double)(seed % 4 + 1) * .2 * random_unit(&draw) / (k ? k * k : 4);
       }
-      double value = mhb_parameter_get(&b->at, b->parameter);
+      double value = mhb_parameter_get(&b->eval->at, b->parameter);
       if (value > 0 || what == MHB_IN_N0) {
         mhb_balance_linearise(b, x, value, r, exact);
         for (int a = 0; a < PAIRS; a++)
-          for (int i = 0; i < 3; i++) shares[i] += b->info[a].share[i] / (24 * PAIRS);
+          for (int i = 0; i < 3; i++) shares[i] += b->eval->info[a].share[i] / (24 * PAIRS);
         difference(b, x, value, 1e-5, wanted);
         for (int i = 0; i < N; i++) {
           far  = fmax(far, fabs(exact[i] - wanted[i]));

@@ -219,20 +219,21 @@ static void test_further_branches(void **state) {
   mhb_response_drop(read, drop);
   assert_int_equal(read->n_branches, 6);
   assert_true(read->branch[4].frequency[0] == 30 && read->branch[5].main == 3);
-  mhb_response_reverse(read, 4, 0);
-  for (int p = 0; p < 4; p++) {
-    const double complex *u = read->branch[4].motion + p * PAIRS * 3 * 10;
-    assert_true(read->branch[4].frequency[p] == 33 - p && u[7] == CMPLX(200 + 3 - p, 7));
-  }
   int to;
   assert_int_equal(mhb_response_branch(read, MHB_BRANCH_NONLINEAR, &to), SHB_OK);
-  assert_int_equal(mhb_response_split(read, 4, 1, to), SHB_OK);
-  mhb_response_reverse(read, to, 1);
-  const mhb_branch *left = &read->branch[4], *apart = &read->branch[to];
-  assert_true(left->n_points == 1 && left->frequency[0] == 33);
-  assert_true(apart->n_points == 3 && apart->n_harmonics == left->n_harmonics);
-  assert_true(apart->frequency[0] == 32 && apart->frequency[1] == 30 && apart->frequency[2] == 31);
-  assert_true(apart->motion[2 * PAIRS * 3 * 10 + 7] == CMPLX(201, 7));
+  read->branch[to].n_harmonics = read->branch[4].n_harmonics;
+  assert_int_equal(mhb_response_copy_points(read, to, read, 4, 3, 0), SHB_OK);
+  for (int p = 0; p < 4; p++) {
+    const double complex *u = read->branch[to].motion + p * PAIRS * 3 * 10;
+    assert_true(read->branch[to].frequency[p] == 33 - p && u[7] == CMPLX(200 + 3 - p, 7));
+  }
+  assert_int_equal(mhb_response_copy_points(read, to, read, 4, 1, 2), SHB_OK);
+  assert_true(read->branch[to].n_points == 6 && read->branch[to].frequency[4] == 31 &&
+              read->branch[to].frequency[5] == 32);
+  mhb_response *like = mhb_response_like(read);
+  assert_true(like && like->n_branches == 0 && like->n_pairs == read->n_pairs &&
+              like->n_multipliers == read->n_multipliers);
+  mhb_response_destroy(like);
   mhb_response_destroy(wrote);
   mhb_response_destroy(read);
 }

@@ -1,0 +1,8 @@
+/* Mathematical constants. */
+#ifndef MESH_BASE_CONSTANTS_H
+#define MESH_BASE_CONSTANTS_H
+
+#define SHB_PI 3.14159265358979323846
+#define SHB_TWO_PI 6.28318530717958647693
+
+#endif

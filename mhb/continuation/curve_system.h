@@ -1,0 +1,80 @@
+/* A system r(x, value) = 0 of n equations in n unknowns and a parameter, whose curves of solutions
+ * are traced. A balance of harmonics is one (balance_curve.h). The tests trace scalar ones. */
+#ifndef MHB_CONTINUATION_CURVE_SYSTEM_H
+#define MHB_CONTINUATION_CURVE_SYSTEM_H
+
+#include <stdbool.h>
+
+#include "mesh/base/status.h"
+#include "mhb/balance/newton.h"
+
+/* A point of a curve. It owns its evaluation: whoever visits it finds all of it there. */
+typedef struct {
+  double         *x;           /* [n] m */
+  double          value;       /* of the parameter; rad/s for the frequency */
+  double         *tangent;     /* [n + 1] d(x, value) along the curve, unit length in y */
+  double         *r, *slope;   /* [n] residual at (x, value), its derivative by the value */
+  mhb_evaluation *evaluation;  /* of a balance: forces, derivative, kinds of pairs; else NULL */
+  int             orientation; /* sign of det [J slope; tangent]: constant but at bifurcations */
+  int             iterations;  /* corrections that led here */
+  double          residual;    /* |r|/|x| */
+  double          truncation;  /* relative error of the harmonics left out */
+  double          modal;       /* relative error of the modes left out */
+  int             truncation_kind; /* mhb_truncation_kind */
+} mhb_curve_point;
+
+typedef struct mhb_curve_system mhb_curve_system;
+typedef struct mhb_arclength    mhb_arclength; /* arclength.h */
+struct mhb_curve_system {
+  int    n;        /* unknowns */
+  double least;    /* below it no value makes sense */
+  bool   relative; /* a change of the value is compared with the value itself, not with the range */
+  bool   smooth;   /* the residual is accurate enough for chord steps */
+  int    row_length; /* x is [n / row_length][row_length]; a finer system of the same curve has as
+                      * many rows, longer ones, that begin with the same unknowns */
+  int    copies;     /* time-shifted copies of a solution, itself included; 1: none */
+
+  void (*destroy)(mhb_curve_system *system); /* the system and all that it owns */
+  /* NULL where points need none. SHB_ERR_IO: no memory. */
+  shb_status (*evaluation_create)(mhb_curve_system *system, mhb_evaluation **evaluation);
+  void (*evaluation_destroy)(mhb_curve_system *system, mhb_evaluation *evaluation);
+
+  /* r, slope and all derivatives at the point, into the point. */
+  void (*linearise)(mhb_curve_system *system, mhb_curve_point *point);
+  /* r alone, into the point, whose derivatives stay as they are. */
+  void (*evaluate)(mhb_curve_system *system, mhb_curve_point *point);
+  /* Factor [J column; row] with J as linearised at the point; both [n + 1], the corner last.
+   * 0: singular. */
+  int (*factor)(mhb_curve_system *system, const mhb_curve_point *point, const double *column,
+                const double *row);
+  /* rhs[n + 1] <- solution with the last factors. 0: not a number. */
+  int (*solve)(mhb_curve_system *system, double *rhs);
+  /* Sign of the determinant of the last factors. */
+  int (*sign)(const mhb_curve_system *system);
+  /* Damped Newton method at the point's value from its x. */
+  mhb_reason (*solve_at_value)(mhb_curve_system *system, double tolerance, mhb_curve_point *point);
+
+  /* to[n] <- copy j of x[n], 0 < j < copies. */
+  void (*copy)(const mhb_curve_system *system, const double *x, int j, double *to);
+
+  /* Each of the following may be NULL: the system has none of it. */
+
+  /* x[n] <- another start of Newton's method at a value; false: there is no start `which`. */
+  bool (*start_of_newton)(mhb_curve_system *system, double value, int which, double *x);
+  /* Whether the law is linear at the point and about it. */
+  bool (*is_linear)(const mhb_curve_system *system, const mhb_curve_point *point);
+  /* mhb_arclength_correct without factors, where the law stays as at regime, a linear point.
+   * 0: it does not. */
+  int (*correct_linear)(mhb_arclength *curve, const mhb_curve_point *regime, const double *normal,
+                        mhb_curve_point *point);
+  /* Unit in which the value is to be measured at a point; the whole range: INFINITY. */
+  double (*unit_of_value)(const mhb_curve_system *system, const mhb_curve_point *point);
+  /* The longest change of the value from a point, in a direction, that resolves the resonances
+   * found so far. */
+  double (*resonance_step_limit)(const mhb_curve_system *system, double value, int direction);
+  /* Whether the step from current to next passes a resonance unseen; resonance_step_limit then
+   * knows of it. */
+  bool (*resonance_skipped)(mhb_arclength *curve);
+};
+
+#endif

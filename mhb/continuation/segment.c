@@ -1,0 +1,128 @@
+#include "mhb/continuation/segment.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "mhb/continuation/corrector.h"
+#include "mhb/response/response.h"
+
+/* A segment whose steps stay below TINY_STEP this often has stalled. */
+static const double TINY_STEP = 2e-3;
+enum { MAX_TINY_STEPS = 150, MAX_SHORTER = 5 };
+
+/* current <- where the seed starts. *end: MHB_END_NO_START if that is nowhere. */
+static void start(mhb_segment_host *host, const mhb_seed *seed, mhb_end *end) {
+  mhb_arclength *curve = host->curve;
+  int            out   = seed->direction;
+  bool           found = false;
+  switch (seed->kind) {
+    case MHB_SEED_SOLUTION:
+      found = mhb_arclength_start(curve, seed->x, seed->value, out) == MHB_CONVERGED;
+      break;
+    case MHB_SEED_CROSSING:
+      found = mhb_arclength_depart(curve, seed->x, seed->value, seed->along) == MHB_CONVERGED;
+      break;
+    case MHB_SEED_EXCURSION:
+      found = mhb_arclength_start(curve, seed->x, seed->value, out) == MHB_CONVERGED;
+      if (seed->step > 0) curve->step = seed->step;
+      found = found && mhb_arclength_excursion(curve, out, seed->reach);
+      if (found) mhb_arclength_advance(curve);
+      break;
+  }
+  *end = found ? MHB_END_NONE : MHB_END_NO_START;
+}
+
+/* The crossing itself is the first point of a segment that leaves another curve. */
+static shb_status record_crossing(mhb_segment_host *host, const mhb_seed *seed, bool *go_on) {
+  mhb_curve_point *crossing = &host->curve->trial;
+  memcpy(crossing->x, seed->x, sizeof(double) * (size_t)host->curve->n);
+  crossing->value      = seed->value;
+  crossing->iterations = 0;
+  mhb_arclength_measure(host->curve, crossing);
+  host->estimate_event(host, crossing);
+  return host->record(host, crossing, MHB_ORDINARY, go_on);
+}
+
+/* The first point, at a level that suffices. */
+static shb_status begin_segment(mhb_segment_host *host, const mhb_seed *seed, mhb_end *end,
+                                bool *go_on) {
+  start(host, seed, end);
+  if (*end != MHB_END_NONE) return SHB_OK;
+  if (host->started) SHB_TRY(host->started(host, seed, end));
+  if (*end != MHB_END_NONE) return SHB_OK;
+  if (seed->kind == MHB_SEED_CROSSING) SHB_TRY(record_crossing(host, seed, go_on));
+  for (bool raised = true; raised;) SHB_TRY(host->estimate(host, &host->curve->current, &raised));
+  mhb_events_begin(host->curve, host->n_tests, host->test);
+  return seed->skip_first ? SHB_OK : host->record(host, &host->curve->current, MHB_ORDINARY, go_on);
+}
+
+/* Predictor and corrector, again from current as long as the harmonics at next do not suffice. */
+static shb_status sufficient_step(mhb_segment_host *host, mhb_arclength_outcome *outcome) {
+  for (bool raised = true; raised;) {
+    *outcome = mhb_arclength_step(host->curve);
+    if (*outcome == MHB_ARCLENGTH_STALLED) return SHB_OK;
+    SHB_TRY(host->estimate(host, &host->curve->next, &raised));
+    if (raised) mhb_events_begin(host->curve, host->n_tests, host->test);
+  }
+  return SHB_OK;
+}
+
+static double step_length(const mhb_arclength *curve) {
+  double chord[curve->n + 1];
+  for (int i = 0; i < curve->n; i++) chord[i] = curve->next.x[i] - curve->current.x[i];
+  chord[curve->n] = curve->next.value - curve->current.value;
+  return sqrt(mhb_arclength_inner(curve, mhb_arclength_unit(curve), chord, chord));
+}
+
+/* A step and its events; shorter, where it hides a pair of folds. */
+static shb_status step_with_events(mhb_segment_host *host, mhb_end *end) {
+  double whole = 0, part = 0;
+  for (int shorter = 0; shorter <= MAX_SHORTER + 1; shorter++) {
+    mhb_arclength_outcome outcome;
+    if (shorter > 0) host->curve->step = shorter <= MAX_SHORTER ? (part *= 0.25) : whole;
+    SHB_TRY(sufficient_step(host, &outcome));
+    *end = MHB_END_STALLED;
+    if (outcome == MHB_ARCLENGTH_STALLED) {
+      if (shorter == 0 || shorter > MAX_SHORTER) return SHB_OK;
+      continue;
+    }
+    SHB_TRY(mhb_events_locate(host->curve, host->n_tests, host->test, host->events, end));
+    if (*end == MHB_END_CLOSED) host->estimate_event(host, &host->curve->next); /* it has moved */
+    if (*end != MHB_END_NONE || !mhb_events_miss_fold(host->curve, host->events)) return SHB_OK;
+    if (shorter == 0) whole = part = step_length(host->curve);
+  }
+  return SHB_OK;
+}
+
+shb_status mhb_trace_segment(mhb_segment_host *host, const mhb_seed *seed, mhb_end *end) {
+  bool go_on  = true;
+  int  n_tiny = 0, n_points = 1;
+  SHB_TRY(begin_segment(host, seed, end, &go_on));
+  while (*end == MHB_END_NONE && go_on) {
+    if (n_points >= host->max_points) {
+      *end = MHB_END_MAX_POINTS;
+      break;
+    }
+    if (host->limit_step) host->limit_step(host);
+    SHB_TRY(step_with_events(host, end));
+    if (*end == MHB_END_STALLED) break;
+    const mhb_events *events = host->events;
+    for (int i = 0; i < events->n && go_on; i++, n_points++) {
+      host->estimate_event(host, events->event[i].point);
+      SHB_TRY(host->record(host, events->event[i].point, events->event[i].test->special, &go_on));
+    }
+    int special = events->fold_not_located ? MHB_FOLD : MHB_ORDINARY; /* as near as it is known */
+    if (go_on) SHB_TRY(host->record(host, &host->curve->next, special, &go_on));
+    n_points++;
+    mhb_arclength_advance(host->curve);
+    mhb_events_advance(host->n_tests, host->test);
+    n_tiny = host->curve->step < TINY_STEP ? n_tiny + 1 : 0;
+    if (*end == MHB_END_NONE && n_tiny > MAX_TINY_STEPS) *end = MHB_END_TINY_STEPS;
+    if (*end != MHB_END_NONE || !go_on) break;
+    bool moved;
+    SHB_TRY(host->accept(host, &moved));
+    if (moved) mhb_events_begin(host->curve, host->n_tests, host->test);
+  }
+  if (!go_on) *end = MHB_END_INTERRUPTED;
+  return SHB_OK;
+}
