@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "mesh/base/root.h"
 #include "mesh/blade/airfoil.h"
 #include "mesh/gmsh/session.h"
 
@@ -115,25 +116,22 @@ shb_status mesh_loft_create(const mesh_blade *blade, const mesh_frame *frame, me
   return find_sides(blade, loft);
 }
 
-/* False position with the Illinois step; the radius rises with the parameter. */
 shb_status mesh_loft_point(const mesh_loft *loft, mesh_side side, double u, double radius,
                            double own[3]) {
-  enum { STEPS = 60 };
-  const mesh_loft_side *s = &loft->side[side];
-  double                a = 0, b = 1, fa = s->bottom - radius, fb = s->top - radius;
-  int                   last = 0;
-  for (int i = 0; i < STEPS; i++) {
-    double v = a - fa * (b - a) / (fb - fa);
-    SHB_TRY(evaluate(loft, s, u, v, own));
-    double f = own[2] - radius;
-    if (fabs(f) < 1e-13) break;
-    if (f < 0) {
-      if (last < 0) fb /= 2;
-      a = v, fa = f, last = -1;
-    } else {
-      if (last > 0) fa /= 2;
-      b = v, fb = f, last = 1;
-    }
+  const mesh_loft_side *s         = &loft->side[side];
+  const double          tolerance = 1e-13; /* m */
+  double                off       = INFINITY;
+  shb_root              root;
+  SHB_CHECK(shb_root_start(&root, 0, s->bottom - radius, 1, s->top - radius,
+                           tolerance / (s->top - s->bottom)),
+            SHB_ERR_INPUT, "%s: the loft does not reach radius %g mm", case_key, 1e3 * radius);
+  while (fabs(off) >= tolerance) {
+    const bool   last   = shb_root_done(&root);
+    const double radial = last ? root.x[0] : shb_root_next(&root);
+    SHB_TRY(evaluate(loft, s, u, radial, own));
+    if (last) break;
+    off = own[2] - radius;
+    shb_root_found(&root, radial, off);
   }
   return SHB_OK;
 }

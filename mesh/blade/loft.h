@@ -31,7 +31,8 @@ shb_status mesh_loft_create(const mesh_blade *blade, const mesh_frame *frame, me
 /* Point of a side, to 1e-13 m in radius.
  *   u       in   0 leading edge, 1 trailing edge
  *   radius  in   m, radial coordinate
- *   own     out  blade coordinates, m */
+ *   own     out  blade coordinates, m
+ * Errors: SHB_ERR_INPUT for a radius beyond the ends of the loft. */
 shb_status mesh_loft_point(const mesh_loft *loft, mesh_side side, double u, double radius,
                            double own[3]);
 

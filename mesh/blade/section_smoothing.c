@@ -2,8 +2,9 @@
 
 #include <math.h>
 #include <stdbool.h>
-#include <stdlib.h>
 #include <string.h>
+
+#include "mesh/base/arena.h"
 
 /* Quadrangles around each node: quad[start[node]] .. quad[start[node + 1] - 1]. */
 typedef struct {
@@ -108,12 +109,13 @@ static void set_middles(mesh_planar *plan) {
 shb_status mesh_planar_smooth(mesh_planar *plan) {
   enum { PASSES = 30 };
   const size_t n        = (size_t)plan->n_nodes;
+  shb_arena    arena    = {0};
   adjacency    r        = {.plan  = plan,
-                           .start = malloc((n + 1) * sizeof(int)),
-                           .quad  = malloc(4 * (size_t)plan->n_quads * sizeof(int)),
-                           .fixed = malloc(n)};
-  int         *work     = malloc(n * sizeof *work);
-  bool         complete = r.start && r.quad && r.fixed && work;
+                           .start = shb_arena_take(&arena, n + 1, sizeof(int)),
+                           .quad  = shb_arena_take(&arena, 4 * (size_t)plan->n_quads, sizeof(int)),
+                           .fixed = shb_arena_take(&arena, n, 1)};
+  int         *work     = shb_arena_take(&arena, n, sizeof *work);
+  const bool   complete = !arena.failed;
   if (complete) {
     find_fixed(&r, work);
     find_quads(&r, work);
@@ -122,10 +124,7 @@ shb_status mesh_planar_smooth(mesh_planar *plan) {
         if (!r.fixed[i] && r.start[i] < r.start[i + 1]) move(&r, i);
     set_middles(plan);
   }
-  free(r.start);
-  free(r.quad);
-  free(r.fixed);
-  free(work);
+  shb_arena_free(&arena);
   SHB_CHECK(complete, SHB_ERR_IO, "no memory for a plan");
   return SHB_OK;
 }

@@ -8,6 +8,7 @@
 #include <strings.h>
 #include <unistd.h>
 
+#include "mesh/base/arena.h"
 #include "mesh/base/publish.h"
 #include "mesh/io/inp_table.h"
 
@@ -34,11 +35,11 @@ static int by_corner(const void *a, const void *b) {
 }
 
 /* Faces of all sets, sorted by their smallest corner; NULL when out of memory. */
-static group_face *list_faces(const mesh_fe *mesh, int *n) {
+static group_face *list_faces(const mesh_fe *mesh, shb_arena *arena, int *n) {
   const mesh_topology *topology = mesh_topology_of(mesh->kind);
   size_t               total    = 0;
   for (int s = 0; s < mesh_fe_sets(mesh); s++) total += (size_t)mesh->set[s].n;
-  group_face *list = malloc((total + 1) * sizeof *list);
+  group_face *list = shb_arena_take(arena, total, sizeof *list);
   *n               = 0;
   for (int s = 0; list && s < mesh_fe_sets(mesh); s++)
     for (int f = 0; f < mesh->set[s].n; f++) {
@@ -146,15 +147,15 @@ static void write_groups(const mesh_fe *mesh, int *const element[MESH_MAX_SETS],
 }
 
 static shb_status write_all(const mesh_fe *mesh, FILE *file) {
+  shb_arena   arena                  = {0};
   int        *element[MESH_MAX_SETS] = {0}, *label[MESH_MAX_SETS] = {0}, n = 0;
-  group_face *list     = list_faces(mesh, &n);
-  char       *marked   = malloc((size_t)mesh->n_nodes + 1);
-  bool        complete = list && marked;
+  group_face *list   = list_faces(mesh, &arena, &n);
+  char       *marked = shb_arena_take(&arena, (size_t)mesh->n_nodes, 1);
   for (int s = 0; s < mesh_fe_sets(mesh); s++) {
-    element[s] = calloc((size_t)mesh->set[s].n + 1, sizeof **element);
-    label[s]   = calloc((size_t)mesh->set[s].n + 1, sizeof **label);
-    complete   = complete && element[s] && label[s];
+    element[s] = shb_arena_take(&arena, (size_t)mesh->set[s].n, sizeof **element);
+    label[s]   = shb_arena_take(&arena, (size_t)mesh->set[s].n, sizeof **label);
   }
+  const bool complete = !arena.failed;
   if (complete) {
     locate(mesh, list, n, element, label);
     write_body(mesh, file);
@@ -162,12 +163,7 @@ static shb_status write_all(const mesh_fe *mesh, FILE *file) {
     write_node_sets(mesh, marked, file);
     write_groups(mesh, element, label, file);
   }
-  for (int s = 0; s < mesh_fe_sets(mesh); s++) {
-    free(element[s]);
-    free(label[s]);
-  }
-  free(list);
-  free(marked);
+  shb_arena_free(&arena);
   SHB_CHECK(complete, SHB_ERR_IO, "out of memory for a mesh file");
   return SHB_OK;
 }
