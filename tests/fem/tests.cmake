@@ -1,4 +1,4 @@
-foreach(noun finite_strain material surface)
+foreach(noun finite_strain hourglass material quadrature surface)
   shb_test(fem/element ${noun} fast tests_fem)
 endforeach()
 shb_test(fem/element tet10 fast tests_fem PkgConfig::OPENBLAS)
