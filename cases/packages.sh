@@ -1,26 +1,31 @@
 # shellcheck shell=sh disable=SC2034
-# Debian packages that shroudhb needs, and how they come onto the machine. Sourced by quickstart.sh, tests/run.sh
-# and .ci/run; defines functions only. POSIX sh.
+# Debian packages that shroudhb needs, and how they come onto the machine. Sourced by quickstart.sh,
+# tests/run.sh and .ci/run; defines functions only. POSIX sh.
 
 packages_build="gcc libc6-dev cmake ninja-build pkg-config git
 libgmsh-dev libpetsc-real-dev libslepc-real-dev libhdf5-openmpi-dev libfftw3-dev
-liblapacke-dev libopenblas-dev libsuitesparse-dev libmumps-dev libyaml-dev libcmocka-dev openmpi-bin"
+liblapacke-dev libopenblas-dev libsuitesparse-dev libmumps-dev libyaml-dev libcmocka-dev
+openmpi-bin"
 
-# the tests also look at files with other people's eyes, and at frequencies with CalculiX's
-packages_test="hdf5-tools python3-h5py calculix-ccx"
+# the tests also read files with h5dump and python3, and compare frequencies with CalculiX
+packages_test="hdf5-tools python3 python3-h5py calculix-ccx"
+
+# continuous integration also checks the sources
+packages_check="clang-format clang-tidy python3"
 
 # packages_missing NAME...: those that are not installed, on one line
 packages_missing() {
   for package in "$@"; do
-    dpkg-query -W -f='${db:Status-Status}\n' "$package" 2>/dev/null | grep -qx installed || printf '%s ' "$package"
+    dpkg-query -W -f='${db:Status-Status}\n' "$package" 2>/dev/null | grep -qx installed ||
+      printf '%s ' "$package"
   done
 }
 
-# packages_install NAME...: install those that are missing. As an ordinary user who may not, says which they are
-# and returns 1. Touches neither the network nor the package lists when nothing is missing.
+# packages_install NAME...: installs the missing ones. Lists them and returns 1 if the user may not.
+# If nothing is missing, neither the network nor the package lists are touched.
 packages_install() {
   command -v dpkg-query >/dev/null || {
-    echo "shroudhb: this script installs Debian packages; on another system install the like of: $*" >&2
+    echo "shroudhb: this script installs Debian packages; elsewhere install the like of: $*" >&2
     return 1
   }
   packages_wanted=$(packages_missing "$@")
@@ -38,8 +43,8 @@ packages_install() {
   echo "installing: $packages_wanted"
   # shellcheck disable=SC2086
   if ! $packages_sudo env DEBIAN_FRONTEND=noninteractive apt-get -qq update </dev/null ||
-    ! $packages_sudo env DEBIAN_FRONTEND=noninteractive apt-get -qq -y --no-install-recommends install \
-      $packages_wanted </dev/null >/dev/null; then
+    ! $packages_sudo env DEBIAN_FRONTEND=noninteractive apt-get -qq -y \
+      --no-install-recommends install $packages_wanted </dev/null >/dev/null; then
     echo "shroudhb: apt-get could not install: $packages_wanted" >&2
     return 1
   fi

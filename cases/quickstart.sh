@@ -1,6 +1,6 @@
 #!/bin/sh
-# From a fresh Debian 12 to a forced-response report: installs what is missing (root or sudo), builds in
-# build/release, runs the case z_notch_blade, says where the report is.
+# From a fresh Debian 12 to a forced-response report: installs missing packages (root or sudo),
+# builds in build/release, runs the case z_notch_blade, prints where the report is.
 set -eu
 root=$(CDPATH='' cd -- "$(dirname -- "$0")/.." && pwd)
 cd "$root"

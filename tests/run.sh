@@ -1,6 +1,6 @@
 #!/bin/sh
-# Installs what is missing (root or sudo), builds in build/release, runs every test, slow ones included.
-# Arguments go to ctest, e.g. -L fast, -R '^cases'.
+# Installs what is missing (root or sudo), builds in build/release, runs every test.
+# Arguments go to ctest: -L unit (about 20 s), -LE slow, -R '^cases'.
 set -eu
 root=$(CDPATH='' cd -- "$(dirname -- "$0")/.." && pwd)
 cd "$root"

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Whether usage mentions option as a whole word. */
+/* Does usage mention option as a whole word? */
 static bool mentions(const char *usage, const char *option) {
   size_t n = strlen(option);
   for (const char *at = usage; (at = strstr(at, option)) != NULL; at += n)
@@ -68,7 +68,7 @@ int command_parse(int argc, char **argv, const char *usage, command_options *out
   return -1;
 }
 
-/* A reader that has left is no fault; a full disk is. */
+/* A reader of standard output that has closed it is no fault; a full disk is one. */
 static shb_status finish_output(void) {
   errno     = 0;
   bool good = fflush(stdout) == 0;

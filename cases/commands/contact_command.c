@@ -47,7 +47,7 @@ static int by_phase(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-/* One motion and the contact's answer. */
+/* A motion and the contact forces that follow from it. */
 typedef struct {
   int                    m, H;
   mhb_law                law;
@@ -84,7 +84,7 @@ static shb_status evaluate(const case_motion *given, evaluation *e) {
   return SHB_OK;
 }
 
-/* The file's name without folder and .yaml: malloc'ed, NULL when out of memory. */
+/* The file's name without folder and .yaml; malloc'ed, NULL if memory is short. */
 static char *title(const char *path) {
   const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path,
              *dot = strrchr(name, '.');
@@ -92,17 +92,18 @@ static char *title(const char *path) {
 }
 
 static shb_status draw(const char *path, const char *svg, const evaluation *e) {
-  contact_period period;
-  SHB_TRY(period_create(e->contact, &e->law, e->m, e->motion, e->info, &period));
+  sampled_period period;
+  SHB_TRY(sampled_period_create(e->contact, &e->law, e->m, e->motion, e->info, &period));
   char       *name = title(path);
   post_buffer out  = {0};
-  loops_draw(
-      &(loops_view){.name = name ? name : "", .law = &e->law, .info = e->info, .period = &period},
+  hysteresis_draw(
+      &(hysteresis_view){
+          .name = name ? name : "", .law = &e->law, .info = e->info, .period = &period},
       &out);
   shb_status status = post_buffer_publish(&out, svg);
   post_buffer_free(&out);
   free(name);
-  period_free(&period);
+  sampled_period_free(&period);
   return status;
 }
 

@@ -12,7 +12,8 @@ enum { WIDTH = 1000, HEIGHT = 790, LEFT = 72, RIGHT = 978, MOST_PANELS = 3, MANY
 
 static const char *const state_name[] = {"stick", "slip", "open"};
 
-/* Colours of the light page, then what the dark one changes. Plain properties: not every viewer knows variables. */
+/* Colours of the light page and, below, of the dark page. No CSS variables: some viewers lack
+ * them. */
 static const char style[] =
     "<style>svg{background:#fff}text{font:13px system-ui,'Helvetica "
     "Neue',Helvetica,Arial,sans-serif;fill:#56606c}"
@@ -52,7 +53,7 @@ static post_unit pick(const post_unit *unit, int n, double largest) {
   return unit[n - 1];
 }
 
-/* Forces of models in any units: kN from 10 kN on, below 1 N smaller ones too. */
+/* Unit of forces: kN from 10 kN on; below 1 N the smaller units too. */
 static post_unit force_unit(double largest) {
   static const post_unit small[] = {{"N", 1}, {"mN", 1e-3}, {"µN", 1e-6}, {"nN", 1e-9}};
   if (!(fabs(largest) > 0) || fabs(largest) >= 1) return post_unit_force(largest);
@@ -87,26 +88,26 @@ static double extent(int n, const double *x) {
   return r.hi - r.lo;
 }
 
-/* What the panels share. */
+/* Data that all panels use. */
 typedef struct {
-  const loops_view     *view;
-  const contact_period *period;
-  post_buffer          *out;
-  post_unit             length, force, energy;
-  double                friction, limit; /* largest |f| and mu n */
+  const hysteresis_view *view;
+  const sampled_period  *period;
+  post_buffer           *out;
+  post_unit              length, force, energy;
+  double                 friction, limit; /* largest |f| and mu n */
 } sheet;
 
 /* ---- pieces of a panel ---- */
 
-static void draw_states(const post_plot *plot, const contact_period *p, const double *x,
+static void draw_states(const post_plot *plot, const sampled_period *p, const double *x,
                         const double *y) {
   static const char *const classes[] = {"line stick", "line slip", "line open"};
   for (int k = PERIOD_STATES - 1; k >= 0; k--)
     plot_line(plot, classes[k], p->n, x, y, p->during[k]);
 }
 
-/* Arrowhead at sample i, along the way to a sample some pixels further on. */
-static void put_arrow(const post_plot *plot, const contact_period *p, const double *x,
+/* An arrowhead at sample i that points towards a sample some pixels further on. */
+static void put_arrow(const post_plot *plot, const sampled_period *p, const double *x,
                       const double *y, int i) {
   double at[2] = {plot_x(plot, x[i]), plot_y(plot, y[i])}, d[2] = {0, 0}, size = 0;
   for (int j = i + 1; j < p->n && size < 3; j++) {
@@ -121,9 +122,9 @@ static void put_arrow(const post_plot *plot, const contact_period *p, const doub
            at[0] - 4 * c + 4.5 * s, at[1] - 4 * s - 4.5 * c);
 }
 
-/* Sample of transition i. */
+/* Index of the sample of transition i. */
 static int sample_of(const sheet *s, int i) {
-  const contact_period *p   = s->period;
+  const sampled_period *p   = s->period;
   int                   low = 0, high = p->n - 1;
   while (low < high) {
     int middle = (low + high) / 2;
@@ -136,7 +137,7 @@ static int sample_of(const sheet *s, int i) {
   return low;
 }
 
-/* Whether a mark would cover an arrowhead at sample i. */
+/* Would a mark cover an arrowhead at sample i? */
 static bool near_mark(const sheet *s, const post_plot *plot, const double *x, const double *y,
                       int i) {
   int n = s->view->info->n_transitions <= MANY ? s->view->info->n_transitions : 0;
@@ -149,7 +150,8 @@ static bool near_mark(const sheet *s, const post_plot *plot, const double *x, co
   return false;
 }
 
-/* Which way round: arrowheads about a quarter and three quarters along the curve, clear of marks. */
+/* The sense of rotation: arrowheads near one quarter and three quarters of the curve, clear of
+ * marks. */
 static void put_arrows(const sheet *s, const post_plot *plot, const double *x, const double *y) {
   double total = 0;
   for (int pass = 0; pass < 2; pass++) {
@@ -166,7 +168,7 @@ static void put_arrows(const sheet *s, const post_plot *plot, const double *x, c
   }
 }
 
-/* Where time is 0 and where the state changes. */
+/* Marks at time 0 and at the transitions. */
 static void put_marks(const sheet *s, const post_plot *plot, const double *x, const double *y) {
   const mhb_contact_info *info = s->view->info;
   plot_dot(plot, "start", x[0], y[0], 3.6);
@@ -184,7 +186,7 @@ static void draw_curve(const sheet *s, const post_plot *plot, const double *x, c
 
 /* ---- the panels ---- */
 
-/* At the right above a panel. */
+/* A note at the right above a panel. */
 static void put_note(const post_plot *plot, const char *text, const char *number) {
   post_put(plot->out,
            "<text class=\"tick\" x=\"%.1f\" y=\"%.1f\" text-anchor=\"end\">%s %s</text>\n",
@@ -194,7 +196,7 @@ static void put_note(const post_plot *plot, const char *text, const char *number
 typedef enum { LOOP_U, LOOP_W, PATH, APPROACH } panel;
 
 static void draw_loop(const sheet *s, post_plot *plot, int k) {
-  const contact_period *p = s->period;
+  const sampled_period *p = s->period;
   const double         *x = p->motion[1 + k], *y = p->friction[k];
   range                 rx = range_of(p->n, x), ry = range_of(p->n, y);
   char                  lx[64], ly[64];
@@ -209,7 +211,7 @@ static void draw_loop(const sheet *s, post_plot *plot, int k) {
 }
 
 static void draw_approach(const sheet *s, post_plot *plot) {
-  const contact_period *p  = s->period;
+  const sampled_period *p  = s->period;
   range                 rx = range_of(p->n, p->motion[0]), ry = range_of(p->n, p->load);
   post_unit             unit = force_unit(ry.hi);
   char                  lx[64], ly[64];
@@ -229,9 +231,9 @@ static void put_circle(const post_plot *plot, const char *classes, double radius
       classes, plot->id, plot_x(plot, 0), plot_y(plot, 0), px);
 }
 
-/* (fu, fw) within the circles of the largest and the smallest mu n; equal scales. */
+/* The path (fu, fw) inside circles of the largest and smallest limit mu n; equal scales. */
 static void draw_path(const sheet *s, post_plot *plot) {
-  const contact_period *p = s->period;
+  const sampled_period *p = s->period;
   double high = 1.1 * fmax(s->friction, fmin(s->limit, 2 * s->friction)), wide = high;
   wide *= plot->width / plot->height;
   char lx[64], ly[64];
@@ -239,7 +241,7 @@ static void draw_path(const sheet *s, post_plot *plot) {
   snprintf(ly, sizeof ly, "friction fw, %s", s->force.name);
   plot->x = (plot_axis){.lo = -wide, .hi = wide, .unit = s->force.scale, .label = lx};
   plot->y = (plot_axis){.lo = -high, .hi = high, .unit = s->force.scale, .label = ly};
-  put_circle(plot, "limit", s->limit); /* under the grid; its clip path follows */
+  put_circle(plot, "limit", s->limit); /* below the grid; its clip path follows */
   range limit  = range_of(p->n, p->limit);
   bool  varies = limit.lo < .995 * limit.hi;
   if (varies) put_circle(plot, "limit inner", limit.lo);
@@ -250,8 +252,8 @@ static void draw_path(const sheet *s, post_plot *plot) {
            post_measure(number, s->limit, force_unit(s->limit), 4));
 }
 
-/* The panels that have something to show; one at least. */
-static int choose_panels(const contact_period *p, panel chosen[MOST_PANELS]) {
+/* Chooses the panels with something to show; at least one. */
+static int choose_panels(const sampled_period *p, panel chosen[MOST_PANELS]) {
   double v = extent(p->n, p->motion[0]), u = extent(p->n, p->motion[1]);
   double w = extent(p->n, p->motion[2]), least = 1e-12 * fmax(u, w);
   bool   fu = most(p->n, p->friction[0]) > 0, fw = most(p->n, p->friction[1]) > 0;
@@ -283,8 +285,8 @@ static void draw_panels(const sheet *s) {
 
 /* ---- time: state bar, friction and its limit ---- */
 
-/* Below mu n. */
-static void put_limit_area(const post_plot *plot, const contact_period *p) {
+/* The area below mu n. */
+static void put_limit_area(const post_plot *plot, const sampled_period *p) {
   double bottom = plot_y(plot, 0), last = NAN;
   post_put(plot->out, "<path class=\"limit\" clip-path=\"url(#%s-clip)\" d=\"M%.1f %.1f", plot->id,
            plot_x(plot, 0), bottom);
@@ -297,13 +299,13 @@ static void put_limit_area(const post_plot *plot, const contact_period *p) {
   post_put(plot->out, "L%.1f %.1fZ\"/>\n", plot_x(plot, 1), bottom);
 }
 
-/* In percent, to a tenth. */
+/* Percent with one decimal. */
 static char *put_share(char out[POST_NUMBER], double share) {
   if (share > 0 && share < 5e-4) return strcpy(out, "&lt;0.1");
   return post_plain(out, round(1e3 * share) / 10, 4);
 }
 
-/* A stretch of the bar, with its share where there is room. */
+/* A segment of the bar, with its percentage if there is room. */
 static void put_stretch(const post_plot *bar, int state, double from, double to) {
   static const char *const classes[] = {"bar stick", "bar slip", "bar open"};
   const double             x[2] = {from, to}, y[2] = {0, 1}, move[2] = {0, 4.5};
@@ -325,7 +327,8 @@ static void put_stretches(const post_plot *bar, const mhb_contact_info *info) {
   int n = info->n_transitions, state = 0;
   for (int k = 1; k < PERIOD_STATES; k++)
     if (info->share[k] > info->share[state]) state = k;
-  if (n > 0) state = info->transition[n - 1].state; /* still holds where the period begins */
+  /* the last state of the period still holds at its start */
+  if (n > 0) state = info->transition[n - 1].state;
   double from = 0;
   for (int i = 0; i < n; i++) {
     put_stretch(bar, state, from, info->transition[i].phase);
@@ -338,7 +341,7 @@ static void put_stretches(const post_plot *bar, const mhb_contact_info *info) {
            bar->left, bar->top, bar->width, bar->height);
 }
 
-/* When the state changes: above the bar in two rows, where there is room; lines down to the curve. */
+/* Times of the transitions: above the bar in up to two rows, with lines down to the curve. */
 static void put_transitions(const post_plot *bar, const mhb_contact_info *info, double bottom) {
   double taken[2] = {-100, -100};
   for (int i = 0; i < info->n_transitions && info->n_transitions <= MANY; i++) {
@@ -356,9 +359,9 @@ static void put_transitions(const post_plot *bar, const mhb_contact_info *info, 
   post_put(bar->out, "\n");
 }
 
-/* |f| under mu n; n itself where there is no friction at all. */
+/* The friction |f| and its limit mu n; the normal load n if there is no friction at all. */
 static void draw_time(const sheet *s) {
-  const contact_period *p    = s->period;
+  const sampled_period *p    = s->period;
   bool                  any  = s->limit > 0;
   const double         *y    = any ? p->size : p->load;
   post_unit             unit = any ? s->force : force_unit(most(p->n, y));
@@ -405,7 +408,7 @@ static void put_heading(const sheet *s) {
            info->error < 1e-15 ? "below " : "", error);
 }
 
-/* What the reader must know before the curves mean anything to him. */
+/* A remark that must be read before the curves. */
 static const char *remark(const sheet *s) {
   const mhb_contact_info *info = s->view->info;
   if (info->lost) return "periodic state not reached: see the error estimate";
@@ -457,8 +460,8 @@ static void put_legend(const sheet *s) {
            x + 6, x + 16, x + 80, x + 90);
 }
 
-void loops_draw(const loops_view *view, post_buffer *out) {
-  const contact_period *p = view->period;
+void hysteresis_draw(const hysteresis_view *view, post_buffer *out) {
+  const sampled_period *p = view->period;
   sheet                 s = {.view = view, .period = p, .out = out};
   double                path[3];
   for (int i = 0; i < 3; i++) path[i] = most(p->n, p->motion[i]);

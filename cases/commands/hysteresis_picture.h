@@ -1,4 +1,5 @@
-/* Picture of a contact over one period: hysteresis loops, the friction path within its limit, the states in time. */
+/* Picture of a contact over one period: hysteresis loops, friction path and its limit, states in
+ * time. */
 #ifndef CASES_COMMANDS_HYSTERESIS_PICTURE_H
 #define CASES_COMMANDS_HYSTERESIS_PICTURE_H
 
@@ -9,11 +10,11 @@ typedef struct {
   const char             *name; /* of the motion file */
   const mhb_law          *law;
   const mhb_contact_info *info; /* transitions ascending */
-  const contact_period   *period;
-} loops_view;
+  const sampled_period   *period;
+} hysteresis_view;
 
-/* A whole SVG file that needs nothing else; light or dark as the reader's page is. Stick, slip and open differ in
- * colour and in line style, so that it reads in grey too. */
-void loops_draw(const loops_view *view, post_buffer *out);
+/* Draw a complete SVG file; its colours follow the light or dark page of the reader. Stick, slip
+ * and open differ in colour and in line style, so the picture is legible in grey. */
+void hysteresis_draw(const hysteresis_view *view, post_buffer *out);
 
 #endif

@@ -10,7 +10,7 @@ static shb_status read_speeds(const char *path, int modes, bool residuals, case_
   SHB_TRY(modal_speeds_read(path, &speeds));
   shb_status status = SHB_OK;
   for (int i = 0; i < speeds.n && modes > 0 && status == SHB_OK; i++)
-    status = modal_model_keep(&speeds.model[i], modes, residuals);
+    status = modal_model_reduce(&speeds.model[i], modes, residuals);
   if (status == SHB_OK)
     status = mhb_speed_table_create(&speeds, path, m->settings.engine_order, f, &m->run_up);
   modal_speeds_free(&speeds);
@@ -27,7 +27,7 @@ shb_status case_model_read(const case_file *file, const char *path, int modes, b
   *m = (case_model){.settings = file->mhb};
   if (file->run_up) return read_speeds(path, modes, residuals, m);
   SHB_TRY(modal_model_read(path, &m->model));
-  return modes > 0 ? modal_model_keep(&m->model, modes, residuals) : SHB_OK;
+  return modes > 0 ? modal_model_reduce(&m->model, modes, residuals) : SHB_OK;
 }
 
 void case_model_free(case_model *m) {

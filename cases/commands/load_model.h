@@ -1,18 +1,22 @@
-/* The modal file of a case as its balance takes it: one model, or in a run-up those of every speed. */
+/* The modal file of a case as the balance uses it: one model, or the models of a run-up. */
 #ifndef CASES_COMMANDS_LOAD_MODEL_H
 #define CASES_COMMANDS_LOAD_MODEL_H
 
-#include "cases/schema/case.h"
+#include "cases/parse/case_file.h"
 #include "mhb/structure/speed_model.h"
 
 typedef struct {
-  modal_model      model; /* in a run-up that at the upper end of mhb.frequency; freed with this */
-  mhb_settings     settings; /* the case's, with the run-up */
+  modal_model      model;    /* in a run-up the one at the upper end of mhb.frequency; owned */
+  mhb_settings     settings; /* of the case, including the run-up */
   mhb_speed_table *run_up;   /* NULL: one speed */
-  mhb_speed_model *top;      /* whose model it is then */
+  mhb_speed_model *top;      /* owner of the model in a run-up */
 } case_model;
 
-/* modes  in   keep that many (residuals: those left out answer statically, else not at all); 0: as they are
+/* Read the modal file at path, with all speeds in a run-up.
+ *
+ *   modes      in  number of modes kept; 0: all
+ *   residuals  in  true: modes left out respond quasi-statically; false: not at all
+ *
  * Errors: as modal_speeds_read, mhb_speed_table_create. To be freed in any case. */
 shb_status case_model_read(const case_file *file, const char *path, int modes, bool residuals,
                            case_model *model);

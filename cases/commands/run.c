@@ -7,13 +7,15 @@
 
 #include "cases/commands/subprocess.h"
 #include "cases/parse/damping.h"
+#include "cases/schema/case.h"
+#include "cases/schema/case_paths.h"
 
 enum { N_STAGES = 4 };
 
 static const char *const stage_name[N_STAGES] = {"mesh", "modal", "mhb", "post"};
 
-/* --verbose: where the time went. */
-static void print_times(const child_result result[N_STAGES]) {
+/* --verbose: prints the time of each stage. */
+static void print_times(const subprocess_result result[N_STAGES]) {
   double seconds = 0, cpu = 0, peak = 0;
   fprintf(stderr, "%-8s %10s %10s %10s\n", "stage", "seconds", "cpu s", "peak MB");
   for (int i = 0; i < N_STAGES; i++) {
@@ -43,12 +45,12 @@ static void print_results(const case_file *file, int code) {
 }
 
 static shb_status run_stage(const char *stage, const command_options *options,
-                            child_result *result) {
+                            subprocess_result *result) {
   char  name[32];
   char *words[8] = {NULL};
   int   n        = 0;
   snprintf(name, sizeof name, "shroudhb-%s", stage);
-  words[n++] = child_program(name);
+  words[n++] = subprocess_program(name);
   SHB_CHECK(words[0], SHB_ERR_IO, "out of memory");
   char quiet[] = "--quiet", verbose[] = "--verbose", force[] = "--force", end[] = "--";
   if (options->quiet) words[n++] = quiet;
@@ -58,21 +60,24 @@ static shb_status run_stage(const char *stage, const command_options *options,
   char *path = strdup(options->path);
   words[n++] = path;
   shb_status status =
-      path ? child_run(words, result)
+      path ? subprocess_run(words, result)
            : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "%s: out of memory", options->path);
   free(path);
   free(words[0]);
   return status;
 }
 
-/* A response that did not converge everywhere is still worth a report; modes that did not are no result. */
+/* A response that has not converged everywhere is still reported. Modes that have not converged
+ * stop the run. */
 static bool goes_on(int stage, int code) {
   return code == SHB_OK || (code == SHB_NOT_CONVERGED && strcmp(stage_name[stage], "mhb") == 0);
 }
 
-/* *code: of the stage that ended the run, else 3 if the response did not converge everywhere, else 0. */
+/* Runs the stages in turn.
+ *   *code  out  exit code of the stage that ended the run; else 3 if the response has not converged
+ *               everywhere; else 0 */
 static shb_status run_stages(const case_file *file, const command_options *options, int *code,
-                             child_result result[N_STAGES]) {
+                             subprocess_result result[N_STAGES]) {
   *code = SHB_OK;
   for (int i = file->modal_file ? 2 : 0; i < N_STAGES; i++) {
     SHB_TRY(run_stage(stage_name[i], options, &result[i]));
@@ -86,9 +91,9 @@ static shb_status run_stages(const case_file *file, const command_options *optio
 shb_status run_case(const command_options *options) {
   case_file file;
   SHB_TRY(case_read(options->path, RUN_ALL, stderr, &file));
-  int          code;
-  child_result result[N_STAGES] = {{0}};
-  shb_status   status           = run_stages(&file, options, &code, result);
+  int               code;
+  subprocess_result result[N_STAGES] = {{0}};
+  shb_status        status           = run_stages(&file, options, &code, result);
   if (options->verbose && !options->quiet) print_times(result);
   bool done = status == SHB_OK && result[N_STAGES - 1].seconds > 0 &&
               (code == SHB_OK || code == SHB_NOT_CONVERGED);

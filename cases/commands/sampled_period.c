@@ -10,7 +10,7 @@ static const double TWO_PI = 6.283185307179586476925;
 
 enum { SIGNALS = 9, LEAST = 1440, A_HARMONIC = 32 };
 
-/* What integrating over the period takes. */
+/* The integrand over the period. */
 typedef struct {
   int           m;
   const double *motion; /* [3][2m+1] */
@@ -21,7 +21,7 @@ static int ascending(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-static bool allocate(contact_period *p, int n) {
+static bool allocate(sampled_period *p, int n) {
   double **array[SIGNALS] = {&p->phase,     &p->motion[0],   &p->motion[1],
                              &p->motion[2], &p->friction[0], &p->friction[1],
                              &p->load,      &p->size,        &p->limit};
@@ -32,17 +32,17 @@ static bool allocate(contact_period *p, int n) {
   return ok;
 }
 
-void period_free(contact_period *p) {
+void sampled_period_free(sampled_period *p) {
   double *array[SIGNALS] = {p->phase,     p->motion[0],   p->motion[1],
                             p->motion[2], p->friction[0], p->friction[1],
                             p->load,      p->size,        p->limit};
   for (int i = 0; i < SIGNALS; i++) free(array[i]);
   for (int i = 0; i < PERIOD_STATES; i++) free(p->during[i]);
-  *p = (contact_period){0};
+  *p = (sampled_period){0};
 }
 
-/* Even steps from 0 to 1 and the transitions. */
-static void place(contact_period *p, int steps, const mhb_contact_info *info) {
+/* Places samples at equal steps from 0 to 1 and at the transitions. */
+static void place(sampled_period *p, int steps, const mhb_contact_info *info) {
   int n = 0;
   for (int i = 0; i <= steps; i++) p->phase[n++] = (double)i / steps;
   for (int i = 0; i < info->n_transitions; i++) p->phase[n++] = info->transition[i].phase;
@@ -52,7 +52,7 @@ static void place(contact_period *p, int steps, const mhb_contact_info *info) {
     if (p->phase[i] > p->phase[p->n - 1]) p->phase[p->n++] = p->phase[i];
 }
 
-static void sum_motion(contact_period *p, const source *from) {
+static void sum_motion(sampled_period *p, const source *from) {
   int    nb = mhb_real_size(from->m);
   double basis[nb];
   for (int i = 0; i < p->n; i++) {
@@ -62,8 +62,8 @@ static void sum_motion(contact_period *p, const source *from) {
   }
 }
 
-/* A component that is mere rounding of the other. */
-static void drop_rounding(contact_period *p) {
+/* Sets a component to zero if it is only round-off of the other. */
+static void drop_rounding(sampled_period *p) {
   double most[2] = {0, 0};
   for (int i = 0; i < p->n; i++)
     for (int k = 0; k < 2; k++) most[k] = fmax(most[k], fabs(p->friction[k][i]));
@@ -71,7 +71,7 @@ static void drop_rounding(contact_period *p) {
     if (most[k] <= 1e-12 * most[1 - k]) memset(p->friction[k], 0, sizeof(double) * (size_t)p->n);
 }
 
-static void take(contact_period *p, const mhb_law *law, const mhb_contact_sample *sample) {
+static void take(sampled_period *p, const mhb_law *law, const mhb_contact_sample *sample) {
   for (int i = 0; i < p->n; i++) {
     for (int k = 0; k < 2; k++) p->friction[k][i] = sample[i].f[k];
     p->size[i]  = hypot(sample[i].f[0], sample[i].f[1]);
@@ -92,8 +92,9 @@ static void velocity(const source *from, double phase, double v[2]) {
   }
 }
 
-/* Work of the friction by Simpson's rule, smooth between samples; middle: [n - 1] the samples halfway. */
-static void integrate(contact_period *p, const source *from, const mhb_contact_sample *middle) {
+/* Work of friction by Simpson's rule; friction is smooth between samples. middle: [n - 1]
+ * midpoints. */
+static void integrate(sampled_period *p, const source *from, const mhb_contact_sample *middle) {
   double size[2] = {0, 0}, before[2], half[2], after[2];
   velocity(from, 0, after);
   for (int i = 1; i < p->n; i++) {
@@ -112,11 +113,12 @@ static void integrate(contact_period *p, const source *from, const mhb_contact_s
     if (fabs(p->work[k]) <= 1e-10 * size[k] && isfinite(size[k])) p->work[k] = 0;
 }
 
-shb_status period_create(mhb_contact_evaluator *contact, const mhb_law *law, int m,
-                         const double *motion, const mhb_contact_info *info, contact_period *p) {
+shb_status sampled_period_create(mhb_contact_evaluator *contact, const mhb_law *law, int m,
+                                 const double *motion, const mhb_contact_info *info,
+                                 sampled_period *p) {
   int steps = A_HARMONIC * m > LEAST ? A_HARMONIC * m : LEAST, n = steps + 1 + info->n_transitions;
   const source from          = {m, motion};
-  *p                         = (contact_period){0};
+  *p                         = (sampled_period){0};
   mhb_contact_sample *sample = calloc((size_t)n, sizeof *sample);
   mhb_contact_info   *again  = calloc(1, sizeof *again);
   bool                ok     = allocate(p, n) && sample && again;
@@ -126,7 +128,7 @@ shb_status period_create(mhb_contact_evaluator *contact, const mhb_law *law, int
     for (int i = 0; i < p->n; i++) sample[i].phase = p->phase[i];
     mhb_contact_time_history(contact, law, motion, p->n, sample, again);
     take(p, law, sample);
-    /* states halfway: at a transition itself rounding would decide */
+    /* states are taken at midpoints: at a transition round-off would decide */
     for (int i = 1; i < p->n; i++) sample[i - 1].phase = .5 * (p->phase[i - 1] + p->phase[i]);
     mhb_contact_time_history(contact, law, motion, p->n - 1, sample, again);
     for (int i = 1; i < p->n; i++) p->during[sample[i - 1].state][i] = true;
@@ -135,6 +137,6 @@ shb_status period_create(mhb_contact_evaluator *contact, const mhb_law *law, int
   free(sample);
   free(again);
   if (ok) return SHB_OK;
-  period_free(p);
+  sampled_period_free(p);
   SHB_FAIL(SHB_ERR_IO, "out of memory");
 }

@@ -9,6 +9,7 @@
 #include "cases/commands/command.h"
 #include "cases/commands/run.h"
 #include "cases/commands/subprocess.h"
+#include "cases/parse/key_listing.h"
 #include "cases/parse/keys.h"
 #include "cases/schema/case.h"
 
@@ -48,21 +49,22 @@ static int replace_by(char **argv) {
   return SHB_ERR_IO;
 }
 
-/* HDF5's reader can crash on files whose bytes were damaged in place: watch, and say so. */
+/* HDF5 can crash on a damaged file: inspect runs as a child process, and a crash is reported. */
 static int watch(char **argv) {
-  child_result result;
-  if (child_run(argv, &result) == SHB_OK) return result.code;
+  subprocess_result result;
+  if (subprocess_run(argv, &result) == SHB_OK) return result.code;
   fprintf(stderr, "shroudhb: error: %s; the file may be damaged\n", shb_message());
   return SHB_ERR_IO;
 }
 
-/* argv[0] is the command; the program "shroudhb-STAGE [mode]" gets the rest. end: how it is run. */
+/* Runs the program "shroudhb-STAGE [mode]" with the rest of argv. argv[0] is the command; end is
+ * the way of running it. */
 static int become(const char *stage, char *mode, int argc, char **argv, int (*end)(char **)) {
   char name[64];
   snprintf(name, sizeof name, "shroudhb-%s", stage);
   char **words = calloc((size_t)argc + 2, sizeof *words);
   int    n = 0, code = SHB_ERR_IO;
-  char  *path = child_program(name);
+  char  *path = subprocess_program(name);
   if (words && path) {
     words[n++] = path;
     if (mode) words[n++] = mode;
@@ -113,7 +115,7 @@ static int keys_main(const char *name, int argc, char **argv) {
   return command_finish(SHB_OK);
 }
 
-/* The options of commands that draw nothing. */
+/* Options of commands without --svg. */
 static int parse(int argc, char **argv, command_options *options) {
   int code = command_parse(argc, argv, usage, options);
   if (code >= 0 || !options->svg) return code;

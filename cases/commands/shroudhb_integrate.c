@@ -9,7 +9,9 @@
 #include "cases/commands/load_model.h"
 #include "cases/commands/up_to_date.h"
 #include "cases/schema/case.h"
+#include "cases/schema/case_paths.h"
 #include "mesh/base/progress.h"
+#include "mesh/base/publish.h"
 #include "mhb/integration/integration_sweep.h"
 
 static const char usage[] =
@@ -22,11 +24,11 @@ static const char usage[] =
     "dots on the curves of NAME.response.h5. Does nothing if that file is up to date (unless "
     "--force).\n";
 
-/* Keys of the stage; that on which it starts. malloc'ed. */
+/* The keys of the stage and the file of its initial states, as text; malloc'ed. */
 static shb_status settings_of(const case_file *file, const char *modal, const char *balance,
                               char **text) {
   char *keys, fingerprint[17];
-  SHB_TRY(fresh_settings(file, (case_stage)(CASE_MHB | CASE_INTEGRATE), modal, &keys));
+  SHB_TRY(up_to_date_settings(file, (case_stage)(CASE_MHB | CASE_INTEGRATE), modal, &keys));
   *text = keys;
   if (!balance) return SHB_OK;
   size_t     size   = strlen(keys) + 64;
@@ -42,9 +44,9 @@ static shb_status settings_of(const case_file *file, const char *modal, const ch
   return status;
 }
 
-/* Whether path holds the finished answer to these settings. */
+/* Does the file at path hold the complete result of these settings? */
 static bool up_to_date(const char *path, const char *settings) {
-  bool          same     = fresh_equal(path, settings);
+  bool          same     = up_to_date_with(path, settings);
   mhb_response *response = NULL;
   same                   = same && mhb_response_read(path, &response) == SHB_OK;
   for (int i = 0; same && i < response->n_branches; i++) same = response->branch[i].complete;
@@ -70,7 +72,7 @@ static void summarise(const case_file *file, const mhb_response *response, const
   puts("");
 }
 
-/* Rings take long, and longest where the wave that the balance finds is left. */
+/* Warns that rings take long, most of all where the waves differ from those of the balance. */
 static void warn_of_ring(const case_file *file, const modal_model *model) {
   if (file->mhb.to_ground || file->mhb.blades * model->n_modes < 200) return;
   fprintf(
@@ -104,14 +106,14 @@ static shb_status solve(const case_file *file, const char *modal, const mhb_resp
   return status;
 }
 
-/* The response file to start on. */
+/* Reads the response file that holds the initial states. */
 static shb_status read_balance(const case_file *file, const char *path, mhb_response **balance) {
   SHB_CHECK(
       access(path, R_OK) == 0, SHB_ERR_INPUT,
       "%s: not there to start on; run `shroudhb mhb %s` first, or set integrate.start to rest "
       "or state",
       path, file->path);
-  fresh_warn(file, CASE_MHB, path);
+  up_to_date_warn(file, CASE_MHB, path);
   return mhb_response_read(path, balance);
 }
 
@@ -123,7 +125,7 @@ static shb_status run(const case_file *file, const command_options *options) {
   bool          needed  = file->integrate.start == MHB_START_FROM_BALANCE;
   shb_status    status =
       modal && output && start ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  if (status == SHB_OK && !file->modal_file) fresh_warn(file, CASE_MODAL, modal);
+  if (status == SHB_OK && !file->modal_file) up_to_date_warn(file, CASE_MODAL, modal);
   if (status == SHB_OK && needed) status = read_balance(file, start, &balance);
   if (status == SHB_OK) status = settings_of(file, modal, needed ? start : NULL, &settings);
   if (status == SHB_OK) {
@@ -149,7 +151,7 @@ int main(int argc, char **argv) {
   shb_status status = case_read(options.path, CASE_MHB | CASE_INTEGRATE, stderr, &file);
   if (status != SHB_OK) return command_finish(status);
   shb_interrupt_catch();
-  openblas_set_num_threads(1); /* threads go to the points */
+  openblas_set_num_threads(1); /* the points run in parallel, so BLAS uses one thread */
   status = run(&file, &options);
   case_free(&file);
   return command_finish(status);

@@ -1,4 +1,4 @@
-/* shroudhb-mesh: mesh the parametric blade of a case, or check the mesh file that it names. */
+/* shroudhb-mesh: meshes the parametric blade of a case, or checks its mesh file. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -6,16 +6,19 @@
 
 #include "cases/commands/command.h"
 #include "cases/schema/case.h"
+#include "cases/schema/case_paths.h"
+#include "cases/schema/stage_settings.h"
 #include "mesh/base/progress.h"
+#include "mesh/base/publish.h"
 #include "mesh/blade/airfoil.h"
 #include "mesh/blade/blade.h"
 #include "mesh/core/face_pairing.h"
 #include "mesh/core/fe_mesh.h"
+#include "mesh/core/group_checks.h"
 #include "mesh/gmsh/provenance.h"
+#include "mesh/io/inp_write.h"
 #include "mesh/io/msh_write.h"
 #include "mesh/io/read.h"
-#include "mesh/core/group_checks.h"
-#include "mesh/io/inp_write.h"
 #include "mesh/io/source.h"
 
 static const char usage[] =
@@ -29,7 +32,8 @@ static const char usage[] =
     "--inp writes the mesh for CalculiX and Abaqus too, NAME.inp: groups as surfaces and node "
     "sets, m.\n";
 
-/* Both faces of one interface; to ground the right one alone. pairing: zero there. */
+/* Checks both faces of an interface, or the right one if it meets the ground. pairing: zero
+ * before. */
 static shb_status check_faces(const case_file *file, const char *right, const char *left,
                               mesh_fe *mesh, mesh_pairing *pairing) {
   int r = mesh_fe_set_named(mesh, right), l = mesh_fe_set_named(mesh, left);
@@ -46,7 +50,7 @@ static shb_status check_faces(const case_file *file, const char *right, const ch
   return mesh_pairing_create(&view, file->axis, file->blades, pairing);
 }
 
-/* pairing: that of the first interface. */
+/* Checks all interfaces; pairing is that of the first. */
 static shb_status check_contact(const case_file *file, mesh_fe *mesh, mesh_pairing *pairing) {
   if (file->n_interfaces == 0)
     return check_faces(file, "contact_right", "contact_left", mesh, pairing);
@@ -71,7 +75,7 @@ static void note_pairing(shb_progress *progress, const mesh_pairing *pairing) {
         pairing->gap);
 }
 
-/* With the groups that the case names. */
+/* Reads the mesh with the groups that the case names. */
 static shb_status read_mesh(const case_file *file, const char *path, mesh_fe *mesh) {
   mesh_names names = mesh_rules_labels(&file->source.rules);
   SHB_TRY(mesh_fe_read(path, &names, mesh));
@@ -80,7 +84,7 @@ static shb_status read_mesh(const case_file *file, const char *path, mesh_fe *me
   return status;
 }
 
-/* Coordinates in mm taken as m, or the other way round, are no fault of the mesh. */
+/* Warns if coordinates seem to be in mm and not in m; the mesh itself is in order. */
 static void warn_size(const case_file *file, const mesh_fe *mesh) {
   static const double least = 2e-3, most = 10; /* m */
   const double        size = mesh_fe_extent(mesh);
@@ -91,7 +95,7 @@ static void warn_size(const case_file *file, const mesh_fe *mesh) {
           file->mesh_file, size, size > most ? "mm" : "m");
 }
 
-/* The mesh brought by the case: readable, whole, and fit for its contact. */
+/* Checks that the mesh file of the case is readable, complete and usable for its contact. */
 static shb_status check_file(const case_file *file, shb_progress *progress) {
   mesh_fe      mesh;
   mesh_pairing pairing;
@@ -120,7 +124,8 @@ static bool up_to_date(const char *path, const char *settings) {
   return same;
 }
 
-/* What NAME.msh depends on: for mesh.file its contents and the pitch that the sides must match after. */
+/* Everything that NAME.msh depends on. For a mesh file that is its contents, and the pitch at which
+ * its sides must match. */
 static shb_status settings_of(const case_file *file, char **text) {
   char fingerprint[17], *keys = case_settings(file, CASE_MESH);
   SHB_CHECK(keys, SHB_ERR_IO, "out of memory");
@@ -138,7 +143,7 @@ static shb_status settings_of(const case_file *file, char **text) {
   return SHB_OK;
 }
 
-/* From a solid, or from a mesh in other units or without groups. */
+/* Makes NAME.msh from a solid, or from a mesh in other units or without groups. */
 static shb_status make_from_file(const case_file *file, const char *output,
                                  const shb_provenance *provenance, shb_progress *progress) {
   mesh_fe      mesh;
@@ -193,7 +198,7 @@ static shb_status make(const case_file *file, const command_options *options,
   return status;
 }
 
-/* NAME.inp of the mesh that the case uses, unless that is the very file. */
+/* Writes NAME.inp of the mesh that the case uses, unless that is its mesh file. */
 static shb_status write_inp(const case_file *file, shb_progress *progress) {
   char      *source = case_mesh_path(file), *output = case_output(file, ".inp");
   mesh_fe    mesh   = {0};

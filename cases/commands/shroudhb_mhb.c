@@ -1,4 +1,5 @@
-/* shroudhb-mhb: the harmonic balance of a case, or the contact law for a prescribed motion. Starts no MPI. */
+/* shroudhb-mhb: the harmonic balance of a case, or the contact law for a prescribed motion. No
+ * MPI. */
 #include <cblas.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,7 +10,9 @@
 #include "cases/commands/load_model.h"
 #include "cases/commands/up_to_date.h"
 #include "cases/schema/case.h"
+#include "cases/schema/case_paths.h"
 #include "mesh/base/progress.h"
+#include "mesh/base/publish.h"
 #include "mhb/branches/forced_response.h"
 
 static const char usage[] =
@@ -23,9 +26,9 @@ static const char usage[] =
     "its\n"
     "hysteresis loops, friction path and states.\n";
 
-/* Whether path holds the finished answer to these settings. */
+/* Does the file at path hold the complete result of these settings? */
 static bool up_to_date(const char *path, const char *settings) {
-  bool          same     = fresh_equal(path, settings);
+  bool          same     = up_to_date_with(path, settings);
   mhb_response *response = NULL;
   same                   = same && mhb_response_read(path, &response) == SHB_OK;
   for (int i = 0; same && i < response->n_branches; i++) {
@@ -97,8 +100,8 @@ static shb_status run(const case_file *file, const command_options *options) {
   char        *settings = NULL;
   shb_status   status =
       modal && output ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  if (status == SHB_OK && !file->modal_file) fresh_warn(file, CASE_MODAL, modal);
-  if (status == SHB_OK) status = fresh_settings(file, CASE_MHB, modal, &settings);
+  if (status == SHB_OK && !file->modal_file) up_to_date_warn(file, CASE_MODAL, modal);
+  if (status == SHB_OK) status = up_to_date_settings(file, CASE_MHB, modal, &settings);
   if (status == SHB_OK) {
     if (!options->force && up_to_date(output, settings)) {
       shb_progress_note(&progress, "%s is up to date", output);
@@ -126,7 +129,8 @@ int main(int argc, char **argv) {
   shb_status status = case_read(options.path, CASE_MHB, stderr, &file);
   if (status != SHB_OK) return command_finish(status);
   shb_interrupt_catch();
-  openblas_set_num_threads(1); /* threads go to the preloads; the systems are small */
+  /* the preloads run in parallel and their systems are small, so BLAS uses one thread */
+  openblas_set_num_threads(1);
   file.mhb.resume = !options.force;
   status          = run(&file, &options);
   case_free(&file);

@@ -1,4 +1,4 @@
-/* shroudhb-modal: from the mesh of a case to its modal file; runs on any number of MPI ranks. */
+/* shroudhb-modal: computes the modal file from the mesh of a case, on any number of MPI ranks. */
 #include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,6 +8,8 @@
 #include "cases/commands/command.h"
 #include "cases/commands/up_to_date.h"
 #include "cases/schema/case.h"
+#include "cases/schema/case_paths.h"
+#include "mesh/base/publish.h"
 #include "modal/common/session.h"
 #include "modal/stage/stage.h"
 
@@ -23,7 +25,7 @@ static const char usage[] =
     "-eps_block_size 8, -eps_type krylovschur, -st_pc_factor_mat_solver_type mumps,\n"
     "-st_mat_mumps_icntl_14 50.\n";
 
-/* Words of the command line: ours up to and with the case file, and any --long one; the rest is PETSc's. */
+/* Words of the command line: own ones up to the case file and any --long option, else PETSc's. */
 typedef struct {
   int    n_own, n_petsc;
   char **own, **petsc; /* each begins with the program's name and ends with NULL */
@@ -48,14 +50,14 @@ static bool split_words(int argc, char **argv, words *out) {
   return true;
 }
 
-/* Rank under mpiexec before MPI starts; 0 where the launcher does not tell. */
+/* Rank under mpiexec before MPI is initialised; 0 if the launcher does not tell. */
 static int launch_rank(void) {
   const char *rank = getenv("OMPI_COMM_WORLD_RANK");
   if (!rank) rank = getenv("PMI_RANK");
   return rank ? atoi(rank) : 0;
 }
 
-/* Rank 0 alone speaks of what every rank finds wrong with the command line and the case file. */
+/* Parses on every rank, but only rank 0 reports errors of the command line and the case file. */
 static int parse(const words *line, command_options *options, case_file *file) {
   int saved = -1, null = launch_rank() == 0 ? -1 : open("/dev/null", O_WRONLY);
   if (null >= 0) {
@@ -130,15 +132,15 @@ static modal_settings stage_settings(const case_file *file, modal_probe probe[CA
   return out;
 }
 
-/* Rank 0 decides whether there is anything to do; *settings is malloc'ed there, NULL elsewhere. */
+/* Rank 0 decides whether the stage must run. *settings is malloc'ed there and NULL elsewhere. */
 static shb_status decide(const case_file *file, bool force, const char *mesh, const char *output,
                          char **settings, bool *skip) {
   int rank, answer[2] = {SHB_OK, 0};
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
   *settings = NULL;
   if (rank == 0) {
-    answer[0] = fresh_settings(file, CASE_MODAL, mesh, settings);
-    answer[1] = answer[0] == SHB_OK && !force && fresh_equal(output, *settings);
+    answer[0] = up_to_date_settings(file, CASE_MODAL, mesh, settings);
+    answer[1] = answer[0] == SHB_OK && !force && up_to_date_with(output, *settings);
   }
   MPI_Bcast(answer, 2, MPI_INT, 0, PETSC_COMM_WORLD);
   *skip = answer[1];
@@ -171,7 +173,7 @@ static shb_status run(const case_file *file, const command_options *options, int
   return status;
 }
 
-/* Elements of displacements lock in a material that hardly changes its volume. */
+/* Warns of locking: displacement elements are too stiff in nearly incompressible materials. */
 static void warn_locking(const char *key, double nu) {
   if (nu > .49)
     fprintf(stderr,
@@ -197,7 +199,7 @@ static int work(words *line, const case_file *file, const command_options *optio
   }
   shb_status status = modal_session_start(&line->n_petsc, &line->petsc, &session);
   if (status != SHB_OK) return command_finish(status);
-  shb_interrupt_catch(); /* after MPI, whose launcher sets handlers of its own */
+  shb_interrupt_catch(); /* after MPI_Init, because the launcher sets handlers of its own */
   shb_interrupt_grace(2);
   if (session.rank == 0 && !options->quiet) warn(file);
   status   = run(file, options, session.rank);

@@ -1,4 +1,5 @@
-/* shroudhb-post: the report of a case from its response file, or what an HDF5 file holds. Starts no MPI. */
+/* shroudhb-post: the report of a case from its response file, or the contents of an HDF5 file. No
+ * MPI. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -6,8 +7,9 @@
 
 #include "cases/commands/command.h"
 #include "cases/commands/up_to_date.h"
-#include "cases/converge/converge.h"
 #include "cases/schema/case.h"
+#include "cases/schema/case_paths.h"
+#include "cases/schema/converge_settings.h"
 #include "mesh/base/progress.h"
 #include "postproc/inspect/inspect.h"
 #include "postproc/inspect/mac.h"
@@ -41,21 +43,21 @@ static shb_status inspect(const command_options *options) {
   return status;
 }
 
-/* NAME.converge.h5 if it was made from the case as it is now; malloc'ed, NULL if not. */
-static char *fresh_convergence(const case_file *file) {
+/* NAME.converge.h5 if it belongs to the present case; malloc'ed, else NULL. */
+static char *current_convergence(const case_file *file) {
   char *path = case_output(file, ".converge.h5"), *settings = NULL;
   bool  fresh = path && access(path, R_OK) == 0 && converge_settings(file, &settings) == SHB_OK &&
-               fresh_equal(path, settings);
+               up_to_date_with(path, settings);
   free(settings);
   if (fresh) return path;
   free(path);
   return NULL;
 }
 
-/* Whether there are points by time integration that belong to the case as it is now. */
+/* Are there points by time integration that belong to the present case? */
 static bool has_points(const case_file *file, const char *path) {
   if (access(path, R_OK) != 0) return false;
-  if (fresh_keys(file, (case_stage)(CASE_MHB | CASE_INTEGRATE), path)) return true;
+  if (up_to_date_keys(file, (case_stage)(CASE_MHB | CASE_INTEGRATE), path)) return true;
   fprintf(stderr,
           "shroudhb: warning: %s was made from other settings and is left out; run `shroudhb "
           "integrate` again\n",
@@ -63,11 +65,11 @@ static bool has_points(const case_file *file, const char *path) {
   return false;
 }
 
-/* The modal file that belongs to the case as it is now; malloc'ed, NULL if there is none. */
-static char *fresh_modal(const case_file *file) {
+/* The modal file if it belongs to the present case; malloc'ed, else NULL. */
+static char *current_modal(const case_file *file) {
   char *path  = case_modal_path(file);
   bool  there = path && access(path, R_OK) == 0;
-  if (there && (file->modal_file || fresh_keys(file, CASE_MODAL, path))) return path;
+  if (there && (file->modal_file || up_to_date_keys(file, CASE_MODAL, path))) return path;
   free(path);
   return NULL;
 }
@@ -76,13 +78,13 @@ static shb_status publish(const case_file *file, const command_options *options)
   shb_progress progress = shb_progress_start("post", options->quiet, options->verbose);
   char        *response = case_output(file, ".response.h5"), *html = case_output(file, ".html");
   char        *csv = case_output(file, ".csv"), *svg = case_output(file, ".svg"), *summary = NULL;
-  char        *convergence = fresh_convergence(file);
+  char        *convergence = current_convergence(file);
   char        *points      = case_output(file, ".integration.h5");
   char        *diagram     = case_output(file, ".campbell.svg");
-  char        *modal       = fresh_modal(file);
+  char        *modal       = current_modal(file);
   shb_status   status;
   if (response && html && csv && svg && points && diagram) {
-    fresh_warn(file, CASE_MHB, response);
+    up_to_date_warn(file, CASE_MHB, response);
     const post_job job = {
         file->name, response, html, csv, svg, convergence, has_points(file, points) ? points : NULL,
         modal,      diagram};
@@ -118,7 +120,8 @@ int main(int argc, char **argv) {
   case_file  file;
   shb_status status = case_read(options.path, CASE_POST, stderr, &file);
   if (status != SHB_OK) return command_finish(status);
-  shb_interrupt_catch(); /* a fraction of a second: finish rather than leave a temporary file */
+  /* the stage takes a fraction of a second: it finishes and leaves no temporary file */
+  shb_interrupt_catch();
   status = publish(&file, &options);
   case_free(&file);
   return command_finish(status);

@@ -15,7 +15,7 @@
 
 extern char **environ;
 
-char *child_program(const char *name) {
+char *subprocess_program(const char *name) {
   char    here[4096];
   ssize_t n = readlink("/proc/self/exe", here, sizeof here - 1);
   if (n > 0) {
@@ -51,8 +51,8 @@ static int spawn(char *const argv[], const sigset_t *mask, pid_t *child) {
   return why;
 }
 
-/* Waits for the child, handing signals on. A SIGINT from the terminal has reached the whole foreground group
- * already, the child included. */
+/* Waits for the child and passes signals on. A SIGINT from the terminal reaches the whole
+ * foreground process group, the child included. */
 static bool wait_for(pid_t child, const sigset_t *signals, int *status, struct rusage *usage) {
   bool  interrupted = false;
   pid_t ended;
@@ -63,7 +63,7 @@ static bool wait_for(pid_t child, const sigset_t *signals, int *status, struct r
     interrupted = true;
     if (info.si_code != SI_KERNEL) kill(child, number);
   }
-  if (ended < 0) *status = SHB_ERR_IO << 8; /* lost: as if it had exited with 4 */
+  if (ended < 0) *status = SHB_ERR_IO << 8; /* status unknown: treated as exit code 4 */
   return interrupted;
 }
 
@@ -76,10 +76,10 @@ static const char *leaf(const char *path) {
   return slash ? slash + 1 : path;
 }
 
-shb_status child_run(char *const argv[], child_result *result) {
-  *result          = (child_result){.code = SHB_ERR_IO};
+shb_status subprocess_run(char *const argv[], subprocess_result *result) {
+  *result          = (subprocess_result){.code = SHB_ERR_IO};
   sigset_t signals = waited_signals(), before;
-  signal(SIGCHLD, SIG_DFL); /* if it came in ignored, the kernel would reap the child for us */
+  signal(SIGCHLD, SIG_DFL); /* if SIGCHLD is inherited as ignored, the kernel reaps the child */
   sigprocmask(SIG_BLOCK, &signals, &before);
   double        started = shb_seconds();
   pid_t         child   = 0;
@@ -95,7 +95,7 @@ shb_status child_run(char *const argv[], child_result *result) {
   if (interrupted) {
     result->code = SHB_INTERRUPTED;
   } else if (WIFSIGNALED(status) && WTERMSIG(status) == SIGPIPE) {
-    result->code = SHB_OK; /* the reader of the output has seen enough */
+    result->code = SHB_OK; /* the reader of the output has closed it */
   } else if (WIFSIGNALED(status)) {
     int number = WTERMSIG(status);
     SHB_FAIL(SHB_ERR_IO, "%s was killed by signal %d (%s)%s", leaf(argv[0]), number,

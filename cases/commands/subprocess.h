@@ -9,14 +9,15 @@ typedef struct {
   double seconds; /* wall */
   double cpu;     /* s, user and system, all threads */
   double peak;    /* greatest resident memory, bytes */
-} child_result;
+} subprocess_result;
 
-/* Path of a program that lies beside this one, else its bare name (PATH is then searched); malloc'ed. */
-char *child_program(const char *name);
+/* Path of a program beside this one, else its bare name, for which PATH is searched; malloc'ed. */
+char *subprocess_program(const char *name);
 
-/* Run argv (argv[0] from child_program) to its end. SIGINT and SIGTERM are handed on to the child, which ends
- * the stage and publishes what it has; the result's code is then 130.
- * Errors: SHB_ERR_IO if it cannot be started, or was killed by a signal. */
-shb_status child_run(char *const argv[], child_result *result);
+/* Run argv to its end; argv[0] is from subprocess_program. SIGINT and SIGTERM are passed on to the
+ * child. It then publishes its finished results, and the code of the result is 130.
+ *
+ * Errors: SHB_ERR_IO if the child cannot be started, or was killed by a signal. */
+shb_status subprocess_run(char *const argv[], subprocess_result *result);
 
 #endif

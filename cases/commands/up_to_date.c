@@ -4,9 +4,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cases/schema/stage_settings.h"
+#include "mesh/base/publish.h"
 #include "modal/hdf5/h5.h"
 
-/* A line for a load's field, if it is one. */
+/* Adds a line for the field of a load, if it has one. */
 static shb_status add_field(const char *path, int load, char *text, size_t size) {
   char fingerprint[17], which[24] = "";
   if (!path) return SHB_OK;
@@ -17,7 +19,8 @@ static shb_status add_field(const char *path, int load, char *text, size_t size)
   return SHB_OK;
 }
 
-shb_status fresh_settings(const case_file *file, case_stage stage, const char *input, char **text) {
+shb_status up_to_date_settings(const case_file *file, case_stage stage, const char *input,
+                               char **text) {
   const char *name = stage == CASE_MODAL ? "mesh" : "modal";
   char        fingerprint[17], field[64 * (CASE_MAX_LOADS + 1)] = "";
   SHB_TRY(shb_fingerprint(input, fingerprint));
@@ -33,7 +36,7 @@ shb_status fresh_settings(const case_file *file, case_stage stage, const char *i
   return SHB_OK;
 }
 
-/* The settings a file was made from; malloc'ed, NULL if it cannot be told. */
+/* The settings a file was made from; malloc'ed, NULL if unknown. */
 static char *written(const char *path) {
   hid_t file;
   char *text = NULL;
@@ -43,14 +46,14 @@ static char *written(const char *path) {
   return text;
 }
 
-bool fresh_equal(const char *path, const char *settings) {
+bool up_to_date_with(const char *path, const char *settings) {
   char *text = written(path);
   bool  same = text && strcmp(text, settings) == 0;
   free(text);
   return same;
 }
 
-bool fresh_keys(const case_file *file, case_stage stage, const char *path) {
+bool up_to_date_keys(const case_file *file, case_stage stage, const char *path) {
   char *text = written(path), *keys = case_settings(file, stage);
   bool  same = text && keys && strncmp(text, keys, strlen(keys)) == 0; /* the keys come first */
   free(text);
@@ -58,7 +61,7 @@ bool fresh_keys(const case_file *file, case_stage stage, const char *path) {
   return same;
 }
 
-void fresh_warn(const case_file *file, case_stage stage, const char *path) {
+void up_to_date_warn(const case_file *file, case_stage stage, const char *path) {
   char *text = written(path), *keys = case_settings(file, stage);
   if (text && keys && strncmp(text, keys, strlen(keys)) != 0) /* the keys come first */
     fprintf(stderr, "shroudhb: warning: %s was made from other settings; run `shroudhb %s` first\n",

@@ -1,22 +1,24 @@
-/* Whether a stage's file still fits the case: a stage runs again only when its settings text changed. */
+/* Is the file of a stage up to date? A stage runs again only if its settings have changed. */
 #ifndef CASES_COMMANDS_UP_TO_DATE_H
 #define CASES_COMMANDS_UP_TO_DATE_H
 
 #include <stdbool.h>
 
-#include "cases/schema/case.h"
+#include "cases/parse/case_file.h"
 
-/* All that the output of stage depends on: its keys and the contents of its input file. malloc'ed *text. SHB_ERR_IO. */
-shb_status fresh_settings(const case_file *file, case_stage stage, const char *input, char **text);
+/* Everything that the output of a stage depends on, as text: its keys, and the contents of its
+ * input file. *text is malloc'ed. Errors: SHB_ERR_IO. */
+shb_status up_to_date_settings(const case_file *file, case_stage stage, const char *input,
+                               char **text);
 
-/* Whether the HDF5 file at path was made from these settings. */
-bool fresh_equal(const char *path, const char *settings);
+/* Was the HDF5 file at path made from these settings? */
+bool up_to_date_with(const char *path, const char *settings);
 
-/* Whether the HDF5 file at path was made from the keys of stage that the case has now. */
-bool fresh_keys(const case_file *file, case_stage stage, const char *path);
+/* Was the HDF5 file at path made from the present keys of stage? */
+bool up_to_date_keys(const case_file *file, case_stage stage, const char *path);
 
-/* One warning line on stderr if the HDF5 file at path was made from other keys of stage than the case has now.
- * Files that cannot be read are left to whoever needs them. */
-void fresh_warn(const case_file *file, case_stage stage, const char *path);
+/* Print a warning line on stderr if the HDF5 file at path was made from other keys of stage. A file
+ * that cannot be read is no reason to warn. */
+void up_to_date_warn(const case_file *file, case_stage stage, const char *path);
 
 #endif

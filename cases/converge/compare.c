@@ -9,12 +9,12 @@
 #include "postproc/analysis/curve_distance.h"
 
 static const double FAR =
-    2e-3; /* from here on the polyline is looked at too: its own error is of this size */
+    2e-3; /* distance above which the polyline is compared too: its own error is of this size */
 static const double SAGS = 4;
 
 enum { MOST_HARMONICS = 256 };
 
-/* One of the two curves. */
+/* One of the two curves compared. */
 typedef struct {
   mhb_response     *response;
   const mhb_branch *branch;
@@ -26,7 +26,7 @@ typedef struct {
   const modal_model  *model;
   const mhb_settings *settings;
   post_output         output;
-  witness            *witness[MOST_HARMONICS]; /* by harmonics, made when first needed */
+  point_matcher      *matcher[MOST_HARMONICS]; /* by number of harmonics, created at first use */
   side                rung, reference;
   double              unit; /* m */
   rung_error         *error;
@@ -44,49 +44,50 @@ static shb_status choose(post_output output, int b, side *s) {
   s->branch = &s->response->branch[b];
   free(s->amplitude);
   s->amplitude = NULL;
-  SHB_TRY(post_series(s->response, s->branch, output, POST_FIRST_HARMONIC, &s->amplitude));
+  SHB_TRY(post_series(s->response, s->branch, output, POST_QUANTITY_FIRST_HARMONIC, &s->amplitude));
   s->line = (post_polyline){s->branch->n_points, s->branch->frequency, s->amplitude};
   return SHB_OK;
 }
 
-static shb_status witness_of(comparison *c, int harmonics, witness **out) {
+static shb_status matcher_of(comparison *c, int harmonics, point_matcher **out) {
   SHB_CHECK(harmonics >= 1 && harmonics < MOST_HARMONICS, SHB_ERR_INPUT,
             "the response has a point of %d harmonics; 1 to %d are wanted", harmonics,
             MOST_HARMONICS - 1);
-  if (!c->witness[harmonics])
-    SHB_TRY(witness_create(c->model, c->settings, harmonics, c->output, &c->witness[harmonics]));
-  *out = c->witness[harmonics];
+  if (!c->matcher[harmonics])
+    SHB_TRY(
+        point_matcher_create(c->model, c->settings, harmonics, c->output, &c->matcher[harmonics]));
+  *out = c->matcher[harmonics];
   return SHB_OK;
 }
 
-/* From point i of the reference. */
+/* Distance from point i of the reference to the curve of the rung. */
 static shb_status from_reference(comparison *c, int i, double *distance) {
-  const side   *r    = &c->reference;
-  int           last = r->branch->n_points - 1, near = 0;
-  double        point[2] = {r->branch->frequency[i], r->amplitude[i]}, found[2];
-  double        drawn    = post_distance(point, &c->rung.line, c->unit, &near);
-  witness_place place    = {r->branch, i, i, i > 0 ? i - 1 : 0, i < last ? i + 1 : last, 0};
-  *distance              = INFINITY;
+  const side *r    = &c->reference;
+  int         last = r->branch->n_points - 1, near = 0;
+  double      point[2] = {r->branch->frequency[i], r->amplitude[i]}, found[2];
+  double      drawn    = post_curve_distance(point, &c->rung.line, c->unit, &near);
+  curve_place place    = {r->branch, i, i, i > 0 ? i - 1 : 0, i < last ? i + 1 : last, 0};
+  *distance            = INFINITY;
   c->error->n++;
   if (r->response->n_pairs == c->rung.response->n_pairs) {
-    witness *w = NULL;
-    SHB_TRY(witness_of(c, c->rung.branch->harmonics[near], &w));
-    if (witness_solve(w, &place, i == 0 || i == last, found))
-      *distance = post_apart(point, found, c->unit);
+    point_matcher *matcher = NULL;
+    SHB_TRY(matcher_of(c, c->rung.branch->harmonics[near], &matcher));
+    if (point_matcher_solve(matcher, &place, i == 0 || i == last, found))
+      *distance = post_point_distance(point, found, c->unit);
   }
   c->error->lost += !isfinite(*distance);
   if (*distance > FAR) *distance = fmin(*distance, drawn);
   return SHB_OK;
 }
 
-/* From point i of the rung. */
+/* Distance from point i of the rung to the reference curve. */
 static double from_rung(const comparison *c, int i) {
   const side *s        = &c->rung;
   double      point[2] = {s->branch->frequency[i], s->amplitude[i]};
   int         near     = 0;
-  double      d        = post_distance(point, &c->reference.line, c->unit, &near);
-  double      sag      = fmax(post_sag(&c->reference.line, near, c->unit),
-                    near > 0 ? post_sag(&c->reference.line, near - 1, c->unit) : 0);
+  double      d        = post_curve_distance(point, &c->reference.line, c->unit, &near);
+  double      sag      = fmax(post_chord_deviation(&c->reference.line, near, c->unit),
+                    near > 0 ? post_chord_deviation(&c->reference.line, near - 1, c->unit) : 0);
   return d > fmax(FAR, SAGS * sag) ? d : 0;
 }
 
@@ -120,23 +121,23 @@ static shb_status compare_all(comparison *c, const char *stem, const char *refer
 
 /* ---------------------------------------------------------------- points of time integration */
 
-/* From point i of the reference, whose curve the rung's chosen one is. */
+/* Error at point i by time integration, whose preload is that of the rung's curve. */
 static shb_status from_integration(comparison *c, int i) {
-  const side   *r        = &c->reference;
-  double        point[2] = {r->branch->frequency[i], r->amplitude[i]}, found[2];
-  witness_place place    = {r->branch, i, i, i, i, 0};
-  int           near     = 0;
-  double        drawn    = post_distance(point, &c->rung.line, c->unit, &near);
-  witness      *w        = NULL;
-  SHB_TRY(witness_of(c, c->rung.branch->harmonics[near], &w));
-  bool solved = witness_solve(w, &place, true, found);
+  const side    *r        = &c->reference;
+  double         point[2] = {r->branch->frequency[i], r->amplitude[i]}, found[2];
+  curve_place    place    = {r->branch, i, i, i, i, 0};
+  int            near     = 0;
+  double         drawn    = post_curve_distance(point, &c->rung.line, c->unit, &near);
+  point_matcher *matcher  = NULL;
+  SHB_TRY(matcher_of(c, c->rung.branch->harmonics[near], &matcher));
+  bool solved = point_matcher_solve(matcher, &place, true, found);
   c->error->n++;
   c->error->lost += !solved;
   c->error->curve = fmax(c->error->curve, solved ? fabs(found[1] - point[1]) / c->unit : drawn);
   return SHB_OK;
 }
 
-/* The rung's main curve of a preload; -1: there is none. */
+/* Index of the rung's main curve of a preload; -1 if there is none. */
 static int curve_of(const mhb_response *response, double n0) {
   for (int b = 0; b < response->n_branches; b++) {
     const mhb_branch *branch = &response->branch[b];
@@ -173,7 +174,7 @@ static shb_status compare_all_points(comparison *c, const char *stem, const char
 /* ---------------------------------------------------------------- both */
 
 static void end(comparison *c) {
-  for (int i = 0; i < MOST_HARMONICS; i++) witness_destroy(c->witness[i]);
+  for (int i = 0; i < MOST_HARMONICS; i++) point_matcher_destroy(c->matcher[i]);
   side *both[] = {&c->rung, &c->reference};
   for (int i = 0; i < 2; i++) {
     free(both[i]->amplitude);

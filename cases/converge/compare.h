@@ -1,26 +1,34 @@
-/* How far the curves of one rung are from those of a finer one. */
+/* Distance of the curves of one rung from those of a finer rung. */
 #ifndef CASES_CONVERGE_COMPARE_H
 #define CASES_CONVERGE_COMPARE_H
 
 #include "cases/converge/rung.h"
 #include "modal/model/model.h"
 
-/* The distance (postproc/analysis/curve_distance.h; unit: the largest amplitude of the preload's reference curve) of the curves STEM.response.h5 and
- * REFERENCE.response.h5, preload by preload, the greatest.
+/* Distance of the curves in STEM.response.h5 from those in REFERENCE.response.h5: the largest over
+ * the preloads, relative to the largest amplitude of the preload's reference curve. The measure is
+ * that of postproc/analysis/curve_distance.h.
  *
- * From each point of the reference the rung's own balance is solved in the plane across the reference's curve: the distance of the two
- * points bounds that of the curves, without interpolation, on folded curves too. Where that has no solution, or it is far, the rung's
- * polyline is looked at as well and the lesser distance taken. Conversely, points of the rung that lie off the reference's polyline by
- * more than that can be off the curve (four times its sag) count as they are: a loop that the reference does not have.
+ * From each point of the reference the rung's own balance is solved in the plane across the
+ * reference curve. The distance of the two points bounds that of the curves. It needs no
+ * interpolation, and holds on folded curves too. If the balance has no solution there, or only a
+ * distant one, the rung's polyline is compared as well and the smaller distance counts.
+ *
+ * Conversely, a point of the rung counts with its distance from the reference polyline, if that
+ * exceeds four times the polyline's sag. Loops that the reference lacks are found in this way.
  *
  *   model, settings  in  of the rung
+ *
  * Errors: SHB_ERR_INPUT the files do not hold the same preloads; SHB_ERR_IO; SHB_INTERRUPTED. */
 shb_status compare_rungs(const modal_model *model, const mhb_settings *settings, post_output output,
                          const char *stem, const char *reference, rung_error *error);
 
-/* The same against points of time integration, the file at path: from each motion that repeats every period the rung's balance is solved at
- * that frequency and preload; error->curve is the greatest |a - a'| relative to the largest amplitude of the rung's curve, error->n the number
- * of points. Those of other preloads do not count. */
+/* The same against points of time integration in the file at path. For each periodic point the
+ * rung's balance is solved at its frequency and preload, starting from its motion. Points of other
+ * preloads are left out.
+ *
+ *   error->curve  out  largest |a - a'| relative to the largest amplitude of the rung's curve
+ *   error->n      out  number of points */
 shb_status compare_integration(const modal_model *model, const mhb_settings *settings,
                                post_output output, const char *stem, const char *path,
                                rung_error *error);

@@ -2,36 +2,42 @@
 
 #include <dirent.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "cases/commands/up_to_date.h"
 #include "cases/converge/ladders.h"
+#include "cases/schema/case_paths.h"
+#include "cases/schema/converge_settings.h"
+#include "mesh/base/publish.h"
 #include "postproc/report/convergence_chart.h"
 
-static bool has_mode(const study *s, const char *mode) {
+static bool has_mode(const convergence_study *s, const char *mode) {
   return s->options->mode && strcmp(s->options->mode, mode) == 0;
 }
 
-/* The modal files; of a parametric blade also those of coarser meshes, and its own anew, so that its cost is known. */
-static shb_status make_variants(study *s) {
+/* Makes the modal files. For a parametric blade these include coarser meshes, and the case's own
+ * mesh again, so that its cost is measured. */
+static shb_status make_variants(convergence_study *s) {
   static const double factor[STUDY_VARIANTS] = {1, 1.6, 1.26, .8};
   const case_file    *file                   = s->file;
   if (file->modal_file || file->mesh_file || has_mode(s, "no-mesh")) {
     s->n_variants = 1;
-    return variant_own(file, s->options, &s->variant[0]);
+    return mesh_variant_own(file, s->options, &s->variant[0]);
   }
   for (int i = 0; i < STUDY_VARIANTS - !has_mode(s, "finer"); i++) {
     shb_progress_show(&s->progress, -1, "mesh and modes, element size times %g", factor[i]);
     s->n_variants++;
-    SHB_TRY(variant_make(file, s->options, s->folder, factor[i], &s->variant[i]));
+    SHB_TRY(mesh_variant_make(file, s->options, s->folder, factor[i], &s->variant[i]));
     if (shb_interrupted()) SHB_FAIL(SHB_INTERRUPTED, "interrupted");
   }
   return SHB_OK;
 }
 
-/* --force: forget what earlier runs left beside the meshes, whose stages heed --force themselves. */
+/* --force: removes what earlier runs left beside the meshes. The stages treat --force
+ * themselves. */
 static void forget(const char *folder) {
   static const char *const endings[] = {".response.h5", ".cost", ".error"};
   DIR                     *all       = opendir(folder);
@@ -44,11 +50,11 @@ static void forget(const char *folder) {
   if (all) closedir(all);
 }
 
-/* Points by time integration that belong to the case as it is now; malloc'ed, NULL if there are none. */
-static char *fresh_points(const case_file *file) {
+/* Points by time integration that belong to the present case; malloc'ed, NULL if there are none. */
+static char *current_points(const case_file *file) {
   char *path = case_output(file, ".integration.h5");
   if (path && access(path, R_OK) == 0) {
-    if (fresh_keys(file, (case_stage)(CASE_MHB | CASE_INTEGRATE), path)) return path;
+    if (up_to_date_keys(file, (case_stage)(CASE_MHB | CASE_INTEGRATE), path)) return path;
     fprintf(stderr,
             "shroudhb: warning: %s was made from other settings and is left out; run `shroudhb "
             "integrate` again\n",
@@ -58,7 +64,7 @@ static char *fresh_points(const case_file *file) {
   return NULL;
 }
 
-static shb_status prepare(study *s) {
+static shb_status prepare(convergence_study *s) {
   case_file   copy = *s->file;
   post_output output;
   SHB_CHECK(copy.mhb.parameter == MHB_IN_FREQUENCY, SHB_ERR_INPUT,
@@ -67,26 +73,26 @@ static shb_status prepare(study *s) {
                            .accuracy  = fmin(1e-8, s->file->mhb.tolerance),
                            .modes     = 1,
                            .residuals = true};
-  SHB_TRY(rung_apply(&s->base, &copy)); /* of its preloads only */
+  SHB_TRY(rung_apply(&s->base, &copy)); /* limits the preloads */
   s->folder = case_output(s->file, ".converge");
   SHB_CHECK(s->folder, SHB_ERR_IO, "out of memory");
-  SHB_TRY(variant_folder(s->folder));
+  SHB_TRY(mesh_variant_folder(s->folder));
   SHB_TRY(make_variants(s));
   for (int i = 0; s->options->force && i < s->n_variants; i++)
     forget(s->variant[i].folder ? s->variant[i].folder : s->folder);
   SHB_TRY(modal_model_read(s->variant[0].modal, &s->model));
   s->base.modes = s->model.n_modes;
   SHB_TRY(rung_output(s->file, s->model.n_probes, s->model.probe_name, &output));
-  s->points            = fresh_points(s->file);
+  s->points            = current_points(s->file);
   s->result.tolerance  = s->file->converge_tolerance;
   s->result.n_preloads = copy.mhb.n_preloads;
   snprintf(s->result.output, sizeof s->result.output, "%s %smotion",
-           output.place == POST_PROBE ? s->model.probe_name[output.index] : "contact",
-           output.place == POST_PROBE ? "" : "relative ");
+           output.place == POST_PLACE_PROBE ? s->model.probe_name[output.index] : "contact",
+           output.place == POST_PLACE_PROBE ? "" : "relative ");
   return SHB_OK;
 }
 
-static shb_status publish(study *s) {
+static shb_status publish(convergence_study *s) {
   char *h5 = case_output(s->file, ".converge.h5"), *csv = case_output(s->file, ".converge.csv");
   char *svg = case_output(s->file, ".converge.svg"), *settings = NULL;
   post_buffer table = {0}, picture = {0};
@@ -109,7 +115,7 @@ static shb_status publish(study *s) {
   return status;
 }
 
-static void print_report(const study *s) {
+static void print_report(const convergence_study *s) {
   post_buffer text = {0};
   post_convergence_table(&s->result, s->file->name, &text);
   post_put(&text, "\n");
@@ -120,7 +126,7 @@ static void print_report(const study *s) {
   post_buffer_free(&text);
 }
 
-/* Whether a rung failed, or one that others are compared with has a gap. */
+/* Did a rung fail, or does a reference curve have a gap? */
 static bool in_doubt(const post_convergence *result) {
   for (int i = 0; i < result->n; i++) {
     const post_rung *r = &result->rung[i];
@@ -129,7 +135,7 @@ static bool in_doubt(const post_convergence *result) {
   return false;
 }
 
-static shb_status run_study(study *s) {
+static shb_status run_study(convergence_study *s) {
   shb_status status = prepare(s);
   if (status == SHB_OK) status = ladders_run(s);
   shb_progress_clear(&s->progress);
@@ -149,18 +155,19 @@ static shb_status run_study(study *s) {
 }
 
 shb_status converge_case(case_file *file, const command_options *options) {
-  study      s      = {.file     = file,
-                       .options  = options,
-                       .progress = shb_progress_start("converge", options->quiet, options->verbose)};
+  convergence_study s = {
+      .file     = file,
+      .options  = options,
+      .progress = shb_progress_start("converge", options->quiet, options->verbose)};
   shb_status status = run_study(&s);
   free(s.points);
-  for (int i = 0; i < s.result.n; i++) free(s.place[i].stem);
-  for (int i = 0; i < s.n_variants; i++) variant_free(&s.variant[i]);
+  for (int i = 0; i < s.result.n; i++) free(s.row[i].stem);
+  for (int i = 0; i < s.n_variants; i++) mesh_variant_free(&s.variant[i]);
   post_convergence_free(&s.result);
   post_buffer_free(&s.note);
   modal_model_free(&s.model);
-  free(s.place);
-  if (s.folder) rmdir(s.folder); /* stays unless it is empty */
+  free(s.row);
+  if (s.folder) rmdir(s.folder); /* remains unless it is empty */
   free(s.folder);
   return status;
 }

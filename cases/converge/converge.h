@@ -1,17 +1,16 @@
-/* "shroudhb converge": the ladders of a convergence study, run rung by rung. */
+/* `shroudhb converge`: the ladders of a convergence study, run rung by rung. */
 #ifndef CASES_CONVERGE_CONVERGE_H
 #define CASES_CONVERGE_CONVERGE_H
 
 #include "cases/commands/command.h"
-#include "cases/schema/case.h"
+#include "cases/parse/case_file.h"
 
-enum { CONVERGE_STAGES = CASE_MESH | CASE_MODAL | CASE_MHB | CASE_CONVERGE };
-
-/* All that a study depends on, to be compared with what it was made from; malloc'ed. SHB_ERR_IO. */
-shb_status converge_settings(const case_file *file, char **text);
-
-/* Run the ladders (options->mode "no-mesh", "finer" or NULL), print table and conclusion, write NAME.converge.{h5,csv,svg}.
- * Interrupted: reports what is finished. Returns SHB_OK, SHB_NOT_CONVERGED (see the usage text), SHB_INTERRUPTED or an error. */
+/* Run the ladders, print table and conclusion, and write NAME.converge.{h5,csv,svg}. An interrupted
+ * study reports the finished rungs.
+ *
+ *   options->mode  in  "no-mesh", "finer" or NULL
+ *
+ * Returns SHB_OK, SHB_NOT_CONVERGED (see the usage text), SHB_INTERRUPTED or an error. */
 shb_status converge_case(case_file *file, const command_options *options);
 
 #endif

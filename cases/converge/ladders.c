@@ -9,14 +9,14 @@
 
 enum { MAX_TOGETHER = 6 };
 
-static const double ALIKE = .15; /* seconds that differ by less say nothing */
+static const double ALIKE = .15; /* relative difference of times that is within their scatter */
 
 static const double DEFAULT_TOLERANCE =
-    1e-4; /* of the motion, with auto, where the case has none */
+    1e-4; /* tolerance of the motion with auto, if the case has none */
 
 /* ---------------------------------------------------------------- one rung */
 
-static char *stem_of(const study *s, const rung_setting *setting, int v) {
+static char *stem_of(const convergence_study *s, const rung_setting *setting, int v) {
   char        name[RUNG_WORD];
   const char *folder = s->variant[v].folder ? s->variant[v].folder : s->folder;
   rung_name(setting, name);
@@ -26,102 +26,103 @@ static char *stem_of(const study *s, const rung_setting *setting, int v) {
   return stem;
 }
 
-static shb_status add(study *s, post_ladder ladder, const rung_setting *setting, int v,
+static shb_status add(convergence_study *s, post_ladder ladder, const rung_setting *setting, int v,
                       const char *name) {
   post_rung *row = post_convergence_add(&s->result);
   if (row && s->result.n > s->capacity) {
-    int          room  = s->capacity ? 2 * s->capacity : 32;
-    study_place *grown = realloc(s->place, (size_t)room * sizeof *grown);
+    int        room  = s->capacity ? 2 * s->capacity : 32;
+    study_row *grown = realloc(s->row, (size_t)room * sizeof *grown);
     if (grown) {
-      s->place    = grown;
+      s->row      = grown;
       s->capacity = room;
     } else {
       row = NULL;
     }
   }
   SHB_CHECK(row, SHB_ERR_IO, "out of memory");
-  study_place *p = &s->place[s->result.n - 1];
-  *p             = (study_place){.setting = *setting, .variant = v, .stem = stem_of(s, setting, v)};
+  study_row *p = &s->row[s->result.n - 1];
+  *p           = (study_row){.setting = *setting, .variant = v, .stem = stem_of(s, setting, v)};
   SHB_CHECK(p->stem, SHB_ERR_IO, "out of memory");
   row->ladder = ladder;
   snprintf(row->name, sizeof row->name, "%s", name);
   return SHB_OK;
 }
 
-static void take_cost(study *s, int i) {
-  study_place   *p    = &s->place[i];
-  post_rung     *row  = &s->result.rung[i];
-  const variant *v    = &s->variant[p->variant];
-  bool           mesh = row->ladder == POST_LADDER_MESH;
-  row->state          = p->cost.complete ? POST_RUNG_DONE : POST_RUNG_INCOMPLETE;
-  row->unknowns       = mesh ? v->unknowns : p->cost.unknowns;
-  row->seconds        = p->cost.seconds + (mesh ? v->seconds : 0);
-  row->total          = row->seconds + p->cost.setup;
-  row->memory         = mesh ? fmax(p->cost.memory, v->memory) : p->cost.memory;
+static void take_cost(convergence_study *s, int i) {
+  study_row          *p    = &s->row[i];
+  post_rung          *row  = &s->result.rung[i];
+  const mesh_variant *v    = &s->variant[p->variant];
+  bool                mesh = row->ladder == POST_LADDER_MESH;
+  row->state               = p->cost.complete ? POST_RUNG_DONE : POST_RUNG_INCOMPLETE;
+  row->unknowns            = mesh ? v->unknowns : p->cost.unknowns;
+  row->seconds             = p->cost.seconds + (mesh ? v->seconds : 0);
+  row->total               = row->seconds + p->cost.setup;
+  row->memory              = mesh ? fmax(p->cost.memory, v->memory) : p->cost.memory;
 }
 
-/* Ladders whose errors go all the way to the finest harmonics: time integration is a measure of theirs. */
-static const char *points_for(const study *s, const post_rung *row) {
+/* Points by time integration are the reference of ladders that reach the finest harmonics. */
+static const char *points_for(const convergence_study *s, const post_rung *row) {
   bool whole = row->ladder == POST_LADDER_HARMONICS || row->ladder == POST_LADDER_AUTO ||
                row->ladder == POST_LADDER_TOGETHER;
   return whole ? s->points : NULL;
 }
 
-/* The child's words; the last ones the reference's stem or "-", and the points of time integration. */
-static shb_status start_rung(study *s, const study_place *p, const char *reference,
-                             const char *points, child_result *result) {
+/* Starts the program of a rung. Its last words are the stem of the reference or "-", and the points
+ * of time integration. */
+static shb_status start_rung(convergence_study *s, const study_row *p, const char *reference,
+                             const char *points, subprocess_result *result) {
   char  setting[RUNG_SETTING_WORDS][RUNG_WORD], none[] = "-";
-  char *words[RUNG_SETTING_WORDS + 7] = {child_program("shroudhb-rung"), s->file->path,
+  char *words[RUNG_SETTING_WORDS + 7] = {subprocess_program("shroudhb-rung"), s->file->path,
                                          s->variant[p->variant].modal, p->stem};
   int   n                             = 4;
   rung_words(&p->setting, setting);
   for (int i = 0; i < RUNG_SETTING_WORDS; i++) words[n++] = setting[i];
   char *stem = reference ? strdup(reference) : NULL, *path = points ? strdup(points) : NULL;
-  bool  made = words[0] && (stem || !reference) && (path || !points);
-  words[n++] = stem ? stem : none;
-  words[n++] = path;
-  shb_status status =
-      made ? child_run(words, result) : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  bool  made        = words[0] && (stem || !reference) && (path || !points);
+  words[n++]        = stem ? stem : none;
+  words[n++]        = path;
+  shb_status status = made ? subprocess_run(words, result)
+                           : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   free(words[0]);
   free(stem);
   free(path);
   return status;
 }
 
-/* Errors that the rung's program has left. */
-static void take_errors(study *s, int i, int reference) {
-  study_place *p   = &s->place[i];
-  post_rung   *row = &s->result.rung[i];
-  rung_error   error;
-  const char  *points = points_for(s, row);
+/* Reads the errors that the program of the rung has written. */
+static void take_errors(convergence_study *s, int i, int reference) {
+  study_row  *p   = &s->row[i];
+  post_rung  *row = &s->result.rung[i];
+  rung_error  error;
+  const char *points = points_for(s, row);
   if (points && rung_error_read(p->stem, "integration", points, &error) == SHB_OK) {
     row->integration   = error.n > 0 ? error.curve : NAN;
     s->result.n_points = error.n;
   }
   if (reference < 0) return;
-  const char *other = s->place[reference].stem;
+  const char *other = s->row[reference].stem;
   char       *path  = rung_response(other);
   if (path && rung_error_read(p->stem, rung_leaf(other), path, &error) == SHB_OK) {
-    rung_peak_errors(&p->cost, &s->place[reference].cost, &row->peak, &row->frequency);
+    rung_peak_errors(&p->cost, &s->row[reference].cost, &row->peak, &row->frequency);
     row->curve = error.curve;
   }
   free(path);
 }
 
-/* Work row i out, and compare it with row reference (-1: with none). A rung that fails costs its row only. */
-static shb_status run(study *s, int i, int reference) {
-  study_place *p   = &s->place[i];
-  post_rung   *row = &s->result.rung[i];
-  child_result result;
+/* Runs row i and compares it with row reference (-1: none). A failure affects only its row. */
+static shb_status run(convergence_study *s, int i, int reference) {
+  study_row        *p   = &s->row[i];
+  post_rung        *row = &s->result.rung[i];
+  subprocess_result result;
   shb_progress_show(&s->progress, -1, "%s %s", post_ladder_name(row->ladder), row->name);
-  const char *other  = reference >= 0 ? s->place[reference].stem : NULL;
+  const char *other  = reference >= 0 ? s->row[reference].stem : NULL;
   shb_status  status = start_rung(s, p, other, points_for(s, row), &result);
   if ((status == SHB_OK && result.code == SHB_INTERRUPTED) || shb_interrupted())
     SHB_FAIL(SHB_INTERRUPTED, "interrupted; the rungs so far are kept and used again");
   shb_progress_clear(&s->progress);
   if (status != SHB_OK) fprintf(stderr, "shroudhb: warning: %s\n", shb_message());
-  if (status == SHB_OK && result.code == SHB_ERR_INPUT)
-    return shb_fail(SHB_ERR_INPUT, __FILE__, __LINE__, "%s", ""); /* the child has told it */
+  if (status == SHB_OK && result.code == SHB_ERR_INPUT) /* the child has printed its message */
+    return shb_fail(SHB_ERR_INPUT, __FILE__, __LINE__, "%s", "");
   if (status != SHB_OK || result.code != 0 || rung_cost_read(p->stem, &p->cost) != SHB_OK) {
     row->state = POST_RUNG_FAILED;
     return SHB_OK;
@@ -133,8 +134,8 @@ static shb_status run(study *s, int i, int reference) {
   return SHB_OK;
 }
 
-/* Rows from first on: the last is the reference of all of them. */
-static shb_status run_ladder(study *s, int first) {
+/* Runs the rows from first on; the last one is their reference. */
+static shb_status run_ladder(convergence_study *s, int first) {
   int last                       = s->result.n - 1;
   s->result.rung[last].reference = true;
   if (s->result.rung[last].state == POST_RUNG_WAITING) SHB_TRY(run(s, last, -1));
@@ -153,12 +154,12 @@ static int by_size(const void *a, const void *b) {
   return *(const int *)a - *(const int *)b;
 }
 
-/* Seconds that the next rung may take, from those of the one before: the solver's cost grows no faster than H^1.8. */
+/* Predicted seconds of the next rung: the cost of the solver grows at most like H^1.8. */
 static double predict(double seconds, int from, int to) {
   return seconds * pow((double)to / from, 1.8);
 }
 
-static shb_status harmonics_ladder(study *s) {
+static shb_status harmonics_ladder(convergence_study *s) {
   mhb_settings wide = s->file->mhb;
   int          m[MHB_MAX_LEVELS + 1], first = s->result.n, own = s->file->mhb.harmonics;
   wide.motion_tolerance = 1;
@@ -172,8 +173,9 @@ static shb_status harmonics_ladder(study *s) {
     rung_setting setting = s->base;
     setting.harmonics    = m[i];
     setting.tolerance    = 0;
-    double next   = i == 0 ? 0 : predict(s->place[s->result.n - 1].cost.seconds, m[i - 1], m[i]);
-    bool   enough = i >= 2 && m[i - 1] >= own; /* a reference beside another rung, and the case */
+    double next = i == 0 ? 0 : predict(s->row[s->result.n - 1].cost.seconds, m[i - 1], m[i]);
+    /* one rung, its reference, and the setting of the case */
+    bool enough = i >= 2 && m[i - 1] >= own;
     if (enough && next > s->file->converge_seconds) {
       post_put(&s->note,
                "The ladder of harmonics ends at %d: %d would take about %.2g s "
@@ -185,12 +187,13 @@ static shb_status harmonics_ladder(study *s) {
     SHB_TRY(add(s, POST_LADDER_HARMONICS, &setting, 0, name));
     s->result.rung[s->result.n - 1].of_case = m[i] == own;
     SHB_TRY(
-        run(s, s->result.n - 1, -1)); /* upwards: its seconds tell whether the next is affordable */
+        /* upwards, because the time of a rung decides whether the next is affordable */
+        run(s, s->result.n - 1, -1));
   }
   return run_ladder(s, first);
 }
 
-static shb_status auto_ladder(study *s) {
+static shb_status auto_ladder(convergence_study *s) {
   double tolerance[4] = {1e-2, 1e-3, DEFAULT_TOLERANCE}, own = s->file->mhb.motion_tolerance;
   int    n = 3, reference = post_reference(&s->result, POST_LADDER_HARMONICS);
   bool   there = own == 0;
@@ -218,11 +221,11 @@ static void accuracy_name(double accuracy, char name[POST_RUNG_NAME]) {
   if (!word) snprintf(name, POST_RUNG_NAME, "%g", accuracy);
 }
 
-static shb_status accuracy_ladder(study *s) {
+static shb_status accuracy_ladder(convergence_study *s) {
   double value[4] = {1e-3, 1e-5, 1e-8}, own = s->file->mhb.tolerance;
   int    n = 3, first = s->result.n, at = 0;
   while (at < n && value[at] > own) at++;
-  if (at == n || value[at] != own) { /* the case's own between them, descending */
+  if (at == n || value[at] != own) { /* the setting of the case among them, descending */
     memmove(value + at + 1, value + at, (size_t)(n - at) * sizeof *value);
     value[at] = own;
     n++;
@@ -238,7 +241,7 @@ static shb_status accuracy_ladder(study *s) {
   return run_ladder(s, first);
 }
 
-static shb_status modes_ladder(study *s, bool residuals) {
+static shb_status modes_ladder(convergence_study *s, bool residuals) {
   static const int wanted[] = {1, 2, 3, 5, 8, 12, 20, 30, 50, 80, 120, 200, 300, 500, 1000};
   int              all = s->model.n_modes, first = s->result.n;
   bool             has = s->model.residual_flexibility || s->model.load_residual;
@@ -247,7 +250,7 @@ static shb_status modes_ladder(study *s, bool residuals) {
     int          modes = i < sizeof wanted / sizeof *wanted && wanted[i] < all ? wanted[i] : all;
     char         name[16];
     rung_setting setting = s->base;
-    if (!residuals && !has && modes == all) break; /* the reference itself */
+    if (!residuals && !has && modes == all) break; /* this is the reference */
     setting.modes     = modes;
     setting.residuals = residuals;
     snprintf(name, sizeof name, "%d", modes);
@@ -261,8 +264,8 @@ static shb_status modes_ladder(study *s, bool residuals) {
   return SHB_OK;
 }
 
-/* From the coarsest on. */
-static shb_status mesh_ladder(study *s) {
+/* Runs the meshes from the coarsest on. */
+static shb_status mesh_ladder(convergence_study *s) {
   const mesh_blade *blade = &s->file->blade;
   int               first = s->result.n, order[STUDY_VARIANTS];
   for (int i = 0; i < s->n_variants; i++) {
@@ -286,14 +289,14 @@ static shb_status mesh_ladder(study *s) {
 
 /* ---------------------------------------------------------------- settings combined */
 
-static double error_at(const study *s, int i) {
+static double error_at(const convergence_study *s, int i) {
   double error = i < 0 ? NAN : post_rung_error(&s->result.rung[i]);
   return isnan(error) ? 0 : error;
 }
 
-/* The cheaper of the best of two ladders, or where they take about as long the one that errs less; the reference of the first
- * if neither has one. */
-static int pick(const study *s, post_ladder one, post_ladder other) {
+/* Of the best rungs of two ladders the cheaper one. If their times are alike, the one with the
+ * smaller error. If neither has a best rung, the reference of the first. */
+static int pick(const convergence_study *s, post_ladder one, post_ladder other) {
   int a = post_cheapest(&s->result, one), b = post_cheapest(&s->result, other);
   if (a < 0 && b < 0) return post_reference(&s->result, one);
   if (a < 0 || b < 0) return a < 0 ? b : a;
@@ -303,8 +306,8 @@ static int pick(const study *s, post_ladder one, post_ladder other) {
   return ra->seconds < rb->seconds ? a : b;
 }
 
-/* The rung of the same ladder that errs next less; the finest if there is none. */
-static int finer(const study *s, int i) {
+/* The rung of the same ladder with the next smaller error; the finest if there is none. */
+static int finer(const convergence_study *s, int i) {
   int              best = -1;
   const post_rung *from = &s->result.rung[i];
   for (int k = 0; k < s->result.n; k++) {
@@ -316,14 +319,15 @@ static int finer(const study *s, int i) {
   return best >= 0 ? best : i;
 }
 
-/* The setting that takes its parts from three rungs, and what it is called. */
-static rung_setting combine(const study *s, const int part[3], char name[POST_RUNG_NAME]) {
-  const rung_setting *h   = &s->place[part[0]].setting;
+/* Combines the parts of three rungs to one setting with a name. */
+static rung_setting combine(const convergence_study *s, const int part[3],
+                            char name[POST_RUNG_NAME]) {
+  const rung_setting *h   = &s->row[part[0]].setting;
   rung_setting        out = *h;
   char                harmonics[24];
-  out.accuracy  = part[1] < 0 ? s->base.accuracy : s->place[part[1]].setting.accuracy;
-  out.modes     = part[2] < 0 ? s->base.modes : s->place[part[2]].setting.modes;
-  out.residuals = part[2] < 0 ? true : s->place[part[2]].setting.residuals;
+  out.accuracy  = part[1] < 0 ? s->base.accuracy : s->row[part[1]].setting.accuracy;
+  out.modes     = part[2] < 0 ? s->base.modes : s->row[part[2]].setting.modes;
+  out.residuals = part[2] < 0 ? true : s->row[part[2]].setting.residuals;
   snprintf(harmonics, sizeof harmonics, "%d harmonic%s", h->harmonics,
            h->harmonics == 1 ? "" : "s");
   if (h->harmonics == 0) snprintf(harmonics, sizeof harmonics, "auto at %g", h->tolerance);
@@ -333,8 +337,9 @@ static rung_setting combine(const study *s, const int part[3], char name[POST_RU
   return out;
 }
 
-/* The cheapest of each ladder, all at once; where the errors add up to too much, the worst part a rung finer. */
-static shb_status together(study *s) {
+/* Combines the cheapest rung of each ladder. While the sum of the errors is too large, the part
+ * with the largest error is taken one rung finer. */
+static shb_status together(convergence_study *s) {
   int reference = post_reference(&s->result, POST_LADDER_HARMONICS);
   int part[3]   = {pick(s, POST_LADDER_HARMONICS, POST_LADDER_AUTO),
                    pick(s, POST_LADDER_ACCURACY, POST_LADDER_ACCURACY),
@@ -358,14 +363,15 @@ static shb_status together(study *s) {
 
 /* ---------------------------------------------------------------- all */
 
-/* The setting in which the other ladders stand: all at its finest, harmonics as in the case, or what the first ladder found. */
-static void settle_base(study *s) {
+/* The base setting of the other ladders: everything at its finest, with the harmonics of the case
+ * or those that the first ladder has found. */
+static void settle_base(convergence_study *s) {
   int best = post_cheapest(&s->result, POST_LADDER_HARMONICS);
   if (best < 0) best = post_reference(&s->result, POST_LADDER_HARMONICS);
-  if (s->file->mhb.harmonics == 0) s->base.harmonics = s->place[best].setting.harmonics;
+  if (s->file->mhb.harmonics == 0) s->base.harmonics = s->row[best].setting.harmonics;
 }
 
-shb_status ladders_run(study *s) {
+shb_status ladders_run(convergence_study *s) {
   SHB_TRY(harmonics_ladder(s));
   SHB_TRY(auto_ladder(s));
   settle_base(s);

@@ -8,55 +8,56 @@
 
 static const double PI = 3.14159265358979323846;
 
-struct witness {
+struct point_matcher {
   mhb_settings    settings;
-  mhb_balance    *residual;
+  mhb_balance    *balance;
   mhb_newton     *newton;
   post_output     output;
   double         *x, *normal;     /* [n], [n+1] */
   double complex *force, *motion; /* [3 pairs], [3 probes] of one harmonic */
 };
 
-static shb_status make(const modal_model *model, witness *w) {
-  SHB_TRY(mhb_balance_create(model, &w->settings, &w->residual));
-  size_t n  = (size_t)w->residual->n;
-  w->x      = calloc(n, sizeof *w->x);
-  w->normal = calloc(n + 1, sizeof *w->normal);
-  w->force  = calloc(3 * (size_t)model->n_pairs, sizeof *w->force);
-  w->motion = calloc(3 * (size_t)model->n_probes + 1, sizeof *w->motion);
-  SHB_CHECK(w->x && w->normal && w->force && w->motion, SHB_ERR_IO, "out of memory");
-  return mhb_newton_create(w->residual->n, &w->newton);
+static shb_status make(const modal_model *model, point_matcher *matcher) {
+  SHB_TRY(mhb_balance_create(model, &matcher->settings, &matcher->balance));
+  size_t n        = (size_t)matcher->balance->n;
+  matcher->x      = calloc(n, sizeof *matcher->x);
+  matcher->normal = calloc(n + 1, sizeof *matcher->normal);
+  matcher->force  = calloc(3 * (size_t)model->n_pairs, sizeof *matcher->force);
+  matcher->motion = calloc(3 * (size_t)model->n_probes + 1, sizeof *matcher->motion);
+  SHB_CHECK(matcher->x && matcher->normal && matcher->force && matcher->motion, SHB_ERR_IO,
+            "out of memory");
+  return mhb_newton_create(matcher->balance->n, &matcher->newton);
 }
 
-shb_status witness_create(const modal_model *model, const mhb_settings *settings, int harmonics,
-                          post_output output, witness **out) {
-  witness *w = calloc(1, sizeof *w);
-  SHB_CHECK(w, SHB_ERR_IO, "out of memory");
-  w->settings                  = *settings;
-  w->settings.harmonics        = harmonics;
-  w->settings.motion_tolerance = 0;
-  w->output                    = output;
-  shb_status status            = make(model, w);
-  if (status == SHB_OK) *out = w;
-  if (status != SHB_OK) witness_destroy(w);
+shb_status point_matcher_create(const modal_model *model, const mhb_settings *settings,
+                                int harmonics, post_output output, point_matcher **out) {
+  point_matcher *matcher = calloc(1, sizeof *matcher);
+  SHB_CHECK(matcher, SHB_ERR_IO, "out of memory");
+  matcher->settings                  = *settings;
+  matcher->settings.harmonics        = harmonics;
+  matcher->settings.motion_tolerance = 0;
+  matcher->output                    = output;
+  shb_status status                  = make(model, matcher);
+  if (status == SHB_OK) *out = matcher;
+  if (status != SHB_OK) point_matcher_destroy(matcher);
   return status;
 }
 
-void witness_destroy(witness *w) {
-  if (!w) return;
-  mhb_newton_destroy(w->newton);
-  mhb_balance_destroy(w->residual);
-  free(w->x);
-  free(w->normal);
-  free(w->force);
-  free(w->motion);
-  free(w);
+void point_matcher_destroy(point_matcher *matcher) {
+  if (!matcher) return;
+  mhb_newton_destroy(matcher->newton);
+  mhb_balance_destroy(matcher->balance);
+  free(matcher->x);
+  free(matcher->normal);
+  free(matcher->force);
+  free(matcher->motion);
+  free(matcher);
 }
 
-/* to += factor times the motion of a point, less harmonics or more. */
-static void add_motion(const witness *w, const witness_place *place, int point, double factor,
-                       double *to) {
-  const mhb_balance    *b = w->residual;
+/* Adds factor times the motion of a point, truncated or padded to the harmonics of the balance. */
+static void add_motion(const point_matcher *matcher, const curve_place *place, int point,
+                       double factor, double *to) {
+  const mhb_balance    *b = matcher->balance;
   int                   K = place->branch->n_harmonics, rows = 3 * b->n_pairs;
   const double complex *u = place->branch->motion + (size_t)point * (size_t)rows * (size_t)(K + 1);
   for (int row = 0; row < rows; row++)
@@ -68,44 +69,47 @@ static void add_motion(const witness *w, const witness_place *place, int point, 
     }
 }
 
-/* At the solution that the residual was just evaluated at. */
-static double amplitude(const witness *w) {
-  const mhb_balance *b = w->residual;
-  int                k = w->settings.subharmonics <= b->m ? w->settings.subharmonics : b->m;
-  if (w->output.place == POST_PROBE) {
-    mhb_balance_contact_force(b, k, w->force);
-    mhb_receptance_probe(b->receptance, k, w->force, w->motion);
-    return post_ellipse(3, w->motion + 3 * (size_t)w->output.index, 1);
+/* Amplitude at the solution at which the balance was evaluated last. */
+static double amplitude(const point_matcher *matcher) {
+  const mhb_balance *b = matcher->balance;
+  int k = matcher->settings.subharmonics <= b->m ? matcher->settings.subharmonics : b->m;
+  if (matcher->output.place == POST_PLACE_PROBE) {
+    mhb_balance_contact_force(b, k, matcher->force);
+    mhb_receptance_probe(b->receptance, k, matcher->force, matcher->motion);
+    return post_semi_major_axis(3, matcher->motion + 3 * (size_t)matcher->output.index, 1);
   }
   double complex u[3];
   for (int c = 0; c < 3; c++) {
-    const double *a = w->x + (size_t)(3 * w->output.index + c) * (size_t)b->nb + (2 * k - 1);
-    u[c]            = CMPLX(a[0], a[1]);
+    const double *a =
+        matcher->x + (size_t)(3 * matcher->output.index + c) * (size_t)b->nb + (2 * k - 1);
+    u[c] = CMPLX(a[0], a[1]);
   }
-  return post_ellipse(3, u, 1);
+  return post_semi_major_axis(3, u, 1);
 }
 
-int witness_solve(witness *w, const witness_place *place, bool same_frequency, double found[2]) {
-  const mhb_settings *s    = &w->settings;
-  mhb_balance        *b    = w->residual;
+int point_matcher_solve(point_matcher *matcher, const curve_place *place, bool same_frequency,
+                        double found[2]) {
+  const mhb_settings *s    = &matcher->settings;
+  mhb_balance        *b    = matcher->balance;
   const double       *f    = place->branch->frequency;
   size_t              n    = (size_t)b->n;
   double              span = 2 * PI * (s->frequency[1] - s->frequency[0]);
-  memset(w->x, 0, n * sizeof *w->x);
-  memset(w->normal, 0, (n + 1) * sizeof *w->normal);
-  add_motion(w, place, place->from, 1 - place->part, w->x);
-  add_motion(w, place, place->to, place->part, w->x);
+  memset(matcher->x, 0, n * sizeof *matcher->x);
+  memset(matcher->normal, 0, (n + 1) * sizeof *matcher->normal);
+  add_motion(matcher, place, place->from, 1 - place->part, matcher->x);
+  add_motion(matcher, place, place->to, place->part, matcher->x);
   if (!same_frequency) {
-    add_motion(w, place, place->low, -1, w->normal);
-    add_motion(w, place, place->high, 1, w->normal);
+    add_motion(matcher, place, place->low, -1, matcher->normal);
+    add_motion(matcher, place, place->high, 1, matcher->normal);
   }
-  w->normal[n] = same_frequency ? span : 2 * PI * (f[place->high] - f[place->low]);
-  double omega = 2 * PI * ((1 - place->part) * f[place->from] + place->part * f[place->to]);
-  double scale = mhb_norm(w->x, b->n);
+  matcher->normal[n] = same_frequency ? span : 2 * PI * (f[place->high] - f[place->low]);
+  double omega       = 2 * PI * ((1 - place->part) * f[place->from] + place->part * f[place->to]);
+  double scale       = mhb_norm(matcher->x, b->n);
   mhb_balance_set_preload(b, place->branch->n0[place->from]);
-  if (!(scale > 0) || !mhb_nearest_solution(w->newton, b, w->normal, scale, span, w->x, &omega))
+  if (!(scale > 0) ||
+      !mhb_nearest_solution(matcher->newton, b, matcher->normal, scale, span, matcher->x, &omega))
     return 0;
   found[0] = omega / (2 * PI);
-  found[1] = amplitude(w);
+  found[1] = amplitude(matcher);
   return 1;
 }

@@ -6,13 +6,13 @@
 #include "cases/parse/yaml.h"
 #include "postproc/draw/text_buffer.h"
 
-/* A stretch of the text to be replaced. */
+/* A part of the text to be replaced. */
 typedef struct {
   size_t at, length;
   double value; /* m */
 } patch;
 
-/* Byte of a place in the text; columns count characters. */
+/* Byte offset of a place in the text, whose columns count characters. */
 static size_t offset_of(const char *text, int line, int column) {
   const char *at = text;
   for (int i = 1; i < line && at; i++) {
@@ -27,7 +27,7 @@ static size_t offset_of(const char *text, int line, int column) {
   return (size_t)(at - text);
 }
 
-/* The scalar's source: plain, or in quotes. */
+/* Finds a scalar in the text, plain or in quotes. */
 static shb_status place(const case_file *file, const case_node *node, double value, patch *out) {
   size_t      at = offset_of(file->text, node->line, node->column), n = strlen(node->text);
   const char *start  = file->text + at;
@@ -63,14 +63,14 @@ static shb_status find_patches(const case_file *file, const case_node *root, dou
   return SHB_OK;
 }
 
-shb_status case_derive_mesh(const case_file *file, double factor, const char *path) {
+shb_status case_resize_mesh(const case_file *file, double factor, const char *path) {
   case_issues issues = case_issues_start(file->path, file->text, strlen(file->text));
   case_node  *root   = case_document_parse(&issues);
   patch       patches[2];
   int         n      = 0;
-  shb_status  status = root
-                           ? find_patches(file, root, factor, patches, &n)
-                           : shb_fail(SHB_ERR_INPUT, __FILE__, __LINE__, "%s: not YAML", file->path);
+  shb_status  status = SHB_ERR_INPUT;
+  if (root) status = find_patches(file, root, factor, patches, &n);
+  if (!root) shb_fail(status, __FILE__, __LINE__, "%s: not YAML", file->path);
   case_document_free(root);
   case_issues_free(&issues);
   SHB_TRY(status);

@@ -1,9 +1,11 @@
 #include "cases/converge/rung.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/publish.h"
 #include "postproc/draw/text_buffer.h"
 
 void rung_words(const rung_setting *s, char words[RUNG_SETTING_WORDS][RUNG_WORD]) {
@@ -33,7 +35,7 @@ void rung_name(const rung_setting *s, char name[RUNG_WORD]) {
            s->residuals ? "" : "_bare");
 }
 
-/* A preload, with those of the other interfaces that go with it, to another place. */
+/* Moves a preload, and those of the other interfaces that belong to it, to another index. */
 static void keep_preload(mhb_settings *mhb, int to, int from) {
   mhb->n0[to] = mhb->n0[from];
   for (int k = 0; k < mhb->n_interfaces; k++)
@@ -66,7 +68,7 @@ shb_status rung_apply(const rung_setting *s, case_file *file) {
 shb_status rung_output(const case_file *file, int n_probes, char *const *names,
                        post_output *output) {
   const char *wanted = file->converge_output;
-  *output            = (post_output){n_probes > 0 ? POST_PROBE : POST_CONTACT, 0, POST_WHOLE};
+  *output = (post_output){n_probes > 0 ? POST_PLACE_PROBE : POST_PLACE_CONTACT, 0, POST_WHOLE};
   if (!wanted) return SHB_OK;
   char known[512] = "";
   for (int i = 0; i < n_probes; i++) {
@@ -74,7 +76,7 @@ shb_status rung_output(const case_file *file, int n_probes, char *const *names,
     if (strcmp(names[i], wanted) == 0) return SHB_OK;
     if (strlen(known) + strlen(names[i]) + 8 < sizeof known) strcat(strcat(known, names[i]), ", ");
   }
-  *output = (post_output){POST_CONTACT, 0, POST_WHOLE};
+  *output = (post_output){POST_PLACE_CONTACT, 0, POST_WHOLE};
   SHB_CHECK(strcmp(wanted, "contact") == 0, SHB_ERR_INPUT,
             "%s: converge.output: '%s' is not known; expected one of %scontact", file->path, wanted,
             known);
@@ -92,7 +94,7 @@ char *rung_response(const char *stem) {
   return join(stem, ".response.h5");
 }
 
-/* ---------------------------------------------------------------- the small files: a word and numbers a line */
+/* ---------------------------------------------------------------- the small files */
 
 static shb_status publish(post_buffer *text, char *path) {
   shb_status status = path ? post_buffer_publish(text, path)
@@ -139,7 +141,8 @@ shb_status rung_cost_read(const char *stem, rung_cost *cost) {
   return SHB_OK;
 }
 
-/* STEM.NAME.error, with what both files held: another curve makes it void. */
+/* Path of STEM.NAME.error. The file names the contents of both response files and is void if one of
+ * them has changed. */
 static char *error_path(const char *stem, const char *name, const char *file, char prints[64]) {
   char *mine  = rung_response(stem);
   char  a[17] = "", b[17] = "";

@@ -5,6 +5,8 @@
 
 #include "cases/commands/command.h"
 #include "cases/converge/converge.h"
+#include "cases/schema/case.h"
+#include "cases/schema/converge_settings.h"
 #include "mesh/base/progress.h"
 
 static const char usage[] =

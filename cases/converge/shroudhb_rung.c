@@ -15,7 +15,9 @@
 #include "cases/converge/compare.h"
 #include "cases/converge/matched_point.h"
 #include "cases/converge/rung.h"
+#include "cases/schema/case.h"
 #include "mesh/base/progress.h"
+#include "mesh/base/publish.h"
 #include "mhb/branches/forced_response.h"
 #include "postproc/analysis/curves.h"
 
@@ -29,7 +31,7 @@ static const char usage[] =
     "STEM.REFERENCE.error.\n";
 
 enum { MAX_RUNS = 5, FIRST_WORD = 4, LEAST_WORDS = 9 };
-static const double ENOUGH = .3; /* s of runs, after which no further one is made */
+static const double ENOUGH = .3; /* s; after this total no further run is made */
 
 typedef struct {
   case_file    file;
@@ -41,7 +43,8 @@ typedef struct {
 
 /* ---------------------------------------------------------------- the curve and what it cost */
 
-/* Greatest resident memory of this program, bytes. (getrusage counts what its parent had before it started this one.) */
+/* Largest resident memory of this program, bytes. getrusage includes the parent's memory before
+ * exec. */
 static double memory_used(void) {
   char   line[256];
   double kilobytes = 0;
@@ -54,14 +57,14 @@ static double memory_used(void) {
   return 1024 * kilobytes;
 }
 
-/* s of this program's one thread: what a quiet machine would take, whatever else runs. */
+/* CPU seconds of this program's one thread, independent of other load. */
 static double cpu_seconds(void) {
   struct timespec t = {0};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* Sweeps until they took long enough to be timed; the last one's response. */
+/* Repeats the sweep until the total time can be measured; returns the last response. */
 static shb_status run_sweeps(job *j, rung_cost *cost, mhb_response **response) {
   double     all    = 0;
   shb_status status = SHB_OK;
@@ -82,31 +85,34 @@ static shb_status run_sweeps(job *j, rung_cost *cost, mhb_response **response) {
 
 /* ---------------------------------------------------------------- peaks */
 
-/* Amplitude at fraction t of 2 segments, from point i - 1 to i + 1; -1 if there is no solution. */
-static double on_segments(witness *w, const mhb_branch *branch, int i, double t, double found[2]) {
-  int           from  = t < 1 ? i - 1 : i;
-  witness_place place = {branch, from, from + 1, i - 1, i + 1, t < 1 ? t : t - 1};
-  return witness_solve(w, &place, false, found) ? found[1] : -1;
+/* Amplitude at fraction t of the two segments from point i - 1 to i + 1; -1 if there is no
+ * solution. */
+static double on_segments(point_matcher *matcher, const mhb_branch *branch, int i, double t,
+                          double found[2]) {
+  int         from  = t < 1 ? i - 1 : i;
+  curve_place place = {branch, from, from + 1, i - 1, i + 1, t < 1 ? t : t - 1};
+  return point_matcher_solve(matcher, &place, false, found) ? found[1] : -1;
 }
 
-/* The top of the curve about point i, by golden section on solutions of the balance itself. */
-static void refine(witness *w, const mhb_branch *branch, int i, rung_peak *peak) {
+/* Refines the peak at point i by golden section on solutions of the balance. */
+static void refine(point_matcher *matcher, const mhb_branch *branch, int i, rung_peak *peak) {
   const double golden = .6180339887498949;
   double       lo = 0, hi = 2, found[2], best[2] = {0, -1};
   double       t[2] = {hi - golden * (hi - lo), lo + golden * (hi - lo)}, a[2];
-  for (int k = 0; k < 2; k++) a[k] = on_segments(w, branch, i, t[k], found);
+  for (int k = 0; k < 2; k++) a[k] = on_segments(matcher, branch, i, t[k], found);
   for (int n = 0; n < 34 && a[0] >= 0 && a[1] >= 0; n++) {
-    int right = a[1] > a[0]; /* the top lies in the right part */
+    int right = a[1] > a[0]; /* the peak lies in the right part */
     if (right) lo = t[0];
     if (!right) hi = t[1];
     t[!right] = t[right];
     a[!right] = a[right];
     t[right]  = right ? lo + golden * (hi - lo) : hi - golden * (hi - lo);
-    a[right]  = on_segments(w, branch, i, t[right], found);
+    a[right]  = on_segments(matcher, branch, i, t[right], found);
     if (a[right] > best[1]) memcpy(best, found, sizeof best);
   }
   double near = fabs(best[0] / peak->frequency - 1), gain = best[1] / peak->amplitude;
-  if (!(near < .01 && gain > .999 && gain < 1.05)) return; /* not the top that was seen */
+  /* another peak than that of the points */
+  if (!(near < .01 && gain > .999 && gain < 1.05)) return;
   peak->frequency = best[0];
   peak->amplitude = best[1];
 }
@@ -116,23 +122,23 @@ static shb_status find_peak(job *j, const mhb_response *response, const mhb_bran
   double    *amplitude = NULL;
   post_peak *peaks     = NULL;
   int        n         = 0;
-  SHB_TRY(post_series(response, branch, j->output, POST_FIRST_HARMONIC, &amplitude));
+  SHB_TRY(post_series(response, branch, j->output, POST_QUANTITY_FIRST_HARMONIC, &amplitude));
   shb_status status = post_find_peaks(branch->n_points, branch->frequency, amplitude, &peaks, &n);
   free(amplitude);
   SHB_TRY(status);
-  int top = post_highest(n, peaks);
+  int top = post_highest_peak(n, peaks);
   *peak   = (rung_peak){branch->n_points > 0 ? branch->n0[0] : NAN, NAN, NAN};
   if (top >= 0) {
     peak->frequency = peaks[top].at;
     peak->amplitude = peaks[top].amplitude;
   }
   if (top >= 0 && !peaks[top].edge) {
-    int      i = peaks[top].point;
-    witness *w = NULL;
-    status =
-        witness_create(&j->source.model, &j->source.settings, branch->harmonics[i], j->output, &w);
-    if (status == SHB_OK) refine(w, branch, i, peak);
-    witness_destroy(w);
+    int            i       = peaks[top].point;
+    point_matcher *matcher = NULL;
+    status = point_matcher_create(&j->source.model, &j->source.settings, branch->harmonics[i],
+                                  j->output, &matcher);
+    if (status == SHB_OK) refine(matcher, branch, i, peak);
+    point_matcher_destroy(matcher);
   }
   free(peaks);
   return status;
@@ -153,10 +159,10 @@ static shb_status describe(job *j, const mhb_response *response, rung_cost *cost
 
 /* ---------------------------------------------------------------- the job */
 
-/* All that the curve and its cost depend on. */
+/* Everything that the curve and its cost depend on. */
 static shb_status settings_of(const job *j, char **text) {
   char *keys = NULL;
-  SHB_TRY(fresh_settings(&j->file, CASE_MHB, j->modal, &keys));
+  SHB_TRY(up_to_date_settings(&j->file, CASE_MHB, j->modal, &keys));
   size_t size = strlen(keys) + 256;
   *text       = malloc(size);
   if (*text)
@@ -172,7 +178,7 @@ static shb_status compute(job *j, char *settings, const char *path) {
   rung_cost      cost       = {0};
   mhb_response  *response   = NULL;
   shb_provenance provenance = command_provenance(&j->file, settings, "shroudhb-rung");
-  unlink(path); /* an older curve must not stand beside the new cost */
+  unlink(path); /* an old curve must not remain beside a new cost */
   shb_status status = run_sweeps(j, &cost, &response);
   if (status == SHB_OK) status = describe(j, response, &cost);
   if (status == SHB_OK) status = rung_cost_write(&cost, j->stem);
@@ -210,7 +216,7 @@ static shb_status work(job *j) {
   SHB_CHECK(path, SHB_ERR_IO, "out of memory");
   shb_status status = settings_of(j, &settings);
   if (status == SHB_OK &&
-      !(fresh_equal(path, settings) && rung_cost_read(j->stem, &cost) == SHB_OK))
+      !(up_to_date_with(path, settings) && rung_cost_read(j->stem, &cost) == SHB_OK))
     status = compute(j, settings, path);
   free(settings);
   free(path);

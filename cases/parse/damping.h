@@ -7,11 +7,12 @@
 #include "cases/parse/yaml.h"
 #include "modal/common/damping.h"
 
-/* A ratio, a list of ratios, {loss_factor: eta} or {rayleigh: [alpha, beta]} (1/s, s). Every fault is recorded under path. */
+/* Read a ratio, a list of ratios, {loss_factor: eta} or {rayleigh: [alpha, beta]} (1/s, s). Every
+ * fault is recorded under path. */
 bool case_damping_read(case_issues *issues, const char *path, const case_node *node,
                        modal_damping *damping);
 
-/* In SI with so many digits, without a line's end. */
+/* Print the value in SI units with this number of digits and without an end of line. */
 void case_damping_print(FILE *out, const modal_damping *damping, int digits);
 
 #endif

@@ -18,7 +18,7 @@ void case_issue_add(case_issues *issues, int line, int column, const char *key, 
   vsnprintf(text, sizeof text, format, args);
   va_end(args);
   snprintf(full, sizeof full, "%s%s%s", key ? key : "", key && key[0] ? ": " : "", text);
-  int at = issues->n++; /* counted even when there is no memory to keep it */
+  int at = issues->n++; /* an issue is counted even if there is no memory for its text */
   if (at >= issues->capacity) {
     int         capacity = issues->capacity ? 2 * issues->capacity : 16;
     case_issue *grown    = realloc(issues->issue, (size_t)capacity * sizeof *grown);
@@ -36,8 +36,8 @@ static int by_place(const void *left, const void *right) {
   return (a->column > b->column) - (a->column < b->column);
 }
 
-/* Start and length of a line, without its end; length 0 if there is no such line. YAML ends a line with
- * LF, CR LF or CR. */
+/* Start and length of a line, without its end. The length is 0 if there is no such line. A line of
+ * YAML ends with LF, CR LF or CR. */
 static const char *find_line(const case_issues *issues, int line, size_t *length) {
   const char *at = issues->text, *end = at + issues->length;
   *length = 0;
@@ -64,7 +64,7 @@ static size_t character(const char *text, const char *end) {
 static void put_character(const char *text, size_t n, FILE *out) {
   unsigned char c = (unsigned char)text[0];
   if ((c < 0x20 && c != '\t') || c == 0x7F || (n == 1 && c >= 0x80)) {
-    fputc('?', out); /* never send a terminal what a broken file holds */
+    fputc('?', out); /* a broken file must not send control characters to the terminal */
   } else {
     fwrite(text, 1, n, out);
   }
@@ -94,7 +94,7 @@ static void print_source(const case_issues *issues, const case_issue *issue, FIL
 
 void case_issues_print(case_issues *issues, FILE *out) {
   int kept = issues->n < issues->capacity ? issues->n : issues->capacity;
-  /* merge order within a place is of no importance, so qsort will do */
+  /* the order of issues at one place does not matter, so qsort may be unstable */
   if (kept > 0) qsort(issues->issue, (size_t)kept, sizeof *issues->issue, by_place);
   for (int i = 0; i < kept && i < SHOWN; i++) {
     const case_issue *issue = &issues->issue[i];

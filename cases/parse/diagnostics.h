@@ -6,7 +6,7 @@
 #include <stdio.h>
 
 typedef struct {
-  int   line, column; /* from 1; 0: the file as a whole */
+  int   line, column; /* from 1; 0 stands for the whole file */
   char *text;
 } case_issue;
 
@@ -24,7 +24,8 @@ case_issues case_issues_start(const char *path, const char *text, size_t length)
 void case_issue_add(case_issues *issues, int line, int column, const char *key, const char *format,
                     ...) __attribute__((format(printf, 5, 6)));
 
-/* "file:line:col: error: key: text", the source line and a caret each; then "N errors". Sorts by place. */
+/* Print each issue as "file:line:col: error: key: text" with its source line and a caret. "N
+ * errors" follows. The issues are sorted by place. */
 void case_issues_print(case_issues *issues, FILE *out);
 
 void case_issues_free(case_issues *issues);

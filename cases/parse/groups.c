@@ -10,7 +10,7 @@ static const char        expected[] =
     "{plane: [x, y, z], normal: [x, y, z]}, {radius: r}, {nearest: [x, y, z]} or {name: WORD}";
 static const double usual_tolerance = 1e-6; /* m */
 
-/* One rule as it is read. */
+/* State while one rule is read. */
 typedef struct {
   case_issues *issues;
   char         path[CASE_PATH];
@@ -49,7 +49,7 @@ static bool read_positive(const context *c, const case_node *node, double *value
   return false;
 }
 
-/* A second rule for the same group. */
+/* Refuses a second rule for the same group. */
 static bool take_kind(const context *c, const case_node *node, mesh_rule_kind kind) {
   bool first = c->rule->kind == MESH_RULE_NONE || c->rule->kind == kind;
   if (!first)
@@ -92,7 +92,7 @@ static bool read_part(context *c, const case_node *node) {
   return false;
 }
 
-/* What the parts of a rule must be together. */
+/* Checks that the parts of a rule fit together. */
 static bool check_rule(const context *c, const case_node *node) {
   const mesh_rule *rule = c->rule;
   const char      *lack = NULL;
@@ -131,7 +131,7 @@ bool case_group_is_usual(const char *name) {
   return false;
 }
 
-/* Where the rule of a group goes; NULL if there are too many. */
+/* Slot for the rule of a group; NULL if there are too many groups. */
 static mesh_rule *slot_of(const char *name, mesh_rules *rules) {
   for (int id = 0; id < MESH_N_SETS; id++)
     if (strcmp(name, group_name[id]) == 0) return &rules->usual[id];

@@ -1,15 +1,14 @@
-/* The key table: all that is known of a key of the case file, written once. Reading, ranges, defaults, the
- * list that "shroudhb keys" prints, suggestions and the settings of a stage all follow from it. */
+/* The key table. A row holds everything about one key of the case file. Reading, ranges, defaults,
+ * `shroudhb keys`, suggestions and the settings of a stage are all derived from it. */
 #ifndef CASES_PARSE_KEYS_H
 #define CASES_PARSE_KEYS_H
 
 #include <stdbool.h>
 #include <stddef.h>
-#include <stdio.h>
 
-#include "cases/schema/case.h"
+#include "cases/parse/case_file.h"
 
-/* What a key holds in the file, and (after the colon) what its slot is. */
+/* Type of a key: the value in the file, and after the colon the type of its slot. */
 typedef enum {
   CASE_NUMBER,    /* number with a unit: double */
   CASE_INTEGER,   /* int */
@@ -32,14 +31,16 @@ typedef enum {
   CASE_POINTS,    /* number of points, or list: the case_file's integrate.frequency */
   CASE_FACTORS,   /* {k: [factor, phase]}: fem_load, its factors */
   CASE_PROBES,    /* {name: [x, y, z]}: the case_file's probe */
-  CASE_DAMPING, /* ratio, list of them, {loss_factor: } or {rayleigh: }: the case_file's damping */
-  CASE_GROUPS,  /* {group: rule}: the case_file's source.rules */
-  CASE_LIST, /* list of mappings, whose keys are rows "LIST[].KEY": elements of each bytes, their number at count_at */
-  CASE_SIGNAL, /* [[amplitude, phase], ...] from harmonic 0; read by motion.c */
+  CASE_DAMPING,   /* ratio, list of ratios, {loss_factor: } or {rayleigh: }: damping */
+  CASE_GROUPS,    /* {group: rule}: the case_file's source.rules */
+  /* list of mappings, whose keys are rows "LIST[].KEY"; elements of size each, counted at
+   * count_at */
+  CASE_LIST,
+  CASE_SIGNAL, /* [[amplitude, phase], ...] from harmonic 0; read by schema/motion.c */
   CASE_N_TYPES
 } case_type;
 
-/* When a key has a meaning at all. */
+/* Condition under which a key is read. */
 typedef enum {
   CASE_ALWAYS,
   CASE_IF_BLADE,      /* parametric blade: neither mesh.file nor modal.file */
@@ -54,27 +55,27 @@ typedef enum {
   CASE_IF_INTERFACE,  /* one contact interface */
   CASE_IF_POINTS,     /* the same, and no modal.file */
   CASE_IF_INTERFACES, /* several by name */
-  CASE_IF_VARIED,     /* several, and a parameter of one is followed */
+  CASE_IF_VARIED,     /* several, and mhb.vary follows a parameter of one of them */
   CASE_IF_ORDER,      /* contact.to: neighbour, or mhb.run_up: yes */
   CASE_IF_RUN_UP,     /* mhb.run_up: yes */
   CASE_IF_SECTOR,     /* neighbour or parametric blade */
   CASE_IF_PSI,        /* psi given */
   CASE_IF_PHI,        /* phi given */
-  CASE_IF_PRESSURE,   /* excitation by pressure (not modal.file), and so on */
+  CASE_IF_PRESSURE,   /* excitation by pressure, without modal.file; the next ones likewise */
   CASE_IF_TRACTION,
   CASE_IF_FORCE,
   CASE_IF_FIELD,
   CASE_IF_LOADS,     /* several loads */
   CASE_IF_FACTORS,   /* any other load */
-  CASE_IF_FORCE_AT,  /* excitation by force with a place of its own */
+  CASE_IF_FORCE_AT,  /* excitation by force with a point of application of its own */
   CASE_IF_OUTPUT,    /* converge.output given */
   CASE_IF_AUTO,      /* harmonics: auto */
   CASE_IF_FOLLOWED,  /* the parameter of this row is followed */
   CASE_IF_STABILITY, /* multipliers are computed */
   CASE_IF_SEARCH,    /* there are random starts */
   CASE_IF_SEARCH_AT, /* at frequencies that are given */
-  CASE_IF_SWEEP,     /* time integration that goes on from the frequency before */
-  CASE_IF_NOT_SCALED /* curves do not follow the level of the excitation */
+  CASE_IF_SWEEP,     /* time integration that starts from the state at the previous frequency */
+  CASE_IF_NOT_SCALED /* mhb.vary does not follow the scale of the excitation */
 } case_condition;
 
 typedef struct {
@@ -85,22 +86,22 @@ typedef struct {
   bool           above, below; /* least, most themselves are excluded */
   const char    *words;        /* CASE_CHOICE, CASE_SWITCH, CASE_ACCURACY: separated by spaces */
   const char    *fallback;     /* default, as YAML text; NULL: none */
-  bool           required;     /* by its stages, when it applies */
-  int            stages;       /* case_stage mask: whose result depends on it */
+  bool           required;     /* whether its stages require it when the condition holds */
+  int            stages;       /* mask of the stages whose result depends on the key */
   case_condition when;
-  size_t         at;       /* offset in case_file (in the element for "[]" rows) */
-  size_t         count_at; /* offset of the number of values or elements, likewise */
-  size_t         each;    /* CASE_LIST: size of an element; least and most: how many there may be */
-  const char    *help;    /* one line */
-  const char    *instead; /* required, or one of these: "traction or force"; NULL */
+  size_t         at;       /* offset in case_file, or in the element for "[]" rows */
+  size_t         count_at; /* offset of the number of values or elements */
+  size_t         each;     /* CASE_LIST: size of an element; least and most bound their number */
+  const char    *help;     /* one line */
+  /* the keys that may be given in place of a required one, for messages; NULL if none */
+  const char *instead;
 } case_key;
 
 typedef struct {
-  int             n;
-  const case_key *key; /* [n], in the order of the manual; keys of a block follow each other */
+  int n;
+  /* [n] in the order of the reference page; the keys of a block are consecutive */
+  const case_key *key;
 } case_keys;
-
-case_keys case_key_table(void);
 
 /* Row of path (with "[]" for indices), or NULL. */
 const case_key *case_key_find(case_keys keys, const char *path);
@@ -108,28 +109,35 @@ const case_key *case_key_find(case_keys keys, const char *path);
 /* Whether path is a block of keys: a proper prefix of some row. */
 bool case_key_is_block(case_keys keys, const char *path);
 
-bool case_key_applies(const case_key *key, const case_file *file);
+/* The rest of path below a block. The block "" is the top, which gives path itself. NULL if path is
+ * not in the block. */
+const char *case_key_below(const char *path, const char *block);
+
+enum { CASE_LONGEST_WORD = 64 };
+
+/* First part of path below a block, e.g. "sections" of "mesh.blade.sections[].radius" in
+ * "mesh.blade". False if path is not in the block. */
+bool case_key_part(const char *path, const char *block, char part[CASE_LONGEST_WORD]);
 
 /* The last part of a path. */
 const char *case_key_leaf(const char *path);
 
-enum { CASE_LONGEST_WORD = 64 };
-
-/* The part of block ("" for the top) most like word; false if none is. best holds CASE_LONGEST_WORD bytes. */
+/* The key of a block ("" for the top) most like word. False if none is like it. best holds
+ * CASE_LONGEST_WORD bytes. */
 bool case_key_nearest(case_keys keys, const char *block, const char *word, char *best);
 
-/* What to say of an unknown word in a block ("" for the top): "; did you mean 'mu'?", where the key belongs, or
- * what the block knows. */
+/* Message about an unknown word in a block ("" for the top). It names the key that was probably
+ * meant, the block to which the word belongs, or the keys of the block. */
 void case_key_suggest(case_keys keys, const char *block, const char *word, char *text, size_t size);
 
-/* Edits (insert, delete, replace, swap neighbours; case ignored) that turn a into b. */
+/* Number of edits that turn a into b: insert, delete, replace, swap neighbours. Case is ignored. */
 int case_edit_distance(const char *a, const char *b);
 
-/* Append text to a buffer that holds a string; cuts what does not fit. */
+/* Append text to a buffer that holds a string. Text that does not fit is cut. */
 void case_append(char *buffer, size_t size, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-/* "0 to 10", "above 0", ... ; "" for any */
+/* Write the range as "0 to 10" or "above 0"; "" if every value is allowed. */
 void case_key_range(const case_key *key, char *text, size_t size);
 
 #endif

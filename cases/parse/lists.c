@@ -5,17 +5,17 @@
 #include <string.h>
 
 #include "cases/parse/units.h"
-#include "cases/parse/value.h"
 
-static bool preload_room(const case_reading *c, const case_node *node, int n) {
+static bool preload_room(const case_value_context *c, const case_node *node, int n) {
   if (n >= 1 && n <= MHB_MAX_PRELOADS) return true;
   case_issue_add(c->issues, node->line, node->column, c->path, "%d %s; there may be 1 to %d", n,
                  strcmp(c->path, "rotor.speed") == 0 ? "speeds" : "preloads", MHB_MAX_PRELOADS);
   return false;
 }
 
-/* {from, to, points}: both ends included. */
-static bool read_preload_range(const case_reading *c, const case_node *node, int *n, double *n0) {
+/* Reads {from, to, points}; both ends are included. */
+static bool read_preload_range(const case_value_context *c, const case_node *node, int *n,
+                               double *n0) {
   static const case_key names[] = {
       {.path = "from", .unit = ""}, {.path = "to", .unit = ""}, {.path = "points", .unit = ""}};
   double end[2] = {0, 0};
@@ -39,9 +39,9 @@ static bool read_preload_range(const case_reading *c, const case_node *node, int
                      "missing; expected {from, to, points}");
       good = false;
     } else if (i < 2) {
-      good = case_reading_number(c, path, child, &end[i]) && good;
+      good = case_value_number(c, path, child, &end[i]) && good;
     } else if (child->kind != CASE_SCALAR) {
-      good = case_reading_refuse_kind(c, path, child, "a whole number");
+      good = case_value_refuse_kind(c, path, child, "a whole number");
     } else if (!case_integer(child->text, &points, why)) {
       case_issue_add(c->issues, child->line, child->column, path, "%s", why);
       good = false;
@@ -60,8 +60,9 @@ static bool read_preload_range(const case_reading *c, const case_node *node, int
   return true;
 }
 
-/* The same preload twice gives the same curve twice. With several interfaces the lists go together: paths of their own. */
-static bool all_differ(const case_reading *c, const case_node *node, const double *n0) {
+/* Refuses a preload that is listed twice. The lists of several interfaces may repeat a value, since
+ * only their combination counts. */
+static bool all_differ(const case_value_context *c, const case_node *node, const double *n0) {
   for (int i = 1; strcmp(c->path, "contact.n0") == 0 && i < node->n; i++)
     for (int j = 0; j < i; j++) {
       char path[CASE_PATH];
@@ -74,34 +75,34 @@ static bool all_differ(const case_reading *c, const case_node *node, const doubl
   return true;
 }
 
-bool case_list_preloads(const case_reading *c, const case_node *node, void *slot) {
+bool case_list_preloads(const case_value_context *c, const case_node *node, void *slot) {
   double *n0 = slot;
   int    *n  = (int *)((char *)slot - c->key->at + c->key->count_at);
   *n         = 1;
-  if (node->kind == CASE_SCALAR) return case_reading_number(c, c->path, node, n0);
+  if (node->kind == CASE_SCALAR) return case_value_number(c, c->path, node, n0);
   if (node->kind == CASE_MAPPING) return read_preload_range(c, node, n, n0);
-  if (node->kind != CASE_SEQUENCE) return case_reading_refuse(c, node);
+  if (node->kind != CASE_SEQUENCE) return case_value_refuse(c, node);
   if (!preload_room(c, node, node->n)) return false;
   *n = node->n;
-  return case_reading_numbers(c, c->path, node, node->n, n0) && all_differ(c, node, n0);
+  return case_value_numbers(c, c->path, node, node->n, n0) && all_differ(c, node, n0);
 }
 
-static bool list_room(const case_reading *c, const case_node *node, int most) {
-  if (node->kind != CASE_SEQUENCE) return case_reading_refuse(c, node);
+static bool list_room(const case_value_context *c, const case_node *node, int most) {
+  if (node->kind != CASE_SEQUENCE) return case_value_refuse(c, node);
   if (node->n >= 1 && node->n <= most) return true;
   case_issue_add(c->issues, node->line, node->column, c->path, "has %d numbers, expected 1 to %d",
                  node->n, most);
   return false;
 }
 
-bool case_list_places(const case_reading *c, const case_node *node, void *slot) {
+bool case_list_places(const case_value_context *c, const case_node *node, void *slot) {
   mhb_search_settings *search = &c->file->mhb.search;
   if (!list_room(c, node, MHB_MAX_SEARCH_AT)) return false;
   search->n_at = node->n;
-  return case_reading_numbers(c, c->path, node, node->n, slot);
+  return case_value_numbers(c, c->path, node, node->n, slot);
 }
 
-bool case_list_orders(const case_reading *c, const case_node *node, void *slot) {
+bool case_list_orders(const case_value_context *c, const case_node *node, void *slot) {
   mhb_search_settings *search = &c->file->mhb.search;
   int                 *order  = slot;
   bool                 good   = list_room(c, node, MHB_MAX_SEARCH_ORDERS);
@@ -111,11 +112,10 @@ bool case_list_orders(const case_reading *c, const case_node *node, void *slot) 
     const case_node *child = &node->child[i];
     char             path[CASE_PATH];
     case_path(path, "%s[%d]", c->path, i);
-    case_reading one = *c;
-    one.path         = path;
-    if (child->kind != CASE_SCALAR)
-      return case_reading_refuse_kind(c, path, child, "a whole number");
-    good = case_reading_integer(&one, child, &order[i]);
+    case_value_context one = *c;
+    one.path               = path;
+    if (child->kind != CASE_SCALAR) return case_value_refuse_kind(c, path, child, "a whole number");
+    good = case_value_integer(&one, child, &order[i]);
     if (!good || i == 0 || order[i] > order[i - 1]) continue;
     case_issue_add(c->issues, child->line, child->column, path,
                    "is %d after %d; they must increase", order[i], order[i - 1]);
@@ -124,14 +124,14 @@ bool case_list_orders(const case_reading *c, const case_node *node, void *slot) 
   return good;
 }
 
-/* Points over the range of the sweep, or the frequencies themselves. */
-bool case_list_frequencies(const case_reading *c, const case_node *node, void *slot) {
+/* Reads the number of points over the range of the sweep, or the list of frequencies. */
+bool case_list_frequencies(const case_value_context *c, const case_node *node, void *slot) {
   (void)slot;
   mhb_integration_settings *asked = &c->file->integrate;
   char                      why[CASE_WHY];
   int                       n = node->kind == CASE_SEQUENCE ? node->n : 0;
   asked->listed               = node->kind == CASE_SEQUENCE;
-  if (!asked->listed && node->kind != CASE_SCALAR) return case_reading_refuse(c, node);
+  if (!asked->listed && node->kind != CASE_SCALAR) return case_value_refuse(c, node);
   if (!asked->listed && !case_integer(node->text, &n, why)) {
     case_issue_add(c->issues, node->line, node->column, c->path,
                    "%s; expected a number of points, or [from, ..] in Hz", why);
@@ -144,7 +144,7 @@ bool case_list_frequencies(const case_reading *c, const case_node *node, void *s
   }
   asked->n_frequencies = n;
   if (!asked->listed) return true;
-  if (!case_reading_numbers(c, c->path, node, n, asked->frequency)) return false;
+  if (!case_value_numbers(c, c->path, node, n, asked->frequency)) return false;
   for (int i = 1; i < n; i++) {
     if (asked->frequency[i] > asked->frequency[i - 1]) continue;
     case_issue_add(c->issues, node->child[i].line, node->child[i].column, c->path,
@@ -155,9 +155,9 @@ bool case_list_frequencies(const case_reading *c, const case_node *node, void *s
   return true;
 }
 
-bool case_list_factors(const case_reading *c, const case_node *node, void *slot) {
+bool case_list_factors(const case_value_context *c, const case_node *node, void *slot) {
   fem_load *load = slot;
-  if (node->kind != CASE_MAPPING) return case_reading_refuse(c, node);
+  if (node->kind != CASE_MAPPING) return case_value_refuse(c, node);
   bool good = true, given[FEM_MAX_LOAD_HARMONICS + 1] = {false};
   load->n_harmonics = 0;
   for (int i = 0; i < node->n; i++) {
@@ -194,9 +194,9 @@ static bool probe_name(const char *name) {
   return name[0] && strlen(name) < CASE_NAME;
 }
 
-bool case_list_probes(const case_reading *c, const case_node *node, void *slot) {
+bool case_list_probes(const case_value_context *c, const case_node *node, void *slot) {
   (void)slot;
-  if (node->kind != CASE_MAPPING) return case_reading_refuse(c, node);
+  if (node->kind != CASE_MAPPING) return case_value_refuse(c, node);
   if (node->n > CASE_MAX_PROBES) {
     case_issue_add(c->issues, node->line, node->column, c->path, "%d probes; at most %d", node->n,
                    CASE_MAX_PROBES);
@@ -216,7 +216,7 @@ bool case_list_probes(const case_reading *c, const case_node *node, void *slot) 
       continue;
     }
     strcpy(probe->name, child->key);
-    good = case_reading_numbers(c, path, child, 3, probe->at) && good;
+    good = case_value_numbers(c, path, child, 3, probe->at) && good;
   }
   c->file->n_probes = node->n;
   return good;

@@ -1,15 +1,16 @@
-/* Values of the case file that are lists or tables, each with what it may be besides. */
+/* Reading of values that are lists or tables, and of their short forms. */
 #ifndef CASES_PARSE_LISTS_H
 #define CASES_PARSE_LISTS_H
 
 #include "cases/parse/value_context.h"
 
-/* CASE_PRELOADS, CASE_PLACES, CASE_ORDERS, CASE_POINTS, CASE_FACTORS, CASE_PROBES: as keys.h says. */
-bool case_list_preloads(const case_reading *c, const case_node *node, void *slot);
-bool case_list_places(const case_reading *c, const case_node *node, void *slot);
-bool case_list_orders(const case_reading *c, const case_node *node, void *slot);
-bool case_list_frequencies(const case_reading *c, const case_node *node, void *slot);
-bool case_list_factors(const case_reading *c, const case_node *node, void *slot);
-bool case_list_probes(const case_reading *c, const case_node *node, void *slot);
+/* The types CASE_PRELOADS, CASE_PLACES, CASE_ORDERS, CASE_POINTS, CASE_FACTORS and CASE_PROBES of
+ * keys.h. */
+bool case_list_preloads(const case_value_context *c, const case_node *node, void *slot);
+bool case_list_places(const case_value_context *c, const case_node *node, void *slot);
+bool case_list_orders(const case_value_context *c, const case_node *node, void *slot);
+bool case_list_frequencies(const case_value_context *c, const case_node *node, void *slot);
+bool case_list_factors(const case_value_context *c, const case_node *node, void *slot);
+bool case_list_probes(const case_value_context *c, const case_node *node, void *slot);
 
 #endif

@@ -4,7 +4,9 @@
 #include <stdarg.h>
 #include <string.h>
 
+#include "cases/parse/key_table.h"
 #include "cases/parse/value.h"
+#include "cases/parse/value_context.h"
 
 static int index_of(const case_reader *r, const char *path) {
   const case_key *key = case_key_find(r->keys, path);
@@ -31,7 +33,7 @@ bool case_reader_has_block(const case_reader *r, const char *path) {
   return find_block(r, path) != NULL;
 }
 
-/* Cuts the last part of a path; false at the top. */
+/* Cuts the last part off a path. False at the top. */
 static bool parent_of(char *path) {
   char *dot = strrchr(path, '.');
   if (dot) *dot = '\0';
@@ -85,7 +87,7 @@ static void refuse_key(case_reader *r, const char *block, const char *path, cons
   case_issue_add(r->issues, node->key_line, node->key_column, path, "unknown key%s", hint);
 }
 
-/* Whether an element has the row's key, be it misspelt: that has been told. */
+/* Does the element have the key of a row, perhaps misspelt? A misspelt key has its own message. */
 static bool element_has(const case_reader *r, const case_node *node, const case_key *key) {
   char        block[CASE_PATH], meant[CASE_LONGEST_WORD];
   const char *leaf = case_key_leaf(key->path);
@@ -102,7 +104,7 @@ static bool element_has(const case_reader *r, const case_node *node, const case_
   return false;
 }
 
-/* The keys of an element, or of a block in it, whose rows begin with prefix. */
+/* Reads the keys of an element, or of a block in it, whose rows begin with prefix. */
 static void read_members(case_reader *r, const char *prefix, const case_node *node,
                          const char *path, char *base) {
   for (int i = 0; i < node->n; i++) {
@@ -125,7 +127,7 @@ static void read_members(case_reader *r, const char *prefix, const case_node *no
   }
 }
 
-/* One element of a list of mappings: its rows are "LIST[].KEY". */
+/* Reads one element of a list of mappings, whose rows are "LIST[].KEY". */
 static void read_element(case_reader *r, const case_key *list, const case_node *node,
                          const char *path, char *base) {
   char prefix[CASE_PATH];
@@ -144,7 +146,7 @@ static void read_element(case_reader *r, const case_key *list, const case_node *
   }
 }
 
-/* The keys of a list's elements: "{radius, chord}". */
+/* The shape of an element for messages, e.g. "{radius, chord}". */
 static void list_shape(const case_reader *r, const case_key *list, char *text, size_t size) {
   char   last[CASE_PATH] = "";
   size_t n               = strlen(list->path);
@@ -171,7 +173,7 @@ static void read_list(case_reader *r, const case_key *key, const char *path,
     return;
   }
   if (node->n < (int)key->least || node->n > (int)key->most) {
-    const char *leaf = case_key_leaf(path); /* a plural */
+    const char *leaf = case_key_leaf(path); /* a plural noun */
     int         n    = (int)strlen(leaf) - (node->n == 1);
     case_issue_add(r->issues, node->line, node->column, path, "has %d %.*s, must have %g to %g",
                    node->n, n, leaf, key->least, key->most);
@@ -219,8 +221,8 @@ static void read_block(case_reader *r, const char *path, const case_node *node) 
   if (node->kind == CASE_MAPPING) walk(r, node, path);
 }
 
-/* A key that is not known. If it looks like one that is, it stands for it: what it holds is read, and it is not
- * told to be missing as well. */
+/* An unknown key. If it resembles a known key, its value is read as that key's. The known key is
+ * then not reported as missing. */
 static void read_unknown(case_reader *r, const char *path, const case_node *node,
                          const char *full) {
   char meant[CASE_LONGEST_WORD], right[CASE_PATH];
@@ -229,7 +231,7 @@ static void read_unknown(case_reader *r, const char *path, const case_node *node
   case_path(right, "%s%s%s", path, path[0] ? "." : "", meant);
   int index = index_of(r, right);
   if (index >= 0 && !r->given[index]) {
-    /* a file's name decides which other keys are needed */
+    /* the name of a file decides which other keys are required */
     if (r->keys.key[index].type == CASE_FILE_NAME) read_key(r, index, right, node);
     r->given[index] = node;
     r->good[index]  = false;
@@ -242,7 +244,8 @@ static void walk(case_reader *r, const case_node *map, const char *path) {
   for (int i = 0; i < map->n; i++) {
     const case_node *child = &map->child[i];
     char             full[CASE_PATH];
-    bool plain = child->key[0] && !strpbrk(child->key, ".["); /* "contact.mu: 1" is no block */
+    /* "contact.mu: 1" at the top is not a block */
+    bool plain = child->key[0] && !strpbrk(child->key, ".[");
     case_path(full, "%s%s%s", path, path[0] ? "." : "", child->key);
     int index = plain ? index_of(r, full) : -1;
     if (index >= 0) {
@@ -275,14 +278,14 @@ void case_reader_walk(case_reader *r, const case_node *root) {
 
 static bool is_missing(const case_reader *r, int index, int stages) {
   const case_key *key = &r->keys.key[index];
-  /* neither mesh.blade nor mesh.file: told as a whole by case_check_alternatives */
+  /* case_check_alternatives reports that both mesh.blade and mesh.file are missing */
   bool told = key->when == CASE_IF_BLADE && !find_block(r, "mesh.blade");
   return key->required && (key->stages & stages) && !r->given[index] && !is_section_row(key) &&
          !told && case_key_applies(key, r->file);
 }
 
-/* The outermost block around key that is not in the file; false if the block of the key is there. broken: the
- * block is there but is no mapping, which has been told. */
+/* The outermost block around key that is not in the file. False if the block of the key is there.
+ * broken: the block is there but not a mapping, which has its own message. */
 static bool missing_block(const case_reader *r, const case_key *key, char block[CASE_PATH],
                           bool *broken) {
   char path[CASE_PATH];

@@ -9,7 +9,7 @@
 
 enum { LENGTH, MASS, TIME, ANGLE, N_DIMENSIONS, LONGEST = 80 };
 
-/* One named unit: factor * 10^power SI. */
+/* A named unit: factor 10^power in SI. */
 typedef struct {
   const char *name, *prefixes;
   double      factor;
@@ -52,7 +52,7 @@ typedef struct {
 
 #define COUNT(array) ((int)(sizeof(array) / sizeof *(array)))
 
-/* Unit and prefix that make up exactly n bytes of text. */
+/* Finds the unit and prefix that make up exactly n bytes of text. */
 static bool find_unit(const char *text, size_t n, const named_unit **unit, int *power) {
   for (int u = 0; u < COUNT(units); u++) {
     for (int p = 0; p < COUNT(prefixes); p++) {
@@ -69,7 +69,7 @@ static bool find_unit(const char *text, size_t n, const named_unit **unit, int *
   return false;
 }
 
-/* One factor of a unit, "mm2" or "m^3"; moves *text past it. */
+/* Reads one factor of a unit, such as "mm2" or "m^3", and moves *text past it. */
 static bool read_factor(const char **text, int sign, scale *out) {
   const char       *at = *text;
   size_t            n  = strcspn(at, "/*.^0123456789 ");
@@ -99,7 +99,7 @@ static bool read_unit(const char *text, scale *out) {
   while (read_factor(&text, sign, out)) {
     if (*text == '\0') return true;
     if (*text != '/' && *text != '*' && *text != '.') return false;
-    if (*text == '/') sign = -1; /* N/m/s: all that follows the first / divides */
+    if (*text == '/') sign = -1; /* N/m/s: everything after the first / divides */
     text++;
   }
   return false;
@@ -109,7 +109,8 @@ static size_t count_digits(const char *text) {
   return strspn(text, "0123456789");
 }
 
-/* Length of the decimal number at the start of text, 0 if there is none; the mantissa's length apart. */
+/* Length of the decimal number at the start of text; 0 if there is none. mantissa: length without
+ * the exponent. */
 static size_t measure(const char *text, size_t *mantissa) {
   const char *at    = text + (*text == '+' || *text == '-');
   size_t      whole = count_digits(at), part = 0;
@@ -145,7 +146,7 @@ static void not_a_number(const char *text, const char *unit, char why[CASE_WHY])
            *unit ? "a number in " : "a number", unit);
 }
 
-/* mantissa * 10^power through one decimal conversion, so that prefixes do not round. */
+/* mantissa 10^power by one decimal conversion, so that a prefix adds no rounding. */
 static bool convert(const char *text, size_t mantissa, size_t length, int power, double *value) {
   char buffer[LONGEST + 24];
   long exponent = length > mantissa ? strtol(text + mantissa + 1, NULL, 10) : 0;

@@ -2,7 +2,9 @@
 
 #include <string.h>
 
-/* What would have to be for a key of this condition to be read; NULL: not told here. */
+#include "cases/parse/key_table.h"
+
+/* The condition in words under which a key is read; NULL if it is not reported here. */
 static const char *needed(case_condition when) {
   switch (when) {
     case CASE_IF_MESH_FILE:
@@ -22,7 +24,7 @@ static const char *needed(case_condition when) {
   }
 }
 
-/* A row that only modes made here depend on. */
+/* Does the key matter only for modes that are computed here? */
 static bool of_own_modes(const case_key *key) {
   return key->when != CASE_IF_ORDER && key->when != CASE_IF_SECTOR &&
          (key->stages & (CASE_MESH | CASE_MODAL)) != 0;
@@ -34,7 +36,7 @@ static bool has_block(const case_reader *r, const char *path) {
   return false;
 }
 
-/* The key's outermost block if nothing in it is read, else the key itself. */
+/* The outermost block of the key if nothing in it is read, else the key itself. */
 static void whole(const case_reader *r, const case_key *key, char path[CASE_PATH]) {
   size_t n = strcspn(key->path, ".");
   case_path(path, "%.*s", (int)n, key->path);
@@ -48,7 +50,8 @@ static void whole(const case_reader *r, const case_key *key, char path[CASE_PATH
   if (!none) case_path(path, "%s", key->path);
 }
 
-/* mesh.size beside a mesh is told by the check of mesh.file; search.starts: 0 says that at and orders shall wait. */
+/* Keys reported elsewhere, or allowed. The check of mesh.file reports mesh.size beside a mesh.
+ * search.at and search.orders may stay while search.starts is 0. */
 static bool told(const case_reader *r, const case_key *key) {
   if (key->when == CASE_IF_SIZE) return r->file->mesh_file != NULL;
   if (key->when == CASE_IF_SEARCH || key->when == CASE_IF_SEARCH_AT)
@@ -56,7 +59,7 @@ static bool told(const case_reader *r, const case_key *key) {
   return false;
 }
 
-void case_check_unread(const case_reader *r) {
+void case_check_unused(const case_reader *r) {
   char last[CASE_PATH] = "", path[CASE_PATH];
   for (int i = 0; i < r->keys.n; i++) {
     const case_key *key = &r->keys.key[i];

@@ -1,12 +1,13 @@
-/* Keys that are given but would never be read. */
+/* Keys that are in the file but not read. */
 #ifndef CASES_PARSE_UNUSED_KEYS_H
 #define CASES_PARSE_UNUSED_KEYS_H
 
 #include "cases/parse/reader.h"
 
-/* Every key that is given although its condition in the key table does not hold is an issue at its place: what would have to
- * be otherwise, or that it is to be left out; once a block where nothing of the block is read. Not told: what other checks
- * tell, and what is true of the machine whatever it meets (rotor.blades, excitation.engine_order). */
-void case_check_unread(const case_reader *reader);
+/* Record an issue for every key in the file whose condition in the key table does not hold. It says
+ * which condition is missing, or that the key is to be left out. A block of which nothing is read
+ * is one issue. Not reported: faults that other checks report, and properties of the machine that
+ * always hold (rotor.blades, excitation.engine_order). */
+void case_check_unused(const case_reader *reader);
 
 #endif

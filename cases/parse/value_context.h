@@ -1,4 +1,4 @@
-/* A value in hand: what its reader needs to know, and what readers share. */
+/* What the readers of values share: the value being read, and checks of kind and range. */
 #ifndef CASES_PARSE_VALUE_CONTEXT_H
 #define CASES_PARSE_VALUE_CONTEXT_H
 
@@ -13,22 +13,31 @@ typedef struct {
   const case_key *key;
   const char     *path;
   case_file      *file;
-} case_reading;
+} case_value_context;
 
-/* Record that node is of the wrong kind (nothing if it is broken); false. The first says what the key wants. */
-bool case_reading_refuse(const case_reading *c, const case_node *node);
-bool case_reading_refuse_kind(const case_reading *c, const char *path, const case_node *node,
-                              const char *expected);
+/* Record that node is of the wrong kind, unless it is broken, and return false. The first function
+ * says what the key expects. */
+bool case_value_refuse(const case_value_context *c, const case_node *node);
+bool case_value_refuse_kind(const case_value_context *c, const char *path, const case_node *node,
+                            const char *expected);
 
-/* A number in the key's unit and range. */
-bool case_reading_number(const case_reading *c, const char *path, const case_node *node,
-                         double *value);
+/* Read a number in the unit and the range of the key. */
+bool case_value_number(const case_value_context *c, const char *path, const case_node *node,
+                       double *value);
 
-/* A list of n of them. */
-bool case_reading_numbers(const case_reading *c, const char *path, const case_node *node, int n,
-                          double *value);
+/* Read a list of n such numbers. */
+bool case_value_numbers(const case_value_context *c, const char *path, const case_node *node, int n,
+                        double *value);
 
-/* slot: int */
-bool case_reading_integer(const case_reading *c, const case_node *node, void *slot);
+/* Read a whole number; slot is an int. */
+bool case_value_integer(const case_value_context *c, const case_node *node, void *slot);
+
+/* Text for messages: "a number in N/m", "one of neighbour, ground", "[x, y, z] in m". */
+void case_value_expected(const case_key *key, char *text, size_t size);
+
+/* Read a pair [number in unit, phase] for load factors and signals. The phase is optional, in
+ * rad. */
+bool case_value_polar(case_issues *issues, const char *path, const case_node *node,
+                      const char *unit, double polar[2]);
 
 #endif

@@ -97,10 +97,10 @@ static void node_clear(case_node *node) {
   *node = (case_node){0};
 }
 
-/* Room for one more entry; NULL (issue recorded) when there are too many or there is no memory. */
+/* Adds an entry. NULL with an issue recorded if there are too many or there is no memory. */
 static case_node *add_child(builder *b, case_node *parent) {
   bool many = parent->n >= CASE_MAX_ENTRIES;
-  if (!many && (parent->n & (parent->n - 1)) == 0) { /* full at 0, 1, 2, 4, 8, ... */
+  if (!many && (parent->n & (parent->n - 1)) == 0) { /* the array is full at 0, 1, 2, 4, 8, ... */
     int        capacity = parent->n ? 2 * parent->n : 1;
     case_node *grown    = realloc(parent->child, (size_t)capacity * sizeof *grown);
     if (grown) parent->child = grown;
@@ -150,7 +150,7 @@ static bool build_sequence(builder *b, const char *path, int depth, case_node *o
   }
 }
 
-/* Turns the built key into child->key; drops an entry that may not stay. */
+/* Stores the key of an entry in child->key, and drops an entry that is not allowed. */
 static void settle_entry(builder *b, case_node *map, case_node *key, const char *path) {
   case_node *child  = &map->child[map->n - 1];
   child->key_line   = key->line;
@@ -240,7 +240,7 @@ static bool build(builder *b, const yaml_event_t *event, const char *path, int d
   }
 }
 
-/* Skips stream and document start; false at the end of the stream or after an issue. */
+/* Skips the starts of stream and document. False at the end of the stream or after an issue. */
 static bool first_event(builder *b, yaml_event_t *event) {
   while (next_event(b, event)) {
     if (event->type != YAML_STREAM_START_EVENT && event->type != YAML_DOCUMENT_START_EVENT &&
@@ -253,7 +253,7 @@ static bool first_event(builder *b, yaml_event_t *event) {
   return false;
 }
 
-/* After the document: nothing else but the end. */
+/* Refuses anything after the document. */
 static bool expect_end(builder *b) {
   yaml_event_t event;
   for (bool end = false; !end;) {

@@ -1,4 +1,5 @@
-/* A YAML document as a tree of nodes that know their place. One document a file; no aliases, no tags. */
+/* A YAML document as a tree of nodes with their places. One document a file; no aliases, no
+ * tags. */
 #ifndef CASES_PARSE_YAML_H
 #define CASES_PARSE_YAML_H
 
@@ -11,11 +12,11 @@
 enum { CASE_MAX_BYTES = 1 << 20, CASE_MAX_DEPTH = 16, CASE_MAX_ENTRIES = 4096, CASE_PATH = 256 };
 
 typedef enum {
-  CASE_NULL, /* nothing, ~ or null */
+  CASE_NULL, /* no value, ~ or null */
   CASE_SCALAR,
   CASE_SEQUENCE,
   CASE_MAPPING,
-  CASE_BROKEN /* an issue has been recorded; say no more about it */
+  CASE_BROKEN /* an issue has been recorded; no further one is needed */
 } case_kind;
 
 typedef struct case_node case_node;
@@ -29,19 +30,19 @@ struct case_node {
   case_node *child;                /* [n], in the order of the file */
 };
 
-/* Whole file into malloc'ed memory, NUL added after length bytes.
- * Errors: SHB_ERR_IO unreadable; SHB_ERR_INPUT larger than CASE_MAX_BYTES or holding NUL bytes. */
+/* Read a whole file into malloc'ed memory. A NUL follows the length bytes. Errors: SHB_ERR_IO
+ * unreadable; SHB_ERR_INPUT above CASE_MAX_BYTES, or with NUL bytes. */
 shb_status case_text_read(const char *path, char **text, size_t *length);
 
-/* Parse issues->text. NULL after a syntax error (the issue is recorded) or for a file without content; keys
- * given twice are recorded and the first one is kept. */
+/* Parse issues->text. NULL for a file without content, and after a syntax error, which is recorded.
+ * A key given twice is recorded, and its first value is used. */
 case_node *case_document_parse(case_issues *issues);
 void       case_document_free(case_node *root);
 
 /* "a mapping", "a list", ... for messages */
 const char *case_kind_name(case_kind kind);
 
-/* Print a key's path ("contact.n0[2]"); cut if too long for one that exists. */
+/* Print the path of a key, e.g. "contact.n0[2]". A path longer than any that exists is cut. */
 void case_path(char path[CASE_PATH], const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* Entry of a mapping, or NULL. */

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "cases/parse/diagnostics.h"
+#include "cases/parse/key_table.h"
 #include "cases/parse/reader.h"
 #include "cases/parse/yaml.h"
 #include "cases/schema/checks.h"
@@ -18,7 +19,7 @@ static char *folder_of(const char *path) {
   return strndup(path, slash == path ? 1 : (size_t)(slash - path));
 }
 
-/* The file's name without its ending; for case.yaml the name of its folder, which tells more. */
+/* Name of the case: the file's name without its ending, or for case.yaml the name of its folder. */
 static char *default_name(const char *path, const char *folder) {
   const char *leaf = strrchr(path, '/');
   leaf             = leaf ? leaf + 1 : path;
@@ -32,7 +33,7 @@ static char *default_name(const char *path, const char *folder) {
   return name;
 }
 
-/* What curves are followed in: the frequency, unless mhb.vary names something else. */
+/* The continuation parameter: the frequency, unless mhb.vary names another one. */
 static void share_parameter(case_reader *r) {
   mhb_settings *mhb = &r->file->mhb;
   for (int i = MHB_IN_FREQUENCY + 1; i < MHB_N_PARAMETERS; i++) {
@@ -44,7 +45,7 @@ static void share_parameter(case_reader *r) {
   }
 }
 
-/* Copies of a value for those who look for it elsewhere. */
+/* Copies values that several structs hold. */
 static void share(case_reader *r) {
   case_file *file        = r->file;
   file->mhb.has_psi      = case_reader_given(r, "contact.psi") != NULL;
@@ -80,7 +81,7 @@ static void share(case_reader *r) {
 /* Returns true if an input file named in the case cannot be read. */
 static bool read_document(case_issues *issues, int stages, case_file *out) {
   case_node *root = case_document_parse(issues);
-  if (!root && issues->n > 0) return false; /* not YAML: nothing more can be said */
+  if (!root && issues->n > 0) return false; /* not YAML, so there is nothing to check */
   case_reader reader = {.issues = issues, .keys = case_key_table(), .file = out};
   case_reader_walk(&reader, root);
   bool lost = false;
@@ -115,7 +116,8 @@ shb_status case_read(const char *path, int stages, FILE *errors, case_file *out)
   case_issues_free(&issues);
   if (n == 0) return SHB_OK;
   case_free(out);
-  /* all is said: no text for the closing line. A lone file that cannot be read is not the case file's fault. */
+  /* The errors are printed, so the closing line has no text. If the only error is an input file
+   * that cannot be read, the case file itself is in order: SHB_ERR_IO. */
   return shb_fail(lost && n == 1 ? SHB_ERR_IO : SHB_ERR_INPUT, __FILE__, __LINE__, "%s", "");
 }
 
@@ -130,34 +132,4 @@ void case_free(case_file *file) {
   for (int i = 0; i < CASE_MAX_LOADS; i++) free(file->loads[i].field);
   free(file->converge_output);
   *file = (case_file){0};
-}
-
-char *case_output(const case_file *file, const char *suffix) {
-  bool   here = strcmp(file->folder, ".") == 0;
-  size_t size = strlen(file->folder) + strlen(file->name) + strlen(suffix) + 2;
-  char  *path = malloc(size);
-  if (path)
-    snprintf(path, size, "%s%s%s%s", here ? "" : file->folder, here ? "" : "/", file->name, suffix);
-  return path;
-}
-
-bool case_mesh_is_made(const case_file *file) {
-  const mesh_source *source = &file->source;
-  if (!file->mesh_file) return false;
-  bool made = MESH_FORMAT_IS_SOLID(mesh_format_of(file->mesh_file)) || source->unit != 1;
-  const mesh_rules *rules = &source->rules;
-  for (int i = 0; i < MESH_N_SETS; i++) made = made || rules->usual[i].kind != MESH_RULE_NONE;
-  for (int i = 0; i < rules->n_more; i++) made = made || rules->more[i].rule.kind != MESH_RULE_NONE;
-  for (int i = 0; i < rules->n_volumes; i++)
-    made = made || rules->volume[i].rule.kind != MESH_RULE_NONE;
-  return made;
-}
-
-char *case_mesh_path(const case_file *file) {
-  return file->mesh_file && !case_mesh_is_made(file) ? strdup(file->mesh_file)
-                                                     : case_output(file, ".msh");
-}
-
-char *case_modal_path(const case_file *file) {
-  return file->modal_file ? strdup(file->modal_file) : case_output(file, ".modal.h5");
 }

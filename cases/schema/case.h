@@ -1,134 +1,19 @@
-/* The case file: key table, reader, and the settings of every stage in SI units. */
+/* Reading a case file. */
 #ifndef CASES_SCHEMA_CASE_H
 #define CASES_SCHEMA_CASE_H
 
-#include <stdbool.h>
 #include <stdio.h>
 
-#include "fem/element/load.h"
-#include "fem/element/material.h"
-#include "mesh/base/publish.h"
+#include "cases/parse/case_file.h"
 #include "mesh/base/status.h"
-#include "mesh/blade/blade.h"
-#include "mesh/gmsh/source_settings.h"
-#include "mhb/problem/settings.h"
-#include "modal/common/completeness.h"
-#include "modal/common/damping.h"
 
-enum { CASE_MAX_PROBES = 32, CASE_MAX_LOADS = 16, CASE_NAME = 64 };
-
-typedef enum {
-  CASE_MESH      = 1,
-  CASE_MODAL     = 2,
-  CASE_MHB       = 4,
-  CASE_POST      = 8,
-  CASE_CONVERGE  = 16,
-  CASE_INTEGRATE = 32
-} case_stage;
-
-typedef struct {
-  char   name[CASE_NAME];
-  double at[3]; /* m, mesh axes */
-} case_probe;
-
-/* One of several contact interfaces. */
-typedef struct {
-  mhb_interface mhb;
-  char          right[MESH_WORD], left[MESH_WORD]; /* groups of faces */
-  int           points;                            /* contact patches; 0 = all */
-} case_interface;
-
-/* One of several loads. */
-typedef struct {
-  fem_load load;
-  char    *field; /* resolved path, or NULL */
-  char     group[MESH_WORD];
-} case_load;
-
-/* A volume of the mesh and what it is made of. */
-typedef struct {
-  char            group[MESH_WORD];
-  fem_orthotropic constants; /* E, nu, G, axes */
-  fem_material    material;  /* what they make */
-} case_material;
-
-typedef struct {
-  char *path;   /* as given */
-  char *folder; /* of path, "." if none; outputs and relative input files live here */
-  char *text;   /* verbatim */
-  char *name;
-
-  bool        has_mesh;  /* block mesh present (needed unless modal.file) */
-  char       *mesh_file; /* resolved path of mesh.file, or NULL: parametric blade */
-  int         mesh_unit; /* place in the words of mesh.unit */
-  mesh_source source;    /* mesh.file, all that is said of it */
-  mesh_blade  blade;
-
-  fem_orthotropic constants; /* material.E, nu, G, axes */
-  fem_material    material;  /* what they make */
-  bool            has_materials;
-  int             n_materials; /* with materials, instead of material */
-  case_material   materials[MESH_MAX_VOLUMES];
-  int             blades;
-  int             n_speeds;
-  double          speed[MHB_MAX_PRELOADS]; /* [n_speeds] rad/s, the last that of the response */
-  bool            run_up;                  /* the speed follows the frequency */
-  double          pressure;                /* Pa, steady */
-  mesh_axis       axis;
-
-  int              modes;           /* 0: auto */
-  double           tolerance, band; /* with modes: auto; Hz */
-  modal_damping    damping;
-  modal_check_kind check;
-  bool             full_integration; /* modal.integration: full */
-  char            *modal_file;       /* resolved path of modal.file, or NULL */
-
-  int        engine_order;
-  fem_load   load;
-  char      *field_file; /* resolved path of excitation.field, or NULL */
-  bool       has_loads;
-  int        n_loads; /* with excitation.loads, instead of load */
-  case_load  loads[CASE_MAX_LOADS];
-  int        n_probes;
-  case_probe probe[CASE_MAX_PROBES];
-
-  int            points; /* contact patches; 0 = all */
-  bool           has_interfaces;
-  int            n_interfaces; /* with contact.interfaces */
-  case_interface interfaces[MHB_MAX_INTERFACES];
-  char           vary_interface[MHB_NAME]; /* mhb.vary.interface */
-  mhb_settings   mhb;
-  double         vary[MHB_N_PARAMETERS][2]; /* range of a parameter that is followed */
-
-  double converge_tolerance;
-  double converge_n0[2];   /* N, preloads that are looked at */
-  double converge_seconds; /* the most that a rung's balance may take */
-  char  *converge_output;  /* name of a probe or "contact"; NULL: the first */
-
-  mhb_integration_settings integrate;
-} case_file;
-
-/* Read and check a case file. All errors of the file are printed to errors at once, each as
- * "file:line:col: error: key: text" with the source line and a caret; returns SHB_ERR_INPUT (SHB_ERR_IO if it
- * cannot be opened). stages: bit mask of case_stage that will run; a stage's required keys are only required then. */
+/* Read and check a case file. All errors of the file are printed to errors, each as "file:line:col:
+ * error: key: text" with the source line and a caret.
+ *
+ *   stages  in  mask of the stages that will run; keys that only others require may be missing
+ *
+ * Errors: SHB_ERR_INPUT a fault in the file; SHB_ERR_IO the file cannot be opened. */
 shb_status case_read(const char *path, int stages, FILE *errors, case_file *out);
 void       case_free(case_file *file);
-
-/* folder/NAME + suffix, e.g. ".modal.h5"; malloc'ed. */
-char *case_output(const case_file *file, const char *suffix);
-/* Is mesh.file not used as it is, but made into NAME.msh first (solids, other units, groups by rule)? */
-bool case_mesh_is_made(const case_file *file);
-/* mesh_file or NAME.msh; modal_file or NAME.modal.h5 (malloc'ed). */
-char *case_mesh_path(const case_file *file);
-char *case_modal_path(const case_file *file);
-
-/* "key = value" lines in SI, sorted as in the key table, of every key that stage depends on; malloc'ed. */
-char *case_settings(const case_file *file, case_stage stage);
-
-/* Every key with unit, range, default and help. */
-void case_print_keys(FILE *out);
-
-/* The same as the page docs/user/case_reference.md: Markdown, a table a block. */
-void case_print_reference(FILE *out);
 
 #endif

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "cases/parse/unused_keys.h"
+#include "cases/schema/case_paths.h"
 #include "cases/schema/interfaces.h"
 #include "cases/schema/loads.h"
 #include "cases/schema/materials.h"
@@ -26,7 +27,7 @@ static void check_mesh(case_reader *r, int stages) {
     case_reader_issue(r, "mesh", "missing; expected {blade: ...} or {file: NAME}");
 }
 
-/* What a parametric blade cannot be. */
+/* Refuses parametric blades that cannot be meshed. */
 static void check_blade(case_reader *r, int stages) {
   const mesh_blade *blade  = &r->file->blade;
   double            degree = 180 / 3.14159265358979323846;
@@ -90,7 +91,7 @@ static void check_sizes(case_reader *r) {
                       blade->shroud_size, blade->size);
 }
 
-/* A tolerance of the motion is what auto works for, and means nothing else. */
+/* mhb.tolerance is the tolerance of mhb.harmonics: auto, and has no meaning otherwise. */
 static void check_tolerance(case_reader *r) {
   if (!case_reader_good(r, "mhb.harmonics") || r->file->mhb.harmonics == 0) return;
   r->file->mhb.motion_tolerance = 0;
@@ -100,7 +101,7 @@ static void check_tolerance(case_reader *r) {
                       "law is contact.accuracy");
 }
 
-/* One parameter is followed, all others stand. */
+/* Only one parameter can be the continuation parameter. */
 static void check_followed(case_reader *r) {
   const mhb_settings *mhb    = &r->file->mhb;
   int                 single = mhb->frequency[0] == mhb->frequency[1], given = 0;
@@ -123,7 +124,7 @@ static void check_followed(case_reader *r) {
     case_reader_issue(r, "contact.n0", "must be one number, because curves follow mhb.vary.n0");
 }
 
-/* The band of modes: auto, where it is not given: what the balance needs. */
+/* The default band of modes: auto ends at the highest harmonic of the sweep. */
 static void check_band(case_reader *r) {
   case_file          *file = r->file;
   const mhb_settings *mhb  = &file->mhb;
@@ -141,7 +142,8 @@ static void check_band(case_reader *r) {
     case_reader_issue(r, "modal.band", "missing; modes: auto needs it, or mhb.frequency");
 }
 
-/* Each speed once: what is interpolated between two that are nearly the same is rounding. */
+/* Relative difference below which two speeds count as equal: interpolation would amplify
+ * round-off. */
 static const double ALIKE = 1e-5;
 
 static void check_speeds(case_reader *r) {
@@ -155,7 +157,7 @@ static void check_speeds(case_reader *r) {
       }
 }
 
-/* The range of the sweep lies on the engine order within the speeds of the list. */
+/* In a run-up the range of the sweep must lie within the listed speeds, along the engine order. */
 static void check_run_up_speeds(case_reader *r) {
   static const double two_pi = 6.283185307179586476925, hair = 1e-9;
   const case_file    *file = r->file;
@@ -194,7 +196,7 @@ static void check_run_up(case_reader *r) {
   if (!file->modal_file) check_run_up_speeds(r);
 }
 
-/* Frequencies outside the range would find curves that are not followed. */
+/* Refuses search frequencies outside the range of the sweep, where no curve is traced. */
 static void check_search(case_reader *r) {
   const mhb_settings *mhb  = &r->file->mhb;
   const case_node    *node = case_reader_given(r, "mhb.search.at");
@@ -215,7 +217,7 @@ static void check_search(case_reader *r) {
   }
 }
 
-/* There are no solutions of the balance to start on outside its range. */
+/* Refuses integration at frequencies at which the balance has no solution to start from. */
 static void check_integrate(case_reader *r) {
   static const char               path[] = "integrate.frequencies";
   const mhb_settings             *mhb    = &r->file->mhb;
@@ -236,7 +238,7 @@ static void check_integrate(case_reader *r) {
   }
 }
 
-/* An input file that cannot be read; true if so. */
+/* Reports an input file that cannot be read. True if so. */
 static bool check_file(case_reader *r, const char *key, const char *path) {
   if (!path || !case_reader_good(r, key)) return false;
   struct stat info;
@@ -279,7 +281,7 @@ bool case_check_values(case_reader *r, int stages) {
     check_sections(r);
     check_sizes(r);
   }
-  case_check_unread(r);
+  case_check_unused(r);
   case_check_load_values(r, stages);
   check_blade(r, stages);
   check_tolerance(r);

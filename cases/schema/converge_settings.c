@@ -1,7 +1,11 @@
+#include "cases/schema/converge_settings.h"
+
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "cases/converge/converge.h"
+#include "cases/schema/stage_settings.h"
+#include "mesh/base/publish.h"
 
 shb_status converge_settings(const case_file *file, char **text) {
   const char *input     = file->modal_file ? file->modal_file : file->mesh_file;

@@ -1,14 +1,16 @@
 #include "cases/schema/interfaces.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "cases/parse/value.h"
+#include "cases/parse/value_context.h"
 #include "mhb/problem/parameter.h"
 
 static const char list_path[] = "contact.interfaces", vary_path[] = "mhb.vary.interface";
 
-/* Parameters of a single one, which the list stands for. */
+/* Keys of a single interface, which the list replaces. */
 static const char *const single[] = {"psi", "phi", "points", "mu", "ku", "kv", "n0"};
 enum { N_SINGLE = sizeof single / sizeof *single };
 
@@ -21,7 +23,8 @@ static bool has(const case_node *node, const char *leaf) {
   return node && node->kind == CASE_MAPPING && case_node_find(node, leaf);
 }
 
-/* The one that mhb.vary.interface names, else the first with a list of preloads, else the first. */
+/* Index of the leading interface: the one of mhb.vary.interface, else the first with a list of
+ * preloads, else the first. */
 static int leading(const case_file *file) {
   for (int i = 0; i < file->n_interfaces; i++)
     if (strcmp(file->interfaces[i].mhb.name, file->vary_interface) == 0) return i;
@@ -71,7 +74,7 @@ static void tell(const case_reader *r, int i, const char *leaf, const char *text
   case_issue_add(r->issues, at->line, at->column, path, "%s", text);
 }
 
-/* What the balance needs of each. */
+/* Reports keys of interface i that the balance requires. */
 static void check_missing(const case_reader *r, int i) {
   for (int k = 0; k < N_SINGLE; k++) {
     char path[CASE_PATH], expected[256], text[300];
@@ -102,7 +105,7 @@ static void check_names(const case_reader *r, int i) {
   }
 }
 
-/* Lists run side by side: place k of one goes with place k of the others. */
+/* The lists of preloads go together: entry k of one with entry k of the others. */
 static void check_preloads(const case_reader *r, int i) {
   const mhb_settings  *mhb = &r->file->mhb;
   const mhb_interface *own = &r->file->interfaces[i].mhb;
@@ -124,7 +127,7 @@ static void check_preloads(const case_reader *r, int i) {
     }
 }
 
-/* Proportions to nothing are none. */
+/* Checks mhb.vary.interface. A parameter that is 0 at the leading interface has no proportions. */
 static void check_varied(case_reader *r) {
   const mhb_settings *mhb = &r->file->mhb;
   if (!case_reader_given(r, vary_path) || !case_reader_good(r, vary_path)) return;

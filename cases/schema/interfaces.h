@@ -1,10 +1,11 @@
-/* The list contact.interfaces: into the settings of the stages, and its checks. */
+/* The list contact.interfaces: its checks, and its values for the balance and the mesh. */
 #ifndef CASES_SCHEMA_INTERFACES_H
 #define CASES_SCHEMA_INTERFACES_H
 
 #include "cases/parse/reader.h"
 
-/* The settings of the balance and of the mesh from the list; which one leads. After the parameter that is followed. */
+/* Copy the list to the settings of the balance and the mesh, and choose the leading interface. To
+ * be called after the continuation parameter is known. */
 void case_share_interfaces(case_reader *reader);
 
 void case_check_interfaces(case_reader *reader, int stages);

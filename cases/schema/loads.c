@@ -6,7 +6,7 @@ enum { KINDS = 4 };
 
 static const char *const kind_name[KINDS] = {"pressure", "traction", "force", "field"};
 
-/* Values of the kinds but field. */
+/* The value of a load; a field has none. */
 static const double *value_of(const fem_load *load, double one[3]) {
   one[0] = load->pressure;
   one[1] = one[2] = 0;
@@ -41,13 +41,13 @@ static void check_single(case_reader *r) {
                       "has no place to act: give excitation.force.at, or a probe");
 }
 
-/* Nothing would move. */
+/* Refuses a load of zero. */
 static void check_single_size(case_reader *r) {
   static const char *const names[] = {"excitation.pressure", "excitation.traction",
                                       "excitation.force.vector"};
   const fem_load          *load    = &r->file->load;
   double                   one[3];
-  if (load->kind == FEM_LOAD_FIELD) return; /* told when the file is read */
+  if (load->kind == FEM_LOAD_FIELD) return; /* a fault is reported when the file is read */
   const char   *name = names[load->kind];
   const double *v    = value_of(load, one);
   if (!r->file->modal_file && case_reader_given(r, name) && case_reader_good(r, name) &&
@@ -55,8 +55,8 @@ static void check_single_size(case_reader *r) {
     case_reader_issue(r, name, "is 0; nothing would move");
 }
 
-/* Harmonic k of the load drives harmonic k nu of the balance, whose fundamental is omega / nu: how many that needs, 0 if
- * there is room. */
+/* Number of harmonics that the balance needs for the load; 0 if it has enough. Harmonic k of the
+ * load drives harmonic k nu of the balance, whose fundamental frequency is omega / nu. */
 static int harmonics_needed(const case_reader *r, const fem_load *load, int stages) {
   const mhb_settings *mhb = &r->file->mhb;
   bool good = case_reader_good(r, "mhb.harmonics") && case_reader_good(r, "mhb.subharmonics");
@@ -139,7 +139,7 @@ static void check_values(const case_reader *r, int i, const case_node *node, int
   if (needed) tell(r, i, harmonics ? harmonics : node, "harmonics", text);
 }
 
-/* Elements are mappings: the list was read well. */
+/* The list of loads, if it was read without an issue. */
 static const case_node *list_of(const case_reader *r) {
   static const char path[] = "excitation.loads";
   return case_reader_good(r, path) ? case_reader_given(r, path) : NULL;

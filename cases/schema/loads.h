@@ -4,10 +4,10 @@
 
 #include "cases/parse/reader.h"
 
-/* Which kind of load each one is; more than one kind, or a force without a place, are told. */
+/* Find the kind of each load. Several kinds, or a force without a place, are issues. */
 void case_check_load(case_reader *reader);
 
-/* Loads that move nothing, and harmonics for which the balance has no room. */
+/* Checks for loads of zero, and for load harmonics above those of the balance. */
 void case_check_load_values(case_reader *reader, int stages);
 
 #endif

@@ -2,10 +2,10 @@
 
 #include <string.h>
 
-/* Where the keys of one material are: the block material, or an element of materials. */
+/* Where a material is in the file: the block material, or an element of the list materials. */
 typedef struct {
   case_reader     *reader;
-  const case_node *element; /* NULL: the block */
+  const case_node *element; /* NULL for the block */
   int              index;
 } place;
 

@@ -4,8 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cases/parse/key_table.h"
 #include "cases/parse/reader.h"
 #include "cases/parse/value.h"
+#include "cases/parse/value_context.h"
 
 static const case_key signal_rows[] = {
     {"motion.v", CASE_SIGNAL, "m", .required = true, .stages = CASE_MHB},
@@ -13,7 +15,8 @@ static const case_key signal_rows[] = {
     {"motion.w", CASE_SIGNAL, "m", .required = true, .stages = CASE_MHB},
 };
 
-/* The contact rows of the case file's table, and the motion's. One evaluation is cheap: as accurate as can be. */
+/* The rows of the contact block and those of the motion. The accuracy is the highest, since a
+ * single evaluation is cheap. */
 static case_keys motion_table(case_key row[CASE_MAX_KEYS]) {
   case_keys all = case_key_table();
   int       n   = 0;
@@ -27,7 +30,7 @@ static case_keys motion_table(case_key row[CASE_MAX_KEYS]) {
   return (case_keys){n, row};
 }
 
-/* m; far beyond any blade, and far from what overflows. */
+/* m; above any motion of a blade, and far from overflow */
 static const double LARGEST = 1e6;
 
 static void read_signal(case_reader *r, const char *path, double complex *signal) {
@@ -59,7 +62,7 @@ static int longest(const case_reader *r) {
   return n < CASE_MAX_MOTION ? n : CASE_MAX_MOTION;
 }
 
-/* False when there is no memory. */
+/* False if memory is short. */
 static bool read_document(case_issues *issues, case_motion *out) {
   case_node *root = case_document_parse(issues);
   if (!root && issues->n > 0) return true;

@@ -4,14 +4,14 @@
 
 #include "cases/parse/groups.h"
 
-/* Rules as they were read, and whether a group has taken each. */
+/* The rules as read, and whether a group uses each. */
 typedef struct {
   case_reader      *reader;
   const mesh_rules *read;
   bool              taken[MESH_MAX_MORE];
 } rules;
 
-/* Where a group is in mesh.groups. */
+/* Records an issue at the place of a group in mesh.groups. */
 static void tell(const rules *g, const char *name, const char *text) {
   const case_node *groups = case_reader_given(g->reader, "mesh.groups");
   const case_node *node   = groups ? case_node_find(groups, name) : NULL;
@@ -44,7 +44,7 @@ static void assign_volumes(rules *g, mesh_rules *to) {
   }
 }
 
-/* A group of faces that something names. */
+/* Assigns its rule to a group of faces that a key names. */
 static void assign_faces(rules *g, const char *name, mesh_rules *to) {
   if (!name[0] || case_group_is_usual(name) || to->n_more == MESH_MAX_MORE) return;
   for (int i = 0; i < to->n_more; i++)

@@ -1,10 +1,10 @@
-/* Groups of the mesh besides the usual four: named where they are used, found by name or by the rules of mesh.groups. */
+/* Groups of the mesh besides the usual four. A key names them; the mesh or a rule defines them. */
 #ifndef CASES_SCHEMA_NAMED_GROUPS_H
 #define CASES_SCHEMA_NAMED_GROUPS_H
 
 #include "cases/parse/reader.h"
 
-/* Give every group that the case names its rule; tell the rules of groups that it does not name. */
+/* Assign a rule to every group that the case names. Rules of other groups are issues. */
 void case_assign_groups(case_reader *reader);
 
 #endif

@@ -1,11 +1,14 @@
-/* The settings of a stage, key by key in SI: what decides whether a stage must run again. */
+#include "cases/schema/stage_settings.h"
+
 #include <complex.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "cases/parse/damping.h"
 #include "cases/parse/groups.h"
-#include "cases/parse/value.h"
+#include "cases/parse/key_table.h"
+#include "cases/parse/keys.h"
 
 static void print_numbers(FILE *out, int n, const double *value) {
   for (int i = 0; i < n; i++) fprintf(out, "%s%.17g", i ? " " : "", value[i]);
@@ -16,7 +19,7 @@ static void print_word(FILE *out, const char *words, int index) {
   fprintf(out, "%.*s", (int)strcspn(words, " "), words);
 }
 
-/* A path as in the case file: the settings do not depend on where the program is started. */
+/* The path as in the case file, so that settings do not depend on the working folder. */
 static const char *inside(const case_file *file, const char *path) {
   size_t n = strlen(file->folder);
   return strncmp(path, file->folder, n) == 0 && path[n] == '/' ? path + n + 1 : path;
@@ -37,7 +40,7 @@ static void print_probes(FILE *out, const char *path, const case_file *file) {
   }
 }
 
-/* One number where the three are equal. */
+/* Prints one number if the three are equal. */
 static void print_triple(FILE *out, const double v[3]) {
   print_numbers(out, v[0] == v[1] && v[1] == v[2] ? 1 : 3, v);
 }
@@ -100,7 +103,7 @@ static void print_scalar(FILE *out, const case_key *key, const case_file *file, 
   }
 }
 
-/* One value of the file, or of an element whose slots are at base. */
+/* Prints one value of the file, or of an element whose slots start at base. */
 static void print_value(FILE *out, const case_key *key, const char *path, const case_file *file,
                         const void *base) {
   const void *slot = (const char *)base + key->at;
@@ -117,7 +120,7 @@ static void print_value(FILE *out, const case_key *key, const char *path, const 
   }
 }
 
-/* The rows of a list, element by element. */
+/* Prints the rows of a list, element by element. */
 static void print_list(FILE *out, const case_key *list, const case_file *file, int stages) {
   case_keys   keys = case_key_table();
   const char *base = (const char *)file + list->at;
@@ -134,8 +137,9 @@ static void print_list(FILE *out, const case_key *list, const case_file *file, i
     }
 }
 
-void case_value_print(FILE *out, const case_key *key, const case_file *file, int stages) {
-  if (strstr(key->path, "[].")) return; /* printed by its list */
+/* Prints a row of the key table; of a list the rows on which one of stages depends. */
+static void print_key(FILE *out, const case_key *key, const case_file *file, int stages) {
+  if (strstr(key->path, "[].")) return; /* the list prints its rows */
   if (key->type == CASE_LIST) {
     print_list(out, key, file, stages);
   } else {
@@ -151,7 +155,7 @@ char *case_settings(const case_file *file, case_stage stage) {
   case_keys keys = case_key_table();
   for (int i = 0; i < keys.n; i++)
     if ((keys.key[i].stages & (int)stage) && case_key_applies(&keys.key[i], file))
-      case_value_print(out, &keys.key[i], file, (int)stage);
+      print_key(out, &keys.key[i], file, (int)stage);
   if (fclose(out) != 0) {
     free(text);
     return NULL;

@@ -87,7 +87,7 @@ static int widen_all(const modal_model *model, int kept, modal_model *out) {
   out->left                 = model->has_left ? widen(model->left, rows, m, kept) : NULL;
   out->probe                = widen(model->probe, 3 * (size_t)model->n_probes, m, kept);
   out->modal_force          = calloc(loads * (size_t)(m + kept), sizeof *out->modal_force);
-  out->mode_residual        = NULL;
+  out->eigen_residual       = NULL;
   out->residual_inertia     = NULL;
   out->residual_fourth      = NULL;
   out->n_residual           = 0;

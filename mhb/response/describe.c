@@ -35,10 +35,10 @@ shb_status mhb_response_describe(mhb_response *response, const modal_model *mode
   SHB_CHECK(response->mode_frequency && response->mode_damping, SHB_ERR_IO, "out of memory");
   memcpy(response->mode_frequency, model->frequency, sizeof(double) * m);
   memcpy(response->mode_damping, model->damping_ratio, sizeof(double) * m);
-  if (model->mode_residual) {
-    response->mode_residual = malloc(sizeof(double) * m);
-    SHB_CHECK(response->mode_residual, SHB_ERR_IO, "out of memory");
-    memcpy(response->mode_residual, model->mode_residual, sizeof(double) * m);
+  if (model->eigen_residual) {
+    response->eigen_residual = malloc(sizeof(double) * m);
+    SHB_CHECK(response->eigen_residual, SHB_ERR_IO, "out of memory");
+    memcpy(response->eigen_residual, model->eigen_residual, sizeof(double) * m);
   }
   if (settings->n_interfaces > 1) SHB_TRY(describe_interfaces(response, model, settings));
   for (int q = 0; q < model->n_probes; q++) {

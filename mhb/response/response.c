@@ -50,7 +50,7 @@ void mhb_response_destroy(mhb_response *response) {
   free(response->probe_name);
   free(response->mode_frequency);
   free(response->mode_damping);
-  free(response->mode_residual);
+  free(response->eigen_residual);
   free(response);
 }
 

@@ -94,7 +94,7 @@ typedef struct {
   int           n_lines;        /* of spectra of integrated points; 0: none, set likewise */
   /* copied from the modal model for the report */
   int     n_modes;
-  double *mode_frequency, *mode_damping, *mode_residual; /* [m]; mode_residual may be NULL */
+  double *mode_frequency, *mode_damping, *eigen_residual; /* [m]; eigen_residual may be NULL */
   int     engine_order, blades;
   bool
          run_up; /* the speed goes with the frequency, along the engine order; modes are those at the top of the range */

@@ -103,8 +103,8 @@ static shb_status write_root(hid_t file, const mhb_response *response) {
   SHB_TRY(h5_write_double(file, "/modes/damping_ratio", modes, response->mode_damping, "-",
                           "modal damping ratio"));
   SHB_TRY(h5_attach_scale(file, "/modes/damping_ratio", 0, "/modes/frequency"));
-  if (!response->mode_residual) return SHB_OK;
-  SHB_TRY(h5_write_double(file, "/modes/residual", modes, response->mode_residual, "-",
+  if (!response->eigen_residual) return SHB_OK;
+  SHB_TRY(h5_write_double(file, "/modes/residual", modes, response->eigen_residual, "-",
                           "relative residual of the eigenpair"));
   return h5_attach_scale(file, "/modes/residual", 0, "/modes/frequency");
 }
@@ -233,7 +233,7 @@ static shb_status read_modes(hid_t file, mhb_response *response) {
   SHB_TRY(h5_read_double(file, "/modes/frequency", &modes, &response->mode_frequency));
   SHB_TRY(h5_read_double(file, "/modes/damping_ratio", &modes, &response->mode_damping));
   if (h5_exists(file, "/modes/residual"))
-    SHB_TRY(h5_read_double(file, "/modes/residual", &modes, &response->mode_residual));
+    SHB_TRY(h5_read_double(file, "/modes/residual", &modes, &response->eigen_residual));
   response->n_modes = (int)modes.dim[0];
   return SHB_OK;
 }

@@ -172,7 +172,7 @@ static shb_status choose_space(const modal_speeds *s, const char *path, int from
     best = part;
     at   = m;
   }
-  if (best < modal_speeds_alike) return exchanged(s, path, from, to);
+  if (best < modal_speeds_mac_limit) return exchanged(s, path, from, to);
   *modes = at;
   return SHB_OK;
 }
@@ -189,7 +189,7 @@ static bool is_closed(const modal_speeds *s, int from, int to, int m) {
 static bool is_lost(const modal_speeds *s, int from, int to, int m, int *speed, int *track) {
   for (*speed = from + 1; *speed <= to; ++*speed)
     for (*track = 0; *track < m; ++*track)
-      if (s->mac[*speed * s->n_modes + *track] < modal_speeds_alike) return true;
+      if (s->mac[*speed * s->n_modes + *track] < modal_speeds_mac_limit) return true;
   return false;
 }
 
@@ -282,7 +282,7 @@ static shb_status check_between(const mhb_speed_table *r, const char *path) {
 
 /* Residual modes, which cross and turn with the speed, are not interpolated: the three terms stay. */
 static shb_status keep_terms(modal_model *model, int modes) {
-  SHB_TRY(modal_model_keep(model, modes, true));
+  SHB_TRY(modal_model_reduce(model, modes, true));
   modal_model_drop_residual_modes(model);
   return SHB_OK;
 }

@@ -1,5 +1,7 @@
 #include "modal/common/damping.h"
 
+#include <math.h>
+
 static double ratio_of(const modal_damping *damping, int i, double omega) {
   switch (damping->kind) {
     case MODAL_DAMPING_EACH:
@@ -15,11 +17,10 @@ static double ratio_of(const modal_damping *damping, int i, double omega) {
 }
 
 shb_status modal_damping_ratio(const modal_damping *damping, int i, double omega, double *ratio) {
-  const double two_pi = 6.28318530717958647692;
-  *ratio              = ratio_of(damping, i, omega);
+  *ratio = ratio_of(damping, i, omega);
   SHB_CHECK(*ratio < 1, SHB_ERR_INPUT,
             "modal.damping: mode %d at %.6g Hz would have the damping ratio %.3g; it must be below "
             "1 (lower alpha or beta, or fewer modal.modes)",
-            i + 1, omega / two_pi, *ratio);
+            i + 1, omega / (2 * M_PI), *ratio);
   return SHB_OK;
 }

@@ -6,7 +6,7 @@
 
 #include "modal/hdf5/h5.h"
 
-static void gather(MPI_Comm comm, shb_phase *phase) {
+static void reduce_over_ranks(MPI_Comm comm, shb_phase *phase) {
   double sum[2] = {phase->cpu, phase->memory}, greatest[2] = {phase->seconds, phase->greatest};
   MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPI_DOUBLE, MPI_SUM, comm);
   MPI_Allreduce(MPI_IN_PLACE, greatest, 2, MPI_DOUBLE, MPI_MAX, comm);
@@ -16,7 +16,7 @@ static void gather(MPI_Comm comm, shb_phase *phase) {
   phase->greatest = greatest[1];
 }
 
-static void tell(shb_progress *progress, int ranks, const shb_phase *phase, const char *text) {
+static void report(shb_progress *progress, int ranks, const shb_phase *phase, const char *text) {
   char apart[64] = "";
   if (ranks > 1)
     snprintf(apart, sizeof apart, " on %d ranks, at most %.0f MB a rank", ranks,
@@ -32,12 +32,12 @@ void modal_phase(MPI_Comm comm, shb_progress *progress, const char *name, const 
   if (!progress) return;
   shb_phase phase = shb_phases_lap(&progress->phases, name);
   MPI_Comm_size(comm, &ranks);
-  gather(comm, &phase);
+  reduce_over_ranks(comm, &phase);
   shb_phases_add(&progress->phases, &phase);
   va_start(args, format);
   vsnprintf(text, sizeof text, format, args);
   va_end(args);
-  tell(progress, ranks, &phase, text);
+  report(progress, ranks, &phase, text);
 }
 
 static shb_status write_column(hid_t file, const char *path, int n, const double *value,
@@ -52,9 +52,9 @@ shb_status modal_phases_write(hid_t file, int ranks, const shb_progress *progres
   double      seconds[SHB_MAX_PHASES], cpu[SHB_MAX_PHASES], memory[SHB_MAX_PHASES];
   double      greatest[SHB_MAX_PHASES];
   if (!progress) return SHB_OK;
-  shb_phases phases = progress->phases; /* a copy: the phase under way goes on */
+  shb_phases phases = progress->phases; /* a copy: the current phase continues */
   shb_phase  last   = shb_phases_lap(&phases, name);
-  if (phases.n > 0) { /* other ranks' memory is still taken */
+  if (phases.n > 0) { /* other ranks still hold their memory */
     const shb_phase *before = &phases.phase[phases.n - 1];
     last.memory             = fmax(last.memory, before->memory);
     last.greatest           = fmax(last.greatest, before->greatest);

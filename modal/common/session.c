@@ -5,7 +5,7 @@
 
 #include "fem/solver/petsc_error.h"
 
-/* Of OpenBLAS, whichever library provides BLAS; its header clashes with PETSc's LAPACK declarations. */
+/* OpenBLAS's own declaration: its header clashes with PETSc's declarations of LAPACK. */
 extern void openblas_set_num_threads(int);
 
 shb_status modal_session_start(int *argc, char ***argv, modal_session *session) {
@@ -29,4 +29,11 @@ void modal_session_end(modal_session *session, shb_status status) {
   }
   PetscPopErrorHandler();
   SlepcFinalize();
+}
+
+shb_status modal_agree(MPI_Comm comm, shb_status status) {
+  int mine = status, worst = status;
+  MPI_Allreduce(&mine, &worst, 1, MPI_INT, MPI_MAX, comm);
+  if (worst != SHB_OK && mine == SHB_OK) SHB_FAIL((shb_status)worst, "another rank failed");
+  return (shb_status)worst;
 }

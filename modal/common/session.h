@@ -1,4 +1,4 @@
-/* Starting and ending MPI, PETSc and SLEPc so that no fault of theirs reaches the user as a stack trace. */
+/* Start and end of MPI, PETSc and SLEPc, without stack traces for the user. */
 #ifndef MODAL_COMMON_SESSION_H
 #define MODAL_COMMON_SESSION_H
 
@@ -9,15 +9,18 @@
 
 typedef struct {
   int  rank, n_ranks;
-  bool fault; /* something failed inside PETSc, on this rank */
+  bool fault; /* a PETSc call failed on this rank */
 } modal_session;
 
-/* argv: the program's name and the options meant for PETSc. The session must outlive modal_session_end.
- * Sets one BLAS thread: more only slow MUMPS down on few cores. */
+/* Start. argv holds the program's name and options for PETSc. The session must outlive
+ * modal_session_end. BLAS gets one thread: more threads slow MUMPS down on few cores. */
 shb_status modal_session_start(int *argc, char ***argv, modal_session *session);
 
-/* status: how the work ended on this rank. After a fault inside PETSc in a distributed run the other ranks may
- * wait forever: then print the last text and abort them. Otherwise finalise. */
+/* End. status is the result of this rank. After a PETSc failure in a distributed run the other
+ * ranks may wait forever: then the last message is printed and all ranks are aborted. */
 void modal_session_end(modal_session *session, shb_status status);
+
+/* The worst status of all ranks. Collective. */
+shb_status modal_agree(MPI_Comm comm, shb_status status);
 
 #endif

@@ -9,16 +9,19 @@
 #include "modal/common/phases.h"
 #include "modal/condense/residual_modes.h"
 
-/* Right-hand sides a solve: beyond BATCH nothing is gained, memory grows; and the most that residual modes are made of, all at once, in the memory of
- * TOGETHER numbers. */
-enum { BATCH = 32, MOST = 96, LINKS = MODAL_RITZ_BLOCKS, TOGETHER = 1 << 27 };
+/* BATCH: right-hand sides per solve; more save no time but need memory. MAX_COLUMNS: columns of
+ * which residual modes are made at most, all at once. MAX_NUMBERS: numbers in their vectors, at
+ * most. */
+enum { BATCH = 32, MAX_COLUMNS = 96, BLOCKS = MODAL_RESIDUAL_BLOCKS, MAX_NUMBERS = 1 << 27 };
 
-static const double two_pi = 6.28318530717958647692;
+static const double TWO_PI = 2 * M_PI;
 
-/* Receptance, relative to the greatest, that residual modes may lack which are not kept, at a half of the last mode's eigenvalue. */
-static const double negligible = 1e-10;
+/* Contribution of a residual mode that is not kept, relative to the largest receptance, at half the
+ * eigenvalue of the last mode. */
+static const double NEGLIGIBLE = 1e-10;
 
-/* The columns that are solved for: contact dofs, then patterns of the load; and matrices of one batch of them. */
+/* Right-hand sides: contact dofs, then load patterns; and the matrices of one batch of them. V_i
+ * and mu_i are those of modal/condense/residual_modes.h. */
 typedef struct {
   int                       batch; /* columns */
   const fem_system         *system;
@@ -27,11 +30,10 @@ typedef struct {
   int                       n_contact, n_column;
   modal_dofs                column;
   Mat                       B, X, Y; /* [3 n_free][batch] */
-  double                   *sample
-      [LINKS]; /* [column][batch] of V_0, V_1, V_2 (modal/condense/residual_modes.h) at the columns' own dofs */
-  double *probe[LINKS];      /* [probe dof][batch] */
-  double *moment[2 * LINKS]; /* [batch][batch] mu_1 .. mu_6 */
-  double *tail[2]; /* [column] mu_4, mu_5 of each column, or mu_7, mu_8 with residual modes */
+  double *sample[BLOCKS];            /* [column][batch] V_0, V_1, V_2 at the columns' own dofs */
+  double *probe[BLOCKS];             /* [probe dof][batch] */
+  double *moment[2 * BLOCKS];        /* [batch][batch] mu_1 .. mu_6 */
+  double *tail[2];                   /* [column] mu_4, mu_5, or mu_7, mu_8 with residual modes */
 } workspace;
 
 static shb_status allocate(const modal_condensation *to, int n_modes, modal_model *model) {
@@ -47,7 +49,7 @@ static shb_status allocate(const modal_condensation *to, int n_modes, modal_mode
     size_t   n;
   } real[]                           = {{&model->frequency, m},
                                         {&model->damping_ratio, m},
-                                        {&model->mode_residual, m},
+                                        {&model->eigen_residual, m},
                                         {&model->right, 3 * pairs * m},
                                         {&model->left, to->has_left ? 3 * pairs * m : 0},
                                         {&model->probe, q3 * m + 1},
@@ -94,8 +96,8 @@ static PetscErrorCode fill_shapes(const workspace *w, modal_model *model) {
       for (int i = 0; i < m; i++)
         model->modal_force[k * m + i] += load->weight[k * load->dofs.n + c] * force[c * m + i];
   for (int i = 0; i < m; i++) {
-    model->frequency[i]     = sqrt(w->eigen->lambda[i]) / two_pi;
-    model->mode_residual[i] = w->eigen->residual[i];
+    model->frequency[i]      = sqrt(w->eigen->lambda[i]) / TWO_PI;
+    model->eigen_residual[i] = w->eigen->eigen_residual[i];
   }
   PetscCall(PetscFree2(shape, force));
   PetscFunctionReturn(0);
@@ -105,7 +107,7 @@ static PetscErrorCode fill_shapes(const workspace *w, modal_model *model) {
 static PetscErrorCode solve(workspace *w, Mat X) {
   PetscFunctionBeginUser;
   PetscCall(modal_eigen_inverse(w->eigen, w->B, X));
-  PetscCall(modal_eigen_remove(w->system, w->eigen, X));
+  PetscCall(modal_eigen_project_out(w->system, w->eigen, X));
   PetscFunctionReturn(0);
 }
 
@@ -142,38 +144,39 @@ static PetscErrorCode column_products(Mat X, Mat Y, int first, int count, double
   PetscFunctionReturn(0);
 }
 
-/* V_0, V_1, .. of a batch, each sampled. The products of neighbours, V_i . M V_i and V_(i+1) . M V_i, are the moments mu_(2i+2) and mu_(2i+3):
- * matrices if all columns are there together, with one link more for the tail behind them. */
-static PetscErrorCode chain(workspace *w, int first, int count, bool together) {
-  const int last = together ? LINKS : LINKS - 1, b = w->batch;
+/* Compute V_0, V_1, ... of a batch and sample each. The products V_i . M V_i and V_(i+1) . M V_i
+ * are the moments mu_(2i+2) and mu_(2i+3). If all columns are in one batch the moments are
+ * matrices, and one further V gives the tail. */
+static PetscErrorCode compute_chain(workspace *w, int first, int count, bool single_batch) {
+  const int last = single_batch ? BLOCKS : BLOCKS - 1, b = w->batch;
   Mat       V = w->X, next = w->Y;
   PetscFunctionBeginUser;
   PetscCall(modal_dofs_spread(&w->column, w->system, first, count, w->B));
   PetscCall(solve(w, V));
   for (int i = 0;; i++) {
-    if (i < LINKS) {
+    if (i < BLOCKS) {
       PetscCall(modal_dofs_sample(&w->column, w->system, V, b, b, w->sample[i]));
       PetscCall(modal_dofs_sample(&w->to->probe, w->system, V, b, b, w->probe[i]));
     }
-    if (i == last && !together) break;
+    if (i == last && !single_batch) break;
     PetscCall(modal_mass_multiply(w->system, V, w->B));
-    if (together && i < LINKS) PetscCall(products(w, V, w->B, w->moment[2 * i + 1]));
-    if (together && i == LINKS) PetscCall(column_products(V, w->B, first, count, w->tail[1]));
-    if (!together && i == 1) PetscCall(column_products(V, w->B, first, count, w->tail[0]));
+    if (single_batch && i < BLOCKS) PetscCall(products(w, V, w->B, w->moment[2 * i + 1]));
+    if (single_batch && i == BLOCKS) PetscCall(column_products(V, w->B, first, count, w->tail[1]));
+    if (!single_batch && i == 1) PetscCall(column_products(V, w->B, first, count, w->tail[0]));
     if (i == last) break;
     PetscCall(solve(w, next));
-    if (i + 1 < LINKS && together) PetscCall(products(w, next, w->B, w->moment[2 * i + 2]));
+    if (i + 1 < BLOCKS && single_batch) PetscCall(products(w, next, w->B, w->moment[2 * i + 2]));
     if (i + 1 == last)
-      PetscCall(column_products(next, w->B, first, count, w->tail[together ? 0 : 1]));
+      PetscCall(column_products(next, w->B, first, count, w->tail[single_batch ? 0 : 1]));
     Mat done = V;
     V        = next;
     next     = done;
   }
-  if (together) memcpy(w->moment[0], w->sample[0], (size_t)(b * b) * sizeof(double));
+  if (single_batch) memcpy(w->moment[0], w->sample[0], (size_t)(b * b) * sizeof(double));
   PetscFunctionReturn(0);
 }
 
-/* Columns first..first + count - 1 of to [rows][columns] from the samples [rows][batch]. */
+/* Columns first .. first + count - 1 of to [rows][columns] from the samples [rows][batch]. */
 static void put_columns(const workspace *w, const double *sample, int rows, int first, int count,
                         double *to) {
   const size_t columns = (size_t)w->n_contact, batch = (size_t)w->batch;
@@ -182,7 +185,7 @@ static void put_columns(const workspace *w, const double *sample, int rows, int 
       to[r * columns + (size_t)(first + c)] = sample[r * batch + (size_t)c];
 }
 
-/* Add column c of the samples, times what each harmonic takes of the pattern. */
+/* Add column c of the samples, times the weight of the pattern in each harmonic. */
 static void add_load(const workspace *w, int pattern, const double *sample, int c, int rows,
                      double complex *to) {
   const modal_load *load = &w->to->load;
@@ -202,7 +205,7 @@ static void store_terms(const workspace *w, int first, int count, modal_model *m
   double complex *load[]          = {model->load_residual, model->load_inertia, model->load_fourth};
   double complex *probe_load[]    = {model->probe_load_residual, model->probe_load_inertia,
                                      model->probe_load_fourth};
-  for (int t = 0; t < LINKS; t++) {
+  for (int t = 0; t < BLOCKS; t++) {
     put_columns(w, w->sample[t], nc, first, contacts, contact[t]);
     put_columns(w, w->probe[t], q3, first, contacts, probe_contact[t]);
     for (int c = contacts; c < count; c++) {
@@ -212,7 +215,8 @@ static void store_terms(const workspace *w, int first, int count, modal_model *m
   }
 }
 
-/* Tails of contact dofs and, the columns' errors being a positive semi-definite matrix, of what the load takes of its patterns. */
+/* Tails of the contact dofs and of the load harmonics. The error matrix of the columns is positive
+ * semi-definite: this bounds the tail of a sum of patterns. */
 static void store_tails(const workspace *w, int order, modal_model *model) {
   const modal_load *load  = &w->to->load;
   double            ratio = 0;
@@ -231,22 +235,23 @@ static void store_tails(const workspace *w, int order, modal_model *model) {
 }
 
 /* psi[rows][n] = sum_i sample_i weight_i */
-static void ritz_shapes(const workspace *w, const modal_ritz *ritz, int rows,
-                        double *const sample[LINKS], double *psi) {
+static void ritz_shapes(const workspace *w, const modal_residual_modes *ritz, int rows,
+                        double *const sample[BLOCKS], double *psi) {
   const int b = w->batch, n = ritz->n;
-  for (int i = 0; i < LINKS && rows > 0 && n > 0; i++)
+  for (int i = 0; i < BLOCKS && rows > 0 && n > 0; i++)
     cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, rows, n, b, 1, sample[i], b,
                 ritz->weight + (size_t)i * (size_t)b * (size_t)n, n, i > 0, psi, n);
 }
 
-/* The tail behind all Ritz modes: mu_7 and mu_8 less theirs. Rounding of the moments is no tail. */
-static void lessen_tails(workspace *w, const modal_ritz *ritz, const double *psi) {
+/* Tail behind all residual modes: mu_7 and mu_8 minus theirs, at least the rounding of the
+ * moments. */
+static void subtract_ritz_tails(workspace *w, const modal_residual_modes *ritz, const double *psi) {
   static const double rounding = 1e-11;
   for (int c = 0; c < w->n_column; c++) {
     double a = w->tail[0][c], b = w->tail[1][c];
     for (int i = 0; i < ritz->n; i++) {
       double shape = psi[c * ritz->n + i];
-      double term  = shape * shape / pow(ritz->lambda[i], 2 * LINKS + 1);
+      double term  = shape * shape / pow(ritz->lambda[i], 2 * BLOCKS + 1);
       a -= term;
       b -= term / ritz->lambda[i];
     }
@@ -255,12 +260,12 @@ static void lessen_tails(workspace *w, const modal_ritz *ritz, const double *psi
   }
 }
 
-static void keep_ritz(const workspace *w, const modal_ritz *ritz, int kept, const double *psi,
-                      const double *at_probe, modal_model *model) {
+static void store_residual_modes(const workspace *w, const modal_residual_modes *ritz, int kept,
+                                 const double *psi, const double *at_probe, modal_model *model) {
   const modal_load *load = &w->to->load;
   const int         n = ritz->n, nc = w->n_contact;
   for (int i = 0; i < kept; i++) {
-    model->residual_frequency[i] = sqrt(ritz->lambda[i]) / two_pi;
+    model->residual_frequency[i] = sqrt(ritz->lambda[i]) / TWO_PI;
     for (int c = 0; c < nc; c++) model->residual_shape[c * kept + i] = psi[c * n + i];
     for (int c = 0; c < w->to->probe.n; c++)
       model->residual_probe[c * kept + i] = at_probe[c * n + i];
@@ -271,7 +276,8 @@ static void keep_ritz(const workspace *w, const modal_ritz *ritz, int kept, cons
   }
 }
 
-/* The greatest of the contact for every one of its dofs, its own for a pattern of the load. */
+/* Scale of each column: the largest contact receptance for contact dofs, its own for a load
+ * pattern. */
 static void set_scales(const workspace *w, double *scale) {
   const size_t next = (size_t)w->batch + 1;
   double       most = 0;
@@ -280,17 +286,17 @@ static void set_scales(const workspace *w, double *scale) {
     scale[c] = c < w->n_contact ? most : w->moment[0][(size_t)c * next];
 }
 
-static shb_status store_ritz(workspace *w, const modal_ritz *ritz, double *psi, double *at_probe,
-                             modal_model *model) {
+static shb_status select_residual_modes(workspace *w, const modal_residual_modes *ritz, double *psi,
+                                        double *at_probe, modal_model *model) {
   const double last = w->eigen->lambda[w->eigen->n - 1];
-  double       scale[MOST];
+  double       scale[MAX_COLUMNS];
   ritz_shapes(w, ritz, w->n_column, w->sample, psi);
   ritz_shapes(w, ritz, w->to->probe.n, w->probe, at_probe);
-  lessen_tails(w, ritz, psi);
+  subtract_ritz_tails(w, ritz, psi);
   set_scales(w, scale);
-  const int    kept = modal_ritz_needed(ritz, w->n_column, psi, scale, last / 2, negligible);
-  const size_t r    = (size_t)kept;
-  model->n_residual = kept;
+  const int kept = modal_residual_modes_needed(ritz, w->n_column, psi, scale, last / 2, NEGLIGIBLE);
+  const size_t r = (size_t)kept;
+  model->n_residual         = kept;
   model->residual_frequency = calloc(r + 1, sizeof(double));
   model->residual_shape     = calloc((size_t)w->n_contact * r + 1, sizeof(double));
   model->residual_probe     = calloc((size_t)w->to->probe.n * r + 1, sizeof(double));
@@ -298,27 +304,28 @@ static shb_status store_ritz(workspace *w, const modal_ritz *ritz, double *psi, 
   SHB_CHECK(model->residual_frequency && model->residual_shape && model->residual_probe &&
                 model->residual_force,
             SHB_ERR_IO, "out of memory for residual modes");
-  keep_ritz(w, ritz, kept, psi, at_probe, model);
+  store_residual_modes(w, ritz, kept, psi, at_probe, model);
   return SHB_OK;
 }
 
-static shb_status make_ritz(workspace *w, modal_model *model) {
-  modal_ritz ritz;
-  SHB_TRY(modal_ritz_create(w->n_column, w->moment, &ritz));
+static shb_status create_residual_modes(workspace *w, modal_model *model) {
+  modal_residual_modes ritz;
+  SHB_TRY(modal_residual_modes_create(w->n_column, w->moment, &ritz));
   const size_t n    = (size_t)ritz.n;
   double      *psi  = malloc(((size_t)w->n_column * n + 1) * sizeof *psi),
          *at_probe  = malloc(((size_t)w->to->probe.n * n + 1) * sizeof *psi);
   shb_status status = psi && at_probe ? SHB_OK
                                       : shb_fail(SHB_ERR_IO, __FILE__, __LINE__,
                                                  "out of memory for residual modes");
-  if (status == SHB_OK && ritz.n > 0) status = store_ritz(w, &ritz, psi, at_probe, model);
+  if (status == SHB_OK && ritz.n > 0)
+    status = select_residual_modes(w, &ritz, psi, at_probe, model);
   free(psi);
   free(at_probe);
-  modal_ritz_free(&ritz);
+  modal_residual_modes_free(&ritz);
   return status;
 }
 
-/* Equal up to rounding; the balance relies on it. */
+/* Remove the rounding differences: the harmonic balance relies on symmetry. */
 static void symmetrise(double *a, size_t n) {
   for (size_t i = 0; i < n; i++)
     for (size_t j = 0; j < i; j++) a[i * n + j] = a[j * n + i] = (a[i * n + j] + a[j * n + i]) / 2;
@@ -343,11 +350,11 @@ static PetscErrorCode create_batch(workspace *w, int batch) {
   PetscCall(modal_dense_create(w->system, batch, &w->B));
   PetscCall(modal_dense_create(w->system, batch, &w->X));
   PetscCall(modal_dense_create(w->system, batch, &w->Y));
-  for (int i = 0; i < LINKS; i++) {
+  for (int i = 0; i < BLOCKS; i++) {
     PetscCall(PetscMalloc1((size_t)w->n_column * b, &w->sample[i]));
     PetscCall(PetscMalloc1((size_t)w->to->probe.n * b, &w->probe[i]));
   }
-  for (int i = 0; i < 2 * LINKS; i++) PetscCall(PetscMalloc1(b * b, &w->moment[i]));
+  for (int i = 0; i < 2 * BLOCKS; i++) PetscCall(PetscMalloc1(b * b, &w->moment[i]));
   PetscFunctionReturn(0);
 }
 
@@ -356,28 +363,28 @@ static PetscErrorCode destroy_workspace(workspace *w) {
   PetscCall(MatDestroy(&w->B));
   PetscCall(MatDestroy(&w->X));
   PetscCall(MatDestroy(&w->Y));
-  for (int i = 0; i < LINKS; i++) {
+  for (int i = 0; i < BLOCKS; i++) {
     PetscCall(PetscFree(w->sample[i]));
     PetscCall(PetscFree(w->probe[i]));
   }
-  for (int i = 0; i < 2 * LINKS; i++) PetscCall(PetscFree(w->moment[i]));
+  for (int i = 0; i < 2 * BLOCKS; i++) PetscCall(PetscFree(w->moment[i]));
   free(w->tail[0]);
   free(w->tail[1]);
   modal_dofs_free(&w->column);
   PetscFunctionReturn(0);
 }
 
-/* Residual modes are made of all columns at once. */
-static bool fit_together(const workspace *w) {
-  const double room = (double)TOGETHER / (3. * 3 * (double)w->system->n_free);
-  return w->n_column <= MOST && w->n_column <= room;
+/* Residual modes need all columns in one batch. */
+static bool fits_single_batch(const workspace *w) {
+  const double room = (double)MAX_NUMBERS / (3. * 3 * (double)w->system->n_free);
+  return w->n_column <= MAX_COLUMNS && w->n_column <= room;
 }
 
 static shb_status fill(workspace *w, shb_progress *progress, modal_model *model) {
   SHB_TRY(create_columns(w));
   const int  n = w->n_column, nc = w->n_contact;
-  const bool together = fit_together(w);
-  const int  batch    = together || n < BATCH ? n : BATCH;
+  const bool single_batch = fits_single_batch(w);
+  const int  batch        = single_batch || n < BATCH ? n : BATCH;
   FEM_PETSC(create_batch(w, batch));
   FEM_PETSC(fill_shapes(w, model));
   for (int i = 0; i < w->eigen->n; i++)
@@ -388,14 +395,14 @@ static shb_status fill(workspace *w, shb_progress *progress, modal_model *model)
     MPI_Allreduce(MPI_IN_PLACE, &stop, 1, MPI_INT, MPI_MAX, w->system->comm);
     SHB_CHECK(!stop, SHB_INTERRUPTED, "interrupted");
     shb_progress_show(progress, 80 + 15. * first / n, "residuals: column %d of %d", first, n);
-    FEM_PETSC(chain(w, first, count, together));
+    FEM_PETSC(compute_chain(w, first, count, single_batch));
     store_terms(w, first, count, model);
   }
   symmetrise(model->residual_flexibility, (size_t)nc);
   symmetrise(model->residual_inertia, (size_t)nc);
   symmetrise(model->residual_fourth, (size_t)nc);
-  if (together) SHB_TRY(make_ritz(w, model));
-  store_tails(w, together ? 2 * LINKS : LINKS, model);
+  if (single_batch) SHB_TRY(create_residual_modes(w, model));
+  store_tails(w, single_batch ? 2 * BLOCKS : BLOCKS, model);
   return SHB_OK;
 }
 

@@ -7,17 +7,17 @@
 #include "mesh/core/face_pairing.h"
 #include "modal/condense/face_partition.h"
 
-static const double degree = 3.14159265358979323846 / 180;
+static const double degree = M_PI / 180;
 
-/* What the builders share. */
+/* Shared data of the builders. */
 typedef struct {
   const mesh_fe       *mesh;
   const mesh_face_set *right;
-  const mesh_pairing  *pairing; /* what the right nodes meet, or NULL */
+  const mesh_pairing  *pairing; /* partners of the right nodes, or NULL */
   double               sector;  /* rad */
   mesh_axis            axis;
   modal_facets         facets;
-  double              *node_area; /* [n_nodes] m2, zero outside the patch in hand */
+  double              *node_area; /* [n_nodes] m2, zero outside the current patch */
 } builder;
 
 static double norm(const double v[3]) {
@@ -28,7 +28,7 @@ static void into_axes(const double axes[3][3], const double v[3], double out[3])
   for (int a = 0; a < 3; a++) out[a] = axes[a][0] * v[0] + axes[a][1] * v[1] + axes[a][2] * v[2];
 }
 
-static shb_status allocate(int n_pairs, bool has_left, int capacity, modal_interface *out) {
+static shb_status allocate(int n_pairs, bool has_left, int capacity, modal_patches *out) {
   const size_t n = (size_t)n_pairs, entries = (size_t)capacity + 1;
   out->n_pairs  = n_pairs;
   out->has_left = has_left;
@@ -54,9 +54,9 @@ static int compare(const void *a, const void *b) {
   return (p > q) - (p < q);
 }
 
-/* A right node in the patch being built (the last), with the left nodes it meets: as many entries, the node's own weight
- * in the first. */
-static void add_entry(const builder *b, int patch, int node, double weight, modal_interface *out) {
+/* Add a right node to the last patch, one entry for each left node that it meets. The first entry
+ * carries the weight of the right node. */
+static void add_entry(const builder *b, int patch, int node, double weight, modal_patches *out) {
   const mesh_pairing *pairing = b->pairing;
   if (!pairing) {
     out->node[0][out->start[patch + 1]]  = node;
@@ -74,9 +74,9 @@ static void add_entry(const builder *b, int patch, int node, double weight, moda
   }
 }
 
-/* Mean position of a patch. On projected faces the left one is the right one turned back, so that their axes correspond
- * although the faces are apart. */
-static void find_centroid(const builder *b, int patch, int side, modal_interface *out) {
+/* Mean position of a patch. On projected faces the left centroid is the right one rotated back:
+ * their axes then correspond although the faces are apart. */
+static void find_centroid(const builder *b, int patch, int side, modal_patches *out) {
   const double *weight   = side ? out->left_weight : out->weight;
   double       *centroid = out->centroid[side] + 3 * patch;
   if (side == 1 && out->projected) {
@@ -90,7 +90,7 @@ static void find_centroid(const builder *b, int patch, int side, modal_interface
 
 /* Centroid, axes, normal from the entries and the patch's integral of n dA. */
 static shb_status finish_patch(const builder *b, int patch, const double normal[3],
-                               modal_interface *out) {
+                               modal_patches *out) {
   double length = norm(normal);
   for (int side = 0; side <= (int)out->has_left; side++) {
     double *centroid = out->centroid[side] + 3 * patch, radial[3], along[3];
@@ -115,8 +115,8 @@ static int entries_each(const builder *b) {
   return b->pairing && b->pairing->projected ? b->facets.nodes : 1;
 }
 
-/* points >= 1: facets of the same index form a patch. Entries in order of nodes. */
-static shb_status build_patch(builder *b, int patch, modal_interface *out) {
+/* points >= 1: facets of equal index form a patch. Entries are in the order of the nodes. */
+static shb_status build_patch(builder *b, int patch, modal_patches *out) {
   double normal[3] = {0};
   for (int f = 0; f < b->facets.n; f++) {
     if (b->facets.patch[f] != patch) continue;
@@ -135,10 +135,10 @@ static shb_status build_patch(builder *b, int patch, modal_interface *out) {
   return finish_patch(b, patch, normal, out);
 }
 
-/* points = 0: a node that carries more than a thousandth of the largest nodal area is a patch. The corners of triangles
- * on a slightly curved face carry a little, of either sign, those of quadrangles a negative area: left out, the rest
- * scaled to the face's area. */
-static shb_status build_nodes(builder *b, double (*normal)[3], modal_interface *out) {
+/* points = 0: a patch for each node with more than a thousandth of the largest nodal area. Corner
+ * nodes are left out: their area is small on slightly curved triangles and negative on quadrangles.
+ * The other areas are scaled to the area of the face. */
+static shb_status build_nodes(builder *b, double (*normal)[3], modal_patches *out) {
   double largest = 0, kept = 0;
   int    n = 0, n_nodes = b->mesh->n_nodes;
   for (int f = 0; f < b->facets.n; f++)
@@ -166,7 +166,7 @@ static shb_status build_nodes(builder *b, double (*normal)[3], modal_interface *
 }
 
 /* psi and phi of the mean normal at the face's centroid. */
-static shb_status measure_face(const builder *b, modal_interface *out) {
+static shb_status measure_face(const builder *b, modal_patches *out) {
   double normal[3] = {0}, centroid[3] = {0}, axes[3][3], v[3];
   for (int f = 0; f < b->facets.n; f++) {
     out->total_area += b->facets.total[f];
@@ -184,7 +184,7 @@ static shb_status measure_face(const builder *b, modal_interface *out) {
   return SHB_OK;
 }
 
-static shb_status build(builder *b, int points, modal_interface *out) {
+static shb_status build(builder *b, int points, modal_patches *out) {
   SHB_TRY(modal_facets_create(b->mesh, b->right, &b->facets));
   SHB_TRY(measure_face(b, out));
   if (points == 0) {
@@ -194,7 +194,7 @@ static shb_status build(builder *b, int points, modal_interface *out) {
     free(normal);
     return status;
   }
-  SHB_TRY(modal_facets_divide(&b->facets, points));
+  SHB_TRY(modal_facets_partition(&b->facets, points));
   SHB_TRY(
       allocate(points, b->pairing != NULL, b->facets.nodes * b->facets.n * entries_each(b), out));
   for (int patch = 0; patch < points; patch++) SHB_TRY(build_patch(b, patch, out));
@@ -213,8 +213,8 @@ static shb_status check_groups(const mesh_fe *mesh, bool to_ground) {
   return SHB_OK;
 }
 
-shb_status modal_interface_create(const mesh_fe *mesh, mesh_axis axis, int blades, bool to_ground,
-                                  int points, modal_interface *out) {
+shb_status modal_patches_create(const mesh_fe *mesh, mesh_axis axis, int blades, bool to_ground,
+                                int points, modal_patches *out) {
   memset(out, 0, sizeof *out);
   SHB_TRY(check_groups(mesh, to_ground));
   mesh_pairing pairing = {0};
@@ -234,16 +234,16 @@ shb_status modal_interface_create(const mesh_fe *mesh, mesh_axis axis, int blade
   modal_facets_free(&b.facets);
   free(b.node_area);
   mesh_pairing_free(&pairing);
-  if (status != SHB_OK) modal_interface_free(out);
+  if (status != SHB_OK) modal_patches_free(out);
   return status;
 }
 
-/* Patches of a part behind those that are there already. */
-static void append(const modal_interface *part, int which, int pairs, modal_interface *out) {
+/* Append the patches of one interface. */
+static void append(const modal_patches *part, int which, int pairs, modal_patches *out) {
   const size_t entries = (size_t)part->start[part->n_pairs], n = (size_t)part->n_pairs;
   const int    first = out->start[pairs], sides = part->has_left ? 2 : 1;
   for (size_t p = 0; p < n; p++) {
-    out->which[(size_t)pairs + p]     = which;
+    out->interface[(size_t)pairs + p] = which;
     out->start[(size_t)pairs + p + 1] = first + part->start[p + 1];
   }
   memcpy(out->weight + first, part->weight, entries * sizeof *out->weight);
@@ -261,22 +261,22 @@ static void append(const modal_interface *part, int which, int pairs, modal_inte
   out->total_area += part->total_area;
 }
 
-shb_status modal_interface_join(int n, const modal_interface *part, modal_interface *out) {
+shb_status modal_patches_join(int n, const modal_patches *part, modal_patches *out) {
   int pairs = 0, entries = 0;
   memset(out, 0, sizeof *out);
   for (int i = 0; i < n; i++) {
     pairs += part[i].n_pairs;
     entries += part[i].start[part[i].n_pairs];
   }
-  out->which        = malloc((size_t)pairs * sizeof *out->which);
+  out->interface    = malloc((size_t)pairs * sizeof *out->interface);
   shb_status status = allocate(pairs, part[0].has_left, entries, out);
-  if (status == SHB_OK && !out->which)
+  if (status == SHB_OK && !out->interface)
     status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for the contact patches");
   for (int i = 0, at = 0; i < n && status == SHB_OK; at += part[i++].n_pairs)
     append(&part[i], i, at, out);
   out->psi = part[0].psi;
   out->phi = part[0].phi;
-  if (status != SHB_OK) modal_interface_free(out);
+  if (status != SHB_OK) modal_patches_free(out);
   return status;
 }
 
@@ -291,35 +291,35 @@ static shb_status check_angle(const char *name, const double *given, double face
   return SHB_OK;
 }
 
-shb_status modal_interface_check(const modal_interface *interface, const double *psi,
-                                 const double *phi) {
-  SHB_TRY(check_angle("psi", psi, interface->psi));
-  return check_angle("phi", phi, interface->phi);
+shb_status modal_patches_check_angles(const modal_patches *patches, const double *psi,
+                                      const double *phi) {
+  SHB_TRY(check_angle("psi", psi, patches->psi));
+  return check_angle("phi", phi, patches->phi);
 }
 
-shb_status modal_interface_dofs(const modal_interface *interface, modal_dofs *dofs) {
-  for (int side = 0; side <= (int)interface->has_left; side++)
-    for (int p = 0; p < interface->n_pairs; p++) {
-      int           first = interface->start[p], n = interface->start[p + 1] - first;
-      const double *weight = side ? interface->left_weight : interface->weight;
+shb_status modal_patches_dofs(const modal_patches *patches, modal_dofs *dofs) {
+  for (int side = 0; side <= (int)patches->has_left; side++)
+    for (int p = 0; p < patches->n_pairs; p++) {
+      int           first = patches->start[p], n = patches->start[p + 1] - first;
+      const double *weight = side ? patches->left_weight : patches->weight;
       for (int a = 0; a < 3; a++)
-        SHB_TRY(modal_dofs_add(dofs, n, interface->node[side] + first, weight + first,
-                               interface->axes[side][p][a]));
+        SHB_TRY(modal_dofs_add(dofs, n, patches->node[side] + first, weight + first,
+                               patches->axes[side][p][a]));
     }
   return SHB_OK;
 }
 
-void modal_interface_free(modal_interface *interface) {
-  free(interface->which);
-  free(interface->start);
-  free(interface->weight);
-  free(interface->left_weight);
-  free(interface->area);
-  free(interface->normal);
+void modal_patches_free(modal_patches *patches) {
+  free(patches->interface);
+  free(patches->start);
+  free(patches->weight);
+  free(patches->left_weight);
+  free(patches->area);
+  free(patches->normal);
   for (int side = 0; side < 2; side++) {
-    free(interface->node[side]);
-    free(interface->centroid[side]);
-    free(interface->axes[side]);
+    free(patches->node[side]);
+    free(patches->centroid[side]);
+    free(patches->axes[side]);
   }
-  memset(interface, 0, sizeof *interface);
+  memset(patches, 0, sizeof *patches);
 }

@@ -3,9 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Room for one more dof of n_entries entries, which are the last ones. */
-static shb_status grow(modal_dofs *dofs, int n_entries) {
-  const size_t total = (size_t)(dofs->n_entries + n_entries);
+/* Append one dof of n_entries entries, to be filled by the caller. */
+static shb_status append_dof(modal_dofs *dofs, int n_entries) {
+  const size_t total = (size_t)dofs->n_entries + (size_t)n_entries;
   int         *start = realloc(dofs->start, (size_t)(dofs->n + 2) * sizeof *start);
   if (start) dofs->start = start;
   int *node = realloc(dofs->node, (total + 1) * sizeof *node);
@@ -24,7 +24,7 @@ static shb_status grow(modal_dofs *dofs, int n_entries) {
 shb_status modal_dofs_add(modal_dofs *dofs, int n_entries, const int *node, const double *weight,
                           const double direction[3]) {
   const int first = dofs->n_entries;
-  SHB_TRY(grow(dofs, n_entries));
+  SHB_TRY(append_dof(dofs, n_entries));
   for (int e = 0; e < n_entries; e++) {
     dofs->node[first + e] = node[e];
     for (int d = 0; d < 3; d++) dofs->weight[3 * (first + e) + d] = weight[e] * direction[d];
@@ -36,10 +36,10 @@ static int is_loaded(const double force[3]) {
   return force[0] != 0 || force[1] != 0 || force[2] != 0;
 }
 
-shb_status modal_dofs_add_field(modal_dofs *dofs, int n_nodes, const double *force) {
+shb_status modal_dofs_add_forces(modal_dofs *dofs, int n_nodes, const double *force) {
   int n_entries = 0, entry = dofs->n_entries;
   for (int i = 0; i < n_nodes; i++) n_entries += is_loaded(force + 3 * (size_t)i);
-  SHB_TRY(grow(dofs, n_entries));
+  SHB_TRY(append_dof(dofs, n_entries));
   for (int i = 0; i < n_nodes; i++) {
     if (!is_loaded(force + 3 * (size_t)i)) continue;
     dofs->node[entry] = i;
@@ -52,7 +52,7 @@ shb_status modal_dofs_add_field(modal_dofs *dofs, int n_nodes, const double *for
 shb_status modal_dofs_append(modal_dofs *dofs, const modal_dofs *more) {
   for (int c = 0; c < more->n; c++) {
     const int first = dofs->n_entries, from = more->start[c], n = more->start[c + 1] - from;
-    SHB_TRY(grow(dofs, n));
+    SHB_TRY(append_dof(dofs, n));
     memcpy(dofs->node + first, more->node + from, (size_t)n * sizeof *dofs->node);
     memcpy(dofs->weight + 3 * (size_t)first, more->weight + 3 * (size_t)from,
            3 * (size_t)n * sizeof *dofs->weight);
@@ -112,7 +112,7 @@ PetscErrorCode modal_dofs_sample(const modal_dofs *dofs, const fem_system *syste
   PetscFunctionReturn(0);
 }
 
-void modal_dofs_of_nodes(const modal_dofs *dofs, const double *nodal, double *value) {
+void modal_dofs_sample_nodal(const modal_dofs *dofs, const double *nodal, double *value) {
   for (int c = 0; c < dofs->n; c++) {
     value[c] = 0;
     for (int e = dofs->start[c]; e < dofs->start[c + 1]; e++)

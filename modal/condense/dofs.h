@@ -1,6 +1,6 @@
-/* Generalised dofs: weighted sums of nodal displacements (a patch's mean, a node's component along an axis, the
- * work of a load). A unit force on such a dof is spread over the nodes by the same weights, so that the two are
- * conjugate: u_c = b_c^T u, force f_c b_c. */
+/* Generalised dofs: weighted sums of nodal displacements, such as the mean of a patch, a component
+ * along an axis, or the work of a load. A unit force on a dof is spread over the nodes by the same
+ * weights. Displacement u_c = b_c^T u and force f_c b_c are thus conjugate. */
 #ifndef MODAL_CONDENSE_DOFS_H
 #define MODAL_CONDENSE_DOFS_H
 
@@ -19,8 +19,8 @@ typedef struct {
 shb_status modal_dofs_add(modal_dofs *dofs, int n_entries, const int *node, const double *weight,
                           const double direction[3]);
 
-/* Append one dof that is the work of nodal forces [n_nodes][3]; zeros are left out. */
-shb_status modal_dofs_add_field(modal_dofs *dofs, int n_nodes, const double *force);
+/* Append the dof that is the work of nodal forces [n_nodes][3]; zero entries are omitted. */
+shb_status modal_dofs_add_forces(modal_dofs *dofs, int n_nodes, const double *force);
 
 /* Append all dofs of another. */
 shb_status modal_dofs_append(modal_dofs *dofs, const modal_dofs *more);
@@ -29,13 +29,14 @@ shb_status modal_dofs_append(modal_dofs *dofs, const modal_dofs *more);
 PetscErrorCode modal_dofs_spread(const modal_dofs *dofs, const fem_system *system, int first,
                                  int count, Mat B);
 
-/* value[c][x] = b_c^T X[:, x] for all dofs and the first n_columns columns of the dense matrix X; row length
- * stride >= n_columns. Every rank gets the result; clamped nodes count as zero. */
+/* value[c][x] = b_c^T X[:, x] for all dofs and the first n_columns columns of the dense matrix X.
+ * The row length is stride >= n_columns. Every rank gets the result; clamped nodes count as
+ * zero. */
 PetscErrorCode modal_dofs_sample(const modal_dofs *dofs, const fem_system *system, Mat X,
                                  int n_columns, int stride, double *value);
 
 /* value[c] = b_c^T u of nodal displacements [n_nodes][3]. */
-void modal_dofs_of_nodes(const modal_dofs *dofs, const double *nodal, double *value);
+void modal_dofs_sample_nodal(const modal_dofs *dofs, const double *nodal, double *value);
 
 void modal_dofs_free(modal_dofs *dofs);
 

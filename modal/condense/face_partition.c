@@ -69,7 +69,8 @@ static shb_status principal_direction(const modal_facets *facets, const site *si
   return SHB_OK;
 }
 
-/* First facet of the upper part: the lower one holds lower/patches of the area, and a facet a patch at least. */
+/* Index of the first facet of the upper part. The lower part holds lower/patches of the area and at
+ * least one facet for each patch. */
 static int find_cut(const modal_facets *facets, const site *sites, int n, int lower, int patches) {
   double total = 0, sum = 0;
   for (int i = 0; i < n; i++) total += facets->total[sites[i].facet];
@@ -102,7 +103,7 @@ static shb_status bisect(modal_facets *facets, site *sites, int n, int first, in
   return bisect(facets, sites + cut, n - cut, first + lower, patches - lower);
 }
 
-shb_status modal_facets_divide(modal_facets *facets, int n_patches) {
+shb_status modal_facets_partition(modal_facets *facets, int n_patches) {
   SHB_CHECK(
       n_patches <= facets->n, SHB_ERR_INPUT,
       "contact.points: %d patches asked of a contact face of %d facets; ask for fewer, refine "

@@ -4,7 +4,7 @@
 
 #include "mesh/core/fe_mesh.h"
 
-/* Integrals over the facets of a set, and the patch each belongs to. */
+/* Integrals over the facets of a set, and the patch of each facet. */
 typedef struct {
   int n;                                /* facets */
   int nodes;                            /* of a facet */
@@ -18,9 +18,10 @@ typedef struct {
 /* Integrate over the facets; every patch index is 0. */
 shb_status modal_facets_create(const mesh_fe *mesh, const mesh_face_set *set, modal_facets *facets);
 
-/* Share the facets out to n_patches: recursive bisection, each cut across the longest principal direction of the
- * facets' centroids, areas in proportion. SHB_ERR_INPUT if there are fewer facets than patches. */
-shb_status modal_facets_divide(modal_facets *facets, int n_patches);
+/* Partition the facets into n_patches of about equal area by recursive bisection. Each cut is
+ * across the longest principal direction of the centroids. SHB_ERR_INPUT if there are fewer facets
+ * than patches. */
+shb_status modal_facets_partition(modal_facets *facets, int n_patches);
 
 void modal_facets_free(modal_facets *facets);
 

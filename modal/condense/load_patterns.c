@@ -14,7 +14,7 @@ typedef struct {
   int            *node, *harmonic;
   bool            is_force;
   double complex *value; /* [harmonics][nodes][3] N, or [harmonics][nodes] Pa */
-  int            *at;    /* [nodes of the mesh] place in node, -1: none */
+  int            *at;    /* [nodes of the mesh] index in node, -1: none */
 } field;
 
 static void field_free(field *f) {
@@ -56,7 +56,7 @@ static int by_tag(const void *a, const void *b) {
   return (p > q) - (p < q);
 }
 
-/* Where each node of the mesh is in the file; tags ascend. */
+/* Find each node of the mesh in the file; node tags ascend. */
 static shb_status locate(const mesh_fe *mesh, field *f) {
   f->at = malloc((size_t)mesh->n_nodes * sizeof *f->at + 1);
   SHB_CHECK(f->at, SHB_ERR_IO, "out of memory for the load");
@@ -146,7 +146,7 @@ static bool is_zero(int n, const double *force) {
   return true;
 }
 
-/* Every part that is not zero becomes a pattern; kind[c]: harmonic and part. */
+/* Add a pattern for every part that is not zero; kind[c]: its harmonic, and 1 if imaginary. */
 static shb_status add_patterns(const mesh_fe *mesh, const field *f, double *force, int (*kind)[2],
                                modal_load *out) {
   const size_t size = 3 * (size_t)mesh->n_nodes;
@@ -161,7 +161,7 @@ static shb_status add_patterns(const mesh_fe *mesh, const field *f, double *forc
       kind[out->dofs.n][0] = f->harmonic[i];
       kind[out->dofs.n][1] = imaginary;
       if (f->harmonic[i] > out->n_harmonics) out->n_harmonics = f->harmonic[i];
-      SHB_TRY(modal_dofs_add_field(&out->dofs, mesh->n_nodes, force));
+      SHB_TRY(modal_dofs_add_forces(&out->dofs, mesh->n_nodes, force));
     }
   SHB_CHECK(out->dofs.n > 0, SHB_ERR_INPUT, "%s: all loads are 0; nothing would move", f->path);
   return SHB_OK;
@@ -180,7 +180,7 @@ static shb_status from_field(const mesh_fe *mesh, const field *f, double *force,
 static shb_status from_case(const mesh_fe *mesh, const fem_load *load, const double *fallback,
                             double *force, modal_load *out) {
   SHB_TRY(fem_load_pattern(mesh, load, fallback, force));
-  SHB_TRY(modal_dofs_add_field(&out->dofs, mesh->n_nodes, force));
+  SHB_TRY(modal_dofs_add_forces(&out->dofs, mesh->n_nodes, force));
   out->n_harmonics = load->n_harmonics;
   out->weight      = calloc((size_t)load->n_harmonics + 1, sizeof *out->weight);
   SHB_CHECK(out->weight, SHB_ERR_IO, "out of memory for the load");
@@ -188,7 +188,7 @@ static shb_status from_case(const mesh_fe *mesh, const fem_load *load, const dou
   return SHB_OK;
 }
 
-/* The mesh as a load sees it: its own group is the group load. */
+/* View of the mesh in which the load's own group is the group load. */
 static shb_status view_of(const mesh_fe *mesh, const fem_load *load, mesh_fe *view) {
   char found[MESH_FOUND + 40];
   *view = *mesh;
@@ -213,7 +213,7 @@ static shb_status create_one(const mesh_fe *mesh, const fem_load *load, const do
   return status;
 }
 
-/* The patterns of one more load after those of out. */
+/* Append the patterns of one load to out. */
 static shb_status append(modal_load *out, const modal_load *one) {
   const int       top = one->n_harmonics > out->n_harmonics ? one->n_harmonics : out->n_harmonics;
   const int       n = out->dofs.n, both = n + one->dofs.n;

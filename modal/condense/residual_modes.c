@@ -6,9 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BLOCKS = MODAL_RITZ_BLOCKS };
+enum { BLOCKS = MODAL_RESIDUAL_BLOCKS };
 
-static const double dependent = 1e-12;
+static const double DEPENDENT = 1e-12;
 
 /* Square matrices [n][n], row-major. */
 typedef struct {
@@ -30,7 +30,7 @@ static void fill(const problem *p, double *const *moment, int first, double *G) 
         memcpy(G + (i * c + a) * n + j * c, moment[i + j + (size_t)first] + a * c, c * sizeof *G);
 }
 
-/* Columns of unit mass; one without any stays out. */
+/* Scale the columns to unit mass; a column without mass is dropped. */
 static void scale_columns(problem *p) {
   const int n = p->n;
   for (int i = 0; i < n; i++) {
@@ -49,7 +49,7 @@ static int orthonormal(problem *p) {
   const int n = p->n;
   if (LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'V', 'U', n, p->M, n, p->value) != 0) return 0;
   int first = 0;
-  while (first < n && !(p->value[first] > dependent * p->value[n - 1])) first++;
+  while (first < n && !(p->value[first] > DEPENDENT * p->value[n - 1])) first++;
   p->kept = n - first;
   for (int i = 0; i < n; i++)
     for (int k = 0; k < p->kept; k++)
@@ -57,17 +57,17 @@ static int orthonormal(problem *p) {
   return 1;
 }
 
-/* theta into value, vectors into M [kept][kept]: of T^T K T. */
+/* Eigenvalues of T^T K T into value, its eigenvectors into K [kept][kept]. */
 static int reduce(problem *p) {
   const int n = p->n, m = p->kept;
-  double   *KT = p->M, *A = p->K; /* K is used up by the first product */
+  double   *KT = p->M, *A = p->K; /* the first product is the last use of K */
   cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, n, m, n, 1, p->K, n, p->T, m, 0, KT, m);
   cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, m, m, n, 1, p->T, m, KT, m, 0, A, m);
   make_symmetric(A, m);
   return m == 0 || LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'V', 'U', m, A, m, p->value) == 0;
 }
 
-static shb_status store(const problem *p, modal_ritz *ritz) {
+static shb_status store(const problem *p, modal_residual_modes *ritz) {
   const int n = p->n, m = p->kept;
   ritz->n      = m;
   ritz->lambda = malloc(((size_t)m + 1) * sizeof(double));
@@ -82,7 +82,8 @@ static shb_status store(const problem *p, modal_ritz *ritz) {
   return SHB_OK;
 }
 
-shb_status modal_ritz_create(int columns, double *const moment[2 * BLOCKS], modal_ritz *ritz) {
+shb_status modal_residual_modes_create(int columns, double *const moment[2 * BLOCKS],
+                                       modal_residual_modes *ritz) {
   const size_t n     = BLOCKS * (size_t)columns;
   double      *space = calloc(3 * n * n + 2 * n + 1, sizeof *space);
   memset(ritz, 0, sizeof *ritz);
@@ -102,18 +103,18 @@ shb_status modal_ritz_create(int columns, double *const moment[2 * BLOCKS], moda
                           : shb_fail(SHB_ERR_IO, __FILE__, __LINE__,
                                      "the eigenvalues of the residual modes were not found");
   free(space);
-  if (status != SHB_OK) modal_ritz_free(ritz);
+  if (status != SHB_OK) modal_residual_modes_free(ritz);
   return status;
 }
 
-void modal_ritz_free(modal_ritz *ritz) {
+void modal_residual_modes_free(modal_residual_modes *ritz) {
   free(ritz->lambda);
   free(ritz->weight);
-  *ritz = (modal_ritz){0};
+  *ritz = (modal_residual_modes){0};
 }
 
-int modal_ritz_needed(const modal_ritz *ritz, int columns, const double *psi, const double *scale,
-                      double s, double tolerance) {
+int modal_residual_modes_needed(const modal_residual_modes *ritz, int columns, const double *psi,
+                                const double *scale, double s, double tolerance) {
   int needed = 0;
   for (int c = 0; c < columns; c++) {
     int    n    = ritz->n;

@@ -4,22 +4,23 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "fem/body/tangent.h"
 #include "fem/solver/petsc_error.h"
 #include "modal/common/phases.h"
-#include "fem/body/tangent.h"
+#include "modal/common/session.h"
 
-/* Beyond this the St. Venant-Kirchhoff law, and any metal, has long failed. */
-static const double greatest_strain = .1;
+/* Strain limit: beyond it neither the St. Venant-Kirchhoff law nor any metal is elastic. */
+static const double LARGEST_STRAIN = 0.1;
 
-static void sample(const fem_body *body, const modal_condensation *to,
-                   const modal_interface *interface, modal_deflection *out) {
+static void sample(const fem_body *body, const modal_condensation *to, const modal_patches *patches,
+                   modal_deflection *out) {
   const double *u    = out->at.displacement;
-  const size_t  side = 3 * (size_t)interface->n_pairs;
-  modal_dofs_of_nodes(&to->contact, u, out->contact);
-  modal_dofs_of_nodes(&to->probe, u, out->probe);
+  const size_t  side = 3 * (size_t)patches->n_pairs;
+  modal_dofs_sample_nodal(&to->contact, u, out->contact);
+  modal_dofs_sample_nodal(&to->probe, u, out->probe);
   for (size_t i = 0; i < side; i++) {
-    double relative = out->contact[i] - (interface->has_left ? out->contact[side + i] : 0);
-    out->closing[i / 3] += interface->normal[i] * relative;
+    double relative = out->contact[i] - (patches->has_left ? out->contact[side + i] : 0);
+    out->closing[i / 3] += patches->normal[i] * relative;
   }
   for (int i = 0; i < body->mesh->n_nodes; i++) {
     const double *v = u + 3 * (size_t)i;
@@ -39,7 +40,7 @@ static shb_status allocate(const fem_body *body, const modal_condensation *to, i
   return SHB_OK;
 }
 
-static void tell(const modal_deflection *d, MPI_Comm comm, shb_progress *progress) {
+static void report(const modal_deflection *d, MPI_Comm comm, shb_progress *progress) {
   const fem_equilibrium *at = &d->at;
   modal_phase(comm, progress, "equilibrium",
               "%.6g rad/s, load steps %d, Newton iterations %d, factors %d, solves %d, last "
@@ -51,30 +52,28 @@ static void tell(const modal_deflection *d, MPI_Comm comm, shb_progress *progres
                     d->statics.force[1], d->statics.force[2]);
 }
 
-/* Stresses and reactions, on rank 0; its status everywhere. */
+/* Stresses and reactions on rank 0; its status on every rank. */
 static shb_status find_statics(const fem_body *body, MPI_Comm comm, int rank,
                                modal_deflection *out) {
-  int code = SHB_OK;
+  shb_status status = SHB_OK;
   if (rank == 0) {
     fem_body_stress(body, out->at.displacement, out->stress);
-    code = modal_statics_create(body, out->at.displacement, &out->statics);
+    status = modal_static_results_create(body, out->at.displacement, &out->statics);
   }
-  MPI_Bcast(&code, 1, MPI_INT, 0, comm);
-  if (code != SHB_OK && rank != 0) SHB_FAIL((shb_status)code, "another rank failed");
-  return (shb_status)code;
+  return modal_agree(comm, status);
 }
 
-shb_status modal_deflect(const fem_body *body, fem_system *system, const modal_condensation *to,
-                         const modal_interface *interface, shb_progress *progress,
-                         modal_deflection *out) {
+shb_status modal_deflection_solve(const fem_body *body, fem_system *system,
+                                  const modal_condensation *to, const modal_patches *patches,
+                                  shb_progress *progress, modal_deflection *out) {
   int rank;
   MPI_Comm_rank(system->comm, &rank);
   out->speed    = body->rotation.speed;
   out->pressure = body->pressure;
-  SHB_TRY(allocate(body, to, interface->n_pairs, rank, out));
+  SHB_TRY(allocate(body, to, patches->n_pairs, rank, out));
   FEM_PETSC(fem_equilibrium_solve(body, system, progress, &out->at));
   SHB_CHECK(out->at.displacement, SHB_INTERRUPTED, "interrupted");
-  sample(body, to, interface, out);
+  sample(body, to, patches, out);
   SHB_TRY(find_statics(body, system->comm, rank, out));
   double greatest[2] = {0, 0}; /* Pa; strain */
   for (int e = 0; rank == 0 && e < body->mesh->n_elements; e++) {
@@ -84,12 +83,12 @@ shb_status modal_deflect(const fem_body *body, fem_system *system, const modal_c
   }
   MPI_Bcast(greatest, 2, MPI_DOUBLE, 0, system->comm);
   out->greatest_stress = greatest[0];
-  SHB_CHECK(greatest[1] < greatest_strain, SHB_ERR_INPUT,
+  SHB_CHECK(greatest[1] < LARGEST_STRAIN, SHB_ERR_INPUT,
             "rotor.%s: at %.6g rad/s the static stress reaches %.3g MPa, above a tenth of "
             "material.E: no elastic blade bears that; give a lower load, or check material and "
             "the mesh's unit (m)",
             out->speed == 0 ? "pressure" : "speed", out->speed, out->greatest_stress / 1e6);
-  tell(out, system->comm, progress);
+  report(out, system->comm, progress);
   return SHB_OK;
 }
 
@@ -105,8 +104,9 @@ static shb_status write_attributes(hid_t file, const modal_deflection *d) {
 }
 
 static shb_status write_samples(hid_t file, const modal_deflection *d, const modal_model *model) {
-  const hsize_t pairs = (hsize_t)model->n_pairs, contact = 3 * pairs * (model->has_left ? 2 : 1);
-  const hsize_t probe = 3 * (hsize_t)model->n_probes;
+  const hsize_t pairs   = (hsize_t)model->n_pairs;
+  const hsize_t contact = (hsize_t)modal_model_contact_dofs(model);
+  const hsize_t probe   = 3 * (hsize_t)model->n_probes;
   SHB_TRY(h5_write_double(file, "/static/contact", H5_SHAPE(contact), d->contact, "m",
                           "static displacement of the contact patches, cylindrical axes"));
   SHB_TRY(h5_attach_scale(file, "/static/contact", 0, "/contact/dof"));
@@ -130,7 +130,7 @@ shb_status modal_deflection_write(hid_t file, const modal_deflection *d, int n_n
                           "static displacement at every node, mesh axes (x, y, z)"));
   SHB_TRY(h5_write_double(file, "/static/stress", H5_SHAPE((hsize_t)n_elements), d->stress, "Pa",
                           "greatest von Mises stress of each element"));
-  SHB_TRY(modal_statics_write(file, &d->statics));
+  SHB_TRY(modal_static_results_write(file, &d->statics));
   SHB_TRY(write_samples(file, d, model));
   return write_attributes(file, d);
 }
@@ -141,6 +141,6 @@ void modal_deflection_free(modal_deflection *d) {
   free(d->probe);
   free(d->closing);
   free(d->stress);
-  modal_statics_free(&d->statics);
+  modal_static_results_free(&d->statics);
   memset(d, 0, sizeof *d);
 }

@@ -13,7 +13,7 @@ static void find_clamped(const mesh_fe *mesh, bool *is_clamped) {
     is_clamped[root->nodes[i]] = true;
 }
 
-static void add_reaction(const double x[3], const double f[3], modal_statics *out) {
+static void add_reaction(const double x[3], const double f[3], modal_static_results *out) {
   memcpy(out->reaction[out->n_clamped++], f, 3 * sizeof *f);
   for (int d = 0; d < 3; d++) {
     int b = (d + 1) % 3, c = (d + 2) % 3;
@@ -23,7 +23,7 @@ static void add_reaction(const double x[3], const double f[3], modal_statics *ou
 }
 
 static shb_status fill(const fem_body *body, const double *u, bool *is_clamped,
-                       double (*balance)[3], modal_statics *out) {
+                       double (*balance)[3], modal_static_results *out) {
   const mesh_fe *mesh = body->mesh;
   FEM_PETSC(fem_nodal_stress(body, u, out->stress));
   for (int i = 0; i < mesh->n_nodes; i++) out->von_mises[i] = fem_von_mises(out->stress[i]);
@@ -37,8 +37,8 @@ static shb_status fill(const fem_body *body, const double *u, bool *is_clamped,
   return SHB_OK;
 }
 
-shb_status modal_statics_create(const fem_body *body, const double *displacement,
-                                modal_statics *out) {
+shb_status modal_static_results_create(const fem_body *body, const double *displacement,
+                                       modal_static_results *out) {
   const size_t n       = (size_t)body->mesh->n_nodes;
   bool        *clamped = calloc(n, sizeof *clamped);
   double(*balance)[3]  = malloc(n * sizeof *balance);
@@ -56,7 +56,7 @@ shb_status modal_statics_create(const fem_body *body, const double *displacement
   return status;
 }
 
-static shb_status write_reactions(hid_t file, const modal_statics *s) {
+static shb_status write_reactions(hid_t file, const modal_static_results *s) {
   const hsize_t n = (hsize_t)s->n_clamped;
   SHB_TRY(h5_write_int(file, "/static/reaction_node", H5_SHAPE(n), s->clamped, "-",
                        "clamped nodes, from 0"));
@@ -70,7 +70,7 @@ static shb_status write_reactions(hid_t file, const modal_statics *s) {
                          "resultant of the static loads, mesh axes (x, y, z)");
 }
 
-shb_status modal_statics_write(hid_t file, const modal_statics *s) {
+shb_status modal_static_results_write(hid_t file, const modal_static_results *s) {
   if (!s->stress) return SHB_OK;
   SHB_TRY(h5_write_double(
       file, "/static/nodal_stress", H5_SHAPE((hsize_t)s->n_nodes, FEM_STRESSES), s->stress[0], "Pa",
@@ -80,7 +80,7 @@ shb_status modal_statics_write(hid_t file, const modal_statics *s) {
   return write_reactions(file, s);
 }
 
-void modal_statics_free(modal_statics *s) {
+void modal_static_results_free(modal_static_results *s) {
   free(s->stress);
   free(s->von_mises);
   free(s->clamped);

@@ -1,4 +1,4 @@
-/* What the static equilibrium means for the part: stresses at the nodes, forces at the clamp. */
+/* Results of the static equilibrium: stresses at the nodes, reactions of the clamp. */
 #ifndef MODAL_CONDENSE_STATIC_RESULTS_H
 #define MODAL_CONDENSE_STATIC_RESULTS_H
 
@@ -9,22 +9,24 @@
 typedef struct {
   int n_nodes;
   double (*stress)[FEM_STRESSES]; /* [n_nodes][6] Pa, Cauchy, mesh axes */
-  double *von_mises;              /* [n_nodes] Pa, of those */
+  double *von_mises;              /* [n_nodes] Pa */
   int     n_clamped;
   int    *clamped;       /* [n_clamped] nodes of group root, ascending */
-  double (*reaction)[3]; /* [n_clamped][3] N, what the clamp exerts on each */
-  double force[3],
-      moment[3];  /* their sums, N and N m, about the origin at the deformed positions */
-  double load[3]; /* resultant of the loads, N: -force but for what is out of balance */
-} modal_statics;
+  double (*reaction)[3]; /* [n_clamped][3] N, force of the clamp on each node */
+  double force[3];       /* N, sum of the reactions */
+  double moment[3];      /* N m, of the reactions about the origin, at the deformed positions */
+  double load[3];        /* N, sum of the loads: -force up to the equilibrium error */
+} modal_static_results;
 
-/* Fill out (zeroed before) from the displacement [n_nodes][3]. On one rank. Errors: SHB_ERR_IO no memory. */
-shb_status modal_statics_create(const fem_body *body, const double *displacement,
-                                modal_statics *out);
+/* Compute out (zeroed before) from the displacement [n_nodes][3] m, on one rank. Errors: SHB_ERR_IO
+ * no memory. */
+shb_status modal_static_results_create(const fem_body *body, const double *displacement,
+                                       modal_static_results *out);
 
-/* /static/{nodal_stress, nodal_von_mises, reaction_node, reaction, reaction_force, reaction_moment, load_force}; nothing of a zeroed one. */
-shb_status modal_statics_write(hid_t file, const modal_statics *statics);
+/* Write /static/{nodal_stress, nodal_von_mises, reaction_node, reaction, reaction_force,
+ * reaction_moment, load_force}; nothing for a zeroed struct. */
+shb_status modal_static_results_write(hid_t file, const modal_static_results *statics);
 
-void modal_statics_free(modal_statics *statics); /* also on a zeroed struct */
+void modal_static_results_free(modal_static_results *statics); /* also on a zeroed struct */
 
 #endif

@@ -8,23 +8,23 @@
 
 static const PetscScalar one = 1, minus = -1, zero = 0;
 
-PetscErrorCode modal_block_basis_create(Mat M, KSP ksp, int p, int room, modal_block_basis *b) {
+PetscErrorCode modal_block_basis_create(Mat M, KSP ksp, int p, int capacity, modal_block_basis *b) {
   PetscInt rows;
   PetscFunctionBeginUser;
   memset(b, 0, sizeof *b);
-  b->p    = (PetscBLASInt)p;
-  b->room = room;
-  b->comm = PetscObjectComm((PetscObject)M);
-  b->M    = M;
-  b->ksp  = ksp;
+  b->p        = (PetscBLASInt)p;
+  b->capacity = capacity;
+  b->comm     = PetscObjectComm((PetscObject)M);
+  b->M        = M;
+  b->ksp      = ksp;
   PetscCall(MatGetSize(M, &b->order, NULL));
   PetscCall(MatGetLocalSize(M, &rows, NULL));
   b->rows = (PetscBLASInt)rows;
   PetscCall(MatCreateDense(b->comm, rows, PETSC_DECIDE, b->order, p, NULL, &b->W));
   PetscCall(MatCreateDense(b->comm, rows, PETSC_DECIDE, b->order, p, NULL, &b->MW));
-  const size_t m = (size_t)p * (size_t)room, each = (size_t)p * (size_t)p;
-  PetscCall(PetscCalloc5((size_t)room, &b->Q, (size_t)room * each, &b->D, (size_t)room * each,
-                         &b->B, m * m, &b->H, m, &b->theta));
+  const size_t m = (size_t)p * (size_t)capacity, each = (size_t)p * (size_t)p;
+  PetscCall(PetscCalloc5((size_t)capacity, &b->Q, (size_t)capacity * each, &b->D,
+                         (size_t)capacity * each, &b->B, m * m, &b->H, m, &b->theta));
   PetscFunctionReturn(0);
 }
 
@@ -38,13 +38,13 @@ PetscErrorCode modal_block_basis_destroy(modal_block_basis *b) {
   PetscFunctionReturn(0);
 }
 
-/* Normally distributed, after Box and Muller. */
+/* Normally distributed number (Box and Muller 1958). */
 static double normal(uint64_t key) {
-  const double u = (modal_noise(2 * key) + 1) / 2, v = modal_noise(2 * key + 1);
+  const double u = (modal_random(2 * key) + 1) / 2, v = modal_random(2 * key + 1);
   return sqrt(-2 * log(1 - u)) * cos(PETSC_PI * v);
 }
 
-PetscErrorCode modal_block_basis_noise(const modal_block_basis *b, uint64_t seed) {
+PetscErrorCode modal_block_basis_randomise(const modal_block_basis *b, uint64_t seed) {
   double  *W;
   PetscInt first;
   PetscFunctionBeginUser;
@@ -59,7 +59,7 @@ PetscErrorCode modal_block_basis_noise(const modal_block_basis *b, uint64_t seed
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode modal_block_basis_weigh(const modal_block_basis *b) {
+PetscErrorCode modal_block_basis_apply_mass(const modal_block_basis *b) {
   PetscFunctionBeginUser;
   for (int c = 0; c < b->p; c++) {
     Vec w, mw;
@@ -89,11 +89,11 @@ static PetscErrorCode subtract(const modal_block_basis *b, int k, const double *
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode modal_block_basis_remove(const modal_block_basis *b, double *last) {
+PetscErrorCode modal_block_basis_project_out(const modal_block_basis *b, double *last) {
   double       *W, *C;
   const double *MW;
   PetscFunctionBeginUser;
-  PetscCall(modal_block_basis_weigh(b));
+  PetscCall(modal_block_basis_apply_mass(b));
   PetscCall(PetscMalloc1((size_t)(b->p * b->p), &C));
   PetscCall(MatDenseGetArray(b->W, &W));
   PetscCall(MatDenseGetArrayRead(b->MW, &MW));
@@ -108,7 +108,7 @@ PetscErrorCode modal_block_basis_remove(const modal_block_basis *b, double *last
   PetscFunctionReturn(0);
 }
 
-/* P = R P, R upper triangular, by columns. */
+/* P = R P; R is upper triangular, both by columns. */
 static void multiply_triangle(int p, const double *R, double *P) {
   for (int c = 0; c < p; c++)
     for (int r = 0; r < p; r++) {
@@ -118,7 +118,8 @@ static void multiply_triangle(int p, const double *R, double *P) {
     }
 }
 
-PetscErrorCode modal_block_basis_scale(const modal_block_basis *b, double *product, bool *good) {
+PetscErrorCode modal_block_basis_cholesky_qr(const modal_block_basis *b, double *product,
+                                             bool *good) {
   double      *W, *MW, *R;
   PetscBLASInt info;
   PetscFunctionBeginUser;
@@ -141,14 +142,17 @@ PetscErrorCode modal_block_basis_scale(const modal_block_basis *b, double *produ
   PetscFunctionReturn(0);
 }
 
-/* What the second pass takes out is rounding, and MW need not follow; what a single one does would grow from step to step. */
+/* The second pass removes rounding errors only, so MW need not be updated. With a single pass the
+ * rounding errors would grow from step to step. */
 PetscErrorCode modal_block_basis_orthonormalise(const modal_block_basis *b, double *D, double *R,
                                                 bool *good) {
   PetscFunctionBeginUser;
   *good = true;
   for (int i = 0; i < b->p * b->p; i++) R[i] = i % (b->p + 1) == 0;
-  for (int pass = 0; pass < (b->n > 0 ? 2 : 1); pass++) PetscCall(modal_block_basis_remove(b, D));
-  for (int pass = 0; pass < 2 && *good; pass++) PetscCall(modal_block_basis_scale(b, R, good));
+  for (int pass = 0; pass < (b->n > 0 ? 2 : 1); pass++)
+    PetscCall(modal_block_basis_project_out(b, D));
+  for (int pass = 0; pass < 2 && *good; pass++)
+    PetscCall(modal_block_basis_cholesky_qr(b, R, good));
   PetscFunctionReturn(0);
 }
 
@@ -164,7 +168,7 @@ PetscErrorCode modal_block_basis_append(modal_block_basis *b) {
   PetscFunctionReturn(0);
 }
 
-void modal_block_basis_project(int p, int n, const double *D, const double *B, double *H) {
+void modal_block_basis_projection(int p, int n, const double *D, const double *B, double *H) {
   const size_t each = (size_t)p * (size_t)p, m = (size_t)p * (size_t)n;
   memset(H, 0, m * m * sizeof *H);
   for (int k = 0; k < n; k++, D += each, B += each)

@@ -1,4 +1,5 @@
-/* The basis of a block Krylov method for T = (K - shift M)^-1 M: blocks orthonormal in M, and T projected on them. */
+/* Basis of a block Krylov method for T = (K - shift M)^-1 M: M-orthonormal blocks, and T projected
+ * on them. */
 #ifndef MODAL_EIGEN_BLOCK_BASIS_H
 #define MODAL_EIGEN_BLOCK_BASIS_H
 
@@ -8,49 +9,53 @@
 
 #include <petscblaslapack.h> /* after what it needs */
 
-/* Diagonal blocks D_k and blocks B_k below them, T Q_k = Q_k-1 B_k-1^T + Q_k D_k + Q_k+1 B_k. */
+/* The blocks of the projection: T Q_k = Q_(k-1) B_(k-1)^T + Q_k D_k + Q_(k+1) B_k. */
 typedef struct {
   MPI_Comm     comm;
-  PetscInt     order;    /* of K */
-  PetscBLASInt rows, p;  /* own rows; columns a block */
-  int          n, room;  /* blocks */
-  Mat          M, W, MW; /* the block in the making, and M times it: [rows][p] */
-  KSP          ksp;      /* solves with K - shift M */
-  double     **Q;        /* [n] blocks [p][rows] */
-  double      *D, *B;    /* [room] blocks, each [p][p] by columns */
-  double      *H;        /* [p n][p n], later its eigenvectors */
-  double      *theta;    /* [p n], ascending */
+  PetscInt     order;       /* of K */
+  PetscBLASInt rows, p;     /* rows of this rank; columns per block */
+  int          n, capacity; /* blocks used; blocks there is memory for */
+  Mat          M, W, MW;    /* block under construction and its product with M, [rows][p] */
+  KSP          ksp;         /* solves with K - shift M */
+  double     **Q;           /* [n] blocks [p][rows] */
+  double      *D, *B;       /* [capacity] blocks, each [p][p] by columns */
+  double      *H;           /* [p n][p n] projection, then its eigenvectors */
+  double      *theta;       /* [p n], ascending */
 } modal_block_basis;
 
-/* Empty, with room for so many blocks. M and ksp are borrowed. */
-PetscErrorCode modal_block_basis_create(Mat M, KSP ksp, int p, int room, modal_block_basis *b);
+/* Create an empty basis with memory for capacity blocks. M and ksp are borrowed. */
+PetscErrorCode modal_block_basis_create(Mat M, KSP ksp, int p, int capacity, modal_block_basis *b);
 
 PetscErrorCode modal_block_basis_destroy(modal_block_basis *b); /* also on a zeroed struct */
 
-/* W: numbers without structure, of variance 1; others for each seed. */
-PetscErrorCode modal_block_basis_noise(const modal_block_basis *b, uint64_t seed);
+/* Fill W with normally distributed random numbers of variance 1, different for each seed. */
+PetscErrorCode modal_block_basis_randomise(const modal_block_basis *b, uint64_t seed);
 
 /* MW = M W */
-PetscErrorCode modal_block_basis_weigh(const modal_block_basis *b);
+PetscErrorCode modal_block_basis_apply_mass(const modal_block_basis *b);
 
 /* out = X^T Y, [p][p] by columns, summed over the ranks; X, Y [p][rows]. */
 PetscErrorCode modal_block_basis_inner(const modal_block_basis *b, const double *X, const double *Y,
                                        double *out);
 
-/* MW = M W, W -= Q Q^T M W; what the last block took of it is added to last (NULL: not wanted). */
-PetscErrorCode modal_block_basis_remove(const modal_block_basis *b, double *last);
+/* W -= Q Q^T M W, with MW = M W on entry to the projection. The coefficients of the last block are
+ * added to last (or NULL). */
+PetscErrorCode modal_block_basis_project_out(const modal_block_basis *b, double *last);
 
-/* W = W' R, W'^T M W' = 1, and MW (M W on entry) with it; product = R product. *good false: W has not full rank. */
-PetscErrorCode modal_block_basis_scale(const modal_block_basis *b, double *product, bool *good);
+/* Cholesky QR in the M inner product: W = W' R with W'^T M W' = 1, MW = M W alike. MW = M W on
+ * entry. product = R product. *good is false if W has not full rank. */
+PetscErrorCode modal_block_basis_cholesky_qr(const modal_block_basis *b, double *product,
+                                             bool *good);
 
-/* Make W orthonormal to the basis and in itself: W = Q C + W' R. D: what the last block takes of it is added (NULL: not wanted). */
+/* Orthonormalise W against the basis and in itself: W = Q C + W' R. The coefficients of the last
+ * block are added to D (or NULL). */
 PetscErrorCode modal_block_basis_orthonormalise(const modal_block_basis *b, double *D, double *R,
                                                 bool *good);
 
-/* Keep W as the next block. */
+/* Append W to the basis as the next block. */
 PetscErrorCode modal_block_basis_append(modal_block_basis *b);
 
-/* H [p n][p n], lower triangle by columns, from its n blocks D, B. */
-void modal_block_basis_project(int p, int n, const double *D, const double *B, double *H);
+/* H [p n][p n] from the n blocks D and B; lower triangle, by columns. */
+void modal_block_basis_projection(int p, int n, const double *D, const double *B, double *H);
 
 #endif

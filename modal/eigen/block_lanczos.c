@@ -10,7 +10,7 @@
 #include "modal/eigen/block_basis.h"
 
 typedef struct {
-  PetscInt          size, limit; /* columns a block; of the basis at most */
+  PetscInt          size, limit; /* columns per block; columns of the basis, at most */
   modal_block_basis basis;       /* of the last run */
 } method;
 
@@ -18,7 +18,7 @@ static const PetscScalar one = 1, zero = 0;
 
 /* ------------------------------------------------------------------ steps */
 
-/* One block more: D and B of the last block, W the next. */
+/* One Lanczos step: compute D and B of the last block; W becomes the next one. */
 static PetscErrorCode step(modal_block_basis *b, bool *good) {
   const size_t at = (size_t)(b->n - 1) * (size_t)(b->p * b->p);
   PetscFunctionBeginUser;
@@ -27,7 +27,8 @@ static PetscErrorCode step(modal_block_basis *b, bool *good) {
   PetscFunctionReturn(0);
 }
 
-/* Ritz values and, in H, vectors; *converged: how many from the greatest on; residual[i] of the wanted ones, relative. */
+/* Ritz values, and vectors in H. residual[i]: relative residual of the wanted pairs, largest first.
+ * *converged: number of leading pairs that have converged. */
 static PetscErrorCode find_pairs(const modal_block_basis *b, int wanted, double tolerance,
                                  PetscReal *residual, int *converged) {
   const PetscBLASInt m    = b->p * b->n;
@@ -36,7 +37,7 @@ static PetscErrorCode find_pairs(const modal_block_basis *b, int wanted, double 
   double            *work;
 
   PetscFunctionBeginUser;
-  modal_block_basis_project((int)b->p, b->n, b->D, b->B, b->H);
+  modal_block_basis_projection((int)b->p, b->n, b->D, b->B, b->H);
   PetscCall(PetscMalloc1((size_t)size, &work));
   PetscCallBLAS("LAPACKsyev", LAPACKsyev_("V", "L", &m, b->H, &m, b->theta, work, &size, &info));
   PetscCall(PetscFree(work));
@@ -58,8 +59,8 @@ static PetscErrorCode find_pairs(const modal_block_basis *b, int wanted, double 
   PetscFunctionReturn(0);
 }
 
-/* X = Q times the vectors of H that belong to the greatest values, greatest first. */
-static PetscErrorCode combine(const modal_block_basis *b, Mat X) {
+/* X = Q times the leading eigenvectors of H, largest Ritz value first. */
+static PetscErrorCode form_vectors(const modal_block_basis *b, Mat X) {
   const PetscBLASInt m = b->p * b->n;
   PetscInt           count, lda;
   double            *x, *S;
@@ -83,25 +84,25 @@ static PetscErrorCode combine(const modal_block_basis *b, Mat X) {
 
 /* ------------------------------------------------------------------ the solver */
 
-/* The first block. */
-static PetscErrorCode start(modal_block_basis *b, bool *good) {
+/* First block of the basis. */
+static PetscErrorCode start_basis(modal_block_basis *b, bool *good) {
   double *unused;
   PetscFunctionBeginUser;
-  PetscCall(modal_block_basis_noise(b, 0));
+  PetscCall(modal_block_basis_randomise(b, 0));
   PetscCall(PetscCalloc1((size_t)(b->p * b->p), &unused));
   PetscCall(modal_block_basis_orthonormalise(b, NULL, unused, good));
   PetscCall(PetscFree(unused));
   PetscFunctionReturn(0);
 }
 
-/* Grow until the stopping test says so, or there is no more room. */
-static PetscErrorCode grow(EPS eps, modal_block_basis *b) {
+/* Extend the basis until the stopping test succeeds or the memory is used up. */
+static PetscErrorCode extend_basis(EPS eps, modal_block_basis *b) {
   const int wanted    = (int)eps->nev;
   int       converged = 0;
   bool      good      = true;
 
   PetscFunctionBeginUser;
-  PetscCall(start(b, &good));
+  PetscCall(start_basis(b, &good));
   while (good && eps->reason == EPS_CONVERGED_ITERATING) {
     PetscCall(modal_block_basis_append(b));
     PetscCall(step(b, &good));
@@ -110,9 +111,10 @@ static PetscErrorCode grow(EPS eps, modal_block_basis *b) {
       PetscCall(find_pairs(b, wanted, eps->tol, eps->errest, &converged));
     eps->nconv = converged;
     PetscCall(EPSMonitor(eps, eps->its, converged, eps->eigr, eps->eigi, eps->errest, wanted));
-    PetscCall((*eps->stopping)(eps, eps->its, b->room, converged, wanted, &eps->reason,
+    PetscCall((*eps->stopping)(eps, eps->its, b->capacity, converged, wanted, &eps->reason,
                                eps->stoppingctx));
-    if (eps->reason == EPS_CONVERGED_ITERATING && b->n == b->room) eps->reason = EPS_DIVERGED_ITS;
+    if (eps->reason == EPS_CONVERGED_ITERATING && b->n == b->capacity)
+      eps->reason = EPS_DIVERGED_ITS;
   }
   if (!good && eps->reason == EPS_CONVERGED_ITERATING) eps->reason = EPS_DIVERGED_BREAKDOWN;
   PetscFunctionReturn(0);
@@ -128,18 +130,18 @@ static PetscErrorCode solve(EPS eps) {
   PetscCall(STGetKSP(eps->st, &ksp));
   PetscCall(modal_block_basis_destroy(b));
   PetscCall(modal_block_basis_create(M, ksp, (int)own->size, (int)(own->limit / own->size), b));
-  PetscCall(grow(eps, b));
+  PetscCall(extend_basis(eps, b));
   if (eps->nconv > 0) {
     PetscCall(BVSetActiveColumns(eps->V, 0, eps->nev));
     PetscCall(BVGetMat(eps->V, &X));
-    PetscCall(combine(b, X));
+    PetscCall(form_vectors(b, X));
     PetscCall(BVRestoreMat(eps->V, &X));
     for (int i = 0; i < eps->nev; i++) eps->eigr[i] = b->theta[b->n * b->p - 1 - i];
   }
   PetscFunctionReturn(0);
 }
 
-/* Room for the modes alone is taken in eps->V; the basis is the solver's own. */
+/* eps->V gets memory for the modes only; the solver owns its basis. */
 static PetscErrorCode set_up(EPS eps) {
   method *own = eps->data;
   PetscFunctionBeginUser;

@@ -13,7 +13,7 @@
 typedef struct {
   shb_progress *progress;
   MPI_Comm      comm;
-} watch;
+} monitor_context;
 
 static PetscErrorCode monitor(EPS eps, PetscInt iteration, PetscInt n_converged, PetscScalar *re,
                               PetscScalar *im, PetscReal *error, PetscInt n_error, void *context) {
@@ -22,26 +22,26 @@ static PetscErrorCode monitor(EPS eps, PetscInt iteration, PetscInt n_converged,
   PetscFunctionBeginUser;
   PetscCall(EPSGetDimensions(eps, &wanted, NULL, NULL));
   if (n_converged > wanted) n_converged = wanted;
-  shb_progress_show(((watch *)context)->progress, 30 + 50. * n_converged / wanted,
+  shb_progress_show(((monitor_context *)context)->progress, 30 + 50. * n_converged / wanted,
                     "eigensolve: %d of %d modes, iteration %d", (int)n_converged, (int)wanted,
                     (int)iteration);
   PetscFunctionReturn(0);
 }
 
-/* SLEPc's own test, and an interrupt on any rank. */
+/* SLEPc's own stopping test, and an interrupt on any rank. */
 static PetscErrorCode stop(EPS eps, PetscInt iteration, PetscInt max_iterations,
                            PetscInt n_converged, PetscInt wanted, EPSConvergedReason *reason,
                            void *context) {
   int interrupted = shb_interrupted();
   PetscFunctionBeginUser;
-  PetscCallMPI(
-      MPI_Allreduce(MPI_IN_PLACE, &interrupted, 1, MPI_INT, MPI_MAX, ((watch *)context)->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &interrupted, 1, MPI_INT, MPI_MAX,
+                             ((monitor_context *)context)->comm));
   PetscCall(EPSStoppingBasic(eps, iteration, max_iterations, n_converged, wanted, reason, NULL));
   if (interrupted) *reason = EPS_CONVERGED_USER;
   PetscFunctionReturn(0);
 }
 
-/* Block Lanczos where there is room for it; a mesh of a few nodes is left to Krylov-Schur. */
+/* Choose block Lanczos; Krylov-Schur for meshes too small for its basis. */
 static PetscErrorCode choose_method(const fem_system *system, int n, EPS eps) {
   const PetscInt order = 3 * system->n_free;
   PetscFunctionBeginUser;
@@ -57,7 +57,7 @@ static PetscErrorCode choose_method(const fem_system *system, int n, EPS eps) {
 }
 
 static PetscErrorCode configure(const fem_system *system, const modal_eigen_settings *settings,
-                                watch *context, modal_eigen *eigen) {
+                                monitor_context *context, modal_eigen *eigen) {
   EPS eps = eigen->eps;
   ST  st;
   KSP ksp;
@@ -75,7 +75,7 @@ static PetscErrorCode configure(const fem_system *system, const modal_eigen_sett
   PetscCall(EPSSetStoppingTestFunction(eps, stop, context, NULL));
   PetscCall(EPSGetST(eps, &st));
   PetscCall(STSetType(st, STSINVERT));
-  PetscCall(STSetMatMode(st, ST_MATMODE_SHELL)); /* K - shift M is the factor's own business */
+  PetscCall(STSetMatMode(st, ST_MATMODE_SHELL)); /* the factor holds K - shift M */
   PetscCall(STGetKSP(st, &ksp));
   PetscCall(KSPSetType(ksp, KSPPREONLY));
   PetscCall(KSPGetPC(ksp, &pc));
@@ -84,8 +84,8 @@ static PetscErrorCode configure(const fem_system *system, const modal_eigen_sett
   PetscFunctionReturn(0);
 }
 
-/* K - shift M: K itself where the shift is 0. */
-static PetscErrorCode shifted(const fem_system *system, double shift, Mat *A) {
+/* K - shift M; K itself if the shift is 0. */
+static PetscErrorCode create_shifted(const fem_system *system, double shift, Mat *A) {
   PetscFunctionBeginUser;
   if (shift == 0) {
     PetscCall(PetscObjectReference((PetscObject)system->K));
@@ -96,8 +96,8 @@ static PetscErrorCode shifted(const fem_system *system, double shift, Mat *A) {
   PetscFunctionReturn(0);
 }
 
-/* Vectors of the basis, of the modes and of what is done with them. */
-static double beside(const fem_system *system, int modes) {
+/* Memory of the basis, of the modes and of later work, bytes. */
+static double extra_memory(const fem_system *system, int modes) {
   return 8. * 3. * (double)system->n_free * (8. * modes + 60.);
 }
 
@@ -107,8 +107,8 @@ static PetscErrorCode factorise(const fem_system *system, const modal_eigen_sett
   Mat  A;
 
   PetscFunctionBeginUser;
-  PetscCall(shifted(system, settings->shift, &A));
-  PetscCall(fem_factor_create(A, beside(system, settings->modes), &eigen->factor));
+  PetscCall(create_shifted(system, settings->shift, &A));
+  PetscCall(fem_factor_create(A, extra_memory(system, settings->modes), &eigen->factor));
   modal_phase(system->comm, settings->progress, "analysis", "%s, %.3g GB foreseen",
               fem_factor_program(eigen->factor), 1e-9 * fem_factor_bytes(eigen->factor));
   PetscCall(fem_factor_update(eigen->factor, A, &definite));
@@ -152,7 +152,7 @@ PetscErrorCode modal_mass_multiply(const fem_system *system, Mat X, Mat Y) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode modal_eigen_remove(const fem_system *system, const modal_eigen *eigen, Mat X) {
+PetscErrorCode modal_eigen_project_out(const fem_system *system, const modal_eigen *eigen, Mat X) {
   const PetscScalar *phi, *m_phi;
   PetscScalar       *x, *coefficient, one = 1, minus = -1, zero = 0;
   PetscBLASInt       rows, lda, ldx, n = eigen->n, columns;
@@ -183,8 +183,8 @@ PetscErrorCode modal_eigen_remove(const fem_system *system, const modal_eigen *e
   PetscFunctionReturn(0);
 }
 
-/* +1 or -1 so that the sum of the mode's dofs times noise comes out positive, on any number of ranks. */
-static PetscErrorCode sign_of(const fem_system *system, Vec phi, double *sign) {
+/* Sign that makes the mode's sum of dofs times random numbers positive, on any number of ranks. */
+static PetscErrorCode find_sign(const fem_system *system, Vec phi, double *sign) {
   const PetscScalar *x;
   double             sum = 0;
 
@@ -194,7 +194,7 @@ static PetscErrorCode sign_of(const fem_system *system, Vec phi, double *sign) {
     PetscInt row = system->row[i];
     if (row < system->first || row >= system->last) continue;
     for (int d = 0; d < 3; d++)
-      sum += modal_noise(3 * (uint64_t)i + (uint64_t)d) * x[3 * (row - system->first) + d];
+      sum += modal_random(3 * (uint64_t)i + (uint64_t)d) * x[3 * (row - system->first) + d];
   }
   PetscCall(VecRestoreArrayRead(phi, &x));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM, system->comm));
@@ -216,7 +216,7 @@ static PetscErrorCode collect(const fem_system *system, modal_eigen *eigen) {
     PetscCall(EPSGetEigenpair(eigen->eps, i, eigen->lambda + i, NULL, phi, NULL));
     PetscCall(MatMult(system->M, phi, m_phi));
     PetscCall(VecDot(phi, m_phi, &norm));
-    PetscCall(sign_of(system, phi, &sign));
+    PetscCall(find_sign(system, phi, &sign));
     PetscCall(VecScale(phi, sign / sqrt(norm)));
     PetscCall(VecScale(m_phi, sign / sqrt(norm)));
     PetscCall(MatDenseRestoreColumnVecWrite(eigen->m_phi, i, &m_phi));
@@ -225,7 +225,7 @@ static PetscErrorCode collect(const fem_system *system, modal_eigen *eigen) {
   PetscFunctionReturn(0);
 }
 
-/* Residuals of count modes from first on; X: [order][count]. */
+/* Residuals of the modes from first on, one for each column of X [order][count]. */
 static PetscErrorCode find_some_residuals(const fem_system *system, double shift, int first, Mat X,
                                           Vec work, modal_eigen *eigen) {
   Mat      m_phi;
@@ -245,7 +245,7 @@ static PetscErrorCode find_some_residuals(const fem_system *system, double shift
     PetscCall(VecAYPX(x, -(eigen->lambda[first + i] - shift), phi));
     PetscCall(MatMult(system->M, x, work));
     PetscCall(VecDot(x, work, &square));
-    eigen->residual[first + i] = sqrt(PetscMax(square, 0));
+    eigen->eigen_residual[first + i] = sqrt(PetscMax(square, 0));
     PetscCall(MatDenseRestoreColumnVec(X, i, &x));
     PetscCall(MatDenseRestoreColumnVecRead(eigen->phi, first + i, &phi));
   }
@@ -267,9 +267,9 @@ static PetscErrorCode find_residuals(const fem_system *system, double shift, mod
   PetscFunctionReturn(0);
 }
 
-/* ------------------------------------------------------------------ is any missing? */
+/* ------------------------------------------------------------------ missing modes */
 
-/* Of the eigenvalues found, those below limit. */
+/* Number of eigenvalues found below limit. */
 static PetscErrorCode count_found(EPS eps, int modes, double limit, int *count) {
   PetscFunctionBeginUser;
   *count = 0;
@@ -285,28 +285,28 @@ static PetscErrorCode check_by_inertia(const fem_system *system, modal_check *ch
                                        modal_verdict *verdict) {
   const int found = check->count;
   PetscFunctionBeginUser;
-  PetscCall(modal_inertia_below(system, check->limit, &check->count));
-  check->by     = "inertia";
-  check->chance = 0;
-  *verdict      = check->count == found ? MODAL_COMPLETE : MODAL_MISSING;
+  PetscCall(modal_inertia_count(system, check->limit, &check->count));
+  check->method      = "inertia";
+  check->probability = 0;
+  *verdict           = check->count == found ? MODAL_VERDICT_COMPLETE : MODAL_VERDICT_MISSING;
   PetscFunctionReturn(0);
 }
 
-/* With the basis of block Lanczos; undecided without one. */
+/* Check by search in the complement of the block Lanczos basis; undecided without such a basis. */
 static PetscErrorCode check_by_restart(EPS eps, double shift, modal_check *check,
                                        modal_verdict *verdict) {
   const modal_block_basis *basis;
-  modal_complement         rest;
+  modal_missed_modes       rest;
   PetscBool                block;
   PetscFunctionBeginUser;
-  *verdict = MODAL_OPEN;
+  *verdict = MODAL_VERDICT_UNDECIDED;
   PetscCall(PetscObjectTypeCompare((PetscObject)eps, MODAL_BLOCK_LANCZOS, &block));
   if (!block) PetscFunctionReturn(0);
   PetscCall(modal_block_lanczos_basis(eps, &basis));
-  PetscCall(modal_complement_search(basis, 1 / (check->limit - shift), &rest));
+  PetscCall(modal_missed_modes_search(basis, 1 / (check->limit - shift), &rest));
   if (rest.count == check->count) *verdict = rest.verdict;
-  check->by     = "restart";
-  check->chance = rest.chance;
+  check->method      = "restart";
+  check->probability = rest.probability;
   PetscFunctionReturn(0);
 }
 
@@ -317,24 +317,25 @@ static PetscErrorCode check_modes(const fem_system *system, const modal_eigen_se
   PetscFunctionBeginUser;
   PetscCall(EPSGetTolerances(eps, &margin, NULL));
   PetscCall(EPSGetEigenvalue(eps, settings->modes - 1, &last, NULL));
-  margin   = PetscMax(margin, 1e-6); /* above the error and the rounding of an eigenvalue */
-  *verdict = MODAL_COMPLETE;
-  *check =
-      (modal_check){.by = "no", .limit = last - margin * (last - settings->shift), .chance = 1};
+  margin   = PetscMax(margin, 1e-6); /* above the error of an eigenvalue */
+  *verdict = MODAL_VERDICT_COMPLETE;
+  *check   = (modal_check){
+        .method = "no", .limit = last - margin * (last - settings->shift), .probability = 1};
   PetscCall(count_found(eps, settings->modes, check->limit, &check->count));
   if (settings->check == MODAL_CHECK_NEVER) PetscFunctionReturn(0);
-  *verdict = MODAL_OPEN;
+  *verdict = MODAL_VERDICT_UNDECIDED;
   if (settings->check == MODAL_CHECK_AUTO)
     PetscCall(check_by_restart(eps, settings->shift, check, verdict));
-  if (*verdict == MODAL_OPEN) PetscCall(check_by_inertia(system, check, verdict));
+  if (*verdict == MODAL_VERDICT_UNDECIDED) PetscCall(check_by_inertia(system, check, verdict));
   modal_phase(system->comm, settings->progress, "check", "%s, %d below %.6g Hz by %s",
-              *verdict == MODAL_COMPLETE ? "no mode is missing" : "a mode is missing", check->count,
-              modal_check_below(check), check->by);
+              *verdict == MODAL_VERDICT_COMPLETE ? "no mode is missing" : "a mode is missing",
+              check->count, modal_check_frequency(check), check->method);
   PetscFunctionReturn(0);
 }
 
-/* Blocks of twice the size, as far as that may help. */
-static PetscErrorCode enlarge(const fem_system *system, const modal_eigen *eigen, PetscInt *size) {
+/* Double the block size, up to 32 columns. */
+static PetscErrorCode double_block_size(const fem_system *system, const modal_eigen *eigen,
+                                        PetscInt *size) {
   enum { MOST = 32 };
   PetscBool block;
   PetscFunctionBeginUser;
@@ -345,16 +346,17 @@ static PetscErrorCode enlarge(const fem_system *system, const modal_eigen *eigen
   PetscCheck(*size <= MOST && *size <= 3 * system->n_free, system->comm, PETSC_ERR_NOT_CONVERGED,
              "modal: the eigensolver missed a mode below %.6g Hz (checked by %s); ask for more or "
              "fewer modes, or try -eps_ncv",
-             modal_check_below(&eigen->check), eigen->check.by);
+             modal_check_frequency(&eigen->check), eigen->check.method);
   PetscFunctionReturn(0);
 }
 
 /* ------------------------------------------------------------------ together */
 
-/* size: columns a block, 0: as ever. *found: that many modes converged; false: interrupted. */
+/* One solve. size: columns per block, 0 for the default. *found: all modes converged; false after
+ * an interrupt. */
 static PetscErrorCode run(const fem_system *system, const modal_eigen_settings *settings,
                           PetscInt size, modal_eigen *eigen, bool *found) {
-  watch              context = {settings->progress, system->comm};
+  monitor_context    context = {settings->progress, system->comm};
   EPSConvergedReason reason;
   PetscInt           n_converged;
 
@@ -376,18 +378,18 @@ static PetscErrorCode run(const fem_system *system, const modal_eigen_settings *
   PetscFunctionReturn(0);
 }
 
-/* Modes of which none is missing. *found false: interrupted. */
+/* Solve until the check finds no mode missing. *found is false after an interrupt. */
 static PetscErrorCode run_checked(const fem_system *system, const modal_eigen_settings *settings,
                                   modal_eigen *eigen, bool *found) {
-  modal_verdict verdict = MODAL_MISSING;
+  modal_verdict verdict = MODAL_VERDICT_MISSING;
   PetscInt      size    = 0;
   PetscBool     block;
   PetscFunctionBeginUser;
-  while (verdict == MODAL_MISSING) {
+  while (verdict == MODAL_VERDICT_MISSING) {
     PetscCall(run(system, settings, size, eigen, found));
     if (!*found) PetscFunctionReturn(0);
     PetscCall(check_modes(system, settings, eigen->eps, &eigen->check, &verdict));
-    if (verdict == MODAL_MISSING) PetscCall(enlarge(system, eigen, &size));
+    if (verdict == MODAL_VERDICT_MISSING) PetscCall(double_block_size(system, eigen, &size));
   }
   PetscCall(PetscObjectTypeCompare((PetscObject)eigen->eps, MODAL_BLOCK_LANCZOS, &block));
   if (block) PetscCall(modal_block_lanczos_release(eigen->eps));
@@ -408,7 +410,7 @@ PetscErrorCode modal_eigen_solve(const fem_system *system, const modal_eigen_set
   PetscCall(run_checked(system, settings, eigen, &found));
   if (!found) PetscFunctionReturn(0);
   eigen->n = settings->modes;
-  PetscCall(PetscMalloc2(eigen->n, &eigen->lambda, eigen->n, &eigen->residual));
+  PetscCall(PetscMalloc2(eigen->n, &eigen->lambda, eigen->n, &eigen->eigen_residual));
   PetscCall(collect(system, eigen));
   PetscCall(find_residuals(system, settings->shift, eigen));
   modal_phase(system->comm, settings->progress, "mode residuals", "%d", eigen->n);
@@ -417,7 +419,7 @@ PetscErrorCode modal_eigen_solve(const fem_system *system, const modal_eigen_set
 
 PetscErrorCode modal_eigen_destroy(modal_eigen *eigen) {
   PetscFunctionBeginUser;
-  PetscCall(PetscFree2(eigen->lambda, eigen->residual));
+  PetscCall(PetscFree2(eigen->lambda, eigen->eigen_residual));
   PetscCall(MatDestroy(&eigen->phi));
   PetscCall(MatDestroy(&eigen->m_phi));
   PetscCall(EPSDestroy(&eigen->eps));

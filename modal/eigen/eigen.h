@@ -1,5 +1,6 @@
-/* Lowest modes of K phi = lambda M phi by SLEPc: shift-invert with a Cholesky factor (fem/solver/factor.h), block Lanczos
- * (modal/eigen/block_lanczos.h; -eps_type krylovschur: SLEPc's own). */
+/* Lowest modes of K phi = lambda M phi by SLEPc: shift-and-invert with a Cholesky factor
+ * (fem/solver/factor.h) and block Lanczos (modal/eigen/block_lanczos.h). The option -eps_type
+ * krylovschur selects SLEPc's own solver. */
 #ifndef MODAL_EIGEN_EIGEN_H
 #define MODAL_EIGEN_EIGEN_H
 
@@ -18,24 +19,28 @@ typedef struct {
   modal_check_kind check;
 } modal_eigen_settings;
 
+/* The residual of an eigenpair is |phi - (lambda - shift) (K - shift M)^-1 M phi| in the M norm,
+ * with |phi| = 1. An eigenvalue lies within this relative distance of lambda - shift. The residual
+ * |K phi - lambda M phi| would be dominated by rounding in the stiffest directions. */
 typedef struct {
-  int     n;
-  double *lambda; /* [n] rad2/s2, ascending */
-  double *
-      residual; /* [n] |phi - (lambda - shift) (K - shift M)^-1 M phi| in the M norm, |phi| = 1: an eigenvalue
-                       lies within that relative distance of lambda - shift. (The plain residual |K phi - lambda M phi| is
-                       drowned by rounding of the stiffest directions.) */
-  Mat phi;   /* dense [3 n_free][n], phi^T M phi = 1; sign fixed by the mesh, not by the solver */
-  Mat m_phi; /* M phi, same layout */
-  fem_factor *factor; /* of K - shift M, for further solves too */
+  int         n;
+  double     *lambda;         /* [n] rad2/s2, ascending */
+  double     *eigen_residual; /* [n] */
+  Mat         phi;            /* dense [3 n_free][n], phi^T M phi = 1; the mesh fixes the signs */
+  Mat         m_phi;          /* M phi, same layout */
+  fem_factor *factor;         /* of K - shift M, also for later solves */
   EPS         eps;
   modal_check check;
 } modal_eigen;
 
-/* Solve, and check that no mode is missing below the last: one that is (of more copies than a block has columns, or hidden from the
- * start block) is searched again with blocks of twice the size. Needs SLEPc initialised. Takes options (-eps_..., -st_mat_mumps_icntl_...) from PETSc's data base.
- * Errors: PETSC_ERR_USER_INPUT more modes than dofs, K singular; PETSC_ERR_NOT_CONVERGED, also if a mode stays missing; PETSC_ERR_MEM.
- * If shb_interrupted(), stops early with eigen->n = 0 and no error. */
+/* Solve, and check that no mode below the last one is missing. A missing mode has more copies than
+ * the block has columns, or hardly any component in the start block. The solver then repeats with
+ * blocks of twice the size.
+ *
+ * Needs SLEPc initialised. Takes options (-eps_..., -st_mat_mumps_icntl_...) from PETSc's database.
+ * Errors: PETSC_ERR_USER_INPUT more modes than dofs, K singular; PETSC_ERR_NOT_CONVERGED, also if a
+ * mode stays missing; PETSC_ERR_MEM. After shb_interrupted() it stops early with eigen->n = 0 and
+ * no error. */
 PetscErrorCode modal_eigen_solve(const fem_system *system, const modal_eigen_settings *settings,
                                  modal_eigen *eigen);
 
@@ -45,8 +50,8 @@ PetscErrorCode modal_eigen_inverse(const modal_eigen *eigen, Mat B, Mat X);
 /* Y = M X, column by column. */
 PetscErrorCode modal_mass_multiply(const fem_system *system, Mat X, Mat Y);
 
-/* X -= phi phi^T M X: take the modes out of every column. */
-PetscErrorCode modal_eigen_remove(const fem_system *system, const modal_eigen *eigen, Mat X);
+/* X -= phi phi^T M X: remove the modes from every column. */
+PetscErrorCode modal_eigen_project_out(const fem_system *system, const modal_eigen *eigen, Mat X);
 
 /* A dense matrix of n columns, distributed like the system's vectors. */
 PetscErrorCode modal_dense_create(const fem_system *system, int n, Mat *X);

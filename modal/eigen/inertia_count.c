@@ -2,7 +2,7 @@
 
 #include "fem/solver/memory.h"
 
-/* Its root is not handed to ScaLAPACK, which tells no signs. */
+/* MUMPS must not hand the root to ScaLAPACK, which does not report the signs of pivots. */
 static PetscErrorCode analyse(Mat A, Mat *factor) {
   enum { ROOT = 13, DISCARD = 31 };
   MatFactorInfo info;
@@ -42,7 +42,7 @@ static PetscErrorCode count_negative(Mat A, int *count) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode modal_inertia_below(const fem_system *system, double sigma, int *count) {
+PetscErrorCode modal_inertia_count(const fem_system *system, double sigma, int *count) {
   Mat A;
   PetscFunctionBeginUser;
   PetscCall(fem_system_shifted(system, sigma, &A));

@@ -21,9 +21,9 @@ static PetscErrorCode project(const fem_body *body, const double *displacement,
   PetscFunctionReturn(0);
 }
 
-shb_status modal_participate(const fem_body *body, const double *displacement,
-                             const fem_system *system, const modal_eigen *eigen,
-                             modal_participation *out) {
+shb_status modal_participation_create(const fem_body *body, const double *displacement,
+                                      const fem_system *system, const modal_eigen *eigen,
+                                      modal_participation *out) {
   out->n_modes = eigen->n;
   out->gamma   = calloc((size_t)eigen->n, FEM_RIGID * sizeof *out->gamma);
   SHB_CHECK(out->gamma, SHB_ERR_IO, "out of memory for the participation of the modes");
@@ -31,7 +31,7 @@ shb_status modal_participate(const fem_body *body, const double *displacement,
   return SHB_OK;
 }
 
-/* Columns first .. first + n - 1 of gamma, to a power of 1 or 2, as a dataset. */
+/* Write the columns first .. first + n - 1 of gamma, to the power 1 or 2, as a dataset. */
 static shb_status write_columns(hid_t file, const modal_participation *p, const char *path,
                                 int first, int n, int power, const char *const text[2]) {
   const size_t m    = (size_t)p->n_modes;

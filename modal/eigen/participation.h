@@ -1,10 +1,12 @@
-/* How much of the blade's mass each mode carries when the root is shaken: participation factors and effective masses.
+/* Participation factors and effective masses of the modes under motion of the root.
  *
- *   gamma_ir = phi_i^T M r,   effective mass gamma_ir^2   (modes are mass-normalised)
- * r: translation along x, y, z, and rotation about the engine axis, the clamped nodes moving too. Summed over all modes of
- * the mesh the effective masses are the mass (moment of inertia) of the body less what rests on the clamped nodes themselves,
- * r_c^T (M_cc - M_cf M_ff^-1 M_fc) r_c, which vanishes as the mesh is refined. At speed the modes are those about the equilibrium and the
- * rotation that of the deformed blade. */
+ *   gamma_ir = phi_i^T M r,   effective mass gamma_ir^2   (mass-normalised modes)
+ *
+ * r: translation along x, y, z, or rotation about the engine axis, clamped nodes included. Over all
+ * modes of the mesh the effective masses sum to the mass (moment of inertia) of the body, less a
+ * part of the clamped nodes. That part, r_c^T (M_cc - M_cf M_ff^-1 M_fc) r_c, vanishes as the mesh
+ * is refined. At speed the modes are those about the equilibrium, and the rotation is that of the
+ * deformed blade. */
 #ifndef MODAL_EIGEN_PARTICIPATION_H
 #define MODAL_EIGEN_PARTICIPATION_H
 
@@ -18,13 +20,14 @@ typedef struct {
   double  inertia[FEM_RIGID]; /* of the whole body: kg three times, kg m2 */
 } modal_participation;
 
-/* Fill out (zeroed before). displacement: [n_nodes][3] of the equilibrium, NULL at rest. Collective; every rank gets it. */
-shb_status modal_participate(const fem_body *body, const double *displacement,
-                             const fem_system *system, const modal_eigen *eigen,
-                             modal_participation *out);
+/* Compute them; out is zeroed before. displacement: [n_nodes][3] m of the equilibrium, NULL at
+ * rest. Collective; every rank gets the result. Errors: SHB_ERR_IO no memory. */
+shb_status modal_participation_create(const fem_body *body, const double *displacement,
+                                      const fem_system *system, const modal_eigen *eigen,
+                                      modal_participation *out);
 
-/* /modes/participation, effective_mass [m, 3]; rotation_participation, effective_inertia [m]; root attributes mass, inertia.
- * /modes/frequency must be there. */
+/* Write /modes/participation, effective_mass [m, 3], rotation_participation, effective_inertia [m],
+ * and the root attributes mass and inertia. /modes/frequency must exist. */
 shb_status modal_participation_write(hid_t file, const modal_participation *participation);
 
 void modal_participation_free(modal_participation *participation); /* also on a zeroed struct */

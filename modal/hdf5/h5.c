@@ -10,8 +10,9 @@
 
 #include "modal/hdf5/h5_internal.h"
 
-/* A file is built in memory (HDF5's core driver without backing store) and written by h5_close with plain
- * write(): HDF5 1.10 leaves a file whose flush failed open and may crash at exit on a full disk. */
+/* HDF5's core driver builds a file in memory, without backing store. h5_close writes it with
+ * write(). HDF5 1.10 leaves a file open whose flush failed, and may crash at exit on a full
+ * disk. */
 enum { GROWTH = 1 << 20 };
 
 size_t h5_count(h5_shape shape) {
@@ -23,7 +24,7 @@ size_t h5_count(h5_shape shape) {
 static herr_t innermost(unsigned n, const H5E_error2_t *error, void *out) {
   (void)n;
   snprintf(out, H5_LABEL, "%s", error->desc ? error->desc : "");
-  return 1; /* stop: walking upward starts at the cause */
+  return 1; /* the walk starts at the cause and ends here */
 }
 
 void h5_reason(char *out, size_t size) {
@@ -32,7 +33,7 @@ void h5_reason(char *out, size_t size) {
   snprintf(out, size, "%s", *text ? text : "unknown HDF5 error");
 }
 
-/* Cut ".tmp.PID" off: the user knows the file by its final name. */
+/* Remove the suffix ".tmp.PID": messages name the published file. */
 static void cut_temporary(char *path) {
   char *mark = strstr(path, ".tmp.");
   for (char *next = mark; next; next = strstr(next + 1, ".tmp.")) mark = next;
@@ -84,8 +85,8 @@ hid_t h5_text_type(void) {
   return type;
 }
 
-/* Closing the file closes every object left open in it. The format of HDF5 1.8: the one before it ends an
- * attribute at 64 kB, and with it the list of datasets that a dimension scale labels, at 4085. */
+/* Closing the file closes every object left open in it. Files have the format of HDF5 1.8. Earlier
+ * formats limit an attribute to 64 kB, thus a dimension scale to 4085 datasets. */
 static hid_t access_list(bool in_memory) {
   hid_t list = H5Pcreate(H5P_FILE_ACCESS);
   if (list < 0) return list;
@@ -98,7 +99,7 @@ static hid_t access_list(bool in_memory) {
   return list;
 }
 
-/* Never a device such as /dev/null. */
+/* Remove a regular file only, never a device such as /dev/null. */
 static void remove_file(const char *path) {
   struct stat info;
   if (lstat(path, &info) == 0 && S_ISREG(info.st_mode)) unlink(path);
@@ -116,7 +117,8 @@ shb_status h5_create(const char *path, hid_t *file) {
   *file = H5I_INVALID_HID;
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
   int fd =
-      open(path, O_WRONLY | O_CREAT | O_TRUNC, 0666); /* tell a bad folder now, not at the end */
+      /* a missing folder is reported before the computation */
+      open(path, O_WRONLY | O_CREAT | O_TRUNC, 0666);
   if (fd < 0) return write_failed(path, errno);
   close(fd);
   hid_t list = access_list(true);
@@ -135,7 +137,7 @@ shb_status h5_create(const char *path, hid_t *file) {
   return SHB_OK;
 }
 
-/* The two ways HDF5 gives away a short file: its end is missing, or the superblock itself is. */
+/* HDF5 reports a short file either as truncated or as one without a superblock. */
 static shb_status open_failed(const char *path) {
   char reason[H5_LABEL];
   h5_reason(reason, sizeof reason);
@@ -148,7 +150,7 @@ static shb_status open_failed(const char *path) {
 
 static shb_status check_readable(const char *path) {
   struct stat info;
-  int         fd = open(path, O_RDONLY | O_NONBLOCK); /* not to wait for a pipe's writer */
+  int         fd = open(path, O_RDONLY | O_NONBLOCK); /* opening a pipe would wait for its writer */
   SHB_CHECK(fd >= 0, SHB_ERR_IO, "%s: cannot be opened: %s", path, strerror(errno));
   bool known = fstat(fd, &info) == 0;
   close(fd);
@@ -170,7 +172,7 @@ shb_status h5_open(const char *path, hid_t *file) {
   return status;
 }
 
-/* 0 or errno. */
+/* Returns 0 or errno. */
 static int write_all(const char *path, const char *data, size_t size) {
   int fd = open(path, O_WRONLY | O_CREAT | O_TRUNC, 0666);
   if (fd < 0) return errno;

@@ -1,7 +1,8 @@
-/* A thin layer over HDF5: whole datasets with units, names and clear errors. HDF5's own error stack is silent.
+/* Thin layer over HDF5: whole datasets with units, names and one-line errors. HDF5's own error
+ * stack is not printed.
  *
- * Complex numbers are compound {r, i} of doubles. Every dataset gets the attributes units and long_name.
- * Doubles are written with the smallest layout HDF5 offers (contiguous). */
+ * Complex numbers are compounds {r, i} of doubles. Every dataset gets the attributes units and
+ * long_name. Datasets are contiguous, the smallest layout that HDF5 offers. */
 #ifndef MODAL_HDF5_H5_H
 #define MODAL_HDF5_H5_H
 
@@ -26,53 +27,62 @@ typedef struct {
 
 size_t h5_count(h5_shape shape); /* number of elements */
 
-/* Create a file (truncating); open one read-only. A created file is built in memory and reaches the disk in
- * h5_close. Errors: SHB_ERR_IO, with a text that tells missing, unreadable, not HDF5, truncated apart. */
+/* Create a file (truncating an old one), or open one for reading. A created file is built in memory
+ * and reaches the disk in h5_close. Errors: SHB_ERR_IO. The text says whether the file is missing,
+ * unreadable, not HDF5, or truncated. */
 shb_status h5_create(const char *path, hid_t *file);
 shb_status h5_open(const char *path, hid_t *file);
-/* Write a created file to the disk; close. SHB_ERR_IO if it could not be written whole (a full disk): it is
- * then removed. The handle is closed in any case; a negative one does nothing. */
+/* Write a created file to the disk and close it. Errors: SHB_ERR_IO if the file could not be
+ * written whole; it is then removed. The handle is closed in any case. A negative handle does
+ * nothing. */
 shb_status h5_close(hid_t file);
-/* Close without writing and remove a created file: for the way out after an error. */
+/* Close without writing and remove a created file, after an error. */
 void h5_abandon(hid_t file);
 
-/* Write path below at (groups in between are created). */
+/* Write dataset path below at. Groups in between are created. data: row-major, of the given shape.
+ * Errors: SHB_ERR_IO. */
 shb_status h5_write_double(hid_t at, const char *path, h5_shape shape, const double *data,
                            const char *units, const char *long_name);
 shb_status h5_write_complex(hid_t at, const char *path, h5_shape shape, const double complex *data,
                             const char *units, const char *long_name);
 shb_status h5_write_int(hid_t at, const char *path, h5_shape shape, const int *data,
                         const char *units, const char *long_name);
-/* The numbers 0..n-1: a dimension scale that carries no data of its own. */
+/* Write the numbers 0 .. n - 1, a dimension scale without data of its own. */
 shb_status h5_write_counter(hid_t at, const char *path, hsize_t n, const char *long_name);
 shb_status h5_write_strings(hid_t at, const char *path, int n, const char *const *text,
                             const char *long_name);
 shb_status h5_write_attribute_text(hid_t at, const char *path, const char *name, const char *text);
 shb_status h5_write_attribute_double(hid_t at, const char *path, const char *name, double value);
 shb_status h5_write_attribute_int(hid_t at, const char *path, const char *name, int value);
-/* Attach a dimension scale (a 1D dataset already written) to dimension dim of path. */
+/* Attach a dimension scale (an existing 1D dataset) to dimension dim of path. */
 shb_status h5_attach_scale(hid_t at, const char *path, int dim, const char *scale_path);
-/* Root attributes format, format_version, revision, command, case_path, case_text, settings, created (ISO 8601 UTC). */
+/* Write the root attributes format, format_version, revision, command, case_path, case_text,
+ * settings and created (ISO 8601, UTC). */
 shb_status h5_write_provenance(hid_t file, const char *format, int version,
                                const shb_provenance *provenance);
 
 bool       h5_exists(hid_t at, const char *path);
 shb_status h5_shape_of(hid_t at, const char *path, h5_shape *shape);
-/* Read a whole dataset into malloc'ed memory. expected: rank, and dims that must hold (0 = any); the actual shape
- * is stored back. Real data is accepted where complex is expected. Missing, wrong rank or shape, or a non-finite
- * number is SHB_ERR_INPUT naming file, dataset, what was found and what would be right. */
+/* Read a whole dataset into malloc'ed memory.
+ *
+ *   expected  in   rank, and the dimensions that must hold (0: any)
+ *             out  the actual shape
+ *
+ * Real data is accepted where complex is expected. Errors: SHB_ERR_INPUT if the dataset is missing,
+ * has another rank or shape, or holds a number that is not finite. The text names the file, the
+ * dataset, the found and the wanted shape. */
 shb_status h5_read_double(hid_t at, const char *path, h5_shape *expected, double **data);
 shb_status h5_read_complex(hid_t at, const char *path, h5_shape *expected, double complex **data);
 shb_status h5_read_int(hid_t at, const char *path, h5_shape *expected, int **data);
 shb_status h5_read_strings(hid_t at, const char *path, int *n, char ***text);
-/* malloc'ed text of an attribute; *text = NULL if absent. */
+/* Read an attribute's text, malloc'ed; *text = NULL if it is absent. */
 shb_status h5_read_attribute_text(hid_t at, const char *path, const char *name, char **text);
-/* fallback is returned in *value if absent */
+/* Read a number; *value = fallback if it is absent. */
 shb_status h5_read_attribute_double(hid_t at, const char *path, const char *name, double fallback,
                                     double *value);
 shb_status h5_read_attribute_int(hid_t at, const char *path, const char *name, int fallback,
                                  int *value);
-/* SHB_ERR_INPUT unless attribute format is as wanted and format_version is at most version. */
+/* SHB_ERR_INPUT unless the attribute format is as wanted and format_version is at most version. */
 shb_status h5_check_format(hid_t file, const char *format, int version);
 
 #endif

@@ -4,7 +4,7 @@
 
 #include "modal/hdf5/h5_internal.h"
 
-/* Replaces an attribute of that name. */
+/* Write an attribute, replacing one of the same name. */
 static shb_status write_attribute(hid_t at, const char *path, const char *name, hid_t type,
                                   const void *value) {
   if (H5Aexists_by_name(at, path, name, H5P_DEFAULT) > 0)
@@ -21,7 +21,7 @@ static shb_status write_attribute(hid_t at, const char *path, const char *name, 
   return status;
 }
 
-/* Variable length: the text lies in the heap, so a case file may pass the 64 kB limit of an attribute. */
+/* Variable length: the text lies in the heap, so it may exceed the attribute's limit of 64 kB. */
 shb_status h5_write_attribute_text(hid_t at, const char *path, const char *name, const char *text) {
   hid_t type = h5_text_type();
   if (type < 0) return h5_failed(SHB_ERR_IO, at, path, "cannot be given an attribute");
@@ -80,7 +80,8 @@ static shb_status wrong_kind(hid_t at, const char *path, const char *name, const
   SHB_FAIL(SHB_ERR_INPUT, "%s: attribute %s must be %s", h5_label(at, path, label), name, wanted);
 }
 
-/* Fixed-length text may lack its end mark: read one byte more. HDF5 does not convert between character sets. */
+/* Fixed-length text may lack its terminator: read one byte more. HDF5 does not convert between
+ * character sets. */
 static char *read_fixed(hid_t attribute, hid_t stored) {
   size_t size = H5Tget_size(stored);
   char  *text = calloc(size + 1, 1);
@@ -139,7 +140,7 @@ shb_status h5_read_attribute_double(hid_t at, const char *path, const char *name
   return read_number(at, path, name, H5T_NATIVE_DOUBLE, value);
 }
 
-/* Through double, so that 1.5 is not silently 1. */
+/* Read through double, so that 1.5 is refused and not cut to 1. */
 shb_status h5_read_attribute_int(hid_t at, const char *path, const char *name, int fallback,
                                  int *value) {
   double number = fallback;
@@ -156,7 +157,7 @@ shb_status h5_check_format(hid_t file, const char *format, int version) {
   char *found = NULL;
   SHB_TRY(h5_read_attribute_text(file, "/", "format", &found));
   h5_label(file, "/", label);
-  label[strlen(label) - 3] = '\0'; /* the file's name alone */
+  label[strlen(label) - 3] = '\0'; /* keep the file's name alone */
   SHB_CHECK(found, SHB_ERR_INPUT, "%s: is not a %s: the root attribute format = \"%s\" is missing",
             label, format, format);
   bool       same   = strcmp(found, format) == 0;

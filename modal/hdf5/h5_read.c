@@ -9,7 +9,8 @@
 bool h5_exists(hid_t at, const char *path) {
   char *part = strdup(path);
   if (!part) return false;
-  bool there = true; /* every link on the way: H5Lexists fails where a group in between is absent */
+  /* H5Lexists fails where a group in between is absent: test every link on the way */
+  bool there = true;
   for (char *slash = strchr(part + 1, '/'); slash && there; slash = strchr(slash + 1, '/')) {
     *slash = '\0';
     there  = H5Lexists(at, part, H5P_DEFAULT) > 0;
@@ -30,7 +31,8 @@ static shb_status open_set(hid_t at, const char *path, hid_t *set) {
   return SHB_OK;
 }
 
-/* Shape of an open dataset; label for messages. Every dimension fits an int and the number of values a size_t. */
+/* Shape of an open dataset; label is used in messages. Every dimension must fit an int, and the
+ * number of values a size_t. */
 static shb_status shape_of(hid_t set, const char *label, h5_shape *shape) {
   hid_t space = H5Dget_space(set);
   SHB_CHECK(space >= 0, SHB_ERR_INPUT, "%s: its shape cannot be read", label);
@@ -64,7 +66,7 @@ shb_status h5_shape_of(hid_t at, const char *path, h5_shape *shape) {
   return status;
 }
 
-/* "[2, 3, any]"; zeros are any where wanted is true. */
+/* Text such as "[2, 3, any]"; zeros read "any" where wanted is true. */
 static const char *shape_text(h5_shape shape, bool wanted, char out[128]) {
   size_t n = 0;
   out[n++] = '[';
@@ -90,7 +92,8 @@ static shb_status check_shape(const char *label, h5_shape found, h5_shape wanted
   return SHB_OK;
 }
 
-/* A small damaged file can declare terabytes: no filter of HDF5 packs better than about 1000 to 1. */
+/* A small damaged file can declare terabytes. No filter of HDF5 compresses by more than about
+ * 1000. */
 static shb_status check_size(hid_t set, const char *label, size_t bytes) {
   hsize_t stored = H5Dget_storage_size(set);
   SHB_CHECK(bytes < (1u << 24) || bytes / 2048 <= stored, SHB_ERR_INPUT,
@@ -99,7 +102,7 @@ static shb_status check_size(hid_t set, const char *label, size_t bytes) {
   return SHB_OK;
 }
 
-/* Read everything as type into malloc'ed memory. */
+/* Read the whole dataset as type into malloc'ed memory. */
 static shb_status read_all(hid_t set, const char *label, hid_t type, size_t count, void **data) {
   size_t size = H5Tget_size(type);
   SHB_TRY(check_size(set, label, count * size));
@@ -113,7 +116,7 @@ static shb_status read_all(hid_t set, const char *label, hid_t type, size_t coun
   SHB_FAIL(SHB_ERR_IO, "%s cannot be read: %s", label, reason);
 }
 
-/* How the numbers of a dataset are stored. */
+/* How the values of a dataset are stored. */
 typedef enum { REAL, COMPLEX, TEXT, OTHER } stored_kind;
 
 static const char *const complex_names[][2] = {{"r", "i"}, {"real", "imag"}, {"re", "im"}};
@@ -123,7 +126,7 @@ static bool is_number(hid_t type, unsigned member) {
   return kind == H5T_FLOAT || kind == H5T_INTEGER;
 }
 
-/* Row of complex_names whose two members type has, or -1. */
+/* Row of complex_names that holds both members of type, or -1. */
 static int complex_row(hid_t type) {
   if (H5Tget_nmembers(type) != 2 || !is_number(type, 0) || !is_number(type, 1)) return -1;
   for (int i = 0; i < (int)(sizeof complex_names / sizeof *complex_names); i++)
@@ -133,7 +136,8 @@ static int complex_row(hid_t type) {
   return -1;
 }
 
-/* Memory type for a dataset read as complex in *type (caller closes) if it holds compounds. */
+/* Kind of the stored values. *type: memory type of a complex dataset, which the caller closes; else
+ * -1. */
 static stored_kind kind_of(hid_t set, hid_t *type) {
   *type        = -1;
   hid_t stored = H5Dget_type(set);
@@ -157,7 +161,7 @@ static shb_status wrong_kind(const char *label, stored_kind found, const char *w
   SHB_FAIL(SHB_ERR_INPUT, "%s holds %s where %s are wanted", label, name[found], wanted);
 }
 
-/* per: doubles a value (2 for complex). */
+/* Check that all values are finite. per: doubles per value (2 for complex). */
 static shb_status check_finite(const char *label, h5_shape shape, const double *data, size_t per) {
   size_t count = h5_count(shape) * per, bad = 0;
   while (bad < count && isfinite(data[bad])) bad++;
@@ -179,7 +183,7 @@ typedef struct {
   h5_shape shape;
 } source;
 
-/* Open, check the shape, store it back. On success the caller closes set. */
+/* Open a dataset, check its shape and store it back. On success the caller closes from->set. */
 static shb_status open_source(hid_t at, const char *path, h5_shape *expected, source *from) {
   SHB_TRY(open_set(at, path, &from->set));
   h5_label(at, path, from->label);
@@ -258,7 +262,8 @@ shb_status h5_read_complex(hid_t at, const char *path, h5_shape *expected, doubl
   return status;
 }
 
-/* HDF5 would cut 1.5 to 1 and 2^40 to INT_MAX silently; doubles hold every int exactly. */
+/* Read through double, which holds every int exactly: HDF5 would convert 1.5 to 1 and 2^40 to
+ * INT_MAX. */
 shb_status h5_read_int(hid_t at, const char *path, h5_shape *expected, int **data) {
   *data        = NULL;
   double *real = NULL;
@@ -288,7 +293,7 @@ static void free_strings(int n, char **text) {
   free(text);
 }
 
-/* Split n cells of size bytes each into strings; NULL when out of memory. */
+/* Split n cells of size bytes each into strings; NULL if out of memory. */
 static char **split_fixed(const char *raw, int n, size_t size) {
   char **text = calloc(n ? (size_t)n : 1, sizeof *text);
   for (int i = 0; text && i < n; i++)
@@ -309,7 +314,8 @@ static char **split_variable(char *const *raw, int n) {
   return text;
 }
 
-/* Text of either kind; the character set of memory must be the file's (HDF5 does not convert). */
+/* Read text of fixed or variable length. HDF5 does not convert character sets: memory has the
+ * file's. */
 static shb_status read_text(const source *from, hid_t stored, int n, char ***text) {
   bool  variable = H5Tis_variable_str(stored) > 0;
   hid_t type     = variable ? h5_text_type() : H5Tcopy(H5T_C_S1);
@@ -338,7 +344,8 @@ shb_status h5_read_strings(hid_t at, const char *path, int *n, char ***text) {
   source   from;
   h5_shape shape;
   SHB_TRY(h5_shape_of(at, path, &shape));
-  h5_shape wanted = shape.rank == 0 ? (h5_shape){0} : H5_SHAPE(0); /* one string may be a scalar */
+  /* a single string may be a scalar */
+  h5_shape wanted = shape.rank == 0 ? (h5_shape){0} : H5_SHAPE(0);
   SHB_TRY(open_source(at, path, &wanted, &from));
   hid_t       type, stored = H5Dget_type(from.set);
   stored_kind kind = kind_of(from.set, &type);

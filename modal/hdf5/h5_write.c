@@ -4,7 +4,8 @@
 
 #include "modal/hdf5/h5_internal.h"
 
-/* Contiguous, no time stamps (equal contents give equal bytes), groups in between created. */
+/* Contiguous layout. No time stamps: equal contents give equal bytes. Groups in between are
+ * created. */
 static shb_status create_dataset(hid_t at, const char *path, hid_t type, hid_t space, hid_t *set) {
   shb_status status = SHB_OK;
   hid_t      links = H5Pcreate(H5P_LINK_CREATE), layout = H5Pcreate(H5P_DATASET_CREATE);

@@ -10,39 +10,39 @@
 
 enum { SAMPLES = 100 };
 
-static const double TWO_PI = 6.28318530717958647692, margin = 1.2;
+static const double TWO_PI = 2 * M_PI, BAND_MARGIN = 1.2;
 
 typedef struct {
   const modal_model *model;
-  int                n;             /* contact dofs */
-  double             band;          /* Hz */
-  double             most[SAMPLES]; /* greatest diagonal receptance, m/N */
-} search;
+  int                n;              /* contact dofs */
+  double             band;           /* Hz */
+  double             scale[SAMPLES]; /* largest diagonal receptance, m/N */
+} selection;
 
-static double omega_at(const search *s, int sample) {
+static double omega_at(const selection *s, int sample) {
   return TWO_PI * s->band * (sample + 1) / SAMPLES;
 }
 
-/* The receptance that errors are relative to, from all modes there are. */
-static shb_status find_scale(search *s) {
+/* Largest diagonal receptance of the full model, to which errors are relative. */
+static shb_status find_scales(selection *s) {
   const size_t    n     = (size_t)s->n;
   double complex *value = malloc(n * n * sizeof *value);
   SHB_CHECK(value, SHB_ERR_IO, "out of memory for the receptance");
   for (int f = 0; f < SAMPLES; f++) {
     modal_receptance(s->model, omega_at(s, f), value);
-    s->most[f] = 0;
-    for (size_t c = 0; c < n; c++) s->most[f] = fmax(s->most[f], cabs(value[c * (n + 1)]));
+    s->scale[f] = 0;
+    for (size_t c = 0; c < n; c++) s->scale[f] = fmax(s->scale[f], cabs(value[c * (n + 1)]));
   }
   free(value);
   return SHB_OK;
 }
 
 /* Relative error of the model with fewer modes. */
-static double error_of(const search *s, const modal_model *fewer) {
+static double error_of(const selection *s, const modal_model *fewer) {
   double worst = 0;
   for (int f = 0; f < SAMPLES; f++)
-    for (int c = 0; c < s->n && s->most[f] > 0; c++)
-      worst = fmax(worst, modal_series_error(fewer, omega_at(s, f), c) / s->most[f]);
+    for (int c = 0; c < s->n && s->scale[f] > 0; c++)
+      worst = fmax(worst, modal_series_error(fewer, omega_at(s, f), c) / s->scale[f]);
   return worst;
 }
 
@@ -51,7 +51,7 @@ static double *copy_of(const double *data, size_t n) {
   return copy ? memcpy(copy, data, n * sizeof *copy) : NULL;
 }
 
-/* What modes can be left out of: the contact's part of the model. */
+/* Copy the contact part of the model, the part that the selection reduces. */
 static shb_status copy_contact(const modal_model *model, modal_model *copy) {
   const size_t side = 3 * (size_t)model->n_pairs, m = (size_t)model->n_modes;
   const size_t n = side * (model->has_left ? 2 : 1), r = (size_t)model->n_residual;
@@ -77,29 +77,31 @@ static shb_status copy_contact(const modal_model *model, modal_model *copy) {
   return SHB_OK;
 }
 
-static shb_status count(search *s, double tolerance, modal_model *left, int *modes, double *error) {
+static shb_status remove_modes(selection *s, double tolerance, modal_model *reduced, int *modes,
+                               double *error) {
   *modes = 0;
-  *error = error_of(s, left);
-  if (*error > tolerance || left->frequency[left->n_modes - 1] < margin * s->band) return SHB_OK;
-  for (*modes = left->n_modes; *modes > 1; *modes = left->n_modes) {
-    if (left->frequency[*modes - 1] <= margin * s->band) return SHB_OK;
-    SHB_TRY(modal_model_keep(left, *modes - 1, true));
-    double next = error_of(s, left);
+  *error = error_of(s, reduced);
+  if (*error > tolerance || reduced->frequency[reduced->n_modes - 1] < BAND_MARGIN * s->band)
+    return SHB_OK;
+  for (*modes = reduced->n_modes; *modes > 1; *modes = reduced->n_modes) {
+    if (reduced->frequency[*modes - 1] <= BAND_MARGIN * s->band) return SHB_OK;
+    SHB_TRY(modal_model_reduce(reduced, *modes - 1, true));
+    double next = error_of(s, reduced);
     if (next > tolerance) return SHB_OK;
     *error = next;
   }
   return SHB_OK;
 }
 
-shb_status modal_enough(const modal_model *model, double band, double tolerance, int *modes,
-                        double *error) {
-  search s = {.model = model, .n = 3 * model->n_pairs * (model->has_left ? 2 : 1), .band = band};
-  modal_model left;
+shb_status modal_select_modes(const modal_model *model, double band, double tolerance, int *modes,
+                              double *error) {
+  selection   s = {.model = model, .n = modal_model_contact_dofs(model), .band = band};
+  modal_model reduced;
   SHB_CHECK(modal_series_has_fourth(model) && model->contact_tail, SHB_ERR_INPUT,
             "the modal model does not hold what estimates its error");
-  shb_status status = copy_contact(model, &left);
-  if (status == SHB_OK) status = find_scale(&s);
-  if (status == SHB_OK) status = count(&s, tolerance, &left, modes, error);
-  modal_model_free(&left);
+  shb_status status = copy_contact(model, &reduced);
+  if (status == SHB_OK) status = find_scales(&s);
+  if (status == SHB_OK) status = remove_modes(&s, tolerance, &reduced, modes, error);
+  modal_model_free(&reduced);
   return status;
 }

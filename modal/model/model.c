@@ -5,7 +5,7 @@
 #include <string.h>
 
 static const char model_format[] = "shroudhb modal model";
-/* 2: with more than one speed (modal/model/speeds.h); the model beside them is read as ever. */
+/* Version 2 adds several speeds (modal/model/speeds.h); the model itself is as in version 1. */
 enum {
   MODEL_VERSION = 1,
   MODEL_NEWEST  = 2,
@@ -14,14 +14,14 @@ enum {
   MAX_HARMONICS = 10000
 };
 
-static int n_contact(const modal_model *model) {
+int modal_model_contact_dofs(const modal_model *model) {
   return 3 * model->n_pairs * (model->has_left ? 2 : 1);
 }
 
 /* ---------------------------------------------------------------- writing */
 
-/* A dataset as the table below describes it. A dimension is one of the sizes named by its letter:
- * m modes, p pairs, 2, 3, c contact dofs, k load harmonics, q probes, Q probe dofs (3 q), r residual modes. */
+/* A dataset of the table below. Each letter of dims names one dimension: m modes, p pairs, 2, 3, c
+ * contact dofs, k load harmonics, q probes, Q probe dofs (3 q), r residual modes. */
 typedef struct {
   const char *path, *dims, *units, *long_name;
   bool        is_complex;
@@ -41,7 +41,7 @@ static hsize_t size_of(const modal_model *model, char letter) {
     case 'r':
       return (hsize_t)model->n_residual;
     case 'c':
-      return (hsize_t)n_contact(model);
+      return (hsize_t)modal_model_contact_dofs(model);
     case 'k':
       return (hsize_t)model->n_load + 1;
     case 'q':
@@ -51,7 +51,7 @@ static hsize_t size_of(const modal_model *model, char letter) {
   }
 }
 
-/* The dataset that labels a dimension, if any does; the frequencies label the modes. */
+/* Dimension scale of a dimension, if there is one; the frequencies label the modes. */
 static const char *scale_of(char letter) {
   switch (letter) {
     case '2':
@@ -112,7 +112,7 @@ static shb_status write_entry(hid_t at, const modal_model *model, const entry *e
   return SHB_OK;
 }
 
-/* One interface needs no name. */
+/* A single interface has no name in the file. */
 static shb_status write_interfaces(hid_t at, const modal_model *model) {
   if (model->n_interfaces < 2) return SHB_OK;
   SHB_TRY(h5_write_strings(at, "contact/interface_name", model->n_interfaces,
@@ -129,7 +129,7 @@ shb_status modal_model_write_at(hid_t at, const modal_model *model) {
        model->frequency},
       {"modes/damping_ratio", "m", "-", "modal damping ratio", false, model->damping_ratio},
       {"modes/residual", "m", "-", "relative residual of the eigenpair", false,
-       model->mode_residual},
+       model->eigen_residual},
       {"contact/right/shape", "p3m", "kg^-1/2", "mass-normalised modes at the right contact", false,
        model->right},
       {"contact/left/shape", "p3m", "kg^-1/2", "mass-normalised modes at the left contact", false,
@@ -222,6 +222,16 @@ static shb_status check_modes(const char *path, const modal_model *model) {
   return SHB_OK;
 }
 
+/* Read a dataset if the file holds it. */
+static shb_status read_optional(hid_t at, const char *dataset, h5_shape shape, double **data) {
+  return h5_exists(at, dataset) ? h5_read_double(at, dataset, &shape, data) : SHB_OK;
+}
+
+static shb_status read_optional_complex(hid_t at, const char *dataset, h5_shape shape,
+                                        double complex **data) {
+  return h5_exists(at, dataset) ? h5_read_complex(at, dataset, &shape, data) : SHB_OK;
+}
+
 static shb_status read_modes(hid_t at, const char *path, modal_model *model) {
   h5_shape shape = H5_SHAPE(0);
   SHB_TRY(h5_read_double(at, "modes/frequency", &shape, &model->frequency));
@@ -230,12 +240,11 @@ static shb_status read_modes(hid_t at, const char *path, modal_model *model) {
             (unsigned long long)shape.dim[0], MAX_MODES);
   model->n_modes = (int)shape.dim[0];
   SHB_TRY(h5_read_double(at, "modes/damping_ratio", &shape, &model->damping_ratio));
-  if (h5_exists(at, "modes/residual"))
-    SHB_TRY(h5_read_double(at, "modes/residual", &shape, &model->mode_residual));
+  SHB_TRY(read_optional(at, "modes/residual", shape, &model->eigen_residual));
   return check_modes(path, model);
 }
 
-/* Reciprocity: the part above the diagonal must be the part below, to 1e-6 of the largest. */
+/* Reciprocity: the matrix must be symmetric to 1e-6 of its largest value. */
 static shb_status check_symmetric(const char *path, const char *dataset, const double *matrix,
                                   int n) {
   double largest = 0, worst = 0;
@@ -277,11 +286,12 @@ static shb_status read_tail(hid_t at, const char *path, const char *dataset, int
   return SHB_OK;
 }
 
-/* What the modes leave out is a sum of phi^2/omega^2 over more modes: never negative, but for rounding and other programs' rules
- * of integration. Compared with what the modes have. */
+/* The residual flexibility is a sum of phi^2/omega^2: its diagonal is not negative, but for
+ * rounding and other programs' integration rules. The margin is relative to the flexibility of the
+ * modes. */
 static shb_status check_flexibility(const char *path, const modal_model *model) {
   static const double allowed = 1e-3;
-  const int           m = model->n_modes, n = n_contact(model), right = 3 * model->n_pairs;
+  const int m = model->n_modes, n = modal_model_contact_dofs(model), right = 3 * model->n_pairs;
   for (int i = 0; model->residual_flexibility && i < n; i++) {
     const double *shape = i < right ? model->right + (size_t)i * (size_t)m
                                     : model->left + (size_t)(i - right) * (size_t)m;
@@ -320,22 +330,20 @@ static shb_status read_contact(hid_t at, const char *path, modal_model *model) {
   model->n_pairs  = (int)shape.dim[0];
   model->has_left = h5_exists(at, "contact/left");
   if (model->has_left) SHB_TRY(h5_read_double(at, "contact/left/shape", &shape, &model->left));
-  const int n = n_contact(model);
+  const int n = modal_model_contact_dofs(model);
   SHB_TRY(
       read_symmetric(at, path, "contact/residual_flexibility", n, &model->residual_flexibility));
   SHB_TRY(read_symmetric(at, path, "contact/residual_inertia", n, &model->residual_inertia));
   SHB_TRY(read_symmetric(at, path, "contact/residual_fourth", n, &model->residual_fourth));
   SHB_TRY(read_tail(at, path, "contact/residual_tail", n, &model->contact_tail));
   h5_shape normals = H5_SHAPE(shape.dim[0], 3), areas = H5_SHAPE(shape.dim[0]);
-  if (h5_exists(at, "contact/normal"))
-    SHB_TRY(h5_read_double(at, "contact/normal", &normals, &model->normal));
-  if (h5_exists(at, "contact/area"))
-    SHB_TRY(h5_read_double(at, "contact/area", &areas, &model->area));
+  SHB_TRY(read_optional(at, "contact/normal", normals, &model->normal));
+  SHB_TRY(read_optional(at, "contact/area", areas, &model->area));
   SHB_TRY(check_flexibility(path, model));
   return check_patches(path, model);
 }
 
-/* Several interfaces: which one each pair belongs to. */
+/* Read which interface each pair belongs to. */
 static shb_status read_interfaces(hid_t at, const char *path, modal_model *model) {
   h5_shape pairs = H5_SHAPE((hsize_t)model->n_pairs);
   if (!h5_exists(at, "contact/interface")) return SHB_OK;
@@ -358,36 +366,27 @@ static shb_status read_load(hid_t at, const char *path, modal_model *model) {
             "mean (k = 0)",
             path, (unsigned long long)shape.dim[0], MAX_HARMONICS);
   model->n_load     = (int)shape.dim[0] - 1;
-  h5_shape residual = H5_SHAPE(shape.dim[0], (hsize_t)n_contact(model));
-  if (h5_exists(at, "load/residual_response"))
-    SHB_TRY(h5_read_complex(at, "load/residual_response", &residual, &model->load_residual));
-  if (h5_exists(at, "load/residual_inertia"))
-    SHB_TRY(h5_read_complex(at, "load/residual_inertia", &residual, &model->load_inertia));
-  if (h5_exists(at, "load/residual_fourth"))
-    SHB_TRY(h5_read_complex(at, "load/residual_fourth", &residual, &model->load_fourth));
+  h5_shape residual = H5_SHAPE(shape.dim[0], (hsize_t)modal_model_contact_dofs(model));
+  SHB_TRY(read_optional_complex(at, "load/residual_response", residual, &model->load_residual));
+  SHB_TRY(read_optional_complex(at, "load/residual_inertia", residual, &model->load_inertia));
+  SHB_TRY(read_optional_complex(at, "load/residual_fourth", residual, &model->load_fourth));
   return read_tail(at, path, "load/residual_tail", model->n_load + 1, &model->load_tail);
 }
 
 static shb_status read_probes(hid_t at, modal_model *model) {
   if (!h5_exists(at, "probe")) return SHB_OK;
   SHB_TRY(h5_read_strings(at, "probe/name", &model->n_probes, &model->probe_name));
-  const hsize_t q = (hsize_t)model->n_probes, c = (hsize_t)n_contact(model);
+  const hsize_t q = (hsize_t)model->n_probes, c = (hsize_t)modal_model_contact_dofs(model);
   if (q == 0) return SHB_OK;
   h5_shape shape = H5_SHAPE(q, 3, (hsize_t)model->n_modes);
   SHB_TRY(h5_read_double(at, "probe/shape", &shape, &model->probe));
   h5_shape contact = H5_SHAPE(3 * q, c), load = H5_SHAPE((hsize_t)model->n_load + 1, 3 * q);
-  if (h5_exists(at, "probe/contact_residual"))
-    SHB_TRY(h5_read_double(at, "probe/contact_residual", &contact, &model->probe_contact_residual));
-  if (h5_exists(at, "probe/load_residual"))
-    SHB_TRY(h5_read_complex(at, "probe/load_residual", &load, &model->probe_load_residual));
-  if (h5_exists(at, "probe/contact_inertia"))
-    SHB_TRY(h5_read_double(at, "probe/contact_inertia", &contact, &model->probe_contact_inertia));
-  if (h5_exists(at, "probe/load_inertia"))
-    SHB_TRY(h5_read_complex(at, "probe/load_inertia", &load, &model->probe_load_inertia));
-  if (h5_exists(at, "probe/contact_fourth"))
-    SHB_TRY(h5_read_double(at, "probe/contact_fourth", &contact, &model->probe_contact_fourth));
-  if (h5_exists(at, "probe/load_fourth"))
-    SHB_TRY(h5_read_complex(at, "probe/load_fourth", &load, &model->probe_load_fourth));
+  SHB_TRY(read_optional(at, "probe/contact_residual", contact, &model->probe_contact_residual));
+  SHB_TRY(read_optional_complex(at, "probe/load_residual", load, &model->probe_load_residual));
+  SHB_TRY(read_optional(at, "probe/contact_inertia", contact, &model->probe_contact_inertia));
+  SHB_TRY(read_optional_complex(at, "probe/load_inertia", load, &model->probe_load_inertia));
+  SHB_TRY(read_optional(at, "probe/contact_fourth", contact, &model->probe_contact_fourth));
+  SHB_TRY(read_optional_complex(at, "probe/load_fourth", load, &model->probe_load_fourth));
   return SHB_OK;
 }
 
@@ -413,14 +412,14 @@ static shb_status check_residual_modes(const char *path, const modal_model *mode
         "ascend",
         path, i, model->residual_frequency[i]);
   const double last = model->frequency[model->n_modes - 1];
-  SHB_CHECK(model->n_residual == 0 || model->residual_frequency[0] >= .999 * last, SHB_ERR_INPUT,
+  SHB_CHECK(model->n_residual == 0 || model->residual_frequency[0] >= 0.999 * last, SHB_ERR_INPUT,
             "%s: /residual_modes/frequency: value 0 is %g Hz, below the last of /modes/frequency, "
             "%g Hz; a mode among those kept belongs to /modes",
             path, model->residual_frequency[0], last);
   return SHB_OK;
 }
 
-/* Load and probes are zero where the file says nothing of them. */
+/* Read the residual modes. Load and probe parts are zero where the file has none. */
 static shb_status read_residual_modes(hid_t at, const char *path, modal_model *model) {
   static const char *const load = "residual_modes/load", *const probe = "residual_modes/probe";
   const size_t K = (size_t)model->n_load + 1, q = 3 * (size_t)model->n_probes;
@@ -431,10 +430,10 @@ static shb_status read_residual_modes(hid_t at, const char *path, modal_model *m
             "%s: /residual_modes holds %llu modes; %d are the most", path,
             (unsigned long long)shape.dim[0], MAX_MODES);
   model->n_residual   = (int)shape.dim[0];
-  h5_shape by_contact = H5_SHAPE((hsize_t)n_contact(model), shape.dim[0]),
+  h5_shape by_contact = H5_SHAPE((hsize_t)modal_model_contact_dofs(model), shape.dim[0]),
            by_load = H5_SHAPE(K, shape.dim[0]), by_probe = H5_SHAPE(q, shape.dim[0]);
   SHB_TRY(h5_read_double(at, "residual_modes/contact", &by_contact, &model->residual_shape));
-  if (h5_exists(at, load)) SHB_TRY(h5_read_complex(at, load, &by_load, &model->residual_force));
+  SHB_TRY(read_optional_complex(at, load, by_load, &model->residual_force));
   if (q && h5_exists(at, probe))
     SHB_TRY(h5_read_double(at, probe, &by_probe, &model->residual_probe));
   if (!model->residual_force)
@@ -503,7 +502,7 @@ void modal_model_free(modal_model *model) {
                   model->probe_load_inertia,
                   model->normal,
                   model->area,
-                  model->mode_residual};
+                  model->eigen_residual};
   for (size_t i = 0; i < sizeof part / sizeof *part; i++) free(part[i]);
   *model = (modal_model){0};
 }

@@ -1,10 +1,13 @@
-/* The modal model of one blade and its file: all that the harmonic balance needs to know of the structure.
+/* Modal model of one blade and its file: the structural data of the harmonic balance. Free of
+ * PETSc.
  *
- * Cylindrical axes (tangential x, axial y, radial z) at contact and probe nodes. Contact dofs are ordered
- * c = (side * n_pairs + pair) * 3 + axis, side 0 right, 1 left; n_contact = 3 n_pairs * (has_left ? 2 : 1).
- * The modes left out answer by residual + omega^2 inertia + omega^4 fourth, on each way from contact and load to contact and probes, and
- * from there on by residual modes (modal/model/residual_series.h).
- * Optional parts are NULL. Free of PETSc. */
+ * Cylindrical axes (tangential x, axial y, radial z) at contact and probe nodes. Contact dofs are
+ * ordered c = (side * n_pairs + pair) * 3 + axis, side 0 right, 1 left. Their number is n_contact =
+ * 3 n_pairs * (has_left ? 2 : 1).
+ *
+ * The modes left out contribute residual + omega^2 inertia + omega^4 fourth to every receptance
+ * from contact and load to contact and probes. Residual modes add the higher orders
+ * (modal/model/residual_series.h). Optional parts are NULL. */
 #ifndef MODAL_MODEL_MODEL_H
 #define MODAL_MODEL_MODEL_H
 
@@ -30,7 +33,8 @@ typedef struct {
   double *residual_shape;     /* [n_contact][r] kg^-1/2 */
   double complex *residual_force; /* [K+1][r] N kg^-1/2 */
   double         *residual_probe; /* [3 q][r] kg^-1/2 */
-  int             tail_order; /* r of what terms and residual modes leave out, a w^2r + b w^(2r+2) + .. (modal/model/residual_series.h) */
+  /* Order r of the tail a w^2r + b w^(2r+2) + ... that terms and residual modes leave out. */
+  int             tail_order;
   double         *contact_tail;  /* [n_contact][2] a, b of a contact dof with itself, or NULL */
   double         *load_tail;     /* [K+1][2] of a load harmonic, or NULL */
   double complex *modal_force;   /* [K+1][m] N kg^-1/2 */
@@ -45,12 +49,15 @@ typedef struct {
   double complex *probe_load_inertia;     /* [K+1][3 q] m s2, or NULL */
   double         *probe_contact_fourth;   /* [3 q][n_contact] m s4/N, or NULL */
   double complex *probe_load_fourth;      /* [K+1][3 q] m s4, or NULL */
-  double         *normal;        /* [pair][3] v axis in the pair's cylindrical axes, or NULL */
-  double         *area;          /* [pair] m2, or NULL */
-  double         *mode_residual; /* [m] relative eigen residual, or NULL */
+  double         *normal;         /* [pair][3] v axis in the pair's cylindrical axes, or NULL */
+  double         *area;           /* [pair] m2, or NULL */
+  double         *eigen_residual; /* [m] relative eigen residual, or NULL */
 } modal_model;
 
-/* Write the datasets of docs/user/files.md into an open file, with attributes format and
+/* Number of contact dofs, 3 n_pairs for each side. */
+int modal_model_contact_dofs(const modal_model *model);
+
+/* Write the datasets of docs/user/files.md into an open file, with the attributes format and
  * provenance. */
 shb_status modal_model_write(hid_t file, const modal_model *model,
                              const shb_provenance *provenance);
@@ -58,11 +65,13 @@ shb_status modal_model_write(hid_t file, const modal_model *model,
 /* The same datasets in a group of an open file, without attributes. */
 shb_status modal_model_write_at(hid_t at, const modal_model *model);
 
-/* Read them from a group; path names it in messages. model: zeroed before, to be freed in any case. */
+/* Read the datasets from a group; path names it in messages. model is zeroed before the call and
+ * freed by the caller in any case. */
 shb_status modal_model_read_at(hid_t at, const char *path, modal_model *model);
 
-/* Read and check a modal file, whoever wrote it. Errors: SHB_ERR_IO missing / not HDF5 / truncated; SHB_ERR_INPUT
- * foreign format, missing dataset, wrong shape, non-finite, frequency <= 0 or descending, damping outside [0, 1). */
+/* Read and check a modal file, whatever program wrote it. Errors: SHB_ERR_IO missing, not HDF5, or
+ * truncated; SHB_ERR_INPUT foreign format, missing dataset, wrong shape, value not finite,
+ * frequency not positive or descending, damping outside [0, 1). */
 shb_status modal_model_read(const char *path, modal_model *model);
 
 void modal_model_free(modal_model *model);

@@ -15,13 +15,13 @@ static double complex modal_sum(const modal_model *model, double omega, const do
                                 const double *l) {
   double complex sum = 0;
   for (int i = 0; i < model->n_modes; i++) {
-    double w = 6.28318530717958647692 * model->frequency[i];
+    double w = 2 * M_PI * model->frequency[i];
     sum += p[i] * l[i] / (w * w - omega * omega + 2 * I * model->damping_ratio[i] * w * omega);
   }
   return sum;
 }
 
-/* sum psi_p psi_l times the weight of each residual mode */
+/* sum_i psi_ip psi_il times the weight of residual mode i */
 static double residual_sum(const modal_model *model, const modal_series *series, int p, int l) {
   const size_t r   = (size_t)model->n_residual;
   double       sum = 0, unused;
@@ -32,7 +32,7 @@ static double residual_sum(const modal_model *model, const modal_series *series,
 }
 
 void modal_receptance(const modal_model *model, double omega, double complex *receptance) {
-  const int          n      = 3 * model->n_pairs * (model->has_left ? 2 : 1);
+  const int          n      = modal_model_contact_dofs(model);
   const modal_series series = modal_series_at(model, omega);
   for (int p = 0; p < n; p++)
     for (int l = 0; l <= p; l++) {
@@ -48,7 +48,7 @@ void modal_receptance(const modal_model *model, double omega, double complex *re
 
 double modal_receptance_error(const modal_model *model, double omega,
                               const double complex *receptance) {
-  const int n    = 3 * model->n_pairs * (model->has_left ? 2 : 1);
+  const int n    = modal_model_contact_dofs(model);
   double    most = 0, error = 0;
   for (int p = 0; p < n; p++) {
     double here = modal_series_error(model, omega, p);

@@ -1,4 +1,4 @@
-/* A modal model with fewer modes: what a coarser modal basis would have given. */
+/* Reduction of a modal model to fewer modes. */
 #ifndef MODAL_MODEL_REDUCE_H
 #define MODAL_MODEL_REDUCE_H
 
@@ -6,16 +6,19 @@
 
 #include "modal/model/model.h"
 
-/* Keep the lowest modes only, in place.
+/* Keep the lowest modes, in place.
  *
  *   modes      1 to model->n_modes
- *   residuals  true: the modes left out answer by the residual terms (R += sum phi phi^T/w^2, R2 += sum phi phi^T/w^4, and so on, eqs. 34, 35), and, where
- *              R3 is there, as residual modes: as themselves, but for their damping; false: they are gone, and all of that too
- * With all modes and residuals nothing changes.
- * Errors: SHB_ERR_INPUT modes out of range, SHB_ERR_IO no memory (the model is then still to be freed, and no longer of use). */
-shb_status modal_model_keep(modal_model *model, int modes, bool residuals);
+ *   residuals  true: modes left out add to the residual terms (R += sum phi phi^T/w^2,
+ *              R2 += sum phi phi^T/w^4, ..., eqs. 34, 35). Where R3 exists they also become
+ *              residual modes without damping.
+ *              false: modes left out and all residual terms are dropped.
+ *
+ * With all modes and residuals the model is unchanged. Errors: SHB_ERR_INPUT modes out of range;
+ * SHB_ERR_IO no memory (the model can then only be freed). */
+shb_status modal_model_reduce(modal_model *model, int modes, bool residuals);
 
-/* The three terms alone: residual modes go into their tail, which is of third order then. */
+/* Drop the residual modes. Their contribution moves into the tail, which is then of third order. */
 void modal_model_drop_residual_modes(modal_model *model);
 
 #endif

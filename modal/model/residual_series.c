@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-static const double TWO_PI = 6.28318530717958647692, BELOW = .9;
+static const double TWO_PI = 2 * M_PI, BELOW = 0.9;
 
 enum { POWER = 32 };
 
@@ -19,7 +19,7 @@ bool modal_series_has_fourth(const modal_model *model) {
   return model->residual_flexibility && model->residual_inertia && model->residual_fourth;
 }
 
-/* x = s/(1 + (s/c)^n)^(1/n), dx/ds = (1 + (s/c)^n)^(-1/n - 1). */
+/* x = s/(1 + (s/c)^n)^(1/n), dx/ds = (1 + (s/c)^n)^(-1/n - 1), n = POWER. */
 static void limit(double s, double c, modal_series *series) {
   const double r = s / c, least = fmin(r, 1 / r), q = log1p(pow(least, POWER));
   const double all = r > 1 ? POWER * log(r) + q : q; /* ln(1 + r^n) */
@@ -36,7 +36,7 @@ static void set_powers(double x, double dx, double weight[MODAL_TERMS], double s
   slope[2]  = 2 * x * dx;
 }
 
-/* a_1, a_2 and their slopes with c = (2 last)^2. */
+/* a_1, a_2 and their slopes with c = (2 w_m)^2, w_m the last mode kept. */
 static void bounded(double s, double last, modal_series *series) {
   double c = 4 * last * last, x = s / (c + s), dx = c / ((c + s) * (c + s));
   double weight[] = {1, c * (x + x * x), c * c * x * x};
@@ -70,13 +70,13 @@ double modal_series_mode(const modal_model *model, int i, const modal_series *se
   return cube;
 }
 
-/* Moments of one dof: what a tail needs. */
+/* Moments of one dof that its error estimate needs. */
 typedef struct {
   double        term[MODAL_TERMS], tail[2];
   const double *shape; /* [n_residual] */
 } moments;
 
-/* H(s) less what the model takes for it: of the plain series without bound, to the model's weights. */
+/* H(s) by the unbounded series minus H by the bounded weights that the model uses. */
 static double shift(const modal_model *model, double s, const modal_series *taken,
                     const moments *of) {
   modal_series plain = {.x = s, .dx = 1};
@@ -90,8 +90,10 @@ static double shift(const modal_model *model, double s, const modal_series *take
   return sum;
 }
 
-/* What terms and residual modes leave out at s below the first mode left out; INFINITY where that is not known. Moments of modes that nothing
- * holds make s^r a/(1 - s b/a) of one mode in the place of all; what residual modes miss grows with a power of their own first pole. */
+/* Tail at s below the first mode left out; INFINITY where it is unknown.
+ *
+ * Without residual modes the two moments define one equivalent mode: s^r a/(1 - s b/a). With
+ * residual modes the tail grows with a power of their own first pole. */
 static double tail_at(const modal_model *model, double s, const double tail[2]) {
   const double size = pow(s, model->tail_order) * tail[0];
   if (!(tail[0] > 0)) return 0;
@@ -112,7 +114,7 @@ static double error_of(const modal_model *model, double omega, const moments *of
 }
 
 double modal_series_error(const modal_model *model, double omega, int dof) {
-  const size_t n = 3 * (size_t)model->n_pairs * (model->has_left ? 2 : 1), p = (size_t)dof;
+  const size_t n = (size_t)modal_model_contact_dofs(model), p = (size_t)dof;
   if (!modal_series_has_fourth(model) || !model->contact_tail) return -1;
   const size_t  at = p * (n + 1), r = (size_t)model->n_residual;
   const moments of = {

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-const double modal_speeds_alike = .5;
+const double modal_speeds_mac_limit = 0.5;
 
 enum { MAX_SPEEDS = 256 };
 
@@ -96,7 +96,7 @@ static shb_status check_tracks(const char *path, const modal_speeds *s, const in
   return SHB_OK;
 }
 
-/* What must not change with the speed. */
+/* Check that model i has the sizes and the optional parts of the first one. */
 static shb_status check_alike(const char *path, const modal_model *a, const modal_model *b, int i) {
   bool same = a->n_modes == b->n_modes && a->n_pairs == b->n_pairs && a->has_left == b->has_left &&
               a->n_probes == b->n_probes && a->n_load == b->n_load &&
@@ -131,7 +131,7 @@ static shb_status read_one(hid_t file, const char *path, modal_speeds *s, int i)
   return check_alike(path, &s->model[0], &s->model[i], i);
 }
 
-/* Of the first speed with itself: the identity; no mode has more in common with another than with itself. */
+/* The overlap of the first speed with itself is the identity. No overlap exceeds 1. */
 static shb_status check_overlap(const char *path, const modal_speeds *s) {
   const int m = s->n_modes;
   for (int i = 0; i < m * m; i++)

@@ -4,12 +4,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Equation i of the second derivatives: its row [n], and in right[n] what multiplies the values. */
+/* Equation i of the second derivatives: row [n] of the matrix, right [n] multiplies the values. */
 static void equation(const double *x, int n, int i, double *row, double *right) {
   memset(row, 0, (size_t)n * sizeof *row);
   memset(right, 0, (size_t)n * sizeof *right);
   if (i == 0 ||
-      i == n - 1) { /* the third derivative is continuous at the second and the last but one */
+      i == n - 1) { /* not-a-knot: the third derivative is continuous at the second point */
     int    k = i == 0 ? 0 : n - 3;
     double a = x[k + 1] - x[k], b = x[k + 2] - x[k + 1];
     row[k]     = b;
@@ -26,7 +26,7 @@ static void equation(const double *x, int n, int i, double *row, double *right) 
   right[i + 1] = 6 / b;
 }
 
-/* A X = B in place, [n][n] each, by elimination with pivots. */
+/* Solve A X = B in place, [n][n] each, by Gauss-Jordan elimination with partial pivoting. */
 static void solve(int n, double *A, double *B) {
   for (int c = 0; c < n; c++) {
     int best = c;
@@ -48,7 +48,7 @@ static void solve(int n, double *A, double *B) {
     for (int j = 0; j < n; j++) B[i * n + j] /= A[i * n + i];
 }
 
-/* The parabola: twice the divided difference, everywhere. */
+/* The parabola: its second derivative is twice the divided difference. */
 static void parabola(const double *x, double *second) {
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++) {

@@ -45,38 +45,38 @@ shb_status modal_export_shapes(hid_t file, int n_modes, int n_nodes, const doubl
 }
 
 shb_status modal_export_check(hid_t file, const modal_check *check) {
-  SHB_TRY(h5_write_attribute_text(file, "/modes", "checked", check->by));
+  SHB_TRY(h5_write_attribute_text(file, "/modes", "checked", check->method));
   SHB_TRY(h5_write_attribute_int(file, "/modes", "checked_count", check->count));
-  SHB_TRY(h5_write_attribute_double(file, "/modes", "checked_below", modal_check_below(check)));
-  return h5_write_attribute_double(file, "/modes", "missed_chance", check->chance);
+  SHB_TRY(h5_write_attribute_double(file, "/modes", "checked_below", modal_check_frequency(check)));
+  return h5_write_attribute_double(file, "/modes", "missed_chance", check->probability);
 }
 
-shb_status modal_export_contact(hid_t file, const modal_interface *interface) {
-  const size_t pairs = (size_t)interface->n_pairs;
-  const int    n = interface->start[interface->n_pairs], sides = interface->has_left ? 2 : 1;
+shb_status modal_export_contact(hid_t file, const modal_patches *patches) {
+  const size_t pairs = (size_t)patches->n_pairs;
+  const int    n = patches->start[patches->n_pairs], sides = patches->has_left ? 2 : 1;
   int         *nodes       = malloc(3 * (size_t)n * sizeof *nodes + 1);
   double      *coordinates = malloc(6 * pairs * sizeof *coordinates + 1);
   shb_status   status      = SHB_OK;
   if (!nodes || !coordinates)
     status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for the contact patches");
-  for (int p = 0; status == SHB_OK && p < interface->n_pairs; p++)
-    for (int e = interface->start[p]; e < interface->start[p + 1]; e++) {
+  for (int p = 0; status == SHB_OK && p < patches->n_pairs; p++)
+    for (int e = patches->start[p]; e < patches->start[p + 1]; e++) {
       nodes[3 * e]     = p;
-      nodes[3 * e + 1] = interface->node[0][e];
-      nodes[3 * e + 2] = interface->has_left ? interface->node[1][e] : -1;
+      nodes[3 * e + 1] = patches->node[0][e];
+      nodes[3 * e + 2] = patches->has_left ? patches->node[1][e] : -1;
     }
   for (int side = 0; status == SHB_OK && side < sides; side++)
-    memcpy(coordinates + 3 * pairs * (size_t)side, interface->centroid[side],
+    memcpy(coordinates + 3 * pairs * (size_t)side, patches->centroid[side],
            3 * pairs * sizeof *coordinates);
   if (status == SHB_OK)
     status = h5_write_int(file, "contact/nodes", H5_SHAPE((hsize_t)n, 3), nodes, "-",
                           "patch, right node, left node (-1: ground) of each entry");
   if (status == SHB_OK)
-    status = h5_write_double(file, "contact/weight", H5_SHAPE((hsize_t)n), interface->weight, "-",
+    status = h5_write_double(file, "contact/weight", H5_SHAPE((hsize_t)n), patches->weight, "-",
                              "share of each entry in its patch's mean displacement");
-  if (status == SHB_OK && interface->projected)
+  if (status == SHB_OK && patches->projected)
     status = h5_write_double(
-        file, "contact/left_weight", H5_SHAPE((hsize_t)n), interface->left_weight, "-",
+        file, "contact/left_weight", H5_SHAPE((hsize_t)n), patches->left_weight, "-",
         "the same of the left nodes: the faces do not match and are projected");
   if (status == SHB_OK)
     status =
@@ -92,13 +92,13 @@ static int compare(const void *a, const void *b) {
   return (*p > *q) - (*p < *q);
 }
 
-/* Estimated relative error of each sample, where the model tells. */
+/* Write the estimated relative error of each sample, if the model holds it. */
 static shb_status write_error(hid_t file, const modal_model *model, int n, int count,
                               const double *frequency, const double complex *value) {
   double *error = malloc((size_t)count * sizeof *error);
   SHB_CHECK(error, SHB_ERR_IO, "out of memory for the receptance");
   for (int f = 0; f < count; f++)
-    error[f] = modal_receptance_error(model, 6.28318530717958647692 * frequency[f],
+    error[f] = modal_receptance_error(model, 2 * M_PI * frequency[f],
                                       value + (size_t)f * (size_t)n * (size_t)n);
   shb_status status = SHB_OK;
   if (error[0] >= 0)
@@ -118,8 +118,7 @@ static shb_status write_receptance(hid_t file, const modal_model *model, int n, 
   memcpy(frequency + SAMPLES, model->frequency, (size_t)m * sizeof *frequency);
   qsort(frequency, (size_t)count, sizeof *frequency, compare);
   for (int f = 0; f < count; f++)
-    modal_receptance(model, 6.28318530717958647692 * frequency[f],
-                     value + (size_t)f * (size_t)n * (size_t)n);
+    modal_receptance(model, 2 * M_PI * frequency[f], value + (size_t)f * (size_t)n * (size_t)n);
   SHB_TRY(h5_write_double(file, "receptance/frequency", H5_SHAPE((hsize_t)count), frequency, "Hz",
                           "frequency"));
   SHB_TRY(h5_write_complex(file, "receptance/contact",
@@ -132,8 +131,8 @@ static shb_status write_receptance(hid_t file, const modal_model *model, int n, 
 }
 
 shb_status modal_export_receptance(hid_t file, const modal_model *model) {
-  const int    n     = 3 * model->n_pairs * (model->has_left ? 2 : 1);
-  const size_t steps = (size_t)(SAMPLES + model->n_modes), count = steps * (size_t)n * (size_t)n;
+  const int    n     = modal_model_contact_dofs(model);
+  const size_t steps = SAMPLES + (size_t)model->n_modes, count = steps * (size_t)n * (size_t)n;
   if (count * sizeof(double complex) > MAX_BYTES) return SHB_OK;
   double         *frequency = malloc(steps * sizeof *frequency);
   double complex *value     = malloc(count * sizeof *value + 1);

@@ -1,5 +1,5 @@
-/* What our own modal stage adds to the modal file beside the model: mesh, full mode shapes, contact patches, a
- * sampled receptance, and a VTKHDF group that lets ParaView open the file as it is. */
+/* Data that the modal stage adds to the model in the modal file: mesh, full mode shapes, contact
+ * patches, a sampled receptance, and a VTKHDF group for ParaView. */
 #ifndef MODAL_STAGE_MODEL_EXPORT_H
 #define MODAL_STAGE_MODEL_EXPORT_H
 
@@ -8,27 +8,28 @@
 #include "modal/condense/contact_patches.h"
 #include "modal/model/model.h"
 
-/* Writes /mesh/{nodes [n][3], connectivity [e][10 or 20], sets/NAME [f][6 or 8]}. */
+/* Write /mesh/{nodes [n][3], connectivity [e][10 or 20], sets/NAME [f][6 or 8]}, and with several
+ * volumes /mesh/{volume, material [e]}. */
 shb_status modal_export_mesh(hid_t file, const mesh_fe *mesh);
 
-/* Writes /modes/shape [m][n][3], mesh axes, clamped nodes zero. */
+/* Write /modes/shape [m][n][3] in mesh axes; clamped nodes are zero. */
 shb_status modal_export_shapes(hid_t file, int n_modes, int n_nodes, const double *shape);
 
-/* Writes the attributes checked, checked_count, checked_below, missed_chance of /modes. */
+/* Write the attributes checked, checked_count, checked_below and missed_chance of /modes. */
 shb_status modal_export_check(hid_t file, const modal_check *check);
 
-/* Writes /contact/nodes [entry][3] (pair, right node, left node or -1), /contact/weight [entry] and
+/* Write /contact/nodes [entry][3] (pair, right node, left node or -1), /contact/weight [entry] and
  * /contact/coordinates [side][pair][3]. */
-shb_status modal_export_contact(hid_t file, const modal_interface *interface);
+shb_status modal_export_contact(hid_t file, const modal_patches *patches);
 
-/* Writes /receptance/frequency [201 + m] Hz, even steps from 0 to 1.1 times the highest mode and the modes' own, and
- * /receptance/contact [201 + m][n_contact][n_contact]; nothing when that would exceed 64 MB. */
+/* Write /receptance/frequency [201 + m] Hz: even steps from 0 to 1.1 times the highest mode, and
+ * the modes' own. Write /receptance/contact [201 + m][n_contact][n_contact], and error [201 + m].
+ * Nothing is written above 64 MB. */
 shb_status modal_export_receptance(hid_t file, const modal_model *model);
 
-/* Writes /VTKHDF, an UnstructuredGrid of quadratic cells whose points are a link to /mesh/nodes and whose point
- * data mode_001, ... are views of /modes/shape, which must be there; static_displacement and static_von_mises are links to
- * /static where it is.
- * Source: VTKHDF file format, version 1.0. */
+/* Write /VTKHDF, an UnstructuredGrid of quadratic cells. Its points link to /mesh/nodes. Point data
+ * mode_001, ... are views of /modes/shape, which must exist. static_displacement and
+ * static_von_mises link to /static where that exists. Source: VTKHDF file format, version 1.0. */
 shb_status modal_export_vtk(hid_t file, const mesh_fe *mesh, int n_modes);
 
 #endif

@@ -11,7 +11,7 @@ static int ascending(const void *a, const void *b) {
   return (p > q) - (p < q);
 }
 
-/* C[i][j] = phi_i^T M psi_j, phi of the speed before. */
+/* C[i][j] = phi_i^T M psi_j, phi: shapes of another speed. */
 static PetscErrorCode project(Mat before, const modal_eigen *eigen, double *C) {
   Vec phi, m_psi;
   PetscFunctionBeginUser;
@@ -27,7 +27,7 @@ static PetscErrorCode project(Mat before, const modal_eigen *eigen, double *C) {
   PetscFunctionReturn(0);
 }
 
-/* Pairs of greatest |C|, each row and column once: next[i] is the column of row i. */
+/* Match rows and columns by decreasing |C|, each once. next[i]: column of row i. */
 static void match(int m, const double *C, int *next) {
   for (int i = 0; i < m; i++) next[i] = -1;
   for (int round = 0; round < m; round++) {
@@ -43,12 +43,12 @@ static void match(int m, const double *C, int *next) {
   }
 }
 
-static void flip(double *value, int rows, int m, int mode) {
+static void negate(double *value, int rows, int m, int mode) {
   for (int r = 0; value && r < rows; r++) value[(size_t)r * (size_t)m + (size_t)mode] *= -1;
 }
 
-/* Turn the sign of a mode round, wherever it is kept. */
-static PetscErrorCode turn(modal_result *r, int mode) {
+/* Change the sign of a mode in all its arrays. */
+static PetscErrorCode change_sign(modal_result *r, int mode) {
   modal_model *model = &r->model;
   const int    m     = model->n_modes;
   Mat          all[] = {r->eigen.phi, r->eigen.m_phi};
@@ -59,16 +59,16 @@ static PetscErrorCode turn(modal_result *r, int mode) {
     PetscCall(VecScale(column, -1));
     PetscCall(MatDenseRestoreColumnVec(all[k], mode, &column));
   }
-  flip(model->right, 3 * model->n_pairs, m, mode);
-  flip(model->left, 3 * model->n_pairs, m, mode);
-  flip(model->probe, 3 * model->n_probes, m, mode);
+  negate(model->right, 3 * model->n_pairs, m, mode);
+  negate(model->left, 3 * model->n_pairs, m, mode);
+  negate(model->probe, 3 * model->n_probes, m, mode);
   for (int k = 0; k <= model->n_load; k++) model->modal_force[k * m + mode] *= -1;
   for (int d = 0; d < FEM_RIGID; d++) r->participation.gamma[FEM_RIGID * mode + d] *= -1;
   PetscFunctionReturn(0);
 }
 
-/* first: mode shapes of the first speed, NULL there: the identity. */
-static PetscErrorCode compare(Mat first, int s, const modal_result *r, modal_speeds *out) {
+/* Overlap of the modes with those of the first speed; first is NULL at the first speed itself. */
+static PetscErrorCode store_overlap(Mat first, int s, const modal_result *r, modal_speeds *out) {
   const size_t m       = (size_t)out->n_modes;
   double      *overlap = out->overlap + (size_t)s * m * m;
   PetscFunctionBeginUser;
@@ -77,7 +77,7 @@ static PetscErrorCode compare(Mat first, int s, const modal_result *r, modal_spe
   PetscFunctionReturn(0);
 }
 
-/* Continue the tracks to speed s. before: mode shapes of speed s - 1; NULL at the first. */
+/* Continue the tracks to speed s. before: mode shapes of speed s - 1; NULL at the first speed. */
 static shb_status track(Mat before, int s, modal_result *r, modal_speeds *out) {
   const int m   = out->n_modes;
   int      *now = out->mode + (size_t)s * (size_t)m;
@@ -97,25 +97,25 @@ static shb_status track(Mat before, int s, modal_result *r, modal_speeds *out) {
   PetscErrorCode code = project(before, &r->eigen, C);
   if (code == 0) match(m, C, next);
   for (int t = 0; code == 0 && t < m; t++) {
-    int    i = now[t - m], j = next[i]; /* of the row before, of this one */
+    int    i = now[t - m], j = next[i]; /* track's mode at the speed before, at this one */
     double c = C[i * m + j];
     now[t]   = j;
     mac[t]   = PetscMin(1, c * c);
-    if (c < 0) code = turn(r, j);
+    if (c < 0) code = change_sign(r, j);
   }
   free(C);
   free(next);
   return fem_petsc_status(code);
 }
 
-static PetscErrorCode keep_shapes(const modal_result *r, Mat *before) {
+static PetscErrorCode copy_shapes(const modal_result *r, Mat *before) {
   PetscFunctionBeginUser;
   PetscCall(MatDestroy(before));
   PetscCall(MatDuplicate(r->eigen.phi, MAT_COPY_VALUES, before));
   PetscFunctionReturn(0);
 }
 
-/* The factor, by far the most of it. */
+/* Free the factor, the largest part of a result. */
 static PetscErrorCode drop_factor(modal_result *r) {
   PetscFunctionBeginUser;
   PetscCall(EPSDestroy(&r->eigen.eps));
@@ -123,22 +123,22 @@ static PetscErrorCode drop_factor(modal_result *r) {
   PetscFunctionReturn(0);
 }
 
-/* kept: shapes of the first speed and of the one before. */
+/* Solve one speed. shapes: mode shapes of the first speed and of the speed before. */
 static shb_status solve_speed(MPI_Comm comm, const mesh_fe *mesh, const modal_settings *settings,
-                              int s, shb_progress *progress, modal_speeds *out, Mat kept[2],
+                              int s, shb_progress *progress, modal_speeds *out, Mat shapes[2],
                               modal_result *result) {
-  modal_settings here = *settings;
+  modal_settings settings_here = *settings;
   modal_result   now;
-  here.speed = out->speed[s];
-  shb_progress_note(progress, "speed %d of %d: %.6g rad/s", s + 1, out->n, here.speed);
-  shb_status status = modal_solve(comm, mesh, &here, progress, &now);
-  if (status == SHB_OK) status = track(kept[1], s, &now, out);
-  if (status == SHB_OK) status = fem_petsc_status(compare(kept[0], s, &now, out));
-  if (status == SHB_OK && s == 0) status = fem_petsc_status(keep_shapes(&now, &kept[0]));
-  if (status == SHB_OK) status = fem_petsc_status(keep_shapes(&now, &kept[1]));
+  settings_here.speed = out->speed[s];
+  shb_progress_note(progress, "speed %d of %d: %.6g rad/s", s + 1, out->n, settings_here.speed);
+  shb_status status = modal_solve(comm, mesh, &settings_here, progress, &now);
+  if (status == SHB_OK) status = track(shapes[1], s, &now, out);
+  if (status == SHB_OK) status = fem_petsc_status(store_overlap(shapes[0], s, &now, out));
+  if (status == SHB_OK && s == 0) status = fem_petsc_status(copy_shapes(&now, &shapes[0]));
+  if (status == SHB_OK) status = fem_petsc_status(copy_shapes(&now, &shapes[1]));
   if (status == SHB_OK) status = fem_petsc_status(drop_factor(&now));
   if (status == SHB_OK) out->model[s] = now.model; /* moved, or shared with result */
-  if (status == SHB_OK && here.speed == settings->speed) {
+  if (status == SHB_OK && settings_here.speed == settings->speed) {
     *result = now;
     return SHB_OK;
   }
@@ -147,21 +147,21 @@ static shb_status solve_speed(MPI_Comm comm, const mesh_fe *mesh, const modal_se
   return status;
 }
 
-/* modes: auto: what the lowest or the highest speed needs, whichever is more, at every speed. */
+/* With modal.modes: auto, the larger number needed at the lowest and the highest speed. */
 static shb_status choose_modes(MPI_Comm comm, const mesh_fe *mesh, const modal_settings *settings,
                                shb_progress *progress, int *modes) {
-  double end[2] = {INFINITY, 0};
-  *modes        = settings->modes;
+  double range[2] = {INFINITY, 0};
+  *modes          = settings->modes;
   for (int i = 0; i < settings->n_speeds; i++) {
-    end[0] = fmin(end[0], settings->speeds[i]);
-    end[1] = fmax(end[1], settings->speeds[i]);
+    range[0] = fmin(range[0], settings->speeds[i]);
+    range[1] = fmax(range[1], settings->speeds[i]);
   }
   for (int i = 0; i < 2 && settings->modes == 0; i++) {
-    modal_settings here = *settings;
+    modal_settings settings_here = *settings;
     modal_result   result;
-    here.speed = end[i];
-    shb_progress_note(progress, "modes needed at %.6g rad/s", here.speed);
-    shb_status status = modal_solve(comm, mesh, &here, progress, &result);
+    settings_here.speed = range[i];
+    shb_progress_note(progress, "modes needed at %.6g rad/s", settings_here.speed);
+    shb_status status = modal_solve(comm, mesh, &settings_here, progress, &result);
     if (status == SHB_OK) *modes = PetscMax(*modes, result.model.n_modes);
     modal_result_free(&result);
     SHB_TRY(status);
@@ -169,11 +169,11 @@ static shb_status choose_modes(MPI_Comm comm, const mesh_fe *mesh, const modal_s
   return SHB_OK;
 }
 
-shb_status modal_campbell_solve(MPI_Comm comm, const mesh_fe *mesh, const modal_settings *settings,
-                                shb_progress *progress, modal_speeds *speeds,
-                                modal_result *result) {
-  Mat            kept[2] = {NULL, NULL};
-  modal_settings each    = *settings;
+shb_status modal_speed_range_solve(MPI_Comm comm, const mesh_fe *mesh,
+                                   const modal_settings *settings, shb_progress *progress,
+                                   modal_speeds *speeds, modal_result *result) {
+  Mat            shapes[2] = {NULL, NULL};
+  modal_settings each      = *settings;
   memset(result, 0, sizeof *result);
   SHB_TRY(choose_modes(comm, mesh, settings, progress, &each.modes));
   SHB_TRY(modal_speeds_create(settings->n_speeds, each.modes, speeds));
@@ -185,12 +185,12 @@ shb_status modal_campbell_solve(MPI_Comm comm, const mesh_fe *mesh, const modal_
   qsort(speeds->speed, (size_t)speeds->n, sizeof *speeds->speed, ascending);
   shb_status status = SHB_OK;
   for (int s = 0; status == SHB_OK && s < speeds->n; s++)
-    status = solve_speed(comm, mesh, &each, s, progress, speeds, kept, result);
-  for (int i = 0; i < 2; i++) (void)MatDestroy(&kept[i]);
+    status = solve_speed(comm, mesh, &each, s, progress, speeds, shapes, result);
+  for (int i = 0; i < 2; i++) (void)MatDestroy(&shapes[i]);
   return status;
 }
 
-void modal_campbell_free(modal_speeds *speeds, const modal_result *result) {
+void modal_speed_range_free(modal_speeds *speeds, const modal_result *result) {
   for (int s = 0; speeds->model && s < speeds->n; s++)
     if (speeds->model[s].frequency && speeds->model[s].frequency == result->model.frequency)
       memset(&speeds->model[s], 0, sizeof speeds->model[s]);

@@ -1,89 +1,12 @@
-/* The modal stage: from a mesh and a few settings to the modal model and its file. */
+/* The modal stage from file to file: reads a mesh, writes the modal file. */
 #ifndef MODAL_STAGE_STAGE_H
 #define MODAL_STAGE_STAGE_H
 
-#include "fem/body/assemble.h"
-#include "fem/element/load.h"
-#include "fem/element/material.h"
-#include "mesh/base/progress.h"
 #include "mesh/base/publish.h"
-#include "modal/common/damping.h"
-#include "modal/condense/contact_patches.h"
-#include "modal/condense/static_deflection.h"
-#include "modal/eigen/eigen.h"
-#include "modal/eigen/participation.h"
-#include "modal/model/model.h"
+#include "modal/stage/solve.h"
 
-typedef struct {
-  const char *name;
-  double      at[3]; /* m, mesh axes */
-} modal_probe;
-
-/* One of several contact interfaces, by the groups of its faces. */
-typedef struct {
-  const char   *name, *right, *left; /* left: not to ground */
-  int           points;              /* patches, 0: one a node */
-  const double *psi, *phi;           /* rad, to be checked against the faces; NULL: not given */
-} modal_contact;
-
-/* A volume of the mesh and what it is made of. */
-typedef struct {
-  const char  *name;
-  fem_material material;
-} modal_region;
-
-typedef struct {
-  fem_material        material;
-  int                 n_regions; /* 0: material everywhere */
-  const modal_region *region;
-  mesh_axis           axis;
-  int                 blades;
-  double              speed;    /* rad/s; 0: at rest */
-  int                 n_speeds; /* of modal_stage: more than one: all of these, speed among them */
-  const double       *speeds;   /* [n_speeds] rad/s, distinct */
-  double              pressure; /* Pa, steady, on group load, into the deformed surface */
-  int              modes; /* 0: as many as tolerance and band need (modal/model/mode_selection.h) */
-  double           tolerance, band; /* of the contact receptance; Hz */
-  modal_damping    damping;
-  modal_check_kind check;            /* that no mode is missing */
-  bool             full_integration; /* stiffness with FEM_FULL, not FEM_STANDARD */
-  fem_load         load;
-  int              n_loads;  /* 0: load alone */
-  const fem_load  *loads;    /* that act together */
-  int              n_groups; /* further groups of faces that loads name */
-  const char      *group[MESH_MAX_MORE];
-  int              n_probes;
-  const modal_probe *probe;
-  bool               to_ground;
-  int                points;    /* contact patches, 0: one a node */
-  const double      *psi, *phi; /* rad, to be checked against the faces; NULL: not given */
-  int n_contacts; /* 0: one, of contact_right and contact_left, with points, psi, phi */
-  const modal_contact *contact;
-} modal_settings;
-
-/* All that the stage computed. model is the same on every rank. */
-typedef struct {
-  fem_system          system;
-  modal_eigen         eigen;
-  modal_interface     interface; /* all patches, interface by interface */
-  modal_model         model;
-  modal_deflection    deflection; /* static, under the centrifugal load; zero at rest */
-  modal_participation participation;
-} modal_result;
-
-/* Assemble, find the static equilibrium if the blade rotates, solve, condense; K is then the tangent at that
- * equilibrium, in the modes and in every residual. Contact faces, axes and loads are those of the undeformed mesh.
- * Collective; mesh the same on every rank, sets oriented (mesh_fe_orient).
- * Errors: SHB_ERR_INPUT missing groups, wrong angles, too many modes or patches, a part that is not clamped,
- * hexahedra in a column one by one unless full_integration,
- * a speed at which there is no stable equilibrium; SHB_NOT_CONVERGED modes; SHB_ERR_IO no memory; SHB_INTERRUPTED. */
-shb_status modal_solve(MPI_Comm comm, const mesh_fe *mesh, const modal_settings *settings,
-                       shb_progress *progress, modal_result *result);
-
-void modal_result_free(modal_result *result); /* also on a zeroed struct */
-
-/* The whole stage: rank 0 reads mesh_path, all solve, rank 0 publishes out_path (untouched on failure).
- * On failure the text is at least on rank 0. */
+/* Rank 0 reads mesh_path, all ranks solve, rank 0 publishes out_path, untouched on failure. The
+ * error text is on rank 0 at least. Errors: as modal_solve; SHB_ERR_IO files. */
 shb_status modal_stage(MPI_Comm comm, const char *mesh_path, const char *out_path,
                        const modal_settings *settings, const shb_provenance *provenance,
                        shb_progress *progress);

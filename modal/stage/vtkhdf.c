@@ -1,4 +1,5 @@
-/* The VTKHDF group of the modal file: raw HDF5, since the format prescribes types that h5.h does not write. */
+/* VTKHDF group of the modal file, by HDF5 calls: the format prescribes types that h5.h does not
+ * write. */
 #include <hdf5.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -52,7 +53,7 @@ static shb_status write_cells(hid_t group, const mesh_fe *mesh) {
   unsigned char       *type         = malloc(n + 1);
   shb_status           status = connectivity && offset && type ? SHB_OK : failed("Connectivity");
   for (size_t e = 0; status == SHB_OK && e <= n; e++) {
-    offset[e] = (long long)(each * e);
+    offset[e] = (long long)each * (long long)e;
     if (e == n) break;
     type[e] = (unsigned char)topology->vtk;
     for (size_t i = 0; i < each; i++)
@@ -68,7 +69,7 @@ static shb_status write_cells(hid_t group, const mesh_fe *mesh) {
   return status;
 }
 
-/* mode [n][3] as a view of /modes/shape[mode] in the same file: nothing is stored twice. */
+/* View of /modes/shape[mode] in the same file as [n][3], without a copy of the data. */
 static shb_status write_view(hid_t data, int mode, hsize_t n_modes, hsize_t n_nodes) {
   char    name[32];
   hsize_t view[2] = {n_nodes, 3}, source[3] = {n_modes, n_nodes, 3};
@@ -88,7 +89,7 @@ static shb_status write_view(hid_t data, int mode, hsize_t n_modes, hsize_t n_no
 }
 
 static shb_status write_point_data(hid_t file, int n_modes, int n_nodes) {
-  /* views came with HDF5 1.10; files are made for 1.8 otherwise */
+  /* views need the format of HDF5 1.10; files otherwise have that of 1.8 */
   if (H5Fset_libver_bounds(file, H5F_LIBVER_V18, H5F_LIBVER_LATEST) < 0) return failed("PointData");
   hid_t data = H5Gcreate2(file, "VTKHDF/PointData", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
   if (data < 0) return failed("PointData");
@@ -99,7 +100,7 @@ static shb_status write_point_data(hid_t file, int n_modes, int n_nodes) {
   return status;
 }
 
-/* The static deflection and stresses, where the file holds them: links. */
+/* Link the static deflection and stresses, if the file holds them. */
 static shb_status write_static(hid_t file, hid_t group) {
   static const char *const link[][2] = {
       {"/static/displacement", "PointData/static_displacement"},
@@ -124,7 +125,7 @@ static shb_status describe_one(hid_t group, const char *path, const char *units,
   return h5_write_attribute_text(group, path, "long_name", long_name);
 }
 
-/* Points is a link: /mesh/nodes describes itself. */
+/* Describe the datasets. Points is a link: /mesh/nodes has its own attributes. */
 static shb_status describe(hid_t group, int n_modes) {
   static const char *const text[][2] = {
       {"NumberOfPoints", "nodes"},

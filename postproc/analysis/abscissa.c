@@ -6,7 +6,7 @@
 
 #include "mhb/problem/parameter.h"
 
-static const double DECADES = 30; /* highest over lowest, from which on an axis is logarithmic */
+static const double DECADES = 30; /* ratio of the range from which the axis is logarithmic */
 
 static const struct {
   const char *name, *symbol;

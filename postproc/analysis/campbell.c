@@ -11,7 +11,7 @@
 
 enum { WIDTH = 1000, HEIGHT = 600, SAMPLES = 241, COLOURS = 6, MOST_ORDERS = 16, AT_FIRST = 12 };
 
-static const double TWO_PI = 6.28318530717958647692;
+static const double TWO_PI = 2 * M_PI;
 
 const char post_campbell_css[] =
     ".k0{color:#0b6e75}.k1{color:#a3540f}.k2{color:#6a4aa5}.k3{color:#2f6f2f}.k4{color:#a83250}"
@@ -50,13 +50,14 @@ static void curves_free(curves *c) {
   free(c->weight);
 }
 
-/* Hz; NAN between speeds over which the track is lost. */
+/* Frequency of a track at a speed, Hz; NAN where the track is lost between the neighbouring
+ * speeds. */
 static double frequency_at(curves *c, int track, double speed) {
   const modal_speeds *s  = c->speeds;
   double              f2 = 0;
   int                 i  = 1;
   while (i < s->n - 1 && speed > s->speed[i]) i++;
-  if (s->mac[i * s->n_modes + track] < modal_speeds_alike) return NAN;
+  if (s->mac[i * s->n_modes + track] < modal_speeds_mac_limit) return NAN;
   modal_spline_weights(&c->spline, speed * speed, c->weight, NULL);
   for (int k = 0; k < s->n; k++) {
     double f = modal_speeds_frequency(s, k, track);
@@ -72,7 +73,7 @@ static double speed_at(const modal_speeds *s, int sample, int samples) {
 
 /* ---------------------------------------------------------------- crossings */
 
-/* Whether harmonic k of the load moves anything. */
+/* True if harmonic k of the load excites any mode. */
 static bool is_driven(const modal_model *m, int k) {
   for (int i = 0; k <= m->n_load && i < m->n_modes; i++)
     if (cabs(m->modal_force[k * m->n_modes + i]) > 0) return true;
@@ -91,7 +92,7 @@ static int highest_order(const post_campbell *c) {
   return highest;
 }
 
-/* Between lo and hi, where the mode is on either side of the line. */
+/* Crossing of the mode and the order's line between lo and hi, by bisection. */
 static double bisect(curves *c, int track, int order, double lo, double hi) {
   bool above = frequency_at(c, track, lo) > order * lo / TWO_PI;
   for (int i = 0; i < 60; i++) {
@@ -151,7 +152,8 @@ shb_status post_campbell_crossings(const post_campbell *campbell, int *n, post_c
 
 /* ---------------------------------------------------------------- diagram */
 
-/* To the highest excited order's line at the highest speed, and at least the third mode. */
+/* Upper frequency of the diagram: the highest excited order at the highest speed, at least the
+ * third mode. */
 static double highest_frequency(const post_campbell *c) {
   const modal_speeds *s = c->speeds;
   double top = s->speed[s->n - 1], line = highest_order(c) * top / TWO_PI, third = 0, last = 0;
@@ -181,13 +183,13 @@ static void draw_track(curves *c, const post_plot *plot, int track) {
       plot_dot(plot, classes, s->speed[i], modal_speeds_frequency(s, i, track), 2.6);
 }
 
-/* Heights of the names on the right, px. */
+/* Heights of the labels on the right, px. */
 typedef struct {
   int    n;
   double y[64];
 } names;
 
-/* A name beyond the right edge, at its height or just beside; none where there is no room. */
+/* Put a label beyond the right edge, at its height or slightly moved; none without space. */
 static void put_name(const post_plot *plot, names *all, const char *classes, double value,
                      const char *text) {
   static const double shift[] = {0, 7, -7, 14, -14};
@@ -213,7 +215,8 @@ static void name_tracks(const modal_speeds *s, const post_plot *plot, names *all
   }
 }
 
-/* Where the line leaves the area: above, or on the right. last: the name above before it, px. */
+/* Label an order where its line leaves the area, above or on the right. last: the label before
+ * above, px. */
 static void name_order(const post_plot *plot, int order, double slope, double *last, names *all) {
   char   text[24];
   double right = slope * plot->x.hi, x = plot_x(plot, plot->y.hi / slope);
@@ -226,7 +229,7 @@ static void name_order(const post_plot *plot, int order, double slope, double *l
   }
 }
 
-/* Excited orders first: their names have the room. */
+/* Excited orders are drawn first, so that their labels find space. */
 static void draw_orders(const post_campbell *c, const post_plot *plot, names *all) {
   int    highest = highest_order(c), most = highest < 10 ? 10 : highest + 2;
   int    step = 1 + (most - 1) / MOST_ORDERS;
@@ -284,28 +287,10 @@ static const char description[] =
     "where "
     "an excited order meets a mode. The crossings are in the table.";
 
-static void put_style(post_buffer *out) {
-  post_put(
-      out,
-      "<style>text{font:12.5px 'Helvetica Neue',Helvetica,Arial,sans-serif;fill:#56606c}"
-      ".page{fill:#fff}.axis{fill:#1b2530}.heading{font-size:18px;font-weight:600;fill:#1b2530}"
-      ".line{fill:none;stroke:currentColor;stroke-width:1.8;stroke-linejoin:round}"
-      ".dot{fill:currentColor}.grid{stroke:#eceef0}.base{stroke:#8c959f;fill:none}"
-      "@media screen and (prefers-color-scheme:dark){text{fill:#9aa5b1}.page{fill:#12171d}"
-      ".axis,.heading{fill:#e6eaee}.grid{stroke:#20272f}.base{stroke:#6b7682}}"
-      "%s</style>\n<rect class=\"page\" width=\"%d\" height=\"%d\"/>\n",
-      post_campbell_css, WIDTH, HEIGHT);
-}
-
 void post_campbell_picture(const post_campbell *campbell, const char *case_name, post_buffer *out) {
   char title[256];
   snprintf(title, sizeof title, "Campbell diagram: %s", case_name);
-  post_put(out, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
-  plot_svg_open(out, "campbell", WIDTH, HEIGHT, title, description);
-  put_style(out);
-  post_put(out, "<text class=\"heading\" x=\"14\" y=\"32\">");
-  post_put_escaped(out, title);
-  post_put(out, "</text>\n");
+  plot_picture_open(out, "campbell", WIDTH, HEIGHT, title, description, post_campbell_css);
   put_plot(campbell, 76, out);
   plot_svg_close(out);
 }
@@ -359,7 +344,7 @@ void post_campbell_table(const modal_speeds *s, bool all, post_buffer *out) {
   int  step  = all || s->n <= 10 ? 1 : (s->n + 8) / 9;
   char text[POST_NUMBER];
   post_put(out, "  %d speeds; frequencies of the tracked modes, Hz (*: MAC below %g)\n  %6s", s->n,
-           modal_speeds_alike, "rpm");
+           modal_speeds_mac_limit, "rpm");
   for (int i = 0; i < s->n; i += step)
     post_put(out, "%10s ", post_plain(text, s->speed[i] * 60 / TWO_PI, 5));
   post_put(out, "\n");
@@ -367,7 +352,7 @@ void post_campbell_table(const modal_speeds *s, bool all, post_buffer *out) {
     post_put(out, "  %6d", t + 1);
     for (int i = 0; i < s->n; i += step)
       post_put(out, "%10s%s", post_plain(text, modal_speeds_frequency(s, i, t), 6),
-               s->mac[i * s->n_modes + t] < modal_speeds_alike ? "*" : " ");
+               s->mac[i * s->n_modes + t] < modal_speeds_mac_limit ? "*" : " ");
     post_put(out, "\n");
   }
   if (shown < s->n_modes) post_put(out, "  … %d more (--verbose shows them)\n", s->n_modes - shown);

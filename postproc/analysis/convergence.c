@@ -5,24 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const struct {
-  const char *name, *key;
-} ladders[POST_N_LADDERS] = {
-    {"harmonics", "mhb.harmonics"},
-    {"auto", "mhb.harmonics: auto, mhb.tolerance"},
-    {"accuracy", "contact.accuracy"},
-    {"modes", "modal.modes"},
-    {"modes, no residual", "modal.modes without residual flexibility"},
-    {"mesh", "mesh.blade.size"},
-    {"together", "together"},
-};
-
 const char *post_ladder_name(post_ladder ladder) {
-  return ladders[ladder].name;
-}
-
-const char *post_ladder_key(post_ladder ladder) {
-  return ladders[ladder].key;
+  static const char *const name[POST_N_LADDERS] = {
+      "harmonics", "auto", "accuracy", "modes", "modes, no residual", "mesh", "together"};
+  return name[ladder];
 }
 
 post_rung *post_convergence_add(post_convergence *s) {
@@ -192,7 +178,7 @@ static void conclude_ladder(const post_convergence *s, post_ladder ladder, post_
   post_put(out, "\n");
 }
 
-/* Of all that was compared with the finest harmonics and has nothing coarser that is not in its error. */
+/* Fastest rung of the ladders whose error includes every coarser setting. */
 static int cheapest_of_all(const post_convergence *s) {
   static const post_ladder whole[] = {POST_LADDER_HARMONICS, POST_LADDER_AUTO,
                                       POST_LADDER_TOGETHER};
@@ -205,7 +191,7 @@ static int cheapest_of_all(const post_convergence *s) {
   return best;
 }
 
-/* Nothing that is computed with harmonics tells the error of the finest: the points of time integration do. */
+/* Compare the finest harmonics with time integration: no harmonic result can tell their error. */
 static void conclude_integration(const post_convergence *s, post_buffer *out) {
   int finest = post_reference(s, POST_LADDER_HARMONICS);
   if (s->n_points == 0 || finest < 0 || isnan(s->rung[finest].integration)) return;

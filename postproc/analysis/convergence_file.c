@@ -1,4 +1,5 @@
-/* NAME.converge.h5. Numbers that are not known are -1 there: HDF5 files hold finite numbers only. */
+/* NAME.converge.h5. Unknown numbers are written as -1: HDF5 files of ours hold finite numbers
+ * only. */
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>

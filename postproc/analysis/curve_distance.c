@@ -2,12 +2,13 @@
 
 #include <math.h>
 
-double post_apart(const double one[2], const double other[2], double unit) {
+double post_point_distance(const double one[2], const double other[2], double unit) {
   return fmax(fabs(log(one[0] / other[0])), fabs(one[1] - other[1]) / unit);
 }
 
-/* Of the origin from (x, y) + t (dx, dy), t in [0, 1], in the maximum norm. It is convex and piecewise linear in t: least where one
- * part vanishes, where both are equal, or at an end. */
+/* Maximum-norm distance of the origin from the segment (x, y) + t (dx, dy), t in [0, 1]. It is
+ * convex and piecewise linear in t: its minimum is at an end, or where a coordinate vanishes, or
+ * where both have equal magnitude. */
 static double from_segment(double x, double y, double dx, double dy, double *at) {
   double t[6]  = {0, 1, -x / dx, -y / dy, (y - x) / (dx - dy), -(x + y) / (dx + dy)};
   double least = INFINITY;
@@ -21,14 +22,15 @@ static double from_segment(double x, double y, double dx, double dy, double *at)
   return least;
 }
 
-double post_distance(const double point[2], const post_polyline *line, double unit, int *nearest) {
+double post_curve_distance(const double point[2], const post_polyline *line, double unit,
+                           int *nearest) {
   double least = INFINITY, x0 = 0, y0 = 0;
   for (int i = 0; i < line->n; i++) {
     double x = log(line->frequency[i] / point[0]), y = (line->amplitude[i] - point[1]) / unit;
     double at = 1, d = i == 0 ? fmax(fabs(x), fabs(y)) : from_segment(x0, y0, x - x0, y - y0, &at);
     if (d < least) {
       least = d;
-      if (nearest) *nearest = at < .5 ? i - 1 : i;
+      if (nearest) *nearest = at < 0.5 ? i - 1 : i;
     }
     x0 = x;
     y0 = y;
@@ -36,8 +38,8 @@ double post_distance(const double point[2], const post_polyline *line, double un
   return least;
 }
 
-/* Deviation at the middle of [a, b] of the parabola through a, b and c from the chord, per coordinate, by arclength s:
- * (s_b - s_a)^2/4 times the second divided difference. */
+/* Deviation from the chord, at the middle of [a, b], of the parabola through a, b and c. Per
+ * coordinate it is (s_b - s_a)^2/4 times the second divided difference over arclength s. */
 static double bulge(const double a[2], const double b[2], const double c[2]) {
   double ab = hypot(b[0] - a[0], b[1] - a[1]), bc = hypot(c[0] - b[0], c[1] - b[1]), most = 0;
   if (!(ab > 0 && bc > 0)) return 0;
@@ -48,7 +50,7 @@ static double bulge(const double a[2], const double b[2], const double c[2]) {
   return most;
 }
 
-double post_sag(const post_polyline *line, int i, double unit) {
+double post_chord_deviation(const post_polyline *line, int i, double unit) {
   double p[4][2];
   for (int k = 0; k < 4; k++) {
     int j   = i - 1 + k < 0 ? 0 : i - 1 + k >= line->n ? line->n - 1 : i - 1 + k;

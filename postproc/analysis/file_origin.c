@@ -12,7 +12,7 @@ static shb_status read_text(hid_t file, const char *name, char **text) {
   return SHB_OK;
 }
 
-static shb_status read_all(hid_t file, post_source *source) {
+static shb_status read_all(hid_t file, post_origin *source) {
   SHB_TRY(read_text(file, "format", &source->format));
   SHB_TRY(read_text(file, "revision", &source->revision));
   SHB_TRY(read_text(file, "command", &source->command));
@@ -23,25 +23,25 @@ static shb_status read_all(hid_t file, post_source *source) {
   return h5_read_attribute_int(file, "/", "format_version", 0, &source->version);
 }
 
-shb_status post_source_read(hid_t file, post_source *source) {
-  *source           = (post_source){0};
+shb_status post_origin_read(hid_t file, post_origin *source) {
+  *source           = (post_origin){0};
   shb_status status = read_all(file, source);
-  if (status != SHB_OK) post_source_free(source);
+  if (status != SHB_OK) post_origin_free(source);
   return status;
 }
 
-shb_status post_source_open(const char *path, post_source *source) {
+shb_status post_origin_open(const char *path, post_origin *source) {
   hid_t file;
   SHB_TRY(h5_open(path, &file));
-  shb_status status = post_source_read(file, source);
+  shb_status status = post_origin_read(file, source);
   if (H5Fclose(file) < 0 && status == SHB_OK) {
-    post_source_free(source);
+    post_origin_free(source);
     SHB_FAIL(SHB_ERR_IO, "%s: cannot be closed after reading", path);
   }
   return status;
 }
 
-void post_source_free(post_source *source) {
+void post_origin_free(post_origin *source) {
   free(source->format);
   free(source->revision);
   free(source->command);
@@ -49,5 +49,5 @@ void post_source_free(post_source *source) {
   free(source->case_path);
   free(source->case_text);
   free(source->settings);
-  *source = (post_source){0};
+  *source = (post_origin){0};
 }

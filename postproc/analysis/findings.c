@@ -21,39 +21,40 @@ static void put_figure(post_buffer *out, const char *label, const char *value, c
            value, note);
 }
 
-/* "116.06 Hz", "μ = 0.3"; "every μ" where it does not matter. */
-static char *place(const post_study *study, const post_track_point *p, char out[POST_PLACE]) {
+/* "116.06 Hz", "μ = 0.3"; "every μ" if the value is constant. */
+static char *place(const post_analysis *analysis, const post_track_point *p, char out[POST_PLACE]) {
   if (!p->level)
-    return post_abscissa_place(&study->abscissa, p->at, post_at_one_frequency(study) ? 4 : 5, out);
-  snprintf(out, POST_PLACE, "every %s", study->abscissa.symbol);
+    return post_abscissa_place(&analysis->abscissa, p->at, post_at_one_frequency(analysis) ? 4 : 5,
+                               out);
+  snprintf(out, POST_PLACE, "every %s", analysis->abscissa.symbol);
   return out;
 }
 
-/* The largest value is no peak, but where the range ends. */
+/* True if the largest value is at the end of the range and thus no peak. */
 static bool at_end(const post_track_point *p) {
   return p->edge && !p->level;
 }
 
-static void put_peak_figure(const post_study *study, post_buffer *out, const char *label,
+static void put_peak_figure(const post_analysis *analysis, post_buffer *out, const char *label,
                             const post_track_point *p) {
   char a[POST_NUMBER], at[POST_PLACE], note[160];
   if (!(p->amplitude > 0)) return;
-  snprintf(note, sizeof note, "at %s%s", place(study, p, at),
+  snprintf(note, sizeof note, "at %s%s", place(analysis, p, at),
            p->edge && !p->level ? ", the edge of the range" : "");
   put_figure(out, label, post_measure(a, p->amplitude, post_unit_length(p->amplitude), 3), note);
 }
 
-/* The lower of the two limits' peaks; NAN if neither was computed. */
+/* Lower peak of the two linear limits; NAN if neither was computed. */
 static double lower_limit(const post_tracking *t) {
   return fmin(t->open.amplitude, t->stuck.amplitude);
 }
 
-/* Of all nonlinear curves: where the amplitude is largest, or least (valleys) at points where a machine can stay. */
-static post_track_point extreme(const post_study *study, bool valleys) {
+/* Largest amplitude of all nonlinear curves, or (valleys) the least one at stable points. */
+static post_track_point extreme(const post_analysis *analysis, bool valleys) {
   post_track_point best = {NAN, NAN, NAN, -1, -1, false, false, true};
-  for (int b = 0; b < study->response->n_branches; b++) {
-    const mhb_branch *branch = &study->response->branch[b];
-    const post_curve *c      = &study->curve[b];
+  for (int b = 0; b < analysis->response->n_branches; b++) {
+    const mhb_branch *branch = &analysis->response->branch[b];
+    const post_curve *c      = &analysis->curve[b];
     const post_peak  *peak   = valleys ? c->valley : c->peak;
     for (int i = 0; i < (valleys ? c->n_valleys : c->n_peaks); i++) {
       bool better =
@@ -61,7 +62,7 @@ static post_track_point extreme(const post_study *study, bool valleys) {
       if (branch->kind != MHB_BRANCH_NONLINEAR) continue;
       if (valleys && branch->stable[peak[i].point] == 0) continue;
       if (best.branch >= 0 && !better) continue;
-      best = (post_track_point){study->group[c->group].n0,
+      best = (post_track_point){analysis->group[c->group].n0,
                                 peak[i].at,
                                 peak[i].amplitude,
                                 b,
@@ -82,26 +83,26 @@ static void put_gain(double amplitude, const post_tracking *t, post_buffer *out)
                "against the better linear limit");
 }
 
-void post_figures(const post_study *study, post_buffer *out) {
-  const post_tracking *t = &study->tracking;
-  const bool one         = post_at_one_frequency(study); /* there the largest need not be a peak */
+void post_key_figures(const post_analysis *analysis, post_buffer *out) {
+  const post_tracking *t = &analysis->tracking;
+  const bool one = post_at_one_frequency(analysis); /* there the largest need not be a peak */
   post_put(out, "<dl class=\"figures\">\n");
-  put_peak_figure(study, out,
+  put_peak_figure(analysis, out,
                   one || at_end(&t->open) ? "Largest, shrouds open" : "Peak, shrouds open",
                   &t->open);
-  put_peak_figure(study, out,
+  put_peak_figure(analysis, out,
                   one || at_end(&t->stuck) ? "Largest, shrouds stuck" : "Peak, shrouds stuck",
                   &t->stuck);
-  if (study->abscissa.parameter == MHB_IN_N0) {
-    post_track_point lowest = extreme(study, true);
-    put_peak_figure(study, out, "Lowest with friction", &lowest);
+  if (analysis->abscissa.parameter == MHB_IN_N0) {
+    post_track_point lowest = extreme(analysis, true);
+    put_peak_figure(analysis, out, "Lowest with friction", &lowest);
     put_gain(lowest.amplitude, t, out);
   }
   if (t->best >= 0) {
     const post_track_point *best = &t->point[t->best];
     char                    label[160], n0[POST_NUMBER];
     snprintf(label, sizeof label, "Lowest peak, n₀ = %s", preload(n0, best->n0));
-    put_peak_figure(study, out, label, best);
+    put_peak_figure(analysis, out, label, best);
     put_gain(best->amplitude, t, out);
   }
   post_put(out, "</dl>\n");
@@ -119,12 +120,12 @@ static void put_ratio(const char *joint, double ratio, const char *limit, post_b
              ratio <= 1 ? "below" : "above", limit);
 }
 
-static void put_optimum(const post_study *study, post_buffer *out) {
-  const post_tracking *t = &study->tracking;
+static void put_optimum(const post_analysis *analysis, post_buffer *out) {
+  const post_tracking *t = &analysis->tracking;
   char                 n0[POST_NUMBER], a[POST_NUMBER], f[POST_NUMBER], at[POST_PLACE];
   if (t->best < 0) {
-    if (study->abscissa.parameter == MHB_IN_N0 && study->largest > 0) return;
-    post_put(out, study->largest > 0
+    if (analysis->abscissa.parameter == MHB_IN_N0 && analysis->largest > 0) return;
+    post_put(out, analysis->largest > 0
                       ? "<li>No nonlinear curve was computed at one preload: there is no "
                         "peak to compare.</li>\n"
                       : "<li>Nothing moves: every amplitude is zero. Check the "
@@ -135,7 +136,7 @@ static void put_optimum(const post_study *study, post_buffer *out) {
   post_put(out, "<li><b>%s</b> of the %d preloads computed gives the lowest peak, %s at %s",
            preload(n0, best->n0), t->n,
            post_measure(a, best->amplitude, post_unit_length(best->amplitude), 3),
-           place(study, best, at));
+           place(analysis, best, at));
   const char *joint = ": ";
   for (int i = 0; i < 2; i++) {
     double ratio = best->amplitude / (i ? t->stuck : t->open).amplitude;
@@ -157,15 +158,16 @@ static void put_optimum(const post_study *study, post_buffer *out) {
   post_put(out, "</li>\n");
 }
 
-/* Where the amplitude is least and where largest; not for the excitation's level, on which it hangs as it must. */
-static void put_extremes(const post_study *study, post_buffer *out) {
-  const post_tracking *t      = &study->tracking;
-  post_track_point     lowest = extreme(study, true), highest = extreme(study, false);
+/* Least and largest amplitude. Omitted for the excitation level, with which amplitudes rise
+ * trivially. */
+static void put_extremes(const post_analysis *analysis, post_buffer *out) {
+  const post_tracking *t      = &analysis->tracking;
+  post_track_point     lowest = extreme(analysis, true), highest = extreme(analysis, false);
   char                 a[POST_NUMBER], n0[POST_NUMBER], at[POST_PLACE];
-  bool                 named = study->n_ranks > 1;
-  if (!post_at_one_frequency(study) || study->abscissa.parameter == MHB_IN_SCALE) return;
+  bool                 named = analysis->n_ranks > 1;
+  if (!post_at_one_frequency(analysis) || analysis->abscissa.parameter == MHB_IN_SCALE) return;
   if (!(lowest.amplitude > 0) || !(highest.amplitude > 0)) return;
-  post_put(out, "<li>The amplitude is least at <b>%s</b>%s", place(study, &lowest, at),
+  post_put(out, "<li>The amplitude is least at <b>%s</b>%s", place(analysis, &lowest, at),
            lowest.edge && !lowest.level ? ", the edge of the range" : "");
   if (named) post_put(out, " and %s of preload", preload(n0, lowest.n0));
   post_put(out, ", %s", post_measure(a, lowest.amplitude, post_unit_length(lowest.amplitude), 3));
@@ -177,19 +179,19 @@ static void put_extremes(const post_study *study, post_buffer *out) {
     put_ratio(joint, ratio, i ? "stuck" : "open", out);
     joint = ", ";
   }
-  post_put(out, ". It is largest at %s%s", place(study, &highest, at),
+  post_put(out, ". It is largest at %s%s", place(analysis, &highest, at),
            highest.edge && !highest.level ? ", the edge of the range" : "");
   if (named) post_put(out, " and %s", preload(n0, highest.n0));
   post_put(out, ", %s.</li>\n",
            post_measure(a, highest.amplitude, post_unit_length(highest.amplitude), 3));
 }
 
-static void put_shift(const post_study *study, post_buffer *out) {
-  const post_tracking *t = &study->tracking;
-  const post_abscissa *x = &study->abscissa;
+static void put_shift(const post_analysis *analysis, post_buffer *out) {
+  const post_tracking *t = &analysis->tracking;
+  const post_abscissa *x = &analysis->abscissa;
   char                 from[POST_PLACE], to[POST_PLACE], n0[POST_NUMBER], n1[POST_NUMBER];
-  double               limits = post_at_one_frequency(study) ? NAN : t->stuck.at - t->open.at;
-  int                  digits = post_at_one_frequency(study) ? 4 : 5;
+  double               limits = post_at_one_frequency(analysis) ? NAN : t->stuck.at - t->open.at;
+  int                  digits = post_at_one_frequency(analysis) ? 4 : 5;
   int                  first = 0, last = t->n - 1; /* a value at the edge of the range is no peak */
   while (first < t->n && t->point[first].edge) first++;
   while (last > first && t->point[last].edge) last--;
@@ -211,15 +213,16 @@ static void put_shift(const post_study *study, post_buffer *out) {
   }
 }
 
-/* Where a curve turns: at a fold, or at an end of the range beyond which it folds. Walks along it. */
+/* Walk along the turning points of a curve: folds, and ends of the range beyond which the curve
+ * folds. */
 typedef struct {
-  int fold, point, outside; /* the next ones; times it was outside so far */
+  int fold, point, outside; /* next fold and point; number of turns outside the range */
 } walk;
 
-static bool next_turn(const post_study *study, int b, walk *w, double *at) {
-  const mhb_branch *branch = &study->response->branch[b];
-  const post_curve *c      = &study->curve[b];
-  const double     *x      = post_abscissa_values(study->response, branch);
+static bool next_turn(const post_analysis *analysis, int b, walk *w, double *at) {
+  const mhb_branch *branch = &analysis->response->branch[b];
+  const post_curve *c      = &analysis->curve[b];
+  const double     *x      = post_abscissa_values(analysis->response, branch);
   for (;; w->point++) {
     if (w->fold < c->n_folds &&
         (c->fold[w->fold].point <= w->point || w->point >= branch->n_points)) {
@@ -234,27 +237,29 @@ static bool next_turn(const post_study *study, int b, walk *w, double *at) {
   }
 }
 
-/* The next two turns and what lies between them; false if there are no more. *visible: wide enough for a jump to be seen (20 ppm). */
-static bool next_span(const post_study *study, int b, walk *w, double span[2], bool *visible) {
+/* Interval between the next two turns; false if there are no more. *visible: wide enough for a
+ * visible jump (20 ppm). */
+static bool next_span(const post_analysis *analysis, int b, walk *w, double span[2],
+                      bool *visible) {
   double one, two;
-  if (!next_turn(study, b, w, &one)) return false;
-  if (!next_turn(study, b, w, &two)) two = one;
+  if (!next_turn(analysis, b, w, &one)) return false;
+  if (!next_turn(analysis, b, w, &two)) two = one;
   span[0]  = fmin(one, two);
   span[1]  = fmax(one, two);
   *visible = one == two || span[1] - span[0] > 2e-5 * fmax(fabs(span[0]), fabs(span[1]));
   return true;
 }
 
-/* " (103.81 to 103.96, 212.2 to 213.7 Hz)" of a group's curves; returns how many (out NULL: only counts). *outside counts the turns
- * that lie outside the range. */
-static int put_spans(const post_study *study, int g, post_buffer *out, int *outside) {
-  const post_abscissa *x     = &study->abscissa;
+/* Write " (103.81 to 103.96, 212.2 to 213.7 Hz)" for the curves of a group; returns the number (out
+ * NULL: count only). *outside: incremented by the turns outside the range. */
+static int put_spans(const post_analysis *analysis, int g, post_buffer *out, int *outside) {
+  const post_abscissa *x     = &analysis->abscissa;
   int                  spans = 0;
-  for (int b = 0; b < study->response->n_branches; b++) {
+  for (int b = 0; b < analysis->response->n_branches; b++) {
     walk   w = {0};
     double span[2];
     bool   visible;
-    while (study->curve[b].group == g && next_span(study, b, &w, span, &visible)) {
+    while (analysis->curve[b].group == g && next_span(analysis, b, &w, span, &visible)) {
       char from[POST_NUMBER], to[POST_NUMBER];
       if (!visible || ++spans > 4 || !out) continue;
       post_put(out, "%s%s", spans > 1 ? ", " : " (", post_abscissa_number(x, span[0], 6, from));
@@ -267,34 +272,34 @@ static int put_spans(const post_study *study, int g, post_buffer *out, int *outs
   return spans;
 }
 
-static void put_folds(const post_study *study, post_buffer *out) {
+static void put_folds(const post_analysis *analysis, post_buffer *out) {
   int groups = 0, outside = 0, counted = 0;
-  for (int g = 0; g < study->n_groups; g++) {
+  for (int g = 0; g < analysis->n_groups; g++) {
     char name[64];
-    if (put_spans(study, g, NULL, &outside) == 0 || ++groups > 6) continue;
-    post_group_name(&study->group[g], name);
+    if (put_spans(analysis, g, NULL, &outside) == 0 || ++groups > 6) continue;
+    post_group_name(&analysis->group[g], name);
     post_put(out, "%s%s", groups > 1 ? "; " : "<li><b>Jumps.</b> Folds on ", name);
-    put_spans(study, g, out, &counted);
+    put_spans(analysis, g, out, &counted);
   }
   if (groups > 6) post_put(out, "; and %d more", groups - 6);
   if (groups > 0)
     post_put(out,
              ". In between several answers exist at one %s, and a slow sweep jumps from one "
              "to another.%s</li>\n",
-             study->abscissa.symbol,
+             analysis->abscissa.symbol,
              outside ? " Where one of these is an end of the range, the fold lies beyond it." : "");
-  else if (study->tracking.n > 0)
+  else if (analysis->tracking.n > 0)
     post_put(
         out,
         "<li>No curve folds visibly: no jumps on the curves that were followed. Curves that do "
         "not hang together with them are found by <code>mhb.search</code> only.</li>\n");
 }
 
-/* What the multipliers told beyond the folds. */
-static void put_multipliers(const post_study *study, post_buffer *out) {
+/* Instabilities other than folds, from the multipliers. */
+static void put_multipliers(const post_analysis *analysis, post_buffer *out) {
   int judged = 0, total = 0, curves = 0, lost[MHB_N_LOSSES] = {0};
-  for (int b = 0; b < study->response->n_branches; b++) {
-    const mhb_branch *branch = &study->response->branch[b];
+  for (int b = 0; b < analysis->response->n_branches; b++) {
+    const mhb_branch *branch = &analysis->response->branch[b];
     int               before = lost[MHB_LOSS_FLIP] + lost[MHB_LOSS_NEIMARK_SACKER];
     for (int p = 0; branch->kind == MHB_BRANCH_NONLINEAR && p < branch->n_points; p++) {
       total++;
@@ -325,10 +330,10 @@ static void put_multipliers(const post_study *study, post_buffer *out) {
         judged, total);
 }
 
-static void put_stability(const post_study *study, post_buffer *out) {
+static void put_stability(const post_analysis *analysis, post_buffer *out) {
   int unstable = 0, unknown = 0, total = 0;
-  for (int b = 0; b < study->response->n_branches; b++) {
-    const mhb_branch *branch = &study->response->branch[b];
+  for (int b = 0; b < analysis->response->n_branches; b++) {
+    const mhb_branch *branch = &analysis->response->branch[b];
     for (int p = 0; branch->kind == MHB_BRANCH_NONLINEAR && p < branch->n_points; p++) {
       total++;
       unstable += branch->stable[p] == 0;
@@ -344,12 +349,12 @@ static void put_stability(const post_study *study, post_buffer *out) {
     post_put(out,
              "<li>%d of %d points are unstable (dotted): a machine does not stay there.</li>\n",
              unstable, total);
-  put_multipliers(study, out);
+  put_multipliers(analysis, out);
 }
 
-static void put_edges(const post_study *study, post_buffer *out) {
-  const post_tracking *t = &study->tracking;
-  if (post_at_one_frequency(study)) return; /* there the largest value need not be a peak */
+static void put_edges(const post_analysis *analysis, post_buffer *out) {
+  const post_tracking *t = &analysis->tracking;
+  if (post_at_one_frequency(analysis)) return; /* there the largest value need not be a peak */
   int edges = (t->open.edge && t->open.complete) + (t->stuck.edge && t->stuck.complete);
   for (int i = 0; i < t->n; i++) edges += t->point[i].edge && t->point[i].complete;
   if (edges == 0) return;
@@ -360,19 +365,19 @@ static void put_edges(const post_study *study, post_buffer *out) {
            edges, edges > 1 ? "s" : "");
 }
 
-static void put_incomplete(const post_study *study, post_buffer *out) {
-  for (int b = 0; b < study->response->n_branches; b++) {
-    const mhb_branch *branch = &study->response->branch[b];
+static void put_incomplete(const post_analysis *analysis, post_buffer *out) {
+  for (int b = 0; b < analysis->response->n_branches; b++) {
+    const mhb_branch *branch = &analysis->response->branch[b];
     char              name[64], note[64], at[POST_PLACE];
     if (branch->complete) continue;
-    post_group_name(&study->group[study->curve[b].group], name);
-    post_branch_note(study->response, branch, note);
+    post_group_name(&analysis->group[analysis->curve[b].group], name);
+    post_branch_note(analysis->response, branch, note);
     post_put(out, "<li class=\"caution\"><b>Not complete:</b> %s%s (curve %d)", name, note, b);
     if (branch->n_points > 0)
       post_put(out, " stopped at %s after %d points",
                post_abscissa_place(
-                   &study->abscissa,
-                   post_abscissa_values(study->response, branch)[branch->n_points - 1], 6, at),
+                   &analysis->abscissa,
+                   post_abscissa_values(analysis->response, branch)[branch->n_points - 1], 6, at),
                branch->n_points);
     post_put(out, ": ");
     post_put_escaped(out, branch->reason && *branch->reason ? branch->reason : "no reason given");
@@ -380,24 +385,24 @@ static void put_incomplete(const post_study *study, post_buffer *out) {
   }
 }
 
-/* Curves that a sweep from the end of the range does not come to. */
-static void put_further(const post_study *study, post_buffer *out) {
+/* Curves that a sweep from the end of the range does not reach. */
+static void put_other_curves(const post_analysis *analysis, post_buffer *out) {
   int n = 0;
-  for (int b = 0; b < study->response->n_branches; b++) {
-    const mhb_branch *branch = &study->response->branch[b];
+  for (int b = 0; b < analysis->response->n_branches; b++) {
+    const mhb_branch *branch = &analysis->response->branch[b];
     char              name[64], note[64], from[POST_NUMBER], to[POST_NUMBER];
     if (branch->origin == MHB_FROM_END || branch->n_points == 0 || ++n > 6) continue;
-    const double *x  = post_abscissa_values(study->response, branch);
+    const double *x  = post_abscissa_values(analysis->response, branch);
     double        lo = INFINITY, hi = -INFINITY;
     for (int p = 0; p < branch->n_points; p++) {
       lo = fmin(lo, x[p]);
       hi = fmax(hi, x[p]);
     }
-    post_group_name(&study->group[study->curve[b].group], name);
-    post_branch_note(study->response, branch, note);
+    post_group_name(&analysis->group[analysis->curve[b].group], name);
+    post_branch_note(analysis->response, branch, note);
     post_put(out, "%s%s%s (%s to %s)", n > 1 ? "; " : "<li><b>Further curves</b>: ", name, note,
-             post_abscissa_number(&study->abscissa, lo, 6, from),
-             post_abscissa_value(&study->abscissa, hi, 6, to));
+             post_abscissa_number(&analysis->abscissa, lo, 6, from),
+             post_abscissa_value(&analysis->abscissa, hi, 6, to));
   }
   if (n > 6) post_put(out, "; and %d more", n - 6);
   if (n > 0)
@@ -406,14 +411,14 @@ static void put_further(const post_study *study, post_buffer *out) {
              "repeats after n periods of the excitation.</li>\n");
 }
 
-static void put_accuracy(const post_study *study, post_buffer *out) {
+static void put_accuracy(const post_analysis *analysis, post_buffer *out) {
   double worst = NAN, at_peak = NAN;
-  for (int b = 0; b < study->response->n_branches; b++)
-    for (int p = 0; p < study->response->branch[b].n_points; p++)
-      worst = fmax(worst, post_error(&study->response->branch[b], p));
-  for (int i = 0; i < study->tracking.n; i++) {
-    const post_track_point *p = &study->tracking.point[i];
-    at_peak = fmax(at_peak, post_error(&study->response->branch[p->branch], p->point));
+  for (int b = 0; b < analysis->response->n_branches; b++)
+    for (int p = 0; p < analysis->response->branch[b].n_points; p++)
+      worst = fmax(worst, post_error(&analysis->response->branch[b], p));
+  for (int i = 0; i < analysis->tracking.n; i++) {
+    const post_track_point *p = &analysis->tracking.point[i];
+    at_peak = fmax(at_peak, post_error(&analysis->response->branch[p->branch], p->point));
   }
   if (!(worst > 0)) return;
   char a[POST_NUMBER], b[POST_NUMBER];
@@ -423,41 +428,41 @@ static void put_accuracy(const post_study *study, post_buffer *out) {
   post_put(out, ".</li>\n");
 }
 
-void post_findings(const post_study *study, post_buffer *out) {
+void post_findings(const post_analysis *analysis, post_buffer *out) {
   post_put(out, "<ul class=\"findings\">\n");
-  put_incomplete(study, out);
-  put_edges(study, out);
-  put_optimum(study, out);
-  put_extremes(study, out);
-  put_shift(study, out);
-  put_folds(study, out);
-  put_further(study, out);
-  put_stability(study, out);
-  put_accuracy(study, out);
+  put_incomplete(analysis, out);
+  put_edges(analysis, out);
+  put_optimum(analysis, out);
+  put_extremes(analysis, out);
+  put_shift(analysis, out);
+  put_folds(analysis, out);
+  put_other_curves(analysis, out);
+  put_stability(analysis, out);
+  put_accuracy(analysis, out);
   post_put(out, "</ul>\n");
 }
 
 /* ---------------------------------------------------------------- terminal */
 
-static void put_brief(const post_study *study, post_buffer *out, const char *name,
+static void put_brief(const post_analysis *analysis, post_buffer *out, const char *name,
                       const post_track_point *p) {
   char a[POST_NUMBER], at[POST_PLACE];
   if (!(p->amplitude > 0)) return;
   post_put(out, "%s%s %s at %s%s", out->length ? "; " : "", name,
-           post_measure(a, p->amplitude, post_unit_length(p->amplitude), 3), place(study, p, at),
+           post_measure(a, p->amplitude, post_unit_length(p->amplitude), 3), place(analysis, p, at),
            at_end(p) ? ", the end of the range" : "");
 }
 
-void post_summary(const post_study *study, post_buffer *out) {
-  const post_tracking *t = &study->tracking;
-  put_brief(study, out, at_end(&t->open) ? "open, largest" : "open peak", &t->open);
-  put_brief(study, out, at_end(&t->stuck) ? "stuck, largest" : "stuck peak", &t->stuck);
-  if (study->abscissa.parameter == MHB_IN_N0) {
-    post_track_point lowest = extreme(study, true);
-    put_brief(study, out, "lowest", &lowest);
+void post_summary(const post_analysis *analysis, post_buffer *out) {
+  const post_tracking *t = &analysis->tracking;
+  put_brief(analysis, out, at_end(&t->open) ? "open, largest" : "open peak", &t->open);
+  put_brief(analysis, out, at_end(&t->stuck) ? "stuck, largest" : "stuck peak", &t->stuck);
+  if (analysis->abscissa.parameter == MHB_IN_N0) {
+    post_track_point lowest = extreme(analysis, true);
+    put_brief(analysis, out, "lowest", &lowest);
   }
   if (t->best < 0) return;
   char name[96], n0[POST_NUMBER];
   snprintf(name, sizeof name, "lowest (n0 = %s) peak", preload(n0, t->point[t->best].n0));
-  put_brief(study, out, name, &t->point[t->best]);
+  put_brief(analysis, out, name, &t->point[t->best]);
 }

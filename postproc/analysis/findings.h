@@ -1,16 +1,17 @@
-/* What a response says, in words and in four figures: the head of the report. */
+/* Findings of a response in sentences and four key figures: the head of the report. */
 #ifndef POSTPROC_ANALYSIS_FINDINGS_H
 #define POSTPROC_ANALYSIS_FINDINGS_H
 
 #include "postproc/analysis/response_analysis.h"
 #include "postproc/draw/text_buffer.h"
 
-/* The key figures as HTML (open peak, stuck peak, lowest peak and its preload, reduction). */
-void post_figures(const post_study *study, post_buffer *out);
-/* The findings as an HTML list: optimum, frequency shift, folds, stability, range, what is incomplete, accuracy. */
-void post_findings(const post_study *study, post_buffer *out);
+/* The key figures as HTML: open peak, stuck peak, lowest peak with its preload, reduction. */
+void post_key_figures(const post_analysis *analysis, post_buffer *out);
+/* The findings as an HTML list: optimum, frequency shift, folds, stability, range, incomplete
+ * curves, accuracy. */
+void post_findings(const post_analysis *analysis, post_buffer *out);
 
-/* The findings in one or two plain lines for the terminal, without newline at the end. */
-void post_summary(const post_study *study, post_buffer *out);
+/* The findings in one or two plain lines for the terminal, without a newline at the end. */
+void post_summary(const post_analysis *analysis, post_buffer *out);
 
 #endif

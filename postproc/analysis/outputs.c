@@ -7,10 +7,10 @@
 
 enum { AXES = 3, NEWTON_STEPS = 20 };
 
-/* A harmonic this small beside the largest changes no figure. */
+/* Harmonics below this fraction of the largest do not change any printed figure. */
 static const double ROUNDING = 1e-13;
 
-double post_ellipse(int n, const double complex *a, int stride) {
+double post_semi_major_axis(int n, const double complex *a, int stride) {
   double         sum    = 0;
   double complex square = 0;
   for (int i = 0; i < n; i++) {
@@ -21,7 +21,7 @@ double post_ellipse(int n, const double complex *a, int stride) {
   return sqrt((sum + cabs(square)) / 2);
 }
 
-/* Position, velocity and acceleration at phase t (harmonic k turns k times in 2 pi). */
+/* Position, velocity and acceleration at phase t; harmonic k has the period 2 pi/k. */
 static void orbit_at(int n, int m, const double complex *a, double t, double x[][AXES]) {
   double complex turn = cexp(I * t);
   for (int i = 0; i < n; i++) {
@@ -42,7 +42,7 @@ static double dot(int n, const double *x, const double *y) {
   return sum;
 }
 
-/* Newton on g(t, s) = |x(t) - x(s)|^2 from a sampled maximum; a step that lowers g ends it. */
+/* Newton's method on g(t, s) = |x(t) - x(s)|^2 from a sampled maximum; it ends when g decreases. */
 static double refine_distance(int n, int m, const double complex *a, double t, double s) {
   double best = 0;
   for (int step = 0; step < NEWTON_STEPS; step++) {
@@ -56,14 +56,14 @@ static double refine_distance(int n, int m, const double complex *a, double t, d
     double gt = dot(n, d, x[1]), gs = -dot(n, d, y[1]);
     double tt = dot(n, x[1], x[1]) + dot(n, d, x[2]), ss = dot(n, y[1], y[1]) - dot(n, d, y[2]);
     double ts = -dot(n, x[1], y[1]), det = tt * ss - ts * ts;
-    if (tt >= 0 || det <= 0) break; /* not a strict maximum of the quadratic model */
+    if (tt >= 0 || det <= 0) break; /* no strict maximum of the quadratic model */
     t -= (ss * gt - ts * gs) / det;
     s -= (tt * gs - ts * gt) / det;
   }
   return sqrt(best);
 }
 
-/* Farthest pair of samples, [samples][n]. */
+/* Pair of samples [samples][n] of largest distance. */
 static void farthest(int n, int samples, const double *x, int pair[2]) {
   double best = -1;
   for (int i = 0; i < samples; i++)
@@ -88,7 +88,7 @@ static double extent(int n, int m, const double complex *a) {
     for (int axis = 0; axis < n; axis++) {
       double complex sum = 0;
       for (int k = m; k >= 1; k--) sum = (sum + a[axis * (m + 1) + k]) * turn;
-      x[i * n + axis] = creal(sum); /* the mean cancels in a distance */
+      x[i * n + axis] = creal(sum); /* the mean cancels in a difference */
     }
   }
   int pair[2] = {0, 0};
@@ -98,7 +98,7 @@ static double extent(int n, int m, const double complex *a) {
   return refine_distance(n, m, a, pair[0] * step, pair[1] * step);
 }
 
-/* Highest harmonic of a [n][m + 1] that is more than rounding beside the others. */
+/* Highest harmonic of a [n][m + 1] above rounding. */
 static int highest(int n, int m, const double complex *a) {
   double most = 0;
   for (int i = 0; i < n * (m + 1); i++)
@@ -109,7 +109,8 @@ static int highest(int n, int m, const double complex *a) {
   return m < 1 ? m : 1;
 }
 
-/* The search for the farthest pair goes with the square of the harmonics: those that are not there are left out. */
+/* The search for the largest distance takes a time of the square of the harmonics: omit vanishing
+ * ones. */
 double post_peak_to_peak(int n, int m, const double complex *a) {
   int            top = highest(n, m, a);
   double complex held[n * (top + 1)];
@@ -119,7 +120,8 @@ double post_peak_to_peak(int n, int m, const double complex *a) {
 }
 
 post_output post_output_primary(const mhb_response *response) {
-  return (post_output){response->n_probes > 0 ? POST_PROBE : POST_CONTACT, 0, POST_WHOLE};
+  return (post_output){response->n_probes > 0 ? POST_PLACE_PROBE : POST_PLACE_CONTACT, 0,
+                       POST_WHOLE};
 }
 
 int post_first_harmonic(const mhb_branch *branch) {
@@ -127,10 +129,10 @@ int post_first_harmonic(const mhb_branch *branch) {
   return first <= branch->n_harmonics ? first : branch->n_harmonics;
 }
 
-/* The harmonics of output at a point: [n][m + 1]. */
+/* Harmonics of an output at a point: [n][m + 1]. */
 static const double complex *harmonics_of(const mhb_response *response, const mhb_branch *branch,
                                           int point, post_output output, int *n) {
-  bool                  probe  = output.place == POST_PROBE;
+  bool                  probe  = output.place == POST_PLACE_PROBE;
   size_t                places = (size_t)(probe ? response->n_probes : response->n_pairs);
   const double complex *all    = probe ? branch->probe : branch->motion;
   size_t                at     = ((size_t)point * places + (size_t)output.index) * AXES +
@@ -143,7 +145,7 @@ double post_amplitude(const mhb_response *response, const mhb_branch *branch, in
                       post_output output, int k) {
   int                   n;
   const double complex *a = harmonics_of(response, branch, point, output, &n);
-  return k > branch->n_harmonics ? 0 : post_ellipse(n, a + k, branch->n_harmonics + 1);
+  return k > branch->n_harmonics ? 0 : post_semi_major_axis(n, a + k, branch->n_harmonics + 1);
 }
 
 shb_status post_series(const mhb_response *response, const mhb_branch *branch, post_output output,
@@ -154,15 +156,17 @@ shb_status post_series(const mhb_response *response, const mhb_branch *branch, p
   for (int p = 0; p < points; p++) {
     int                   n;
     const double complex *a = harmonics_of(response, branch, p, output, &n);
-    out[p]                  = quantity == POST_PEAK_TO_PEAK ? post_peak_to_peak(n, m, a)
-                                                            : post_ellipse(n, a + first, m + 1);
+    if (quantity == POST_QUANTITY_PEAK_TO_PEAK)
+      out[p] = post_peak_to_peak(n, m, a);
+    else
+      out[p] = post_semi_major_axis(n, a + first, m + 1);
   }
   *values = out;
   return SHB_OK;
 }
 
 void post_place_name(const mhb_response *response, post_output output, char out[128]) {
-  if (output.place == POST_PROBE)
+  if (output.place == POST_PLACE_PROBE)
     snprintf(out, 128, "%s", response->probe_name[output.index]);
   else
     post_contact_name(response, output.index, " ", out);
@@ -186,5 +190,5 @@ void post_contact_name(const mhb_response *response, int pair, const char *gap, 
 const char *post_axis_name(post_output output) {
   static const char *const probe[]   = {"motion", "tangential", "axial", "radial"};
   static const char *const contact[] = {"relative motion", "v, normal", "u, sliding", "w, sliding"};
-  return (output.place == POST_PROBE ? probe : contact)[output.axis + 1];
+  return (output.place == POST_PLACE_PROBE ? probe : contact)[output.axis + 1];
 }

@@ -52,24 +52,24 @@ void post_branch_note(const mhb_response *response, const mhb_branch *branch, ch
   snprintf(out + used, (size_t)(64 - used), "%s", origin[branch->origin]);
 }
 
-/* Points by integration belong to the curves of their preload. */
+/* Points by time integration belong to the curves of their preload. */
 static mhb_branch_kind group_kind(const mhb_branch *branch) {
   return branch->kind == MHB_BRANCH_INTEGRATION ? MHB_BRANCH_NONLINEAR : branch->kind;
 }
 
-bool post_at_one_frequency(const post_study *study) {
-  return study->abscissa.parameter != MHB_IN_FREQUENCY;
+bool post_at_one_frequency(const post_analysis *analysis) {
+  return analysis->abscissa.parameter != MHB_IN_FREQUENCY;
 }
 
-char *post_frequency_text(const post_study *study, char out[POST_PLACE]) {
+char *post_frequency_text(const post_analysis *analysis, char out[POST_PLACE]) {
   char number[POST_NUMBER];
   out[0] = '\0';
-  if (post_at_one_frequency(study))
-    snprintf(out, POST_PLACE, " at %s\u00a0Hz", post_plain(number, study->frequency[0], 6));
+  if (post_at_one_frequency(analysis))
+    snprintf(out, POST_PLACE, " at %s\u00a0Hz", post_plain(number, analysis->frequency[0], 6));
   return out;
 }
 
-/* The one preload of a branch, NAN if it varies, is what is followed, or there is no point. */
+/* Preload of a branch; NAN if it varies, is the followed parameter, or there is no point. */
 static double branch_n0(const mhb_response *response, const mhb_branch *branch) {
   if (response->parameter == MHB_IN_N0) return NAN;
   if (branch->n_points == 0 || group_kind(branch) != MHB_BRANCH_NONLINEAR) return NAN;
@@ -85,7 +85,7 @@ static bool same_group(const post_group *a, const post_group *b) {
   return fabs(a->n0 - b->n0) <= 1e-9 * fmax(fabs(a->n0), fabs(b->n0));
 }
 
-/* Nonlinear with known n0 ascending, nonlinear varying, open, stuck. */
+/* Order: nonlinear by ascending n0, nonlinear with varying n0, open, stuck. */
 static int order_groups(const void *left, const void *right) {
   const post_group *a = left, *b = right;
   if (a->kind != b->kind) return (int)a->kind - (int)b->kind;
@@ -94,28 +94,29 @@ static int order_groups(const void *left, const void *right) {
   return (a->n0 > b->n0) - (a->n0 < b->n0);
 }
 
-static int find_group(const post_study *study, const post_group *wanted) {
-  for (int g = 0; g < study->n_groups; g++)
-    if (same_group(&study->group[g], wanted)) return g;
+static int find_group(const post_analysis *analysis, const post_group *wanted) {
+  for (int g = 0; g < analysis->n_groups; g++)
+    if (same_group(&analysis->group[g], wanted)) return g;
   return -1;
 }
 
-static void make_groups(post_study *study) {
-  const mhb_response *response = study->response;
+static void make_groups(post_analysis *analysis) {
+  const mhb_response *response = analysis->response;
   for (int pass = 0; pass < 2; pass++) {
     for (int b = 0; b < response->n_branches; b++) {
       const mhb_branch *branch = &response->branch[b];
       post_group wanted = {group_kind(branch), branch->n_points == 0, branch_n0(response, branch),
                            -1};
-      int        at     = find_group(study, &wanted);
-      if (at < 0) study->group[at = study->n_groups++] = wanted;
-      study->curve[b].group = at; /* right in the second pass, when the groups are sorted */
+      int        at     = find_group(analysis, &wanted);
+      if (at < 0) analysis->group[at = analysis->n_groups++] = wanted;
+      analysis->curve[b].group = at; /* final in the second pass, after sorting */
     }
-    if (pass == 0) qsort(study->group, (size_t)study->n_groups, sizeof *study->group, order_groups);
+    if (pass == 0)
+      qsort(analysis->group, (size_t)analysis->n_groups, sizeof *analysis->group, order_groups);
   }
-  for (int g = 0; g < study->n_groups; g++)
-    if (study->group[g].kind == MHB_BRANCH_NONLINEAR && !isnan(study->group[g].n0))
-      study->group[g].rank = study->n_ranks++;
+  for (int g = 0; g < analysis->n_groups; g++)
+    if (analysis->group[g].kind == MHB_BRANCH_NONLINEAR && !isnan(analysis->group[g].n0))
+      analysis->group[g].rank = analysis->n_ranks++;
 }
 
 shb_status post_values(const mhb_response *response, post_output output, post_quantity quantity,
@@ -139,18 +140,18 @@ void post_values_free(const mhb_response *response, double **values) {
 }
 
 /* Highest peak of one group. */
-static shb_status track_group(const post_study *study, int group, double *const *values,
+static shb_status track_group(const post_analysis *analysis, int group, double *const *values,
                               post_track_point *out) {
-  *out = (post_track_point){study->group[group].n0, NAN, NAN, -1, -1, false, false, true};
-  for (int b = 0; b < study->response->n_branches; b++) {
-    const mhb_branch *branch = &study->response->branch[b];
-    if (study->curve[b].group != group || branch->kind == MHB_BRANCH_INTEGRATION) continue;
+  *out = (post_track_point){analysis->group[group].n0, NAN, NAN, -1, -1, false, false, true};
+  for (int b = 0; b < analysis->response->n_branches; b++) {
+    const mhb_branch *branch = &analysis->response->branch[b];
+    if (analysis->curve[b].group != group || branch->kind == MHB_BRANCH_INTEGRATION) continue;
     out->complete = out->complete && branch->complete;
     post_peak    *peaks;
     int           n;
-    const double *x = post_abscissa_values(study->response, branch);
+    const double *x = post_abscissa_values(analysis->response, branch);
     SHB_TRY(post_find_peaks(branch->n_points, x, values[b], &peaks, &n));
-    int top = post_highest(n, peaks);
+    int top = post_highest_peak(n, peaks);
     if (top >= 0 && !(peaks[top].amplitude <= out->amplitude)) {
       bool last      = peaks[top].level && branch->kind == MHB_BRANCH_STUCK;
       out->at        = last ? x[branch->n_points - 1] : peaks[top].at;
@@ -165,8 +166,8 @@ static shb_status track_group(const post_study *study, int group, double *const 
   return SHB_OK;
 }
 
-/* Vertex of log amplitude over n0 (or log n0) through best and its neighbours. The largest value at an edge of the range
- * (any_edge: of a parameter other than the frequency) need not be less than a peak. */
+/* Vertex of log amplitude over n0 (or log n0) through best and its neighbours. any_edge: a largest
+ * value at an edge of the range counts (parameter other than the frequency). */
 static void find_optimum(bool any_edge, post_tracking *t) {
   t->best       = -1;
   t->bracket[0] = t->bracket[1] = t->optimum_n0 = t->optimum_amplitude = NAN;
@@ -195,26 +196,27 @@ static void find_optimum(bool any_edge, post_tracking *t) {
   t->optimum_amplitude = exp(y[0] + (at - x[0]) * (d1 + (at - x[1]) * d2));
 }
 
-shb_status post_track(const post_study *study, double *const *values, post_tracking *tracking) {
+shb_status post_track(const post_analysis *analysis, double *const *values,
+                      post_tracking *tracking) {
   post_track_point none = {NAN, NAN, NAN, -1, -1, false, false, false};
   *tracking             = (post_tracking){.open = none, .stuck = none};
-  tracking->point       = calloc((size_t)study->n_groups, sizeof *tracking->point);
+  tracking->point       = calloc((size_t)analysis->n_groups, sizeof *tracking->point);
   SHB_CHECK(tracking->point, SHB_ERR_IO, "not enough memory for the tracking curve");
-  for (int g = 0; g < study->n_groups; g++) {
+  for (int g = 0; g < analysis->n_groups; g++) {
     post_track_point point;
-    shb_status       status = track_group(study, g, values, &point);
+    shb_status       status = track_group(analysis, g, values, &point);
     if (status != SHB_OK) {
       post_tracking_free(tracking);
       return status;
     }
-    if (study->group[g].kind == MHB_BRANCH_OPEN)
+    if (analysis->group[g].kind == MHB_BRANCH_OPEN)
       tracking->open = point;
-    else if (study->group[g].kind == MHB_BRANCH_STUCK)
+    else if (analysis->group[g].kind == MHB_BRANCH_STUCK)
       tracking->stuck = point;
-    else if (study->group[g].rank >= 0 && point.amplitude > 0)
+    else if (analysis->group[g].rank >= 0 && point.amplitude > 0)
       tracking->point[tracking->n++] = point;
   }
-  find_optimum(post_at_one_frequency(study), tracking);
+  find_optimum(post_at_one_frequency(analysis), tracking);
   return SHB_OK;
 }
 
@@ -223,7 +225,7 @@ void post_tracking_free(post_tracking *tracking) {
   *tracking = (post_tracking){0};
 }
 
-/* Peaks of the reciprocal. */
+/* Minima: peaks of the reciprocal amplitude. */
 static shb_status find_valleys(int n, const double *x, post_curve *c) {
   const double *amplitude  = c->amplitude;
   double       *reciprocal = malloc((size_t)(n > 0 ? n : 1) * sizeof *reciprocal);
@@ -238,72 +240,74 @@ static shb_status find_valleys(int n, const double *x, post_curve *c) {
   return status;
 }
 
-static shb_status study_branch(post_study *study, int b) {
-  const mhb_branch *branch = &study->response->branch[b];
-  post_curve       *c      = &study->curve[b];
+static shb_status analyse_branch(post_analysis *analysis, int b) {
+  const mhb_branch *branch = &analysis->response->branch[b];
+  post_curve       *c      = &analysis->curve[b];
   int               n      = branch->n_points;
-  c->amplitude             = study->values[b];
-  const double *x          = post_abscissa_values(study->response, branch);
+  c->amplitude             = analysis->values[b];
+  const double *x          = post_abscissa_values(analysis->response, branch);
   if (branch->kind != MHB_BRANCH_INTEGRATION)
     SHB_TRY(post_find_peaks(n, x, c->amplitude, &c->peak, &c->n_peaks));
-  if (post_at_one_frequency(study)) SHB_TRY(find_valleys(n, x, c));
+  if (post_at_one_frequency(analysis)) SHB_TRY(find_valleys(n, x, c));
   if (branch->kind == MHB_BRANCH_NONLINEAR)
     SHB_TRY(post_find_folds(n, x, c->amplitude, branch->special, &c->fold, &c->n_folds));
   for (int p = 0; p < n; p++) {
-    study->frequency[0] = fmin(study->frequency[0], branch->frequency[p]);
-    study->frequency[1] = fmax(study->frequency[1], branch->frequency[p]);
-    study->largest      = fmax(study->largest, c->amplitude[p]);
+    analysis->frequency[0] = fmin(analysis->frequency[0], branch->frequency[p]);
+    analysis->frequency[1] = fmax(analysis->frequency[1], branch->frequency[p]);
+    analysis->largest      = fmax(analysis->largest, c->amplitude[p]);
   }
-  study->n_points += n;
+  analysis->n_points += n;
   return SHB_OK;
 }
 
-static shb_status fill_study(post_study *study) {
-  SHB_CHECK(study->response->n_probes + study->response->n_pairs > 0, SHB_ERR_INPUT,
+static shb_status fill_analysis(post_analysis *analysis) {
+  SHB_CHECK(analysis->response->n_probes + analysis->response->n_pairs > 0, SHB_ERR_INPUT,
             "the response holds neither a probe nor a contact: nothing to show");
-  make_groups(study);
-  SHB_TRY(post_values(study->response, study->primary, POST_FIRST_HARMONIC, &study->values));
-  for (int b = 0; b < study->response->n_branches; b++) SHB_TRY(study_branch(study, b));
+  make_groups(analysis);
+  SHB_TRY(post_values(analysis->response, analysis->primary, POST_QUANTITY_FIRST_HARMONIC,
+                      &analysis->values));
+  for (int b = 0; b < analysis->response->n_branches; b++) SHB_TRY(analyse_branch(analysis, b));
   SHB_CHECK(
-      study->n_points > 0, SHB_ERR_INPUT,
+      analysis->n_points > 0, SHB_ERR_INPUT,
       "the response holds no point on any branch: nothing to show; run the harmonic balance first");
-  return post_track(study, study->values, &study->tracking);
+  return post_track(analysis, analysis->values, &analysis->tracking);
 }
 
-shb_status post_study_create(const mhb_response *response, post_study **out) {
-  size_t      n     = (size_t)response->n_branches;
-  post_study *study = calloc(1, sizeof *study);
-  SHB_CHECK(study, SHB_ERR_IO, "not enough memory for the report");
-  study->response     = response;
-  study->primary      = post_output_primary(response);
-  study->abscissa     = post_abscissa_of(response);
-  study->frequency[0] = INFINITY;
-  study->frequency[1] = -INFINITY;
-  study->group        = calloc(n + 1, sizeof *study->group);
-  study->curve        = calloc(n + 1, sizeof *study->curve);
-  shb_status status   = study->group && study->curve ? fill_study(study)
-                                                     : shb_fail(SHB_ERR_IO, __FILE__, __LINE__,
-                                                                "not enough memory for the report");
+shb_status post_analysis_create(const mhb_response *response, post_analysis **out) {
+  size_t         n        = (size_t)response->n_branches;
+  post_analysis *analysis = calloc(1, sizeof *analysis);
+  SHB_CHECK(analysis, SHB_ERR_IO, "not enough memory for the report");
+  analysis->response     = response;
+  analysis->primary      = post_output_primary(response);
+  analysis->abscissa     = post_abscissa_of(response);
+  analysis->frequency[0] = INFINITY;
+  analysis->frequency[1] = -INFINITY;
+  analysis->group        = calloc(n + 1, sizeof *analysis->group);
+  analysis->curve        = calloc(n + 1, sizeof *analysis->curve);
+  shb_status status =
+      analysis->group && analysis->curve
+          ? fill_analysis(analysis)
+          : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "not enough memory for the report");
   if (status != SHB_OK) {
-    post_study_destroy(study);
+    post_analysis_destroy(analysis);
     return status;
   }
-  *out = study;
+  *out = analysis;
   return SHB_OK;
 }
 
-void post_study_destroy(post_study *study) {
-  if (!study) return;
-  for (int b = 0; study->curve && b < study->response->n_branches; b++) {
-    free(study->curve[b].peak);
-    free(study->curve[b].valley);
-    free(study->curve[b].fold);
+void post_analysis_destroy(post_analysis *analysis) {
+  if (!analysis) return;
+  for (int b = 0; analysis->curve && b < analysis->response->n_branches; b++) {
+    free(analysis->curve[b].peak);
+    free(analysis->curve[b].valley);
+    free(analysis->curve[b].fold);
   }
-  post_tracking_free(&study->tracking);
-  post_values_free(study->response, study->values);
-  free(study->curve);
-  free(study->group);
-  free(study);
+  post_tracking_free(&analysis->tracking);
+  post_values_free(analysis->response, analysis->values);
+  free(analysis->curve);
+  free(analysis->group);
+  free(analysis);
 }
 
 void post_put_harmonics(const mhb_response *response, post_buffer *out) {
@@ -322,12 +326,13 @@ void post_put_harmonics(const mhb_response *response, post_buffer *out) {
   post_put(out, "%d harmonic%s", most, most == 1 ? "" : "s");
 }
 
-void post_put_run_up(const post_study *study, post_buffer *out) {
-  const mhb_response *r = study->response;
+void post_put_run_up(const post_analysis *analysis, post_buffer *out) {
+  const mhb_response *r = analysis->response;
   char                lo[POST_NUMBER], hi[POST_NUMBER];
-  if (!r->run_up || !(study->frequency[0] <= study->frequency[1])) return;
-  post_put(out, "run-up: speed %s", post_plain(lo, 60 * study->frequency[0] / r->engine_order, 6));
-  if (study->frequency[0] < study->frequency[1])
-    post_put(out, " to %s", post_plain(hi, 60 * study->frequency[1] / r->engine_order, 6));
+  if (!r->run_up || !(analysis->frequency[0] <= analysis->frequency[1])) return;
+  post_put(out, "run-up: speed %s",
+           post_plain(lo, 60 * analysis->frequency[0] / r->engine_order, 6));
+  if (analysis->frequency[0] < analysis->frequency[1])
+    post_put(out, " to %s", post_plain(hi, 60 * analysis->frequency[1] / r->engine_order, 6));
   post_put(out, " rpm along E = %d", r->engine_order);
 }

@@ -1,5 +1,5 @@
-/* Everything the page says about a response, worked out once: which curves belong together, their peaks and folds,
- * how the peak moves with the preload. */
+/* Analysis of a response for the page: groups of curves, peaks and folds, the peak over the
+ * preload. */
 #ifndef POSTPROC_ANALYSIS_RESPONSE_ANALYSIS_H
 #define POSTPROC_ANALYSIS_RESPONSE_ANALYSIS_H
 
@@ -12,33 +12,37 @@
 #include "postproc/analysis/curves.h"
 #include "postproc/analysis/outputs.h"
 
-/* Curves of one preload (nonlinear), or one linear limit. */
+/* Curves of one preload (nonlinear), or of one linear limit. */
 typedef struct {
   mhb_branch_kind kind;
-  bool            empty; /* its branches hold no point, so that n0 is not known */
-  double          n0;    /* N; NAN for the limits and for branches along which it varies */
-  int rank; /* 0.. among the nonlinear groups, ascending n0; the colour index. -1 for the limits */
+  bool            empty; /* its branches hold no point, thus n0 is unknown */
+  double          n0;    /* N; NAN for the limits, and if it varies */
+  /* Index among the nonlinear groups by ascending n0, also of the colour; -1 for the limits. */
+  int rank;
 } post_group;
 
-/* The highest peak of one group. */
+/* Highest peak of one group. */
 typedef struct {
   double n0, at,
-      amplitude;      /* of the group; abscissa and m, refined. NAN if the group has no point */
-  int  branch, point; /* where, -1 if nowhere */
-  bool edge;          /* the largest value is at the end of the range */
-  bool level;         /* it is the same all along; at: the end where the limit is the response's */
-  bool complete;      /* every branch of the group covered the range */
+      amplitude;      /* n0 of the group; abscissa and amplitude (m) refined, NAN without a point */
+  int  branch, point; /* indices, -1 if there is none */
+  bool edge;          /* the largest value is at an end of the range */
+  /* The amplitude is constant; at: the end where the limit is that of the response. */
+  bool level;
+  bool complete; /* all branches of the group cover the range */
 } post_track_point;
 
-/* How the highest peak of one output follows the preload. */
+/* Highest peak of one output over the preload. */
 typedef struct {
-  int               n; /* preloads with a constant, known n0 and at least one point, ascending */
+  int               n;           /* preloads with a known n0 and at least one point, ascending */
   post_track_point *point;       /* [n] */
   post_track_point  open, stuck; /* the limits; amplitude NAN if not computed */
-  int best; /* the lowest peak; one at the edge of the frequency range only if all are; -1 if n = 0 */
+  /* Index of the lowest peak; one at an edge of the range only if all are; -1 if n = 0. */
+  int    best;
   double bracket[2]; /* n0 of the neighbours of best, N; NAN at an end */
-  /* parabola through best and its neighbours, log amplitude over n0 (over log n0 when all are positive); NAN unless
-   * best has both neighbours and none of the three is at the edge of the range nor four times as far as the other */
+  /* Vertex of the parabola through best and its neighbours, log amplitude over n0 (over log n0 if
+   * all are positive). NAN unless best has two neighbours at a ratio of spacings below 4 and no
+   * point is at an edge. */
   double optimum_n0, optimum_amplitude;
 } post_tracking;
 
@@ -47,8 +51,8 @@ typedef struct {
   const double *amplitude; /* [n_points] m, first harmonic of the primary output */
   int           n_peaks, n_valleys, n_folds;
   post_peak    *peak;
-  post_peak
-      *valley; /* minima where another parameter than the frequency is followed; no bandwidth */
+  /* Minima if another parameter than the frequency is followed; no bandwidth. */
+  post_peak *valley;
   post_fold *fold;
   int        group;
 } post_curve;
@@ -57,54 +61,59 @@ typedef struct {
   const mhb_response *response;
   post_output         primary;
   int                 n_groups, n_ranks;
-  post_group         *group;    /* nonlinear ones first, by rank; then varying n0, open, stuck */
+  post_group         *group;    /* nonlinear by rank, then varying n0, open, stuck */
   post_curve         *curve;    /* [n_branches] */
-  double            **values;   /* behind curve[].amplitude */
-  post_tracking       tracking; /* of the primary output's first harmonic */
+  double            **values;   /* memory of curve[].amplitude */
+  post_tracking       tracking; /* of the first harmonic of the primary output */
   post_abscissa       abscissa;
-  double              frequency[2]; /* Hz, range of all points */
-  double              largest;      /* m, of the primary output over all branches */
+  double              frequency[2]; /* Hz, range over all points */
+  double              largest;      /* m, largest primary output of all branches */
   int                 n_points;
-  const post_convergence
-      *convergence; /* speed against error, if the case was studied; set by the caller */
+  /* Convergence study of the case, if there is one; set by the caller. */
+  const post_convergence *convergence;
   const post_campbell *campbell; /* modes over the speed, if there are several; set by the caller */
-} post_study;
+} post_analysis;
 
-/* Errors: SHB_ERR_INPUT (no branch with a point), SHB_ERR_IO (no memory). The response must outlive the study. */
-shb_status post_study_create(const mhb_response *response, post_study **study);
-void       post_study_destroy(post_study *study);
+/* The response must outlive the analysis. Errors: SHB_ERR_INPUT no branch with a point; SHB_ERR_IO
+ * no memory. */
+shb_status post_analysis_create(const mhb_response *response, post_analysis **analysis);
+void       post_analysis_destroy(post_analysis *analysis);
 
-/* quantity of output on every branch, [n_branches][n_points of the branch] m; free with post_values_free. */
+/* quantity of output on every branch, [n_branches][n_points of the branch] m; free with
+ * post_values_free. */
 shb_status post_values(const mhb_response *response, post_output output, post_quantity quantity,
                        double ***values);
 void       post_values_free(const mhb_response *response, double **values);
 
 /* Tracking of an output from its values on every branch; free with post_tracking_free. */
-shb_status post_track(const post_study *study, double *const *values, post_tracking *tracking);
+shb_status post_track(const post_analysis *analysis, double *const *values,
+                      post_tracking *tracking);
 void       post_tracking_free(post_tracking *tracking);
 
-/* Largest of the error estimates of a point that are finite; NAN if none is. */
+/* Largest finite error estimate of a point; NAN if there is none. */
 double post_error(const mhb_branch *branch, int point);
 
-/* Share 0 stuck, 1 slipping, 2 open at a point, mean of the pairs; and the energy of all pairs, J a cycle. */
+/* Share of the period in a state (0 stuck, 1 slipping, 2 open), mean over the pairs; energy of all
+ * pairs, J per cycle. */
 double post_state(const mhb_response *response, const mhb_branch *branch, int point, int state);
 double post_dissipation(const mhb_response *response, const mhb_branch *branch, int point);
 
-/* The curves are drawn against another parameter, at one frequency. */
-bool post_at_one_frequency(const post_study *study);
-/* " at 240 Hz" if so, else "". */
-char *post_frequency_text(const post_study *study, char out[POST_PLACE]);
+/* True if the curves are drawn over another parameter, at one frequency. */
+bool post_at_one_frequency(const post_analysis *analysis);
+/* " at 240 Hz" in that case, else "". */
+char *post_frequency_text(const post_analysis *analysis, char out[POST_PLACE]);
 
-/* What tells a curve from the main one of its group: "", ", found by search", ", order 2, from a flip". */
+/* Text that distinguishes a curve from the main one: "", ", found by search", ", order 2, from a
+ * flip". */
 void post_branch_note(const mhb_response *response, const mhb_branch *branch, char out[64]);
 
 /* "open", "stuck", "n₀ = 50 N", "n₀ varying". */
 void post_group_name(const post_group *group, char out[64]);
 
-/* "7 harmonics", or "1 to 21 harmonics" where each nonlinear point has its own number. */
+/* "7 harmonics", or "1 to 21 harmonics" if the number varies over the nonlinear points. */
 void post_put_harmonics(const mhb_response *response, post_buffer *out);
 
-/* "run-up: speed 1080 to 3480 rpm along E = 5", or at one speed; nothing where the speed does not go with the frequency. */
-void post_put_run_up(const post_study *study, post_buffer *out);
+/* "run-up: speed 1080 to 3480 rpm along E = 5", or at one speed; nothing without a run-up. */
+void post_put_run_up(const post_analysis *analysis, post_buffer *out);
 
 #endif

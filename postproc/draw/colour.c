@@ -3,9 +3,9 @@
 #include <math.h>
 #include <stdio.h>
 
+/* OKLCH colour. The hue, degrees, is unwrapped so that the ramp runs one way. */
 typedef struct {
-  double lightness, chroma,
-      hue; /* OKLCH, hue in degrees, unwrapped so that the ramp runs one way */
+  double lightness, chroma, hue;
 } oklch;
 
 static const oklch LIGHT[] = {
@@ -16,7 +16,8 @@ static const oklch DARK[] = {{0.90, 0.120, 95},
                              {0.62, 0.190, -30},
                              {0.56, 0.175, -75}};
 
-/* Linear sRGB of an OKLCH colour (B. Ottosson, "A perceptual color space for image processing", 2020). */
+/* Linear sRGB of an OKLCH colour (Ottosson, A perceptual color space for image processing,
+ * 2020). */
 static void linear_rgb(const oklch *c, double rgb[3]) {
   double h = c->hue * M_PI / 180, a = c->chroma * cos(h), b = c->chroma * sin(h);
   double l = pow(c->lightness + 0.3963377774 * a + 0.2158037573 * b, 3);
@@ -49,4 +50,12 @@ void post_colour(double t, bool dark, char out[8]) {
   linear_rgb(&c, rgb);
   for (; !inside(rgb) && c.chroma > 0.001; linear_rgb(&c, rgb)) c.chroma *= 0.97;
   snprintf(out, 8, "#%02x%02x%02x", encode(rgb[0]), encode(rgb[1]), encode(rgb[2]));
+}
+
+void post_put_ramp(int n, bool dark, post_buffer *out) {
+  for (int i = 0; i < n; i++) {
+    char colour[8];
+    post_colour(n > 1 ? i / (n - 1.0) : 0.5, dark, colour);
+    post_put(out, ".c%d{color:%s}", i, colour);
+  }
 }

@@ -56,7 +56,8 @@ static void typeset(const char *plain, char out[POST_NUMBER]) {
     used += (size_t)snprintf(out + used, POST_NUMBER - used, "%s", super[*d - '0']);
 }
 
-/* value rounded to digits: plainly from 1e-4 up to a million (or all digits, if more), else with a power of ten. */
+/* Format value with the given digits: plain from 1e-4 up to a million (or to all digits, if more),
+ * else with a power of ten. */
 static char *format(char out[POST_NUMBER], double value, int digits, bool zeros) {
   if (!isfinite(value)) return strcpy(out, "–");
   if (value == 0) return strcpy(out, "0");

@@ -18,7 +18,8 @@ static int even_ticks(double lo, double hi, double step, double ticks[PLOT_MAX_T
   return n;
 }
 
-/* A step may be rounded up past the range, leaving a lone tick that tells no scale: then the next finer ones. */
+/* A step rounded up past the range leaves a single tick, which shows no scale: then take finer
+ * steps. */
 static int linear_ticks(double lo, double hi, int wanted, double ticks[PLOT_MAX_TICKS]) {
   int n = 0, least = wanted < 3 ? wanted : 3;
   for (int w = wanted; n < least && w <= 3 * wanted; w++)
@@ -49,7 +50,8 @@ static double place(const plot_axis *axis, double value) {
   return value > 0 ? log(value / axis->lo) / log(axis->hi / axis->lo) : NAN;
 }
 
-/* 0, then outwards on either side 1, 2, 5 of each decade from the knee on, less those too near the one before. */
+/* 0, then outwards on both sides 1, 2, 5 of each decade from the knee on. Ticks too close to the
+ * one before are left out. */
 static int signed_ticks(const plot_axis *axis, int wanted, double ticks[PLOT_MAX_TICKS]) {
   static const double step[] = {1, 2, 5};
   int                 lowest = (int)floor(log10(axis->knee / axis->unit)), n = 0;
@@ -96,7 +98,7 @@ plot_axis plot_axis_signed(double lo, double hi, double knee, double unit, const
   return (plot_axis){knee * sinh(a - air), knee * sinh(b + air), false, knee, unit, label};
 }
 
-/* Beyond a screen or two outside the area nothing can be seen: keep numbers short. */
+/* Coordinates far outside the area are invisible: limit them to keep numbers short. */
 static double within(double px) {
   return px > 9999 ? 9999 : px < -9999 ? -9999 : px;
 }
@@ -126,6 +128,25 @@ void plot_svg_open(post_buffer *out, const char *id, double width, double height
 
 void plot_svg_close(post_buffer *out) {
   post_put(out, "</svg>\n");
+}
+
+void plot_picture_open(post_buffer *out, const char *id, int width, int height, const char *title,
+                       const char *description, const char *css) {
+  post_put(out, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
+  plot_svg_open(out, id, width, height, title, description);
+  post_put(
+      out,
+      "<style>text{font:12.5px 'Helvetica Neue',Helvetica,Arial,sans-serif;fill:#56606c}"
+      ".page{fill:#fff}.axis{fill:#1b2530}.heading{font-size:18px;font-weight:600;fill:#1b2530}"
+      ".line{fill:none;stroke:currentColor;stroke-width:1.8;stroke-linejoin:round}"
+      ".dot{fill:currentColor}.grid{stroke:#e4e7ea}.base{stroke:#8c959f;fill:none}"
+      "@media screen and (prefers-color-scheme:dark){text{fill:#9aa5b1}.page{fill:#12171d}"
+      ".axis,.heading{fill:#e6eaee}.grid{stroke:#262e37}.base{stroke:#6b7682}}"
+      "%s</style>\n<rect class=\"page\" width=\"%d\" height=\"%d\"/>\n",
+      css, width, height);
+  post_put(out, "<text class=\"heading\" x=\"14\" y=\"32\">");
+  post_put_escaped(out, title);
+  post_put(out, "</text>\n");
 }
 
 static void frame_x(const post_plot *p) {
@@ -186,11 +207,12 @@ void plot_powers(const post_plot *plot) {
   }
 }
 
-/* The path under construction: where its pen is, and whether any of it was written. */
+/* State of the path under construction. */
 typedef struct {
   double x, y;
-  int    at; /* point up to which it is drawn, merged ones included; -1: nowhere */
-  bool   any;
+  /* Point up to which the path is drawn, merged ones included; -1: none. */
+  int  at;
+  bool any;
 } pen;
 
 static void draw_piece(const post_plot *plot, const char *classes, const double from[2],

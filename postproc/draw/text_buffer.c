@@ -45,7 +45,8 @@ void post_put(post_buffer *buffer, const char *format, ...) {
   buffer->length += (size_t)n;
 }
 
-/* Length in bytes of the UTF-8 sequence at text, 0 if it is not one (RFC 3629: no overlong forms, no surrogates). */
+/* Length in bytes of the UTF-8 sequence at text; 0 if it is none (RFC 3629: no overlong forms, no
+ * surrogates). */
 static int utf8_length(const char *text) {
   const unsigned char *c = (const unsigned char *)text;
   if (c[0] < 0x80) return 1;
@@ -88,7 +89,7 @@ void post_put_escaped(post_buffer *buffer, const char *text) {
     if (n == 1 && entity(*text)) {
       post_put(buffer, "%s", entity(*text));
     } else if (*text == '\r' && text[1] == '\n') {
-      ; /* the newline that follows stands for both */
+      ; /* the newline that follows replaces both */
     } else if (n == 0 || is_control(*text)) {
       post_put(buffer, "\xef\xbf\xbd");
     } else {
@@ -120,7 +121,7 @@ void post_put_json(post_buffer *buffer, const char *text) {
   post_put(buffer, "\"");
 }
 
-/* Byte i of the little-endian image of the floats, whatever this machine's order. */
+/* Byte i of the floats in little-endian order, on any machine. */
 static uint32_t float_byte(const float *values, size_t i, size_t n_bytes) {
   if (i >= n_bytes) return 0;
   uint32_t bits;

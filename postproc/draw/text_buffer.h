@@ -1,6 +1,7 @@
-/* Text that grows: pages, pictures and tables are composed in memory and published whole.
+/* Growing text buffer: pages, pictures and tables are composed in memory and published as a whole.
  *
- * A failed allocation is remembered, later puts do nothing, and post_buffer_publish reports it. */
+ * A failed allocation sets failed. Later puts then do nothing, and post_buffer_publish reports
+ * it. */
 #ifndef POSTPROC_DRAW_TEXT_BUFFER_H
 #define POSTPROC_DRAW_TEXT_BUFFER_H
 
@@ -18,14 +19,14 @@ typedef struct {
 void post_put(post_buffer *buffer, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void post_put_bytes(post_buffer *buffer, const char *bytes, size_t n);
 
-/* Text for HTML or XML content and double-quoted attributes: & < > " ' as entities; bytes that are not UTF-8
- * and control characters other than tab and newline as U+FFFD. */
+/* Text for HTML or XML content and double-quoted attributes. The characters & < > " ' become
+ * entities. Bytes that are not UTF-8, and control characters but tab and newline, become U+FFFD. */
 void post_put_escaped(post_buffer *buffer, const char *text);
 
-/* Text for a terminal: control characters other than newline and tab as '?'. */
+/* Text for a terminal; control characters but newline and tab become '?'. */
 void post_put_printable(post_buffer *buffer, const char *text);
 
-/* A JSON string with its quotes; '<' is written \u003c so that it may stand inside <script>. */
+/* A JSON string with its quotes. '<' is written \u003c, so it may stand inside <script>. */
 void post_put_json(post_buffer *buffer, const char *text);
 
 /* n floats, little-endian IEEE single, as base64. */

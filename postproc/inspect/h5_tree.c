@@ -12,30 +12,31 @@
 
 enum { NAME = 256, MAX_DEPTH = 24, ATTRIBUTE = 80 };
 
-/* One line: what stands in its columns. */
+/* One line of the output by columns. */
 typedef struct {
-  char lead[3 * MAX_DEPTH * 4]; /* branches of the tree */
+  char lead[3 * MAX_DEPTH * 4]; /* lines of the tree */
   char name[NAME];
-  char type[POST_RANGE], shape[POST_RANGE], range[POST_RANGE];
-  char units[ATTRIBUTE], about[2 * NAME]; /* units; long_name, or of a group its attributes */
+  char type[POST_VALUE_RANGE], shape[POST_VALUE_RANGE], range[POST_VALUE_RANGE];
+  /* Units; long_name, or the attributes of a group. */
+  char units[ATTRIBUTE], about[2 * NAME];
   bool group;
 } line;
 
-/* Objects met under more than one name are shown once. */
+/* An object that was found already: objects with several names are shown once. */
 typedef struct {
   haddr_t address;
   char    path[NAME];
-} met;
+} visited;
 
 typedef struct {
   post_tree_style style;
   line           *lines;
-  met            *seen;
+  visited        *seen;
   int             n_lines, n_seen;
   bool            failed; /* out of memory */
 } walk;
 
-/* ---------------------------------------------------------------- small readings */
+/* ---------------------------------------------------------------- attributes and shapes */
 
 static line *new_line(walk *w) {
   line *lines = realloc(w->lines, (size_t)(w->n_lines + 1) * sizeof *lines);
@@ -48,7 +49,7 @@ static line *new_line(walk *w) {
   return &lines[w->n_lines++];
 }
 
-/* Put value " = text" of any scalar attribute, cut to size; "" if it is not a scalar number or string. */
+/* Value of a scalar attribute as text, cut to size; "" if it is no scalar number or string. */
 static void attribute_text(hid_t object, const char *name, char *out, size_t size) {
   hid_t attribute = H5Aopen(object, name, H5P_DEFAULT);
   *out            = '\0';
@@ -77,8 +78,8 @@ static void attribute_text(hid_t object, const char *name, char *out, size_t siz
     if (iscntrl((unsigned char)*c)) *c = ' ';
 }
 
-/* Attributes that make a dataset's line already, or are HDF5's own. */
-static bool is_plumbing(const char *name) {
+/* Attributes that are already part of a dataset's line, or HDF5's own. */
+static bool is_internal_attribute(const char *name) {
   static const char *const known[] = {
       "units",          "long_name",        "CLASS",     "NAME",    "REFERENCE_LIST",
       "DIMENSION_LIST", "DIMENSION_LABELS", "case_text", "settings"};
@@ -96,7 +97,7 @@ static herr_t add_attribute(hid_t object, const char *name, const H5A_info_t *in
   (void)info;
   text_room *room = data;
   char       value[ATTRIBUTE];
-  if (is_plumbing(name)) return 0;
+  if (is_internal_attribute(name)) return 0;
   attribute_text(object, name, value, sizeof value);
   size_t used = strlen(room->out);
   if (*value && used + 4 < room->size)
@@ -109,8 +110,8 @@ static void all_attributes(hid_t object, char *out, size_t size) {
   H5Aiterate2(object, H5_INDEX_NAME, H5_ITER_INC, NULL, add_attribute, &room);
 }
 
-/* What a dimension scale counts, from its path: /probe/name counts probes, /modes/frequency modes, /branch_3/frequency
- * points; else its own name. */
+/* Noun that a dimension scale counts, from its path: /probe/name counts probes, /modes/frequency
+ * modes, /branch_3/frequency points; else its own name. */
 static const char *counted_by(char *path) {
   char *slash = strrchr(path, '/');
   if (!slash) return path;
@@ -133,7 +134,7 @@ static herr_t scale_name(hid_t dataset, unsigned dim, hid_t scale, void *data) {
 }
 
 /* "[point 312, pair 1, 3]" */
-static void put_shape(hid_t dataset, char out[POST_RANGE]) {
+static void put_shape(hid_t dataset, char out[POST_VALUE_RANGE]) {
   hid_t   space             = H5Dget_space(dataset);
   hsize_t dim[H5S_MAX_RANK] = {0};
   int     rank              = H5Sget_simple_extent_dims(space, dim, NULL);
@@ -145,10 +146,10 @@ static void put_shape(hid_t dataset, char out[POST_RANGE]) {
     text_room room     = {name, sizeof name};
     if (!scale && H5DSget_num_scales(dataset, (unsigned)d) > 0)
       H5DSiterate_scales(dataset, (unsigned)d, NULL, scale_name, &room);
-    used += (size_t)snprintf(out + used, POST_RANGE - used, "%s%s%s%llu", d ? ", " : "[", name,
-                             *name ? " " : "", (unsigned long long)dim[d]);
+    used += (size_t)snprintf(out + used, POST_VALUE_RANGE - used, "%s%s%s%llu", d ? ", " : "[",
+                             name, *name ? " " : "", (unsigned long long)dim[d]);
   }
-  if (rank > 0) snprintf(out + used, POST_RANGE - used, "]");
+  if (rank > 0) snprintf(out + used, POST_VALUE_RANGE - used, "]");
   H5Sclose(space);
 }
 
@@ -158,7 +159,7 @@ static int by_number(const void *a, const void *b) {
   return strverscmp(*(char *const *)a, *(char *const *)b);
 }
 
-/* Names of the links of group, sorted with numbers in order; malloc'ed. */
+/* Names of a group's links, sorted with numbers in order; malloc'ed. */
 static char **link_names(hid_t group, int *n) {
   H5G_info_t info;
   *n = 0;
@@ -177,7 +178,7 @@ static char **link_names(hid_t group, int *n) {
   return names;
 }
 
-/* Same text before a number at the end: branch_0 and branch_7. */
+/* True if both names have equal text before a number at the end, as branch_0 and branch_7. */
 static bool same_series(const char *a, const char *b) {
   size_t na = strlen(a), nb = strlen(b);
   while (na > 0 && isdigit((unsigned char)a[na - 1])) na--;
@@ -185,19 +186,19 @@ static bool same_series(const char *a, const char *b) {
   return na == nb && na > 0 && a[na] && b[nb] && strncmp(a, b, na) == 0;
 }
 
-/* Whether object was met before under another name (then where), else remember it. */
-static const char *met_before(walk *w, hid_t object) {
+/* First path of an object that was found before, or NULL; the object is then remembered. */
+static const char *visited_before(walk *w, hid_t object) {
   H5O_info_t info;
   if (H5Oget_info(object, &info) < 0 || info.rc < 2) return NULL;
   for (int i = 0; i < w->n_seen; i++)
     if (w->seen[i].address == info.addr) return w->seen[i].path;
-  met *seen = realloc(w->seen, (size_t)(w->n_seen + 1) * sizeof *seen);
+  visited *seen = realloc(w->seen, (size_t)(w->n_seen + 1) * sizeof *seen);
   if (!seen) {
     w->failed = true;
     return NULL;
   }
   w->seen         = seen;
-  seen[w->n_seen] = (met){.address = info.addr};
+  seen[w->n_seen] = (visited){.address = info.addr};
   H5Iget_name(object, seen[w->n_seen++].path, NAME);
   return NULL;
 }
@@ -207,13 +208,14 @@ static void describe_dataset(hid_t dataset, post_tree_style style, line *l) {
   post_type_name(type, l->type);
   H5Tclose(type);
   put_shape(dataset, l->shape);
-  post_range(dataset, l->range);
+  post_value_range(dataset, l->range);
   attribute_text(dataset, "units", l->units, sizeof l->units);
   attribute_text(dataset, "long_name", l->about, sizeof l->about);
   if (style.verbose) all_attributes(dataset, l->about, sizeof l->about);
 }
 
-/* A soft or external link is named, not followed: what it leads to is shown where it is, or is another file. */
+/* Describe a soft or external link without following it: its target is shown elsewhere or is
+ * another file. */
 static bool describe_link(hid_t group, const char *name, line *l) {
   H5L_info_t info;
   char       target[NAME] = "";
@@ -232,7 +234,8 @@ static bool describe_link(hid_t group, const char *name, line *l) {
 
 static void walk_group(walk *w, hid_t group, const char *lead, int depth);
 
-/* One member: its line, and what is below it. lead: of its children. */
+/* Add the line of one member and the lines below it. lead: text before it, and before its
+ * children. */
 static void walk_member(walk *w, hid_t group, const char *name, const char *lead[2], int depth,
                         bool folded) {
   line *l = new_line(w);
@@ -248,7 +251,7 @@ static void walk_member(walk *w, hid_t group, const char *name, const char *lead
     return;
   }
   H5I_type_t  kind  = H5Iget_type(object);
-  const char *first = met_before(w, object);
+  const char *first = visited_before(w, object);
   l->group          = kind == H5I_GROUP;
   if (first) {
     snprintf(l->about, sizeof l->about, "= %s", first);
@@ -256,7 +259,7 @@ static void walk_member(walk *w, hid_t group, const char *name, const char *lead
     describe_dataset(object, w->style, l);
   } else if (kind == H5I_GROUP) {
     all_attributes(object, l->about, sizeof l->about);
-    if (!folded) walk_group(w, object, lead[1], depth + 1); /* l may move here */
+    if (!folded) walk_group(w, object, lead[1], depth + 1); /* this may move l */
   }
   H5Oclose(object);
 }
@@ -267,7 +270,7 @@ static bool is_dataset(hid_t group, const char *name) {
          H5Oget_info_by_name(group, name, &info, H5P_DEFAULT) >= 0 && info.type == H5O_TYPE_DATASET;
 }
 
-/* How many datasets from names[i] on lie inside a numbered series, its first and last left out. */
+/* Number of datasets from names[i] on inside a numbered series, without its first and last. */
 static int inner_series(hid_t group, char **names, int n, int i) {
   int count = 0;
   while (i > 0 && i + count < n - 1 && same_series(names[i - 1], names[i + count]) &&
@@ -302,7 +305,7 @@ static void walk_group(walk *w, hid_t group, const char *lead, int depth) {
 
 /* ---------------------------------------------------------------- printing */
 
-/* Characters shown: bytes that do not continue a UTF-8 sequence. */
+/* Number of characters: bytes that do not continue a UTF-8 sequence. */
 static int width(const char *text) {
   int n = 0;
   for (; *text; text++) n += ((unsigned char)*text & 0xc0) != 0x80;

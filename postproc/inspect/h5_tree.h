@@ -1,4 +1,4 @@
-/* The tree of an HDF5 file, anyone's: groups, datasets with type, shape, range, units, links. */
+/* The tree of any HDF5 file: groups, datasets with type, shape, range, units, links. */
 #ifndef POSTPROC_INSPECT_H5_TREE_H
 #define POSTPROC_INSPECT_H5_TREE_H
 
@@ -10,12 +10,12 @@
 
 typedef struct {
   bool colour;  /* ANSI, for a terminal */
-  bool verbose; /* every group of a numbered series in full, every attribute */
+  bool verbose; /* every group of a numbered series, every attribute */
 } post_tree_style;
 
-/* One line an object below the root. Of a numbered series of groups (branch_0, branch_1, ...) only the first is
- * unfolded unless verbose. Datasets are read in pieces of 2 MB; one that cannot be read is said to be so. Errors:
- * SHB_ERR_IO (no memory, a group that cannot be read). */
+/* Write a line for each object below the root. Of a numbered series of groups (branch_0, branch_1,
+ * ...) only the first is shown in full unless verbose. Datasets are read in pieces of 2 MB;
+ * unreadable ones are marked. Errors: SHB_ERR_IO no memory, a group that cannot be read. */
 shb_status post_tree(hid_t file, post_tree_style style, post_buffer *out);
 
 #endif

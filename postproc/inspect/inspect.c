@@ -17,7 +17,7 @@
 #include "postproc/inspect/mode_table.h"
 #include "postproc/inspect/phase_table.h"
 
-/* ---------------------------------------------------------------- in a sentence */
+/* ---------------------------------------------------------------- summary */
 
 static void put_names(post_buffer *out, int n, char *const *name) {
   if (n == 0) {
@@ -36,7 +36,7 @@ static void put_count(post_buffer *out, int n, const char *noun) {
   post_put(out, "%d %s%s", n, noun, n == 1 ? "" : "s");
 }
 
-/* " (2 shroud, 1 snubber)"; nothing for one interface. */
+/* " (2 shroud, 1 snubber)"; nothing for a single interface. */
 static void put_interfaces(post_buffer *out, int n_pairs, const int *which, int n,
                            char *const *name) {
   for (int i = 0; i < n; i++) {
@@ -46,7 +46,7 @@ static void put_interfaces(post_buffer *out, int n_pairs, const int *which, int 
   }
 }
 
-/* "lo … hi unit", or one value. */
+/* "lo … hi unit", or a single value. */
 static void put_span(post_buffer *out, double lo, double hi, const char *unit) {
   char a[POST_NUMBER], b[POST_NUMBER];
   if (lo == hi)
@@ -55,7 +55,7 @@ static void put_span(post_buffer *out, double lo, double hi, const char *unit) {
     post_put(out, "%s … %s %s", post_plain(a, lo, 6), post_plain(b, hi, 6), unit);
 }
 
-/* Files of earlier versions hold the inertia of the contact alone. */
+/* Earlier versions wrote the inertia of the contact only. */
 static const char *inertia_of(const modal_model *m) {
   bool load   = m->load_inertia || !m->load_residual;
   bool probes = m->n_probes == 0 || !m->probe_contact_residual ||
@@ -82,42 +82,42 @@ static shb_status sum_up_modal(hid_t file, const char *path, bool verbose, post_
   if (m.n_residual > 0) post_put(out, ", ");
   if (m.n_residual > 0) put_count(out, m.n_residual, "residual mode");
   post_put(out, "\n");
-  shb_status   status = post_modes(file, &m, verbose, out);
+  shb_status   status = post_mode_table(file, &m, verbose, out);
   modal_speeds speeds = {0};
   if (status == SHB_OK) status = modal_speeds_read(path, &speeds);
   if (speeds.n > 0) post_campbell_table(&speeds, verbose, out);
   modal_speeds_free(&speeds);
-  if (status == SHB_OK) status = post_phases(file, out);
+  if (status == SHB_OK) status = post_phase_table(file, out);
   modal_model_free(&m);
   return status;
 }
 
 /* "90 … 270 Hz", "scale 0.05 … 10 at 240 Hz" */
-static void put_range(const post_study *study, post_buffer *out) {
-  const post_abscissa *x = &study->abscissa;
-  if (post_at_one_frequency(study)) {
+static void put_range(const post_analysis *analysis, post_buffer *out) {
+  const post_abscissa *x = &analysis->abscissa;
+  if (post_at_one_frequency(analysis)) {
     const char *unit = mhb_parameter_unit(x->parameter);
     post_put(out, "%s ", mhb_parameter_name(x->parameter));
     put_span(out, x->range[0], x->range[1], unit);
     post_put(out, *unit ? " at " : "at ");
   }
-  put_span(out, study->frequency[0], study->frequency[1], "Hz");
+  put_span(out, analysis->frequency[0], analysis->frequency[1], "Hz");
 }
 
-static void sum_up_branches(const post_study *study, post_buffer *out) {
-  const mhb_response *r         = study->response;
-  int                 nonlinear = 0, linear = 0, cut = 0, folds = 0, last = study->n_ranks - 1;
+static void sum_up_branches(const post_analysis *analysis, post_buffer *out) {
+  const mhb_response *r         = analysis->response;
+  int                 nonlinear = 0, linear = 0, cut = 0, folds = 0, last = analysis->n_ranks - 1;
   for (int b = 0; b < r->n_branches; b++) {
     mhb_branch_kind kind = r->branch[b].kind;
     nonlinear += kind == MHB_BRANCH_NONLINEAR;
     linear += kind == MHB_BRANCH_OPEN || kind == MHB_BRANCH_STUCK;
     cut += !r->branch[b].complete;
-    folds += study->curve[b].n_folds;
+    folds += analysis->curve[b].n_folds;
   }
   put_count(out, nonlinear, "nonlinear curve");
   if (last >= 0) {
     post_put(out, ", n0 ");
-    put_span(out, study->group[0].n0, study->group[last].n0, "N");
+    put_span(out, analysis->group[0].n0, analysis->group[last].n0, "N");
   }
   post_put(out, "; ");
   put_count(out, linear, "linear limit");
@@ -127,36 +127,36 @@ static void sum_up_branches(const post_study *study, post_buffer *out) {
     post_put(out, " by time integration");
   }
   post_put(out, "; ");
-  put_count(out, study->n_points, "point");
+  put_count(out, analysis->n_points, "point");
   post_put(out, ", ");
-  put_range(study, out);
+  put_range(analysis, out);
   post_put(out, "; ");
   put_count(out, folds, "fold");
   if (cut) post_put(out, "; %d not complete", cut);
   if (r->run_up) post_put(out, "\n  ");
-  post_put_run_up(study, out);
+  post_put_run_up(analysis, out);
   post_put(out, "\n  ");
 }
 
 static shb_status sum_up_response(const char *path, post_buffer *out) {
-  mhb_response *r;
-  post_study   *study;
+  mhb_response  *r;
+  post_analysis *analysis;
   SHB_TRY(mhb_response_read(path, &r));
-  shb_status status = post_study_create(r, &study);
+  shb_status status = post_analysis_create(r, &analysis);
   if (status == SHB_OK) {
     post_buffer peaks = {0};
-    sum_up_branches(study, out);
+    sum_up_branches(analysis, out);
     post_put_harmonics(r, out);
     post_put(out, "; ");
     put_count(out, r->n_pairs, "pair");
     put_interfaces(out, r->n_pairs, r->interface, r->n_interfaces, r->interface_name);
     post_put(out, "; ");
     put_names(out, r->n_probes, r->probe_name);
-    post_summary(study, &peaks);
+    post_summary(analysis, &peaks);
     if (peaks.text) post_put(out, "\n  %s", peaks.text);
     post_put(out, "\n");
     post_buffer_free(&peaks);
-    post_study_destroy(study);
+    post_analysis_destroy(analysis);
   }
   mhb_response_destroy(r);
   return status;
@@ -177,7 +177,7 @@ static int count_lines(const char *text) {
   return n;
 }
 
-/* Indented. */
+/* Write the text indented. */
 static void put_quoted(const char *text, post_buffer *out) {
   while (*text) {
     char   line[1024];
@@ -201,7 +201,7 @@ static void put_block(const char *label, const char *text, post_tree_style style
   if (style.verbose) put_quoted(text, out);
 }
 
-static void put_source(const post_source *s, post_tree_style style, post_buffer *out) {
+static void put_source(const post_origin *s, post_tree_style style, post_buffer *out) {
   put_field("created", s->created, style.colour, out);
   put_field("revision", s->revision, style.colour, out);
   put_field("command", s->command, style.colour, out);
@@ -212,7 +212,7 @@ static void put_source(const post_source *s, post_tree_style style, post_buffer 
 
 /* ---------------------------------------------------------------- together */
 
-static void put_title(const char *path, const post_source *s, bool colour, post_buffer *out) {
+static void put_title(const char *path, const post_origin *s, bool colour, post_buffer *out) {
   struct stat info;
   const char *bold = colour ? "\033[1m" : "", *off = colour ? "\033[0m" : "";
   post_put(out, "%s%s%s  ", bold, path, off);
@@ -230,7 +230,7 @@ static void put_title(const char *path, const post_source *s, bool colour, post_
   post_put(out, "\n  ");
 }
 
-static shb_status sum_up(hid_t file, const char *path, const post_source *s, bool verbose,
+static shb_status sum_up(hid_t file, const char *path, const post_origin *s, bool verbose,
                          post_buffer *out) {
   if (strcmp(s->format, "shroudhb modal model") == 0) return sum_up_modal(file, path, verbose, out);
   if (strcmp(s->format, "shroudhb response") == 0) return sum_up_response(path, out);
@@ -240,17 +240,17 @@ static shb_status sum_up(hid_t file, const char *path, const post_source *s, boo
 
 static shb_status inspect_open(hid_t file, const char *path, post_tree_style style,
                                post_buffer *out) {
-  post_source source;
-  SHB_TRY(post_source_read(file, &source));
+  post_origin source;
+  SHB_TRY(post_origin_read(file, &source));
   put_title(path, &source, style.colour, out);
   shb_status verdict = sum_up(file, path, &source, style.verbose, out);
   if (verdict != SHB_OK) post_put(out, "not usable: %s\n", shb_message());
   post_put(out, "\n");
   put_source(&source, style, out);
-  post_source_free(&source);
+  post_origin_free(&source);
   post_put(out, "\n");
   char *message =
-      verdict != SHB_OK ? strdup(shb_message()) : NULL; /* the tree may record another */
+      verdict != SHB_OK ? strdup(shb_message()) : NULL; /* the tree may record another message */
   shb_status status = post_tree(file, style, out);
   if (status == SHB_OK && verdict != SHB_OK)
     status = shb_fail(verdict, __FILE__, __LINE__, "%s", message ? message : "not usable");

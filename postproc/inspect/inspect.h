@@ -1,4 +1,4 @@
-/* shroudhb inspect: what an HDF5 file holds, first in a sentence, then where it came from, then its tree. */
+/* shroudhb inspect: contents of an HDF5 file as a summary, its origin, and its tree. */
 #ifndef POSTPROC_INSPECT_INSPECT_H
 #define POSTPROC_INSPECT_INSPECT_H
 
@@ -6,9 +6,9 @@
 #include "postproc/draw/text_buffer.h"
 #include "postproc/inspect/h5_tree.h"
 
-/* Any HDF5 file; one that is not ours is said to be foreign. verbose: case text and settings in full.
- * Errors: SHB_ERR_IO missing, not HDF5, truncated (out stays empty); SHB_ERR_INPUT a file that claims to be of a
- * format of ours and is not (out is complete all the same, and the message says what is wrong). */
+/* Inspect any HDF5 file; foreign ones are named so. verbose: case text and settings in full.
+ * Errors: SHB_ERR_IO missing, not HDF5, truncated (out stays empty); SHB_ERR_INPUT a file of a
+ * format of ours with invalid contents (out is complete, the message names the fault). */
 shb_status post_inspect(const char *path, post_tree_style style, post_buffer *out);
 
 #endif

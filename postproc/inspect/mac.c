@@ -7,9 +7,9 @@
 #include "modal/hdf5/h5.h"
 #include "postproc/draw/number_format.h"
 
-enum { MATRIX = 12 }; /* modes up to which the whole matrix is shown */
+enum { MATRIX = 12 }; /* largest number of modes shown as a matrix */
 
-static const double alike = .5; /* below, a mode of the other file is not the same one */
+static const double alike = 0.5; /* below this MAC two modes are different */
 
 /* ---------------------------------------------------------------- shapes */
 
@@ -25,7 +25,8 @@ static bool near(const double *a, const double *b, size_t n, double tolerance) {
   return true;
 }
 
-/* A dataset of both files of equal shape, and whether they agree to a tolerance relative to the greatest value. */
+/* True if a dataset has the same shape in both files and equal values. The tolerance is relative to
+ * the largest value. */
 static shb_status same_values(const hid_t file[2], const char *path, double tolerance, bool *same) {
   h5_shape   shape[2];
   double    *x[2]   = {NULL, NULL};
@@ -60,7 +61,8 @@ static shb_status compare_contacts(const hid_t file[2], const modal_model m[2], 
   return same_values(file, "/contact/coordinates", 1e-2, same);
 }
 
-/* Index in the second file of each probe of the first, -1: not there. */
+/* Index in the second file of each probe of the first, -1: absent. Returns the number of common
+ * probes. */
 static int common_probes(const modal_model m[2], int *at) {
   int n = 0;
   for (int p = 0; p < m[0].n_probes; p++) {
@@ -72,7 +74,7 @@ static int common_probes(const modal_model m[2], int *at) {
   return n;
 }
 
-/* [value][modes] to [modes][value] */
+/* Transpose [value][modes] to [modes][value]. */
 static void put_values(double *to, size_t stride, size_t first, const double *from, size_t n,
                        size_t modes) {
   for (size_t v = 0; v < n; v++)
@@ -97,7 +99,7 @@ static shb_status condensed_shapes(const modal_model m[2], post_mac *out, double
   int *at = calloc((size_t)m[0].n_probes + 1, sizeof *at);
   SHB_CHECK(at, SHB_ERR_IO, "not enough memory to compare the mode shapes");
   out->probes = common_probes(m, at);
-  out->values = (out->contact ? 3 * m[0].n_pairs * (m[0].has_left ? 2 : 1) : 0) + 3 * out->probes;
+  out->values = (out->contact ? modal_model_contact_dofs(&m[0]) : 0) + 3 * out->probes;
   for (int s = 0; s < 2 && out->values > 0; s++) {
     shape[s] = malloc((size_t)m[s].n_modes * (size_t)out->values * sizeof(double));
     if (!shape[s]) break;

@@ -8,7 +8,7 @@
 
 enum { AT_FIRST = 24 };
 
-/* What a file may hold of it; mass 0: nothing. */
+/* Effective masses of a file; mass 0: none. */
 typedef struct {
   double *translation, *rotation; /* [m][3] kg, [m] kg m2 */
   double  mass, inertia;          /* of the whole blade */
@@ -67,7 +67,7 @@ static void put_table(const modal_model *m, const shares *s, bool all, post_buff
   if (s->mass > 0) put_sums(m, s, out);
 }
 
-/* How it was checked that no mode is missing; nothing in files that do not tell. */
+/* How the file's check for missing modes was made; nothing if the file does not say. */
 static shb_status put_check(hid_t file, post_buffer *out) {
   char  *by = NULL, below[POST_NUMBER], number[POST_NUMBER];
   double limit, chance;
@@ -93,7 +93,7 @@ static shb_status put_check(hid_t file, post_buffer *out) {
   return status;
 }
 
-shb_status post_modes(hid_t file, const modal_model *model, bool all, post_buffer *out) {
+shb_status post_mode_table(hid_t file, const modal_model *model, bool all, post_buffer *out) {
   shares     s      = {0};
   shb_status status = read_shares(file, model, &s);
   if (status == SHB_OK) put_table(model, &s, all, out);

@@ -1,4 +1,4 @@
-/* The modes of a modal file as a table: frequency, damping, and the share of the mass that each carries. */
+/* Table of the modes of a modal file: frequency, damping, share of the mass. */
 #ifndef POSTPROC_INSPECT_MODE_TABLE_H
 #define POSTPROC_INSPECT_MODE_TABLE_H
 
@@ -9,8 +9,9 @@
 #include "modal/model/model.h"
 #include "postproc/draw/text_buffer.h"
 
-/* One line a mode, the first 24 unless all; effective masses as shares of the mass in the file, and their sums over all modes of the
- * file, where it holds them. Errors: SHB_ERR_INPUT effective masses of another shape; SHB_ERR_IO no memory. */
-shb_status post_modes(hid_t file, const modal_model *model, bool all, post_buffer *out);
+/* Write a line for each mode, the first 24 unless all. Effective masses are shares of the mass,
+ * with their sums, if the file holds them. Errors: SHB_ERR_INPUT effective masses of another shape;
+ * SHB_ERR_IO no memory. */
+shb_status post_mode_table(hid_t file, const modal_model *model, bool all, post_buffer *out);
 
 #endif

@@ -51,7 +51,7 @@ static void put_table(const table *t, post_buffer *out) {
   put_row(t, "all", all, out);
 }
 
-shb_status post_phases(hid_t file, post_buffer *out) {
+shb_status post_phase_table(hid_t file, post_buffer *out) {
   table t = {0};
   if (!h5_exists(file, "/phases/name")) return SHB_OK;
   shb_status status = read_table(file, &t);

@@ -1,4 +1,4 @@
-/* Where the time and the memory of the modal stage went, as a table. */
+/* Table of time and memory of the phases of the modal stage. */
 #ifndef POSTPROC_INSPECT_PHASE_TABLE_H
 #define POSTPROC_INSPECT_PHASE_TABLE_H
 
@@ -7,9 +7,9 @@
 #include "mesh/base/status.h"
 #include "postproc/draw/text_buffer.h"
 
-/* One line a phase and one for all; nothing where the file holds none (docs/user/files.md,
- * /phases).
- * Errors: SHB_ERR_INPUT columns of different lengths; SHB_ERR_IO no memory. */
-shb_status post_phases(hid_t file, post_buffer *out);
+/* Write a line for each phase and one for all; nothing if the file holds no phases
+ * (docs/user/files.md). Errors: SHB_ERR_INPUT columns of different lengths; SHB_ERR_IO no
+ * memory. */
+shb_status post_phase_table(hid_t file, post_buffer *out);
 
 #endif

@@ -15,7 +15,7 @@ typedef struct {
   unsigned long long finite, other;
 } extent;
 
-/* The names of the two doubles of a complex compound, as {r, i} or {real, imag}; false if it is not one. */
+/* Member names of a complex compound, {r, i} or {real, imag}; false if the type is none. */
 static bool complex_members(hid_t type, char *name[2]) {
   if (H5Tget_class(type) != H5T_COMPOUND || H5Tget_nmembers(type) != 2) return false;
   if (H5Tget_member_class(type, 0) != H5T_FLOAT || H5Tget_member_class(type, 1) != H5T_FLOAT)
@@ -38,26 +38,27 @@ static bool is_complex(hid_t type) {
   return true;
 }
 
-static void put_members(hid_t type, char out[POST_RANGE]) {
-  size_t used = (size_t)snprintf(out, POST_RANGE, "compound {");
+static void put_members(hid_t type, char out[POST_VALUE_RANGE]) {
+  size_t used = (size_t)snprintf(out, POST_VALUE_RANGE, "compound {");
   int    n    = H5Tget_nmembers(type);
   for (int i = 0; i < n && used < 100; i++) {
     char *name = H5Tget_member_name(type, (unsigned)i);
-    used += (size_t)snprintf(out + used, POST_RANGE - used, "%s%.30s", i ? ", " : "",
+    used += (size_t)snprintf(out + used, POST_VALUE_RANGE - used, "%s%.30s", i ? ", " : "",
                              name ? name : "?");
     H5free_memory(name);
   }
-  snprintf(out + used, POST_RANGE - used, "}");
+  snprintf(out + used, POST_VALUE_RANGE - used, "}");
 }
 
-char *post_type_name(hid_t type, char out[POST_RANGE]) {
+char *post_type_name(hid_t type, char out[POST_VALUE_RANGE]) {
   size_t bits = 8 * H5Tget_size(type);
   switch (H5Tget_class(type)) {
     case H5T_INTEGER:
-      snprintf(out, POST_RANGE, "%s%zu", H5Tget_sign(type) == H5T_SGN_NONE ? "uint" : "int", bits);
+      snprintf(out, POST_VALUE_RANGE, "%s%zu", H5Tget_sign(type) == H5T_SGN_NONE ? "uint" : "int",
+               bits);
       break;
     case H5T_FLOAT:
-      snprintf(out, POST_RANGE, "float%zu", bits);
+      snprintf(out, POST_VALUE_RANGE, "float%zu", bits);
       break;
     case H5T_STRING:
       strcpy(out, "string");
@@ -87,7 +88,7 @@ char *post_type_name(hid_t type, char out[POST_RANGE]) {
   return out;
 }
 
-/* Memory type of one or two doubles an element for what can be read as numbers; < 0 if it cannot. */
+/* Memory type of an element that can be read as one or two doubles; < 0 if it cannot. */
 static hid_t number_type(hid_t type, int *parts) {
   H5T_class_t kind = H5Tget_class(type);
   char       *name[2];
@@ -116,7 +117,8 @@ static void widen(extent *e, const double *values, size_t n, int parts) {
   }
 }
 
-/* Size of a piece: whole trailing dimensions as far as they fit, part of the next, one of the rest. */
+/* Size of a piece: as many whole trailing dimensions as fit, a part of the next, one of the
+ * rest. */
 static void piece_of(int rank, const hsize_t *dim, hsize_t *piece) {
   hsize_t room = PIECE;
   for (int d = rank - 1; d >= 0; d--) {
@@ -168,7 +170,7 @@ static bool read_extent(hid_t dataset, hid_t space, hid_t type, int parts, exten
   return good;
 }
 
-static void put_extent(const extent *e, bool magnitude, char out[POST_RANGE]) {
+static void put_extent(const extent *e, bool magnitude, char out[POST_VALUE_RANGE]) {
   char        lo[POST_NUMBER], hi[POST_NUMBER];
   const char *bar  = magnitude ? "|" : "";
   size_t      used = 0;
@@ -177,22 +179,23 @@ static void put_extent(const extent *e, bool magnitude, char out[POST_RANGE]) {
   if (e->finite == 0)
     strcpy(out, "no number");
   else if (e->lo == e->hi)
-    used = (size_t)snprintf(out, POST_RANGE, "%s%s%s", bar, lo, bar);
+    used = (size_t)snprintf(out, POST_VALUE_RANGE, "%s%s%s", bar, lo, bar);
   else
-    used = (size_t)snprintf(out, POST_RANGE, "%s%s … %s%s", bar, lo, hi, bar);
+    used = (size_t)snprintf(out, POST_VALUE_RANGE, "%s%s … %s%s", bar, lo, hi, bar);
   if (e->finite > 0 && e->other > 0)
-    snprintf(out + used, POST_RANGE - used, ", %llu NaN", e->other);
+    snprintf(out + used, POST_VALUE_RANGE - used, ", %llu NaN", e->other);
 }
 
-static void add_string(char out[POST_RANGE], const char *text, size_t size, hssize_t i) {
+static void add_string(char out[POST_VALUE_RANGE], const char *text, size_t size, hssize_t i) {
   size_t used = strlen(out), n = strnlen(text, size < 24 ? size : 24);
-  if (i == SHOWN_STRINGS) snprintf(out + used, POST_RANGE - used, " …");
+  if (i == SHOWN_STRINGS) snprintf(out + used, POST_VALUE_RANGE - used, " …");
   if (i >= SHOWN_STRINGS) return;
-  snprintf(out + used, POST_RANGE - used, "%s%.*s%s", i ? ", " : "", (int)n, text,
+  snprintf(out + used, POST_VALUE_RANGE - used, "%s%.*s%s", i ? ", " : "", (int)n, text,
            n == 24 && strnlen(text, size) > 24 ? "…" : "");
 }
 
-static bool read_strings(hid_t dataset, hid_t space, hid_t type, hssize_t n, char out[POST_RANGE]) {
+static bool read_strings(hid_t dataset, hid_t space, hid_t type, hssize_t n,
+                         char out[POST_VALUE_RANGE]) {
   size_t size     = H5Tget_size(type);
   bool   variable = H5Tis_variable_str(type) > 0, good;
   char  *data     = calloc((size_t)n, size);
@@ -210,7 +213,7 @@ static bool read_strings(hid_t dataset, hid_t space, hid_t type, hssize_t n, cha
   return good;
 }
 
-static void describe(hid_t dataset, hid_t space, hid_t type, char out[POST_RANGE]) {
+static void describe(hid_t dataset, hid_t space, hid_t type, char out[POST_VALUE_RANGE]) {
   hssize_t n     = H5Sget_simple_extent_npoints(space);
   int      parts = 1;
   bool     good  = true;
@@ -229,7 +232,7 @@ static void describe(hid_t dataset, hid_t space, hid_t type, char out[POST_RANGE
   if (!good) strcpy(out, "unreadable");
 }
 
-char *post_range(hid_t dataset, char out[POST_RANGE]) {
+char *post_value_range(hid_t dataset, char out[POST_VALUE_RANGE]) {
   hid_t space = H5Dget_space(dataset), type = H5Dget_type(dataset);
   out[0] = '\0';
   if (space >= 0 && type >= 0)

@@ -10,16 +10,16 @@
 
 enum { SHOWN_HARMONICS = 8 };
 
-/* "tip motion, first harmonic, µm" */
-static void amplitude_label(const post_study *study, const char *unit, char out[256]) {
+/* Label such as "tip motion, first harmonic, µm". */
+static void amplitude_label(const post_analysis *analysis, const char *unit, char out[256]) {
   char place[128];
-  post_place_name(study->response, study->primary, place);
-  snprintf(out, 256, "%s %s, first harmonic, %s", place, post_axis_name(study->primary), unit);
+  post_place_name(analysis->response, analysis->primary, place);
+  snprintf(out, 256, "%s %s, first harmonic, %s", place, post_axis_name(analysis->primary), unit);
 }
 
-/* Least and greatest of the groups' highest peaks. */
-static void peak_range(const post_study *study, double range[2]) {
-  const post_tracking *t = &study->tracking;
+/* Range of the groups' highest peaks. */
+static void peak_range(const post_analysis *analysis, double range[2]) {
+  const post_tracking *t = &analysis->tracking;
   range[0]               = INFINITY;
   range[1]               = 0;
   for (int i = 0; i < t->n + 2; i++) {
@@ -32,45 +32,46 @@ static void peak_range(const post_study *study, double range[2]) {
   }
 }
 
-/* Least and greatest amplitude of all nonlinear points. */
-static void whole_range(const post_study *study, double range[2]) {
+/* Range of amplitudes over all nonlinear points. */
+static void whole_range(const post_analysis *analysis, double range[2]) {
   range[0] = INFINITY;
   range[1] = 0;
-  for (int b = 0; b < study->response->n_branches; b++)
-    for (int p = 0; p < study->response->branch[b].n_points; p++) {
-      double a = study->curve[b].amplitude[p];
-      if (study->response->branch[b].kind != MHB_BRANCH_NONLINEAR || !(a > 0)) continue;
+  for (int b = 0; b < analysis->response->n_branches; b++)
+    for (int p = 0; p < analysis->response->branch[b].n_points; p++) {
+      double a = analysis->curve[b].amplitude[p];
+      if (analysis->response->branch[b].kind != MHB_BRANCH_NONLINEAR || !(a > 0)) continue;
       range[0] = fmin(range[0], a);
       range[1] = fmax(range[1], a);
     }
 }
 
-/* The level of the excitation: as its axis, so that a linear response is a straight line. */
-bool post_wants_log(const post_study *study) {
+/* The excitation level has the scale of its axis: a linear response is then a straight line. */
+bool post_amplitude_is_log(const post_analysis *analysis) {
   double range[2];
-  if (study->abscissa.parameter == MHB_IN_SCALE) return study->abscissa.log;
-  if (post_at_one_frequency(study)) {
-    whole_range(study, range);
+  if (analysis->abscissa.parameter == MHB_IN_SCALE) return analysis->abscissa.log;
+  if (post_at_one_frequency(analysis)) {
+    whole_range(analysis, range);
     return range[1] > 12 * range[0];
   }
-  peak_range(study, range);
+  peak_range(analysis, range);
   return range[1] > 6 * range[0];
 }
 
-static plot_axis amplitude_axis(const post_study *study, double unit, const char *label) {
-  if (!post_wants_log(study))
-    return (plot_axis){0, study->largest > 0 ? 1.06 * study->largest : unit, false, 0, unit, label};
+static plot_axis amplitude_axis(const post_analysis *analysis, double unit, const char *label) {
+  if (!post_amplitude_is_log(analysis))
+    return (plot_axis){
+        0, analysis->largest > 0 ? 1.06 * analysis->largest : unit, false, 0, unit, label};
   double least = INFINITY;
-  for (int b = 0; b < study->response->n_branches; b++)
-    for (int p = 0; p < study->response->branch[b].n_points; p++) {
-      double a = study->curve[b].amplitude[p];
+  for (int b = 0; b < analysis->response->n_branches; b++)
+    for (int p = 0; p < analysis->response->branch[b].n_points; p++) {
+      double a = analysis->curve[b].amplitude[p];
       if (a > 0) least = fmin(least, a);
     }
   return (plot_axis){
-      fmax(least / 1.2, 1e-4 * study->largest), 1.4 * study->largest, true, 0, unit, label};
+      fmax(least / 1.2, 1e-4 * analysis->largest), 1.4 * analysis->largest, true, 0, unit, label};
 }
 
-static void group_classes(const post_group *group, char out[40]) {
+void post_group_class(const post_group *group, char out[POST_CLASS]) {
   if (group->kind == MHB_BRANCH_OPEN)
     strcpy(out, "limit open");
   else if (group->kind == MHB_BRANCH_STUCK)
@@ -78,29 +79,30 @@ static void group_classes(const post_group *group, char out[40]) {
   else if (group->rank < 0)
     strcpy(out, "varying");
   else
-    snprintf(out, 40, "c%d", group->rank);
+    snprintf(out, POST_CLASS, "c%d", group->rank);
 }
 
-/* Points by integration: full dots, rings where the motion does not repeat itself. */
-static void draw_points(const post_study *study, const post_plot *plot, int b) {
-  const mhb_branch *branch = &study->response->branch[b];
-  char              group[40], classes[64];
-  group_classes(&study->group[study->curve[b].group], group);
+/* Points by time integration: dots, or rings where the motion is not periodic. */
+static void draw_points(const post_analysis *analysis, const post_plot *plot, int b) {
+  const mhb_branch *branch = &analysis->response->branch[b];
+  char              group[POST_CLASS], classes[64];
+  post_group_class(&analysis->group[analysis->curve[b].group], group);
   for (int i = 0; i < branch->n_points; i++) {
-    snprintf(classes, sizeof classes, "witness %s%s", branch->multiple[i] ? "" : "adrift ", group);
-    plot_dot(plot, classes, post_abscissa_values(study->response, branch)[i],
-             study->curve[b].amplitude[i], 2.4);
+    snprintf(classes, sizeof classes, "integration %s%s", branch->multiple[i] ? "" : "aperiodic ",
+             group);
+    plot_dot(plot, classes, post_abscissa_values(analysis->response, branch)[i],
+             analysis->curve[b].amplitude[i], 2.4);
   }
 }
 
-/* One branch: a piece that touches an unstable point is dotted; folds are small circles, flips and Neimark-Sacker
- * points full ones. */
-static void draw_branch(const post_study *study, const post_plot *plot, int b) {
-  const mhb_branch *branch = &study->response->branch[b];
-  const post_curve *c      = &study->curve[b];
-  const double     *x      = post_abscissa_values(study->response, branch);
+/* Draw one branch. Pieces next to an unstable point are dotted. Folds are small circles; flips and
+ * Neimark-Sacker points are dots. */
+static void draw_branch(const post_analysis *analysis, const post_plot *plot, int b) {
+  const mhb_branch *branch = &analysis->response->branch[b];
+  const post_curve *c      = &analysis->curve[b];
+  const double     *x      = post_abscissa_values(analysis->response, branch);
   int               n      = branch->n_points;
-  char              group[40], classes[64];
+  char              group[POST_CLASS], classes[64];
   bool             *stable = malloc((size_t)(n > 0 ? n : 1) * 2 * sizeof *stable);
   if (!stable) {
     plot->out->failed = true;
@@ -112,7 +114,7 @@ static void draw_branch(const post_study *study, const post_plot *plot, int b) {
     stable[i]   = !unstable[i];
     if (post_left_range(n, x, c->amplitude, i - 1)) stable[i] = unstable[i] = false;
   }
-  group_classes(&study->group[c->group], group);
+  post_group_class(&analysis->group[c->group], group);
   snprintf(classes, sizeof classes, "line %s", group);
   plot_line(plot, classes, n, x, c->amplitude, stable);
   snprintf(classes, sizeof classes, "line unstable %s", group);
@@ -123,28 +125,28 @@ static void draw_branch(const post_study *study, const post_plot *plot, int b) {
   snprintf(classes, sizeof classes, "fold %s", group);
   for (int i = 0; i < c->n_folds; i++)
     plot_dot(plot, classes, c->fold[i].at, c->fold[i].amplitude, 2.6);
-  snprintf(classes, sizeof classes, "turn %s", group);
+  snprintf(classes, sizeof classes, "bifurcation %s", group);
   for (int i = 0; i < n; i++)
     if (branch->special[i] == MHB_FLIP || branch->special[i] == MHB_NEIMARK_SACKER)
       plot_dot(plot, classes, x[i], c->amplitude[i], 2.6);
 }
 
-/* Names of the limits above their peaks: within the frame, and moved aside where they would cover each other. */
-static void name_limits(const post_study *study, const post_plot *plot) {
-  enum { NAME = 44, ABOVE = 7 }; /* a name's room, px; what it is lifted by */
-  const post_track_point *limit[2] = {&study->tracking.open, &study->tracking.stuck};
-  const double           *range    = study->abscissa.range;
+/* Label the limits above their peaks, inside the frame, and apart from each other. */
+static void name_limits(const post_analysis *analysis, const post_plot *plot) {
+  enum { NAME = 44, ABOVE = 7 }; /* width of a label and its height above the peak, px */
+  const post_track_point *limit[2] = {&analysis->tracking.open, &analysis->tracking.stuck};
+  const double           *range    = analysis->abscissa.range;
   double                  peak[2], centre[2];
   for (int i = 0; i < 2; i++) {
     peak[i]   = (limit[i]->at - range[0]) / (range[1] - range[0]) * plot->width;
-    centre[i] = fmin(fmax(peak[i], NAME / 2), plot->width - NAME / 2);
+    centre[i] = fmin(fmax(peak[i], NAME / 2.0), plot->width - NAME / 2.0);
   }
   const int first = peak[0] > peak[1], second = 1 - first;
   if (limit[0]->amplitude > 0 && limit[1]->amplitude > 0 && centre[second] - centre[first] < NAME) {
     double middle  = (centre[0] + centre[1]) / 2;
     middle         = fmin(fmax(middle, NAME), plot->width - NAME);
-    centre[first]  = middle - NAME / 2;
-    centre[second] = middle + NAME / 2;
+    centre[first]  = middle - NAME / 2.0;
+    centre[second] = middle + NAME / 2.0;
   }
   for (int i = 0; i < 2; i++) {
     const double move[2] = {centre[i] - peak[i], -ABOVE};
@@ -154,62 +156,65 @@ static void name_limits(const post_study *study, const post_plot *plot) {
   }
 }
 
-static void draw_curves(const post_study *study, const post_plot *plot) {
-  for (int pass = 0; pass < 2; pass++) /* limits below, points by integration on top */
-    for (int b = 0; b < study->response->n_branches; b++) {
-      mhb_branch_kind kind = study->response->branch[b].kind;
+static void draw_curves(const post_analysis *analysis, const post_plot *plot) {
+  /* first the limits, then nonlinear curves, last points by time integration */
+  for (int pass = 0; pass < 2; pass++)
+    for (int b = 0; b < analysis->response->n_branches; b++) {
+      mhb_branch_kind kind = analysis->response->branch[b].kind;
       if (kind != MHB_BRANCH_INTEGRATION && (kind == MHB_BRANCH_NONLINEAR) == (pass == 1))
-        draw_branch(study, plot, b);
+        draw_branch(analysis, plot, b);
     }
-  for (int b = 0; b < study->response->n_branches; b++)
-    if (study->response->branch[b].kind == MHB_BRANCH_INTEGRATION) draw_points(study, plot, b);
-  name_limits(study, plot);
+  for (int b = 0; b < analysis->response->n_branches; b++)
+    if (analysis->response->branch[b].kind == MHB_BRANCH_INTEGRATION)
+      draw_points(analysis, plot, b);
+  name_limits(analysis, plot);
 }
 
-void post_draw_response(const post_study *study, post_plot *plot) {
+void post_draw_response(const post_analysis *analysis, post_plot *plot) {
   char      label[256], below[POST_LABEL];
-  post_unit unit = post_unit_length(study->largest);
-  amplitude_label(study, unit.name, label);
-  post_abscissa_label(&study->abscissa, "", below);
-  plot->y = amplitude_axis(study, unit.scale, label);
-  plot->x = post_abscissa_axis(&study->abscissa, below);
+  post_unit unit = post_unit_length(analysis->largest);
+  amplitude_label(analysis, unit.name, label);
+  post_abscissa_label(&analysis->abscissa, "", below);
+  plot->y = amplitude_axis(analysis, unit.scale, label);
+  plot->x = post_abscissa_axis(&analysis->abscissa, below);
   plot_frame(plot);
-  draw_curves(study, plot);
+  draw_curves(analysis, plot);
 }
 
-static void describe(const post_study *study, char out[320]) {
+static void describe(const post_analysis *analysis, char out[320]) {
   char frequency[POST_PLACE];
   snprintf(out, 320,
            "Amplitude against %s%s, %d curves; solid: nonlinear, one colour a preload; "
            "dots: time integration; "
            "dashed: the linear "
            "limits; dotted: unstable. The same numbers are in the tables and in the CSV file.",
-           study->abscissa.name, post_frequency_text(study, frequency),
-           study->response->n_branches);
+           analysis->abscissa.name, post_frequency_text(analysis, frequency),
+           analysis->response->n_branches);
 }
 
-void post_chart_response(const post_study *study, const char *case_name, post_buffer *out) {
+void post_chart_response(const post_analysis *analysis, const char *case_name, post_buffer *out) {
   char title[256], text[320];
   snprintf(title, sizeof title, "Forced response of %s", case_name);
-  describe(study, text);
+  describe(analysis, text);
   plot_svg_open(out, "response", 1100, 540, title, text);
   post_plot plot = {
       .out = out, .id = "response", .left = 60, .top = 34, .width = 1020, .height = 456};
-  post_draw_response(study, &plot);
+  post_draw_response(analysis, &plot);
   plot_svg_close(out);
 }
 
-int post_chosen_branch(const post_study *study) {
-  const post_tracking *t = &study->tracking;
+int post_chosen_branch(const post_analysis *analysis) {
+  const post_tracking *t = &analysis->tracking;
   if (t->best >= 0) return t->point[t->best].branch;
-  for (int b = 0; b < study->response->n_branches; b++)
-    if (study->response->branch[b].kind == MHB_BRANCH_NONLINEAR &&
-        study->response->branch[b].n_points > 0)
+  for (int b = 0; b < analysis->response->n_branches; b++)
+    if (analysis->response->branch[b].kind == MHB_BRANCH_NONLINEAR &&
+        analysis->response->branch[b].n_points > 0)
       return b;
   return -1;
 }
 
-/* Logarithmic over decades; with gaps (n0 < 0) among them, of both signs about the smallest. */
+/* Logarithmic axis over decades; with gaps (n0 < 0), an axis of both signs about the smallest
+ * value. */
 static plot_axis preload_axis(const post_tracking *t, double unit, const char *label) {
   double lo = t->point[0].n0, hi = t->point[t->n - 1].n0, least = INFINITY;
   for (int i = 0; i < t->n; i++)
@@ -219,14 +224,14 @@ static plot_axis preload_axis(const post_tracking *t, double unit, const char *l
   return plot_axis_around(lo, hi, wide, unit, label);
 }
 
-/* Room below for the words under the lowest peak. */
+/* Axis with space for the text below the lowest peak. */
 static plot_axis peak_axis(const double range[2], bool log_scale, double unit, const char *label) {
   if (!log_scale) return (plot_axis){0, 1.1 * range[1], false, 0, unit, label};
   double air = 1.15 * pow(range[1] / range[0], 0.14);
   return (plot_axis){range[0] / air, 1.2 * range[1], true, 0, unit, label};
 }
 
-/* The limits' level with its name at one end. */
+/* Horizontal line of a limit, with its label at one end. */
 static void draw_level(const post_plot *plot, double value, bool open) {
   if (!isfinite(value)) return;
   const double move[2] = {open ? 6 : -6, -5};
@@ -235,17 +240,17 @@ static void draw_level(const post_plot *plot, double value, bool open) {
             open ? "start" : "end", open ? "open" : "stuck");
 }
 
-/* All the lesser peaks of the preloads, faint; the highest ones joined. */
-static void draw_track(const post_study *study, const post_plot *plot, bool place) {
-  const post_tracking *t = &study->tracking;
-  if (!place || !post_at_one_frequency(study)) {
+/* Draw all lower peaks of the preloads, faint, and join the highest ones. */
+static void draw_track(const post_analysis *analysis, const post_plot *plot, bool place) {
+  const post_tracking *t = &analysis->tracking;
+  if (!place || !post_at_one_frequency(analysis)) {
     draw_level(plot, place ? t->open.at : t->open.amplitude, true);
     draw_level(plot, place ? t->stuck.at : t->stuck.amplitude, false);
   }
-  for (int b = 0; b < study->response->n_branches; b++) {
-    const post_group *group = &study->group[study->curve[b].group];
-    for (int i = 0; group->rank >= 0 && i < study->curve[b].n_peaks; i++) {
-      const post_peak *peak = &study->curve[b].peak[i];
+  for (int b = 0; b < analysis->response->n_branches; b++) {
+    const post_group *group = &analysis->group[analysis->curve[b].group];
+    for (int i = 0; group->rank >= 0 && i < analysis->curve[b].n_peaks; i++) {
+      const post_peak *peak = &analysis->curve[b].peak[i];
       plot_dot(plot, "lesser", group->n0, place ? peak->at : peak->amplitude, 2.4);
     }
   }
@@ -267,30 +272,30 @@ static void draw_track(const post_study *study, const post_plot *plot, bool plac
   free(x);
 }
 
-void post_chart_tracking(const post_study *study, post_buffer *out) {
-  const post_tracking *t = &study->tracking;
+void post_chart_tracking(const post_analysis *analysis, post_buffer *out) {
+  const post_tracking *t = &analysis->tracking;
   if (t->n < 2) return;
   char      label[64], optimum[96], number[POST_NUMBER], preload[64], where[POST_LABEL], text[320];
   double    range[2], low = INFINITY, high = -INFINITY;
-  post_unit unit  = post_unit_length(study->largest);
+  post_unit unit  = post_unit_length(analysis->largest);
   post_unit force = post_unit_force(fmax(fabs(t->point[0].n0), fabs(t->point[t->n - 1].n0)));
-  peak_range(study, range);
-  for (int i = 0; i < t->n + (post_at_one_frequency(study) ? 0 : 2); i++) {
+  peak_range(analysis, range);
+  for (int i = 0; i < t->n + (post_at_one_frequency(analysis) ? 0 : 2); i++) {
     double at = i < t->n ? t->point[i].at : i == t->n ? t->open.at : t->stuck.at;
     low       = fmin(low, at);
     high      = fmax(high, at);
   }
   snprintf(text, sizeof text,
            "Above: amplitude of the highest peak; below: its %s. Dashed: linear limits.",
-           study->abscissa.name);
+           analysis->abscissa.name);
   plot_svg_open(out, "tracking", 1100, 600, "Highest peak against preload", text);
   snprintf(label, sizeof label, "highest peak, %s", unit.name);
   post_plot above = {
       .out = out, .id = "tracking-a", .left = 60, .top = 34, .width = 1020, .height = 280};
   above.x = preload_axis(t, force.scale, NULL);
-  above.y = peak_axis(range, post_wants_log(study), unit.scale, label);
+  above.y = peak_axis(range, post_amplitude_is_log(analysis), unit.scale, label);
   plot_frame(&above);
-  draw_track(study, &above, false);
+  draw_track(analysis, &above, false);
   const post_track_point *best = &t->point[t->best];
   snprintf(optimum, sizeof optimum, "lowest: %s\u00a0%s",
            post_plain(number, best->n0 / force.scale, 4), force.name);
@@ -301,15 +306,15 @@ void post_chart_tracking(const post_study *study, post_buffer *out) {
       .out = out, .id = "tracking-f", .left = 60, .top = 374, .width = 1020, .height = 170};
   below.x       = above.x;
   below.x.label = preload;
-  below.y =
-      plot_axis_around(low, high, study->abscissa.log && high > 8 * low, study->abscissa.unit.scale,
-                       post_abscissa_label(&study->abscissa, "its ", where));
+  below.y       = plot_axis_around(low, high, analysis->abscissa.log && high > 8 * low,
+                                   analysis->abscissa.unit.scale,
+                                   post_abscissa_label(&analysis->abscissa, "its ", where));
   plot_frame(&below);
-  draw_track(study, &below, true);
+  draw_track(analysis, &below, true);
   plot_svg_close(out);
 }
 
-/* Names of the preloads under the bars, as many as fit. */
+/* Label the preloads under the bars, as many as fit. */
 static void draw_categories(const post_plot *plot, const post_tracking *t) {
   int every = 1 + (t->n - 1) / 12;
   for (int i = 0; i < t->n; i += every) {
@@ -323,100 +328,105 @@ static void draw_categories(const post_plot *plot, const post_tracking *t) {
            plot->left + plot->width, plot->top + plot->height + 36);
 }
 
-static void draw_state_bars(const post_study *study, const post_plot *shares,
+static void draw_state_bars(const post_analysis *analysis, const post_plot *shares,
                             const post_plot *energy) {
   static const char *const classes[] = {"state stick", "state slip", "state gap"};
-  const post_tracking     *t         = &study->tracking;
+  const post_tracking     *t         = &analysis->tracking;
   for (int i = 0; i < t->n; i++) {
-    const mhb_branch *branch = &study->response->branch[t->point[i].branch];
+    const mhb_branch *branch = &analysis->response->branch[t->point[i].branch];
     double            below = 0, x[2] = {i - 0.36, i + 0.36};
     for (int s = 0; s < 3; s++) {
-      double share = post_state(study->response, branch, t->point[i].point, s);
+      double share = post_state(analysis->response, branch, t->point[i].point, s);
       plot_bar(shares, classes[s], x, (const double[2]){below, below + share});
       below += share;
     }
     char   colour[40];
-    double spent = post_dissipation(study->response, branch, t->point[i].point);
+    double spent = post_dissipation(analysis->response, branch, t->point[i].point);
     snprintf(colour, sizeof colour, "bar c%d", i);
     plot_bar(energy, colour, x, (const double[2]){0, spent});
   }
 }
 
-void post_chart_state(const post_study *study, post_buffer *out) {
-  const post_tracking *t = &study->tracking;
-  if (t->n < 1 || study->response->n_pairs < 1) return;
-  double most = 0;
-  for (int i = 0; i < t->n; i++)
-    most =
-        fmax(most, post_dissipation(study->response, &study->response->branch[t->point[i].branch],
-                                    t->point[i].point));
+/* Two data areas, one above the other: shares of the period, and energy up to most (J). */
+typedef struct {
+  post_plot shares, energy;
+  char      id[2][16], label[64];
+} contact_panels;
+
+static void open_panels(contact_panels *p, const char *id, const char *title, const char *text,
+                        double most, post_buffer *out) {
   post_unit unit = post_unit_energy(most);
-  char      label[64];
-  snprintf(label, sizeof label, "dissipated a cycle, %s", unit.name);
-  plot_svg_open(
-      out, "state", 540, 470, "Contact at the highest peak, by preload",
-      "Above: share of the period stuck, slipping, open (mean of the contacts). Below: energy "
-      "dissipated a cycle (all contacts).");
-  post_plot shares = {
-      .out = out, .id = "state-s", .left = 60, .top = 34, .width = 464, .height = 180};
-  post_plot energy = {
-      .out = out, .id = "state-d", .left = 60, .top = 266, .width = 464, .height = 150};
-  shares.x = energy.x = (plot_axis){-0.6, t->n - 0.4, false, 0, 1, NULL};
-  shares.y            = (plot_axis){0, 1, false, 0, 0.01, "share of the period, %"};
-  energy.y      = (plot_axis){0, most > 0 ? 1.08 * most : unit.scale, false, 0, unit.scale, label};
-  shares.x.unit = energy.x.unit = 0; /* categories: no ticks */
-  plot_frame(&shares);
-  plot_frame(&energy);
-  draw_state_bars(study, &shares, &energy);
-  draw_categories(&energy, t);
+  snprintf(p->id[0], sizeof p->id[0], "%s-s", id);
+  snprintf(p->id[1], sizeof p->id[1], "%s-d", id);
+  snprintf(p->label, sizeof p->label, "dissipated a cycle, %s", unit.name);
+  p->shares =
+      (post_plot){.out = out, .id = p->id[0], .left = 60, .top = 34, .width = 464, .height = 180};
+  p->energy =
+      (post_plot){.out = out, .id = p->id[1], .left = 60, .top = 266, .width = 464, .height = 150};
+  p->energy.y = (plot_axis){0, most > 0 ? 1.08 * most : unit.scale, false, 0, unit.scale, p->label};
+  plot_svg_open(out, id, 540, 470, title, text);
+}
+
+void post_chart_state(const post_analysis *analysis, post_buffer *out) {
+  const post_tracking *t    = &analysis->tracking;
+  double               most = 0;
+  contact_panels       panels;
+  if (t->n < 1 || analysis->response->n_pairs < 1) return;
+  for (int i = 0; i < t->n; i++) {
+    const mhb_branch *branch = &analysis->response->branch[t->point[i].branch];
+    most = fmax(most, post_dissipation(analysis->response, branch, t->point[i].point));
+  }
+  open_panels(&panels, "state", "Contact at the highest peak, by preload",
+              "Above: share of the period stuck, slipping, open (mean of the contacts). Below: "
+              "energy dissipated a cycle (all contacts).",
+              most, out);
+  const plot_axis categories = {-0.6, t->n - 0.4, false, 0, 0, NULL}; /* unit 0: no ticks */
+  panels.shares.x = panels.energy.x = categories;
+  panels.shares.y                   = (plot_axis){0, 1, false, 0, 0.01, "share of the period, %"};
+  plot_frame(&panels.shares);
+  plot_frame(&panels.energy);
+  draw_state_bars(analysis, &panels.shares, &panels.energy);
+  draw_categories(&panels.energy, t);
   plot_svg_close(out);
 }
 
-void post_chart_along(const post_study *study, int b, post_buffer *out) {
+void post_chart_along(const post_analysis *analysis, int b, post_buffer *out) {
   static const char *const classes[] = {"line stick", "line slip", "line gap"};
-  const mhb_branch        *branch    = &study->response->branch[b];
-  const double            *x         = post_abscissa_values(study->response, branch);
+  const mhb_branch        *branch    = &analysis->response->branch[b];
+  const double            *x         = post_abscissa_values(analysis->response, branch);
   int                      n         = branch->n_points;
-  if (n < 1 || study->response->n_pairs < 1) return;
+  if (n < 1 || analysis->response->n_pairs < 1) return;
   double *y = calloc((size_t)n, 4 * sizeof *y), most = 0;
   if (!y) {
     out->failed = true;
     return;
   }
   for (int i = 0; i < n; i++) {
-    for (int s = 0; s < 3; s++) y[s * n + i] = post_state(study->response, branch, i, s);
-    y[3 * n + i] = post_dissipation(study->response, branch, i);
+    for (int s = 0; s < 3; s++) y[s * n + i] = post_state(analysis->response, branch, i, s);
+    y[3 * n + i] = post_dissipation(analysis->response, branch, i);
     most         = fmax(most, y[3 * n + i]);
   }
-  post_unit unit = post_unit_energy(most);
-  char      label[64];
-  snprintf(label, sizeof label, "dissipated a cycle, %s", unit.name);
-  char below[POST_LABEL], text[320];
+  char           below[POST_LABEL], text[320], group[POST_CLASS], line[64];
+  contact_panels panels;
   snprintf(text, sizeof text,
            "Above: share of the period stuck, slipping, open against %s. Below: energy "
            "dissipated a cycle.",
-           study->abscissa.name);
-  plot_svg_open(out, "along", 540, 470, "Contact along one curve", text);
-  post_plot shares = {
-      .out = out, .id = "along-s", .left = 60, .top = 34, .width = 464, .height = 180};
-  post_plot energy = {
-      .out = out, .id = "along-d", .left = 60, .top = 266, .width = 464, .height = 150};
-  shares.x = energy.x = post_abscissa_axis(&study->abscissa, NULL);
-  energy.x.label      = post_abscissa_label(&study->abscissa, "", below);
-  shares.y            = (plot_axis){-0.02, 1.02, false, 0, 0.01, "share of the period, %"};
-  energy.y = (plot_axis){0, most > 0 ? 1.08 * most : unit.scale, false, 0, unit.scale, label};
-  plot_frame(&shares);
-  plot_frame(&energy);
-  for (int s = 0; s < 3; s++) plot_line(&shares, classes[s], n, x, y + s * n, NULL);
-  char group[40], line[64];
-  group_classes(&study->group[study->curve[b].group], group);
+           analysis->abscissa.name);
+  open_panels(&panels, "along", "Contact along one curve", text, most, out);
+  panels.shares.x = panels.energy.x = post_abscissa_axis(&analysis->abscissa, NULL);
+  panels.energy.x.label             = post_abscissa_label(&analysis->abscissa, "", below);
+  panels.shares.y = (plot_axis){-0.02, 1.02, false, 0, 0.01, "share of the period, %"};
+  plot_frame(&panels.shares);
+  plot_frame(&panels.energy);
+  for (int s = 0; s < 3; s++) plot_line(&panels.shares, classes[s], n, x, y + s * n, NULL);
+  post_group_class(&analysis->group[analysis->curve[b].group], group);
   snprintf(line, sizeof line, "line %s", group);
-  plot_line(&energy, line, n, x, y + 3 * n, NULL);
+  plot_line(&panels.energy, line, n, x, y + 3 * n, NULL);
   free(y);
   plot_svg_close(out);
 }
 
-/* "k = 1" at the end of each curve, y [m + 1][n_points]; one that would cover another moves down. */
+/* Label each curve of y [m + 1][n_points] at its end, "k = 1". Overlapping labels move down. */
 static void name_harmonics(const post_plot *plot, int m, const mhb_branch *branch, const double *x,
                            const double *y) {
   int    n = branch->n_points, used = 0;
@@ -439,8 +449,8 @@ static void name_harmonics(const post_plot *plot, int m, const mhb_branch *branc
   }
 }
 
-void post_chart_harmonics(const post_study *study, int b, post_buffer *out) {
-  const mhb_response *response = study->response;
+void post_chart_harmonics(const post_analysis *analysis, int b, post_buffer *out) {
+  const mhb_response *response = analysis->response;
   const mhb_branch   *branch   = &response->branch[b];
   const double       *x        = post_abscissa_values(response, branch);
   int                 n = branch->n_points, m = branch->n_harmonics;
@@ -453,21 +463,22 @@ void post_chart_harmonics(const post_study *study, int b, post_buffer *out) {
   }
   for (int k = 0; k <= m; k++)
     for (int i = 0; i < n; i++) {
-      y[k * n + i] = post_amplitude(response, branch, i, study->primary, k);
+      y[k * n + i] = post_amplitude(response, branch, i, analysis->primary, k);
       most         = fmax(most, y[k * n + i]);
       if (y[k * n + i] > 0) least = fmin(least, y[k * n + i]);
     }
   post_unit unit = post_unit_length(most);
   char      label[160], place[128], below[POST_LABEL], text[160];
-  post_place_name(response, study->primary, place);
+  post_place_name(response, analysis->primary, place);
   snprintf(label, sizeof label, "%s, amplitude of each harmonic, %s", place, unit.name);
   if (!(most > 0)) most = least = unit.scale;
   snprintf(text, sizeof text, "Amplitude of each harmonic of the motion against %s, logarithmic.",
-           study->abscissa.name);
+           analysis->abscissa.name);
   plot_svg_open(out, "harmonics", 1100, 360, "Harmonics along one curve", text);
   post_plot plot = {
       .out = out, .id = "harmonics", .left = 60, .top = 34, .width = 980, .height = 272};
-  plot.x = post_abscissa_axis(&study->abscissa, post_abscissa_label(&study->abscissa, "", below));
+  plot.x =
+      post_abscissa_axis(&analysis->abscissa, post_abscissa_label(&analysis->abscissa, "", below));
   plot.y = (plot_axis){fmax(1e-6 * most, least / 2), 2 * most, true, 0, unit.scale, label};
   plot_frame(&plot);
   for (int k = 0; k <= m; k++) {

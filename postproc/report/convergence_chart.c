@@ -26,20 +26,7 @@ const char post_convergence_css[] =
     ".l-acc{color:#e2a15c}.l-modes{color:#86c586}.l-bare{color:#c9cd6a}.l-mesh{color:#f08aa4}"
     ".l-all{color:#e6eaee}}";
 
-static void put_style(post_buffer *out) {
-  post_put(
-      out,
-      "<style>text{font:12.5px 'Helvetica Neue',Helvetica,Arial,sans-serif;fill:#56606c}"
-      ".page{fill:#fff}.axis{fill:#1b2530}.heading{font-size:18px;font-weight:600;fill:#1b2530}"
-      ".line{fill:none;stroke:currentColor;stroke-width:1.8;stroke-linejoin:round}"
-      ".dot{fill:currentColor}.grid{stroke:#e4e7ea}.base{stroke:#8c959f;fill:none}"
-      "@media screen and (prefers-color-scheme:dark){text{fill:#9aa5b1}.page{fill:#12171d}"
-      ".axis,.heading{fill:#e6eaee}.grid{stroke:#262e37}.base{stroke:#6b7682}}");
-  post_put(out, "%s</style>\n", post_convergence_css);
-  post_put(out, "<rect class=\"page\" width=\"%d\" height=\"%d\"/>\n", WIDTH, HEIGHT);
-}
-
-/* Whether a rung has a place in the plot: compared, and timed. */
+/* True if a rung was compared and timed. */
 static bool is_drawn(const post_rung *r) {
   return !r->reference && !isnan(post_rung_error(r)) && r->seconds > 0;
 }
@@ -48,7 +35,7 @@ static double height_of(const post_rung *r) {
   return fmax(LEAST, post_rung_error(r));
 }
 
-/* Ranges of seconds and errors, the tolerance among them. */
+/* Ranges of seconds and errors, including the tolerance. */
 static bool find_ranges(const post_convergence *s, double seconds[2], double error[2]) {
   bool any   = false;
   seconds[0] = error[0] = INFINITY;
@@ -71,7 +58,7 @@ static bool find_ranges(const post_convergence *s, double seconds[2], double err
   return any;
 }
 
-/* A label already put, px. */
+/* A label that is already placed, px. */
 typedef struct {
   double x, y, width;
 } label;
@@ -81,7 +68,7 @@ typedef struct {
   label at[256];
 } labels;
 
-/* Whether it can stand there without covering another one. */
+/* True if the label covers no other one. */
 static bool is_free(const labels *all, const label *wanted) {
   for (int i = 0; i < all->n; i++) {
     const label *l = &all->at[i];
@@ -92,7 +79,7 @@ static bool is_free(const labels *all, const label *wanted) {
   return true;
 }
 
-/* The rung's name beside its dot, at the first place that is free; none if there is none. */
+/* Label a rung at the first free position beside its dot; none without space. */
 static void put_label(const post_plot *plot, const post_rung *r, double y, labels *all) {
   static const double move[][2] = {{8, -7},  {8, 15}, {8, 4},  {-8, -7},
                                    {-8, 15}, {-8, 4}, {8, 27}, {8, -19}};
@@ -148,7 +135,7 @@ static void draw_ladder(const post_convergence *s, const post_plot *plot, post_l
   free(x);
 }
 
-/* Labels come last: then all dots are known to be kept clear of. */
+/* Labels come last, when the positions of all dots are known. */
 static void draw_labels(const post_convergence *s, const post_plot *plot, labels *all) {
   for (int ladder = POST_N_LADDERS - 1; ladder >= 0; ladder--)
     for (int i = 0; i < s->n; i++) {
@@ -157,7 +144,7 @@ static void draw_labels(const post_convergence *s, const post_plot *plot, labels
     }
 }
 
-/* The references have no error: their seconds are marked on the base line. */
+/* References have no error: mark their seconds on the base line. */
 static void draw_references(const post_convergence *s, const post_plot *plot) {
   for (int i = 0; i < s->n; i++) {
     const post_rung *r = &s->rung[i];
@@ -210,7 +197,7 @@ static void put_legend(const post_convergence *s, double left, double top, post_
            left + 12, y - 4, left + 32, y);
 }
 
-/* The data area, 76 px below the top less lift. */
+/* Data area, 76 px below the top, moved up by lift. */
 static void put_plot(const post_convergence *s, const char *title, double lift, post_buffer *out) {
   post_plot plot = {.out    = out,
                     .id     = "convergence",
@@ -233,12 +220,7 @@ static const char description[] =
 void post_convergence_picture(const post_convergence *s, const char *case_name, post_buffer *out) {
   char title[256];
   snprintf(title, sizeof title, "Speed against error: %s", case_name);
-  post_put(out, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
-  plot_svg_open(out, "convergence", WIDTH, HEIGHT, title, description);
-  put_style(out);
-  post_put(out, "<text class=\"heading\" x=\"14\" y=\"32\">");
-  post_put_escaped(out, title);
-  post_put(out, "</text>\n");
+  plot_picture_open(out, "convergence", WIDTH, HEIGHT, title, description, post_convergence_css);
   put_plot(s, axis_title, 0, out);
   plot_svg_close(out);
 }

@@ -1,17 +1,18 @@
-/* The work-precision plot of a convergence study: error against seconds, a line a ladder. */
+/* Work-precision plot of a convergence study: error over seconds, one line for each ladder. */
 #ifndef POSTPROC_REPORT_CONVERGENCE_CHART_H
 #define POSTPROC_REPORT_CONVERGENCE_CHART_H
 
 #include "postproc/analysis/convergence.h"
 
-/* A picture of its own, light or dark as the viewer wants; needs nothing else. Without a rung that was compared it says so. */
+/* A stand-alone picture, light or dark as the viewer prefers. It says so if no rung was
+ * compared. */
 void post_convergence_picture(const post_convergence *study, const char *case_name,
                               post_buffer *out);
 
-/* The report's section: plot, conclusion, table. The page brings the style. */
+/* The section of the report: plot, conclusion, table. The page brings the style. */
 void post_convergence_section(const post_convergence *study, post_buffer *out);
 
-/* What the page's style must know of the plot's lines. */
+/* Style rules that the page needs for the lines. */
 extern const char post_convergence_css[];
 
 #endif

@@ -38,7 +38,7 @@ static void place_names(post_buffer *out, const char *place, const char *const a
   put_name(out, place, "_motion", "_peak_to_peak_m");
 }
 
-/* The column of what is followed, if it has none of its own. */
+/* Column name of the followed parameter, if it has none of its own. */
 static const char *followed(const mhb_response *response) {
   static const char *const names[MHB_N_PARAMETERS] = {NULL, NULL,     "scale",
                                                       "mu", "ku_N_m", "kv_N_m"};
@@ -78,11 +78,11 @@ static void put_place(const mhb_branch *branch, const double complex *a, post_bu
     put_number(out, carg(axis[first]) * 180 / M_PI);
     put_number(out, post_peak_to_peak(1, m, axis));
   }
-  put_number(out, post_ellipse(3, a + first, m + 1));
+  put_number(out, post_semi_major_axis(3, a + first, m + 1));
   put_number(out, post_peak_to_peak(3, m, a));
 }
 
-/* What stable rests on, what was lost, the largest multiplier; nothing for the linear limits. */
+/* Basis of the stability, kind of its loss, largest multiplier; empty for the linear limits. */
 static void put_stability(const mhb_response *response, const mhb_branch *branch, int point,
                           post_buffer *out) {
   static const char *const judged[] = {"folds", "multipliers", "marginal", "undecided"};

@@ -1,5 +1,5 @@
-# Write OUT, a C source that holds the files of FOLDER named in FILES ("page.css,page.js") as null-terminated arrays
-# post_page_css, post_page_js.
+# Write OUT, a C source with the files of FOLDER named in FILES ("page.css,page.js") as
+# null-terminated arrays post_page_css, post_page_js.
 set(text "/* Made by embed.cmake. */\n#include \"postproc/report/page.h\"\n")
 string(REPLACE "," ";" FILES "${FILES}")
 foreach(file IN LISTS FILES)

@@ -1,4 +1,4 @@
-/* The page's style sheet and script, page.css and page.js, built into the program. */
+/* Style sheet and script of the page, page.css and page.js, built into the program. */
 #ifndef POSTPROC_REPORT_PAGE_H
 #define POSTPROC_REPORT_PAGE_H
 

@@ -1,495 +1,749 @@
 (() => {
-"use strict";
-const $ = id => document.getElementById(id);
-const D = JSON.parse($("data").textContent);
-/* f: what curves are drawn against, the frequency unless another parameter is followed */
-const ROW = {f: 0, stick: 1, slip: 2, gap: 3, energy: 4, error: 5, stable: 6, special: 7};
-const NBSP = "\u00a0";
+  "use strict";
+  const $ = id => document.getElementById(id);
+  const D = JSON.parse($("data").textContent);
+  /* f: the abscissa, the frequency unless another parameter is followed */
+  const ROW = {f: 0, stick: 1, slip: 2, gap: 3, energy: 4, error: 5, stable: 6, special: 7};
+  const NBSP = "\u00a0";
 
-/* ---------------------------------------------------------------- data */
-for (const b of D.branches) {
-  const bytes = Uint8Array.from(atob(b.data), c => c.charCodeAt(0));
-  const all = new Float32Array(bytes.buffer);
-  b.row = r => all.subarray(r * b.n, (r + 1) * b.n);
-  b.f = b.row(ROW.f);
-  delete b.data;
-}
-const outputs = D.outputs, hidden = new Set();
-const unique = list => [...new Set(list)];
-const state = {output: outputs[0], log: D.log, zoom: null, branch: D.chosen, at: null};
-
-/* ---------------------------------------------------------------- numbers */
-const superscript = n => String(n).replace("-", "⁻").replace(/\d/g, d => "⁰¹²³⁴⁵⁶⁷⁸⁹"[d]);
-function number(value, digits, keep = true) {
-  if (!Number.isFinite(value)) return "–";
-  if (value === 0) return "0";
-  const power = Math.floor(Math.log10(Math.abs(value)) + 1e-12);
-  let text;
-  if (power < -4 || power >= Math.max(digits, 6)) {
-    const mantissa = (value / 10 ** power).toFixed(Math.max(digits - 1, 0));
-    text = (keep ? mantissa : String(+mantissa)) + "×10" + superscript(power);
-  } else {
-    text = (+value.toPrecision(digits)).toFixed(Math.max(0, digits - 1 - power));
-    if (!keep) text = String(+text);
-  }
-  return text.replace("-", "−");
-}
-const LENGTH = [["m", 1], ["mm", 1e-3], ["µm", 1e-6], ["nm", 1e-9], ["pm", 1e-12]];
-const ENERGY = [["kJ", 1e3], ["J", 1], ["mJ", 1e-3], ["µJ", 1e-6], ["nJ", 1e-9]];
-function unit(list, largest) {
-  if (!(largest > 0)) return list[2];
-  return list.find(u => largest >= 0.9995 * u[1]) || list[list.length - 1];
-}
-const X = D.abscissa, sweep = X.parameter === "frequency";
-const xLabel = X.name + (X.unit ? ", " + X.unit : "");
-const xText = v => number(v / X.scale, sweep ? 6 : 5, sweep) + (X.unit ? NBSP + X.unit : "");
-const percent = x => Number.isFinite(x) ? number(100 * x, 2, false) + NBSP + "%" : "–";
-const escape = s => s.replace(/[&<>"']/g, c => "&#" + c.charCodeAt(0) + ";");
-
-/* ---------------------------------------------------------------- axes */
-function evenTicks(lo, hi, wanted) {
-  const raw = (hi - lo) / wanted, power = 10 ** Math.floor(Math.log10(raw)), m = raw / power;
-  const step = power * (m <= 1.0001 ? 1 : m <= 2.0001 ? 2 : m <= 5.0001 ? 5 : 10), ticks = [];
-  for (let k = Math.ceil(lo / step - 1e-9); k * step <= hi + 1e-9 * step && ticks.length < 40; k++) ticks.push(k * step);
-  return ticks;
-}
-/* A step may be rounded up past the range, leaving a lone tick that tells no scale: then the next finer ones. */
-function linearTicks(lo, hi, wanted) {
-  let ticks = [];
-  for (let w = wanted; ticks.length < 2 && w <= 3 * wanted; w++) ticks = evenTicks(lo, hi, w);
-  return ticks;
-}
-function logTicks(lo, hi, wanted) {
-  const decades = Math.log10(hi / lo), ticks = [];
-  if (decades < 0.5) return linearTicks(lo, hi, wanted);
-  const parts = decades <= wanted / 2.5 ? [1, 2, 5] : [1], skip = Math.ceil(decades / wanted);
-  for (let d = Math.floor(Math.log10(lo)); d <= Math.ceil(Math.log10(hi)); d++)
-    for (const p of parts) {
-      const t = p * 10 ** d;
-      if (t >= lo * (1 - 1e-9) && t <= hi * (1 + 1e-9) && d % skip === 0) ticks.push(t);
-    }
-  return ticks;
-}
-function signedTicks(a, wanted) {
-  const lowest = Math.floor(Math.log10(a.knee / a.unit)), highest = Math.ceil(Math.log10(Math.max(Math.abs(a.lo), Math.abs(a.hi)) / a.unit));
-  const ticks = a.lo <= 0 && a.hi >= 0 ? [0] : [];
-  for (const sign of [1, -1]) {
-    let last = Panel.place(a, 0);
-    for (let i = 0; i < 3 * (highest - lowest + 1); i++) {
-      const t = sign * [1, 2, 5][i % 3] * 10 ** (lowest + Math.floor(i / 3)), at = Panel.place(a, t * a.unit);
-      if (at < 0 || at > 1 || Math.abs(at - last) < 0.7 / wanted) continue;
-      ticks.push(t);
-      last = at;
-    }
-  }
-  return ticks;
-}
-/* asinh(value / knee): both signs over decades */
-function signed(lo, hi, knee) {
-  const a = Math.asinh(lo / knee), b = Math.asinh(hi / knee), air = 0.04 * (b - a);
-  return {lo: knee * Math.sinh(a - air), hi: knee * Math.sinh(b + air), log: false, knee};
-}
-function around(lo, hi, log) {
-  if (!(lo <= hi)) [lo, hi] = [0, 1];
-  log = log && lo > 0;
-  if (hi - lo <= 1e-12 * Math.max(Math.abs(lo), Math.abs(hi))) {
-    const extent = lo === 0 ? 1 : 0.05 * Math.abs(lo);
-    lo -= extent; hi += extent;
-  }
-  const air = 0.04 * (log ? Math.log(hi / lo) : hi - lo);
-  return log ? {lo: lo * Math.exp(-air), hi: hi * Math.exp(air), log} : {lo: lo - air, hi: hi + air, log};
-}
-const axis = (range, unitScale, label) => ({...range, unit: unitScale, label});
-
-/* One data area: box {left, top, width, height} in px, axes {lo, hi, log, unit, label}. */
-class Panel {
-  constructor(id, box, x, y) {
-    Object.assign(this, {id, box, ax: x, ay: y, svg: ""});
-    this.frame();
-  }
-  static place(a, v) {
-    if (a.knee) return (Math.asinh(v / a.knee) - Math.asinh(a.lo / a.knee)) / (Math.asinh(a.hi / a.knee) - Math.asinh(a.lo / a.knee));
-    return a.log ? (v > 0 ? Math.log(v / a.lo) / Math.log(a.hi / a.lo) : NaN) : (v - a.lo) / (a.hi - a.lo);
-  }
-  x(v) { return this.box.left + this.box.width * Panel.place(this.ax, v); }
-  y(v) { return Math.max(-9e3, Math.min(9e3, this.box.top + this.box.height * (1 - Panel.place(this.ay, v)))); }
-  value(px) { const a = this.ax, t = (px - this.box.left) / this.box.width; return a.log ? a.lo * (a.hi / a.lo) ** t : a.lo + t * (a.hi - a.lo); }
-  ticks(a, wanted) { return a.knee ? signedTicks(a, wanted) : a.unit > 0 ? (a.log ? logTicks : linearTicks)(a.lo / a.unit, a.hi / a.unit, wanted) : []; }
-  frame() {
-    const {left, top, width, height} = this.box, bottom = top + height, right = left + width;
-    this.svg += `<clipPath id="${this.id}-clip"><rect x="${left}" y="${top}" width="${width}" height="${height}"/></clipPath>`;
-    for (const t of this.ticks(this.ax, Math.max(3, Math.floor(width / 90)))) {
-      const x = this.x(t * this.ax.unit).toFixed(1);
-      this.svg += `<path class="grid" d="M${x} ${top}V${bottom}"/>`;
-      if (this.ax.label) this.svg += `<text class="tick" x="${x}" y="${bottom + 17}" text-anchor="middle">${number(t, 7, false)}</text>`;
-    }
-    for (const t of this.ticks(this.ay, Math.max(2, Math.floor(height / 55)))) {
-      const y = this.y(t * this.ay.unit);
-      this.svg += `<path class="grid" d="M${left} ${y.toFixed(1)}H${right}"/>`;
-      if (this.ay.label) this.svg += `<text class="tick" x="${left - 8}" y="${(y + 4).toFixed(1)}" text-anchor="end">${number(t, 7, false)}</text>`;
-    }
-    if (this.ax.label) this.svg += `<text class="axis" x="${right}" y="${bottom + 36}" text-anchor="end">${escape(this.ax.label)}</text>`;
-    if (this.ay.label) this.svg += `<text class="axis" x="${left - 48}" y="${top - 12}">${escape(this.ay.label)}</text>`;
-    this.svg += `<path class="base" d="M${left} ${bottom}H${right}"/>`;
-  }
-  line(classes, xs, ys, piece) {
-    if (xs.length === 1 && !piece) this.dot(classes, xs[0], ys[0], 2);
-    let d = "", at = -1, px = NaN, py = NaN, lastX = NaN, lastY = NaN;
-    for (let i = 0; i < xs.length; i++) {
-      const x = this.x(xs[i]), y = this.y(ys[i]);
-      if (!Number.isFinite(x + y) || !Number.isFinite(px + py) || (piece && !piece(i))) {
-        at = -1;
-      } else {
-        const more = i + 1 < xs.length && (!piece || piece(i + 1));
-        if (!(at >= 0 && Math.hypot(x - lastX, y - lastY) < 0.25 && more)) {
-          if (at < 0) d += `M${px.toFixed(2)} ${py.toFixed(2)}`;
-          d += `L${x.toFixed(2)} ${y.toFixed(2)}`;
-          lastX = x; lastY = y;
-        }
-        at = i;
-      }
-      px = x; py = y;
-    }
-    if (d) this.svg += `<path class="${classes}" clip-path="url(#${this.id}-clip)" d="${d}"/>`;
-  }
-  inside(x, y) { const b = this.box; return x >= b.left - 1 && x <= b.left + b.width + 1 && y >= b.top - 1 && y <= b.top + b.height + 1; }
-  dot(classes, vx, vy, r) {
-    const x = this.x(vx), y = this.y(vy);
-    if (this.inside(x, y)) this.svg += `<circle class="${classes}" cx="${x.toFixed(2)}" cy="${y.toFixed(2)}" r="${r}"/>`;
-  }
-  bar(classes, x0, x1, y0, y1) {
-    const low = this.y(y0), high = this.y(y1);
-    if (low - high >= 0.01) this.svg += `<rect class="${classes}" x="${this.x(x0).toFixed(2)}" y="${high.toFixed(2)}" width="${(this.x(x1) - this.x(x0)).toFixed(2)}" height="${(low - high).toFixed(2)}"/>`;
-  }
-  text(classes, vx, vy, dx, dy, anchor, text) {
-    const x = this.x(vx), y = this.y(vy);
-    if (this.inside(x, y)) this.svg += `<text class="${classes}" x="${(x + dx).toFixed(1)}" y="${(y + dy).toFixed(1)}" text-anchor="${anchor}">${escape(text)}</text>`;
-  }
-  level(classes, v) {
-    const y = this.y(v);
-    if (Number.isFinite(y)) this.svg += `<path class="${classes}" clip-path="url(#${this.id}-clip)" d="M${this.box.left} ${y.toFixed(2)}H${this.box.left + this.box.width}"/>`;
-  }
-}
-
-/* Put panels into the chart's SVG in place of what is there, keeping its title and description. */
-function show(id, height, panels, extra = "") {
-  const svg = $(id), keep = [...svg.querySelectorAll("title, desc")].map(e => e.outerHTML).join("");
-  svg.setAttribute("viewBox", `0 0 ${widthOf(id)} ${height}`);
-  svg.innerHTML = keep + panels.map(p => p.svg).join("") + extra;
-}
-const widthOf = id => Math.max(300, Math.round($(id).parentElement.clientWidth || 1100));
-const classOf = g => g.kind === "nonlinear" ? (g.rank < 0 ? "varying" : "c" + g.rank) : "limit " + g.kind;
-const groupOf = b => D.groups[b.group];
-const extent = (list, pick = x => x) => { let lo = Infinity, hi = -Infinity; for (const e of list) { const v = pick(e); if (v < lo) lo = v; if (v > hi) hi = v; } return [lo, hi]; };
-
-/* ---------------------------------------------------------------- forced response */
-let main;
-function drawResponse() {
-  const o = state.output, width = widthOf("response"), height = width < 640 ? 420 : 540;
-  const range = state.zoom || X.range;
-  let least = Infinity, most = 0;
+  /* ---------------------------------------------------------------- data */
   for (const b of D.branches) {
-    if (hidden.has(b.group)) continue;
-    const a = b.row(o.row);
-    for (let i = 0; i < b.n; i++) {
-      if (b.f[i] < range[0] || b.f[i] > range[1]) continue;
-      if (a[i] > most) most = a[i];
-      if (a[i] > 0 && a[i] < least) least = a[i];
+    const bytes = Uint8Array.from(atob(b.data), c => c.charCodeAt(0));
+    const all = new Float32Array(bytes.buffer);
+    b.row = r => all.subarray(r * b.n, (r + 1) * b.n);
+    b.f = b.row(ROW.f);
+    delete b.data;
+  }
+  const outputs = D.outputs, hidden = new Set();
+  const unique = list => [...new Set(list)];
+  const state = {output: outputs[0], log: D.log, zoom: null, branch: D.chosen, at: null};
+
+  /* ---------------------------------------------------------------- numbers */
+  const superscript = n => String(n).replace("-", "⁻").replace(/\d/g, d => "⁰¹²³⁴⁵⁶⁷⁸⁹"[d]);
+  function number(value, digits, keep = true) {
+    if (!Number.isFinite(value)) return "–";
+    if (value === 0) return "0";
+    const power = Math.floor(Math.log10(Math.abs(value)) + 1e-12);
+    let text;
+    if (power < -4 || power >= Math.max(digits, 6)) {
+      const mantissa = (value / 10 ** power).toFixed(Math.max(digits - 1, 0));
+      text = (keep ? mantissa : String(+mantissa)) + "×10" + superscript(power);
+    } else {
+      text = (+value.toPrecision(digits)).toFixed(Math.max(0, digits - 1 - power));
+      if (!keep) text = String(+text);
+    }
+    return text.replace("-", "−");
+  }
+  const LENGTH = [["m", 1], ["mm", 1e-3], ["µm", 1e-6], ["nm", 1e-9], ["pm", 1e-12]];
+  const ENERGY = [["kJ", 1e3], ["J", 1], ["mJ", 1e-3], ["µJ", 1e-6], ["nJ", 1e-9]];
+  function unit(list, largest) {
+    if (!(largest > 0)) return list[2];
+    return list.find(u => largest >= 0.9995 * u[1]) || list[list.length - 1];
+  }
+  const X = D.abscissa, sweep = X.parameter === "frequency";
+  const xLabel = X.name + (X.unit ? ", " + X.unit : "");
+  const xText = v => number(v / X.scale, sweep ? 6 : 5, sweep) + (X.unit ? NBSP + X.unit : "");
+  const percent = x => Number.isFinite(x) ? number(100 * x, 2, false) + NBSP + "%" : "–";
+  const escape = s => s.replace(/[&<>"']/g, c => "&#" + c.charCodeAt(0) + ";");
+
+  /* ---------------------------------------------------------------- axes */
+  function evenTicks(lo, hi, wanted) {
+    const raw = (hi - lo) / wanted, power = 10 ** Math.floor(Math.log10(raw)), m = raw / power;
+    const step = power * (m <= 1.0001 ? 1 : m <= 2.0001 ? 2 : m <= 5.0001 ? 5 : 10), ticks = [];
+    for (let k = Math.ceil(lo / step - 1e-9); k * step <= hi + 1e-9 * step && ticks.length < 40;
+         k++)
+      ticks.push(k * step);
+    return ticks;
+  }
+  /* A step rounded up past the range leaves a single tick: then take finer steps. */
+  function linearTicks(lo, hi, wanted) {
+    let ticks = [];
+    for (let w = wanted; ticks.length < 2 && w <= 3 * wanted; w++) ticks = evenTicks(lo, hi, w);
+    return ticks;
+  }
+  function logTicks(lo, hi, wanted) {
+    const decades = Math.log10(hi / lo), ticks = [];
+    if (decades < 0.5) return linearTicks(lo, hi, wanted);
+    const parts = decades <= wanted / 2.5 ? [1, 2, 5] : [1], skip = Math.ceil(decades / wanted);
+    for (let d = Math.floor(Math.log10(lo)); d <= Math.ceil(Math.log10(hi)); d++)
+      for (const p of parts) {
+        const t = p * 10 ** d;
+        if (t >= lo * (1 - 1e-9) && t <= hi * (1 + 1e-9) && d % skip === 0) ticks.push(t);
+      }
+    return ticks;
+  }
+  function signedTicks(a, wanted) {
+    const lowest = Math.floor(Math.log10(a.knee / a.unit)),
+          highest = Math.ceil(Math.log10(Math.max(Math.abs(a.lo), Math.abs(a.hi)) / a.unit));
+    const ticks = a.lo <= 0 && a.hi >= 0 ? [0] : [];
+    for (const sign of [1, -1]) {
+      let last = Panel.place(a, 0);
+      for (let i = 0; i < 3 * (highest - lowest + 1); i++) {
+        const t = sign * [1, 2, 5][i % 3] * 10 ** (lowest + Math.floor(i / 3)),
+              at = Panel.place(a, t * a.unit);
+        if (at < 0 || at > 1 || Math.abs(at - last) < 0.7 / wanted) continue;
+        ticks.push(t);
+        last = at;
+      }
+    }
+    return ticks;
+  }
+  /* Axis by asinh(value / knee): both signs over decades. */
+  function signed(lo, hi, knee) {
+    const a = Math.asinh(lo / knee), b = Math.asinh(hi / knee), air = 0.04 * (b - a);
+    return {lo: knee * Math.sinh(a - air), hi: knee * Math.sinh(b + air), log: false, knee};
+  }
+  function around(lo, hi, log) {
+    if (!(lo <= hi)) [lo, hi] = [0, 1];
+    log = log && lo > 0;
+    if (hi - lo <= 1e-12 * Math.max(Math.abs(lo), Math.abs(hi))) {
+      const extent = lo === 0 ? 1 : 0.05 * Math.abs(lo);
+      lo -= extent;
+      hi += extent;
+    }
+    const air = 0.04 * (log ? Math.log(hi / lo) : hi - lo);
+    return log ? {lo: lo * Math.exp(-air), hi: hi * Math.exp(air), log} :
+                 {lo: lo - air, hi: hi + air, log};
+  }
+  const axis = (range, unitScale, label) => ({...range, unit: unitScale, label});
+
+  /* One data area: box {left, top, width, height} in px, axes {lo, hi, log, unit, label}. */
+  class Panel {
+    constructor(id, box, x, y) {
+      Object.assign(this, {id, box, ax: x, ay: y, svg: ""});
+      this.frame();
+    }
+    static place(a, v) {
+      if (a.knee)
+        return (Math.asinh(v / a.knee) - Math.asinh(a.lo / a.knee)) /
+            (Math.asinh(a.hi / a.knee) - Math.asinh(a.lo / a.knee));
+      return a.log ? (v > 0 ? Math.log(v / a.lo) / Math.log(a.hi / a.lo) : NaN) :
+                     (v - a.lo) / (a.hi - a.lo);
+    }
+    x(v) { return this.box.left + this.box.width * Panel.place(this.ax, v); }
+    y(v) {
+      return Math.max(
+          -9e3, Math.min(9e3, this.box.top + this.box.height * (1 - Panel.place(this.ay, v))));
+    }
+    value(px) {
+      const a = this.ax, t = (px - this.box.left) / this.box.width;
+      return a.log ? a.lo * (a.hi / a.lo) ** t : a.lo + t * (a.hi - a.lo);
+    }
+    ticks(a, wanted) {
+      return a.knee  ? signedTicks(a, wanted) :
+          a.unit > 0 ? (a.log ? logTicks : linearTicks)(a.lo / a.unit, a.hi / a.unit, wanted) :
+                       [];
+    }
+    frame() {
+      const {left, top, width, height} = this.box, bottom = top + height, right = left + width;
+      this.svg += `<clipPath id="${this.id}-clip"><rect x="${left}" y="${top}" width="${
+          width}" height="${height}"/></clipPath>`;
+      for (const t of this.ticks(this.ax, Math.max(3, Math.floor(width / 90)))) {
+        const x = this.x(t * this.ax.unit).toFixed(1);
+        this.svg += `<path class="grid" d="M${x} ${top}V${bottom}"/>`;
+        if (this.ax.label)
+          this.svg += `<text class="tick" x="${x}" y="${bottom + 17}" text-anchor="middle">${
+              number(t, 7, false)}</text>`;
+      }
+      for (const t of this.ticks(this.ay, Math.max(2, Math.floor(height / 55)))) {
+        const y = this.y(t * this.ay.unit);
+        this.svg += `<path class="grid" d="M${left} ${y.toFixed(1)}H${right}"/>`;
+        if (this.ay.label)
+          this.svg += `<text class="tick" x="${left - 8}" y="${
+              (y + 4).toFixed(1)}" text-anchor="end">${number(t, 7, false)}</text>`;
+      }
+      if (this.ax.label)
+        this.svg += `<text class="axis" x="${right}" y="${bottom + 36}" text-anchor="end">${
+            escape(this.ax.label)}</text>`;
+      if (this.ay.label)
+        this.svg +=
+            `<text class="axis" x="${left - 48}" y="${top - 12}">${escape(this.ay.label)}</text>`;
+      this.svg += `<path class="base" d="M${left} ${bottom}H${right}"/>`;
+    }
+    line(classes, xs, ys, piece) {
+      if (xs.length === 1 && !piece) this.dot(classes, xs[0], ys[0], 2);
+      let d = "", at = -1, px = NaN, py = NaN, lastX = NaN, lastY = NaN;
+      for (let i = 0; i < xs.length; i++) {
+        const x = this.x(xs[i]), y = this.y(ys[i]);
+        if (!Number.isFinite(x + y) || !Number.isFinite(px + py) || (piece && !piece(i))) {
+          at = -1;
+        } else {
+          const more = i + 1 < xs.length && (!piece || piece(i + 1));
+          if (!(at >= 0 && Math.hypot(x - lastX, y - lastY) < 0.25 && more)) {
+            if (at < 0) d += `M${px.toFixed(2)} ${py.toFixed(2)}`;
+            d += `L${x.toFixed(2)} ${y.toFixed(2)}`;
+            lastX = x;
+            lastY = y;
+          }
+          at = i;
+        }
+        px = x;
+        py = y;
+      }
+      if (d) this.svg += `<path class="${classes}" clip-path="url(#${this.id}-clip)" d="${d}"/>`;
+    }
+    inside(x, y) {
+      const b = this.box;
+      return x >= b.left - 1 && x <= b.left + b.width + 1 && y >= b.top - 1 &&
+          y <= b.top + b.height + 1;
+    }
+    dot(classes, vx, vy, r) {
+      const x = this.x(vx), y = this.y(vy);
+      if (this.inside(x, y))
+        this.svg +=
+            `<circle class="${classes}" cx="${x.toFixed(2)}" cy="${y.toFixed(2)}" r="${r}"/>`;
+    }
+    bar(classes, x0, x1, y0, y1) {
+      const low = this.y(y0), high = this.y(y1);
+      if (low - high >= 0.01)
+        this.svg +=
+            `<rect class="${classes}" x="${this.x(x0).toFixed(2)}" y="${high.toFixed(2)}" width="${
+                (this.x(x1) - this.x(x0)).toFixed(2)}" height="${(low - high).toFixed(2)}"/>`;
+    }
+    text(classes, vx, vy, dx, dy, anchor, text) {
+      const x = this.x(vx), y = this.y(vy);
+      if (this.inside(x, y))
+        this.svg += `<text class="${classes}" x="${(x + dx).toFixed(1)}" y="${
+            (y + dy).toFixed(1)}" text-anchor="${anchor}">${escape(text)}</text>`;
+    }
+    level(classes, v) {
+      const y = this.y(v);
+      if (Number.isFinite(y))
+        this.svg += `<path class="${classes}" clip-path="url(#${this.id}-clip)" d="M${
+            this.box.left} ${y.toFixed(2)}H${this.box.left + this.box.width}"/>`;
     }
   }
-  const u = unit(LENGTH, most);
-  const y = !(most > 0) ? {lo: 0, hi: u[1], log: false} : state.log ? {lo: Math.max(least / 1.2, 1e-4 * most), hi: 1.4 * most, log: true} : {lo: 0, hi: 1.06 * most, log: false};
-  const x = fullRange();
-  const label = `${o.place} ${o.axis}, ${o.quantity}, ${u[0]}`;
-  main = new Panel("response", {left: 60, top: 34, width: width - 80, height: height - 84}, axis(x, X.scale, xLabel), axis(y, u[1], label));
-  main.unit = u;
-  const order = D.branches.map((b, i) => i).sort((i, j) => rankOf(i) - rankOf(j));
-  for (const i of order) {
-    const b = D.branches[i], g = groupOf(b), a = b.row(o.row), stable = b.row(ROW.stable);
-    if (hidden.has(b.group)) continue;
-    if (b.dots) {
-      for (let k = 0; k < b.n; k++) main.dot((stable[k] === 1 ? "witness " : "witness adrift ") + classOf(g), b.f[k], a[k], 2.6);
-      continue;
+
+  /* Replace a chart's SVG by panels; its title and description remain. */
+  function show(id, height, panels, extra = "") {
+    const svg = $(id),
+          keep = [...svg.querySelectorAll("title, desc")].map(e => e.outerHTML).join("");
+    svg.setAttribute("viewBox", `0 0 ${widthOf(id)} ${height}`);
+    svg.innerHTML = keep + panels.map(p => p.svg).join("") + extra;
+  }
+  const widthOf = id => Math.max(300, Math.round($(id).parentElement.clientWidth || 1100));
+  const classOf = g =>
+      g.kind === "nonlinear" ? (g.rank < 0 ? "varying" : "c" + g.rank) : "limit " + g.kind;
+  const groupOf = b => D.groups[b.group];
+  const extent = (list, pick = x => x) => {
+    let lo = Infinity, hi = -Infinity;
+    for (const e of list) {
+      const v = pick(e);
+      if (v < lo) lo = v;
+      if (v > hi) hi = v;
     }
-    const classes = classOf(g) + (i === state.branch ? " chosen" : "");
-    const unstable = k => stable[k] === 0 || stable[k - 1] === 0;
-    const low = Math.min(...b.f), high = Math.max(...b.f); /* where it leaves the range and comes back there is no line */
-    const left = k => b.f[k] === b.f[k - 1] && (b.f[k] === low || b.f[k] === high);
-    main.line("line " + classes, b.f, a, k => !unstable(k) && !left(k));
-    main.line("line unstable " + classes, b.f, a, k => unstable(k) && !left(k));
-    if (b.n === 1) main.dot("dot " + classes, b.f[0], a[0], 3);
-    b.row(ROW.special).forEach((special, k) => { if (special > 2) main.dot("turn " + classes, b.f[k], a[k], 2.6); });
-  }
-  for (const [g, f, a] of o.folds) if (!hidden.has(g)) main.dot("fold " + classOf(D.groups[g]), f, a, 2.6);
-  for (const [g, f, a] of o.limits) if (!hidden.has(g)) main.text("mark " + D.groups[g].kind, f, a, 0, -7, anchor(f), D.groups[g].kind);
-  show("response", height, [main], `<g id="hover"></g>`);
-  $("whole").disabled = !state.zoom;
-  drawHover();
-}
-/* Inside where the limit is named at an end of the parameter's range. */
-function anchor(f) {
-  const [lo, hi] = X.range, air = 1e-6 * (hi - lo);
-  return sweep ? "middle" : f <= lo + air ? "start" : f >= hi - air ? "end" : "middle";
-}
-const rankOf = i => D.branches[i].dots ? 3 : groupOf(D.branches[i]).kind !== "nonlinear" ? 0 : i === state.branch ? 2 : 1;
+    return [lo, hi];
+  };
 
-/* ---------------------------------------------------------------- read-out */
-function readout(b, i) {
-  const g = groupOf(b), a = b.row(state.output.row)[i], stable = b.row(ROW.stable)[i], error = b.row(ROW.error)[i];
-  const shares = ["stick", "slip", "gap"].map(s => b.row(ROW[s])[i]), energy = b.row(ROW.energy)[i], e = unit(ENERGY, energy);
-  const u = unit(LENGTH, a);
-  const rows = [[X.name, xText(b.f[i])], [state.output.quantity, number(a / u[1], 4) + NBSP + u[0]]];
-  if (g.kind === "nonlinear") {
-    if (Number.isFinite(shares[0])) rows.push(["stuck · slipping · open", shares.map(s => (100 * s).toFixed(s > 0 && s < 0.0995 ? 1 : 0)).join(" · ") + NBSP + "%"], ["dissipated", number(energy / e[1], 3) + NBSP + e[0]]);
-    rows.push(b.dots ? ["repeats itself", stable === 1 ? "yes" : "no"] : ["stability", stable === 1 ? "stable" : stable === 0 ? "unstable" : "not known"]);
-    if (error > 0) rows.push(["error estimate", percent(error)]);
-  }
-  const special = b.row(ROW.special)[i], what = ["", ", fold", ", peak", ", flip (period doubling)", ", Neimark-Sacker point"][special] || (b.dots ? ", time integration" : "");
-  return {title: (g.kind === "nonlinear" ? g.name + b.note : "linear limit, " + g.name) + what, rows, shares: g.kind === "nonlinear" && Number.isFinite(shares[0]) ? shares : null};
-}
-function drawHover() {
-  const box = $("readout"), at = state.at, layer = $("hover");
-  if (!at || hidden.has(D.branches[at.b].group)) { box.hidden = true; layer.innerHTML = ""; return; }
-  const b = D.branches[at.b], x = main.x(b.f[at.i]), y = main.y(b.row(state.output.row)[at.i]);
-  if (!main.inside(x, y)) { box.hidden = true; layer.innerHTML = ""; return; }
-  layer.innerHTML = `<path class="cursor" d="M${x} ${main.box.top}V${main.box.top + main.box.height}"/><circle class="probe ${classOf(groupOf(b))}" cx="${x}" cy="${y}" r="5"/>`;
-  const r = readout(b, at.i);
-  box.innerHTML = `<b>${escape(r.title)}</b><dl>` + r.rows.map(([k, v]) => `<dt>${k}</dt><dd>${v}</dd>`).join("") + "</dl>" +
-    (r.shares ? `<div class="shares">` + r.shares.map((s, k) => `<i style="width:${100 * s}%;background:var(--${["stick", "slip", "gap"][k]})"></i>`).join("") + "</div>" : "");
-  box.hidden = false;
-  const host = box.parentElement.clientWidth, scale = host / widthOf("response"), w = box.offsetWidth;
-  const left = x * scale + 18 + w > host ? x * scale - 18 - w : x * scale + 18;
-  box.style.left = Math.max(0, left) + "px";
-  box.style.top = Math.max(0, y * scale - box.offsetHeight - 12) + "px";
-}
-function announce() {
-  if (!state.at) return;
-  const r = readout(D.branches[state.at.b], state.at.i);
-  $("spoken").textContent = r.title + ": " + r.rows.map(([k, v]) => k + " " + v).join(", ");
-}
-function nearest(px, py) {
-  let best = null, least = 40 * 40;
-  D.branches.forEach((b, j) => {
-    if (hidden.has(b.group)) return;
-    const a = b.row(state.output.row);
-    for (let i = 0; i < b.n; i++) {
-      const dx = main.x(b.f[i]) - px;
-      if (dx * dx > least) continue;
-      const dy = main.y(a[i]) - py, d = dx * dx + dy * dy;
-      if (d < least) { least = d; best = {b: j, i}; }
+  /* ---------------------------------------------------------------- forced response */
+  let main;
+  function drawResponse() {
+    const o = state.output, width = widthOf("response"), height = width < 640 ? 420 : 540;
+    const range = state.zoom || X.range;
+    let least = Infinity, most = 0;
+    for (const b of D.branches) {
+      if (hidden.has(b.group)) continue;
+      const a = b.row(o.row);
+      for (let i = 0; i < b.n; i++) {
+        if (b.f[i] < range[0] || b.f[i] > range[1]) continue;
+        if (a[i] > most) most = a[i];
+        if (a[i] > 0 && a[i] < least) least = a[i];
+      }
     }
-  });
-  return best;
-}
-
-/* ---------------------------------------------------------------- tracking */
-const T = {group: 0, n0: 1, a: 2, f: 3, edge: 4, stick: 5, slip: 6, gap: 7, energy: 8};
-function bestOf(track) {
-  let best = -1;
-  for (const edges of sweep ? [false, true] : [true]) /* one at the edge of the frequency range only if there is no other */
-    if (best < 0) track.forEach((t, i) => { if ((edges || !t[T.edge]) && (best < 0 || t[T.a] < track[best][T.a])) best = i; });
-  return best;
-}
-function drawTracking() {
-  const o = state.output, track = o.track;
-  if (!$("tracking") || track.length < 2) return;
-  const width = widthOf("tracking"), forces = extent(track, t => t[T.n0]), big = Math.max(...forces.map(Math.abs)) >= 1e4;
-  const fu = big ? ["kN", 1e3] : ["N", 1], least = Math.min(...track.map(t => Math.abs(t[T.n0])).filter(v => v > 0));
-  const wide = Math.max(...forces.map(Math.abs)) >= 8 * least;
-  const amps = extent([...track.map(t => t[T.a]), ...o.limits.map(t => t[2])].filter(v => v > 0)), u = unit(LENGTH, amps[1]);
-  const places = extent([...track.map(t => t[T.f]), ...(sweep ? o.limits.map(t => t[1]) : [])].filter(Number.isFinite));
-  const x = wide && forces[0] <= 0 ? signed(forces[0], forces[1], least) : around(forces[0], forces[1], wide);
-  const y = state.log && amps[0] > 0 ? {lo: amps[0] / (1.15 * (amps[1] / amps[0]) ** 0.14), hi: amps[1] * 1.2, log: true} : {lo: 0, hi: 1.1 * amps[1], log: false};
-  const above = new Panel("tracking-a", {left: 60, top: 34, width: width - 80, height: 280}, axis(x, fu[1], null), axis(y, u[1], `highest peak, ${o.place} ${o.axis}, ${o.quantity}, ${u[0]}`));
-  const below = new Panel("tracking-f", {left: 60, top: 374, width: width - 80, height: 170}, axis(x, fu[1], "preload n₀, " + fu[0]), axis(around(places[0], places[1], X.log && places[1] > 8 * places[0]), X.scale, "its " + xLabel));
-  const best = bestOf(track);
-  for (const [p, value, limit] of [[above, T.a, 2], [below, T.f, 1]]) {
-    for (const l of p === above || sweep ? o.limits : []) {
-      const kind = D.groups[l[0]].kind, open = kind === "open";
-      p.level("line limit " + kind, l[limit]);
-      p.text("mark " + kind, open ? p.ax.lo : p.ax.hi, l[limit], open ? 6 : -6, -5, open ? "start" : "end", kind);
+    const u = unit(LENGTH, most);
+    const y = !(most > 0) ? {lo: 0, hi: u[1], log: false} :
+        state.log         ? {lo: Math.max(least / 1.2, 1e-4 * most), hi: 1.4 * most, log: true} :
+                            {lo: 0, hi: 1.06 * most, log: false};
+    const x = fullRange();
+    const label = `${o.place} ${o.axis}, ${o.quantity}, ${u[0]}`;
+    main = new Panel(
+        "response", {left: 60, top: 34, width: width - 80, height: height - 84},
+        axis(x, X.scale, xLabel), axis(y, u[1], label));
+    main.unit = u;
+    const order = D.branches.map((b, i) => i).sort((i, j) => rankOf(i) - rankOf(j));
+    for (const i of order) {
+      const b = D.branches[i], g = groupOf(b), a = b.row(o.row), stable = b.row(ROW.stable);
+      if (hidden.has(b.group)) continue;
+      if (b.dots) {
+        for (let k = 0; k < b.n; k++)
+          main.dot(
+              (stable[k] === 1 ? "integration " : "integration aperiodic ") + classOf(g), b.f[k],
+              a[k], 2.6);
+        continue;
+      }
+      const classes = classOf(g) + (i === state.branch ? " chosen" : "");
+      const unstable = k => stable[k] === 0 || stable[k - 1] === 0;
+      const low = Math.min(...b.f),
+            high = Math.max(...b.f); /* no line where the curve leaves the range and returns */
+      const left = k => b.f[k] === b.f[k - 1] && (b.f[k] === low || b.f[k] === high);
+      main.line("line " + classes, b.f, a, k => !unstable(k) && !left(k));
+      main.line("line unstable " + classes, b.f, a, k => unstable(k) && !left(k));
+      if (b.n === 1) main.dot("dot " + classes, b.f[0], a[0], 3);
+      b.row(ROW.special).forEach((special, k) => {
+        if (special > 2) main.dot("bifurcation " + classes, b.f[k], a[k], 2.6);
+      });
     }
-    for (const t of o.peaks) if (D.groups[t[0]].rank >= 0) p.dot("lesser", D.groups[t[0]].n0, t[limit], 2.4);
-    p.line("line track", track.map(t => t[T.n0]), track.map(t => t[value]));
-    track.forEach((t, i) => p.dot((t[T.edge] ? "ring" : "dot") + " " + classOf(D.groups[t[0]]), t[T.n0], t[value], i === best ? 5.5 : 4));
+    for (const [g, f, a] of o.folds)
+      if (!hidden.has(g)) main.dot("fold " + classOf(D.groups[g]), f, a, 2.6);
+    for (const [g, f, a] of o.limits)
+      if (!hidden.has(g))
+        main.text("mark " + D.groups[g].kind, f, a, 0, -7, anchor(f), D.groups[g].kind);
+    show("response", height, [main], `<g id="hover"></g>`);
+    $("whole").disabled = !state.zoom;
+    drawHover();
   }
-  const ends = track[best][T.n0];
-  above.text("mark strong", ends, track[best][T.a], 0, 21, best === 0 ? "start" : best === track.length - 1 ? "end" : "middle", `lowest: ${number(ends / fu[1], 4, false)}${NBSP}${fu[0]}`);
-  show("tracking", 600, [above, below]);
-}
+  /* Text anchor that keeps the label of a limit inside the parameter's range. */
+  function anchor(f) {
+    const [lo, hi] = X.range, air = 1e-6 * (hi - lo);
+    return sweep ? "middle" : f <= lo + air ? "start" : f >= hi - air ? "end" : "middle";
+  }
+  const rankOf = i => D.branches[i].dots          ? 3 :
+      groupOf(D.branches[i]).kind !== "nonlinear" ? 0 :
+      i === state.branch                          ? 2 :
+                                                    1;
 
-/* ---------------------------------------------------------------- contact */
-function twoPanels(id, x, xUnit, energyMost, lowerLabel) {
-  const width = widthOf(id), e = unit(ENERGY, energyMost), box = {left: 60, width: width - 76};
-  const most = energyMost > 0 ? 1.08 * energyMost : e[1];
-  return [new Panel(id + "-s", {...box, top: 34, height: 180}, axis(x, xUnit, null), axis({lo: lowerLabel ? -0.02 : 0, hi: lowerLabel ? 1.02 : 1, log: false}, 0.01, "share of the period, %")),
-          new Panel(id + "-d", {...box, top: 266, height: 150}, axis(x, xUnit, lowerLabel), axis({lo: 0, hi: most, log: false}, e[1], "dissipated a cycle, " + e[0]))];
-}
-function drawState() {
-  const track = state.output.track;
-  if (!$("state") || !track.length) return;
-  const [shares, energy] = twoPanels("state", {lo: -0.6, hi: track.length - 0.4, log: false}, 0, Math.max(...track.map(t => t[T.energy] || 0)), null);
-  const every = 1 + Math.floor((track.length - 1) / Math.max(2, Math.floor(shares.box.width / 40))), b = energy.box;
-  track.forEach((t, i) => {
-    let low = 0;
-    ["stick", "slip", "gap"].forEach(s => { shares.bar("state " + s, i - 0.36, i + 0.36, low, low + t[T[s]]); low += t[T[s]]; });
-    energy.bar("bar " + classOf(D.groups[t[0]]), i - 0.36, i + 0.36, 0, t[T.energy]);
-    if (i % every === 0) energy.svg += `<text class="tick" x="${energy.x(i).toFixed(1)}" y="${b.top + b.height + 17}" text-anchor="middle">${number(t[T.n0], 4, false)}</text>`;
-  });
-  energy.svg += `<text class="axis" x="${b.left + b.width}" y="${b.top + b.height + 36}" text-anchor="end">preload n₀, N</text>`;
-  show("state", 470, [shares, energy]);
-}
-const fullRange = () => { const [lo, hi] = state.zoom || X.range; return hi > lo ? {lo, hi, log: X.log} : around(lo, hi, false); };
-function drawAlong() {
-  if (!$("along") || state.branch < 0) return;
-  const b = D.branches[state.branch], [shares, energy] = twoPanels("along", fullRange(), X.scale, extent(b.row(ROW.energy))[1], xLabel);
-  ["stick", "slip", "gap"].forEach(s => shares.line("line " + s, b.f, b.row(ROW[s])));
-  energy.line("line " + classOf(groupOf(b)), b.f, b.row(ROW.energy));
-  show("along", 470, [shares, energy]);
-}
-function drawHarmonics() {
-  if (!$("harmonics") || state.branch < 0) return;
-  const s = D.spectra.find(e => e.place === state.output.place);
-  if (!s) { show("harmonics", 60, [], `<text x="0" y="30">The harmonics of ${escape(state.output.place)} are not in this page; the response file has them.</text>`); return; }
-  const b = D.branches[state.branch], shown = Math.min(s.n, 8), width = widthOf("harmonics");
-  let most = 0, least = Infinity;
-  for (let k = 0; k < shown; k++) {
-    const a = b.row(s.row + k).filter(v => v > 0), [lo, hi] = extent(a);
-    if (a.length) { most = Math.max(most, hi); least = Math.min(least, lo); }
-  }
-  const u = unit(LENGTH, most);
-  if (!(most > 0)) most = least = u[1];
-  const p = new Panel("harmonics", {left: 60, top: 34, width: width - 120, height: 272}, axis(fullRange(), X.scale, xLabel), axis({lo: Math.max(1e-6 * most, least / 2), hi: 2 * most, log: true}, u[1], `${s.place}, amplitude of each harmonic, ${u[0]}`));
-  const used = [];
-  for (let k = 0; k < shown; k++) {
-    const a = b.row(s.row + k);
-    p.line("line h" + k, b.f, a);
-    let end = -1; /* label the right-most point in view */
-    for (let i = 0; i < b.n; i++) if (b.f[i] <= p.ax.hi * (1 + 1e-9) && a[i] > p.ay.lo && (end < 0 || b.f[i] > b.f[end])) end = i;
-    if (end < 0) continue;
-    let y = p.y(a[end]) + 4;
-    while (used.some(v => Math.abs(v - y) < 14)) y += 14;
-    used.push(y);
-    p.svg += `<text class="mark h${k}" x="${p.x(b.f[end]) + 6}" y="${y}">k = ${k}${k > 0 && b.order > 1 ? "/" + b.order : ""}</text>`;
-  }
-  show("harmonics", 360, [p]);
-}
-
-/* ---------------------------------------------------------------- controls */
-function fill(select, options, chosen) {
-  select.innerHTML = options.map(([v, text]) => `<option value="${escape(String(v))}">${escape(text)}</option>`).join("");
-  select.value = String(chosen);
-}
-function choices() {
-  const o = state.output, here = outputs.filter(e => e.place === o.place);
-  fill($("place"), unique(outputs.map(e => e.place)).map(p => [p, p]), o.place);
-  fill($("axis"), unique(here.map(e => e.axis)).map(a => [a, a]), o.axis);
-  for (const button of document.querySelectorAll("[data-quantity]")) {
-    const quantity = button.dataset.quantity;
-    button.setAttribute("aria-pressed", String(quantity === o.quantity));
-    button.disabled = !here.some(e => e.axis === o.axis && e.quantity === quantity);
-  }
-  for (const button of document.querySelectorAll("[data-scale]")) button.setAttribute("aria-pressed", String((button.dataset.scale === "log") === state.log));
-}
-function choose(place, ax, quantity) {
-  const match = (a, q) => outputs.find(e => e.place === place && (a === null || e.axis === a) && (q === null || e.quantity === q));
-  state.output = match(ax, quantity) || match(ax, null) || match(null, quantity) || match(null, null);
-  drawAll();
-}
-function select(index) {
-  if (index < 0 || D.branches[index].dots || groupOf(D.branches[index]).kind !== "nonlinear") return;
-  state.branch = index;
-  if ($("curve")) $("curve").value = String(index);
-  drawResponse(); drawAlong(); drawHarmonics();
-}
-function drawAll() {
-  choices(); drawResponse(); drawTracking(); drawState(); drawAlong(); drawHarmonics();
-}
-function setZoom(range) { state.zoom = range; drawResponse(); drawAlong(); drawHarmonics(); }
-
-function wireControls() {
-  $("place").onchange = e => choose(e.target.value, null, state.output.quantity);
-  $("axis").onchange = e => choose(state.output.place, e.target.value, state.output.quantity);
-  for (const b of document.querySelectorAll("[data-quantity]")) b.onclick = () => choose(state.output.place, state.output.axis, b.dataset.quantity);
-  for (const b of document.querySelectorAll("[data-scale]")) b.onclick = () => { state.log = b.dataset.scale === "log"; drawAll(); };
-  $("whole").onclick = () => setZoom(null);
-  if ($("curve")) {
-    const list = D.branches.map((b, i) => i).filter(i => groupOf(D.branches[i]).kind === "nonlinear" && !D.branches[i].dots && D.branches[i].n > 0);
-    list.sort((i, j) => D.branches[i].group - D.branches[j].group || i - j);
-    const many = g => list.filter(i => D.branches[i].group === g).length > 1;
-    fill($("curve"), list.map(i => [i, groupOf(D.branches[i]).name + D.branches[i].note + (many(D.branches[i].group) ? ` (curve ${i})` : "")]), state.branch);
-    $("curve").onchange = e => select(+e.target.value);
-  }
-  for (const key of document.querySelectorAll(".key[data-group]")) {
-    const button = document.createElement("button");
-    button.type = "button"; button.className = key.className; button.innerHTML = key.innerHTML;
-    button.setAttribute("aria-pressed", "true");
-    const group = +key.dataset.group;
-    button.dataset.group = group;
-    button.onclick = () => {
-      if (hidden.has(group)) hidden.delete(group); else hidden.add(group);
-      button.setAttribute("aria-pressed", String(!hidden.has(group)));
-      drawResponse();
+  /* ---------------------------------------------------------------- read-out */
+  function readout(b, i) {
+    const g = groupOf(b), a = b.row(state.output.row)[i], stable = b.row(ROW.stable)[i],
+          error = b.row(ROW.error)[i];
+    const shares = ["stick", "slip", "gap"].map(s => b.row(ROW[s])[i]),
+          energy = b.row(ROW.energy)[i], e = unit(ENERGY, energy);
+    const u = unit(LENGTH, a);
+    const rows =
+        [[X.name, xText(b.f[i])], [state.output.quantity, number(a / u[1], 4) + NBSP + u[0]]];
+    if (g.kind === "nonlinear") {
+      if (Number.isFinite(shares[0]))
+        rows.push(
+            [
+              "stuck · slipping · open",
+              shares.map(s => (100 * s).toFixed(s > 0 && s < 0.0995 ? 1 : 0)).join(" · ") + NBSP +
+                  "%"
+            ],
+            ["dissipated", number(energy / e[1], 3) + NBSP + e[0]]);
+      rows.push(b.dots ? ["repeats itself", stable === 1 ? "yes" : "no"] : [
+        "stability",
+        stable === 1     ? "stable" :
+            stable === 0 ? "unstable" :
+                           "not known"
+      ]);
+      if (error > 0) rows.push(["error estimate", percent(error)]);
+    }
+    const special = b.row(ROW.special)[i],
+          what =
+              [
+                "", ", fold", ", peak", ", flip (period doubling)", ", Neimark-Sacker point"
+              ][special] ||
+        (b.dots ? ", time integration" : "");
+    return {
+      title: (g.kind === "nonlinear" ? g.name + b.note : "linear limit, " + g.name) + what,
+      rows,
+      shares: g.kind === "nonlinear" && Number.isFinite(shares[0]) ? shares : null
     };
-    key.replaceWith(button);
   }
-}
-function wireChart() {
-  const svg = $("response");
-  let from = null;
-  const local = e => { const r = svg.getBoundingClientRect(), s = widthOf("response") / r.width; return [(e.clientX - r.left) * s, (e.clientY - r.top) * s]; };
-  const clamp = x => Math.max(main.box.left, Math.min(main.box.left + main.box.width, x));
-  svg.setAttribute("tabindex", "0");
-  svg.addEventListener("pointerdown", e => { if (e.button === 0 && e.pointerType !== "touch") { from = clamp(local(e)[0]); e.preventDefault(); svg.focus({preventScroll: true}); } });
-  svg.addEventListener("pointermove", e => {
-    const [x, y] = local(e);
-    if (from !== null && Math.abs(x - from) > 6) {
-      const to = clamp(x);
-      $("readout").hidden = true;
-      $("hover").innerHTML = `<rect class="band" x="${Math.min(from, to)}" y="${main.box.top}" width="${Math.abs(to - from)}" height="${main.box.height}"/>`;
+  function drawHover() {
+    const box = $("readout"), at = state.at, layer = $("hover");
+    if (!at || hidden.has(D.branches[at.b].group)) {
+      box.hidden = true;
+      layer.innerHTML = "";
       return;
     }
-    state.at = nearest(x, y);
-    svg.style.cursor = state.at ? "pointer" : "crosshair";
-    drawHover();
-  });
-  window.addEventListener("pointerup", e => {
-    if (from === null) return;
-    const to = clamp(local(e)[0]), start = from;
-    from = null;
-    if (Math.abs(to - start) > 6) setZoom([main.value(Math.min(start, to)), main.value(Math.max(start, to))]);
-    else if (state.at) select(state.at.b);
-  });
-  svg.addEventListener("pointerleave", () => { if (from === null) { state.at = null; drawHover(); } });
-  svg.addEventListener("dblclick", () => setZoom(null));
-  svg.addEventListener("keydown", e => {
-    const shown = D.branches.map((b, i) => i).filter(i => !hidden.has(D.branches[i].group) && D.branches[i].n > 0);
-    if (!shown.length) return;
-    const at = state.at || {b: shown.includes(state.branch) ? state.branch : shown[0], i: 0};
-    const step = e.shiftKey ? 10 : 1, b = D.branches[at.b];
-    if (e.key === "ArrowRight" || e.key === "ArrowLeft") {
-      const by = e.key === "ArrowRight" ? step : -step;
-      state.at = {b: at.b, i: state.at ? Math.max(0, Math.min(b.n - 1, at.i + by)) : 0};
-    } else if (e.key === "ArrowUp" || e.key === "ArrowDown") {
-      const j = shown[(shown.indexOf(at.b) + (e.key === "ArrowUp" ? 1 : shown.length - 1)) % shown.length];
-      let i = 0;
-      D.branches[j].f.forEach((f, k) => { if (Math.abs(f - b.f[at.i]) < Math.abs(D.branches[j].f[i] - b.f[at.i])) i = k; });
-      state.at = {b: j, i};
-    } else if (e.key === "Enter" && state.at) {
-      select(state.at.b);
-    } else if (e.key === "Escape") {
-      state.at = null;
-      if (state.zoom) setZoom(null);
-    } else return;
-    e.preventDefault();
-    drawHover(); announce();
-  });
-}
+    const b = D.branches[at.b], x = main.x(b.f[at.i]), y = main.y(b.row(state.output.row)[at.i]);
+    if (!main.inside(x, y)) {
+      box.hidden = true;
+      layer.innerHTML = "";
+      return;
+    }
+    layer.innerHTML = `<path class="cursor" d="M${x} ${main.box.top}V${
+        main.box.top + main.box.height}"/><circle class="probe ${classOf(groupOf(b))}" cx="${
+        x}" cy="${y}" r="5"/>`;
+    const r = readout(b, at.i);
+    box.innerHTML = `<b>${escape(r.title)}</b><dl>` +
+        r.rows.map(([k, v]) => `<dt>${k}</dt><dd>${v}</dd>`).join("") + "</dl>" +
+        (r.shares ? `<div class="shares">` +
+                 r.shares
+                     .map(
+                         (s, k) => `<i style="width:${100 * s}%;background:var(--${
+                                 ["stick", "slip", "gap"][k]})"></i>`)
+                     .join("") +
+                 "</div>" :
+                    "");
+    box.hidden = false;
+    const host = box.parentElement.clientWidth, scale = host / widthOf("response"),
+          w = box.offsetWidth;
+    const left = x * scale + 18 + w > host ? x * scale - 18 - w : x * scale + 18;
+    box.style.left = Math.max(0, left) + "px";
+    box.style.top = Math.max(0, y * scale - box.offsetHeight - 12) + "px";
+  }
+  function announce() {
+    if (!state.at) return;
+    const r = readout(D.branches[state.at.b], state.at.i);
+    $("spoken").textContent = r.title + ": " + r.rows.map(([k, v]) => k + " " + v).join(", ");
+  }
+  function nearest(px, py) {
+    let best = null, least = 40 * 40;
+    D.branches.forEach((b, j) => {
+      if (hidden.has(b.group)) return;
+      const a = b.row(state.output.row);
+      for (let i = 0; i < b.n; i++) {
+        const dx = main.x(b.f[i]) - px;
+        if (dx * dx > least) continue;
+        const dy = main.y(a[i]) - py, d = dx * dx + dy * dy;
+        if (d < least) {
+          least = d;
+          best = {b: j, i};
+        }
+      }
+    });
+    return best;
+  }
 
-document.documentElement.classList.add("js");
-wireControls();
-wireChart();
-drawAll();
-let timer;
-window.addEventListener("resize", () => { clearTimeout(timer); timer = setTimeout(drawAll, 80); });
+  /* ---------------------------------------------------------------- tracking */
+  const T = {group: 0, n0: 1, a: 2, f: 3, edge: 4, stick: 5, slip: 6, gap: 7, energy: 8};
+  function bestOf(track) {
+    let best = -1;
+    for (const edges of sweep ?
+             [false, true] :
+             [true]) /* a peak at an edge of the frequency range only if all are */
+      if (best < 0)
+        track.forEach((t, i) => {
+          if ((edges || !t[T.edge]) && (best < 0 || t[T.a] < track[best][T.a])) best = i;
+        });
+    return best;
+  }
+  function drawTracking() {
+    const o = state.output, track = o.track;
+    if (!$("tracking") || track.length < 2) return;
+    const width = widthOf("tracking"), forces = extent(track, t => t[T.n0]),
+          big = Math.max(...forces.map(Math.abs)) >= 1e4;
+    const fu = big ? ["kN", 1e3] : ["N", 1],
+          least = Math.min(...track.map(t => Math.abs(t[T.n0])).filter(v => v > 0));
+    const wide = Math.max(...forces.map(Math.abs)) >= 8 * least;
+    const amps = extent([...track.map(t => t[T.a]), ...o.limits.map(t => t[2])].filter(v => v > 0)),
+          u = unit(LENGTH, amps[1]);
+    const places =
+        extent([...track.map(t => t[T.f]), ...(sweep ? o.limits.map(t => t[1]) : [])].filter(
+            Number.isFinite));
+    const x = wide && forces[0] <= 0 ? signed(forces[0], forces[1], least) :
+                                       around(forces[0], forces[1], wide);
+    const y = state.log && amps[0] > 0 ?
+        {lo: amps[0] / (1.15 * (amps[1] / amps[0]) ** 0.14), hi: amps[1] * 1.2, log: true} :
+        {lo: 0, hi: 1.1 * amps[1], log: false};
+    const above = new Panel(
+        "tracking-a", {left: 60, top: 34, width: width - 80, height: 280}, axis(x, fu[1], null),
+        axis(y, u[1], `highest peak, ${o.place} ${o.axis}, ${o.quantity}, ${u[0]}`));
+    const below = new Panel(
+        "tracking-f", {left: 60, top: 374, width: width - 80, height: 170},
+        axis(x, fu[1], "preload n₀, " + fu[0]),
+        axis(
+            around(places[0], places[1], X.log && places[1] > 8 * places[0]), X.scale,
+            "its " + xLabel));
+    const best = bestOf(track);
+    for (const [p, value, limit] of [[above, T.a, 2], [below, T.f, 1]]) {
+      for (const l of p === above || sweep ? o.limits : []) {
+        const kind = D.groups[l[0]].kind, open = kind === "open";
+        p.level("line limit " + kind, l[limit]);
+        p.text(
+            "mark " + kind, open ? p.ax.lo : p.ax.hi, l[limit], open ? 6 : -6, -5,
+            open ? "start" : "end", kind);
+      }
+      for (const t of o.peaks)
+        if (D.groups[t[0]].rank >= 0) p.dot("lesser", D.groups[t[0]].n0, t[limit], 2.4);
+      p.line("line track", track.map(t => t[T.n0]), track.map(t => t[value]));
+      track.forEach(
+          (t, i) => p.dot(
+              (t[T.edge] ? "ring" : "dot") + " " + classOf(D.groups[t[0]]), t[T.n0], t[value],
+              i === best ? 5.5 : 4));
+    }
+    const ends = track[best][T.n0];
+    above.text(
+        "mark strong", ends, track[best][T.a], 0, 21,
+        best === 0                    ? "start" :
+            best === track.length - 1 ? "end" :
+                                        "middle",
+        `lowest: ${number(ends / fu[1], 4, false)}${NBSP}${fu[0]}`);
+    show("tracking", 600, [above, below]);
+  }
+
+  /* ---------------------------------------------------------------- contact */
+  function twoPanels(id, x, xUnit, energyMost, lowerLabel) {
+    const width = widthOf(id), e = unit(ENERGY, energyMost), box = {left: 60, width: width - 76};
+    const most = energyMost > 0 ? 1.08 * energyMost : e[1];
+    return [
+      new Panel(
+          id + "-s", {...box, top: 34, height: 180}, axis(x, xUnit, null),
+          axis(
+              {lo: lowerLabel ? -0.02 : 0, hi: lowerLabel ? 1.02 : 1, log: false}, 0.01,
+              "share of the period, %")),
+      new Panel(
+          id + "-d", {...box, top: 266, height: 150}, axis(x, xUnit, lowerLabel),
+          axis({lo: 0, hi: most, log: false}, e[1], "dissipated a cycle, " + e[0]))
+    ];
+  }
+  function drawState() {
+    const track = state.output.track;
+    if (!$("state") || !track.length) return;
+    const [shares, energy] = twoPanels(
+        "state", {lo: -0.6, hi: track.length - 0.4, log: false}, 0,
+        Math.max(...track.map(t => t[T.energy] || 0)), null);
+    const every =
+              1 + Math.floor((track.length - 1) / Math.max(2, Math.floor(shares.box.width / 40))),
+          b = energy.box;
+    track.forEach((t, i) => {
+      let low = 0;
+      ["stick", "slip", "gap"].forEach(s => {
+        shares.bar("state " + s, i - 0.36, i + 0.36, low, low + t[T[s]]);
+        low += t[T[s]];
+      });
+      energy.bar("bar " + classOf(D.groups[t[0]]), i - 0.36, i + 0.36, 0, t[T.energy]);
+      if (i % every === 0)
+        energy.svg += `<text class="tick" x="${energy.x(i).toFixed(1)}" y="${
+            b.top + b.height + 17}" text-anchor="middle">${number(t[T.n0], 4, false)}</text>`;
+    });
+    energy.svg += `<text class="axis" x="${b.left + b.width}" y="${
+        b.top + b.height + 36}" text-anchor="end">preload n₀, N</text>`;
+    show("state", 470, [shares, energy]);
+  }
+  const fullRange = () => {
+    const [lo, hi] = state.zoom || X.range;
+    return hi > lo ? {lo, hi, log: X.log} : around(lo, hi, false);
+  };
+  function drawAlong() {
+    if (!$("along") || state.branch < 0) return;
+    const b = D.branches[state.branch],
+          [shares, energy] =
+              twoPanels("along", fullRange(), X.scale, extent(b.row(ROW.energy))[1], xLabel);
+    ["stick", "slip", "gap"].forEach(s => shares.line("line " + s, b.f, b.row(ROW[s])));
+    energy.line("line " + classOf(groupOf(b)), b.f, b.row(ROW.energy));
+    show("along", 470, [shares, energy]);
+  }
+  function drawHarmonics() {
+    if (!$("harmonics") || state.branch < 0) return;
+    const s = D.spectra.find(e => e.place === state.output.place);
+    if (!s) {
+      show(
+          "harmonics", 60, [],
+          `<text x="0" y="30">The harmonics of ${
+              escape(
+                  state.output.place)} are not in this page; the response file has them.</text>`);
+      return;
+    }
+    const b = D.branches[state.branch], shown = Math.min(s.n, 8), width = widthOf("harmonics");
+    let most = 0, least = Infinity;
+    for (let k = 0; k < shown; k++) {
+      const a = b.row(s.row + k).filter(v => v > 0), [lo, hi] = extent(a);
+      if (a.length) {
+        most = Math.max(most, hi);
+        least = Math.min(least, lo);
+      }
+    }
+    const u = unit(LENGTH, most);
+    if (!(most > 0)) most = least = u[1];
+    const p = new Panel(
+        "harmonics", {left: 60, top: 34, width: width - 120, height: 272},
+        axis(fullRange(), X.scale, xLabel),
+        axis(
+            {lo: Math.max(1e-6 * most, least / 2), hi: 2 * most, log: true}, u[1],
+            `${s.place}, amplitude of each harmonic, ${u[0]}`));
+    const used = [];
+    for (let k = 0; k < shown; k++) {
+      const a = b.row(s.row + k);
+      p.line("line h" + k, b.f, a);
+      let end = -1; /* label the rightmost visible point */
+      for (let i = 0; i < b.n; i++)
+        if (b.f[i] <= p.ax.hi * (1 + 1e-9) && a[i] > p.ay.lo && (end < 0 || b.f[i] > b.f[end]))
+          end = i;
+      if (end < 0) continue;
+      let y = p.y(a[end]) + 4;
+      while (used.some(v => Math.abs(v - y) < 14)) y += 14;
+      used.push(y);
+      p.svg += `<text class="mark h${k}" x="${p.x(b.f[end]) + 6}" y="${y}">k = ${k}${
+          k > 0 && b.order > 1 ? "/" + b.order : ""}</text>`;
+    }
+    show("harmonics", 360, [p]);
+  }
+
+  /* ---------------------------------------------------------------- controls */
+  function fill(select, options, chosen) {
+    select.innerHTML =
+        options.map(([v, text]) => `<option value="${escape(String(v))}">${escape(text)}</option>`)
+            .join("");
+    select.value = String(chosen);
+  }
+  function choices() {
+    const o = state.output, here = outputs.filter(e => e.place === o.place);
+    fill($("place"), unique(outputs.map(e => e.place)).map(p => [p, p]), o.place);
+    fill($("axis"), unique(here.map(e => e.axis)).map(a => [a, a]), o.axis);
+    for (const button of document.querySelectorAll("[data-quantity]")) {
+      const quantity = button.dataset.quantity;
+      button.setAttribute("aria-pressed", String(quantity === o.quantity));
+      button.disabled = !here.some(e => e.axis === o.axis && e.quantity === quantity);
+    }
+    for (const button of document.querySelectorAll("[data-scale]"))
+      button.setAttribute("aria-pressed", String((button.dataset.scale === "log") === state.log));
+  }
+  function choose(place, ax, quantity) {
+    const match = (a, q) => outputs.find(
+        e => e.place === place && (a === null || e.axis === a) && (q === null || e.quantity === q));
+    state.output =
+        match(ax, quantity) || match(ax, null) || match(null, quantity) || match(null, null);
+    drawAll();
+  }
+  function select(index) {
+    if (index < 0 || D.branches[index].dots || groupOf(D.branches[index]).kind !== "nonlinear")
+      return;
+    state.branch = index;
+    if ($("curve")) $("curve").value = String(index);
+    drawResponse();
+    drawAlong();
+    drawHarmonics();
+  }
+  function drawAll() {
+    choices();
+    drawResponse();
+    drawTracking();
+    drawState();
+    drawAlong();
+    drawHarmonics();
+  }
+  function setZoom(range) {
+    state.zoom = range;
+    drawResponse();
+    drawAlong();
+    drawHarmonics();
+  }
+
+  function wireControls() {
+    $("place").onchange = e => choose(e.target.value, null, state.output.quantity);
+    $("axis").onchange = e => choose(state.output.place, e.target.value, state.output.quantity);
+    for (const b of document.querySelectorAll("[data-quantity]"))
+      b.onclick = () => choose(state.output.place, state.output.axis, b.dataset.quantity);
+    for (const b of document.querySelectorAll("[data-scale]"))
+      b.onclick = () => {
+        state.log = b.dataset.scale === "log";
+        drawAll();
+      };
+    $("whole").onclick = () => setZoom(null);
+    if ($("curve")) {
+      const list = D.branches.map((b, i) => i)
+                       .filter(
+                           i => groupOf(D.branches[i]).kind === "nonlinear" &&
+                               !D.branches[i].dots && D.branches[i].n > 0);
+      list.sort((i, j) => D.branches[i].group - D.branches[j].group || i - j);
+      const many = g => list.filter(i => D.branches[i].group === g).length > 1;
+      fill(
+          $("curve"),
+          list.map(
+              i =>
+                  [i,
+                   groupOf(D.branches[i]).name + D.branches[i].note +
+                       (many(D.branches[i].group) ? ` (curve ${i})` : "")]),
+          state.branch);
+      $("curve").onchange = e => select(+e.target.value);
+    }
+    for (const key of document.querySelectorAll(".key[data-group]")) {
+      const button = document.createElement("button");
+      button.type = "button";
+      button.className = key.className;
+      button.innerHTML = key.innerHTML;
+      button.setAttribute("aria-pressed", "true");
+      const group = +key.dataset.group;
+      button.dataset.group = group;
+      button.onclick = () => {
+        if (hidden.has(group)) hidden.delete(group);
+        else
+          hidden.add(group);
+        button.setAttribute("aria-pressed", String(!hidden.has(group)));
+        drawResponse();
+      };
+      key.replaceWith(button);
+    }
+  }
+  function wireChart() {
+    const svg = $("response");
+    let from = null;
+    const local = e => {
+      const r = svg.getBoundingClientRect(), s = widthOf("response") / r.width;
+      return [(e.clientX - r.left) * s, (e.clientY - r.top) * s];
+    };
+    const clamp = x => Math.max(main.box.left, Math.min(main.box.left + main.box.width, x));
+    svg.setAttribute("tabindex", "0");
+    svg.addEventListener("pointerdown", e => {
+      if (e.button === 0 && e.pointerType !== "touch") {
+        from = clamp(local(e)[0]);
+        e.preventDefault();
+        svg.focus({preventScroll: true});
+      }
+    });
+    svg.addEventListener("pointermove", e => {
+      const [x, y] = local(e);
+      if (from !== null && Math.abs(x - from) > 6) {
+        const to = clamp(x);
+        $("readout").hidden = true;
+        $("hover").innerHTML = `<rect class="band" x="${Math.min(from, to)}" y="${
+            main.box.top}" width="${Math.abs(to - from)}" height="${main.box.height}"/>`;
+        return;
+      }
+      state.at = nearest(x, y);
+      svg.style.cursor = state.at ? "pointer" : "crosshair";
+      drawHover();
+    });
+    window.addEventListener("pointerup", e => {
+      if (from === null) return;
+      const to = clamp(local(e)[0]), start = from;
+      from = null;
+      if (Math.abs(to - start) > 6)
+        setZoom([main.value(Math.min(start, to)), main.value(Math.max(start, to))]);
+      else if (state.at)
+        select(state.at.b);
+    });
+    svg.addEventListener("pointerleave", () => {
+      if (from === null) {
+        state.at = null;
+        drawHover();
+      }
+    });
+    svg.addEventListener("dblclick", () => setZoom(null));
+    svg
+        .addEventListener(
+            "keydown", e => {
+              const shown =
+                  D.branches.map((b, i) => i)
+                      .filter(i => !hidden.has(D.branches[i].group) && D.branches[i].n > 0);
+              if (!shown.length) return;
+              const at =
+                  state.at || {b: shown.includes(state.branch) ? state.branch : shown[0], i: 0};
+              const step = e.shiftKey ? 10 : 1, b = D.branches[at.b];
+              if (e.key === "ArrowRight" || e.key === "ArrowLeft") {
+                const by = e.key === "ArrowRight" ? step : -step;
+                state.at = {b: at.b, i: state.at ? Math.max(0, Math.min(b.n - 1, at.i + by)) : 0};
+              } else if (e.key === "ArrowUp" || e.key === "ArrowDown") {
+                const by = e.key === "ArrowUp" ? 1 : shown.length - 1;
+                const j = shown[(shown.indexOf(at.b) + by) % shown.length];
+                let i = 0;
+                D.branches[j].f.forEach((f, k) => {
+                  if (Math.abs(f - b.f[at.i]) < Math.abs(D.branches[j].f[i] - b.f[at.i])) i = k;
+                });
+                state.at = {b: j, i};
+              } else if (e.key === "Enter" && state.at) {
+                select(state.at.b);
+              } else if (e.key === "Escape") {
+                state.at = null;
+                if (state.zoom) setZoom(null);
+              } else
+                return;
+              e.preventDefault();
+              drawHover();
+              announce();
+            });
+  }
+
+  document.documentElement.classList.add("js");
+  wireControls();
+  wireChart();
+  drawAll();
+  let timer;
+  window.addEventListener("resize", () => {
+    clearTimeout(timer);
+    timer = setTimeout(drawAll, 80);
+  });
 })();

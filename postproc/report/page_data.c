@@ -15,7 +15,7 @@ enum {
   MAX_HARMONICS = 16
 };
 
-/* One output, or (n > 0) the amplitudes of harmonics 0..n-1 of a place. */
+/* One output; if n > 0, the amplitudes of harmonics 0 .. n - 1 of a place. */
 typedef struct {
   post_output   output;
   post_quantity quantity;
@@ -27,14 +27,14 @@ typedef struct {
   column column[MAX_COLUMNS];
 } plan;
 
-/* The numbers of one branch: its kept points and their rows. */
+/* Numbers of one branch: the points written and their rows. */
 typedef struct {
   int    n;
   int   *kept; /* [n] */
   float *data; /* [rows][n] */
 } sheet;
 
-/* ---------------------------------------------------------------- what fits */
+/* ---------------------------------------------------------------- choice of columns */
 
 static void propose(plan *p, int rows, column wanted) {
   int needed = wanted.n > 0 ? wanted.n : 1;
@@ -50,13 +50,13 @@ static void propose(plan *p, int rows, column wanted) {
 static void propose_place(plan *p, int rows, post_place place, int index, int pass, int harmonics) {
   post_output whole = {place, index, POST_WHOLE};
   if (pass == 0) {
-    propose(p, rows, (column){whole, POST_FIRST_HARMONIC, 0, 0});
-    propose(p, rows, (column){whole, POST_PEAK_TO_PEAK, 0, 0});
+    propose(p, rows, (column){whole, POST_QUANTITY_FIRST_HARMONIC, 0, 0});
+    propose(p, rows, (column){whole, POST_QUANTITY_PEAK_TO_PEAK, 0, 0});
   } else if (pass == 1) {
-    propose(p, rows, (column){whole, POST_FIRST_HARMONIC, harmonics, 0});
+    propose(p, rows, (column){whole, POST_QUANTITY_FIRST_HARMONIC, harmonics, 0});
   } else {
     for (int axis = 0; axis < 3; axis++)
-      for (int q = POST_FIRST_HARMONIC; q <= POST_PEAK_TO_PEAK; q++)
+      for (int q = POST_QUANTITY_FIRST_HARMONIC; q <= POST_QUANTITY_PEAK_TO_PEAK; q++)
         propose(p, rows, (column){{place, index, axis}, (post_quantity)q, 0, 0});
   }
 }
@@ -72,13 +72,13 @@ static plan make_plan(const mhb_response *response, int n_points) {
   for (int pass = 0; pass < 3; pass++) {
     for (int q = 0; q < response->n_probes; q++) {
       if (q < MAX_PLACES)
-        propose_place(&p, rows, POST_PROBE, q, pass, harmonics);
+        propose_place(&p, rows, POST_PLACE_PROBE, q, pass, harmonics);
       else
         p.left_out += pass == 2 ? 6 : 2 - pass;
     }
     for (int c = 0; c < response->n_pairs; c++) {
       if (c < MAX_PLACES)
-        propose_place(&p, rows, POST_CONTACT, c, pass, harmonics);
+        propose_place(&p, rows, POST_PLACE_CONTACT, c, pass, harmonics);
       else
         p.left_out += pass == 2 ? 6 : 2 - pass;
     }
@@ -86,9 +86,10 @@ static plan make_plan(const mhb_response *response, int n_points) {
   return p;
 }
 
-/* ---------------------------------------------------------------- which points */
+/* ---------------------------------------------------------------- choice of points */
 
-/* Ends, special points, turns of amplitude or abscissa, changes of stability, and every stride-th. */
+/* True for ends, special points, extrema of amplitude and abscissa, changes of stability, and every
+ * stride-th point. */
 static bool is_kept(const mhb_branch *branch, const double *x, const double *a, int i, int stride) {
   if (i % stride == 0 || i == branch->n_points - 1 || branch->special[i]) return true;
   bool top  = (a[i] - a[i - 1]) * (a[i + 1] - a[i]) <= 0;
@@ -111,17 +112,17 @@ static void put_triple(post_buffer *out, bool *first, int group, double at, doub
   *first = false;
 }
 
-static void put_track_point(const post_study *study, const post_track_point *p, int group,
+static void put_track_point(const post_analysis *analysis, const post_track_point *p, int group,
                             post_buffer *out) {
-  const mhb_branch *branch = &study->response->branch[p->branch];
+  const mhb_branch *branch = &analysis->response->branch[p->branch];
   double            all[]  = {p->n0,
                               p->amplitude,
                               p->at,
                               p->edge,
-                              post_state(study->response, branch, p->point, 0),
-                              post_state(study->response, branch, p->point, 1),
-                              post_state(study->response, branch, p->point, 2),
-                              post_dissipation(study->response, branch, p->point)};
+                              post_state(analysis->response, branch, p->point, 0),
+                              post_state(analysis->response, branch, p->point, 1),
+                              post_state(analysis->response, branch, p->point, 2),
+                              post_dissipation(analysis->response, branch, p->point)};
   post_put(out, "[%d", group);
   for (int i = 0; i < 8; i++) {
     post_put(out, ",");
@@ -130,76 +131,79 @@ static void put_track_point(const post_study *study, const post_track_point *p, 
   post_put(out, "]");
 }
 
-static shb_status put_track(const post_study *study, double *const *values, post_buffer *out) {
+static shb_status put_track(const post_analysis *analysis, double *const *values,
+                            post_buffer *out) {
   post_tracking t;
-  SHB_TRY(post_track(study, values, &t));
+  SHB_TRY(post_track(analysis, values, &t));
   post_put(out, ",\"track\":[");
   for (int i = 0; i < t.n; i++) {
     post_put(out, i ? "," : "");
-    put_track_point(study, &t.point[i], study->curve[t.point[i].branch].group, out);
+    put_track_point(analysis, &t.point[i], analysis->curve[t.point[i].branch].group, out);
   }
   post_put(out, "],\"limits\":[");
   bool first = true;
   if (t.open.branch >= 0)
-    put_triple(out, &first, study->curve[t.open.branch].group, t.open.at, t.open.amplitude);
+    put_triple(out, &first, analysis->curve[t.open.branch].group, t.open.at, t.open.amplitude);
   if (t.stuck.branch >= 0)
-    put_triple(out, &first, study->curve[t.stuck.branch].group, t.stuck.at, t.stuck.amplitude);
+    put_triple(out, &first, analysis->curve[t.stuck.branch].group, t.stuck.at, t.stuck.amplitude);
   post_put(out, "]");
   post_tracking_free(&t);
   return SHB_OK;
 }
 
-static shb_status put_peaks(const post_study *study, double *const *values, post_buffer *out) {
+static shb_status put_peaks(const post_analysis *analysis, double *const *values,
+                            post_buffer *out) {
   bool first = true;
   post_put(out, ",\"peaks\":[");
-  for (int b = 0; b < study->response->n_branches; b++) {
-    const mhb_branch *branch = &study->response->branch[b];
+  for (int b = 0; b < analysis->response->n_branches; b++) {
+    const mhb_branch *branch = &analysis->response->branch[b];
     post_peak        *peak;
     int               n;
-    const double     *x = post_abscissa_values(study->response, branch);
+    const double     *x = post_abscissa_values(analysis->response, branch);
     SHB_TRY(post_find_peaks(branch->n_points, x, values[b], &peak, &n));
     for (int i = 0; i < n; i++)
-      put_triple(out, &first, study->curve[b].group, peak[i].at, peak[i].amplitude);
+      put_triple(out, &first, analysis->curve[b].group, peak[i].at, peak[i].amplitude);
     free(peak);
   }
   post_put(out, "]");
   return SHB_OK;
 }
 
-static shb_status put_folds(const post_study *study, double *const *values, post_buffer *out) {
+static shb_status put_folds(const post_analysis *analysis, double *const *values,
+                            post_buffer *out) {
   bool first = true;
   post_put(out, ",\"folds\":[");
-  for (int b = 0; b < study->response->n_branches; b++) {
-    const mhb_branch *branch = &study->response->branch[b];
+  for (int b = 0; b < analysis->response->n_branches; b++) {
+    const mhb_branch *branch = &analysis->response->branch[b];
     post_fold        *fold;
     int               n;
-    if (study->curve[b].n_folds == 0) continue;
-    const double *x = post_abscissa_values(study->response, branch);
+    if (analysis->curve[b].n_folds == 0) continue;
+    const double *x = post_abscissa_values(analysis->response, branch);
     SHB_TRY(post_find_folds(branch->n_points, x, values[b], branch->special, &fold, &n));
     for (int i = 0; i < n; i++)
-      put_triple(out, &first, study->curve[b].group, fold[i].at, fold[i].amplitude);
+      put_triple(out, &first, analysis->curve[b].group, fold[i].at, fold[i].amplitude);
     free(fold);
   }
   post_put(out, "]");
   return SHB_OK;
 }
 
-/* The analysis of an output, and its row in every sheet. */
-static shb_status put_output(const post_study *study, const column *c, sheet *sheets,
+/* Write the analysis of an output, and fill its row in every sheet. */
+static shb_status put_output(const post_analysis *analysis, const column *c, sheet *sheets,
                              post_buffer *out) {
   double **values;
-  SHB_TRY(post_values(study->response, c->output, c->quantity, &values));
+  SHB_TRY(post_values(analysis->response, c->output, c->quantity, &values));
   post_put(out, ",\"axis\":\"%s\",\"quantity\":\"%s\"", post_axis_name(c->output),
-           c->quantity == POST_FIRST_HARMONIC ? "first harmonic" : "peak to peak");
-  shb_status status = put_track(study, values, out);
-  if (status == SHB_OK) status = put_peaks(study, values, out);
-  if (status == SHB_OK) status = put_folds(study, values, out);
-  for (int b = 0; b < study->response->n_branches; b++) {
+           c->quantity == POST_QUANTITY_FIRST_HARMONIC ? "first harmonic" : "peak to peak");
+  shb_status status = put_track(analysis, values, out);
+  if (status == SHB_OK) status = put_peaks(analysis, values, out);
+  if (status == SHB_OK) status = put_folds(analysis, values, out);
+  for (int b = 0; b < analysis->response->n_branches; b++) {
     sheet *s = &sheets[b];
     for (int i = 0; i < s->n; i++)
       s->data[(size_t)c->row * (size_t)s->n + (size_t)i] = (float)values[b][s->kept[i]];
   }
-  post_values_free(study->response, values);
+  post_values_free(analysis->response, values);
   return status;
 }
 
@@ -211,8 +215,8 @@ static void fill_spectrum(const mhb_response *response, const column *c, sheet *
             (float)post_amplitude(response, &response->branch[b], sheets[b].kept[i], c->output, k);
 }
 
-static shb_status put_columns(const post_study *study, const plan *p, bool spectra, sheet *sheets,
-                              post_buffer *out) {
+static shb_status put_columns(const post_analysis *analysis, const plan *p, bool spectra,
+                              sheet *sheets, post_buffer *out) {
   const char *comma = "";
   for (int i = 0; i < p->n; i++) {
     const column *c = &p->column[i];
@@ -220,30 +224,31 @@ static shb_status put_columns(const post_study *study, const plan *p, bool spect
     if ((c->n > 0) != spectra) continue;
     post_put(out, "%s\n{\"place\":", comma);
     comma = ",";
-    post_place_name(study->response, c->output, place);
+    post_place_name(analysis->response, c->output, place);
     post_put_json(out, place);
     post_put(out, ",\"row\":%d", c->row);
     if (spectra) {
       post_put(out, ",\"n\":%d", c->n);
-      fill_spectrum(study->response, c, sheets);
+      fill_spectrum(analysis->response, c, sheets);
     } else {
-      SHB_TRY(put_output(study, c, sheets, out));
+      SHB_TRY(put_output(analysis, c, sheets, out));
     }
     post_put(out, "}");
   }
   return SHB_OK;
 }
 
-static double fixed_value(const post_study *study, const mhb_branch *branch, int point, int row) {
+static double fixed_value(const post_analysis *analysis, const mhb_branch *branch, int point,
+                          int row) {
   switch (row) {
     case 0:
-      return post_abscissa_values(study->response, branch)[point];
+      return post_abscissa_values(analysis->response, branch)[point];
     case 1:
     case 2:
     case 3:
-      return post_state(study->response, branch, point, row - 1);
+      return post_state(analysis->response, branch, point, row - 1);
     case 4:
-      return post_dissipation(study->response, branch, point);
+      return post_dissipation(analysis->response, branch, point);
     case 5:
       return post_error(branch, point);
     case 6:
@@ -254,30 +259,31 @@ static double fixed_value(const post_study *study, const mhb_branch *branch, int
 }
 
 /* Choose the points of a branch and fill its fixed rows. */
-static shb_status make_sheet(const post_study *study, int b, int rows, int stride, sheet *s) {
-  const mhb_branch *branch = &study->response->branch[b];
-  const double     *x      = post_abscissa_values(study->response, branch);
+static shb_status make_sheet(const post_analysis *analysis, int b, int rows, int stride, sheet *s) {
+  const mhb_branch *branch = &analysis->response->branch[b];
+  const double     *x      = post_abscissa_values(analysis->response, branch);
   size_t            points = (size_t)branch->n_points;
   s->kept                  = malloc((points + 1) * sizeof *s->kept);
   s->data                  = malloc((points * (size_t)rows + 1) * sizeof *s->data);
   SHB_CHECK(s->kept && s->data, SHB_ERR_IO, "not enough memory for the report");
   for (int i = 0; i < branch->n_points; i++)
-    if (is_kept(branch, x, study->curve[b].amplitude, i, stride)) s->kept[s->n++] = i;
+    if (is_kept(branch, x, analysis->curve[b].amplitude, i, stride)) s->kept[s->n++] = i;
   for (int row = 0; row < FIXED_ROWS; row++)
     for (int i = 0; i < s->n; i++)
       s->data[(size_t)row * (size_t)s->n + (size_t)i] =
-          (float)fixed_value(study, branch, s->kept[i], row);
+          (float)fixed_value(analysis, branch, s->kept[i], row);
   return SHB_OK;
 }
 
-static void put_branches(const post_study *study, int rows, const sheet *sheets, post_buffer *out) {
-  for (int b = 0; b < study->response->n_branches; b++) {
-    const mhb_branch *branch = &study->response->branch[b];
+static void put_branches(const post_analysis *analysis, int rows, const sheet *sheets,
+                         post_buffer *out) {
+  for (int b = 0; b < analysis->response->n_branches; b++) {
+    const mhb_branch *branch = &analysis->response->branch[b];
     char              note[64];
-    post_branch_note(study->response, branch, note);
+    post_branch_note(analysis->response, branch, note);
     post_put(out,
              "%s\n{\"group\":%d,\"n\":%d,\"complete\":%s,\"dots\":%s,\"reason\":", b ? "," : "",
-             study->curve[b].group, sheets[b].n, branch->complete ? "true" : "false",
+             analysis->curve[b].group, sheets[b].n, branch->complete ? "true" : "false",
              branch->kind == MHB_BRANCH_INTEGRATION ? "true" : "false");
     post_put_json(out, branch->reason ? branch->reason : "");
     post_put(out, ",\"order\":%d,\"note\":", branch->order);
@@ -288,10 +294,10 @@ static void put_branches(const post_study *study, int rows, const sheet *sheets,
   }
 }
 
-static void put_groups(const post_study *study, post_buffer *out) {
+static void put_groups(const post_analysis *analysis, post_buffer *out) {
   static const char *const kind[] = {"nonlinear", "open", "stuck"};
-  for (int g = 0; g < study->n_groups; g++) {
-    const post_group *group = &study->group[g];
+  for (int g = 0; g < analysis->n_groups; g++) {
+    const post_group *group = &analysis->group[g];
     char              name[64];
     post_group_name(group, name);
     post_put(out, "%s{\"kind\":\"%s\",\"rank\":%d,\"n0\":", g ? "," : "", kind[group->kind],
@@ -311,33 +317,34 @@ static void put_abscissa(const post_abscissa *x, post_buffer *out) {
            x->log ? "true" : "false", x->range[0], x->range[1]);
 }
 
-static shb_status put_all(const post_study *study, int chosen, sheet *sheets, post_buffer *out,
-                          int *left_out) {
-  int  stride = 1 + LEAST_ROWS * study->n_points / (BUDGET + 1);
-  plan p      = make_plan(study->response, study->n_points / stride);
+static shb_status put_all(const post_analysis *analysis, int chosen, sheet *sheets,
+                          post_buffer *out, int *left_out) {
+  int  stride = 1 + LEAST_ROWS * analysis->n_points / (BUDGET + 1);
+  plan p      = make_plan(analysis->response, analysis->n_points / stride);
   *left_out   = p.left_out;
-  for (int b = 0; b < study->response->n_branches; b++)
-    SHB_TRY(make_sheet(study, b, p.rows, stride, &sheets[b]));
+  for (int b = 0; b < analysis->response->n_branches; b++)
+    SHB_TRY(make_sheet(analysis, b, p.rows, stride, &sheets[b]));
   post_put(out, "{\"rows\":%d,\"chosen\":%d,\"log\":%s,\"abscissa\":", p.rows, chosen,
-           post_wants_log(study) ? "true" : "false");
-  put_abscissa(&study->abscissa, out);
+           post_amplitude_is_log(analysis) ? "true" : "false");
+  put_abscissa(&analysis->abscissa, out);
   post_put(out, ",\"groups\":[");
-  put_groups(study, out);
+  put_groups(analysis, out);
   post_put(out, "],\"outputs\":[");
-  SHB_TRY(put_columns(study, &p, false, sheets, out));
+  SHB_TRY(put_columns(analysis, &p, false, sheets, out));
   post_put(out, "],\"spectra\":[");
-  SHB_TRY(put_columns(study, &p, true, sheets, out));
+  SHB_TRY(put_columns(analysis, &p, true, sheets, out));
   post_put(out, "],\"branches\":[");
-  put_branches(study, p.rows, sheets, out);
+  put_branches(analysis, p.rows, sheets, out);
   post_put(out, "]}");
   return SHB_OK;
 }
 
-shb_status post_page_data(const post_study *study, int chosen, post_buffer *out, int *left_out) {
-  int    n      = study->response->n_branches;
+shb_status post_page_data(const post_analysis *analysis, int chosen, post_buffer *out,
+                          int *left_out) {
+  int    n      = analysis->response->n_branches;
   sheet *sheets = calloc((size_t)n + 1, sizeof *sheets);
   SHB_CHECK(sheets, SHB_ERR_IO, "not enough memory for the report");
-  shb_status status = put_all(study, chosen, sheets, out, left_out);
+  shb_status status = put_all(analysis, chosen, sheets, out, left_out);
   for (int b = 0; b < n; b++) {
     free(sheets[b].kept);
     free(sheets[b].data);

@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "postproc/draw/colour.h"
 #include "postproc/draw/number_format.h"
@@ -9,7 +10,7 @@
 
 enum { WIDTH = 1000, HEIGHT = 560, LEGEND = 820 };
 
-static void put_style(const post_study *study, post_buffer *out) {
+static void put_style(const post_analysis *analysis, post_buffer *out) {
   post_put(
       out,
       "<style>text{font:13px 'Helvetica Neue',Helvetica,Arial,sans-serif;fill:#56606c}"
@@ -20,17 +21,13 @@ static void put_style(const post_study *study, post_buffer *out) {
       ".unstable{stroke-dasharray:.1 4.5}.limit{color:#6b7480;stroke-width:1.5;stroke-linecap:butt}"
       ".line.open{stroke-dasharray:9 5}.line.stuck{stroke-dasharray:4 4}"
       ".dot{fill:currentColor}.fold{fill:#fff;stroke:currentColor;stroke-width:1.4}"
-      ".turn{fill:currentColor;stroke:#fff;stroke-width:.8}"
-      ".witness{fill:currentColor;stroke:#1b2530;stroke-width:.9}"
-      ".adrift{fill:none;stroke:currentColor;stroke-width:1.4}"
+      ".bifurcation{fill:currentColor;stroke:#fff;stroke-width:.8}"
+      ".integration{fill:currentColor;stroke:#1b2530;stroke-width:.9}"
+      ".aperiodic{fill:none;stroke:currentColor;stroke-width:1.4}"
       ".varying{color:#0b6e75}.plain{color:#56606c}.mark{font-style:italic;paint-order:stroke;"
       "stroke:#fff;stroke-width:"
       "4px}");
-  for (int i = 0; i < study->n_ranks; i++) {
-    char colour[8];
-    post_colour(study->n_ranks > 1 ? i / (study->n_ranks - 1.0) : 0.5, false, colour);
-    post_put(out, ".c%d{color:%s}", i, colour);
-  }
+  post_put_ramp(analysis->n_ranks, false, out);
   post_put(out, "</style>\n");
 }
 
@@ -39,60 +36,56 @@ static void put_entry(post_buffer *out, double y, const char *classes, const cha
            classes, LEGEND, y - 4, LEGEND + 38, y, text);
 }
 
-static void put_legend(const post_study *study, post_buffer *out) {
-  double step = fmin(21, 430.0 / (study->n_groups + 1)), y = 84;
-  bool   unstable = false, witness = false;
-  for (int b = 0; b < study->response->n_branches; b++) {
-    const mhb_branch *branch = &study->response->branch[b];
-    witness = witness || (branch->kind == MHB_BRANCH_INTEGRATION && branch->n_points > 0);
+static void put_legend(const post_analysis *analysis, post_buffer *out) {
+  double step = fmin(21, 430.0 / (analysis->n_groups + 1)), y = 84;
+  bool   unstable = false, integration = false;
+  for (int b = 0; b < analysis->response->n_branches; b++) {
+    const mhb_branch *branch = &analysis->response->branch[b];
+    integration = integration || (branch->kind == MHB_BRANCH_INTEGRATION && branch->n_points > 0);
     for (int p = 0; p < branch->n_points; p++) unstable = unstable || branch->stable[p] == 0;
   }
-  if (study->n_ranks > 0) {
+  if (analysis->n_ranks > 0) {
     post_put(out, "<text class=\"axis\" x=\"%d\" y=\"%.1f\">preload n₀</text>\n", LEGEND, y);
     y += 1.2 * step;
   }
-  for (int g = 0; g < study->n_groups; g++) {
-    const post_group *group = &study->group[g];
-    char              number[POST_NUMBER], classes[40];
+  for (int g = 0; g < analysis->n_groups; g++) {
+    const post_group *group = &analysis->group[g];
+    char              number[POST_NUMBER], text[POST_NUMBER + 8], classes[POST_CLASS];
     if (group->empty) continue;
-    if (group->rank >= 0) {
-      snprintf(classes, sizeof classes, "c%d", group->rank);
-      char text[POST_NUMBER + 8];
+    post_group_class(group, classes);
+    if (group->rank >= 0)
       snprintf(text, sizeof text, "%s\u00a0N", post_plain(number, group->n0, 5));
-      put_entry(out, y, classes, text);
-    } else if (group->kind == MHB_BRANCH_NONLINEAR) {
-      bool followed = study->abscissa.parameter == MHB_IN_N0;
-      put_entry(out, y, "varying", followed ? "n₀ varying" : "varying");
-    } else {
-      bool open = group->kind == MHB_BRANCH_OPEN;
-      put_entry(out, y, open ? "limit open" : "limit stuck", open ? "fully open" : "fully stuck");
-    }
+    else if (group->kind == MHB_BRANCH_NONLINEAR)
+      strcpy(text, analysis->abscissa.parameter == MHB_IN_N0 ? "n₀ varying" : "varying");
+    else
+      strcpy(text, group->kind == MHB_BRANCH_OPEN ? "fully open" : "fully stuck");
+    put_entry(out, y, classes, text);
     y += step;
   }
   if (unstable) put_entry(out, y, "unstable plain", "unstable");
-  if (witness)
+  if (integration)
     post_put(out,
-             "<circle class=\"witness plain\" cx=\"%d\" cy=\"%.1f\" r=\"2.4\"/>"
+             "<circle class=\"integration plain\" cx=\"%d\" cy=\"%.1f\" r=\"2.4\"/>"
              "<text x=\"%d\" y=\"%.1f\">time integration</text>\n",
              LEGEND + 14, y + (unstable ? step : 0) - 4, LEGEND + 38, y + (unstable ? step : 0));
 }
 
-void post_picture(const post_study *study, const char *case_name, post_buffer *out) {
+void post_picture(const post_analysis *analysis, const char *case_name, post_buffer *out) {
   char title[256], text[160], frequency[POST_PLACE];
   snprintf(title, sizeof title, "Forced response of %s%s", case_name,
-           post_frequency_text(study, frequency));
-  snprintf(text, sizeof text, "Amplitude against %s%s.", study->abscissa.name,
-           study->n_ranks > 0 || !post_at_one_frequency(study) ? " for each preload" : "");
+           post_frequency_text(analysis, frequency));
+  snprintf(text, sizeof text, "Amplitude against %s%s.", analysis->abscissa.name,
+           analysis->n_ranks > 0 || !post_at_one_frequency(analysis) ? " for each preload" : "");
   post_put(out, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
   plot_svg_open(out, "picture", WIDTH, HEIGHT, title, text);
-  put_style(study, out);
+  put_style(analysis, out);
   post_put(out, "<rect width=\"%d\" height=\"%d\" fill=\"#fff\"/>\n", WIDTH, HEIGHT);
   post_put(out, "<text class=\"heading\" x=\"20\" y=\"34\">");
   post_put_escaped(out, title);
   post_put(out, "</text>\n");
   post_plot plot = {
       .out = out, .id = "picture", .left = 68, .top = 84, .width = 724, .height = 420};
-  post_draw_response(study, &plot);
-  put_legend(study, out);
+  post_draw_response(analysis, &plot);
+  put_legend(analysis, out);
   plot_svg_close(out);
 }

@@ -10,17 +10,17 @@
 
 typedef struct {
   mhb_response    *response;
-  post_source      source;
-  post_study      *study;
+  post_origin      source;
+  post_analysis   *analysis;
   post_convergence convergence;
   modal_speeds     speeds;
   post_campbell    campbell;
   post_buffer      html, csv, svg, diagram;
 } work;
 
-/* The study's complaint with the file's name before it. */
-static shb_status make_study(const post_job *job, work *w) {
-  shb_status status = post_study_create(w->response, &w->study);
+/* Put the file's name before an error text of the analysis. */
+static shb_status make_analysis(const post_job *job, work *w) {
+  shb_status status = post_analysis_create(w->response, &w->analysis);
   if (status != SHB_ERR_INPUT) return status;
   char why[256];
   snprintf(why, sizeof why, "%s", shb_message());
@@ -44,8 +44,8 @@ static shb_status add_campbell(const post_job *job, work *w) {
   if (!job->modal) return SHB_OK;
   SHB_TRY(modal_speeds_read(job->modal, &w->speeds));
   if (w->speeds.n < 2) return SHB_OK;
-  w->campbell        = (post_campbell){&w->speeds, w->response->engine_order};
-  w->study->campbell = &w->campbell;
+  w->campbell           = (post_campbell){&w->speeds, w->response->engine_order};
+  w->analysis->campbell = &w->campbell;
   post_campbell_picture(&w->campbell, job->case_name, &w->diagram);
   return SHB_OK;
 }
@@ -55,24 +55,24 @@ static shb_status compose(const post_job *job, shb_progress *progress, work *w) 
   shb_progress_show(progress, 0, "reading %s", job->response);
   SHB_TRY(mhb_response_read(job->response, &w->response));
   SHB_TRY(add_integration(job, w));
-  SHB_TRY(post_source_open(job->response, &w->source));
-  SHB_TRY(make_study(job, w));
+  SHB_TRY(post_origin_open(job->response, &w->source));
+  SHB_TRY(make_analysis(job, w));
   if (job->convergence) {
     SHB_TRY(post_convergence_read(job->convergence, &w->convergence));
-    w->study->convergence = &w->convergence;
+    w->analysis->convergence = &w->convergence;
   }
   SHB_TRY(add_campbell(job, w));
-  shb_progress_note(progress, "read %d points on %d curves in %.2f s", w->study->n_points,
+  shb_progress_note(progress, "read %d points on %d curves in %.2f s", w->analysis->n_points,
                     w->response->n_branches, shb_seconds() - started);
   started = shb_seconds();
   shb_progress_show(progress, 30, "page");
-  SHB_TRY(post_report(w->study, &w->source, job->case_name, &w->html));
+  SHB_TRY(post_report(w->analysis, &w->source, job->case_name, &w->html));
   shb_progress_note(progress, "page, %.1f MB, in %.2f s", 1e-6 * (double)w->html.length,
                     shb_seconds() - started);
   started = shb_seconds();
   shb_progress_show(progress, 70, "table");
   post_csv(w->response, &w->csv);
-  post_picture(w->study, job->case_name, &w->svg);
+  post_picture(w->analysis, job->case_name, &w->svg);
   shb_progress_note(progress, "table, %.1f MB, and picture in %.2f s", 1e-6 * (double)w->csv.length,
                     shb_seconds() - started);
   bool failed = w->html.failed || w->csv.failed || w->svg.failed || w->diagram.failed;
@@ -83,7 +83,8 @@ static shb_status compose(const post_job *job, shb_progress *progress, work *w) 
 static shb_status write_all(const post_job *job, const work *w) {
   SHB_TRY(post_buffer_publish(&w->csv, job->csv));
   SHB_TRY(post_buffer_publish(&w->svg, job->svg));
-  if (job->campbell && w->study->campbell) SHB_TRY(post_buffer_publish(&w->diagram, job->campbell));
+  if (job->campbell && w->analysis->campbell)
+    SHB_TRY(post_buffer_publish(&w->diagram, job->campbell));
   return post_buffer_publish(&w->html, job->html);
 }
 
@@ -93,13 +94,13 @@ shb_status post_publish(const post_job *job, shb_progress *progress, char **summ
   if (status == SHB_OK) status = write_all(job, &w);
   if (status == SHB_OK && summary) {
     post_buffer text = {0};
-    post_summary(w.study, &text);
-    *summary = text.text; /* NULL when there is nothing to say */
+    post_summary(w.analysis, &text);
+    *summary = text.text; /* NULL if the summary is empty */
   }
   shb_progress_clear(progress);
-  post_study_destroy(w.study);
+  post_analysis_destroy(w.analysis);
   post_convergence_free(&w.convergence);
-  post_source_free(&w.source);
+  post_origin_free(&w.source);
   mhb_response_destroy(w.response);
   post_buffer_free(&w.html);
   post_buffer_free(&w.csv);

@@ -1,4 +1,5 @@
-/* The stage: from NAME.response.h5 to NAME.html, NAME.csv and NAME.svg; with modes at several speeds NAME.campbell.svg too. */
+/* The stage: from NAME.response.h5 to NAME.html, NAME.csv and NAME.svg; with modes at several
+ * speeds also NAME.campbell.svg. */
 #ifndef POSTPROC_REPORT_PUBLISH_H
 #define POSTPROC_REPORT_PUBLISH_H
 
@@ -12,11 +13,12 @@ typedef struct {
   const char *convergence;      /* NAME.converge.h5 for the page, or NULL */
   const char *integration;      /* file of points by time integration, or NULL */
   const char *modal;            /* modal file, for its modes at several speeds, or NULL */
-  const char *campbell;         /* picture of them to write where it has them, or NULL */
+  const char *campbell;         /* picture of these modes to write, or NULL */
 } post_job;
 
-/* Nothing is written unless all could be composed. summary: malloc'ed line for the terminal, may be NULL.
- * Errors: as mhb_response_read, post_convergence_read; SHB_ERR_INPUT no point; SHB_ERR_IO. */
+/* Nothing is written unless everything could be composed. summary: malloc'ed line for the terminal,
+ * or NULL. Errors: as mhb_response_read and post_convergence_read; SHB_ERR_INPUT no point;
+ * SHB_ERR_IO. */
 shb_status post_publish(const post_job *job, shb_progress *progress, char **summary);
 
 #endif

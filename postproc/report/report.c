@@ -17,16 +17,8 @@
 
 /* ---------------------------------------------------------------- head */
 
-static void put_ramp(const post_study *study, bool dark, post_buffer *out) {
-  for (int i = 0; i < study->n_ranks; i++) {
-    char colour[8];
-    post_colour(study->n_ranks > 1 ? i / (study->n_ranks - 1.0) : 0.5, dark, colour);
-    post_put(out, ".c%d{color:%s}", i, colour);
-  }
-}
-
-/* A script in a document that may not reach anything else: the policy forbids every load from elsewhere. */
-static void put_head(const post_study *study, const char *case_name, post_buffer *out) {
+/* The content security policy forbids every load from elsewhere. */
+static void put_head(const post_analysis *analysis, const char *case_name, post_buffer *out) {
   post_put(out,
            "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
            "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
@@ -35,30 +27,30 @@ static void put_head(const post_study *study, const char *case_name, post_buffer
   post_put_escaped(out, case_name);
   post_put(out, " · forced response</title>\n<style>\n");
   post_put_bytes(out, post_page_css, strlen(post_page_css));
-  put_ramp(study, false, out);
+  post_put_ramp(analysis->n_ranks, false, out);
   post_put(out, "\n@media screen and (prefers-color-scheme: dark){");
-  put_ramp(study, true, out);
-  post_put(out, "}\n%s%s</style>\n</head>\n", study->campbell ? post_campbell_css : "",
-           study->convergence ? post_convergence_css : "");
+  post_put_ramp(analysis->n_ranks, true, out);
+  post_put(out, "}\n%s%s</style>\n</head>\n", analysis->campbell ? post_campbell_css : "",
+           analysis->convergence ? post_convergence_css : "");
 }
 
-/* Rounded to a thousandth, so that rounding errors of an angle read 0. */
+/* Angle in degrees, rounded to 0.001, so that rounding errors print as 0. */
 static double degrees(double angle) {
   return round(angle * 180e3 / M_PI) / 1e3;
 }
 
-static void put_lede(const post_study *study, const post_source *source, post_buffer *out) {
-  const mhb_response  *r = study->response;
-  const post_abscissa *x = &study->abscissa;
+static void put_lede(const post_analysis *analysis, const post_origin *source, post_buffer *out) {
+  const mhb_response  *r = analysis->response;
+  const post_abscissa *x = &analysis->abscissa;
   char                 lo[POST_NUMBER], hi[POST_NUMBER], deg[POST_NUMBER], frequency[POST_PLACE];
   post_put(out, "<p class=\"lede\">");
-  if (study->n_ranks > 0)
-    post_put(out, "%d preload%s, ", study->n_ranks, study->n_ranks > 1 ? "s" : "");
-  if (post_at_one_frequency(study))
-    post_put(out, "%c%s ", study->n_ranks > 0 ? x->name[0] : toupper(x->name[0]), x->name + 1);
+  if (analysis->n_ranks > 0)
+    post_put(out, "%d preload%s, ", analysis->n_ranks, analysis->n_ranks > 1 ? "s" : "");
+  if (post_at_one_frequency(analysis))
+    post_put(out, "%c%s ", analysis->n_ranks > 0 ? x->name[0] : toupper(x->name[0]), x->name + 1);
   post_put(out, "%s to %s%s%s%s", post_plain(lo, x->range[0] / x->unit.scale, 5),
            post_plain(hi, x->range[1] / x->unit.scale, 5), *x->unit.name ? "\u00a0" : "",
-           x->unit.name, post_frequency_text(study, frequency));
+           x->unit.name, post_frequency_text(analysis, frequency));
   if (r->engine_order > 0) post_put(out, ", engine order %d", r->engine_order);
   if (r->blades > 0) post_put(out, " on %d blades", r->blades);
   post_put(out, ", ");
@@ -74,7 +66,7 @@ static void put_lede(const post_study *study, const post_source *source, post_bu
   post_put(out, ", ψ\u00a0=\u00a0%s°", post_plain(deg, degrees(r->psi), 3));
   post_put(out, ", φ\u00a0=\u00a0%s°", post_plain(deg, degrees(r->phi), 3));
   if (r->run_up) post_put(out, "; ");
-  post_put_run_up(study, out);
+  post_put_run_up(analysis, out);
   if (*source->created) {
     post_put(out, ". Computed ");
     post_put_escaped(out, source->created);
@@ -82,16 +74,16 @@ static void put_lede(const post_study *study, const post_source *source, post_bu
   post_put(out, ".</p>\n");
 }
 
-static void put_header(const post_study *study, const post_source *source, const char *case_name,
-                       post_buffer *out) {
+static void put_header(const post_analysis *analysis, const post_origin *source,
+                       const char *case_name, post_buffer *out) {
   post_put(out,
            "<body>\n<a class=\"skip\" href=\"#chart\">To the chart</a>\n<header class=\"top\">\n"
            "<p class=\"kicker\">Shrouded blade · forced response</p>\n<h1>");
   post_put_escaped(out, case_name);
   post_put(out, "</h1>\n");
-  put_lede(study, source, out);
-  post_figures(study, out);
-  post_findings(study, out);
+  put_lede(analysis, source, out);
+  post_key_figures(analysis, out);
+  post_findings(analysis, out);
   post_put(out, "</header>\n<main>\n");
 }
 
@@ -112,12 +104,9 @@ static void put_tools(post_buffer *out) {
 }
 
 static void put_key(const post_group *group, int index, post_buffer *out) {
-  char classes[80] = "varying", name[64];
+  char classes[POST_CLASS], name[64];
+  post_group_class(group, classes);
   post_group_name(group, name);
-  if (group->kind != MHB_BRANCH_NONLINEAR)
-    snprintf(classes, sizeof classes, "limit %s", name);
-  else if (group->rank >= 0)
-    snprintf(classes, sizeof classes, "c%d", group->rank);
   if (group->rank >= 0) {
     char n0[POST_NUMBER];
     snprintf(name, sizeof name, "%s\u00a0N", post_plain(n0, group->n0, 5));
@@ -129,24 +118,24 @@ static void put_key(const post_group *group, int index, post_buffer *out) {
            classes, index, classes, name);
 }
 
-static void put_keys(const post_study *study, post_buffer *out) {
+static void put_keys(const post_analysis *analysis, post_buffer *out) {
   post_put(out, "<ul class=\"keys\" aria-label=\"Curves shown\">\n<li class=\"lead\">%s</li>\n",
-           study->n_ranks > 0 ? "Preload n₀" : "Curves");
-  for (int g = 0; g < study->n_groups; g++)
-    if (!study->group[g].empty) put_key(&study->group[g], g, out);
+           analysis->n_ranks > 0 ? "Preload n₀" : "Curves");
+  for (int g = 0; g < analysis->n_groups; g++)
+    if (!analysis->group[g].empty) put_key(&analysis->group[g], g, out);
   post_put(out, "</ul>\n");
 }
 
-static void put_main(const post_study *study, const char *case_name, post_buffer *out) {
+static void put_main(const post_analysis *analysis, const char *case_name, post_buffer *out) {
   char frequency[POST_PLACE];
   post_put(out,
            "<section id=\"chart\">\n<h2>Forced response%s</h2>\n<div class=\"card\"><figure>\n",
-           post_frequency_text(study, frequency));
+           post_frequency_text(analysis, frequency));
   put_tools(out);
   post_put(out, "<div class=\"chart\">\n");
-  post_chart_response(study, case_name, out);
+  post_chart_response(analysis, case_name, out);
   post_put(out, "<div id=\"readout\" class=\"readout\" hidden></div>\n</div>\n");
-  put_keys(study, out);
+  put_keys(analysis, out);
   post_put(
       out,
       "<figcaption class=\"note\">Solid: stable, or stability not known. Dotted: unstable. Small "
@@ -163,31 +152,31 @@ static void put_main(const post_study *study, const char *case_name, post_buffer
 
 /* ---------------------------------------------------------------- the other charts */
 
-static void put_tracking(const post_study *study, post_buffer *out) {
-  if (study->tracking.n < 2) return;
+static void put_tracking(const post_analysis *analysis, post_buffer *out) {
+  if (analysis->tracking.n < 2) return;
   post_put(
       out,
       "<section>\n<h2>Peak against preload</h2>\n<p class=\"note\">Each preload’s highest peak, "
       "joined; lesser peaks are the "
       "faint dots. An open ring marks a largest value at the edge of the %s range.</p>\n"
       "<div class=\"card\"><figure><div class=\"chart\">\n",
-      post_at_one_frequency(study) ? "parameter’s" : "frequency");
-  post_chart_tracking(study, out);
+      post_at_one_frequency(analysis) ? "parameter’s" : "frequency");
+  post_chart_tracking(analysis, out);
   post_put(out, "</div></figure></div>\n</section>\n");
 }
 
-static void put_contact(const post_study *study, int chosen, post_buffer *out) {
-  if (study->response->n_pairs < 1) return;
+static void put_contact(const post_analysis *analysis, int chosen, post_buffer *out) {
+  if (analysis->response->n_pairs < 1) return;
   post_put(out, "<div class=\"pair\">\n");
-  if (study->tracking.n > 0) {
+  if (analysis->tracking.n > 0) {
     post_put(out,
              "<div class=\"card\"><figure><h3>At the highest peak, by preload</h3><div "
              "class=\"chart\">\n");
-    post_chart_state(study, out);
+    post_chart_state(analysis, out);
     post_put(out, "</div></figure></div>\n");
   }
   post_put(out, "<div class=\"card\"><figure><h3>Along the curve</h3><div class=\"chart\">\n");
-  post_chart_along(study, chosen, out);
+  post_chart_along(analysis, chosen, out);
   post_put(out,
            "</div></figure></div>\n</div>\n"
            "<ul class=\"legend\"><li class=\"stick\"><i></i><span>stuck</span></li>"
@@ -196,21 +185,21 @@ static void put_contact(const post_study *study, int chosen, post_buffer *out) {
            "<li>Mean over the contacts; energy of all contacts.</li></ul>\n");
 }
 
-static void put_details(const post_study *study, int chosen, post_buffer *out) {
+static void put_details(const post_analysis *analysis, int chosen, post_buffer *out) {
   if (chosen < 0) return;
   char name[64];
-  bool followed = study->abscissa.parameter == MHB_IN_N0;
-  post_group_name(&study->group[study->curve[chosen].group], name);
+  bool followed = analysis->abscissa.parameter == MHB_IN_N0;
+  post_group_name(&analysis->group[analysis->curve[chosen].group], name);
   post_put(out,
            "<section>\n<h2>Contact and harmonics</h2>\n<p class=\"note\">To begin with along the "
            "%scurve%s%s%s.</p>\n"
            "<div class=\"tools\"><label>Curve<select id=\"curve\"></select></label></div>\n",
            followed ? "first " : "", followed ? "" : " of ", followed ? "" : name,
-           study->tracking.best >= 0 ? ", the one with the lowest peak" : "");
-  put_contact(study, chosen, out);
+           analysis->tracking.best >= 0 ? ", the one with the lowest peak" : "");
+  put_contact(analysis, chosen, out);
   post_put(out,
            "<div class=\"card\"><figure><h3>Harmonics along the curve</h3><div class=\"chart\">\n");
-  post_chart_harmonics(study, chosen, out);
+  post_chart_harmonics(analysis, chosen, out);
   post_put(out, "</div></figure></div>\n</section>\n");
 }
 
@@ -223,7 +212,7 @@ static void put_source_row(const char *label, const char *text, post_buffer *out
   post_put(out, "</dd>\n");
 }
 
-static void put_source(const post_source *source, post_buffer *out) {
+static void put_source(const post_origin *source, post_buffer *out) {
   post_put(out, "<section>\n<h2>Case and provenance</h2>\n<dl class=\"source\">\n");
   put_source_row("Case file", source->case_path, out);
   put_source_row("Computed by", source->command, out);
@@ -241,30 +230,30 @@ static void put_source(const post_source *source, post_buffer *out) {
   post_put(out, "</section>\n");
 }
 
-static void put_tables(const post_study *study, post_buffer *out) {
+static void put_tables(const post_analysis *analysis, post_buffer *out) {
   post_put(out, "<section>\n<h2>Peaks and folds</h2>\n");
-  post_table_peaks(study, out);
+  post_table_peaks(analysis, out);
   post_put(out, "</section>\n<section>\n<h2>Numerical quality</h2>\n");
-  post_table_quality(study, out);
+  post_table_quality(analysis, out);
   post_put(out, "</section>\n<section>\n<h2>Modes</h2>\n");
-  post_table_modes(study->response, out);
+  post_table_modes(analysis->response, out);
   post_put(out, "</section>\n");
 }
 
-shb_status post_report(const post_study *study, const post_source *source, const char *case_name,
-                       post_buffer *out) {
-  int chosen = post_chosen_branch(study), left_out = 0;
-  put_head(study, case_name, out);
-  put_header(study, source, case_name, out);
-  put_main(study, case_name, out);
-  put_tracking(study, out);
-  put_details(study, chosen, out);
-  if (study->campbell) post_campbell_section(study->campbell, out);
-  if (study->convergence) post_convergence_section(study->convergence, out);
-  put_tables(study, out);
+shb_status post_report(const post_analysis *analysis, const post_origin *source,
+                       const char *case_name, post_buffer *out) {
+  int chosen = post_chosen_branch(analysis), left_out = 0;
+  put_head(analysis, case_name, out);
+  put_header(analysis, source, case_name, out);
+  put_main(analysis, case_name, out);
+  put_tracking(analysis, out);
+  put_details(analysis, chosen, out);
+  if (analysis->campbell) post_campbell_section(analysis->campbell, out);
+  if (analysis->convergence) post_convergence_section(analysis->convergence, out);
+  put_tables(analysis, out);
   put_source(source, out);
   post_put(out, "</main>\n<script type=\"application/json\" id=\"data\">\n");
-  SHB_TRY(post_page_data(study, chosen, out, &left_out));
+  SHB_TRY(post_page_data(analysis, chosen, out, &left_out));
   post_put(out, "\n</script>\n<footer>");
   if (left_out > 0)
     post_put(out,

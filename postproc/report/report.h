@@ -1,5 +1,5 @@
-/* NAME.html: the designer's page. One file, no network, light and dark, printable; its charts are plain SVG that a
- * script, if allowed to run, makes interactive. */
+/* NAME.html: the report page. One file, no network, light and dark, printable. Its charts are plain
+ * SVG; a script makes them interactive. */
 #ifndef POSTPROC_REPORT_REPORT_H
 #define POSTPROC_REPORT_REPORT_H
 
@@ -7,8 +7,8 @@
 #include "postproc/analysis/response_analysis.h"
 #include "postproc/draw/text_buffer.h"
 
-/* case_name, and every text of source, may hold anything. Errors: SHB_ERR_IO (no memory). */
-shb_status post_report(const post_study *study, const post_source *source, const char *case_name,
-                       post_buffer *out);
+/* case_name and the texts of source may hold any characters. Errors: SHB_ERR_IO no memory. */
+shb_status post_report(const post_analysis *analysis, const post_origin *source,
+                       const char *case_name, post_buffer *out);
 
 #endif

@@ -7,15 +7,15 @@
 
 #include "postproc/draw/number_format.h"
 
-/* A verdict's bounds on the largest error estimate of a curve. */
+/* Bounds of the verdict on the largest error estimate of a curve. */
 static const double FINE = 1e-3, USABLE = 1e-2;
 
 /* First cell of a row: swatch and name of the branch's group. */
-static void put_curve_cell(const post_study *study, int b, post_buffer *out) {
-  const post_group *group = &study->group[study->curve[b].group];
+static void put_curve_cell(const post_analysis *analysis, int b, post_buffer *out) {
+  const post_group *group = &analysis->group[analysis->curve[b].group];
   char              name[64], note[64];
   post_group_name(group, name);
-  post_branch_note(study->response, &study->response->branch[b], note);
+  post_branch_note(analysis->response, &analysis->response->branch[b], note);
   if (group->rank >= 0)
     post_put(out, "<tr><th scope=\"row\"><i class=\"swatch c%d\"></i>%s%s</th>", group->rank, name,
              note);
@@ -27,51 +27,51 @@ static void put_cell(post_buffer *out, const char *text) {
   post_put(out, "<td>%s</td>", text);
 }
 
-static void put_peak_row(const post_study *study, int b, const post_peak *peak, post_unit unit,
-                         post_buffer *out) {
+static void put_peak_row(const post_analysis *analysis, int b, const post_peak *peak,
+                         post_unit unit, post_buffer *out) {
   char number[POST_NUMBER];
-  put_curve_cell(study, b, out);
+  put_curve_cell(analysis, b, out);
   post_put(out, "<td class=\"words\">%s</td>",
-           !peak->edge                           ? "peak"
-           : peak->level                         ? "everywhere"
-           : study->response->branch[b].complete ? "edge of range"
-                                                 : "end of curve");
-  put_cell(out, post_abscissa_number(&study->abscissa, peak->level ? NAN : peak->at, 6, number));
+           !peak->edge                              ? "peak"
+           : peak->level                            ? "everywhere"
+           : analysis->response->branch[b].complete ? "edge of range"
+                                                    : "end of curve");
+  put_cell(out, post_abscissa_number(&analysis->abscissa, peak->level ? NAN : peak->at, 6, number));
   put_cell(out, post_number(number, peak->amplitude / unit.scale, 4));
-  if (!post_at_one_frequency(study)) {
+  if (!post_at_one_frequency(analysis)) {
     put_cell(out, post_number(number, peak->bandwidth, 3));
     put_cell(out, post_percent(number, peak->damping));
   }
   post_put(out, "</tr>\n");
 }
 
-static void put_valley_row(const post_study *study, int b, const post_peak *valley, post_unit unit,
-                           post_buffer *out) {
+static void put_valley_row(const post_analysis *analysis, int b, const post_peak *valley,
+                           post_unit unit, post_buffer *out) {
   char number[POST_NUMBER];
   if (valley->edge) return;
-  put_curve_cell(study, b, out);
+  put_curve_cell(analysis, b, out);
   post_put(out, "<td class=\"words\">valley</td>");
-  put_cell(out, post_abscissa_number(&study->abscissa, valley->at, 6, number));
+  put_cell(out, post_abscissa_number(&analysis->abscissa, valley->at, 6, number));
   put_cell(out, post_number(number, valley->amplitude / unit.scale, 4));
   post_put(out, "</tr>\n");
 }
 
-static void put_fold_row(const post_study *study, int b, const post_fold *fold, post_unit unit,
-                         post_buffer *out) {
+static void put_fold_row(const post_analysis *analysis, int b, const post_fold *fold,
+                         post_unit unit, post_buffer *out) {
   char number[POST_NUMBER];
-  put_curve_cell(study, b, out);
+  put_curve_cell(analysis, b, out);
   post_put(out, "<td class=\"words\">fold, sweeping %s</td>", fold->upper ? "up" : "down");
-  put_cell(out, post_abscissa_number(&study->abscissa, fold->at, 6, number));
+  put_cell(out, post_abscissa_number(&analysis->abscissa, fold->at, 6, number));
   put_cell(out, post_number(number, fold->amplitude / unit.scale, 4));
-  post_put(out, "%s</tr>\n", post_at_one_frequency(study) ? "" : "<td></td><td></td>");
+  post_put(out, "%s</tr>\n", post_at_one_frequency(analysis) ? "" : "<td></td><td></td>");
 }
 
-void post_table_peaks(const post_study *study, post_buffer *out) {
-  post_unit unit = post_unit_length(study->largest);
+void post_table_peaks(const post_analysis *analysis, post_buffer *out) {
+  post_unit unit = post_unit_length(analysis->largest);
   char      place[128], label[POST_LABEL], frequency[POST_PLACE];
-  bool      widths = !post_at_one_frequency(study);
-  post_place_name(study->response, study->primary, place);
-  post_abscissa_label(&study->abscissa, "", label);
+  bool      widths = !post_at_one_frequency(analysis);
+  post_place_name(analysis->response, analysis->primary, place);
+  post_abscissa_label(&analysis->abscissa, "", label);
   label[0] = (char)toupper(label[0]);
   post_put(out, "<div class=\"scroll\"><table><caption>Peaks%s and folds of ",
            widths ? "" : ", valleys");
@@ -80,7 +80,7 @@ void post_table_peaks(const post_study *study, post_buffer *out) {
            " %s%s, first harmonic.%s</caption>\n<thead><tr>"
            "<th scope=\"col\">Curve</th><th scope=\"col\" class=\"words\">What</th><th "
            "scope=\"col\">%s</th><th scope=\"col\">Amplitude, %s</th>%s</tr></thead>\n<tbody>\n",
-           post_axis_name(study->primary), post_frequency_text(study, frequency),
+           post_axis_name(analysis->primary), post_frequency_text(analysis, frequency),
            widths ? " Damping is that of a linear resonance as wide at half power; &ldquo;–&rdquo; "
                     "where the curve does not fall that far on both sides."
                   : "",
@@ -88,13 +88,13 @@ void post_table_peaks(const post_study *study, post_buffer *out) {
            widths ? "<th scope=\"col\">Half-power width, Hz</th><th scope=\"col\">Equivalent "
                     "damping</th>"
                   : "");
-  for (int g = 0; g < study->n_groups; g++)
-    for (int b = 0; b < study->response->n_branches; b++) {
-      const post_curve *c = &study->curve[b];
+  for (int g = 0; g < analysis->n_groups; g++)
+    for (int b = 0; b < analysis->response->n_branches; b++) {
+      const post_curve *c = &analysis->curve[b];
       if (c->group != g) continue;
-      for (int i = 0; i < c->n_peaks; i++) put_peak_row(study, b, &c->peak[i], unit, out);
-      for (int i = 0; i < c->n_valleys; i++) put_valley_row(study, b, &c->valley[i], unit, out);
-      for (int i = 0; i < c->n_folds; i++) put_fold_row(study, b, &c->fold[i], unit, out);
+      for (int i = 0; i < c->n_peaks; i++) put_peak_row(analysis, b, &c->peak[i], unit, out);
+      for (int i = 0; i < c->n_valleys; i++) put_valley_row(analysis, b, &c->valley[i], unit, out);
+      for (int i = 0; i < c->n_folds; i++) put_fold_row(analysis, b, &c->fold[i], unit, out);
     }
   post_put(out, "</tbody></table></div>\n");
 }
@@ -123,8 +123,8 @@ static int sum_of(int n, const int *x) {
   return sum;
 }
 
-static void put_quality_row(const post_study *study, int b, post_buffer *out) {
-  const mhb_branch *branch = &study->response->branch[b];
+static void put_quality_row(const post_analysis *analysis, int b, post_buffer *out) {
+  const mhb_branch *branch = &analysis->response->branch[b];
   const double *part[] = {branch->error_newton, branch->error_truncation, branch->error_sampling,
                           branch->error_modal};
   char          number[POST_NUMBER];
@@ -134,7 +134,7 @@ static void put_quality_row(const post_study *study, int b, post_buffer *out) {
     iterations += branch->iterations[p];
     seconds += branch->seconds[p];
   }
-  put_curve_cell(study, b, out);
+  put_curve_cell(analysis, b, out);
   if (branch->kind == MHB_BRANCH_INTEGRATION) iterations = sum_of(n, branch->periods);
   post_put(out, "<td>%d</td><td>%d</td><td>%s</td>", n, iterations,
            post_number(number, seconds, 2));
@@ -148,7 +148,7 @@ static void put_quality_row(const post_study *study, int b, post_buffer *out) {
   post_put(out, "</td></tr>\n");
 }
 
-void post_table_quality(const post_study *study, post_buffer *out) {
+void post_table_quality(const post_analysis *analysis, post_buffer *out) {
   post_put(
       out,
       "<div class=\"scroll\"><table><caption>Largest error estimates along each curve, relative to "
@@ -164,9 +164,9 @@ void post_table_quality(const post_study *study, post_buffer *out) {
       "<th scope=\"col\">Modal</th><th scope=\"col\">Verdict</th><th "
       "scope=\"col\" class=\"words\">Ended</th></tr></thead>"
       "\n<tbody>\n");
-  for (int g = 0; g < study->n_groups; g++)
-    for (int b = 0; b < study->response->n_branches; b++)
-      if (study->curve[b].group == g) put_quality_row(study, b, out);
+  for (int g = 0; g < analysis->n_groups; g++)
+    for (int b = 0; b < analysis->response->n_branches; b++)
+      if (analysis->curve[b].group == g) put_quality_row(analysis, b, out);
   post_put(out, "</tbody></table></div>\n");
 }
 
@@ -188,7 +188,7 @@ void post_table_modes(const mhb_response *response, post_buffer *out) {
     put_cell(out, post_number(number, response->mode_frequency[i], 7));
     put_cell(out, post_plain(number, 100 * response->mode_damping[i], 4));
     put_cell(out,
-             post_number(number, response->mode_residual ? response->mode_residual[i] : NAN, 2));
+             post_number(number, response->eigen_residual ? response->eigen_residual[i] : NAN, 2));
     post_put(out, "</tr>\n");
   }
   post_put(out, "</tbody></table></div>\n");

@@ -5,10 +5,10 @@
 #include "postproc/analysis/response_analysis.h"
 #include "postproc/draw/text_buffer.h"
 
-void post_table_peaks(const post_study *study,
-                      post_buffer      *out); /* peaks and folds, primary output */
-/* Points, iterations, seconds, largest error estimates, verdict, how each branch ended. */
-void post_table_quality(const post_study *study, post_buffer *out);
+void post_table_peaks(const post_analysis *analysis,
+                      post_buffer         *out); /* peaks and folds, primary output */
+/* Points, iterations, seconds, largest error estimates, verdict, end of each branch. */
+void post_table_quality(const post_analysis *analysis, post_buffer *out);
 void post_table_modes(const mhb_response *response, post_buffer *out);
 /* "key = value" lines. */
 void post_table_settings(const char *settings, post_buffer *out);

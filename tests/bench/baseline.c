@@ -54,7 +54,8 @@ void baseline_destroy(baseline *b) {
   b->memory = NULL;
 }
 
-/* Samples of three signals over one block from their harmonics a[3][2m+1] about the block's start. */
+/* Samples of three signals over one block, from their harmonics a[3][2m+1] about the start of the
+ * block. */
 static inline __attribute__((always_inline)) void sample_block(const baseline *b, const double *a,
                                                                int first) {
   int size = 2 * b->m + 1;

@@ -1,13 +1,15 @@
-/* What the contact law is measured against: two sampled laws, written to be fast.
+/* Two sampled contact laws, written to be fast, with which the contact law is compared:
  *
  *   BASELINE_RETURN  marching by radial return, the implicit step of eqs. 5-9: first order in slip
- *   BASELINE_CLOSED  slip in closed form between samples (Ku = k I, s and n linear between them), slip begun and contacts
- *                    closed inside a step; for other Ku the midpoint rule: second order
+ *   BASELINE_CLOSED  slip in closed form between samples (Ku = k I, s and n linear between them);
+ *                    slip begins and contacts close inside a step; the midpoint rule for other Ku:
+ *                    second order
  *
- * The basis is tabulated once for a block of samples; motion and force pass between harmonics and samples by products
- * with that table, rotated from block to block. Tangential quantities are in the axes of Ku: x_i = k_i s_i, in N.
- * A contact that opens is marched for one lap from a closing; one that does not, lap by lap until the slider has
- * settled to a tenth of what the sampling leaves. */
+ * The basis is tabulated once for a block of samples. Products with that table, rotated from block
+ * to block, convert motion and force between harmonics and samples. Tangential quantities are in
+ * the axes of Ku: x_i = k_i s_i, in N. A contact that opens is marched for one period from a
+ * closing. Another one is marched until the slider changes by less than a tenth of the sampling
+ * error. */
 #ifndef TESTS_BASELINE_H
 #define TESTS_BASELINE_H
 
@@ -39,8 +41,8 @@ typedef struct {
 shb_status baseline_create(baseline_kind kind, int N, int m, int H, baseline *b);
 void       baseline_destroy(baseline *b);
 
-/* Force harmonics, as mhb_contact_force without derivative: motion [3][2m+1], force [3][2H+1]; mu > 0. Returns
- * the laps. */
+/* Force harmonics, as mhb_contact_force without derivative: motion [3][2m+1], force [3][2H+1]; mu >
+ * 0. Returns the number of periods. */
 int baseline_force(baseline *b, const mhb_law *law, const double *motion, double *force);
 
 /* The law in the axes of Ku, as the marches use it. */

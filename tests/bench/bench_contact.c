@@ -3,10 +3,11 @@
  *   bench_contact [--rounds N] [--svg FILE]     the table; FILE: the work-precision plot
  *   bench_contact --quick                       errors only, in a second or so
  *
- * One row a motion and method: microseconds for the force and for force with derivative (medians), error of the force
- * harmonics 0..H relative to the largest, and for the law a verdict: whether the error is within the tolerance asked
- * for. Then medians over the suite, and goals. The exit code tells of errors only; times depend on the machine.
- * Reference: tests/mhb/reference, which shares no code with the law. */
+ * A row is a motion and a method. It gives the microseconds for the force and for the force with
+ * its derivative (medians). It gives the error of the force harmonics 0..H relative to the largest.
+ * For the law it gives a verdict: is the error within the tolerance asked for? Medians over the
+ * suite and goals follow. The exit code depends on errors only, because times depend on the
+ * machine. The reference is tests/support/reference_law.h, which shares no code with the law. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

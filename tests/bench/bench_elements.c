@@ -1,15 +1,18 @@
-/* Elements side by side: error of the first ten frequencies of one blade against processor time.
- * Rows: tetrahedra, tetrahedra that are smaller at the re-entrant edges, tetrahedra with 27 points
- * where curved ("full"), and hexahedra. The blade is that of cases/z_notch_blade.
+/* Elements compared: error of the first ten frequencies of one blade against processor time. Rows:
+ * tetrahedra, tetrahedra that are smaller at the re-entrant edges, tetrahedra with 27 points where
+ * curved ("full"), and hexahedra. The blade is that of cases/z_notch_blade.
  *
- *   bench_elements          all (four minutes); fails if hexahedra are less than 15 times cheaper than tetrahedra at .1 %
+ *   bench_elements          all (four minutes); fails if hexahedra are less than 15 times cheaper
+ *                           than tetrahedra at 0.1 %
  *   bench_elements hex20    one kind
- *   bench_elements --quick  coarse meshes only; fails if hexahedra are not the better ones
+ *   bench_elements --quick  coarse meshes only; fails if hexahedra are not better
  *
- * The error of a row is the worst of the ten, against hexahedra finer than any row's; how well that reference is known is
- * printed: 3x3x3 points, extrapolated from 6 and 3 mm. Seconds are processor time of assembly, factor and modes, the least of up to three
- * runs; meshing comes beside it. "seconds at 0.1 %" is interpolated in the logarithms, or extrapolated by the last two rows. The
- * verdict does not rest on that: it sets the first row of hexahedra within .1 % against the finest of tetrahedra, which is not. */
+ * The error of a row is the largest of the ten. The reference is a mesh of hexahedra finer than any
+ * row's. Its own error is printed: 3x3x3 points, extrapolated from 6 and 3 mm. Seconds are
+ * processor time of assembly, factor and modes, the least of up to three runs; meshing is listed
+ * beside it. "seconds at 0.1 %" is interpolated in the logarithms, or extrapolated from the last
+ * two rows. The verdict does not depend on it. The first row of hexahedra within 0.1 % is compared
+ * with the finest row of tetrahedra, which is not within 0.1 %. */
 #include <math.h>
 #include <slepceps.h>
 #include <stdbool.h>

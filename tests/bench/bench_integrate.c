@@ -1,14 +1,16 @@
-/* Harmonic balance against time integration: seconds of a point for an error, both at their best.
+/* Harmonic balance against time integration: seconds per point for an error, both at their best.
  *
  *   bench_integrate            the tables
  *   bench_integrate --quick    errors only, on few frequencies
- *   bench_integrate --blade FILE N0 FROM TO   the same with a modal file: contact of cases/paper_fig7, preload N, range Hz
+ *   bench_integrate --blade FILE N0 FROM TO   the same with a modal file: contact of
+ *                              cases/paper_fig7, preload N, range Hz
  *
- * Scenes: the three-degree model and the tip-contact beam (tests/support/three_degree.h). Frequencies over the range, all with one stable
- * solution. A point of the balance is solved from the solution .2 % of the frequency away, as a continuation has it. A point of the
- * integration goes on from the state there (a sweep), or starts at rest, until the return map is within a tenth of the error wanted.
- * Error: of the contact's first harmonics, relative, worst of all frequencies, against integration with many steps. The
- * exit code tells of errors only, for times depend on the machine. */
+ * Scenes: the three-degree model and the tip-contact beam (tests/support/three_degree.h). All
+ * frequencies have one stable solution. A point of the balance is solved from the solution at 0.2 %
+ * of the frequency away, as in continuation. A point of the integration starts from the state there
+ * (a sweep) or from rest. It ends when the return map is within a tenth of the error wanted. Error:
+ * of the first harmonics of the contact, relative, largest of all frequencies, against integration
+ * with many steps. The exit code depends on errors only, because times depend on the machine. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -64,7 +66,7 @@ static void first_harmonics(const mhb_steady_state_result *r, double complex u[3
   for (int c = 0; c < 3; c++) u[c] = r->motion[c * (r->n_harmonics + 1) + 1];
 }
 
-/* rest: each point from rest, else from the state at the frequency .2 % away. */
+/* rest: each point from rest, else from the state at a frequency 0.2 % away. */
 static row integrate(const scene *s, int steps, double tolerance, int rest,
                      double complex (*out)[3]) {
   mhb_integrator           *g;
@@ -159,7 +161,8 @@ static void beam(scene *s, int quick) {
   spread(s, quick ? 2 : 12, 2 * PI * 264, 2 * PI * 272);
 }
 
-/* Contact of cases/paper_fig7. Both get the structure that can be integrated: residual modes for residual inertia. */
+/* Contact of cases/paper_fig7. Both methods get a structure that can be integrated: residual modes
+ * in place of residual inertia. */
 static shb_status blade(scene *s, modal_model *read, char **argument) {
   static char name[96];
   SHB_TRY(modal_model_read(argument[0], read));

@@ -1,12 +1,14 @@
-/* Twenty modes of the z-notch blade, beside CalculiX: processor seconds and peak memory on the same mesh of ten-node
- * tetrahedra, one thread each.
+/* Twenty modes of the z-notch blade, beside CalculiX: processor seconds and peak memory on the same
+ * mesh of ten-node tetrahedra, one thread each.
  *
- *   bench_modal CCX 10k 43k 170k   rungs, by nodes; CCX: the program ccx, "" where it is not installed. At 170k ccx takes ten minutes
- *   bench_modal CCX --quick        2k: fails if the frequencies are not the same
+ *   bench_modal CCX 10k 43k 170k   rungs, by nodes; CCX: the program ccx, "" if not installed;
+ *                                  at 170k ccx takes ten minutes
+ *   bench_modal CCX --quick        2k: fails if the frequencies differ
  *
- * Every figure is of a process of its own. shroudhb: from assembly to modes, its peak with the mesh file's reading; ccx:
- * all of it. Frequencies come from ccx's .eig, which has all digits (its .dat has seven). Ours are those of the
- * rules that CalculiX has (its 4 points in the mass matrix). ccx is as Debian builds it, with SPOOLES and ARPACK. */
+ * Every figure is that of a process of its own. shroudhb: from assembly to modes; its peak memory
+ * includes reading the mesh file. ccx: the whole program. Frequencies are those of ccx's .eig,
+ * which has all digits (its .dat has seven). Ours use the rules of CalculiX (its 4 points in the
+ * mass matrix). ccx is Debian's, with SPOOLES and ARPACK. */
 #include <fcntl.h>
 #include <math.h>
 #include <stdbool.h>
@@ -18,11 +20,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "mesh/io/inp_write.h"
 #include "modal/common/session.h"
 #include "modal/eigen/eigen.h"
 #include "tests/bench/z_notch.h"
 #include "tests/support/read_mesh.h"
-#include "mesh/io/inp_write.h"
 
 enum { MODES = 20 };
 
@@ -60,7 +62,7 @@ static double processor_time(void) {
   return seconds_of(&usage);
 }
 
-/* ------------------------------------------------------------------ the work, each in its process */
+/* ---------------------------------------------------------------- the work, a process each */
 
 static void write_step(const char *path) {
   FILE *deck = fopen(path, "a");
@@ -136,7 +138,8 @@ static bool run_apart(bool (*work)(const rung *, figures *), const rung *r, figu
   return out->done = told && state == 0;
 }
 
-/* blade.eig: four integers, the last of them the number of modes, then their eigenvalues; the deck has no step before. */
+/* blade.eig: four integers, the last of them the number of modes, then their eigenvalues. The deck
+ * has no earlier step. */
 static int read_frequencies(double frequency[MODES]) {
   int32_t head[4];
   int     found = 0;

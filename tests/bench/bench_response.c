@@ -1,16 +1,19 @@
-/* The harmonic balance: seconds against error, and how the cost grows with harmonics and contact pairs.
+/* The harmonic balance: seconds against error, and growth of the cost with harmonics and contact
+ * pairs.
  *
- *   bench_response            the tables
- *   bench_response --quick    errors only, in a second or so
- *   bench_response --pairs N  the row of N pairs alone
+ *   bench_response                the tables
+ *   bench_response --quick        errors only, in a second or so
+ *   bench_response --pairs N      the row of N pairs alone
  *   bench_response --harmonics H  the beam's rows of H harmonics alone, against themselves
  *   bench_response --precision    error against seconds alone (precision.h)
- *   bench_response --blade FILE N0 FROM TO  the same of a modal file: contact to the neighbour, preload N, range Hz
+ *   bench_response --blade FILE N0 FROM TO   the same of a modal file: contact to the neighbour,
+ *                                 preload N, range Hz
  *
- * Beam: the tip-contact beam (tests/support/three_degree.h), one row a force and number of harmonics: the whole sweep 215-320 Hz, the
- * median of a point, and the error of the located peak against H = 31. Then the three accuracies of the contact law, and the
- * growth with pairs (shroud_face.h), each row in a process of its own so that its memory can be told. Goals carry verdicts; the
- * exit code tells of errors only, for times depend on the machine. */
+ * Beam: the tip-contact beam (tests/support/three_degree.h), a row for each force and number of
+ * harmonics. A row gives the whole sweep 215-320 Hz, the median of a point, and the error of the
+ * located peak against H = 31. The three accuracies of the contact law follow, then the growth with
+ * pairs (shroud_face.h). Each row has a process of its own, so its memory can be measured. Goals
+ * have verdicts. The exit code depends on errors only, because times depend on the machine. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -36,8 +39,8 @@ enum { REPEATS = 3, MAX_POINTS = 4000 };
 typedef struct {
   double seconds, ms,
       evaluations; /* whole branch; median point with its error estimates; Newton steps + 1, mean */
-  double solver,
-      linear; /* ms a step of the path alone, median; and the same of steps in the stuck or open range */
+  double solver;   /* ms a step of the path alone, median */
+  double linear;   /* the same of steps in the stuck or open range */
   double peak, at; /* m, Hz: highest first harmonic of u */
   int    points, peaks, folds, complete;
 } sweep_row;

@@ -43,7 +43,8 @@ static inline double decay_of(double z) {
   return e;
 }
 
-/* decay = exp(-|dx| ln(n1/n0) / (mu (n1 - n0))) of each whole step; not used where a step opens or closes. */
+/* decay = exp(-|dx| ln(n1/n0) / (mu (n1 - n0))) of each whole step; unused where a step opens or
+ * closes. */
 BASELINE_HOT void baseline_prepare_closed(const baseline *b, const baseline_law *law) {
   const double *restrict n = b->n, *restrict x1 = b->x[0], *restrict x2 = b->x[1];
   double *restrict length = b->length, *restrict d1 = b->d[0], *restrict d2 = b->d[1];
@@ -81,9 +82,9 @@ static inline void turn(const double d[2], double decay, double e[2]) {
   e[1] = c * d[1] + s * d[0];
 }
 
-/* Slip from f over a move dx to |f| = limit by the midpoint rule, f1 = f + dx - lambda K (f + f1)/2. Where the load more
- * than halves the rule may have no solution: there, and where Newton ends nowhere, the implicit step. Returns whether
- * it still slides. */
+/* Slip from f over a move dx to |f| = limit by the midpoint rule, f1 = f + dx - lambda K (f +
+ * f1)/2. The rule may have no solution if the load more than halves. Then, and if Newton's method
+ * fails, the implicit step is taken. Returns whether the contact still slides. */
 static int midpoint(const double k[2], const double dx[2], double before, double limit,
                     double f[2]) {
   double g[2] = {f[0] + dx[0], f[1] + dx[1]};
@@ -113,7 +114,8 @@ static int midpoint(const double k[2], const double dx[2], double before, double
   return 1;
 }
 
-/* Share of the step after which |f + tau dx| first exceeds mu (n0 + tau dn); > 1: not in this step. */
+/* Fraction of the step after which |f + tau dx| first exceeds mu (n0 + tau dn); above 1: not in
+ * this step. */
 static double onset(const double f[2], const double dx[2], double mu, double n0, double dn) {
   double a = dx[0] * dx[0] + dx[1] * dx[1] - mu * mu * dn * dn;
   double b = f[0] * dx[0] + f[1] * dx[1] - mu * mu * n0 * dn;
@@ -180,7 +182,8 @@ static inline int slip_step(const baseline *b, const baseline_law *law, int i, d
   return slides;
 }
 
-/* With s and n linear slip once begun lasts to the end of the step: whether it goes on is asked where steps begin. */
+/* With s and n linear, slip lasts to the end of a step; the state is decided at the start of each
+ * step. */
 BASELINE_HOT void baseline_march_closed(const baseline *b, const baseline_law *law, int from,
                                         int to, int *sliding) {
   double f[2] = {b->f[0][from], b->f[1][from]}, e[2] = {1, 0};

@@ -87,7 +87,7 @@ double median_of(double *t, int n) {
   return n % 2 ? t[n / 2] : .5 * (t[n / 2 - 1] + t[n / 2]);
 }
 
-/* Microseconds a call, mean of a batch; one more before it brings caches and branch prediction back to this method. */
+/* Microseconds per call, mean of a batch. One call before it fills caches and branch prediction. */
 static double batch_time(method *m, const suite_motion *s, int batch, double *jacobian) {
   double force[3 * (2 * METHOD_H + 1)];
   if (batch > 1) run(m, s, force, jacobian);

@@ -37,7 +37,8 @@ void       methods_destroy(method *all, int n);
 /* Errors against reference [3][2 METHOD_H + 1], and laps; times are set to NAN. */
 measurement method_judge(method *m, const suite_motion *s, const double *reference);
 
-/* Medians over rounds of batches, the methods taking turns so that a busy moment hits all alike. SHB_ERR_IO: no memory. */
+/* Medians over rounds of batches. The methods take turns, so that a busy moment affects all alike.
+ * Errors: SHB_ERR_IO no memory. */
 shb_status methods_time(method *all, int n, const suite_motion *s, int rounds,
                         measurement *measured);
 

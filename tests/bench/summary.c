@@ -55,7 +55,8 @@ double order_of(const work_precision *curve, const method *all) {
   return -(n * sxy - sx * sy) / (n * sxx - sx * sx);
 }
 
-/* Time at which a baseline reaches an error: between its points on straight lines in log-log, beyond them by its order. */
+/* Time at which a baseline reaches an error: between its points on straight lines in log-log,
+ * beyond them by its order. */
 static double baseline_time(const work_precision *c, const method *all, double error, int *beyond) {
   *beyond = 0;
   for (int j = 0; j < c->n; j++) {

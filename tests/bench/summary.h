@@ -1,4 +1,5 @@
-/* The suite in a few numbers: medians and worst cases of each method, time to reach an error, goals with verdicts. */
+/* The suite in a few numbers: medians and largest errors of each method, time for an error,
+ * goals. */
 #ifndef TESTS_SUMMARY_H
 #define TESTS_SUMMARY_H
 
@@ -13,7 +14,8 @@ typedef struct {
 /* measured [motion][METHOD_MAX] */
 summary summary_of(int motions, const measurement (*measured)[METHOD_MAX], int i);
 
-/* Error against time of one family, medians over the suite, at the motion's own harmonics; fast points first. */
+/* Error against time of one family, medians over the suite, at the harmonics of the motion; fast
+ * points first. */
 typedef struct {
   int    n;
   double us[METHOD_MAX], us_derivative[METHOD_MAX], error[METHOD_MAX];
@@ -26,7 +28,8 @@ work_precision work_precision_of(method_family family, const method *all, const 
 /* Observed order: slope of log error against log samples, least squares. */
 double order_of(const work_precision *curve, const method *all);
 
-/* Prints medians, goals and ratios. Returns how many verdicts on errors failed; those on times only show. */
+/* Prints medians, goals and ratios. Returns the number of failed verdicts on errors. Verdicts on
+ * times are only printed. */
 int summary_print(const method *all, const summary *sum, int n);
 
 #endif

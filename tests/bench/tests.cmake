@@ -1,22 +1,20 @@
 # Benchmarks: figure and error in one row, run by hand; --quick runs in the tests.
-# shb_bench(noun TIMEOUT sources...): bench/bench_noun.c and more become bench_noun.
-function(shb_bench noun timeout)
+# shb_bench(noun sources...): bench/bench_noun.c and more become bench_noun.
+function(shb_bench noun)
   list(TRANSFORM ARGN PREPEND bench/)
   add_executable(bench_${noun} bench/bench_${noun}.c ${ARGN})
   add_test(NAME bench.${noun} COMMAND bench_${noun} --quick)
-  set_tests_properties(bench.${noun} PROPERTIES LABELS fast TIMEOUT ${timeout})
 endfunction()
 
-shb_bench(contact 120 method.c baseline.c march.c summary.c work_precision.c)
+shb_bench(contact method.c baseline.c march.c summary.c work_precision.c)
 target_link_libraries(bench_contact PRIVATE shb_post tests_motions)
-shb_bench(response 120 precision.c shroud_face.c)
+shb_bench(response precision.c shroud_face.c)
 target_link_libraries(bench_response PRIVATE tests_models)
-shb_bench(integrate 120)
+shb_bench(integrate)
 target_link_libraries(bench_integrate PRIVATE tests_models)
-shb_bench(elements 300 z_notch.c)
+shb_bench(elements z_notch.c)
 target_link_libraries(bench_elements PRIVATE shb_modal)
 add_executable(bench_modal bench/bench_modal.c bench/z_notch.c)
 target_link_libraries(bench_modal PRIVATE shb_modal m)
 add_test(NAME bench.modal COMMAND bench_modal "$<$<BOOL:${SHROUDHB_CCX}>:${SHROUDHB_CCX}>" --quick)
-set_tests_properties(bench.modal PROPERTIES LABELS fast TIMEOUT 120)
 set_tests_properties(bench.elements bench.modal PROPERTIES ENVIRONMENT OPENBLAS_NUM_THREADS=1)

@@ -1,40 +1,35 @@
 foreach(noun units keys lists)
-  shb_test(cases/parse ${noun} fast shb_case)
+  shb_test(cases/parse ${noun} shb_case)
 endforeach()
 foreach(noun case faults stage_settings motion)
-  shb_test(cases/schema ${noun} fast shb_case)
+  shb_test(cases/schema ${noun} shb_case)
 endforeach()
 
-shb_test(cases/commands hysteresis_picture fast shb_loops)
+shb_test(cases/commands hysteresis_picture shb_cases_commands)
 add_test(NAME cases.commands.commands
   COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/cases/commands/test_commands.sh $<TARGET_FILE:shroudhb>)
 add_test(NAME cases.commands.contact
   COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/cases/commands/test_contact.sh
           $<TARGET_FILE:shroudhb-mhb> ${PROJECT_SOURCE_DIR}/cases/prescribed_motion
           "${SHROUDHB_PYTHON}")
-set_tests_properties(cases.commands.commands cases.commands.contact PROPERTIES
-  LABELS fast TIMEOUT 120)
 if(SHROUDHB_PYTHON)
   add_test(NAME cases.commands.integrate
     COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/cases/commands/test_integrate.sh
             $<TARGET_FILE_DIR:shroudhb-integrate> ${PROJECT_SOURCE_DIR}/cases/bring_your_own
             ${SHROUDHB_PYTHON})
-  set_tests_properties(cases.commands.integrate PROPERTIES
-    LABELS fast TIMEOUT 120 SKIP_RETURN_CODE 77)
+  set_tests_properties(cases.commands.integrate PROPERTIES SKIP_RETURN_CODE 77)
 endif()
 
 # Speed against error, from end to end.
-shb_test(cases/converge converge fast shb_post tests_models)
+shb_test(cases/converge converge shb_post tests_models)
 target_compile_definitions(test_cases_converge_converge PRIVATE
   SHROUDHB="$<TARGET_FILE:shroudhb>")
 add_dependencies(test_cases_converge_converge programs)
-shb_test(cases/converge resized_case fast shb_case shb_post)
-target_sources(test_cases_converge_resized_case PRIVATE
-  ${PROJECT_SOURCE_DIR}/cases/converge/resized_case.c)
+shb_test(cases/converge resized_case shb_cases_converge)
 
 # shb_scene_test(noun scene libraries...): a shipped scene from mesh to curves.
 function(shb_scene_test noun scene)
-  shb_test(cases/scenes ${noun} slow shb_case shb_mhb tests_responses ${ARGN})
+  shb_test(cases/scenes ${noun} shb_case shb_mhb tests_responses ${ARGN})
   target_compile_definitions(test_cases_scenes_${noun} PRIVATE SHROUDHB="$<TARGET_FILE:shroudhb>"
     SCENE="${PROJECT_SOURCE_DIR}/cases/${scene}")
   add_dependencies(test_cases_scenes_${noun} programs)
@@ -56,6 +51,5 @@ if(SHROUDHB_PYTHON)
   target_link_libraries(test_cases_scenes_bring_your_own PRIVATE shb_mhb_response tests_support)
   add_test(NAME cases.scenes.bring_your_own COMMAND test_cases_scenes_bring_your_own
     ${SHROUDHB_PYTHON} ${PROJECT_SOURCE_DIR}/cases/bring_your_own $<TARGET_FILE:shroudhb-mhb>)
-  set_tests_properties(cases.scenes.bring_your_own PROPERTIES
-    LABELS fast TIMEOUT 120 SKIP_RETURN_CODE 77)
+  set_tests_properties(cases.scenes.bring_your_own PROPERTIES SKIP_RETURN_CODE 77)
 endif()

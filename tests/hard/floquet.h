@@ -18,7 +18,8 @@ typedef struct {
 void floquet_branch(const modal_model *model, const mhb_settings *s, const mhb_response *r,
                     const mhb_branch *b, int substeps, floquet *out);
 
-/* Where the largest multiplier crosses the circle between points i and i + 1, rad/s: bisection with corrected points. */
+/* Where the largest multiplier crosses the unit circle between points i and i + 1, rad/s; by
+ * bisection with corrected points. */
 double floquet_crossing(const modal_model *model, const mhb_settings *s, const mhb_response *r,
                         const mhb_branch *b, int i, int substeps);
 

@@ -5,7 +5,9 @@
 
 static const double PI = 3.14159265358979323846;
 
-/* q_k = L_k (F_k - B_k^H p_k). Work of F on q in a cycle: pi k Im(F conj q); of the damper c = 2 zeta w: pi c k^2 w_1 |q|^2. */
+/* Modal coordinates are q_k = L_k (F_k - B_k^H p_k). Work per cycle:
+ *   of F on q         pi k Im(F conj q)
+ *   of c = 2 zeta w   pi c k^2 w_1 |q|^2 */
 power power_of(const mhb_balance *b, double omega) {
   const mhb_receptance *r = b->receptance;
   int                   m = r->n_modes, n3 = r->n;

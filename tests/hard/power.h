@@ -1,4 +1,5 @@
-/* Power balance of a periodic solution: what the load puts in, modal damping and friction take out. */
+/* Power balance of a periodic solution: input of the load, losses of modal damping and of
+ * friction. */
 #ifndef TESTS_HARD_POWER_H
 #define TESTS_HARD_POWER_H
 
@@ -8,7 +9,8 @@ typedef struct {
   double input, damping, friction; /* J a cycle */
 } power;
 
-/* At the solution the residual was last evaluated at; the model without residual response to the load. */
+/* At the solution at which the balance was evaluated last. The model must have no residual response
+ * to the load. */
 power power_of(const mhb_balance *b, double omega);
 
 #endif

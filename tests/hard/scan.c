@@ -1,5 +1,6 @@
-/* By hand: how many curves of a blade have a gap. Arguments: MODAL.h5 MU HARMONICS [N0 ...]; contact to the neighbour as in
- * cases/z_notch_blade (40 blades, engine order 5, ku .5 MN/m, kv .8 MN/m, 90 to 270 Hz). */
+/* Run by hand: the number of curves of a blade that have a gap. Arguments: MODAL.h5 MU HARMONICS
+ * [N0 ...]. The contact is that of cases/z_notch_blade: to the neighbour, 40 blades, engine order
+ * 5, ku 0.5 MN/m, kv 0.8 MN/m, 90 to 270 Hz. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-/* Hard cases 12 and 13: units that do not matter, power in equals power out. */
+/* Hard cases 12 and 13: results do not depend on units; power in equals power out. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -99,7 +99,8 @@ static void units(void **state) {
   verdict_all();
 }
 
-/* At every point of the branch, friction by the loop integral of f.ds, and summed over the pieces in slip. */
+/* The power balance at every point of the branch. Friction is the loop integral of f.ds, and the
+ * sum over the slip phases. */
 static void balance(const modal_model *model, mhb_settings *s, double from, double to,
                     const char *name) {
   mhb_response *r = covered_sweep(model, s, from, to);

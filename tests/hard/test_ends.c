@@ -1,5 +1,5 @@
-/* A range that ends within a jump: what the curve does outside it brings it back, and every solution in the range is there, with its
- * stability, as on the curve of a wide range. */
+/* A range that ends within a jump. The curve leaves the range and comes back. Every solution in the
+ * range is found, with its stability, as on the curve of a wide range. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,4 +1,5 @@
-/* Hard cases 3, 6, 7: friction from a cold start, hardly elastic friction, no friction and endless friction. */
+/* Hard cases 3, 6, 7: friction from a cold start, nearly rigid friction springs, no friction and
+ * infinite friction. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -72,7 +73,8 @@ static double marched(const modal_model *model, const periodic *p) {
   return top;
 }
 
-/* The closed form has no elastic stage. With ku 1e3 the exact solution is 1.5 % and 1.1 % off it, hence a second witness. */
+/* The closed form has no elastic stage. With ku 1e3 the exact solution differs from it by 1.5 % and
+ * 1.1 %, hence a second reference. */
 static void stiff_friction(void **state) {
   (void)state;
   static const double rows[][2] = {{.7, .5}, {2, .2}}, stiff[] = {1e3, 1e4, 1e5, 1e6};

@@ -1,4 +1,5 @@
-/* No curve has a gap: stiff and weak friction, preloads from a gap to stuck, contacts to the ground and around rings. */
+/* No curve has a gap: stiff and weak friction, preloads from a gap to stuck, contacts to ground and
+ * around rings. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

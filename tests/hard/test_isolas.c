@@ -1,5 +1,5 @@
-/* Hard case 11: subharmonic branches of order 2 and 3, and one with friction, that nothing connects to the main one: found by the
- * sweep's search. */
+/* Hard case 11: detached branches, subharmonic of order 2 and 3, and one with friction. The search
+ * of the sweep finds them. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -24,7 +24,8 @@ typedef struct {
   double w, ends[2], amplitude[2];
 } isola;
 
-/* Point i of the curve and its share of the next, solved for: its amplitude and whether its multipliers say stable. */
+/* Solves at point i of the curve plus a share of the step to the next. Returns the amplitude, and
+ * whether the multipliers say stable. */
 static double solved(const modal_model *model, const mhb_settings *s, const isola *row,
                      const mhb_branch *b, int i, double share, int *stable) {
   int            K = b->n_harmonics + 1, nb = 2 * K - 1;

@@ -1,4 +1,5 @@
-/* Hard cases 2 and 15: one degree of freedom that jumps, hardening by a gap and softening by a preload. */
+/* Hard cases 2 and 15: one degree of freedom with jumps, hardening by a gap, softening by a
+ * preload. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -135,7 +136,8 @@ static void jumps(void **state) {
   verdict_all();
 }
 
-/* The gap hardens, the preload softens, each with its jump, in one sweep. B's preload and amplitudes at A's force. */
+/* The gap hardens and the preload softens, each with a jump, in one sweep. The preload and
+ * amplitudes of B are scaled to the force of A. */
 static void gap_and_preload_in_one_sweep(void **state) {
   (void)state;
   double      size = A.F / B.F;
@@ -156,7 +158,7 @@ static void gap_and_preload_in_one_sweep(void **state) {
   verdict_all();
 }
 
-/* Where the frequency runs back from one point to the next though no fold is at either: the largest part of it. */
+/* Largest reversal of the frequency between two points neither of which is a fold. */
 static double largest_reversal(const mhb_branch *b) {
   double worst = 0;
   for (int i = 1; i + 1 < b->n_points; i++) {
@@ -169,8 +171,8 @@ static double largest_reversal(const mhb_branch *b) {
   return worst;
 }
 
-/* Several peaks and folds in one step are recorded in the order in which they lie on the curve, one at a place once, and no step hides
- * a pair of folds. */
+/* Several peaks and folds within one step are recorded in their order along the curve, each once.
+ * No step misses a pair of folds. */
 static void in_order_along_the_curve(void **state) {
   (void)state;
   static const int    seed[] = {1, 12, 22, 27, 32, 38, 57};

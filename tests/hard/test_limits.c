@@ -58,7 +58,8 @@ static void preload_next_to_zero(void **state) {
   verdict_all();
 }
 
-/* One direction, open: amplitude F/|1 - W^2 + 2j zeta W|. The gap differs from it by a relative 1e-9, both ways. */
+/* One direction, open: amplitude F/|1 - W^2 + 2j zeta W|. The gap differs from it by a relative
+ * 1e-9, in both directions. */
 static void grazing_gap(void **state) {
   (void)state;
   static const double off[] = {1e-9, 0, -1e-9}, w[] = {.7, 1, 1.4};

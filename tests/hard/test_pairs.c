@@ -1,5 +1,5 @@
-/* Hard case 14: twenty contact pairs, some stuck, some slipping, some opening; and what the truncation estimate of 1 to 200 is
- * worth. */
+/* Hard case 14: twenty contact pairs, some stuck, some slipping, some opening. Accuracy of the
+ * truncation estimate for 1 to 200 pairs. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -99,7 +99,8 @@ static void curve(void **state) {
 
 static const double PI = 3.14159265358979323846;
 
-/* Shroud faces of 20 modes near the peak of their resonance: motion with 3 harmonics against that with `fine`. */
+/* Shroud faces of 20 modes near the peak of their resonance: the motion with 3 harmonics against
+ * the one with `fine`. */
 typedef struct {
   int    pairs, fine;
   double force, frequency; /* N, Hz */

@@ -1,4 +1,5 @@
-/* No curve in the preload, the level, mu, ku or kv has a gap: 24 frequencies across the resonances, from a gap to stuck. */
+/* No curve over the preload, the scale, mu, ku or kv has a gap: 24 frequencies across the
+ * resonances, from a gap to stuck. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

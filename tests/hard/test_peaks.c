@@ -1,4 +1,5 @@
-/* The maximum of every resonance is located to 1e-6 of its frequency, not read off the points of the curve. */
+/* The maximum of every resonance is located to 1e-6 of its frequency, not only at the points of the
+ * curve. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -22,8 +23,9 @@ static double amplitude(mhb_arclength *path, const mhb_curve_point *point, int c
   return hypot(point->x[c * nb + 1], point->x[c * nb + 2]);
 }
 
-/* How far the top of the parabola through a point and its neighbours on the path is, relative to w; a step is 1e-4 of |x|, and of
- * the part of w. INFINITY: a neighbour is higher, or could not be reached. */
+/* Relative distance in w of the top of a parabola through a point and its neighbours on the path. A
+ * step is 1e-4 of |x| and of the contribution of w. INFINITY: a neighbour is higher or cannot be
+ * reached. */
 static double off_parabola(mhb_balance *b, const double *x, double w, int c, double part) {
   double a[3], at[3];
   for (int k = 0; k < 2; k++) {
@@ -42,7 +44,8 @@ static double off_parabola(mhb_balance *b, const double *x, double w, int c, dou
   return fabs(.25 * (at[2] - at[0]) * (a[0] - a[2]) / bend) / w;
 }
 
-/* How far the highest of the points a few tiny steps around is, relative to w; INFINITY: it is the last. For kinks. */
+/* Relative distance in w of the highest of the points within a few tiny steps. INFINITY: it is the
+ * last one. For kinks. */
 static double off_highest(mhb_balance *b, const double *x, double w, int c) {
   enum { STEPS = 6 };
   double top = -INFINITY, at = INFINITY;
@@ -64,7 +67,8 @@ static double off_highest(mhb_balance *b, const double *x, double w, int c) {
   return fabs(at / w - 1);
 }
 
-/* Of the narrow ones, fit for kinks, and the wide ones, where rounding does not matter, the least. */
+/* The smaller of the narrow estimate, which holds at kinks, and the wide one, where round-off is
+ * harmless. */
 static double off_top(mhb_balance *b, const double *x, double w, int c) {
   double best = off_highest(b, x, w, c);
   for (double part = .001; part < .5; part *= 4) best = fmin(best, off_parabola(b, x, w, c, part));

@@ -1,4 +1,5 @@
-/* Hard case 8: the condensed sector against all blades of a ring of six, engine orders 0, N/2, N/2 +- 1. */
+/* Hard case 8: the condensed sector against all blades of a ring of six; engine orders 0, N/2, N/2
+ * +- 1. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -19,7 +20,8 @@ static const double PI = 3.14159265358979323846;
 
 enum { BLADES = 6, M = 5 };
 
-/* All blades as one structure. Contact b joins the right of blade b to the left of blade b + 1; blade b lags by b phi. */
+/* All blades as one structure. Contact b joins the right of blade b to the left of blade b + 1;
+ * blade b lags by b phi. */
 static void unfold(const modal_model *sector, int engine_order, modal_model *ring) {
   int    m = sector->n_modes, all = BLADES * m, nc = 2 * 3 * BLADES;
   size_t modes = (size_t)all;

@@ -57,7 +57,8 @@ static int top(const mhb_response *r, const mhb_branch *b, int i) {
          here >= harmonic_of(r, b, distinct(b, i, 1), 1, 1);
 }
 
-/* Peaks of u: their number, and the worst distance of those the reference lists (it names the high ones). */
+/* Peaks of u: their number, and the largest distance from the peaks of the reference, which lists
+ * the high ones. */
 static void check_peaks(const mhb_response *r, const mhb_branch *b, const curve *c,
                         double accuracy) {
   int    n      = 0;
@@ -124,7 +125,8 @@ static void peaks_and_folds(void **state) {
   verdict_all();
 }
 
-/* Stability is lost and regained at Neimark-Sacker points; between them the solution is there all the same. */
+/* Stability is lost and regained at Neimark-Sacker points; between them the solution still
+ * exists. */
 static void unstable_solution(void **state) {
   (void)state;
   modal_model model;

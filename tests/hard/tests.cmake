@@ -5,8 +5,9 @@ target_link_libraries(hard_scan PRIVATE shb_mhb m)
 
 add_library(tests_hard STATIC hard/verdict.c hard/power.c hard/floquet.c)
 target_link_libraries(tests_hard PUBLIC tests_models)
-foreach(noun three_degree jumps ends friction limits ring resonance balance pairs peaks isolas parameters)
-  shb_test(hard ${noun} fast tests_hard)
+foreach(noun three_degree jumps ends friction limits ring resonance balance pairs peaks isolas
+    parameters)
+  shb_test(hard ${noun} tests_hard)
 endforeach()
 target_sources(test_hard_pairs PRIVATE bench/shroud_face.c)
-shb_test(hard gaps slow tests_hard)
+shb_test(hard gaps tests_hard)

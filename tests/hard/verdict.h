@@ -6,8 +6,8 @@
 #include "mhb/response/response.h"
 #include "modal/model/model.h"
 
-/* One row: what was measured, its figure, the bound, pass or FAIL. Fails the test when all rows of it are printed
- * (verdict_all, at its end) if the figure is not <= bound. */
+/* One row: what was measured, its value, the bound, pass or FAIL. If the value is not <= bound, the
+ * test fails once all rows are printed (verdict_all). */
 void verdict(double figure, double bound, const char *text, ...)
     __attribute__((format(printf, 3, 4)));
 
@@ -26,7 +26,8 @@ void point_of(const mhb_response *r, const mhb_branch *b, int i, double share, d
 /* Amplitude of harmonic k of component c (v, u, w) of the first pair. */
 double harmonic_of(const mhb_response *r, const mhb_branch *b, int point, int c, int k);
 
-/* The next point before (step -1) or after (1) i that is not a located one all but the same as i. */
+/* The next point before (step -1) or after (1) i. A located point that nearly coincides with i is
+ * skipped. */
 int distinct(const mhb_branch *b, int i, int step);
 
 int count_special(const mhb_branch *b, int special);

@@ -1,18 +1,27 @@
-shb_test(modal/hdf5 h5 fast shb_model)
-shb_test(modal/model model fast shb_model)
-shb_test(modal/model spline fast shb_model)
-shb_test(modal/model speeds fast tests_fem shb_modal)
-shb_test(modal/model reduce fast tests_models)
-shb_test(modal/common damping fast shb_modal)
-shb_test(modal/common completeness fast tests_fem shb_modal)
-shb_test(modal/eigen eigen slow tests_fem shb_modal)
-shb_test(modal/eigen block_lanczos fast tests_fem shb_modal)
-shb_test(modal/eigen participation fast tests_fem shb_modal)
-shb_test(modal/condense load_patterns fast tests_fem shb_modal)
-shb_test(modal/condense contact_patches fast tests_fem shb_modal)
-shb_test(modal/condense condense slow tests_fem shb_modal PkgConfig::LAPACKE)
-foreach(noun rotating materials stage)
-  shb_test(modal/stage ${noun} fast tests_fem shb_modal)
+shb_test(modal/hdf5 h5 shb_model)
+shb_test(modal/model model shb_model)
+shb_test(modal/model spline shb_model)
+shb_test(modal/model speeds tests_fem shb_modal)
+shb_test(modal/model reduce tests_models)
+shb_test(modal/model residual_series shb_model)
+shb_test(modal/model receptance shb_model)
+shb_test(modal/model mode_selection shb_model)
+shb_test(modal/common damping shb_modal)
+shb_test(modal/common random_vector)
+shb_test(modal/common completeness tests_fem shb_modal)
+shb_test(modal/eigen eigen tests_fem shb_modal)
+shb_test(modal/eigen block_lanczos tests_fem shb_modal)
+shb_test(modal/eigen missed_modes tests_fem shb_modal)
+shb_test(modal/eigen inertia_count tests_fem shb_modal)
+shb_test(modal/eigen participation tests_fem shb_modal)
+shb_test(modal/condense face_partition tests_fem shb_modal)
+shb_test(modal/condense residual_modes shb_modal)
+shb_test(modal/condense static_deflection tests_fem shb_modal)
+shb_test(modal/condense load_patterns tests_fem shb_modal)
+shb_test(modal/condense contact_patches tests_fem shb_modal)
+shb_test(modal/condense condense tests_fem shb_modal PkgConfig::LAPACKE)
+foreach(noun rotating materials stage vtkhdf)
+  shb_test(modal/stage ${noun} tests_fem shb_modal)
 endforeach()
 
 # The same program on 1, 2 and 3 ranks.
@@ -21,7 +30,7 @@ target_link_libraries(test_modal_stage_ranks PRIVATE tests_fem shb_modal)
 foreach(ranks 1 2 3)
   add_test(NAME modal.stage.ranks_${ranks} COMMAND ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG}
     ${ranks} --oversubscribe $<TARGET_FILE:test_modal_stage_ranks>)
-  set_tests_properties(modal.stage.ranks_${ranks} PROPERTIES LABELS fast TIMEOUT 600 PROCESSORS 2
+  set_tests_properties(modal.stage.ranks_${ranks} PROPERTIES PROCESSORS 2
     ENVIRONMENT "OMPI_ALLOW_RUN_AS_ROOT=1;OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1")
 endforeach()
 
@@ -32,7 +41,7 @@ if(SHROUDHB_PYTHON)
   add_test(NAME modal.model.python COMMAND test_modal_model_python ${SHROUDHB_PYTHON}
     ${CMAKE_CURRENT_SOURCE_DIR}/modal/model/foreign.py
     ${PROJECT_SOURCE_DIR}/cases/bring_your_own/write_modal.py)
-  set_tests_properties(modal.model.python PROPERTIES LABELS fast TIMEOUT 120 SKIP_RETURN_CODE 77)
+  set_tests_properties(modal.model.python PROPERTIES SKIP_RETURN_CODE 77)
 endif()
 
 # Against CalculiX; skipped where it is not installed.
@@ -43,5 +52,5 @@ if(SHROUDHB_CCX)
 else()
   add_test(NAME modal.stage.calculix COMMAND test_modal_stage_calculix)
 endif()
-set_tests_properties(modal.stage.calculix PROPERTIES LABELS fast TIMEOUT 600 SKIP_RETURN_CODE 77
+set_tests_properties(modal.stage.calculix PROPERTIES SKIP_RETURN_CODE 77
   ENVIRONMENT OPENBLAS_NUM_THREADS=1)

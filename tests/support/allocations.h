@@ -1,4 +1,4 @@
-/* Allocations by a test program, counted by the linker's --wrap of malloc, calloc, realloc and aligned_alloc. */
+/* Allocations of a test program, counted by the linker's --wrap of malloc and its relatives. */
 #ifndef TESTS_SUPPORT_ALLOCATIONS_H
 #define TESTS_SUPPORT_ALLOCATIONS_H
 

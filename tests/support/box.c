@@ -5,9 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Kuhn's subdivision: one tetrahedron for each permutation of the axes, along the diagonal of the
- * cell. The last column is the sign of the permutation. Edges of neighbouring cells agree, and
- * their middles are the half-cell lattice. */
+/* Kuhn's cut: one tetrahedron for each permutation of the axes, along the cell's diagonal. The last
+ * column is the sign of the permutation. Edges of neighbouring cells agree; their midpoints are
+ * exactly the half-cell lattice. */
 static const int path_of[6][4] = {{0, 1, 2, 1}, {1, 2, 0, 1}, {2, 0, 1, 1},
                                   {0, 2, 1, 0}, {2, 1, 0, 0}, {1, 0, 2, 0}};
 
@@ -94,7 +94,7 @@ static void renumber(int *nodes, int count, const int *index) {
   for (int i = 0; i < count; i++) nodes[i] = index[nodes[i]];
 }
 
-/* Remove the lattice points that belong to no element. */
+/* Removes the lattice points that belong to no element. */
 static shb_status compress(const int n[3], mesh_fe *mesh) {
   int *index = malloc((size_t)mesh->n_nodes * sizeof *index), kept = 0;
   SHB_CHECK(index, SHB_ERR_IO, "no memory for a box mesh");

@@ -44,7 +44,7 @@ static double lag(const disturbed *d, int blade) {
   return d->settings->to_ground ? 0 : (double)d->wave * blade / d->settings->blades;
 }
 
-/* Force of the structure's contact dof (side, pair, axis) of a blade, from p of its contacts. */
+/* Force on the structure's contact dof (side, pair, axis) of a blade, from p of its contacts. */
 static double dof_force(const disturbed *d, const double *p, int blade, int side, int dof) {
   int pair = dof / 3, axis = dof % 3;
   int contact = (side ? (blade + d->blades - 1) % d->blades : blade) * d->model->n_pairs + pair;
@@ -76,8 +76,9 @@ static void relative(const disturbed *d, const double *q, const double *p, doubl
   }
 }
 
-/* Forces after a step from u0 to u and friction f0. Where the contact has closed on the way only the part of the step after that
- * counts: else the friction would not know when it closed, and its derivative would be wrong however small the step. */
+/* Forces after a step from u0 to u, starting with friction f0. If the contact closes during the
+ * step, only the part after that moment counts. Otherwise friction would ignore the moment of
+ * closing, and its derivative would be wrong for any step size. */
 static void contact_law(const mhb_law *law, const double u[3], const double u0[3],
                         const double f0[2], double p[3]) {
   double gap0 = law->n0 + law->kv * u0[0], gap = law->n0 + law->kv * u[0], n = fmax(0, gap);
@@ -106,7 +107,7 @@ static double drive(const disturbed *d, int blade, int mode, double phase) {
   return d->settings->scale * sum;
 }
 
-/* q, v over h under a constant force. */
+/* Advances q and v by h under a constant force. */
 static void oscillate(double w, double zeta, double h, double force, double *q, double *v) {
   double a = zeta * w, wd = w * sqrt(1 - zeta * zeta), rest = force / (w * w), y = *q - rest;
   double c = cos(wd * h), s = sin(wd * h) / wd, decay = exp(-a * h), v0 = *v;
@@ -114,7 +115,7 @@ static void oscillate(double w, double zeta, double h, double force, double *q, 
   *v = decay * (v0 * (c - a * s) - w * w * y * s);
 }
 
-/* The force acting over it is the mean of its ends, found by iteration. */
+/* The force during the step is the mean of its ends, found by iteration. */
 void disturbed_step(disturbed *d, double *state, int at) {
   const modal_model *model = d->model;
   int                m = model->n_modes, modal = d->blades * m, n3 = 3 * d->contacts;
@@ -156,7 +157,7 @@ void disturbed_step(disturbed *d, double *state, int at) {
   memcpy(d->p, d->guess, sizeof(double) * (size_t)n3);
 }
 
-/* u and p that belong to a state: n by iteration, friction as it is. */
+/* Finds u and p of a state: n by iteration, friction as it is. */
 static void settle(disturbed *d, const double *state) {
   const modal_model *model = d->model;
   const double      *f     = state + 2 * d->blades * model->n_modes;

@@ -1,12 +1,15 @@
-/* Time integration of the blade, or of every blade of a ring, from a disturbed periodic solution: an independent witness for
- * multipliers. Small fixed steps, nothing linearised, no events: modes exactly under the mean force of a step, friction by
- * return to the friction circle (first order where it slips), contact with residual flexibility by iteration. */
+/* Time integration of a blade, or of every blade of a ring, from a disturbed periodic solution. It
+ * is an independent reference for multipliers. The steps are small and fixed, without linearisation
+ * or events. Modes are exact under the mean force of a step. Friction returns to the friction
+ * circle, to first order while it slips. Contact with residual flexibility is solved by
+ * iteration. */
 #ifndef TESTS_SUPPORT_DISTURBED_H
 #define TESTS_SUPPORT_DISTURBED_H
 
 #include "mhb/balance/balance.h"
 
-/* State of n = blades (2 modes) + 2 contacts numbers: q [blade][mode], q' likewise, friction [blade][pair][2]. */
+/* State of blades (2 modes) + 2 contacts numbers: q [blade][mode], q' likewise, friction
+ * [blade][pair][2]. */
 typedef struct {
   const modal_model  *model;
   const mhb_settings *settings;
@@ -19,22 +22,24 @@ typedef struct {
   double             *u;                                 /* [3 contacts] m */
 } disturbed;
 
-/* residual last evaluated at (x, omega). */
+/* The balance must have been evaluated at (x, omega). */
 void disturbed_create(const modal_model *model, const mhb_settings *settings,
                       const mhb_balance *residual, const double *x, double omega, int steps,
                       disturbed *d);
 void disturbed_destroy(disturbed *d);
 
-/* The solution's state at phase 0 of the fundamental; friction from f[pair][2] of blade b at phase -b E/N. */
+/* The state of the solution at phase 0 of the fundamental. Blade b has its friction from f[pair][2]
+ * at phase -b E/N. */
 void disturbed_start(disturbed *d, double *state);
 
-/* Step i of a period, from where the last one ended. */
+/* Step i of a period, starting at the end of the last one. */
 void disturbed_step(disturbed *d, double *state, int i);
 
 /* One period of the fundamental from phase 0. */
 void disturbed_period(disturbed *d, double *state);
 
-/* Multipliers: eigenvalues of the period map's derivative by central differences of relative size. [n] by falling modulus. */
+/* Multipliers [n] by falling modulus: eigenvalues of the derivative of the period map, by central
+ * differences of relative size. */
 void disturbed_multipliers(disturbed *d, double size, double complex *multiplier);
 
 #endif

@@ -1,4 +1,4 @@
-/* For tests of files: a scratch folder, a walk that checks every dataset's attributes, small file tools. */
+/* For tests of files: a scratch folder, a check of every dataset's attributes, small file tools. */
 #ifndef TESTS_SUPPORT_FILES_H
 #define TESTS_SUPPORT_FILES_H
 
@@ -15,21 +15,7 @@
 #include <cmocka.h>
 
 #include "modal/hdf5/h5.h"
-
-#define assert_ok(call)                                                        \
-  do {                                                                         \
-    shb_status ok_ = (call);                                                   \
-    if (ok_ != SHB_OK) fail_msg("%s: %d: %s", #call, (int)ok_, shb_message()); \
-  } while (0)
-
-/* call must fail with code and a message of one line that holds text */
-#define assert_refused(call, code, text)                                                       \
-  do {                                                                                         \
-    shb_status refused_ = (call);                                                              \
-    if (refused_ != (code)) fail_msg("%s gave %d, not %d", #call, (int)refused_, (int)(code)); \
-    if (!strstr(shb_message(), (text)) || strchr(shb_message(), '\n'))                         \
-      fail_msg("\"%s\" does not say \"%s\"", shb_message(), (text));                           \
-  } while (0)
+#include "tests/support/check.h"
 
 static char scratch_folder[256];
 
@@ -47,7 +33,7 @@ static inline int scratch_remove(void **state) {
   return system(command);
 }
 
-/* Path of a file in the scratch folder; up to four at a time. */
+/* Path of a file in the scratch folder. Up to four paths are valid at a time. */
 static inline const char *scratch(const char *name) {
   static char path[4][512];
   static int  turn;
@@ -111,7 +97,7 @@ static inline int assert_described(const char *path) {
   return count;
 }
 
-/* reader must refuse every proper prefix of file path, and say why. */
+/* The reader must refuse every proper prefix of the file at path, with a message. */
 static inline void assert_prefixes_refused(const char *path, size_t step,
                                            shb_status (*reader)(const char *)) {
   size_t      size;

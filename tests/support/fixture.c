@@ -34,7 +34,8 @@ double fixture_fold(const fixture_curve *c, double lo, double hi) {
   return (lo + hi) / 2;
 }
 
-/* Stiffness and friction damping between open (x = -inf) and stuck (x = inf), x = ln(n0 / 100 N). */
+/* Stiffness and friction damping between open (x = -inf) and stuck (x = inf), with x = ln(n0 / 100
+ * N). */
 static fixture_curve curve_at(double x, double scale) {
   double share = 1 / (1 + exp(-1.3 * x)), friction = 5.5 * share * (1 - share);
   double width = 0.35 + 1.9 * friction;
@@ -82,7 +83,8 @@ static void fill_contact(const mhb_response *r, mhb_branch *b, int p, double lev
 const double fixture_range[MHB_N_PARAMETERS][2] = {{92, 138}, {-250, 1000}, {.05, 10},
                                                    {0, .6},   {5e4, 5e6},   {1e5, 2e6}};
 
-/* The place on the curve becomes one in the range of what is followed; a limit that does not depend on it is level. */
+/* Maps the place on the curve to the range of the continuation parameter. A limit that does not
+ * depend on the parameter is constant. */
 static void place_point(const fixture_options *o, mhb_branch *b, int p, double top, double *a) {
   const double *range = fixture_range[o->parameter];
   bool          limit = b->kind != MHB_BRANCH_NONLINEAR;
@@ -133,12 +135,12 @@ static shb_status fill_modes(mhb_response *r) {
   r->n_modes        = 8;
   r->mode_frequency = calloc(8, sizeof(double));
   r->mode_damping   = calloc(8, sizeof(double));
-  r->mode_residual  = calloc(8, sizeof(double));
-  SHB_CHECK(r->mode_frequency && r->mode_damping && r->mode_residual, SHB_ERR_IO, "no memory");
+  r->eigen_residual = calloc(8, sizeof(double));
+  SHB_CHECK(r->mode_frequency && r->mode_damping && r->eigen_residual, SHB_ERR_IO, "no memory");
   for (int i = 0; i < 8; i++) {
     r->mode_frequency[i] = 103.62 * (1 + 1.9 * i + 0.21 * i * i);
     r->mode_damping[i]   = 0.002;
-    r->mode_residual[i]  = 3e-13 * (i + 1);
+    r->eigen_residual[i] = 3e-13 * (i + 1);
   }
   return SHB_OK;
 }

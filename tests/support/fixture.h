@@ -1,5 +1,5 @@
-/* A response as the harmonic balance might leave it, from closed forms: a resonance that stiffens from open to stuck
- * as the preload grows, bends (folds) in between and is damped most in the middle. */
+/* A response like that of the harmonic balance, from closed forms. Its resonance stiffens from open
+ * to stuck as the preload grows. In between it bends (folds) and has the most damping. */
 #ifndef TESTS_SUPPORT_FIXTURE_H
 #define TESTS_SUPPORT_FIXTURE_H
 
@@ -13,11 +13,13 @@ typedef struct {
   bool          incomplete; /* the last nonlinear branch stops half way */
   double        scale;      /* of all motion; 0: nothing moves */
   mhb_parameter
-      parameter; /* followed at 240 Hz, over its range as else the frequency from 92 to 138 Hz */
+      /* continuation parameter; other than the frequency: at 240 Hz, over fixture_range */
+      parameter;
 } fixture_options;
 
-/* Bent resonance in slow-flow form: amplitude a = top sin(theta), frequency f = centre + bend a^2 - width cot(theta), theta in
- * (0, pi). Its peak is a = top at centre + bend top^2; its folds are where 2 bend top^2 sin^3 cos + width = 0. */
+/* Bent resonance in slow-flow form, for theta in (0, pi):
+ *   amplitude a = top sin(theta),  frequency f = centre + bend a^2 - width cot(theta)
+ * Its peak is a = top at centre + bend top^2. Its folds obey 2 bend top^2 sin^3 cos = -width. */
 typedef struct {
   double top, centre, bend, width;
 } fixture_curve;
@@ -26,15 +28,15 @@ extern const double fixture_range[MHB_N_PARAMETERS][2];
 
 double fixture_frequency(const fixture_curve *curve, double theta);
 double fixture_amplitude(const fixture_curve *curve, double theta);
-/* The theta in (lo, hi) where df/dtheta changes sign, by bisection to rounding. */
+/* The theta in (lo, hi) at which df/dtheta changes sign, by bisection to round-off. */
 double fixture_fold(const fixture_curve *curve, double lo, double hi);
 
-/* Everything as in the header's description; NULL when out of memory. */
+/* A response as described above; NULL if memory is short. */
 mhb_response   *fixture_response(const fixture_options *options);
 fixture_options fixture_usual(
     void); /* 7 preloads, 240 points, 2 probes, 1 pair, 3 harmonics, limits, incomplete */
 
-/* The case text that tries to break out of a page. */
+/* A case text that tries to break out of a page. */
 extern const char fixture_hostile[];
 
 #endif

@@ -1,6 +1,7 @@
-/* Motions on which the contact law is judged: every kind of state, transition and near miss.
+/* Motions for tests of the contact law: every kind of state, transition and near miss.
  *
- * The first ten are those of the benchmark's table. Amplitudes are of the order of 1e-4 m on 1e6 N/m and 100 N. */
+ * The first ten are those of the benchmark's table. Amplitudes are about 1e-4 m at 1e6 N/m and 100
+ * N. */
 #ifndef TESTS_SUPPORT_MOTION_SUITE_H
 #define TESTS_SUPPORT_MOTION_SUITE_H
 
@@ -13,12 +14,14 @@ typedef struct {
   mhb_law     law;
   double      motion[3][SUITE_WIDTH]; /* (v, u, w), real form (mhb/numerics/fourier.h), m */
   double
-      room; /* change of any coefficient, m, that switches nothing; 0: at a switch, to rounding's reach */
+      /* change of a coefficient without effect on the transitions, m; 0: at a switch, up to
+       * round-off */
+      room;
 } suite_motion;
 
 int suite_size(void);
 
-/* Motion i, 0 <= i < suite_size(). */
+/* Motion i, with 0 <= i < suite_size(). */
 suite_motion suite_at(int i);
 
 /* Adds a cos(kt + phase) to axis 0, 1, 2 (v, u, w); k = 0: the mean a. */

@@ -12,22 +12,6 @@
 
 #include "mhb/continuation/first_solution.h"
 
-mhb_settings ground_settings(double mu, double kv, double ku, double n0, int harmonics) {
-  mhb_settings s = {.to_ground    = true,
-                    .blades       = 1,
-                    .mu           = mu,
-                    .kv           = kv,
-                    .ku           = {ku, 0, ku},
-                    .n_preloads   = 1,
-                    .n0           = {n0},
-                    .harmonics    = harmonics,
-                    .subharmonics = 1,
-                    .scale        = 1,
-                    .tolerance    = 1e-8,
-                    .max_points   = 5000};
-  return s;
-}
-
 void periodic_create(const modal_model *model, const mhb_settings *settings, double omega,
                      const double *guess, periodic *p) {
   mhb_newton *newton;

@@ -1,9 +1,10 @@
-/* A periodic solution with everything that its stability is computed from. */
+/* A periodic solution with everything that its stability needs. */
 #ifndef TESTS_SUPPORT_PERIODIC_H
 #define TESTS_SUPPORT_PERIODIC_H
 
 #include "mhb/balance/balance.h"
 #include "mhb/floquet/floquet.h"
+#include "tests/support/settings.h"
 
 typedef struct {
   mhb_settings settings;
@@ -13,18 +14,16 @@ typedef struct {
   mhb_solution solution;
 } periodic;
 
-/* Contact to ground: ku in both directions, engine order 0, tolerance 1e-8. */
-mhb_settings ground_settings(double mu, double kv, double ku, double n0, int harmonics);
-
-/* From a guess, or cold where it is NULL; fails the test if there is none. */
+/* Solve from a guess, or from a cold start if it is NULL. Fails the test if there is no
+ * solution. */
 void periodic_create(const modal_model *model, const mhb_settings *settings, double omega,
                      const double *guess, periodic *p);
 void periodic_destroy(periodic *p);
 
-/* Multipliers with N sub-steps into copy[n]; the summary is returned (its multiplier points to copy). */
+/* Multipliers with N sub-steps into copy[n]. Returns the summary, whose multipliers are in copy. */
 mhb_multipliers periodic_multipliers(const periodic *p, int substeps, double complex *copy);
 
-/* Largest distance of a wanted multiplier to the nearest that is there; each serves once. */
+/* Largest distance of a wanted multiplier from the nearest computed one; each serves once. */
 double distance_to(const double complex *wanted, int n_wanted, const double complex *there,
                    int n_there);
 

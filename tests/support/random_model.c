@@ -47,7 +47,8 @@ static void add_normals(modal_model *model, unsigned long long *seed) {
   }
 }
 
-/* Inertia of load and probes, the term of w^4, from a seed of its own: the normals that follow stay the same without it. */
+/* Inertia of load and probes, the term of w^4. Its seed is its own, so the normals that follow do
+ * not depend on it. */
 static void add_inertia(modal_model *model, unsigned long long seed) {
   int    nc = 3 * model->n_pairs * (model->has_left ? 2 : 1), q = 3 * model->n_probes;
   size_t loads                 = (size_t)model->n_load + 1;
@@ -72,14 +73,14 @@ static void add_residual_modes(modal_model *model, unsigned long long seed) {
     model->residual_frequency[i] = (2.8 + .6 * (double)i + .2 * random_unit(&seed)) / (2 * PI);
 }
 
-/* s = w^2, or what is taken for it so that the residual modes stay bounded. */
+/* s = w^2, bounded so that the residual modes stay bounded. */
 static double bounded(const modal_model *model, double w) {
   if (model->n_residual == 0) return w * w;
   double c = .9 * pow(2 * PI * model->residual_frequency[0], 2);
   return w * w / pow(1 + pow(w * w / c, 32), 1. / 32);
 }
 
-/* 1/(theta - x) less the terms that are held otherwise. */
+/* 1/(theta - x) without the terms that the model holds itself. */
 static double rest(const modal_model *model, int i, double x) {
   double theta = pow(2 * PI * model->residual_frequency[i], 2);
   return 1 / (theta - x) - 1 / theta - x / (theta * theta) - x * x / (theta * theta * theta);
@@ -169,7 +170,7 @@ mhb_settings random_settings(int harmonics) {
                     .harmonics    = harmonics,
                     .subharmonics = 1,
                     .scale        = 1,
-                    .tolerance    = 1e-12, /* differences magnify what it leaves */
+                    .tolerance    = 1e-12, /* differences amplify the error of Newton's method */
                     .max_points   = 2000};
   return s;
 }

@@ -27,7 +27,7 @@ static double log_between(double low, double high, unsigned long *state) {
   return pow(10, between(low, high, state));
 }
 
-/* One signal: amplitude of its strongest harmonic about 1. */
+/* A signal whose strongest harmonic has an amplitude of about 1. */
 static void draw_signal(int m, int top, int aligned, double *a, unsigned long *state) {
   int decay = (int)between(0, 4, state), sparse = one_in(3, state);
   memset(a, 0, sizeof(double) * (size_t)(2 * m + 1));
@@ -59,7 +59,8 @@ static void draw_law(int mild, mhb_law *law, unsigned long *state) {
   law->ku[1] = (one_in(2, state) ? -1 : 1) * skew * sqrt(law->ku[0]) * sqrt(law->ku[2]);
 }
 
-/* Preload, then the tangential motion scaled so that friction reaches for about `reach` times its limit. */
+/* Scales the preload, then the tangential motion so that friction reaches about `reach` times its
+ * limit. */
 static void draw_scales(int mild, int m, random_motion *r, unsigned long *state) {
   int     width = 2 * m + 1;
   double *v = r->motion, *u = v + width, *w = u + width, wave = r->law.kv * size_of(v, m);

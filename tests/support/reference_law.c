@@ -17,19 +17,20 @@ typedef struct {
   reference *out;
 } walk;
 
-/* State at a time. Stick: f = x - z; fresh: f.f - mu^2 n^2 has a double zero at t. Slip: f; fresh: n = 0 at t. */
+/* State at a time t. Stick: f = x - z; if fresh, f.f - mu^2 n^2 has a double zero at t. Slip: f; if
+ * fresh, n = 0 at t. */
 typedef struct {
   mhb_state state;
   int       fresh;
   real      t, f[2];
 } place;
 
-/* Series about a place. In slip from a closing, friction and slip rate are t F and L/t. */
+/* Series about a place. In slip after a closing, friction is t F and the slip rate is L/t. */
 typedef struct {
   real n[SERIES_ORDER + 2], x[2][SERIES_ORDER + 2], square[SERIES_ORDER + 2]; /* n^2 */
   real f[2][SERIES_ORDER + 2], rate[SERIES_ORDER + 2];
   real pull[SERIES_ORDER +
-            2]; /* f.x' - mu^2 n n' = lambda f.Kf: of its sign, and without its poles */
+            2]; /* f.x' - mu^2 n n' = lambda f.Kf: same sign as lambda, without its poles */
 } series;
 
 static void solve2(real a, real b, real d, const real r[2], real y[2]) {
@@ -99,7 +100,8 @@ static real closing_rate(const walk *w, const series *s, real F[2]) {
   return high;
 }
 
-/* ((j+1) + L_0 K) F_j + L_j K F_0 = rest,  2 F_0.F_j = mu^2 (n^2)_{j+2} - sum F_i.F_{j-i}; then f = t F. */
+/* Solve for the series of F and L, then f = t F:
+ *   ((j+1) + L_0 K) F_j + L_j K F_0 = rest,  2 F_0.F_j = mu^2 (n^2)_{j+2} - sum F_i.F_{j-i} */
 static void closing_series(const walk *w, series *s) {
   real F0[2], KF[2], a[2], b[2], r[2], L0 = closing_rate(w, s, F0);
   times_K(w, F0, KF);
@@ -129,7 +131,7 @@ static void pull_series(const walk *w, series *s) {
   }
 }
 
-/* Length at which the last terms of the series are as small as the tolerance. */
+/* Step length at which the last terms of the series equal the tolerance. */
 static real step_length(const walk *w, const series *s) {
   real h = 1.L / (w->m > 2 ? w->m : 2);
   for (int j = w->order - 2; j <= w->order; j++) {
@@ -193,7 +195,7 @@ static void place_on_circle(const walk *w, place *p) {
   for (int k = 0; k < 2 && size > 0; k++) p->f[k] *= limit / size;
 }
 
-/* One step of slip; 1: it ended in stick. */
+/* One step of slip. Returns 1 if it ended in stick. */
 static int step_slip(walk *w, place *p, real end, int opening) {
   series s;
   signals_about(w, p->t, p->fresh, &s);
@@ -217,7 +219,8 @@ static int step_slip(walk *w, place *p, real end, int opening) {
   return stop >= 0;
 }
 
-/* Slip until it ends or the interval does. The last 1e-10 rad before an opening: force falling to zero on a line. */
+/* Slips until slip or the interval ends. In the last 1e-10 rad before an opening the force falls to
+ * zero linearly. */
 static void run_slip(walk *w, place *p, real end, int opening) {
   real begin = p->t;
   int  ended = 0;
@@ -226,7 +229,7 @@ static void run_slip(walk *w, place *p, real end, int opening) {
       real spring[2];
       solve2(w->K[0][0], w->K[0][1], w->K[1][1], p->f, spring);
       w->work += .5L * (p->f[0] * spring[0] +
-                        p->f[1] * spring[1]); /* what the spring holds is rubbed away */
+                        p->f[1] * spring[1]); /* the energy of the spring is dissipated */
       add_force(w, p->t, .5L * (end - p->t), p->f);
       w->share[MHB_SLIDE] += (end - p->t) / TWO_PI;
       p->t = end;
@@ -245,7 +248,8 @@ static void run_slip(walk *w, place *p, real end, int opening) {
   note(w, p->t, MHB_STICK);
 }
 
-/* Newton on |x - z|^2 = mu^2 n^2 itself: the series has found the root to its own accuracy only. */
+/* Newton's method on |x - z|^2 = mu^2 n^2 itself, because the root of the series is only as
+ * accurate as the series. */
 static real polish_onset(const walk *w, const real z[2], real t) {
   for (int i = 0; i < 3; i++) {
     real n = signal_at(w->m, w->load, t, 0), dn = signal_at(w->m, w->load, t, 1), g = 0, dg = 0;
@@ -262,7 +266,7 @@ static real polish_onset(const walk *w, const real z[2], real t) {
   return t;
 }
 
-/* Stick until the friction limit is reached or the interval ends. */
+/* Sticks until the friction limit is reached or the interval ends. */
 static void run_stick(walk *w, place *p, real end) {
   real z[2], h = 1.L / (w->m > 2 ? w->m : 2), onset = -1;
   for (int k = 0; k < 2; k++) z[k] = signal_at(w->m, w->x[k], p->t, 0) - p->f[k];
@@ -336,7 +340,8 @@ static void run_lap(walk *w, place *p) {
   p->t = end - TWO_PI;
 }
 
-/* From the middle of the longest slip of the last lap: the angle after a lap. 0: it does not slip there. */
+/* From the middle of the longest slip phase of the last period: the angle a period later. Returns 0
+ * if it does not slip there. */
 static int reach_middle(walk *w, place *p) {
   real middle = w->middle > p->t ? w->middle : w->middle + TWO_PI;
   clear_lap(w);
@@ -346,7 +351,7 @@ static int reach_middle(walk *w, place *p) {
   return p->state == MHB_SLIDE;
 }
 
-/* Secants on the lap map of the angle at p->t. 1: periodic. */
+/* Secant method on the period map of the angle at p->t. Returns 1 if periodic. */
 static int close_angle(walk *w, place *p) {
   real decay = 0, before = 0, angle_before = 0, limit = hypotl(p->f[0], p->f[1]);
   for (int i = 0; i < 60 && w->out->laps < MAX_LAPS; i++) {
@@ -374,10 +379,10 @@ static void run_always_closed(walk *w) {
   place p = {.state = MHB_STICK};
   for (int k = 0; k < 2; k++) p.f[k] = signal_at(w->m, w->x[k], 0, 0) - w->x[k][0];
   real size = hypotl(p.f[0], p.f[1]), limit = .99L * w->mu * signal_at(w->m, w->load, 0, 0);
-  for (int k = 0; k < 2 && size > limit; k++) p.f[k] *= limit / size; /* any start will do */
+  for (int k = 0; k < 2 && size > limit; k++) p.f[k] *= limit / size; /* any start is valid */
   for (int tries = 0; w->out->laps < MAX_LAPS; tries++) {
     for (int i = 0; i < 2 + tries; i++, w->out->laps++) run_lap(w, &p);
-    if (w->longest < 1e-7L) { /* touches the limit at most */
+    if (w->longest < 1e-7L) { /* reaches the limit at most */
       w->out->stuck = 1;
       return;
     }
@@ -412,7 +417,7 @@ static void set_up(walk *w, const mhb_law *law, const double *motion) {
   gauss_rule(w->node, w->weight);
 }
 
-/* Harmonics of n over [t0, t1], panels of a tenth of the shortest wave. */
+/* Adds the harmonics of n over [t0, t1], with panels of a tenth of the shortest wave. */
 static void add_load(const walk *w, real t0, real t1, real *sum) {
   real b[2 * REFERENCE_HARMONICS + 1];
   int  panels = 1 + (int)((t1 - t0) * (w->m + w->H));
@@ -433,7 +438,8 @@ static void finish(const walk *w, const mhb_law *law, const real *load_sum, refe
     out->force[0][i] = (double)(factor * load_sum[i] - (i == 0 ? *shift : 0));
     for (int k = 0; k < 2; k++) out->force[1 + k][i] = (double)(factor * w->sum[k][i]);
   }
-  /* f.s' in slip is lambda f.f over a stiffness: lambda here belongs to K = Ku/(kuu + kww), f to units of scale */
+  /* in slip f.s' is lambda f.f over a stiffness: lambda belongs to K = Ku/(kuu + kww), f to units
+   * of scale */
   out->work = (double)(w->work * w->scale * w->scale / ((real)law->ku[0] + law->ku[2]));
   for (int i = 0; i < 3; i++) out->share[i] = (double)w->share[i];
 }

@@ -1,4 +1,4 @@
-/* A shipped scene run from end to end in a folder of its own: its curves, their peaks and folds. */
+/* An example case run from mesh to curves in a folder of its own: its curves, peaks and folds. */
 #ifndef TESTS_SUPPORT_SCENE_H
 #define TESTS_SUPPORT_SCENE_H
 
@@ -11,38 +11,36 @@
 #include <cmocka.h>
 
 #include "mhb/response/response.h"
+#include "tests/support/check.h"
 #include "tests/support/scratch.h"
-
-#define assert_within(value, wanted, relative)                                       \
-  do {                                                                               \
-    double v_ = (value), w_ = (wanted);                                              \
-    if (!(fabs(v_ - w_) <= (relative)*fabs(w_)))                                     \
-      fail_msg("%s = %.6g, not %.6g (%.2g off)", #value, v_, w_, fabs(v_ / w_ - 1)); \
-  } while (0)
 
 typedef struct {
   double frequency, amplitude; /* Hz, m */
   int    point;
 } scene_peak;
 
-/* Copies source/case into folder and runs it there; the response NAME.response.h5 is read. Fails the test if it cannot. */
+/* Copy source/case into folder, run it there and read NAME.response.h5. Fails the test if it
+ * cannot. */
 void scene_run(const char *folder, const char *source, const char *case_file, const char *name,
                mhb_response **response);
 
-/* The curve of a kind and preload (N; the limits: any). Fails the test if there is none. */
+/* The curve of a kind and preload (N; any for the limits). Fails the test if there is none. */
 const mhb_branch *scene_branch(const mhb_response *response, mhb_branch_kind kind, double n0);
 
-/* Amplitude of a harmonic of the first probe as the report shows it: semi-major axis of its ellipse, m. */
+/* Amplitude of a harmonic of the first probe as in the report: semi-major axis of its ellipse,
+ * m. */
 double scene_amplitude(const mhb_response *response, const mhb_branch *b, int point, int k);
 
-/* Highest maximum of the first probe's first harmonic within [from, to] Hz, refined between points. Fails the test if there
- * is none inside. */
+/* Highest maximum of the first probe's first harmonic within [from, to] Hz, refined between points.
+ * Fails the test if there is none inside. */
 scene_peak scene_highest(const mhb_response *response, const mhb_branch *b, double from, double to);
 
-/* Folds but for pairs closer than 2e-5 (where slip begins a curve may turn back by a hair), at most most; how many. */
+/* Folds, at most `most`; returns their number. Pairs closer than 2e-5 do not count: at the onset of
+ * slip a curve may turn back over a tiny distance. */
 int scene_folds(const mhb_branch *b, int most, int *point);
 
-/* Every point balances, no friction feeds the blade, every curve covers its range. */
+/* Check that every point solves the balance, that friction never adds energy, and that every curve
+ * covers its range. */
 void scene_is_sound(const mhb_response *response);
 
 #endif

@@ -8,13 +8,13 @@ enum { SCRATCH_PATH = 256 };
 
 /* Makes a new folder; fails the test if it cannot. */
 void scratch_create(char folder[SCRATCH_PATH]);
-/* folder/name holds the n bytes of text. */
+/* Write the n bytes of text to folder/name. */
 void scratch_write(const char *folder, const char *name, const char *text, size_t n);
 /* Removes the folder's files and the folder. */
 void scratch_remove(const char *folder);
 
-/* A whole valid case; malloc'ed text in which the first occurrence of from is replaced by to (NULL: as it is).
- * Fails the test if from does not occur. */
+/* A complete valid case in which the first occurrence of from is replaced by to (NULL: unchanged);
+ * malloc'ed. Fails the test if from does not occur. */
 char *scratch_case(const char *from, const char *to);
 
 #endif

@@ -18,7 +18,7 @@ real signal_at(int m, const real *a, real t, int derivative) {
 void series_of_signal(int m, const real *a, real t, int order, real *c) {
   for (int j = 0; j <= order; j++) c[j] = j == 0 ? a[0] : 0;
   for (int k = 1; k <= m; k++) {
-    /* d/dt turns (value, slope/k) by a quarter */
+    /* d/dt rotates (value, slope/k) by a quarter */
     real co = cosl(k * t), si = sinl(k * t), factor = 1;
     real value = a[2 * k - 1] * co - a[2 * k] * si, slope = -a[2 * k - 1] * si - a[2 * k] * co;
     for (int j = 0; j <= order; j++) {
@@ -49,7 +49,8 @@ real series_product(const real *a, const real *b, int j) {
   return sum;
 }
 
-/* The end of [low, high] that the change of sign of value (or slope) closes in on; low keeps its sign. */
+/* The end of [low, high] to which the change of sign of value (or slope) converges; low keeps its
+ * sign. */
 static real bisect_series(const real *c, int order, int slope, real low, real high) {
   real (*f)(const real *, int, real) = slope ? series_slope : series_at;
   int sign                           = f(c, order, low) > 0;

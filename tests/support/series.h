@@ -1,7 +1,8 @@
-/* Taylor series and trigonometric sums in long double, for the reference of the contact law (reference.h).
+/* Taylor series and trigonometric sums in long double, for the reference of the contact law.
  *
- * Nothing here comes from mhb/: a witness that shared its sums or its root finder would share their faults. A signal
- * of m harmonics is a[2m+1] on the basis 1, cos kt, -sin kt. A series is c[order + 1], sum_j c_j t^j. */
+ * Nothing is shared with mhb: a reference with the same sums or root finder would share their
+ * faults. A signal of m harmonics is a[2m+1] on the basis 1, cos kt, -sin kt. A series is c[order +
+ * 1], sum_j c_j t^j. */
 #ifndef TESTS_SUPPORT_SERIES_H
 #define TESTS_SUPPORT_SERIES_H
 
@@ -20,12 +21,13 @@ real series_at(const real *c, int order, real t);
 /* Coefficient j of the product of two series. */
 real series_product(const real *a, const real *b, int j);
 
-/* First t in [0, h] at which the polynomial turns from negative to positive; negative if it does not. Extremes between
- * the points of a grid are looked for by the sign of the slope, so that a short excursion is not stepped over. */
+/* First t in [0, h] at which the polynomial changes from negative to positive; negative if there is
+ * none. Extremes between the points of a grid are found by the sign of the slope, so short
+ * excursions count. */
 real series_upcrossing(const real *c, int order, real h);
 
-/* Roots of a signal in [0, 2 pi), ascending, at most `room` of them; rising[i]: from negative to positive. Returns their
- * number. */
+/* Roots of a signal in [0, 2 pi), ascending, at most `room`; returns their number. rising[i]: from
+ * negative to positive. */
 int signal_roots(int m, const real *a, int room, real *root, int *rising);
 
 /* Gauss-Legendre nodes and weights on [0, 1]. */

@@ -34,7 +34,8 @@ static void core(spinning_kind kind, double s, double A[N][N]) {
   memset(A, 0, sizeof(double) * N * N);
   for (int i = 0; i < N; i++) {
     double a = pow(.8 + .33 * i, 2), b = .2 + .05 * i;
-    if (i == 1) b += (pow(.8 + .66, 2) - pow(.8 + .33, 2)) / .49 + .05; /* meets the next at .7 */
+    /* meets the next one at 0.7 */
+    if (i == 1) b += (pow(.8 + .66, 2) - pow(.8 + .33, 2)) / .49 + .05;
     A[i][i] = a + (kind == SPINNING_STEADY ? 0 : b * s);
     if (kind == SPINNING_STRAIGHT && i >= M) A[i][i] = a;
     if (kind == SPINNING_LEAVING && i == M - 1) A[i][i] = a + 7 * s;
@@ -96,7 +97,7 @@ static void make_room(modal_model *m) {
 static void add_kept(modal_model *m, int mode, double lambda, const double phi[N],
                      const double complex f[LOADS]) {
   m->frequency[mode]     = sqrt(lambda) / (2 * PI);
-  m->damping_ratio[mode] = .004 + .002 * sqrt(lambda); /* Rayleigh's beta, and a bit */
+  m->damping_ratio[mode] = .004 + .002 * sqrt(lambda); /* Rayleigh's beta, and a constant */
   for (int i = 0; i < 3; i++) {
     m->right[i * M + mode] = phi[i];
     m->left[i * M + mode]  = phi[3 + i];
@@ -172,7 +173,7 @@ static void turn_round(modal_model *m, double *phi, int mode) {
   for (int k = 0; k < LOADS; k++) m->modal_force[k * M + mode] *= -1;
 }
 
-/* Each track goes on with the mode most like it, with its sign. */
+/* Each track continues with the mode most similar to it, with its sign. */
 static void track(modal_speeds *s, int i, const double *before, double *phi) {
   for (int t = 0; t < M; t++) {
     int    last = i > 0 ? s->mode[(i - 1) * M + t] : t, best = t;

@@ -1,6 +1,6 @@
 #!/bin/sh
-# The front command: exit codes, what it prints, what it leaves alone. The stages are stand-ins that log how
-# they were called, beside a copy of the front command, so that only the front command is under test.
+# The front command: exit codes, messages, files left alone. The stages are scripts that log how
+# they were called, beside a copy of the front command, so only the front command is tested.
 # usage: test_commands.sh PATH_OF_SHROUDHB
 set -u
 front=$1
@@ -40,7 +40,8 @@ silent() { # out|err
 }
 
 called() { # the log, on one line
-  [ "$(tr '\n' ';' <"$work/log")" = "$1" ] || fail "called '$(tr '\n' ';' <"$work/log")', expected '$1'"
+  calls=$(tr '\n' ';' <"$work/log")
+  [ "$calls" = "$1" ] || fail "called '$calls', expected '$1'"
   : >"$work/log"
 }
 
@@ -123,14 +124,16 @@ says err 'bad.yaml:14:11: error: contact.mue: unknown key; did you mean'
 says err "bad.yaml:15:19: error: mhb.frequency[0]: '90 Hx': unknown unit 'Hx'; expected Hz"
 says err '2 errors'
 [ "$(tail -n 1 "$work/err")" = '2 errors' ] || fail 'something is said after the errors'
-run 4 check missing.yaml; says err 'shroudhb: error: missing.yaml: cannot be opened: No such file or directory'
+run 4 check missing.yaml
+says err 'shroudhb: error: missing.yaml: cannot be opened: No such file or directory'
 called ''
 
 # run: the stages in turn
 run 0 run good.yaml; silent err
 called 'mesh good.yaml;modal good.yaml;mhb good.yaml;post good.yaml;'
 run 0 run --quiet --force good.yaml; silent out; silent err
-called 'mesh --quiet --force good.yaml;modal --quiet --force good.yaml;mhb --quiet --force good.yaml;post --quiet --force good.yaml;'
+forced='--quiet --force good.yaml'
+called "mesh $forced;modal $forced;mhb $forced;post $forced;"
 run 0 run brought.yaml
 called 'mhb brought.yaml;post brought.yaml;'
 run 0 run 'a b/case.yaml'
@@ -159,7 +162,8 @@ run 2 modal good.yaml
 stage modal 'exit 4'
 run 4 run good.yaml
 stage modal 'kill -9 $$'
-run 4 run good.yaml; says err 'shroudhb: error: shroudhb-modal was killed by signal 9 (Killed); out of memory?'
+run 4 run good.yaml
+says err 'shroudhb: error: shroudhb-modal was killed by signal 9 (Killed); out of memory?'
 stage modal 'exit 0'
 stage mhb 'exit 3'
 : >"$work/log"
@@ -169,7 +173,8 @@ stage post 'exit 4'
 run 4 run good.yaml
 stage post 'exit 0'
 rm "$work/bin/shroudhb-mhb"
-(PATH=/usr/bin:/bin; run 4 run good.yaml; says err 'shroudhb-mhb: cannot be started'; exit $failed) || failed=$((failed + 1))
+(PATH=/usr/bin:/bin; run 4 run good.yaml; says err 'shroudhb-mhb: cannot be started'
+  exit $failed) || failed=$((failed + 1))
 : >"$work/log"
 
 # results are named
@@ -179,8 +184,9 @@ run 0 run good.yaml; says out 'report    good.html'; says out 'curves    good.cs
 rm "$work/dir/good.html" "$work/dir/good.csv"
 : >"$work/log"
 
-# a signal to the front command reaches the stage, which ends in its own way; no further stage is started
-stage mhb "trap 'echo caught >>\"$work/log\"; exit 130' TERM; echo ready >>'$work/log'; while :; do sleep 0.05; done"
+# a signal to the front command reaches the stage, which ends in its own way; no other stage starts
+stage mhb "trap 'echo caught >>\"$work/log\"; exit 130' TERM; echo ready >>'$work/log'
+while :; do sleep 0.05; done"
 (cd "$work/dir" && exec "$work/bin/shroudhb" run good.yaml) >"$work/out" 2>"$work/err" &
 pid=$!
 for _ in $(seq 100); do

@@ -1,4 +1,4 @@
-/* The sampled period and its picture: shares, work, what is drawn, and that every motion gives a sound file. */
+/* The sampled period and its picture: shares, work, contents, and a valid file for every motion. */
 #include <ctype.h>
 #include <math.h>
 #include <setjmp.h>
@@ -22,12 +22,12 @@ typedef struct {
   const char *name;
   mhb_law     law;
   double      motion[3][NB];
-  int         curves; /* panels, and friction in time */
+  int         curves; /* panels, including friction over time */
 } scene;
 
 typedef struct {
   mhb_contact_info info;
-  contact_period   period;
+  sampled_period   period;
   post_buffer      svg;
 } picture;
 
@@ -93,17 +93,18 @@ static void draw(const scene *s, picture *p) {
   mhb_contact_evaluator *contact;
   assert_int_equal(mhb_contact_evaluator_create(M, M, 1e-10, &contact), SHB_OK);
   mhb_contact_force(contact, &s->law, &s->motion[0][0], force, NULL, &p->info);
-  assert_int_equal(period_create(contact, &s->law, M, &s->motion[0][0], &p->info, &p->period),
-                   SHB_OK);
+  assert_int_equal(
+      sampled_period_create(contact, &s->law, M, &s->motion[0][0], &p->info, &p->period), SHB_OK);
   p->svg = (post_buffer){0};
-  loops_draw(&(loops_view){.name = s->name, .law = &s->law, .info = &p->info, .period = &p->period},
-             &p->svg);
+  hysteresis_draw(
+      &(hysteresis_view){.name = s->name, .law = &s->law, .info = &p->info, .period = &p->period},
+      &p->svg);
   assert_false(p->svg.failed);
   mhb_contact_evaluator_destroy(contact);
 }
 
 static void clear(picture *p) {
-  period_free(&p->period);
+  sampled_period_free(&p->period);
   post_buffer_free(&p->svg);
 }
 
@@ -113,7 +114,7 @@ static int count(const char *text, const char *word) {
   return n;
 }
 
-/* Every piece of the period in one state, for as long as the law says; the transitions among the samples. */
+/* The pieces of the period in one state last as long as the law says; transitions are samples. */
 static void states_fill_the_period(void **state) {
   (void)state;
   for (int i = 0; i < SCENES; i++) {
@@ -139,7 +140,7 @@ static void states_fill_the_period(void **state) {
   }
 }
 
-/* Loops enclose the dissipation; so does, to second order, the polygon that is drawn. */
+/* The loops enclose the dissipation; the polygon drawn does so to second order. */
 static void loops_enclose_the_dissipation(void **state) {
   (void)state;
   for (int i = 0; i < SCENES; i++) {
@@ -161,12 +162,12 @@ static void loops_enclose_the_dissipation(void **state) {
       if (!(fabs(area[k] - p.period.work[k]) <= 2e-5 * size))
         fail_msg("%s: loop %d encloses %.9g J, not %.9g", s.name, k, area[k], p.period.work[k]);
     if (p.info.undetermined && s.law.ku[1] == 0)
-      assert_true(p.period.work[0] == 0 && p.period.work[1] == 0); /* a line encloses nothing */
+      assert_true(p.period.work[0] == 0 && p.period.work[1] == 0); /* a line has no area */
     clear(&p);
   }
 }
 
-/* One path a state and curve, and one in the legend. */
+/* Each state of a curve is one path; the legend has one entry. */
 static void every_state_is_drawn_once_a_curve(void **state) {
   (void)state;
   static const char *const word[PERIOD_STATES] = {
@@ -183,7 +184,7 @@ static void every_state_is_drawn_once_a_curve(void **state) {
   }
 }
 
-/* The share that stands in the legend, percent. */
+/* The percentage in the legend. */
 static double legend(const char *svg, const char *name) {
   char word[32];
   snprintf(word, sizeof word, "y=\"111.5\">%s ", name);
@@ -213,7 +214,7 @@ static void figures_are_those_of_the_law(void **state) {
   clear(&p);
 }
 
-/* Tags nest and close, attributes are quoted, & begins an entity, and no number is broken. */
+/* Tags nest and close, attributes are quoted, & begins an entity, and every number is complete. */
 static void check_markup(const char *name, const char *text) {
   char        open[64][32];
   int         depth = 0;

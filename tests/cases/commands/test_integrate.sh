@@ -1,5 +1,5 @@
 #!/bin/sh
-# shroudhb-integrate as a program: what it writes, when it runs again, what the report makes of it, what it refuses.
+# shroudhb-integrate as a program: its file, repeated runs, its part of the report, its errors.
 # usage: test_integrate.sh FOLDER_OF_PROGRAMS SCENE PYTHON
 set -u
 bin=$1
@@ -45,14 +45,15 @@ add() { # LINES under integrate:, in place of those before
   printf 'integrate:\n%s\n' "$1" >>case.yaml
 }
 
-run 2 integrate case.yaml; says err 'three_degree.response.h5: not there to start on; run `shroudhb mhb'; silent out
+run 2 integrate case.yaml; silent out
+says err 'three_degree.response.h5: not there to start on; run `shroudhb mhb'
 run 0 mhb case.yaml
 run 0 integrate case.yaml; says out '84 points'; silent err
 stamp=$(cksum three_degree.integration.h5)
 run 0 integrate case.yaml; silent out; silent err
 [ "$stamp" = "$(cksum three_degree.integration.h5)" ] || fail 'written again though up to date'
 run 0 post case.yaml; silent err
-[ "$(grep -c '<circle class="witness c' three_degree.svg)" -eq 84 ] || fail 'not 84 dots'
+[ "$(grep -c '<circle class="integration c' three_degree.svg)" -eq 84 ] || fail 'not 84 dots'
 [ "$(grep -c ',integration,' three_degree.csv)" -eq 84 ] || fail 'not 84 rows'
 
 # a balance computed anew, with its points left, and the other way round
@@ -61,13 +62,15 @@ add '  frequencies: [0.15 Hz, 0.2 Hz]
   start: state
   direction: down
   tolerance: 1e-7'
-run 0 post case.yaml; says err 'three_degree.integration.h5 was made from other settings and is left out'
-grep -q '<circle class="witness c' three_degree.svg && fail 'old points are drawn'
+run 0 post case.yaml
+says err 'three_degree.integration.h5 was made from other settings and is left out'
+grep -q '<circle class="integration c' three_degree.svg && fail 'old points are drawn'
 run 0 integrate --quiet case.yaml; silent out; silent err
 run 0 post case.yaml
 [ "$(grep -c ',integration,' three_degree.csv)" -eq 8 ] || fail 'not 8 rows'
 
-add '  frequencies: [0.2 Hz, 0.15 Hz]'; run 2 integrate case.yaml; says err 'frequencies must ascend'
+add '  frequencies: [0.2 Hz, 0.15 Hz]'
+run 2 integrate case.yaml; says err 'frequencies must ascend'
 add '  frequencies: 0'; run 2 integrate case.yaml; says err '0 frequencies; there may be 1 to'
 add '  frequencies: 2.5'; run 2 integrate case.yaml; says err 'integrate.frequencies'
 add '  start: somewhere'; run 2 integrate case.yaml; says err 'balance, rest, state'

@@ -1,4 +1,4 @@
-/* shroudhb converge on a model of three degrees: what it says against what the library gives. */
+/* shroudhb converge on a model of three degrees of freedom, against results of the library. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -47,7 +47,7 @@ static void read_said(void) {
   fclose(file);
 }
 
-/* Exit code; what is said on both channels goes into said. */
+/* Exit code; said holds the text of both channels. */
 static int converge(const char *words) {
   char command[8 * SCRATCH_PATH];
   snprintf(command, sizeof command, "cd '%s' && '%s' converge %s >said 2>&1", folder, SHROUDHB,
@@ -112,7 +112,8 @@ static const post_rung *rung_of(post_ladder ladder, const char *name) {
   return NULL;
 }
 
-/* Coarse to fine, but for noise where two are alike; the last is 0 by construction and is the only reference. */
+/* Errors fall from coarse to fine, up to noise between similar rungs. The last one is 0 because it
+ * is the reference. */
 static void errors_fall(void **state) {
   (void)state;
   static const post_ladder falling[] = {POST_LADDER_HARMONICS, POST_LADDER_ACCURACY,
@@ -143,7 +144,7 @@ static void errors_fall(void **state) {
   assert_true(rung_of(POST_LADDER_HARMONICS, "5")->unknowns == 33);
 }
 
-/* What the ladder says of each rung, time integration says too, though it knows nothing of harmonics. */
+/* The errors of the ladder agree with those against time integration, which uses no harmonics. */
 static void time_integration_agrees(void **state) {
   (void)state;
   static const char *const name[] = {"1", "3", "5", "7"};
@@ -157,7 +158,7 @@ static void time_integration_agrees(void **state) {
   assert_true(isnan(rung_of(POST_LADDER_ACCURACY, "fast")->integration));
 }
 
-/* A curve of its own, straight from the library. */
+/* Curves computed by the library. */
 typedef struct {
   mhb_response *response;
   double       *amplitude[2];
@@ -166,7 +167,7 @@ typedef struct {
 static curves sweep(int harmonics, double tolerance) {
   curves       c;
   modal_model  model;
-  post_output  output = {POST_PROBE, 0, POST_WHOLE};
+  post_output  output = {POST_PLACE_PROBE, 0, POST_WHOLE};
   mhb_settings s      = {.to_ground    = true,
                          .blades       = 1,
                          .mu           = .4,
@@ -186,7 +187,7 @@ static curves sweep(int harmonics, double tolerance) {
     fail_msg("%s", shb_message());
   for (int i = 0; i < 2; i++)
     assert_int_equal(post_series(c.response, &c.response->branch[2 + i], output,
-                                 POST_FIRST_HARMONIC, &c.amplitude[i]),
+                                 POST_QUANTITY_FIRST_HARMONIC, &c.amplitude[i]),
                      SHB_OK);
   modal_model_free(&model);
   return c;
@@ -203,23 +204,23 @@ static post_peak highest(const curves *c, int i) {
   int               n;
   assert_int_equal(post_find_peaks(b->n_points, b->frequency, c->amplitude[i], &peaks, &n), SHB_OK);
   assert_true(n > 0);
-  post_peak top = peaks[post_highest(n, peaks)];
+  post_peak top = peaks[post_highest_peak(n, peaks)];
   free(peaks);
   return top;
 }
 
-/* From every point of one to the polyline of the other. */
+/* Largest distance of the points of one curve from the polyline of the other. */
 static double one_way(const curves *from, const curves *to, int i, double unit) {
   const mhb_branch *b = &from->response->branch[2 + i], *o = &to->response->branch[2 + i];
   post_polyline     line = {o->n_points, o->frequency, to->amplitude[i]};
   double            most = 0;
   for (int p = 0; p < b->n_points; p++)
-    most = fmax(most, post_distance((double[2]){b->frequency[p], from->amplitude[i][p]}, &line,
-                                    unit, NULL));
+    most = fmax(most, post_curve_distance((double[2]){b->frequency[p], from->amplitude[i][p]},
+                                          &line, unit, NULL));
   return most;
 }
 
-/* Peaks by parabola, 1e-3 at worst; curves by their polylines, to the sag. */
+/* Peaks by a parabola, to 1e-3 at worst; curves by their polylines, to the sag. */
 static void errors_are_those_of_the_curves(void **state) {
   (void)state;
   static const int   m[]    = {1, 3};
@@ -252,7 +253,7 @@ static int count(const char *text, const char *word) {
   return n;
 }
 
-/* The rung named is the one of fewest seconds within the tolerance. */
+/* The named rung is the one of the least seconds within the tolerance. */
 static void the_cheapest_is_named(void **state) {
   (void)state;
   int best = -1;
@@ -274,7 +275,7 @@ static void the_cheapest_is_named(void **state) {
       strstr(said, "warning: a ladder has no rung below its finest that meets the tolerance"));
 }
 
-/* Again: the same rows to the last digit, as nothing is computed anew; --force does. */
+/* A second run prints the same rows to the last digit without computing; --force computes. */
 static void results_are_kept(void **state) {
   (void)state;
   post_convergence before = result;
@@ -287,7 +288,7 @@ static void results_are_kept(void **state) {
     assert_true(result.rung[i].curve == before.rung[i].curve);
   }
   post_convergence_free(&before);
-  /* a rung whose file is lost is made again, and compared again */
+  /* a rung without its file is computed and compared again */
   char path[2 * SCRATCH_PATH];
   snprintf(path, sizeof path, "%s/three.converge/h1_a1e-08_m3.response.h5", folder);
   double error = rung_of(POST_LADDER_HARMONICS, "1")->curve;
@@ -298,7 +299,7 @@ static void results_are_kept(void **state) {
   assert_true(fabs(rung_of(POST_LADDER_HARMONICS, "1")->curve / error - 1) < 1e-6);
 }
 
-/* The section is in the report as long as the case is the one that was studied. */
+/* The report has the section while the case is the one that was studied. */
 static void the_report_shows_it(void **state) {
   (void)state;
   assert_int_equal(other_command("run --quiet three.yaml"), 0);
@@ -312,7 +313,7 @@ static void the_report_shows_it(void **state) {
   write_case("three.yaml", ".3, -.2", "", "");
 }
 
-/* Exit codes by the tolerance; output and preloads from the case. */
+/* Exit codes by the tolerance; output and preloads from the case file. */
 static void keys_are_heeded(void **state) {
   (void)state;
   write_case("three.yaml", ".3, -.2", "", "converge: {tolerance: 90 %}\n");
@@ -326,7 +327,7 @@ static void keys_are_heeded(void **state) {
   assert_non_null(strstr(said, "accuracy: none below the finest meets 1e-10 %"));
   assert_non_null(strstr(said, "The ladder of harmonics ends at 5: 7 would take about"));
   assert_non_null(strstr(said, "(converge.seconds is 1e-06)"));
-  /* a study that does not come about leaves no folder */
+  /* a study that fails leaves no folder */
   write_case("hollow.yaml", ".3, -.2", "", "converge: {output: nobody}\n");
   char path[2 * SCRATCH_PATH];
   snprintf(path, sizeof path, "sed -i 's/name: three/name: hollow/' '%s/hollow.yaml'", folder);
@@ -336,7 +337,7 @@ static void keys_are_heeded(void **state) {
   assert_true(access(path, F_OK) != 0);
 }
 
-/* Rungs that were finished are reported; those under way and to come are not. */
+/* Finished rungs are reported; running and later ones are not. */
 static void interrupted(void **state) {
   (void)state;
   char command[8 * SCRATCH_PATH];

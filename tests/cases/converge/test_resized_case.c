@@ -1,5 +1,7 @@
-/* Another mesh size in the text of a case: two numbers change and nothing else. */
+/* Another mesh size in the text of a case: two numbers change and the rest stays. */
 #include "cases/converge/resized_case.h"
+#include "cases/schema/case.h"
+#include "cases/schema/stage_settings.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -35,14 +37,14 @@ static void read(const char *path, case_file *file) {
   if (case_read(path, STAGES, stderr, file) != SHB_OK) fail_msg("%s: %s", path, shb_message());
 }
 
-/* sizes: as the text has them, in m */
+/* sizes: as in the text, m */
 static void check(char *text, const double sizes[2], double factor) {
   case_file a, b;
   scratch_write(folder, "from.yaml", text, strlen(text));
   free(text);
   read(from, &a);
   assert_true(a.blade.size == sizes[0] && a.blade.shroud_size == sizes[1]);
-  if (case_derive_mesh(&a, factor, to) != SHB_OK) fail_msg("%s", shb_message());
+  if (case_resize_mesh(&a, factor, to) != SHB_OK) fail_msg("%s", shb_message());
   read(to, &b);
   assert_true(fabs(b.blade.size / sizes[0] - factor) < 1e-8);
   assert_true(fabs(b.blade.shroud_size - factor * sizes[1]) < 1e-8 * sizes[0]);
@@ -79,9 +81,9 @@ static void what_cannot_be_replaced_is_told(void **state) {
   scratch_write(folder, "from.yaml", text, strlen(text));
   free(text);
   read(from, &a);
-  assert_int_equal(case_derive_mesh(&a, 2, to), SHB_ERR_INPUT);
+  assert_int_equal(case_resize_mesh(&a, 2, to), SHB_ERR_INPUT);
   assert_non_null(strstr(shb_message(), "from.yaml:9:11: the element size cannot be replaced"));
-  assert_int_equal(case_derive_mesh(&a, 2, "/no/such/folder/x.yaml") == SHB_OK, 0);
+  assert_int_equal(case_resize_mesh(&a, 2, "/no/such/folder/x.yaml") == SHB_OK, 0);
   case_free(&a);
 }
 

@@ -8,6 +8,8 @@
 
 #include <cmocka.h>
 
+#include "cases/parse/key_listing.h"
+#include "cases/parse/key_table.h"
 #include "cases/parse/keys.h"
 #include "cases/parse/units.h"
 #include "cases/parse/value.h"
@@ -19,12 +21,12 @@ static void rows_are_sound(void **state) {
     const case_key *key = &keys.key[i];
     char            why[CASE_WHY];
     double          value;
-    assert_ptr_equal(case_key_find(keys, key->path), key); /* no path twice */
+    assert_ptr_equal(case_key_find(keys, key->path), key); /* paths are unique */
     assert_true(key->help && key->help[0]);
     assert_true(key->least <= key->most);
     assert_true(key->stages != 0);
     assert_false(case_key_is_block(keys, key->path));
-    /* the unit is one that the reader knows */
+    /* the reader knows the unit */
     char text[32];
     snprintf(text, sizeof text, "1 %s", key->unit);
     if (!case_quantity(text, key->unit, &value, why)) fail_msg("%s: %s", key->path, why);

@@ -1,4 +1,4 @@
-/* Keys that are lists of mappings: materials by volumes, and what goes with them. */
+/* Keys that are lists of mappings: materials by volumes, loads, interfaces. */
 #include <complex.h>
 #include <math.h>
 #include <setjmp.h>
@@ -12,6 +12,8 @@
 #include <cmocka.h>
 
 #include "cases/schema/case.h"
+#include "cases/schema/case_paths.h"
+#include "cases/schema/stage_settings.h"
 #include "tests/support/scratch.h"
 
 enum { ALL = CASE_MESH | CASE_MODAL | CASE_MHB };
@@ -49,7 +51,7 @@ static shb_status judge(const char *text, char **said, case_file *file) {
   return status;
 }
 
-/* The case with one change; the first error, after the file's name, and their number. */
+/* One change of the case, the first error without the file's name, and the number of errors. */
 typedef struct {
   const char *from, *to, *says;
   int         n;

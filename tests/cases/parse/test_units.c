@@ -13,7 +13,7 @@
 
 static const double pi = 3.14159265358979323846;
 
-/* Powers of ten do not round: the value is the very double that the plain number gives. */
+/* Powers of ten do not round: the value is the double that the plain number gives. */
 static void powers_of_ten_are_exact(void **state) {
   (void)state;
   static const struct {

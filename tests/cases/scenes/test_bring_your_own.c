@@ -1,5 +1,6 @@
-/* The example cases/bring_your_own from end to end: h5py writes the modal file, shroudhb-mhb sweeps it, and the
- * peaks of its README come out. Arguments: python, the example's folder, shroudhb-mhb. Exit 77: no h5py here. */
+/* The example cases/bring_your_own. h5py writes the modal file, shroudhb-mhb sweeps it, and the
+ * peaks are those of its README. Arguments: python, the example's folder, shroudhb-mhb. Exit code
+ * 77: h5py is missing. */
 #include <math.h>
 
 #include "mhb/response/response.h"
@@ -7,8 +8,8 @@
 
 static const char *python, *example, *command;
 
-/* Peaks of the sliding motion u, first harmonic; time integration and harmonic balance of other programs agree on
- * them to 5e-5 (amplitude) and 2e-4 rad/s. */
+/* Peaks of the sliding motion u, first harmonic. Time integration and harmonic balance of other
+ * programs agree with them to 5e-5 (amplitude) and 2e-4 rad/s. */
 static const struct {
   double n0, amplitude, omega; /* N, m, rad/s */
 } peaks[] = {
@@ -23,7 +24,7 @@ static double amplitude_at(const mhb_response *response, const mhb_branch *b, in
   return cabs(b->motion[((size_t)point * 3 + 1) * (size_t)k + 1]);
 }
 
-/* A local maximum along the branch near enough, or not. */
+/* Has the branch a local maximum close enough to the peak? */
 static bool has_peak(const mhb_response *response, const mhb_branch *b, double amplitude,
                      double omega) {
   for (int i = 1; i + 1 < b->n_points; i++) {

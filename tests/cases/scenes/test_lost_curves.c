@@ -1,13 +1,14 @@
-/* Light damping, weak preload, large motion: scenes of the blade of cases/paper_fig8, of tetrahedra, whose curves were once lost. Where slip ends in
- * two directions at once the mean friction leaves with the root of the distance; the first solution at the low end of the range may
- * lie on a curve that closes or turns back, and not on the one that leads to the high end. */
+/* Light damping, weak preload, large motion: cases of the blade of cases/paper_fig8 with
+ * tetrahedra. Their curves are hard to trace. Where slip ends in two directions at once, the mean
+ * friction varies with the square root of the distance. The first solution at the low end may lie
+ * on a closed curve, or on one that turns back before the high end. */
 #include "tests/support/scene.h"
 
 #include <stdlib.h>
 
 typedef struct {
   const char *what, *psi, *ku, *kv, *n0, *range;
-  const char *aside; /* how the curve ends at which the range begins; NULL: it is the main one */
+  const char *aside; /* end of the curve at which the range begins; NULL: it is the main one */
 } lost;
 
 static char folder[SCRATCH_PATH], source[SCRATCH_PATH];
@@ -26,7 +27,7 @@ static int clean(void **state) {
   return 0;
 }
 
-/* The shipped scene with keys changed. */
+/* Writes the example with changed keys. */
 static void write_case(const lost *l) {
   char line[8 * SCRATCH_PATH];
   snprintf(line, sizeof line,
@@ -41,7 +42,7 @@ static void write_case(const lost *l) {
   if (system(line) != 0) fail_msg("failed: %s", line);
 }
 
-/* Every place of the range has a point beside it, on the branch that reaches both ends. */
+/* Every frequency of the range has a point near it on the branch that reaches both ends. */
 static void covers(const mhb_branch *b, double low, double high) {
   assert_true(b->complete);
   assert_string_equal(b->reason, "end of range");

@@ -1,4 +1,5 @@
-/* cases/paper_fig10: softening and the jump of the third mode; the numbers of its README. */
+/* cases/paper_fig10: softening and the jump of the third mode. The numbers are those of its
+ * README. */
 #include <complex.h>
 
 #include "cases/schema/case.h"
@@ -30,7 +31,8 @@ static int clean(void **state) {
   return 0;
 }
 
-/* The two folds: [0] where a sweep upwards falls off the lower branch, [1] where one downwards falls off the upper. */
+/* The two folds. A sweep upwards leaves the lower branch at [0]; one downwards leaves the upper at
+ * [1]. */
 static void jumps(const mhb_response *response, double frequency[2], double amplitude[2],
                   int point[2]) {
   const mhb_branch *b = scene_branch(response, MHB_BRANCH_NONLINEAR, 160);
@@ -43,7 +45,7 @@ static void jumps(const mhb_response *response, double frequency[2], double ampl
   }
 }
 
-/* Three solutions between the folds; the curve leans to lower frequencies. */
+/* There are three solutions between the folds, and the curve bends to lower frequencies. */
 static void the_curve_leans_left_and_folds(void **state) {
   (void)state;
   double f[2], a[2];
@@ -66,9 +68,10 @@ static void the_curve_leans_left_and_folds(void **state) {
   assert_within(top.frequency, 599.3, 2e-3);
 }
 
-/* By multipliers: lower branch stable, middle one not (a multiplier beyond +1), upper one stable next to its fold and near the
- * stuck resonance; between them a pair of multipliers leaves the circle for some 2.5 % of the frequency. (Next to the
- * fold three harmonics are not enough to tell: their motion has a multiplier of 1.006 up to .1 % above it.) */
+/* Stability by Floquet multipliers. The lower branch is stable. The middle branch is unstable by a
+ * multiplier beyond +1. The upper branch is stable next to its fold and near the stuck resonance.
+ * Between them a pair of multipliers leaves the unit circle over some 2.5 % of the frequency. Up to
+ * 0.1 % above the fold three harmonics do not suffice: their motion has a multiplier of 1.006. */
 static void the_middle_is_unstable(void **state) {
   (void)state;
   const mhb_branch *b = scene_branch(three, MHB_BRANCH_NONLINEAR, 160);
@@ -86,7 +89,7 @@ static void the_middle_is_unstable(void **state) {
   }
 }
 
-/* One harmonic finds another motion next to the jump: higher, and at lower frequencies. */
+/* One harmonic gives another motion next to the jump: larger, and at lower frequencies. */
 static void one_harmonic_overestimates(void **state) {
   (void)state;
   double f3[2], a3[2], f1[2], a1[2];
@@ -100,7 +103,7 @@ static void one_harmonic_overestimates(void **state) {
   assert_true(a1[1] > 1.05 * a3[1] && f1[1] < .98 * f3[1]);
 }
 
-/* Two blades half a period apart are the ring of forty at engine order twenty. */
+/* Two blades half a period apart equal the ring of forty at engine order twenty. */
 static void two_blades_are_the_ring(void **state) {
   (void)state;
   double f2[2], a2[2], f40[2], a40[2];
@@ -113,7 +116,7 @@ static void two_blades_are_the_ring(void **state) {
   }
 }
 
-/* Largest sum of squares of the modes' displacements so far. */
+/* Updates the largest sum of squares of the modal displacements. */
 static void watch_size(void *context, const mhb_integrator *g, double t0, double h) {
   double sum = 0, *most = context;
   (void)t0;
@@ -122,7 +125,7 @@ static void watch_size(void *context, const mhb_integrator *g, double t0, double
   *most = fmax(*most, sum);
 }
 
-/* Start on a point of the curve; the size of its motion over the first period. */
+/* Starts on a point of the curve. Returns the size of its motion over the first period. */
 static double start_on(mhb_integrator *g, const mhb_branch *b, int point, double *most) {
   const int      K = b->n_harmonics + 1;
   double complex force[3 * K];
@@ -135,8 +138,8 @@ static double start_on(mhb_integrator *g, const mhb_branch *b, int point, double
   return *most;
 }
 
-/* Sweep by steps of the frequency, the state carried over, until the size leaves [least, most] of that at the fold; the
- * frequency before and the one at which it left. */
+/* Sweeps the frequency in steps from state to state, until the size leaves [least, most] times its
+ * value at the fold. Returns the frequency before and the one at which it leaves. */
 static void sweep(mhb_integrator *g, double from, double step, const double bound[2], double *most,
                   double left[2]) {
   for (int i = 1; i <= 60; i++) {
@@ -159,8 +162,8 @@ static int point_near(const mhb_branch *b, int first, int last, double frequency
   return best;
 }
 
-/* Both blades are integrated, neither bound to the other's motion. Upwards the lower branch is left for the upper one,
- * downwards the upper for the lower, where the balance has its folds. */
+/* Both blades are integrated independently. Upwards the motion jumps from the lower to the upper
+ * branch, downwards back, at the folds of the balance. */
 static void sweeps_jump_at_the_folds(void **state) {
   (void)state;
   char              path[SCRATCH_PATH + 64];

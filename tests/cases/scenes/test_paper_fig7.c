@@ -1,4 +1,5 @@
-/* cases/paper_fig7: the harmonic balance beside time integration, shroud to ground; the numbers of its README. */
+/* cases/paper_fig7: harmonic balance and time integration, shroud to ground; the numbers of its
+ * README. */
 #include <complex.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,6 +8,7 @@
 #include "mhb/balance/newton.h"
 #include "mhb/integration/inertia_modes.h"
 #include "postproc/analysis/outputs.h"
+#include "tests/support/check.h"
 #include "tests/support/scene.h"
 
 enum { PRELOADS = 7, FREQUENCIES = 24 };
@@ -19,10 +21,6 @@ static mhb_response *three, *one, *time_domain;
 static case_file     file;
 static modal_model   model, structure;
 
-static void check(shb_status status) {
-  if (status != SHB_OK) fail_msg("%s", shb_message());
-}
-
 static int run_scene(void **state) {
   (void)state;
   char line[3 * SCRATCH_PATH];
@@ -32,12 +30,12 @@ static int run_scene(void **state) {
   snprintf(line, sizeof line, "'%s' integrate --quiet '%s/case.yaml'", SHROUDHB, folder);
   assert_int_equal(system(line), 0);
   snprintf(line, sizeof line, "%s/paper_fig7.integration.h5", folder);
-  check(mhb_response_read(line, &time_domain));
+  assert_ok(mhb_response_read(line, &time_domain));
   snprintf(line, sizeof line, "%s/case.yaml", folder);
-  check(case_read(line, CASE_MHB, stderr, &file));
+  assert_ok(case_read(line, CASE_MHB, stderr, &file));
   snprintf(line, sizeof line, "%s/paper_fig7.modal.h5", folder);
-  check(modal_model_read(line, &model));
-  check(mhb_inertia_modes(&model, &structure));
+  assert_ok(modal_model_read(line, &model));
+  assert_ok(mhb_inertia_modes(&model, &structure));
   return 0;
 }
 
@@ -53,7 +51,7 @@ static int clean(void **state) {
   return 0;
 }
 
-/* The balance of some harmonics at the frequencies of the dots. */
+/* A balance with a number of harmonics, solved at the frequencies of the dots. */
 typedef struct {
   mhb_settings settings;
   mhb_balance *residual;
@@ -63,9 +61,9 @@ typedef struct {
 static void create_balance(const modal_model *of, int harmonics, balance *b) {
   b->settings           = file.mhb;
   b->settings.harmonics = harmonics;
-  check(mhb_balance_create(of, &b->settings, &b->residual));
-  check(mhb_newton_create(b->residual->n, &b->newton));
-  check(mhb_newton_bind(b->newton, b->residual));
+  assert_ok(mhb_balance_create(of, &b->settings, &b->residual));
+  assert_ok(mhb_newton_create(b->residual->n, &b->newton));
+  assert_ok(mhb_newton_bind(b->newton, b->residual));
 }
 
 static void destroy_balance(balance *b) {
@@ -73,7 +71,8 @@ static void destroy_balance(balance *b) {
   mhb_balance_destroy(b->residual);
 }
 
-/* Its solution next to a dot: the probe's first harmonic, relative error of the amplitude and of the motion as a vector. */
+/* Compares its solution next to a dot: first harmonic of the probe, relative errors of the
+ * amplitude and of the motion as a vector. */
 static void compare(balance *b, const mhb_branch *dots, int p, double error[2]) {
   const int      m = b->residual->m, nb = 2 * m + 1, K = dots->n_harmonics + 1;
   double         x[3 * nb], off = 0, norm = 0;
@@ -100,11 +99,11 @@ static void compare(balance *b, const mhb_branch *dots, int p, double error[2]) 
     off += pow(cabs(probe[a] - there[a]), 2);
     norm += pow(cabs(there[a]), 2);
   }
-  error[0] = fabs(post_ellipse(3, probe, 1) / post_ellipse(3, there, 1) - 1);
+  error[0] = fabs(post_semi_major_axis(3, probe, 1) / post_semi_major_axis(3, there, 1) - 1);
   error[1] = sqrt(off / norm);
 }
 
-/* Worst errors over all dots of all preloads. */
+/* Largest errors over all dots of all preloads. */
 static void worst_over_dots(const modal_model *of, int harmonics, double worst[2]) {
   balance b;
   create_balance(of, harmonics, &b);
@@ -124,7 +123,8 @@ static void worst_over_dots(const modal_model *of, int harmonics, double worst[2
   destroy_balance(&b);
 }
 
-/* Seven curves of dots, the gap's and the two lowest preloads' with both branches where there are two. */
+/* There are seven curves of dots. That of the gap and those of the two lowest preloads have both
+ * branches where two exist. */
 static void there_are_dots_on_every_curve(void **state) {
   (void)state;
   assert_int_equal(time_domain->n_branches, PRELOADS);
@@ -153,8 +153,9 @@ static void fifteen_are_within_a_ten_thousandth(void **state) {
   assert_true(worst[0] < 1e-4);
 }
 
-/* Amplitudes; the motion as a vector, whose phase is sensitive next to a jump, within 5e-5. Of one structure: time integration
- * has residual modes where the balance has residual inertia. */
+/* Amplitudes agree, and the motion as a vector within 5e-5; its phase is sensitive next to a jump.
+ * Both use one structure: time integration has residual modes where the balance has residual
+ * inertia. */
 static void thirty_one_are_the_integration(void **state) {
   (void)state;
   double worst[2];
@@ -162,7 +163,7 @@ static void thirty_one_are_the_integration(void **state) {
   assert_true(worst[0] < 1e-5 && worst[1] < 5e-5);
 }
 
-/* The linear ends, open and stuck. */
+/* The linear limits, open and stuck. */
 static void preloads_go_from_separate_to_stuck(void **state) {
   (void)state;
   for (int stuck = 0; stuck < 2; stuck++) {
@@ -174,7 +175,7 @@ static void preloads_go_from_separate_to_stuck(void **state) {
   }
 }
 
-/* Peaks between: the least at 80 N. */
+/* Peaks between the limits; the lowest at 80 N. */
 static void peaks_against_preload(void **state) {
   (void)state;
   static const double peak[PRELOADS - 2][2] = {{2.440e-3, 121.19},
@@ -191,7 +192,8 @@ static void peaks_against_preload(void **state) {
   }
 }
 
-/* With the gap: the resonance leans to higher frequencies and folds; a dot on the peak tells what one harmonic is worth. */
+/* With the gap the resonance bends to higher frequencies and folds. A dot at the peak shows the
+ * error of one harmonic. */
 static void the_gap_hardens_and_jumps(void **state) {
   (void)state;
   const mhb_branch *b = scene_branch(three, MHB_BRANCH_NONLINEAR, -40), *dots = NULL;

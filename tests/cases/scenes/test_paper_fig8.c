@@ -6,7 +6,8 @@ enum { MODES = 3 };
 static char          folder[SCRATCH_PATH];
 static mhb_response *response;
 
-/* Ranges that hold one resonance each, Hz, and what is found there: frequency over the first open mode's, m. */
+/* Ranges with one resonance each, Hz, and the results: frequency over that of the first open mode,
+ * and amplitude, m. */
 static const struct {
   double from, to, ratio, amplitude;
 } open_mode[MODES]  = {{80, 200, 1, 3.3930e-3},
@@ -52,7 +53,8 @@ static void three_modes_shift_and_fall(void **state) {
   }
 }
 
-/* A gap wider than any motion, and a preload beyond any slip: the limits, point by point linear. */
+/* The limits are those of a gap wider than any motion, and of a preload beyond slip: point by
+ * point. */
 static void widest_gap_and_highest_preload_are_the_limits(void **state) {
   (void)state;
   static const double n0[2] = {-30e3, 4e3};
@@ -74,7 +76,8 @@ static void widest_gap_and_highest_preload_are_the_limits(void **state) {
   }
 }
 
-/* Peaks near the stuck resonances against preload: friction lowers them, more preload raises them again. */
+/* Peaks near the stuck resonances against preload: friction lowers them, more preload raises
+ * them. */
 static void friction_lowers_the_peaks(void **state) {
   (void)state;
   static const double n0[3]          = {30, 100, 300};

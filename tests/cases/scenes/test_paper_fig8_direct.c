@@ -1,10 +1,13 @@
-/* cases/paper_fig8: the linear limits against direct solutions of the whole finite-element model, without modes.
+/* cases/paper_fig8: the linear limits against direct solutions of the full finite-element model.
  *
- * At omega, with the blade's K and M (free dofs), the neighbour coupled by springs and one phase from blade to blade,
+ * At omega, with K and M of the blade (free dofs), the neighbour coupled by springs and one phase
+ * from blade to blade,
  *   (K - omega^2 M + j omega C + B^H diag(kv, ku, ku) B) x = f,   B = D_right - exp(-j phi) D_left
- * D: mean displacement of a contact face along v, u, w, which psi and the face's place fix. The damping of the case is modal, so
- * C = sum 2 zeta w_i (M phi_i)(M phi_i)^T over the modes kept: they enter as the definition of C alone. C is dense: GMRES
- * applies it, preconditioned by a sparse LU of all the rest. Complex numbers as pairs: A = [Re -Im; Im Re]. */
+ * D is the mean displacement of a contact face along v, u, w, given by psi and the place of the
+ * face. The damping of the case is modal, so C is defined by the modes kept:
+ *   C = sum 2 zeta w_i (M phi_i)(M phi_i)^T
+ * C is dense. GMRES applies it, preconditioned by a sparse LU of the other terms. Complex numbers
+ * are pairs of real ones: A = [Re -Im; Im Re]. */
 #include <complex.h>
 #include <petscksp.h>
 #include <stdlib.h>
@@ -15,8 +18,9 @@
 #include "fem/element/surface.h"
 #include "modal/common/session.h"
 #include "modal/eigen/eigen.h"
-#include "tests/support/scene.h"
+#include "tests/support/check.h"
 #include "tests/support/read_mesh.h"
+#include "tests/support/scene.h"
 
 static const double two_pi = 6.28318530717958647692;
 
@@ -45,10 +49,6 @@ static void ok(PetscErrorCode code) {
   if (code != 0) fail_msg("PETSc error %d", (int)code);
 }
 
-static void check(shb_status status) {
-  if (status != SHB_OK) fail_msg("%s", shb_message());
-}
-
 /* Rows tangential, axial, radial at a point; the engine axis is x. */
 static void axes_at(const double at[3], double axes[3][3]) {
   double r = hypot(at[1], at[2]), z[3] = {0, at[1] / r, at[2] / r}, y[3] = {1, 0, 0};
@@ -59,8 +59,8 @@ static void axes_at(const double at[3], double axes[3][3]) {
   }
 }
 
-/* Area and centroid of a face's flat parallelograms; every node's share of the mean: the middles of the sides get a third of
- * each one, its corners take a twelfth away. */
+/* Area and centroid of a face of flat parallelograms, and every node's share of the mean. A midside
+ * node gets a third of an element's share; each corner subtracts a twelfth. */
 static double face_mean(const mesh_fe *mesh, const mesh_face_set *set, double centroid[3],
                         double *share) {
   double area = 0;
@@ -88,7 +88,7 @@ static double face_mean(const mesh_fe *mesh, const mesh_face_set *set, double ce
   return area;
 }
 
-/* Append one side's part of B: factor times the mean displacement along v, u, w. */
+/* Appends the part of one side to B: factor times the mean displacement along v, u, w. */
 static void add_side(body *w, mesh_set_id side, double complex factor) {
   double *share = calloc((size_t)w->mesh.n_nodes, sizeof *share), centroid[3], axes[3][3];
   double  psi   = w->file.mhb.psi;
@@ -125,10 +125,10 @@ static int create_body(void **state) {
   scratch_create(folder);
   scene_run(folder, SCENE, "case.yaml", "paper_fig8", &response);
   snprintf(path, sizeof path, "%s/case.yaml", folder);
-  check(case_read(path, CASE_MODAL | CASE_MHB, stderr, &whole.file));
+  assert_ok(case_read(path, CASE_MODAL | CASE_MHB, stderr, &whole.file));
   snprintf(path, sizeof path, "%s/paper_fig8.msh", folder);
-  check(read_mesh(path, &whole.mesh));
-  check(mesh_fe_orient(&whole.mesh, whole.file.axis));
+  assert_ok(read_mesh(path, &whole.mesh));
+  assert_ok(mesh_fe_orient(&whole.mesh, whole.file.axis));
   ok(fem_system_create(PETSC_COMM_SELF, &whole.mesh, &whole.file.material, FEM_STANDARD,
                        &whole.system));
   ok(MatConvert(whole.system.K, MATSEQAIJ, MAT_INITIAL_MATRIX, &whole.K));
@@ -212,7 +212,7 @@ static Mat undamped(const body *w, double omega, bool stuck) {
   return A;
 }
 
-/* The undamped matrix and, around it, damping. */
+/* The undamped matrix, and the matrix with damping. */
 typedef struct {
   const body *w;
   double      omega;
@@ -254,7 +254,7 @@ static PetscErrorCode apply(Mat shell, Vec x, Vec y) {
 static Vec load_vector(const body *w, Mat A) {
   Vec     f;
   double *force = malloc(3 * (size_t)w->mesh.n_nodes * sizeof *force);
-  check(fem_load_pattern(&w->mesh, &w->file.load, w->file.probe[0].at, force));
+  assert_ok(fem_load_pattern(&w->mesh, &w->file.load, w->file.probe[0].at, force));
   ok(MatCreateVecs(A, &f, NULL));
   for (int i = 0; i < 3 * w->mesh.n_nodes; i++)
     if (w->system.row[i / 3] >= 0)
@@ -332,8 +332,9 @@ static int nearest_point(const mhb_branch *b, double frequency) {
   return best;
 }
 
-/* Below the first resonance, near the three, between and above them; all below a third of mode 20 (12.2 kHz). On the third
- * stuck resonance the contact's term of omega^4 is felt: without it 5e-6. */
+/* Frequencies below the first resonance, near the three, between and above them, all below a third
+ * of mode 20 (12.2 kHz). On the third stuck resonance the contact's term of omega^4 matters:
+ * without it the error is 5e-6. */
 static void limit_is_the_direct_solution(bool stuck, int n, const double *frequency,
                                          const double *bound) {
   const mhb_branch *b = scene_branch(response, stuck ? MHB_BRANCH_STUCK : MHB_BRANCH_OPEN, 0);

@@ -1,4 +1,5 @@
-/* cases/paper_fig9: the first resonance against preload, with three harmonics and with one; the numbers of its README. */
+/* cases/paper_fig9: the first resonance against preload with three harmonics and with one; numbers
+ * of its README. */
 #include <complex.h>
 #include <stdlib.h>
 
@@ -21,11 +22,12 @@ static const double track[PRELOADS][3] = {
     {400, 586.7e-6, 579.4e-6}, {1600, 1.3528e-3, 1.3528e-3},
 };
 
-/* Optimum preload and its bracket, N; least peak, m. */
+/* Optimum preload and its bracket, N; lowest peak, m. */
 static const double optimum[2][4] = {{13.71, 12, 20, 33.92e-6}, {10.89, 5, 12, 30.07e-6}};
 
-/* Internal resonances without preload: harmonic k at frequency (Hz) resonates in a mode of the blade whose contact is now open,
- * now stuck; the k-th part of its frequencies in these two limits, at nodal diameter 5 k, are the bounds. */
+/* Internal resonances without preload. Harmonic k at a frequency (Hz) resonates in a mode of the
+ * blade whose contact opens and sticks in turn. The bounds are 1/k of its frequencies in these two
+ * limits, at nodal diameter 5 k. */
 static const struct {
   int    k, mode;
   double frequency, open, stuck;
@@ -50,13 +52,13 @@ static int clean(void **state) {
   return 0;
 }
 
-/* The tracking curves: the peak is least between two preloads, a fortieth of that with the shrouds stuck. */
+/* The tracking curves: the peak is lowest between two preloads, at a fortieth of the stuck peak. */
 static void the_peak_has_an_optimum(void **state) {
   (void)state;
   const mhb_response *response[2] = {three, one};
   for (int j = 0; j < 2; j++) {
-    post_study *study;
-    assert_int_equal(post_study_create(response[j], &study), SHB_OK);
+    post_analysis *study;
+    assert_int_equal(post_analysis_create(response[j], &study), SHB_OK);
     const post_tracking *t = &study->tracking;
     assert_int_equal(t->n, PRELOADS);
     for (int i = 0; i < t->n; i++) {
@@ -69,7 +71,7 @@ static void the_peak_has_an_optimum(void **state) {
     assert_within(t->optimum_n0, optimum[j][0], .05);
     assert_true(t->bracket[0] == optimum[j][1] && t->bracket[1] == optimum[j][2]);
     assert_within(t->optimum_amplitude, optimum[j][3], .02);
-    post_study_destroy(study);
+    post_analysis_destroy(study);
   }
 }
 
@@ -88,7 +90,8 @@ static void modal_shares(mhb_receptance *r, const mhb_branch *b, int point, int 
   for (int i = 0; i < r->n_modes; i++) share[i] /= sum;
 }
 
-/* |det(I + R_k K)| of the stuck contact: least, between two resonances of the open blade, at one of the stuck blade. */
+/* |det(I + R_k K)| of the stuck contact. Between two resonances of the open blade it has its
+ * minimum at one of the stuck blade. */
 static double stuck_determinant(mhb_receptance *r, const mhb_settings *settings, int k,
                                 double frequency) {
   const double   spring[3] = {settings->kv, settings->ku[0], settings->ku[2]};
@@ -101,7 +104,7 @@ static double stuck_determinant(mhb_receptance *r, const mhb_settings *settings,
               a[0][2] * (a[1][0] * a[2][1] - a[1][1] * a[2][0]));
 }
 
-/* The point of the curve at which harmonic k has a maximum, nearest to a frequency. */
+/* The maximum of harmonic k on the curve, nearest to a frequency. */
 static int maximum_near(const mhb_branch *b, int k, double frequency) {
   int best = -1;
   for (int p = 1; p + 1 < b->n_points; p++) {
@@ -151,18 +154,19 @@ static void superharmonics_meet_higher_modes(void **state) {
   case_free(&file);
 }
 
-/* Without preload: one harmonic knows a single resonance; three have ripples of which each belongs to a superharmonic. */
+/* Without preload one harmonic gives a single resonance. Three give smaller peaks, each of which
+ * belongs to a superharmonic. */
 static void one_harmonic_has_one_peak(void **state) {
   (void)state;
   const mhb_response *response[2] = {one, three};
   int                 n[2];
   for (int j = 0; j < 2; j++) {
-    post_study *study;
-    assert_int_equal(post_study_create(response[j], &study), SHB_OK);
+    post_analysis *study;
+    assert_int_equal(post_analysis_create(response[j], &study), SHB_OK);
     for (int i = 0; i < response[j]->n_branches; i++)
       if (response[j]->branch[i].kind == MHB_BRANCH_NONLINEAR && response[j]->branch[i].n0[0] == 0)
         n[j] = study->curve[i].n_peaks;
-    post_study_destroy(study);
+    post_analysis_destroy(study);
   }
   print_message("peaks: %d with one harmonic, %d with three\n", n[0], n[1]);
   assert_int_equal(n[0], 1);

@@ -1,4 +1,5 @@
-/* A blade along an engine order, from end to end: at three speeds the solutions of the run-up are those of the blade at that speed alone. */
+/* A run-up along an engine order. At three speeds its solutions are those of the blade at that
+ * speed alone. */
 #include <complex.h>
 #include <math.h>
 #include <setjmp.h>
@@ -51,8 +52,8 @@ static void write_case(const char *name, const char *speed, const char *rest) {
   char text[4096], file[64];
   int  n = snprintf(text, sizeof text,
                     "name: %s\n%srotor: {blades: 40, speed: %s, axis: x}\n"
-                     "contact: {to: neighbour, psi: 35 deg, phi: 0 deg, points: 1, mu: 0.3, ku: 0.5 "
-                     "MN/m, kv: 0.8 MN/m, n0: 50 N}\n%s",
+                     "contact: {to: neighbour, psi: 35 deg, phi: 0 deg, points: 1, mu: 0.3, "
+                     "ku: 0.5 MN/m, kv: 0.8 MN/m, n0: 50 N}\n%s",
                     name, blade, speed, rest);
   snprintf(file, sizeof file, "%s.yaml", name);
   scratch_write(folder, file, text, (size_t)n);
@@ -75,7 +76,8 @@ static double apart(const double complex *a, const double complex *b, int n) {
   return size > 0 ? sqrt(sum / size) : sqrt(sum);
 }
 
-/* Motions of contact and probe at both ends of the preloads, on the limits and on the curve; the worst. */
+/* Largest difference of the motions of contact and probe: at both ends of the preloads, on the
+ * limits and on the curve. */
 static double distance(const mhb_response *a, const mhb_response *b) {
   const int n3    = 3 * (a->n_harmonics + 1);
   double    worst = 0;
@@ -89,7 +91,7 @@ static double distance(const mhb_response *a, const mhb_response *b) {
   return worst;
 }
 
-/* A fixed frequency and thereby speed, the preload followed. */
+/* At a fixed frequency, and thus speed, the preload is followed. */
 static void at_speed(const char *name, const char *speed, double rpm, const char *run_up) {
   char rest[256];
   snprintf(rest, sizeof rest,

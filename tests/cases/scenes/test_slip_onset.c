@@ -1,5 +1,6 @@
-/* The example's blade at 3000 rpm, weak preload: where slip begins the curve turns back and forth again; one of few harmonics does not. `harmonics: auto`
- * must not let go of the many too early. */
+/* The example's blade at 3000 rpm with weak preload. At the onset of slip the curve turns back and
+ * forth; with few harmonics it does not. `harmonics: auto` must keep the high number long
+ * enough. */
 #include "tests/support/scene.h"
 
 #include <stdlib.h>

@@ -1,4 +1,5 @@
-/* cases/snubber_blade: two contact interfaces from a solid to the report; the numbers of its README, and one of them that never closes. */
+/* cases/snubber_blade: two contact interfaces from a solid to the report; the numbers of its
+ * README. One case has an interface that never closes. */
 #include <stdlib.h>
 
 #include "tests/support/scene.h"
@@ -50,7 +51,7 @@ static void limits_and_peaks(void **state) {
   scene_is_sound(both);
 }
 
-/* Each interface has its own preload, and its own share of the work. */
+/* Each interface has its own preload and its own share of the work. */
 static void interfaces_are_told_apart(void **state) {
   (void)state;
   assert_int_equal(both->n_interfaces, 2);
@@ -82,7 +83,7 @@ static mhb_response *read_response(const char *name) {
   return response;
 }
 
-/* A snubber that is too far apart to touch: the curve of the shroud alone. */
+/* A snubber too far apart to touch gives the curve of the shroud alone. */
 static void an_interface_that_stays_open_is_not_there(void **state) {
   (void)state;
   derive("far", "/snubber,/s/n0: .*]/n0: -100 kN/");

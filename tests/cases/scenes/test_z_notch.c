@@ -1,4 +1,5 @@
-/* The shipped scene from end to end: the numbers of its README, re-runs that do nothing, memory. */
+/* The example from mesh to report: the numbers of its README, repeated runs without work,
+ * memory. */
 #include <complex.h>
 #include <math.h>
 #include <setjmp.h>
@@ -92,14 +93,15 @@ static void peaks_against_preload_have_an_optimum(void **state) {
   }
 }
 
-/* Frequencies of the folds; how many. */
+/* Frequencies of the folds, and their number. */
 static int folds(const mhb_branch *b, double list[8]) {
   int point[8], n = scene_folds(b, 8, point);
   for (int i = 0; i < n; i++) list[i] = b->frequency[point[i]];
   return n;
 }
 
-/* Preload: the upper fold is passed first and the lower lies below it. Gap: the peak leans right. */
+/* With preload the upper fold is passed first and the lower lies below it. With a gap the curve
+ * bends to the right. */
 static void softening_and_hardening_jump(void **state) {
   (void)state;
   double list[8];
@@ -126,7 +128,8 @@ static void every_point_balances(void **state) {
   }
 }
 
-/* Forty blades: a few points of each curve by multipliers, and all where nothing slips; these are stable. */
+/* On a ring of forty blades a few points of each curve have multipliers, and all points without
+ * slip; these are stable. */
 static void some_points_are_judged(void **state) {
   (void)state;
   int slipping = 0;
@@ -162,7 +165,7 @@ static void results_are_there_and_a_second_run_leaves_them(void **state) {
   }
 }
 
-/* A single stage warns when the file it reads was made from another case. */
+/* A single stage warns if its input file was made from another case. */
 static void a_stale_file_is_told(void **state) {
   (void)state;
   char command[8 * SCRATCH_PATH];

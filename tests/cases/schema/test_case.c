@@ -13,6 +13,8 @@
 #include <cmocka.h>
 
 #include "cases/schema/case.h"
+#include "cases/schema/case_paths.h"
+#include "cases/schema/stage_settings.h"
 #include "tests/support/scratch.h"
 
 enum { ALL = CASE_MESH | CASE_MODAL | CASE_MHB | CASE_POST };
@@ -23,7 +25,7 @@ static bool near(double a, double b) {
   return fabs(a - b) <= 1e-15 * fabs(b);
 }
 
-/* Reads text as folder/name; status and what was printed (malloc'ed). */
+/* Reads text as folder/name; returns the status and the printed text (malloc'ed). */
 static shb_status read_text(const char *folder, const char *name, const char *text, case_file *file,
                             char **said) {
   char   path[2 * SCRATCH_PATH];
@@ -93,7 +95,7 @@ static void every_value_arrives(void **state) {
   scratch_remove(folder);
 }
 
-/* The tolerance belongs to auto: 1e-4 unless given, and nothing where the harmonics are. */
+/* The tolerance belongs to auto: 1e-4 by default, and nothing with a number of harmonics. */
 static void automatic_harmonics(void **state) {
   (void)state;
   static const struct {
@@ -191,7 +193,7 @@ static void a_modal_file_needs_little(void **state) {
   scratch_remove(folder);
 }
 
-/* A stage asks for its own keys only, but what is there must be right. */
+/* A stage requires its own keys only, but all keys given must be valid. */
 static void stages_ask_for_their_own(void **state) {
   (void)state;
   static const char mesh_only[] =
@@ -207,7 +209,8 @@ static void stages_ask_for_their_own(void **state) {
   snprintf(path, sizeof path, "%s/case.yaml", folder);
   case_file f;
   assert_int_equal(case_read(path, CASE_MESH, stderr, &f), SHB_OK);
-  assert_string_equal(f.name, strrchr(folder, '/') + 1); /* case.yaml is called after its folder */
+  /* case.yaml takes the name of its folder */
+  assert_string_equal(f.name, strrchr(folder, '/') + 1);
   case_free(&f);
   FILE *errors = open_memstream(&said, &size);
   assert_int_equal(case_read(path, CASE_MESH | CASE_MODAL, errors, &f), SHB_ERR_INPUT);
@@ -253,7 +256,7 @@ static void forces_and_tractions(void **state) {
   scratch_remove(folder);
 }
 
-/* The same file with the line ends, the mark and the end that other editors leave. */
+/* The same file with the line ends, byte order mark and file end of other editors. */
 static void damping_laws(void **state) {
   (void)state;
   static const struct {
@@ -278,7 +281,7 @@ static void damping_laws(void **state) {
   scratch_remove(folder);
 }
 
-/* Single crystals: constants of the axes, and the stiffness that they make; without G nothing changes. */
+/* Single crystals: constants along the axes and their stiffness. Without G nothing changes. */
 static void materials_with_axes(void **state) {
   (void)state;
   char folder[SCRATCH_PATH], *said, *settings;
@@ -336,7 +339,7 @@ static void line_ends_and_marks(void **state) {
   scratch_remove(folder);
 }
 
-/* Cut anywhere, it is read or refused, never more. */
+/* A file cut anywhere is read or refused, and nothing worse. */
 static void truncated_anywhere(void **state) {
   (void)state;
   char folder[SCRATCH_PATH], path[2 * SCRATCH_PATH], *text = scratch_case(NULL, NULL);
@@ -352,13 +355,13 @@ static void truncated_anywhere(void **state) {
     good += status == SHB_OK;
     if (status == SHB_OK) case_free(&f);
   }
-  assert_true(good > 0 && good < 150); /* only what ends after mhb.frequency can be good */
+  assert_true(good > 0 && good < 150); /* only files that end after mhb.frequency can be valid */
   fclose(nowhere);
   free(text);
   scratch_remove(folder);
 }
 
-/* Every byte replaced by characters that mean something in YAML. */
+/* Every byte is replaced by characters with a meaning in YAML. */
 static void one_byte_wrong(void **state) {
   (void)state;
   static const char bytes[] = "[]{}:,-\t\n'\"&*!#%|>?@`~\x01\x80\xFF";

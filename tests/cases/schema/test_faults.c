@@ -1,4 +1,4 @@
-/* What is wrong in a case file, and where: exact places and words. */
+/* Faults of a case file: exact places and words. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -17,7 +17,7 @@ enum { ALL = CASE_MESH | CASE_MODAL | CASE_MHB | CASE_POST };
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
 
-/* Status of a file of n bytes; what was said (malloc'ed), without the folder. */
+/* Status of a file of n bytes, and the printed text (malloc'ed) without the folder. */
 static shb_status judge(const char *text, size_t n, char **said) {
   char folder[SCRATCH_PATH], old[SCRATCH_PATH];
   scratch_create(folder);
@@ -35,7 +35,7 @@ static shb_status judge(const char *text, size_t n, char **said) {
   return status;
 }
 
-/* One change to the whole case, the first line that is then printed, and how many errors there are. */
+/* One change of the case, the first line printed, and the number of errors. */
 typedef struct {
   const char *from, *to, *says;
   int         n;
@@ -51,7 +51,7 @@ static void check_faults(const fault *rows, size_t n) {
     if (strncmp(said, rows[i].says, length) != 0 || said[length] != '\n')
       fail_msg("expected %s\nfound %s", rows[i].says, said);
     if (!strstr(said, ending)) fail_msg("expected %sfound %s", ending, said);
-    assert_string_equal(shb_message(), ""); /* nothing left to say twice */
+    assert_string_equal(shb_message(), ""); /* no text for a second message */
     free(said);
     free(text);
   }
@@ -386,7 +386,7 @@ static void keys_among_each_other(void **state) {
        "file or directory",
        2}};
   check_faults(rows, COUNT(rows));
-  /* a file that is not there is no fault of the case file */
+  /* a missing file is no fault of the case file */
   const char text[] =
       "modal: {file: no.h5}\n"
       "contact: {to: ground, mu: 0.3, ku: 1, kv: 1, n0: 1}\n"
@@ -399,7 +399,7 @@ static void keys_among_each_other(void **state) {
   free(said);
 }
 
-/* Keys that would not be read, each at its place. */
+/* Keys that would not be read, each with its place. */
 /* text with from replaced by to; frees text. */
 static char *change(char *text, const char *from, const char *to) {
   char  *at   = strstr(text, from);
@@ -411,11 +411,11 @@ static char *change(char *text, const char *from, const char *to) {
   return out;
 }
 
-/* A run-up needs the speeds that its frequencies go with. */
+/* A run-up needs the speeds that belong to its frequencies. */
 static void run_ups(void **state) {
   (void)state;
   static const struct {
-    const char *from, *to, *says; /* "": nothing is wrong */
+    const char *from, *to, *says; /* "": no fault */
   } rows[] = {
       {"  scale: 1.3", "  scale: 1.3", ""},
       {"frequency: [90 Hz, 0.12 kHz]", "frequency: [60 Hz, 0.12 kHz]",

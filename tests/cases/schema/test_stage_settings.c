@@ -10,6 +10,7 @@
 #include <cmocka.h>
 
 #include "cases/schema/case.h"
+#include "cases/schema/stage_settings.h"
 #include "tests/support/scratch.h"
 
 enum { ALL = CASE_MESH | CASE_MODAL | CASE_MHB | CASE_POST, N_STAGES = 3 };
@@ -98,7 +99,7 @@ static void only_what_matters(void **state) {
   for (int i = 0; i < N_STAGES; i++) free(before[i]);
 }
 
-/* Where and for what is searched counts only if it is. */
+/* The places and orders of the search count only if there is a search. */
 static void search_settings(void **state) {
   (void)state;
   static const char *const rows[][2] = {
@@ -148,7 +149,7 @@ static void the_text_itself(void **state) {
   for (int i = 0; i < N_STAGES; i++) free(settings[i]);
 }
 
-/* Where the program is started does not matter. */
+/* The working folder does not matter. */
 static void paths_are_those_of_the_case(void **state) {
   (void)state;
   static const char text[] =

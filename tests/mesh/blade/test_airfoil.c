@@ -64,7 +64,7 @@ static void sections_are_linear_between_and_beyond(void **state) {
   assert_near(mesh_airfoil_high_radius(&blade), 0.4 + 0.003, 1e-16);
 }
 
-static void assert_refused(const mesh_blade *blade, const char *words) {
+static void assert_airfoil_refused(const mesh_blade *blade, const char *words) {
   assert_int_equal(mesh_airfoil_check(blade), SHB_ERR_INPUT);
   assert_has(shb_message(), words);
 }
@@ -74,21 +74,21 @@ static void sections_that_are_none_are_refused(void **state) {
   mesh_blade blade = straight(0.005, 0);
   assert_ok(mesh_airfoil_check(&blade));
   blade.section[1].radius = 0.3;
-  assert_refused(&blade, "sections[1].radius: 300 mm is not above");
+  assert_airfoil_refused(&blade, "sections[1].radius: 300 mm is not above");
   blade                  = straight(0.005, 0);
   blade.section[0].chord = 0;
-  assert_refused(&blade, "sections[0].chord");
+  assert_airfoil_refused(&blade, "sections[0].chord");
   blade                      = straight(0.005, 0);
   blade.section[1].thickness = 0.03;
-  assert_refused(&blade, "sections[1].thickness: 30 mm");
+  assert_airfoil_refused(&blade, "sections[1].thickness: 30 mm");
   blade                   = straight(0.005, 0);
   blade.section[1].camber = -0.005;
-  assert_refused(&blade, "bends the other way");
+  assert_airfoil_refused(&blade, "bends the other way");
   blade                  = straight(0.005, 0);
   blade.section[0].twist = 1.5;
-  assert_refused(&blade, "between -80 and 80 deg");
+  assert_airfoil_refused(&blade, "between -80 and 80 deg");
   blade.n_sections = 1;
-  assert_refused(&blade, "2 to 16 are needed");
+  assert_airfoil_refused(&blade, "2 to 16 are needed");
 }
 
 int main(void) {

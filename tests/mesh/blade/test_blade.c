@@ -17,6 +17,7 @@
 #include "mesh/core/fe_mesh.h"
 #include "mesh/core/jacobian.h"
 #include "mesh/gmsh/provenance.h"
+#include "tests/support/check.h"
 #include "tests/support/read_mesh.h"
 
 static const double degree = M_PI / 180;
@@ -38,10 +39,6 @@ static int tear_down(void **state) {
   unlink(path);
   unlink(other);
   return rmdir(folder);
-}
-
-static void assert_near(double a, double b, double tolerance) {
-  if (!(fabs(a - b) <= tolerance)) fail_msg("%.17g is not %.17g within %g", a, b, tolerance);
 }
 
 static mesh_blade sample(void) {
@@ -427,7 +424,7 @@ static void few_inverted_elements_are_straightened(void **state) {
 }
 
 /* Status, and a one-line message with the words; no file is written. */
-static void assert_refused(const mesh_blade *blade, const char *words) {
+static void assert_blade_refused(const mesh_blade *blade, const char *words) {
   shb_status status = write_blade(blade);
   if (status != SHB_ERR_INPUT || !strstr(shb_message(), words))
     fail_msg("status %d, text '%s'; wanted bad input with '%s'", status, shb_message(), words);
@@ -438,9 +435,9 @@ static void assert_refused(const mesh_blade *blade, const char *words) {
 static void unresolved_blades_are_refused(void **state) {
   (void)state;
   mesh_blade blade = thin(0.001, 0.011, 0.009);
-  assert_refused(&blade, "elements inverted (det J <= 0): elements ");
+  assert_blade_refused(&blade, "elements inverted (det J <= 0): elements ");
   blade = thin(0.001, 0.0168, 0.0135);
-  assert_refused(&blade, "mesh.blade.size: gmsh cannot fill");
+  assert_blade_refused(&blade, "mesh.blade.size: gmsh cannot fill");
 }
 
 /* One invalid number of the sample, and the key that the message must name. */
@@ -489,24 +486,24 @@ static void wrong_numbers_are_named(void **state) {
   for (size_t i = 0; i < sizeof faults / sizeof *faults; i++) {
     mesh_blade blade                               = sample();
     *(double *)((char *)&blade + faults[i].offset) = faults[i].value;
-    assert_refused(&blade, faults[i].words);
+    assert_blade_refused(&blade, faults[i].words);
   }
   mesh_blade blade = sample();
   blade.blades     = 2;
-  assert_refused(&blade, "rotor.blades: 2");
+  assert_blade_refused(&blade, "rotor.blades: 2");
   blade.blades = 90;
-  assert_refused(&blade, "rotor.blades");
+  assert_blade_refused(&blade, "rotor.blades");
   blade                  = sample();
   blade.blades           = 60;
   blade.section[2].twist = 60 * degree;
-  assert_refused(&blade, "mesh.blade.sections[2]: the last section reaches");
+  assert_blade_refused(&blade, "mesh.blade.sections[2]: the last section reaches");
   blade                      = sample();
   blade.shroud_thickness     = 0.02;
   blade.section[2].thickness = 0.0005;
-  assert_refused(&blade, "mesh.blade.sections[2]: the airfoil tapers to nothing");
+  assert_blade_refused(&blade, "mesh.blade.sections[2]: the airfoil tapers to nothing");
   blade            = sample();
   blade.n_sections = 1;
-  assert_refused(&blade, "mesh.blade.sections: 1 given");
+  assert_blade_refused(&blade, "mesh.blade.sections: 1 given");
 }
 
 static void unwritable_folder_is_an_io_error(void **state) {

@@ -19,6 +19,7 @@
 #include "mesh/core/face_match.h"
 #include "mesh/core/fe_mesh.h"
 #include "mesh/core/jacobian.h"
+#include "tests/support/check.h"
 #include "tests/support/read_mesh.h"
 
 static const double degree = M_PI / 180;
@@ -39,10 +40,6 @@ static int tear_down(void **state) {
   unlink(path);
   unlink(other);
   return rmdir(folder);
-}
-
-static void assert_near(double a, double b, double tolerance) {
-  if (!(fabs(a - b) <= tolerance)) fail_msg("%.17g is not %.17g within %g", a, b, tolerance);
 }
 
 static mesh_blade sample(void) {

@@ -14,7 +14,7 @@ static mesh_fe box(void) {
   return mesh;
 }
 
-static void assert_refused(const mesh_fe *mesh, const char *words) {
+static void assert_groups_refused(const mesh_fe *mesh, const char *words) {
   assert_int_equal(mesh_fe_check_groups(mesh, "box"), SHB_ERR_INPUT);
   assert_has(shb_message(), words);
 }
@@ -31,9 +31,9 @@ static void groups_without_faces_are_refused(void **state) {
   mesh_fe mesh = box();
   mesh.n_more  = 1;
   snprintf(mesh.more[0], sizeof mesh.more[0], "snubber");
-  assert_refused(&mesh, "box: group snubber is absent or empty");
+  assert_groups_refused(&mesh, "box: group snubber is absent or empty");
   mesh.set[MESH_ROOT].n = 0;
-  assert_refused(&mesh, "box: group root is absent or empty");
+  assert_groups_refused(&mesh, "box: group root is absent or empty");
   mesh_fe_free(&mesh);
 }
 
@@ -41,12 +41,12 @@ static void groups_that_overlap_are_refused(void **state) {
   (void)state;
   mesh_fe mesh = box();
   assert_ok(box_set(&mesh, MESH_CONTACT_LEFT, 0, 0));
-  assert_refused(&mesh, "groups contact_left and root share 4 of 4 faces");
+  assert_groups_refused(&mesh, "groups contact_left and root share 4 of 4 faces");
   assert_ok(box_set(&mesh, MESH_CONTACT_LEFT, 1, 0));
-  assert_refused(&mesh, "groups contact_right and contact_left share 4 of 4 faces");
+  assert_groups_refused(&mesh, "groups contact_right and contact_left share 4 of 4 faces");
   assert_ok(box_set(&mesh, MESH_CONTACT_LEFT, 1, 3));
   assert_ok(box_set(&mesh, MESH_LOAD, 0, 0));
-  assert_refused(&mesh, "groups load and root share 4 of 4 faces");
+  assert_groups_refused(&mesh, "groups load and root share 4 of 4 faces");
   mesh_fe_free(&mesh);
 }
 

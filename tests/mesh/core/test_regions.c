@@ -20,6 +20,7 @@
 #include "mesh/io/read.h"
 #include "mesh/io/source.h"
 #include "tests/support/box.h"
+#include "tests/support/check.h"
 #include "tests/support/read_mesh.h"
 
 /* Three blocks along x, cut at these places, of which the middle one is "shank". */
@@ -50,10 +51,6 @@ static int tear_down(void **state) {
   (void)state;
   snprintf(command, sizeof command, "rm -r %s", folder);
   return system(command);
-}
-
-static void assert_ok(shb_status status) {
-  if (status != SHB_OK) fail_msg("%s", shb_message());
 }
 
 static void put(const char *path, const char *text, const char *more) {

@@ -21,6 +21,7 @@
 #include "mesh/io/inp_write.h"
 #include "mesh/io/msh_write.h"
 #include "tests/support/box.h"
+#include "tests/support/check.h"
 #include "tests/support/read_mesh.h"
 
 enum { BLADES = 23 };
@@ -48,14 +49,6 @@ static int tear_down(void **state) {
   (void)state;
   snprintf(command, sizeof command, "rm -r %s", folder);
   return system(command);
-}
-
-static void assert_ok(shb_status status) {
-  if (status != SHB_OK) fail_msg("%s", shb_message());
-}
-
-static void assert_near(double a, double b, double tolerance) {
-  if (!(fabs(a - b) <= tolerance)) fail_msg("%.17g is not %.17g within %g", a, b, tolerance);
 }
 
 static void refused(const mesh_source *source, const char *words) {

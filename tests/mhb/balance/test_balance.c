@@ -15,15 +15,10 @@
 #include "mhb/branches/main_branch.h"
 #include "mhb/continuation/first_solution.h"
 #include "mhb/numerics/fourier.h"
+#include "tests/support/check.h"
 #include "tests/support/random_model.h"
 
 static const double PI = 3.14159265358979323846;
-
-#define assert_below(value, bound)                                      \
-  do {                                                                  \
-    double v_ = (value), b_ = (bound);                                  \
-    if (!(v_ <= b_)) fail_msg("%s = %.3e, above %.3e", #value, v_, b_); \
-  } while (0)
 
 static mhb_balance *residual_of(const modal_model *model, const mhb_settings *s) {
   mhb_balance *b;

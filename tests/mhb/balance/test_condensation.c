@@ -18,16 +18,11 @@
 #include "mhb/continuation/first_solution.h"
 #include "tests/bench/shroud_face.h"
 #include "tests/support/allocations.h"
+#include "tests/support/check.h"
 #include "tests/support/random_model.h"
 #include "tests/support/three_degree.h"
 
 static const double PI = 3.14159265358979323846;
-
-#define assert_below(value, bound)                                      \
-  do {                                                                  \
-    double v_ = (value), b_ = (bound);                                  \
-    if (!(v_ <= b_)) fail_msg("%s = %.3e, above %.3e", #value, v_, b_); \
-  } while (0)
 
 /* ---------------------------------------------------------------- the same solution */
 

@@ -50,7 +50,7 @@ static void few_modes(int modes, modal_model *all, modal_model *few) {
   tip_contact_beam_model(1, all);
   tip_contact_beam_model(1, few);
   for (int i = modes; i < all->n_modes; i++) all->damping_ratio[i] = few->damping_ratio[i] = 0;
-  assert_int_equal(modal_model_keep(few, modes, true), SHB_OK);
+  assert_int_equal(modal_model_reduce(few, modes, true), SHB_OK);
   modal_model_drop_residual_modes(few);
   few->tail_order   = 3;
   few->contact_tail = calloc(6, sizeof *few->contact_tail);

@@ -13,18 +13,12 @@
 #include <cmocka.h>
 
 #include "mhb/branches/forced_response.h"
+#include "tests/support/check.h"
 #include "tests/support/periodic.h"
 #include "tests/support/random_model.h"
 #include "tests/support/three_degree.h"
 
 static const double PI = 3.14159265358979323846;
-
-#define assert_near(value, wanted, tolerance)                                                  \
-  do {                                                                                         \
-    double v_ = (value), w_ = (wanted), t_ = (tolerance);                                      \
-    if (!(fabs(v_ - w_) <= t_))                                                                \
-      fail_msg("%s = %.9g, not %.9g (off by %.2e > %.2e)", #value, v_, w_, fabs(v_ - w_), t_); \
-  } while (0)
 
 static mhb_response *sweep(const modal_model *model, mhb_settings *s, double from, double to) {
   mhb_response *response;

@@ -13,33 +13,12 @@
 #include "mhb/branches/main_branch.h"
 #include "mhb/numerics/fourier.h"
 #include "mhb/structure/stiffness_check.h"
+#include "tests/support/check.h"
+#include "tests/support/settings.h"
 #include "tests/support/solution.h"
 #include "tests/support/three_degree.h"
 
 static const double PI = 3.14159265358979323846;
-
-#define assert_near(value, wanted, tolerance)                                                  \
-  do {                                                                                         \
-    double v_ = (value), w_ = (wanted), t_ = (tolerance);                                      \
-    if (!(fabs(v_ - w_) <= t_))                                                                \
-      fail_msg("%s = %.9g, not %.9g (off by %.2e > %.2e)", #value, v_, w_, fabs(v_ - w_), t_); \
-  } while (0)
-
-static mhb_settings ground(double mu, double kv, double ku, double n0, int harmonics) {
-  mhb_settings s = {.to_ground    = true,
-                    .blades       = 1,
-                    .mu           = mu,
-                    .kv           = kv,
-                    .ku           = {ku, 0, ku},
-                    .n_preloads   = 1,
-                    .n0           = {n0},
-                    .harmonics    = harmonics,
-                    .subharmonics = 1,
-                    .scale        = 1,
-                    .tolerance    = 1e-8,
-                    .max_points   = 5000};
-  return s;
-}
 
 /* First harmonics of v, u, w at w rad/s. */
 static void solve_at(const modal_model *model, const mhb_settings *s, double w,
@@ -63,7 +42,7 @@ static void amplitudes_of_time_integration(void **state) {
   three_degree_model(&model);
   for (int i = 0; i < 4; i++) {
     for (int h = 0; h < 4; h++) {
-      mhb_settings s = ground(.4, .8, .5, rows[i].n0, H[h]);
+      mhb_settings s = ground_settings(.4, .8, .5, rows[i].n0, H[h]);
       double       a[3], worst = 0, size = 0;
       solve_at(&model, &s, rows[i].w, a);
       for (int c = 0; c < 3; c++) {
@@ -142,7 +121,7 @@ static void three_degree_peaks_and_folds(void **state) {
   modal_model model;
   three_degree_model(&model);
   for (int i = 0; i < 5; i++) {
-    mhb_settings      s = ground(.4, .8, .5, rows[i].n0, rows[i].H);
+    mhb_settings      s = ground_settings(.4, .8, .5, rows[i].n0, rows[i].H);
     mhb_response     *r = sweep(&model, &s, .8, 1.7);
     const mhb_branch *b = &r->branch[2];
     print_message("n0 %4.1f: %d points, %d folds\n", rows[i].n0, b->n_points, count_folds(b));
@@ -184,7 +163,7 @@ static void one_degree_with_jumps(void **state) {
   for (int i = 0; i < 2; i++) {
     modal_model model;
     one_degree_model(.02, 0, rows[i].F, &model);
-    mhb_settings      s   = ground(0, 9, 1, rows[i].n0, 31);
+    mhb_settings      s   = ground_settings(0, 9, 1, rows[i].n0, 31);
     mhb_response     *r   = sweep(&model, &s, .5, 3.6);
     const mhb_branch *b   = &r->branch[2];
     double            top = 0, at = 0, found[8];
@@ -233,7 +212,7 @@ static void friction_oscillator_from_a_cold_start(void **state) {
   modal_model model;
   one_degree_model(.01, 1, .8, &model);
   for (int i = 0; i < 4; i++) {
-    mhb_settings s = ground(1, 1, 1, 1, 31);
+    mhb_settings s = ground_settings(1, 1, 1, 1, 31);
     double       a = peak_amplitude(&s, &model, rows[i][0]);
     print_message("W %.2f: amplitude %.7f (%.7f)\n", rows[i][0], a, rows[i][1]);
     assert_near(a, rows[i][1], 2e-5 * rows[i][1]);
@@ -248,7 +227,7 @@ static void tip_contact_beam(void **state) {
   modal_model         model;
   tip_contact_beam_model(8, &model);
   for (int i = 0; i < 2; i++) {
-    mhb_settings s        = ground(.3, 2e5, 2e5, 100, 7);
+    mhb_settings s        = ground_settings(.3, 2e5, 2e5, 100, 7);
     s.preload             = i ? MHB_INTERFERENCE : MHB_EQUILIBRIUM;
     mhb_response     *r   = sweep(&model, &s, 2 * PI * 215, 2 * PI * 320);
     const mhb_branch *b   = &r->branch[2];
@@ -275,7 +254,7 @@ static void linear_limits_are_met(void **state) {
   (void)state;
   modal_model model;
   three_degree_model(&model);
-  mhb_settings s  = ground(.4, .8, .5, -1e6, 3);
+  mhb_settings s  = ground_settings(.4, .8, .5, -1e6, 3);
   s.n_preloads    = 2;
   s.n0[1]         = 1e6;
   mhb_response *r = sweep(&model, &s, .8, 1.7);
@@ -303,7 +282,7 @@ static void curves_go_on_beyond_a_gap(void **state) {
   (void)state;
   modal_model model;
   three_degree_model(&model);
-  mhb_settings s = ground(8, .8, .5, .05, 5);
+  mhb_settings s = ground_settings(8, .8, .5, .05, 5);
   s.n_preloads   = 4;
   memcpy(s.n0, (double[4]){.05, .1, .2, .4}, 4 * sizeof(double));
   s.frequency[0] = .8 / (2 * PI);
@@ -329,7 +308,7 @@ static void nothing_happens_without_excitation(void **state) {
   (void)state;
   modal_model model;
   three_degree_model(&model);
-  mhb_settings s  = ground(.4, .8, .5, .3, 3);
+  mhb_settings s  = ground_settings(.4, .8, .5, .3, 3);
   s.scale         = 0;
   mhb_response *r = sweep(&model, &s, .8, 1.7);
   for (int p = 0; p < r->branch[2].n_points; p++)
@@ -347,7 +326,7 @@ static void rigid_contacts_are_refused(void **state) {
   three_degree_model(&model);
   for (int axis = 0; axis < 3; axis++)
     for (int over = 0; over < 2; over++) {
-      mhb_settings    s          = ground(.4, .8, .5, .3, 3);
+      mhb_settings    s          = ground_settings(.4, .8, .5, .3, 3);
       double         *k          = axis == 0 ? &s.kv : &s.ku[axis - 1 ? 2 : 0];
       mhb_receptance *receptance = NULL;
       *k                         = (over ? 1.001 : .999) * MHB_STIFFNESS_LIMIT / R[axis];
@@ -356,7 +335,7 @@ static void rigid_contacts_are_refused(void **state) {
       if (over) assert_int_equal(strncmp(shb_message(), word[axis], 12), 0);
       mhb_receptance_destroy(receptance);
     }
-  mhb_settings  s        = ground(.4, .8, .5, .3, 3);
+  mhb_settings  s        = ground_settings(.4, .8, .5, .3, 3);
   mhb_response *response = NULL;
   s.frequency[0] = s.frequency[1] = .2;
   s.parameter                     = MHB_IN_KV;

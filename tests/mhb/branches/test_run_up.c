@@ -14,22 +14,13 @@
 #include "mhb/branches/record.h"
 #include "mhb/continuation/linear_resonances.h"
 #include "mhb/integration/integration_sweep.h"
+#include "tests/support/check.h"
 #include "tests/support/periodic.h"
 #include "tests/support/spinning.h"
 
 static const double TWO_PI = 6.283185307179586476925;
 
 enum { MAIN = 2 }; /* after the linear limits */
-
-#define assert_below(value, bound)                                      \
-  do {                                                                  \
-    double v_ = (value), b_ = (bound);                                  \
-    if (!(v_ <= b_)) fail_msg("%s = %.3e, above %.3e", #value, v_, b_); \
-  } while (0)
-
-static void assert_ok(shb_status status) {
-  if (status != SHB_OK) fail_msg("%s", shb_message());
-}
 
 static mhb_speed_table *make_run_up(spinning_kind kind, int n, mhb_settings *s) {
   modal_speeds     speeds;

@@ -17,31 +17,20 @@
 
 #include "mhb/branches/forced_response.h"
 #include "mhb/branches/secondary_branches.h"
+#include "tests/support/check.h"
+#include "tests/support/settings.h"
 #include "tests/support/three_degree.h"
 
 static const double PI = 3.14159265358979323846;
 
-#define assert_below(value, bound)                                                                 \
-  do {                                                                                             \
-    if (!((value) <= (bound))) fail_msg("%s is %.3e, above %.1e", #value, value, (double)(bound)); \
-  } while (0)
-
 static mhb_settings settings(double mu, double kv, double n0, int harmonics, double from,
                              double to) {
-  return (mhb_settings){.to_ground    = true,
-                        .blades       = 1,
-                        .mu           = mu,
-                        .kv           = kv,
-                        .ku           = {.5, 0, .5},
-                        .n_preloads   = 1,
-                        .n0           = {n0},
-                        .frequency    = {from / (2 * PI), to / (2 * PI)},
-                        .harmonics    = harmonics,
-                        .subharmonics = 1,
-                        .scale        = 1,
-                        .tolerance    = 1e-8,
-                        .max_points   = 3000,
-                        .search       = {.n_orders = 3, .order = {1, 2, 3}}};
+  mhb_settings s = ground_settings(mu, kv, .5, n0, harmonics);
+  s.frequency[0] = from / (2 * PI);
+  s.frequency[1] = to / (2 * PI);
+  s.max_points   = 3000;
+  s.search       = (mhb_search_settings){.n_orders = 3, .order = {1, 2, 3}};
+  return s;
 }
 
 static mhb_response *sweep(const modal_model *model, const mhb_settings *s) {

@@ -11,17 +11,11 @@
 
 #include "mhb/contact/contact.h"
 #include "mhb/numerics/fourier.h"
+#include "tests/support/check.h"
 
 static const double PI = 3.14159265358979323846;
 
 enum { M = 7, H = 15, NB = 2 * M + 1, NF = 2 * H + 1 };
-
-#define assert_near(value, wanted, tolerance)                                                    \
-  do {                                                                                           \
-    double v_ = (value), w_ = (wanted), t_ = (tolerance);                                        \
-    if (!(fabs(v_ - w_) <= t_))                                                                  \
-      fail_msg("%s = %.15g, not %.15g (off by %.2e > %.2e)", #value, v_, w_, fabs(v_ - w_), t_); \
-  } while (0)
 
 typedef struct {
   mhb_law          law;

@@ -8,19 +8,13 @@
 
 #include <cmocka.h>
 
+#include "tests/support/check.h"
 #include "tests/support/motion_suite.h"
 #include "tests/support/reference_law.h"
 
 static const double PI = 3.14159265358979323846;
 
 enum { M = SUITE_HARMONICS, H = 15, NF = 2 * H + 1 };
-
-#define assert_near(value, wanted, tolerance)                                                    \
-  do {                                                                                           \
-    double v_ = (value), w_ = (wanted), t_ = (tolerance);                                        \
-    if (!(fabs(v_ - w_) <= t_))                                                                  \
-      fail_msg("%s = %.15g, not %.15g (off by %.2e > %.2e)", #value, v_, w_, fabs(v_ - w_), t_); \
-  } while (0)
 
 static void solve(const suite_motion *s, reference *out) {
   reference_force(&s->law, M, &s->motion[0][0], H, 24, 1e-18, out);

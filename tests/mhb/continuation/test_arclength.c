@@ -19,17 +19,12 @@
 #include "mhb/continuation/balance_curve.h"
 #include "mhb/continuation/event_location.h"
 #include "mhb/continuation/first_solution.h"
+#include "tests/support/check.h"
 #include "tests/support/random_model.h"
 #include "tests/support/solution.h"
 #include "tests/support/three_degree.h"
 
 static const double PI = 3.14159265358979323846;
-
-#define assert_below(value, bound)                                      \
-  do {                                                                  \
-    double v_ = (value), b_ = (bound);                                  \
-    if (!(v_ <= b_)) fail_msg("%s = %.3e, above %.3e", #value, v_, b_); \
-  } while (0)
 
 static mhb_settings ground(double n0, int harmonics, double from, double to) {
   mhb_settings s = random_settings(harmonics);

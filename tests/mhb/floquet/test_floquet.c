@@ -12,6 +12,7 @@
 
 #include "mesh/base/progress.h"
 #include "tests/support/allocations.h"
+#include "tests/support/check.h"
 #include "tests/support/disturbed.h"
 #include "tests/support/periodic.h"
 #include "tests/support/random_model.h"
@@ -20,13 +21,6 @@
 static const double PI = 3.14159265358979323846;
 
 enum { N = 256, MOST = 64 };
-
-#define assert_near(value, wanted, tolerance)                                                  \
-  do {                                                                                         \
-    double v_ = (value), w_ = (wanted), t_ = (tolerance);                                      \
-    if (!(fabs(v_ - w_) <= t_))                                                                \
-      fail_msg("%s = %.9g, not %.9g (off by %.2e > %.2e)", #value, v_, w_, fabs(v_ - w_), t_); \
-  } while (0)
 
 /* From the motion in x, and into it; a cold start where x is NULL. */
 static mhb_multipliers at(const modal_model *model, const mhb_settings *s, double w, double *x,

@@ -11,18 +11,12 @@
 #include <cmocka.h>
 
 #include "mhb/floquet/hill.h"
+#include "tests/support/check.h"
 #include "tests/support/periodic.h"
 #include "tests/support/random_model.h"
 #include "tests/support/three_degree.h"
 
 enum { MOST = 64 };
-
-#define assert_near(value, wanted, tolerance)                                                  \
-  do {                                                                                         \
-    double v_ = (value), w_ = (wanted), t_ = (tolerance);                                      \
-    if (!(fabs(v_ - w_) <= t_))                                                                \
-      fail_msg("%s = %.9g, not %.9g (off by %.2e > %.2e)", #value, v_, w_, fabs(v_ - w_), t_); \
-  } while (0)
 
 /* All nodal diameters, one after the other. */
 static int hill_multipliers(periodic *p, double complex *mu) {

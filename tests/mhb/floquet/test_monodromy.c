@@ -10,17 +10,11 @@
 
 #include <cmocka.h>
 
+#include "tests/support/check.h"
 #include "tests/support/disturbed.h"
 #include "tests/support/periodic.h"
 #include "tests/support/random_model.h"
 #include "tests/support/three_degree.h"
-
-#define assert_near(value, wanted, tolerance)                                                  \
-  do {                                                                                         \
-    double v_ = (value), w_ = (wanted), t_ = (tolerance);                                      \
-    if (!(fabs(v_ - w_) <= t_))                                                                \
-      fail_msg("%s = %.9g, not %.9g (off by %.2e > %.2e)", #value, v_, w_, fabs(v_ - w_), t_); \
-  } while (0)
 
 /* What the variational problem cannot hold is taken off the model: residual inertia, residual response to the load. */
 static void integrable(modal_model *model) {

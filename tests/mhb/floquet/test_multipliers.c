@@ -14,6 +14,7 @@
 #include "mhb/branches/main_branch.h"
 #include "mhb/continuation/balance_curve.h"
 #include "mhb/numerics/fourier.h"
+#include "tests/support/check.h"
 #include "tests/support/disturbed.h"
 #include "tests/support/periodic.h"
 #include "tests/support/three_degree.h"
@@ -21,13 +22,6 @@
 static const double PI = 3.14159265358979323846;
 
 enum { N = 256, MOST = 64 };
-
-#define assert_near(value, wanted, tolerance)                                                  \
-  do {                                                                                         \
-    double v_ = (value), w_ = (wanted), t_ = (tolerance);                                      \
-    if (!(fabs(v_ - w_) <= t_))                                                                \
-      fail_msg("%s = %.9g, not %.9g (off by %.2e > %.2e)", #value, v_, w_, fabs(v_ - w_), t_); \
-  } while (0)
 
 /* Moduli that must be there, and no others among the largest. */
 static void assert_moduli(const mhb_multipliers *out, const double *wanted, int n) {

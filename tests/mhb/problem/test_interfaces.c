@@ -16,14 +16,9 @@
 #include "mhb/branches/forced_response.h"
 #include "mhb/branches/main_branch.h"
 #include "mhb/integration/steady_state.h"
+#include "tests/support/check.h"
 #include "tests/support/periodic.h"
 #include "tests/support/random_model.h"
-
-#define assert_below(value, bound)                                                         \
-  do {                                                                                     \
-    double v_ = (value), b_ = (bound);                                                     \
-    if (!(fabs(v_) <= b_)) fail_msg("%s = %.3e, wanted below %.1e", #value, fabs(v_), b_); \
-  } while (0)
 
 /* A random model whose pair a belongs to interface a % 2: "mid" is the first of the settings, the second of the model. */
 static void two_faced_model(int n_pairs, int parts, unsigned long long seed, modal_model *model) {
@@ -108,7 +103,7 @@ static void halves_make_a_whole(void **state) {
     print_message("omega %.1f: halves and whole differ by %.1e; slipping %.2f, open %.2f\n", omega,
                   difference, a.residual->eval->info[0].share[MHB_SLIDE],
                   a.residual->eval->info[0].share[MHB_SEPARATE]);
-    assert_below(difference, 1e-12);
+    assert_small(difference, 1e-12);
     periodic_destroy(&a);
     periodic_destroy(&b);
   }
@@ -166,7 +161,7 @@ static void an_open_one_is_none(void **state) {
     periodic_create(&one, &single, omega, a.x + a.residual->n / 2, &b);
     slips += b.residual->eval->kind[0] == MHB_PAIR_NONLINEAR;
     assert_true(a.residual->eval->info[0].share[MHB_SEPARATE] == 1);
-    assert_below(apart(b.residual->n, a.x + b.residual->n, b.x), 1e-12);
+    assert_small(apart(b.residual->n, a.x + b.residual->n, b.x), 1e-12);
     periodic_destroy(&a);
     periodic_destroy(&b);
   }
@@ -214,14 +209,14 @@ static void slopes_are_exact(void **state) {
       assert_true(b->eval->kind[0] == MHB_PAIR_NONLINEAR && b->eval->kind[1] == MHB_PAIR_NONLINEAR);
       if (p < 4 && which == 0)
         print_message("%s: slope %.1e\n", mhb_parameter_name(parameters[p]), error);
-      assert_below(error, 1e-7);
+      assert_small(error, 1e-7);
       if (p == 0) { /* all preloads alike, as on the way to a first solution */
         mhb_balance_tie_preloads(b, 1);
-        assert_below(slope_error(b, x, MHB_IN_N0), 1e-7);
+        assert_small(slope_error(b, x, MHB_IN_N0), 1e-7);
         double before = b->law[0].n0 - b->law[1].n0;
         mhb_balance_set_value(b, 3.3);
-        assert_below(b->law[0].n0 - b->law[1].n0 - before, 1e-14);
-        assert_below(b->law[model.interface[0] == 0 ? 1 - which / 2 : which / 2].n0 - 3.3, 1e-14);
+        assert_small(b->law[0].n0 - b->law[1].n0 - before, 1e-14);
+        assert_small(b->law[model.interface[0] == 0 ? 1 - which / 2 : which / 2].n0 - 3.3, 1e-14);
       }
       mhb_balance_destroy(b);
     }
@@ -244,13 +239,13 @@ static void laws_are_their_own(void **state) {
   for (int i = 0; i < 3; i++) {
     mhb_balance_set_preload(b, s.n0[i]);
     double share = model.area[0] / (model.area[0] + model.area[2]);
-    assert_below(b->law[0].n0 - share * s.interface[1].n0[i], 1e-15);
-    assert_below(b->law[2].n0 - (1 - share) * s.interface[1].n0[i], 1e-15);
-    assert_below(b->law[1].n0 - s.n0[i], 1e-15);
-    assert_below(b->law[0].balance - fmax(b->law[0].n0, 0), 0);
+    assert_small(b->law[0].n0 - share * s.interface[1].n0[i], 1e-15);
+    assert_small(b->law[2].n0 - (1 - share) * s.interface[1].n0[i], 1e-15);
+    assert_small(b->law[1].n0 - s.n0[i], 1e-15);
+    assert_small(b->law[0].balance - fmax(b->law[0].n0, 0), 0);
   }
   assert_true(b->law[0].mu == .23 && b->law[1].mu == .4 && b->law[1].kv == .8);
-  assert_below(b->law[0].kv + b->law[2].kv - 1.7 * .8, 1e-15);
+  assert_small(b->law[0].kv + b->law[2].kv - 1.7 * .8, 1e-15);
   mhb_balance_destroy(b);
 
   s.parameter  = MHB_IN_N0; /* follows: in proportion, or not at all */
@@ -258,7 +253,7 @@ static void laws_are_their_own(void **state) {
   for (s.together = 0;; s.together = 1) {
     assert_int_equal(mhb_balance_create(&model, &s, &b), SHB_OK);
     mhb_balance_set_preload(b, .9);
-    assert_below(b->law[0].n0 + b->law[2].n0 - .1 * (s.together ? 3 : 1), 1e-15);
+    assert_small(b->law[0].n0 + b->law[2].n0 - .1 * (s.together ? 3 : 1), 1e-15);
     mhb_balance_destroy(b);
     if (s.together) break;
   }
@@ -303,7 +298,7 @@ static void time_integration_agrees(void **state) {
         "%s: balance and integration differ by %.1e of the motion; slip %.2f %.2f, open %.2f "
         "%.2f\n",
         ring ? "ring" : "ground", worst / size, r->state[1], r->state[4], r->state[2], r->state[5]);
-    assert_below(worst / size, 2e-4);
+    assert_small(worst / size, 2e-4);
     assert_true(r->state[1] + r->state[4] > .1 && r->state[2] > .1);
     mhb_steady_state_destroy(orbit);
     mhb_integrator_destroy(g);

@@ -11,16 +11,14 @@
 #include "mhb/balance/newton.h"
 #include "mhb/branches/forced_response.h"
 #include "mhb/branches/main_branch.h"
+#include "tests/support/check.h"
 #include "tests/support/random_model.h"
+#include "tests/support/settings.h"
 #include "tests/support/three_degree.h"
 
 static const double PI = 3.14159265358979323846;
 
 enum { PAIRS = 2, M = 4, N = 3 * PAIRS * (2 * M + 1) };
-
-static void assert_below(double value, double most) {
-  if (!(value <= most)) fail_msg("%.3e is above %.3e", value, most);
-}
 
 /* Central difference of the residual in the parameter, at fixed x. */
 static void difference(mhb_balance *b, const double *x, double value, double h, double *out) {
@@ -78,18 +76,9 @@ static void slopes_are_exact(void **state) {
 }
 
 static mhb_settings ground(double mu, double kv, double ku, double n0, int harmonics) {
-  return (mhb_settings){.to_ground    = true,
-                        .blades       = 1,
-                        .mu           = mu,
-                        .kv           = kv,
-                        .ku           = {ku, 0, ku},
-                        .n_preloads   = 1,
-                        .n0           = {n0},
-                        .harmonics    = harmonics,
-                        .subharmonics = 1,
-                        .scale        = 1,
-                        .tolerance    = 1e-10,
-                        .max_points   = 5000};
+  mhb_settings s = ground_settings(mu, kv, ku, n0, harmonics);
+  s.tolerance    = 1e-10;
+  return s;
 }
 
 static mhb_response *sweep(const modal_model *model, const mhb_settings *s) {

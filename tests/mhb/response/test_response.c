@@ -71,7 +71,7 @@ static mhb_response *sample(int n_probes, int points) {
   response->n_modes        = 3;
   response->mode_frequency = list(3, 103.25);
   response->mode_damping   = list(3, .002);
-  response->mode_residual  = list(3, 1e-11);
+  response->eigen_residual = list(3, 1e-11);
   for (int i = 0; i < 3; i++) {
     int branch;
     assert_ok(mhb_response_branch(response, (mhb_branch_kind)i, &branch));
@@ -134,7 +134,7 @@ static void round_trip(int n_probes, int points) {
   assert_int_equal(read->n_multipliers, MULTIPLIERS);
   assert_same(wrote, read, mode_frequency, 3);
   assert_same(wrote, read, mode_damping, 3);
-  assert_same(wrote, read, mode_residual, 3);
+  assert_same(wrote, read, eigen_residual, 3);
   for (int i = 0; i < n_probes; i++) assert_string_equal(wrote->probe_name[i], read->probe_name[i]);
   assert_int_equal(read->n_branches, 3);
   for (int i = 0; i < 3; i++) assert_same_branch(wrote, &wrote->branch[i], &read->branch[i]);

@@ -10,17 +10,12 @@
 #include <cmocka.h>
 
 #include "mhb/structure/receptance.h"
+#include "tests/support/check.h"
 #include "tests/support/random_model.h"
 
 static const double PI = 3.14159265358979323846;
 
 enum { MAX_N = 12, MAX_C = 24, MODES = 6, PROBE_DOFS = 6 };
-
-#define assert_below(value, bound)                                                  \
-  do {                                                                              \
-    double v_ = (value), b_ = (bound);                                              \
-    if (!(v_ <= b_)) fail_msg("%s = %.3e, above %.3e (%s)", #value, v_, b_, where); \
-  } while (0)
 
 /* What the condensation must come to, from the model alone. */
 typedef struct {
@@ -169,7 +164,7 @@ static void compare(const modal_model *model, const mhb_settings *s, int top, do
     }
   }
   print_message("%s: R %.1e, free %.1e, probes %.1e\n", where, worst[0], worst[1], worst[2]);
-  for (int i = 0; i < 3; i++) assert_below(worst[i], 1e-13);
+  for (int i = 0; i < 3; i++) assert_below_at(worst[i], 1e-13, where);
   mhb_receptance_destroy(r);
 }
 
@@ -224,7 +219,7 @@ static void receptance_is_reciprocal_and_passive(void **state) {
     double                skew = 0;
     for (int i = 0; i < n; i++)
       for (int j = 0; j < n; j++) {
-        assert_below(cabs(R[i * n + j] - Q[j * n + i]), 1e-13);
+        assert_below_at(cabs(R[i * n + j] - Q[j * n + i]), 1e-13, where);
         skew = fmax(skew, cabs(R[i * n + j] - R[j * n + i]));
       }
     if (k % 3) assert_true(skew > 1e-3); /* the phase is there */
@@ -233,7 +228,7 @@ static void receptance_is_reciprocal_and_passive(void **state) {
       random_force(n, trial, p);
       for (int i = 0; i < n; i++)
         for (int j = 0; j < n; j++) work += conj(p[i]) * R[i * n + j] * p[j];
-      assert_below(cimag(work), k ? 0 : 1e-13);
+      assert_below_at(cimag(work), k ? 0 : 1e-13, where);
     }
   }
   mhb_receptance_destroy(forward);
@@ -306,7 +301,7 @@ static void slopes_are_derivatives(void **state) {
         worst = fmax(worst, cabs(exact[i] - wanted[i]));
         size  = fmax(size, cabs(wanted[i]));
       }
-      assert_below(worst / size, 1e-8);
+      assert_below_at(worst / size, 1e-8, where);
       difference(r, k, PROBE, p, dp, .7, wanted);
       mhb_receptance_at(r, 1.11, 5);
       mhb_receptance_probe_change(r, k, p, dp, .7, 0, exact);
@@ -315,7 +310,7 @@ static void slopes_are_derivatives(void **state) {
         worst = fmax(worst, cabs(exact[i] - wanted[i]));
         size  = fmax(size, cabs(wanted[i]));
       }
-      assert_below(worst / size, 1e-8);
+      assert_below_at(worst / size, 1e-8, where);
     }
     mhb_receptance_destroy(r);
     modal_model_free(&model);

@@ -11,20 +11,11 @@
 
 #include "mhb/structure/receptance.h"
 #include "modal/model/reduce.h"
+#include "tests/support/check.h"
 #include "tests/support/random_model.h"
 #include "tests/support/spinning.h"
 
 enum { K = 5, N = 3, PROBE_DOFS = 3, PLACES = 23, VALUES = (K + 1) * (2 * N + PROBE_DOFS) };
-
-#define assert_below(value, bound)                                      \
-  do {                                                                  \
-    double v_ = (value), b_ = (bound);                                  \
-    if (!(v_ <= b_)) fail_msg("%s = %.3e, above %.3e", #value, v_, b_); \
-  } while (0)
-
-static void assert_ok(shb_status status) {
-  if (status != SHB_OK) fail_msg("%s", shb_message());
-}
 
 static mhb_speed_table *make_run_up(spinning_kind kind, int n, bool overlap, mhb_settings *s) {
   modal_speeds     speeds;
@@ -94,7 +85,7 @@ static double error(spinning_kind kind, int n, bool overlap) {
     double complex a[VALUES], b[VALUES];
     modal_model    model;
     spinning_model(kind, place(i) / s.engine_order, &model, NULL);
-    assert_ok(modal_model_keep(&model, run_up->n_modes, true));
+    assert_ok(modal_model_reduce(&model, run_up->n_modes, true));
     modal_model_drop_residual_modes(&model);
     assert_ok(mhb_receptance_create(&model, &plain, K, &exact));
     outputs(r, place(i), false, a);

@@ -22,22 +22,23 @@ static void assert_same(double a, double b) {
 
 static void ratios(void **state) {
   (void)state;
-  const modal_damping all  = {.ratio = .0023};
-  const modal_damping each = {.kind = MODAL_DAMPING_EACH, .n = 3, .each = {.001, .004, .0025}};
-  assert_same(ratio(&all, 0, 700), .0023);
-  assert_same(ratio(&all, 9, 7000), .0023);
-  assert_same(ratio(&each, 0, 700), .001);
-  assert_same(ratio(&each, 1, 700), .004);
-  assert_same(ratio(&each, 2, 700), .0025);
-  assert_same(ratio(&each, 17, 700), .0025); /* the last for those beyond */
+  const modal_damping all  = {.ratio = 0.0023};
+  const modal_damping each = {.kind = MODAL_DAMPING_EACH, .n = 3, .each = {0.001, 0.004, 0.0025}};
+  assert_same(ratio(&all, 0, 700), 0.0023);
+  assert_same(ratio(&all, 9, 7000), 0.0023);
+  assert_same(ratio(&each, 0, 700), 0.001);
+  assert_same(ratio(&each, 1, 700), 0.004);
+  assert_same(ratio(&each, 2, 700), 0.0025);
+  assert_same(ratio(&each, 17, 700), 0.0025); /* further modes take the last ratio */
 }
 
-/* At resonance K (1 + j eta) loses pi eta K |q|^2 a cycle, the viscous damper 2 pi zeta K |q|^2. */
+/* At resonance K (1 + j eta) dissipates pi eta K |q|^2 per cycle, a viscous damper 2 pi zeta K
+ * |q|^2. */
 static void loss_factor(void **state) {
   (void)state;
-  const modal_damping loss = {.kind = MODAL_DAMPING_LOSS, .loss = .006};
-  double              K = 3.7, q = .9;
-  assert_same(2 * acos(-1) * ratio(&loss, 4, 1234) * K * q * q, acos(-1) * .006 * K * q * q);
+  const modal_damping loss = {.kind = MODAL_DAMPING_LOSS, .loss = 0.006};
+  double              K = 3.7, q = 0.9;
+  assert_same(2 * acos(-1) * ratio(&loss, 4, 1234) * K * q * q, acos(-1) * 0.006 * K * q * q);
 }
 
 /* phi^T (alpha M + beta K) phi = alpha + beta omega^2 = 2 zeta omega. */

@@ -1,4 +1,4 @@
-/* Condensed model against direct solutions of the whole body. */
+/* The condensed model against direct solutions of the whole body. */
 #include <lapacke.h>
 #include <math.h>
 #include <setjmp.h>
@@ -18,8 +18,9 @@
 
 enum { BLADES = 23 };
 
-static const double size[3] = {.04, 1, .12}, inner = .1, zeta = .003, two_pi = 6.283185307179586;
-static const modal_probe probe[2] = {{"tip", {.04, .0, .22}}, {"middle", {0, .01, .16}}};
+static const double size[3] = {0.04, 1, 0.12}, inner = 0.1, zeta = 0.003,
+                    two_pi        = 6.283185307179586;
+static const modal_probe probe[2] = {{"tip", {0.04, 0.0, 0.22}}, {"middle", {0, 0.01, 0.16}}};
 
 static modal_settings default_settings(int points) {
   return (modal_settings){
@@ -31,7 +32,7 @@ static modal_settings default_settings(int points) {
       .load     = {.kind        = FEM_LOAD_PRESSURE,
                    .pressure    = 2385,
                    .n_harmonics = 2,
-                   .factor      = {.3, 1, -.2 + .1 * I}},
+                   .factor      = {0.3, 1, -0.2 + 0.1 * I}},
       .n_probes = 2,
       .probe    = probe,
       .points   = points,
@@ -45,7 +46,7 @@ static modal_result solve(const mesh_fe *mesh, const modal_settings *settings) {
   return result;
 }
 
-/* The whole matrix, column by column. */
+/* The whole matrix as a dense array, by columns. */
 static double *dense_of(Mat A, int n) {
   double *full = malloc((size_t)n * (size_t)n * sizeof *full);
   Vec     unit, column;
@@ -66,13 +67,13 @@ static double *dense_of(Mat A, int n) {
   return full;
 }
 
-/* Everything of the body as dense arrays: the independent witness. Column-major. */
+/* All matrices of the body as dense arrays for the reference solution. Column-major. */
 typedef struct {
   int     n, n_dofs; /* order, condensed dofs (contact, probes, load) */
   double *K, *M, *C, *B;
 } body;
 
-/* C = sum 2 zeta w_i M phi phi^T M: each retained mode damped, the rest not. */
+/* C = sum 2 zeta w_i M phi phi^T M: kept modes are damped, the others are not. */
 static double *damping_matrix(const modal_eigen *eigen, int n) {
   double            *C = calloc((size_t)n * (size_t)n, sizeof *C);
   const PetscScalar *m_phi;
@@ -86,13 +87,13 @@ static double *damping_matrix(const modal_eigen *eigen, int n) {
   return C;
 }
 
-/* b_c written out from the interface, the probes and the load's own nodal forces. */
+/* b_c from the patches, the probes and the load's own nodal forces. */
 static double *condensed_dofs(const mesh_fe *mesh, const modal_settings *settings,
                               const modal_result *result, int n, int n_dofs) {
-  double                *B    = calloc((size_t)n * (size_t)n_dofs, sizeof *B);
-  const modal_interface *face = &result->interface;
-  const PetscInt        *row  = result->system.row;
-  int                    c    = 0;
+  double              *B    = calloc((size_t)n * (size_t)n_dofs, sizeof *B);
+  const modal_patches *face = &result->patches;
+  const PetscInt      *row  = result->system.row;
+  int                  c    = 0;
   for (int side = 0; side <= (int)face->has_left; side++)
     for (int p = 0; p < face->n_pairs; p++)
       for (int a = 0; a < 3; a++, c++)
@@ -178,7 +179,7 @@ static void check_receptance(double speed) {
   modal_result  result    = solve(&mesh, &settings);
   body          whole     = create_body(&mesh, &settings, &result);
   const double *f         = result.model.frequency;
-  const double  test[3]   = {.4 * f[0], (f[1] + f[2]) / 2, 1.01 * f[2]};
+  const double  test[3]   = {0.4 * f[0], (f[1] + f[2]) / 2, 1.01 * f[2]};
   const int     nc        = 12;
   for (int i = 0; i < 3; i++) {
     double complex *exact = direct(&whole, two_pi * test[i]);
@@ -203,7 +204,8 @@ static void receptance_matches_a_direct_solve(void **state) {
   check_receptance(0);
 }
 
-/* At speed every part uses the tangent at the equilibrium: K of the whole body is that one. */
+/* At speed every part uses the tangent stiffness of the equilibrium, which is K of the whole
+ * body. */
 static void receptance_at_speed_matches_a_direct_solve(void **state) {
   (void)state;
   check_receptance(6000);
@@ -225,7 +227,7 @@ static double residual_shape_at(const modal_model *model, int dof, int i) {
   return dof < NC ? model->residual_shape[dof * r + i] : model->residual_probe[(dof - NC) * r + i];
 }
 
-/* What the residual modes add to the three terms. */
+/* Contribution of the residual modes beyond the three terms. */
 static double by_modes(const modal_model *model, double w2, int to, int by) {
   double sum = 0;
   for (int i = 0; i < model->n_residual; i++) {
@@ -236,8 +238,8 @@ static double by_modes(const modal_model *model, double w2, int to, int by) {
   return sum;
 }
 
-/* What the modes left out answer at `to` (contact, probe) when `by` (contact, load) is pushed; terms: 1 static, 2 inertia,
- * 3 the term of w^4, 4 the residual modes. */
+/* Contribution of the modes left out at dof to (contact, probe) under a force at by (contact,
+ * load). terms: 1 static, 2 with inertia, 3 with the term of w^4, 4 with residual modes. */
 static double left_out(const modal_model *model, double omega, int to, int by, int terms) {
   const int q    = to - NC;
   double    x[3] = {0, 0, 0}, w2 = omega * omega;
@@ -262,7 +264,7 @@ static double left_out(const modal_model *model, double omega, int to, int by, i
          (terms > 3 ? by_modes(model, w2, to, by) : 0);
 }
 
-/* Ranges of dofs [first, end) that are pushed and looked at. */
+/* Ranges of loaded and of observed dofs, [first, end). */
 typedef struct {
   const char *name;
   int         to, to_end, by, by_end;
@@ -273,7 +275,7 @@ static const way ways[4] = {{"contact to contact", 0, NC, 0, NC},
                             {"contact to probe", NC, LOAD, 0, NC},
                             {"load to probe", NC, LOAD, LOAD, LOAD + 1}};
 
-/* Frobenius distance of the model from the direct solution; length: of the latter. */
+/* Frobenius distance of the model from the direct solution; length: norm of the latter. */
 static double error_of(const modal_model *model, double omega, const way *w, int terms,
                        const double complex *exact, double *length) {
   double off = 0, norm = 0;
@@ -293,8 +295,9 @@ static double error_of(const modal_model *model, double omega, const way *w, int
   return sqrt(off);
 }
 
-/* The modes left out as a series in w^2: the first term that is not held gives the order of the error, 2 with the static
- * part alone, 4 with inertia, 6 with the third term, on every way from contact and load to contact and probes. */
+/* The modes left out form a series in w^2. The first missing term gives the order of the error in
+ * w: 2 with the static term, 4 with inertia, 6 with the third term. This holds from contact and
+ * load to contact and probes. */
 static void every_receptance_errs_by_the_first_term_left_out(void **state) {
   (void)state;
   const int      cells[3] = {2, 2, 4};
@@ -312,7 +315,7 @@ static void every_receptance_errs_by_the_first_term_left_out(void **state) {
       double order = log2(error / least);
       print_message("%s, %d term(s), %.0f Hz: error %.1e, order %.3f\n", ways[w].name, terms,
                     omega / two_pi, error / norm, order);
-      assert_true(fabs(order - 2 * terms) < .1);
+      assert_true(fabs(order - 2 * terms) < 0.1);
       if (terms > 1) check_below(error / norm, 1e-4, ways[w].name);
     }
   free(exact);
@@ -322,8 +325,9 @@ static void every_receptance_errs_by_the_first_term_left_out(void **state) {
   mesh_fe_free(&mesh);
 }
 
-/* With residual modes: at a third of the last mode kept 1e-10 from contact to contact and from load to contact, whose columns they are made of, and of
- * order 12 in omega, twice that of the three terms. The probes, which are not, have the order of the terms. */
+/* With residual modes, built from the contact and load columns: at a third of the last kept mode
+ * the contact receptances are accurate to 1e-10, with an error of order 12 in omega. That is twice
+ * the order of the three terms. The probes have the order of the terms. */
 static void residual_modes_double_the_order(void **state) {
   (void)state;
   const int           cells[3]   = {2, 2, 4};
@@ -333,7 +337,7 @@ static void residual_modes_double_the_order(void **state) {
   body                whole      = create_body(&mesh, &settings, &result);
   const double        top        = two_pi * result.model.frequency[19];
   static const double allowed[4] = {1e-10, 1e-10, 2e-6, 2e-6}, order_of[4] = {12, 12, 6, 6};
-  static const double share[3] = {1. / 3, .4, .32};
+  static const double share[3] = {1. / 3, 0.4, 0.32};
   double complex     *exact[3];
   for (int i = 0; i < 3; i++) exact[i] = direct(&whole, share[i] * top);
   for (int w = 0; w < 4; w++) {
@@ -344,7 +348,7 @@ static void residual_modes_double_the_order(void **state) {
     print_message("%s, a third of the last of 20 modes: error %.1e, order %.1f\n", ways[w].name,
                   error[0] / norm[0], order);
     check_below(error[0] / norm[0], allowed[w], ways[w].name);
-    assert_true(order > order_of[w] - .5);
+    assert_true(order > order_of[w] - 0.5);
   }
   double complex model[NC * NC];
   modal_receptance(&result.model, top / 3, model);
@@ -355,7 +359,8 @@ static void residual_modes_double_the_order(void **state) {
   mesh_fe_free(&mesh);
 }
 
-/* More contact dofs than residual modes are made of: the three terms alone, and their tail says what they lack. */
+/* Above the limit of columns there are no residual modes, and the tail estimates the error of the
+ * terms. */
 static void many_contact_dofs_have_three_terms(void **state) {
   (void)state;
   const int      cells[3]   = {2, 3, 6};
@@ -388,7 +393,7 @@ static void many_contact_dofs_have_three_terms(void **state) {
   mesh_fe_free(&mesh);
 }
 
-/* Greatest error of a contact dof with itself, relative to the greatest such receptance. */
+/* Largest error of a contact dof with itself, relative to the largest such receptance. */
 static double worst_error(const double complex *model, const double complex *exact) {
   double off = 0, most = 0;
   for (int c = 0; c < NC; c++) {
@@ -398,11 +403,11 @@ static double worst_error(const double complex *model, const double complex *exa
   return off / most;
 }
 
-/* The estimate against a direct solve without damping: from far below the modes left out up to just below them, with few modes
- * and with many; and no entry of the matrix is worse than the estimate allows. */
+/* The error estimate against direct solutions without damping, from low frequencies to just below
+ * the modes left out, for few and many modes. No entry of the matrix exceeds the estimate. */
 static void error_is_estimated(void **state) {
   (void)state;
-  static const double share[]  = {.1, .2, 1. / 3, .5, .7, .85};
+  static const double share[]  = {0.1, 0.2, 1. / 3, 0.5, 0.7, 0.85};
   const int           cells[3] = {2, 2, 4};
   mesh_fe             mesh     = make_sector(size, inner, BLADES, cells);
   modal_settings      settings = default_settings(2);
@@ -413,8 +418,8 @@ static void error_is_estimated(void **state) {
   for (int i = 0; i < result.model.n_modes; i++) result.model.damping_ratio[i] = 0;
   memcpy(frequency, result.model.frequency, sizeof frequency);
   for (int modes = 20; modes > 2; modes -= 5) {
-    assert_int_equal(modal_model_keep(&result.model, modes, true), SHB_OK);
-    double top = frequency[modes < 20 ? modes : 19]; /* the first left out */
+    assert_int_equal(modal_model_reduce(&result.model, modes, true), SHB_OK);
+    double top = frequency[modes < 20 ? modes : 19]; /* first mode left out */
     for (int i = 0; i < 6; i++) {
       double         omega = two_pi * share[i] * top;
       double complex model[NC * NC], *exact = direct(&whole, omega);
@@ -436,7 +441,7 @@ static void error_is_estimated(void **state) {
   mesh_fe_free(&mesh);
 }
 
-/* Greatest error over the band, against direct solves without damping. */
+/* Largest error over the band, against direct solutions without damping. */
 static double worst_in_band(modal_model *model, const body *whole, double band) {
   double worst = 0;
   for (int i = 1; i <= 10; i++) {
@@ -449,7 +454,7 @@ static double worst_in_band(modal_model *model, const body *whole, double band) 
   return worst;
 }
 
-/* modes: auto keeps what the tolerance and the band ask for, and not one mode more. */
+/* modal.modes: auto keeps exactly the modes that tolerance and band need. */
 static void modes_are_just_enough(void **state) {
   (void)state;
   const int      cells[3] = {2, 2, 4};
@@ -466,13 +471,13 @@ static void modes_are_just_enough(void **state) {
     memset(whole.C, 0, (size_t)whole.n * (size_t)whole.n * sizeof *whole.C);
     for (int i = 0; i < n; i++) result.model.damping_ratio[i] = 0;
     double error = worst_in_band(&result.model, &whole, settings.band);
-    assert_int_equal(modal_model_keep(&result.model, n - 1, true), SHB_OK);
+    assert_int_equal(modal_model_reduce(&result.model, n - 1, true), SHB_OK);
     double fewer = worst_in_band(&result.model, &whole, settings.band);
     print_message("tolerance %.0e: %d modes err by %.1e, one less by %.1e\n", settings.tolerance, n,
                   error, fewer);
     assert_true(n > before);
     check_below(error, 1.1 * settings.tolerance, "error in the band");
-    assert_true(fewer > .9 * settings.tolerance);
+    assert_true(fewer > 0.9 * settings.tolerance);
     before = n;
     free_body(&whole);
     modal_result_free(&result);
@@ -530,7 +535,8 @@ static void static_response_is_exact(void **state) {
   check_static_response(6000);
 }
 
-/* Patches are finer divisions of the same face: the area-weighted mean of their flexibilities is the whole's. */
+/* Patches divide the same face: the area-weighted mean of their flexibilities is that of the
+ * face. */
 static void patches_add_up_to_the_face(void **state) {
   (void)state;
   const int cells[3] = {2, 2, 4}, points[3] = {4, 7, 0};
@@ -545,7 +551,7 @@ static void patches_add_up_to_the_face(void **state) {
     for (int a = 0; a < 3; a++) {
       double mean = 0;
       for (int p = 0; p < model->n_pairs; p++)
-        mean += model->area[p] / result.interface.total_area * model->right[(3 * p + a) * m];
+        mean += model->area[p] / result.patches.total_area * model->right[(3 * p + a) * m];
       if (i < 0)
         whole[a] = mean;
       else
@@ -556,8 +562,8 @@ static void patches_add_up_to_the_face(void **state) {
   mesh_fe_free(&mesh);
 }
 
-/* Spread over the face's area, the flexibility has a limit: differences between meshes fall (not with the order of
- * smooth solutions: the face ends at the clamped edge, which is singular). */
+/* The flexibility under a load spread over the face converges with the mesh. The order is not that
+ * of smooth solutions, since the face ends at the singular clamped edge. */
 static void receptance_converges_with_the_mesh(void **state) {
   (void)state;
   double flexibility[4];
@@ -568,7 +574,7 @@ static void receptance_converges_with_the_mesh(void **state) {
     modal_settings settings = default_settings(1);
     double complex r[36];
     modal_result   result = solve(&mesh, &settings);
-    modal_receptance(&result.model, .5 * two_pi * result.model.frequency[0], r);
+    modal_receptance(&result.model, 0.5 * two_pi * result.model.frequency[0], r);
     flexibility[level] = cabs(r[0]);
     modal_result_free(&result);
     mesh_fe_free(&mesh);
@@ -590,8 +596,8 @@ static double relative_change(const double *a, const double *b, int n) {
   return sqrt(off / norm);
 }
 
-/* Turning at a milliradian a second is standing still, by another road; 6000 rad/s is not: stiffer in flap, and by
- * Omega^2 softer in the plane of rotation. */
+/* A speed of 0.001 rad/s equals rest, through the equilibrium solver. At 6000 rad/s the blade is
+ * stiffer in flap and, by Omega^2, softer in the plane of rotation. */
 static void speed_leads_back_to_rest(void **state) {
   (void)state;
   const int      cells[3] = {2, 2, 4};

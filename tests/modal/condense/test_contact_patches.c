@@ -1,4 +1,4 @@
-/* Contact patches: shares, areas, axes, normals, images, and what can be wrong with them. */
+/* Contact patches: weights, areas, axes, normals, images, and errors of the input. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -14,18 +14,18 @@
 
 enum { BLADES = 23 };
 
-static const double size[3] = {.04, 1, .11}, inner = .2, degree = 0.017453292519943295;
+static const double size[3] = {0.04, 1, 0.11}, inner = 0.2, degree = 0.017453292519943295;
 static const int    cells[3] = {4, 3, 6};
 
-static modal_interface create(const mesh_fe *mesh, bool to_ground, int points) {
-  modal_interface face;
-  if (modal_interface_create(mesh, MESH_AXIS_X, BLADES, to_ground, points, &face) != SHB_OK)
+static modal_patches create(const mesh_fe *mesh, bool to_ground, int points) {
+  modal_patches face;
+  if (modal_patches_create(mesh, MESH_AXIS_X, BLADES, to_ground, points, &face) != SHB_OK)
     fail_msg("%s", shb_message());
   return face;
 }
 
-/* Centroid of the whole right face from the patches; totals, whatever the division. */
-static void check_totals(const modal_interface *face) {
+/* Centroid of the right face from the patches, and totals, for any division. */
+static void check_totals(const modal_patches *face) {
   double area = 0, centroid[3] = {0};
   for (int p = 0; p < face->n_pairs; p++) {
     double sum = 0;
@@ -43,8 +43,9 @@ static void check_totals(const modal_interface *face) {
   check_close(centroid[2] / area, radius * cos(half), 1e-12, "centroid");
 }
 
-/* The sides are planes of constant angle: normal purely tangential; the left image is one sector back. */
-static void check_pairs(const mesh_fe *mesh, const modal_interface *face) {
+/* The sides are planes of constant angle: their normals are tangential. The left image lies one
+ * sector back. */
+static void check_pairs(const mesh_fe *mesh, const modal_patches *face) {
   const double sector = 2 * acos(-1) / BLADES;
   for (int p = 0; p < face->n_pairs; p++) {
     double image[3];
@@ -66,7 +67,7 @@ static void check_pairs(const mesh_fe *mesh, const modal_interface *face) {
   }
 }
 
-/* Of the side's 24 cells, each one quadrangle or two triangles. */
+/* The side has 24 cells, each one quadrangle or two triangles. */
 static int facets(void) {
   return used_elements() == MESH_HEX20 ? 24 : 48;
 }
@@ -76,26 +77,27 @@ static void any_division_keeps_the_totals(void **state) {
   mesh_fe   mesh      = make_sector(size, inner, BLADES, cells);
   const int points[5] = {1, 2, 4, 7, facets()};
   for (int i = 0; i < 5; i++) {
-    modal_interface face = create(&mesh, false, points[i]);
+    modal_patches face = create(&mesh, false, points[i]);
     assert_int_equal(face.n_pairs, points[i]);
     check_totals(&face);
     check_pairs(&mesh, &face);
     for (int p = 0; p < face.n_pairs && points[i] < 8;
          p++) /* a facet is 1/24 of the area or less */
       check_close(face.area[p], face.total_area / points[i], 7. / facets(), "equal areas");
-    modal_interface_free(&face);
+    modal_patches_free(&face);
   }
   mesh_fe_free(&mesh);
 }
 
-/* Flat straight-sided faces: mid-side nodes alone; 48 triangles have (3*48 + 20 boundary)/2 = 82 sides, 24 quadrangles
- * (4*24 + 20)/2 = 58. A side has its part, a third or a quarter, of one facet, or of two. */
+/* Flat straight-sided faces: only mid-side nodes carry weight. 48 triangles have (3*48 + 20)/2 = 82
+ * sides, 20 of them on the boundary; 24 quadrangles have (4*24 + 20)/2 = 58. A side carries a third
+ * or a quarter of each of its facets. */
 static void all_nodes(void **state) {
   (void)state;
-  mesh_fe         mesh = make_sector(size, inner, BLADES, cells);
-  modal_interface face = create(&mesh, false, 0);
-  const bool      hex  = used_elements() == MESH_HEX20;
-  const double    part = hex ? .25 : 1. / 3;
+  mesh_fe       mesh = make_sector(size, inner, BLADES, cells);
+  modal_patches face = create(&mesh, false, 0);
+  const bool    hex  = used_elements() == MESH_HEX20;
+  const double  part = hex ? 0.25 : 1. / 3;
   assert_int_equal(face.n_pairs, hex ? 58 : 82);
   check_totals(&face);
   check_pairs(&mesh, &face);
@@ -103,16 +105,16 @@ static void all_nodes(void **state) {
     double share = face.area[p] / face.total_area * facets();
     assert_true(fabs(share - part) < 1e-9 || fabs(share - 2 * part) < 1e-9);
   }
-  modal_interface_free(&face);
+  modal_patches_free(&face);
   mesh_fe_free(&mesh);
 }
 
-/* A patch moves as the mean of its face: the exact mean of a quadratic field. */
+/* A patch moves as the mean of its face: exact for a quadratic field. */
 static void patch_is_the_mean_of_its_face(void **state) {
   (void)state;
-  mesh_fe         mesh = make_sector(size, inner, BLADES, cells);
-  modal_interface face = create(&mesh, false, 1);
-  double          mean = 0;
+  mesh_fe       mesh = make_sector(size, inner, BLADES, cells);
+  modal_patches face = create(&mesh, false, 1);
+  double        mean = 0;
   for (int e = 0; e < face.start[1]; e++) {
     const double *x = mesh.coordinates + 3 * face.node[0][e];
     double        r = hypot(x[1], x[2]);
@@ -122,57 +124,58 @@ static void patch_is_the_mean_of_its_face(void **state) {
   double exact = 3 + 5 * a * a / 3 - 7 * a / 2 * (low + high) / 2 +
                  2 * (high * high * high - low * low * low) / (3 * h);
   check_close(mean, exact, 1e-12, "mean of a quadratic field");
-  modal_interface_free(&face);
+  modal_patches_free(&face);
   mesh_fe_free(&mesh);
 }
 
 static void angles_must_agree_with_the_faces(void **state) {
   (void)state;
-  mesh_fe         mesh = make_sector(size, inner, BLADES, cells);
-  modal_interface face = create(&mesh, false, 1);
-  const double zero = .5 * degree, full = 359.5 * degree, wrong = 35 * degree, steep = -2 * degree;
+  mesh_fe       mesh = make_sector(size, inner, BLADES, cells);
+  modal_patches face = create(&mesh, false, 1);
+  const double zero = 0.5 * degree, full = 359.5 * degree, wrong = 35 * degree, steep = -2 * degree;
   check_below(face.psi, 1e-12, "psi");
   check_below(face.phi, 1e-12, "phi");
-  assert_int_equal(modal_interface_check(&face, NULL, NULL), SHB_OK);
-  assert_int_equal(modal_interface_check(&face, &zero, &full), SHB_OK);
-  assert_int_equal(modal_interface_check(&face, &wrong, NULL), SHB_ERR_INPUT);
+  assert_int_equal(modal_patches_check_angles(&face, NULL, NULL), SHB_OK);
+  assert_int_equal(modal_patches_check_angles(&face, &zero, &full), SHB_OK);
+  assert_int_equal(modal_patches_check_angles(&face, &wrong, NULL), SHB_ERR_INPUT);
   assert_non_null(strstr(shb_message(), "contact.psi: 35 deg given"));
-  assert_int_equal(modal_interface_check(&face, &zero, &steep), SHB_ERR_INPUT);
+  assert_int_equal(modal_patches_check_angles(&face, &zero, &steep), SHB_ERR_INPUT);
   assert_non_null(strstr(shb_message(), "contact.phi: -2 deg given"));
-  modal_interface_free(&face);
+  modal_patches_free(&face);
   mesh_fe_free(&mesh);
 }
 
-/* psi and phi of a skewed face by the paper's convention, v = (cos psi cos phi, sin psi cos phi, -sin phi). */
+/* psi and phi of a skewed face by the paper's convention, v = (cos psi cos phi, sin psi cos phi,
+ * -sin phi). */
 static void angles_of_a_skewed_face(void **state) {
   (void)state;
-  const double psi = 31 * degree, phi = 8 * degree, thin[3] = {.01, 1, .01};
+  const double psi = 31 * degree, phi = 8 * degree, thin[3] = {0.01, 1, 0.01};
   const int    one[3] = {1, 1, 1};
   mesh_fe      mesh   = make_sector(thin, inner, 3600, one); /* nearly a box: tangential is -y */
   for (int i = 0; i < mesh.n_nodes; i++) {
     double *x = mesh.coordinates + 3 * i;
     /* plane through the centroid: v . (tangential, axial, radial) = 0 with tangential = -y */
-    x[1] += ((x[0] - .005) * sin(psi) * cos(phi) - (x[2] - inner - .005) * sin(phi)) /
+    x[1] += ((x[0] - 0.005) * sin(psi) * cos(phi) - (x[2] - inner - 0.005) * sin(phi)) /
             (cos(psi) * cos(phi));
   }
-  modal_interface face = create(&mesh, true, 1);
-  check_below(face.psi - psi, .06 * degree, "psi"); /* the centroid is .05 deg off the z axis */
-  check_below(face.phi - phi, .06 * degree, "phi");
-  modal_interface_free(&face);
+  modal_patches face = create(&mesh, true, 1);
+  check_below(face.psi - psi, 0.06 * degree, "psi"); /* the centroid is 0.05 deg off the z axis */
+  check_below(face.phi - phi, 0.06 * degree, "phi");
+  modal_patches_free(&face);
   mesh_fe_free(&mesh);
 }
 
 static void refused(const mesh_fe *mesh, bool to_ground, int points, const char *text) {
-  modal_interface face;
-  assert_int_equal(modal_interface_create(mesh, MESH_AXIS_X, BLADES, to_ground, points, &face),
+  modal_patches face;
+  assert_int_equal(modal_patches_create(mesh, MESH_AXIS_X, BLADES, to_ground, points, &face),
                    SHB_ERR_INPUT);
   if (!strstr(shb_message(), text)) fail_msg("'%s' lacks '%s'", shb_message(), text);
 }
 
 static void bad_faces_are_one_line(void **state) {
   (void)state;
-  mesh_fe         mesh = make_sector(size, inner, BLADES, cells);
-  modal_interface face;
+  mesh_fe       mesh = make_sector(size, inner, BLADES, cells);
+  modal_patches face;
   refused(&mesh, false, 49,
           used_elements() == MESH_HEX20 ? "contact face of 24 facets"
                                         : "49 patches asked of a contact face of 48 facets");
@@ -181,33 +184,33 @@ static void bad_faces_are_one_line(void **state) {
   face = create(&mesh, true, 3);
   assert_false(face.has_left);
   check_totals(&face);
-  modal_interface_free(&face);
+  modal_patches_free(&face);
   mesh.set[MESH_CONTACT_RIGHT].n = 0;
   refused(&mesh, true, 1, "no group \"contact_right\"");
   mesh_fe_free(&mesh);
   mesh = make_sector(size, inner, BLADES, cells);
   for (int i = 0; i < 8; i++) /* off by a tenth of the face */
-    mesh.coordinates[3 * mesh.set[MESH_CONTACT_LEFT].nodes[i] + 1] += .1 * size[2];
-  assert_int_equal(modal_interface_create(&mesh, MESH_AXIS_X, BLADES, false, 1, &face),
+    mesh.coordinates[3 * mesh.set[MESH_CONTACT_LEFT].nodes[i] + 1] += 0.1 * size[2];
+  assert_int_equal(modal_patches_create(&mesh, MESH_AXIS_X, BLADES, false, 1, &face),
                    SHB_ERR_INPUT);
   mesh_fe_free(&mesh);
 }
 
-/* The left face's nodes moved within it: patches still see a field that is linear in position as their right halves do, turned
- * back by a sector. */
+/* With displaced nodes on the left face, left patches reproduce a linear field as their right
+ * counterparts do, rotated back by a sector. */
 static void faces_that_do_not_match_are_projected(void **state) {
   (void)state;
   mesh_fe mesh = make_sector(size, inner, BLADES, cells);
   for (int i = 0; i < mesh.n_nodes; i++) {
     double *x = mesh.coordinates + 3 * i, r = hypot(x[1], x[2]), high = (r - inner) / size[2];
-    double  bump = .05 * sin(acos(-1) * x[0] / size[0]) * sin(acos(-1) * high);
+    double  bump = 0.05 * sin(acos(-1) * x[0] / size[0]) * sin(acos(-1) * high);
     if (x[1] / x[2] < tan(acos(-1) / BLADES) * (1 - 1e-9)) continue; /* not on the left side */
     x[0] += bump * size[0];
     for (int d = 1; d < 3; d++) x[d] *= 1 + bump * size[2] / r;
   }
   for (int points = 0; points < 4; points++) {
-    modal_interface face;
-    assert_int_equal(modal_interface_create(&mesh, MESH_AXIS_X, BLADES, false, points, &face),
+    modal_patches face;
+    assert_int_equal(modal_patches_create(&mesh, MESH_AXIS_X, BLADES, false, points, &face),
                      SHB_OK);
     assert_true(face.projected && face.gap < 1e-12);
     for (int p = 0; p < face.n_pairs; p++) {
@@ -224,7 +227,7 @@ static void faces_that_do_not_match_are_projected(void **state) {
       for (int d = 0; d < 3; d++)
         check_below(image[d] - face.centroid[0][3 * p + d], 1e-12, "image of a patch");
     }
-    modal_interface_free(&face);
+    modal_patches_free(&face);
   }
   mesh_fe_free(&mesh);
 }

@@ -1,4 +1,4 @@
-/* Loads from a file of nodal values: equal to the case's own where those can say the same, exact where the elements are. */
+/* Loads from field files: equal to those of a case where both can describe them, else exact. */
 #include "modal/condense/load_patterns.h"
 
 #include <complex.h>
@@ -12,7 +12,7 @@
 
 enum { BLADES = 23 };
 
-static const double size[3] = {.04, 1, .12}, inner = .1;
+static const double size[3] = {0.04, 1, 0.12}, inner = 0.1;
 static const int    cells[3] = {2, 2, 3};
 
 static modal_settings default_settings(void) {
@@ -20,7 +20,7 @@ static modal_settings default_settings(void) {
                           .axis     = MESH_AXIS_X,
                           .blades   = BLADES,
                           .modes    = 6,
-                          .damping  = {.ratio = .002},
+                          .damping  = {.ratio = 0.002},
                           .points   = 1};
 }
 
@@ -67,11 +67,11 @@ static void check_equal(const modal_model *a, const modal_model *b) {
   check_same(k * nc, a->load_inertia, b->load_inertia, "its inertia");
 }
 
-/* The same pressure at every node, with factor and phase a harmonic. */
+/* Equal pressure at every node, with a factor and a phase for each harmonic. */
 static void even_pressure_is_the_case_s(void **state) {
   (void)state;
   const int            harmonic[2] = {3, 1}; /* in any order */
-  const double complex factor[2]   = {.3 * cexp(I * 1.1), -.7};
+  const double complex factor[2]   = {0.3 * cexp(I * 1.1), -0.7};
   mesh_fe              mesh        = make_sector(size, inner, BLADES, cells);
   int                 *node        = malloc((size_t)mesh.n_nodes * sizeof *node);
   double complex      *value       = malloc(2 * (size_t)mesh.n_nodes * sizeof *value);
@@ -100,9 +100,9 @@ static void force_at_a_node_is_the_case_s(void **state) {
   fem_load       own      = {.kind        = FEM_LOAD_FORCE,
                              .force       = {3, -4, 5},
                              .has_at      = true,
-                             .at          = {.02, 0, .2},
+                             .at          = {0.02, 0, 0.2},
                              .n_harmonics = 2,
-                             .factor      = {0, 0, I - .5}};
+                             .factor      = {0, 0, I - 0.5}};
   fem_load       field    = {.kind = FEM_LOAD_FIELD};
   int            node     = (int)mesh.node_tag[mesh_fe_nearest(&mesh, own.at)];
   double complex value[3];
@@ -120,7 +120,7 @@ static void force_at_a_node_is_the_case_s(void **state) {
 /* p = 2 + 30 x - 7 y on the flat face z = c of a box: force and moments in closed form. */
 static void linear_pressure_is_exact(void **state) {
   (void)state;
-  const double flat[3] = {.3, .2, .1}, a = flat[0], b = flat[1];
+  const double flat[3] = {0.3, 0.2, 0.1}, a = flat[0], b = flat[1];
   const int    few[3] = {3, 2, 1}, harmonic = 0;
   for (int kind = MESH_TET10; kind <= MESH_HEX20; kind++) {
     use_elements((mesh_kind)kind);
@@ -185,23 +185,24 @@ static void faults_are_one_line(void **state) {
   mesh_fe_free(&mesh);
 }
 
-/* Moduli and phases of their own a harmonic, together: the sum of what each does alone. */
+/* Loads with moduli and phases for each harmonic: together they give the sum of their separate
+ * effects. */
 static void loads_add_up(void **state) {
   (void)state;
-  const double complex turn    = cexp(.9 * I);
+  const double complex turn    = cexp(0.9 * I);
   mesh_fe              mesh    = make_sector(size, inner, BLADES, cells);
   fem_load             load[3] = {
                   {.kind = FEM_LOAD_PRESSURE, .pressure = 210, .n_harmonics = 1, .factor = {0, 1}},
                   {.kind        = FEM_LOAD_TRACTION,
                    .traction    = {3, -70, 20},
                    .n_harmonics = 3,
-                   .factor      = {.2, -.4 * I, 0, cexp(2 * I)}},
+                   .factor      = {0.2, -0.4 * I, 0, cexp(2 * I)}},
                   {.kind        = FEM_LOAD_FORCE,
-                   .force       = {.1, 0, .3},
+                   .force       = {0.1, 0, 0.3},
                    .has_at      = true,
-                   .at          = {0, 0, .22},
+                   .at          = {0, 0, 0.22},
                    .n_harmonics = 2,
-                   .factor      = {0, .3, turn}}};
+                   .factor      = {0, 0.3, turn}}};
   modal_model    one[3], all;
   modal_settings settings = default_settings();
   modal_result   result;
@@ -227,7 +228,7 @@ static void loads_add_up(void **state) {
   }
   modal_result_free(&result);
 
-  /* a quarter turn of both turns the sum; opposite loads leave nothing but rounding */
+  /* a phase shift of both shifts the sum; opposite loads cancel to rounding */
   load[1].n_harmonics = 1, load[1].factor[0] = 0, load[1].factor[1] = I;
   load[0].factor[1] = I;
   settings.n_loads  = 2;
@@ -256,7 +257,7 @@ static void loads_add_up(void **state) {
   mesh_fe_free(&mesh);
 }
 
-/* Each load on a group of its own. */
+/* Loads on groups of their own. */
 static void loads_have_groups(void **state) {
   (void)state;
   mesh_fe    mesh    = make_sector(size, inner, BLADES, cells);
@@ -283,7 +284,7 @@ static void loads_have_groups(void **state) {
     for (int e = 0; e < 3 * made[i].dofs.n_entries; e++) sum[i][e % 3] += made[i].dofs.weight[e];
     modal_load_free(&made[i]);
   }
-  /* the resultant of a pressure: on the outer face along the radius, on the flat side across it */
+  /* resultant of a pressure: radial on the outer face, tangential on the flat side */
   double half = acos(-1) / BLADES, outer = inner + size[2];
   check_close(sum[1][2], -210 * size[0] * 2 * outer * sin(half), 1e-6,
               "resultant on the outer face");

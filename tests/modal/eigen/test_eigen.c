@@ -32,7 +32,7 @@ static void check_modes(const fem_system *system, const modal_eigen *eigen) {
   double value;
   assert_int_equal(MatCreateVecs(system->K, NULL, &k_phi), 0);
   for (int i = 0; i < eigen->n; i++) {
-    check_below(eigen->residual[i], 1e-9, "residual of a mode");
+    check_below(eigen->eigen_residual[i], 1e-9, "residual of a mode");
     MatDenseGetColumnVecRead(eigen->phi, i, &a);
     MatMult(system->K, a, k_phi);
     VecDot(a, k_phi, &value);
@@ -50,13 +50,13 @@ static void check_modes(const fem_system *system, const modal_eigen *eigen) {
   VecDestroy(&k_phi);
 }
 
-/* CalculiX C3D10, 9684 nodes, same bar; Timoshenko's first three. */
+/* CalculiX C3D10, 9684 nodes, same bar; the first three by Timoshenko's theory. */
 static void steel_bar(void **state) {
   (void)state;
   const double calculix[6]   = {210.0503197, 618.2204161, 1301.270084,
                                 2317.657808, 3534.732999, 3582.520868};
   const double timoshenko[3] = {208.47, 615.89, 1291.46};
-  const double size[3]       = {.2, .03, .01};
+  const double size[3]       = {0.2, 0.03, 0.01};
   const int    cells[3]      = {40, 6, 4};
   mesh_fe      mesh          = make_box(size, cells);
   for (int rule = FEM_STANDARD; rule <= FEM_CALCULIX; rule++) {
@@ -74,7 +74,8 @@ static void steel_bar(void **state) {
   mesh_fe_free(&mesh);
 }
 
-/* Frequency of a mode from its strains, which know a rigid motion exactly; of the solver's own only rounding is left. */
+/* Frequency of a mode from its strains, which are exact for a rigid motion. The solver's own
+ * frequency differs by rounding. */
 static double strain_frequency(const mesh_fe *mesh, const fem_system *system,
                                const modal_eigen *eigen, int mode) {
   fem_element *element = malloc(sizeof *element);
@@ -90,10 +91,10 @@ static double strain_frequency(const mesh_fe *mesh, const fem_system *system,
   return sqrt(lambda) / two_pi;
 }
 
-/* A body held nowhere: six zeros, then the first elastic mode well above. */
+/* A free body: six zero frequencies, then the first elastic mode. */
 static void free_body_has_six_rigid_modes(void **state) {
   (void)state;
-  const double size[3] = {.11, .07, .05}, shift = -1e8;
+  const double size[3] = {0.11, 0.07, 0.05}, shift = -1e8;
   const int    cells[3] = {4, 3, 2};
   mesh_fe      mesh     = make_box(size, cells);
   fem_system   system;
@@ -112,7 +113,8 @@ static void free_body_has_six_rigid_modes(void **state) {
   mesh_fe_free(&mesh);
 }
 
-/* Frequency of the mode that moves most along x; nu = 0: the bar's axial mode is exact, sin(pi x / 2L). */
+/* Frequency of the mode with the largest motion along x. For nu = 0 the axial mode sin(pi x / 2L)
+ * is exact. */
 static double axial_frequency(const double size[3], const int cells[3]) {
   const fem_material cork = {.E = 2.1e11, .rho = 7850};
   mesh_fe            mesh = make_box(size, cells);
@@ -146,7 +148,7 @@ static double axial_frequency(const double size[3], const int cells[3]) {
 
 static void smooth_mode_converges_with_order_four(void **state) {
   (void)state;
-  const double size[3] = {.1, .04, .03}, exact = sqrt(2.1e11 / 7850) / (4 * size[0]);
+  const double size[3] = {0.1, 0.04, 0.03}, exact = sqrt(2.1e11 / 7850) / (4 * size[0]);
   double       error[3];
   for (int level = 0; level < 3; level++) {
     const int n        = 2 << level;
@@ -165,7 +167,7 @@ static void smooth_mode_converges_with_order_four(void **state) {
 
 static void too_many_modes_is_one_line(void **state) {
   (void)state;
-  const double         size[3]  = {.1, .1, .1};
+  const double         size[3]  = {0.1, 0.1, 0.1};
   const int            cells[3] = {1, 1, 1};
   mesh_fe              mesh     = make_box(size, cells);
   modal_eigen_settings settings = {.modes = 55};
@@ -182,9 +184,9 @@ static void too_many_modes_is_one_line(void **state) {
   mesh_fe_free(&mesh);
 }
 
-/* Six frequencies of the steel bar with a number of hexahedra along. */
+/* Six frequencies of the steel bar for a number of hexahedra along it. */
 static void bar_frequencies(int n, fem_rules rules, double frequency[6]) {
-  const double size[3]  = {.2, .03, .01};
+  const double size[3]  = {0.2, 0.03, 0.01};
   const int    cells[3] = {n, 3 * n / 20, n / 10};
   mesh_fe      mesh     = make_box(size, cells);
   fem_system   system;
@@ -196,7 +198,8 @@ static void bar_frequencies(int n, fem_rules rules, double frequency[6]) {
   mesh_fe_free(&mesh);
 }
 
-/* 2x2x2 and 3x3x3 points go to the same frequencies, the former from below the latter; Timoshenko's first three. */
+/* Rules of 2x2x2 and 3x3x3 points converge to the same frequencies, the former from below the
+ * latter. The first three agree with Timoshenko's theory. */
 static void both_rules_of_hexahedra_meet(void **state) {
   (void)state;
   const double timoshenko[3] = {208.47, 615.89, 1291.46};
@@ -209,14 +212,14 @@ static void both_rules_of_hexahedra_meet(void **state) {
   for (int i = 0; i < 6; i++) {
     print_message("mode %d: %.4f Hz, 3x3x3 points %.1e above, half as fine %.1e\n", i + 1,
                   reduced[i], gap[1][i], gap[0][i]);
-    assert_true(gap[1][i] > 0 && gap[1][i] < 1e-3 && gap[1][i] < .5 * gap[0][i]);
+    assert_true(gap[1][i] > 0 && gap[1][i] < 1e-3 && gap[1][i] < 0.5 * gap[0][i]);
     if (i < 3) check_close(reduced[i], timoshenko[i], 1e-2, "frequency against Timoshenko");
   }
 }
 
 /* A box bent to an arc across and twisted along: a cambered blade of curved elements. */
 static mesh_fe cambered_blade(const int cells[3]) {
-  const double size[3] = {.12, .05, .004}, radius = .035, twist = .6;
+  const double size[3] = {0.12, 0.05, 0.004}, radius = 0.035, twist = 0.6;
   mesh_fe      mesh = make_box(size, cells);
   for (int i = 0; i < mesh.n_nodes; i++) {
     double *x   = mesh.coordinates + 3 * i;
@@ -262,7 +265,7 @@ static void four_points_stiffen_curved_tetrahedra_less(void **state) {
     }
     print_message("mode %d: 4 points %.2e and %.2e above, 27 points %.2e and %.2e\n", i + 1,
                   above[0], above[1], more[0], more[1]);
-    assert_true(above[1] < .3 * above[0]);
+    assert_true(above[1] < 0.3 * above[0]);
   }
 }
 

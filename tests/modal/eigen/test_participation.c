@@ -30,7 +30,8 @@ static model *make(const mesh_fe *mesh, const fem_material *material, int modes)
   assert_int_equal(fem_system_create(PETSC_COMM_SELF, mesh, material, FEM_FULL, &m->system), 0);
   if (modes <= 0) settings.modes = 3 * (int)m->system.n_free;
   if (modal_eigen_solve(&m->system, &settings, &m->eigen) != 0) fail_msg("%s", shb_message());
-  assert_int_equal(modal_participate(&m->body, NULL, &m->system, &m->eigen, &m->share), SHB_OK);
+  assert_int_equal(modal_participation_create(&m->body, NULL, &m->system, &m->eigen, &m->share),
+                   SHB_OK);
   return m;
 }
 
@@ -46,18 +47,19 @@ static double effective(const model *m, int mode, int r) {
   return gamma * gamma / m->share.inertia[r];
 }
 
-/* The modes that carry most of direction r, in order: their shares. */
+/* Shares of the modes with the largest effective mass in direction r, in order. */
 static void greatest(const model *m, int r, int n, double *share) {
   for (int found = 0, i = 0; i < m->eigen.n && found < n; i++)
-    if (effective(m, i, r) > .01) share[found++] = effective(m, i, r);
+    if (effective(m, i, r) > 0.01) share[found++] = effective(m, i, r);
 }
 
-/* A slender clamped bar (Euler-Bernoulli: 4 (sigma_i/beta_i)^2; axially, without Poisson's ratio, 8/(2i - 1)^2 pi^2). */
+/* A slender clamped bar (Euler-Bernoulli: 4 (sigma_i/beta_i)^2; axially, without Poisson's ratio,
+ * 8/(2i - 1)^2 pi^2). */
 static void slender_bar(void **state) {
   (void)state;
   const fem_material cork        = {.E = 2.1e11, .rho = 7850};
-  const double       bending[3]  = {.613065, .188302, .064739};
-  const double       size[3]     = {1, .012, .021};
+  const double       bending[3]  = {0.613065, 0.188302, 0.064739};
+  const double       size[3]     = {1, 0.012, 0.021};
   const int          cells[3]    = {24, 1, 1};
   double             found[2][3] = {{0}}, axial[1] = {0};
   use_elements(MESH_HEX20);
@@ -79,7 +81,7 @@ static void slender_bar(void **state) {
   mesh_fe_free(&mesh);
 }
 
-/* b^T M^-1 b, b the inertia forces of motion r: what all modes of the mesh add up to. */
+/* b^T M^-1 b, b the inertia forces of motion r: the sum over all modes of the mesh. */
 static double all_modes(const model *m, int r) {
   Vec    load[FEM_RIGID], x;
   double inertia[FEM_RIGID], sum;
@@ -102,7 +104,7 @@ static double all_modes(const model *m, int r) {
 /* All modes of a mesh: the sums are b^T M^-1 b. */
 static void all_modes_add_up(void **state) {
   (void)state;
-  const double size[3]  = {.11, .07, .05};
+  const double size[3]  = {0.11, 0.07, 0.05};
   const int    cells[3] = {2, 1, 1};
   for (int kind = 0; kind < 2; kind++) {
     use_elements(kind ? MESH_HEX20 : MESH_TET10);
@@ -120,10 +122,10 @@ static void all_modes_add_up(void **state) {
   use_elements(MESH_TET10);
 }
 
-/* What is missing of the mass rests on the clamped nodes: of first order in the element's length. */
+/* The mass missing in the sum is that of the clamped nodes, of first order in the element size. */
 static void what_is_missing_vanishes(void **state) {
   (void)state;
-  const double size[3] = {.11, .07, .05};
+  const double size[3] = {0.11, 0.07, 0.05};
   double       missing[3];
   for (int i = 0; i < 3; i++) {
     const int cells[3] = {2 << i, 2, 1};
@@ -134,7 +136,7 @@ static void what_is_missing_vanishes(void **state) {
     mesh_fe_free(&mesh);
   }
   print_message("missing of the mass: %.4f %.4f %.4f\n", missing[0], missing[1], missing[2]);
-  for (int i = 0; i < 2; i++) check_close(missing[i] / missing[i + 1], 2, .1, "first order");
+  for (int i = 0; i < 2; i++) check_close(missing[i] / missing[i + 1], 2, 0.1, "first order");
 }
 
 int main(int argc, char **argv) {

@@ -1,4 +1,4 @@
-/* The HDF5 layer: exact round trips, what other writers store, and every way a file can be bad. */
+/* The HDF5 layer: exact round trips, files of other writers, and damaged files. */
 #include <math.h>
 #include <signal.h>
 #include <sys/resource.h>
@@ -173,7 +173,7 @@ static void test_scales(void **state) {
   assert_ok(h5_close(file));
 }
 
-/* A scale of a long run labels thousands of datasets: HDF5's list of them must not hit the 64 kB limit. */
+/* A dimension scale may label thousands of datasets: HDF5's list of them must not reach 64 kB. */
 static void test_many_attachments(void **state) {
   (void)state;
   enum { MANY = 5000 };
@@ -194,7 +194,7 @@ static void test_many_attachments(void **state) {
   assert_ok(h5_close(file));
 }
 
-/* ------------------------------------------------------------ what others write */
+/* ------------------------------------------------------------ other writers */
 
 static void put(hid_t file, const char *name, hid_t stored, hid_t memory, h5_shape shape,
                 const void *data) {
@@ -216,7 +216,7 @@ static hid_t foreign_complex(void) {
 
 static void test_foreign_numbers(void **state) {
   (void)state;
-  const double    pairs[4] = {.25, -3, 8, 1.5}; /* imag, real */
+  const double    pairs[4] = {0.25, -3, 8, 1.5}; /* imag, real */
   const long      big[2]   = {3, 1L << 40};
   hid_t           file = create("foreign.h5"), stored = foreign_complex();
   hid_t           memory = H5Tcreate(H5T_COMPOUND, 16);
@@ -231,10 +231,10 @@ static void test_foreign_numbers(void **state) {
   put(file, "short", H5T_STD_I16BE, H5T_NATIVE_LONG, H5_SHAPE(1), big);
   put(file, "long", H5T_STD_I64LE, H5T_NATIVE_LONG, two, big);
   assert_ok(h5_read_complex(file, "wave", &two, &wave));
-  assert_true(wave[0] == -3 + .25 * I && wave[1] == 1.5 + 8 * I);
+  assert_true(wave[0] == -3 + 0.25 * I && wave[1] == 1.5 + 8 * I);
   free(wave);
   assert_ok(h5_read_complex(file, "float", &two, &wave));
-  assert_true(wave[0] == .25 && wave[1] == -3);
+  assert_true(wave[0] == 0.25 && wave[1] == -3);
   free(wave);
   h5_shape one = H5_SHAPE(1);
   assert_ok(h5_read_double(file, "short", &one, &real));
@@ -259,7 +259,7 @@ static void test_foreign_texts(void **state) {
   int    n;
   char **text, *attribute;
   H5Tset_size(fixed, 3);
-  H5Tset_strpad(fixed, H5T_STR_NULLPAD); /* as numpy's S3: no end mark when full */
+  H5Tset_strpad(fixed, H5T_STR_NULLPAD); /* as numpy's S3: no terminator when full */
   H5Tset_size(padded, 6);
   H5Tset_strpad(padded, H5T_STR_SPACEPAD); /* as Fortran */
   put(file, "fixed", fixed, fixed, H5_SHAPE(2), "tipab");
@@ -331,7 +331,7 @@ static void test_bad_datasets(void **state) {
   h5_abandon(file);
 }
 
-/* A few bytes that declare terabytes must not make us ask for them. */
+/* A small file that declares terabytes must not cause their allocation. */
 static void test_huge_claims(void **state) {
   (void)state;
   hid_t         file = create("huge.h5"), layout = H5Pcreate(H5P_DATASET_CREATE);
@@ -376,7 +376,7 @@ static void test_bad_files(void **state) {
   assert_refused(open_and_close("/dev/null"), SHB_ERR_IO, "is not a file");
 }
 
-/* In a child without root's rights, which would pass any permission. */
+/* In a child process without root's rights, to which permissions apply. */
 static void test_no_permission(void **state) {
   (void)state;
   write_sample("private.h5");
@@ -417,7 +417,7 @@ static void test_no_folder(void **state) {
   assert_ok(h5_close(file)); /* nothing to close */
 }
 
-/* The disk fills up while writing: one clear line, no half file, and HDF5 still works. */
+/* The disk fills up while writing: a one-line message, no partial file, and HDF5 still works. */
 static void test_disk_full(void **state) {
   (void)state;
   struct rlimit before, tight;
@@ -452,7 +452,7 @@ static void test_abandoned(void **state) {
   h5_abandon(-1);
   assert_int_equal(files_in_scratch(), before);
   write_sample("kept.h5");
-  h5_abandon(reopen("kept.h5")); /* only read: stays */
+  h5_abandon(reopen("kept.h5")); /* a file opened for reading stays */
   assert_int_equal(files_in_scratch(), before + 1);
 }
 

@@ -6,14 +6,15 @@ import numpy as np
 
 
 def write(path):
-    """A modal file as others may store it: narrow, packed, big-endian, fixed-length text, a left side."""
+    """A modal file as others may store it: single precision, packed, big-endian, fixed text."""
     shape = np.arange(2 * 3 * 4).reshape(2, 3, 4)
     with h5py.File(path, "w", libver="latest") as file:
         file.attrs["format"] = np.bytes_("shroudhb modal model")
         file.attrs["format_version"] = np.array([1], dtype="u1")
         file["modes/frequency"] = np.array([100, 200, 300, 400], dtype=">i4")
         file["modes/damping_ratio"] = np.full(4, 0.25, dtype="f2")
-        file.create_dataset("contact/right/shape", data=shape.astype("f4"), compression="gzip", chunks=(1, 3, 2))
+        file.create_dataset("contact/right/shape", data=shape.astype("f4"), compression="gzip",
+                            chunks=(1, 3, 2))
         file["contact/left/shape"] = -shape
         file["load/modal_force"] = (shape[0] + 1j * shape[1]).astype("c8")
         file["probe/name"] = np.array(["tip", "psi \u03c8".encode()], dtype="S6")
@@ -48,7 +49,8 @@ def check(path):
         assert force[1, 1] == 2.5 - 0.125j
         assert force.dims[1][0] == file["modes/frequency"]
         assert list(file["probe/name"].asstr()) == ["tip \u03c8"]
-        assert list(file["contact/right/shape"].dims[1][0].asstr()) == ["tangential", "axial", "radial"]
+        axes = file["contact/right/shape"].dims[1][0].asstr()
+        assert list(axes) == ["tangential", "axial", "radial"]
 
 
 if __name__ == "__main__":

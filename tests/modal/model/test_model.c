@@ -1,4 +1,4 @@
-/* The modal file: exact round trip, what other writers may leave out, and every fault by name. */
+/* The modal file: exact round trip, optional parts, and faults named in the message. */
 #include <math.h>
 
 #include "modal/model/model.h"
@@ -38,14 +38,14 @@ static double *squares(int n, double seed) {
   return out;
 }
 
-/* Every part present when full; the least a file may hold otherwise. */
+/* All parts if full; else the fewest that a file may hold. */
 static modal_model sample(bool full) {
   static const char *const name[] = {"tip", "mi-corde \xc3\xa9", "root"};
   modal_model              model  = {.n_modes = MODES, .n_pairs = PAIRS, .n_load = LOADS};
   model.frequency                 = numbers(MODES, 1);
   model.damping_ratio             = numbers(MODES, 2);
   for (int i = 0; i < MODES; i++) model.frequency[i] = 103.25 * (i + 1);
-  for (int i = 0; i < MODES; i++) model.damping_ratio[i] = .002 * i;
+  for (int i = 0; i < MODES; i++) model.damping_ratio[i] = 0.002 * i;
   model.right       = numbers(PAIRS * 3 * MODES, 3);
   model.modal_force = waves((LOADS + 1) * MODES, 4);
   if (!full) return model;
@@ -79,12 +79,12 @@ static modal_model sample(bool full) {
   model.probe_load_inertia    = waves((LOADS + 1) * 3 * PROBES, 18);
   model.normal                = numbers(PAIRS * 3, 12);
   model.area                  = numbers(PAIRS, 13);
-  model.mode_residual         = numbers(MODES, 14);
+  model.eigen_residual        = numbers(MODES, 14);
   model.probe_name            = calloc(PROBES, sizeof *model.probe_name);
   for (int i = 0; i < PROBES; i++) model.probe_name[i] = strdup(name[i]);
   for (int i = 0; i < PAIRS; i++) {
     model.area[i] = 1e-5 * (i + 1);
-    for (int j = 0; j < 3; j++) model.normal[3 * i + j] = (double[]){.6, .8, 0}[j];
+    for (int j = 0; j < 3; j++) model.normal[3 * i + j] = (double[]){0.6, 0.8, 0}[j];
   }
   return model;
 }
@@ -98,7 +98,7 @@ static void write_model(const char *name, const modal_model *model) {
   assert_ok(h5_close(file));
 }
 
-/* Open for change in place, as another program might. */
+/* Open for changes in place, as another program might. */
 static hid_t edit(const char *name) {
   hid_t file = H5Fopen(scratch(name), H5F_ACC_RDWR, H5P_DEFAULT);
   assert_true(file >= 0);
@@ -127,7 +127,7 @@ static void test_round_trip(void **state) {
   assert_true(read.has_left);
   assert_same(wrote, read, frequency, MODES);
   assert_same(wrote, read, damping_ratio, MODES);
-  assert_same(wrote, read, mode_residual, MODES);
+  assert_same(wrote, read, eigen_residual, MODES);
   assert_same(wrote, read, right, PAIRS * 3 * MODES);
   assert_same(wrote, read, left, PAIRS * 3 * MODES);
   assert_same(wrote, read, residual_flexibility, CONTACTS * CONTACTS);
@@ -226,7 +226,7 @@ static void test_truncated(void **state) {
   modal_model_free(&model);
 }
 
-/* Without a required dataset the file is refused, by name; without an optional one it is read. */
+/* Without a required dataset the file is refused by name; without an optional one it is read. */
 static void test_missing(void **state) {
   (void)state;
   static const struct {
@@ -276,7 +276,7 @@ static void test_missing(void **state) {
   modal_model_free(&model);
 }
 
-/* Residual terms are optional, but not below residual modes, which stand for what they leave out. */
+/* Residual terms are optional, except below residual modes, which need them. */
 static void test_residual_modes_need_terms(void **state) {
   (void)state;
   static const char *const term[] = {"/contact/residual_flexibility", "/contact/residual_inertia",
@@ -298,7 +298,7 @@ static void test_residual_modes_need_terms(void **state) {
   modal_model_free(&model);
 }
 
-/* Put other reals where a dataset was. */
+/* Replace a dataset by other reals. */
 static void replace(const char *name, const char *path, h5_shape shape, const double *data) {
   hid_t file = edit(name);
   assert_true(H5Ldelete(file, path, H5P_DEFAULT) >= 0);
@@ -341,7 +341,7 @@ static void test_shapes(void **state) {
   };
   modal_model model = sample(true);
   double     *ones  = numbers(200, 1);
-  for (int i = 0; i < 200; i++) ones[i] = .5;
+  for (int i = 0; i < 200; i++) ones[i] = 0.5;
   for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
     write_model("shape.h5", &model);
     replace("shape.h5", wrong[i].path, wrong[i].shape, ones);
@@ -351,7 +351,7 @@ static void test_shapes(void **state) {
   modal_model_free(&model);
 }
 
-/* One number of one array made wrong. */
+/* One wrong number in one array. */
 typedef struct {
   size_t      offset; /* of the array in modal_model */
   size_t      index;
@@ -391,7 +391,7 @@ static void test_values(void **state) {
       {IN(load_inertia), 2, NAN, "/load/residual_inertia: the value at [0, 1]"},
       {IN(probe_contact_inertia), 12, NAN, "/probe/contact_inertia: the value at [1, 0]"},
       {IN(probe_load_inertia), 0, NAN, "/probe/load_inertia: the value at [0, 0]"},
-      {IN(normal), 3, .7, "/contact/normal: row 1 (from 0) has length 1.06301; unit vectors"},
+      {IN(normal), 3, 0.7, "/contact/normal: row 1 (from 0) has length 1.06301; unit vectors"},
       {IN(area), 1, 0, "/contact/area: value 1 (from 0) is 0 m^2; all must be positive"},
   };
   for (size_t i = 0; i < sizeof faults / sizeof *faults; i++) {
@@ -405,7 +405,7 @@ static void test_values(void **state) {
   }
 }
 
-/* Rounding of another program's symmetric matrix is let pass: 1e-7 of the largest, not 1e-5. */
+/* Asymmetry by rounding is accepted: 1e-7 of the largest value, not 1e-5. */
 static void test_symmetry_bound(void **state) {
   (void)state;
   modal_model model = sample(true);
@@ -421,7 +421,7 @@ static void test_symmetry_bound(void **state) {
   modal_model_free(&model);
 }
 
-/* Real numbers where complex ones are wanted, a few bits fewer, and texts instead of numbers. */
+/* Real numbers in place of complex ones, single precision, and texts in place of numbers. */
 static void test_other_types(void **state) {
   (void)state;
   modal_model model = sample(false), read;

@@ -1,5 +1,7 @@
-/* The modal file between programs: h5py writes and we read, we write and h5py and h5dump read.
- * Arguments: python, tests/modal/model/foreign.py, cases/bring_your_own/write_modal.py. Exit 77: no h5py here. */
+/* The modal file between programs: h5py writes and we read; we write and h5py and h5dump read.
+ *
+ * Arguments: python, tests/modal/model/foreign.py, cases/bring_your_own/write_modal.py. Exit code
+ * 77 without h5py. */
 #include <math.h>
 
 #include "modal/model/model.h"
@@ -16,8 +18,8 @@ static bool run(const char *format, const char *a, const char *b, const char *c)
 /* The example's structure: its modes must give back M = I, K and F. */
 static void test_example(void **state) {
   (void)state;
-  static const double K[3][3] = {{1, .2, .1}, {.2, 1.3, .15}, {.1, .15, 1.6}};
-  static const double F[3] = {.04, .06, .03}, omega[3] = {.94827, 1.13815, 1.30591};
+  static const double K[3][3] = {{1, 0.2, 0.1}, {0.2, 1.3, 0.15}, {0.1, 0.15, 1.6}};
+  static const double F[3] = {0.04, 0.06, 0.03}, omega[3] = {0.94827, 1.13815, 1.30591};
   const double        two_pi = 6.283185307179586;
   modal_model         model;
   assert_true(run("cd '%s' && '%s' '%s'", scratch_folder, python, example));
@@ -30,7 +32,7 @@ static void test_example(void **state) {
   assert_string_equal(model.probe_name[0], "mass");
   for (int i = 0; i < 3; i++) {
     double w = two_pi * model.frequency[i];
-    assert_true(fabs(w - omega[i]) < 1e-5 && fabs(model.damping_ratio[i] - .01 * w) < 1e-14);
+    assert_true(fabs(w - omega[i]) < 1e-5 && fabs(model.damping_ratio[i] - 0.01 * w) < 1e-14);
     assert_true(model.modal_force[i] == 0);
   }
   for (int a = 0; a < 3; a++) {
@@ -60,7 +62,7 @@ static void test_others_types(void **state) {
   assert_int_equal(model.n_load, 2);
   assert_true(model.has_left);
   for (int i = 0; i < 4; i++)
-    assert_true(model.frequency[i] == 100 * (i + 1) && model.damping_ratio[i] == .25);
+    assert_true(model.frequency[i] == 100 * (i + 1) && model.damping_ratio[i] == 0.25);
   for (int i = 0; i < 24; i++)
     assert_true(model.right[i] == i && model.left[i] == -i && model.probe[i] == i);
   for (int i = 0; i < 12; i++) assert_true(model.modal_force[i] == i + I * (12 + i));
@@ -70,9 +72,9 @@ static void test_others_types(void **state) {
 }
 
 static void write_ours(void) {
-  static double               frequency[] = {100, 200}, damping[] = {.01, 0};
+  static double               frequency[] = {100, 200}, damping[] = {0.01, 0};
   static double               shape[] = {1, 2, 3, 4, 5, 6};
-  static double complex       force[] = {0, 0, 1.5, 2.5 - .125 * I};
+  static double complex       force[] = {0, 0, 1.5, 2.5 - 0.125 * I};
   static char                 name[] = "tip \xcf\x88", *names[] = {name};
   static const shb_provenance from  = {"case.yaml", "name: \xcf\x88\n", "modes = 2\n", "test"};
   const modal_model           model = {.n_modes       = 2,

@@ -1,4 +1,4 @@
-/* Fewer modes: the statics stay, the dynamics of the modes left out go with the fourth power of the frequency. */
+/* Fewer modes: exact statics, and an error of fourth order in the frequency. */
 #include "modal/model/reduce.h"
 
 #include <math.h>
@@ -47,7 +47,8 @@ static void drop_fourth(modal_model *model) {
   model->residual_fourth = NULL;
 }
 
-/* Errors at harmonic 1 of R, of the free response and of the probes, model against all its modes. */
+/* Errors at harmonic 1 of R, of the free response and of the probes, against the model with all
+ * modes. */
 static void errors_at(int parts, int modes, bool residuals, double omega, double error[3]) {
   modal_model  all, few;
   mhb_settings s = random_settings(2);
@@ -61,11 +62,11 @@ static void errors_at(int parts, int modes, bool residuals, double omega, double
     drop_fourth(&all);
     drop_fourth(&few);
   }
-  if (modal_model_keep(&few, modes, residuals) != SHB_OK) fail_msg("%s", shb_message());
+  if (modal_model_reduce(&few, modes, residuals) != SHB_OK) fail_msg("%s", shb_message());
   assert_int_equal(few.n_modes, modes);
   mhb_receptance *a = receptance_of(&all, &s, omega), *b = receptance_of(&few, &s, omega);
   double complex  p[ROWS], q[2][6];
-  for (int i = 0; i < ROWS; i++) p[i] = .3 + .1 * i - .07 * I * i * i;
+  for (int i = 0; i < ROWS; i++) p[i] = 0.3 + 0.1 * i - 0.07 * I * i * i;
   mhb_receptance_probe(a, 1, p, q[0]);
   mhb_receptance_probe(b, 1, p, q[1]);
   error[0] = difference(ROWS * ROWS, a->R + ROWS * ROWS, b->R + ROWS * ROWS);
@@ -77,9 +78,9 @@ static void errors_at(int parts, int modes, bool residuals, double omega, double
   modal_model_free(&few);
 }
 
-/* Without damping modes that are left out answer as themselves: in a file with residual terms and modes, and in one without either. Beside
- * residual terms alone R differs with omega^6: the series is then bounded by other means. In a file of earlier versions, without the term of omega^4,
- * all errors go with omega^4. */
+/* Without damping the modes left out stay exact, in files with residual terms and modes and in
+ * files without either. With residual terms only, R errs with omega^6, since its series is bounded.
+ * In files of earlier versions, without the term of omega^4, all errors are of order omega^4. */
 static void errors_have_their_order(void **state) {
   (void)state;
   const int parts[]     = {PARTS | WITH_RESIDUAL_MODES | UNDAMPED, WITH_LEFT | UNDAMPED,
@@ -87,29 +88,29 @@ static void errors_have_their_order(void **state) {
   const int order[4][3] = {{0, 0, 0}, {0, 0, 0}, {6, 0, 0}, {4, 4, 4}}; /* 0: exact */
   for (int i = 0; i < 4; i++) {
     double at[3], half[3];
-    errors_at(parts[i], 3, true, .16, at);
-    errors_at(parts[i], 3, true, .08, half);
+    errors_at(parts[i], 3, true, 0.16, at);
+    errors_at(parts[i], 3, true, 0.08, half);
     for (int k = 0; k < 3; k++) {
       print_message("error %.2e, %.2e at half the frequency: order %.3f\n", at[k], half[k],
                     log2(at[k] / half[k]));
-      assert_true(order[i][k] ? fabs(log2(at[k] / half[k]) - order[i][k]) < .05 : at[k] < 1e-13);
+      assert_true(order[i][k] ? fabs(log2(at[k] / half[k]) - order[i][k]) < 0.05 : at[k] < 1e-13);
     }
   }
 }
 
-/* The modes left out are damped, what stands for them is not: an error that goes with omega. Damping of .01 to .03
- * gives 2 zeta omega/omega_i. */
+/* The modes left out are damped, their residual terms are not: the error is 2 zeta omega/omega_i,
+ * for damping of 0.01 to 0.03. */
 static void statics_stay(void **state) {
   (void)state;
   const int parts[] = {PARTS, WITH_LEFT};
   for (int i = 0; i < 2; i++) {
     double at[3], half[3], none[3];
     errors_at(parts[i], 3, true, 1e-4, at);
-    errors_at(parts[i], 3, true, .5e-4, half);
+    errors_at(parts[i], 3, true, 0.5e-4, half);
     errors_at(parts[i], 3, false, 1e-4, none);
     for (int k = 0; k < 3; k++) {
       assert_true(at[k] < 1e-5);
-      assert_true(fabs(log2(at[k] / half[k]) - 1) < .05);
+      assert_true(fabs(log2(at[k] / half[k]) - 1) < 0.05);
       assert_true(none[k] > 1e-2);
     }
   }
@@ -118,17 +119,17 @@ static void statics_stay(void **state) {
 static void all_modes_change_nothing(void **state) {
   (void)state;
   double error[3];
-  errors_at(PARTS, 6, true, .7, error);
+  errors_at(PARTS, 6, true, 0.7, error);
   for (int k = 0; k < 3; k++) assert_true(error[k] == 0);
 }
 
-/* Without the file's residual parts, and with no mode left out: what a file without them gives. */
+/* Without residual parts, all modes kept: the result of a file without them. */
 static void bare(void **state) {
   (void)state;
   modal_model  with, without;
   mhb_settings s = random_settings(2);
   random_model(PAIRS, PARTS, 71, &with);
-  assert_int_equal(modal_model_keep(&with, 6, false), SHB_OK);
+  assert_int_equal(modal_model_reduce(&with, 6, false), SHB_OK);
   assert_null(with.residual_flexibility);
   assert_true(!with.residual_fourth && !with.load_inertia && !with.probe_load_residual &&
               !with.probe_load_inertia);
@@ -142,7 +143,7 @@ static void bare(void **state) {
   without.probe_contact_residual = without.probe_contact_inertia = NULL;
   without.load_residual = without.load_inertia = NULL;
   without.probe_load_residual = without.probe_load_inertia = NULL;
-  mhb_receptance *a = receptance_of(&with, &s, .9), *b = receptance_of(&without, &s, .9);
+  mhb_receptance *a = receptance_of(&with, &s, 0.9), *b = receptance_of(&without, &s, 0.9);
   assert_true(difference(3 * ROWS * ROWS, a->R, b->R) == 0);
   mhb_receptance_destroy(a);
   mhb_receptance_destroy(b);
@@ -154,8 +155,8 @@ static void wrong_numbers(void **state) {
   (void)state;
   modal_model model;
   random_model(1, PARTS, 5, &model);
-  assert_int_equal(modal_model_keep(&model, 0, true), SHB_ERR_INPUT);
-  assert_int_equal(modal_model_keep(&model, 7, true), SHB_ERR_INPUT);
+  assert_int_equal(modal_model_reduce(&model, 0, true), SHB_ERR_INPUT);
+  assert_int_equal(modal_model_reduce(&model, 7, true), SHB_ERR_INPUT);
   assert_string_equal(shb_message(), "7 modes are to be kept; there are 1 to 6");
   assert_int_equal(model.n_modes, 6);
   modal_model_free(&model);

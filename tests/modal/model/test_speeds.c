@@ -1,17 +1,19 @@
-/* Modes at several speeds: tracked through a crossing, kept in a file of their own version. */
+/* Modes at several speeds: tracked through a crossing, written and read. */
 #include <math.h>
 
 #include "modal/common/session.h"
 #include "modal/stage/speed_range.h"
+#include "modal/stage/stage.h"
 #include "tests/support/box.h"
 #include "tests/support/fem.h"
 #include "tests/support/files.h"
 
 enum { MODES = 5, SPEEDS = 4 };
 
-/* A nearly square beam that points outward along z, its flap (along x, the engine axis) a little softer than the motion in the plane of rotation:
- * flap stiffens by Omega^2 more, so that they cross. */
-static const double size[3]  = {.0200, .0202, .3};
+/* A nearly square radial beam along z. Its flap motion (along x, the engine axis) is slightly
+ * softer than its motion in the plane of rotation. Flap stiffens by Omega^2 more, so the two
+ * frequencies cross. */
+static const double size[3]  = {0.0200, 0.0202, 0.3};
 static const int    cells[3] = {1, 1, 6};
 
 static const double speeds[SPEEDS] = {700, 0, 100, 400};
@@ -25,12 +27,12 @@ static mesh_fe make_beam(void) {
   assert_int_equal(box_set(&mesh, MESH_LOAD, 2, size[2]), SHB_OK);
   for (int i = 0; i < mesh.n_nodes; i++) {
     mesh.coordinates[3 * i + 1] -= size[1] / 2;
-    mesh.coordinates[3 * i + 2] += .2;
+    mesh.coordinates[3 * i + 2] += 0.2;
   }
   return mesh;
 }
 
-static const modal_probe probe = {"tip", {.01, 0, .5}};
+static const modal_probe probe = {"tip", {0.01, 0, 0.5}};
 
 static modal_settings make_settings(void) {
   return (modal_settings){
@@ -41,7 +43,7 @@ static modal_settings make_settings(void) {
       .n_speeds         = SPEEDS,
       .speeds           = speeds,
       .modes            = MODES,
-      .damping          = {.ratio = .002},
+      .damping          = {.ratio = 0.002},
       .full_integration = true,
       .load             = {.kind        = FEM_LOAD_TRACTION,
                            .traction    = {100, 70, 5},
@@ -66,13 +68,14 @@ static void check_tracks(const modal_speeds *s) {
     double square = s->speed[i] * s->speed[i];
     check_below(eigenvalue(s, i, 0) - eigenvalue(s, i, 1) - rest - square,
                 1e-2 * square + 1e-9 * eigenvalue(s, i, 0), "flap less in-plane eigenvalue");
-    for (int t = 0; t < 2; t++) assert_true(s->mac[i * MODES + t] > .99);
+    for (int t = 0; t < 2; t++) assert_true(s->mac[i * MODES + t] > 0.99);
     assert_int_equal(s->mode[i * MODES], eigenvalue(s, i, 0) > eigenvalue(s, i, 1));
   }
   assert_int_equal(s->mode[3 * MODES], 1); /* they have crossed */
 }
 
-/* With the first speed's modes: the same space, and where shapes hardly change the tracks. */
+/* Overlap with the modes of the first speed: the same space, and the tracks where shapes hardly
+ * change. */
 static void check_overlaps(const modal_speeds *s) {
   for (int i = 0; i < SPEEDS; i++) {
     const double *C = s->overlap + i * MODES * MODES;
@@ -82,12 +85,12 @@ static void check_overlaps(const modal_speeds *s) {
       double inside = 0;
       for (int b = 0; b < MODES; b++) inside += C[a * MODES + b] * C[a * MODES + b];
       assert_true(inside < 1 + 1e-9);
-      if (a < 2) assert_true(inside > .99 && C[a * MODES + s->mode[i * MODES + a]] > .99);
+      if (a < 2) assert_true(inside > 0.99 && C[a * MODES + s->mode[i * MODES + a]] > 0.99);
     }
   }
 }
 
-/* Every model is that of its speed alone, but for signs; those are continued. */
+/* Every model is that of its speed alone, except for the signs of modes. */
 static void check_models(const mesh_fe *mesh, const modal_speeds *s) {
   modal_settings settings = make_settings();
   for (int i = 0; i < SPEEDS; i++) {
@@ -125,19 +128,19 @@ static void crossing_modes_are_tracked(void **state) {
   mesh_fe        mesh     = make_beam();
   modal_speeds   s;
   modal_result   result;
-  assert_ok(modal_campbell_solve(PETSC_COMM_SELF, &mesh, &settings, NULL, &s, &result));
+  assert_ok(modal_speed_range_solve(PETSC_COMM_SELF, &mesh, &settings, NULL, &s, &result));
   for (int i = 1; i < SPEEDS; i++) assert_true(s.speed[i] > s.speed[i - 1]);
   check_tracks(&s);
   check_overlaps(&s);
   check_models(&mesh, &s);
   assert_true(result.deflection.speed == 400);
   assert_true(s.model[2].frequency == result.model.frequency);
-  modal_campbell_free(&s, &result);
+  modal_speed_range_free(&s, &result);
   modal_result_free(&result);
   mesh_fe_free(&mesh);
 }
 
-/* modes: auto: one number for all speeds, enough for the lowest and for the highest. */
+/* modal.modes: auto gives one number of modes, enough for the lowest and the highest speed. */
 static void auto_modes_suit_every_speed(void **state) {
   (void)state;
   static const double band[2]  = {900, 2500};
@@ -151,7 +154,7 @@ static void auto_modes_suit_every_speed(void **state) {
     modal_result result;
     int          single[2];
     settings.band = band[k];
-    assert_ok(modal_campbell_solve(PETSC_COMM_SELF, &mesh, &settings, NULL, &s, &result));
+    assert_ok(modal_speed_range_solve(PETSC_COMM_SELF, &mesh, &settings, NULL, &s, &result));
     for (int i = 0; i < 2; i++) {
       modal_settings one = settings;
       modal_result   at;
@@ -167,7 +170,7 @@ static void auto_modes_suit_every_speed(void **state) {
     for (int i = 0; i < SPEEDS; i++) assert_int_equal(s.model[i].n_modes, s.n_modes);
     assert_true(s.n_modes > before);
     before = s.n_modes;
-    modal_campbell_free(&s, &result);
+    modal_speed_range_free(&s, &result);
     modal_result_free(&result);
   }
   mesh_fe_free(&mesh);
@@ -203,7 +206,7 @@ static void file_keeps_every_speed(void **state) {
   modal_model_free(&model);
   modal_speeds_free(&s);
   assert_true(assert_described(path) > 80);
-  assert_ok(h5_open(path, &file)); /* a program that knows version 1 only */
+  assert_ok(h5_open(path, &file)); /* a program of version 1 only */
   assert_refused(h5_check_format(file, "shroudhb modal model", 1), SHB_ERR_INPUT,
                  "format_version is 2; this program reads versions 1 to 1");
   assert_ok(h5_close(file));
@@ -223,7 +226,7 @@ static void one_speed_changes_nothing(void **state) {
   assert_ok(h5_close(file));
 }
 
-/* A file that was tampered with is refused. */
+/* A file with altered tracks is refused. */
 static void damage_is_told(void **state) {
   (void)state;
   const char  *path                  = scratch("speeds.modal.h5");

@@ -25,26 +25,26 @@ static double at(const modal_spline *s, const double *y, double x, double *slope
   return value;
 }
 
-/* Polynomials of degree n - 1, at most 3, at odd places, beyond the ends too. */
+/* Polynomials up to degree n - 1 <= 3 are exact on an uneven grid, also beyond its ends. */
 static void polynomials_are_exact(void **state) {
   (void)state;
-  const double x[7] = {-.7, .2, .35, 1.9, 2.385, 4, 4.1};
+  const double x[7] = {-0.7, 0.2, 0.35, 1.9, 2.385, 4, 4.1};
   for (int n = 1; n <= 7; n++) {
     modal_spline s;
     double       y[7];
     int          degree = n < 4 ? n - 1 : 3;
     assert_int_equal(modal_spline_create(n, x, &s), SHB_OK);
-    for (int i = 0; i < n; i++) y[i] = pow(x[i] - .3, degree) - 2;
-    for (double t = -1; t < 4.5; t += .0613) {
+    for (int i = 0; i < n; i++) y[i] = pow(x[i] - 0.3, degree) - 2;
+    for (double t = -1; t < 4.5; t += 0.0613) {
       double slope, value = at(&s, y, t, &slope);
-      check(value, pow(t - .3, degree) - 2, 1e-11, "value");
-      check(slope, degree ? degree * pow(t - .3, degree - 1) : 0, 1e-11, "slope");
+      check(value, pow(t - 0.3, degree) - 2, 1e-11, "value");
+      check(slope, degree ? degree * pow(t - 0.3, degree - 1) : 0, 1e-11, "slope");
     }
     modal_spline_free(&s);
   }
 }
 
-/* The error of a smooth function falls with h^4, its slope's with h^3. */
+/* The error for a smooth function is of order h^4, that of its slope of order h^3. */
 static void order_is_four(void **state) {
   (void)state;
   double error[3] = {0}, tilt[3] = {0};
@@ -57,7 +57,7 @@ static void order_is_four(void **state) {
       y[i] = sin(2.385 * x[i]);
     }
     assert_int_equal(modal_spline_create(n, x, &s), SHB_OK);
-    for (double t = 0; t <= 2; t += .003) {
+    for (double t = 0; t <= 2; t += 0.003) {
       double slope, value = at(&s, y, t, &slope);
       error[level] = fmax(error[level], fabs(value - sin(2.385 * t)));
       tilt[level]  = fmax(tilt[level], fabs(slope - 2.385 * cos(2.385 * t)));

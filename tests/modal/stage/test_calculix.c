@@ -1,4 +1,5 @@
-/* Modes of a twisted blade at speed, against CalculiX on the same mesh and with its rules; argument: the program ccx. */
+/* Modes of a twisted blade at speed against CalculiX, on the same mesh with its integration rules.
+ * Argument: the program ccx. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -11,34 +12,37 @@
 #include <cmocka.h>
 
 #include "fem/body/equilibrium.h"
+#include "mesh/io/inp_write.h"
 #include "modal/eigen/eigen.h"
 #include "tests/support/fem.h"
-#include "mesh/io/inp_write.h"
 
 enum { MODES = 6 };
 
-static const double size[3] = {.2, .03, .005}, hub = .15, twist = .7;
+static const double size[3] = {0.2, 0.03, 0.005}, hub = 0.15, twist = 0.7;
 static const int    cells[3] = {10, 2, 1};
 static const double two_pi   = 6.28318530717958647692;
 static const char  *program;
 static char         folder[] = "/tmp/shroudhb-calculix-XXXXXX";
 
-static const fem_orthotropic crystal = {
-    {127e9, 141e9, 118e9}, {.38, .31, .27}, {120e9, 97e9, 71e9}, {.3, -.8, .52}, {.9, .2, -.4}};
+static const fem_orthotropic crystal = {{127e9, 141e9, 118e9},
+                                        {0.38, 0.31, 0.27},
+                                        {120e9, 97e9, 71e9},
+                                        {0.3, -0.8, 0.52},
+                                        {0.9, 0.2, -0.4}};
 
-/* An element of CalculiX, and ours with the same rules. */
+/* A CalculiX element, and ours with the same integration rules. */
 typedef struct {
   const char *name;
   mesh_kind   kind;
   fem_rules   rules;
 } element_kind;
 
-/* A blade along x from the hub's radius on, twisted: of curved elements. */
+/* A twisted blade along x from the hub radius on, of curved elements. */
 static mesh_fe make_curved_blade(mesh_kind kind) {
   use_elements(kind);
   mesh_fe mesh = make_box(size, cells);
   for (int i = 0; i < mesh.n_nodes; i++) {
-    double *x = mesh.coordinates + 3 * i, angle = .3 + twist * x[0] / size[0];
+    double *x = mesh.coordinates + 3 * i, angle = 0.3 + twist * x[0] / size[0];
     double  y = x[1] - size[1] / 2, z = x[2] - size[2] / 2;
     x[0] += hub;
     x[1] = y * cos(angle) - z * sin(angle);
@@ -54,7 +58,7 @@ static mesh_fe make_blade(mesh_kind kind) {
   return mesh;
 }
 
-/* The mesh is written as C3D20R where it is of hexahedra. */
+/* Write the mesh; hexahedra as C3D20R. */
 static void use_type(const char *name) {
   char command[256];
   snprintf(command, sizeof command, "sed -i 's/TYPE=C3D20R/TYPE=%s/' %s/blade.inp", name, folder);
@@ -79,7 +83,7 @@ static void write_crystal(FILE *deck) {
   fprintf(deck, "*DENSITY\n8500\n*SOLID SECTION, ELSET=body, MATERIAL=CRYSTAL, ORIENTATION=AXES\n");
 }
 
-/* One material a region of the mesh. */
+/* A material for each region of the mesh. */
 static void write_parts(const mesh_fe *mesh, const fem_material *part, FILE *deck) {
   for (int i = 0; i < mesh->n_regions; i++)
     fprintf(deck,
@@ -99,7 +103,8 @@ static void write_material(const fem_material *material, FILE *deck) {
           material->E, material->nu, material->rho);
 }
 
-/* The static step's controls are tightened: CalculiX's own leave 1e-4 in the frequencies. */
+/* The controls of the static step are tightened: CalculiX's default leaves errors of 1e-4 in
+ * frequencies. */
 static void write_deck(const element_kind *element, const mesh_fe *mesh,
                        const fem_material *material, double speed, double pressure) {
   char path[128];
@@ -125,8 +130,9 @@ static void write_deck(const element_kind *element, const mesh_fe *mesh,
   fclose(deck);
 }
 
-/* blade.eig: three integers, the last 1 after a static step; then four numbers a node of that step; the number of modes, their
- * eigenvalues in full. blade.dat prints seven digits. */
+/* blade.eig holds three integers, the last 1 after a static step; then four numbers for each node
+ * of that step; then the number of modes and their eigenvalues. blade.dat prints seven digits
+ * only. */
 static void read_frequencies(const mesh_fe *mesh, double frequency[MODES]) {
   char    path[128];
   int32_t head[3], n = 0;
@@ -197,7 +203,7 @@ static void compare(const element_kind *element, const fem_material *material) {
   mesh_fe_free(&mesh);
 }
 
-/* Displacements of group load at the end of the static step, by node; the rest stay as they are. */
+/* Displacements of group load at the end of the static step, by node; others stay unchanged. */
 static void read_displacements(const mesh_fe *mesh, double *u) {
   char   path[128], line[512];
   long   tag, last = 0;
@@ -215,9 +221,10 @@ static void read_displacements(const mesh_fe *mesh, double *u) {
   assert_true(last > 0);
 }
 
-/* Rotation and a pressure that follows the surface: displacements. Of the frequencies no more than 1e-2 is asked: the pressure's load stiffness
- * is not symmetric, CalculiX's eigensolver takes it for symmetric as it stands, and tests/fem/body/test_pressure.c holds ours against
- * the eigenvalues with all of it. */
+/* Displacements under rotation and a follower pressure. Frequencies must agree to 1e-2 only: the
+ * load stiffness of the pressure is not symmetric, and CalculiX's eigensolver treats it as
+ * symmetric. tests/fem/body/test_pressure.c compares ours with the eigenvalues of the full load
+ * stiffness. */
 static void pressure_agrees(void **state) {
   (void)state;
   const element_kind kinds[] = {{"C3D10", MESH_TET10, FEM_CALCULIX},
@@ -269,7 +276,7 @@ static void curved_tetrahedra_agree(void **state) {
     far  = fmax(far, fabs(full[i] / other[i] - 1));
   }
   print_message("exact mass: 4 points within %.1e of C3D10, 27 points %.1e\n", near, far);
-  check_below(near, .2 * far, "four points");
+  check_below(near, 0.2 * far, "four points");
   mesh_fe_free(&mesh);
 }
 
@@ -283,7 +290,8 @@ static void full_hexahedra_agree(void **state) {
   compare(&(element_kind){"C3D20", MESH_HEX20, FEM_FULL}, &steel);
 }
 
-/* CalculiX gets the constants in the material's axes and their orientation, ours are turned beforehand. */
+/* CalculiX gets the constants in material axes and their orientation; ours are rotated
+ * beforehand. */
 static void crystals_agree(void **state) {
   (void)state;
   fem_material material;
@@ -292,10 +300,10 @@ static void crystals_agree(void **state) {
   compare(&(element_kind){"C3D20R", MESH_HEX20, FEM_CALCULIX}, &material);
 }
 
-/* A steel blade with a tip of titanium, twice as light. */
+/* A steel blade with a lighter titanium tip. */
 static void two_materials_agree(void **state) {
   (void)state;
-  const fem_material parts[]   = {steel, {.E = 1.14e11, .nu = .33, .rho = 4430}};
+  const fem_material parts[]   = {steel, {.E = 1.14e11, .nu = 0.33, .rho = 4430}};
   const element_kind element[] = {{"C3D10", MESH_TET10, FEM_CALCULIX},
                                   {"C3D20R", MESH_HEX20, FEM_CALCULIX}};
   for (int k = 0; k < 2; k++) {
@@ -311,7 +319,7 @@ static void two_materials_agree(void **state) {
       double x = 0;
       for (int i = 0; i < topology->corners; i++)
         x += mesh.coordinates[3 * mesh.connectivity[topology->nodes * e + i]] / topology->corners;
-      mesh.region[e] = x > hub + .6 * size[0];
+      mesh.region[e] = x > hub + 0.6 * size[0];
     }
     compare_on(&element[k], &mesh, parts);
     mesh_fe_free(&mesh);

@@ -17,9 +17,10 @@ enum { MODES = 8 };
 
 /* No lateral contraction: motion along the bar alone solves the equations of the solid. */
 static const fem_material parts[2] = {{.E = 2.1e11, .rho = 7850}, {.E = 0.7e11, .rho = 4430}};
-static const double       size[3] = {.31, .1, .12}, share = .4; /* of the length, the first part */
+/* first part, relative to the length */
+static const double size[3] = {0.31, 0.1, 0.12}, share = 0.4;
 
-/* Cells 5 n along the bar, so that the cut is between cells. */
+/* 5 n cells along the bar, so that the interface lies between cells. */
 static mesh_fe make_bar(int n) {
   mesh_fe              mesh     = make_box(size, (const int[]){5 * n, 1, 1});
   const mesh_topology *topology = mesh_topology_of(mesh.kind);
@@ -35,7 +36,8 @@ static mesh_fe make_bar(int n) {
   return mesh;
 }
 
-/* c1 = c2 at the cut: E1 k1 cot(k1 a) = E2 k2 tan(k2 b), a wave from the clamp meets one from the free end. */
+/* E1 k1 cot(k1 a) = E2 k2 tan(k2 b) with equal wave speeds: waves from the clamp and from the free
+ * end meet at the interface. */
 static double mismatch(double omega) {
   double k[2], a = share * size[0], b = size[0] - a;
   for (int i = 0; i < 2; i++) k[i] = omega * sqrt(parts[i].rho / parts[i].E);
@@ -53,7 +55,7 @@ static double first_frequency(void) {
   return low;
 }
 
-/* Relative error of the eigenvalue that is nearest. */
+/* Relative error of the nearest eigenvalue. */
 static double mode_error(int n, double omega) {
   mesh_fe              mesh   = make_bar(n);
   modal_eigen_settings wanted = {.modes = MODES, .tolerance = 1e-12};
@@ -89,7 +91,8 @@ static void modes_of_hexahedra(void **state) {
   longitudinal_mode(MESH_HEX20);
 }
 
-/* u^T K u of a stretch that is linear in each part, and Omega^2 u^T M u of a translation across the axis. */
+/* u^T K u of a stretch, linear in each part, and Omega^2 u^T M u of a translation across the
+ * axis. */
 static void energies(void **state) {
   (void)state;
   const double strain[2] = {2.3e-4, -1.1e-4}, a = share * size[0], area = size[1] * size[2];
@@ -111,16 +114,15 @@ static void energies(void **state) {
     for (int i = 0; i < 3 * mesh.n_nodes; i++) u[i] = i % 3 == 1 ? 1e-3 : 0;
     fem_body body = {&mesh, parts, element, {MESH_AXIS_X, speed}, 0};
     double   mass = area * (parts[0].rho * a + parts[1].rho * (size[0] - a));
-    check_close(tangent_energy(&body, NULL, u), -1e-6 * speed * speed * mass, 1e-12,
-                "softening");
+    check_close(tangent_energy(&body, NULL, u), -1e-6 * speed * speed * mass, 1e-12, "softening");
     free(u);
     free(element);
     mesh_fe_free(&mesh);
   }
 }
 
-/* Turning slowly about z the bar stretches by Omega^2 times what the densities pull: at the tip
- * u = Omega^2 integral of (1/E) integral of rho x over what lies outside. */
+/* At slow rotation about z the tip displacement is u = Omega^2 int (1/E) int rho x. The inner
+ * integral is over the outer part of the bar. */
 static void stretch_under_rotation(void **state) {
   (void)state;
   const double    speed = 40, a = share * size[0], L = size[0];

@@ -1,4 +1,5 @@
-/* Modes of rotating beams: stiffening and softening against beam theory and published frequencies. */
+/* Modes of rotating beams: stiffening and softening against beam theory and published
+ * frequencies. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -16,11 +17,12 @@
 
 enum { MODES = 6 };
 
-/* No lateral contraction: a clamp that hinders it shortens the beam by a share of its width. */
+/* No lateral contraction: a clamp that hinders it would shorten the beam by a fraction of its
+ * width. */
 static const fem_material material = {.E = 2.1e11, .rho = 7850};
 
-/* A beam along x, clamped at x = hub, turning about y: flapping is along y, in-plane motion along z. The section is
- * width along y, 1.3 width along z, so that the two do not mix. */
+/* A beam along x, clamped at x = hub, rotating about y: flap is along y, in-plane motion along z.
+ * The section is width along y and 1.3 width along z, so that the two motions do not couple. */
 typedef struct {
   double length, width, hub;
   int    cells;
@@ -38,7 +40,8 @@ static mesh_fe make_beam(const beam *b) {
   return mesh;
 }
 
-/* Eigenvalues at a speed, those of motion along y in flap, along z in plane (twist and stretch are left out). */
+/* Eigenvalues at a speed: flap modes (along y) and in-plane modes (along z). Torsion and axial
+ * modes are omitted. */
 static shb_status solve(const beam *b, double speed, double flap[MODES], double plane[MODES]) {
   mesh_fe              mesh    = make_beam(b);
   fem_element         *element = malloc(sizeof *element);
@@ -87,8 +90,10 @@ static double mode(double s, double *slope) {
   return cosh(b * s) - cos(b * s) - ratio * (sinh(b * s) - sin(b * s));
 }
 
-/* Southwell's coefficient of the first flapping mode at a small speed, w^2 = w0^2 + S Omega^2:
- * S = integral of T phi'^2 / integral of phi^2, T = (1 - s^2)/2 + hub (1 - s), hub in lengths (Simpson's rule). */
+/* Southwell's coefficient of the first flap mode at low speed, w^2 = w0^2 + S Omega^2, by Simpson's
+ * rule:
+ *
+ *   S = int T phi'^2 / int phi^2,   T = (1 - s^2)/2 + hub (1 - s), hub in beam lengths. */
 static double southwell(double hub) {
   enum { STEPS = 2000 };
   double top = 0, bottom = 0;
@@ -101,49 +106,50 @@ static double southwell(double hub) {
   return top / bottom;
 }
 
-/* w0 of the beam in theory, rad/s. */
+/* w0 by beam theory, rad/s. */
 static double slender_frequency(const beam *b) {
   return 3.5160152685 * b->width / sqrt(12) / (b->length * b->length) *
          sqrt(material.E / material.rho);
 }
 
-/* The published value for hub 0, 1.193. Beams of one length: what the theory leaves out falls with the width squared. */
+/* The published value for hub 0 is 1.193. For beams of equal length the error of the theory falls
+ * with the square of the width. */
 static void stiffening_is_southwells(void **state) {
   (void)state;
   double flap_error[3], plane_error[3], S[3];
   check_close(southwell(0), 1.193, 5e-4, "Southwell's coefficient, hub 0");
   for (int level = 0; level < 3; level++) {
     const int    parts = 10 << level;
-    const beam   b     = {.4, .4 / parts, .3, parts};
-    const double speed = .02 * slender_frequency(&b), square = speed * speed;
+    const beam   b     = {0.4, 0.4 / parts, 0.3, parts};
+    const double speed = 0.02 * slender_frequency(&b), square = speed * speed;
     double       flap[2][MODES], plane[2][MODES];
     assert_int_equal(solve(&b, 0, flap[0], plane[0]), SHB_OK);
     assert_int_equal(solve(&b, speed, flap[1], plane[1]), SHB_OK);
     S[level]           = (flap[1][0] - flap[0][0]) / square;
     double in_plane    = (plane[1][0] - plane[0][0]) / square;
-    flap_error[level]  = S[level] / southwell(.75) - 1;
+    flap_error[level]  = S[level] / southwell(0.75) - 1;
     plane_error[level] = S[level] - in_plane - 1;
     print_message("width/length 1/%d: S %.6f (beam theory %.6f), flap less in-plane %.6f (1)\n",
-                  parts, S[level], southwell(.75), S[level] - in_plane);
+                  parts, S[level], southwell(0.75), S[level] - in_plane);
   }
   for (int i = 0; i < 2; i++) {
     double order[2] = {log2(flap_error[i] / flap_error[i + 1]),
                        log2(plane_error[i] / plane_error[i + 1])};
     print_message("orders in the width: %.2f, %.2f\n", order[0], order[1]);
     assert_true(order[0] > 1.5);
-    check_below(order[1] - 2, .3, "order of the difference of the planes");
+    check_below(order[1] - 2, 0.3, "order of the difference of the planes");
   }
-  check_close(S[2] + (S[2] - S[1]) / 3, southwell(.75), 2e-5,
+  check_close(S[2] + (S[2] - S[1]) / 3, southwell(0.75), 2e-5,
               "Southwell's coefficient, extrapolated");
   check_below(plane_error[2], 1e-3, "difference of the planes");
 }
 
-/* Wright, Smith, Thresher, Wang 1982, J. Appl. Mech. 49, 197: flapping of a uniform beam, hub 0; frequencies in units
- * of sqrt(EI/(rho A L^4)), by the speed in the same units. */
+/* Flap frequencies of a uniform beam, hub 0, in units of sqrt(EI/(rho A L^4)), over the speed in
+ * the same unit. Source: Wright, Smith, Thresher, Wang 1982, J. Appl. Mech. 49, 197. */
 static void frequencies_are_the_published_ones(void **state) {
   (void)state;
   const double published[3][3] = {{0, 3.5160, 22.0345}, {3, 4.7973, 23.3203}, {6, 7.3604, 26.8091}};
-  const beam   b               = {.5, .005, 0, 60};
+  const beam   b               = {0.5, 0.005, 0, 60};
   const double unit            = slender_frequency(&b) / 3.5160152685;
   double       flap[3][MODES], plane[MODES];
   for (int i = 0; i < 3; i++)
@@ -157,19 +163,19 @@ static void frequencies_are_the_published_ones(void **state) {
     }
 }
 
-/* Clamped at its outer end the beam is squeezed and buckles where its lowest eigenvalue, nearly linear in Omega^2, falls
- * to 0: below it there are modes, above it one line. */
+/* Clamped at its outer end the beam is compressed. It buckles where its lowest eigenvalue, nearly
+ * linear in Omega^2, becomes 0. Below that speed there are modes, above it an error. */
 static void buckling_is_refused(void **state) {
   (void)state;
-  const beam b = {.2, .004, -.5, 12};
+  const beam b = {0.2, 0.004, -0.5, 12};
   double     low[MODES], high[MODES], last[MODES], plane[MODES];
   assert_int_equal(solve(&b, 150, low, plane), SHB_OK);
   assert_int_equal(solve(&b, 250, high, plane), SHB_OK);
   assert_true(high[0] < plane[0]);
   double critical = sqrt(250. * 250 + high[0] * (250. * 250 - 150. * 150) / (low[0] - high[0]));
   print_message("buckles near %.4g rad/s\n", critical);
-  assert_int_equal(solve(&b, .98 * critical, last, plane), SHB_OK);
-  assert_true(last[0] > 0 && last[0] < .2 * high[0]);
+  assert_int_equal(solve(&b, 0.98 * critical, last, plane), SHB_OK);
+  assert_true(last[0] > 0 && last[0] < 0.2 * high[0]);
   assert_int_equal(solve(&b, 1.02 * critical, last, plane), SHB_ERR_INPUT);
   assert_non_null(strstr(shb_message(), "rotor.speed"));
 }

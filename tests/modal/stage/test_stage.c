@@ -1,20 +1,20 @@
-/* The whole stage: a mesh file in, a complete modal file out; nothing touched when it fails. */
+/* The whole stage: a mesh file in, a complete modal file out, nothing written on failure. */
 #include <math.h>
 
 #include "fem/element/surface.h"
+#include "mesh/io/inp_write.h"
 #include "modal/common/session.h"
 #include "modal/model/receptance.h"
 #include "modal/stage/stage.h"
 #include "tests/support/box.h"
 #include "tests/support/fem.h"
 #include "tests/support/files.h"
-#include "mesh/io/inp_write.h"
 
 enum { BLADES = 23 };
 
-static const double      size[3] = {.04, 1, .12}, inner = .1;
+static const double      size[3] = {0.04, 1, 0.12}, inner = 0.1;
 static const int         cells[3] = {2, 2, 4};
-static const modal_probe probe[2] = {{"tip", {.04, .0, .22}}, {"middle", {0, .01, .16}}};
+static const modal_probe probe[2] = {{"tip", {0.04, 0.0, 0.22}}, {"middle", {0, 0.01, 0.16}}};
 
 static modal_settings default_settings(void) {
   return (modal_settings){
@@ -22,7 +22,7 @@ static modal_settings default_settings(void) {
       .axis     = MESH_AXIS_X,
       .blades   = BLADES,
       .modes    = 8,
-      .damping  = {.ratio = .002},
+      .damping  = {.ratio = 0.002},
       .load     = {.kind = FEM_LOAD_PRESSURE, .pressure = 200, .n_harmonics = 1, .factor = {0, 1}},
       .n_probes = 2,
       .probe    = probe,
@@ -33,7 +33,8 @@ static modal_settings default_settings(void) {
 static const shb_provenance provenance = {"case.yaml", "name: case\n", "modal.modes = 8\n",
                                           "shroudhb-modal"};
 
-/* Write the sector as a .msh, with the two sides exchanged if swap: the stage must turn them round. */
+/* Write the sector as a .msh file. With swap the two sides are exchanged: the stage must swap them
+ * back. */
 static void write_mesh(const char *path, bool swap) {
   mesh_fe mesh = make_sector(size, inner, BLADES, cells);
   if (swap) {
@@ -83,13 +84,14 @@ static void file_is_complete(void **state) {
   assert_true(model.residual_fourth && model.load_inertia && model.probe_contact_inertia &&
               model.probe_load_inertia);
   assert_true(model.probe_contact_residual && model.probe_load_residual && model.normal);
-  for (int i = 0; i < 8; i++) check_below(model.mode_residual[i], 1e-9, "mode residual");
+  for (int i = 0; i < 8; i++) check_below(model.eigen_residual[i], 1e-9, "mode residual");
   modal_model_free(&model);
   assert_true(assert_described(out) >= 30);
   check_is_in_the_file(out);
 }
 
-/* Every phase is there once, in the order in which it was; peaks never fall; with two speeds times add up. */
+/* Every phase occurs once and in order. Peak memory never falls. With two speeds the times add
+ * up. */
 static void phases_are_in_the_file(void **state) {
   (void)state;
   static const char *const wanted[] = {"mesh",       "assembly",  "equilibrium",   "analysis",
@@ -129,12 +131,12 @@ static void phases_are_in_the_file(void **state) {
     sum += seconds[i];
     free(name[i]);
   }
-  assert_true(sum <= whole && sum > .5 * whole);
+  assert_true(sum <= whole && sum > 0.5 * whole);
   free(name), free(seconds), free(cpu), free(memory), free(greatest);
   remove(out);
 }
 
-/* Rayleigh's law in the file, mode by mode. */
+/* Rayleigh damping in the file, mode by mode. */
 static void damping_follows_its_law(void **state) {
   (void)state;
   modal_settings settings = default_settings();
@@ -158,7 +160,7 @@ static void damping_follows_its_law(void **state) {
   assert_int_equal(access(out, F_OK), -1);
 }
 
-/* The same body from an .inp file: the same modes and the same receptance. */
+/* The same body from an .inp file gives the same modes and receptance. */
 static void abaqus_mesh_gives_the_same(void **state) {
   (void)state;
   modal_settings settings = default_settings();
@@ -182,7 +184,7 @@ static void abaqus_mesh_gives_the_same(void **state) {
   remove(out);
 }
 
-/* /VTKHDF: what ParaView reads; mode_00i is /modes/shape[i]. */
+/* /VTKHDF as ParaView reads it; mode_00i is /modes/shape[i]. */
 static void vtk_group_shows_the_modes(void **state) {
   (void)state;
   hid_t    file;
@@ -204,7 +206,7 @@ static void vtk_group_shows_the_modes(void **state) {
     assert_true(coordinates[i] == linked[i]);
     largest = fmax(largest, fabs(mode[i]));
   }
-  assert_true(largest > .1);
+  assert_true(largest > 0.1);
   assert_ok(h5_read_int(file, "/mesh/connectivity", &cells_shape, &gmsh));
   assert_ok(h5_read_int(file, "/VTKHDF/Connectivity", &flat, &vtk));
   assert_ok(h5_read_int(file, "/VTKHDF/Types", &types, &type));
@@ -223,7 +225,7 @@ static void vtk_group_shows_the_modes(void **state) {
   free(shape), free(mode), free(coordinates), free(linked), free(gmsh), free(vtk), free(type);
 }
 
-/* The same of hexahedra: cells of VTK's type 25, whose edges go ring by ring. */
+/* The same with hexahedra: VTK cells of type 25, whose edges are numbered ring by ring. */
 static void hexahedra_go_through(void **state) {
   (void)state;
   static const int ends[12][2] = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6},
@@ -268,7 +270,8 @@ static void hexahedra_go_through(void **state) {
   free(x), free(face), free(vtk), free(type);
 }
 
-/* A column of single hexahedra has motions without energy: refused, and allowed with all points. */
+/* A column of single hexahedra has motions without strain energy: refused, unless fully
+ * integrated. */
 static void columns_need_all_points(void **state) {
   (void)state;
   modal_settings settings  = default_settings();
@@ -303,7 +306,7 @@ static void full_integration_is_stiffer(void **state) {
   mesh_fe_free(&mesh);
 }
 
-/* The sampled receptance is the model's own. */
+/* The sampled receptance equals that of the model. */
 static void receptance_is_sampled(void **state) {
   (void)state;
   hid_t           file;
@@ -326,7 +329,7 @@ static void receptance_is_sampled(void **state) {
   modal_model_free(&model);
 }
 
-/* Sides named the other way round give the same model. */
+/* Exchanged names of the sides give the same model. */
 static void sides_are_turned_round(void **state) {
   (void)state;
   modal_settings settings = default_settings();
@@ -355,7 +358,7 @@ static double *read_static(hid_t file, const char *path, size_t *n) {
   return value;
 }
 
-/* /static: the deflection everywhere, and as the contact and the probes see it. */
+/* /static: the deflection at every node, at the contact and at the probes. */
 static void deflection_is_in_the_file(void **state) {
   (void)state;
   modal_settings settings = default_settings();
@@ -412,7 +415,7 @@ static void deflection_is_in_the_file(void **state) {
   unlink(out);
 }
 
-/* Reactions and nodal stresses: sums, and what ParaView sees. */
+/* Reactions and nodal stresses: their sums, and the links for ParaView. */
 static void statics_are_in_the_file(void **state) {
   (void)state;
   modal_settings settings = default_settings();
@@ -444,7 +447,7 @@ static void statics_are_in_the_file(void **state) {
   assert_true(load[2] > 1e5); /* the blade points along z */
   for (size_t i = 0; i < n_mises; i++) most = fmax(most, mises[i]);
   assert_ok(h5_read_attribute_double(file, "/static", "greatest_stress", 0, &greatest));
-  assert_true(most > .5 * greatest && most < 2 * greatest);
+  assert_true(most > 0.5 * greatest && most < 2 * greatest);
   assert_ok(h5_close(file));
   free(node), free(force), free(whole), free(load), free(stress), free(mises);
   unlink(out);
@@ -464,7 +467,7 @@ static void refused(const modal_settings *settings, const char *mesh, shb_status
 
 static void failures_leave_the_file_alone(void **state) {
   (void)state;
-  const double   psi      = .6;
+  const double   psi      = 0.6;
   modal_settings settings = default_settings();
   refused(&settings, "missing.msh", SHB_ERR_IO, "missing.msh");
   settings.speed = 9e4;
@@ -487,7 +490,7 @@ static void failures_leave_the_file_alone(void **state) {
   refused(&settings, "sector.msh", SHB_ERR_INPUT, "excitation.force");
 }
 
-/* The faces of a group whose first corner is on one side of a radius: a group of its own. */
+/* A new group of the faces of a group whose first corner lies on one side of a radius. */
 static mesh_face_set part_of(const mesh_fe *mesh, mesh_set_id id, bool outer) {
   const int     each = mesh_topology_of(mesh->kind)->face_nodes;
   mesh_face_set out  = {0, malloc((size_t)(each * mesh->set[id].n) * sizeof(int))};
@@ -499,13 +502,13 @@ static mesh_face_set part_of(const mesh_fe *mesh, mesh_set_id id, bool outer) {
       const double *x = mesh->coordinates + 3 * face[i];
       far             = fmax(far, hypot(x[1], x[2]));
     }
-    if ((far > inner + .55 * size[2]) != outer) continue;
+    if ((far > inner + 0.55 * size[2]) != outer) continue;
     memcpy(out.nodes + each * out.n++, face, (size_t)each * sizeof(int));
   }
   return out;
 }
 
-/* Two interfaces, of one and two patches: each as when it is alone, and the coupling symmetric. */
+/* Two interfaces of one and two patches: each as if alone, with symmetric coupling. */
 static void interfaces_are_condensed_together(void **state) {
   (void)state;
   mesh_fe             mesh       = make_sector(size, inner, BLADES, cells);
@@ -539,7 +542,7 @@ static void interfaces_are_condensed_together(void **state) {
     assert_int_equal(own->n_interfaces, 0);
     double most = 0;
     for (int k = 0; k < 3 * pairs * m; k++) most = fmax(most, fabs(own->right[k]));
-    for (int k = 0; k < 3 * pairs * m; k++) { /* signs of modes are the solver's */
+    for (int k = 0; k < 3 * pairs * m; k++) { /* the solver chooses the signs of modes */
       check_below(fabs(all->right[3 * first * m + k]) - fabs(own->right[k]), 1e-7 * most, "right");
       check_below(fabs(all->left[3 * first * m + k]) - fabs(own->left[k]), 1e-7 * most, "left");
     }

@@ -10,7 +10,7 @@ static mhb_response *response(mhb_parameter parameter, bool limits) {
   return r;
 }
 
-/* Each parameter as a user reads it. */
+/* Names, units and values of each parameter. */
 static void words(void **state) {
   (void)state;
   static const struct {
@@ -20,7 +20,7 @@ static void words(void **state) {
       {103.8, "frequency, Hz", "103.80\u00a0Hz"},
       {-120.5, "preload n₀, N", "n₀ = −120.5\u00a0N"},
       {2.5, "excitation level", "level\u00a02.5"},
-      {.3, "friction coefficient μ", "μ = 0.3"},
+      {0.3, "friction coefficient μ", "μ = 0.3"},
       {5e5, "tangential stiffness kuu, MN/m", "kuu = 0.5\u00a0MN/m"},
       {8e5, "normal stiffness kv, MN/m", "kv = 0.8\u00a0MN/m"},
   };
@@ -38,7 +38,8 @@ static void words(void **state) {
   }
 }
 
-/* Logarithmic over decades of positive values only, never for the frequency; the unit fits the larger end. */
+/* Logarithmic only over decades of positive values, never for the frequency. The unit fits the
+ * upper end. */
 static void ranges(void **state) {
   (void)state;
   static const struct {
@@ -49,7 +50,7 @@ static void ranges(void **state) {
   } row[] = {{MHB_IN_N0, 10, 1000, true, "N"},       {MHB_IN_N0, 0, 1000, false, "N"},
              {MHB_IN_N0, -20e3, 100, false, "kN"},   {MHB_IN_N0, -5, -1, false, "N"},
              {MHB_IN_N0, 0, 0, false, "N"},          {MHB_IN_SCALE, -1, 1, false, ""},
-             {MHB_IN_SCALE, .5, 2, false, ""},       {MHB_IN_KU, 1e3, 2e9, true, "GN/m"},
+             {MHB_IN_SCALE, 0.5, 2, false, ""},      {MHB_IN_KU, 1e3, 2e9, true, "GN/m"},
              {MHB_IN_FREQUENCY, 1, 500, false, "Hz"}};
   for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
     mhb_response *r = response(row[i].parameter, false);

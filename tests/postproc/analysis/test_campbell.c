@@ -1,4 +1,4 @@
-/* Campbell diagram of modes whose frequencies are known: f^2 = a + b Omega^2 exactly. */
+/* Campbell diagram of modes with known frequencies: f^2 = a + b Omega^2. */
 #include "postproc/analysis/campbell.h"
 #include "tests/support/check.h"
 
@@ -6,12 +6,13 @@ enum { MODES = 4, SPEEDS = 4 };
 
 static const double TWO_PI         = 6.28318530717958647692;
 static const double a[MODES]       = {100. * 100, 300. * 300, 310. * 310, 900. * 900};
-static const double b[MODES]       = {.08, .05, .01, .02};
+static const double b[MODES]       = {0.08, 0.05, 0.01, 0.02};
 static const double speeds[SPEEDS] = {0, 100, 350, 600};
 static double       value[SPEEDS][MODES], damping[MODES], shape[3 * MODES];
 static double _Complex force[4 * MODES];
 
-/* Modes 2 and 3 cross: the file holds them by frequency, the tracks say which is which. The load has harmonics 1 and 3. */
+/* Modes 2 and 3 cross: the file orders them by frequency, the tracks identify them. The load has
+ * harmonics 1 and 3. */
 static void make(modal_speeds *s) {
   assert_ok(modal_speeds_create(SPEEDS, MODES, s));
   for (int t = 0; t < MODES; t++) force[MODES + t] = force[3 * MODES + t] = 1;
@@ -29,18 +30,18 @@ static void make(modal_speeds *s) {
       if (a[1] + b[1] * speeds[i] * speeds[i] > a[2] + b[2] * speeds[i] * speeds[i])
         mode = t == 1 ? 2 : t == 2 ? 1 : t;
       s->mode[i * MODES + t] = mode;
-      s->mac[i * MODES + t]  = .97;
+      s->mac[i * MODES + t]  = 0.97;
       value[i][mode]         = sqrt(a[t] + b[t] * speeds[i] * speeds[i]);
     }
   }
 }
 
 static void release(modal_speeds *s) {
-  memset(s->model, 0, SPEEDS * sizeof *s->model); /* not the tests' to free */
+  memset(s->model, 0, SPEEDS * sizeof *s->model); /* the arrays are static */
   modal_speeds_free(s);
 }
 
-/* e^2 Omega^2 / (2 pi)^2 = a + b Omega^2, all that lie in the range. */
+/* e^2 Omega^2 / (2 pi)^2 = a + b Omega^2, for all crossings within the range. */
 static void crossings_are_exact(void **state) {
   (void)state;
   modal_speeds   s;
@@ -95,7 +96,7 @@ static void picture_and_section(void **state) {
   release(&s);
 }
 
-/* Where a track is lost there is no crossing, and the table says so. */
+/* A lost track has no crossing, and the table marks it. */
 static void lost_tracks_are_left_out(void **state) {
   (void)state;
   modal_speeds   s;
@@ -103,7 +104,7 @@ static void lost_tracks_are_left_out(void **state) {
   post_buffer    text = {0};
   int            n;
   make(&s);
-  for (int i = 1; i < SPEEDS; i++) s.mac[i * MODES] = .3;
+  for (int i = 1; i < SPEEDS; i++) s.mac[i * MODES] = 0.3;
   const post_campbell campbell = {&s, 2};
   assert_ok(post_campbell_crossings(&campbell, &n, &found));
   for (int i = 0; i < n; i++) assert_int_not_equal(found[i].track, 0);

@@ -1,4 +1,4 @@
-/* What a convergence study says: verdicts, the cheapest, table, CSV, file, plot, section. */
+/* A convergence study: verdicts, fastest rung, table, CSV, file, plot, section. */
 #include "postproc/analysis/convergence.h"
 
 #include <unistd.h>
@@ -15,7 +15,7 @@ static void add(post_convergence *s, post_ladder ladder, const char *name, doubl
   r->state     = POST_RUNG_DONE;
   r->reference = reference;
   r->seconds   = seconds;
-  r->total     = seconds + .031;
+  r->total     = seconds + 0.031;
   r->memory    = 27.4e6;
   r->unknowns  = 21;
   r->peak      = error / 3;
@@ -24,16 +24,16 @@ static void add(post_convergence *s, post_ladder ladder, const char *name, doubl
   snprintf(r->name, sizeof r->name, "%s", name);
 }
 
-/* 5 errs too much, 9 is slow, 7 is the one. */
+/* 5 is too inaccurate, 9 is slow, 7 is best. */
 static post_convergence sample(void) {
   post_convergence s = {.tolerance = 2e-3, .n_preloads = 3};
   snprintf(s.output, sizeof s.output, "tip <&> motion");
-  add(&s, POST_LADDER_HARMONICS, "5", .21, 2.1e-3, false);
-  add(&s, POST_LADDER_HARMONICS, "7", .34, 1.9e-3, false);
-  add(&s, POST_LADDER_HARMONICS, "9", .55, 4e-4, false);
+  add(&s, POST_LADDER_HARMONICS, "5", 0.21, 2.1e-3, false);
+  add(&s, POST_LADDER_HARMONICS, "7", 0.34, 1.9e-3, false);
+  add(&s, POST_LADDER_HARMONICS, "9", 0.55, 4e-4, false);
   add(&s, POST_LADDER_HARMONICS, "31", 5.1, 0, true);
-  add(&s, POST_LADDER_MODES, "3", .21, .37, false);
-  add(&s, POST_LADDER_MODES, "17", .42, 0, true);
+  add(&s, POST_LADDER_MODES, "3", 0.21, 0.37, false);
+  add(&s, POST_LADDER_MODES, "17", 0.42, 0, true);
   add(&s, POST_LADDER_MESH, "9 mm, shroud 5 mm", 3.3, 1.2e-3, false);
   add(&s, POST_LADDER_MESH, "6 mm, shroud 4 mm", 4.4, 0, true);
   return s;
@@ -49,10 +49,10 @@ static void verdicts(void **state) {
   assert_int_equal(post_reference(&s, POST_LADDER_ACCURACY), -1);
   s.rung[1].state = POST_RUNG_INCOMPLETE;
   assert_int_equal(post_cheapest(&s, POST_LADDER_HARMONICS), 2);
-  s.rung[2].frequency = NAN; /* one error not known: nothing is */
+  s.rung[2].frequency = NAN; /* one unknown error makes the result unknown */
   assert_true(isnan(post_rung_error(&s.rung[2])));
   assert_int_equal(post_cheapest(&s, POST_LADDER_HARMONICS), -1);
-  s.rung[2].frequency = 2.2e-3; /* any of the three may be the greatest */
+  s.rung[2].frequency = 2.2e-3; /* each of the three may be the largest */
   assert_near(post_rung_error(&s.rung[2]), 2.2e-3, 0);
   assert_false(post_rung_meets(&s, &s.rung[2]));
   post_convergence_free(&s);
@@ -75,7 +75,7 @@ static void conclusion(void **state) {
       "Cheapest that meets 0.2 %: mhb.harmonics 7, 0.34 s, error 0.19 %; 15 times less than 31");
   assert_has_not(text.text, "auto");
   post_buffer_free(&text);
-  add(&s, POST_LADDER_TOGETHER, "H 7, fast, 3 modes", .2, 1.95e-3, false);
+  add(&s, POST_LADDER_TOGETHER, "H 7, fast, 3 modes", 0.2, 1.95e-3, false);
   post_convergence_conclusion(&s, &text);
   assert_has(text.text, "Cheapest that meets 0.2 %: H 7, fast, 3 modes, 0.2 s");
   post_buffer_free(&text);
@@ -130,7 +130,7 @@ static void plot_and_section(void **state) {
   post_convergence_picture(&s, "a<b", &text);
   assert_has(text.text, "Speed against error: a&lt;b");
   assert_has(text.text, "tolerance 0.2 %");
-  assert_has(text.text, ">9 mm</text>"); /* a mesh by its size alone */
+  assert_has(text.text, ">9 mm</text>"); /* the label of a mesh is its size */
   assert_has_not(text.text, "nan");
   post_buffer_free(&text);
   s.note = strdup("Ends at 21.\n");

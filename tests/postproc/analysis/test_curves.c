@@ -9,7 +9,8 @@ typedef struct {
   double f[MOST], a[MOST];
 } points;
 
-/* One-degree oscillator, damping ratio zeta, natural frequency 103.6 Hz: |H| on a grid that misses its peak. */
+/* One-degree oscillator, damping ratio zeta, natural frequency 103.6 Hz: |H| on a grid that misses
+ * its peak. */
 static void oscillator(points *p, int n, double zeta) {
   p->n = n;
   for (int i = 0; i < n; i++) {
@@ -29,7 +30,8 @@ static post_peak one_peak(const points *p) {
   return peak;
 }
 
-/* Peak at r^2 = 1 - 2 zeta^2 of height 1/(2 zeta sqrt(1 - zeta^2)); half power at r^2 = 1 - 2 zeta^2 -+ 2 zeta sqrt(1 - zeta^2). */
+/* Peak at r^2 = 1 - 2 zeta^2 of height 1/(2 zeta sqrt(1 - zeta^2)); half power at r^2 = 1 - 2
+ * zeta^2 -+ 2 zeta sqrt(1 - zeta^2). */
 static void resonance(void **state) {
   (void)state;
   static points p;
@@ -45,8 +47,9 @@ static void resonance(void **state) {
   assert_false(peak.edge);
 }
 
-/* Errors fall with the spacing: amplitude by the third power or better, frequency and bandwidth by the second. The
- * error at one grid depends on where the grid lies, so the slope is taken over several halvings. */
+/* Errors over the spacing: third order or better for the amplitude, second for frequency and
+ * bandwidth. The error depends on the position of the grid, so the slope is taken over several
+ * halvings. */
 static void order(void **state) {
   (void)state;
   static points p;
@@ -54,7 +57,7 @@ static void order(void **state) {
   double        half = 2 * zeta * sqrt(1 - zeta * zeta), mid = 1 - 2 * zeta * zeta;
   double        width = f0 * (sqrt(mid + half) - sqrt(mid - half)), error[2][3] = {{0}};
   for (int level = 0; level < 2; level++)
-    for (int shift = 0; shift < 9; shift++) { /* worst of nine grids */
+    for (int shift = 0; shift < 9; shift++) { /* largest error of nine grids */
       oscillator(&p, (level ? 1280 : 160) + shift * (level ? 24 : 3), zeta);
       post_peak peak  = one_peak(&p);
       error[level][0] = fmax(error[level][0], fabs(peak.amplitude * half / 2.385 - 1));
@@ -104,7 +107,8 @@ static void folds(void **state) {
   assert_true(log2(error[0] / error[1]) / 3 > 2.5);
 }
 
-/* A fold the solver located is taken as it is, once, though rounding moves the turn to its neighbour. */
+/* A fold located by the solver is taken once and unchanged, though rounding moves the turn to its
+ * neighbour. */
 static void flagged(void **state) {
   (void)state;
   const double f[] = {100, 101, 101.5, 101.50000001, 101.2, 100.9}, a[] = {1, 2, 3, 3.1, 3.6, 4};
@@ -137,7 +141,7 @@ static int peaks_of(int n, const double *a, int top[8]) {
     assert_true(isfinite(peaks[i].at) && isfinite(peaks[i].amplitude));
     assert_true(peaks[i].amplitude >= a[peaks[i].point]);
   }
-  if (found) assert_int_equal(peaks[post_highest(found, peaks)].point >= 0, 1);
+  if (found) assert_int_equal(peaks[post_highest_peak(found, peaks)].point >= 0, 1);
   free(peaks);
   return found;
 }
@@ -164,7 +168,7 @@ static void cases(void **state) {
                    2); /* an edge and a lesser peak */
 }
 
-/* A closed curve has no edge, even if it begins where it is largest but for rounding. */
+/* A closed curve has no edge, even if it starts at its maximum up to rounding. */
 static void closed(void **state) {
   (void)state;
   double     f[41], a[41];
@@ -177,14 +181,14 @@ static void closed(void **state) {
   assert_ok(post_find_peaks(41, f, a, &peaks, &n));
   for (int i = 0; i < n; i++) assert_false(peaks[i].edge);
   free(peaks);
-  f[40] += .1; /* open */
+  f[40] += 0.1; /* open */
   assert_ok(post_find_peaks(41, f, a, &peaks, &n));
   assert_int_equal(n, 1);
   assert_true(peaks[0].edge);
   free(peaks);
 }
 
-/* An edge peak has no bandwidth and says so. */
+/* An edge peak has no bandwidth. */
 static void edge(void **state) {
   (void)state;
   const double f[] = {90, 91, 92}, a[] = {3, 2, 1};
@@ -196,10 +200,10 @@ static void edge(void **state) {
   assert_near(peaks[0].at, 90, 0);
   assert_true(isnan(peaks[0].bandwidth) && isnan(peaks[0].damping));
   free(peaks);
-  assert_int_equal(post_highest(0, NULL), -1);
+  assert_int_equal(post_highest_peak(0, NULL), -1);
 }
 
-/* A fold pair a millionth apart is left out, wider ones stay. */
+/* A fold pair 1e-6 apart is left out, wider ones stay. */
 static void hairlines_are_no_folds(void **state) {
   (void)state;
   double     f[]        = {100, 105, 110, 110 - 1e-4, 115, 120, 118, 125};
@@ -212,8 +216,8 @@ static void hairlines_are_no_folds(void **state) {
   free(folds);
 }
 
-/* A reversal that the solver did not mark, of rounding or of a millionth, is none, though the parabolas through its two turns are
- * flat far from each other. */
+/* An unmarked reversal by rounding or of 1e-6 is no fold, though the vertices of the two parabolas
+ * are far apart. */
 static void ripples_are_no_folds(void **state) {
   (void)state;
   const double back[] = {2e-14, 1e-6};
@@ -231,11 +235,11 @@ static void ripples_are_no_folds(void **state) {
   }
 }
 
-/* A curve that leaves the range by its high end (108) in its upper part, and comes back in its lower one: the largest value is at an
- * edge, and there is no fold where it turns in the points only. */
+/* A curve leaves the range at its upper end (108) with a high amplitude and returns with a low one.
+ * The largest value is an edge peak, and the turn of the points is no fold. */
 static void left_the_range(void **state) {
   (void)state;
-  double     f[] = {100, 104, 108, 108, 103, 101, 105, 108}, a[] = {1, 2, 4, 3, 2, 1, .5, .2};
+  double     f[] = {100, 104, 108, 108, 103, 101, 105, 108}, a[] = {1, 2, 4, 3, 2, 1, 0.5, 0.2};
   int        special[8] = {0, 0, 0, 0, 0, 1, 0, 0}, n;
   post_fold *folds;
   post_peak *peaks;
@@ -252,8 +256,8 @@ static void left_the_range(void **state) {
   free(peaks);
 }
 
-/* A curve of one value has it everywhere; one that ends on a plateau has its largest value at the end, whatever the rounding; the
- * largest value is told even if it rises above the plateau by no more than a ripple. */
+/* A constant curve is level. A curve that ends on a plateau has an edge peak, whatever the
+ * rounding. The largest value is reported even if it exceeds the plateau by less than a ripple. */
 static void plateaus(void **state) {
   (void)state;
   const double  x[]     = {-2, -1, 0, 1, 2};
@@ -267,14 +271,14 @@ static void plateaus(void **state) {
     int        n;
     assert_ok(post_find_peaks(5, x, curve[i], &peaks, &n));
     assert_int_equal(n, 1);
-    assert_near(peaks[0].at, at[i], i == 2 ? .5 : 0);
+    assert_near(peaks[0].at, at[i], i == 2 ? 0.5 : 0);
     assert_int_equal(peaks[0].edge, i < 2);
     assert_int_equal(peaks[0].level, i == 0);
     free(peaks);
   }
 }
 
-/* Around 0 and below the width of a fold pair is measured by the range. */
+/* Near 0 the range sets the scale for the width of a fold pair. */
 static void folds_around_zero(void **state) {
   (void)state;
   const double a[] = {1, 2, 3, 4};

@@ -1,4 +1,3 @@
-#include "postproc/draw/colour.h"
 #include "postproc/draw/number_format.h"
 #include "tests/support/check.h"
 
@@ -58,37 +57,7 @@ static void units(void **state) {
   assert_string_equal(post_power(out, 0), "0");
 }
 
-/* Relative luminance of "#rrggbb" (WCAG 2). */
-static double luminance(const char *hex) {
-  static const double weight[] = {0.2126, 0.7152, 0.0722};
-  double              sum      = 0;
-  for (int i = 0; i < 3; i++) {
-    char   part[3] = {hex[1 + 2 * i], hex[2 + 2 * i], '\0'};
-    double v       = (double)strtol(part, NULL, 16) / 255;
-    sum += weight[i] * (v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4));
-  }
-  return sum;
-}
-
-/* The ramp is sequential in lightness and stands out from its page: 2 to 1 at its faintest on light, 3 to 1 on dark. */
-static void ramp(void **state) {
-  (void)state;
-  for (int dark = 0; dark <= 1; dark++) {
-    double last = 2;
-    for (int i = 0; i <= 40; i++) {
-      char colour[8];
-      post_colour(i / 40.0, dark, colour);
-      double y = luminance(colour);
-      assert_true(y < last + 2e-3);
-      last = y;
-      assert_true(dark ? (y + 0.05) / (luminance("#171e25") + 0.05) > 3
-                       : (luminance("#fffefb") + 0.05) / (y + 0.05) > 2);
-    }
-  }
-}
-
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(numbers), cmocka_unit_test(units),
-                                     cmocka_unit_test(ramp)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(numbers), cmocka_unit_test(units)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

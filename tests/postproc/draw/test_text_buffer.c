@@ -9,7 +9,8 @@ static void escaping(void **state) {
       b.text,
       "&lt;a href=&quot;x&quot; b=&#39;y&#39;&gt;&amp;amp;&lt;/a&gt;\n\tω² 叶 \xf0\x9f\x94\xa7");
   post_buffer_free(&b);
-  /* a lone byte, a cut sequence, an overlong slash, a surrogate, beyond U+10FFFF, escape, a lone CR */
+  /* a lone byte, a cut sequence, an overlong slash, a surrogate, beyond U+10FFFF, escape, a lone
+   * CR */
   post_put_escaped(&b, "\xff|\xe2\x82|\xc0\xaf|\xed\xa0\x80|\xf4\x90\x80\x80|\x1b|\r|");
   const char *c        = b.text;
   int         replaced = 0;

@@ -35,7 +35,7 @@ static char *inspect(const char *name, post_tree_style style, shb_status wanted)
   assert_int_equal(post_inspect(at(name), style, &text), wanted);
   for (const char *c = text.text; c && *c && !style.colour; c++)
     assert_true((unsigned char)*c >= 0x20 || *c == '\n' ||
-                *c == '\t'); /* no escape of the file's making */
+                *c == '\t'); /* no escape sequences from the file */
   return text.text;
 }
 
@@ -67,7 +67,7 @@ static void response(void **state) {
   char *full = inspect("x.response.h5", FULL, SHB_OK);
   assert_true(strlen(full) > 3 * strlen(text));
   assert_has(full, "    a = 1\n    b = 2\n");
-  assert_has(full, "# ??[31m"); /* the case's escape sequence made harmless */
+  assert_has(full, "# ??[31m"); /* the escape sequence of the case is removed */
   free(full);
   char *colour = inspect("x.response.h5", COLOUR, SHB_OK);
   assert_has(colour, "\033[1m");
@@ -174,7 +174,7 @@ static void modal(void **state) {
 
 static void write_phases(hid_t file, int n, int ranks) {
   static const char *const name[]    = {"mesh", "factor"};
-  static const double      seconds[] = {.125, 2.5}, cpu[] = {.25, 4.75}, memory[] = {8e7, 3.21e9};
+  static const double      seconds[] = {0.125, 2.5}, cpu[] = {0.25, 4.75}, memory[] = {8e7, 3.21e9};
   static const double      most[] = {5e7, 1.7e9};
   const h5_shape           shape  = H5_SHAPE((hsize_t)n);
   assert_ok(h5_write_strings(file, "/phases/name", 2, name, "phase"));
@@ -185,7 +185,7 @@ static void write_phases(hid_t file, int n, int ranks) {
   assert_ok(h5_write_attribute_int(file, "/phases", "ranks", ranks));
 }
 
-/* Where the modal stage's time went: a line a phase, and one for all of them. */
+/* Times of the modal stage: a line for each phase, and one for all. */
 static void phases(void **state) {
   (void)state;
   double frequency[] = {103.6}, damping[] = {0.002}, shape[3] = {1, 2, 3};
@@ -224,7 +224,7 @@ static void phases(void **state) {
   }
 }
 
-/* Claims to be ours and is not: the tree all the same, and the complaint. */
+/* A file that claims our format and is not: the tree is shown, and the fault. */
 static void pretender(void **state) {
   (void)state;
   hid_t file;
@@ -293,11 +293,11 @@ static void foreign(void **state) {
                                       "⋮ 10 more",
                                       "s_11"};
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) assert_has(text, parts[i]);
-  assert_true(strlen(text) < 4000); /* the loop is not walked */
+  assert_true(strlen(text) < 4000); /* the loop of links is not followed */
   free(text);
 }
 
-/* More than one piece: the extremes are in the first and the last. */
+/* Several pieces: the extremes are in the first and the last. */
 static void large(void **state) {
   (void)state;
   enum { ROWS = 700, COLUMNS = 901 };

@@ -1,4 +1,4 @@
-/* Two modal files against each other, made here with shapes whose MAC is known. */
+/* Comparison of two modal files with known MAC. */
 #include <unistd.h>
 
 #include "modal/model/model.h"
@@ -25,10 +25,10 @@ static int remove_folder(void **state) {
 
 typedef struct {
   double factor;  /* of the frequencies */
-  bool   swapped; /* modes 1 and 2, and the sign of the first */
-  double angle;   /* by which mode 3 is turned towards mode 1 */
+  bool   swapped; /* modes 1 and 2 exchanged, sign of the first changed */
+  double angle;   /* rotation of mode 3 towards mode 1 */
   int    pairs, nodes;
-  double stretch; /* of the mesh */
+  double stretch; /* factor of the mesh coordinates */
   char   probe[8];
 } variant;
 
@@ -50,7 +50,7 @@ static char *write_file(const variant *v, const char *name) {
   static char path[2][256];
   static int  turn;
   double      frequency[MODES] = {107.5 * v->factor, 210.25 * v->factor, 499 * v->factor};
-  double      damping[MODES]   = {.001, .002, .003}, right[6 * MODES], side[MODES * 6];
+  double      damping[MODES]   = {0.001, 0.002, 0.003}, right[6 * MODES], side[MODES * 6];
   double      probe[3 * MODES], nodal[MODES * 3 * 8], nodes[3 * 8];
   double _Complex force[MODES] = {1, 2, 3};
   char        *names[1]        = {(char *)v->probe};
@@ -60,7 +60,7 @@ static char *write_file(const variant *v, const char *name) {
   for (size_t i = 0; i < MODES * n; i++) right[(i % n) * MODES + i / n] = side[i];
   memset(probe, 0, sizeof probe);
   shapes(v, 3 * (size_t)v->nodes, nodal);
-  for (int i = 0; i < 3 * v->nodes; i++) nodes[i] = v->stretch * (.1 * i * i - .3);
+  for (int i = 0; i < 3 * v->nodes; i++) nodes[i] = v->stretch * (0.1 * i * i - 0.3);
   modal_model m = {.n_modes       = MODES,
                    .n_pairs       = v->pairs,
                    .n_probes      = 1,
@@ -101,18 +101,20 @@ static void a_file_is_like_itself(void **state) {
   free(text);
 }
 
-/* Modes that changed places, sign and frequency are found again; one that is turned has the square of the cosine. */
+/* Modes of other order, sign and frequency are matched; a rotated one has the square of the
+ * cosine. */
 static void modes_are_found_again(void **state) {
   (void)state;
   variant b = usual;
   char   *text;
   b.factor  = 1.02;
   b.swapped = true;
-  b.angle   = .4;
+  b.angle   = 0.4;
   assert_ok(compare(&b, &text));
   assert_has(text, "      1        107.5      2      214.455       +99.5   1.000\n");
   assert_has(text, "      2       210.25      1       109.65       -47.8   1.000\n");
-  assert_has(text, "      3          499      3       508.98          +2   0.848\n"); /* cos^2 .4 */
+  assert_has(text,
+             "      3          499      3       508.98          +2   0.848\n"); /* cos^2 0.4 */
   assert_has(text, "      1  0.000 1.000 0.152\n");
   free(text);
 }
@@ -132,7 +134,7 @@ static void other_meshes_compare_what_is_condensed(void **state) {
   b.pairs = 1;
   assert_ok(compare(&b, &text));
   assert_has(text, "MAC of 3 condensed values: 1 common probe\n");
-  assert_has(text, "none alike"); /* the probe stands still in this file */
+  assert_has(text, "none alike"); /* the probe does not move in this file */
   free(text);
 }
 

@@ -19,7 +19,8 @@ static int remove_folder(void **state) {
   return system(command);
 }
 
-/* Exit code of the program with arguments, run in the folder; standard output and error in out and error. */
+/* Exit code of the program with arguments, run in the folder; standard output and error in out and
+ * error. */
 static int run(const char *arguments, char out[65536], char error[4096]) {
   char command[1024];
   snprintf(command, sizeof command, "cd %s && %s %s >out 2>error", folder, getenv("SHROUDHB_POST"),

@@ -7,7 +7,8 @@
 
 enum { MOST = 200 };
 
-/* One record of RFC 4180 from text into cells (pointers into room); returns what follows, NULL at the end. */
+/* One record of RFC 4180 from text into cells (pointers into room); returns what follows, NULL at
+ * the end. */
 static const char *record(const char *text, char *room, char *cell[MOST], int *n) {
   *n = 0;
   if (!*text) return NULL;
@@ -66,8 +67,8 @@ static void check_point(const mhb_response *r, int b, int p, char *const *cell, 
   assert_near(value(cell[column(name, n, "contact_u_phase_deg")]), carg(u[1]) * 180 / M_PI, 1e-9);
   assert_near(value(cell[column(name, n, "contact_u_peak_to_peak_m")]), post_peak_to_peak(1, 3, u),
               1e-11 * cabs(u[1]));
-  assert_near(value(cell[column(name, n, "tip_motion_amplitude_m")]), post_ellipse(3, tip + 1, 4),
-              1e-11 * cabs(tip[1]));
+  assert_near(value(cell[column(name, n, "tip_motion_amplitude_m")]),
+              post_semi_major_axis(3, tip + 1, 4), 1e-11 * cabs(tip[1]));
   assert_near(value(cell[column(name, n, "contact_open")]), branch->state[3 * p + 2], 1e-11);
   assert_near(value(cell[column(name, n, "contact_dissipation_J")]), branch->dissipation[p], 1e-11);
   assert_near(value(cell[column(name, n, "iterations")]), branch->iterations[p], 0);
@@ -90,7 +91,7 @@ static void whole(void **state) {
   r->branch[3].special[5]      = MHB_NEIMARK_SACKER;
   r->branch[3].judged[5]       = MHB_BY_MULTIPLIERS;
   r->branch[3].loss[5]         = MHB_LOSS_NEIMARK_SACKER;
-  r->branch[3].multipliers[10] = CMPLX(.3, 1.4);
+  r->branch[3].multipliers[10] = CMPLX(0.3, 1.4);
   post_csv(r, &text);
   const char *at = record(text.text, names, name, &n);
   assert_int_equal(n, 4 + 2 * 11 + 15 + 13);
@@ -119,7 +120,7 @@ static void whole(void **state) {
       assert_string_equal(cell[column(name, n, "loss")], turn ? "Neimark-Sacker" : "");
       if (turn) {
         assert_string_equal(cell[column(name, n, "special")], "Neimark-Sacker");
-        assert_near(value(cell[column(name, n, "largest_multiplier")]), hypot(.3, 1.4), 1e-11);
+        assert_near(value(cell[column(name, n, "largest_multiplier")]), hypot(0.3, 1.4), 1e-11);
       } else {
         assert_string_equal(cell[column(name, n, "largest_multiplier")], "");
       }
@@ -132,7 +133,7 @@ static void whole(void **state) {
   mhb_response_destroy(r);
 }
 
-/* A column more, and only then. */
+/* One more column, in this case only. */
 static void run_up(void **state) {
   (void)state;
   fixture_options o    = fixture_usual();
@@ -168,7 +169,7 @@ static void many_contacts(void **state) {
   mhb_response_destroy(r);
 }
 
-/* What is followed has a column, after the frequency; the frequency and n0 have theirs anyway. */
+/* A followed parameter has a column after the frequency; frequency and n0 always have theirs. */
 static void parameter(void **state) {
   (void)state;
   static const char *const wanted[MHB_N_PARAMETERS] = {NULL, "n0_N",   "scale",

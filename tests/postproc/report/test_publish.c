@@ -63,7 +63,7 @@ static void whole(void **state) {
   text = contents(html);
   assert_has(text, "<!DOCTYPE html>");
   assert_has(text, "</html>");
-  assert_has(text, "shroudhb-mhb"); /* provenance came through the file */
+  assert_has(text, "shroudhb-mhb"); /* provenance of the file */
   assert_has(text, "&lt;script&gt;alert(1)");
   free(text);
   text = contents(csv);
@@ -80,7 +80,7 @@ static int count(const char *text, const char *what) {
   return n;
 }
 
-/* Points by time integration: dots on the curves of their preload, rows of the table, no peaks of their own. */
+/* Points by time integration: dots on the curves of their preload, rows of the table, no peaks. */
 static void with_points(void **state) {
   (void)state;
   fixture_options o = fixture_usual();
@@ -112,8 +112,8 @@ static void with_points(void **state) {
   assert_ok(publish(NULL));
   integration = NULL;
   char *text  = contents(svg);
-  assert_int_equal(count(text, "<circle class=\"witness adrift c"), 1);
-  assert_int_equal(count(text, "<circle class=\"witness c"), 2);
+  assert_int_equal(count(text, "<circle class=\"integration aperiodic c"), 1);
+  assert_int_equal(count(text, "<circle class=\"integration c"), 2);
   assert_has(text, "time integration</text>");
   free(text);
   text = contents(csv);
@@ -131,7 +131,7 @@ static void with_points(void **state) {
   unlink(path);
 }
 
-/* A response that cannot be shown leaves the earlier results as they are, and nothing half written. */
+/* A response that cannot be shown leaves earlier results unchanged and no partial file. */
 static void untouched(void **state) {
   (void)state;
   fixture_options o = fixture_usual();

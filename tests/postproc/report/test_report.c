@@ -5,11 +5,11 @@
 
 static char hostile[sizeof(char) * 2048];
 
-static post_source source(void) {
+static post_origin source(void) {
   static char text[] = "x", settings[] = "mhb.frequency = 92 138\ncontact.mu = 0.3 <&>\n",
               created[] = "2026-01-02T03:04:05Z";
   snprintf(hostile, sizeof hostile, "%s", fixture_hostile);
-  return (post_source){.format    = text,
+  return (post_origin){.format    = text,
                        .revision  = text,
                        .command   = text,
                        .created   = created,
@@ -19,7 +19,7 @@ static post_source source(void) {
                        .version   = 1};
 }
 
-/* ---------------------------------------------------------------- a small reader of tags */
+/* ---------------------------------------------------------------- reading tags */
 
 static bool is_void(const char *name) {
   static const char *const known[] = {"meta", "br", "hr", "img", "input", "link"};
@@ -28,7 +28,7 @@ static bool is_void(const char *name) {
   return false;
 }
 
-/* Past the end of a tag's attributes: every value is quoted. *closed: it ended in "/>". */
+/* Skip a tag's attributes; every value must be quoted. *closed: the tag ends in "/>". */
 static const char *skip_tag(const char *c, bool *closed) {
   for (; *c != '>'; c++) {
     if (*c == '"') c = strchr(c + 1, '"');
@@ -39,7 +39,8 @@ static const char *skip_tag(const char *c, bool *closed) {
   return c + 1;
 }
 
-/* Every element is closed in order; no stray '<' or '&'. Fails the test otherwise. Returns the number of elements. */
+/* Check that every element is closed in order, without stray '<' or '&'. Returns the number of
+ * elements. */
 static int check_tags(const char *c) {
   char open[64][24];
   int  depth = 0, elements = 0;
@@ -81,7 +82,7 @@ static int count(const char *text, const char *part) {
   return n;
 }
 
-/* Nothing is fetched: links stay inside the page, styles and script bring everything along. */
+/* Nothing is fetched: links stay inside the page, style and script are part of it. */
 static void check_self_contained(const char *html) {
   static const char *const loads[] = {"src=",  "@import", "fetch(",  "XMLHttpRequest", "import(",
                                       "<link", "<iframe", "<object", "WebSocket"};
@@ -93,15 +94,15 @@ static void check_self_contained(const char *html) {
 
 /* ---------------------------------------------------------------- pages */
 
-/* Takes the response. */
+/* The page of a response, which is destroyed. */
 static char *page_of(mhb_response *r, const char *name) {
-  post_study *study;
-  post_buffer html = {0};
-  post_source s    = source();
+  post_analysis *analysis;
+  post_buffer    html = {0};
+  post_origin    s    = source();
   assert_non_null(r);
-  assert_ok(post_study_create(r, &study));
-  assert_ok(post_report(study, &s, name, &html));
-  post_study_destroy(study);
+  assert_ok(post_analysis_create(r, &analysis));
+  assert_ok(post_report(analysis, &s, name, &html));
+  post_analysis_destroy(analysis);
   mhb_response_destroy(r);
   return html.text;
 }
@@ -145,17 +146,18 @@ static void run_up(void **state) {
   free(html);
 }
 
-/* Flips and Neimark-Sacker points are drawn, told, and told apart from folds; how many points were judged is said. */
+/* Flips and Neimark-Sacker points are drawn and reported apart from folds, with the number of
+ * points whose stability was computed. */
 static void turns(void **state) {
   (void)state;
   fixture_options o      = fixture_usual();
   char           *before = page(&o, "scene");
   mhb_response   *r      = fixture_response(&o);
-  post_study     *study;
+  post_analysis  *analysis;
   post_buffer     html = {0};
-  post_source     s    = source();
+  post_origin     s    = source();
   assert_has_not(before, "does not repeat");
-  assert_has_not(before, "class=\"turn");
+  assert_has_not(before, "class=\"bifurcation");
   assert_has_not(before, "Floquet multipliers were computed");
   free(before);
   for (int i = 10; i < 15; i++) {
@@ -165,19 +167,19 @@ static void turns(void **state) {
   }
   r->branch[3].special[10] = MHB_FLIP;
   r->branch[3].special[14] = MHB_NEIMARK_SACKER;
-  assert_ok(post_study_create(r, &study));
-  assert_ok(post_report(study, &s, "scene", &html));
+  assert_ok(post_analysis_create(r, &analysis));
+  assert_ok(post_report(analysis, &s, "scene", &html));
   check_tags(html.text);
   assert_has(html.text, "On 1 curve a part");
   assert_has(html.text, "2 points by period doubling (flip), 3 by a modulation");
   assert_has(html.text, "multipliers were computed at 5 of 1560 points");
-  assert_int_equal(count(html.text, "class=\"turn"), 2);
-  post_study_destroy(study);
+  assert_int_equal(count(html.text, "class=\"bifurcation"), 2);
+  post_analysis_destroy(analysis);
   mhb_response_destroy(r);
   free(html.text);
 }
 
-/* Text of the case, of names and of reasons stays text. */
+/* Text of cases, names and reasons is escaped. */
 static void escaping(void **state) {
   (void)state;
   fixture_options o    = fixture_usual();
@@ -228,7 +230,7 @@ static void data(void **state) {
   char           *html = page(&o, "x");
   const char     *at   = strstr(html, "id=\"data\"");
   int             row;
-  /* first output: whole motion of the tip, first harmonic */
+  /* first output: motion of the tip, first harmonic */
   const char *output = strstr(at, "{\"place\":\"tip\",\"row\":");
   assert_int_equal(
       sscanf(output,
@@ -279,7 +281,8 @@ static void odd(void **state) {
   }
 }
 
-/* Curves over another parameter: it is on every axis, the frequency is said, nothing is left of a sweep in frequency. */
+/* Curves over another parameter: it is on every axis, the frequency is stated, and no text mentions
+ * a sweep. */
 static void followed(void **state) {
   (void)state;
   static const struct {
@@ -325,25 +328,25 @@ static void followed(void **state) {
   }
 }
 
-/* Estimates that are not numbers are dashes; a curve without any has no verdict. */
+/* Estimates that are no numbers print as dashes; a curve without any has no verdict. */
 static void not_estimated(void **state) {
   (void)state;
   fixture_options o = fixture_usual();
   mhb_response   *r = fixture_response(&o);
-  post_study     *study;
+  post_analysis  *analysis;
   post_buffer     html = {0};
-  post_source     s    = source();
+  post_origin     s    = source();
   for (int b = 2; b < r->n_branches; b++)
     for (int p = 0; p < r->branch[b].n_points; p++)
       r->branch[b].error_newton[p]       = r->branch[b].error_truncation[p] =
           r->branch[b].error_sampling[p] = r->branch[b].error_modal[p] = NAN;
-  assert_ok(post_study_create(r, &study));
-  assert_ok(post_report(study, &s, "x", &html));
+  assert_ok(post_analysis_create(r, &analysis));
+  assert_ok(post_report(analysis, &s, "x", &html));
   check_tags(html.text);
   assert_int_equal(count(html.text, "<td>not estimated</td>"), 6); /* the seventh is incomplete */
   assert_has_not(html.text, "Estimated error");
   post_buffer_free(&html);
-  post_study_destroy(study);
+  post_analysis_destroy(analysis);
   mhb_response_destroy(r);
 }
 
@@ -369,11 +372,11 @@ static void picture(void **state) {
   fixture_options o = fixture_usual();
   for (int many = 0; many <= 1; many++) {
     if (many) o.n_preloads = 30, o.n0 = n0;
-    mhb_response *r = fixture_response(&o);
-    post_study   *study;
-    post_buffer   svg = {0};
-    assert_ok(post_study_create(r, &study));
-    post_picture(study, "a <b> & \"c\"", &svg);
+    mhb_response  *r = fixture_response(&o);
+    post_analysis *analysis;
+    post_buffer    svg = {0};
+    assert_ok(post_analysis_create(r, &analysis));
+    post_picture(analysis, "a <b> & \"c\"", &svg);
     check_tags(svg.text);
     assert_has(svg.text, "xmlns=\"http://www.w3.org/2000/svg\"");
     assert_has(svg.text, "a &lt;b&gt; &amp; &quot;c&quot;</text>");
@@ -381,12 +384,12 @@ static void picture(void **state) {
     assert_has_not(svg.text, "var(");
     assert_int_equal(count(svg.text, "class=\"line c0\""), 2); /* curve and key */
     post_buffer_free(&svg);
-    post_study_destroy(study);
+    post_analysis_destroy(analysis);
     mhb_response_destroy(r);
   }
 }
 
-/* Left and right end and height of a limit's name, px, at 8 px a letter. */
+/* Left and right end and height of a limit's label, px, at 8 px per letter. */
 static void place_of(const char *svg, const char *name, double box[3]) {
   char mark[32], anchor[16];
   snprintf(mark, sizeof mark, "class=\"mark %s\"", name);
@@ -400,30 +403,33 @@ static void place_of(const char *svg, const char *name, double box[3]) {
   box[1] = box[0] + width;
 }
 
-/* The limits' names stay within the frame, 68 to 792 px, and do not cover each other, wherever the peaks are. */
+/* The labels of the limits stay within the frame, 68 to 792 px, and apart, wherever the peaks
+ * are. */
 static void names_of_limits(void **state) {
   (void)state;
   fixture_options o = fixture_usual();
   mhb_response   *r = fixture_response(&o);
-  post_study     *study;
-  assert_ok(post_study_create(r, &study));
-  const double *range = study->abscissa.range;
+  post_analysis  *analysis;
+  assert_ok(post_analysis_create(r, &analysis));
+  const double *range = analysis->abscissa.range;
   for (int i = 0; i <= 40; i += 4)
     for (int j = 0; j <= 40; j++) {
       post_buffer svg = {0};
       double      open[3], stuck[3];
-      study->tracking.open.at  = range[0] + (range[1] - range[0]) * i / 40;
-      study->tracking.stuck.at = range[0] + (range[1] - range[0]) * (j < 39 ? i + j - 20 : i) / 40;
-      study->tracking.stuck.at = fmin(range[1], fmax(range[0], study->tracking.stuck.at));
-      study->tracking.open.amplitude = study->tracking.stuck.amplitude = .9 * study->largest;
-      post_picture(study, "x", &svg);
+      analysis->tracking.open.at = range[0] + (range[1] - range[0]) * i / 40;
+      analysis->tracking.stuck.at =
+          range[0] + (range[1] - range[0]) * (j < 39 ? i + j - 20 : i) / 40;
+      analysis->tracking.stuck.at = fmin(range[1], fmax(range[0], analysis->tracking.stuck.at));
+      analysis->tracking.open.amplitude = analysis->tracking.stuck.amplitude =
+          0.9 * analysis->largest;
+      post_picture(analysis, "x", &svg);
       place_of(svg.text, "open", open);
       place_of(svg.text, "stuck", stuck);
       assert_true(fmin(open[0], stuck[0]) >= 68 && fmax(open[1], stuck[1]) <= 792);
       assert_true(open[1] <= stuck[0] || stuck[1] <= open[0] || fabs(open[2] - stuck[2]) >= 13);
       post_buffer_free(&svg);
     }
-  post_study_destroy(study);
+  post_analysis_destroy(analysis);
   mhb_response_destroy(r);
 }
 

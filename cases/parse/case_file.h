@@ -1,0 +1,108 @@
+/* A case file in memory: the settings of all stages, in SI units. */
+#ifndef CASES_PARSE_CASE_FILE_H
+#define CASES_PARSE_CASE_FILE_H
+
+#include <stdbool.h>
+
+#include "fem/element/load.h"
+#include "fem/element/material.h"
+#include "mesh/blade/blade.h"
+#include "mesh/gmsh/source_settings.h"
+#include "mhb/problem/settings.h"
+#include "modal/common/completeness.h"
+#include "modal/common/damping.h"
+
+enum { CASE_MAX_PROBES = 32, CASE_MAX_LOADS = 16, CASE_NAME = 64 };
+
+typedef enum {
+  CASE_MESH      = 1,
+  CASE_MODAL     = 2,
+  CASE_MHB       = 4,
+  CASE_POST      = 8,
+  CASE_CONVERGE  = 16,
+  CASE_INTEGRATE = 32
+} case_stage;
+
+typedef struct {
+  char   name[CASE_NAME];
+  double at[3]; /* m, mesh axes */
+} case_probe;
+
+/* One of several contact interfaces. */
+typedef struct {
+  mhb_interface mhb;
+  char          right[MESH_WORD], left[MESH_WORD]; /* groups of faces */
+  int           points;                            /* contact patches; 0 = all */
+} case_interface;
+
+/* One of several loads. */
+typedef struct {
+  fem_load load;
+  char    *field; /* resolved path, or NULL */
+  char     group[MESH_WORD];
+} case_load;
+
+/* A volume of the mesh and what it is made of. */
+typedef struct {
+  char            group[MESH_WORD];
+  fem_orthotropic constants; /* as given: E, nu, G, axes */
+  fem_material    material;  /* stiffness and density in mesh axes */
+} case_material;
+
+typedef struct {
+  char *path;   /* as given */
+  char *folder; /* of path, "." if none; outputs and relative input files live here */
+  char *text;   /* verbatim */
+  char *name;
+
+  bool        has_mesh;  /* block mesh present (needed unless modal.file) */
+  char       *mesh_file; /* resolved path of mesh.file, or NULL: parametric blade */
+  int         mesh_unit; /* place in the words of mesh.unit */
+  mesh_source source;    /* mesh.file and the keys that belong to it */
+  mesh_blade  blade;
+
+  fem_orthotropic constants; /* material.E, nu, G, axes */
+  fem_material    material;  /* stiffness and density in mesh axes */
+  bool            has_materials;
+  int             n_materials; /* with materials, instead of material */
+  case_material   materials[MESH_MAX_VOLUMES];
+  int             blades;
+  int             n_speeds;
+  double          speed[MHB_MAX_PRELOADS]; /* [n_speeds] rad/s, the last that of the response */
+  bool            run_up;                  /* the speed follows the frequency */
+  double          pressure;                /* Pa, steady */
+  mesh_axis       axis;
+
+  int              modes;           /* 0: auto */
+  double           tolerance, band; /* with modes: auto; Hz */
+  modal_damping    damping;
+  modal_check_kind check;
+  bool             full_integration; /* modal.integration: full */
+  char            *modal_file;       /* resolved path of modal.file, or NULL */
+
+  int        engine_order;
+  fem_load   load;
+  char      *field_file; /* resolved path of excitation.field, or NULL */
+  bool       has_loads;
+  int        n_loads; /* with excitation.loads, instead of load */
+  case_load  loads[CASE_MAX_LOADS];
+  int        n_probes;
+  case_probe probe[CASE_MAX_PROBES];
+
+  int            points; /* contact patches; 0 = all */
+  bool           has_interfaces;
+  int            n_interfaces; /* with contact.interfaces */
+  case_interface interfaces[MHB_MAX_INTERFACES];
+  char           vary_interface[MHB_NAME]; /* mhb.vary.interface */
+  mhb_settings   mhb;
+  double         vary[MHB_N_PARAMETERS][2]; /* range of a parameter that is followed */
+
+  double converge_tolerance;
+  double converge_n0[2];   /* N, preloads that are looked at */
+  double converge_seconds; /* the most that a rung's balance may take */
+  char  *converge_output;  /* name of a probe or "contact"; NULL: the first */
+
+  mhb_integration_settings integrate;
+} case_file;
+
+#endif

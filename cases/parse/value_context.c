@@ -1,0 +1,141 @@
+#include "cases/parse/value_context.h"
+
+#include <string.h>
+
+#include "cases/parse/units.h"
+
+void case_value_expected(const case_key *key, char *text, size_t size) {
+  static const char *const shapes[CASE_N_TYPES] = {
+      [CASE_NUMBER]    = "a number",
+      [CASE_INTEGER]   = "a whole number",
+      [CASE_COUNT]     = "a whole number or all",
+      [CASE_AUTO]      = "a whole number or auto",
+      [CASE_CHOICE]    = "one of",
+      [CASE_SWITCH]    = "one of",
+      [CASE_ACCURACY]  = "a number or one of",
+      [CASE_WORD]      = "a name",
+      [CASE_LABEL]     = "the name of a group",
+      [CASE_FILE_NAME] = "a file name",
+      [CASE_VECTOR]    = "[x, y, z]",
+      [CASE_TRIPLE]    = "a number or three, for the axes",
+      [CASE_INTERVAL]  = "[from, to]",
+      [CASE_SWEEP]     = "[from, to] or a number",
+      [CASE_STIFFNESS] = "a number or [kuu, kuw, kww]",
+      [CASE_PRELOADS]  = "a number, a list or {from, to, points}",
+      [CASE_PLACES]    = "a list of numbers",
+      [CASE_ORDERS]    = "a list of whole numbers",
+      [CASE_POINTS]    = "a whole number of points or a list",
+      [CASE_FACTORS]   = "a mapping {harmonic: [factor, phase]}",
+      [CASE_PROBES]    = "a mapping {name: [x, y, z]}",
+      [CASE_DAMPING]   = "a number, a list, {loss_factor: ...} or {rayleigh: [alpha, beta]}",
+      [CASE_GROUPS]    = "a mapping {group: rule}",
+      [CASE_LIST]      = "a list of mappings",
+      [CASE_SIGNAL]    = "a list of [amplitude, phase]"};
+  text[0] = '\0';
+  case_append(text, size, "%s", shapes[key->type]);
+  for (const char *word = key->words; word && *word;) {
+    size_t n = strcspn(word, " ");
+    case_append(text, size, "%s%.*s", word == key->words ? " " : ", ", (int)n, word);
+    word += n + (word[n] == ' ');
+  }
+  if (key->unit[0]) case_append(text, size, " in %s", key->unit);
+}
+
+bool case_value_refuse_kind(const case_value_context *c, const char *path, const case_node *node,
+                            const char *expected) {
+  if (node->kind != CASE_BROKEN)
+    case_issue_add(c->issues, node->line, node->column, path, "%s; expected %s",
+                   node->kind == CASE_NULL       ? "has no value"
+                   : node->kind == CASE_SCALAR   ? "is a single value"
+                   : node->kind == CASE_SEQUENCE ? "is a list"
+                                                 : "is a mapping",
+                   expected);
+  return false;
+}
+
+bool case_value_refuse(const case_value_context *c, const case_node *node) {
+  char expected[256];
+  case_value_expected(c->key, expected, sizeof expected);
+  return case_value_refuse_kind(c, c->path, node, expected);
+}
+
+static bool in_range(const case_key *key, double value) {
+  if (key->least == 0 && key->most == 0) return true;
+  bool low  = key->above ? value <= key->least : value < key->least;
+  bool high = key->below ? value >= key->most : value > key->most;
+  return !low && !high;
+}
+
+static bool check_range(const case_value_context *c, const char *path, const case_node *node,
+                        double value) {
+  if (in_range(c->key, value)) return true;
+  char range[128];
+  case_key_range(c->key, range, sizeof range);
+  case_issue_add(c->issues, node->line, node->column, path, "is %g%s%s, must be %s%s%s", value,
+                 c->key->unit[0] ? " " : "", c->key->unit, range, c->key->unit[0] ? " " : "",
+                 c->key->unit);
+  return false;
+}
+
+bool case_value_number(const case_value_context *c, const char *path, const case_node *node,
+                       double *value) {
+  char why[CASE_WHY], expected[128] = "a number";
+  if (c->key->unit[0]) case_append(expected, sizeof expected, " in %s", c->key->unit);
+  if (node->kind != CASE_SCALAR) return case_value_refuse_kind(c, path, node, expected);
+  if (!case_quantity(node->text, c->key->unit, value, why)) {
+    case_issue_add(c->issues, node->line, node->column, path, "%s", why);
+    return false;
+  }
+  return check_range(c, path, node, *value);
+}
+
+bool case_value_integer(const case_value_context *c, const case_node *node, void *slot) {
+  char why[CASE_WHY];
+  if (node->kind != CASE_SCALAR) return case_value_refuse(c, node);
+  if (!case_integer(node->text, slot, why)) {
+    case_issue_add(c->issues, node->line, node->column, c->path, "%s", why);
+    return false;
+  }
+  return check_range(c, c->path, node, *(int *)slot);
+}
+
+bool case_value_numbers(const case_value_context *c, const char *path, const case_node *node, int n,
+                        double *value) {
+  if (node->kind != CASE_SEQUENCE || node->n != n) {
+    char expected[256] = "";
+    case_append(expected, sizeof expected, "%d numbers", n);
+    if (c->key->unit[0]) case_append(expected, sizeof expected, " in %s", c->key->unit);
+    if (node->kind != CASE_SEQUENCE) return case_value_refuse_kind(c, path, node, expected);
+    case_issue_add(c->issues, node->line, node->column, path, "has %d numbers, expected %d",
+                   node->n, n);
+    return false;
+  }
+  bool good = true;
+  for (int i = 0; i < n; i++) {
+    char inner[CASE_PATH];
+    case_path(inner, "%s[%d]", path, i);
+    good = case_value_number(c, inner, &node->child[i], &value[i]) && good;
+  }
+  return good;
+}
+
+bool case_value_polar(case_issues *issues, const char *path, const case_node *node,
+                      const char *unit, double polar[2]) {
+  case_key                 keys[2] = {{.unit = unit}, {.unit = "rad"}};
+  const case_value_context c       = {.issues = issues, .key = &keys[0], .path = path};
+  const case_value_context phase   = {.issues = issues, .key = &keys[1], .path = path};
+  char                     inner[CASE_PATH];
+  polar[0] = polar[1] = 0;
+  if (node->kind == CASE_SCALAR) return case_value_number(&c, path, node, &polar[0]);
+  if (node->kind != CASE_SEQUENCE)
+    return case_value_refuse_kind(&c, path, node, "[amplitude, phase]");
+  if (node->n != 2) {
+    case_issue_add(issues, node->line, node->column, path,
+                   "has %d value%s; expected [amplitude, phase]", node->n, node->n == 1 ? "" : "s");
+    return false;
+  }
+  case_path(inner, "%s[0]", path);
+  bool good = case_value_number(&c, inner, &node->child[0], &polar[0]);
+  case_path(inner, "%s[1]", path);
+  return case_value_number(&phase, inner, &node->child[1], &polar[1]) && good;
+}

@@ -1,0 +1,37 @@
+#include "cases/schema/case_paths.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "mesh/core/file_format.h"
+
+char *case_output(const case_file *file, const char *suffix) {
+  bool   here = strcmp(file->folder, ".") == 0;
+  size_t size = strlen(file->folder) + strlen(file->name) + strlen(suffix) + 2;
+  char  *path = malloc(size);
+  if (path)
+    snprintf(path, size, "%s%s%s%s", here ? "" : file->folder, here ? "" : "/", file->name, suffix);
+  return path;
+}
+
+bool case_mesh_is_made(const case_file *file) {
+  const mesh_source *source = &file->source;
+  if (!file->mesh_file) return false;
+  bool made = MESH_FORMAT_IS_SOLID(mesh_format_of(file->mesh_file)) || source->unit != 1;
+  const mesh_rules *rules = &source->rules;
+  for (int i = 0; i < MESH_N_SETS; i++) made = made || rules->usual[i].kind != MESH_RULE_NONE;
+  for (int i = 0; i < rules->n_more; i++) made = made || rules->more[i].rule.kind != MESH_RULE_NONE;
+  for (int i = 0; i < rules->n_volumes; i++)
+    made = made || rules->volume[i].rule.kind != MESH_RULE_NONE;
+  return made;
+}
+
+char *case_mesh_path(const case_file *file) {
+  return file->mesh_file && !case_mesh_is_made(file) ? strdup(file->mesh_file)
+                                                     : case_output(file, ".msh");
+}
+
+char *case_modal_path(const case_file *file) {
+  return file->modal_file ? strdup(file->modal_file) : case_output(file, ".modal.h5");
+}

@@ -1,0 +1,86 @@
+/* The modal stage at one speed: from a mesh and settings to the modal model. */
+#ifndef MODAL_STAGE_SOLVE_H
+#define MODAL_STAGE_SOLVE_H
+
+#include "fem/body/assemble.h"
+#include "fem/element/load.h"
+#include "fem/element/material.h"
+#include "mesh/base/progress.h"
+#include "modal/common/damping.h"
+#include "modal/condense/contact_patches.h"
+#include "modal/condense/static_deflection.h"
+#include "modal/eigen/eigen.h"
+#include "modal/eigen/participation.h"
+#include "modal/model/model.h"
+
+typedef struct {
+  const char *name;
+  double      at[3]; /* m, mesh axes */
+} modal_probe;
+
+/* One of several contact interfaces, given by the groups of its faces. */
+typedef struct {
+  const char   *name, *right, *left; /* left: NULL if to ground */
+  int           points;              /* patches; 0: one for each node */
+  const double *psi, *phi;           /* rad, checked against the faces; NULL: not given */
+} modal_contact;
+
+/* A volume of the mesh and its material. */
+typedef struct {
+  const char  *name;
+  fem_material material;
+} modal_region;
+
+typedef struct {
+  fem_material         material;
+  int                  n_regions; /* 0: material everywhere */
+  const modal_region  *region;
+  mesh_axis            axis;
+  int                  blades;
+  double               speed;    /* rad/s; 0: at rest */
+  int                  n_speeds; /* of modal_stage; above 1: all of speeds, which include speed */
+  const double        *speeds;   /* [n_speeds] rad/s, distinct */
+  double               pressure; /* Pa, steady, on group load, into the deformed surface */
+  int                  modes;    /* 0: as many as tolerance and band need */
+  double               tolerance, band; /* of the contact receptance; Hz */
+  modal_damping        damping;
+  modal_check_kind     check;            /* that no mode is missing */
+  bool                 full_integration; /* stiffness with FEM_FULL, not FEM_STANDARD */
+  fem_load             load;
+  int                  n_loads;  /* 0: load only */
+  const fem_load      *loads;    /* loads that act together */
+  int                  n_groups; /* further face groups that loads name */
+  const char          *group[MESH_MAX_MORE];
+  int                  n_probes;
+  const modal_probe   *probe;
+  bool                 to_ground;
+  int                  points;     /* contact patches; 0: one for each node */
+  const double        *psi, *phi;  /* rad, checked against the faces; NULL: not given */
+  int                  n_contacts; /* 0: one, of contact_right and contact_left */
+  const modal_contact *contact;
+} modal_settings;
+
+/* Results of the stage. The model is the same on every rank. */
+typedef struct {
+  fem_system          system;
+  modal_eigen         eigen;
+  modal_patches       patches; /* all patches, ordered by interface */
+  modal_model         model;
+  modal_deflection    deflection; /* static, under the centrifugal load; zero at rest */
+  modal_participation participation;
+} modal_result;
+
+/* Assemble, solve the static equilibrium if the blade rotates, compute the modes, condense. K is
+ * then the tangent stiffness at that equilibrium. Contact faces, axes and loads are those of the
+ * undeformed mesh. Collective; the mesh is the same on every rank, its sets oriented
+ * (mesh_fe_orient).
+ *
+ * Errors: SHB_ERR_INPUT missing groups, wrong angles, too many modes or patches, a part without
+ * clamp, a single column of hexahedra without full_integration, a speed without stable equilibrium;
+ * SHB_NOT_CONVERGED modes; SHB_ERR_IO no memory; SHB_INTERRUPTED. */
+shb_status modal_solve(MPI_Comm comm, const mesh_fe *mesh, const modal_settings *settings,
+                       shb_progress *progress, modal_result *result);
+
+void modal_result_free(modal_result *result); /* also on a zeroed struct */
+
+#endif

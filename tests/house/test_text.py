@@ -1,0 +1,185 @@
+"""tests.width and tests.sentences: lines that fit, and comments that are read once.
+
+test_text.py width ROOT       no line is wider than 100 columns, comments included
+test_text.py sentences ROOT   no sentence of a comment in a .c or .h file has more than 25 words
+test_text.py --self-test      checks that faults are found in made-up text
+
+width reads *.c, *.h, *.py, *.sh, *.cmake, CMakeLists.txt and the scripts without ending.
+Columns are characters, not bytes.
+
+sentences is rough. A line indented by two or more columns after the star is a formula or an entry
+of a list: it is not read, and the sentence before it ends there. A blank line ends a sentence too.
+Terms joined by an operator count as one word, and so do parentheses with symbols.
+
+Rooms of NOT_YET are counted, not judged. The list is to become empty.
+"""
+import os
+import re
+import sys
+
+WIDTH, WORDS = 100, 25
+ENDINGS = ('.c', '.h', '.py', '.sh', '.cmake')
+NAMES = ('CMakeLists.txt', 'run')
+FOLDERS = ('.ci', 'mesh', 'fem', 'modal', 'mhb', 'postproc', 'cases', 'tests', 'docs')
+NOT_YET = {
+    'width': '''
+        fem fem/body fem/element fem/solver mesh mesh/base mesh/blade mesh/core mesh/gmsh mesh/io
+        mhb/balance mhb/branches mhb/contact mhb/continuation mhb/floquet mhb/integration
+        mhb/numerics mhb/problem mhb/response mhb/structure modal modal/common modal/condense
+        modal/eigen modal/hdf5 modal/model modal/stage postproc postproc/analysis postproc/draw
+        postproc/inspect postproc/report tests/fem/body tests/fem/element tests/fem/solver
+        tests/mesh/blade tests/mesh/core tests/mesh/gmsh tests/mesh/io tests/mhb/balance
+        tests/mhb/branches tests/mhb/contact tests/mhb/continuation tests/mhb/floquet
+        tests/mhb/integration tests/mhb/problem tests/mhb/response tests/mhb/structure
+        tests/modal/common tests/modal/condense tests/modal/eigen tests/modal/hdf5
+        tests/modal/model tests/modal/stage tests/postproc/analysis tests/postproc/draw
+        tests/postproc/inspect tests/postproc/report
+    '''.split(),
+    'sentences': '''
+        fem/body fem/element fem/solver mesh/base mesh/blade mesh/core mesh/gmsh mesh/io
+        mhb/balance mhb/branches mhb/contact mhb/continuation mhb/floquet mhb/integration
+        mhb/numerics mhb/response mhb/structure modal/common modal/condense modal/eigen modal/hdf5
+        modal/model modal/stage postproc/analysis postproc/draw postproc/inspect postproc/report
+        tests/fem/body tests/fem/element tests/fem/solver tests/mesh/blade tests/mesh/core
+        tests/mhb/balance tests/mhb/branches tests/mhb/contact tests/mhb/floquet
+        tests/mhb/integration tests/mhb/response tests/mhb/structure tests/modal/common
+        tests/modal/condense tests/modal/model tests/modal/stage tests/postproc/analysis
+    '''.split(),
+}
+
+ABBREVIATION = re.compile(r'\b(?:e\.g|i\.e|[Ee]qs?|[Ff]igs?|[Ss]ecs?|cf|pp?|vol|[Nn]os?|vs|approx|'
+                          r'resp|et al|[A-Z])\.$')
+COMMENT = re.compile(r'"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\'|/\*.*?\*/|//[^\n]*', re.S)
+OPERATOR = re.compile(r'\s+(?:[-=<>+*/|^~≈≤≥·×−&]|<=|>=|->|=>|==|!=|&&|\|\||to the power)\s+')
+SYMBOLIC = re.compile(r'[\(\[][^()\[\]]*[=<>*/^_|\d{}+,][^()\[\]]*[\)\]]')
+
+
+def files_of(root, wanted):
+    for top in FOLDERS:
+        for folder, folders, names in os.walk(os.path.join(root, top)):
+            folders[:] = sorted(name for name in folders if name != '__pycache__')
+            for name in sorted(names):
+                if wanted(name):
+                    full = os.path.join(folder, name)
+                    yield os.path.relpath(full, root).replace(os.sep, '/'), full
+    full = os.path.join(root, 'CMakeLists.txt')
+    if wanted('CMakeLists.txt') and os.path.isfile(full):
+        yield 'CMakeLists.txt', full
+
+
+def room_of(path):
+    """mhb/contact of mhb/contact/slip.c; tests/mhb/contact of its tests; the folder of the rest."""
+    parts = path.split('/')[:-1]
+    return '/'.join(parts[:3] if parts[:1] == ['tests'] else parts[:2]) or '.'
+
+
+def wide_lines(text):
+    for number, line in enumerate(text.split('\n'), 1):
+        if len(line) > WIDTH:
+            yield number, f'{len(line)} columns'
+
+
+def paragraphs(comment):
+    """(line offset, text) of the running text of one comment, formulas and lists left out."""
+    body = comment[2:-2] if comment.startswith('/*') else comment[2:]
+    start, text = 0, []
+    for offset, line in enumerate(body.split('\n')):
+        stripped = re.sub(r'^\s*\*?', '', line) if offset else line
+        if not stripped.strip() or (offset and re.match(r' {3,}\S', stripped)):
+            if text:
+                yield start, ' '.join(text)
+            text = []
+            continue
+        start = start if text else offset
+        text.append(stripped.strip())
+    if text:
+        yield start, ' '.join(text)
+
+
+def sentences(text):
+    sentence = []
+    for word in text.split():
+        sentence.append(word)
+        if re.search(r'[.!?]["\')\]]*$', word) and not ABBREVIATION.search(' '.join(sentence)):
+            yield ' '.join(sentence)
+            sentence = []
+    if sentence:
+        yield ' '.join(sentence)
+
+
+def count_words(sentence):
+    short = SYMBOLIC.sub(' symbol ', sentence)
+    short = OPERATOR.sub('=', short)
+    return sum(1 for word in short.split() if re.search(r'\w', word))
+
+
+def long_sentences(text):
+    for match in COMMENT.finditer(text):
+        if match.group()[0] != '/':
+            continue
+        line = text.count('\n', 0, match.start()) + 1
+        for offset, paragraph in paragraphs(match.group()):
+            for sentence in sentences(paragraph):
+                n = count_words(sentence)
+                if n > WORDS:
+                    yield line + offset, f'{n} words: {sentence[:70]}...'
+
+
+CHECKS = {
+    'width': (lambda name: name.endswith(ENDINGS) or name in NAMES, wide_lines),
+    'sentences': (lambda name: name.endswith(('.c', '.h')), long_sentences),
+}
+
+
+def check(kind, root):
+    wanted, faults_of = CHECKS[kind]
+    counts, n_bad = {}, 0
+    for path, full in files_of(root, wanted):
+        with open(full, encoding='utf-8') as file:
+            faults = list(faults_of(file.read()))
+        room = room_of(path)
+        counts[room] = counts.get(room, 0) + len(faults)
+        if room not in NOT_YET[kind]:
+            n_bad += len(faults)
+            for line, fault in faults:
+                print(f'{path}:{line}: {fault}')
+    for room in sorted(counts):
+        if room in NOT_YET[kind]:
+            clean = '' if counts[room] else ', clean: take it off NOT_YET'
+            print(f'{counts[room]:6d} {room}{clean}')
+    for room in sorted(set(NOT_YET[kind]) - set(counts)):
+        print(f'       {room} is not there: take it off NOT_YET')
+    print(f'{sum(counts.values())} in all, {n_bad} outside NOT_YET')
+    return n_bad != 0
+
+
+def self_test():
+    words = ' '.join(['word'] * WORDS)
+    wide, long = wide_lines, long_sentences
+    rows = [  # check, text, faults
+        (wide, 'x' * WIDTH, 0),
+        (wide, 'x' * (WIDTH + 1), 1),
+        (wide, '\u00b5' * WIDTH, 0),
+        (wide, 'a\n' + 'x' * 200 + '\nb', 1),
+        (long, f'/* {words}. {words}. */', 0),
+        (long, f'/* {words} more. */', 1),
+        (long, f'// {words} more', 1),
+        (long, f'char *s = "/* {words} more";', 0),
+        (long, f'/* {words}\n * more. */', 1),
+        (long, f'/* {words}\n *\n * more */', 0),
+        (long, f'/* Text:\n *   {words} {words}\n * end. */', 0),
+        (long, f'/* {words[5:]} e.g. more words. */', 1),
+        (long, f'/* {words[5:]} (a = b + 2, c). */', 0),
+        (long, f'/* {words[5:]} a = b. */', 0),
+        (long, f'/* {words[5:]} a b. */', 1),
+    ]
+    failed = 0
+    for function, text, wanted in rows:
+        found = len(list(function(text)))
+        failed += found != wanted
+        print(f'{"ok" if found == wanted else "FAILED"}: {found} of {wanted} in {text[:40]!r}')
+    return failed != 0
+
+
+if __name__ == '__main__':
+    sys.exit(self_test() if sys.argv[1:] == ['--self-test'] else check(*sys.argv[1:]))

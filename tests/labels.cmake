@@ -1,0 +1,50 @@
+# Labels and timeouts of all tests, by the CPU time that tests/house/cpu_times.py measures:
+#
+#   unit         below 1 s of CPU time, and below 20 s together; every test that is not listed here
+#   integration  below 20 s each
+#   slow         above
+#
+# The timeouts are ten times these times and more, because a busy machine runs a test slower.
+# A unit test that outgrows its label therefore fails at last.
+set(INTEGRATION_TESTS
+  mesh.io.source mesh.blade.hex_sweep mesh.blade.command fem.solver.factor modal.hdf5.h5
+  modal.common.completeness modal.eigen.eigen modal.condense.condense modal.stage.ranks_1
+  modal.stage.ranks_2 modal.stage.ranks_3 modal.stage.calculix mhb.contact.contact
+  mhb.contact.reference_law mhb.contact.accuracy mhb.contact.continuity mhb.contact.random
+  mhb.problem.interfaces mhb.problem.parameter mhb.response.response mhb.balance.condensation
+  mhb.balance.truncation_error mhb.floquet.floquet mhb.integration.integrator
+  mhb.integration.integration_sweep mhb.continuation.arclength mhb.continuation.linear_resonances
+  mhb.branches.harmonic_selection mhb.branches.branch_stability mhb.branches.secondary_branches
+  mhb.branches.forced_response mhb.branches.run_up postproc.report.report cases.commands.integrate
+  cases.scenes.z_notch cases.scenes.slip_onset cases.scenes.run_up cases.scenes.paper_fig7
+  cases.scenes.paper_fig8 cases.scenes.paper_fig9 cases.scenes.paper_fig10
+  cases.scenes.paper_fig8_direct cases.scenes.lost_curves cases.scenes.snubber_blade
+  hard.three_degree hard.jumps hard.ends hard.friction hard.resonance hard.balance hard.pairs
+  hard.peaks hard.isolas hard.parameters bench.modal bench.contact bench.integrate docs.first_case)
+set(SLOW_TESTS
+  mesh.blade.blade mhb.floquet.monodromy cases.converge.converge hard.gaps bench.elements)
+
+set(TIMEOUT_unit 10)
+set(TIMEOUT_integration 300)
+set(TIMEOUT_slow 900)
+if(SHROUDHB_SANITIZE OR CMAKE_BUILD_TYPE STREQUAL "Debug") # no optimisation, every access checked
+  foreach(label unit integration slow)
+    math(EXPR TIMEOUT_${label} "10 * ${TIMEOUT_${label}}")
+  endforeach()
+endif()
+
+get_property(all_tests DIRECTORY PROPERTY TESTS)
+foreach(name ${INTEGRATION_TESTS} ${SLOW_TESTS})
+  if(SHROUDHB_PYTHON AND NOT name IN_LIST all_tests)
+    message(WARNING "tests/labels.cmake: there is no test ${name}")
+  endif()
+endforeach()
+foreach(name ${all_tests})
+  set(label unit)
+  if(name IN_LIST INTEGRATION_TESTS)
+    set(label integration)
+  elseif(name IN_LIST SLOW_TESTS)
+    set(label slow)
+  endif()
+  set_tests_properties(${name} PROPERTIES LABELS ${label} TIMEOUT ${TIMEOUT_${label}})
+endforeach()

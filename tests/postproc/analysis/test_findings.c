@@ -1,0 +1,93 @@
+/* Findings of the closed-form response: the sentences, the key figures and the lines for a
+ * terminal. */
+#include "postproc/analysis/findings.h"
+
+#include "tests/support/check.h"
+#include "tests/support/fixture.h"
+
+typedef void (*writer)(const post_analysis *, post_buffer *);
+
+/* What a writer says of a response. The caller frees the text. */
+static char *text_of(const fixture_options *o, writer write) {
+  mhb_response  *r = fixture_response(o);
+  post_analysis *analysis;
+  post_buffer    out = {0};
+  assert_non_null(r);
+  assert_ok(post_analysis_create(r, &analysis));
+  write(analysis, &out);
+  post_analysis_destroy(analysis);
+  mhb_response_destroy(r);
+  return out.text;
+}
+
+/* Seven preloads: the optimum at 100 N, folds, one incomplete curve, unstable points. */
+static void response_is_told(void **state) {
+  (void)state;
+  fixture_options o    = fixture_usual();
+  char           *text = text_of(&o, post_findings);
+  assert_has(text, "<b>100\u00a0N</b> of the 7 preloads computed gives the lowest peak");
+  assert_has(text, "below open, ");
+  assert_has(text, "The optimum lies between 50 and 200\u00a0N");
+  assert_has(text, "<b>Jumps.</b> Folds on n₀ = ");
+  assert_has(text, "points are unstable (dotted)");
+  assert_has(text, "<b>Not complete:</b> n₀ = 1000\u00a0N (curve 8) stopped at ");
+  assert_has(text, "Estimated error of the harmonic balance: at most ");
+  free(text);
+}
+
+static void limits_may_be_absent(void **state) {
+  (void)state;
+  fixture_options o = fixture_usual();
+  o.limits          = false;
+  o.incomplete      = false;
+  char *text        = text_of(&o, post_findings);
+  assert_has_not(text, "below open");
+  assert_has_not(text, "Not complete");
+  free(text);
+  text = text_of(&o, post_key_figures);
+  assert_has_not(text, "shrouds open");
+  assert_has_not(text, "Reduction");
+  assert_has(text, "<dt>Lowest peak, n₀ = 100\u00a0N</dt>");
+  free(text);
+}
+
+static void figures_are_four(void **state) {
+  (void)state;
+  static const char *const labels[] = {
+      "<dt>Peak, shrouds open</dt>", "<dt>Peak, shrouds stuck</dt>",
+      "<dt>Lowest peak, n₀ = 100\u00a0N</dt>", "<dt>Reduction</dt>"};
+  fixture_options o    = fixture_usual();
+  char           *text = text_of(&o, post_key_figures);
+  for (size_t i = 0; i < sizeof labels / sizeof *labels; i++) assert_has(text, labels[i]);
+  free(text);
+}
+
+/* Without motion there is nothing to compare. */
+static void rest_is_told(void **state) {
+  (void)state;
+  fixture_options o = fixture_usual();
+  o.scale           = 0;
+  char *text        = text_of(&o, post_findings);
+  assert_has(text, "Nothing moves: every amplitude is zero.");
+  free(text);
+  assert_null(text_of(&o, post_summary));
+}
+
+static void summary_is_plain(void **state) {
+  (void)state;
+  fixture_options o    = fixture_usual();
+  char           *text = text_of(&o, post_summary);
+  assert_has(text, "open peak 1.24");
+  assert_has(text, "; stuck peak ");
+  assert_has(text, "; lowest (n0 = 100\u00a0N) peak ");
+  assert_null(strpbrk(text, "<>\n"));
+  free(text);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(response_is_told), cmocka_unit_test(limits_may_be_absent),
+      cmocka_unit_test(figures_are_four), cmocka_unit_test(rest_is_told),
+      cmocka_unit_test(summary_is_plain)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
