@@ -28,7 +28,8 @@ shb_test(mhb/floquet monodromy tests_models)
 foreach(noun integrator integration_sweep)
   shb_test(mhb/integration ${noun} tests_models)
 endforeach()
-foreach(noun arclength arclength_scalar corrector curve linear_corrector linear_resonances
+foreach(noun arclength arclength_scalar closed_curve corrector curve event_location events
+    linear_corrector linear_resonances
     nearest_solution segment)
   shb_test(mhb/continuation ${noun} tests_models)
 endforeach()
