@@ -28,9 +28,9 @@ shb_test(mhb/floquet monodromy tests_models)
 foreach(noun integrator integration_sweep)
   shb_test(mhb/integration ${noun} tests_models)
 endforeach()
-foreach(noun arclength arclength_scalar closed_curve corrector curve event_location events
-    linear_corrector linear_resonances
-    nearest_solution segment)
+foreach(noun arclength arclength_scalar balance_curve closed_curve corrector curve event_location
+    events first_solution linear_corrector linear_resonances nearest_solution outputs
+    resonance_detection segment)
   shb_test(mhb/continuation ${noun} tests_models)
 endforeach()
 foreach(noun harmonic_selection branch_stability secondary_branches forced_response run_up)
