@@ -106,12 +106,3 @@ shb_status mhb_multistart_once(mhb_newton *w, mhb_balance *b, double value, doub
   *found_new = !mhb_solution_set_has(found, x);
   return *found_new ? mhb_solution_set_add_shifts(found, b, x) : SHB_OK;
 }
-
-shb_status mhb_multistart(mhb_newton *w, mhb_balance *b, double value, double size, int starts,
-                          unsigned long long seed, mhb_solution_set *found) {
-  double x[b->n];
-  bool   unused;
-  for (int i = 0; i < starts; i++)
-    SHB_TRY(mhb_multistart_once(w, b, value, size, &seed, found, x, &unused));
-  return SHB_OK;
-}

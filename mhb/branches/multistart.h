@@ -35,8 +35,4 @@ shb_status mhb_multistart_once(mhb_newton *newton, mhb_balance *residual, double
                                unsigned long long *seed, mhb_solution_set *found, double *x,
                                bool *is_new);
 
-/* As many starts. SHB_ERR_IO: no memory. */
-shb_status mhb_multistart(mhb_newton *newton, mhb_balance *residual, double value, double size,
-                          int starts, unsigned long long seed, mhb_solution_set *found);
-
 #endif
