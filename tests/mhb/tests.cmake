@@ -33,7 +33,7 @@ foreach(noun arclength arclength_scalar balance_curve closed_curve corrector cur
     resonance_detection segment)
   shb_test(mhb/continuation ${noun} tests_models)
 endforeach()
-foreach(noun branch_completion branch_stability chain forced_response harmonic_selection record
-    run_up secondary_branches)
+foreach(noun branch_completion branch_stability chain forced_response harmonic_selection multistart
+    period_doubling record run_up secondary_branches tracer)
   shb_test(mhb/branches ${noun} tests_models)
 endforeach()

@@ -98,6 +98,7 @@ static void signals_are_those_of_the_balance(void **state) {
   for (int k = 0; k <= H; k++) {
     double complex p[3 * PAIRS], q[3 * PROBES];
     mhb_balance_contact_force(f.balance, k, p);
+    mhb_receptance_update(f.balance->receptance, k);
     mhb_receptance_probe(f.balance->receptance, k, p, q);
     for (int row = 0; row < 3 * PAIRS; row++) assert_true(b->force[row * (H + 1) + k] == p[row]);
     for (int row = 0; row < 3 * PROBES; row++) assert_true(b->probe[row * (H + 1) + k] == q[row]);
@@ -137,8 +138,10 @@ static void a_point_is_recorded_with_its_own_evaluation(void **state) {
   assert_ok(mhb_evaluation_create(f.balance, &own));
   mhb_balance_use(f.balance, own);
   mhb_balance_linearise(f.balance, f.x, 1.3, f.r, NULL);
-  double complex wanted[3 * PAIRS];
+  double complex wanted[3 * PAIRS], probe[3 * PROBES];
   mhb_balance_contact_force(f.balance, 1, wanted);
+  mhb_receptance_update(f.balance->receptance, 1);
+  mhb_receptance_probe(f.balance->receptance, 1, wanted, probe);
   mhb_balance_use(f.balance, NULL);
   for (int i = 0; i < N; i++) other[i] = -2 * f.x[i];
   mhb_balance_linearise(f.balance, other, 1.5, f.r, NULL);
@@ -146,6 +149,7 @@ static void a_point_is_recorded_with_its_own_evaluation(void **state) {
   assert_ok(mhb_record(f.response, 0, f.balance, &f.point, MHB_ORDINARY, 0));
   const mhb_branch *b = &f.response->branch[0];
   for (int row = 0; row < 3 * PAIRS; row++) assert_true(b->force[row * (H + 1) + 1] == wanted[row]);
+  for (int row = 0; row < 3 * PROBES; row++) assert_true(b->probe[row * (H + 1) + 1] == probe[row]);
   assert_near(b->frequency[0], 1.3 / SHB_TWO_PI, 1e-15);
   mhb_balance_use(f.balance, NULL);
   mhb_evaluation_destroy(own);
