@@ -87,8 +87,8 @@ static bool changes(mhb_arclength *curve, mhb_balance *b, const mhb_resonance *r
                     const double complex *q_current, const double complex *q_next) {
   const mhb_curve_point *trial = &curve->trial, *current = &curve->current, *next = &curve->next;
   int                    n = 3 * b->receptance->model->n_probes, all = n * (b->m + 1);
-  double                 part = resonance->half / (next->value - current->value), sum = 0;
-  double                 along = resonance->half / trial->tangent[curve->n], size[n / 3 + 1];
+  double                 part = resonance->half_width / (next->value - current->value), sum = 0;
+  double                 along = resonance->half_width / trial->tangent[curve->n], size[n / 3 + 1];
   for (int i = 0; i < curve->n; i++)
     sum += pow(along * trial->tangent[i] - part * (next->x[i] - current->x[i]), 2);
   if (sqrt(sum) >= SIGNIFICANT * mhb_norm(trial->x, curve->n)) return true;
@@ -116,7 +116,7 @@ bool mhb_resonance_skipped(mhb_arclength *curve, mhb_balance *b, const mhb_reson
     mhb_resonance *resonance = &resonances->at[way > 0 ? i : resonances->n - 1 - i];
     double         part      = (resonance->value - from) / way;
     if (!(part > 0 && part < 1) || resonance->significant ||
-        !(fabs(way) >= RESOLVED * resonance->half))
+        !(fabs(way) >= RESOLVED * resonance->half_width))
       continue;
     if (n++ == 0) probe_motions(b, &curve->next, q_next, size);
     mhb_balance_use(b, curve->next.evaluation);

@@ -90,8 +90,8 @@ static void a_reason_of_its_own(void **state) {
   (void)state;
   for (int interrupted = 0; interrupted < 2; interrupted++) {
     fixture        f;
-    mhb_completion c = {.end         = interrupted ? MHB_END_INTERRUPTED : MHB_END_LOW,
-                        .without_end = "nothing beyond"};
+    mhb_completion c = {.end          = interrupted ? MHB_END_INTERRUPTED : MHB_END_LOW,
+                        .other_reason = "nothing beyond"};
     set_up(&f, 5, VALUES);
     const mhb_branch *branch = complete(&f, &c);
     assert_string_equal(branch->reason, interrupted ? "interrupted" : "nothing beyond");

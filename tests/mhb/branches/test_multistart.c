@@ -21,11 +21,11 @@ static void a_set_has_what_was_added(void **state) {
     assert_ok(mhb_solution_set_add(&set, N, x[i]));
     for (int k = 0; k <= i; k++) assert_true(mhb_solution_set_has(&set, x[k]));
   }
-  assert_int_equal(set.n_found, COUNT);
+  assert_int_equal(set.n_solutions, COUNT);
   assert_memory_equal(set.x, x, sizeof x);
   mhb_solution_set_free(&set);
   assert_null(set.x);
-  assert_int_equal(set.n_found, 0);
+  assert_int_equal(set.n_solutions, 0);
 }
 
 /* To 1e-5 of the larger of both. */
@@ -60,16 +60,16 @@ static void a_motion_is_added_with_its_copies(void **state) {
   for (int i = 0; i < b->n; i++) x[i] = random_unit(&seed);
   for (int again = 0; again < 2; again++) {
     assert_ok(mhb_solution_set_add_shifts(&set, b, x));
-    assert_int_equal(set.n_found, 3);
+    assert_int_equal(set.n_solutions, 3);
   }
   mhb_subharmonic_shift(b, x, 2, later);
   assert_true(mhb_solution_set_has(&set, later));
   assert_ok(mhb_solution_set_add_shifts(&set, b, later));
-  assert_int_equal(set.n_found, 3);
+  assert_int_equal(set.n_solutions, 3);
   for (int i = 0; i < b->n; i++)
     if (i % b->nb == 1 || i % b->nb == 2 || i % b->nb == 3 || i % b->nb == 4) x[i] = 0;
   assert_ok(mhb_solution_set_add_shifts(&set, b, x)); /* harmonics 0 and 3 alone */
-  assert_int_equal(set.n_found, 4);
+  assert_int_equal(set.n_solutions, 4);
   mhb_solution_set_free(&set);
   mhb_balance_destroy(b);
   modal_model_free(&model);
@@ -122,8 +122,8 @@ static void starts_lead_to_different_solutions(void **state) {
       mhb_balance_evaluate(f.balance, x, 1.15, r, NULL, NULL);
       assert_below(mhb_norm(r, f.balance->n), 1e-9 * mhb_norm(x, f.balance->n));
     }
-    n[again] = set.n_found;
-    assert_int_equal(set.n_found, n_new);
+    n[again] = set.n_solutions;
+    assert_int_equal(set.n_solutions, n_new);
     mhb_solution_set_free(&set);
     tear_down(&f);
   }
@@ -145,7 +145,7 @@ static void a_linear_problem_has_one_solution(void **state) {
     assert_ok(mhb_multistart_once(f.newton, f.balance, 1.15, 1, &seed, &set, x, &is_new));
     assert_true(is_new == (i == 0));
   }
-  assert_int_equal(set.n_found, 1);
+  assert_int_equal(set.n_solutions, 1);
   mhb_solution_set_free(&set);
   tear_down(&f);
 }
@@ -161,7 +161,7 @@ static void a_start_may_lead_nowhere(void **state) {
   bool               is_new;
   assert_ok(mhb_multistart_once(f.newton, f.balance, 1.15, INFINITY, &seed, &set, x, &is_new));
   assert_false(is_new);
-  assert_int_equal(set.n_found, 0);
+  assert_int_equal(set.n_solutions, 0);
   mhb_solution_set_free(&set);
   tear_down(&f);
 }

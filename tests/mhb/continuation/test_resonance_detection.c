@@ -24,8 +24,8 @@ typedef struct {
 static void set_up(fixture *f, double contact, double probe, double force, double from, double to) {
   two_mode_model(SECOND, ZETA, contact, probe, force, &f->model);
   f->settings   = ground_settings(0.3, 1, 1, 0.05, 3);
-  f->second     = (mhb_resonance){.value = SECOND, .half = ZETA * SECOND, .k = 1, .mode = 1};
-  f->resonances = (mhb_resonances){.at = &f->second, .n = 1, .room = 1};
+  f->second     = (mhb_resonance){.value = SECOND, .half_width = ZETA * SECOND, .k = 1, .mode = 1};
+  f->resonances = (mhb_resonances){.at = &f->second, .n = 1, .capacity = 1};
   assert_ok(mhb_balance_create(&f->model, &f->settings, &f->balance));
   mhb_balance_set_preload(f->balance, 0.05);
   assert_ok(mhb_balance_curve_create(f->balance, 0.3, 3, &f->curve));
@@ -78,7 +78,7 @@ static void a_place_without_resonance_is_not_significant(void **state) {
   (void)state;
   fixture f;
   set_up(&f, 0.01, 1, 0.2, 1.9, 2);
-  f.second = (mhb_resonance){.value = 1.95, .half = 0.002, .k = 1, .mode = -1};
+  f.second = (mhb_resonance){.value = 1.95, .half_width = 0.002, .k = 1, .mode = -1};
   assert_false(is_skipped(&f));
   assert_false(f.second.significant);
   tear_down(&f);
@@ -98,7 +98,7 @@ static void a_place_that_is_not_solved_counts(void **state) {
   (void)state;
   fixture f;
   set_up(&f, 0.01, 1, 0.2, 1.9, 2);
-  f.second                = (mhb_resonance){.value = 1.95, .half = 0.002, .k = 1, .mode = -1};
+  f.second                = (mhb_resonance){.value = 1.95, .half_width = 0.002, .k = 1, .mode = -1};
   f.curve->system->factor = never_factor;
   assert_true(is_skipped(&f));
   tear_down(&f);
