@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "mesh/base/constants.h"
 #include "mesh/blade/airfoil.h"
 #include "mesh/blade/shroud.h"
 #include "mesh/core/fe_mesh.h"
@@ -116,7 +117,7 @@ static void turning(const mesh_blade *blade, mesh_axis axis, double matrix[16]) 
   for (int i = 0; i < 16; i++) matrix[i] = i == 15;
   for (int column = 0; column < 3; column++) {
     double unit[3] = {column == 0, column == 1, column == 2};
-    mesh_axis_rotate(axis, 2 * M_PI / blade->blades, unit, unit);
+    mesh_axis_rotate(axis, SHB_TWO_PI / blade->blades, unit, unit);
     for (int row = 0; row < 3; row++) matrix[4 * row + column] = unit[row];
   }
 }

@@ -3,18 +3,19 @@
 #include <gmshc.h>
 #include <math.h>
 
+#include "mesh/base/constants.h"
 #include "mesh/blade/airfoil.h"
 #include "mesh/gmsh/session.h"
 
 enum { CORNERS = MESH_SHROUD_LEGS + 1 };
 
-static const double degree = M_PI / 180;
+static const double degree = SHB_PI / 180;
 
 /* Least distance kept between the airfoil and the shroud's edges, as a share of the shroud's length. */
 static const double margin_share = 0.03;
 
 static double half_sector(const mesh_blade *blade) {
-  return M_PI / blade->blades;
+  return SHB_PI / blade->blades;
 }
 
 static double underside(const mesh_blade *blade) {

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
 #include "mesh/core/triangle.h"
 
 /* The left face, for looking up the nearest point. */
@@ -197,7 +198,7 @@ static shb_status project(const mesh_fe *mesh, mesh_axis axis, int blades, mesh_
   t.ball = malloc(((size_t)t.set->n + 1) * sizeof *t.ball);
   SHB_CHECK(t.ball, SHB_ERR_IO, "no memory to match the contact faces");
   for (int f = 0; f < t.set->n; f++) enclose(&t, f);
-  shb_status status = project_all(&t, axis, 2 * M_PI / blades, out);
+  shb_status status = project_all(&t, axis, SHB_TWO_PI / blades, out);
   free(t.ball);
   return status;
 }

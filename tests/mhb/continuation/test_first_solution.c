@@ -90,7 +90,7 @@ static void a_failure_leaves_the_balance_as_it_was(void **state) {
   mhb_balance_set_value(b, 1.2);
   mhb_balance_set_parameter(b, MHB_IN_MU);
   mhb_reason reason = mhb_first_solution(newton, b, 0.3, -1, x, &iterations);
-  print_message("%s\n", mhb_reason_text(reason));
+  print_message("reason %d\n", (int)reason);
   assert_true(reason < 0);
   assert_int_equal(b->parameter, MHB_IN_MU);
   assert_true(b->eval->at.n0 == 0.05 && b->eval->at.mu == 0.3);

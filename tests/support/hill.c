@@ -1,13 +1,12 @@
-#include "mhb/floquet/hill.h"
+#include "tests/support/hill.h"
 
 #include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/numerics/fourier.h"
-
-static const double TWO_PI = 6.283185307179586476925;
 
 /* Index of (harmonic k, row or mode i of n): (k + m) n + i. */
 typedef struct {
@@ -25,7 +24,7 @@ typedef struct {
 static double complex neighbour_phase(const hill *h, int d, int k, int blades_on) {
   const mhb_modal_structure *s     = h->s;
   long                       turns = (d + (long)k * s->wave) % s->blades * blades_on;
-  return cexp(-I * TWO_PI * (double)turns / s->blades);
+  return cexp(-I * SHB_TWO_PI * (double)turns / s->blades);
 }
 
 static void set_shapes(hill *h, int d) {
@@ -45,8 +44,8 @@ static void set_shapes(hill *h, int d) {
 static double complex to_exponential(int k, int i) {
   if (k == 0) return i == 0;
   int j = k > 0 ? k : -k;
-  if (i == 2 * j - 1) return .5;
-  return i == 2 * j ? (k > 0 ? .5 * I : -.5 * I) : 0;
+  if (i == 2 * j - 1) return 0.5;
+  return i == 2 * j ? (k > 0 ? 0.5 * I : -0.5 * I) : 0;
 }
 
 /* Weight of exponential k in real coefficient i. */
@@ -160,12 +159,13 @@ static int solve(hill *h, double complex *multiplier) {
   for (int i = 0; i < n; i++) h->exponent[i] -= lean;
   qsort(h->exponent, (size_t)n, sizeof *h->exponent, by_turn);
   qsort(h->exponent, (size_t)kept, sizeof *h->exponent, by_growth);
-  for (int i = 0; i < kept; i++) multiplier[i] = cexp((h->exponent[i] + lean) * TWO_PI / h->omega);
+  for (int i = 0; i < kept; i++)
+    multiplier[i] = cexp((h->exponent[i] + lean) * SHB_TWO_PI / h->omega);
   return 1;
 }
 
-shb_status mhb_hill(const mhb_modal_structure *s, int d, double omega, int m, const double *dp,
-                    double complex *multiplier) {
+shb_status hill_multipliers(const mhb_modal_structure *s, int d, double omega, int m,
+                            const double *dp, double complex *multiplier) {
   hill   h = {.s = s, .m = m, .K = mhb_real_size(m), .n3 = 3 * s->pairs, .omega = omega};
   size_t n = (size_t)(h.K * h.n3), states = 2 * (size_t)(h.K * s->modes);
   h.B               = calloc(n * (size_t)s->modes, sizeof *h.B);
