@@ -158,7 +158,7 @@ static double ahead_of_place(mhb_arclength *curve, const mhb_curve_point *point,
 }
 
 static double slope_of_output(mhb_arclength *curve, const mhb_curve_point *point, void *context) {
-  return mhb_output_slope(curve, point, *(const int *)context);
+  return mhb_output_slope(mhb_curve_balance(curve), point, *(const int *)context);
 }
 
 /* Part of a motion that does not repeat after d periods: its size |z| and the size's rate

@@ -3,11 +3,11 @@
 #ifndef MHB_CONTINUATION_CLOSED_CURVE_H
 #define MHB_CONTINUATION_CLOSED_CURVE_H
 
-#include "mhb/continuation/arclength.h"
+#include "mhb/continuation/curve.h"
 
 /* A place of a curve, and the direction in which the curve is to pass it. */
 typedef struct {
-  int     rows, row_length, copies; /* as of the system (curve_system.h) where it was noted */
+  int     rows, row_length, copies; /* as of the system (curve.h) where it was noted */
   double *x, *tangent;              /* [copy][rows][row_length] */
   double  value, rate;              /* of the parameter; the tangent in it */
   double  size;                     /* |x| of the place; 1 at rest */
