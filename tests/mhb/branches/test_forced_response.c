@@ -304,6 +304,25 @@ static void curves_go_on_beyond_a_gap(void **state) {
   modal_model_free(&model);
 }
 
+/* The probe of the model is its contact point. */
+static void the_probe_moves_like_the_contact(void **state) {
+  (void)state;
+  modal_model model;
+  three_degree_model(&model);
+  mhb_settings      s    = ground_settings(.4, .8, .5, .3, 5);
+  mhb_response     *r    = sweep(&model, &s, .8, 1.7);
+  const mhb_branch *b    = &r->branch[2];
+  double            away = 0, most = 0;
+  for (int i = 0; i < b->n_points * 3 * (b->n_harmonics + 1); i++) {
+    away = fmax(away, cabs(b->probe[i] - b->motion[i]));
+    most = fmax(most, cabs(b->motion[i]));
+  }
+  assert_true(b->n_points > 50);
+  assert_below(away, 1e-8 * most);
+  mhb_response_destroy(r);
+  modal_model_free(&model);
+}
+
 static void nothing_happens_without_excitation(void **state) {
   (void)state;
   modal_model model;
@@ -356,6 +375,7 @@ int main(void) {
       cmocka_unit_test(tip_contact_beam),
       cmocka_unit_test(linear_limits_are_met),
       cmocka_unit_test(curves_go_on_beyond_a_gap),
+      cmocka_unit_test(the_probe_moves_like_the_contact),
       cmocka_unit_test(nothing_happens_without_excitation),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
