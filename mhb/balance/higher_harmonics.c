@@ -159,7 +159,7 @@ static void set_W(mhb_higher_harmonics *h, int k, int pair, double complex W[3][
 
 /* 1/(w_i^2 - w^2 + 2 j zeta_i w_i w) */
 static double complex modal_receptance(const mhb_receptance *r, int k, int i) {
-  double w = k * r->omega / r->nu, wi = 2 * SHB_PI * r->model->frequency[i];
+  double w = k * r->omega / r->nu, wi = SHB_TWO_PI * r->model->frequency[i];
   return 1 / CMPLX(wi * wi - w * w, 2 * r->model->damping_ratio[i] * wi * w);
 }
 

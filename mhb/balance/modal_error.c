@@ -19,7 +19,7 @@ typedef enum { BY_LOAD, BY_CONTACT, PARTS } part;
  * dof. Without an estimate: (w/w_m)^2, w_m the highest mode. */
 static double series_ratio(const modal_model *model, double w) {
   const int    n     = 3 * model->n_pairs * (model->has_left ? 2 : 1);
-  const double top   = 2 * SHB_PI * model->frequency[model->n_modes - 1];
+  const double top   = SHB_TWO_PI * model->frequency[model->n_modes - 1];
   double       worst = 0, weight = modal_series_at(model, w).weight[2];
   for (int i = 0; i < n; i++) {
     double error = modal_series_error(model, w, i);

@@ -45,7 +45,7 @@ void mhb_subharmonic_shift(const mhb_balance *b, const double *x, int j, double 
     double       *c = to + row * b->nb;
     c[0]            = a[0];
     for (int k = 1; k <= b->m; k++) {
-      double angle = 2 * SHB_PI * (k * j % nu) / nu, cosine = cos(angle), sine = sin(angle);
+      double angle = SHB_TWO_PI * (k * j % nu) / nu, cosine = cos(angle), sine = sin(angle);
       double re = a[2 * k - 1], im = a[2 * k];
       c[2 * k - 1] = re * cosine - im * sine;
       c[2 * k]     = re * sine + im * cosine;

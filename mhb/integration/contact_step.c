@@ -321,7 +321,7 @@ void mhb_contact_step_advance(const mhb_law *law, const mhb_contact_step *step, 
   double x[2];
   times_ku(law, point->u + 1, x);
   for (int c = 0; c < 2; c++) point->zeta[c] = x[c] - point->p[1 + c];
-  point->theta  = remainder(step->theta[S - 1], 2 * SHB_PI);
+  point->theta  = remainder(step->theta[S - 1], SHB_TWO_PI);
   point->lambda = step->kappa[S - 1] / h;
 }
 

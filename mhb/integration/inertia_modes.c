@@ -41,7 +41,7 @@ static void reduce(const search *s, const double *R2, int p) {
 
 static shb_status find(const modal_model *model, search *s) {
   int    n = s->n, p = 0;
-  double last  = 2 * SHB_PI * model->frequency[model->n_modes - 1];
+  double last  = SHB_TWO_PI * model->frequency[model->n_modes - 1];
   bool   three = modal_series_has_fourth(model);
   s->power     = three ? 2 : 1;
   memcpy(s->vector, three ? model->residual_inertia : model->residual_flexibility,
@@ -109,7 +109,7 @@ static void add_modes(const search *s, int m, modal_model *out) {
   int n = s->n, n3 = 3 * out->n_pairs;
   for (int k = 0; k < s->kept; k++) {
     const double *psi         = s->psi + (size_t)k * (size_t)n;
-    out->frequency[m + k]     = s->nu[k] / (2 * SHB_PI);
+    out->frequency[m + k]     = s->nu[k] / (SHB_TWO_PI);
     out->damping_ratio[m + k] = out->damping_ratio[m - 1];
     for (int i = 0; i < n; i++)
       (i < n3 ? out->right : out->left)[(size_t)(i % n3) * (size_t)out->n_modes + (size_t)(m + k)] =

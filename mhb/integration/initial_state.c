@@ -19,7 +19,7 @@ static void clear_state(mhb_integrator *g) {
 /* z, z' at phase 0 += sign times harmonic k of a mode, amplitude a. */
 static void add_harmonic(mhb_integrator *g, int k, int blade, int mode, double sign,
                          double complex a) {
-  double complex rate = I * (k * 2 * SHB_PI / g->period);
+  double complex rate = I * (k * SHB_TWO_PI / g->period);
   g->z[blade * g->modes + mode] += sign * creal(a);
   g->z[(g->blades + blade) * g->modes + mode] += sign * creal(rate * a);
 }
@@ -116,7 +116,7 @@ void mhb_integrator_set(mhb_integrator *g, double omega, double n0, int steps) {
   bool has_state = g->period > 0;
   if (has_state) add_free_response(g, 1);
   g->omega  = omega;
-  g->period = 2 * SHB_PI * g->settings.subharmonics / omega;
+  g->period = SHB_TWO_PI * g->settings.subharmonics / omega;
   g->steps  = steps;
   g->t      = 0;
   set_laws(g, n0);

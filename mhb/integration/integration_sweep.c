@@ -233,7 +233,7 @@ static shb_status run_point(const sweep *s, mhb_integrator *g, mhb_steady_state 
   const mhb_integration_settings *a        = s->request;
   mhb_steady_state_settings       settings = {0.1 * a->tolerance, a->max_periods};
   double                          began    = shb_seconds();
-  mhb_integrator_set(g, 2 * SHB_PI * c->hz, c->n0, a->steps);
+  mhb_integrator_set(g, SHB_TWO_PI * c->hz, c->n0, a->steps);
   if (c->start) {
     mhb_integrator_balance(g, c->m, c->start);
   } else if (a->start == MHB_START_FROM_REST || first) {
@@ -383,7 +383,7 @@ static shb_status worker_create(const sweep *s, int harmonics, worker *k) {
 static shb_status worker_set_frequency(worker *k, double hz) {
   if (!k->at) return SHB_OK;
   worker_release(k);
-  mhb_speed_model_set(k->at, 2 * SHB_PI * hz);
+  mhb_speed_model_set(k->at, SHB_TWO_PI * hz);
   return worker_attach(k, &k->at->model);
 }
 

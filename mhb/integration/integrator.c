@@ -20,12 +20,12 @@ static const double ON_EVENT = 1e-11, NO_PROGRESS = 1e-9;
 /* ---- the motion without contact forces ---- */
 
 double mhb_integrator_lag(const mhb_integrator *g, int blade) {
-  return 2 * SHB_PI * g->ring.s.wave * blade / g->blades;
+  return SHB_TWO_PI * g->ring.s.wave * blade / g->blades;
 }
 
 void mhb_integrator_free(const mhb_integrator *g, int sector, double t, double *u) {
   const mhb_receptance *r     = g->receptance;
-  double                angle = 2 * SHB_PI * t / g->period - mhb_integrator_lag(g, sector);
+  double                angle = SHB_TWO_PI * t / g->period - mhb_integrator_lag(g, sector);
   for (int k = 0; k <= g->n_load; k += r->nu) {
     double c = cos(k * angle), s = sin(k * angle);
     for (int row = 0; row < r->n; row++) {

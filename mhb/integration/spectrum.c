@@ -16,7 +16,7 @@ static double apply_window(int n, double *x) {
   double mean = 0, square = 0;
   for (int i = 0; i < n; i++) mean += x[i] / n;
   for (int i = 0; i < n; i++) {
-    x[i] = (x[i] - mean) * (1 - cos(2 * SHB_PI * (i + 0.5) / n));
+    x[i] = (x[i] - mean) * (1 - cos(SHB_TWO_PI * (i + 0.5) / n));
     square += x[i] * x[i] / n;
   }
   return square;

@@ -77,7 +77,7 @@ static void record(void *context, const mhb_integrator *g, double t0, double h) 
   const mhb_radau  *r = &g->ring.rule;
   int               n = 3 * g->contacts;
   for (int k = 0; k <= o->result.n_harmonics; k++) {
-    double         w = 2 * SHB_PI * k / g->period;
+    double         w = SHB_TWO_PI * k / g->period;
     double complex J[S], weight[S] = {0}, phase = cexp(-I * w * t0) * h * (k ? 2 : 1) / g->period;
     fourier_moments(w * h, J);
     for (int j = 0; j < S; j++)
@@ -101,7 +101,7 @@ static double complex mode_harmonic(const mhb_steady_state *o, int k, int blade,
   const mhb_integrator      *g = o->g;
   const mhb_modal_structure *s = &g->ring.s;
   int            m = g->modes, n3 = 3 * g->pairs, at = blade * m + i, modal = g->blades * m;
-  double         w    = 2 * SHB_PI * k / g->period;
+  double         w    = SHB_TWO_PI * k / g->period;
   double complex rise = (g->z[modal + at] - z0[modal + at]) +
                         CMPLX(2 * s->zeta[i] * s->omega[i], w) * (g->z[at] - z0[at]);
   double complex force = -(k ? 2 : 1) / g->period * rise;

@@ -54,7 +54,7 @@ static double largest(const run *a, int component) {
   int    K    = a->r->n_harmonics + 1;
   double best = 0;
   for (int i = 0; i < 20000; i++) {
-    double sum = 0, t = 2 * SHB_PI * i / 20000;
+    double sum = 0, t = SHB_TWO_PI * i / 20000;
     for (int k = 0; k < K; k++) sum += creal(a->r->motion[component * K + k] * cexp(I * k * t));
     best = fmax(best, fabs(sum));
   }
@@ -201,7 +201,7 @@ static void beam(void **state) {
   tip_contact_beam_model(8, &model);
   for (int i = 0; i < 2; i++) {
     s.preload  = i ? MHB_INTERFERENCE : MHB_EQUILIBRIUM;
-    double   w = 2 * SHB_PI * (i ? 263.155 : 266);
+    double   w = SHB_TWO_PI * (i ? 263.155 : 266);
     periodic p;
     periodic_create(&model, &s, w, NULL, &p);
     run a = prepare(&model, &s, w, 128);
@@ -292,7 +292,7 @@ static void residual_inertia(void **state) {
     for (int j = 0; j < 6; j++) {
       double soft = with.residual_flexibility[i * 6 + j], heavy = 0;
       for (int k = model.n_modes; k < with.n_modes; k++) {
-        double w       = 2 * SHB_PI * with.frequency[k];
+        double w       = SHB_TWO_PI * with.frequency[k];
         double product = with.right[i * with.n_modes + k] * with.right[j * with.n_modes + k];
         soft += product / (w * w);
         heavy += product / (w * w * w * w);
@@ -343,7 +343,7 @@ static double moment_error(const modal_model *with, int power, const double *lef
     double sum = left ? left[i] : 0;
     for (int k = 2; k < with->n_modes; k++)
       sum += with->right[i / 3 * with->n_modes + k] * with->right[i % 3 * with->n_modes + k] /
-             pow(2 * SHB_PI * with->frequency[k], 2 * power);
+             pow(SHB_TWO_PI * with->frequency[k], 2 * power);
     worst = fmax(worst, fabs(sum - wanted[i]));
   }
   return worst / fabs(wanted[0]);
@@ -533,7 +533,7 @@ static void passive(void **state) {
                     (point->p[1] * point->p[1] + point->p[2] * point->p[2]) / 1.4e4 -
                     a.g->law[0].mean_offset * point->u[0];
     for (int i = 0; i < 3; i++) {
-      double w = 2 * SHB_PI * model.frequency[i];
+      double w = SHB_TWO_PI * model.frequency[i];
       energy += .5 * (x[3 + i] * x[3 + i] + w * w * x[i] * x[i]);
     }
     assert_true(energy <= before * (1 + 1e-9) + 1e-9);
