@@ -1,4 +1,5 @@
-/* Newton's method on the balance: convergence, the linear case in one step, tolerances out of reach. */
+/* Newton's method on the balance: convergence, the linear case in one step, tolerances out of
+ * reach. */
 #include "mhb/balance/newton.h"
 #include "tests/support/check.h"
 #include "tests/support/random_model.h"

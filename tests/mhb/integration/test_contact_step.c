@@ -1,5 +1,5 @@
-/* The contact law over one step of prescribed motion: forces in each state, the place of each event,
- * the slider after slip. Without compliance (S = 0) the motion at the stages is y. */
+/* The contact law over one step of prescribed motion: forces in each state, the place of each
+ * event, the slider after slip. Without compliance (S = 0) the motion at the stages is y. */
 #include "mhb/integration/contact_step.h"
 #include "tests/support/check.h"
 
@@ -77,8 +77,8 @@ static void slip_then_stick(void **state) {
   assert_small(tau, 1e-10);
 }
 
-/* Opening where n0 + kv v = 0, closing at the same place. Without friction: with it slip comes first,
- * at the same time. */
+/* Opening where n0 + kv v = 0, closing at the same place. Without friction: with it slip comes
+ * first, at the same time. */
 static void open_and_close(void **state) {
   (void)state;
   problem           p;

@@ -1,5 +1,5 @@
-/* One step of the modes: Radau's rule, the exact propagation of an oscillator, the semigroup, and the
- * response to a polynomial force. */
+/* One step of the modes: Radau's rule, the exact propagation of an oscillator, the semigroup, and
+ * the response to a polynomial force. */
 #include "mhb/integration/modal_step.h"
 #include "tests/support/check.h"
 #include "tests/support/random_model.h"
