@@ -31,12 +31,14 @@ static void solve_at(const modal_model *model, const mhb_settings *s, double w,
 
 static void amplitudes_of_time_integration(void **state) {
   (void)state;
-  static const struct {
+  typedef struct {
     double n0, w, a[3], error[4];
-  } rows[]              = {{1, 1.20, {0.027944, 0.147642, 0.008139}, {1e-6, 1e-6, 1e-6, 1e-6}},
-                           {-0.2, 1.00, {0.019624, 0.197890, 0.003763}, {1e-6, 1e-6, 1e-6, 1e-6}},
-                           {0, 1.05, {0.195617, 0.114818, 0.021163}, {1.7e-1, 1.5e-3, 8.3e-5, 7.8e-6}},
-                           {0.3, 1.42, {0.492394, 0.396878, 0.471625}, {1.1e-2, 1.8e-4, 1.8e-6, 2.3e-6}}};
+  } row;
+  static const row rows[] = {
+      {1, 1.20, {0.027944, 0.147642, 0.008139}, {1e-6, 1e-6, 1e-6, 1e-6}},
+      {-0.2, 1.00, {0.019624, 0.197890, 0.003763}, {1e-6, 1e-6, 1e-6, 1e-6}},
+      {0, 1.05, {0.195617, 0.114818, 0.021163}, {1.7e-1, 1.5e-3, 8.3e-5, 7.8e-6}},
+      {0.3, 1.42, {0.492394, 0.396878, 0.471625}, {1.1e-2, 1.8e-4, 1.8e-6, 2.3e-6}}};
   static const int H[4] = {1, 3, 7, 15};
   modal_model      model;
   three_degree_model(&model);
@@ -220,7 +222,8 @@ static void friction_oscillator_from_a_cold_start(void **state) {
   modal_model_free(&model);
 }
 
-/* The two ways to state a preload: with the static mean that an interference keeps, the contact is looser. */
+/* The two ways to state a preload. With the static mean that an interference keeps, the contact is
+ * looser. */
 static void tip_contact_beam(void **state) {
   (void)state;
   static const double rows[2][2] = {{1.9634e-4, 268.10}, {1.7441e-4, 263.155}};
@@ -240,7 +243,8 @@ static void tip_contact_beam(void **state) {
     print_message("%s: peak %.5e at %.3f Hz, %d points\n", i ? "interference" : "equilibrium", top,
                   at, b->n_points);
     assert_near(top, rows[i][0], 4e-4 * rows[i][0]);
-    /* the reference errs by 2e-4 in amplitude; the top is so flat that this moves its frequency by 1e-3 */
+    /* the reference has an error of 2e-4 in amplitude; the peak is so flat that its frequency moves
+     * by 1e-3 */
     assert_near(at, rows[i][1], 1e-3 * rows[i][1]);
     double there[3];
     solve_at(&model, &s, 2 * PI * rows[i][1], there);
@@ -276,8 +280,8 @@ static void linear_limits_are_met(void **state) {
   modal_model_free(&model);
 }
 
-/* High friction and light preload: slip onset next to opening, the hardest place to pass. A curve either covers the range or
- * goes on beyond a gap that its reason names; it never ends on the way. */
+/* High friction and light preload: slip onset next to opening, the hardest place to pass. A curve
+ * either covers the range, or goes on beyond a gap that its reason names. */
 static void curves_go_on_beyond_a_gap(void **state) {
   (void)state;
   modal_model model;
@@ -317,7 +321,8 @@ static void nothing_happens_without_excitation(void **state) {
   modal_model_free(&model);
 }
 
-/* Stiffer than the blade by more than the limit: R = K^-1, K of three_degree_model, axes v, u, w. */
+/* Stiffer than the blade by more than the limit: R = K^-1, K of three_degree_model, axes v, u, w.
+ */
 static void rigid_contacts_are_refused(void **state) {
   (void)state;
   static const double R[3]    = {2.0575 / 1.9865, 1.59 / 1.9865, 1.26 / 1.9865};

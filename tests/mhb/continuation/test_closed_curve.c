@@ -1,4 +1,4 @@
-/* Places of a curve: distances, the side of a place on which a point lies, copies, other harmonics. */
+/* Places of a curve: distances, test functions of closure, copies, other numbers of harmonics. */
 #include "mhb/continuation/closed_curve.h"
 
 #include "mhb/continuation/corrector.h"
