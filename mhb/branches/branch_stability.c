@@ -303,15 +303,15 @@ static shb_status mark_bifurcations(mhb_branch_stability *w, const int *first, i
     while (from > 0 && w->at[from - 1].computed && w->at[from - 1].complex_excess > 0 &&
            !begins(first, n_first, from))
       from--;
-    if (leaves_by_margin(w, from, to)) {
-      bool ends   = to < w->n && w->at[to].computed && w->at[to].complex_excess <= 0;
-      bool starts = from > 0 && w->at[from - 1].computed && w->at[from - 1].complex_excess <= 0;
-      for (int i = from; i < to; i++) w->at[i].leaves_complex = 1;
-      if (ends && !begins(first, n_first, to)) SHB_TRY(locate(w, to));
-      if (starts && !begins(first, n_first, from)) SHB_TRY(locate(w, from));
-      located += 2;
-    }
-    to = from;
+    int end = to;
+    to      = from;
+    if (!leaves_by_margin(w, from, end)) continue;
+    bool ends   = end < w->n && w->at[end].computed && w->at[end].complex_excess <= 0;
+    bool starts = from > 0 && w->at[from - 1].computed && w->at[from - 1].complex_excess <= 0;
+    for (int i = from; i < end; i++) w->at[i].leaves_complex = 1;
+    if (ends && !begins(first, n_first, end)) SHB_TRY(locate(w, end));
+    if (starts && !begins(first, n_first, from)) SHB_TRY(locate(w, from));
+    located += 2;
   }
   return SHB_OK;
 }

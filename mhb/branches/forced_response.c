@@ -50,10 +50,20 @@ static void take(mhb_branch *to, mhb_branch *from) {
   *from          = old;
 }
 
+/* Append a branch beside a main one. Its arrays stay those of the preload. */
+static shb_status append_branch(mhb_response *response, const mhb_branch *branch, int main) {
+  int index;
+  SHB_TRY(mhb_response_branch(response, MHB_BRANCH_NONLINEAR, &index));
+  response->branch[index]      = *branch;
+  response->branch[index].main = main;
+  return SHB_OK;
+}
+
 /* The curves handed over so far become the response's branches 2.. for the time of a call: main
  * branches in the order of the preloads, then the others, grouped by their main one. */
 static shb_status gather(sweep *s) {
-  mhb_response *r = s->response;
+  mhb_response *r      = s->response;
+  shb_status    status = SHB_OK;
   for (int i = 0; i < s->settings->n_preloads; i++) {
     int index;
     SHB_TRY(mhb_response_branch(r, MHB_BRANCH_NONLINEAR, &index));
@@ -61,16 +71,12 @@ static shb_status gather(sweep *s) {
     r->branch[index]      = s->preload[i].handed->branch[0];
     r->branch[index].main = index;
   }
-  for (int i = 0; i < s->settings->n_preloads; i++) {
+  for (int i = 0; i < s->settings->n_preloads && status == SHB_OK; i++) {
     const mhb_response *handed = s->preload[i].handed;
-    for (int k = 1; handed && k < handed->n_branches; k++) {
-      int index;
-      SHB_TRY(mhb_response_branch(r, MHB_BRANCH_NONLINEAR, &index));
-      r->branch[index]      = handed->branch[k];
-      r->branch[index].main = 2 + i;
-    }
+    for (int k = 1; handed && k < handed->n_branches && status == SHB_OK; k++)
+      status = append_branch(r, &handed->branch[k], 2 + i);
   }
-  return SHB_OK;
+  return status;
 }
 
 static shb_status publish(sweep *s) {

@@ -49,6 +49,13 @@ static mhb_resonance free_one(const mhb_receptance *r, int k, int i) {
   return (mhb_resonance){turns * omega, turns * omega * r->model->damping_ratio[i], k, i, false};
 }
 
+/* sum + S.u, u[3] with a stride. */
+static double complex add_product(double complex sum, const double S[3], const double complex *u,
+                                  int stride) {
+  for (int j = 0; j < 3; j++) sum += S[j] * u[j * stride];
+  return sum;
+}
+
 /* X = K B, by (I + S R) X = S B, column-major. 0: singular. */
 static int stiffen(const stuck_modes *w, int k) {
   const mhb_balance    *b = w->b;
@@ -59,16 +66,14 @@ static int stiffen(const stuck_modes *w, int k) {
   for (int row = 0; row < n; row++) {
     const mhb_law *law     = &b->law[row / 3];
     double         slips   = law->mu == 0 ? 0 : 1;
+    size_t         pair    = (size_t)(row - row % 3);
     double         S[3][3] = {{law->kv, 0, 0},
                               {0, slips * law->ku[0], slips * law->ku[1]},
                               {0, slips * law->ku[1], slips * law->ku[2]}};
     for (int c = 0; c < n + m; c++) {
-      double complex sum = c == row;
-      for (int j = 0; j < 3; j++) {
-        int at = row - row % 3 + j;
-        sum += S[row % 3][j] * (c < n ? w->R[(size_t)at * (size_t)n + (size_t)c]
-                                      : B[(size_t)at * (size_t)m + (size_t)(c - n)]);
-      }
+      const double complex *u =
+          c < n ? w->R + pair * (size_t)n + (size_t)c : B + pair * (size_t)m + (size_t)(c - n);
+      double complex sum = add_product(c == row, S[row % 3], u, c < n ? n : m);
       if (c < n)
         w->A[(size_t)c * (size_t)n + (size_t)row] = sum;
       else
