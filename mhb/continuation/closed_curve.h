@@ -33,6 +33,9 @@ typedef struct {
   int                    copy;
 } mhb_curve_return;
 
+/* Whether the copy is the place itself: a motion that repeats so early has fewer copies. */
+bool mhb_curve_return_repeats(const mhb_curve_return *at);
+
 /* Test function: how far a point lies beyond the copy, in the direction of passing. */
 double mhb_curve_return_ahead(mhb_arclength *curve, const mhb_curve_point *point, void *context);
 

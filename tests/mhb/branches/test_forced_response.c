@@ -308,6 +308,50 @@ static void curves_go_on_beyond_a_gap(void **state) {
   modal_model_free(&model);
 }
 
+/* The probe of the model is its contact point. */
+static void the_probe_moves_like_the_contact(void **state) {
+  (void)state;
+  modal_model model;
+  three_degree_model(&model);
+  mhb_settings      s    = ground_settings(.4, .8, .5, .3, 5);
+  mhb_response     *r    = sweep(&model, &s, .8, 1.7);
+  const mhb_branch *b    = &r->branch[2];
+  double            away = 0, most = 0;
+  for (int i = 0; i < b->n_points * 3 * (b->n_harmonics + 1); i++) {
+    away = fmax(away, cabs(b->probe[i] - b->motion[i]));
+    most = fmax(most, cabs(b->motion[i]));
+  }
+  assert_true(b->n_points > 50);
+  assert_below(away, 1e-8 * most);
+  mhb_response_destroy(r);
+  modal_model_free(&model);
+}
+
+/* Motions that repeat with the excitation, balanced over several of its periods: the curve is that
+ * of one period, and no point is taken for a copy of its start. */
+static void more_periods_than_the_motion_has(void **state) {
+  (void)state;
+  static const double n0[] = {-.3, -.2, 0, .1, .3, 1, 2, 4};
+  modal_model         model;
+  three_degree_model(&model);
+  for (int nu = 2; nu <= 4; nu++)
+    for (int i = 0; i < 8; i++) {
+      mhb_settings s = ground_settings(.4, .8, .5, n0[i], 3 * nu);
+      s.subharmonics = nu;
+      s.stability    = MHB_STABILITY_NEVER;
+      s.max_points   = 2000;
+      for (int part = 0; part < 3; part++) {
+        mhb_response     *r = sweep(&model, &s, .75 + .1 * part, .85 + .1 * part);
+        const mhb_branch *b = &r->branch[2];
+        assert_string_equal(b->reason, "end of range");
+        assert_near(b->frequency[0], s.frequency[0], 1e-12);
+        assert_int_equal(r->n_branches, 3);
+        mhb_response_destroy(r);
+      }
+    }
+  modal_model_free(&model);
+}
+
 static void nothing_happens_without_excitation(void **state) {
   (void)state;
   modal_model model;
@@ -361,6 +405,8 @@ int main(void) {
       cmocka_unit_test(tip_contact_beam),
       cmocka_unit_test(linear_limits_are_met),
       cmocka_unit_test(curves_go_on_beyond_a_gap),
+      cmocka_unit_test(the_probe_moves_like_the_contact),
+      cmocka_unit_test(more_periods_than_the_motion_has),
       cmocka_unit_test(nothing_happens_without_excitation),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

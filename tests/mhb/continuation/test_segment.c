@@ -319,6 +319,22 @@ static void an_excursion_comes_back(void **state) {
   finish(&t);
 }
 
+/* Points that the host has already do not count: max_points of them are recorded. */
+static void a_first_point_that_is_known_does_not_count(void **state) {
+  (void)state;
+  tracing  t = {0};
+  mhb_end  end;
+  double   x    = 3 + sqrt(1 - 0.16);
+  mhb_seed seed = {.x = &x, .value = 0.4, .direction = 1, .skip_first = true};
+  trace(&t, circle, -2, 2, x, 0.4, 1, 2); /* for its host */
+  t.n               = 0;
+  t.host.max_points = 5;
+  assert_ok(mhb_trace_segment(&t.host, &seed, &end));
+  assert_int_equal(end, MHB_END_MAX_POINTS);
+  assert_int_equal(t.n, 5);
+  finish(&t);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(a_circle_is_closed_with_two_folds),
                                      cmocka_unit_test(a_cut_circle_ends_on_the_range),
@@ -331,6 +347,7 @@ int main(void) {
                                      cmocka_unit_test(a_segment_can_be_interrupted),
                                      cmocka_unit_test(without_a_solution_there_is_no_start),
                                      cmocka_unit_test(a_curve_that_runs_to_infinity_ends),
-                                     cmocka_unit_test(an_excursion_comes_back)};
+                                     cmocka_unit_test(an_excursion_comes_back),
+                                     cmocka_unit_test(a_first_point_that_is_known_does_not_count)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
