@@ -33,7 +33,8 @@ typedef struct {
   int                    copy;
 } mhb_curve_return;
 
-/* Whether the copy is the place itself: a motion that repeats so early has fewer copies. */
+/* Whether the copy is the place itself. A motion that repeats after fewer periods has such copies.
+ */
 bool mhb_curve_return_repeats(const mhb_curve_return *at);
 
 /* Test function: how far a point lies beyond the copy, in the direction of passing. */

@@ -313,8 +313,8 @@ static void the_probe_moves_like_the_contact(void **state) {
   (void)state;
   modal_model model;
   three_degree_model(&model);
-  mhb_settings      s    = ground_settings(.4, .8, .5, .3, 5);
-  mhb_response     *r    = sweep(&model, &s, .8, 1.7);
+  mhb_settings      s    = ground_settings(0.4, 0.8, 0.5, 0.3, 5);
+  mhb_response     *r    = sweep(&model, &s, 0.8, 1.7);
   const mhb_branch *b    = &r->branch[2];
   double            away = 0, most = 0;
   for (int i = 0; i < b->n_points * 3 * (b->n_harmonics + 1); i++) {
@@ -327,21 +327,21 @@ static void the_probe_moves_like_the_contact(void **state) {
   modal_model_free(&model);
 }
 
-/* Motions that repeat with the excitation, balanced over several of its periods: the curve is that
+/* Motions that repeat with the excitation, balanced over several of its periods. The curve is that
  * of one period, and no point is taken for a copy of its start. */
 static void more_periods_than_the_motion_has(void **state) {
   (void)state;
-  static const double n0[] = {-.3, -.2, 0, .1, .3, 1, 2, 4};
+  static const double n0[] = {-0.3, -0.2, 0, 0.1, 0.3, 1, 2, 4};
   modal_model         model;
   three_degree_model(&model);
   for (int nu = 2; nu <= 4; nu++)
     for (int i = 0; i < 8; i++) {
-      mhb_settings s = ground_settings(.4, .8, .5, n0[i], 3 * nu);
+      mhb_settings s = ground_settings(0.4, 0.8, 0.5, n0[i], 3 * nu);
       s.subharmonics = nu;
       s.stability    = MHB_STABILITY_NEVER;
       s.max_points   = 2000;
       for (int part = 0; part < 3; part++) {
-        mhb_response     *r = sweep(&model, &s, .75 + .1 * part, .85 + .1 * part);
+        mhb_response     *r = sweep(&model, &s, 0.75 + 0.1 * part, 0.85 + 0.1 * part);
         const mhb_branch *b = &r->branch[2];
         assert_string_equal(b->reason, "end of range");
         assert_near(b->frequency[0], s.frequency[0], 1e-12);
