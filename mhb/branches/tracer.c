@@ -9,7 +9,7 @@
 #include "mhb/branches/record.h"
 #include "mhb/continuation/outputs.h"
 
-/* A curve has closed if it comes as near as this to its start, relative to the motion. */
+/* A curve has closed if it comes this near to its start, relative to the motion. */
 static const double SAME = 1e-5;
 
 /* A recorded point is known if its motion is within so many of the distance above. */
@@ -71,7 +71,7 @@ static shb_status accept(mhb_segment_host *host, bool *moved) {
   return SHB_OK;
 }
 
-/* The recorded motion at a point is that of the curve's current point. */
+/* Whether the recorded motion at a point is that of the curve's current point. */
 static bool is_recorded_at(const mhb_tracer *t, const mhb_branch *branch, int point) {
   const mhb_balance    *b = mhb_tracer_balance(t);
   const double         *x = mhb_tracer_curve(t)->current.x;
@@ -89,7 +89,7 @@ static bool is_recorded_at(const mhb_tracer *t, const mhb_branch *branch, int po
   return sqrt(away) <= KNOWN * mhb_tracer_same(t) * sqrt(size);
 }
 
-/* The curve's current point, on an end of the range, is a recorded point of some segment. */
+/* Whether the curve's current point, on an end of the range, is recorded in some segment. */
 static bool is_recorded(const mhb_tracer *t) {
   double value =
       mhb_parameter_shown(mhb_tracer_balance(t)->parameter, mhb_tracer_curve(t)->current.value);
@@ -102,8 +102,8 @@ static bool is_recorded(const mhb_tracer *t) {
   return false;
 }
 
-/* Where the segment is to end by its motion: at its own start, at a target, at the place where the
- * curve started that it goes on with, or nowhere. */
+/* Decide where the segment ends by its motion. That is at its own start, at a target, at the start
+ * of the curve that it continues, or nowhere. */
 static shb_status started(mhb_segment_host *host, const mhb_seed *seed, mhb_end *end) {
   mhb_tracer             *t     = of(host);
   const mhb_curve_point  *first = &host->curve->current;
@@ -154,7 +154,7 @@ static double beyond_low(mhb_arclength *curve, const mhb_curve_point *point, voi
   return curve->low - point->value;
 }
 
-/* No place: far from it. */
+/* Without a place the curve is ahead of it. */
 static double ahead_of_place(mhb_arclength *curve, const mhb_curve_point *point, void *context) {
   const mhb_curve_return *at = context;
   return at->place ? mhb_curve_return_ahead(curve, point, context) : 1;
@@ -164,8 +164,8 @@ static double slope_of_output(mhb_arclength *curve, const mhb_curve_point *point
   return mhb_output_slope(mhb_curve_balance(curve), point, *(const int *)context);
 }
 
-/* Part of a motion that does not repeat after d periods: its size |z| and the size's rate
- * z.dz/|z| along the tangent. */
+/* Part of a motion that does not repeat after d periods: its size |z|, and the rate z.dz/|z| of the
+ * size along the tangent. */
 static double part_of_order(const mhb_balance *b, const mhb_curve_point *point, int d,
                             double *rate) {
   double z[b->n], dz[b->n];
@@ -178,7 +178,7 @@ static double part_of_order(const mhb_balance *b, const mhb_curve_point *point, 
 }
 
 /* Where its subharmonic part vanishes the curve meets one of lower order, or its own time-shifted
- * copy: VANISHED less the smallest falling part, relative to the motion. */
+ * copy. The test function is VANISHED less the smallest falling part, relative to the motion. */
 static double vanished(mhb_arclength *curve, const mhb_curve_point *point, void *context) {
   const mhb_balance *b    = mhb_curve_balance(curve);
   int                nu   = b->receptance->nu;
@@ -191,7 +191,7 @@ static double vanished(mhb_arclength *curve, const mhb_curve_point *point, void 
   return most;
 }
 
-/* Stay before the place where a part vanishes. */
+/* Keep the step short of the place where a part vanishes. */
 static void limit_step(mhb_segment_host *host) {
   const mhb_balance     *b     = mhb_curve_balance(host->curve);
   const mhb_curve_point *point = &host->curve->current;
