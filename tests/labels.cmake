@@ -24,8 +24,8 @@ set(INTEGRATION_TESTS
 set(SLOW_TESTS
   mesh.blade.blade mhb.floquet.monodromy cases.converge.converge hard.gaps bench.elements)
 
-set(TIMEOUT_unit 10)
-set(TIMEOUT_integration 300)
+set(TIMEOUT_unit 100)
+set(TIMEOUT_integration 600)
 set(TIMEOUT_slow 900)
 if(SHROUDHB_SANITIZE OR CMAKE_BUILD_TYPE STREQUAL "Debug") # no optimisation, every access checked
   foreach(label unit integration slow)

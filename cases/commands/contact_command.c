@@ -9,12 +9,13 @@
 #include "cases/commands/hysteresis_picture.h"
 #include "cases/commands/sampled_period.h"
 #include "cases/schema/motion.h"
+#include "mesh/base/constants.h"
 #include "mhb/contact/contact.h"
 #include "mhb/numerics/fourier.h"
 
 enum { HARMONICS = 15 };
 
-static const double DEGREE = 180 / 3.14159265358979323846;
+static const double DEGREE = 180 / SHB_PI;
 
 static void print_signal(FILE *out, const char *name, const double *force, const char *end) {
   fprintf(out, "  %s: [", name);

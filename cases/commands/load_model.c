@@ -1,8 +1,7 @@
 #include "cases/commands/load_model.h"
 
+#include "mesh/base/constants.h"
 #include "modal/model/reduce.h"
-
-static const double TWO_PI = 6.283185307179586476925;
 
 static shb_status read_speeds(const char *path, int modes, bool residuals, case_model *m) {
   const double *f = m->settings.frequency;
@@ -14,9 +13,10 @@ static shb_status read_speeds(const char *path, int modes, bool residuals, case_
   if (status == SHB_OK)
     status = mhb_speed_table_create(&speeds, path, m->settings.engine_order, f, &m->run_up);
   modal_speeds_free(&speeds);
+  if (status == SHB_OK) status = mhb_speed_model_check(m->run_up, path);
   if (status == SHB_OK) status = mhb_speed_model_create(m->run_up, &m->top);
   SHB_TRY(status);
-  mhb_speed_model_set(m->top, TWO_PI * f[1]);
+  mhb_speed_model_set(m->top, SHB_TWO_PI * f[1]);
   m->model           = m->top->model;
   m->settings.run_up = m->run_up;
   return SHB_OK;

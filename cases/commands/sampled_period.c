@@ -4,9 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/numerics/fourier.h"
-
-static const double TWO_PI = 6.283185307179586476925;
 
 enum { SIGNALS = 9, LEAST = 1440, A_HARMONIC = 32 };
 
@@ -56,7 +55,7 @@ static void sum_motion(sampled_period *p, const source *from) {
   int    nb = mhb_real_size(from->m);
   double basis[nb];
   for (int i = 0; i < p->n; i++) {
-    mhb_basis(from->m, TWO_PI * p->phase[i], basis, NULL);
+    mhb_basis(from->m, SHB_TWO_PI * p->phase[i], basis, NULL);
     for (int a = 0; a < 3; a++)
       for (int j = 0; j < nb; j++) p->motion[a][i] += from->motion[a * nb + j] * basis[j];
   }
@@ -85,10 +84,10 @@ static void take(sampled_period *p, const mhb_law *law, const mhb_contact_sample
 static void velocity(const source *from, double phase, double v[2]) {
   int    nb = mhb_real_size(from->m);
   double basis[nb], slope[nb];
-  mhb_basis(from->m, TWO_PI * phase, basis, slope);
+  mhb_basis(from->m, SHB_TWO_PI * phase, basis, slope);
   for (int k = 0; k < 2; k++) {
     v[k] = 0;
-    for (int j = 0; j < nb; j++) v[k] += TWO_PI * from->motion[(1 + k) * nb + j] * slope[j];
+    for (int j = 0; j < nb; j++) v[k] += SHB_TWO_PI * from->motion[(1 + k) * nb + j] * slope[j];
   }
 }
 

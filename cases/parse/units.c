@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
+
 enum { LENGTH, MASS, TIME, ANGLE, N_DIMENSIONS, LONGEST = 80 };
 
 /* A named unit: factor 10^power in SI. */
@@ -16,8 +18,6 @@ typedef struct {
   int         power;
   int         dimension[N_DIMENSIONS]; /* exponents of m, kg, s, rad */
 } named_unit;
-
-#define PI 3.14159265358979323846
 
 static const named_unit units[] = {
     {"m", "numck", 1, 0, {1, 0, 0, 0}},
@@ -29,10 +29,10 @@ static const named_unit units[] = {
     {"bar", "m", 1, 5, {-1, 1, -2, 0}},
     {"Hz", "mkMG", 1, 0, {0, 0, -1, 0}},
     {"rad", "um", 1, 0, {0, 0, 0, 1}},
-    {"deg", "", PI / 180, 0, {0, 0, 0, 1}},
-    {"\u00B0", "", PI / 180, 0, {0, 0, 0, 1}},
-    {"rev", "", 2 * PI, 0, {0, 0, 0, 1}},
-    {"rpm", "", PI / 30, 0, {0, 0, -1, 1}},
+    {"deg", "", SHB_PI / 180, 0, {0, 0, 0, 1}},
+    {"\u00B0", "", SHB_PI / 180, 0, {0, 0, 0, 1}},
+    {"rev", "", SHB_TWO_PI, 0, {0, 0, 0, 1}},
+    {"rpm", "", SHB_PI / 30, 0, {0, 0, -1, 1}},
     {"%", "", 1, -2, {0, 0, 0, 0}},
 };
 

@@ -13,6 +13,7 @@
 #include "cases/schema/interfaces.h"
 #include "cases/schema/loads.h"
 #include "cases/schema/materials.h"
+#include "mesh/base/constants.h"
 #include "mesh/core/file_format.h"
 #include "mhb/problem/parameter.h"
 
@@ -30,7 +31,7 @@ static void check_mesh(case_reader *r, int stages) {
 /* Refuses parametric blades that cannot be meshed. */
 static void check_blade(case_reader *r, int stages) {
   const mesh_blade *blade  = &r->file->blade;
-  double            degree = 180 / 3.14159265358979323846;
+  double            degree = 180 / SHB_PI;
   if (r->file->modal_file || !(stages & CASE_MESH) || !case_reader_has_block(r, "mesh.blade"))
     return;
   if (case_reader_good(r, "contact.psi") && fabs(blade->psi) * degree > 70)
@@ -48,7 +49,7 @@ void case_check_alternatives(case_reader *r, int stages) {
 
 static void check_sections(case_reader *r) {
   static const char   path[] = "mesh.blade.sections";
-  static const double degree = 180 / 3.14159265358979323846;
+  static const double degree = 180 / SHB_PI;
   const mesh_blade   *blade  = &r->file->blade;
   const case_node    *node   = case_reader_given(r, path);
   for (int i = 0; node && case_reader_good(r, path) && i < blade->n_sections; i++) {
@@ -159,7 +160,7 @@ static void check_speeds(case_reader *r) {
 
 /* In a run-up the range of the sweep must lie within the listed speeds, along the engine order. */
 static void check_run_up_speeds(case_reader *r) {
-  static const double two_pi = 6.283185307179586476925, hair = 1e-9;
+  static const double hair = 1e-9;
   const case_file    *file = r->file;
   const double       *f = file->mhb.frequency, E = file->engine_order;
   double              low = file->speed[0], high = file->speed[0];
@@ -174,12 +175,13 @@ static void check_run_up_speeds(case_reader *r) {
   }
   if (!case_reader_good(r, "mhb.frequency") || !case_reader_good(r, "excitation.engine_order"))
     return;
-  if (two_pi * f[0] / E < low * (1 - hair) || two_pi * f[1] / E > high * (1 + hair))
+  if (SHB_TWO_PI * f[0] / E < low * (1 - hair) || SHB_TWO_PI * f[1] / E > high * (1 + hair))
     case_reader_issue(
         r, "mhb.frequency",
         "must be within %.6g to %.6g Hz, which engine order %g meets at the speeds of "
         "rotor.speed, %.6g to %.6g rpm (mhb.run_up)",
-        E * low / two_pi, E * high / two_pi, E, low * 60 / two_pi, high * 60 / two_pi);
+        E * low / SHB_TWO_PI, E * high / SHB_TWO_PI, E, low * 60 / SHB_TWO_PI,
+        high * 60 / SHB_TWO_PI);
 }
 
 static void check_run_up(case_reader *r) {

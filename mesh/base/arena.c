@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { ALIGNMENT = 64 }; /* a cache line, and the widest vector */
+static const size_t ALIGNMENT = 64; /* a cache line, and the widest vector */
 
 /* A block: one alignment that holds the link to the block before, then the array. */
 void *shb_arena_take(shb_arena *arena, size_t count, size_t size) {

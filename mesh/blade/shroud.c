@@ -3,18 +3,19 @@
 #include <gmshc.h>
 #include <math.h>
 
+#include "mesh/base/constants.h"
 #include "mesh/blade/airfoil.h"
 #include "mesh/gmsh/session.h"
 
 enum { CORNERS = MESH_SHROUD_LEGS + 1 };
 
-static const double degree = M_PI / 180;
+static const double degree = SHB_PI / 180;
 
 /* Least distance between the airfoil and the edges of the shroud, as a share of its length. */
 static const double margin_share = 0.03;
 
 static double half_sector(const mesh_blade *blade) {
-  return M_PI / blade->blades;
+  return SHB_PI / blade->blades;
 }
 
 static double underside(const mesh_blade *blade) {

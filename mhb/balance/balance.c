@@ -164,8 +164,8 @@ void mhb_balance_set_preload(mhb_balance *b, double n0) {
 }
 
 void mhb_balance_tie_preloads(mhb_balance *b, int anchored) {
-  b->eval->at.anchored = anchored;
-  b->eval->at.anchor   = b->eval->at.n0;
+  b->eval->at.preloads_tied = anchored;
+  b->eval->at.tied_n0       = b->eval->at.n0;
 }
 
 void mhb_balance_set_parameter(mhb_balance *b, mhb_parameter parameter) {
@@ -353,7 +353,7 @@ static void slope_of(mhb_balance *b, int k, int rest) {
     return;
   }
   const double complex *R    = b->receptance->R + (size_t)k * (size_t)n3 * (size_t)n3;
-  const double complex *unit = b->receptance->unit + k * n3;
+  const double complex *unit = b->receptance->free_response_unit + k * n3;
   for (int i = 0; i < n3; i++, R += n3) {
     if (b->parameter == MHB_IN_SCALE) b->uk[i] = -unit[i];
     for (int j = 0; j < n3; j++) b->uk[i] += R[j] * b->pk[j];
@@ -428,7 +428,7 @@ static shb_status linear_harmonic(const mhb_balance *b, int k, int stuck, double
                              k ? r[1] * law->ku[1] + r[2] * law->ku[2] : 0};
       for (int c = 0; c < 3; c++)
         A[(size_t)(3 * pair + c) * (size_t)n + (size_t)i] = on * s[c] + (i == 3 * pair + c);
-      if (k == 0 && on > 0) u[i] -= r[0] * (fmax(law->n0, 0) - law->balance);
+      if (k == 0 && on > 0) u[i] -= r[0] * (fmax(law->n0, 0) - law->mean_offset);
     }
   }
   lapack_int bad = 1;
@@ -450,7 +450,7 @@ shb_status mhb_balance_linear_limit(mhb_balance *b, double value, int stuck, dou
       if (!holds(b, a, stuck)) continue;
       const mhb_law        *law = &b->law[a];
       const double complex *u   = b->uk + 3 * a;
-      b->pk[3 * a]              = law->kv * u[0] + (k == 0 ? fmax(law->n0, 0) - law->balance : 0);
+      b->pk[3 * a] = law->kv * u[0] + (k == 0 ? fmax(law->n0, 0) - law->mean_offset : 0);
       if (k == 0) continue;
       b->pk[3 * a + 1] = law->ku[0] * u[1] + law->ku[1] * u[2];
       b->pk[3 * a + 2] = law->ku[1] * u[1] + law->ku[2] * u[2];

@@ -4,10 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/numerics/fourier.h"
 #include "mhb/numerics/lu.h"
-
-static const double PI = 3.14159265358979323846;
 
 static int most(int a, int b) {
   return a > b ? a : b;
@@ -155,7 +154,7 @@ static void set_own(mhb_higher_harmonics *b, int k, int pair, double complex W[3
   const double complex *D       = b->D + 9 * pair;
   double complex        G[3][3] = {{0}}, A[9];
   int                   pivot[3];
-  mhb_residual_terms_block(r->left_out, k, k * r->omega / r->nu, pair, G);
+  mhb_residual_terms_block(r->residual_terms, k, k * r->omega / r->nu, pair, G);
   for (int c = 0; c < 3; c++)
     for (int d = 0; d < 3; d++)
       A[3 * d + c] = G[c][0] * D[d] + G[c][1] * D[3 + d] + G[c][2] * D[6 + d] + (c == d);
@@ -169,7 +168,7 @@ static void set_own(mhb_higher_harmonics *b, int k, int pair, double complex W[3
 
 /* 1/(w_i^2 - w^2 + 2 j zeta_i w_i w) */
 static double complex mode(const mhb_receptance *r, int k, int i) {
-  double w = k * r->omega / r->nu, wi = 2 * PI * r->model->frequency[i];
+  double w = k * r->omega / r->nu, wi = SHB_TWO_PI * r->model->frequency[i];
   return 1 / CMPLX(wi * wi - w * w, 2 * r->model->damping_ratio[i] * wi * w);
 }
 

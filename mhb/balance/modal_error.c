@@ -4,11 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/balance/newton.h"
 #include "mhb/balance/stick_stiffness.h"
 #include "mhb/numerics/lu.h"
-
-static const double PI = 3.14159265358979323846;
 
 enum { MOST_SOLVED = 60 };
 
@@ -17,7 +16,7 @@ typedef enum { BY_LOAD, BY_CONTACT, PARTS } part;
 /* What the series leaves out, relative to its last term: by its estimated error, the worst dof; without one (w/w_m)^2. */
 static double ratio_of(const modal_model *model, double w) {
   const int    n     = 3 * model->n_pairs * (model->has_left ? 2 : 1);
-  const double top   = 2 * PI * model->frequency[model->n_modes - 1];
+  const double top   = SHB_TWO_PI * model->frequency[model->n_modes - 1];
   double       worst = 0, weight = modal_series_at(model, w).weight[2];
   for (int i = 0; i < n; i++) {
     double error = modal_series_error(model, w, i);
@@ -38,7 +37,7 @@ static int last_of(void *const term[MODAL_TERMS]) {
 /* e[k][n] of one part; ratio[k] as above. */
 static void lacking(const mhb_balance *b, const double *ratio, part by, double complex *e) {
   const mhb_receptance     *r = b->receptance;
-  const mhb_residual_terms *l = r->left_out;
+  const mhb_residual_terms *l = r->residual_terms;
   const int      t = last_of((void *const *)l->contact), u = last_of((void *const *)l->load);
   double complex p[r->n];
   for (int k = 1; k <= b->m; k++) {
@@ -97,7 +96,7 @@ double mhb_modal_error(const mhb_balance *b, const double *x, mhb_condensation *
   const double          size   = mhb_balance_vibration(b, x);
   double                ratio[b->m + 1], sum = 0;
   int                   pivot[n];
-  if (!r->left_out->contact[0]) return -1;
+  if (!r->residual_terms->contact[0]) return -1;
   double complex *e = calloc((size_t)all + (linear ? (size_t)(n * n) : 0), sizeof *e);
   if (!e || !(size > 0)) {
     free(e);

@@ -3,9 +3,10 @@
 #include <math.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/balance/newton.h"
 
-static const double PI = 3.14159265358979323846, NOTHING = 1e-6;
+static const double NOTHING = 1e-6;
 
 void mhb_subharmonic_embed(int rows, const double *x, int m, int factor, double *to, int wide) {
   int nb = 2 * m + 1, room = 2 * wide + 1;
@@ -43,7 +44,7 @@ void mhb_subharmonic_shift(const mhb_balance *b, const double *x, int j, double 
     double       *c = to + row * b->nb;
     c[0]            = a[0];
     for (int k = 1; k <= b->m; k++) {
-      double angle = 2 * PI * (k * j % nu) / nu, cosine = cos(angle), sine = sin(angle);
+      double angle = SHB_TWO_PI * (k * j % nu) / nu, cosine = cos(angle), sine = sin(angle);
       double re = a[2 * k - 1], im = a[2 * k];
       c[2 * k - 1] = re * cosine - im * sine;
       c[2 * k]     = re * sine + im * cosine;

@@ -6,82 +6,72 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
+#include "mhb/contact/force_integrals.h"
 #include "mhb/contact/internal.h"
+#include "mhb/contact/slider.h"
 
-static const double TWO_PI = 6.283185307179586476925;
-
-/* Memory that vectors may be loaded from, zeroed. */
-static void *aligned(size_t size) {
-  size_t room   = (size + 63) / 64 * 64;
-  void  *memory = aligned_alloc(64, room);
-  if (memory) memset(memory, 0, room);
-  return memory;
+static void take_arrays(mhb_contact_evaluator *c) {
+  size_t     nb = (size_t)c->nb, nf = (size_t)c->nf, stride = (size_t)c->stride;
+  size_t     sums = (size_t)mhb_real_size(c->H + c->m), real = sizeof(double);
+  shb_arena *a       = &c->arena;
+  c->coefficients    = shb_arena_take(a, 3 * nb, real);
+  c->slip_sums       = shb_arena_take(a, 4 * nf, sizeof(mhb_lanes));
+  c->load_sums       = shb_arena_take(a, 2 * sums, sizeof(mhb_lanes));
+  c->f               = shb_arena_take(a, 2 * nf, real);
+  c->f_slider        = shb_arena_take(a, 2 * nf, real);
+  c->first_stick     = shb_arena_take(a, sums, real);
+  c->stick_integrals = shb_arena_take(a, sums, real);
+  c->basis_integrals = shb_arena_take(a, sums, real);
+  c->basis_products  = shb_arena_take(a, nf * nb, real);
+  c->J               = shb_arena_take(a, 2 * nf * stride, real);
+  c->Z[0]            = shb_arena_take(a, stride, real);
+  c->Z[1]            = shb_arena_take(a, stride, real);
+  c->T               = shb_arena_take(a, stride, real);
+  c->rhs             = shb_arena_take(a, MHB_NODES * stride, real);
+  c->T_nodes         = shb_arena_take(a, MHB_NODES * stride, real);
+  c->node_basis      = shb_arena_take(a, 3 * nf, sizeof(mhb_lanes));
+  c->event_basis     = shb_arena_take(a, 2 * nb, real);
+  c->history_force   = shb_arena_take(a, 3 * nf, real);
 }
 
 shb_status mhb_contact_evaluator_create(int m, int H, double tolerance,
                                         mhb_contact_evaluator **out) {
-  mhb_contact_evaluator *c = aligned(sizeof *c);
+  mhb_contact_evaluator *c = aligned_alloc(64, (sizeof *c + 63) / 64 * 64); /* it holds vectors */
   SHB_CHECK(c, SHB_ERR_IO, "out of memory");
-  c->m         = m;
-  c->H         = H;
-  c->nb        = mhb_real_size(m);
-  c->nf        = mhb_real_size(H);
-  c->slider    = 3 * c->nb;
-  c->stride    = (c->slider + MHB_LANES) / MHB_LANES * MHB_LANES;
-  c->tolerance = tolerance;
-  size_t nb = (size_t)c->nb, nf = (size_t)c->nf, stride = (size_t)c->stride;
-  size_t sums = (size_t)mhb_real_size(H + m), lanes = MHB_LANES;
-  struct {
-    void **array;
-    size_t size;
-  } wanted[] = {{(void **)&c->scaled, 3 * nb},
-                {(void **)&c->sum, 4 * nf * lanes},
-                {(void **)&c->load, 2 * sums * lanes},
-                {(void **)&c->f, 2 * nf},
-                {(void **)&c->f_slider, 2 * nf},
-                {(void **)&c->first, sums},
-                {(void **)&c->stick, sums},
-                {(void **)&c->piece, sums},
-                {(void **)&c->product, nf * nb},
-                {(void **)&c->J, 2 * nf * stride},
-                {(void **)&c->Z[0], stride},
-                {(void **)&c->Z[1], stride},
-                {(void **)&c->T, stride},
-                {(void **)&c->drive, MHB_NODES * stride},
-                {(void **)&c->node_T, MHB_NODES * stride},
-                {(void **)&c->node_basis, 3 * nf * lanes},
-                {(void **)&c->basis0, 2 * nb},
-                {(void **)&c->traced, 3 * nf}};
-  int ok     = mhb_signals_create(m, &c->signals) == SHB_OK;
-  ok &= mhb_contact_intervals_create(m, &c->closed) == SHB_OK;
-  for (size_t i = 0; i < sizeof wanted / sizeof wanted[0]; i++)
-    ok &= (*wanted[i].array = aligned(wanted[i].size * sizeof(double))) != NULL;
+  memset(c, 0, sizeof *c);
+  c->m             = m;
+  c->H             = H;
+  c->nb            = mhb_real_size(m);
+  c->nf            = mhb_real_size(H);
+  c->slider_column = 3 * c->nb;
+  c->stride        = (c->slider_column + MHB_LANES) / MHB_LANES * MHB_LANES;
+  c->tolerance     = tolerance;
   mhb_collocation_create(&c->rule);
-  ok &= mhb_dense_output_create(&c->rule, &c->pieces) == SHB_OK;
-  if (!ok) {
+  take_arrays(c);
+  if (c->arena.failed || mhb_signals_create(m, &c->signals) != SHB_OK ||
+      mhb_contact_intervals_create(m, &c->intervals) != SHB_OK ||
+      mhb_dense_output_create(&c->rule, &c->dense_output) != SHB_OK) {
     mhb_contact_evaluator_destroy(c);
     SHB_FAIL(SHB_ERR_IO, "out of memory for a contact of %d harmonics", m);
   }
-  c->pieces.signals = &c->signals;
-  *out              = c;
+  c->dense_output.signals = &c->signals;
+  *out                    = c;
   return SHB_OK;
 }
 
 void mhb_contact_evaluator_destroy(mhb_contact_evaluator *c) {
   if (!c) return;
-  void *arrays[] = {c->scaled, c->sum,   c->load,    c->f,          c->f_slider, c->first,
-                    c->stick,  c->piece, c->product, c->J,          c->Z[0],     c->Z[1],
-                    c->T,      c->drive, c->node_T,  c->node_basis, c->basis0,   c->traced};
-  for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; i++) free(arrays[i]);
-  mhb_dense_output_destroy(&c->pieces);
-  mhb_contact_intervals_destroy(&c->closed);
+  shb_arena_free(&c->arena);
+  mhb_dense_output_destroy(&c->dense_output);
+  mhb_contact_intervals_destroy(&c->intervals);
   mhb_signals_destroy(&c->signals);
   free(c);
 }
 
 /* ---- scaling ---- */
 
-/* Divide by the largest force in sight, so that tolerances are relative and units do not matter. 0: no force at all. */
+/* Divides by the largest force in sight, so that tolerances are relative. 0: no force at all. */
 static int set_signals(mhb_contact_evaluator *c, const mhb_law *law, const double *motion) {
   const double *v = motion, *u = v + c->nb, *w = u + c->nb;
   double        load = fabs(law->n0), friction = 0;
@@ -91,8 +81,8 @@ static int set_signals(mhb_contact_evaluator *c, const mhb_law *law, const doubl
     friction += sqrt(x1 * x1 + x2 * x2);
   }
   c->scale = load + friction < INFINITY ? fmax(load, friction) : NAN;
-  if (!(c->scale > 1e-290)) return 0; /* its inverse would overflow */
-  double one = 1 / c->scale, *n = c->scaled, *x1 = n + c->nb, *x2 = x1 + c->nb;
+  if (!(c->scale > 1e-290)) return 0; /* the inverse of a smaller one overflows */
+  double one = 1 / c->scale, *n = c->coefficients, *x1 = n + c->nb, *x2 = x1 + c->nb;
   c->kv      = law->kv * one;
   c->K[0][0] = law->ku[0] * one;
   c->K[0][1] = c->K[1][0] = law->ku[1] * one;
@@ -107,132 +97,56 @@ static int set_signals(mhb_contact_evaluator *c, const mhb_law *law, const doubl
   return 1;
 }
 
-/* The harmonic that stands for all: (sum k^4 |A_k|/sum |A_k|)^(1/4) over n and x in force units. */
-static double content_of(const mhb_signals *s, double mu) {
-  double high = 0, all = 0;
-  for (int i = 0; i < 3; i++) {
-    double weight = i ? 1 : mu;
-    high += weight * s->bound[i][4];
-    all += weight * (s->bound[i][0] - fabs(s->coefficient[i]));
-  }
-  return all > 0 && high < INFINITY ? sqrt(sqrt(high / all)) : 1;
-}
-
-/* Where the contact closes for less than a few cells of the grid, which may pass over it: n there is about a parabola. */
-static double brief_load(mhb_contact_evaluator *c) {
-  double load = 0, brief = 4 * TWO_PI / c->signals.n_grid;
-  for (int i = 0; i < c->closed.n; i++) {
-    double y[3], dy[3], length = c->closed.opening[i] - c->closed.closing[i];
-    if (length > brief) continue;
-    mhb_signals_at(&c->signals, c->closed.closing[i] + .5 * length, y, dy, NULL);
-    load += 2. / 3 * fmax(0, y[0]) * length / TWO_PI;
-    c->slip.peak = fmax(c->slip.peak, y[0]);
-  }
-  return load;
-}
-
-/* What the forces will be like: the mean and the peak of n over the period, and the friction. */
-static void set_reference(mhb_contact_evaluator *c) {
-  const mhb_signals *s    = &c->signals;
-  double             load = 0, swing = 0;
-  c->slip.peak = 0;
-  for (int i = 0; i < s->n_grid; i++) {
-    double n     = s->value[0][i];
-    load         = n > 0 ? load + n : load;
-    c->slip.peak = n > c->slip.peak ? n : c->slip.peak;
-  }
-  load = fmax(load / s->n_grid, brief_load(c));
-  for (int i = 1; i < 3; i++) swing += s->bound[i][0] - fabs(s->coefficient[i]);
-  double limit = c->slip.mu * load;
-  c->friction  = fmax(limit < swing ? limit : swing, 1e-300);
-  c->force     = load > c->friction ? load : c->friction;
-}
-
+/* The slip problem of the period, and the levels of force that errors refer to. */
 static void set_slip(mhb_contact_evaluator *c, const mhb_law *law, int derivative) {
-  c->slip    = (mhb_slip){.signals    = &c->signals,
-                          .rule       = &c->rule,
-                          .mean       = .5 * (c->K[0][0] + c->K[1][1]),
-                          .half       = .5 * (c->K[0][0] - c->K[1][1]),
-                          .skew       = c->K[0][1],
-                          .mu         = law->mu,
-                          .linearized = derivative};
-  c->content = content_of(&c->signals, law->mu);
+  const mhb_signals *s = &c->signals;
+  c->slip              = (mhb_slip){.signals    = s,
+                                    .rule       = &c->rule,
+                                    .mean       = .5 * (c->K[0][0] + c->K[1][1]),
+                                    .half       = .5 * (c->K[0][0] - c->K[1][1]),
+                                    .skew       = c->K[0][1],
+                                    .mu         = law->mu,
+                                    .linearized = derivative};
   memcpy(c->slip.K, c->K, sizeof c->K);
-  set_reference(c);
-}
 
-/* ---- sums ---- */
-
-static double quadrature_scale(int i) {
-  return i == 0 ? 1 / TWO_PI : 2 / TWO_PI;
-}
-
-void mhb_force_integrals_clear(mhb_contact_evaluator *c) {
-  size_t nf = (size_t)c->nf, sums = (size_t)mhb_real_size(c->H + c->m);
-  memset(c->f, 0, sizeof(double) * 2 * nf);
-  memset(c->f_slider, 0, sizeof(double) * 2 * nf);
-  memset(c->sum, 0, sizeof(mhb_lanes) * 4 * nf);
-  memset(c->stick, 0, sizeof(double) * sums);
-  memset(c->first, 0, sizeof(double) * sums);
-  memset(c->info->share, 0, sizeof c->info->share);
-  c->squares = c->info->slip_work = c->info->error = c->info->n_transitions = 0;
-  c->pieces.n                                                               = 0;
-  if (c->columns != MHB_ALL_COLUMNS) return;
-  memset(c->J, 0, sizeof(double) * 2 * nf * (size_t)c->stride);
-  memset(c->load, 0, sizeof(mhb_lanes) * 2 * sums);
-}
-
-void mhb_force_integrals_collect(mhb_contact_evaluator *c) {
-  for (int i = 0; i < c->nf; i++) {
-    const mhb_lanes *sum = c->sum + 4 * i;
-    for (int k = 0; k < 2; k++) {
-      c->f[k * c->nf + i] += lanes_sum(sum[k]);
-      if (c->columns != MHB_NO_COLUMNS) c->f_slider[k * c->nf + i] += lanes_sum(sum[2 + k]);
-    }
+  /* mean harmonic (sum k^4 |A_k|/sum |A_k|)^(1/4) over mu n and x; swing of x */
+  double high = 0, all = 0, swing = 0;
+  for (int i = 0; i < 3; i++) {
+    double weight = i ? 1 : law->mu, amplitude = s->bound[i][0] - fabs(s->coefficient[i]);
+    high += weight * s->bound[i][4];
+    all += weight * amplitude;
+    if (i) swing += amplitude;
   }
+  c->mean_harmonic = all > 0 && high < INFINITY ? sqrt(sqrt(high / all)) : 1;
+
+  /* mean and peak of n on the grid */
+  double load = 0, peak = 0, short_load = 0;
+  for (int i = 0; i < s->n_grid; i++) {
+    double n = s->value[0][i];
+    load     = n > 0 ? load + n : load;
+    peak     = n > peak ? n : peak;
+  }
+  /* the grid may miss intervals shorter than four cells: n is about a parabola there */
+  for (int i = 0; i < c->intervals.n; i++) {
+    double y[3], dy[3], length = c->intervals.opening[i] - c->intervals.closing[i];
+    if (length > 4 * SHB_TWO_PI / s->n_grid) continue;
+    mhb_signals_at(s, c->intervals.closing[i] + .5 * length, y, dy, NULL);
+    short_load += 2. / 3 * fmax(0, y[0]) * length / SHB_TWO_PI;
+    peak = fmax(peak, y[0]);
+  }
+  load              = fmax(load / s->n_grid, short_load);
+  double limit      = law->mu * load;
+  c->slip.peak_load = peak;
+  c->friction_level = fmax(limit < swing ? limit : swing, 1e-300);
+  c->force_level    = load > c->friction_level ? load : c->friction_level;
 }
 
 /* ---- assembly ---- */
 
-/* What the load does to slip at a fixed direction: J += integrals of mu kv e b_i b_j. */
-MHB_HOT static void finish_load(mhb_contact_evaluator *c) {
-  int nb = c->nb, nf = c->nf, sums = mhb_real_size(c->H + c->m);
-  for (int k = 0; k < 2; k++) {
-    for (int i = 0; i < sums; i++) c->piece[i] = lanes_sum(c->load[2 * i + k]);
-    mhb_basis_product(c->H, c->m, c->piece, c->product, nb);
-    for (int i = 0; i < nf; i++) {
-      double *row = c->J + (size_t)(k * nf + i) * (size_t)c->stride;
-      for (int j = 0; j < nb; j++) row[j] += c->product[i * nb + j];
-    }
-  }
-}
-
-/* f += Ku s over the stick pieces; scale to Fourier coefficients. */
-MHB_HOT static void finish_friction(mhb_contact_evaluator *c) {
-  int nb = c->nb, nf = c->nf, all = c->columns == MHB_ALL_COLUMNS;
-  int used = all ? nb : mhb_real_size(c->signals.used);
-  if (all) finish_load(c);
-  mhb_basis_product(c->H, all ? c->m : c->signals.used, c->stick, c->product, nb);
-  for (int i = 0; i < nf; i++) {
-    const double *S = c->product + (size_t)i * (size_t)nb;
-    double        q = quadrature_scale(i);
-    for (int k = 0; k < 2; k++) {
-      double *f = &c->f[k * nf + i], *row = c->J + (size_t)(k * nf + i) * (size_t)c->stride;
-      for (int j = 0; j < used; j++) *f += S[j] * c->scaled[(1 + k) * nb + j];
-      *f *= q;
-      if (!all) continue;
-      for (int j = 0; j < nb; j++) {
-        row[nb + j] += c->K[k][0] * S[j];
-        row[2 * nb + j] += c->K[k][1] * S[j];
-      }
-      for (int j = 0; j < 3 * nb; j++) row[j] *= q;
-    }
-  }
-}
-
-/* row[k] += factor dc_k/d(motion) of the mean friction of a stuck contact; the mean of s does not enter. */
+/* row[k] += factor dc_k/d(motion) of the mean friction c of a stuck contact; the mean of s has no
+ * influence. */
 static void add_mean_gradient(const mhb_contact_evaluator *c, double factor, double *const row[2]) {
-  const mhb_static_friction *stuck = &c->stuck;
+  const mhb_static_friction *stuck = &c->static_friction;
   int                        nb    = c->nb;
   double                     weight[2][2][6], b[nb], db[nb];
   if (stuck->n_active == 0) return;
@@ -258,15 +172,16 @@ void mhb_contact_mean_gradient(const mhb_contact_evaluator *c, double *const gra
 
 /* Stuck throughout: f = Ku (s - mean s) + c. */
 static void finish_stuck(mhb_contact_evaluator *c) {
-  const mhb_static_friction *stuck = &c->stuck;
-  int                        nb = c->nb, nf = c->nf, derivative = c->columns == MHB_ALL_COLUMNS;
+  const mhb_static_friction *stuck = &c->static_friction;
+  int                        nb = c->nb, nf = c->nf, derivative = c->mode == MHB_ALL_COLUMNS;
   c->info->share[MHB_STICK] = 1;
   c->info->undetermined     = 1;
-  mhb_dense_output_stick(&c->pieces, 0,
-                         (double[2]){c->scaled[nb] - stuck->c[0], c->scaled[2 * nb] - stuck->c[1]});
+  mhb_dense_output_stick(
+      &c->dense_output, 0,
+      (double[2]){c->coefficients[nb] - stuck->c[0], c->coefficients[2 * nb] - stuck->c[1]});
   for (int k = 0; k < 2; k++) {
     for (int i = 1; i < nb; i++) {
-      c->f[k * nf + i] = c->scaled[(1 + k) * nb + i];
+      c->f[k * nf + i] = c->coefficients[(1 + k) * nb + i];
       if (!derivative) continue;
       double *row     = c->J + (size_t)(k * nf + i) * (size_t)c->stride;
       row[nb + i]     = c->K[k][0];
@@ -278,34 +193,33 @@ static void finish_stuck(mhb_contact_evaluator *c) {
     add_mean_gradient(c, 1, (double *const[2]){c->J, c->J + (size_t)nf * (size_t)c->stride});
 }
 
-/* Always closed: n is linear in v, and a huge preload must not drown it. */
-static void normal_force_closed(const mhb_contact_evaluator *c, const mhb_law *law, const double *v,
-                                double *force, double *jacobian) {
-  for (int i = 0; i < c->nb; i++) {
-    force[i] = law->kv * v[i];
-    if (jacobian) jacobian[(size_t)i * 3 * (size_t)c->nb + (size_t)i] = law->kv;
+/* Harmonics of n - mean_offset, and their derivative. */
+static void normal_load(mhb_contact_evaluator *c, const mhb_law *law, const double *v,
+                        double *force, double *jacobian) {
+  int    nb = c->nb, nf = c->nf, top = c->H + c->m;
+  double offset = -law->mean_offset;
+  if (c->intervals.always_closed) { /* linear in v; a huge preload must not enter the rounding */
+    for (int i = 0; i < nb; i++) {
+      force[i] = law->kv * v[i];
+      if (jacobian) jacobian[(size_t)i * 3 * (size_t)nb + (size_t)i] = law->kv;
+    }
+    offset = law->n0 - law->mean_offset;
+  } else if (!c->intervals.always_open) { /* integrals over the closed intervals */
+    memset(c->basis_integrals, 0, sizeof(double) * (size_t)mhb_real_size(top));
+    for (int i = 0; i < c->intervals.n; i++)
+      mhb_basis_integral(top, c->intervals.closing[i], c->intervals.opening[i], c->basis_integrals);
+    mhb_basis_product(c->H, c->m, c->basis_integrals, c->basis_products, nb);
+    for (int i = 0; i < nf; i++) {
+      const double *S = c->basis_products + (size_t)i * (size_t)nb;
+      double        q = mhb_force_integrals_factor(i), sum = 0;
+      for (int j = 0; j < nb; j++) sum += S[j] * c->coefficients[j];
+      force[i] = c->scale * q * sum;
+      if (!jacobian) continue;
+      double *row = jacobian + (size_t)i * 3 * (size_t)nb;
+      for (int j = 0; j < nb; j++) row[j] = c->scale * c->kv * q * S[j];
+    }
   }
-  force[0] += law->n0 - law->balance;
-}
-
-/* Normal load: the harmonics of n over the closed intervals. */
-static void normal_force(mhb_contact_evaluator *c, const mhb_law *law, double *force,
-                         double *jacobian) {
-  int nb = c->nb, nf = c->nf, sums = mhb_real_size(c->H + c->m);
-  memset(c->piece, 0, sizeof(double) * (size_t)sums);
-  for (int i = 0; i < c->closed.n; i++)
-    mhb_basis_integral(c->H + c->m, c->closed.closing[i], c->closed.opening[i], c->piece);
-  mhb_basis_product(c->H, c->m, c->piece, c->product, nb);
-  for (int i = 0; i < nf; i++) {
-    const double *S = c->product + (size_t)i * (size_t)nb;
-    double        q = quadrature_scale(i), sum = 0;
-    for (int j = 0; j < nb; j++) sum += S[j] * c->scaled[j];
-    force[i] = c->scale * q * sum;
-    if (!jacobian) continue;
-    double *row = jacobian + (size_t)i * 3 * (size_t)nb;
-    for (int j = 0; j < nb; j++) row[j] = c->scale * c->kv * q * S[j];
-  }
-  force[0] -= law->balance;
+  force[0] += offset;
 }
 
 /* Loop integral of f.s' dt: pi sum_k k (Im F_k Re S_k - Re F_k Im S_k) for x = Re X_k exp(jkt). */
@@ -315,41 +229,41 @@ static double loop_work(const mhb_contact_evaluator *c, const double *motion, co
     const double *s = motion + i * c->nb, *f = force + i * c->nf;
     for (int k = 1; k <= c->m; k++) sum += k * (f[2 * k] * s[2 * k - 1] - f[2 * k - 1] * s[2 * k]);
   }
-  return .5 * TWO_PI * sum;
+  return .5 * SHB_TWO_PI * sum;
 }
 
-/* mu = 0: slip wherever it is closed. */
+/* mu = 0: slip wherever the contact is closed. */
 static void without_friction(mhb_contact_evaluator *c) {
-  double closed = c->closed.always_closed;
-  if (closed > 0) mhb_dense_output_frictionless(&c->pieces, 0);
-  for (int i = 0; i < c->closed.n; i++) {
-    closed += (c->closed.opening[i] - c->closed.closing[i]) / TWO_PI;
-    mhb_note_transition(c, c->closed.closing[i], MHB_SLIDE);
-    mhb_dense_output_frictionless(&c->pieces, c->closed.closing[i]);
-    mhb_note_transition(c, c->closed.opening[i], MHB_SEPARATE);
-    mhb_dense_output_open(&c->pieces, c->closed.opening[i]);
+  double closed = c->intervals.always_closed;
+  if (closed > 0) mhb_dense_output_frictionless(&c->dense_output, 0);
+  for (int i = 0; i < c->intervals.n; i++) {
+    closed += (c->intervals.opening[i] - c->intervals.closing[i]) / SHB_TWO_PI;
+    mhb_note_transition(c, c->intervals.closing[i], MHB_SLIDE);
+    mhb_dense_output_frictionless(&c->dense_output, c->intervals.closing[i]);
+    mhb_note_transition(c, c->intervals.opening[i], MHB_SEPARATE);
+    mhb_dense_output_open(&c->dense_output, c->intervals.opening[i]);
   }
   c->info->share[MHB_SLIDE]    = closed;
   c->info->share[MHB_SEPARATE] = 1 - closed;
 }
 
-/* A lap beyond what double precision resolves (Ku s 1e12 times mu n, Ku all but singular): no friction is better than none
- * of a number. */
+/* Friction is set to zero if a lap is beyond double precision: Ku s 1e12 times mu n, Ku almost
+ * singular. */
 static void drop_friction(mhb_contact_evaluator *c) {
   size_t nf  = (size_t)c->nf;
   double sum = 0;
   for (size_t i = 0; i < 2 * nf; i++) sum += fabs(c->f[i]);
-  for (size_t i = 0; c->columns == MHB_ALL_COLUMNS && i < 2 * nf * (size_t)c->stride; i++)
+  for (size_t i = 0; c->mode == MHB_ALL_COLUMNS && i < 2 * nf * (size_t)c->stride; i++)
     sum += fabs(c->J[i]);
   if (isfinite(sum + c->info->slip_work)) return;
   memset(c->f, 0, sizeof(double) * 2 * nf);
   memset(c->J, 0, sizeof(double) * 2 * nf * (size_t)c->stride);
-  c->info->slip_work = c->info->error = c->squares = 0;
-  c->info->lost                                    = 1;
+  c->info->slip_work = c->info->error = c->squared_error = 0;
+  c->info->lost                                          = 1;
 }
 
 static void friction_force(mhb_contact_evaluator *c) {
-  if (c->closed.always_open) {
+  if (c->intervals.always_open) {
     c->info->share[MHB_SEPARATE] = 1;
     return;
   }
@@ -358,43 +272,36 @@ static void friction_force(mhb_contact_evaluator *c) {
     return;
   }
   int ok;
-  if (c->closed.always_closed) {
-    mhb_static_friction_solve(&c->signals, c->slip.mu, &c->stuck);
-    if (c->stuck.feasible) {
+  if (c->intervals.always_closed) {
+    mhb_static_friction_solve(&c->signals, c->slip.mu, &c->static_friction);
+    if (c->static_friction.feasible) {
       finish_stuck(c);
       return;
     }
-    ok = mhb_slider_periodic(
-        c, (double[2]){c->scaled[c->nb] - c->stuck.c[0], c->scaled[2 * c->nb] - c->stuck.c[1]});
+    ok = mhb_slider_periodic(c, (double[2]){c->coefficients[c->nb] - c->static_friction.c[0],
+                                            c->coefficients[2 * c->nb] - c->static_friction.c[1]});
   } else {
     ok = mhb_slider_with_openings(c);
     mhb_force_integrals_collect(c);
   }
-  finish_friction(c);
+  mhb_force_integrals_finish(c);
   c->info->lost = !ok;
-  if (!ok) c->info->error = fmax(c->info->error, c->closed.always_closed ? 0 : TWO_PI * c->force);
+  if (!ok)
+    c->info->error =
+        fmax(c->info->error, c->intervals.always_closed ? 0 : SHB_TWO_PI * c->force_level);
   if (!ok || c->info->laps > 20) drop_friction(c);
 }
 
-static void normal_load(mhb_contact_evaluator *c, const mhb_law *law, const double *motion,
-                        double *force, double *jacobian) {
-  if (c->closed.always_closed) {
-    normal_force_closed(c, law, motion, force, jacobian);
-  } else if (c->closed.always_open) {
-    force[0] = -law->balance;
-  } else {
-    normal_force(c, law, force, jacobian);
-  }
-}
-
-/* The errors of the integrals, as harmonics and relative to the largest of them. Those of the panels have changing signs:
- * they add up like squares; half of that is what the suite of motions shows (tests/mhb/test_accuracy). */
+/* Error of the integrals, as harmonics and relative to the largest of them. Those of the panels
+ * have changing signs and add up like squares. The factor 0.5 is calibrated on the motions of
+ * tests/mhb/contact/test_accuracy. */
 static double relative_error(const mhb_contact_evaluator *c, const mhb_law *law,
                              const double *force) {
-  double top = fabs(force[0] + law->balance), sum = .5 * sqrt(c->squares) + c->info->error;
+  double top = fabs(force[0] + law->mean_offset),
+         sum = .5 * sqrt(c->squared_error) + c->info->error;
   for (int i = 1; i < 3 * c->nf; i++) top = fabs(force[i]) > top ? fabs(force[i]) : top;
   if (c->info->lost && sum == 0) return 1;
-  return top > 0 ? fmin(1, 2 / TWO_PI * sum * c->scale / top) : 0;
+  return top > 0 ? fmin(1, 2 / SHB_TWO_PI * sum * c->scale / top) : 0;
 }
 
 void mhb_contact_force(mhb_contact_evaluator *c, const mhb_law *law, const double *motion,
@@ -404,17 +311,17 @@ void mhb_contact_force(mhb_contact_evaluator *c, const mhb_law *law, const doubl
   memset(info, 0, offsetof(mhb_contact_info, transition));
   memset(force, 0, sizeof(double) * size);
   c->info = info;
-  if (!set_signals(c, law, motion)) { /* at rest, without preload; or not a number */
+  if (!set_signals(c, law, motion)) { /* at rest without preload, or not finite */
     if (jacobian) memset(jacobian, 0, sizeof(double) * size * 3 * (size_t)nb);
     info->share[MHB_SEPARATE] = 1;
     info->lost                = isnan(c->scale);
     for (size_t i = 0; info->lost && i < size; i++) force[i] = NAN;
     return;
   }
-  mhb_contact_intervals_find(&c->signals, &c->closed);
+  mhb_contact_intervals_find(&c->signals, &c->intervals);
   set_slip(c, law, jacobian != NULL);
-  c->columns = jacobian ? MHB_ALL_COLUMNS : MHB_NO_COLUMNS;
-  c->record  = 1;
+  c->mode   = jacobian ? MHB_ALL_COLUMNS : MHB_NO_COLUMNS;
+  c->record = 1;
   mhb_force_integrals_clear(c);
   friction_force(c);
   for (int i = 0; i < 2 * nf; i++) {
@@ -429,16 +336,4 @@ void mhb_contact_force(mhb_contact_evaluator *c, const mhb_law *law, const doubl
   info->slip_work *= c->scale;
   info->dissipation = loop_work(c, motion, force);
   info->error       = relative_error(c, law, force);
-}
-
-const mhb_dense_output *mhb_contact_dense_output(mhb_contact_evaluator *c, const mhb_law *law,
-                                                 const double *motion, mhb_contact_info *info) {
-  c->pieces.n = c->pieces.full = 0;
-  c->pieces.on                 = 1;
-  mhb_contact_force(c, law, motion, c->traced, NULL, info);
-  c->pieces.on    = 0;
-  c->pieces.mu    = law->mu;
-  c->pieces.scale = c->scale;
-  info->lost |= c->pieces.full;
-  return &c->pieces;
 }

@@ -1,70 +1,59 @@
-/* The 3D contact law with stick, slip and separation: force harmonics of a periodic motion and their exact derivative.
+/* Stick, slip and separation in three dimensions: force harmonics of a periodic motion and their
+ * exact derivative.
  *
- *   n = max(n0 + kv v, 0);  stick f = Ku (s - s0) + f0 while |f| < mu n;  slip |f| = mu n, eq. 9;  open f = 0.
+ *   n = max(n0 + kv v, 0);  stick f = Ku (s - s0) + f0 while |f| < mu n;
+ *   slip |f| = mu n, eq. 9;  open f = 0.
  *
- * Where the contact opens, the state after each closing is known and one lap suffices. Where it stays closed and
- * slips, the periodic slider is found by Newton on the 2x2 lap map. Where it never slips, see static_friction.h.
+ * Where the contact opens, the state after each closing is known and one lap suffices. Where it
+ * stays closed and slips, the periodic slider is found by Newton's method on the 2x2 lap map. Where
+ * it never slips, see static_friction.h.
  *
- * Signals are in real form (fourier.h): motion[3][2m+1] for (v, u, w), force[3][2H+1] for (n, fu, fw), H >= m.
- * Source: Chen, Yang, Menq 1999, eqs. 4-15. Differs: event times from the harmonics with bounds, slip by Gauss
- * collocation, force by quadrature of each smooth piece (no sampling, no aliasing). Derivation: docs/theory/contact.md. */
+ * Signals are in real form (fourier.h): motion[3][2m+1] for (v, u, w), force[3][2H+1] for (n, fu,
+ * fw), H >= m. Source: Chen, Yang, Menq 1999, eqs. 4-15. Differs: event times from the harmonics
+ * with bounds, slip by Gauss collocation, force by quadrature of each smooth piece (no sampling, no
+ * aliasing). Derivation: docs/theory/contact.md. */
 #ifndef MHB_CONTACT_CONTACT_H
 #define MHB_CONTACT_CONTACT_H
 
 #include "mesh/base/status.h"
-
-typedef enum { MHB_STICK, MHB_SLIDE, MHB_SEPARATE } mhb_state;
-
-/* One contact pair. */
-typedef struct {
-  double mu;    /* friction coefficient, >= 0 */
-  double kv;    /* normal stiffness, N/m, >= 0 */
-  double ku[3]; /* kuu, kuw, kww, N/m; positive definite */
-  double n0;    /* preload, N; negative: initial gap -n0/kv */
-  double
-      balance; /* subtracted from the mean of n, N: max(n0, 0) for a preload stated at equilibrium, else 0 */
-} mhb_law;
+#include "mhb/contact/law.h"
 
 enum { MHB_MAX_TRANSITIONS = 512 };
 
+/* Results of one evaluation besides the force. */
 typedef struct {
-  double phase; /* t/2 pi, in [0, 1) */
-  int    state; /* mhb_state that begins */
-} mhb_transition;
-
-/* What one evaluation tells besides the force. */
-typedef struct {
-  double share[3];     /* of the period stuck, slipping, open */
-  double dissipation;  /* J a cycle, from the harmonics: loop integral of f.ds */
-  double slip_work;    /* J a cycle, summed over the slip pieces */
-  double error;        /* estimate, relative to the largest force harmonic */
-  int    undetermined; /* the mean friction is a convention (stuck throughout) */
-  int    laps;         /* until the slider was periodic */
-  int    lost; /* 1: periodicity or a panel was not reached to tolerance; error says how far */
-  int    n_transitions;
+  double         share[3];     /* of the period stuck, slipping, open */
+  double         dissipation;  /* J a cycle, from the harmonics: loop integral of f.ds */
+  double         slip_work;    /* J a cycle, summed over the slip pieces */
+  double         error;        /* estimate, relative to the largest force harmonic */
+  int            undetermined; /* the mean friction is a convention (stuck throughout) */
+  int            laps;         /* until the slider was periodic */
+  int            lost;         /* 1: no periodic slider or panel to tolerance; error says how far */
+  int            n_transitions;
   mhb_transition transition[MHB_MAX_TRANSITIONS];
 } mhb_contact_info;
 
-typedef struct mhb_contact_evaluator
-    mhb_contact_evaluator; /* workspace: FFTW plans and all arrays; one a thread */
+/* Workspace of the law: FFTW plans and all arrays. One a thread. */
+typedef struct mhb_contact_evaluator mhb_contact_evaluator;
 
-/* Room for motions of up to m harmonics and forces of up to H >= m; tolerance relative (1e-8: seven-node panels that
- * resolve harmonic H). SHB_ERR_IO: no memory. */
+/* For motions of up to m harmonics and forces of up to H >= m; tolerance relative (1e-8: panels
+ * that resolve harmonic H). SHB_ERR_IO: no memory. */
 shb_status mhb_contact_evaluator_create(int m, int H, double tolerance,
                                         mhb_contact_evaluator **contact);
 void       mhb_contact_evaluator_destroy(mhb_contact_evaluator *contact);
 
-/* Force harmonics (n - balance, fu, fw).
+/* Force harmonics (n - mean_offset, fu, fw).
  *   motion    in   [3][2m+1], m
  *   force     out  [3][2H+1], N
- *   jacobian  out  d force / d motion, [3 (2H+1)][3 (2m+1)] row-major, N/m, or NULL. Where slip just begins the derivative
- *                  of the periodic slider is unbounded: det(I - DP) is held above 1e-7.
- * Never fails: a periodicity not reached shows in info->lost and info->error; a motion that is not finite gives NaN. */
+ *   jacobian  out  d force / d motion, [3 (2H+1)][3 (2m+1)] row-major, N/m, or NULL
+ * Never fails: a slider that is not periodic shows in info->lost and info->error. A motion that is
+ * not finite gives NaN. Where slip just begins the derivative of the periodic slider is unbounded:
+ * det(I - DP) is held above 1e-7. */
 void mhb_contact_force(mhb_contact_evaluator *contact, const mhb_law *law, const double *motion,
                        double *force, double *jacobian, mhb_contact_info *info);
 
-/* Where the last evaluation found the contact stuck throughout: the derivative of its mean friction, which is all that the
- * stiffnesses do not tell. gradient[2] -> [3 (2m+1)] out, N/m. */
+/* After an evaluation that found the contact stuck throughout: gradient[2] -> [3 (2m+1)] <- d/d
+ * motion of the mean friction, N/m. The stiffnesses give all other derivatives. */
 void mhb_contact_mean_gradient(const mhb_contact_evaluator *contact, double *const gradient[2]);
 
 #endif

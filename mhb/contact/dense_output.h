@@ -1,14 +1,16 @@
-/* The contact over one period as a list of smooth pieces, for looking at it (time_history.h); kept only when asked for.
+/* The contact over one period as a list of smooth pieces, kept only when asked for
+ * (time_history.h).
  *
- * Each piece holds until the next begins; the last ends one period after the first begins. In units of the force
- * scale:
+ * Each piece holds until the next begins; the last ends one period after the first begins. In units
+ * of the force scale:
  *   stick  f = x - z
- *   slip   f = mu n (cos th, sin th), th the collocation polynomial of a panel: through its start and its nodes
+ *   slip   f = mu n (cos th, sin th), th a collocation polynomial
  *   open   f = 0 */
 #ifndef MHB_CONTACT_DENSE_OUTPUT_H
 #define MHB_CONTACT_DENSE_OUTPUT_H
 
-#include "mhb/contact/contact.h"
+#include "mesh/base/status.h"
+#include "mhb/contact/law.h"
 #include "mhb/contact/slip.h"
 #include "mhb/numerics/fourier.h"
 
@@ -22,8 +24,8 @@ typedef struct {
 } mhb_dense_piece;
 
 typedef struct {
-  int                on;   /* pieces are wanted */
-  int                full; /* some had no room */
+  int                enabled; /* pieces are wanted */
+  int                full;    /* some pieces had no room */
   int                n;
   mhb_dense_piece   *piece;                 /* [MHB_MAX_PIECES] */
   double             node[1 + MHB_NODES];   /* 0 and the nodes on [0, 1] */
@@ -33,20 +35,16 @@ typedef struct {
 } mhb_dense_output;
 
 /* SHB_ERR_IO: no memory. */
-shb_status mhb_dense_output_create(const mhb_collocation *rule, mhb_dense_output *pieces);
-void       mhb_dense_output_destroy(mhb_dense_output *pieces);
+shb_status mhb_dense_output_create(const mhb_collocation *rule, mhb_dense_output *output);
+void       mhb_dense_output_destroy(mhb_dense_output *output);
 
-/* What the law tells as it goes along; nothing happens unless pieces->on. */
-void mhb_dense_output_stick(mhb_dense_output *pieces, double t0, const double z[2]);
-void mhb_dense_output_slip(mhb_dense_output *pieces, const mhb_panel *panel);
-void mhb_dense_output_open(mhb_dense_output *pieces, double t0);
-void mhb_dense_output_frictionless(mhb_dense_output *pieces, double t0);
+/* Adds a piece that begins at phase t0 or with the panel. No effect unless output->enabled. */
+void mhb_dense_output_stick(mhb_dense_output *output, double t0, const double z[2]);
+void mhb_dense_output_slip(mhb_dense_output *output, const mhb_panel *panel);
+void mhb_dense_output_open(mhb_dense_output *output, double t0);
+void mhb_dense_output_frictionless(mhb_dense_output *output, double t0);
 
 /* State and force (n, fu, fw) in units of the force scale at t in [0, 2 pi]. */
-mhb_state mhb_dense_output_at(const mhb_dense_output *pieces, double t, double force[3]);
-
-/* Evaluate the law (contact.h) and keep its pieces: valid until the contact is used again. */
-const mhb_dense_output *mhb_contact_dense_output(mhb_contact_evaluator *contact, const mhb_law *law,
-                                                 const double *motion, mhb_contact_info *info);
+mhb_state mhb_dense_output_at(const mhb_dense_output *output, double t, double force[3]);
 
 #endif

@@ -1,12 +1,13 @@
-/* The workspace of the contact law, for the files that make it up: contact (entry and assembly), lap (the slider through
- * one period), columns (its derivative). Nobody else includes this.
+/* The workspace of the contact law, private to the modules that make it up: contact (entry), slider
+ * (one period), sensitivity (the derivative), force_integrals, time_history.
  *
- * Derivative columns are the coefficients of v, u, w, nb = 2m+1 each, then one for the slider at the start of a lap that
- * never opens. One is enough: where slip begins, the slider's change (dz_1, dz_2) enters by one number, v.dz, and all
- * that follows in the lap is proportional to it. */
+ * Derivative columns are the coefficients of v, u, w, nb = 2m+1 each, then one for the slider at
+ * the start of a lap. One is enough: where slip begins, the slider's change (dz_1, dz_2) enters by
+ * one number, v.dz, and all that follows in the lap is proportional to it. */
 #ifndef MHB_CONTACT_INTERNAL_H
 #define MHB_CONTACT_INTERNAL_H
 
+#include "mesh/base/arena.h"
 #include "mhb/contact/contact.h"
 #include "mhb/contact/dense_output.h"
 #include "mhb/contact/slip.h"
@@ -16,108 +17,59 @@
 
 typedef enum { MHB_NO_COLUMNS, MHB_SLIDER_COLUMN, MHB_ALL_COLUMNS } mhb_sensitivity_mode;
 
-/* The slider's own derivative in a lap. */
+/* The derivative of a lap by the slider z at its start. */
 typedef struct {
-  int    slipped; /* 0: still the identity */
-  double v[2];    /* dtheta at the first slip of the lap is v.dz */
-  double work;    /* change of the slip work by v.dz, and before that by dz itself */
-  double onset[2];
+  int    slipped;  /* 0: no slip yet, dz is the identity */
+  double v[2];     /* dtheta at the first slip is v.dz */
+  double work;     /* change of the slip work by v.dz */
+  double onset[2]; /* the same by dz, at the first slip */
 } mhb_slider_sensitivity;
 
+/* Forces are in units of `scale`. sums = 2(H+m)+1, the basis of products of force and motion. */
 struct mhb_contact_evaluator {
-  int                   m, H, nb, nf; /* nb = 2m+1, nf = 2H+1 */
-  int                   slider;       /* the slider's column, 3 nb */
-  int                   stride;       /* columns, rounded up to lanes */
+  int                   m, H, nb, nf;  /* harmonics of motion and force; nb = 2m+1, nf = 2H+1 */
+  int                   slider_column; /* 3 nb */
+  int                   stride;        /* columns, rounded up to lanes */
   double                tolerance;
-  mhb_signals           signals;
+  mhb_signals           signals; /* (n, x_1, x_2) */
   mhb_collocation       rule;
   mhb_slip              slip;
   mhb_panel             panel;
-  mhb_contact_intervals closed;
-  mhb_static_friction   stuck;   /* of a contact that stays closed */
-  double                scale;   /* force scale, N */
-  double                K[2][2]; /* Ku/scale */
-  double                kv;      /* kv/scale */
-  double  force; /* the mean normal load or the friction it allows: what errors are relative to */
-  double  friction; /* the friction it allows, or all the motion can do; both in units of scale */
-  double  content;  /* harmonic that stands for the motion's, amplitude weighted */
-  double *scaled;   /* [3][nb] coefficients of (n, x_1, x_2) */
-  mhb_lanes
-      *sum; /* [nf][4] slip: integrals of friction times basis, and their change by the slider */
-  mhb_lanes           *load;     /* [2(H+m)+1][2] slip: integrals of mu kv e times basis */
-  double              *f;        /* [2][nf] integrals of friction times basis */
-  double              *f_slider; /* [2][nf] their change by v.dz */
-  double              *first; /* [2(H+m)+1] integrals of the basis until the first slip of a lap */
-  double              *stick; /* [2(H+m)+1] the same over all stick pieces */
-  double              *piece; /* the same, one piece */
-  double              *product;    /* [nf][nb] */
-  double              *J;          /* [2][nf][stride] */
-  double              *Z[2];       /* [stride] derivative of the slider while stuck */
-  double              *T;          /* [stride] derivative of theta while slipping */
-  double              *drive;      /* [nodes][stride] of the linearised slip equation */
-  double              *node_T;     /* [nodes][stride] */
-  mhb_lanes           *node_basis; /* [nf], then [2][nf] weighted by the direction across */
-  double              *basis0;     /* [2][nb] basis and slope at an event */
-  mhb_sensitivity_mode columns;
-  mhb_slider_sensitivity memory;
-  int                    record;  /* this lap's force is wanted */
-  double                 squares; /* sum of the squares of the panels' errors */
-  mhb_contact_info      *info;
-  mhb_dense_output       pieces; /* of the recorded lap, for a trace */
-  double                *traced; /* [3][nf] force of a trace */
+  mhb_contact_intervals intervals;
+  mhb_static_friction   static_friction; /* of a contact that stays closed */
+  double                scale;           /* force scale, N */
+  double                K[2][2];         /* Ku/scale */
+  double                kv;              /* kv/scale */
+  double                force_level; /* max(mean normal load, friction_level): errors refer to it */
+  double                friction_level; /* min(mu mean normal load, swing of x) */
+  double                mean_harmonic;  /* of the motion, weighted by amplitude */
+  double               *coefficients;   /* [3][nb] of (n, x_1, x_2) */
+  /* integrals over the recorded lap */
+  mhb_lanes *slip_sums;       /* [nf][4] slip: friction times basis, and its change by v.dz */
+  mhb_lanes *load_sums;       /* [sums][2] slip: mu kv e times basis */
+  double    *f;               /* [2][nf] friction times basis */
+  double    *f_slider;        /* [2][nf] its change by v.dz */
+  double    *first_stick;     /* [sums] basis, until the first slip */
+  double    *stick_integrals; /* [sums] basis, over all stick pieces */
+  double    *basis_integrals; /* [sums] basis, over one piece */
+  double    *basis_products;  /* [nf][nb] */
+  double    *J;               /* [2][nf][stride] derivative of f */
+  double     squared_error;   /* sum of the squares of the panels' errors */
+  /* derivatives of the state */
+  mhb_sensitivity_mode   mode;
+  mhb_slider_sensitivity lap;
+  double                *Z[2];        /* [stride] of the slider while stuck */
+  double                *T;           /* [stride] of theta while slipping */
+  double                *rhs;         /* [nodes][stride] of the linearised slip equation */
+  double                *T_nodes;     /* [nodes][stride] T at the nodes of a panel */
+  mhb_lanes             *node_basis;  /* [nf], then [2][nf] times mu n w q */
+  double                *event_basis; /* [2][nb] basis and slope at an event */
+  /* results */
+  int               record; /* this lap's force is wanted */
+  mhb_contact_info *info;
+  mhb_dense_output  dense_output;  /* of the recorded lap */
+  double           *history_force; /* [3][nf] force of a time history */
+  shb_arena         arena;
 };
-
-/* The integrals of a recorded lap: emptied, and the lanes of the slip pieces added into f and f_slider. */
-void mhb_force_integrals_clear(mhb_contact_evaluator *contact);
-void mhb_force_integrals_collect(mhb_contact_evaluator *contact);
-
-/* ---- slider.c ---- */
-
-/* Friction over the closed intervals: every closing is a fresh start (eqs. 13-15). 0: a panel was lost. */
-int mhb_slider_with_openings(mhb_contact_evaluator *contact);
-
-/* Friction of a contact that never opens and slips: the periodic slider, first guess z. 0: not reached. */
-int mhb_slider_periodic(mhb_contact_evaluator *contact, const double guess[2]);
-
-void mhb_note_transition(mhb_contact_evaluator *contact, double t, mhb_state state);
-
-/* ---- sensitivity.c; all heed contact->columns ---- */
-
-void mhb_sensitivity_clear(mhb_contact_evaluator *contact);
-
-/* Stick to slip at theta, |f| = mu n. Z -> T. */
-void mhb_sensitivity_stick_to_slip(mhb_contact_evaluator *contact, double t, double theta,
-                                   double n);
-
-/* Slip to stick. T -> Z. */
-void mhb_sensitivity_slip_to_stick(mhb_contact_evaluator *contact, double t, double theta,
-                                   double n);
-
-/* Closing at t into state, at theta if that is slip: sets Z or T. */
-void mhb_sensitivity_closing(mhb_contact_evaluator *contact, double t, mhb_state state,
-                             double theta);
-
-/* T through contact->panel and, in a recorded lap, its share of the integrals. */
-void mhb_sensitivity_panel(mhb_contact_evaluator *contact);
-
-/* The share of a stick piece, whose integrals of the basis are contact->piece. */
-void mhb_sensitivity_stick(mhb_contact_evaluator *contact);
-
-/* |DP|: how much of a change of the slider is left after a lap. */
-double mhb_sensitivity_contraction(const mhb_contact_evaluator *contact);
-
-/* What rounding leaves of the slider, in units of the friction: a lap is good to some 4e-13, its fixed point to that by
- * det(I - DP), where slip just begins (a double root) to the square root. */
-double mhb_sensitivity_roundoff(const mhb_contact_evaluator *contact);
-
-/* What a change r of the lap's result means for its start: dz = (I - DP)^-1 r, det(I - DP) held above 1e-7. */
-void mhb_sensitivity_close(const mhb_contact_evaluator *contact, const double r[2], double dz[2]);
-
-/* J += the columns' way through the periodic slider. */
-void mhb_sensitivity_eliminate_slider(mhb_contact_evaluator *contact);
-
-/* delta x_1, delta x_2, delta n of motion column j when the basis (or its slope) at the time is b. */
-void mhb_column_change(const mhb_contact_evaluator *contact, const double *b, int j, double dx[2],
-                       double *dn);
 
 #endif

@@ -1,36 +1,22 @@
-/* The exact derivative of friction, carried along the lap.
- * Derivation: docs/theory/contact.md, Exact sensitivities. */
+#include "mhb/contact/sensitivity.h"
+
 #include <math.h>
 #include <string.h>
-
-#include "mhb/contact/internal.h"
 
 void mhb_sensitivity_clear(mhb_contact_evaluator *c) {
   size_t size = sizeof(double) * (size_t)c->stride;
   memset(c->T, 0, size);
   memset(c->Z[0], 0, size);
   memset(c->Z[1], 0, size);
-  memset(&c->memory, 0, sizeof c->memory);
+  memset(&c->lap, 0, sizeof c->lap);
 }
 
-void mhb_column_change(const mhb_contact_evaluator *c, const double *b, int j, double dx[2],
-                       double *dn) {
-  int nb = c->nb, kind = j / nb, i = j - kind * nb;
-  dx[0] = dx[1] = *dn = 0;
-  if (kind == 0) {
-    *dn = c->kv * b[i];
-  } else {
-    dx[0] = c->K[0][kind - 1] * b[i];
-    dx[1] = c->K[1][kind - 1] * b[i];
-  }
-}
-
-/* out = sum_k keep[k] from[k] + value[kind] basis + slope[kind] basis' (kinds v, u, w). */
+/* out = sum_k keep[k] from[k] + value[kind] basis + slope[kind] basis', kinds v, u, w. */
 static void combine(const mhb_contact_evaluator *c, double *out, int terms, const double *keep,
                     double *const *from, const double value[3], const double slope[3]) {
-  int           begin = c->columns == MHB_ALL_COLUMNS ? 0 : c->slider, nb = c->nb;
-  const double *b = c->basis0, *db = b + nb;
-  for (int j = begin; j <= c->slider; j++)
+  int           begin = c->mode == MHB_ALL_COLUMNS ? 0 : c->slider_column, nb = c->nb;
+  const double *b = c->event_basis, *db = b + nb;
+  for (int j = begin; j <= c->slider_column; j++)
     out[j] = terms == 0   ? 0
              : terms == 1 ? keep[0] * from[0][j]
                           : keep[0] * from[0][j] + keep[1] * from[1][j];
@@ -40,35 +26,37 @@ static void combine(const mhb_contact_evaluator *c, double *out, int terms, cons
 }
 
 static void basis_at(mhb_contact_evaluator *c, double t) {
-  if (c->columns == MHB_ALL_COLUMNS) mhb_basis(c->m, t, c->basis0, c->basis0 + c->nb);
+  if (c->mode == MHB_ALL_COLUMNS) mhb_basis(c->m, t, c->event_basis, c->event_basis + c->nb);
 }
 
-/* delta f is projected obliquely onto the circle (free of the onset speed, so that nothing blows up at grazing):
- *   df+ = df - Kf (f.df - mu^2 n dn)/(f.Kf),  hence  dtheta = [g.(dx - dz) + mu beta dn]/(mu n),  g = q - beta e. */
+/* The change of f is projected obliquely onto the circle, free of the onset speed, so that nothing
+ * diverges at grazing:
+ *   df+ = df - Kf (f.df - mu^2 n dn)/(f.Kf),
+ *   dtheta = [g.(dx - dz) + mu beta dn]/(mu n),  g = q - beta e. */
 void mhb_sensitivity_stick_to_slip(mhb_contact_evaluator *c, double t, double theta, double n) {
-  if (c->columns == MHB_NO_COLUMNS) return;
+  if (c->mode == MHB_NO_COLUMNS) return;
   mhb_direction d        = mhb_slip_direction(c->K, theta);
   double        limit    = c->slip.mu * n;
   double        g[2]     = {(d.q[0] - d.beta * d.e[0]) / limit, (d.q[1] - d.beta * d.e[1]) / limit};
   double        value[3] = {d.beta / n * c->kv, g[0] * c->K[0][0] + g[1] * c->K[1][0],
                             g[0] * c->K[0][1] + g[1] * c->K[1][1]};
-  /* the power begins with gamma mu n/eKe, dt = -(e.df - mu dn)/gamma earlier */
+  /* power at the onset gamma mu n/eKe; the onset is earlier by (e.df - mu dn)/gamma */
   double eKe =
       d.e[0] * (c->K[0][0] * d.e[0] + 2 * c->K[0][1] * d.e[1]) + c->K[1][1] * d.e[1] * d.e[1];
   double work  = -limit / eKe;
-  double dz[2] = {c->Z[0][c->slider], c->Z[1][c->slider]};
+  double dz[2] = {c->Z[0][c->slider_column], c->Z[1][c->slider_column]};
   basis_at(c, t);
   combine(c, c->T, 2, (double[2]){-g[0], -g[1]}, c->Z, value, NULL);
-  c->memory.work += work * (d.e[0] * dz[0] + d.e[1] * dz[1]);
-  if (c->memory.slipped) return;
-  c->memory = (mhb_slider_sensitivity){
+  c->lap.work += work * (d.e[0] * dz[0] + d.e[1] * dz[1]);
+  if (c->lap.slipped) return;
+  c->lap = (mhb_slider_sensitivity){
       .slipped = 1, .v = {-g[0], -g[1]}, .onset = {work * d.e[0], work * d.e[1]}};
-  c->T[c->slider] = 1;
+  c->T[c->slider_column] = 1;
 }
 
-/* df does not jump: dz = dx - (mu dn e + mu n q dtheta). */
+/* The force is continuous: dz = dx - (mu dn e + mu n q dtheta). */
 void mhb_sensitivity_slip_to_stick(mhb_contact_evaluator *c, double t, double theta, double n) {
-  if (c->columns == MHB_NO_COLUMNS) return;
+  if (c->mode == MHB_NO_COLUMNS) return;
   double mu = c->slip.mu, e[2] = {cos(theta), sin(theta)}, q[2] = {-e[1], e[0]};
   basis_at(c, t);
   for (int k = 0; k < 2; k++) {
@@ -80,7 +68,7 @@ void mhb_sensitivity_slip_to_stick(mhb_contact_evaluator *c, double t, double th
 /* Stick: z = x(t), dz = dx + x' dt with dt = -dn/n'. Slip: the regular solution
  *   dtheta = [(q - beta e).dx' + mu beta dn' - mu theta' dn]/D with theta', D of slip.h. */
 void mhb_sensitivity_closing(mhb_contact_evaluator *c, double t, mhb_state state, double theta) {
-  if (c->columns == MHB_NO_COLUMNS) return;
+  if (c->mode == MHB_NO_COLUMNS) return;
   double y[3], dy[3], ddy[3], mu = c->slip.mu;
   basis_at(c, t);
   mhb_signals_at(&c->signals, t, y, dy, ddy);
@@ -119,22 +107,22 @@ MHB_INLINE void add_to_sums(const mhb_panel *p, int harmonics, int n, int stride
   }
 }
 
-/* The force of a panel: mu n e, weighted; with the slider column also mu n q dtheta. */
+/* The force of a panel, mu n e, weighted; with the slider column also mu n q dtheta. */
 MHB_HOT static void add_force(mhb_contact_evaluator *c, double growth) {
   const mhb_panel *p      = &c->panel;
   mhb_lanes        weight = p->h * c->slip.mu * c->rule.weight * p->y[0];
   mhb_lanes        g[4]   = {weight * p->e[0], weight * p->e[1]};
-  if (growth == 0) { /* no slider to remember */
-    add_to_sums(p, c->H, 2, 4, g, c->sum);
+  if (growth == 0) { /* the slider of the start has no influence */
+    add_to_sums(p, c->H, 2, 4, g, c->slip_sums);
     return;
   }
   mhb_lanes ones = p->inverse[0];
   for (int j = 1; j < MHB_NODES; j++) ones += p->inverse[j];
   g[2] = -growth * ones * g[1];
   g[3] = growth * ones * g[0];
-  add_to_sums(p, c->H, 4, 4, g, c->sum);
+  add_to_sums(p, c->H, 4, 4, g, c->slip_sums);
   mhb_lanes across = p->e[0] * p->dy[2] - p->e[1] * p->dy[1];
-  c->memory.work += growth * lanes_sum(weight * ones / p->eKe * (across - 2 * p->beta * p->gamma));
+  c->lap.work += growth * lanes_sum(weight * ones / p->eKe * (across - 2 * p->beta * p->gamma));
 }
 
 /* dtheta(end) for dtheta(start) = 1: 1 + h sum w F_th (I - h A F_th)^-1 1. */
@@ -146,7 +134,7 @@ MHB_HOT static double panel_growth(const mhb_contact_evaluator *c) {
   return 1 + p->h * lanes_sum(c->rule.weight * p->F_theta * ones);
 }
 
-/* The basis at the nodes by lanes, [nf], and its rows weighted across the friction, mu n w q_k, [2][nf]. */
+/* The basis at the nodes by lanes, [nf], and its rows times mu n w q_k, [2][nf]. */
 MHB_INLINE void basis_lanes(const mhb_contact_evaluator *c) {
   const mhb_panel *p = &c->panel;
   mhb_lanes       *b = c->node_basis, cs = lanes_all(1), sn = lanes_all(0);
@@ -164,7 +152,7 @@ MHB_INLINE void basis_lanes(const mhb_contact_evaluator *c) {
     for (int i = 0; i < c->nf; i++) b[(1 + k) * c->nf + i] = across[k] * b[i];
 }
 
-/* Right-hand side of the linearised slip equation, rows by node: for columns v_i, u_i, w_i
+/* Right-hand side of the linearised slip equation, rows by node, for columns v_i, u_i, w_i:
  *   kv (beta/n b'_i - F/n b_i),  a_u b'_i,  a_w b'_i  with a = ((q - beta e) K)/(mu n). */
 MHB_INLINE void fill_drive(const mhb_contact_evaluator *c) {
   const mhb_panel *p    = &c->panel;
@@ -181,11 +169,11 @@ MHB_INLINE void fill_drive(const mhb_contact_evaluator *c) {
                                                  : -k * c->node_basis[i - 1];
     mhb_lanes r[3] = {slope[0] * db + value * b, slope[1] * db, slope[2] * db};
     for (int kind = 0; kind < 3; kind++)
-      for (int l = 0; l < MHB_NODES; l++) c->drive[l * c->stride + kind * nb + i] = r[kind][l];
+      for (int l = 0; l < MHB_NODES; l++) c->rhs[l * c->stride + kind * nb + i] = r[kind][l];
   }
 }
 
-/* dtheta at the nodes (node_T) and at the panel's end (T): the collocation equations linearised, same matrix. */
+/* T_nodes and T at the panel's end: the collocation equations linearised, with the same matrix. */
 MHB_INLINE void columns_through(const mhb_contact_evaluator *c) {
   const mhb_panel *p    = &c->panel;
   mhb_lanes        ones = p->inverse[0], hA[MHB_NODES], end = p->h * c->rule.weight;
@@ -204,21 +192,21 @@ MHB_INLINE void columns_through(const mhb_contact_evaluator *c) {
     for (int l = 0; l < MHB_NODES; l++) value[l] = ones[l] * T;
 #pragma GCC unroll 8
     for (int q = 0; q < MHB_NODES; q++) {
-      mhb_lanes r = lanes_load(c->drive + q * c->stride + j);
+      mhb_lanes r = lanes_load(c->rhs + q * c->stride + j);
       sum += end[q] * r;
 #pragma GCC unroll 8
       for (int l = 0; l < MHB_NODES; l++) value[l] += hA[q][l] * r;
     }
 #pragma GCC unroll 8
     for (int l = 0; l < MHB_NODES; l++) {
-      lanes_store(c->node_T + l * c->stride + j, value[l]);
+      lanes_store(c->T_nodes + l * c->stride + j, value[l]);
       sum += last[l] * value[l];
     }
     lanes_store(c->T + j, sum);
   }
 }
 
-/* J[row][j] += sum_l b[row][l] y[l][j], some rows together. */
+/* J[row][j] += sum_l b[row][l] y[l][j] for a few rows at once. */
 MHB_INLINE void add_rows(int rows, int stride, const mhb_lanes *b, const double *y, double *J) {
   for (int j = 0; j < stride; j += MHB_LANES) {
     mhb_lanes sum[6];
@@ -232,7 +220,8 @@ MHB_INLINE void add_rows(int rows, int stride, const mhb_lanes *b, const double 
   }
 }
 
-/* The hot loop of the derivative. Six rows hide the latency of a multiplication, two and one make up the rest. */
+/* The hot loop of the derivative. Six rows hide the latency of a multiplication; two and one make
+ * up the rest. */
 MHB_INLINE void add_outer(int rows, int stride, const mhb_lanes *b, const double *y, double *J) {
   int row = 0;
   for (; row + 6 <= rows; row += 6) add_rows(6, stride, b + row, y, J + row * stride);
@@ -244,19 +233,19 @@ MHB_HOT static void add_derivative(const mhb_contact_evaluator *c) {
   const mhb_panel *p      = &c->panel;
   mhb_lanes        weight = p->h * c->slip.mu * c->kv * c->rule.weight,
             g[2]          = {weight * p->e[0], weight * p->e[1]};
-  add_to_sums(p, c->H + c->m, 2, 2, g, c->load);
+  add_to_sums(p, c->H + c->m, 2, 2, g, c->load_sums);
   basis_lanes(c);
   fill_drive(c);
   columns_through(c);
-  add_outer(2 * c->nf, c->stride, c->node_basis + c->nf, c->node_T, c->J);
+  add_outer(2 * c->nf, c->stride, c->node_basis + c->nf, c->T_nodes, c->J);
 }
 
 void mhb_sensitivity_panel(mhb_contact_evaluator *c) {
-  double growth = c->T[c->slider], before = growth;
+  double growth = c->T[c->slider_column], before = growth;
   if (growth != 0) growth *= panel_growth(c);
   if (c->record) add_force(c, before);
-  if (c->columns == MHB_ALL_COLUMNS) add_derivative(c);
-  c->T[c->slider] = growth;
+  if (c->mode == MHB_ALL_COLUMNS) add_derivative(c);
+  c->T[c->slider_column] = growth;
 }
 
 /* ---- a piece of stick ---- */
@@ -266,60 +255,63 @@ MHB_HOT static void add_stick_derivative(const mhb_contact_evaluator *c) {
     for (int i = 0; i < c->nf; i++) {
       double *row = c->J + (size_t)(k * c->nf + i) * (size_t)c->stride;
       for (int j = 0; j < c->stride; j += MHB_LANES)
-        lanes_store(row + j, lanes_load(row + j) - c->piece[i] * lanes_load(c->Z[k] + j));
+        lanes_store(row + j, lanes_load(row + j) - c->basis_integrals[i] * lanes_load(c->Z[k] + j));
     }
   }
 }
 
 void mhb_sensitivity_stick(mhb_contact_evaluator *c) {
-  if (c->columns == MHB_NO_COLUMNS) return;
-  if (!c->memory.slipped) {
-    for (int i = 0; i < c->nf; i++) c->first[i] += c->piece[i];
+  if (c->mode == MHB_NO_COLUMNS) return;
+  if (!c->lap.slipped) {
+    for (int i = 0; i < c->nf; i++) c->first_stick[i] += c->basis_integrals[i];
   } else {
     for (int k = 0; k < 2; k++)
       for (int i = 0; i < c->nf; i++)
-        c->f_slider[k * c->nf + i] -= c->piece[i] * c->Z[k][c->slider];
+        c->f_slider[k * c->nf + i] -= c->basis_integrals[i] * c->Z[k][c->slider_column];
   }
-  if (c->columns == MHB_ALL_COLUMNS) add_stick_derivative(c);
+  if (c->mode == MHB_ALL_COLUMNS) add_stick_derivative(c);
 }
 
 /* ---- the periodic slider ---- */
 
-/* DP = d v^T: (I - DP)^-1 r = r + d v.r/(1 - v.d), the denominator held above a floor: for Newton rounding's, for the
- * derivative one that keeps it bounded where slip just begins. */
+/* DP = d v^T: (I - DP)^-1 r = r + d v.r/(1 - v.d), the denominator held above a floor. For Newton
+ * that is rounding; for the derivative it bounds the result where slip just begins. */
 static double closure(const mhb_contact_evaluator *c, double floor) {
-  double det = 1 - c->memory.v[0] * c->Z[0][c->slider] - c->memory.v[1] * c->Z[1][c->slider];
+  double det =
+      1 - c->lap.v[0] * c->Z[0][c->slider_column] - c->lap.v[1] * c->Z[1][c->slider_column];
   return fabs(det) < floor ? copysign(floor, det) : det;
 }
 
 double mhb_sensitivity_contraction(const mhb_contact_evaluator *c) {
-  const double *v = c->memory.v;
-  return c->memory.slipped ? hypot(v[0], v[1]) * hypot(c->Z[0][c->slider], c->Z[1][c->slider]) : 1;
+  const double *v = c->lap.v;
+  return c->lap.slipped
+             ? hypot(v[0], v[1]) * hypot(c->Z[0][c->slider_column], c->Z[1][c->slider_column])
+             : 1;
 }
 
 double mhb_sensitivity_roundoff(const mhb_contact_evaluator *c) {
-  return c->memory.slipped ? fmin(4e-6, 4e-13 / fabs(closure(c, 1e-12))) : 0;
+  return c->lap.slipped ? fmin(4e-6, 4e-13 / fabs(closure(c, 1e-12))) : 0;
 }
 
 void mhb_sensitivity_close(const mhb_contact_evaluator *c, const double r[2], double dz[2]) {
-  const mhb_slider_sensitivity *memory = &c->memory;
+  const mhb_slider_sensitivity *memory = &c->lap;
   double                        part =
       memory->slipped ? (memory->v[0] * r[0] + memory->v[1] * r[1]) / closure(c, 1e-12) : 0;
-  for (int k = 0; k < 2; k++) dz[k] = r[k] + c->Z[k][c->slider] * part;
+  for (int k = 0; k < 2; k++) dz[k] = r[k] + c->Z[k][c->slider_column] * part;
 }
 
 MHB_HOT static void eliminate(mhb_contact_evaluator *c) {
-  const double *v = c->memory.v, det = closure(c, 1e-7);
-  for (int j = 0; j < c->slider; j++) {
+  const double *v = c->lap.v, det = closure(c, 1e-7);
+  for (int j = 0; j < c->slider_column; j++) {
     double G[2] = {c->Z[0][j], c->Z[1][j]}, part = (v[0] * G[0] + v[1] * G[1]) / det;
-    for (int k = 0; k < 2; k++) c->Z[k][j] = G[k] + c->Z[k][c->slider] * part;
-    c->T[j] = part; /* v.dz, since v.d part + v.G = part */
+    for (int k = 0; k < 2; k++) c->Z[k][j] = G[k] + c->Z[k][c->slider_column] * part;
+    c->T[j] = part; /* v.dz: v.d part + v.G = part */
   }
   for (int k = 0; k < 2; k++) {
     for (int i = 0; i < c->nf; i++) {
       double *row = c->J + (size_t)(k * c->nf + i) * (size_t)c->stride;
-      double  a = -c->first[i], b = c->f_slider[k * c->nf + i];
-      for (int j = 0; j < c->slider; j++) row[j] += a * c->Z[k][j] + b * c->T[j];
+      double  a = -c->first_stick[i], b = c->f_slider[k * c->nf + i];
+      for (int j = 0; j < c->slider_column; j++) row[j] += a * c->Z[k][j] + b * c->T[j];
     }
   }
 }

@@ -1,59 +1,55 @@
-/* The slider through one period: stick, slip and what follows each; the periodic slider. */
+#include "mhb/contact/slider.h"
+
 #include <math.h>
 #include <string.h>
 
-#include "mhb/contact/internal.h"
+#include "mesh/base/constants.h"
+#include "mhb/contact/force_integrals.h"
+#include "mhb/contact/sensitivity.h"
 
-static const double TWO_PI = 6.283185307179586476925;
-
-/* The slider at a time of the lap. */
+/* The state of the slider at phase t. */
 typedef struct {
   mhb_state state;
   double    t, z[2], theta;
-  double    onset; /* when slip began out of stick; z is from before */
+  double    onset; /* phase at which stick turned to slip; z is that of the stick before */
 } slider;
-
-void mhb_note_transition(mhb_contact_evaluator *c, double t, mhb_state state) {
-  mhb_contact_info *info = c->info;
-  if (!c->record || info->n_transitions == MHB_MAX_TRANSITIONS) return;
-  double phase = t / TWO_PI + 1e-14; /* the end of the period is its beginning */
-  info->transition[info->n_transitions++] =
-      (mhb_transition){.phase = fmax(0, phase - floor(phase) - 1e-14), .state = (int)state};
-}
 
 /* ---- pieces ---- */
 
 static void add_stick(mhb_contact_evaluator *c, double t0, double t1, const double z[2]) {
   if (!c->record || t1 <= t0) return;
-  mhb_dense_output_stick(&c->pieces, t0, z);
+  mhb_dense_output_stick(&c->dense_output, t0, z);
   int sums = mhb_real_size(c->H + c->m);
-  memset(c->piece, 0, sizeof(double) * (size_t)sums);
-  mhb_basis_integral(c->H + (c->columns == MHB_ALL_COLUMNS ? c->m : c->signals.used), t0, t1,
-                     c->piece);
-  for (int i = 0; i < sums; i++) c->stick[i] += c->piece[i];
+  memset(c->basis_integrals, 0, sizeof(double) * (size_t)sums);
+  mhb_basis_integral(c->H + (c->mode == MHB_ALL_COLUMNS ? c->m : c->signals.top), t0, t1,
+                     c->basis_integrals);
+  for (int i = 0; i < sums; i++) c->stick_integrals[i] += c->basis_integrals[i];
   for (int k = 0; k < 2; k++)
-    for (int i = 0; i < c->nf; i++) c->f[k * c->nf + i] -= z[k] * c->piece[i];
+    for (int i = 0; i < c->nf; i++) c->f[k * c->nf + i] -= z[k] * c->basis_integrals[i];
   mhb_sensitivity_stick(c);
-  c->info->share[MHB_STICK] += (t1 - t0) / TWO_PI;
+  c->info->share[MHB_STICK] += (t1 - t0) / SHB_TWO_PI;
 }
 
-/* f K^-1 f/2, what the spring holds. */
-static double held_energy(const mhb_contact_evaluator *c, const double f[2]) {
+/* Energy of the tangential spring, f K^-1 f/2. */
+static double spring_energy(const mhb_contact_evaluator *c, const double f[2]) {
   double det = c->K[0][0] * c->K[1][1] - c->K[0][1] * c->K[0][1];
   return .5 * (c->K[1][1] * f[0] * f[0] - 2 * c->K[0][1] * f[0] * f[1] + c->K[0][0] * f[1] * f[1]) /
          det;
 }
 
-/* What it holds in a contact that sticks. */
-static double held_at(const mhb_contact_evaluator *c, const slider *s) {
+/* The same for a contact that sticks. */
+static double stored_energy(const mhb_contact_evaluator *c, const slider *s) {
   double y[3], dy[3];
   mhb_signals_at(&c->signals, s->t, y, dy, NULL);
-  return held_energy(c, (double[2]){y[1] - s->z[0], y[2] - s->z[1]});
+  return spring_energy(c, (double[2]){y[1] - s->z[0], y[2] - s->z[1]});
 }
 
-/* J. The power of slip is lambda |f|^2 = gamma mu n/eKe. In the last sliver before an opening, whose direction is held, it
- * is what the motion does and the spring gives back: f.s' less the change of f K^-1 f/2, f = 0 at its end; f is x - z where
- * the contact has stuck until then, for mu n may be all rounding. */
+/* Work of slip over the panel, in units of force scale times m. The power is lambda |f|^2 = gamma
+ * mu n/eKe.
+ *
+ * In the last stretch before an opening, whose direction is held, the work is that of the motion
+ * plus the spring's energy: the integral of f.s' plus f K^-1 f/2 at its start, f = 0 at its end. If
+ * the contact has stuck until then f is x - z, for mu n may be all rounding. */
 static double panel_work(const mhb_contact_evaluator *c, const slider *s) {
   const mhb_panel *p      = &c->panel;
   mhb_lanes        weight = p->h * c->slip.mu * c->rule.weight * p->y[0];
@@ -64,7 +60,7 @@ static double panel_work(const mhb_contact_evaluator *c, const slider *s) {
   double    x[2]    = {y[1] - s->z[0], y[2] - s->z[1]};
   mhb_lanes rate[2] = {(c->K[1][1] * p->dy[1] - c->K[0][1] * p->dy[2]) / det,
                        (c->K[0][0] * p->dy[2] - c->K[0][1] * p->dy[1]) / det};
-  return held_energy(c, p->t0 == s->onset ? x : f) +
+  return spring_energy(c, p->t0 == s->onset ? x : f) +
          lanes_sum(weight * (p->e[0] * rate[0] + p->e[1] * rate[1]));
 }
 
@@ -73,10 +69,10 @@ static void add_slip(mhb_contact_evaluator *c, const slider *s) {
   if (p->h <= 0) return;
   mhb_sensitivity_panel(c);
   if (!c->record) return;
-  mhb_dense_output_slip(&c->pieces, p);
+  mhb_dense_output_slip(&c->dense_output, p);
   c->info->slip_work += panel_work(c, s);
-  c->info->share[MHB_SLIDE] += p->h / TWO_PI;
-  c->squares += p->error * p->error;
+  c->info->share[MHB_SLIDE] += p->h / SHB_TWO_PI;
+  c->squared_error += p->error * p->error;
 }
 
 enum { MAX_EVENTS = 400, MAX_PANELS = 5000 };
@@ -95,23 +91,23 @@ static void run_stick(mhb_contact_evaluator *c, slider *s, double end) {
   s->state = MHB_SLIDE;
   s->onset = until;
   mhb_note_transition(c, until, MHB_SLIDE);
-  c->slip.begins = mhb_slip_rate(&c->slip, s->theta, y, dy);
+  c->slip.initial_rate = mhb_slip_rate(&c->slip, s->theta, y, dy);
   mhb_sensitivity_stick_to_slip(c, until, s->theta, y[0]);
 }
 
 /* Slip until its rate is zero or the interval ends. 0: a panel was lost. */
 static int run_slip(mhb_contact_evaluator *c, slider *s, double end, int opening) {
-  double           suggested = c->slip.longest;
-  mhb_slip_outcome outcome   = MHB_SLIP_ON;
-  for (int panels = 0; outcome == MHB_SLIP_ON; panels++) {
+  double           suggested = c->slip.longest_panel;
+  mhb_slip_outcome outcome   = MHB_SLIP_CONTINUES;
+  for (int panels = 0; outcome == MHB_SLIP_CONTINUES; panels++) {
     if (panels == MAX_PANELS) return 0;
     outcome = mhb_slip_panel(&c->slip, s->t, s->theta, end, opening, &suggested, &c->panel);
-    if (outcome == MHB_SLIP_LOST) return 0;
+    if (outcome == MHB_SLIP_FAILED) return 0;
     add_slip(c, s);
     s->t     = c->panel.t0 + c->panel.h;
     s->theta = c->panel.theta1;
   }
-  if (outcome == MHB_SLIP_AT_LIMIT) {
+  if (outcome == MHB_SLIP_INTERVAL_ENDS) {
     s->t = end;
     return 1;
   }
@@ -139,21 +135,22 @@ static int run_closed(mhb_contact_evaluator *c, slider *s, double end, int openi
   return 1;
 }
 
-/* How long and how accurate panels are. A lap whose force is wanted must resolve the highest harmonic too: panel_error
- * in slip.c. */
+/* Length and accuracy of the panels. A recorded lap must resolve the highest harmonic too:
+ * panel_error in slip.c. */
 static void set_panels(mhb_contact_evaluator *c, double tolerance) {
-  double reach      = sqrt(sqrt(sqrt(sqrt(.2 * tolerance / 1.7e-23))));
-  double wanted     = c->record ? c->H : 0;
-  c->slip.harmonic  = wanted + .5 * c->content;
-  c->slip.longest   = fmin(1.5, reach / (wanted + 2 * c->content + 1));
-  c->slip.tolerance = .2 * tolerance * c->force;
+  double reach          = sqrt(sqrt(sqrt(sqrt(.2 * tolerance / 1.7e-23))));
+  double wanted         = c->record ? c->H : 0;
+  c->slip.top_harmonic  = wanted + .5 * c->mean_harmonic;
+  c->slip.longest_panel = fmin(1.5, reach / (wanted + 2 * c->mean_harmonic + 1));
+  c->slip.tolerance     = .2 * tolerance * c->force_level;
 }
 
-/* The direction may be held over tau before an opening: what it misses is some mu n' tau^2/2. */
-static void set_sliver(mhb_contact_evaluator *c, double opening) {
+/* theta may be held over tau before an opening: the error in force is about mu |n'| tau^2/2. */
+static void set_frozen_length(mhb_contact_evaluator *c, double opening) {
   double y[3], dy[3];
   mhb_signals_at(&c->signals, opening, y, dy, NULL);
-  c->slip.sliver = fmin(.05, fmax(1e-10, sqrt(c->slip.tolerance / (c->slip.mu * fabs(dy[0])))));
+  c->slip.frozen_length =
+      fmin(.05, fmax(1e-10, sqrt(c->slip.tolerance / (c->slip.mu * fabs(dy[0])))));
 }
 
 /* ---- the contact opens: every closing is a fresh start (eqs. 13-15) ---- */
@@ -162,11 +159,11 @@ int mhb_slider_with_openings(mhb_contact_evaluator *c) {
   int    ok   = 1;
   double open = 1;
   mhb_sensitivity_clear(c);
-  c->record         = 1;
-  c->memory.slipped = 1; /* there is no slider at the start of the lap to remember */
+  c->record      = 1;
+  c->lap.slipped = 1; /* no slider is carried over from the start */
   set_panels(c, c->tolerance);
-  for (int i = 0; i < c->closed.n; i++) {
-    slider s = {.t = c->closed.closing[i], .onset = -1};
+  for (int i = 0; i < c->intervals.n; i++) {
+    slider s = {.t = c->intervals.closing[i], .onset = -1};
     double y[3], dy[3], ddy[3], d[2], D;
     mhb_signals_at(&c->signals, s.t, y, dy, ddy);
     double pull = hypot(dy[1], dy[2]), limit = c->slip.mu * dy[0];
@@ -175,36 +172,37 @@ int mhb_slider_with_openings(mhb_contact_evaluator *c) {
     s.state = pull < limit ? MHB_STICK : MHB_SLIDE;
     if (s.state == MHB_SLIDE) {
       mhb_slip_return(c->K, limit, dy + 1, d);
-      s.theta          = atan2(d[1], d[0]);
-      mhb_direction at = mhb_slip_direction(c->K, s.theta);
-      c->slip.begins   = mhb_slip_closing_rate(&c->slip, &at, dy, ddy, &D);
+      s.theta              = atan2(d[1], d[0]);
+      mhb_direction at     = mhb_slip_direction(c->K, s.theta);
+      c->slip.initial_rate = mhb_slip_closing_rate(&c->slip, &at, dy, ddy, &D);
     }
     mhb_sensitivity_closing(c, s.t, s.state, s.theta);
     mhb_note_transition(c, s.t, s.state);
-    set_sliver(c, c->closed.opening[i]);
-    ok &= run_closed(c, &s, c->closed.opening[i], 1);
+    set_frozen_length(c, c->intervals.opening[i]);
+    ok &= run_closed(c, &s, c->intervals.opening[i], 1);
     if (s.state == MHB_STICK || s.onset == s.t)
-      c->info->slip_work += held_at(c, &s); /* let go at once: mu n' is too steep to see */
-    mhb_note_transition(c, c->closed.opening[i], MHB_SEPARATE);
-    mhb_dense_output_open(&c->pieces, c->closed.opening[i]);
-    open -= (c->closed.opening[i] - c->closed.closing[i]) / TWO_PI;
+      c->info->slip_work +=
+          stored_energy(c, &s); /* its slip before the opening is too short to resolve */
+    mhb_note_transition(c, c->intervals.opening[i], MHB_SEPARATE);
+    mhb_dense_output_open(&c->dense_output, c->intervals.opening[i]);
+    open -= (c->intervals.opening[i] - c->intervals.closing[i]) / SHB_TWO_PI;
   }
   c->info->share[MHB_SEPARATE] = fmax(0, open);
   return ok;
 }
 
-/* ---- always closed and slipping: periodic slider ---- */
+/* ---- always closed and slipping: the periodic slider ---- */
 
 enum { MAX_LAPS = 100, MAX_RECORDS = 5 };
 
-/* One lap from slider z0; P(z0) and, in the columns, its derivative. 0: a panel was lost. */
+/* One lap from slider z0: P(z0) and, in the columns, its derivative. 0: a panel failed. */
 static int run_lap(mhb_contact_evaluator *c, const double z0[2], double P[2]) {
   slider s = {.state = MHB_STICK, .t = 0, .z = {z0[0], z0[1]}, .onset = -1};
   double y[3], dy[3];
   mhb_signals_at(&c->signals, 0, y, dy, NULL);
   double f[2] = {y[1] - z0[0], y[2] - z0[1]}, limit = c->slip.mu * y[0], size = hypot(f[0], f[1]);
   mhb_sensitivity_clear(c);
-  if (size >= limit * (1 - 1e-9)) { /* begins on the circle: project, slip if it pulls outwards */
+  if (size >= limit * (1 - 1e-9)) { /* begins on the friction circle: project, slip if gamma > 0 */
     double d[2], over[2] = {f[0] / limit, f[1] / limit};
     mhb_slip_return(c->K, 1, over, d);
     s.theta            = atan2(d[1], d[0]);
@@ -213,12 +211,12 @@ static int run_lap(mhb_contact_evaluator *c, const double z0[2], double P[2]) {
     if (pull || size > limit) mhb_sensitivity_stick_to_slip(c, 0, s.theta, y[0]);
     if (!pull && size > limit) mhb_sensitivity_slip_to_stick(c, 0, s.theta, y[0]);
     if (pull) s.state = MHB_SLIDE;
-    if (pull) c->slip.begins = mhb_slip_rate(&c->slip, s.theta, y, dy);
+    if (pull) c->slip.initial_rate = mhb_slip_rate(&c->slip, s.theta, y, dy);
     if (!pull && size > limit)
       for (int k = 0; k < 2; k++) s.z[k] = y[1 + k] - limit * d[k];
   }
   mhb_state began = s.state;
-  int       ok    = run_closed(c, &s, TWO_PI, 0);
+  int       ok    = run_closed(c, &s, SHB_TWO_PI, 0);
   if (s.state != began) mhb_note_transition(c, 0, began);
   if (s.state == MHB_SLIDE) {
     P[0] = y[1] - limit * cos(s.theta);
@@ -231,32 +229,35 @@ static int run_lap(mhb_contact_evaluator *c, const double z0[2], double P[2]) {
   return ok;
 }
 
-/* How Newton on the periodic slider fares; lengths in units of the friction. */
+/* Progress of Newton's method on the periodic slider; lengths in units of the friction. */
 typedef struct {
-  double enough; /* what a step may leave */
-  double last;   /* length of the last step; infinite before the first */
-  int    slow;   /* steps do not shrink quadratically: what is left is of their own size */
-} approach;
+  double tolerance; /* accepted error after a step */
+  double last_step; /* infinite before the first */
+  int    linear;    /* convergence is linear: the error is of the size of the step */
+} newton_progress;
 
-/* What a step leaves: its square, times the gain of the lap, for a lap that forgets its start bends little too, but not
- * less than the lap's own error; or, where steps shrink by a ratio, that part of it. */
-static double left_by(const mhb_contact_evaluator *c, approach *a, double length, double accuracy) {
-  double ratio = length / a->last;
-  a->slow      = ratio > .1 && a->last < 1;
-  a->last      = length;
-  if (a->slow) return length * fmin(1, ratio);
+/* Error after a step. Quadratic convergence: the step squared, times the contraction of the lap,
+ * and no less than 1e-4 of the lap's accuracy. Linear convergence: the step times the ratio of
+ * steps. */
+static double remaining_error(const mhb_contact_evaluator *c, newton_progress *a, double length,
+                              double accuracy) {
+  double ratio = length / a->last_step;
+  a->linear    = ratio > .1 && a->last_step < 1;
+  a->last_step = length;
+  if (a->linear) return length * fmin(1, ratio);
   return fmax(fmin(length * length, 4) * fmin(1, mhb_sensitivity_contraction(c)), 1e-4 * accuracy);
 }
 
-/* Newton on P(z) = z; a plain lap, which never expands, where Newton does not gain; a longer step at a double root, where
- * slip just begins. Each lap is as accurate as the step it is taken for deserves. 0: not reached. */
-static int close_slider(mhb_contact_evaluator *c, approach *a, double z[2]) {
-  double before = INFINITY, left = a->last < 1 ? a->last : .03, P[2], step[2];
+/* Newton's method on P(z) = z. 0: not reached. A plain iteration z <- P(z), which never expands,
+ * replaces it where it does not gain. At a double root, where slip just begins, the step is
+ * extrapolated. Each lap is as accurate as its step requires. */
+static int iterate_slider(mhb_contact_evaluator *c, newton_progress *a, double z[2]) {
+  double before = INFINITY, left = a->last_step < 1 ? a->last_step : .03, P[2], step[2];
   int    plain = 0, newton = 0;
-  c->record  = 0;
-  c->columns = MHB_SLIDER_COLUMN;
+  c->record = 0;
+  c->mode   = MHB_SLIDER_COLUMN;
   for (; c->info->laps < MAX_LAPS; c->info->laps++) {
-    double accuracy = fmax(a->enough, fmin(1e-2, .3 * left));
+    double accuracy = fmax(a->tolerance, fmin(1e-2, .3 * left));
     set_panels(c, accuracy);
     if (!run_lap(c, z, P)) return 0;
     double r[2] = {P[0] - z[0], P[1] - z[1]}, size = hypot(r[0], r[1]);
@@ -270,13 +271,13 @@ static int close_slider(mhb_contact_evaluator *c, approach *a, double z[2]) {
       continue;
     }
     mhb_sensitivity_close(c, r, step);
-    double length = hypot(step[0], step[1]) / c->friction, ratio = length / a->last;
+    double length = hypot(step[0], step[1]) / c->friction_level, ratio = length / a->last_step;
     double stretch = ratio > .3 && ratio < .7 ? 1 / (1 - ratio) : 1;
-    double beyond  = hypot(step[0] - r[0], step[1] - r[1]) / c->friction;
-    double cut     = beyond > 1 ? 1 / beyond : 1; /* of what goes beyond a plain lap */
+    double beyond  = hypot(step[0] - r[0], step[1] - r[1]) / c->friction_level;
+    double cut     = beyond > 1 ? 1 / beyond : 1; /* shortens the difference to a plain iteration */
     for (int k = 0; k < 2; k++) z[k] += stretch * (r[k] + cut * (step[k] - r[k]));
-    left = left_by(c, a, length, accuracy);
-    if (left < (a->slow ? .1 * c->tolerance : a->enough)) {
+    left = remaining_error(c, a, length, accuracy);
+    if (left < (a->linear ? .1 * c->tolerance : a->tolerance)) {
       c->info->laps++;
       return 1;
     }
@@ -284,58 +285,61 @@ static int close_slider(mhb_contact_evaluator *c, approach *a, double z[2]) {
   return 0;
 }
 
-/* The lap whose force is wanted, from z. The last Newton step is taken on the force, not by another lap:
- * f += (df/dz) dz, dz = (I - DP)^-1 (P(z) - z). Returns how much that changed the force, in units of the friction;
- * negative: the lap was lost. gap: between the lap's ends, |P(z) - z|, step: |dz|, in the same units. */
+/* The lap that records the force, from z. The last Newton step is applied to the force, not by
+ * another lap: f += (df/dz) dz, dz = (I - DP)^-1 (P(z) - z).
+ *
+ * Returns the change of the force by that step, in units of the friction; negative: a panel failed.
+ * gap: |P(z) - z|; step: |dz|, in the same units. */
 static double record_lap(mhb_contact_evaluator *c, mhb_sensitivity_mode columns, double z[2],
                          double *gap, double *step) {
   double P[2], dz[2], most = 0;
-  c->record  = 1;
-  c->columns = columns;
+  c->record = 1;
+  c->mode   = columns;
   mhb_force_integrals_clear(c);
   set_panels(c, c->tolerance);
   int ok = run_lap(c, z, P);
   mhb_sensitivity_close(c, (double[2]){P[0] - z[0], P[1] - z[1]}, dz);
   mhb_force_integrals_collect(c);
-  *gap         = hypot(P[0] - z[0], P[1] - z[1]) / c->friction;
-  *step        = hypot(dz[0], dz[1]) / c->friction;
-  double along = c->memory.v[0] * dz[0] + c->memory.v[1] * dz[1], work = c->memory.work * along;
+  *gap         = hypot(P[0] - z[0], P[1] - z[1]) / c->friction_level;
+  *step        = hypot(dz[0], dz[1]) / c->friction_level;
+  double along = c->lap.v[0] * dz[0] + c->lap.v[1] * dz[1], work = c->lap.work * along;
   for (int k = 0; k < 2; k++) {
     for (int i = 0; i < c->nf; i++) {
-      double change = c->f_slider[k * c->nf + i] * along - c->first[i] * dz[k];
+      double change = c->f_slider[k * c->nf + i] * along - c->first_stick[i] * dz[k];
       c->f[k * c->nf + i] += change;
       most = fmax(most, fabs(change));
     }
     z[k] += dz[k];
-    work += c->memory.onset[k] * dz[k];
+    work += c->lap.onset[k] * dz[k];
   }
-  if (fabs(work) <= c->info->slip_work) c->info->slip_work += work; /* else beyond first order */
-  return ok ? 2 / TWO_PI * most / c->friction : -1;
+  if (fabs(work) <= c->info->slip_work)
+    c->info->slip_work += work; /* else the first order does not hold */
+  return ok ? 2 / SHB_TWO_PI * most / c->friction_level : -1;
 }
 
 int mhb_slider_periodic(mhb_contact_evaluator *c, const double guess[2]) {
-  mhb_sensitivity_mode wanted = c->columns == MHB_ALL_COLUMNS ? MHB_ALL_COLUMNS : MHB_SLIDER_COLUMN;
-  double   z[2] = {guess[0], guess[1]}, left = 0, gap = 0, step = 0, sharp = .1 * c->tolerance;
-  approach a       = {.enough = wanted == MHB_ALL_COLUMNS ? sharp : .1 * sqrt(c->tolerance),
-                      .last   = INFINITY};
-  int      reached = 0, close = 0;
-  double   accept = wanted == MHB_ALL_COLUMNS ? 30 * sharp : 3 * a.enough;
+  mhb_sensitivity_mode wanted = c->mode == MHB_ALL_COLUMNS ? MHB_ALL_COLUMNS : MHB_SLIDER_COLUMN;
+  double z[2] = {guess[0], guess[1]}, left = 0, gap = 0, step = 0, sharp = .1 * c->tolerance;
+  newton_progress a = {.tolerance = wanted == MHB_ALL_COLUMNS ? sharp : .1 * sqrt(c->tolerance),
+                       .last_step = INFINITY};
+  int             reached = 0, close = 0;
+  double          accept = wanted == MHB_ALL_COLUMNS ? 30 * sharp : 3 * a.tolerance;
   for (int tries = 0; tries < MAX_RECORDS && !close && left >= 0; tries++) {
-    reached     = close_slider(c, &a, z);
-    double last = a.last;
+    reached     = iterate_slider(c, &a, z);
+    double last = a.last_step;
     left        = record_lap(c, wanted, z, &gap, &step);
-    a.last      = left;
-    a.slow      = left > .1 * last;
-    close       = left < (a.slow ? 10 * sharp : accept) && step * step < c->tolerance;
-    a.enough    = sharp;
+    a.last_step = left;
+    a.linear    = left > .1 * last;
+    close       = left < (a.linear ? 10 * sharp : accept) && step * step < c->tolerance;
+    a.tolerance = sharp;
   }
-  /* a trace shows the lap itself: repeat it until it needs no correction */
-  for (int tries = 0; c->pieces.on && gap > 1e-12 && tries < MAX_RECORDS; tries++)
+  /* a time history shows the lap itself: it is repeated until it closes */
+  for (int tries = 0; c->dense_output.enabled && gap > 1e-12 && tries < MAX_RECORDS; tries++)
     left = record_lap(c, wanted, z, &gap, &step);
-  double miss = left < 0             ? TWO_PI * c->force / c->friction
-                : reached && !a.slow ? fmax(left * left, step * step)
-                                     : left;
-  c->info->error += c->friction * (miss + mhb_sensitivity_roundoff(c));
+  double miss = left < 0               ? SHB_TWO_PI * c->force_level / c->friction_level
+                : reached && !a.linear ? fmax(left * left, step * step)
+                                       : left;
+  c->info->error += c->friction_level * (miss + mhb_sensitivity_roundoff(c));
   if (wanted == MHB_ALL_COLUMNS) mhb_sensitivity_eliminate_slider(c);
   return left >= 0 && left < sqrt(c->tolerance);
 }

@@ -1,14 +1,17 @@
 /* Slip, integrated panel by panel (eqs. 9, 10).
  *
- * On the friction circle f = mu n e, e = (cos th, sin th), q = (-sin th, cos th); with beta = qKe/eKe and
- * gamma = e.x' - mu n' (the slip rate is gamma/(mu n eKe), so slip ends at gamma = 0, eq. 10), eq. 9 becomes
+ * On the friction circle f = mu n e, e = (cos th, sin th), q = (-sin th, cos th). With beta =
+ * qKe/eKe and gamma = e.x' - mu n', eq. 9 becomes
  *   th' = F(t, th) = [q.x' - beta gamma]/(mu n),
  *   F_th = -[e.x' + beta q.x' + gamma beta']/(mu n),   beta' = (qKq - eKe)/eKe - 2 beta^2.
- * For Ku = k I, beta = 0. Eight-point Gauss collocation (order 16 at the panel's end, A-stable, never evaluated at n = 0),
- * solved by Newton; the same nodes serve as the quadrature of the force. Panels shrink geometrically towards an
- * opening, where th has a singular point.
+ * For Ku = k I, beta = 0. The slip rate is gamma/(mu n eKe): slip ends at gamma = 0 (eq. 10).
  *
- * Everything here is in units of one force scale; K enters by its shape alone. The eight nodes are the eight lanes. */
+ * A panel is a step of eight-point Gauss collocation, solved by Newton's method. It has order 16,
+ * is A-stable, and is never evaluated at n = 0. Its nodes serve as the quadrature of the force, and
+ * are the eight lanes of a vector. Panels shrink geometrically towards an opening, a singular point
+ * of th.
+ *
+ * Everything is in units of one force scale; K enters by its shape alone. */
 #ifndef MHB_CONTACT_SLIP_H
 #define MHB_CONTACT_SLIP_H
 
@@ -17,55 +20,64 @@
 
 enum { MHB_NODES = MHB_LANES };
 
-/* Gauss points on [0, 1] and what collocation needs of them. Tables that multiply values at the nodes are stored by
- * columns: sum_j table[j] * value[j]. */
+/* Gauss points on [0, 1] and the tables of collocation, stored by columns: sum_j table[j] *
+ * value[j], value at the nodes. */
 typedef struct {
   mhb_lanes node, weight;
-  mhb_lanes A[MHB_NODES];         /* A[j][i] = int_0^{c_i} l_j */
-  mhb_lanes monomial[MHB_NODES];  /* coefficients of 1, s, ... s^7 of the interpolant */
-  mhb_lanes ahead[MHB_NODES];     /* coefficients of (s - 1)^k of the fit of degree 5 */
-  mhb_lanes bernstein[MHB_NODES]; /* Bernstein coefficients of the interpolant, degree 7 */
-  mhb_lanes end;                  /* weights of the interpolant's value at s = 1 */
-  mhb_lanes legendre[MHB_NODES];  /* Legendre coefficients of the interpolant */
+  mhb_lanes A[MHB_NODES];             /* A[j][i] = int_0^{c_i} l_j */
+  mhb_lanes monomial[MHB_NODES];      /* coefficients of 1, s, ... s^7 of the interpolant */
+  mhb_lanes extrapolation[MHB_NODES]; /* coefficients of (s - 1)^k of the fit of degree 5 */
+  mhb_lanes bernstein[MHB_NODES];     /* Bernstein coefficients of the interpolant, degree 7 */
+  mhb_lanes end;                      /* weights of the interpolant's value at s = 1 */
+  mhb_lanes legendre[MHB_NODES];      /* Legendre coefficients of the interpolant */
 } mhb_collocation;
 
 void mhb_collocation_create(mhb_collocation *rule);
 
-/* What a slip run is about. */
+/* The slip problem of one lap. */
 typedef struct {
   const mhb_signals     *signals; /* (n, x_1, x_2) */
   const mhb_collocation *rule;
   double                 K[2][2];
   double                 mean, half, skew; /* K = mean I + [half skew; skew -half] */
   double                 mu;
-  double                 peak;      /* largest n of the period */
-  double                 harmonic;  /* highest one the panels' sums must resolve */
-  double                 longest;   /* panel, rad; at most 1.5 */
-  double                 tolerance; /* bound on a panel's error, force units */
-  double                 sliver;    /* rad before an opening over which the direction is held */
-  double                 begins; /* th' where slip begins: the prediction of a run's first panel */
-  int linearized;                /* F_theta and inverse are wanted at the solution, not near it */
+  double                 peak_load;     /* largest n of the period */
+  double                 top_harmonic;  /* the highest that the panels' sums resolve */
+  double                 longest_panel; /* rad; at most 1.5 */
+  double                 tolerance;     /* bound on a panel's error, force units */
+  double                 frozen_length; /* rad before an opening over which theta is held */
+  double                 initial_rate;  /* th' where slip begins: predicts the first panel */
+  int                    linearized;    /* F_theta and inverse are wanted at the solution itself */
 } mhb_slip;
 
 /* One panel of slip. */
 typedef struct {
   double    t0, h, theta0, theta1;
   int       stiff;        /* theta1 extrapolates the nodes: see collocate in slip.c */
-  int       frozen;       /* the last sliver before an opening: theta is held */
-  double    left;         /* of the interval in which the contact is closed, from t0 on */
+  int       frozen;       /* the last stretch before an opening: theta is held */
+  double    remaining;    /* length of the closed interval from t0 on, rad */
   double    error;        /* estimate for this panel, force units; see panel_error in slip.c */
   mhb_lanes cosine, sine; /* of the phase at the nodes */
   mhb_lanes theta, e[2];  /* direction of the friction */
   mhb_lanes F, F_theta, gamma, eKe, beta;
-  mhb_lanes y[3], dy[3];
+  mhb_lanes y[3], dy[3];        /* signals and their slopes */
   mhb_lanes inverse[MHB_NODES]; /* columns of (I - h A diag(F_theta))^-1 */
 } mhb_panel;
 
-typedef enum { MHB_SLIP_ON, MHB_SLIP_ENDS, MHB_SLIP_AT_LIMIT, MHB_SLIP_LOST } mhb_slip_outcome;
+/* Slip goes on; its rate is zero at the panel's end; the interval ends with the panel; Newton
+ * failed at the shortest panel. */
+typedef enum {
+  MHB_SLIP_CONTINUES,
+  MHB_SLIP_ENDS,
+  MHB_SLIP_INTERVAL_ENDS,
+  MHB_SLIP_FAILED
+} mhb_slip_outcome;
 
-/* Advance from (t, theta) by one panel, at most to limit. opening: n = 0 at limit. *suggested: panel length to try,
- * updated. The panel that is overwritten serves as the prediction if it ends at t. ENDS: the slip rate is zero at the
- * panel's end (panel->h may be 0: it ended at once). LOST: Newton failed at the shortest panel. */
+/* Advance from (t, theta) by one panel, at most to limit.
+ *   opening    in      n = 0 at limit
+ *   suggested  in out  panel length to try, rad
+ *   panel      in out  the one before: it predicts the new one if it ends at t
+ * At MHB_SLIP_ENDS panel->h may be 0: slip ended at once. */
 mhb_slip_outcome mhb_slip_panel(const mhb_slip *slip, double t, double theta, double limit,
                                 int opening, double *suggested, mhb_panel *panel);
 
@@ -82,13 +94,14 @@ double mhb_slip_gamma(const mhb_slip *slip, const mhb_direction *d, const double
 /* th' = F */
 double mhb_slip_rate(const mhb_slip *slip, double theta, const double y[3], const double dy[3]);
 
-/* The same at a closing, n = 0 < n', where slip begins in direction d: the regular solution
+/* The same at a closing, n = 0 < n', where slip begins in direction d. The regular solution is
  * th' = [q.x'' - beta (e.x'' - mu n'')]/(mu n' + D), D = e.x' + beta q.x' + gamma beta'. */
 double mhb_slip_closing_rate(const mhb_slip *slip, const mhb_direction *d, const double dy[3],
                              const double ddy[3], double *D);
 
-/* Unit vector d with (a I + lambda K) d = x for some lambda >= 0 (|x| >= |a|): the direction in which slip begins
- * when the contact closes (a = mu n', x = x'; eq. 15 for Ku = k I), or the return of x to the unit circle (a = 1). */
+/* Unit vector d with (a I + lambda K) d = x for some lambda >= 0, |x| >= |a|.
+ * With a = mu n', x = x': the direction in which slip begins when the contact closes (eq. 15 for
+ * Ku = k I). With a = 1: the return of x to the unit circle. */
 void mhb_slip_return(const double (*K)[2], double a, const double x[2], double d[2]);
 
 #endif

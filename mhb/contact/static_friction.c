@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-static const double TWO_PI = 6.283185307179586476925;
+#include "mesh/base/constants.h"
 
 /* |c + f| <= r at time t */
 typedef struct {
@@ -30,14 +30,14 @@ static disc disc_at(const discs *set, int i) {
   int n = set->signals->n_grid;
   if (i >= n) return set->extra[i - n];
   double *const *value = set->signals->value;
-  return disc_of(set, TWO_PI * i / n, (double[3]){value[0][i], value[1][i], value[2][i]});
+  return disc_of(set, SHB_TWO_PI * i / n, (double[3]){value[0][i], value[1][i], value[2][i]});
 }
 
 static double violation(const disc *d, const double c[2]) {
   return hypot(c[0] + d->f[0], c[1] + d->f[1]) - d->r;
 }
 
-/* Nearest point to the origin in one disc; in two discs: on both circles. 0 if the circles do not meet. */
+/* Nearest point to the origin in one disc. */
 static void nearest_in(const disc *d, double c[2]) {
   double size = hypot(d->f[0], d->f[1]);
   double move = size > d->r ? 1 - d->r / size : 0;
@@ -45,6 +45,7 @@ static void nearest_in(const disc *d, double c[2]) {
   c[1]        = -d->f[1] * move;
 }
 
+/* Nearest point to the origin on both circles. 0: the circles do not meet. */
 static int on_both(const disc *a, const disc *b, double c[2]) {
   double dx = a->f[0] - b->f[0], dy = a->f[1] - b->f[1], d = hypot(dx, dy);
   if (d == 0 || d > a->r + b->r) return 0;
@@ -58,7 +59,7 @@ static int on_both(const disc *a, const disc *b, double c[2]) {
   return 1;
 }
 
-/* Smallest c in the intersection of up to three discs; basis <- the active ones. 0: empty. */
+/* Smallest c in the intersection of up to three discs; basis <- the active ones. 0: it is empty. */
 static int smallest_in(const disc d[3], int n, double slack, double c[2], int basis[2], int *size) {
   for (int i = 0; i < n; i++) {
     nearest_in(&d[i], c);
@@ -88,8 +89,9 @@ static int smallest_in(const disc d[3], int n, double slack, double c[2], int ba
   return best < INFINITY;
 }
 
-/* The largest violation on the grid, to a factor of sqrt 2: |c + f| - r = (|c + f|^2 - r^2)/(|c + f| + r), with the
- * 1-norm in the denominator. *size: it, nearer to zero than the true one. */
+/* Grid point of the largest violation, to a factor of sqrt 2: |c + f| - r = (|c + f|^2 - r^2)/(|c +
+ * f| + r), with the 1-norm in the denominator. *size_of: that violation, nearer to zero than the
+ * true one. */
 MHB_HOT static int worst_on_grid(const discs *set, const double c[2], double *size_of) {
   const mhb_signals *s = set->signals;
   double a0 = c[0] - s->coefficient[1], b0 = c[1] - s->coefficient[2], mu2 = set->mu * set->mu;
@@ -110,15 +112,15 @@ MHB_HOT static int worst_on_grid(const discs *set, const double c[2], double *si
   return at;
 }
 
-/* How far |c + f| - mu n can rise above its values at both ends of a cell: |c + f| is convex along a line, and h^2/8 of the
- * second derivatives bounds how far f and n are off theirs. */
+/* How far |c + f| - mu n can rise above its values at both ends of a cell: |c + f| is convex along
+ * a line, and h^2/8 times the second derivatives bounds the distance of f and n from theirs. */
 static double rise_in_cell(const discs *set) {
   const mhb_signals *s = set->signals;
-  double             h = TWO_PI / s->n_grid;
+  double             h = SHB_TWO_PI / s->n_grid;
   return h * h / 8 * (hypot(s->bound[1][2], s->bound[2][2]) + set->mu * s->bound[0][2]);
 }
 
-/* Index of a disc that is violated, the worst one of the grid or of the refined times, and its violation. */
+/* Index and violation of the worst disc of the grid and of the refined times. */
 static int worst_disc(const discs *set, const double c[2], double *worst) {
   double about;
   int    n = set->signals->n_grid, at = worst_on_grid(set, c, &about);
@@ -133,7 +135,8 @@ static int worst_disc(const discs *set, const double c[2], double *worst) {
   return at;
 }
 
-/* The discs known so far: add the worst violated one until none is. |c| grows at every step. */
+/* Over the discs known so far: add the worst violated one until none is. |c| grows at every
+ * step. */
 static int solve_known(const discs *set, mhb_static_friction *stuck, disc active[3],
                        int *n_active) {
   double slack = 1e-13 * set->scale, worst;
@@ -170,8 +173,8 @@ static double refine(const discs *set, const double c[2], double t, double width
   return t;
 }
 
-/* The best of some points about a local maximum of the grid: where n nearly touches zero the summit is narrower than a
- * cell. */
+/* The best of some points about a local maximum of the grid. Where n nearly touches zero the
+ * maximum is narrower than a cell. */
 static double scan(const discs *set, const double c[2], double t, double width) {
   enum { POINTS = 3 };
   double best = -INFINITY, at = t;
@@ -187,10 +190,10 @@ static double scan(const discs *set, const double c[2], double t, double width) 
   return at;
 }
 
-/* Add refined times of local maxima that violate; the number added. */
+/* Adds refined times of local maxima that violate. Returns their number. */
 static int add_violated(discs *set, const double c[2]) {
   int    n = set->signals->n_grid, added = 0;
-  double width = TWO_PI / n, enough = -rise_in_cell(set), most;
+  double width = SHB_TWO_PI / n, enough = -rise_in_cell(set), most;
   worst_on_grid(set, c, &most);
   for (int i = 0; i < n && set->n_extra < EXTRA && most >= enough; i++) {
     disc   mid  = disc_at(set, i);
@@ -208,7 +211,7 @@ static int add_violated(discs *set, const double c[2]) {
   return added;
 }
 
-/* What the one-disc solution does with time: the slope g of |f| - r, its own slope, and q.f'. */
+/* The one-disc solution in time: the slope g of |f| - r, its own slope, and q.f'. */
 typedef struct {
   double e[2], size, r, slope, bending, across;
 } summit;
@@ -226,7 +229,7 @@ static summit summit_at(const discs *set, double t) {
   return s;
 }
 
-/* |c| is stationary in the time of one active disc, its direction is not: Newton on g. */
+/* |c| is stationary in the time of one active disc, its direction is not: Newton's method on g. */
 static void sharpen(const discs *set, mhb_static_friction *stuck) {
   summit s = summit_at(set, stuck->time[0]);
   for (int i = 0; i < 6 && s.bending < 0; i++) {
@@ -239,8 +242,9 @@ static void sharpen(const discs *set, mhb_static_friction *stuck) {
   for (int k = 0; k < 2; k++) stuck->c[k] = -s.e[k] * fmax(0, s.size - s.r);
 }
 
-/* The mean over time of |f + c| <= mu n, f of zero mean, is |c| <= mu mean n: where |f| > mu (n + mean n) no c will do. */
-MHB_HOT static int hopeless(const mhb_signals *s, double mu) {
+/* The mean over time of |f + c| <= mu n, f of zero mean, is |c| <= mu mean n. Where |f| > mu (n +
+ * mean n), no c is admissible. */
+MHB_HOT static int inadmissible(const mhb_signals *s, double mu) {
   const double *mean = s->coefficient;
   mhb_lanes     most = lanes_all(-INFINITY);
   for (int i = 0; i < s->n_grid; i += MHB_LANES) {
@@ -253,7 +257,7 @@ MHB_HOT static int hopeless(const mhb_signals *s, double mu) {
 
 void mhb_static_friction_solve(const mhb_signals *signals, double mu, mhb_static_friction *stuck) {
   *stuck = (mhb_static_friction){0};
-  if (hopeless(signals, mu)) return;
+  if (inadmissible(signals, mu)) return;
   discs set       = {.signals = signals, .mu = mu};
   set.scale       = signals->bound[1][0] + signals->bound[2][0] + DBL_MIN;
   disc active[3]  = {{{0}, 0, 0}};
@@ -265,13 +269,15 @@ void mhb_static_friction_solve(const mhb_signals *signals, double mu, mhb_static
   }
   stuck->n_active = n_active;
   for (int i = 0; i < n_active; i++) stuck->time[i] = active[i].t;
-  int merge = n_active == 2 && fabs(remainder(active[0].t - active[1].t, TWO_PI)) < 1e-4;
+  int merge = n_active == 2 && fabs(remainder(active[0].t - active[1].t, SHB_TWO_PI)) < 1e-4;
   if (merge) stuck->n_active = 1; /* two cuts at one summit */
   if (stuck->feasible && stuck->n_active == 1) sharpen(&set, stuck);
 }
 
-/* One active disc, c = -e (|f| - r) with e = f/|f| at the time of the largest |f| - r, which moves by dt:
- *   g = e.f' - mu n' = 0,   g' dt = -(e.df' - mu dn' + (q.df)(q.f')/|f|),   g' = e.f'' - mu n'' + (q.f')^2/|f| < 0,
+/* One active disc, c = -e (|f| - r) with e = f/|f| at the time of the largest |f| - r, which moves
+ * by dt:
+ *   g = e.f' - mu n' = 0,   g' dt = -(e.df' - mu dn' + (q.df)(q.f')/|f|),
+ *   g' = e.f'' - mu n'' + (q.f')^2/|f| < 0,
  *   dc = -e (e.df - mu dn) - q (1 - r/|f|) (q.df + q.f' dt). */
 static void one_disc(const discs *set, double t, double weight[2][2][6]) {
   summit s  = summit_at(set, t);
@@ -288,7 +294,8 @@ static void one_disc(const discs *set, double t, double weight[2][2][6]) {
   }
 }
 
-/* Two: (c + f_i).dc = r_i dr_i - (c + f_i).df_i; the times drop out, for each constraint is stationary at its own. */
+/* Two active discs: (c + f_i).dc = r_i dr_i - (c + f_i).df_i. The times have no influence, for each
+ * constraint is stationary at its own. */
 static void two_discs(const discs *set, const mhb_static_friction *stuck, double weight[2][2][6]) {
   double row[2][2], limit[2], v[3], dv[3];
   for (int i = 0; i < 2; i++) {

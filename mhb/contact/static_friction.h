@@ -1,11 +1,13 @@
-/* Static friction of a contact that never slips or opens.
+/* Mean static friction of a contact that never slips or opens.
  *
- * The physics leaves its mean undetermined (any c with |f_ac + c| <= mu n at all times persists). Convention, flagged
- * as such in the results: the smallest admissible mean,
+ * The physics leaves it undetermined: any c with |f_ac + c| <= mu n at all times persists.
+ * Convention, flagged as such in the results: the smallest admissible mean,
  *   c = argmin |c|  subject to  |f_ac(t) + c| <= mu n(t) for all t,   f_ac = Ku (s - mean s).
- * It is zero wherever zero is admissible, unique, and continuous where slip begins; that no c is admissible is the
- * exact test for slip. The origin is projected onto an intersection of discs: at most two are active; times between
- * grid points are added (cutting planes) until the worst violation is below rounding. */
+ * It is zero wherever zero is admissible, unique, and continuous where slip begins. No admissible c
+ * is the exact test for slip.
+ *
+ * The origin is projected onto an intersection of discs, of which at most two are active. Times
+ * between grid points are added (cutting planes) until the worst violation is below rounding. */
 #ifndef MHB_CONTACT_STATIC_FRICTION_H
 #define MHB_CONTACT_STATIC_FRICTION_H
 

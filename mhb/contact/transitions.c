@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const double TWO_PI = 6.283185307179586476925;
+#include "mesh/base/constants.h"
 
 /* A scalar function of the signals: n itself, or g = |x - z|^2 - mu^2 n^2. */
 typedef struct {
@@ -40,7 +40,7 @@ static sample sample_at(const event_function *f, double t) {
 /* Grid point i (any integer; the grid is periodic). */
 static sample sample_grid(const event_function *f, int i) {
   int    n  = f->signals->n_grid;
-  sample s  = {.t = TWO_PI * i / n};
+  sample s  = {.t = SHB_TWO_PI * i / n};
   int    at = ((i % n) + n) % n;
   double v[3], dv[3];
   for (int k = 0; k < 3; k++) {
@@ -71,7 +71,7 @@ static double cubic_root(const sample *lo, const sample *hi) {
 }
 
 /* Safeguarded Newton in a bracket with one sign change. */
-static double polish(const event_function *f, sample lo, sample hi) {
+static double refine_root(const event_function *f, sample lo, sample hi) {
   int    rising = hi.y > lo.y;
   double t      = cubic_root(&lo, &hi);
   for (int i = 0; i < 60; i++) {
@@ -85,12 +85,12 @@ static double polish(const event_function *f, sample lo, sample hi) {
     int    inside = next >= lo.t && next <= hi.t, close = fabs(next - t) < 1e-8;
     if (hi.t - lo.t < 1e-15) break;
     t = inside ? next : .5 * (lo.t + hi.t);
-    if (inside && close) break; /* what is left is of the square */
+    if (inside && close) break; /* the error is the square */
   }
   return t;
 }
 
-/* First root in (a, b] where y goes from sign to -sign (sign = -1: rising). Returns 1 and *root, or 0. */
+/* First root in (a, b] where y goes from sign to -sign (sign -1: rising). 1: *root is set. */
 static int first_crossing(const event_function *f, double sign, sample a, sample b, double *root) {
   double h = b.t - a.t, slack = h * h * h * h * f->bound4 / 384;
   double p = a.y + h * a.dy / 3, q = b.y - h * b.dy / 3;
@@ -101,7 +101,8 @@ static int first_crossing(const event_function *f, double sign, sample a, sample
     *root = b.t;
     return changes;
   }
-  /* the cubic's slope has Bezier points dy0, (q - p)*3/h, dy1; its error is below h^3 M4 sqrt(3)/216 */
+  /* the cubic's slope has Bezier points dy0, 3 (q - p)/h, dy1, and an error below h^3 M4
+   * sqrt(3)/216 */
   double steep  = h * h * h * f->bound4 * .0081;
   double middle = 3 * (q - p) / h;
   double top = fmax(fmax(a.dy, b.dy), middle), bottom = fmin(fmin(a.dy, b.dy), middle);
@@ -109,7 +110,7 @@ static int first_crossing(const event_function *f, double sign, sample a, sample
   if (away > steep && sign * a.y >= 0) return 0;
   if (least > steep) {
     if (!changes) return 0;
-    *root = polish(f, a, b);
+    *root = refine_root(f, a, b);
     return 1;
   }
   sample mid = sample_at(f, .5 * (a.t + b.t));
@@ -129,11 +130,11 @@ MHB_INLINE void grid_lanes(const event_function *f, int i, mhb_lanes *y, mhb_lan
   *dy = 2 * (a * lanes_load(s->slope[1] + i) + b * lanes_load(s->slope[2] + i) - mu2 * n * dn);
 }
 
-/* First of the cells [from, to) whose hull does not keep to the side of sign; to if all do. Cells are grid cells, any
- * integer; eight are looked at together. */
-MHB_HOT static int next_suspect(const event_function *f, double sign, int from, int to) {
+/* First of the cells [from, to) whose hull does not stay on the side of sign; to if all do. Cells
+ * are grid cells, any integer. Eight are tested together. */
+MHB_HOT static int next_candidate(const event_function *f, double sign, int from, int to) {
   int    n = f->signals->n_grid;
-  double h = TWO_PI / n, third = sign * h / 3, slack = h * h * h * h * f->bound4 / 384;
+  double h = SHB_TWO_PI / n, third = sign * h / 3, slack = h * h * h * h * f->bound4 / 384;
   for (int i = from; i < to;) {
     int       base = (i % n + n) % n / MHB_LANES * MHB_LANES, skip = (i % n + n) % n - base;
     mhb_lanes y, dy, y1, dy1;
@@ -177,7 +178,7 @@ void mhb_contact_intervals_find(const mhb_signals *signals, mhb_contact_interval
   }
   int    n = signals->n_grid, first = 0, crossings = 0;
   double negative = 0;
-  for (int i = 0; i < n; i++) { /* begin where the contact is open beyond doubt, if anywhere */
+  for (int i = 0; i < n; i++) { /* begin where n is least */
     if (signals->value[0][i] < negative) {
       negative = signals->value[0][i];
       first    = i;
@@ -187,7 +188,7 @@ void mhb_contact_intervals_find(const mhb_signals *signals, mhb_contact_interval
   double sign       = a.y < 0 ? -1 : 1; /* -1: look for a closing */
   int    began_open = a.y < 0;
   for (int i = first; i < first + n; i++) {
-    int clear = next_suspect(&f, sign, i, first + n);
+    int clear = next_candidate(&f, sign, i, first + n);
     if (clear == first + n) break;
     if (clear > i) a = sample_grid(&f, i = clear);
     sample b = sample_grid(&f, i + 1), from = a;
@@ -209,8 +210,8 @@ void mhb_contact_intervals_find(const mhb_signals *signals, mhb_contact_interval
     return;
   }
   if (!began_open) {
-    /* openings and closings alternate o_0 c_1 o_1 ... c_n: pair each closing with the next opening */
-    double last = closed->opening[0] + TWO_PI;
+    /* o_0 c_1 o_1 ... c_n alternate: pair each closing with the next opening */
+    double last = closed->opening[0] + SHB_TWO_PI;
     for (int i = 0; i < closed->n; i++) {
       closed->closing[i] = closed->closing[i + 1];
       closed->opening[i] = i + 1 < closed->n ? closed->opening[i + 1] : last;
@@ -239,8 +240,8 @@ static double curvature(const event_function *f, double t) {
               mu2 * (dv[0] * dv[0] + v[0] * ddv[0]));
 }
 
-/* A start strictly inside the stick region: where g is a double zero at from, g <= t^2/2 (g'' + t M3/3) < 0
- * for t < -3 g''/M3. */
+/* A start strictly inside the stick region. Where g is a double zero at from,
+ *   g <= t^2/2 (g'' + t M3/3) < 0  for t < -3 g''/M3. */
 static sample stick_start(const event_function *f, double from, double to) {
   sample s     = sample_at(f, from);
   double scale = f->z[0] * f->z[0] + f->z[1] * f->z[1] +
@@ -262,15 +263,15 @@ double mhb_slip_onset(const mhb_signals *signals, double mu, const double z[2], 
   sample a = stick_start(&f, from, to);
   if (a.t >= to) return to + 1;
   if (a.y > 0 && a.dy > 0) return a.t;
-  a.y         = fmin(a.y, 0); /* coming back from beyond: rounding */
-  double cell = TWO_PI / signals->n_grid;
+  a.y         = fmin(a.y, 0); /* rounding */
+  double cell = SHB_TWO_PI / signals->n_grid;
   int    i = (int)floor(a.t / cell) + 1, last = (int)floor(to / cell);
   for (double root; a.t < to; i++) {
     sample b = cell * i < to ? sample_grid(&f, i) : sample_at(&f, to);
     if (b.t <= a.t) continue;
     if (first_crossing(&f, -1, a, b, &root)) return root;
     a         = b;
-    int clear = i < last ? next_suspect(&f, -1, i, last) : i;
+    int clear = i < last ? next_candidate(&f, -1, i, last) : i;
     if (clear > i) a = sample_grid(&f, i = clear);
   }
   return to + 1;

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double TWO_PI = 6.283185307179586476925;
+#include "mesh/base/constants.h"
 
 /* An imaginary part this small beside the modulus is the rounding of a power. */
 static const double REAL = 1e-11;
@@ -72,7 +72,7 @@ int mhb_bloch_multipliers(mhb_bloch *b, int n, const double *S, int chunks, int 
   int g = b->cells, done = 0;
   if (n == 0) return 1;
   for (int l = 0; 2 * l <= g; l++) {
-    double kappa = TWO_PI * l / g;
+    double kappa = SHB_TWO_PI * l / g;
     int    own   = l == 0 || 2 * l == g; /* its own conjugate */
     if (!(own ? in_phase(b, n, S, l > 0, multiplier + done) : travelling(b, n, S, kappa))) return 0;
     double complex turn = own ? (l > 0 && names % 2 ? -1 : 1) : cexp(-I * kappa * names);

@@ -4,10 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/floquet/bloch.h"
 #include "mhb/floquet/linear_exponents.h"
 
-static const double TWO_PI = 6.283185307179586476925;
 static const double MARGIN = 1e-3;
 
 /* Sub-steps are halved until they change the largest multiplier by less than half its distance from 1, and by less than ROUGH the
@@ -273,7 +273,7 @@ void mhb_floquet_evaluate(mhb_floquet *s, const mhb_solution *solution, mhb_mult
   if (!mhb_transition_schedule_set(&s->timetable, solution->info)) {
     out->reason = "the contact law lost its way, or has too many transitions";
   } else if (is_linear(s, solution)) {
-    out->reason = linear(s, solution, TWO_PI / omega, out);
+    out->reason = linear(s, solution, SHB_TWO_PI / omega, out);
   } else {
     out->reason = nonlinear(s, solution, omega, out);
   }

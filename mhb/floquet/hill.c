@@ -5,9 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/numerics/fourier.h"
-
-static const double TWO_PI = 6.283185307179586476925;
 
 /* Index of (harmonic k, row or mode i of n): (k + m) n + i. */
 typedef struct {
@@ -25,7 +24,7 @@ typedef struct {
 static double complex neighbour_phase(const hill *h, int d, int k, int blades_on) {
   const mhb_modal_structure *s     = h->s;
   long                       turns = (d + (long)k * s->wave) % s->blades * blades_on;
-  return cexp(-I * TWO_PI * (double)turns / s->blades);
+  return cexp(-I * SHB_TWO_PI * (double)turns / s->blades);
 }
 
 static void set_shapes(hill *h, int d) {
@@ -160,7 +159,8 @@ static int solve(hill *h, double complex *multiplier) {
   for (int i = 0; i < n; i++) h->exponent[i] -= lean;
   qsort(h->exponent, (size_t)n, sizeof *h->exponent, by_turn);
   qsort(h->exponent, (size_t)kept, sizeof *h->exponent, by_growth);
-  for (int i = 0; i < kept; i++) multiplier[i] = cexp((h->exponent[i] + lean) * TWO_PI / h->omega);
+  for (int i = 0; i < kept; i++)
+    multiplier[i] = cexp((h->exponent[i] + lean) * SHB_TWO_PI / h->omega);
   return 1;
 }
 

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double TWO_PI = 6.283185307179586476925;
+#include "mesh/base/constants.h"
 
 shb_status mhb_linear_exponents_create(const mhb_modal_structure *s, mhb_linear_exponents *x) {
   size_t m = (size_t)s->modes, pairs = (size_t)s->pairs, n3 = 3 * pairs;
@@ -106,7 +106,7 @@ static int contact_stiffness(mhb_linear_exponents *x) {
 static int nodal_diameter(mhb_linear_exponents *x, int d) {
   const mhb_modal_structure *s  = x->structure;
   int                        n3 = 3 * s->pairs, m = s->modes, n = 2 * m;
-  double complex             step = cexp(-I * TWO_PI * d / s->blades);
+  double complex             step = cexp(-I * SHB_TWO_PI * d / s->blades);
   relative_shapes(x, step);
   relative_flexibility(x, step);
   if (!contact_stiffness(x)) return 0;

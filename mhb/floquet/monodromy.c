@@ -1,11 +1,10 @@
 #include "mhb/floquet/monodromy.h"
+#include "mesh/base/constants.h"
 #include "mhb/numerics/lu.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-static const double TWO_PI = 6.283185307179586476925;
 
 /* Pieces shorter than this, in periods, are passed over. */
 static const double SHORT = 1e-13;
@@ -203,7 +202,7 @@ static void take_matrix(mhb_monodromy *d) {
 /* ---- the stretch ---- */
 
 static int run_piece(mhb_monodromy *d, double from, double to, int refinement) {
-  double length = to - from, period = TWO_PI / d->passage->omega;
+  double length = to - from, period = SHB_TWO_PI / d->passage->omega;
   if (length < SHORT) return 1;
   int    noting = d->passage->collecting, slip = mhb_orbit_contacts_slips(d->passage);
   int    steps = refinement * (int)ceil(d->substeps * length - 1e-9);

@@ -5,11 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/contact/slip.h"
 #include "mhb/numerics/fourier.h"
 #include "mhb/numerics/lu.h"
-
-static const double TWO_PI = 6.283185307179586476925;
 
 /* How far from an opening or closing the direction of the friction is taken, in periods. */
 static const double NEAR = 1e-8;
@@ -73,7 +72,7 @@ static double complex flexed(const mhb_orbit_contacts *d, int k, int r) {
   for (size_t c = 0; c < n; c++) {
     const double  *a  = d->solution->p + c % n3 * nb;
     double complex pk = k ? CMPLX(a[2 * k - 1], a[2 * k]) : a[0];
-    double lag = TWO_PI * (double)((long)k * (long)(c / n3) * s->wave % s->blades) / s->blades;
+    double lag = SHB_TWO_PI * (double)((long)k * (long)(c / n3) * s->wave % s->blades) / s->blades;
     sum += s->flexibility[(size_t)r * n + c] * pk * cexp(-I * lag);
   }
   return sum;
@@ -98,7 +97,8 @@ static void free_of_flexibility(mhb_orbit_contacts *d) {
 static void motion_rate(mhb_orbit_contacts *d, const double *x, int contact, double at,
                         double rate[3]) {
   double *basis = d->basis, *slope = basis + d->nb;
-  mhb_basis(d->m, TWO_PI * mhb_transition_schedule_phase(d->timetable, contact, at), basis, slope);
+  mhb_basis(d->m, SHB_TWO_PI * mhb_transition_schedule_phase(d->timetable, contact, at), basis,
+            slope);
   const double *of = x + (size_t)(3 * pair_of(d, contact)) * (size_t)d->nb;
   for (int i = 0; i < 3; i++) {
     double sum = 0;

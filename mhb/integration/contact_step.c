@@ -3,12 +3,11 @@
 #include <math.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/floquet/variational.h"
 #include "mhb/numerics/lu.h"
 
 enum { S = MHB_STAGES, F = MHB_STAGE_FORCES, SAMPLES = 8, ITERATIONS = 20 };
-
-static const double PI = 3.14159265358979323846;
 
 mhb_law mhb_contact_step_law(const mhb_law *law) {
   mhb_law out = *law;
@@ -55,7 +54,7 @@ static void solve_stick(const mhb_law *law, const mhb_contact_point *rub, const 
     const double *at = y + 3 * i;
     double        x[2];
     spring(law, at + 1, x);
-    step->p[3 * i]     = law->kv * at[0] + law->n0 - law->balance;
+    step->p[3 * i]     = law->kv * at[0] + law->n0 - law->mean_offset;
     step->p[3 * i + 1] = x[0] - rub->zeta[0];
     step->p[3 * i + 2] = x[1] - rub->zeta[1];
   }
@@ -76,7 +75,7 @@ static void set_forces(const mhb_law *law, mhb_contact_step *step, heading *d) {
     d->e[i][1] = s;
     spring(law, d->e[i], d->Ke[i]);
     spring(law, q, d->Kq[i]);
-    step->p[3 * i]     = step->n[i] - law->balance;
+    step->p[3 * i]     = step->n[i] - law->mean_offset;
     step->p[3 * i + 1] = law->mu * step->n[i] * c;
     step->p[3 * i + 2] = law->mu * step->n[i] * s;
   }
@@ -197,7 +196,7 @@ void mhb_contact_step_guess(const mhb_law *law, const mhb_contact_point *rub, do
   for (int i = 0; i < S; i++) {
     memcpy(step->p + 3 * i, rub->p, sizeof rub->p);
     memcpy(step->u + 3 * i, rub->u, sizeof rub->u);
-    step->n[i]     = rub->p[0] + law->balance;
+    step->n[i]     = rub->p[0] + law->mean_offset;
     step->theta[i] = rub->theta;
     step->kappa[i] = rub->lambda * h;
   }
@@ -214,7 +213,7 @@ int mhb_contact_step_solve(const mhb_radau *rule, const mhb_law *law, const mhb_
       return solve_slip(rule, law, rub, S_, y, scale, step);
     default:
       memset(step->p, 0, sizeof step->p);
-      for (int i = 0; i < S; i++) step->p[3 * i] = -law->balance;
+      for (int i = 0; i < S; i++) step->p[3 * i] = -law->mean_offset;
       answer(S_, y, step);
       return 1;
   }
@@ -316,7 +315,7 @@ void mhb_contact_step_advance(const mhb_law *law, const mhb_contact_step *step, 
   double x[2];
   spring(law, rub->u + 1, x);
   for (int c = 0; c < 2; c++) rub->zeta[c] = x[c] - rub->p[1 + c];
-  rub->theta  = remainder(step->theta[S - 1], 2 * PI);
+  rub->theta  = remainder(step->theta[S - 1], SHB_TWO_PI);
   rub->lambda = step->kappa[S - 1] / h;
 }
 
@@ -325,7 +324,7 @@ void mhb_contact_step_change(const mhb_law *law, mhb_state state, double directi
   double x[2];
   spring(law, rub->u + 1, x);
   if (state == MHB_SEPARATE || rub->state == MHB_SEPARATE) {
-    rub->p[0] = -law->balance;
+    rub->p[0] = -law->mean_offset;
     rub->p[1] = rub->p[2] = 0;
   }
   for (int c = 0; c < 2; c++) rub->zeta[c] = x[c] - rub->p[1 + c];

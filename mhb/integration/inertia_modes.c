@@ -5,9 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
 #include "modal/model/residual_series.h"
-
-static const double PI = 3.14159265358979323846;
 
 /* Of the largest: flexibilities below carry no inertia. Inertia whose mode is so many times above the last one is none. */
 static const double SOFT_ENOUGH = 1e-8, FAR_ABOVE = 1e4;
@@ -40,7 +39,7 @@ static void reduce(const search *s, const double *R2, int p) {
 
 static shb_status find(const modal_model *model, search *s) {
   int    n = s->n, p = 0;
-  double last  = 2 * PI * model->frequency[model->n_modes - 1];
+  double last  = SHB_TWO_PI * model->frequency[model->n_modes - 1];
   bool   three = modal_series_has_fourth(model);
   s->power     = three ? 2 : 1;
   memcpy(s->vector, three ? model->residual_inertia : model->residual_flexibility,
@@ -108,7 +107,7 @@ static void add_modes(const search *s, int m, modal_model *out) {
   int n = s->n, n3 = 3 * out->n_pairs;
   for (int k = 0; k < s->kept; k++) {
     const double *psi         = s->psi + (size_t)k * (size_t)n;
-    out->frequency[m + k]     = s->nu[k] / (2 * PI);
+    out->frequency[m + k]     = s->nu[k] / SHB_TWO_PI;
     out->damping_ratio[m + k] = out->damping_ratio[m - 1];
     for (int i = 0; i < n; i++)
       (i < n3 ? out->right : out->left)[(size_t)(i % n3) * (size_t)out->n_modes + (size_t)(m + k)] =

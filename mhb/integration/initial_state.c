@@ -2,10 +2,9 @@
 #include <math.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/integration/integrator.h"
 #include "mhb/problem/interfaces.h"
-
-static const double PI = 3.14159265358979323846;
 
 /* q_free and its rate at phase 0, times sign, to z. */
 static void add_free_modes(mhb_integrator *g, double sign) {
@@ -13,7 +12,7 @@ static void add_free_modes(mhb_integrator *g, double sign) {
   for (int k = 0; k <= g->n_load; k += r->nu)
     for (int b = 0; b < g->blades; b++) {
       double complex turn = cexp(-I * k * mhb_integrator_lag(g, b)),
-                     rate = I * (k * 2 * PI / g->period);
+                     rate = I * (k * SHB_TWO_PI / g->period);
       for (int i = 0; i < g->modes; i++) {
         double complex a = r->lambda[k * g->modes + i] * r->F[k * g->modes + i] * turn;
         g->z[b * g->modes + i] += sign * creal(a);
@@ -48,9 +47,9 @@ static void settle(mhb_integrator *g) {
       double own  = R ? R[3 * j * n + 3 * j] : 0;
       double free = rub->u[0] + own * rub->p[0]; /* without its own normal force */
       double load =
-          fmax(0, (law->n0 + law->kv * (free + own * law->balance)) / (1 + law->kv * own));
+          fmax(0, (law->n0 + law->kv * (free + own * law->mean_offset)) / (1 + law->kv * own));
       double limit = law->mu * load, friction = hypot(rub->p[1], rub->p[2]);
-      rub->p[0] = load - law->balance;
+      rub->p[0] = load - law->mean_offset;
       rub->u[0] = free - own * rub->p[0];
       for (int c = 1; c < 3 && friction > limit; c++) rub->p[c] *= limit / friction;
     }
@@ -58,7 +57,8 @@ static void settle(mhb_integrator *g) {
     const mhb_law     *law = &g->law[j % g->pairs];
     mhb_contact_point *rub = &g->rub[j];
     rub->state             = MHB_STICK;
-    mhb_contact_step_change(law, rub->p[0] + law->balance > 0 ? MHB_STICK : MHB_SEPARATE, 0, rub);
+    mhb_contact_step_change(law, rub->p[0] + law->mean_offset > 0 ? MHB_STICK : MHB_SEPARATE, 0,
+                            rub);
     for (int c = 0; c < 3; c++) g->scale = fmax(g->scale, fabs(rub->p[c]));
     g->idle[j] = g->hush[j] = 0;
   }
@@ -81,7 +81,7 @@ void mhb_integrator_set(mhb_integrator *g, double omega, double n0, int steps) {
   int known = g->period > 0;
   if (known) add_free_modes(g, 1);
   g->omega  = omega;
-  g->period = 2 * PI * g->settings.subharmonics / omega;
+  g->period = SHB_TWO_PI * g->settings.subharmonics / omega;
   g->steps  = steps;
   g->t      = 0;
   set_laws(g, n0);
@@ -110,7 +110,7 @@ void mhb_integrator_balance(mhb_integrator *g, int n_harmonics, const double com
     const double complex *p = force + (size_t)(k * r->n);
     for (int b = 0; b < g->blades; b++) {
       double complex turn = cexp(-I * k * mhb_integrator_lag(g, b)),
-                     rate = I * (k * 2 * PI / g->period);
+                     rate = I * (k * SHB_TWO_PI / g->period);
       for (int i = 0; i < g->modes; i++) {
         double complex a = 0;
         for (int row = 0; row < r->n; row++)

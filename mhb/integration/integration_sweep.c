@@ -5,13 +5,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/integration/spectrum.h"
 #include "mhb/integration/steady_state.h"
 #include "mhb/problem/interfaces.h"
 #include "mhb/problem/parameter.h"
 #include "mhb/response/describe.h"
 
-static const double PI = 3.14159265358979323846, PUBLISH_EVERY = 10; /* s */
+static const double PUBLISH_EVERY = 10; /* s */
 
 enum { MOST_STEPS = 8192, SPECTRUM_PERIODS = 64 };
 
@@ -230,7 +231,7 @@ static shb_status run_cell(const witness *w, mhb_integrator *g, mhb_steady_state
   const mhb_integration_settings *a        = w->asked;
   mhb_steady_state_settings       settings = {.1 * a->tolerance, a->max_periods};
   double                          began    = shb_seconds();
-  mhb_integrator_set(g, 2 * PI * c->hz, c->n0, a->steps);
+  mhb_integrator_set(g, SHB_TWO_PI * c->hz, c->n0, a->steps);
   if (c->start) {
     mhb_integrator_balance(g, c->m, c->start);
   } else if (a->start == MHB_START_FROM_REST || first) {
@@ -385,7 +386,7 @@ static shb_status worker_create(const witness *w, int harmonics, worker *k) {
 static shb_status worker_go(worker *k, double hz) {
   if (!k->at) return SHB_OK;
   worker_drop(k);
-  mhb_speed_model_set(k->at, 2 * PI * hz);
+  mhb_speed_model_set(k->at, SHB_TWO_PI * hz);
   return worker_take(k, &k->at->model);
 }
 

@@ -4,11 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/numerics/simd.h"
 
 enum { S = MHB_STAGES, F = MHB_STAGE_FORCES, SWEEPS = 400, CUTS = 8, IDLE = 4 };
-
-static const double PI = 3.14159265358979323846;
 
 /* Of the force scale: what contacts are solved to, and what a state may be overstepped by. Of a nominal step: how exactly
  * events are met, and what counts as no progress. */
@@ -17,12 +16,12 @@ static const double SOLVED = 1e-12, OVERSTEP = 1e-10, ON_EVENT = 1e-11, NO_PROGR
 /* ---- the motion without contact forces ---- */
 
 double mhb_integrator_lag(const mhb_integrator *g, int blade) {
-  return 2 * PI * g->chain.s.wave * blade / g->blades;
+  return SHB_TWO_PI * g->chain.s.wave * blade / g->blades;
 }
 
 void mhb_integrator_free(const mhb_integrator *g, int group, double t, double *u) {
   const mhb_receptance *r     = g->receptance;
-  double                angle = 2 * PI * t / g->period - mhb_integrator_lag(g, group);
+  double                angle = SHB_TWO_PI * t / g->period - mhb_integrator_lag(g, group);
   for (int k = 0; k <= g->n_load; k += r->nu) {
     double c = cos(k * angle), s = sin(k * angle);
     for (int row = 0; row < r->n; row++) {
@@ -240,7 +239,7 @@ static int turns(const mhb_integrator *g, const occasion *o) {
   const mhb_contact_point *rub  = &g->rub[o->contact];
   const mhb_contact_step  *step = &g->step[o->contact];
   return o->kind == MHB_CONTACT_OPENS && rub->state == MHB_SLIDE &&
-         fabs(remainder(step->theta[S - 1] - rub->theta, PI)) > 1e-9;
+         fabs(remainder(step->theta[S - 1] - rub->theta, SHB_PI)) > 1e-9;
 }
 
 /* A step that ends at the occasion, or before it. want: longest. 0: failed. */

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double PI = 3.14159265358979323846;
+#include "mesh/base/constants.h"
 
 /* Motion of the first contact at the ends of nominal steps. */
 typedef struct {
@@ -25,14 +25,14 @@ static double prepare(int n, double *x) {
   double mean = 0, size = 0;
   for (int i = 0; i < n; i++) mean += x[i] / n;
   for (int i = 0; i < n; i++) {
-    x[i] = (x[i] - mean) * (1 - cos(2 * PI * (i + .5) / n));
+    x[i] = (x[i] - mean) * (1 - cos(SHB_TWO_PI * (i + .5) / n));
     size += x[i] * x[i] / n;
   }
   return size;
 }
 
 static double amplitude_at(int n, const double *x, int bin) {
-  double complex sum = 0, turn = cexp(-2 * PI * I * bin / n), phase = 1;
+  double complex sum = 0, turn = cexp(-SHB_TWO_PI * I * bin / n), phase = 1;
   for (int i = 0; i < n; i++) {
     sum += x[i] * phase;
     phase *= turn;

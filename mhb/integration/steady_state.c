@@ -4,9 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { S = MHB_STAGES, HISTORY = 2 * MHB_STEADY_STATE_MULTIPLE + 1, TREND = 8 };
+#include "mesh/base/constants.h"
 
-static const double PI = 3.14159265358979323846;
+enum { S = MHB_STAGES, HISTORY = 2 * MHB_STEADY_STATE_MULTIPLE + 1, TREND = 8 };
 
 /* How far apart, in tolerances, the periods of a motion of higher order are at least. */
 static const double APART = 1e3;
@@ -75,7 +75,7 @@ static void record(void *context, const mhb_integrator *g, double t0, double h) 
   const mhb_radau  *r = &g->chain.rule;
   int               n = 3 * g->contacts;
   for (int k = 0; k <= o->result.n_harmonics; k++) {
-    double         w = 2 * PI * k / g->period;
+    double         w = SHB_TWO_PI * k / g->period;
     double complex J[S], weight[S] = {0}, turn = cexp(-I * w * t0) * h * (k ? 2 : 1) / g->period;
     fourier_moments(w * h, J);
     for (int j = 0; j < S; j++)
@@ -99,7 +99,7 @@ static double complex mode_harmonic(const mhb_steady_state *o, int k, int blade,
   const mhb_integrator      *g = o->g;
   const mhb_modal_structure *s = &g->chain.s;
   int            m = g->modes, n3 = 3 * g->pairs, at = blade * m + i, modal = g->blades * m;
-  double         w    = 2 * PI * k / g->period;
+  double         w    = SHB_TWO_PI * k / g->period;
   double complex rise = (g->z[modal + at] - z0[modal + at]) +
                         CMPLX(2 * s->zeta[i] * s->omega[i], w) * (g->z[at] - z0[at]);
   double complex force = -(k ? 2 : 1) / g->period * rise;

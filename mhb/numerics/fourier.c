@@ -12,11 +12,6 @@ void mhb_to_real(int m, const double complex *A, double *a) {
   }
 }
 
-void mhb_to_complex(int m, const double *a, double complex *A) {
-  A[0] = a[0];
-  for (int k = 1; k <= m; k++) A[k] = CMPLX(a[2 * k - 1], a[2 * k]);
-}
-
 void mhb_basis(int m, double t, double *basis, double *slope) {
   double c1 = cos(t), s1 = sin(t), c = 1, s = 0;
   basis[0] = 1;
@@ -35,7 +30,7 @@ void mhb_basis(int m, double t, double *basis, double *slope) {
 }
 
 void mhb_basis_integral(int n, double t0, double t1, double *integral) {
-  /* int cos kt = (2/k) cos(k mid) sin(k half): no cancellation on short intervals */
+  /* integral of cos kt = (2/k) cos(k mid) sin(k half): no cancellation on short intervals */
   double mid = .5 * (t0 + t1), half = .5 * (t1 - t0);
   double c1 = cos(mid), s1 = sin(mid), c = 1, s = 0;
   double p1 = cos(half), q1 = sin(half), p = 1, q = 0;
@@ -52,7 +47,7 @@ void mhb_basis_integral(int n, double t0, double t1, double *integral) {
   }
 }
 
-/* integral of cos kt and sin kt for any sign of k, out of the integrals of the basis */
+/* Integrals of cos kt and sin kt for any sign of k, from the integrals of the basis. */
 static inline double cos_integral(const double *integral, int k) {
   return k == 0 ? integral[0] : integral[2 * abs(k) - 1];
 }
@@ -78,7 +73,7 @@ void mhb_basis_product(int p, int q, const double *integral, double *product, in
   }
 }
 
-/* Which grid m harmonics need: 8 (m + 1) points. */
+/* Index of the grid for m harmonics: at least 8 (m + 1) points. */
 static int grid_of(int m) {
   int grid = 0;
   while (MHB_LEAST_GRID << grid < 8 * (m + 1)) grid++;
@@ -90,15 +85,16 @@ shb_status mhb_signals_create(int m, mhb_signals *signals) {
   int grid = grid_of(m), most = MHB_LEAST_GRID << grid, half = most / 2 + 1,
       room = most + MHB_LANES;
   SHB_CHECK(grid < MHB_GRIDS, SHB_ERR_IO, "out of memory for %d harmonics", m);
-  size_t size          = 3 * (size_t)mhb_real_size(m);
-  signals->m           = m;
-  signals->n_grid      = most;
-  signals->most        = most;
-  signals->coefficient = calloc(size, sizeof(double));
-  signals->rate        = calloc(size, sizeof(double));
-  signals->spectrum    = fftw_alloc_complex(6 * (size_t)half);
-  signals->samples     = fftw_alloc_real(6 * (size_t)room);
-  int ok = signals->coefficient && signals->rate && signals->spectrum && signals->samples;
+  size_t     size       = 3 * (size_t)mhb_real_size(m);
+  shb_arena *arena      = &signals->arena;
+  signals->m            = m;
+  signals->n_grid       = most;
+  signals->largest_grid = most;
+  signals->coefficient  = shb_arena_take(arena, size, sizeof(double));
+  signals->derivative   = shb_arena_take(arena, size, sizeof(double));
+  signals->spectrum     = shb_arena_take(arena, 6 * (size_t)half, sizeof(fftw_complex));
+  signals->samples      = shb_arena_take(arena, 6 * (size_t)room, sizeof(double));
+  bool ok               = !arena->failed;
   for (int i = 0; i <= grid && ok; i++) {
     int n = MHB_LEAST_GRID << i;
 #pragma omp critical(fftw_planner) /* FFTW's planner is not thread safe */
@@ -121,10 +117,7 @@ void mhb_signals_destroy(mhb_signals *signals) {
 #pragma omp critical(fftw_planner)
   for (int i = 0; i < MHB_GRIDS; i++)
     if (signals->plan[i]) fftw_destroy_plan(signals->plan[i]);
-  fftw_free(signals->spectrum);
-  fftw_free(signals->samples);
-  free(signals->coefficient);
-  free(signals->rate);
+  shb_arena_free(&signals->arena);
   memset(signals, 0, sizeof *signals);
 }
 
@@ -132,7 +125,7 @@ static void set_bounds(mhb_signals *signals, int i, const double *a) {
   double *bound = signals->bound[i];
   bound[0]      = fabs(a[0]);
   for (int j = 1; j < 5; j++) bound[j] = 0;
-  for (int k = 1; k <= signals->used; k++) {
+  for (int k = 1; k <= signals->top; k++) {
     double size = sqrt(a[2 * k - 1] * a[2 * k - 1] + a[2 * k] * a[2 * k]);
     for (int j = 0; j < 5; j++, size *= k) bound[j] += size;
   }
@@ -146,19 +139,19 @@ static int highest_harmonic(int m, const double *const a[3]) {
 }
 
 void mhb_signals_set(mhb_signals *signals, const double *const a[3]) {
-  int used = highest_harmonic(signals->m, a), grid = grid_of(used), n = MHB_LEAST_GRID << grid,
-      half        = signals->most / 2 + 1;
-  signals->used   = used;
+  int top = highest_harmonic(signals->m, a), grid = grid_of(top), n = MHB_LEAST_GRID << grid,
+      half        = signals->largest_grid / 2 + 1;
+  signals->top    = top;
   signals->n_grid = n;
   for (int i = 0; i < 6; i++)
     memset(signals->spectrum + (size_t)i * (size_t)half, 0,
            sizeof(fftw_complex) * (size_t)(n / 2 + 1));
   for (int i = 0; i < 3; i++) {
     fftw_complex *X = signals->spectrum + (size_t)i * (size_t)half, *dX = X + 3 * (size_t)half;
-    double       *coefficient = signals->coefficient + i, *rate = signals->rate + i;
+    double       *coefficient = signals->coefficient + i, *rate = signals->derivative + i;
     X[0]           = a[i][0];
     coefficient[0] = a[i][0];
-    for (int k = 1; k <= used; k++) {
+    for (int k = 1; k <= top; k++) {
       double even = a[i][2 * k - 1], odd = a[i][2 * k];
       X[k]                   = CMPLX(.5 * even, .5 * odd);
       dX[k]                  = CMPLX(-.5 * k * odd, .5 * k * even);
@@ -185,7 +178,7 @@ void mhb_signals_at(const mhb_signals *signals, double t, double y[3], double dy
     dy[i] = 0;
     if (ddy) ddy[i] = 0;
   }
-  for (int k = 1; k <= signals->used; k++) {
+  for (int k = 1; k <= signals->top; k++) {
     double next = c * c1 - s * s1;
     s           = s * c1 + c * s1;
     c           = next;

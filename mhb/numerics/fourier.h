@@ -1,14 +1,15 @@
 /* Trigonometric polynomials in real form, on a grid (FFTW) and at a point.
  *
- * A signal of m harmonics, x(t) = Re sum_{k=0..m} A_k exp(jkt), is held by 2m+1 real coefficients
+ * A signal of m harmonics, x(t) = Re sum_{k=0..m} A_k exp(jkt), has 2m+1 real coefficients
  *   a[0] = Re A_0,  a[2k-1] = Re A_k,  a[2k] = Im A_k     on the basis   1,  cos kt,  -sin kt,
- * so that x = sum_i a[i] b_i(t) for motion and force alike. t is the phase, one period is 2 pi. */
+ * so that x = sum_i a[i] b_i(t) for motion and force alike. t is the phase; one period is 2 pi. */
 #ifndef MHB_NUMERICS_FOURIER_H
 #define MHB_NUMERICS_FOURIER_H
 
 #include <complex.h>
 #include <fftw3.h>
 
+#include "mesh/base/arena.h"
 #include "mesh/base/status.h"
 #include "mhb/numerics/simd.h"
 
@@ -17,44 +18,46 @@ static inline int mhb_real_size(int m) {
   return 2 * m + 1;
 }
 
+/* a[2m+1] <- A[m+1]; the imaginary part of A_0 is ignored. */
 void mhb_to_real(int m, const double complex *A, double *a);
-void mhb_to_complex(int m, const double *a, double complex *A);
 
 /* basis[2m+1] at t; slope[2m+1] its derivative by t (may be NULL). */
 void mhb_basis(int m, double t, double *basis, double *slope);
 
-/* integral[0..2 n] over [t0, t1] of the basis up to harmonic n, added to what is there. */
+/* integral[0..2n] += integrals over [t0, t1] of the basis up to harmonic n. */
 void mhb_basis_integral(int n, double t0, double t1, double *integral);
 
-/* integral over a set of intervals of b_i b_j, from the integrals of the basis up to harmonic p + q:
- * product[i * ld + j], i < 2p+1, j < 2q+1 (Toeplitz + Hankel). */
+/* product[i * ld + j] <- integral over a set of intervals of b_i b_j, i < 2p+1, j < 2q+1 (Toeplitz
+ * + Hankel). integral: of the basis up to harmonic p + q. */
 void mhb_basis_product(int p, int q, const double *integral, double *product, int ld);
 
 /* Grids of 64, 128, ... points. */
 enum { MHB_LEAST_GRID = 64, MHB_GRIDS = 12 };
 
-/* Three signals of up to m harmonics: values and slopes on a grid of n_grid points, as many as the harmonics in use need,
- * evaluation anywhere. */
+/* Three signals of up to m harmonics: values and slopes on a grid, evaluation anywhere. The grid
+ * has as many points as the highest harmonic that is not zero needs. */
 typedef struct {
-  int     m;
-  int     used;        /* highest harmonic that is not zero */
-  int     n_grid;      /* of the signals that are set, a multiple of MHB_LANES */
-  int     most;        /* n_grid of m harmonics */
-  double *coefficient; /* [2m+1][3] */
-  double *rate;        /* [2m+1][3], k times that of the same harmonic */
-  double *value[3]; /* [n_grid + MHB_LANES], t = 2 pi i/n_grid, going on periodically at the end */
-  double *slope[3]; /* the same */
-  double  bound[3][5];           /* [signal][j] = sum_k k^j |A_k| >= |d^j x/dt^j| */
-  fftw_complex *spectrum;        /* [6][most/2 + 1] */
-  double       *samples;         /* [6][most + MHB_LANES]: value, slope */
-  fftw_plan     plan[MHB_GRIDS]; /* of 64 points, 128, ... as far as m needs them */
+  int           m;
+  int           top;          /* highest harmonic that is not zero */
+  int           n_grid;       /* points of the grid in use, a multiple of MHB_LANES */
+  int           largest_grid; /* n_grid for m harmonics */
+  double       *coefficient;  /* [2m+1][3] */
+  double       *derivative;   /* [2m+1][3], k times that of the same harmonic */
+  double       *value[3];    /* [n_grid + MHB_LANES] at t = 2 pi i/n_grid, continued periodically */
+  double       *slope[3];    /* the same */
+  double        bound[3][5]; /* [signal][j] = sum_k k^j |A_k| >= |d^j x/dt^j| */
+  fftw_complex *spectrum;    /* [6][largest_grid/2 + 1] */
+  double       *samples;     /* [6][largest_grid + MHB_LANES]: value, slope */
+  fftw_plan     plan[MHB_GRIDS]; /* for 64 points, 128, ... as far as m needs them */
+  shb_arena     arena;
 } mhb_signals;
 
-/* FFTW plans are made here and only here. SHB_ERR_IO: no memory, or too many harmonics. */
+/* FFTW plans are made here and only here. SHB_ERR_IO: no memory, or more harmonics than the largest
+ * grid serves. */
 shb_status mhb_signals_create(int m, mhb_signals *signals);
 void       mhb_signals_destroy(mhb_signals *signals);
 
-/* Take the coefficients a[signal][2m+1]; fill grid and bounds. O(n_grid log n_grid). */
+/* Takes the coefficients a[signal][2m+1]; fills grid and bounds. O(n_grid log n_grid). */
 void mhb_signals_set(mhb_signals *signals, const double *const a[3]);
 
 /* Values, first and (unless NULL) second derivatives at t. O(m). */
@@ -63,7 +66,7 @@ void mhb_signals_at(const mhb_signals *signals, double t, double y[3], double dy
 /* Values and slopes at eight phases, given by their cosine and sine. */
 MHB_INLINE void mhb_signals_at_lanes(const mhb_signals *signals, mhb_lanes cosine, mhb_lanes sine,
                                      mhb_lanes y[3], mhb_lanes dy[3]) {
-  const double *a = signals->coefficient, *b = signals->rate;
+  const double *a = signals->coefficient, *b = signals->derivative;
   mhb_lanes     c = lanes_all(1), s = lanes_all(0);
   for (int i = 0; i < 3; i++) {
     y[i]  = lanes_all(a[i]);
@@ -71,7 +74,7 @@ MHB_INLINE void mhb_signals_at_lanes(const mhb_signals *signals, mhb_lanes cosin
   }
   a += 3;
   b += 3;
-  for (int k = 1; k <= signals->used; k++, a += 6, b += 6) {
+  for (int k = 1; k <= signals->top; k++, a += 6, b += 6) {
     mhb_lanes next = c * cosine - s * sine;
     s              = s * cosine + c * sine;
     c              = next;

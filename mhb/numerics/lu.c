@@ -2,7 +2,7 @@
 
 #include <lapacke.h>
 
-/* Up to this many unknowns LAPACK costs more in calls than in work. */
+/* Up to this many unknowns LAPACK costs more in calls than in arithmetic. */
 enum { SMALL = 6 };
 
 static inline double complex times(double complex a, double complex b) {
@@ -22,7 +22,7 @@ static void swap_rows(int n, double complex *A, int columns, int i, int j) {
   }
 }
 
-/* Gauss with row exchanges; the diagonal is kept inverted. */
+/* Gaussian elimination with row exchanges; the diagonal is kept inverted. */
 static int factor_small(int n, double complex *A, int *pivot) {
   for (int j = 0; j < n; j++) {
     int best = j;
@@ -62,7 +62,8 @@ int mhb_solve_complex(int n, const double complex *A, const int *pivot, int colu
          LAPACKE_zgetrs_work(LAPACK_COL_MAJOR, 'N', n, columns, A, n, pivot, x, n) == 0;
 }
 
-/* LAPACK's columns are the rows here: it factors the transpose and solves with its transpose. */
+/* The rows are columns of LAPACK: it factors the transpose and solves with the transpose of
+ * that. */
 int mhb_factor_real(int n, double *A, int *pivot) {
   return LAPACKE_dgetrf_work(LAPACK_COL_MAJOR, n, n, A, n, pivot) == 0;
 }

@@ -1,7 +1,8 @@
 /* Eight numbers at once: the nodes of a panel, or eight neighbouring points of a grid.
  *
- * GCC and Clang vector extensions: one AVX-512 register, two of AVX2, four of SSE2. Functions marked MHB_HOT are compiled
- * for each of them and chosen when the program starts; those marked MHB_INLINE become part of their callers. */
+ * GCC and Clang vector extensions: one AVX-512 register, two of AVX2, four of SSE2. Functions
+ * marked MHB_HOT are compiled for each of them; one is chosen when the program starts. Functions
+ * marked MHB_INLINE become part of their callers. */
 #ifndef MHB_NUMERICS_SIMD_H
 #define MHB_NUMERICS_SIMD_H
 
@@ -26,7 +27,7 @@ MHB_INLINE mhb_lanes lanes_all(double x) {
   return (mhb_lanes){x, x, x, x, x, x, x, x};
 }
 
-/* From memory of any alignment. */
+/* From and to memory of any alignment. */
 MHB_INLINE mhb_lanes lanes_load(const double *x) {
   mhb_lanes y;
   memcpy(&y, x, sizeof y);
@@ -66,7 +67,7 @@ MHB_INLINE mhb_lanes lanes_abs(mhb_lanes x) {
   return lanes_max(x, -x);
 }
 
-/* Largest and smallest lane; NaN lanes may be passed over. */
+/* Largest and smallest lane; NaN lanes may be ignored. */
 MHB_INLINE double lanes_top(mhb_lanes x) {
   double a = x[0] > x[4] ? x[0] : x[4], b = x[1] > x[5] ? x[1] : x[5];
   double c = x[2] > x[6] ? x[2] : x[6], d = x[3] > x[7] ? x[3] : x[7];
@@ -79,8 +80,8 @@ MHB_INLINE double lanes_bottom(mhb_lanes x) {
   return -lanes_top(-x);
 }
 
-/* cos x and sin x to rounding for |x| < 1e5: reduction by multiples of pi/2 in two parts, minimax polynomials on
- * [-pi/4, pi/4] (coefficients of the classic fdlibm kernels). */
+/* cos x and sin x to rounding for |x| < 1e5: reduction by multiples of pi/2 in two parts, minimax
+ * polynomials on [-pi/4, pi/4] (coefficients of the fdlibm kernels). */
 MHB_INLINE void lanes_cos_sin(mhb_lanes x, mhb_lanes *cosine, mhb_lanes *sine) {
   const double   magic = 6755399441055744.0; /* 1.5 2^52: adding it rounds to an integer */
   mhb_lanes      turns = x * 0.63661977236758134308 + magic;

@@ -7,7 +7,7 @@ int mhb_interfaces(const mhb_settings *s) {
   return s->n_interfaces > 1 ? s->n_interfaces : 1;
 }
 
-/* Place of a preload of the leading interface in its list. */
+/* Index of the preload n0 of the leading interface in its list. */
 static int preload_at(const mhb_settings *s, double n0) {
   int nearest = 0;
   for (int i = 1; i < s->n_preloads; i++)
@@ -15,14 +15,15 @@ static int preload_at(const mhb_settings *s, double n0) {
   return nearest;
 }
 
-/* Value of the case times what the leading one has become of its own. */
+/* The interface's value in the case, scaled as the leading one has changed from its own. */
 static double in_proportion(double own, double now, double lead) {
   return lead != 0 ? own * (now / lead) : own;
 }
 
 static double preload_of(const mhb_operating_point *c, const mhb_settings *s,
                          const mhb_interface *own) {
-  double lead = c->anchored ? c->anchor : c->n0, moved = c->anchored ? c->n0 - c->anchor : 0;
+  double lead  = c->preloads_tied ? c->tied_n0 : c->n0,
+         moved = c->preloads_tied ? c->n0 - c->tied_n0 : 0;
   if (s->parameter == MHB_IN_N0)
     return moved + (s->together ? in_proportion(own->n0[0], lead, s->n0[0]) : own->n0[0]);
   return moved + own->n0[own->n_preloads > 1 ? preload_at(s, lead) : 0];
@@ -45,7 +46,7 @@ mhb_operating_point mhb_interface_operating_point(const mhb_operating_point *c,
 double mhb_interface_rate(const mhb_operating_point *c, const mhb_settings *s, int interface,
                           mhb_parameter parameter) {
   if (s->n_interfaces < 2 || interface == s->lead) return 1;
-  if (parameter == MHB_IN_N0 && c->anchored) return 1;
+  if (parameter == MHB_IN_N0 && c->preloads_tied) return 1;
   if (parameter != s->parameter || !s->together) return 0;
   const mhb_interface *own = &s->interface[interface];
   switch (parameter) {
@@ -62,7 +63,7 @@ double mhb_interface_rate(const mhb_operating_point *c, const mhb_settings *s, i
   }
 }
 
-/* Place of a name in the settings, -1 if it is not there. */
+/* Index of a name in the settings; -1: not there. */
 static int named(const mhb_settings *s, const char *name) {
   for (int i = 0; i < s->n_interfaces; i++)
     if (strcmp(s->interface[i].name, name) == 0) return i;

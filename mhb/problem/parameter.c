@@ -4,10 +4,10 @@
 #include <math.h>
 #include <string.h>
 
-static const double PI = 3.14159265358979323846;
+#include "mesh/base/constants.h"
 
 mhb_operating_point mhb_operating_point_of(const mhb_settings *s) {
-  mhb_operating_point c = {.omega = 2 * PI * s->frequency[0],
+  mhb_operating_point c = {.omega = SHB_TWO_PI * s->frequency[0],
                            .n0    = s->n0[0],
                            .scale = s->scale,
                            .mu    = s->mu,
@@ -27,15 +27,15 @@ const char *mhb_parameter_unit(mhb_parameter parameter) {
 }
 
 double mhb_parameter_shown(mhb_parameter parameter, double value) {
-  return parameter == MHB_IN_FREQUENCY ? value / (2 * PI) : value;
+  return parameter == MHB_IN_FREQUENCY ? value / SHB_TWO_PI : value;
 }
 
 double mhb_parameter_value(mhb_parameter parameter, double shown) {
-  return parameter == MHB_IN_FREQUENCY ? 2 * PI * shown : shown;
+  return parameter == MHB_IN_FREQUENCY ? SHB_TWO_PI * shown : shown;
 }
 
 double mhb_parameter_end(const mhb_settings *s, mhb_parameter parameter, int high) {
-  return parameter == MHB_IN_FREQUENCY ? 2 * PI * s->frequency[high] : s->range[high];
+  return parameter == MHB_IN_FREQUENCY ? SHB_TWO_PI * s->frequency[high] : s->range[high];
 }
 
 static double *field(mhb_operating_point *c, mhb_parameter parameter) {
@@ -62,7 +62,7 @@ double mhb_parameter_least(mhb_parameter parameter) {
 mhb_law mhb_operating_point_law(const mhb_operating_point *c, mhb_preload preload, double share) {
   mhb_law law = {.mu = c->mu, .kv = share * c->kv, .n0 = share * c->n0};
   for (int i = 0; i < 3; i++) law.ku[i] = share * c->ku[i];
-  if (preload == MHB_EQUILIBRIUM) law.balance = fmax(law.n0, 0);
+  if (preload == MHB_EQUILIBRIUM) law.mean_offset = fmax(law.n0, 0);
   return law;
 }
 
@@ -77,14 +77,14 @@ static void times(int nb, const double *dp, const double *x, int from, int to, d
   }
 }
 
-/* Constant normal load: all is homogeneous in (u, n0). */
+/* Constant normal load (kv = 0): all is homogeneous in (u, n0). */
 static void by_constant_load(const mhb_law *law, int nb, const double *u, const double *p,
                              const double *dp, double *change) {
   memset(change, 0, sizeof(double) * 3 * (size_t)nb);
   if (law->n0 <= 0) return;
   times(nb, dp, u, 0, 3, -1 / law->n0, change);
   for (int i = 0; i < 3 * nb; i++) change[i] += p[i] / law->n0;
-  change[0] += law->balance / law->n0; /* of n, not of n - balance */
+  change[0] += law->mean_offset / law->n0; /* of n, not of n - mean_offset */
 }
 
 void mhb_parameter_force(const mhb_operating_point *c, mhb_parameter parameter, const mhb_law *law,
@@ -105,6 +105,6 @@ void mhb_parameter_force(const mhb_operating_point *c, mhb_parameter parameter, 
   } else {
     by_constant_load(law, nb, u, p, dp, change);
   }
-  if (law->balance > 0) change[0] -= 1;
+  if (law->mean_offset > 0) change[0] -= 1;
   for (int i = 0; i < block; i++) change[i] *= share;
 }

@@ -1,4 +1,5 @@
-/* What the harmonic balance is asked to do: contact parameters and sweep. Plain data, SI. */
+/* Settings of the harmonic balance and the time integration: contact parameters and sweep. Plain
+ * data, SI. */
 #ifndef MHB_PROBLEM_SETTINGS_H
 #define MHB_PROBLEM_SETTINGS_H
 
@@ -6,10 +7,10 @@
 
 typedef enum { MHB_EQUILIBRIUM, MHB_INTERFERENCE } mhb_preload;
 
-/* Multipliers: where they cost little and at a few points elsewhere; at every point; not at all. */
+/* Multipliers: where they cost little and at a few points elsewhere; at every point; never. */
 typedef enum { MHB_STABILITY_AUTO, MHB_STABILITY_ALWAYS, MHB_STABILITY_NEVER } mhb_stability_when;
 
-/* What a curve is followed in. */
+/* Continuation parameter. */
 typedef enum {
   MHB_IN_FREQUENCY,
   MHB_IN_N0,
@@ -28,40 +29,40 @@ enum {
   MHB_MAX_SEARCH_ORDERS = 8
 };
 
-/* One of several contact interfaces; totals of it. */
+/* One of several contact interfaces; totals over its pairs. */
 typedef struct {
   char   name[MHB_NAME];
   bool   has_psi, has_phi;
   double psi, phi, mu, kv, ku[3];
-  int    n_preloads; /* as many as the leading one's, or 1 */
+  int    n_preloads; /* as many as those of the leading one, or 1 */
   double n0[MHB_MAX_PRELOADS];
 } mhb_interface;
 
-/* Branches that nothing leads to, looked for beside each main one. */
+/* Search for branches without a connection to the main one, beside each main branch. */
 typedef struct {
-  int    starts;                /* random starts a frequency and order; 0: none is looked for */
-  int    n_at;                  /* 0: places are chosen */
+  int    starts;                /* random starts a frequency and order; 0: no search */
+  int    n_at;                  /* 0: the program chooses */
   double at[MHB_MAX_SEARCH_AT]; /* as range: Hz for the frequency */
   int    n_orders, order[MHB_MAX_SEARCH_ORDERS]; /* ascending, times subharmonics */
 } mhb_search_settings;
 
 typedef struct {
-  bool        to_ground;
-  int         engine_order, blades; /* inter-blade phase 2 pi E/N, eq. 16 */
-  bool        has_psi, has_phi;     /* given in the case; else from the modal file's normals */
-  double      psi, phi;             /* rad */
-  double      mu, kv;               /* -, N/m: totals of the interface */
-  double      ku[3];                /* kuu, kuw, kww, N/m */
-  mhb_preload preload;
-  int         n_preloads;
-  double      n0[MHB_MAX_PRELOADS]; /* N */
-  int         n_interfaces;         /* 0, 1: the parameters above are all */
-  int  lead; /* else they are those of this one, which a curve follows (mhb/problem/interfaces.h) */
-  bool together; /* what is followed the others have in proportion, else they keep theirs */
+  bool                to_ground;
+  int                 engine_order, blades; /* inter-blade phase 2 pi E/N, eq. 16 */
+  bool                has_psi, has_phi; /* given in the case; else from the modal file's normals */
+  double              psi, phi;         /* rad */
+  double              mu, kv;           /* -, N/m: totals of the interface */
+  double              ku[3];            /* kuu, kuw, kww, N/m */
+  mhb_preload         preload;
+  int                 n_preloads;
+  double              n0[MHB_MAX_PRELOADS]; /* N */
+  int                 n_interfaces;         /* 0, 1: the parameters above are all */
+  int                 lead; /* index of the leading interface, whose parameters are those above */
+  bool                together; /* the parameter followed changes in all interfaces in proportion */
   mhb_interface       interface[MHB_MAX_INTERFACES];
-  double              frequency[2]; /* Hz, first < second; equal where another is followed */
-  mhb_parameter       parameter;    /* what is followed; in its unit from range[0] to range[1], */
-  double              range[2];     /* not used for the frequency */
+  double              frequency[2]; /* Hz, first < second; equal if another parameter is followed */
+  mhb_parameter       parameter;    /* followed, in its unit from range[0] to range[1] */
+  double              range[2];     /* not for the frequency */
   int                 harmonics;    /* m >= 1 */
   int                 subharmonics; /* nu >= 1: fundamental is omega/nu */
   double              motion_tolerance; /* > 0: harmonics are chosen for this relative error */
@@ -69,14 +70,14 @@ typedef struct {
   double              tolerance;        /* of the contact law, relative to its largest force */
   int                 max_points; /* a branch ends (with a reason) beyond this, default 2000 */
   mhb_search_settings search;
-  bool                flips;     /* branches of doubled period are followed from where they leave */
-  mhb_stability_when  stability; /* which points are judged by their multipliers */
-  const struct mhb_speed_table *
-      run_up; /* the modal model follows the frequency (mhb/structure/speed_table.h); NULL: one speed */
-  bool resume; /* take over what an interrupted run of equal settings finished */
+  bool                flips;     /* branches of doubled period are followed from flips */
+  mhb_stability_when  stability; /* points at which multipliers are computed */
+  const struct mhb_speed_table
+      *run_up; /* NULL: one speed. Else the modal model follows the frequency. */
+  bool resume; /* take over the finished branches of an interrupted run of equal settings */
 } mhb_settings;
 
-/* Points by time integration, see integration_sweep.h. */
+/* Points by time integration (mhb/integration/integration_sweep.h). */
 typedef enum {
   MHB_START_FROM_BALANCE,
   MHB_START_FROM_REST,
@@ -87,15 +88,15 @@ typedef enum { MHB_SWEEP_UP, MHB_SWEEP_DOWN, MHB_SWEEP_BOTH } mhb_integration_di
 enum { MHB_MAX_FREQUENCIES = 1000 };
 
 typedef struct {
-  int                       n_frequencies;
-  bool                      listed; /* frequency holds them; else evenly over the range */
-  double                    frequency[MHB_MAX_FREQUENCIES]; /* Hz, of the excitation */
+  int    n_frequencies;
+  bool   listed; /* frequency holds them; else they are spaced evenly over the range */
+  double frequency[MHB_MAX_FREQUENCIES]; /* Hz, of the excitation */
   mhb_integration_start     start;
-  mhb_integration_direction direction; /* of state */
-  int                       steps;     /* a period of the fundamental, to begin with */
+  mhb_integration_direction direction; /* for MHB_START_FROM_STATE */
+  int                       steps;     /* a period of the fundamental, at first */
   double                    tolerance; /* relative to the motion */
-  int                       max_periods,
-      harmonics; /* harmonics of the fundamental that are kept; 0: as many as the balance */
+  int                       max_periods;
+  int                       harmonics; /* of the fundamental, kept; 0: as many as the balance */
 } mhb_integration_settings;
 
 #endif

@@ -5,7 +5,7 @@
 
 #include "mhb/problem/interfaces.h"
 
-/* In the order of the case. */
+/* Interfaces in the order of the case. */
 static shb_status describe_interfaces(mhb_response *response, const modal_model *model,
                                       const mhb_settings *settings) {
   const int n = settings->n_interfaces;

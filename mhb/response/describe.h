@@ -1,4 +1,4 @@
-/* What a response tells of its case besides the branches. */
+/* The description of the case in a response, beside the branches. */
 #ifndef MHB_RESPONSE_DESCRIBE_H
 #define MHB_RESPONSE_DESCRIBE_H
 
@@ -6,7 +6,8 @@
 #include "mhb/response/response.h"
 #include "modal/model/model.h"
 
-/* What a response tells of the model and the settings besides its branches. SHB_ERR_IO: no memory. */
+/* Sizes, modes, interfaces and probe names of response <- those of model and settings. SHB_ERR_IO:
+ * no memory. */
 shb_status mhb_response_describe(mhb_response *response, const modal_model *model,
                                  const mhb_settings *settings);
 

@@ -89,14 +89,13 @@ shb_status mhb_response_branch(mhb_response *response, mhb_branch_kind kind, int
   return SHB_OK;
 }
 
-/* Arrays grown before one fails stay valid: capacity counts what all have. */
+/* Arrays that grew before one fails stay valid: capacity counts what all of them have. */
 static shb_status grow(const mhb_response *response, mhb_branch *branch) {
   int capacity = branch->capacity ? 2 * branch->capacity : FIRST_POINTS;
   for (int i = 0; i < MHB_N_FIELDS; i++) {
     if (!mhb_field_kept(response, branch, &mhb_fields[i])) continue;
-    size_t row =
-        mhb_field_width(response, branch, &mhb_fields[i]) * mhb_field_bytes(mhb_fields[i].kind);
-    void *data = realloc(mhb_field_get(branch, &mhb_fields[i]), (size_t)capacity * row);
+    size_t row  = mhb_field_row(response, branch, &mhb_fields[i]);
+    void  *data = realloc(mhb_field_get(branch, &mhb_fields[i]), (size_t)capacity * row);
     SHB_CHECK(data, SHB_ERR_IO, "no memory for %d response points", capacity);
     mhb_field_set(branch, &mhb_fields[i], data);
   }
@@ -109,14 +108,14 @@ shb_status mhb_response_point(mhb_response *response, int branch, int *point) {
   if (b->n_points == b->capacity) SHB_TRY(grow(response, b));
   for (int i = 0; i < MHB_N_FIELDS; i++) {
     if (!mhb_field_kept(response, b, &mhb_fields[i])) continue;
-    size_t row = mhb_field_width(response, b, &mhb_fields[i]) * mhb_field_bytes(mhb_fields[i].kind);
+    size_t row = mhb_field_row(response, b, &mhb_fields[i]);
     memset((char *)mhb_field_get(b, &mhb_fields[i]) + (size_t)b->n_points * row, 0, row);
   }
   *point = b->n_points++;
   return SHB_OK;
 }
 
-/* The last of n rows goes to place at, byte by byte: no room is needed. */
+/* Moves the last of n rows to place at, byte by byte: no memory is needed. */
 static void rotate(char *data, size_t row, size_t at, size_t n) {
   for (size_t i = n - 1; i > at; i--)
     for (size_t k = 0; k < row; k++) {
@@ -130,8 +129,7 @@ void mhb_response_place(mhb_response *response, int branch, int at) {
   mhb_branch *b = &response->branch[branch];
   for (int i = 0; i < MHB_N_FIELDS; i++)
     if (mhb_field_kept(response, b, &mhb_fields[i]))
-      rotate(mhb_field_get(b, &mhb_fields[i]),
-             mhb_field_width(response, b, &mhb_fields[i]) * mhb_field_bytes(mhb_fields[i].kind),
+      rotate(mhb_field_get(b, &mhb_fields[i]), mhb_field_row(response, b, &mhb_fields[i]),
              (size_t)at, (size_t)b->n_points);
 }
 
@@ -146,7 +144,7 @@ shb_status mhb_response_copy_points(mhb_response *to, int to_branch, const mhb_r
     for (int k = 0; k < MHB_N_FIELDS; k++) {
       const mhb_field *f = &mhb_fields[k];
       if (!mhb_field_kept(to, b, f)) continue;
-      size_t row = mhb_field_width(to, b, f) * mhb_field_bytes(f->kind);
+      size_t row = mhb_field_row(to, b, f);
       memcpy((char *)mhb_field_get(b, f) + (size_t)point * row,
              (char *)mhb_field_get(a, f) + (size_t)i * row, row);
     }
@@ -165,7 +163,8 @@ void mhb_response_drop(mhb_response *response, const bool *drop) {
   for (int i = 0; i < kept; i++) response->branch[i].main = to[response->branch[i].main];
 }
 
-/* Insertion: stable, and there are few. Main branches keep their places, so that main stays right. */
+/* Insertion sort: stable, and there are few branches. Main branches keep their places, so that main
+ * stays right. */
 void mhb_response_sort(mhb_response *response) {
   mhb_branch *b = response->branch;
   for (int i = 1; i < response->n_branches; i++) {
@@ -176,4 +175,27 @@ void mhb_response_sort(mhb_response *response) {
       b[at] = b[at - 1];
     b[at] = moved;
   }
+}
+
+shb_status mhb_response_merge(mhb_response *response, mhb_response *other) {
+  SHB_CHECK(response->n_pairs == other->n_pairs && response->n_probes == other->n_probes &&
+                response->subharmonics == other->subharmonics &&
+                response->n_interfaces == other->n_interfaces &&
+                response->parameter == other->parameter,
+            SHB_ERR_INPUT,
+            "%d pairs, %d probes, subharmonics %d do not go with %d, %d, %d; make both files from "
+            "one case",
+            other->n_pairs, other->n_probes, other->subharmonics, response->n_pairs,
+            response->n_probes, response->subharmonics);
+  int before = response->n_branches, index;
+  for (int i = 0; i < other->n_branches; i++) {
+    mhb_branch *branch = &other->branch[i];
+    SHB_TRY(mhb_response_branch(response, branch->kind, &index));
+    response->branch[index] = *branch;
+    response->branch[index].main += before;
+    memset(branch, 0, sizeof *branch);
+  }
+  other->n_branches = 0;
+  if (other->n_lines > response->n_lines) response->n_lines = other->n_lines;
+  return SHB_OK;
 }

@@ -1,4 +1,4 @@
-/* The response file NAME.response.h5: what the harmonic balance found, branch by branch. */
+/* The response of a case, branch by branch, in memory and as the file NAME.response.h5. */
 #ifndef MHB_RESPONSE_RESPONSE_H
 #define MHB_RESPONSE_RESPONSE_H
 
@@ -9,7 +9,7 @@
 #include "mesh/base/status.h"
 #include "mhb/problem/settings.h"
 
-/* The balance, its linear limits, and single points by time integration. */
+/* Solutions of the balance, its linear limits, and single points by time integration. */
 typedef enum {
   MHB_BRANCH_NONLINEAR,
   MHB_BRANCH_OPEN,
@@ -18,74 +18,78 @@ typedef enum {
   MHB_N_BRANCH_KINDS
 } mhb_branch_kind;
 
-/* How a branch was come by: followed from the low end of the range, from a solution found by search, from a flip; aside: on the way of
- * the main branch, a curve that is closed or leaves by the low end. */
+/* Origin of a branch: traced from the low end of the range, from a solution found by search, from a
+ * flip; detached: a closed curve, or one that leaves by the low end, met on the way of the main
+ * branch. */
 typedef enum { MHB_FROM_END, MHB_FROM_SEARCH, MHB_FROM_FLIP, MHB_FROM_DETACHED } mhb_origin;
 
-/* special of mhb_branch; the last two: where a multiplier leaves or enters the unit circle at -1, or a pair does */
+/* special of mhb_branch. Flip and Neimark-Sacker: a multiplier crosses the unit circle at -1, or a
+ * complex pair does. */
 enum { MHB_ORDINARY, MHB_FOLD, MHB_PEAK, MHB_FLIP, MHB_NEIMARK_SACKER, MHB_N_SPECIALS };
 
-/* judged of mhb_branch: what stable rests on. Parity: of the folds passed since a point judged by its multipliers. */
+/* judged of mhb_branch: the evidence for stable. Parity: of the folds passed since a point with
+ * known multipliers. */
 enum {
-  MHB_BY_FOLDS,           /* parity: multipliers were not computed */
-  MHB_BY_MULTIPLIERS,     /* all inside the unit circle, or some well outside */
-  MHB_MARGINAL_BY_FOLDS,  /* the largest is at 1 within what can be told: parity */
-  MHB_UNDECIDED_BY_FOLDS, /* multipliers could not be computed: parity */
+  MHB_BY_FOLDS,           /* parity; the multipliers were not computed */
+  MHB_BY_MULTIPLIERS,     /* the multipliers: all inside the unit circle, or some well outside */
+  MHB_MARGINAL_BY_FOLDS,  /* parity; the largest multiplier is at 1 within its accuracy */
+  MHB_UNDECIDED_BY_FOLDS, /* parity; the multipliers could not be computed */
   MHB_N_JUDGED
 };
 
-/* loss of mhb_branch: what made an unstable point so. */
+/* loss of mhb_branch: the cause of instability. */
 enum { MHB_NO_LOSS, MHB_LOSS_FOLD, MHB_LOSS_FLIP, MHB_LOSS_NEIMARK_SACKER, MHB_N_LOSSES };
 
-/* Multipliers kept a point. */
+/* Multipliers stored a point. */
 enum { MHB_KEPT_MULTIPLIERS = 8 };
 
-/* One curve. Array layouts: motion, force [point][pair][3 (v,u,w)][k = 0..m]; probe [point][probe][3 (tangential,
- * axial, radial)][k]; state [point][pair][3 (stuck, slipping, open)]; signals x(t) = Re sum_k A_k exp(j k w t / nu), with m and
- * nu of the branch: the harmonic of the excitation is k = nu. */
+/* One curve. Array layouts:
+ *   motion, force  [point][pair][3 (v, u, w)][k = 0..m]
+ *   probe          [point][probe][3 (tangential, axial, radial)][k]
+ *   state          [point][pair][3 (stuck, slipping, open)]
+ * Signals are x(t) = Re sum_k A_k exp(j k w t/nu), with m and nu of the branch: the harmonic of the
+ * excitation is k = nu. */
 typedef struct {
   mhb_branch_kind kind;
   mhb_origin      origin;
-  int     order, n_harmonics; /* nu, m; as the response's unless set before the first point */
-  int     main; /* index of the branch of the same preload that begins at the end of the range */
-  bool    searched; /* of that branch: what was to be found beside it is there */
-  char   *reason;   /* how the branch ended: "end of range", or why not */
-  bool    complete; /* the range was covered */
-  int     n_points, capacity;
-  double *frequency;    /* [point] Hz, of the excitation's first harmonic */
-  double *n0;           /* [point] N, total of the interface, of several: of the one that leads */
-  double *interface_n0; /* [point][n_interfaces] N */
-  double *value;        /* [point] of the parameter that is followed; Hz for the frequency */
+  int             order, n_harmonics; /* nu, m; the response's unless set before the first point */
+  int             main;               /* index of the main branch of the same preload */
+  bool            searched;           /* main branch: the search beside it is done */
+  char           *reason;   /* end of the branch: "end of range", or why it ended before */
+  bool            complete; /* the range was covered */
+  int             n_points, capacity;
+  double         *frequency;    /* [point] Hz, of the excitation's first harmonic */
+  double         *n0;           /* [point] N, total of the interface, or of the leading one */
+  double         *interface_n0; /* [point][n_interfaces] N */
+  double         *value;        /* [point] of the parameter followed; Hz for the frequency */
   double complex *motion, *force, *probe;
   int            *stable; /* [point] 1 stable, 0 unstable, -1 not known */
-  int *special; /* [point] MHB_ORDINARY ...; peak: of any probe or contact motion, first harmonic */
-  /* nonlinear branches only */
-  int *judged; /* [point] MHB_BY_FOLDS ... */
-  int *loss;   /* [point] MHB_NO_LOSS ... */
-  double complex     *
-      multipliers; /* [point][n_multipliers] the largest, by falling modulus; 0: not computed, or no more */
-  int    *harmonics;       /* [point] of the balance there, at most n_harmonics; 0: not known */
-  int    *truncation_kind; /* [point] mhb_truncation_kind */
+  int    *special;        /* [point] MHB_ORDINARY ...; a peak of the first harmonic of any output */
   double *state;
-  double *dissipation; /* [point][pair] J a cycle */
-  int    *iterations;  /* [point] */
-  double *seconds;     /* [point] */
-  double *error_newton, *error_truncation, *error_sampling,
-      *error_modal; /* [point] relative to the motion's norm */
+  double *dissipation;                     /* [point][pair] J a cycle */
+  int    *iterations;                      /* [point] */
+  double *seconds;                         /* [point] */
+  double *error_newton, *error_truncation; /* [point] relative to the norm of the motion */
+  double *error_sampling, *error_modal;    /* the same */
+  /* nonlinear branches only */
+  int            *judged;      /* [point] MHB_BY_FOLDS ... */
+  int            *loss;        /* [point] MHB_NO_LOSS ... */
+  double complex *multipliers; /* [point][n_multipliers] the largest, by falling modulus; 0: none */
+  int            *harmonics;   /* [point] of the balance, at most n_harmonics; 0: not known */
+  int            *truncation_kind; /* [point] mhb_truncation_kind */
   /* integration branches only */
-  int *
-      multiple; /* [point] the motion repeats after so many periods of the fundamental; 0: it does not */
-  int    *periods;  /* [point] that were integrated */
+  int    *multiple; /* [point] periods of the fundamental until the motion repeats; 0: never */
+  int    *periods;  /* [point] periods of the fundamental that were integrated */
   double *distance; /* [point] of the return map, relative */
-  double *line_frequency,
-      *line_amplitude; /* [point][n_lines] Hz, m: spectrum of what does not repeat, largest first */
+  double *line_frequency; /* [point][n_lines] Hz, spectrum of motion that does not repeat */
+  double *line_amplitude; /* [point][n_lines] m, largest first */
 } mhb_branch;
 
 typedef struct {
   int           n_pairs, n_probes, n_harmonics, subharmonics, n_branches, capacity;
   char        **probe_name;
   mhb_branch   *branch;
-  mhb_parameter parameter;      /* what is followed */
+  mhb_parameter parameter;      /* the one followed */
   int           n_multipliers;  /* kept a point; 0: none, set before the first point */
   int           n_interfaces;   /* 0: one, without a name; set before the first point */
   int           lead;           /* whose parameter is followed */
@@ -96,9 +100,8 @@ typedef struct {
   int     n_modes;
   double *mode_frequency, *mode_damping, *eigen_residual; /* [m]; eigen_residual may be NULL */
   int     engine_order, blades;
-  bool
-         run_up; /* the speed goes with the frequency, along the engine order; modes are those at the top of the range */
-  double psi, phi; /* rad, mean of the pairs */
+  bool    run_up; /* the speed follows the frequency on the engine order; modes of the top speed */
+  double  psi, phi; /* rad, mean of the pairs */
 } mhb_response;
 
 mhb_response *mhb_response_create(int n_pairs, int n_probes, int n_harmonics); /* NULL: no memory */
@@ -108,30 +111,33 @@ void          mhb_response_destroy(mhb_response *response);
  * that is not to be seen yet. NULL: no memory. */
 mhb_response *mhb_response_like(const mhb_response *response);
 
-/* Takes over names and places of n >= 2 interfaces: name[n], interface[pair] are copied. SHB_ERR_IO. */
+/* Interfaces of the pairs, n >= 2: name[n] and interface[pair] are copied. SHB_ERR_IO. */
 shb_status mhb_response_interfaces(mhb_response *response, int n, char *const *name,
                                    const int *interface, int lead);
 
-/* Append an empty branch, its own main one; its index through *index. */
+/* Appends an empty branch, its own main one, with index *index. */
 shb_status mhb_response_branch(mhb_response *response, mhb_branch_kind kind, int *index);
-/* Make room for one more point (zeroed) and return its index through *point; branch arrays may move. */
+/* Appends a point of zeros with index *point; the arrays of the branch may move. */
 shb_status mhb_response_point(mhb_response *response, int branch, int *point);
-/* Move the last point of a branch to place at; those from there on move up by one. */
+/* Moves the last point of a branch to place at; those from there on move up by one. */
 void mhb_response_place(mhb_response *response, int branch, int at);
-/* Append points first..last of a branch of another response of the same shape, in this order: from the
- * last to the first if first > last. Both branches have as many harmonics. SHB_ERR_IO: no memory. */
+/* Appends points first..last of a branch of another response of the same shape, in this order: from
+ * the last to the first if first > last. Both branches have as many harmonics. SHB_ERR_IO: no
+ * memory. */
 shb_status mhb_response_copy_points(mhb_response *to, int to_branch, const mhb_response *from,
                                     int from_branch, int first, int last);
-/* Drop the branches for which drop is true, [n_branches]; main follows. */
+/* Removes the branches for which drop[n_branches] is true; main is adjusted. */
 void mhb_response_drop(mhb_response *response, const bool *drop);
-/* Further branches after all others, those of one main branch together, in the order in which they were found. */
+/* Puts secondary branches behind all main ones, those of one main branch together, in the order in
+ * which they were found. */
 void mhb_response_sort(mhb_response *response);
 
-/* Take over the branches of other, which is left without; they keep their harmonics.
- * SHB_ERR_INPUT: other pairs, probes or subharmonics. */
+/* Moves the branches of other to response; they keep their harmonics. SHB_ERR_INPUT: other pairs,
+ * probes, subharmonics, interfaces or parameter. */
 shb_status mhb_response_merge(mhb_response *response, mhb_response *other);
 
-/* Publish (temporary, fsync, rename) / read back with full checks. */
+/* Writes by a temporary file, fsync and rename; reads back with full checks. SHB_ERR_IO,
+ * SHB_ERR_INPUT. */
 shb_status mhb_response_write(const mhb_response *response, const char *path,
                               const shb_provenance *provenance);
 shb_status mhb_response_read(const char *path, mhb_response **response);

@@ -94,8 +94,13 @@ h5_shape mhb_field_shape(const mhb_response *response, const mhb_branch *branch,
   return shape;
 }
 
-size_t mhb_field_width(const mhb_response *response, const mhb_branch *branch, const mhb_field *f) {
+/* Numbers a point. */
+static size_t width_of(const mhb_response *response, const mhb_branch *branch, const mhb_field *f) {
   return h5_count(mhb_field_shape(response, branch, f, 1));
+}
+
+size_t mhb_field_row(const mhb_response *response, const mhb_branch *branch, const mhb_field *f) {
+  return width_of(response, branch, f) * mhb_field_bytes(f->kind);
 }
 
 mhb_branch_kind mhb_field_owner(const mhb_field *f) {
@@ -107,7 +112,7 @@ mhb_branch_kind mhb_field_owner(const mhb_field *f) {
 
 bool mhb_field_kept(const mhb_response *response, const mhb_branch *branch, const mhb_field *f) {
   mhb_branch_kind owner = mhb_field_owner(f);
-  return mhb_field_width(response, branch, f) > 0 &&
+  return width_of(response, branch, f) > 0 &&
          (owner == MHB_N_BRANCH_KINDS || owner == branch->kind);
 }
 

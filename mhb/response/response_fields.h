@@ -1,4 +1,4 @@
-/* The arrays of a branch of the response: one table that drives growing, writing and reading. */
+/* The arrays of a branch of the response: one table for growing, writing and reading. */
 #ifndef MHB_RESPONSE_RESPONSE_FIELDS_H
 #define MHB_RESPONSE_RESPONSE_FIELDS_H
 
@@ -9,35 +9,40 @@
 
 typedef enum { MHB_DOUBLE, MHB_COMPLEX, MHB_INT } mhb_number;
 
-/* dims: the dimensions after [point], one letter each: p pair, q probe, 3 shroud axes, x cylindrical axes, s contact state,
- *  k harmonic 0..m, f multiplier, l spectral line, i contact interface (none where there is one). */
+/* dims: the dimensions after [point], one letter each: p pair, q probe, 3 shroud axes, x
+ * cylindrical axes, s contact state, k harmonic 0..m, f multiplier, l spectral line, i contact
+ * interface. */
 typedef struct {
   const char *name, *dims;
   mhb_number  kind;
   size_t      offset; /* of the pointer in mhb_branch */
-  const char *units;  /* NULL: of the parameter that is followed */
+  const char *units;  /* NULL: those of the parameter followed */
   const char *long_name;
 } mhb_field;
 
 enum { MHB_N_FIELDS = 27 };
-extern const mhb_field mhb_fields[MHB_N_FIELDS]; /* the first: the frequency */
+extern const mhb_field mhb_fields[MHB_N_FIELDS]; /* the first is the frequency */
 
-size_t   mhb_field_bytes(mhb_number kind);
+/* Bytes of a number. */
+size_t mhb_field_bytes(mhb_number kind);
+
+/* Shape in the file. */
 h5_shape mhb_field_shape(const mhb_response *response, const mhb_branch *branch, const mhb_field *f,
                          int n_points);
 
-/* Values a point. */
-size_t mhb_field_width(const mhb_response *response, const mhb_branch *branch, const mhb_field *f);
+/* Bytes a point. */
+size_t mhb_field_row(const mhb_response *response, const mhb_branch *branch, const mhb_field *f);
 
-/* Which kind of branch alone has a field; MHB_N_BRANCH_KINDS: all. */
+/* Kind of branch that alone has the field; MHB_N_BRANCH_KINDS: all have it. */
 mhb_branch_kind mhb_field_owner(const mhb_field *f);
 
-/* Without probes there is no probe array, in memory or in the file. */
+/* The branch has the field, in memory and in the file: its kind does, and its width is not 0. */
 bool mhb_field_kept(const mhb_response *response, const mhb_branch *branch, const mhb_field *f);
 
-/* The followed parameter where it is the frequency: not in the file twice. */
+/* The parameter followed is the frequency: it is not in the file twice. */
 bool mhb_field_is_frequency(const mhb_response *response, const mhb_field *f);
 
+/* The array of a branch. */
 void *mhb_field_get(const mhb_branch *branch, const mhb_field *f);
 void  mhb_field_set(mhb_branch *branch, const mhb_field *f, void *data);
 

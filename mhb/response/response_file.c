@@ -1,8 +1,9 @@
-/* The response file, written and read. */
+/* Writing and reading of response files. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/problem/parameter.h"
 #include "mhb/response/response.h"
 #include "mhb/response/response_fields.h"
@@ -17,7 +18,7 @@ enum { N_ORIGINS = sizeof origin_name / sizeof *origin_name };
 static const char *const kind_name[] = {"nonlinear", "open", "stuck", "integration"};
 enum { N_KINDS = sizeof kind_name / sizeof *kind_name };
 
-/* ---------------------------------------------------------------- writing */
+/* ---- writing ---- */
 
 static const char *scale_of(char letter) {
   switch (letter) {
@@ -109,7 +110,7 @@ static shb_status write_root(hid_t file, const mhb_response *response) {
   return h5_attach_scale(file, "/modes/residual", 0, "/modes/frequency");
 }
 
-/* Its harmonics are not those of the root's scale. */
+/* The harmonics of the branch are not those of the root's scale. */
 static bool has_own_scale(const mhb_response *response, const mhb_branch *branch) {
   return branch->order != response->subharmonics || branch->n_harmonics != response->n_harmonics;
 }
@@ -140,14 +141,13 @@ static shb_status write_field(hid_t group, const mhb_response *response, const m
   return SHB_OK;
 }
 
-/* Of the rotor in a run-up; not read back. */
+/* Speed of the rotor in a run-up; not read back. */
 static shb_status write_speed(hid_t group, const mhb_response *response, const mhb_branch *branch) {
-  static const double two_pi = 6.283185307179586476925;
   if (!response->run_up) return SHB_OK;
   double *speed = malloc(sizeof *speed * (size_t)branch->n_points + 1);
   SHB_CHECK(speed, SHB_ERR_IO, "no memory for %d response points", branch->n_points);
   for (int i = 0; i < branch->n_points; i++)
-    speed[i] = two_pi * branch->frequency[i] / response->engine_order;
+    speed[i] = SHB_TWO_PI * branch->frequency[i] / response->engine_order;
   shb_status status = h5_write_double(group, "speed", H5_SHAPE((hsize_t)branch->n_points), speed,
                                       "rad/s", "speed of the rotor, frequency/engine_order");
   free(speed);
@@ -213,7 +213,7 @@ shb_status mhb_response_write(const mhb_response *response, const char *path,
   return status;
 }
 
-/* ---------------------------------------------------------------- reading */
+/* ---- reading ---- */
 
 static shb_status read_sizes(hid_t file, const char *path, int *n_pairs, int *n_harmonics) {
   h5_shape pair, harmonic;
@@ -238,7 +238,7 @@ static shb_status read_modes(hid_t file, mhb_response *response) {
   return SHB_OK;
 }
 
-/* Length of a list that files of earlier versions have none of. */
+/* *count <- length of a list; as it is if the file, of an earlier version, has none. */
 static shb_status read_count(hid_t file, const char *path, const char *name, int *count) {
   h5_shape shape;
   if (!h5_exists(file, name)) return SHB_OK;
@@ -249,7 +249,6 @@ static shb_status read_count(hid_t file, const char *path, const char *name, int
   return SHB_OK;
 }
 
-/* Sizes, probe names and root attributes. */
 static shb_status read_parameter(hid_t file, const char *path, mhb_parameter *parameter) {
   char *text = NULL;
   SHB_TRY(h5_read_attribute_text(file, "/", "parameter", &text));
@@ -281,6 +280,7 @@ static shb_status read_interfaces(hid_t file, const char *path, mhb_response *re
   return SHB_OK;
 }
 
+/* Sizes, probe names and root attributes. */
 static shb_status read_root(hid_t file, const char *path, mhb_response **out) {
   int    n_pairs = 0, n_harmonics = 0, n_probes = 0;
   char **name = NULL;
@@ -324,7 +324,7 @@ static shb_status read_field(hid_t group, const mhb_response *response, mhb_bran
   int            *whole    = NULL;
   if (mhb_field_is_frequency(response, f)) return copy_frequency(branch);
   if (mhb_field_owner(f) == MHB_BRANCH_NONLINEAR &&
-      !h5_exists(group, f->name)) { /* an earlier version's file: not known */
+      !h5_exists(group, f->name)) { /* a file of an earlier version: not known */
     void *none = calloc(h5_count(shape) + 1, mhb_field_bytes(f->kind));
     SHB_CHECK(none, SHB_ERR_IO, "no memory for %d response points", branch->n_points);
     mhb_field_set(branch, f, none);
@@ -361,7 +361,8 @@ static shb_status read_kind(hid_t group, const char *path, int index, mhb_branch
   return SHB_OK;
 }
 
-/* Earlier files have none of these: a branch is its own main one, of the file's order. */
+/* Files of earlier versions have none of these: a branch is its own main one, with the order of the
+ * file. */
 static shb_status read_descent(hid_t group, const char *path, int index, mhb_branch *branch) {
   char *text     = NULL;
   int   searched = 1, origin = 0;
@@ -388,7 +389,7 @@ static shb_status read_descent(hid_t group, const char *path, int index, mhb_bra
   return SHB_OK;
 }
 
-/* All values of a list of codes within their range. */
+/* Checks that all codes of a list are in their range. */
 static shb_status check_codes(const char *path, int index, const char *name, int n, const int *code,
                               int least, int most, const char *wanted) {
   for (int i = 0; code && i < n; i++)

@@ -5,12 +5,13 @@
 
 #include "mhb/numerics/simd.h"
 
-/* A block of the matrix between pairs i and j, on a side each, in the pairs' axes. */
+/* A matrix over contact dofs and the axes of the pairs. */
 typedef struct {
   const double *matrix, *T0;
   int           nc, n;
 } source;
 
+/* out <- block between pair i on side_i and pair j on side_j, in the axes of the pairs. */
 static void block(const source *s, int side_i, int i, int side_j, int j, double out[3][3]) {
   const double *Ti = s->T0 + 9 * i, *Tj = s->T0 + 9 * j;
   const double *from =
@@ -28,18 +29,18 @@ static void block(const source *s, int side_i, int i, int side_j, int j, double 
 static void set_pairs(const source *s, int i, int j, mhb_cyclic_flexibility *f) {
   double rr[3][3], ll[3][3] = {{0}}, rl[3][3] = {{0}}, lr[3][3] = {{0}};
   block(s, 0, i, 0, j, rr);
-  if (f->both) {
+  if (f->even_coupling) {
     block(s, 1, i, 1, j, ll);
     block(s, 0, i, 1, j, rl);
     block(s, 1, i, 0, j, lr);
   }
   for (int c = 0; c < 3; c++)
     for (int d = 0; d < 3; d++) {
-      size_t at  = (size_t)(3 * i + c) * (size_t)f->n + (size_t)(3 * j + d);
-      f->own[at] = rr[c][d] + ll[c][d];
-      if (!f->both) continue;
-      f->both[at] = rl[c][d] + lr[c][d];
-      f->odd[at]  = lr[c][d] - rl[c][d];
+      size_t at   = (size_t)(3 * i + c) * (size_t)f->n + (size_t)(3 * j + d);
+      f->self[at] = rr[c][d] + ll[c][d];
+      if (!f->even_coupling) continue;
+      f->even_coupling[at] = rl[c][d] + lr[c][d];
+      f->odd_coupling[at]  = lr[c][d] - rl[c][d];
     }
 }
 
@@ -49,10 +50,10 @@ shb_status mhb_cyclic_flexibility_create(const double *matrix, int nc, const dou
   SHB_CHECK(f, SHB_ERR_IO, "out of memory");
   size_t square = 9 * (size_t)n_pairs * (size_t)n_pairs;
   f->n          = 3 * n_pairs;
-  f->own        = malloc(square * sizeof(double));
-  if (sides == 2) f->both = malloc(square * sizeof(double));
-  if (sides == 2) f->odd = malloc(square * sizeof(double));
-  if (!f->own || (sides == 2 && !(f->both && f->odd))) {
+  f->self       = shb_arena_take(&f->arena, square, sizeof(double));
+  if (sides == 2) f->even_coupling = shb_arena_take(&f->arena, square, sizeof(double));
+  if (sides == 2) f->odd_coupling = shb_arena_take(&f->arena, square, sizeof(double));
+  if (f->arena.failed) {
     mhb_cyclic_flexibility_destroy(f);
     SHB_FAIL(SHB_ERR_IO, "out of memory for the residual flexibility of %d pairs", n_pairs);
   }
@@ -70,9 +71,7 @@ void mhb_cyclic_flexibility_set(mhb_cyclic_flexibility *f, const double *matrix,
 
 void mhb_cyclic_flexibility_destroy(mhb_cyclic_flexibility *f) {
   if (!f) return;
-  free(f->own);
-  free(f->both);
-  free(f->odd);
+  shb_arena_free(&f->arena);
   free(f);
 }
 
@@ -80,12 +79,13 @@ MHB_HOT void mhb_cyclic_flexibility_add(const mhb_cyclic_flexibility *f, double 
                                         double factor, double complex *R) {
   size_t square = (size_t)f->n * (size_t)f->n;
   double re = factor * creal(phase), im = factor * cimag(phase);
-  if (!f->both) {
-    for (size_t i = 0; i < square; i++) R[i] += factor * f->own[i];
+  if (!f->even_coupling) {
+    for (size_t i = 0; i < square; i++) R[i] += factor * f->self[i];
     return;
   }
   for (size_t i = 0; i < square; i++)
-    R[i] = CMPLX(creal(R[i]) + factor * f->own[i] - re * f->both[i], cimag(R[i]) - im * f->odd[i]);
+    R[i] = CMPLX(creal(R[i]) + factor * f->self[i] - re * f->even_coupling[i],
+                 cimag(R[i]) - im * f->odd_coupling[i]);
 }
 
 double complex mhb_cyclic_flexibility_row(const mhb_cyclic_flexibility *f, double complex phase,
@@ -93,10 +93,10 @@ double complex mhb_cyclic_flexibility_row(const mhb_cyclic_flexibility *f, doubl
   size_t at = (size_t)i * (size_t)f->n;
   double re = 0, im = 0;
   for (int j = 0; j < f->n; j++) {
-    double a = f->own[at + (size_t)j], b = 0;
-    if (f->both) {
-      a -= creal(phase) * f->both[at + (size_t)j];
-      b = -cimag(phase) * f->odd[at + (size_t)j];
+    double a = f->self[at + (size_t)j], b = 0;
+    if (f->even_coupling) {
+      a -= creal(phase) * f->even_coupling[at + (size_t)j];
+      b = -cimag(phase) * f->odd_coupling[at + (size_t)j];
     }
     re += a * creal(p[j]) - b * cimag(p[j]);
     im += a * cimag(p[j]) + b * creal(p[j]);
@@ -109,7 +109,9 @@ void mhb_cyclic_flexibility_add_block(const mhb_cyclic_flexibility *f, double co
   for (int c = 0; c < 3; c++)
     for (int d = 0; d < 3; d++) {
       size_t at = (size_t)(3 * pair + c) * (size_t)f->n + (size_t)(3 * pair + d);
-      R[c][d] += factor * f->own[at];
-      if (f->both) R[c][d] -= factor * CMPLX(creal(phase) * f->both[at], cimag(phase) * f->odd[at]);
+      R[c][d] += factor * f->self[at];
+      if (f->even_coupling)
+        R[c][d] -=
+            factor * CMPLX(creal(phase) * f->even_coupling[at], cimag(phase) * f->odd_coupling[at]);
     }
 }

@@ -1,19 +1,15 @@
 #include "mhb/structure/modal_structure.h"
 
-#include <stdlib.h>
 #include <string.h>
 
-static const double TWO_PI = 6.283185307179586476925;
+#include "mesh/base/constants.h"
 
-/* The wave of nu periods lags by (2 pi/nu)(E/N + l), l the least for which it closes around the ring: E' = (E + N l)/nu. */
+/* Wave number E' = (E + N l)/nu of the fundamental. */
 static int wave_of(const mhb_settings *s) {
-  for (int l = 0; l < s->subharmonics; l++)
-    if ((s->engine_order + (long)s->blades * l) % s->subharmonics == 0)
-      return (int)((s->engine_order + (long)s->blades * l) / s->subharmonics);
-  return 0;
+  return (int)((s->engine_order + (long)s->blades * mhb_wave_shift(s)) / s->subharmonics);
 }
 
-/* T0^T x of a pair by a mode, negative on the left. */
+/* T0^T x of a pair in a mode, negative on the left. */
 static double shape_of(const mhb_receptance *r, int side, int row, int mode) {
   const double *x   = side ? r->model->left : r->model->right;
   double        sum = 0;
@@ -22,7 +18,8 @@ static double shape_of(const mhb_receptance *r, int side, int row, int mode) {
   return side ? -sum : sum;
 }
 
-/* Motion on side s by a unit contact force on side t of the same blade: modes from `first` on, and the residual. */
+/* Motion on side s by a unit contact force on side t of the same blade: modes from `first` on, and
+ * residual flexibility. */
 static double flexibility(const mhb_receptance *r, int s, int row, int t, int column, int first) {
   const modal_model *model = r->model;
   int                n = r->n, nc = n * (model->has_left ? 2 : 1);
@@ -35,7 +32,7 @@ static double flexibility(const mhb_receptance *r, int s, int row, int t, int co
   }
   if (s != t) sum = -sum;
   for (int i = first; i < r->n_modes; i++) {
-    double w = TWO_PI * model->frequency[i];
+    double w = SHB_TWO_PI * model->frequency[i];
     sum += shape_of(r, s, row, i) * shape_of(r, t, column, i) / (w * w);
   }
   return sum;
@@ -65,13 +62,12 @@ shb_status mhb_modal_structure_create(const mhb_receptance *r, const mhb_setting
                                       .wave   = ground ? 0 : wave_of(settings)};
   s->contacts = s->blades * s->pairs;
   size_t n = 3 * (size_t)s->contacts, side = (size_t)m * (size_t)r->n;
-  s->omega = calloc((size_t)m, sizeof(double));
-  s->zeta  = calloc((size_t)m, sizeof(double));
-  s->shape = calloc((size_t)s->sides * side, sizeof(double));
-  int ok   = s->omega && s->zeta && s->shape;
+  s->omega = shb_arena_take(&s->arena, (size_t)m, sizeof(double));
+  s->zeta  = shb_arena_take(&s->arena, (size_t)m, sizeof(double));
+  s->shape = shb_arena_take(&s->arena, (size_t)s->sides * side, sizeof(double));
   if (model->residual_flexibility || m < r->n_modes)
-    ok &= (s->flexibility = calloc(n * n, sizeof(double))) != NULL;
-  if (!ok) {
+    s->flexibility = shb_arena_take(&s->arena, n * n, sizeof(double));
+  if (s->arena.failed) {
     mhb_modal_structure_destroy(s);
     SHB_FAIL(SHB_ERR_IO, "out of memory for the structure of %d contacts", s->contacts);
   }
@@ -82,7 +78,7 @@ shb_status mhb_modal_structure_create(const mhb_receptance *r, const mhb_setting
 void mhb_modal_structure_set(const mhb_receptance *r, mhb_modal_structure *s) {
   const size_t side = (size_t)s->modes * (size_t)r->n, n = 3 * (size_t)s->contacts;
   for (int i = 0; i < s->modes; i++) {
-    s->omega[i] = TWO_PI * r->model->frequency[i];
+    s->omega[i] = SHB_TWO_PI * r->model->frequency[i];
     s->zeta[i]  = r->model->damping_ratio[i];
   }
   for (size_t k = 0; k < (size_t)s->sides * side; k++)
@@ -93,9 +89,6 @@ void mhb_modal_structure_set(const mhb_receptance *r, mhb_modal_structure *s) {
 }
 
 void mhb_modal_structure_destroy(mhb_modal_structure *s) {
-  free(s->omega);
-  free(s->zeta);
-  free(s->shape);
-  free(s->flexibility);
+  shb_arena_free(&s->arena);
   *s = (mhb_modal_structure){0};
 }

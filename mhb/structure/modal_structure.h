@@ -1,27 +1,31 @@
 /* The blade on the ground, or the ring of N blades, as one linear structure in modal coordinates.
  *
- * Contact j = blade * pairs + pair lies between the right side of its blade and the left side of the next one (sides = 2), or
- * the ground (sides = 1, one blade). du = B dq - R dp, forces on the modes -B^T dp. */
+ * To the neighbour (sides = 2) contact j = blade * pairs + pair lies between the right side of its
+ * blade and the left side of the next one. To ground (sides = 1) there is one blade. Motion du = B
+ * dq - R dp, force on the modes -B^T dp. */
 #ifndef MHB_STRUCTURE_MODAL_STRUCTURE_H
 #define MHB_STRUCTURE_MODAL_STRUCTURE_H
 
+#include "mesh/base/arena.h"
 #include "mhb/problem/settings.h"
 #include "mhb/structure/receptance.h"
 
 typedef struct {
-  int     blades, sides, modes, pairs, contacts;
-  int     wave;         /* E of the fundamental: the next blade lags by 2 pi E/N */
-  double *omega, *zeta; /* [modes] rad/s, - */
-  double *shape;        /* [side][mode][3 pairs] (v, u, w) by the mode, kg^-1/2; left: negative */
-  double *flexibility;  /* [3 contacts][3 contacts] R, m/N, or NULL */
+  int       blades, sides, modes, pairs, contacts;
+  int       wave;         /* E of the fundamental: the next blade lags by 2 pi E/N */
+  double   *omega, *zeta; /* [modes] rad/s, - */
+  double   *shape;        /* [side][mode][3 pairs] (v, u, w) by the mode, kg^-1/2; left: negative */
+  double   *flexibility;  /* [3 contacts][3 contacts] R, m/N, or NULL */
+  shb_arena arena;
 } mhb_modal_structure;
 
-/* The lowest modes keep their dynamics; the others answer statically and are added to R, as is residual flexibility. Residual
- * inertia is left out: u = B q - R p + R2 p'' cannot be integrated forward in time. SHB_ERR_IO: no memory. */
+/* The lowest modes stay dynamic. The others answer statically and are added to R, as is residual
+ * flexibility. Residual inertia is left out: u = B q - R p + R2 p'' cannot be integrated forward in
+ * time. SHB_ERR_IO: no memory. */
 shb_status mhb_modal_structure_create(const mhb_receptance *receptance,
                                       const mhb_settings *settings, int modes,
                                       mhb_modal_structure *structure);
-/* The same modes once the receptance has moved to another speed of a run-up. */
+/* Anew for the same modes, after the receptance went to another speed of a run-up. */
 void mhb_modal_structure_set(const mhb_receptance *receptance, mhb_modal_structure *structure);
 void mhb_modal_structure_destroy(mhb_modal_structure *structure);
 

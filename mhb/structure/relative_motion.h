@@ -1,16 +1,30 @@
-/* Relative motion at the contact: T = T0^T T1,k (eqs. 2, 24, 25), the shroud axes of a pair and the inter-blade phase. */
+/* Relative motion at the contact: T = T0^T T1,k (eqs. 2, 24, 25), with the shroud axes T0 of a pair
+ * and the inter-blade phase of the wave. */
 #ifndef MHB_STRUCTURE_RELATIVE_MOTION_H
 #define MHB_STRUCTURE_RELATIVE_MOTION_H
 
 #include <complex.h>
 #include <stddef.h>
 
+#include "mhb/problem/settings.h"
+
+/* From this many relative motions on, products of matrices are left to BLAS. */
+enum { MHB_WORTH_BLAS = 12 };
+
+/* A neighbour lags in the fundamental by (2 pi/nu)(E/N + l), l any whole number of periods. The
+ * least l for which the wave closes around the ring: nu divides E + N l. -1: none does. */
+static inline int mhb_wave_shift(const mhb_settings *s) {
+  for (int l = 0; l < s->subharmonics; l++)
+    if ((s->engine_order + (long)s->blades * l) % s->subharmonics == 0) return l;
+  return -1;
+}
+
 typedef struct {
   int           n, sides; /* 3 pairs; 1 to ground, 2 to the neighbour */
   const double *T0;       /* [pair][3][3], columns v, u, w in (tangential, axial, radial) */
 } mhb_relative;
 
-/* Row (pair, c) of T: its weight of contact dof (side, pair, axis); those of other pairs are zero. phase: e_k. */
+/* Row (pair, c) of T, column (side, pair, axis). Columns of other pairs are zero. phase: e_k. */
 static inline double complex mhb_relative_weight(const mhb_relative *t, int row, int side, int axis,
                                                  double complex phase) {
   double weight = t->T0[(row / 3) * 9 + axis * 3 + row % 3];

@@ -5,20 +5,11 @@
 
 #include "mhb/numerics/simd.h"
 
-/* From this many relative motions on, products of matrices are left to BLAS. */
-enum { WORTH_BLAS = 12 };
-
 static int n_contact(const modal_model *model) {
   return 3 * model->n_pairs * (model->has_left ? 2 : 1);
 }
 
-/* ---- made once ---- */
-
-/* True if there is nothing to hold, or room for it. */
-static bool room(const void *wanted, size_t n, double complex **array) {
-  if (wanted && n) *array = calloc(n, sizeof **array);
-  return !wanted || !n || *array;
-}
+/* ---- independent of the frequency ---- */
 
 typedef struct {
   const double         *contact[MODAL_TERMS], *probe_contact[MODAL_TERMS];
@@ -33,15 +24,23 @@ static terms terms_of(const modal_model *m) {
                  {m->probe_load_residual, m->probe_load_inertia, m->probe_load_fourth}};
 }
 
-static bool allocate(mhb_residual_terms *l, const terms *from) {
+/* NULL if there is nothing to hold. */
+static double complex *array(mhb_residual_terms *l, const void *wanted, size_t n) {
+  return wanted && n ? shb_arena_take(&l->arena, n, sizeof(double complex)) : NULL;
+}
+
+static bool take_arrays(mhb_residual_terms *l, const terms *from) {
   const size_t n = (size_t)l->relative.n, K = (size_t)l->n_harmonics + 1;
   const size_t q = 3 * (size_t)l->model->n_probes, r = (size_t)l->model->n_residual;
-  bool         made = true;
-  for (int t = 0; t < MODAL_TERMS; t++)
-    made = made && room(from->load[t], K * n, &l->load[t]) &&
-           room(from->probe_load[t], K * q, &l->probe_load[t]) &&
-           room(from->probe_contact[t], K * q * n, &l->probe_contact[t]);
-  return made && room(l, K * n * r, &l->S) && room(l, K * r, &l->F) && room(l, n * r, &l->Sg);
+  for (int t = 0; t < MODAL_TERMS; t++) {
+    l->load[t]          = array(l, from->load[t], K * n);
+    l->probe_load[t]    = array(l, from->probe_load[t], K * q);
+    l->probe_contact[t] = array(l, from->probe_contact[t], K * q * n);
+  }
+  l->S  = array(l, l, K * n * r);
+  l->F  = array(l, l, K * r);
+  l->Sg = array(l, l, n * r);
+  return !l->arena.failed;
 }
 
 /* S = T times the residual modes. */
@@ -83,7 +82,7 @@ static void set_probe(const mhb_residual_terms *l, int k, const double *matrix,
   }
 }
 
-void mhb_residual_terms_set(mhb_residual_terms *l) {
+void mhb_residual_terms_update(mhb_residual_terms *l) {
   const terms from = terms_of(l->model);
   for (int t = 0; t < MODAL_TERMS; t++)
     if (l->contact[t])
@@ -99,12 +98,12 @@ void mhb_residual_terms_set(mhb_residual_terms *l) {
 
 static shb_status make(mhb_residual_terms *l) {
   const terms from = terms_of(l->model);
-  SHB_CHECK(allocate(l, &from), SHB_ERR_IO, "out of memory for the residual terms");
+  SHB_CHECK(take_arrays(l, &from), SHB_ERR_IO, "out of memory for the residual terms");
   for (int t = 0; t < MODAL_TERMS; t++)
     if (from.contact[t])
       SHB_TRY(mhb_cyclic_flexibility_create(from.contact[t], n_contact(l->model), l->relative.T0,
                                             l->model->n_pairs, l->relative.sides, &l->contact[t]));
-  mhb_residual_terms_set(l);
+  mhb_residual_terms_update(l);
   return SHB_OK;
 }
 
@@ -128,15 +127,8 @@ shb_status mhb_residual_terms_create(const modal_model *model, mhb_relative rela
 
 void mhb_residual_terms_destroy(mhb_residual_terms *l) {
   if (!l) return;
-  for (int t = 0; t < MODAL_TERMS; t++) {
-    mhb_cyclic_flexibility_destroy(l->contact[t]);
-    free(l->load[t]);
-    free(l->probe_load[t]);
-    free(l->probe_contact[t]);
-  }
-  free(l->S);
-  free(l->F);
-  free(l->Sg);
+  for (int t = 0; t < MODAL_TERMS; t++) mhb_cyclic_flexibility_destroy(l->contact[t]);
+  shb_arena_free(&l->arena);
   free(l);
 }
 
@@ -161,7 +153,7 @@ static const double complex *shapes(const mhb_residual_terms *l, int k) {
   return l->S + (size_t)k * (size_t)l->relative.n * (size_t)l->model->n_residual;
 }
 
-/* sum_t weight_t x_t at i, of the terms that there are. */
+/* sum_t weight_t x_t at i, over the terms there are. */
 MHB_INLINE double complex series(double complex *const x[MODAL_TERMS],
                                  const double weight[MODAL_TERMS], size_t i) {
   double re = 0, im = 0;
@@ -206,7 +198,8 @@ void mhb_residual_terms_matrix(const mhb_residual_terms *l, int k, double w, dou
   for (int t = 0; t < MODAL_TERMS; t++)
     if (l->contact[t]) mhb_cyclic_flexibility_add(l->contact[t], l->phase[k], s.weight[t], R);
   for (int i = 0; i < r; i++) g[i] = modal_series_mode(l->model, i, &s, &slope);
-  if (r > 0 && w > 0) (l->relative.n < WORTH_BLAS ? add_small : add_large)(l, shapes(l, k), g, R);
+  if (r > 0 && w > 0)
+    (l->relative.n < MHB_WORTH_BLAS ? add_small : add_large)(l, shapes(l, k), g, R);
 }
 
 void mhb_residual_terms_block(const mhb_residual_terms *l, int k, double w, int pair,
@@ -225,7 +218,7 @@ void mhb_residual_terms_block(const mhb_residual_terms *l, int k, double w, int 
   }
 }
 
-/* What acts on residual mode i: load F - S^H p. */
+/* Force on residual mode i: load F - S^H p. */
 static double complex drive(const mhb_residual_terms *l, int k, int i, double load,
                             const double complex *p) {
   const int             r = l->model->n_residual;
@@ -235,21 +228,21 @@ static double complex drive(const mhb_residual_terms *l, int k, int i, double lo
   return f;
 }
 
-/* to[n] += factor (load x - matrix p), of the terms, with their weights or slopes. */
+/* to[n] += factor (load x - matrix p), by the terms, with their weights or slopes. */
 static void add_terms(const mhb_residual_terms *l, int k, const modal_series *s, bool slopes,
                       double factor, double load, const double complex *p, double complex *to) {
   const int     n       = l->relative.n;
   const double *contact = slopes ? s->slope : s->weight;
   const double *loaded  = slopes ? s->load_slope : s->load_weight;
   for (int a = 0; a < n; a++) {
-    to[a] += factor * load * series(l->load, loaded, (size_t)(k * n + a));
+    to[a] += factor * load * series(l->load, loaded, (size_t)k * (size_t)n + (size_t)a);
     for (int t = 0; t < MODAL_TERMS; t++)
       if (l->contact[t] && contact[t] != 0)
         to[a] -= factor * contact[t] * mhb_cyclic_flexibility_row(l->contact[t], l->phase[k], a, p);
   }
 }
 
-/* The same of the residual modes. */
+/* The same by the residual modes. */
 static void add_modes(const mhb_residual_terms *l, int k, const modal_series *s, bool slopes,
                       double factor, double load, const double complex *p, double complex *to) {
   const int             n = l->relative.n, r = l->model->n_residual;
@@ -272,7 +265,7 @@ void mhb_residual_terms_load(const mhb_residual_terms *l, int k, double w, doubl
   const double complex *S = shapes(l, k);
   modal_series          s = modal_series_at(l->model, w);
   for (int a = 0; a < n; a++)
-    motion[a] += scale * series(l->load, s.load_weight, (size_t)(k * n + a));
+    motion[a] += scale * series(l->load, s.load_weight, (size_t)k * (size_t)n + (size_t)a);
   for (int i = 0; i < r; i++) {
     double         slope;
     double complex f = scale * modal_series_mode(l->model, i, &s, &slope) * l->F[k * r + i];
@@ -294,7 +287,7 @@ void mhb_residual_terms_slope(const mhb_residual_terms *l, int k, double w, doub
   add_modes(l, k, &s, true, dw2, scale, p, slope);
 }
 
-/* change[3 q] += P_i (g drive of the change + dw2 g' drive). */
+/* change[3 q] += P_i (g F(change) + dw2 g' F), F the force on residual mode i of shape P_i. */
 static void add_probe_modes(const mhb_residual_terms *l, int k, const modal_series *s, double scale,
                             const double complex *p, const double complex *dp, double dw2,
                             double d_scale, double complex *change) {
@@ -307,7 +300,7 @@ static void add_probe_modes(const mhb_residual_terms *l, int k, const modal_seri
   }
 }
 
-/* change[3 q] += scale load - matrix p, of the terms. */
+/* change[3 q] += scale load - matrix p, by the terms. */
 static void add_probe_terms(const mhb_residual_terms *l, int k, const double weight[MODAL_TERMS],
                             double scale, const double complex *p, double complex *change) {
   const size_t n = (size_t)l->relative.n, q = 3 * (size_t)l->model->n_probes;

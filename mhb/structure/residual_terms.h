@@ -1,16 +1,19 @@
-/* What the modes left out answer to the contact's forces and to the load: the residual terms of eqs. 34, 35.
+/* Residual terms of eqs. 34, 35: the response of the modes left out to contact forces and load.
  *
- * At harmonic k, w rad/s, with the weights a_t of the terms and g_j of the residual modes (modal/model/residual_series.h), in relative motion (mhb/structure/relative_motion.h):
- *   matrix   = T (R + a_1 R2 + a_2 R3) T^H + S g S^H             [n][n] m/N, n = 3 pairs
- *   load     = T (x + a_1 x2 + a_2 x3) + S g F                   [n] m, at scale 1
- * S = T times the residual modes at the contact, F the load's work on them; and the probes by the same. All that does not depend on w is made
- * once. Motions are [n] in the order pair, (v, u, w). */
+ * At harmonic k, w rad/s, with the weights a_t of the terms and g_j of the residual modes
+ * (modal/model/residual_series.h), in relative motion (relative_motion.h):
+ *   matrix = T (R + a_1 R2 + a_2 R3) T^H + S g S^H             [n][n] m/N, n = 3 pairs
+ *   load   = T (x + a_1 x2 + a_2 x3) + S g F                   [n] m, at scale 1
+ * S = T times the residual modes at the contact, F the modal forces of the load on them. The probes
+ * have the same terms with their own shapes. All that does not depend on w is made once. Motions
+ * are [n] in the order pair, (v, u, w). */
 #ifndef MHB_STRUCTURE_RESIDUAL_TERMS_H
 #define MHB_STRUCTURE_RESIDUAL_TERMS_H
 
 #include <complex.h>
 #include <stdbool.h>
 
+#include "mesh/base/arena.h"
 #include "mesh/base/status.h"
 #include "mhb/structure/cyclic_flexibility.h"
 #include "mhb/structure/relative_motion.h"
@@ -21,56 +24,60 @@ typedef struct {
   mhb_relative            relative;
   int                     n_harmonics, nu;
   const double complex   *phase;                      /* [k] e_k, the caller's */
-  mhb_cyclic_flexibility *contact[MODAL_TERMS];       /* R, R2, R3; each or NULL, as below */
+  mhb_cyclic_flexibility *contact[MODAL_TERMS];       /* R, R2, R3; NULL: none, as below */
   double complex         *load[MODAL_TERMS];          /* [k][n] */
   double complex         *probe_load[MODAL_TERMS];    /* [k][3 q] */
   double complex         *probe_contact[MODAL_TERMS]; /* [k][3 q][n] */
   double complex         *S, *F;                      /* [k][n][r], [k][r] of r residual modes */
   double complex         *Sg;                         /* [n][r] S g of one harmonic */
+  shb_arena               arena;
 } mhb_residual_terms;
 
-/* phase[n_harmonics + 1] must outlive it, as the model and T0. Load harmonic h drives harmonic nu h. SHB_ERR_IO: no memory. */
+/* model, relative.T0 and phase[n_harmonics + 1] must outlive it. Load harmonic h drives harmonic nu
+ * h. SHB_ERR_IO: no memory. */
 shb_status mhb_residual_terms_create(const modal_model *model, mhb_relative relative, int nu,
                                      int n_harmonics, const double complex *phase,
                                      mhb_residual_terms **out);
-void       mhb_residual_terms_destroy(mhb_residual_terms *left);
+void       mhb_residual_terms_destroy(mhb_residual_terms *terms);
 
-/* The model's arrays have other values. */
-void mhb_residual_terms_set(mhb_residual_terms *left);
+/* Anew from the model, whose arrays have other values. */
+void mhb_residual_terms_update(mhb_residual_terms *terms);
 
 /* Whether the load has this harmonic. */
-bool mhb_residual_terms_driven(const mhb_residual_terms *left, int k);
+bool mhb_residual_terms_driven(const mhb_residual_terms *terms, int k);
 
 /* R[n][n] += matrix. Not for two threads at once. */
-void mhb_residual_terms_matrix(const mhb_residual_terms *left, int k, double w, double complex *R);
+void mhb_residual_terms_matrix(const mhb_residual_terms *terms, int k, double w, double complex *R);
 
 /* R[3][3] += the block of a pair with itself. */
-void mhb_residual_terms_block(const mhb_residual_terms *left, int k, double w, int pair,
+void mhb_residual_terms_block(const mhb_residual_terms *terms, int k, double w, int pair,
                               double complex R[3][3]);
 
 /* motion[n] += scale load */
-void mhb_residual_terms_load(const mhb_residual_terms *left, int k, double w, double scale,
+void mhb_residual_terms_load(const mhb_residual_terms *terms, int k, double w, double scale,
                              double complex *motion);
 
 /* motion[n] += scale load - matrix p */
-void mhb_residual_terms_motion(const mhb_residual_terms *left, int k, double w, double scale,
+void mhb_residual_terms_motion(const mhb_residual_terms *terms, int k, double w, double scale,
                                const double complex *p, double complex *motion);
 
-/* The same with weights of one's own, without residual modes. */
-void mhb_residual_terms_motion_by(const mhb_residual_terms *left, int k, const modal_series *series,
-                                  double scale, const double complex *p, double complex *motion);
+/* The same with given weights, without residual modes. */
+void mhb_residual_terms_motion_by(const mhb_residual_terms *terms, int k,
+                                  const modal_series *series, double scale, const double complex *p,
+                                  double complex *motion);
 
 /* slope[n] += d/d(w^2) of that, times dw2. */
-void mhb_residual_terms_slope(const mhb_residual_terms *left, int k, double w, double dw2,
+void mhb_residual_terms_slope(const mhb_residual_terms *terms, int k, double w, double dw2,
                               double scale, const double complex *p, double complex *slope);
 
-/* change[3 q] += the change of the probes' motion with p by dp, w^2 by dw2 and the scale by d_scale. */
-void mhb_residual_terms_probe_change(const mhb_residual_terms *left, int k, double w, double scale,
+/* change[3 q] += the change of the probes' motion with p by dp, w^2 by dw2, the scale by
+ * d_scale. */
+void mhb_residual_terms_probe_change(const mhb_residual_terms *terms, int k, double w, double scale,
                                      const double complex *p, const double complex *dp, double dw2,
                                      double d_scale, double complex *change);
 
-/* motion[3 q] += the motion of the probes with weights of one's own, without residual modes. */
-void mhb_residual_terms_probe_by(const mhb_residual_terms *left, int k, const modal_series *series,
+/* motion[3 q] += the motion of the probes with given weights, without residual modes. */
+void mhb_residual_terms_probe_by(const mhb_residual_terms *terms, int k, const modal_series *series,
                                  double scale, const double complex *p, double complex *motion);
 
 #endif

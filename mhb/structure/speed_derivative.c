@@ -1,77 +1,101 @@
 #include "mhb/structure/speed_derivative.h"
 
+#include <stdlib.h>
 #include <string.h>
 
-static const double PI = 3.14159265358979323846;
+#include "mesh/base/constants.h"
 
-/* The rate at the model's omega. */
-static const mhb_receptance *rate_of(const mhb_receptance *r) {
-  if (r->rate->omega == r->omega) return r->rate;
-  mhb_speed_model_differentiate(r->at);
-  mhb_receptance_set(r->rate);
-  r->rate->omega = r->omega;
-  return r->rate;
+shb_status mhb_speed_derivative_create(mhb_speed_model *model, const mhb_modal_part *part,
+                                       mhb_speed_derivative **out) {
+  mhb_speed_derivative *d = calloc(1, sizeof *d);
+  SHB_CHECK(d, SHB_ERR_IO, "out of memory");
+  d->model = model;
+  d->part  = part;
+  mhb_speed_model_differentiate(model);
+  shb_status status = mhb_modal_part_create(&model->slope, part->relative, part->nu,
+                                            part->n_harmonics, part->phase, &d->slope);
+  if (status != SHB_OK) {
+    free(d);
+    return status;
+  }
+  *out = d;
+  return SHB_OK;
 }
 
-/* a = L d, d = scale F - B^H p, and its change with the model, L (d' - (dK + j w dN) a): [modes] each. */
-static void modal_rate(const mhb_receptance *r, int k, const double complex *p, double complex *a,
-                       double complex *change) {
-  const mhb_receptance *rate = rate_of(r);
-  const int             m    = r->n_modes;
-  const double          w    = k * r->omega / r->nu;
-  for (int i = 0; i < m; i++)
-    a[i] = r->lambda[k * m + i] * mhb_receptance_modal_load(r, k, p, i, r->scale);
+void mhb_speed_derivative_destroy(mhb_speed_derivative *d) {
+  if (!d) return;
+  mhb_modal_part_destroy(d->slope);
+  free(d);
+}
+
+/* The slope at the model's omega. */
+static void update(const mhb_speed_derivative *d) {
+  if (d->model->slope_omega == d->model->omega) return;
+  mhb_speed_model_differentiate(d->model);
+  mhb_modal_part_update(d->slope);
+}
+
+/* a = L d and its change with the model, L (dd - (dK + j w dN) a): [modes] each. */
+static void modal_change(const mhb_speed_derivative *d, int k, double w,
+                         const double complex *lambda, double scale, const double complex *p,
+                         double complex *a, double complex *change) {
+  const int m = d->part->n_modes;
+  for (int i = 0; i < m; i++) a[i] = lambda[i] * mhb_modal_part_force(d->part, k, p, i, scale);
   for (int i = 0; i < m; i++) {
-    const double  *dK = r->at->stiffness + i * m, *dN = r->at->damping + i * m;
-    double complex sum = mhb_receptance_modal_load(rate, k, p, i, r->scale);
+    const double  *dK = d->model->stiffness + i * m, *dN = d->model->damping + i * m;
+    double complex sum = mhb_modal_part_force(d->slope, k, p, i, scale);
     for (int j = 0; j < m; j++) sum -= CMPLX(dK[j], w * dN[j]) * a[j];
-    change[i] = r->lambda[k * m + i] * sum;
+    change[i] = lambda[i] * sum;
   }
 }
 
-/* d/d omega of the weights of the residual terms by w_m, the last mode kept: weight t is of degree t in (w^2, w_m^2). */
-static modal_series weight_rate(const mhb_receptance *r, const modal_series *s, double w) {
-  const int    last = r->n_modes - 1;
-  const double top  = 2 * PI * r->model->frequency[last];
-  const double dc   = r->at->stiffness[last * r->n_modes + last] / (top * top);
-  modal_series rate = {.x = 0};
+/* d/d omega of the weights of the residual terms by w_m, the last mode kept. The weight of term t
+ * is homogeneous of degree t in (w^2, w_m^2). */
+static modal_series weight_slope(const mhb_speed_derivative *d, const modal_series *s, double w) {
+  const modal_model *model = d->part->model;
+  const int          last  = model->n_modes - 1;
+  const double       top   = SHB_TWO_PI * model->frequency[last];
+  const double       dc    = d->model->stiffness[last * model->n_modes + last] / (top * top);
+  modal_series       slope = {.x = 0};
   for (int t = 0; t < MODAL_TERMS; t++) {
-    rate.weight[t]      = dc * (t * s->weight[t] - w * w * s->slope[t]);
-    rate.load_weight[t] = r->model->load_fourth ? rate.weight[t] : 0;
+    slope.weight[t]      = dc * (t * s->weight[t] - w * w * s->slope[t]);
+    slope.load_weight[t] = model->load_fourth ? slope.weight[t] : 0;
   }
-  return rate;
+  return slope;
 }
 
-void mhb_speed_derivative_slope(const mhb_receptance *r, int k, const double complex *p,
+void mhb_speed_derivative_slope(const mhb_speed_derivative *d, int k, double w,
+                                const double complex *lambda, double scale, const double complex *p,
                                 double complex *slope) {
-  const int             m = r->n_modes, n = r->n;
-  const double          w    = k * r->omega / r->nu;
-  const mhb_receptance *rate = rate_of(r);
-  const modal_series    s = modal_series_at(r->model, w), by_weights = weight_rate(r, &s, w);
-  const double complex *B  = r->B + (size_t)k * (size_t)n * (size_t)m;
-  const double complex *dB = rate->B + (size_t)k * (size_t)n * (size_t)m;
+  const mhb_modal_part *part = d->part;
+  const int             m = part->n_modes, n = part->n;
+  update(d);
+  const modal_series    s = modal_series_at(part->model, w), ds = weight_slope(d, &s, w);
+  const double complex *B  = part->B + (size_t)k * (size_t)n * (size_t)m;
+  const double complex *dB = d->slope->B + (size_t)k * (size_t)n * (size_t)m;
   double complex        a[m], change[m];
-  modal_rate(r, k, p, a, change);
+  modal_change(d, k, w, lambda, scale, p, a, change);
   for (int row = 0; row < n; row++, B += m, dB += m)
     for (int i = 0; i < m; i++) slope[row] += dB[i] * a[i] + B[i] * change[i];
-  mhb_residual_terms_motion_by(rate->left_out, k, &s, r->scale, p, slope);
-  mhb_residual_terms_motion_by(r->left_out, k, &by_weights, r->scale, p, slope);
+  mhb_residual_terms_motion_by(d->slope->residual_terms, k, &s, scale, p, slope);
+  mhb_residual_terms_motion_by(part->residual_terms, k, &ds, scale, p, slope);
 }
 
-void mhb_speed_derivative_probe(const mhb_receptance *r, int k, const double complex *p,
+void mhb_speed_derivative_probe(const mhb_speed_derivative *d, int k, double w,
+                                const double complex *lambda, double scale, const double complex *p,
                                 double d_omega, double complex *change) {
-  const int             m = r->n_modes, q = 3 * r->model->n_probes;
-  const double          w    = k * r->omega / r->nu;
-  const mhb_receptance *rate = rate_of(r);
-  const modal_series    s = modal_series_at(r->model, w), by_weights = weight_rate(r, &s, w);
-  double complex        a[m], by[m], residual[q + 1];
-  memset(residual, 0, sizeof residual);
-  modal_rate(r, k, p, a, by);
-  mhb_residual_terms_probe_by(rate->left_out, k, &s, r->scale, p, residual);
-  mhb_residual_terms_probe_by(r->left_out, k, &by_weights, r->scale, p, residual);
+  const modal_model *model = d->part->model;
+  const int          m = model->n_modes, q = 3 * model->n_probes;
+  update(d);
+  const modal_series s = modal_series_at(model, w), ds = weight_slope(d, &s, w);
+  double complex     a[m], da[m], slope[q + 1];
+  memset(slope, 0, sizeof slope);
+  modal_change(d, k, w, lambda, scale, p, a, da);
+  mhb_residual_terms_probe_by(d->slope->residual_terms, k, &s, scale, p, slope);
+  mhb_residual_terms_probe_by(d->part->residual_terms, k, &ds, scale, p, slope);
   for (int c = 0; c < q; c++) {
-    const double *psi = r->model->probe + c * m, *d_psi = rate->model->probe + c * m;
-    for (int i = 0; i < m; i++) residual[c] += d_psi[i] * a[i] + psi[i] * by[i];
-    change[c] += d_omega * residual[c];
+    const double *psi = model->probe + c * m, *d_psi = d->slope->model->probe + c * m;
+    for (int i = 0; i < m; i++) slope[c] += d_psi[i] * a[i] + psi[i] * da[i];
+    change[c] += d_omega * slope[c];
   }
 }

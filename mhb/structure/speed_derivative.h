@@ -1,15 +1,35 @@
-/* How the answer of the blade changes with its model, in a run-up: what dB, dF, the residual terms and dA (mhb/structure/speed_model.h) add to d/d omega. */
+/* In a run-up the blade's model depends on the frequency: the part of d/d omega that this adds.
+ *
+ * With d = scale F - B^H p, a = L d and A = L^-1 (speed_model.h), at fixed p:
+ *   d(B a) = dB a + B L (dd - dA a),   dA = dK + j w dN
+ * and the derivative of the residual terms with their weights. */
 #ifndef MHB_STRUCTURE_SPEED_DERIVATIVE_H
 #define MHB_STRUCTURE_SPEED_DERIVATIVE_H
 
-#include "mhb/structure/receptance.h"
+#include "mhb/structure/modal_part.h"
+#include "mhb/structure/speed_model.h"
 
-/* slope[n] += what changes with the model in harmonic k of [free - R p] at fixed p[n]. */
-void mhb_speed_derivative_slope(const mhb_receptance *receptance, int k, const double complex *p,
+typedef struct {
+  mhb_speed_model      *model; /* the caller's, as is part */
+  const mhb_modal_part *part;  /* of model->model */
+  mhb_modal_part       *slope; /* of model->slope, the derivative by omega */
+} mhb_speed_derivative;
+
+/* The speed model is differentiated and must outlive the result. SHB_ERR_IO: no memory. */
+shb_status mhb_speed_derivative_create(mhb_speed_model *model, const mhb_modal_part *part,
+                                       mhb_speed_derivative **derivative);
+void       mhb_speed_derivative_destroy(mhb_speed_derivative *derivative);
+
+/* slope[n] += the model's part of d/d omega of the contact motion at harmonic k, w rad/s.
+ *   lambda  in  [modes] L at w
+ *   p       in  [n] contact force, N */
+void mhb_speed_derivative_slope(const mhb_speed_derivative *derivative, int k, double w,
+                                const double complex *lambda, double scale, const double complex *p,
                                 double complex *slope);
 
 /* change[3 q] += d_omega times the same of the probes. */
-void mhb_speed_derivative_probe(const mhb_receptance *receptance, int k, const double complex *p,
+void mhb_speed_derivative_probe(const mhb_speed_derivative *derivative, int k, double w,
+                                const double complex *lambda, double scale, const double complex *p,
                                 double d_omega, double complex *change);
 
 #endif

@@ -5,25 +5,25 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "mhb/structure/speed_model.h"
+#include "mesh/base/constants.h"
 #include "modal/model/reduce.h"
 
-static const double TWO_PI = 6.283185307179586476925, HAIR = 1e-9;
+static const double HAIR = 1e-9;
 
-/* Of the speeds beyond the range, these many on each side shape the splines; the least part of a mode's mass, squared cosine, that
- * stays among the modes kept; places where the interpolated stiffness is looked at. */
-enum { BESIDE = 2, LOOKS = 33 };
+/* Speeds used beyond the range on each side, for the splines; least part of the mass of a mode,
+ * squared cosine, in the space of the modes kept. */
+enum { BESIDE = 2 };
 static const double STAYS = .8;
 
 static double rpm(double speed) {
-  return speed * 60 / TWO_PI;
+  return speed * 60 / SHB_TWO_PI;
 }
 
 double mhb_speed_table_speed(const mhb_speed_table *r, double omega) {
   return fmin(fmax(omega / r->engine_order, r->low), r->high);
 }
 
-/* ---------------------------------------------------------------- what an entry holds */
+/* ---- entries ---- */
 
 void mhb_speed_table_unrotated(const modal_model *m, const void *data[MHB_SPEED_TABLE_UNROTATED],
                                size_t count[MHB_SPEED_TABLE_UNROTATED]) {
@@ -70,20 +70,20 @@ void mhb_speed_table_set_unrotated(modal_model *m, double *const data[MHB_SPEED_
 }
 
 static void lay_out(mhb_speed_table *r) {
-  const modal_model *m = r->given;
+  const modal_model *m = r->common;
   const void        *unused[MHB_SPEED_TABLE_UNROTATED];
   r->rows = 3 * m->n_pairs * (m->has_left ? 2 : 1) + 3 * m->n_probes + 2 * (m->n_load + 1);
   r->size = (2 * (size_t)r->n_modes + (size_t)r->rows) * (size_t)r->n_modes;
   r->size += r->size % 2; /* complex numbers follow */
   mhb_speed_table_unrotated(m, unused, r->count);
   for (int i = 0; i < MHB_SPEED_TABLE_UNROTATED; i++) {
-    r->plain[i] = r->size;
+    r->unrotated[i] = r->size;
     r->size += r->count[i];
   }
 }
 
 /* out[m][m] = V^T diag(value) V */
-static void turn_diagonal(int m, const double *V, const double *value, double *out) {
+static void rotate_diagonal(int m, const double *V, const double *value, double *out) {
   for (int t = 0; t < m; t++)
     for (int u = 0; u < m; u++) {
       double sum = 0;
@@ -93,7 +93,7 @@ static void turn_diagonal(int m, const double *V, const double *value, double *o
 }
 
 /* out[m] = row[m] V, row of every stride-th value */
-static void turn_row(int m, const double *V, const double *row, int stride, double *out) {
+static void rotate_row(int m, const double *V, const double *row, int stride, double *out) {
   for (int t = 0; t < m; t++) {
     double sum = 0;
     for (int i = 0; i < m; i++) sum += row[i * stride] * V[i * m + t];
@@ -101,8 +101,8 @@ static void turn_row(int m, const double *V, const double *row, int stride, doub
   }
 }
 
-static double *turn_rows(int m, const double *V, const double *rows, int n, double *out) {
-  for (int row = 0; row < n; row++, out += m) turn_row(m, V, rows + (size_t)(row * m), 1, out);
+static double *rotate_rows(int m, const double *V, const double *rows, int n, double *out) {
+  for (int row = 0; row < n; row++, out += m) rotate_row(m, V, rows + (size_t)(row * m), 1, out);
   return out;
 }
 
@@ -112,24 +112,24 @@ static void fill_entry(const mhb_speed_table *r, const modal_model *model, const
   const int   m = r->n_modes, side = 3 * model->n_pairs;
   const void *data[MHB_SPEED_TABLE_UNROTATED];
   size_t      count[MHB_SPEED_TABLE_UNROTATED];
-  for (int i = 0; i < m; i++) scratch[i] = pow(TWO_PI * model->frequency[i], 2);
-  turn_diagonal(m, V, scratch, out);
-  turn_diagonal(m, V, model->damping_ratio, out + m * m);
-  double *at = turn_rows(m, V, model->right, side, out + 2 * m * m);
-  if (model->has_left) at = turn_rows(m, V, model->left, side, at);
-  at = turn_rows(m, V, model->probe, 3 * model->n_probes, at);
+  for (int i = 0; i < m; i++) scratch[i] = pow(SHB_TWO_PI * model->frequency[i], 2);
+  rotate_diagonal(m, V, scratch, out);
+  rotate_diagonal(m, V, model->damping_ratio, out + m * m);
+  double *at = rotate_rows(m, V, model->right, side, out + 2 * m * m);
+  if (model->has_left) at = rotate_rows(m, V, model->left, side, at);
+  at = rotate_rows(m, V, model->probe, 3 * model->n_probes, at);
   for (int part = 0; part < 2; part++)
     for (int k = 0; k <= model->n_load; k++, at += m)
-      turn_row(m, V, (const double *)(model->modal_force + (size_t)(k * m)) + part, 2, at);
+      rotate_row(m, V, (const double *)(model->modal_force + (size_t)(k * m)) + part, 2, at);
   mhb_speed_table_unrotated(model, data, count);
   for (int i = 0; i < MHB_SPEED_TABLE_UNROTATED; i++)
-    if (count[i]) memcpy(out + r->plain[i], data[i], count[i] * sizeof *out);
+    if (count[i]) memcpy(out + r->unrotated[i], data[i], count[i] * sizeof *out);
 }
 
-/* ---------------------------------------------------------------- which modes, in which basis */
+/* ---- modes and basis ---- */
 
-/* Leading m x m block of the overlap at a speed = A Sigma B^T; V[mode][place] <- B A^T if wanted. The least Sigma, -1: not found.
- * work: 5 m^2 + m. */
+/* Leading m x m block of the overlap at a speed = A Sigma B^T; V[mode][place] <- B A^T unless NULL.
+ * Returns the least Sigma; -1: not found. work: 5 m^2 + m. */
 static double align(const modal_speeds *s, int speed, int m, double *work, double *V) {
   const size_t  square = (size_t)m * (size_t)m, all = (size_t)s->n_modes;
   const double *C = s->overlap + (size_t)speed * all * all;
@@ -145,7 +145,8 @@ static double align(const modal_speeds *s, int speed, int m, double *work, doubl
   return sigma[m - 1];
 }
 
-/* The least squared cosine between the lowest m modes of the first speed and those of speeds from .. to. */
+/* The least squared cosine between the lowest m modes of the first speed and those of speeds from
+ * .. to. */
 static double kept(const modal_speeds *s, int from, int to, int m, double *work) {
   double least = 1;
   for (int i = from; i <= to; i++) {
@@ -223,17 +224,18 @@ static void basis(const mhb_speed_table *r, int speed, double *work, double *V) 
   for (int t = 0; t < m; t++) V[s->mode[speed * s->n_modes + t] * m + t] = 1;
 }
 
-/* ---------------------------------------------------------------- life cycle */
+/* ---- life cycle ---- */
 
 static shb_status check_range(const mhb_speed_table *r, const char *path) {
   const modal_speeds *s = &r->speeds;
   const double        E = r->engine_order, first = s->speed[0], last = s->speed[s->n - 1];
-  SHB_CHECK(
-      r->band[0] / E >= first * (1 - HAIR) && r->band[1] / E <= last * (1 + HAIR), SHB_ERR_INPUT,
-      "mhb.run_up: %.6g to %.6g Hz on engine order %d is a rotor of %.6g to %.6g rpm, but "
-      "%s has speeds from %.6g to %.6g rpm, which cover %.6g to %.6g Hz",
-      r->band[0] / TWO_PI, r->band[1] / TWO_PI, r->engine_order, rpm(r->band[0] / E),
-      rpm(r->band[1] / E), path, rpm(first), rpm(last), E * first / TWO_PI, E * last / TWO_PI);
+  SHB_CHECK(r->band[0] / E >= first * (1 - HAIR) && r->band[1] / E <= last * (1 + HAIR),
+            SHB_ERR_INPUT,
+            "mhb.run_up: %.6g to %.6g Hz on engine order %d is a rotor of %.6g to %.6g rpm, but "
+            "%s has speeds from %.6g to %.6g rpm, which cover %.6g to %.6g Hz",
+            r->band[0] / SHB_TWO_PI, r->band[1] / SHB_TWO_PI, r->engine_order, rpm(r->band[0] / E),
+            rpm(r->band[1] / E), path, rpm(first), rpm(last), E * first / SHB_TWO_PI,
+            E * last / SHB_TWO_PI);
   return SHB_OK;
 }
 
@@ -242,45 +244,26 @@ static shb_status fill(mhb_speed_table *r, int from, double *work) {
   const size_t m = (size_t)r->n_modes;
   double      *V = work, *square = calloc((size_t)r->n, sizeof *square);
   work += m * m;
-  r->base  = calloc(r->size, sizeof *r->base);
-  r->table = calloc((size_t)r->n * r->size, sizeof *r->table);
-  if (!square || !r->base || !r->table) {
+  r->first_entry = calloc(r->size, sizeof *r->first_entry);
+  r->entries     = calloc((size_t)r->n * r->size, sizeof *r->entries);
+  if (!square || !r->first_entry || !r->entries) {
     free(square);
     SHB_FAIL(SHB_ERR_IO, "out of memory for the modal models of %d speeds", r->n);
   }
   for (int i = 0; i < r->n; i++) {
     square[i] = pow(r->speeds.speed[from + i], 2);
     basis(r, from + i, work, V);
-    fill_entry(r, &r->speeds.model[from + i], V, r->table + (size_t)i * r->size, work);
+    fill_entry(r, &r->speeds.model[from + i], V, r->entries + (size_t)i * r->size, work);
   }
-  memcpy(r->base, r->table, r->size * sizeof *r->base);
-  for (size_t i = 0; i < (size_t)r->n * r->size; i++) r->table[i] -= r->base[i % r->size];
+  memcpy(r->first_entry, r->entries, r->size * sizeof *r->first_entry);
+  for (size_t i = 0; i < (size_t)r->n * r->size; i++) r->entries[i] -= r->first_entry[i % r->size];
   shb_status status = modal_spline_create(r->n, square, &r->spline);
   free(square);
   return status;
 }
 
-/* Between the speeds too the structure must be stable. */
-static shb_status check_between(const mhb_speed_table *r, const char *path) {
-  mhb_speed_model *here  = NULL;
-  double           least = INFINITY, at = 0;
-  SHB_TRY(mhb_speed_model_create(r, &here));
-  for (int i = 0; i < LOOKS; i++) {
-    double omega = r->band[0] + (r->band[1] - r->band[0]) * i / (LOOKS - 1);
-    mhb_speed_model_set(here, omega);
-    if (here->least >= least) continue;
-    least = here->least;
-    at    = mhb_speed_table_speed(r, omega);
-  }
-  mhb_speed_model_destroy(here);
-  SHB_CHECK(least > 0, SHB_ERR_INPUT,
-            "mhb.run_up: %s: the speeds are too far apart: interpolated to %.6g rpm the blade is "
-            "not stable; give more speeds",
-            path, rpm(at));
-  return SHB_OK;
-}
-
-/* Residual modes, which cross and turn with the speed, are not interpolated: the three terms stay. */
+/* Residual modes cross and rotate with the speed: they are not interpolated, the three terms
+ * are. */
 static shb_status keep_terms(modal_model *model, int modes) {
   SHB_TRY(modal_model_reduce(model, modes, true));
   modal_model_drop_residual_modes(model);
@@ -313,7 +296,7 @@ static shb_status make(mhb_speed_table *r, const char *path) {
   r->n_dropped      = s->model[from].n_modes - r->n_modes;
   r->low            = s->speed[from];
   r->high           = s->speed[to];
-  r->given          = &s->model[to];
+  r->common         = &s->model[to];
   for (int i = from; i <= to && status == SHB_OK; i++)
     status = keep_terms(&s->model[i], r->n_modes);
   if (status == SHB_OK) {
@@ -321,7 +304,7 @@ static shb_status make(mhb_speed_table *r, const char *path) {
     status = fill(r, from, work);
   }
   free(work);
-  return status == SHB_OK ? check_between(r, path) : status;
+  return status;
 }
 
 shb_status mhb_speed_table_create(modal_speeds *speeds, const char *path, int engine_order,
@@ -331,8 +314,8 @@ shb_status mhb_speed_table_create(modal_speeds *speeds, const char *path, int en
   r->speeds         = *speeds;
   *speeds           = (modal_speeds){0};
   r->engine_order   = engine_order;
-  r->band[0]        = TWO_PI * frequency[0];
-  r->band[1]        = TWO_PI * frequency[1];
+  r->band[0]        = SHB_TWO_PI * frequency[0];
+  r->band[1]        = SHB_TWO_PI * frequency[1];
   shb_status status = make(r, path);
   if (status != SHB_OK) {
     mhb_speed_table_destroy(r);
@@ -346,7 +329,7 @@ void mhb_speed_table_destroy(mhb_speed_table *r) {
   if (!r) return;
   modal_speeds_free(&r->speeds);
   modal_spline_free(&r->spline);
-  free(r->base);
-  free(r->table);
+  free(r->first_entry);
+  free(r->entries);
   free(r);
 }

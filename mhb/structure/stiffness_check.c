@@ -4,8 +4,8 @@
 #include <stdbool.h>
 #include <string.h>
 
-/* The stiffest that the case makes it, N/m, of the interface. */
-static double stiffest(const mhb_settings *settings, mhb_parameter what, double value) {
+/* The largest value in the case, N/m, of the leading interface. */
+static double largest_stiffness(const mhb_settings *settings, mhb_parameter what, double value) {
   return settings->parameter == what ? fmax(settings->range[0], settings->range[1]) : value;
 }
 
@@ -21,8 +21,8 @@ static shb_status check(const char *key, const char *interface, double stiffness
   return SHB_OK;
 }
 
-/* The greatest static flexibility along v, u, w of an interface's pairs, as of the whole interface, m/N. */
-static void softest(const mhb_receptance *receptance, int interface, double most[3]) {
+/* Largest static flexibility along v, u, w of an interface, m/N: a pair's own times its share. */
+static void largest_flexibility(const mhb_receptance *receptance, int interface, double most[3]) {
   const size_t n = (size_t)receptance->n;
   memset(most, 0, 3 * sizeof *most);
   for (size_t i = 0; i < n; i++) {
@@ -43,11 +43,11 @@ shb_status mhb_stiffness_check(mhb_receptance *receptance, const mhb_settings *s
     const char          *name = several ? own->name : NULL;
     double               most[3], k[3] = {kv, ku[0], ku[2]};
     if (lead) {
-      k[0] = stiffest(settings, MHB_IN_KV, kv);
-      k[1] = stiffest(settings, MHB_IN_KU, ku[0]);
+      k[0] = largest_stiffness(settings, MHB_IN_KV, kv);
+      k[1] = largest_stiffness(settings, MHB_IN_KU, ku[0]);
       k[2] = ku[2] * k[1] / ku[0];
     }
-    softest(receptance, i, most);
+    largest_flexibility(receptance, i, most);
     SHB_TRY(check("kv", name, k[0], most[0]));
     SHB_TRY(check("ku", name, k[1], most[1]));
     SHB_TRY(check("ku", name, k[2], most[2]));

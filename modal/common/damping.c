@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "mesh/base/constants.h"
+
 static double ratio_of(const modal_damping *damping, int i, double omega) {
   switch (damping->kind) {
     case MODAL_DAMPING_EACH:
@@ -21,6 +23,6 @@ shb_status modal_damping_ratio(const modal_damping *damping, int i, double omega
   SHB_CHECK(*ratio < 1, SHB_ERR_INPUT,
             "modal.damping: mode %d at %.6g Hz would have the damping ratio %.3g; it must be below "
             "1 (lower alpha or beta, or fewer modal.modes)",
-            i + 1, omega / (2 * M_PI), *ratio);
+            i + 1, omega / SHB_TWO_PI, *ratio);
   return SHB_OK;
 }

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "fem/solver/petsc_error.h"
+#include "mesh/base/constants.h"
 #include "modal/common/phases.h"
 #include "modal/condense/residual_modes.h"
 
@@ -13,8 +14,6 @@
  * which residual modes are made at most, all at once. MAX_NUMBERS: numbers in their vectors, at
  * most. */
 enum { BATCH = 32, MAX_COLUMNS = 96, BLOCKS = MODAL_RESIDUAL_BLOCKS, MAX_NUMBERS = 1 << 27 };
-
-static const double TWO_PI = 2 * M_PI;
 
 /* Contribution of a residual mode that is not kept, relative to the largest receptance, at half the
  * eigenvalue of the last mode. */
@@ -96,7 +95,7 @@ static PetscErrorCode fill_shapes(const workspace *w, modal_model *model) {
       for (int i = 0; i < m; i++)
         model->modal_force[k * m + i] += load->weight[k * load->dofs.n + c] * force[c * m + i];
   for (int i = 0; i < m; i++) {
-    model->frequency[i]      = sqrt(w->eigen->lambda[i]) / TWO_PI;
+    model->frequency[i]      = sqrt(w->eigen->lambda[i]) / SHB_TWO_PI;
     model->eigen_residual[i] = w->eigen->eigen_residual[i];
   }
   PetscCall(PetscFree2(shape, force));
@@ -265,7 +264,7 @@ static void store_residual_modes(const workspace *w, const modal_residual_modes 
   const modal_load *load = &w->to->load;
   const int         n = ritz->n, nc = w->n_contact;
   for (int i = 0; i < kept; i++) {
-    model->residual_frequency[i] = sqrt(ritz->lambda[i]) / TWO_PI;
+    model->residual_frequency[i] = sqrt(ritz->lambda[i]) / SHB_TWO_PI;
     for (int c = 0; c < nc; c++) model->residual_shape[c * kept + i] = psi[c * n + i];
     for (int c = 0; c < w->to->probe.n; c++)
       model->residual_probe[c * kept + i] = at_probe[c * n + i];

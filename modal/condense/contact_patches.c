@@ -4,10 +4,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
 #include "mesh/core/face_pairing.h"
 #include "modal/condense/face_partition.h"
 
-static const double degree = M_PI / 180;
+static const double degree = SHB_PI / 180;
 
 /* Shared data of the builders. */
 typedef struct {
@@ -222,7 +223,7 @@ shb_status modal_patches_create(const mesh_fe *mesh, mesh_axis axis, int blades,
   builder    b      = {.mesh      = mesh,
                        .right     = &mesh->set[MESH_CONTACT_RIGHT],
                        .pairing   = to_ground ? NULL : &pairing,
-                       .sector    = to_ground ? 0 : 2 * M_PI / blades,
+                       .sector    = to_ground ? 0 : SHB_TWO_PI / blades,
                        .axis      = axis,
                        .node_area = calloc((size_t)mesh->n_nodes + 1, sizeof(double))};
   shb_status status = SHB_OK;

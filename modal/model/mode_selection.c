@@ -4,13 +4,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
 #include "modal/model/receptance.h"
 #include "modal/model/reduce.h"
 #include "modal/model/residual_series.h"
 
 enum { SAMPLES = 100 };
 
-static const double TWO_PI = 2 * M_PI, BAND_MARGIN = 1.2;
+static const double BAND_MARGIN = 1.2;
 
 typedef struct {
   const modal_model *model;
@@ -20,7 +21,7 @@ typedef struct {
 } selection;
 
 static double omega_at(const selection *s, int sample) {
-  return TWO_PI * s->band * (sample + 1) / SAMPLES;
+  return SHB_TWO_PI * s->band * (sample + 1) / SAMPLES;
 }
 
 /* Largest diagonal receptance of the full model, to which errors are relative. */

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
+
 static const char model_format[] = "shroudhb modal model";
 /* Version 2 adds several speeds (modal/model/speeds.h); the model itself is as in version 1. */
 enum {
@@ -296,7 +298,7 @@ static shb_status check_flexibility(const char *path, const modal_model *model) 
     const double *shape = i < right ? model->right + (size_t)i * (size_t)m
                                     : model->left + (size_t)(i - right) * (size_t)m;
     double        R = model->residual_flexibility[(size_t)i * (size_t)(n + 1)], modes = 0;
-    for (int k = 0; k < m; k++) modes += pow(shape[k] / (2 * M_PI * model->frequency[k]), 2);
+    for (int k = 0; k < m; k++) modes += pow(shape[k] / (SHB_TWO_PI * model->frequency[k]), 2);
     SHB_CHECK(!(R < -allowed * modes), SHB_ERR_INPUT,
               "%s: /contact/residual_flexibility: value [%d, %d] is %.3g m/N; what modes leave out "
               "cannot be negative: static flexibility less that of the modes, %.3g m/N here, is "

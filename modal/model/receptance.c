@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
 #include "modal/model/residual_series.h"
 
 static const double *shape_of(const modal_model *model, int dof) {
@@ -15,7 +16,7 @@ static double complex modal_sum(const modal_model *model, double omega, const do
                                 const double *l) {
   double complex sum = 0;
   for (int i = 0; i < model->n_modes; i++) {
-    double w = 2 * M_PI * model->frequency[i];
+    double w = SHB_TWO_PI * model->frequency[i];
     sum += p[i] * l[i] / (w * w - omega * omega + 2 * I * model->damping_ratio[i] * w * omega);
   }
   return sum;

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
+
 static double at_contact(const modal_model *model, int dof, int mode) {
   int           side  = 3 * model->n_pairs;
   const double *shape = dof < side ? model->right : model->left;
@@ -89,7 +91,7 @@ static void add_forced(double complex *const term[3], size_t at, int n, const do
  * probes. */
 static void add_terms(modal_model *model, int mode, const double *phi, const double *psi) {
   int             c = modal_model_contact_dofs(model), q = 3 * model->n_probes;
-  double          w = 2 * M_PI * model->frequency[mode], w2 = w * w, power = w2;
+  double          w = SHB_TWO_PI * model->frequency[mode], w2 = w * w, power = w2;
   double         *contact[]    = {model->residual_flexibility, model->residual_inertia,
                                   model->residual_fourth};
   double         *probe[]      = {model->probe_contact_residual, model->probe_contact_inertia,
@@ -193,7 +195,7 @@ shb_status modal_model_reduce(modal_model *model, int modes, bool residuals) {
 static void extend_tail(const modal_model *model, const double complex *shape, double *tail) {
   double sum[2] = {0, 0};
   for (int i = 0; i < model->n_residual; i++) {
-    double lambda = pow(2 * M_PI * model->residual_frequency[i], 2);
+    double lambda = pow(SHB_TWO_PI * model->residual_frequency[i], 2);
     double term   = pow(cabs(shape[i]), 2) / pow(lambda, 4);
     sum[0] += term;
     sum[1] += term / lambda;

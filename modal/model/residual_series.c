@@ -3,7 +3,9 @@
 #include <math.h>
 #include <string.h>
 
-static const double TWO_PI = 2 * M_PI, BELOW = 0.9;
+#include "mesh/base/constants.h"
+
+static const double BELOW = 0.9;
 
 enum { POWER = 32 };
 
@@ -12,7 +14,7 @@ static double square(double x) {
 }
 
 static double eigenvalue(const modal_model *model, int i) {
-  return square(TWO_PI * model->residual_frequency[i]);
+  return square(SHB_TWO_PI * model->residual_frequency[i]);
 }
 
 bool modal_series_has_fourth(const modal_model *model) {
@@ -46,7 +48,7 @@ static void bounded(double s, double last, modal_series *series) {
 }
 
 modal_series modal_series_at(const modal_model *model, double omega) {
-  double       s = omega * omega, last = TWO_PI * model->frequency[model->n_modes - 1];
+  double       s = omega * omega, last = SHB_TWO_PI * model->frequency[model->n_modes - 1];
   modal_series series = {.x = s, .dx = 1};
   if (model->n_residual > 0 && s > 0) limit(s, BELOW * eigenvalue(model, 0), &series);
   set_powers(series.x, series.dx, series.load_weight, series.load_slope);

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
 #include "modal/model/receptance.h"
 
 enum { SAMPLES = 201, MAX_BYTES = 64 << 20 };
@@ -98,7 +99,7 @@ static shb_status write_error(hid_t file, const modal_model *model, int n, int c
   double *error = malloc((size_t)count * sizeof *error);
   SHB_CHECK(error, SHB_ERR_IO, "out of memory for the receptance");
   for (int f = 0; f < count; f++)
-    error[f] = modal_receptance_error(model, 2 * M_PI * frequency[f],
+    error[f] = modal_receptance_error(model, SHB_TWO_PI * frequency[f],
                                       value + (size_t)f * (size_t)n * (size_t)n);
   shb_status status = SHB_OK;
   if (error[0] >= 0)
@@ -118,7 +119,7 @@ static shb_status write_receptance(hid_t file, const modal_model *model, int n, 
   memcpy(frequency + SAMPLES, model->frequency, (size_t)m * sizeof *frequency);
   qsort(frequency, (size_t)count, sizeof *frequency, compare);
   for (int f = 0; f < count; f++)
-    modal_receptance(model, 2 * M_PI * frequency[f], value + (size_t)f * (size_t)n * (size_t)n);
+    modal_receptance(model, SHB_TWO_PI * frequency[f], value + (size_t)f * (size_t)n * (size_t)n);
   SHB_TRY(h5_write_double(file, "receptance/frequency", H5_SHAPE((hsize_t)count), frequency, "Hz",
                           "frequency"));
   SHB_TRY(h5_write_complex(file, "receptance/contact",

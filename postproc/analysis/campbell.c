@@ -5,13 +5,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
 #include "modal/model/spline.h"
 #include "postproc/draw/number_format.h"
 #include "postproc/draw/plot.h"
 
 enum { WIDTH = 1000, HEIGHT = 600, SAMPLES = 241, COLOURS = 6, MOST_ORDERS = 16, AT_FIRST = 12 };
-
-static const double TWO_PI = 2 * M_PI;
 
 const char post_campbell_css[] =
     ".k0{color:#0b6e75}.k1{color:#a3540f}.k2{color:#6a4aa5}.k3{color:#2f6f2f}.k4{color:#a83250}"
@@ -94,10 +93,10 @@ static int highest_order(const post_campbell *c) {
 
 /* Crossing of the mode and the order's line between lo and hi, by bisection. */
 static double bisect(curves *c, int track, int order, double lo, double hi) {
-  bool above = frequency_at(c, track, lo) > order * lo / TWO_PI;
+  bool above = frequency_at(c, track, lo) > order * lo / SHB_TWO_PI;
   for (int i = 0; i < 60; i++) {
     double middle = (lo + hi) / 2;
-    if ((frequency_at(c, track, middle) > order * middle / TWO_PI) == above)
+    if ((frequency_at(c, track, middle) > order * middle / SHB_TWO_PI) == above)
       lo = middle;
     else
       hi = middle;
@@ -117,10 +116,10 @@ static bool find_crossings(curves *c, int track, int order, int *n, post_crossin
   double before = NAN, from = 0;
   for (int i = 0; i < SAMPLES; i++) {
     double speed = speed_at(c->speeds, i, SAMPLES);
-    double here  = frequency_at(c, track, speed) - order * speed / TWO_PI;
+    double here  = frequency_at(c, track, speed) - order * speed / SHB_TWO_PI;
     if (here * before <= 0 && before != 0) {
       double at = bisect(c, track, order, from, speed);
-      if (!add_crossing(n, all, (post_crossing){order, track, at, order * at / TWO_PI}))
+      if (!add_crossing(n, all, (post_crossing){order, track, at, order * at / SHB_TWO_PI}))
         return false;
     }
     before = here;
@@ -156,7 +155,7 @@ shb_status post_campbell_crossings(const post_campbell *campbell, int *n, post_c
  * third mode. */
 static double highest_frequency(const post_campbell *c) {
   const modal_speeds *s = c->speeds;
-  double top = s->speed[s->n - 1], line = highest_order(c) * top / TWO_PI, third = 0, last = 0;
+  double top = s->speed[s->n - 1], line = highest_order(c) * top / SHB_TWO_PI, third = 0, last = 0;
   for (int i = 0; i < s->n; i++) {
     third = fmax(third, modal_speeds_frequency(s, i, s->n_modes < 3 ? s->n_modes - 1 : 2));
     last  = fmax(last, modal_speeds_frequency(s, i, s->n_modes - 1));
@@ -238,7 +237,7 @@ static void draw_orders(const post_campbell *c, const post_plot *plot, names *al
     for (int order = 1; order <= most; order++) {
       bool excited = is_excited(c, order);
       if (excited == (pass == 1) || (!excited && order % step != 0)) continue;
-      double x[2] = {fmin(plot->x.lo, plot->x.hi), plot->x.hi}, slope = order / TWO_PI;
+      double x[2] = {fmin(plot->x.lo, plot->x.hi), plot->x.hi}, slope = order / SHB_TWO_PI;
       x[1] = fmin(x[1], plot->y.hi / slope);
       if (x[0] >= x[1]) continue;
       plot_line(plot, excited ? "order excited" : "order", 2, x,
@@ -252,7 +251,7 @@ static void draw(const post_campbell *campbell, post_plot *plot) {
   curves              c;
   int                 n        = 0;
   post_crossing      *crossing = NULL;
-  double              unit     = TWO_PI / 60;
+  double              unit     = SHB_TWO_PI / 60;
   names               all      = {0};
   if (curves_create(s, &c) != SHB_OK) {
     plot->out->failed = true;
@@ -316,7 +315,7 @@ static void put_crossings(const post_campbell *campbell, post_buffer *out) {
            "Hz</th></tr></thead>\n<tbody>\n");
   for (int i = 0; i < n; i++)
     post_put(out, "<tr><th scope=\"row\">%s</th><td>%dE</td><td>%d</td><td>%s</td></tr>\n",
-             post_plain(rpm, all[i].speed * 60 / TWO_PI, 5), all[i].order, all[i].track + 1,
+             post_plain(rpm, all[i].speed * 60 / SHB_TWO_PI, 5), all[i].order, all[i].track + 1,
              post_plain(hz, all[i].frequency, 5));
   post_put(out, "</tbody></table></div>\n");
   free(all);
@@ -346,7 +345,7 @@ void post_campbell_table(const modal_speeds *s, bool all, post_buffer *out) {
   post_put(out, "  %d speeds; frequencies of the tracked modes, Hz (*: MAC below %g)\n  %6s", s->n,
            modal_speeds_mac_limit, "rpm");
   for (int i = 0; i < s->n; i += step)
-    post_put(out, "%10s ", post_plain(text, s->speed[i] * 60 / TWO_PI, 5));
+    post_put(out, "%10s ", post_plain(text, s->speed[i] * 60 / SHB_TWO_PI, 5));
   post_put(out, "\n");
   for (int t = 0; t < shown; t++) {
     post_put(out, "  %6d", t + 1);

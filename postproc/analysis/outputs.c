@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
+
 enum { AXES = 3, NEWTON_STEPS = 20 };
 
 /* Harmonics below this fraction of the largest do not change any printed figure. */
@@ -84,7 +86,7 @@ static double extent(int n, int m, const double complex *a) {
   double *x       = malloc((size_t)(samples * n) * sizeof *x);
   if (!x) return NAN;
   for (int i = 0; i < samples; i++) {
-    double complex turn = cexp(I * (2 * M_PI * i / samples));
+    double complex turn = cexp(I * (SHB_TWO_PI * i / samples));
     for (int axis = 0; axis < n; axis++) {
       double complex sum = 0;
       for (int k = m; k >= 1; k--) sum = (sum + a[axis * (m + 1) + k]) * turn;
@@ -94,7 +96,7 @@ static double extent(int n, int m, const double complex *a) {
   int pair[2] = {0, 0};
   farthest(n, samples, x, pair);
   free(x);
-  double step = 2 * M_PI / samples;
+  double step = SHB_TWO_PI / samples;
   return refine_distance(n, m, a, pair[0] * step, pair[1] * step);
 }
 

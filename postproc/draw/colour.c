@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "mesh/base/constants.h"
+
 /* OKLCH colour. The hue, degrees, is unwrapped so that the ramp runs one way. */
 typedef struct {
   double lightness, chroma, hue;
@@ -19,7 +21,7 @@ static const oklch DARK[] = {{0.90, 0.120, 95},
 /* Linear sRGB of an OKLCH colour (Ottosson, A perceptual color space for image processing,
  * 2020). */
 static void linear_rgb(const oklch *c, double rgb[3]) {
-  double h = c->hue * M_PI / 180, a = c->chroma * cos(h), b = c->chroma * sin(h);
+  double h = c->hue * SHB_PI / 180, a = c->chroma * cos(h), b = c->chroma * sin(h);
   double l = pow(c->lightness + 0.3963377774 * a + 0.2158037573 * b, 3);
   double m = pow(c->lightness - 0.1055613458 * a - 0.0638541728 * b, 3);
   double s = pow(c->lightness - 0.0894841775 * a - 1.2914855480 * b, 3);

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
 #include "postproc/analysis/outputs.h"
 
 static void put_text(post_buffer *out, const char *text) {
@@ -75,7 +76,7 @@ static void put_place(const mhb_branch *branch, const double complex *a, post_bu
   for (int i = 0; i < 3; i++) {
     const double complex *axis = a + i * (m + 1);
     put_number(out, cabs(axis[first]));
-    put_number(out, carg(axis[first]) * 180 / M_PI);
+    put_number(out, carg(axis[first]) * 180 / SHB_PI);
     put_number(out, post_peak_to_peak(1, m, axis));
   }
   put_number(out, post_semi_major_axis(3, a + first, m + 1));

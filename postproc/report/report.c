@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
 #include "postproc/analysis/campbell.h"
 #include "postproc/analysis/findings.h"
 #include "postproc/draw/colour.h"
@@ -36,7 +37,7 @@ static void put_head(const post_analysis *analysis, const char *case_name, post_
 
 /* Angle in degrees, rounded to 0.001, so that rounding errors print as 0. */
 static double degrees(double angle) {
-  return round(angle * 180e3 / M_PI) / 1e3;
+  return round(angle * 180e3 / SHB_PI) / 1e3;
 }
 
 static void put_lede(const post_analysis *analysis, const post_origin *source, post_buffer *out) {

@@ -1,4 +1,5 @@
 #include "baseline.h"
+#include "mesh/base/constants.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -17,14 +18,14 @@ static void tabulate(baseline *b) {
   for (int s = 0; s < b->block; s++) {
     b->table[s] = 1;
     for (int k = 1; k <= K; k++) {
-      double angle                         = 2 * M_PI * k * s / b->N;
+      double angle                         = SHB_TWO_PI * k * s / b->N;
       b->table[(2 * k - 1) * b->block + s] = cos(angle);
       b->table[2 * k * b->block + s]       = -sin(angle);
     }
   }
   for (int i = 0; i < b->N / b->block; i++)
     for (int k = 0; k <= K; k++) {
-      double angle = 2 * M_PI * k * i * b->block / b->N, *turn = b->turn + 2 * (i * (K + 1) + k);
+      double angle = SHB_TWO_PI * k * i * b->block / b->N, *turn = b->turn + 2 * (i * (K + 1) + k);
       turn[0] = cos(angle);
       turn[1] = sin(angle);
     }
@@ -227,6 +228,6 @@ int baseline_force(baseline *b, const mhb_law *law, const double *motion, double
     force[out + j]     = axis[0] * f[0] - axis[1] * f[1];
     force[2 * out + j] = axis[1] * f[0] + axis[0] * f[1];
   }
-  force[0] -= law->balance;
+  force[0] -= law->mean_offset;
   return laps;
 }

@@ -16,6 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
 #include "mesh/base/progress.h"
 #include "mhb/branches/main_branch.h"
 #include "mhb/continuation/first_solution.h"
@@ -23,7 +24,7 @@
 #include "mhb/integration/steady_state.h"
 #include "tests/support/three_degree.h"
 
-static const double PI = 3.14159265358979323846, AWAY = .998;
+static const double AWAY = .998;
 
 enum { MAX_POINTS = 24, FINE_STEPS = 384 };
 
@@ -158,7 +159,7 @@ static void beam(scene *s, int quick) {
   s->name = "tip-contact beam, 20 modes, 8 N: stick and slip";
   tip_contact_beam_model(8, &s->model);
   s->settings = ground(.3, 2e5, 2e5, 100);
-  spread(s, quick ? 2 : 12, 2 * PI * 264, 2 * PI * 272);
+  spread(s, quick ? 2 : 12, SHB_TWO_PI * 264, SHB_TWO_PI * 272);
 }
 
 /* Contact of cases/paper_fig7. Both methods get a structure that can be integrated: residual modes
@@ -172,8 +173,8 @@ static shb_status blade(scene *s, modal_model *read, char **argument) {
   s->name             = name;
   s->settings         = ground(.3, 5e4, 5e4, atof(argument[1]));
   s->settings.has_psi = true;
-  s->settings.psi     = 35 * PI / 180;
-  spread(s, MAX_POINTS, 2 * PI * atof(argument[2]), 2 * PI * atof(argument[3]));
+  s->settings.psi     = 35 * SHB_PI / 180;
+  spread(s, MAX_POINTS, SHB_TWO_PI * atof(argument[2]), SHB_TWO_PI * atof(argument[3]));
   return SHB_OK;
 }
 

@@ -22,6 +22,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "mesh/base/constants.h"
 #include "mesh/base/progress.h"
 #include "mhb/branches/main_branch.h"
 #include "mhb/continuation/balance_curve.h"
@@ -30,8 +31,6 @@
 #include "shroud_face.h"
 #include "tests/support/main_curve.h"
 #include "tests/support/three_degree.h"
-
-static const double PI = 3.14159265358979323846;
 
 enum { REPEATS = 3, MAX_POINTS = 4000 };
 
@@ -102,10 +101,10 @@ static shb_status time_steps(const modal_model *model, const mhb_settings *s, sw
   mhb_balance   *b;
   mhb_arclength *path;
   int            iterations, n[2] = {0, 0};
-  double         low = 2 * PI * s->frequency[0];
+  double         low = SHB_TWO_PI * s->frequency[0];
   SHB_TRY(mhb_balance_create(model, s, &b));
   mhb_balance_set_preload(b, s->n0[0]);
-  SHB_TRY(mhb_balance_curve_create(b, low, 2 * PI * s->frequency[1], &path));
+  SHB_TRY(mhb_balance_curve_create(b, low, SHB_TWO_PI * s->frequency[1], &path));
   double               *x       = calloc((size_t)b->n, sizeof(double));
   mhb_arclength_outcome outcome = MHB_ARCLENGTH_STALLED;
   if (mhb_first_solution(mhb_balance_curve_of(path)->newton, b, low, path->tolerance, x,
@@ -251,7 +250,7 @@ typedef struct {
 /* Some short steps from 255 Hz on, up the flank of the resonance. */
 static shb_status walk(mhb_arclength *path, mhb_balance *b, double *x, pairs_row *row) {
   int    iterations;
-  double started = shb_seconds(), omega = 2 * PI * 255, ms[STEPS];
+  double started = shb_seconds(), omega = SHB_TWO_PI * 255, ms[STEPS];
   SHB_CHECK(mhb_first_solution(mhb_balance_curve_of(path)->newton, b, omega, path->tolerance, x,
                                &iterations) == MHB_CONVERGED,
             SHB_NOT_CONVERGED, "no first solution of %d pairs", b->n_pairs);
@@ -280,7 +279,7 @@ static shb_status run_pairs(int pairs, int harmonics, pairs_row *row) {
   shroud_face_model(pairs, 150, &model);
   SHB_TRY(mhb_balance_create(&model, &s, &b));
   mhb_balance_set_preload(b, s.n0[0]);
-  SHB_TRY(mhb_balance_curve_create(b, 2 * PI * 215, 2 * PI * 320, &path));
+  SHB_TRY(mhb_balance_curve_create(b, SHB_TWO_PI * 215, SHB_TWO_PI * 320, &path));
   *row              = (pairs_row){.pairs = pairs};
   double    *x      = calloc((size_t)b->n, sizeof(double));
   shb_status status = walk(path, b, x, row);
@@ -377,8 +376,8 @@ static shb_status precision(int *failed) {
     s.kv           = .8;
     s.ku[0] = s.ku[2] = .5;
     s.n0[0]           = n0[i];
-    s.frequency[0]    = .8 / (2 * PI);
-    s.frequency[1]    = 1.7 / (2 * PI);
+    s.frequency[0]    = .8 / SHB_TWO_PI;
+    s.frequency[1]    = 1.7 / SHB_TWO_PI;
     snprintf(name, sizeof name, "three degrees, n0 = %g", n0[i]);
     status = bench_precision(name, &model, &s, failed);
   }

@@ -1,4 +1,5 @@
 #include "precision.h"
+#include "mesh/base/constants.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -11,7 +12,7 @@
 #include "mhb/numerics/fourier.h"
 #include "tests/support/main_curve.h"
 
-static const double PI = 3.14159265358979323846, TOLERANCE = 1e-4, GOAL = 1.5, NEAR_BY = .1;
+static const double TOLERANCE = 1e-4, GOAL = 1.5, NEAR_BY = .1;
 
 enum { FINE = 31, REPEATS = 2, MOST_COMPARED = 250 };
 
@@ -37,7 +38,7 @@ static double error_at(const mhb_response *r, int p, mhb_newton *newton, mhb_bal
     mhb_to_real(K - 1, b->motion + ((size_t)p * (size_t)rows + (size_t)c) * (size_t)K, x + c * nb);
   if (x && y) memcpy(y, x, size);
   if (x && y &&
-      mhb_newton_solve(newton, fine, 2 * PI * b->frequency[p], 1e-10, y, &iterations) ==
+      mhb_newton_solve(newton, fine, SHB_TWO_PI * b->frequency[p], 1e-10, y, &iterations) ==
           MHB_CONVERGED) {
     for (int i = 0; i < fine->n; i++) sum += (x[i] - y[i]) * (x[i] - y[i]);
     error = sqrt(sum) / mhb_norm(y, fine->n);

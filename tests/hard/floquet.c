@@ -9,11 +9,10 @@
 
 #include <cmocka.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/balance/balance.h"
 #include "tests/hard/verdict.h"
 #include "tests/support/periodic.h"
-
-static const double PI = 3.14159265358979323846;
 
 static floquet summary(const mhb_multipliers *m) {
   return (floquet){m->verdict, m->crossing, m->n_unstable, m->largest};
@@ -28,7 +27,7 @@ void floquet_branch(const modal_model *model, const mhb_settings *s, const mhb_r
   assert_int_equal(mhb_floquet_create(b->receptance, s, substeps, 0, &stability), SHB_OK);
   double x[b->n], unused[b->n];
   for (int i = 0; i < branch->n_points; i++) {
-    double omega = 2 * PI * branch->frequency[i];
+    double omega = SHB_TWO_PI * branch->frequency[i];
     mhb_balance_set_preload(b, branch->n0[i]);
     point_of(r, branch, i, 0, x);
     mhb_balance_evaluate(b, x, omega, unused, NULL, NULL);
@@ -45,7 +44,7 @@ double floquet_crossing(const modal_model *model, const mhb_settings *s, const m
   double         lo = 0, hi = 1, ends[2], omega = 0;
   double         x[3 * r->n_pairs * (2 * r->n_harmonics + 1)];
   double complex mu[64];
-  double         from = 2 * PI * branch->frequency[i], to = 2 * PI * branch->frequency[i + 1];
+  double from = SHB_TWO_PI * branch->frequency[i], to = SHB_TWO_PI * branch->frequency[i + 1];
   for (int k = -2; k < 30; k++) {
     double   at = k == -2 ? 0 : k == -1 ? 1 : .5 * (lo + hi);
     periodic p;

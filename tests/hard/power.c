@@ -3,7 +3,7 @@
 #include <complex.h>
 #include <math.h>
 
-static const double PI = 3.14159265358979323846;
+#include "mesh/base/constants.h"
 
 /* Modal coordinates are q_k = L_k (F_k - B_k^H p_k). Work per cycle:
  *   of F on q         pi k Im(F conj q)
@@ -21,9 +21,9 @@ power power_of(const mhb_balance *b, double omega) {
       double complex        F = r->F[k * m + i], q = F;
       for (int row = 0; row < n3; row++) q -= conj(B[row * m + i]) * p[row];
       q *= r->lambda[k * m + i];
-      double w = 2 * PI * r->model->frequency[i];
-      out.input += PI * k * cimag(F * conj(q));
-      out.damping += PI * 2 * r->model->damping_ratio[i] * w * k * k * w1 * pow(cabs(q), 2);
+      double w = SHB_TWO_PI * r->model->frequency[i];
+      out.input += SHB_PI * k * cimag(F * conj(q));
+      out.damping += SHB_PI * 2 * r->model->damping_ratio[i] * w * k * k * w1 * pow(cabs(q), 2);
     }
   }
   for (int a = 0; a < b->n_pairs; a++) out.friction += b->eval->info[a].slip_work;

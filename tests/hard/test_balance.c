@@ -8,6 +8,7 @@
 
 #include <cmocka.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/branches/main_branch.h"
 #include "tests/hard/floquet.h"
 #include "tests/hard/power.h"
@@ -15,8 +16,6 @@
 #include "tests/support/periodic.h"
 #include "tests/support/random_model.h"
 #include "tests/support/three_degree.h"
-
-static const double PI = 3.14159265358979323846;
 
 static void times(double *x, int n, double factor) {
   for (int i = 0; x && i < n; i++) x[i] *= factor;
@@ -110,7 +109,7 @@ static void balance(const modal_model *model, mhb_settings *s, double from, doub
   double            x[b->n], unused[b->n];
   const mhb_branch *branch = &r->branch[2];
   for (int i = 0; i < branch->n_points; i++) {
-    double omega = 2 * PI * branch->frequency[i], loop = 0;
+    double omega = SHB_TWO_PI * branch->frequency[i], loop = 0;
     mhb_balance_set_preload(b, branch->n0[i]);
     point_of(r, branch, i, 0, x);
     mhb_balance_evaluate(b, x, omega, unused, NULL, NULL);
@@ -142,7 +141,7 @@ static void power_in_and_out(void **state) {
   modal_model_free(&model);
   tip_contact_beam_model(20, &model);
   mhb_settings s = ground_settings(.3, 2e5, 2e5, 100, 7);
-  balance(&model, &s, 2 * PI * 215, 2 * PI * 320, "beam, F 20");
+  balance(&model, &s, SHB_TWO_PI * 215, SHB_TWO_PI * 320, "beam, F 20");
   modal_model_free(&model);
   random_model(2, WITH_LEFT | WITH_RESIDUAL | WITH_NORMALS | WITH_AREAS, 55, &model);
   free(model.load_residual);

@@ -9,12 +9,11 @@
 
 #include <cmocka.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/branches/main_branch.h"
 #include "tests/hard/verdict.h"
 #include "tests/support/periodic.h"
 #include "tests/support/three_degree.h"
-
-static const double PI = 3.14159265358979323846;
 
 enum { MOST = 8, PLACES = 9 };
 
@@ -40,7 +39,7 @@ static void add(answers *a, double amplitude, int stable) {
 static answers crossings(const mhb_response *r, const mhb_branch *b, double w) {
   answers a = {0};
   for (int i = 0; i + 1 < b->n_points; i++) {
-    double here = 2 * PI * b->frequency[i], next = 2 * PI * b->frequency[i + 1];
+    double here = SHB_TWO_PI * b->frequency[i], next = SHB_TWO_PI * b->frequency[i + 1];
     if ((here < w) == (next < w)) continue;
     double share = (w - here) / (next - here), one = harmonic_of(r, b, i, 0, 1),
            two = harmonic_of(r, b, i + 1, 0, 1);
@@ -53,7 +52,7 @@ static answers crossings(const mhb_response *r, const mhb_branch *b, double w) {
 static answers at_end(const mhb_response *r, const mhb_branch *b, double w) {
   answers a = {0};
   for (int i = 0; i < b->n_points; i++)
-    if (fabs(2 * PI * b->frequency[i] - w) < 1e-12 * w)
+    if (fabs(SHB_TWO_PI * b->frequency[i] - w) < 1e-12 * w)
       add(&a, harmonic_of(r, b, i, 0, 1), b->stable[i]);
   return a;
 }

@@ -9,6 +9,7 @@
 
 #include <cmocka.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/balance/newton.h"
 #include "mhb/branches/main_branch.h"
 #include "mhb/numerics/fourier.h"
@@ -18,15 +19,13 @@
 #include "tests/support/random_model.h"
 #include "tests/support/three_degree.h"
 
-static const double PI = 3.14159265358979323846;
-
 /* Largest displacement along u over a period. */
 static double largest(const periodic *p) {
   int    nb = p->residual->nb;
   double basis[nb], top = 0;
   for (int i = 0; i < 20000; i++) {
     double sum = 0;
-    mhb_basis(p->residual->m, 2 * PI * i / 20000, basis, NULL);
+    mhb_basis(p->residual->m, SHB_TWO_PI * i / 20000, basis, NULL);
     for (int j = 0; j < nb; j++) sum += basis[j] * p->x[nb + j];
     top = fmax(top, fabs(sum));
   }
@@ -53,7 +52,7 @@ static void oscillator_from_a_cold_start(void **state) {
 
 /* Den Hartog 1931: Coulomb friction without stops, r = friction/F, b = W/wn. */
 static double den_hartog(double b, double r) {
-  double V = 1 / (1 - b * b), U = sin(PI / b) / (b * (1 + cos(PI / b)));
+  double V = 1 / (1 - b * b), U = sin(SHB_PI / b) / (b * (1 + cos(SHB_PI / b)));
   return sqrt(V * V - r * r * U * U);
 }
 

@@ -10,20 +10,19 @@
 
 #include <cmocka.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/branches/forced_response.h"
 #include "tests/hard/verdict.h"
 #include "tests/support/periodic.h"
 #include "tests/support/random_model.h"
 #include "tests/support/three_degree.h"
 
-static const double PI = 3.14159265358979323846;
-
 /* Curves that do not cover the range; each is told. */
 static int gaps(const modal_model *model, mhb_settings *s, double from, double to, int *points) {
   mhb_response *r = NULL;
   int           n = 0;
-  s->frequency[0] = from / (2 * PI);
-  s->frequency[1] = to / (2 * PI);
+  s->frequency[0] = from / SHB_TWO_PI;
+  s->frequency[1] = to / SHB_TWO_PI;
   mhb_forced_response(model, s, NULL, NULL, NULL, &r);
   if (!r) fail_msg("%s", shb_message());
   for (int i = 2; i < r->n_branches; i++) {
@@ -66,7 +65,7 @@ static void beam(void **state) {
     mhb_settings s = ground_settings(i % 2 ? 3 : .3, 2e5, 2e5, 100, 7);
     s.n_preloads   = 8;
     memcpy(s.n0, n0, sizeof n0);
-    int n = gaps(&model, &s, 2 * PI * 190, 2 * PI * 320, &points);
+    int n = gaps(&model, &s, SHB_TWO_PI * 190, SHB_TWO_PI * 320, &points);
     verdict_count(n, 0, "beam, F %g mu %g: gaps in 8 curves", force[i / 2], s.mu);
     modal_model_free(&model);
   }

@@ -10,13 +10,12 @@
 
 #include <cmocka.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/balance/subharmonics.h"
 #include "tests/hard/verdict.h"
 #include "tests/support/disturbed.h"
 #include "tests/support/periodic.h"
 #include "tests/support/three_degree.h"
-
-static const double PI = 3.14159265358979323846;
 
 /* Time integration; amplitudes of harmonic 1 of W/order, the stable and the unstable one at w. */
 typedef struct {
@@ -54,7 +53,7 @@ static void check_isola(const modal_model *model, const mhb_settings *s, const i
   double lo = INFINITY, hi = 0, far[2] = {INFINITY, INFINITY};
   int    judged = 0, n = b->n_points, folds = count_special(b, MHB_FOLD), changes = 0;
   for (int i = 0; i < n; i++) {
-    double here = 2 * PI * b->frequency[i], next = 2 * PI * b->frequency[(i + 1) % n];
+    double here = SHB_TWO_PI * b->frequency[i], next = SHB_TWO_PI * b->frequency[(i + 1) % n];
     lo = fmin(lo, here);
     hi = fmax(hi, here);
     changes += i > 0 && b->stable[i] != b->stable[i - 1];
@@ -126,7 +125,7 @@ static double largest(const periodic *p) {
   for (int i = 0; i < 2000; i++) {
     double v = p->x[0];
     for (int k = 1; k <= m; k++) {
-      double t = 2 * PI * k * i / 2000;
+      double t = SHB_TWO_PI * k * i / 2000;
       v += p->x[2 * k - 1] * cos(t) - p->x[2 * k] * sin(t);
     }
     top = fmax(top, fabs(v));
@@ -142,14 +141,14 @@ static void fine_point(const modal_model *model, const mhb_settings *s, const mh
   fine.harmonics = 21;
   point_of(r, b, i, 0, own);
   mhb_subharmonic_embed(3, own, s->harmonics, 1, x, 21);
-  periodic_create(model, &fine, 2 * PI * b->frequency[i], x, p);
+  periodic_create(model, &fine, SHB_TWO_PI * b->frequency[i], x, p);
 }
 
 static int nearest_stable(const mhb_branch *b, double w) {
   int best = -1;
   for (int i = 0; i < b->n_points; i++)
-    if (b->stable[i] == 1 &&
-        (best < 0 || fabs(2 * PI * b->frequency[i] - w) < fabs(2 * PI * b->frequency[best] - w)))
+    if (b->stable[i] == 1 && (best < 0 || fabs(SHB_TWO_PI * b->frequency[i] - w) <
+                                              fabs(SHB_TWO_PI * b->frequency[best] - w)))
       best = i;
   return best;
 }
@@ -161,7 +160,7 @@ static void with_friction(void **state) {
   mhb_settings s = ground_settings(.05, .8, .5, -.05, 9);
   three_degree_model(&model);
   s.search = (mhb_search_settings){
-      .starts = 40, .n_at = 1, .at = {1.025 / (2 * PI)}, .n_orders = 1, .order = {1}};
+      .starts = 40, .n_at = 1, .at = {1.025 / SHB_TWO_PI}, .n_orders = 1, .order = {1}};
   mhb_response *r = covered_sweep(&model, &s, .8, 1.7);
   verdict_count(r->n_branches, 4, "11 friction: branches, the linear limits among them");
   if (r->n_branches == 4) {

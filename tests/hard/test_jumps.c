@@ -9,14 +9,13 @@
 
 #include <cmocka.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/branches/main_branch.h"
 #include "tests/hard/floquet.h"
 #include "tests/hard/verdict.h"
 #include "tests/support/periodic.h"
 #include "tests/support/random_model.h"
 #include "tests/support/three_degree.h"
-
-static const double PI = 3.14159265358979323846;
 
 /* m = k = 1, c = .04, kv = 9; amplitudes low, middle, high at w. Time integration. */
 typedef struct {
@@ -52,15 +51,15 @@ static void check_curve(const jump *j, double size, const mhb_response *r, const
   for (int i = 0; i < b->n_points; i++) {
     if (harmonic_of(r, b, i, 0, 1) <= best) continue;
     best = harmonic_of(r, b, i, 0, 1);
-    at   = 2 * PI * b->frequency[i];
+    at   = SHB_TWO_PI * b->frequency[i];
   }
   verdict_count(count_special(b, MHB_FOLD), 2, "%s %s: folds", number, j->name);
   verdict(fabs(best / size - j->peak), 1e-4, "%s %s: peak", number, j->name);
   verdict(fabs(at - j->at), 2e-4, "%s %s: peak frequency", number, j->name);
   int up = special_near(b, MHB_FOLD, j->upper), low = special_near(b, MHB_FOLD, j->lower);
-  verdict(up < 0 ? INFINITY : fabs(2 * PI * b->frequency[up] - j->upper), 2e-4, "%s %s: upper fold",
-          number, j->name);
-  verdict(low < 0 ? INFINITY : fabs(2 * PI * b->frequency[low] - j->lower), 2e-3,
+  verdict(up < 0 ? INFINITY : fabs(SHB_TWO_PI * b->frequency[up] - j->upper), 2e-4,
+          "%s %s: upper fold", number, j->name);
+  verdict(low < 0 ? INFINITY : fabs(SHB_TWO_PI * b->frequency[low] - j->lower), 2e-3,
           "%s %s: lower fold", number, j->name);
 }
 
@@ -72,7 +71,7 @@ static void check_branches(const jump *j, double size, const modal_model *model,
   double         amp = 0, mul = 0, x[3 * (2 * s->harmonics + 1)];
   double complex mu[16];
   for (int i = 0; i + 1 < b->n_points; i++) {
-    double   here = 2 * PI * b->frequency[i], next = 2 * PI * b->frequency[i + 1];
+    double   here = SHB_TWO_PI * b->frequency[i], next = SHB_TWO_PI * b->frequency[i + 1];
     periodic p;
     if ((here < j->w) == (next < j->w)) continue;
     point_of(r, b, i, (j->w - here) / (next - here), x);

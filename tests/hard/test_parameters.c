@@ -10,13 +10,12 @@
 
 #include <cmocka.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/branches/forced_response.h"
 #include "mhb/problem/parameter.h"
 #include "tests/hard/verdict.h"
 #include "tests/support/periodic.h"
 #include "tests/support/three_degree.h"
-
-static const double PI = 3.14159265358979323846;
 
 enum { FREQUENCIES = 24, PRELOADS = 4 };
 
@@ -36,7 +35,7 @@ static int gaps(const modal_model *model, const scene *c, mhb_parameter paramete
     s.n0[0]                = c->n0[i % PRELOADS];
     s.parameter            = parameter;
     s.frequency[0]         = s.frequency[1] =
-        (c->from + (i + .5) * (c->to - c->from) / FREQUENCIES) / (2 * PI);
+        (c->from + (i + .5) * (c->to - c->from) / FREQUENCIES) / SHB_TWO_PI;
     memcpy(s.range, c->range[parameter], sizeof s.range);
     mhb_forced_response(model, &s, NULL, NULL, NULL, &response);
     if (!response) fail_msg("%s", shb_message());
@@ -79,8 +78,8 @@ static void beam(void **state) {
   (void)state;
   modal_model model;
   scene       c = {.settings = ground_settings(.3, 2e5, 2e5, 0, 5),
-                   .from     = 2 * PI * 215,
-                   .to       = 2 * PI * 320,
+                   .from     = SHB_TWO_PI * 215,
+                   .to       = SHB_TWO_PI * 320,
                    .n0       = {-20, 0, 50, 150},
                    .range    = {[MHB_IN_N0]    = {-200, 500},
                                 [MHB_IN_SCALE] = {.01, 10},

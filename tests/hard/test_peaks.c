@@ -10,13 +10,12 @@
 
 #include <cmocka.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/branches/main_branch.h"
 #include "mhb/continuation/balance_curve.h"
 #include "tests/hard/verdict.h"
 #include "tests/support/periodic.h"
 #include "tests/support/three_degree.h"
-
-static const double PI = 3.14159265358979323846;
 
 static double amplitude(mhb_arclength *path, const mhb_curve_point *point, int c) {
   int nb = mhb_curve_balance(path)->nb;
@@ -93,7 +92,7 @@ static void check(const modal_model *model, mhb_settings *s, double from, double
         continue;
       tops++;
       unmarked += branch->special[i] != MHB_PEAK;
-      double off = INFINITY, w = 2 * PI * branch->frequency[i];
+      double off = INFINITY, w = SHB_TWO_PI * branch->frequency[i];
       for (int k = i - 2; k <= i + 2;
            k++) { /* at a kink Newton may not start from the point itself */
         if (k < 0 || k >= branch->n_points) continue;
@@ -104,7 +103,7 @@ static void check(const modal_model *model, mhb_settings *s, double from, double
       }
       if (off > 1e-6)
         print_message("  %s: %c at %.7f is %.1e off, special %d, stuck %.4f\n", name, "vuw"[c],
-                      2 * PI * branch -> frequency[i], off, branch -> special[i],
+                      SHB_TWO_PI * branch -> frequency[i], off, branch -> special[i],
                       branch -> state[3 * i]);
       worst = fmax(worst, off);
     }
@@ -135,7 +134,7 @@ static void peaks(void **state) {
   for (int i = 0; i < 2; i++) {
     tip_contact_beam_model(i ? 20 : 8, &model);
     mhb_settings s = ground_settings(.3, 2e5, 2e5, 100, 7);
-    check(&model, &s, 2 * PI * 215, 2 * PI * 320, i ? "beam, F 20" : "beam, F 8");
+    check(&model, &s, SHB_TWO_PI * 215, SHB_TWO_PI * 320, i ? "beam, F 20" : "beam, F 8");
     modal_model_free(&model);
   }
   one_degree_model(.01, 1, .8, &model);

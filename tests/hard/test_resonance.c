@@ -8,14 +8,13 @@
 
 #include <cmocka.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/branches/main_branch.h"
 #include "mhb/numerics/fourier.h"
 #include "tests/hard/verdict.h"
 #include "tests/support/disturbed.h"
 #include "tests/support/periodic.h"
 #include "tests/support/three_degree.h"
-
-static const double PI = 3.14159265358979323846;
 
 /* Two modes along one direction at the contact; the load drives each by its force. */
 static void two_modes(const double w[2], double zeta, const double shape[2], const double force[2],
@@ -24,7 +23,7 @@ static void two_modes(const double w[2], double zeta, const double shape[2], con
   model->n_modes = 2;
   for (int c = 0; c < 6; c++) model->right[c] = model->probe[c] = 0;
   for (int i = 0; i < 2; i++) {
-    model->frequency[i]     = w[i] / (2 * PI);
+    model->frequency[i]     = w[i] / SHB_TWO_PI;
     model->damping_ratio[i] = zeta;
     model->right[2 + i] = model->probe[2 + i] = shape[i];
     model->modal_force[i]                     = 0;
@@ -43,7 +42,7 @@ static void march(const modal_model *model, const periodic *p, double a[2]) {
   for (int i = 0; i < PERIODS; i++) disturbed_period(&d, y);
   for (int i = 0; i < STEPS; i++) {
     for (int k = 0; k < 2; k++)
-      A[k] += 2. / STEPS * d.u[1] * cexp(-2 * PI * I * (1 + 2 * k) * i / STEPS);
+      A[k] += 2. / STEPS * d.u[1] * cexp(-SHB_TWO_PI * I * (1 + 2 * k) * i / STEPS);
     disturbed_step(&d, y, i);
   }
   for (int k = 0; k < 2; k++) a[k] = cabs(A[k]);
@@ -88,7 +87,7 @@ static int peaks(const mhb_response *r, const mhb_branch *b, double at[MOST], do
   for (int i = 1; i + 1 < b->n_points && n < MOST; i++) {
     double here = harmonic_of(r, b, i, 1, 1);
     if (here < harmonic_of(r, b, i - 1, 1, 1) || here <= harmonic_of(r, b, i + 1, 1, 1)) continue;
-    at[n]    = 2 * PI * b->frequency[i];
+    at[n]    = SHB_TWO_PI * b->frequency[i];
     top[n++] = here;
   }
   return n;

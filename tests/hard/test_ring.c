@@ -10,13 +10,13 @@
 
 #include <cmocka.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/balance/newton.h"
 #include "mhb/numerics/fourier.h"
 #include "tests/hard/verdict.h"
+#include "tests/support/complex_form.h"
 #include "tests/support/periodic.h"
 #include "tests/support/random_model.h"
-
-static const double PI = 3.14159265358979323846;
 
 enum { BLADES = 6, M = 5 };
 
@@ -59,7 +59,7 @@ static void unfold(const modal_model *sector, int engine_order, modal_model *rin
         ring->residual_fourth[to]      = sector->residual_fourth[6 * i + j];
       }
     for (int k = 0; k <= ring->n_load; k++) {
-      double complex lag = cexp(-2 * PI * I * k * b * engine_order / BLADES);
+      double complex lag = cexp(-SHB_TWO_PI * I * k * b * engine_order / BLADES);
       for (int i = 0; i < m; i++)
         ring->modal_force[k * all + b * m + i] = lag * sector->modal_force[k * m + i];
       for (int i = 0; i < 6; i++) {
@@ -77,8 +77,8 @@ static void spread(const double *x, int engine_order, double *all) {
   double complex A[M + 1];
   for (int b = 0; b < BLADES; b++)
     for (int c = 0; c < 3; c++) {
-      mhb_to_complex(M, x + c * nb, A);
-      for (int k = 0; k <= M; k++) A[k] *= cexp(-2 * PI * I * k * b * engine_order / BLADES);
+      to_complex(M, x + c * nb, A);
+      for (int k = 0; k <= M; k++) A[k] *= cexp(-SHB_TWO_PI * I * k * b * engine_order / BLADES);
       mhb_to_real(M, A, all + (3 * b + c) * nb);
     }
 }

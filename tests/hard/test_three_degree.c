@@ -8,13 +8,12 @@
 
 #include <cmocka.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/branches/main_branch.h"
 #include "tests/hard/floquet.h"
 #include "tests/hard/verdict.h"
 #include "tests/support/periodic.h"
 #include "tests/support/three_degree.h"
-
-static const double PI = 3.14159265358979323846;
 
 static void amplitudes(void **state) {
   (void)state;
@@ -71,7 +70,7 @@ static void check_peaks(const mhb_response *r, const mhb_branch *b, const curve 
   for (int p = 0; p < 3 && c->peak[p][1] > 0; p++) {
     double best[2] = {INFINITY, INFINITY};
     for (int i = 1; i + 1 < b->n_points; i++) {
-      double off = fabs(2 * PI * b->frequency[i] - c->peak[p][1]);
+      double off = fabs(SHB_TWO_PI * b->frequency[i] - c->peak[p][1]);
       if (!top(r, b, i) || off >= best[1]) continue;
       best[0] = fabs(harmonic_of(r, b, i, 1, 1) - c->peak[p][0]);
       best[1] = off;
@@ -114,7 +113,7 @@ static void peaks_and_folds(void **state) {
                   s.tolerance);
     for (int k = 0; k < c->folds; k++) {
       int at = special_near(b, MHB_FOLD, c->fold[k]);
-      far    = fmax(far, at < 0 ? INFINITY : fabs(2 * PI * b->frequency[at] - c->fold[k]));
+      far    = fmax(far, at < 0 ? INFINITY : fabs(SHB_TWO_PI * b->frequency[at] - c->fold[k]));
     }
     if (c->folds)
       verdict(far, fmax(2e-4, 2 * s.tolerance), "1 n0 %.1f accuracy %.0e: folds' frequency", c->n0,

@@ -10,10 +10,9 @@
 
 #include <cmocka.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/branches/forced_response.h"
 #include "mhb/numerics/fourier.h"
-
-static const double PI = 3.14159265358979323846;
 
 static int failures;
 
@@ -50,8 +49,8 @@ void verdict_all(void) {
 
 mhb_response *covered_sweep(const modal_model *model, mhb_settings *s, double from, double to) {
   mhb_response *r = NULL;
-  s->frequency[0] = from / (2 * PI);
-  s->frequency[1] = to / (2 * PI);
+  s->frequency[0] = from / SHB_TWO_PI;
+  s->frequency[1] = to / SHB_TWO_PI;
   int status      = mhb_forced_response(model, s, NULL, NULL, NULL, &r);
   if (!r) fail_msg("no response: %s", shb_message());
   assert_true(status == SHB_OK || status == SHB_NOT_CONVERGED);
@@ -87,8 +86,8 @@ int special_near(const mhb_branch *b, int special, double w) {
   int best = -1;
   for (int i = 0; i < b->n_points; i++) {
     if (b->special[i] != special) continue;
-    double off = fabs(2 * PI * b->frequency[i] - w);
-    if (best < 0 || off < fabs(2 * PI * b->frequency[best] - w)) best = i;
+    double off = fabs(SHB_TWO_PI * b->frequency[i] - w);
+    if (best < 0 || off < fabs(SHB_TWO_PI * b->frequency[best] - w)) best = i;
   }
   return best;
 }

@@ -5,11 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/contact/slip.h"
 #include "mhb/contact/time_history.h"
 #include "mhb/numerics/fourier.h"
-
-static const double PI = 3.14159265358979323846;
 
 void disturbed_create(const modal_model *model, const mhb_settings *settings,
                       const mhb_balance *residual, const double *x, double omega, int steps,
@@ -94,14 +93,14 @@ static void contact_law(const mhb_law *law, const double u[3], const double u0[3
     mhb_slip_return((const double(*)[2])K, limit, f, e);
     for (int k = 0; k < 2; k++) f[k] = limit * e[k];
   }
-  p[0] = n - law->balance;
+  p[0] = n - law->mean_offset;
   p[1] = f[0];
   p[2] = f[1];
 }
 
 static double drive(const disturbed *d, int blade, int mode, double phase) {
   const modal_model *model = d->model;
-  double             sum = 0, angle = 2 * PI * (phase - lag(d, blade)) * d->settings->subharmonics;
+  double sum = 0, angle = SHB_TWO_PI * (phase - lag(d, blade)) * d->settings->subharmonics;
   for (int k = 0; k <= model->n_load; k++)
     sum += creal(model->modal_force[k * model->n_modes + mode] * cexp(I * k * angle));
   return d->settings->scale * sum;
@@ -120,7 +119,7 @@ void disturbed_step(disturbed *d, double *state, int at) {
   const modal_model *model = d->model;
   int                m = model->n_modes, modal = d->blades * m, n3 = 3 * d->contacts;
   double            *f      = state + 2 * modal, q[modal], v[modal], u0[n3];
-  double             period = 2 * PI / (d->omega / d->settings->subharmonics);
+  double             period = SHB_TWO_PI / (d->omega / d->settings->subharmonics);
   double             h = 1. / d->steps, phase = at * h;
   memcpy(u0, d->u, sizeof u0);
   memcpy(d->guess, d->p, sizeof(double) * (size_t)n3);
@@ -136,7 +135,7 @@ void disturbed_step(disturbed *d, double *state, int at) {
               (side ? model->left : model->right)[dof * m + i] * dof_force(d, mean, b, side, dof);
       q[k] = state[k];
       v[k] = state[modal + k];
-      oscillate(2 * PI * model->frequency[i], model->damping_ratio[i], h * period, force, &q[k],
+      oscillate(SHB_TWO_PI * model->frequency[i], model->damping_ratio[i], h * period, force, &q[k],
                 &v[k]);
     }
     relative(d, q, d->guess, d->u);
@@ -166,7 +165,7 @@ static void settle(disturbed *d, const double *state) {
     for (int j = 0; j < d->contacts; j++) {
       const mhb_law *law = &d->residual->law[j % model->n_pairs];
       double         n   = fmax(0, law->n0 + law->kv * d->u[3 * j]);
-      d->p[3 * j]        = n - law->balance;
+      d->p[3 * j]        = n - law->mean_offset;
       for (int k = 0; k < 2; k++) d->p[3 * j + 1 + k] = n > 0 ? f[2 * j + k] : 0;
     }
   }
@@ -194,7 +193,7 @@ void disturbed_start(disturbed *d, double *state) {
       for (int r = 0; r < n3; r++) a -= conj(B[r * m + i]) * p[r];
       a *= b->receptance->lambda[k * m + i];
       for (int blade = 0; blade < d->blades; blade++) {
-        double complex shifted = a * cexp(-2 * PI * I * k * lag(d, blade));
+        double complex shifted = a * cexp(-SHB_TWO_PI * I * k * lag(d, blade));
         state[blade * m + i] += creal(shifted);
         state[modal + blade * m + i] += creal(I * k * base * shifted);
       }

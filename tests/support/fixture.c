@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
+
 const char fixture_hostile[] =
     "name: <b>\"hostile\" & 'quoted'</b>\n# </script><script>alert(1)</script> <!-- ]]>\n"
     "# µm, ω², 叶片, \xf0\x9f\x94\xa7\n# not UTF-8: \xff\xfe\xc3(\n\tn0: 100 N\r\n# \x01\x1b[31m\n";
@@ -104,10 +106,11 @@ static shb_status add_branch(mhb_response *r, mhb_branch_kind kind, double n0,
   double x = kind == MHB_BRANCH_OPEN ? -40 : kind == MHB_BRANCH_STUCK ? 40 : log(fmax(n0, 1) / 100);
   fixture_curve c = curve_at(x, o->scale);
   if (kind != MHB_BRANCH_NONLINEAR) c.bend = 0;
-  double from = atan2(c.width, c.centre - 92), to = M_PI - atan2(c.width, 138 - c.centre);
+  double from = atan2(c.width, c.centre - 92), to = SHB_PI - atan2(c.width, 138 - c.centre);
   for (int i = 0; i < n; i++) {
-    double theta = n > 1 && o->n_points > 1 ? from + (to - from) * i / (o->n_points - 1) : M_PI / 2;
-    int    p;
+    double theta =
+        n > 1 && o->n_points > 1 ? from + (to - from) * i / (o->n_points - 1) : SHB_PI / 2;
+    int p;
     SHB_TRY(mhb_response_point(r, at, &p));
     mhb_branch *b    = &r->branch[at];
     double      a    = fixture_amplitude(&c, theta);
@@ -150,7 +153,7 @@ static shb_status fill_all(mhb_response *r, const fixture_options *o) {
   for (int q = 0; q < r->n_probes; q++) r->probe_name[q] = strdup(name[q % 4]);
   r->engine_order = 5;
   r->blades       = 40;
-  r->psi          = 35 * M_PI / 180;
+  r->psi          = 35 * SHB_PI / 180;
   SHB_TRY(fill_modes(r));
   if (o->limits) SHB_TRY(add_branch(r, MHB_BRANCH_OPEN, 0, o, o->n_points));
   if (o->limits) SHB_TRY(add_branch(r, MHB_BRANCH_STUCK, 0, o, o->n_points));

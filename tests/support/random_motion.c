@@ -78,7 +78,7 @@ static void draw_scales(int mild, int m, random_motion *r, unsigned long *state)
     u[i] *= scale;
     w[i] *= scale;
   }
-  r->law.balance = one_in(2, state) ? fmax(r->law.n0, 0) : 0;
+  r->law.mean_offset = one_in(2, state) ? fmax(r->law.n0, 0) : 0;
 }
 
 random_motion random_motion_of(unsigned long seed, unsigned long index, int mild) {

@@ -432,7 +432,7 @@ static void add_load(const walk *w, real t0, real t1, real *sum) {
 }
 
 static void finish(const walk *w, const mhb_law *law, const real *load_sum, reference *out) {
-  const double *shift = &law->balance;
+  const double *shift = &law->mean_offset;
   for (int i = 0; i <= 2 * w->H; i++) {
     real factor      = w->scale * (i == 0 ? 1 : 2) / TWO_PI;
     out->force[0][i] = (double)(factor * load_sum[i] - (i == 0 ? *shift : 0));

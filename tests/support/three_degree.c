@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double PI = 3.14159265358979323846;
+#include "mesh/base/constants.h"
 
 static void allocate(modal_model *model, int modes) {
   size_t m = (size_t)modes;
@@ -29,7 +29,7 @@ void three_degree_model(modal_model *model) {
   LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'V', 'U', 3, K, 3, lambda);
   for (int i = 0; i < 3; i++) {
     double w                = sqrt(lambda[i]);
-    model->frequency[i]     = w / (2 * PI);
+    model->frequency[i]     = w / SHB_TWO_PI;
     model->damping_ratio[i] = .01 * w;
     for (int c = 0; c < 3; c++) {
       model->right[c * 3 + i] = model->probe[c * 3 + i] = K[c * 3 + i];
@@ -40,7 +40,7 @@ void three_degree_model(modal_model *model) {
 
 void one_degree_model(double zeta, int direction, double force, modal_model *model) {
   allocate(model, 1);
-  model->frequency[0]     = 1 / (2 * PI);
+  model->frequency[0]     = 1 / SHB_TWO_PI;
   model->damping_ratio[0] = zeta;
   model->right[direction] = model->probe[direction] = 1;
   model->modal_force[1]                             = force;
@@ -49,8 +49,8 @@ void one_degree_model(double zeta, int direction, double force, modal_model *mod
 void two_mode_model(double omega, double zeta, double contact, double probe, double force,
                     modal_model *model) {
   allocate(model, 2);
-  model->frequency[0]     = 1 / (2 * PI);
-  model->frequency[1]     = omega / (2 * PI);
+  model->frequency[0]     = 1 / SHB_TWO_PI;
+  model->frequency[1]     = omega / SHB_TWO_PI;
   model->damping_ratio[0] = .01;
   model->damping_ratio[1] = zeta;
   model->right[2] = model->probe[2] = 1;
@@ -62,7 +62,7 @@ void two_mode_model(double omega, double zeta, double contact, double probe, dou
 
 /* Roots of cos x cosh x = -1. */
 static double cantilever_root(int r) {
-  double x = (r - .5) * PI;
+  double x = (r - .5) * SHB_PI;
   for (int i = 0; i < 50; i++) {
     double f = cos(x) + 1 / cosh(x), slope = -sin(x) - tanh(x) / cosh(x);
     x -= f / slope;
@@ -71,7 +71,7 @@ static double cantilever_root(int r) {
 }
 
 void tip_contact_beam_model(double force, modal_model *model) {
-  const double L = .2, b = .04, h = .01, E = 210e9, rho = 7800, angle = 40 * PI / 180;
+  const double L = .2, b = .04, h = .01, E = 210e9, rho = 7800, angle = 40 * SHB_PI / 180;
   int          flap = 1, edge = 1;
   allocate(model, 20);
   for (int i = 0; i < 20; i++) { /* in order of frequency */
@@ -80,7 +80,7 @@ void tip_contact_beam_model(double force, modal_model *model) {
     double we      = y * y * sqrt(E * b * b / (12 * rho)) / (L * L);
     int    is_flap = edge > 10 || (flap <= 10 && wf <= we), r = is_flap ? flap++ : edge++;
     double tip                 = 2 * (r % 2 ? 1 : -1) / sqrt(rho * b * h * L);
-    model->frequency[i]        = (is_flap ? wf : we) / (2 * PI);
+    model->frequency[i]        = (is_flap ? wf : we) / SHB_TWO_PI;
     model->damping_ratio[i]    = .002;
     model->right[i]            = tip * (is_flap ? sin(angle) : cos(angle));  /* v */
     model->right[20 + i]       = tip * (is_flap ? cos(angle) : -sin(angle)); /* u */

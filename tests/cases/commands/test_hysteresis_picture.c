@@ -12,9 +12,8 @@
 #include <cmocka.h>
 
 #include "cases/commands/hysteresis_picture.h"
+#include "mesh/base/constants.h"
 #include "mhb/numerics/fourier.h"
-
-static const double PI = 3.14159265358979323846;
 
 enum { M = 3, NB = 2 * M + 1, SCENES = 12 };
 
@@ -201,7 +200,7 @@ static void figures_are_those_of_the_law(void **state) {
   assert_non_null(strstr(p.svg.text, ">dissipation 25.60\u00a0mJ a cycle<")); /* 4 S (A - S/k) */
   assert_non_null(strstr(p.svg.text, "encloses 25.60\u00a0mJ<"));
   assert_non_null(strstr(p.svg.text, "friction up to 40.00\u00a0N"));
-  double stick = 100 * acos(1 - 2 * 40 / 200.) / PI;
+  double stick = 100 * acos(1 - 2 * 40 / 200.) / SHB_PI;
   assert_true(fabs(legend(p.svg.text, "stick") - stick) < .0501);
   assert_true(fabs(legend(p.svg.text, "slip") - (100 - stick)) < .0501);
   assert_non_null(strstr(p.svg.text, ">0.1476<")); /* acos(.6)/2 pi */

@@ -3,6 +3,7 @@
  * 77: h5py is missing. */
 #include <math.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/response/response.h"
 #include "tests/support/files.h"
 
@@ -31,8 +32,7 @@ static bool has_peak(const mhb_response *response, const mhb_branch *b, double a
     double here = amplitude_at(response, b, i);
     if (here < amplitude_at(response, b, i - 1) || here < amplitude_at(response, b, i + 1))
       continue;
-    if (fabs(here / amplitude - 1) < 2e-4 &&
-        fabs(6.283185307179586 * b->frequency[i] - omega) < 1e-3)
+    if (fabs(here / amplitude - 1) < 2e-4 && fabs(SHB_TWO_PI * b->frequency[i] - omega) < 1e-3)
       return true;
   }
   return false;

@@ -3,12 +3,11 @@
 #include <complex.h>
 
 #include "cases/schema/case.h"
+#include "mesh/base/constants.h"
 #include "mhb/integration/integrator.h"
 #include "tests/support/scene.h"
 
 enum { PERIODS = 300, STEPS = 48 };
-
-static const double two_pi = 6.28318530717958647692;
 
 static char          folder[SCRATCH_PATH];
 static mhb_response *ring, *three, *one;
@@ -131,7 +130,7 @@ static double start_on(mhb_integrator *g, const mhb_branch *b, int point, double
   double complex force[3 * K];
   for (int k = 0; k < K; k++)
     for (int c = 0; c < 3; c++) force[k * 3 + c] = b->force[(point * 3 + c) * K + k];
-  mhb_integrator_set(g, two_pi * b->frequency[point], 160, STEPS);
+  mhb_integrator_set(g, SHB_TWO_PI * b->frequency[point], 160, STEPS);
   mhb_integrator_balance(g, b->n_harmonics, force);
   *most = 0;
   assert_true(mhb_integrator_period(g));
@@ -145,7 +144,7 @@ static void sweep(mhb_integrator *g, double from, double step, const double boun
   for (int i = 1; i <= 60; i++) {
     left[0] = from + (i - 1) * step;
     left[1] = from + i * step;
-    mhb_integrator_set(g, two_pi * left[1], 160, STEPS);
+    mhb_integrator_set(g, SHB_TWO_PI * left[1], 160, STEPS);
     for (int period = 0; period < PERIODS; period++) {
       *most = 0;
       assert_true(mhb_integrator_period(g));

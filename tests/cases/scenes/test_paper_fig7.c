@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "cases/schema/case.h"
+#include "mesh/base/constants.h"
 #include "mhb/balance/newton.h"
 #include "mhb/integration/inertia_modes.h"
 #include "postproc/analysis/outputs.h"
@@ -15,7 +16,6 @@ enum { PRELOADS = 7, FREQUENCIES = 24 };
 
 static const double n0[PRELOADS] = {-400, -40, 20, 40, 80, 160, 320};
 
-static const double  two_pi = 6.28318530717958647692;
 static char          folder[SCRATCH_PATH];
 static mhb_response *three, *one, *time_domain;
 static case_file     file;
@@ -86,8 +86,8 @@ static void compare(balance *b, const mhb_branch *dots, int p, double error[2]) 
       if (k > 0) x[c * nb + 2 * k - 1] = creal(z);
       if (k > 0) x[c * nb + 2 * k] = cimag(z);
     }
-  mhb_reason reason =
-      mhb_newton_solve(b->newton, b->residual, two_pi * dots->frequency[p], 1e-11, x, &iterations);
+  mhb_reason reason = mhb_newton_solve(b->newton, b->residual, SHB_TWO_PI * dots->frequency[p],
+                                       1e-11, x, &iterations);
   if (reason != MHB_CONVERGED)
     fail_msg("%g N, %g Hz: %s", dots->n0[p], dots->frequency[p], mhb_reason_text(reason));
   mhb_balance_contact_force(b->residual, 1, force);

@@ -16,13 +16,12 @@
 #include "cases/schema/case.h"
 #include "fem/body/assemble.h"
 #include "fem/element/surface.h"
+#include "mesh/base/constants.h"
 #include "modal/common/session.h"
 #include "modal/eigen/eigen.h"
 #include "tests/support/check.h"
 #include "tests/support/read_mesh.h"
 #include "tests/support/scene.h"
-
-static const double two_pi = 6.28318530717958647692;
 
 typedef struct {
   int             n_entries; /* nodes of both faces */
@@ -113,7 +112,7 @@ static void create_coupling(body *w) {
   size_t most   = 3 * (size_t)w->mesh.n_nodes;
   w->spring.dof = malloc(most * sizeof *w->spring.dof);
   for (int c = 0; c < 3; c++) w->spring.b[c] = malloc(most * sizeof *w->spring.b[c]);
-  double lag = two_pi * w->file.engine_order / w->file.blades;
+  double lag = SHB_TWO_PI * w->file.engine_order / w->file.blades;
   add_side(w, MESH_CONTACT_RIGHT, 1);
   add_side(w, MESH_CONTACT_LEFT, -cexp(-I * lag));
 }
@@ -346,7 +345,7 @@ static void limit_is_the_direct_solution(bool stuck, int n, const double *freque
       model_motion[c] = b->motion[(3 * p + c) * K + 1];
       model_probe[c]  = b->probe[(3 * p + c) * K + 1];
     }
-    solve(&whole, two_pi * b->frequency[p], stuck, motion, probe);
+    solve(&whole, SHB_TWO_PI * b->frequency[p], stuck, motion, probe);
     print_message("%s, %8.3f Hz: contact %.1e, probe %.1e off\n", stuck ? "stuck" : "open",
                   b->frequency[p], distance(model_motion, motion), distance(model_probe, probe));
     assert_true(distance(model_motion, motion) < bound[i]);

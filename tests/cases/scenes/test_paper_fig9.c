@@ -4,13 +4,13 @@
 #include <stdlib.h>
 
 #include "cases/schema/case.h"
+#include "mesh/base/constants.h"
 #include "mhb/structure/receptance.h"
 #include "postproc/analysis/response_analysis.h"
 #include "tests/support/scene.h"
 
 enum { PRELOADS = 11, HARMONICS = 3 };
 
-static const double  two_pi = 6.28318530717958647692;
 static char          folder[SCRATCH_PATH];
 static mhb_response *three, *one;
 
@@ -78,7 +78,7 @@ static void the_peak_has_an_optimum(void **state) {
 /* Share of each mode in the motion of harmonic k at a point: q = lambda (F - B^H p). */
 static void modal_shares(mhb_receptance *r, const mhb_branch *b, int point, int k, double *share) {
   double sum = 0;
-  mhb_receptance_at(r, two_pi * b->frequency[point], HARMONICS);
+  mhb_receptance_at(r, SHB_TWO_PI * b->frequency[point], HARMONICS);
   for (int i = 0; i < r->n_modes; i++) {
     double complex q = r->F[k * r->n_modes + i];
     for (int c = 0; c < 3; c++)
@@ -96,7 +96,7 @@ static double stuck_determinant(mhb_receptance *r, const mhb_settings *settings,
                                 double frequency) {
   const double   spring[3] = {settings->kv, settings->ku[0], settings->ku[2]};
   double complex a[3][3];
-  mhb_receptance_at(r, two_pi * frequency, HARMONICS);
+  mhb_receptance_at(r, SHB_TWO_PI * frequency, HARMONICS);
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++) a[i][j] = (i == j) + r->R[(k * 3 + i) * 3 + j] * spring[j];
   return cabs(a[0][0] * (a[1][1] * a[2][2] - a[1][2] * a[2][1]) -

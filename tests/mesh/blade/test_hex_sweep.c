@@ -12,6 +12,7 @@
 
 #include <cmocka.h>
 
+#include "mesh/base/constants.h"
 #include "mesh/blade/airfoil.h"
 #include "mesh/blade/blade.h"
 #include "mesh/blade/layers.h"
@@ -22,7 +23,7 @@
 #include "tests/support/check.h"
 #include "tests/support/read_mesh.h"
 
-static const double degree = M_PI / 180;
+static const double degree = SHB_PI / 180;
 
 static char folder[] = "/tmp/shb_sweep_XXXXXX";
 static char path[64], other[64];
@@ -139,7 +140,7 @@ static void parts_have_their_volumes(void **state) {
     assert_int_equal(mesh.kind, MESH_HEX20);
     volumes(&blade, &mesh, part);
     double root = blade.root_length * blade.root_width * blade.root_height;
-    double ring = blade.shroud_length * blade.shroud_thickness * 2 * M_PI / blade.blades *
+    double ring = blade.shroud_length * blade.shroud_thickness * SHB_TWO_PI / blade.blades *
                   (blade.section[2].radius + blade.shroud_thickness / 2);
     assert_near(part[0] / root, 1, 1e-12);
     assert_near(part[1] / airfoil_volume(&blade), 1, 4e-3);

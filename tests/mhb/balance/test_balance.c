@@ -16,6 +16,7 @@
 #include "mhb/continuation/first_solution.h"
 #include "mhb/numerics/fourier.h"
 #include "tests/support/check.h"
+#include "tests/support/complex_form.h"
 #include "tests/support/random_model.h"
 
 static const double PI = 3.14159265358979323846;
@@ -327,7 +328,7 @@ static void solve_stuck_ring(const blade *one, const mhb_law *law, double phase,
   memset(unloaded.load, 0, sizeof unloaded.load);
   memset(f, 0, sizeof f);
   for (int b = 0; mean && b < BLADES; b++) {
-    for (int i = 0; i < SIDE; i++) p[i] = i % 3 ? 0 : law[i / 3].n0 - law[i / 3].balance;
+    for (int i = 0; i < SIDE; i++) p[i] = i % 3 ? 0 : law[i / 3].n0 - law[i / 3].mean_offset;
     add_interface(one, b, p, f);
   }
   ring_motion(one, phase, f, x);
@@ -394,7 +395,7 @@ static void force_at_interface(const mhb_balance *b, const double *x, double pha
   int block = 3 * b->nb;
   for (int row = 0; row < 3 * b->n_pairs; row++) {
     double complex A[b->m + 1];
-    mhb_to_complex(b->m, x + row * b->nb, A);
+    to_complex(b->m, x + row * b->nb, A);
     for (int k = 0; k <= b->m; k++) A[k] *= cexp(-I * k * phase * blade_no);
     mhb_to_real(b->m, A, moved + row * b->nb);
   }
@@ -482,7 +483,7 @@ static double power_imbalance(const mhb_balance *b, double omega) {
       in += .5 * creal(conj(F) * I * w * q);
       damping += model->damping_ratio[i] * wi * w * w * creal(q * conj(q));
     }
-    const mhb_residual_terms *left = r->left_out;
+    const mhb_residual_terms *left = r->residual_terms;
     for (int row = 0; left->load[0] && row < r->n; row++)
       residual +=
           conj(left->load[0][k * r->n + row] + w * w * left->load[1][k * r->n + row]) * p[row];

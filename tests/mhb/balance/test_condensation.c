@@ -35,9 +35,9 @@ static mhb_balance *mixed_residual(const modal_model *model, const mhb_settings 
   if (mhb_balance_create(model, s, &b) != SHB_OK) fail_msg("%s", shb_message());
   mhb_balance_set_preload(b, s->n0[0]);
   for (int a = 0; a < b->n_pairs; a++) {
-    char kind         = kinds[a % (int)strlen(kinds)];
-    b->law[a].n0      = strchr("sh", kind) ? 1e3 : kind == 'o' ? -1e3 : .001 * (a % 3);
-    b->law[a].balance = 0;
+    char kind             = kinds[a % (int)strlen(kinds)];
+    b->law[a].n0          = strchr("sh", kind) ? 1e3 : kind == 'o' ? -1e3 : .001 * (a % 3);
+    b->law[a].mean_offset = 0;
   }
   return b;
 }

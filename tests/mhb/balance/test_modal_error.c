@@ -1,5 +1,6 @@
 /* What leaving out modes does to a solution: the estimate against the solution with all modes, through a resonance of the blade with its contact, where
  * the contact answers with many times what the receptance lacks. */
+#include "mesh/base/constants.h"
 #include "mhb/balance/modal_error.h"
 
 #include <math.h>
@@ -18,8 +19,6 @@
 #include "modal/model/reduce.h"
 #include "tests/support/periodic.h"
 #include "tests/support/three_degree.h"
-
-static const double PI = 3.14159265358979323846;
 
 enum { STEPS = 41 };
 
@@ -57,7 +56,8 @@ static void few_modes(int modes, modal_model *all, modal_model *few) {
   few->load_tail    = calloc(2 * ((size_t)few->n_load + 1), sizeof *few->load_tail);
   for (int c = 0; c < 3; c++)
     for (int i = modes; i < all->n_modes; i++) {
-      double lambda = pow(2 * PI * all->frequency[i], 2), phi = all->right[c * all->n_modes + i];
+      double lambda = pow(SHB_TWO_PI * all->frequency[i], 2),
+             phi    = all->right[c * all->n_modes + i];
       few->contact_tail[2 * c] += phi * phi / pow(lambda, 4);
       few->contact_tail[2 * c + 1] += phi * phi / pow(lambda, 5);
     }
@@ -83,7 +83,7 @@ static void compare(const char *where, int modes, double level, double n0, doubl
   balance_create(&few, &s, &rough);
   double worst = 0, low = INFINITY, high = 0, gain = 0, slips = 0;
   for (int i = 0; i < STEPS; i++) {
-    const double omega = 2 * PI * (from + (to - from) * i / (STEPS - 1));
+    const double omega = SHB_TWO_PI * (from + (to - from) * i / (STEPS - 1));
     solve(&exact, omega);
     solve(&rough, omega);
     mhb_truncation_error(rough.truncation, rough.x);

@@ -10,6 +10,7 @@
 
 #include <cmocka.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/balance/truncation_error.h"
 #include "mhb/branches/forced_response.h"
 #include "mhb/continuation/first_solution.h"
@@ -17,8 +18,6 @@
 #include "tests/support/periodic.h"
 #include "tests/support/random_model.h"
 #include "tests/support/three_degree.h"
-
-static const double PI = 3.14159265358979323846;
 
 enum { FINE = 31, MAX_RATIOS = 2000 };
 
@@ -79,7 +78,7 @@ static void compare(workspace *s, const mhb_branch *b, int folds, comparison *ou
   double       x[3 * nb], fine[3 * mhb_real_size(FINE)];
   *out = (comparison){.n = 0};
   for (int p = 0; p < b->n_points && out->n < MAX_RATIOS; p++) {
-    double omega = 2 * PI * b->frequency[p];
+    double omega = SHB_TWO_PI * b->frequency[p];
     if (near_fold(b, p) != folds) continue;
     fine_solution(b, p, fine);
     for (int c = 0; c < 3; c++)
@@ -132,8 +131,8 @@ static void check_curve(const char *name, const modal_model *model, mhb_settings
   static const int  H[] = {5, 7, 9, 13};
   static comparison seen, folds;
   mhb_response     *r;
-  s.frequency[0] = from / (2 * PI);
-  s.frequency[1] = to / (2 * PI);
+  s.frequency[0] = from / SHB_TWO_PI;
+  s.frequency[1] = to / SHB_TWO_PI;
   assert_int_equal(mhb_forced_response(model, &s, NULL, NULL, NULL, &r), SHB_OK);
   check_finest(name, &r->branch[2]);
   for (int h = 0; h < 4; h++) {
@@ -183,7 +182,8 @@ static void beam(void **state) {
     char        name[32];
     tip_contact_beam_model(force[i], &model);
     snprintf(name, sizeof name, "beam F %g", force[i]);
-    check_curve(name, &model, ground_settings(.3, 2e5, 2e5, 100, FINE), 2 * PI * 215, 2 * PI * 320);
+    check_curve(name, &model, ground_settings(.3, 2e5, 2e5, 100, FINE), SHB_TWO_PI * 215,
+                SHB_TWO_PI * 320);
     modal_model_free(&model);
   }
 }

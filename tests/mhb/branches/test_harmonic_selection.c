@@ -10,6 +10,7 @@
 
 #include <cmocka.h>
 
+#include "mesh/base/constants.h"
 #include "mesh/base/progress.h"
 #include "mhb/branches/harmonic_selection.h"
 #include "mhb/branches/main_branch.h"
@@ -19,7 +20,7 @@
 #include "tests/support/random_model.h"
 #include "tests/support/three_degree.h"
 
-static const double PI = 3.14159265358979323846, TOLERANCE = 1e-4;
+static const double TOLERANCE = 1e-4;
 
 enum { FINE = MHB_MOST_HARMONICS, MAX_POINTS = 3000 };
 
@@ -83,7 +84,7 @@ static truth compare(const modal_model *model, mhb_settings s, const mhb_respons
     memcpy(fine, x, sizeof x);
     count_kinds(b, p, &out);
     mhb_reason reason =
-        mhb_newton_solve(newton, residual, 2 * PI * b->frequency[p], 1e-11, fine, &iterations);
+        mhb_newton_solve(newton, residual, SHB_TWO_PI * b->frequency[p], 1e-11, fine, &iterations);
     double error = distance(x, fine, 3 * nb) / mhb_balance_vibration(residual, fine);
     if (reason != MHB_CONVERGED || !(error < .1)) {
       out.lost++;
@@ -123,8 +124,8 @@ static void check_curve(const char *name, const modal_model *model, mhb_settings
                         double to) {
   double seconds, fixed = INFINITY;
   truth  best;
-  s.frequency[0]     = from / (2 * PI);
-  s.frequency[1]     = to / (2 * PI);
+  s.frequency[0]     = from / SHB_TWO_PI;
+  s.frequency[1]     = to / SHB_TWO_PI;
   s.max_points       = MAX_POINTS;
   s.stability        = MHB_STABILITY_NEVER; /* the seconds compared are those of the balance */
   s.harmonics        = 1;
@@ -174,7 +175,8 @@ static void beam(void **state) {
     char        name[32];
     tip_contact_beam_model(force[i], &model);
     snprintf(name, sizeof name, "beam F %g", force[i]);
-    check_curve(name, &model, ground_settings(.3, 2e5, 2e5, 100, 1), 2 * PI * 215, 2 * PI * 320);
+    check_curve(name, &model, ground_settings(.3, 2e5, 2e5, 100, 1), SHB_TWO_PI * 215,
+                SHB_TWO_PI * 320);
     modal_model_free(&model);
   }
 }
@@ -202,8 +204,8 @@ static void static_parts_do_not_count(void **state) {
     mhb_settings s     = ground_settings(.12 / n0[i], .8, .5, n0[i], 1);
     s.preload          = MHB_INTERFERENCE;
     s.motion_tolerance = TOLERANCE;
-    s.frequency[0]     = 1.2 / (2 * PI);
-    s.frequency[1]     = 1.6 / (2 * PI);
+    s.frequency[0]     = 1.2 / SHB_TWO_PI;
+    s.frequency[1]     = 1.6 / SHB_TWO_PI;
     mhb_response *r    = follow(&model, &s, FINE, &seconds);
     s.motion_tolerance = 0;
     truth t            = compare(&model, s, r);

@@ -10,6 +10,7 @@
 
 #include <cmocka.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/branches/forced_response.h"
 #include "mhb/branches/record.h"
 #include "mhb/continuation/linear_resonances.h"
@@ -17,8 +18,6 @@
 #include "tests/support/check.h"
 #include "tests/support/periodic.h"
 #include "tests/support/spinning.h"
-
-static const double TWO_PI = 6.283185307179586476925;
 
 enum { MAIN = 2 }; /* after the linear limits */
 
@@ -51,7 +50,7 @@ static double apart(const double complex *a, const double complex *b, int n) {
 static void check_point(const mhb_settings *plain, spinning_kind kind, const mhb_response *response,
                         int branch, int point, double worst[2], int *judged) {
   const mhb_branch *b     = &response->branch[branch];
-  double            omega = TWO_PI * b->frequency[point];
+  double            omega = SHB_TWO_PI * b->frequency[point];
   modal_model       model;
   periodic          at;
   spinning_model(kind, omega / plain->engine_order, &model, NULL);
@@ -140,7 +139,7 @@ static void points_are_solutions_at_their_speed(void **state) {
     plain.to_ground            = all[c].to_ground;
     s                          = plain;
     mhb_speed_table  *run_up   = make_run_up(all[c].kind, all[c].n, &s);
-    mhb_response     *response = sweep(run_up->given, &s);
+    mhb_response     *response = sweep(run_up->common, &s);
     const mhb_branch *b        = &response->branch[MAIN];
     double            worst[2] = {0, 0};
     int               judged = 0, looked = 0;
@@ -162,7 +161,7 @@ static void other_parameters_take_one_speed(void **state) {
   (void)state;
   mhb_settings plain = spinning_settings(), s;
   modal_model  model;
-  plain.frequency[0] = plain.frequency[1] = 1.21 / TWO_PI;
+  plain.frequency[0] = plain.frequency[1] = 1.21 / SHB_TWO_PI;
   plain.parameter                         = MHB_IN_SCALE;
   plain.range[0]                          = .2;
   plain.range[1]                          = 2;
@@ -195,7 +194,8 @@ static void check_alone(const mhb_settings *s, const mhb_integration_settings *a
   one.n_frequencies              = 1;
   one.listed                     = true;
   one.frequency[0]               = b->frequency[point];
-  spinning_model(SPINNING_VEERING, TWO_PI * b->frequency[point] / s->engine_order, &model, NULL);
+  spinning_model(SPINNING_VEERING, SHB_TWO_PI * b->frequency[point] / s->engine_order, &model,
+                 NULL);
   assert_ok(mhb_integration_sweep(&model, &plain, &one, from, NULL, NULL, NULL, &alone));
   *off = apart(alone->branch[0].motion, b->motion + point * n3, n3);
   mhb_response_destroy(alone);
@@ -209,7 +209,7 @@ static void integration_agrees(void **state) {
   s.to_ground                      = true;
   s.harmonics                      = 7;
   mhb_speed_table         *run_up  = make_run_up(SPINNING_VEERING, 17, &s);
-  mhb_response            *balance = sweep(run_up->given, &s), *points = NULL;
+  mhb_response            *balance = sweep(run_up->common, &s), *points = NULL;
   mhb_integration_settings asked = {.n_frequencies = 3,
                                     .start         = MHB_START_FROM_STATE,
                                     .direction     = MHB_SWEEP_BOTH,
@@ -217,20 +217,20 @@ static void integration_agrees(void **state) {
                                     .tolerance     = 1e-7,
                                     .max_periods   = 4000};
   assert_int_equal(
-      mhb_integration_sweep(run_up->given, &s, &asked, NULL, NULL, NULL, NULL, &points),
+      mhb_integration_sweep(run_up->common, &s, &asked, NULL, NULL, NULL, NULL, &points),
       SHB_ERR_INPUT);
   assert_non_null(strstr(shb_message(), "integrate.start"));
   for (int start = MHB_START_FROM_BALANCE; start <= MHB_START_FROM_REST; start++) {
     const mhb_response *from = start == MHB_START_FROM_BALANCE ? balance : NULL;
     asked.start              = (mhb_integration_start)start;
-    assert_ok(mhb_integration_sweep(run_up->given, &s, &asked, from, NULL, NULL, NULL, &points));
+    assert_ok(mhb_integration_sweep(run_up->common, &s, &asked, from, NULL, NULL, NULL, &points));
     const mhb_branch *b = &points->branch[0];
     assert_int_equal(b->n_points, 3);
     for (int i = 0; i < b->n_points; i++) {
       const int n3  = 3 * (b->n_harmonics + 1);
       double    off = INFINITY;
       check_alone(&s, &asked, from, b, i, n3, &off);
-      print_message("start %d at %.4f rad/s: differ by %.1e\n", start, TWO_PI * b->frequency[i],
+      print_message("start %d at %.4f rad/s: differ by %.1e\n", start, SHB_TWO_PI * b->frequency[i],
                     off);
       assert_below(off, 1e-6);
     }
@@ -249,7 +249,7 @@ static void resonances_are_where_curves_meet(void **state) {
   mhb_resonances   all;
   int              found = 0, wanted = 0;
   const double     low = .4, high = 1.9, E = s.engine_order;
-  assert_ok(mhb_balance_create(run_up->given, &s, &b));
+  assert_ok(mhb_balance_create(run_up->common, &s, &b));
   mhb_balance_set_parameter(b, MHB_IN_FREQUENCY);
   assert_ok(mhb_resonances_create(b, low, high, &all));
   for (int mode = 0; mode < SPINNING_MODES; mode++) /* a + slope omega^2 = (k omega)^2 */
@@ -260,7 +260,7 @@ static void resonances_are_where_curves_meet(void **state) {
         spinning_model(SPINNING_STRAIGHT, at[i], &model, NULL);
         /* the second and third cross at .7: below it by place, above by the other's */
         int place = i == 1 && (mode == 1 || mode == 2) ? 3 - mode : mode;
-        lambda[i] = pow(TWO_PI * model.frequency[place], 2);
+        lambda[i] = pow(SHB_TWO_PI * model.frequency[place], 2);
         square[i] = at[i] * at[i];
         modal_model_free(&model);
       }

@@ -1,5 +1,6 @@
-/* The contact law on every motion of the suite: error against the independent reference, honesty of the estimate,
- * identities, derivative. m = 7, harmonics 0-15; errors relative to the largest force harmonic. */
+/* The contact law on every motion of the suite: error against the independent reference, accuracy
+ * of the estimate, identities, derivative. m = 7, harmonics 0-15; errors relative to the largest
+ * force harmonic. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -94,9 +95,9 @@ static void tolerance_is_met(void **state) {
   assert_int_equal(failed, 0);
 }
 
-/* Honest: the estimate is within a factor of ten of the true error. Too small by more is admitted below 1e-12 only, where
- * rounding decides; too large by more only while both are below a twentieth of what was asked for: where panels happen
- * to cancel, as on a circle, the true error may be anything. */
+/* The estimate is within a factor of ten of the true error. It may be smaller only below 1e-12,
+ * where rounding decides. It may be larger only if both are below a twentieth of the tolerance:
+ * where errors of panels cancel, as on a circle, the true error may be anything. */
 static void estimate_is_honest(void **state) {
   (void)state;
   int failed = 0;
@@ -223,7 +224,7 @@ static void units_do_not_matter(void **state) {
   }
 }
 
-/* Ku, motion and force in axes turned by an angle. */
+/* Ku, motion and force in rotated axes. */
 static void turned_axes_turn_the_force(void **state) {
   (void)state;
   double                 c = cos(.831), n = sin(.831);
@@ -256,7 +257,8 @@ static void turned_axes_turn_the_force(void **state) {
 
 enum { LEVELS = 4 };
 
-/* Central differences of steps d, d/2, d/4, d/8, extrapolated; *spread: what the last extrapolation changed. */
+/* Central differences of steps d, d/2, d/4, d/8, extrapolated; *spread: change by the last
+ * extrapolation. */
 static void difference(mhb_contact_evaluator *contact, const suite_motion *s, int column, double d,
                        double out[3 * NF], double *spread) {
   double table[LEVELS][3 * NF];
@@ -349,9 +351,10 @@ static double onset_of(mhb_contact_evaluator *contact, int i) {
   return high;
 }
 
-/* Where slip begins under a varying load, the mean friction goes like the square root of the distance: the derivative
- * grows without bound and is held: below 3e8 times the stiffness, on both sides, at any distance (the determinants it is
- * divided by are held above 1e-7 and 1e-8). The force is continuous up to what its estimate admits. */
+/* Where slip begins under a varying load, the mean friction goes like the square root of the
+ * distance, and its derivative is unbounded. The law bounds it by 3e8 times the stiffness, on both
+ * sides and at any distance: the determinants are held above 1e-7 and 1e-8. The force is continuous
+ * up to its estimated error. */
 static void derivative_is_capped_where_slip_begins(void **state) {
   (void)state;
   static double          jacobian[3 * NF * COLUMNS];

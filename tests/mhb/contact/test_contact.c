@@ -1,4 +1,5 @@
-/* The contact law: closed forms, identities, derivative, hostile input, an independent march. */
+/* The contact law: closed forms, identities, derivative, extreme input, comparison with time
+ * marching. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,11 +10,10 @@
 
 #include <cmocka.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/contact/contact.h"
 #include "mhb/numerics/fourier.h"
 #include "tests/support/check.h"
-
-static const double PI = 3.14159265358979323846;
 
 enum { M = 7, H = 15, NB = 2 * M + 1, NF = 2 * H + 1 };
 
@@ -65,9 +65,9 @@ static void one_direction(void **state) {
   set(&e, 1, 1, 2e-4, 0);
   evaluate(&e, 0);
   double A = 2e-4, k = 1e6, S = 40, th = acos(1 - 2 * S / (k * A));
-  assert_near(e.force[1][1] / A, k / PI * (th - sin(2 * th) / 2), 1e-10 * k);
+  assert_near(e.force[1][1] / A, k / SHB_PI * (th - sin(2 * th) / 2), 1e-10 * k);
   assert_near(e.force[1][1] / A, 142378.49, .01);
-  assert_near(e.force[1][2] / A, 4 * S / (PI * A) * (1 - S / (k * A)), 1e-10 * k);
+  assert_near(e.force[1][2] / A, 4 * S / (SHB_PI * A) * (1 - S / (k * A)), 1e-10 * k);
   assert_near(e.info.dissipation, 4 * S * (A - S / k), 1e-12);
   assert_near(e.info.slip_work, .0256, 1e-12);
   assert_near(e.force[2][1], 0, 1e-10);
@@ -81,18 +81,19 @@ static void normal_force_of_opening_contact(void **state) {
   evaluation e = {.law = {.mu = .3, .kv = kv, .ku = {1e6, 0, 1e6}, .n0 = n0}};
   set(&e, 0, 1, B, 0);
   evaluate(&e, 0);
-  assert_near(e.force[0][0], kv * B / PI * (sin(tc) - al * tc), 1e-10 * kv * B);
-  assert_near(e.force[0][1], kv * B / PI * (tc - sin(2 * tc) / 2), 1e-10 * kv * B);
+  assert_near(e.force[0][0], kv * B / SHB_PI * (sin(tc) - al * tc), 1e-10 * kv * B);
+  assert_near(e.force[0][1], kv * B / SHB_PI * (tc - sin(2 * tc) / 2), 1e-10 * kv * B);
   for (int k = 2; k <= H; k++) {
-    double wanted = 2 * kv * B / PI *
+    double wanted = 2 * kv * B / SHB_PI *
                     (sin((k - 1) * tc) / (2 * (k - 1)) + sin((k + 1) * tc) / (2 * (k + 1)) -
                      al * sin(k * tc) / k);
     assert_near(e.force[0][2 * k - 1], wanted, 1e-10 * kv * B);
   }
-  assert_near(e.info.share[MHB_SEPARATE], 1 - tc / PI, 1e-12);
+  assert_near(e.info.share[MHB_SEPARATE], 1 - tc / SHB_PI, 1e-12);
 }
 
-/* v = cos kt at n0 = 0 opens k times a period: n = max(v, 0) has mean 1/pi and amplitude 1/2, however large k. */
+/* v = cos kt at n0 = 0 opens k times a period: n = max(v, 0) has mean 1/pi and amplitude 0.5 at any
+ * k. */
 static void every_opening_counts(void **state) {
   (void)state;
   static const int many[] = {1, 63, 65, 128};
@@ -105,7 +106,7 @@ static void every_opening_counts(void **state) {
     assert_int_equal(mhb_contact_evaluator_create(k, k, 1e-8, &own), SHB_OK);
     motion[2 * k - 1] = 1;
     mhb_contact_force(own, &law, motion, force, NULL, &info);
-    assert_near(force[0], 1 / PI, 1e-8);
+    assert_near(force[0], 1 / SHB_PI, 1e-8);
     assert_near(force[2 * k - 1], .5, 1e-8);
     assert_near(info.share[MHB_SEPARATE], .5, 1e-10);
     assert_int_equal(info.lost, 0);
@@ -119,11 +120,11 @@ static void circle(void **state) {
   double     R = 1e-4, k = 1e6, S = 40, s = S / (k * R);
   evaluation e = {.law = {.mu = .4, .kv = 5e5, .ku = {k, 0, k}, .n0 = 100}};
   set(&e, 1, 1, R, 0);
-  set(&e, 2, 1, R, -PI / 2);
+  set(&e, 2, 1, R, -SHB_PI / 2);
   evaluate(&e, 0);
   assert_near(e.force[1][1] / R, S * S / (k * R * R), 1e-10 * k);
   assert_near(e.force[1][2] / R, S / R * sqrt(1 - s * s), 1e-10 * k);
-  assert_near(e.info.dissipation, 2 * PI * R * S * sqrt(1 - s * s), 1e-12);
+  assert_near(e.info.dissipation, SHB_TWO_PI * R * S * sqrt(1 - s * s), 1e-12);
   for (int i = 1; i < 3; i++)
     for (int j = 3; j < NF; j++) assert_near(e.force[i][j], 0, 1e-9);
 }
@@ -135,14 +136,15 @@ static void in_phase_normal_load(void **state) {
   set(&e, 0, 1, 1e-4, 0);
   evaluate(&e, 0);
   double kA = 200, S = 40, g = 20;
-  double t1 = acos((kA - 2 * S - g) / (kA + g)), t2 = 2 * PI - acos((2 * S - g - kA) / (kA - g));
+  double t1 = acos((kA - 2 * S - g) / (kA + g)),
+         t2 = SHB_TWO_PI - acos((2 * S - g - kA) / (kA - g));
   (void)t2;
   assert_int_equal(e.info.n_transitions, 4);
   int found = 0;
   for (int i = 0; i < 4; i++) {
     double phase = e.info.transition[i].phase;
     if (e.info.transition[i].state != MHB_SLIDE) continue;
-    found += fabs(phase - t1 / (2 * PI)) < 1e-12 || fabs(phase * 360 - 218.9424) < 1e-4;
+    found += fabs(phase - t1 / SHB_TWO_PI) < 1e-12 || fabs(phase * 360 - 218.9424) < 1e-4;
   }
   assert_int_equal(found, 2);
   assert_near(e.info.dissipation, 0.024565657, 1e-9);
@@ -154,9 +156,9 @@ static void quadrature_normal_load(void **state) {
   (void)state;
   evaluation e = {.law = {.mu = .4, .kv = 5e5, .ku = {1e6, 0, 1e6}, .n0 = 100}};
   set(&e, 1, 1, 2e-4, 0);
-  set(&e, 0, 1, 1e-4, -PI / 2);
+  set(&e, 0, 1, 1e-4, -SHB_PI / 2);
   evaluate(&e, 0);
-  double stop = atan2(-20., -200.) / (2 * PI);
+  double stop = atan2(-20., -200.) / SHB_TWO_PI;
   int    hits = 0;
   for (int i = 0; i < e.info.n_transitions; i++) {
     if (e.info.transition[i].state != MHB_STICK) continue;
@@ -245,12 +247,13 @@ static const char *suite(int i, evaluation *e) {
   }
 }
 
-/* Radial return on N samples until periodic: first order, so that two grids extrapolate. Isotropic Ku only. */
+/* Radial return on N samples until periodic: first order, so that two grids extrapolate. Isotropic
+ * Ku. */
 static void march(const evaluation *e, int N, double out[3][NF]) {
   double f[2] = {0, 0}, x0[2] = {0, 0}, n = 0, before = 0;
   memset(out, 0, sizeof(double) * 3 * NF);
   for (int step = 0; step <= 12 * N; step++) {
-    double t = 2 * PI * (step % N) / N, b[NF], y[3] = {0, 0, 0};
+    double t = SHB_TWO_PI * (step % N) / N, b[NF], y[3] = {0, 0, 0};
     mhb_basis(H, t, b, NULL);
     for (int i = 0; i < 3; i++)
       for (int j = 0; j < NB; j++) y[i] += e->motion[i][j] * b[j];
@@ -294,7 +297,7 @@ static void against_marching(void **state) {
   }
 }
 
-/* Refined panels must not move the result: the order of the error is what a wrong formula spoils. */
+/* Refined panels must not change the result: the order of the error shows a wrong formula. */
 static void tolerance_is_met(void **state) {
   (void)state;
   mhb_contact_evaluator *coarse, *fine;
@@ -318,8 +321,7 @@ static void tolerance_is_met(void **state) {
 static void derivative_against_differences(void **state) {
   (void)state;
   static evaluation      e, p, q;
-  mhb_contact_evaluator *sharp,
-      *usual = workspace; /* differences magnify what the tolerance leaves */
+  mhb_contact_evaluator *sharp, *usual = workspace; /* differences magnify the error */
   assert_int_equal(mhb_contact_evaluator_create(M, H, 1e-14, &sharp), SHB_OK);
   for (int i = 0; i < SUITE; i++) {
     const char *name = suite(i, &e);
@@ -458,13 +460,15 @@ static double uniform(void) {
   return (double)(seed >> 11) / 9007199254740992.;
 }
 
-/* Closed for less than a cell of any grid: n is a parabola of height g, slip keeps its direction, so that
- *   mean n = (4/3) g sqrt(2 g/n'')/(2 pi),   |mean f| = mu mean n,   but for g itself and what rounding leaves of n. */
+/* Closed for less than a cell of any grid: n is a parabola of height g, and slip keeps its
+ * direction, so that
+ *   mean n = (4/3) g sqrt(2 g/n'')/(2 pi),   |mean f| = mu mean n,
+ * up to terms of order g and the rounding of n. */
 static void grazing(void **state) {
   (void)state;
   double kv = 3e5, B = 2.385e-4, mu = .3;
   for (int i = 1; i <= 9; i++) {
-    double     g = kv * B * pow(10, -i), load = 4. / 3 * g * sqrt(2 * g / (kv * B)) / (2 * PI);
+    double     g = kv * B * pow(10, -i), load = 4. / 3 * g * sqrt(2 * g / (kv * B)) / SHB_TWO_PI;
     evaluation e = {.law = {.mu = mu, .kv = kv, .ku = {4e5, 2e4, 5e5}, .n0 = g - kv * B}};
     set(&e, 0, 1, B, .7 * i);
     set(&e, 1, 1, .7 * B, 1.1);
@@ -494,7 +498,7 @@ static void random_cases_are_sane(void **state) {
     e.law.ku[1] = uniform() < .5 ? 0 : (1.8 * uniform() - .9) * k * sqrt(r);
     int top     = 1 + (int)(M * uniform());
     for (int a = 0; a < 3; a++)
-      for (int h = 0; h <= top; h++) set(&e, a, h, uniform() / (1 + h * h), 2 * PI * uniform());
+      for (int h = 0; h <= top; h++) set(&e, a, h, uniform() / (1 + h * h), SHB_TWO_PI * uniform());
     e.law.n0 = e.law.kv * (3 * uniform() - 1);
     evaluate(&e, i % 4 == 0);
     lost += e.info.lost;

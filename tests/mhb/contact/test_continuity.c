@@ -1,9 +1,10 @@
-/* No jump: along straight paths of motions and laws through every kind of switching, force harmonics change by no more
- * than a bound a step, and the bound shrinks with the step.
+/* Continuity: along straight paths of motions and laws through every kind of switching, the change
+ * of the force harmonics a step is bounded, and the bound shrinks with the step.
  *
- * Away from the onset of slip the force is Lipschitz: steps eight times as short change it by an eighth. Where slip just
- * begins under a varying load, the mean friction moves like the square root of the distance: by 1/sqrt(8) then. A jump of
- * any size would leave the largest change as it is. Changes are relative to the largest force harmonic on the path. */
+ * Away from the onset of slip the force is Lipschitz: steps eight times as short change it by an
+ * eighth. Where slip just begins under a varying load, the mean friction goes like the square root
+ * of the distance: the change falls by 1/sqrt(8). A jump would keep the largest change. Changes are
+ * relative to the largest force harmonic on the path. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -18,8 +19,8 @@
 
 enum { M = SUITE_HARMONICS, H = 15, NB = SUITE_WIDTH, NF = 2 * H + 1, COARSE = 400, FINER = 8 };
 
-/* Bounds, relative to the largest force: change <= LIPSCHITZ step + FLOOR; where slip just begins ONSET sqrt(step) +
- * ONSET_FLOOR, for there the periodic slider hangs on 1 - (decay of a lap) -> 0. */
+/* Bounds relative to the largest force: change <= LIPSCHITZ step + FLOOR; where slip just begins
+ * ONSET sqrt(step) + ONSET_FLOOR, for there 1 - (contraction of a lap) -> 0. */
 static const double LIPSCHITZ = 4, FLOOR = 1e-8, ONSET = .5, ONSET_FLOOR = 1e-4;
 
 typedef struct {
@@ -59,7 +60,7 @@ static void evaluate(const path *way, double p, answer *a) {
   mhb_contact_force(contact, &s.law, &s.motion[0][0], &a->force[0][0], NULL, &a->info);
 }
 
-/* What changes at a switch. */
+/* The signature of a solution, which changes at a switch. */
 static int signature(const answer *a) {
   const double *share = a->info.share;
   return 8 * a->info.n_transitions + 4 * (share[0] > 0) + 2 * (share[1] > 0) + (share[2] > 0);
@@ -176,7 +177,7 @@ static void changes_shrink_with_the_step(void **state) {
   assert_int_equal(failed, 0);
 }
 
-/* Between p and p + step the signature changes once or more: close in on one of the changes. */
+/* The signature changes between p and p + step: bisects to one of the changes. */
 static double find_switch(const path *way, double p, double step) {
   static answer low, middle;
   double        q = p + step;
@@ -193,7 +194,8 @@ static double find_switch(const path *way, double p, double step) {
   return .5 * (p + q);
 }
 
-/* Failures at one switch: the change across it, by ever shorter steps, is to fall like step^order. */
+/* Number of failures at one switch: the change across it, by ever shorter steps, must fall like
+ * step^order. */
 static int across(const path *way, double p, double top) {
   static answer low, high;
   int           failed = 0;

@@ -1,12 +1,13 @@
-/* Random laws and motions over the whole range: nothing that is not a number, no hang, no friction beyond its limit, no
- * work out of nothing.
+/* Random laws and motions over the whole range: no NaN, no hang, no friction beyond its limit, no
+ * negative dissipation.
  *
- *   SHROUDHB_RANDOM_CASES   how many (default 30000, some seconds); the long run, by hand:
- *                           SHROUDHB_RANDOM_CASES=1000000 bin/test_mhb_random
+ *   SHROUDHB_RANDOM_CASES   number of cases (default 30000, some seconds); a long run by hand:
+ *                           SHROUDHB_RANDOM_CASES=1000000 bin/test_mhb_contact_random
  *   SHROUDHB_RANDOM_SEED    another sequence
  *   SHROUDHB_RANDOM_FROM    index to begin at; with CASES=1, one case again
  *
- * Each failure names its seed and index (random_motion.h). Mild motions are compared with the reference as well. */
+ * Each failure reports its seed and index (random_motion.h). Mild motions are compared with the
+ * reference as well. */
 #include <math.h>
 #include <setjmp.h>
 #include <signal.h>
@@ -25,7 +26,7 @@
 #include "tests/support/random_motion.h"
 #include "tests/support/reference_law.h"
 
-/* The tolerance of the evaluations, and what a force or work may be off for it. */
+/* Tolerance of the evaluations, and the error of force or work that it permits. */
 static const double TOLERANCE = 1e-8;
 
 enum { PHASES = 48, HANG_SECONDS = 120, SHOWN = 8, MILD = 300 };
@@ -50,7 +51,7 @@ static unsigned long from_environment(const char *name, unsigned long otherwise)
   return text ? strtoul(text, NULL, 10) : otherwise;
 }
 
-/* What a hang would never tell. */
+/* Reports the case at a hang. */
 static char current[64];
 
 static void hung(int unused) {
@@ -164,7 +165,7 @@ static void whole_range(void **state) {
   report(&r);
   for (int i = 0; i < WORK_DIFFERS; i++) assert_int_equal(r.count[i], 0);
   assert_true(r.count[WORK_DIFFERS] <=
-              r.cases / 500); /* friction let go within 1e-6 rad of an opening */
+              r.cases / 500); /* friction released within 1e-6 rad of an opening */
   assert_true(r.count[LOST] <= r.cases / 1000);
 }
 
@@ -187,8 +188,9 @@ static void mild_motions_are_accurate(void **state) {
     double top = 0, off = 0;
     for (int k = 0; k < 3; k++) {
       for (int j = 0; j < WIDTH; j++) {
-        double load = k == 0 && j == 0 ? c.law.balance : 0, e = fabs(force[k][j] - r.force[k][j]);
-        top = fmax(top, fabs(r.force[k][j] + load));
+        double load = k == 0 && j == 0 ? c.law.mean_offset : 0,
+               e    = fabs(force[k][j] - r.force[k][j]);
+        top         = fmax(top, fabs(r.force[k][j] + load));
         if (!(e <= off)) off = e;
       }
     }

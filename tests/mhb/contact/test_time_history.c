@@ -1,4 +1,5 @@
-/* The contact over one period: against the force harmonics, the friction limit, the transitions and the work. */
+/* The contact over one period: against the force harmonics, the friction limit, the transitions and
+ * the work. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,10 +10,9 @@
 
 #include <cmocka.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/contact/time_history.h"
 #include "mhb/numerics/fourier.h"
-
-static const double PI = 3.14159265358979323846;
 
 enum { M = 5, H = 15, NB = 2 * M + 1, NF = 2 * H + 1, DENSE = 1 << 14, SCENES = 12 };
 
@@ -90,7 +90,7 @@ static void put_scene(int i, scene *s) {
       set(s, 1, 0, 3e-5, 0);
       set(s, 2, 2, 1.7e-4, 2);
       set(s, 1, 5, .1e-4, 2);
-      s->law.balance = 100;
+      s->law.mean_offset = 100;
       break;
     default:
       break;
@@ -123,17 +123,18 @@ static double harmonics_off(scene *s, int n) {
   double sum[3][NF] = {{0}}, b[NF], worst = 0;
   trace_uniform(s, n);
   for (int i = 0; i < n; i++) {
-    mhb_basis(H, 2 * PI * sample[i].phase, b, NULL);
+    mhb_basis(H, SHB_TWO_PI * sample[i].phase, b, NULL);
     for (int a = 0; a < 3; a++)
       for (int j = 0; j < NF; j++) sum[a][j] += (j ? 2. : 1.) / n * b[j] * component(&sample[i], a);
   }
-  sum[0][0] -= s->law.balance;
+  sum[0][0] -= s->law.mean_offset;
   for (int a = 0; a < 3; a++)
     for (int j = 0; j < NF; j++) worst = fmax(worst, fabs(sum[a][j] - s->force[a][j]));
   return worst;
 }
 
-/* A continuous force with kinks: the sampled harmonics err by 1/n^2, down to the law's own tolerance. */
+/* The force is continuous with kinks: the sampled harmonics err by 1/n^2, down to the tolerance of
+ * the law. */
 static void harmonics_at_second_order(void **state) {
   (void)state;
   for (int i = 0; i < SCENES; i++) {
@@ -149,7 +150,8 @@ static void harmonics_at_second_order(void **state) {
 
 enum { GAUSS = 5, CUTS = 150 };
 
-/* Gauss points between transitions: what is smooth there is integrated far below the tolerance of the law. */
+/* Gauss points between transitions: smooth pieces are integrated far below the tolerance of the
+ * law. */
 static int gauss_points(const scene *s, double *weight) {
   static const double x[GAUSS] = {-.9061798459386640, -.5384693101056831, 0, .5384693101056831,
                                   .9061798459386640},
@@ -191,15 +193,15 @@ static void harmonics_and_work_by_pieces(void **state) {
     trace(&s, n);
     for (int l = 0; l < n; l++) {
       double b[NF], slope[NF];
-      mhb_basis(H, 2 * PI * sample[l].phase, b, slope);
+      mhb_basis(H, SHB_TWO_PI * sample[l].phase, b, slope);
       for (int a = 0; a < 3; a++)
         for (int j = 0; j < NF; j++)
           sum[a][j] += (j ? 2 : 1) * weight[l] * b[j] * component(&sample[l], a);
       for (int a = 1; a < 3; a++)
         for (int j = 0; j < NB; j++)
-          work += 2 * PI * weight[l] * s.motion[a][j] * slope[j] * component(&sample[l], a);
+          work += SHB_TWO_PI * weight[l] * s.motion[a][j] * slope[j] * component(&sample[l], a);
     }
-    sum[0][0] -= s.law.balance;
+    sum[0][0] -= s.law.mean_offset;
     for (int a = 0; a < 3; a++)
       for (int j = 0; j < NF; j++) worst = fmax(worst, fabs(sum[a][j] - s.force[a][j]));
     if (!(worst <= 1e-9 * s.top))
@@ -234,7 +236,7 @@ static void within_the_friction_limit(void **state) {
   }
 }
 
-/* Either side of a transition: the state changes as told, the force does not. */
+/* On either side of a transition the state changes as reported, the force does not. */
 static void continuous_across_transitions(void **state) {
   (void)state;
   const double step  = 1e-10;
@@ -256,13 +258,13 @@ static void continuous_across_transitions(void **state) {
       for (int a = 0; a < 3;
            a++) /* the slope of the force is at most M load a radian, times cond(Ku) */
         assert_true(fabs(component(&sample[1], a) - component(&sample[0], a)) <=
-                    2 * PI * 2 * step * 4 * M * load);
+                    SHB_TWO_PI * 2 * step * 4 * M * load);
     }
   }
   assert_true(total >= 20);
 }
 
-/* No jump anywhere: between panels, at the period's end, which is its start. */
+/* No jump between panels, nor at the end of the period. */
 static void continuous_throughout(void **state) {
   (void)state;
   for (int i = 0; i < SCENES; i++) {
@@ -277,7 +279,7 @@ static void continuous_throughout(void **state) {
       for (int l = 1; l < DENSE; l++)
         jump = fmax(jump, fabs(component(&sample[l], a) - component(&sample[l - 1], a)));
     }
-    if (!(jump <= 2 * PI / DENSE * 4 * M * load)) fail_msg("%s: jump of %g N", s.name, jump);
+    if (!(jump <= SHB_TWO_PI / DENSE * 4 * M * load)) fail_msg("%s: jump of %g N", s.name, jump);
   }
 }
 
@@ -295,11 +297,11 @@ static void put_random(scene *s) {
   if (uniform() < .5) s->law.ku[1] = (1.8 * uniform() - .9) * k * sqrt(r);
   int top = 1 + (int)(M * uniform());
   for (int a = 0; a < 3; a++)
-    for (int h = 0; h <= top; h++) set(s, a, h, uniform() / (1 + h * h), 2 * PI * uniform());
+    for (int h = 0; h <= top; h++) set(s, a, h, uniform() / (1 + h * h), SHB_TWO_PI * uniform());
   s->law.n0 = s->law.kv * (3 * uniform() - 1);
 }
 
-/* What the law's tolerance is relative to: the largest force in sight. */
+/* The scale of the law's tolerance: the largest force in sight. */
 static double force_scale(const scene *s) {
   const double *ku = s->law.ku, *v = s->motion[0], *u = s->motion[1], *w = s->motion[2];
   double        load = fabs(s->law.n0), friction = 0;
@@ -310,7 +312,8 @@ static double force_scale(const scene *s) {
   return fmax(load, friction);
 }
 
-/* Wherever the lap begins and whatever it meets: periodic, within the limit, states as long as told. */
+/* For any start of the lap and any events: periodic, within the limit, shares of states as
+ * reported. */
 static void random_motions(void **state) {
   (void)state;
   enum { N = 401 };
@@ -319,7 +322,7 @@ static void random_motions(void **state) {
     put_random(&s);
     for (int l = 0; l < N; l++) sample[l].phase = (double)l / (N - 1);
     mhb_contact_time_history(workspace, &s.law, &s.motion[0][0], N, sample, &s.info);
-    if (s.info.lost) continue; /* told, and bounded by test_contact */
+    if (s.info.lost) continue; /* reported, and bounded */
     double scale = force_scale(&s), share[3] = {0};
     for (int l = 0; l < N; l++) {
       double size = hypot(sample[l].f[0], sample[l].f[1]);
@@ -329,7 +332,7 @@ static void random_motions(void **state) {
       if (l > 0) share[sample[l].state] += 1. / (N - 1);
     }
     for (int a = 0; a < 3;
-         a++) /* where slip is stiff a lap's end is less accurate than its force */
+         a++) /* where slip is stiff the end of a lap is less accurate than its force */
       assert_true(fabs(component(&sample[0], a) - component(&sample[N - 1], a)) <= 5e-9 * scale);
     for (int k = 0; k < 3; k++)
       assert_true(fabs(share[k] - s.info.share[k]) <= (1. + s.info.n_transitions) / (N - 1));

@@ -9,6 +9,7 @@
 
 #include <cmocka.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/branches/forced_response.h"
 #include "mhb/branches/record.h"
 #include "mhb/continuation/balance_curve.h"
@@ -17,7 +18,7 @@
 #include "tests/support/solution.h"
 #include "tests/support/three_degree.h"
 
-static const double PI = 3.14159265358979323846, SECOND = 1.437;
+static const double SECOND = 1.437;
 
 enum { M = 5, UNKNOWNS = 3 * (2 * M + 1) };
 
@@ -30,8 +31,8 @@ static mhb_settings ground(double n0) {
   s.ku[0] = s.ku[2] = 1;
   s.ku[1]           = 0;
   s.n0[0]           = n0;
-  s.frequency[0]    = .8 / (2 * PI);
-  s.frequency[1]    = 2 / (2 * PI);
+  s.frequency[0]    = .8 / SHB_TWO_PI;
+  s.frequency[1]    = 2 / SHB_TWO_PI;
   s.stability       = MHB_STABILITY_NEVER;
   return s;
 }
@@ -130,7 +131,7 @@ static double highest(const mhb_response *r, double width, int *peaks) {
   double            top = 0;
   *peaks                = 0;
   for (int p = 0; p < b->n_points; p++) {
-    if (fabs(2 * PI * b->frequency[p] - SECOND) > width) continue;
+    if (fabs(SHB_TWO_PI * b->frequency[p] - SECOND) > width) continue;
     top = fmax(top, probe_at(b->probe + (size_t)p * 3 * (size_t)K + 1, K));
     *peaks += b->special[p] == MHB_PEAK;
   }

@@ -1,4 +1,5 @@
 /* The solution next to another balance's: it is one, lies in the plane asked for, and is not the one given. */
+#include "mesh/base/constants.h"
 #include "mhb/continuation/nearest_solution.h"
 
 #include <math.h>
@@ -14,8 +15,6 @@
 #include "tests/support/solution.h"
 #include "tests/support/three_degree.h"
 
-static const double PI = 3.14159265358979323846;
-
 enum { FEW = 1, MANY = 5, NB = 2 * MANY + 1, N = 3 * NB };
 
 static mhb_settings settings_of(int harmonics) {
@@ -26,7 +25,7 @@ static mhb_settings settings_of(int harmonics) {
                         .ku           = {.5, 0, .5},
                         .n_preloads   = 1,
                         .n0           = {.3},
-                        .frequency    = {.8 / (2 * PI), 1.6 / (2 * PI)},
+                        .frequency    = {.8 / SHB_TWO_PI, 1.6 / SHB_TWO_PI},
                         .harmonics    = harmonics,
                         .subharmonics = 1,
                         .scale        = 1,

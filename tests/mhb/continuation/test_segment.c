@@ -1,5 +1,6 @@
 /* mhb_trace_segment on scalar problems, without a contact law: circle, cusp, square-root kink, closed
  * curve, ends of the range, and every end that a segment can have. */
+#include "mesh/base/constants.h"
 #include "mhb/continuation/segment.h"
 
 #include <math.h>
@@ -343,7 +344,7 @@ static double snake(double x, double value, double *f_x, double *f_value) {
 static void all_folds_of_a_snake_are_found(void **state) {
   (void)state;
   tracing      t     = {0};
-  const double inner = acos(-1. / 3) / 20, outer = 2 * 3.141592653589793 / 20 - inner;
+  const double inner = acos(-1. / 3) / 20, outer = SHB_TWO_PI / 20 - inner;
   const double wanted[] = {-outer, -inner, inner, outer};
   double       value[8], x[8];
   assert_int_equal(trace(&t, snake, -0.31, 0.31, 0.6 - 0.313, -0.31, 1, 500), MHB_END_HIGH);

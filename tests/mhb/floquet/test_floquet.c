@@ -10,6 +10,7 @@
 
 #include <cmocka.h>
 
+#include "mesh/base/constants.h"
 #include "mesh/base/progress.h"
 #include "tests/support/allocations.h"
 #include "tests/support/check.h"
@@ -17,8 +18,6 @@
 #include "tests/support/periodic.h"
 #include "tests/support/random_model.h"
 #include "tests/support/three_degree.h"
-
-static const double PI = 3.14159265358979323846;
 
 enum { N = 256, MOST = 64 };
 
@@ -294,7 +293,7 @@ static void nothing_is_allocated(void **state) {
     mhb_floquet    *stability;
     mhb_multipliers out;
     double          best = INFINITY;
-    periodic_create(&model, &s, 2 * PI * rows[i].hertz, NULL, &p);
+    periodic_create(&model, &s, SHB_TWO_PI * rows[i].hertz, NULL, &p);
     assert_int_equal(mhb_floquet_create(p.residual->receptance, &s, N, 0, &stability), SHB_OK);
     mhb_floquet_evaluate(stability, &p.solution, &out);
     long before = allocations;

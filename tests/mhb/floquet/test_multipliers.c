@@ -10,6 +10,7 @@
 
 #include <cmocka.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/branches/forced_response.h"
 #include "mhb/branches/main_branch.h"
 #include "mhb/continuation/balance_curve.h"
@@ -18,8 +19,6 @@
 #include "tests/support/disturbed.h"
 #include "tests/support/periodic.h"
 #include "tests/support/three_degree.h"
-
-static const double PI = 3.14159265358979323846;
 
 enum { N = 256, MOST = 64 };
 
@@ -101,8 +100,8 @@ static void between(const mhb_response *r, const mhb_branch *b, int at, double s
 
 static mhb_response *sweep(const modal_model *model, mhb_settings *s, double from, double to) {
   mhb_response *response;
-  s->frequency[0] = from / (2 * PI);
-  s->frequency[1] = to / (2 * PI);
+  s->frequency[0] = from / SHB_TWO_PI;
+  s->frequency[1] = to / SHB_TWO_PI;
   assert_int_equal(mhb_forced_response(model, s, NULL, NULL, NULL, &response), SHB_OK);
   return response;
 }
@@ -124,7 +123,7 @@ static void one_degree_with_jumps(void **state) {
     double            x[3 * 63];
     int               seen = 0, folds = 0;
     for (int at = 0; at + 1 < b->n_points; at++) {
-      double   here = 2 * PI * b->frequency[at], next = 2 * PI * b->frequency[at + 1];
+      double   here = SHB_TWO_PI * b->frequency[at], next = SHB_TWO_PI * b->frequency[at + 1];
       periodic p;
       if (b->special[at] == MHB_FOLD) {
         between(r, b, at, 0, x);
@@ -197,8 +196,8 @@ static void product_without_friction(void **state) {
     periodic_create(&model, &s, rows[i][1], NULL, &p);
     mhb_multipliers out = periodic_multipliers(&p, N, mu);
     for (int k = 0; k < out.n; k++) product *= mu[k];
-    for (int k = 0; k < 3; k++) rate += 2 * PI * model.frequency[k] * model.damping_ratio[k];
-    double wanted = exp(-2 * rate * 2 * PI / p.omega);
+    for (int k = 0; k < 3; k++) rate += SHB_TWO_PI * model.frequency[k] * model.damping_ratio[k];
+    double wanted = exp(-2 * rate * SHB_TWO_PI / p.omega);
     print_message("n0 %5.2f: product %.8f (%.8f), open %.2f\n", rows[i][0], creal(product), wanted,
                   p.residual->eval->info[0].share[MHB_SEPARATE]);
     assert_near(cabs(product / wanted - 1), 0, 1e-5);
@@ -222,7 +221,7 @@ static void march_to(const modal_model *model, const mhb_settings *s, double ome
   double basis[b->nb];
   memset(x, 0, sizeof(double) * (size_t)b->n);
   for (int i = 0; i < STEPS; i++) {
-    mhb_basis(b->m, 2 * PI * i / STEPS, basis, NULL);
+    mhb_basis(b->m, SHB_TWO_PI * i / STEPS, basis, NULL);
     for (int k = 0; k < b->nb; k++) x[k] += (k ? 2. : 1.) / STEPS * basis[k] * y[0];
     disturbed_step(&d, y, i);
   }
@@ -269,7 +268,7 @@ static void detached_subharmonics(void **state) {
     march_to(&model, &s, rows[i].w, rows[i].start, x);
     periodic_create(&model, &s, rows[i].w, x, &p);
     mhb_multipliers out     = periodic_multipliers(&p, 1024, mu);
-    double          product = exp(-.04 * rows[i].order * 2 * PI / rows[i].w);
+    double          product = exp(-.04 * rows[i].order * SHB_TWO_PI / rows[i].w);
     print_message("order %d: %.6f, largest %.5f;", rows[i].order, hypot(p.x[1], p.x[2]),
                   out.largest);
     assert_near(hypot(p.x[1], p.x[2]), rows[i].stable, 2e-5);

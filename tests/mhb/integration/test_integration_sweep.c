@@ -11,12 +11,11 @@
 
 #include <cmocka.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/branches/forced_response.h"
 #include "mhb/integration/integration_sweep.h"
 #include "tests/support/periodic.h"
 #include "tests/support/three_degree.h"
-
-static const double PI = 3.14159265358979323846;
 
 static mhb_integration_settings asked(mhb_integration_start start, int n) {
   return (mhb_integration_settings){.n_frequencies = n,
@@ -44,8 +43,8 @@ static mhb_settings three_degree_settings(int harmonics) {
   s.n_preloads   = 3;
   s.n0[1]        = 0;
   s.n0[2]        = .3;
-  s.frequency[0] = .8 / (2 * PI);
-  s.frequency[1] = 1.6 / (2 * PI);
+  s.frequency[0] = .8 / SHB_TWO_PI;
+  s.frequency[1] = 1.6 / SHB_TWO_PI;
   return s;
 }
 
@@ -64,7 +63,7 @@ static double off_balance(const modal_model *model, const mhb_settings *s, const
       x[c * nb + (k ? 2 * k - 1 : 0)] = creal(a);
       if (k) x[c * nb + 2 * k] = cimag(a);
     }
-  periodic_create(model, &one, 2 * PI * b->frequency[point], x, &at);
+  periodic_create(model, &one, SHB_TWO_PI * b->frequency[point], x, &at);
   for (int c = 0; c < 3; c++) {
     double wanted = hypot(at.x[c * nb + 1], at.x[c * nb + 2]);
     away          = fmax(away, fabs(first(b, point, c) - wanted));
@@ -119,8 +118,8 @@ static void sweeps_that_jump(void **state) {
   modal_model  model;
   mhb_settings s = ground_settings(.3, 9, 1, -4.5, 31);
   one_degree_model(.02, 0, .1, &model);
-  s.frequency[0]             = 1.05 / (2 * PI);
-  s.frequency[1]             = 1.45 / (2 * PI);
+  s.frequency[0]             = 1.05 / SHB_TWO_PI;
+  s.frequency[1]             = 1.45 / SHB_TWO_PI;
   mhb_integration_settings a = asked(MHB_START_FROM_STATE, 81); /* .005 rad/s */
   mhb_response            *r = witness(&model, &s, &a, NULL);
   assert_int_equal(r->n_branches, 2);
@@ -133,7 +132,7 @@ static void sweeps_that_jump(void **state) {
       double change = fabs(first(b, p, 0) - first(b, p - 1, 0));
       if (change < most) continue;
       most    = change;
-      jump[i] = PI * (b->frequency[p] + b->frequency[p - 1]);
+      jump[i] = SHB_PI * (b->frequency[p] + b->frequency[p - 1]);
     }
   }
   print_message("jumps: up %.4f, down %.4f rad/s\n", jump[0], jump[1]);
@@ -152,15 +151,15 @@ static void adrift(void **state) {
   mhb_settings   s    = ground_settings(.4, .8, .5, .1, 7);
   shb_provenance from = {"case.yaml", "text", "settings", "test"};
   three_degree_model(&model);
-  s.frequency[0]             = .8 / (2 * PI);
-  s.frequency[1]             = 1.6 / (2 * PI);
+  s.frequency[0]             = .8 / SHB_TWO_PI;
+  s.frequency[1]             = 1.6 / SHB_TWO_PI;
   mhb_integration_settings a = asked(MHB_START_FROM_REST, 2);
   mhb_response            *r, *read;
   assert_true(fd >= 0);
   close(fd);
   a.listed       = true;
-  a.frequency[0] = 1.0 / (2 * PI);
-  a.frequency[1] = 1.25 / (2 * PI);
+  a.frequency[0] = 1.0 / SHB_TWO_PI;
+  a.frequency[1] = 1.25 / SHB_TWO_PI;
   assert_int_equal(mhb_integration_sweep(&model, &s, &a, NULL, path, &from, NULL, &r), SHB_OK);
   assert_int_equal(mhb_response_read(path, &read), SHB_OK);
   const mhb_branch *b = &read->branch[0];

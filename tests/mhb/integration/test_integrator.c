@@ -512,9 +512,9 @@ static void passive(void **state) {
     assert_true(mhb_integrator_period(a.g));
     mhb_integrator_get(a.g, x);
     const mhb_contact_point *rub  = &a.g->rub[0];
-    double                   load = rub->p[0] + a.g->law[0].balance;
+    double                   load = rub->p[0] + a.g->law[0].mean_offset;
     double energy = load * load / 2e4 + (rub->p[1] * rub->p[1] + rub->p[2] * rub->p[2]) / 1.4e4 -
-                    a.g->law[0].balance * rub->u[0];
+                    a.g->law[0].mean_offset * rub->u[0];
     for (int i = 0; i < 3; i++) {
       double w = 2 * PI * model.frequency[i];
       energy += .5 * (x[3 + i] * x[3 + i] + w * w * x[i] * x[i]);

@@ -242,7 +242,7 @@ static void laws_are_their_own(void **state) {
     assert_small(b->law[0].n0 - share * s.interface[1].n0[i], 1e-15);
     assert_small(b->law[2].n0 - (1 - share) * s.interface[1].n0[i], 1e-15);
     assert_small(b->law[1].n0 - s.n0[i], 1e-15);
-    assert_small(b->law[0].balance - fmax(b->law[0].n0, 0), 0);
+    assert_small(b->law[0].mean_offset - fmax(b->law[0].n0, 0), 0);
   }
   assert_true(b->law[0].mu == .23 && b->law[1].mu == .4 && b->law[1].kv == .8);
   assert_small(b->law[0].kv + b->law[2].kv - 1.7 * .8, 1e-15);

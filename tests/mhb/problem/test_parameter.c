@@ -1,4 +1,5 @@
-/* Curves followed in another parameter than the frequency: exact slopes, and the same solutions as at fixed parameters. */
+/* Curves in another parameter than the frequency: exact slopes, and the same solutions as at fixed
+ * parameters. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -8,6 +9,7 @@
 
 #include <cmocka.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/balance/newton.h"
 #include "mhb/branches/forced_response.h"
 #include "mhb/branches/main_branch.h"
@@ -15,8 +17,6 @@
 #include "tests/support/random_model.h"
 #include "tests/support/settings.h"
 #include "tests/support/three_degree.h"
-
-static const double PI = 3.14159265358979323846;
 
 enum { PAIRS = 2, M = 4, N = 3 * PAIRS * (2 * M + 1) };
 
@@ -88,7 +88,8 @@ static mhb_response *sweep(const modal_model *model, const mhb_settings *s) {
   return response;
 }
 
-/* |r| of a recorded point in the balance of a case that has the point's value as its own; relative to the motion. */
+/* |r| of a recorded point in the balance of a case with the value of the point as its own; relative
+ * to the motion. */
 static double residual_of(const modal_model *model, mhb_settings s, const mhb_response *response,
                           int point) {
   const mhb_branch *branch = &response->branch[2];
@@ -107,13 +108,13 @@ static double residual_of(const modal_model *model, mhb_settings s, const mhb_re
   if (s.parameter == MHB_IN_KV) s.kv = value;
   for (int i = 0; s.parameter == MHB_IN_KU && i < 3; i += 2) s.ku[i] = value;
   assert_int_equal(mhb_balance_create(model, &s, &b), SHB_OK);
-  mhb_balance_evaluate(b, x, 2 * PI * s.frequency[0], r, NULL, NULL);
+  mhb_balance_evaluate(b, x, SHB_TWO_PI * s.frequency[0], r, NULL, NULL);
   double size = mhb_norm(r, 3 * nb) / mhb_norm(x, 3 * nb);
   mhb_balance_destroy(b);
   return size;
 }
 
-/* Three degrees of freedom on the ground: every parameter, from next to nothing to a lot. */
+/* Three degrees of freedom to ground: every parameter over a wide range. */
 static void every_parameter_is_followed(void **state) {
   (void)state;
   static const double ranges[MHB_N_PARAMETERS][2] = {[MHB_IN_N0]    = {-.3, 1},
@@ -126,7 +127,7 @@ static void every_parameter_is_followed(void **state) {
   for (int what = MHB_IN_N0; what < MHB_N_PARAMETERS; what++) {
     mhb_settings s = ground(.4, .8, .5, .2, 5);
     s.parameter    = (mhb_parameter)what;
-    s.frequency[0] = s.frequency[1] = 1.27 / (2 * PI);
+    s.frequency[0] = s.frequency[1] = 1.27 / SHB_TWO_PI;
     memcpy(s.range, ranges[what], sizeof s.range);
     mhb_response     *response = sweep(&model, &s);
     const mhb_branch *b        = &response->branch[2];
@@ -149,7 +150,7 @@ static void every_parameter_is_followed(void **state) {
   modal_model_free(&model);
 }
 
-/* Stuck, nothing changes with mu: no peaks there, and no way back. */
+/* While stuck nothing changes with mu: no peaks there, and no turning back. */
 static void stuck_means_nothing_changes(void **state) {
   (void)state;
   modal_model model;
@@ -157,7 +158,7 @@ static void stuck_means_nothing_changes(void **state) {
   for (int i = 0; i < 6; i++) {
     mhb_settings s = ground(.4, .8, .5, 1, 3 + 2 * (i % 3));
     s.parameter    = MHB_IN_MU;
-    s.frequency[0] = s.frequency[1] = (1.1 + .07 * i) / (2 * PI);
+    s.frequency[0] = s.frequency[1] = (1.1 + .07 * i) / SHB_TWO_PI;
     s.range[0]                      = .02;
     s.range[1]                      = 5;
     mhb_response     *response      = sweep(&model, &s);
@@ -180,26 +181,27 @@ static double fold_in_frequency(const modal_model *model, mhb_settings s, double
   double best                = INFINITY;
   s.parameter                = MHB_IN_FREQUENCY;
   s.scale                    = scale;
-  s.frequency[0]             = .5 * w / (2 * PI);
-  s.frequency[1]             = 2 * w / (2 * PI);
+  s.frequency[0]             = .5 * w / SHB_TWO_PI;
+  s.frequency[1]             = 2 * w / SHB_TWO_PI;
   mhb_response     *response = sweep(model, &s);
   const mhb_branch *b        = &response->branch[2];
   for (int i = 0; i < b->n_points; i++) {
-    double at = 2 * PI * b->frequency[i];
+    double at = SHB_TWO_PI * b->frequency[i];
     if (b->special[i] == MHB_FOLD && fabs(at - w) < fabs(best - w)) best = at;
   }
   mhb_response_destroy(response);
   return best;
 }
 
-/* A fold of the curve in the level lies on the same edge of the folded surface as one in frequency; the middle is unstable. */
+/* A fold of the curve in the scale lies on the same edge of the folded surface as one in frequency;
+ * the middle part is unstable. */
 static void folds_are_those_in_frequency(void **state) {
   (void)state;
   modal_model model;
   one_degree_model(.02, 0, .1, &model);
   mhb_settings s = ground(0, 9, 1, -4.5, 15);
   s.parameter    = MHB_IN_SCALE;
-  s.frequency[0] = s.frequency[1] = 1.3 / (2 * PI);
+  s.frequency[0] = s.frequency[1] = 1.3 / SHB_TWO_PI;
   s.range[0]                      = .2;
   s.range[1]                      = 8;
   mhb_response     *response      = sweep(&model, &s);
@@ -220,7 +222,7 @@ static void folds_are_those_in_frequency(void **state) {
   modal_model_free(&model);
 }
 
-/* Where the contact opens and slips is a millionth of the range: it is not stepped over. */
+/* The contact opens and slips over a millionth of the range only: it must not be stepped over. */
 static void wide_ranges_of_preload_are_resolved(void **state) {
   (void)state;
   static const double wide[] = {1, 50, 1e6, 1e12};

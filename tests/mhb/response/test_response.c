@@ -1,8 +1,10 @@
-/* The response file: exact round trip, growth, publishing that never harms an earlier result, faults by name. */
+/* The response file: exact round trip, growth, publishing without harm to an earlier result,
+ * messages on faults. */
 #include <math.h>
 #include <signal.h>
 #include <sys/resource.h>
 
+#include "mesh/base/constants.h"
 #include "mesh/base/progress.h"
 #include "mhb/response/response.h"
 #include "tests/support/files.h"
@@ -156,7 +158,7 @@ static void run_up_tells_its_speeds(void **state) {
   assert_ok(h5_open(scratch("speeds.h5"), &file));
   assert_ok(h5_read_double(file, "/branch_0/speed", &shape, &speed));
   for (int i = 0; i < 7; i++)
-    assert_true(fabs(speed[i] * 5 / (2 * M_PI * wrote->branch[0].frequency[i]) - 1) < 1e-14);
+    assert_true(fabs(speed[i] * 5 / (SHB_TWO_PI * wrote->branch[0].frequency[i]) - 1) < 1e-14);
   assert_ok(h5_close(file));
   free(speed);
   mhb_response_destroy(read);
@@ -175,7 +177,8 @@ static void test_round_trip(void **state) {
   round_trip(PROBES, 0);
 }
 
-/* A branch of order 6 with 9 harmonics in a response of order 2 with M: its arrays are as wide as that, in the file too. */
+/* A branch of order 6 with 9 harmonics in a response of order 2 with M: its arrays are as wide as
+ * its harmonics, in the file too. */
 static mhb_response *with_further(void) {
   mhb_response *response = sample(PROBES, 5);
   for (int i = 0; i < 3; i++) { /* main branches 2, 3; then of 3, of 2, of 2 */
@@ -263,7 +266,7 @@ static void test_growth(void **state) {
   mhb_response_destroy(response);
 }
 
-/* The last point moved to another place takes all it holds along. */
+/* The last point moved to another place keeps all its values. */
 static void test_placed(void **state) {
   (void)state;
   mhb_response *response = sample(PROBES, 9), *wanted = sample(PROBES, 9);
@@ -286,7 +289,7 @@ static void test_placed(void **state) {
   mhb_response_destroy(wanted);
 }
 
-/* A file of a version that knew no multipliers is read, and can be written and continued. */
+/* A file of a version without multipliers is read, and can be written and continued. */
 static void test_earlier_version(void **state) {
   (void)state;
   static const char *const missing[] = {"/branch_0/judged", "/branch_0/loss",
@@ -357,7 +360,8 @@ static void test_truncated(void **state) {
   mhb_response_destroy(response);
 }
 
-/* Dataset path replaced by values of a shape (NULL: removed); the reader must say text. */
+/* Replaces a dataset by values of a shape (NULL: removes it). The reader's message must contain
+ * text. */
 typedef struct {
   const char *path;
   h5_shape    shape;
@@ -466,7 +470,8 @@ static void test_earlier_result_untouched(void **state) {
   mhb_response_destroy(large);
 }
 
-/* Published every ten seconds of a run: what 5000 points, and 300 branches, cost is told. */
+/* A response is published every ten seconds of a run: prints the cost of 5000 points, and of 300
+ * branches. */
 static void test_large(void **state) {
   (void)state;
   mhb_response *long_ = sample(PROBES, 2500), *many = sample(PROBES, 1);

@@ -1,4 +1,5 @@
-/* The modal model of a run-up against models made at the exact speed: values, orders, derivatives, refusals. */
+/* The modal model of a run-up against models made at the exact speed: values, orders, derivatives,
+ * refusals. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,6 +10,7 @@
 
 #include <cmocka.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/structure/receptance.h"
 #include "modal/model/reduce.h"
 #include "tests/support/check.h"
@@ -23,6 +25,7 @@ static mhb_speed_table *make_run_up(spinning_kind kind, int n, bool overlap, mhb
   spinning_speeds(kind, n, 0, 1, overlap, &speeds);
   assert_ok(
       mhb_speed_table_create(&speeds, "blade.modal.h5", s->engine_order, s->frequency, &run_up));
+  assert_ok(mhb_speed_model_check(run_up, "blade.modal.h5"));
   s->run_up = run_up;
   return run_up;
 }
@@ -56,7 +59,7 @@ static void outputs(mhb_receptance *r, double omega, bool slope, double complex 
   }
 }
 
-/* Of each harmonic and kind of output by itself; the worst. */
+/* The worst over harmonics and kinds of output, each relative to itself. */
 static double distance(const double complex *a, const double complex *b) {
   double worst = 0;
   for (int g = 0; g < VALUES / 3; g++) {
@@ -80,7 +83,7 @@ static double error(spinning_kind kind, int n, bool overlap) {
   mhb_speed_table *run_up = make_run_up(kind, n, overlap, &s);
   mhb_receptance  *r, *exact;
   double           worst = 0;
-  assert_ok(mhb_receptance_create(run_up->given, &s, K, &r));
+  assert_ok(mhb_receptance_create(run_up->common, &s, K, &r));
   for (int i = 0; i < PLACES; i++) {
     double complex a[VALUES], b[VALUES];
     modal_model    model;
@@ -114,7 +117,8 @@ static void straight_lines_are_exact(void **state) {
       assert_below(error(SPINNING_STRAIGHT, n, overlap), 1e-11);
 }
 
-/* From 8 speeds on: twice as many are 16 times as good, or better. Splines of tracks go through a veering blindly. */
+/* From 8 speeds on: the error falls by 16 at least with twice as many. Splines over tracks ignore a
+ * veering. */
 static void order_is_four(void **state) {
   (void)state;
   static const struct {
@@ -149,7 +153,7 @@ static void difference(mhb_receptance *r, double omega, double complex out[VALUE
   }
 }
 
-/* The mean too has a slope. Between the second and third mode's crossing nothing is lost either. */
+/* The mean has a slope too. At the crossing of the second and third mode the derivative holds. */
 static void slopes_are_derivatives(void **state) {
   (void)state;
   static const spinning_kind kind[] = {SPINNING_STRAIGHT, SPINNING_TURNING, SPINNING_VEERING};
@@ -160,7 +164,7 @@ static void slopes_are_derivatives(void **state) {
       mhb_speed_table *run_up = make_run_up(kind[c], 9, true, &s);
       mhb_receptance  *r;
       double           worst = 0;
-      assert_ok(mhb_receptance_create(run_up->given, &s, K, &r));
+      assert_ok(mhb_receptance_create(run_up->common, &s, K, &r));
       for (int i = 0; i < PLACES; i++) {
         double complex exact[VALUES], wanted[VALUES];
         difference(r, place(i), wanted);
@@ -174,7 +178,7 @@ static void slopes_are_derivatives(void **state) {
     }
 }
 
-/* Modes that change places with ones left out are left out as well. */
+/* Modes that change places with ones left out are left out too. */
 static void modes_that_leave_are_static(void **state) {
   (void)state;
   for (int overlap = 0; overlap < 2; overlap++) {
@@ -195,8 +199,8 @@ static void speeds_far_away_do_not_count(void **state) {
   mhb_speed_table *run_up = NULL;
   spinning_speeds(SPINNING_TURNING, 41, 0, 1, false, &speeds);
   speeds.mac[5 * SPINNING_MODES] = .1; /* a track lost far below */
-  s.frequency[0]                 = .81 / (2 * 3.14159265358979323846);
-  s.frequency[1]                 = 1.19 / (2 * 3.14159265358979323846);
+  s.frequency[0]                 = .81 / SHB_TWO_PI;
+  s.frequency[1]                 = 1.19 / SHB_TWO_PI;
   assert_ok(mhb_speed_table_create(&speeds, "blade", 2, s.frequency, &run_up));
   assert_below(fabs(run_up->low - .35), 1e-12);
   assert_below(fabs(run_up->high - .65), 1e-12);
@@ -206,8 +210,8 @@ static void speeds_far_away_do_not_count(void **state) {
 }
 
 static void refuse(modal_speeds *speeds, int order, double from, double to, const char *text) {
-  const double     two_pi = 2 * 3.14159265358979323846, range[2] = {from / two_pi, to / two_pi};
-  mhb_speed_table *run_up = NULL;
+  const double     range[2] = {from / SHB_TWO_PI, to / SHB_TWO_PI};
+  mhb_speed_table *run_up   = NULL;
   assert_int_equal(mhb_speed_table_create(speeds, "blade.h5", order, range, &run_up),
                    SHB_ERR_INPUT);
   if (!strstr(shb_message(), text)) fail_msg("'%s' does not say '%s'", shb_message(), text);
@@ -236,7 +240,13 @@ static void what_cannot_be_is_refused(void **state) {
   spinning_speeds(SPINNING_TURNING, 3, 0, 1, true, &s);
   for (int i = 0; i < SPINNING_MODES; i++) s.model[1].frequency[i] *= i ? 1 : 1e-2;
   for (int i = 0; i < SPINNING_MODES; i++) s.model[2].frequency[i] *= i ? 1 : 5;
-  refuse(&s, 2, .4, 1.9, "the speeds are too far apart");
+  const double     range[2] = {.4 / SHB_TWO_PI, 1.9 / SHB_TWO_PI};
+  mhb_speed_table *table    = NULL;
+  assert_ok(mhb_speed_table_create(&s, "blade.h5", 2, range, &table));
+  assert_int_equal(mhb_speed_model_check(table, "blade.h5"), SHB_ERR_INPUT);
+  if (!strstr(shb_message(), "blade.h5: the speeds are too far apart"))
+    fail_msg("'%s'", shb_message());
+  mhb_speed_table_destroy(table);
 }
 
 int main(void) {

@@ -10,6 +10,7 @@
 #include <cmocka.h>
 
 #include "fem/element/surface.h"
+#include "mesh/base/constants.h"
 #include "modal/common/session.h"
 #include "modal/model/receptance.h"
 #include "modal/model/reduce.h"
@@ -18,8 +19,7 @@
 
 enum { BLADES = 23 };
 
-static const double size[3] = {0.04, 1, 0.12}, inner = 0.1, zeta = 0.003,
-                    two_pi        = 6.283185307179586;
+static const double      size[3] = {0.04, 1, 0.12}, inner = 0.1, zeta = 0.003;
 static const modal_probe probe[2] = {{"tip", {0.04, 0.0, 0.22}}, {"middle", {0, 0.01, 0.16}}};
 
 static modal_settings default_settings(int points) {
@@ -182,12 +182,12 @@ static void check_receptance(double speed) {
   const double  test[3]   = {0.4 * f[0], (f[1] + f[2]) / 2, 1.01 * f[2]};
   const int     nc        = 12;
   for (int i = 0; i < 3; i++) {
-    double complex *exact = direct(&whole, two_pi * test[i]);
+    double complex *exact = direct(&whole, SHB_TWO_PI * test[i]);
     double complex  model[12 * 12], plain[12 * 12];
-    modal_receptance(&result.model, two_pi * test[i], model);
+    modal_receptance(&result.model, SHB_TWO_PI * test[i], model);
     modal_model bare          = result.model;
     bare.residual_flexibility = bare.residual_inertia = bare.residual_fourth = NULL;
-    modal_receptance(&bare, two_pi * test[i], plain);
+    modal_receptance(&bare, SHB_TWO_PI * test[i], plain);
     print_message("%.0f Hz (modes 1 and 20: %.0f, %.0f): error %.2e, modes alone %.2e\n", test[i],
                   f[0], f[19], distance(model, exact, nc, whole.n_dofs),
                   distance(plain, exact, nc, whole.n_dofs));
@@ -231,7 +231,7 @@ static double residual_shape_at(const modal_model *model, int dof, int i) {
 static double by_modes(const modal_model *model, double w2, int to, int by) {
   double sum = 0;
   for (int i = 0; i < model->n_residual; i++) {
-    double theta = pow(two_pi * model->residual_frequency[i], 2);
+    double theta = pow(SHB_TWO_PI * model->residual_frequency[i], 2);
     sum += residual_shape_at(model, to, i) * residual_shape_at(model, by, i) * pow(w2 / theta, 3) /
            (theta - w2);
   }
@@ -284,7 +284,7 @@ static double error_of(const modal_model *model, double omega, const way *w, int
       double complex u      = left_out(model, omega, to, by, terms),
                      wanted = exact[to * (LOAD + 1) + by];
       for (int i = 0; i < model->n_modes; i++) {
-        double wi = two_pi * model->frequency[i];
+        double wi = SHB_TWO_PI * model->frequency[i];
         u += shape_at(model, to, i) * shape_at(model, by, i) /
              (wi * wi - omega * omega + 2 * I * zeta * wi * omega);
       }
@@ -305,7 +305,7 @@ static void every_receptance_errs_by_the_first_term_left_out(void **state) {
   modal_settings settings = default_settings(2);
   modal_result   result   = solve(&mesh, &settings);
   body           whole    = create_body(&mesh, &settings, &result);
-  const double   omega    = two_pi * result.model.frequency[19] / 5;
+  const double   omega    = SHB_TWO_PI * result.model.frequency[19] / 5;
   assert_int_equal(whole.n_dofs, LOAD + 1);
   double complex *exact = direct(&whole, omega), *half = direct(&whole, omega / 2);
   for (int w = 0; w < 4; w++)
@@ -314,7 +314,7 @@ static void every_receptance_errs_by_the_first_term_left_out(void **state) {
       double less, least = error_of(&result.model, omega / 2, &ways[w], terms, half, &less);
       double order = log2(error / least);
       print_message("%s, %d term(s), %.0f Hz: error %.1e, order %.3f\n", ways[w].name, terms,
-                    omega / two_pi, error / norm, order);
+                    omega / SHB_TWO_PI, error / norm, order);
       assert_true(fabs(order - 2 * terms) < 0.1);
       if (terms > 1) check_below(error / norm, 1e-4, ways[w].name);
     }
@@ -335,7 +335,7 @@ static void residual_modes_double_the_order(void **state) {
   modal_settings      settings   = default_settings(2);
   modal_result        result     = solve(&mesh, &settings);
   body                whole      = create_body(&mesh, &settings, &result);
-  const double        top        = two_pi * result.model.frequency[19];
+  const double        top        = SHB_TWO_PI * result.model.frequency[19];
   static const double allowed[4] = {1e-10, 1e-10, 2e-6, 2e-6}, order_of[4] = {12, 12, 6, 6};
   static const double share[3] = {1. / 3, 0.4, 0.32};
   double complex     *exact[3];
@@ -370,7 +370,7 @@ static void many_contact_dofs_have_three_terms(void **state) {
   modal_result       result = solve(&mesh, &settings);
   const modal_model *model  = &result.model;
   const int          n      = 6 * model->n_pairs;
-  const double       omega  = two_pi * model->frequency[11] / 3;
+  const double       omega  = SHB_TWO_PI * model->frequency[11] / 3;
   double complex    *R      = malloc((size_t)n * (size_t)n * sizeof *R);
   assert_true(n > 96);
   assert_int_equal(model->n_residual, 0);
@@ -421,7 +421,7 @@ static void error_is_estimated(void **state) {
     assert_int_equal(modal_model_reduce(&result.model, modes, true), SHB_OK);
     double top = frequency[modes < 20 ? modes : 19]; /* first mode left out */
     for (int i = 0; i < 6; i++) {
-      double         omega = two_pi * share[i] * top;
+      double         omega = SHB_TWO_PI * share[i] * top;
       double complex model[NC * NC], *exact = direct(&whole, omega);
       modal_receptance(&result.model, omega, model);
       double estimate = modal_receptance_error(&result.model, omega, model);
@@ -445,7 +445,7 @@ static void error_is_estimated(void **state) {
 static double worst_in_band(modal_model *model, const body *whole, double band) {
   double worst = 0;
   for (int i = 1; i <= 10; i++) {
-    double         omega = two_pi * band * i / 10;
+    double         omega = SHB_TWO_PI * band * i / 10;
     double complex found[NC * NC], *exact = direct(whole, omega);
     modal_receptance(model, omega, found);
     worst = fmax(worst, worst_error(found, exact));
@@ -503,7 +503,7 @@ static void check_static_response(double speed) {
       const double  *shape = c < 6 ? model->right + c * m : model->left + (c - 6) * m;
       double complex u     = model->load_residual[k * nc + c];
       for (int i = 0; i < m; i++)
-        u += shape[i] * model->modal_force[k * m + i] / pow(two_pi * model->frequency[i], 2);
+        u += shape[i] * model->modal_force[k * m + i] / pow(SHB_TWO_PI * model->frequency[i], 2);
       double complex wanted = settings.load.factor[k] * exact[c * whole.n_dofs + load];
       check_below(cabs(u - wanted), 1e-9 * cabs(exact[2 * whole.n_dofs + load]), "contact, load");
     }
@@ -511,14 +511,14 @@ static void check_static_response(double speed) {
     double complex u = model->probe_load_residual[6 + q];
     for (int i = 0; i < m; i++)
       u += model->probe[q * m + i] * model->modal_force[m + i] /
-           pow(two_pi * model->frequency[i], 2);
+           pow(SHB_TWO_PI * model->frequency[i], 2);
     check_below(cabs(u - exact[(nc + q) * whole.n_dofs + load]),
                 1e-9 * cabs(exact[(nc + 2) * whole.n_dofs + load]), "probe, load");
     for (int c = 0; c < nc; c++) {
       const double *shape = c < 6 ? model->right + c * m : model->left + (c - 6) * m;
       u                   = model->probe_contact_residual[q * nc + c];
       for (int i = 0; i < m; i++)
-        u += model->probe[q * m + i] * shape[i] / pow(two_pi * model->frequency[i], 2);
+        u += model->probe[q * m + i] * shape[i] / pow(SHB_TWO_PI * model->frequency[i], 2);
       check_below(cabs(u - exact[(nc + q) * whole.n_dofs + c]),
                   1e-9 * cabs(exact[nc * whole.n_dofs]), "probe, contact");
     }
@@ -574,7 +574,7 @@ static void receptance_converges_with_the_mesh(void **state) {
     modal_settings settings = default_settings(1);
     double complex r[36];
     modal_result   result = solve(&mesh, &settings);
-    modal_receptance(&result.model, 0.5 * two_pi * result.model.frequency[0], r);
+    modal_receptance(&result.model, 0.5 * SHB_TWO_PI * result.model.frequency[0], r);
     flexibility[level] = cabs(r[0]);
     modal_result_free(&result);
     mesh_fe_free(&mesh);

@@ -7,11 +7,11 @@
 
 #include <cmocka.h>
 
+#include "fem/body/energy.h"
+#include "mesh/base/constants.h"
 #include "modal/common/session.h"
 #include "modal/eigen/eigen.h"
 #include "tests/support/fem.h"
-
-static const double two_pi = 6.28318530717958647692;
 
 static void solve(const mesh_fe *mesh, const fem_material *material, fem_rules mass, int modes,
                   double shift, fem_system *system, modal_eigen *eigen) {
@@ -64,7 +64,7 @@ static void steel_bar(void **state) {
     modal_eigen eigen;
     solve(&mesh, &steel, (fem_rules)rule, 6, 0, &system, &eigen);
     for (int i = 0; i < 6; i++) {
-      double frequency = sqrt(eigen.lambda[i]) / two_pi;
+      double frequency = sqrt(eigen.lambda[i]) / SHB_TWO_PI;
       check_close(frequency, calculix[i], 1e-3, "frequency against CalculiX");
       if (i < 3) check_close(frequency, timoshenko[i], 1e-2, "frequency against Timoshenko");
     }
@@ -88,7 +88,7 @@ static double strain_frequency(const mesh_fe *mesh, const fem_system *system,
   double lambda = strain_energy(mesh, &steel, element, u);
   free(element);
   free(u);
-  return sqrt(lambda) / two_pi;
+  return sqrt(lambda) / SHB_TWO_PI;
 }
 
 /* A free body: six zero frequencies, then the first elastic mode. */
@@ -102,13 +102,13 @@ static void free_body_has_six_rigid_modes(void **state) {
   mesh.set[MESH_ROOT].n = 0;
   solve(&mesh, &steel, FEM_STANDARD, 8, shift, &system, &eigen);
   double elastic = eigen.lambda[6];
-  assert_true(sqrt(elastic) / two_pi > 5000);
+  assert_true(sqrt(elastic) / SHB_TWO_PI > 5000);
   for (int i = 0; i < 6; i++) check_below(eigen.lambda[i], 1e-9 * elastic, "rigid-body mode");
   double largest = 0;
   for (int i = 0; i < 6; i++) largest = fmax(largest, strain_frequency(&mesh, &system, &eigen, i));
   print_message("rigid-body modes up to %.1e of the first elastic one\n",
-                largest * two_pi / sqrt(elastic));
-  check_below(largest * two_pi, 1e-6 * sqrt(elastic), "frequency of a rigid-body mode");
+                largest * SHB_TWO_PI / sqrt(elastic));
+  check_below(largest * SHB_TWO_PI, 1e-6 * sqrt(elastic), "frequency of a rigid-body mode");
   release(&system, &eigen);
   mesh_fe_free(&mesh);
 }
@@ -135,7 +135,7 @@ static double axial_frequency(const double size[3], const int cells[3]) {
     MatDenseRestoreColumnVecRead(eigen.m_phi, i, &m_phi);
     if (share * share <= best) continue;
     best      = share * share;
-    frequency = sqrt(eigen.lambda[i]) / two_pi;
+    frequency = sqrt(eigen.lambda[i]) / SHB_TWO_PI;
   }
   /* its effective mass is 8/pi^2 of the bar's */
   check_close(best / (7850 * size[0] * size[1] * size[2]), 8 / (acos(-1) * acos(-1)), 1e-2,
@@ -193,7 +193,7 @@ static void bar_frequencies(int n, fem_rules rules, double frequency[6]) {
   modal_eigen  eigen;
   solve(&mesh, &steel, rules, 6, 0, &system, &eigen);
   check_modes(&system, &eigen);
-  for (int i = 0; i < 6; i++) frequency[i] = sqrt(eigen.lambda[i]) / two_pi;
+  for (int i = 0; i < 6; i++) frequency[i] = sqrt(eigen.lambda[i]) / SHB_TWO_PI;
   release(&system, &eigen);
   mesh_fe_free(&mesh);
 }
@@ -241,7 +241,7 @@ static void blade_frequencies(mesh_kind kind, const int cells[3], fem_rules rule
   use_elements(MESH_TET10);
   solve(&mesh, &steel, rules, 6, 0, &system, &eigen);
   check_modes(&system, &eigen);
-  for (int i = 0; i < 6; i++) frequency[i] = sqrt(eigen.lambda[i]) / two_pi;
+  for (int i = 0; i < 6; i++) frequency[i] = sqrt(eigen.lambda[i]) / SHB_TWO_PI;
   release(&system, &eigen);
   mesh_fe_free(&mesh);
 }

@@ -1,4 +1,5 @@
 /* Number of modes for a tolerance: the fewest, and none below 1.2 times the band left out. */
+#include "mesh/base/constants.h"
 #include "modal/model/mode_selection.h"
 
 #include "modal/model/reduce.h"
@@ -11,7 +12,7 @@ static double frequency[MODES], damping[MODES], right[SIDE * MODES], R[3][SIDE *
     tail[2 * SIDE];
 
 static double lambda_of(int mode) {
-  return pow(2 * M_PI * 50 * (mode + 1), 2);
+  return pow(SHB_TWO_PI * 50 * (mode + 1), 2);
 }
 
 static double shape_of(int dof, int mode) {
@@ -26,7 +27,7 @@ static modal_model make(void) {
   for (int i = 0; i < BEYOND; i++)
     for (int p = 0; p < SIDE; p++) {
       if (i < MODES) {
-        frequency[i]         = sqrt(lambda_of(i)) / (2 * M_PI);
+        frequency[i]         = sqrt(lambda_of(i)) / SHB_TWO_PI;
         damping[i]           = 0.02;
         right[p * MODES + i] = shape_of(p, i);
         continue;

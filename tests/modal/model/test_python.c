@@ -4,6 +4,7 @@
  * 77 without h5py. */
 #include <math.h>
 
+#include "mesh/base/constants.h"
 #include "modal/model/model.h"
 #include "tests/support/files.h"
 
@@ -20,7 +21,6 @@ static void test_example(void **state) {
   (void)state;
   static const double K[3][3] = {{1, 0.2, 0.1}, {0.2, 1.3, 0.15}, {0.1, 0.15, 1.6}};
   static const double F[3] = {0.04, 0.06, 0.03}, omega[3] = {0.94827, 1.13815, 1.30591};
-  const double        two_pi = 6.283185307179586;
   modal_model         model;
   assert_true(run("cd '%s' && '%s' '%s'", scratch_folder, python, example));
   assert_ok(modal_model_read(scratch("three_degree.modal.h5"), &model));
@@ -31,7 +31,7 @@ static void test_example(void **state) {
   assert_false(model.has_left);
   assert_string_equal(model.probe_name[0], "mass");
   for (int i = 0; i < 3; i++) {
-    double w = two_pi * model.frequency[i];
+    double w = SHB_TWO_PI * model.frequency[i];
     assert_true(fabs(w - omega[i]) < 1e-5 && fabs(model.damping_ratio[i] - 0.01 * w) < 1e-14);
     assert_true(model.modal_force[i] == 0);
   }
@@ -42,7 +42,7 @@ static void test_example(void **state) {
     for (int b = 0; b < 3; b++) {
       double mass = 0, stiffness = 0;
       for (int i = 0; i < 3; i++) {
-        double w       = two_pi * model.frequency[i];
+        double w       = SHB_TWO_PI * model.frequency[i];
         double product = model.right[3 * a + i] * model.probe[3 * b + i];
         mass += product;
         stiffness += product * w * w;

@@ -1,4 +1,5 @@
 /* Receptance of two modes at one contact pair against its sum, written out. */
+#include "mesh/base/constants.h"
 #include "modal/model/receptance.h"
 
 #include "tests/support/check.h"
@@ -43,7 +44,7 @@ static void entries_are_the_modal_sum(void **state) {
         for (int l = 0; l < N; l++) {
           double complex wanted = 0;
           for (int i = 0; i < MODES; i++) {
-            const double w = 2 * M_PI * frequency[i];
+            const double w = SHB_TWO_PI * frequency[i];
             wanted += shape(p, i) * shape(l, i) /
                       (w * w - omega * omega + 2 * I * damping[i] * w * omega);
           }

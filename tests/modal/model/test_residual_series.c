@@ -1,4 +1,5 @@
 /* Contribution of the modes left out against the modes themselves. */
+#include "mesh/base/constants.h"
 #include "modal/model/residual_series.h"
 
 #include "tests/support/check.h"
@@ -23,7 +24,7 @@ static double moment(int j) {
 
 /* residual: residual modes of the model, the first of the modes left out. */
 static modal_model *make(scene *s, int residual) {
-  *s              = (scene){.frequency = {10 / (2 * M_PI)}};
+  *s              = (scene){.frequency = {10 / SHB_TWO_PI}};
   s->model        = (modal_model){.n_modes       = 1,
                                   .n_pairs       = 1,
                                   .frequency     = s->frequency,
@@ -38,7 +39,7 @@ static modal_model *make(scene *s, int residual) {
     *term[t]   = s->R[t];
   }
   for (int i = 0; i < residual; i++) {
-    s->residual_frequency[i] = sqrt(lambda[i]) / (2 * M_PI);
+    s->residual_frequency[i] = sqrt(lambda[i]) / SHB_TWO_PI;
     s->shape[i]              = phi[i];
   }
   s->model.residual_frequency = s->residual_frequency;

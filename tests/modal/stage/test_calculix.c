@@ -12,6 +12,8 @@
 #include <cmocka.h>
 
 #include "fem/body/equilibrium.h"
+#include "mesh/base/constants.h"
+#include "mesh/io/inp_read.h"
 #include "mesh/io/inp_write.h"
 #include "modal/eigen/eigen.h"
 #include "tests/support/fem.h"
@@ -20,7 +22,6 @@ enum { MODES = 6 };
 
 static const double size[3] = {0.2, 0.03, 0.005}, hub = 0.15, twist = 0.7;
 static const int    cells[3] = {10, 2, 1};
-static const double two_pi   = 6.28318530717958647692;
 static const char  *program;
 static char         folder[] = "/tmp/shroudhb-calculix-XXXXXX";
 
@@ -147,7 +148,7 @@ static void read_frequencies(const mesh_fe *mesh, double frequency[MODES]) {
   assert_int_equal(n, MODES);
   assert_int_equal(fread(value, sizeof *value, MODES, file), MODES);
   fclose(file);
-  for (int i = 0; i < MODES; i++) frequency[i] = sqrt(value[i]) / two_pi;
+  for (int i = 0; i < MODES; i++) frequency[i] = sqrt(value[i]) / SHB_TWO_PI;
 }
 
 static void run_calculix(const element_kind *element, const mesh_fe *mesh,
@@ -174,7 +175,7 @@ static void run_own(const mesh_fe *mesh, const fem_material *material, fem_rules
   assert_int_equal(fem_system_create(PETSC_COMM_SELF, mesh, material, rules, &system), 0);
   if (speed != 0) assert_int_equal(fem_equilibrium_solve(&body, &system, NULL, &at), 0);
   assert_int_equal(modal_eigen_solve(&system, &wanted, &eigen), 0);
-  for (int i = 0; i < MODES; i++) frequency[i] = sqrt(eigen.lambda[i]) / two_pi;
+  for (int i = 0; i < MODES; i++) frequency[i] = sqrt(eigen.lambda[i]) / SHB_TWO_PI;
   if (displacement)
     memcpy(displacement, at.displacement, 3 * (size_t)mesh->n_nodes * sizeof *displacement);
   modal_eigen_destroy(&eigen);

@@ -2,6 +2,8 @@
 #include <math.h>
 
 #include "fem/element/surface.h"
+#include "mesh/base/constants.h"
+#include "mesh/io/inp_read.h"
 #include "mesh/io/inp_write.h"
 #include "modal/common/session.h"
 #include "modal/model/receptance.h"
@@ -321,7 +323,7 @@ static void receptance_is_sampled(void **state) {
   assert_ok(h5_close(file));
   assert_int_equal(steps.dim[0], 201 + 8);
   assert_true(frequency[0] == 0 && frequency[208] > model.frequency[7]);
-  modal_receptance(&model, 6.283185307179586 * frequency[77], at);
+  modal_receptance(&model, SHB_TWO_PI * frequency[77], at);
   for (int i = 0; i < 144; i++)
     check_below(cabs(value[77 * 144 + i] - at[i]), 1e-12 * cabs(at[0]), "sampled receptance");
   free(frequency);

@@ -1,10 +1,10 @@
 /* Campbell diagram of modes with known frequencies: f^2 = a + b Omega^2. */
+#include "mesh/base/constants.h"
 #include "postproc/analysis/campbell.h"
 #include "tests/support/check.h"
 
 enum { MODES = 4, SPEEDS = 4 };
 
-static const double TWO_PI         = 6.28318530717958647692;
 static const double a[MODES]       = {100. * 100, 300. * 300, 310. * 310, 900. * 900};
 static const double b[MODES]       = {0.08, 0.05, 0.01, 0.02};
 static const double speeds[SPEEDS] = {0, 100, 350, 600};
@@ -53,7 +53,7 @@ static void crossings_are_exact(void **state) {
   assert_ok(post_campbell_crossings(&campbell, &n, &found));
   for (int k = 1; k <= 3; k += 2)
     for (int t = 0; t < MODES; t++) {
-      double slope = 2 * k / TWO_PI, square = a[t] / (slope * slope - b[t]);
+      double slope = 2 * k / SHB_TWO_PI, square = a[t] / (slope * slope - b[t]);
       bool   inside = square > 0 && square <= 600. * 600;
       wanted += inside;
       for (int i = 0; i < n && inside; i++) {

@@ -1,3 +1,4 @@
+#include "mesh/base/constants.h"
 #include "postproc/analysis/curves.h"
 #include "tests/support/check.h"
 #include "tests/support/fixture.h"
@@ -72,7 +73,7 @@ static void order(void **state) {
 static void bent(points *p, const fixture_curve *c, int n) {
   p->n = n;
   for (int i = 0; i < n; i++) {
-    double theta = 0.013 + (M_PI - 0.031) * i / (n - 1);
+    double theta = 0.013 + (SHB_PI - 0.031) * i / (n - 1);
     p->f[i]      = fixture_frequency(c, theta);
     p->a[i]      = fixture_amplitude(c, theta);
   }
@@ -83,7 +84,7 @@ static void folds(void **state) {
   (void)state;
   static points       p;
   const fixture_curve c = {2.385e-4, 110.3, -3.1 / (2.385e-4 * 2.385e-4), 0.83};
-  double theta[2]       = {fixture_fold(&c, 0.3, M_PI / 3), fixture_fold(&c, M_PI / 3, 1.57)},
+  double theta[2]       = {fixture_fold(&c, 0.3, SHB_PI / 3), fixture_fold(&c, SHB_PI / 3, 1.57)},
          error[2]       = {0};
   for (int level = 0; level < 2; level++) {
     post_fold *fold;
@@ -175,8 +176,8 @@ static void closed(void **state) {
   post_peak *peaks;
   int        n;
   for (int i = 0; i <= 40; i++) {
-    f[i] = 10 + cos(2 * M_PI * i / 40);
-    a[i] = 3 + sin(2 * M_PI * i / 40 + M_PI / 2);
+    f[i] = 10 + cos(SHB_TWO_PI * i / 40);
+    a[i] = 3 + sin(SHB_TWO_PI * i / 40 + SHB_PI / 2);
   }
   assert_ok(post_find_peaks(41, f, a, &peaks, &n));
   for (int i = 0; i < n; i++) assert_false(peaks[i].edge);

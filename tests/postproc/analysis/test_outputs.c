@@ -1,5 +1,6 @@
 #include <complex.h>
 
+#include "mesh/base/constants.h"
 #include "postproc/analysis/outputs.h"
 #include "postproc/analysis/response_analysis.h"
 #include "tests/support/check.h"
@@ -9,7 +10,7 @@ static double scan(int n, const double complex *a) {
   double most = 0;
   for (int i = 0; i < 200000; i++) {
     double         sum  = 0;
-    double complex turn = cexp(I * (2 * M_PI * i / 200000));
+    double complex turn = cexp(I * (SHB_TWO_PI * i / 200000));
     for (int k = 0; k < n; k++) sum += pow(creal(a[k] * turn), 2);
     most = fmax(most, sqrt(sum));
   }

@@ -1,5 +1,6 @@
 #include <complex.h>
 
+#include "mesh/base/constants.h"
 #include "postproc/analysis/outputs.h"
 #include "postproc/report/csv.h"
 #include "tests/support/check.h"
@@ -64,7 +65,7 @@ static void check_point(const mhb_response *r, int b, int p, char *const *cell, 
               1e-11 * branch->frequency[p]);
   assert_near(value(cell[column(name, n, "contact_u_amplitude_m")]), cabs(u[1]),
               1e-11 * cabs(u[1]));
-  assert_near(value(cell[column(name, n, "contact_u_phase_deg")]), carg(u[1]) * 180 / M_PI, 1e-9);
+  assert_near(value(cell[column(name, n, "contact_u_phase_deg")]), carg(u[1]) * 180 / SHB_PI, 1e-9);
   assert_near(value(cell[column(name, n, "contact_u_peak_to_peak_m")]), post_peak_to_peak(1, 3, u),
               1e-11 * cabs(u[1]));
   assert_near(value(cell[column(name, n, "tip_motion_amplitude_m")]),
