@@ -11,7 +11,6 @@ static void record_signals(mhb_response *response, mhb_branch *branch, int point
   double complex p[n3], motion[q + 1];
   for (int k = 0; k <= b->m; k++) {
     mhb_balance_contact_force(b, k, p);
-    mhb_receptance_update(b->receptance, k); /* it may be that of another point */
     for (int row = 0; row < n3; row++) {
       const double *a    = x + (size_t)row * (size_t)b->nb;
       size_t        at   = ((size_t)point * (size_t)n3 + (size_t)row) * (size_t)K + (size_t)k;

@@ -326,7 +326,7 @@ static void a_first_point_that_is_known_does_not_count(void **state) {
   mhb_end  end;
   double   x    = 3 + sqrt(1 - 0.16);
   mhb_seed seed = {.x = &x, .value = 0.4, .direction = 1, .skip_first = true};
-  trace(&t, circle, -2, 2, x, 0.4, 1, 2); /* for its host */
+  trace(&t, scalar_circle, -2, 2, x, 0.4, 1, 2); /* for its host */
   t.n               = 0;
   t.host.max_points = 5;
   assert_ok(mhb_trace_segment(&t.host, &seed, &end));
