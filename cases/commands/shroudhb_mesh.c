@@ -14,9 +14,12 @@
 #include "mesh/blade/blade.h"
 #include "mesh/core/face_pairing.h"
 #include "mesh/core/fe_mesh.h"
+#include "mesh/core/group_checks.h"
 #include "mesh/gmsh/provenance.h"
-#include "mesh/io/inp_read.h"
+#include "mesh/io/inp_write.h"
 #include "mesh/io/msh_write.h"
+#include "mesh/io/read.h"
+#include "mesh/io/source.h"
 
 static const char usage[] =
     "usage: shroudhb-mesh [--quiet] [--verbose] [--force] [--inp] CASE.yaml\n"
@@ -75,7 +78,7 @@ static void note_pairing(shb_progress *progress, const mesh_pairing *pairing) {
 /* Reads the mesh with the groups that the case names. */
 static shb_status read_mesh(const case_file *file, const char *path, mesh_fe *mesh) {
   mesh_names names = mesh_rules_labels(&file->source.rules);
-  SHB_TRY(mesh_fe_read_named(path, &names, mesh));
+  SHB_TRY(mesh_fe_read(path, &names, mesh));
   shb_status status = mesh_fe_check_groups(mesh, path);
   if (status != SHB_OK) mesh_fe_free(mesh);
   return status;

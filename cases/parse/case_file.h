@@ -7,7 +7,7 @@
 #include "fem/element/load.h"
 #include "fem/element/material.h"
 #include "mesh/blade/blade.h"
-#include "mesh/gmsh/source.h"
+#include "mesh/gmsh/source_settings.h"
 #include "mhb/problem/settings.h"
 #include "modal/common/completeness.h"
 #include "modal/common/damping.h"

@@ -61,9 +61,9 @@ static void check_sections(case_reader *r) {
       case_issue_add(r->issues, place->line, place->column, full,
                      "radius is %g m, must be above that of the section before, %g m", s->radius,
                      s[-1].radius);
-    const double least = .01 * MESH_LEAST_THICKNESS * s->chord;
-    const double most  = .01 * MESH_MOST_THICKNESS * s->chord;
-    const double bend  = .01 * MESH_MOST_CAMBER * s->chord;
+    const double least = .01 * MESH_MIN_THICKNESS * s->chord;
+    const double most  = .01 * MESH_MAX_THICKNESS * s->chord;
+    const double bend  = .01 * MESH_MAX_CAMBER * s->chord;
     if (s->thickness <= least || s->thickness >= most)
       case_issue_add(r->issues, place->line, place->column, full,
                      "thickness is %g m, must be between 1 %% and 50 %% of the chord, %g to %g m",
@@ -72,7 +72,7 @@ static void check_sections(case_reader *r) {
       case_issue_add(r->issues, place->line, place->column, full,
                      "camber is %g m, must be at most 40 %% of the chord, %g m, either way",
                      s->camber, bend);
-    if (fabs(s->twist) > MESH_MOST_TWIST / degree)
+    if (fabs(s->twist) > MESH_MAX_TWIST / degree)
       case_issue_add(r->issues, place->line, place->column, full,
                      "twist is %g deg, must be -80 to 80 deg", s->twist * degree);
   }

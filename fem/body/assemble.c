@@ -4,7 +4,8 @@
 
 #include "fem/body/partition.h"
 
-/* Elements around each block row of this rank: element[start[r - first]] .. element[start[r - first + 1] - 1]. */
+/* Elements around each block row r of this rank: element[start[r - first]] .. element[start[r -
+ * first + 1] - 1]. */
 typedef struct {
   int *start, *element;
 } incidence;
@@ -16,7 +17,7 @@ static void find_free(const mesh_fe *mesh, bool *is_free) {
     is_free[root->nodes[i]] = false;
 }
 
-/* Free nodes get block rows rank by rank, in mesh order inside a rank. */
+/* Number the free nodes rank by rank, in mesh order inside a rank. */
 static PetscErrorCode number_nodes(const mesh_fe *mesh, fem_system *system) {
   bool     *is_free;
   int      *rank_of, rank, n_ranks;
@@ -68,7 +69,8 @@ static PetscErrorCode find_incidence(const mesh_fe *mesh, const fem_system *syst
   PetscFunctionReturn(0);
 }
 
-/* Exact numbers of blocks a row, of the upper triangle or the whole: in own columns (diagonal) and the others. */
+/* Exact number of blocks in each row of the upper triangle or the whole matrix: in the columns of
+ * this rank (diagonal) and in the others. */
 static PetscErrorCode count_blocks(const mesh_fe *mesh, const fem_system *system,
                                    const incidence *around, bool whole, PetscInt *diagonal,
                                    PetscInt *off_diagonal) {
@@ -110,7 +112,7 @@ static PetscErrorCode create_matrix(const fem_system *system, const PetscInt *di
   PetscFunctionReturn(0);
 }
 
-/* The mass of the nodes, one number a pair of them. */
+/* Mass between nodes, one number a pair. */
 static PetscErrorCode create_mass(const fem_system *system, const PetscInt *diagonal,
                                   const PetscInt *off_diagonal, Mat *m) {
   const PetscInt n_own = system->last - system->first;

@@ -3,7 +3,7 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
-/* Union-find over nodes, paths halved on the way up. */
+/* Root of a node in the union-find forest, with path halving. */
 static int find(int *parent, int i) {
   while (parent[i] != i) {
     parent[i] = parent[parent[i]];
@@ -27,7 +27,7 @@ shb_status fem_clamp_check(const mesh_fe *mesh) {
   for (int e = 0; e < mesh->n_elements; e++)
     join(parent, mesh->connectivity + nodes * (size_t)e, nodes);
   for (int f = 1; f < root->n; f++) {
-    int ends[2] = {root->nodes[0], root->nodes[topology->face_nodes * f]};
+    int ends[2] = {root->nodes[0], root->nodes[topology->face_nodes * (size_t)f]};
     join(parent, ends, 2);
   }
   int floating = 0, first = -1;

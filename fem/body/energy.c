@@ -19,7 +19,7 @@ static double anisotropic(const double C[6][6], const double pulled[3][3]) {
   return sum;
 }
 
-/* lambda (tr e)^2 + 2 mu e : e, or e C e, e = sym(F^T H). */
+/* lambda (tr e)^2 + 2 mu e : e, or e C e if anisotropic; e = sym(F^T H). */
 static double elastic(const fem_material *material, const double F[3][3], const double H[3][3]) {
   const fem_lame lame = fem_lame_of(material);
   double         pulled[3][3], trace = 0, square = 0;
@@ -46,40 +46,45 @@ static double geometric(const double S[3][3], const double H[3][3]) {
   return sum;
 }
 
-/* What a point holds of the state: nothing, at rest. */
+/* Deformation of the state at a point. */
 typedef struct {
   bool            rest;
   fem_deformation at;
-} situation;
+} point_state;
 
-static double density(const fem_material *material, const situation *here, const double h[3][3]) {
+static double density(const fem_material *material, const point_state *state_here,
+                      const double h[3][3]) {
   static const double identity[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  if (here->rest) return elastic(material, identity, h);
-  return elastic(material, (const double(*)[3])here->at.F, h) +
-         geometric((const double(*)[3])here->at.S, h);
+  if (state_here->rest) return elastic(material, identity, h);
+  return elastic(material, (const double(*)[3])state_here->at.F, h) +
+         geometric((const double(*)[3])state_here->at.S, h);
 }
 
-/* energy[i] += that of the element, of n fields u[i][node][3]; state: NULL at rest. */
+/* Add the stored energy of an element for n fields.
+ *   state   in      [nodes][3], NULL at rest
+ *   u       in      [n][nodes][3]
+ *   energy  in/out  [n] */
 static void add_stored(const fem_element *element, const fem_material *material,
                        const double x[][3], const double state[][3], int n,
                        const double u[][MESH_NODES][3], double *energy) {
   const fem_rule *rule = fem_element_stiffness_rule(element, x);
   for (int p = 0; p < rule->n; p++) {
-    situation here = {.rest = !state};
-    double    g[MESH_NODES][3], h[3][3];
-    double    volume = rule->weight[p] * fem_element_gradient(element, rule, p, x, g);
+    point_state state_here = {.rest = !state};
+    double      g[MESH_NODES][3], h[3][3];
+    double      volume = rule->weight[p] * fem_element_gradient(element, rule, p, x, g);
     if (state) {
       fem_displacement_gradient(element->n, (const double(*)[3])g, state, h);
-      fem_deform(material, (const double(*)[3])h, &here.at);
+      fem_deformation_at(material, (const double(*)[3])h, &state_here.at);
     }
     for (int i = 0; i < n; i++) {
       fem_displacement_gradient(element->n, (const double(*)[3])g, u[i], h);
-      energy[i] += volume * density(material, &here, (const double(*)[3])h);
+      energy[i] += volume * density(material, &state_here, (const double(*)[3])h);
     }
   }
 }
 
-static double spun(const fem_body *body, double rho, const double x[][3], const double u[][3]) {
+static double centrifugal(const fem_body *body, double rho, const double x[][3],
+                          const double u[][3]) {
   const int n = body->element->n;
   double    m[MESH_NODES * MESH_NODES], square[3], sum = 0;
   fem_rotation_square(&body->rotation, square);
@@ -105,20 +110,9 @@ void fem_tangent_energies(const fem_body *body, const double *state, int n, cons
       add_stored(body->element, own, (const double(*)[3])x, state ? (const double(*)[3])at : NULL,
                  count, (const double(*)[MESH_NODES][3])by, energy + first);
       for (int i = 0; i < count && body->rotation.speed != 0; i++)
-        energy[first + i] -= spun(body, own->rho, (const double(*)[3])x, (const double(*)[3])by[i]);
+        energy[first + i] -=
+            centrifugal(body, own->rho, (const double(*)[3])x, (const double(*)[3])by[i]);
     }
   }
   for (int i = 0; i < n; i++) energy[i] += fem_pressure_energy(body, state, u + (size_t)i * stride);
-}
-
-double fem_tangent_energy(const fem_body *body, const double *state, const double *u) {
-  double energy;
-  fem_tangent_energies(body, state, 1, u, &energy);
-  return energy;
-}
-
-double fem_strain_energy(const mesh_fe *mesh, const fem_material *material,
-                         const fem_element *element, const double *u) {
-  const fem_body body = {.mesh = mesh, .material = material, .element = element};
-  return fem_tangent_energy(&body, NULL, u);
 }

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* malloc, not PetscMalloc: the mesh is freed by mesh_fe_free. */
+/* Uses malloc, as mesh_fe_free frees the mesh. */
 static PetscErrorCode share(MPI_Comm comm, int rank, void **data, size_t count, MPI_Datatype type) {
   int size;
   PetscFunctionBeginUser;
@@ -59,11 +59,11 @@ PetscErrorCode fem_mesh_broadcast(MPI_Comm comm, mesh_fe *mesh) {
 typedef struct {
   double x[3];
   int    node;
-} site;
+} free_node;
 
-/* Ties by node number: the order, hence the partition, is the same everywhere. */
+/* Node numbers break ties, so every rank sorts alike. */
 static int compare(const void *a, const void *b, int d) {
-  const site *p = a, *q = b;
+  const free_node *p = a, *q = b;
   if (p->x[d] != q->x[d]) return p->x[d] < q->x[d] ? -1 : 1;
   return p->node - q->node;
 }
@@ -80,14 +80,14 @@ static int compare_z(const void *a, const void *b) {
   return compare(a, b, 2);
 }
 
-static int longest_side(const site *sites, int n) {
+static int longest_side(const free_node *nodes_free, int n) {
   double side[3];
   int    longest = 0;
   for (int d = 0; d < 3; d++) {
-    double low = sites[0].x[d], high = low;
+    double low = nodes_free[0].x[d], high = low;
     for (int i = 1; i < n; i++) {
-      if (sites[i].x[d] < low) low = sites[i].x[d];
-      if (sites[i].x[d] > high) high = sites[i].x[d];
+      if (nodes_free[i].x[d] < low) low = nodes_free[i].x[d];
+      if (nodes_free[i].x[d] > high) high = nodes_free[i].x[d];
     }
     side[d] = high - low;
     if (side[d] > side[longest]) longest = d;
@@ -95,31 +95,31 @@ static int longest_side(const site *sites, int n) {
   return longest;
 }
 
-static void bisect(site *sites, int n, int first_rank, int n_ranks, int *rank) {
+static void bisect(free_node *nodes_free, int n, int first_rank, int n_ranks, int *rank) {
   if (n_ranks == 1 || n == 0) {
-    for (int i = 0; i < n; i++) rank[sites[i].node] = first_rank;
+    for (int i = 0; i < n; i++) rank[nodes_free[i].node] = first_rank;
     return;
   }
   int (*const order[3])(const void *, const void *) = {compare_x, compare_y, compare_z};
-  qsort(sites, (size_t)n, sizeof *sites, order[longest_side(sites, n)]);
+  qsort(nodes_free, (size_t)n, sizeof *nodes_free, order[longest_side(nodes_free, n)]);
   int lower = n_ranks / 2, cut = (int)((long)n * lower / n_ranks);
-  bisect(sites, cut, first_rank, lower, rank);
-  bisect(sites + cut, n - cut, first_rank + lower, n_ranks - lower, rank);
+  bisect(nodes_free, cut, first_rank, lower, rank);
+  bisect(nodes_free + cut, n - cut, first_rank + lower, n_ranks - lower, rank);
 }
 
 PetscErrorCode fem_partition(const mesh_fe *mesh, const bool *is_free, int n_ranks, int *rank) {
-  site *sites;
-  int   n = 0;
+  free_node *nodes_free;
+  int        n = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(mesh->n_nodes, &sites));
+  PetscCall(PetscMalloc1(mesh->n_nodes, &nodes_free));
   for (int i = 0; i < mesh->n_nodes; i++) {
     rank[i] = -1;
     if (!is_free[i]) continue;
-    memcpy(sites[n].x, mesh->coordinates + 3 * (size_t)i, sizeof sites[n].x);
-    sites[n++].node = i;
+    memcpy(nodes_free[n].x, mesh->coordinates + 3 * (size_t)i, sizeof nodes_free[n].x);
+    nodes_free[n++].node = i;
   }
-  bisect(sites, n, 0, n_ranks, rank);
-  PetscCall(PetscFree(sites));
+  bisect(nodes_free, n, 0, n_ranks, rank);
+  PetscCall(PetscFree(nodes_free));
   PetscFunctionReturn(0);
 }

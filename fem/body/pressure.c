@@ -3,15 +3,11 @@
 #include <string.h>
 
 #include "fem/element/surface.h"
+#include "mesh/base/vec3.h"
 
 enum { FACE_DOFS = 3 * MESH_FACE_NODES };
 
-static void cross(const double a[3], const double b[3], double c[3]) {
-  for (int d = 0; d < 3; d++)
-    c[d] = a[(d + 1) % 3] * b[(d + 2) % 3] - a[(d + 2) % 3] * b[(d + 1) % 3];
-}
-
-/* x,r and x,s at a point of the rule. */
+/* Tangent vectors x,r and x,s at a point of the rule. */
 static void tangents(const fem_face_rule *rule, int point, const double x[][3], double r[3],
                      double s[3]) {
   memset(r, 0, 3 * sizeof *r);
@@ -28,7 +24,7 @@ void fem_face_pressure(const fem_face_rule *rule, double p, const double x[][3],
   for (int q = 0; q < rule->n; q++) {
     double r[3], s[3], n[3];
     tangents(rule, q, x, r, s);
-    cross(r, s, n);
+    vec3_cross(r, s, n);
     for (int i = 0; i < rule->nodes; i++)
       for (int d = 0; d < 3; d++) f[i][d] -= p * rule->weight[q] * rule->shape[q][i] * n[d];
   }
@@ -46,7 +42,7 @@ void fem_face_pressure_stiffness(const fem_face_rule *rule, double p, const doub
         double half = p * rule->weight[q] * rule->shape[q][i] / 2, v[3];
         for (int d = 0; d < 3; d++)
           v[d] = half * (rule->gradient[q][j][0] * s[d] - rule->gradient[q][j][1] * r[d]);
-        for (int d = 0; d < 3; d++) { /* (e_b cross v)_a is v_d, or -v_d if (a, b, d) is odd */
+        for (int d = 0; d < 3; d++) { /* (e_b x v)_a is v_d, or -v_d if (a, b, d) is odd */
           int    b = (d + 1) % 3, c = (d + 2) % 3;
           double sign[2]  = {v[d], -v[d]};
           int    at[2][2] = {{b, c}, {c, b}};
@@ -129,8 +125,8 @@ double fem_pressure_energy(const fem_body *body, const double *state, const doub
   return sum;
 }
 
-PetscErrorCode fem_pressure_balance(const fem_body *body, const double *u, double (*balance)[3],
-                                    double load[3]) {
+PetscErrorCode fem_pressure_unbalanced(const fem_body *body, const double *u,
+                                       double (*unbalanced)[3], double     load[3]) {
   const mesh_face_set *set = &body->mesh->set[MESH_LOAD];
   fem_face_rule        rule;
   PetscFunctionBeginUser;
@@ -140,7 +136,7 @@ PetscErrorCode fem_pressure_balance(const fem_body *body, const double *u, doubl
     face_at(body, face, u, x);
     fem_face_pressure(&rule, body->pressure, (const double(*)[3])x, f);
     for (int i = 0; i < 3 * rule.nodes; i++) {
-      balance[set->nodes[rule.nodes * face + i / 3]][i % 3] -= f[i / 3][i % 3];
+      unbalanced[set->nodes[rule.nodes * face + i / 3]][i % 3] -= f[i / 3][i % 3];
       load[i % 3] += f[i / 3][i % 3];
     }
   }

@@ -1,16 +1,14 @@
 #include "fem/body/rigid_body.h"
 
-/* Motion r of a point at x. */
+#include "mesh/base/vec3.h"
+
+/* Velocity of rigid motion r at a point x. */
 static void rigid_motion(int r, const double axis[3], const double x[3], double v[3]) {
   for (int d = 0; d < 3; d++) v[d] = r == d;
-  if (r < 3) return;
-  for (int d = 0; d < 3; d++) {
-    int b = (d + 1) % 3, c = (d + 2) % 3;
-    v[d] = axis[b] * x[c] - axis[c] * x[b];
-  }
+  if (r == 3) vec3_cross(axis, x, v);
 }
 
-/* f_i = sum_j m_ij r(x_j); returns sum_ij r_i m_ij r_j */
+/* f_i = sum_j m_ij r(x_j). Returns sum_ij r_i m_ij r_j. */
 static double element_load(int n, int r, const double *m, const double axis[3], const double x[][3],
                            double f[][3]) {
   double v[MESH_NODES][3], sum = 0;
@@ -24,7 +22,8 @@ static double element_load(int n, int r, const double *m, const double axis[3], 
   return sum;
 }
 
-/* The rank that counts an element in the sums: that of its first node that is free. Elements with none: rank 0. */
+/* Does this rank count the element in the sums? The owner of its first free node does; rank 0 if it
+ * has none. */
 static bool counts(const fem_system *system, int n, const PetscInt *columns, int rank) {
   for (int i = 0; i < n; i++)
     if (columns[i] >= 0) return columns[i] >= system->first && columns[i] < system->last;

@@ -1,5 +1,6 @@
-/* Rotation about the engine axis at a constant speed, in the rotating frame: the centrifugal load on the deformed
- * position and its derivative, the spin softening. Gyroscopic (Coriolis) terms are left out. */
+/* Rotation about the engine axis at constant speed, in the rotating frame: centrifugal load on the
+ * deformed position and its derivative, the spin softening. Gyroscopic (Coriolis) terms are
+ * neglected. */
 #ifndef FEM_BODY_ROTATION_H
 #define FEM_BODY_ROTATION_H
 
@@ -10,7 +11,7 @@ typedef struct {
   double    speed; /* rad/s */
 } fem_rotation;
 
-/* Omega^2 along the mesh axes across the engine axis, 0 along it, rad2/s2: the diagonal of Omega^2 P, P = I - a a^T. */
+/* Diagonal of Omega^2 P, P = I - a a^T, rad2/s2: Omega^2 across the engine axis a, 0 along it. */
 void fem_rotation_square(const fem_rotation *rotation, double square[3]);
 
 /* Consistent load of an element of n nodes, f_i = Omega^2 P sum_j m_ij (x_j + u_j), N.
@@ -19,7 +20,7 @@ void fem_rotation_square(const fem_rotation *rotation, double square[3]);
 void fem_rotation_load(const fem_rotation *rotation, int n, const double *m, const double x[][3],
                        const double u[][3], double f[][3]);
 
-/* K -= Omega^2 m_ij P: the load grows where the body moves outward. K: [3n][3n]. */
+/* K -= Omega^2 m_ij P, [3n][3n]: the load increases as the body moves outward. */
 void fem_rotation_soften(const fem_rotation *rotation, int n, const double *m, double *K);
 
 #endif

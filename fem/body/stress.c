@@ -5,13 +5,13 @@
 #include "fem/body/pressure.h"
 #include "fem/element/finite_strain.h"
 
-/* Linear functions of the reference coordinates fitted to values at the points of a rule: node value = sum_p
- * at[node][p] value_p. */
+/* Extrapolation from the points of a rule to the nodes by a linear function of the reference
+ * coordinates: node value = sum_p at[node][p] value_p. */
 typedef struct {
   double at[MESH_NODES][FEM_POINTS];
 } extrapolation;
 
-/* Inverse of a symmetric positive definite 4x4 matrix, by Gauss and Jordan. */
+/* Inverse of a symmetric positive definite 4x4 matrix by Gauss-Jordan elimination. */
 static void invert(double A[4][4], double X[4][4]) {
   for (int i = 0; i < 4; i++)
     for (int j = 0; j < 4; j++) X[i][j] = i == j;
@@ -25,7 +25,7 @@ static void invert(double A[4][4], double X[4][4]) {
   }
 }
 
-/* (1, r, s, t) of a point: the map of the reference element onto itself. */
+/* Basis (1, r, s, t) at a point with these shape functions. */
 static void linear_at(const mesh_topology *topology, const double *shape, double b[4]) {
   b[0] = 1;
   b[1] = b[2] = b[3] = 0;
@@ -54,7 +54,7 @@ static void fit(const mesh_topology *topology, const fem_rule *rule, extrapolati
   }
 }
 
-/* Add the element's volume times its nodal stresses; returns the volume. */
+/* Volume of the element times its nodal stresses. Returns the volume. */
 static double add_element(const fem_body *body, const fem_material *own, const double x[][3],
                           const double u[][3], const fem_rule *rule, const extrapolation *to,
                           double nodal[][FEM_STRESSES]) {
@@ -64,7 +64,7 @@ static double add_element(const fem_body *body, const fem_material *own, const d
     double          g[MESH_NODES][3], H[3][3];
     volume += rule->weight[p] * fem_element_gradient(body->element, rule, p, x, g);
     fem_displacement_gradient(body->element->n, (const double(*)[3])g, u, H);
-    fem_deform(own, (const double(*)[3])H, &at);
+    fem_deformation_at(own, (const double(*)[3])H, &at);
     fem_cauchy(&at, stress[p]);
   }
   for (int i = 0; i < body->element->n; i++)
@@ -109,11 +109,11 @@ PetscErrorCode fem_nodal_stress(const fem_body *body, const double *u,
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode fem_balance(const fem_body *body, const double *u, double (*balance)[3],
-                           double load[3]) {
+PetscErrorCode fem_unbalanced_forces(const fem_body *body, const double *u, double (*unbalanced)[3],
+                                     double load[3]) {
   const int n = body->element->n;
   PetscFunctionBeginUser;
-  memset(balance, 0, (size_t)body->mesh->n_nodes * sizeof *balance);
+  memset(unbalanced, 0, (size_t)body->mesh->n_nodes * sizeof *unbalanced);
   memset(load, 0, 3 * sizeof *load);
   for (int e = 0; e < body->mesh->n_elements; e++) {
     const int *node = body->mesh->connectivity + n * (size_t)e;
@@ -127,10 +127,10 @@ PetscErrorCode fem_balance(const fem_body *body, const double *u, double (*balan
     fem_element_mass(body->element, own->rho, at, m);
     fem_rotation_load(&body->rotation, n, m, at, by, outer);
     for (int i = 0; i < 3 * n; i++) {
-      balance[node[i / 3]][i % 3] += internal[i / 3][i % 3] - outer[i / 3][i % 3];
+      unbalanced[node[i / 3]][i % 3] += internal[i / 3][i % 3] - outer[i / 3][i % 3];
       load[i % 3] += outer[i / 3][i % 3];
     }
   }
-  PetscCall(fem_pressure_balance(body, u, balance, load));
+  PetscCall(fem_pressure_unbalanced(body, u, unbalanced, load));
   PetscFunctionReturn(0);
 }

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Compiled for each number of nodes. */
+/* Inlined, so that each number of nodes is compiled separately. */
 #define KERNEL static inline __attribute__((always_inline))
 
 fem_lame fem_lame_of(const fem_material *material) {
@@ -60,7 +60,7 @@ PetscErrorCode fem_element_create(mesh_kind kind, fem_rules rules, fem_element *
   PetscFunctionReturn(0);
 }
 
-/* Does node i lie where the affine map of corner 0 and its three neighbours puts it? */
+/* Compares each node with the affine map of corner 0 and its three neighbours. */
 bool fem_element_is_straight(const fem_element *element, const double x[][3]) {
   const mesh_topology *topology = mesh_topology_of(element->kind);
   double               side[3][3], length = 0;
@@ -79,7 +79,8 @@ bool fem_element_is_straight(const fem_element *element, const double x[][3]) {
   return true;
 }
 
-/* J[a][d] = dx_d / d(reference a), its determinant, and (if inverse) inverse[d][a] = d(reference a)/dx_d. */
+/* Determinant of J[a][d] = dx_d / d(reference a).
+ *   inverse  out  [d][a] = d(reference a)/dx_d; may be NULL */
 static double jacobian(int n, const double x[][3], const double gradient[][3],
                        double inverse[3][3]) {
   double J[3][3] = {{0}};
@@ -114,13 +115,14 @@ double fem_element_gradient(const fem_element *element, const fem_rule *rule, in
   return det;
 }
 
-/* B^T D B of nodes i, j for an isotropic D is lambda g_i g_j^T + mu g_j g_i^T + mu (g_i . g_j) I. */
+/* For an isotropic D, B^T D B of nodes i, j is lambda g_i g_j^T + mu g_j g_i^T + mu (g_i . g_j)
+ * I. */
 KERNEL void add_point(int n, double lambda, double mu, const double g[][3], double *K) {
   for (int i = 0; i < n; i++)
     for (int j = i; j < n; j++) {
       double inner = mu * (g[i][0] * g[j][0] + g[i][1] * g[j][1] + g[i][2] * g[j][2]);
       for (int a = 0; a < 3; a++) {
-        double *row = K + (3 * i + a) * 3 * n + 3 * j;
+        double *row = K + (size_t)((3 * i + a) * 3 * n + 3 * j);
         for (int b = 0; b < 3; b++) row[b] += lambda * g[i][a] * g[j][b] + mu * g[i][b] * g[j][a];
         row[a] += inner;
       }

@@ -1,6 +1,6 @@
 /* Stiffness and mass of an element: ten-node tetrahedron or twenty-node hexahedron.
  *
- * n = element->n nodes; x is [n][3] m, matrices are dense by rows. */
+ * n = element->n nodes; x is [n][3] m; matrices are dense by rows. */
 #ifndef FEM_ELEMENT_ELEMENT_H
 #define FEM_ELEMENT_ELEMENT_H
 
@@ -31,7 +31,7 @@ typedef enum {
   FEM_FULL,     /* stiffness: tetrahedra 27 points where curved, hexahedra 3x3x3 (C3D20) */
 } fem_rules;
 
-/* The rules an assembly needs, tabulated once. */
+/* Tabulated quadrature rules of an assembly. */
 typedef struct {
   mesh_kind kind;
   int       n; /* nodes */
@@ -51,29 +51,31 @@ fem_lame fem_lame_of(const fem_material *material);
 
 PetscErrorCode fem_element_create(mesh_kind kind, fem_rules rules, fem_element *element);
 
-/* Is the map from the reference element affine (to 1e-9 of its edges)? Then J is constant. */
+/* Is the map from the reference element affine, to 1e-9 of its edges? J is then constant. */
 bool fem_element_is_straight(const fem_element *element, const double x[][3]);
 
-/* The rule that the stiffness of this element uses. */
+/* Rule for the stiffness of this element. */
 const fem_rule *fem_element_stiffness_rule(const fem_element *element, const double x[][3]);
 
-/* g[i][d] = dN_i / dx_d at a point of the rule; returns det J. */
+/* g[i][d] = dN_i / dx_d at a point of the rule. Returns det J. */
 double fem_element_gradient(const fem_element *element, const fem_rule *rule, int point,
                             const double x[][3], double g[][3]);
 
-/* The rows by which a node's displacement changes the Green-Lagrange strain (fem/element/material.h) at the deformation gradient F:
- * B[.][a] = sym(F^T (e_a g^T)), shear doubled; for F = I the usual B. */
+/* Derivative of the Green-Lagrange strain (order as in fem/element/material.h) with respect to the
+ * displacement of a node, at deformation gradient F: B[.][a] = sym(F^T (e_a g^T)), shear doubled.
+ * For F = I this is the linear B. */
 void fem_strain_rows(const double F[3][3], const double g[3], double B[6][3]);
 
-/* K += volume B_i^T C B_j of all nodes i <= j, any C: the upper triangle of [3n][3n]. */
+/* K += volume B_i^T C B_j for all nodes i <= j and any C; upper triangle of [3n][3n]. */
 void fem_add_anisotropic(int n, const double C[6][6], double volume, const double F[3][3],
                          const double g[][3], double *K);
 
-/* K = integral of B^T D B, N/m: [3n][3n], rows and columns 3 node + axis. */
+/* K = integral of B^T D B dV, N/m: [3n][3n], rows and columns 3 node + axis. */
 void fem_element_stiffness(const fem_element *element, const fem_material *material,
                            const double x[][3], double *K);
 
-/* Scalar mass m_ij = integral of rho N_i N_j dV, kg: [n][n]; the matrix is m_ij times the 3x3 identity. */
+/* Scalar mass m_ij = integral of rho N_i N_j dV, kg: [n][n]. The mass matrix is m_ij times the 3x3
+ * identity. */
 void fem_element_mass(const fem_element *element, double rho, const double x[][3], double *m);
 
 #endif

@@ -3,12 +3,14 @@
 #include <math.h>
 #include <string.h>
 
-/* Compiled for each number of nodes. */
+#include "mesh/base/vec3.h"
+
+/* Inlined, so that each number of nodes is compiled separately. */
 #define KERNEL static inline __attribute__((always_inline))
 
 void fem_displacement_gradient(int n, const double g[][3], const double u[][3], double H[3][3]) {
   memset(H, 0, 9 * sizeof(double));
-  for (int i = 1; i < n; i++) /* from node 0: a translation leaves no trace */
+  for (int i = 1; i < n; i++) /* relative to node 0, so that a translation cancels */
     for (int a = 0; a < 3; a++)
       for (int d = 0; d < 3; d++) H[a][d] += (u[i][a] - u[0][a]) * g[i][d];
 }
@@ -25,8 +27,8 @@ static void anisotropic_stress(const fem_material *material, const double E[3][3
   S[1][2] = S[2][1] = stress[5];
 }
 
-/* E from H, not from F^T F - I, which would lose the digits of small strains. */
-void fem_deform(const fem_material *material, const double H[3][3], fem_deformation *at) {
+/* E is computed from H. F^T F - I would lose the digits of small strains. */
+void fem_deformation_at(const fem_material *material, const double H[3][3], fem_deformation *at) {
   const fem_lame lame = fem_lame_of(material);
   double         E[3][3], trace;
   for (int a = 0; a < 3; a++)
@@ -51,17 +53,13 @@ static void multiply(const double A[3][3], const double B[3][3], double C[3][3])
 }
 
 static void apply(const double A[3][3], const double v[3], double out[3]) {
-  for (int a = 0; a < 3; a++) out[a] = A[a][0] * v[0] + A[a][1] * v[1] + A[a][2] * v[2];
+  for (int a = 0; a < 3; a++) out[a] = vec3_dot(A[a], v);
 }
 
 /* F F^T */
 static void left_cauchy(const double F[3][3], double B[3][3]) {
   for (int a = 0; a < 3; a++)
     for (int b = 0; b < 3; b++) B[a][b] = F[a][0] * F[b][0] + F[a][1] * F[b][1] + F[a][2] * F[b][2];
-}
-
-static double inner(const double a[3], const double b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
 void fem_element_force(const fem_element *element, const fem_material *material,
@@ -73,7 +71,7 @@ void fem_element_force(const fem_element *element, const fem_material *material,
     double          g[MESH_NODES][3], H[3][3], P[3][3], nodal[3];
     double          volume = rule->weight[p] * fem_element_gradient(element, rule, p, x, g);
     fem_displacement_gradient(element->n, (const double(*)[3])g, u, H);
-    fem_deform(material, (const double(*)[3])H, &at);
+    fem_deformation_at(material, (const double(*)[3])H, &at);
     multiply((const double(*)[3])at.F, (const double(*)[3])at.S, P);
     for (int i = 0; i < element->n; i++) {
       apply((const double(*)[3])P, g[i], nodal);
@@ -82,7 +80,7 @@ void fem_element_force(const fem_element *element, const fem_material *material,
   }
 }
 
-/* The upper triangle of one point's share. */
+/* Add the contribution of one point to the upper triangle. */
 KERNEL void add_point(int n, const fem_lame *lame, double volume, const fem_deformation *at,
                       const double g[][3], double *K) {
   const double lambda = volume * lame->lambda, mu = volume * lame->mu;
@@ -94,9 +92,9 @@ KERNEL void add_point(int n, const fem_lame *lame, double volume, const fem_defo
   }
   for (int i = 0; i < n; i++)
     for (int j = i; j < n; j++) {
-      double geometric = volume * inner(g[i], Sg[j]), shear = mu * inner(g[i], g[j]);
+      double geometric = volume * vec3_dot(g[i], Sg[j]), shear = mu * vec3_dot(g[i], g[j]);
       for (int a = 0; a < 3; a++) {
-        double *row = K + (3 * i + a) * 3 * n + 3 * j;
+        double *row = K + (size_t)((3 * i + a) * 3 * n + 3 * j);
         for (int b = 0; b < 3; b++)
           row[b] += lambda * p[i][a] * p[j][b] + mu * p[j][a] * p[i][b] + shear * B[a][b];
         row[a] += geometric;
@@ -111,7 +109,7 @@ static void add_anisotropic(int n, const fem_material *material, double volume,
     double Sg[3];
     apply(at->S, g[j], Sg);
     for (int i = 0; i <= j; i++)
-      for (int a = 0; a < 3; a++) K[(3 * i + a) * 3 * n + 3 * j + a] += volume * inner(g[i], Sg);
+      for (int a = 0; a < 3; a++) K[(3 * i + a) * 3 * n + 3 * j + a] += volume * vec3_dot(g[i], Sg);
   }
 }
 
@@ -126,7 +124,7 @@ void fem_element_tangent(const fem_element *element, const fem_material *materia
     double          g[MESH_NODES][3], H[3][3];
     double          volume = rule->weight[p] * fem_element_gradient(element, rule, p, x, g);
     fem_displacement_gradient(element->n, (const double(*)[3])g, u, H);
-    fem_deform(material, (const double(*)[3])H, &at);
+    fem_deformation_at(material, (const double(*)[3])H, &at);
     if (material->anisotropic)
       add_anisotropic(element->n, material, volume, &at, (const double(*)[3])g, K);
     else if (element->n == 10)
@@ -148,7 +146,7 @@ void fem_cauchy(const fem_deformation *at, double stress[6]) {
   static const int place[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {0, 2}};
   double           P[3][3], J = determinant(at->F);
   multiply(at->F, at->S, P);
-  for (int c = 0; c < 6; c++) stress[c] = inner(P[place[c][0]], at->F[place[c][1]]) / J;
+  for (int c = 0; c < 6; c++) stress[c] = vec3_dot(P[place[c][0]], at->F[place[c][1]]) / J;
 }
 
 double fem_von_mises(const double stress[6]) {
@@ -169,7 +167,7 @@ double fem_element_stress(const fem_element *element, const fem_material *materi
     double          g[MESH_NODES][3], H[3][3], stress[6];
     fem_element_gradient(element, rule, p, x, g);
     fem_displacement_gradient(element->n, (const double(*)[3])g, u, H);
-    fem_deform(material, (const double(*)[3])H, &at);
+    fem_deformation_at(material, (const double(*)[3])H, &at);
     fem_cauchy(&at, stress);
     greatest = fmax(greatest, fem_von_mises(stress));
   }

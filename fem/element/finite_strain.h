@@ -1,11 +1,13 @@
-/* An element under large displacements: total Lagrangian, St. Venant-Kirchhoff material.
+/* An element under large displacements: total Lagrangian formulation, St. Venant-Kirchhoff
+ * material.
  *
- * With g_i = dN_i/dX, the displacement gradient H and the Lame constants lambda, mu,
+ * With g_i = dN_i/dX, the displacement gradient H and the Lame constants lambda, mu:
  *   F = I + H,  E = (H + H^T + H^T H)/2,  S = lambda tr(E) I + 2 mu E,  p_i = F g_i
  *   force    f_i  = int F S g_i dV
  *   tangent  K_ij = int (g_i . S g_j) I + lambda p_i p_j^T + mu p_j p_i^T + mu (g_i . g_j) F F^T dV
- * and for an anisotropic material S = C E, the middle terms B_i^T C B_j with the rows of fem_strain_rows,
- * at the points of fem_element_stiffness_rule; for u = 0 the tangent is fem_element_stiffness. */
+ * For an anisotropic material S = C E, and B_i^T C B_j with the rows of fem_strain_rows replaces
+ * the terms with lambda and mu. Quadrature is fem_element_stiffness_rule. For u = 0 the tangent is
+ * fem_element_stiffness. */
 #ifndef FEM_ELEMENT_FINITE_STRAIN_H
 #define FEM_ELEMENT_FINITE_STRAIN_H
 
@@ -17,24 +19,24 @@ typedef struct {
   double S[3][3]; /* second Piola-Kirchhoff stress, Pa */
 } fem_deformation;
 
-/* H[a][d] = du_a/dX_d = sum_i u_i[a] g_i[d], free of rigid translation. */
+/* H[a][d] = du_a/dX_d = sum_i u_i[a] g_i[d]; rigid translations cancel. */
 void fem_displacement_gradient(int n, const double g[][3], const double u[][3], double H[3][3]);
 
-void fem_deform(const fem_material *material, const double H[3][3], fem_deformation *at);
+void fem_deformation_at(const fem_material *material, const double H[3][3], fem_deformation *at);
 
 /* Internal forces of the nodes, N.  x, u in m. */
 void fem_element_force(const fem_element *element, const fem_material *material,
                        const double x[][3], const double u[][3], double f[][3]);
 
-/* Their derivative, N/m, symmetric: [3n][3n], rows and columns 3 node + axis. */
+/* Derivative of the internal forces, N/m, symmetric: [3n][3n], rows and columns 3 node + axis. */
 void fem_element_tangent(const fem_element *element, const fem_material *material,
                          const double x[][3], const double u[][3], double *K);
 
-/* Cauchy stress F S F^T / det F: xx, yy, zz, xy, yz, xz, Pa; and its von Mises stress. */
+/* Cauchy stress F S F^T / det F: xx, yy, zz, xy, yz, xz, Pa; its von Mises stress, Pa. */
 void   fem_cauchy(const fem_deformation *at, double stress[6]);
 double fem_von_mises(const double stress[6]);
 
-/* Greatest von Mises stress (Cauchy, F S F^T / det F) at the element's quadrature points, Pa. */
+/* Largest von Mises stress of the Cauchy stress at the quadrature points of an element, Pa. */
 double fem_element_stress(const fem_element *element, const fem_material *material,
                           const double x[][3], const double u[][3]);
 

@@ -5,16 +5,16 @@
 
 enum { FACES = 6, CORNERS = 4 };
 
-/* Opposite faces of mesh_topology's hexahedron. */
+/* Opposite faces of the hexahedron of mesh_topology. */
 static const int opposite[3][2] = {{0, 5}, {1, 4}, {2, 3}};
 
 typedef struct {
   int corner[CORNERS]; /* ascending */
   int face;            /* FACES * element + face; -1 for one of group root */
-} side;
+} face_key;
 
 static int by_corner(const void *a, const void *b) {
-  const side *p = a, *q = b;
+  const face_key *p = a, *q = b;
   for (int i = 0; i < CORNERS; i++)
     if (p->corner[i] != q->corner[i]) return p->corner[i] < q->corner[i] ? -1 : 1;
   return 0;
@@ -24,46 +24,47 @@ static int by_number(const void *a, const void *b) {
   return *(const int *)a - *(const int *)b;
 }
 
-static side make_side(const int *nodes, const int *local, int face) {
-  side s = {.face = face};
+static face_key make_key(const int *nodes, const int *local, int face) {
+  face_key s = {.face = face};
   for (int i = 0; i < CORNERS; i++) s.corner[i] = nodes[local ? local[i] : i];
   qsort(s.corner, CORNERS, sizeof *s.corner, by_number);
   return s;
 }
 
-/* held[FACES * element + face] = 1 where another face, or the clamp, has the same corners. */
-static void find_held(const mesh_fe *mesh, side *sides, char *held) {
+/* supported[FACES * element + face] = 1 where another face, or the clamp, has the same corners. */
+static void find_supported(const mesh_fe *mesh, face_key *keys, char *supported) {
   const mesh_face_set *root = &mesh->set[MESH_ROOT];
   size_t               n    = 0;
   for (int e = 0; e < mesh->n_elements; e++)
     for (int f = 0; f < FACES; f++)
-      sides[n++] = make_side(mesh->connectivity + 20 * (size_t)e,
-                             mesh_topology_of(MESH_HEX20)->face[f], FACES * e + f);
-  for (int f = 0; f < root->n; f++) sides[n++] = make_side(root->nodes + 8 * (size_t)f, NULL, -1);
-  qsort(sides, n, sizeof *sides, by_corner);
+      keys[n++] = make_key(mesh->connectivity + 20 * (size_t)e,
+                           mesh_topology_of(MESH_HEX20)->face[f], FACES * e + f);
+  for (int f = 0; f < root->n; f++) keys[n++] = make_key(root->nodes + 8 * (size_t)f, NULL, -1);
+  qsort(keys, n, sizeof *keys, by_corner);
   for (size_t i = 0; i + 1 < n; i++) {
-    if (by_corner(&sides[i], &sides[i + 1]) != 0) continue;
+    if (by_corner(&keys[i], &keys[i + 1]) != 0) continue;
     for (size_t k = i; k <= i + 1; k++)
-      if (sides[k].face >= 0) held[sides[k].face] = 1;
+      if (keys[k].face >= 0) supported[keys[k].face] = 1;
   }
 }
 
 shb_status fem_hourglass_check(const mesh_fe *mesh) {
   if (mesh->kind != MESH_HEX20) return SHB_OK;
-  const size_t n     = FACES * (size_t)mesh->n_elements;
-  side        *sides = malloc((n + (size_t)mesh->set[MESH_ROOT].n + 1) * sizeof *sides);
-  char        *held  = calloc(n + 1, 1);
+  const size_t n         = FACES * (size_t)mesh->n_elements;
+  face_key    *keys      = malloc((n + (size_t)mesh->set[MESH_ROOT].n + 1) * sizeof *keys);
+  char        *supported = calloc(n + 1, 1);
   int          bad = 0, first = -1;
-  if (sides && held) find_held(mesh, sides, held);
-  for (int e = 0; sides && held && e < mesh->n_elements; e++) {
+  if (keys && supported) find_supported(mesh, keys, supported);
+  for (int e = 0; keys && supported && e < mesh->n_elements; e++) {
     int free_pairs = 0;
     for (int d = 0; d < 3; d++)
-      free_pairs += !held[FACES * e + opposite[d][0]] && !held[FACES * e + opposite[d][1]];
+      free_pairs +=
+          !supported[FACES * e + opposite[d][0]] && !supported[FACES * e + opposite[d][1]];
     if (free_pairs >= 2 && bad++ == 0) first = e;
   }
-  bool complete = sides && held;
-  free(sides);
-  free(held);
+  bool complete = keys && supported;
+  free(keys);
+  free(supported);
   SHB_CHECK(complete, SHB_ERR_IO, "out of memory for the faces of %d elements", mesh->n_elements);
   SHB_CHECK(bad == 0, SHB_ERR_INPUT,
             "%d hexahedra (the first has tag %ld) stand in a column one by one: 2x2x2 points leave "

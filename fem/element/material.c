@@ -3,9 +3,11 @@
 #include <math.h>
 #include <string.h>
 
+#include "mesh/base/vec3.h"
+
 static const int place[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
 
-/* Inverse of the compliance's normal part; false unless it is positive definite. */
+/* Inverse of the normal part of the compliance. False unless it is positive definite. */
 static bool invert(const double S[3][3], double C[3][3]) {
   double minor = S[0][0] * S[1][1] - S[0][1] * S[1][0], det = 0;
   for (int i = 0; i < 3; i++)
@@ -20,8 +22,8 @@ static bool invert(const double S[3][3], double C[3][3]) {
   return true;
 }
 
-/* Stiffness in the material's own axes. The compliance is scaled by E1: determinants near 1. */
-static shb_status own_stiffness(const fem_orthotropic *from, double C[6][6]) {
+/* Stiffness in material axes. The compliance is scaled by E1, so that determinants are near 1. */
+static shb_status stiffness_in_own_axes(const fem_orthotropic *from, double C[6][6]) {
   const double *E = from->E, *nu = from->nu, scale = E[0];
   double        S[3][3], normal[3][3];
   memset(C, 0, 36 * sizeof(double));
@@ -40,28 +42,22 @@ static shb_status own_stiffness(const fem_orthotropic *from, double C[6][6]) {
   return SHB_OK;
 }
 
-/* Rows: the material's axes in mesh axes. */
+/* Rows: the material axes in mesh axes. */
 static shb_status find_axes(const fem_orthotropic *from, double axes[3][3]) {
-  double first = 0, dot = 0, second = 0;
-  for (int d = 0; d < 3; d++) first += from->axis[d] * from->axis[d];
-  for (int d = 0; d < 3; d++) axes[0][d] = from->axis[d] / sqrt(first);
-  for (int d = 0; d < 3; d++) dot += axes[0][d] * from->in_plane[d];
-  for (int d = 0; d < 3; d++) {
-    axes[1][d] = from->in_plane[d] - dot * axes[0][d];
-    second += axes[1][d] * axes[1][d];
-  }
-  SHB_CHECK(first > 0 && second > 1e-12 * dot * dot && second > 0, SHB_ERR_INPUT,
+  const double first = vec3_norm(from->axis);
+  for (int d = 0; d < 3; d++) axes[0][d] = from->axis[d] / first;
+  const double along = vec3_dot(axes[0], from->in_plane);
+  for (int d = 0; d < 3; d++) axes[1][d] = from->in_plane[d] - along * axes[0][d];
+  const double second = vec3_norm(axes[1]);
+  SHB_CHECK(first > 0 && second > 1e-6 * fabs(along), SHB_ERR_INPUT,
             "axis_1 and axis_2 must be two directions, not along one line");
-  for (int d = 0; d < 3; d++) axes[1][d] /= sqrt(second);
-  for (int d = 0; d < 3; d++) {
-    int a = (d + 1) % 3, b = (d + 2) % 3;
-    axes[2][d] = axes[0][a] * axes[1][b] - axes[0][b] * axes[1][a];
-  }
+  for (int d = 0; d < 3; d++) axes[1][d] /= second;
+  vec3_cross(axes[0], axes[1], axes[2]);
   return SHB_OK;
 }
 
 /* c_ijkl = r_ai r_bj r_ck r_dl C_abcd for one (ij, kl). */
-static double turned(const double C[6][6], const double axes[3][3], int i, int j, int k, int l) {
+static double rotated(const double C[6][6], const double axes[3][3], int i, int j, int k, int l) {
   double sum = 0;
   for (int a = 0; a < 3; a++)
     for (int b = 0; b < 3; b++)
@@ -74,25 +70,13 @@ static double turned(const double C[6][6], const double axes[3][3], int i, int j
 shb_status fem_material_orthotropic(const fem_orthotropic *from, double rho, fem_material *out) {
   static const int pair[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
   double           C[6][6], axes[3][3];
-  SHB_TRY(own_stiffness(from, C));
+  SHB_TRY(stiffness_in_own_axes(from, C));
   SHB_TRY(find_axes(from, axes));
   *out = (fem_material){
       .E = fmax(from->E[0], fmax(from->E[1], from->E[2])), .rho = rho, .anisotropic = true};
   for (int p = 0; p < 6; p++)
     for (int q = p; q < 6; q++)
-      out->C[p][q] = out->C[q][p] = turned((const double(*)[6])C, (const double(*)[3])axes,
-                                           pair[p][0], pair[p][1], pair[q][0], pair[q][1]);
+      out->C[p][q] = out->C[q][p] = rotated((const double(*)[6])C, (const double(*)[3])axes,
+                                            pair[p][0], pair[p][1], pair[q][0], pair[q][1]);
   return SHB_OK;
-}
-
-void fem_material_stiffness(const fem_material *material, double C[6][6]) {
-  memcpy(C, material->C, sizeof material->C);
-  if (material->anisotropic) return;
-  double mu     = material->E / (2 * (1 + material->nu));
-  double lambda = 2 * mu * material->nu / (1 - 2 * material->nu);
-  memset(C, 0, 36 * sizeof(double));
-  for (int i = 0; i < 3; i++) {
-    for (int j = 0; j < 3; j++) C[i][j] = lambda + (i == j ? 2 * mu : 0);
-    C[3 + i][3 + i] = mu;
-  }
 }

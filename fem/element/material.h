@@ -1,6 +1,7 @@
-/* Linear elastic material: isotropic, or of any anisotropy made from three axes (single crystals).
+/* Linear elastic material: isotropic, or orthotropic with three given axes (single crystals).
  *
- * Strains and stresses as vectors: 11, 22, 33, 12, 13, 23, shear strains doubled. */
+ * Strains and stresses are vectors in the order 11, 22, 33, 12, 13, 23, with shear strains
+ * doubled. */
 #ifndef FEM_ELEMENT_MATERIAL_H
 #define FEM_ELEMENT_MATERIAL_H
 
@@ -9,15 +10,15 @@
 #include "mesh/core/fe_mesh.h"
 
 typedef struct {
-  double E;           /* Young's modulus, Pa; anisotropic: the greatest of the three */
+  double E;           /* Young's modulus, Pa; anisotropic: the largest of the three */
   double nu;          /* Poisson's ratio; anisotropic: not used */
   double rho;         /* density, kg/m3 */
-  bool   anisotropic; /* C holds instead of E and nu */
+  bool   anisotropic; /* C replaces E and nu */
   double C[6][6];     /* stiffness in mesh axes, Pa */
 } fem_material;
 
-/* Three orthogonal planes of symmetry; cubic if the constants of the axes are equal. nu[ij]: strain along j for one along i
- * under stress along i, so that nu_ij / E_i = nu_ji / E_j. */
+/* Orthotropic constants; cubic if those of the axes are equal. nu_ij is the contraction along j
+ * under stress along i, so nu_ij / E_i = nu_ji / E_j. */
 typedef struct {
   double E[3];        /* Pa, along axes 1, 2, 3 */
   double nu[3];       /* nu12, nu13, nu23 */
@@ -26,13 +27,13 @@ typedef struct {
   double in_plane[3]; /* a vector in the plane of axes 1 and 2, on the side of 2 */
 } fem_orthotropic;
 
-/* C in mesh axes. SHB_ERR_INPUT: not positive definite, or axes without a direction. */
+/* Material with its stiffness in mesh axes.
+ * Errors: SHB_ERR_INPUT if the stiffness is not positive definite, or the axes have no
+ * direction. */
 shb_status fem_material_orthotropic(const fem_orthotropic *from, double rho, fem_material *out);
 
-/* Stiffness of any material, isotropic ones included. */
-void fem_material_stiffness(const fem_material *material, double C[6][6]);
-
-/* Material of an element: materials[mesh->region], one for each of the mesh's regions; the one where it has none. */
+/* Material of an element.
+ *   materials  in  one a region of the mesh, or one if the mesh has no regions */
 static inline const fem_material *fem_material_at(const fem_material *materials,
                                                   const mesh_fe *mesh, int element) {
   return mesh->region ? &materials[mesh->region[element]] : materials;

@@ -14,8 +14,9 @@ void fem_tet_rule_4(fem_rule *rule) {
   }
 }
 
-/* The quadrature, n points a direction, of a reference shape in d dimensions. PETSc's lies in [-1, 1]^d, its simplex
- * below the diagonal: halve it onto [0, 1]^d. at: [points][d]. */
+/* Quadrature with n points a direction on a reference shape in d dimensions. PETSc's shapes lie in
+ * [-1, 1]^d, the simplex below the diagonal. They are mapped to [0, 1]^d.
+ *   at  out  [points][d] */
 static PetscErrorCode tabulate(mesh_kind kind, int d, int n, int most, int *count, double *at,
                                double *weight) {
   PetscQuadrature  quadrature;

@@ -1,4 +1,5 @@
-/* Quadrature on the reference elements and faces of mesh/core/element_topology.h, with the shape functions tabulated. */
+/* Quadrature on the reference elements and faces of mesh/core/element_topology.h, with tabulated
+ * shape functions. */
 #ifndef FEM_ELEMENT_QUADRATURE_H
 #define FEM_ELEMENT_QUADRATURE_H
 
@@ -26,10 +27,12 @@ typedef struct {
 /* Four symmetric points, exact to degree 2; CalculiX's C3D10. */
 void fem_tet_rule_4(fem_rule *rule);
 
-/* Conical product of n Gauss points a direction, exact to degree 2n - 1; n = 1..4. Needs PETSc initialised. */
+/* Conical product of n Gauss points a direction, exact to degree 2n - 1; n = 1 .. 4. PETSc must be
+ * initialised. */
 PetscErrorCode fem_tet_rule_conical(int n, fem_rule *rule);
 
-/* Product of n Gauss points a direction, exact to degree 2n - 1 in each; n = 1..4. Needs PETSc initialised. */
+/* Product of n Gauss points a direction, exact to degree 2n - 1 in each; n = 1 .. 4. PETSc must be
+ * initialised. */
 PetscErrorCode fem_hex_rule(int n, fem_rule *rule);
 
 /* 16 points on a face of the element, exact to degree 7 (in each direction of a quadrangle). */

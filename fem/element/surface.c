@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "fem/solver/petsc_error.h"
+#include "mesh/base/vec3.h"
 
 void fem_face_integrate(const fem_face_rule *rule, const double x[][3], double *area,
                         double normal[][3]) {
@@ -16,8 +17,9 @@ void fem_face_integrate(const fem_face_rule *rule, const double x[][3], double *
         r[d] += rule->gradient[p][i][0] * x[i][d];
         s[d] += rule->gradient[p][i][1] * x[i][d];
       }
-    double n[3] = {r[1] * s[2] - r[2] * s[1], r[2] * s[0] - r[0] * s[2], r[0] * s[1] - r[1] * s[0]};
-    double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    double n[3];
+    vec3_cross(r, s, n);
+    const double length = vec3_norm(n);
     for (int i = 0; i < rule->nodes; i++) {
       double weight = rule->weight[p] * rule->shape[p][i];
       area[i] += weight * length;

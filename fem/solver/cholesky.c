@@ -4,21 +4,48 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "fem/solver/sbaij_blocks.h"
 #include "fem/solver/supernodal_solve.h"
 
-enum { MANY = 12 }; /* right-hand sides for which calls to BLAS are the faster way */
+enum { MANY = 12 }; /* number of right-hand sides from which calls to BLAS are faster */
+
+/* Upper triangle of a symmetric matrix (sequential SBAIJ, block size 3) by block rows. */
+typedef struct {
+  PetscInt        n;
+  const PetscInt *start, *column;
+  const double   *value; /* [block][9], each by columns */
+} block_rows;
 
 struct fem_cholesky {
   int             n;     /* block rows */
-  int            *place; /* [n] of a block row in the factor */
+  int            *place; /* [n] index of a block row in the factor */
   cholmod_factor *L;
   fem_lanes      *few;      /* [3 n] right-hand sides in the factor's order */
   fem_lanes      *few_work; /* [largest supernode] */
-  cholmod_dense  *x;        /* [3 n][columns] many of them */
-  cholmod_dense  *work;     /* CHOLMOD's own */
+  cholmod_dense  *x;        /* [3 n][columns] many right-hand sides */
+  cholmod_dense  *work;     /* workspace of CHOLMOD */
   cholmod_common  common;
 };
+
+/* Access the blocks of A in place. A must not change until give_back_blocks. */
+static PetscErrorCode borrow_blocks(Mat A, block_rows *b) {
+  PetscBool done;
+  double   *value;
+  PetscFunctionBeginUser;
+  PetscCall(MatGetRowIJ(A, 0, PETSC_FALSE, PETSC_TRUE, &b->n, &b->start, &b->column, &done));
+  PetscCheck(done, PETSC_COMM_SELF, PETSC_ERR_SUP, "no rows");
+  PetscCall(MatSeqSBAIJGetArray(A, &value));
+  b->value = value;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode give_back_blocks(Mat A, block_rows *b) {
+  PetscBool done;
+  double   *value = (double *)b->value;
+  PetscFunctionBeginUser;
+  PetscCall(MatSeqSBAIJRestoreArray(A, &value));
+  PetscCall(MatRestoreRowIJ(A, 0, PETSC_FALSE, PETSC_TRUE, &b->n, &b->start, &b->column, &done));
+  PetscFunctionReturn(0);
+}
 
 static void start_common(cholmod_common *common) {
   cholmod_start(common);
@@ -28,8 +55,9 @@ static void start_common(cholmod_common *common) {
   common->zrelax[0] = .3, common->zrelax[1] = .05, common->zrelax[2] = .02;
 }
 
-/* Nested dissection of the graph of the nodes: three times smaller than that of the dofs, and as good. */
-static bool order_nodes(const fem_blocks *b, cholmod_common *common, int *place) {
+/* Nested dissection of the graph of the nodes. It is three times smaller than that of the dofs and
+ * as good. */
+static bool order_nodes(const block_rows *b, cholmod_common *common, int *place) {
   const size_t    n = (size_t)b->n, count = (size_t)b->start[n];
   cholmod_sparse *graph = cholmod_allocate_sparse(n, n, count, 1, 1, -1, CHOLMOD_PATTERN, common);
   if (!graph) return false;
@@ -47,8 +75,10 @@ static bool order_nodes(const fem_blocks *b, cholmod_common *common, int *place)
   return good;
 }
 
-/* Columns of the permuted lower triangle: of block column b the blocks below its diagonal follow that. next: [n] zeros. */
-static void count_columns(const fem_blocks *b, const int *place, int *next, int *start) {
+/* Column starts of the permuted lower triangle. In block column b the blocks below the diagonal
+ * follow the diagonal block.
+ *   next  scratch  [n], zero on entry and exit */
+static void count_columns(const block_rows *b, const int *place, int *next, int *start) {
   int total = 0;
   for (PetscInt r = 0; r < b->n; r++)
     for (PetscInt q = b->start[r]; q < b->start[r + 1]; q++) {
@@ -62,7 +92,7 @@ static void count_columns(const fem_blocks *b, const int *place, int *next, int 
     }
     next[c] = 0;
   }
-  start[3 * b->n] = total;
+  start[3 * (size_t)b->n] = total;
 }
 
 static void put_diagonal(const double *B, int c, const int *start, int *row, double *value) {
@@ -73,7 +103,8 @@ static void put_diagonal(const double *B, int c, const int *start, int *row, dou
     }
 }
 
-/* Block of rows low and columns high (or turned round) as the slot-th below the diagonal of column low. */
+/* Put a block of rows low and columns high, or its transpose, as the slot-th block below the
+ * diagonal of column low. */
 static void put_block(const double *B, bool turned, int low, int high, int slot, const int *start,
                       int *row, double *value) {
   for (int d = 0; d < 3; d++) {
@@ -85,8 +116,8 @@ static void put_block(const double *B, bool turned, int low, int high, int slot,
   }
 }
 
-/* The permuted lower triangle; NULL: out of memory. */
-static cholmod_sparse *permute(const fem_blocks *b, const int *place, cholmod_common *common) {
+/* The permuted lower triangle; NULL when out of memory. */
+static cholmod_sparse *permute(const block_rows *b, const int *place, cholmod_common *common) {
   const size_t    n = (size_t)b->n, entries = 9 * (size_t)b->start[n] - 3 * n;
   cholmod_sparse *A =
       cholmod_allocate_sparse(3 * n, 3 * n, entries, 0, 1, -1, CHOLMOD_REAL, common);
@@ -96,13 +127,14 @@ static cholmod_sparse *permute(const fem_blocks *b, const int *place, cholmod_co
     count_columns(b, place, next, start);
     for (PetscInt r = 0; r < b->n; r++)
       for (PetscInt q = b->start[r]; q < b->start[r + 1]; q++) {
-        int here = place[r], there = place[b->column[q]];
+        int           here = place[r], there = place[b->column[q]];
+        const double *block = b->value + 9 * (size_t)q;
         if (here == there)
-          put_diagonal(b->value + 9 * q, here, start, A->i, A->x);
+          put_diagonal(block, here, start, A->i, A->x);
         else if (here < there)
-          put_block(b->value + 9 * q, false, here, there, next[here]++, start, A->i, A->x);
+          put_block(block, false, here, there, next[here]++, start, A->i, A->x);
         else
-          put_block(b->value + 9 * q, true, there, here, next[there]++, start, A->i, A->x);
+          put_block(block, true, there, here, next[there]++, start, A->i, A->x);
       }
   } else
     cholmod_free_sparse(&A, common);
@@ -110,8 +142,8 @@ static cholmod_sparse *permute(const fem_blocks *b, const int *place, cholmod_co
   return A;
 }
 
-/* Supernodes of the permuted matrix. */
-static void analyse(const fem_blocks *b, fem_cholesky *factor) {
+/* Symbolic factorisation of the permuted matrix. */
+static void analyse(const block_rows *b, fem_cholesky *factor) {
   cholmod_common *common = &factor->common;
   cholmod_sparse *A;
   if (!order_nodes(b, common, factor->place)) return;
@@ -125,18 +157,18 @@ static void analyse(const fem_blocks *b, fem_cholesky *factor) {
 }
 
 PetscErrorCode fem_cholesky_create(Mat A, bool *fits, fem_cholesky **out) {
-  fem_blocks    b;
+  block_rows    b;
   fem_cholesky *factor = calloc(1, sizeof *factor);
 
   PetscFunctionBeginUser;
   *out = NULL;
   PetscCheck(factor, PETSC_COMM_SELF, PETSC_ERR_MEM, "CHOLMOD");
   start_common(&factor->common);
-  PetscCall(fem_blocks_borrow(A, &b));
+  PetscCall(borrow_blocks(A, &b));
   factor->n     = (int)b.n;
   factor->place = malloc((size_t)b.n * sizeof *factor->place);
   if (factor->place) analyse(&b, factor);
-  PetscCall(fem_blocks_give_back(A, &b));
+  PetscCall(give_back_blocks(A, &b));
   *fits = factor->common.status != CHOLMOD_TOO_LARGE;
   if (factor->L) {
     *out = factor;
@@ -147,14 +179,15 @@ PetscErrorCode fem_cholesky_create(Mat A, bool *fits, fem_cholesky **out) {
   PetscFunctionReturn(0);
 }
 
-void fem_cholesky_foresee(const fem_cholesky *factor, double *kept, double *passing) {
+void fem_cholesky_bytes(const fem_cholesky *factor, double *factor_bytes, double *workspace) {
   const cholmod_factor *L = factor->L;
-  *kept                   = 8. * (double)L->xsize + 4. * (double)L->ssize;
-  *passing                = 8. * (double)L->maxcsize + 12. * factor->common.anz;
+  *factor_bytes           = 8. * (double)L->xsize + 4. * (double)L->ssize;
+  *workspace              = 8. * (double)L->maxcsize + 12. * factor->common.anz;
 }
 
-/* On one thread: CHOLMOD copies panels with four threads of OpenMP that wait for each other in between, which on a busy machine takes more processor
- * time than the arithmetic. Without active levels its parallel regions are of one thread. */
+/* Factorise on one thread. CHOLMOD copies panels with four OpenMP threads that wait for each other.
+ * On a busy machine this takes more processor time than the arithmetic. With no active levels its
+ * parallel regions have one thread. */
 static void factorise(cholmod_sparse *A, cholmod_factor *L, cholmod_common *common) {
   const int levels = omp_get_max_active_levels();
   omp_set_max_active_levels(0);
@@ -164,12 +197,12 @@ static void factorise(cholmod_sparse *A, cholmod_factor *L, cholmod_common *comm
 
 PetscErrorCode fem_cholesky_update(fem_cholesky *factor, Mat A, bool *definite) {
   cholmod_common *common = &factor->common;
-  fem_blocks      b;
+  block_rows      b;
 
   PetscFunctionBeginUser;
-  PetscCall(fem_blocks_borrow(A, &b));
+  PetscCall(borrow_blocks(A, &b));
   cholmod_sparse *permuted = permute(&b, factor->place, common);
-  PetscCall(fem_blocks_give_back(A, &b));
+  PetscCall(give_back_blocks(A, &b));
   PetscCheck(permuted, PETSC_COMM_SELF, PETSC_ERR_MEM, "CHOLMOD");
   factorise(permuted, factor->L, common);
   cholmod_free_sparse(&permuted, common);
@@ -178,7 +211,7 @@ PetscErrorCode fem_cholesky_update(fem_cholesky *factor, Mat A, bool *definite) 
   PetscFunctionReturn(0);
 }
 
-/* Room for count right-hand sides; kept from solve to solve. */
+/* Workspace for count right-hand sides, kept between solves. */
 static PetscErrorCode make_room(fem_cholesky *factor, size_t count) {
   cholmod_common *common = &factor->common;
   PetscFunctionBeginUser;
@@ -216,12 +249,12 @@ static PetscErrorCode make_room_for_few(fem_cholesky *factor) {
   PetscFunctionBeginUser;
   if (factor->few) PetscFunctionReturn(0);
   factor->few      = aligned_alloc(alignment, 3 * (size_t)factor->n * sizeof(fem_lanes));
-  factor->few_work = aligned_alloc(alignment, fem_supernodes_rows(factor->L) * sizeof(fem_lanes));
+  factor->few_work = aligned_alloc(alignment, fem_supernodal_rows(factor->L) * sizeof(fem_lanes));
   PetscCheck(factor->few && factor->few_work, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory");
   PetscFunctionReturn(0);
 }
 
-/* count <= FEM_LANES; the lanes that are left over are zero. */
+/* Solve for count <= FEM_LANES columns; unused lanes are zero. */
 static PetscErrorCode solve_few(fem_cholesky *factor, size_t count, const double *b, size_t ldb,
                                 double *x, size_t ldx) {
   const size_t n = (size_t)factor->n;
@@ -232,7 +265,7 @@ static PetscErrorCode solve_few(fem_cholesky *factor, size_t count, const double
       fem_lanes *at = factor->few + 3 * (size_t)factor->place[i] + d;
       for (size_t c = 0; c < FEM_LANES; c++) (*at)[c] = c < count ? b[c * ldb + 3 * i + d] : 0;
     }
-  fem_supernodes_solve(factor->L, factor->few, factor->few_work);
+  fem_supernodal_solve(factor->L, factor->few, factor->few_work);
   for (size_t i = 0; i < n; i++)
     for (size_t d = 0; d < 3; d++) {
       const fem_lanes *at = factor->few + 3 * (size_t)factor->place[i] + d;

@@ -1,7 +1,7 @@
-/* Sparse Cholesky factor on one rank, by CHOLMOD: supernodal, ordered by nested dissection of the nodes.
+/* Sparse supernodal Cholesky factor on one rank by CHOLMOD, ordered by nested dissection.
  *
- * The matrix is copied, permuted, only while a factor is being made; CHOLMOD's own copy is thereby avoided. Solves take
- * several right-hand sides at once: eight cost twice one. */
+ * A permuted copy of the matrix exists only during factorisation; it replaces CHOLMOD's own copy. A
+ * solve takes several right-hand sides: eight cost twice as much as one. */
 #ifndef FEM_SOLVER_CHOLESKY_H
 #define FEM_SOLVER_CHOLESKY_H
 
@@ -10,19 +10,23 @@
 
 typedef struct fem_cholesky fem_cholesky;
 
-/* Order and analyse.
- *   A  in  sequential SBAIJ of block size 3; only its pattern is looked at
- *   fits  out  false: the factor would have 2^31 entries or more, which CHOLMOD cannot count; *out is then NULL */
+/* Order and analyse the pattern of A.
+ *   A     in   sequential SBAIJ of block size 3
+ *   fits  out  false: the factor would have 2^31 entries or more, which CHOLMOD cannot index
+ *   out   out  NULL if it does not fit
+ * Errors: PETSC_ERR_MEM. */
 PetscErrorCode fem_cholesky_create(Mat A, bool *fits, fem_cholesky **out);
 
-/* Bytes of the factor, and of the work that making it takes beside. */
-void fem_cholesky_foresee(const fem_cholesky *factor, double *kept, double *passing);
+/* Bytes of the factor, and of the workspace of the factorisation. */
+void fem_cholesky_bytes(const fem_cholesky *factor, double *factor_bytes, double *workspace);
 
-/* Factorise A, whose pattern is that of _create; again after its values have changed. *definite false: it is not
- * positive definite, and there is no factor. PETSC_ERR_MEM. */
+/* Factorise A, which has the pattern of _create; may be repeated after its values have changed.
+ *   definite  out  false: A is not positive definite, and there is no factor
+ * Errors: PETSC_ERR_MEM. */
 PetscErrorCode fem_cholesky_update(fem_cholesky *factor, Mat A, bool *definite);
 
-/* A x = b for count columns; ld: entries from one column to the next. x may be b. */
+/* Solve A x = b for count columns; x may be b.
+ *   ldb, ldx  in  entries from one column to the next */
 PetscErrorCode fem_cholesky_solve(fem_cholesky *factor, int count, const double *b, size_t ldb,
                                   double *x, size_t ldx);
 

@@ -5,19 +5,17 @@
 
 #include "fem/solver/cholesky.h"
 #include "fem/solver/memory.h"
-#include "fem/solver/mixed_precision.h"
 
 struct fem_factor {
   MPI_Comm      comm;
-  fem_cholesky *cholesky; /* or */
-  fem_single   *single;   /* or */
-  Mat           mumps;
-  double        foreseen; /* bytes, all ranks */
+  fem_cholesky *cholesky; /* NULL where MUMPS factorises */
+  Mat           mumps;    /* NULL where CHOLMOD does */
+  double        bytes;    /* bytes, all ranks */
 };
 
 static const double giga = 1e9;
 
-/* Does the user want MUMPS on one rank? */
+/* True on several ranks, or if the user asks for MUMPS. */
 static PetscErrorCode wants_mumps(MPI_Comm comm, bool *yes) {
   char      name[32] = "";
   PetscBool given, is_mumps;
@@ -33,8 +31,10 @@ static PetscErrorCode wants_mumps(MPI_Comm comm, bool *yes) {
 
 /* ------------------------------------------------------------------ memory */
 
-/* All ranks of a machine share what it has: the worst machine decides. mine: bytes that this rank will take. */
-static PetscErrorCode compare(MPI_Comm comm, double mine, double *needed, double *there) {
+/* Bytes needed and available on the machine with the smallest margin. Ranks of a machine share its
+ * memory.
+ *   mine  in  bytes that this rank needs */
+static PetscErrorCode compare(MPI_Comm comm, double mine, double *needed, double *available) {
   MPI_Comm machine;
   struct {
     double margin;
@@ -43,34 +43,34 @@ static PetscErrorCode compare(MPI_Comm comm, double mine, double *needed, double
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_split_type(comm, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine));
   PetscCallMPI(MPI_Allreduce(&mine, needed, 1, MPI_DOUBLE, MPI_SUM, machine));
-  *there = fem_memory_available();
+  *available = fem_memory_available();
   PetscCallMPI(MPI_Comm_free(&machine));
-  own.margin = *there - *needed;
+  own.margin = *available - *needed;
   PetscCallMPI(MPI_Comm_rank(comm, &own.rank));
   PetscCallMPI(MPI_Allreduce(&own, &worst, 1, MPI_DOUBLE_INT, MPI_MINLOC, comm));
-  double both[2] = {*needed, *there};
+  double both[2] = {*needed, *available};
   PetscCallMPI(MPI_Bcast(both, 2, MPI_DOUBLE, worst.rank, comm));
-  *needed = both[0];
-  *there  = both[1];
+  *needed    = both[0];
+  *available = both[1];
   PetscFunctionReturn(0);
 }
 
-/* Nodes that fit, to two digits: memory grows as nodes^1.4 on blades. */
+/* Number of nodes that fit, to two digits: on blades memory grows as nodes^1.4. */
 static double nodes_that_fit(double nodes, double share) {
   const double fit = nodes * pow(share, 1 / 1.4);
   const double by  = pow(10, fmax(floor(log10(fmax(fit, 1))) - 1, 0));
   return floor(fit / by) * by;
 }
 
-static PetscErrorCode check_memory(Mat A, double needed, double there) {
+static PetscErrorCode check_memory(Mat A, double needed, double available) {
   PetscInt order;
   PetscFunctionBeginUser;
   PetscCall(MatGetSize(A, &order, NULL));
-  PetscCheck(needed <= there, PetscObjectComm((PetscObject)A), PETSC_ERR_USER_INPUT,
+  PetscCheck(needed <= available, PetscObjectComm((PetscObject)A), PETSC_ERR_USER_INPUT,
              "the modes of this mesh (%d free nodes) need %.3g GB more memory, and %.3g GB are "
              "left; make a coarser mesh (about %.0f nodes fit), or use more machines (mpiexec)",
-             (int)(order / 3), needed / giga, there / giga,
-             nodes_that_fit((double)order / 3, there / needed));
+             (int)(order / 3), needed / giga, available / giga,
+             nodes_that_fit((double)order / 3, available / needed));
   PetscFunctionReturn(0);
 }
 
@@ -91,7 +91,7 @@ static PetscErrorCode analyse_mumps(fem_factor *factor, Mat A, double *mine) {
 
 static PetscErrorCode analyse(fem_factor *factor, Mat A, double *mine) {
   bool   mumps = false, fits = false;
-  double kept, passing;
+  double own, workspace;
   PetscFunctionBeginUser;
   PetscCall(wants_mumps(factor->comm, &mumps));
   if (!mumps) {
@@ -102,55 +102,38 @@ static PetscErrorCode analyse(fem_factor *factor, Mat A, double *mine) {
     PetscCall(analyse_mumps(factor, A, mine));
     PetscFunctionReturn(0);
   }
-  fem_cholesky_foresee(factor->cholesky, &kept, &passing);
-  *mine = kept + passing;
-  PetscFunctionReturn(0);
-}
-
-/* In place of CHOLMOD's factor one of half its size, which takes longer to solve with; mine: what it takes. */
-static PetscErrorCode take_single(fem_factor *factor, Mat A, double *mine) {
-  PetscFunctionBeginUser;
-  fem_cholesky_destroy(factor->cholesky);
-  factor->cholesky = NULL;
-  PetscCall(fem_single_create(A, &factor->single));
-  *mine = fem_single_foreseen(factor->single);
+  fem_cholesky_bytes(factor->cholesky, &own, &workspace);
+  *mine = own + workspace;
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode fem_factor_create(Mat A, double beside, fem_factor **out) {
-  double    mine, needed, there;
-  int       n_ranks;
-  PetscBool asked = PETSC_FALSE;
+  double mine, needed, available;
+  int    n_ranks;
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(out));
   (*out)->comm = PetscObjectComm((PetscObject)A);
   PetscCallMPI(MPI_Comm_size((*out)->comm, &n_ranks));
-  PetscCall(PetscOptionsGetBool(NULL, "st_", "-single_precision", &asked, NULL));
   PetscCall(analyse(*out, A, &mine));
-  PetscCall(compare((*out)->comm, mine + beside / n_ranks, &needed, &there));
-  if ((*out)->cholesky && (asked || needed > there)) {
-    PetscCall(take_single(*out, A, &mine));
-    PetscCall(compare((*out)->comm, mine + beside, &needed, &there));
-  }
-  PetscCallMPI(MPI_Allreduce(&mine, &(*out)->foreseen, 1, MPI_DOUBLE, MPI_SUM, (*out)->comm));
-  PetscCall(check_memory(A, needed, there));
+  PetscCall(compare((*out)->comm, mine + beside / n_ranks, &needed, &available));
+  PetscCallMPI(MPI_Allreduce(&mine, &(*out)->bytes, 1, MPI_DOUBLE, MPI_SUM, (*out)->comm));
+  PetscCall(check_memory(A, needed, available));
   PetscFunctionReturn(0);
 }
 
-double fem_factor_foreseen(const fem_factor *factor) {
-  return factor->foreseen;
+double fem_factor_bytes(const fem_factor *factor) {
+  return factor->bytes;
 }
 
-const char *fem_factor_by(const fem_factor *factor) {
-  if (factor->single) return "SMUMPS in single precision";
+const char *fem_factor_program(const fem_factor *factor) {
   return factor->cholesky ? "CHOLMOD" : "MUMPS";
 }
 
 /* ------------------------------------------------------------------ factor and solves */
 
-/* Negative pivots that MUMPS met (on one rank all of them; on more, its dense root is not counted but must be
- * positive definite too). */
+/* definite: MUMPS met no negative pivots. On several ranks its dense root is not counted, but must
+ * be positive definite as well. */
 static PetscErrorCode update_mumps(Mat mumps, Mat A, bool *definite) {
   MatFactorInfo  info;
   MatFactorError error;
@@ -168,22 +151,10 @@ static PetscErrorCode update_mumps(Mat mumps, Mat A, bool *definite) {
 
 PetscErrorCode fem_factor_update(fem_factor *factor, Mat A, bool *definite) {
   PetscFunctionBeginUser;
-  if (factor->single)
-    PetscCall(fem_single_update(factor->single, A, definite));
-  else if (factor->cholesky)
+  if (factor->cholesky)
     PetscCall(fem_cholesky_update(factor->cholesky, A, definite));
   else
     PetscCall(update_mumps(factor->mumps, A, definite));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode solve_columns(fem_factor *factor, int count, const double *b, size_t ldb,
-                                    double *x, size_t ldx) {
-  PetscFunctionBeginUser;
-  if (factor->single)
-    PetscCall(fem_single_solve(factor->single, count, b, ldb, x, ldx));
-  else
-    PetscCall(fem_cholesky_solve(factor->cholesky, count, b, ldb, x, ldx));
   PetscFunctionReturn(0);
 }
 
@@ -200,7 +171,7 @@ PetscErrorCode fem_factor_solve(fem_factor *factor, Vec b, Vec x) {
   PetscCall(VecGetLocalSize(b, &n));
   PetscCall(VecGetArrayRead(b, &from));
   PetscCall(VecGetArrayWrite(x, &to));
-  PetscCall(solve_columns(factor, 1, from, (size_t)n, to, (size_t)n));
+  PetscCall(fem_cholesky_solve(factor->cholesky, 1, from, (size_t)n, to, (size_t)n));
   PetscCall(VecRestoreArrayWrite(x, &to));
   PetscCall(VecRestoreArrayRead(b, &from));
   PetscFunctionReturn(0);
@@ -221,7 +192,7 @@ PetscErrorCode fem_factor_solve_many(fem_factor *factor, Mat B, Mat X) {
   PetscCall(MatDenseGetLDA(X, &ldx));
   PetscCall(MatDenseGetArrayRead(B, &from));
   PetscCall(MatDenseGetArrayWrite(X, &to));
-  PetscCall(solve_columns(factor, (int)count, from, (size_t)ldb, to, (size_t)ldx));
+  PetscCall(fem_cholesky_solve(factor->cholesky, (int)count, from, (size_t)ldb, to, (size_t)ldx));
   PetscCall(MatDenseRestoreArrayWrite(X, &to));
   PetscCall(MatDenseRestoreArrayRead(B, &from));
   PetscFunctionReturn(0);
@@ -243,13 +214,13 @@ static PetscErrorCode apply_many(PC pc, Mat B, Mat X) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode fem_factor_serve(fem_factor *factor, PC pc) {
+PetscErrorCode fem_factor_set_pc(fem_factor *factor, PC pc) {
   PetscFunctionBeginUser;
   PetscCall(PCSetType(pc, PCSHELL));
   PetscCall(PCShellSetContext(pc, factor));
   PetscCall(PCShellSetApply(pc, apply));
   PetscCall(PCShellSetMatApply(pc, apply_many));
-  PetscCall(PCShellSetName(pc, fem_factor_by(factor)));
+  PetscCall(PCShellSetName(pc, fem_factor_program(factor)));
   PetscFunctionReturn(0);
 }
 
@@ -257,7 +228,6 @@ PetscErrorCode fem_factor_destroy(fem_factor **factor) {
   PetscFunctionBeginUser;
   if (!*factor) PetscFunctionReturn(0);
   fem_cholesky_destroy((*factor)->cholesky);
-  PetscCall(fem_single_destroy(&(*factor)->single));
   PetscCall(MatDestroy(&(*factor)->mumps));
   PetscCall(PetscFree(*factor));
   PetscFunctionReturn(0);

@@ -1,8 +1,8 @@
-/* Factor of a symmetric positive definite matrix: who factorises, and what it will take.
+/* Factor of a symmetric positive definite matrix: choice of the program, and the memory it needs.
  *
- * One rank: CHOLMOD (fem/solver/cholesky.h), whose solves are twice as fast as MUMPS's. Several ranks, a factor too large for
- * CHOLMOD, or the option -st_pc_factor_mat_solver_type mumps: MUMPS, which takes the options -st_mat_mumps_.... One rank
- * without the memory for that, or the option -st_single_precision: a factor in single precision (fem/solver/mixed_precision.h). */
+ * One rank: CHOLMOD (fem/solver/cholesky.h), whose solves are twice as fast as MUMPS's. MUMPS
+ * serves several ranks, a factor too large for CHOLMOD, and the option
+ * -st_pc_factor_mat_solver_type mumps. It takes the options -st_mat_mumps_.... */
 #ifndef FEM_SOLVER_FACTOR_H
 #define FEM_SOLVER_FACTOR_H
 
@@ -11,25 +11,28 @@
 
 typedef struct fem_factor fem_factor;
 
-/* Order and analyse the pattern of A (SBAIJ, block size 3). Collective, as all that follows.
- *   beside  bytes that will be wanted beside the factor, all ranks
- * Errors: PETSC_ERR_USER_INPUT this machine has not the memory, in single precision either (what is needed, what there is, and what to do). */
+/* Order and analyse the pattern of A. Collective, as all functions below.
+ *   A       in  SBAIJ, block size 3
+ *   beside  in  bytes that will be needed besides the factor, sum of all ranks
+ * Errors: PETSC_ERR_USER_INPUT this machine lacks the memory; the text gives the bytes needed, the
+ * bytes left and the remedy. */
 PetscErrorCode fem_factor_create(Mat A, double beside, fem_factor **out);
 
-/* Factorise A; again after its values have changed. *definite false: it is not positive definite; there may be no factor
- * then. PETSC_ERR_MEM. */
+/* Factorise A; may be repeated after its values have changed.
+ *   definite  out  false: A is not positive definite, and there may be no factor
+ * Errors: PETSC_ERR_MEM. */
 PetscErrorCode fem_factor_update(fem_factor *factor, Mat A, bool *definite);
 
-/* A x = b; A X = B, all columns at once (dense matrices). */
+/* Solve A x = b; A X = B for all columns of a dense matrix. */
 PetscErrorCode fem_factor_solve(fem_factor *factor, Vec b, Vec x);
 PetscErrorCode fem_factor_solve_many(fem_factor *factor, Mat B, Mat X);
 
-/* Make pc apply the factor, one vector or many; the factor must outlive it. */
-PetscErrorCode fem_factor_serve(fem_factor *factor, PC pc);
+/* Make pc apply the factor to one vector or many. The factor must outlive pc. */
+PetscErrorCode fem_factor_set_pc(fem_factor *factor, PC pc);
 
-/* Bytes of the factor and of its making, all ranks, known from the analysis; who factorises. */
-double      fem_factor_foreseen(const fem_factor *factor);
-const char *fem_factor_by(const fem_factor *factor);
+/* Bytes of the factor and its making from the analysis, all ranks; name of the program. */
+double      fem_factor_bytes(const fem_factor *factor);
+const char *fem_factor_program(const fem_factor *factor);
 
 PetscErrorCode fem_factor_destroy(fem_factor **factor); /* NULL: nothing */
 

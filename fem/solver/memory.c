@@ -5,8 +5,8 @@
 #include <string.h>
 #include <sys/resource.h>
 
-/* The number after "name" in a file of lines "name number kB"; bytes; infinite if there is none. */
-static double line_of(const char *path, const char *name) {
+/* Value of a line "name number kB" of a file, bytes; infinite if there is none. */
+static double kilobytes_of(const char *path, const char *name) {
   char   line[256];
   double value = INFINITY, read;
   FILE  *file  = fopen(path, "r");
@@ -17,7 +17,7 @@ static double line_of(const char *path, const char *name) {
   return value;
 }
 
-/* The only number of a file; infinite where there is none ("max"). */
+/* The number in a file; infinite if there is none ("max"). */
 static double number_of(const char *folder, const char *name) {
   char   path[1100];
   double value = INFINITY;
@@ -29,7 +29,7 @@ static double number_of(const char *folder, const char *name) {
   return value;
 }
 
-/* "key number" lines of memory.stat: pages of files that can be dropped are not lost to us. */
+/* Bytes of file pages that the kernel can drop, from memory.stat. */
 static double reclaimable(const char *folder) {
   char   path[1100], line[256];
   double value = 0, read;
@@ -41,26 +41,27 @@ static double reclaimable(const char *folder) {
   return value;
 }
 
-static double left_in(const char *folder, const char *limit, const char *usage) {
+static double left_in_group(const char *folder, const char *limit, const char *usage) {
   const double most = number_of(folder, limit), used = number_of(folder, usage);
   return isfinite(most) && isfinite(used) ? fmax(most - used + reclaimable(folder), 0) : INFINITY;
 }
 
-/* What the group at root + path and those around it leave. */
+/* Least memory left in the group at root + path and the groups around it. */
 static double left_in_tree(const char *root, const char *path, const char *limit,
                            const char *usage) {
   char   folder[1024];
   double least = INFINITY;
   snprintf(folder, sizeof folder, "%s%s", root, strcmp(path, "/") == 0 ? "" : path);
   for (;;) {
-    least       = fmin(least, left_in(folder, limit, usage));
+    least       = fmin(least, left_in_group(folder, limit, usage));
     char *slash = strrchr(folder, '/');
     if (!slash || strlen(folder) <= strlen(root)) return least;
     *slash = 0;
   }
 }
 
-/* Lines "number:controllers:path"; of version 2 "0::path". */
+/* Memory left in the control groups of this process. Lines of /proc/self/cgroup are
+ * "number:controllers:path", in version 2 "0::path". */
 static double left_in_groups(void) {
   char   line[600];
   double least = INFINITY;
@@ -78,15 +79,16 @@ static double left_in_groups(void) {
   return least;
 }
 
-/* Of ulimit -v. */
+/* Address space left by ulimit -v. */
 static double left_to_address(void) {
   struct rlimit limit;
-  double        used = line_of("/proc/self/status", "VmSize:");
+  double        used = kilobytes_of("/proc/self/status", "VmSize:");
   if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY || !isfinite(used))
     return INFINITY;
   return fmax((double)limit.rlim_cur - used, 0);
 }
 
 double fem_memory_available(void) {
-  return fmin(fmin(line_of("/proc/meminfo", "MemAvailable:"), left_in_groups()), left_to_address());
+  return fmin(fmin(kilobytes_of("/proc/meminfo", "MemAvailable:"), left_in_groups()),
+              left_to_address());
 }

@@ -1,9 +1,10 @@
-/* Memory of this machine and of this process. */
+/* Memory that is left to this process. */
 #ifndef FEM_SOLVER_MEMORY_H
 #define FEM_SOLVER_MEMORY_H
 
-/* Bytes that this process can still take: the least of what the machine has available without swapping, of what its
- * control groups leave and of its own address-space limit. Infinite where none of these can be read. */
+/* Bytes that this process can still allocate without swapping: the least of the machine's available
+ * memory, the limits of its control groups and its address-space limit. Infinite if none can be
+ * read. */
 double fem_memory_available(void);
 
 #endif

@@ -2,13 +2,13 @@
 
 #include <string.h>
 
-PetscErrorCode fem_fault_handler(MPI_Comm comm, int line, const char *function, const char *file,
-                                 PetscErrorCode code, PetscErrorType type, const char *text,
-                                 void *context) {
+PetscErrorCode fem_petsc_error_handler(MPI_Comm comm, int line, const char *function,
+                                       const char *file, PetscErrorCode code, PetscErrorType type,
+                                       const char *text, void *context) {
   (void)comm;
   if (type != PETSC_ERROR_INITIAL) return code;
   if (context) *(bool *)context = true;
-  shb_status  status = fem_fault_status(code);
+  shb_status  status = fem_petsc_status(code);
   const char *end    = text ? strchr(text, '\n') : NULL; /* one line */
   int         length = text ? (end ? (int)(end - text) : (int)strlen(text)) : 0;
   if (code == PETSC_ERR_MEM)
@@ -21,7 +21,7 @@ PetscErrorCode fem_fault_handler(MPI_Comm comm, int line, const char *function, 
   return code;
 }
 
-shb_status fem_fault_status(PetscErrorCode code) {
+shb_status fem_petsc_status(PetscErrorCode code) {
   if (code == 0) return SHB_OK;
   if (code == PETSC_ERR_USER_INPUT) return SHB_ERR_INPUT;
   if (code == PETSC_ERR_NOT_CONVERGED) return SHB_NOT_CONVERGED;

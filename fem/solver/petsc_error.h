@@ -1,4 +1,4 @@
-/* Faults raised inside PETSc, SLEPc and MUMPS, turned into one status and one line of text. */
+/* Errors raised in PETSc, SLEPc and MUMPS, converted to a status and one line of text. */
 #ifndef FEM_SOLVER_PETSC_ERROR_H
 #define FEM_SOLVER_PETSC_ERROR_H
 
@@ -7,22 +7,22 @@
 
 #include "mesh/base/status.h"
 
-/* Error handler for PetscPushErrorHandler: records the first text (shb_message), prints nothing, returns.
- * context: a bool set to true when a fault was raised (so that a distributed run can abort the other ranks),
- * or NULL. */
-PetscErrorCode fem_fault_handler(MPI_Comm comm, int line, const char *function, const char *file,
-                                 PetscErrorCode code, PetscErrorType type, const char *text,
-                                 void *context);
+/* Handler for PetscPushErrorHandler: records the first message (shb_message), prints nothing,
+ * returns.
+ *   context  a bool set to true on an error, so that a distributed run can abort; or NULL */
+PetscErrorCode fem_petsc_error_handler(MPI_Comm comm, int line, const char *function,
+                                       const char *file, PetscErrorCode code, PetscErrorType type,
+                                       const char *text, void *context);
 
-/* SHB_OK for 0; PETSC_ERR_USER_INPUT is SHB_ERR_INPUT, PETSC_ERR_NOT_CONVERGED SHB_NOT_CONVERGED, all else
- * (memory first of all) SHB_ERR_IO. The text was recorded by the handler. */
-shb_status fem_fault_status(PetscErrorCode code);
+/* Status of a PETSc code; the handler has recorded the message. PETSC_ERR_USER_INPUT is
+ * SHB_ERR_INPUT, PETSC_ERR_NOT_CONVERGED is SHB_NOT_CONVERGED, any other error SHB_ERR_IO. */
+shb_status fem_petsc_status(PetscErrorCode code);
 
-/* A PETSc call inside a function that returns shb_status. */
+/* Call PETSc in a function that returns shb_status. */
 #define FEM_PETSC(call)                                     \
   do {                                                      \
     PetscErrorCode fem_code_ = (call);                      \
-    if (fem_code_ != 0) return fem_fault_status(fem_code_); \
+    if (fem_code_ != 0) return fem_petsc_status(fem_code_); \
   } while (0)
 
 #endif

@@ -3,7 +3,7 @@
 #define HOT __attribute__((target_clones("arch=x86-64-v3", "default")))
 #define KERNEL static inline __attribute__((always_inline))
 
-enum { GROUP = 8 }; /* columns that are read side by side */
+enum { GROUP = 8 }; /* columns that are processed together */
 
 /* A supernode: columns first .. first + columns - 1, dense from the diagonal down. */
 typedef struct {
@@ -18,7 +18,7 @@ KERNEL supernode get(const cholmod_factor *L, size_t s) {
                      (const double *)L->x + px[s]};
 }
 
-size_t fem_supernodes_rows(const cholmod_factor *L) {
+size_t fem_supernodal_rows(const cholmod_factor *L) {
   size_t most = 1;
   for (size_t s = 0; s < L->nsuper; s++) {
     size_t rows = (size_t)get(L, s).rows;
@@ -27,7 +27,7 @@ size_t fem_supernodes_rows(const cholmod_factor *L) {
   return most;
 }
 
-/* w_i -= L_ij w_j for the eight columns from j on and all rows i below them. */
+/* w_i -= L_ij w_j for the eight columns from j and all rows i below them. */
 KERNEL void take_eight(const double *l, size_t rows, size_t j, fem_lanes *w) {
   const double   *l0 = l, *l1 = l0 + rows, *l2 = l1 + rows, *l3 = l2 + rows;
   const double   *l4 = l3 + rows, *l5 = l4 + rows, *l6 = l5 + rows, *l7 = l6 + rows;
@@ -38,7 +38,7 @@ KERNEL void take_eight(const double *l, size_t rows, size_t j, fem_lanes *w) {
             ((l4[i] * v4 + l5[i] * v5) + (l6[i] * v6 + l7[i] * v7));
 }
 
-/* L w = w */
+/* Solve L w = w. */
 KERNEL void forward(const supernode *s, fem_lanes *w) {
   const size_t rows = (size_t)s->rows, columns = (size_t)s->columns;
   for (size_t j = 0; j < columns; j += GROUP) {
@@ -53,7 +53,7 @@ KERNEL void forward(const supernode *s, fem_lanes *w) {
   }
 }
 
-/* sum_a = L_ij w_i of the rows below eight columns. */
+/* sum_a = L_ij w_i over the rows below eight columns. */
 KERNEL void sum_eight(const double *l, size_t rows, size_t j, const fem_lanes *w,
                       fem_lanes sum[GROUP]) {
   const double *l0 = l, *l1 = l0 + rows, *l2 = l1 + rows, *l3 = l2 + rows;
@@ -68,7 +68,7 @@ KERNEL void sum_eight(const double *l, size_t rows, size_t j, const fem_lanes *w
   sum[4] = s4, sum[5] = s5, sum[6] = s6, sum[7] = s7;
 }
 
-/* L^T w = w */
+/* Solve L^T w = w. */
 KERNEL void backward(const supernode *s, fem_lanes *w) {
   const size_t rows = (size_t)s->rows, columns = (size_t)s->columns;
   for (size_t left = columns; left > 0;) {
@@ -86,7 +86,7 @@ KERNEL void backward(const supernode *s, fem_lanes *w) {
   }
 }
 
-HOT void fem_supernodes_solve(const cholmod_factor *L, fem_lanes *x, fem_lanes *work) {
+HOT void fem_supernodal_solve(const cholmod_factor *L, fem_lanes *x, fem_lanes *work) {
   for (size_t k = 0; k < L->nsuper; k++) {
     const supernode s = get(L, k);
     for (int i = 0; i < s.rows; i++) work[i] = x[s.row[i]];

@@ -1,7 +1,7 @@
 /* Solves with CHOLMOD's supernodal factor for four right-hand sides at once.
  *
- * The factor is read once a sweep and that is what a solve costs: four take as long as one, where CHOLMOD's own, made of
- * calls to BLAS on a few columns, take twice as long. From a dozen columns on those are the faster ones. */
+ * A solve costs as much as reading the factor. Four columns take as long as one. CHOLMOD's own
+ * solve calls BLAS on a few columns and takes twice as long; from twelve columns it is faster. */
 #ifndef FEM_SOLVER_SUPERNODAL_SOLVE_H
 #define FEM_SOLVER_SUPERNODAL_SOLVE_H
 
@@ -14,12 +14,12 @@ enum { FEM_LANES = 4 };
 typedef double fem_lanes __attribute__((vector_size(8 * FEM_LANES)));
 
 /* Rows of the largest supernode. */
-size_t fem_supernodes_rows(const cholmod_factor *L);
+size_t fem_supernodal_rows(const cholmod_factor *L);
 
-/* L L^T x = b in place, in the factor's order.
- *   L     in      supernodal, numeric, int
- *   x     in/out  [n]
- *   work          [fem_supernodes_rows] */
-void fem_supernodes_solve(const cholmod_factor *L, fem_lanes *x, fem_lanes *work);
+/* Solve L L^T x = b in place, in the order of the factor.
+ *   L     in       supernodal, numeric, int
+ *   x     in/out   [n]
+ *   work  scratch  [fem_supernodal_rows] */
+void fem_supernodal_solve(const cholmod_factor *L, fem_lanes *x, fem_lanes *work);
 
 #endif

@@ -2,15 +2,7 @@
 
 #include <math.h>
 
-static void cross(const double a[3], const double b[3], double c[3]) {
-  c[0] = a[1] * b[2] - a[2] * b[1];
-  c[1] = a[2] * b[0] - a[0] * b[2];
-  c[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-static double dot(const double a[3], const double b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
+#include "mesh/base/vec3.h"
 
 void mesh_axis_vector(mesh_axis axis, double axial[3]) {
   int component = (int)axis % 3;
@@ -21,22 +13,28 @@ void mesh_axis_vector(mesh_axis axis, double axial[3]) {
 void mesh_axes_at(mesh_axis axis, const double point[3], double axes[3][3]) {
   double *tangential = axes[0], *axial = axes[1], *radial = axes[2];
   mesh_axis_vector(axis, axial);
-  double along = dot(point, axial), length = 0;
-  for (int i = 0; i < 3; i++) {
-    radial[i] = point[i] - along * axial[i];
-    length += radial[i] * radial[i];
-  }
-  length = sqrt(length);
+  const double along = vec3_dot(point, axial);
+  for (int i = 0; i < 3; i++) radial[i] = point[i] - along * axial[i];
+  const double length = vec3_norm(radial);
   for (int i = 0; i < 3; i++) radial[i] /= length;
-  cross(axial, radial, tangential);
+  vec3_cross(axial, radial, tangential);
 }
 
 void mesh_axis_rotate(mesh_axis axis, double angle, const double point[3], double out[3]) {
   double a[3], axp[3];
   mesh_axis_vector(axis, a);
-  cross(a, point, axp);
-  double along = dot(a, point), c = cos(angle), s = sin(angle);
+  vec3_cross(a, point, axp);
+  double along = vec3_dot(a, point), c = cos(angle), s = sin(angle);
   for (int i = 0; i < 3; i++) out[i] = c * point[i] + s * axp[i] + (1 - c) * along * a[i];
+}
+
+void mesh_axis_matrix(mesh_axis axis, double angle, double matrix[16]) {
+  for (int i = 0; i < 16; i++) matrix[i] = i == 15;
+  for (int column = 0; column < 3; column++) {
+    double unit[3] = {column == 0, column == 1, column == 2};
+    mesh_axis_rotate(axis, angle, unit, unit);
+    for (int row = 0; row < 3; row++) matrix[4 * row + column] = unit[row];
+  }
 }
 
 void mesh_axis_stacking(mesh_axis axis, double radial[3]) {

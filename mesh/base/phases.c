@@ -3,11 +3,10 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/resource.h>
-#include <time.h>
 
-#include "mesh/base/progress.h"
+#include "mesh/base/clock.h"
 
-/* Of this program alone: what getrusage tells counts whoever started it too. */
+/* VmHWM counts this program alone. The peak of getrusage includes the process that started it. */
 double shb_memory_peak(void) {
   char          line[256];
   double        kilobytes = -1;
@@ -21,18 +20,12 @@ double shb_memory_peak(void) {
   return 1024. * (double)usage.ru_maxrss;
 }
 
-static double processor_seconds(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 void shb_phases_start(shb_phases *phases) {
-  *phases = (shb_phases){.seconds = shb_seconds(), .cpu = processor_seconds()};
+  *phases = (shb_phases){.seconds = shb_seconds(), .cpu = shb_processor_seconds()};
 }
 
 shb_phase shb_phases_lap(shb_phases *phases, const char *name) {
-  const double seconds = shb_seconds(), cpu = processor_seconds(), memory = shb_memory_peak();
+  const double seconds = shb_seconds(), cpu = shb_processor_seconds(), memory = shb_memory_peak();
   shb_phase    lap = {name, seconds - phases->seconds, cpu - phases->cpu, memory, memory};
   phases->seconds  = seconds;
   phases->cpu      = cpu;

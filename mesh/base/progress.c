@@ -4,16 +4,10 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
+#include "mesh/base/clock.h"
 #include "mesh/base/publish.h"
-
-double shb_seconds(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 shb_progress shb_progress_start(const char *stage, bool quiet, bool verbose) {
   shb_progress progress = {.quiet    = quiet,
@@ -74,10 +68,10 @@ void shb_progress_phase(shb_progress *progress, const char *name, const char *fo
 }
 
 static volatile sig_atomic_t interrupted; /* number of the first signal */
-static volatile sig_atomic_t grace;
+static volatile sig_atomic_t grace_seconds;
 
-/* Only calls that a signal handler may make. */
-static void end_at_once(void) {
+/* Calls only functions that are safe in a signal handler. */
+static void exit_now(void) {
   static const char text[] = "shroudhb: ended at once; what was published before is kept\n";
   shb_publish_abandon();
   if (write(STDERR_FILENO, text, sizeof text - 1) < 0) _exit(128 + interrupted);
@@ -85,15 +79,15 @@ static void end_at_once(void) {
 }
 
 static void on_signal(int number) {
-  enum { USUAL = 10 }; /* s */
-  if (interrupted) end_at_once();
+  enum { DEFAULT_GRACE = 10 }; /* s */
+  if (interrupted) exit_now();
   interrupted = number;
-  alarm((unsigned)(grace > 0 ? grace : number == SIGTERM ? USUAL : 0));
+  alarm((unsigned)(grace_seconds > 0 ? grace_seconds : number == SIGTERM ? DEFAULT_GRACE : 0));
 }
 
 static void on_alarm(int number) {
   (void)number;
-  end_at_once();
+  exit_now();
 }
 
 static void install(int number, void (*handler)(int)) {
@@ -108,11 +102,11 @@ void shb_interrupt_catch(void) {
   install(SIGINT, on_signal);
   install(SIGTERM, on_signal);
   install(SIGALRM, on_alarm);
-  signal(SIGXFSZ, SIG_IGN); /* a file size limit shall fail the write, not kill the process */
+  signal(SIGXFSZ, SIG_IGN); /* a file over the size limit fails the write, not the process */
 }
 
 void shb_interrupt_grace(int seconds) {
-  grace = seconds;
+  grace_seconds = seconds;
 }
 
 bool shb_interrupted(void) {

@@ -1,10 +1,12 @@
-/* One progress line on stderr, rewritten in place, only when stderr is a terminal and not --quiet; and the
- * flag that SIGINT or SIGTERM sets. */
+/* Progress line on stderr, notes, phases of a stage, and the flag set by SIGINT and SIGTERM.
+ *
+ * The line is rewritten in place. It appears only on a terminal and without --quiet. */
 #ifndef MESH_BASE_PROGRESS_H
 #define MESH_BASE_PROGRESS_H
 
 #include <stdbool.h>
 
+#include "mesh/base/clock.h"
 #include "mesh/base/phases.h"
 
 typedef struct {
@@ -17,31 +19,33 @@ typedef struct {
   shb_phases  phases;   /* of the stage so far */
 } shb_progress;
 
-double shb_seconds(void); /* monotonic clock, s */
-
 shb_progress shb_progress_start(const char *stage, bool quiet, bool verbose);
 
-/* Draw "stage  42 %  text" (at most 10 times a second). percent < 0: unknown. NULL progress: nothing. */
+/* Draw "stage  42 %  text", at most 10 times a second.
+ *   progress  in  NULL: nothing is drawn
+ *   percent   in  negative: unknown */
 void shb_progress_show(shb_progress *progress, double percent, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-/* Erase the line (call before other output to stderr, and at the end). */
+/* Erase the line; call it before other output to stderr and at the end. */
 void shb_progress_clear(shb_progress *progress);
 
-/* With --verbose: a lasting line "stage: text" on stderr. */
+/* With --verbose: print "stage: text" on a line of its own. */
 void shb_progress_note(shb_progress *progress, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
-/* The phase that began at the end of the last one ends here: keep it and, with --verbose, say so: "stage: name: text: 1.20 s,
- * CPU 1.19 s, peak 210 MB". On several ranks see modal/common/phases.h. NULL progress: nothing. */
+/* End the current phase, record it and, with --verbose, print it:
+ * "stage: name: text: 1.20 s, CPU 1.19 s, peak 210 MB". On several ranks see modal/common/phases.h.
+ *   progress  in  NULL: nothing is done */
 void shb_progress_phase(shb_progress *progress, const char *name, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-/* Install handlers for SIGINT and SIGTERM once; then ask whether one came.
+/* Install the handlers of SIGINT and SIGTERM once, then ask whether a signal came.
  *
- * A second signal ends the process at once with 128 + the signal's number, and so does the first if the process still runs
- * after some seconds: grace of them (from 1; for stages that have nothing to save), else 10 after a SIGTERM and no end after
- * a SIGINT. What shb_publish_temporary named and was not published is removed. */
+ * A second signal ends the process at once with exit code 128 + number of the signal. The first
+ * signal does so after a grace period: the given seconds (at least 1; for stages without results to
+ * save). By default it is 10 s after SIGTERM and unlimited after SIGINT. Temporary files of
+ * shb_publish_temporary that are not published yet are removed. */
 void shb_interrupt_catch(void);
 void shb_interrupt_grace(int seconds);
 bool shb_interrupted(void);

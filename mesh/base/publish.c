@@ -11,34 +11,35 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { KEPT = 8 };
+enum { MAX_TEMPORARY = 8 };
 
-/* Temporary files that may exist; one that was published or removed does no harm here. Longer names are not kept. */
+/* Names of temporary files that may exist. Names of published or removed files do no harm. Longer
+ * names are not registered. */
 static struct {
   volatile sig_atomic_t used;
   char                  name[1024];
-} kept[KEPT];
+} temporaries[MAX_TEMPORARY];
 
-static void keep(const char *name) {
-  static atomic_int turn;
-  int               at = atomic_fetch_add(&turn, 1) % KEPT;
-  kept[at].used        = 0;
-  if (strlen(name) >= sizeof kept[at].name) return;
-  strcpy(kept[at].name, name);
-  kept[at].used = 1;
+static void register_temporary(const char *name) {
+  static atomic_int next;
+  int               at = atomic_fetch_add(&next, 1) % MAX_TEMPORARY;
+  temporaries[at].used = 0;
+  if (strlen(name) >= sizeof temporaries[at].name) return;
+  strcpy(temporaries[at].name, name);
+  temporaries[at].used = 1;
 }
 
 void shb_publish_abandon(void) {
-  for (int i = 0; i < KEPT; i++)
-    if (kept[i].used) unlink(kept[i].name);
+  for (int i = 0; i < MAX_TEMPORARY; i++)
+    if (temporaries[i].used) unlink(temporaries[i].name);
 }
 
 char *shb_publish_temporary(const char *path) {
-  signal(SIGXFSZ, SIG_IGN); /* a limit on file sizes is then an error like a full disk */
+  signal(SIGXFSZ, SIG_IGN); /* a write beyond the file size limit is then an error */
   size_t size = strlen(path) + 32;
   char  *name = malloc(size);
   if (name) snprintf(name, size, "%s.tmp.%ld", path, (long)getpid());
-  if (name) keep(name);
+  if (name) register_temporary(name);
   return name;
 }
 
@@ -52,7 +53,7 @@ static int sync_path(const char *path, int flags) {
   return ret;
 }
 
-/* Make the rename itself durable; file systems that cannot sync a folder are let be. */
+/* Make the rename itself durable. File systems that cannot sync a folder are skipped. */
 static void sync_folder(const char *path) {
   const char *slash = strrchr(path, '/');
   if (!slash) {
@@ -65,14 +66,14 @@ static void sync_folder(const char *path) {
   free(folder);
 }
 
-/* Renaming onto a device, a pipe or a link would take its place. */
-static int takes_a_file(const char *path) {
+/* A rename would replace a device, a pipe or a link. */
+static int can_be_replaced(const char *path) {
   struct stat about;
   return lstat(path, &about) != 0 || S_ISREG(about.st_mode) || S_ISDIR(about.st_mode);
 }
 
 shb_status shb_publish(const char *temporary, const char *path) {
-  if (!takes_a_file(path)) {
+  if (!can_be_replaced(path)) {
     unlink(temporary);
     SHB_FAIL(SHB_ERR_IO, "%s: is a link, a device or a pipe, not a file that can be replaced",
              path);

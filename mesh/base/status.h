@@ -1,28 +1,28 @@
-/* What every function that can fail returns, and the one-line text that goes with it.
+/* Status of a function that can fail, and its one-line message.
  *
- * The values are the program's exit codes. A message is one clear line: what is wrong, where, and what
- * would be right; it is kept per thread until the next failure. Lives in mesh/, the lowest folder, because
- * every folder uses it; it knows nothing of meshes. */
+ * The values are the exit codes of the program. A message names the fault, its place and the remedy
+ * in one line. It is stored per thread until the next failure. */
 #ifndef MESH_BASE_STATUS_H
 #define MESH_BASE_STATUS_H
 
 typedef enum {
   SHB_OK            = 0,
   SHB_ERR_INPUT     = 2,   /* bad input: case file, mesh, contents of a data file */
-  SHB_NOT_CONVERGED = 3,   /* an outcome; results are kept */
+  SHB_NOT_CONVERGED = 3,   /* an outcome; results are published */
   SHB_ERR_IO        = 4,   /* cannot open, read, write, rename; no memory */
   SHB_INTERRUPTED   = 130, /* SIGINT or SIGTERM; results so far are published */
 } shb_status;
 
-/* Records text (printf style) and returns code. file/line are those of the caller in our source. */
+/* Record a message (printf style) and return code. file and line are those of the caller. */
 shb_status shb_fail(shb_status code, const char *file, int line, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 
-/* The last recorded text of this thread ("" if none), and where in our source it was raised. */
+/* Last message of this thread ("" if none), and the source line that raised it. */
 const char *shb_message(void);
 const char *shb_message_origin(void);
 
-/* git revision the program was built from, e.g. "0.1.0-3f2a91c" ("+" appended if the tree was dirty). */
+/* Version and git revision of the build, e.g. "0.1.0-3f2a91c"; "+" appended if the tree was
+ * dirty. */
 const char *shb_revision(void);
 
 #define SHB_FAIL(code, ...) return shb_fail((code), __FILE__, __LINE__, __VA_ARGS__)

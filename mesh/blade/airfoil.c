@@ -2,21 +2,21 @@
 
 #include <gmshc.h>
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
-#include "mesh/base/constants.h"
 #include "mesh/gmsh/session.h"
 
 enum { N = MESH_AIRFOIL_POINTS };
 
-/* Thickness over its greatest value; the greatest is where 1.3 - 3.8 s + 1.8 s^2 = 0. */
+/* Thickness divided by its maximum, which lies where 1.3 - 3.8 s + 1.8 s^2 = 0. */
 static double thickness_at(double s) {
   const double skew = 0.3, top = (3.8 - sqrt(3.8 * 3.8 - 4 * 1.3 * 1.8)) / 3.6;
   double       here = s * (1 - s) * (1 + skew * (1 - 2 * s));
   return here / (top * (1 - top) * (1 + skew * (1 - 2 * top)));
 }
 
-/* Centroid of the closed polygon suction forward, pressure back, in (xi, eta). */
+/* Centroid in (xi, eta) of the closed polygon: suction side forward, pressure side back. */
 static void centroid(double suction[N][2], double pressure[N][2], double centre[2]) {
   double loop[2 * N - 2][2], area = 0;
   for (int i = 0; i < N; i++) memcpy(loop[i], suction[i], sizeof loop[i]);
@@ -31,8 +31,8 @@ static void centroid(double suction[N][2], double pressure[N][2], double centre[
   for (int d = 0; d < 2; d++) centre[d] /= area;
 }
 
-/* The first section that bends, or -1. */
-static int bent_section(const mesh_blade *blade) {
+/* Index of the first section with camber, or -1. */
+static int cambered_section(const mesh_blade *blade) {
   for (int i = 0; i < blade->n_sections; i++)
     if (blade->section[i].camber != 0) return i;
   return -1;
@@ -41,8 +41,8 @@ static int bent_section(const mesh_blade *blade) {
 void mesh_airfoil_outline(const mesh_blade *blade, const mesh_section *section,
                           mesh_outline *outline) {
   double       suction[N][2], pressure[N][2], centre[2];
-  const int    bent = bent_section(blade);
-  const double side = bent >= 0 && blade->section[bent].camber < 0 ? -1 : 1;
+  const int    cambered = cambered_section(blade);
+  const double side     = cambered >= 0 && blade->section[cambered].camber < 0 ? -1 : 1;
   for (int i = 0; i < N; i++) {
     double s = (double)i / (N - 1), half = section->thickness / 2 * thickness_at(s);
     double camber  = 4 * section->camber * s * (1 - s);
@@ -82,18 +82,18 @@ double mesh_airfoil_chord(const mesh_blade *blade) {
   return chord;
 }
 
-double mesh_airfoil_begin(const mesh_blade *blade) {
+double mesh_airfoil_low_radius(const mesh_blade *blade) {
   double span = blade->section[1].radius - blade->section[0].radius;
   return blade->section[0].radius - fmin(0.3 * blade->root_height, 0.2 * span);
 }
 
-double mesh_airfoil_end(const mesh_blade *blade) {
+double mesh_airfoil_high_radius(const mesh_blade *blade) {
   return blade->section[blade->n_sections - 1].radius + 0.5 * blade->shroud_thickness;
 }
 
 static shb_status check_section(const mesh_blade *blade, int i) {
-  const mesh_section *s    = &blade->section[i];
-  const int           bent = bent_section(blade);
+  const mesh_section *s        = &blade->section[i];
+  const int           cambered = cambered_section(blade);
   SHB_CHECK(s->radius > 0 && isfinite(s->radius), SHB_ERR_INPUT,
             "mesh.blade.sections[%d].radius: %g mm; it must be positive", i, 1e3 * s->radius);
   SHB_CHECK(i == 0 || s->radius > s[-1].radius, SHB_ERR_INPUT,
@@ -101,29 +101,29 @@ static shb_status check_section(const mesh_blade *blade, int i) {
             1e3 * s->radius, i ? 1e3 * s[-1].radius : 0);
   SHB_CHECK(s->chord > 0 && isfinite(s->chord), SHB_ERR_INPUT,
             "mesh.blade.sections[%d].chord: %g mm; it must be positive", i, 1e3 * s->chord);
-  SHB_CHECK(s->thickness > .01 * MESH_LEAST_THICKNESS * s->chord &&
-                s->thickness < .01 * MESH_MOST_THICKNESS * s->chord,
+  SHB_CHECK(s->thickness > .01 * MESH_MIN_THICKNESS * s->chord &&
+                s->thickness < .01 * MESH_MAX_THICKNESS * s->chord,
             SHB_ERR_INPUT,
             "mesh.blade.sections[%d].thickness: %g mm; it must be between 1 %% and 50 %% of the "
             "chord, %g mm to %g mm",
             i, 1e3 * s->thickness, 10 * s->chord, 500 * s->chord);
-  SHB_CHECK(fabs(s->camber) <= .01 * MESH_MOST_CAMBER * s->chord, SHB_ERR_INPUT,
+  SHB_CHECK(fabs(s->camber) <= .01 * MESH_MAX_CAMBER * s->chord, SHB_ERR_INPUT,
             "mesh.blade.sections[%d].camber: %g mm; at most 40 %% of the chord, %g mm, either way",
             i, 1e3 * s->camber, 400 * s->chord);
-  SHB_CHECK(bent < 0 || s->camber * blade->section[bent].camber >= 0, SHB_ERR_INPUT,
+  SHB_CHECK(cambered < 0 || s->camber * blade->section[cambered].camber >= 0, SHB_ERR_INPUT,
             "mesh.blade.sections[%d].camber: %g mm bends the other way than sections[%d], %g mm", i,
-            1e3 * s->camber, bent, 1e3 * blade->section[bent].camber);
-  SHB_CHECK(fabs(s->twist) <= MESH_MOST_TWIST * SHB_PI / 180, SHB_ERR_INPUT,
+            1e3 * s->camber, cambered, 1e3 * blade->section[cambered].camber);
+  SHB_CHECK(fabs(s->twist) <= MESH_MAX_TWIST * M_PI / 180, SHB_ERR_INPUT,
             "mesh.blade.sections[%d].twist: %g deg; it must be between -80 and 80 deg", i,
-            s->twist * 180 / SHB_PI);
+            s->twist * 180 / M_PI);
   return SHB_OK;
 }
 
-/* Both ends run a little on, into root and shroud: there must still be an airfoil. */
-static shb_status check_run_on(const mesh_blade *blade) {
+/* The loft extends into root and shroud; the sections at its ends must still have a thickness. */
+static shb_status check_extension(const mesh_blade *blade) {
   int          last  = blade->n_sections - 1;
-  mesh_section below = mesh_airfoil_at(blade, mesh_airfoil_begin(blade));
-  mesh_section above = mesh_airfoil_at(blade, mesh_airfoil_end(blade));
+  mesh_section below = mesh_airfoil_at(blade, mesh_airfoil_low_radius(blade));
+  mesh_section above = mesh_airfoil_at(blade, mesh_airfoil_high_radius(blade));
   SHB_CHECK(below.chord > 0 && below.thickness > 0, SHB_ERR_INPUT,
             "mesh.blade.sections[0]: the airfoil tapers to nothing within the root block; make "
             "sections[0] and sections[1] more alike");
@@ -139,10 +139,10 @@ shb_status mesh_airfoil_check(const mesh_blade *blade) {
             "mesh.blade.sections: %d given; 2 to %d are needed", blade->n_sections,
             MESH_MAX_SECTIONS);
   for (int i = 0; i < blade->n_sections; i++) SHB_TRY(check_section(blade, i));
-  return check_run_on(blade);
+  return check_extension(blade);
 }
 
-/* Spline through one side's points; the edges' points are shared with the other side. */
+/* Spline through the points of one side; both sides share the points of the edges. */
 static shb_status add_side(const mesh_frame *frame, double side[N][3], const int edge[2],
                            int *curve) {
   int tags[N];
@@ -168,13 +168,13 @@ static shb_status add_wire(const mesh_blade *blade, const mesh_section *section,
 
 shb_status mesh_airfoil_build(const mesh_blade *blade, const mesh_frame *frame, int *volume) {
   int          wires[MESH_MAX_SECTIONS + 2], n = 0;
-  mesh_section below = mesh_airfoil_at(blade, mesh_airfoil_begin(blade));
-  mesh_section above = mesh_airfoil_at(blade, mesh_airfoil_end(blade));
+  mesh_section below = mesh_airfoil_at(blade, mesh_airfoil_low_radius(blade));
+  mesh_section above = mesh_airfoil_at(blade, mesh_airfoil_high_radius(blade));
   SHB_TRY(add_wire(blade, &below, frame, &wires[n++]));
   for (int i = 0; i < blade->n_sections; i++)
     SHB_TRY(add_wire(blade, &blade->section[i], frame, &wires[n++]));
   SHB_TRY(add_wire(blade, &above, frame, &wires[n++]));
-  enum { DEGREE = 3 }; /* along the radius; more makes the joining three times slower */
+  enum { DEGREE = 3 }; /* radial degree; a higher one makes the fusion three times slower */
   int   *made   = NULL;
   size_t n_made = 0;
   GMSH_TRY("mesh.blade.sections",

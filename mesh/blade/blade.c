@@ -5,19 +5,20 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "mesh/base/constants.h"
+#include "mesh/base/vec3.h"
 #include "mesh/blade/airfoil.h"
 #include "mesh/blade/face_groups.h"
 #include "mesh/blade/frame.h"
 #include "mesh/blade/hex_sweep.h"
 #include "mesh/blade/shroud.h"
+#include "mesh/core/face_match.h"
 #include "mesh/core/fe_mesh.h"
 #include "mesh/core/jacobian.h"
 #include "mesh/gmsh/export.h"
 #include "mesh/gmsh/import.h"
 #include "mesh/gmsh/session.h"
 
-static const char *const who = "mesh.blade";
+static const char *const case_key = "mesh.blade";
 
 static shb_status check_root(const mesh_blade *blade) {
   const struct {
@@ -32,7 +33,7 @@ static shb_status check_root(const mesh_blade *blade) {
   SHB_CHECK(bottom > 0, SHB_ERR_INPUT,
             "mesh.blade.root.height: %g mm reaches the engine axis from the first section at %g mm",
             1e3 * blade->root_height, 1e3 * top);
-  double pitch = 2 * bottom * tan(SHB_PI / blade->blades);
+  double pitch = 2 * bottom * tan(M_PI / blade->blades);
   SHB_CHECK(blade->root_width <= pitch, SHB_ERR_INPUT,
             "mesh.blade.root.width: %g mm is wider than the sector at the root's bottom, %.4g mm "
             "with rotor.blades %d",
@@ -40,25 +41,25 @@ static shb_status check_root(const mesh_blade *blade) {
   return SHB_OK;
 }
 
-/* The block must hold the airfoil's foot, with 2 % to spare all round. */
+/* The root block must contain the foot of the airfoil, with a margin of 2 % on each side. */
 static shb_status check_foot(const mesh_blade *blade) {
-  double radius[2] = {blade->section[0].radius, mesh_airfoil_begin(blade)}, reach[2] = {0, 0};
+  double radius[2] = {blade->section[0].radius, mesh_airfoil_low_radius(blade)}, extent[2] = {0, 0};
   for (int k = 0; k < 2; k++) {
     mesh_section section = mesh_airfoil_at(blade, radius[k]);
     mesh_outline outline;
     mesh_airfoil_outline(blade, &section, &outline);
     for (int i = 0; i < MESH_AIRFOIL_POINTS; i++)
       for (int d = 0; d < 2; d++) {
-        reach[d] = fmax(reach[d], fabs(outline.suction[i][d]));
-        reach[d] = fmax(reach[d], fabs(outline.pressure[i][d]));
+        extent[d] = fmax(extent[d], fabs(outline.suction[i][d]));
+        extent[d] = fmax(extent[d], fabs(outline.pressure[i][d]));
       }
   }
-  SHB_CHECK(reach[1] <= 0.49 * blade->root_length, SHB_ERR_INPUT,
+  SHB_CHECK(extent[1] <= 0.49 * blade->root_length, SHB_ERR_INPUT,
             "mesh.blade.root.length: %g mm does not hold the first section; give at least %.4g mm",
-            1e3 * blade->root_length, 1e3 * reach[1] / 0.49);
-  SHB_CHECK(reach[0] <= 0.49 * blade->root_width, SHB_ERR_INPUT,
+            1e3 * blade->root_length, 1e3 * extent[1] / 0.49);
+  SHB_CHECK(extent[0] <= 0.49 * blade->root_width, SHB_ERR_INPUT,
             "mesh.blade.root.width: %g mm does not hold the first section; give at least %.4g mm",
-            1e3 * blade->root_width, 1e3 * reach[0] / 0.49);
+            1e3 * blade->root_width, 1e3 * extent[0] / 0.49);
   return SHB_OK;
 }
 
@@ -69,7 +70,7 @@ static shb_status check_size(const mesh_blade *blade) {
   SHB_CHECK(blade->shroud_size >= 0 && isfinite(blade->shroud_size), SHB_ERR_INPUT,
             "mesh.blade.shroud_size: %g mm; it must be positive (0: as mesh.blade.size)",
             1e3 * blade->shroud_size);
-  /* 12 nodes a cube of the size: about 8.5 tetrahedra, 1.4 nodes each */
+  /* 12 nodes in a cube of the element size: about 8.5 tetrahedra with 1.4 nodes each */
   double volume = blade->root_length * blade->root_width * blade->root_height;
   for (int i = 1; i < blade->n_sections; i++) {
     const mesh_section *a = &blade->section[i - 1], *b = &blade->section[i];
@@ -79,7 +80,7 @@ static shb_status check_size(const mesh_blade *blade) {
   SHB_CHECK(nodes < MOST, SHB_ERR_INPUT,
             "mesh.blade.size: %g mm would give about %.2g nodes; give at least %.2g mm",
             1e3 * blade->size, nodes, 1e3 * cbrt(12 * volume / MOST));
-  double ring = blade->shroud_length * blade->shroud_thickness * SHB_TWO_PI / blade->blades *
+  double ring = blade->shroud_length * blade->shroud_thickness * 2 * M_PI / blade->blades *
                 (blade->section[blade->n_sections - 1].radius + blade->shroud_thickness / 2);
   nodes = blade->shroud_size > 0 ? 12 * ring / pow(blade->shroud_size, 3) : 0;
   SHB_CHECK(nodes < MOST, SHB_ERR_INPUT,
@@ -99,7 +100,7 @@ static shb_status check(const mesh_blade *blade) {
 static shb_status build_root(const mesh_blade *blade, const mesh_frame *frame, int *volume) {
   double l = blade->root_length / 2, w = blade->root_width / 2, top = blade->section[0].radius;
   double own[2][3] = {{-w, -l, top - blade->root_height}, {w, l, top}}, at[2][3], low[3], span[3];
-  for (int i = 0; i < 2; i++) mesh_frame_out(frame, own[i], at[i]);
+  for (int i = 0; i < 2; i++) mesh_frame_to_mesh(frame, own[i], at[i]);
   for (int d = 0; d < 3; d++) {
     low[d]  = fmin(at[0][d], at[1][d]);
     span[d] = fabs(at[1][d] - at[0][d]);
@@ -109,7 +110,7 @@ static shb_status build_root(const mesh_blade *blade, const mesh_frame *frame, i
   return SHB_OK;
 }
 
-/* Join airfoil, root and the shroud's legs into one volume. */
+/* Fuse airfoil, root and the legs of the shroud into one volume. */
 static shb_status fuse(int airfoil, int root, const int shroud[MESH_SHROUD_LEGS], int *volume) {
   int    object[2] = {3, airfoil}, tools[2 * MESH_SHROUD_LEGS + 2] = {3, root};
   int   *made = NULL, **map = NULL;
@@ -118,8 +119,8 @@ static shb_status fuse(int airfoil, int root, const int shroud[MESH_SHROUD_LEGS]
     tools[2 * i + 2] = 3;
     tools[2 * i + 3] = shroud[i];
   }
-  GMSH_TRY(who, gmshModelOccFuse(object, 2, tools, 2 * MESH_SHROUD_LEGS + 2, &made, &n_made, &map,
-                                 &n_map, &nn_map, -1, 1, 1, &ierr));
+  GMSH_TRY(case_key, gmshModelOccFuse(object, 2, tools, 2 * MESH_SHROUD_LEGS + 2, &made, &n_made,
+                                      &map, &n_map, &nn_map, -1, 1, 1, &ierr));
   int solids = 0;
   for (size_t i = 0; i + 1 < n_made; i += 2) {
     if (made[i] != 3) continue;
@@ -135,15 +136,15 @@ static shb_status fuse(int airfoil, int root, const int shroud[MESH_SHROUD_LEGS]
   return SHB_OK;
 }
 
-/* Drop the points and curves that the parts were drawn with: whatever bounds nothing. */
+/* Remove construction points and curves that bound nothing. */
 static shb_status prune(void) {
   for (int dimension = 2; dimension >= 0; dimension--) {
     int   *tags = NULL, fault = 0;
     size_t n = 0;
-    GMSH_TRY(who, gmshModelGetEntities(&tags, &n, dimension, &ierr));
-    gmshModelRemoveEntities(tags, n, 0, &fault); /* keeps those on the boundary of others */
+    GMSH_TRY(case_key, gmshModelGetEntities(&tags, &n, dimension, &ierr));
+    gmshModelRemoveEntities(tags, n, 0, &fault); /* entities that bound others stay */
     gmshFree(tags);
-    if (fault) return mesh_kernel_fail(SHB_ERR_INPUT, __FILE__, __LINE__, who);
+    if (fault) return mesh_session_fail(SHB_ERR_INPUT, __FILE__, __LINE__, case_key);
   }
   return SHB_OK;
 }
@@ -154,33 +155,35 @@ static shb_status build(const mesh_blade *blade, const mesh_frame *frame) {
   SHB_TRY(build_root(blade, frame, &root));
   SHB_TRY(mesh_shroud_build(blade, frame, shroud));
   SHB_TRY(fuse(airfoil, root, shroud, &volume));
-  GMSH_TRY(who, gmshModelOccSynchronize(&ierr));
+  GMSH_TRY(case_key, gmshModelOccSynchronize(&ierr));
   SHB_TRY(prune());
-  return mesh_groups_set(blade, frame, volume);
+  return mesh_face_groups_set(blade, frame, volume);
 }
 
-/* What the size callback needs. */
+/* Data of the size callback. */
 typedef struct {
   const mesh_blade *blade;
   double            radial[3]; /* unit vector of the stacking line */
 } sizing;
 
-/* edge_size where the airfoil meets root and shroud, growing by a half of the distance along the stacking line. */
+/* Size at the re-entrant edges (edge_size), growing by half the distance along the stacking
+ * line. */
 static double edge_limit(const mesh_blade *blade, double radial) {
   const double low  = fabs(radial - blade->section[0].radius);
   const double high = fabs(radial - blade->section[blade->n_sections - 1].radius);
   return blade->edge_size > 0 ? blade->edge_size + fmin(low, high) / 2 : INFINITY;
 }
 
-/* size on the airfoil and root, shroud_size from the shroud's underside up, linear over 4 sizes between.
- * Along the stacking line, not the radius: for a shroud side and its copy this differs by the sector's
- * turn, but gmsh copies the periodic side's mesh. */
+/* Element size: size on airfoil and root, shroud_size in the shroud, linear over 4 sizes below it.
+ *
+ * The distance runs along the stacking line, not the radius. A side of the shroud and its rotated
+ * copy therefore differ, but gmsh copies the mesh of the periodic side. */
 static double element_size(int dim, int tag, double x, double y, double z, void *data) {
   (void)dim;
   (void)tag;
   const sizing     *s      = data;
   const mesh_blade *blade  = s->blade;
-  const double      radial = x * s->radial[0] + y * s->radial[1] + z * s->radial[2];
+  const double      radial = vec3_dot((const double[]){x, y, z}, s->radial);
   const double      edge   = edge_limit(blade, radial);
   if (!(blade->shroud_size > 0)) return fmin(edge, blade->size);
   double from  = blade->section[blade->n_sections - 1].radius - 4 * blade->size;
@@ -203,20 +206,20 @@ static shb_status set_options(void) {
                 {"Mesh.MshFileVersion", 4.1},
                 {"Mesh.Binary", 0},
                 {"Mesh.SaveAll", 0},
-                /* 15 times faster placing of mid-side nodes on the lofted surface */
+                /* mid-side nodes on the loft are placed 15 times faster */
                 {"Geometry.OCCUseGenericClosestPoint", 1},
-                /* joining faces that lie on one surface would merge the legs of a straight Z */
+                /* unifying coplanar faces would merge the legs of a straight Z */
                 {"Geometry.OCCUnionUnify", 0}};
   for (size_t i = 0; i < sizeof option / sizeof *option; i++)
-    GMSH_TRY(who, gmshOptionSetNumber(option[i].name, option[i].value, &ierr));
+    GMSH_TRY(case_key, gmshOptionSetNumber(option[i].name, option[i].value, &ierr));
   return SHB_OK;
 }
 
-/* gmsh can give up on a volume without an error. */
+/* gmsh can fail to fill a volume without reporting an error. */
 static shb_status check_filled(const mesh_blade *blade) {
   int   *types = NULL;
   size_t n     = 0;
-  GMSH_TRY(who, gmshModelMeshGetElementTypes(&types, &n, 3, -1, &ierr));
+  GMSH_TRY(case_key, gmshModelMeshGetElementTypes(&types, &n, 3, -1, &ierr));
   gmshFree(types);
   SHB_CHECK(n > 0, SHB_ERR_INPUT,
             "mesh.blade.size: gmsh cannot fill the blade with tetrahedra of %g mm: faces cross at "
@@ -229,30 +232,31 @@ static shb_status mesh_volume(const mesh_blade *blade, const mesh_frame *frame,
                               shb_progress *progress) {
   sizing s = {.blade = blade};
   mesh_axis_stacking(frame->axis, s.radial);
-  GMSH_TRY(who, gmshModelMeshSetSizeCallback(element_size, &s, &ierr));
+  GMSH_TRY(case_key, gmshModelMeshSetSizeCallback(element_size, &s, &ierr));
   for (int dimension = 1; dimension <= 3; dimension++) {
     shb_progress_show(progress, 25 * dimension, "meshing %s",
                       (const char *[]){"curves", "faces", "the volume"}[dimension - 1]);
-    GMSH_TRY(who, gmshModelMeshGenerate(dimension, &ierr));
+    GMSH_TRY(case_key, gmshModelMeshGenerate(dimension, &ierr));
     SHB_CHECK(!shb_interrupted(), SHB_INTERRUPTED, "interrupted while meshing; nothing written");
   }
-  GMSH_TRY(who, gmshModelMeshRemoveSizeCallback(&ierr));
+  GMSH_TRY(case_key, gmshModelMeshRemoveSizeCallback(&ierr));
   SHB_TRY(check_filled(blade));
-  GMSH_TRY(who, gmshModelMeshSetOrder(2, &ierr));
+  GMSH_TRY(case_key, gmshModelMeshSetOrder(2, &ierr));
   return SHB_OK;
 }
 
-/* Hand the moved nodes back to gmsh. */
+/* Pass the moved nodes to gmsh. */
 static shb_status move_nodes(const mesh_fe *mesh, const char *moved) {
   for (int i = 0; i < mesh->n_nodes; i++)
     if (moved[i])
-      GMSH_TRY(who, gmshModelMeshSetNode((size_t)mesh->node_tag[i],
-                                         mesh->coordinates + 3 * (size_t)i, 3, NULL, 0, &ierr));
+      GMSH_TRY(case_key,
+               gmshModelMeshSetNode((size_t)mesh->node_tag[i], mesh->coordinates + 3 * (size_t)i, 3,
+                                    NULL, 0, &ierr));
   return SHB_OK;
 }
 
-/* Hexahedra that are inverted lie where the loft crosses itself: radii between which they are. Tetrahedra were never seen to
- * fill a blade that hexahedra do not. */
+/* Hexahedra are inverted where the loft crosses itself. The message gives the range of radii. No
+ * blade is known that tetrahedra fill and hexahedra do not. */
 static shb_status check_swept(const mesh_blade *blade, const mesh_fe *mesh) {
   double radial[3], low = INFINITY, high = 0;
   int    bad = 0;
@@ -263,7 +267,7 @@ static shb_status check_swept(const mesh_blade *blade, const mesh_fe *mesh) {
     for (int c = 0; c < 8; c++) {
       const double *x =
           mesh->coordinates + 3 * (size_t)mesh->connectivity[MESH_NODES * (size_t)e + (size_t)c];
-      const double at = x[0] * radial[0] + x[1] * radial[1] + x[2] * radial[2];
+      const double at = vec3_dot(x, radial);
       low             = fmin(low, at);
       high            = fmax(high, at);
     }
@@ -284,8 +288,9 @@ static shb_status check_shape(const mesh_blade *blade, const mesh_fe *mesh) {
                                   : mesh_jacobian_check(mesh, "mesh.blade.size");
 }
 
-/* Curved edges can invert a few elements where the airfoil is thin: those edges are made straight, at the cost
- * of their sag. More than 1 % of them means that the mesh does not resolve the blade: an error. */
+/* Curved edges can invert a few elements where the airfoil is thin. These edges are straightened,
+ * which loses their sag. More than 1 % of such elements is an error: the mesh does not resolve the
+ * blade. */
 static shb_status straighten(const mesh_blade *blade, mesh_fe *mesh, shb_progress *progress) {
   int bad = mesh_jacobian_inverted(mesh);
   if (bad == 0 || bad > mesh->n_elements / 100) return check_shape(blade, mesh);
@@ -299,15 +304,15 @@ static shb_status straighten(const mesh_blade *blade, mesh_fe *mesh, shb_progres
   return status;
 }
 
-static void note_corner(const mesh_fe *mesh, shb_progress *progress) {
+static void note_worst_corner(const mesh_fe *mesh, shb_progress *progress) {
   double       x[3];
-  const double sine = mesh_jacobian_sharpest(mesh, x);
+  const double sine = mesh_jacobian_worst_corner(mesh, x);
   shb_progress_note(progress,
                     "sharpest corner of an element %.2g of a right one, at %.4g %.4g %.4g mm", sine,
                     1e3 * x[0], 1e3 * x[1], 1e3 * x[2]);
 }
 
-/* The mesh as it will be read: no element inverted, contact faces matching. */
+/* Check the mesh as it will be read: no element inverted, contact faces match. */
 static shb_status verify(const mesh_blade *blade, mesh_fe *mesh, shb_progress *progress) {
   int pairs = 0, *right = NULL, *left = NULL;
   SHB_TRY(straighten(blade, mesh, progress));
@@ -317,7 +322,7 @@ static shb_status verify(const mesh_blade *blade, mesh_fe *mesh, shb_progress *p
   return SHB_OK;
 }
 
-/* The solid, filled with tetrahedra. */
+/* Build the solid and fill it with tetrahedra. */
 static shb_status fill(const mesh_blade *blade, const mesh_frame *frame, shb_progress *progress) {
   shb_progress_show(progress, 0, "building the solid");
   SHB_TRY(build(blade, frame));
@@ -331,14 +336,14 @@ static shb_status make(const mesh_blade *blade, const char *path, const shb_prov
   mesh_frame frame = mesh_frame_at(blade->axis);
   mesh_fe    mesh  = {0};
   SHB_TRY(set_options());
-  SHB_TRY(blade->elements == MESH_HEX20 ? mesh_sweep_build(blade, &frame, progress)
+  SHB_TRY(blade->elements == MESH_HEX20 ? mesh_hex_sweep_build(blade, &frame, progress)
                                         : fill(blade, &frame, progress));
-  SHB_TRY(mesh_import(who, NULL, &mesh));
+  SHB_TRY(mesh_import(case_key, NULL, &mesh));
   shb_status status = verify(blade, &mesh, progress);
   if (status == SHB_OK)
     shb_progress_phase(progress, "mesh", "%d nodes, %d elements, %d contact faces a side",
                        mesh.n_nodes, mesh.n_elements, mesh.set[MESH_CONTACT_RIGHT].n);
-  if (status == SHB_OK) note_corner(&mesh, progress);
+  if (status == SHB_OK) note_worst_corner(&mesh, progress);
   mesh_fe_free(&mesh);
   SHB_TRY(status);
   SHB_TRY(mesh_export(path, provenance));
@@ -349,10 +354,10 @@ static shb_status make(const mesh_blade *blade, const char *path, const shb_prov
 shb_status mesh_blade_write(const mesh_blade *blade, const char *path,
                             const shb_provenance *provenance, shb_progress *progress) {
   SHB_TRY(check(blade));
-  mesh_kernel kernel;
-  SHB_TRY(mesh_kernel_open(&kernel));
+  mesh_session session;
+  SHB_TRY(mesh_session_open(&session));
   shb_status status = make(blade, path, provenance, progress);
-  mesh_kernel_close(&kernel);
+  mesh_session_close(&session);
   shb_progress_clear(progress);
   return status;
 }

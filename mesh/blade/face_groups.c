@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "mesh/base/constants.h"
+#include "mesh/base/vec3.h"
 #include "mesh/blade/airfoil.h"
 #include "mesh/blade/shroud.h"
 #include "mesh/core/fe_mesh.h"
@@ -13,7 +13,7 @@
 /* A face of the fused solid. */
 typedef struct {
   int    tag;
-  double centre[3]; /* of mass, own coordinates, m */
+  double centre[3]; /* centre of mass, blade coordinates, m */
   double low, high; /* radial extent, m */
   double width;     /* tangential extent, m */
 } face;
@@ -23,9 +23,9 @@ static shb_status measure(const mesh_frame *frame, face *f) {
   GMSH_TRY("mesh.blade", gmshModelOccGetCenterOfMass(2, f->tag, &at[0], &at[1], &at[2], &ierr));
   GMSH_TRY("mesh.blade", gmshModelGetBoundingBox(2, f->tag, &low[0], &low[1], &low[2], &high[0],
                                                  &high[1], &high[2], &ierr));
-  mesh_frame_own(frame, at, f->centre);
-  mesh_frame_own(frame, low, from);
-  mesh_frame_own(frame, high, to);
+  mesh_frame_to_own(frame, at, f->centre);
+  mesh_frame_to_own(frame, low, from);
+  mesh_frame_to_own(frame, high, to);
   f->low   = from[2]; /* the stacking line is a positive mesh axis */
   f->high  = to[2];
   f->width = fabs(to[0] - from[0]);
@@ -48,7 +48,7 @@ static shb_status list_faces(const mesh_frame *frame, face **faces, int *n) {
   return status;
 }
 
-/* The only face whose centre of mass is at own. */
+/* The only face with its centre of mass at own. */
 static shb_status find_centre(const face *faces, int n, const double own[3], const char *what,
                               int *tag) {
   int found = 0;
@@ -70,16 +70,17 @@ static shb_status distance_to(const mesh_frame *frame, int tag, const double own
                               double *distance) {
   double at[3], *closest = NULL, *parameters = NULL;
   size_t n = 0, n_parameters = 0;
-  mesh_frame_out(frame, own, at);
+  mesh_frame_to_mesh(frame, own, at);
   GMSH_TRY("mesh.blade", gmshModelGetClosestPoint(2, tag, at, 3, &closest, &n, &parameters,
                                                   &n_parameters, &ierr));
-  *distance = hypot(hypot(at[0] - closest[0], at[1] - closest[1]), at[2] - closest[2]);
+  *distance = vec3_distance(at, closest);
   gmshFree(closest);
   gmshFree(parameters);
   return SHB_OK;
 }
 
-/* Of the two faces that span root to shroud (a wide shroud's may too), the one through the first section's pressure side. */
+/* Of the two faces between root and shroud, the one through the pressure side of the first section.
+ * Sides of a wide shroud are excluded by their width. */
 static shb_status find_pressure(const mesh_blade *blade, const mesh_frame *frame, const face *faces,
                                 int n, int *tag) {
   double       bottom = blade->section[0].radius;
@@ -105,27 +106,17 @@ static shb_status find_pressure(const mesh_blade *blade, const mesh_frame *frame
   return SHB_OK;
 }
 
-shb_status mesh_groups_name(int dimension, int entity, const char *name) {
+shb_status mesh_face_groups_name(int dimension, int entity, const char *name) {
   int group = 0;
   GMSH_TRY("mesh.blade", group = gmshModelAddPhysicalGroup(dimension, &entity, 1, -1, &ierr));
   GMSH_TRY("mesh.blade", gmshModelSetPhysicalName(dimension, group, name, &ierr));
   return SHB_OK;
 }
 
-/* Rows of the 4x4 matrix that turns the left side onto the right one. */
-static void turning(const mesh_blade *blade, mesh_axis axis, double matrix[16]) {
-  for (int i = 0; i < 16; i++) matrix[i] = i == 15;
-  for (int column = 0; column < 3; column++) {
-    double unit[3] = {column == 0, column == 1, column == 2};
-    mesh_axis_rotate(axis, SHB_TWO_PI / blade->blades, unit, unit);
-    for (int row = 0; row < 3; row++) matrix[4 * row + column] = unit[row];
-  }
-}
-
-static shb_status tie_sides(const mesh_blade *blade, const mesh_frame *frame, int *right,
-                            int *left) {
+static shb_status make_periodic(const mesh_blade *blade, const mesh_frame *frame, int *right,
+                                int *left) {
   double matrix[16];
-  turning(blade, frame->axis, matrix);
+  mesh_axis_matrix(frame->axis, 2 * M_PI / blade->blades, matrix);
   GMSH_TRY("mesh.blade.shroud", gmshModelMeshSetPeriodic(2, right, MESH_SHROUD_LEGS, left,
                                                          MESH_SHROUD_LEGS, matrix, 16, &ierr));
   return SHB_OK;
@@ -143,19 +134,20 @@ static shb_status set_all(const mesh_blade *blade, const mesh_frame *frame, cons
       mesh_shroud_centre(blade, leg, right, centre);
       SHB_TRY(find_centre(faces, n, centre, "a side of the shroud", &side[right][leg]));
     }
-  SHB_TRY(mesh_groups_name(2, root, mesh_set_name(MESH_ROOT)));
-  SHB_TRY(mesh_groups_name(2, side[1][MESH_SHROUD_CONTACT], mesh_set_name(MESH_CONTACT_RIGHT)));
-  SHB_TRY(mesh_groups_name(2, side[0][MESH_SHROUD_CONTACT], mesh_set_name(MESH_CONTACT_LEFT)));
-  SHB_TRY(mesh_groups_name(2, load, mesh_set_name(MESH_LOAD)));
-  return tie_sides(blade, frame, side[1], side[0]);
+  SHB_TRY(mesh_face_groups_name(2, root, mesh_set_name(MESH_ROOT)));
+  SHB_TRY(
+      mesh_face_groups_name(2, side[1][MESH_SHROUD_CONTACT], mesh_set_name(MESH_CONTACT_RIGHT)));
+  SHB_TRY(mesh_face_groups_name(2, side[0][MESH_SHROUD_CONTACT], mesh_set_name(MESH_CONTACT_LEFT)));
+  SHB_TRY(mesh_face_groups_name(2, load, mesh_set_name(MESH_LOAD)));
+  return make_periodic(blade, frame, side[1], side[0]);
 }
 
-shb_status mesh_groups_set(const mesh_blade *blade, const mesh_frame *frame, int volume) {
+shb_status mesh_face_groups_set(const mesh_blade *blade, const mesh_frame *frame, int volume) {
   face      *faces  = NULL;
   int        n      = 0;
   shb_status status = list_faces(frame, &faces, &n);
   if (status == SHB_OK) status = set_all(blade, frame, faces, n);
   free(faces);
   SHB_TRY(status);
-  return mesh_groups_name(3, volume, "body");
+  return mesh_face_groups_name(3, volume, "body");
 }

@@ -3,6 +3,7 @@
 #include <gmshc.h>
 #include <math.h>
 
+#include "mesh/base/vec3.h"
 #include "mesh/gmsh/session.h"
 
 mesh_frame mesh_frame_at(mesh_axis axis) {
@@ -13,17 +14,16 @@ mesh_frame mesh_frame_at(mesh_axis axis) {
   return frame;
 }
 
-void mesh_frame_out(const mesh_frame *frame, const double own[3], double at[3]) {
+void mesh_frame_to_mesh(const mesh_frame *frame, const double own[3], double at[3]) {
   for (int d = 0; d < 3; d++)
     at[d] = own[0] * frame->axes[0][d] + own[1] * frame->axes[1][d] + own[2] * frame->axes[2][d];
 }
 
-void mesh_frame_own(const mesh_frame *frame, const double at[3], double own[3]) {
-  for (int i = 0; i < 3; i++)
-    own[i] = at[0] * frame->axes[i][0] + at[1] * frame->axes[i][1] + at[2] * frame->axes[i][2];
+void mesh_frame_to_own(const mesh_frame *frame, const double at[3], double own[3]) {
+  for (int i = 0; i < 3; i++) own[i] = vec3_dot(at, frame->axes[i]);
 }
 
-void mesh_frame_turn(double angle, const double own[3], double out[3]) {
+void mesh_frame_rotate(double angle, const double own[3], double out[3]) {
   double t = own[0], r = own[2], c = cos(angle), s = sin(angle);
   out[0] = t * c + r * s;
   out[1] = own[1];
@@ -32,7 +32,7 @@ void mesh_frame_turn(double angle, const double own[3], double out[3]) {
 
 shb_status mesh_frame_add_point(const mesh_frame *frame, const double own[3], int *tag) {
   double at[3];
-  mesh_frame_out(frame, own, at);
+  mesh_frame_to_mesh(frame, own, at);
   GMSH_TRY("mesh.blade", *tag = gmshModelOccAddPoint(at[0], at[1], at[2], 0, -1, &ierr));
   return SHB_OK;
 }

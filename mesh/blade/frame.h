@@ -1,11 +1,12 @@
-/* The blade's own coordinates (tangential, axial, radial), fixed at the stacking line, and the engine's. */
+/* Blade coordinates (tangential, axial, radial), fixed at the stacking line, and mesh axes. */
 #ifndef MESH_BLADE_FRAME_H
 #define MESH_BLADE_FRAME_H
 
 #include "mesh/base/axes.h"
 #include "mesh/base/status.h"
 
-/* Rows: tangential, axial, radial unit vectors at the stacking line, in mesh axes; right-handed. */
+/* Rows: tangential, axial and radial unit vectors at the stacking line, in mesh axes;
+ * right-handed. */
 typedef struct {
   mesh_axis axis;
   double    axes[3][3];
@@ -13,14 +14,14 @@ typedef struct {
 
 mesh_frame mesh_frame_at(mesh_axis axis);
 
-/* own (tangential, axial, radial) to mesh axes, and back. */
-void mesh_frame_out(const mesh_frame *frame, const double own[3], double at[3]);
-void mesh_frame_own(const mesh_frame *frame, const double at[3], double own[3]);
+/* Blade coordinates (own) to mesh axes (at), and back. */
+void mesh_frame_to_mesh(const mesh_frame *frame, const double own[3], double at[3]);
+void mesh_frame_to_own(const mesh_frame *frame, const double at[3], double own[3]);
 
-/* own turned by angle (rad) about the engine axis, still in own coordinates; out may be own. */
-void mesh_frame_turn(double angle, const double own[3], double out[3]);
+/* Rotate a point in blade coordinates by angle (rad) about the engine axis; out may be own. */
+void mesh_frame_rotate(double angle, const double own[3], double out[3]);
 
-/* A point of gmsh's OpenCASCADE model at own. */
+/* Add a point to gmsh's OpenCASCADE model. */
 shb_status mesh_frame_add_point(const mesh_frame *frame, const double own[3], int *tag);
 
 #endif

@@ -10,6 +10,7 @@
 #include "mesh/blade/layers.h"
 #include "mesh/blade/loft.h"
 #include "mesh/blade/section_mesh.h"
+#include "mesh/blade/section_outline.h"
 #include "mesh/blade/section_smoothing.h"
 #include "mesh/blade/shroud.h"
 #include "mesh/core/fe_mesh.h"
@@ -17,11 +18,11 @@
 
 enum { ROOT, AIRFOIL, SHROUD, PARTS };
 
-/* A part of the blade: a plan swept through layers. */
+/* A part of the blade: a planar mesh swept through layers. */
 typedef struct {
-  const mesh_plan *plan;
-  mesh_layers      layers;
-  int             *id; /* [2 layers + 1][plan nodes] node, -1: none */
+  const mesh_planar *plan;
+  mesh_layers        layers;
+  int               *id; /* [2 layers + 1][plan nodes] node of the mesh, -1: none */
 } part;
 
 typedef struct {
@@ -29,14 +30,14 @@ typedef struct {
   mesh_loft           loft;
   mesh_section_place *place;  /* [section nodes] */
   double             *height; /* [section nodes] radial extent of the airfoil there, m */
-  mesh_plan           section, root_plan, shroud_plan;
+  mesh_planar         section, root_plan, shroud_plan;
   part                parts[PARTS];
-  mesh_fe             mesh; /* what is made; sets in order */
+  mesh_fe             mesh; /* the mesh that is made */
 } sweep;
 
 /* ------------------------------------------------------------------ places */
 
-/* Between the sides at a radius. */
+/* Point of the section at a radius, interpolated between the two sides. */
 static shb_status section_point(const sweep *s, int node, double radius, double own[3]) {
   const mesh_section_place *at = &s->place[node];
   double                    side[2][3];
@@ -52,7 +53,8 @@ static shb_status section_point(const sweep *s, int node, double radius, double 
   return SHB_OK;
 }
 
-/* Where the airfoil meets the shroud's curved underside. */
+/* Height at which the airfoil meets the curved underside of the shroud, by fixed-point
+ * iteration. */
 static shb_status find_height(sweep *s, int node, double own[3]) {
   enum { STEPS = 50 };
   const double bottom = s->blade->section[0].radius;
@@ -73,7 +75,7 @@ static shb_status point_at(const sweep *s, int which, int node, double share, do
     return section_point(s, node, blade->section[0].radius + share * s->height[node], own);
   const double *at = s->parts[which].plan->at[node];
   if (which == SHROUD) {
-    mesh_shroud_point(blade, at, share, own);
+    mesh_shroud_roll_up(blade, at, share, own);
     return SHB_OK;
   }
   own[0] = at[0];
@@ -97,17 +99,17 @@ static mesh_section_grid section_grid(const mesh_blade *blade) {
   return grid;
 }
 
-/* Elements on a straight side, even. */
+/* Number of elements on a straight side, even. */
 static int parts_of(const double a[2], const double b[2], double size) {
   return 2 * (int)fmax(1, round(hypot(b[0] - a[0], b[1] - a[1]) / (2 * size)));
 }
 
-/* Where the section lies close to the outline, elements of this size can be slivers: other meshes, of triangles and smaller
- * ones, are tried, and the best is kept. */
+/* Elements can be slivers where the section is close to the outline. Meshes of triangles and of
+ * smaller elements are then tried; the best is used. */
 static shb_status plan_outline(const sweep *s, int n, const double (*corner)[2], double size,
-                               const char *what, mesh_plan *plan) {
+                               const char *what, mesh_planar *plan) {
   static const struct {
-    double share; /* of the size */
+    double share; /* of the element size */
     bool   recombine;
   } way[]           = {{1, true},    {1, false}, {.8, true},  {.8, false},  {.65, true},
                        {.65, false}, {.5, true}, {.5, false}, {.35, false}, {.25, false}};
@@ -115,12 +117,13 @@ static shb_status plan_outline(const sweep *s, int n, const double (*corner)[2],
   double       best = -2;
   for (size_t t = 0; t < sizeof way / sizeof *way && best < good; t++) {
     const double here = way[t].share * size;
-    mesh_plan    next = {0};
+    mesh_planar  next = {0};
     int          parts[2 * (MESH_SHROUD_LEGS + 1)];
     for (int i = 0; i < n; i++) parts[i] = parts_of(corner[i], corner[(i + 1) % n], here);
-    SHB_TRY(mesh_plan_outline(&s->section, n, corner, parts, here, way[t].recombine, what, &next));
-    const double worst = mesh_plan_worst(&next);
-    mesh_plan_free(worst > best ? plan : &next);
+    SHB_TRY(mesh_section_outline_create(&s->section, n, corner, parts, here, way[t].recombine, what,
+                                        &next));
+    const double worst = mesh_planar_least_sine(&next);
+    mesh_planar_free(worst > best ? plan : &next);
     if (worst > best) *plan = next;
     best = fmax(best, worst);
   }
@@ -135,7 +138,7 @@ static shb_status make_root_plan(sweep *s) {
     SHB_TRY(section_point(s, i, s->blade->section[0].radius, own));
     memcpy(s->section.at[i], own, sizeof s->section.at[i]);
   }
-  mesh_plan_orient(&s->section);
+  mesh_section_mesh_orient(&s->section);
   return plan_outline(s, 4, corner, s->blade->size, "mesh.blade.root", &s->root_plan);
 }
 
@@ -146,7 +149,7 @@ static shb_status make_shroud_plan(sweep *s) {
   for (int i = 0; i < s->section.n_nodes; i++) {
     double own[3];
     SHB_TRY(find_height(s, i, own));
-    mesh_shroud_plan(s->blade, own, s->section.at[i]);
+    mesh_shroud_unroll(s->blade, own, s->section.at[i]);
   }
   return plan_outline(s, 2 * (MESH_SHROUD_LEGS + 1), (const double(*)[2])corner, size,
                       "mesh.blade.shroud", &s->shroud_plan);
@@ -154,7 +157,7 @@ static shb_status make_shroud_plan(sweep *s) {
 
 static shb_status make_plans(sweep *s) {
   mesh_section_grid grid = section_grid(s->blade);
-  SHB_TRY(mesh_plan_section(&grid, &s->section, &s->place));
+  SHB_TRY(mesh_section_mesh_create(&grid, &s->section, &s->place));
   s->height = calloc((size_t)s->section.n_nodes, sizeof *s->height);
   SHB_CHECK(s->height, SHB_ERR_IO, "no memory for the airfoil's mesh");
   SHB_TRY(make_root_plan(s));
@@ -163,13 +166,14 @@ static shb_status make_plans(sweep *s) {
 
 /* ------------------------------------------------------------------ nodes */
 
-/* Thin layers on both sides of the re-entrant edges, where the airfoil meets root and shroud. (At the clamp they gained less
- * than 1e-4 of a frequency, for root blocks of 4 to 18 mm.) The shroud bends as a plate: two layers for one size. */
+/* Thin layers lie on both sides of the re-entrant edges, where the airfoil meets root and shroud.
+ * Thin layers at the clamp changed frequencies by less than 1e-4 for root blocks of 4 to 18 mm. The
+ * shroud has two layers an element size, as it bends like a plate. */
 static shb_status prepare_parts(sweep *s) {
-  const mesh_blade *blade = s->blade;
-  const double      size = blade->size, fine = blade->shroud_size > 0 ? blade->shroud_size : size;
-  const double      span = blade->section[blade->n_sections - 1].radius - blade->section[0].radius;
-  const mesh_plan  *plan[PARTS] = {&s->root_plan, &s->section, &s->shroud_plan};
+  const mesh_blade  *blade = s->blade;
+  const double       size = blade->size, fine = blade->shroud_size > 0 ? blade->shroud_size : size;
+  const double       span = blade->section[blade->n_sections - 1].radius - blade->section[0].radius;
+  const mesh_planar *plan[PARTS] = {&s->root_plan, &s->section, &s->shroud_plan};
   mesh_layers_make(blade->root_height, size, 0, 1, &s->parts[ROOT].layers);
   mesh_layers_make(span, size, 1, 1, &s->parts[AIRFOIL].layers);
   mesh_layers_make(blade->shroud_thickness, fine / 2, 1, 0, &s->parts[SHROUD].layers);
@@ -180,7 +184,7 @@ static shb_status prepare_parts(sweep *s) {
     SHB_CHECK(s->parts[p].id, SHB_ERR_IO, "no memory for the blade's mesh");
     for (size_t i = 0; i < n; i++) s->parts[p].id[i] = -1;
     s->mesh.n_elements += s->parts[p].layers.n * plan[p]->n_quads;
-    s->mesh.n_nodes += (int)n; /* at most */
+    s->mesh.n_nodes += (int)n; /* upper bound */
   }
   return SHB_OK;
 }
@@ -189,8 +193,9 @@ static int *level_of(const part *p, int level) {
   return p->id + (size_t)level * (size_t)p->plan->n_nodes;
 }
 
-/* Nodes of one level: all of the plan at the ends of a layer, the corners in its middle. known: ids of the first nodes of
- * the plan, from the part below. */
+/* Make the nodes of one level: all nodes of the plan at the ends of a layer, its corners in the
+ * middle.
+ *   known  in  ids of the first n_known nodes of the plan, from the part below */
 static shb_status make_level(sweep *s, int which, int level, const int *known, int n_known) {
   const part *p  = &s->parts[which];
   int        *id = level_of(p, level);
@@ -205,7 +210,7 @@ static shb_status make_level(sweep *s, int which, int level, const int *known, i
       double own[3];
       SHB_TRY(point_at(s, which, node, p->layers.at[level], own));
       id[node] = s->mesh.n_nodes++;
-      mesh_frame_out(&s->loft.frame, own, s->mesh.coordinates + 3 * (size_t)id[node]);
+      mesh_frame_to_mesh(&s->loft.frame, own, s->mesh.coordinates + 3 * (size_t)id[node]);
     }
   return SHB_OK;
 }
@@ -230,16 +235,16 @@ static shb_status make_nodes(sweep *s, shb_progress *progress) {
 
 /* ------------------------------------------------------------------ elements and faces */
 
-/* A hexahedron's nodes by their level in the layer and their place in the quadrangle. */
+/* Nodes of a hexahedron by their level in the layer and their index in the quadrangle. */
 static void hexahedron(const part *p, int layer, const int *quad, int nodes[MESH_NODES]) {
-  static const int where[MESH_NODES][2] = {{0, 0}, {0, 1}, {0, 2}, {0, 3}, {2, 0}, {2, 1}, {2, 2},
+  static const int local[MESH_NODES][2] = {{0, 0}, {0, 1}, {0, 2}, {0, 3}, {2, 0}, {2, 1}, {2, 2},
                                            {2, 3}, {0, 4}, {0, 7}, {1, 0}, {0, 5}, {1, 1}, {0, 6},
                                            {1, 2}, {1, 3}, {2, 4}, {2, 7}, {2, 5}, {2, 6}};
   for (int i = 0; i < MESH_NODES; i++)
-    nodes[i] = level_of(p, 2 * layer + where[i][0])[quad[where[i][1]]];
+    nodes[i] = level_of(p, 2 * layer + local[i][0])[quad[local[i][1]]];
 }
 
-/* The group that the face above a quadrangle's side belongs to, or MESH_N_SETS. */
+/* Group of the face above a side of a quadrangle, or MESH_N_SETS. */
 static mesh_set_id side_group(const sweep *s, int which, int middle) {
   if (which == AIRFOIL && s->place[middle].w == -1) return MESH_LOAD;
   if (which != SHROUD || middle < s->section.n_nodes) return MESH_N_SETS;
@@ -286,7 +291,7 @@ static shb_status make_elements(sweep *s) {
 
 /* ------------------------------------------------------------------ to gmsh */
 
-/* n elements of a type on a discrete entity; node tags are index + 1. */
+/* Add n elements of a type to a discrete entity; node tags are index + 1. */
 static shb_status put_elements(int entity, int type, int each, int n, const int *nodes,
                                size_t first) {
   const size_t count = (size_t)n, total = count * (size_t)each;
@@ -299,7 +304,7 @@ static shb_status put_elements(int entity, int type, int each, int n, const int 
   free(tag);
   free(node);
   SHB_CHECK(complete, SHB_ERR_IO, "no memory for the blade's mesh");
-  if (ierr) return mesh_kernel_fail(SHB_ERR_INPUT, __FILE__, __LINE__, "mesh.blade");
+  if (ierr) return mesh_session_fail(SHB_ERR_INPUT, __FILE__, __LINE__, "mesh.blade");
   return SHB_OK;
 }
 
@@ -311,11 +316,11 @@ static shb_status put_nodes(const mesh_fe *mesh) {
   for (size_t i = 0; i < n; i++) tag[i] = i + 1;
   gmshModelMeshAddNodes(3, 1, tag, n, mesh->coordinates, 3 * n, NULL, 0, &ierr);
   free(tag);
-  if (ierr) return mesh_kernel_fail(SHB_ERR_INPUT, __FILE__, __LINE__, "mesh.blade");
+  if (ierr) return mesh_session_fail(SHB_ERR_INPUT, __FILE__, __LINE__, "mesh.blade");
   return SHB_OK;
 }
 
-static shb_status put(const mesh_fe *mesh) {
+static shb_status put_mesh(const mesh_fe *mesh) {
   const mesh_topology *topology = mesh_topology_of(MESH_HEX20);
   size_t               next     = 1;
   GMSH_TRY("mesh.blade", gmshModelAddDiscreteEntity(3, 1, NULL, 0, &ierr));
@@ -325,11 +330,11 @@ static shb_status put(const mesh_fe *mesh) {
     SHB_TRY(put_elements(g + 1, topology->gmsh_face, topology->face_nodes, mesh->set[g].n,
                          mesh->set[g].nodes, next));
     next += (size_t)mesh->set[g].n;
-    SHB_TRY(mesh_groups_name(2, g + 1, mesh_set_name((mesh_set_id)g)));
+    SHB_TRY(mesh_face_groups_name(2, g + 1, mesh_set_name((mesh_set_id)g)));
   }
   SHB_TRY(
       put_elements(1, topology->gmsh, topology->nodes, mesh->n_elements, mesh->connectivity, next));
-  return mesh_groups_name(3, 1, "body");
+  return mesh_face_groups_name(3, 1, "body");
 }
 
 static shb_status make(sweep *s, shb_progress *progress) {
@@ -339,8 +344,8 @@ static shb_status make(sweep *s, shb_progress *progress) {
   return make_elements(s);
 }
 
-/* The loft has a model of its own, so that the mesh alone is left in the current one. */
-static shb_status make_beside(sweep *s, const mesh_frame *frame, shb_progress *progress) {
+/* The loft has a gmsh model of its own, so that the current model holds the mesh alone. */
+static shb_status make_in_model(sweep *s, const mesh_frame *frame, shb_progress *progress) {
   char *current = NULL;
   GMSH_TRY("mesh.blade", gmshModelGetCurrent(&current, &ierr));
   int ierr = 0;
@@ -353,16 +358,16 @@ static shb_status make_beside(sweep *s, const mesh_frame *frame, shb_progress *p
   return status;
 }
 
-shb_status mesh_sweep_build(const mesh_blade *blade, const mesh_frame *frame,
-                            shb_progress *progress) {
+shb_status mesh_hex_sweep_build(const mesh_blade *blade, const mesh_frame *frame,
+                                shb_progress *progress) {
   sweep *s = calloc(1, sizeof *s);
   SHB_CHECK(s, SHB_ERR_IO, "no memory for the blade's mesh");
   s->blade          = blade;
-  shb_status status = make_beside(s, frame, progress);
-  if (status == SHB_OK) status = put(&s->mesh);
-  mesh_plan_free(&s->section);
-  mesh_plan_free(&s->root_plan);
-  mesh_plan_free(&s->shroud_plan);
+  shb_status status = make_in_model(s, frame, progress);
+  if (status == SHB_OK) status = put_mesh(&s->mesh);
+  mesh_planar_free(&s->section);
+  mesh_planar_free(&s->root_plan);
+  mesh_planar_free(&s->shroud_plan);
   for (int p = 0; p < PARTS; p++) free(s->parts[p].id);
   free(s->place);
   free(s->height);

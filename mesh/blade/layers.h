@@ -1,17 +1,16 @@
-/* Where the layers of a swept part lie. */
+/* Positions of the layers of a swept part. */
 #ifndef MESH_BLADE_LAYERS_H
 #define MESH_BLADE_LAYERS_H
 
-enum { MESH_MOST_LAYERS = 4000 };
+enum { MESH_MAX_LAYERS = 4000 };
 
 typedef struct {
-  int    n; /* layers */
-  double at[2 * MESH_MOST_LAYERS +
-            1]; /* shares of the length: ends and middles of the layers, 0 to 1 */
+  int    n;                           /* layers */
+  double at[2 * MESH_MAX_LAYERS + 1]; /* ends and middles of the layers, shares of the length */
 } mesh_layers;
 
-/* length/size equal layers, at least one; where an end is thin, two thin layers are cut off the interval there, at 8 % and
- * 30 % of it: the error of a clamp or a re-entrant edge sits next to it. */
+/* Divide a length into length/size equal intervals, at least one. At a thin end the interval is cut
+ * at 8 % and 30 % of its length. Errors due to a clamp or a re-entrant edge are largest there. */
 void mesh_layers_make(double length, double size, int thin_low, int thin_high, mesh_layers *layers);
 
 #endif

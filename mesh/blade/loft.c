@@ -4,20 +4,22 @@
 #include <math.h>
 #include <string.h>
 
+#include "mesh/base/root.h"
 #include "mesh/blade/airfoil.h"
 #include "mesh/gmsh/session.h"
 
-static const char *const who = "mesh.blade.sections";
+static const char *const case_key = "mesh.blade.sections";
 
-/* Own coordinates at parameters (chord, radial), 0 to 1 from low to high. */
+/* Point of a side at parameters (chord, radial), each from 0 at low to 1 at high; blade
+ * coordinates. */
 static shb_status evaluate(const mesh_loft *loft, const mesh_loft_side *side, double chord,
                            double radial, double own[3]) {
   double at[2], *xyz = NULL;
   size_t n             = 0;
   at[1 - side->radial] = side->low[0] + chord * (side->high[0] - side->low[0]);
   at[side->radial]     = side->low[1] + radial * (side->high[1] - side->low[1]);
-  GMSH_TRY(who, gmshModelGetValue(2, side->face, at, 2, &xyz, &n, &ierr));
-  mesh_frame_own(&loft->frame, xyz, own);
+  GMSH_TRY(case_key, gmshModelGetValue(2, side->face, at, 2, &xyz, &n, &ierr));
+  mesh_frame_to_own(&loft->frame, xyz, own);
   gmshFree(xyz);
   return SHB_OK;
 }
@@ -28,11 +30,12 @@ static void swap(double *a, double *b) {
   *b         = was;
 }
 
-/* Parameters of a side put in order: which is radial, and their directions. */
-static shb_status learn(const mesh_blade *blade, const mesh_loft *loft, mesh_loft_side *side) {
+/* Find the radial parameter of a side and the directions of both parameters. */
+static shb_status orient_parameters(const mesh_blade *blade, const mesh_loft *loft,
+                                    mesh_loft_side *side) {
   double *low = NULL, *high = NULL, own[4][3];
   size_t  n_low = 0, n_high = 0;
-  GMSH_TRY(who,
+  GMSH_TRY(case_key,
            gmshModelGetParametrizationBounds(2, side->face, &low, &n_low, &high, &n_high, &ierr));
   side->radial = 1;
   for (int i = 0; i < 2; i++) {
@@ -51,7 +54,7 @@ static shb_status learn(const mesh_blade *blade, const mesh_loft *loft, mesh_lof
   SHB_TRY(evaluate(loft, side, 0, 0, own[0]));
   SHB_TRY(evaluate(loft, side, 0, 1, own[1]));
   if (own[0][2] > own[1][2]) swap(&side->low[1], &side->high[1]);
-  mesh_section section = mesh_airfoil_at(blade, mesh_airfoil_begin(blade));
+  mesh_section section = mesh_airfoil_at(blade, mesh_airfoil_low_radius(blade));
   mesh_outline outline;
   mesh_airfoil_outline(blade, &section, &outline);
   SHB_TRY(evaluate(loft, side, 0, 0, own[0]));
@@ -67,12 +70,13 @@ static shb_status learn(const mesh_blade *blade, const mesh_loft *loft, mesh_lof
   return SHB_OK;
 }
 
-/* The solid's two faces that are not flat ends; the pressure side is the one through the outline's. */
+/* The two faces of the solid that are not planar. The pressure side is the one through the pressure
+ * side of the outline. */
 static shb_status find_sides(const mesh_blade *blade, mesh_loft *loft) {
   int   *tags = NULL, found = 0;
   size_t n = 0;
   double middle[2][3];
-  GMSH_TRY(who, gmshModelGetEntities(&tags, &n, 2, &ierr));
+  GMSH_TRY(case_key, gmshModelGetEntities(&tags, &n, 2, &ierr));
   for (size_t i = 0; i + 1 < n; i += 2) {
     char *type = NULL;
     int   ierr = 0;
@@ -84,13 +88,14 @@ static shb_status find_sides(const mesh_blade *blade, mesh_loft *loft) {
     gmshFree(type);
   }
   gmshFree(tags);
-  SHB_CHECK(found == 2, SHB_ERR_INPUT, "%s: the lofted airfoil has %d sides, not 2", who, found);
-  mesh_section section = mesh_airfoil_at(blade, mesh_airfoil_begin(blade));
+  SHB_CHECK(found == 2, SHB_ERR_INPUT, "%s: the lofted airfoil has %d sides, not 2", case_key,
+            found);
+  mesh_section section = mesh_airfoil_at(blade, mesh_airfoil_low_radius(blade));
   mesh_outline outline;
   mesh_airfoil_outline(blade, &section, &outline);
   const double *at = outline.pressure[MESH_AIRFOIL_POINTS / 2];
   for (int s = 0; s < 2; s++) {
-    SHB_TRY(learn(blade, loft, &loft->side[s]));
+    SHB_TRY(orient_parameters(blade, loft, &loft->side[s]));
     SHB_TRY(evaluate(loft, &loft->side[s], .5, 0, middle[s]));
   }
   if (hypot(middle[0][0] - at[0], middle[0][1] - at[1]) >
@@ -107,29 +112,26 @@ shb_status mesh_loft_create(const mesh_blade *blade, const mesh_frame *frame, me
   memset(loft, 0, sizeof *loft);
   loft->frame = *frame;
   SHB_TRY(mesh_airfoil_build(blade, frame, &volume));
-  GMSH_TRY(who, gmshModelOccSynchronize(&ierr));
+  GMSH_TRY(case_key, gmshModelOccSynchronize(&ierr));
   return find_sides(blade, loft);
 }
 
-/* False position with the Illinois step; the radius rises with the parameter. */
 shb_status mesh_loft_point(const mesh_loft *loft, mesh_side side, double u, double radius,
                            double own[3]) {
-  enum { STEPS = 60 };
-  const mesh_loft_side *s = &loft->side[side];
-  double                a = 0, b = 1, fa = s->bottom - radius, fb = s->top - radius;
-  int                   last = 0;
-  for (int i = 0; i < STEPS; i++) {
-    double v = a - fa * (b - a) / (fb - fa);
-    SHB_TRY(evaluate(loft, s, u, v, own));
-    double f = own[2] - radius;
-    if (fabs(f) < 1e-13) break;
-    if (f < 0) {
-      if (last < 0) fb /= 2;
-      a = v, fa = f, last = -1;
-    } else {
-      if (last > 0) fa /= 2;
-      b = v, fb = f, last = 1;
-    }
+  const mesh_loft_side *s         = &loft->side[side];
+  const double          tolerance = 1e-13; /* m */
+  double                off       = INFINITY;
+  shb_root              root;
+  SHB_CHECK(shb_root_start(&root, 0, s->bottom - radius, 1, s->top - radius,
+                           tolerance / (s->top - s->bottom)),
+            SHB_ERR_INPUT, "%s: the loft does not reach radius %g mm", case_key, 1e3 * radius);
+  while (fabs(off) >= tolerance) {
+    const bool   last   = shb_root_done(&root);
+    const double radial = last ? root.x[0] : shb_root_next(&root);
+    SHB_TRY(evaluate(loft, s, u, radial, own));
+    if (last) break;
+    off = own[2] - radius;
+    shb_root_found(&root, radial, off);
   }
   return SHB_OK;
 }

@@ -1,15 +1,16 @@
-/* Points of the lofted airfoil: the solid's own two sides, as OpenCASCADE built them. */
+/* Points on the two sides of the lofted airfoil, as OpenCASCADE built it. */
 #ifndef MESH_BLADE_LOFT_H
 #define MESH_BLADE_LOFT_H
 
 #include <stdbool.h>
 
-#include "mesh/blade/blade.h"
+#include "mesh/base/status.h"
+#include "mesh/blade/blade_parameters.h"
 #include "mesh/blade/frame.h"
 
 typedef enum { MESH_PRESSURE, MESH_SUCTION } mesh_side;
 
-/* One side: which parameter runs along the radius, and which way each runs. */
+/* One side: its radial parameter and the directions of both parameters. */
 typedef struct {
   int    face;        /* gmsh's tag */
   int    radial;      /* 0 or 1: index of the radial parameter */
@@ -24,10 +25,14 @@ typedef struct {
 } mesh_loft;
 
 /* Build the airfoil in gmsh's current model and find its sides. A gmsh session must be open.
- * Errors: SHB_ERR_INPUT sections that cannot be lofted. */
+ * Errors: SHB_ERR_INPUT for sections that cannot be lofted. */
 shb_status mesh_loft_create(const mesh_blade *blade, const mesh_frame *frame, mesh_loft *loft);
 
-/* Own coordinates of a side at u (0 leading edge, 1 trailing edge) and a radial coordinate, m, to 1e-13 m. */
+/* Point of a side, to 1e-13 m in radius.
+ *   u       in   0 leading edge, 1 trailing edge
+ *   radius  in   m, radial coordinate
+ *   own     out  blade coordinates, m
+ * Errors: SHB_ERR_INPUT for a radius beyond the ends of the loft. */
 shb_status mesh_loft_point(const mesh_loft *loft, mesh_side side, double u, double radius,
                            double own[3]);
 

@@ -4,25 +4,26 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The section is drawn in the plane (u, y), |y| <= 4 u (1 - u): sharp at both ends as the airfoil is, w = y over that. */
+/* Half thickness of the section in the plane (u, y), |y| <= 4 u (1 - u). It is sharp at both ends
+ * like the airfoil; w = y / (4 u (1 - u)). */
 static double lens(double u) {
   return 4 * u * (1 - u);
 }
 
-/* A sheet of n x m cells: quadratic nodes on a lattice of half cells, -1 where a cell's middle would be. */
+/* A block of n x m cells: quadratic nodes on a lattice of half cells, -1 in the middle of cells. */
 typedef struct {
   int  n, m;
   int *node; /* [2 m + 1][2 n + 1] */
 } sheet;
 
-/* What is built: nodes so far with their (u, y). */
+/* Nodes made so far and their coordinates. */
 typedef struct {
-  mesh_plan *plan;
+  mesh_planar *plan;
   double (*uy)[2];
   int capacity;
 } drawing;
 
-/* The node at (u, y), found or made: blocks share their sides. */
+/* Node at (u, y), found or made, so that blocks share their sides. */
 static int node_at(drawing *d, double u, double y) {
   for (int i = d->plan->n_nodes - 1; i >= 0; i--)
     if (fabs(d->uy[i][0] - u) < 1e-10 && fabs(d->uy[i][1] - y) < 1e-10) return i;
@@ -32,8 +33,8 @@ static int node_at(drawing *d, double u, double y) {
   return i;
 }
 
-/* Cells of a block from its lattice, anticlockwise. */
-static void add_cells(mesh_plan *plan, int n, int m, const int *node) {
+/* Add the cells of a block, anticlockwise. */
+static void add_cells(mesh_planar *plan, int n, int m, const int *node) {
   static const int step[8][2] = {{0, 0}, {2, 0}, {2, 2}, {0, 2}, {1, 0}, {2, 1}, {1, 2}, {0, 1}};
   for (int j = 0; j < m; j++)
     for (int i = 0; i < n; i++) {
@@ -43,14 +44,15 @@ static void add_cells(mesh_plan *plan, int n, int m, const int *node) {
     }
 }
 
-/* The side between two points: along the lens if both are on it and it is a side of it, else straight. */
+/* Point on the side from a to b: on the lens (along 1 upper, -1 lower) or straight (0). */
 static void side_at(const double a[2], const double b[2], int along, double s, double at[2]) {
   at[0] = a[0] + s * (b[0] - a[0]);
   at[1] = along ? along * lens(at[0]) : a[1] + s * (b[1] - a[1]);
 }
 
-/* A block of n x m cells with corners p[0..3] anticlockwise; its side i, from p[i] on, lies on the lens' upper (1) or
- * lower (-1) side where along[i] says so: transfinite interpolation. */
+/* Add a block of n x m cells with corners p[0..3] anticlockwise, by transfinite interpolation. Side
+ * i begins at p[i] and lies on the upper (1) or lower (-1) side of the lens, or is straight (0), by
+ * along[i]. */
 static void add_block(drawing *d, int n, int m, double p[4][2], const int along[4], int *node) {
   for (int j = 0; j <= 2 * m; j++)
     for (int i = 0; i <= 2 * n; i++) {
@@ -69,7 +71,7 @@ static void add_block(drawing *d, int n, int m, double p[4][2], const int along[
   add_cells(d->plan, n, m, node);
 }
 
-/* Three blocks at the edge u = 0 (or, mirrored, u = 1), the tip taking a share of u. */
+/* Add three blocks at the edge u = 0, or mirrored at u = 1; the tip takes a share of u. */
 static void add_tip(drawing *d, int k, double share, int mirror, int *node) {
   const double half = .5 * share, middle = .55 * share;
   double       edge[2] = {0, 0}, centre[2] = {middle, 0}, cross[2] = {share, 0};
@@ -80,14 +82,14 @@ static void add_tip(drawing *d, int k, double share, int mirror, int *node) {
   int along[3][4] = {{-1, 0, 0, 1}, {-1, 0, 0, 0}, {0, 0, 1, 0}};
   for (int b = 0; b < 3; b++) {
     double p[4][2];
-    int    way[4];
-    for (int c = 0; c < 4; c++) { /* mirrored: corners in the other order, sides with them */
+    int    curved[4];
+    for (int c = 0; c < 4; c++) { /* mirrored: corners and sides in reverse order */
       const double *from = block[b][mirror ? (4 - c) % 4 : c];
       p[c][0]            = mirror ? 1 - from[0] : from[0];
       p[c][1]            = from[1];
-      way[c]             = along[b][mirror ? 3 - c : c];
+      curved[c]          = along[b][mirror ? 3 - c : c];
     }
-    add_block(d, k, k, p, way, node);
+    add_block(d, k, k, p, curved, node);
   }
 }
 
@@ -110,8 +112,8 @@ static int by_key(const void *a, const void *b) {
 
 /* Nodes on the lens: upper side by rising u, then lower side by falling u. */
 static void find_contour(drawing *d, double (*key)[2]) {
-  mesh_plan *plan = d->plan;
-  plan->n_contour = 0;
+  mesh_planar *plan = d->plan;
+  plan->n_contour   = 0;
   for (int i = 0; i < plan->n_nodes; i++) {
     double u = d->uy[i][0], y = d->uy[i][1];
     if (fabs(fabs(y) - lens(u)) > 1e-9) continue;
@@ -124,7 +126,7 @@ static void find_contour(drawing *d, double (*key)[2]) {
 
 static void draw(const mesh_section_grid *grid, drawing *d, int *node, double (*key)[2],
                  mesh_section_place *place) {
-  mesh_plan *plan = d->plan;
+  mesh_planar *plan = d->plan;
   add_tip(d, grid->half, grid->tip[0], 0, node);
   add_middle(d, grid, node);
   add_tip(d, grid->half, grid->tip[1], 1, node);
@@ -138,8 +140,8 @@ static void draw(const mesh_section_grid *grid, drawing *d, int *node, double (*
   }
 }
 
-shb_status mesh_plan_section(const mesh_section_grid *grid, mesh_plan *plan,
-                             mesh_section_place **place) {
+shb_status mesh_section_mesh_create(const mesh_section_grid *grid, mesh_planar *plan,
+                                    mesh_section_place **place) {
   const int k = grid->half, n = grid->chord;
   const int quads = 6 * k * k + 2 * k * n, most = 8 * quads + 1;
   double(*key)[2] = malloc((size_t)most * sizeof *key);
@@ -159,11 +161,11 @@ shb_status mesh_plan_section(const mesh_section_grid *grid, mesh_plan *plan,
   if (complete) return SHB_OK;
   free(*place);
   *place = NULL;
-  mesh_plan_free(plan);
+  mesh_planar_free(plan);
   SHB_FAIL(SHB_ERR_IO, "no memory for the airfoil's mesh");
 }
 
-void mesh_plan_orient(mesh_plan *section) {
+void mesh_section_mesh_orient(mesh_planar *section) {
   static const int back[8] = {0, 3, 2, 1, 7, 6, 5, 4};
   double           area    = 0;
   for (int q = 0; q < section->n_quads; q++)
@@ -179,7 +181,7 @@ void mesh_plan_orient(mesh_plan *section) {
   }
 }
 
-void mesh_plan_free(mesh_plan *plan) {
+void mesh_planar_free(mesh_planar *plan) {
   free(plan->at);
   free(plan->quad);
   free(plan->contour);

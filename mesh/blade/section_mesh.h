@@ -1,6 +1,7 @@
-/* A planar mesh of eight-node quadrangles, to be swept: the airfoil's section, alone or inside an outline.
+/* A planar mesh of eight-node quadrangles: the airfoil's section, alone or inside an outline.
  *
- * The section's nodes and quadrangles come first and are the same in every plan of a blade; only places differ. */
+ * The nodes and quadrangles of the section come first. They are the same in every planar mesh of a
+ * blade; only their places differ. */
 #ifndef MESH_BLADE_SECTION_MESH_H
 #define MESH_BLADE_SECTION_MESH_H
 
@@ -8,48 +9,37 @@
 
 #include "mesh/base/status.h"
 
-/* Where a node lies in the airfoil's section. */
+/* Place of a node in the section of the airfoil. */
 typedef struct {
-  double u; /* along the sides' parameter, 0 leading edge, 1 trailing edge */
+  double u; /* parameter of the sides: 0 leading edge, 1 trailing edge */
   double w; /* from pressure (-1) to suction (1) side */
 } mesh_section_place;
 
 typedef struct {
   int n_nodes, n_quads;
-  double (*at)[2]; /* [n_nodes] m, or the places of mesh_plan_section */
+  double (*at)[2]; /* [n_nodes] m; undefined after mesh_section_mesh_create */
   int (*quad)[8];  /* [n_quads] corners, anticlockwise, then middles of 01, 12, 23, 30 */
   int  n_section_nodes, n_section_quads;
-  int  n_contour; /* nodes around the section: corner, middle, corner, ...; a multiple of 4 */
-  int *contour;   /* [n_contour] from the leading edge along the suction side and back */
-} mesh_plan;
+  int  n_contour; /* nodes around the section: corner, middle, ...; a multiple of 4 */
+  int *contour;   /* [n_contour] from the leading edge along the suction side, then back */
+} mesh_planar;
 
 /* Numbers of elements of a section. */
 typedef struct {
-  int chord; /* along the middle part, even */
-  int half;  /* through half the thickness */
-  double
-      tip[2]; /* share of u in the part at the leading and the trailing edge, of 2 half elements */
+  int    chord;  /* elements along the middle part, even */
+  int    half;   /* elements through half the thickness */
+  double tip[2]; /* shares of u of the parts at both edges, of 2 half elements */
 } mesh_section_grid;
 
-/* The section alone: a middle part of chord x 2 half elements; in each tip three blocks of half x half around a point,
- * so that no corner of an element is flat.
+/* Mesh the section: a middle part of chord x 2 half elements, and in each tip three blocks of half
+ * x half elements around a point. No corner of an element is flat.
  *   place  out  [n_nodes], malloc'ed */
-shb_status mesh_plan_section(const mesh_section_grid *grid, mesh_plan *plan,
-                             mesh_section_place **place);
+shb_status mesh_section_mesh_create(const mesh_section_grid *grid, mesh_planar *plan,
+                                    mesh_section_place **place);
 
-/* After places were given: turn the quadrangles round if they run clockwise. */
-void mesh_plan_orient(mesh_plan *section);
+/* After the coordinates are set: reverse the quadrangles if they run clockwise. */
+void mesh_section_mesh_orient(mesh_planar *section);
 
-/* The plan of an outline around the section: gmsh's triangles (and, if recombine, quadrangles) at twice the size, each cut
- * through the middles of its sides, so that only quadrangles remain.
- *   section  in   at[] are the places in this plan, m
- *   corner   in   [n_corners][2] m, anticlockwise; parts[i] elements (even) between corners i and i + 1
- *   size     in   element size away from the section, m
- * A gmsh session must be open; its current model is left as it was. Errors: SHB_ERR_INPUT gmsh fails, what heads the text. */
-shb_status mesh_plan_outline(const mesh_plan *section, int n_corners, const double corner[][2],
-                             const int *parts, double size, bool recombine, const char *what,
-                             mesh_plan *plan);
-
-void mesh_plan_free(mesh_plan *plan); /* also on a zeroed struct */
+void mesh_planar_free(mesh_planar *plan); /* also on a zeroed struct */
 
 #endif

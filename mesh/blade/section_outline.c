@@ -1,11 +1,11 @@
-/* The plan of an outline around the airfoil's section. */
+#include "mesh/blade/section_outline.h"
+
 #include <gmshc.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "mesh/blade/section_mesh.h"
 #include "mesh/blade/section_smoothing.h"
 #include "mesh/gmsh/session.h"
 
@@ -19,10 +19,10 @@ typedef struct {
   int (*cell)[4]; /* the last is -1 in a triangle */
 } coarse;
 
-/* What is built: corners first, with the middle of an edge in a hash of its ends. */
+/* The refined mesh: corners first; a hash table gives the middle of an edge by its ends. */
 typedef struct {
-  mesh_plan *plan;
-  int        capacity, n_slots;
+  mesh_planar *plan;
+  int          capacity, n_slots;
   int (*slot)[3]; /* lower end, upper end, middle; -1: free */
 } builder;
 
@@ -40,8 +40,8 @@ static int *find_slot(builder *b, int p, int q) {
 
 /* Middle of an edge, made half way if there is none yet. */
 static int middle_of(builder *b, int p, int q) {
-  mesh_plan *plan   = b->plan;
-  int       *middle = find_slot(b, p, q);
+  mesh_planar *plan   = b->plan;
+  int         *middle = find_slot(b, p, q);
   if (*middle < 0) {
     *middle = plan->n_nodes++;
     for (int x = 0; x < 2; x++) plan->at[*middle][x] = (plan->at[p][x] + plan->at[q][x]) / 2;
@@ -49,9 +49,9 @@ static int middle_of(builder *b, int p, int q) {
   return *middle;
 }
 
-/* The section's own edges; and of its contour, pairs of edges as one coarse edge. */
-static void seed(builder *b) {
-  mesh_plan *plan = b->plan;
+/* Insert the edges of the section; pairs of edges of its contour also count as one coarse edge. */
+static void insert_section_edges(builder *b) {
+  mesh_planar *plan = b->plan;
   for (int q = 0; q < plan->n_section_quads; q++)
     for (int c = 0; c < 4; c++)
       *find_slot(b, plan->quad[q][c], plan->quad[q][(c + 1) % 4]) = plan->quad[q][4 + c];
@@ -69,7 +69,7 @@ static shb_status add_line(int from, int to, int parts, int *line) {
   return SHB_OK;
 }
 
-/* A loop of straight lines through n points. */
+/* Add a loop of straight lines through n points. */
 static shb_status add_loop(int n, const double (*at)[2], const int *parts, double size, int *loop) {
   int       *point = malloc((size_t)n * sizeof *point), *line = malloc((size_t)n * sizeof *line);
   shb_status status = point && line ? SHB_OK : SHB_ERR_IO;
@@ -98,13 +98,14 @@ static shb_status set_plan_options(bool plan) {
   return SHB_OK;
 }
 
-static shb_status mesh_region(const mesh_plan *section, int n_corners, const double corner[][2],
+static shb_status mesh_region(const mesh_planar *section, int n_corners, const double corner[][2],
                               const int *parts, double size, bool recombine, const char *what) {
   const int n        = section->n_contour / 4;
   int       loops[2] = {0, 0}, half[16], surface = 0;
   double(*hole)[2] = malloc((size_t)n * sizeof *hole);
   SHB_CHECK(hole, SHB_ERR_IO, "no memory for a plan");
-  for (int i = 0; i < n; i++) memcpy(hole[i], section->at[section->contour[4 * i]], sizeof *hole);
+  for (int i = 0; i < n; i++)
+    memcpy(hole[i], section->at[section->contour[4 * (size_t)i]], sizeof *hole);
   for (int i = 0; i < n_corners; i++) half[i] = parts[i] / 2;
   shb_status status = add_loop(n_corners, corner, half, 2 * size, &loops[0]);
   if (status == SHB_OK) status = add_loop(n, (const double(*)[2])hole, NULL, 2 * size, &loops[1]);
@@ -134,8 +135,8 @@ static shb_status take_cells(const int *index, int type, int corners, coarse *me
   return SHB_OK;
 }
 
-/* The section's node at a point of its contour, or -1. */
-static int on_contour(const mesh_plan *section, const double *at) {
+/* Node of the section at a point of its contour, or -1. */
+static int on_contour(const mesh_planar *section, const double *at) {
   for (int i = 0; i < section->n_contour; i += 4) {
     const double *c = section->at[section->contour[i]];
     if (hypot(c[0] - at[0], c[1] - at[1]) < 1e-9) return section->contour[i];
@@ -143,8 +144,8 @@ static int on_contour(const mesh_plan *section, const double *at) {
   return -1;
 }
 
-/* Nodes are numbered after the section's, those on its contour as they are there. */
-static shb_status take_coarse(const mesh_plan *section, coarse *mesh) {
+/* Number the nodes after those of the section; nodes on its contour keep their numbers. */
+static shb_status take_coarse(const mesh_planar *section, coarse *mesh) {
   size_t *tags = NULL, n = 0, n_xyz = 0, n_unused = 0, top = 0;
   double *xyz = NULL, *unused = NULL;
   GMSH_TRY("mesh.blade.size",
@@ -170,9 +171,9 @@ static shb_status take_coarse(const mesh_plan *section, coarse *mesh) {
 
 /* ------------------------------------------------------------------ the fine plan */
 
-static shb_status allocate(const mesh_plan *section, const coarse *mesh, builder *b) {
-  mesh_plan   *plan  = b->plan;
-  const size_t quads = (size_t)(section->n_quads + 6 * mesh->n_cells);
+static shb_status allocate(const mesh_planar *section, const coarse *mesh, builder *b) {
+  mesh_planar *plan  = b->plan;
+  const size_t quads = (size_t)section->n_quads + 6 * (size_t)mesh->n_cells;
   const size_t nodes = (size_t)section->n_nodes + 24 * (size_t)mesh->n_cells + 64;
   b->n_slots         = (int)(8 * quads + 64);
   b->slot            = malloc((size_t)b->n_slots * sizeof *b->slot);
@@ -190,11 +191,12 @@ static shb_status allocate(const mesh_plan *section, const coarse *mesh, builder
   return SHB_OK;
 }
 
-/* Each corner of a polygon becomes a quadrangle with the middles of its two sides and the polygon's middle. */
-static void cut(builder *b, const int *corner, int n) {
-  mesh_plan *plan   = b->plan;
-  const int  centre = plan->n_nodes++;
-  double    *middle = plan->at[centre];
+/* Split a polygon into quadrangles: one at each corner, with the middles of its two sides and the
+ * centre. */
+static void split_polygon(builder *b, const int *corner, int n) {
+  mesh_planar *plan   = b->plan;
+  const int    centre = plan->n_nodes++;
+  double      *middle = plan->at[centre];
   middle[0] = middle[1] = 0;
   for (int c = 0; c < n; c++)
     for (int x = 0; x < 2; x++) middle[x] += plan->at[corner[c]][x] / n;
@@ -213,7 +215,7 @@ static double sine(const double *p, const double *q, const double *r) {
   return (a[0] * b[1] - a[1] * b[0]) / (hypot(a[0], a[1]) * hypot(b[0], b[1]) + 1e-300);
 }
 
-static double flattest(const mesh_plan *plan, const int *corner, int n) {
+static double least_sine(const mesh_planar *plan, const int *corner, int n) {
   double least = 1;
   for (int c = 0; c < n; c++)
     least = fmin(least, sine(plan->at[corner[c]], plan->at[corner[(c + 1) % n]],
@@ -221,11 +223,12 @@ static double flattest(const mesh_plan *plan, const int *corner, int n) {
   return least;
 }
 
-/* gmsh's quadrangles can be hollow next to a sharp edge: those are cut in two before. */
-static void cut_cell(builder *b, const int *cell) {
-  const double hollow = .1;
-  if (cell[3] < 0 || flattest(b->plan, cell, 4) > hollow) {
-    cut(b, cell, cell[3] < 0 ? 3 : 4);
+/* gmsh's quadrangles can be concave next to a sharp edge. Those are first cut into two
+ * triangles. */
+static void split_cell(builder *b, const int *cell) {
+  const double limit = .1;
+  if (cell[3] < 0 || least_sine(b->plan, cell, 4) > limit) {
+    split_polygon(b, cell, cell[3] < 0 ? 3 : 4);
     return;
   }
   double best  = -2;
@@ -233,38 +236,38 @@ static void cut_cell(builder *b, const int *cell) {
   for (int c = 0; c < 2; c++) {
     const int half[2][3] = {{cell[c], cell[c + 1], cell[c + 2]},
                             {cell[c], cell[c + 2], cell[(c + 3) % 4]}};
-    double    worst      = fmin(flattest(b->plan, half[0], 3), flattest(b->plan, half[1], 3));
+    double    worst      = fmin(least_sine(b->plan, half[0], 3), least_sine(b->plan, half[1], 3));
     if (worst <= best) continue;
     best  = worst;
     start = c;
   }
   const int half[2][3] = {{cell[start], cell[start + 1], cell[start + 2]},
                           {cell[start], cell[start + 2], cell[(start + 3) % 4]}};
-  for (int k = 0; k < 2; k++) cut(b, half[k], 3);
+  for (int k = 0; k < 2; k++) split_polygon(b, half[k], 3);
 }
 
-static shb_status refine(const mesh_plan *section, const coarse *mesh, mesh_plan *plan) {
+static shb_status refine(const mesh_planar *section, const coarse *mesh, mesh_planar *plan) {
   builder b = {.plan = plan};
   memset(plan, 0, sizeof *plan);
   shb_status status = allocate(section, mesh, &b);
   if (status == SHB_OK) {
     memcpy(plan->at + section->n_nodes, mesh->at, (size_t)mesh->n_nodes * sizeof *mesh->at);
     plan->n_nodes += mesh->n_nodes;
-    seed(&b);
-    for (int e = 0; e < mesh->n_cells; e++) cut_cell(&b, mesh->cell[e]);
+    insert_section_edges(&b);
+    for (int e = 0; e < mesh->n_cells; e++) split_cell(&b, mesh->cell[e]);
     for (int q = plan->n_section_quads; q < plan->n_quads; q++)
       for (int c = 0; c < 4; c++)
         plan->quad[q][4 + c] = middle_of(&b, plan->quad[q][c], plan->quad[q][(c + 1) % 4]);
-    status = mesh_plan_relax(plan);
+    status = mesh_planar_smooth(plan);
   }
   free(b.slot);
-  if (status != SHB_OK) mesh_plan_free(plan);
+  if (status != SHB_OK) mesh_planar_free(plan);
   return status;
 }
 
-static shb_status in_own_model(const mesh_plan *section, int n_corners, const double corner[][2],
-                               const int *parts, double size, bool recombine, const char *what,
-                               mesh_plan *plan) {
+static shb_status create_in_model(const mesh_planar *section, int n_corners,
+                                  const double corner[][2], const int *parts, double size,
+                                  bool recombine, const char *what, mesh_planar *plan) {
   coarse     mesh   = {0};
   shb_status status = set_plan_options(true);
   if (status == SHB_OK)
@@ -277,14 +280,15 @@ static shb_status in_own_model(const mesh_plan *section, int n_corners, const do
   return status;
 }
 
-shb_status mesh_plan_outline(const mesh_plan *section, int n_corners, const double corner[][2],
-                             const int *parts, double size, bool recombine, const char *what,
-                             mesh_plan *plan) {
+shb_status mesh_section_outline_create(const mesh_planar *section, int n_corners,
+                                       const double corner[][2], const int *parts, double size,
+                                       bool recombine, const char *what, mesh_planar *plan) {
   char *current = NULL;
   GMSH_TRY(what, gmshModelGetCurrent(&current, &ierr));
   int ierr = 0;
   gmshModelAdd("plan", &ierr);
-  shb_status status = in_own_model(section, n_corners, corner, parts, size, recombine, what, plan);
+  shb_status status =
+      create_in_model(section, n_corners, corner, parts, size, recombine, what, plan);
   gmshModelRemove(&ierr);
   gmshModelSetCurrent(current, &ierr);
   gmshFree(current);

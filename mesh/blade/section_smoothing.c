@@ -2,18 +2,19 @@
 
 #include <math.h>
 #include <stdbool.h>
-#include <stdlib.h>
 #include <string.h>
 
-/* Quadrangles around each node: start[node] .. start[node + 1] - 1. */
-typedef struct {
-  mesh_plan *plan;
-  int       *start, *quad;
-  char      *fixed; /* [n_nodes] not to be moved */
-} ring;
+#include "mesh/base/arena.h"
 
-/* Sine of the angle at corner c, from the sides as they bend: from the corner to the middles next to it and on. */
-static double corner_sine(const mesh_plan *plan, const int *quad, int c) {
+/* Quadrangles around each node: quad[start[node]] .. quad[start[node + 1] - 1]. */
+typedef struct {
+  mesh_planar *plan;
+  int         *start, *quad;
+  char        *fixed; /* [n_nodes] the node must not move */
+} adjacency;
+
+/* Sine of the angle at corner c between the tangents of its curved sides. */
+static double corner_sine(const mesh_planar *plan, const int *quad, int c) {
   const double *at = plan->at[quad[c]], *next = plan->at[quad[(c + 1) % 4]],
                *last  = plan->at[quad[(c + 3) % 4]];
   const double *after = plan->at[quad[4 + c]], *before = plan->at[quad[4 + (c + 3) % 4]];
@@ -27,8 +28,8 @@ static double corner_sine(const mesh_plan *plan, const int *quad, int c) {
   return (a[0] * b[1] - a[1] * b[0]) / (hypot(a[0], a[1]) * hypot(b[0], b[1]) + 1e-300);
 }
 
-/* The worst corner of the quadrangles around a node. */
-static double worst_of(const ring *r, int node) {
+/* Smallest sine of the quadrangles around a node. */
+static double least_sine_at(const adjacency *r, int node) {
   double worst = 1;
   for (int i = r->start[node]; i < r->start[node + 1]; i++)
     for (int c = 0; c < 4; c++)
@@ -36,7 +37,7 @@ static double worst_of(const ring *r, int node) {
   return worst;
 }
 
-static void mean_of(const ring *r, int node, double mean[2]) {
+static void mean_of(const adjacency *r, int node, double mean[2]) {
   int count = 0;
   mean[0] = mean[1] = 0;
   for (int i = r->start[node]; i < r->start[node + 1]; i++) {
@@ -52,28 +53,28 @@ static void mean_of(const ring *r, int node, double mean[2]) {
   for (int x = 0; x < 2; x++) mean[x] /= count;
 }
 
-/* Tries the mean, half the way, a quarter, and steps aside; keeps the best. */
-static void move(const ring *r, int node) {
+/* Try the mean of the neighbours, fractions of the way to it, and steps aside; use the best. */
+static void move(const adjacency *r, int node) {
   static const double step[8][2] = {{1, 0},   {.5, 0},   {.25, 0}, {.1, 0},
                                     {.3, .3}, {.3, -.3}, {0, .2},  {0, -.2}};
-  double *at = r->plan->at[node], from[2] = {at[0], at[1]}, keep[2] = {at[0], at[1]}, mean[2];
-  double  best = worst_of(r, node);
+  double *at = r->plan->at[node], from[2] = {at[0], at[1]}, best_place[2] = {at[0], at[1]}, mean[2];
+  double  best = least_sine_at(r, node);
   mean_of(r, node, mean);
   const double along[2] = {mean[0] - from[0], mean[1] - from[1]};
   for (int k = 0; k < 8; k++) {
     at[0]        = from[0] + step[k][0] * along[0] - step[k][1] * along[1];
     at[1]        = from[1] + step[k][0] * along[1] + step[k][1] * along[0];
-    double worst = worst_of(r, node);
+    double worst = least_sine_at(r, node);
     if (worst <= best) continue;
     best = worst;
-    memcpy(keep, at, sizeof keep);
+    memcpy(best_place, at, sizeof best_place);
   }
-  memcpy(at, keep, sizeof keep);
+  memcpy(at, best_place, sizeof best_place);
 }
 
-/* The section's nodes, and the ends of edges that one quadrangle alone has. */
-static void find_fixed(const ring *r, int *uses) {
-  const mesh_plan *plan = r->plan;
+/* Fix the nodes of the section and the ends of edges with one quadrangle only. */
+static void find_fixed(const adjacency *r, int *uses) {
+  const mesh_planar *plan = r->plan;
   memset(uses, 0, (size_t)plan->n_nodes * sizeof *uses);
   for (int q = 0; q < plan->n_quads; q++)
     for (int c = 4; c < 8; c++) uses[plan->quad[q][c]]++;
@@ -84,8 +85,8 @@ static void find_fixed(const ring *r, int *uses) {
         r->fixed[plan->quad[q][c]] = r->fixed[plan->quad[q][(c + 1) % 4]] = 1;
 }
 
-static void find_rings(ring *r, int *next) {
-  const mesh_plan *plan = r->plan;
+static void find_quads(adjacency *r, int *next) {
+  const mesh_planar *plan = r->plan;
   memset(r->start, 0, ((size_t)plan->n_nodes + 1) * sizeof *r->start);
   for (int q = 0; q < plan->n_quads; q++)
     for (int c = 0; c < 4; c++) r->start[plan->quad[q][c] + 1]++;
@@ -95,7 +96,7 @@ static void find_rings(ring *r, int *next) {
     for (int c = 0; c < 4; c++) r->quad[next[plan->quad[q][c]]++] = q;
 }
 
-static void set_middles(mesh_plan *plan) {
+static void set_middles(mesh_planar *plan) {
   for (int q = plan->n_section_quads; q < plan->n_quads; q++)
     for (int c = 0; c < 4; c++) {
       const int *quad = plan->quad[q];
@@ -105,32 +106,30 @@ static void set_middles(mesh_plan *plan) {
     }
 }
 
-shb_status mesh_plan_relax(mesh_plan *plan) {
+shb_status mesh_planar_smooth(mesh_planar *plan) {
   enum { PASSES = 30 };
   const size_t n        = (size_t)plan->n_nodes;
-  ring         r        = {.plan  = plan,
-                           .start = malloc((n + 1) * sizeof(int)),
-                           .quad  = malloc(4 * (size_t)plan->n_quads * sizeof(int)),
-                           .fixed = malloc(n)};
-  int         *work     = malloc(n * sizeof *work);
-  bool         complete = r.start && r.quad && r.fixed && work;
+  shb_arena    arena    = {0};
+  adjacency    r        = {.plan  = plan,
+                           .start = shb_arena_take(&arena, n + 1, sizeof(int)),
+                           .quad  = shb_arena_take(&arena, 4 * (size_t)plan->n_quads, sizeof(int)),
+                           .fixed = shb_arena_take(&arena, n, 1)};
+  int         *work     = shb_arena_take(&arena, n, sizeof *work);
+  const bool   complete = !arena.failed;
   if (complete) {
     find_fixed(&r, work);
-    find_rings(&r, work);
+    find_quads(&r, work);
     for (int pass = 0; pass < PASSES; pass++)
       for (int i = 0; i < plan->n_nodes; i++)
         if (!r.fixed[i] && r.start[i] < r.start[i + 1]) move(&r, i);
     set_middles(plan);
   }
-  free(r.start);
-  free(r.quad);
-  free(r.fixed);
-  free(work);
+  shb_arena_free(&arena);
   SHB_CHECK(complete, SHB_ERR_IO, "no memory for a plan");
   return SHB_OK;
 }
 
-double mesh_plan_worst(const mesh_plan *plan) {
+double mesh_planar_least_sine(const mesh_planar *plan) {
   double worst = 1;
   int    met   = 0;
   for (int q = plan->n_section_quads; q < plan->n_quads; q++)

@@ -11,7 +11,7 @@ enum { CORNERS = MESH_SHROUD_LEGS + 1 };
 
 static const double degree = SHB_PI / 180;
 
-/* Least distance kept between the airfoil and the shroud's edges, as a share of the shroud's length. */
+/* Least distance between the airfoil and the edges of the shroud, as a share of its length. */
 static const double margin_share = 0.03;
 
 static double half_sector(const mesh_blade *blade) {
@@ -22,8 +22,9 @@ static double underside(const mesh_blade *blade) {
   return blade->section[blade->n_sections - 1].radius;
 }
 
-/* Corners (tangential, axial) of the Z at mid thickness, about the contact leg's centre. */
-static void plan(const mesh_blade *blade, double z[CORNERS][2]) {
+/* Corners (tangential, axial) of the Z at mid thickness; origin at the centre of the contact
+ * leg. */
+static void z_corners(const mesh_blade *blade, double z[CORNERS][2]) {
   double t                  = blade->shroud_contact / 2 * sin(blade->psi);
   double a                  = blade->shroud_contact / 2 * cos(blade->psi);
   double l                  = blade->shroud_length / 2;
@@ -32,29 +33,31 @@ static void plan(const mesh_blade *blade, double z[CORNERS][2]) {
     for (int d = 0; d < 2; d++) z[i][d] = corner[i][d];
 }
 
-/* Tangential shift a unit of radius: tan phi/cos psi. */
-static double lean(const mesh_blade *blade) {
+/* Tangential shift for a unit of radius: tan phi/cos psi. */
+static double radial_slope(const mesh_blade *blade) {
   return tan(blade->phi) / cos(blade->psi);
 }
 
-/* Corner i of the Z at the underside (level 0) or top (level 1), about the side's own radial plane. */
+/* Corner i of the Z at the underside (level 0) or top (level 1), relative to the radial plane of
+ * the side. */
 static void corner(const mesh_blade *blade, int i, int level, double own[3]) {
   double z[CORNERS][2], up = (level ? 0.5 : -0.5) * blade->shroud_thickness;
-  plan(blade, z);
-  own[0] = z[i][0] + up * lean(blade);
+  z_corners(blade, z);
+  own[0] = z[i][0] + up * radial_slope(blade);
   own[1] = z[i][1];
   own[2] = underside(blade) + 0.5 * blade->shroud_thickness + up;
 }
 
-/* Tangential place of the side's surface at (axial, radial), about its own radial plane. */
+/* Tangential coordinate of the side at (axial, radial), relative to the radial plane of the
+ * side. */
 static double side_at(const mesh_blade *blade, double axial, double radial) {
   double z[CORNERS][2];
-  plan(blade, z);
+  z_corners(blade, z);
   int leg = 0;
   while (leg < MESH_SHROUD_LEGS - 1 && axial > z[leg + 1][1]) leg++;
   double x  = (axial - z[leg][1]) / (z[leg + 1][1] - z[leg][1]);
   double up = radial - underside(blade) - 0.5 * blade->shroud_thickness;
-  return z[leg][0] + x * (z[leg + 1][0] - z[leg][0]) + up * lean(blade);
+  return z[leg][0] + x * (z[leg + 1][0] - z[leg][0]) + up * radial_slope(blade);
 }
 
 void mesh_shroud_centre(const mesh_blade *blade, int leg, bool right, double own[3]) {
@@ -64,7 +67,7 @@ void mesh_shroud_centre(const mesh_blade *blade, int leg, bool right, double own
       corner(blade, i, level, c);
       for (int d = 0; d < 3; d++) sum[d] += c[d] / 4;
     }
-  mesh_frame_turn(right ? half_sector(blade) : -half_sector(blade), sum, own);
+  mesh_frame_rotate(right ? half_sector(blade) : -half_sector(blade), sum, own);
 }
 
 static double middle_radius(const mesh_blade *blade) {
@@ -74,7 +77,7 @@ static double middle_radius(const mesh_blade *blade) {
 void mesh_shroud_outline(const mesh_blade *blade, double out[2 * CORNERS][2]) {
   const double half = middle_radius(blade) * half_sector(blade);
   double       z[CORNERS][2];
-  plan(blade, z);
+  z_corners(blade, z);
   for (int i = 0; i < CORNERS; i++) {
     double *right = out[i], *left = out[2 * CORNERS - 1 - i];
     right[0] = z[i][0] + half;
@@ -90,14 +93,14 @@ int mesh_shroud_contact_side(const mesh_blade *blade, const double at[2]) {
   return fabs(from - half) < 1e-9 ? 1 : fabs(from + half) < 1e-9 ? -1 : 0;
 }
 
-void mesh_shroud_point(const mesh_blade *blade, const double at[2], double share, double own[3]) {
+void mesh_shroud_roll_up(const mesh_blade *blade, const double at[2], double share, double own[3]) {
   const double radial = underside(blade) + share * blade->shroud_thickness;
   const double angle = (at[0] - side_at(blade, at[1], middle_radius(blade))) / middle_radius(blade);
   const double side[3] = {side_at(blade, at[1], radial), at[1], radial};
-  mesh_frame_turn(angle, side, own);
+  mesh_frame_rotate(angle, side, own);
 }
 
-void mesh_shroud_plan(const mesh_blade *blade, const double own[3], double at[2]) {
+void mesh_shroud_unroll(const mesh_blade *blade, const double own[3], double at[2]) {
   const double side  = side_at(blade, own[1], underside(blade));
   const double angle = atan2(own[0], own[2]) - atan2(side, underside(blade));
   at[0]              = middle_radius(blade) * angle + side_at(blade, own[1], middle_radius(blade));
@@ -134,7 +137,7 @@ static shb_status check_sizes(const mesh_blade *blade) {
   return SHB_OK;
 }
 
-/* One point of the airfoil under the shroud: inside both sides, front and rear? */
+/* Check that a point of the airfoil lies under the shroud, with the margin on all four sides. */
 static shb_status check_cover(const mesh_blade *blade, const double own[3]) {
   double margin = margin_share * blade->shroud_length;
   SHB_CHECK(fabs(own[1]) <= blade->shroud_length / 2 - margin, SHB_ERR_INPUT,
@@ -142,10 +145,9 @@ static shb_status check_cover(const mesh_blade *blade, const double own[3]) {
             "from its stacking line; give at least %.4g mm",
             1e3 * blade->shroud_length, 1e3 * fabs(own[1]),
             2e3 * fabs(own[1]) / (1 - 2 * margin_share));
-  for (int s = -1; s <= 1;
-       s += 2) { /* s = -1 left, 1 right: seen from the side's own radial plane */
+  for (int s = -1; s <= 1; s += 2) { /* s = -1 left, 1 right, in the radial plane of the side */
     double seen[3];
-    mesh_frame_turn(-s * half_sector(blade), own, seen);
+    mesh_frame_rotate(-s * half_sector(blade), own, seen);
     double inside = s * (side_at(blade, seen[1], seen[2]) - seen[0]);
     SHB_CHECK(inside >= margin, SHB_ERR_INPUT,
               "mesh.blade.sections[%d]: the last section reaches %s the shroud's %s side (at %g mm "
@@ -157,7 +159,7 @@ static shb_status check_cover(const mesh_blade *blade, const double own[3]) {
   return SHB_OK;
 }
 
-/* The airfoil's end must stay within the thickness, though the ring is curved and the end flat. */
+/* The end of the airfoil must lie within the thickness; the ring is curved, the end is flat. */
 static shb_status check_depth(const mesh_blade *blade, const double own[3]) {
   double h = blade->shroud_thickness, bottom = underside(blade), r = hypot(own[0], own[2]);
   double low  = hypot(bottom, side_at(blade, own[1], bottom)) + 0.1 * h;
@@ -171,7 +173,7 @@ static shb_status check_depth(const mesh_blade *blade, const double own[3]) {
 
 shb_status mesh_shroud_check(const mesh_blade *blade) {
   SHB_TRY(check_sizes(blade));
-  double       radius[2] = {underside(blade), mesh_airfoil_end(blade)};
+  double       radius[2] = {underside(blade), mesh_airfoil_high_radius(blade)};
   mesh_outline outline;
   for (int k = 0; k < 2; k++) {
     mesh_section section = mesh_airfoil_at(blade, radius[k]);
@@ -186,7 +188,7 @@ shb_status mesh_shroud_check(const mesh_blade *blade) {
   return SHB_OK;
 }
 
-/* Revolve one leg's planar face of the left side by the sector angle. */
+/* Revolve the planar face of one leg of the left side by the sector angle. */
 static shb_status revolve(const mesh_blade *blade, const mesh_frame *frame, int face, int *volume) {
   double axial[3];
   int    from[2] = {2, face}, *made = NULL;
@@ -210,7 +212,7 @@ shb_status mesh_shroud_build(const mesh_blade *blade, const mesh_frame *frame,
     for (int level = 0; level < 2; level++) {
       double own[3];
       corner(blade, i, level, own);
-      mesh_frame_turn(-half_sector(blade), own, own);
+      mesh_frame_rotate(-half_sector(blade), own, own);
       SHB_TRY(mesh_frame_add_point(frame, own, &point[i][level]));
     }
     GMSH_TRY("mesh.blade.shroud",

@@ -12,7 +12,7 @@ static const double tet_place[10][3] = {{0, 0, 0},   {1, 0, 0},   {0, 1, 0},  {0
                                         {.5, 0, 0},  {.5, .5, 0}, {0, .5, 0}, {0, 0, .5},
                                         {0, .5, .5}, {.5, 0, .5}};
 
-/* By the lower corner, not ring by ring as VTK has them. */
+/* gmsh orders the edges by their lower corner, VTK ring by ring. */
 static const int hex_edge[12][2] = {{0, 1}, {0, 3}, {0, 4}, {1, 2}, {1, 5}, {2, 3},
                                     {2, 6}, {3, 7}, {4, 5}, {4, 7}, {5, 6}, {6, 7}};
 
@@ -66,8 +66,9 @@ const mesh_topology *mesh_topology_of(mesh_kind kind) {
   return kind == MESH_HEX20 ? &hex20 : &tet10;
 }
 
-/* Barycentric form in d dimensions: corners L(2L - 1), mid-sides 4 La Lb, and dL/dx constant.
- * gradient: [nodes][d]. */
+/* Quadratic simplex in d dimensions in barycentric coordinates L. Corners: L(2L - 1). Mid-sides:
+ * 4 La Lb. dL/dx is constant.
+ *   gradient  out  [nodes][d] */
 static void simplex(int d, const double *at, double *shape, double *gradient) {
   double barycentric[4] = {1}, slope[4][3] = {{0}};
   for (int x = 0; x < d; x++) {
@@ -89,8 +90,10 @@ static void simplex(int d, const double *at, double *shape, double *gradient) {
   }
 }
 
-/* Serendipity form in d dimensions. With c_x = +-1 (0 across a mid-side's own edge) the node's place in [-1, 1] and
- * p_x = 1 + c_x y_x: corners prod p (sum c_x y_x - (d - 1)) / 2^d, mid-sides (1 - y^2) prod p / 2^(d-1). */
+/* Serendipity element in d dimensions. The node has coordinates c_x = +-1 in [-1, 1]; c_x = 0 along
+ * the edge of a mid-side node. With p_x = 1 + c_x y_x the shape functions are
+ *   corners    prod p (sum c_x y_x - (d - 1)) / 2^d
+ *   mid-sides  (1 - y^2) prod p / 2^(d-1) */
 static void serendipity(int d, const double *at, const double *place, double *value,
                         double *slope) {
   double factor[3], derivative[3], sum = 1 - d, c[3], y[3];
@@ -99,7 +102,7 @@ static void serendipity(int d, const double *at, const double *place, double *va
     c[x]          = 2 * place[x] - 1;
     y[x]          = 2 * at[x] - 1;
     factor[x]     = c[x] == 0 ? 1 - y[x] * y[x] : (1 + c[x] * y[x]) / 2;
-    derivative[x] = c[x] == 0 ? -4 * y[x] : c[x]; /* by at: twice that by y */
+    derivative[x] = c[x] == 0 ? -4 * y[x] : c[x]; /* by at; twice the derivative by y */
     middle        = middle || c[x] == 0;
     sum += c[x] * y[x];
   }

@@ -1,17 +1,17 @@
-/* Left node on each right node, after the left face is turned by the sector angle. */
+#include "mesh/core/face_match.h"
+
 #include <math.h>
 #include <stdlib.h>
 
-#include "mesh/base/constants.h"
-#include "mesh/core/fe_mesh.h"
+#include "mesh/base/vec3.h"
 
 static const double tolerance = 1e-9; /* m */
 
 typedef struct {
-  double at[3]; /* m, in the right face's place */
-  double key;   /* coordinate along a direction in no particular plane of the mesh */
+  double at[3]; /* m, rotated onto the right face */
+  double key;   /* coordinate along a direction that lies in no plane of symmetry of the mesh */
   int    node;
-} place;
+} left_node;
 
 static int by_node(const void *a, const void *b) {
   int p = *(const int *)a, q = *(const int *)b;
@@ -19,7 +19,7 @@ static int by_node(const void *a, const void *b) {
 }
 
 static int by_key(const void *a, const void *b) {
-  double p = ((const place *)a)->key, q = ((const place *)b)->key;
+  double p = ((const left_node *)a)->key, q = ((const left_node *)b)->key;
   return (p > q) - (p < q);
 }
 
@@ -36,40 +36,36 @@ static int *unique_nodes(const mesh_fe *mesh, const mesh_face_set *set, int *n) 
   return nodes;
 }
 
-static double along(const double at[3]) {
+static double sort_key(const double at[3]) {
   return 0.5773 * at[0] + 0.6180 * at[1] + 0.5337 * at[2];
 }
 
-static place *turned(const mesh_fe *mesh, const int *nodes, int n, mesh_axis axis, double angle) {
-  place *places = malloc(((size_t)n + 1) * sizeof *places);
+static left_node *rotated_left(const mesh_fe *mesh, const int *nodes, int n, mesh_axis axis,
+                               double angle) {
+  left_node *places = malloc(((size_t)n + 1) * sizeof *places);
   if (!places) return NULL;
   for (int i = 0; i < n; i++) {
     mesh_axis_rotate(axis, angle, mesh->coordinates + 3 * (size_t)nodes[i], places[i].at);
-    places[i].key  = along(places[i].at);
+    places[i].key  = sort_key(places[i].at);
     places[i].node = nodes[i];
   }
   qsort(places, (size_t)n, sizeof *places, by_key);
   return places;
 }
 
-static double distance(const double a[3], const double b[3]) {
-  return sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) +
-              (a[2] - b[2]) * (a[2] - b[2]));
-}
-
-/* Nearest place to at among first..last-1. */
-static const place *nearest(const place *places, int first, int last, const double at[3]) {
-  const place *best = NULL;
+/* Node nearest to at among first .. last - 1. */
+static const left_node *nearest(const left_node *places, int first, int last, const double at[3]) {
+  const left_node *best = NULL;
   for (int i = first; i < last; i++)
-    if (!best || distance(places[i].at, at) < distance(best->at, at)) best = &places[i];
+    if (!best || vec3_distance(places[i].at, at) < vec3_distance(best->at, at)) best = &places[i];
   return best;
 }
 
-/* Left node at point at, or -1 with gap the distance to the nearest. */
-static int find(const place *places, int n, const double at[3], double *gap) {
-  double key = along(at);
+/* Left node at point at, or -1; gap is then the distance to the nearest. */
+static int find_left(const left_node *places, int n, const double at[3], double *gap) {
+  double key = sort_key(at);
   int    low = 0, high = n;
-  while (low < high) { /* first place within the tolerance in key */
+  while (low < high) { /* first node within the tolerance in key */
     int middle = (low + high) / 2;
     if (places[middle].key < key - 2 * tolerance) {
       low = middle + 1;
@@ -78,19 +74,19 @@ static int find(const place *places, int n, const double at[3], double *gap) {
     }
   }
   while (high < n && places[high].key <= key + 2 * tolerance) high++;
-  const place *best = nearest(places, low, high, at);
-  if (best && distance(best->at, at) <= tolerance) return best->node;
+  const left_node *best = nearest(places, low, high, at);
+  if (best && vec3_distance(best->at, at) <= tolerance) return best->node;
   best = nearest(places, 0, n, at);
-  *gap = distance(best->at, at);
+  *gap = vec3_distance(best->at, at);
   return -1;
 }
 
-static shb_status pair_up(const mesh_fe *mesh, const place *places, int n, const int *right,
+static shb_status pair_up(const mesh_fe *mesh, const left_node *places, int n, const int *right,
                           int *left) {
   for (int i = 0; i < n; i++) {
     const double *at  = mesh->coordinates + 3 * (size_t)right[i];
     double        gap = 0;
-    left[i]           = find(places, n, at, &gap);
+    left[i]           = find_left(places, n, at, &gap);
     SHB_CHECK(left[i] >= 0, SHB_ERR_INPUT,
               "contact faces do not match: node %ld of contact_right at (%g, %g, %g) m is %.3g m "
               "from the nearest node of contact_left turned by the sector angle; at most %g m is "
@@ -110,7 +106,7 @@ shb_status mesh_fe_match(const mesh_fe *mesh, mesh_axis axis, int blades, int *n
   int        nr = 0, nl = 0;
   int       *right  = unique_nodes(mesh, sr, &nr);
   int       *left   = unique_nodes(mesh, sl, &nl);
-  place     *places = left ? turned(mesh, left, nl, axis, SHB_TWO_PI / blades) : NULL;
+  left_node *places = left ? rotated_left(mesh, left, nl, axis, 2 * M_PI / blades) : NULL;
   shb_status status = SHB_OK;
   if (!right || !places) {
     status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "no memory to match the contact faces");

@@ -4,18 +4,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "mesh/base/constants.h"
+#include "mesh/base/vec3.h"
+#include "mesh/core/face_match.h"
 #include "mesh/core/triangle.h"
 
-/* The left face, for looking up the nearest point. */
+/* The left face, prepared for the search of the nearest point. */
 typedef struct {
   const mesh_fe       *mesh;
   const mesh_topology *topology;
   const mesh_face_set *set;
-  double (*ball)[4]; /* [faces] centre and radius around a face's nodes */
-} target;
+  double (*ball)[4]; /* [faces] centre and radius of a ball around the nodes of a face */
+} left_face;
 
-/* A place on the left face. */
+/* A point on the left face. */
 typedef struct {
   int    face;
   double at[2]; /* reference coordinates */
@@ -23,17 +24,11 @@ typedef struct {
   double distance; /* m */
 } contact_place;
 
-static const int *face_nodes(const target *t, int face) {
+static const int *face_nodes(const left_face *t, int face) {
   return t->set->nodes + t->topology->face_nodes * (size_t)face;
 }
 
-static double apart(const double a[3], const double b[3]) {
-  double sum = 0;
-  for (int d = 0; d < 3; d++) sum += (a[d] - b[d]) * (a[d] - b[d]);
-  return sqrt(sum);
-}
-
-static void enclose(const target *t, int face) {
+static void bounding_ball(const left_face *t, int face) {
   const int  n    = t->topology->face_nodes;
   const int *node = face_nodes(t, face);
   double    *ball = t->ball[face];
@@ -41,23 +36,23 @@ static void enclose(const target *t, int face) {
   for (int i = 0; i < n; i++)
     for (int d = 0; d < 3; d++) ball[d] += t->mesh->coordinates[3 * (size_t)node[i] + d] / n;
   for (int i = 0; i < n; i++)
-    ball[3] = fmax(ball[3], apart(ball, t->mesh->coordinates + 3 * (size_t)node[i]));
+    ball[3] = fmax(ball[3], vec3_distance(ball, t->mesh->coordinates + 3 * (size_t)node[i]));
 }
 
-/* Reference coordinates of a face's local node. */
-static void reference(const target *t, int local, double at[2]) {
+/* Reference coordinates of a local node of a face. */
+static void reference(const left_face *t, int local, double at[2]) {
   static const double six[6][2]   = {{0, 0}, {1, 0}, {0, 1}, {.5, 0}, {.5, .5}, {0, .5}};
   static const double eight[8][2] = {{0, 0},  {1, 0},  {1, 1},  {0, 1},
                                      {.5, 0}, {1, .5}, {.5, 1}, {0, .5}};
   memcpy(at, t->mesh->kind == MESH_HEX20 ? eight[local] : six[local], 2 * sizeof *at);
 }
 
-/* Nearest point of the flat triangles of all faces: a start for settle. */
-static void look_up(const target *t, const double x[3], contact_place *best) {
+/* Nearest point of the flat triangles of all faces: the start of project_to_face. */
+static void nearest_triangle(const left_face *t, const double x[3], contact_place *best) {
   best->distance = INFINITY;
   for (int f = 0; f < t->set->n; f++) {
     mesh_triangle part[MESH_TRIANGLES];
-    if (apart(t->ball[f], x) - t->ball[f][3] >= best->distance) continue;
+    if (vec3_distance(t->ball[f], x) - t->ball[f][3] >= best->distance) continue;
     int n = mesh_triangles(t->mesh, face_nodes(t, f), part);
     for (int p = 0; p < n; p++) {
       double foot[3], weight[3], corner[2];
@@ -74,8 +69,8 @@ static void look_up(const target *t, const double x[3], contact_place *best) {
   }
 }
 
-/* Back into the face. */
-static void clamp(mesh_kind kind, double at[2]) {
+/* Clamp reference coordinates to the face. */
+static void clamp_to_face(mesh_kind kind, double at[2]) {
   for (int d = 0; d < 2; d++) at[d] = fmin(1, fmax(0, at[d]));
   double over = at[0] + at[1] - 1;
   if (kind == MESH_HEX20 || over <= 0) return;
@@ -83,9 +78,9 @@ static void clamp(mesh_kind kind, double at[2]) {
   at[1] = 1 - at[0];
 }
 
-/* x - X(r, s) and its derivatives' columns. */
-static void residual(const target *t, const double x[3], contact_place *p, double off[3],
-                     double J[2][3]) {
+/* Offset x - X(r, s) and the derivatives X,r and X,s. */
+static void offset_at(const left_face *t, const double x[3], contact_place *p, double off[3],
+                      double J[2][3]) {
   double     gradient[MESH_FACE_NODES][2];
   const int *node = face_nodes(t, p->face);
   mesh_face_shape(t->mesh->kind, p->at, p->shape, gradient);
@@ -101,25 +96,22 @@ static void residual(const target *t, const double x[3], contact_place *p, doubl
   }
 }
 
-static double dot(const double a[3], const double b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-/* The nearest point of the curved face by Gauss and Newton: J^T J d = J^T (x - X). */
-static void settle(const target *t, const double x[3], contact_place *p) {
+/* Nearest point of the curved face by the Gauss-Newton method: J^T J d = J^T (x - X). */
+static void project_to_face(const left_face *t, const double x[3], contact_place *p) {
   double off[3], J[2][3];
   for (int i = 0; i < 30; i++) {
-    residual(t, x, p, off, J);
-    double a = dot(J[0], J[0]), b = dot(J[0], J[1]), c = dot(J[1], J[1]), det = a * c - b * b;
-    double r = dot(J[0], off), s = dot(J[1], off), before[2] = {p->at[0], p->at[1]};
+    offset_at(t, x, p, off, J);
+    double a = vec3_dot(J[0], J[0]), b = vec3_dot(J[0], J[1]), c = vec3_dot(J[1], J[1]),
+           det = a * c - b * b;
+    double r = vec3_dot(J[0], off), s = vec3_dot(J[1], off), previous[2] = {p->at[0], p->at[1]};
     if (!(det > 0)) break;
     p->at[0] += (c * r - b * s) / det;
     p->at[1] += (a * s - b * r) / det;
-    clamp(t->mesh->kind, p->at);
-    if (hypot(p->at[0] - before[0], p->at[1] - before[1]) < 1e-14) break;
+    clamp_to_face(t->mesh->kind, p->at);
+    if (hypot(p->at[0] - previous[0], p->at[1] - previous[1]) < 1e-14) break;
   }
-  residual(t, x, p, off, J);
-  p->distance = sqrt(dot(off, off));
+  offset_at(t, x, p, off, J);
+  p->distance = vec3_norm(off);
 }
 
 static double area(const mesh_fe *mesh, const mesh_face_set *set) {
@@ -131,7 +123,7 @@ static double area(const mesh_fe *mesh, const mesh_face_set *set) {
     for (int p = 0; p < n; p++) {
       double one[3];
       mesh_triangle_area(&part[p], one);
-      sum += sqrt(dot(one, one));
+      sum += vec3_norm(one);
     }
   }
   return sum;
@@ -150,7 +142,7 @@ static shb_status allocate(int n, int each, mesh_pairing *out) {
   return SHB_OK;
 }
 
-/* The right face's nodes, each once, ascending. */
+/* Nodes of the right face, each once, ascending. */
 static shb_status take_right(const mesh_fe *mesh, mesh_pairing *out) {
   const mesh_topology *topology = mesh_topology_of(mesh->kind);
   const mesh_face_set *set      = &mesh->set[MESH_CONTACT_RIGHT];
@@ -167,7 +159,7 @@ static shb_status take_right(const mesh_fe *mesh, mesh_pairing *out) {
   return status;
 }
 
-static shb_status project_all(const target *t, mesh_axis axis, double angle, mesh_pairing *out) {
+static shb_status project_all(const left_face *t, mesh_axis axis, double angle, mesh_pairing *out) {
   const mesh_fe *mesh  = t->mesh;
   const int      each  = t->topology->face_nodes;
   const double   limit = MESH_PAIRING_GAP * sqrt(area(mesh, &mesh->set[MESH_CONTACT_RIGHT]));
@@ -176,8 +168,8 @@ static shb_status project_all(const target *t, mesh_axis axis, double angle, mes
     double        back[3];
     contact_place p;
     mesh_axis_rotate(axis, -angle, x, back);
-    look_up(t, back, &p);
-    settle(t, back, &p);
+    nearest_triangle(t, back, &p);
+    project_to_face(t, back, &p);
     SHB_CHECK(
         p.distance <= limit, SHB_ERR_INPUT,
         "contact faces do not match: node %ld of contact_right at (%g, %g, %g) m is %.3g m "
@@ -185,25 +177,26 @@ static shb_status project_all(const target *t, mesh_axis axis, double angle, mes
         "face's size)",
         mesh->node_tag[out->right[i]], x[0], x[1], x[2], p.distance, limit);
     out->gap = fmax(out->gap, p.distance);
-    memcpy(out->left + each * i, face_nodes(t, p.face), (size_t)each * sizeof *out->left);
-    memcpy(out->share + each * i, p.shape, (size_t)each * sizeof *out->share);
+    memcpy(out->left + (size_t)each * (size_t)i, face_nodes(t, p.face),
+           (size_t)each * sizeof *out->left);
+    memcpy(out->share + (size_t)each * (size_t)i, p.shape, (size_t)each * sizeof *out->share);
   }
   return SHB_OK;
 }
 
 static shb_status project(const mesh_fe *mesh, mesh_axis axis, int blades, mesh_pairing *out) {
-  target t       = {mesh, mesh_topology_of(mesh->kind), &mesh->set[MESH_CONTACT_LEFT], NULL};
+  left_face t    = {mesh, mesh_topology_of(mesh->kind), &mesh->set[MESH_CONTACT_LEFT], NULL};
   out->projected = true;
   SHB_TRY(take_right(mesh, out));
   t.ball = malloc(((size_t)t.set->n + 1) * sizeof *t.ball);
   SHB_CHECK(t.ball, SHB_ERR_IO, "no memory to match the contact faces");
-  for (int f = 0; f < t.set->n; f++) enclose(&t, f);
-  shb_status status = project_all(&t, axis, SHB_TWO_PI / blades, out);
+  for (int f = 0; f < t.set->n; f++) bounding_ball(&t, f);
+  shb_status status = project_all(&t, axis, 2 * M_PI / blades, out);
   free(t.ball);
   return status;
 }
 
-/* Node for node: right and left become the pairing's. */
+/* Node for node. Takes right and left over and frees them. */
 static shb_status take_match(int n, int *right, int *left, mesh_pairing *out) {
   shb_status status = allocate(n, 1, out);
   for (int i = 0; i < n && status == SHB_OK; i++) {

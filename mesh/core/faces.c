@@ -4,15 +4,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* One face of one set, known by its corners. */
+/* A face, identified by its corners. */
 typedef struct {
   int corner[4]; /* ascending; the first is -1 in a triangle */
   int set, face;
-  int hits; /* elements found behind it */
+  int hits; /* number of elements with this face */
 } face_key;
 
-/* Corners of a face, ascending; a triangle's fourth is -1, which comes first. */
-static void take_corners(const int *nodes, int n, int corner[4]) {
+/* Corners of a face, ascending. The fourth of a triangle is -1, which comes first. */
+static void sort_corners(const int *nodes, int n, int corner[4]) {
   for (int i = 0; i < 4; i++) corner[i] = i < n ? nodes[i] : -1;
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3 - i; j++)
@@ -30,16 +30,16 @@ static int by_corner(const void *a, const void *b) {
   return 0;
 }
 
-/* Keys of all sets, sorted; flag marks their corner nodes. */
-static int fill_keys(const mesh_fe *mesh, face_key *keys, char *flag) {
+/* Keys of the faces of all sets, sorted. flag marks their corner nodes. */
+static int list_set_faces(const mesh_fe *mesh, face_key *keys, char *flag) {
   const mesh_topology *topology = mesh_topology_of(mesh->kind);
   int                  n        = 0;
   for (int s = 0; s < mesh_fe_sets(mesh); s++)
     for (int f = 0; f < mesh->set[s].n; f++) {
       face_key  *key  = &keys[n++];
-      const int *face = mesh->set[s].nodes + topology->face_nodes * f;
+      const int *face = mesh->set[s].nodes + topology->face_nodes * (size_t)f;
       for (int i = 0; i < topology->face_corners; i++) flag[face[i]] = 1;
-      take_corners(face, topology->face_corners, key->corner);
+      sort_corners(face, topology->face_corners, key->corner);
       key->set  = s;
       key->face = f;
       key->hits = 0;
@@ -48,12 +48,12 @@ static int fill_keys(const mesh_fe *mesh, face_key *keys, char *flag) {
   return n;
 }
 
-/* Hand an element's face (its nodes, outward) to every set that holds it. */
-static void hand_over(mesh_fe *mesh, face_key *keys, int n, const int *face) {
+/* Copy the nodes of an element's face, ordered outward, to every set that contains it. */
+static void copy_to_sets(mesh_fe *mesh, face_key *keys, int n, const int *face) {
   const mesh_topology *topology = mesh_topology_of(mesh->kind);
   const size_t         size     = (size_t)topology->face_nodes;
   face_key             wanted;
-  take_corners(face, topology->face_corners, wanted.corner);
+  sort_corners(face, topology->face_corners, wanted.corner);
   face_key *key = bsearch(&wanted, keys, (size_t)n, sizeof *keys, by_corner);
   if (!key) return;
   while (key > keys && by_corner(key - 1, &wanted) == 0) key--;
@@ -78,7 +78,7 @@ static shb_status check_hits(const mesh_fe *mesh, const face_key *keys, int n, c
   return SHB_OK;
 }
 
-/* Every face all of whose corners belong to some set. */
+/* Visit every face all corners of which belong to some set. */
 static void visit_elements(mesh_fe *mesh, face_key *keys, int n, const char *flag) {
   const mesh_topology *topology = mesh_topology_of(mesh->kind);
   for (int e = 0; e < mesh->n_elements; e++) {
@@ -87,7 +87,7 @@ static void visit_elements(mesh_fe *mesh, face_key *keys, int n, const char *fla
       int nodes[MESH_FACE_NODES], all = 1;
       for (int i = 0; i < topology->face_nodes; i++) nodes[i] = element[topology->face[f][i]];
       for (int i = 0; i < topology->face_corners; i++) all = all && flag[nodes[i]];
-      if (all) hand_over(mesh, keys, n, nodes);
+      if (all) copy_to_sets(mesh, keys, n, nodes);
     }
   }
 }
@@ -99,7 +99,7 @@ shb_status mesh_faces_orient(mesh_fe *mesh, const char *name) {
   char      *flag   = calloc((size_t)mesh->n_nodes + 1, 1);
   shb_status status = SHB_OK;
   if (keys && flag) {
-    int n = fill_keys(mesh, keys, flag);
+    int n = list_set_faces(mesh, keys, flag);
     visit_elements(mesh, keys, n, flag);
     status = check_hits(mesh, keys, n, name);
   } else {
@@ -110,7 +110,7 @@ shb_status mesh_faces_orient(mesh_fe *mesh, const char *name) {
   return status;
 }
 
-/* Nodes of face f of an element; false if one is not marked (NULL: all are). */
+/* Nodes of face f of element e. False if one is not marked; marked NULL: all are. */
 static bool marked_face(const mesh_fe *mesh, const char *marked, int e, int f, int *nodes) {
   const mesh_topology *topology = mesh_topology_of(mesh->kind);
   bool                 all      = true;
@@ -121,7 +121,8 @@ static bool marked_face(const mesh_fe *mesh, const char *marked, int e, int f, i
   return all;
 }
 
-/* Candidates as keys (set: element, face: local face) sorted by corners, unless keys is NULL; their number. */
+/* Count the faces with all nodes marked; unless keys is NULL, list them sorted by corners. A key
+ * holds the element in set and the local face in face. */
 static int list_candidates(const mesh_fe *mesh, const char *marked, face_key *keys) {
   const mesh_topology *topology = mesh_topology_of(mesh->kind);
   int                  n        = 0, nodes[MESH_FACE_NODES];
@@ -130,7 +131,7 @@ static int list_candidates(const mesh_fe *mesh, const char *marked, face_key *ke
       if (!marked_face(mesh, marked, e, f, nodes)) continue;
       if (keys) {
         keys[n] = (face_key){.set = e, .face = f};
-        take_corners(nodes, topology->face_corners, keys[n].corner);
+        sort_corners(nodes, topology->face_corners, keys[n].corner);
       }
       n++;
     }
@@ -143,8 +144,8 @@ static int by_element(const void *a, const void *b) {
   return p->set != q->set ? (p->set > q->set) - (p->set < q->set) : p->face - q->face;
 }
 
-/* Keys that are alone with their corners, in the order of elements. */
-static int keep_single(face_key *keys, int n) {
+/* Remove the keys that occur twice; sort the others by element. Returns their number. */
+static int remove_pairs(face_key *keys, int n) {
   int kept = 0;
   for (int i = 0, next; i < n; i = next) {
     for (next = i + 1; next < n && by_corner(&keys[i], &keys[next]) == 0;) next++;
@@ -160,7 +161,7 @@ shb_status mesh_faces_outer(const mesh_fe *mesh, const char *marked, mesh_face_s
   face_key    *keys = malloc(((size_t)n + 1) * sizeof *keys);
   SHB_CHECK(keys, SHB_ERR_IO, "no memory for the faces of the mesh");
   list_candidates(mesh, marked, keys);
-  set->n     = keep_single(keys, n);
+  set->n     = remove_pairs(keys, n);
   set->nodes = malloc((each * (size_t)set->n + 1) * sizeof *set->nodes);
   for (int f = 0; set->nodes && f < set->n; f++)
     marked_face(mesh, NULL, keys[f].set, keys[f].face, set->nodes + each * (size_t)f);

@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/vec3.h"
+
 const char *mesh_set_name(mesh_set_id id) {
   static const char *const name[MESH_N_SETS] = {"root", "contact_right", "contact_left", "load"};
   return name[id];
@@ -48,23 +50,21 @@ const char *mesh_names_set(const mesh_names *names, int set) {
   return names->more[set - MESH_N_SETS].name;
 }
 
-/* Tangential component of the summed area normals of a set (triangles of a face's first three corners), m2. */
-static double facing(const mesh_fe *mesh, const mesh_face_set *set, mesh_axis axis) {
+/* Tangential component of the summed area vectors of a set, m2. Each face counts by the triangle of
+ * its first three corners. */
+static double tangential_area(const mesh_fe *mesh, const mesh_face_set *set, mesh_axis axis) {
   const int width = mesh_topology_of(mesh->kind)->face_nodes;
   double    sum   = 0;
   for (int f = 0; f < set->n; f++) {
     const double *x[3];
-    double        a[3], b[3], centre[3], axes[3][3];
+    double        a[3], b[3], centre[3], axes[3][3], normal[3];
     for (int c = 0; c < 3; c++) x[c] = mesh->coordinates + 3 * (size_t)set->nodes[width * f + c];
-    for (int d = 0; d < 3; d++) {
-      a[d]      = x[1][d] - x[0][d];
-      b[d]      = x[2][d] - x[0][d];
-      centre[d] = (x[0][d] + x[1][d] + x[2][d]) / 3;
-    }
+    vec3_minus(x[1], x[0], a);
+    vec3_minus(x[2], x[0], b);
+    vec3_cross(a, b, normal);
+    for (int d = 0; d < 3; d++) centre[d] = (x[0][d] + x[1][d] + x[2][d]) / 3;
     mesh_axes_at(axis, centre, axes);
-    double normal[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
-                        a[0] * b[1] - a[1] * b[0]};
-    for (int d = 0; d < 3; d++) sum += 0.5 * normal[d] * axes[0][d];
+    sum += 0.5 * vec3_dot(normal, axes[0]);
   }
   return sum;
 }
@@ -72,15 +72,13 @@ static double facing(const mesh_fe *mesh, const mesh_face_set *set, mesh_axis ax
 shb_status mesh_fe_orient(mesh_fe *mesh, mesh_axis axis) {
   mesh_face_set *right = &mesh->set[MESH_CONTACT_RIGHT], *left = &mesh->set[MESH_CONTACT_LEFT];
   if (!right->n || !left->n) return SHB_OK;
-  double r = facing(mesh, right, axis), l = facing(mesh, left, axis);
-  SHB_CHECK(
-      r * l<0, SHB_ERR_INPUT,
-              "groups contact_right and contact_left both face the %s side of the blade about the "
-              "engine axis; one must face each neighbour",
-              r + l> 0
-          ? "right"
-          : "left");
-  if (r < 0) {
+  const double area[2]  = {tangential_area(mesh, right, axis), tangential_area(mesh, left, axis)};
+  const bool   opposite = area[0] * area[1] < 0;
+  SHB_CHECK(opposite, SHB_ERR_INPUT,
+            "groups contact_right and contact_left both face the %s side of the blade about the "
+            "engine axis; one must face each neighbour",
+            area[0] + area[1] > 0 ? "right" : "left");
+  if (area[0] < 0) {
     mesh_face_set swap = *right;
     *right             = *left;
     *left              = swap;
@@ -107,10 +105,9 @@ int mesh_fe_nearest(const mesh_fe *mesh, const double point[3]) {
   int    nearest = 0;
   double best    = INFINITY;
   for (int i = 0; i < mesh->n_nodes; i++) {
-    const double *x = mesh->coordinates + 3 * (size_t)i;
-    double        d[3];
-    for (int k = 0; k < 3; k++) d[k] = x[k] - point[k];
-    double distance = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+    double from[3];
+    vec3_minus(mesh->coordinates + 3 * (size_t)i, point, from);
+    double distance = vec3_dot(from, from); /* squared */
     if (distance < best) {
       best    = distance;
       nearest = i;
@@ -120,7 +117,7 @@ int mesh_fe_nearest(const mesh_fe *mesh, const double point[3]) {
 }
 
 double mesh_fe_extent(const mesh_fe *mesh) {
-  double low[3], high[3], span[3];
+  double low[3], high[3];
   for (int d = 0; d < 3; d++) {
     low[d]  = INFINITY;
     high[d] = -INFINITY;
@@ -130,17 +127,13 @@ double mesh_fe_extent(const mesh_fe *mesh) {
       low[d]  = fmin(low[d], mesh->coordinates[3 * (size_t)i + d]);
       high[d] = fmax(high[d], mesh->coordinates[3 * (size_t)i + d]);
     }
-  for (int d = 0; d < 3; d++) span[d] = high[d] - low[d];
-  return sqrt(span[0] * span[0] + span[1] * span[1] + span[2] * span[2]);
+  return vec3_distance(high, low);
 }
 
 shb_status mesh_fe_near(const mesh_fe *mesh, const double point[3], const char *what, int *node) {
-  double        extent = mesh_fe_extent(mesh), d[3];
-  const double *x;
-  *node = mesh_fe_nearest(mesh, point);
-  x     = mesh->coordinates + 3 * (size_t)*node;
-  for (int k = 0; k < 3; k++) d[k] = x[k] - point[k];
-  double distance = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+  *node                  = mesh_fe_nearest(mesh, point);
+  const double *x        = mesh->coordinates + 3 * (size_t)*node;
+  const double  distance = vec3_distance(x, point), extent = mesh_fe_extent(mesh);
   SHB_CHECK(distance <= MESH_FE_NEAR * extent, SHB_ERR_INPUT,
             "%s: (%g, %g, %g) m is %.3g m off the nearest node of the body, which measures %.3g m; "
             "give a point on it, in mesh axes (that node is at (%.4g, %.4g, %.4g) m)",

@@ -22,7 +22,7 @@ enum {
   MESH_MAX_SETS    = MESH_N_SETS + MESH_MAX_MORE,
   MESH_MAX_VOLUMES = 16,
   MESH_WORD        = 81,
-  MESH_FOUND       = 200 /* of a text that lists groups */
+  MESH_FOUND       = 200 /* length of a list of groups for messages */
 };
 
 /* A named group of element faces; n = 0 if the group is absent. */
@@ -39,26 +39,27 @@ typedef struct {
   int      *connectivity;                   /* [n_elements][nodes] node indices, gmsh order */
   long     *node_tag;                       /* [n_nodes] tag in the mesh file */
   long     *element_tag;                    /* [n_elements] tag in the mesh file */
-  int       n_more;                         /* groups besides the usual four: */
-  char      more[MESH_MAX_MORE][MESH_WORD]; /* their names, */
-  mesh_face_set set[MESH_MAX_SETS];         /* their faces after those of the four */
-  char found[MESH_FOUND]; /* "a, b": groups of the file, also those that were not asked for */
-  int  n_regions;         /* volumes that were asked for, 0: none */
-  char (*region_name)[MESH_WORD]; /* [n_regions] */
-  int *region;                    /* [n_elements] the one each element lies in; NULL without */
+  int       n_more;                         /* number of groups besides the usual four */
+  char      more[MESH_MAX_MORE][MESH_WORD]; /* their names */
+  mesh_face_set set[MESH_MAX_SETS];         /* the usual four, then the others */
+  char          found[MESH_FOUND];          /* "a, b": all groups of the file, for messages */
+  int           n_regions;                  /* number of volumes with a material; 0: one material */
+  char (*region_name)[MESH_WORD];           /* [n_regions] */
+  int *region; /* [n_elements] volume of each element; NULL: one material */
 } mesh_fe;
 
-/* What is read from a mesh file, by its names there. Labels are our names, and the file's unless it has another. */
+/* Groups and volumes to read from a mesh file. A label is the name in the case, a name that in the
+ * file. */
 typedef struct {
   const char *set[MESH_N_SETS]; /* NULL: the usual names */
   int         n_more;           /* further groups of faces */
   struct {
     const char *label, *name;
   } more[MESH_MAX_MORE];
-  int n_volumes; /* groups of elements: every element must be in one */
+  int n_volumes; /* groups of elements; every element must be in one */
   struct {
     const char *label, *name;
-    bool   near; /* no group of the file, but the volume in which at lies, in the file's unit */
+    bool   near; /* true: the volume in which at lies, in the unit of the file; name is not used */
     double at[3];
   } volume[MESH_MAX_VOLUMES];
 } mesh_names;
@@ -66,50 +67,32 @@ typedef struct {
 /* "root", "contact_right", "contact_left", "load" */
 const char *mesh_set_name(mesh_set_id id);
 
-/* All groups of the mesh, 0 .. mesh_fe_sets - 1, and the name of each. */
+/* Number of groups, and the name of each. */
 int         mesh_fe_sets(const mesh_fe *mesh);
 const char *mesh_fe_set_name(const mesh_fe *mesh, int set);
 
-/* Place of the group of that name, -1 if there is none. */
+/* Index of the group of that name, -1 if there is none. */
 int mesh_fe_set_named(const mesh_fe *mesh, const char *name);
 
-/* Add to mesh->found what the file has: as many names as there is room for, then "...". */
+/* Append a group of the file to mesh->found: as many names as fit, then "...". */
 void mesh_fe_note_group(mesh_fe *mesh, const char *name);
 
-/* "the mesh has the groups a, b": ends the text of what is missing. */
+/* "the mesh has the groups a, b", for the message about a missing group. */
 const char *mesh_fe_found(const mesh_fe *mesh, char text[MESH_FOUND + 40]);
 
 /* Name of a group in the file; names may be NULL. */
 const char *mesh_names_set(const mesh_names *names, int set);
 
-/* Read a gmsh .msh file (2.2 or 4.1) with those physical groups, or an .inp file (mesh/io/inp_read.h). Only nodes that an element
- * uses are kept.
- * Errors: SHB_ERR_IO unreadable; SHB_ERR_INPUT neither all tet10 nor all hex20, no volume elements, group root absent or empty,
- * inverted elements (det J <= 0 at a quadrature or corner point; the first five tags are named), a group's
- * face not on the surface of the body. */
-shb_status mesh_fe_read(const char *path, mesh_fe *mesh);
-
-/* The same by other names, with further groups and volumes (names NULL: none); groups may be absent: root and the further ones
- * are mesh_fe_check_groups' to tell. SHB_ERR_INPUT too: a volume that is absent, elements in no volume or in two. */
-shb_status mesh_fe_read_named(const char *path, const mesh_names *names, mesh_fe *mesh);
-shb_status mesh_fe_check_groups(const mesh_fe *mesh, const char *name);
-
-/* Which left node lies on each right node after rotating the left face by the sector angle 2 pi/blades.
- *   match  out  [n_right_unique] pairs are returned through right_nodes/left_nodes, malloc'ed, sorted by right
- * Errors: SHB_ERR_INPUT if counts differ or a distance exceeds 1e-9 m (the distance and node are named). */
-shb_status mesh_fe_match(const mesh_fe *mesh, mesh_axis axis, int blades, int *n_pairs,
-                         int **right_nodes, int **left_nodes);
-
-/* Swap contact_right and contact_left if the outward normal of contact_right has a negative tangential
- * component (right is the side whose normal has a positive one); nothing if either group is empty.
- * Errors: SHB_ERR_INPUT if both point alike. */
+/* Swap contact_right and contact_left if the outward normal of contact_right has a negative
+ * tangential component. Nothing is done if either group is empty.
+ * Errors: SHB_ERR_INPUT if both normals point alike. */
 shb_status mesh_fe_orient(mesh_fe *mesh, mesh_axis axis);
 
-/* The mesh as one of several contact interfaces sees it: its groups (by place, left -1: none) are contact_right and
- * contact_left. It owns nothing. */
+/* View of the mesh for one of several contact interfaces: contact_right and contact_left are the
+ * groups of these indices (left -1: none). The view owns nothing. */
 mesh_fe mesh_fe_facing(const mesh_fe *mesh, int right, int left);
 
-/* mesh_fe_orient for those two groups. */
+/* mesh_fe_orient for the groups of these indices. */
 shb_status mesh_fe_orient_groups(mesh_fe *mesh, mesh_axis axis, int right, int left);
 
 /* Index of the node nearest to point. */
@@ -118,8 +101,10 @@ int mesh_fe_nearest(const mesh_fe *mesh, const double point[3]);
 /* Diagonal of the box around all nodes, m. */
 double mesh_fe_extent(const mesh_fe *mesh);
 
-/* The node nearest to point. SHB_ERR_INPUT: it is further off than MESH_FE_NEAR of the body's extent, so that another point was
- * meant (or another unit); what heads the text, as "probe.tip". */
+/* Node nearest to point.
+ *   what  in  heads the message, e.g. "probe.tip"
+ * Errors: SHB_ERR_INPUT if its distance exceeds MESH_FE_NEAR times the extent of the body: another
+ * point or unit was meant. */
 #define MESH_FE_NEAR 0.1
 shb_status mesh_fe_near(const mesh_fe *mesh, const double point[3], const char *what, int *node);
 

@@ -4,7 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Faces of set a with all their nodes in set b: how many, and the first. marked: [n_nodes] scratch. */
+/* Number of faces of set a all nodes of which are in set b, and the first of them.
+ *   marked  scratch  [n_nodes] */
 static int count(const mesh_fe *mesh, int a, int b, char *marked, int *first) {
   const mesh_face_set *inner = &mesh->set[a], *outer = &mesh->set[b];
   const int            each = mesh_topology_of(mesh->kind)->face_nodes;
@@ -49,7 +50,7 @@ static shb_status check_pair(const mesh_fe *mesh, const char *name, int a, int b
   return SHB_OK;
 }
 
-shb_status mesh_overlap_check(const mesh_fe *mesh, const char *name) {
+static shb_status check_overlap(const mesh_fe *mesh, const char *name) {
   char      *marked = malloc((size_t)mesh->n_nodes + 1);
   shb_status status = SHB_OK;
   SHB_CHECK(marked, SHB_ERR_IO, "%s: no memory for its groups", name);
@@ -59,4 +60,18 @@ shb_status mesh_overlap_check(const mesh_fe *mesh, const char *name) {
     status = check_pair(mesh, name, MESH_CONTACT_RIGHT, MESH_CONTACT_LEFT, marked);
   free(marked);
   return status;
+}
+
+shb_status mesh_fe_check_groups(const mesh_fe *mesh, const char *name) {
+  char found[MESH_FOUND + 40];
+  SHB_CHECK(mesh->set[MESH_ROOT].n > 0, SHB_ERR_INPUT,
+            "%s: group root is absent or empty; a physical surface (in .inp a *SURFACE or *NSET) "
+            "of that name, or a rule in mesh.groups, says which faces are clamped; %s",
+            name, mesh_fe_found(mesh, found));
+  for (int s = MESH_N_SETS; s < mesh_fe_sets(mesh); s++)
+    SHB_CHECK(mesh->set[s].n > 0, SHB_ERR_INPUT,
+              "%s: group %s is absent or empty; a physical surface (in .inp a *SURFACE or *NSET) "
+              "of that name, or a rule in mesh.groups, says which faces it is; %s",
+              name, mesh_fe_set_name(mesh, s), mesh_fe_found(mesh, found));
+  return check_overlap(mesh, name);
 }

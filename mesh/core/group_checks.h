@@ -1,12 +1,17 @@
-/* Groups that cannot be right together: faces that are clamped and shall move. */
+/* Checks of groups: those that must have faces, and those that exclude each other. */
 #ifndef MESH_CORE_GROUP_CHECKS_H
 #define MESH_CORE_GROUP_CHECKS_H
 
 #include "mesh/core/fe_mesh.h"
 
-/* Refuses a contact face all nodes of which are in group root, another group that lies there as a whole, and a face that is both
- * contact_right and contact_left; the groups, how many faces, and where the first is are told. Faces that meet along an edge are
- * well. name heads the text. SHB_ERR_INPUT; SHB_ERR_IO: no memory. */
-shb_status mesh_overlap_check(const mesh_fe *mesh, const char *name);
+/* Check that group root and the groups besides the usual four have faces, and that no groups
+ * overlap.
+ *
+ * Refused are a contact face all nodes of which are in group root, another group that lies in root
+ * as a whole, and a face that is both contact_right and contact_left. Faces that meet along an edge
+ * are allowed. The message names the groups, the number of faces and the place of the first.
+ *   name  in  heads the message
+ * Errors: SHB_ERR_INPUT; SHB_ERR_IO no memory. */
+shb_status mesh_fe_check_groups(const mesh_fe *mesh, const char *name);
 
 #endif

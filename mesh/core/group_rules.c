@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/vec3.h"
 #include "mesh/core/faces.h"
 #include "mesh/core/triangle.h"
 
@@ -36,17 +37,17 @@ mesh_names mesh_rules_labels(const mesh_rules *rules) {
   return names;
 }
 
-/* What the rules look at. */
+/* The surface of the body, on which rules select faces. */
 typedef struct {
   const mesh_fe       *mesh;
   const mesh_topology *topology;
   const char          *file;
   mesh_axis            axis;
-  mesh_face_set        outer;  /* the surface of the body */
+  mesh_face_set        outer;
   double               extent; /* m, diagonal of the body's box */
 } surface;
 
-static const double *place(const surface *s, int node) {
+static const double *node_at(const surface *s, int node) {
   return s->mesh->coordinates + 3 * (size_t)node;
 }
 
@@ -54,32 +55,29 @@ static const int *face_nodes(const surface *s, int face) {
   return s->outer.nodes + s->topology->face_nodes * (size_t)face;
 }
 
-static double length(const double v[3]) {
-  return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
-
-/* How far a point is off the rule's plane or radius, m. */
-static double off(const surface *s, const mesh_rule *rule, const double x[3]) {
+/* Distance of a point from the plane or the radius of a rule, m. */
+static double deviation(const surface *s, const mesh_rule *rule, const double x[3]) {
   if (rule->kind == MESH_RULE_PLANE) {
-    double sum = 0;
-    for (int d = 0; d < 3; d++) sum += rule->normal[d] * (x[d] - rule->at[d]);
-    return fabs(sum) / length(rule->normal);
+    double from[3];
+    vec3_minus(x, rule->at, from);
+    return fabs(vec3_dot(rule->normal, from)) / vec3_norm(rule->normal);
   }
-  double along[3], across[3], dot = 0;
-  mesh_axis_vector(s->axis, along);
-  for (int d = 0; d < 3; d++) dot += along[d] * x[d];
-  for (int d = 0; d < 3; d++) across[d] = x[d] - dot * along[d];
-  return fabs(length(across) - rule->radius);
+  double axial[3], across[3];
+  mesh_axis_vector(s->axis, axial);
+  const double along = vec3_dot(axial, x);
+  for (int d = 0; d < 3; d++) across[d] = x[d] - along * axial[d];
+  return fabs(vec3_norm(across) - rule->radius);
 }
 
-/* taken[face] = 1 where all nodes fit; *least: the greatest deviation of the face that fits best. */
+/* taken[face] = 1 where all nodes are within the tolerance. Returns the number of these faces.
+ *   least  out  deviation of the face that fits best, m */
 static int take_fitting(const surface *s, const mesh_rule *rule, char *taken, double *least) {
   int n  = 0;
   *least = INFINITY;
   for (int f = 0; f < s->outer.n; f++) {
     double worst = 0;
     for (int i = 0; i < s->topology->face_nodes; i++)
-      worst = fmax(worst, off(s, rule, place(s, face_nodes(s, f)[i])));
+      worst = fmax(worst, deviation(s, rule, node_at(s, face_nodes(s, f)[i])));
     taken[f] = worst <= rule->tolerance;
     n += taken[f];
     *least = fmin(*least, worst);
@@ -96,13 +94,13 @@ static double face_distance(const surface *s, int face, const double at[3]) {
   return least;
 }
 
-/* Side of a face by its two corners. */
+/* Edge of a face by its two corners. */
 typedef struct {
   int low, high, face;
-} side;
+} edge;
 
 static int by_corners(const void *a, const void *b) {
-  const side *p = a, *q = b;
+  const edge *p = a, *q = b;
   return p->low != q->low ? (p->low > q->low) - (p->low < q->low)
                           : (p->high > q->high) - (p->high < q->high);
 }
@@ -116,33 +114,35 @@ static void face_normal(const surface *s, int face, double normal[3]) {
     mesh_triangle_area(&part[i], one);
     for (int d = 0; d < 3; d++) normal[d] += one[d];
   }
-  double size = length(normal);
+  double size = vec3_norm(normal);
   for (int d = 0; d < 3; d++) normal[d] /= size;
 }
 
-/* Do the two faces go on without an edge? */
-static bool smooth(const surface *s, int a, int b) {
+/* Do the two faces meet without an edge (MESH_RULE_EDGE)? */
+static bool is_smooth(const surface *s, int a, int b) {
   double p[3], q[3];
   face_normal(s, a, p);
   face_normal(s, b, q);
-  return p[0] * q[0] + p[1] * q[1] + p[2] * q[2] > cos(MESH_RULE_EDGE);
+  return vec3_dot(p, q) > cos(MESH_RULE_EDGE);
 }
 
-/* Sides of all faces, sorted: the two of an edge are neighbours. NULL when out of memory. */
-static side *list_sides(const surface *s) {
+/* Edges of all faces, sorted, so that the two faces of an edge are neighbours. NULL when out of
+ * memory. */
+static edge *list_edges(const surface *s) {
   const int n    = s->topology->face_corners;
-  side     *list = malloc(((size_t)n * (size_t)s->outer.n + 1) * sizeof *list);
+  edge     *list = malloc(((size_t)n * (size_t)s->outer.n + 1) * sizeof *list);
   for (int f = 0; list && f < s->outer.n; f++)
     for (int i = 0; i < n; i++) {
       int a = face_nodes(s, f)[i], b = face_nodes(s, f)[(i + 1) % n];
-      list[n * f + i] = (side){a < b ? a : b, a < b ? b : a, f};
+      list[n * f + i] = (edge){a < b ? a : b, a < b ? b : a, f};
     }
   if (list) qsort(list, (size_t)n * (size_t)s->outer.n, sizeof *list, by_corners);
   return list;
 }
 
-/* Spread from face first across smooth edges; queue: [faces]. */
-static void spread(const surface *s, const side *list, int first, int *queue, char *taken) {
+/* Take face first and all faces reached from it across smooth edges.
+ *   queue  scratch  [faces] */
+static void flood_fill(const surface *s, const edge *list, int first, int *queue, char *taken) {
   const int corners = s->topology->face_corners;
   const int total   = corners * s->outer.n;
   int       n       = 1;
@@ -151,11 +151,11 @@ static void spread(const surface *s, const side *list, int first, int *queue, ch
   for (int at = 0; at < n; at++)
     for (int i = 0; i < corners; i++) {
       int  a = face_nodes(s, queue[at])[i], b = face_nodes(s, queue[at])[(i + 1) % corners];
-      side key = {a < b ? a : b, a < b ? b : a, 0}, *found;
+      edge key = {a < b ? a : b, a < b ? b : a, 0}, *found;
       found    = bsearch(&key, list, (size_t)total, sizeof *list, by_corners);
       while (found > list && by_corners(found - 1, &key) == 0) found--;
       for (; found < list + total && by_corners(found, &key) == 0; found++) {
-        if (taken[found->face] || !smooth(s, queue[at], found->face)) continue;
+        if (taken[found->face] || !is_smooth(s, queue[at], found->face)) continue;
         taken[found->face] = 1;
         queue[n++]         = found->face;
       }
@@ -170,14 +170,14 @@ static shb_status take_nearest(const surface *s, const mesh_rule *rule, int id, 
     if (distance < least) first = f;
     least = fmin(least, distance);
   }
-  SHB_CHECK(least <= MESH_RULE_FARTHEST * s->extent, SHB_ERR_INPUT,
+  SHB_CHECK(least <= MESH_RULE_MAX_DISTANCE * s->extent, SHB_ERR_INPUT,
             "mesh.groups.%s.nearest: (%g, %g, %g) m is %.3g m off the body of %s, which measures "
             "%.3g m; name a point on the face that is meant, in mesh axes",
             mesh_fe_set_name(s->mesh, id), rule->at[0], rule->at[1], rule->at[2], least, s->file,
             s->extent);
-  side *list  = list_sides(s);
+  edge *list  = list_edges(s);
   int  *queue = malloc(((size_t)s->outer.n + 1) * sizeof *queue);
-  if (list && queue) spread(s, list, first, queue, taken);
+  if (list && queue) flood_fill(s, list, first, queue, taken);
   bool complete = list && queue;
   free(list);
   free(queue);
@@ -185,7 +185,7 @@ static shb_status take_nearest(const surface *s, const mesh_rule *rule, int id, 
   return SHB_OK;
 }
 
-static shb_status refuse_none(const surface *s, const mesh_rule *rule, int id, double least) {
+static shb_status refuse_empty(const surface *s, const mesh_rule *rule, int id, double least) {
   if (rule->kind == MESH_RULE_PLANE)
     SHB_FAIL(SHB_ERR_INPUT,
              "mesh.groups.%s: %s has no face in the plane through (%g, %g, %g) m; the nearest is "
@@ -216,14 +216,14 @@ static shb_status apply_one(const surface *s, const mesh_rule *rule, int id, mes
     SHB_TRY(take_nearest(s, rule, id, taken));
   } else {
     double least;
-    SHB_CHECK(rule->kind != MESH_RULE_PLANE || length(rule->normal) > 0, SHB_ERR_INPUT,
+    SHB_CHECK(rule->kind != MESH_RULE_PLANE || vec3_norm(rule->normal) > 0, SHB_ERR_INPUT,
               "mesh.groups.%s.normal: has no direction", mesh_fe_set_name(s->mesh, id));
-    SHB_CHECK(rule->tolerance <= MESH_RULE_WIDEST * s->extent, SHB_ERR_INPUT,
+    SHB_CHECK(rule->tolerance <= MESH_RULE_MAX_TOLERANCE * s->extent, SHB_ERR_INPUT,
               "mesh.groups.%s.tolerance: %g m is too wide for the body of %s, which measures %.3g "
               "m: other faces would be taken too; give at most %.2g m",
               mesh_fe_set_name(s->mesh, id), rule->tolerance, s->file, s->extent,
-              MESH_RULE_WIDEST * s->extent);
-    if (take_fitting(s, rule, taken, &least) == 0) return refuse_none(s, rule, id, least);
+              MESH_RULE_MAX_TOLERANCE * s->extent);
+    if (take_fitting(s, rule, taken, &least) == 0) return refuse_empty(s, rule, id, least);
   }
   return copy_taken(s, taken, &mesh->set[id]);
 }

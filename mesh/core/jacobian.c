@@ -6,25 +6,25 @@
 
 enum { POINTS = 43 };
 
-/* Shape function gradients at the points that are looked at. */
+/* Gradients of the shape functions at the points where J is checked. */
 typedef struct {
   int    n;
   double gradient[POINTS][MESH_NODES][3];
-} probes;
+} sample_points;
 
-static void add(mesh_kind kind, const double at[3], probes *p) {
+static void add(mesh_kind kind, const double at[3], sample_points *p) {
   double shape[MESH_NODES];
   mesh_shape(kind, at, shape, p->gradient[p->n++]);
 }
 
-static void add_gauss(int n, const double *point, probes *p) {
+static void add_gauss(int n, const double *point, sample_points *p) {
   for (int i = 0; i < n * n * n; i++) {
     const double at[3] = {point[i % n], point[i / n % n], point[i / (n * n)]};
     add(MESH_HEX20, at, p);
   }
 }
 
-static void make_probes(mesh_kind kind, probes *p) {
+static void make_points(mesh_kind kind, sample_points *p) {
   const mesh_topology *topology = mesh_topology_of(kind);
   p->n                          = 0;
   for (int c = 0; c < topology->corners; c++) add(kind, topology->place[c], p);
@@ -42,8 +42,8 @@ static void make_probes(mesh_kind kind, probes *p) {
   }
 }
 
-/* J = dx/d(reference) of an element at a probe; its determinant. */
-static double jacobian_at(const mesh_fe *mesh, int element, const probes *p, int q,
+/* J = dx/d(r, s, t) of an element at a point; returns its determinant. */
+static double jacobian_at(const mesh_fe *mesh, int element, const sample_points *p, int q,
                           double J[3][3]) {
   const int  nodes = mesh_topology_of(mesh->kind)->nodes;
   const int *node  = mesh->connectivity + nodes * (size_t)element;
@@ -58,7 +58,7 @@ static double jacobian_at(const mesh_fe *mesh, int element, const probes *p, int
          J[0][2] * (J[1][0] * J[2][1] - J[1][1] * J[2][0]);
 }
 
-static double least(const mesh_fe *mesh, int element, const probes *p) {
+static double smallest(const mesh_fe *mesh, int element, const sample_points *p) {
   double J[3][3], minimum = INFINITY;
   for (int q = 0; q < p->n; q++) {
     double det = jacobian_at(mesh, element, p, q, J);
@@ -67,39 +67,39 @@ static double least(const mesh_fe *mesh, int element, const probes *p) {
   return minimum;
 }
 
-double mesh_jacobian_sharpest(const mesh_fe *mesh, double x[3]) {
+double mesh_jacobian_worst_corner(const mesh_fe *mesh, double x[3]) {
   const mesh_topology *topology = mesh_topology_of(mesh->kind);
-  probes               p;
-  double               J[3][3], sharpest = INFINITY;
-  make_probes(mesh->kind, &p);
+  sample_points        p;
+  double               J[3][3], smallest_sine = INFINITY;
+  make_points(mesh->kind, &p);
   for (int e = 0; e < mesh->n_elements; e++)
     for (int c = 0; c < topology->corners; c++) {
       double sine = jacobian_at(mesh, e, &p, c, J);
       for (int d = 0; d < 3; d++)
         sine /= sqrt(J[0][d] * J[0][d] + J[1][d] * J[1][d] + J[2][d] * J[2][d]);
-      if (!(sine < sharpest)) continue;
-      sharpest       = sine;
+      if (!(sine < smallest_sine)) continue;
+      smallest_sine  = sine;
       const int node = mesh->connectivity[topology->nodes * (size_t)e + (size_t)c];
       memcpy(x, mesh->coordinates + 3 * (size_t)node, 3 * sizeof *x);
     }
-  return sharpest;
+  return smallest_sine;
 }
 
 double mesh_jacobian_least(const mesh_fe *mesh, int element) {
-  probes p;
-  make_probes(mesh->kind, &p);
-  return least(mesh, element, &p);
+  sample_points p;
+  make_points(mesh->kind, &p);
+  return smallest(mesh, element, &p);
 }
 
 int mesh_jacobian_inverted(const mesh_fe *mesh) {
-  probes p;
-  int    bad = 0;
-  make_probes(mesh->kind, &p);
-  for (int e = 0; e < mesh->n_elements; e++) bad += !(least(mesh, e, &p) > 0);
+  sample_points p;
+  int           bad = 0;
+  make_points(mesh->kind, &p);
+  for (int e = 0; e < mesh->n_elements; e++) bad += !(smallest(mesh, e, &p) > 0);
   return bad;
 }
 
-/* Straighten the edges of an element; number of nodes that moved. */
+/* Straighten the edges of an element. Returns the number of nodes that moved. */
 static int straighten_edges(mesh_fe *mesh, int element, char *moved) {
   const mesh_topology *topology = mesh_topology_of(mesh->kind);
   const int           *node     = mesh->connectivity + topology->nodes * (size_t)element;
@@ -117,23 +117,23 @@ static int straighten_edges(mesh_fe *mesh, int element, char *moved) {
 }
 
 void mesh_jacobian_straighten(mesh_fe *mesh, char *moved) {
-  probes p;
-  make_probes(mesh->kind, &p);
-  for (int again = 1; again;) {
-    again = 0;
+  sample_points p;
+  make_points(mesh->kind, &p);
+  for (int straightened = 1; straightened;) {
+    straightened = 0;
     for (int e = 0; e < mesh->n_elements; e++)
-      if (!(least(mesh, e, &p) > 0)) again += straighten_edges(mesh, e, moved);
+      if (!(smallest(mesh, e, &p) > 0)) straightened += straighten_edges(mesh, e, moved);
   }
 }
 
 shb_status mesh_jacobian_check(const mesh_fe *mesh, const char *name) {
-  probes p;
-  char   tags[160] = "";
-  size_t used      = 0;
-  int    bad       = 0;
-  make_probes(mesh->kind, &p);
+  sample_points p;
+  char          tags[160] = "";
+  size_t        used      = 0;
+  int           bad       = 0;
+  make_points(mesh->kind, &p);
   for (int e = 0; e < mesh->n_elements; e++) {
-    if (least(mesh, e, &p) > 0) continue;
+    if (smallest(mesh, e, &p) > 0) continue;
     if (bad++ < 5)
       used += (size_t)snprintf(tags + used, sizeof tags - used, "%s%ld", used ? ", " : "",
                                mesh->element_tag[e]);

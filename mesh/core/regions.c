@@ -22,7 +22,7 @@ shb_status mesh_regions_begin(const char *path, const mesh_names *names, mesh_fe
   return SHB_OK;
 }
 
-void mesh_regions_put(mesh_regions *r, int element, int volume) {
+void mesh_regions_assign(mesh_regions *r, int element, int volume) {
   int *region = &r->mesh->region[element];
   if (*region >= 0 && *region != volume && r->twice++ == 0) {
     r->element = element;

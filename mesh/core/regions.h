@@ -1,4 +1,4 @@
-/* Which volume each element lies in: every one in exactly one of those that are asked for. */
+/* Volume of each element: every element lies in exactly one of the volumes asked for. */
 #ifndef MESH_CORE_REGIONS_H
 #define MESH_CORE_REGIONS_H
 
@@ -8,20 +8,24 @@ typedef struct {
   const char       *path;
   const mesh_names *names;
   mesh_fe          *mesh;
-  int twice, element, other; /* elements in two volumes; the first, its other volume */
+  int               twice, element,
+      other; /* number of elements in two volumes; the first of them, its other volume */
 } mesh_regions;
 
-/* Names of the further groups into an empty mesh; names may be NULL. */
+/* Names of the groups besides the usual four, put into an empty mesh; names may be NULL. */
 void mesh_regions_name(const mesh_names *names, mesh_fe *mesh);
 
-/* Makes mesh->region for the names' volumes, no element in any. path heads error texts. SHB_ERR_IO no memory. */
+/* Make mesh->region for the volumes of names, with no element in any.
+ *   path  in  heads the messages
+ * Errors: SHB_ERR_IO no memory. */
 shb_status mesh_regions_begin(const char *path, const mesh_names *names, mesh_fe *mesh,
                               mesh_regions *regions);
 
-/* An element lies in volume i. */
-void mesh_regions_put(mesh_regions *regions, int element, int volume);
+/* Element lies in this volume. */
+void mesh_regions_assign(mesh_regions *regions, int element, int volume);
 
-/* SHB_ERR_INPUT: elements in no volume, or in two; their number and one of them are named. */
+/* SHB_ERR_INPUT if elements lie in no volume or in two; the message gives their number and one of
+ * them. */
 shb_status mesh_regions_end(const mesh_regions *regions);
 
 #endif

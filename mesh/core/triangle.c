@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "mesh/base/vec3.h"
+
 static const int six[4][3]   = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}};
 static const int eight[6][3] = {{0, 4, 7}, {4, 1, 5}, {5, 2, 6}, {6, 3, 7}, {4, 5, 6}, {4, 6, 7}};
 
@@ -16,54 +18,45 @@ int mesh_triangles(const mesh_fe *mesh, const int *face, mesh_triangle part[MESH
   return n;
 }
 
-static void minus(const double a[3], const double b[3], double out[3]) {
-  for (int d = 0; d < 3; d++) out[d] = a[d] - b[d];
-}
-
-static double dot(const double a[3], const double b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 void mesh_triangle_area(const mesh_triangle *triangle, double area[3]) {
   double a[3], b[3];
-  minus(triangle->x[1], triangle->x[0], a);
-  minus(triangle->x[2], triangle->x[0], b);
-  for (int d = 0; d < 3; d++)
-    area[d] = (a[(d + 1) % 3] * b[(d + 2) % 3] - a[(d + 2) % 3] * b[(d + 1) % 3]) / 2;
+  vec3_minus(triangle->x[1], triangle->x[0], a);
+  vec3_minus(triangle->x[2], triangle->x[0], b);
+  vec3_cross(a, b, area);
+  for (int d = 0; d < 3; d++) area[d] /= 2;
 }
 
 static double distance(const mesh_triangle *triangle, const double at[3], const double weight[3],
                        double foot[3]) {
-  double sum = 0;
   for (int d = 0; d < 3; d++) {
     foot[d] = 0;
     for (int c = 0; c < 3; c++) foot[d] += weight[c] * triangle->x[c][d];
-    sum += (foot[d] - at[d]) * (foot[d] - at[d]);
   }
-  return sqrt(sum);
+  return vec3_distance(foot, at);
 }
 
-/* Nearest point of the side from corner c to the next. */
+/* Barycentric coordinates of the nearest point on the side from corner c to the next. */
 static void on_side(const mesh_triangle *triangle, const double at[3], int c, double weight[3]) {
   double along[3], from[3];
   int    next = (c + 1) % 3;
-  minus(triangle->x[next], triangle->x[c], along);
-  minus(at, triangle->x[c], from);
-  double square       = dot(along, along);
-  double share        = square > 0 ? fmin(1, fmax(0, dot(from, along) / square)) : 0;
+  vec3_minus(triangle->x[next], triangle->x[c], along);
+  vec3_minus(at, triangle->x[c], from);
+  double square       = vec3_dot(along, along);
+  double share        = square > 0 ? fmin(1, fmax(0, vec3_dot(from, along) / square)) : 0;
   weight[c]           = 1 - share;
   weight[next]        = share;
   weight[(c + 2) % 3] = 0;
 }
 
-/* The foot of the perpendicular if it is inside, else the nearest point of a side. */
+/* The foot of the perpendicular if it lies inside, else the nearest point of a side. */
 double mesh_triangle_closest(const mesh_triangle *triangle, const double at[3], double foot[3],
                              double weight[3]) {
   double a[3], b[3], v[3], w[3];
-  minus(triangle->x[1], triangle->x[0], a);
-  minus(triangle->x[2], triangle->x[0], b);
-  minus(at, triangle->x[0], v);
-  double aa = dot(a, a), ab = dot(a, b), bb = dot(b, b), va = dot(v, a), vb = dot(v, b);
+  vec3_minus(triangle->x[1], triangle->x[0], a);
+  vec3_minus(triangle->x[2], triangle->x[0], b);
+  vec3_minus(at, triangle->x[0], v);
+  double aa = vec3_dot(a, a), ab = vec3_dot(a, b), bb = vec3_dot(b, b), va = vec3_dot(v, a),
+         vb       = vec3_dot(v, b);
   double det      = aa * bb - ab * ab;
   double inner[3] = {0, (bb * va - ab * vb) / det, (aa * vb - ab * va) / det};
   inner[0]        = 1 - inner[1] - inner[2];

@@ -11,7 +11,7 @@
 #include "mesh/gmsh/provenance.h"
 #include "mesh/gmsh/session.h"
 
-/* All lines but those of the $Periodic section. */
+/* Copy all lines except the $Periodic section. */
 static bool copy_lines(FILE *from, FILE *to) {
   char  *line = NULL;
   size_t size = 0;
@@ -35,14 +35,15 @@ static shb_status copy_file(const char *raw, const char *temporary, const char *
   return SHB_OK;
 }
 
-/* gmsh's own text of the model; it would not say why a file cannot be opened. */
+/* Text of the model as gmsh writes it. The file is opened here first, as gmsh gives no reason when
+ * it cannot be opened. */
 static shb_status write_raw(const char *raw, const char *path) {
   FILE *file = fopen(raw, "wb");
   SHB_CHECK(file, SHB_ERR_IO, "%s: cannot be written: %s", path, strerror(errno));
   fclose(file);
   int ierr = 0;
   gmshWrite(raw, &ierr);
-  if (ierr) return mesh_kernel_fail(SHB_ERR_IO, __FILE__, __LINE__, path);
+  if (ierr) return mesh_session_fail(SHB_ERR_IO, __FILE__, __LINE__, path);
   return SHB_OK;
 }
 
@@ -61,7 +62,7 @@ shb_status mesh_export(const char *path, const shb_provenance *provenance) {
     free(temporary);
     SHB_FAIL(SHB_ERR_IO, "%s: no memory to write it", path);
   }
-  sprintf(raw, "%s.msh", temporary); /* gmsh goes by the ending */
+  sprintf(raw, "%s.msh", temporary); /* gmsh chooses the format by the ending */
   shb_status status = write_all(raw, temporary, path, provenance);
   unlink(raw);
   if (status != SHB_OK) unlink(temporary);

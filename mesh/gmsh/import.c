@@ -13,12 +13,12 @@
 
 enum { GMSH_TET4 = 4, GMSH_HEX8 = 5, GMSH_HEX27 = 12 };
 
-/* gmsh's nodes, found by tag. */
+/* gmsh's nodes, sorted by tag. */
 typedef struct {
   size_t  n;
   size_t *tag;    /* [n] */
   double *xyz;    /* [n][3] m */
-  size_t *by_tag; /* [n][2] tag, place in tag[]; ascending */
+  size_t *by_tag; /* [n][2] tag, index in tag[]; ascending */
   int    *index;  /* [n] index in the mesh, -1: unused */
 } node_table;
 
@@ -55,7 +55,7 @@ static shb_status table_fill(const char *name, node_table *table) {
   return SHB_OK;
 }
 
-/* Place of a tag in the table, or n. */
+/* Index of a tag in the table, or n. */
 static size_t table_find(const node_table *table, size_t tag) {
   const size_t *found = bsearch(&tag, table->by_tag, table->n, 2 * sizeof *table->by_tag, by_first);
   return found ? found[1] : table->n;
@@ -104,7 +104,7 @@ static shb_status check_types(const char *name, mesh_kind *kind) {
   return SHB_OK;
 }
 
-/* connectivity[i] = place in the table for now; marks the nodes used. */
+/* Set connectivity[i] to the index in the table, for take_nodes to replace; mark the nodes used. */
 static shb_status take_connectivity(const char *name, node_table *table, const size_t *tags,
                                     const size_t *nodes, mesh_fe *mesh) {
   const size_t each = (size_t)mesh_topology_of(mesh->kind)->nodes;
@@ -166,7 +166,8 @@ static shb_status take_volume(const char *name, node_table *table, mesh_fe *mesh
   return status;
 }
 
-/* Append n faces, given by node tags, to a set. */
+/* Append n faces to a set.
+ *   nodes  in  [n][face_nodes] tags */
 static shb_status append_faces(const char *name, const node_table *table, const size_t *nodes,
                                size_t n, mesh_fe *mesh, int id) {
   const size_t   each = (size_t)mesh_topology_of(mesh->kind)->face_nodes;
@@ -209,7 +210,7 @@ static shb_status take_surface(const char *name, const node_table *table, int en
   return status;
 }
 
-/* Which of our sets a physical surface is; their number if none. */
+/* Set that a physical surface belongs to; mesh_fe_sets(mesh) if none. */
 static shb_status which_set(const char *name, const mesh_names *names, mesh_fe *mesh, int group,
                             int *id) {
   char *label = NULL;
@@ -257,7 +258,8 @@ shb_status mesh_import(const char *name, const mesh_names *names, mesh_fe *mesh)
   if (status == SHB_OK) status = take_volume(name, &table, mesh);
   if (status == SHB_OK) status = take_groups(name, names, &table, mesh);
   if (status == SHB_OK) status = mesh_faces_orient(mesh, name);
-  if (status == SHB_OK && names && names->n_volumes) status = mesh_volumes_take(name, names, mesh);
+  if (status == SHB_OK && names && names->n_volumes)
+    status = mesh_volumes_assign(name, names, mesh);
   table_free(&table);
   if (status != SHB_OK) mesh_fe_free(mesh);
   return status;

@@ -1,14 +1,16 @@
-/* From gmsh's current model to a mesh in memory. */
+/* gmsh's current model copied to a mesh in memory. */
 #ifndef MESH_GMSH_IMPORT_H
 #define MESH_GMSH_IMPORT_H
 
 #include "mesh/core/fe_mesh.h"
 
-/* Copy the second-order tetrahedra or hexahedra, their nodes and the four groups out of gmsh's current model, groups
- * oriented outward; name heads error texts. names: of the physical groups, NULL: the usual
- * four; a group that is not there is empty. A gmsh session must be open. Not checked: inverted elements.
- * Errors: SHB_ERR_INPUT other elements than ten-node tetrahedra or twenty-node
- * hexahedra, both kinds, broken references. */
+/* Copy the second-order elements, their nodes and the groups of gmsh's current model. The faces of
+ * the groups are ordered outward. A gmsh session must be open. Inverted elements are not detected.
+ *   name   in   heads the messages
+ *   names  in   names of the physical groups; NULL: the usual four. A missing group is empty.
+ *   mesh   out  free with mesh_fe_free
+ * Errors: SHB_ERR_INPUT if elements are neither all ten-node tetrahedra nor all twenty-node
+ * hexahedra, or a node is absent. SHB_ERR_IO no memory. */
 shb_status mesh_import(const char *name, const mesh_names *names, mesh_fe *mesh);
 
 #endif

@@ -32,7 +32,7 @@ shb_status mesh_provenance_append(const char *path, const shb_provenance *proven
   return SHB_OK;
 }
 
-/* Skip to just after the line that equals mark; false at the end of the file. */
+/* Read up to the line that equals mark. False at the end of the section or the file. */
 static bool skip_to(FILE *file, const char *mark, char **line, size_t *size) {
   while (getline(line, size, file) > 0) {
     (*line)[strcspn(*line, "\n")] = 0;

@@ -8,80 +8,82 @@
 #include <string.h>
 #include <unistd.h>
 
-static const int kept[MESH_KERNEL_SIGNALS] = {SIGINT, SIGTERM, SIGHUP, SIGFPE, SIGSEGV};
+static const int saved_signals[MESH_SESSION_SIGNALS] = {SIGINT, SIGTERM, SIGHUP, SIGFPE, SIGSEGV};
 
-static void keep_handlers(mesh_kernel *kernel) {
-  for (int i = 0; i < MESH_KERNEL_SIGNALS; i++) sigaction(kept[i], NULL, &kernel->handler[i]);
+static void save_handlers(mesh_session *session) {
+  for (int i = 0; i < MESH_SESSION_SIGNALS; i++)
+    sigaction(saved_signals[i], NULL, &session->handler[i]);
 }
 
-static void restore_handlers(const mesh_kernel *kernel) {
-  for (int i = 0; i < MESH_KERNEL_SIGNALS; i++) sigaction(kept[i], &kernel->handler[i], NULL);
+static void restore_handlers(const mesh_session *session) {
+  for (int i = 0; i < MESH_SESSION_SIGNALS; i++)
+    sigaction(saved_signals[i], &session->handler[i], NULL);
 }
 
-/* OpenCASCADE tells its faults on standard output, in colours; gmsh's logger has them too. */
-static int silenced = -1;
+/* OpenCASCADE prints errors on standard output. gmsh's logger holds them as well. */
+static int saved_stdout = -1;
 
-static void silence(void) {
+static void mute_stdout(void) {
   int null = open("/dev/null", O_WRONLY);
   fflush(stdout);
-  silenced = null >= 0 ? dup(STDOUT_FILENO) : -1;
-  if (silenced >= 0) dup2(null, STDOUT_FILENO);
+  saved_stdout = null >= 0 ? dup(STDOUT_FILENO) : -1;
+  if (saved_stdout >= 0) dup2(null, STDOUT_FILENO);
   if (null >= 0) close(null);
 }
 
-static void speak(void) {
+static void unmute_stdout(void) {
   fflush(stdout);
-  if (silenced < 0) return;
-  dup2(silenced, STDOUT_FILENO);
-  close(silenced);
-  silenced = -1;
+  if (saved_stdout < 0) return;
+  dup2(saved_stdout, STDOUT_FILENO);
+  close(saved_stdout);
+  saved_stdout = -1;
 }
 
-/* gmsh is up, and what it reads: exit handlers have no arguments. */
-static char at_work[512];
+/* The file that gmsh reads, "" without a session. A global, as exit handlers have no arguments. */
+static char reading[512];
 
-/* "Exit" in a script makes gmsh call exit(0), as if all were done. */
-static void on_exit_at_work(void) {
-  if (!at_work[0]) return;
+/* "Exit" in a script makes gmsh call exit(0), which would report success. */
+static void refuse_exit(void) {
+  if (!reading[0]) return;
   fprintf(stderr,
           "shroudhb: error: %s: ends the program while it is read; leave out Exit in the script\n",
-          at_work);
+          reading);
   _exit(SHB_ERR_INPUT);
 }
 
-static void guard(const char *what) {
-  static int guarded;
-  if (!guarded) guarded = atexit(on_exit_at_work) == 0;
-  snprintf(at_work, sizeof at_work, "%s", what);
+static void guard_exit(const char *what) {
+  static int registered;
+  if (!registered) registered = atexit(refuse_exit) == 0;
+  snprintf(reading, sizeof reading, "%s", what);
 }
 
-shb_status mesh_kernel_open(mesh_kernel *kernel) {
+shb_status mesh_session_open(mesh_session *session) {
   static const char *const option[] = {"General.Terminal", "General.AbortOnError",
                                        "General.SaveSession", "General.SaveOptions"};
   char                     name[]   = "shroudhb";
   char                    *argv[]   = {name, NULL};
   int                      ierr     = 0;
-  keep_handlers(kernel);
+  save_handlers(session);
   gmshInitialize(1, argv, 0, &ierr);
-  restore_handlers(kernel);
+  restore_handlers(session);
   SHB_CHECK(ierr == 0, SHB_ERR_IO, "gmsh cannot be started");
   for (size_t i = 0; i < sizeof option / sizeof *option; i++)
     gmshOptionSetNumber(option[i], 0, &ierr);
   gmshOptionSetNumber("General.NumThreads", 1, &ierr);
-  gmshOptionSetNumber("General.ExpertMode", 1, &ierr); /* asks nothing on the terminal */
-  guard("gmsh");
+  gmshOptionSetNumber("General.ExpertMode", 1, &ierr); /* no questions on the terminal */
+  guard_exit("gmsh");
   return SHB_OK;
 }
 
-void mesh_kernel_close(mesh_kernel *kernel) {
+void mesh_session_close(mesh_session *session) {
   int ierr = 0;
-  speak();
-  at_work[0] = '\0';
+  unmute_stdout();
+  reading[0] = '\0';
   gmshFinalize(&ierr);
-  restore_handlers(kernel);
+  restore_handlers(session);
 }
 
-shb_status mesh_kernel_fail(shb_status code, const char *file, int line, const char *what) {
+shb_status mesh_session_fail(shb_status code, const char *file, int line, const char *what) {
   char *text = NULL;
   int   ierr = 0;
   gmshLoggerGetLastError(&text, &ierr);
@@ -96,19 +98,19 @@ shb_status mesh_kernel_fail(shb_status code, const char *file, int line, const c
   return code;
 }
 
-void mesh_kernel_listen(const char *what) {
+void mesh_session_log_start(const char *what) {
   int ierr = 0;
-  guard(what);
-  silence();
+  guard_exit(what);
+  mute_stdout();
   gmshLoggerStart(&ierr);
 }
 
-shb_status mesh_kernel_heard(const char *what) {
+shb_status mesh_session_log_check(const char *what) {
   char     **line   = NULL;
   size_t     n      = 0;
   int        ierr   = 0;
   shb_status status = SHB_OK;
-  speak();
+  unmute_stdout();
   gmshLoggerGet(&line, &n, &ierr);
   gmshLoggerStop(&ierr);
   for (size_t i = 0; i < n; i++) {

@@ -1,4 +1,5 @@
-/* A quiet gmsh session: started and ended around each use, leaving signals and user files alone. */
+/* A gmsh session without output: opened and closed around each use. Signal handlers and user files
+ * stay as they were. */
 #ifndef MESH_GMSH_SESSION_H
 #define MESH_GMSH_SESSION_H
 
@@ -6,32 +7,34 @@
 
 #include "mesh/base/status.h"
 
-enum { MESH_KERNEL_SIGNALS = 5 };
+enum { MESH_SESSION_SIGNALS = 5 };
 
-/* The caller's signal handling while gmsh is up, put back at once after start and at the end. */
+/* Signal handlers of the caller, restored after gmsh has started and at the end. */
 typedef struct {
-  struct sigaction handler[MESH_KERNEL_SIGNALS];
-} mesh_kernel;
+  struct sigaction handler[MESH_SESSION_SIGNALS];
+} mesh_session;
 
-/* Start gmsh: no terminal output, no ~/.gmshrc, one thread. Only one session at a time. A script that ends the program (Exit)
- * while gmsh is up ends it with code SHB_ERR_INPUT and a line that says so. SHB_ERR_IO. */
-shb_status mesh_kernel_open(mesh_kernel *kernel);
-void       mesh_kernel_close(mesh_kernel *kernel);
+/* Start gmsh without terminal output, without ~/.gmshrc, on one thread. Only one session may be
+ * open. If a script ends the program (Exit) while gmsh runs, the exit code is SHB_ERR_INPUT and a
+ * message is printed. SHB_ERR_IO. */
+shb_status mesh_session_open(mesh_session *session);
+void       mesh_session_close(mesh_session *session);
 
-/* Record "what: gmsh: last error of gmsh" on one line; returns code. */
-shb_status mesh_kernel_fail(shb_status code, const char *file, int line, const char *what);
+/* Record "what: gmsh: last error of gmsh" on one line. Returns code. */
+shb_status mesh_session_fail(shb_status code, const char *file, int line, const char *what);
 
-/* gmsh reads on after some faults of a file. Listen before a call (what: see above, also for a script's Exit); heard then fails with the first error it told, on one line:
- * "what: gmsh: error". SHB_ERR_INPUT. */
-void       mesh_kernel_listen(const char *what);
-shb_status mesh_kernel_heard(const char *what);
+/* gmsh continues after some errors in a file. Call log_start before reading and log_check after it:
+ * log_check fails with the first error logged, "what: gmsh: error" on one line. SHB_ERR_INPUT.
+ *   what  in  heads the message, also that about Exit in a script */
+void       mesh_session_log_start(const char *what);
+shb_status mesh_session_log_check(const char *what);
 
-/* Make a gmsh call whose last argument is &ierr. */
-#define GMSH_TRY(what, ...)                                                       \
-  do {                                                                            \
-    int ierr = 0;                                                                 \
-    __VA_ARGS__;                                                                  \
-    if (ierr) return mesh_kernel_fail(SHB_ERR_INPUT, __FILE__, __LINE__, (what)); \
+/* Call gmsh with &ierr as its last argument; return the error. */
+#define GMSH_TRY(what, ...)                                                        \
+  do {                                                                             \
+    int ierr = 0;                                                                  \
+    __VA_ARGS__;                                                                   \
+    if (ierr) return mesh_session_fail(SHB_ERR_INPUT, __FILE__, __LINE__, (what)); \
   } while (0)
 
 #endif

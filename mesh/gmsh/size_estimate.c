@@ -5,30 +5,28 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "mesh/base/vec3.h"
 #include "mesh/gmsh/session.h"
 
 enum { GMSH_LINE = 1, GMSH_TRIANGLE = 2, MOST = 3000000, BYTES_EACH = 1500 };
 
-double mesh_foresee_nodes(const mesh_extent *extent, double h) {
+double mesh_estimate_nodes(const mesh_extent *extent, double h) {
   return 2 * extent->length / h + 4.6 * extent->area / (h * h) + 6 * extent->volume / (h * h * h);
 }
 
-double mesh_foresee_size(const mesh_extent *extent, double nodes) {
+double mesh_estimate_size(const mesh_extent *extent, double nodes) {
   double high = extent->length + sqrt(extent->area) + cbrt(extent->volume), low = 0;
   for (int i = 0; i < 200 && high - low > 1e-3 * high; i++) {
     double middle = low > 0 ? sqrt(low * high) : high / 2;
-    if (low == 0 && mesh_foresee_nodes(extent, middle) <= nodes) {
-      high = middle;
-    } else if (mesh_foresee_nodes(extent, middle) > nodes) {
+    if (mesh_estimate_nodes(extent, middle) > nodes)
       low = middle;
-    } else {
+    else
       high = middle;
-    }
   }
   return high;
 }
 
-double mesh_foresee_most(void) {
+double mesh_estimate_most_nodes(void) {
   double kilobytes = 0;
   FILE  *info      = fopen("/proc/meminfo", "r");
   char   line[256];
@@ -38,7 +36,7 @@ double mesh_foresee_most(void) {
   return kilobytes > 0 ? fmin(MOST, 1e3 * kilobytes / BYTES_EACH) : MOST;
 }
 
-/* Length, area or volume of an entity: OpenCASCADE's own, else from its box. */
+/* Length, area or volume of an entity: exact from OpenCASCADE, else estimated from its box. */
 static double measure(int dimension, int tag) {
   double size = -1, low[3], high[3], span[3];
   int    ierr = 0;
@@ -50,8 +48,8 @@ static double measure(int dimension, int tag) {
   if (ierr) return 0;
   for (int d = 0; d < 3; d++) span[d] = high[d] - low[d];
   double xy = span[0] * span[1], yz = span[1] * span[2], zx = span[2] * span[0];
-  if (dimension == 1) return hypot(hypot(span[0], span[1]), span[2]);
-  /* a face fills half of its box's largest side at least, or so */
+  if (dimension == 1) return vec3_norm(span);
+  /* a face fills at least about half of the largest side of its box */
   return dimension == 2 ? fmax(xy, fmax(yz, zx)) / 2 : 0;
 }
 
@@ -69,29 +67,30 @@ static shb_status measure_all(const char *path, mesh_extent *extent) {
 }
 
 static shb_status check(const mesh_source *source, const mesh_extent *extent, double h) {
-  double most = mesh_foresee_most(), nodes = mesh_foresee_nodes(extent, h);
+  double most = mesh_estimate_most_nodes(), nodes = mesh_estimate_nodes(extent, h);
   SHB_CHECK(
       nodes <= most, SHB_ERR_INPUT,
       "%s: %s %.3g m would give about %.2g nodes; with %.2g m they are %.2g, the most that %s",
       source->path,
       h * source->unit > .9 * source->size && source->size > 0 ? "mesh.size"
                                                                : "its own element size of",
-      h * source->unit, nodes, 1.02 * source->unit * mesh_foresee_size(extent, most), most,
+      h * source->unit, nodes, 1.02 * source->unit * mesh_estimate_size(extent, most), most,
       most < MOST ? "the free memory holds" : "can be computed with");
   return SHB_OK;
 }
 
-shb_status mesh_foresee_solid(const mesh_source *source, mesh_extent *extent) {
+shb_status mesh_estimate_check_solid(const mesh_source *source, mesh_extent *extent) {
   double floor = 0;
   SHB_TRY(measure_all(source->path, extent));
   if (source->size > 0) SHB_TRY(check(source, extent, source->size / source->unit));
   GMSH_TRY(source->path, gmshOptionGetNumber("Mesh.MeshSizeMin", &floor, &ierr));
-  floor = fmax(floor, mesh_foresee_size(&(mesh_extent){.length = extent->length}, MOST));
+  floor = fmax(floor, mesh_estimate_size(&(mesh_extent){.length = extent->length}, MOST));
   GMSH_TRY(source->path, gmshOptionSetNumber("Mesh.MeshSizeMin", floor, &ierr));
   return SHB_OK;
 }
 
-/* Corners of the lines or triangles on an entity, [n][dimension + 1][3]; the caller frees. */
+/* Corners of the lines or triangles on an entity.
+ *   xyz  out  [n][dimension + 1][3]; the caller frees */
 static shb_status corners(const char *path, int dimension, int tag, double **xyz, size_t *n) {
   const int type = dimension == 1 ? GMSH_LINE : GMSH_TRIANGLE;
   size_t   *tags = NULL, n_tags = 0, n_xyz = 0, n_unused = 0;
@@ -104,21 +103,19 @@ static shb_status corners(const char *path, int dimension, int tag, double **xyz
   return SHB_OK;
 }
 
-/* Length of a line, area of a triangle; *cone: six times the volume between a triangle and the origin. */
+/* Length of a line or area of a triangle.
+ *   cone  in/out  plus six times the signed volume between the triangle and the origin */
 static double size_of(int dimension, const double *x, double *cone) {
-  double a[3], b[3] = {0}, c[3];
-  for (int d = 0; d < 3; d++) {
-    a[d] = x[3 + d] - x[d];
-    if (dimension == 2) b[d] = x[6 + d] - x[d];
-  }
-  if (dimension == 1) return hypot(hypot(a[0], a[1]), a[2]);
-  for (int d = 0; d < 3; d++)
-    c[d] = a[(d + 1) % 3] * b[(d + 2) % 3] - a[(d + 2) % 3] * b[(d + 1) % 3];
-  *cone += x[0] * c[0] + x[1] * c[1] + x[2] * c[2];
-  return hypot(hypot(c[0], c[1]), c[2]) / 2;
+  double a[3], b[3], c[3];
+  vec3_minus(x + 3, x, a);
+  if (dimension == 1) return vec3_norm(a);
+  vec3_minus(x + 6, x, b);
+  vec3_cross(a, b, c);
+  *cone += vec3_dot(x, c);
+  return vec3_norm(c) / 2;
 }
 
-/* Sum over an entity of the sizes, of size times element size h, and of the cones. */
+/* Sums over the elements of an entity: sizes, sizes times element size h, cones. */
 static shb_status add(const char *path, int dimension, int tag, double sum[3]) {
   double *xyz = NULL;
   size_t  n   = 0;
@@ -126,13 +123,15 @@ static shb_status add(const char *path, int dimension, int tag, double sum[3]) {
   for (size_t i = 0; i < n; i++) {
     double one = size_of(dimension, xyz + i * (size_t)(3 * (dimension + 1)), &sum[2]);
     sum[0] += one;
-    sum[1] += one * (dimension == 1 ? one : sqrt(2.3 * one)); /* 2.3 triangles a square of h */
+    sum[1] +=
+        one * (dimension == 1 ? one : sqrt(2.3 * one)); /* 2.3 triangles in a square of side h */
   }
   gmshFree(xyz);
   return SHB_OK;
 }
 
-/* Volume within the meshed faces, by the theorem of Gauss; the boundary of each solid has its signs. */
+/* Volume enclosed by the meshed faces, by the divergence theorem. gmsh signs the faces of a
+ * boundary by their orientation. */
 static shb_status enclose(const char *path, double *volume) {
   int   *solids = NULL;
   size_t n      = 0;
@@ -155,7 +154,8 @@ static shb_status enclose(const char *path, double *volume) {
   return status;
 }
 
-shb_status mesh_foresee_next(const mesh_source *source, int dimension, mesh_extent *extent) {
+shb_status mesh_estimate_check_dimension(const mesh_source *source, int dimension,
+                                         mesh_extent *extent) {
   int   *tags   = NULL;
   size_t n      = 0;
   double sum[3] = {0};

@@ -1,29 +1,37 @@
-/* How many nodes the mesh of a solid will have, told before gmsh makes it: gmsh has no bound, and takes all memory. */
+/* Estimate of the number of nodes before gmsh meshes a solid. gmsh has no bound of its own and
+ * fills the memory. */
 #ifndef MESH_GMSH_SIZE_ESTIMATE_H
 #define MESH_GMSH_SIZE_ESTIMATE_H
 
-#include "mesh/gmsh/source.h"
+#include "mesh/gmsh/source_settings.h"
 
-/* What there is to mesh, in the file's unit: of OpenCASCADE's solids exact, else guessed from boxes, the volume 0. */
+/* Extent of the solid in the unit of the file. Exact for OpenCASCADE's solids; otherwise estimated
+ * from boxes, with volume 0. */
 typedef struct {
   double length, area, volume;
 } mesh_extent;
 
-/* Nodes of second order at element size h: n = 2 length / h + 4.6 area / h^2 + 6 volume / h^3 (two nodes an edge of a curve; 2.3 triangles
- * in a square of h, two nodes each; in a cube 4.3 tetrahedra, 1.4 nodes each: gmsh's own at 1.1 times h on the average). */
-double mesh_foresee_nodes(const mesh_extent *extent, double h);
+/* Number of second-order nodes at element size h: n = 2 length / h + 4.6 area / h^2 + 6 volume /
+ * h^3.
+ *
+ * A curve has two nodes an element. A square of side h has 2.3 triangles with two nodes each. A
+ * cube of side h has 4.3 tetrahedra with 1.4 nodes each, as gmsh's mean edge is 1.1 h. */
+double mesh_estimate_nodes(const mesh_extent *extent, double h);
 
-/* The size at which there would be so many nodes. */
-double mesh_foresee_size(const mesh_extent *extent, double nodes);
+/* Element size that gives this number of nodes. */
+double mesh_estimate_size(const mesh_extent *extent, double nodes);
 
-/* Most nodes of a mesh: 3 million, or less where the memory that is free does not hold them (1.5 kB each). */
-double mesh_foresee_most(void);
+/* Largest number of nodes: 3 million, or what the free memory holds at 1.5 kB a node. */
+double mesh_estimate_most_nodes(void);
 
-/* Of the solid that gmsh holds, before it is meshed: measures it, and keeps gmsh from elements so small that curves alone would
- * fill the memory. SHB_ERR_INPUT: source->size gives too many nodes (how many, and a size that would do, are told). */
-shb_status mesh_foresee_solid(const mesh_source *source, mesh_extent *extent);
+/* Measure the solid in gmsh before it is meshed, and set a least element size, so that the curves
+ * alone cannot fill the memory.
+ * Errors: SHB_ERR_INPUT if source->size gives too many nodes; the message gives their number and a
+ * suitable size. */
+shb_status mesh_estimate_check_solid(const mesh_source *source, mesh_extent *extent);
 
-/* The same from the mesh of curves (dimension 1) or faces (2) that there is by now, before the next dimension is meshed. */
-shb_status mesh_foresee_next(const mesh_source *source, int dimension, mesh_extent *extent);
+/* Check again with the mesh of the curves (dimension 1) or faces (2), before the next dimension. */
+shb_status mesh_estimate_check_dimension(const mesh_source *source, int dimension,
+                                         mesh_extent *extent);
 
 #endif

@@ -7,7 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "mesh/base/constants.h"
+#include "mesh/base/vec3.h"
+#include "mesh/core/face_match.h"
 #include "mesh/core/file_format.h"
 #include "mesh/core/jacobian.h"
 #include "mesh/gmsh/import.h"
@@ -32,16 +33,16 @@ static shb_status load(const mesh_source *source) {
   SHB_CHECK(file, SHB_ERR_IO, "%s: cannot be read: %s", source->path, strerror(errno));
   fclose(file);
   SHB_TRY(set_options(source));
-  mesh_kernel_listen(source->path);
+  mesh_session_log_start(source->path);
   GMSH_TRY(source->path, gmshOpen(source->path, &ierr));
-  SHB_TRY(mesh_kernel_heard(source->path)); /* gmsh goes on after a fault of syntax */
+  SHB_TRY(mesh_session_log_check(source->path)); /* gmsh continues after a syntax error */
   int   *tags = NULL;
   size_t n    = 0;
   GMSH_TRY(source->path, gmshModelGetEntities(&tags, &n, 3, &ierr));
   gmshFree(tags);
   SHB_CHECK(n > 0, SHB_ERR_INPUT, "%s: holds no solid (volume)", source->path);
   if (n == 2 || mesh_format_of(source->path) == MESH_FORMAT_GEO) return SHB_OK;
-  /* solids that touch each have a face of their own there: one mesh needs one face */
+  /* solids in contact have one face each there; a common mesh needs a common face */
   GMSH_TRY(source->path, gmshModelOccRemoveAllDuplicates(&ierr));
   GMSH_TRY(source->path, gmshModelOccSynchronize(&ierr));
   return SHB_OK;
@@ -49,18 +50,18 @@ static shb_status load(const mesh_source *source) {
 
 shb_status mesh_solid_open(const mesh_source *source, shb_progress *progress, mesh_solid *solid) {
   *solid = (mesh_solid){.source = source, .progress = progress};
-  SHB_TRY(mesh_kernel_open(&solid->kernel));
+  SHB_TRY(mesh_session_open(&solid->session));
   shb_progress_show(progress, 0, "loading the solid");
   shb_status status = load(source);
-  if (status != SHB_OK) mesh_kernel_close(&solid->kernel);
+  if (status != SHB_OK) mesh_session_close(&solid->session);
   return status;
 }
 
 void mesh_solid_close(mesh_solid *solid) {
-  mesh_kernel_close(&solid->kernel);
+  mesh_session_close(&solid->session);
 }
 
-/* A script may have set sizes of its own: ours is then the greatest. */
+/* A script may set smaller sizes of its own: ours is the maximum. */
 static shb_status set_size(const mesh_source *source) {
   if (!(source->size > 0)) return SHB_OK;
   double size = source->size / source->unit;
@@ -72,14 +73,14 @@ static shb_status generate(mesh_solid *solid) {
   const char *path = solid->source->path;
   mesh_extent extent;
   GMSH_TRY(path, gmshModelMeshClear(NULL, 0, &ierr));
-  SHB_TRY(mesh_foresee_solid(solid->source, &extent));
+  SHB_TRY(mesh_estimate_check_solid(solid->source, &extent));
   SHB_TRY(set_size(solid->source));
   for (int dimension = 1; dimension <= 3; dimension++) {
     shb_progress_show(solid->progress, 25 * dimension, "meshing %s",
                       (const char *[]){"curves", "faces", "the volume"}[dimension - 1]);
     GMSH_TRY(path, gmshModelMeshGenerate(dimension, &ierr));
     SHB_CHECK(!shb_interrupted(), SHB_INTERRUPTED, "interrupted while meshing; nothing written");
-    if (dimension < 3) SHB_TRY(mesh_foresee_next(solid->source, dimension, &extent));
+    if (dimension < 3) SHB_TRY(mesh_estimate_check_dimension(solid->source, dimension, &extent));
   }
   GMSH_TRY(path, gmshModelMeshSetOrder(2, &ierr));
   return SHB_OK;
@@ -106,7 +107,7 @@ shb_status mesh_solid_mesh(mesh_solid *solid, mesh_fe *mesh) {
   return status;
 }
 
-/* Faces (entities) of the solid that make up a group, and where they are. */
+/* Faces (entities) of the solid that form a group. */
 typedef struct {
   int n, *tag;
   double (*centre)[3]; /* mean of the nodes, in the file's unit */
@@ -122,9 +123,11 @@ static int by_tag(const void *a, const void *b) {
   return (p > q) - (p < q);
 }
 
-/* Are all nodes of face tag marked ([n_nodes] of mesh)? Their mean position. */
-static shb_status inspect(const mesh_solid *solid, const mesh_fe *mesh, const char *marked, int tag,
-                          bool *whole, double centre[3]) {
+/* Are all nodes of face tag marked? Mean position of its nodes.
+ *   marked  in   [n_nodes]
+ *   centre  out  in the file's unit */
+static shb_status measure_face(const mesh_solid *solid, const mesh_fe *mesh, const char *marked,
+                               int tag, bool *whole, double centre[3]) {
   size_t *nodes = NULL, n = 0, n_xyz = 0, n_unused = 0;
   double *xyz = NULL, *unused = NULL;
   GMSH_TRY(solid->source->path, gmshModelMeshGetNodes(&nodes, &n, &xyz, &n_xyz, &unused, &n_unused,
@@ -160,7 +163,7 @@ static shb_status find_patch(const mesh_solid *solid, const mesh_fe *mesh, int i
   for (size_t i = 0; status == SHB_OK && i + 1 < n; i += 2) {
     bool whole   = false;
     p->tag[p->n] = tags[i + 1];
-    status       = inspect(solid, mesh, marked, tags[i + 1], &whole, p->centre[p->n]);
+    status       = measure_face(solid, mesh, marked, tags[i + 1], &whole, p->centre[p->n]);
     p->n += whole;
   }
   free(marked);
@@ -168,17 +171,18 @@ static shb_status find_patch(const mesh_solid *solid, const mesh_fe *mesh, int i
   return status;
 }
 
-/* Order left's faces so that each, turned, is nearest to the right one in its place. */
+/* Order the left faces so that each, rotated by angle, is nearest to the right face of the same
+ * index. */
 static void put_in_order(const patch *right, patch *left, mesh_axis axis, double angle) {
   for (int i = 0; i < right->n; i++) {
     int    best  = i;
     double least = INFINITY;
     for (int j = i; j < left->n; j++) {
-      double at[3], sum = 0;
+      double at[3];
       mesh_axis_rotate(axis, angle, left->centre[j], at);
-      for (int d = 0; d < 3; d++) sum += pow(at[d] - right->centre[i][d], 2);
-      if (sum < least) best = j;
-      least = fmin(least, sum);
+      const double distance = vec3_distance(at, right->centre[i]);
+      if (distance < least) best = j;
+      least = fmin(least, distance);
     }
     int swap        = left->tag[i];
     left->tag[i]    = left->tag[best];
@@ -191,16 +195,6 @@ static void put_in_order(const patch *right, patch *left, mesh_axis axis, double
   }
 }
 
-/* Rows of the 4x4 matrix that turns the left side onto the right one. */
-static void turning(mesh_axis axis, double angle, double matrix[16]) {
-  for (int i = 0; i < 16; i++) matrix[i] = i == 15;
-  for (int column = 0; column < 3; column++) {
-    double unit[3] = {column == 0, column == 1, column == 2};
-    mesh_axis_rotate(axis, angle, unit, unit);
-    for (int row = 0; row < 3; row++) matrix[4 * row + column] = unit[row];
-  }
-}
-
 static bool matches(const mesh_fe *mesh, mesh_axis axis, int blades) {
   int pairs = 0, *right = NULL, *left = NULL;
   if (mesh_fe_match(mesh, axis, blades, &pairs, &right, &left) != SHB_OK) return false;
@@ -209,44 +203,45 @@ static bool matches(const mesh_fe *mesh, mesh_axis axis, int blades) {
   return true;
 }
 
-/* One pair of faces; *again as mesh_solid_tie. */
-static shb_status tie(mesh_solid *solid, mesh_fe *mesh, int right_set, int left_set, bool *again) {
+/* One pair of faces; again as in mesh_solid_make_periodic. */
+static shb_status make_periodic(mesh_solid *solid, mesh_fe *mesh, int right_set, int left_set,
+                                bool *again) {
   const mesh_source *source = solid->source;
   if (!mesh->set[right_set].n || !mesh->set[left_set].n) return SHB_OK;
   SHB_TRY(mesh_fe_orient_groups(mesh, source->axis, right_set, left_set));
   mesh_fe view = mesh_fe_facing(mesh, right_set, left_set);
   if (matches(&view, source->axis, source->blades)) return SHB_OK;
-  const double angle = SHB_TWO_PI / source->blades;
+  const double angle = 2 * M_PI / source->blades;
   patch        right = {0}, left = {0};
-  bool         tied   = false;
-  shb_status   status = find_patch(solid, mesh, right_set, &right);
+  bool         periodic = false;
+  shb_status   status   = find_patch(solid, mesh, right_set, &right);
   if (status == SHB_OK) status = find_patch(solid, mesh, left_set, &left);
   if (status == SHB_OK && right.n > 0 && right.n == left.n) {
     double matrix[16];
     int    ierr = 0;
     put_in_order(&right, &left, source->axis, angle);
-    turning(source->axis, angle, matrix);
+    mesh_axis_matrix(source->axis, angle, matrix);
     gmshModelMeshSetPeriodic(2, right.tag, (size_t)right.n, left.tag, (size_t)left.n, matrix, 16,
                              &ierr);
-    tied = ierr == 0;
+    periodic = ierr == 0;
   }
   patch_free(&right);
   patch_free(&left);
-  if (!tied) shb_progress_note(solid->progress, "the contact faces cannot be meshed alike");
-  *again = *again || tied;
+  if (!periodic) shb_progress_note(solid->progress, "the contact faces cannot be meshed alike");
+  *again = *again || periodic;
   return status;
 }
 
-shb_status mesh_solid_tie(mesh_solid *solid, mesh_fe *mesh, bool *again) {
+shb_status mesh_solid_make_periodic(mesh_solid *solid, mesh_fe *mesh, bool *again) {
   const mesh_source *source = solid->source;
   *again                    = false;
   if (source->blades == 0) return SHB_OK;
   if (source->n_contacts == 0)
-    return tie(solid, mesh, MESH_CONTACT_RIGHT, MESH_CONTACT_LEFT, again);
+    return make_periodic(solid, mesh, MESH_CONTACT_RIGHT, MESH_CONTACT_LEFT, again);
   for (int i = 0; i < source->n_contacts; i++) {
     int right = mesh_fe_set_named(mesh, source->contact[i].right);
     int left  = mesh_fe_set_named(mesh, source->contact[i].left);
-    if (right >= 0 && left >= 0) SHB_TRY(tie(solid, mesh, right, left, again));
+    if (right >= 0 && left >= 0) SHB_TRY(make_periodic(solid, mesh, right, left, again));
   }
   return SHB_OK;
 }

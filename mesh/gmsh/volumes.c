@@ -6,11 +6,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/vec3.h"
 #include "mesh/core/regions.h"
 #include "mesh/core/triangle.h"
 #include "mesh/gmsh/session.h"
 
-/* gmsh's volume (entity) of every element. */
+/* gmsh's volume (entity) of each element. */
 typedef struct {
   const char *path;
   mesh_fe    *mesh;
@@ -46,7 +47,7 @@ static shb_status find_entities(model *m) {
     gmshFree(nodes);
   }
   gmshFree(entities);
-  return ierr ? mesh_kernel_fail(SHB_ERR_INPUT, __FILE__, __LINE__, m->path) : SHB_OK;
+  return ierr ? mesh_session_fail(SHB_ERR_INPUT, __FILE__, __LINE__, m->path) : SHB_OK;
 }
 
 static shb_status fill(model *m) {
@@ -64,10 +65,10 @@ static shb_status fill(model *m) {
 
 static void put_entity(const model *m, mesh_regions *regions, int entity, int volume) {
   for (int e = 0; e < m->mesh->n_elements; e++)
-    if (m->entity[e] == entity) mesh_regions_put(regions, e, volume);
+    if (m->entity[e] == entity) mesh_regions_assign(regions, e, volume);
 }
 
-/* How far the point is outside the element, beyond the planes of its faces; negative inside. */
+/* Largest signed distance of a point from the planes of an element's faces, m; negative inside. */
 static double outside(const mesh_fe *mesh, int element, const double at[3]) {
   const mesh_topology *topology = mesh_topology_of(mesh->kind);
   const int           *nodes    = mesh->connectivity + topology->nodes * (size_t)element;
@@ -77,13 +78,11 @@ static double outside(const mesh_fe *mesh, int element, const double at[3]) {
     int           face[MESH_FACE_NODES];
     for (int i = 0; i < topology->face_nodes; i++) face[i] = nodes[topology->face[f][i]];
     for (int i = mesh_triangles(mesh, face, part) - 1; i >= 0; i--) {
-      double area[3], sum = 0, size = 0;
+      double area[3], from[3];
       mesh_triangle_area(&part[i], area);
-      for (int d = 0; d < 3; d++) {
-        sum += area[d] * (at[d] - part[i].x[0][d]);
-        size += area[d] * area[d];
-      }
-      if (size > 0) worst = fmax(worst, sum / sqrt(size));
+      vec3_minus(at, part[i].x[0], from);
+      const double size = vec3_norm(area);
+      if (size > 0) worst = fmax(worst, vec3_dot(area, from) / size);
     }
   }
   return worst;
@@ -100,7 +99,7 @@ static int element_at(const mesh_fe *mesh, const double at[3]) {
   return nearest;
 }
 
-/* The names that are there, for a text. */
+/* Fail with the list of the physical volumes in the file. */
 static shb_status refuse_absent(const model *m, const char *name) {
   int   *groups = NULL;
   size_t n = 0, used = 0;
@@ -155,7 +154,7 @@ static shb_status take_all(model *m, const mesh_names *names) {
   return mesh_regions_end(&regions);
 }
 
-shb_status mesh_volumes_take(const char *path, const mesh_names *names, mesh_fe *mesh) {
+shb_status mesh_volumes_assign(const char *path, const mesh_names *names, mesh_fe *mesh) {
   model      m      = {.path = path, .mesh = mesh};
   shb_status status = take_all(&m, names);
   free(m.by_tag);

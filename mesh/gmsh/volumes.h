@@ -1,11 +1,13 @@
-/* Volumes of gmsh's current model, by name or by a point in them. */
+/* Volumes of gmsh's current model, by name or by a point inside. */
 #ifndef MESH_GMSH_VOLUMES_H
 #define MESH_GMSH_VOLUMES_H
 
 #include "mesh/core/fe_mesh.h"
 
-/* mesh->region from the physical volumes that names asks for, or the volumes in which its points lie; mesh as imported from the
- * model, in its unit. SHB_ERR_INPUT: a name that is not there (those that are, are told), elements in no volume or in two. */
-shb_status mesh_volumes_take(const char *path, const mesh_names *names, mesh_fe *mesh);
+/* Set mesh->region from the physical volumes of names, or the volumes that contain its points.
+ *   mesh  in/out  as imported from the model, in its unit
+ * Errors: SHB_ERR_INPUT if a name is absent (the message lists those present), or elements lie in
+ * no volume or in two. */
+shb_status mesh_volumes_assign(const char *path, const mesh_names *names, mesh_fe *mesh);
 
 #endif

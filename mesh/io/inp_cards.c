@@ -6,8 +6,8 @@
 
 typedef struct {
   const char *name;
-  int         n;    /* nodes; 0: it only marks a line, and is passed over */
-  bool        face; /* it marks a face: no membrane or shell is computed */
+  int         n;    /* nodes; 0: marks a line only, skipped */
+  bool        face; /* marks a face; no membrane or shell is computed */
 } element_type;
 
 static const element_type types[] = {
@@ -56,11 +56,11 @@ static shb_status find_type(const mesh_deck *deck, const mesh_card *card,
                  name[0] ? name : "(none)", linear ? ": second order is needed" : "");
 }
 
-/* One element, which goes on over as many rows as it needs; *found: false when the card has no more. */
+/* Read one element, which may continue over several rows. found: false at the end of the card. */
 static shb_status read_element(mesh_deck *deck, const element_type *type, mesh_inp_element *element,
                                bool *found) {
   mesh_row row;
-  int      have = -1; /* the element's number is yet to come */
+  int      have = -1; /* -1: the element's number comes first */
   do {
     SHB_TRY(mesh_deck_row(deck, &row, found));
     if (!*found && have < 0) return SHB_OK;
@@ -112,7 +112,8 @@ static shb_status generate(mesh_deck *deck, const mesh_row *row, mesh_inp_set *s
   return SHB_OK;
 }
 
-/* A member given by number, or all members of a set given by name; face as in mesh_inp_member. */
+/* Add a member given by number, or all members of a set given by name; face as in
+ * mesh_inp_member. */
 static shb_status add_named(mesh_deck *deck, mesh_inp *inp, int into, const char *field, int face) {
   mesh_inp_kind   kind   = inp->set[into].of_nodes ? MESH_INP_NSET : MESH_INP_ELSET;
   mesh_inp_member member = {.line = deck->line, .face = face};
@@ -150,7 +151,7 @@ static shb_status read_set(mesh_deck *deck, const mesh_card *card, mesh_inp_kind
   }
 }
 
-/* "S3", or "SPOS" and "SNEG" for the sides of a triangle. */
+/* Label of a face: "S3", or "SPOS" and "SNEG" for the sides of a triangle. */
 static shb_status face_number(const mesh_deck *deck, const mesh_row *row, int *face) {
   const char *label = row->n > 1 ? row->field[1] : "";
   *face             = 0;
@@ -172,7 +173,7 @@ static shb_status read_surface(mesh_deck *deck, const mesh_card *card, mesh_inp 
   MESH_DECK_CHECK(name[0], deck, card->line, "*SURFACE without a name (NAME=...)");
   bool nodes = strcasecmp(type, "NODE") == 0;
   if (!nodes && type[0] && strcasecmp(type, "ELEMENT") != 0)
-    return SHB_OK; /* such surfaces bound no group */
+    return SHB_OK; /* other types of surface define no group */
   SHB_TRY(mesh_inp_open_set(inp, MESH_INP_SURFACE, name, nodes, card->line, &set));
   mesh_row row;
   for (bool more = true;;) {
@@ -184,7 +185,7 @@ static shb_status read_surface(mesh_deck *deck, const mesh_card *card, mesh_inp 
   }
 }
 
-/* Cards that make nodes and elements, or move them, in ways that are not read. */
+/* Refuse the cards that generate or move nodes and elements. */
 static shb_status refuse_others(const mesh_deck *deck, const mesh_card *card, int *parts) {
   static const char *const makers[]             = {"NGEN",  "NFILL",  "NCOPY", "NMAP",
                                                    "ELGEN", "ELCOPY", "SYSTEM"};
@@ -202,7 +203,7 @@ static shb_status refuse_others(const mesh_deck *deck, const mesh_card *card, in
   return SHB_OK;
 }
 
-/* An instance may stand where its part does. */
+/* An instance must not move its part. */
 static shb_status read_instance(mesh_deck *deck, const mesh_card *card) {
   mesh_row row;
   bool     more;

@@ -21,7 +21,7 @@ shb_status mesh_deck_fail(const mesh_deck *deck, long line, const char *source, 
   return shb_fail(SHB_ERR_INPUT, source, at, "%s:%ld: %s", deck->path, line, text);
 }
 
-/* Passes over a byte order mark; sees what ends the first line. */
+/* Skip a byte order mark; detect the line ending. */
 static void begin(mesh_deck *deck) {
   char start[4] = "";
   int  c        = 0;
@@ -47,7 +47,7 @@ void mesh_deck_close(mesh_deck *deck) {
   *deck = (mesh_deck){0};
 }
 
-/* Cuts spaces and the line's end, in place. */
+/* Remove leading and trailing spaces in place. */
 static char *trim(char *text) {
   while (isspace((unsigned char)*text)) text++;
   size_t n = strlen(text);
@@ -55,11 +55,12 @@ static char *trim(char *text) {
   return text;
 }
 
-/* The next line that is neither empty nor a comment into deck->text; *found: false at the end. */
+/* Read the next line that is neither empty nor a comment into deck->text. found: false at the
+ * end. */
 static shb_status next_line(mesh_deck *deck, bool *found) {
   *found = true;
-  if (deck->held) {
-    deck->held = false;
+  if (deck->pushed_back) {
+    deck->pushed_back = false;
     return SHB_OK;
   }
   for (ssize_t n; (n = getdelim(&deck->text, &deck->size, deck->end, deck->file)) >= 0;) {
@@ -75,7 +76,7 @@ static shb_status next_line(mesh_deck *deck, bool *found) {
   return SHB_OK;
 }
 
-/* Keyword in capitals, runs of spaces as one. */
+/* Copy a keyword in capitals, runs of spaces as one. */
 static void take_word(const char *text, size_t n, char word[MESH_DECK_NAME]) {
   size_t used = 0;
   for (size_t i = 0; i < n && used + 1 < MESH_DECK_NAME; i++) {
@@ -105,8 +106,8 @@ shb_status mesh_deck_card(mesh_deck *deck, mesh_card *card, bool *found) {
     bool more;
     SHB_TRY(next_line(deck, &more));
     if (!more) return SHB_OK;
-    deck->held = deck->text[0] == '*';
-    if (deck->held) return SHB_OK;
+    deck->pushed_back = deck->text[0] == '*';
+    if (deck->pushed_back) return SHB_OK;
   }
 }
 
@@ -114,9 +115,9 @@ shb_status mesh_deck_row(mesh_deck *deck, mesh_row *row, bool *found) {
   row->n = 0;
   SHB_TRY(next_line(deck, found));
   if (!*found) return SHB_OK;
-  row->line  = deck->line;
-  deck->held = deck->text[0] == '*';
-  *found     = !deck->held;
+  row->line         = deck->line;
+  deck->pushed_back = deck->text[0] == '*';
+  *found            = !deck->pushed_back;
   for (char *at = deck->text, *end = at; *found && end; at = end + 1) {
     end = strchr(at, ',');
     if (end) *end = '\0';
@@ -128,7 +129,7 @@ shb_status mesh_deck_row(mesh_deck *deck, mesh_row *row, bool *found) {
   return SHB_OK;
 }
 
-/* Start of the parameter in the card's text, at what follows its name; NULL if absent. */
+/* Text after the name of a parameter on the card; NULL if it is absent. */
 static const char *find_parameter(const mesh_card *card, const char *parameter) {
   size_t n = strlen(parameter);
   for (const char *at = strchr(card->text, ','); at; at = strchr(at, ',')) {

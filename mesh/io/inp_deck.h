@@ -1,4 +1,4 @@
-/* Keyword files of Abaqus and CalculiX (.inp) as cards: a keyword line and the rows of values below it. */
+/* Keyword files of Abaqus and CalculiX (.inp) as cards: a keyword line and the rows below it. */
 #ifndef MESH_IO_INP_DECK_H
 #define MESH_IO_INP_DECK_H
 
@@ -12,11 +12,11 @@ enum { MESH_DECK_FIELDS = 32, MESH_DECK_NAME = 81, MESH_DECK_CARD = 1024 };
 typedef struct {
   const char *path;
   FILE       *file;
-  char       *text; /* the line in hand, without its end */
+  char       *text; /* current line without its ending */
   size_t      size;
-  long        line; /* its number, from 1 */
-  bool        held; /* it was looked at but not taken */
-  int         end;  /* what ends a line: LF (also CR LF), or CR */
+  long        line;        /* its number, from 1 */
+  bool        pushed_back; /* the current line is to be read again */
+  int         end;         /* line ending: LF (also CR LF), or CR */
 } mesh_deck;
 
 /* "*NSET, NSET=root, GENERATE" */
@@ -30,32 +30,37 @@ typedef struct {
   long  line;
   int   n;
   char *field
-      [MESH_DECK_FIELDS]; /* in the deck's text, without spaces around them; good until the next row */
+      [MESH_DECK_FIELDS]; /* [n] in deck->text, without spaces around; valid until the next row */
 } mesh_row;
 
-/* Errors of all of these: "path:line: what is wrong". SHB_ERR_IO unreadable, no memory; SHB_ERR_INPUT the rest. */
+/* All functions below report errors as "path:line: text". SHB_ERR_IO unreadable, no memory;
+ * SHB_ERR_INPUT otherwise. */
 shb_status mesh_deck_open(const char *path, mesh_deck *deck);
 void       mesh_deck_close(mesh_deck *deck); /* also on a zeroed struct */
 
-/* The next card; what is left of the card before it is passed over. A keyword line that ends with a comma goes on in
- * the next one; lines that begin with two asterisks are comments. *found: false at the end of the file. */
+/* Read the next card; the remaining rows of the current card are skipped. A keyword line that ends
+ * with a comma continues on the next line. Lines that begin with two asterisks are comments.
+ *   found  out  false at the end of the file */
 shb_status mesh_deck_card(mesh_deck *deck, mesh_card *card, bool *found);
 
-/* The card's next row; empty lines and a last empty field are passed over. *found: false when it has no more. */
+/* Read the next row of the card. Empty lines and an empty last field are skipped.
+ *   found  out  false if the card has no more rows */
 shb_status mesh_deck_row(mesh_deck *deck, mesh_row *row, bool *found);
 
-/* Has the card a parameter (in capitals), with or without a value? */
+/* Does the card have a parameter (in capitals), with or without a value? */
 bool mesh_card_has(const mesh_card *card, const char *parameter);
 
-/* Its value without quotes; "" if it is absent or has none. SHB_ERR_INPUT if too long. */
+/* Value of a parameter without quotes; "" if it is absent or has none. SHB_ERR_INPUT if too
+ * long. */
 shb_status mesh_card_value(const mesh_deck *deck, const mesh_card *card, const char *parameter,
                            char value[MESH_DECK_NAME]);
 
-/* A field as a positive number of a node or an element, or as a finite real number (1.5, 2e-3, 1.D+2). */
+/* A field as the positive number of a node or element, or as a finite real number (1.5, 2e-3,
+ * 1.D+2). */
 shb_status mesh_deck_number(const mesh_deck *deck, const char *field, long *number);
 shb_status mesh_deck_real(const mesh_deck *deck, const char *field, double *value);
 
-/* Does the field begin like a number (so that it is no name)? */
+/* Does the field begin like a number rather than a name? */
 bool mesh_deck_numeric(const char *field);
 
 /* SHB_FAIL with "path:line: " before the text. */

@@ -8,7 +8,7 @@
 #include "mesh/core/regions.h"
 #include "mesh/io/inp_cards.h"
 
-/* What resolving needs. */
+/* Tables and indices while the mesh is built. */
 typedef struct {
   const mesh_deck *deck;
   mesh_inp         inp;
@@ -31,7 +31,7 @@ static shb_status allocate(builder *b, int n_volumes) {
   return SHB_OK;
 }
 
-/* All of one kind; allocates. */
+/* Check that all elements are of one kind; allocate. */
 static shb_status find_kind(builder *b) {
   const mesh_inp *inp = &b->inp;
   int             n = 0, nodes = 0;
@@ -51,7 +51,7 @@ static shb_status find_kind(builder *b) {
   return allocate(b, n);
 }
 
-/* connectivity = place in the table for now; marks the nodes used. */
+/* Set connectivity to the index in the table, for take_nodes to replace; mark the nodes used. */
 static shb_status take_volumes(builder *b) {
   const mesh_inp      *inp      = &b->inp;
   const mesh_topology *topology = mesh_topology_of(b->mesh->kind);
@@ -92,7 +92,7 @@ static shb_status take_nodes(builder *b) {
   return SHB_OK;
 }
 
-/* Face f of element e as its nodes. */
+/* Nodes of face f of element e. */
 static void element_face(const mesh_fe *mesh, int e, int f, int *nodes) {
   const mesh_topology *topology = mesh_topology_of(mesh->kind);
   for (int i = 0; i < topology->face_nodes; i++)
@@ -100,7 +100,7 @@ static void element_face(const mesh_fe *mesh, int e, int f, int *nodes) {
         mesh->connectivity[(size_t)topology->nodes * (size_t)e + (size_t)topology->face[f][i]];
 }
 
-/* An element that is a face itself. */
+/* Nodes of an element that is itself a face. */
 static shb_status own_face(const builder *b, const mesh_inp_element *from, const char *name,
                            int *nodes) {
   const mesh_topology *topology = mesh_topology_of(b->mesh->kind);
@@ -117,7 +117,7 @@ static shb_status own_face(const builder *b, const mesh_inp_element *from, const
   return SHB_OK;
 }
 
-/* A member of a surface or an element set as a face. */
+/* Nodes of a member of a surface or element set that is a face. */
 static shb_status member_face(const builder *b, const mesh_inp_member *member, const char *name,
                               int *nodes) {
   int at = mesh_inp_element_at(&b->inp, member->id);
@@ -147,7 +147,7 @@ static shb_status faces_of_elements(builder *b, const mesh_inp_set *from, int id
   return SHB_OK;
 }
 
-/* The faces of the body whose nodes are all in the set. */
+/* Faces of the body all nodes of which are in the set. */
 static shb_status faces_of_nodes(builder *b, const mesh_inp_set *from, int id) {
   char *marked = calloc((size_t)b->mesh->n_nodes + 1, 1);
   SHB_CHECK(marked, SHB_ERR_IO, "%s: no memory for its groups", b->deck->path);
@@ -180,7 +180,7 @@ static shb_status take_group(builder *b, const mesh_names *names, int id) {
   return set->of_nodes ? faces_of_nodes(b, set, id) : faces_of_elements(b, set, id);
 }
 
-/* The volume elements of the element set that is volume i. */
+/* Assign the elements of an element set to volume i. */
 static shb_status take_volume(builder *b, mesh_regions *regions, int i) {
   const char *name = regions->names->volume[i].name;
   SHB_CHECK(!regions->names->volume[i].near, SHB_ERR_INPUT,
@@ -197,7 +197,7 @@ static shb_status take_volume(builder *b, mesh_regions *regions, int i) {
                     "element set %s: element %ld is not in the file", name, member->id);
     MESH_DECK_CHECK(b->volume[at] >= 0, b->deck, member->line,
                     "element set %s: element %ld is a face, not a volume", name, member->id);
-    mesh_regions_put(regions, b->volume[at], i);
+    mesh_regions_assign(regions, b->volume[at], i);
   }
   return SHB_OK;
 }

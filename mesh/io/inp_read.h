@@ -1,19 +1,17 @@
-/* Meshes of Abaqus and CalculiX (.inp). */
+/* Mesh files of Abaqus and CalculiX (.inp). */
 #ifndef MESH_IO_INP_READ_H
 #define MESH_IO_INP_READ_H
 
 #include "mesh/core/fe_mesh.h"
 
-/* Read an .inp file. A group (root, contact_right, ...) is, in this order: the surface of that name, the shells or
- * membranes of the element set of that name, or the faces of the body all of whose nodes are in the node set of that
- * name; a volume is the element set of that name. names: as mesh_import; a group that is not there is empty. Only the mesh is taken: materials,
- * constraints and steps are not.
- * Errors as mesh_fe_read, SHB_ERR_INPUT with the line: "path:line: ...". Not checked: inverted elements. */
+/* Read the mesh of an .inp file; materials, constraints and steps are ignored.
+ *
+ * A group (root, contact_right, ...) is the first of these that exists under its name: a surface;
+ * an element set of shells or membranes; a node set, whose group is the faces of the body with all
+ * nodes in the set. A volume is an element set. Inverted elements are not detected.
+ *   names  in   as in mesh_import; a missing group is empty
+ *   mesh   out  free with mesh_fe_free
+ * Errors as mesh_fe_read; SHB_ERR_INPUT with the line: "path:line: ...". */
 shb_status mesh_inp_read(const char *path, const mesh_names *names, mesh_fe *mesh);
-
-/* Write the mesh with its groups, as surfaces and as node sets, and publish it. Numbers of nodes and elements stay;
- * coordinates, in m, are read back as they were, or to 14 to 16 digits where 17 do not fit into the 20 characters that
- * CalculiX reads. The body is the element set "body", volumes are element sets, all nodes are "nodes"; nothing but the mesh is written. SHB_ERR_IO. */
-shb_status mesh_inp_write(const mesh_fe *mesh, const char *path);
 
 #endif

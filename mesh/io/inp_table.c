@@ -5,8 +5,8 @@
 #include <string.h>
 #include <strings.h>
 
-/* Room for one more. */
-static shb_status grow(void **array, int n, int *room, size_t size) {
+/* Make room for one more item. */
+static shb_status reserve(void **array, int n, int *room, size_t size) {
   if (n < *room) return SHB_OK;
   int   wanted = *room > INT_MAX / 2 ? INT_MAX : *room ? 2 * *room : 64;
   void *more   = n < wanted ? realloc(*array, (size_t)wanted * size) : NULL;
@@ -17,19 +17,19 @@ static shb_status grow(void **array, int n, int *room, size_t size) {
 }
 
 shb_status mesh_inp_add_node(mesh_inp *inp, const mesh_inp_node *node) {
-  SHB_TRY(grow((void **)&inp->node, inp->n_nodes, &inp->node_room, sizeof *node));
+  SHB_TRY(reserve((void **)&inp->node, inp->n_nodes, &inp->node_room, sizeof *node));
   inp->node[inp->n_nodes++] = *node;
   return SHB_OK;
 }
 
 shb_status mesh_inp_add_element(mesh_inp *inp, const mesh_inp_element *element) {
-  SHB_TRY(grow((void **)&inp->element, inp->n_elements, &inp->element_room, sizeof *element));
+  SHB_TRY(reserve((void **)&inp->element, inp->n_elements, &inp->element_room, sizeof *element));
   inp->element[inp->n_elements++] = *element;
   return SHB_OK;
 }
 
 shb_status mesh_inp_add_member(mesh_inp_set *set, const mesh_inp_member *member) {
-  SHB_TRY(grow((void **)&set->member, set->n, &set->room, sizeof *member));
+  SHB_TRY(reserve((void **)&set->member, set->n, &set->room, sizeof *member));
   set->member[set->n++] = *member;
   return SHB_OK;
 }
@@ -48,7 +48,7 @@ shb_status mesh_inp_open_set(mesh_inp *inp, mesh_inp_kind kind, const char *name
     *index = (int)(found - inp->set);
     return SHB_OK;
   }
-  SHB_TRY(grow((void **)&inp->set, inp->n_sets, &inp->set_room, sizeof *inp->set));
+  SHB_TRY(reserve((void **)&inp->set, inp->n_sets, &inp->set_room, sizeof *inp->set));
   mesh_inp_set *set = &inp->set[inp->n_sets];
   *set              = (mesh_inp_set){.kind = kind, .of_nodes = of_nodes, .line = line};
   snprintf(set->name, sizeof set->name, "%s", name);
@@ -68,8 +68,9 @@ static int by_element(const void *a, const void *b) {
   return compare(((const mesh_inp_element *)a)->id, ((const mesh_inp_element *)b)->id);
 }
 
-/* The line to name: the later of the two. */
-static shb_status refuse_twice(const mesh_deck *deck, const char *what, long id, long a, long b) {
+/* Name the later of the two lines. */
+static shb_status refuse_duplicate(const mesh_deck *deck, const char *what, long id, long a,
+                                   long b) {
   MESH_DECK_FAIL(deck, a > b ? a : b, "%s %ld is given twice, first in line %ld", what, id,
                  a > b ? b : a);
 }
@@ -81,10 +82,10 @@ shb_status mesh_inp_sort(mesh_inp *inp, const mesh_deck *deck) {
   if (inp->n_elements) qsort(element, (size_t)inp->n_elements, sizeof *element, by_element);
   for (int i = 1; i < inp->n_nodes; i++)
     if (node[i].id == node[i - 1].id)
-      return refuse_twice(deck, "node", node[i].id, node[i].line, node[i - 1].line);
+      return refuse_duplicate(deck, "node", node[i].id, node[i].line, node[i - 1].line);
   for (int i = 1; i < inp->n_elements; i++)
     if (element[i].id == element[i - 1].id)
-      return refuse_twice(deck, "element", element[i].id, element[i].line, element[i - 1].line);
+      return refuse_duplicate(deck, "element", element[i].id, element[i].line, element[i - 1].line);
   return SHB_OK;
 }
 
@@ -105,13 +106,12 @@ int mesh_inp_element_at(const mesh_inp *inp, long id) {
   return found ? (int)(found - inp->element) : -1;
 }
 
-/* Corners of S1, S2, ..., from 0; a triangle's fourth is its first. */
+/* Corners of S1, S2, ..., counted from 0; the fourth of a triangle repeats the first. */
 static const int tet_label[4][4] = {{0, 1, 2, 0}, {0, 3, 1, 0}, {1, 3, 2, 1}, {2, 3, 0, 2}};
 static const int hex_label[6][4] = {{0, 1, 2, 3}, {4, 7, 6, 5}, {0, 4, 5, 1},
                                     {1, 5, 6, 2}, {2, 6, 7, 3}, {3, 7, 4, 0}};
 
-/* Is the corner one of the label's? */
-static bool among(const int label[4], int corner) {
+static bool contains(const int label[4], int corner) {
   for (int i = 0; i < 4; i++)
     if (label[i] == corner) return true;
   return false;
@@ -123,7 +123,7 @@ int mesh_inp_face(mesh_kind kind, int label) {
   const int *corner = kind == MESH_HEX20 ? hex_label[label - 1] : tet_label[label - 1];
   for (int f = 0; f < topology->faces; f++) {
     int same = 0;
-    for (int i = 0; i < topology->face_corners; i++) same += among(corner, topology->face[f][i]);
+    for (int i = 0; i < topology->face_corners; i++) same += contains(corner, topology->face[f][i]);
     if (same == topology->face_corners) return f;
   }
   return -1;

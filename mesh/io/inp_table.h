@@ -1,4 +1,4 @@
-/* What an .inp file holds: nodes, elements, sets and surfaces as they are read, before anything is resolved. */
+/* Nodes, elements, sets and surfaces of an .inp file before references are resolved. */
 #ifndef MESH_IO_INP_TABLE_H
 #define MESH_IO_INP_TABLE_H
 
@@ -10,18 +10,19 @@ typedef struct {
   double at[3]; /* in the file's unit */
 } mesh_inp_node;
 
-/* A volume element, or a triangle or quadrangle that is the face of one; nodes in the file's order. */
+/* A volume element, or a triangle or quadrangle that marks a face; nodes in the order of the
+ * file. */
 typedef struct {
   long id, line;
-  int  n;    /* nodes: 10 or 20, 6 or 8 */
-  bool face; /* of a volume element */
+  int  n;    /* number of nodes: 10, 20, 6 or 8 */
+  bool face; /* marks a face of a volume element */
   long node[MESH_NODES];
 } mesh_inp_element;
 
-/* Node or element, or the face of an element. */
+/* A member of a set: a node, an element or a face of an element. */
 typedef struct {
   long id, line;
-  int  face; /* 1, 2, ... for S1, S2, ...; 0: none (the element is a face itself) */
+  int  face; /* 1, 2, ... for S1, S2, ...; 0: the element is itself a face */
 } mesh_inp_member;
 
 typedef enum { MESH_INP_NSET, MESH_INP_ELSET, MESH_INP_SURFACE } mesh_inp_kind;
@@ -30,7 +31,7 @@ typedef struct {
   mesh_inp_kind    kind;
   char             name[MESH_DECK_NAME];
   bool             of_nodes; /* members are nodes */
-  long             line;     /* where it is first named */
+  long             line;     /* where the set is first named */
   int              n, room;
   mesh_inp_member *member;
 } mesh_inp_set;
@@ -47,22 +48,22 @@ shb_status mesh_inp_add_node(mesh_inp *inp, const mesh_inp_node *node);
 shb_status mesh_inp_add_element(mesh_inp *inp, const mesh_inp_element *element);
 shb_status mesh_inp_add_member(mesh_inp_set *set, const mesh_inp_member *member);
 
-/* The set of that kind and name (letters of either case; what stands before a dot is the name of an instance and may
- * be missing), or NULL. */
+/* Set of that kind and name, or NULL. Case is ignored. The name of an instance before a dot may be
+ * missing. */
 mesh_inp_set *mesh_inp_find(const mesh_inp *inp, mesh_inp_kind kind, const char *name);
 
-/* The same, made if absent: its index in inp->set. */
+/* Index in inp->set of the set of that kind and name, made if absent. */
 shb_status mesh_inp_open_set(mesh_inp *inp, mesh_inp_kind kind, const char *name, bool of_nodes,
                              long line, int *index);
 
 /* Sort nodes and elements by number. SHB_ERR_INPUT: a number is used twice. */
 shb_status mesh_inp_sort(mesh_inp *inp, const mesh_deck *deck);
 
-/* Place of a number after sorting, or -1. */
+/* Index of a number after sorting, or -1. */
 int mesh_inp_node_at(const mesh_inp *inp, long id);
 int mesh_inp_element_at(const mesh_inp *inp, long id);
 
-/* Local face (of mesh_topology) that S1, S2, ... (label 1, 2, ...) means; -1 if there is none. */
+/* Local face (of mesh_topology) of label 1, 2, ... for S1, S2, ...; -1 if there is none. */
 int mesh_inp_face(mesh_kind kind, int label);
 
 void mesh_inp_free(mesh_inp *inp); /* also on a zeroed struct */

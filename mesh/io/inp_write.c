@@ -1,3 +1,5 @@
+#include "mesh/io/inp_write.h"
+
 #include <errno.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -6,11 +8,11 @@
 #include <strings.h>
 #include <unistd.h>
 
+#include "mesh/base/arena.h"
 #include "mesh/base/publish.h"
-#include "mesh/io/inp_read.h"
 #include "mesh/io/inp_table.h"
 
-/* S1, S2, ... of element e where its corners are the group's face, or 0. */
+/* Label 1, 2, ... of the face of element e with the corners of face, or 0. */
 static int face_label(const mesh_fe *mesh, int e, const int *face) {
   const mesh_topology *topology = mesh_topology_of(mesh->kind);
   const int           *node     = mesh->connectivity + (size_t)topology->nodes * (size_t)e;
@@ -25,39 +27,40 @@ static int face_label(const mesh_fe *mesh, int e, const int *face) {
 }
 
 typedef struct {
-  int set, face, corner; /* corner: the least of the face's */
-} wanted;
+  int set, face, corner; /* corner: the smallest node index of the face's corners */
+} group_face;
 
 static int by_corner(const void *a, const void *b) {
-  return ((const wanted *)a)->corner - ((const wanted *)b)->corner;
+  return ((const group_face *)a)->corner - ((const group_face *)b)->corner;
 }
 
-/* Every face of every set, sorted by its least corner; NULL when out of memory. */
-static wanted *list_faces(const mesh_fe *mesh, int *n) {
+/* Faces of all sets, sorted by their smallest corner; NULL when out of memory. */
+static group_face *list_faces(const mesh_fe *mesh, shb_arena *arena, int *n) {
   const mesh_topology *topology = mesh_topology_of(mesh->kind);
   size_t               total    = 0;
   for (int s = 0; s < mesh_fe_sets(mesh); s++) total += (size_t)mesh->set[s].n;
-  wanted *list = malloc((total + 1) * sizeof *list);
-  *n           = 0;
-  for (int s = 0; list && s < MESH_N_SETS; s++)
+  group_face *list = shb_arena_take(arena, total, sizeof *list);
+  *n               = 0;
+  for (int s = 0; list && s < mesh_fe_sets(mesh); s++)
     for (int f = 0; f < mesh->set[s].n; f++) {
       const int *node  = mesh->set[s].nodes + (size_t)topology->face_nodes * (size_t)f;
       int        least = node[0];
       for (int i = 1; i < topology->face_corners; i++) least = node[i] < least ? node[i] : least;
-      list[(*n)++] = (wanted){s, f, least};
+      list[(*n)++] = (group_face){s, f, least};
     }
   if (list) qsort(list, total, sizeof *list, by_corner);
   return list;
 }
 
-/* element[set][face], label[set][face]: where each face of a group lies. */
-static void locate(const mesh_fe *mesh, const wanted *list, int n,
+/* Element and label of each face of each group: element[set][face], label[set][face]. */
+static void locate(const mesh_fe *mesh, const group_face *list, int n,
                    int *const element[MESH_MAX_SETS], int *const label[MESH_MAX_SETS]) {
   const mesh_topology *topology = mesh_topology_of(mesh->kind);
   for (int e = 0; e < mesh->n_elements; e++)
     for (int c = 0; c < topology->corners; c++) {
-      wanted  key = {.corner = mesh->connectivity[(size_t)topology->nodes * (size_t)e + (size_t)c]};
-      wanted *found = bsearch(&key, list, (size_t)n, sizeof *list, by_corner);
+      group_face  key   = {.corner =
+                               mesh->connectivity[(size_t)topology->nodes * (size_t)e + (size_t)c]};
+      group_face *found = bsearch(&key, list, (size_t)n, sizeof *list, by_corner);
       while (found && found > list && found[-1].corner == key.corner) found--;
       for (; found && found < list + n && found->corner == key.corner; found++) {
         int s = found->set, f = found->face;
@@ -69,7 +72,8 @@ static void locate(const mesh_fe *mesh, const wanted *list, int n,
     }
 }
 
-/* The fewest digits that give the number back, but not more than fit in 20 characters, where CalculiX stops reading. */
+/* Print the fewest digits that reproduce the number, within the 20 characters that CalculiX
+ * reads. */
 static void print_real(FILE *file, double value) {
   char text[40];
   for (int digits = 15; digits <= 17; digits++) {
@@ -85,7 +89,7 @@ static void print_real(FILE *file, double value) {
   fprintf(file, ", %s", text);
 }
 
-/* Name of the set of all elements: not that of a volume. */
+/* Name of the set of all elements, different from the volumes' names. */
 static const char *body_name(const mesh_fe *mesh) {
   for (int i = 0; i < mesh->n_regions; i++)
     if (strcasecmp(mesh->region_name[i], "body") == 0) return "whole_body";
@@ -119,7 +123,7 @@ static void write_volumes(const mesh_fe *mesh, FILE *file) {
   }
 }
 
-/* The nodes of each group, for *BOUNDARY and the like. */
+/* Node sets of the groups, for *BOUNDARY and similar cards. */
 static void write_node_sets(const mesh_fe *mesh, char *marked, FILE *file) {
   const size_t each = (size_t)mesh_topology_of(mesh->kind)->face_nodes;
   for (int s = 0; s < mesh_fe_sets(mesh); s++) {
@@ -143,15 +147,15 @@ static void write_groups(const mesh_fe *mesh, int *const element[MESH_MAX_SETS],
 }
 
 static shb_status write_all(const mesh_fe *mesh, FILE *file) {
-  int    *element[MESH_MAX_SETS] = {0}, *label[MESH_MAX_SETS] = {0}, n = 0;
-  wanted *list     = list_faces(mesh, &n);
-  char   *marked   = malloc((size_t)mesh->n_nodes + 1);
-  bool    complete = list && marked;
+  shb_arena   arena                  = {0};
+  int        *element[MESH_MAX_SETS] = {0}, *label[MESH_MAX_SETS] = {0}, n = 0;
+  group_face *list   = list_faces(mesh, &arena, &n);
+  char       *marked = shb_arena_take(&arena, (size_t)mesh->n_nodes, 1);
   for (int s = 0; s < mesh_fe_sets(mesh); s++) {
-    element[s] = calloc((size_t)mesh->set[s].n + 1, sizeof **element);
-    label[s]   = calloc((size_t)mesh->set[s].n + 1, sizeof **label);
-    complete   = complete && element[s] && label[s];
+    element[s] = shb_arena_take(&arena, (size_t)mesh->set[s].n, sizeof **element);
+    label[s]   = shb_arena_take(&arena, (size_t)mesh->set[s].n, sizeof **label);
   }
+  const bool complete = !arena.failed;
   if (complete) {
     locate(mesh, list, n, element, label);
     write_body(mesh, file);
@@ -159,12 +163,7 @@ static shb_status write_all(const mesh_fe *mesh, FILE *file) {
     write_node_sets(mesh, marked, file);
     write_groups(mesh, element, label, file);
   }
-  for (int s = 0; s < mesh_fe_sets(mesh); s++) {
-    free(element[s]);
-    free(label[s]);
-  }
-  free(list);
-  free(marked);
+  shb_arena_free(&arena);
   SHB_CHECK(complete, SHB_ERR_IO, "out of memory for a mesh file");
   return SHB_OK;
 }

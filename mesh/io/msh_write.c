@@ -9,7 +9,7 @@
 
 #include "mesh/gmsh/provenance.h"
 
-/* Tags of the volumes come after those of the groups. */
+/* Tags of volumes follow those of the groups. */
 static int volume_tag(const mesh_fe *mesh, int element) {
   return mesh_fe_sets(mesh) + 1 + (mesh->region ? mesh->region[element] : 0);
 }
@@ -34,7 +34,7 @@ static void write_nodes(const mesh_fe *mesh, FILE *file) {
   fprintf(file, "$EndNodes\n");
 }
 
-/* "tag type 2 group entity nodes": the entity is the group. */
+/* Line "tag type 2 group entity nodes"; the entity is the group. */
 static void write_one(const mesh_fe *mesh, long tag, int type, int group, const int *nodes, int n,
                       FILE *file) {
   fprintf(file, "%ld %d 2 %d %d", tag, type, group, group);

@@ -1,5 +1,6 @@
-/* Reading a mesh file: gmsh's own, or Abaqus' and CalculiX'. */
 #define _GNU_SOURCE /* memmem */
+#include "mesh/io/read.h"
+
 #include <errno.h>
 #include <gmshc.h>
 #include <stdbool.h>
@@ -7,16 +8,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "mesh/core/fe_mesh.h"
 #include "mesh/core/file_format.h"
-#include "mesh/core/group_checks.h"
 #include "mesh/core/jacobian.h"
 #include "mesh/gmsh/import.h"
 #include "mesh/gmsh/session.h"
 #include "mesh/io/inp_read.h"
 
-/* First line $MeshFormat (comments may come before it), then version 2.2 or 4.1. gmsh takes anything else
- * for a script of its own language, so it must not see a file that fails here. */
+/* Check the head: $MeshFormat, possibly after comments, then version 2.2 or 4.1. gmsh takes any
+ * other file for a script, so it must not open a file that fails here. */
 static shb_status check_head(FILE *file, const char *path) {
   char line[256] = "";
   bool comment   = false;
@@ -34,7 +33,7 @@ static shb_status check_head(FILE *file, const char *path) {
   return SHB_OK;
 }
 
-/* Is mark anywhere in the file? Blocks overlap by the mark's length. */
+/* Does the file contain mark? Blocks overlap by the length of mark. */
 static bool holds(FILE *file, const char *mark) {
   enum { BLOCK = 1 << 18 };
   size_t length = strlen(mark), kept = 0;
@@ -67,20 +66,21 @@ static shb_status check_file(const char *path) {
 
 static shb_status read_msh(const char *path, const mesh_names *names, mesh_fe *mesh) {
   SHB_TRY(check_file(path));
-  mesh_kernel kernel;
-  SHB_TRY(mesh_kernel_open(&kernel));
+  mesh_session session;
+  SHB_TRY(mesh_session_open(&session));
   int ierr = 0;
-  mesh_kernel_listen(path);
+  mesh_session_log_start(path);
   gmshMerge(path, &ierr);
-  shb_status heard  = mesh_kernel_heard(path); /* gmsh reads on where an element lacks its nodes */
-  shb_status status = ierr              ? mesh_kernel_fail(SHB_ERR_INPUT, __FILE__, __LINE__, path)
-                      : heard != SHB_OK ? heard
-                                        : mesh_import(path, names, mesh);
-  mesh_kernel_close(&kernel);
+  shb_status logged =
+      mesh_session_log_check(path); /* gmsh continues where an element lacks nodes */
+  shb_status status = ierr ? mesh_session_fail(SHB_ERR_INPUT, __FILE__, __LINE__, path)
+                      : logged != SHB_OK ? logged
+                                         : mesh_import(path, names, mesh);
+  mesh_session_close(&session);
   return status;
 }
 
-shb_status mesh_fe_read_named(const char *path, const mesh_names *names, mesh_fe *mesh) {
+shb_status mesh_fe_read(const char *path, const mesh_names *names, mesh_fe *mesh) {
   memset(mesh, 0, sizeof *mesh);
   bool msh = mesh_format_of(path) == MESH_FORMAT_MSH;
   SHB_CHECK(msh || mesh_format_of(path) == MESH_FORMAT_INP, SHB_ERR_INPUT,
@@ -88,27 +88,6 @@ shb_status mesh_fe_read_named(const char *path, const mesh_names *names, mesh_fe
             path);
   SHB_TRY(msh ? read_msh(path, names, mesh) : mesh_inp_read(path, names, mesh));
   shb_status status = mesh_jacobian_check(mesh, path);
-  if (status != SHB_OK) mesh_fe_free(mesh);
-  return status;
-}
-
-shb_status mesh_fe_check_groups(const mesh_fe *mesh, const char *name) {
-  char found[MESH_FOUND + 40];
-  SHB_CHECK(mesh->set[MESH_ROOT].n > 0, SHB_ERR_INPUT,
-            "%s: group root is absent or empty; a physical surface (in .inp a *SURFACE or *NSET) "
-            "of that name, or a rule in mesh.groups, says which faces are clamped; %s",
-            name, mesh_fe_found(mesh, found));
-  for (int s = MESH_N_SETS; s < mesh_fe_sets(mesh); s++)
-    SHB_CHECK(mesh->set[s].n > 0, SHB_ERR_INPUT,
-              "%s: group %s is absent or empty; a physical surface (in .inp a *SURFACE or *NSET) "
-              "of that name, or a rule in mesh.groups, says which faces it is; %s",
-              name, mesh_fe_set_name(mesh, s), mesh_fe_found(mesh, found));
-  return mesh_overlap_check(mesh, name);
-}
-
-shb_status mesh_fe_read(const char *path, mesh_fe *mesh) {
-  SHB_TRY(mesh_fe_read_named(path, NULL, mesh));
-  shb_status status = mesh_fe_check_groups(mesh, path);
   if (status != SHB_OK) mesh_fe_free(mesh);
   return status;
 }

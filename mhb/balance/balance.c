@@ -13,7 +13,7 @@
 /* Fewer pairs than this are not worth a team of threads. */
 enum { WORTH_THREADS = 24 };
 
-/* One workspace a thread; where threads are busy already (one a branch) just one. */
+/* One evaluator a thread. Inside a parallel region, where a thread traces a branch, just one. */
 static shb_status create_contacts(mhb_balance *b) {
   int threads  = omp_in_parallel() || b->n_pairs < WORTH_THREADS ? 1 : omp_get_max_threads();
   b->contacts  = calloc((size_t)threads, sizeof *b->contacts);
@@ -33,7 +33,7 @@ static void set_laws(mhb_balance *b) {
                                         b->settings->preload, b->receptance->share[a]);
 }
 
-/* The operating point has changed: so have the interfaces' own, the laws and linear derivatives. */
+/* The operating point has changed: the interfaces' own, the laws and linear derivatives follow. */
 static void operating_point_changed(mhb_balance *b) {
   for (int i = 0; i < b->n_interfaces; i++)
     b->eval->own[i] = mhb_interface_operating_point(&b->eval->at, b->settings, i);
@@ -67,18 +67,18 @@ shb_status mhb_balance_create_on(mhb_receptance *receptance, const mhb_settings 
   b->n              = 3 * b->n_pairs * b->nb;
   size_t pairs      = (size_t)b->n_pairs;
   b->law            = calloc(pairs, sizeof *b->law);
-  b->pk             = calloc(3 * pairs, sizeof(double complex));
-  b->uk             = calloc(3 * pairs, sizeof(double complex));
+  b->force_k        = calloc(3 * pairs, sizeof(double complex));
+  b->motion_k       = calloc(3 * pairs, sizeof(double complex));
   shb_status status = SHB_OK;
-  if (!(b->law && b->pk && b->uk))
+  if (!(b->law && b->force_k && b->motion_k))
     status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  if (status == SHB_OK) status = mhb_evaluation_create(b, &b->first);
+  if (status == SHB_OK) status = mhb_evaluation_create(b, &b->default_evaluation);
   if (status == SHB_OK) status = create_contacts(b);
   if (status != SHB_OK) {
     mhb_balance_destroy(b);
     return status;
   }
-  b->eval     = b->first;
+  b->eval     = b->default_evaluation;
   b->eval->at = mhb_operating_point_of(settings);
   operating_point_changed(b);
   *out = b;
@@ -90,11 +90,11 @@ void mhb_balance_destroy(mhb_balance *b) {
   if (b->owns_receptance) mhb_receptance_destroy(b->receptance);
   for (int i = 0; b->contacts && i < b->n_threads; i++)
     mhb_contact_evaluator_destroy(b->contacts[i]);
-  mhb_evaluation_destroy(b->first);
+  mhb_evaluation_destroy(b->default_evaluation);
   free(b->contacts);
   free(b->law);
-  free(b->pk);
-  free(b->uk);
+  free(b->force_k);
+  free(b->motion_k);
   free(b);
 }
 
@@ -132,7 +132,7 @@ void mhb_evaluation_destroy(mhb_evaluation *e) {
   free(e);
 }
 
-/* The interfaces' own operating points decide of the laws; frequency and scale are not theirs. */
+/* The laws depend on the interfaces' operating points, but for frequency and scale. */
 static bool same_laws(const mhb_balance *b, const mhb_evaluation *x, const mhb_evaluation *y) {
   for (int i = 0; i < b->n_interfaces; i++) {
     const mhb_operating_point *p = &x->own[i], *q = &y->own[i];
@@ -145,15 +145,15 @@ static bool same_laws(const mhb_balance *b, const mhb_evaluation *x, const mhb_e
 
 void mhb_balance_use(mhb_balance *b, mhb_evaluation *evaluation) {
   const mhb_evaluation *last = b->eval;
-  b->eval                    = evaluation ? evaluation : b->first;
+  b->eval                    = evaluation ? evaluation : b->default_evaluation;
   if (b->eval == last) return;
   if (!same_laws(b, last, b->eval)) set_laws(b);
   if (last->at.scale != b->eval->at.scale) mhb_receptance_scale(b->receptance, b->eval->at.scale);
   mhb_receptance_set_frequency(b->receptance, b->eval->at.omega);
 }
 
-void mhb_balance_set_operating_point(mhb_balance *b, const mhb_operating_point *condition) {
-  b->eval->at = *condition;
+void mhb_balance_set_operating_point(mhb_balance *b, const mhb_operating_point *at) {
+  b->eval->at = *at;
   operating_point_changed(b);
   mhb_receptance_scale(b->receptance, b->eval->at.scale);
 }
@@ -183,15 +183,15 @@ void mhb_balance_set_value(mhb_balance *b, double value) {
   }
 }
 
-/* Complex harmonic k of a vector in real form. */
-static void harmonic(const mhb_balance *b, const double *x, int k, double complex *out) {
+/* Complex harmonic k of x[n]: out[3 pairs]. */
+static void get_harmonic(const mhb_balance *b, const double *x, int k, double complex *out) {
   for (int row = 0; row < 3 * b->n_pairs; row++) {
     const double *a = x + (size_t)row * (size_t)b->nb;
     out[row]        = k == 0 ? a[0] : CMPLX(a[2 * k - 1], a[2 * k]);
   }
 }
 
-static void store(const mhb_balance *b, double *x, int k, const double complex *in) {
+static void put_harmonic(const mhb_balance *b, double *x, int k, const double complex *in) {
   for (int row = 0; row < 3 * b->n_pairs; row++) {
     double *a = x + (size_t)row * (size_t)b->nb;
     if (k == 0) {
@@ -203,8 +203,10 @@ static void store(const mhb_balance *b, double *x, int k, const double complex *
   }
 }
 
-MHB_HOT static void combine(int block, const double *d, size_t stride, const double complex R[3],
-                            double *restrict re, double *restrict im) {
+/* re, im += the complex row R times the rows d (cosine) and e (sine) of three axes. */
+MHB_HOT static void add_complex_row(int block, const double *d, size_t stride,
+                                    const double complex R[3], double *restrict re,
+                                    double *restrict im) {
   const double *d0 = d, *d1 = d + stride, *d2 = d1 + stride;
   const double *e0 = d0 + block, *e1 = d1 + block, *e2 = d2 + block;
   double        x0 = creal(R[0]), x1 = creal(R[1]), x2 = creal(R[2]);
@@ -221,7 +223,7 @@ void mhb_balance_row_times_dp(const mhb_balance *b, const double complex R[3], i
   size_t        stride = (size_t)b->nb * (size_t)block;
   const double *d      = b->eval->dp + (size_t)pair * 3 * stride + (k ? 2 * k - 1 : 0) * block;
   if (k) {
-    combine(block, d, stride, R, re, im);
+    add_complex_row(block, d, stride, R, re, im);
     return;
   }
   for (int j = 0; j < block; j++)
@@ -229,7 +231,7 @@ void mhb_balance_row_times_dp(const mhb_balance *b, const double complex R[3], i
              creal(R[2]) * d[2 * stride + (size_t)j];
 }
 
-/* Columns of one pair of I + R dp, from rows. */
+/* Columns of one pair in the Jacobian I + R dp. */
 static void assemble_columns(const mhb_balance *b, int pair, double *jacobian) {
   int    block = 3 * b->nb, n3 = 3 * b->n_pairs;
   size_t n = (size_t)b->n, first = (size_t)pair * (size_t)block;
@@ -259,8 +261,8 @@ static mhb_pair_kind kind_of(const mhb_balance *b, int a) {
   return p[b->nb] == 0 && p[2 * b->nb] == 0 ? MHB_PAIR_STUCK : MHB_PAIR_AT_LIMIT;
 }
 
-/* The derivative of a pair that is stuck or open, from the law itself: the same to the last bit however it was found. Written
- * once, but for the mean friction. */
+/* Derivative of a stuck or open pair, from the law itself: the same to the last bit in every
+ * evaluation. Written only if dp holds another one; the mean friction is written elsewhere. */
 static void set_linear_derivative(const mhb_balance *b, int a) {
   const mhb_law *law = &b->law[a];
   size_t         nb = (size_t)b->nb, block = 3 * nb;
@@ -279,7 +281,7 @@ static void set_linear_derivative(const mhb_balance *b, int a) {
   }
 }
 
-/* A pair that was stuck or open will mostly be so again: then its derivative need not be worked out. */
+/* A pair that was stuck or open is evaluated without derivative first: it mostly still is. */
 static void evaluate_pair(mhb_balance *b, mhb_contact_evaluator *contact, const double *x, int a,
                           int derivative) {
   size_t  block = 3 * (size_t)b->nb, at = (size_t)a * block;
@@ -309,58 +311,59 @@ static void evaluate_pairs(mhb_balance *b, const double *x, int derivative) {
     evaluate_pair(b, b->contacts[omp_get_thread_num()], x, a, derivative);
 }
 
-/* Harmonic k neither drives the contact nor is pushed at by it: its receptance does not matter. */
-static int at_rest(const mhb_balance *b, int k) {
+/* Harmonic k has neither load nor contact force: its receptance is not needed. */
+static int is_unloaded(const mhb_balance *b, int k) {
   for (int i = 0; i < 3 * b->n_pairs; i++)
-    if (creal(b->pk[i]) != 0 || cimag(b->pk[i]) != 0) return 0;
+    if (creal(b->force_k[i]) != 0 || cimag(b->force_k[i]) != 0) return 0;
   return !b->receptance->driven[k];
 }
 
-/* uk <- uk - free + R_k pk */
-static void balance(const mhb_balance *b, int k) {
+/* motion_k <- motion_k - free + R_k force_k, harmonic k of r. */
+static void subtract_response(const mhb_balance *b, int k) {
   int                   n3   = 3 * b->n_pairs;
   const double complex *R    = b->receptance->R + (size_t)k * (size_t)n3 * (size_t)n3;
   const double complex *free = b->receptance->free + k * n3;
   for (int i = 0; i < n3; i++, R += n3) {
-    double complex u  = b->uk[i] - free[i];
+    double complex u  = b->motion_k[i] - free[i];
     double         re = creal(u), im = cimag(u);
     for (int j = 0; j < n3; j++) {
-      re += creal(R[j]) * creal(b->pk[j]) - cimag(R[j]) * cimag(b->pk[j]);
-      im += creal(R[j]) * cimag(b->pk[j]) + cimag(R[j]) * creal(b->pk[j]);
+      re += creal(R[j]) * creal(b->force_k[j]) - cimag(R[j]) * cimag(b->force_k[j]);
+      im += creal(R[j]) * cimag(b->force_k[j]) + cimag(R[j]) * creal(b->force_k[j]);
     }
-    b->uk[i] = CMPLX(re, im);
+    b->motion_k[i] = CMPLX(re, im);
   }
 }
 
-/* Harmonic k of r does not change with the parameter: rest, or no force that does. */
-static int stays(const mhb_balance *b, int k, int rest) {
-  if (b->parameter == MHB_IN_FREQUENCY) return rest;
+/* Harmonic k of r does not depend on the parameter. force_k: its change by the parameter. */
+static int is_independent(const mhb_balance *b, int k, int unloaded) {
+  if (b->parameter == MHB_IN_FREQUENCY) return unloaded;
   for (int i = 0; i < 3 * b->n_pairs; i++)
-    if (creal(b->pk[i]) != 0 || cimag(b->pk[i]) != 0) return 0;
+    if (creal(b->force_k[i]) != 0 || cimag(b->force_k[i]) != 0) return 0;
   return b->parameter != MHB_IN_SCALE || !b->receptance->driven[k];
 }
 
-/* uk <- dr_k/dvalue, pk the forces at x. */
-static void slope_of(mhb_balance *b, int k, int rest) {
+/* motion_k <- dr_k/dvalue, force_k the forces at x. */
+static void set_slope(mhb_balance *b, int k, int unloaded) {
   int n3 = 3 * b->n_pairs;
-  if (b->parameter != MHB_IN_FREQUENCY) harmonic(b, b->eval->by_parameter, k, b->pk);
-  for (int i = 0; i < n3; i++) b->uk[i] = 0;
-  if (stays(b, k, rest)) return;
+  if (b->parameter != MHB_IN_FREQUENCY) get_harmonic(b, b->eval->by_parameter, k, b->force_k);
+  for (int i = 0; i < n3; i++) b->motion_k[i] = 0;
+  if (is_independent(b, k, unloaded)) return;
   mhb_receptance_update(b->receptance, k);
   if (b->parameter == MHB_IN_FREQUENCY) {
-    mhb_receptance_slope(b->receptance, k, b->pk, b->uk);
-    for (int i = 0; i < n3; i++) b->uk[i] = -b->uk[i];
+    mhb_receptance_slope(b->receptance, k, b->force_k, b->motion_k);
+    for (int i = 0; i < n3; i++) b->motion_k[i] = -b->motion_k[i];
     return;
   }
   const double complex *R    = b->receptance->R + (size_t)k * (size_t)n3 * (size_t)n3;
   const double complex *unit = b->receptance->free_response_unit + k * n3;
   for (int i = 0; i < n3; i++, R += n3) {
-    if (b->parameter == MHB_IN_SCALE) b->uk[i] = -unit[i];
-    for (int j = 0; j < n3; j++) b->uk[i] += R[j] * b->pk[j];
+    if (b->parameter == MHB_IN_SCALE) b->motion_k[i] = -unit[i];
+    for (int j = 0; j < n3; j++) b->motion_k[i] += R[j] * b->force_k[j];
   }
 }
 
-static void force_by_parameter(mhb_balance *b, const double *x) {
+/* dp/dparameter of all pairs; the rate is that of the interface's own parameter. */
+static void set_force_by_parameter(mhb_balance *b, const double *x) {
   size_t block = 3 * (size_t)b->nb;
   for (int a = 0; a < b->n_pairs; a++) {
     size_t at   = (size_t)a * block;
@@ -375,23 +378,23 @@ static void force_by_parameter(mhb_balance *b, const double *x) {
 
 static void evaluate(mhb_balance *b, const double *x, double value, int derivative, double *r,
                      double *slope) {
-  int followed = slope && b->parameter != MHB_IN_FREQUENCY;
+  int by_law = slope && b->parameter != MHB_IN_FREQUENCY; /* the slope needs dp */
   mhb_balance_set_value(b, value);
   mhb_receptance_set_frequency(b->receptance, b->eval->at.omega);
-  evaluate_pairs(b, x, derivative || followed);
-  if (followed) force_by_parameter(b, x);
+  evaluate_pairs(b, x, derivative || by_law);
+  if (by_law) set_force_by_parameter(b, x);
   for (int k = 0; k <= b->m; k++) {
-    harmonic(b, b->eval->p, k, b->pk);
-    harmonic(b, x, k, b->uk);
-    int rest = at_rest(b, k);
-    if (!rest) {
+    get_harmonic(b, b->eval->p, k, b->force_k);
+    get_harmonic(b, x, k, b->motion_k);
+    int unloaded = is_unloaded(b, k);
+    if (!unloaded) {
       mhb_receptance_update(b->receptance, k);
-      balance(b, k);
+      subtract_response(b, k);
     }
-    store(b, r, k, b->uk);
+    put_harmonic(b, r, k, b->motion_k);
     if (!slope) continue;
-    slope_of(b, k, rest);
-    store(b, slope, k, b->uk);
+    set_slope(b, k, unloaded);
+    put_harmonic(b, slope, k, b->motion_k);
   }
 }
 
@@ -406,12 +409,13 @@ void mhb_balance_evaluate(mhb_balance *b, const double *x, double value, double 
   for (int pair = 0; jacobian && pair < b->n_pairs; pair++) assemble_columns(b, pair, jacobian);
 }
 
-static int holds(const mhb_balance *b, int pair, int stuck) {
+static int is_stuck(const mhb_balance *b, int pair, int stuck) {
   return stuck == MHB_BY_PRELOAD ? b->law[pair].n0 > 0 : stuck;
 }
 
-/* Stuck: (I + R_k S) u_k = free_k - R_k s0, S = diag(kv, Ku), s0 the unbalanced preload at k = 0. The mean friction is
- * zero there (static_friction.h: the smallest admissible one), so that S_0 = diag(kv, 0). */
+/* Stuck: (I + R_k S) u_k = free_k - R_k s0, S = diag(kv, Ku); s0: preload at k = 0 that the
+ * equilibrium does not contain. The mean friction is zero, the smallest admissible one
+ * (contact/static_friction.h): S_0 = diag(kv, 0). */
 static shb_status linear_harmonic(const mhb_balance *b, int k, int stuck, double complex *u) {
   int                   n = 3 * b->n_pairs;
   const double complex *R = b->receptance->R + (size_t)k * (size_t)n * (size_t)n;
@@ -422,7 +426,7 @@ static shb_status linear_harmonic(const mhb_balance *b, int k, int stuck, double
   for (int i = 0; A && ipiv && i < n; i++) {
     for (int pair = 0; pair < b->n_pairs; pair++) {
       const mhb_law        *law  = &b->law[pair];
-      double                on   = holds(b, pair, stuck);
+      double                on   = is_stuck(b, pair, stuck);
       const double complex *r    = R + (size_t)i * (size_t)n + 3 * pair;
       double complex        s[3] = {r[0] * law->kv, k ? r[1] * law->ku[0] + r[2] * law->ku[1] : 0,
                              k ? r[1] * law->ku[1] + r[2] * law->ku[2] : 0};
@@ -443,29 +447,29 @@ shb_status mhb_balance_linear_limit(mhb_balance *b, double value, int stuck, dou
   mhb_balance_set_value(b, value);
   mhb_receptance_at(b->receptance, b->eval->at.omega, b->m);
   for (int k = 0; k <= b->m; k++) {
-    SHB_TRY(linear_harmonic(b, k, stuck, b->uk));
-    store(b, x, k, b->uk);
-    for (int i = 0; i < 3 * b->n_pairs; i++) b->pk[i] = 0;
+    SHB_TRY(linear_harmonic(b, k, stuck, b->motion_k));
+    put_harmonic(b, x, k, b->motion_k);
+    for (int i = 0; i < 3 * b->n_pairs; i++) b->force_k[i] = 0;
     for (int a = 0; stuck && a < b->n_pairs; a++) {
-      if (!holds(b, a, stuck)) continue;
+      if (!is_stuck(b, a, stuck)) continue;
       const mhb_law        *law = &b->law[a];
-      const double complex *u   = b->uk + 3 * a;
-      b->pk[3 * a] = law->kv * u[0] + (k == 0 ? fmax(law->n0, 0) - law->mean_offset : 0);
+      const double complex *u   = b->motion_k + 3 * a;
+      b->force_k[3 * a] = law->kv * u[0] + (k == 0 ? fmax(law->n0, 0) - law->mean_offset : 0);
       if (k == 0) continue;
-      b->pk[3 * a + 1] = law->ku[0] * u[1] + law->ku[1] * u[2];
-      b->pk[3 * a + 2] = law->ku[1] * u[1] + law->ku[2] * u[2];
+      b->force_k[3 * a + 1] = law->ku[0] * u[1] + law->ku[1] * u[2];
+      b->force_k[3 * a + 2] = law->ku[1] * u[1] + law->ku[2] * u[2];
     }
-    store(b, b->eval->p, k, b->pk);
+    put_harmonic(b, b->eval->p, k, b->force_k);
   }
   return SHB_OK;
 }
 
 void mhb_balance_contact_force(const mhb_balance *b, int k, double complex *p) {
-  harmonic(b, b->eval->p, k, p);
+  get_harmonic(b, b->eval->p, k, p);
 }
 
 double mhb_balance_vibration(const mhb_balance *b, const double *x) {
-  double moving = 0, still = 0;
-  for (int i = 0; i < b->n; i++) *(i % b->nb ? &moving : &still) += x[i] * x[i];
-  return sqrt(moving > 0 ? moving : still);
+  double vibration = 0, mean = 0;
+  for (int i = 0; i < b->n; i++) *(i % b->nb ? &vibration : &mean) += x[i] * x[i];
+  return sqrt(vibration > 0 ? vibration : mean);
 }

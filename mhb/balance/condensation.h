@@ -1,70 +1,94 @@
-/* The linearised balance of harmonics, (J, column; row, corner) z = rhs, without the pairs that stay stuck or open.
+/* The linearised balance condensed to the pairs that slip or open:
  *
- * Such a pair answers linearly, p_k = S u_k harmonic by harmonic (S = diag(kv, Ku), at k = 0 diag(kv, 0); none if open). With M the
- * moving pairs (D = dp/du from the law), L the stuck and O the open ones, harmonic k of (I + R D) x + c sigma = f reads
+ *   (I + R D) x + column sigma = rhs,   row . x + corner sigma = rhs_border
  *
- *   L:  A x_L = f_L - R_LM q - c_L sigma,   A = I + R_LL S,   q = D x_M                (complex, factored once an omega)
- *   M:  x_M + (R_MM - R_ML S A^-1 R_LM) q + (c_M - R_ML S A^-1 c_L) sigma = f_M - R_ML S A^-1 f_L
- *   O:  x_O = f_O - R_OM q - R_OL S x_L - c_O sigma
+ * A stuck pair (L) answers linearly, harmonic by harmonic: p_k = S u_k, S = diag(kv, Ku), at k = 0
+ * diag(kv, 0). An open pair (O) has no force. Only the nonlinear pairs (N), whose D = dp/du is
+ * full, couple the harmonics. Harmonic k, with q = D x_N and A = I + R_LL S:
  *
- * so that only the moving pairs couple the harmonics: one dense system of 3 (2m+1) moving unknowns, and one for the border.
- * The solution is that of the whole system. det A > 0 in real form: the sign of the determinant is that of the dense one.
+ *   L:  A x_L = rhs_L - R_LN q - c_L sigma
+ *   N:  x_N + C q + (c_N - R_NL S A^-1 c_L) sigma = rhs_N - R_NL S A^-1 rhs_L,
+ *       C = R_NN - R_NL S A^-1 R_LN
+ *   O:  x_O = rhs_O - R_ON q - R_OL S x_L - c_O sigma
  *
- * A stuck pair whose mean friction g = G u depends on the motion (held) is a stuck one with two more borders: unknowns g,
- * columns R_0 of its axes u and w, rows -G, corner I. Harmonics in which nothing happens cost nothing. */
+ * The rows N of all harmonics and the border are one dense system of 3 (2m+1) unknowns a nonlinear
+ * pair. A is complex and factored once a frequency. The solution is that of the whole system; so is
+ * the sign of the determinant, because det A > 0 in real form.
+ *
+ * A pair stuck at the friction limit has a mean friction g = G u that depends on its motion. It is
+ * a stuck pair with two borders more: unknowns g, columns R_0 of its axes u and w, rows -G, corner
+ * I. Harmonics whose right-hand side is zero cost nothing. */
 #ifndef MHB_BALANCE_CONDENSATION_H
 #define MHB_BALANCE_CONDENSATION_H
 
 #include "mhb/balance/balance.h"
 
-/* More held pairs than this are dense, as moving ones. */
+/* Pairs at the friction limit that become borders; further ones are treated as nonlinear. */
 enum { MHB_MOST_AT_LIMIT = 8, MHB_MOST_BORDERS = 1 + 2 * MHB_MOST_AT_LIMIT };
 
 typedef struct {
-  const mhb_balance *b;
-  int                m, n_pairs;        /* of b, when this was made */
-  int                most;              /* moving unknowns there is room for */
-  mhb_pair_kind     *kind;              /* [pairs] as they are treated here: held is stuck */
-  int                n_moving, n_stuck; /* pairs */
-  int               *moving, *stuck;    /* [pairs] which */
-  int                n_held, held[MHB_MOST_AT_LIMIT];
-  int                bordered;   /* the caller's border is the first one */
-  int                n_borders;  /* bordered + 2 n_held */
-  int                size;       /* 3 nb n_moving + n_borders */
-  double            *dense;      /* [size][size] row-major, factored */
-  double            *y;          /* [size] */
-  int               *pivot;      /* [size] */
-  double             omega;      /* of the factors of A; NAN: none */
-  int                n_laws;     /* of the residual, when A was factored */
-  int                n_factored; /* pairs in them */
-  int               *factored;   /* [pairs] which */
-  char              *have;       /* [k] A is factored */
-  double complex    *A;          /* [k][3 stuck][3 stuck], factored */
-  int               *A_pivot;    /* [k][3 stuck] */
-  double complex    *reach;      /* [k][3 moving][3 stuck] A^-1 R_LM */
-  double complex    *mixed;      /* [k][3 moving][3 moving] R_MM - R_ML S reach */
-  double complex    *f;          /* [k][3 pairs] right-hand side */
-  double complex    *c, *t;      /* [border][k][3 pairs] columns and rows */
-  double complex    *q, *s;      /* [k][3 pairs] forces of the moving, of the stuck pairs */
+  const mhb_balance *balance;
+  int                m, n_pairs; /* of the balance, when this was created */
+  int                capacity;   /* nonlinear unknowns there is room for */
+
+  /* the pairs at the point that was factored */
+  mhb_pair_kind *kind; /* [pairs] nonlinear, stuck (also at the limit) or open */
+  int            n_nonlinear, n_stuck;
+  int           *nonlinear, *stuck; /* [pairs] their numbers */
+  int            n_at_limit, at_limit[MHB_MOST_AT_LIMIT];
+
+  /* A of each harmonic */
+  double          omega;       /* rad/s, of the factors; NAN: none */
+  int             n_laws;      /* of the balance, when A was factored */
+  int             n_factored;  /* stuck pairs of the factors */
+  int            *factored;    /* [pairs] their numbers */
+  char           *is_factored; /* [k] */
+  double complex *A;           /* [k][3 stuck][3 stuck] column-major LU */
+  int            *A_pivot;     /* [k][3 stuck] */
+
+  /* between the pairs, with harmonics at the strides of all pairs nonlinear or half of them
+   * stuck */
+  double complex *schur;              /* [k][3 nonlinear][3 nonlinear] C, row-major */
+  double complex *stuck_to_nonlinear; /* [k][3 nonlinear][3 stuck] columns of A^-1 R_LN */
+  double complex *nonlinear_to_stuck; /* [k][3 nonlinear][3 stuck] rows of R_NL S */
+
+  /* borders, the caller's first */
+  int             bordered;  /* 1: the caller's is there */
+  int             n_borders; /* bordered + 2 n_at_limit */
+  double complex *columns;   /* [border][k][3 pairs] column, A^-1 column_L of the stuck pairs */
+  double complex *rows;      /* [border][k][3 pairs] row, less S R_OL^H row_O of the stuck pairs */
+
+  /* dense system */
+  int     size;    /* 3 nb n_nonlinear + n_borders */
+  double *dense;   /* [size][size] row-major; factored */
+  double *unknown; /* [size] right-hand side, then x_N in real form and the borders' unknowns */
+  int    *pivot;   /* [size] */
+
+  /* one solution */
+  double complex *rhs;             /* [k][3 pairs] right-hand side, then x */
+  double complex *nonlinear_force; /* [k][3 pairs] q */
+  double complex *stuck_force;     /* [k][3 pairs] S x_L */
+  double complex *open_reaction;   /* [3 pairs] R_O^H row_O of one harmonic */
 } mhb_condensation;
 
-/* For one residual, which must outlive it. SHB_ERR_IO: no memory. */
-shb_status mhb_condensation_create(const mhb_balance *residual, mhb_condensation **condensed);
+/* For one balance, which must outlive it. SHB_ERR_IO: no memory. */
+shb_status mhb_condensation_create(const mhb_balance *balance, mhb_condensation **condensation);
 
-/* With room for so many moving unknowns; where there are more, factors do not come about. */
-shb_status mhb_condensation_create_within(const mhb_balance *residual, int most,
-                                          mhb_condensation **condensed);
-void       mhb_condensation_destroy(mhb_condensation *condensed);
+/* With room for so many nonlinear unknowns; a point with more of them is not factored. */
+shb_status mhb_condensation_create_within(const mhb_balance *balance, int capacity,
+                                          mhb_condensation **condensation);
+void       mhb_condensation_destroy(mhb_condensation *condensation);
 
-/* Factor at the point where the residual was evaluated last with derivatives.
- *   column, row  in  [n+1] border, both with the corner last (equal there); or both NULL
- * Returns 0 if singular. */
-int mhb_condensation_factor(mhb_condensation *condensed, const double *column, const double *row);
+/* Factor at the balance's evaluation in use, which must be a linearisation.
+ *   column, row  in  [n+1] border, both with the same corner last; or both NULL
+ * Returns 0 if singular or beyond the capacity. No allocation. */
+int mhb_condensation_factor(mhb_condensation *condensation, const double *column,
+                            const double *row);
 
-/* rhs[n or n+1] <- solution. 0: not a number. */
-int mhb_condensation_solve(mhb_condensation *condensed, double *rhs);
+/* rhs[n or n+1] <- solution. Returns 0 if it is not finite. No allocation. */
+int mhb_condensation_solve(mhb_condensation *condensation, double *rhs);
 
-/* Sign of the determinant of what was factored. */
-int mhb_condensation_sign(const mhb_condensation *condensed);
+/* Sign of the determinant of the system that was factored: 1 or -1. */
+int mhb_condensation_sign(const mhb_condensation *condensation);
 
 #endif

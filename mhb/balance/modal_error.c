@@ -5,16 +5,19 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
-#include "mhb/balance/newton.h"
 #include "mhb/balance/stick_stiffness.h"
 #include "mhb/numerics/lu.h"
+#include "mhb/numerics/vector.h"
 
+/* Most axes of linear pairs whose harmonics are solved one by one: 20 pairs. */
 enum { MOST_SOLVED = 60 };
 
+/* The two parts of e_k, added as if orthogonal. */
 typedef enum { BY_LOAD, BY_CONTACT, PARTS } part;
 
-/* What the series leaves out, relative to its last term: by its estimated error, the worst dof; without one (w/w_m)^2. */
-static double ratio_of(const modal_model *model, double w) {
+/* Rest of the residual series at w relative to its last term, by the estimated error of the worst
+ * dof. Without an estimate: (w/w_m)^2, w_m the highest mode. */
+static double series_ratio(const modal_model *model, double w) {
   const int    n     = 3 * model->n_pairs * (model->has_left ? 2 : 1);
   const double top   = SHB_TWO_PI * model->frequency[model->n_modes - 1];
   double       worst = 0, weight = modal_series_at(model, w).weight[2];
@@ -27,18 +30,19 @@ static double ratio_of(const modal_model *model, double w) {
   return worst;
 }
 
-/* The last term that the model holds. */
-static int last_of(void *const term[MODAL_TERMS]) {
+/* Number of the last term that the model has. */
+static int last_term(void *const term[MODAL_TERMS]) {
   int t = MODAL_TERMS - 1;
   while (t > 0 && !term[t]) t--;
   return t;
 }
 
-/* e[k][n] of one part; ratio[k] as above. */
-static void lacking(const mhb_balance *b, const double *ratio, part by, double complex *e) {
-  const mhb_receptance     *r = b->receptance;
-  const mhb_residual_terms *l = r->residual_terms;
-  const int      t = last_of((void *const *)l->contact), u = last_of((void *const *)l->load);
+/* One part of e[k][n]; ratio[k] by series_ratio. */
+static void set_missing_motion(const mhb_balance *b, const double *ratio, part by,
+                               double complex *e) {
+  const mhb_receptance     *r     = b->receptance;
+  const mhb_residual_terms *terms = r->residual_terms;
+  const int t = last_term((void *const *)terms->contact), u = last_term((void *const *)terms->load);
   double complex p[r->n];
   for (int k = 1; k <= b->m; k++) {
     const modal_series s  = modal_series_at(r->model, k * r->omega / r->nu);
@@ -46,43 +50,47 @@ static void lacking(const mhb_balance *b, const double *ratio, part by, double c
     if (by == BY_CONTACT) mhb_balance_contact_force(b, k, p);
     for (int i = 0; i < r->n; i++)
       if (by == BY_CONTACT)
-        to[i] =
-            -ratio[k] * s.weight[t] * mhb_cyclic_flexibility_row(l->contact[t], r->phase[k], i, p);
+        to[i] = -ratio[k] * s.weight[t] *
+                mhb_cyclic_flexibility_row(terms->contact[t], r->phase[k], i, p);
       else
-        to[i] = l->load[u] ? ratio[k] * s.load_weight[u] * r->scale * l->load[u][k * r->n + i] : 0;
+        to[i] = terms->load[u]
+                    ? ratio[k] * s.load_weight[u] * r->scale * terms->load[u][k * r->n + i]
+                    : 0;
   }
 }
 
-static double length_of(int n, const double complex *e) {
+static double norm_of(int n, const double complex *e) {
   double sum = 0;
   for (int i = 0; i < n; i++) sum += creal(e[i]) * creal(e[i]) + cimag(e[i]) * cimag(e[i]);
   return sqrt(sum);
 }
 
-/* As the whole balance answers; e[k][n]. */
-static double by_system(const mhb_balance *b, mhb_condensation *system, const double complex *e) {
-  const mhb_balance *wide   = system->b;
+/* |du| by the condensed balance, for e[k][n]. */
+static double solve_by_system(const mhb_balance *b, mhb_condensation *system,
+                              const double complex *e) {
+  const mhb_balance *larger = system->balance;
   const int          n      = 3 * b->n_pairs;
-  double            *rhs    = calloc((size_t)wide->n, sizeof *rhs);
+  double            *rhs    = calloc((size_t)larger->n, sizeof *rhs);
   double             length = 0;
   for (int k = 1; rhs && k <= b->m; k++)
     for (int i = 0; i < n; i++) {
-      rhs[(size_t)i * (size_t)wide->nb + (size_t)(2 * k - 1)] = creal(e[k * n + i]);
-      rhs[(size_t)i * (size_t)wide->nb + (size_t)(2 * k)]     = cimag(e[k * n + i]);
+      rhs[(size_t)i * (size_t)larger->nb + (size_t)(2 * k - 1)] = creal(e[k * n + i]);
+      rhs[(size_t)i * (size_t)larger->nb + (size_t)(2 * k)]     = cimag(e[k * n + i]);
     }
-  if (rhs && mhb_condensation_solve(system, rhs)) length = mhb_norm(rhs, wide->n);
+  if (rhs && mhb_condensation_solve(system, rhs)) length = mhb_norm(rhs, larger->n);
   free(rhs);
   return length;
 }
 
-/* Harmonic by harmonic, where all pairs are open or stuck. */
-static void answer(const mhb_balance *b, double complex *A, int *pivot, double complex *e) {
+/* e[k][n] <- du where all pairs are linear, harmonic by harmonic. */
+static void solve_by_harmonic(const mhb_balance *b, double complex *A, int *pivot,
+                              double complex *e) {
   const int     n = 3 * b->n_pairs;
   mhb_pair_kind kind[b->n_pairs];
   for (int a = 0; a < b->n_pairs; a++)
     kind[a] = b->eval->info[a].share[MHB_STICK] >= 1 ? MHB_PAIR_STUCK : MHB_PAIR_OPEN;
   for (int k = 1; k <= b->m; k++) {
-    if (!(length_of(n, e + k * n) > 0)) continue;
+    if (!(norm_of(n, e + k * n) > 0)) continue;
     mhb_receptance_update(b->receptance, k);
     mhb_stick_matrix(b, k, kind, A);
     if (mhb_factor_complex(n, A, pivot)) mhb_solve_complex(n, A, pivot, 1, e + k * n);
@@ -102,11 +110,11 @@ double mhb_modal_error(const mhb_balance *b, const double *x, mhb_condensation *
     free(e);
     return e ? 0 : -1;
   }
-  for (int k = 1; k <= b->m; k++) ratio[k] = ratio_of(r->model, k * r->omega / r->nu);
+  for (int k = 1; k <= b->m; k++) ratio[k] = series_ratio(r->model, k * r->omega / r->nu);
   for (part by = 0; by < PARTS; by++) {
-    lacking(b, ratio, by, e);
-    if (linear) answer(b, e + all, pivot, e);
-    sum = hypot(sum, system ? by_system(b, system, e) : length_of(all, e));
+    set_missing_motion(b, ratio, by, e);
+    if (linear) solve_by_harmonic(b, e + all, pivot, e);
+    sum = hypot(sum, system ? solve_by_system(b, system, e) : norm_of(all, e));
   }
   free(e);
   return sum / size;

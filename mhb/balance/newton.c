@@ -7,29 +7,6 @@
 
 enum { MAX_ITERATIONS = 40, MAX_HALVINGS = 8 };
 
-const char *mhb_reason_text(mhb_reason reason) {
-  switch (reason) {
-    case MHB_CONVERGED:
-      return "converged";
-    case MHB_NO_DESCENT:
-      return "Newton found no decrease of the residual";
-    case MHB_MAX_ITERATIONS:
-      return "Newton did not converge";
-    default:
-      return "the Jacobian is singular";
-  }
-}
-
-double mhb_norm(const double *x, int n) {
-  double top = 0, sum = 0;
-  for (int i = 0; i < n; i++) top = fmax(top, fabs(x[i]));
-  for (int i = 0; i < n && top == 0; i++) /* fmax passes over NaN */
-    if (isnan(x[i])) return NAN;
-  if (top == 0) return 0;
-  for (int i = 0; i < n; i++) sum += (x[i] / top) * (x[i] / top);
-  return top * sqrt(sum);
-}
-
 shb_status mhb_newton_create(int n, mhb_newton **out) {
   mhb_newton *w = calloc(1, sizeof *w);
   SHB_CHECK(w, SHB_ERR_IO, "out of memory");
@@ -61,22 +38,22 @@ void mhb_newton_destroy(mhb_newton *w) {
 
 shb_status mhb_newton_bind(mhb_newton *w, const mhb_balance *b) {
   const mhb_condensation *s = w->system;
-  if (s && s->b == b && s->m == b->m && s->n_pairs == b->n_pairs) return SHB_OK;
+  if (s && s->balance == b && s->m == b->m && s->n_pairs == b->n_pairs) return SHB_OK;
   mhb_condensation_destroy(w->system);
   w->system = NULL;
   return mhb_condensation_create(b, &w->system);
 }
 
-/* Halve the step until |r| falls; leaves r and derivatives at the new x. */
+/* Halve the step until |r| decreases; leaves r and the linearisation at the new x. */
 static int line_search(mhb_newton *w, mhb_balance *b, double value, double *x, double *size) {
   int n = w->n;
   memcpy(w->trial, x, sizeof(double) * (size_t)n);
   double before = *size, fraction = 1;
-  for (int i = 0; i < MAX_HALVINGS; i++, fraction *= .5) {
+  for (int i = 0; i < MAX_HALVINGS; i++, fraction *= 0.5) {
     for (int j = 0; j < n; j++) x[j] = w->trial[j] - fraction * w->step[j];
     mhb_balance_linearise(b, x, value, w->r, NULL);
     *size = mhb_norm(w->r, n);
-    if (*size < (1 - .1 * fraction) * before) return 1;
+    if (*size < (1 - 0.1 * fraction) * before) return 1;
   }
   return 0;
 }
@@ -94,8 +71,8 @@ mhb_reason mhb_newton_solve(mhb_newton *w, mhb_balance *b, double value, double 
         !mhb_condensation_solve(w->system, w->step))
       return MHB_SINGULAR;
     if (!line_search(w, b, value, x, &size))
-      return size <= 100 * tolerance * mhb_norm(x, n) ? MHB_CONVERGED
-                                                      : MHB_NO_DESCENT; /* rounding */
+      return size <= 100 * tolerance * mhb_norm(x, n) ? MHB_CONVERGED /* |r| is rounding */
+                                                      : MHB_NO_DESCENT;
   }
   return MHB_MAX_ITERATIONS;
 }

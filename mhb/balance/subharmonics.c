@@ -4,9 +4,10 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
-#include "mhb/balance/newton.h"
+#include "mhb/numerics/vector.h"
 
-static const double NOTHING = 1e-6;
+/* A subharmonic part below this share of |x| is zero. */
+static const double NEGLIGIBLE = 1e-6;
 
 void mhb_subharmonic_embed(int rows, const double *x, int m, int factor, double *to, int wide) {
   int nb = 2 * m + 1, room = 2 * wide + 1;
@@ -68,7 +69,7 @@ int mhb_subharmonic_period(const mhb_balance *b, const double *x) {
   for (int d = 1; d < nu; d++) {
     if (nu % d) continue;
     mhb_subharmonic_component(b, x, d, part);
-    if (mhb_norm(part, b->n) <= NOTHING * size) return d;
+    if (mhb_norm(part, b->n) <= NEGLIGIBLE * size) return d;
   }
   return nu;
 }

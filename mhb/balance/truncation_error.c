@@ -4,11 +4,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "mhb/balance/newton.h"
 #include "mhb/balance/stick_stiffness.h"
 #include "mhb/numerics/fourier.h"
+#include "mhb/numerics/vector.h"
 
-static const double NEGLIGIBLE = .1, NEAR_BY = .1;
+/* Higher harmonics below this share of the step are not fed back. */
+static const double NEGLIGIBLE = 0.1;
+
+/* Distance of the evaluation that measures the curvature, relative to the vibration. */
+static const double NEARBY = 0.1;
 
 static int least(int a, int b) {
   return a < b ? a : b;
@@ -18,28 +22,28 @@ static int most(int a, int b) {
   return a > b ? a : b;
 }
 
-shb_status mhb_truncation_create(const mhb_balance *residual, mhb_truncation **out) {
+shb_status mhb_truncation_create(const mhb_balance *balance, mhb_truncation **out) {
   mhb_truncation *t = calloc(1, sizeof *t);
   SHB_CHECK(t, SHB_ERR_IO, "out of memory");
-  int m                 = residual->m;
-  int looked_at         = most(2 * m, least(most(4 * m, MHB_LEAST_LOOKED_AT), MHB_MOST_LOOKED_AT));
-  t->narrow             = residual;
-  t->settings           = *residual->settings;
+  int m                 = balance->m;
+  int top               = most(2 * m, least(most(4 * m, MHB_LEAST_LOOKED_AT), MHB_MOST_LOOKED_AT));
+  t->balance            = balance;
+  t->settings           = *balance->settings;
   t->settings.harmonics = 2 * m;
   shb_status status =
-      mhb_receptance_create(residual->receptance->model, &t->settings, looked_at, &t->receptance);
+      mhb_receptance_create(balance->receptance->model, &t->settings, top, &t->receptance);
   if (status == SHB_OK) status = mhb_balance_create_on(t->receptance, &t->settings, &t->doubled);
   if (status == SHB_OK) {
     size_t n    = (size_t)t->doubled->n;
     t->x        = calloc(n, sizeof(double));
     t->step     = calloc(n, sizeof(double));
-    t->residual = calloc(n, sizeof(double));
+    t->r        = calloc(n, sizeof(double));
     t->trial    = calloc(n, sizeof(double));
-    t->change   = calloc(n, sizeof(double));
-    if (!(t->x && t->step && t->residual && t->trial && t->change))
+    t->feedback = calloc(n, sizeof(double));
+    if (!(t->x && t->step && t->r && t->trial && t->feedback))
       status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   }
-  if (status == SHB_OK) status = mhb_higher_harmonics_create(t->doubled, t->receptance, &t->beyond);
+  if (status == SHB_OK) status = mhb_higher_harmonics_create(t->doubled, t->receptance, &t->higher);
   if (status == SHB_OK)
     status = mhb_condensation_create_within(t->doubled, MHB_MOST_DOUBLED, &t->system);
   if (status != SHB_OK) {
@@ -53,14 +57,14 @@ shb_status mhb_truncation_create(const mhb_balance *residual, mhb_truncation **o
 void mhb_truncation_destroy(mhb_truncation *t) {
   if (!t) return;
   mhb_condensation_destroy(t->system);
-  mhb_higher_harmonics_destroy(t->beyond);
+  mhb_higher_harmonics_destroy(t->higher);
   mhb_balance_destroy(t->doubled);
   mhb_receptance_destroy(t->receptance);
   free(t->x);
   free(t->step);
-  free(t->residual);
+  free(t->r);
   free(t->trial);
-  free(t->change);
+  free(t->feedback);
   free(t);
 }
 
@@ -71,23 +75,23 @@ static void copy_rows(int rows, const double *from, int nb, double *to, int wide
     memcpy(to + (size_t)i * (size_t)wide, from + (size_t)i * (size_t)nb, length);
 }
 
-/* The residual along the step, -1 + tau + kappa tau^2 in units of it: kappa from one more evaluation, near by. */
-static double bend(mhb_truncation *t, double length, double size) {
+/* kappa of the residual along the step, -1 + tau + kappa tau^2 in units of the step, from one more
+ * evaluation nearby. */
+static double curvature(mhb_truncation *t, double length, double size) {
   mhb_balance *b    = t->doubled;
-  double       part = fmin(1, NEAR_BY * size / length), product = 0;
+  double       part = fmin(1, NEARBY * size / length), product = 0;
   for (int i = 0; i < b->n; i++) t->trial[i] = t->x[i] + part * t->step[i];
   double *r = t->trial;
-  mhb_balance_evaluate(b, t->trial, t->narrow->eval->at.omega, t->residual, NULL, NULL);
-  for (int i = 0; i < b->n; i++) r[i] = t->residual[i] + t->change[i];
+  mhb_balance_evaluate(b, t->trial, t->balance->eval->at.omega, t->r, NULL, NULL);
+  for (int i = 0; i < b->n; i++) r[i] = t->r[i] + t->feedback[i];
   if (!mhb_condensation_solve(t->system, r)) return 0;
   for (int i = 0; i < b->n; i++)
     product += (r[i] + (1 - part) * t->step[i]) / length * (t->step[i] / length);
   return product / (part * part);
 }
 
-/* Where the residual vanishes first: the root of -1 + tau + kappa tau^2, or, where the curve does not come that far, the modulus of
- * both. */
-static double reach(double kappa) {
+/* Smallest positive root tau of -1 + tau + kappa tau^2, or the modulus of complex roots. */
+static double first_root(double kappa) {
   double root = 1 + 4 * kappa;
   return root >= 0 ? 2 / (1 + sqrt(root)) : 1 / sqrt(-kappa);
 }
@@ -95,26 +99,26 @@ static double reach(double kappa) {
 static void scale_step(mhb_truncation *t, double size) {
   double length = mhb_norm(t->step, t->doubled->n);
   if (!(length > 0)) return;
-  double part = reach(bend(t, length, size));
+  double part = first_root(curvature(t, length, size));
   for (int i = 0; i < t->doubled->n; i++) t->step[i] *= part;
 }
 
-/* step <- -r, then the Newton step where there is room for it and it exists. */
+/* step <- the Newton step, or -r where the step does not exist or is too large a system. */
 static mhb_truncation_kind set_step(mhb_truncation *t, double size) {
   mhb_balance *b     = t->doubled;
-  double       omega = t->narrow->eval->at.omega;
+  double       omega = t->balance->eval->at.omega;
   size_t       bytes = sizeof(double) * (size_t)b->n;
-  mhb_balance_linearise(b, t->x, omega, t->residual, NULL);
-  for (int i = 0; i < b->n; i++) t->step[i] = -t->residual[i];
+  mhb_balance_linearise(b, t->x, omega, t->r, NULL);
+  for (int i = 0; i < b->n; i++) t->step[i] = -t->r[i];
   if (!mhb_condensation_factor(t->system, NULL, NULL)) return MHB_TRUNCATION_FIRST_ORDER;
   memcpy(t->trial, t->step, bytes);
   if (!mhb_condensation_solve(t->system, t->trial)) return MHB_TRUNCATION_FIRST_ORDER;
-  memset(t->change, 0, bytes);
-  double length = mhb_norm(t->trial, b->n);
-  t->far        = mhb_higher_harmonics_estimate(t->beyond, b, t->x);
-  if (t->far > NEGLIGIBLE * length) {
-    mhb_higher_harmonics_feedback(t->beyond, b, t->x, t->change);
-    for (int i = 0; i < b->n; i++) t->trial[i] = -t->residual[i] - t->change[i];
+  memset(t->feedback, 0, bytes);
+  double length  = mhb_norm(t->trial, b->n);
+  t->higher_size = mhb_higher_harmonics_estimate(t->higher, b, t->x);
+  if (t->higher_size > NEGLIGIBLE * length) {
+    mhb_higher_harmonics_feedback(t->higher, b, t->x, t->feedback);
+    for (int i = 0; i < b->n; i++) t->trial[i] = -t->r[i] - t->feedback[i];
     mhb_condensation_solve(t->system, t->trial);
   }
   memcpy(t->step, t->trial, bytes);
@@ -124,22 +128,22 @@ static mhb_truncation_kind set_step(mhb_truncation *t, double size) {
 
 double mhb_truncation_error(mhb_truncation *t, const double *x) {
   mhb_balance *b    = t->doubled;
-  double       size = mhb_balance_vibration(t->narrow, x);
-  copy_rows(3 * b->n_pairs, x, t->narrow->nb, t->x, b->nb);
+  double       size = mhb_balance_vibration(t->balance, x);
+  copy_rows(3 * b->n_pairs, x, t->balance->nb, t->x, b->nb);
   memset(t->step, 0, sizeof(double) * (size_t)b->n);
-  t->far  = 0;
-  t->kind = MHB_TRUNCATION_NONE;
-  if (mhb_all_pairs_linear(t->narrow)) return 0;
-  mhb_balance_set_operating_point(b, &t->narrow->eval->at);
+  t->higher_size = 0;
+  t->kind        = MHB_TRUNCATION_NONE;
+  if (mhb_all_pairs_linear(t->balance)) return 0;
+  mhb_balance_set_operating_point(b, &t->balance->eval->at);
   t->kind = set_step(t, size);
-  return size > 0 ? hypot(mhb_norm(t->step, b->n), t->far) / size : 0;
+  return size > 0 ? hypot(mhb_norm(t->step, b->n), t->higher_size) / size : 0;
 }
 
 double mhb_truncation_power(const mhb_truncation *t, int k) {
   const mhb_balance *b = t->doubled;
   if (t->kind == MHB_TRUNCATION_NONE) return 0;
   if (k > b->m)
-    return t->kind == MHB_TRUNCATION_NEWTON ? mhb_higher_harmonics_power(t->beyond, k) : 0;
+    return t->kind == MHB_TRUNCATION_NEWTON ? mhb_higher_harmonics_power(t->higher, k) : 0;
   double sum = 0;
   for (int row = 0; row < 3 * b->n_pairs; row++) {
     const double *a = t->step + (size_t)row * (size_t)b->nb;

@@ -27,8 +27,8 @@ static void unmark_hairlines(mhb_branch *branch, double range) {
 static shb_status set_reason(mhb_branch *branch, const mhb_completion *c) {
   char        text[256];
   mhb_end     end    = c->interrupted ? MHB_END_INTERRUPTED : c->end;
-  bool        own    = c->without_end && !c->interrupted;
-  const char *reason = own ? c->without_end : mhb_end_text(end);
+  bool        own    = c->other_reason && !c->interrupted;
+  const char *reason = own ? c->other_reason : mhb_end_text(end);
   snprintf(text, sizeof text, "%s", reason);
   if (c->n_gaps > 0)
     snprintf(text, sizeof text, "%s, with %d gap%s: %s", reason, c->n_gaps,

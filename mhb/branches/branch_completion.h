@@ -6,13 +6,13 @@
 #include "mhb/branches/tracer.h"
 
 typedef struct {
-  mhb_end     end;         /* why the branch ended */
-  bool        by_folds;    /* without multipliers: stability by the folds, from stable_at on */
-  int         stable_at;   /* point that is stable by assumption */
-  int         n_gaps;      /* places jumped over; first_gap: the first of them */
-  const char *first_gap;   /* if n_gaps > 0 */
-  const char *without_end; /* NULL; or a reason in place of the end's, of an incomplete branch */
-  bool        interrupted; /* out: the judging was stopped, or the tracing was before */
+  mhb_end     end;          /* why the branch ended */
+  bool        by_folds;     /* without multipliers: stability by the folds, from stable_at on */
+  int         stable_at;    /* point that is stable by assumption */
+  int         n_gaps;       /* places jumped over; first_gap: the first of them */
+  const char *first_gap;    /* if n_gaps > 0 */
+  const char *other_reason; /* NULL; or a reason in place of the end's, of an incomplete branch */
+  bool        interrupted;  /* out: the judging was stopped, or the tracing was before */
 } mhb_completion;
 
 /* Join a chain of the tracer's segments into a branch of a response, and complete it.

@@ -20,7 +20,7 @@ enum {
   FEWER_SUBSTEPS = 32,
   LEAST_POINTS   = 3
 };
-static const double BUDGET = .5, FEWER_BUDGET = .1, SECONDS_A_CUBE = 4e-9, SECONDS_A_STATE = 1e-5;
+static const double BUDGET = 0.5, FEWER_BUDGET = 0.1, SECONDS_A_CUBE = 4e-9, SECONDS_A_STATE = 1e-5;
 
 /* Distances of a modulus from 1: outside by a margin that counts as unstable, on the circle after a
  * search, and where the search ends. */
@@ -29,7 +29,7 @@ enum { MAX_LOCATED = 32 };
 
 /* What the multipliers tell of a point. */
 typedef struct {
-  int    known;          /* 0: not computed */
+  int    computed;       /* 0: not computed */
   int    verdict;        /* mhb_verdict */
   int    loss;           /* MHB_LOSS_FOLD ... of the largest */
   int    n_unstable;     /* outside the unit circle by more than the margin */
@@ -41,8 +41,8 @@ typedef struct {
 struct mhb_branch_stability {
   mhb_balance *balance;
   mhb_floquet *floquet;
-  int          states, all; /* all: every point of the branch at work is judged */
-  double      *x, *r;       /* [n] */
+  int          states, judges_all; /* judges_all: every point of the branch at work is judged */
+  double      *x, *r;              /* [n] */
   /* the branch at work */
   mhb_tracer      *tracer;
   mhb_response    *response;
@@ -58,51 +58,51 @@ static int count_states(const mhb_balance *b) {
 }
 
 shb_status mhb_branch_stability_create(mhb_balance *b, mhb_branch_stability **out) {
-  mhb_branch_stability *j = calloc(1, sizeof *j);
-  SHB_CHECK(j, SHB_ERR_IO, "out of memory");
-  j->balance = b;
-  j->states  = count_states(b);
-  int fine   = j->states <= FINE || b->settings->stability == MHB_STABILITY_ALWAYS;
-  j->x       = calloc((size_t)b->n, sizeof(double));
-  j->r       = calloc((size_t)b->n, sizeof(double));
+  mhb_branch_stability *w = calloc(1, sizeof *w);
+  SHB_CHECK(w, SHB_ERR_IO, "out of memory");
+  w->balance = b;
+  w->states  = count_states(b);
+  int fine   = w->states <= FINE || b->settings->stability == MHB_STABILITY_ALWAYS;
+  w->x       = calloc((size_t)b->n, sizeof(double));
+  w->r       = calloc((size_t)b->n, sizeof(double));
   shb_status status =
-      j->x && j->r ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+      w->x && w->r ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   if (status == SHB_OK)
     status = mhb_floquet_create(b->receptance, b->settings, fine ? SUBSTEPS : FEWER_SUBSTEPS,
-                                fine ? 0 : FEWER_STATES, &j->floquet);
+                                fine ? 0 : FEWER_STATES, &w->floquet);
   if (status != SHB_OK) {
-    mhb_branch_stability_destroy(j);
+    mhb_branch_stability_destroy(w);
     return status;
   }
-  *out = j;
+  *out = w;
   return SHB_OK;
 }
 
-void mhb_branch_stability_destroy(mhb_branch_stability *j) {
-  if (!j) return;
-  mhb_floquet_destroy(j->floquet);
-  free(j->x);
-  free(j->r);
-  free(j);
+void mhb_branch_stability_destroy(mhb_branch_stability *w) {
+  if (!w) return;
+  mhb_floquet_destroy(w->floquet);
+  free(w->x);
+  free(w->r);
+  free(w);
 }
 
 /* ---- one point ---- */
 
-static mhb_branch *branch_of(const mhb_branch_stability *j) {
-  return &j->response->branch[j->branch];
+static mhb_branch *branch_of(const mhb_branch_stability *w) {
+  return &w->response->branch[w->branch];
 }
 
-static double value_of(const mhb_branch_stability *j, int point) {
-  return mhb_parameter_value(j->balance->parameter, branch_of(j)->value[point]);
+static double value_of(const mhb_branch_stability *w, int point) {
+  return mhb_parameter_value(w->balance->parameter, branch_of(w)->value[point]);
 }
 
 /* Multipliers at the solution that the residual was last evaluated at. */
-static void evaluate(mhb_branch_stability *j, const double *x, mhb_multipliers *out) {
-  const mhb_balance    *b        = j->balance;
+static void evaluate(mhb_branch_stability *w, const double *x, mhb_multipliers *out) {
+  const mhb_balance    *b        = w->balance;
   const mhb_evaluation *e        = b->eval;
   mhb_solution          solution = {e->at.omega, b->law, e->info, x, e->p};
-  if (b->settings->run_up) mhb_floquet_move(j->floquet, b->receptance);
-  mhb_floquet_evaluate(j->floquet, &solution, out);
+  if (b->settings->run_up) mhb_floquet_move(w->floquet, b->receptance);
+  mhb_floquet_evaluate(w->floquet, &solution, out);
 }
 
 /* The largest multiplier that is not on the positive axis; -1: none. */
@@ -114,7 +114,7 @@ static int largest_complex(const mhb_multipliers *m) {
 
 static point_stability stability_of(const mhb_multipliers *m) {
   static const int loss[] = {MHB_LOSS_FOLD, MHB_LOSS_FLIP, MHB_LOSS_NEIMARK_SACKER};
-  point_stability  out    = {.known          = 1,
+  point_stability  out    = {.computed       = 1,
                              .verdict        = (int)m->verdict,
                              .loss           = loss[m->crossing],
                              .n_unstable     = m->n_unstable,
@@ -128,49 +128,49 @@ static point_stability stability_of(const mhb_multipliers *m) {
 }
 
 /* Into the branch. */
-static void put(const mhb_branch_stability *j, int point, const mhb_multipliers *m) {
+static void put(const mhb_branch_stability *w, int point, const mhb_multipliers *m) {
   static const int judged[] = {MHB_BY_MULTIPLIERS, MHB_MARGINAL_BY_FOLDS, MHB_BY_MULTIPLIERS,
                                MHB_UNDECIDED_BY_FOLDS};
-  mhb_branch      *branch   = branch_of(j);
-  int              kept     = j->response->n_multipliers;
+  mhb_branch      *branch   = branch_of(w);
+  int              kept     = w->response->n_multipliers;
   branch->judged[point]     = judged[m->verdict];
   for (int i = 0; i < kept && m->verdict != MHB_UNDECIDED; i++)
     branch->multipliers[(size_t)point * (size_t)kept + (size_t)i] = i < m->n ? m->multiplier[i] : 0;
 }
 
 /* false: the monitor stops it. */
-static bool judge_point(mhb_branch_stability *j, int point) {
+static bool judge_point(mhb_branch_stability *w, int point) {
   mhb_multipliers m;
-  mhb_monitor    *monitor = j->tracer->monitor;
-  double          started = shb_seconds(), value = value_of(j, point);
-  mhb_balance_use(j->balance, NULL);
-  mhb_recorded_motion(branch_of(j), point, j->balance, j->x);
-  mhb_balance_evaluate(j->balance, j->x, value, j->r, NULL, NULL);
-  evaluate(j, j->x, &m);
-  j->at[point] = stability_of(&m);
-  put(j, point, &m);
-  branch_of(j)->seconds[point] += shb_seconds() - started;
-  return monitor->point(monitor, j->response, j->branch, point);
+  mhb_monitor    *monitor = w->tracer->monitor;
+  double          started = shb_seconds(), value = value_of(w, point);
+  mhb_balance_use(w->balance, NULL);
+  mhb_recorded_motion(branch_of(w), point, w->balance, w->x);
+  mhb_balance_evaluate(w->balance, w->x, value, w->r, NULL, NULL);
+  evaluate(w, w->x, &m);
+  w->at[point] = stability_of(&m);
+  put(w, point, &m);
+  branch_of(w)->seconds[point] += shb_seconds() - started;
+  return monitor->point(monitor, w->response, w->branch, point);
 }
 
 /* ---- which points ---- */
 
 /* Stuck or open throughout: the exponents are kept from point to point, and cost little; but not where the speed changes. */
-static bool is_linear(const mhb_branch_stability *j, int point) {
-  if (j->balance->settings->run_up) return false;
-  size_t        pairs = (size_t)j->response->n_pairs;
-  const double *share = branch_of(j)->state + 3 * (size_t)point * pairs;
+static bool is_linear(const mhb_branch_stability *w, int point) {
+  if (w->balance->settings->run_up) return false;
+  size_t        pairs = (size_t)w->response->n_pairs;
+  const double *share = branch_of(w)->state + 3 * (size_t)point * pairs;
   for (size_t a = 0; a < pairs; a++)
     if (share[3 * a] < 1 && share[3 * a + 2] < 1) return false;
   return true;
 }
 
 /* Of the points left, the middle one of the longest stretch between judged ones and folds; -1: none. */
-static int next_of_few(const mhb_branch_stability *j) {
-  const int *special = branch_of(j)->special;
+static int next_of_few(const mhb_branch_stability *w) {
+  const int *special = branch_of(w)->special;
   int        from = 0, longest = 0, best = -1;
-  for (int i = 0; i <= j->n; i++) {
-    if (i < j->n && !j->at[i].known && special[i] != MHB_FOLD) continue;
+  for (int i = 0; i <= w->n; i++) {
+    if (i < w->n && !w->at[i].computed && special[i] != MHB_FOLD) continue;
     if (i - from > longest) {
       longest = i - from;
       best    = from + longest / 2;
@@ -181,13 +181,13 @@ static int next_of_few(const mhb_branch_stability *j) {
 }
 
 /* The largest motion at a point that is left; -1: none. */
-static int largest_motion(const mhb_branch_stability *j) {
+static int largest_motion(const mhb_branch_stability *w) {
   double top  = -1;
   int    best = -1;
-  for (int i = 0; i < j->n; i++) {
-    if (j->at[i].known) continue;
-    mhb_recorded_motion(branch_of(j), i, j->balance, j->x);
-    double size = mhb_norm(j->x, j->balance->n);
+  for (int i = 0; i < w->n; i++) {
+    if (w->at[i].computed) continue;
+    mhb_recorded_motion(branch_of(w), i, w->balance, w->x);
+    double size = mhb_norm(w->x, w->balance->n);
     if (size <= top) continue;
     top  = size;
     best = i;
@@ -196,29 +196,29 @@ static int largest_motion(const mhb_branch_stability *j) {
 }
 
 /* Points that the budget allows, by the states that are integrated and the cells of the ring that share them (bloch.h). */
-static int affordable(const mhb_branch_stability *j) {
-  int    few = j->states > FINE, g = mhb_floquet_cells(j->floquet);
-  double states = few && j->states > FEWER_STATES ? FEWER_STATES : j->states;
+static int affordable(const mhb_branch_stability *w) {
+  int    few = w->states > FINE, g = mhb_floquet_cells(w->floquet);
+  double states = few && w->states > FEWER_STATES ? FEWER_STATES : w->states;
   double cube   = SECONDS_A_CUBE * states * states * states * (g > 2 ? 2. : 1.) / (g * g);
   int    n      = (int)((few ? FEWER_BUDGET : BUDGET) / (cube + SECONDS_A_STATE * states));
   return n > LEAST_POINTS ? n : LEAST_POINTS;
 }
 
 /* Decided by the branch alone, never by the clock: the same on every machine and for any number of threads. */
-static int judges_all(const mhb_branch_stability *j) {
-  return j->states <= CHEAP || j->balance->settings->stability == MHB_STABILITY_ALWAYS ||
-         (j->states <= FINE && affordable(j) >= j->n);
+static int judges_all(const mhb_branch_stability *w) {
+  return w->states <= CHEAP || w->balance->settings->stability == MHB_STABILITY_ALWAYS ||
+         (w->states <= FINE && affordable(w) >= w->n);
 }
 
-static bool judge_points(mhb_branch_stability *j) {
+static bool judge_points(mhb_branch_stability *w) {
   bool go_on = true;
-  for (int i = 0; i < j->n && go_on; i++)
-    if (j->all || is_linear(j, i)) go_on = judge_point(j, i);
-  if (j->all) return go_on;
-  for (int left = affordable(j), first = 1; left > 0 && go_on; left--, first = 0) {
-    int i = first ? largest_motion(j) : next_of_few(j);
+  for (int i = 0; i < w->n && go_on; i++)
+    if (w->judges_all || is_linear(w, i)) go_on = judge_point(w, i);
+  if (w->judges_all) return go_on;
+  for (int left = affordable(w), first = 1; left > 0 && go_on; left--, first = 0) {
+    int i = first ? largest_motion(w) : next_of_few(w);
     if (i < 0) break;
-    go_on = judge_point(j, i);
+    go_on = judge_point(w, i);
   }
   return go_on;
 }
@@ -241,35 +241,35 @@ static double excess_test(mhb_arclength *curve, const mhb_curve_point *point, vo
 }
 
 /* A recorded point, linearised. */
-static void set_point(mhb_branch_stability *j, int i, mhb_curve_point *point) {
-  mhb_recorded_motion(branch_of(j), i, j->balance, point->x);
-  point->value = value_of(j, i);
-  mhb_arclength_measure(mhb_tracer_curve(j->tracer), point);
+static void set_point(mhb_branch_stability *w, int i, mhb_curve_point *point) {
+  mhb_recorded_motion(branch_of(w), i, w->balance, point->x);
+  point->value = value_of(w, i);
+  mhb_arclength_measure(mhb_tracer_curve(w->tracer), point);
 }
 
 /* Where the excess passes 0 between points i - 1 and i; inserted there. A jump across it is not
  * marked. */
-static shb_status locate(mhb_branch_stability *j, int i) {
-  mhb_arclength *curve = mhb_tracer_curve(j->tracer);
-  search         s     = {.stability = j};
+static shb_status locate(mhb_branch_stability *w, int i) {
+  mhb_arclength *curve = mhb_tracer_curve(w->tracer);
+  search         s     = {.stability = w};
   double         at, chord[curve->n + 1];
-  set_point(j, i - 1, &curve->current);
-  set_point(j, i, &curve->next);
+  set_point(w, i - 1, &curve->current);
+  set_point(w, i, &curve->next);
   for (int k = 0; k < curve->n; k++) chord[k] = curve->next.x[k] - curve->current.x[k];
   chord[curve->n] = curve->next.value - curve->current.value;
   if (!mhb_arclength_set_tangent(curve, chord, &curve->current) ||
       !mhb_arclength_set_tangent(curve, chord, &curve->next) ||
-      !mhb_arclength_locate(curve, excess_test, &s, j->at[i - 1].complex_excess,
-                            j->at[i].complex_excess, &at) ||
+      !mhb_arclength_locate(curve, excess_test, &s, w->at[i - 1].complex_excess,
+                            w->at[i].complex_excess, &at) ||
       !(fabs(s.at.complex_excess) < ON_CIRCLE))
     return SHB_OK;
-  mhb_harmonic_levels_errors(j->tracer->levels, &curve->trial);
-  SHB_TRY(mhb_record(j->response, j->branch, j->balance, &curve->trial, s.at.bifurcation, 0));
-  mhb_response_place(j->response, j->branch, i);
-  put(j, i, &s.last);
-  memmove(j->at + i + 1, j->at + i, sizeof *j->at * (size_t)(j->n - i));
-  j->at[i] = s.at;
-  j->n++;
+  mhb_harmonic_levels_errors(w->tracer->levels, &curve->trial);
+  SHB_TRY(mhb_record(w->response, w->branch, w->balance, &curve->trial, s.at.bifurcation, 0));
+  mhb_response_place(w->response, w->branch, i);
+  put(w, i, &s.last);
+  memmove(w->at + i + 1, w->at + i, sizeof *w->at * (size_t)(w->n - i));
+  w->at[i] = s.at;
+  w->n++;
   return SHB_OK;
 }
 
@@ -281,30 +281,30 @@ static bool begins(const int *first, int n_first, int point) {
 
 /* One of points from..to - 1 has a complex or negative multiplier outside the unit circle by more than
  * the margin. The onset of slip brings multipliers close to 1: that is not marked. */
-static bool leaves_by_margin(const mhb_branch_stability *j, int from, int to) {
+static bool leaves_by_margin(const mhb_branch_stability *w, int from, int to) {
   for (int i = from; i < to; i++)
-    if (j->at[i].leaves_complex) return true;
+    if (w->at[i].leaves_complex) return true;
   return false;
 }
 
 /* From the end, so that places before stay valid. */
-static shb_status mark_bifurcations(mhb_branch_stability *j, const int *first, int n_first) {
-  int located = 0, to = j->n;
+static shb_status mark_bifurcations(mhb_branch_stability *w, const int *first, int n_first) {
+  int located = 0, to = w->n;
   while (to > 0 && located + 2 <= MAX_LOCATED) {
     int from = to - 1;
-    if (!(j->at[from].complex_excess > 0) || !j->at[from].known) {
+    if (!(w->at[from].complex_excess > 0) || !w->at[from].computed) {
       to--;
       continue;
     }
-    while (from > 0 && j->at[from - 1].known && j->at[from - 1].complex_excess > 0 &&
+    while (from > 0 && w->at[from - 1].computed && w->at[from - 1].complex_excess > 0 &&
            !begins(first, n_first, from))
       from--;
-    if (leaves_by_margin(j, from, to)) {
-      bool ends   = to < j->n && j->at[to].known && j->at[to].complex_excess <= 0;
-      bool starts = from > 0 && j->at[from - 1].known && j->at[from - 1].complex_excess <= 0;
-      for (int i = from; i < to; i++) j->at[i].leaves_complex = 1;
-      if (ends && !begins(first, n_first, to)) SHB_TRY(locate(j, to));
-      if (starts && !begins(first, n_first, from)) SHB_TRY(locate(j, from));
+    if (leaves_by_margin(w, from, to)) {
+      bool ends   = to < w->n && w->at[to].computed && w->at[to].complex_excess <= 0;
+      bool starts = from > 0 && w->at[from - 1].computed && w->at[from - 1].complex_excess <= 0;
+      for (int i = from; i < to; i++) w->at[i].leaves_complex = 1;
+      if (ends && !begins(first, n_first, to)) SHB_TRY(locate(w, to));
+      if (starts && !begins(first, n_first, from)) SHB_TRY(locate(w, from));
       located += 2;
     }
     to = from;
@@ -337,7 +337,7 @@ static void decide(mhb_branch *branch, const point_stability *at, int stable_at)
       if (n_unstable == 0) loss = MHB_LOSS_FOLD;
       n_unstable = n_unstable == 0 ? 1 : n_unstable == 1 ? 0 : n_unstable;
     }
-    const point_stability *l = at && at[i].known ? &at[i] : NULL;
+    const point_stability *l = at && at[i].computed ? &at[i] : NULL;
     if (l && (l->verdict == MHB_STABLE || l->verdict == MHB_UNSTABLE)) {
       n_unstable = l->verdict == MHB_STABLE ? 0 : l->n_unstable;
       loss       = l->loss;
@@ -356,20 +356,20 @@ void mhb_branch_stability_by_folds(mhb_branch *branch, int stable_at) {
   decide(branch, NULL, stable_at);
 }
 
-shb_status mhb_branch_stability_judge(mhb_branch_stability *j, mhb_tracer *tracer,
+shb_status mhb_branch_stability_judge(mhb_branch_stability *w, mhb_tracer *tracer,
                                       mhb_response *response, int index, const int *begins,
                                       int n_begins, int stable_at, bool *finished) {
-  j->tracer   = tracer;
-  j->response = response;
-  j->branch   = index;
-  j->n        = branch_of(j)->n_points;
-  j->at       = calloc((size_t)j->n + MAX_LOCATED, sizeof *j->at);
-  SHB_CHECK(j->at, SHB_ERR_IO, "out of memory");
-  j->all            = judges_all(j);
-  *finished         = judge_points(j);
-  shb_status status = *finished && j->all ? mark_bifurcations(j, begins, n_begins) : SHB_OK;
-  decide(branch_of(j), j->at, stable_at);
-  free(j->at);
-  j->at = NULL;
+  w->tracer   = tracer;
+  w->response = response;
+  w->branch   = index;
+  w->n        = branch_of(w)->n_points;
+  w->at       = calloc((size_t)w->n + MAX_LOCATED, sizeof *w->at);
+  SHB_CHECK(w->at, SHB_ERR_IO, "out of memory");
+  w->judges_all     = judges_all(w);
+  *finished         = judge_points(w);
+  shb_status status = *finished && w->judges_all ? mark_bifurcations(w, begins, n_begins) : SHB_OK;
+  decide(branch_of(w), w->at, stable_at);
+  free(w->at);
+  w->at = NULL;
   return status;
 }

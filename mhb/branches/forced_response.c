@@ -196,21 +196,21 @@ static shb_status hand_over(mhb_monitor *monitor, const mhb_response *own) {
 
 static shb_status linear_limits(const modal_model *model, const mhb_settings *settings,
                                 mhb_response *response) {
-  mhb_balance *residual = NULL;
-  SHB_TRY(mhb_balance_create(model, settings, &residual));
-  response->psi = residual->receptance->psi;
-  response->phi = residual->receptance->phi;
+  mhb_balance *balance = NULL;
+  SHB_TRY(mhb_balance_create(model, settings, &balance));
+  response->psi = balance->receptance->psi;
+  response->phi = balance->receptance->phi;
   double most   = settings->n0[0];
   for (int i = 1; i < settings->n_preloads; i++) most = fmax(most, settings->n0[i]);
-  mhb_balance_set_preload(residual, most);
-  mhb_balance_set_parameter(residual, settings->parameter);
-  shb_status status = mhb_stiffness_check(residual->receptance, settings);
+  mhb_balance_set_preload(balance, most);
+  mhb_balance_set_parameter(balance, settings->parameter);
+  shb_status status = mhb_stiffness_check(balance->receptance, settings);
   for (int stuck = 0; stuck < 2 && status == SHB_OK; stuck++) {
     int branch;
     status = mhb_response_branch(response, stuck ? MHB_BRANCH_STUCK : MHB_BRANCH_OPEN, &branch);
-    if (status == SHB_OK) status = mhb_linear_limits(residual, response, branch);
+    if (status == SHB_OK) status = mhb_linear_limits(balance, response, branch);
   }
-  mhb_balance_destroy(residual);
+  mhb_balance_destroy(balance);
   return status;
 }
 
@@ -358,10 +358,10 @@ static shb_status check_load(const modal_model *model, const mhb_settings *setti
 shb_status mhb_forced_response(const modal_model *model, const mhb_settings *asked,
                                const char *path, const shb_provenance *provenance,
                                shb_progress *progress, mhb_response **out) {
-  int          m[MHB_MAX_LEVELS], rungs = mhb_harmonic_levels_ladder(model, asked, m);
+  int          m[MHB_MAX_LEVELS], n_levels = mhb_harmonic_levels_ladder(model, asked, m);
   mhb_settings first = *asked, *settings = &first;
   *out            = NULL;
-  first.harmonics = m[rungs - 1];
+  first.harmonics = m[n_levels - 1];
   SHB_TRY(check_load(model, settings));
   first.harmonics = m[0];
   if (first.parameter == MHB_IN_N0) first.n_preloads = 1;
@@ -373,7 +373,7 @@ shb_status mhb_forced_response(const modal_model *model, const mhb_settings *ask
       .progress   = progress,
       .main_share = settings->search.starts > 0 ? MAIN_SHARE : 1,
       .published  = shb_seconds()};
-  s.response = mhb_response_create(model->n_pairs, model->n_probes, m[rungs - 1]);
+  s.response = mhb_response_create(model->n_pairs, model->n_probes, m[n_levels - 1]);
   s.preload  = calloc((size_t)settings->n_preloads, sizeof *s.preload);
   shb_status status =
       s.response && s.preload ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");

@@ -11,15 +11,15 @@
 static const double TOLERANCE = 2e-3;
 
 typedef struct {
-  mhb_balance  *residual;
+  mhb_balance  *balance;
   mhb_response *response;
   int           branch, stuck, n_outputs;
   double       *x, *r;
 } sampler;
 
-/* Amplitudes of all outputs at a value of the parameter; leaves the residual's forces there. */
+/* Amplitudes of all outputs at a value of the parameter; leaves the balance's forces there. */
 static shb_status amplitudes(sampler *s, double value, double *out) {
-  mhb_balance          *b      = s->residual;
+  mhb_balance          *b      = s->balance;
   const mhb_receptance *r      = b->receptance;
   int                   probes = r->model->n_probes, k = r->nu <= b->m ? r->nu : b->m;
   SHB_TRY(mhb_balance_linear_limit(b, value, s->stuck, s->x));
@@ -42,14 +42,14 @@ static shb_status record(sampler *s, double value) {
   double unused[s->n_outputs + 1];
   double started = shb_seconds();
   SHB_TRY(amplitudes(s, value, unused));
-  for (int a = 0; a < s->residual->n_pairs; a++) {
-    mhb_contact_info *info = &s->residual->eval->info[a];
+  for (int a = 0; a < s->balance->n_pairs; a++) {
+    mhb_contact_info *info = &s->balance->eval->info[a];
     memset(info, 0, offsetof(mhb_contact_info, transition));
     info->share[s->stuck ? MHB_STICK : MHB_SEPARATE] = 1;
   }
   mhb_curve_point point = {.x = s->x, .value = value};
-  point.modal           = mhb_modal_error(s->residual, s->x, NULL);
-  SHB_TRY(mhb_record(s->response, s->branch, s->residual, &point, MHB_ORDINARY,
+  point.modal           = mhb_modal_error(s->balance, s->x, NULL);
+  SHB_TRY(mhb_record(s->response, s->branch, s->balance, &point, MHB_ORDINARY,
                      shb_seconds() - started));
   mhb_branch *branch                   = &s->response->branch[s->branch];
   branch->stable[branch->n_points - 1] = 1;
@@ -59,11 +59,11 @@ static shb_status record(sampler *s, double value) {
 /* Record everything in (lo, hi): halve while the middle is off the straight line. */
 static shb_status refine(sampler *s, double lo, const double *at_lo, double hi, const double *at_hi,
                          int depth) {
-  double mid = .5 * (lo + hi), at_mid[s->n_outputs + 1];
+  double mid = 0.5 * (lo + hi), at_mid[s->n_outputs + 1];
   SHB_TRY(amplitudes(s, mid, at_mid));
   int rough = 0;
   for (int o = 0; o < s->n_outputs; o++) {
-    double line = .5 * (at_lo[o] + at_hi[o]);
+    double line = 0.5 * (at_lo[o] + at_hi[o]);
     rough |= fabs(at_mid[o] - line) > TOLERANCE * fmax(line, at_mid[o]);
   }
   if (!rough || depth == 0) return SHB_OK;
@@ -76,7 +76,7 @@ static shb_status refine(sampler *s, double lo, const double *at_lo, double hi, 
 static int first_grid(const mhb_balance *b) {
   const modal_model *model = b->receptance->model;
   const double      *f     = b->settings->frequency;
-  double             least = .1;
+  double             least = 0.1;
   if (b->parameter != MHB_IN_FREQUENCY) return 32;
   for (int i = 0; i < model->n_modes; i++) least = fmin(least, model->damping_ratio[i]);
   double wanted = 4 * (f[1] - f[0]) / fmax(2 * least * f[0], 1e-3 * (f[1] - f[0]));
@@ -84,7 +84,7 @@ static int first_grid(const mhb_balance *b) {
 }
 
 static shb_status sample(sampler *s) {
-  const mhb_balance *b    = s->residual;
+  const mhb_balance *b    = s->balance;
   int                grid = first_grid(b);
   double             from = mhb_parameter_end(b->settings, b->parameter, 0), lo = from;
   double             to = mhb_parameter_end(b->settings, b->parameter, 1);
@@ -123,18 +123,18 @@ static void mark_peaks(mhb_branch *branch, const mhb_balance *b, int n_probes, i
   }
 }
 
-shb_status mhb_linear_limits(mhb_balance *residual, mhb_response *response, int branch) {
-  sampler s = {.residual  = residual,
+shb_status mhb_linear_limits(mhb_balance *balance, mhb_response *response, int branch) {
+  sampler s = {.balance   = balance,
                .response  = response,
                .branch    = branch,
                .stuck     = response->branch[branch].kind == MHB_BRANCH_STUCK,
-               .n_outputs = mhb_outputs(residual)};
-  s.x       = calloc((size_t)residual->n, sizeof(double));
+               .n_outputs = mhb_outputs(balance)};
+  s.x       = calloc((size_t)balance->n, sizeof(double));
   SHB_CHECK(s.x, SHB_ERR_IO, "out of memory");
   shb_status status = sample(&s);
   free(s.x);
   SHB_TRY(status);
-  mark_peaks(&response->branch[branch], residual, response->n_probes, response->n_harmonics);
+  mark_peaks(&response->branch[branch], balance, response->n_probes, response->n_harmonics);
   response->branch[branch].reason   = strdup("end of range");
   response->branch[branch].complete = true;
   return SHB_OK;

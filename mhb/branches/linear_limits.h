@@ -5,7 +5,7 @@
 #include "mhb/balance/balance.h"
 #include "mhb/response/response.h"
 
-/* The open or stuck limit, sampled until linear interpolation of every output is within .2 % of its local value. */
-shb_status mhb_linear_limits(mhb_balance *residual, mhb_response *response, int branch);
+/* The open or stuck limit, sampled until linear interpolation of every output is within 0.2 % of its local value. */
+shb_status mhb_linear_limits(mhb_balance *balance, mhb_response *response, int branch);
 
 #endif

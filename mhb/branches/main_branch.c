@@ -24,7 +24,7 @@ typedef struct {
   bool          stopped;   /* interrupted */
   int           n_gaps;    /* places jumped over, and the first of them */
   char          first_gap[96];
-  const char   *without_end; /* NULL; or a reason of its own */
+  const char   *other_reason; /* NULL; or a reason of its own */
   int           n_detached;
   mhb_chain     detached[MAX_DETACHED];
   mhb_end       detached_end[MAX_DETACHED];
@@ -205,7 +205,7 @@ static shb_status go_beyond(main_branch *m, mhb_end *end, bool *over) {
   mhb_curve_place_free(&lost);
   *over = !found;
   if (!found) *end = why;
-  if (!found && passed) m->without_end = NOTHING_BEYOND;
+  if (!found && passed) m->other_reason = NOTHING_BEYOND;
   return status;
 }
 
@@ -280,12 +280,12 @@ static shb_status publish(void *context) {
 
 /* The branches are joined, and their stability is judged. */
 static shb_status complete(main_branch *m, mhb_end end, int stable_at) {
-  mhb_completion own = {.end         = end,
-                        .by_folds    = true,
-                        .stable_at   = stable_at,
-                        .n_gaps      = m->n_gaps,
-                        .first_gap   = m->first_gap,
-                        .without_end = m->without_end};
+  mhb_completion own = {.end          = end,
+                        .by_folds     = true,
+                        .stable_at    = stable_at,
+                        .n_gaps       = m->n_gaps,
+                        .first_gap    = m->first_gap,
+                        .other_reason = m->other_reason};
   SHB_TRY(mhb_branch_complete(m->tracer, &m->chain, m->response, 0, &own));
   for (int i = 0; i < m->n_detached; i++) {
     int            index;

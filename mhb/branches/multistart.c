@@ -9,21 +9,21 @@
 static const double TOLERANCE = 1e-10, SAME = 1e-5, SMALL = 1e-6;
 enum { MAX_STEPS = 40, MAX_HALVINGS = 6 };
 
-void mhb_solution_set_free(mhb_solution_set *found) {
-  free(found->x);
-  *found = (mhb_solution_set){0};
+void mhb_solution_set_free(mhb_solution_set *set) {
+  free(set->x);
+  *set = (mhb_solution_set){0};
 }
 
-shb_status mhb_solution_set_add(mhb_solution_set *found, int n, const double *x) {
-  if (found->n_found == found->capacity) {
-    int     room = 2 * found->capacity + 8;
-    double *more = realloc(found->x, sizeof(double) * (size_t)room * (size_t)n);
+shb_status mhb_solution_set_add(mhb_solution_set *set, int n, const double *x) {
+  if (set->n_solutions == set->capacity) {
+    int     room = 2 * set->capacity + 8;
+    double *more = realloc(set->x, sizeof(double) * (size_t)room * (size_t)n);
     SHB_CHECK(more, SHB_ERR_IO, "out of memory for %d solutions", room);
-    found->x        = more;
-    found->capacity = room;
+    set->x        = more;
+    set->capacity = room;
   }
-  found->n = n;
-  memcpy(found->x + (size_t)found->n_found++ * (size_t)n, x, sizeof(double) * (size_t)n);
+  set->n = n;
+  memcpy(set->x + (size_t)set->n_solutions++ * (size_t)n, x, sizeof(double) * (size_t)n);
   return SHB_OK;
 }
 
@@ -50,7 +50,7 @@ static double distance(const double *a, const double *b, int n) {
 /* Newton from x with steps of 2 size at most; 1: |r| has become small. */
 static int descend(mhb_newton *w, mhb_balance *b, double value, double size, double *x) {
   int    n = b->n;
-  double kept[n];
+  double start[n];
   for (int step = 0; step < MAX_STEPS; step++) {
     mhb_balance_linearise(b, x, value, w->r, NULL);
     double before = mhb_norm(w->r, n), part = 1;
@@ -62,9 +62,9 @@ static int descend(mhb_newton *w, mhb_balance *b, double value, double size, dou
       return 0;
     double length = mhb_norm(w->step, n), r = INFINITY;
     if (length > 2 * size) part = 2 * size / length;
-    memcpy(kept, x, sizeof kept);
-    for (int k = 0; k <= MAX_HALVINGS && !(r < before); k++, part *= .5) {
-      for (int i = 0; i < n; i++) x[i] = kept[i] - part * w->step[i];
+    memcpy(start, x, sizeof start);
+    for (int k = 0; k <= MAX_HALVINGS && !(r < before); k++, part *= 0.5) {
+      for (int i = 0; i < n; i++) x[i] = start[i] - part * w->step[i];
       mhb_balance_evaluate(b, x, value, w->r, NULL, NULL);
       r = mhb_norm(w->r, n);
     }
@@ -73,45 +73,36 @@ static int descend(mhb_newton *w, mhb_balance *b, double value, double size, dou
   return 0;
 }
 
-bool mhb_solution_set_has(const mhb_solution_set *found, const double *x) {
-  for (int f = 0; f < found->n_found; f++) {
-    const double *y = found->x + (size_t)f * (size_t)found->n;
-    if (distance(x, y, found->n) <= SAME * fmax(mhb_norm(x, found->n), mhb_norm(y, found->n)))
+bool mhb_solution_set_has(const mhb_solution_set *set, const double *x) {
+  for (int f = 0; f < set->n_solutions; f++) {
+    const double *y = set->x + (size_t)f * (size_t)set->n;
+    if (distance(x, y, set->n) <= SAME * fmax(mhb_norm(x, set->n), mhb_norm(y, set->n)))
       return true;
   }
   return false;
 }
 
-shb_status mhb_solution_set_add_shifts(mhb_solution_set *found, const mhb_balance *b,
+shb_status mhb_solution_set_add_shifts(mhb_solution_set *set, const mhb_balance *b,
                                        const double *x) {
   double later[b->n];
-  found->n = b->n;
+  set->n = b->n;
   for (int j = 0; j < b->receptance->nu; j++) {
     mhb_subharmonic_shift(b, x, j, later);
-    if (!mhb_solution_set_has(found, later)) SHB_TRY(mhb_solution_set_add(found, b->n, later));
+    if (!mhb_solution_set_has(set, later)) SHB_TRY(mhb_solution_set_add(set, b->n, later));
   }
   return SHB_OK;
 }
 
 shb_status mhb_multistart_once(mhb_newton *w, mhb_balance *b, double value, double size,
-                               unsigned long long *seed, mhb_solution_set *found, double *x,
-                               bool *found_new) {
+                               unsigned long long *seed, mhb_solution_set *set, double *x,
+                               bool *is_new) {
   int iterations;
-  *found_new = false;
+  *is_new = false;
   SHB_TRY(mhb_newton_bind(w, b));
-  found->n = b->n;
+  set->n = b->n;
   draw(b, size, seed, x);
   if (!descend(w, b, value, size, x)) return SHB_OK;
   if (mhb_newton_solve(w, b, value, TOLERANCE, x, &iterations) != MHB_CONVERGED) return SHB_OK;
-  *found_new = !mhb_solution_set_has(found, x);
-  return *found_new ? mhb_solution_set_add_shifts(found, b, x) : SHB_OK;
-}
-
-shb_status mhb_multistart(mhb_newton *w, mhb_balance *b, double value, double size, int starts,
-                          unsigned long long seed, mhb_solution_set *found) {
-  double x[b->n];
-  bool   unused;
-  for (int i = 0; i < starts; i++)
-    SHB_TRY(mhb_multistart_once(w, b, value, size, &seed, found, x, &unused));
-  return SHB_OK;
+  *is_new = !mhb_solution_set_has(set, x);
+  return *is_new ? mhb_solution_set_add_shifts(set, b, x) : SHB_OK;
 }

@@ -10,7 +10,7 @@
  *   along  out  [n] of length 1, odd harmonics only
  *   *least out  its singular value: the Jacobian without contact is I. Well above 0: what flips has not this wave's form
  * Errors: SHB_ERR_IO no memory. */
-shb_status mhb_period_doubling_direction(mhb_balance *residual, const double *x, double value,
+shb_status mhb_period_doubling_direction(mhb_balance *balance, const double *x, double value,
                                          double *along, double *least);
 
 #endif

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-static const double PI = 3.14159265358979323846;
+#include "mesh/base/constants.h"
 
 static void record_signals(mhb_response *response, mhb_branch *branch, int point,
                            const mhb_balance *b, const double *x) {
@@ -11,12 +11,14 @@ static void record_signals(mhb_response *response, mhb_branch *branch, int point
   double complex p[n3], motion[q + 1];
   for (int k = 0; k <= b->m; k++) {
     mhb_balance_contact_force(b, k, p);
+    mhb_receptance_update(b->receptance, k); /* it may be that of another point */
     for (int row = 0; row < n3; row++) {
       const double *a    = x + (size_t)row * (size_t)b->nb;
       size_t        at   = ((size_t)point * (size_t)n3 + (size_t)row) * (size_t)K + (size_t)k;
       branch->motion[at] = k == 0 ? a[0] : CMPLX(a[2 * k - 1], a[2 * k]);
       branch->force[at]  = p[row];
     }
+    mhb_receptance_update(b->receptance, k); /* it may have been at another frequency since */
     mhb_receptance_probe(b->receptance, k, p, motion);
     for (int s = 0; s < q; s++)
       branch->probe[((size_t)point * (size_t)q + (size_t)s) * (size_t)K + (size_t)k] = motion[s];
@@ -40,7 +42,7 @@ shb_status mhb_record(mhb_response *response, int index, mhb_balance *b,
   mhb_balance_use(b, point->evaluation);
   SHB_TRY(mhb_response_point(response, index, &at));
   mhb_branch *branch    = &response->branch[index];
-  branch->frequency[at] = b->eval->at.omega / (2 * PI);
+  branch->frequency[at] = b->eval->at.omega / SHB_TWO_PI;
   branch->n0[at]        = b->eval->at.n0;
   for (int i = 0; i < response->n_interfaces; i++)
     branch->interface_n0[at * response->n_interfaces + i] = b->eval->own[i].n0;
@@ -61,11 +63,11 @@ shb_status mhb_record(mhb_response *response, int index, mhb_balance *b,
 
 void mhb_recorded_motion(const mhb_branch *branch, int point, const mhb_balance *b, double *x) {
   size_t                K = (size_t)branch->n_harmonics + 1, rows = 3 * (size_t)b->n_pairs;
-  size_t                held = K < (size_t)b->m + 1 ? K : (size_t)b->m + 1;
-  const double complex *A    = branch->motion + (size_t)point * rows * K;
+  size_t                n_common = K < (size_t)b->m + 1 ? K : (size_t)b->m + 1;
+  const double complex *A        = branch->motion + (size_t)point * rows * K;
   memset(x, 0, sizeof *x * (size_t)b->n);
   for (size_t row = 0; row < rows; row++)
-    for (size_t k = 0; k < held; k++) {
+    for (size_t k = 0; k < n_common; k++) {
       double *to = x + row * (size_t)b->nb;
       if (k > 0) to[2 * k] = cimag(A[row * K + k]);
       to[k > 0 ? 2 * k - 1 : 0] = creal(A[row * K + k]);

@@ -2,7 +2,7 @@
 #ifndef MHB_BRANCHES_RECORD_H
 #define MHB_BRANCHES_RECORD_H
 
-#include "mhb/continuation/curve_system.h"
+#include "mhb/continuation/curve.h"
 #include "mhb/response/response.h"
 
 /* Append a point of a balance's curve to a branch. special: MHB_ORDINARY ...; seconds: spent on it.

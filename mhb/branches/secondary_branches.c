@@ -109,8 +109,8 @@ static shb_status problem_of(branch_search *h, int order, subharmonic_problem **
 /* ---- solutions of recorded branches ---- */
 
 /* Point i with its share of the next, as a solution of the subharmonic_problem's order; its own order divides that. */
-static void take(const branch_search *h, const mhb_branch *b, int i, double share,
-                 const subharmonic_problem *s, double *x) {
+static void interpolate(const branch_search *h, const mhb_branch *b, int i, double share,
+                        const subharmonic_problem *s, double *x) {
   int    rows = 3 * h->response->n_pairs, m = b->n_harmonics, nb = mhb_real_size(m);
   int    next = i + 1 < b->n_points ? i + 1 : i;
   double own[rows * nb];
@@ -132,35 +132,36 @@ static double value_at(const branch_search *h, const mhb_branch *b, int point) {
 }
 
 /* Where the branch crosses a value between points i and i + 1: the solution there becomes known. */
-static shb_status know_crossing(const branch_search *h, const mhb_branch *b, int i, double share,
-                                subharmonic_problem *s, double value) {
+static shb_status add_crossing(const branch_search *h, const mhb_branch *b, int i, double share,
+                               subharmonic_problem *s, double value) {
   const double shares[] = {share, 0, 1};
   double       x[s->balance->n];
   int          iterations;
   for (int k = 0; k < 3; k++) {
-    take(h, b, i, shares[k], s, x);
+    interpolate(h, b, i, shares[k], s, x);
     if (mhb_newton_solve(s->newton, s->balance, value, TOLERANCE, x, &iterations) == MHB_CONVERGED)
       return mhb_solution_set_add_shifts(&s->known, s->balance, x);
   }
   return SHB_OK;
 }
 
-static shb_status know_branch(const branch_search *h, const mhb_branch *b, subharmonic_problem *s,
-                              double value) {
+static shb_status add_crossings(const branch_search *h, const mhb_branch *b, subharmonic_problem *s,
+                                double value) {
   if (s->order % b->order) return SHB_OK;
   for (int i = 0; i + 1 < b->n_points; i++) {
     double from = value_at(h, b, i) - value, to = value_at(h, b, i + 1) - value;
     if (from * to > 0 || (from == 0 && to == 0)) continue;
-    SHB_TRY(know_crossing(h, b, i, from / (from - to), s, value));
+    SHB_TRY(add_crossing(h, b, i, from / (from - to), s, value));
   }
   return SHB_OK;
 }
 
 /* Of all nonlinear branches but one; -1: of all. Those detached from the main one count too. */
-static shb_status know_all(const branch_search *h, subharmonic_problem *s, double value, int but) {
-  s->known.n_found = 0;
+static shb_status collect_known(const branch_search *h, subharmonic_problem *s, double value,
+                                int but) {
+  s->known.n_solutions = 0;
   for (int i = 0; i < h->response->n_branches; i++)
-    if (i != but) SHB_TRY(know_branch(h, branch_at(h, i), s, value));
+    if (i != but) SHB_TRY(add_crossings(h, branch_at(h, i), s, value));
   return SHB_OK;
 }
 
@@ -213,11 +214,11 @@ static shb_status is_another(branch_search *h, subharmonic_problem *s, int index
   const mhb_branch *b     = branch_at(h, index);
   int               point = b->n_points / 2, iterations;
   double            value = value_at(h, b, point), x[s->balance->n];
-  take(h, b, point, 0, s, x);
+  interpolate(h, b, point, 0, s, x);
   *another = false;
   if (mhb_newton_solve(s->newton, s->balance, value, TOLERANCE, x, &iterations) != MHB_CONVERGED)
     return SHB_OK;
-  SHB_TRY(know_all(h, s, value, index));
+  SHB_TRY(collect_known(h, s, value, index));
   *another = mhb_solution_set_has(&s->known, x);
   return SHB_OK;
 }
@@ -251,7 +252,7 @@ static bool is_traced(const branch_search *h, subharmonic_problem *s, const doub
     const mhb_branch *b = branch_at(h, i);
     if (b->origin != MHB_FROM_FLIP || b->n_points == 0) continue;
     if (fabs(value_at(h, b, b->n_points - 1) - value) > SAME_VALUE * fabs(value)) continue;
-    take(h, b, b->n_points - 1, 0, s, end);
+    interpolate(h, b, b->n_points - 1, 0, s, end);
     for (int k = 0; k < s->balance->n; k++) end[k] -= x[k];
     if (mhb_norm(end, s->balance->n) < SAME_MOTION * size) return true;
   }
@@ -263,7 +264,7 @@ static shb_status trace_flip(branch_search *h, subharmonic_problem *s, int point
   int               n     = s->balance->n, iterations;
   double            value = value_at(h, main, point), least;
   double            x[n], part[n], along[n];
-  take(h, main, point, 0, s, x);
+  interpolate(h, main, point, 0, s, x);
   if (is_traced(h, s, x, value)) return SHB_OK;
   if (mhb_newton_solve(s->newton, s->balance, value, TOLERANCE, x, &iterations) != MHB_CONVERGED)
     return SHB_OK;
@@ -303,10 +304,10 @@ static shb_status trace_found(branch_search *h, subharmonic_problem *s, const do
 }
 
 /* Motion that the contact takes notice of: the gap or the approach at rest, and what the known branches do. */
-static double usual_size(const branch_search *h, const subharmonic_problem *s) {
+static double expected_size(const branch_search *h, const subharmonic_problem *s) {
   const mhb_settings *c   = h->settings;
   double              top = c->kv > 0 ? fabs(branch_at(h, 0)->n0[0]) / c->kv : 0;
-  for (int f = 0; f < s->known.n_found; f++) {
+  for (int f = 0; f < s->known.n_solutions; f++) {
     double most = 0;
     for (int i = 0; i < s->known.n; i++) most = fmax(most, fabs(s->known.x[f * s->known.n + i]));
     top = fmax(top, most);
@@ -322,10 +323,10 @@ static bool go_on_searching(branch_search *h, double value, double share) {
 
 static shb_status search_at(branch_search *h, subharmonic_problem *s, double value,
                             unsigned long long seed, double share) {
-  static const double sizes[] = {1, 2, 4, .5};
+  static const double sizes[] = {1, 2, 4, 0.5};
   double              x[s->balance->n];
-  SHB_TRY(know_all(h, s, value, -1));
-  double size = usual_size(h, s);
+  SHB_TRY(collect_known(h, s, value, -1));
+  double size = expected_size(h, s);
   if (!(size > 0)) return SHB_OK;
   for (int i = 0; i < h->settings->search.starts && go_on_searching(h, value, share); i++) {
     bool is_new;
@@ -333,17 +334,17 @@ static shb_status search_at(branch_search *h, subharmonic_problem *s, double val
                                 x, &is_new));
     if (!is_new) continue;
     SHB_TRY(trace_found(h, s, x, value));
-    SHB_TRY(know_all(h, s, value, -1));
+    SHB_TRY(collect_known(h, s, value, -1));
     SHB_TRY(mhb_solution_set_add_shifts(&s->known, s->balance, x)); /* whatever became of it */
   }
   return SHB_OK;
 }
 
 /* Evenly over the range unless given. */
-static double place(const mhb_settings *s, int i) {
+static double value_of_search(const mhb_settings *s, int i) {
   double low = mhb_parameter_end(s, s->parameter, 0), high = mhb_parameter_end(s, s->parameter, 1);
   if (s->search.n_at > 0) return mhb_parameter_value(s->parameter, s->search.at[i]);
-  return low + (i + .5) / N_PLACES * (high - low);
+  return low + (i + 0.5) / N_PLACES * (high - low);
 }
 
 static shb_status search_everywhere(branch_search *h) {
@@ -353,7 +354,7 @@ static shb_status search_everywhere(branch_search *h) {
     subharmonic_problem *s;
     SHB_TRY(problem_of(h, c->order[o] * h->settings->subharmonics, &s));
     for (int i = 0; s && i < n && h->go_on; i++)
-      SHB_TRY(search_at(h, s, place(h->settings, i),
+      SHB_TRY(search_at(h, s, value_of_search(h->settings, i),
                         (unsigned long long)(1000 * c->order[o] + i + 1),
                         (double)(o * n + i) / (c->n_orders * n)));
   }

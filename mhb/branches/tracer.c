@@ -118,8 +118,11 @@ static shb_status started(mhb_segment_host *host, const mhb_seed *seed, mhb_end 
     mhb_curve_place_free(&t->start);
   const mhb_curve_place *place = plan->target ? plan->target : plan->closes ? &t->start : NULL;
   if (place && !place->x) place = NULL;
-  for (int j = 0; j < host->curve->system->copies; j++)
-    t->returns[j] = (mhb_curve_return){place, j};
+  for (int j = 0; j < host->curve->system->copies; j++) {
+    mhb_curve_return at = {place, j};
+    /* the test function of a copy that is the place would begin with a zero of any sign */
+    t->returns[j] = place && mhb_curve_return_repeats(&at) ? (mhb_curve_return){NULL, j} : at;
+  }
   if (seed->kind == MHB_SEED_SOLUTION) t->farthest = fmax(t->farthest, seed->value);
   if (seed->kind == MHB_SEED_EXCURSION && plan->known && place &&
       mhb_curve_place_distance(place, host->curve, first) <= place->tolerance)
@@ -158,7 +161,7 @@ static double ahead_of_place(mhb_arclength *curve, const mhb_curve_point *point,
 }
 
 static double slope_of_output(mhb_arclength *curve, const mhb_curve_point *point, void *context) {
-  return mhb_output_slope(curve, point, *(const int *)context);
+  return mhb_output_slope(mhb_curve_balance(curve), point, *(const int *)context);
 }
 
 /* Part of a motion that does not repeat after d periods: its size |z| and the size's rate

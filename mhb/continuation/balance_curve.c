@@ -134,7 +134,8 @@ static double resonance_step_limit(const mhb_curve_system *system, double value,
 }
 
 static bool resonance_skipped(mhb_arclength *curve) {
-  return mhb_resonance_skipped(curve, &mhb_balance_curve_of(curve)->resonances);
+  return mhb_resonance_skipped(curve, mhb_curve_balance(curve),
+                               &mhb_balance_curve_of(curve)->resonances);
 }
 
 shb_status mhb_balance_curve_create(mhb_balance *b, double low, double high, mhb_arclength **out) {

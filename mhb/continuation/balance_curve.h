@@ -1,4 +1,4 @@
-/* The balance of harmonics as a system whose curves are traced (curve_system.h). */
+/* The balance of harmonics as a system whose curves are traced (curve.h). */
 #ifndef MHB_CONTINUATION_BALANCE_CURVE_H
 #define MHB_CONTINUATION_BALANCE_CURVE_H
 

@@ -97,6 +97,15 @@ double mhb_curve_place_distance(const mhb_curve_place *place, const mhb_arclengt
   return least;
 }
 
+bool mhb_curve_return_repeats(const mhb_curve_return *at) {
+  const mhb_curve_place *p   = at->place;
+  int                    n   = p->rows * p->row_length;
+  const double          *x   = p->x + (size_t)at->copy * (size_t)n;
+  double                 sum = 0;
+  for (int i = 0; at->copy > 0 && i < n; i++) sum += pow((x[i] - p->x[i]) / p->size, 2);
+  return at->copy > 0 && sqrt(sum) <= p->tolerance;
+}
+
 bool mhb_curve_return_is_near(mhb_arclength *curve, double at_current, double at_next,
                               void *context) {
   const mhb_curve_point *from = &curve->current, *to = &curve->next;

@@ -3,11 +3,11 @@
 #ifndef MHB_CONTINUATION_CLOSED_CURVE_H
 #define MHB_CONTINUATION_CLOSED_CURVE_H
 
-#include "mhb/continuation/arclength.h"
+#include "mhb/continuation/curve.h"
 
 /* A place of a curve, and the direction in which the curve is to pass it. */
 typedef struct {
-  int     rows, row_length, copies; /* as of the system (curve_system.h) where it was noted */
+  int     rows, row_length, copies; /* as of the system (curve.h) where it was noted */
   double *x, *tangent;              /* [copy][rows][row_length] */
   double  value, rate;              /* of the parameter; the tangent in it */
   double  size;                     /* |x| of the place; 1 at rest */
@@ -32,6 +32,9 @@ typedef struct {
   const mhb_curve_place *place;
   int                    copy;
 } mhb_curve_return;
+
+/* Whether the copy is the place itself: a motion that repeats so early has fewer copies. */
+bool mhb_curve_return_repeats(const mhb_curve_return *at);
 
 /* Test function: how far a point lies beyond the copy, in the direction of passing. */
 double mhb_curve_return_ahead(mhb_arclength *curve, const mhb_curve_point *point, void *context);

@@ -4,7 +4,7 @@
 #ifndef MHB_CONTINUATION_CORRECTOR_H
 #define MHB_CONTINUATION_CORRECTOR_H
 
-#include "mhb/continuation/arclength.h"
+#include "mhb/continuation/curve.h"
 
 /* The size that a change of the parameter is compared with. */
 double mhb_arclength_size(const mhb_arclength *curve);

@@ -2,7 +2,7 @@
 #ifndef MHB_CONTINUATION_EVENT_LOCATION_H
 #define MHB_CONTINUATION_EVENT_LOCATION_H
 
-#include "mhb/continuation/arclength.h"
+#include "mhb/continuation/curve.h"
 
 /* A test function: a scalar along the curve at a corrected point, with its tangent. */
 typedef double (*mhb_test_function)(mhb_arclength *curve, const mhb_curve_point *point,

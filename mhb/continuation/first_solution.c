@@ -11,21 +11,21 @@ enum { MAX_STAGES = 200 };
 /* Natural continuation of the preload from one whose linear limit x solves, to the one asked for. */
 static mhb_reason homotopy(mhb_newton *newton, mhb_balance *b, double omega, double tolerance,
                            double from, double *x) {
-  double     to = b->eval->at.n0, part = 0, step = .25;
-  double     kept[b->n];
+  double     to = b->eval->at.n0, part = 0, step = 0.25;
+  double     last[b->n];
   mhb_reason reason = MHB_MAX_ITERATIONS;
   for (int i = 0; i < MAX_STAGES && part < 1 && step > 1e-5 && !shb_interrupted(); i++) {
     double next = fmin(1, part + step);
     int    iterations;
-    memcpy(kept, x, sizeof kept);
+    memcpy(last, x, sizeof last);
     mhb_balance_set_preload(b, from + next * (to - from));
     reason = mhb_newton_solve(newton, b, omega, tolerance, x, &iterations);
     if (reason == MHB_CONVERGED) {
       part = next;
       step *= iterations < 6 ? 2 : 1;
     } else {
-      memcpy(x, kept, sizeof kept);
-      step *= .4;
+      memcpy(x, last, sizeof last);
+      step *= 0.4;
     }
   }
   mhb_balance_set_preload(b, to);
@@ -39,9 +39,9 @@ static double far_preload(const mhb_balance *b, const double *x, int stuck) {
   for (int i = 0; i < b->n_interfaces; i++) {
     const mhb_operating_point *own = &b->eval->own[i];
     double friction                = (fabs(own->ku[0]) + fabs(own->ku[2])) / fmax(own->mu, 1e-6);
-    double reach                   = 4 * size * (own->kv + (stuck ? friction : 0)) + fabs(own->n0);
-    if (b->n_interfaces > 1) reach += fabs(b->eval->at.n0); /* all move by what this one does */
-    most = fmax(most, reach);
+    double enough                  = 4 * size * (own->kv + (stuck ? friction : 0)) + fabs(own->n0);
+    if (b->n_interfaces > 1) enough += fabs(b->eval->at.n0); /* all move by what this one does */
+    most = fmax(most, enough);
   }
   return stuck ? most : -most;
 }
@@ -100,7 +100,7 @@ static bool continue_to(mhb_balance *b, double from, double to, double *x) {
 
 static mhb_reason by_frequency(mhb_newton *newton, mhb_balance *b, double omega, double tolerance,
                                double *x, int *iterations) {
-  static const double elsewhere[] = {.98, 1.02, .95, 1.05, .9, 1.1, .8, .6};
+  static const double elsewhere[] = {0.98, 1.02, 0.95, 1.05, 0.9, 1.1, 0.8, 0.6};
   mhb_reason          reason      = solve_here(newton, b, omega, tolerance, x, iterations);
   for (int i = 0; i < 8 && reason != MHB_CONVERGED && !shb_interrupted(); i++) {
     double from = elsewhere[i] * omega;

@@ -5,7 +5,7 @@
 #include "mhb/balance/newton.h"
 
 /* A solution at a value of the parameter from nothing: the open and stuck limits, zero, then homotopy in the preload from both sides. */
-mhb_reason mhb_first_solution(mhb_newton *newton, mhb_balance *residual, double value,
+mhb_reason mhb_first_solution(mhb_newton *newton, mhb_balance *balance, double value,
                               double tolerance, double *x, int *iterations);
 
 #endif

@@ -107,7 +107,7 @@ int mhb_linear_correct(mhb_linear_corrector *s, const mhb_balance *b, const doub
     double off  = x_weight * product(b, normal, x) + value_weight * normal[b->n] * *omega - plane;
     double rate = x_weight * product(b, normal, s->slope) + value_weight * normal[b->n];
     double step = -off / rate;
-    if (!isfinite(step) || fabs(step) > .1 * *omega) return 0;
+    if (!isfinite(step) || fabs(step) > 0.1 * *omega) return 0;
     if (fabs(step) < 1e-12 * *omega) return 1;
     *omega += step;
   }

@@ -21,8 +21,8 @@ typedef struct {
   mhb_pair_kind  *kind;  /* [pairs] noted */
 } mhb_linear_corrector;
 
-shb_status mhb_linear_corrector_create(const mhb_balance *residual, mhb_linear_corrector **still);
-void       mhb_linear_corrector_destroy(mhb_linear_corrector *still);
+shb_status mhb_linear_corrector_create(const mhb_balance *balance, mhb_linear_corrector **linear);
+void       mhb_linear_corrector_destroy(mhb_linear_corrector *linear);
 
 /* Set the regime: which pairs are stuck and which open at a linear evaluation. */
 void mhb_linear_set_states(mhb_linear_corrector *linear, const mhb_evaluation *evaluation,
@@ -32,13 +32,13 @@ void mhb_linear_set_states(mhb_linear_corrector *linear, const mhb_evaluation *e
  *   x_weight normal_x.dx + value_weight normal[n] domega = 0
  * to where the harmonics k > 0 balance, with the pairs as noted; the means stay. 0: no such point; x and omega may then be
  * changed. */
-int mhb_linear_correct(mhb_linear_corrector *still, const mhb_balance *residual,
+int mhb_linear_correct(mhb_linear_corrector *linear, const mhb_balance *balance,
                        const double *normal, double x_weight, double value_weight, double *x,
                        double *omega, int *iterations);
 
 /* A Newton step of the means x_0 alone, at the frequency where the residual r[n] was evaluated last, with derivatives; again: with
  * the derivatives of the last step. 0: singular. */
-int mhb_linear_correct_means(mhb_linear_corrector *still, const mhb_balance *residual,
+int mhb_linear_correct_means(mhb_linear_corrector *linear, const mhb_balance *balance,
                              const double *r, int again, double *x);
 
 /* Whether the pairs of an evaluation are stuck and open as in the regime. */

@@ -5,15 +5,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double TWO_PI = 6.283185307179586476925;
+#include "mesh/base/constants.h"
 
 /* In half widths: what is resolved around a resonance, the shortest way there, and the way between places where a resonance may
  * be; farther from each other than that, the contact's own motion tells the resonance. */
-static const double WINDOW = 4, SHORTEST = .5, APART = 2, FARTHEST = 32;
+static const double WINDOW = 4, SHORTEST = 0.5, APART = 2, FARTHEST = 32;
 
 /* A run-up is looked at this often; a mode that goes along with the excitation is no wider than this makes it. */
-enum { LOOKS = 16 };
-static const double LEAST_STEEP = .1;
+enum { N_SAMPLES = 16 };
+static const double LEAST_RATE = 0.1;
 
 /* The eigenproblem of one harmonic. */
 typedef struct {
@@ -26,12 +26,12 @@ typedef struct {
 } stuck_modes;
 
 static shb_status add(mhb_resonances *s, mhb_resonance place) {
-  if (s->n == s->room) {
-    int            room = 2 * s->room + 32;
+  if (s->n == s->capacity) {
+    int            room = 2 * s->capacity + 32;
     mhb_resonance *more = realloc(s->at, (size_t)room * sizeof *more);
     SHB_CHECK(more, SHB_ERR_IO, "out of memory for %d resonances", room);
-    s->at   = more;
-    s->room = room;
+    s->at       = more;
+    s->capacity = room;
   }
   s->at[s->n++] = place;
   return SHB_OK;
@@ -39,12 +39,12 @@ static shb_status add(mhb_resonances *s, mhb_resonance place) {
 
 static shb_status add_inside(const stuck_modes *w, mhb_resonances *s, mhb_resonance place) {
   bool inside = place.value > w->low && place.value < w->high;
-  return inside && place.half > 0 ? add(s, place) : SHB_OK;
+  return inside && place.half_width > 0 ? add(s, place) : SHB_OK;
 }
 
 /* Of free mode i at harmonic k. */
 static mhb_resonance free_one(const mhb_receptance *r, int k, int i) {
-  double omega = TWO_PI * r->model->frequency[i], turns = (double)r->nu / k;
+  double omega = SHB_TWO_PI * r->model->frequency[i], turns = (double)r->nu / k;
   return (mhb_resonance){turns * omega, turns * omega * r->model->damping_ratio[i], k, i, false};
 }
 
@@ -54,7 +54,7 @@ static int stiffen(const stuck_modes *w, int k) {
   const mhb_receptance *r = b->receptance;
   int                   n = r->n, m = r->n_modes;
   const double complex *B = r->B + (size_t)k * (size_t)n * (size_t)m;
-  mhb_receptance_residual_terms(r, k, k * .5 * (w->low + w->high) / r->nu, w->R);
+  mhb_receptance_residual_terms(r, k, k * 0.5 * (w->low + w->high) / r->nu, w->R);
   for (int row = 0; row < n; row++) {
     const mhb_law *law     = &b->law[row / 3];
     double         slips   = law->mu == 0 ? 0 : 1;
@@ -85,7 +85,7 @@ static int solve(const stuck_modes *w, int k) {
   if (!stiffen(w, k)) return 0;
   for (int j = 0; j < m; j++) {
     for (int i = 0; i < m; i++) {
-      double         omega = TWO_PI * r->model->frequency[i];
+      double         omega = SHB_TWO_PI * r->model->frequency[i];
       double complex sum   = i == j ? omega * omega : 0;
       for (int row = 0; row < n; row++)
         sum += conj(B[(size_t)row * (size_t)m + (size_t)i]) *
@@ -97,7 +97,7 @@ static int solve(const stuck_modes *w, int k) {
 }
 
 /* The free mode that has most of a stuck one. */
-static int likest(int m, const double complex *q) {
+static int closest_free_mode(int m, const double complex *q) {
   int mode = 0;
   for (int i = 1; i < m; i++)
     if (cabs(q[i]) > cabs(q[mode])) mode = i;
@@ -108,14 +108,14 @@ static int likest(int m, const double complex *q) {
 static shb_status add_between(const stuck_modes *w, mhb_resonances *s, mhb_resonance stuck,
                               mhb_resonance own) {
   double gap = stuck.value - own.value;
-  if (fabs(gap) > FARTHEST * own.half) return add_inside(w, s, stuck);
+  if (fabs(gap) > FARTHEST * own.half_width) return add_inside(w, s, stuck);
   stuck.mode = own.mode;
-  int n      = (int)(fabs(gap) / (APART * own.half));
+  int n      = (int)(fabs(gap) / (APART * own.half_width));
   for (int i = 1; i <= n; i++) {
     own.value += gap / (n + 1);
     SHB_TRY(add_inside(w, s, own));
   }
-  return fabs(gap) < SHORTEST * own.half ? SHB_OK : add_inside(w, s, stuck);
+  return fabs(gap) < SHORTEST * own.half_width ? SHB_OK : add_inside(w, s, stuck);
 }
 
 /* Of stuck mode j of harmonic k, as solved. */
@@ -125,7 +125,7 @@ static mhb_resonance stuck_one(const stuck_modes *w, int k, int j) {
   double                decay = 0, turns = (double)r->nu / k;
   for (int i = 0; i < r->n_modes; i++) {
     double size = cabs(q[i]);
-    decay += size * size * r->model->damping_ratio[i] * TWO_PI * r->model->frequency[i];
+    decay += size * size * r->model->damping_ratio[i] * SHB_TWO_PI * r->model->frequency[i];
   }
   double omega = sqrt(fmax(0, w->square[j]));
   return (mhb_resonance){turns * omega, turns * decay, k, -1, false};
@@ -137,7 +137,7 @@ static shb_status add_stuck(const stuck_modes *w, mhb_resonances *s, int k) {
   if (!solve(w, k)) return SHB_OK;
   for (int j = 0; j < m; j++)
     SHB_TRY(add_between(w, s, stuck_one(w, k, j),
-                        free_one(r, k, likest(m, w->M + (size_t)j * (size_t)m))));
+                        free_one(r, k, closest_free_mode(m, w->M + (size_t)j * (size_t)m))));
   return SHB_OK;
 }
 
@@ -150,7 +150,7 @@ typedef struct {
 } mode_at;
 
 /* Of all harmonics and modes, [k][mode]. */
-static void look_at(const stuck_modes *w, double omega, mode_at *out) {
+static void sample_modes(const stuck_modes *w, double omega, mode_at *out) {
   mhb_receptance *r = w->b->receptance;
   int             m = r->n_modes;
   mhb_receptance_set_frequency(r, omega);
@@ -161,37 +161,37 @@ static void look_at(const stuck_modes *w, double omega, mode_at *out) {
       of[i] = (mode_at){.free = free_one(r, k, i)};
       if (!found) continue;
       of[i].stuck = stuck_one(w, k, i);
-      of[i].own   = free_one(r, k, likest(m, w->M + (size_t)i * (size_t)m));
+      of[i].own   = free_one(r, k, closest_free_mode(m, w->M + (size_t)i * (size_t)m));
     }
   }
 }
 
-/* value - omega changes its sign between two frequencies: squares are linear in Omega^2. *steep <- what the excitation nears the
+/* value - omega changes its sign between two frequencies: squares are linear in Omega^2. *rate <- what the excitation nears the
  * resonance by as it changes by 1. */
 static bool meets(const mhb_resonance *a, double low, const mhb_resonance *b, double high,
-                  mhb_resonance *place, double *steep) {
+                  mhb_resonance *place, double *rate) {
   double x = low * low, y = high * high, f = a->value * a->value - x, g = b->value * b->value - y;
   if ((f > 0) == (g > 0)) return false;
-  double part  = f / (f - g);
-  *steep       = fmax(fabs(f - g) / (y - x), LEAST_STEEP);
-  *place       = part < .5 ? *a : *b;
-  place->value = sqrt(x + part * (y - x));
-  place->half  = ((1 - part) * a->half + part * b->half) / *steep;
+  double part       = f / (f - g);
+  *rate             = fmax(fabs(f - g) / (y - x), LEAST_RATE);
+  *place            = part < 0.5 ? *a : *b;
+  place->value      = sqrt(x + part * (y - x));
+  place->half_width = ((1 - part) * a->half_width + part * b->half_width) / *rate;
   return true;
 }
 
 static shb_status add_meetings(const stuck_modes *w, mhb_resonances *s, const mode_at *a,
                                double low, const mode_at *b, double high) {
   mhb_resonance place;
-  double        steep;
-  if (meets(&a->free, low, &b->free, high, &place, &steep)) SHB_TRY(add_inside(w, s, place));
-  if (!(a->stuck.half > 0 && b->stuck.half > 0) ||
-      !meets(&a->stuck, low, &b->stuck, high, &place, &steep))
+  double        rate;
+  if (meets(&a->free, low, &b->free, high, &place, &rate)) SHB_TRY(add_inside(w, s, place));
+  if (!(a->stuck.half_width > 0 && b->stuck.half_width > 0) ||
+      !meets(&a->stuck, low, &b->stuck, high, &place, &rate))
     return SHB_OK;
   const bool    near = place.value - low < high - place.value;
   mhb_resonance own  = near ? a->own : b->own;
-  own.value          = place.value + (own.value - (near ? a : b)->stuck.value) / steep;
-  own.half /= steep;
+  own.value          = place.value + (own.value - (near ? a : b)->stuck.value) / rate;
+  own.half_width /= rate;
   return add_between(w, s, place, own);
 }
 
@@ -201,10 +201,10 @@ static shb_status add_run_up(const stuck_modes *w, mhb_resonances *s) {
   SHB_CHECK(at, SHB_ERR_IO, "out of memory for the resonances of a run-up");
   shb_status status = SHB_OK;
   double     low    = w->low;
-  look_at(w, low, a);
-  for (int i = 1; i <= LOOKS && status == SHB_OK; i++) {
-    double high = w->low + (w->high - w->low) * i / LOOKS;
-    look_at(w, high, b);
+  sample_modes(w, low, a);
+  for (int i = 1; i <= N_SAMPLES && status == SHB_OK; i++) {
+    double high = w->low + (w->high - w->low) * i / N_SAMPLES;
+    sample_modes(w, high, b);
     for (size_t j = 0; j < all && status == SHB_OK; j++)
       if (a[j].free.k > 0) status = add_meetings(w, s, &a[j], low, &b[j], high);
     mode_at *swap = a;
@@ -266,9 +266,10 @@ double mhb_resonances_step_limit(const mhb_resonances *s, double value, int sens
   double way = INFINITY;
   for (int i = 0; i < s->n; i++) {
     if (!s->at[i].significant) continue;
-    double half = s->at[i].half, ahead = sense * (s->at[i].value - value), edge = WINDOW * half;
+    double half = s->at[i].half_width, ahead = sense * (s->at[i].value - value),
+           edge = WINDOW * half;
     if (ahead > edge) way = fmin(way, fmax(ahead - edge, half));
-    if (fabs(ahead) <= edge) way = fmin(way, fmax(SHORTEST * half, .5 * fabs(ahead)));
+    if (fabs(ahead) <= edge) way = fmin(way, fmax(SHORTEST * half, 0.5 * fabs(ahead)));
   }
   return way;
 }

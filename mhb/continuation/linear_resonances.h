@@ -14,18 +14,18 @@
 #include "mhb/balance/balance.h"
 
 typedef struct {
-  double value, half; /* rad/s of omega: the place, half the half-power width */
-  int    k, mode;     /* harmonic; free mode that it is, or is near to, -1: none */
-  bool   significant; /* the response changes within its width: by who looks */
+  double value, half_width; /* rad/s of omega: the place, half the half-power width */
+  int    k, mode;           /* harmonic; free mode that it is, or is near to, -1: none */
+  bool   significant;       /* the response changes within its width: by who looks */
 } mhb_resonance;
 
 typedef struct {
   mhb_resonance *at; /* [n] by rising value */
-  int            n, room;
+  int            n, capacity;
 } mhb_resonances;
 
 /* Those of harmonics 1..m between low and high; none unless the residual follows the frequency. SHB_ERR_IO: no memory. */
-shb_status mhb_resonances_create(const mhb_balance *residual, double low, double high,
+shb_status mhb_resonances_create(const mhb_balance *balance, double low, double high,
                                  mhb_resonances *resonances);
 void       mhb_resonances_destroy(mhb_resonances *resonances);
 

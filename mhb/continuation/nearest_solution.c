@@ -3,19 +3,19 @@
 #include <math.h>
 #include <string.h>
 
-static const double TOLERANCE = 1e-10, ROUNDING = 1e-8, FARTHEST = .5;
+static const double TOLERANCE = 1e-10, ROUNDING = 1e-8, FARTHEST = 0.5;
 enum { MAX_ITERATIONS = 20, MAX_HALVINGS = 4 };
 
 typedef struct {
   mhb_newton  *newton;
-  mhb_balance *residual;
+  mhb_balance *balance;
   double       scale, span;
 } plane;
 
 /* |r|/|x| at a point. */
 static double measure(const plane *p, const double *x, double omega) {
-  int n = p->residual->n;
-  mhb_balance_linearise(p->residual, x, omega, p->newton->r, p->newton->slope);
+  int n = p->balance->n;
+  mhb_balance_linearise(p->balance, x, omega, p->newton->r, p->newton->slope);
   double size = mhb_norm(x, n);
   return mhb_norm(p->newton->r, n) / (size > 0 ? size : 1);
 }
@@ -23,7 +23,7 @@ static double measure(const plane *p, const double *x, double omega) {
 /* The scaled step into newton->step: [J r_omega; normal] step = [-r; 0]. */
 static int find_step(const plane *p, const double *normal) {
   mhb_newton *w = p->newton;
-  int         n = p->residual->n;
+  int         n = p->balance->n;
   for (int i = 0; i < n; i++) {
     w->row[i]   = normal[i] / p->scale;
     w->trial[i] = w->slope[i] * p->span / p->scale;
@@ -37,16 +37,16 @@ static int find_step(const plane *p, const double *normal) {
 
 static void move(const plane *p, double fraction, double *x, double *omega) {
   const double *step = p->newton->step;
-  int           n    = p->residual->n;
+  int           n    = p->balance->n;
   for (int i = 0; i < n; i++) x[i] += fraction * p->scale * step[i];
   *omega += fraction * p->span * step[n];
 }
 
-int mhb_nearest_solution(mhb_newton *newton, mhb_balance *residual, const double *normal,
+int mhb_nearest_solution(mhb_newton *newton, mhb_balance *balance, const double *normal,
                          double scale, double span, double *x, double *omega) {
-  plane  p   = {newton, residual, scale, span};
+  plane  p   = {newton, balance, scale, span};
   double way = 0;
-  if (mhb_newton_bind(newton, residual) != SHB_OK) return 0;
+  if (mhb_newton_bind(newton, balance) != SHB_OK) return 0;
   double now = measure(&p, x, *omega);
   for (int i = 0; i < MAX_ITERATIONS && isfinite(now); i++) {
     if (now <= TOLERANCE) return 1;
@@ -57,10 +57,10 @@ int mhb_nearest_solution(mhb_newton *newton, mhb_balance *residual, const double
     move(&p, 1, x, omega);
     if (!(*omega > 0)) return 0;
     now = measure(&p, x, *omega);
-    if (before <= ROUNDING && now > .5 * before) return now <= ROUNDING;
+    if (before <= ROUNDING && now > 0.5 * before) return now <= ROUNDING;
     double cut = 1; /* measure leaves the step alone */
     for (int h = 0; h < MAX_HALVINGS && !(now <= before); h++) {
-      cut *= .5;
+      cut *= 0.5;
       move(&p, -cut, x, omega);
       now = measure(&p, x, *omega);
     }

@@ -9,9 +9,9 @@
  *   normal  in     [n+1] d(x, omega); along the curve the solution is compared with, or (0, 1): at the same frequency
  *   x       inout  [n] m
  *   omega   inout  rad/s
- * Returns 1 if |r| <= 1e-10 |x| (1e-8 where rounding lets it fall no further) within a distance of .5 in y; the residual is
+ * Returns 1 if |r| <= 1e-10 |x| (1e-8 where rounding lets it fall no further) within a distance of 0.5 in y; the residual is
  * then left evaluated there. 0 if not; x and omega are then of no use. */
-int mhb_nearest_solution(mhb_newton *newton, mhb_balance *residual, const double *normal,
+int mhb_nearest_solution(mhb_newton *newton, mhb_balance *balance, const double *normal,
                          double scale, double span, double *x, double *omega);
 
 #endif

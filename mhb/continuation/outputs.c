@@ -2,8 +2,6 @@
 
 #include <math.h>
 
-#include "mhb/continuation/balance_curve.h"
-
 /* Relative slope below which an output counts as flat. */
 static const double FLAT = 1e-9;
 
@@ -39,10 +37,9 @@ static double unless_flat(double slope, double square) {
   return fabs(slope) > FLAT * square ? slope : 0;
 }
 
-void mhb_probe_change(mhb_arclength *curve, const mhb_curve_point *point, int k, double complex *q,
+void mhb_probe_change(mhb_balance *b, const mhb_curve_point *point, int k, double complex *q,
                       double complex *dq) {
-  mhb_balance   *b      = mhb_curve_balance(curve);
-  double         dvalue = point->tangent[curve->n];
+  double         dvalue = point->tangent[b->n];
   double complex p[b->receptance->n], dp[b->receptance->n];
   mhb_balance_use(b, point->evaluation);
   mhb_receptance_update(b->receptance, k);
@@ -54,8 +51,7 @@ void mhb_probe_change(mhb_arclength *curve, const mhb_curve_point *point, int k,
                               b->parameter == MHB_IN_SCALE ? dvalue : 0, dq);
 }
 
-double mhb_output_slope(mhb_arclength *curve, const mhb_curve_point *point, int o) {
-  mhb_balance          *b      = mhb_curve_balance(curve);
+double mhb_output_slope(mhb_balance *b, const mhb_curve_point *point, int o) {
   const mhb_receptance *r      = b->receptance;
   int                   probes = r->model->n_probes, k = r->nu <= b->m ? r->nu : b->m;
   if (o >= probes) {
@@ -64,7 +60,7 @@ double mhb_output_slope(mhb_arclength *curve, const mhb_curve_point *point, int 
     return unless_flat(2 * (a[0] * da[0] + a[1] * da[1]), a[0] * a[0] + a[1] * a[1]);
   }
   double complex q[3 * probes], dq[3 * probes];
-  mhb_probe_change(curve, point, k, q, dq);
+  mhb_probe_change(b, point, k, q, dq);
   double sum = 0, square = 0;
   for (int axis = 0; axis < 3; axis++) {
     sum += 2 * dot(q[3 * o + axis], dq[3 * o + axis]);

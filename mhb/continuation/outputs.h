@@ -4,17 +4,17 @@
 
 #include <complex.h>
 
-#include "mhb/continuation/arclength.h"
+#include "mhb/continuation/curve.h"
 
 /* Number of outputs: every probe, then v, u, w of the first two pairs. */
 int mhb_outputs(const mhb_balance *balance);
 
 /* Motion q[3 probes] of harmonic k at a point, m, and its change dq along the tangent. */
-void mhb_probe_change(mhb_arclength *curve, const mhb_curve_point *point, int k, double complex *q,
+void mhb_probe_change(mhb_balance *balance, const mhb_curve_point *point, int k, double complex *q,
                       double complex *dq);
 
 /* d a^2/ds of output o along the tangent of a point; 0 below 1e-9 a^2. a is the amplitude at the
  * excitation's frequency, for a probe the root of the sum over its three components. */
-double mhb_output_slope(mhb_arclength *curve, const mhb_curve_point *point, int o);
+double mhb_output_slope(mhb_balance *balance, const mhb_curve_point *point, int o);
 
 #endif

@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
-#include "mhb/continuation/balance_curve.h"
 #include "mhb/continuation/corrector.h"
 #include "mhb/continuation/outputs.h"
 
@@ -84,19 +83,18 @@ static bool solve_at_resonance(mhb_arclength *curve, const mhb_resonance *resona
 
 /* Whether the response at the trial changes within a half width, beyond the change along the chord,
  * by a significant part. q: probe motions at current and next. */
-static bool changes(mhb_arclength *curve, const mhb_resonance *resonance,
+static bool changes(mhb_arclength *curve, mhb_balance *b, const mhb_resonance *resonance,
                     const double complex *q_current, const double complex *q_next) {
   const mhb_curve_point *trial = &curve->trial, *current = &curve->current, *next = &curve->next;
-  mhb_balance           *b = mhb_curve_balance(curve);
   int                    n = 3 * b->receptance->model->n_probes, all = n * (b->m + 1);
-  double                 part = resonance->half / (next->value - current->value), sum = 0;
-  double                 along = resonance->half / trial->tangent[curve->n], size[n / 3 + 1];
+  double                 part = resonance->half_width / (next->value - current->value), sum = 0;
+  double                 along = resonance->half_width / trial->tangent[curve->n], size[n / 3 + 1];
   for (int i = 0; i < curve->n; i++)
     sum += pow(along * trial->tangent[i] - part * (next->x[i] - current->x[i]), 2);
   if (sqrt(sum) >= SIGNIFICANT * mhb_norm(trial->x, curve->n)) return true;
   double complex q[all + 1], own[n + 1], dq[n + 1];
   probe_motions(b, trial, q, size);
-  mhb_probe_change(curve, trial, resonance->k, own, dq);
+  mhb_probe_change(b, trial, resonance->k, own, dq);
   for (int o = 0; o < n / 3; o++) {
     sum = 0;
     for (int axis = 3 * o; axis < 3 * o + 3; axis++) {
@@ -108,8 +106,7 @@ static bool changes(mhb_arclength *curve, const mhb_resonance *resonance,
   return false;
 }
 
-bool mhb_resonance_skipped(mhb_arclength *curve, const mhb_resonances *resonances) {
-  mhb_balance   *b    = mhb_curve_balance(curve);
+bool mhb_resonance_skipped(mhb_arclength *curve, mhb_balance *b, const mhb_resonances *resonances) {
   double         from = curve->current.value, way = curve->next.value - from;
   int            n = 0, probes = b->receptance->model->n_probes, all = 3 * probes * (b->m + 1);
   double         size[probes + 1], contact = mhb_norm(curve->next.x, curve->n);
@@ -119,7 +116,7 @@ bool mhb_resonance_skipped(mhb_arclength *curve, const mhb_resonances *resonance
     mhb_resonance *resonance = &resonances->at[way > 0 ? i : resonances->n - 1 - i];
     double         part      = (resonance->value - from) / way;
     if (!(part > 0 && part < 1) || resonance->significant ||
-        !(fabs(way) >= RESOLVED * resonance->half))
+        !(fabs(way) >= RESOLVED * resonance->half_width))
       continue;
     if (n++ == 0) probe_motions(b, &curve->next, q_next, size);
     mhb_balance_use(b, curve->next.evaluation);
@@ -127,7 +124,7 @@ bool mhb_resonance_skipped(mhb_arclength *curve, const mhb_resonances *resonance
     if (!have_current) probe_motions(b, &curve->current, q_current, NULL);
     have_current = true;
     resonance->significant =
-        !solve_at_resonance(curve, resonance) || changes(curve, resonance, q_current, q_next);
+        !solve_at_resonance(curve, resonance) || changes(curve, b, resonance, q_current, q_next);
     if (resonance->significant) return true;
   }
   return false;

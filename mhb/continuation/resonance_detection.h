@@ -10,12 +10,13 @@
 #ifndef MHB_CONTINUATION_RESONANCE_DETECTION_H
 #define MHB_CONTINUATION_RESONANCE_DETECTION_H
 
-#include "mhb/continuation/arclength.h"
+#include "mhb/continuation/curve.h"
 #include "mhb/continuation/linear_resonances.h"
 
 /* Whether the step from current to next, of a balance's curve in the frequency, skips a resonance
  * that is significant in the motion of the contact or of a probe; it is marked so in resonances. A
  * mode whose peak under the forces at next is insignificant is not looked at. */
-bool mhb_resonance_skipped(mhb_arclength *curve, const mhb_resonances *resonances);
+bool mhb_resonance_skipped(mhb_arclength *curve, mhb_balance *balance,
+                           const mhb_resonances *resonances);
 
 #endif

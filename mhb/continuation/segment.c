@@ -96,7 +96,7 @@ static shb_status step_with_events(mhb_segment_host *host, mhb_end *end) {
 
 shb_status mhb_trace_segment(mhb_segment_host *host, const mhb_seed *seed, mhb_end *end) {
   bool go_on  = true;
-  int  n_tiny = 0, n_points = 1;
+  int  n_tiny = 0, n_points = seed->skip_first ? 0 : seed->kind == MHB_SEED_CROSSING ? 2 : 1;
   SHB_TRY(begin_segment(host, seed, end, &go_on));
   while (*end == MHB_END_NONE && go_on) {
     if (n_points >= host->max_points) {

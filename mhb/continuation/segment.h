@@ -2,6 +2,7 @@
 #ifndef MHB_CONTINUATION_SEGMENT_H
 #define MHB_CONTINUATION_SEGMENT_H
 
+#include "mhb/continuation/arclength.h"
 #include "mhb/continuation/closed_curve.h"
 #include "mhb/continuation/events.h"
 

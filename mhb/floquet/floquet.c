@@ -10,18 +10,21 @@
 
 static const double MARGIN = 1e-3;
 
-/* Sub-steps are halved until they change the largest multiplier by less than half its distance from 1, and by less than ROUGH the
- * first time, where the change is that of the coarser of two orders, FINE later. FINEST: of half the sub-steps asked for. */
-static const double DISTANCE = .5, ROUGH = 2e-2, FINE = 1e-3;
+/* Sub-steps are halved until the largest multiplier changes by less than DISTANCE times its
+ * distance from 1. The change must also be below ROUGH at the first comparison, below FINE later.
+ * The first comparison is with a result of lower order. FINEST: refinement of half the sub-steps in
+ * the settings. */
+static const double DISTANCE = 0.5, ROUGH = 2e-2, FINE = 1e-3;
 
-/* Modes whose squared frequency a contact raises by this part count; sub-steps to a cycle of theirs. */
-static const double SHIFTED = .1, A_CYCLE = 3;
+/* A mode counts for the first sub-steps if contacts raise its squared frequency by this share.
+ * CYCLE: sub-steps a cycle of the fastest such mode. */
+static const double SHIFTED = 0.1, CYCLE = 3;
 enum { MAX_STATES = 600, FINEST = 32 };
 
 struct mhb_floquet {
   mhb_modal_structure     structure; /* all modes */
   mhb_modal_structure     reduced;   /* those that are integrated */
-  mhb_transition_schedule timetable;
+  mhb_transition_schedule schedule;
   mhb_linear_exponents    exponents;
   mhb_contact_evaluator  *contact;
   mhb_monodromy          *monodromy; /* NULL: too many states even with one mode */
@@ -32,7 +35,7 @@ struct mhb_floquet {
   double complex         *multiplier; /* [states] */
 };
 
-/* Modes a blade that max_states leaves room for. */
+/* Number of modes a blade within max_states. */
 static int affordable(const mhb_floquet *s) {
   int left = s->max_states - 2 * s->structure.contacts, a_mode = 2 * s->structure.blades;
   int most = left > 0 ? left / a_mode : 0;
@@ -42,23 +45,25 @@ static int affordable(const mhb_floquet *s) {
 static shb_status fill(mhb_floquet *s, const mhb_receptance *receptance,
                        const mhb_settings *settings, int substeps) {
   SHB_TRY(mhb_modal_structure_create(receptance, settings, receptance->n_modes, &s->structure));
-  const mhb_modal_structure *whole = &s->structure;
-  int m = settings->harmonics, all = 2 * (whole->modes * whole->blades + whole->contacts);
-  SHB_TRY(mhb_transition_schedule_create(whole->blades, whole->pairs, whole->wave, &s->timetable));
-  SHB_TRY(mhb_linear_exponents_create(whole, &s->exponents));
+  const mhb_modal_structure *all_modes = &s->structure;
+  int                        m         = settings->harmonics,
+      all = 2 * (all_modes->modes * all_modes->blades + all_modes->contacts);
+  SHB_TRY(mhb_transition_schedule_create(all_modes->blades, all_modes->pairs, all_modes->wave,
+                                         &s->schedule));
+  SHB_TRY(mhb_linear_exponents_create(all_modes, &s->exponents));
   SHB_TRY(mhb_contact_evaluator_create(m, m, settings->tolerance, &s->contact));
   if (affordable(s) > 0) {
     SHB_TRY(mhb_modal_structure_create(receptance, settings, affordable(s), &s->reduced));
-    SHB_TRY(mhb_monodromy_create(&s->reduced, &s->timetable, s->contact, m, (substeps + 1) / 2,
+    SHB_TRY(mhb_monodromy_create(&s->reduced, &s->schedule, s->contact, m, (substeps + 1) / 2,
                                  FINEST, &s->monodromy));
     int cells  = mhb_floquet_cells(s),
-        states = 2 * s->timetable.chunks * (s->reduced.modes + whole->pairs);
+        states = 2 * s->schedule.n_segments * (s->reduced.modes + all_modes->pairs);
     SHB_TRY(mhb_bloch_create(cells, states, &s->bloch));
     s->coarse = calloc((size_t)cells * (size_t)states * (size_t)states + 1, sizeof *s->coarse);
     SHB_CHECK(s->coarse, SHB_ERR_IO, "out of memory for the stability of %d states", all);
   }
   s->nu         = settings->subharmonics;
-  s->state      = calloc((size_t)whole->pairs, sizeof(int));
+  s->state      = calloc((size_t)all_modes->pairs, sizeof(int));
   s->multiplier = calloc((size_t)all, sizeof(double complex));
   SHB_CHECK(s->state && s->multiplier, SHB_ERR_IO, "out of memory for the stability of %d states",
             all);
@@ -87,7 +92,7 @@ void mhb_floquet_destroy(mhb_floquet *s) {
   mhb_monodromy_destroy(s->monodromy);
   mhb_contact_evaluator_destroy(s->contact);
   mhb_linear_exponents_destroy(&s->exponents);
-  mhb_transition_schedule_destroy(&s->timetable);
+  mhb_transition_schedule_destroy(&s->schedule);
   mhb_modal_structure_destroy(&s->reduced);
   mhb_modal_structure_destroy(&s->structure);
   free(s->state);
@@ -101,14 +106,14 @@ void mhb_floquet_move(mhb_floquet *s, const mhb_receptance *receptance) {
   s->exponents.known = 0;
   if (!s->monodromy) return;
   mhb_modal_structure_set(receptance, &s->reduced);
-  s->monodromy->variation->h = -1; /* propagators of no step length */
+  s->monodromy->variational->h = -1; /* propagators of no step length */
 }
 
 int mhb_floquet_cells(const mhb_floquet *s) {
-  return s->structure.blades / s->timetable.chunks;
+  return s->structure.blades / s->schedule.n_segments;
 }
 
-/* By falling modulus; conjugates have equal ones, and an insertion sort keeps their order. */
+/* By falling modulus. Insertion sort is stable: conjugates, of equal modulus, stay side by side. */
 static void sort(int n, double complex *x) {
   for (int i = 1; i < n; i++) {
     double complex z    = x[i];
@@ -119,7 +124,7 @@ static void sort(int n, double complex *x) {
   }
 }
 
-static void take(mhb_floquet *s, int n, mhb_multipliers *out) {
+static void set_multipliers(mhb_floquet *s, int n, mhb_multipliers *out) {
   sort(n, s->multiplier);
   out->n          = n;
   out->multiplier = s->multiplier;
@@ -131,11 +136,11 @@ static void take(mhb_floquet *s, int n, mhb_multipliers *out) {
   }
 }
 
-/* Nothing slips, opens or closes. */
+/* No contact slips, opens or closes. */
 static int is_linear(const mhb_floquet *s, const mhb_solution *solution) {
   for (int a = 0; a < s->structure.pairs; a++)
-    if (!s->timetable.permanent[a] ||
-        (s->timetable.state[a] == MHB_SLIDE && solution->law[a].mu > 0))
+    if (!s->schedule.constant_state[a] ||
+        (s->schedule.state[a] == MHB_SLIDE && solution->law[a].mu > 0))
       return 0;
   return 1;
 }
@@ -143,26 +148,27 @@ static int is_linear(const mhb_floquet *s, const mhb_solution *solution) {
 static const char *linear(mhb_floquet *s, const mhb_solution *solution, double period,
                           mhb_multipliers *out) {
   mhb_linear_exponents *x = &s->exponents;
-  for (int a = 0; a < s->structure.pairs; a++) s->state[a] = s->timetable.state[a];
+  for (int a = 0; a < s->structure.pairs; a++) s->state[a] = s->schedule.state[a];
   if (!mhb_linear_exponents_set(x, s->state, solution->law)) return "the eigensolver failed";
   for (int i = 0; i < x->n; i++) s->multiplier[i] = cexp(x->exponent[i] * period);
   out->modes = s->structure.modes;
-  take(s, x->n, out);
+  set_multipliers(s, x->n, out);
   return NULL;
 }
 
 /* Multipliers of the matrix S. */
 static const char *multipliers_of(mhb_floquet *s, const double *S, mhb_multipliers *out) {
-  const mhb_transition_schedule *t = &s->timetable;
+  const mhb_transition_schedule *t = &s->schedule;
   int                            n = s->monodromy->n;
-  if (!mhb_bloch_multipliers(&s->bloch, n, S, t->chunks, t->shift % s->bloch.cells, s->multiplier))
+  if (!mhb_bloch_multipliers(&s->bloch, n, S, t->n_segments, t->blade_shift % s->bloch.cells,
+                             s->multiplier))
     return "the eigensolver failed";
   out->modes = s->reduced.modes;
-  take(s, s->bloch.cells * n, out);
+  set_multipliers(s, s->bloch.cells * n, out);
   return NULL;
 }
 
-/* The matrix of a refinement into the monodromy's M, the one before into coarse. */
+/* M of a refinement; the last one goes to coarse. Returns NULL, or the reason of a failure. */
 static const char *refine(mhb_floquet *s, const mhb_solution *solution, double omega,
                           int refinement) {
   mhb_monodromy *d    = s->monodromy;
@@ -176,7 +182,7 @@ static const char *refine(mhb_floquet *s, const mhb_solution *solution, double o
   return NULL;
 }
 
-/* coarse <- (4 M - coarse)/3: the sub-steps' error is of second order and even, what is left of fourth. */
+/* coarse <- (4 M - coarse)/3. The error is even in h and of second order; of fourth after this. */
 static const double *extrapolated(mhb_floquet *s) {
   const mhb_monodromy *d = s->monodromy;
   for (int i = 0; i < s->bloch.cells * d->n * d->n; i++)
@@ -184,11 +190,11 @@ static const double *extrapolated(mhb_floquet *s) {
   return s->coarse;
 }
 
-static int settled(const mhb_multipliers *out, double most) {
-  return out->change <= fmax(.1 * MARGIN, fmin(most, DISTANCE * fabs(out->largest - 1)));
+static int is_accurate(const mhb_multipliers *out, double most) {
+  return out->change <= fmax(0.1 * MARGIN, fmin(most, DISTANCE * fabs(out->largest - 1)));
 }
 
-/* |phi|^2 S of a mode of a blade: what sticking contacts add to its squared frequency. */
+/* phi^T S phi of a mode of a blade: the squared frequency that sticking contacts add. */
 static double stiffening(const mhb_modal_structure *structure, const mhb_law *law, int mode) {
   double sum = 0;
   for (int k = 0; k < structure->sides * structure->pairs; k++) {
@@ -204,7 +210,7 @@ static double stiffening(const mhb_modal_structure *structure, const mhb_law *la
   return sum;
 }
 
-/* Where to begin: A_CYCLE sub-steps to a cycle of the fastest mode that its contacts shift. */
+/* First refinement: CYCLE sub-steps a cycle of the fastest mode that the contacts stiffen. */
 static int first_refinement(const mhb_floquet *s, const mhb_law *law, double omega) {
   const mhb_modal_structure *structure  = &s->reduced;
   double                     square     = 0;
@@ -213,13 +219,13 @@ static int first_refinement(const mhb_floquet *s, const mhb_law *law, double ome
     double own = structure->omega[i] * structure->omega[i], more = stiffening(structure, law, i);
     if (more > SHIFTED * own) square = fmax(square, own + more);
   }
-  while (s->monodromy->substeps * refinement * omega < A_CYCLE * sqrt(square) &&
+  while (s->monodromy->substeps * refinement * omega < CYCLE * sqrt(square) &&
          4 * refinement < FINEST)
     refinement *= 2;
   return refinement;
 }
 
-/* Slip, opening, closing: sub-steps halved until the answer no longer hangs on them. */
+/* Slip, opening, closing: sub-steps are halved until the largest multiplier is accurate. */
 static const char *nonlinear(mhb_floquet *s, const mhb_solution *solution, double omega,
                              mhb_multipliers *out) {
   if (!s->monodromy) return "more states than max_states";
@@ -231,7 +237,7 @@ static const char *nonlinear(mhb_floquet *s, const mhb_solution *solution, doubl
     double before = out->largest;
     why           = multipliers_of(s, extrapolated(s), out);
     out->change   = fabs(out->largest - before);
-    if (why || settled(out, refinement == 2 * first ? ROUGH : FINE)) return why;
+    if (why || is_accurate(out, refinement == 2 * first ? ROUGH : FINE)) return why;
     if (refinement == FINEST) break;
     why = refine(s, solution, omega, 2 * refinement);
   }
@@ -240,27 +246,27 @@ static const char *nonlinear(mhb_floquet *s, const mhb_solution *solution, doubl
   return why;
 }
 
-/* What was left out: ones of contacts that always stick, zeros of those that forget. */
+/* Multipliers left out: ones of constantly stuck contacts, zeros of missing friction states. */
 static void count_left_out(const mhb_floquet *s, const mhb_solution *solution,
                            mhb_multipliers *out) {
-  const mhb_transition_schedule *t = &s->timetable;
+  const mhb_transition_schedule *t = &s->schedule;
   for (int j = 0; j < s->structure.contacts; j++) {
     double mu = solution->law[j % s->structure.pairs].mu;
-    if (mu == 0 || (t->permanent[j] && t->state[j] == MHB_SEPARATE)) continue;
-    if (t->permanent[j] && t->state[j] == MHB_STICK) {
+    if (mu == 0 || (t->constant_state[j] && t->state[j] == MHB_SEPARATE)) continue;
+    if (t->constant_state[j] && t->state[j] == MHB_STICK) {
       out->n_stuck += 2;
     } else {
-      out->n_zero += 2 - mhb_friction_states(t->state[j], t->permanent[j], mu);
+      out->n_zero += 2 - mhb_friction_states(t->state[j], t->constant_state[j], mu);
     }
   }
 }
 
-static void judge(mhb_multipliers *out) {
-  double beyond = 1 + fmax(MARGIN, out->change);
-  for (int i = 0; i < out->n; i++) out->n_unstable += cabs(out->multiplier[i]) > beyond;
+static void set_verdict(mhb_multipliers *out) {
+  double margin = 1 + fmax(MARGIN, out->change);
+  for (int i = 0; i < out->n; i++) out->n_unstable += cabs(out->multiplier[i]) > margin;
   if (out->reason) {
     out->verdict = MHB_UNDECIDED;
-  } else if (out->largest > beyond) {
+  } else if (out->largest > margin) {
     out->verdict = MHB_UNSTABLE;
   } else {
     out->verdict = out->largest > 1 ? MHB_MARGINAL : MHB_STABLE;
@@ -270,7 +276,7 @@ static void judge(mhb_multipliers *out) {
 void mhb_floquet_evaluate(mhb_floquet *s, const mhb_solution *solution, mhb_multipliers *out) {
   double omega = solution->omega / s->nu;
   *out         = (mhb_multipliers){.change = -1};
-  if (!mhb_transition_schedule_set(&s->timetable, solution->info)) {
+  if (!mhb_transition_schedule_set(&s->schedule, solution->info)) {
     out->reason = "the contact law lost its way, or has too many transitions";
   } else if (is_linear(s, solution)) {
     out->reason = linear(s, solution, SHB_TWO_PI / omega, out);
@@ -278,5 +284,5 @@ void mhb_floquet_evaluate(mhb_floquet *s, const mhb_solution *solution, mhb_mult
     out->reason = nonlinear(s, solution, omega, out);
   }
   if (!out->reason) count_left_out(s, solution, out);
-  judge(out);
+  set_verdict(out);
 }

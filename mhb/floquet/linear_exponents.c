@@ -41,7 +41,7 @@ void mhb_linear_exponents_destroy(mhb_linear_exponents *x) {
   *x = (mhb_linear_exponents){0};
 }
 
-/* Stiffness of a contact that stays in its state. */
+/* Stiffness of a contact in a constant state. */
 static void stiffness(int state, const mhb_law *law, double S[3][3]) {
   memset(S, 0, sizeof(double) * 9);
   if (state == MHB_SEPARATE) return;
@@ -65,7 +65,7 @@ static void relative_shapes(mhb_linear_exponents *x, double complex step) {
   }
 }
 
-/* Residual flexibility of nodal diameter d: the first row of blocks, each with its phase. */
+/* Residual flexibility R of nodal diameter d: the first row of blocks, each with its phase. */
 static void relative_flexibility(mhb_linear_exponents *x, double complex step) {
   const mhb_modal_structure *s  = x->structure;
   int                        n3 = 3 * s->pairs, n = 3 * s->contacts;
@@ -77,7 +77,7 @@ static void relative_flexibility(mhb_linear_exponents *x, double complex step) {
         x->R[r * n3 + c] += phase * s->flexibility[(size_t)r * (size_t)n + (size_t)(b * n3 + c)];
 }
 
-/* Row r of contact a of K [R B], K its stiffness; element c of n3 + modes. */
+/* Element c of the row K of contact a times [R B], c < n3 + modes. */
 static double complex stiffness_row(const mhb_linear_exponents *x, const double K[3], int a,
                                     int c) {
   int            n3 = 3 * x->structure->pairs, m = x->structure->modes;
@@ -89,7 +89,8 @@ static double complex stiffness_row(const mhb_linear_exponents *x, const double 
   return sum;
 }
 
-/* Column-major: S[0..n3) = I + diag R, S[n3..) = diag B  ->  S B in the second part. 0: singular. */
+/* S B into the columns n3.. of x->S, from I + diag(kv, Ku) R in those before. Returns 0 if
+ * singular. */
 static int contact_stiffness(mhb_linear_exponents *x) {
   int    n3 = 3 * x->structure->pairs, m = x->structure->modes;
   size_t rows = (size_t)n3;
@@ -103,6 +104,7 @@ static int contact_stiffness(mhb_linear_exponents *x) {
          0;
 }
 
+/* Exponents of one nodal diameter. Returns 0 if the eigensolver failed. */
 static int nodal_diameter(mhb_linear_exponents *x, int d) {
   const mhb_modal_structure *s  = x->structure;
   int                        n3 = 3 * s->pairs, m = s->modes, n = 2 * m;
@@ -136,8 +138,8 @@ static int same(const mhb_linear_exponents *x, const int *state, const mhb_law *
   return 1;
 }
 
-/* By falling real part: the multipliers then come by falling modulus at any period. */
-static int by_growth(const void *a, const void *b) {
+/* By falling real part: the multipliers of any period then have falling modulus. */
+static int by_real_part(const void *a, const void *b) {
   double x = creal(*(const double complex *)a), y = creal(*(const double complex *)b);
   return (x < y) - (x > y);
 }
@@ -149,6 +151,6 @@ int mhb_linear_exponents_set(mhb_linear_exponents *x, const int *state, const mh
   memcpy(x->law, law, sizeof *law * (size_t)s->pairs);
   x->known = 1;
   for (int d = 0; d < s->blades; d++) x->known &= nodal_diameter(x, d);
-  qsort(x->exponent, (size_t)x->n, sizeof *x->exponent, by_growth);
+  qsort(x->exponent, (size_t)x->n, sizeof *x->exponent, by_real_part);
   return x->known;
 }

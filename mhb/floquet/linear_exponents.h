@@ -1,9 +1,12 @@
-/* Exponents of the blade or the ring while every contact stays stuck, open or frictionless: a linear structure, whose
- * disturbances of nodal diameter d (neighbours 2 pi d/N apart) are independent of each other.
+/* Characteristic exponents of the blade or the ring while every contact stays stuck, open or
+ * frictionless. The structure is linear; disturbances of different nodal diameter d are
+ * independent, neighbours 2 pi d/N apart in phase:
  *
  *   B = right - exp(-j 2 pi d/N) left,   S = (I + diag(kv, Ku) R)^-1 diag(kv, Ku)
  *   lambda: eigenvalues of [0 I; -(w_i^2 + B^H S B), -2 zeta w_i]
- * They do not depend on the excitation, and are computed anew only when a state or a stiffness has changed. */
+ *
+ * They do not depend on the excitation. They are computed anew if a state or a stiffness
+ * changes. */
 #ifndef MHB_FLOQUET_LINEAR_EXPONENTS_H
 #define MHB_FLOQUET_LINEAR_EXPONENTS_H
 
@@ -14,11 +17,12 @@
 
 typedef struct {
   const mhb_modal_structure *structure;
-  int                        n, known; /* 2 modes blades; known: for the states and laws below */
+  int                        n;        /* 2 modes blades */
+  int                        known;    /* 1: the exponents are those of the states and laws below */
   int                       *state;    /* [pair] */
   mhb_law                   *law;      /* [pair] */
   double complex            *exponent; /* [n] 1/s */
-  double complex            *A, *left, *R, *S, *work; /* one nodal diameter */
+  double complex            *A, *left, *R, *S, *work; /* of one nodal diameter */
   double                    *rwork;
   int                       *pivot;
 } mhb_linear_exponents;
@@ -28,7 +32,8 @@ shb_status mhb_linear_exponents_create(const mhb_modal_structure *structure,
                                        mhb_linear_exponents      *exponents);
 void       mhb_linear_exponents_destroy(mhb_linear_exponents *exponents);
 
-/* For states and laws of the pairs (the same on all blades). 0: the eigensolver failed. */
+/* Exponents for states (mhb_state) and laws of the pairs, the same on all blades. Returns 0 if the
+ * eigensolver failed. */
 int mhb_linear_exponents_set(mhb_linear_exponents *exponents, const int *state, const mhb_law *law);
 
 #endif

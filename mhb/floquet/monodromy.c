@@ -1,27 +1,27 @@
 #include "mhb/floquet/monodromy.h"
-#include "mesh/base/constants.h"
 #include "mhb/numerics/lu.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Pieces shorter than this, in periods, are passed over. */
+#include "mesh/base/constants.h"
+/* Shorter intervals between events, in periods, are skipped. */
 static const double SHORT = 1e-13;
 
 shb_status mhb_monodromy_create(const mhb_modal_structure     *s,
-                                const mhb_transition_schedule *timetable,
+                                const mhb_transition_schedule *schedule,
                                 mhb_contact_evaluator *contact, int m, int substeps, int finest,
                                 mhb_monodromy **out) {
   mhb_monodromy *d = calloc(1, sizeof *d);
   SHB_CHECK(d, SHB_ERR_IO, "out of memory");
-  int    blades = timetable->chunks, capacity = 2 * blades * (s->modes + s->pairs);
-  int    pieces     = timetable->capacity + 1;
-  int    steps      = finest * ((int)(substeps * timetable->span) + 1 + pieces);
+  int    blades = schedule->n_segments, capacity = 2 * blades * (s->modes + s->pairs);
+  int    pieces     = schedule->capacity + 1;
+  int    steps      = finest * ((int)(substeps * schedule->span) + 1 + pieces);
   size_t cells      = (size_t)(s->blades / blades);
   d->blades         = blades;
   d->structure      = s;
-  d->timetable      = timetable;
+  d->schedule       = schedule;
   d->substeps       = substeps;
   d->column         = calloc((size_t)s->contacts, sizeof *d->column);
   d->u              = calloc(3 * (size_t)s->contacts, sizeof *d->u);
@@ -32,9 +32,9 @@ shb_status mhb_monodromy_create(const mhb_modal_structure     *s,
   if (!(d->column && d->u && d->matrix && d->pivot && d->M))
     status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__,
                       "out of memory for the stability of %d states", capacity);
-  if (status == SHB_OK) status = mhb_variational_create(s, capacity, &d->variation);
+  if (status == SHB_OK) status = mhb_variational_create(s, capacity, &d->variational);
   if (status == SHB_OK)
-    status = mhb_orbit_contacts_create(s, timetable, contact, m, steps + pieces + 1, &d->passage);
+    status = mhb_orbit_contacts_create(s, schedule, contact, m, steps + pieces + 1, &d->orbit);
   if (status != SHB_OK) {
     mhb_monodromy_destroy(d);
     return status;
@@ -45,8 +45,8 @@ shb_status mhb_monodromy_create(const mhb_modal_structure     *s,
 
 void mhb_monodromy_destroy(mhb_monodromy *d) {
   if (!d) return;
-  mhb_variational_destroy(d->variation);
-  mhb_orbit_contacts_destroy(d->passage);
+  mhb_variational_destroy(d->variational);
+  mhb_orbit_contacts_destroy(d->orbit);
   free(d->column);
   free(d->u);
   free(d->matrix);
@@ -61,38 +61,38 @@ static int modal_states(const mhb_modal_structure *s) {
 }
 
 static int friction_states(const mhb_monodromy *d, int contact) {
-  return mhb_friction_states(d->timetable->state[contact], d->timetable->permanent[contact],
-                             d->passage->touch[contact].law->mu);
+  return mhb_friction_states(d->schedule->state[contact], d->schedule->constant_state[contact],
+                             d->orbit->point[contact].law->mu);
 }
 
 /* ---- columns ---- */
 
-/* Forces of a contact by its rows at the start: p = of_u (v, u, w) + of_sigma sigma. */
-static void start_force(const mhb_contact_state *touch, int permanent, double of_u[3][3],
+/* Forces of a contact at the start: dp = of_u (v, u, w) + of_sigma sigma. */
+static void start_force(const mhb_contact_state *point, int constant_state, double of_u[3][3],
                         double of_sigma[3][2]) {
-  const mhb_law *law = touch->law;
+  const mhb_law *law = point->law;
   memset(of_u, 0, sizeof(double) * 9);
   memset(of_sigma, 0, sizeof(double) * 6);
-  if (touch->state == MHB_SEPARATE) return;
+  if (point->state == MHB_SEPARATE) return;
   of_u[0][0] = law->kv;
   if (law->mu == 0) return;
-  if (touch->state == MHB_STICK && permanent) mhb_linearised_law_rate(touch, of_u);
+  if (point->state == MHB_STICK && constant_state) mhb_linearised_law_rate(point, of_u);
   for (int i = 0; i < 2; i++) {
-    if (touch->state == MHB_STICK && !permanent) of_sigma[1 + i][i] = 1;
-    if (touch->state != MHB_SLIDE) continue;
-    of_u[1 + i][0]     = law->mu * law->kv * touch->e[i];
-    of_sigma[1 + i][0] = i ? touch->e[0] : -touch->e[1];
+    if (point->state == MHB_STICK && !constant_state) of_sigma[1 + i][i] = 1;
+    if (point->state != MHB_SLIDE) continue;
+    of_u[1 + i][0]     = law->mu * law->kv * point->e[i];
+    of_sigma[1 + i][0] = i ? point->e[0] : -point->e[1];
   }
 }
 
-/* With residual flexibility u solves u = B q - R p(u, sigma): d->matrix = I + R p_u, factorized. */
+/* With residual flexibility du = B dq - R dp(du, sigma): factors of d->matrix = I + R of_u. */
 static int start_matrix(mhb_monodromy *d) {
   const mhb_modal_structure *s = d->structure;
   int                        n = 3 * s->contacts;
   for (int column = 0; column < n; column++) {
     double of_u[3][3], of_sigma[3][2];
     int    j = column / 3, c = column % 3;
-    start_force(&d->passage->touch[j], d->timetable->permanent[j], of_u, of_sigma);
+    start_force(&d->orbit->point[j], d->schedule->constant_state[j], of_u, of_sigma);
     for (int r = 0; r < n; r++) {
       const double *R   = s->flexibility + (size_t)r * (size_t)n + (size_t)(3 * j);
       double        sum = r == column;
@@ -103,7 +103,8 @@ static int start_matrix(mhb_monodromy *d) {
   return mhb_factor_real(n, d->matrix, d->pivot);
 }
 
-/* Motion of the contacts at the start for a unit of mode i of a blade (contact < 0), or of friction state i of a contact. */
+/* Motion u of the contacts at the start by a unit disturbance: of mode i of a blade if contact < 0,
+ * else of friction state i of the contact. */
 static void start_motion(mhb_monodromy *d, int contact, int blade, int i, double *u) {
   const mhb_modal_structure *s  = d->structure;
   int                        n3 = 3 * s->pairs, n = 3 * s->contacts;
@@ -116,7 +117,7 @@ static void start_motion(mhb_monodromy *d, int contact, int blade, int i, double
   if (!s->flexibility) return;
   if (contact >= 0) {
     double of_u[3][3], of_sigma[3][2];
-    start_force(&d->passage->touch[contact], d->timetable->permanent[contact], of_u, of_sigma);
+    start_force(&d->orbit->point[contact], d->schedule->constant_state[contact], of_u, of_sigma);
     for (int r = 0; r < n; r++)
       for (int k = 0; k < 3; k++)
         u[r] -= s->flexibility[(size_t)r * (size_t)n + (size_t)(3 * contact + k)] * of_sigma[k][i];
@@ -124,19 +125,19 @@ static void start_motion(mhb_monodromy *d, int contact, int blade, int i, double
   mhb_solve_real(n, d->matrix, d->pivot, u);
 }
 
-/* Rows u, and the friction of contacts that stick throughout. */
+/* Rows u of a column, and sigma of contacts that stick for the whole period. */
 static void put_motion(mhb_monodromy *d, int column, const double *u) {
   const mhb_modal_structure *s     = d->structure;
   int                        first = modal_states(s), n = 3 * s->contacts;
-  for (int r = 0; r < n; r++) *mhb_variational_at(d->variation, first + r, column) = u[r];
+  for (int r = 0; r < n; r++) *mhb_variational_at(d->variational, first + r, column) = u[r];
   for (int j = 0; j < s->contacts; j++) {
-    const mhb_law *law = d->passage->touch[j].law;
-    if (!d->timetable->permanent[j] || d->passage->touch[j].state != MHB_STICK || law->mu == 0)
+    const mhb_law *law = d->orbit->point[j].law;
+    if (!d->schedule->constant_state[j] || d->orbit->point[j].state != MHB_STICK || law->mu == 0)
       continue;
     const double *su = u + 3 * j + 1;
-    *mhb_variational_at(d->variation, first + n + 2 * j, column) =
+    *mhb_variational_at(d->variational, first + n + 2 * j, column) =
         law->ku[0] * su[0] + law->ku[1] * su[1];
-    *mhb_variational_at(d->variation, first + n + 2 * j + 1, column) =
+    *mhb_variational_at(d->variational, first + n + 2 * j + 1, column) =
         law->ku[1] * su[0] + law->ku[2] * su[1];
   }
 }
@@ -145,8 +146,8 @@ static void put_motion(mhb_monodromy *d, int column, const double *u) {
 static void start_mode(mhb_monodromy *d, int blade, int i) {
   const mhb_modal_structure *s = d->structure;
   int state = blade * s->modes + i, half = s->modes * d->blades, rows = s->modes * s->blades;
-  *mhb_variational_at(d->variation, state, state)               = 1;
-  *mhb_variational_at(d->variation, rows + state, half + state) = 1;
+  *mhb_variational_at(d->variational, state, state)               = 1;
+  *mhb_variational_at(d->variational, rows + state, half + state) = 1;
   start_motion(d, -1, blade, i, d->u);
   put_motion(d, state, d->u);
 }
@@ -160,32 +161,32 @@ static int start_columns(mhb_monodromy *d) {
     d->column[j] = d->n;
     d->n += friction_states(d, j);
   }
-  mhb_variational_clear(d->variation, d->n);
+  mhb_variational_clear(d->variational, d->n);
   if (s->flexibility && !start_matrix(d)) return 0;
   for (int i = 0; i < s->modes * d->blades; i++) start_mode(d, i / s->modes, i % s->modes);
   for (int j = 0; j < contacts; j++)
     for (int i = 0; i < friction_states(d, j); i++) {
       start_motion(d, j, 0, i, d->u);
       put_motion(d, d->column[j] + i, d->u);
-      *mhb_variational_at(d->variation, first + 2 * j + i, d->column[j] + i) = 1;
+      *mhb_variational_at(d->variational, first + 2 * j + i, d->column[j] + i) = 1;
     }
   return 1;
 }
 
-/* State of a cell <- a row of the variation. */
+/* Row of M: a state of a cell <- a variational row. */
 static void put_row(mhb_monodromy *d, int from, int cell, int state) {
   size_t  n = (size_t)d->n;
   double *S = d->M + (size_t)cell * n * n + state;
   for (int column = 0; column < d->n; column++)
-    S[(size_t)column * n] = *mhb_variational_at(d->variation, from, column);
+    S[(size_t)column * n] = *mhb_variational_at(d->variational, from, column);
 }
 
-/* The end of the stretch, blades renamed: what blade b holds is now blade b - shift. */
-static void take_matrix(mhb_monodromy *d) {
+/* M from the rows at the end, blades renamed: blade b becomes blade b - blade_shift. */
+static void set_matrix(mhb_monodromy *d) {
   const mhb_modal_structure *s    = d->structure;
   int                        rows = s->modes * s->blades, half = s->modes * d->blades;
   for (int b = 0; b < s->blades; b++) {
-    int name = ((b - d->timetable->shift) % s->blades + s->blades) % s->blades;
+    int name = ((b - d->schedule->blade_shift) % s->blades + s->blades) % s->blades;
     int cell = name / d->blades, to = name % d->blades;
     for (int i = 0; i < s->modes; i++) {
       put_row(d, b * s->modes + i, cell, to * s->modes + i);
@@ -199,49 +200,51 @@ static void take_matrix(mhb_monodromy *d) {
   }
 }
 
-/* ---- the stretch ---- */
+/* ---- integration ---- */
 
-static int run_piece(mhb_monodromy *d, double from, double to, int refinement) {
-  double length = to - from, period = SHB_TWO_PI / d->passage->omega;
+/* The interval between two events. Returns 0 if a system was singular. */
+static int integrate_interval(mhb_monodromy *d, double from, double to, int refinement) {
+  double length = to - from, period = SHB_TWO_PI / d->orbit->omega;
   if (length < SHORT) return 1;
-  int    noting = d->passage->collecting, slip = mhb_orbit_contacts_slips(d->passage);
+  int    first_pass = d->orbit->first_pass, slip = mhb_orbit_contacts_any_slips(d->orbit);
   int    steps = refinement * (int)ceil(d->substeps * length - 1e-9);
   double h     = length / steps;
-  if (!noting) mhb_variational_length(d->variation, h * period);
+  if (!first_pass) mhb_variational_set_step(d->variational, h * period);
   for (int i = 0; i < steps; i++) {
     if (slip || i == 0) {
-      if (!mhb_orbit_contacts_relate(d->passage, from + (i + .5) * h, h * period, i == 0,
-                                     d->variation->relation))
+      if (!mhb_orbit_contacts_linearise(d->orbit, from + (i + 0.5) * h, h * period, i == 0,
+                                        d->variational->linearised))
         return 0;
-      if (!noting && !mhb_variational_couple(d->variation)) return 0;
+      if (!first_pass && !mhb_variational_factor(d->variational)) return 0;
     }
-    if (!noting) mhb_variational_step(d->variation);
+    if (!first_pass) mhb_variational_step(d->variational);
   }
   return 1;
 }
 
-/* One stretch: note where the contacts must be looked at, or integrate. 0: something was singular. */
-static int walk(mhb_monodromy *d, int noting, int refinement) {
-  const mhb_transition_schedule *t = d->timetable;
-  mhb_orbit_contacts_begin(d->passage, noting);
-  if (!noting && !start_columns(d)) return 0;
+/* The segment: in the first pass phases of samples are collected, in the second it is integrated.
+ * Returns 0 if a system was singular. */
+static int run_pass(mhb_monodromy *d, int first_pass, int refinement) {
+  const mhb_transition_schedule *t = d->schedule;
+  mhb_orbit_contacts_begin(d->orbit, first_pass);
+  if (!first_pass && !start_columns(d)) return 0;
   double now = 0;
   for (int i = 0; i < t->n_events; i++) {
-    if (!run_piece(d, now, t->event[i].at, refinement)) return 0;
-    if (!mhb_orbit_contacts_event(d->passage, &t->event[i], d->variation)) return 0;
+    if (!integrate_interval(d, now, t->event[i].at, refinement)) return 0;
+    if (!mhb_orbit_contacts_event(d->orbit, &t->event[i], d->variational)) return 0;
     now = t->event[i].at;
   }
-  if (!run_piece(d, now, t->span, refinement)) return 0;
-  if (!noting) mhb_variational_settle(d->variation);
+  if (!integrate_interval(d, now, t->span, refinement)) return 0;
+  if (!first_pass) mhb_variational_finish(d->variational);
   return 1;
 }
 
 const char *mhb_monodromy_set(mhb_monodromy *d, const mhb_solution *solution, double omega,
                               int refinement) {
-  mhb_orbit_contacts_solution(d->passage, solution, omega);
-  walk(d, 1, refinement);
-  if (!mhb_orbit_contacts_trace(d->passage)) return "the contact law lost its way";
-  if (!walk(d, 0, refinement)) return "the equations of the contacts are singular";
-  take_matrix(d);
+  mhb_orbit_contacts_set_solution(d->orbit, solution, omega);
+  run_pass(d, 1, refinement);
+  if (!mhb_orbit_contacts_evaluate_samples(d->orbit)) return "the contact law lost its way";
+  if (!run_pass(d, 0, refinement)) return "the equations of the contacts are singular";
+  set_matrix(d);
   return NULL;
 }

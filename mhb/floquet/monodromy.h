@@ -1,9 +1,11 @@
-/* What a stretch of a period makes of a small disturbance of (q, q', friction): for a blade on the ground the monodromy matrix, for a
- * ring its columns for the disturbances of one cell (bloch.h), over 1/chunks of a period, the blades renamed (transition_schedule.h).
+/* The map of small disturbances of (q, q', friction) over a segment of the period
+ * (transition_schedule.h): the monodromy matrix of a blade on the ground; for a ring the columns of
+ * one cell's disturbances, blades renamed (bloch.h).
  *
- * Sub-steps (variational.h) are split at the transitions of every contact; the law is linearised at their middles
- * (linearised_law.h, orbit_contacts.h). States that are carried: q and q' of every mode and blade, and at the start two frictions for a
- * contact that sticks but does not stay so, one for a contact that slips. */
+ * Sub-steps (variational.h) end at the transitions of every contact. The law is linearised at their
+ * middles (linearised_law.h, orbit_contacts.h). States: q and q' of every mode and blade; at the
+ * start two frictions of a contact that sticks, one of a contact that slips, none of one that
+ * sticks for the whole period. */
 #ifndef MHB_FLOQUET_MONODROMY_H
 #define MHB_FLOQUET_MONODROMY_H
 
@@ -11,27 +13,28 @@
 
 typedef struct {
   const mhb_modal_structure     *structure;
-  const mhb_transition_schedule *timetable;
-  mhb_variational               *variation;
-  mhb_orbit_contacts            *passage;
+  const mhb_transition_schedule *schedule;
+  mhb_variational               *variational;
+  mhb_orbit_contacts            *orbit;
   int                            substeps; /* a period of the fundamental */
   int                           *column;   /* [contact] its first friction state */
-  double *u, *matrix; /* [3 contacts], [.][.] the start with residual flexibility */
-  int    *pivot;      /* [3 contacts] */
-  int     blades, n;  /* of a cell; its states */
-  double *M;          /* [cell][n][n] column-major */
+  double *u, *matrix;                      /* [3 contacts]; its square, I + R dp/du at the start */
+  int    *pivot;                           /* [3 contacts] */
+  int     blades, n;                       /* of a cell; its states */
+  double *M;                               /* [cell][n][n] column-major */
 } mhb_monodromy;
 
-/* finest: the greatest refinement there is room for. SHB_ERR_IO: no memory. Structure, timetable and contact must outlive it. */
+/* finest: the greatest refinement. SHB_ERR_IO: no memory. Structure, schedule and contact must
+ * outlive it. */
 shb_status mhb_monodromy_create(const mhb_modal_structure     *structure,
-                                const mhb_transition_schedule *timetable,
+                                const mhb_transition_schedule *schedule,
                                 mhb_contact_evaluator *contact, int m, int substeps, int finest,
                                 mhb_monodromy **monodromy);
 void       mhb_monodromy_destroy(mhb_monodromy *monodromy);
 
-/* M for a solution and the timetable set from it, with substeps * refinement sub-steps, each piece between events cut
- * that much finer; omega: of the fundamental.
- * NULL, or why not. */
+/* Set M for a solution and the schedule set from it. Each interval between events has refinement
+ * times as many sub-steps; omega: of the fundamental, rad/s.
+ * Returns NULL, or the reason of a failure. */
 const char *mhb_monodromy_set(mhb_monodromy *monodromy, const mhb_solution *solution, double omega,
                               int refinement);
 

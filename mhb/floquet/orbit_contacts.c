@@ -10,34 +10,34 @@
 #include "mhb/numerics/fourier.h"
 #include "mhb/numerics/lu.h"
 
-/* How far from an opening or closing the direction of the friction is taken, in periods. */
+/* Distance from an opening, in periods, at which the direction of friction is sampled. */
 static const double NEAR = 1e-8;
 
 shb_status mhb_orbit_contacts_create(const mhb_modal_structure     *s,
-                                     const mhb_transition_schedule *timetable,
-                                     mhb_contact_evaluator *contact, int m, int looks,
+                                     const mhb_transition_schedule *schedule,
+                                     mhb_contact_evaluator *contact, int m, int n_samples,
                                      mhb_orbit_contacts **out) {
   mhb_orbit_contacts *d = calloc(1, sizeof *d);
   SHB_CHECK(d, SHB_ERR_IO, "out of memory");
   size_t contacts = (size_t)s->contacts, n = 3 * contacts;
   d->structure = s;
-  d->timetable = timetable;
+  d->schedule  = schedule;
   d->contact   = contact;
   d->m         = m;
   d->nb        = mhb_real_size(m);
-  d->room      = s->blades * looks;
+  d->capacity  = s->blades * n_samples;
   struct {
     void **array;
     size_t size;
   } wanted[] = {{(void **)&d->motion, n * (size_t)d->nb * sizeof(double)},
-                {(void **)&d->sample, (size_t)s->pairs * (size_t)d->room * sizeof *d->sample},
-                {(void **)&d->count, (size_t)s->pairs * sizeof(int)},
-                {(void **)&d->touch, contacts * sizeof *d->touch},
+                {(void **)&d->sample, (size_t)s->pairs * (size_t)d->capacity * sizeof *d->sample},
+                {(void **)&d->n_taken, (size_t)s->pairs * sizeof(int)},
+                {(void **)&d->point, contacts * sizeof *d->point},
                 {(void **)&d->matrix, n * n * sizeof(double)},
                 {(void **)&d->pivot, n * sizeof(int)},
-                {(void **)&d->rate, n * sizeof(double)},
-                {(void **)&d->other, n * sizeof(double)},
-                {(void **)&d->recoil, n * sizeof(double)},
+                {(void **)&d->force_rate, n * sizeof(double)},
+                {(void **)&d->force_jump, n * sizeof(double)},
+                {(void **)&d->elastic_feedback, n * sizeof(double)},
                 {(void **)&d->basis, 2 * (size_t)d->nb * sizeof(double)}};
   int ok     = 1;
   for (size_t i = 0; i < sizeof wanted / sizeof wanted[0]; i++)
@@ -52,8 +52,9 @@ shb_status mhb_orbit_contacts_create(const mhb_modal_structure     *s,
 
 void mhb_orbit_contacts_destroy(mhb_orbit_contacts *d) {
   if (!d) return;
-  void *arrays[] = {d->motion, d->sample, d->count, d->touch,  d->matrix,
-                    d->pivot,  d->rate,   d->other, d->recoil, d->basis};
+  void *arrays[] = {d->motion,           d->sample, d->n_taken,    d->point,
+                    d->matrix,           d->pivot,  d->force_rate, d->force_jump,
+                    d->elastic_feedback, d->basis};
   for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; i++) free(arrays[i]);
   free(d);
 }
@@ -64,8 +65,8 @@ static int pair_of(const mhb_orbit_contacts *d, int contact) {
 
 /* ---- the periodic motion ---- */
 
-/* Harmonic k of (R p)_r of blade 0; the force of blade b lags by k b phi. */
-static double complex flexed(const mhb_orbit_contacts *d, int k, int r) {
+/* Harmonic k of (R p)_r of blade 0; the force of blade b lags by k b 2 pi E/N. */
+static double complex flexibility_motion(const mhb_orbit_contacts *d, int k, int r) {
   const mhb_modal_structure *s = d->structure;
   size_t         n = 3 * (size_t)s->contacts, n3 = 3 * (size_t)s->pairs, nb = (size_t)d->nb;
   double complex sum = 0;
@@ -79,14 +80,14 @@ static double complex flexed(const mhb_orbit_contacts *d, int k, int r) {
 }
 
 /* w = u + R p */
-static void free_of_flexibility(mhb_orbit_contacts *d) {
+static void set_modal_motion(mhb_orbit_contacts *d) {
   int n3 = 3 * d->structure->pairs, nb = d->nb;
   memcpy(d->motion, d->solution->x, sizeof(double) * (size_t)n3 * (size_t)nb);
   if (!d->structure->flexibility) return;
   for (int r = 0; r < n3; r++) {
     double *w = d->motion + (size_t)r * (size_t)nb;
     for (int k = 0; k <= d->m; k++) {
-      double complex more = flexed(d, k, r);
+      double complex more = flexibility_motion(d, k, r);
       w[k ? 2 * k - 1 : 0] += creal(more);
       if (k) w[2 * k] += cimag(more);
     }
@@ -97,7 +98,7 @@ static void free_of_flexibility(mhb_orbit_contacts *d) {
 static void motion_rate(mhb_orbit_contacts *d, const double *x, int contact, double at,
                         double rate[3]) {
   double *basis = d->basis, *slope = basis + d->nb;
-  mhb_basis(d->m, SHB_TWO_PI * mhb_transition_schedule_phase(d->timetable, contact, at), basis,
+  mhb_basis(d->m, SHB_TWO_PI * mhb_transition_schedule_phase(d->schedule, contact, at), basis,
             slope);
   const double *of = x + (size_t)(3 * pair_of(d, contact)) * (size_t)d->nb;
   for (int i = 0; i < 3; i++) {
@@ -107,32 +108,34 @@ static void motion_rate(mhb_orbit_contacts *d, const double *x, int contact, dou
   }
 }
 
-/* Load and direction of a slipping contact. While collecting, only the phase is noted. */
-static void look(mhb_orbit_contacts *d, int contact, double at) {
-  int                 pair   = pair_of(d, contact);
-  mhb_contact_sample *sample = &d->sample[(size_t)pair * (size_t)d->room + (size_t)d->count[pair]];
-  d->count[pair]++;
-  if (d->collecting) {
-    sample->phase = mhb_transition_schedule_phase(d->timetable, contact, at);
+/* Normal load and friction direction of a slipping contact; in the first pass only the phase is
+ * collected. */
+static void take_sample(mhb_orbit_contacts *d, int contact, double at) {
+  int                 pair = pair_of(d, contact);
+  mhb_contact_sample *sample =
+      &d->sample[(size_t)pair * (size_t)d->capacity + (size_t)d->n_taken[pair]];
+  d->n_taken[pair]++;
+  if (d->first_pass) {
+    sample->phase = mhb_transition_schedule_phase(d->schedule, contact, at);
     return;
   }
-  mhb_contact_state *touch = &d->touch[contact];
+  mhb_contact_state *point = &d->point[contact];
   double             size  = hypot(sample->f[0], sample->f[1]);
-  touch->n                 = sample->n;
-  for (int k = 0; k < 2; k++) touch->e[k] = size > 0 ? sample->f[k] / size : k == 0;
+  point->n                 = sample->n;
+  for (int k = 0; k < 2; k++) point->e[k] = size > 0 ? sample->f[k] / size : k == 0;
 }
 
-static int slips(const mhb_contact_state *touch) {
-  return touch->state == MHB_SLIDE && touch->law->mu > 0;
+static int is_slipping(const mhb_contact_state *point) {
+  return point->state == MHB_SLIDE && point->law->mu > 0;
 }
 
-/* ---- rates with residual flexibility: p' = (I + G R)^-1 G w',  u' = w' - R p' ---- */
+/* ---- rates with residual flexibility: p' = (I + G R)^-1 G w', u' = w' - R p' ---- */
 
 /* Rows of contact j of I + G R, and of G w'. */
 static void rate_rows(mhb_orbit_contacts *d, int j, double at, double *rate) {
   int    n = 3 * d->structure->contacts;
   double G[3][3], w[3];
-  mhb_linearised_law_rate(&d->touch[j], G);
+  mhb_linearised_law_rate(&d->point[j], G);
   motion_rate(d, d->motion, j, at, w);
   for (int r = 0; r < 3; r++) {
     const double *R   = d->structure->flexibility + (size_t)(3 * j) * (size_t)n;
@@ -143,7 +146,7 @@ static void rate_rows(mhb_orbit_contacts *d, int j, double at, double *rate) {
   }
 }
 
-/* I + G R, factorized; and p' into rate[n]. 0: singular. */
+/* Factors of I + G R, and p' into rate[n]. Returns 0 if singular. */
 static int force_rates(mhb_orbit_contacts *d, double at, double *rate) {
   int n = 3 * d->structure->contacts;
   for (int j = 0; j < d->structure->contacts; j++) rate_rows(d, j, at, rate);
@@ -153,7 +156,7 @@ static int force_rates(mhb_orbit_contacts *d, double at, double *rate) {
 }
 
 /* out = -R p */
-static void recoil(const mhb_modal_structure *s, const double *p, double *out) {
+static void elastic_feedback(const mhb_modal_structure *s, const double *p, double *out) {
   int n = 3 * s->contacts;
   for (int r = 0; r < n; r++) {
     out[r] = 0;
@@ -161,47 +164,47 @@ static void recoil(const mhb_modal_structure *s, const double *p, double *out) {
   }
 }
 
-/* Rates of the motion of one contact, or of all of them where they are coupled. */
+/* Rates of the motion of one contact; with residual flexibility of all. Returns 0 if singular. */
 static int set_rates(mhb_orbit_contacts *d, int contact, double at) {
   const mhb_modal_structure *s = d->structure;
   if (!s->flexibility) {
-    motion_rate(d, d->motion, contact, at, d->touch[contact].rate);
+    motion_rate(d, d->motion, contact, at, d->point[contact].rate);
     return 1;
   }
-  if (!force_rates(d, at, d->rate)) return 0;
-  recoil(s, d->rate, d->recoil);
+  if (!force_rates(d, at, d->force_rate)) return 0;
+  elastic_feedback(s, d->force_rate, d->elastic_feedback);
   for (int j = 0; j < s->contacts; j++) {
-    motion_rate(d, d->motion, j, at, d->touch[j].rate);
-    for (int k = 0; k < 3; k++) d->touch[j].rate[k] += d->recoil[3 * j + k];
+    motion_rate(d, d->motion, j, at, d->point[j].rate);
+    for (int k = 0; k < 3; k++) d->point[j].rate[k] += d->elastic_feedback[3 * j + k];
   }
   return 1;
 }
 
-void mhb_orbit_contacts_solution(mhb_orbit_contacts *d, const mhb_solution *solution,
-                                 double omega) {
+void mhb_orbit_contacts_set_solution(mhb_orbit_contacts *d, const mhb_solution *solution,
+                                     double omega) {
   d->solution = solution;
   d->omega    = omega;
-  free_of_flexibility(d);
+  set_modal_motion(d);
 }
 
-void mhb_orbit_contacts_begin(mhb_orbit_contacts *d, int collecting) {
+void mhb_orbit_contacts_begin(mhb_orbit_contacts *d, int first_pass) {
   const mhb_modal_structure *s = d->structure;
-  d->collecting                = collecting;
-  memset(d->count, 0, sizeof *d->count * (size_t)s->pairs);
+  d->first_pass                = first_pass;
+  memset(d->n_taken, 0, sizeof *d->n_taken * (size_t)s->pairs);
   for (int j = 0; j < s->contacts; j++) {
-    mhb_contact_state *touch = &d->touch[j];
-    *touch                   = (mhb_contact_state){.law   = &d->solution->law[pair_of(d, j)],
-                                                   .state = (mhb_state)d->timetable->state[j]};
-    if (s->flexibility && slips(touch)) look(d, j, NEAR);
+    mhb_contact_state *point = &d->point[j];
+    *point                   = (mhb_contact_state){.law   = &d->solution->law[pair_of(d, j)],
+                                                   .state = (mhb_state)d->schedule->state[j]};
+    if (s->flexibility && is_slipping(point)) take_sample(d, j, NEAR);
   }
 }
 
-int mhb_orbit_contacts_trace(mhb_orbit_contacts *d) {
+int mhb_orbit_contacts_evaluate_samples(mhb_orbit_contacts *d) {
   for (int a = 0; a < d->structure->pairs; a++) {
-    if (d->count[a] == 0) continue;
+    if (d->n_taken[a] == 0) continue;
     const double *x = d->solution->x + (size_t)(3 * a) * (size_t)d->nb;
-    mhb_contact_time_history(d->contact, &d->solution->law[a], x, d->count[a],
-                             d->sample + (size_t)a * (size_t)d->room, &d->info);
+    mhb_contact_time_history(d->contact, &d->solution->law[a], x, d->n_taken[a],
+                             d->sample + (size_t)a * (size_t)d->capacity, &d->info);
     if (!mhb_transition_schedule_usable(&d->info)) return 0;
   }
   return 1;
@@ -209,129 +212,131 @@ int mhb_orbit_contacts_trace(mhb_orbit_contacts *d) {
 
 /* ---- sub-steps ---- */
 
-int mhb_orbit_contacts_slips(const mhb_orbit_contacts *d) {
+int mhb_orbit_contacts_any_slips(const mhb_orbit_contacts *d) {
   for (int j = 0; j < d->structure->contacts; j++)
-    if (slips(&d->touch[j])) return 1;
+    if (is_slipping(&d->point[j])) return 1;
   return 0;
 }
 
-/* Relations of all contacts over a sub-step with this middle; those that do not slip only at the first. */
-int mhb_orbit_contacts_relate(mhb_orbit_contacts *d, double middle, double h, int first,
-                              mhb_linearised_law *relation) {
+int mhb_orbit_contacts_linearise(mhb_orbit_contacts *d, double middle, double h, int first,
+                                 mhb_linearised_law *linearised) {
   const mhb_modal_structure *s = d->structure;
   for (int j = 0; j < s->contacts; j++)
-    if (slips(&d->touch[j])) look(d, j, middle);
-  if (d->collecting) return 1;
-  if (s->flexibility && mhb_orbit_contacts_slips(d) && !set_rates(d, 0, middle)) return 0;
+    if (is_slipping(&d->point[j])) take_sample(d, j, middle);
+  if (d->first_pass) return 1;
+  if (s->flexibility && mhb_orbit_contacts_any_slips(d) && !set_rates(d, 0, middle)) return 0;
   for (int j = 0; j < s->contacts; j++) {
-    int slipping = slips(&d->touch[j]);
+    int slipping = is_slipping(&d->point[j]);
     if (!slipping && !first) continue;
     if (slipping && !s->flexibility) set_rates(d, j, middle);
-    mhb_linearised_law_at(&d->touch[j], h, &relation[j]);
+    mhb_linearised_law_at(&d->point[j], h, &linearised[j]);
   }
   return 1;
 }
 
 /* ---- events ---- */
 
-/* The direction in which slip begins at a closing (eq. 15), from the motion that the law saw. */
+/* Direction of slip at a closing (eq. 15), by the rate of the solution's motion. */
 static void closing_direction(mhb_orbit_contacts *d, int contact, double at) {
-  mhb_contact_state *touch   = &d->touch[contact];
-  const mhb_law     *law     = touch->law;
+  mhb_contact_state *point   = &d->point[contact];
+  const mhb_law     *law     = point->law;
   const double       K[2][2] = {{law->ku[0], law->ku[1]}, {law->ku[1], law->ku[2]}};
   double             u[3];
   motion_rate(d, d->solution->x, contact, at, u);
   double x[2] = {K[0][0] * u[1] + K[0][1] * u[2], K[1][0] * u[1] + K[1][1] * u[2]};
-  mhb_slip_return(K, law->mu * law->kv * u[0], x, touch->e);
-  touch->n = 0;
+  mhb_slip_return(K, law->mu * law->kv * u[0], x, point->e);
+  point->n = 0;
 }
 
-/* Rows of all contacts change by jump[n] times alpha. */
-static void share_jump(mhb_orbit_contacts *d, int contact, const double *jump, mhb_variational *v) {
-  recoil(d->structure, jump, v->du);
+/* du, dsigma of all contacts by the force jump[n] alpha; sigma of the contact itself is set by
+ * mhb_saltation. */
+static void set_coupled_jump(mhb_orbit_contacts *d, int contact, const double *jump,
+                             mhb_variational *v) {
+  elastic_feedback(d->structure, jump, v->du);
   for (int j = 0; j < d->structure->contacts; j++) {
-    const mhb_contact_state *touch = &d->touch[j];
+    const mhb_contact_state *point = &d->point[j];
     const double            *f     = jump + 3 * j + 1;
     double                  *out   = v->dsigma + 2 * j;
     out[0] = out[1] = 0;
-    if (j == contact || touch->state == MHB_SEPARATE || touch->law->mu == 0) continue;
-    out[0] = touch->state == MHB_STICK ? f[0] : touch->e[0] * f[1] - touch->e[1] * f[0];
-    out[1] = touch->state == MHB_STICK ? f[1] : 0;
+    if (j == contact || point->state == MHB_SEPARATE || point->law->mu == 0) continue;
+    out[0] = point->state == MHB_STICK ? f[0] : point->e[0] * f[1] - point->e[1] * f[0];
+    out[1] = point->state == MHB_STICK ? f[1] : 0;
   }
 }
 
-/* Stick to slip: dp jumps along (I + G R)^-1 (0, Ku e) until it obeys the friction limit. G: still stuck. */
+/* Stick to slip: dp jumps along (I + G R)^-1 (0, Ku e) to the friction limit; G of the stuck
+ * state. */
 static int elastic_onset(mhb_orbit_contacts *d, double at, mhb_saltation *jump,
                          mhb_variational *v) {
-  const mhb_contact_state *touch = &d->touch[jump->contact];
-  const double            *e = touch->e, *ku = touch->law->ku, mu = touch->law->mu;
+  const mhb_contact_state *point = &d->point[jump->contact];
+  const double            *e = point->e, *ku = point->law->ku, mu = point->law->mu;
   int                      n = 3 * d->structure->contacts, a = 3 * jump->contact;
-  if (!force_rates(d, at, d->rate)) return 0;
-  memset(d->other, 0, sizeof(double) * (size_t)n);
-  d->other[a + 1] = ku[0] * e[0] + ku[1] * e[1];
-  d->other[a + 2] = ku[1] * e[0] + ku[2] * e[1];
-  mhb_solve_real(n, d->matrix, d->pivot, d->other);
-  const double *k = d->other + a;
+  if (!force_rates(d, at, d->force_rate)) return 0;
+  memset(d->force_jump, 0, sizeof(double) * (size_t)n);
+  d->force_jump[a + 1] = ku[0] * e[0] + ku[1] * e[1];
+  d->force_jump[a + 2] = ku[1] * e[0] + ku[2] * e[1];
+  mhb_solve_real(n, d->matrix, d->pivot, d->force_jump);
+  const double *k = d->force_jump + a;
   double        s = e[0] * k[1] + e[1] * k[2] - mu * k[0], across = e[0] * k[2] - e[1] * k[1];
-  double measure[3] = {-mu * touch->law->kv / s, e[0] / s, e[1] / s}, q[3] = {0, -e[1], e[0]};
+  double measure[3] = {-mu * point->law->kv / s, e[0] / s, e[1] / s}, q[3] = {0, -e[1], e[0]};
   for (int i = 0; i < 3; i++) {
     jump->measure[i] = measure[i];
     jump->set[0][i]  = q[i] - across * measure[i];
   }
-  for (int i = 0; i < n; i++) d->other[i] = -d->other[i];
-  share_jump(d, jump->contact, d->other, v);
+  for (int i = 0; i < n; i++) d->force_jump[i] = -d->force_jump[i];
+  set_coupled_jump(d, jump->contact, d->force_jump, v);
   return 1;
 }
 
-/* Opening and closing: the event shifts by -dv/v', and with it the step of p' from one state to the next. */
+/* Opening and closing: the event shifts by -dv/v', and with it the jump of p'. */
 static int elastic_contact(mhb_orbit_contacts *d, double at, mhb_state to, mhb_saltation *jump,
                            mhb_variational *v) {
-  mhb_contact_state *touch = &d->touch[jump->contact];
-  mhb_state          from  = touch->state;
+  mhb_contact_state *point = &d->point[jump->contact];
+  mhb_state          from  = point->state;
   int                n = 3 * d->structure->contacts, a = 3 * jump->contact;
   if (!set_rates(d, jump->contact, at)) return 0;
-  double speed = touch->rate[0];
-  touch->state = to;
-  int ok       = force_rates(d, at, d->other);
-  touch->state = from;
-  for (int i = 0; i < n; i++) d->other[i] -= d->rate[i];
+  double speed = point->rate[0];
+  point->state = to;
+  int ok       = force_rates(d, at, d->force_jump);
+  point->state = from;
+  for (int i = 0; i < n; i++) d->force_jump[i] -= d->force_rate[i];
   jump->measure[0] = 1 / speed;
-  for (int i = 0; i < 2 && to == MHB_STICK && touch->law->mu > 0; i++)
-    jump->set[i][0] = d->other[a + 1 + i] / speed;
-  share_jump(d, jump->contact, d->other, v);
+  for (int i = 0; i < 2 && to == MHB_STICK && point->law->mu > 0; i++)
+    jump->set[i][0] = d->force_jump[a + 1 + i] / speed;
+  set_coupled_jump(d, jump->contact, d->force_jump, v);
   return ok;
 }
 
-/* With residual flexibility the direction of every slipping contact is needed, else of one that turns to or from slip. At n = 0
- * friction has no direction: shortly before. */
-static void look_around(mhb_orbit_contacts *d, const mhb_event *event, int turns) {
+/* Sample the direction of a contact between stick and slip; with residual flexibility of every
+ * slipping contact. At an opening, where n = 0, shortly before it. */
+static void sample_slipping(mhb_orbit_contacts *d, const mhb_event *event, int changes_slip) {
   double at = event->state == MHB_SEPARATE ? event->at - NEAR : event->at;
   for (int j = 0; j < d->structure->contacts; j++) {
-    int coupled = d->structure->flexibility && slips(&d->touch[j]);
-    if (coupled || (turns && j == event->contact)) look(d, j, at);
+    int coupled = d->structure->flexibility && is_slipping(&d->point[j]);
+    if (coupled || (changes_slip && j == event->contact)) take_sample(d, j, at);
   }
 }
 
 int mhb_orbit_contacts_event(mhb_orbit_contacts *d, const mhb_event *event, mhb_variational *v) {
-  mhb_contact_state *touch = &d->touch[event->contact];
-  mhb_state          from = touch->state, to = (mhb_state)event->state;
-  int                friction = touch->law->mu > 0, ok = 1;
-  int                turns = friction && from != MHB_SEPARATE && to != MHB_SEPARATE;
-  mhb_saltation      jump  = {.contact = event->contact};
-  look_around(d, event, turns);
-  if (!d->collecting) {
+  mhb_contact_state *point = &d->point[event->contact];
+  mhb_state          from = point->state, to = (mhb_state)event->state;
+  int                friction = point->law->mu > 0, ok = 1;
+  int                changes_slip = friction && from != MHB_SEPARATE && to != MHB_SEPARATE;
+  mhb_saltation      jump         = {.contact = event->contact};
+  sample_slipping(d, event, changes_slip);
+  if (!d->first_pass) {
     if (friction && from == MHB_SEPARATE && to == MHB_SLIDE)
       closing_direction(d, event->contact, event->at);
-    if (!d->structure->flexibility || (turns && to == MHB_STICK)) {
+    if (!d->structure->flexibility || (changes_slip && to == MHB_STICK)) {
       ok = set_rates(d, event->contact, event->at);
-      mhb_saltation_at(touch, to, &jump); /* measure 0: no other contact takes notice */
-    } else if (turns) {
+      mhb_saltation_at(point, to, &jump); /* measure 0: no other contact jumps */
+    } else if (changes_slip) {
       ok = elastic_onset(d, event->at, &jump, v);
     } else {
       ok = elastic_contact(d, event->at, to, &jump, v);
     }
     mhb_variational_saltation(v, &jump);
   }
-  touch->state = to;
+  point->state = to;
   return ok;
 }

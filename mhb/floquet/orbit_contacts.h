@@ -1,8 +1,9 @@
-/* The contacts of a blade or ring on their way through a period: how they answer a disturbance over each sub-step, and what
- * their transitions do to it.
+/* The contacts along the periodic motion: their linearised laws over each sub-step and their jumps
+ * at transitions.
  *
- * A stretch of time is walked through twice with the same calls: first only the phases are noted at which slipping contacts
- * must be looked at (one trace of the law gives them all), then the looks are used in the same order. */
+ * The interval is passed twice with the same calls. The first pass collects the phases at which
+ * slipping contacts are sampled; one time history of the law a pair then gives all samples. The
+ * second pass uses the samples in the same order. */
 #ifndef MHB_FLOQUET_ORBIT_CONTACTS_H
 #define MHB_FLOQUET_ORBIT_CONTACTS_H
 
@@ -12,60 +13,64 @@
 #include "mhb/floquet/transition_schedule.h"
 #include "mhb/floquet/variational.h"
 
-/* A solution of the balance and what the contact law said of it. */
+/* A solution of the harmonic balance with the results of the contact law. */
 typedef struct {
   double                  omega; /* rad/s, of the excitation */
   const mhb_law          *law;   /* [pair] */
   const mhb_contact_info *info;  /* [pair] of mhb_contact_force at x */
   const double           *x;     /* [pair][3][2m+1] relative motion, real form (fourier.h), m */
-  const double           *p; /* the same shape: force, N; needed with residual flexibility only */
+  const double           *p;     /* [pair][3][2m+1] force, N; used with residual flexibility only */
 } mhb_solution;
 
 typedef struct {
   const mhb_modal_structure     *structure;
-  const mhb_transition_schedule *timetable;
+  const mhb_transition_schedule *schedule;
   mhb_contact_evaluator         *contact;
   int                            m, nb; /* harmonics; 2m+1 */
   const mhb_solution            *solution;
-  double                         omega;                 /* rad/s, fundamental */
-  double                        *motion;                /* [pair][3][nb] w = u + R p */
-  mhb_contact_sample            *sample;                /* [pair][room] */
-  int                            room, collecting;      /* looks a pair; noted now, not used */
-  int                           *count;                 /* [pair] looks noted, or used */
-  mhb_contact_info               info;                  /* of a trace */
-  mhb_contact_state             *touch;                 /* [contact] now */
-  double                        *matrix;                /* [n][n] I + G R, n = 3 contacts */
-  int                           *pivot;                 /* [n] */
-  double                        *rate, *other, *recoil; /* [n] p' before and after, -R p' */
-  double                        *basis;                 /* [2][nb] */
+  double                         omega;      /* rad/s, fundamental */
+  double                        *motion;     /* [pair][3][nb] w = u + R p */
+  mhb_contact_sample            *sample;     /* [pair][capacity] */
+  int                            capacity;   /* samples a pair */
+  int                            first_pass; /* 1: phases are collected; 0: samples are used */
+  int                           *n_taken;    /* [pair] samples collected or used */
+  mhb_contact_info               info;       /* of a time history */
+  mhb_contact_state             *point;      /* [contact] now */
+  double                        *matrix;     /* [n][n] I + G R, n = 3 contacts */
+  int                           *pivot;      /* [n] */
+  double                        *force_rate; /* [n] p' */
+  double                        *force_jump; /* [n] jump of the forces at a transition */
+  double                        *elastic_feedback; /* [n] -R p' */
+  double                        *basis;            /* [2][nb] */
 } mhb_orbit_contacts;
 
-/* Room for a number of looks at each contact of a pair. SHB_ERR_IO: no memory. */
+/* For n_samples samples of each contact of a pair. SHB_ERR_IO: no memory. */
 shb_status mhb_orbit_contacts_create(const mhb_modal_structure     *structure,
-                                     const mhb_transition_schedule *timetable,
-                                     mhb_contact_evaluator *contact, int m, int looks,
-                                     mhb_orbit_contacts **passage);
-void       mhb_orbit_contacts_destroy(mhb_orbit_contacts *passage);
+                                     const mhb_transition_schedule *schedule,
+                                     mhb_contact_evaluator *contact, int m, int n_samples,
+                                     mhb_orbit_contacts **orbit);
+void       mhb_orbit_contacts_destroy(mhb_orbit_contacts *orbit);
 
-/* The solution to walk along; omega: of the fundamental. */
-void mhb_orbit_contacts_solution(mhb_orbit_contacts *passage, const mhb_solution *solution,
-                                 double omega);
+/* Solution of both passes; omega: of the fundamental, rad/s. */
+void mhb_orbit_contacts_set_solution(mhb_orbit_contacts *orbit, const mhb_solution *solution,
+                                     double omega);
 
-/* Go to the start of the timetable. */
-void mhb_orbit_contacts_begin(mhb_orbit_contacts *passage, int collecting);
+/* Go to the start of the schedule. */
+void mhb_orbit_contacts_begin(mhb_orbit_contacts *orbit, int first_pass);
 
-/* The looks that were noted. 0: the contact law was lost. */
-int mhb_orbit_contacts_trace(mhb_orbit_contacts *passage);
+/* Evaluate the samples collected by the first pass. Returns 0 if the contact law failed. */
+int mhb_orbit_contacts_evaluate_samples(mhb_orbit_contacts *orbit);
 
-/* Does any contact slip now? */
-int mhb_orbit_contacts_slips(const mhb_orbit_contacts *passage);
+/* Whether any contact slips now. */
+int mhb_orbit_contacts_any_slips(const mhb_orbit_contacts *orbit);
 
-/* Relations of the contacts over h seconds around the phase middle; unless first, only of those that slip. 0: singular. */
-int mhb_orbit_contacts_relate(mhb_orbit_contacts *passage, double middle, double h, int first,
-                              mhb_linearised_law *relation);
+/* Linearised laws over h seconds around the phase middle: of all contacts if first, else of those
+ * that slip. Returns 0 if singular. */
+int mhb_orbit_contacts_linearise(mhb_orbit_contacts *orbit, double middle, double h, int first,
+                                 mhb_linearised_law *linearised);
 
-/* Pass a transition, and the variation with it. 0: singular. */
-int mhb_orbit_contacts_event(mhb_orbit_contacts *passage, const mhb_event *event,
-                             mhb_variational *variation);
+/* Pass a transition, with its jump of the variational rows. Returns 0 if singular. */
+int mhb_orbit_contacts_event(mhb_orbit_contacts *orbit, const mhb_event *event,
+                             mhb_variational *variational);
 
 #endif

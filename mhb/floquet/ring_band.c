@@ -29,10 +29,10 @@ void mhb_ring_band_destroy(mhb_ring_band *b) {
   *b = (mhb_ring_band){0};
 }
 
-int mhb_ring_band_near(const mhb_ring_band *b, int blade, int near[3]) {
+int mhb_ring_band_neighbours(const mhb_ring_band *b, int blade, int neighbour[3]) {
   int n = 0;
   for (int step = -1; step <= 1 && n < b->blades; step++)
-    near[n++] = (blade + step + b->blades) % b->blades;
+    neighbour[n++] = (blade + step + b->blades) % b->blades;
   return n;
 }
 
@@ -40,7 +40,7 @@ void mhb_ring_band_clear(mhb_ring_band *b) {
   memset(b->row, 0, sizeof *b->row * (size_t)b->n * (size_t)(3 * b->width + 1));
 }
 
-/* Rows are exchanged from column k on only: the multipliers of earlier columns stay where they were made. */
+/* Rows are exchanged from column k on only, as in dgbtrf: the factors of earlier columns stay. */
 int mhb_ring_band_factor(mhb_ring_band *b) {
   int w = b->width, next = 3 * w; /* from an entry to the one below it */
   for (int k = 0; k < b->n; k++) {

@@ -4,11 +4,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Events closer than this, in periods, are of one time. */
+/* Events closer than this, in periods, are simultaneous. */
 static const double CLOSE = 1e-12;
 
-/* A contact that missed its tolerance by little still has its transitions in the right places. */
-static const double TOO_FAR = 1e-5;
+/* Largest error of the contact law, relative to the force scale, at which its transitions can still
+ * be used. */
+static const double USABLE_ERROR = 1e-5;
 
 static int common_divisor(int a, int b) {
   while (b) {
@@ -22,15 +23,16 @@ static int common_divisor(int a, int b) {
 shb_status mhb_transition_schedule_create(int blades, int pairs, int wave,
                                           mhb_transition_schedule *t) {
   int E = ((wave % blades) + blades) % blades, g = common_divisor(blades, E);
-  *t = (mhb_transition_schedule){.blades = blades, .pairs = pairs, .wave = E, .chunks = blades / g};
-  t->span = 1. / t->chunks;
-  while (((long)t->shift * E - g) % blades) t->shift++;
-  t->capacity  = 64 + 64 * pairs * g;
-  size_t n     = (size_t)(blades * pairs);
-  t->event     = calloc((size_t)t->capacity, sizeof *t->event);
-  t->state     = calloc(n, sizeof *t->state);
-  t->permanent = calloc(n, sizeof *t->permanent);
-  if (t->event && t->state && t->permanent) return SHB_OK;
+  *t = (mhb_transition_schedule){
+      .blades = blades, .pairs = pairs, .wave = E, .n_segments = blades / g};
+  t->span = 1. / t->n_segments;
+  while (((long)t->blade_shift * E - g) % blades) t->blade_shift++;
+  t->capacity       = 64 + 64 * pairs * g;
+  size_t n          = (size_t)(blades * pairs);
+  t->event          = calloc((size_t)t->capacity, sizeof *t->event);
+  t->state          = calloc(n, sizeof *t->state);
+  t->constant_state = calloc(n, sizeof *t->constant_state);
+  if (t->event && t->state && t->constant_state) return SHB_OK;
   mhb_transition_schedule_destroy(t);
   SHB_FAIL(SHB_ERR_IO, "out of memory for the stability of %d contacts", blades * pairs);
 }
@@ -38,7 +40,7 @@ shb_status mhb_transition_schedule_create(int blades, int pairs, int wave,
 void mhb_transition_schedule_destroy(mhb_transition_schedule *t) {
   free(t->event);
   free(t->state);
-  free(t->permanent);
+  free(t->constant_state);
   *t = (mhb_transition_schedule){0};
 }
 
@@ -47,7 +49,7 @@ static double fraction(double x) {
   return x < 1 ? x : 0;
 }
 
-/* Phase by which a contact's blade is behind. */
+/* Phase by which a contact's blade lags. */
 static double lag(const mhb_transition_schedule *t, int contact) {
   return (double)((long)(contact / t->pairs) * t->wave % t->blades) / t->blades;
 }
@@ -75,16 +77,17 @@ static int state_at(const mhb_contact_info *info, double phase) {
   return state;
 }
 
-static int stays(const mhb_contact_info *info) {
+static int is_constant(const mhb_contact_info *info) {
   return info->n_transitions == 0;
 }
 
-/* Friction states that a start at this phase would carry along. */
-static int burden(const mhb_transition_schedule *t, const mhb_contact_info *info, double phase) {
+/* Number of friction states of all contacts at a phase. */
+static int friction_states_at(const mhb_transition_schedule *t, const mhb_contact_info *info,
+                              double phase) {
   int sum = 0;
   for (int j = 0; j < t->blades * t->pairs; j++) {
     const mhb_contact_info *of = &info[j % t->pairs];
-    sum += mhb_friction_states(state_at(of, phase - lag(t, j)), stays(of), 1);
+    sum += mhb_friction_states(state_at(of, phase - lag(t, j)), is_constant(of), 1);
   }
   return sum;
 }
@@ -94,7 +97,7 @@ static void choose_start(mhb_transition_schedule *t, const mhb_contact_info *inf
   t->start  = 0;
   for (int a = 0; a < t->pairs; a++) {
     for (int i = 0; i < info[a].n_transitions; i++) {
-      int states = burden(t, info, info[a].transition[i].phase);
+      int states = friction_states_at(t, info, info[a].transition[i].phase);
       if (least >= 0 && states >= least) continue;
       least    = states;
       t->start = info[a].transition[i].phase;
@@ -106,7 +109,7 @@ static int later(const mhb_event *a, const mhb_event *b) {
   return a->at != b->at ? a->at > b->at : a->order > b->order;
 }
 
-/* Insertion sort: no allocation, few events. */
+/* Insertion sort: there are few events, and nothing is allocated. */
 static void sort_events(mhb_transition_schedule *t) {
   for (int i = 1; i < t->n_events; i++) {
     mhb_event event = t->event[i];
@@ -116,7 +119,7 @@ static void sort_events(mhb_transition_schedule *t) {
   }
 }
 
-/* Events at the very start are over; they come again at its end. */
+/* Events of the interval. One at the start belongs to its end. */
 static int list_events(mhb_transition_schedule *t, const mhb_contact_info *info) {
   t->n_events = 0;
   for (int j = 0; j < t->blades * t->pairs; j++) {
@@ -135,7 +138,7 @@ static int list_events(mhb_transition_schedule *t, const mhb_contact_info *info)
 }
 
 int mhb_transition_schedule_usable(const mhb_contact_info *info) {
-  return (!info->lost || info->error <= TOO_FAR) && info->n_transitions < MHB_MAX_TRANSITIONS;
+  return (!info->lost || info->error <= USABLE_ERROR) && info->n_transitions < MHB_MAX_TRANSITIONS;
 }
 
 int mhb_transition_schedule_set(mhb_transition_schedule *t, const mhb_contact_info *info) {
@@ -145,7 +148,7 @@ int mhb_transition_schedule_set(mhb_transition_schedule *t, const mhb_contact_in
   for (int j = 0; j < t->blades * t->pairs; j++) {
     const mhb_contact_info *of = &info[j % t->pairs];
     t->state[j]                = state_at(of, t->start - lag(t, j));
-    t->permanent[j]            = stays(of);
+    t->constant_state[j]       = is_constant(of);
   }
   return list_events(t, info);
 }

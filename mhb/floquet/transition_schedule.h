@@ -1,8 +1,9 @@
-/* When each contact of a blade, or of a ring of blades, sticks, slips and opens over the stretch of time that is integrated.
+/* Transitions of all contacts, in the order of time, over the interval that is integrated.
  *
- * Phases are t/T, T the period of the motion. In a wave blade b does at phase s what blade 0 does at s - b E/N. Then, with
- * g = gcd(E, N) and k E = g (mod N), blade b at s + g/N is where blade b - k was at s: the integration covers
- * g/N of a period only, and the blades then change names. A single blade on the ground: E = 0, N = 1. */
+ * Phases are t/T, T the period of the motion. In a travelling wave blade b at phase s is where
+ * blade 0 is at s - b E/N. With g = gcd(E, N) and k E = g (mod N), blade b at s + g/N is where
+ * blade b - k was at s. So g/N of a period is integrated, one segment, after which blade b becomes
+ * blade b - k. A blade on the ground: E = 0, N = 1. */
 #ifndef MHB_FLOQUET_TRANSITION_SCHEDULE_H
 #define MHB_FLOQUET_TRANSITION_SCHEDULE_H
 
@@ -11,40 +12,41 @@
 typedef struct {
   double at;      /* phase after the start, in (0, span] */
   int    contact; /* j = blade * pairs + pair */
-  int    state;   /* that begins */
-  int    order;   /* among events of one time */
+  int    state;   /* mhb_state that begins */
+  int    order;   /* among simultaneous events */
 } mhb_event;
 
 typedef struct {
-  int        blades, pairs, wave; /* N, pairs, E of the fundamental */
-  int        chunks, shift;       /* N/g stretches to a period, names change by k */
-  double     start, span;         /* phase; 1/chunks */
+  int        blades, pairs, wave;     /* N, pairs, E of the fundamental */
+  int        n_segments, blade_shift; /* N/g of a period; k */
+  double     start, span;             /* phase; 1/n_segments */
   int        n_events, capacity;
-  mhb_event *event;     /* by time */
-  int       *state;     /* [contact] right after start */
-  int       *permanent; /* [contact] 1: this state throughout */
+  mhb_event *event;          /* by time */
+  int       *state;          /* [contact] mhb_state right after start */
+  int       *constant_state; /* [contact] 1: the state lasts the whole period */
 } mhb_transition_schedule;
 
 /* SHB_ERR_IO: no memory. */
 shb_status mhb_transition_schedule_create(int blades, int pairs, int wave,
-                                          mhb_transition_schedule *timetable);
-void       mhb_transition_schedule_destroy(mhb_transition_schedule *timetable);
+                                          mhb_transition_schedule *schedule);
+void       mhb_transition_schedule_destroy(mhb_transition_schedule *schedule);
 
-/* Whether the law was evaluated well enough: not lost, or its error below 1e-5 of the force scale; transitions complete. */
+/* Whether the contact law's result can be used: its error is below 1e-5 of the force scale and all
+ * transitions are recorded. */
 int mhb_transition_schedule_usable(const mhb_contact_info *info);
 
-/* From the transitions of the pairs, info[pair]. The start lies right after the event that leaves the fewest friction
- * states. 0: more events than there is room for, or a contact not usable. */
-int mhb_transition_schedule_set(mhb_transition_schedule *timetable, const mhb_contact_info *info);
+/* Set from the transitions of the pairs, info[pair]. The start is right after the event that leaves
+ * the fewest friction states. Returns 0 if there are too many events or a pair is not usable. */
+int mhb_transition_schedule_set(mhb_transition_schedule *schedule, const mhb_contact_info *info);
 
 /* Phase of contact j's own blade at a phase after the start, in [0, 1). */
-double mhb_transition_schedule_phase(const mhb_transition_schedule *timetable, int contact,
+double mhb_transition_schedule_phase(const mhb_transition_schedule *schedule, int contact,
                                      double at);
 
-/* Friction states of a contact in a state: stick 2, slip 1, open or permanently stuck 0. */
-static inline int mhb_friction_states(int state, int permanent, double mu) {
+/* Number of friction states of a contact: stick 2, slip 1, open or constantly stuck 0. */
+static inline int mhb_friction_states(int state, int constant_state, double mu) {
   if (mu == 0 || state == MHB_SEPARATE) return 0;
-  return state == MHB_SLIDE ? 1 : permanent ? 0 : 2;
+  return state == MHB_SLIDE ? 1 : constant_state ? 0 : 2;
 }
 
 #endif

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Coefficients of a mode over h: change of q by (q, v), v by (q, v), and the answer to a unit force. */
+/* Coefficients of a mode over h: change of q by (q, v), v by (q, v), both by a unit force. */
 enum { DQ_Q, DQ_V, V_Q, V_V, DQ_P, V_P, PROPAGATOR };
 
 static int unknowns(const mhb_modal_structure *s) {
@@ -34,19 +34,20 @@ shb_status mhb_variational_create(const mhb_modal_structure *s, int capacity,
   v->Y          = lanes(blocks * (size_t)v->rows);
   v->P          = lanes(blocks * n);
   v->work       = lanes(3 * n);
-  v->relation   = calloc(contacts, sizeof *v->relation);
+  v->linearised = calloc(contacts, sizeof *v->linearised);
   v->propagator = calloc((size_t)s->modes * PROPAGATOR, sizeof(double));
   v->compliance = calloc(n * n, sizeof(double));
-  v->near       = calloc((size_t)s->blades, sizeof *v->near);
+  v->neighbour  = calloc((size_t)s->blades, sizeof *v->neighbour);
   v->du         = calloc(n, sizeof(double));
   v->dsigma     = calloc(2 * contacts, sizeof(double));
   int ok        = mhb_ring_band_create(s->blades, 3 * s->pairs, &v->band);
-  if (!(ok && v->Y && v->P && v->work && v->relation && v->propagator && v->compliance && v->near &&
-        v->du && v->dsigma)) {
+  if (!(ok && v->Y && v->P && v->work && v->linearised && v->propagator && v->compliance &&
+        v->neighbour && v->du && v->dsigma)) {
     mhb_variational_destroy(v);
     SHB_FAIL(SHB_ERR_IO, "out of memory for the stability of %d columns", capacity);
   }
-  for (int b = 0; b < s->blades; b++) v->meets = mhb_ring_band_near(&v->band, b, v->near[b]);
+  for (int b = 0; b < s->blades; b++)
+    v->n_neighbours = mhb_ring_band_neighbours(&v->band, b, v->neighbour[b]);
   *out = v;
   return SHB_OK;
 }
@@ -56,10 +57,10 @@ void mhb_variational_destroy(mhb_variational *v) {
   free(v->Y);
   free(v->P);
   free(v->work);
-  free(v->relation);
+  free(v->linearised);
   free(v->propagator);
   free(v->compliance);
-  free(v->near);
+  free(v->neighbour);
   mhb_ring_band_destroy(&v->band);
   free(v->du);
   free(v->dsigma);
@@ -76,10 +77,10 @@ void mhb_variational_clear(mhb_variational *v, int columns) {
 
 /* ---- modes ---- */
 
-/* Damped oscillator over h, exactly; force constant. */
+/* Damped oscillator over h under a constant force, exactly. */
 static void set_propagator(double w, double zeta, double h, double *e) {
   double a = zeta * w, wd = w * sqrt(1 - zeta * zeta), decay = exp(-a * h);
-  double s = sin(wd * h), half = sin(.5 * wd * h), ratio = s / wd;
+  double s = sin(wd * h), half = sin(0.5 * wd * h), ratio = s / wd;
   double change = expm1(-a * h) + decay * (a * ratio - 2 * half * half); /* of q by q */
   e[DQ_Q]       = change;
   e[DQ_V]       = decay * ratio;
@@ -89,6 +90,7 @@ static void set_propagator(double w, double zeta, double h, double *e) {
   e[V_P]        = decay * ratio;
 }
 
+/* C: change of du over h by unit mean forces. */
 static void set_compliance(mhb_variational *v) {
   const mhb_modal_structure *s = v->structure;
   int                        n = unknowns(s), n3 = 3 * s->pairs;
@@ -109,17 +111,72 @@ static void set_compliance(mhb_variational *v) {
   }
 }
 
-void mhb_variational_length(mhb_variational *v, double h) {
+void mhb_variational_set_step(mhb_variational *v, double h) {
   const mhb_modal_structure *s = v->structure;
   if (h == v->h) return;
-  mhb_variational_settle(v);
+  mhb_variational_finish(v);
   v->h = h;
   for (int i = 0; i < s->modes; i++)
     set_propagator(s->omega[i], s->zeta[i], h, v->propagator + i * PROPAGATOR);
   set_compliance(v);
 }
 
-/* All modes of one blade: feel the last mean force P, then go on freely; W += B (change of q). */
+/* q and v of all modes by the mean force P of the last sub-step. */
+MHB_HOT static void apply_force(const mhb_variational *v, mhb_lanes *Y, const mhb_lanes *P) {
+  const mhb_modal_structure *s  = v->structure;
+  int                        n3 = 3 * s->pairs, m = s->modes;
+  for (int k = 0; k < s->blades * s->sides; k++) {
+    int              b = k / s->sides, side = k % s->sides;
+    const double    *shape = s->shape + side * m * n3;
+    const mhb_lanes *p     = P + 3 * mhb_modal_structure_contact(s, b, side);
+    for (int i = 0; i < m; i++) {
+      mhb_lanes force = {0};
+      for (int r = 0; r < n3; r++) force += shape[i * n3 + r] * p[r];
+      Y[b * m + i] -= v->propagator[i * PROPAGATOR + DQ_P] * force;
+      Y[(s->blades + b) * m + i] -= v->propagator[i * PROPAGATOR + V_P] * force;
+    }
+  }
+}
+
+void mhb_variational_finish(mhb_variational *v) {
+  if (v->h < 0) return;
+  int n = unknowns(v->structure);
+  for (int k = 0; k < v->blocks; k++) {
+    apply_force(v, v->Y + (long)k * v->rows, v->P + (long)k * n);
+    memset(v->P + (long)k * n, 0, sizeof *v->P * (size_t)n);
+  }
+}
+
+/* ---- the contacts' system ---- */
+
+/* Element of I + C mean_du/2 + R df_du. */
+static double coupling(const mhb_variational *v, int row, int column) {
+  const mhb_linearised_law *linearised = &v->linearised[column / 3];
+  long                      first      = (long)row * v->band.n + column - column % 3;
+  const double             *C = v->compliance + first, *R = v->structure->flexibility;
+  double                    sum = row == column;
+  for (int k = 0; k < 3; k++) {
+    sum += 0.5 * C[k] * linearised->mean_du[k][column % 3];
+    if (R) sum += R[first + k] * linearised->df_du[k][column % 3];
+  }
+  return sum;
+}
+
+int mhb_variational_factor(mhb_variational *v) {
+  int block = v->band.block;
+  mhb_ring_band_clear(&v->band);
+  for (int row = 0; row < v->band.n; row++)
+    for (int i = 0; i < v->n_neighbours; i++) {
+      int first = v->neighbour[row / block][i] * block;
+      for (int column = first; column < first + block; column++)
+        *mhb_ring_band_at(&v->band, row, column) = coupling(v, row, column);
+    }
+  return mhb_ring_band_factor(&v->band);
+}
+
+/* ---- one sub-step ---- */
+
+/* Modes of one blade: apply the last mean force P, then propagate freely; W += B (change of q). */
 MHB_INLINE void advance_blade(int sides, int n3, int modes, const double *propagator,
                               const double *const shape[2], mhb_lanes *const y[2],
                               const mhb_lanes *const P[2], mhb_lanes *const W[2]) {
@@ -138,84 +195,7 @@ MHB_INLINE void advance_blade(int sides, int n3, int modes, const double *propag
   }
 }
 
-MHB_HOT static void advance_one(const mhb_variational *v, mhb_lanes *Y, const mhb_lanes *P,
-                                mhb_lanes *W) {
-  const mhb_modal_structure *s      = v->structure;
-  mhb_lanes                  sum[3] = {W[0], W[1], W[2]};
-  advance_blade(1, 3, s->modes, v->propagator, (const double *const[2]){s->shape, NULL},
-                (mhb_lanes *const[2]){Y, Y + s->modes}, (const mhb_lanes *const[2]){P, NULL},
-                (mhb_lanes *const[2]){sum, NULL});
-  for (int r = 0; r < 3; r++) W[r] = sum[r];
-}
-
-MHB_HOT static void advance_any(const mhb_variational *v, mhb_lanes *Y, const mhb_lanes *P,
-                                mhb_lanes *W) {
-  const mhb_modal_structure *s  = v->structure;
-  int                        n3 = 3 * s->pairs, m = s->modes;
-  for (int b = 0; b < s->blades; b++) {
-    int at[2] = {3 * mhb_modal_structure_contact(s, b, 0),
-                 3 * mhb_modal_structure_contact(s, b, s->sides - 1)};
-    advance_blade(s->sides, n3, m, v->propagator,
-                  (const double *const[2]){s->shape, s->shape + (s->sides - 1) * m * n3},
-                  (mhb_lanes *const[2]){Y + b * m, Y + (s->blades + b) * m},
-                  (const mhb_lanes *const[2]){P + at[0], P + at[1]},
-                  (mhb_lanes *const[2]){W + at[0], W + at[1]});
-  }
-}
-
-MHB_HOT static void feel(const mhb_variational *v, mhb_lanes *Y, const mhb_lanes *P) {
-  const mhb_modal_structure *s  = v->structure;
-  int                        n3 = 3 * s->pairs, m = s->modes;
-  for (int k = 0; k < s->blades * s->sides; k++) {
-    int              b = k / s->sides, side = k % s->sides;
-    const double    *shape = s->shape + side * m * n3;
-    const mhb_lanes *p     = P + 3 * mhb_modal_structure_contact(s, b, side);
-    for (int i = 0; i < m; i++) {
-      mhb_lanes force = {0};
-      for (int r = 0; r < n3; r++) force += shape[i * n3 + r] * p[r];
-      Y[b * m + i] -= v->propagator[i * PROPAGATOR + DQ_P] * force;
-      Y[(s->blades + b) * m + i] -= v->propagator[i * PROPAGATOR + V_P] * force;
-    }
-  }
-}
-
-void mhb_variational_settle(mhb_variational *v) {
-  if (v->h < 0) return;
-  int n = unknowns(v->structure);
-  for (int k = 0; k < v->blocks; k++) {
-    feel(v, v->Y + (long)k * v->rows, v->P + (long)k * n);
-    memset(v->P + (long)k * n, 0, sizeof *v->P * (size_t)n);
-  }
-}
-
-/* ---- contacts ---- */
-
-/* Element of I + compliance hold/2 + R grow. */
-static double coupling(const mhb_variational *v, int row, int column) {
-  const mhb_linearised_law *relation = &v->relation[column / 3];
-  long                      first    = (long)row * v->band.n + column - column % 3;
-  const double             *C = v->compliance + first, *R = v->structure->flexibility;
-  double                    sum = row == column;
-  for (int k = 0; k < 3; k++) {
-    sum += .5 * C[k] * relation->hold[k][column % 3];
-    if (R) sum += R[first + k] * relation->grow[k][column % 3];
-  }
-  return sum;
-}
-
-int mhb_variational_couple(mhb_variational *v) {
-  int block = v->band.block;
-  mhb_ring_band_clear(&v->band);
-  for (int row = 0; row < v->band.n; row++)
-    for (int i = 0; i < v->meets; i++) {
-      int first = v->near[row / block][i] * block;
-      for (int column = first; column < first + block; column++)
-        *mhb_ring_band_at(&v->band, row, column) = coupling(v, row, column);
-    }
-  return mhb_ring_band_factor(&v->band);
-}
-
-/* y = (v, sigma) of contact j */
+/* y = (dv, sigma) of contact j */
 MHB_INLINE void contact_rows(const mhb_lanes *u, const mhb_lanes *sigma, int j, mhb_lanes y[3]) {
   y[0] = u[3 * j];
   y[1] = sigma[2 * j];
@@ -226,72 +206,87 @@ MHB_INLINE mhb_lanes dot3(const double a[3], const mhb_lanes *x) {
   return a[0] * x[0] + a[1] * x[1] + a[2] * x[2];
 }
 
-/* D <- D - M x, M [n][n] between contacts of blades that meet */
-MHB_INLINE void subtract_product(const mhb_variational *v, int n, int block, int meets,
-                                 const double *M, const mhb_lanes *x, mhb_lanes *D) {
+/* D = W - M x; M [n][n] couples the contacts of neighbouring blades. */
+MHB_INLINE void subtract_product(const mhb_variational *v, int n, int block, int n_neighbours,
+                                 const double *M, const mhb_lanes *x, const mhb_lanes *W,
+                                 mhb_lanes *D) {
   for (int r = 0; r < n; r++) {
     const double *row = M + (long)r * n;
-    mhb_lanes     sum = D[r];
-    for (int i = 0; i < meets; i++) {
-      int first = meets > 1 ? v->near[r / block][i] * block : 0;
+    mhb_lanes     sum = W[r];
+    for (int i = 0; i < n_neighbours; i++) {
+      int first = n_neighbours > 1 ? v->neighbour[r / block][i] * block : 0;
       for (int c = first; c < first + block; c++) sum -= row[c] * x[c];
     }
     D[r] = sum;
   }
 }
 
-/* The change of du from that without contact (D), the mean forces P, and sigma at the end. */
-MHB_INLINE void solve_contacts(const mhb_variational *v, int n, int block, int meets, mhb_lanes *u,
-                               mhb_lanes *P, mhb_lanes *D, mhb_lanes *other) {
-  mhb_lanes *sigma = u + n, y[3];
-  for (int j = 0; j < n / 3; j++) {
-    const mhb_linearised_law *relation = &v->relation[j];
+/* One block of columns over the sub-step: rows Y, mean force P; W [n] zero, D [n] and df [n] are
+ * scratch. The sizes are arguments so that the common case, one contact, is compiled with
+ * constants. */
+MHB_INLINE void step_block(const mhb_variational *v, int blades, int sides, int pairs,
+                           int n_neighbours, mhb_lanes *Y, mhb_lanes *P, mhb_lanes *W, mhb_lanes *D,
+                           mhb_lanes *df) {
+  const mhb_modal_structure *s  = v->structure;
+  int                        n3 = 3 * pairs, n = blades * n3, m = s->modes;
+  mhb_lanes                 *u = Y + 2 * blades * m, *sigma = u + n, y[3];
+  for (int b = 0; b < blades; b++) { /* W, the modes propagating freely */
+    int right = 3 * mhb_modal_structure_contact(s, b, 0);
+    int left  = 3 * mhb_modal_structure_contact(s, b, sides - 1);
+    advance_blade(sides, n3, m, v->propagator,
+                  (const double *const[2]){s->shape, s->shape + (sides - 1) * m * n3},
+                  (mhb_lanes *const[2]){Y + b * m, Y + (blades + b) * m},
+                  (const mhb_lanes *const[2]){P + right, P + left},
+                  (mhb_lanes *const[2]){W + right, W + left});
+  }
+  for (int j = 0; j < n / 3; j++) { /* forces by y alone */
+    const mhb_linearised_law *law = &v->linearised[j];
     contact_rows(u, sigma, j, y);
     for (int r = 0; r < 3; r++) {
-      P[3 * j + r]     = dot3(relation->a[r], y);
-      other[3 * j + r] = dot3(relation->b[r], y);
+      P[3 * j + r]  = dot3(law->mean_y[r], y);
+      df[3 * j + r] = dot3(law->df_y[r], y);
     }
   }
-  subtract_product(v, n, block, meets, v->compliance, P, D);
-  if (v->structure->flexibility)
-    subtract_product(v, n, block, meets, v->structure->flexibility, other, D);
-  mhb_ring_band_solve(&v->band, D, other);
+  subtract_product(v, n, n3, n_neighbours, v->compliance, P, W, D);
+  if (s->flexibility) subtract_product(v, n, n3, n_neighbours, s->flexibility, df, D, D);
+  mhb_ring_band_solve(&v->band, D, df); /* D is the change of u; df serves as scratch */
   for (int j = 0; j < n / 3; j++) {
-    const mhb_linearised_law *relation = &v->relation[j];
+    const mhb_linearised_law *law = &v->linearised[j];
     contact_rows(u, sigma, j, y);
-    for (int r = 0; r < 3; r++) P[3 * j + r] += .5 * dot3(relation->hold[r], D + 3 * j);
+    for (int r = 0; r < 3; r++) P[3 * j + r] += 0.5 * dot3(law->mean_du[r], D + 3 * j);
     for (int i = 0; i < 2; i++)
-      sigma[2 * j + i] = dot3(relation->keep[i], y) + dot3(relation->gain[i], D + 3 * j);
+      sigma[2 * j + i] = dot3(law->state_y[i], y) + dot3(law->state_du[i], D + 3 * j);
     for (int r = 0; r < 3; r++) u[3 * j + r] += D[3 * j + r];
   }
 }
 
-MHB_HOT static void solve_one(const mhb_variational *v, mhb_lanes *u, mhb_lanes *P, mhb_lanes *D) {
-  mhb_lanes other[3];
-  solve_contacts(v, 3, 3, 1, u, P, D, other);
+/* A blade on the ground with one contact. */
+MHB_HOT static void step_one_contact(const mhb_variational *v, mhb_lanes *Y, mhb_lanes *P) {
+  mhb_lanes W[3] = {{0}}, D[3], df[3]; /* W stays in registers */
+  step_block(v, 1, 1, 1, 1, Y, P, W, D, df);
 }
 
-MHB_HOT static void solve_any(const mhb_variational *v, mhb_lanes *u, mhb_lanes *P, mhb_lanes *D) {
-  int n = unknowns(v->structure);
-  solve_contacts(v, n, v->band.block, v->meets, u, P, D, v->work + n);
+MHB_HOT static void step_any(const mhb_variational *v, mhb_lanes *Y, mhb_lanes *P, mhb_lanes *W) {
+  const mhb_modal_structure *s = v->structure;
+  int                        n = unknowns(s);
+  memset(W, 0, sizeof *W * (size_t)n);
+  step_block(v, s->blades, s->sides, s->pairs, v->n_neighbours, Y, P, W, W + n, W + 2 * n);
 }
 
 void mhb_variational_step(mhb_variational *v) {
   const mhb_modal_structure *s = v->structure;
-  int                        n = unknowns(s), one = n == 3 && s->sides == 1;
+  int                        n = unknowns(s);
   for (int k = 0; k < v->blocks; k++) {
     mhb_lanes *Y = v->Y + (long)k * v->rows, *P = v->P + (long)k * n;
-    mhb_lanes *u = Y + 2 * modal_rows(s);
-    memset(v->work, 0, sizeof *v->work * (size_t)n);
-    if (one) {
-      advance_one(v, Y, P, v->work);
-      solve_one(v, u, P, v->work);
+    if (n == 3 && s->sides == 1) {
+      step_one_contact(v, Y, P);
     } else {
-      advance_any(v, Y, P, v->work);
-      solve_any(v, u, P, v->work);
+      step_any(v, Y, P, v->work);
     }
   }
 }
+
+/* ---- transitions ---- */
 
 void mhb_variational_saltation(mhb_variational *v, const mhb_saltation *jump) {
   const mhb_modal_structure *s = v->structure;

@@ -1,28 +1,38 @@
-/* The variational problem of the blade, or of a ring of blades, in modal coordinates: one sub-step for all columns.
+/* The variational equation of a blade, or of a ring of blades, in modal coordinates:
  *
  *   dq'' + 2 zeta w dq' + w^2 dq = -B^T dp,   du = B dq - R dp
- * Over a sub-step h the modes are propagated exactly under the mean force P = mean of dp, and each contact answers by its
- * linearised law (linearised_law.h) to the change of du. For a linear spring the work P.(du1 - du0) is then exactly the
- * change of its energy: the scheme is of second order and never makes a passive contact active, however stiff it is.
  *
- * Contact j = blade * pairs + pair. Rows of a block of LANES columns:
+ * A sub-step of length h has the mean force P as its unknown. The modes are propagated exactly
+ * under P; each contact answers to the change D of du by its linearised law (linearised_law.h). For
+ * a linear spring the work P . D is exactly the change of its energy. The scheme is of second
+ * order, and no stiffness makes a passive contact active.
+ *
+ * With y = (dv, sigma) of each contact at the start, C the compliance of the modes over h:
+ *   W = B (free change of dq over h),
+ *   (I + C mean_du/2 + R df_du) D = W - C mean_y y - R df_y y,   P = mean_y y + mean_du D/2.
+ *
+ * All columns (initial disturbances) are integrated together, MHB_LANES of them a block. Rows of a
+ * block, contact j = blade * pairs + pair:
  *   q [blade][mode] | v = q' [blade][mode] | u [3 j + (v, u, w)] | sigma [2 j + i]
- * sigma: stick the friction (fu, fw); slip (tau, -), its part across the slip direction; open nothing. */
+ * sigma of a sticking contact: friction (fu, fw); slipping: (tau, -), the friction across the slip
+ * direction; open: none. */
 #ifndef MHB_FLOQUET_VARIATIONAL_H
 #define MHB_FLOQUET_VARIATIONAL_H
 
 #include "mhb/floquet/ring_band.h"
 #include "mhb/structure/modal_structure.h"
 
-/* One contact over one sub-step, linear in y = (v, sigma) at its start and in the change D of (v, u, w):
- *   mean force = a y + hold D/2,   change of force = b y + grow D,   sigma at the end = keep y + gain D. */
+/* Linearised law of one contact over one sub-step, for y = (dv, sigma) at its start and D:
+ *   mean force       mean_y y + mean_du D/2
+ *   change of force  df_y y + df_du D
+ *   sigma at the end state_y y + state_du D */
 typedef struct {
-  double a[3][3], hold[3][3], b[3][3], grow[3][3];
-  double keep[2][3], gain[2][3];
+  double mean_y[3][3], mean_du[3][3], df_y[3][3], df_du[3][3]; /* N/m or -, by column of y or D */
+  double state_y[2][3], state_du[2][3];
 } mhb_linearised_law;
 
-/* What an event does to the rows of contact j: sigma = set y; and with residual flexibility, alpha = measure . y times
- * the workspace's du and dsigma to all rows. */
+/* Jump at a transition of a contact: sigma = set y. With residual flexibility alpha = measure . y
+ * times the workspace's du and dsigma is added to the rows of all contacts. */
 typedef struct {
   int    contact;
   double set[2][3], measure[3];
@@ -30,44 +40,45 @@ typedef struct {
 
 typedef struct {
   const mhb_modal_structure *structure;
-  int                 columns, blocks, rows, capacity; /* in use; room for capacity columns */
-  mhb_lanes          *Y;                               /* [block][rows] */
-  mhb_lanes          *P; /* [block][n] mean force of the last sub-step, not yet felt by the modes */
-  mhb_lanes          *work;       /* [3][n] */
-  mhb_linearised_law *relation;   /* [contact] of the coming sub-step */
-  double              h;          /* s, of the propagator */
-  double             *propagator; /* [mode][6] */
-  double             *compliance; /* [n][n] change of du by a unit mean force */
-  int (*near)[3];                 /* [blade] the blades that its contacts meet */
-  int           meets;            /* how many */
-  mhb_ring_band band;             /* what a change of du meets */
-  double       *du, *dsigma;      /* [n], [2 contacts] of a jump */
+  int                        columns, blocks, rows; /* in use */
+  int                        capacity;              /* columns there is room for */
+  mhb_lanes                 *Y;                     /* [block][rows] */
+  mhb_lanes                 *P;          /* [block][n] mean force not yet applied to the modes */
+  mhb_lanes                 *work;       /* [3][n] */
+  mhb_linearised_law        *linearised; /* [contact] of the coming sub-step */
+  double                     h;          /* s, of the propagator; negative: none */
+  double                    *propagator; /* [mode][6] */
+  double                    *compliance; /* [n][n] C, n = 3 contacts */
+  int (*neighbour)[3]; /* [blade] blades that share contacts with it, itself too */
+  int           n_neighbours;
+  mhb_ring_band band;        /* I + C mean_du/2 + R df_du, factored */
+  double       *du, *dsigma; /* [n], [2 contacts] of a jump */
 } mhb_variational;
 
 /* Room for capacity columns. SHB_ERR_IO: no memory. The structure must outlive it. */
 shb_status mhb_variational_create(const mhb_modal_structure *structure, int capacity,
-                                  mhb_variational **variation);
-void       mhb_variational_destroy(mhb_variational *variation);
+                                  mhb_variational **variational);
+void       mhb_variational_destroy(mhb_variational *variational);
 
 /* All rows zero, for a number of columns. */
-void mhb_variational_clear(mhb_variational *variation, int columns);
+void mhb_variational_clear(mhb_variational *variational, int columns);
 
 static inline double *mhb_variational_at(mhb_variational *v, int row, int column) {
   return (double *)&v->Y[(long)(column / MHB_LANES) * v->rows + row] + column % MHB_LANES;
 }
 
-/* Sub-steps of length h from here on. */
-void mhb_variational_length(mhb_variational *variation, double h);
+/* Sub-steps of h seconds from here on. */
+void mhb_variational_set_step(mhb_variational *variational, double h);
 
-/* Take the relations into use. 0: singular. */
-int mhb_variational_couple(mhb_variational *variation);
+/* Factor the contacts' system for the linearised laws. Returns 0 if singular. */
+int mhb_variational_factor(mhb_variational *variational);
 
-/* One sub-step of all columns. */
-void mhb_variational_step(mhb_variational *variation);
+/* One sub-step of all columns. Rows q and v lack the effect of P until mhb_variational_finish. */
+void mhb_variational_step(mhb_variational *variational);
 
-void mhb_variational_saltation(mhb_variational *variation, const mhb_saltation *jump);
+void mhb_variational_saltation(mhb_variational *variational, const mhb_saltation *jump);
 
-/* Let the modes feel the last mean force: q and v are valid only after this. */
-void mhb_variational_settle(mhb_variational *variation);
+/* Apply the last mean force to the modes: q and v are valid after this. */
+void mhb_variational_finish(mhb_variational *variational);
 
 #endif

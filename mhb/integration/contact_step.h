@@ -1,11 +1,17 @@
-/* The contact law over one step of time integration, at Radau's points: stick, slip or separation throughout.
+/* The contact law over one step of the time integration, collocated at Radau's points. The contact
+ * sticks, slips or is open over the whole step; s = (u, w) its tangential motion.
  *
- *   n = n0 + kv v;   stick  f = Ku s - zeta, zeta at rest;   open  n = f = 0
- *   slip   f = mu n e, zeta' = lambda Ku e, lambda >= 0:     mu n_i e_i + sum_j a_ij kappa_j Ku e_j = Ku s_i - zeta_0
- * with kappa = h lambda, the slider's path. Slip is an equation for a slider, of index two, that needs no velocity: residual
- * flexibility, through which the velocity of the contact jumps at every transition, does no harm. Written for this
- * purpose: nothing here is shared with the law of the harmonic balance (contact.h) but its parameters.
- * Source: Chen, Yang, Menq 1999, eqs. 4-15. */
+ *   n = n0 + kv v
+ *   stick  f = Ku s - zeta, zeta constant
+ *   open   n = f = 0
+ *   slip   f = mu n e, zeta' = lambda Ku e, lambda >= 0:
+ *          mu n_i e_i + sum_j a_ij kappa_j Ku e_j = Ku s_i - zeta_0
+ *
+ * kappa = h lambda is the path of the slider. Slip is posed as an algebraic equation of index two
+ * in the slider's position. No velocity of the contact enters: with residual flexibility that
+ * velocity jumps at every transition. No code is shared with the law of the harmonic balance
+ * (mhb/contact), only its parameters. Source: Chen, Yang, Menq 1999, eqs. 4-15; Hairer and Wanner
+ * 1996, VII.4. */
 #ifndef MHB_INTEGRATION_CONTACT_STEP_H
 #define MHB_INTEGRATION_CONTACT_STEP_H
 
@@ -16,18 +22,17 @@
 typedef struct {
   mhb_state state;
   double    zeta[2];    /* Ku times the slider's position, N */
-  double    theta;      /* slip: direction of the friction */
+  double    theta;      /* slip: direction of the friction, rad */
   double    lambda;     /* slip: speed of the slider at the end of the last step, m/s */
-  double    u[3], p[3]; /* now: m, N */
+  double    u[3], p[3]; /* motion m, force N */
 } mhb_contact_point;
 
-/* And over a step, at the stages. */
+/* A contact at the stages of a step. */
 typedef struct {
-  double u[MHB_STAGE_FORCES], p[MHB_STAGE_FORCES];            /* [stage][axis] */
-  double n[MHB_STAGES], theta[MHB_STAGES], kappa[MHB_STAGES]; /* slip */
+  double u[MHB_STAGE_FORCES], p[MHB_STAGE_FORCES];            /* [stage][axis] m, N */
+  double n[MHB_STAGES], theta[MHB_STAGES], kappa[MHB_STAGES]; /* slip: N, rad, m */
 } mhb_contact_step;
 
-/* What may end a piece. */
 typedef enum {
   MHB_CONTACT_CLOSES,
   MHB_CONTACT_OPENS,
@@ -35,44 +40,45 @@ typedef enum {
   MHB_SLIP_TO_STICK
 } mhb_contact_event;
 
-/* The law without friction has none: mu = 0 sticks by no spring. */
+/* The law as the steps use it: with mu = 0 also Ku = 0. */
 mhb_law mhb_contact_step_law(const mhb_law *law);
 
-/* The forces of a step that starts at rub, given y = u - (own forces' part), u = y - S p.
+/* Forces of a step that starts at point: u = y - S p, y the motion without own forces.
  *   S      in      [9][9] m/N
- *   stick  in out  [9][9], pivot [9]: factors of the stuck contact, made where pivot[0] < 0
- *   scale  in      N, forces are found to 1e-13 of it
+ *   stick  in out  [9][9], pivot [9]: factors for the stuck contact, made where pivot[0] < 0
+ *   scale  in      N; forces are solved to 1e-13 of it
  *   step   in out  a guess of p, n, theta, kappa; the result
- * 0: not found. */
-int mhb_contact_step_solve(const mhb_radau *rule, const mhb_law *law, const mhb_contact_point *rub,
-                           const double *S, double *stick, int *pivot, const double *y,
-                           double scale, mhb_contact_step *step);
+ * Returns 0 if no solution was found. */
+int mhb_contact_step_solve(const mhb_radau *rule, const mhb_law *law,
+                           const mhb_contact_point *point, const double *S, double *stick,
+                           int *pivot, const double *y, double scale, mhb_contact_step *step);
 
-/* A guess for a step of h seconds, from what the contact did before it. */
-void mhb_contact_step_guess(const mhb_law *law, const mhb_contact_point *rub, double h,
+/* A guess for a step of h seconds, from the contact's state before it. */
+void mhb_contact_step_guess(const mhb_law *law, const mhb_contact_point *point, double h,
                             mhb_contact_step *step);
 
-/* The excess of an event at tau in [0, 1], N: the state has ended where it is positive. */
+/* Event function at tau in [0, 1] of the step, N: positive after the event. */
 double mhb_contact_step_excess(const mhb_radau *rule, const mhb_law *law,
-                               const mhb_contact_point *rub, const mhb_contact_step *step,
+                               const mhb_contact_point *point, const mhb_contact_step *step,
                                mhb_contact_event event, double tau);
 
-/* The first event of a step whose excess passes the tolerance (N): its place in [0, 1]; 2: none. */
+/* First event whose function exceeds the tolerance (N). Returns its place in [0, 1], 2 if none. */
 double mhb_contact_step_first(const mhb_radau *rule, const mhb_law *law,
-                              const mhb_contact_point *rub, const mhb_contact_step *step,
+                              const mhb_contact_point *point, const mhb_contact_step *step,
                               double tolerance, mhb_contact_event *event);
 
-/* To the end of a step of h seconds. */
+/* Move the contact to the end of a step of h seconds. */
 void mhb_contact_step_advance(const mhb_law *law, const mhb_contact_step *step, double h,
-                              mhb_contact_point *rub);
+                              mhb_contact_point *point);
 
-/* Into another state, where it is now. direction: of the friction, for a slip that begins without any. */
+/* Change the state at the present motion. direction: of the friction, at an onset of slip, rad. */
 void mhb_contact_step_change(const mhb_law *law, mhb_state state, double direction,
-                             mhb_contact_point *rub);
+                             mhb_contact_point *point);
 
-/* Rates of (|f|, n) and direction of f at the start of a step: what decides whether a closing contact sticks. */
+/* Rate of |f| - mu n, N per step, and direction of f at the start of a step that sticks: a closing
+ * contact slips if the rate is positive (eq. 13). */
 double mhb_contact_step_closing(const mhb_radau *rule, const mhb_law *law,
-                                const mhb_contact_point *rub, const mhb_contact_step *step,
+                                const mhb_contact_point *point, const mhb_contact_step *step,
                                 double *direction);
 
 #endif

@@ -8,7 +8,8 @@
 #include "mesh/base/constants.h"
 #include "modal/model/residual_series.h"
 
-/* Of the largest: flexibilities below carry no inertia. Inertia whose mode is so many times above the last one is none. */
+/* Directions softer than this share of the largest flexibility have inertia. A mode so many times
+ * above the last frequency of the model is left out. */
 static const double SOFT_ENOUGH = 1e-8, FAR_ABOVE = 1e4;
 
 typedef struct {
@@ -23,7 +24,8 @@ static int symmetric_eigen(int n, double *a, double *value) {
   return LAPACKE_dsyev(LAPACK_COL_MAJOR, 'V', 'U', n, a, n, value) == 0;
 }
 
-/* L^-1 R2 L^-T (or R3) in the p softest directions of L L^T = R (or R2), whose eigenvectors are columns of vector, ascending. */
+/* A <- L^-1 R2 L^-T (or R3) in the p softest directions of L L^T = R (or R2); eigenvectors of that
+ * are the columns of vector, ascending. */
 static void reduce(const search *s, const double *R2, int p) {
   int n = s->n;
   for (int a = 0; a < p; a++)
@@ -67,7 +69,7 @@ static shb_status find(const modal_model *model, search *s) {
   return SHB_OK;
 }
 
-/* [rows][m] -> [rows][m + kept], zero behind */
+/* [rows][m] -> [rows][m + kept], zeros at the end of each row. */
 static double *widen(const double *x, size_t rows, int m, int kept) {
   size_t  wide = (size_t)(m + kept);
   double *out  = calloc(rows * wide + 1, sizeof *out);
@@ -102,12 +104,12 @@ static int widen_all(const modal_model *model, int kept, modal_model *out) {
   return 1;
 }
 
-/* The modes found, and what they leave of the flexibility. */
+/* The new modes; their part is subtracted from the flexibility. */
 static void add_modes(const search *s, int m, modal_model *out) {
   int n = s->n, n3 = 3 * out->n_pairs;
   for (int k = 0; k < s->kept; k++) {
     const double *psi         = s->psi + (size_t)k * (size_t)n;
-    out->frequency[m + k]     = s->nu[k] / SHB_TWO_PI;
+    out->frequency[m + k]     = s->nu[k] / (SHB_TWO_PI);
     out->damping_ratio[m + k] = out->damping_ratio[m - 1];
     for (int i = 0; i < n; i++)
       (i < n3 ? out->right : out->left)[(size_t)(i % n3) * (size_t)out->n_modes + (size_t)(m + k)] =
@@ -119,9 +121,9 @@ static void add_modes(const search *s, int m, modal_model *out) {
   }
 }
 
-/* What is left of the flexibility must not push back: in space [n][n + 1]. */
-static shb_status check_left(const modal_model *model, const modal_model *out, int n,
-                             double *space) {
+/* The remaining flexibility must not be negative. space [n][n + 1]. */
+static shb_status check_flexibility(const modal_model *model, const modal_model *out, int n,
+                                    double *space) {
   double *value = space + (size_t)n * (size_t)n, largest = 0;
   memcpy(space, out->residual_flexibility, sizeof(double) * (size_t)n * (size_t)n);
   for (int i = 0; i < n; i++)
@@ -159,7 +161,7 @@ shb_status mhb_inertia_modes(const modal_model *model, modal_model *out) {
   }
   if (status == SHB_OK) {
     add_modes(&s, model->n_modes, out);
-    if (s.power == 2) status = check_left(model, out, s.n, s.vector);
+    if (s.power == 2) status = check_flexibility(model, out, s.n, s.vector);
     if (status != SHB_OK) mhb_inertia_free(out);
   }
   free(space);

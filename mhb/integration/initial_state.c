@@ -1,66 +1,101 @@
-/* How an integration starts, and goes on at another frequency or from other numbers. */
+/* Initial states of an integration, and its change to another frequency or preload. */
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 #include "mesh/base/constants.h"
 #include "mhb/integration/integrator.h"
 #include "mhb/problem/interfaces.h"
 
-/* q_free and its rate at phase 0, times sign, to z. */
-static void add_free_modes(mhb_integrator *g, double sign) {
+/* Most rounds over the contacts that residual flexibility couples; without it two are enough. */
+enum { MAX_ROUNDS = 400, UNCOUPLED_ROUNDS = 2 };
+
+static void clear_state(mhb_integrator *g) {
+  memset(g->z, 0, sizeof(double) * 2 * (size_t)(g->blades * g->modes));
+  for (int j = 0; j < g->contacts; j++) memset(&g->point[j], 0, sizeof g->point[j]);
+  g->count = (mhb_integrator_count){0};
+}
+
+/* z, z' at phase 0 += sign times harmonic k of a mode, amplitude a. */
+static void add_harmonic(mhb_integrator *g, int k, int blade, int mode, double sign,
+                         double complex a) {
+  double complex rate = I * (k * SHB_TWO_PI / g->period);
+  g->z[blade * g->modes + mode] += sign * creal(a);
+  g->z[(g->blades + blade) * g->modes + mode] += sign * creal(rate * a);
+}
+
+/* z, z' += sign times the steady response without contact forces. */
+static void add_free_response(mhb_integrator *g, double sign) {
   const mhb_receptance *r = g->receptance;
   for (int k = 0; k <= g->n_load; k += r->nu)
     for (int b = 0; b < g->blades; b++) {
-      double complex turn = cexp(-I * k * mhb_integrator_lag(g, b)),
-                     rate = I * (k * SHB_TWO_PI / g->period);
-      for (int i = 0; i < g->modes; i++) {
-        double complex a = r->lambda[k * g->modes + i] * r->F[k * g->modes + i] * turn;
-        g->z[b * g->modes + i] += sign * creal(a);
-        g->z[(g->blades + b) * g->modes + i] += sign * creal(rate * a);
-      }
+      double complex phase = cexp(-I * k * mhb_integrator_lag(g, b));
+      for (int i = 0; i < g->modes; i++)
+        add_harmonic(g, k, b, i, sign,
+                     r->lambda[k * g->modes + i] * r->F[k * g->modes + i] * phase);
     }
 }
 
-/* u and p that belong to z; friction stays, but for its limit. */
-static void settle(mhb_integrator *g) {
-  const double *R = g->chain.s.flexibility;
-  int           n = 3 * g->contacts, n3 = 3 * g->pairs, m = g->modes;
-  double       *w = g->y; /* [n] motion without contact forces */
-  memset(w, 0, sizeof(double) * (size_t)n);
+/* w[3 contacts] <- motion at z without contact forces. */
+static void set_unloaded_motion(const mhb_integrator *g, double *w) {
+  int n3 = 3 * g->pairs, m = g->modes;
+  memset(w, 0, sizeof(double) * 3 * (size_t)g->contacts);
   for (int b = 0; b < g->blades; b++) {
     mhb_integrator_free(g, b, 0, w + b * n3);
-    for (int side = 0; side < g->chain.s.sides; side++) {
-      const double *shape = g->chain.shape + side * n3 * m;
-      double       *at    = w + 3 * mhb_modal_structure_contact(&g->chain.s, b, side);
+    for (int side = 0; side < g->ring.s.sides; side++) {
+      const double *shape = g->ring.shape + side * n3 * m;
+      double       *at    = w + 3 * mhb_modal_structure_contact(&g->ring.s, b, side);
       for (int k = 0; k < n3 * m; k++) at[k / m] += shape[k] * g->z[b * m + k % m];
     }
   }
-  for (int round = 0; round < (R ? 400 : 2); round++)
-    for (int j = 0; j < g->contacts; j++) {
-      const mhb_law     *law = &g->law[j % g->pairs];
-      mhb_contact_point *rub = &g->rub[j];
-      for (int c = 0; c < 3; c++) {
-        rub->u[c] = w[3 * j + c];
-        for (int k = 0; R && k < n; k++)
-          rub->u[c] -= R[(3 * j + c) * n + k] * g->rub[k / 3].p[k % 3];
-      }
-      double own  = R ? R[3 * j * n + 3 * j] : 0;
-      double free = rub->u[0] + own * rub->p[0]; /* without its own normal force */
-      double load =
-          fmax(0, (law->n0 + law->kv * (free + own * law->mean_offset)) / (1 + law->kv * own));
-      double limit = law->mu * load, friction = hypot(rub->p[1], rub->p[2]);
-      rub->p[0] = load - law->mean_offset;
-      rub->u[0] = free - own * rub->p[0];
-      for (int c = 1; c < 3 && friction > limit; c++) rub->p[c] *= limit / friction;
-    }
+}
+
+/* Contact j with the forces of the others as they are. The normal law is solved with the contact's
+ * own flexibility R_vv; friction is cut down to its limit. Returns whether anything changed. */
+static bool settle_contact(mhb_integrator *g, int j, const double *w) {
+  const mhb_law     *law    = &g->law[j % g->pairs];
+  const double      *R      = g->ring.s.flexibility;
+  int                n      = 3 * g->contacts;
+  mhb_contact_point *point  = &g->point[j];
+  mhb_contact_point  before = *point;
+  for (int c = 0; c < 3; c++) {
+    point->u[c] = w[3 * j + c];
+    for (int k = 0; R && k < n; k++)
+      point->u[c] -= R[(3 * j + c) * n + k] * g->point[k / 3].p[k % 3];
+  }
+  double R_vv = R ? R[3 * j * n + 3 * j] : 0;
+  double free = point->u[0] + R_vv * point->p[0]; /* without its own normal force */
+  double load =
+      fmax(0, (law->n0 + law->kv * (free + R_vv * law->mean_offset)) / (1 + law->kv * R_vv));
+  double limit = law->mu * load, friction = hypot(point->p[1], point->p[2]);
+  point->p[0] = load - law->mean_offset;
+  point->u[0] = free - R_vv * point->p[0];
+  for (int c = 1; c < 3 && friction > limit; c++) point->p[c] *= limit / friction;
+  for (int c = 0; c < 3; c++)
+    if (point->u[c] != before.u[c] || point->p[c] != before.p[c]) return true;
+  return false;
+}
+
+/* Motion, forces and states of the contacts at z: Gauss-Seidel rounds over the contacts until
+ * nothing changes. Every closed contact begins stuck. */
+static void settle_contacts(mhb_integrator *g) {
+  double *w       = g->y;
+  int     rounds  = g->ring.s.flexibility ? MAX_ROUNDS : UNCOUPLED_ROUNDS;
+  bool    changed = true;
+  set_unloaded_motion(g, w);
+  for (int round = 0; round < rounds && changed; round++) {
+    changed = false;
+    for (int j = 0; j < g->contacts; j++)
+      if (settle_contact(g, j, w)) changed = true;
+  }
   for (int j = 0; j < g->contacts; j++) {
-    const mhb_law     *law = &g->law[j % g->pairs];
-    mhb_contact_point *rub = &g->rub[j];
-    rub->state             = MHB_STICK;
-    mhb_contact_step_change(law, rub->p[0] + law->mean_offset > 0 ? MHB_STICK : MHB_SEPARATE, 0,
-                            rub);
-    for (int c = 0; c < 3; c++) g->scale = fmax(g->scale, fabs(rub->p[c]));
-    g->idle[j] = g->hush[j] = 0;
+    const mhb_law     *law   = &g->law[j % g->pairs];
+    mhb_contact_point *point = &g->point[j];
+    bool               open  = !(point->p[0] + law->mean_offset > 0);
+    point->state             = MHB_STICK;
+    mhb_contact_step_change(law, open ? MHB_SEPARATE : MHB_STICK, 0, point);
+    for (int c = 0; c < 3; c++) g->scale = fmax(g->scale, fabs(point->p[c]));
+    g->n_stalled[j] = g->suppressed[j] = 0;
   }
 }
 
@@ -78,52 +113,45 @@ static void set_laws(mhb_integrator *g, double n0) {
 }
 
 void mhb_integrator_set(mhb_integrator *g, double omega, double n0, int steps) {
-  int known = g->period > 0;
-  if (known) add_free_modes(g, 1);
+  bool has_state = g->period > 0;
+  if (has_state) add_free_response(g, 1);
   g->omega  = omega;
   g->period = SHB_TWO_PI * g->settings.subharmonics / omega;
   g->steps  = steps;
   g->t      = 0;
   set_laws(g, n0);
   mhb_receptance_at(g->receptance, omega, g->n_harmonics);
-  mhb_modal_step_length(&g->chain, g->period / steps, &g->nominal);
+  mhb_modal_step_length(&g->ring, g->period / steps, &g->nominal);
   g->cut.h = NAN;
-  if (!known) return;
-  add_free_modes(g, -1);
-  settle(g);
+  if (!has_state) return;
+  add_free_response(g, -1);
+  settle_contacts(g);
 }
 
 void mhb_integrator_rest(mhb_integrator *g) {
-  memset(g->z, 0, sizeof(double) * 2 * (size_t)(g->blades * g->modes));
-  for (int j = 0; j < g->contacts; j++) memset(&g->rub[j], 0, sizeof g->rub[j]);
-  g->count = (mhb_integrator_count){0};
-  add_free_modes(g, -1);
-  settle(g);
+  clear_state(g);
+  add_free_response(g, -1);
+  settle_contacts(g);
 }
 
 void mhb_integrator_balance(mhb_integrator *g, int n_harmonics, const double complex *force) {
   const mhb_receptance *r = g->receptance;
-  memset(g->z, 0, sizeof(double) * 2 * (size_t)(g->blades * g->modes));
-  for (int j = 0; j < g->contacts; j++) memset(&g->rub[j], 0, sizeof g->rub[j]);
-  g->count = (mhb_integrator_count){0};
+  clear_state(g);
   for (int k = 0; k <= n_harmonics && k <= g->n_harmonics; k++) {
     const double complex *p = force + (size_t)(k * r->n);
     for (int b = 0; b < g->blades; b++) {
-      double complex turn = cexp(-I * k * mhb_integrator_lag(g, b)),
-                     rate = I * (k * SHB_TWO_PI / g->period);
+      double complex phase = cexp(-I * k * mhb_integrator_lag(g, b));
       for (int i = 0; i < g->modes; i++) {
         double complex a = 0;
         for (int row = 0; row < r->n; row++)
           a -= conj(r->B[(k * r->n + row) * g->modes + i]) * p[row];
-        a *= r->lambda[k * g->modes + i] * turn;
-        g->z[b * g->modes + i] += creal(a);
-        g->z[(g->blades + b) * g->modes + i] += creal(rate * a);
+        add_harmonic(g, k, b, i, 1, a * (r->lambda[k * g->modes + i] * phase));
       }
       for (int row = 0; row < r->n; row++)
-        g->rub[b * g->pairs + row / 3].p[row % 3] += creal(p[row] * turn);
+        g->point[b * g->pairs + row / 3].p[row % 3] += creal(p[row] * phase);
     }
   }
-  settle(g);
+  settle_contacts(g);
 }
 
 /* ---- the state as numbers ---- */
@@ -135,13 +163,5 @@ int mhb_integrator_size(const mhb_integrator *g) {
 void mhb_integrator_get(const mhb_integrator *g, double *state) {
   int n = 2 * g->blades * g->modes;
   memcpy(state, g->z, sizeof(double) * (size_t)n);
-  for (int k = 0; k < 2 * g->contacts; k++) state[n + k] = g->rub[k / 2].p[1 + k % 2];
-}
-
-void mhb_integrator_put(mhb_integrator *g, const double *state) {
-  int n = 2 * g->blades * g->modes;
-  memcpy(g->z, state, sizeof(double) * (size_t)n);
-  for (int k = 0; k < 2 * g->contacts; k++) g->rub[k / 2].p[1 + k % 2] = state[n + k];
-  g->t = 0;
-  settle(g);
+  for (int k = 0; k < 2 * g->contacts; k++) state[n + k] = g->point[k / 2].p[1 + k % 2];
 }

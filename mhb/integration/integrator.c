@@ -7,21 +7,25 @@
 #include "mesh/base/constants.h"
 #include "mhb/numerics/simd.h"
 
-enum { S = MHB_STAGES, F = MHB_STAGE_FORCES, SWEEPS = 400, CUTS = 8, IDLE = 4 };
+enum { S = MHB_STAGES, F = MHB_STAGE_FORCES, MAX_SWEEPS = 400, MAX_CUTS = 8, MAX_STALLED = 4 };
 
-/* Of the force scale: what contacts are solved to, and what a state may be overstepped by. Of a nominal step: how exactly
- * events are met, and what counts as no progress. */
-static const double SOLVED = 1e-12, OVERSTEP = 1e-10, ON_EVENT = 1e-11, NO_PROGRESS = 1e-9;
+/* Tolerances relative to the force scale: change of the forces in the last sweep; event
+ * function. */
+static const double SOLVED = 1e-12, OVERSTEP = 1e-10;
+
+/* Tolerances relative to a nominal step: time of an event; shortest step that counts as
+ * progress. */
+static const double ON_EVENT = 1e-11, NO_PROGRESS = 1e-9;
 
 /* ---- the motion without contact forces ---- */
 
 double mhb_integrator_lag(const mhb_integrator *g, int blade) {
-  return SHB_TWO_PI * g->chain.s.wave * blade / g->blades;
+  return SHB_TWO_PI * g->ring.s.wave * blade / g->blades;
 }
 
-void mhb_integrator_free(const mhb_integrator *g, int group, double t, double *u) {
+void mhb_integrator_free(const mhb_integrator *g, int sector, double t, double *u) {
   const mhb_receptance *r     = g->receptance;
-  double                angle = SHB_TWO_PI * t / g->period - mhb_integrator_lag(g, group);
+  double                angle = SHB_TWO_PI * t / g->period - mhb_integrator_lag(g, sector);
   for (int k = 0; k <= g->n_load; k += r->nu) {
     double c = cos(k * angle), s = sin(k * angle);
     for (int row = 0; row < r->n; row++) {
@@ -33,16 +37,16 @@ void mhb_integrator_free(const mhb_integrator *g, int group, double t, double *u
 
 /* ---- one step of given length ---- */
 
-MHB_HOT static void stage_modes(int m, const double *coefficient, const double *z, const double *v,
-                                double *stage) {
+MHB_HOT static void set_stage_modes(int m, const double *coefficient, const double *z,
+                                    const double *v, double *stage) {
   for (int k = 0; k < S; k++) {
     const double *a = coefficient + (MHB_STAGE_Z + k) * m, *b = coefficient + (MHB_STAGE_V + k) * m;
     for (int i = 0; i < m; i++) stage[k * m + i] = a[i] * z[i] + b[i] * v[i];
   }
 }
 
-MHB_HOT static void stage_contacts(int n3, int m, const double *shape, const double *stage,
-                                   double *y) {
+MHB_HOT static void add_stage_motion(int n3, int m, const double *shape, const double *stage,
+                                     double *y) {
   for (int r = 0; r < n3; r++)
     for (int k = 0; k < S; k++) {
       double sum = 0;
@@ -52,19 +56,19 @@ MHB_HOT static void stage_contacts(int n3, int m, const double *shape, const dou
     }
 }
 
-/* y without contact forces. */
-static void set_motion(mhb_integrator *g, const mhb_modal_step *span) {
+/* y: motion of all contacts at the stages without contact forces of the step. */
+static void set_motion(mhb_integrator *g, const mhb_modal_step *modal) {
   int m = g->modes, n3 = 3 * g->pairs;
   memset(g->y, 0, sizeof(double) * F * (size_t)g->contacts);
   for (int b = 0; b < g->blades; b++) {
-    stage_modes(m, span->mode, g->z + b * m, g->z + (g->blades + b) * m, g->stage);
-    for (int side = 0; side < g->chain.s.sides; side++)
-      stage_contacts(n3, m, g->chain.shape + side * n3 * m, g->stage,
-                     g->y + mhb_modal_structure_contact(&g->chain.s, b, side) * F);
+    set_stage_modes(m, modal->mode, g->z + b * m, g->z + (g->blades + b) * m, g->stage);
+    for (int side = 0; side < g->ring.s.sides; side++)
+      add_stage_motion(n3, m, g->ring.shape + side * n3 * m, g->stage,
+                       g->y + mhb_modal_structure_contact(&g->ring.s, b, side) * F);
     for (int k = 0; k < S; k++) {
       double u[n3];
       memset(u, 0, sizeof u);
-      mhb_integrator_free(g, b, g->t + g->chain.rule.c[k] * span->h, u);
+      mhb_integrator_free(g, b, g->t + g->ring.rule.c[k] * modal->h, u);
       for (int r = 0; r < n3; r++) g->y[(b * g->pairs + r / 3) * F + 3 * k + r % 3] += u[r];
     }
   }
@@ -78,37 +82,40 @@ MHB_HOT static void subtract(const double *S_, const double *p, double *y) {
   }
 }
 
-/* One contact, given the others. Returns the change of its force, N; < 0: none was found. */
-static double relax(mhb_integrator *g, mhb_modal_step *span, int contact) {
-  int    group = contact / g->pairs, pair = contact % g->pairs;
+/* One contact with the forces of the others as they are. Returns the change of its force, N;
+ * negative if none was found. */
+static double solve_contact(mhb_integrator *g, mhb_modal_step *modal, int contact) {
+  int    sector = contact / g->pairs, pair = contact % g->pairs;
   double y[F], before[F], change = 0;
   memcpy(y, g->y + contact * F, sizeof y);
-  for (int slot = 0; slot < g->chain.slots; slot++) {
-    const double *S_ = span->compliance + (size_t)((slot * g->pairs + pair) * g->pairs) * F * F;
-    int           by = mhb_ring_step_sector(&g->chain, group, slot) * g->pairs;
+  for (int neighbour = 0; neighbour < g->ring.n_neighbours; neighbour++) {
+    const double *S_ =
+        modal->compliance + (size_t)((neighbour * g->pairs + pair) * g->pairs) * F * F;
+    int by = mhb_ring_step_sector(&g->ring, sector, neighbour) * g->pairs;
     for (int b = 0; b < g->pairs; b++)
       if (by + b != contact) subtract(S_ + b * F * F, g->step[by + b].p, y);
   }
   mhb_contact_step *step = &g->step[contact];
   memcpy(before, step->p, sizeof before);
-  if (!mhb_contact_step_solve(&g->chain.rule, &g->law[pair], &g->rub[contact],
-                              span->compliance + (size_t)(pair * g->pairs + pair) * F * F,
-                              span->stick + pair * F * F, span->pivot + pair * F, y, g->scale,
+  if (!mhb_contact_step_solve(&g->ring.rule, &g->law[pair], &g->point[contact],
+                              modal->compliance + (size_t)(pair * g->pairs + pair) * F * F,
+                              modal->stick + pair * F * F, modal->pivot + pair * F, y, g->scale,
                               step))
     return -1;
   for (int i = 0; i < F; i++) change = fmax(change, fabs(step->p[i] - before[i]));
   return change;
 }
 
-/* All contacts, block by block until nothing changes. 0: not found. */
-static int solve(mhb_integrator *g, mhb_modal_step *span) {
-  set_motion(g, span);
+/* All contacts, block Gauss-Seidel until the forces are constant. Returns 0 if they do not
+ * settle. */
+static int solve(mhb_integrator *g, mhb_modal_step *modal) {
+  set_motion(g, modal);
   for (int j = 0; j < g->contacts; j++)
-    mhb_contact_step_guess(&g->law[j % g->pairs], &g->rub[j], span->h, &g->step[j]);
-  for (int k = 0; k < SWEEPS; k++) {
+    mhb_contact_step_guess(&g->law[j % g->pairs], &g->point[j], modal->h, &g->step[j]);
+  for (int k = 0; k < MAX_SWEEPS; k++) {
     double worst = 0;
     for (int j = 0; j < g->contacts; j++) {
-      double change = relax(g, span, j);
+      double change = solve_contact(g, modal, j);
       if (change < 0) return 0;
       worst = fmax(worst, change);
     }
@@ -117,9 +124,9 @@ static int solve(mhb_integrator *g, mhb_modal_step *span) {
   return 0;
 }
 
-/* force += shape^T p of a side */
-MHB_HOT static void gather(int n3, int m, const double *shape, const mhb_contact_step *step,
-                           double *force) {
+/* force -= shape^T p of a side */
+MHB_HOT static void add_modal_force(int n3, int m, const double *shape,
+                                    const mhb_contact_step *step, double *force) {
   for (int r = 0; r < n3; r++)
     for (int k = 0; k < S; k++) {
       double p = step[r / 3].p[3 * k + r % 3];
@@ -141,75 +148,76 @@ MHB_HOT static void end_modes(int m, const double *a, const double *force, doubl
   }
 }
 
-static void accept(mhb_integrator *g, const mhb_modal_step *span) {
+static void accept(mhb_integrator *g, const mhb_modal_step *modal) {
   int m = g->modes, n3 = 3 * g->pairs;
-  if (g->watch) g->watch(g->context, g, g->t, span->h);
+  if (g->watch) g->watch(g->context, g, g->t, modal->h);
   for (int b = 0; b < g->blades; b++) {
     memset(g->stage, 0, sizeof(double) * S * (size_t)m);
-    for (int side = 0; side < g->chain.s.sides; side++)
-      gather(n3, m, g->chain.shape + side * n3 * m,
-             g->step + mhb_modal_structure_contact(&g->chain.s, b, side), g->stage);
-    end_modes(m, span->mode, g->stage, g->z + b * m, g->z + (g->blades + b) * m);
+    for (int side = 0; side < g->ring.s.sides; side++)
+      add_modal_force(n3, m, g->ring.shape + side * n3 * m,
+                      g->step + mhb_modal_structure_contact(&g->ring.s, b, side), g->stage);
+    end_modes(m, modal->mode, g->stage, g->z + b * m, g->z + (g->blades + b) * m);
   }
-  int progress = span->h > NO_PROGRESS * g->nominal.h;
+  int progress = modal->h > NO_PROGRESS * g->nominal.h;
   for (int j = 0; j < g->contacts; j++) {
-    mhb_contact_step_advance(&g->law[j % g->pairs], &g->step[j], span->h, &g->rub[j]);
-    for (int c = 0; c < 3; c++) g->scale = fmax(g->scale, fabs(g->rub[j].p[c]));
-    if (progress) g->idle[j] = g->hush[j] = 0;
+    mhb_contact_step_advance(&g->law[j % g->pairs], &g->step[j], modal->h, &g->point[j]);
+    for (int c = 0; c < 3; c++) g->scale = fmax(g->scale, fabs(g->point[j].p[c]));
+    if (progress) g->n_stalled[j] = g->suppressed[j] = 0;
   }
-  g->t += span->h;
+  g->t += modal->h;
   g->count.steps++;
 }
 
-/* ---- steps that end where a contact changes its state ---- */
+/* ---- steps that end at events ---- */
 
 typedef struct {
   int               contact;
   mhb_contact_event kind;
   double            tau; /* in the step; 2: none */
-} occasion;
+} step_event;
 
-static occasion first_occasion(const mhb_integrator *g) {
-  occasion first = {.tau = 2};
+static step_event first_event(const mhb_integrator *g) {
+  step_event first = {.tau = 2};
   for (int j = 0; j < g->contacts; j++) {
     mhb_contact_event kind;
-    if (g->hush[j]) continue;
-    double tau = mhb_contact_step_first(&g->chain.rule, &g->law[j % g->pairs], &g->rub[j],
+    if (g->suppressed[j]) continue;
+    double tau = mhb_contact_step_first(&g->ring.rule, &g->law[j % g->pairs], &g->point[j],
                                         &g->step[j], OVERSTEP * g->scale, &kind);
-    if (tau < first.tau) first = (occasion){j, kind, tau};
+    if (tau < first.tau) first = (step_event){j, kind, tau};
   }
   return first;
 }
 
-static double excess(const mhb_integrator *g, const occasion *o, double tau) {
+static double excess(const mhb_integrator *g, const step_event *o, double tau) {
   int j = o->contact;
-  return mhb_contact_step_excess(&g->chain.rule, &g->law[j % g->pairs], &g->rub[j], &g->step[j],
+  return mhb_contact_step_excess(&g->ring.rule, &g->law[j % g->pairs], &g->point[j], &g->step[j],
                                  o->kind, tau);
 }
 
-static mhb_modal_step *span_of(mhb_integrator *g, double h) {
+static mhb_modal_step *modal_step_of(mhb_integrator *g, double h) {
   if (fabs(h - g->nominal.h) < 1e-12 * g->nominal.h) return &g->nominal;
-  if (h != g->cut.h) mhb_modal_step_length(&g->chain, h, &g->cut);
+  if (h != g->cut.h) mhb_modal_step_length(&g->ring, h, &g->cut);
   return &g->cut;
 }
 
-/* A contact that closes sticks if the friction it would then have grows more slowly than its limit (eq. 13). */
+/* A closing contact sticks if the friction of sticking increases more slowly than its limit (eq.
+ * 13). */
 static void close_contact(mhb_integrator *g, int contact) {
-  const mhb_law     *law = &g->law[contact % g->pairs];
-  mhb_contact_point *rub = &g->rub[contact];
+  const mhb_law     *law   = &g->law[contact % g->pairs];
+  mhb_contact_point *point = &g->point[contact];
   double             direction;
-  mhb_contact_step_change(law, MHB_STICK, 0, rub);
-  if (!(law->mu > 0) || !solve(g, span_of(g, .01 * g->nominal.h))) return;
-  if (mhb_contact_step_closing(&g->chain.rule, law, rub, &g->step[contact], &direction) > 0)
-    mhb_contact_step_change(law, MHB_SLIDE, direction, rub);
+  mhb_contact_step_change(law, MHB_STICK, 0, point);
+  if (!(law->mu > 0) || !solve(g, modal_step_of(g, 0.01 * g->nominal.h))) return;
+  if (mhb_contact_step_closing(&g->ring.rule, law, point, &g->step[contact], &direction) > 0)
+    mhb_contact_step_change(law, MHB_SLIDE, direction, point);
 }
 
-static void take_occasion(mhb_integrator *g, const occasion *o) {
-  const mhb_law     *law = &g->law[o->contact % g->pairs];
-  mhb_contact_point *rub = &g->rub[o->contact];
+static void apply_event(mhb_integrator *g, const step_event *o) {
+  const mhb_law     *law   = &g->law[o->contact % g->pairs];
+  mhb_contact_point *point = &g->point[o->contact];
   g->count.events++;
-  if (++g->idle[o->contact] > IDLE) {
-    g->hush[o->contact] = 1;
+  if (++g->n_stalled[o->contact] > MAX_STALLED) {
+    g->suppressed[o->contact] = 1;
     g->count.forced++;
   }
   switch (o->kind) {
@@ -217,78 +225,79 @@ static void take_occasion(mhb_integrator *g, const occasion *o) {
       close_contact(g, o->contact);
       break;
     case MHB_CONTACT_OPENS:
-      mhb_contact_step_change(law, MHB_SEPARATE, 0, rub);
+      mhb_contact_step_change(law, MHB_SEPARATE, 0, point);
       break;
     case MHB_STICK_TO_SLIP:
-      mhb_contact_step_change(law, MHB_SLIDE, atan2(rub->p[2], rub->p[1]), rub);
+      mhb_contact_step_change(law, MHB_SLIDE, atan2(point->p[2], point->p[1]), point);
       break;
     case MHB_SLIP_TO_STICK:
-      mhb_contact_step_change(law, MHB_STICK, 0, rub);
+      mhb_contact_step_change(law, MHB_STICK, 0, point);
       break;
   }
 }
 
-/* The step of length h was solved and holds an occasion at its end: by how much of h the end should move. */
-static double correction(const mhb_integrator *g, const occasion *o) {
-  double at = excess(g, o, 1), slope = (at - excess(g, o, .99)) / .01;
+/* Relative change of the step's length that moves its end to the event. */
+static double correction(const mhb_integrator *g, const step_event *o) {
+  double at = excess(g, o, 1), slope = (at - excess(g, o, 0.99)) / 0.01;
   return slope > 0 ? -at / slope : 0;
 }
 
-/* Towards an opening the direction of slip may turn like a power of the time that is left: steps shrink with it. */
-static int turns(const mhb_integrator *g, const occasion *o) {
-  const mhb_contact_point *rub  = &g->rub[o->contact];
-  const mhb_contact_step  *step = &g->step[o->contact];
-  return o->kind == MHB_CONTACT_OPENS && rub->state == MHB_SLIDE &&
-         fabs(remainder(step->theta[S - 1] - rub->theta, SHB_PI)) > 1e-9;
+/* Whether the direction of slip turns in a step that ends with an opening. It may turn like a power
+ * of the time left; the steps then shrink with that time. */
+static int direction_turns(const mhb_integrator *g, const step_event *o) {
+  const mhb_contact_point *point = &g->point[o->contact];
+  const mhb_contact_step  *step  = &g->step[o->contact];
+  return o->kind == MHB_CONTACT_OPENS && point->state == MHB_SLIDE &&
+         fabs(remainder(step->theta[S - 1] - point->theta, SHB_PI)) > 1e-9;
 }
 
-/* A step that ends at the occasion, or before it. want: longest. 0: failed. */
-static int approach(mhb_integrator *g, occasion o, double h, double want) {
-  for (int k = 0; k < CUTS; k++) {
-    h                    = fmin(h, want);
-    mhb_modal_step *span = span_of(g, h);
-    if (!solve(g, span)) return 0;
-    occasion earlier = first_occasion(g);
-    if (earlier.tau < .999) {
+/* One step that ends at the event, or at an earlier one; longest in s. Returns 0 if it failed. */
+static int step_to_event(mhb_integrator *g, step_event o, double h, double longest) {
+  for (int k = 0; k < MAX_CUTS; k++) {
+    h                     = fmin(h, longest);
+    mhb_modal_step *modal = modal_step_of(g, h);
+    if (!solve(g, modal)) return 0;
+    step_event earlier = first_event(g);
+    if (earlier.tau < 0.999) {
       o = earlier;
       h *= fmax(o.tau, 1e-3);
       continue;
     }
     double part = correction(g, &o);
-    if (fabs(part) * h <= ON_EVENT * g->nominal.h || k == CUTS - 1) {
-      accept(g, span);
-      take_occasion(g, &o);
+    if (fabs(part) * h <= ON_EVENT * g->nominal.h || k == MAX_CUTS - 1) {
+      accept(g, modal);
+      apply_event(g, &o);
       return 1;
     }
-    h *= 1 + fmin(fmax(part, -.5), .5);
+    h *= 1 + fmin(fmax(part, -0.5), 0.5);
   }
   return 0;
 }
 
-/* One step of at most want seconds. 0: failed. */
-static int take(mhb_integrator *g, double want) {
-  double h = want;
+/* One step of at most `longest` seconds. Returns 0 if it failed. */
+static int advance(mhb_integrator *g, double longest) {
+  double h = longest;
   for (int k = 0; k < 40; k++, h /= 2) {
-    mhb_modal_step *span = span_of(g, h);
-    if (!solve(g, span)) continue;
-    occasion o = first_occasion(g);
+    mhb_modal_step *modal = modal_step_of(g, h);
+    if (!solve(g, modal)) continue;
+    step_event o = first_event(g);
     if (o.tau > 1) {
-      accept(g, span);
+      accept(g, modal);
       return 1;
     }
     if (o.tau * h < NO_PROGRESS * g->nominal.h) {
-      take_occasion(g, &o);
+      apply_event(g, &o);
       return 1;
     }
-    if (turns(g, &o) && o.tau * h > 1e-3 * g->nominal.h) {
-      span = span_of(g, .7 * o.tau * h);
-      if (!solve(g, span)) continue;
-      if (first_occasion(g).tau > 1) {
-        accept(g, span);
+    if (direction_turns(g, &o) && o.tau * h > 1e-3 * g->nominal.h) {
+      modal = modal_step_of(g, 0.7 * o.tau * h);
+      if (!solve(g, modal)) continue;
+      if (first_event(g).tau > 1) {
+        accept(g, modal);
         return 1;
       }
     }
-    if (approach(g, o, o.tau * h, want)) return 1;
+    if (step_to_event(g, o, o.tau * h, longest)) return 1;
   }
   return 0;
 }
@@ -299,8 +308,8 @@ int mhb_integrator_period(mhb_integrator *g) {
     double end = (i + 1) * (g->period / g->steps), rest;
     while ((rest = end - g->t) > NO_PROGRESS * g->nominal.h) {
       int hushed = 0;
-      for (int j = 0; j < g->contacts; j++) hushed |= g->hush[j];
-      if (!take(g, hushed ? fmin(rest, g->nominal.h / 32) : rest)) return 0;
+      for (int j = 0; j < g->contacts; j++) hushed |= g->suppressed[j];
+      if (!advance(g, hushed ? fmin(rest, g->nominal.h / 32) : rest)) return 0;
     }
     g->t = end;
   }
@@ -311,15 +320,15 @@ int mhb_integrator_period(mhb_integrator *g) {
 
 static int allocate(mhb_integrator *g) {
   size_t modal = (size_t)(g->blades * g->modes), contacts = (size_t)g->contacts;
-  g->law   = calloc((size_t)g->pairs, sizeof *g->law);
-  g->z     = calloc(2 * modal, sizeof(double));
-  g->rub   = calloc(contacts, sizeof *g->rub);
-  g->step  = calloc(contacts, sizeof *g->step);
-  g->idle  = calloc(contacts, sizeof(int));
-  g->hush  = calloc(contacts, sizeof(int));
-  g->y     = calloc(contacts * F, sizeof(double));
-  g->stage = calloc(S * (size_t)g->modes, sizeof(double));
-  return g->law && g->z && g->rub && g->step && g->idle && g->hush && g->y && g->stage;
+  g->law        = calloc((size_t)g->pairs, sizeof *g->law);
+  g->z          = calloc(2 * modal, sizeof(double));
+  g->point      = calloc(contacts, sizeof *g->point);
+  g->step       = calloc(contacts, sizeof *g->step);
+  g->n_stalled  = calloc(contacts, sizeof(int));
+  g->suppressed = calloc(contacts, sizeof(int));
+  g->y          = calloc(contacts * F, sizeof(double));
+  g->stage      = calloc(S * (size_t)g->modes, sizeof(double));
+  return g->law && g->z && g->point && g->step && g->n_stalled && g->suppressed && g->y && g->stage;
 }
 
 shb_status mhb_integrator_create(const modal_model *model, const mhb_settings *settings,
@@ -337,16 +346,16 @@ shb_status mhb_integrator_create(const modal_model *model, const mhb_settings *s
   }
   if (status == SHB_OK)
     status = mhb_receptance_create(model, &g->settings, g->n_harmonics, &g->receptance);
-  if (status == SHB_OK) status = mhb_ring_step_create(g->receptance, &g->settings, &g->chain);
+  if (status == SHB_OK) status = mhb_ring_step_create(g->receptance, &g->settings, &g->ring);
   if (status == SHB_OK) {
-    g->blades   = g->chain.s.blades;
-    g->modes    = g->chain.s.modes;
-    g->pairs    = g->chain.s.pairs;
-    g->contacts = g->chain.s.contacts;
+    g->blades   = g->ring.s.blades;
+    g->modes    = g->ring.s.modes;
+    g->pairs    = g->ring.s.pairs;
+    g->contacts = g->ring.s.contacts;
     if (!allocate(g)) status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   }
-  if (status == SHB_OK) status = mhb_modal_step_create(&g->chain, &g->nominal);
-  if (status == SHB_OK) status = mhb_modal_step_create(&g->chain, &g->cut);
+  if (status == SHB_OK) status = mhb_modal_step_create(&g->ring, &g->nominal);
+  if (status == SHB_OK) status = mhb_modal_step_create(&g->ring, &g->cut);
   if (status != SHB_OK) {
     mhb_integrator_destroy(g);
     return status;
@@ -359,15 +368,15 @@ void mhb_integrator_destroy(mhb_integrator *g) {
   if (!g) return;
   mhb_modal_step_destroy(&g->nominal);
   mhb_modal_step_destroy(&g->cut);
-  mhb_ring_step_destroy(&g->chain);
+  mhb_ring_step_destroy(&g->ring);
   mhb_receptance_destroy(g->receptance);
   mhb_inertia_free(&g->model);
   free(g->law);
   free(g->z);
-  free(g->rub);
+  free(g->point);
   free(g->step);
-  free(g->idle);
-  free(g->hush);
+  free(g->n_stalled);
+  free(g->suppressed);
   free(g->y);
   free(g->stage);
   free(g);

@@ -1,46 +1,49 @@
-/* Direct time integration of the blade on the ground, or of every blade of a ring, with the contact law: the witness of the
- * harmonic balance.
+/* Direct time integration of the blade on the ground, or of all blades of a ring, with the contact
+ * law: an independent reference for the harmonic balance.
  *
- * z is what the contact forces add to the steady response without contact, which is known exactly:
+ * The steady response without contact is known exactly; z is the part by the contact forces:
  *   z'' + 2 zeta w z' + w^2 z = -B^T p,   u = u_free(t) + B z - R p
- * A step propagates every mode exactly under the collocated force (modal_step.h); all contacts are solved together, block by block
- * (contact_step.h). A step in which a contact changes its state is cut at the change; nominal steps divide the period
- * of the fundamental, 2 pi nu/omega. Fifth order; nothing is linearised, nothing assumed periodic.
- * Blade b of a ring lags by b times the wave's phase, as in the balance. Derivation: docs/theory/time_integration.md. */
+ * A step propagates every mode exactly under the collocated force (modal_step.h). The contacts are
+ * solved one after the other until nothing changes (contact_step.h). A step ends where a contact
+ * changes its state. Nominal steps divide the period of the fundamental, 2 pi nu/omega. The method
+ * is of fifth order; nothing is linearised or assumed periodic. Blade b of a ring lags by b times
+ * the wave's phase, as in the balance. Derivation: docs/theory/time_integration.md. */
 #ifndef MHB_INTEGRATION_INTEGRATOR_H
 #define MHB_INTEGRATION_INTEGRATOR_H
 
 #include "mhb/integration/contact_step.h"
 #include "mhb/integration/inertia_modes.h"
 
+/* Counts since the start. */
 typedef struct {
-  long steps, events; /* since the start */
-  long
-      forced; /* short steps taken although a state had ended, where states alternate without end */
+  long steps, events;
+  long forced; /* events suppressed: the contact changed its state without progress */
 } mhb_integrator_count;
 
 typedef struct mhb_integrator mhb_integrator;
 
-/* Called after each accepted step that began at t0 (s from the start of the period) and lasted h; step[] holds the stages. */
+/* Called after each accepted step that began at t0 (s from the start of the period) and lasted h;
+ * step[] holds the stages. */
 typedef void (*mhb_integrator_watch)(void *context, const mhb_integrator *integrator, double t0,
                                      double h);
 
 struct mhb_integrator {
-  mhb_settings settings;
-  modal_model  model; /* with residual modes, if the model given has residual inertia; else empty */
+  mhb_settings    settings;
+  modal_model     model;      /* with residual modes in place of residual inertia; else empty */
   mhb_receptance *receptance; /* harmonics 0..n_harmonics, at omega */
-  mhb_ring_step   chain;
+  mhb_ring_step   ring;
   int             n_harmonics, n_load; /* of outputs and starts; highest one of the free motion */
   int             blades, modes, pairs, contacts;
-  mhb_law        *law;           /* [pair] */
-  double          n0;            /* N, total */
-  double          omega, period; /* rad/s of the excitation; s of the fundamental */
-  int             steps;         /* a period */
-  double          t;             /* s, in [0, period] */
-  double         *z;             /* [2 (z, z')][blade][mode] */
-  mhb_contact_point *rub;        /* [contact] */
-  mhb_contact_step  *step;       /* [contact] of the last step */
-  int *idle, *hush; /* [contact] changes without progress; events not heeded in the coming step */
+  mhb_law        *law;             /* [pair] */
+  double          n0;              /* N, total */
+  double          omega, period;   /* rad/s of the excitation; s of the fundamental */
+  int             steps;           /* a period */
+  double          t;               /* s, in [0, period] */
+  double         *z;               /* [2 (z, z')][blade][mode] */
+  mhb_contact_point   *point;      /* [contact] */
+  mhb_contact_step    *step;       /* [contact] of the last step */
+  int                 *n_stalled;  /* [contact] changes of state without progress in time */
+  int                 *suppressed; /* [contact] 1: its events are ignored in the coming step */
   double              *y; /* [contact][9] motion at the stages without contact forces of the step */
   double              *stage; /* [6][modes] */
   mhb_modal_step       nominal, cut;
@@ -50,36 +53,39 @@ struct mhb_integrator {
   void                *context;
 };
 
-/* For outputs, and starts from balances, of up to n_harmonics (of the fundamental); the model must outlive it.
+/* n_harmonics: of outputs and of starts on a balance, counted in the fundamental. The model must
+ * outlive the integrator.
  * Errors: SHB_ERR_INPUT as mhb_receptance_create; SHB_ERR_IO no memory. */
 shb_status mhb_integrator_create(const modal_model *model, const mhb_settings *settings,
                                  int n_harmonics, mhb_integrator **integrator);
 void       mhb_integrator_destroy(mhb_integrator *integrator);
 
-/* Go on at another frequency (rad/s), preload (N, total) and number of steps a period. Displacements, velocities and sliders are
- * carried over; the phase is 0. */
+/* Continue at another frequency (rad/s), preload (N, total) and number of steps a period, at phase
+ * 0. Displacements, velocities and friction forces are kept. */
 void mhb_integrator_set(mhb_integrator *integrator, double omega, double n0, int steps);
 
-/* At rest, without friction, at phase 0. After mhb_integrator_set. */
+/* Start at rest, without friction, at phase 0. After mhb_integrator_set. */
 void mhb_integrator_rest(mhb_integrator *integrator);
 
-/* On a solution of the balance at phase 0, as far as its harmonics tell: force[n_harmonics + 1][3 pairs] N, as in
- * the response file but k first. After mhb_integrator_set. */
+/* Start on a solution of the balance, by the harmonics of its forces, at phase 0. After
+ * mhb_integrator_set.
+ *   force  in  [n_harmonics + 1][3 pairs] N */
 void mhb_integrator_balance(mhb_integrator *integrator, int n_harmonics,
                             const double complex *force);
 
-/* One period of the fundamental from phase 0 to phase 0. 0: the contact forces of a step were not found. */
+/* Integrate one period of the fundamental. Returns 0 if the contact forces of a step were not
+ * found. */
 int mhb_integrator_period(mhb_integrator *integrator);
 
 /* Phase by which a blade lags at the fundamental, rad. */
 double mhb_integrator_lag(const mhb_integrator *integrator, int blade);
 
-/* Motion without contact forces of the contacts to the right of a blade at t, [3 pairs] m, added to u. */
+/* Motion without contact forces of the contacts to the right of a blade at t, [3 pairs] m, added to
+ * u. */
 void mhb_integrator_free(const mhb_integrator *integrator, int blade, double t, double *u);
 
-/* The state as numbers, for differences and disturbances: z, z' and friction. */
+/* The state as numbers, for differences: z, z' and friction forces. */
 int  mhb_integrator_size(const mhb_integrator *integrator);
 void mhb_integrator_get(const mhb_integrator *integrator, double *state);
-void mhb_integrator_put(mhb_integrator *integrator, const double *state);
 
 #endif

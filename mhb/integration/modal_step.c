@@ -10,7 +10,7 @@ enum { S = MHB_STAGES, MOMENTS = 5, GAMMAS = MOMENTS + 2 };
 
 /* ---- the rule ---- */
 
-/* Coefficients by powers of tau of the Lagrange polynomial j through n points. */
+/* Coefficients of the powers of tau in Lagrange's polynomial j through n points. */
 static void lagrange(int n, const double *x, int j, double *power) {
   memset(power, 0, sizeof(double) * (size_t)n);
   power[0]   = 1;
@@ -59,11 +59,14 @@ void mhb_radau_create(mhb_radau *r) {
 }
 
 /* ---- modes ----
- * In tau the impulse response G_0 solves G'' + 2a G' + b G = delta, a = zeta w h, b = (w h)^2; G_k is its k-th integral from 0,
- * G_-1 its derivative, all taken at tau = 1. The answer to tau^m/m! is G_m+1, with velocity G_m, and
- * int (1 - tau)^l/l! G_m = G_m+l+1: nothing else is needed. Integrating the equation k times,
- *   G_k-2 + 2a G_k-1 + b G_k = 1/(k-1)!,   k >= 1,
- * which is used downwards (stable where b is small) from the Taylor series of G_5 and G_4, or upwards from G_-1 and G_0. */
+ *
+ * In tau the impulse response G_0 solves G'' + 2a G' + b G = delta, a = zeta w h, b = (w h)^2. G_k
+ * is its k-th integral from 0, G_-1 its derivative; all are taken at tau = 1. The response to
+ * tau^m/m! is G_m+1, its velocity G_m, and int (1 - tau)^l/l! G_m = G_m+l+1. So G_-1 .. G_5 give
+ * all coefficients. Integrating the equation k times:
+ *   G_k-2 + 2a G_k-1 + b G_k = 1/(k-1)!,   k >= 1.
+ * For small b this is used downwards, where it is stable, from the Taylor series of G_5 and G_4;
+ * else upwards from G_-1 and G_0. */
 
 static const double inverse_factorial[] = {1, 1, 1. / 2, 1. / 6, 1. / 24, 1. / 120, 1. / 720};
 
@@ -93,7 +96,7 @@ static void closed_form(double a, double b, double G[GAMMAS]) {
     G[k + 1] = (inverse_factorial[k - 1] - G[k - 1] - 2 * a * G[k]) / b;
 }
 
-/* G[k + 1] = G_k(1) */
+/* G[k + 1] = G_k, k = -1..5. */
 static void responses(double a, double b, double G[GAMMAS]) {
   if (b < 4) {
     series(a, b, G);
@@ -102,11 +105,11 @@ static void responses(double a, double b, double G[GAMMAS]) {
   }
 }
 
-static void set_mode(const mhb_ring_step *chain, double h, int i, mhb_modal_step *span) {
-  const mhb_radau *r = &chain->rule;
-  int              m = chain->s.modes;
-  double           w = chain->s.omega[i] * h, a = chain->s.zeta[i] * w, b = w * w, G[GAMMAS];
-  double          *row = span->mode + i;
+static void set_mode(const mhb_ring_step *ring, double h, int i, mhb_modal_step *step) {
+  const mhb_radau *r = &ring->rule;
+  int              m = ring->s.modes;
+  double           w = ring->s.omega[i] * h, a = ring->s.zeta[i] * w, b = w * w, G[GAMMAS];
+  double          *row = step->mode + i;
   responses(a, b, G);
   for (int k = 0; k < S; k++) {
     double z = 1, v = 0, end = 0, rate = 0;
@@ -128,9 +131,9 @@ static void set_mode(const mhb_ring_step *chain, double h, int i, mhb_modal_step
   for (int k = 0; k < MOMENTS; k++) row[(MHB_MOMENT + k) * m] = h * h * G[k + 2];
 }
 
-/* ---- what the contacts meet ---- */
+/* ---- compliance of the contacts ---- */
 
-/* moment[5] += sum over modes of to by' G_1..5 */
+/* sum[5] += sum over modes of to by G_1..5 */
 MHB_HOT static void add_moments(int m, const double *to, const double *by, const double *moments,
                                 double *sum) {
   for (int k = 0; k < MOMENTS; k++) {
@@ -141,34 +144,34 @@ MHB_HOT static void add_moments(int m, const double *to, const double *by, const
   }
 }
 
-/* The slot in which the contacts on side `by` of a blade stand, seen from those on side `to`. */
-static int slot_of(const mhb_ring_step *c, int to, int by) {
+/* Neighbour whose contacts are on side `by` of a blade, seen from the contacts on side `to`. */
+static int neighbour_of(const mhb_ring_step *c, int to, int by) {
   if (to == by) return 0;
   return c->s.blades == 1 ? 0 : c->s.blades == 2 || to == 0 ? 1 : 2;
 }
 
-static void set_moments(const mhb_ring_step *c, const mhb_modal_step *span) {
+static void set_moments(const mhb_ring_step *c, const mhb_modal_step *step) {
   int n3 = 3 * c->s.pairs, m = c->s.modes, sides = c->s.sides;
-  memset(c->moment, 0, sizeof(double) * (size_t)(c->slots * n3 * n3 * MOMENTS));
+  memset(c->moment, 0, sizeof(double) * (size_t)(c->n_neighbours * n3 * n3 * MOMENTS));
   for (int k = 0; k < sides * sides; k++) {
-    int to = k / sides, by = k % sides, slot = slot_of(c, to, by);
+    int to = k / sides, by = k % sides, neighbour = neighbour_of(c, to, by);
     for (int row = 0; row < n3; row++)
       for (int column = 0; column < n3; column++)
         add_moments(m, c->shape + (to * n3 + row) * m, c->shape + (by * n3 + column) * m,
-                    span->mode + MHB_MOMENT * m,
-                    c->moment + ((slot * n3 + row) * n3 + column) * MOMENTS);
+                    step->mode + MHB_MOMENT * m,
+                    c->moment + ((neighbour * n3 + row) * n3 + column) * MOMENTS);
   }
 }
 
-/* R between the rows of group 0 and those of the group in a slot. */
-static double flexibility(const mhb_ring_step *c, int slot, int row, int column) {
+/* R between a row of sector 0 and one of its neighbour. */
+static double flexibility(const mhb_ring_step *c, int neighbour, int row, int column) {
   int n3 = 3 * c->s.pairs, n = 3 * c->s.contacts;
   if (!c->s.flexibility) return 0;
   return c->s.flexibility[(size_t)row * (size_t)n +
-                          (size_t)(mhb_ring_step_sector(c, 0, slot) * n3 + column)];
+                          (size_t)(mhb_ring_step_sector(c, 0, neighbour) * n3 + column)];
 }
 
-static void set_compliance(const mhb_ring_step *c, mhb_modal_step *span) {
+static void set_compliance(const mhb_ring_step *c, mhb_modal_step *step) {
   const mhb_radau *r  = &c->rule;
   int              n3 = 3 * c->s.pairs, pairs = c->s.pairs;
   double           weight[S][S][MOMENTS] = {{{0}}};
@@ -176,11 +179,12 @@ static void set_compliance(const mhb_ring_step *c, mhb_modal_step *span) {
     int i = k / (S * S * S), j = k / (S * S) % S, l = k / S % S, m = k % S;
     weight[i][j][l + m] += r->kernel[i][l] * r->basis[j][m];
   }
-  for (int k = 0; k < c->slots * n3 * n3; k++) {
-    int     slot = k / (n3 * n3), row = k / n3 % n3, column = k % n3;
-    double  R     = flexibility(c, slot, row, column);
-    double *block = span->compliance + (size_t)((slot * pairs + row / 3) * pairs + column / 3) *
-                                           MHB_STAGE_FORCES * MHB_STAGE_FORCES;
+  for (int k = 0; k < c->n_neighbours * n3 * n3; k++) {
+    int     neighbour = k / (n3 * n3), row = k / n3 % n3, column = k % n3;
+    double  R = flexibility(c, neighbour, row, column);
+    double *block =
+        step->compliance + (size_t)((neighbour * pairs + row / 3) * pairs + column / 3) *
+                               MHB_STAGE_FORCES * MHB_STAGE_FORCES;
     const double *G = c->moment + k * MOMENTS;
     for (int ij = 0; ij < S * S; ij++) {
       int    i = ij / S, j = ij % S;
@@ -191,58 +195,58 @@ static void set_compliance(const mhb_ring_step *c, mhb_modal_step *span) {
   }
 }
 
-void mhb_modal_step_length(const mhb_ring_step *chain, double h, mhb_modal_step *span) {
-  span->h = h;
-  for (int i = 0; i < chain->s.modes; i++) set_mode(chain, h, i, span);
-  set_moments(chain, span);
-  set_compliance(chain, span);
-  for (int a = 0; a < chain->s.pairs; a++) span->pivot[a * MHB_STAGE_FORCES] = -1;
+void mhb_modal_step_length(const mhb_ring_step *ring, double h, mhb_modal_step *step) {
+  step->h = h;
+  for (int i = 0; i < ring->s.modes; i++) set_mode(ring, h, i, step);
+  set_moments(ring, step);
+  set_compliance(ring, step);
+  for (int a = 0; a < ring->s.pairs; a++) step->pivot[a * MHB_STAGE_FORCES] = -1;
 }
 
 /* ---- life cycle ---- */
 
 shb_status mhb_ring_step_create(const mhb_receptance *receptance, const mhb_settings *settings,
-                                mhb_ring_step *chain) {
-  *chain = (mhb_ring_step){.slots = 1};
-  mhb_radau_create(&chain->rule);
-  SHB_TRY(mhb_modal_structure_create(receptance, settings, receptance->n_modes, &chain->s));
-  const mhb_modal_structure *s  = &chain->s;
+                                mhb_ring_step *ring) {
+  *ring = (mhb_ring_step){.n_neighbours = 1};
+  mhb_radau_create(&ring->rule);
+  SHB_TRY(mhb_modal_structure_create(receptance, settings, receptance->n_modes, &ring->s));
+  const mhb_modal_structure *s  = &ring->s;
   int                        n3 = 3 * s->pairs, m = s->modes;
-  if (s->sides == 2) chain->slots = s->blades < 3 ? s->blades : 3;
-  chain->shape  = calloc((size_t)(s->sides * n3 * m), sizeof(double));
-  chain->moment = calloc((size_t)(chain->slots * n3 * n3 * MOMENTS), sizeof(double));
-  if (!chain->shape || !chain->moment) {
-    mhb_ring_step_destroy(chain);
+  if (s->sides == 2) ring->n_neighbours = s->blades < 3 ? s->blades : 3;
+  ring->shape  = calloc((size_t)(s->sides * n3 * m), sizeof(double));
+  ring->moment = calloc((size_t)(ring->n_neighbours * n3 * n3 * MOMENTS), sizeof(double));
+  if (!ring->shape || !ring->moment) {
+    mhb_ring_step_destroy(ring);
     SHB_FAIL(SHB_ERR_IO, "out of memory");
   }
   for (int k = 0; k < s->sides * n3 * m; k++)
-    chain->shape[k] = s->shape[(k / (n3 * m) * m + k % m) * n3 + k / m % n3];
+    ring->shape[k] = s->shape[(k / (n3 * m) * m + k % m) * n3 + k / m % n3];
   return SHB_OK;
 }
 
-void mhb_ring_step_destroy(mhb_ring_step *chain) {
-  mhb_modal_structure_destroy(&chain->s);
-  free(chain->shape);
-  free(chain->moment);
-  *chain = (mhb_ring_step){0};
+void mhb_ring_step_destroy(mhb_ring_step *ring) {
+  mhb_modal_structure_destroy(&ring->s);
+  free(ring->shape);
+  free(ring->moment);
+  *ring = (mhb_ring_step){0};
 }
 
-shb_status mhb_modal_step_create(const mhb_ring_step *c, mhb_modal_step *span) {
+shb_status mhb_modal_step_create(const mhb_ring_step *c, mhb_modal_step *step) {
   size_t pairs = (size_t)c->s.pairs, square = MHB_STAGE_FORCES * MHB_STAGE_FORCES;
-  *span            = (mhb_modal_step){.h = NAN};
-  span->mode       = calloc(MHB_MODAL_STEP_ROWS * (size_t)c->s.modes, sizeof(double));
-  span->compliance = calloc((size_t)c->slots * pairs * pairs * square, sizeof(double));
-  span->stick      = calloc(pairs * square, sizeof(double));
-  span->pivot      = calloc(pairs * MHB_STAGE_FORCES, sizeof(int));
-  if (span->mode && span->compliance && span->stick && span->pivot) return SHB_OK;
-  mhb_modal_step_destroy(span);
+  *step            = (mhb_modal_step){.h = NAN};
+  step->mode       = calloc(MHB_MODAL_STEP_ROWS * (size_t)c->s.modes, sizeof(double));
+  step->compliance = calloc((size_t)c->n_neighbours * pairs * pairs * square, sizeof(double));
+  step->stick      = calloc(pairs * square, sizeof(double));
+  step->pivot      = calloc(pairs * MHB_STAGE_FORCES, sizeof(int));
+  if (step->mode && step->compliance && step->stick && step->pivot) return SHB_OK;
+  mhb_modal_step_destroy(step);
   SHB_FAIL(SHB_ERR_IO, "out of memory");
 }
 
-void mhb_modal_step_destroy(mhb_modal_step *span) {
-  free(span->mode);
-  free(span->compliance);
-  free(span->stick);
-  free(span->pivot);
-  *span = (mhb_modal_step){0};
+void mhb_modal_step_destroy(mhb_modal_step *step) {
+  free(step->mode);
+  free(step->compliance);
+  free(step->stick);
+  free(step->pivot);
+  *step = (mhb_modal_step){0};
 }

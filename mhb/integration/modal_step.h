@@ -1,11 +1,15 @@
-/* One step of every linear mode: exact under a contact force that is a polynomial of degree two over the step.
+/* One step of the linear modes, exact under a contact force that is quadratic over the step.
  *
- *   z'' + 2 zeta w z' + w^2 z = f(t),  t = h tau,  f = sum_j f_j l_j(tau),  l_j Lagrange at the Radau points c_1..c_3 = 1.
- * What the contact meets at c_i is not w(c_i), w = B z, but the polynomial of degree three that has the step's ends and whose
- * derivative is the least-squares fit of w' by degree two. Then
- *   int f . w' dt = sum_i b_i f_i . w_i'   (Radau's weights; exact, degree four),
- * so that a spring takes at least what it stores and friction at least what it dissipates: no step length makes a passive
- * contact active. At the ends of steps the error is of order five. Derivation: docs/theory/time_integration.md. */
+ *   z'' + 2 zeta w z' + w^2 z = f(t),   t = h tau,   f = sum_j f_j l_j(tau)
+ * with l_j Lagrange's polynomials at the Radau points c_1..c_3 = 1.
+ *
+ * The contact does not see w(c_i), w = B z, at the stages, but the values w_i of a cubic
+ * polynomial. It agrees with w at the ends of the step, and its derivative is the least-squares fit
+ * of w' by degree two. Then
+ *   int f . w' dt = sum_i b_i f_i . w_i'   (Radau's weights, exact to degree four):
+ * a spring takes at least the energy it stores, and friction at least what it dissipates. No step
+ * length makes a passive contact active. The error at the ends of the steps is of order five.
+ * Derivation: docs/theory/time_integration.md. */
 #ifndef MHB_INTEGRATION_MODAL_STEP_H
 #define MHB_INTEGRATION_MODAL_STEP_H
 
@@ -13,7 +17,7 @@
 
 enum { MHB_STAGES = 3, MHB_STAGE_FORCES = 3 * MHB_STAGES };
 
-/* Radau IIA with three stages, and what goes with it. */
+/* Radau IIA with three stages, and its polynomials. */
 typedef struct {
   double c[MHB_STAGES], A[MHB_STAGES][MHB_STAGES], inverse[MHB_STAGES][MHB_STAGES]; /* of A */
   double basis[MHB_STAGES][MHB_STAGES]; /* [j][m] l_j = sum_m basis tau^m/m! */
@@ -25,9 +29,9 @@ typedef struct {
 
 void mhb_radau_create(mhb_radau *radau);
 
-/* Coefficients of the modes for one step: rows of [modes]. */
+/* Coefficients of the modes for one step, rows of [modes]. */
 typedef enum {
-  MHB_STAGE_Z, /* [stage] of w_i by z and by z' */
+  MHB_STAGE_Z, /* [stage] w_i by z and by z' */
   MHB_STAGE_V = MHB_STAGE_Z + MHB_STAGES,
   MHB_END_Z   = MHB_STAGE_V + MHB_STAGES, /* z at the end by z, z', f_j */
   MHB_END_V,
@@ -39,36 +43,38 @@ typedef enum {
   MHB_MODAL_STEP_ROWS = MHB_MOMENT + 5
 } mhb_modal_step_row;
 
-/* The structure as the steps use it. */
+/* The structure in the layout of the steps. */
 typedef struct {
   mhb_radau           rule;
   mhb_modal_structure s;
   double             *shape; /* [side][3 pairs][modes] */
-  int                 slots; /* groups (the contacts of a blade's right side) that a group feels: itself, previous, next */
-  double             *moment; /* [slot][3 pairs][3 pairs][5] scratch */
+  int     n_neighbours;      /* sectors coupled to a sector: itself, previous, next. A sector is the
+ contacts on the right side of a blade */
+  double *moment;            /* [neighbour][3 pairs][3 pairs][5] scratch */
 } mhb_ring_step;
 
 /* Errors: SHB_ERR_IO no memory. */
 shb_status mhb_ring_step_create(const mhb_receptance *receptance, const mhb_settings *settings,
-                                mhb_ring_step *chain);
-void       mhb_ring_step_destroy(mhb_ring_step *chain);
+                                mhb_ring_step *ring);
+void       mhb_ring_step_destroy(mhb_ring_step *ring);
 
-/* The group in a slot of a group. */
-static inline int mhb_ring_step_sector(const mhb_ring_step *c, int group, int slot) {
+/* Number of a neighbour of a sector. */
+static inline int mhb_ring_step_sector(const mhb_ring_step *c, int sector, int neighbour) {
   int n = c->s.blades;
-  return slot == 0 ? group : slot == 1 ? (group + n - 1) % n : (group + 1) % n;
+  return neighbour == 0 ? sector : neighbour == 1 ? (sector + n - 1) % n : (sector + 1) % n;
 }
 
 typedef struct {
   double  h;          /* s */
   double *mode;       /* [MHB_MODAL_STEP_ROWS][modes] */
-  double *compliance; /* [slot][pair][pair by][9 (stage, axis)][9 by]: w - R p by p, m/N */
+  double *compliance; /* [neighbour][pair][pair by][9 (stage, axis)][9 by]: w_i - R p_i by p, m/N */
   double *stick;      /* [pair][9][9] factored matrix of a stuck contact */
-  int    *pivot;      /* [pair][9]; pivot[9 pair] < 0: not made yet */
+  int    *pivot;      /* [pair][9]; pivot[9 pair] < 0: not factored yet */
 } mhb_modal_step;
 
-shb_status mhb_modal_step_create(const mhb_ring_step *chain, mhb_modal_step *span);
-void       mhb_modal_step_destroy(mhb_modal_step *span);
-void       mhb_modal_step_length(const mhb_ring_step *chain, double h, mhb_modal_step *span);
+shb_status mhb_modal_step_create(const mhb_ring_step *ring, mhb_modal_step *step);
+void       mhb_modal_step_destroy(mhb_modal_step *step);
+/* Set all coefficients for a step of h seconds. */
+void mhb_modal_step_length(const mhb_ring_step *ring, double h, mhb_modal_step *step);
 
 #endif

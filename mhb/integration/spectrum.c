@@ -1,92 +1,119 @@
 #include "mhb/integration/spectrum.h"
 
+#include <complex.h>
+#include <fftw3.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "mesh/base/constants.h"
+/* Peaks below this share of the largest so far are no lines. */
+static const double SMALLEST = 1e-4;
 
-/* Motion of the first contact at the ends of nominal steps. */
-typedef struct {
-  int     period, room;
-  double *u; /* [3][room] */
-} tape;
-
-static void keep(void *context, const mhb_integrator *g, double t0, double h) {
-  tape  *t    = context;
-  double step = (t0 + h) / g->nominal.h, at = round(step);
-  int    i = t->period * g->steps + (int)at - 1;
-  if (fabs(step - at) > 1e-6 || at < 1 || i >= t->room) return;
-  for (int c = 0; c < 3; c++) t->u[c * t->room + i] = g->step[0].u[3 * (MHB_STAGES - 1) + c];
-}
-
-/* Less its mean, weighted by Hann's window; the mean square that is left. */
-static double prepare(int n, double *x) {
-  double mean = 0, size = 0;
+/* x <- x without its mean, times Hann's window. Returns the mean square that is left. */
+static double apply_window(int n, double *x) {
+  double mean = 0, square = 0;
   for (int i = 0; i < n; i++) mean += x[i] / n;
   for (int i = 0; i < n; i++) {
-    x[i] = (x[i] - mean) * (1 - cos(SHB_TWO_PI * (i + .5) / n));
-    size += x[i] * x[i] / n;
+    x[i] = (x[i] - mean) * (1 - cos(SHB_TWO_PI * (i + 0.5) / n));
+    square += x[i] * x[i] / n;
   }
-  return size;
+  return square;
 }
 
-static double amplitude_at(int n, const double *x, int bin) {
-  double complex sum = 0, turn = cexp(-SHB_TWO_PI * I * bin / n), phase = 1;
-  for (int i = 0; i < n; i++) {
-    sum += x[i] * phase;
-    phase *= turn;
+/* Amplitudes of the bins of x[n], [n/2 + 1]; the first is zero. To be freed; NULL: no memory. */
+static double *bin_amplitudes(int n, double *x) {
+  int             bins = n / 2 + 1;
+  double         *a    = malloc(sizeof *a * (size_t)bins);
+  double complex *X    = fftw_alloc_complex((size_t)bins);
+  fftw_plan       plan = NULL;
+#pragma omp critical(fftw_planner)
+  if (a && X) plan = fftw_plan_dft_r2c_1d(n, x, X, FFTW_ESTIMATE | FFTW_PRESERVE_INPUT);
+  if (plan) {
+    fftw_execute(plan);
+    for (int k = 0; k < bins; k++) a[k] = k ? 2 * cabs(X[k]) / n : 0;
+  } else {
+    free(a);
+    a = NULL;
   }
-  return 2 * cabs(sum) / n;
+#pragma omp critical(fftw_planner)
+  fftw_destroy_plan(plan);
+  fftw_free(X);
+  return a;
 }
 
-/* A line at bin k between its neighbours, into the list if it is among the largest. */
-static void add_line(const double a[3], double bin, double width, double *frequency,
+/* A line at a bin with amplitudes a[-1], a[0], a[1] around it, into the sorted list. */
+static void add_line(const double *a, double bin, double width, double *frequency,
                      double *amplitude) {
   int at = MHB_SPECTRUM_LINES;
-  while (at > 0 && amplitude[at - 1] < a[1]) at--;
+  while (at > 0 && amplitude[at - 1] < a[0]) at--;
   if (at == MHB_SPECTRUM_LINES) return;
   size_t behind = (size_t)(MHB_SPECTRUM_LINES - 1 - at) * sizeof(double);
   memmove(frequency + at + 1, frequency + at, behind);
   memmove(amplitude + at + 1, amplitude + at, behind);
-  /* Hann's main lobe: the larger neighbour tells how far off the bin the line is */
-  double side = fmax(a[0], a[2]), off = (2 * side - a[1]) / (side + a[1]);
-  frequency[at] = (bin + (a[2] > a[0] ? off : -off)) * width;
-  amplitude[at] = a[1];
+  /* Hann's main lobe: offset of the line from the bin, by the larger neighbour */
+  double side = fmax(a[-1], a[1]), offset = (2 * side - a[0]) / (side + a[0]);
+  frequency[at] = (bin + (a[1] > a[-1] ? offset : -offset)) * width;
+  amplitude[at] = a[0];
 }
 
-static void find_lines(int n, const double *x, int top, double width, double *frequency,
-                       double *amplitude) {
-  double a[3] = {0, 0, amplitude_at(n, x, 1)}, largest = 0;
-  for (int bin = 1; bin <= top; bin++) {
-    a[0] = a[1];
-    a[1] = a[2];
-    a[2] = amplitude_at(n, x, bin + 1);
-    if (a[1] < a[0] || a[1] < a[2]) continue;
-    largest = fmax(largest, a[1]);
-    if (a[1] > 1e-4 * largest) add_line(a, bin, width, frequency, amplitude);
+/* The lines of windowed samples. */
+static int find_lines(int n, double *x, double duration, int top, double *frequency,
+                      double *amplitude) {
+  double *a = bin_amplitudes(n, x), largest = 0;
+  if (!a) return 0;
+  for (int bin = 1; bin <= top && bin < n / 2; bin++) {
+    if (a[bin] < a[bin - 1] || a[bin] < a[bin + 1]) continue;
+    largest = fmax(largest, a[bin]);
+    if (a[bin] > SMALLEST * largest) add_line(a + bin, bin, 1 / duration, frequency, amplitude);
   }
+  free(a);
+  return 1;
+}
+
+static void clear_lines(double *frequency, double *amplitude) {
+  memset(frequency, 0, sizeof(double) * MHB_SPECTRUM_LINES);
+  memset(amplitude, 0, sizeof(double) * MHB_SPECTRUM_LINES);
+}
+
+int mhb_spectrum_lines(int n, double *x, double duration, int top, double *frequency,
+                       double *amplitude) {
+  clear_lines(frequency, amplitude);
+  apply_window(n, x);
+  return find_lines(n, x, duration, top, frequency, amplitude);
+}
+
+/* Motion of contact 0 at the ends of nominal steps. */
+typedef struct {
+  int     period, n; /* now; samples of all periods */
+  double *u;         /* [3][n] */
+} recording;
+
+static void record(void *context, const mhb_integrator *g, double t0, double h) {
+  recording *r    = context;
+  double     step = (t0 + h) / g->nominal.h, whole = round(step);
+  int        i = r->period * g->steps + (int)whole - 1;
+  if (fabs(step - whole) > 1e-6 || whole < 1 || i >= r->n) return;
+  for (int c = 0; c < 3; c++) r->u[c * r->n + i] = g->step[0].u[3 * (MHB_STAGES - 1) + c];
 }
 
 int mhb_spectrum(mhb_integrator *g, int periods, double *frequency, double *amplitude) {
-  int    n = periods * g->steps, best = 0, found = 1;
-  tape   t = {0, n, calloc(3 * (size_t)n, sizeof(double))};
-  double size[3];
-  memset(frequency, 0, sizeof(double) * MHB_SPECTRUM_LINES);
-  memset(amplitude, 0, sizeof(double) * MHB_SPECTRUM_LINES);
-  if (!t.u) return 0;
-  g->watch   = keep;
-  g->context = &t;
-  for (; t.period < periods && found; t.period++) found = mhb_integrator_period(g);
+  int       n = periods * g->steps, largest = 0, found = 1;
+  recording r = {0, n, calloc(3 * (size_t)n, sizeof(double))};
+  double    square[3];
+  clear_lines(frequency, amplitude);
+  if (!r.u) return 0;
+  g->watch   = record;
+  g->context = &r;
+  for (; r.period < periods && found; r.period++) found = mhb_integrator_period(g);
   g->watch = NULL;
   for (int c = 0; c < 3; c++) {
-    size[c] = prepare(n, t.u + c * n);
-    if (size[c] > size[best]) best = c;
+    square[c] = apply_window(n, r.u + c * n);
+    if (square[c] > square[largest]) largest = c;
   }
-  int top = 10 * periods * g->settings.subharmonics;
   if (found)
-    find_lines(n, t.u + best * n, top < n / 2 - 1 ? top : n / 2 - 1, 1 / (periods * g->period),
-               frequency, amplitude);
-  free(t.u);
+    found = find_lines(n, r.u + largest * n, periods * g->period,
+                       10 * periods * g->settings.subharmonics, frequency, amplitude);
+  free(r.u);
   return found;
 }

@@ -1,4 +1,4 @@
-/* The lines of a motion that does not repeat itself. */
+/* Largest lines of a motion that does not repeat itself. */
 #ifndef MHB_INTEGRATION_SPECTRUM_H
 #define MHB_INTEGRATION_SPECTRUM_H
 
@@ -6,10 +6,20 @@
 
 enum { MHB_SPECTRUM_LINES = 8 };
 
-/* Go on for a number of periods of the fundamental and tell the largest lines of the contact motion that is largest, up to ten
- * times the excitation's frequency.
- *   frequency, amplitude  out  [MHB_SPECTRUM_LINES] Hz, m, largest first; 0: there are no more
- * Resolution: 2/(periods x period) (Hann's window). 0: the forces of a step were not found, or no memory. */
+/* Largest lines of a signal, by a Fourier transform with Hann's window.
+ *   x                     inout  [n] samples; left without mean, windowed
+ *   duration              in     s, of all n samples
+ *   top                   in     highest bin, at most n/2 - 1; a bin is 1/duration wide
+ *   frequency, amplitude  out    [MHB_SPECTRUM_LINES] Hz, unit of x; largest first, then zeros
+ * Frequencies are interpolated between the bins; lines less than 2/duration apart are not resolved.
+ * Returns 0 without memory. */
+int mhb_spectrum_lines(int n, double *x, double duration, int top, double *frequency,
+                       double *amplitude);
+
+/* Integrate over a number of periods of the fundamental; lines of the axis of contact 0 that moves
+ * most, up to ten times the excitation's frequency.
+ *   frequency, amplitude  out  [MHB_SPECTRUM_LINES] Hz, m, as above
+ * Returns 0 without memory, or if the forces of a step were not found. */
 int mhb_spectrum(mhb_integrator *integrator, int periods, double *frequency, double *amplitude);
 
 #endif

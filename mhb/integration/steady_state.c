@@ -5,10 +5,9 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
-
 enum { S = MHB_STAGES, HISTORY = 2 * MHB_STEADY_STATE_MULTIPLE + 1, TREND = 8 };
 
-/* How far apart, in tolerances, the periods of a motion of higher order are at least. */
+/* Least distance, in tolerances, of the periods of a motion of higher order. */
 static const double APART = 1e3;
 
 struct mhb_steady_state {
@@ -37,7 +36,7 @@ double mhb_steady_state_distance(const mhb_integrator *g, const double *a, const
   int    n     = g->blades * g->modes;
   double apart = 0, size = free_size(g), friction = 0, force = 0;
   for (int k = 0; k < n; k++) {
-    double w = g->chain.s.omega[k % g->modes], dz = a[k] - b[k], dv = (a[n + k] - b[n + k]) / w;
+    double w = g->ring.s.omega[k % g->modes], dz = a[k] - b[k], dv = (a[n + k] - b[n + k]) / w;
     apart += dz * dz + dv * dv;
     size += b[k] * b[k] + b[n + k] * b[n + k] / (w * w);
   }
@@ -72,32 +71,32 @@ static void fourier_moments(double x, double complex J[S]) {
 
 static void record(void *context, const mhb_integrator *g, double t0, double h) {
   mhb_steady_state *o = context;
-  const mhb_radau  *r = &g->chain.rule;
+  const mhb_radau  *r = &g->ring.rule;
   int               n = 3 * g->contacts;
   for (int k = 0; k <= o->result.n_harmonics; k++) {
     double         w = SHB_TWO_PI * k / g->period;
-    double complex J[S], weight[S] = {0}, turn = cexp(-I * w * t0) * h * (k ? 2 : 1) / g->period;
+    double complex J[S], weight[S] = {0}, phase = cexp(-I * w * t0) * h * (k ? 2 : 1) / g->period;
     fourier_moments(w * h, J);
     for (int j = 0; j < S; j++)
-      for (int m = 0; m < S; m++) weight[j] += turn * r->basis[j][m] * J[m];
+      for (int m = 0; m < S; m++) weight[j] += phase * r->basis[j][m] * J[m];
     for (int i = 0; i < n; i++)
       for (int j = 0; j < S; j++)
         o->force[k * n + i] += weight[j] * g->step[i / 3].p[3 * j + i % 3];
   }
   for (int c = 0; c < g->contacts; c++) {
-    o->share[3 * c + (int)g->rub[c].state] += h / g->period;
-    for (int j = 0; j < S && g->rub[c].state == MHB_SLIDE; j++)
+    o->share[3 * c + (int)g->point[c].state] += h / g->period;
+    for (int j = 0; j < S && g->point[c].state == MHB_SLIDE; j++)
       o->work[c] +=
           r->A[S - 1][j] * g->step[c].kappa[j] * g->law[c % g->pairs].mu * g->step[c].n[j];
   }
 }
 
-/* Harmonic k of z of a blade's mode, from the equation of motion integrated with exp(-jkwt): exact, whether or not the end
- * is like the start. */
+/* Harmonic k of a mode of a blade, by the equation of motion integrated with exp(-jkwt): exact even
+ * if the end differs from the start. */
 static double complex mode_harmonic(const mhb_steady_state *o, int k, int blade, int i,
                                     const double *z0) {
   const mhb_integrator      *g = o->g;
-  const mhb_modal_structure *s = &g->chain.s;
+  const mhb_modal_structure *s = &g->ring.s;
   int            m = g->modes, n3 = 3 * g->pairs, at = blade * m + i, modal = g->blades * m;
   double         w    = SHB_TWO_PI * k / g->period;
   double complex rise = (g->z[modal + at] - z0[modal + at]) +
@@ -106,7 +105,7 @@ static double complex mode_harmonic(const mhb_steady_state *o, int k, int blade,
   for (int side = 0; side < s->sides; side++) {
     const double complex *p =
         o->force + k * 3 * g->contacts + 3 * mhb_modal_structure_contact(s, blade, side);
-    for (int r = 0; r < n3; r++) force -= g->chain.shape[(side * n3 + r) * m + i] * p[r];
+    for (int r = 0; r < n3; r++) force -= g->ring.shape[(side * n3 + r) * m + i] * p[r];
   }
   return g->receptance->lambda[k * m + i] * force;
 }
@@ -118,20 +117,20 @@ static void set_motion(mhb_steady_state *o, int k, const double *z0) {
   int m = g->modes, n3 = 3 * g->pairs, n = 3 * g->contacts, K = o->result.n_harmonics + 1;
   for (int row = 0; row < n3; row++) {
     double complex u = r->free[k * n3 + row];
-    for (int c = 0; g->chain.s.flexibility && c < n; c++)
-      u -= g->chain.s.flexibility[row * n + c] * o->force[k * n + c];
+    for (int c = 0; g->ring.s.flexibility && c < n; c++)
+      u -= g->ring.s.flexibility[row * n + c] * o->force[k * n + c];
     o->result.motion[row * K + k] = u;
     o->result.force[row * K + k]  = o->force[k * n + row];
   }
   for (int i = 0; i < m; i++)
-    for (int side = 0; side < g->chain.s.sides; side++) {
+    for (int side = 0; side < g->ring.s.sides; side++) {
       double complex z = mode_harmonic(o, k, side, i, z0); /* blade 1 to the right, its left side */
       for (int row = 0; row < n3; row++)
-        o->result.motion[row * K + k] += g->chain.shape[(side * n3 + row) * m + i] * z;
+        o->result.motion[row * K + k] += g->ring.shape[(side * n3 + row) * m + i] * z;
     }
 }
 
-/* Probes of blade 0: those of the wave with these forces, and what the modes lack to it. */
+/* Probes of blade 0: those of the wave with these forces, and the modes' difference from it. */
 static void set_probes(mhb_steady_state *o, int k, const double *z0) {
   const mhb_integrator *g = o->g;
   const mhb_receptance *r = g->receptance;
@@ -139,10 +138,10 @@ static void set_probes(mhb_steady_state *o, int k, const double *z0) {
   double complex       *p = o->force + k * 3 * g->contacts, motion[q + 1];
   mhb_receptance_probe(r, k, p, motion);
   for (int i = 0; i < m; i++) {
-    double complex lacks = mode_harmonic(o, k, 0, i, z0), wave = 0;
+    double complex difference = mode_harmonic(o, k, 0, i, z0), wave = 0;
     for (int row = 0; row < r->n; row++) wave -= conj(r->B[(k * r->n + row) * m + i]) * p[row];
-    lacks -= r->lambda[k * m + i] * wave;
-    for (int s = 0; s < q; s++) motion[s] += r->model->probe[s * m + i] * lacks;
+    difference -= r->lambda[k * m + i] * wave;
+    for (int s = 0; s < q; s++) motion[s] += r->model->probe[s * m + i] * difference;
   }
   for (int s = 0; s < q; s++) o->result.probe[s * K + k] = motion[s];
 }
@@ -150,7 +149,7 @@ static void set_probes(mhb_steady_state *o, int k, const double *z0) {
 /* One more period, recorded. */
 static int record_period(mhb_steady_state *o) {
   mhb_integrator *g  = o->g;
-  double         *z0 = o->history; /* no longer needed */
+  double         *z0 = o->history; /* its states are no longer needed */
   size_t          n  = 3 * (size_t)g->contacts;
   memset(o->force, 0, sizeof *o->force * n * ((size_t)o->result.n_harmonics + 1));
   memset(o->share, 0, sizeof(double) * n);
@@ -176,7 +175,8 @@ static double *state_at(const mhb_steady_state *o, int period) {
   return o->history + (size_t)(period % HISTORY) * (size_t)mhb_integrator_size(o->g);
 }
 
-/* Whether the motion repeats after `multiple` periods, within the tolerance of where it is going. */
+/* Whether the motion repeats after `multiple` periods, with the distance to go below the
+ * tolerance. */
 static int repeats(mhb_steady_state *o, int period, int multiple, double tolerance) {
   if (period < multiple) return 0;
   double *trend = o->distance + (multiple - 1) * TREND;
@@ -186,7 +186,8 @@ static int repeats(mhb_steady_state *o, int period, int multiple, double toleran
   if (multiple == 1) o->result.distance = d;
   if (d < 1e-14) return 1;
   if (period < multiple + TREND || !(d < tolerance)) return 0;
-  if (multiple > 1 && o->result.distance < APART * tolerance) return 0; /* it goes to order one */
+  if (multiple > 1 && o->result.distance < APART * tolerance)
+    return 0;                                            /* it converges to order one */
   double rate = pow(d / past, (double)multiple / TREND); /* over `multiple` periods */
   return rate < 1 && d / (1 - rate) < tolerance;
 }
@@ -196,12 +197,12 @@ const mhb_steady_state_result *mhb_steady_state_run(mhb_steady_state            
                                                     int (*go_on)(void *), void *context) {
   mhb_integrator          *g = o->g;
   mhb_steady_state_result *r = &o->result;
-  r->multiple = r->lost = r->periods = 0;
-  r->distance                        = INFINITY;
+  r->multiple = r->failed = r->periods = 0;
+  r->distance                          = INFINITY;
   mhb_integrator_get(g, state_at(o, 0));
   while (!r->multiple && r->periods < settings->max_periods) {
     if (!mhb_integrator_period(g)) {
-      r->lost = 1;
+      r->failed = 1;
       return r;
     }
     r->periods++;
@@ -211,7 +212,7 @@ const mhb_steady_state_result *mhb_steady_state_run(mhb_steady_state            
     if (go_on && !go_on(context)) break;
   }
   if (r->multiple > 1) r->distance = o->distance[(r->multiple - 1) * TREND + r->periods % TREND];
-  r->lost = !record_period(o);
+  r->failed = !record_period(o);
   return r;
 }
 

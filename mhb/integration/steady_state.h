@@ -1,7 +1,8 @@
-/* Time integration until the motion repeats itself, and what the last period was.
+/* Time integration until the motion repeats itself, and the harmonics of its last period.
  *
- * The return map is compared with up to MHB_STEADY_STATE_MULTIPLE periods of the fundamental before: a motion that comes back after
- * two is periodic of order two. What is still to come is estimated from how fast the distance falls, d/(1 - rate). */
+ * The state is compared with that of up to MHB_STEADY_STATE_MULTIPLE periods of the fundamental
+ * before: a motion that returns after two is periodic of order two. The distance still to go is
+ * estimated from the rate at which the distance of the states decreases, d/(1 - rate). */
 #ifndef MHB_INTEGRATION_STEADY_STATE_H
 #define MHB_INTEGRATION_STEADY_STATE_H
 
@@ -17,9 +18,9 @@ typedef struct {
 /* The last period of the fundamental; contacts and probes of blade 0. */
 typedef struct {
   int    n_harmonics, n_pairs, n_probes;
-  int    multiple; /* the motion repeats after so many periods; 0: it does not */
-  int    lost;     /* the forces of a step were not found: nothing else is valid */
-  int    periods;  /* that were integrated */
+  int    multiple; /* periods after which the motion repeats; 0: it does not */
+  int    failed;   /* 1: the forces of a step were not found, nothing else is valid */
+  int    periods;  /* number integrated */
   double distance; /* of the return map, relative; after `multiple` periods, or after one */
   double complex *motion, *force, *probe; /* [pair][3][k], [probe][3][k] as in the response file */
   double         *state, *dissipation;    /* [pair][3] stuck, slipping, open; [pair] J */
@@ -27,17 +28,19 @@ typedef struct {
 
 typedef struct mhb_steady_state mhb_steady_state; /* workspace */
 
-/* Outputs with the integrator's n_harmonics. SHB_ERR_IO: no memory. The integrator must outlive it. */
-shb_status mhb_steady_state_create(mhb_integrator *integrator, mhb_steady_state **orbit);
-void       mhb_steady_state_destroy(mhb_steady_state *orbit);
+/* Outputs with the integrator's n_harmonics. SHB_ERR_IO: no memory. The integrator must outlive
+ * it. */
+shb_status mhb_steady_state_create(mhb_integrator *integrator, mhb_steady_state **steady);
+void       mhb_steady_state_destroy(mhb_steady_state *steady);
 
-/* Integrate from the integrator's state. go_on: asked after every period, NULL: never stops. */
-const mhb_steady_state_result *mhb_steady_state_run(mhb_steady_state                *orbit,
+/* Integrate from the integrator's state. go_on: called after every period, returns 0 to stop; or
+ * NULL. */
+const mhb_steady_state_result *mhb_steady_state_run(mhb_steady_state                *steady,
                                                     const mhb_steady_state_settings *settings,
                                                     int (*go_on)(void *), void *context);
 
-/* Distance of two states [mhb_integrator_size]: of the modes relative to the second and the motion without contact, or of the
- * friction relative to the largest force, whichever is larger. */
+/* Distance of two states [mhb_integrator_size]. The larger one of: modes, relative to b and the
+ * motion without contact; friction, relative to the largest force. */
 double mhb_steady_state_distance(const mhb_integrator *integrator, const double *a,
                                  const double *b);
 

@@ -4,7 +4,7 @@
 
 #include <stddef.h>
 
-#include "mhb/response/response.h"
+#include "mhb/response/response_types.h"
 #include "modal/hdf5/h5.h"
 
 typedef enum { MHB_DOUBLE, MHB_COMPLEX, MHB_INT } mhb_number;

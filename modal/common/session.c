@@ -15,7 +15,7 @@ shb_status modal_session_start(int *argc, char ***argv, modal_session *session) 
   session->fault   = false;
   SHB_CHECK(SlepcInitialize(argc, argv, NULL, NULL) == 0, SHB_ERR_IO, "PETSc did not start");
   PetscPopSignalHandler();
-  PetscPushErrorHandler(fem_fault_handler, &session->fault);
+  PetscPushErrorHandler(fem_petsc_error_handler, &session->fault);
   MPI_Comm_rank(PETSC_COMM_WORLD, &session->rank);
   MPI_Comm_size(PETSC_COMM_WORLD, &session->n_ranks);
   return SHB_OK;

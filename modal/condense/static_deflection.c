@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "fem/body/tangent.h"
 #include "fem/solver/petsc_error.h"
 #include "modal/common/phases.h"
 #include "modal/common/session.h"

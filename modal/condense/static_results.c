@@ -27,7 +27,7 @@ static shb_status fill(const fem_body *body, const double *u, bool *is_clamped,
   const mesh_fe *mesh = body->mesh;
   FEM_PETSC(fem_nodal_stress(body, u, out->stress));
   for (int i = 0; i < mesh->n_nodes; i++) out->von_mises[i] = fem_von_mises(out->stress[i]);
-  FEM_PETSC(fem_balance(body, u, balance, out->load));
+  FEM_PETSC(fem_unbalanced_forces(body, u, balance, out->load));
   find_clamped(mesh, is_clamped);
   for (int i = 0; i < mesh->n_nodes; i++) { /* clamped nodes do not move */
     if (!is_clamped[i]) continue;

@@ -79,7 +79,7 @@ static PetscErrorCode configure(const fem_system *system, const modal_eigen_sett
   PetscCall(STGetKSP(st, &ksp));
   PetscCall(KSPSetType(ksp, KSPPREONLY));
   PetscCall(KSPGetPC(ksp, &pc));
-  PetscCall(fem_factor_serve(eigen->factor, pc));
+  PetscCall(fem_factor_set_pc(eigen->factor, pc));
   PetscCall(EPSSetFromOptions(eps));
   PetscFunctionReturn(0);
 }
@@ -110,7 +110,7 @@ static PetscErrorCode factorise(const fem_system *system, const modal_eigen_sett
   PetscCall(create_shifted(system, settings->shift, &A));
   PetscCall(fem_factor_create(A, extra_memory(system, settings->modes), &eigen->factor));
   modal_phase(system->comm, settings->progress, "analysis", "%s, %.3g GB foreseen",
-              fem_factor_by(eigen->factor), 1e-9 * fem_factor_foreseen(eigen->factor));
+              fem_factor_program(eigen->factor), 1e-9 * fem_factor_bytes(eigen->factor));
   PetscCall(fem_factor_update(eigen->factor, A, &definite));
   PetscCall(MatDestroy(&A));
   PetscCheck(definite, system->comm, PETSC_ERR_USER_INPUT,

@@ -242,7 +242,7 @@ static shb_status solve_body(MPI_Comm comm, const mesh_fe *mesh, const modal_set
   for (int i = 0; i < settings->n_regions; i++) materials[i] = settings->region[i].material;
   fem_body body = {mesh, materials, element, {settings->axis, settings->speed}, settings->pressure};
   fem_rules  rules  = settings->full_integration ? FEM_FULL : FEM_STANDARD;
-  shb_status status = fem_fault_status(fem_element_create(mesh->kind, rules, element));
+  shb_status status = fem_petsc_status(fem_element_create(mesh->kind, rules, element));
   if (status == SHB_OK) status = solve(comm, &body, settings, to, progress, result);
   free(element);
   return status;

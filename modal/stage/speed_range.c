@@ -105,7 +105,7 @@ static shb_status track(Mat before, int s, modal_result *r, modal_speeds *out) {
   }
   free(C);
   free(next);
-  return fem_fault_status(code);
+  return fem_petsc_status(code);
 }
 
 static PetscErrorCode copy_shapes(const modal_result *r, Mat *before) {
@@ -133,10 +133,10 @@ static shb_status solve_speed(MPI_Comm comm, const mesh_fe *mesh, const modal_se
   shb_progress_note(progress, "speed %d of %d: %.6g rad/s", s + 1, out->n, settings_here.speed);
   shb_status status = modal_solve(comm, mesh, &settings_here, progress, &now);
   if (status == SHB_OK) status = track(shapes[1], s, &now, out);
-  if (status == SHB_OK) status = fem_fault_status(store_overlap(shapes[0], s, &now, out));
-  if (status == SHB_OK && s == 0) status = fem_fault_status(copy_shapes(&now, &shapes[0]));
-  if (status == SHB_OK) status = fem_fault_status(copy_shapes(&now, &shapes[1]));
-  if (status == SHB_OK) status = fem_fault_status(drop_factor(&now));
+  if (status == SHB_OK) status = fem_petsc_status(store_overlap(shapes[0], s, &now, out));
+  if (status == SHB_OK && s == 0) status = fem_petsc_status(copy_shapes(&now, &shapes[0]));
+  if (status == SHB_OK) status = fem_petsc_status(copy_shapes(&now, &shapes[1]));
+  if (status == SHB_OK) status = fem_petsc_status(drop_factor(&now));
   if (status == SHB_OK) out->model[s] = now.model; /* moved, or shared with result */
   if (status == SHB_OK && settings_here.speed == settings->speed) {
     *result = now;

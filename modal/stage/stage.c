@@ -5,6 +5,8 @@
 
 #include "fem/body/partition.h"
 #include "fem/solver/petsc_error.h"
+#include "mesh/core/group_checks.h"
+#include "mesh/io/read.h"
 #include "modal/common/phases.h"
 #include "modal/common/session.h"
 #include "modal/stage/model_export.h"
@@ -75,7 +77,7 @@ static shb_status read_mesh(const char *path, const modal_settings *settings, me
     names.more[i].label = names.more[i].name = settings->group[i];
   for (int i = 0; i < settings->n_regions; i++)
     names.volume[i].label = names.volume[i].name = settings->region[i].name;
-  SHB_TRY(mesh_fe_read_named(path, &names, mesh));
+  SHB_TRY(mesh_fe_read(path, &names, mesh));
   SHB_TRY(mesh_fe_check_groups(mesh, path));
   for (int i = 0; i < settings->n_contacts && !settings->to_ground; i++) {
     int right = mesh_fe_set_named(mesh, settings->contact[i].right);
@@ -122,7 +124,7 @@ shb_status modal_stage(MPI_Comm comm, const char *mesh_path, const char *out_pat
   MPI_Comm_rank(comm, &rank);
   shb_progress_show(progress, 0, "reading %s", mesh_path);
   shb_status status = modal_agree(comm, rank == 0 ? read_mesh(mesh_path, settings, &mesh) : SHB_OK);
-  if (status == SHB_OK) status = fem_fault_status(fem_mesh_broadcast(comm, &mesh));
+  if (status == SHB_OK) status = fem_petsc_status(fem_mesh_broadcast(comm, &mesh));
   if (status == SHB_OK)
     modal_phase(comm, progress, "mesh", "%d nodes, %d elements", mesh.n_nodes, mesh.n_elements);
   if (status == SHB_OK) status = run(comm, rank, out_path, &mesh, settings, provenance, progress);

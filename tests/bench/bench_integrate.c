@@ -88,7 +88,7 @@ static row integrate(const scene *s, int steps, double tolerance, int rest,
     const mhb_steady_state_result *r = mhb_steady_state_run(orbit, &settings, NULL, NULL);
     seconds[i]                       = shb_seconds() - began;
     first_harmonics(r, out ? out[i] : u);
-    if (r->lost || r->multiple != 1) worst = INFINITY;
+    if (r->failed || r->multiple != 1) worst = INFINITY;
     if (!out) worst = fmax(worst, error_of(s, i, u));
   }
   mhb_steady_state_destroy(orbit);

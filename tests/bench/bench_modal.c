@@ -20,10 +20,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "mesh/io/inp_read.h"
+#include "mesh/io/inp_write.h"
 #include "modal/common/session.h"
 #include "modal/eigen/eigen.h"
 #include "tests/bench/z_notch.h"
+#include "tests/support/read_mesh.h"
 
 enum { MODES = 20 };
 
@@ -78,7 +79,7 @@ static void write_step(const char *path) {
 static bool make_mesh(const rung *r, figures *out) {
   mesh_fe mesh = {0};
   if (z_notch_write(MESH_TET10, &r->sizes, "blade.msh") != SHB_OK) return false;
-  if (mesh_fe_read("blade.msh", &mesh) != SHB_OK) return false;
+  if (read_mesh("blade.msh", &mesh) != SHB_OK) return false;
   if (mesh_inp_write(&mesh, "blade.inp") != SHB_OK) return false;
   write_step("blade.inp");
   out->nodes = mesh.n_nodes;
@@ -110,7 +111,7 @@ static bool run_own(const rung *r, figures *out) {
   mesh_fe       mesh = {0};
   (void)r;
   if (modal_session_start(&count, &arguments, &session) != SHB_OK) return false;
-  bool good = mesh_fe_read("blade.msh", &mesh) == SHB_OK && find_modes(&mesh, out) == 0;
+  bool good = read_mesh("blade.msh", &mesh) == SHB_OK && find_modes(&mesh, out) == 0;
   if (!good) fprintf(stderr, "bench_modal: %s\n", shb_message());
   mesh_fe_free(&mesh);
   modal_session_end(&session, good ? SHB_OK : SHB_ERR_IO);

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "mesh/blade/blade.h"
+#include "tests/support/read_mesh.h"
 
 static mesh_blade make_blade(mesh_kind kind, const z_notch_sizes *s) {
   const double       degree     = acos(-1) / 180;
@@ -44,7 +45,7 @@ shb_status z_notch_mesh(mesh_kind kind, const z_notch_sizes *sizes, mesh_fe *mes
   SHB_CHECK(handle >= 0, SHB_ERR_IO, "%s: cannot be made", path);
   close(handle);
   shb_status status = z_notch_write(kind, sizes, path);
-  if (status == SHB_OK) status = mesh_fe_read(path, mesh);
+  if (status == SHB_OK) status = read_mesh(path, mesh);
   unlink(path);
   return status;
 }

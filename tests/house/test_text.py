@@ -24,12 +24,12 @@ FOLDERS = ('.ci', 'mesh', 'fem', 'modal', 'mhb', 'postproc', 'cases', 'tests', '
 NOT_YET = {
     'width': '''
         fem fem/body fem/element fem/solver mesh mesh/base mesh/blade mesh/core mesh/gmsh mesh/io
-        mhb/balance mhb/branches mhb/contact mhb/continuation mhb/floquet mhb/integration
+        mhb/balance mhb/contact mhb/floquet mhb/integration
         mhb/numerics mhb/problem mhb/response mhb/structure modal modal/common modal/condense
         modal/eigen modal/hdf5 modal/model modal/stage postproc postproc/analysis postproc/draw
         postproc/inspect postproc/report tests/fem/body tests/fem/element tests/fem/solver
         tests/mesh/blade tests/mesh/core tests/mesh/gmsh tests/mesh/io tests/mhb/balance
-        tests/mhb/branches tests/mhb/contact tests/mhb/continuation tests/mhb/floquet
+        tests/mhb/contact tests/mhb/floquet
         tests/mhb/integration tests/mhb/problem tests/mhb/response tests/mhb/structure
         tests/modal/common tests/modal/condense tests/modal/eigen tests/modal/hdf5
         tests/modal/model tests/modal/stage tests/postproc/analysis tests/postproc/draw
@@ -37,11 +37,11 @@ NOT_YET = {
     '''.split(),
     'sentences': '''
         fem/body fem/element fem/solver mesh/base mesh/blade mesh/core mesh/gmsh mesh/io
-        mhb/balance mhb/branches mhb/contact mhb/continuation mhb/floquet mhb/integration
+        mhb/balance mhb/contact mhb/floquet mhb/integration
         mhb/numerics mhb/response mhb/structure modal/common modal/condense modal/eigen modal/hdf5
         modal/model modal/stage postproc/analysis postproc/draw postproc/inspect postproc/report
         tests/fem/body tests/fem/element tests/fem/solver tests/mesh/blade tests/mesh/core
-        tests/mhb/balance tests/mhb/branches tests/mhb/contact tests/mhb/floquet
+        tests/mhb/balance tests/mhb/contact tests/mhb/floquet
         tests/mhb/integration tests/mhb/response tests/mhb/structure tests/modal/common
         tests/modal/condense tests/modal/model tests/modal/stage tests/postproc/analysis
     '''.split(),

@@ -35,9 +35,12 @@ shb_test(mhb/floquet monodromy tests_models)
 foreach(noun integrator integration_sweep)
   shb_test(mhb/integration ${noun} tests_models)
 endforeach()
-foreach(noun segment arclength linear_corrector linear_resonances nearest_solution)
+foreach(noun arclength arclength_scalar balance_curve closed_curve corrector curve event_location
+    events first_solution linear_corrector linear_resonances nearest_solution outputs
+    resonance_detection segment)
   shb_test(mhb/continuation ${noun} tests_models)
 endforeach()
-foreach(noun harmonic_selection branch_stability secondary_branches forced_response run_up)
+foreach(noun branch_completion branch_stability chain forced_response harmonic_selection multistart
+    period_doubling record run_up secondary_branches tracer)
   shb_test(mhb/branches ${noun} tests_models)
 endforeach()

@@ -10,6 +10,7 @@
 
 #include <cmocka.h>
 
+#include "fem/body/energy.h"
 #include "tests/support/box.h"
 
 const fem_material steel = {.E = 2.1e11, .nu = 0.3, .rho = 7850};
@@ -22,6 +23,27 @@ void check_close(double a, double b, double relative, const char *what) {
 
 void check_below(double a, double bound, const char *what) {
   if (!(fabs(a) <= bound)) fail_msg("%s: %.3e, wanted below %.3e", what, a, bound);
+}
+
+double tangent_energy(const fem_body *body, const double *state, const double *u) {
+  double energy;
+  fem_tangent_energies(body, state, 1, u, &energy);
+  return energy;
+}
+
+double strain_energy(const mesh_fe *mesh, const fem_material *material, const fem_element *element,
+                     const double *u) {
+  const fem_body body = {.mesh = mesh, .material = material, .element = element};
+  return tangent_energy(&body, NULL, u);
+}
+
+void isotropic_stiffness(const fem_material *material, double C[6][6]) {
+  const fem_lame lame = fem_lame_of(material);
+  memset(C, 0, 36 * sizeof(double));
+  for (int i = 0; i < 3; i++) {
+    for (int j = 0; j < 3; j++) C[i][j] = lame.lambda + (i == j ? 2 * lame.mu : 0);
+    C[3 + i][3 + i] = lame.mu;
+  }
 }
 
 static mesh_kind kind = MESH_TET10;

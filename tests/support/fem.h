@@ -2,15 +2,22 @@
 #ifndef TESTS_SUPPORT_FEM_H
 #define TESTS_SUPPORT_FEM_H
 
-#include "fem/element/material.h"
-#include "mesh/core/fe_mesh.h"
+#include "fem/body/rotating_body.h"
 
-extern const fem_material steel; /* 210 GPa, .3, 7850 kg/m3 */
+extern const fem_material steel; /* 210 GPa, 0.3, 7850 kg/m3 */
 
 /* Fails unless |a - b| <= relative |b|. */
 void check_close(double a, double b, double relative, const char *what);
 /* Fails unless |a| <= bound. */
 void check_below(double a, double bound, const char *what);
+
+/* u^T K u of one field, J: of a body about a state (NULL: at rest); of a body without loads. */
+double tangent_energy(const fem_body *body, const double *state, const double *u);
+double strain_energy(const mesh_fe *mesh, const fem_material *material, const fem_element *element,
+                     const double *u);
+
+/* Stiffness of an isotropic material, Pa: strains 11, 22, 33, 12, 13, 23, shear strains doubled. */
+void isotropic_stiffness(const fem_material *material, double C[6][6]);
 
 /* The kind of elements of the meshes made from here on; initially tetrahedra. */
 void      use_elements(mesh_kind kind);

@@ -4,26 +4,13 @@
 
 #include "mhb/balance/balance.h"
 #include "mhb/branches/main_branch.h"
-
-static bool go_on(mhb_monitor *monitor, const mhb_response *response, int branch, int point) {
-  (void)monitor;
-  (void)response;
-  (void)branch;
-  (void)point;
-  return true;
-}
-
-static bool never_due(mhb_monitor *monitor, const mhb_response *response) {
-  (void)monitor;
-  (void)response;
-  return false;
-}
+#include "tests/support/quiet_monitor.h"
 
 shb_status main_curve(const modal_model *model, const mhb_settings *s, int harmonics,
                       double *seconds, mhb_response **out) {
-  mhb_monitor  monitor = {.point = go_on, .is_due = never_due};
-  mhb_balance *balance;
-  int          branch;
+  quiet_monitor monitor = quiet_monitor_create(0);
+  mhb_balance  *balance;
+  int           branch;
   *out = NULL;
   SHB_TRY(mhb_balance_create(model, s, &balance));
   mhb_balance_set_preload(balance, s->n0[0]);
@@ -32,7 +19,7 @@ shb_status main_curve(const modal_model *model, const mhb_settings *s, int harmo
   shb_status status = *out ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   if (status == SHB_OK) status = mhb_response_branch(*out, MHB_BRANCH_NONLINEAR, &branch);
   clock_t started = clock();
-  if (status == SHB_OK) status = mhb_trace_main_branch(balance, *out, &monitor);
+  if (status == SHB_OK) status = mhb_trace_main_branch(balance, *out, &monitor.base);
   if (seconds) *seconds = (double)(clock() - started) / CLOCKS_PER_SEC;
   mhb_balance_destroy(balance);
   return status;

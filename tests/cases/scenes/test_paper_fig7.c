@@ -89,7 +89,7 @@ static void compare(balance *b, const mhb_branch *dots, int p, double error[2]) 
   mhb_reason reason = mhb_newton_solve(b->newton, b->residual, SHB_TWO_PI * dots->frequency[p],
                                        1e-11, x, &iterations);
   if (reason != MHB_CONVERGED)
-    fail_msg("%g N, %g Hz: %s", dots->n0[p], dots->frequency[p], mhb_reason_text(reason));
+    fail_msg("%g N, %g Hz: Newton ended with %d", dots->n0[p], dots->frequency[p], reason);
   mhb_balance_contact_force(b->residual, 1, force);
   mhb_receptance_probe(b->residual->receptance, 1, force, probe);
   const double complex *dot = dots->probe + (size_t)(p * 3 * K);

@@ -20,6 +20,7 @@
 #include "modal/common/session.h"
 #include "modal/eigen/eigen.h"
 #include "tests/support/check.h"
+#include "tests/support/read_mesh.h"
 #include "tests/support/scene.h"
 
 typedef struct {
@@ -125,7 +126,7 @@ static int create_body(void **state) {
   snprintf(path, sizeof path, "%s/case.yaml", folder);
   assert_ok(case_read(path, CASE_MODAL | CASE_MHB, stderr, &whole.file));
   snprintf(path, sizeof path, "%s/paper_fig8.msh", folder);
-  assert_ok(mesh_fe_read(path, &whole.mesh));
+  assert_ok(read_mesh(path, &whole.mesh));
   assert_ok(mesh_fe_orient(&whole.mesh, whole.file.axis));
   ok(fem_system_create(PETSC_COMM_SELF, &whole.mesh, &whole.file.material, FEM_STANDARD,
                        &whole.system));

@@ -1,4 +1,5 @@
-/* Assembled matrices: patch test, rigid motions, mass, clamp, preallocation; partition and floating parts. */
+/* Assembled matrices: patch test, rigid motions, mass, clamp, preallocation; partition and floating
+ * parts. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -10,7 +11,6 @@
 
 #include "fem/body/assemble.h"
 #include "fem/body/clamp_check.h"
-#include "fem/body/energy.h"
 #include "fem/body/partition.h"
 #include "tests/support/box.h"
 #include "tests/support/fem.h"
@@ -39,7 +39,7 @@ static mesh_fe free_body(void) {
   return mesh;
 }
 
-/* Constant stress: the greatest force on an inner node over the greatest on the surface. */
+/* Constant stress: the largest force on an inner node divided by the largest on the surface. */
 static double force_inside(const mesh_fe *mesh, fem_rules rules) {
   fem_system system;
   Vec        u, f;
@@ -96,7 +96,8 @@ static mesh_fe smooth_body(int finer) {
   return mesh;
 }
 
-/* Fewer points leave forces inside a body of curved elements, which fall as it is refined. */
+/* Four points leave forces inside a body of curved elements. The forces fall as the mesh is
+ * refined. */
 static void patch_test_of_curved_elements(void **state) {
   (void)state;
   double inside[2];
@@ -141,7 +142,8 @@ static void mass_and_inertia_are_exact(void **state) {
   mesh_fe_free(&mesh);
 }
 
-/* Energy from the strains is u^T K u; of a rigid motion it is nothing, where u^T K u is rounding. */
+/* The energy from the strains is u^T K u. For a rigid motion it vanishes, where u^T K u is
+ * rounding. */
 static void strain_energy_is_the_quadratic_form(void **state) {
   (void)state;
   mesh_fe      mesh    = free_body();
@@ -161,14 +163,14 @@ static void strain_energy_is_the_quadratic_form(void **state) {
   assert_int_equal(VecAssemblyEnd(x), 0);
   assert_int_equal(MatMult(system.K, x, f), 0);
   assert_int_equal(VecDot(x, f, &product), 0);
-  check_close(fem_strain_energy(&mesh, &steel, element, u), product, 1e-12, "energy");
+  check_close(strain_energy(&mesh, &steel, element, u), product, 1e-12, "energy");
   for (int i = 0; i < mesh.n_nodes; i++) {
     const double *at = mesh.coordinates + 3 * i;
     u[3 * i]         = 1 - 3 * at[1];
     u[3 * i + 1]     = 2 + 3 * at[0];
     u[3 * i + 2]     = 3;
   }
-  check_below(fem_strain_energy(&mesh, &steel, element, u), 1e-25 * product, "rigid energy");
+  check_below(strain_energy(&mesh, &steel, element, u), 1e-25 * product, "rigid energy");
   VecDestroy(&x);
   VecDestroy(&f);
   fem_system_destroy(&system);

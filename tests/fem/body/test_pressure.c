@@ -1,4 +1,4 @@
-/* A steady pressure that follows the surface: its force, its stiffness, and what it does to a body. */
+/* A steady pressure that follows the surface: its force, its stiffness and its effect on a body. */
 #include "fem/body/pressure.h"
 
 #include <math.h>
@@ -11,9 +11,9 @@
 #include <cmocka.h>
 #include <lapacke.h>
 
-#include "fem/body/energy.h"
 #include "fem/body/equilibrium.h"
 #include "fem/body/stress.h"
+#include "fem/body/tangent.h"
 #include "tests/support/box.h"
 #include "tests/support/fem.h"
 
@@ -35,8 +35,9 @@ static int make_face(fem_face_rule *rule, double x[MESH_FACE_NODES][3]) {
   return 3 * rule->nodes;
 }
 
-/* The symmetric part of central differences, whose error falls with the square of the step: the force is quadratic in x, so that they
- * are exact but for rounding; and the part that is left out is not zero on a face with an edge. */
+/* The stiffness is the symmetric part of the force's derivative. The force is quadratic in x, so
+ * central differences are exact but for rounding. On a face with an edge the skew part is not
+ * zero. */
 static void stiffness_is_the_symmetric_derivative(void **state) {
   (void)state;
   const double  p = 2.385e6, h = 1e-3;
@@ -64,8 +65,9 @@ static void stiffness_is_the_symmetric_derivative(void **state) {
   assert_true(skew > .01 * most);
 }
 
-/* Pressed at on all sides but the clamped one, the edge of the surface does not move: nothing is left out. Central differences of the
- * residual err by c h^2, K is its derivative. */
+/* With pressure on all faces but the clamped one, the edge of the surface is fixed and the
+ * stiffness is symmetric. K is then the derivative of the residual; central differences err by c
+ * h^2. */
 static void tangent_is_exact_with_a_clamped_edge(void **state) {
   (void)state;
   const double   size[3]  = {.21, .13, .08};
@@ -104,7 +106,7 @@ static void tangent_is_exact_with_a_clamped_edge(void **state) {
   assert_int_equal(fem_tangent_assemble(&body, u, &system), 0);
   MatMult(system.K, direction, slope);
   VecDot(direction, slope, &energy);
-  check_close(fem_tangent_energy(&body, u, d), energy, 1e-11, "energy");
+  check_close(tangent_energy(&body, u, d), energy, 1e-11, "energy");
   VecNorm(slope, NORM_INFINITY, &norm);
   for (int level = 0; level < 2; level++) {
     double h = .002 / (1 << level);
@@ -131,9 +133,11 @@ static void tangent_is_exact_with_a_clamped_edge(void **state) {
 
 static const double length = 1, width = .05;
 
-/* Free end of an inextensible cantilever under a force q a length that stays normal to it. From the free end back, t = length - s, in axes with
- * its tangent there along x: theta' = -M/EI, M' = cos(theta) Fy - sin(theta) Fx, F' = q (-sin(theta), cos(theta)), r' = -(cos, sin)(theta), all 0
- * at t = 0; then turned so that the clamp's tangent is along x. Classical Runge-Kutta rule. */
+/* Free end of an inextensible cantilever under a force q a length that stays normal to it. From the
+ * free end back, t = length - s, in axes with the tangent there along x:
+ *   theta' = -M/EI, M' = cos(theta) Fy - sin(theta) Fx, F' = q (-sin(theta), cos(theta)),
+ *   r' = -(cos, sin)(theta), all 0 at t = 0.
+ * The result is rotated so that the tangent at the clamp is along x. Classical Runge-Kutta rule. */
 static void rates(double q, double EI, const double z[6], double k[6]) {
   double c = cos(z[0]), s = sin(z[0]);
   k[0] = -z[1] / EI;
@@ -161,7 +165,8 @@ static void strip(double q, double EI, double *x, double *y) {
   *y = s * z[4] - c * z[5];
 }
 
-/* The middle of the tip against the elastica's, relative to the length; what the clamp bears is the pressure. */
+/* Middle of the tip against the elastica's, relative to the length; clamp force against the
+ * pressure. */
 static double strip_error(double thickness) {
   const fem_material cork    = {.E = 2.1e11, .rho = 7850};
   const double       size[3] = {length, width, thickness}, tip[3] = {length, 0, thickness / 2};
@@ -181,7 +186,7 @@ static double strip_error(double thickness) {
   print_message(
       "tip of the strip at (%.5f, %.5f), elastica (%.5f, %.5f); %d steps, %d iterations\n",
       length + u[0], u[2], x, y, at.steps, at.iterations);
-  assert_int_equal(fem_balance(&body, at.displacement, force, load), 0);
+  assert_int_equal(fem_unbalanced_forces(&body, at.displacement, force, load), 0);
   for (int i = 0; i < mesh.n_nodes; i++)
     for (int d = 0; d < 3 && system.row[i] < 0; d++) sum[d] += force[i][d];
   for (int d = 0; d < 3; d++)
@@ -194,7 +199,8 @@ static double strip_error(double thickness) {
   return error;
 }
 
-/* Far bent, with nu = 0: the elastica whose load stays normal. It leaves out the strip's thickness. */
+/* A strip bent far with nu = 0 follows the elastica with a normal load, which neglects
+ * thickness. */
 static void strip_bends_as_the_elastica(void **state) {
   (void)state;
   double error[2] = {strip_error(.02), strip_error(.01)};
@@ -224,7 +230,7 @@ static void dense(Mat A, int n, double *to) {
   VecDestroy(&x), VecDestroy(&y);
 }
 
-/* A += all of the load stiffness at rest, by differences (exact: the force is quadratic). */
+/* A += the whole load stiffness at rest, by differences (exact, as the force is quadratic). */
 static void add_whole_stiffness(const fem_body *body, const fem_system *system, int n, double *A) {
   const mesh_face_set *set = &body->mesh->set[MESH_LOAD];
   fem_face_rule        rule;
@@ -252,7 +258,7 @@ static void add_whole_stiffness(const fem_body *body, const fem_system *system, 
   }
 }
 
-/* Lowest eigenvalues of A x = lambda M x, which are real for these. */
+/* Lowest eigenvalues of A x = lambda M x, which are real here. */
 static void lowest(int n, double *A, double *M, int wanted, double *value) {
   double *re = malloc(3 * (size_t)n * sizeof *re), *im = re + n, *below = im + n;
   assert_int_equal(
@@ -267,8 +273,8 @@ static void lowest(int n, double *A, double *M, int wanted, double *value) {
   free(re);
 }
 
-/* Eigenvalues with the symmetric part of the load stiffness differ from those with all of it by the square of the pressure, while
- * the pressure itself moves them in proportion. */
+/* Eigenvalues with the symmetric part of the load stiffness differ from those with all of it by the
+ * square of the pressure. The pressure itself moves them in proportion. */
 static void what_is_left_out_counts_twice(void **state) {
   (void)state;
   enum { WANTED = 3 };

@@ -8,8 +8,8 @@
 
 #include <cmocka.h>
 
-#include "fem/body/energy.h"
 #include "fem/body/equilibrium.h"
+#include "fem/body/tangent.h"
 #include "fem/solver/petsc_error.h"
 #include "tests/support/box.h"
 #include "tests/support/fem.h"
@@ -30,7 +30,8 @@ static double *field(const mesh_fe *mesh, double amount, double phase) {
   return u;
 }
 
-/* sum of forces = Omega^2 rho integral of r dV about each axis, also on a body that has moved: r of the centre. */
+/* The sum of forces is Omega^2 rho times the integral of r dV about each axis, also on a body that
+ * has moved. */
 static void load_adds_up_to_the_centrifugal_force(void **state) {
   (void)state;
   const double size[3] = {.21, .13, .08}, moved[3] = {.031, -.052, .017}, speed = 371;
@@ -64,7 +65,8 @@ static void load_adds_up_to_the_centrifugal_force(void **state) {
   mesh_fe_free(&mesh);
 }
 
-/* Central differences of R along a direction err by c h^2; and d.K d is the energy from the strains. */
+/* Central differences of R along a direction err by c h^2; d . K d is the energy from the
+ * strains. */
 static void tangent_is_the_derivative_of_the_residual(void **state) {
   (void)state;
   const double size[3]  = {.21, .13, .08};
@@ -88,7 +90,7 @@ static void tangent_is_the_derivative_of_the_residual(void **state) {
   assert_int_equal(fem_tangent_assemble(&body, u, &system), 0);
   assert_int_equal(MatMult(system.K, direction, slope), 0);
   assert_int_equal(VecDot(direction, slope, &energy), 0);
-  check_close(fem_tangent_energy(&body, u, d), energy, 1e-11, "energy");
+  check_close(tangent_energy(&body, u, d), energy, 1e-11, "energy");
   assert_int_equal(VecNorm(slope, NORM_INFINITY, &norm), 0);
   for (int level = 0; level < 3; level++) {
     double h = .002 / (1 << level);
@@ -125,8 +127,8 @@ static double strain_of(double P) {
   return e;
 }
 
-/* u' = strain(P), P' = -rho Omega^2 (hub + s + u) from the clamp on with the stress P0 there: P at the tip, by the
- * classical Runge-Kutta rule. */
+/* Stress P at the tip from u' = strain(P), P' = -rho Omega^2 (hub + s + u) with P0 at the clamp, by
+ * the classical Runge-Kutta rule. */
 static double shoot(double P0, double speed, double *tip) {
   enum { STEPS = 400 };
   double u = 0, P = P0, h = rod_length / STEPS, c = steel.rho * speed * speed;
@@ -165,7 +167,7 @@ static mesh_fe make_rod(double from, int n) {
   return mesh;
 }
 
-/* A rod without lateral contraction stretches as its own differential equation says, 5 % at the clamp. */
+/* A rod without lateral contraction stretches by its differential equation, 5 % at the clamp. */
 static void rod_stretches_as_its_equation_says(void **state) {
   (void)state;
   const fem_material material = {.E = steel.E, .rho = steel.rho};
@@ -197,7 +199,7 @@ static void rod_stretches_as_its_equation_says(void **state) {
   mesh_fe_free(&mesh);
 }
 
-/* Clamped at its outer end: the rod is squeezed, and past its strength there is nothing to find. */
+/* Clamped at its outer end the rod is compressed; beyond its strength there is no equilibrium. */
 static void no_equilibrium_is_told(void **state) {
   (void)state;
   const double    speed = 6e4;
@@ -206,8 +208,8 @@ static void no_equilibrium_is_told(void **state) {
   fem_system      system;
   fem_equilibrium at;
   assert_int_equal(fem_system_create(PETSC_COMM_SELF, &mesh, &steel, FEM_STANDARD, &system), 0);
-  PetscPushErrorHandler(fem_fault_handler, NULL);
-  assert_int_equal(fem_fault_status(fem_equilibrium_solve(&body, &system, NULL, &at)),
+  PetscPushErrorHandler(fem_petsc_error_handler, NULL);
+  assert_int_equal(fem_petsc_status(fem_equilibrium_solve(&body, &system, NULL, &at)),
                    SHB_ERR_INPUT);
   PetscPopErrorHandler();
   print_message("%s\n", shb_message());

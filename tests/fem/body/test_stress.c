@@ -1,4 +1,4 @@
-/* Stresses at the nodes, reactions at the clamp. */
+/* Nodal stresses and clamp forces. */
 #include "fem/body/stress.h"
 
 #include <math.h>
@@ -18,7 +18,7 @@ static fem_element *element;
 
 typedef void (*motion)(const double x[3], double u[3]);
 
-/* Greatest difference from the stress wanted, relative to its greatest value. */
+/* Largest difference from the stress wanted, relative to its largest value. */
 static double stress_error(const int cells[3], double shake, const fem_material *material,
                            motion move, motion normal, motion shear) {
   mesh_fe mesh = make_box(size, cells);
@@ -47,14 +47,14 @@ static void nothing(const double x[3], double s[3]) {
   s[0] = s[1] = s[2] = 0;
 }
 
-/* Stretched by 1.1, .95, 1.02 and turned by 90 degrees about z. */
+/* Stretched by 1.1, 0.95, 1.02 and rotated by 90 degrees about z. */
 static void stretch(const double x[3], double u[3]) {
   u[0] = -.95 * x[1] - x[0];
   u[1] = 1.1 * x[0] - x[1];
   u[2] = .02 * x[2];
 }
 
-/* sigma_i = l_i^2 S_i / (l_1 l_2 l_3); turned, x and y change places. */
+/* sigma_i = l_i^2 S_i / (l_1 l_2 l_3); after the rotation x and y change places. */
 static void stretched(const double x[3], double s[3]) {
   const double   l[3] = {1.1, .95, 1.02}, volume = l[0] * l[1] * l[2];
   const fem_lame c = fem_lame_of(&steel);
@@ -87,7 +87,7 @@ static void bent(const double x[3], double s[3]) {
   s[1] = s[2] = 0;
 }
 
-/* Down to the surface: corners and edges of the box too. */
+/* At every node, corners and edges of the box included. */
 static void linear_stress_is_exact(void **state) {
   (void)state;
   const int cells[3] = {3, 2, 2};
@@ -114,7 +114,8 @@ static void error_is_of_second_order(void **state) {
   for (int i = 0; i < 2; i++) assert_true(error[i] / error[i + 1] > 3.4);
 }
 
-/* What the clamp bears is the centrifugal force of the deformed body, to its moment about the engine axis. */
+/* The clamp bears the centrifugal force of the deformed body, including its moment about the
+ * axis. */
 static void reactions_add_up_to_the_load(void **state) {
   (void)state;
   const int       cells[3] = {3, 2, 2};
@@ -127,7 +128,7 @@ static void reactions_add_up_to_the_load(void **state) {
   shake_inside(&mesh, size, .004);
   assert_int_equal(fem_system_create(PETSC_COMM_SELF, &mesh, &steel, FEM_STANDARD, &system), 0);
   assert_int_equal(fem_equilibrium_solve(&body, &system, NULL, &at), 0);
-  assert_int_equal(fem_balance(&body, at.displacement, force, load), 0);
+  assert_int_equal(fem_unbalanced_forces(&body, at.displacement, force, load), 0);
   for (int i = 0; i < mesh.n_nodes; i++) {
     const double *x = mesh.coordinates + 3 * i;
     for (int d = 0; d < 3; d++) {
@@ -142,7 +143,7 @@ static void reactions_add_up_to_the_load(void **state) {
   for (int d = 0; d < 3; d++)
     check_below(sum[d] + load[d], 1e-9 * fabs(load[0]), "reaction and load");
   check_below(turn, 1e-9 * fabs(load[0]) * size[0], "moment about the engine axis");
-  /* mass times Omega^2 times the centre's distance: at rest it is known, and a stretched body's is greater */
+  /* mass times Omega^2 times the distance of the centre; larger for a stretched body */
   double mass = steel.rho * size[0] * size[1] * size[2], rest = mass * 4000. * 4000 * size[0] / 2;
   assert_true(load[0] > rest && load[0] < 1.01 * rest);
   check_below(load[2], 1e-12 * load[0], "load along the axis");

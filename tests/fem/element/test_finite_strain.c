@@ -1,4 +1,4 @@
-/* Large displacements of one element: closed forms, rigid motions, and the tangent as the derivative of the force. */
+/* Large displacements of one element: closed forms, rigid motions, the tangent as derivative. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -17,7 +17,7 @@ typedef const double (*fixed)[3];
 static fem_element *element;
 static int          n, order; /* nodes and dofs of the element */
 
-/* amount 0: an affine element; else all but its first corners pulled out of place. */
+/* amount 0: an affine element; otherwise all nodes but the first corners are displaced. */
 static void make_element(double amount, nodal x) {
   const mesh_topology *topology = mesh_topology_of(element->kind);
   const double side[4][3] = {{.11, .07, -.03}, {1.12, .12, .08}, {.2, .86, -.08}, {.06, .22, 1.4}};
@@ -29,7 +29,7 @@ static void make_element(double amount, nodal x) {
     }
 }
 
-/* Some field of size amount. */
+/* A smooth field of size amount. */
 static void make_field(double amount, double phase, nodal u) {
   for (int i = 0; i < n; i++)
     for (int d = 0; d < 3; d++) u[i][d] = amount * sin(2.3 * i + 1.7 * d * d + phase);
@@ -72,7 +72,7 @@ static void tangent_at_rest_is_the_stiffness(void **state) {
   }
 }
 
-/* A finite rotation strains nothing, and turns the stiffness: K = Q K0 Q^T. */
+/* A finite rotation gives no strain and rotates the stiffness: K = Q K0 Q^T. */
 static void rotation_makes_no_force(void **state) {
   (void)state;
   nodal  x, u, f;
@@ -98,8 +98,9 @@ static void rotation_makes_no_force(void **state) {
         }
 }
 
-/* Stretch s along x, then a rotation: S = E (1 - nu)/((1 + nu)(1 - 2 nu)) e along x and lambda e across, e = (s^2 - 1)/2;
- * Cauchy s S_x and S_y / s; nodal forces P int g, whose moment about any axis vanishes and whose virial is P F^T V. */
+/* Stretch s along x, then a rotation. With e = (s^2 - 1)/2, S is E (1 - nu)/((1 + nu)(1 - 2 nu)) e
+ * along x and lambda e across; the Cauchy stress is s S_x and S_y / s. Nodal forces are P int g.
+ * Their moment about any axis vanishes and their virial is P F^T V. */
 static void stretch_matches_the_closed_form(void **state) {
   (void)state;
   const double s = 1.13, e = (s * s - 1) / 2, nu = steel.nu;
@@ -131,7 +132,7 @@ static void stretch_matches_the_closed_form(void **state) {
   check_close(virial, volume * s * (along + 2 * across), 1e-12, "virial");
 }
 
-/* The force is a cubic of the displacement: central differences err by c h^2 exactly. */
+/* The force is cubic in the displacement: central differences err by exactly c h^2. */
 static void tangent_is_the_derivative_of_the_force(void **state) {
   (void)state;
   nodal  x, u, direction, shifted, forward, backward;

@@ -1,4 +1,4 @@
-/* The 20-node hexahedron: topology, rules, mass, rank and motions without energy. */
+/* The 20-node hexahedron: topology, rules, mass, rank and zero-energy modes. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -43,7 +43,7 @@ static void shape_functions_belong_to_the_nodes(void **state) {
   }
 }
 
-/* Middles lie between their ends; faces hold their sides' middles and look outward. */
+/* Middles lie between their ends. Faces hold the middles of their sides and are ordered outward. */
 static void edges_and_faces_fit_the_places(void **state) {
   (void)state;
   const mesh_kind both[2] = {MESH_TET10, MESH_HEX20};
@@ -100,7 +100,8 @@ static void rules_have_their_degree(void **state) {
   }
 }
 
-/* Rows of an affine element's mass add up to its nodal volumes: -1/8 at the corners, 1/6 at the middles. */
+/* Rows of the mass of an affine element add up to its nodal volumes: -1/8 at corners, 1/6 at
+ * middles. */
 static void mass_rows_are_the_nodal_volumes(void **state) {
   (void)state;
   fem_element *element     = malloc(sizeof *element);
@@ -128,7 +129,7 @@ static void mass_rows_are_the_nodal_volumes(void **state) {
   free(element);
 }
 
-/* Eigenvalues of the assembled stiffness that are nothing beside the largest. */
+/* Number of zero eigenvalues of the assembled stiffness. */
 static int motions_without_energy(const mesh_fe *mesh, fem_rules rules) {
   fem_system   system;
   Vec          u, f;
@@ -162,7 +163,8 @@ static int motions_without_energy(const mesh_fe *mesh, fem_rules rules) {
   return zeros;
 }
 
-/* The count that fem/element/hourglass.h states, and that its check refuses exactly the meshes that have such motions. */
+/* The count stated in fem/element/hourglass.h. Its check refuses exactly the meshes with such
+ * modes. */
 static void columns_of_single_elements_are_refused(void **state) {
   (void)state;
   const int cells[][3] = {{1, 1, 1}, {2, 1, 1}, {4, 1, 1}, {1, 2, 1}, {1, 1, 2},
@@ -184,7 +186,8 @@ static void columns_of_single_elements_are_refused(void **state) {
   }
 }
 
-/* Curved elements under constant strain leave inner nodes in balance with 3x3x3 points, and not with 2x2x2. Force out of balance over the greatest nodal force. */
+/* Unbalanced force divided by the largest nodal force, for curved elements under constant strain.
+ * It vanishes at inner nodes with 3x3x3 points, but not with 2x2x2. */
 static double out_of_balance(fem_rules rules, double curve) {
   const double size[3] = {.21, .13, .08}, g[3][3] = {{1, .2, -.5}, {.7, -2, .3}, {.1, .9, 1.4}};
   const int    cells[3] = {3, 3, 2};

@@ -1,5 +1,4 @@
-/* Materials of any anisotropy: closed forms of single crystals, and elements whose energy, force and tangent belong
- * together. */
+/* Anisotropic materials: closed forms of single crystals; energy, force and tangent of elements. */
 #include "fem/element/material.h"
 
 #include <math.h>
@@ -12,19 +11,18 @@
 
 #include <cmocka.h>
 
-#include "fem/body/energy.h"
 #include "fem/element/finite_strain.h"
 #include "tests/support/fem.h"
 
 typedef const double (*fixed)[3];
 
-/* A nickel superalloy's crystal at room temperature, roughly. */
+/* A nickel superalloy's crystal at room temperature, approximately. */
 static fem_orthotropic crystal(void) {
   return (fem_orthotropic){
       {127e9, 127e9, 127e9}, {.38, .38, .38}, {120e9, 120e9, 120e9}, {1, 0, 0}, {0, 1, 0}};
 }
 
-/* Nothing equal to anything. */
+/* All constants differ. */
 static fem_orthotropic odd_one(void) {
   return (fem_orthotropic){
       {90e9, 150e9, 210e9}, {.21, .17, .34}, {61e9, 47e9, 83e9}, {.3, -.8, .52}, {.9, .2, -.4}};
@@ -81,7 +79,7 @@ static void cubic_moduli_follow_the_direction(void **state) {
   }
 }
 
-/* In its own axes, wherever they point, the material shows the constants that were given. */
+/* In its own axes, however oriented, the material has the constants given. */
 static void constants_come_back(void **state) {
   (void)state;
   const fem_orthotropic from     = odd_one();
@@ -122,7 +120,7 @@ static void isotropy_has_no_direction(void **state) {
                               {.3, -.8, .52},
                               {.9, .2, -.4}};
   fem_material    material = made(&from);
-  fem_material_stiffness(&steel, C);
+  isotropic_stiffness(&steel, C);
   for (int p = 0; p < 6; p++)
     for (int q = 0; q < 6; q++) check_below(material.C[p][q] - C[p][q], 1e-13 * steel.E, "C");
 }
@@ -164,8 +162,8 @@ static void make(mesh_kind kind, fem_element *element, double x[][3]) {
     for (int d = 0; d < 3; d++) x[i][d] = topology->place[i][d] + .01 * field(i, d, .4);
 }
 
-/* The force is the energy's derivative: u^T K u twice the energy at rest; K(u) the force's derivative, to the order of
- * central differences. */
+/* The force is the derivative of the energy, and K(u) that of the force, to the order of central
+ * differences. At rest u^T K u is twice the energy. */
 static void energy_force_and_tangent_agree(void **state) {
   (void)state;
   const fem_orthotropic from     = odd_one();
@@ -211,7 +209,7 @@ static double uniform_energy(const mesh_fe *mesh, const fem_material *material,
     u[3 * i + 1]    = e[1] * x[1] + e[5] * x[2];
     u[3 * i + 2]    = e[2] * x[2];
   }
-  double energy = fem_strain_energy(mesh, material, element, u);
+  double energy = strain_energy(mesh, material, element, u);
   free(u);
   return energy;
 }

@@ -1,4 +1,4 @@
-/* Surface loads: resultants that are exact whatever the mesh. */
+/* Surface loads: resultants that are exact on any mesh. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -134,7 +134,7 @@ static void point_force_and_its_place(void **state) {
   mesh_fe_free(&mesh);
 }
 
-/* Shares of the nodes of one flat parallelogram: -1/12 at the corners, 1/3 at the middles of the sides. */
+/* Shares of the nodes of a flat parallelogram: -1/12 at the corners, 1/3 at the mid-sides. */
 static void quadrangle_has_its_known_weights(void **state) {
   (void)state;
   static const double place[8][2] = {{0, 0},  {1, 0},  {1, 1},  {0, 1},

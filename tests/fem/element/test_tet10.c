@@ -13,7 +13,7 @@
 
 #include <petscblaslapack.h>
 
-/* A straight-sided element, and the same with its mid-side nodes pulled out of line. */
+/* A straight-sided element, and the same with displaced mid-side nodes. */
 static void straight_element(double x[10][3]) {
   static const int edge[6][2]   = {{0, 1}, {1, 2}, {2, 0}, {3, 0}, {2, 3}, {1, 3}};
   const double     corner[4][3] = {
@@ -141,7 +141,7 @@ static double work(double K[30][30], const double *u, const double *v) {
   return sum;
 }
 
-/* Symmetric; no force under a rotation about a skew axis through a skew point. */
+/* The stiffness is symmetric. A rotation about a skew axis through a skew point gives no force. */
 static void check_rigid(const fem_element *element, const double x[10][3]) {
   double K[30][30], u[30], largest = 0;
   fem_element_stiffness(element, &steel, x, &K[0][0]);
@@ -161,7 +161,8 @@ static void check_rigid(const fem_element *element, const double x[10][3]) {
   }
 }
 
-/* Homogeneous strain: twice the energy over sigma : epsilon V, less 1. V is that of the mass. */
+/* Homogeneous strain: twice the energy divided by sigma : epsilon V, less 1. V is that of the
+ * mass. */
 static double energy_error(const fem_element *element, const double x[10][3]) {
   const double e[3][3] = {{1.3e-3, .2e-3, -.4e-3}, {.2e-3, -.7e-3, .6e-3}, {-.4e-3, .6e-3, .9e-3}};
   double       mu = 2.1e11 / 2.6, lambda = 2 * mu * .3 / .4, trace = 0, square = 0, volume = 0;

@@ -1,4 +1,4 @@
-/* The factor: CHOLMOD against MUMPS and the matrix itself, matrices that have none, memory that is not there. */
+/* The factor: CHOLMOD against MUMPS and the matrix itself, indefinite matrices, lack of memory. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -85,7 +85,7 @@ static void columns_solve_the_system(void **state) {
   fem_factor *factor;
   bool        definite;
   assert_int_equal(fem_factor_create(b->system.K, 0, &factor), 0);
-  assert_string_equal(fem_factor_by(factor), "CHOLMOD");
+  assert_string_equal(fem_factor_program(factor), "CHOLMOD");
   assert_int_equal(fem_factor_update(factor, b->system.K, &definite), 0);
   assert_true(definite);
   for (int i = 0; i < 10; i++) {
@@ -112,7 +112,7 @@ static void both_programs_agree(void **state) {
   PetscOptionsSetValue(NULL, mumps, "mumps");
   assert_int_equal(fem_factor_create(b->system.K, 0, &other), 0);
   PetscOptionsClearValue(NULL, mumps);
-  assert_string_equal(fem_factor_by(other), "MUMPS");
+  assert_string_equal(fem_factor_program(other), "MUMPS");
   for (int pass = 0; pass < 2; pass++) {
     assert_int_equal(fem_factor_update(one, b->system.K, &definite), 0);
     assert_true(definite);
@@ -153,92 +153,14 @@ static void indefinite_matrices_are_told(void **state) {
   }
 }
 
-/* In single precision, made up for by iterations: the same solutions, one column or many, after the matrix has changed too; and what has no factor. */
-static void single_precision_is_made_up_for(void **state) {
-  body       *b       = *state;
-  const int   count[] = {1, 5, 8, 19};
-  fem_factor *one, *single;
-  bool        definite;
-  assert_int_equal(fem_factor_create(b->system.K, 0, &one), 0);
-  PetscOptionsSetValue(NULL, "-st_single_precision", "1");
-  assert_int_equal(fem_factor_create(b->system.K, 0, &single), 0);
-  PetscOptionsClearValue(NULL, "-st_single_precision");
-  assert_string_equal(fem_factor_by(single), "SMUMPS in single precision");
-  for (int pass = 0; pass < 2; pass++) {
-    assert_int_equal(fem_factor_update(one, b->system.K, &definite), 0);
-    assert_int_equal(fem_factor_update(single, b->system.K, &definite), 0);
-    assert_true(definite);
-    for (int i = 0; i < 4; i++) {
-      Mat    B = dense(b, count[i]), X = dense(b, count[i]), Y = dense(b, count[i]);
-      double size, off;
-      assert_int_equal(fem_factor_solve_many(one, B, X), 0);
-      assert_int_equal(fem_factor_solve_many(single, B, Y), 0);
-      check_below(backward_error(b, Y, B), 1e-14, "backward error");
-      MatNorm(X, NORM_FROBENIUS, &size);
-      MatAXPY(Y, -1, X, SAME_NONZERO_PATTERN);
-      MatNorm(Y, NORM_FROBENIUS, &off);
-      print_message("%d columns: %.1e from CHOLMOD's\n", count[i], off / size);
-      check_below(off, 1e-9 * size, "against CHOLMOD");
-      MatDestroy(&B);
-      MatDestroy(&X);
-      MatDestroy(&Y);
-    }
-    add_mass(b, 1e6);
-  }
-  add_mass(b, -4e6);
-  assert_int_equal(fem_factor_update(single, b->system.K, &definite), 0);
-  assert_false(definite);
-  fem_factor_destroy(&one);
-  fem_factor_destroy(&single);
-}
-
-/* A sanitizer's allocator takes memory, and address space, as it likes. */
+/* The allocator of a sanitizer takes additional memory and address space. */
 #ifdef __SANITIZE_ADDRESS__
 #define SKIP_UNDER_SANITIZER() skip()
 #else
 #define SKIP_UNDER_SANITIZER() (void)0
 #endif
 
-/* With room for a factor in single precision only, that is what is made, within that room. */
-static void single_precision_where_double_does_not_fit(void **state) {
-  (void)state;
-  SKIP_UNDER_SANITIZER();
-  const double  size[3]  = {.2, .06, .05};
-  const int     cells[3] = {18, 8, 7};
-  mesh_fe       mesh     = make_box(size, cells);
-  double        foreseen[2];
-  fem_system    system;
-  fem_factor   *factor;
-  struct rlimit was, now;
-  bool          definite;
-  assert_int_equal(fem_system_create(PETSC_COMM_SELF, &mesh, &steel, FEM_STANDARD, &system), 0);
-  for (int i = 0; i < 2; i++) {
-    PetscOptionsSetValue(NULL, "-st_single_precision", i ? "1" : "0");
-    assert_int_equal(fem_factor_create(system.K, 0, &factor), 0);
-    foreseen[i] = fem_factor_foreseen(factor);
-    fem_factor_destroy(&factor);
-  }
-  PetscOptionsClearValue(NULL, "-st_single_precision");
-  print_message("%.3g MB in double, %.3g MB in single precision\n", 1e-6 * foreseen[0],
-                1e-6 * foreseen[1]);
-  assert_true(foreseen[1] < .75 * foreseen[0]);
-  getrlimit(RLIMIT_AS, &was);
-  now          = was;
-  now.rlim_cur = (rlim_t)8 << 30;
-  assert_int_equal(setrlimit(RLIMIT_AS, &now), 0);
-  now.rlim_cur -= (rlim_t)(fem_memory_available() - .9 * foreseen[0]);
-  assert_int_equal(setrlimit(RLIMIT_AS, &now), 0);
-  assert_int_equal(fem_factor_create(system.K, 0, &factor), 0);
-  assert_string_equal(fem_factor_by(factor), "SMUMPS in single precision");
-  assert_int_equal(fem_factor_update(factor, system.K, &definite), 0);
-  assert_true(definite);
-  setrlimit(RLIMIT_AS, &was);
-  fem_factor_destroy(&factor);
-  fem_system_destroy(&system);
-  mesh_fe_free(&mesh);
-}
-
-/* What the analysis foresees is what the process then takes. */
+/* The process takes the memory that the analysis estimates. */
 static void memory_is_foreseen(void **state) {
   (void)state;
   SKIP_UNDER_SANITIZER();
@@ -250,7 +172,7 @@ static void memory_is_foreseen(void **state) {
   bool         definite;
   assert_int_equal(fem_system_create(PETSC_COMM_SELF, &mesh, &steel, FEM_STANDARD, &system), 0);
   assert_int_equal(fem_factor_create(system.K, 0, &factor), 0);
-  const double before = shb_memory_peak(), foreseen = fem_factor_foreseen(factor);
+  const double before = shb_memory_peak(), foreseen = fem_factor_bytes(factor);
   assert_int_equal(fem_factor_update(factor, system.K, &definite), 0);
   const double taken = shb_memory_peak() - before;
   print_message("%.3g MB foreseen, %.3g MB taken\n", 1e-6 * foreseen, 1e-6 * taken);
@@ -261,7 +183,7 @@ static void memory_is_foreseen(void **state) {
   mesh_fe_free(&mesh);
 }
 
-/* With the address space cut short: one line, before anything is factorised. */
+/* With too little memory, one line is reported before anything is factorised. */
 static void too_little_memory_is_one_line(void **state) {
   const body   *b = *state;
   struct rlimit was, now;
@@ -269,18 +191,19 @@ static void too_little_memory_is_one_line(void **state) {
   const double  most   = fem_memory_available();
   assert_true(most > 1e8 && most < 1e16);
   getrlimit(RLIMIT_AS, &was);
-  PetscPushErrorHandler(fem_fault_handler, NULL);
+  PetscPushErrorHandler(fem_petsc_error_handler, NULL);
   assert_int_not_equal(fem_factor_create(b->system.K, 1e15, &factor), 0);
   print_message("%s\n", shb_message());
   assert_non_null(strstr(shb_message(), "GB"));
   assert_null(strchr(shb_message(), '\n'));
   fem_factor_destroy(&factor);
+  PetscPopErrorHandler();
+  SKIP_UNDER_SANITIZER();
   now          = was;
   now.rlim_cur = (rlim_t)64 << 30;
   assert_int_equal(setrlimit(RLIMIT_AS, &now), 0);
   assert_true(fem_memory_available() <= 64. * (1 << 30));
   setrlimit(RLIMIT_AS, &was);
-  PetscPopErrorHandler();
 }
 
 int main(void) {
@@ -288,9 +211,7 @@ int main(void) {
       cmocka_unit_test_setup_teardown(columns_solve_the_system, create, destroy),
       cmocka_unit_test_setup_teardown(both_programs_agree, create, destroy),
       cmocka_unit_test_setup_teardown(indefinite_matrices_are_told, create, destroy),
-      cmocka_unit_test_setup_teardown(single_precision_is_made_up_for, create, destroy),
       cmocka_unit_test(memory_is_foreseen),
-      cmocka_unit_test(single_precision_where_double_does_not_fit),
       cmocka_unit_test_setup_teardown(too_little_memory_is_one_line, create, destroy)};
   if (PetscInitialize(NULL, NULL, NULL, NULL)) return 1;
   int failures = cmocka_run_group_tests(tests, NULL, NULL);

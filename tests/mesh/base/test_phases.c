@@ -1,4 +1,4 @@
-/* Laps of a stage: what each took, what adds up, and the peak of memory. */
+/* Phases of a stage: time, sums, and peak of memory. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -9,10 +9,11 @@
 
 #include <cmocka.h>
 
+#include "mesh/base/clock.h"
 #include "mesh/base/phases.h"
 #include "mesh/base/progress.h"
 
-/* Busy until the processor, then idle until the clock, has gone on that far. */
+/* Use the processor, then wait, until both times have passed. */
 static void spend(double busy, double idle) {
   shb_phases watch;
   shb_phase  taken = {0};
@@ -27,7 +28,7 @@ static void spend(double busy, double idle) {
   }
 }
 
-/* Processor and clock are told apart; a lap begins where the last ended. */
+/* Processor and wall-clock time are separate; a phase begins where the last ended. */
 static void laps_follow_each_other(void **state) {
   (void)state;
   shb_phases phases;
@@ -44,7 +45,7 @@ static void laps_follow_each_other(void **state) {
   assert_true(phases.n == 0); /* a lap alone keeps nothing */
 }
 
-/* 48 MB that are touched raise the peak by as much, and it stays when they are gone. */
+/* Touching 48 MB raises the peak by as much; the peak stays after they are freed. */
 static void peak_is_of_this_program(void **state) {
   (void)state;
   const size_t size   = 48 << 20;
@@ -56,8 +57,8 @@ static void peak_is_of_this_program(void **state) {
   const double during = shb_memory_peak();
   free(block);
   assert_true(during - before > .9 * (double)size);
-  assert_true(during < 4e8);                     /* not the peak of whoever started it */
-  assert_true(shb_memory_peak() > during - 1e6); /* the kernel counts in lots of pages */
+  assert_true(during < 4e8);                     /* not the peak of the parent process */
+  assert_true(shb_memory_peak() > during - 1e6); /* the kernel counts pages in batches */
 }
 
 static void same_names_count_together(void **state) {
@@ -72,7 +73,7 @@ static void same_names_count_together(void **state) {
   assert_true(phases.phase[0].memory == 800 && phases.phase[0].greatest == 200);
 }
 
-/* More names than there is room for are left out, without harm. */
+/* More names than fit are left out without harm. */
 static void room_is_kept(void **state) {
   (void)state;
   static const char names[] = "abcdefghijklmnopqrstuvwxyz";

@@ -1,5 +1,4 @@
-/* The parametric blade: contact geometry, groups, volume, reproducibility, and what it refuses. */
-#include "mesh/base/constants.h"
+/* The parametric blade: contact geometry, groups, volume, reproducibility, refused input. */
 #include "mesh/blade/blade.h"
 
 #include <math.h>
@@ -14,12 +13,14 @@
 
 #include <cmocka.h>
 
+#include "mesh/core/face_match.h"
 #include "mesh/core/fe_mesh.h"
 #include "mesh/core/jacobian.h"
 #include "mesh/gmsh/provenance.h"
 #include "tests/support/check.h"
+#include "tests/support/read_mesh.h"
 
-static const double degree = SHB_PI / 180;
+static const double degree = M_PI / 180;
 
 static char folder[] = "/tmp/shb_blade_XXXXXX";
 static char path[64], other[64];
@@ -72,7 +73,7 @@ static shb_status write_blade(const mesh_blade *blade) {
 
 static void make(const mesh_blade *blade, mesh_fe *mesh) {
   if (write_blade(blade) != SHB_OK) fail_msg("%s", shb_message());
-  if (mesh_fe_read(path, mesh) != SHB_OK) fail_msg("%s", shb_message());
+  if (read_mesh(path, mesh) != SHB_OK) fail_msg("%s", shb_message());
 }
 
 /* Unit normal and area centroid of a set of planar triangles. */
@@ -104,7 +105,7 @@ static void normal_and_centre(const mesh_fe *mesh, mesh_set_id id, double normal
   }
 }
 
-/* v of eq. 2 in the cylindrical axes at the right face's centre; minus that on the left. */
+/* v of eq. 2 in the cylindrical axes at the centre of the right face, and -v on the left. */
 static void check_contact(const mesh_blade *blade, mesh_fe *mesh) {
   double psi = blade->psi, phi = blade->phi;
   double v[3] = {cos(psi) * cos(phi), sin(psi) * cos(phi), -sin(phi)};
@@ -128,7 +129,7 @@ static void check_contact(const mesh_blade *blade, mesh_fe *mesh) {
   assert_true(pairs >= 6);
   for (int i = 0; i < pairs; i++) {
     double at[3];
-    mesh_axis_rotate(blade->axis, SHB_TWO_PI / blade->blades, mesh->coordinates + 3 * l[i], at);
+    mesh_axis_rotate(blade->axis, 2 * M_PI / blade->blades, mesh->coordinates + 3 * l[i], at);
     for (int d = 0; d < 3; d++) assert_near(at[d], mesh->coordinates[3 * r[i] + d], 1e-14);
   }
   free(r);
@@ -240,7 +241,7 @@ static double expected_volume(const mesh_blade *blade) {
   }
   for (int i = 0; i < 3; i++) area[i] = s[i].chord * s[i].thickness * mean / top;
   double airfoil = (s[2].radius - s[0].radius) / 6 * (area[0] + 4 * area[1] + area[2]);
-  double ring    = blade->shroud_length * blade->shroud_thickness * SHB_TWO_PI / blade->blades *
+  double ring    = blade->shroud_length * blade->shroud_thickness * 2 * M_PI / blade->blades *
                 (s[2].radius + blade->shroud_thickness / 2);
   return blade->root_length * blade->root_width * blade->root_height + airfoil + ring;
 }
@@ -282,7 +283,7 @@ static void groups_lie_where_they_should(void **state) {
   mesh_fe_free(&mesh);
 }
 
-/* The loaded side is the hollow one: seen along its normal its middle lies behind its edges. */
+/* The loaded side is concave: seen along its normal, its middle lies behind its edges. */
 static void check_hollow(const mesh_blade *blade, const mesh_fe *mesh, double bulge) {
   double normal[3], centre[3], axes[3][3], edge[2][2] = {{INFINITY, 0}, {-INFINITY, 0}};
   double middle[2] = {INFINITY, 0}, stacking[3];
@@ -422,7 +423,7 @@ static void few_inverted_elements_are_straightened(void **state) {
   mesh_fe_free(&mesh);
 }
 
-/* status, and a one-line text that has the words; nothing is written. */
+/* Status, and a one-line message with the words; no file is written. */
 static void assert_blade_refused(const mesh_blade *blade, const char *words) {
   shb_status status = write_blade(blade);
   if (status != SHB_ERR_INPUT || !strstr(shb_message(), words))
@@ -439,7 +440,7 @@ static void unresolved_blades_are_refused(void **state) {
   assert_blade_refused(&blade, "mesh.blade.size: gmsh cannot fill");
 }
 
-/* One number of the sample made wrong, and the key that the text must name. */
+/* One invalid number of the sample, and the key that the message must name. */
 typedef struct {
   size_t      offset;
   double      value;
@@ -512,7 +513,7 @@ static void unwritable_folder_is_an_io_error(void **state) {
   assert_non_null(strstr(shb_message(), "/nowhere/blade.msh: cannot be written: No such file"));
 }
 
-/* A failure leaves the earlier mesh as it was. */
+/* A failure leaves the earlier mesh unchanged. */
 static void earlier_mesh_survives_a_failure(void **state) {
   (void)state;
   mesh_blade blade = sample();

@@ -1,5 +1,5 @@
 #!/bin/sh
-# shroudhb-mesh: meshes once, skips when up to date, checks brought meshes, exit codes, one line a fault.
+# shroudhb-mesh: meshes once, skips when up to date, checks given meshes; exit codes, messages.
 # usage: test_command.sh PATH_OF_SHROUDHB_MESH CASE.yaml
 set -u
 program=$1
@@ -9,7 +9,8 @@ trap 'rm -rf "$work"' EXIT
 failed=0
 export HOME="$work/home" # gmsh must leave it alone (its FLTK makes an empty preferences file)
 mkdir "$work/home" "$work/dir"
-sed 's/^    size: .*/    size: 6.5 mm\n    shroud_size: 4 mm\n    elements: tet10/' "$scene" >"$work/dir/case.yaml"
+sed 's/^    size: .*/    size: 6.5 mm\n    shroud_size: 4 mm\n    elements: tet10/' \
+  "$scene" >"$work/dir/case.yaml"
 mesh=$work/dir/z_notch_blade.msh
 
 fail() {
@@ -160,7 +161,8 @@ says "mesh.groups.rot: unknown group"
 says "mesh.groups.load: lacks normal"
 
 # Coordinates in mm taken as m.
-solid "$(echo "$rules" | sed -e 's/unit: mm/unit: m/' -e 's/12 mm/12 m/' -e 's/300 mm/300 m/' -e 's/ mm/ m/g' -e '/load:/d')"
+solid "$(echo "$rules" | sed -e 's/unit: mm/unit: m/' -e 's/12 mm/12 m/' \
+  -e 's/300 mm/300 m/' -e 's/ mm/ m/g' -e '/load:/d')"
 run 0 solid.yaml
 lines 1
 says "shroudhb: warning: sector.geo: the body measures "
@@ -184,7 +186,7 @@ lines 1
 says "shroudhb: error: sector.geo: ends the program while it is read; leave out Exit"
 sed -i '/Exit/d' "$work/dir/sector.geo"
 
-# A second signal ends it at once, in the midst of gmsh; so does a first one within seconds, unless gmsh comes to an end.
+# A second signal ends it at once, even inside gmsh. A first one does so after some seconds.
 solid "$(echo "$rules" | sed 's/12 mm/.9 mm/')"
 for signals in 'INT INT 130 at_once' 'TERM TERM 143 at_once' 'TERM - 143 130'; do
   set -- $signals

@@ -1,4 +1,5 @@
-/* The blade of hexahedra: volume, groups, contact geometry, coverage of the parameters, reproducibility. */
+/* The blade of hexahedra: volume, groups, contact geometry, range of parameters,
+ * reproducibility. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -16,9 +17,11 @@
 #include "mesh/blade/blade.h"
 #include "mesh/blade/layers.h"
 #include "mesh/blade/section_mesh.h"
+#include "mesh/core/face_match.h"
 #include "mesh/core/fe_mesh.h"
 #include "mesh/core/jacobian.h"
 #include "tests/support/check.h"
+#include "tests/support/read_mesh.h"
 
 static const double degree = SHB_PI / 180;
 
@@ -66,7 +69,7 @@ static const shb_provenance origin = {.case_path = "case.yaml",
 
 static void make(const mesh_blade *blade, mesh_fe *mesh) {
   if (mesh_blade_write(blade, path, &origin, NULL) != SHB_OK) fail_msg("%s", shb_message());
-  if (mesh_fe_read(path, mesh) != SHB_OK) fail_msg("%s", shb_message());
+  if (read_mesh(path, mesh) != SHB_OK) fail_msg("%s", shb_message());
 }
 
 /* det J of one element at a reference point, and the point. */
@@ -88,7 +91,8 @@ static double jacobian_at(const mesh_fe *mesh, int element, const double at[3], 
   return det;
 }
 
-/* Volumes of the elements by part, by the radial coordinate of their middles (axis x): root, airfoil, shroud. */
+/* Volumes of the elements of root, airfoil and shroud, told apart by the radial coordinate (axis
+ * x). */
 static void volumes(const mesh_blade *blade, const mesh_fe *mesh, double part[3]) {
   const double far = .5 * sqrt(.6), place[3] = {.5 - far, .5, .5 + far}, weight[3] = {5, 8, 5};
   part[0] = part[1] = part[2] = 0;
@@ -104,7 +108,7 @@ static void volumes(const mesh_blade *blade, const mesh_fe *mesh, double part[3]
   }
 }
 
-/* Integral over the radius of the sections' areas, thickness times chord times the mean of the profile. */
+/* Integral over the radius of the sections' areas: thickness times chord times the mean profile. */
 static double airfoil_volume(const mesh_blade *blade) {
   const mesh_section *s   = blade->section;
   double              top = 0, mean = 0, area[3];
@@ -117,7 +121,8 @@ static double airfoil_volume(const mesh_blade *blade) {
   return (s[2].radius - s[0].radius) / 6 * (area[0] + 4 * area[1] + area[2]);
 }
 
-/* Root block and ring segment exactly, whatever the size: nothing is covered twice; the airfoil by its sections. */
+/* Root block and ring segment are exact at any size: nothing is covered twice. The airfoil agrees
+ * with its sections. */
 static void parts_have_their_volumes(void **state) {
   (void)state;
   const double size[4] = {.024, .014, .01, .007};
@@ -144,7 +149,7 @@ static void parts_have_their_volumes(void **state) {
   }
 }
 
-/* The same solid as of tetrahedra: volumes go together as both are refined. */
+/* The volume of the blade of tetrahedra is approached as both meshes are refined. */
 static void solid_is_that_of_tetrahedra(void **state) {
   (void)state;
   mesh_blade blade = sample();
@@ -168,7 +173,7 @@ static void solid_is_that_of_tetrahedra(void **state) {
   mesh_fe_free(&mesh);
 }
 
-/* Area vector and, times the area, centroid of a set's quadrangles (their corners: parallelograms). */
+/* Area vector and centroid of a set of quadrangles (parallelograms of their corners). */
 static void area_of(const mesh_fe *mesh, mesh_set_id id, double sum[3], double centre[3]) {
   for (int d = 0; d < 3; d++) sum[d] = centre[d] = 0;
   for (int f = 0; f < mesh->set[id].n; f++) {
@@ -189,7 +194,8 @@ static void area_of(const mesh_fe *mesh, mesh_set_id id, double sum[3], double c
   }
 }
 
-/* Eq. 2 in the cylindrical axes at the contact leg's centre, which lies on the side's own radial plane. */
+/* Eq. 2 in the cylindrical axes at the centre of the contact leg, which lies on its own radial
+ * plane. */
 static void contact_faces_have_their_normal_and_match(void **state) {
   (void)state;
   const double angle[4][2] = {{35, 0}, {-40, 0}, {20, 12}, {0, -15}};
@@ -248,8 +254,7 @@ static void groups_lie_where_they_should(void **state) {
   assert_true(nearest < .6 * blade.size);
   assert_near(low, blade.section[0].radius, 1e-12);
   assert_near(high, blade.section[2].radius, 1e-3);
-  area_of(&mesh, MESH_LOAD, area,
-          centre); /* the hollow side looks towards its centre of curvature */
+  area_of(&mesh, MESH_LOAD, area, centre); /* the concave side faces its centre of curvature */
   assert_true(-area[1] * (outline.pressure[6][0] - outline.suction[6][0]) > 0);
   mesh_fe_free(&mesh);
 }
@@ -275,15 +280,15 @@ static void any_blade_is_meshed(void **state) {
         blade.section[s].twist *= .5;
       }
     }
-    make(&blade, &mesh); /* no element inverted, or it would be refused */
+    make(&blade, &mesh); /* an inverted element would be refused */
     made += mesh.n_elements > 300;
     mesh_fe_free(&mesh);
   }
   assert_int_equal(made, 72);
 }
 
-/* Camber that ends at zero changes sign where the airfoil runs on into root or shroud: the suction side stays the same, and a
- * blade mirrored by camber and twist has the same volumes. */
+/* Camber that ends at zero changes sign where the airfoil extends into root or shroud. The suction
+ * side stays the same. A blade mirrored by camber and twist has the same volumes. */
 static void camber_may_end_at_zero(void **state) {
   (void)state;
   for (int end = 0; end < 3; end += 2) {
@@ -316,14 +321,15 @@ static void crossing_airfoil_is_refused(void **state) {
     fail_msg("%s", shb_message());
 }
 
-/* The sharpest corner of a blade is at the airfoil's edge; that of a brick is right. */
+/* The sharpest corner of a blade is at the edge of the airfoil; all corners of a brick are
+ * right. */
 static void sharpest_corner(void **state) {
   (void)state;
   mesh_blade blade = sample();
   mesh_fe    mesh;
   double     x[3], sine;
   make(&blade, &mesh);
-  sine = mesh_jacobian_sharpest(&mesh, x);
+  sine = mesh_jacobian_worst_corner(&mesh, x);
   assert_true(sine > .1 && sine < .5);
   assert_true(hypot(x[1], x[2]) > blade.section[0].radius - 1e-9);
   mesh_fe_free(&mesh);
@@ -342,7 +348,7 @@ static void sharpest_corner(void **state) {
                  .n_elements   = 1,
                  .coordinates  = at[0],
                  .connectivity = node};
-  assert_near(mesh_jacobian_sharpest(&one, x), 1.1 / hypot(.7, 1.1) * 3 / sqrt(.16 + .09 + 9),
+  assert_near(mesh_jacobian_worst_corner(&one, x), 1.1 / hypot(.7, 1.1) * 3 / sqrt(.16 + .09 + 9),
               1e-14);
 }
 
@@ -357,14 +363,15 @@ static void same_case_same_file(void **state) {
   assert_string_equal(first, second);
 }
 
-/* A section's quadrangles cover the lens |y| < 4 u (1 - u), 4/3 x half of it on each side, once. */
+/* The quadrangles of a section cover the lens |y| < 4 u (1 - u) once, with 4/3 x half on each
+ * side. */
 static void section_covers_the_lens(void **state) {
   (void)state;
   const mesh_section_grid grid[3] = {{4, 1, {.2, .2}}, {6, 2, {.15, .1}}, {10, 3, {.1, .2}}};
   for (int g = 0; g < 3; g++) {
-    mesh_plan           plan;
+    mesh_planar         plan;
     mesh_section_place *place;
-    assert_int_equal(mesh_plan_section(&grid[g], &plan, &place), SHB_OK);
+    assert_int_equal(mesh_section_mesh_create(&grid[g], &plan, &place), SHB_OK);
     const int k = grid[g].half, n = grid[g].chord;
     assert_int_equal(plan.n_quads, 6 * k * k + 2 * k * n);
     assert_int_equal(plan.n_contour, 4 * (4 * k + n));
@@ -383,7 +390,7 @@ static void section_covers_the_lens(void **state) {
       }
     assert_true(area < 4. / 3 && area > 4. / 3 * .93);
     free(place);
-    mesh_plan_free(&plan);
+    mesh_planar_free(&plan);
   }
 }
 

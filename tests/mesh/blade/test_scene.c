@@ -1,4 +1,4 @@
-/* The shipped scene's blade: its size, its contact faces, its elements. */
+/* The blade of the shipped case: its size, contact faces and elements. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -11,7 +11,9 @@
 
 #include "cases/schema/case.h"
 #include "mesh/blade/blade.h"
+#include "mesh/core/face_match.h"
 #include "mesh/core/fe_mesh.h"
+#include "tests/support/read_mesh.h"
 
 static void scene_blade_is_about_six_thousand_nodes(void **state) {
   (void)state;
@@ -24,7 +26,7 @@ static void scene_blade_is_about_six_thousand_nodes(void **state) {
   assert_int_equal(case_read(SCENE, CASE_MESH, stderr, &file), SHB_OK);
   const shb_provenance origin = {.case_path = file.path, .case_text = file.text};
   if (mesh_blade_write(&file.blade, path, &origin, NULL) != SHB_OK) fail_msg("%s", shb_message());
-  if (mesh_fe_read(path, &mesh) != SHB_OK) fail_msg("%s", shb_message());
+  if (read_mesh(path, &mesh) != SHB_OK) fail_msg("%s", shb_message());
   assert_int_equal(mesh.kind, MESH_HEX20);
   assert_in_range(mesh.n_nodes, 5000, 7000);
   assert_int_equal(mesh_fe_orient(&mesh, file.axis), SHB_OK);

@@ -1,5 +1,5 @@
-/* Contact faces paired node for node, or projected: exact where the elements are, of third order elsewhere. */
-#include "mesh/base/constants.h"
+/* Contact faces paired node for node, or projected: exact where the elements are, else third
+ * order. */
 #include "mesh/core/face_pairing.h"
 
 #include <math.h>
@@ -19,8 +19,9 @@ enum { BLADES = 23 };
 
 static const double size[3] = {.04, .05, .06}, inner = .3;
 
-/* A sector about x between two radial planes. skew moves the nodes of the left side along it, smoothly and not at its rim,
- * so that the two faces, plane both, hold other nodes; lift moves the left side off its plane by that angle (rad). */
+/* A sector about x between two radial planes.
+ *   skew  moves the nodes of the left side within it, not at its rim, so that the nodes differ
+ *   lift  rad, rotates the left side off its plane */
 static mesh_fe make_sector(mesh_kind kind, int n, double skew, double lift) {
   const int cells[3] = {n, 2, n};
   mesh_fe   mesh;
@@ -30,9 +31,9 @@ static mesh_fe make_sector(mesh_kind kind, int n, double skew, double lift) {
   assert_int_equal(box_set(&mesh, MESH_CONTACT_RIGHT, 1, size[1]), SHB_OK);
   for (int i = 0; i < mesh.n_nodes; i++) {
     double *x = mesh.coordinates + 3 * i, share = x[1] / size[1];
-    double  angle = -SHB_TWO_PI / BLADES * (.5 - share), r = inner + x[2];
+    double  angle = -2 * M_PI / BLADES * (.5 - share), r = inner + x[2];
     if (share == 0) {
-      double bump = skew * sin(SHB_PI * x[0] / size[0]) * sin(SHB_PI * x[2] / size[2]);
+      double bump = skew * sin(M_PI * x[0] / size[0]) * sin(M_PI * x[2] / size[2]);
       x[0] += bump * size[0];
       r += .7 * bump * size[2];
       angle += lift;
@@ -55,7 +56,7 @@ static double field(int kind, double x, double r) {
   return kind == 0 ? 2 + a - 3 * b : sin(2 * a + .3) * cos(3 * b - .2);
 }
 
-/* Greatest error at the right nodes of the field held by the left ones. */
+/* Largest error at the right nodes of the field interpolated from the left ones. */
 static double error_of(const mesh_fe *mesh, const mesh_pairing *pairing, int kind) {
   double worst = 0;
   for (int i = 0; i < pairing->n; i++) {
@@ -99,7 +100,8 @@ static void equal_faces_are_paired_node_for_node(void **state) {
   }
 }
 
-/* The map is isoparametric: fields linear in position are exact on any face, others of third order. */
+/* The map is isoparametric: fields linear in position are exact on any face, others of third
+ * order. */
 static void projection_is_of_third_order(void **state) {
   (void)state;
   for (int kind = MESH_TET10; kind <= MESH_HEX20; kind++) {
@@ -117,12 +119,12 @@ static void projection_is_of_third_order(void **state) {
     }
     print_message("%s: errors %.2e %.2e %.2e\n", mesh_topology_of((mesh_kind)kind)->name, error[0],
                   error[1], error[2]);
-    assert_true(error[0] > 1e-6); /* there is something to see */
+    assert_true(error[0] > 1e-6); /* the error is above rounding */
     for (int i = 0; i < 2; i++) assert_true(log2(error[i] / error[i + 1]) > 2.5);
   }
 }
 
-/* A gap of .5 % of the face is bridged and told; one of 5 % refused. */
+/* A gap of 0.5 % of the face is accepted and reported; one of 5 % is refused. */
 static void distance_decides(void **state) {
   (void)state;
   const double far  = .05 * .05;

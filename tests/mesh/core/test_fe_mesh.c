@@ -1,5 +1,4 @@
-/* Reading meshes, matching contact faces, orientation, and every bad file. */
-#include "mesh/base/constants.h"
+/* Reading meshes, matching contact faces, orientation, and faulty files. */
 #include "mesh/core/fe_mesh.h"
 
 #include <math.h>
@@ -17,9 +16,11 @@
 #include <gmshc.h>
 
 #include "mesh/base/progress.h"
+#include "mesh/core/face_match.h"
 #include "mesh/core/jacobian.h"
 #include "tests/support/box.h"
 #include "tests/support/check.h"
+#include "tests/support/read_mesh.h"
 
 static const double size[3]  = {0.237, 0.041, 0.023};
 static const int    cells[3] = {5, 3, 2};
@@ -102,7 +103,7 @@ static void reads_back_what_was_written(void **state) {
   assert_int_equal(box_mesh(size, cells, &box), SHB_OK);
   assert_int_equal(box_write(&box, path), SHB_OK);
   for (int again = 0; again < 2; again++) {
-    assert_int_equal(mesh_fe_read(path, &mesh), SHB_OK);
+    assert_int_equal(read_mesh(path, &mesh), SHB_OK);
     assert_int_equal(mesh.n_nodes, box.n_nodes);
     assert_int_equal(mesh.n_elements, box.n_elements);
     assert_near(volume(&mesh), size[0] * size[1] * size[2], 1e-17);
@@ -116,7 +117,7 @@ static void reads_back_what_was_written(void **state) {
   mesh_fe_free(&box);
 }
 
-/* Faces written inside out come back outward, with their middles in step. */
+/* Faces written inward are read outward, with their middles in step. */
 static void faces_are_turned_outward(void **state) {
   (void)state;
   mesh_fe box, mesh;
@@ -129,7 +130,7 @@ static void faces_are_turned_outward(void **state) {
     n[5] = middle;
   }
   assert_int_equal(box_write(&box, path), SHB_OK);
-  assert_int_equal(mesh_fe_read(path, &mesh), SHB_OK);
+  assert_int_equal(read_mesh(path, &mesh), SHB_OK);
   double sum[3];
   area(&mesh, MESH_ROOT, sum);
   assert_near(sum[0], -size[1] * size[2], 1e-17);
@@ -145,7 +146,7 @@ static void faces_are_turned_outward(void **state) {
   mesh_fe_free(&box);
 }
 
-/* The places of a hexahedron's nodes are those that gmsh itself states for its type 17, and of its faces for 16. */
+/* The places of the nodes agree with gmsh's types 17 (hexahedron) and 16 (its faces). */
 static void node_order_is_gmshs(void **state) {
   (void)state;
   const mesh_kind both[2] = {MESH_TET10, MESH_HEX20};
@@ -182,7 +183,7 @@ static void node_order_is_gmshs(void **state) {
   gmshFinalize(&ierr);
 }
 
-/* Hexahedra through a file and back; the volume, the area of each group, and what lies on the far side. */
+/* Hexahedra written and read: the volume, the area of each group, the far side. */
 static void hexahedra_are_read(void **state) {
   (void)state;
   mesh_fe box, mesh;
@@ -191,7 +192,7 @@ static void hexahedra_are_read(void **state) {
   assert_int_equal(box.n_elements, 30);
   assert_int_equal(box_set(&box, MESH_CONTACT_LEFT, 1, size[1]), SHB_OK);
   assert_int_equal(box_write(&box, path), SHB_OK);
-  assert_int_equal(mesh_fe_read(path, &mesh), SHB_OK);
+  assert_int_equal(read_mesh(path, &mesh), SHB_OK);
   assert_int_equal(mesh.kind, MESH_HEX20);
   assert_int_equal(mesh.n_nodes, box.n_nodes);
   assert_int_equal(mesh.n_elements, box.n_elements);
@@ -213,13 +214,13 @@ static void hexahedra_are_read(void **state) {
     face[7 - i] = middle;
   }
   assert_int_equal(box_write(&box, path), SHB_OK);
-  assert_int_equal(mesh_fe_read(path, &mesh), SHB_OK);
+  assert_int_equal(read_mesh(path, &mesh), SHB_OK);
   area(&mesh, MESH_ROOT, sum);
   assert_near(sum[0], -size[1] * size[2], 1e-15);
   mesh_fe_free(&mesh);
   box.coordinates[3 * box.connectivity[20 * 7 + 6]] -= size[0]; /* a corner through its element */
   assert_int_equal(box_write(&box, path), SHB_OK);
-  assert_refused(mesh_fe_read(path, &mesh), SHB_ERR_INPUT, "elements inverted");
+  assert_refused(read_mesh(path, &mesh), SHB_ERR_INPUT, "elements inverted");
   mesh_fe_free(&box);
 }
 
@@ -244,7 +245,7 @@ static void hexahedra_of_other_orders_are_refused(void **state) {
     gmshWrite(path, &ierr);
     assert_int_equal(ierr, 0);
     gmshFinalize(&ierr);
-    assert_refused(mesh_fe_read(path, &mesh), SHB_ERR_INPUT,
+    assert_refused(read_mesh(path, &mesh), SHB_ERR_INPUT,
                    order == 1 ? "linear (eight-node) hexahedra" : "hexahedra of 27 nodes");
   }
 }
@@ -256,7 +257,7 @@ static void unused_nodes_are_dropped(void **state) {
   box.n_elements -= 6; /* the last cell, at the far corner: three of its faces were outside */
   box.set[MESH_LOAD].n = 0;
   assert_int_equal(box_write(&box, path), SHB_OK);
-  assert_int_equal(mesh_fe_read(path, &mesh), SHB_OK);
+  assert_int_equal(read_mesh(path, &mesh), SHB_OK);
   assert_in_range(mesh.n_nodes, box.n_nodes - 26, box.n_nodes - 1);
   for (int i = 0; i < 10 * mesh.n_elements; i++)
     assert_int_equal(mesh.node_tag[mesh.connectivity[i]], box.node_tag[box.connectivity[i]]);
@@ -264,7 +265,7 @@ static void unused_nodes_are_dropped(void **state) {
   mesh_fe_free(&box);
 }
 
-/* A block between two radial planes of a ring of n: its sides match after one pitch. */
+/* A block between two radial planes of a ring of n sectors: its sides match after one pitch. */
 static void wedge(int n, mesh_fe *mesh) {
   const double block[3] = {0.013, 0.02, 0.011};
   const int    few[3]   = {2, 3, 2};
@@ -273,7 +274,7 @@ static void wedge(int n, mesh_fe *mesh) {
   assert_int_equal(box_set(mesh, MESH_CONTACT_LEFT, 1, block[1]), SHB_OK);
   for (int i = 0; i < mesh->n_nodes; i++) {
     double *x     = mesh->coordinates + 3 * i;
-    double  angle = SHB_TWO_PI / n * (0.5 - x[1] / block[1]), r = 0.31 + x[2];
+    double  angle = 2 * M_PI / n * (0.5 - x[1] / block[1]), r = 0.31 + x[2];
     /* about +x, tangential = axial x radial: radial z at angle 0 goes towards -y */
     x[1] = -r * sin(angle);
     x[2] = r * cos(angle);
@@ -290,7 +291,7 @@ static void contact_faces_are_paired(void **state) {
   assert_int_equal(pairs, 25);
   for (int i = 0; i < pairs; i++) {
     double at[3];
-    mesh_axis_rotate(MESH_AXIS_X, SHB_TWO_PI / 37, mesh.coordinates + 3 * left[i], at);
+    mesh_axis_rotate(MESH_AXIS_X, 2 * M_PI / 37, mesh.coordinates + 3 * left[i], at);
     for (int d = 0; d < 3; d++) assert_near(at[d], mesh.coordinates[3 * right[i] + d], 1e-15);
     assert_true(i == 0 || right[i] > right[i - 1]);
   }
@@ -363,24 +364,24 @@ static void bad_files_are_refused(void **state) {
   (void)state;
   mesh_fe mesh;
   unlink(path);
-  assert_refused(mesh_fe_read(path, &mesh), SHB_ERR_IO, "No such file");
-  assert_refused(mesh_fe_read("blade.step", &mesh), SHB_ERR_INPUT, "end in .msh");
+  assert_refused(read_mesh(path, &mesh), SHB_ERR_IO, "No such file");
+  assert_refused(read_mesh("blade.step", &mesh), SHB_ERR_INPUT, "end in .msh");
   put("");
-  assert_refused(mesh_fe_read(path, &mesh), SHB_ERR_INPUT, "not a gmsh mesh file");
+  assert_refused(read_mesh(path, &mesh), SHB_ERR_INPUT, "not a gmsh mesh file");
   put("Point(1) = {0, 0, 0};\nSystemCall \"false\";\n");
-  assert_refused(mesh_fe_read(path, &mesh), SHB_ERR_INPUT, "not a gmsh mesh file");
+  assert_refused(read_mesh(path, &mesh), SHB_ERR_INPUT, "not a gmsh mesh file");
   put("$MeshFormat\n4 0 8\n$EndMeshFormat\n");
-  assert_refused(mesh_fe_read(path, &mesh), SHB_ERR_INPUT, "mesh format 4;");
+  assert_refused(read_mesh(path, &mesh), SHB_ERR_INPUT, "mesh format 4;");
   put("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n");
-  assert_refused(mesh_fe_read(path, &mesh), SHB_ERR_INPUT, "no $EndNodes");
+  assert_refused(read_mesh(path, &mesh), SHB_ERR_INPUT, "no $EndNodes");
   put("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\ngarbage\n$EndNodes\n$Elements\n1 2 3\n"
       "$EndElements\n");
-  assert_int_equal(mesh_fe_read(path, &mesh), SHB_ERR_INPUT);
+  assert_int_equal(read_mesh(path, &mesh), SHB_ERR_INPUT);
   assert_null(strchr(shb_message(), '\n'));
   assert_non_null(strstr(shb_message(), path));
 }
 
-/* Cut a good file at many lengths: never a crash, never a mesh. */
+/* A good file cut at many lengths: never a crash, never a mesh. */
 static void truncated_files_are_refused(void **state) {
   (void)state;
   mesh_fe box, mesh;
@@ -394,7 +395,7 @@ static void truncated_files_are_refused(void **state) {
   fclose(file);
   for (int part = 19; part >= 0; part--) {
     assert_int_equal(truncate(path, whole * part / 20), 0);
-    assert_int_equal(mesh_fe_read(path, &mesh), SHB_ERR_INPUT);
+    assert_int_equal(read_mesh(path, &mesh), SHB_ERR_INPUT);
     assert_null(mesh.coordinates);
   }
 }
@@ -405,7 +406,7 @@ static void first_order_is_refused(void **state) {
   put("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n2 1 \"root\"\n3 2 \"body\"\n"
       "$EndPhysicalNames\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n$EndNodes\n"
       "$Elements\n2\n1 2 2 1 1 1 2 3\n2 4 2 2 1 1 2 3 4\n$EndElements\n");
-  assert_refused(mesh_fe_read(path, &mesh), SHB_ERR_INPUT, "second order is needed");
+  assert_refused(read_mesh(path, &mesh), SHB_ERR_INPUT, "second order is needed");
 }
 
 static void surface_only_is_refused(void **state) {
@@ -414,7 +415,7 @@ static void surface_only_is_refused(void **state) {
   put("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n2 1 \"root\"\n"
       "$EndPhysicalNames\n$Nodes\n3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n$EndNodes\n"
       "$Elements\n1\n1 2 2 1 1 1 2 3\n$EndElements\n");
-  assert_refused(mesh_fe_read(path, &mesh), SHB_ERR_INPUT, "no volume elements");
+  assert_refused(read_mesh(path, &mesh), SHB_ERR_INPUT, "no volume elements");
 }
 
 static void an_element_without_its_node_is_refused(void **state) {
@@ -423,10 +424,10 @@ static void an_element_without_its_node_is_refused(void **state) {
   put("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n2 1 \"root\"\n3 2 \"body\"\n"
       "$EndPhysicalNames\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n$EndNodes\n"
       "$Elements\n2\n1 2 2 1 1 1 2 3\n2 4 2 2 1 1 2 3 99\n$EndElements\n");
-  assert_refused(mesh_fe_read(path, &mesh), SHB_ERR_INPUT, "99");
+  assert_refused(read_mesh(path, &mesh), SHB_ERR_INPUT, "99");
 }
 
-/* As many as fit into a line, in one line whatever they are called. */
+/* As many names as fit, in one line whatever their characters. */
 static void groups_are_listed(void **state) {
   (void)state;
   mesh_fe mesh = {0};
@@ -462,13 +463,13 @@ static void bad_groups_are_refused(void **state) {
   int roots            = box.set[MESH_ROOT].n;
   box.set[MESH_ROOT].n = 0;
   assert_int_equal(box_write(&box, path), SHB_OK);
-  assert_refused(mesh_fe_read(path, &mesh), SHB_ERR_INPUT, "group root is absent");
-  assert_refused(mesh_fe_read(path, &mesh), SHB_ERR_INPUT, "; the mesh has the groups load");
+  assert_refused(read_mesh(path, &mesh), SHB_ERR_INPUT, "group root is absent");
+  assert_refused(read_mesh(path, &mesh), SHB_ERR_INPUT, "; the mesh has the groups load");
   box.set[MESH_ROOT].n = roots;
   assert_int_equal(box_set(&box, MESH_LOAD, 0, size[0] * 2 / cells[0]), SHB_OK);
   assert_true(box.set[MESH_LOAD].n > 0);
   assert_int_equal(box_write(&box, path), SHB_OK);
-  assert_refused(mesh_fe_read(path, &mesh), SHB_ERR_INPUT, "group load: the face on nodes");
+  assert_refused(read_mesh(path, &mesh), SHB_ERR_INPUT, "group load: the face on nodes");
   mesh_fe_free(&box);
 }
 
@@ -477,14 +478,14 @@ static void inverted_elements_are_named(void **state) {
   mesh_fe box, mesh;
   assert_int_equal(box_mesh(size, cells, &box), SHB_OK);
   for (int e = 0; e < box.n_elements; e++) box.element_tag[e] = 1000 + 3 * e;
-  /* pull one mid-side node far along its edge: det J < 0 near that edge's end */
+  /* move one mid-side node far along its edge: det J < 0 near that end */
   const int *n = box.connectivity + 10 * 77;
   for (int d = 0; d < 3; d++)
     box.coordinates[3 * n[4] + d] =
         0.1 * box.coordinates[3 * n[0] + d] + 0.9 * box.coordinates[3 * n[1] + d];
   assert_true(mesh_jacobian_least(&box, 77) < 0);
   assert_int_equal(box_write(&box, path), SHB_OK);
-  assert_refused(mesh_fe_read(path, &mesh), SHB_ERR_INPUT, "inverted");
+  assert_refused(read_mesh(path, &mesh), SHB_ERR_INPUT, "inverted");
   assert_null(mesh.coordinates);
   char tag[16];
   int  named = 0;
@@ -497,7 +498,7 @@ static void inverted_elements_are_named(void **state) {
   mesh_fe_free(&box);
 }
 
-/* gmsh leaves the program's own signal handling in place. */
+/* gmsh leaves the program's signal handlers in place. */
 static void signals_stay_ours(void **state) {
   (void)state;
   shb_interrupt_catch();
@@ -506,7 +507,7 @@ static void signals_stay_ours(void **state) {
   mesh_fe box, mesh;
   assert_int_equal(box_mesh(size, cells, &box), SHB_OK);
   assert_int_equal(box_write(&box, path), SHB_OK);
-  assert_int_equal(mesh_fe_read(path, &mesh), SHB_OK);
+  assert_int_equal(read_mesh(path, &mesh), SHB_OK);
   sigaction(SIGINT, NULL, &after);
   assert_true(before.sa_handler == after.sa_handler);
   mesh_fe_free(&mesh);

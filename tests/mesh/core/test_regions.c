@@ -1,5 +1,5 @@
-/* Several volumes in a mesh: from gmsh, from solids by name or by a point, from element sets; and what is told of those that
- * leave elements without a material. */
+/* Several volumes in a mesh: from gmsh, from solids by name or by a point, from element sets.
+ * Elements without a material are refused. */
 #include <gmshc.h>
 #include <math.h>
 #include <setjmp.h>
@@ -14,11 +14,14 @@
 #include <cmocka.h>
 
 #include "mesh/gmsh/session.h"
-#include "mesh/gmsh/source.h"
-#include "mesh/io/inp_read.h"
+#include "mesh/gmsh/source_settings.h"
+#include "mesh/io/inp_write.h"
 #include "mesh/io/msh_write.h"
+#include "mesh/io/read.h"
+#include "mesh/io/source.h"
 #include "tests/support/box.h"
 #include "tests/support/check.h"
+#include "tests/support/read_mesh.h"
 
 /* Three blocks along x, cut at these places, of which the middle one is "shank". */
 static const double cut[4] = {0, .013, .029, .037};
@@ -75,7 +78,7 @@ static double middle(const mesh_fe *mesh, int e) {
   return sum;
 }
 
-/* Every element is in the region of the block in which its middle lies. */
+/* Every element is in the region of the block that contains its middle. */
 static void check_blocks(const mesh_fe *mesh, const int region_of_block[3]) {
   int seen[3] = {0};
   assert_non_null(mesh->region);
@@ -114,35 +117,34 @@ static void volumes_by_name(void **state) {
   assert_ok(mesh_inp_write(&mesh, written[1]));
   for (int i = 0; i < 2; i++) {
     mesh_names names = mesh_rules_labels(&source.rules);
-    assert_ok(mesh_fe_read_named(written[i], &names, &again));
+    assert_ok(mesh_fe_read(written[i], &names, &again));
     assert_int_equal(again.n_elements, mesh.n_elements);
     check_blocks(&again, (const int[]){0, 1, 0});
     mesh_fe_free(&again);
-    assert_ok(mesh_fe_read(written[i], &again)); /* one material: volumes do not matter */
+    assert_ok(read_mesh(written[i], &again)); /* one material: volumes do not matter */
     assert_null(again.region);
     mesh_fe_free(&again);
   }
   mesh_fe_free(&mesh);
 }
 
-/* A solid without names: three bodies that touch, told apart by points in them. */
+/* A solid without names: three bodies in contact, identified by points inside. */
 static void volumes_by_point(void **state) {
   (void)state;
-  mesh_kernel kernel;
-  mesh_fe     mesh;
-  int         ierr = 0;
-  const char *geo = scratch("solid.geo"), *step = scratch("solid.step"),
+  mesh_session kernel;
+  mesh_fe      mesh;
+  int          ierr = 0;
+  const char  *geo = scratch("solid.geo"), *step = scratch("solid.step"),
              *brep = scratch("solid.brep");
   put(geo, blocks, "");
-  assert_ok(mesh_kernel_open(&kernel));
+  assert_ok(mesh_session_open(&kernel));
   gmshOpen(geo, &ierr);
   gmshModelOccSynchronize(&ierr);
   gmshWrite(step, &ierr);
   gmshWrite(brep, &ierr);
-  mesh_kernel_close(&kernel);
+  mesh_session_close(&kernel);
   assert_int_equal(ierr, 0);
-  for (int i = 0; i < 2;
-       i++) { /* gmsh writes STEP files in mm: a number in the file is a metre of ours here */
+  for (int i = 0; i < 2; i++) { /* gmsh writes STEP files in mm; here a number of the file is 1 m */
     mesh_source source     = source_of(i ? step : brep, 1);
     source.size            = .004;
     source.rules.n_volumes = 3;
@@ -191,18 +193,18 @@ static void element_sets(void **state) {
   fclose(file);
   mesh_names names = {.n_volumes = 2,
                       .volume = {{.label = "low", .name = "LOW"}, {.label = "up", .name = "high"}}};
-  assert_int_equal(mesh_fe_read_named(path, &names, &mesh), SHB_ERR_INPUT);
+  assert_int_equal(mesh_fe_read(path, &names, &mesh), SHB_ERR_INPUT);
   assert_non_null(
       strstr(shb_message(), "1 of 12 elements is in no volume of materials, such as element 12;"));
   file = fopen(path, "a");
   fputs("*ELSET, ELSET=high\n12\n", file);
   fclose(file);
-  assert_ok(mesh_fe_read_named(path, &names, &mesh));
+  assert_ok(mesh_fe_read(path, &names, &mesh));
   for (int e = 0; e < 12; e++) assert_int_equal(mesh.region[e], e >= 6);
   assert_string_equal(mesh.region_name[1], "up");
   mesh_fe_free(&mesh);
   names.volume[1].name = "none";
-  assert_int_equal(mesh_fe_read_named(path, &names, &mesh), SHB_ERR_INPUT);
+  assert_int_equal(mesh_fe_read(path, &names, &mesh), SHB_ERR_INPUT);
   assert_non_null(strstr(shb_message(), "no element set 'none'"));
 }
 

@@ -1,5 +1,5 @@
-/* Abaqus and CalculiX meshes: written and read back, every way to name a group, every fault with its line. */
-#include "mesh/io/inp_read.h"
+/* Abaqus and CalculiX meshes: written and read back, all ways to name a group, faults with their
+ * line. */
 
 #include <math.h>
 #include <setjmp.h>
@@ -13,7 +13,9 @@
 
 #include <cmocka.h>
 
+#include "mesh/io/inp_write.h"
 #include "tests/support/box.h"
+#include "tests/support/read_mesh.h"
 
 static const double size[3]  = {0.237, 0.041, 0.023};
 static const int    cells[3] = {3, 2, 1};
@@ -41,11 +43,12 @@ static void put(const char *text) {
   fclose(file);
 }
 
-/* Reading fails with these words, in one line that begins with the file and, unless line is 0, its line. */
+/* Reading fails with these words in one line, headed by the file and, unless line is 0, its
+ * line. */
 static void refused(int line, const char *words) {
   mesh_fe    mesh;
   char       head[96];
-  shb_status status = mesh_fe_read(path, &mesh);
+  shb_status status = read_mesh(path, &mesh);
   snprintf(head, sizeof head, line ? "%s:%d: " : "%s: ", path, line);
   if (status != SHB_ERR_INPUT || !strstr(shb_message(), words) ||
       strncmp(shb_message(), head, strlen(head)) != 0)
@@ -55,7 +58,7 @@ static void refused(int line, const char *words) {
   assert_null(mesh.connectivity);
 }
 
-/* The same nodes in any order: outward or not is for other tests. */
+/* The same nodes in any order; other tests check the orientation. */
 static int same_nodes(const int *a, const int *b, int n) {
   int same = 0;
   for (int i = 0; i < n; i++)
@@ -85,7 +88,7 @@ static void same_mesh(const mesh_fe *a, const mesh_fe *b) {
   for (int id = 0; id < MESH_N_SETS; id++) same_faces(a, b, (mesh_set_id)id);
 }
 
-/* All four groups, on sides that use each of a tetrahedron's faces. */
+/* All four groups, on sides that use each face of a tetrahedron. */
 static void full_box(mesh_kind kind, mesh_fe *box) {
   shb_status status = kind == MESH_HEX20 ? box_hex(size, cells, box) : box_mesh(size, cells, box);
   assert_int_equal(status, SHB_OK);
@@ -100,15 +103,16 @@ static void what_was_written_comes_back(void **state) {
     full_box((mesh_kind)kind, &box);
     for (int i = 0; i < box.n_nodes; i++) box.node_tag[i] = 7 + 3L * i;
     assert_int_equal(mesh_inp_write(&box, path), SHB_OK);
-    assert_int_equal(mesh_fe_read(path, &mesh), SHB_OK);
+    assert_int_equal(read_mesh(path, &mesh), SHB_OK);
     same_mesh(&mesh, &box); /* bit for bit */
     mesh_fe_free(&mesh);
     mesh_fe_free(&box);
   }
 }
 
-/* Coordinates of 17 digits of any size and sign: next to what they were, in 20 characters each. */
-/* A byte order mark before all; lines that end in CR LF, or in CR. */
+/* Coordinates of 17 digits of any size and sign: neighbours of the originals, in 20 characters
+ * each. */
+/* A byte order mark first; lines that end in CR LF, or in CR. */
 static void other_ends_of_lines_are_read(void **state) {
   (void)state;
   mesh_fe box, mesh;
@@ -129,7 +133,7 @@ static void other_ends_of_lines_are_read(void **state) {
     }
     fclose(file);
     free(text);
-    shb_status status = mesh_fe_read(path, &mesh);
+    shb_status status = read_mesh(path, &mesh);
     if (status != SHB_OK) fail_msg("way %d: %s", way, shb_message());
     same_mesh(&box, &mesh);
     mesh_fe_free(&mesh);
@@ -154,7 +158,7 @@ static void numbers_fit_calculix(void **state) {
     for (char *word = strtok(line, ", \n"); word; word = strtok(NULL, ", \n"))
       assert_true(strlen(word) <= 20 || strncmp(word, "TYPE=", 5) == 0);
   fclose(file);
-  assert_int_equal(mesh_fe_read(path, &mesh), SHB_OK);
+  assert_int_equal(read_mesh(path, &mesh), SHB_OK);
   for (int i = 0; i < 3 * box.n_nodes; i++)
     assert_true(fabs(mesh.coordinates[i] - box.coordinates[i]) <=
                 6e-16 * fabs(box.coordinates[i]) + 1e-18); /* m */
@@ -171,7 +175,8 @@ static void cannot_be_written_nowhere(void **state) {
   mesh_fe_free(&box);
 }
 
-/* As other programs write: capitals, several rows an element, sets of sets, ranges, triangles, an instance's name. */
+/* As other programs write: capitals, several rows an element, sets of sets, ranges, triangles, the
+ * name of an instance. */
 static void write_otherwise(const mesh_fe *box, FILE *file) {
   const mesh_topology *topology = mesh_topology_of(box->kind);
   fprintf(file, "** a comment\n*Heading\n a, b, c\n*Part, name=P\n*NODE\n");
@@ -198,7 +203,7 @@ static void write_otherwise(const mesh_fe *box, FILE *file) {
   fprintf(file, "*End Part\n*Assembly, name=A\n*Instance, name=P-1, part=P\n*End Instance\n");
 }
 
-/* Nodes of x = 0 as two ranges and single ones, those of y = 0 as a surface of nodes. */
+/* Nodes of x = 0 as two ranges and single ones; nodes of y = 0 as a surface of nodes. */
 static void write_sets(const mesh_fe *box, FILE *file) {
   int first = 0;
   fprintf(file, "*NSET, NSET=half\n");
@@ -230,14 +235,14 @@ static void other_ways_to_write_are_read(void **state) {
     write_otherwise(&box, file);
     write_sets(&box, file);
     fclose(file);
-    assert_int_equal(mesh_fe_read(path, &mesh), SHB_OK);
+    assert_int_equal(read_mesh(path, &mesh), SHB_OK);
     same_mesh(&mesh, &box);
     mesh_fe_free(&mesh);
     mesh_fe_free(&box);
   }
 }
 
-/* A unit tetrahedron with its middles: lines 1 to 11 the nodes, 12 and 13 the element. */
+/* A unit tetrahedron with its middles: lines 1 to 11 hold the nodes, 12 and 13 the element. */
 #define NODES                                                                            \
   "*NODE\n1,0,0,0\n2,1,0,0\n3,0,1,0\n4,0,0,1\n5,.5,0,0\n6,.5,.5,0\n7,0,.5,0\n8,0,0,.5\n" \
   "9,.5,0,.5\n10,0,.5,.5\n"
@@ -257,7 +262,7 @@ static void every_face_label_is_right(void **state) {
     mesh_fe mesh;
     snprintf(text, sizeof text, NODES ELEMENT "*SURFACE, NAME=root\nE, S%d\n", s + 1);
     put(text);
-    assert_int_equal(mesh_fe_read(path, &mesh), SHB_OK);
+    assert_int_equal(read_mesh(path, &mesh), SHB_OK);
     assert_int_equal(mesh.set[MESH_ROOT].n, 1);
     int same = 0;
     for (int i = 0; i < 3; i++)
@@ -289,7 +294,7 @@ static void every_label_of_a_hexahedron_is_right(void **state) {
     fclose(from);
     fclose(to);
     assert_int_equal(rename(other, path), 0);
-    assert_int_equal(mesh_fe_read(path, &mesh), SHB_OK);
+    assert_int_equal(read_mesh(path, &mesh), SHB_OK);
     assert_int_equal(mesh.set[MESH_ROOT].n, 1);
     for (int i = 0; i < 8; i++)
       assert_true(mesh.coordinates[3 * mesh.set[MESH_ROOT].nodes[i] + direction[s]] == value[s]);
@@ -365,7 +370,7 @@ static void face_inside_is_refused(void **state) {
   mesh_fe_free(&box);
 }
 
-/* A file that ends before its groups is never read as a smaller mesh. */
+/* A file that ends before its groups is not read as a smaller mesh. */
 static void cut_files_are_refused(void **state) {
   (void)state;
   mesh_fe box, mesh;
@@ -379,7 +384,7 @@ static void cut_files_are_refused(void **state) {
   fclose(file);
   for (int part = 15; part >= 0; part--) {
     assert_int_equal(truncate(path, whole * part / 20), 0);
-    assert_int_equal(mesh_fe_read(path, &mesh), SHB_ERR_INPUT);
+    assert_int_equal(read_mesh(path, &mesh), SHB_ERR_INPUT);
     assert_null(mesh.coordinates);
   }
 }

@@ -50,19 +50,19 @@ static void neimark_sacker_points_are_marked(void **state) {
   static const double wanted[2][2] = {{1.20060, 1.200586}, {1.25635, 1.256349}};
   modal_model         model;
   three_degree_model(&model);
-  mhb_settings      s = ground_settings(.4, .8, .5, .1, 15);
-  mhb_response     *r = sweep(&model, &s, .8, 1.7);
+  mhb_settings      s = ground_settings(0.4, 0.8, 0.5, 0.1, 15);
+  mhb_response     *r = sweep(&model, &s, 0.8, 1.7);
   const mhb_branch *b = &r->branch[2];
   int               at[16];
   assert_int_equal(specials(b, MHB_NEIMARK_SACKER, at), 2);
   assert_int_equal(specials(b, MHB_FLIP, at + 2), 0);
   for (int i = 0; i < 2; i++) {
     double complex mu = multiplier(r, b, at[i], 0);
-    print_message("%.6f: %.6f%+.6fj\n", omega(b, at[i]), creal(mu), cimag(mu));
+    print_message("%.6f: %.6f%+0.6fj\n", omega(b, at[i]), creal(mu), cimag(mu));
     assert_near(omega(b, at[i]), wanted[i][0], 2e-4);
     assert_near(omega(b, at[i]), wanted[i][1], 2e-5);
     assert_near(cabs(mu), 1, 1e-5);
-    assert_true(fabs(cimag(mu)) > .1);
+    assert_true(fabs(cimag(mu)) > 0.1);
     assert_true(conj(mu) == multiplier(r, b, at[i], 1));
     assert_true(b->error_newton[at[i]] < 1e-9);
   }
@@ -82,12 +82,12 @@ static void neimark_sacker_points_are_marked(void **state) {
 /* The middle branch is unstable, the others are not; no flip, no pair. */
 static void middle_branches_are_unstable(void **state) {
   (void)state;
-  static const struct { double n0, F; } rows[] = {{-4.5, .1}, {1, .06}};
+  static const struct { double n0, F; } rows[] = {{-4.5, 0.1}, {1, 0.06}};
   for (int i = 0; i < 2; i++) {
     modal_model model;
-    one_degree_model(.02, 0, rows[i].F, &model);
+    one_degree_model(0.02, 0, rows[i].F, &model);
     mhb_settings      s = ground_settings(0, 9, 1, rows[i].n0, 31);
-    mhb_response     *r = sweep(&model, &s, .5, 3.6);
+    mhb_response     *r = sweep(&model, &s, 0.5, 3.6);
     const mhb_branch *b = &r->branch[2];
     int               fold[16], between = 0;
     assert_int_equal(specials(b, MHB_FOLD, fold), 2);
@@ -111,8 +111,8 @@ static void middle_branches_are_unstable(void **state) {
 static void flips_are_marked(void **state) {
   (void)state;
   modal_model model;
-  one_degree_model(.02, 0, .5, &model);
-  mhb_settings      s = ground_settings(0, 9, 1, -.5, 31);
+  one_degree_model(0.02, 0, 0.5, &model);
+  mhb_settings      s = ground_settings(0, 9, 1, -0.5, 31);
   mhb_response     *r = sweep(&model, &s, 2.0, 3.6);
   const mhb_branch *b = &r->branch[2];
   int               at[16];
@@ -136,9 +136,9 @@ static void never_goes_by_folds(void **state) {
   (void)state;
   modal_model model;
   three_degree_model(&model);
-  mhb_settings s  = ground_settings(.4, .8, .5, .3, 11);
+  mhb_settings s  = ground_settings(0.4, 0.8, 0.5, 0.3, 11);
   s.stability     = MHB_STABILITY_NEVER;
-  mhb_response *r = sweep(&model, &s, .8, 1.7);
+  mhb_response *r = sweep(&model, &s, 0.8, 1.7);
   mhb_branch   *b = &r->branch[2];
   int           fold[16], odd = 0;
   assert_int_equal(r->n_multipliers, 0);
@@ -173,7 +173,7 @@ static void threads_change_nothing(void **state) {
   (void)state;
   for (int ring = 0; ring < 2; ring++) {
     modal_model  model;
-    mhb_settings s = ground_settings(.4, .8, .5, .1, 7);
+    mhb_settings s = ground_settings(0.4, 0.8, 0.5, 0.1, 7);
     if (ring) {
       random_model(1, WITH_LEFT, 7, &model);
       s              = random_settings(3);
@@ -186,8 +186,8 @@ static void threads_change_nothing(void **state) {
       three_degree_model(&model);
     }
     s.n_preloads = 3;
-    memcpy(s.n0, (double[3]){.05, .1, .3}, 3 * sizeof(double));
-    s.frequency[0]     = .9 / (2 * PI);
+    memcpy(s.n0, (double[3]){0.05, 0.1, 0.3}, 3 * sizeof(double));
+    s.frequency[0]     = 0.9 / (2 * PI);
     s.frequency[1]     = 1.5 / (2 * PI);
     mhb_response *r[2] = {NULL, NULL};
     for (int k = 0; k < 2; k++) {

@@ -33,16 +33,16 @@ static void amplitudes_of_time_integration(void **state) {
   (void)state;
   static const struct {
     double n0, w, a[3], error[4];
-  } rows[]              = {{1, 1.20, {.027944, .147642, .008139}, {1e-6, 1e-6, 1e-6, 1e-6}},
-                           {-.2, 1.00, {.019624, .197890, .003763}, {1e-6, 1e-6, 1e-6, 1e-6}},
-                           {0, 1.05, {.195617, .114818, .021163}, {1.7e-1, 1.5e-3, 8.3e-5, 7.8e-6}},
-                           {.3, 1.42, {.492394, .396878, .471625}, {1.1e-2, 1.8e-4, 1.8e-6, 2.3e-6}}};
+  } rows[]              = {{1, 1.20, {0.027944, 0.147642, 0.008139}, {1e-6, 1e-6, 1e-6, 1e-6}},
+                           {-0.2, 1.00, {0.019624, 0.197890, 0.003763}, {1e-6, 1e-6, 1e-6, 1e-6}},
+                           {0, 1.05, {0.195617, 0.114818, 0.021163}, {1.7e-1, 1.5e-3, 8.3e-5, 7.8e-6}},
+                           {0.3, 1.42, {0.492394, 0.396878, 0.471625}, {1.1e-2, 1.8e-4, 1.8e-6, 2.3e-6}}};
   static const int H[4] = {1, 3, 7, 15};
   modal_model      model;
   three_degree_model(&model);
   for (int i = 0; i < 4; i++) {
     for (int h = 0; h < 4; h++) {
-      mhb_settings s = ground_settings(.4, .8, .5, rows[i].n0, H[h]);
+      mhb_settings s = ground_settings(0.4, 0.8, 0.5, rows[i].n0, H[h]);
       double       a[3], worst = 0, size = 0;
       solve_at(&model, &s, rows[i].w, a);
       for (int c = 0; c < 3; c++) {
@@ -52,7 +52,7 @@ static void amplitudes_of_time_integration(void **state) {
       print_message("n0 %4.1f W %.2f H %2d: error %.2e of %.2e\n", rows[i].n0, rows[i].w, H[h],
                     worst / size, rows[i].error[h]);
       /* the reference is printed to six decimals */
-      assert_near(worst / size, 0, 2 * rows[i].error[h] + .6e-6 / size);
+      assert_near(worst / size, 0, 2 * rows[i].error[h] + 0.6e-6 / size);
     }
   }
   modal_model_free(&model);
@@ -72,12 +72,12 @@ static double amplitude(const mhb_response *r, const mhb_branch *b, int point, i
   return cabs(b->motion[(point * 3 + component) * K + 1]);
 }
 
-/* The located fold nearest to w; NAN if there is none within .05. */
+/* The located fold nearest to w; NAN if there is none within 0.05. */
 static double fold_near(const mhb_branch *b, double w) {
   double best = NAN;
   for (int i = 0; i < b->n_points; i++) {
     double at = 2 * PI * b->frequency[i];
-    if (b->special[i] == MHB_FOLD && fabs(at - w) < .05 && !(fabs(best - w) < fabs(at - w)))
+    if (b->special[i] == MHB_FOLD && fabs(at - w) < 0.05 && !(fabs(best - w) < fabs(at - w)))
       best = at;
   }
   return best;
@@ -108,21 +108,21 @@ static void three_degree_peaks_and_folds(void **state) {
     double n0;
     int    H, peaks, folds;
     double peak[3][2], fold[4];
-  } rows[] = {{-.2,
+  } rows[] = {{-0.2,
                11,
                3,
                4,
-               {{.255795, .960521}, {.887011, 1.158727}, {.631926, 1.311043}},
-               {.968825, .959129, 1.162961, 1.160645}},
-              {0, 7, 3, 0, {{.270514, 1.030220}, {.532418, 1.190037}, {.566835, 1.329447}}, {0}},
-              {.3, 11, 2, 2, {{.250643, 1.245374}, {.398957, 1.416445}}, {1.408680, 1.408382}},
-              {.5, 7, 1, 0, {{.389205, 1.254187}}, {0}},
-              {1, 7, 1, 0, {{.560424, 1.362896}}, {0}}};
+               {{0.255795, 0.960521}, {0.887011, 1.158727}, {0.631926, 1.311043}},
+               {0.968825, 0.959129, 1.162961, 1.160645}},
+              {0, 7, 3, 0, {{0.270514, 1.030220}, {0.532418, 1.190037}, {0.566835, 1.329447}}, {0}},
+              {0.3, 11, 2, 2, {{0.250643, 1.245374}, {0.398957, 1.416445}}, {1.408680, 1.408382}},
+              {0.5, 7, 1, 0, {{0.389205, 1.254187}}, {0}},
+              {1, 7, 1, 0, {{0.560424, 1.362896}}, {0}}};
   modal_model model;
   three_degree_model(&model);
   for (int i = 0; i < 5; i++) {
-    mhb_settings      s = ground_settings(.4, .8, .5, rows[i].n0, rows[i].H);
-    mhb_response     *r = sweep(&model, &s, .8, 1.7);
+    mhb_settings      s = ground_settings(0.4, 0.8, 0.5, rows[i].n0, rows[i].H);
+    mhb_response     *r = sweep(&model, &s, 0.8, 1.7);
     const mhb_branch *b = &r->branch[2];
     print_message("n0 %4.1f: %d points, %d folds\n", rows[i].n0, b->n_points, count_folds(b));
     assert_int_equal(count_folds(b), rows[i].folds);
@@ -158,13 +158,13 @@ static void one_degree_with_jumps(void **state) {
   static const struct {
     double n0, F, peak, at, fold[2], w, branch[3];
   } rows[] = {
-      {-4.5, .1, 1.669613, 1.388351, {1.389887, 1.093215}, 1.30, {1.141048, .908380, .144518}},
-      {1, .06, .668464, 2.086578, {2.086215, 3.078167}, 2.30, {.012736, .432375, .461382}}};
+      {-4.5, 0.1, 1.669613, 1.388351, {1.389887, 1.093215}, 1.30, {1.141048, 0.908380, 0.144518}},
+      {1, 0.06, 0.668464, 2.086578, {2.086215, 3.078167}, 2.30, {0.012736, 0.432375, 0.461382}}};
   for (int i = 0; i < 2; i++) {
     modal_model model;
-    one_degree_model(.02, 0, rows[i].F, &model);
+    one_degree_model(0.02, 0, rows[i].F, &model);
     mhb_settings      s   = ground_settings(0, 9, 1, rows[i].n0, 31);
-    mhb_response     *r   = sweep(&model, &s, .5, 3.6);
+    mhb_response     *r   = sweep(&model, &s, 0.5, 3.6);
     const mhb_branch *b   = &r->branch[2];
     double            top = 0, at = 0, found[8];
     for (int p = 0; p < b->n_points; p++) {
@@ -208,9 +208,9 @@ static double peak_amplitude(const mhb_settings *s, const modal_model *model, do
 static void friction_oscillator_from_a_cold_start(void **state) {
   (void)state;
   static const double rows[][2] = {
-      {1.0, .79984}, {1.1, 1.01470}, {1.18, 2.39365184}, {1.30, 2.02243853}};
+      {1.0, 0.79984}, {1.1, 1.01470}, {1.18, 2.39365184}, {1.30, 2.02243853}};
   modal_model model;
-  one_degree_model(.01, 1, .8, &model);
+  one_degree_model(0.01, 1, 0.8, &model);
   for (int i = 0; i < 4; i++) {
     mhb_settings s = ground_settings(1, 1, 1, 1, 31);
     double       a = peak_amplitude(&s, &model, rows[i][0]);
@@ -227,7 +227,7 @@ static void tip_contact_beam(void **state) {
   modal_model         model;
   tip_contact_beam_model(8, &model);
   for (int i = 0; i < 2; i++) {
-    mhb_settings s        = ground_settings(.3, 2e5, 2e5, 100, 7);
+    mhb_settings s        = ground_settings(0.3, 2e5, 2e5, 100, 7);
     s.preload             = i ? MHB_INTERFERENCE : MHB_EQUILIBRIUM;
     mhb_response     *r   = sweep(&model, &s, 2 * PI * 215, 2 * PI * 320);
     const mhb_branch *b   = &r->branch[2];
@@ -254,10 +254,10 @@ static void linear_limits_are_met(void **state) {
   (void)state;
   modal_model model;
   three_degree_model(&model);
-  mhb_settings s  = ground_settings(.4, .8, .5, -1e6, 3);
+  mhb_settings s  = ground_settings(0.4, 0.8, 0.5, -1e6, 3);
   s.n_preloads    = 2;
   s.n0[1]         = 1e6;
-  mhb_response *r = sweep(&model, &s, .8, 1.7);
+  mhb_response *r = sweep(&model, &s, 0.8, 1.7);
   assert_int_equal(r->n_branches, 4);
   for (int i = 0; i < 2; i++) { /* branch 2 is open, 3 stuck: same peak as their limits */
     double top[2] = {0, 0}, at[2] = {0, 0};
@@ -282,10 +282,10 @@ static void curves_go_on_beyond_a_gap(void **state) {
   (void)state;
   modal_model model;
   three_degree_model(&model);
-  mhb_settings s = ground_settings(8, .8, .5, .05, 5);
+  mhb_settings s = ground_settings(8, 0.8, 0.5, 0.05, 5);
   s.n_preloads   = 4;
-  memcpy(s.n0, (double[4]){.05, .1, .2, .4}, 4 * sizeof(double));
-  s.frequency[0] = .8 / (2 * PI);
+  memcpy(s.n0, (double[4]){0.05, 0.1, 0.2, 0.4}, 4 * sizeof(double));
+  s.frequency[0] = 0.8 / (2 * PI);
   s.frequency[1] = 1.7 / (2 * PI);
   mhb_response *r;
   shb_status    status = mhb_forced_response(&model, &s, NULL, NULL, NULL, &r);
@@ -304,13 +304,57 @@ static void curves_go_on_beyond_a_gap(void **state) {
   modal_model_free(&model);
 }
 
+/* The probe of the model is its contact point. */
+static void the_probe_moves_like_the_contact(void **state) {
+  (void)state;
+  modal_model model;
+  three_degree_model(&model);
+  mhb_settings      s    = ground_settings(.4, .8, .5, .3, 5);
+  mhb_response     *r    = sweep(&model, &s, .8, 1.7);
+  const mhb_branch *b    = &r->branch[2];
+  double            away = 0, most = 0;
+  for (int i = 0; i < b->n_points * 3 * (b->n_harmonics + 1); i++) {
+    away = fmax(away, cabs(b->probe[i] - b->motion[i]));
+    most = fmax(most, cabs(b->motion[i]));
+  }
+  assert_true(b->n_points > 50);
+  assert_below(away, 1e-8 * most);
+  mhb_response_destroy(r);
+  modal_model_free(&model);
+}
+
+/* Motions that repeat with the excitation, balanced over several of its periods: the curve is that
+ * of one period, and no point is taken for a copy of its start. */
+static void more_periods_than_the_motion_has(void **state) {
+  (void)state;
+  static const double n0[] = {-.3, -.2, 0, .1, .3, 1, 2, 4};
+  modal_model         model;
+  three_degree_model(&model);
+  for (int nu = 2; nu <= 4; nu++)
+    for (int i = 0; i < 8; i++) {
+      mhb_settings s = ground_settings(.4, .8, .5, n0[i], 3 * nu);
+      s.subharmonics = nu;
+      s.stability    = MHB_STABILITY_NEVER;
+      s.max_points   = 2000;
+      for (int part = 0; part < 3; part++) {
+        mhb_response     *r = sweep(&model, &s, .75 + .1 * part, .85 + .1 * part);
+        const mhb_branch *b = &r->branch[2];
+        assert_string_equal(b->reason, "end of range");
+        assert_near(b->frequency[0], s.frequency[0], 1e-12);
+        assert_int_equal(r->n_branches, 3);
+        mhb_response_destroy(r);
+      }
+    }
+  modal_model_free(&model);
+}
+
 static void nothing_happens_without_excitation(void **state) {
   (void)state;
   modal_model model;
   three_degree_model(&model);
-  mhb_settings s  = ground_settings(.4, .8, .5, .3, 3);
+  mhb_settings s  = ground_settings(0.4, 0.8, 0.5, 0.3, 3);
   s.scale         = 0;
-  mhb_response *r = sweep(&model, &s, .8, 1.7);
+  mhb_response *r = sweep(&model, &s, 0.8, 1.7);
   for (int p = 0; p < r->branch[2].n_points; p++)
     assert_near(amplitude(r, &r->branch[2], p, 1), 0, 1e-15);
   mhb_response_destroy(r);
@@ -326,18 +370,18 @@ static void rigid_contacts_are_refused(void **state) {
   three_degree_model(&model);
   for (int axis = 0; axis < 3; axis++)
     for (int over = 0; over < 2; over++) {
-      mhb_settings    s          = ground_settings(.4, .8, .5, .3, 3);
+      mhb_settings    s          = ground_settings(0.4, 0.8, 0.5, 0.3, 3);
       double         *k          = axis == 0 ? &s.kv : &s.ku[axis - 1 ? 2 : 0];
       mhb_receptance *receptance = NULL;
-      *k                         = (over ? 1.001 : .999) * MHB_STIFFNESS_LIMIT / R[axis];
+      *k                         = (over ? 1.001 : 0.999) * MHB_STIFFNESS_LIMIT / R[axis];
       assert_int_equal(mhb_receptance_create(&model, &s, 3, &receptance), SHB_OK);
       assert_int_equal(mhb_stiffness_check(receptance, &s), over ? SHB_ERR_INPUT : SHB_OK);
       if (over) assert_int_equal(strncmp(shb_message(), word[axis], 12), 0);
       mhb_receptance_destroy(receptance);
     }
-  mhb_settings  s        = ground_settings(.4, .8, .5, .3, 3);
+  mhb_settings  s        = ground_settings(0.4, 0.8, 0.5, 0.3, 3);
   mhb_response *response = NULL;
-  s.frequency[0] = s.frequency[1] = .2;
+  s.frequency[0] = s.frequency[1] = 0.2;
   s.parameter                     = MHB_IN_KV;
   s.range[1]                      = 1e9;
   assert_int_equal(mhb_forced_response(&model, &s, NULL, NULL, NULL, &response), SHB_ERR_INPUT);
@@ -356,6 +400,8 @@ int main(void) {
       cmocka_unit_test(tip_contact_beam),
       cmocka_unit_test(linear_limits_are_met),
       cmocka_unit_test(curves_go_on_beyond_a_gap),
+      cmocka_unit_test(the_probe_moves_like_the_contact),
+      cmocka_unit_test(more_periods_than_the_motion_has),
       cmocka_unit_test(nothing_happens_without_excitation),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -86,7 +86,7 @@ static truth compare(const modal_model *model, mhb_settings s, const mhb_respons
     mhb_reason reason =
         mhb_newton_solve(newton, residual, SHB_TWO_PI * b->frequency[p], 1e-11, fine, &iterations);
     double error = distance(x, fine, 3 * nb) / mhb_balance_vibration(residual, fine);
-    if (reason != MHB_CONVERGED || !(error < .1)) {
+    if (reason != MHB_CONVERGED || !(error < 0.1)) {
       out.lost++;
       continue;
     }
@@ -101,7 +101,7 @@ static truth compare(const modal_model *model, mhb_settings s, const mhb_respons
 }
 
 static int reached(const truth *t) {
-  return t->within >= .95 * t->n && t->worst <= 2 * TOLERANCE;
+  return t->within >= 0.95 * t->n && t->worst <= 2 * TOLERANCE;
 }
 
 /* The cheapest fixed number of harmonics that reaches the tolerance: of the ladder, and its seconds. */
@@ -156,13 +156,13 @@ static void check_curve(const char *name, const modal_model *model, mhb_settings
 
 static void three_degrees(void **state) {
   (void)state;
-  static const double n0[] = {-.2, 0, .3, .5, 1};
+  static const double n0[] = {-0.2, 0, 0.3, 0.5, 1};
   modal_model         model;
   three_degree_model(&model);
   for (int i = 0; i < 5; i++) {
     char name[32];
     snprintf(name, sizeof name, "n0 %.1f", n0[i]);
-    check_curve(name, &model, ground_settings(.4, .8, .5, n0[i], 1), .8, 1.7);
+    check_curve(name, &model, ground_settings(0.4, 0.8, 0.5, n0[i], 1), 0.8, 1.7);
   }
   modal_model_free(&model);
 }
@@ -175,7 +175,7 @@ static void beam(void **state) {
     char        name[32];
     tip_contact_beam_model(force[i], &model);
     snprintf(name, sizeof name, "beam F %g", force[i]);
-    check_curve(name, &model, ground_settings(.3, 2e5, 2e5, 100, 1), SHB_TWO_PI * 215,
+    check_curve(name, &model, ground_settings(0.3, 2e5, 2e5, 100, 1), SHB_TWO_PI * 215,
                 SHB_TWO_PI * 320);
     modal_model_free(&model);
   }
@@ -183,11 +183,11 @@ static void beam(void **state) {
 
 static void jumps(void **state) {
   (void)state;
-  static const double rows[2][2] = {{-4.5, .1}, {1, .06}};
+  static const double rows[2][2] = {{-4.5, 0.1}, {1, 0.06}};
   for (int i = 0; i < 2; i++) {
     modal_model model;
-    one_degree_model(.02, 0, rows[i][1], &model);
-    check_curve(i ? "jump B" : "jump A", &model, ground_settings(0, 9, 1, rows[i][0], 1), .5, 3.6);
+    one_degree_model(0.02, 0, rows[i][1], &model);
+    check_curve(i ? "jump B" : "jump A", &model, ground_settings(0, 9, 1, rows[i][0], 1), 0.5, 3.6);
     modal_model_free(&model);
   }
 }
@@ -201,7 +201,7 @@ static void static_parts_do_not_count(void **state) {
   three_degree_model(&model);
   for (int i = 0; i < 2; i++) {
     double       seconds;
-    mhb_settings s     = ground_settings(.12 / n0[i], .8, .5, n0[i], 1);
+    mhb_settings s     = ground_settings(0.12 / n0[i], 0.8, 0.5, n0[i], 1);
     s.preload          = MHB_INTERFERENCE;
     s.motion_tolerance = TOLERANCE;
     s.frequency[0]     = 1.2 / SHB_TWO_PI;

@@ -163,7 +163,7 @@ static void other_parameters_take_one_speed(void **state) {
   modal_model  model;
   plain.frequency[0] = plain.frequency[1] = 1.21 / SHB_TWO_PI;
   plain.parameter                         = MHB_IN_SCALE;
-  plain.range[0]                          = .2;
+  plain.range[0]                          = 0.2;
   plain.range[1]                          = 2;
   s                                       = plain;
   spinning_model(SPINNING_TURNING, 1.21 / plain.engine_order, &model, NULL);
@@ -248,17 +248,17 @@ static void resonances_are_where_curves_meet(void **state) {
   mhb_balance     *b;
   mhb_resonances   all;
   int              found = 0, wanted = 0;
-  const double     low = .4, high = 1.9, E = s.engine_order;
+  const double     low = 0.4, high = 1.9, E = s.engine_order;
   assert_ok(mhb_balance_create(run_up->common, &s, &b));
   mhb_balance_set_parameter(b, MHB_IN_FREQUENCY);
   assert_ok(mhb_resonances_create(b, low, high, &all));
   for (int mode = 0; mode < SPINNING_MODES; mode++) /* a + slope omega^2 = (k omega)^2 */
     for (int k = 1; k <= s.harmonics; k++) {
-      double square[2], lambda[2], at[2] = {0, .9};
+      double square[2], lambda[2], at[2] = {0, 0.9};
       for (int i = 0; i < 2; i++) {
         modal_model model;
         spinning_model(SPINNING_STRAIGHT, at[i], &model, NULL);
-        /* the second and third cross at .7: below it by place, above by the other's */
+        /* the second and third cross at 0.7: below it by place, above by the other's */
         int place = i == 1 && (mode == 1 || mode == 2) ? 3 - mode : mode;
         lambda[i] = pow(SHB_TWO_PI * model.frequency[place], 2);
         square[i] = at[i] * at[i];
@@ -268,10 +268,10 @@ static void resonances_are_where_curves_meet(void **state) {
       double omega = sqrt(lambda[0] / (k * k - b_));
       if (!(omega > low && omega < high)) continue;
       wanted++;
-      double half = .012 * omega / (1 - b_ / (k * k)); /* zeta w_i/k over the angle */
+      double half = 0.012 * omega / (1 - b_ / (k * k)); /* zeta w_i/k over the angle */
       for (int i = 0; i < all.n; i++)
         if (all.at[i].k == k && fabs(all.at[i].value - omega) < 1e-9 &&
-            fabs(all.at[i].half / half - 1) < 1e-2) {
+            fabs(all.at[i].half_width / half - 1) < 1e-2) {
           found++;
           break;
         }

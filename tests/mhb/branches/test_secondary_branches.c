@@ -25,7 +25,7 @@ static const double PI = 3.14159265358979323846;
 
 static mhb_settings settings(double mu, double kv, double n0, int harmonics, double from,
                              double to) {
-  mhb_settings s = ground_settings(mu, kv, .5, n0, harmonics);
+  mhb_settings s = ground_settings(mu, kv, 0.5, n0, harmonics);
   s.frequency[0] = from / (2 * PI);
   s.frequency[1] = to / (2 * PI);
   s.max_points   = 3000;
@@ -55,7 +55,7 @@ static void runge_kutta(const oscillator *o, double t, double h, double y[2]) {
   double k[4][2], at[2];
   rate(o, t, y, k[0]);
   for (int s = 1; s < 4; s++) {
-    double part = s < 3 ? .5 * h : h;
+    double part = s < 3 ? 0.5 * h : h;
     for (int i = 0; i < 2; i++) at[i] = y[i] + part * k[s - 1][i];
     rate(o, t + part, at, k[s]);
   }
@@ -70,7 +70,7 @@ static void settled(const oscillator *o, double y[2], double amplitude[2]) {
   for (int p = 0; p <= PERIODS; p++)
     for (int i = 0; i < STEPS; i++) {
       for (int k = 0; p == PERIODS && k < 2; k++)
-        sum[k] += y[0] * cexp(-I * (k + 1) * .5 * o->omega * i * h) * 2 / STEPS;
+        sum[k] += y[0] * cexp(-I * (k + 1) * 0.5 * o->omega * i * h) * 2 / STEPS;
       runge_kutta(o, i * h, h, y);
     }
   for (int k = 0; k < 2; k++) amplitude[k] = cabs(sum[k]);
@@ -107,7 +107,7 @@ static void doubled_periods(void **state) {
   (void)state;
   modal_model  model;
   mhb_settings s = settings(0, 9, -1, 16, 2, 3.4);
-  one_degree_model(.02, 0, 1, &model);
+  one_degree_model(0.02, 0, 1, &model);
   mhb_response *r = sweep(&model, &s);
   assert_int_equal(r->n_branches, 3); /* marked only */
   mhb_response_destroy(r);
@@ -132,12 +132,12 @@ static void doubled_periods(void **state) {
     double y[2], a[2];
     state_of(b, i, y);
     y[0] *= 1 + 1e-3; /* forgotten, since it is stable */
-    oscillator o = {.02, 9, -1, 1, 2 * PI * b->frequency[i]};
+    oscillator o = {0.02, 9, -1, 1, 2 * PI * b->frequency[i]};
     settled(&o, y, a);
     const double complex *u = b->motion + (size_t)(i * 3 * K);
     print_message("W %.4f: half order %.6f (%.6f), first %.6f (%.6f)\n", o.omega, cabs(u[1]), a[0],
                   cabs(u[2]), a[1]);
-    assert_true(a[0] > .1);
+    assert_true(a[0] > 0.1);
     assert_below(fabs(cabs(u[1]) - a[0]), 3e-4 * a[0]);
     assert_below(fabs(cabs(u[2]) - a[1]), 3e-4 * a[0]);
   }
@@ -148,9 +148,9 @@ static void doubled_periods(void **state) {
 /* Friction and separation of three degrees: one curve a preload, however long one looks. */
 static void nothing_where_nothing_is(void **state) {
   (void)state;
-  static const double n0[] = {-.2, 0, .3, 1};
+  static const double n0[] = {-0.2, 0, 0.3, 1};
   modal_model         model;
-  mhb_settings        s = settings(.4, .8, 0, 5, .8, 1.7);
+  mhb_settings        s = settings(0.4, 0.8, 0, 5, 0.8, 1.7);
   three_degree_model(&model);
   s.n_preloads = 4;
   memcpy(s.n0, n0, sizeof n0);
@@ -214,7 +214,7 @@ static void threads_and_files_do_not_matter(void **state) {
   char           path[64];
   int            before = omp_get_max_threads(), further[3] = {0};
   snprintf(path, sizeof path, "further_%d.response.h5", (int)getpid());
-  one_degree_model(.02, 0, .5, &model);
+  one_degree_model(0.02, 0, 0.5, &model);
   for (int i = 0; i < 2; i++) {
     omp_set_num_threads(i + 1);
     assert_int_equal(mhb_forced_response(&model, &s, i ? path : NULL, &provenance, NULL, &r[i]),
@@ -246,7 +246,7 @@ static void a_search_is_resumed(void **state) {
   shb_provenance provenance = {.settings = "these"};
   char           path[64];
   snprintf(path, sizeof path, "resumed_%d.response.h5", (int)getpid());
-  one_degree_model(.02, 0, .5, &model);
+  one_degree_model(0.02, 0, 0.5, &model);
   s.n_preloads = 1;
   assert_int_equal(mhb_forced_response(&model, &s, path, &provenance, NULL, &r[0]), SHB_OK);
   assert_true(r[0]->n_branches > 4);
@@ -272,7 +272,7 @@ static int interrupted(const char *path) {
   mhb_settings   s          = rich();
   mhb_response  *r          = NULL, *back;
   shb_provenance provenance = {.settings = "these"};
-  one_degree_model(.02, 0, .5, &model);
+  one_degree_model(0.02, 0, 0.5, &model);
   s.n_preloads    = 1;
   s.search.starts = 100000;
   shb_interrupt_catch();

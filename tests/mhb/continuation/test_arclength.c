@@ -29,7 +29,7 @@ static const double PI = 3.14159265358979323846;
 static mhb_settings ground(double n0, int harmonics, double from, double to) {
   mhb_settings s = random_settings(harmonics);
   s.to_ground    = true;
-  s.ku[0] = s.ku[2] = .5;
+  s.ku[0] = s.ku[2] = 0.5;
   s.ku[1]           = 0;
   s.n0[0]           = n0;
   s.frequency[0]    = from / (2 * PI);
@@ -94,19 +94,19 @@ static void both_directions_see_the_same_folds(void **state) {
   static const struct {
     double n0, force;
     int    normal;
-  } rows[] = {{-4.5, .1, 1}, {1, .06, 1}};
+  } rows[] = {{-4.5, 0.1, 1}, {1, 0.06, 1}};
   for (int i = 0; i < 2; i++) {
     modal_model model;
-    one_degree_model(.02, 0, rows[i].force, &model);
-    mhb_settings s = ground(rows[i].n0, 15, .5, 3.6);
+    one_degree_model(0.02, 0, rows[i].force, &model);
+    mhb_settings s = ground(rows[i].n0, 15, 0.5, 3.6);
     mhb_balance *residual;
     s.kv = 9;
     assert_int_equal(mhb_balance_create(&model, &s, &residual), SHB_OK);
     mhb_balance_set_preload(residual, rows[i].n0);
-    walked up = walk(residual, .5, 3.6, 1), down = walk(residual, .5, 3.6, -1);
+    walked up = walk(residual, 0.5, 3.6, 1), down = walk(residual, 0.5, 3.6, -1);
     print_message("%d and %d points, folds %.9f %.9f and %.9f %.9f\n", up.n_points, down.n_points,
                   up.fold[0], up.fold[1], down.fold[1], down.fold[0]);
-    assert_true(up.end == 3.6 && down.end == .5);
+    assert_true(up.end == 3.6 && down.end == 0.5);
     assert_int_equal(up.n_folds, 2);
     assert_int_equal(down.n_folds, 2);
     for (int k = 0; k < 2; k++) assert_below(fabs(up.fold[k] - down.fold[1 - k]), 1e-7);
@@ -122,7 +122,7 @@ static void a_branch_cut_short_says_why(void **state) {
   (void)state;
   modal_model model;
   three_degree_model(&model);
-  mhb_settings s  = ground(.3, 3, .8, 1.7);
+  mhb_settings s  = ground(0.3, 3, 0.8, 1.7);
   s.max_points    = 20;
   mhb_response *r = sweep(&model, &s, SHB_NOT_CONVERGED);
   mhb_branch   *b = &r->branch[2];
@@ -139,9 +139,9 @@ static void at_a_resonance_is_as_beside(void **state) {
   (void)state;
   static const double aside[] = {0, -1e-7, 1e-7};
   modal_model         model;
-  one_degree_model(0, 0, .1, &model);
+  one_degree_model(0, 0, 0.1, &model);
   mhb_settings s     = ground(-1, 3, 1, 1.5);
-  model.frequency[0] = s.frequency[0] = .25; /* the same in every rounding */
+  model.frequency[0] = s.frequency[0] = 0.25; /* the same in every rounding */
   mhb_balance *residual;
   mhb_newton  *newton;
   int          iterations;
@@ -150,13 +150,13 @@ static void at_a_resonance_is_as_beside(void **state) {
   mhb_balance_set_preload(residual, -1);
   double x[3][residual->n];
   for (int i = 0; i < 3; i++) {
-    assert_int_equal(mhb_first_solution(newton, residual, 2 * PI * .25 * (1 + aside[i]), 1e-10,
+    assert_int_equal(mhb_first_solution(newton, residual, 2 * PI * 0.25 * (1 + aside[i]), 1e-10,
                                         x[i], &iterations),
                      MHB_CONVERGED);
     for (int j = 0; j < residual->n; j++) assert_below(fabs(x[i][j] - x[0][j]), 1e-5);
   }
   print_message("at a resonance: %.6f\n", mhb_norm(x[0], residual->n));
-  assert_true(mhb_norm(x[0], residual->n) > .1 && mhb_norm(x[0], residual->n) < 10);
+  assert_true(mhb_norm(x[0], residual->n) > 0.1 && mhb_norm(x[0], residual->n) < 10);
   mhb_newton_destroy(newton);
   mhb_balance_destroy(residual);
   modal_model_free(&model);
@@ -167,28 +167,28 @@ static void at_a_resonance_is_as_beside(void **state) {
 static void undamped_resonances_are_passed(void **state) {
   (void)state;
   modal_model model;
-  one_degree_model(0, 1, .1, &model);
-  mhb_settings s          = ground(.3, 5, 1, 2);
-  model.frequency[0]      = .25; /* the same in every rounding */
-  s.frequency[0]          = .125;
-  s.frequency[1]          = .375;
+  one_degree_model(0, 1, 0.1, &model);
+  mhb_settings s          = ground(0.3, 5, 1, 2);
+  model.frequency[0]      = 0.25; /* the same in every rounding */
+  s.frequency[0]          = 0.125;
+  s.frequency[1]          = 0.375;
   mhb_response     *r     = sweep(&model, &s, SHB_OK);
   const mhb_branch *stuck = &r->branch[1], *open = &r->branch[0], *curve = &r->branch[2];
-  double            top = 0, k = .25 * PI * PI;
+  double            top = 0, k = 0.25 * PI * PI;
   int               K = curve->n_harmonics + 1, seen = 0;
   for (int p = 0; p < open->n_points; p++) top = fmax(top, cabs(open->motion[(p * 3 + 1) * K + 1]));
   for (int p = 0; p < stuck->n_points; p++) {
     double w = 2 * PI * stuck->frequency[p], u = cabs(stuck->motion[(p * 3 + 1) * K + 1]);
-    assert_below(fabs(u * fabs(k + .5 - w * w) / .1 - 1), 1e-6);
-    seen += stuck->frequency[p] == .25;
+    assert_below(fabs(u * fabs(k + 0.5 - w * w) / 0.1 - 1), 1e-6);
+    seen += stuck->frequency[p] == 0.25;
   }
   assert_int_equal(seen, 1);
-  assert_true(top > 1e6 * .1 / k && isfinite(top));
+  assert_true(top > 1e6 * 0.1 / k && isfinite(top));
   top = 0;
   for (int p = 0; p < curve->n_points; p++)
     top = fmax(top, cabs(curve->motion[(p * 3 + 1) * K + 1]));
   print_message("undamped: %d points, largest motion %.3f\n", curve->n_points, top);
-  assert_true(top > .12 / .5 && top < 10);
+  assert_true(top > 0.12 / 0.5 && top < 10);
   mhb_response_destroy(r);
   modal_model_free(&model);
 }
@@ -207,14 +207,14 @@ static void a_motion_that_is_no_number_ends(void **state) {
   static const double bad[] = {NAN, INFINITY, -INFINITY, 1e308};
   modal_model         model;
   three_degree_model(&model);
-  mhb_settings s = ground(.3, 3, .8, 1.7);
+  mhb_settings s = ground(0.3, 3, 0.8, 1.7);
   mhb_balance *residual;
   assert_int_equal(mhb_balance_create(&model, &s, &residual), SHB_OK);
-  mhb_balance_set_preload(residual, .3);
+  mhb_balance_set_preload(residual, 0.3);
   double x[residual->n], r[residual->n];
   for (int i = 0; i < residual->n; i++)
     for (int k = 0; k < 4; k++) {
-      for (int j = 0; j < residual->n; j++) x[j] = .3 / (1 + j % 7);
+      for (int j = 0; j < residual->n; j++) x[j] = 0.3 / (1 + j % 7);
       x[i] = bad[k];
       mhb_balance_evaluate(residual, x, 1.1, r, NULL, NULL);
       assert_false(isfinite(mhb_norm(r, residual->n)) && k < 3);
@@ -228,7 +228,7 @@ static void dull_ranges_are_covered(void **state) {
   (void)state;
   modal_model model;
   three_degree_model(&model);
-  mhb_settings  s = ground(.02, 3, .2, .5);
+  mhb_settings  s = ground(0.02, 3, 0.2, 0.5);
   mhb_response *r = sweep(&model, &s, SHB_OK);
   print_message("no resonance: %d points\n", r->branch[2].n_points);
   assert_true(r->branch[2].complete && r->branch[2].n_points < 200);
@@ -243,15 +243,15 @@ static void dull_ranges_are_covered(void **state) {
 
 static void without_excitation_all_is_still(void **state) {
   (void)state;
-  static const double n0[] = {.3, 0, -.3};
+  static const double n0[] = {0.3, 0, -0.3};
   modal_model         model;
   random_model(2, WITH_LEFT | WITH_RESIDUAL | WITH_NORMALS, 9, &model);
   for (int i = 0; i < 3; i++) {
     mhb_settings s  = random_settings(3);
     s.scale         = 0;
     s.n0[0]         = n0[i];
-    s.frequency[0]  = .1;
-    s.frequency[1]  = .3;
+    s.frequency[0]  = 0.1;
+    s.frequency[1]  = 0.3;
     mhb_response *r = sweep(&model, &s, SHB_OK);
     for (int b = 0; b < 3; b++)
       for (int p = 0; p < r->branch[b].n_points * 2 * 3 * 4; p++) {
@@ -278,10 +278,10 @@ static void preloads_about_zero_agree(void **state) {
   modal_model model;
   three_degree_model(&model);
   for (int w = 0; w < 4; w++) {
-    static const double n0[] = {0, 1e-12, -1e-12}, omega[] = {.85, .95, 1.3, 1.6};
+    static const double n0[] = {0, 1e-12, -1e-12}, omega[] = {0.85, 0.95, 1.3, 1.6};
     double              x[3][UNKNOWNS];
     for (int i = 0; i < 3; i++) {
-      mhb_settings s = ground(n0[i], M, .8, 1.7);
+      mhb_settings s = ground(n0[i], M, 0.8, 1.7);
       cold_solution(&model, &s, omega[w], 1e-12, x[i]);
     }
     print_message("at %.2f: %.1e %.1e\n", omega[w], difference(x[0], x[1], UNKNOWNS),
@@ -297,14 +297,14 @@ static void extreme_friction(void **state) {
   (void)state;
   modal_model model;
   three_degree_model(&model);
-  mhb_settings s = ground(.2, M, .8, 1.7);
+  mhb_settings s = ground(0.2, M, 0.8, 1.7);
   double       x[2][UNKNOWNS];
   s.mu = 0;
   cold_solution(&model, &s, 1.1, 1e-12, x[0]);
   s.ku[0] = s.ku[2] = 7;
   cold_solution(&model, &s, 1.1, 1e-12, x[1]);
   assert_below(difference(x[0], x[1], UNKNOWNS), 1e-10);
-  s    = ground(.2, M, .8, 1.7);
+  s    = ground(0.2, M, 0.8, 1.7);
   s.mu = 1e6;
   cold_solution(&model, &s, 1.1, 1e-12, x[0]);
   s.mu = 2e6;
@@ -312,7 +312,7 @@ static void extreme_friction(void **state) {
   print_message("mu 1e6 and 2e6: %.1e\n", difference(x[0], x[1], UNKNOWNS));
   assert_below(difference(x[0], x[1], UNKNOWNS), 1e-4);
   for (int i = 0; i < 2; i++) {
-    s               = ground(.2, 3, .8, 1.7);
+    s               = ground(0.2, 3, 0.8, 1.7);
     s.mu            = i ? 1e6 : 0;
     mhb_response *r = sweep(&model, &s, SHB_OK);
     print_message("mu %g: %d points\n", s.mu, r->branch[2].n_points);
@@ -352,9 +352,9 @@ static void units_do_not_matter(void **state) {
     mhb_response *r[2];
     mhb_settings  s = random_settings(4);
     s.engine_order  = 2;
-    s.n0[0]         = .1;
-    s.frequency[0]  = .9 / (2 * PI);
-    s.frequency[1]  = (from_rest ? .9 : 1.2) / (2 * PI);
+    s.n0[0]         = 0.1;
+    s.frequency[0]  = 0.9 / (2 * PI);
+    s.frequency[1]  = (from_rest ? 0.9 : 1.2) / (2 * PI);
     s.parameter     = from_rest ? MHB_IN_SCALE : MHB_IN_FREQUENCY;
     s.range[1]      = 3;
     modal_model model;
@@ -403,10 +403,10 @@ static void threads_do_not_matter(void **state) {
   (void)state;
   modal_model   model;
   mhb_response *r[2];
-  mhb_settings  s = ground(-.2, 5, .8, 1.7);
+  mhb_settings  s = ground(-0.2, 5, 0.8, 1.7);
   three_degree_model(&model);
   s.n_preloads = 6;
-  for (int i = 0; i < 6; i++) s.n0[i] = -.2 + .15 * i;
+  for (int i = 0; i < 6; i++) s.n0[i] = -0.2 + 0.15 * i;
   int before = omp_get_max_threads();
   for (int i = 0; i < 2; i++) {
     omp_set_num_threads(i + 1);
@@ -425,12 +425,12 @@ static void threads_do_not_matter(void **state) {
 static int interrupted_sweep(const char *path) {
   modal_model    model;
   mhb_response  *r = NULL, *back = NULL;
-  mhb_settings   s          = ground(.3, 3, .8, 1.7);
+  mhb_settings   s          = ground(0.3, 3, 0.8, 1.7);
   shb_provenance provenance = {0};
   three_degree_model(&model);
   s.n_preloads = 3;
-  s.n0[1]      = .1;
-  s.n0[2]      = -.1;
+  s.n0[1]      = 0.1;
+  s.n0[2]      = -0.1;
   shb_interrupt_catch();
   raise(SIGINT);
   if (mhb_forced_response(&model, &s, path, &provenance, NULL, &r) != SHB_INTERRUPTED) return 1;
@@ -463,10 +463,10 @@ static void a_failed_write_is_told(void **state) {
   modal_model    model;
   mhb_response  *r          = NULL;
   shb_provenance provenance = {0};
-  mhb_settings   s          = ground(.3, 15, .8, 1.7);
+  mhb_settings   s          = ground(0.3, 15, 0.8, 1.7);
   three_degree_model(&model);
   s.n_preloads = 8;
-  for (int i = 0; i < 8; i++) s.n0[i] = .05 * i;
+  for (int i = 0; i < 8; i++) s.n0[i] = 0.05 * i;
   assert_int_equal(mhb_forced_response(&model, &s, "no/such/folder.h5", &provenance, NULL, &r),
                    SHB_ERR_IO);
   assert_non_null(strstr(shb_message(), "no/such/folder.h5"));

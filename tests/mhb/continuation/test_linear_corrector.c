@@ -32,7 +32,7 @@ static void solve(const modal_model *model, const mhb_settings *s, double omega,
 static void held_solution(const modal_model *model, mhb_settings *s, double omega, periodic *p) {
   double most = 0, least = 0;
   int    moving = 0;
-  for (s->n0[0] = 40; !moving && s->n0[0] > .01; s->n0[0] *= .98) {
+  for (s->n0[0] = 40; !moving && s->n0[0] > 0.01; s->n0[0] *= 0.98) {
     solve(model, s, omega, p);
     moving = count(p->residual, MHB_PAIR_NONLINEAR);
     if (!moving && count(p->residual, MHB_PAIR_AT_LIMIT) > 0) {
@@ -42,7 +42,7 @@ static void held_solution(const modal_model *model, mhb_settings *s, double omeg
     periodic_destroy(p);
   }
   assert_true(least < most);
-  s->n0[0] = .5 * (least + most);
+  s->n0[0] = 0.5 * (least + most);
   solve(model, s, omega, p);
 }
 
@@ -58,24 +58,24 @@ static void largest(const mhb_balance *b, const double *r, double *means, double
 /* From a solution to another frequency: slide, then settle with a new derivative each time. */
 static void means_converge(const modal_model *model, mhb_settings *s, double omega) {
   periodic              p;
-  mhb_linear_corrector *still;
+  mhb_linear_corrector *linear;
   int                   steps;
   held_solution(model, s, omega, &p);
   mhb_balance *b = p.residual;
   double       x[b->n], r[b->n], normal[b->n + 1], there = 1.0005 * omega, means[5], rest;
-  assert_int_equal(mhb_linear_corrector_create(b, &still), SHB_OK);
-  mhb_linear_set_states(still, b->eval, b->n_pairs);
+  assert_int_equal(mhb_linear_corrector_create(b, &linear), SHB_OK);
+  mhb_linear_set_states(linear, b->eval, b->n_pairs);
   memcpy(x, p.x, sizeof x);
   memset(normal, 0, sizeof normal);
   normal[b->n] = 1; /* the plane of one frequency */
-  assert_true(mhb_linear_correct(still, b, normal, 1, 1, x, &there, &steps));
+  assert_true(mhb_linear_correct(linear, b, normal, 1, 1, x, &there, &steps));
   double size = mhb_norm(x, b->n);
   for (int i = 0; i < 5; i++) {
     mhb_balance_linearise(b, x, there, r, NULL);
-    assert_true(mhb_linear_states_hold(still, b->eval, b->n_pairs));
+    assert_true(mhb_linear_states_hold(linear, b->eval, b->n_pairs));
     largest(b, r, &means[i], &rest);
     assert_true(rest < 1e-12 * size);
-    assert_true(mhb_linear_correct_means(still, b, r, 0, x));
+    assert_true(mhb_linear_correct_means(linear, b, r, 0, x));
   }
   print_message("n0 %.3g, %d held: residual of the means %.1e %.1e %.1e %.1e of the motion\n",
                 s->n0[0], count(b, MHB_PAIR_AT_LIMIT), means[0] / size, means[1] / size,
@@ -84,7 +84,7 @@ static void means_converge(const modal_model *model, mhb_settings *s, double ome
   assert_true(means[1] < 1e-2 * means[0]);
   assert_true(means[2] < fmax(1e-2 * means[1], 1e-13 * size));
   assert_true(means[4] < 1e-12 * size);
-  mhb_linear_corrector_destroy(still);
+  mhb_linear_corrector_destroy(linear);
   periodic_destroy(&p);
 }
 

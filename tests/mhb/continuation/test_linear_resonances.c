@@ -26,12 +26,12 @@ enum { M = 5, UNKNOWNS = 3 * (2 * M + 1) };
 static mhb_settings ground(double n0) {
   mhb_settings s = random_settings(M);
   s.to_ground    = true;
-  s.mu           = .3;
+  s.mu           = 0.3;
   s.kv           = 1;
   s.ku[0] = s.ku[2] = 1;
   s.ku[1]           = 0;
   s.n0[0]           = n0;
-  s.frequency[0]    = .8 / SHB_TWO_PI;
+  s.frequency[0]    = 0.8 / SHB_TWO_PI;
   s.frequency[1]    = 2 / SHB_TWO_PI;
   s.stability       = MHB_STABILITY_NEVER;
   return s;
@@ -42,7 +42,8 @@ static mhb_settings ground(double n0) {
 static int has(const mhb_resonances *all, double value, double half, int k) {
   for (int i = 0; i < all->n; i++) {
     const mhb_resonance *a = &all->at[i];
-    if (a->k == k && fabs(a->value / value - 1) < 1e-9 && fabs(a->half / half - 1) < 1e-9) return 1;
+    if (a->k == k && fabs(a->value / value - 1) < 1e-9 && fabs(a->half_width / half - 1) < 1e-9)
+      return 1;
   }
   return 0;
 }
@@ -51,26 +52,26 @@ static int has(const mhb_resonances *all, double value, double half, int k) {
 static void places_are_those_of_both_limits(void **state) {
   (void)state;
   modal_model    model;
-  mhb_settings   s = ground(.1);
+  mhb_settings   s = ground(0.1);
   mhb_balance   *residual;
   mhb_resonances all;
-  double         b = .7, z2 = .003, p = 2, q = SECOND * SECOND + b * b;
-  two_mode_model(SECOND, z2, b, 1, .02, &model);
+  double         b = 0.7, z2 = 0.003, p = 2, q = SECOND * SECOND + b * b;
+  two_mode_model(SECOND, z2, b, 1, 0.02, &model);
   assert_int_equal(mhb_balance_create(&model, &s, &residual), SHB_OK);
-  assert_int_equal(mhb_resonances_create(residual, .25, 2, &all), SHB_OK);
+  assert_int_equal(mhb_resonances_create(residual, 0.25, 2, &all), SHB_OK);
   for (int i = 0; i < 2; i++) {
-    double square = .5 * (p + q) + (i ? .5 : -.5) * sqrt((p - q) * (p - q) + 4 * b * b);
+    double square = 0.5 * (p + q) + (i ? 0.5 : -0.5) * sqrt((p - q) * (p - q) + 4 * b * b);
     double part   = b * b / (b * b + (square - p) * (square - p)); /* of the first mode */
-    assert_true(has(&all, sqrt(square), part * .01 + (1 - part) * z2 * SECOND, 1));
+    assert_true(has(&all, sqrt(square), part * 0.01 + (1 - part) * z2 * SECOND, 1));
   }
   for (int k = 1; k <= 3; k++) {
-    assert_true(has(&all, 1. / k, .01 / k, k));
+    assert_true(has(&all, 1. / k, 0.01 / k, k));
     assert_true(has(&all, SECOND / k, z2 * SECOND / k, k));
   }
   for (int i = 1; i < all.n; i++) assert_true(all.at[i].value >= all.at[i - 1].value);
   mhb_resonances_destroy(&all);
   mhb_balance_set_parameter(residual, MHB_IN_N0);
-  assert_int_equal(mhb_resonances_create(residual, .25, 2, &all), SHB_OK);
+  assert_int_equal(mhb_resonances_create(residual, 0.25, 2, &all), SHB_OK);
   assert_int_equal(all.n, 0);
   mhb_resonances_destroy(&all);
   mhb_balance_destroy(residual);
@@ -79,20 +80,20 @@ static void places_are_those_of_both_limits(void **state) {
 
 /* Upper root of the closed form above. */
 static double upper(double p, double q, double b) {
-  return sqrt(.5 * (p + q) + .5 * sqrt((p - q) * (p - q) + 4 * b * b));
+  return sqrt(0.5 * (p + q) + 0.5 * sqrt((p - q) * (p - q) + 4 * b * b));
 }
 
 /* From its free to its stuck place, as far apart as 32 half widths, the places of a mode leave no gap wider than two. */
 static void near_limits_leave_no_gap(void **state) {
   (void)state;
-  for (double contact = .003; contact < .2; contact *= 1.5) {
+  for (double contact = 0.003; contact < 0.2; contact *= 1.5) {
     modal_model    model;
-    mhb_settings   s = ground(.1);
+    mhb_settings   s = ground(0.1);
     mhb_balance   *residual;
     mhb_resonances all;
-    two_mode_model(SECOND, 1e-3, contact, 1, .02, &model);
+    two_mode_model(SECOND, 1e-3, contact, 1, 0.02, &model);
     assert_int_equal(mhb_balance_create(&model, &s, &residual), SHB_OK);
-    assert_int_equal(mhb_resonances_create(residual, .8, 2, &all), SHB_OK);
+    assert_int_equal(mhb_resonances_create(residual, 0.8, 2, &all), SHB_OK);
     double half = 1e-3 * SECOND, last = SECOND,
            gap = upper(2, SECOND * SECOND + contact * contact, contact) - SECOND;
     for (int i = 0; i < all.n && gap < 31 * half; i++) {
@@ -102,7 +103,7 @@ static void near_limits_leave_no_gap(void **state) {
     }
     print_message("contact %.3f: %.2f half widths apart, places over %.2f\n", contact, gap / half,
                   (last - SECOND) / half);
-    if (gap < 31 * half) assert_true(fabs(last - SECOND - gap) < .5 * half);
+    if (gap < 31 * half) assert_true(fabs(last - SECOND - gap) < 0.5 * half);
     mhb_resonances_destroy(&all);
     mhb_balance_destroy(residual);
     modal_model_free(&model);
@@ -146,7 +147,7 @@ static double truth(const modal_model *model, const mhb_settings *s, double half
   assert_int_equal(mhb_balance_create(model, s, &residual), SHB_OK);
   mhb_balance_set_preload(residual, s->n0[0]);
   for (int i = -4; i <= 4; i++) {
-    double omega = SECOND + .1 * i * half;
+    double omega = SECOND + 0.1 * i * half;
     cold_solution(model, s, omega, 1e-10, x);
     mhb_balance_evaluate(residual, x, omega, r, NULL, NULL);
     mhb_balance_contact_force(residual, 1, p);
@@ -158,22 +159,23 @@ static double truth(const modal_model *model, const mhb_settings *s, double half
   return top;
 }
 
-/* Steps are up to .1 of the range, the resonance 1e-3 to 1e-4 of it: its peak is on the curve, and located. */
+/* Steps are up to 0.1 of the range, the resonance 1e-3 to 1e-4 of it: its peak is on the curve, and located. */
 static void light_modes_are_not_passed_over(void **state) {
   (void)state;
-  static const double zeta[] = {2e-3, 3e-4, 5e-5}, contact[] = {1e-4, 7e-4, 3e-3}, n0[] = {.05, .2};
+  static const double zeta[] = {2e-3, 3e-4, 5e-5}, contact[] = {1e-4, 7e-4, 3e-3},
+                      n0[] = {0.05, 0.2};
   for (int i = 0; i < 18; i++) {
     modal_model  model;
     mhb_settings s    = ground(n0[i / 9]);
     double       half = zeta[i % 3] * SECOND;
     int          peaks;
-    two_mode_model(SECOND, zeta[i % 3], contact[i / 3 % 3], 1, .02, &model);
+    two_mode_model(SECOND, zeta[i % 3], contact[i / 3 % 3], 1, 0.02, &model);
     mhb_response *r   = sweep(&model, &s);
     double        top = highest(r, half, &peaks), wanted = truth(&model, &s, half);
     print_message("zeta %.0e, contact %.0e, n0 %.2f: %.5f of %.5f, %d points\n", zeta[i % 3],
                   contact[i / 3 % 3], s.n0[0], top, wanted, r->branch[2].n_points);
     assert_true(r->branch[2].complete && r->branch[2].n_points < 250);
-    assert_true(top > .999 * wanted && top < 1.01 * wanted);
+    assert_true(top > 0.999 * wanted && top < 1.01 * wanted);
     assert_true(peaks >= 1);
     mhb_response_destroy(r);
     modal_model_free(&model);
@@ -184,13 +186,13 @@ static void light_modes_are_not_passed_over(void **state) {
 static void what_is_not_felt_costs_nothing(void **state) {
   (void)state;
   modal_model   model;
-  mhb_settings  s = ground(.1);
+  mhb_settings  s = ground(0.1);
   mhb_response *r[3];
   for (int i = 0; i < 3; i++) {
     if (i == 0)
-      one_degree_model(.01, 1, .05, &model);
+      one_degree_model(0.01, 1, 0.05, &model);
     else
-      two_mode_model(SECOND, 1e-3, 0, i == 1 ? 1 : 0, i == 1 ? 0 : .02, &model);
+      two_mode_model(SECOND, 1e-3, 0, i == 1 ? 1 : 0, i == 1 ? 0 : 0.02, &model);
     r[i] = sweep(&model, &s);
     modal_model_free(&model);
   }
@@ -215,21 +217,21 @@ static double jumping(mhb_arclength *path, const mhb_curve_point *point, void *c
 static void jumps_are_located(void **state) {
   (void)state;
   modal_model    model;
-  mhb_settings   s = ground(.1);
+  mhb_settings   s = ground(0.1);
   mhb_balance   *residual;
   mhb_arclength *path;
   double         x[UNKNOWNS], at;
-  one_degree_model(.01, 1, .05, &model);
+  one_degree_model(0.01, 1, 0.05, &model);
   assert_int_equal(mhb_balance_create(&model, &s, &residual), SHB_OK);
-  mhb_balance_set_preload(residual, .1);
-  assert_int_equal(mhb_balance_curve_create(residual, .8, 2, &path), SHB_OK);
+  mhb_balance_set_preload(residual, 0.1);
+  assert_int_equal(mhb_balance_curve_create(residual, 0.8, 2, &path), SHB_OK);
   cold_solution(&model, &s, 1.6, 1e-10, x);
   assert_int_equal(mhb_arclength_start(path, x, 1.6, 1), MHB_CONVERGED);
   for (int i = 0; i < 6; i++) {
     assert_int_equal(mhb_arclength_step(path), MHB_ARCLENGTH_ON);
     double width = path->next.value - path->current.value;
     for (int j = 1; j < 20; j++) {
-      double place = path->current.value + .05 * j * width;
+      double place = path->current.value + 0.05 * j * width;
       assert_int_equal(mhb_arclength_locate(path, jumping, &place, -1e3, 1, &at), 1);
       if (!(fabs(path->trial.value - place) < 1e-5 * width))
         fail_msg("told as located %.1e of the step away", (path->trial.value - place) / width);

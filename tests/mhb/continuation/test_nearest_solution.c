@@ -20,12 +20,12 @@ enum { FEW = 1, MANY = 5, NB = 2 * MANY + 1, N = 3 * NB };
 static mhb_settings settings_of(int harmonics) {
   return (mhb_settings){.to_ground    = true,
                         .blades       = 1,
-                        .mu           = .4,
-                        .kv           = .8,
-                        .ku           = {.5, 0, .5},
+                        .mu           = 0.4,
+                        .kv           = 0.8,
+                        .ku           = {0.5, 0, 0.5},
                         .n_preloads   = 1,
-                        .n0           = {.3},
-                        .frequency    = {.8 / SHB_TWO_PI, 1.6 / SHB_TWO_PI},
+                        .n0           = {0.3},
+                        .frequency    = {0.8 / SHB_TWO_PI, 1.6 / SHB_TWO_PI},
                         .harmonics    = harmonics,
                         .subharmonics = 1,
                         .scale        = 1,
@@ -57,7 +57,7 @@ static fixture begin(void) {
 
 static void make(fixture *f) {
   assert_int_equal(mhb_balance_create(&f->model, &f->settings, &f->residual), SHB_OK);
-  mhb_balance_set_preload(f->residual, .3);
+  mhb_balance_set_preload(f->residual, 0.3);
   assert_int_equal(mhb_newton_create(N, &f->newton), SHB_OK);
 }
 
@@ -83,7 +83,7 @@ static void at_the_same_frequency(void **state) {
   assert_true(residual_at(&f, x, omega) > 1e-4);
   normal[N] = 1;
   assert_int_equal(
-      mhb_nearest_solution(f.newton, f.residual, normal, mhb_norm(x, N), .8, x, &omega), 1);
+      mhb_nearest_solution(f.newton, f.residual, normal, mhb_norm(x, N), 0.8, x, &omega), 1);
   assert_true(fabs(omega - 1.37) < 1e-14);
   assert_true(residual_at(&f, x, omega) <= 1e-10);
   for (int i = 0; i < N; i++) assert_true(fabs(x[i] - wanted[i]) < 1e-8 * mhb_norm(wanted, N));
@@ -97,24 +97,24 @@ static void in_the_plane_across(void **state) {
   int     moved = 0;
   make(&f);
   for (int i = 0; i < 12; i++) {
-    double w = 1.1 + .04 * i, x[N], y[N], before[N], after[N], normal[N + 1], omega = w, sum = 0,
+    double w = 1.1 + 0.04 * i, x[N], y[N], before[N], after[N], normal[N + 1], omega = w, sum = 0,
            size = 0;
     guess_at(&f.model, w, x);
-    guess_at(&f.model, w - .01, before);
-    guess_at(&f.model, w + .01, after);
+    guess_at(&f.model, w - 0.01, before);
+    guess_at(&f.model, w + 0.01, after);
     for (int k = 0; k < N; k++) normal[k] = after[k] - before[k];
-    normal[N]    = .02;
+    normal[N]    = 0.02;
     double scale = mhb_norm(x, N);
     memcpy(y, x, sizeof y);
-    assert_int_equal(mhb_nearest_solution(f.newton, f.residual, normal, scale, .8, y, &omega), 1);
+    assert_int_equal(mhb_nearest_solution(f.newton, f.residual, normal, scale, 0.8, y, &omega), 1);
     assert_true(residual_at(&f, y, omega) <= 1e-10);
     for (int k = 0; k < N; k++) {
       sum += normal[k] / scale * (y[k] - x[k]) / scale;
       size += normal[k] / scale * normal[k] / scale;
     }
-    sum += normal[N] / .8 * (omega - w) / .8;
+    sum += normal[N] / 0.8 * (omega - w) / 0.8;
     assert_true(fabs(sum) < 1e-10 * sqrt(size));
-    assert_true(fabs(omega - w) < .05);
+    assert_true(fabs(omega - w) < 0.05);
     moved += residual_at(&f, x, w) > 1e-6 && omega != w; /* not where the contact stays linear */
   }
   assert_true(moved >= 6);
@@ -128,7 +128,7 @@ static void nothing_near(void **state) {
   make(&f);
   x[1]      = 50; /* far beyond any solution */
   normal[N] = 1;
-  assert_int_equal(mhb_nearest_solution(f.newton, f.residual, normal, 1, .8, x, &omega), 0);
+  assert_int_equal(mhb_nearest_solution(f.newton, f.residual, normal, 1, 0.8, x, &omega), 0);
   end(&f);
 }
 

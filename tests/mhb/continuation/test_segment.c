@@ -4,89 +4,12 @@
 #include "mhb/continuation/segment.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #include "mhb/response/response.h"
 #include "tests/support/check.h"
+#include "tests/support/scalar_curve.h"
 
-/* f(x, value) = 0 with its derivatives. */
-typedef struct {
-  mhb_curve_system base;
-  double (*f)(double x, double value, double *f_x, double *f_value);
-  double a[2][2]; /* factors: [f_x column; row] */
-  double determinant;
-} scalar_system;
-
-static scalar_system *of(mhb_curve_system *system) {
-  return (scalar_system *)system;
-}
-
-static void destroy(mhb_curve_system *system) {
-  free(system);
-}
-
-static void linearise(mhb_curve_system *system, mhb_curve_point *p) {
-  p->r[0] = of(system)->f(p->x[0], p->value, &of(system)->a[0][0], &p->slope[0]);
-}
-
-static void evaluate(mhb_curve_system *system, mhb_curve_point *p) {
-  double unused[2];
-  p->r[0] = of(system)->f(p->x[0], p->value, &unused[0], &unused[1]);
-}
-
-static int factor(mhb_curve_system *system, const mhb_curve_point *p, const double *column,
-                  const double *row) {
-  scalar_system *s = of(system);
-  double         f_value;
-  s->f(p->x[0], p->value, &s->a[0][0], &f_value);
-  s->a[0][1]     = column[0];
-  s->a[1][0]     = row[0];
-  s->a[1][1]     = row[1];
-  s->determinant = s->a[0][0] * s->a[1][1] - s->a[0][1] * s->a[1][0];
-  return s->determinant != 0;
-}
-
-static int solve(mhb_curve_system *system, double *rhs) {
-  const scalar_system *s = of(system);
-  double               x = (s->a[1][1] * rhs[0] - s->a[0][1] * rhs[1]) / s->determinant;
-  rhs[1]                 = (s->a[0][0] * rhs[1] - s->a[1][0] * rhs[0]) / s->determinant;
-  rhs[0]                 = x;
-  return isfinite(rhs[0]) && isfinite(rhs[1]);
-}
-
-static int sign(const mhb_curve_system *system) {
-  return ((const scalar_system *)system)->determinant < 0 ? -1 : 1;
-}
-
-static mhb_reason solve_at_value(mhb_curve_system *system, double tolerance, mhb_curve_point *p) {
-  for (p->iterations = 0; p->iterations < 50; p->iterations++) {
-    double f_x, f_value, r = of(system)->f(p->x[0], p->value, &f_x, &f_value);
-    if (fabs(r) <= tolerance * fmax(fabs(p->x[0]), 1e-300)) return MHB_CONVERGED;
-    p->x[0] -= r / f_x;
-  }
-  return MHB_MAX_ITERATIONS;
-}
-
-static mhb_curve_system *scalar(double (*f)(double, double, double *, double *)) {
-  scalar_system *s = calloc(1, sizeof *s);
-  assert_non_null(s);
-  s->f    = f;
-  s->base = (mhb_curve_system){.n              = 1,
-                               .least          = -INFINITY,
-                               .smooth         = true,
-                               .row_length     = 1,
-                               .copies         = 1,
-                               .destroy        = destroy,
-                               .linearise      = linearise,
-                               .evaluate       = evaluate,
-                               .factor         = factor,
-                               .solve          = solve,
-                               .sign           = sign,
-                               .solve_at_value = solve_at_value};
-  return &s->base;
-}
-
-/* ---- a host that keeps what it is handed ---- */
+/* ---- a host that records the points ---- */
 
 enum { ROOM = 2000 };
 
@@ -145,43 +68,43 @@ static double beyond(mhb_arclength *curve, const mhb_curve_point *point, void *c
 static const int HIGH = 1, LOW = -1;
 
 /* Trace a curve from x at a value. The caller frees it by finish. */
-static mhb_end trace(tracing *t, double (*f)(double, double, double *, double *), double low,
-                     double high, double x, double value, int direction, int max_points) {
+static mhb_end trace(tracing *t, scalar_function f, double low, double high, double x, double value,
+                     int direction, int max_points) {
   mhb_end  end;
   int      stop_at = t->stop_at;
   mhb_seed seed    = {.x = &x, .value = value, .direction = direction};
   *t               = (tracing){.stop_at = stop_at};
-  assert_ok(mhb_arclength_create(scalar(f), low, high, &t->host.curve));
-  t->test[0] = (mhb_event_test){.name      = "closed",
-                                .g         = mhb_curve_return_ahead,
-                                .context   = &t->back,
-                                .direction = 1,
-                                .is_near   = mhb_curve_return_is_near,
-                                .accept    = mhb_curve_return_arrived,
-                                .end       = MHB_END_CLOSED};
-  t->test[1] = (mhb_event_test){.name      = "high",
-                                .g         = beyond,
-                                .context   = (void *)&HIGH,
-                                .direction = 1,
-                                .at_next   = true,
-                                .end       = MHB_END_HIGH};
-  t->test[2] = (mhb_event_test){.name      = "low",
-                                .g         = beyond,
-                                .context   = (void *)&LOW,
-                                .direction = 1,
-                                .at_next   = true,
-                                .end       = MHB_END_LOW};
-  t->test[3] = (mhb_event_test){.name = "fold", .g = mhb_fold_test, .special = MHB_FOLD};
-  t->host    = (mhb_segment_host){.curve          = t->host.curve,
-                                  .n_tests        = 4,
-                                  .test           = t->test,
-                                  .events         = &t->events,
-                                  .max_points     = max_points,
-                                  .estimate       = estimate,
-                                  .estimate_event = estimate_event,
-                                  .accept         = accept,
-                                  .started        = started,
-                                  .record         = record};
+  t->host.curve    = scalar_curve(f, low, high);
+  t->test[0]       = (mhb_event_test){.name      = "closed",
+                                      .g         = mhb_curve_return_ahead,
+                                      .context   = &t->back,
+                                      .direction = 1,
+                                      .is_near   = mhb_curve_return_is_near,
+                                      .accept    = mhb_curve_return_arrived,
+                                      .end       = MHB_END_CLOSED};
+  t->test[1]       = (mhb_event_test){.name      = "high",
+                                      .g         = beyond,
+                                      .context   = (void *)&HIGH,
+                                      .direction = 1,
+                                      .at_next   = true,
+                                      .end       = MHB_END_HIGH};
+  t->test[2]       = (mhb_event_test){.name      = "low",
+                                      .g         = beyond,
+                                      .context   = (void *)&LOW,
+                                      .direction = 1,
+                                      .at_next   = true,
+                                      .end       = MHB_END_LOW};
+  t->test[3]       = (mhb_event_test){.name = "fold", .g = mhb_fold_test, .special = MHB_FOLD};
+  t->host          = (mhb_segment_host){.curve          = t->host.curve,
+                                        .n_tests        = 4,
+                                        .test           = t->test,
+                                        .events         = &t->events,
+                                        .max_points     = max_points,
+                                        .estimate       = estimate,
+                                        .estimate_event = estimate_event,
+                                        .accept         = accept,
+                                        .started        = started,
+                                        .record         = record};
   assert_ok(mhb_trace_segment(&t->host, &seed, &end));
   return end;
 }
@@ -205,19 +128,12 @@ static int folds(const tracing *t, double *value, double *x) {
 
 /* ---- the curves ---- */
 
-/* (x - 3)^2 + value^2 = 1 */
-static double circle(double x, double value, double *f_x, double *f_value) {
-  *f_x     = 2 * (x - 3);
-  *f_value = 2 * value;
-  return (x - 3) * (x - 3) + value * value - 1;
-}
-
 static void a_circle_is_closed_with_two_folds(void **state) {
   (void)state;
   tracing t = {0};
   double  value[8], x[8];
   for (int direction = -1; direction < 2; direction += 2) {
-    assert_int_equal(trace(&t, circle, -2, 2, 3.8, 0.6, direction, 500), MHB_END_CLOSED);
+    assert_int_equal(trace(&t, scalar_circle, -2, 2, 3.8, 0.6, direction, 500), MHB_END_CLOSED);
     assert_int_equal(folds(&t, value, x), 2);
     print_message("circle: %d points, folds %.12f %.12f\n", t.n, value[0], value[1]);
     for (int i = 0; i < 2; i++) {
@@ -237,11 +153,11 @@ static void a_cut_circle_ends_on_the_range(void **state) {
   (void)state;
   tracing t = {0};
   double  value[8], x[8];
-  assert_int_equal(trace(&t, circle, -2, 0.7, 3.8, 0.6, 1, 500), MHB_END_HIGH);
+  assert_int_equal(trace(&t, scalar_circle, -2, 0.7, 3.8, 0.6, 1, 500), MHB_END_HIGH);
   assert_true(t.value[t.n - 1] == 0.7);
   assert_near(t.x[t.n - 1], 3 + sqrt(1 - 0.49), 1e-10);
   finish(&t);
-  assert_int_equal(trace(&t, circle, -0.3, 2, 3.8, 0.6, 1, 500), MHB_END_LOW);
+  assert_int_equal(trace(&t, scalar_circle, -0.3, 2, 3.8, 0.6, 1, 500), MHB_END_LOW);
   assert_true(t.value[t.n - 1] == -0.3); /* over the fold and down the other side */
   assert_near(t.x[t.n - 1], 3 - sqrt(1 - 0.09), 1e-10);
   assert_int_equal(folds(&t, value, x), 1);
@@ -271,20 +187,12 @@ static void an_s_curve_is_passed_from_end_to_end(void **state) {
   finish(&t);
 }
 
-/* value^2 = (x - 2)^3: a cusp of the curve at value 0, where the tangent turns round. */
-static double cusp(double x, double value, double *f_x, double *f_value) {
-  double y = x - 2;
-  *f_x     = -3 * y * y;
-  *f_value = 2 * value;
-  return value * value - y * y * y;
-}
-
 /* No tangent exists at a cusp. The segment passes it, or ends with its reason; what it recorded
  * solves the equation. */
 static void a_cusp_ends_or_is_passed(void **state) {
   (void)state;
   tracing t   = {0};
-  mhb_end end = trace(&t, cusp, -1, 1, 2 + pow(0.8, 2. / 3), -0.8, 1, 500);
+  mhb_end end = trace(&t, scalar_cusp, -1, 1, 2 + pow(0.8, 2. / 3), -0.8, 1, 500);
   print_message("cusp: %d points, %s at value %.3g\n", t.n, mhb_end_text(end), t.value[t.n - 1]);
   assert_true(end == MHB_END_HIGH || end == MHB_END_STALLED || end == MHB_END_TINY_STEPS);
   assert_true(t.n > 10);
@@ -292,21 +200,12 @@ static void a_cusp_ends_or_is_passed(void **state) {
   finish(&t);
 }
 
-/* x = 2 + value up to the kink at value = 0; beyond it x = 2 + value + sqrt(value), as at the onset of
- * slip: vertical there. */
-static double root_kink(double x, double value, double *f_x, double *f_value) {
-  double root = value > 0 ? sqrt(value) : 0;
-  *f_x        = 1;
-  *f_value    = -1 - (value > 0 ? 0.5 / fmax(root, 1e-9) : 0);
-  return x - 2 - value - root;
-}
-
 static void a_square_root_kink_is_passed(void **state) {
   (void)state;
   tracing t = {0};
   for (int direction = -1; direction < 2; direction += 2) {
     double from = direction > 0 ? -0.5 : 0.5, x = direction > 0 ? 1.5 : 2.5 + sqrt(0.5);
-    assert_int_equal(trace(&t, root_kink, -0.5, 0.5, x, from, direction, 500),
+    assert_int_equal(trace(&t, scalar_root_kink, -0.5, 0.5, x, from, direction, 500),
                      direction > 0 ? MHB_END_HIGH : MHB_END_LOW);
     print_message("square-root kink: %d points\n", t.n);
     for (int i = 0; i < t.n; i++) {
@@ -359,7 +258,7 @@ static void all_folds_of_a_snake_are_found(void **state) {
 static void a_segment_of_too_many_points_says_so(void **state) {
   (void)state;
   tracing t = {0};
-  assert_int_equal(trace(&t, circle, -2, 2, 3.8, 0.6, 1, 7), MHB_END_MAX_POINTS);
+  assert_int_equal(trace(&t, scalar_circle, -2, 2, 3.8, 0.6, 1, 7), MHB_END_MAX_POINTS);
   assert_true(t.n >= 7 && t.n <= 8);
   finish(&t);
 }
@@ -367,22 +266,15 @@ static void a_segment_of_too_many_points_says_so(void **state) {
 static void a_segment_can_be_interrupted(void **state) {
   (void)state;
   tracing t = {.stop_at = 5};
-  assert_int_equal(trace(&t, circle, -2, 2, 3.8, 0.6, 1, 500), MHB_END_INTERRUPTED);
+  assert_int_equal(trace(&t, scalar_circle, -2, 2, 3.8, 0.6, 1, 500), MHB_END_INTERRUPTED);
   assert_int_equal(t.n, 5);
   finish(&t);
-}
-
-/* x^2 + 1 + value^2 = 0 has no real solution. */
-static double nowhere(double x, double value, double *f_x, double *f_value) {
-  *f_x     = 2 * x;
-  *f_value = 2 * value;
-  return x * x + 1 + value * value;
 }
 
 static void without_a_solution_there_is_no_start(void **state) {
   (void)state;
   tracing t = {0};
-  assert_int_equal(trace(&t, nowhere, -1, 1, 0.3, 0, 1, 500), MHB_END_NO_START);
+  assert_int_equal(trace(&t, scalar_nowhere, -1, 1, 0.3, 0, 1, 500), MHB_END_NO_START);
   assert_int_equal(t.n, 0);
   finish(&t);
 }
@@ -415,7 +307,7 @@ static void an_excursion_comes_back(void **state) {
                    .value     = 0.4,
                    .direction = 1,
                    .reach     = MHB_EXCURSION_FAR};
-  trace(&t, circle, -2, 0.4, x, 0.4, -1, 2); /* for its host */
+  trace(&t, scalar_circle, -2, 0.4, x, 0.4, -1, 2); /* for its host */
   t.n               = 0;
   t.host.max_points = 400;
   assert_ok(mhb_trace_segment(&t.host, &seed, &end));
@@ -424,6 +316,22 @@ static void an_excursion_comes_back(void **state) {
   assert_near(t.x[0], 3 - sqrt(1 - 0.16), 1e-10);
   assert_int_equal(end, MHB_END_HIGH);
   assert_near(t.x[t.n - 1], x, 1e-10); /* round the circle, back to where it left */
+  finish(&t);
+}
+
+/* Points that the host has already do not count: max_points of them are recorded. */
+static void a_first_point_that_is_known_does_not_count(void **state) {
+  (void)state;
+  tracing  t = {0};
+  mhb_end  end;
+  double   x    = 3 + sqrt(1 - 0.16);
+  mhb_seed seed = {.x = &x, .value = 0.4, .direction = 1, .skip_first = true};
+  trace(&t, circle, -2, 2, x, 0.4, 1, 2); /* for its host */
+  t.n               = 0;
+  t.host.max_points = 5;
+  assert_ok(mhb_trace_segment(&t.host, &seed, &end));
+  assert_int_equal(end, MHB_END_MAX_POINTS);
+  assert_int_equal(t.n, 5);
   finish(&t);
 }
 
@@ -439,6 +347,7 @@ int main(void) {
                                      cmocka_unit_test(a_segment_can_be_interrupted),
                                      cmocka_unit_test(without_a_solution_there_is_no_start),
                                      cmocka_unit_test(a_curve_that_runs_to_infinity_ends),
-                                     cmocka_unit_test(an_excursion_comes_back)};
+                                     cmocka_unit_test(an_excursion_comes_back),
+                                     cmocka_unit_test(a_first_point_that_is_known_does_not_count)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -10,8 +10,8 @@
 
 #include <cmocka.h>
 
-#include "mhb/floquet/hill.h"
 #include "tests/support/check.h"
+#include "tests/support/hill.h"
 #include "tests/support/periodic.h"
 #include "tests/support/random_model.h"
 #include "tests/support/three_degree.h"
@@ -19,7 +19,7 @@
 enum { MOST = 64 };
 
 /* All nodal diameters, one after the other. */
-static int hill_multipliers(periodic *p, double complex *mu) {
+static int multipliers_by_hill(periodic *p, double complex *mu) {
   mhb_balance        *b = p->residual;
   mhb_modal_structure structure;
   int                 n = 0;
@@ -29,9 +29,9 @@ static int hill_multipliers(periodic *p, double complex *mu) {
       mhb_modal_structure_create(b->receptance, &p->settings, b->receptance->n_modes, &structure),
       SHB_OK);
   for (int d = 0; d < structure.blades; d++, n += 2 * structure.modes)
-    assert_int_equal(
-        mhb_hill(&structure, d, p->omega / p->settings.subharmonics, b->m, b->eval->dp, mu + n),
-        SHB_OK);
+    assert_int_equal(hill_multipliers(&structure, d, p->omega / p->settings.subharmonics, b->m,
+                                      b->eval->dp, mu + n),
+                     SHB_OK);
   mhb_modal_structure_destroy(&structure);
   free(r);
   free(J);
@@ -41,7 +41,7 @@ static int hill_multipliers(periodic *p, double complex *mu) {
 static double compare(periodic *p, const char *name, int substeps) {
   double complex  mine[MOST], hill[MOST];
   mhb_multipliers out = periodic_multipliers(p, substeps, mine);
-  int             n   = hill_multipliers(p, hill);
+  int             n   = multipliers_by_hill(p, hill);
   double          off = distance_to(mine, out.n, hill, n), top = 0;
   for (int i = 0; i < n; i++) top = fmax(top, cabs(hill[i]));
   print_message("%-28s largest %.6f, Hill %.6f, all within %.1e\n", name, out.largest, top, off);

@@ -28,7 +28,7 @@ static void bands_give_the_ring(void **state) {
       assert_true(mhb_ring_band_create(blades, block, &band));
       mhb_ring_band_clear(&band);
       for (int row = 0; row < n; row++) {
-        int meets = mhb_ring_band_near(&band, row / block, near);
+        int meets = mhb_ring_band_neighbours(&band, row / block, near);
         for (int k = 0; k < meets * block; k++) {
           int column          = near[k / block] * block + k % block;
           A[row * n + column] = *mhb_ring_band_at(&band, row, column) = noise(&seed);

@@ -85,7 +85,7 @@ static double strain_frequency(const mesh_fe *mesh, const fem_system *system,
   assert_int_equal(MatDenseGetColumnVecRead(eigen->phi, mode, &phi), 0);
   assert_int_equal(fem_system_gather(system, phi, u), 0);
   assert_int_equal(MatDenseRestoreColumnVecRead(eigen->phi, mode, &phi), 0);
-  double lambda = fem_strain_energy(mesh, &steel, element, u);
+  double lambda = strain_energy(mesh, &steel, element, u);
   free(element);
   free(u);
   return sqrt(lambda) / SHB_TWO_PI;

@@ -12,6 +12,7 @@
 #include <cmocka.h>
 
 #include "fem/body/equilibrium.h"
+#include "mesh/io/inp_write.h"
 #include "mesh/base/constants.h"
 #include "mesh/io/inp_read.h"
 #include "modal/eigen/eigen.h"

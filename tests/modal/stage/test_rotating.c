@@ -9,7 +9,6 @@
 
 #include <cmocka.h>
 
-#include "fem/body/energy.h"
 #include "fem/body/equilibrium.h"
 #include "fem/solver/petsc_error.h"
 #include "modal/eigen/eigen.h"
@@ -70,7 +69,7 @@ static shb_status solve(const beam *b, double speed, double flap[MODES], double 
       z += u[3 * k + 2] * u[3 * k + 2];
     }
     double *to = y > 10 * (x + z) ? flap + n[0]++ : z > 10 * (x + y) ? plane + n[1]++ : NULL;
-    if (to) *to = fem_tangent_energy(&body, at.displacement, u);
+    if (to) *to = tangent_energy(&body, at.displacement, u);
   }
   modal_eigen_destroy(&eigen);
   fem_equilibrium_free(&at);
@@ -78,7 +77,7 @@ static shb_status solve(const beam *b, double speed, double flap[MODES], double 
   mesh_fe_free(&mesh);
   free(element);
   free(u);
-  return fem_fault_status(code);
+  return fem_petsc_status(code);
 }
 
 /* ------------------------------------------------------------------ beam theory */
@@ -194,7 +193,7 @@ int main(void) {
       cmocka_unit_test(buckling_is_refused),
   };
   if (SlepcInitialize(NULL, NULL, NULL, NULL)) return 1;
-  PetscPushErrorHandler(fem_fault_handler, NULL);
+  PetscPushErrorHandler(fem_petsc_error_handler, NULL);
   int failures = cmocka_run_group_tests_name("tet10", tests, NULL, NULL);
   failures += cmocka_run_group_tests_name("hex20", tests, hexahedra, NULL);
   PetscPopErrorHandler();

@@ -2,6 +2,7 @@
 #include <math.h>
 
 #include "fem/element/surface.h"
+#include "mesh/io/inp_write.h"
 #include "mesh/base/constants.h"
 #include "mesh/io/inp_read.h"
 #include "modal/common/session.h"

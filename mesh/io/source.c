@@ -1,12 +1,14 @@
-#include "mesh/gmsh/source.h"
+#include "mesh/io/source.h"
 
 #include <stdbool.h>
 #include <string.h>
 
 #include "mesh/core/file_format.h"
+#include "mesh/core/group_checks.h"
 #include "mesh/gmsh/solid.h"
+#include "mesh/io/read.h"
 
-/* Groups, and m, for a mesh as it was read. */
+/* Convert to m, apply the rules of groups, check the groups. */
 static shb_status finish(const mesh_source *source, mesh_fe *mesh) {
   for (size_t i = 0; source->unit != 1 && i < 3 * (size_t)mesh->n_nodes; i++)
     mesh->coordinates[i] *= source->unit;
@@ -16,7 +18,7 @@ static shb_status finish(const mesh_source *source, mesh_fe *mesh) {
 
 static shb_status read_mesh(const mesh_source *source, mesh_fe *mesh) {
   mesh_names names = mesh_rules_names(&source->rules, source->unit);
-  SHB_TRY(mesh_fe_read_named(source->path, &names, mesh));
+  SHB_TRY(mesh_fe_read(source->path, &names, mesh));
   shb_status status = finish(source, mesh);
   if (status != SHB_OK) mesh_fe_free(mesh);
   return status;
@@ -30,7 +32,7 @@ shb_status mesh_source_read(const mesh_source *source, shb_progress *progress, m
   shb_status status = mesh_solid_mesh(&solid, mesh);
   if (status == SHB_OK) status = finish(source, mesh);
   bool again = false;
-  if (status == SHB_OK) status = mesh_solid_tie(&solid, mesh, &again);
+  if (status == SHB_OK) status = mesh_solid_make_periodic(&solid, mesh, &again);
   if (status == SHB_OK && again) {
     mesh_fe_free(mesh);
     status = mesh_solid_mesh(&solid, mesh);

@@ -1,4 +1,4 @@
-#include "mhb/floquet/hill.h"
+#include "tests/support/hill.h"
 
 #include <lapacke.h>
 #include <math.h>
@@ -44,8 +44,8 @@ static void set_shapes(hill *h, int d) {
 static double complex to_exponential(int k, int i) {
   if (k == 0) return i == 0;
   int j = k > 0 ? k : -k;
-  if (i == 2 * j - 1) return .5;
-  return i == 2 * j ? (k > 0 ? .5 * I : -.5 * I) : 0;
+  if (i == 2 * j - 1) return 0.5;
+  return i == 2 * j ? (k > 0 ? 0.5 * I : -0.5 * I) : 0;
 }
 
 /* Weight of exponential k in real coefficient i. */
@@ -164,8 +164,8 @@ static int solve(hill *h, double complex *multiplier) {
   return 1;
 }
 
-shb_status mhb_hill(const mhb_modal_structure *s, int d, double omega, int m, const double *dp,
-                    double complex *multiplier) {
+shb_status hill_multipliers(const mhb_modal_structure *s, int d, double omega, int m,
+                            const double *dp, double complex *multiplier) {
   hill   h = {.s = s, .m = m, .K = mhb_real_size(m), .n3 = 3 * s->pairs, .omega = omega};
   size_t n = (size_t)(h.K * h.n3), states = 2 * (size_t)(h.K * s->modes);
   h.B               = calloc(n * (size_t)s->modes, sizeof *h.B);

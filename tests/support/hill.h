@@ -5,8 +5,8 @@
  *   B_k = right - exp(-j(2 pi d/N + k phi)) left,   J = d force/d motion of the contact law, in exponentials
  * J knows the slider only as it is in the periodic motion: with friction the multipliers are biased, at any number of harmonics; their
  * side of the unit circle is mostly right. Without friction they converge with m. */
-#ifndef MHB_FLOQUET_HILL_H
-#define MHB_FLOQUET_HILL_H
+#ifndef TESTS_SUPPORT_HILL_H
+#define TESTS_SUPPORT_HILL_H
 
 #include <complex.h>
 
@@ -16,7 +16,7 @@
  *   omega  in  rad/s, of the fundamental
  *   dp     in  [pair][3 (2m+1)][3 (2m+1)] of mhb_contact_force, row-major, real form
  * Errors: SHB_ERR_IO no memory; SHB_NOT_CONVERGED the eigensolver failed. Cost: the cube of 2 modes (2m+1). */
-shb_status mhb_hill(const mhb_modal_structure *structure, int d, double omega, int m,
-                    const double *dp, double complex *multiplier);
+shb_status hill_multipliers(const mhb_modal_structure *structure, int d, double omega, int m,
+                            const double *dp, double complex *multiplier);
 
 #endif

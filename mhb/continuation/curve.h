@@ -1,7 +1,9 @@
-/* A system r(x, value) = 0 of n equations in n unknowns and a parameter, whose curves of solutions
- * are traced. A balance of harmonics is one (balance_curve.h). The tests trace scalar ones. */
-#ifndef MHB_CONTINUATION_CURVE_SYSTEM_H
-#define MHB_CONTINUATION_CURVE_SYSTEM_H
+/* Curves of solutions of r(x, value) = 0: points, systems, and the curve that is traced.
+ *
+ * A system has n equations in n unknowns and a parameter. A balance of harmonics is one
+ * (balance_curve.h). The tests trace scalar ones. */
+#ifndef MHB_CONTINUATION_CURVE_H
+#define MHB_CONTINUATION_CURVE_H
 
 #include <stdbool.h>
 
@@ -24,7 +26,7 @@ typedef struct {
 } mhb_curve_point;
 
 typedef struct mhb_curve_system mhb_curve_system;
-typedef struct mhb_arclength    mhb_arclength; /* arclength.h */
+typedef struct mhb_arclength    mhb_arclength;
 struct mhb_curve_system {
   int    n;        /* unknowns */
   double least;    /* below it no value makes sense */
@@ -76,5 +78,36 @@ struct mhb_curve_system {
    * knows of it. */
   bool (*resonance_skipped)(mhb_arclength *curve);
 };
+
+/* A curve while it is traced. */
+struct mhb_arclength {
+  mhb_curve_system *system; /* owned */
+  int               n;
+  double            low, high;       /* range of the value */
+  double            parameter_scale; /* unit of the value */
+  double          amplitude_at_rest; /* unit of x where nothing moves: |dx/dvalue| over the range */
+  double          step, longest;     /* the next step's length; the longest allowed */
+  double          tolerance;         /* of |r|/|x| */
+  double          roundoff_level; /* a residual below it that stagnates is accepted as round-off */
+  int             orientation;    /* of the curve */
+  int             n_reversed;     /* points in a row with the other orientation */
+  mhb_curve_point current, next;  /* the ends of the last step */
+  mhb_curve_point trial;          /* a point located on it */
+  mhb_curve_point bracket[3];     /* of a search on it: both ends, and a former one */
+  double         *chord;          /* [n + 1] direction of a step or a search */
+  double         *column, *row, *delta; /* [n + 1] of the bordered system */
+};
+
+/* Takes over the system, also if it fails. SHB_ERR_IO: no memory. */
+shb_status mhb_arclength_create(mhb_curve_system *system, double low, double high,
+                                mhb_arclength **curve);
+void       mhb_arclength_destroy(mhb_arclength *curve);
+
+/* A point of a curve with arrays of its own; destroy accepts a zeroed one. SHB_ERR_IO: no memory. */
+shb_status mhb_curve_point_create(mhb_curve_system *system, mhb_curve_point *point);
+void       mhb_curve_point_destroy(mhb_curve_system *system, mhb_curve_point *point);
+
+/* current <- next */
+void mhb_arclength_advance(mhb_arclength *curve);
 
 #endif

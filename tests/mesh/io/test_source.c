@@ -1,6 +1,5 @@
-/* Meshes in every format of gmsh, solids meshed here, groups by rule, units; and what cannot be. */
-#include "mesh/base/constants.h"
-#include "mesh/gmsh/source.h"
+/* Meshes in every format of gmsh, solids meshed here, groups by rule, units; refused input. */
+#include "mesh/io/source.h"
 
 #include <gmshc.h>
 #include <math.h>
@@ -15,13 +14,15 @@
 
 #include <cmocka.h>
 
+#include "mesh/core/face_match.h"
 #include "mesh/core/jacobian.h"
 #include "mesh/gmsh/session.h"
 #include "mesh/gmsh/size_estimate.h"
-#include "mesh/io/inp_read.h"
+#include "mesh/io/inp_write.h"
 #include "mesh/io/msh_write.h"
 #include "tests/support/box.h"
 #include "tests/support/check.h"
+#include "tests/support/read_mesh.h"
 
 enum { BLADES = 23 };
 
@@ -94,15 +95,15 @@ static double volume(const mesh_fe *mesh) {
 
 /* The box through gmsh into one of its formats. */
 static void convert(const char *from, const char *to, double version, double binary) {
-  mesh_kernel kernel;
-  int         ierr = 0;
-  assert_ok(mesh_kernel_open(&kernel));
+  mesh_session kernel;
+  int          ierr = 0;
+  assert_ok(mesh_session_open(&kernel));
   gmshOpen(from, &ierr);
   gmshOptionSetNumber("Mesh.MshFileVersion", version, &ierr);
   gmshOptionSetNumber("Mesh.Binary", binary, &ierr);
   gmshWrite(to, &ierr);
   assert_int_equal(ierr, 0);
-  mesh_kernel_close(&kernel);
+  mesh_session_close(&kernel);
 }
 
 static void every_msh_format_is_read(void **state) {
@@ -123,7 +124,7 @@ static void every_msh_format_is_read(void **state) {
       fclose(file);
       snprintf(head, sizeof head, "%g %d 8", version, format % 2);
       assert_int_equal(strncmp(line, head, strlen(head)), 0); /* it is what it should be */
-      assert_ok(mesh_fe_read(to, &mesh));
+      assert_ok(read_mesh(to, &mesh));
       assert_int_equal(mesh.kind, kind);
       assert_int_equal(mesh.n_nodes, box.n_nodes);
       assert_int_equal(mesh.n_elements, box.n_elements);
@@ -145,7 +146,7 @@ static void what_is_written_comes_back(void **state) {
     const char *path = scratch("own.msh");
     assert_ok(kind == MESH_HEX20 ? box_hex(size, cells, &box) : box_mesh(size, cells, &box));
     assert_ok(mesh_msh_write(&box, path, &origin));
-    assert_ok(mesh_fe_read(path, &mesh));
+    assert_ok(read_mesh(path, &mesh));
     assert_int_equal(mesh.n_nodes, box.n_nodes);
     assert_memory_equal(mesh.coordinates, box.coordinates, 3 * (size_t)box.n_nodes * 8);
     assert_area(&mesh, MESH_ROOT, -size[1] * size[2], 0, 0);
@@ -189,7 +190,8 @@ static void rules_find_the_faces(void **state) {
     }
 }
 
-/* The curved inner face of a ring's piece, whose facets bend by some degrees: by radius, and as the nearest face. */
+/* The curved inner face of a ring segment, whose facets bend by some degrees: by radius, and as the
+ * nearest face. */
 static void curved_faces_are_found(void **state) {
   (void)state;
   const int   many[3] = {2, 6, 2};
@@ -198,7 +200,7 @@ static void curved_faces_are_found(void **state) {
   assert_ok(box_mesh(size, many, &box));
   for (int i = 0; i < box.n_nodes; i++) {
     double *x     = box.coordinates + 3 * i;
-    double  angle = SHB_PI / 4 * (x[1] / size[1] - .5), r = .31 + x[2];
+    double  angle = M_PI / 4 * (x[1] / size[1] - .5), r = .31 + x[2];
     x[1] = r * sin(angle);
     x[2] = r * cos(angle);
   }
@@ -249,7 +251,7 @@ static void groups_may_have_other_names(void **state) {
   mesh_fe_free(&box);
 }
 
-/* Contact on clamped faces, the same face twice; rules that cannot mean what they say. */
+/* Contact on clamped faces, one face in two groups, and rules without sense are refused. */
 static void groups_that_cannot_be_right(void **state) {
   (void)state;
   mesh_fe         box, mesh;
@@ -262,7 +264,8 @@ static void groups_that_cannot_be_right(void **state) {
   source.rules.usual[MESH_CONTACT_RIGHT] = clamp;
   refused(&source, "groups contact_right and root share 8 of 8 faces, one at (0, ");
   source.rules.usual[MESH_CONTACT_RIGHT].normal[0] = 0;
-  source.rules.usual[MESH_CONTACT_RIGHT].normal[1] = 1; /* it meets the clamp along an edge: well */
+  source.rules.usual[MESH_CONTACT_RIGHT].normal[1] =
+      1; /* it meets the clamp along an edge, which is allowed */
   assert_ok(mesh_source_read(&source, NULL, &mesh));
   mesh_fe_free(&mesh);
   source.rules.usual[MESH_CONTACT_LEFT] = source.rules.usual[MESH_CONTACT_RIGHT];
@@ -283,19 +286,19 @@ static void put(const char *path, const char *text) {
   fclose(file);
 }
 
-/* A block as a script in mm, and out of it as STEP (mm) and BREP (numbers only). */
+/* A block as a script in mm, and exported as STEP (mm) and BREP (numbers only). */
 static void solids_are_meshed(void **state) {
   (void)state;
   const char *const name[3] = {"block.geo", "block.step", "block.brep"};
   put(scratch("block.geo"), "SetFactory(\"OpenCASCADE\");\nBox(1) = {0, -10, 300, 40, 20, 50};\n");
-  mesh_kernel kernel;
-  int         ierr = 0;
-  assert_ok(mesh_kernel_open(&kernel));
+  mesh_session kernel;
+  int          ierr = 0;
+  assert_ok(mesh_session_open(&kernel));
   gmshOpen(scratch("block.geo"), &ierr);
   gmshWrite(scratch("block.step"), &ierr);
   gmshWrite(scratch("block.brep"), &ierr);
   assert_int_equal(ierr, 0);
-  mesh_kernel_close(&kernel);
+  mesh_session_close(&kernel);
   for (int i = 0; i < 3; i++) {
     mesh_fe     mesh;
     mesh_source source = {.path = scratch(name[i]), .unit = 1e-3, .size = .01, .axis = MESH_AXIS_X};
@@ -316,7 +319,7 @@ static void solids_are_meshed(void **state) {
   }
 }
 
-/* A sector whose sides are meshed apart unless they are tied: node for node after the pitch. */
+/* A sector whose sides are meshed independently unless they are made periodic. */
 static void sides_are_made_to_match(void **state) {
   (void)state;
   mesh_fe     mesh;
@@ -333,7 +336,7 @@ static void sides_are_made_to_match(void **state) {
       (mesh_rule){.kind = MESH_RULE_RADIUS, .radius = .3, .tolerance = 1e-6};
   source.rules.usual[MESH_CONTACT_RIGHT] =
       (mesh_rule){.kind = MESH_RULE_NEAREST, .at = {.02, .32, 0}};
-  double angle = SHB_TWO_PI / BLADES, r = .32;
+  double angle = 2 * M_PI / BLADES, r = .32;
   source.rules.usual[MESH_CONTACT_LEFT] =
       (mesh_rule){.kind = MESH_RULE_NEAREST, .at = {.02, r * cos(angle), r * sin(angle)}};
   for (int tied = 0; tied < 2; tied++) {
@@ -362,7 +365,7 @@ static void put_block(const char *path, double h) {
   fclose(file);
 }
 
-/* What is foreseen is near what comes; what no memory holds is refused before it is made. */
+/* The estimate is near the mesh; a mesh that no memory holds is refused before it is made. */
 static void nodes_are_foreseen(void **state) {
   (void)state;
   const mesh_extent block       = {.length = .6, .area = 10.8e-3, .volume = 4e-5};
@@ -376,12 +379,12 @@ static void nodes_are_foreseen(void **state) {
     put_block(source.path, i % 2 ? 1e3 * h : 5);
     source.size = i % 2 ? 0 : h;
     assert_ok(mesh_source_read(&source, NULL, &mesh));
-    double ratio = mesh_foresee_nodes(&block, h) / mesh.n_nodes;
+    double ratio = mesh_estimate_nodes(&block, h) / mesh.n_nodes;
     if (!(ratio > .7 && ratio < 1.5)) fail_msg("size %g: %g of the nodes foreseen", h, ratio);
     mesh_fe_free(&mesh);
   }
-  double least = mesh_foresee_size(&block, 1e5);
-  assert_near(mesh_foresee_nodes(&block, least), 1e5, 500);
+  double least = mesh_estimate_size(&block, 1e5);
+  assert_near(mesh_estimate_nodes(&block, least), 1e5, 500);
   source.size = 1e-9;
   refused(&source, "many.geo: mesh.size 1e-09 m would give about 2.5e+16 nodes; with ");
   source.size = 0;

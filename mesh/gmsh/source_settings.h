@@ -1,0 +1,20 @@
+/* Settings of a blade's mesh that is read, or made from a solid. */
+#ifndef MESH_GMSH_SOURCE_SETTINGS_H
+#define MESH_GMSH_SOURCE_SETTINGS_H
+
+#include "mesh/core/group_rules.h"
+
+typedef struct {
+  const char *path;
+  double      unit; /* m: length of one unit of the file; STEP files are read in mm */
+  double      size; /* m, element size of a solid; 0: as in the file (.geo) */
+  mesh_axis   axis;
+  int         blades; /* periodic contact faces of a solid; 0: contact to ground */
+  mesh_rules  rules;
+  int         n_contacts; /* number of contact interfaces; 0: contact_right and contact_left */
+  struct {
+    char right[MESH_WORD], left[MESH_WORD];
+  } contact[MESH_MAX_MORE / 2];
+} mesh_source;
+
+#endif

@@ -1,0 +1,107 @@
+/* What a response holds: branches of points, and what they depend on. */
+#ifndef MHB_RESPONSE_RESPONSE_TYPES_H
+#define MHB_RESPONSE_RESPONSE_TYPES_H
+
+#include <complex.h>
+#include <stdbool.h>
+
+#include "mesh/base/publish.h"
+#include "mesh/base/status.h"
+#include "mhb/problem/settings.h"
+
+/* Solutions of the balance, its linear limits, and single points by time integration. */
+typedef enum {
+  MHB_BRANCH_NONLINEAR,
+  MHB_BRANCH_OPEN,
+  MHB_BRANCH_STUCK,
+  MHB_BRANCH_INTEGRATION,
+  MHB_N_BRANCH_KINDS
+} mhb_branch_kind;
+
+/* Origin of a branch: traced from the low end of the range, from a solution found by search, from a
+ * flip; detached: a closed curve, or one that leaves by the low end, met on the way of the main
+ * branch. */
+typedef enum { MHB_FROM_END, MHB_FROM_SEARCH, MHB_FROM_FLIP, MHB_FROM_DETACHED } mhb_origin;
+
+/* special of mhb_branch. Flip and Neimark-Sacker: a multiplier crosses the unit circle at -1, or a
+ * complex pair does. */
+enum { MHB_ORDINARY, MHB_FOLD, MHB_PEAK, MHB_FLIP, MHB_NEIMARK_SACKER, MHB_N_SPECIALS };
+
+/* judged of mhb_branch: the evidence for stable. Parity: of the folds passed since a point with
+ * known multipliers. */
+enum {
+  MHB_BY_FOLDS,           /* parity; the multipliers were not computed */
+  MHB_BY_MULTIPLIERS,     /* the multipliers: all inside the unit circle, or some well outside */
+  MHB_MARGINAL_BY_FOLDS,  /* parity; the largest multiplier is at 1 within its accuracy */
+  MHB_UNDECIDED_BY_FOLDS, /* parity; the multipliers could not be computed */
+  MHB_N_JUDGED
+};
+
+/* loss of mhb_branch: the cause of instability. */
+enum { MHB_NO_LOSS, MHB_LOSS_FOLD, MHB_LOSS_FLIP, MHB_LOSS_NEIMARK_SACKER, MHB_N_LOSSES };
+
+/* Multipliers stored a point. */
+enum { MHB_KEPT_MULTIPLIERS = 8 };
+
+/* One curve. Array layouts:
+ *   motion, force  [point][pair][3 (v, u, w)][k = 0..m]
+ *   probe          [point][probe][3 (tangential, axial, radial)][k]
+ *   state          [point][pair][3 (stuck, slipping, open)]
+ * Signals are x(t) = Re sum_k A_k exp(j k w t/nu), with m and nu of the branch: the harmonic of the
+ * excitation is k = nu. */
+typedef struct {
+  mhb_branch_kind kind;
+  mhb_origin      origin;
+  int             order, n_harmonics; /* nu, m; the response's unless set before the first point */
+  int             main;               /* index of the main branch of the same preload */
+  bool            searched;           /* main branch: the search beside it is done */
+  char           *reason;   /* end of the branch: "end of range", or why it ended before */
+  bool            complete; /* the range was covered */
+  int             n_points, capacity;
+  double         *frequency;    /* [point] Hz, of the excitation's first harmonic */
+  double         *n0;           /* [point] N, total of the interface, or of the leading one */
+  double         *interface_n0; /* [point][n_interfaces] N */
+  double         *value;        /* [point] of the parameter followed; Hz for the frequency */
+  double complex *motion, *force, *probe;
+  int            *stable; /* [point] 1 stable, 0 unstable, -1 not known */
+  int    *special;        /* [point] MHB_ORDINARY ...; a peak of the first harmonic of any output */
+  double *state;
+  double *dissipation;                     /* [point][pair] J a cycle */
+  int    *iterations;                      /* [point] */
+  double *seconds;                         /* [point] */
+  double *error_newton, *error_truncation; /* [point] relative to the norm of the motion */
+  double *error_sampling, *error_modal;    /* the same */
+  /* nonlinear branches only */
+  int            *judged;      /* [point] MHB_BY_FOLDS ... */
+  int            *loss;        /* [point] MHB_NO_LOSS ... */
+  double complex *multipliers; /* [point][n_multipliers] the largest, by falling modulus; 0: none */
+  int            *harmonics;   /* [point] of the balance, at most n_harmonics; 0: not known */
+  int            *truncation_kind; /* [point] mhb_truncation_kind */
+  /* integration branches only */
+  int    *multiple; /* [point] periods of the fundamental until the motion repeats; 0: never */
+  int    *periods;  /* [point] periods of the fundamental that were integrated */
+  double *distance; /* [point] of the return map, relative */
+  double *line_frequency; /* [point][n_lines] Hz, spectrum of motion that does not repeat */
+  double *line_amplitude; /* [point][n_lines] m, largest first */
+} mhb_branch;
+
+typedef struct {
+  int           n_pairs, n_probes, n_harmonics, subharmonics, n_branches, capacity;
+  char        **probe_name;
+  mhb_branch   *branch;
+  mhb_parameter parameter;      /* the one followed */
+  int           n_multipliers;  /* kept a point; 0: none, set before the first point */
+  int           n_interfaces;   /* 0: one, without a name; set before the first point */
+  int           lead;           /* whose parameter is followed */
+  char        **interface_name; /* [n_interfaces] */
+  int          *interface;      /* [pair] which one; NULL without */
+  int           n_lines;        /* of spectra of integrated points; 0: none, set likewise */
+  /* copied from the modal model for the report */
+  int     n_modes;
+  double *mode_frequency, *mode_damping, *eigen_residual; /* [m]; eigen_residual may be NULL */
+  int     engine_order, blades;
+  bool    run_up; /* the speed follows the frequency on the engine order; modes of the top speed */
+  double  psi, phi; /* rad, mean of the pairs */
+} mhb_response;
+
+#endif

@@ -1,0 +1,116 @@
+/* Published files are whole or absent; temporary files do not stay. */
+#include "mesh/base/publish.h"
+
+#include <unistd.h>
+
+#include "tests/support/check.h"
+#include "tests/support/scratch.h"
+
+static char folder[SCRATCH_PATH];
+
+static int create(void **state) {
+  (void)state;
+  scratch_create(folder);
+  return 0;
+}
+
+static int destroy(void **state) {
+  (void)state;
+  scratch_remove(folder);
+  return 0;
+}
+
+static void path_of(const char *name, char path[SCRATCH_PATH + 64]) {
+  snprintf(path, SCRATCH_PATH + 64, "%s/%s", folder, name);
+}
+
+static void write_text(const char *path, const char *text) {
+  FILE *file = fopen(path, "wb");
+  assert_non_null(file);
+  fputs(text, file);
+  fclose(file);
+}
+
+static void assert_holds(const char *path, const char *wanted) {
+  char  text[64] = "";
+  FILE *file     = fopen(path, "rb");
+  assert_non_null(file);
+  text[fread(text, 1, sizeof text - 1, file)] = 0;
+  fclose(file);
+  assert_string_equal(text, wanted);
+}
+
+static void renames_over_an_earlier_file(void **state) {
+  (void)state;
+  char path[SCRATCH_PATH + 64];
+  path_of("result", path);
+  write_text(path, "earlier");
+  char *temporary = shb_publish_temporary(path);
+  assert_non_null(temporary);
+  write_text(temporary, "later");
+  assert_holds(path, "earlier");
+  assert_ok(shb_publish(temporary, path));
+  assert_holds(path, "later");
+  assert_int_not_equal(access(temporary, F_OK), 0);
+  free(temporary);
+}
+
+static void a_link_is_not_replaced(void **state) {
+  (void)state;
+  char path[SCRATCH_PATH + 64], target[SCRATCH_PATH + 64];
+  path_of("link", path);
+  path_of("target", target);
+  write_text(target, "target");
+  assert_int_equal(symlink(target, path), 0);
+  char *temporary = shb_publish_temporary(path);
+  write_text(temporary, "new");
+  assert_int_equal(shb_publish(temporary, path), SHB_ERR_IO);
+  assert_has(shb_message(), "is a link");
+  assert_holds(target, "target");
+  assert_int_not_equal(access(temporary, F_OK), 0);
+  free(temporary);
+}
+
+static void a_folder_that_is_absent_is_told(void **state) {
+  (void)state;
+  char path[SCRATCH_PATH + 64];
+  path_of("absent/result", path);
+  char *temporary = shb_publish_temporary(path);
+  assert_int_equal(shb_publish(temporary, path), SHB_ERR_IO);
+  assert_has(shb_message(), "cannot be written");
+  free(temporary);
+}
+
+static void abandoned_files_are_removed(void **state) {
+  (void)state;
+  char path[SCRATCH_PATH + 64];
+  path_of("unfinished", path);
+  char *temporary = shb_publish_temporary(path);
+  write_text(temporary, "half");
+  shb_publish_abandon();
+  assert_int_not_equal(access(temporary, F_OK), 0);
+  free(temporary);
+}
+
+/* FNV-1a of the empty text and of "a", from the definition of the hash. */
+static void fingerprints_are_fnv_1a(void **state) {
+  (void)state;
+  char path[SCRATCH_PATH + 64], hash[17];
+  path_of("hashed", path);
+  write_text(path, "");
+  assert_ok(shb_fingerprint(path, hash));
+  assert_string_equal(hash, "cbf29ce484222325");
+  write_text(path, "a");
+  assert_ok(shb_fingerprint(path, hash));
+  assert_string_equal(hash, "af63dc4c8601ec8c");
+  path_of("nothing", path);
+  assert_int_equal(shb_fingerprint(path, hash), SHB_ERR_IO);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(renames_over_an_earlier_file), cmocka_unit_test(a_link_is_not_replaced),
+      cmocka_unit_test(a_folder_that_is_absent_is_told),
+      cmocka_unit_test(abandoned_files_are_removed), cmocka_unit_test(fingerprints_are_fnv_1a)};
+  return cmocka_run_group_tests(tests, create, destroy);
+}

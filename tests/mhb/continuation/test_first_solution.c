@@ -1,0 +1,107 @@
+/* A first solution without a guess: at any preload and parameter, and what it leaves unchanged. */
+#include "mhb/continuation/first_solution.h"
+
+#include "tests/support/check.h"
+#include "tests/support/random_model.h"
+#include "tests/support/settings.h"
+#include "tests/support/three_degree.h"
+
+static double relative_residual(mhb_balance *b, const double *x, double value) {
+  double r[b->n];
+  mhb_balance_evaluate(b, x, value, r, NULL, NULL);
+  return mhb_norm(r, b->n) / mhb_norm(x, b->n);
+}
+
+/* From open to stuck, through the resonances. */
+static void there_is_one_at_every_preload(void **state) {
+  (void)state;
+  static const double n0[] = {-1, -0.05, 0, 0.02, 0.1, 5}, omega[] = {0.85, 0.95, 1.1, 1.3, 1.7};
+  modal_model         model;
+  mhb_settings        s = ground_settings(0.3, 1, 0.5, 0, 3);
+  mhb_balance        *b;
+  mhb_newton         *newton;
+  int                 iterations;
+  double              worst = 0;
+  three_degree_model(&model);
+  assert_ok(mhb_balance_create(&model, &s, &b));
+  assert_ok(mhb_newton_create(b->n, &newton));
+  double x[b->n];
+  for (int i = 0; i < 6; i++)
+    for (int w = 0; w < 5; w++) {
+      mhb_balance_set_preload(b, n0[i]);
+      assert_int_equal(mhb_first_solution(newton, b, omega[w], 1e-11, x, &iterations),
+                       MHB_CONVERGED);
+      assert_true(b->eval->at.n0 == n0[i]);
+      worst = fmax(worst, relative_residual(b, x, omega[w]));
+    }
+  print_message("largest residual %.1e\n", worst);
+  assert_below(worst, 1e-10);
+  mhb_newton_destroy(newton);
+  mhb_balance_destroy(b);
+  modal_model_free(&model);
+}
+
+/* The parameter stands, and the value is its own. */
+static void the_parameter_stands(void **state) {
+  (void)state;
+  static const struct {
+    mhb_parameter parameter;
+    double        value;
+  } row[] = {{MHB_IN_FREQUENCY, 1.1}, {MHB_IN_N0, 0.2}, {MHB_IN_SCALE, 0.7},
+             {MHB_IN_MU, 0.4},        {MHB_IN_KU, 0.9}, {MHB_IN_KV, 0.6}};
+  modal_model model;
+  random_model(2, WITH_LEFT | WITH_RESIDUAL, 3, &model);
+  for (int i = 0; i < 6; i++) {
+    mhb_settings s = random_settings(2);
+    mhb_balance *b;
+    mhb_newton  *newton;
+    int          iterations;
+    assert_ok(mhb_balance_create(&model, &s, &b));
+    assert_ok(mhb_newton_create(b->n, &newton));
+    double x[b->n];
+    mhb_balance_set_value(b, 1.3);
+    mhb_balance_set_parameter(b, row[i].parameter);
+    assert_int_equal(mhb_first_solution(newton, b, row[i].value, 1e-11, x, &iterations),
+                     MHB_CONVERGED);
+    assert_int_equal(b->parameter, row[i].parameter);
+    assert_near(mhb_parameter_get(&b->eval->at, row[i].parameter), row[i].value, 1e-15);
+    assert_true(b->eval->at.omega == (i == 0 ? 1.1 : 1.3));
+    assert_below(relative_residual(b, x, row[i].value), 1e-10);
+    mhb_newton_destroy(newton);
+    mhb_balance_destroy(b);
+  }
+  modal_model_free(&model);
+}
+
+/* A tolerance that nothing meets: every way is tried, and the failure is told with the balance as
+ * it was. */
+static void a_failure_leaves_the_balance_as_it_was(void **state) {
+  (void)state;
+  modal_model  model;
+  mhb_settings s = ground_settings(0.3, 1, 1, 0.05, 1);
+  mhb_balance *b;
+  mhb_newton  *newton;
+  int          iterations;
+  one_degree_model(0.02, 1, 0.1, &model);
+  assert_ok(mhb_balance_create(&model, &s, &b));
+  assert_ok(mhb_newton_create(b->n, &newton));
+  double x[b->n];
+  mhb_balance_set_preload(b, 0.05);
+  mhb_balance_set_value(b, 1.2);
+  mhb_balance_set_parameter(b, MHB_IN_MU);
+  mhb_reason reason = mhb_first_solution(newton, b, 0.3, -1, x, &iterations);
+  print_message("reason %d\n", (int)reason);
+  assert_true(reason < 0);
+  assert_int_equal(b->parameter, MHB_IN_MU);
+  assert_true(b->eval->at.n0 == 0.05 && b->eval->at.mu == 0.3);
+  mhb_newton_destroy(newton);
+  mhb_balance_destroy(b);
+  modal_model_free(&model);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(there_is_one_at_every_preload),
+                                     cmocka_unit_test(the_parameter_stands),
+                                     cmocka_unit_test(a_failure_leaves_the_balance_as_it_was)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
