@@ -43,6 +43,23 @@ static void use_level(mhb_tracer *t) {
 
 /* ---- what segments ask for ---- */
 
+/* Where the segment is to end by its motion: at a place, or nowhere. */
+static void return_to(mhb_tracer *t, const mhb_curve_place *place) {
+  for (int j = 0; j < t->host.curve->system->copies; j++) {
+    mhb_curve_return at = {place, j};
+    /* the test function of a copy that is the place would begin with a zero of any sign */
+    t->returns[j] = place && mhb_curve_return_repeats(&at) ? (mhb_curve_return){NULL, j} : at;
+  }
+}
+
+/* The curve starts at its current point, and ends where it comes back. */
+static shb_status note_start(mhb_tracer *t) {
+  mhb_arclength *curve = t->host.curve;
+  SHB_TRY(mhb_curve_place_note(&t->start, curve->system, &curve->current, mhb_tracer_same(t)));
+  return_to(t, &t->start);
+  return SHB_OK;
+}
+
 static shb_status estimate(mhb_segment_host *host, mhb_curve_point *point, bool *raised) {
   mhb_tracer *t        = of(host);
   bool        is_start = point == &host->curve->current;
@@ -53,7 +70,7 @@ static shb_status estimate(mhb_segment_host *host, mhb_curve_point *point, bool 
   if (higher < 0) return SHB_OK;
   SHB_TRY(mhb_harmonic_levels_move(t->levels, higher, is_start, raised));
   use_level(t);
-  return SHB_OK;
+  return *raised && is_start && t->returns_to_start ? note_start(t) : SHB_OK;
 }
 
 static void estimate_event(mhb_segment_host *host, mhb_curve_point *point) {
@@ -108,21 +125,18 @@ static shb_status started(mhb_segment_host *host, const mhb_seed *seed, mhb_end 
   mhb_tracer             *t     = of(host);
   const mhb_curve_point  *first = &host->curve->current;
   const mhb_segment_plan *plan  = &t->plan;
+  bool                    begins =
+      seed->kind == MHB_SEED_SOLUTION || (seed->kind == MHB_SEED_EXCURSION && !plan->known);
+  t->returns_to_start = begins && plan->closes && !plan->target;
   if (seed->kind == MHB_SEED_EXCURSION && !plan->known && is_recorded(t)) {
     *end = MHB_END_NO_START;
     return SHB_OK;
   }
-  if (seed->kind == MHB_SEED_SOLUTION || (seed->kind == MHB_SEED_EXCURSION && !plan->known))
-    SHB_TRY(mhb_curve_place_note(&t->start, host->curve->system, first, mhb_tracer_same(t)));
-  else if (seed->kind == MHB_SEED_CROSSING)
-    mhb_curve_place_free(&t->start);
+  if (begins) SHB_TRY(note_start(t));
+  if (seed->kind == MHB_SEED_CROSSING) mhb_curve_place_free(&t->start);
   const mhb_curve_place *place = plan->target ? plan->target : plan->closes ? &t->start : NULL;
   if (place && !place->x) place = NULL;
-  for (int j = 0; j < host->curve->system->copies; j++) {
-    mhb_curve_return at = {place, j};
-    /* the test function of a copy that is the place would begin with a zero of any sign */
-    t->returns[j] = place && mhb_curve_return_repeats(&at) ? (mhb_curve_return){NULL, j} : at;
-  }
+  return_to(t, place);
   if (seed->kind == MHB_SEED_SOLUTION) t->farthest = fmax(t->farthest, seed->value);
   if (seed->kind == MHB_SEED_EXCURSION && plan->known && place &&
       mhb_curve_place_distance(place, host->curve, first) <= place->tolerance)

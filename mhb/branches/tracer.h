@@ -30,11 +30,12 @@ struct mhb_tracer {
   mhb_monitor         *monitor;
   bool              joins; /* curves of higher order: they end where they meet one of lower order */
   mhb_segment_plan  plan;
-  mhb_curve_place   start;    /* of the curve under way */
-  mhb_curve_return *returns;  /* [copies] contexts of the tests of closure */
-  int              *output;   /* [outputs] contexts of the tests of peaks */
-  double            clock;    /* s, when the last point was recorded */
-  double            farthest; /* highest value of a point so far */
+  mhb_curve_place   start;            /* of the curve under way */
+  bool              returns_to_start; /* it ends there; noted anew when more harmonics move it */
+  mhb_curve_return *returns;          /* [copies] contexts of the tests of closure */
+  int              *output;           /* [outputs] contexts of the tests of peaks */
+  double            clock;            /* s, when the last point was recorded */
+  double            farthest;         /* highest value of a point so far */
   /* Called after each point, to publish the curves so far; NULL: never. */
   shb_status (*publish)(void *context);
   void *context;

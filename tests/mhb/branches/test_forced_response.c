@@ -352,6 +352,26 @@ static void more_periods_than_the_motion_has(void **state) {
   modal_model_free(&model);
 }
 
+/* The first point moves where more harmonics are taken at once: it is no return to the start. */
+static void more_harmonics_at_the_start(void **state) {
+  (void)state;
+  static const double n0[] = {-.3, -.2, -.1, 0, .05, .1, .2, .3};
+  modal_model         model;
+  three_degree_model(&model);
+  for (int i = 0; i < 8; i++)
+    for (int from = 0; from < 10; from++) {
+      mhb_settings s     = ground_settings(.4, .8, .5, n0[i], 1);
+      s.motion_tolerance = 1e-3;
+      s.stability        = MHB_STABILITY_NEVER;
+      s.max_points       = 2000;
+      mhb_response *r    = sweep(&model, &s, .95 + .05 * from, 1 + .05 * from);
+      for (int k = 2; k < r->n_branches; k++) assert_true(r->branch[k].n_points > 3);
+      assert_near(r->branch[2].frequency[0], s.frequency[0], 1e-12);
+      mhb_response_destroy(r);
+    }
+  modal_model_free(&model);
+}
+
 static void nothing_happens_without_excitation(void **state) {
   (void)state;
   modal_model model;
@@ -407,6 +427,7 @@ int main(void) {
       cmocka_unit_test(curves_go_on_beyond_a_gap),
       cmocka_unit_test(the_probe_moves_like_the_contact),
       cmocka_unit_test(more_periods_than_the_motion_has),
+      cmocka_unit_test(more_harmonics_at_the_start),
       cmocka_unit_test(nothing_happens_without_excitation),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
