@@ -69,8 +69,8 @@ static PetscErrorCode find_incidence(const mesh_fe *mesh, const fem_system *syst
   PetscFunctionReturn(0);
 }
 
-/* Exact number of blocks in each row of the upper triangle or the whole matrix: in the columns of
- * this rank (diagonal) and in the others. */
+/* Exact number of blocks in each row, in the columns of this rank (diagonal) and in the others.
+ *   whole  in  false: of the upper triangle only */
 static PetscErrorCode count_blocks(const mesh_fe *mesh, const fem_system *system,
                                    const incidence *around, bool whole, PetscInt *diagonal,
                                    PetscInt *off_diagonal) {

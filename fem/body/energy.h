@@ -8,10 +8,11 @@ enum { FEM_FIELDS = 10 }; /* fields that share the shape gradients of an element
 
 /* Quadratic form u^T K u of n displacement fields, J; K is that of fem_tangent_assemble at a state.
  *
- * With h = du/dX and e = sym(F^T h) it is the integral of lambda (tr e)^2 + 2 mu e:e + h S:h, less
- * Omega^2 u^T M P u, plus the term of the pressure. Quadrature is as in fem_element_stiffness. A
- * product with the assembled K loses log10(lambda_max / lambda) digits, as the rigid motion of each
- * element cancels. Strains do not, so Rayleigh quotients keep about 13 digits.
+ * It is the integral of lambda (tr e)^2 + 2 mu e:e + h S:h, with h = du/dX and e = sym(F^T h).
+ * Rotation subtracts Omega^2 u^T M P u; the pressure adds its term. Quadrature is as in
+ * fem_element_stiffness. A product with the assembled K loses log10(lambda_max / lambda) digits, as
+ * the rigid motion of each element cancels. Strains do not, so Rayleigh quotients keep about 13
+ * digits.
  *   state   in   [n_nodes][3] m, zero at clamped nodes; NULL: at rest
  *   u       in   [n][n_nodes][3] m, zero at clamped nodes
  *   energy  out  [n] J */

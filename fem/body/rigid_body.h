@@ -10,8 +10,8 @@
 
 enum { FEM_RIGID = 4 };
 
-/* Inertia forces M r at the free dofs, and r^T M r of the whole body: three times its mass, and its
- * moment of inertia about the engine axis. Collective.
+/* Inertia forces M r at the free dofs, and r^T M r of the whole body. The latter is three times its
+ * mass, and its moment of inertia about the engine axis. Collective.
  *   u        in   [n_nodes][3] m, the rotation is about the deformed position; NULL: at rest
  *   load     out  M r, vectors of the system; kg and kg m
  *   inertia  out  kg, kg, kg, kg m2; the same on every rank */

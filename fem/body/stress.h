@@ -20,8 +20,8 @@ enum { FEM_STRESSES = 6 }; /* xx, yy, zz, xy, yz, xz, as VTK orders a symmetric 
 PetscErrorCode fem_nodal_stress(const fem_body *body, const double *u,
                                 double (*stress)[FEM_STRESSES]);
 
-/* Internal forces less loads at every node, clamped ones included, N. In equilibrium they vanish at
- * free nodes and are the clamp forces at clamped nodes.
+/* Internal forces less loads at every node, clamped ones included, N. They vanish in equilibrium at
+ * free nodes. At clamped nodes they are the clamp forces.
  *   unbalanced  out  [n_nodes][3]
  *   load        out  [3] resultant of the loads */
 PetscErrorCode fem_unbalanced_forces(const fem_body *body, const double *u, double (*unbalanced)[3],

@@ -5,6 +5,7 @@
 #include <stdbool.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
 #include "mesh/gmsh/session.h"
 
 enum { N = MESH_AIRFOIL_POINTS };
@@ -113,9 +114,9 @@ static shb_status check_section(const mesh_blade *blade, int i) {
   SHB_CHECK(cambered < 0 || s->camber * blade->section[cambered].camber >= 0, SHB_ERR_INPUT,
             "mesh.blade.sections[%d].camber: %g mm bends the other way than sections[%d], %g mm", i,
             1e3 * s->camber, cambered, 1e3 * blade->section[cambered].camber);
-  SHB_CHECK(fabs(s->twist) <= MESH_MAX_TWIST * M_PI / 180, SHB_ERR_INPUT,
+  SHB_CHECK(fabs(s->twist) <= MESH_MAX_TWIST * SHB_PI / 180, SHB_ERR_INPUT,
             "mesh.blade.sections[%d].twist: %g deg; it must be between -80 and 80 deg", i,
-            s->twist * 180 / M_PI);
+            s->twist * 180 / SHB_PI);
   return SHB_OK;
 }
 

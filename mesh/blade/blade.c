@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "mesh/base/constants.h"
 #include "mesh/base/vec3.h"
 #include "mesh/blade/airfoil.h"
 #include "mesh/blade/face_groups.h"
@@ -33,7 +34,7 @@ static shb_status check_root(const mesh_blade *blade) {
   SHB_CHECK(bottom > 0, SHB_ERR_INPUT,
             "mesh.blade.root.height: %g mm reaches the engine axis from the first section at %g mm",
             1e3 * blade->root_height, 1e3 * top);
-  double pitch = 2 * bottom * tan(M_PI / blade->blades);
+  double pitch = 2 * bottom * tan(SHB_PI / blade->blades);
   SHB_CHECK(blade->root_width <= pitch, SHB_ERR_INPUT,
             "mesh.blade.root.width: %g mm is wider than the sector at the root's bottom, %.4g mm "
             "with rotor.blades %d",
@@ -80,7 +81,7 @@ static shb_status check_size(const mesh_blade *blade) {
   SHB_CHECK(nodes < MOST, SHB_ERR_INPUT,
             "mesh.blade.size: %g mm would give about %.2g nodes; give at least %.2g mm",
             1e3 * blade->size, nodes, 1e3 * cbrt(12 * volume / MOST));
-  double ring = blade->shroud_length * blade->shroud_thickness * 2 * M_PI / blade->blades *
+  double ring = blade->shroud_length * blade->shroud_thickness * SHB_TWO_PI / blade->blades *
                 (blade->section[blade->n_sections - 1].radius + blade->shroud_thickness / 2);
   nodes = blade->shroud_size > 0 ? 12 * ring / pow(blade->shroud_size, 3) : 0;
   SHB_CHECK(nodes < MOST, SHB_ERR_INPUT,

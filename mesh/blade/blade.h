@@ -14,9 +14,9 @@
  * file. Inverted elements at thin places are straightened, up to 1 % of all. With verbose progress
  * the sharpest corner of all elements is reported.
  *   progress  in  NULL: none is shown
- * Errors: SHB_ERR_INPUT for a geometry that cannot be built (the message names the key of the case)
- * or inverted elements (the message names tags); SHB_ERR_IO; SHB_INTERRUPTED. After an error no
- * file is left behind. */
+ * Errors: SHB_ERR_INPUT for a geometry that cannot be built; the message names the key of the case.
+ * SHB_ERR_INPUT for inverted elements; the message names tags. SHB_ERR_IO, SHB_INTERRUPTED. After
+ * an error no file is left behind. */
 shb_status mesh_blade_write(const mesh_blade *blade, const char *path,
                             const shb_provenance *provenance, shb_progress *progress);
 

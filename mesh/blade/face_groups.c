@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "mesh/base/constants.h"
 #include "mesh/base/vec3.h"
 #include "mesh/blade/airfoil.h"
 #include "mesh/blade/shroud.h"
@@ -116,7 +117,7 @@ shb_status mesh_face_groups_name(int dimension, int entity, const char *name) {
 static shb_status make_periodic(const mesh_blade *blade, const mesh_frame *frame, int *right,
                                 int *left) {
   double matrix[16];
-  mesh_axis_matrix(frame->axis, 2 * M_PI / blade->blades, matrix);
+  mesh_axis_matrix(frame->axis, SHB_TWO_PI / blade->blades, matrix);
   GMSH_TRY("mesh.blade.shroud", gmshModelMeshSetPeriodic(2, right, MESH_SHROUD_LEGS, left,
                                                          MESH_SHROUD_LEGS, matrix, 16, &ierr));
   return SHB_OK;

@@ -31,8 +31,8 @@ typedef struct {
   double tip[2]; /* shares of u of the parts at both edges, of 2 half elements */
 } mesh_section_grid;
 
-/* Mesh the section: a middle part of chord x 2 half elements, and in each tip three blocks of half
- * x half elements around a point. No corner of an element is flat.
+/* Mesh the section. Its middle part has chord x 2 half elements. Each tip has three blocks of half
+ * x half elements around a point, so that no corner of an element is flat.
  *   place  out  [n_nodes], malloc'ed */
 shb_status mesh_section_mesh_create(const mesh_section_grid *grid, mesh_planar *plan,
                                     mesh_section_place **place);

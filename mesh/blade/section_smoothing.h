@@ -4,13 +4,13 @@
 
 #include "mesh/blade/section_mesh.h"
 
-/* Move the corners that lie neither on the outline nor in the section towards the mean of their
- * neighbours, as far as the worst quadrangle around them improves. Then the middles of sides are
- * set half way. SHB_ERR_IO. */
+/* Improve the quadrangles. Corners outside the section and off the outline move towards the mean of
+ * their neighbours, as far as their worst quadrangle improves. Then the middles of sides are set
+ * half way. SHB_ERR_IO. */
 shb_status mesh_planar_smooth(mesh_planar *plan);
 
 /* Smallest sine of a corner's angle outside the section. Returns -1 if the mesh does not meet the
- * section along its whole contour: gmsh covers the tip of a hole that it does not resolve. */
+ * whole contour of the section. gmsh covers the tip of a hole that it does not resolve. */
 double mesh_planar_least_sine(const mesh_planar *plan);
 
 #endif

@@ -1,12 +1,12 @@
 /* The tip shroud: a segment of a ring whose two sides are congruent Z-notches.
  *
- * The left side consists of three planar faces over a Z in the plan view (axial, tangential):
- * leading leg, contact leg of length shroud_contact along u, trailing leg. They are extruded along
- * (tan phi/cos psi, 0, 1). This direction lies in the contact plane and leaves the front and rear
- * faces flat. The solid is these faces revolved by the sector angle, so the right side is the left
- * one rotated. The centre of the contact leg lies on its own radial plane. In the cylindrical axes
- * there the normal of the right side is v = (cos psi cos phi, sin psi cos phi, -sin phi) (Chen,
- * Yang, Menq 1999, eq. 2). */
+ * The left side consists of three planar faces over a Z in the plan view (axial, tangential). They
+ * are the leading leg, the contact leg of length shroud_contact along u, and the trailing leg. They
+ * are extruded along (tan phi/cos psi, 0, 1). This direction lies in the contact plane and leaves
+ * the front and rear faces flat. The solid is these faces revolved by the sector angle, so the
+ * right side is the left one rotated. The centre of the contact leg lies on its own radial plane.
+ * In the cylindrical axes there the normal of the right side is v = (cos psi cos phi, sin psi cos
+ * phi, -sin phi) (Chen, Yang, Menq 1999, eq. 2). */
 #ifndef MESH_BLADE_SHROUD_H
 #define MESH_BLADE_SHROUD_H
 
@@ -22,8 +22,8 @@ enum { MESH_SHROUD_LEGS = 3, MESH_SHROUD_CONTACT = 1 /* the middle leg */ };
 void mesh_shroud_centre(const mesh_blade *blade, int leg, bool right, double own[3]);
 
 /* The unrolled shroud has the coordinates (p, axial) with p = R theta + t. R is the radius at mid
- * thickness, t the tangential coordinate of the left side's Z at this axial coordinate, and theta
- * the angle from it. The two sides are p = t -+ R pi/N. */
+ * thickness. t is the tangential coordinate of the left side's Z at this axial coordinate. theta is
+ * the angle from that point. The two sides are p = t -+ R pi/N. */
 
 /* Corners of the outline, anticlockwise: the Z of the right side from the front, then the left one
  * from the rear. */

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "mesh/base/constants.h"
 #include "mesh/base/vec3.h"
 
 static const double tolerance = 1e-9; /* m */
@@ -106,7 +107,7 @@ shb_status mesh_fe_match(const mesh_fe *mesh, mesh_axis axis, int blades, int *n
   int        nr = 0, nl = 0;
   int       *right  = unique_nodes(mesh, sr, &nr);
   int       *left   = unique_nodes(mesh, sl, &nl);
-  left_node *places = left ? rotated_left(mesh, left, nl, axis, 2 * M_PI / blades) : NULL;
+  left_node *places = left ? rotated_left(mesh, left, nl, axis, SHB_TWO_PI / blades) : NULL;
   shb_status status = SHB_OK;
   if (!right || !places) {
     status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "no memory to match the contact faces");

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
 #include "mesh/base/vec3.h"
 #include "mesh/core/face_match.h"
 #include "mesh/core/triangle.h"
@@ -191,7 +192,7 @@ static shb_status project(const mesh_fe *mesh, mesh_axis axis, int blades, mesh_
   t.ball = malloc(((size_t)t.set->n + 1) * sizeof *t.ball);
   SHB_CHECK(t.ball, SHB_ERR_IO, "no memory to match the contact faces");
   for (int f = 0; f < t.set->n; f++) bounding_ball(&t, f);
-  shb_status status = project_all(&t, axis, 2 * M_PI / blades, out);
+  shb_status status = project_all(&t, axis, SHB_TWO_PI / blades, out);
   free(t.ball);
   return status;
 }

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
 #include "mesh/base/vec3.h"
 #include "mesh/core/face_match.h"
 #include "mesh/core/file_format.h"
@@ -211,7 +212,7 @@ static shb_status make_periodic(mesh_solid *solid, mesh_fe *mesh, int right_set,
   SHB_TRY(mesh_fe_orient_groups(mesh, source->axis, right_set, left_set));
   mesh_fe view = mesh_fe_facing(mesh, right_set, left_set);
   if (matches(&view, source->axis, source->blades)) return SHB_OK;
-  const double angle = 2 * M_PI / source->blades;
+  const double angle = SHB_TWO_PI / source->blades;
   patch        right = {0}, left = {0};
   bool         periodic = false;
   shb_status   status   = find_patch(solid, mesh, right_set, &right);

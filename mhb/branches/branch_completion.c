@@ -8,8 +8,8 @@
 #include "mhb/branches/branch_stability.h"
 #include "mhb/branches/record.h"
 
-/* A pair of folds nearer than this, relative to the value or to a hundredth of the range, is no jump
- * that anyone could observe. */
+/* A pair of folds nearer than this is no jump that anyone could observe. Relative to the value, or
+ * to a hundredth of the range. */
 static const double HAIRLINE = 1e-5;
 
 /* Unmark pairs of folds that are hairlines. */

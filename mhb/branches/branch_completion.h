@@ -1,5 +1,5 @@
-/* What completes a branch once its segments are traced: they are joined, the stability of the points
- * is judged, and the reason of the branch's end is noted. */
+/* Completion of a branch whose segments are traced. They are joined, the stability of the points is
+ * judged, and the reason of the end is noted. */
 #ifndef MHB_BRANCHES_BRANCH_COMPLETION_H
 #define MHB_BRANCHES_BRANCH_COMPLETION_H
 
@@ -12,7 +12,7 @@ typedef struct {
   int         n_gaps;       /* places jumped over; first_gap: the first of them */
   const char *first_gap;    /* if n_gaps > 0 */
   const char *other_reason; /* NULL; or a reason in place of the end's, of an incomplete branch */
-  bool        interrupted;  /* out: the judging was stopped, or the tracing was before */
+  bool        interrupted;  /* out: the judging of stability was stopped, or the tracing before */
 } mhb_completion;
 
 /* Join a chain of the tracer's segments into a branch of a response, and complete it.

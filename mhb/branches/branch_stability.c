@@ -10,8 +10,8 @@
 #include "mhb/continuation/event_location.h"
 #include "mhb/floquet/floquet.h"
 
-/* Up to CHEAP states every point is judged, up to FINE those that the budget a branch allows, by the measured cost; above that
- * with fewer modes and sub-steps. */
+/* Up to CHEAP states every point is judged. Up to FINE states the budget of a branch decides, in
+ * seconds of expected cost. Above that there are fewer modes and sub-steps. */
 enum {
   CHEAP          = 60,
   FINE           = 120,
@@ -22,20 +22,20 @@ enum {
 };
 static const double BUDGET = 0.5, FEWER_BUDGET = 0.1, SECONDS_A_CUBE = 4e-9, SECONDS_A_STATE = 1e-5;
 
-/* Distances of a modulus from 1: outside by a margin that counts as unstable, on the circle after a
- * search, and where the search ends. */
+/* Distances of a modulus from 1: the margin outside that counts as unstable, the accuracy of a
+ * located bifurcation, and the end of the search. */
 static const double MARGIN = 1e-3, ON_CIRCLE = 1e-3, NEAR_ENOUGH = 1e-6;
 enum { MAX_LOCATED = 32 };
 
-/* What the multipliers tell of a point. */
+/* The verdict of the multipliers on a point. */
 typedef struct {
   int    computed;       /* 0: not computed */
   int    verdict;        /* mhb_verdict */
   int    loss;           /* MHB_LOSS_FOLD ... of the largest */
   int    n_unstable;     /* outside the unit circle by more than the margin */
-  int    leaves_complex; /* the largest other than on the positive axis is outside by the margin */
+  int    leaves_complex; /* the largest that is not on the positive axis is outside by the margin */
   double complex_excess; /* its modulus, less 1; NAN: undecided */
-  int    bifurcation;    /* what it crosses the circle at: MHB_FLIP, MHB_NEIMARK_SACKER */
+  int    bifurcation;    /* where it crosses the circle: MHB_FLIP, MHB_NEIMARK_SACKER */
 } point_stability;
 
 struct mhb_branch_stability {
@@ -51,7 +51,7 @@ struct mhb_branch_stability {
   int              n;
 };
 
-/* States of the blade or ring with all its modes, each contact sticking. */
+/* Number of states of the blade or ring with all its modes, each contact sticking. */
 static int count_states(const mhb_balance *b) {
   int blades = b->settings->to_ground ? 1 : b->settings->blades;
   return 2 * blades * (b->receptance->n_modes + b->n_pairs);
@@ -96,7 +96,7 @@ static double value_of(const mhb_branch_stability *w, int point) {
   return mhb_parameter_value(w->balance->parameter, branch_of(w)->value[point]);
 }
 
-/* Multipliers at the solution that the residual was last evaluated at. */
+/* Multipliers at the solution of the last evaluation of the balance. */
 static void evaluate(mhb_branch_stability *w, const double *x, mhb_multipliers *out) {
   const mhb_balance    *b        = w->balance;
   const mhb_evaluation *e        = b->eval;
@@ -127,7 +127,7 @@ static point_stability stability_of(const mhb_multipliers *m) {
   return out;
 }
 
-/* Into the branch. */
+/* Write the multipliers of a point into the branch. */
 static void put(const mhb_branch_stability *w, int point, const mhb_multipliers *m) {
   static const int judged[] = {MHB_BY_MULTIPLIERS, MHB_MARGINAL_BY_FOLDS, MHB_BY_MULTIPLIERS,
                                MHB_UNDECIDED_BY_FOLDS};
@@ -138,7 +138,7 @@ static void put(const mhb_branch_stability *w, int point, const mhb_multipliers 
     branch->multipliers[(size_t)point * (size_t)kept + (size_t)i] = i < m->n ? m->multiplier[i] : 0;
 }
 
-/* false: the monitor stops it. */
+/* Judge a point by its multipliers. false: the monitor stops the work. */
 static bool judge_point(mhb_branch_stability *w, int point) {
   mhb_multipliers m;
   mhb_monitor    *monitor = w->tracer->monitor;
@@ -155,7 +155,8 @@ static bool judge_point(mhb_branch_stability *w, int point) {
 
 /* ---- which points ---- */
 
-/* Stuck or open throughout: the exponents are kept from point to point, and cost little; but not where the speed changes. */
+/* Whether all contacts stick or are open throughout. The exponents of the last point are used again
+ * then, at little cost. In a run-up they change with the speed. */
 static bool is_linear(const mhb_branch_stability *w, int point) {
   if (w->balance->settings->run_up) return false;
   size_t        pairs = (size_t)w->response->n_pairs;
@@ -165,7 +166,7 @@ static bool is_linear(const mhb_branch_stability *w, int point) {
   return true;
 }
 
-/* Of the points left, the middle one of the longest stretch between judged ones and folds; -1: none. */
+/* The middle point of the longest stretch without judged points and folds; -1: none. */
 static int next_of_few(const mhb_branch_stability *w) {
   const int *special = branch_of(w)->special;
   int        from = 0, longest = 0, best = -1;
@@ -180,7 +181,7 @@ static int next_of_few(const mhb_branch_stability *w) {
   return best;
 }
 
-/* The largest motion at a point that is left; -1: none. */
+/* The point of the largest motion that is not judged yet; -1: none. */
 static int largest_motion(const mhb_branch_stability *w) {
   double top  = -1;
   int    best = -1;
@@ -195,7 +196,8 @@ static int largest_motion(const mhb_branch_stability *w) {
   return best;
 }
 
-/* Points that the budget allows, by the states that are integrated and the cells of the ring that share them (bloch.h). */
+/* Number of points that the budget allows, by the states integrated and the cells of the ring
+ * (bloch.h). */
 static int affordable(const mhb_branch_stability *w) {
   int    few = w->states > FINE, g = mhb_floquet_cells(w->floquet);
   double states = few && w->states > FEWER_STATES ? FEWER_STATES : w->states;
@@ -204,7 +206,8 @@ static int affordable(const mhb_branch_stability *w) {
   return n > LEAST_POINTS ? n : LEAST_POINTS;
 }
 
-/* Decided by the branch alone, never by the clock: the same on every machine and for any number of threads. */
+/* Whether every point is judged. The branch alone decides, never the clock, so the result is the
+ * same on every machine and for any number of threads. */
 static int judges_all(const mhb_branch_stability *w) {
   return w->states <= CHEAP || w->balance->settings->stability == MHB_STABILITY_ALWAYS ||
          (w->states <= FINE && affordable(w) >= w->n);
@@ -247,8 +250,8 @@ static void set_point(mhb_branch_stability *w, int i, mhb_curve_point *point) {
   mhb_arclength_measure(mhb_tracer_curve(w->tracer), point);
 }
 
-/* Where the excess passes 0 between points i - 1 and i; inserted there. A jump across it is not
- * marked. */
+/* Locate the place where the excess passes 0 between points i - 1 and i, and insert it there. A
+ * jump across 0 is not marked. */
 static shb_status locate(mhb_branch_stability *w, int i) {
   mhb_arclength *curve = mhb_tracer_curve(w->tracer);
   search         s     = {.stability = w};
@@ -279,15 +282,16 @@ static bool begins(const int *first, int n_first, int point) {
   return false;
 }
 
-/* One of points from..to - 1 has a complex or negative multiplier outside the unit circle by more than
- * the margin. The onset of slip brings multipliers close to 1: that is not marked. */
+/* Whether one of the points from..to - 1 has a complex or negative multiplier outside the unit
+ * circle by more than the margin. The onset of slip brings multipliers close to 1, which are not
+ * marked. */
 static bool leaves_by_margin(const mhb_branch_stability *w, int from, int to) {
   for (int i = from; i < to; i++)
     if (w->at[i].leaves_complex) return true;
   return false;
 }
 
-/* From the end, so that places before stay valid. */
+/* Mark all bifurcations, from the last point to the first, so that indices before stay valid. */
 static shb_status mark_bifurcations(mhb_branch_stability *w, const int *first, int n_first) {
   int located = 0, to = w->n;
   while (to > 0 && located + 2 <= MAX_LOCATED) {
@@ -299,23 +303,23 @@ static shb_status mark_bifurcations(mhb_branch_stability *w, const int *first, i
     while (from > 0 && w->at[from - 1].computed && w->at[from - 1].complex_excess > 0 &&
            !begins(first, n_first, from))
       from--;
-    if (leaves_by_margin(w, from, to)) {
-      bool ends   = to < w->n && w->at[to].computed && w->at[to].complex_excess <= 0;
-      bool starts = from > 0 && w->at[from - 1].computed && w->at[from - 1].complex_excess <= 0;
-      for (int i = from; i < to; i++) w->at[i].leaves_complex = 1;
-      if (ends && !begins(first, n_first, to)) SHB_TRY(locate(w, to));
-      if (starts && !begins(first, n_first, from)) SHB_TRY(locate(w, from));
-      located += 2;
-    }
-    to = from;
+    int end = to;
+    to      = from;
+    if (!leaves_by_margin(w, from, end)) continue;
+    bool ends   = end < w->n && w->at[end].computed && w->at[end].complex_excess <= 0;
+    bool starts = from > 0 && w->at[from - 1].computed && w->at[from - 1].complex_excess <= 0;
+    for (int i = from; i < end; i++) w->at[i].leaves_complex = 1;
+    if (ends && !begins(first, n_first, end)) SHB_TRY(locate(w, end));
+    if (starts && !begins(first, n_first, from)) SHB_TRY(locate(w, from));
+    located += 2;
   }
   return SHB_OK;
 }
 
 /* ---- the verdict ---- */
 
-/* Point i is where the curve came back to the end of the range at which point i - 1 left it. Its direction has changed: an odd number of
- * folds lies outside. */
+/* Whether the curve came back at point i to the end of the range at which point i - 1 left it. Its
+ * direction has changed, so an odd number of folds lies outside. */
 static bool comes_back(const mhb_branch *branch, int i) {
   return i > 0 && branch->value[i] == branch->value[i - 1] && branch->special[i] == MHB_ORDINARY &&
          branch->special[i - 1] == MHB_ORDINARY;
@@ -329,7 +333,7 @@ static int parity(const mhb_branch *branch, int to) {
   return odd;
 }
 
-/* at: NULL, or [point]. */
+/* Stability and loss of every point. at: [point] verdicts of multipliers, or NULL. */
 static void decide(mhb_branch *branch, const point_stability *at, int stable_at) {
   int n_unstable = parity(branch, stable_at), loss = n_unstable ? MHB_LOSS_FOLD : MHB_NO_LOSS;
   for (int i = 0; i < branch->n_points; i++) {
@@ -343,7 +347,7 @@ static void decide(mhb_branch *branch, const point_stability *at, int stable_at)
       loss       = l->loss;
     }
     bool leaves =
-        l && l->leaves_complex; /* marginal, between a crossing and a point beyond doubt */
+        l && l->leaves_complex; /* marginal, between a crossing and a point outside by the margin */
     branch->stable[i] = n_unstable == 0 && !leaves;
     branch->loss[i]   = branch->stable[i] ? MHB_NO_LOSS : n_unstable ? loss : l->loss;
     if (branch->special[i] != MHB_FOLD) continue;

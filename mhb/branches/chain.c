@@ -22,7 +22,7 @@ shb_status mhb_chain_insert(mhb_chain *chain, int at, mhb_link link) {
   return SHB_OK;
 }
 
-/* Whether a link joins its predecessor: after reversal, its former successor did. */
+/* After reversal a link joins its predecessor if its former successor joined it. */
 void mhb_chain_reverse(mhb_chain *chain, int from) {
   int      n = chain->n;
   mhb_link old[n + 1];

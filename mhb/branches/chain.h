@@ -1,5 +1,5 @@
-/* A branch as a chain of segments: they are traced apart, in any order and direction, never edited,
- * and joined into a branch at the end. */
+/* A branch as a chain of segments. They are traced in any order and direction, never edited, and
+ * joined into a branch at the end. */
 #ifndef MHB_BRANCHES_CHAIN_H
 #define MHB_BRANCHES_CHAIN_H
 

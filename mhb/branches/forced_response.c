@@ -18,15 +18,15 @@ static const double PUBLISH_EVERY = 10, BRANCH_END_EVERY = 1; /* s */
 /* Share of a preload's work that is the main branch where other branches are searched for. */
 static const double MAIN_SHARE = 0.3;
 
-/* The curves of a preload: branch 0 the main one. The thread at work on it owns them; what it has
- * handed over is copied. */
+/* The curves of a preload: branch 0 is the main one. The thread at work on it owns them, and hands
+ * over copies. */
 typedef struct {
   mhb_response *own, *handed;
   double        done; /* share of its work */
   double        handed_at;
 } preload_curves;
 
-/* What the threads share: touched under the lock only, but for each preload's own curves. */
+/* Shared by the threads. It is used under the lock only, but for the curves that a thread owns. */
 typedef struct {
   mhb_monitor           base;     /* first: the callbacks get it back */
   const mhb_settings   *settings; /* harmonics: the first number tried */
@@ -50,10 +50,20 @@ static void take(mhb_branch *to, mhb_branch *from) {
   *from          = old;
 }
 
+/* Append a branch beside a main one. Its arrays stay those of the preload. */
+static shb_status append_branch(mhb_response *response, const mhb_branch *branch, int main) {
+  int index;
+  SHB_TRY(mhb_response_branch(response, MHB_BRANCH_NONLINEAR, &index));
+  response->branch[index]      = *branch;
+  response->branch[index].main = main;
+  return SHB_OK;
+}
+
 /* The curves handed over so far become the response's branches 2.. for the time of a call: main
  * branches in the order of the preloads, then the others, grouped by their main one. */
 static shb_status gather(sweep *s) {
-  mhb_response *r = s->response;
+  mhb_response *r      = s->response;
+  shb_status    status = SHB_OK;
   for (int i = 0; i < s->settings->n_preloads; i++) {
     int index;
     SHB_TRY(mhb_response_branch(r, MHB_BRANCH_NONLINEAR, &index));
@@ -61,22 +71,18 @@ static shb_status gather(sweep *s) {
     r->branch[index]      = s->preload[i].handed->branch[0];
     r->branch[index].main = index;
   }
-  for (int i = 0; i < s->settings->n_preloads; i++) {
+  for (int i = 0; i < s->settings->n_preloads && status == SHB_OK; i++) {
     const mhb_response *handed = s->preload[i].handed;
-    for (int k = 1; handed && k < handed->n_branches; k++) {
-      int index;
-      SHB_TRY(mhb_response_branch(r, MHB_BRANCH_NONLINEAR, &index));
-      r->branch[index]      = handed->branch[k];
-      r->branch[index].main = 2 + i;
-    }
+    for (int k = 1; handed && k < handed->n_branches && status == SHB_OK; k++)
+      status = append_branch(r, &handed->branch[k], 2 + i);
   }
-  return SHB_OK;
+  return status;
 }
 
 static shb_status publish(sweep *s) {
   shb_status status = gather(s);
   if (status == SHB_OK && s->path) status = mhb_response_write(s->response, s->path, s->provenance);
-  s->response->n_branches = 2; /* the others belong to those who handed them over */
+  s->response->n_branches = 2; /* the others belong to the preloads */
   s->published            = shb_seconds();
   return status;
 }
@@ -225,14 +231,14 @@ static shb_status main_branch(sweep *s, const modal_model *model, int i) {
   return status;
 }
 
-/* Branches that turned out not to be there. */
+/* Drop branches without points. */
 static void drop_empty(mhb_response *own) {
   bool drop[own->n_branches];
   for (int k = 0; k < own->n_branches; k++) drop[k] = k > 0 && own->branch[k].n_points == 0;
   mhb_response_drop(own, drop);
 }
 
-/* One preload on this thread; what an earlier run finished is there already. */
+/* One preload on this thread. Branches that an earlier run finished are there already. */
 static shb_status one_preload(sweep *s, const modal_model *model, int i) {
   preload_curves *p      = &s->preload[i];
   shb_status      status = SHB_OK;
@@ -330,7 +336,8 @@ static shb_status take_curves(sweep *s) {
   return SHB_OK;
 }
 
-/* A further branch that does not cover its range is told in the file; the sweep has what it set out for. */
+/* A secondary branch that does not cover its range is noted in the file only. The sweep has its
+ * main branches all the same. */
 static shb_status outcome(const mhb_response *response, const mhb_settings *settings) {
   for (int i = 0; i < response->n_branches; i++) {
     const mhb_branch *branch = &response->branch[i];
@@ -342,7 +349,7 @@ static shb_status outcome(const mhb_response *response, const mhb_settings *sett
   return SHB_OK;
 }
 
-/* A load harmonic that the balance has no room for would vanish without a word. */
+/* A load harmonic above those of the balance would be ignored silently. */
 static shb_status check_load(const modal_model *model, const mhb_settings *settings) {
   for (int h = settings->harmonics / settings->subharmonics + 1; h <= model->n_load; h++) {
     double size = 0;

@@ -143,7 +143,7 @@ static void tail(const mhb_harmonic_level *level, const double *x, double *share
   }
 }
 
-/* The lowest level that keeps the tolerance; above the one in use without a margin. */
+/* The lowest level that keeps the tolerance. Levels above the one in use need no margin. */
 static int choose(const mhb_harmonic_levels *h, const double *x, double error, double size) {
   double share[MHB_MOST_LOOKED_AT + 1], tolerance = h->settings->motion_tolerance * size;
   int    m = h->m[h->at];
@@ -163,9 +163,9 @@ int mhb_harmonic_levels_most_unknowns(const mhb_harmonic_levels *h) {
   return 3 * h->model->n_pairs * (2 * h->m[h->n - 1] + 1);
 }
 
-/* Every pair sticks, or is open, for all but a small part of the period. Where slip or opening begins
- * or ends, curves of few and of many harmonics may turn at different places, however small the
- * estimate. */
+/* Whether every pair sticks, or is open, for all but a small part of the period. Where slip or
+ * opening begins or ends, curves of few and of many harmonics may turn at different places, however
+ * small the estimate is. */
 static bool is_nearly_linear(const mhb_evaluation *e, int n_pairs) {
   for (int a = 0; a < n_pairs; a++)
     if (e->info[a].share[MHB_STICK] < NEARLY_ALL && e->info[a].share[MHB_SEPARATE] < NEARLY_ALL)

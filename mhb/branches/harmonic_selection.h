@@ -1,11 +1,12 @@
 /* How many harmonics a point needs: the levels between which the tracing of a curve moves.
  *
- * A level is a number of harmonics m with the balance and the curve at it. After each point the
- * truncation estimate delta tells the error of the harmonics left out. Its amplification
- * |delta|/|delta_k, k > m| and the tail of the spectrum tell which level suffices: the first whose
- * share left out, amplified, stays below a safe part of the tolerance. A higher level is taken at
- * once, and the step is repeated. A lower one is taken only after some points in a row have asked for
- * it with a margin (hysteresis).
+ * A level is a number of harmonics m, with the balance and the curve at it. After each point the
+ * truncation estimate delta tells the error of the harmonics left out. Its amplification is
+ * |delta|/|delta_k, k > m|. The lowest level suffices whose share left out, amplified, stays below
+ * a safe part of the tolerance. The tail of the spectrum gives that share.
+ *
+ * A higher level is taken at once, and the step is repeated. A lower one is taken only after some
+ * points in a row have asked for it with a margin (hysteresis).
  *
  * settings->motion_tolerance = 0: one level, settings->harmonics. */
 #ifndef MHB_BRANCHES_HARMONIC_SELECTION_H
@@ -69,15 +70,15 @@ int mhb_harmonic_levels_most_unknowns(const mhb_harmonic_levels *levels);
 /* Fill truncation and modal error of a point of the level in use, linearised there. */
 void mhb_harmonic_levels_errors(mhb_harmonic_levels *levels, mhb_curve_point *point);
 
-/* The same, and note the level they ask for. Where contacts begin to slip or open, and while they do
- * so for less than a quarter of the period, that has seven harmonics or more: a curve of fewer may go
- * on smoothly where that of many turns back. */
+/* The same, and note the level they ask for. Seven harmonics are the least where contacts begin to
+ * slip or open, and while they do so for less than a quarter of the period. A curve of fewer
+ * harmonics may go on smoothly there where that of many turns back. */
 void mhb_harmonic_levels_estimate(mhb_harmonic_levels *levels, mhb_curve_point *point);
 
 /* The level above the one in use that the last estimate asks for; -1: the one in use suffices. */
 int mhb_harmonic_levels_higher(const mhb_harmonic_levels *levels);
 
-/* The last estimate is that of an accepted point. */
+/* The last estimate was that of an accepted point. */
 void mhb_harmonic_levels_accept(mhb_harmonic_levels *levels);
 
 /* The level to go down to after an accepted point; -1: none. Counts the points. */

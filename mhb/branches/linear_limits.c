@@ -17,7 +17,8 @@ typedef struct {
   double       *x, *r;
 } sampler;
 
-/* Amplitudes of all outputs at a value of the parameter; leaves the balance's forces there. */
+/* Amplitudes of all outputs at a value of the parameter. The balance has the forces there
+ * afterwards. */
 static shb_status amplitudes(sampler *s, double value, double *out) {
   mhb_balance          *b      = s->balance;
   const mhb_receptance *r      = b->receptance;
@@ -102,7 +103,7 @@ static shb_status sample(sampler *s) {
   return SHB_OK;
 }
 
-/* A grid point is a peak where an output is larger than at both neighbours: marked for the report. */
+/* Mark peaks for the report: a grid point at which an output is larger than at both neighbours. */
 static void mark_peaks(mhb_branch *branch, const mhb_balance *b, int n_probes, int n_harmonics) {
   int K = n_harmonics + 1, k = b->receptance->nu <= b->m ? b->receptance->nu : b->m;
   for (int o = 0; o < n_probes; o++) {

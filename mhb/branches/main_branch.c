@@ -10,7 +10,7 @@
 
 enum { MAX_GAPS = 8, MAX_RETURNS = 8, MAX_DETACHED = 4 };
 
-/* Distance in y of two ends between which lies nothing but a kink that no step passes. */
+/* Distance in y of two ends between which there is only a kink that no step passes. */
 static const double ACROSS_KINK = 1e-2;
 
 /* The branch under way. */
@@ -24,7 +24,7 @@ typedef struct {
   bool          stopped;   /* interrupted */
   int           n_gaps;    /* places jumped over, and the first of them */
   char          first_gap[96];
-  const char   *other_reason; /* NULL; or a reason of its own */
+  const char   *other_reason; /* NULL; or a reason in place of that of the end */
   int           n_detached;
   mhb_chain     detached[MAX_DETACHED];
   mhb_end       detached_end[MAX_DETACHED];
@@ -121,8 +121,10 @@ static shb_status trace_upwards(main_branch *m, double value, int harmonics, boo
 }
 
 /* Trace both ways from x, a solution at a value beyond a curve that has ended. The segment traced
- * downwards arrives where the main branch was lost, or is a curve of its own, or leads to an end of
- * the range. *found: the main branch goes on from here; *end: why it ends again. */
+ * downwards may arrive where the main branch was lost. It may also be a curve of its own, or lead
+ * to an end of the range.
+ *   found  out  the main branch goes on from here
+ *   end    out  why it ends again */
 static shb_status trace_both_ways(main_branch *m, double value, const mhb_curve_place *lost,
                                   bool *found, mhb_end *end) {
   int              segment, harmonics = mhb_tracer_balance(m->tracer)->m, from = m->chain.n;
@@ -171,8 +173,8 @@ static shb_status trace_both_ways(main_branch *m, double value, const mhb_curve_
   return SHB_OK;
 }
 
-/* The curve ended before the high end of the range: look for what lies beyond it. *over: the branch
- * has ended, for the reason *end. */
+/* The curve ended before the high end of the range. Search for the main branch beyond it. *over:
+ * the branch has ended, for the reason *end. */
 static shb_status go_beyond(main_branch *m, mhb_end *end, bool *over) {
   static const double further[] = {1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.2, 0.4, 0.7};
   mhb_arclength      *curve     = curve_of(m);
@@ -224,8 +226,8 @@ static shb_status trace_across_range(main_branch *m, mhb_end *end) {
   return SHB_OK;
 }
 
-/* The range is covered. Beyond its ends the curve may turn, and come back as another part of it: at
- * the last point of the chain (end 1), then at the first (end -1). */
+/* The range is covered. Beyond its ends the curve may turn, and come back as another part of it.
+ * end: 1 at the last point of the chain, -1 at the first. */
 static shb_status trace_returns(main_branch *m, int end) {
   for (int i = 0; i < MAX_RETURNS && !m->stopped; i++) {
     int     segment, point;
@@ -257,7 +259,7 @@ static shb_status trace_returns(main_branch *m, int end) {
   return SHB_OK;
 }
 
-/* The curves so far, for whoever looks at the file meanwhile. */
+/* Publish the curves so far. */
 static shb_status publish(void *context) {
   main_branch *m = context;
   int          n_begins, begins[m->chain.n + 2];

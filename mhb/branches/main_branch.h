@@ -8,9 +8,10 @@
 /* Trace the branch of a balance at its preload, into branch 0 of a response.
  *
  * A curve that closes, or leaves by the low end, becomes a branch of its own (MHB_FROM_DETACHED),
- * appended to the response; the main branch is then sought beyond it, both ways. So it is beyond a
- * place where no step converged: that is a gap. Beyond both ends of the range the curve is followed a
- * little, for it may come back. A branch that does not cover the range tells why. Errors: SHB_ERR_IO no memory. */
+ * appended to the response. The main branch is then sought beyond it, both ways. The same happens
+ * beyond a place where no step converged, which is a gap. Beyond both ends of the range the curve
+ * is followed a little, for it may come back. The reason of a branch that does not cover the range
+ * is noted in it. SHB_ERR_IO: no memory. */
 shb_status mhb_trace_main_branch(mhb_balance *balance, mhb_response *response,
                                  mhb_monitor *monitor);
 

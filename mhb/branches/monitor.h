@@ -1,4 +1,4 @@
-/* How the work on a preload reports itself, and is stopped. */
+/* Reports on the work on a preload, and requests to stop it. */
 #ifndef MHB_BRANCHES_MONITOR_H
 #define MHB_BRANCHES_MONITOR_H
 
@@ -11,10 +11,10 @@ typedef struct mhb_monitor mhb_monitor;
 struct mhb_monitor {
   /* A point of a branch was recorded, or judged. false: stop. */
   bool (*point)(mhb_monitor *monitor, const mhb_response *response, int branch, int point);
-  /* Other curves of a preload (N) are searched for at a value of the parameter, as the file shows
-   * it; share: of the search. false: stop. */
+  /* Other curves of a preload (N) are searched for. value: of the parameter, as the file shows it.
+   * share: of the search that is done. false: stop. */
   bool (*searching)(mhb_monitor *monitor, double n0, double value, double share);
-  /* Whether the curves so far of a preload's response are to be published, and their publication. */
+  /* Whether the curves so far of a preload are to be published, and their publication. */
   bool (*is_due)(mhb_monitor *monitor, const mhb_response *response);
   shb_status (*publish)(mhb_monitor *monitor, const mhb_response *response);
 };

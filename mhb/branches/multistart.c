@@ -32,7 +32,8 @@ static double uniform(unsigned long long *seed) {
   return (double)(*seed >> 11) / 4503599627370496. - 1;
 }
 
-/* Harmonic k of any size up to that of the fundamental over k^2: as of a motion with jumps of acceleration. */
+/* A random motion with jumps of acceleration: harmonic k is bounded by that of the fundamental over
+ * k^2. */
 static void draw(const mhb_balance *b, double size, unsigned long long *seed, double *x) {
   for (int row = 0; row < b->n / b->nb; row++)
     for (int j = 0; j < b->nb; j++) {
@@ -47,7 +48,7 @@ static double distance(const double *a, const double *b, int n) {
   return mhb_norm(d, n);
 }
 
-/* Newton from x with steps of 2 size at most; 1: |r| has become small. */
+/* Newton's method from x with steps of 2 size at most. 1: |r| has become small. */
 static int descend(mhb_newton *w, mhb_balance *b, double value, double size, double *x) {
   int    n = b->n;
   double start[n];

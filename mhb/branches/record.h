@@ -10,7 +10,8 @@
 shb_status mhb_record(mhb_response *response, int branch, mhb_balance *balance,
                       const mhb_curve_point *point, int special, double seconds);
 
-/* x[n] <- the motion recorded at a point, as unknowns of a balance; harmonics not recorded are 0. */
+/* x[n] <- the motion recorded at a point, as unknowns of a balance. Harmonics not recorded are 0.
+ */
 void mhb_recorded_motion(const mhb_branch *branch, int point, const mhb_balance *balance,
                          double *x);
 

@@ -12,8 +12,8 @@
 
 static const double TOLERANCE = 1e-10;
 
-/* A flip leads to a doubled branch where the smallest singular value of the doubled balance is below
- * this; else the flip has not the form of the wave. */
+/* A flip leads to a doubled branch where the smallest singular value of the doubled balance is
+ * below this. Else the flip does not have the form of the wave. */
 static const double SINGULAR = 0.1;
 
 /* A doubled branch that ends this near, relative to the value and to the motion, is the one that
@@ -108,7 +108,8 @@ static shb_status problem_of(branch_search *h, int order, subharmonic_problem **
 
 /* ---- solutions of recorded branches ---- */
 
-/* Point i with its share of the next, as a solution of the subharmonic_problem's order; its own order divides that. */
+/* Interpolate between point i and the next, as a solution of the problem's order. The order of the
+ * branch divides that. */
 static void interpolate(const branch_search *h, const mhb_branch *b, int i, double share,
                         const subharmonic_problem *s, double *x) {
   int    rows = 3 * h->response->n_pairs, m = b->n_harmonics, nb = mhb_real_size(m);
@@ -131,7 +132,7 @@ static double value_at(const branch_search *h, const mhb_branch *b, int point) {
   return mhb_parameter_value(h->settings->parameter, b->value[point]);
 }
 
-/* Where the branch crosses a value between points i and i + 1: the solution there becomes known. */
+/* The branch crosses a value between points i and i + 1. The solution there becomes known. */
 static shb_status add_crossing(const branch_search *h, const mhb_branch *b, int i, double share,
                                subharmonic_problem *s, double value) {
   const double shares[] = {share, 0, 1};
@@ -156,7 +157,8 @@ static shb_status add_crossings(const branch_search *h, const mhb_branch *b, sub
   return SHB_OK;
 }
 
-/* Of all nonlinear branches but one; -1: of all. Those detached from the main one count too. */
+/* Collect the known solutions at a value, of all branches but one (-1: of all). Those detached from
+ * the main one count too. */
 static shb_status collect_known(const branch_search *h, subharmonic_problem *s, double value,
                                 int but) {
   s->known.n_solutions = 0;
@@ -178,8 +180,8 @@ static shb_status append(branch_search *h, const subharmonic_problem *s, mhb_ori
   return SHB_OK;
 }
 
-/* Both ways from a solution, until the curve closes, leaves the range or meets one of lower order; or
- * one way, from a crossing. *none: there is no such curve. */
+/* Trace a curve both ways from a solution, until it closes, leaves the range or meets one of lower
+ * order. From a crossing, trace it one way. *none: there is no such curve. */
 static shb_status trace_both_ways(mhb_tracer *tracer, const mhb_seed *seed, mhb_response *response,
                                   int index, bool *none, bool *interrupted) {
   mhb_chain        chain = {0};
@@ -209,7 +211,8 @@ static shb_status trace_both_ways(mhb_tracer *tracer, const mhb_seed *seed, mhb_
   return status;
 }
 
-/* Whether the middle of a branch lies on another one: it ran into that, or is that, followed from its other end. */
+/* Whether the middle of a branch lies on another one. The branch then ran into that one, or is that
+ * one, traced from its other end. */
 static shb_status is_another(branch_search *h, subharmonic_problem *s, int index, bool *another) {
   const mhb_branch *b     = branch_at(h, index);
   int               point = b->n_points / 2, iterations;
@@ -289,7 +292,8 @@ static shb_status trace_flips(branch_search *h) {
 
 /* ---- search ---- */
 
-/* A solution of the site is followed as one of the lowest order that it is, of those that the main branch's divides. */
+/* Trace a solution that was found as one of its lowest order, among the multiples of the main
+ * branch's order. */
 static shb_status trace_found(branch_search *h, subharmonic_problem *s, const double *x,
                               double value) {
   int least = mhb_subharmonic_period(s->balance, x), base = h->settings->subharmonics, order = base;
@@ -303,7 +307,8 @@ static shb_status trace_found(branch_search *h, subharmonic_problem *s, const do
   return trace(h, own, MHB_FROM_SEARCH, &(mhb_seed){.x = narrow, .value = value, .direction = 1});
 }
 
-/* Motion that the contact takes notice of: the gap or the approach at rest, and what the known branches do. */
+/* The size of motions that the contact responds to: the gap or the approach at rest, or that of the
+ * known branches. */
 static double expected_size(const branch_search *h, const subharmonic_problem *s) {
   const mhb_settings *c   = h->settings;
   double              top = c->kv > 0 ? fabs(branch_at(h, 0)->n0[0]) / c->kv : 0;
@@ -335,12 +340,13 @@ static shb_status search_at(branch_search *h, subharmonic_problem *s, double val
     if (!is_new) continue;
     SHB_TRY(trace_found(h, s, x, value));
     SHB_TRY(collect_known(h, s, value, -1));
-    SHB_TRY(mhb_solution_set_add_shifts(&s->known, s->balance, x)); /* whatever became of it */
+    SHB_TRY(mhb_solution_set_add_shifts(&s->known, s->balance, x)); /* whether it was traced or not
+                                                                     */
   }
   return SHB_OK;
 }
 
-/* Evenly over the range unless given. */
+/* Value number i of the search: given, or even over the range. */
 static double value_of_search(const mhb_settings *s, int i) {
   double low = mhb_parameter_end(s, s->parameter, 0), high = mhb_parameter_end(s, s->parameter, 1);
   if (s->search.n_at > 0) return mhb_parameter_value(s->parameter, s->search.at[i]);

@@ -9,7 +9,7 @@
 #include "mhb/branches/record.h"
 #include "mhb/continuation/outputs.h"
 
-/* A curve has closed if it comes as near as this to its start, relative to the motion. */
+/* A curve has closed if it comes this near to its start, relative to the motion. */
 static const double SAME = 1e-5;
 
 /* A recorded point is known if its motion is within so many of the distance above. */
@@ -43,6 +43,23 @@ static void use_level(mhb_tracer *t) {
 
 /* ---- what segments ask for ---- */
 
+/* Where the segment is to end by its motion: at a place, or nowhere. */
+static void return_to(mhb_tracer *t, const mhb_curve_place *place) {
+  for (int j = 0; j < t->host.curve->system->copies; j++) {
+    mhb_curve_return at = {place, j};
+    /* the test function of a copy that is the place would begin with a zero of any sign */
+    t->returns[j] = place && mhb_curve_return_repeats(&at) ? (mhb_curve_return){NULL, j} : at;
+  }
+}
+
+/* The curve starts at its current point, and ends where it comes back. */
+static shb_status note_start(mhb_tracer *t) {
+  mhb_arclength *curve = t->host.curve;
+  SHB_TRY(mhb_curve_place_note(&t->start, curve->system, &curve->current, mhb_tracer_same(t)));
+  return_to(t, &t->start);
+  return SHB_OK;
+}
+
 static shb_status estimate(mhb_segment_host *host, mhb_curve_point *point, bool *raised) {
   mhb_tracer *t        = of(host);
   bool        is_start = point == &host->curve->current;
@@ -53,7 +70,7 @@ static shb_status estimate(mhb_segment_host *host, mhb_curve_point *point, bool 
   if (higher < 0) return SHB_OK;
   SHB_TRY(mhb_harmonic_levels_move(t->levels, higher, is_start, raised));
   use_level(t);
-  return SHB_OK;
+  return *raised && is_start && t->returns_to_start ? note_start(t) : SHB_OK;
 }
 
 static void estimate_event(mhb_segment_host *host, mhb_curve_point *point) {
@@ -71,7 +88,7 @@ static shb_status accept(mhb_segment_host *host, bool *moved) {
   return SHB_OK;
 }
 
-/* The recorded motion at a point is that of the curve's current point. */
+/* Whether the recorded motion at a point is that of the curve's current point. */
 static bool is_recorded_at(const mhb_tracer *t, const mhb_branch *branch, int point) {
   const mhb_balance    *b = mhb_tracer_balance(t);
   const double         *x = mhb_tracer_curve(t)->current.x;
@@ -89,7 +106,7 @@ static bool is_recorded_at(const mhb_tracer *t, const mhb_branch *branch, int po
   return sqrt(away) <= KNOWN * mhb_tracer_same(t) * sqrt(size);
 }
 
-/* The curve's current point, on an end of the range, is a recorded point of some segment. */
+/* Whether the curve's current point, on an end of the range, is recorded in some segment. */
 static bool is_recorded(const mhb_tracer *t) {
   double value =
       mhb_parameter_shown(mhb_tracer_balance(t)->parameter, mhb_tracer_curve(t)->current.value);
@@ -102,27 +119,24 @@ static bool is_recorded(const mhb_tracer *t) {
   return false;
 }
 
-/* Where the segment is to end by its motion: at its own start, at a target, at the place where the
- * curve started that it goes on with, or nowhere. */
+/* Decide where the segment ends by its motion. That is at its own start, at a target, at the start
+ * of the curve that it continues, or nowhere. */
 static shb_status started(mhb_segment_host *host, const mhb_seed *seed, mhb_end *end) {
   mhb_tracer             *t     = of(host);
   const mhb_curve_point  *first = &host->curve->current;
   const mhb_segment_plan *plan  = &t->plan;
+  bool                    begins =
+      seed->kind == MHB_SEED_SOLUTION || (seed->kind == MHB_SEED_EXCURSION && !plan->known);
+  t->returns_to_start = begins && plan->closes && !plan->target;
   if (seed->kind == MHB_SEED_EXCURSION && !plan->known && is_recorded(t)) {
     *end = MHB_END_NO_START;
     return SHB_OK;
   }
-  if (seed->kind == MHB_SEED_SOLUTION || (seed->kind == MHB_SEED_EXCURSION && !plan->known))
-    SHB_TRY(mhb_curve_place_note(&t->start, host->curve->system, first, mhb_tracer_same(t)));
-  else if (seed->kind == MHB_SEED_CROSSING)
-    mhb_curve_place_free(&t->start);
+  if (begins) SHB_TRY(note_start(t));
+  if (seed->kind == MHB_SEED_CROSSING) mhb_curve_place_free(&t->start);
   const mhb_curve_place *place = plan->target ? plan->target : plan->closes ? &t->start : NULL;
   if (place && !place->x) place = NULL;
-  for (int j = 0; j < host->curve->system->copies; j++) {
-    mhb_curve_return at = {place, j};
-    /* the test function of a copy that is the place would begin with a zero of any sign */
-    t->returns[j] = place && mhb_curve_return_repeats(&at) ? (mhb_curve_return){NULL, j} : at;
-  }
+  return_to(t, place);
   if (seed->kind == MHB_SEED_SOLUTION) t->farthest = fmax(t->farthest, seed->value);
   if (seed->kind == MHB_SEED_EXCURSION && plan->known && place &&
       mhb_curve_place_distance(place, host->curve, first) <= place->tolerance)
@@ -154,7 +168,7 @@ static double beyond_low(mhb_arclength *curve, const mhb_curve_point *point, voi
   return curve->low - point->value;
 }
 
-/* No place: far from it. */
+/* Without a place the curve is ahead of it. */
 static double ahead_of_place(mhb_arclength *curve, const mhb_curve_point *point, void *context) {
   const mhb_curve_return *at = context;
   return at->place ? mhb_curve_return_ahead(curve, point, context) : 1;
@@ -164,8 +178,8 @@ static double slope_of_output(mhb_arclength *curve, const mhb_curve_point *point
   return mhb_output_slope(mhb_curve_balance(curve), point, *(const int *)context);
 }
 
-/* Part of a motion that does not repeat after d periods: its size |z| and the size's rate
- * z.dz/|z| along the tangent. */
+/* Part of a motion that does not repeat after d periods: its size |z|, and the rate z.dz/|z| of the
+ * size along the tangent. */
 static double part_of_order(const mhb_balance *b, const mhb_curve_point *point, int d,
                             double *rate) {
   double z[b->n], dz[b->n];
@@ -178,7 +192,7 @@ static double part_of_order(const mhb_balance *b, const mhb_curve_point *point, 
 }
 
 /* Where its subharmonic part vanishes the curve meets one of lower order, or its own time-shifted
- * copy: VANISHED less the smallest falling part, relative to the motion. */
+ * copy. The test function is VANISHED less the smallest falling part, relative to the motion. */
 static double vanished(mhb_arclength *curve, const mhb_curve_point *point, void *context) {
   const mhb_balance *b    = mhb_curve_balance(curve);
   int                nu   = b->receptance->nu;
@@ -191,7 +205,7 @@ static double vanished(mhb_arclength *curve, const mhb_curve_point *point, void 
   return most;
 }
 
-/* Stay before the place where a part vanishes. */
+/* Keep the step short of the place where a part vanishes. */
 static void limit_step(mhb_segment_host *host) {
   const mhb_balance     *b     = mhb_curve_balance(host->curve);
   const mhb_curve_point *point = &host->curve->current;

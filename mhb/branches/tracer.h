@@ -1,7 +1,7 @@
-/* Traces segments of a balance's curves: chooses the harmonics, looks for folds, peaks and the ends
- * of segments, and records each point with its forces, states and error estimates.
+/* Traces segments of a balance's curves. It chooses the harmonics, has the table of folds, peaks
+ * and ends, and records each point with its forces, states and error estimates.
  *
- * Segments become branches of a store of the tracer's own; what they add up to is chain.h. */
+ * Segments become branches of the tracer's own store. A chain joins them (chain.h). */
 #ifndef MHB_BRANCHES_TRACER_H
 #define MHB_BRANCHES_TRACER_H
 
@@ -12,7 +12,7 @@
 
 typedef struct mhb_tracer mhb_tracer;
 
-/* What a segment is to be, beside its seed. */
+/* The plan of a segment: its seed, and where it ends. */
 typedef struct {
   mhb_seed seed;   /* x of a balance of m harmonics */
   int      m;      /* harmonics to start with */
@@ -30,11 +30,12 @@ struct mhb_tracer {
   mhb_monitor         *monitor;
   bool              joins; /* curves of higher order: they end where they meet one of lower order */
   mhb_segment_plan  plan;
-  mhb_curve_place   start;    /* of the curve under way */
-  mhb_curve_return *returns;  /* [copies] contexts of the tests of closure */
-  int              *output;   /* [outputs] contexts of the tests of peaks */
-  double            clock;    /* s, when the last point was recorded */
-  double            farthest; /* highest value of a point so far */
+  mhb_curve_place   start;            /* of the curve under way */
+  bool              returns_to_start; /* it ends there; noted anew when more harmonics move it */
+  mhb_curve_return *returns;          /* [copies] contexts of the tests of closure */
+  int              *output;           /* [outputs] contexts of the tests of peaks */
+  double            clock;            /* s, when the last point was recorded */
+  double            farthest;         /* highest value of a point so far */
   /* Called after each point, to publish the curves so far; NULL: never. */
   shb_status (*publish)(void *context);
   void *context;
@@ -56,14 +57,14 @@ shb_status mhb_tracer_trace(mhb_tracer *tracer, const mhb_segment_plan *plan, in
 mhb_arclength *mhb_tracer_curve(const mhb_tracer *tracer);
 mhb_balance   *mhb_tracer_balance(const mhb_tracer *tracer);
 
-/* A segment counts no longer: it is left without points. */
+/* Discard a segment: it is left without points. */
 void mhb_tracer_forget(mhb_tracer *tracer, int segment);
 
 /* x[n] <- a recorded point as unknowns of the balance that recorded it, made the one in use. */
 shb_status mhb_tracer_recorded(mhb_tracer *tracer, int segment, int point, double *x);
 
-/* Distance in y, relative to the motion, at which points count as the same: the effect of a change of
- * the number of harmonics. */
+/* Distance in y, relative to the motion, at which points count as the same. It covers the effect of
+ * a change of the number of harmonics. */
 double mhb_tracer_same(const mhb_tracer *tracer);
 
 #endif

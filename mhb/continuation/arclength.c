@@ -53,8 +53,9 @@ static void predict(mhb_arclength *curve, double length, const double *direction
   curve->next.value = curve->current.value + length * direction[n];
 }
 
-/* next <- the solution a step of length ds away, with its tangent. 0: none was found. The step is
- * short of a kink if the law is linear at the point tried last: at current, or at a refused next. */
+/* next <- the solution a step of length ds away, with its tangent. 0: none was found. If the law is
+ * linear at the point tried last, the step without the law is tried first: it is short of a kink
+ * then. That point is current, or a refused next. */
 static int attempt(mhb_arclength *curve, double ds, const mhb_curve_point *tried) {
   mhb_curve_system *s       = curve->system;
   const double     *tangent = curve->current.tangent;
@@ -81,8 +82,8 @@ static int keeps_orientation(const mhb_arclength *curve) {
   return curve->next.orientation == curve->orientation;
 }
 
-/* A bifurcation turns the orientation for good, the square-root zone of slip onset for a few points
- * only. */
+/* A bifurcation reverses the orientation for good. The square-root zone of slip onset reverses it
+ * for a few points only. */
 static void note_orientation(mhb_arclength *curve) {
   curve->n_reversed = keeps_orientation(curve) ? 0 : curve->n_reversed + 1;
   if (curve->n_reversed < REVERSED_FOR_GOOD) return;
@@ -115,8 +116,8 @@ mhb_reason mhb_arclength_depart(mhb_arclength *curve, const double *x, double va
 
 /* ---- fallbacks, tried in turn where no ordinary step converges ---- */
 
-/* Beyond a kink the curve may leave in any direction, even back in the value. Its tangent is that of
- * the law a little ahead, in the sense that keeps the orientation, as for piecewise linear maps. */
+/* Beyond a kink the curve may leave in any direction, even back in the value. Its tangent is that
+ * of the law a little ahead, as for piecewise linear maps. Its sense keeps the orientation. */
 static int step_across_kink(mhb_arclength *curve) {
   static const double ahead[] = {1e-4, 1e-3, 1e-2}, step[] = {1e-3, 3e-3, 1e-2, 3e-4, 1e-4};
   for (int i = 0; i < 15; i++) {
@@ -160,9 +161,9 @@ static int solve_near(mhb_arclength *curve) {
   return far < NEAR && mhb_arclength_set_tangent(curve, curve->chord, next);
 }
 
-/* The damped Newton method at a value further on, then further back (a cusp), from the current point
- * and from the system's own starts. Then very near: where slip ends in two directions at once, the
- * mean friction leaves with the root of the distance. */
+/* The damped Newton method at a value further on, then further back (a cusp). It starts from the
+ * current point and from the system's own starts. The last values are very near: where slip ends in
+ * two directions at once, the mean friction follows the root of the distance. */
 static int step_to_value(mhb_arclength *curve) {
   static const double way[]   = {1e-4, 5e-4, 2e-3, 1e-2, -1e-4, -5e-4, -2e-3, -1e-2, 1e-5, 1e-6};
   mhb_curve_system   *s       = curve->system;
@@ -184,8 +185,8 @@ static int step_to_value(mhb_arclength *curve) {
   return 0;
 }
 
-/* No point keeps the orientation: a bifurcation, or the zone of slip onset, where the orientation
- * is not reliable. */
+/* No point keeps the orientation. This is a bifurcation, or the zone of slip onset, where the
+ * orientation is not reliable. */
 static int step_reversed(mhb_arclength *curve) {
   static const double step[] = {1e-3, 3e-3, 1e-2, 3e-4};
   for (int i = 0; i < 4; i++) {
@@ -228,8 +229,8 @@ static int adaptive_step(mhb_arclength *curve, const mhb_curve_point *tried) {
          step_reversed(curve);
 }
 
-/* A step no longer than ds, however short. At a kink the search begins with ds, and at worst with
- * the curve's own step. */
+/* A step no longer than ds, however short. At a kink the search begins with ds. If it fails, it
+ * begins with the curve's own step. */
 static int step_no_longer_than(mhb_arclength *curve, double ds, const mhb_curve_point *tried) {
   double step = curve->step;
   if (ds >= step) return adaptive_step(curve, tried);
@@ -300,7 +301,7 @@ mhb_arclength_outcome mhb_arclength_step(mhb_arclength *curve) {
 
 /* ---- outside the range ---- */
 
-/* How far beyond an end: frequencies by a factor, other parameters by the range. */
+/* The longest excursion: frequencies are limited by a factor, other parameters by the range. */
 static double room_beyond(const mhb_arclength *curve, int end, mhb_excursion_reach reach) {
   double at = end > 0 ? curve->high : curve->low, half = 0.5 * (curve->high - curve->low);
   bool   relative = curve->system->relative;

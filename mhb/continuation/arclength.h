@@ -19,7 +19,7 @@ typedef enum {
 /* current <- the solution at a value, from x[n], towards rising (+1) or falling (-1) values. */
 mhb_reason mhb_arclength_start(mhb_arclength *curve, const double *x, double value, int direction);
 
-/* x[n] is the crossing of two curves; along[n] is the direction of the one to be traced. current
+/* x[n] is the crossing of two curves. along[n] is the direction of the one to be traced. current
  * becomes its first point, 0.001 to 0.03 of |x| away. Not converged: there is no such curve. */
 mhb_reason mhb_arclength_depart(mhb_arclength *curve, const double *x, double value,
                                 const double *along);
@@ -27,14 +27,16 @@ mhb_reason mhb_arclength_depart(mhb_arclength *curve, const double *x, double va
 /* One step from current: next becomes the new point. */
 mhb_arclength_outcome mhb_arclength_step(mhb_arclength *curve);
 
-/* How far an excursion beyond an end of the range may go. */
+/* The longest excursion beyond an end of the range. */
 typedef enum {
   MHB_EXCURSION_FAR, /* five times the frequency, or four ranges */
   MHB_EXCURSION_NEAR /* half a range, at 10 to 30 % of the frequency, with few nonlinear steps */
 } mhb_excursion_reach;
 
-/* current lies on an end of the range, the low (-1) or the high one (+1), heading outwards: follow
- * the curve outside until it comes back. True: next lies on that end, heading inwards. */
+/* current lies on an end of the range, heading outwards. Follow the curve outside until it comes
+ * back.
+ *   end  in  -1 low, +1 high
+ * Returns true if next lies on that end, heading inwards. */
 bool mhb_arclength_excursion(mhb_arclength *curve, int end, mhb_excursion_reach reach);
 
 #endif

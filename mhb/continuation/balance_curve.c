@@ -8,7 +8,7 @@
 #include "mhb/continuation/corrector.h"
 #include "mhb/continuation/resonance_detection.h"
 
-/* A law coarser than this has jumps that lead chord steps astray. */
+/* A law with a larger tolerance has jumps that mislead chord steps. */
 static const double SMOOTH = 1e-5;
 
 /* Units of the preload: the preload itself, or the normal force of the motion, times this. */
@@ -91,8 +91,8 @@ static bool is_linear(const mhb_curve_system *system, const mhb_curve_point *poi
   return true;
 }
 
-/* Harmonics k > 0 without the law, then the means by Newton's method. The means leave the plane by a
- * negligible amount. */
+/* Harmonics k > 0 without the law, then the means by Newton's method. The means leave the plane by
+ * a negligible amount. */
 static int correct_linear(mhb_arclength *curve, const mhb_curve_point *regime, const double *normal,
                           mhb_curve_point *point) {
   mhb_balance_curve *s    = mhb_balance_curve_of(curve);
@@ -120,8 +120,8 @@ static int correct_linear(mhb_arclength *curve, const mhb_curve_point *regime, c
   return 0;
 }
 
-/* A preload is measured by itself or by the normal force of the motion, whichever is more: where the
- * contact opens and slips must not be stepped over in a range that is far wider. */
+/* A preload is measured by itself or by the normal force of the motion, whichever is larger. In a
+ * wide range a step would else pass the opening and slip of the contact. */
 static double unit_of_preload(const mhb_curve_system *system, const mhb_curve_point *point) {
   const mhb_balance *b      = of(system)->balance;
   double             normal = point->evaluation->at.kv * mhb_norm(point->x, b->n);

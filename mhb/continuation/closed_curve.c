@@ -47,8 +47,8 @@ void mhb_curve_place_turn(mhb_curve_place *place) {
   place->rate = -place->rate;
 }
 
-/* Index of the unknown i of a system, perhaps of another number of harmonics, in the place's arrays;
- * -1: the place has no such harmonic, it is 0 there. */
+/* Index of the unknown i in the place's arrays. The system may have another number of harmonics.
+ * -1: the place has no such harmonic, which is 0 there. */
 static long index_in(const mhb_curve_return *at, const mhb_curve_system *s, int i) {
   const mhb_curve_place *p   = at->place;
   int                    row = i / s->row_length, k = i % s->row_length;

@@ -1,5 +1,5 @@
-/* Closed curves: whether a curve has come back to its start, in the same motion or in its own copy
- * some periods of the excitation later. */
+/* Closed curves: whether a curve has come back to its start. The motion there is the same, or its
+ * copy some periods of the excitation later. */
 #ifndef MHB_CONTINUATION_CLOSED_CURVE_H
 #define MHB_CONTINUATION_CLOSED_CURVE_H
 
@@ -33,7 +33,8 @@ typedef struct {
   int                    copy;
 } mhb_curve_return;
 
-/* Whether the copy is the place itself: a motion that repeats so early has fewer copies. */
+/* Whether the copy is the place itself. A motion that repeats after fewer periods has such copies.
+ */
 bool mhb_curve_return_repeats(const mhb_curve_return *at);
 
 /* Test function: how far a point lies beyond the copy, in the direction of passing. */

@@ -10,7 +10,7 @@
 #include "mesh/base/status.h"
 #include "mhb/balance/newton.h"
 
-/* A point of a curve. It owns its evaluation: whoever visits it finds all of it there. */
+/* A point of a curve. It owns its evaluation, so it can be used again without a new one. */
 typedef struct {
   double         *x;           /* [n] m */
   double          value;       /* of the parameter; rad/s for the frequency */
@@ -65,17 +65,16 @@ struct mhb_curve_system {
   bool (*start_of_newton)(mhb_curve_system *system, double value, int which, double *x);
   /* Whether the law is linear at the point and about it. */
   bool (*is_linear)(const mhb_curve_system *system, const mhb_curve_point *point);
-  /* mhb_arclength_correct without factors, where the law stays as at regime, a linear point.
-   * 0: it does not. */
+  /* mhb_arclength_correct without factors. The law must stay as at regime, a linear point. 0: it
+   * does not. */
   int (*correct_linear)(mhb_arclength *curve, const mhb_curve_point *regime, const double *normal,
                         mhb_curve_point *point);
-  /* Unit in which the value is to be measured at a point; the whole range: INFINITY. */
+  /* Unit of the value at a point. INFINITY: the whole range. */
   double (*unit_of_value)(const mhb_curve_system *system, const mhb_curve_point *point);
-  /* The longest change of the value from a point, in a direction, that resolves the resonances
-   * found so far. */
+  /* The longest change of the value, in a direction, that resolves the resonances known so far. */
   double (*resonance_step_limit)(const mhb_curve_system *system, double value, int direction);
-  /* Whether the step from current to next passes a resonance unseen; resonance_step_limit then
-   * knows of it. */
+  /* Whether the step from current to next skips a resonance. From then on resonance_step_limit
+   * resolves it. */
   bool (*resonance_skipped)(mhb_arclength *curve);
 };
 
@@ -103,7 +102,7 @@ shb_status mhb_arclength_create(mhb_curve_system *system, double low, double hig
                                 mhb_arclength **curve);
 void       mhb_arclength_destroy(mhb_arclength *curve);
 
-/* A point of a curve with arrays of its own; destroy accepts a zeroed one. SHB_ERR_IO: no memory. */
+/* A point of a curve with its own arrays; destroy accepts a zeroed one. SHB_ERR_IO: no memory. */
 shb_status mhb_curve_point_create(mhb_curve_system *system, mhb_curve_point *point);
 void       mhb_curve_point_destroy(mhb_curve_system *system, mhb_curve_point *point);
 

@@ -12,7 +12,7 @@ static const double VALUE_BESIDE      = 3e-8;                 /* distance kept f
 static const double VALUE_LAST_RESORT = 1e-4;                 /* accepted if nothing converges */
 static const double ROUNDED           = 1e-9;                 /* residual of round-off */
 enum {
-  BISECTED_FROM = 24, /* a test function that jumps leads Illinois astray: halve from here on */
+  BISECTED_FROM = 24, /* from here on by bisection: a test function that jumps misleads Illinois */
   MAX_STEPS     = 64,
   MAX_TO_KINK   = 100,
   GUESSES       = 4
@@ -56,9 +56,11 @@ static int take_end(search *s, int side) {
 
 /* ---- a point at a fraction of the chord ---- */
 
-/* trial <- what guess `which` converges to in the plane across the chord at fraction at: from the
- * line between the ends (0), from an end shifted along the chord (1, 2), and from the line by the
- * damped Newton method at fixed value (3). */
+/* trial <- the solution in the plane across the chord at fraction `at`, from guess `which`:
+ *   0     from the line between the ends
+ *   1, 2  from an end, shifted along the chord
+ *   3     from the line, by the damped Newton method at fixed value
+ * 0: not converged. */
 static int correct_guess(search *s, double at, int which) {
   mhb_arclength         *curve = s->curve;
   mhb_curve_point       *trial = &curve->trial;
@@ -76,7 +78,7 @@ static int correct_guess(search *s, double at, int which) {
   return 1;
 }
 
-/* The trial's place on the chord; a solution at fixed value need not lie in the plane sought. */
+/* The trial's fraction of the chord. A solution at fixed value need not lie in the plane. */
 static double place_of_trial(const search *s) {
   const mhb_arclength *curve = s->curve;
   double               unit  = mhb_arclength_unit(curve), away[curve->n + 1];
@@ -87,7 +89,7 @@ static double place_of_trial(const search *s) {
 }
 
 /* trial <- the solution in the plane across the chord at fraction *at, and *at its true place. A
- * guess that only round-off stopped is taken if no other converges. */
+ * guess that stopped at round-off is taken if no other converges. */
 static int solve_at(search *s, double *at) {
   mhb_arclength *curve   = s->curve;
   int            rounded = -1;
@@ -149,12 +151,12 @@ static int linear_side(const search *s) {
   return linear[0] == linear[1] ? -1 : linear[1];
 }
 
-/* Where contacts begin to slip, the slipping side is known to the root of round-off only, and Newton
- * may fail there; the linear side is exact. The linear end moves on to the last linear point, in
- * steps that are halved, and the test function there decides:
- *   true: the kink is the event, and the trial lies VALUE_BESIDE of it on the linear side, which is
- *         negligible and yet far enough for Newton to converge
- *   false: the bracket now ends at the kink */
+/* Where contacts begin to slip, the slipping side is known only to the root of round-off. Newton's
+ * method may fail there, but the linear side is exact. The linear end moves on to the last linear
+ * point, in steps that are halved. The test function there decides:
+ *   true: the kink is the event. The trial lies VALUE_BESIDE of it on the linear side: negligible
+ *         in the value, and far enough for Newton's method to converge.
+ *   false: the bracket now ends at the kink. */
 static bool locate_at_kink(search *s, mhb_test_function g, void *context) {
   mhb_arclength *curve = s->curve;
   int            side  = linear_side(s);
@@ -200,11 +202,12 @@ bool mhb_arclength_locate(mhb_arclength *curve, mhb_test_function g, void *conte
                           double at_current, double at_next, double *fraction) {
   for (int i = 0; i < curve->n; i++) curve->chord[i] = curve->next.x[i] - curve->current.x[i];
   curve->chord[curve->n] = curve->next.value - curve->current.value;
+  double change          = fabs(curve->chord[curve->n]);
   search s               = {.curve          = curve,
                             .end            = {&curve->current, &curve->next},
                             .at             = {0, 1},
                             .g              = {at_current, at_next},
-                            .relative_value = fabs(curve->chord[curve->n]) / mhb_arclength_size(curve)};
+                            .relative_value = change / mhb_arclength_size(curve)};
   int    last_side = -1, kinks = 0;
   for (int i = 0; i < MAX_STEPS; i++) {
     double at = (s.at[0] * s.g[1] - s.at[1] * s.g[0]) / (s.g[1] - s.g[0]);

@@ -4,11 +4,11 @@
 
 #include "mhb/continuation/corrector.h"
 
-/* Events are located to 1e-9 of the chord or 1e-10 of the value, and 3e-8 beside a kink: nearer than
- * this they are at the same place. */
+/* Events are located to 1e-9 of the chord or 1e-10 of the value, and to 3e-8 beside a kink. Nearer
+ * than this they are at the same place. */
 static const double SAME_PLACE = 1e-8, SAME_VALUE = 1e-7, SAME_PART = 1e-3;
 
-/* Of the value: folds nearer to each other than this are not looked for. */
+/* Relative to the value: folds nearer to each other than this are not searched for. */
 static const double VISIBLE = 1e-5;
 
 const char *mhb_end_text(mhb_end end) {
@@ -58,7 +58,7 @@ static void swap(mhb_curve_point *a, mhb_curve_point *b) {
   *b                  = old;
 }
 
-/* The test's event on the step, into the curve's trial. */
+/* The test's event on the step, located in the curve's trial. */
 static bool find(mhb_arclength *curve, const mhb_event_test *t, double *place) {
   if (!changes_sign(t)) return false;
   if (t->is_near && !t->is_near(curve, t->value_current, t->value_next, t->context)) return false;
@@ -82,7 +82,7 @@ static bool coincide(const mhb_curve_event *a, const mhb_curve_event *b) {
   return apart < SAME_PLACE || (apart < SAME_PART && fabs(y - x) < SAME_VALUE * fabs(x));
 }
 
-/* In order along the step; of those at one place one is kept: a fold, if one is. */
+/* In order along the step. Of events at one place one remains: a fold, if there is one. */
 static void sort_and_merge(mhb_events *events) {
   mhb_curve_event *e    = events->event;
   int              kept = 0;

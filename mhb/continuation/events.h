@@ -68,8 +68,8 @@ void mhb_events_begin(mhb_arclength *curve, int n_tests, mhb_event_test *test);
 shb_status mhb_events_locate(mhb_arclength *curve, int n_tests, mhb_event_test *test,
                              mhb_events *events, mhb_end *end);
 
-/* Whether the parameter runs back between two points of the step without a fold: two or more folds
- * lie between them, which the signs at its ends do not show. */
+/* Whether the parameter runs back between two points of the step without a fold. Two or more folds
+ * then lie between them, which the signs at the ends do not show. */
 bool mhb_events_miss_fold(const mhb_arclength *curve, const mhb_events *events);
 
 /* The step is accepted: next becomes current, and so do the tests' values. */

@@ -1,14 +1,14 @@
-/* A first solution without a guess. */
+#include "mhb/continuation/first_solution.h"
+
 #include <math.h>
 #include <string.h>
 
 #include "mesh/base/progress.h"
 #include "mhb/continuation/balance_curve.h"
-#include "mhb/continuation/first_solution.h"
 
 enum { MAX_STAGES = 200 };
 
-/* Natural continuation of the preload from one whose linear limit x solves, to the one asked for. */
+/* Natural continuation of the preload (Seydel 2010), from one whose linear limit x solves. */
 static mhb_reason homotopy(mhb_newton *newton, mhb_balance *b, double omega, double tolerance,
                            double from, double *x) {
   double     to = b->eval->at.n0, part = 0, step = 0.25;
@@ -61,7 +61,7 @@ static mhb_reason directly(mhb_newton *newton, mhb_balance *b, double omega, dou
   return mhb_newton_solve(newton, b, omega, tolerance, x, iterations);
 }
 
-/* By Newton's method at omega alone. */
+/* The same, then by homotopy in the preload at this omega. */
 static mhb_reason solve_here(mhb_newton *newton, mhb_balance *b, double omega, double tolerance,
                              double *x, int *iterations) {
   mhb_reason reason = directly(newton, b, omega, tolerance, x, iterations);
@@ -111,7 +111,8 @@ static mhb_reason by_frequency(mhb_newton *newton, mhb_balance *b, double omega,
   return reason;
 }
 
-/* Along the path in the preload, past its folds, from one at which the contact is stuck, or open, throughout. */
+/* Along the curve in the preload, past its folds, from a preload at which the contact is stuck, or
+ * open, throughout. */
 static mhb_reason by_preload(mhb_newton *newton, mhb_balance *b, double omega, double tolerance,
                              double *x, int *iterations) {
   double     n0     = b->eval->at.n0;
@@ -130,7 +131,7 @@ static mhb_reason by_preload(mhb_newton *newton, mhb_balance *b, double omega, d
   return reason;
 }
 
-/* The parameter stands; a first solution is sought as if the frequency were followed. */
+/* The balance's parameter is restored. A first solution is sought with the frequency as value. */
 mhb_reason mhb_first_solution(mhb_newton *newton, mhb_balance *b, double value, double tolerance,
                               double *x, int *iterations) {
   mhb_parameter parameter = b->parameter;

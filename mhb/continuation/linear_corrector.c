@@ -73,7 +73,7 @@ static int harmonic(mhb_linear_corrector *s, const mhb_balance *b, int k, double
   return 1;
 }
 
-/* How a pair that stays as it is answers: as a spring, or not at all. */
+/* In its regime a pair acts as a spring, or not at all. */
 static mhb_pair_kind class_of(mhb_pair_kind kind) {
   return kind == MHB_PAIR_AT_LIMIT ? MHB_PAIR_STUCK : kind;
 }
@@ -88,7 +88,7 @@ bool mhb_linear_states_hold(const mhb_linear_corrector *s, const mhb_evaluation 
   return true;
 }
 
-/* sum over k > 0 */
+/* Inner product over the harmonics k > 0. */
 static double product(const mhb_balance *b, const double *x, const double *y) {
   double sum = 0;
   for (int row = 0; row < 3 * b->n_pairs; row++)

@@ -7,11 +7,12 @@
 
 #include "mesh/base/constants.h"
 
-/* In half widths: what is resolved around a resonance, the shortest way there, and the way between places where a resonance may
- * be; farther from each other than that, the contact's own motion tells the resonance. */
+/* In half widths: the window resolved around a resonance and the shortest step there; the distance
+ * between places assumed between free and stuck. Resonances farther apart than FARTHEST need no
+ * places between: the contact motion resolves that change. */
 static const double WINDOW = 4, SHORTEST = 0.5, APART = 2, FARTHEST = 32;
 
-/* A run-up is looked at this often; a mode that goes along with the excitation is no wider than this makes it. */
+/* Samples of a run-up. A mode that follows the excitation is no wider than by this rate. */
 enum { N_SAMPLES = 16 };
 static const double LEAST_RATE = 0.1;
 
@@ -42,10 +43,17 @@ static shb_status add_inside(const stuck_modes *w, mhb_resonances *s, mhb_resona
   return inside && place.half_width > 0 ? add(s, place) : SHB_OK;
 }
 
-/* Of free mode i at harmonic k. */
+/* The resonance of free mode i at harmonic k. */
 static mhb_resonance free_one(const mhb_receptance *r, int k, int i) {
   double omega = SHB_TWO_PI * r->model->frequency[i], turns = (double)r->nu / k;
   return (mhb_resonance){turns * omega, turns * omega * r->model->damping_ratio[i], k, i, false};
+}
+
+/* sum + S.u, u[3] with a stride. */
+static double complex add_product(double complex sum, const double S[3], const double complex *u,
+                                  int stride) {
+  for (int j = 0; j < 3; j++) sum += S[j] * u[j * stride];
+  return sum;
 }
 
 /* X = K B, by (I + S R) X = S B, column-major. 0: singular. */
@@ -58,16 +66,14 @@ static int stiffen(const stuck_modes *w, int k) {
   for (int row = 0; row < n; row++) {
     const mhb_law *law     = &b->law[row / 3];
     double         slips   = law->mu == 0 ? 0 : 1;
+    size_t         pair    = (size_t)(row - row % 3);
     double         S[3][3] = {{law->kv, 0, 0},
                               {0, slips * law->ku[0], slips * law->ku[1]},
                               {0, slips * law->ku[1], slips * law->ku[2]}};
     for (int c = 0; c < n + m; c++) {
-      double complex sum = c == row;
-      for (int j = 0; j < 3; j++) {
-        int at = row - row % 3 + j;
-        sum += S[row % 3][j] * (c < n ? w->R[(size_t)at * (size_t)n + (size_t)c]
-                                      : B[(size_t)at * (size_t)m + (size_t)(c - n)]);
-      }
+      const double complex *u =
+          c < n ? w->R + pair * (size_t)n + (size_t)c : B + pair * (size_t)m + (size_t)(c - n);
+      double complex sum = add_product(c == row, S[row % 3], u, c < n ? n : m);
       if (c < n)
         w->A[(size_t)c * (size_t)n + (size_t)row] = sum;
       else
@@ -96,7 +102,7 @@ static int solve(const stuck_modes *w, int k) {
   return LAPACKE_zheev(LAPACK_COL_MAJOR, 'V', 'L', m, w->M, m, w->square) == 0;
 }
 
-/* The free mode that has most of a stuck one. */
+/* The free mode with the largest share of a stuck one. */
 static int closest_free_mode(int m, const double complex *q) {
   int mode = 0;
   for (int i = 1; i < m; i++)
@@ -104,7 +110,7 @@ static int closest_free_mode(int m, const double complex *q) {
   return mode;
 }
 
-/* Between a mode's free and its stuck place. */
+/* Places between a mode's free and its stuck resonance. */
 static shb_status add_between(const stuck_modes *w, mhb_resonances *s, mhb_resonance stuck,
                               mhb_resonance own) {
   double gap = stuck.value - own.value;
@@ -118,7 +124,7 @@ static shb_status add_between(const stuck_modes *w, mhb_resonances *s, mhb_reson
   return fabs(gap) < SHORTEST * own.half_width ? SHB_OK : add_inside(w, s, stuck);
 }
 
-/* Of stuck mode j of harmonic k, as solved. */
+/* The resonance of stuck mode j of harmonic k, as solved. */
 static mhb_resonance stuck_one(const stuck_modes *w, int k, int j) {
   const mhb_receptance *r     = w->b->receptance;
   const double complex *q     = w->M + (size_t)j * (size_t)r->n_modes;
@@ -143,13 +149,13 @@ static shb_status add_stuck(const stuck_modes *w, mhb_resonances *s, int k) {
 
 /* ---- run-up: places omega = nu w_i(omega)/k ---- */
 
-/* What a mode has where the structure is that at omega. */
+/* Resonances of a mode with the structure at omega. */
 typedef struct {
   mhb_resonance free, stuck,
-      own; /* own: the free one that the stuck one is like; half = 0: not there */
+      own; /* own: the free one nearest to the stuck one; half_width 0: not there */
 } mode_at;
 
-/* Of all harmonics and modes, [k][mode]. */
+/* All harmonics and modes at omega, [k][mode]. */
 static void sample_modes(const stuck_modes *w, double omega, mode_at *out) {
   mhb_receptance *r = w->b->receptance;
   int             m = r->n_modes;
@@ -166,8 +172,8 @@ static void sample_modes(const stuck_modes *w, double omega, mode_at *out) {
   }
 }
 
-/* value - omega changes its sign between two frequencies: squares are linear in Omega^2. *rate <- what the excitation nears the
- * resonance by as it changes by 1. */
+/* Whether value - omega changes its sign between two frequencies; squares are linear in Omega^2.
+ * *rate <- how fast the excitation nears the resonance, per change of omega. */
 static bool meets(const mhb_resonance *a, double low, const mhb_resonance *b, double high,
                   mhb_resonance *place, double *rate) {
   double x = low * low, y = high * high, f = a->value * a->value - x, g = b->value * b->value - y;

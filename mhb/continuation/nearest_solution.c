@@ -58,7 +58,7 @@ int mhb_nearest_solution(mhb_newton *newton, mhb_balance *balance, const double 
     if (!(*omega > 0)) return 0;
     now = measure(&p, x, *omega);
     if (before <= ROUNDING && now > 0.5 * before) return now <= ROUNDING;
-    double cut = 1; /* measure leaves the step alone */
+    double cut = 1; /* measure does not change the step */
     for (int h = 0; h < MAX_HALVINGS && !(now <= before); h++) {
       cut *= 0.5;
       move(&p, -cut, x, omega);

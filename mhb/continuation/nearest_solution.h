@@ -4,13 +4,14 @@
 
 #include "mhb/balance/newton.h"
 
-/* Newton in the plane normal to `normal` through (x, omega), in y = [x/scale, omega/span].
+/* Newton's method in the plane normal to `normal` through (x, omega), in y = [x/scale, omega/span].
  *
- *   normal  in     [n+1] d(x, omega); along the curve the solution is compared with, or (0, 1): at the same frequency
+ *   normal  in     [n+1] d(x, omega) along the curve that the solution is compared with; (0, 1): at
+ *                  the same frequency
  *   x       inout  [n] m
  *   omega   inout  rad/s
- * Returns 1 if |r| <= 1e-10 |x| (1e-8 where rounding lets it fall no further) within a distance of 0.5 in y; the residual is
- * then left evaluated there. 0 if not; x and omega are then of no use. */
+ * Returns 1 if |r| <= 1e-10 |x| within a distance of 0.5 in y; 1e-8 is enough where round-off
+ * prevents less. The balance is then evaluated there. 0 if not; x and omega are then of no use. */
 int mhb_nearest_solution(mhb_newton *newton, mhb_balance *balance, const double *normal,
                          double scale, double span, double *x, double *omega);
 

@@ -14,7 +14,7 @@ void mhb_probe_change(mhb_balance *balance, const mhb_curve_point *point, int k,
                       double complex *dq);
 
 /* d a^2/ds of output o along the tangent of a point; 0 below 1e-9 a^2. a is the amplitude at the
- * excitation's frequency, for a probe the root of the sum over its three components. */
+ * excitation's frequency. For a probe a^2 is the sum over its three components. */
 double mhb_output_slope(mhb_balance *balance, const mhb_curve_point *point, int o);
 
 #endif

@@ -38,8 +38,8 @@ static void probe_motions(mhb_balance *b, const mhb_curve_point *point, double c
   }
 }
 
-/* Whether the mode's peak under the forces of the evaluation in use is significant beside the motions
- * of the contact and of the probes. */
+/* Whether the mode's peak is significant beside the motions of the contact and of the probes. Its
+ * forces are those of the evaluation in use. */
 static bool may_be_significant(const mhb_balance *b, const mhb_resonance *resonance,
                                const double *probe, double contact) {
   const mhb_receptance *r    = b->receptance;

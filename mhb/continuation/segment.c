@@ -94,6 +94,19 @@ static shb_status step_with_events(mhb_segment_host *host, mhb_end *end) {
   return SHB_OK;
 }
 
+/* Record the events of the step, and then next. */
+static shb_status record_step(mhb_segment_host *host, int *n_points, bool *go_on) {
+  const mhb_events *events = host->events;
+  for (int i = 0; i < events->n && *go_on; i++) {
+    host->estimate_event(host, events->event[i].point);
+    SHB_TRY(host->record(host, events->event[i].point, events->event[i].test->special, go_on));
+    ++*n_points;
+  }
+  int special = events->fold_not_located ? MHB_FOLD : MHB_ORDINARY; /* as near as it is known */
+  ++*n_points;
+  return *go_on ? host->record(host, &host->curve->next, special, go_on) : SHB_OK;
+}
+
 shb_status mhb_trace_segment(mhb_segment_host *host, const mhb_seed *seed, mhb_end *end) {
   bool go_on  = true;
   int  n_tiny = 0, n_points = seed->skip_first ? 0 : seed->kind == MHB_SEED_CROSSING ? 2 : 1;
@@ -106,14 +119,7 @@ shb_status mhb_trace_segment(mhb_segment_host *host, const mhb_seed *seed, mhb_e
     if (host->limit_step) host->limit_step(host);
     SHB_TRY(step_with_events(host, end));
     if (*end == MHB_END_STALLED) break;
-    const mhb_events *events = host->events;
-    for (int i = 0; i < events->n && go_on; i++, n_points++) {
-      host->estimate_event(host, events->event[i].point);
-      SHB_TRY(host->record(host, events->event[i].point, events->event[i].test->special, &go_on));
-    }
-    int special = events->fold_not_located ? MHB_FOLD : MHB_ORDINARY; /* as near as it is known */
-    if (go_on) SHB_TRY(host->record(host, &host->curve->next, special, &go_on));
-    n_points++;
+    SHB_TRY(record_step(host, &n_points, &go_on));
     mhb_arclength_advance(host->curve);
     mhb_events_advance(host->n_tests, host->test);
     n_tiny = host->curve->step < TINY_STEP ? n_tiny + 1 : 0;

@@ -13,6 +13,7 @@
 
 #include <cmocka.h>
 
+#include "mesh/base/constants.h"
 #include "mesh/core/face_match.h"
 #include "mesh/core/fe_mesh.h"
 #include "mesh/core/jacobian.h"
@@ -20,7 +21,7 @@
 #include "tests/support/check.h"
 #include "tests/support/read_mesh.h"
 
-static const double degree = M_PI / 180;
+static const double degree = SHB_PI / 180;
 
 static char folder[] = "/tmp/shb_blade_XXXXXX";
 static char path[64], other[64];
@@ -129,7 +130,7 @@ static void check_contact(const mesh_blade *blade, mesh_fe *mesh) {
   assert_true(pairs >= 6);
   for (int i = 0; i < pairs; i++) {
     double at[3];
-    mesh_axis_rotate(blade->axis, 2 * M_PI / blade->blades, mesh->coordinates + 3 * l[i], at);
+    mesh_axis_rotate(blade->axis, SHB_TWO_PI / blade->blades, mesh->coordinates + 3 * l[i], at);
     for (int d = 0; d < 3; d++) assert_near(at[d], mesh->coordinates[3 * r[i] + d], 1e-14);
   }
   free(r);
@@ -241,7 +242,7 @@ static double expected_volume(const mesh_blade *blade) {
   }
   for (int i = 0; i < 3; i++) area[i] = s[i].chord * s[i].thickness * mean / top;
   double airfoil = (s[2].radius - s[0].radius) / 6 * (area[0] + 4 * area[1] + area[2]);
-  double ring    = blade->shroud_length * blade->shroud_thickness * 2 * M_PI / blade->blades *
+  double ring    = blade->shroud_length * blade->shroud_thickness * SHB_TWO_PI / blade->blades *
                 (s[2].radius + blade->shroud_thickness / 2);
   return blade->root_length * blade->root_width * blade->root_height + airfoil + ring;
 }

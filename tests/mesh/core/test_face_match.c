@@ -1,6 +1,7 @@
 /* Contact faces of a sector matched node for node, and faces that do not match. */
 #include "mesh/core/face_match.h"
 
+#include "mesh/base/constants.h"
 #include "mesh/base/vec3.h"
 #include "tests/support/box.h"
 #include "tests/support/check.h"
@@ -18,7 +19,7 @@ static mesh_fe sector(mesh_kind kind) {
   assert_ok(box_set(&mesh, MESH_CONTACT_LEFT, 1, size[1]));
   for (int i = 0; i < mesh.n_nodes; i++) {
     double      *x     = mesh.coordinates + 3 * i;
-    const double angle = (0.5 - x[1] / size[1]) * 2 * M_PI / BLADES, r = 0.4 + x[2];
+    const double angle = (0.5 - x[1] / size[1]) * SHB_TWO_PI / BLADES, r = 0.4 + x[2];
     x[1] = -r * sin(angle);
     x[2] = r * cos(angle);
   }
@@ -34,7 +35,7 @@ static void every_right_node_has_its_left_one(void **state) {
     assert_int_equal(n, kind == MESH_HEX20 ? 7 * 9 - 12 : 7 * 9);
     for (int i = 0; i < n; i++) {
       double turned[3];
-      mesh_axis_rotate(MESH_AXIS_X, 2 * M_PI / BLADES, mesh.coordinates + 3 * left[i], turned);
+      mesh_axis_rotate(MESH_AXIS_X, SHB_TWO_PI / BLADES, mesh.coordinates + 3 * left[i], turned);
       assert_near(vec3_distance(turned, mesh.coordinates + 3 * right[i]), 0, 1e-15);
       assert_true(i == 0 || right[i] > right[i - 1]);
     }

@@ -13,6 +13,7 @@
 
 #include <cmocka.h>
 
+#include "mesh/base/constants.h"
 #include "tests/support/box.h"
 
 enum { BLADES = 23 };
@@ -31,9 +32,9 @@ static mesh_fe make_sector(mesh_kind kind, int n, double skew, double lift) {
   assert_int_equal(box_set(&mesh, MESH_CONTACT_RIGHT, 1, size[1]), SHB_OK);
   for (int i = 0; i < mesh.n_nodes; i++) {
     double *x = mesh.coordinates + 3 * i, share = x[1] / size[1];
-    double  angle = -2 * M_PI / BLADES * (.5 - share), r = inner + x[2];
+    double  angle = -SHB_TWO_PI / BLADES * (.5 - share), r = inner + x[2];
     if (share == 0) {
-      double bump = skew * sin(M_PI * x[0] / size[0]) * sin(M_PI * x[2] / size[2]);
+      double bump = skew * sin(SHB_PI * x[0] / size[0]) * sin(SHB_PI * x[2] / size[2]);
       x[0] += bump * size[0];
       r += .7 * bump * size[2];
       angle += lift;

@@ -15,6 +15,7 @@
 #include <cmocka.h>
 #include <gmshc.h>
 
+#include "mesh/base/constants.h"
 #include "mesh/base/progress.h"
 #include "mesh/core/face_match.h"
 #include "mesh/core/jacobian.h"
@@ -274,7 +275,7 @@ static void wedge(int n, mesh_fe *mesh) {
   assert_int_equal(box_set(mesh, MESH_CONTACT_LEFT, 1, block[1]), SHB_OK);
   for (int i = 0; i < mesh->n_nodes; i++) {
     double *x     = mesh->coordinates + 3 * i;
-    double  angle = 2 * M_PI / n * (0.5 - x[1] / block[1]), r = 0.31 + x[2];
+    double  angle = SHB_TWO_PI / n * (0.5 - x[1] / block[1]), r = 0.31 + x[2];
     /* about +x, tangential = axial x radial: radial z at angle 0 goes towards -y */
     x[1] = -r * sin(angle);
     x[2] = r * cos(angle);
@@ -291,7 +292,7 @@ static void contact_faces_are_paired(void **state) {
   assert_int_equal(pairs, 25);
   for (int i = 0; i < pairs; i++) {
     double at[3];
-    mesh_axis_rotate(MESH_AXIS_X, 2 * M_PI / 37, mesh.coordinates + 3 * left[i], at);
+    mesh_axis_rotate(MESH_AXIS_X, SHB_TWO_PI / 37, mesh.coordinates + 3 * left[i], at);
     for (int d = 0; d < 3; d++) assert_near(at[d], mesh.coordinates[3 * right[i] + d], 1e-15);
     assert_true(i == 0 || right[i] > right[i - 1]);
   }

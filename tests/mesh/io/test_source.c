@@ -14,6 +14,7 @@
 
 #include <cmocka.h>
 
+#include "mesh/base/constants.h"
 #include "mesh/core/face_match.h"
 #include "mesh/core/jacobian.h"
 #include "mesh/gmsh/session.h"
@@ -200,7 +201,7 @@ static void curved_faces_are_found(void **state) {
   assert_ok(box_mesh(size, many, &box));
   for (int i = 0; i < box.n_nodes; i++) {
     double *x     = box.coordinates + 3 * i;
-    double  angle = M_PI / 4 * (x[1] / size[1] - .5), r = .31 + x[2];
+    double  angle = SHB_PI / 4 * (x[1] / size[1] - .5), r = .31 + x[2];
     x[1] = r * sin(angle);
     x[2] = r * cos(angle);
   }
@@ -336,7 +337,7 @@ static void sides_are_made_to_match(void **state) {
       (mesh_rule){.kind = MESH_RULE_RADIUS, .radius = .3, .tolerance = 1e-6};
   source.rules.usual[MESH_CONTACT_RIGHT] =
       (mesh_rule){.kind = MESH_RULE_NEAREST, .at = {.02, .32, 0}};
-  double angle = 2 * M_PI / BLADES, r = .32;
+  double angle = SHB_TWO_PI / BLADES, r = .32;
   source.rules.usual[MESH_CONTACT_LEFT] =
       (mesh_rule){.kind = MESH_RULE_NEAREST, .at = {.02, r * cos(angle), r * sin(angle)}};
   for (int tied = 0; tied < 2; tied++) {

@@ -1,4 +1,5 @@
 /* Meshes written as .msh and as .inp are read back as they were, with all groups and volumes. */
+#include "mesh/base/constants.h"
 #include "mesh/io/inp_write.h"
 #include "mesh/io/msh_write.h"
 #include "mesh/io/read.h"
@@ -22,7 +23,7 @@ static int destroy(void **state) {
 
 /* A box with odd coordinates, a fifth group on the face x = size and two volumes. */
 static mesh_fe make_mesh(mesh_kind kind) {
-  const double size[3]  = {M_PI / 30, 0.1 / 3, -0.2 / 7};
+  const double size[3]  = {SHB_PI / 30, 0.1 / 3, -0.2 / 7};
   const int    cells[3] = {2, 2, 1};
   mesh_fe      mesh;
   const double positive[3] = {size[0], size[1], -size[2]};

@@ -1,4 +1,5 @@
-/* Stability in a sweep: flips and Neimark-Sacker points marked, unstable stretches, thread counts, what is not judged. */
+/* Stability in a sweep: marked flips and Neimark-Sacker points, unstable parts, numbers of threads,
+ * points that are not judged. */
 #include <complex.h>
 #include <math.h>
 #include <omp.h>
@@ -44,7 +45,8 @@ static int specials(const mhb_branch *b, int special, int *at) {
   return n;
 }
 
-/* Between the two the solution exists and time integration leaves it; the reference sampled its friction events: 2e-4. */
+/* Between the two points the solution exists, and time integration leaves it. The reference sampled
+ * its friction events: 2e-4. */
 static void neimark_sacker_points_are_marked(void **state) {
   (void)state;
   static const double wanted[2][2] = {{1.20060, 1.200586}, {1.25635, 1.256349}};
@@ -107,7 +109,8 @@ static void middle_branches_are_unstable(void **state) {
   }
 }
 
-/* A gap closed hard: the motion doubles its period, and takes it back. The upper point bisects |mu| = 1 elsewhere. */
+/* A gap with a hard contact: the motion doubles its period, and returns to it. The reference of the
+ * upper point is a bisection of |mu| = 1. */
 static void flips_are_marked(void **state) {
   (void)state;
   modal_model model;
@@ -168,7 +171,7 @@ static void assert_same_curves(const mhb_response *a, const mhb_response *b) {
   }
 }
 
-/* Bit by bit, a blade on the ground and a ring of which only some points are judged. */
+/* Bit by bit the same: a blade on the ground, and a ring of which only some points are judged. */
 static void threads_change_nothing(void **state) {
   (void)state;
   for (int ring = 0; ring < 2; ring++) {

@@ -31,12 +31,14 @@ static void solve_at(const modal_model *model, const mhb_settings *s, double w,
 
 static void amplitudes_of_time_integration(void **state) {
   (void)state;
-  static const struct {
+  typedef struct {
     double n0, w, a[3], error[4];
-  } rows[]              = {{1, 1.20, {0.027944, 0.147642, 0.008139}, {1e-6, 1e-6, 1e-6, 1e-6}},
-                           {-0.2, 1.00, {0.019624, 0.197890, 0.003763}, {1e-6, 1e-6, 1e-6, 1e-6}},
-                           {0, 1.05, {0.195617, 0.114818, 0.021163}, {1.7e-1, 1.5e-3, 8.3e-5, 7.8e-6}},
-                           {0.3, 1.42, {0.492394, 0.396878, 0.471625}, {1.1e-2, 1.8e-4, 1.8e-6, 2.3e-6}}};
+  } row;
+  static const row rows[] = {
+      {1, 1.20, {0.027944, 0.147642, 0.008139}, {1e-6, 1e-6, 1e-6, 1e-6}},
+      {-0.2, 1.00, {0.019624, 0.197890, 0.003763}, {1e-6, 1e-6, 1e-6, 1e-6}},
+      {0, 1.05, {0.195617, 0.114818, 0.021163}, {1.7e-1, 1.5e-3, 8.3e-5, 7.8e-6}},
+      {0.3, 1.42, {0.492394, 0.396878, 0.471625}, {1.1e-2, 1.8e-4, 1.8e-6, 2.3e-6}}};
   static const int H[4] = {1, 3, 7, 15};
   modal_model      model;
   three_degree_model(&model);
@@ -220,7 +222,8 @@ static void friction_oscillator_from_a_cold_start(void **state) {
   modal_model_free(&model);
 }
 
-/* The two ways to state a preload: with the static mean that an interference keeps, the contact is looser. */
+/* The two ways to state a preload. With the static mean that an interference keeps, the contact is
+ * looser. */
 static void tip_contact_beam(void **state) {
   (void)state;
   static const double rows[2][2] = {{1.9634e-4, 268.10}, {1.7441e-4, 263.155}};
@@ -240,7 +243,8 @@ static void tip_contact_beam(void **state) {
     print_message("%s: peak %.5e at %.3f Hz, %d points\n", i ? "interference" : "equilibrium", top,
                   at, b->n_points);
     assert_near(top, rows[i][0], 4e-4 * rows[i][0]);
-    /* the reference errs by 2e-4 in amplitude; the top is so flat that this moves its frequency by 1e-3 */
+    /* the reference has an error of 2e-4 in amplitude; the peak is so flat that its frequency moves
+     * by 1e-3 */
     assert_near(at, rows[i][1], 1e-3 * rows[i][1]);
     double there[3];
     solve_at(&model, &s, 2 * PI * rows[i][1], there);
@@ -276,8 +280,8 @@ static void linear_limits_are_met(void **state) {
   modal_model_free(&model);
 }
 
-/* High friction and light preload: slip onset next to opening, the hardest place to pass. A curve either covers the range or
- * goes on beyond a gap that its reason names; it never ends on the way. */
+/* High friction and light preload: slip onset next to opening, the hardest place to pass. A curve
+ * either covers the range, or goes on beyond a gap that its reason names. */
 static void curves_go_on_beyond_a_gap(void **state) {
   (void)state;
   modal_model model;
@@ -309,8 +313,8 @@ static void the_probe_moves_like_the_contact(void **state) {
   (void)state;
   modal_model model;
   three_degree_model(&model);
-  mhb_settings      s    = ground_settings(.4, .8, .5, .3, 5);
-  mhb_response     *r    = sweep(&model, &s, .8, 1.7);
+  mhb_settings      s    = ground_settings(0.4, 0.8, 0.5, 0.3, 5);
+  mhb_response     *r    = sweep(&model, &s, 0.8, 1.7);
   const mhb_branch *b    = &r->branch[2];
   double            away = 0, most = 0;
   for (int i = 0; i < b->n_points * 3 * (b->n_harmonics + 1); i++) {
@@ -323,27 +327,47 @@ static void the_probe_moves_like_the_contact(void **state) {
   modal_model_free(&model);
 }
 
-/* Motions that repeat with the excitation, balanced over several of its periods: the curve is that
+/* Motions that repeat with the excitation, balanced over several of its periods. The curve is that
  * of one period, and no point is taken for a copy of its start. */
 static void more_periods_than_the_motion_has(void **state) {
   (void)state;
-  static const double n0[] = {-.3, -.2, 0, .1, .3, 1, 2, 4};
+  static const double n0[] = {-0.3, -0.2, 0, 0.1, 0.3, 1, 2, 4};
   modal_model         model;
   three_degree_model(&model);
   for (int nu = 2; nu <= 4; nu++)
     for (int i = 0; i < 8; i++) {
-      mhb_settings s = ground_settings(.4, .8, .5, n0[i], 3 * nu);
+      mhb_settings s = ground_settings(0.4, 0.8, 0.5, n0[i], 3 * nu);
       s.subharmonics = nu;
       s.stability    = MHB_STABILITY_NEVER;
       s.max_points   = 2000;
       for (int part = 0; part < 3; part++) {
-        mhb_response     *r = sweep(&model, &s, .75 + .1 * part, .85 + .1 * part);
+        mhb_response     *r = sweep(&model, &s, 0.75 + 0.1 * part, 0.85 + 0.1 * part);
         const mhb_branch *b = &r->branch[2];
         assert_string_equal(b->reason, "end of range");
         assert_near(b->frequency[0], s.frequency[0], 1e-12);
         assert_int_equal(r->n_branches, 3);
         mhb_response_destroy(r);
       }
+    }
+  modal_model_free(&model);
+}
+
+/* The first point moves where more harmonics are taken at once: it is no return to the start. */
+static void more_harmonics_at_the_start(void **state) {
+  (void)state;
+  static const double n0[] = {-.3, -.2, -.1, 0, .05, .1, .2, .3};
+  modal_model         model;
+  three_degree_model(&model);
+  for (int i = 0; i < 8; i++)
+    for (int from = 0; from < 10; from++) {
+      mhb_settings s     = ground_settings(.4, .8, .5, n0[i], 1);
+      s.motion_tolerance = 1e-3;
+      s.stability        = MHB_STABILITY_NEVER;
+      s.max_points       = 2000;
+      mhb_response *r    = sweep(&model, &s, .95 + .05 * from, 1 + .05 * from);
+      for (int k = 2; k < r->n_branches; k++) assert_true(r->branch[k].n_points > 3);
+      assert_near(r->branch[2].frequency[0], s.frequency[0], 1e-12);
+      mhb_response_destroy(r);
     }
   modal_model_free(&model);
 }
@@ -361,7 +385,8 @@ static void nothing_happens_without_excitation(void **state) {
   modal_model_free(&model);
 }
 
-/* Stiffer than the blade by more than the limit: R = K^-1, K of three_degree_model, axes v, u, w. */
+/* Stiffer than the blade by more than the limit: R = K^-1, K of three_degree_model, axes v, u, w.
+ */
 static void rigid_contacts_are_refused(void **state) {
   (void)state;
   static const double R[3]    = {2.0575 / 1.9865, 1.59 / 1.9865, 1.26 / 1.9865};
@@ -402,6 +427,7 @@ int main(void) {
       cmocka_unit_test(curves_go_on_beyond_a_gap),
       cmocka_unit_test(the_probe_moves_like_the_contact),
       cmocka_unit_test(more_periods_than_the_motion_has),
+      cmocka_unit_test(more_harmonics_at_the_start),
       cmocka_unit_test(nothing_happens_without_excitation),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

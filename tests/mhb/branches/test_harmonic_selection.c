@@ -1,4 +1,5 @@
-/* Harmonics chosen at each point: true error within the tolerance, the same peaks and folds, the fewest where nothing slips. */
+/* Harmonics chosen at each point. The true error is within the tolerance, and peaks and folds are
+ * the same. Where nothing slips the harmonics are fewest. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -40,7 +41,7 @@ static mhb_response *follow(const modal_model *model, const mhb_settings *s, int
 
 enum { BEFORE = 7 };
 
-/* What is true of a branch, by solutions of 31 harmonics at its frequencies. */
+/* True errors of a branch, by solutions of 31 harmonics at its frequencies. */
 typedef struct {
   int    n, lost, within; /* points compared; without a counterpart near by; within the tolerance */
   double worst, fold;     /* largest error off folds, at folds */
@@ -104,7 +105,7 @@ static int reached(const truth *t) {
   return t->within >= 0.95 * t->n && t->worst <= 2 * TOLERANCE;
 }
 
-/* The cheapest fixed number of harmonics that reaches the tolerance: of the ladder, and its seconds. */
+/* The smallest number of harmonics of the levels that reaches the tolerance, and its seconds. */
 static int cheapest(const modal_model *model, mhb_settings s, double *seconds, truth *t) {
   int m[MHB_MAX_LEVELS], n;
   s.motion_tolerance = TOLERANCE;
@@ -192,8 +193,8 @@ static void jumps(void **state) {
   }
 }
 
-/* From the load's highest harmonic on, times the subharmonics, 31 at most; one where they are given. */
-/* An interference bends the blade 57 and 570 times as far as it vibrates: the tolerance is one of the vibration. */
+/* An interference bends the blade 57 and 570 times as far as it vibrates. The tolerance is one of
+ * the vibration. */
 static void static_parts_do_not_count(void **state) {
   (void)state;
   static const double n0[] = {100, 1000};

@@ -98,8 +98,8 @@ static void tear_down(fixture *f) {
   modal_model_free(&f->model);
 }
 
-/* A contact that opens has several solutions beside the resonance: each is a solution, and no two are
- * the same. The same seed gives the same. */
+/* A contact that opens has several solutions beside the resonance. Each is a solution, and no two
+ * are the same. The same seed gives the same. */
 static void starts_lead_to_different_solutions(void **state) {
   (void)state;
   int n[2];

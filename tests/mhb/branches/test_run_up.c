@@ -1,4 +1,5 @@
-/* Sweeps along an engine order: every point is a solution at its own speed, with its own multipliers; and the witness agrees. */
+/* Sweeps along an engine order. Every point is a solution at its own speed, with its own
+ * multipliers, and time integration agrees. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -74,7 +75,8 @@ static void check_point(const mhb_settings *plain, spinning_kind kind, const mhb
   modal_model_free(&model);
 }
 
-/* Of peaks of two outputs that lie close together in a step one is marked, whichever the step meets first. */
+/* Of peaks of two outputs near each other on a step one is marked: the first that the step meets.
+ */
 static int has_mark(const mhb_branch *b, int special, double frequency) {
   const double same = special == MHB_PEAK ? 2e-5 : 1e-7;
   for (int i = 0; i < b->n_points; i++)
@@ -82,8 +84,8 @@ static int has_mark(const mhb_branch *b, int special, double frequency) {
   return 0;
 }
 
-/* The same structure at every speed. The linear limits are the plain sweep's; on the curve the lengths of the steps feel rounding, so that
- * only folds and peaks are at the same places. */
+/* The same structure at every speed. The linear limits are those of the plain sweep. On the curve
+ * round-off changes the lengths of the steps, so only folds and peaks are at the same places. */
 static void what_does_not_change_gives_the_plain_curve(void **state) {
   (void)state;
   mhb_settings plain = spinning_settings(), s = plain;
@@ -202,7 +204,8 @@ static void check_alone(const mhb_settings *s, const mhb_integration_settings *a
   modal_model_free(&model);
 }
 
-/* From rest, at the speed of each frequency, and from the curve of the balance. A state is that of one structure. */
+/* Integration from rest, at the speed of each frequency, and from the curve of the balance. A state
+ * is that of one structure. */
 static void integration_agrees(void **state) {
   (void)state;
   mhb_settings s                   = spinning_settings();
@@ -240,7 +243,8 @@ static void integration_agrees(void **state) {
   mhb_speed_table_destroy(run_up);
 }
 
-/* omega = nu w_i(omega)/k, all of them; as wide as the angle of the curves makes them. */
+/* All solutions of omega = nu w_i(omega)/k. They are as wide as the angle between the curves makes
+ * them. */
 static void resonances_are_where_curves_meet(void **state) {
   (void)state;
   mhb_settings     s      = spinning_settings();

@@ -1,4 +1,4 @@
-/* Curves beside the main one: doubled periods, search, and that nothing is found where nothing is. */
+/* Curves beside the main one: doubled periods, search, and none where there is none. */
 #include <complex.h>
 #include <math.h>
 #include <omp.h>
@@ -39,7 +39,7 @@ static mhb_response *sweep(const modal_model *model, const mhb_settings *s) {
   return r;
 }
 
-/* ---- a mass on a spring that meets another one, integrated without any of the program ---- */
+/* ---- a mass on a spring against a second one, integrated without code of the program ---- */
 
 typedef struct {
   double zeta, kv, n0, force, omega;
@@ -102,7 +102,8 @@ static int count(const mhb_branch *b, int special) {
   return n;
 }
 
-/* The branch leaves at one flip and comes back at the other; its stable part is what time integration settles on. */
+/* The branch leaves at one flip and comes back at the other. Its stable part is where time
+ * integration settles. */
 static void doubled_periods(void **state) {
   (void)state;
   modal_model  model;
@@ -145,7 +146,8 @@ static void doubled_periods(void **state) {
   modal_model_free(&model);
 }
 
-/* Friction and separation of three degrees: one curve a preload, however long one looks. */
+/* Friction and separation of three degrees of freedom: one curve a preload, however long the search
+ * is. */
 static void nothing_where_nothing_is(void **state) {
   (void)state;
   static const double n0[] = {-0.2, 0, 0.3, 1};
@@ -237,7 +239,7 @@ static void threads_and_files_do_not_matter(void **state) {
   modal_model_free(&model);
 }
 
-/* A main branch that is there while what is beside it is not: that alone is made up for. */
+/* An interrupted run left the main branch without those beside it: only these are computed. */
 static void a_search_is_resumed(void **state) {
   (void)state;
   modal_model    model;
@@ -266,7 +268,7 @@ static void a_search_is_resumed(void **state) {
   modal_model_free(&model);
 }
 
-/* A signal during the search: the main branch is whole, and told to be unsearched. */
+/* A signal during the search: the main branch is complete, and marked as not searched. */
 static int interrupted(const char *path) {
   modal_model    model;
   mhb_settings   s          = rich();

@@ -1,4 +1,5 @@
-/* Branches: folds from both sides, both ends, limits of the settings, and what must not change the answer. */
+/* Branches: folds from both sides, both ends, limits of the settings, and changes without effect.
+ */
 #include <math.h>
 #include <omp.h>
 #include <setjmp.h>
@@ -44,7 +45,7 @@ static mhb_response *sweep(const modal_model *model, const mhb_settings *s, shb_
   return r;
 }
 
-/* ---------------------------------------------------------------- the path itself */
+/* ---- the curve ---- */
 
 enum { MAX_FOLDS = 8 };
 
@@ -116,7 +117,7 @@ static void both_directions_see_the_same_folds(void **state) {
   }
 }
 
-/* ---------------------------------------------------------------- limits of the settings */
+/* ---- limits of the settings ---- */
 
 static void a_branch_cut_short_says_why(void **state) {
   (void)state;
@@ -134,7 +135,8 @@ static void a_branch_cut_short_says_why(void **state) {
   modal_model_free(&model);
 }
 
-/* An undamped mode driven exactly at its own frequency runs against the contact: what is found there is what is found beside. */
+/* An undamped mode, driven exactly at its own frequency, meets the contact. The solution there is
+ * that of a frequency next to it. */
 static void at_a_resonance_is_as_beside(void **state) {
   (void)state;
   static const double aside[] = {0, -1e-7, 1e-7};
@@ -162,8 +164,9 @@ static void at_a_resonance_is_as_beside(void **state) {
   modal_model_free(&model);
 }
 
-/* Nothing but friction damps, and harmonic 2 at the low end of the range, harmonic 1 in its middle, are exactly at the resonance. The
- * stuck contact moves by F/(k + ku - w^2), what is open by as much as a frequency next to it; the curve between is bounded. */
+/* Friction alone damps. Harmonic 2 is exactly at the resonance at the low end of the range, and
+ * harmonic 1 in its middle. The stuck contact moves by F/(k + ku - w^2), and the open one by as
+ * much as at a frequency next to it. The curve between is bounded. */
 static void undamped_resonances_are_passed(void **state) {
   (void)state;
   modal_model model;
@@ -201,7 +204,7 @@ static void a_norm_tells_what_is_not_a_number(void **state) {
   assert_below(fabs(mhb_norm(big, 2) / 5e200 - 1), 1e-15);
 }
 
-/* A motion that overflowed must come back as such, soon. */
+/* A motion that overflowed is returned as such, soon. */
 static void a_motion_that_is_no_number_ends(void **state) {
   (void)state;
   static const double bad[] = {NAN, INFINITY, -INFINITY, 1e308};
@@ -263,7 +266,7 @@ static void without_excitation_all_is_still(void **state) {
   modal_model_free(&model);
 }
 
-/* ---------------------------------------------------------------- what must not change the answer */
+/* ---- changes without effect ---- */
 
 enum { M = 5, UNKNOWNS = 3 * (2 * M + 1) };
 
@@ -292,7 +295,7 @@ static void preloads_about_zero_agree(void **state) {
   modal_model_free(&model);
 }
 
-/* mu = 0: the tangential stiffness means nothing. mu huge: friction that never slips while closed. */
+/* mu = 0: the tangential stiffness has no effect. mu huge: friction never slips while closed. */
 static void extreme_friction(void **state) {
   (void)state;
   modal_model model;
@@ -382,7 +385,7 @@ static void units_do_not_matter(void **state) {
   }
 }
 
-/* ---------------------------------------------------------------- threads, signals, disks */
+/* ---- threads, signals, disks ---- */
 
 static void assert_same_branch(const mhb_response *r, const mhb_branch *a, const mhb_branch *b) {
   size_t n = (size_t)a->n_points, K = (size_t)r->n_harmonics + 1, pairs = (size_t)r->n_pairs;
@@ -420,8 +423,8 @@ static void threads_do_not_matter(void **state) {
   modal_model_free(&model);
 }
 
-/* Interrupted from the start: the file is whole, with the linear limits, and says so. In a process of its own, since
- * the flag stays. */
+/* Interrupted from the start: the file is complete, with the linear limits, and notes the
+ * interruption. It runs in its own process, since the flag stays. */
 static int interrupted_sweep(const char *path) {
   modal_model    model;
   mhb_response  *r = NULL, *back = NULL;
@@ -457,7 +460,7 @@ static void an_interrupt_saves(void **state) {
   assert_int_equal(WEXITSTATUS(status), 0);
 }
 
-/* A folder that is not there: the thread that finds out is not the one that tells. */
+/* A folder that does not exist. The message comes from another thread than the one that fails. */
 static void a_failed_write_is_told(void **state) {
   (void)state;
   modal_model    model;

@@ -1,4 +1,4 @@
-/* The balance as a system of continuation: derivatives, bordered systems, linear regime, options. */
+/* The balance as a system of continuation: derivatives, bordered systems, regime, options. */
 #include "mhb/continuation/balance_curve.h"
 
 #include <lapacke.h>

@@ -1,4 +1,4 @@
-/* Places of a curve: distances, the side of a place on which a point lies, copies, other harmonics. */
+/* Places of a curve: distances, test functions of closure, copies, other numbers of harmonics. */
 #include "mhb/continuation/closed_curve.h"
 
 #include "mhb/continuation/corrector.h"
@@ -63,6 +63,27 @@ static void a_place_knows_its_copies(void **state) {
               sqrt(2 * 0.09 / (unit * unit) + 0.01), 1e-12);
   mhb_curve_place_free(&place);
   assert_null(place.x);
+  mhb_arclength_destroy(curve);
+}
+
+/* Copies of a motion that repeats early are the motion itself; copy 0 does not count. */
+static void a_copy_may_be_the_place(void **state) {
+  (void)state;
+  mhb_curve_system system = rows_of(2, 3, 3);
+  mhb_arclength   *curve;
+  mhb_curve_place  place = {0};
+  assert_ok(mhb_arclength_create(&system, 0, 10, &curve));
+  fill(&system, &curve->current);
+  assert_ok(mhb_curve_place_note(&place, &system, &curve->current, 1e-3));
+  for (int early = 0; early < 2; early++) {
+    for (int j = 0; j < 3; j++) {
+      mhb_curve_return at = {&place, j};
+      assert_true(mhb_curve_return_repeats(&at) == (early && j == 2));
+    }
+    memcpy(place.x + 12, place.x, sizeof(double) * 6);
+    place.x[12] += 0.9e-3 * place.size; /* within the tolerance */
+  }
+  mhb_curve_place_free(&place);
   mhb_arclength_destroy(curve);
 }
 
@@ -183,6 +204,7 @@ static void a_place_at_rest(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(a_place_knows_its_copies),
+                                     cmocka_unit_test(a_copy_may_be_the_place),
                                      cmocka_unit_test(harmonics_may_differ),
                                      cmocka_unit_test(ahead_changes_its_sign_at_the_place),
                                      cmocka_unit_test(a_chord_is_near_or_not),

@@ -209,7 +209,7 @@ static void failures_are_told(void **state) {
                            {not_a_number, -INFINITY, 4},
                            {constant, -INFINITY, 1},
                            {alternating, -INFINITY, 8},
-                           {scalar_line, 0.19, 2}}; /* the solution at 0.1 is below the least value */
+                           {scalar_line, 0.19, 2}}; /* the solution is at 0.1 */
   const double normal[] = {1, 0};
   for (int i = 0; i < 5; i++) {
     const double   fixed_value[] = {0, 1};

@@ -142,7 +142,7 @@ static double slope_test(mhb_arclength *curve, const mhb_curve_point *point, voi
   return point->value > 0 ? 0.5 / sqrt(point->value) - 1 : -1;
 }
 
-/* The kink is the event: the point lies on its linear side, within 2e-7 of the range, and is exact. */
+/* The kink is the event. The point is exact, on its linear side, within 2e-7 of the range. */
 static void an_event_at_a_kink_is_on_its_linear_side(void **state) {
   (void)state;
   static const double low[] = {-0.01, -1e-3, -0.05}, high[] = {0.02, 1e-4, 1e-3};

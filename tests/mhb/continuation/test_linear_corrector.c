@@ -1,4 +1,4 @@
-/* Points where no pair moves: harmonics one by one, and means by a Newton step of their own. */
+/* The linear regime: harmonics one by one, and means by a Newton step of their own. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -28,7 +28,8 @@ static void solve(const modal_model *model, const mhb_settings *s, double omega,
   mhb_balance_linearise(p->residual, p->x, omega, r, NULL);
 }
 
-/* A solution at which no pair moves, and the mean friction of some is on the limit: in the middle of such preloads. */
+/* A solution at which no pair slips or opens, and the mean friction of some pairs is at the limit.
+ * The preload is in the middle of those with such a solution. */
 static void held_solution(const modal_model *model, mhb_settings *s, double omega, periodic *p) {
   double most = 0, least = 0;
   int    moving = 0;
@@ -55,7 +56,8 @@ static void largest(const mhb_balance *b, const double *r, double *means, double
   }
 }
 
-/* From a solution to another frequency: slide, then settle with a new derivative each time. */
+/* From a solution to another frequency: move along the plane, then correct the means with a new
+ * derivative each time. */
 static void means_converge(const modal_model *model, mhb_settings *s, double omega) {
   periodic              p;
   mhb_linear_corrector *linear;

@@ -1,4 +1,4 @@
-/* Where the linear limits resonate, and that a path finds what hardly moves the contact. */
+/* Resonances of the linear limits, and curves over modes that hardly move the contact. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -37,7 +37,7 @@ static mhb_settings ground(double n0) {
   return s;
 }
 
-/* ---------------------------------------------------------------- places */
+/* ---- places ---- */
 
 static int has(const mhb_resonances *all, double value, double half, int k) {
   for (int i = 0; i < all->n; i++) {
@@ -48,7 +48,8 @@ static int has(const mhb_resonances *all, double value, double half, int k) {
   return 0;
 }
 
-/* Two modes on a spring: w^2 of [1 + a^2, a b; a b, w2^2 + b^2] in closed form, the damping by the eigenvector. */
+/* Two modes on a spring: w^2 of [1 + a^2, a b; a b, w2^2 + b^2] in closed form, the damping by the
+ * eigenvector. */
 static void places_are_those_of_both_limits(void **state) {
   (void)state;
   modal_model    model;
@@ -83,7 +84,8 @@ static double upper(double p, double q, double b) {
   return sqrt(0.5 * (p + q) + 0.5 * sqrt((p - q) * (p - q) + 4 * b * b));
 }
 
-/* From its free to its stuck place, as far apart as 32 half widths, the places of a mode leave no gap wider than two. */
+/* The free and the stuck place of a mode are as far apart as 32 half widths. The places between
+ * leave no gap wider than two. */
 static void near_limits_leave_no_gap(void **state) {
   (void)state;
   for (double contact = 0.003; contact < 0.2; contact *= 1.5) {
@@ -110,7 +112,7 @@ static void near_limits_leave_no_gap(void **state) {
   }
 }
 
-/* ---------------------------------------------------------------- curves */
+/* ---- curves ---- */
 
 /* Axis c at probe[c stride]. */
 static double probe_at(const double complex *probe, int stride) {
@@ -159,7 +161,8 @@ static double truth(const modal_model *model, const mhb_settings *s, double half
   return top;
 }
 
-/* Steps are up to 0.1 of the range, the resonance 1e-3 to 1e-4 of it: its peak is on the curve, and located. */
+/* Steps are up to 0.1 of the range, the resonance is 1e-3 to 1e-4 of it. Its peak is on the curve,
+ * and located. */
 static void light_modes_are_not_passed_over(void **state) {
   (void)state;
   static const double zeta[] = {2e-3, 3e-4, 5e-5}, contact[] = {1e-4, 7e-4, 3e-3},
@@ -205,10 +208,10 @@ static void what_is_not_felt_costs_nothing(void **state) {
   for (int i = 0; i < 3; i++) mhb_response_destroy(r[i]);
 }
 
-/* ---------------------------------------------------------------- locating */
+/* ---- location ---- */
 
-/* Jumps from -1000 to 1 at a value: Illinois gains a thousandth at a time, and halves every fourth step.
- * As the tangent does where a curve folds in a kink. */
+/* Jumps from -1000 to 1 at a value, as the tangent does where a curve folds in a kink. Illinois
+ * gains a thousandth at a time, and every fourth step halves. */
 static double jumping(mhb_arclength *path, const mhb_curve_point *point, void *context) {
   (void)path;
   return point->value < *(double *)context ? -1e3 : 1;

@@ -1,4 +1,5 @@
-/* The solution next to another balance's: it is one, lies in the plane asked for, and is not the one given. */
+/* The solution next to that of another balance: it is a solution, in the plane asked for, and
+ * another one. */
 #include "mesh/base/constants.h"
 #include "mhb/continuation/nearest_solution.h"
 

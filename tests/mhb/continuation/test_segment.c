@@ -1,5 +1,5 @@
-/* mhb_trace_segment on scalar problems, without a contact law: circle, cusp, square-root kink, closed
- * curve, ends of the range, and every end that a segment can have. */
+/* mhb_trace_segment on scalar problems, without a contact law: circle, cusp, square-root kink.
+ * Closed curves, ends of the range, and every end that a segment can have. */
 #include "mesh/base/constants.h"
 #include "mhb/continuation/segment.h"
 

@@ -12,9 +12,9 @@
 #include <cmocka.h>
 
 #include "fem/body/equilibrium.h"
-#include "mesh/io/inp_write.h"
 #include "mesh/base/constants.h"
 #include "mesh/io/inp_read.h"
+#include "mesh/io/inp_write.h"
 #include "modal/eigen/eigen.h"
 #include "tests/support/fem.h"
 

@@ -2,9 +2,9 @@
 #include <math.h>
 
 #include "fem/element/surface.h"
-#include "mesh/io/inp_write.h"
 #include "mesh/base/constants.h"
 #include "mesh/io/inp_read.h"
+#include "mesh/io/inp_write.h"
 #include "modal/common/session.h"
 #include "modal/model/receptance.h"
 #include "modal/stage/stage.h"
