@@ -101,6 +101,7 @@ static shb_status copy_curves(const mhb_response *own, mhb_response **out) {
   for (int k = 0; k < own->n_branches && status == SHB_OK; k++) {
     const mhb_branch *from = &own->branch[k];
     int               index;
+    if (k > 0 && from->n_points == 0) continue; /* under way, or not there */
     status = mhb_response_branch(copy, from->kind, &index);
     if (status != SHB_OK) break;
     mhb_branch *to  = &copy->branch[index];

@@ -226,6 +226,13 @@ static shb_status is_another(branch_search *h, subharmonic_problem *s, int index
   return SHB_OK;
 }
 
+/* The branches so far, for whoever looks at the file meanwhile. */
+static shb_status publish(void *context) {
+  const branch_search *h = context;
+  if (!h->monitor->is_due(h->monitor, h->response)) return SHB_OK;
+  return h->monitor->publish(h->monitor, h->response);
+}
+
 /* Trace the branch of a seed; it is kept unless it is another one. */
 static shb_status trace(branch_search *h, subharmonic_problem *s, mhb_origin origin,
                         const mhb_seed *seed) {
@@ -236,7 +243,9 @@ static shb_status trace(branch_search *h, subharmonic_problem *s, mhb_origin ori
   SHB_TRY(append(h, s, origin, &index));
   shb_status status = mhb_tracer_create(s->balance, h->response, index, true, h->monitor, &tracer);
   if (status == SHB_OK) {
-    status = trace_both_ways(tracer, seed, h->response, index, &none, &interrupted);
+    tracer->publish = publish;
+    tracer->context = h;
+    status          = trace_both_ways(tracer, seed, h->response, index, &none, &interrupted);
     mhb_tracer_destroy(tracer);
   }
   if (interrupted) h->go_on = false;
@@ -335,6 +344,7 @@ static shb_status search_at(branch_search *h, subharmonic_problem *s, double val
   if (!(size > 0)) return SHB_OK;
   for (int i = 0; i < h->settings->search.starts && go_on_searching(h, value, share); i++) {
     bool is_new;
+    SHB_TRY(publish(h));
     SHB_TRY(mhb_multistart_once(s->newton, s->balance, value, size * sizes[i % 4], &seed, &s->known,
                                 x, &is_new));
     if (!is_new) continue;
