@@ -49,6 +49,7 @@ struct mhb_branch_stability {
   int              branch;
   point_stability *at; /* [point] */
   int              n;
+  shb_status       published; /* first failure of a publication */
 };
 
 /* Number of states of the blade or ring with all its modes, each contact sticking. */
@@ -138,7 +139,7 @@ static void put(const mhb_branch_stability *w, int point, const mhb_multipliers 
     branch->multipliers[(size_t)point * (size_t)kept + (size_t)i] = i < m->n ? m->multiplier[i] : 0;
 }
 
-/* Judge a point by its multipliers. false: the monitor stops the work. */
+/* Judge a point by its multipliers. false: the monitor stops the work, or publication fails. */
 static bool judge_point(mhb_branch_stability *w, int point) {
   mhb_multipliers m;
   mhb_monitor    *monitor = w->tracer->monitor;
@@ -150,7 +151,8 @@ static bool judge_point(mhb_branch_stability *w, int point) {
   w->at[point] = stability_of(&m);
   put(w, point, &m);
   branch_of(w)->seconds[point] += shb_seconds() - started;
-  return monitor->point(monitor, w->response, w->branch, point);
+  w->published = mhb_monitor_publish_if_due(monitor, w->response);
+  return w->published == SHB_OK && monitor->point(monitor, w->response, w->branch, point);
 }
 
 /* ---- which points ---- */
@@ -370,8 +372,10 @@ shb_status mhb_branch_stability_judge(mhb_branch_stability *w, mhb_tracer *trace
   w->at       = calloc((size_t)w->n + MAX_LOCATED, sizeof *w->at);
   SHB_CHECK(w->at, SHB_ERR_IO, "out of memory");
   w->judges_all     = judges_all(w);
+  w->published      = SHB_OK;
   *finished         = judge_points(w);
-  shb_status status = *finished && w->judges_all ? mark_bifurcations(w, begins, n_begins) : SHB_OK;
+  shb_status status = w->published;
+  if (*finished && w->judges_all) status = mark_bifurcations(w, begins, n_begins);
   decide(branch_of(w), w->at, stable_at);
   free(w->at);
   w->at = NULL;

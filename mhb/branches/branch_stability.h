@@ -32,7 +32,7 @@ void       mhb_branch_stability_destroy(mhb_branch_stability *stability);
  *              bifurcation is located across
  *   stable_at  this point is stable by folds, unless multipliers tell otherwise
  *   finished   out  false: the monitor stopped it; points not judged yet go by folds
- * SHB_ERR_IO: no memory. */
+ * The curves so far are published meanwhile. SHB_ERR_IO: no memory; and errors of publication. */
 shb_status mhb_branch_stability_judge(mhb_branch_stability *stability, mhb_tracer *tracer,
                                       mhb_response *response, int branch, const int *begins,
                                       int n_begins, int stable_at, bool *finished);

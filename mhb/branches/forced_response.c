@@ -1,7 +1,6 @@
 #include "mhb/branches/forced_response.h"
 
 #include <math.h>
-#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -11,6 +10,7 @@
 #include "mhb/branches/main_branch.h"
 #include "mhb/branches/secondary_branches.h"
 #include "mhb/response/describe.h"
+#include "mhb/response/publisher.h"
 #include "mhb/structure/stiffness_check.h"
 
 static const double PUBLISH_EVERY = 10, BRANCH_END_EVERY = 1; /* s */
@@ -26,20 +26,16 @@ typedef struct {
   double        handed_at;
 } preload_curves;
 
-/* Shared by the threads. It is used under the lock only, but for the curves that a thread owns. */
+/* Shared by the threads. It is used under the publisher's lock only, but for the curves that a
+ * thread owns. */
 typedef struct {
-  mhb_monitor           base;     /* first: the callbacks get it back */
-  const mhb_settings   *settings; /* harmonics: the first number tried */
-  mhb_response         *response; /* the linear limits; at publication all of it */
-  const char           *path;
-  const shb_provenance *provenance;
-  shb_progress         *progress;
-  omp_lock_t            lock;
-  preload_curves       *preload;    /* [preload] */
-  double                main_share; /* of a preload's work: the main branch */
-  double                published;  /* s */
-  shb_status            status;     /* first failure, and its text: messages are per thread */
-  char                  fault[512];
+  mhb_monitor         base;     /* first: the callbacks get it back */
+  const mhb_settings *settings; /* harmonics: the first number tried */
+  mhb_response       *response; /* the linear limits; at publication all of it */
+  mhb_publisher       publisher;
+  shb_progress       *progress;
+  preload_curves     *preload;    /* [preload] */
+  double              main_share; /* of a preload's work: the main branch */
 } sweep;
 
 /* ---- publication ---- */
@@ -81,17 +77,9 @@ static shb_status gather(sweep *s) {
 
 static shb_status publish(sweep *s) {
   shb_status status = gather(s);
-  if (status == SHB_OK && s->path) status = mhb_response_write(s->response, s->path, s->provenance);
+  if (status == SHB_OK) status = mhb_publisher_write(&s->publisher, s->response);
   s->response->n_branches = 2; /* the others belong to the preloads */
-  s->published            = shb_seconds();
   return status;
-}
-
-/* Keep the first failure of any thread, under the lock. */
-static void note_failure(sweep *s, shb_status status) {
-  if (status == SHB_OK || s->status != SHB_OK) return;
-  s->status = status;
-  snprintf(s->fault, sizeof s->fault, "%s", shb_message());
 }
 
 /* Copy a preload's own curves. SHB_ERR_IO: no memory. */
@@ -132,7 +120,7 @@ static preload_curves *preload_of(sweep *s, const mhb_response *own) {
 /* ---- the monitor ---- */
 
 static bool go_on(const sweep *s) {
-  return !shb_interrupted() && s->status == SHB_OK;
+  return !shb_interrupted() && s->publisher.status == SHB_OK;
 }
 
 static bool point(mhb_monitor *monitor, const mhb_response *own, int branch, int at) {
@@ -145,7 +133,7 @@ static bool point(mhb_monitor *monitor, const mhb_response *own, int branch, int
   double amplitude        = sqrt(pow(cabs(u[0]), 2) + pow(cabs(u[K]), 2) + pow(cabs(u[2 * K]), 2));
   double low              = mhb_parameter_shown(what, mhb_parameter_end(c, what, 0));
   double high = mhb_parameter_shown(what, mhb_parameter_end(c, what, 1)), total = 0;
-  omp_set_lock(&s->lock);
+  mhb_publisher_lock(&s->publisher, true);
   for (int i = 0; i < c->n_preloads; i++) {
     if (c->n0[i] == b->n0[at] && s->preload[i].done < s->main_share)
       s->preload[i].done = s->main_share * (b->value[at] - low) / (high - low);
@@ -156,7 +144,7 @@ static bool point(mhb_monitor *monitor, const mhb_response *own, int branch, int
                     what == MHB_IN_FREQUENCY ? "at" : mhb_parameter_name(what), b->value[at],
                     mhb_parameter_unit(what), amplitude);
   bool on = go_on(s);
-  omp_unset_lock(&s->lock);
+  mhb_publisher_lock(&s->publisher, false);
   return on;
 }
 
@@ -164,7 +152,7 @@ static bool searching(mhb_monitor *monitor, double n0, double value, double shar
   sweep              *s     = (sweep *)monitor;
   const mhb_settings *c     = s->settings;
   double              total = 0;
-  omp_set_lock(&s->lock);
+  mhb_publisher_lock(&s->publisher, true);
   for (int i = 0; i < c->n_preloads; i++) {
     if (c->n0[i] == n0) s->preload[i].done = s->main_share + (1 - s->main_share) * share;
     total += s->preload[i].done;
@@ -173,14 +161,14 @@ static bool searching(mhb_monitor *monitor, double n0, double value, double shar
                     "n0 %-8.4g N  looking for other curves at %.6g %s", n0, value,
                     mhb_parameter_unit(c->parameter));
   bool on = go_on(s);
-  omp_unset_lock(&s->lock);
+  mhb_publisher_lock(&s->publisher, false);
   return on;
 }
 
 static bool is_due(mhb_monitor *monitor, const mhb_response *own) {
   sweep          *s = (sweep *)monitor;
   preload_curves *p = preload_of(s, own);
-  return s->path && p && shb_seconds() - p->handed_at > PUBLISH_EVERY;
+  return s->publisher.path && p && shb_seconds() - p->handed_at > PUBLISH_EVERY;
 }
 
 /* Hand over a copy of a preload's curves, and write the file if it is old. */
@@ -189,13 +177,13 @@ static shb_status hand_over(mhb_monitor *monitor, const mhb_response *own) {
   preload_curves *p = preload_of(s, own);
   mhb_response   *copy;
   SHB_TRY(copy_curves(own, &copy));
-  omp_set_lock(&s->lock);
+  mhb_publisher_lock(&s->publisher, true);
   mhb_response_destroy(p->handed);
-  p->handed        = copy;
-  p->handed_at     = shb_seconds();
-  bool       write = s->path && s->status == SHB_OK && shb_seconds() - s->published > PUBLISH_EVERY;
-  shb_status status = write ? publish(s) : SHB_OK;
-  omp_unset_lock(&s->lock);
+  p->handed         = copy;
+  p->handed_at      = shb_seconds();
+  bool       due    = mhb_publisher_is_due(&s->publisher, PUBLISH_EVERY);
+  shb_status status = due ? publish(s) : SHB_OK;
+  mhb_publisher_lock(&s->publisher, false);
   return status;
 }
 
@@ -249,28 +237,29 @@ static shb_status one_preload(sweep *s, const modal_model *model, int i) {
     status = mhb_secondary_branches(model, s->settings, p->own, &s->base);
   if (status != SHB_OK) return status;
   drop_empty(p->own);
-  omp_set_lock(&s->lock);
+  mhb_publisher_lock(&s->publisher, true);
   mhb_response_destroy(p->handed);
   p->handed = p->own;
   p->own    = NULL;
   p->done   = 1;
-  if (s->path && shb_seconds() - s->published > BRANCH_END_EVERY) status = publish(s);
-  omp_unset_lock(&s->lock);
+  if (mhb_publisher_is_due(&s->publisher, BRANCH_END_EVERY)) status = publish(s);
+  mhb_publisher_lock(&s->publisher, false);
   return status;
 }
 
 /* Take over the branches that an interrupted run of the same settings finished. */
 static shb_status resume(sweep *s) {
+  const char   *path = s->publisher.path;
   hid_t         file;
   char         *settings = NULL;
   mhb_response *old      = NULL;
   shb_status    status   = SHB_OK;
-  if (!s->path || h5_open(s->path, &file) != SHB_OK) return SHB_OK;
+  if (!path || h5_open(path, &file) != SHB_OK) return SHB_OK;
   bool same = h5_read_attribute_text(file, "/", "settings", &settings) == SHB_OK && settings &&
-              strcmp(settings, s->provenance->settings) == 0;
+              strcmp(settings, s->publisher.provenance->settings) == 0;
   h5_close(file);
   free(settings);
-  if (!same || mhb_response_read(s->path, &old) != SHB_OK) return SHB_OK;
+  if (!same || mhb_response_read(path, &old) != SHB_OK) return SHB_OK;
   bool fits = old->n_multipliers == s->response->n_multipliers;
   int  n = fits ? old->n_branches : 0, past = 2 + s->settings->n_preloads;
   for (int i = 2; i < n && i < past; i++) {
@@ -312,11 +301,11 @@ static shb_status all_preloads(sweep *s, const modal_model *model) {
   for (int i = 0; i < n; i++) {
     if (shb_interrupted()) continue;
     shb_status status = one_preload(s, model, i);
-    omp_set_lock(&s->lock);
-    note_failure(s, status);
-    omp_unset_lock(&s->lock);
+    mhb_publisher_lock(&s->publisher, true);
+    mhb_publisher_note(&s->publisher, status);
+    mhb_publisher_lock(&s->publisher, false);
   }
-  if (s->status != SHB_OK) return shb_fail(s->status, __FILE__, __LINE__, "%s", s->fault);
+  SHB_TRY(mhb_publisher_status(&s->publisher));
   for (int i = 0; i < n; i++) {
     if (!s->preload[i].own) continue; /* not begun */
     mhb_response_destroy(s->preload[i].handed);
@@ -328,7 +317,11 @@ static shb_status all_preloads(sweep *s, const modal_model *model) {
 
 /* The response takes over the curves of all preloads. */
 static shb_status take_curves(sweep *s) {
-  SHB_TRY(gather(s));
+  shb_status status = gather(s);
+  if (status != SHB_OK) {
+    s->response->n_branches = 2; /* the others belong to the preloads */
+    return status;
+  }
   for (int i = 0; i < s->settings->n_preloads; i++) {
     s->preload[i].handed->n_branches = 0;
     mhb_response_destroy(s->preload[i].handed);
@@ -376,22 +369,19 @@ shb_status mhb_forced_response(const modal_model *model, const mhb_settings *ask
   sweep s = {
       .base     = {.point = point, .searching = searching, .is_due = is_due, .publish = hand_over},
       .settings = settings,
-      .path     = path,
-      .provenance = provenance,
-      .progress   = progress,
-      .main_share = settings->search.starts > 0 ? MAIN_SHARE : 1,
-      .published  = shb_seconds()};
+      .progress = progress,
+      .main_share = settings->search.starts > 0 ? MAIN_SHARE : 1};
+  mhb_publisher_start(&s.publisher, path, provenance);
   s.response = mhb_response_create(model->n_pairs, model->n_probes, m[n_levels - 1]);
   s.preload  = calloc((size_t)settings->n_preloads, sizeof *s.preload);
   shb_status status =
       s.response && s.preload ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   if (status == SHB_OK) status = mhb_response_describe(s.response, model, settings);
   if (status == SHB_OK) status = linear_limits(model, settings, s.response);
-  omp_init_lock(&s.lock);
   if (status == SHB_OK) status = all_preloads(&s, model);
   if (status == SHB_OK) status = publish(&s);
   if (status == SHB_OK) status = take_curves(&s);
-  omp_destroy_lock(&s.lock);
+  mhb_publisher_stop(&s.publisher);
   for (int i = 0; s.preload && i < settings->n_preloads; i++) {
     mhb_response_destroy(s.preload[i].own);
     mhb_response_destroy(s.preload[i].handed);

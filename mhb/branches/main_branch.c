@@ -289,6 +289,9 @@ static shb_status complete(main_branch *m, mhb_end end, int stable_at) {
                         .first_gap    = m->first_gap,
                         .other_reason = m->other_reason};
   SHB_TRY(mhb_branch_complete(m->tracer, &m->chain, m->response, 0, &own));
+  bool covers = m->response->branch[0].complete;
+  /* published as complete, a main branch is not traced again: only once those beside it are there */
+  m->response->branch[0].complete = false;
   for (int i = 0; i < m->n_detached; i++) {
     int            index;
     mhb_completion detached = {.end = own.interrupted ? MHB_END_INTERRUPTED : m->detached_end[i]};
@@ -298,8 +301,7 @@ static shb_status complete(main_branch *m, mhb_end end, int stable_at) {
     SHB_TRY(mhb_branch_complete(m->tracer, &m->detached[i], m->response, index, &detached));
     own.interrupted = own.interrupted || detached.interrupted;
   }
-  /* the main branch is not complete before those beside it are */
-  if (own.interrupted) m->response->branch[0].complete = false;
+  m->response->branch[0].complete = covers && !own.interrupted;
   return SHB_OK;
 }
 

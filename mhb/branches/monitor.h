@@ -19,4 +19,10 @@ struct mhb_monitor {
   shb_status (*publish)(mhb_monitor *monitor, const mhb_response *response);
 };
 
+/* Publish the curves so far of a preload's response, if that is due. Errors: as of publish. */
+static inline shb_status mhb_monitor_publish_if_due(mhb_monitor        *monitor,
+                                                    const mhb_response *response) {
+  return monitor->is_due(monitor, response) ? monitor->publish(monitor, response) : SHB_OK;
+}
+
 #endif

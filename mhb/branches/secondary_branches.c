@@ -226,11 +226,10 @@ static shb_status is_another(branch_search *h, subharmonic_problem *s, int index
   return SHB_OK;
 }
 
-/* The branches so far, for whoever looks at the file meanwhile. */
+/* Publish the branches so far. */
 static shb_status publish(void *context) {
   const branch_search *h = context;
-  if (!h->monitor->is_due(h->monitor, h->response)) return SHB_OK;
-  return h->monitor->publish(h->monitor, h->response);
+  return mhb_monitor_publish_if_due(h->monitor, h->response);
 }
 
 /* Trace the branch of a seed; it is kept unless it is another one. */

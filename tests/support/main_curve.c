@@ -6,11 +6,10 @@
 #include "mhb/branches/main_branch.h"
 #include "tests/support/quiet_monitor.h"
 
-shb_status main_curve(const modal_model *model, const mhb_settings *s, int harmonics,
-                      double *seconds, mhb_response **out) {
-  quiet_monitor monitor = quiet_monitor_create(0);
-  mhb_balance  *balance;
-  int           branch;
+static shb_status trace(const modal_model *model, const mhb_settings *s, int harmonics,
+                        mhb_monitor *monitor, double *seconds, mhb_response **out) {
+  mhb_balance *balance;
+  int          branch;
   *out = NULL;
   SHB_TRY(mhb_balance_create(model, s, &balance));
   mhb_balance_set_preload(balance, s->n0[0]);
@@ -19,8 +18,19 @@ shb_status main_curve(const modal_model *model, const mhb_settings *s, int harmo
   shb_status status = *out ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   if (status == SHB_OK) status = mhb_response_branch(*out, MHB_BRANCH_NONLINEAR, &branch);
   clock_t started = clock();
-  if (status == SHB_OK) status = mhb_trace_main_branch(balance, *out, &monitor.base);
+  if (status == SHB_OK) status = mhb_trace_main_branch(balance, *out, monitor);
   if (seconds) *seconds = (double)(clock() - started) / CLOCKS_PER_SEC;
   mhb_balance_destroy(balance);
   return status;
+}
+
+shb_status main_curve(const modal_model *model, const mhb_settings *s, int harmonics,
+                      double *seconds, mhb_response **out) {
+  quiet_monitor monitor = quiet_monitor_create(0);
+  return trace(model, s, harmonics, &monitor.base, seconds, out);
+}
+
+shb_status watched_main_curve(const modal_model *model, const mhb_settings *s, int harmonics,
+                              mhb_monitor *monitor, mhb_response **out) {
+  return trace(model, s, harmonics, monitor, NULL, out);
 }

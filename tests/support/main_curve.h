@@ -2,6 +2,7 @@
 #ifndef TESTS_SUPPORT_MAIN_CURVE_H
 #define TESTS_SUPPORT_MAIN_CURVE_H
 
+#include "mhb/branches/monitor.h"
 #include "mhb/problem/settings.h"
 #include "mhb/response/response.h"
 #include "modal/model/model.h"
@@ -12,5 +13,9 @@
  * The caller destroys the response, also after an error. */
 shb_status main_curve(const modal_model *model, const mhb_settings *settings, int harmonics,
                       double *seconds, mhb_response **response);
+
+/* The same under a monitor. */
+shb_status watched_main_curve(const modal_model *model, const mhb_settings *settings, int harmonics,
+                              mhb_monitor *monitor, mhb_response **response);
 
 #endif

@@ -19,6 +19,7 @@
 #include "mhb/branches/secondary_branches.h"
 #include "tests/support/check.h"
 #include "tests/support/main_curve.h"
+#include "tests/support/quiet_monitor.h"
 #include "tests/support/settings.h"
 #include "tests/support/three_degree.h"
 
@@ -304,34 +305,6 @@ static void an_interrupted_search_is_told(void **state) {
 
 /* ---- publication ---- */
 
-typedef struct {
-  mhb_monitor base; /* first: the callbacks get it back */
-  int         n_published, least;
-} always_due;
-
-static bool no_stop(mhb_monitor *monitor, const mhb_response *response, int branch, int point) {
-  (void)monitor, (void)response, (void)branch, (void)point;
-  return true;
-}
-
-static bool no_stop_searching(mhb_monitor *monitor, double n0, double value, double share) {
-  (void)monitor, (void)n0, (void)value, (void)share;
-  return true;
-}
-
-static bool is_due(mhb_monitor *monitor, const mhb_response *response) {
-  (void)monitor, (void)response;
-  return true;
-}
-
-static shb_status count_published(mhb_monitor *monitor, const mhb_response *response) {
-  always_due *due  = (always_due *)monitor;
-  int         main = response->branch[0].n_points;
-  due->n_published++;
-  due->least = main < due->least ? main : due->least;
-  return SHB_OK;
-}
-
 /* The main curve is in the file while others are searched for, at each start and at each point. */
 static void curves_are_published_during_a_search(void **state) {
   (void)state;
@@ -339,12 +312,12 @@ static void curves_are_published_during_a_search(void **state) {
   three_degree_model(&model);
   mhb_settings  s = settings(.4, .8, .3, 3, 1.2, 1.5);
   mhb_response *r;
-  always_due    due = {{no_stop, no_stop_searching, is_due, count_published}, 0, 1000};
+  quiet_monitor due = due_monitor_create();
   s.search.starts   = 4;
   assert_int_equal(main_curve(&model, &s, 3, NULL, &r), SHB_OK);
   assert_int_equal(mhb_secondary_branches(&model, &s, r, &due.base), SHB_OK);
   assert_true(due.n_published >= 4 * 3 * 6); /* starts, orders, places */
-  assert_int_equal(due.least, r->branch[0].n_points);
+  assert_int_equal(due.fewest, r->branch[0].n_points);
   mhb_response_destroy(r);
   modal_model_free(&model);
 }
