@@ -49,7 +49,9 @@ static void note_gap(main_branch *m, const char *why, double value) {
 }
 
 static shb_status trace(main_branch *m, const mhb_segment_plan *plan, int *segment, mhb_end *end) {
-  SHB_TRY(mhb_tracer_trace(m->tracer, plan, segment, end));
+  mhb_segment_plan next = *plan;
+  next.recorded         = n_points(m);
+  SHB_TRY(mhb_tracer_trace(m->tracer, &next, segment, end));
   if (*end == MHB_END_INTERRUPTED) m->stopped = true;
   return SHB_OK;
 }
