@@ -114,8 +114,8 @@ static bool is_secondary(const mhb_response *response, int b) {
   return branch->kind == MHB_BRANCH_NONLINEAR && branch->main != b && branch->n_points > 0;
 }
 
-/* A secondary branch, b of one of the sides, counts with its distance from the nearest branch of the
- * same preload on the other side. */
+/* A secondary branch, b of one of the sides, counts with its distance from the nearest branch of
+ * the same preload on the other side. */
 static shb_status compare_secondary(comparison *c, int b, bool of_rung) {
   const mhb_response *own   = of_rung ? c->rung.response : c->reference.response;
   const mhb_response *other = of_rung ? c->reference.response : c->rung.response;
