@@ -290,7 +290,7 @@ static shb_status complete(main_branch *m, mhb_end end, int stable_at) {
                         .other_reason = m->other_reason};
   SHB_TRY(mhb_branch_complete(m->tracer, &m->chain, m->response, 0, &own));
   bool covers = m->response->branch[0].complete;
-  /* published as complete, a main branch is not traced again: only once those beside it are there */
+  /* a main branch published as complete is not traced again: it waits for those beside it */
   m->response->branch[0].complete = false;
   for (int i = 0; i < m->n_detached; i++) {
     int            index;

@@ -169,7 +169,7 @@ void mhb_receptance_destroy(mhb_receptance *r) {
 }
 
 /* L_i = 1/(w_i^2 - w^2 + 2 j zeta_i w_i w). At a resonance without damping w is moved by half of
- * NUDGE: far enough that the other modes keep half of their digits in the sums. */
+ * NUDGE. That is far enough for the other modes to keep half of their digits in the sums. */
 MHB_HOT static void set_lambda(const mhb_receptance *r, double w, double *restrict re,
                                double *restrict im) {
   const double *restrict hz = r->model->frequency, *restrict zeta = r->model->damping_ratio;

@@ -1,4 +1,5 @@
-/* The witness itself: closed forms, two orders and tolerances on every motion of the suite, turned axes. */
+/* The reference law itself: closed forms, two orders and tolerances on every motion of the suite,
+ * turned axes. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -149,7 +150,7 @@ static void two_tolerances_agree(void **state) {
   }
 }
 
-/* A seventh of the tolerance's digits must be seen in the result: the error is not hidden by something common. */
+/* A loose tolerance is seen in the result. No error common to both solutions hides it. */
 static void coarse_steps_are_seen(void **state) {
   (void)state;
   suite_motion s = suite_at(7);

@@ -1,4 +1,5 @@
-/* The condensed receptance against dense sums over the contact dofs of one blade (eqs. 19-27, 34-35). */
+/* The condensed receptance against dense sums over the contact dofs of one blade (eqs. 19-27,
+ * 34-35). */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -200,7 +201,8 @@ static void condensation_is_the_dense_sum(void **state) {
   }
 }
 
-/* r_cc is complex symmetric, so that reversing the wave transposes R; and it takes energy out: Im p^H R p <= 0. */
+/* r_cc is complex symmetric, so that reversing the wave transposes R. It takes energy out:
+ * Im p^H R p <= 0. */
 static void receptance_is_reciprocal_and_passive(void **state) {
   (void)state;
   const char     *where = "reciprocity";
@@ -317,8 +319,8 @@ static void slopes_are_derivatives(void **state) {
   }
 }
 
-/* Subharmonics of order 2 at engine order 1: on 5 blades the neighbour lags by phi + 2 pi, so that 5 blades make 12 pi, on
- * 6 blades no lag closes. */
+/* Subharmonics of order 2 at engine order 1. On 5 blades the neighbour lags by phi + 2 pi, so that
+ * the lags of 5 blades add up to 12 pi. On 6 blades no lag closes. */
 static void subharmonics_close_around_the_ring(void **state) {
   (void)state;
   modal_model     model;
