@@ -16,7 +16,7 @@ enum { WORTH_THREADS = 24 };
 /* One evaluator a thread. Inside a parallel region, where a thread traces a branch, just one. */
 static shb_status create_contacts(mhb_balance *b) {
   int threads  = omp_in_parallel() || b->n_pairs < WORTH_THREADS ? 1 : omp_get_max_threads();
-  b->contacts  = shb_arena_take(&b->arena, (size_t)threads, sizeof *b->contacts);
+  b->contacts  = shb_arena_take(&b->arena, (size_t)threads, sizeof(mhb_contact_evaluator *));
   b->n_threads = threads;
   SHB_CHECK(b->contacts, SHB_ERR_IO, "out of memory");
   for (int i = 0; i < threads; i++)
@@ -123,14 +123,15 @@ void mhb_evaluation_destroy(mhb_evaluation *e) {
   free(e);
 }
 
+static bool same_law(const mhb_operating_point *p, const mhb_operating_point *q) {
+  return p->n0 == q->n0 && p->mu == q->mu && p->kv == q->kv && p->ku[0] == q->ku[0] &&
+         p->ku[1] == q->ku[1] && p->ku[2] == q->ku[2];
+}
+
 /* The laws depend on the interfaces' operating points, but for frequency and scale. */
 static bool same_laws(const mhb_balance *b, const mhb_evaluation *x, const mhb_evaluation *y) {
-  for (int i = 0; i < b->n_interfaces; i++) {
-    const mhb_operating_point *p = &x->own[i], *q = &y->own[i];
-    if (p->n0 != q->n0 || p->mu != q->mu || p->kv != q->kv ||
-        memcmp(p->ku, q->ku, sizeof p->ku) != 0)
-      return false;
-  }
+  for (int i = 0; i < b->n_interfaces; i++)
+    if (!same_law(&x->own[i], &y->own[i])) return false;
   return true;
 }
 
@@ -357,11 +358,11 @@ static void set_slope(mhb_balance *b, int k, int unloaded) {
 static void set_force_by_parameter(mhb_balance *b, const double *x) {
   size_t block = 3 * (size_t)b->nb;
   for (int a = 0; a < b->n_pairs; a++) {
-    size_t at   = (size_t)a * block;
-    int    i    = b->receptance->interface[a];
-    double rate = mhb_interface_rate(&b->eval->at, b->settings, i, b->parameter);
-    mhb_parameter_force(&b->eval->own[i], b->parameter, &b->law[a], b->receptance->share[a], b->nb,
-                        x + at, b->eval->p + at, b->eval->dp + at * block,
+    size_t         at   = (size_t)a * block;
+    int            i    = b->receptance->interface[a];
+    double         rate = mhb_interface_rate(&b->eval->at, b->settings, i, b->parameter);
+    mhb_pair_force pair = {b->nb, x + at, b->eval->p + at, b->eval->dp + at * block};
+    mhb_parameter_force(&b->eval->own[i], b->parameter, &b->law[a], b->receptance->share[a], &pair,
                         b->eval->by_parameter + at);
     for (size_t j = at; j < at + block && rate != 1; j++) b->eval->by_parameter[j] *= rate;
   }

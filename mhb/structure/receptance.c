@@ -352,8 +352,9 @@ void mhb_receptance_probe_change(const mhb_receptance *r, int k, const double co
   int    q = 3 * r->model->n_probes, m = r->n_modes;
   double kk = (double)k / r->nu, dw2 = 2 * kk * kk * r->omega * d_omega;
   memset(change, 0, sizeof *change * (size_t)q);
-  mhb_residual_terms_probe_change(r->residual_terms, k, kk * r->omega, r->scale, p, dp, dw2,
-                                  d_scale, change);
+  mhb_residual_terms_probe_change(r->residual_terms, k, kk * r->omega,
+                                  (mhb_structure_forces){r->scale, p},
+                                  (mhb_structure_forces){d_scale, dp}, dw2, change);
   for (int i = 0; i < m; i++) {
     double complex a = r->lambda[k * m + i] * mhb_modal_part_force(r->part, k, dp, i, d_scale);
     if (d_omega != 0)
