@@ -30,8 +30,8 @@ void fem_face_pressure(const fem_face_rule *rule, double p, const double x[][3],
   }
 }
 
-/* Add a skew block by v to nodes (i, j), and its transpose to nodes (j, i). Column b of the block is
- * e_b x v. Its element (a, b) is v_d, or -v_d if (a, b, d) is odd. */
+/* Add a skew block by v to nodes (i, j), and its transpose to nodes (j, i). Column b of the block
+ * is e_b x v. Its element (a, b) is v_d, or -v_d if (a, b, d) is odd. */
 static void add_skew_block(int order, int i, int j, const double v[3], double *K) {
   for (int d = 0; d < 3; d++) {
     int    b = (d + 1) % 3, c = (d + 2) % 3;
