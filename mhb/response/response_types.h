@@ -18,10 +18,13 @@ typedef enum {
   MHB_N_BRANCH_KINDS
 } mhb_branch_kind;
 
-/* Origin of a branch: traced from the low end of the range, from a solution found by search, from a
- * flip; detached: a closed curve, or one that leaves by the low end, met on the way of the main
- * branch. */
-typedef enum { MHB_FROM_END, MHB_FROM_SEARCH, MHB_FROM_FLIP, MHB_FROM_DETACHED } mhb_origin;
+/* Origin of a branch: where its trace began. */
+typedef enum {
+  MHB_FROM_END,      /* the low end of the range */
+  MHB_FROM_SEARCH,   /* a solution found by search */
+  MHB_FROM_FLIP,     /* a flip */
+  MHB_FROM_DETACHED, /* met on the way of the main branch: closed, or leaves by the low end */
+} mhb_origin;
 
 /* special of mhb_branch. Flip and Neimark-Sacker: a multiplier crosses the unit circle at -1, or a
  * complex pair does. */

@@ -15,11 +15,12 @@
 #include "cases/schema/case.h"
 #include "cases/schema/case_paths.h"
 #include "cases/schema/stage_settings.h"
+#include "mesh/base/constants.h"
 #include "tests/support/scratch.h"
 
 enum { ALL = CASE_MESH | CASE_MODAL | CASE_MHB | CASE_POST };
 
-static const double degree = 3.14159265358979323846 / 180;
+static const double degree = SHB_PI / 180;
 
 static bool near(double a, double b) {
   return fabs(a - b) <= 1e-15 * fabs(b);

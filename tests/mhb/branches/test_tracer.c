@@ -101,8 +101,8 @@ static void peaks_are_local_maxima(void **state) {
   tear_down(&f);
 }
 
-/* The odd harmonics of a motion of twice the period are round-off: it has the period itself. Its
- * segment joins the curve of lower order at once, whatever sign the rate of the round-off has. */
+/* A motion of twice the period whose odd harmonics are round-off has the period itself. The segment
+ * joins the curve of lower order at once, whatever sign the rate of the round-off has. */
 static void round_off_is_no_part_of_higher_order(void **state) {
   (void)state;
   double x[3 * (4 * H + 1)];
