@@ -198,7 +198,7 @@ shb_status mhb_response_merge(mhb_response *response, mhb_response *other) {
             "one case",
             other->n_pairs, other->n_probes, other->subharmonics, response->n_pairs,
             response->n_probes, response->subharmonics);
-  int before = response->n_branches, index;
+  int before = response->n_branches, index = 0;
   for (int i = 0; i < other->n_branches; i++) {
     mhb_branch *branch = &other->branch[i];
     SHB_TRY(mhb_response_branch(response, branch->kind, &index));
