@@ -197,6 +197,7 @@ static shb_status trace_both_ways(mhb_tracer *tracer, const mhb_seed *seed, mhb_
     plan.seed.direction  = -seed->direction;
     plan.seed.skip_first = true;
     plan.closes          = false;
+    plan.recorded        = mhb_chain_points(&chain, tracer->store);
     status               = mhb_tracer_trace(tracer, &plan, &down, &other);
     if (status == SHB_OK && other != MHB_END_NO_START)
       status = mhb_chain_insert(&chain, 1, (mhb_link){.segment = down, .joins = true});
