@@ -55,14 +55,14 @@ shb_status mhb_branch_complete(mhb_tracer *tracer, const mhb_chain *chain, mhb_r
   SHB_TRY(mhb_chain_join(chain, tracer->store, response, index, begins, &n_begins));
   unmark_hairlines(branch, range);
   c->interrupted = c->end == MHB_END_INTERRUPTED;
-  if (c->by_folds) mhb_branch_stability_by_folds(branch, c->stable_at);
+  if (c->by_folds) SHB_TRY(mhb_branch_stability_by_folds(branch, begins, n_begins, c->stable_at));
   if (settings->stability == MHB_STABILITY_NEVER || c->interrupted) return set_reason(branch, c);
   mhb_branch_stability *stability;
   bool                  finished = true;
   SHB_TRY(mhb_harmonic_levels_use(tracer->levels, levels->highest)); /* no point has more */
   SHB_TRY(mhb_branch_stability_create(mhb_tracer_balance(tracer), &stability));
-  shb_status status = mhb_branch_stability_judge(stability, tracer, response, index, begins,
-                                                 n_begins, c->stable_at, &finished);
+  shb_status status =
+      mhb_branch_stability_judge(stability, tracer, response, index, begins, n_begins, &finished);
   mhb_branch_stability_destroy(stability);
   c->interrupted = !finished;
   return status == SHB_OK ? set_reason(branch, c) : status;

@@ -8,31 +8,27 @@
 #include "mhb/branches/record.h"
 #include "mhb/continuation/corrector.h"
 #include "mhb/continuation/event_location.h"
+#include "mhb/floquet/curve_verdicts.h"
 #include "mhb/floquet/floquet.h"
 
-/* Up to CHEAP states every point is judged. Up to FINE states the budget of a branch decides, in
- * seconds of expected cost. Above that there are fewer modes and sub-steps. */
-enum {
-  CHEAP          = 60,
-  FINE           = 120,
-  FEWER_STATES   = 320,
-  SUBSTEPS       = 256,
-  FEWER_SUBSTEPS = 32,
-  LEAST_POINTS   = 3
-};
-static const double BUDGET = 0.5, FEWER_BUDGET = 0.1, SECONDS_A_CUBE = 4e-9, SECONDS_A_STATE = 1e-5;
+/* Up to CHEAP states every point is judged, above if the expected cost of all is within BUDGET. At
+ * least LEAST_POINTS slipping points are judged in any case. */
+enum { CHEAP = 60, MAX_STATES = 600, SUBSTEPS = 256, LEAST_POINTS = 7 };
+static const double BUDGET = 0.8, SECONDS_A_CUBE = 1.5e-9, SECONDS_A_STATE = 1e-5;
 
 /* Distances of a modulus from 1: the margin outside that counts as unstable, the accuracy of a
- * located bifurcation, and the end of the search. */
-static const double MARGIN = 1e-3, ON_CIRCLE = 1e-3, NEAR_ENOUGH = 1e-6;
-enum { MAX_LOCATED = 32 };
+ * located bifurcation, and the end of the search. It is COARSE above CHEAP states. A search takes
+ * MOST_TRIALS multipliers at most: a test function that jumps is not followed further. */
+static const double MARGIN = 1e-3, ON_CIRCLE = 1e-3, NEAR_ENOUGH = 1e-6, COARSE = 1e-4;
+enum { MAX_LOCATED = 32, MOST_TRIALS = 24, MOST_TRIALS_DEAR = 8 };
 
-/* The verdict of the multipliers on a point. */
+/* The multipliers' verdict on a point. */
 typedef struct {
   int    computed;       /* 0: not computed */
   int    verdict;        /* mhb_verdict */
-  int    loss;           /* MHB_LOSS_FOLD ... of the largest */
-  int    n_unstable;     /* outside the unit circle by more than the margin */
+  int    loss;           /* MHB_LOSS_FOLD ...: of the largest on the positive axis, else of all */
+  int    n_real;         /* on the positive axis, outside the unit circle by more than the margin */
+  double excess;         /* of the largest modulus over 1 */
   int    leaves_complex; /* the largest that is not on the positive axis is outside by the margin */
   double complex_excess; /* its modulus, less 1; NAN: undecided */
   int    bifurcation;    /* where it crosses the circle: MHB_FLIP, MHB_NEIMARK_SACKER */
@@ -41,14 +37,16 @@ typedef struct {
 struct mhb_branch_stability {
   mhb_balance *balance;
   mhb_floquet *floquet;
-  int          states, judges_all; /* judges_all: every point of the branch at work is judged */
-  double      *x, *r;              /* [n] */
+  int          states; /* of all modes */
+  double      *x, *r;  /* [n] */
   /* the branch at work */
   mhb_tracer      *tracer;
   mhb_response    *response;
   int              branch;
-  point_stability *at; /* [point] */
+  point_stability *at;      /* [point] */
+  int             *decided; /* [point] judged point whose verdict holds here too; -1: none */
   int              n;
+  bool            *begins;    /* [point] the curve begins there, or anew after a gap */
   shb_status       published; /* first failure of a publication */
 };
 
@@ -63,14 +61,12 @@ shb_status mhb_branch_stability_create(mhb_balance *b, mhb_branch_stability **ou
   SHB_CHECK(w, SHB_ERR_IO, "out of memory");
   w->balance = b;
   w->states  = count_states(b);
-  int fine   = w->states <= FINE || b->settings->stability == MHB_STABILITY_ALWAYS;
   w->x       = calloc((size_t)b->n, sizeof(double));
   w->r       = calloc((size_t)b->n, sizeof(double));
   shb_status status =
       w->x && w->r ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   if (status == SHB_OK)
-    status = mhb_floquet_create(b->receptance, b->settings, fine ? SUBSTEPS : FEWER_SUBSTEPS,
-                                fine ? 0 : FEWER_STATES, &w->floquet);
+    status = mhb_floquet_create(b->receptance, b->settings, SUBSTEPS, MAX_STATES, &w->floquet);
   if (status != SHB_OK) {
     mhb_branch_stability_destroy(w);
     return status;
@@ -118,10 +114,13 @@ static point_stability stability_of(const mhb_multipliers *m) {
   point_stability  out    = {.computed       = 1,
                              .verdict        = (int)m->verdict,
                              .loss           = loss[m->crossing],
-                             .n_unstable     = m->n_unstable,
+                             .excess         = m->largest - 1,
                              .complex_excess = NAN};
   int              i      = largest_complex(m);
   if (m->verdict == MHB_UNDECIDED) return out;
+  for (int k = 0; k < m->n_unstable; k++)
+    out.n_real += cimag(m->multiplier[k]) == 0 && creal(m->multiplier[k]) > 0;
+  if (out.n_real > 0) out.loss = MHB_LOSS_FOLD;
   out.complex_excess = i < 0 ? -1 : cabs(m->multiplier[i]) - 1;
   out.bifurcation    = i < 0 || cimag(m->multiplier[i]) != 0 ? MHB_NEIMARK_SACKER : MHB_FLIP;
   out.leaves_complex = m->verdict == MHB_UNSTABLE && out.complex_excess > fmax(MARGIN, m->change);
@@ -130,8 +129,8 @@ static point_stability stability_of(const mhb_multipliers *m) {
 
 /* Write the multipliers of a point into the branch. */
 static void put(const mhb_branch_stability *w, int point, const mhb_multipliers *m) {
-  static const int judged[] = {MHB_BY_MULTIPLIERS, MHB_MARGINAL_BY_FOLDS, MHB_BY_MULTIPLIERS,
-                               MHB_UNDECIDED_BY_FOLDS};
+  static const int judged[] = {MHB_BY_MULTIPLIERS, MHB_JUDGED_MARGINAL, MHB_BY_MULTIPLIERS,
+                               MHB_JUDGED_UNDECIDED};
   mhb_branch      *branch   = branch_of(w);
   int              kept     = w->response->n_multipliers;
   branch->judged[point]     = judged[m->verdict];
@@ -159,28 +158,15 @@ static bool judge_point(mhb_branch_stability *w, int point) {
 
 /* Whether all contacts stick or are open throughout. The exponents of the last point are used again
  * then, at little cost. In a run-up they change with the speed. */
-static bool is_linear(const mhb_branch_stability *w, int point) {
-  if (w->balance->settings->run_up) return false;
-  size_t        pairs = (size_t)w->response->n_pairs;
-  const double *share = branch_of(w)->state + 3 * (size_t)point * pairs;
+static bool is_linear(const mhb_branch *branch, size_t pairs, int point) {
+  const double *share = branch->state + 3 * (size_t)point * pairs;
   for (size_t a = 0; a < pairs; a++)
     if (share[3 * a] < 1 && share[3 * a + 2] < 1) return false;
   return true;
 }
 
-/* The middle point of the longest stretch without judged points and folds; -1: none. */
-static int next_of_few(const mhb_branch_stability *w) {
-  const int *special = branch_of(w)->special;
-  int        from = 0, longest = 0, best = -1;
-  for (int i = 0; i <= w->n; i++) {
-    if (i < w->n && !w->at[i].computed && special[i] != MHB_FOLD) continue;
-    if (i - from > longest) {
-      longest = i - from;
-      best    = from + longest / 2;
-    }
-    from = i + 1;
-  }
-  return best;
+static bool is_linear_point(const mhb_branch_stability *w, int point) {
+  return is_linear(branch_of(w), (size_t)w->response->n_pairs, point);
 }
 
 /* The point of the largest motion that is not judged yet; -1: none. */
@@ -198,34 +184,74 @@ static int largest_motion(const mhb_branch_stability *w) {
   return best;
 }
 
-/* Number of points that the budget allows, by the states integrated and the cells of the ring
- * (bloch.h). */
+/* Number of slipping points that the budget allows, by the states integrated and the cells of the
+ * ring (bloch.h). */
 static int affordable(const mhb_branch_stability *w) {
-  int    few = w->states > FINE, g = mhb_floquet_cells(w->floquet);
-  double states = few && w->states > FEWER_STATES ? FEWER_STATES : w->states;
+  int    g      = mhb_floquet_cells(w->floquet);
+  double states = w->states < MAX_STATES ? w->states : MAX_STATES;
   double cube   = SECONDS_A_CUBE * states * states * states * (g > 2 ? 2. : 1.) / (g * g);
-  int    n      = (int)((few ? FEWER_BUDGET : BUDGET) / (cube + SECONDS_A_STATE * states));
+  int    n      = (int)(BUDGET / (cube + SECONDS_A_STATE * states));
   return n > LEAST_POINTS ? n : LEAST_POINTS;
 }
 
 /* Whether every point is judged. The branch alone decides, never the clock, so the result is the
  * same on every machine and for any number of threads. */
-static int judges_all(const mhb_branch_stability *w) {
+static bool judges_all(const mhb_branch_stability *w) {
+  int slipping = 0;
+  for (int i = 0; i < w->n; i++) slipping += !is_linear_point(w, i);
   return w->states <= CHEAP || w->balance->settings->stability == MHB_STABILITY_ALWAYS ||
-         (w->states <= FINE && affordable(w) >= w->n);
+         affordable(w) >= slipping;
 }
 
-static bool judge_points(mhb_branch_stability *w) {
+static mhb_stability_kind kind_of(const point_stability *at) {
+  if (at->verdict != MHB_UNSTABLE) return MHB_KIND_STABLE;
+  return at->loss == MHB_LOSS_FOLD ? MHB_KIND_BEYOND_FOLD : MHB_KIND_MODULATED;
+}
+
+/* What is known of the points, for the choice of the next. */
+static void set_verdicts(const mhb_branch_stability *w, mhb_curve_verdict *verdict) {
+  const int *special = branch_of(w)->special;
+  for (int i = 0; i < w->n; i++) {
+    const point_stability *at   = &w->at[i];
+    bool                   fail = at->computed && at->verdict == MHB_UNDECIDED;
+    verdict[i]                  = (mhb_curve_verdict){.judged    = at->computed && !fail,
+                                                      .undecided = fail,
+                                                      .divides   = special[i] == MHB_FOLD || is_linear_point(w, i),
+                                                      .begins    = w->begins[i],
+                                                      .wanted    = special[i] == MHB_PEAK,
+                                                      .kind      = kind_of(at),
+                                                      .excess    = at->excess};
+  }
+}
+
+/* Slipping points, one after the other, until their neighbours decide the rest or the budget is
+ * used. */
+static bool judge_some(mhb_branch_stability *w, mhb_curve_verdict *verdict) {
   bool go_on = true;
-  for (int i = 0; i < w->n && go_on; i++)
-    if (w->judges_all || is_linear(w, i)) go_on = judge_point(w, i);
-  if (w->judges_all) return go_on;
   for (int left = affordable(w), first = 1; left > 0 && go_on; left--, first = 0) {
-    int i = first ? largest_motion(w) : next_of_few(w);
+    set_verdicts(w, verdict);
+    int i = first ? largest_motion(w) : mhb_curve_verdicts_next(w->n, verdict);
     if (i < 0) break;
     go_on = judge_point(w, i);
   }
+  set_verdicts(w, verdict);
+  mhb_curve_verdicts_decided(w->n, verdict, w->decided);
   return go_on;
+}
+
+static shb_status judge_points(mhb_branch_stability *w, bool *finished) {
+  bool go_on = true, all = judges_all(w);
+  for (int i = 0; i < w->n; i++) w->decided[i] = -1;
+  for (int i = 0; i < w->n && go_on; i++)
+    if (all || is_linear_point(w, i)) go_on = judge_point(w, i);
+  if (!all && go_on) {
+    mhb_curve_verdict *verdict = calloc((size_t)w->n + 1, sizeof *verdict);
+    SHB_CHECK(verdict, SHB_ERR_IO, "out of memory");
+    go_on = judge_some(w, verdict);
+    free(verdict);
+  }
+  *finished = go_on;
+  return w->published;
 }
 
 /* ---- flips and Neimark-Sacker points ---- */
@@ -234,6 +260,8 @@ typedef struct {
   mhb_branch_stability *stability;
   mhb_multipliers       last;
   point_stability       at;
+  int                   trials; /* left */
+  double                enough;
 } search;
 
 static double excess_test(mhb_arclength *curve, const mhb_curve_point *point, void *context) {
@@ -241,8 +269,9 @@ static double excess_test(mhb_arclength *curve, const mhb_curve_point *point, vo
   (void)curve;
   mhb_balance_use(s->stability->balance, point->evaluation);
   evaluate(s->stability, point->x, &s->last);
-  s->at = stability_of(&s->last);
-  return fabs(s->at.complex_excess) < NEAR_ENOUGH ? 0 : s->at.complex_excess;
+  s->at     = stability_of(&s->last);
+  bool ends = fabs(s->at.complex_excess) < s->enough || --s->trials <= 0;
+  return ends ? 0 : s->at.complex_excess;
 }
 
 /* A recorded point, linearised. */
@@ -256,7 +285,10 @@ static void set_point(mhb_branch_stability *w, int i, mhb_curve_point *point) {
  * jump across 0 is not marked. */
 static shb_status locate(mhb_branch_stability *w, int i) {
   mhb_arclength *curve = mhb_tracer_curve(w->tracer);
-  search         s     = {.stability = w};
+  bool           dear  = w->states > CHEAP;
+  search         s     = {.stability = w,
+                          .trials    = dear ? MOST_TRIALS_DEAR : MOST_TRIALS,
+                          .enough    = dear ? COARSE : NEAR_ENOUGH};
   double         at, chord[curve->n + 1];
   set_point(w, i - 1, &curve->current);
   set_point(w, i, &curve->next);
@@ -273,52 +305,101 @@ static shb_status locate(mhb_branch_stability *w, int i) {
   mhb_response_place(w->response, w->branch, i);
   put(w, i, &s.last);
   memmove(w->at + i + 1, w->at + i, sizeof *w->at * (size_t)(w->n - i));
-  w->at[i] = s.at;
+  memmove(w->decided + i + 1, w->decided + i, sizeof *w->decided * (size_t)(w->n - i));
+  for (int k = i + 1; k <= w->n; k++) w->decided[k] += w->decided[k] >= i;
+  memmove(w->begins + i + 1, w->begins + i, sizeof *w->begins * (size_t)(w->n - i));
+  w->begins[i]  = false;
+  w->at[i]      = s.at;
+  w->decided[i] = -1;
   w->n++;
   return SHB_OK;
 }
 
-static bool begins(const int *first, int n_first, int point) {
-  for (int k = 0; k < n_first; k++)
-    if (first[k] == point) return true;
-  return false;
+/* Whether a complex or negative multiplier is outside the unit circle, or is taken to be. */
+static bool is_outside(const mhb_branch_stability *w, int i) {
+  const point_stability *at = w->decided[i] < 0 ? &w->at[i] : &w->at[w->decided[i]];
+  return at->computed && at->complex_excess > 0;
 }
 
-/* Whether one of the points from..to - 1 has a complex or negative multiplier outside the unit
- * circle by more than the margin. The onset of slip brings multipliers close to 1, which are not
- * marked. */
+/* Whether one of the points from..to - 1 has such a multiplier outside by more than the margin. The
+ * onset of slip brings multipliers close to 1, which are not marked. */
 static bool leaves_by_margin(const mhb_branch_stability *w, int from, int to) {
   for (int i = from; i < to; i++)
     if (w->at[i].leaves_complex) return true;
   return false;
 }
 
+/* Whether such a multiplier crosses the circle between points i - 1 and i, both judged. */
+static bool crosses(const mhb_branch_stability *w, int i) {
+  if (i < 1 || i >= w->n || w->begins[i] || !w->at[i].computed || !w->at[i - 1].computed)
+    return false;
+  return (w->at[i].complex_excess <= 0) != (w->at[i - 1].complex_excess <= 0) &&
+         !isnan(w->at[i].complex_excess) && !isnan(w->at[i - 1].complex_excess);
+}
+
 /* Mark all bifurcations, from the last point to the first, so that indices before stay valid. */
-static shb_status mark_bifurcations(mhb_branch_stability *w, const int *first, int n_first) {
+static shb_status mark_bifurcations(mhb_branch_stability *w) {
   int located = 0, to = w->n;
   while (to > 0 && located + 2 <= MAX_LOCATED) {
     int from = to - 1;
-    if (!(w->at[from].complex_excess > 0) || !w->at[from].computed) {
+    if (!is_outside(w, from)) {
       to--;
       continue;
     }
-    while (from > 0 && w->at[from - 1].computed && w->at[from - 1].complex_excess > 0 &&
-           !begins(first, n_first, from))
-      from--;
+    while (from > 0 && is_outside(w, from - 1) && !w->begins[from]) from--;
     int end = to;
     to      = from;
     if (!leaves_by_margin(w, from, end)) continue;
-    bool ends   = end < w->n && w->at[end].computed && w->at[end].complex_excess <= 0;
-    bool starts = from > 0 && w->at[from - 1].computed && w->at[from - 1].complex_excess <= 0;
-    for (int i = from; i < end; i++) w->at[i].leaves_complex = 1;
-    if (ends && !begins(first, n_first, end)) SHB_TRY(locate(w, end));
-    if (starts && !begins(first, n_first, from)) SHB_TRY(locate(w, from));
+    for (int i = from; i < end; i++) w->at[i].leaves_complex = w->at[i].computed;
+    if (crosses(w, end)) SHB_TRY(locate(w, end));
+    if (crosses(w, from)) SHB_TRY(locate(w, from));
     located += 2;
   }
   return SHB_OK;
 }
 
 /* ---- the verdict ---- */
+
+static void set(mhb_branch *branch, int i, bool stable, int loss, int judged) {
+  branch->stable[i] = stable;
+  branch->loss[i]   = stable ? MHB_NO_LOSS : loss;
+  branch->judged[i] = judged;
+}
+
+/* Nearest point with a decisive verdict in direction step; NULL: none before a gap. */
+static const point_stability *decisive_beside(const mhb_branch_stability *w, int point, int step) {
+  for (int i = point + step; i >= 0 && i < w->n; i += step) {
+    if (w->begins[step > 0 ? i : i + 1]) return NULL;
+    const point_stability *at = &w->at[i];
+    if (at->computed && (at->verdict == MHB_STABLE || at->verdict == MHB_UNSTABLE)) return at;
+  }
+  return NULL;
+}
+
+/* A multiplier at 1 within its accuracy. Such a motion is called stable, unless it is on both sides
+ * unstable, or belongs to a stretch outside. */
+static void decide_marginal(mhb_branch_stability *w, int i) {
+  const point_stability *side[2] = {decisive_beside(w, i, -1), decisive_beside(w, i, 1)};
+  int                    n = 0, loss = w->at[i].loss;
+  for (int k = 0; k < 2; k++) n += side[k] && side[k]->verdict == MHB_UNSTABLE;
+  if (n == 2 && branch_of(w)->special[i] == MHB_FOLD) loss = side[0]->loss;
+  set(branch_of(w), i, n < 2 && !w->at[i].leaves_complex, loss, MHB_JUDGED_MARGINAL);
+}
+
+static void decide(mhb_branch_stability *w) {
+  mhb_branch *branch = branch_of(w);
+  for (int i = 0; i < w->n; i++) {
+    int                    from = w->decided[i] < 0 ? i : w->decided[i];
+    const point_stability *at   = &w->at[from];
+    int                    how  = from == i ? branch->judged[i] : MHB_BY_NEIGHBOURS;
+    if (!at->computed || at->verdict == MHB_UNDECIDED) continue;
+    if (at->verdict == MHB_MARGINAL && from == i) {
+      decide_marginal(w, i);
+    } else {
+      set(branch, i, at->verdict != MHB_UNSTABLE, at->loss, how);
+    }
+  }
+}
 
 /* Whether the curve came back at point i to the end of the range at which point i - 1 left it. Its
  * direction has changed, so an odd number of folds lies outside. */
@@ -327,57 +408,105 @@ static bool comes_back(const mhb_branch *branch, int i) {
          branch->special[i - 1] == MHB_ORDINARY;
 }
 
-/* Number of folds between the beginning and point `to`, modulo 2. */
-static int parity(const mhb_branch *branch, int to) {
-  int odd = 0;
-  for (int i = 1; i <= to && i < branch->n_points; i++)
-    odd ^= (branch->special[i - 1] == MHB_FOLD) ^ comes_back(branch, i);
-  return odd;
-}
-
-/* Stability and loss of every point. at: [point] verdicts of multipliers, or NULL. */
-static void decide(mhb_branch *branch, const point_stability *at, int stable_at) {
-  int n_unstable = parity(branch, stable_at), loss = n_unstable ? MHB_LOSS_FOLD : MHB_NO_LOSS;
-  for (int i = 0; i < branch->n_points; i++) {
-    if (comes_back(branch, i)) {
-      if (n_unstable == 0) loss = MHB_LOSS_FOLD;
-      n_unstable = n_unstable == 0 ? 1 : n_unstable == 1 ? 0 : n_unstable;
-    }
-    const point_stability *l = at && at[i].computed ? &at[i] : NULL;
-    if (l && (l->verdict == MHB_STABLE || l->verdict == MHB_UNSTABLE)) {
-      n_unstable = l->verdict == MHB_STABLE ? 0 : l->n_unstable;
-      loss       = l->loss;
-    }
-    bool leaves =
-        l && l->leaves_complex; /* marginal, between a crossing and a point outside by the margin */
-    branch->stable[i] = n_unstable == 0 && !leaves;
-    branch->loss[i]   = branch->stable[i] ? MHB_NO_LOSS : n_unstable ? loss : l->loss;
-    if (branch->special[i] != MHB_FOLD) continue;
-    if (n_unstable == 0) loss = MHB_LOSS_FOLD;
-    n_unstable = n_unstable == 0 ? 1 : n_unstable == 1 ? 0 : n_unstable;
+/* Points not judged, from a reference on in direction step, up to the next one: unstable where the
+ * number of multipliers beyond +1 is odd. */
+static void count_folds(mhb_branch *branch, const bool *gap, const bool *reference, int from,
+                        int step, bool odd) {
+  for (int i = from + step; i >= 0 && i < branch->n_points && !reference[i]; i += step) {
+    int later = step > 0 ? i : i + 1;
+    if (gap[later]) return;
+    odd ^= comes_back(branch, later) ^ (branch->special[i - step] == MHB_FOLD);
+    if (odd && branch->stable[i] < 0 && branch->special[i] != MHB_FOLD)
+      set(branch, i, false, MHB_LOSS_FOLD, MHB_BY_FOLDS);
   }
 }
 
-void mhb_branch_stability_by_folds(mhb_branch *branch, int stable_at) {
-  decide(branch, NULL, stable_at);
+/* Folds on both sides of every reference [point]; odd [point]: it has an odd number of multipliers
+ * beyond +1. */
+static void decide_by_folds(mhb_branch *branch, const bool *begins, const bool *reference,
+                            const bool *odd) {
+  for (int i = 0; i < branch->n_points; i++)
+    for (int step = -1; step < 2 && reference[i]; step += 2)
+      count_folds(branch, begins, reference, i, step, odd[i]);
+}
+
+/* A fold whose multipliers were not computed: on the circle, between two sides that are known. */
+static void decide_folds(mhb_branch *branch) {
+  for (int i = 1; i + 1 < branch->n_points; i++) {
+    const int *side = &branch->stable[i];
+    if (branch->special[i] != MHB_FOLD || *side >= 0 || side[-1] < 0 || side[1] < 0) continue;
+    set(branch, i, side[-1] == 1 || side[1] == 1, branch->loss[i - 1], MHB_BY_NEIGHBOURS);
+  }
+}
+
+static void forget(mhb_branch *branch) {
+  for (int i = 0; i < branch->n_points; i++) {
+    branch->stable[i] = -1;
+    branch->loss[i]   = MHB_NO_LOSS;
+    branch->judged[i] = MHB_NOT_JUDGED;
+  }
+}
+
+/* begins[point] and two further arrays of flags, all false but for the beginnings; NULL: no memory.
+ * room: points. */
+static bool *flags(const int *begins, int n_begins, size_t room) {
+  bool *flag = calloc(3 * room + 1, sizeof *flag);
+  for (int k = 0; flag && k < n_begins; k++) flag[begins[k]] = begins[k] > 0;
+  return flag;
+}
+
+shb_status mhb_branch_stability_by_folds(mhb_branch *branch, const int *begins, int n_begins,
+                                         int stable_at) {
+  size_t n    = (size_t)branch->n_points;
+  bool  *flag = flags(begins, n_begins, n + 1);
+  SHB_CHECK(flag, SHB_ERR_IO, "out of memory");
+  flag[n + 1 + (size_t)stable_at] = true;
+  forget(branch);
+  decide_by_folds(branch, flag, flag + n + 1, flag + 2 * (n + 1));
+  free(flag);
+  return SHB_OK;
+}
+
+/* Verdicts of the points judged, of those that their neighbours decide, and by folds. flag: two
+ * arrays of room flags. */
+static void decide_all(mhb_branch_stability *w, bool *flag, size_t room) {
+  mhb_branch *branch    = branch_of(w);
+  bool       *reference = flag, *odd = flag + room;
+  decide(w);
+  for (int i = 0; i < w->n; i++) {
+    const point_stability *at = &w->at[i];
+    reference[i]              = at->computed && branch->special[i] != MHB_FOLD &&
+                   (at->verdict == MHB_STABLE || at->verdict == MHB_UNSTABLE);
+    odd[i] = at->n_real % 2;
+  }
+  decide_by_folds(branch, w->begins, reference, odd);
+  decide_folds(branch);
 }
 
 shb_status mhb_branch_stability_judge(mhb_branch_stability *w, mhb_tracer *tracer,
                                       mhb_response *response, int index, const int *begins,
-                                      int n_begins, int stable_at, bool *finished) {
-  w->tracer   = tracer;
-  w->response = response;
-  w->branch   = index;
-  w->n        = branch_of(w)->n_points;
-  w->at       = calloc((size_t)w->n + MAX_LOCATED, sizeof *w->at);
-  SHB_CHECK(w->at, SHB_ERR_IO, "out of memory");
-  w->judges_all     = judges_all(w);
-  w->published      = SHB_OK;
-  *finished         = judge_points(w);
-  shb_status status = w->published;
-  if (*finished && w->judges_all) status = mark_bifurcations(w, begins, n_begins);
-  decide(branch_of(w), w->at, stable_at);
+                                      int n_begins, bool *finished) {
+  w->tracer    = tracer;
+  w->response  = response;
+  w->branch    = index;
+  w->n         = branch_of(w)->n_points;
+  size_t room  = (size_t)w->n + MAX_LOCATED;
+  w->at        = calloc(room, sizeof *w->at);
+  w->decided   = calloc(room, sizeof *w->decided);
+  w->begins    = flags(begins, n_begins, room);
+  w->published = SHB_OK;
+  forget(branch_of(w));
+  shb_status status = w->at && w->decided && w->begins
+                          ? SHB_OK
+                          : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  if (status == SHB_OK) status = judge_points(w, finished);
+  if (status == SHB_OK && *finished) status = mark_bifurcations(w);
+  if (status == SHB_OK) decide_all(w, w->begins + room, room);
   free(w->at);
-  w->at = NULL;
+  free(w->decided);
+  free(w->begins);
+  w->at      = NULL;
+  w->decided = NULL;
+  w->begins  = NULL;
   return status;
 }

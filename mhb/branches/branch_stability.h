@@ -1,17 +1,24 @@
-/* Stability of the points of a branch. It rests on Floquet multipliers where they are computed, and
- * on the parity of folds elsewhere. Points where a multiplier crosses the unit circle other than at
- * +1 are located.
+/* Stability of the points of a branch by their Floquet multipliers. Points where a multiplier crosses
+ * the unit circle other than at +1 are located between judged points.
  *
- * With stability: auto the expected cost decides which points are judged by multipliers.
- *   up to 60 states    every point
- *   up to 120 states   every point, if half a second a branch suffices
- *   else               every linear point (no slip, opening or closing), and others spread over the
- *                      curve: as many as half a second allows, and at least three
- *   above 120 states   a tenth of a second, with fewer modes and sub-steps
+ * With stability: auto the expected cost decides which points are judged.
+ *   up to 60 states      every point
+ *   more                 every point, if the slipping ones cost 0.8 s a branch at most
+ *   else                 every linear point (no slip, opening or closing), and slipping points as
+ *                        many as 0.8 s allow, at least seven
+ * The order of the latter is that of mhb/floquet/curve_verdicts.h: the largest motion, peaks, slip
+ * onset and both sides of folds, then by bisection. The cost is computed from the number of states,
+ * never measured.
  *
- * Other points take the verdict of the last judged point before them, changed by every fold in
- * between. So do points whose largest multiplier is 1 within its error. Flips and Neimark-Sacker
- * points are located where every point is judged. */
+ * Verdicts, and what they rest on (judged):
+ *   multipliers  all inside the unit circle, or some outside by more than the margin
+ *   marginal     the largest is outside by less: stable, unless the judged points on both sides are
+ *                unstable
+ *   neighbours   the judged points on both sides are of one kind and near (curve_verdicts.h)
+ *   folds        unstable. The number of multipliers beyond +1 changes by one at every fold and
+ *                nowhere else, so it is odd here.
+ * Other points are not judged: stable is -1. An even number of folds proves nothing, as complex
+ * pairs cross the circle without a fold. */
 #ifndef MHB_BRANCHES_BRANCH_STABILITY_H
 #define MHB_BRANCHES_BRANCH_STABILITY_H
 
@@ -29,17 +36,18 @@ void       mhb_branch_stability_destroy(mhb_branch_stability *stability);
  * points.
  *   tracer     its level in use has the balance of the workspace
  *   begins     [n_begins] points at which the branch begins, or begins anew after a gap, rising; no
- *              bifurcation is located across
- *   stable_at  this point is stable by folds, unless multipliers tell otherwise
- *   finished   out  false: the monitor stopped it; points not judged yet go by folds
+ *              conclusion is drawn across
+ *   finished   out  false: the monitor stopped it before all points were judged
  * The curves so far are published meanwhile. SHB_ERR_IO: no memory; and errors of publication. */
 shb_status mhb_branch_stability_judge(mhb_branch_stability *stability, mhb_tracer *tracer,
                                       mhb_response *response, int branch, const int *begins,
-                                      int n_begins, int stable_at, bool *finished);
+                                      int n_begins, bool *finished);
 
-/* Set stable and loss by the parity of folds alone, counted from a point that is stable. Two points
- * in a row at one value tell that the curve left the range and came back to the same end. It passed
- * another fold there. */
-void mhb_branch_stability_by_folds(mhb_branch *branch, int stable_at);
+/* Set stable and loss by the parity of folds alone. At stable_at no multiplier is taken to be beyond
+ * +1. Points behind an odd number of folds are unstable, all others are not judged. Two points in a
+ * row at one value tell that the curve left the range and came back to the same end. It passed
+ * another fold there. SHB_ERR_IO: no memory. */
+shb_status mhb_branch_stability_by_folds(mhb_branch *branch, const int *begins, int n_begins,
+                                         int stable_at);
 
 #endif

@@ -10,21 +10,29 @@
 /* An imaginary part below this share of the modulus is the rounding of a power. */
 static const double REAL = 1e-11;
 
+/* Inverse iteration: relative distance of the shift from lambda, so that the matrix is regular, and
+ * change of lambda at which it ends. */
+static const double BESIDE = 1e-9, SETTLED = 1e-7;
+enum { INVERSE_STEPS = 12 };
+
 shb_status mhb_bloch_create(int cells, int capacity, mhb_bloch *b) {
   size_t n = (size_t)capacity, square = n * n;
-  *b      = (mhb_bloch){.cells = cells, .capacity = capacity, .size = 34 * capacity};
-  b->real = shb_arena_take(&b->arena, square + 1, sizeof *b->real);
-  b->re   = shb_arena_take(&b->arena, n + 1, sizeof *b->re);
-  b->im   = shb_arena_take(&b->arena, n + 1, sizeof *b->im);
-  b->work = shb_arena_take(&b->arena, (size_t)b->size + 2 * n + 1, sizeof *b->work);
-  if (cells > 2) b->matrix = shb_arena_take(&b->arena, square + 1, sizeof *b->matrix);
-  if (cells > 2) b->value = shb_arena_take(&b->arena, n + 1, sizeof *b->value);
-  if (!b->arena.failed) return SHB_OK;
+  *b        = (mhb_bloch){.cells = cells, .capacity = capacity, .size = 34 * capacity};
+  b->real   = shb_arena_take(&b->arena, square + 1, sizeof *b->real);
+  b->re     = shb_arena_take(&b->arena, n + 1, sizeof *b->re);
+  b->im     = shb_arena_take(&b->arena, n + 1, sizeof *b->im);
+  b->work   = shb_arena_take(&b->arena, (size_t)b->size + 2 * n + 1, sizeof *b->work);
+  b->matrix = shb_arena_take(&b->arena, square + 1, sizeof *b->matrix);
+  b->value  = shb_arena_take(&b->arena, 2 * n + 1, sizeof *b->value);
+  b->pivot  = shb_arena_take(&b->arena, n + 1, sizeof *b->pivot);
+  int ok    = cells <= 2 || mhb_hessenberg_qr_create(capacity, &b->qr);
+  if (ok && !b->arena.failed) return SHB_OK;
   mhb_bloch_destroy(b);
   SHB_FAIL(SHB_ERR_IO, "out of memory for the multipliers of %d states", capacity);
 }
 
 void mhb_bloch_destroy(mhb_bloch *b) {
+  mhb_hessenberg_qr_destroy(&b->qr);
   shb_arena_free(&b->arena);
   *b = (mhb_bloch){0};
 }
@@ -51,27 +59,39 @@ static int real_problem(mhb_bloch *b, int n, const double *S, int alternating,
   return 1;
 }
 
-/* Other kappa: complex. */
-static int complex_problem(mhb_bloch *b, int n, const double *S, double kappa) {
+/* matrix <- S(kappa) */
+static void set_matrix(mhb_bloch *b, int n, const double *S, double kappa) {
   int square = n * n;
   for (int i = 0; i < square; i++) b->matrix[i] = S[i];
   for (int c = 1; c < b->cells; c++) {
     double complex turn = cexp(-I * kappa * c);
     for (int i = 0; i < square; i++) b->matrix[i] += turn * S[c * square + i];
   }
-  return LAPACKE_zgeev_work(LAPACK_COL_MAJOR, 'N', 'N', n, b->matrix, n, b->value, NULL, 1, NULL, 1,
-                            (double complex *)b->work, b->size / 2, b->work + b->size) == 0;
+}
+
+/* Note lambda[n] of wave l if the largest is among them. */
+static void note_largest(mhb_bloch *b, int n, int l, const double complex *lambda) {
+  for (int i = 0; i < n; i++) {
+    if (cabs(lambda[i]) <= cabs(b->largest)) continue;
+    b->largest = lambda[i];
+    b->wave    = l;
+  }
 }
 
 int mhb_bloch_multipliers(mhb_bloch *b, int n, const double *S, int n_segments, int cell_shift,
                           double complex *multiplier) {
   int g = b->cells, done = 0;
-  if (n == 0) return 1;
-  for (int l = 0; 2 * l <= g; l++) {
-    double kappa = SHB_TWO_PI * l / g;
-    int    own   = l == 0 || 2 * l == g; /* its own conjugate */
-    if (!(own ? real_problem(b, n, S, l > 0, multiplier + done) : complex_problem(b, n, S, kappa)))
+  b->wave    = 0;
+  b->largest = 0;
+  for (int l = 0; 2 * l <= g && n > 0; l++) {
+    double          kappa  = SHB_TWO_PI * l / g;
+    int             own    = l == 0 || 2 * l == g; /* its own conjugate */
+    double complex *lambda = own ? multiplier + done : b->value;
+    if (!own) set_matrix(b, n, S, kappa);
+    if (!(own ? real_problem(b, n, S, l > 0, lambda)
+              : mhb_hessenberg_qr_eigenvalues(&b->qr, n, b->matrix, lambda)))
       return 0;
+    note_largest(b, n, l, lambda);
     double complex turn = own ? (l > 0 && cell_shift % 2 ? -1 : 1) : cexp(-I * kappa * cell_shift);
     for (int i = 0; i < n && own; i++, done++)
       multiplier[done] = turn * power(multiplier[done], n_segments);
@@ -81,4 +101,37 @@ int mhb_bloch_multipliers(mhb_bloch *b, int n, const double *S, int n_segments, 
     }
   }
   return 1;
+}
+
+/* Euclidean norm of x[n], which is scaled to 1. */
+static double normalise(int n, double complex *x) {
+  double sum = 0;
+  for (int i = 0; i < n; i++) sum += creal(x[i]) * creal(x[i]) + cimag(x[i]) * cimag(x[i]);
+  double size = sqrt(sum);
+  for (int i = 0; i < n && size > 0; i++) x[i] /= size;
+  return size;
+}
+
+double mhb_bloch_continued(mhb_bloch *b, int n, const double *S, int n_segments) {
+  double complex  shift = b->largest * (1 + BESIDE), lambda = shift;
+  double complex *x = b->value, *y = b->value + n;
+  if (n == 0) return 0;
+  set_matrix(b, n, S, SHB_TWO_PI * b->wave / b->cells);
+  for (int i = 0; i < n; i++) {
+    b->matrix[i * n + i] -= shift;
+    x[i] = cexp(I * i * i);
+  }
+  if (LAPACKE_zgetrf_work(LAPACK_COL_MAJOR, n, n, b->matrix, n, b->pivot) != 0) return NAN;
+  normalise(n, x);
+  for (int step = 0; step < INVERSE_STEPS; step++) {
+    double complex product = 0, before = lambda;
+    for (int i = 0; i < n; i++) y[i] = x[i];
+    LAPACKE_zgetrs_work(LAPACK_COL_MAJOR, 'N', n, 1, b->matrix, n, b->pivot, y, n);
+    for (int i = 0; i < n; i++) product += conj(x[i]) * y[i];
+    lambda = shift + 1 / product;
+    if (!(normalise(n, y) > 0)) return NAN;
+    for (int i = 0; i < n; i++) x[i] = y[i];
+    if (step > 0 && cabs(lambda - before) < SETTLED * cabs(lambda)) break;
+  }
+  return pow(cabs(lambda), n_segments);
 }

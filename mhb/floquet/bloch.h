@@ -16,16 +16,21 @@
 
 #include "mesh/base/arena.h"
 #include "mesh/base/status.h"
+#include "mhb/floquet/hessenberg_qr.h"
 
 typedef struct {
-  int             cells, capacity; /* g; states a cell */
-  double         *real;            /* [capacity][capacity] */
-  double         *re, *im;         /* [capacity] */
-  double complex *matrix;          /* [capacity][capacity]; with three cells or more, as value */
-  double complex *value;           /* [capacity] */
-  double         *work;            /* [size] */
-  int             size;
-  shb_arena       arena;
+  int               cells, capacity; /* g; states a cell */
+  double           *real;            /* [capacity][capacity] */
+  double           *re, *im;         /* [capacity] */
+  double complex   *matrix;          /* [capacity][capacity] */
+  double complex   *value;           /* [capacity] */
+  double           *work;            /* [size] */
+  int              *pivot;           /* [capacity] */
+  int               size;
+  mhb_hessenberg_qr qr;      /* with three cells or more */
+  int               wave;    /* l of the largest multiplier of the last call */
+  double complex    largest; /* its lambda */
+  shb_arena         arena;
 } mhb_bloch;
 
 /* For up to capacity states a cell. SHB_ERR_IO: no memory. */
@@ -38,5 +43,9 @@ void       mhb_bloch_destroy(mhb_bloch *bloch);
  * Returns 0 if the eigensolver failed. */
 int mhb_bloch_multipliers(mhb_bloch *bloch, int n, const double *S, int n_segments, int cell_shift,
                           double complex *multiplier);
+
+/* Modulus of the multiplier of another S, near the one of the last call, that continues the largest
+ * multiplier: lambda of the same kappa that is nearest, by inverse iteration. NAN: it failed. */
+double mhb_bloch_continued(mhb_bloch *bloch, int n, const double *S, int n_segments);
 
 #endif

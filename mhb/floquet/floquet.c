@@ -224,6 +224,12 @@ static int first_refinement(const mhb_floquet *s, const mhb_law *law, double ome
   return refinement;
 }
 
+/* Modulus of the largest multiplier without extrapolation. */
+static double second_order(mhb_floquet *s) {
+  const mhb_monodromy *d = s->monodromy;
+  return mhb_bloch_continued(&s->bloch, d->n, d->M, s->schedule.n_segments);
+}
+
 /* Slip, opening, closing: sub-steps are halved until the largest multiplier is accurate. */
 static const char *nonlinear(mhb_floquet *s, const mhb_solution *solution, double omega,
                              mhb_multipliers *out) {
@@ -231,11 +237,11 @@ static const char *nonlinear(mhb_floquet *s, const mhb_solution *solution, doubl
   int         first = first_refinement(s, solution->law, omega);
   const char *why   = refine(s, solution, omega, first);
   if (!why) why = refine(s, solution, omega, 2 * first);
-  if (!why) why = multipliers_of(s, s->monodromy->M, out);
   for (int refinement = 2 * first; !why; refinement *= 2) {
     double before = out->largest;
     why           = multipliers_of(s, extrapolated(s), out);
-    out->change   = fabs(out->largest - before);
+    if (!why && refinement == 2 * first) before = second_order(s);
+    out->change = fabs(out->largest - before);
     if (why || is_accurate(out, refinement == 2 * first ? ROUGH : FINE)) return why;
     if (refinement == FINEST) break;
     why = refine(s, solution, omega, 2 * refinement);

@@ -62,34 +62,34 @@ int mhb_ring_band_factor(mhb_ring_band *b) {
   return 1;
 }
 
-MHB_INLINE void solve(int n, int w, const double *row, const int *pivot, mhb_lanes *x) {
+MHB_INLINE void solve(int n, int w, const double *row, const int *pivot, mhb_columns *x) {
   int next = 3 * w;
   for (int k = 0; k < n; k++) {
     const double *top = row + (long)k * (next + 1) + w;
-    mhb_lanes     xk  = x[pivot[k]];
+    mhb_columns   xk  = x[pivot[k]];
     x[pivot[k]]       = x[k];
     x[k]              = xk;
     for (int i = 1; i <= w && k + i < n; i++) x[k + i] -= top[i * next] * xk;
   }
   for (int k = n - 1; k >= 0; k--) {
     const double *top = row + (long)k * (next + 1) + w;
-    mhb_lanes     sum = x[k];
+    mhb_columns   sum = x[k];
     for (int j = 1; j <= 2 * w && k + j < n; j++) sum -= top[j] * x[k + j];
     x[k] = sum * top[0];
   }
 }
 
-MHB_HOT static void solve_one(const mhb_ring_band *b, mhb_lanes *x) {
+MHB_HOT static void solve_one(const mhb_ring_band *b, mhb_columns *x) {
   solve(3, 2, b->row, b->pivot, x);
 }
 
-MHB_HOT static void solve_folded(const mhb_ring_band *b, mhb_lanes *x, mhb_lanes *folded) {
+MHB_HOT static void solve_folded(const mhb_ring_band *b, mhb_columns *x, mhb_columns *folded) {
   for (int i = 0; i < b->n; i++) folded[b->place[i]] = x[i];
   solve(b->n, b->width, b->row, b->pivot, folded);
   for (int i = 0; i < b->n; i++) x[i] = folded[b->place[i]];
 }
 
-void mhb_ring_band_solve(const mhb_ring_band *b, mhb_lanes *x, mhb_lanes *folded) {
+void mhb_ring_band_solve(const mhb_ring_band *b, mhb_columns *x, mhb_columns *folded) {
   if (b->n == 3) {
     solve_one(b, x);
   } else {

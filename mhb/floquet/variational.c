@@ -20,14 +20,14 @@ shb_status mhb_variational_create(const mhb_modal_structure *s, int capacity,
   mhb_variational *v = calloc(1, sizeof *v);
   SHB_CHECK(v, SHB_ERR_IO, "out of memory");
   size_t n = (size_t)unknowns(s), contacts = (size_t)s->contacts;
-  size_t blocks = ((size_t)capacity + MHB_LANES - 1) / MHB_LANES;
+  size_t blocks = ((size_t)capacity + MHB_COLUMNS - 1) / MHB_COLUMNS;
   v->structure  = s;
   v->capacity   = capacity;
   v->rows       = 2 * modal_rows(s) + 5 * s->contacts;
   v->h          = -1;
-  v->Y          = shb_arena_take(&v->arena, blocks * (size_t)v->rows, sizeof(mhb_lanes));
-  v->P          = shb_arena_take(&v->arena, blocks * n, sizeof(mhb_lanes));
-  v->work       = shb_arena_take(&v->arena, 3 * n, sizeof(mhb_lanes));
+  v->Y          = shb_arena_take(&v->arena, blocks * (size_t)v->rows, sizeof(mhb_columns));
+  v->P          = shb_arena_take(&v->arena, blocks * n, sizeof(mhb_columns));
+  v->work       = shb_arena_take(&v->arena, 3 * n, sizeof(mhb_columns));
   v->linearised = shb_arena_take(&v->arena, contacts, sizeof *v->linearised);
   v->propagator = shb_arena_take(&v->arena, (size_t)s->modes * PROPAGATOR, sizeof(double));
   v->compliance = shb_arena_take(&v->arena, n * n, sizeof(double));
@@ -54,7 +54,7 @@ void mhb_variational_destroy(mhb_variational *v) {
 
 void mhb_variational_clear(mhb_variational *v, int columns) {
   v->columns    = columns;
-  v->blocks     = (columns + MHB_LANES - 1) / MHB_LANES;
+  v->blocks     = (columns + MHB_COLUMNS - 1) / MHB_COLUMNS;
   size_t blocks = (size_t)v->blocks;
   memset(v->Y, 0, blocks * (size_t)v->rows * sizeof *v->Y);
   memset(v->P, 0, blocks * (size_t)unknowns(v->structure) * sizeof *v->P);
@@ -107,15 +107,15 @@ void mhb_variational_set_step(mhb_variational *v, double h) {
 }
 
 /* q and v of all modes by the mean force P of the last sub-step. */
-MHB_HOT static void apply_force(const mhb_variational *v, mhb_lanes *Y, const mhb_lanes *P) {
+MHB_HOT static void apply_force(const mhb_variational *v, mhb_columns *Y, const mhb_columns *P) {
   const mhb_modal_structure *s  = v->structure;
   int                        n3 = 3 * s->pairs, m = s->modes;
   for (int k = 0; k < s->blades * s->sides; k++) {
-    int              b = k / s->sides, side = k % s->sides;
-    const double    *shape = s->shape + side * m * n3;
-    const mhb_lanes *p     = P + 3 * mhb_modal_structure_contact(s, b, side);
+    int                b = k / s->sides, side = k % s->sides;
+    const double      *shape = s->shape + side * m * n3;
+    const mhb_columns *p     = P + 3 * mhb_modal_structure_contact(s, b, side);
     for (int i = 0; i < m; i++) {
-      mhb_lanes force = {0};
+      mhb_columns force = {0};
       for (int r = 0; r < n3; r++) force += shape[i * n3 + r] * p[r];
       Y[b * m + i] -= v->propagator[i * PROPAGATOR + DQ_P] * force;
       Y[(s->blades + b) * m + i] -= v->propagator[i * PROPAGATOR + V_P] * force;
@@ -163,16 +163,16 @@ int mhb_variational_factor(mhb_variational *v) {
 
 /* Modes of one blade: apply the last mean force P, then propagate freely; W += B (change of q). */
 MHB_INLINE void advance_blade(int sides, int n3, int modes, const double *propagator,
-                              const double *const shape[2], mhb_lanes *const y[2],
-                              const mhb_lanes *const P[2], mhb_lanes *const W[2]) {
-  mhb_lanes *q = y[0], *v = y[1];
+                              const double *const shape[2], mhb_columns *const y[2],
+                              const mhb_columns *const P[2], mhb_columns *const W[2]) {
+  mhb_columns *q = y[0], *v = y[1];
   for (int i = 0; i < modes; i++) {
     const double *e     = propagator + i * PROPAGATOR;
-    mhb_lanes     force = {0};
+    mhb_columns   force = {0};
     for (int side = 0; side < sides; side++)
       for (int r = 0; r < n3; r++) force += shape[side][i * n3 + r] * P[side][r];
-    mhb_lanes q0 = q[i] - e[DQ_P] * force, v0 = v[i] - e[V_P] * force;
-    mhb_lanes dq = e[DQ_Q] * q0 + e[DQ_V] * v0;
+    mhb_columns q0 = q[i] - e[DQ_P] * force, v0 = v[i] - e[V_P] * force;
+    mhb_columns dq = e[DQ_Q] * q0 + e[DQ_V] * v0;
     for (int side = 0; side < sides; side++)
       for (int r = 0; r < n3; r++) W[side][r] += shape[side][i * n3 + r] * dq;
     q[i] = q0 + dq;
@@ -181,23 +181,24 @@ MHB_INLINE void advance_blade(int sides, int n3, int modes, const double *propag
 }
 
 /* y = (dv, sigma) of contact j */
-MHB_INLINE void contact_rows(const mhb_lanes *u, const mhb_lanes *sigma, int j, mhb_lanes y[3]) {
+MHB_INLINE void contact_rows(const mhb_columns *u, const mhb_columns *sigma, int j,
+                             mhb_columns y[3]) {
   y[0] = u[3 * j];
   y[1] = sigma[2 * j];
   y[2] = sigma[2 * j + 1];
 }
 
-MHB_INLINE mhb_lanes dot3(const double a[3], const mhb_lanes *x) {
+MHB_INLINE mhb_columns dot3(const double a[3], const mhb_columns *x) {
   return a[0] * x[0] + a[1] * x[1] + a[2] * x[2];
 }
 
 /* D = W - M x; M [n][n] couples the contacts of neighbouring blades. */
 MHB_INLINE void subtract_product(const mhb_variational *v, int n, int block, int n_neighbours,
-                                 const double *M, const mhb_lanes *x, const mhb_lanes *W,
-                                 mhb_lanes *D) {
+                                 const double *M, const mhb_columns *x, const mhb_columns *W,
+                                 mhb_columns *D) {
   for (int r = 0; r < n; r++) {
     const double *row = M + (long)r * n;
-    mhb_lanes     sum = W[r];
+    mhb_columns   sum = W[r];
     for (int i = 0; i < n_neighbours; i++) {
       int first = n_neighbours > 1 ? v->neighbour[r / block][i] * block : 0;
       for (int c = first; c < first + block; c++) sum -= row[c] * x[c];
@@ -210,19 +211,19 @@ MHB_INLINE void subtract_product(const mhb_variational *v, int n, int block, int
  * scratch. The sizes are arguments so that the common case, one contact, is compiled with
  * constants. */
 MHB_INLINE void step_block(const mhb_variational *v, int blades, int sides, int pairs,
-                           int n_neighbours, mhb_lanes *Y, mhb_lanes *P, mhb_lanes *W, mhb_lanes *D,
-                           mhb_lanes *df) {
+                           int n_neighbours, mhb_columns *Y, mhb_columns *P, mhb_columns *W,
+                           mhb_columns *D, mhb_columns *df) {
   const mhb_modal_structure *s  = v->structure;
   int                        n3 = 3 * pairs, n = blades * n3, m = s->modes;
-  mhb_lanes                 *u = Y + 2 * blades * m, *sigma = u + n, y[3];
+  mhb_columns               *u = Y + 2 * blades * m, *sigma = u + n, y[3];
   for (int b = 0; b < blades; b++) { /* W, the modes propagating freely */
     int right = 3 * mhb_modal_structure_contact(s, b, 0);
     int left  = 3 * mhb_modal_structure_contact(s, b, sides - 1);
     advance_blade(sides, n3, m, v->propagator,
                   (const double *const[2]){s->shape, s->shape + (sides - 1) * m * n3},
-                  (mhb_lanes *const[2]){Y + b * m, Y + (blades + b) * m},
-                  (const mhb_lanes *const[2]){P + right, P + left},
-                  (mhb_lanes *const[2]){W + right, W + left});
+                  (mhb_columns *const[2]){Y + b * m, Y + (blades + b) * m},
+                  (const mhb_columns *const[2]){P + right, P + left},
+                  (mhb_columns *const[2]){W + right, W + left});
   }
   for (int j = 0; j < n / 3; j++) { /* forces by y alone */
     const mhb_linearised_law *law = &v->linearised[j];
@@ -246,12 +247,13 @@ MHB_INLINE void step_block(const mhb_variational *v, int blades, int sides, int 
 }
 
 /* A blade on the ground with one contact. */
-MHB_HOT static void step_one_contact(const mhb_variational *v, mhb_lanes *Y, mhb_lanes *P) {
-  mhb_lanes W[3] = {{0}}, D[3], df[3]; /* W stays in registers */
+MHB_HOT static void step_one_contact(const mhb_variational *v, mhb_columns *Y, mhb_columns *P) {
+  mhb_columns W[3] = {{0}}, D[3], df[3]; /* W stays in registers */
   step_block(v, 1, 1, 1, 1, Y, P, W, D, df);
 }
 
-MHB_HOT static void step_any(const mhb_variational *v, mhb_lanes *Y, mhb_lanes *P, mhb_lanes *W) {
+MHB_HOT static void step_any(const mhb_variational *v, mhb_columns *Y, mhb_columns *P,
+                             mhb_columns *W) {
   const mhb_modal_structure *s = v->structure;
   int                        n = unknowns(s);
   memset(W, 0, sizeof *W * (size_t)n);
@@ -262,7 +264,7 @@ void mhb_variational_step(mhb_variational *v) {
   const mhb_modal_structure *s = v->structure;
   int                        n = unknowns(s);
   for (int k = 0; k < v->blocks; k++) {
-    mhb_lanes *Y = v->Y + (long)k * v->rows, *P = v->P + (long)k * n;
+    mhb_columns *Y = v->Y + (long)k * v->rows, *P = v->P + (long)k * n;
     if (n == 3 && s->sides == 1) {
       step_one_contact(v, Y, P);
     } else {
@@ -277,11 +279,11 @@ void mhb_variational_saltation(mhb_variational *v, const mhb_saltation *jump) {
   const mhb_modal_structure *s = v->structure;
   int                        n = unknowns(s), j = jump->contact;
   for (int k = 0; k < v->blocks; k++) {
-    mhb_lanes *u = v->Y + (long)k * v->rows + 2 * modal_rows(s), *sigma = u + n, y[3];
+    mhb_columns *u = v->Y + (long)k * v->rows + 2 * modal_rows(s), *sigma = u + n, y[3];
     contact_rows(u, sigma, j, y);
     for (int i = 0; i < 2; i++) sigma[2 * j + i] = dot3(jump->set[i], y);
     if (!s->flexibility) continue;
-    mhb_lanes alpha = dot3(jump->measure, y);
+    mhb_columns alpha = dot3(jump->measure, y);
     for (int i = 0; i < n; i++) u[i] += v->du[i] * alpha;
     for (int i = 0; i < 2 * s->contacts; i++) sigma[i] += v->dsigma[i] * alpha;
   }

@@ -11,7 +11,7 @@
  *   W = B (free change of dq over h),
  *   (I + C mean_du/2 + R df_du) D = W - C mean_y y - R df_y y,   P = mean_y y + mean_du D/2.
  *
- * All columns (initial disturbances) are integrated together, MHB_LANES of them a block. Rows of a
+ * All columns (initial disturbances) are integrated together, MHB_COLUMNS of them a block. Rows of a
  * block, contact j = blade * pairs + pair:
  *   q [blade][mode] | v = q' [blade][mode] | u [3 j + (v, u, w)] | sigma [2 j + i]
  * sigma of a sticking contact: friction (fu, fw); slipping: (tau, -), the friction across the slip
@@ -43,9 +43,9 @@ typedef struct {
   const mhb_modal_structure *structure;
   int                        columns, blocks, rows; /* in use */
   int                        capacity;              /* columns there is room for */
-  mhb_lanes                 *Y;                     /* [block][rows] */
-  mhb_lanes                 *P;          /* [block][n] mean force not yet applied to the modes */
-  mhb_lanes                 *work;       /* [3][n] */
+  mhb_columns               *Y;                     /* [block][rows] */
+  mhb_columns               *P;          /* [block][n] mean force not yet applied to the modes */
+  mhb_columns               *work;       /* [3][n] */
   mhb_linearised_law        *linearised; /* [contact] of the coming sub-step */
   double                     h;          /* s, of the propagator; negative: none */
   double                    *propagator; /* [mode][6] */
@@ -66,7 +66,7 @@ void       mhb_variational_destroy(mhb_variational *variational);
 void mhb_variational_clear(mhb_variational *variational, int columns);
 
 static inline double *mhb_variational_at(mhb_variational *v, int row, int column) {
-  return (double *)&v->Y[(long)(column / MHB_LANES) * v->rows + row] + column % MHB_LANES;
+  return (double *)&v->Y[(long)(column / MHB_COLUMNS) * v->rows + row] + column % MHB_COLUMNS;
 }
 
 /* Sub-steps of h seconds from here on. */

@@ -18,7 +18,7 @@ const mhb_field mhb_fields[] = {
      "convention the smallest admissible"},
     {"probe", "qxk", MHB_COMPLEX, AT(probe), "m",
      "displacement of the probes, tangential, axial, radial; harmonics"},
-    {"stable", "", MHB_INT, AT(stable), "-", "stability: 1 stable, 0 unstable, -1 not known"},
+    {"stable", "", MHB_INT, AT(stable), "-", "stability: 1 stable, 0 unstable, -1 not judged"},
     {"special", "", MHB_INT, AT(special), "-",
      "0 ordinary point, 1 fold, 2 peak of the first harmonic of a probe or contact motion, 3 flip "
      "(period doubling), 4 Neimark-Sacker point"},
@@ -42,12 +42,13 @@ const mhb_field mhb_fields[] = {
      "first "
      "order: can be several times too small, 2 a Newton step of twice the harmonics"},
     {"judged", "", MHB_INT, AT(judged), "-",
-     "what stable rests on: 1 the Floquet multipliers; else the parity of folds passed since such "
-     "a "
-     "point, because the multipliers were 0 not computed, 2 marginal, 3 undecided"},
+     "what stable rests on: 0 nothing, not judged; 1 the Floquet multipliers; 2 the same, the "
+     "largest at 1 within its error; 3 they could not be computed; 4 judged points on both sides; "
+     "5 "
+     "an odd number of folds since a judged point"},
     {"loss", "", MHB_INT, AT(loss), "-",
-     "how stability was lost: 0 it was not, 1 fold (a multiplier beyond +1), 2 flip (beyond -1), 3 "
-     "Neimark-Sacker (a pair)"},
+     "how stability was lost: 0 it was not; 1 fold (a multiplier beyond +1): never seen; else "
+     "modulated: 2 flip (beyond -1), 3 Neimark-Sacker (a pair)"},
     {"multipliers", "f", MHB_COMPLEX, AT(multipliers), "-",
      "largest Floquet multipliers by falling modulus; 0: not computed, or there are no more"},
     /* the last N_INTEGRATION: of integration branches only */

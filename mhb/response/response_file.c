@@ -452,7 +452,7 @@ static shb_status check_points(const char *path, int index, const mhb_branch *br
               index, i, branch->frequency[i]);
   SHB_TRY(check_codes(path, index, "stable", n, branch->stable, -1, 1, "1, 0 or -1"));
   SHB_TRY(check_codes(path, index, "special", n, branch->special, 0, MHB_N_SPECIALS - 1, "0 to 4"));
-  SHB_TRY(check_codes(path, index, "judged", n, branch->judged, 0, MHB_N_JUDGED - 1, "0 to 3"));
+  SHB_TRY(check_codes(path, index, "judged", n, branch->judged, 0, MHB_N_JUDGED - 1, "0 to 5"));
   return check_codes(path, index, "loss", n, branch->loss, 0, MHB_N_LOSSES - 1, "0 to 3");
 }
 

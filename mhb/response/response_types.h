@@ -30,17 +30,20 @@ typedef enum {
  * complex pair does. */
 enum { MHB_ORDINARY, MHB_FOLD, MHB_PEAK, MHB_FLIP, MHB_NEIMARK_SACKER, MHB_N_SPECIALS };
 
-/* judged of mhb_branch: the evidence for stable. Parity: of the folds passed since a point with
- * known multipliers. */
+/* judged of mhb_branch: the evidence for stable. */
 enum {
-  MHB_BY_FOLDS,           /* parity; the multipliers were not computed */
-  MHB_BY_MULTIPLIERS,     /* the multipliers: all inside the unit circle, or some well outside */
-  MHB_MARGINAL_BY_FOLDS,  /* parity; the largest multiplier is at 1 within its accuracy */
-  MHB_UNDECIDED_BY_FOLDS, /* parity; the multipliers could not be computed */
+  MHB_NOT_JUDGED,       /* none: stable is -1 */
+  MHB_BY_MULTIPLIERS,   /* the multipliers: all inside the unit circle, or some well outside */
+  MHB_JUDGED_MARGINAL,  /* the largest multiplier is at 1 within its accuracy */
+  MHB_JUDGED_UNDECIDED, /* the multipliers could not be computed: stable is -1 unless folds tell */
+  MHB_BY_NEIGHBOURS,    /* the multipliers of judged points on both sides */
+  MHB_BY_FOLDS,         /* unstable, by the number of folds passed since a judged point */
   MHB_N_JUDGED
 };
 
-/* loss of mhb_branch: the cause of instability. */
+/* loss of mhb_branch: the cause of instability. Fold: a multiplier is beyond +1, whatever the others
+ * do. Such a motion is never seen. Flip and Neimark-Sacker: none is, but others are outside the unit
+ * circle. The motion is modulated. */
 enum { MHB_NO_LOSS, MHB_LOSS_FOLD, MHB_LOSS_FLIP, MHB_LOSS_NEIMARK_SACKER, MHB_N_LOSSES };
 
 /* Multipliers stored a point. */
@@ -76,7 +79,7 @@ typedef struct {
   double         *interface_n0; /* [point][n_interfaces] N */
   double         *value;        /* [point] of the parameter followed; Hz for the frequency */
   double complex *motion, *force, *probe;
-  int            *stable; /* [point] 1 stable, 0 unstable, -1 not known */
+  int            *stable; /* [point] 1 stable, 0 unstable, -1 not judged */
   int    *special;        /* [point] MHB_ORDINARY ...; a peak of the first harmonic of any output */
   double *state;
   double *dissipation;                     /* [point][pair] J a cycle */
@@ -85,7 +88,7 @@ typedef struct {
   double *error_newton, *error_truncation; /* [point] relative to the norm of the motion */
   double *error_sampling, *error_modal;    /* the same */
   /* nonlinear branches only */
-  int            *judged;      /* [point] MHB_BY_FOLDS ... */
+  int            *judged;      /* [point] MHB_NOT_JUDGED ... */
   int            *loss;        /* [point] MHB_NO_LOSS ... */
   double complex *multipliers; /* [point][n_multipliers] the largest, by falling modulus; 0: none */
   int            *harmonics;   /* [point] of the balance, at most n_harmonics; 0: not known */

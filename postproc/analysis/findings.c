@@ -300,7 +300,7 @@ static void put_multipliers(const post_analysis *analysis, post_buffer *out) {
     int               before = lost[MHB_LOSS_FLIP] + lost[MHB_LOSS_NEIMARK_SACKER];
     for (int p = 0; branch->kind == MHB_BRANCH_NONLINEAR && p < branch->n_points; p++) {
       total++;
-      judged += branch->judged[p] != MHB_BY_FOLDS;
+      judged += branch->judged[p] != MHB_NOT_JUDGED;
       lost[branch->loss[p]]++;
     }
     curves += lost[MHB_LOSS_FLIP] + lost[MHB_LOSS_NEIMARK_SACKER] > before;
@@ -320,10 +320,9 @@ static void put_multipliers(const post_analysis *analysis, post_buffer *out) {
   if (judged > 0 && judged < total)
     post_put(
         out,
-        "<li>Floquet multipliers were computed at %d of %d points; the others are taken to be as "
-        "the last of these before them along the curve, but for folds in between. "
-        "<code>mhb.stability: "
-        "always</code> computes all.</li>\n",
+        "<li>%d of %d points have a verdict on their stability: by Floquet multipliers, by judged "
+        "points on both sides, or by folds. The others are not judged. <code>mhb.stability: "
+        "always</code> judges all.</li>\n",
         judged, total);
 }
 

@@ -86,7 +86,8 @@ static void put_place(const mhb_branch *branch, const double complex *a, post_bu
 /* Basis of the stability, kind of its loss, largest multiplier; empty for the linear limits. */
 static void put_stability(const mhb_response *response, const mhb_branch *branch, int point,
                           post_buffer *out) {
-  static const char *const judged[] = {"folds", "multipliers", "marginal", "undecided"};
+  static const char *const judged[] = {"no",        "multipliers", "marginal",
+                                       "undecided", "neighbours",  "folds"};
   static const char *const loss[]   = {"", "fold", "flip", "Neimark-Sacker"};
   int                      kept     = response->n_multipliers;
   if (branch->kind != MHB_BRANCH_NONLINEAR) {
@@ -94,7 +95,7 @@ static void put_stability(const mhb_response *response, const mhb_branch *branch
     return;
   }
   int  how      = branch->judged[point];
-  bool computed = kept > 0 && (how == MHB_BY_MULTIPLIERS || how == MHB_MARGINAL_BY_FOLDS);
+  bool computed = kept > 0 && (how == MHB_BY_MULTIPLIERS || how == MHB_JUDGED_MARGINAL);
   post_put(out, ",%s,%s", judged[how], loss[branch->loss[point]]);
   put_number(out, computed ? cabs(branch->multipliers[(size_t)point * (size_t)kept]) : NAN);
 }

@@ -15,9 +15,10 @@
  *   contact_v_..., contact_u_..., contact_w_..., contact_motion_...   each contact, numbered if
  *                            there are several
  *   contact_stuck, _slipping, _open, _dissipation_J   shares of the period; energy per cycle
- *   stable                   1, 0, empty: unknown
+ *   stable                   1, 0, empty: not judged
  *   special                  fold, peak, flip, Neimark-Sacker, empty
- *   judged                   basis of stable: multipliers, marginal, undecided, folds (parity)
+ *   judged                   basis of stable: multipliers, marginal, undecided, neighbours, folds;
+ *                            no: not judged
  *   loss                     fold, flip, Neimark-Sacker, empty
  *   largest_multiplier       modulus; empty if not computed
  *   iterations, seconds, error_newton, _truncation, _sampling, _modal

@@ -23,7 +23,7 @@ static void bands_give_the_ring(void **state) {
     for (int block = 3; block <= 6; block += 3) {
       int           n          = blades * block, near[3], pivot[72];
       double        A[72 * 72] = {0}, x[72], most = 0;
-      mhb_lanes     y[72], folded[72];
+      mhb_columns     y[72], folded[72];
       mhb_ring_band band;
       assert_true(mhb_ring_band_create(blades, block, &band));
       mhb_ring_band_clear(&band);
@@ -34,7 +34,7 @@ static void bands_give_the_ring(void **state) {
           A[row * n + column] = *mhb_ring_band_at(&band, row, column) = noise(&seed);
         }
         x[row] = noise(&seed);
-        for (int l = 0; l < MHB_LANES; l++) y[row][l] = (l + 1) * x[row];
+        for (int l = 0; l < MHB_COLUMNS; l++) y[row][l] = (l + 1) * x[row];
       }
       assert_true(mhb_factor_real(n, A, pivot));
       mhb_solve_real(n, A, pivot, x);
@@ -43,7 +43,7 @@ static void bands_give_the_ring(void **state) {
       double size = 0;
       for (int row = 0; row < n; row++) {
         size = fmax(size, fabs(x[row]));
-        for (int l = 0; l < MHB_LANES; l++) most = fmax(most, fabs(y[row][l] / (l + 1) - x[row]));
+        for (int l = 0; l < MHB_COLUMNS; l++) most = fmax(most, fabs(y[row][l] / (l + 1) - x[row]));
       }
       assert_true(most < 1e-9 * size);
       mhb_ring_band_destroy(&band);

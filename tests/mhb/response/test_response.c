@@ -304,7 +304,7 @@ static void test_earlier_version(void **state) {
   assert_int_equal(read->n_multipliers, 0);
   assert_null(read->branch[0].multipliers);
   for (int i = 0; i < 5; i++) {
-    assert_int_equal(read->branch[0].judged[i], MHB_BY_FOLDS);
+    assert_int_equal(read->branch[0].judged[i], MHB_NOT_JUDGED);
     assert_int_equal(read->branch[0].loss[i], MHB_NO_LOSS);
     assert_int_equal(read->branch[0].stable[i], wrote->branch[0].stable[i]);
   }
@@ -395,7 +395,7 @@ static void test_faults(void **state) {
       {"/branch_2/stable", {1, {5}}, 2, "/branch_2/stable: value 0 (from 0) is 2; 1, 0 or -1"},
       {"/branch_2/stable", {1, {5}}, .5, "/branch_2/stable holds 0.5 where whole numbers"},
       {"/branch_2/special", {1, {5}}, 5, "/branch_2/special: value 0 (from 0) is 5; 0 to 4"},
-      {"/branch_0/judged", {1, {5}}, 4, "/branch_0/judged: value 0 (from 0) is 4; 0 to 3"},
+      {"/branch_0/judged", {1, {5}}, 6, "/branch_0/judged: value 0 (from 0) is 6; 0 to 5"},
       {"/branch_0/loss", {1, {5}}, -1, "/branch_0/loss: value 0 (from 0) is -1; 0 to 3"},
       {"/branch_0/multipliers", {2, {5, 3}}, 1, "where [5, 4] is wanted"},
       {"/multiplier", {2, {2, 2}}, 1, "/multiplier must be a list"},

@@ -117,7 +117,7 @@ static void whole(void **state) {
       bool turn = b == 3 && p == 5;
       assert_string_equal(cell[column(name, n, "judged")], !nonlinear ? ""
                                                            : turn     ? "multipliers"
-                                                                      : "folds");
+                                                                      : "no");
       assert_string_equal(cell[column(name, n, "loss")], turn ? "Neimark-Sacker" : "");
       if (turn) {
         assert_string_equal(cell[column(name, n, "special")], "Neimark-Sacker");
