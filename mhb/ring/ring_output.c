@@ -11,6 +11,13 @@ shb_status mhb_ring_output_create(const mhb_ring *ring, mhb_ring_output *o) {
   o->first = shb_arena_take(&o->arena, 3 * lanes, sizeof *o->first);
   o->mean  = shb_arena_take(&o->arena, 3 * lanes, sizeof(double));
   o->space = shb_arena_take(&o->arena, 2 * modes * lanes, sizeof(double));
+  o->parts = shb_arena_take(&o->arena, 6 * lanes, sizeof(double));
+  o->turn  = shb_arena_take(&o->arena, 2 * (size_t)ring->n_samples, sizeof(double));
+  for (int i = 0; i < ring->n_samples && !o->arena.failed; i++) {
+    double angle       = SHB_TWO_PI * ring->model->order * (i + 1) / ring->n_samples;
+    o->turn[2 * i]     = 2 * cos(angle) / ring->n_samples;
+    o->turn[2 * i + 1] = -2 * sin(angle) / ring->n_samples;
+  }
   if (!o->arena.failed) return SHB_OK;
   mhb_ring_output_destroy(o);
   SHB_FAIL(SHB_ERR_IO, "out of memory");
@@ -39,16 +46,26 @@ void mhb_ring_peaks(const mhb_ring *ring, mhb_ring_output *o) {
   find_peaks(ring->n_samples, (size_t)ring->model->lanes, ring->output, o->mean, o->peak);
 }
 
+MHB_HOT static void find_harmonics(int n, size_t width, const double *x, const double *turn,
+                                   double *re, double *im) {
+  memset(re, 0, width * sizeof *re);
+  memset(im, 0, width * sizeof *im);
+  for (int i = 0; i < n; i++, x += width, turn += 2)
+    for (size_t l = 0; l < width; l++) {
+      re[l] += turn[0] * x[l];
+      im[l] += turn[1] * x[l];
+    }
+}
+
 void mhb_ring_first_harmonics(const mhb_ring *ring, mhb_ring_output *o) {
-  int n = ring->n_samples, lanes = ring->model->lanes, blades = ring->model->blades;
-  memset(o->first, 0, sizeof *o->first * 3 * (size_t)blades);
-  for (int i = 0; i < n; i++) {
-    double         angle = SHB_TWO_PI * ring->model->order * (i + 1) / n;
-    double complex turn  = 2. / n * CMPLX(cos(angle), -sin(angle));
-    const double  *x     = ring->output + (size_t)i * 3 * (size_t)lanes;
-    for (int axis = 0; axis < 3; axis++)
-      for (int b = 0; b < blades; b++) o->first[axis * blades + b] += turn * x[axis * lanes + b];
-  }
+  int    blades = ring->model->blades, lanes = ring->model->lanes;
+  size_t width = 3 * (size_t)lanes;
+  find_harmonics(ring->n_samples, width, ring->output, o->turn, o->parts, o->parts + width);
+  for (int axis = 0; axis < 3; axis++)
+    for (int b = 0; b < blades; b++) {
+      const double *at            = o->parts + axis * lanes + b;
+      o->first[axis * blades + b] = CMPLX(at[0], at[width]);
+    }
 }
 
 void mhb_ring_disturb(mhb_ring *ring, mhb_ring_output *o, double size, mhb_noise *noise) {

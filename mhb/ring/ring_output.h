@@ -9,6 +9,8 @@ typedef struct {
   double         *peak;  /* [lanes] m: largest distance of the output from its mean of the period */
   double complex *first; /* [3][blades] m: harmonic of the excitation */
   double         *mean;  /* [3][lanes] m, scratch */
+  double         *turn;  /* [samples][2] 2/n exp(-j phase) */
+  double         *parts; /* [2 (re, im)][3][lanes] scratch */
   double         *space; /* [2][mode][lanes] scratch of mhb_ring_move and mhb_ring_disturb */
   shb_arena       arena;
 } mhb_ring_output;

@@ -60,7 +60,8 @@ static shb_status march(march_state *s, mhb_go_on go_on, void *context, bool *fi
 }
 
 /* One window that begins at a step. Returns the mean over its periods of the worst blade. */
-static double read_window(const march_state *s, int first, double *space, double *mean, double *worst) {
+static double read_window(const march_state *s, int first, double *space, double *mean,
+                          double *worst) {
   int           blades = s->model->blades, periods = s->window * STEP, n = periods * blades;
   const double *peak = s->peak + (size_t)first * STEP * (size_t)blades;
   double        sum = 0, largest = 0;
@@ -96,8 +97,8 @@ static shb_status read_windows(const march_state *s, double *space, mhb_slow_swe
   return SHB_OK;
 }
 
-static shb_status run(march_state *s, const modal_model *modal, const mhb_wave *wave, mhb_go_on go_on,
-                      void *context, mhb_slow_sweep *out) {
+static shb_status run(march_state *s, const modal_model *modal, const mhb_wave *wave,
+                      mhb_go_on go_on, void *context, mhb_slow_sweep *out) {
   int  steps;
   bool finished;
   SHB_TRY(mhb_ring_steps(s->model, wave->omega, STEPS, &steps));
@@ -118,7 +119,7 @@ shb_status mhb_slow_sweep_run(const modal_model *modal, const mhb_settings *sett
                               const mhb_wave *wave, double high, mhb_go_on go_on, void *context,
                               mhb_slow_sweep *out) {
   march_state s = {.low = wave->omega / SHB_TWO_PI, .high = high};
-  *out    = (mhb_slow_sweep){0};
+  *out          = (mhb_slow_sweep){0};
   SHB_TRY(mhb_ring_model_create(modal, settings, wave->n0, wave->omega, &s.model));
   shb_status status = run(&s, modal, wave, go_on, context, out);
   mhb_ring_output_destroy(&s.output);
