@@ -8,12 +8,13 @@
 #include "mhb/ring/side_waves.h"
 
 enum {
-  STARTS       = 2,
-  BLOCK        = 25, /* periods */
-  MOST_BLOCKS  = 40,
-  STEPS        = 256, /* a period of the excitation: 1e-3 of the mean */
-  MOST_STEPS   = 4096,
-  LINE_PERIODS = 64 /* a line is known to 1e-3 of the frequency */
+  STARTS         = 2,
+  BLOCK          = 25, /* periods */
+  MOST_BLOCKS    = 40,
+  SEVERAL_BLOCKS = 27,  /* settled starts that still differ are different motions */
+  STEPS          = 256, /* a period of the excitation: 1e-3 of the mean */
+  MOST_STEPS     = 4096,
+  LINE_PERIODS   = 64 /* a line is known to 1e-3 of the frequency */
 };
 
 static const int    targets[]     = {12, 18, 27, MOST_BLOCKS};
@@ -57,8 +58,8 @@ mhb_lasting_verdict mhb_lasting_judge(mhb_lasting_series s[STARTS], bool last) {
   v.error   = fmax(a.error, b.error);
   v.mean    = 0.5 * (a.mean + b.mean);
   v.worst   = 0.5 * (worst[0] + worst[1]);
-  v.decided = (settled && same) || last;
-  v.several = settled && !same && last;
+  v.several = settled && !same && (last || s[0].blocks >= SEVERAL_BLOCKS);
+  v.decided = (settled && same) || v.several || last;
   if (v.several) {
     v.mean  = v.leader ? b.mean : a.mean;
     v.worst = worst[v.leader];
@@ -66,7 +67,7 @@ mhb_lasting_verdict mhb_lasting_judge(mhb_lasting_series s[STARTS], bool last) {
   return v;
 }
 
-mhb_lasting_kind mhb_lasting_kind_of(const mhb_lasting_verdict *v, double share) {
+int mhb_lasting_kind_of(const mhb_lasting_verdict *v, double share) {
   if (v->several || (v->wave && fabs(v->mean - 1) > SAME_WAVE)) return MHB_LASTING_SEVERAL;
   if (v->wave) return MHB_LASTING_WAVE;
   if (fabs(v->mean - 1) < MILD_MEAN && v->worst < MILD_WORST) return MHB_LASTING_MILD;

@@ -12,6 +12,7 @@
 
 #include <complex.h>
 
+#include "mhb/response/response_types.h"
 #include "mhb/ring/ring_model.h"
 
 /* A wave to start on. */
@@ -22,24 +23,14 @@ typedef struct {
   const double complex *force; /* [3 pairs][n_harmonics + 1] N, of the fundamental */
 } mhb_wave;
 
-typedef enum {
-  MHB_LASTING_UNKNOWN,   /* not computed */
-  MHB_LASTING_WAVE,      /* the wave itself */
-  MHB_LASTING_MILD,      /* mean within 5 % of the wave, worst below 1.05 */
-  MHB_LASTING_MODULATED, /* by few side waves */
-  MHB_LASTING_IRREGULAR, /* five side waves have less than 0.65 of the power beside the wave */
-  MHB_LASTING_SEVERAL,   /* the starts end in different motions, or on another wave */
-  MHB_LASTING_KINDS
-} mhb_lasting_kind;
-
 typedef struct {
-  mhb_lasting_kind kind;
-  double           mean;     /* of a period's peak over blades and time, over the wave's */
-  double           worst;    /* 99.9 percentile of it over blades and periods, over the wave's */
-  double           error;    /* standard error of mean; above 0.01: not settled */
-  int              diameter; /* of the strongest side wave; -1: none */
-  double           offset;   /* its frequency over the excitation's, less 1 */
-  int              periods;  /* integrated, of the fundamental, all starts */
+  int    kind;     /* MHB_LASTING_UNKNOWN ... of mhb/response */
+  double mean;     /* of a period's peak over blades and time, over the wave's */
+  double worst;    /* 99.9 percentile of it over blades and periods, over the wave's */
+  double error;    /* standard error of mean; above 0.01: not settled */
+  int    diameter; /* of the strongest side wave; -1: none */
+  double offset;   /* its frequency over the excitation's, less 1 */
+  int    periods;  /* integrated, of the fundamental, all starts */
 } mhb_lasting;
 
 /* Called after every period; false: stop. May be NULL. */
@@ -79,6 +70,6 @@ typedef struct {
 mhb_lasting_verdict mhb_lasting_judge(mhb_lasting_series series[2], bool last);
 
 /* Kind from a verdict and the share of five lines. */
-mhb_lasting_kind mhb_lasting_kind_of(const mhb_lasting_verdict *verdict, double share);
+int mhb_lasting_kind_of(const mhb_lasting_verdict *verdict, double share);
 
 #endif
