@@ -59,6 +59,16 @@ MHB_INLINE void mhb_slip_turn(double g0, double g1, double d0, double d1, double
   *w1 = mhb_pick(far, d1, a1);
 }
 
+/* The same for a general Ku, whose slider moves along Ku e: e is where its path is estimated. */
+MHB_INLINE void mhb_skew_turn(const mhb_slip_law *c, double e0, double e1, double g0, double g1,
+                              double d0, double d1, double low, double high, double *w0,
+                              double *w1) {
+  double A0 = c->skew[0] * e0 + c->skew[1] * e1, A1 = c->skew[1] * e0 - c->skew[0] * e1;
+  double path = (e0 * d0 + e1 * d1 - (high - low)) / (c->mean + e0 * A0 + e1 * A1 + 1e-300);
+  path        = mhb_pick(path > 0, path, 0);
+  mhb_slip_turn(g0, g1, d0 - path * A0, d1 - path * A1, low, high, w0, w1);
+}
+
 /* One step to the motion (v, u, w), for one lane of a loop that is vectorised.
  *   isotropic, closed  in  constants, for the compiler; closed: all loads are positive
  *   state      in out  as above */
@@ -82,14 +92,12 @@ MHB_INLINE void mhb_slip_flow(const mhb_slip_law *c, bool isotropic, bool closed
   double rest = 1 - beta, y0 = g0 + beta * d0, y1 = g1 + beta * d1;
   double Lb = L0 + beta * dL, x0 = rest * d0, x1 = rest * d1, w0, w1;
   mhb_slip_turn(y0, y1, x0, x1, Lb, L1, &w0, &w1);
-  if (!isotropic) {
-    double m = 1 / sqrt(w0 * w0 + w1 * w1 + 1e-300), k = 1 / sqrt(y0 * y0 + y1 * y1 + 1e-300);
-    double h0 = w0 * m + y0 * k, h1 = w1 * m + y1 * k;
-    double h = 1 / sqrt(h0 * h0 + h1 * h1 + 1e-300), e0 = h * h0, e1 = h * h1;
-    double A0 = c->skew[0] * e0 + c->skew[1] * e1, A1 = c->skew[1] * e0 - c->skew[0] * e1;
-    double path = (e0 * x0 + e1 * x1 - rest * dL) / (c->mean + e0 * A0 + e1 * A1 + 1e-300);
-    path        = mhb_pick(path > 0, path, 0);
-    mhb_slip_turn(y0, y1, x0 - path * A0, x1 - path * A1, Lb, L1, &w0, &w1);
+  if (!isotropic) { /* first by the path at the start, then by that at the middle */
+    double k = 1 / sqrt(y0 * y0 + y1 * y1 + 1e-300), e0 = k * y0, e1 = k * y1;
+    mhb_skew_turn(c, e0, e1, y0, y1, x0, x1, Lb, L1, &w0, &w1);
+    double m = 1 / sqrt(w0 * w0 + w1 * w1 + 1e-300), h0 = e0 + w0 * m, h1 = e1 + w1 * m;
+    double h = 1 / sqrt(h0 * h0 + h1 * h1 + 1e-300);
+    mhb_skew_turn(c, h * h0, h * h1, y0, y1, x0, x1, Lb, L1, &w0, &w1);
   }
   double length = L1 / sqrt(w0 * w0 + w1 * w1 + 1e-300);
   bool   sticks = t0 * t0 + t1 * t1 <= L1 * L1;

@@ -36,12 +36,18 @@ shb_test(mhb/floquet monodromy tests_models)
 foreach(noun modal_step contact_step spectrum integrator integration_sweep)
   shb_test(mhb/integration ${noun} tests_models)
 endforeach()
+foreach(noun ring_statistics side_waves slip_flow)
+  shb_test(mhb/ring ${noun} shb_mhb_ring)
+endforeach()
+foreach(noun lasting ring_step slow_sweep)
+  shb_test(mhb/ring ${noun} tests_models)
+endforeach()
 foreach(noun arclength arclength_scalar balance_curve closed_curve corrector curve event_location
     events first_solution linear_corrector linear_resonances nearest_solution outputs
     resonance_detection segment)
   shb_test(mhb/continuation ${noun} tests_models)
 endforeach()
-foreach(noun branch_completion branch_stability chain forced_response harmonic_selection multistart
-    main_branch period_doubling record run_up secondary_branches tracer)
+foreach(noun branch_completion branch_stability chain forced_response harmonic_selection
+    lasting_motion multistart main_branch period_doubling record run_up secondary_branches tracer)
   shb_test(mhb/branches ${noun} tests_models)
 endforeach()
