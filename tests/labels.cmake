@@ -13,7 +13,8 @@ set(INTEGRATION_TESTS
   mhb.contact.reference_law mhb.contact.accuracy mhb.contact.continuity mhb.contact.random
   mhb.problem.interfaces mhb.problem.parameter mhb.response.response mhb.balance.condensation
   mhb.balance.truncation_error mhb.floquet.floquet mhb.integration.integrator
-  mhb.integration.integration_sweep mhb.continuation.arclength mhb.continuation.linear_resonances
+  mhb.integration.integration_sweep mhb.ring.lasting mhb.branches.lasting_motion
+  mhb.continuation.arclength mhb.continuation.linear_resonances
   mhb.branches.harmonic_selection mhb.branches.branch_stability mhb.branches.secondary_branches
   mhb.branches.forced_response mhb.branches.run_up postproc.report.report cases.commands.integrate
   cases.scenes.z_notch cases.scenes.slip_onset cases.scenes.run_up cases.scenes.paper_fig7

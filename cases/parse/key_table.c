@@ -347,6 +347,10 @@ static const case_key table[] = {
      AT(mhb.stability), .stages = CASE_MHB,
      .help = "Floquet multipliers: at every point where that is cheap, else at a few a curve; at "
              "every point; at none"},
+    {"mhb.lasting", CASE_CHOICE, "", .words = "auto always never", .fallback = "auto",
+     AT(mhb.lasting), .stages = CASE_MHB, .when = CASE_IF_STABILITY,
+     .help = "the motion that takes over where the wave is modulated, by integration of the whole "
+             "ring: a sweep and few points a curve; every modulated point; nothing"},
     {"mhb.flips", CASE_SWITCH, "", .words = "mark follow", .fallback = "follow", AT(mhb.flips),
      .stages = CASE_MHB, .when = CASE_IF_STABILITY,
      .help = "where a curve loses stability by period doubling, the motion of two periods is "

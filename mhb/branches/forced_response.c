@@ -6,6 +6,7 @@
 
 #include "mhb/branches/branch_stability.h"
 #include "mhb/branches/harmonic_selection.h"
+#include "mhb/branches/lasting_motion.h"
 #include "mhb/branches/linear_limits.h"
 #include "mhb/branches/main_branch.h"
 #include "mhb/branches/peak_search.h"
@@ -103,7 +104,8 @@ static shb_status copy_curves(const mhb_response *own, mhb_response **out) {
     for (int i = 0; i < from->n_searches && status == SHB_OK; i++)
       status = mhb_response_note_search(to, &from->search[i]);
     to->reason = from->reason ? strdup(from->reason) : NULL;
-    if (from->n_points > 0)
+    if (status == SHB_OK) status = mhb_response_copy_lasting(to, from);
+    if (status == SHB_OK && from->n_points > 0)
       status = mhb_response_copy_points(copy, index, own, k, 0, from->n_points - 1);
   }
   if (status != SHB_OK) {
@@ -340,6 +342,37 @@ static shb_status all_preloads(sweep *s, const modal_model *model) {
   return searches ? search_peaks(s, model) : SHB_OK;
 }
 
+/* ---- the motion that lasts ---- */
+
+static bool lasting_goes_on(void *context) {
+  return go_on(context);
+}
+
+static void lasting_lock(void *context, bool locked) {
+  mhb_publisher_lock(&((sweep *)context)->publisher, locked);
+}
+
+static shb_status lasting_stored(void *context, double share, double n0, double frequency) {
+  sweep *s = context;
+  shb_progress_show(s->progress, 100 * share, "n0 %-8.4g N  motion that lasts at %.6g Hz", n0,
+                    frequency);
+  return mhb_publisher_is_due(&s->publisher, PUBLISH_EVERY) ? publish(s) : SHB_OK;
+}
+
+/* Integrate the ring where main branches are modulated. */
+static shb_status lasting_motion(sweep *s, const modal_model *model) {
+  const mhb_lasting_host host = {
+      .context = s, .go_on = lasting_goes_on, .lock = lasting_lock, .stored = lasting_stored};
+  int           n = s->settings->n_preloads;
+  mhb_response *curves[n];
+  if (shb_interrupted()) return SHB_OK;
+  for (int i = 0; i < n; i++) {
+    mhb_response *handed = s->preload[i].handed;
+    curves[i]            = handed && handed->branch[0].complete ? handed : NULL;
+  }
+  return mhb_lasting_motion(model, s->settings, n, curves, &host);
+}
+
 /* The response takes over the curves of all preloads. */
 static shb_status take_curves(sweep *s) {
   shb_status status = gather(s);
@@ -404,6 +437,7 @@ shb_status mhb_forced_response(const modal_model *model, const mhb_settings *ask
   if (status == SHB_OK) status = mhb_response_describe(s.response, model, settings);
   if (status == SHB_OK) status = linear_limits(model, settings, s.response);
   if (status == SHB_OK) status = all_preloads(&s, model);
+  if (status == SHB_OK) status = lasting_motion(&s, model);
   if (status == SHB_OK) status = publish(&s);
   if (status == SHB_OK) status = take_curves(&s);
   mhb_publisher_stop(&s.publisher);

@@ -10,6 +10,9 @@ typedef enum { MHB_EQUILIBRIUM, MHB_INTERFERENCE } mhb_preload;
 /* Multipliers: where they cost little and at a few points elsewhere; at every point; never. */
 typedef enum { MHB_STABILITY_AUTO, MHB_STABILITY_ALWAYS, MHB_STABILITY_NEVER } mhb_stability_when;
 
+/* Motion that takes over where the wave is unstable: at few points; at all of them; never. */
+typedef enum { MHB_LASTING_AUTO, MHB_LASTING_ALWAYS, MHB_LASTING_NEVER } mhb_lasting_when;
+
 /* Continuation parameter. */
 typedef enum {
   MHB_IN_FREQUENCY,
@@ -75,6 +78,7 @@ typedef struct {
   mhb_search_settings search;
   bool                flips;     /* branches of doubled period are followed from flips */
   mhb_stability_when  stability; /* points at which multipliers are computed */
+  mhb_lasting_when    lasting;   /* points at which the motion that takes over is integrated */
   const struct mhb_speed_table
       *run_up; /* NULL: one speed. Else the modal model follows the frequency. */
   bool resume; /* take over the finished branches of an interrupted run of equal settings */

@@ -33,10 +33,19 @@ mhb_response *mhb_response_like(const mhb_response *response) {
   return like;
 }
 
+static void free_curve(mhb_lasting_curve *curve) {
+  free(curve->frequency);
+  free(curve->mean);
+  free(curve->worst);
+  *curve = (mhb_lasting_curve){0};
+}
+
 static void free_branch(mhb_branch *branch) {
   for (int i = 0; i < MHB_N_FIELDS; i++) free(mhb_field_get(branch, &mhb_fields[i]));
   free(branch->reason);
   free(branch->search);
+  free(branch->lasting);
+  free_curve(&branch->lasting_curve);
 }
 
 shb_status mhb_response_note_search(mhb_branch *branch, const mhb_search *search) {
@@ -160,6 +169,35 @@ shb_status mhb_response_copy_points(mhb_response *to, int to_branch, const mhb_r
              (char *)mhb_field_get(a, f) + (size_t)i * row, row);
     }
   }
+  return SHB_OK;
+}
+
+shb_status mhb_response_lasting_curve(mhb_branch *branch, int n) {
+  mhb_lasting_curve *c = &branch->lasting_curve;
+  free_curve(c);
+  if (n == 0) return SHB_OK;
+  c->frequency = calloc((size_t)n, sizeof(double));
+  c->mean      = calloc((size_t)n, sizeof(double));
+  c->worst     = calloc((size_t)n, sizeof(double));
+  if (!c->frequency || !c->mean || !c->worst) {
+    free_curve(c);
+    SHB_FAIL(SHB_ERR_IO, "no memory for a sweep of %d windows", n);
+  }
+  c->n = n;
+  return SHB_OK;
+}
+
+shb_status mhb_response_copy_lasting(mhb_branch *to, const mhb_branch *from) {
+  const mhb_lasting_curve *a = &from->lasting_curve, *b = &to->lasting_curve;
+  const size_t             size = sizeof(double) * (size_t)a->n;
+  free(to->lasting);
+  to->lasting = from->lasting ? strdup(from->lasting) : NULL;
+  SHB_CHECK(to->lasting || !from->lasting, SHB_ERR_IO, "no memory");
+  SHB_TRY(mhb_response_lasting_curve(to, a->n));
+  if (a->n == 0) return SHB_OK;
+  memcpy(b->frequency, a->frequency, size);
+  memcpy(b->mean, a->mean, size);
+  memcpy(b->worst, a->worst, size);
   return SHB_OK;
 }
 

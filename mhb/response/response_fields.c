@@ -51,6 +51,21 @@ const mhb_field mhb_fields[] = {
      "modulated: 2 flip (beyond -1), 3 Neimark-Sacker (a pair)"},
     {"multipliers", "f", MHB_COMPLEX, AT(multipliers), "-",
      "largest Floquet multipliers by falling modulus; 0: not computed, or there are no more"},
+    {"lasting/mean", "", MHB_DOUBLE, AT(lasting_mean), "-",
+     "motion that lasts: a period's peak of the output, mean over blades and time, over that of "
+     "the wave; 0: not computed"},
+    {"lasting/worst", "", MHB_DOUBLE, AT(lasting_worst), "-",
+     "the same, 99.9 percentile over blades and periods; 0: not computed"},
+    {"lasting/error", "", MHB_DOUBLE, AT(lasting_error), "-",
+     "standard error of lasting/mean; above 0.01: the motion did not settle"},
+    {"lasting/side", "", MHB_INT, AT(lasting_side), "-",
+     "nodal diameter of the strongest side wave: the next blade lags by 2 pi/N times it; -1: none"},
+    {"lasting/offset", "", MHB_DOUBLE, AT(lasting_offset), "-",
+     "frequency of the strongest side wave over that of the excitation, less 1"},
+    {"lasting/periods", "", MHB_INT, AT(lasting_periods), "-",
+     "periods of the fundamental that were integrated, both starts"},
+    {"lasting/kind", "", MHB_INT, AT(lasting_kind), "-",
+     "0 not computed, 1 the wave, 2 mildly modulated, 3 modulated, 4 irregular, 5 several motions"},
     /* the last N_INTEGRATION: of integration branches only */
     {"multiple", "", MHB_INT, AT(multiple), "-",
      "the motion repeats after so many periods of the fundamental; 0: it does not"},
@@ -60,7 +75,7 @@ const mhb_field mhb_fields[] = {
      "lines of the contact motion where it does not repeat, largest first; 0: none"},
     {"spectrum/amplitude", "l", MHB_DOUBLE, AT(line_amplitude), "m", "amplitude of the line"},
 };
-enum { N_LATER = 5, N_INTEGRATION = 5 };
+enum { N_LATER = 12, N_INTEGRATION = 5 };
 _Static_assert(sizeof mhb_fields / sizeof *mhb_fields == MHB_N_FIELDS, "MHB_N_FIELDS counts them");
 
 size_t mhb_field_bytes(mhb_number kind) {

@@ -178,6 +178,22 @@ static shb_status write_speed(hid_t group, const mhb_response *response, const m
   return h5_attach_scale(group, "speed", 0, mhb_fields[0].name);
 }
 
+/* The text and the sweep of the motion that lasts. */
+static shb_status write_lasting(hid_t group, const mhb_branch *branch) {
+  const mhb_lasting_curve *c = &branch->lasting_curve;
+  if (branch->lasting) SHB_TRY(h5_write_attribute_text(group, ".", "lasting", branch->lasting));
+  if (c->n == 0) return SHB_OK;
+  const h5_shape shape = H5_SHAPE((hsize_t)c->n);
+  SHB_TRY(h5_write_double(group, "lasting/curve/frequency", shape, c->frequency, "Hz",
+                          "middle of a window of a slow sweep of the ring"));
+  SHB_TRY(h5_write_double(group, "lasting/curve/mean", shape, c->mean, "m",
+                          "a period's peak of the output, mean over blades and periods"));
+  SHB_TRY(h5_write_double(group, "lasting/curve/worst", shape, c->worst, "m",
+                          "the same, 99.9 percentile over blades and periods"));
+  SHB_TRY(h5_attach_scale(group, "lasting/curve/mean", 0, "lasting/curve/frequency"));
+  return h5_attach_scale(group, "lasting/curve/worst", 0, "lasting/curve/frequency");
+}
+
 static shb_status fill_branch(hid_t group, const mhb_response *response, const mhb_branch *branch) {
   SHB_TRY(h5_write_attribute_text(group, ".", "kind", kind_name[branch->kind]));
   SHB_TRY(h5_write_attribute_text(group, ".", "reason", branch->reason));
@@ -196,6 +212,7 @@ static shb_status fill_branch(hid_t group, const mhb_response *response, const m
     if (mhb_field_kept(response, branch, &mhb_fields[i]))
       SHB_TRY(write_field(group, response, branch, &mhb_fields[i]));
   SHB_TRY(write_searches(group, response, branch));
+  SHB_TRY(write_lasting(group, branch));
   return write_speed(group, response, branch);
 }
 
@@ -453,7 +470,23 @@ static shb_status check_points(const char *path, int index, const mhb_branch *br
   SHB_TRY(check_codes(path, index, "stable", n, branch->stable, -1, 1, "1, 0 or -1"));
   SHB_TRY(check_codes(path, index, "special", n, branch->special, 0, MHB_N_SPECIALS - 1, "0 to 4"));
   SHB_TRY(check_codes(path, index, "judged", n, branch->judged, 0, MHB_N_JUDGED - 1, "0 to 5"));
+  SHB_TRY(check_codes(path, index, "lasting/kind", n, branch->lasting_kind, 0,
+                      MHB_LASTING_KINDS - 1, "0 to 5"));
   return check_codes(path, index, "loss", n, branch->loss, 0, MHB_N_LOSSES - 1, "0 to 3");
+}
+
+/* Files of earlier versions have neither. */
+static shb_status read_lasting(hid_t group, mhb_branch *branch) {
+  mhb_lasting_curve *c = &branch->lasting_curve;
+  h5_shape           shape;
+  SHB_TRY(h5_read_attribute_text(group, ".", "lasting", &branch->lasting));
+  if (!h5_exists(group, "lasting") || !h5_exists(group, "lasting/curve")) return SHB_OK;
+  SHB_TRY(h5_shape_of(group, "lasting/curve/frequency", &shape));
+  SHB_TRY(h5_read_double(group, "lasting/curve/frequency", &shape, &c->frequency));
+  SHB_TRY(h5_read_double(group, "lasting/curve/mean", &shape, &c->mean));
+  SHB_TRY(h5_read_double(group, "lasting/curve/worst", &shape, &c->worst));
+  c->n = (int)shape.dim[0];
+  return SHB_OK;
 }
 
 static shb_status fill_from(hid_t group, const char *path, int index, mhb_response *response) {
@@ -473,6 +506,7 @@ static shb_status fill_from(hid_t group, const char *path, int index, mhb_respon
     if (mhb_field_kept(response, branch, &mhb_fields[i]))
       SHB_TRY(read_field(group, response, branch, &mhb_fields[i]));
   SHB_TRY(read_searches(group, path, index, branch));
+  SHB_TRY(read_lasting(group, branch));
   return check_points(path, index, branch);
 }
 

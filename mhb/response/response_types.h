@@ -57,6 +57,24 @@ typedef struct {
   int    found;  /* branches that they led to and that were not known */
 } mhb_search;
 
+/* kind of lasting motion, lasting_kind of mhb_branch. */
+enum {
+  MHB_LASTING_UNKNOWN,   /* not computed */
+  MHB_LASTING_WAVE,      /* the wave itself */
+  MHB_LASTING_MILD,      /* mean within 5 % of the wave's, worst blade below 1.05 of it */
+  MHB_LASTING_MODULATED, /* by few side waves */
+  MHB_LASTING_IRREGULAR, /* by many */
+  MHB_LASTING_SEVERAL,   /* different starts end differently, or on another wave */
+  MHB_LASTING_KINDS
+};
+
+/* A slow sweep of the ring: running windows. */
+typedef struct {
+  int     n;
+  double *frequency;    /* [n] Hz, middle of the window */
+  double *mean, *worst; /* [n] m: a period's peak of the output, mean and 99.9 percentile */
+} mhb_lasting_curve;
+
 /* One curve. Array layouts:
  *   motion, force  [point][pair][3 (v, u, w)][k = 0..m]
  *   probe          [point][probe][3 (tangential, axial, radial)][k]
@@ -93,6 +111,14 @@ typedef struct {
   double complex *multipliers; /* [point][n_multipliers] the largest, by falling modulus; 0: none */
   int            *harmonics;   /* [point] of the balance, at most n_harmonics; 0: not known */
   int            *truncation_kind; /* [point] mhb_truncation_kind */
+  /* motion that lasts; 0: not computed */
+  double *lasting_mean, *lasting_worst;   /* [point] a period's peak over the wave's */
+  double *lasting_error;                  /* [point] standard error of the mean */
+  double *lasting_offset;                 /* [point] of the strongest side wave */
+  int    *lasting_side, *lasting_periods; /* [point] its nodal diameter, -1: none; integrated */
+  int    *lasting_kind;                   /* [point] MHB_LASTING_UNKNOWN ... */
+  char   *lasting;                        /* what was computed, or why not; NULL: not yet */
+  mhb_lasting_curve lasting_curve;
   /* integration branches only */
   int    *multiple; /* [point] periods of the fundamental until the motion repeats; 0: never */
   int    *periods;  /* [point] periods of the fundamental that were integrated */

@@ -67,7 +67,8 @@ static void put_header(const mhb_response *response, post_buffer *out) {
   post_put(out,
            ",stable,special,judged,loss,largest_multiplier,iterations,seconds,error_newton,error_"
            "truncation,error_sampling,"
-           "error_modal,origin,order\r\n");
+           "error_modal,origin,order,lasting_mean,lasting_worst,lasting_kind,lasting_side,"
+           "lasting_offset\r\n");
 }
 
 /* The columns of one place from its harmonics, [3][m + 1]. */
@@ -100,6 +101,22 @@ static void put_stability(const mhb_response *response, const mhb_branch *branch
   put_number(out, computed ? cabs(branch->multipliers[(size_t)point * (size_t)kept]) : NAN);
 }
 
+/* Motion that lasts; empty where it was not computed. */
+static void put_lasting(const mhb_branch *branch, int point, post_buffer *out) {
+  static const char *const kind[] = {"",          "wave",      "mildly modulated",
+                                     "modulated", "irregular", "several motions"};
+  if (branch->kind != MHB_BRANCH_NONLINEAR || !branch->lasting_kind[point]) {
+    post_put(out, ",,,,,");
+    return;
+  }
+  put_number(out, branch->lasting_mean[point]);
+  put_number(out, branch->lasting_worst[point]);
+  post_put(out, ",%s", kind[branch->lasting_kind[point]]);
+  bool found = branch->lasting_side[point] >= 0;
+  put_number(out, found ? branch->lasting_side[point] : NAN);
+  put_number(out, found ? branch->lasting_offset[point] : NAN);
+}
+
 static void put_quality(const mhb_response *response, const mhb_branch *branch, int point,
                         post_buffer *out) {
   static const char *const special[] = {"", "fold", "peak", "flip", "Neimark-Sacker"};
@@ -113,7 +130,9 @@ static void put_quality(const mhb_response *response, const mhb_branch *branch, 
   put_number(out, branch->error_truncation[point]);
   put_number(out, branch->error_sampling[point]);
   put_number(out, branch->error_modal[point]);
-  post_put(out, ",%s,%d\r\n", origin[branch->origin], branch->order);
+  post_put(out, ",%s,%d", origin[branch->origin], branch->order);
+  put_lasting(branch, point, out);
+  post_put(out, "\r\n");
 }
 
 static void put_point(const mhb_response *response, int b, int point, post_buffer *out) {

@@ -138,6 +138,7 @@ static void the_text_itself(void **state) {
                       "mhb.scale = 1.3\n"
                       "mhb.max_points = 777\n"
                       "mhb.stability = always\n"
+                      "mhb.lasting = auto\n"
                       "mhb.flips = follow\n"
                       "mhb.search.starts = auto\n");
   assert_non_null(

@@ -1,0 +1,342 @@
+#include "mhb/branches/lasting_motion.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "mesh/base/constants.h"
+#include "mhb/problem/parameter.h"
+#include "mhb/ring/slow_sweep.h"
+
+/* Share of the wave's peak below which no sweep is made; what a sweep goes on beyond the last
+ * modulated point, relative. */
+static const double PART_OF_PEAK = 0.4, BEYOND = 1e-3;
+
+/* Points settled between the ends of the modulated part, beside the peaks. */
+enum { BETWEEN = 2 };
+
+/* Operations a period of 256 steps that auto allows: some 10 ms. */
+static const double MOST_WORK = 2e8;
+
+/* One branch. */
+typedef struct {
+  mhb_response *curves;
+  mhb_branch   *branch;
+  double       *size;      /* [point] m, output of the wave */
+  bool         *asked;     /* [point] modulated, and large enough for the sweep */
+  bool         *modulated; /* [point] */
+  int           n_asked, n_modulated, n_points; /* n_points: settled */
+  const char   *refused;                        /* NULL: computed */
+  bool          stopped, stiff;
+} work;
+
+typedef struct {
+  work *of;
+  int   point;
+} task;
+
+typedef struct {
+  const modal_model      *model;
+  const mhb_settings     *settings;
+  const mhb_lasting_host *host;
+  int                     n, n_tasks, done, total;
+  work                   *work;   /* [n] */
+  task                   *tasks;  /* [n_tasks] */
+  shb_status              status; /* the first failure */
+  char                    text[512];
+} lasting;
+
+/* ---- choice ---- */
+
+static bool is_linear(const mhb_response *r, const mhb_branch *b, int point) {
+  const double *share = b->state + 3 * (size_t)point * (size_t)r->n_pairs;
+  for (int a = 0; a < r->n_pairs; a++)
+    if (share[3 * a] < 1 && share[3 * a + 2] < 1) return false;
+  return true;
+}
+
+static bool is_modulated(const mhb_response *r, const mhb_branch *b, int point) {
+  bool pair = b->loss[point] == MHB_LOSS_FLIP || b->loss[point] == MHB_LOSS_NEIMARK_SACKER;
+  return b->stable[point] == 0 && pair && !is_linear(r, b, point);
+}
+
+/* First harmonic of the output: the first probe, else the contact motion of pair 0. */
+static double output_of(const mhb_response *r, const mhb_branch *b, int point) {
+  size_t                K = (size_t)b->n_harmonics + 1, at = (size_t)point * 3 * K;
+  const double complex *x =
+      r->n_probes > 0 ? b->probe + at * (size_t)r->n_probes : b->motion + at * (size_t)r->n_pairs;
+  size_t first  = (size_t)b->order < K ? (size_t)b->order : K - 1;
+  double square = 0;
+  for (size_t axis = 0; axis < 3; axis++) square += pow(cabs(x[axis * K + first]), 2);
+  return sqrt(square);
+}
+
+/* Why nothing is computed for the whole case; NULL: it is. */
+static const char *refusal(const mhb_settings *s) {
+  if (s->lasting == MHB_LASTING_NEVER) return "not computed: mhb.lasting is never";
+  if (s->run_up) return "not computed: in a run-up each frequency has a structure of its own";
+  if (s->parameter != MHB_IN_FREQUENCY)
+    return "not computed: the curves are not over the frequency";
+  if (s->stability == MHB_STABILITY_NEVER)
+    return "not computed: stability was not judged (mhb.stability is never)";
+  return NULL;
+}
+
+static shb_status choose(const lasting *l, work *w) {
+  const mhb_branch *b    = w->branch;
+  double            peak = 0;
+  w->refused             = refusal(l->settings);
+  if (w->refused) return SHB_OK;
+  w->size      = calloc((size_t)b->n_points + 1, sizeof *w->size);
+  w->asked     = calloc((size_t)b->n_points + 1, sizeof *w->asked);
+  w->modulated = calloc((size_t)b->n_points + 1, sizeof *w->modulated);
+  SHB_CHECK(w->size && w->asked && w->modulated, SHB_ERR_IO, "out of memory");
+  for (int i = 0; i < b->n_points; i++) {
+    w->size[i] = output_of(w->curves, b, i);
+    peak       = fmax(peak, w->size[i]);
+  }
+  for (int i = 0; i < b->n_points; i++) {
+    w->modulated[i] = is_modulated(w->curves, b, i);
+    w->asked[i]     = w->modulated[i] && w->size[i] >= PART_OF_PEAK * peak;
+    w->n_modulated += w->modulated[i];
+    w->n_asked += w->asked[i];
+  }
+  if (w->n_modulated == 0) w->refused = "nothing to compute: no point is modulated";
+  return SHB_OK;
+}
+
+/* Refuse, with auto, rings whose periods take too long. */
+static shb_status weigh(const lasting *l, work *w) {
+  mhb_ring_model   *model;
+  const mhb_branch *b = w->branch;
+  if (w->refused || l->settings->lasting == MHB_LASTING_ALWAYS) return SHB_OK;
+  SHB_TRY(
+      mhb_ring_model_create(l->model, l->settings, b->n0[0], SHB_TWO_PI * b->frequency[0], &model));
+  if (256 * model->order * mhb_ring_model_work(model) > MOST_WORK)
+    w->refused = "not computed: the ring is too large; mhb.lasting: always computes it";
+  mhb_ring_model_destroy(model);
+  return SHB_OK;
+}
+
+static mhb_wave wave_at(const work *w, int point) {
+  const mhb_branch *b   = w->branch;
+  size_t            row = 3 * (size_t)w->curves->n_pairs * ((size_t)b->n_harmonics + 1);
+  return (mhb_wave){.omega       = SHB_TWO_PI * b->frequency[point],
+                    .n0          = b->n0[point],
+                    .n_harmonics = b->n_harmonics,
+                    .force       = b->force + (size_t)point * row};
+}
+
+/* ---- the sweep ---- */
+
+/* Modulated point of the lowest or highest frequency that the sweep covers. */
+static int end_of(const work *w, int sign) {
+  int best = -1;
+  for (int i = 0; i < w->branch->n_points; i++)
+    if (w->asked[i] &&
+        (best < 0 || sign * (w->branch->frequency[i] - w->branch->frequency[best]) > 0))
+      best = i;
+  return best;
+}
+
+static void mark(work *w, int point, bool *settle) {
+  if (point < 0 || settle[point]) return;
+  settle[point] = true;
+  w->n_points++;
+}
+
+/* Modulated point nearest to a frequency; of several the largest. */
+static int nearest(const work *w, double hz) {
+  int    best = -1;
+  double gap  = INFINITY;
+  for (int i = 0; i < w->branch->n_points; i++) {
+    double apart = fabs(w->branch->frequency[i] - hz);
+    if (!w->modulated[i] || apart > gap || (apart == gap && w->size[i] < w->size[best])) continue;
+    best = i;
+    gap  = apart;
+  }
+  return best;
+}
+
+static int largest(const work *w) {
+  int best = -1;
+  for (int i = 0; i < w->branch->n_points; i++)
+    if (w->modulated[i] && (best < 0 || w->size[i] > w->size[best])) best = i;
+  return best;
+}
+
+static void choose_points(const lasting *l, work *w, double swept, bool *settle) {
+  const mhb_branch *b = w->branch;
+  mark(w, largest(w), settle);
+  if (swept > 0) mark(w, nearest(w, swept), settle);
+  if (w->n_asked > 0) {
+    double low = b->frequency[end_of(w, -1)], high = b->frequency[end_of(w, 1)];
+    for (int i = 1; i <= BETWEEN; i++)
+      mark(w, nearest(w, low + (high - low) * i / (BETWEEN + 1)), settle);
+  }
+  for (int i = 0; i < b->n_points && l->settings->lasting == MHB_LASTING_ALWAYS; i++)
+    if (w->modulated[i]) mark(w, i, settle);
+}
+
+static shb_status store_sweep(const mhb_slow_sweep *sweep, mhb_branch *branch) {
+  mhb_lasting_curve *c    = &branch->lasting_curve;
+  size_t             size = sizeof(double) * (size_t)sweep->n;
+  SHB_TRY(mhb_response_lasting_curve(branch, sweep->n));
+  if (sweep->n == 0) return SHB_OK;
+  memcpy(c->frequency, sweep->frequency, size);
+  memcpy(c->mean, sweep->mean, size);
+  memcpy(c->worst, sweep->worst, size);
+  return SHB_OK;
+}
+
+/* A failure of this thread, if it is the first. Under the lock. */
+static void note(lasting *l, shb_status status) {
+  if (status == SHB_OK || l->status != SHB_OK) return;
+  l->status = status;
+  snprintf(l->text, sizeof l->text, "%s", shb_message());
+}
+
+static bool goes_on(const lasting *l) {
+  return l->host->go_on(l->host->context);
+}
+
+static void lock(const lasting *l, bool locked) {
+  l->host->lock(l->host->context, locked);
+}
+
+static shb_status stored(lasting *l, const work *w, double hz) {
+  l->done++;
+  return l->host->stored(l->host->context, (double)l->done / l->total, w->branch->n0[0], hz);
+}
+
+/* The sweep of a branch, and the choice of its points. */
+static void sweep_branch(lasting *l, work *w, bool *settle) {
+  mhb_slow_sweep sweep  = {0};
+  shb_status     status = SHB_OK;
+  int            low    = end_of(w, -1);
+  if (low >= 0) {
+    mhb_wave wave = wave_at(w, low);
+    double   high = w->branch->frequency[end_of(w, 1)] * (1 + BEYOND);
+    status        = mhb_slow_sweep_run(l->model, l->settings, &wave, high, l->host->go_on,
+                                       l->host->context, &sweep);
+  }
+  lock(l, true);
+  w->stopped = !goes_on(l);
+  if (status == SHB_OK && !w->stopped) status = store_sweep(&sweep, w->branch);
+  if (status == SHB_OK && !w->stopped) {
+    choose_points(l, w, sweep.n > 0 ? sweep.largest : 0, settle);
+    status = stored(l, w, low < 0 ? w->branch->frequency[0] : w->branch->frequency[low]);
+  }
+  note(l, status);
+  lock(l, false);
+  mhb_slow_sweep_destroy(&sweep);
+}
+
+/* ---- points ---- */
+
+static void settle_point(lasting *l, const task *t) {
+  work       *w    = t->of;
+  mhb_branch *b    = w->branch;
+  mhb_wave    wave = wave_at(w, t->point);
+  mhb_lasting result;
+  shb_status  status =
+      mhb_lasting_settle(l->model, l->settings, &wave, l->host->go_on, l->host->context, &result);
+  lock(l, true);
+  if (!goes_on(l)) w->stopped = true;
+  if (status == SHB_OK && !w->stopped) {
+    int i                 = t->point;
+    w->stiff              = w->stiff || result.kind == MHB_LASTING_UNKNOWN;
+    b->lasting_kind[i]    = result.kind;
+    b->lasting_mean[i]    = result.mean;
+    b->lasting_worst[i]   = result.worst;
+    b->lasting_error[i]   = result.error;
+    b->lasting_side[i]    = result.kind == MHB_LASTING_UNKNOWN ? 0 : result.diameter;
+    b->lasting_offset[i]  = result.offset;
+    b->lasting_periods[i] = result.periods;
+    status                = stored(l, w, b->frequency[i]);
+  }
+  note(l, status);
+  lock(l, false);
+}
+
+static shb_status list_tasks(lasting *l, bool *const *settle) {
+  int n = 0;
+  for (int i = 0; i < l->n; i++) n += l->work[i].n_points;
+  l->tasks = calloc((size_t)n + 1, sizeof *l->tasks);
+  SHB_CHECK(l->tasks, SHB_ERR_IO, "out of memory");
+  for (int i = 0; i < l->n; i++)
+    for (int k = 0; settle[i] && k < l->work[i].branch->n_points; k++)
+      if (settle[i][k]) l->tasks[l->n_tasks++] = (task){&l->work[i], k};
+  l->total += n;
+  return SHB_OK;
+}
+
+/* What was computed, or why not. A branch that was stopped has no text. */
+static shb_status set_text(const work *w) {
+  char text[160];
+  if (!w->branch || w->stopped) return SHB_OK;
+  snprintf(text, sizeof text, "%d point%s of %d modulated%s", w->n_points,
+           w->n_points == 1 ? "" : "s", w->n_modulated,
+           w->branch->lasting_curve.n > 0 ? ", and a sweep" : "");
+  const char *said = w->refused ? w->refused : text;
+  if (w->stiff) said = "not computed: the contacts are too stiff for 4096 steps a period";
+  w->branch->lasting = strdup(said);
+  SHB_CHECK(w->branch->lasting, SHB_ERR_IO, "out of memory");
+  return SHB_OK;
+}
+
+/* ---- all branches ---- */
+
+static shb_status prepare(lasting *l, mhb_response *const *curves, bool **settle) {
+  for (int i = 0; i < l->n; i++) {
+    work *w = &l->work[i];
+    if (!curves[i] || curves[i]->branch[0].lasting || curves[i]->branch[0].n_points == 0) continue;
+    w->curves = curves[i];
+    w->branch = &curves[i]->branch[0];
+    SHB_TRY(choose(l, w));
+    SHB_TRY(weigh(l, w));
+    if (w->refused) continue;
+    settle[i] = calloc((size_t)w->branch->n_points + 1, sizeof **settle);
+    SHB_CHECK(settle[i], SHB_ERR_IO, "out of memory");
+    l->total++;
+  }
+  return SHB_OK;
+}
+
+static shb_status run(lasting *l, mhb_response *const *curves, bool **settle) {
+  SHB_TRY(prepare(l, curves, settle));
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int i = 0; i < l->n; i++)
+    if (settle[i] && goes_on(l)) sweep_branch(l, &l->work[i], settle[i]);
+  if (l->status == SHB_OK) SHB_TRY(list_tasks(l, settle));
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int i = 0; i < l->n_tasks; i++)
+    if (goes_on(l)) settle_point(l, &l->tasks[i]);
+  if (l->status != SHB_OK) return shb_fail(l->status, __FILE__, __LINE__, "%s", l->text);
+  for (int i = 0; i < l->n; i++) {
+    l->work[i].stopped = l->work[i].stopped || !goes_on(l);
+    SHB_TRY(set_text(&l->work[i]));
+  }
+  return SHB_OK;
+}
+
+shb_status mhb_lasting_motion(const modal_model *model, const mhb_settings *settings, int n,
+                              mhb_response *const *curves, const mhb_lasting_host *host) {
+  lasting l      = {.model = model, .settings = settings, .host = host, .n = n};
+  bool  **settle = calloc((size_t)n + 1, sizeof *settle);
+  l.work         = calloc((size_t)n + 1, sizeof *l.work);
+  shb_status status =
+      settle && l.work ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  if (status == SHB_OK) status = run(&l, curves, settle);
+  for (int i = 0; settle && l.work && i < n; i++) {
+    free(settle[i]);
+    free(l.work[i].size);
+    free(l.work[i].asked);
+    free(l.work[i].modulated);
+  }
+  free(l.work);
+  free(l.tasks);
+  free(settle);
+  return status;
+}

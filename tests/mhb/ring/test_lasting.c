@@ -1,0 +1,274 @@
+/* Settling beside a wave: the rules on made-up series, a modulated ring against slow integration,
+ * the rule of pairs, and what is not computed. */
+#include "mesh/base/constants.h"
+#include "mhb/integration/integrator.h"
+#include "mhb/ring/lasting.h"
+#include "mhb/ring/ring_output.h"
+#include "mhb/ring/side_waves.h"
+#include "tests/support/check.h"
+#include "tests/support/main_curve.h"
+#include "tests/support/random_model.h"
+
+/* ---- rules ---- */
+
+enum { BLOCKS = 16, PEAKS = 400 };
+
+typedef struct {
+  double mean[BLOCKS], spread[BLOCKS], peak[PEAKS];
+} made_up;
+
+/* Blocks of mean m with noise, a spread that falls by a factor a block, peaks up to m w. */
+static mhb_lasting_series make(made_up *x, double m, double noise, double spread, double factor,
+                               double w) {
+  for (int i = 0; i < BLOCKS; i++) {
+    x->mean[i]   = m * (1 + noise * sin(7.3 * i * i));
+    x->spread[i] = spread * pow(factor, i);
+  }
+  for (int i = 0; i < PEAKS; i++) x->peak[i] = m * (1 + (w - 1) * i / (PEAKS - 1));
+  return (mhb_lasting_series){BLOCKS, PEAKS, x->mean, x->spread, x->peak};
+}
+
+typedef struct {
+  double mean, noise, spread, factor, worst; /* of the first start */
+  double other, share;                       /* mean of the second over that; of five lines */
+  bool   last, decided;
+  int    kind;
+} rule;
+
+static void the_rules_hold(void **state) {
+  (void)state;
+  static const rule rules[] = {
+      {1.001, 1e-4, 1e-3, 1, 1, 1, 1, false, true, MHB_LASTING_WAVE},
+      {1.001, 1e-4, .1, .85, 1, 1, 1, false, true, MHB_LASTING_WAVE},    /* comes back */
+      {1.001, 1e-4, .1, .97, 1.03, 1, 1, false, true, MHB_LASTING_MILD}, /* too slowly */
+      {.97, 1e-3, .1, 1, 1.05, 1, .9, false, true, MHB_LASTING_MILD},
+      {.90, 1e-3, .1, 1, 1.05, 1, .9, false, true, MHB_LASTING_MODULATED}, /* by the mean */
+      {.99, 1e-3, .1, 1, 1.2, 1, .9, false, true, MHB_LASTING_MODULATED},  /* by the worst */
+      {1.3, 1e-3, .4, 1, 1.4, 1, .4, false, true, MHB_LASTING_IRREGULAR},
+      {1.2, 1e-3, .3, 1, 1.2, 1.1, .9, true, true, MHB_LASTING_SEVERAL},
+      {1.2, 1e-3, .3, 1, 1.2, 1.1, .9, false, false, MHB_LASTING_UNKNOWN}, /* more is wanted */
+      {1.2, .2, .3, 1, 1.2, 1, .9, false, false, MHB_LASTING_UNKNOWN},     /* not settled */
+      {.43, 1e-4, 1e-3, 1, 1, 1, 1, false, true, MHB_LASTING_SEVERAL},     /* another wave */
+  };
+  for (size_t i = 0; i < sizeof rules / sizeof *rules; i++) {
+    const rule        *r = &rules[i];
+    made_up            x[2];
+    mhb_lasting_series s[2] = {
+        make(&x[0], r->mean, r->noise, r->spread, r->factor, r->worst),
+        make(&x[1], r->mean * r->other, r->noise, r->spread, r->factor, r->worst)};
+    mhb_lasting_verdict v = mhb_lasting_judge(s, r->last);
+    print_message("%2zu: mean %.4f worst %.4f error %.4f\n", i, v.mean, v.worst, v.error);
+    assert_int_equal(v.decided, r->decided);
+    if (v.decided) assert_int_equal(mhb_lasting_kind_of(&v, r->share), r->kind);
+    if (v.several) assert_within(v.mean, r->mean * r->other, .01); /* the larger */
+  }
+}
+
+/* ---- a modulated ring ---- */
+
+enum { HARMONICS = 7 };
+
+typedef struct {
+  modal_model   model;
+  mhb_settings  settings;
+  mhb_response *curves;
+  mhb_wave      wave;
+} modulated;
+
+/* Six blades, engine order 1, lightly damped: at 0.923 rad/s the wave slips, opens, and is
+ * modulated. */
+static void create(modulated *c) {
+  random_model(1, WITH_LEFT, 1, &c->model);
+  for (int i = 0; i < 6; i++) c->model.damping_ratio[i] = .003;
+  c->settings              = random_settings(HARMONICS);
+  c->settings.tolerance    = 1e-8;
+  c->settings.n0[0]        = .15;
+  c->settings.frequency[0] = .85 / SHB_TWO_PI;
+  c->settings.frequency[1] = .95 / SHB_TWO_PI;
+  c->settings.stability    = MHB_STABILITY_ALWAYS;
+  assert_ok(main_curve(&c->model, &c->settings, HARMONICS, NULL, &c->curves));
+  const mhb_branch *b  = &c->curves->branch[0];
+  int               at = -1;
+  for (int i = 0; i < b->n_points; i++)
+    if (b->stable[i] == 0 && b->loss[i] == MHB_LOSS_NEIMARK_SACKER &&
+        (at < 0 ||
+         fabs(SHB_TWO_PI * b->frequency[i] - .9233) < fabs(SHB_TWO_PI * b->frequency[at] - .9233)))
+      at = i;
+  assert_true(at >= 0);
+  size_t row = 3 * (size_t)(b->n_harmonics + 1);
+  c->wave =
+      (mhb_wave){SHB_TWO_PI * b->frequency[at], .15, b->n_harmonics, b->force + (size_t)at * row};
+}
+
+static void destroy(modulated *c) {
+  mhb_response_destroy(c->curves);
+  modal_model_free(&c->model);
+}
+
+/* Peaks of probe 0 of every blade in the slow integrator. */
+typedef struct {
+  int            blades, modes, n;
+  double complex free[3][3];    /* [harmonic][axis] without contact */
+  double         x[2048][6][3]; /* of a period */
+} listener;
+
+static void listen(void *context, const mhb_integrator *g, double t0, double h) {
+  listener *o = context;
+  (void)h;
+  if (o->n >= 2048) return;
+  for (int b = 0; b < o->blades; b++)
+    for (int c = 0; c < 3; c++) {
+      double sum = 0, phase = g->omega * t0 - mhb_integrator_lag(g, b);
+      for (int k = 0; k < 3; k++) sum += creal(o->free[k][c] * cexp(I * k * phase));
+      for (int i = 0; i < o->modes; i++)
+        sum += g->receptance->model->probe[c * o->modes + i] * g->z[b * o->modes + i];
+      o->x[o->n][b][c] = sum;
+    }
+  o->n++;
+}
+
+static double mean_peak(const listener *o) {
+  double sum = 0;
+  for (int b = 0; b < o->blades; b++) {
+    double mean[3] = {0}, peak = 0;
+    for (int i = 0; i < o->n; i++)
+      for (int c = 0; c < 3; c++) mean[c] += o->x[i][b][c] / o->n;
+    for (int i = 0; i < o->n; i++) {
+      double square = 0;
+      for (int c = 0; c < 3; c++) square += pow(o->x[i][b][c] - mean[c], 2);
+      peak = fmax(peak, sqrt(square));
+    }
+    sum += peak / o->blades;
+  }
+  return sum;
+}
+
+/* Mean over blades and the last half of the periods of the peaks, over that of the first period of
+ * the wave, by mhb/integration. */
+static double slow_mean(const modulated *c, int periods) {
+  mhb_integrator *g;
+  static listener o;
+  int             K = c->wave.n_harmonics + 1;
+  double complex  force[3 * K], none[3] = {0}, motion[6];
+  double          sum = 0, wave = 0;
+  assert_ok(mhb_integrator_create(&c->model, &c->settings, HARMONICS, &g));
+  mhb_integrator_set(g, c->wave.omega, c->wave.n0, 48);
+  for (int k = 0; k < K; k++)
+    for (int i = 0; i < 3; i++) force[k * 3 + i] = c->wave.force[i * K + k];
+  o = (listener){.blades = g->blades, .modes = g->modes};
+  for (int k = 0; k < 3; k++) {
+    mhb_receptance_probe(g->receptance, k, none, motion);
+    memcpy(o.free[k], motion, sizeof o.free[k]);
+  }
+  mhb_integrator_balance(g, c->wave.n_harmonics, force);
+  g->watch   = listen;
+  g->context = &o;
+  for (int i = 0; i < periods; i++) {
+    o.n = 0;
+    assert_true(mhb_integrator_period(g));
+    if (i == 0) wave = mean_peak(&o);
+    if (i == 0)
+      for (int k = 0; k < 2 * g->blades * g->modes; k++) g->z[k] *= 1 + .1 * sin(2.385 * k);
+    if (i >= periods / 2) sum += mean_peak(&o) / (periods - periods / 2);
+  }
+  mhb_integrator_destroy(g);
+  return sum / wave;
+}
+
+static void a_modulated_ring_has_the_statistics_of_slow_integration(void **state) {
+  (void)state;
+  modulated   c;
+  mhb_lasting fast;
+  create(&c);
+  assert_ok(mhb_lasting_settle(&c.model, &c.settings, &c.wave, NULL, NULL, &fast));
+  double slow = slow_mean(&c, 400);
+  print_message("kind %d: mean %.4f +- %.4f, worst %.4f, side wave %d at %+.4f; slow mean %.4f\n",
+                fast.kind, fast.mean, fast.error, fast.worst, fast.diameter, fast.offset, slow);
+  assert_int_equal(fast.kind, MHB_LASTING_MODULATED);
+  assert_within(fast.mean, slow, .01);
+  assert_true(fast.worst > fast.mean);
+  destroy(&c);
+}
+
+/* Side waves of the same ring after 200 periods from a disturbed start: the partner of the strongest
+ * is among the next four. */
+static void side_waves_come_in_pairs(void **state) {
+  (void)state;
+  enum { PERIODS = 64, N = 6 };
+  modulated       c;
+  mhb_ring_model *m;
+  mhb_ring        ring;
+  mhb_ring_output out;
+  mhb_noise       noise = {.state = 1};
+  mhb_side_waves  found;
+  double         *x = calloc((size_t)(PERIODS * MHB_SIDE_SAMPLES * 3 * N), sizeof *x);
+  create(&c);
+  assert_ok(mhb_ring_model_create(&c.model, &c.settings, .15, c.wave.omega, &m));
+  assert_ok(mhb_ring_model_set(m, c.wave.omega, 256));
+  assert_ok(mhb_ring_create(m, &ring));
+  assert_ok(mhb_ring_output_create(&ring, &out));
+  mhb_ring_start(&ring, c.wave.n_harmonics, c.wave.force);
+  mhb_ring_disturb(&ring, &out, .05, &noise);
+  for (int i = -200; i < PERIODS; i++) {
+    mhb_ring_period(&ring);
+    for (int j = 0; i >= 0 && j < MHB_SIDE_SAMPLES * 3; j++)
+      for (int b = 0; b < N; b++)
+        x[(i * MHB_SIDE_SAMPLES * 3 + j) * N + b] =
+            ring.output[((j / 3 * 4 + 3) * 3 + j % 3) * m->lanes + b];
+  }
+  assert_ok(mhb_side_waves_find(x, PERIODS, N, 1, &found));
+  const mhb_side_wave *a = &found.wave[0], *b = NULL;
+  for (int i = 1; i < MHB_SIDE_WAVES; i++)
+    if ((a->diameter + found.wave[i].diameter) % N == 2 &&
+        fabs(a->offset + found.wave[i].offset) < 2e-3)
+      b = &found.wave[i];
+  assert_non_null(b);
+  print_message("side waves %d at %+.4f (%.3f), %d at %+.4f (%.3f)\n", a->diameter, a->offset,
+                a->size, b->diameter, b->offset, b->size);
+  free(x);
+  mhb_ring_output_destroy(&out);
+  mhb_ring_destroy(&ring);
+  mhb_ring_model_destroy(m);
+  destroy(&c);
+}
+
+/* ---- what is not computed ---- */
+
+static bool few_calls(void *context) {
+  return ++*(int *)context < 20;
+}
+
+static void an_interrupted_point_is_not_computed(void **state) {
+  (void)state;
+  modulated   c;
+  mhb_lasting result;
+  int         calls = 0;
+  create(&c);
+  assert_ok(mhb_lasting_settle(&c.model, &c.settings, &c.wave, few_calls, &calls, &result));
+  assert_int_equal(result.kind, MHB_LASTING_UNKNOWN);
+  assert_int_equal(calls, 20);
+  destroy(&c);
+}
+
+/* Stiffness 1e8 times that of the modes: no number of steps up to 4096 is stable. */
+static void a_contact_too_stiff_is_not_computed(void **state) {
+  (void)state;
+  modulated   c;
+  mhb_lasting result;
+  create(&c);
+  c.settings.kv = 1e8;
+  assert_ok(mhb_lasting_settle(&c.model, &c.settings, &c.wave, NULL, NULL, &result));
+  assert_int_equal(result.kind, MHB_LASTING_UNKNOWN);
+  destroy(&c);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(the_rules_hold),
+      cmocka_unit_test(a_modulated_ring_has_the_statistics_of_slow_integration),
+      cmocka_unit_test(side_waves_come_in_pairs),
+      cmocka_unit_test(an_interrupted_point_is_not_computed),
+      cmocka_unit_test(a_contact_too_stiff_is_not_computed),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
