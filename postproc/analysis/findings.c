@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "postproc/analysis/stability_findings.h"
 #include "postproc/draw/number_format.h"
 
 static const post_unit NEWTON = {"N", 1};
@@ -104,6 +105,7 @@ void post_key_figures(const post_analysis *analysis, post_buffer *out) {
     snprintf(label, sizeof label, "Lowest peak, n₀ = %s", preload(n0, best->n0));
     put_peak_figure(analysis, out, label, best);
     put_gain(best->amplitude, t, out);
+    post_lasting_figure(analysis, best, out);
   }
   post_put(out, "</dl>\n");
 }
@@ -292,62 +294,6 @@ static void put_folds(const post_analysis *analysis, post_buffer *out) {
     post_put(out, "<li>No curve folds visibly: no jumps on the curves that were followed.</li>\n");
 }
 
-/* Instabilities other than folds, from the multipliers. */
-static void put_multipliers(const post_analysis *analysis, post_buffer *out) {
-  int judged = 0, total = 0, curves = 0, lost[MHB_N_LOSSES] = {0};
-  for (int b = 0; b < analysis->response->n_branches; b++) {
-    const mhb_branch *branch = &analysis->response->branch[b];
-    int               before = lost[MHB_LOSS_FLIP] + lost[MHB_LOSS_NEIMARK_SACKER];
-    for (int p = 0; branch->kind == MHB_BRANCH_NONLINEAR && p < branch->n_points; p++) {
-      total++;
-      judged += branch->judged[p] != MHB_NOT_JUDGED;
-      lost[branch->loss[p]]++;
-    }
-    curves += lost[MHB_LOSS_FLIP] + lost[MHB_LOSS_NEIMARK_SACKER] > before;
-  }
-  int flips = lost[MHB_LOSS_FLIP], waves = lost[MHB_LOSS_NEIMARK_SACKER];
-  if (curves > 0) {
-    post_put(out,
-             "<li><b>Motion that does not repeat.</b> On %d curve%s a part is unstable other than "
-             "by a fold: ",
-             curves, curves > 1 ? "s" : "");
-    if (flips > 0)
-      post_put(out, "%d points by period doubling (flip)%s", flips, waves > 0 ? ", " : "");
-    if (waves > 0) post_put(out, "%d by a modulation (Neimark-Sacker)", waves);
-    post_put(out,
-             ". The motion there settles on another one, of several periods or modulated.</li>\n");
-  }
-  if (judged > 0 && judged < total)
-    post_put(
-        out,
-        "<li>%d of %d points have a verdict on their stability: by Floquet multipliers, by judged "
-        "points on both sides, or by folds. The others are not judged. <code>mhb.stability: "
-        "always</code> judges all.</li>\n",
-        judged, total);
-}
-
-static void put_stability(const post_analysis *analysis, post_buffer *out) {
-  int unstable = 0, unknown = 0, total = 0;
-  for (int b = 0; b < analysis->response->n_branches; b++) {
-    const mhb_branch *branch = &analysis->response->branch[b];
-    for (int p = 0; branch->kind == MHB_BRANCH_NONLINEAR && p < branch->n_points; p++) {
-      total++;
-      unstable += branch->stable[p] == 0;
-      unknown += branch->stable[p] < 0;
-    }
-  }
-  if (total == 0) return;
-  if (unknown == total)
-    post_put(
-        out,
-        "<li>Stability was not computed; between the folds of a curve it is usually lost.</li>\n");
-  else if (unstable > 0)
-    post_put(out,
-             "<li>%d of %d points are unstable (dotted): a machine does not stay there.</li>\n",
-             unstable, total);
-  put_multipliers(analysis, out);
-}
-
 static void put_edges(const post_analysis *analysis, post_buffer *out) {
   const post_tracking *t = &analysis->tracking;
   if (post_at_one_frequency(analysis)) return; /* there the largest value need not be a peak */
@@ -477,7 +423,7 @@ void post_findings(const post_analysis *analysis, post_buffer *out) {
   put_folds(analysis, out);
   put_other_curves(analysis, out);
   put_searches(analysis, out);
-  put_stability(analysis, out);
+  post_stability_findings(analysis, out);
   put_accuracy(analysis, out);
   post_put(out, "</ul>\n");
 }
@@ -505,4 +451,5 @@ void post_summary(const post_analysis *analysis, post_buffer *out) {
   char name[96], n0[POST_NUMBER];
   snprintf(name, sizeof name, "lowest (n0 = %s) peak", preload(n0, t->point[t->best].n0));
   put_brief(analysis, out, name, &t->point[t->best]);
+  post_lasting_summary(analysis, &t->point[t->best], out);
 }

@@ -248,6 +248,21 @@ void plot_line(const post_plot *plot, const char *classes, int n, const double *
   if (p.any) post_put(plot->out, "\"/>\n");
 }
 
+void plot_band(const post_plot *plot, const char *classes, int n, const double *x,
+               const double *low, const double *high) {
+  bool any = false;
+  for (int i = 0; i < 2 * n; i++) { /* forth along the one, back along the other */
+    int    at = i < n ? i : 2 * n - 1 - i;
+    double px = plot_x(plot, x[at]), py[2] = {plot_y(plot, low[at]), plot_y(plot, high[at])};
+    if (!isfinite(px + py[0] + py[1])) continue;
+    if (!any)
+      post_put(plot->out, "<path class=\"%s\" clip-path=\"url(#%s-clip)\" d=\"", classes, plot->id);
+    post_put(plot->out, "%s%.1f %.1f", any ? "L" : "M", px, py[i >= n]);
+    any = true;
+  }
+  if (any) post_put(plot->out, "Z\"/>\n");
+}
+
 void plot_bar(const post_plot *plot, const char *classes, const double x[2], const double y[2]) {
   double left = plot_x(plot, x[0]), right = plot_x(plot, x[1]);
   double low = plot_y(plot, y[0]), high = plot_y(plot, y[1]);

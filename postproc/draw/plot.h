@@ -62,6 +62,9 @@ void plot_powers(const post_plot *plot);
  * 0.4 px are merged. A curve of one point is a small circle. */
 void plot_line(const post_plot *plot, const char *classes, int n, const double *x, const double *y,
                const bool *piece);
+/* Area between two curves over [n] points. Points that have no position are left out. */
+void plot_band(const post_plot *plot, const char *classes, int n, const double *x,
+               const double *low, const double *high);
 /* Rectangle between two corners in data units. */
 void plot_bar(const post_plot *plot, const char *classes, const double x[2], const double y[2]);
 void plot_dot(const post_plot *plot, const char *classes, double x, double y, double radius);

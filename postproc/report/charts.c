@@ -1,4 +1,5 @@
 #include "postproc/report/charts.h"
+#include "postproc/analysis/stability_findings.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -95,31 +96,42 @@ static void draw_points(const post_analysis *analysis, const post_plot *plot, in
   }
 }
 
-/* Draw one branch. Pieces next to an unstable point are dotted. Folds are small circles; flips and
- * Neimark-Sacker points are dots. */
-static void draw_branch(const post_analysis *analysis, const post_plot *plot, int b) {
-  const mhb_branch *branch = &analysis->response->branch[b];
-  const post_curve *c      = &analysis->curve[b];
-  const double     *x      = post_abscissa_values(analysis->response, branch);
-  int               n      = branch->n_points;
-  char              group[POST_CLASS], classes[64];
-  bool             *stable = malloc((size_t)(n > 0 ? n : 1) * 2 * sizeof *stable);
-  if (!stable) {
+/* The line of one verdict. A piece has the later verdict of its two ends. */
+static void draw_verdict(const post_plot *plot, const char *classes, const mhb_branch *branch,
+                         const double *x, const double *amplitude, post_verdict verdict) {
+  int   n     = branch->n_points;
+  bool *piece = calloc((size_t)n + 1, sizeof *piece);
+  if (!piece) {
     plot->out->failed = true;
     return;
   }
-  bool *unstable = stable + n;
   for (int i = 0; i < n; i++) {
-    unstable[i] = branch->stable[i] == 0 || (i > 0 && branch->stable[i - 1] == 0);
-    stable[i]   = !unstable[i];
-    if (post_left_range(n, x, c->amplitude, i - 1)) stable[i] = unstable[i] = false;
+    post_verdict here   = post_verdict_of(branch, i),
+                 before = i > 0 ? post_verdict_of(branch, i - 1) : here;
+    piece[i] =
+        (here > before ? here : before) == verdict && !post_left_range(n, x, amplitude, i - 1);
   }
+  plot_line(plot, classes, n, x, amplitude, piece);
+  free(piece);
+}
+
+/* Draw one branch, a kind of line for each verdict. Folds are small circles; flips and
+ * Neimark-Sacker points are dots. */
+static void draw_branch(const post_analysis *analysis, const post_plot *plot, int b) {
+  static const char *const kind[POST_N_VERDICTS] = {[POST_VERDICT_STABLE]     = "line",
+                                                    [POST_VERDICT_NOT_JUDGED] = "line unjudged",
+                                                    [POST_VERDICT_MODULATED]  = "line modulated",
+                                                    [POST_VERDICT_NEVER_SEEN] = "line unstable"};
+  const mhb_branch        *branch                = &analysis->response->branch[b];
+  const post_curve        *c                     = &analysis->curve[b];
+  const double            *x                     = post_abscissa_values(analysis->response, branch);
+  int                      n                     = branch->n_points;
+  char                     group[POST_CLASS], classes[64];
   post_group_class(&analysis->group[c->group], group);
-  snprintf(classes, sizeof classes, "line %s", group);
-  plot_line(plot, classes, n, x, c->amplitude, stable);
-  snprintf(classes, sizeof classes, "line unstable %s", group);
-  plot_line(plot, classes, n, x, c->amplitude, unstable);
-  free(stable);
+  for (int verdict = 0; verdict < POST_N_VERDICTS; verdict++) {
+    snprintf(classes, sizeof classes, "%s %s", kind[verdict], group);
+    draw_verdict(plot, classes, branch, x, c->amplitude, (post_verdict)verdict);
+  }
   snprintf(classes, sizeof classes, "dot %s", group);
   if (n == 1) plot_dot(plot, classes, x[0], c->amplitude[0], 3);
   snprintf(classes, sizeof classes, "fold %s", group);
@@ -129,6 +141,29 @@ static void draw_branch(const post_analysis *analysis, const post_plot *plot, in
   for (int i = 0; i < n; i++)
     if (branch->special[i] == MHB_FLIP || branch->special[i] == MHB_NEIMARK_SACKER)
       plot_dot(plot, classes, x[i], c->amplitude[i], 2.6);
+}
+
+/* The motion that lasts beside a branch: the sweep of the ring as a band from the mean to the worst
+ * blade, and the settled points as bars of the same. Over the frequency and for the primary output
+ * only. */
+static void draw_lasting(const post_analysis *analysis, const post_plot *plot, int b) {
+  const mhb_branch        *branch = &analysis->response->branch[b];
+  const mhb_lasting_curve *sweep  = &branch->lasting_curve;
+  char                     group[POST_CLASS], classes[64];
+  if (analysis->abscissa.parameter != MHB_IN_FREQUENCY) return;
+  post_group_class(&analysis->group[analysis->curve[b].group], group);
+  snprintf(classes, sizeof classes, "swing %s", group);
+  plot_band(plot, classes, sweep->n, sweep->frequency, sweep->mean, sweep->worst);
+  for (int i = 0; i < branch->n_points; i++) {
+    if (branch->lasting_kind[i] <= MHB_LASTING_WAVE) continue;
+    double wave = analysis->curve[b].amplitude[i];
+    double x[]  = {branch->frequency[i], branch->frequency[i]};
+    double y[]  = {wave * branch->lasting_mean[i], wave * branch->lasting_worst[i]};
+    snprintf(classes, sizeof classes, "line lasting %s", group);
+    plot_line(plot, classes, 2, x, y, NULL);
+    snprintf(classes, sizeof classes, "dot %s", group);
+    plot_dot(plot, classes, x[1], y[1], 2);
+  }
 }
 
 /* Label the limits above their peaks, inside the frame, and apart from each other. */
@@ -157,7 +192,9 @@ static void name_limits(const post_analysis *analysis, const post_plot *plot) {
 }
 
 static void draw_curves(const post_analysis *analysis, const post_plot *plot) {
-  /* first the limits, then nonlinear curves, last points by time integration */
+  /* first what lasts and the limits, then nonlinear curves, last points by time integration */
+  for (int b = 0; b < analysis->response->n_branches; b++)
+    if (analysis->response->branch[b].kind == MHB_BRANCH_NONLINEAR) draw_lasting(analysis, plot, b);
   for (int pass = 0; pass < 2; pass++)
     for (int b = 0; b < analysis->response->n_branches; b++) {
       mhb_branch_kind kind = analysis->response->branch[b].kind;
@@ -181,19 +218,23 @@ void post_draw_response(const post_analysis *analysis, post_plot *plot) {
   draw_curves(analysis, plot);
 }
 
-static void describe(const post_analysis *analysis, char out[320]) {
+enum { DESCRIPTION = 420 };
+
+static void describe(const post_analysis *analysis, char out[DESCRIPTION]) {
   char frequency[POST_PLACE];
-  snprintf(out, 320,
-           "Amplitude against %s%s, %d curves; solid: nonlinear, one colour a preload; "
-           "dots: time integration; "
-           "dashed: the linear "
-           "limits; dotted: unstable. The same numbers are in the tables and in the CSV file.",
-           analysis->abscissa.name, post_frequency_text(analysis, frequency),
-           analysis->response->n_branches);
+  snprintf(
+      out, DESCRIPTION,
+      "Amplitude against %s%s, %d curves; solid: nonlinear, one colour a preload; "
+      "dots: time integration; "
+      "dashed grey: the linear limits; dashed: modulated; dotted: never seen; thin: not judged; "
+      "band: mean and worst blade of the ring. The same numbers are in the tables and in the CSV "
+      "file.",
+      analysis->abscissa.name, post_frequency_text(analysis, frequency),
+      analysis->response->n_branches);
 }
 
 void post_chart_response(const post_analysis *analysis, const char *case_name, post_buffer *out) {
-  char title[256], text[320];
+  char title[256], text[DESCRIPTION];
   snprintf(title, sizeof title, "Forced response of %s", case_name);
   describe(analysis, text);
   plot_svg_open(out, "response", 1100, 540, title, text);

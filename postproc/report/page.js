@@ -160,6 +160,16 @@
             `<text class="axis" x="${left - 48}" y="${top - 12}">${escape(this.ay.label)}</text>`;
       this.svg += `<path class="base" d="M${left} ${bottom}H${right}"/>`;
     }
+    /* the area between two curves */
+    band(classes, xs, low, high) {
+      const at = [...xs.keys()], back = at.slice().reverse();
+      const points = [...at.map(i => [xs[i], low[i]]), ...back.map(i => [xs[i], high[i]])];
+      const d = points.map(([x, y]) => [this.x(x), this.y(y)])
+                    .filter(p => p.every(Number.isFinite))
+                    .map(([x, y], i) => (i ? "L" : "M") + x.toFixed(1) + " " + y.toFixed(1));
+      if (d.length > 2)
+        this.svg += `<path class="${classes}" clip-path="url(#${this.id}-clip)" d="${d.join("")}Z"/>`;
+    }
     line(classes, xs, ys, piece) {
       if (xs.length === 1 && !piece) this.dot(classes, xs[0], ys[0], 2);
       let d = "", at = -1, px = NaN, py = NaN, lastX = NaN, lastY = NaN;
@@ -272,12 +282,22 @@
         continue;
       }
       const classes = classOf(g) + (i === state.branch ? " chosen" : "");
-      const unstable = k => stable[k] === 0 || stable[k - 1] === 0;
+      const ranks = [1, -1, 2, 0]; /* stable, not judged, modulated, never seen */
+      const rank = k => ranks.indexOf(stable[k]);
+      const verdict = k => k > 0 ? Math.max(rank(k), rank(k - 1)) : rank(k);
+      const kinds = ["line ", "line unjudged ", "line modulated ", "line unstable "];
       const low = Math.min(...b.f),
             high = Math.max(...b.f); /* no line where the curve leaves the range and returns */
       const left = k => b.f[k] === b.f[k - 1] && (b.f[k] === low || b.f[k] === high);
-      main.line("line " + classes, b.f, a, k => !unstable(k) && !left(k));
-      main.line("line unstable " + classes, b.f, a, k => unstable(k) && !left(k));
+      kinds.forEach((kind, v) =>
+          main.line(kind + classes, b.f, a, k => verdict(k) === v && !left(k)));
+      if (o === outputs[0] && sweep && b.ringAt)
+        main.band("swing " + classOf(g), b.ringAt, b.ringMean, b.ringWorst);
+      for (const [f, mean, worst, kind] of o === outputs[0] && sweep && b.lasting || []) {
+        if (kind < 2) continue;
+        main.line("line lasting " + classOf(g), [f, f], [mean, worst], () => true);
+        main.dot("dot " + classOf(g), f, worst, 2);
+      }
       if (b.n === 1) main.dot("dot " + classes, b.f[0], a[0], 3);
       b.row(ROW.special).forEach((special, k) => {
         if (special > 2) main.dot("bifurcation " + classes, b.f[k], a[k], 2.6);
@@ -323,8 +343,9 @@
       rows.push(b.dots ? ["repeats itself", stable === 1 ? "yes" : "no"] : [
         "stability",
         stable === 1     ? "stable" :
-            stable === 0 ? "unstable" :
-                           "not known"
+            stable === 2 ? "modulated" :
+            stable === 0 ? "beyond a fold: never seen" :
+                           "not judged"
       ]);
       if (error > 0) rows.push(["error estimate", percent(error)]);
     }

@@ -1,4 +1,5 @@
 #include "postproc/report/page_data.h"
+#include "postproc/analysis/stability_findings.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -251,8 +252,8 @@ static double fixed_value(const post_analysis *analysis, const mhb_branch *branc
       return post_dissipation(analysis->response, branch, point);
     case 5:
       return post_error(branch, point);
-    case 6:
-      return branch->stable[point];
+    case 6: /* 1 stable, 0 never seen, -1 not judged, 2 modulated */
+      return post_verdict_of(branch, point) == POST_VERDICT_MODULATED ? 2 : branch->stable[point];
     default:
       return branch->special[point];
   }
@@ -275,6 +276,43 @@ static shb_status make_sheet(const post_analysis *analysis, int b, int rows, int
   return SHB_OK;
 }
 
+static void put_list(post_buffer *out, const char *name, int n, const double *value) {
+  post_put(out, ",\"%s\":[", name);
+  for (int i = 0; i < n; i++) {
+    post_put(out, i ? "," : "");
+    put_value(out, value[i]);
+  }
+  post_put(out, "]");
+}
+
+/* The motion that lasts, of the primary output: the sweep, and settled points as [frequency, mean,
+ * worst, kind], m. */
+static void put_lasting(const post_analysis *analysis, int b, post_buffer *out) {
+  const mhb_branch        *branch = &analysis->response->branch[b];
+  const mhb_lasting_curve *sweep  = &branch->lasting_curve;
+  const char              *comma  = "";
+  if (branch->kind != MHB_BRANCH_NONLINEAR || !branch->lasting_kind) return;
+  if (sweep->n > 0) {
+    put_list(out, "ringAt", sweep->n, sweep->frequency);
+    put_list(out, "ringMean", sweep->n, sweep->mean);
+    put_list(out, "ringWorst", sweep->n, sweep->worst);
+  }
+  post_put(out, ",\"lasting\":[");
+  for (int i = 0; i < branch->n_points; i++) {
+    double wave = analysis->curve[b].amplitude[i];
+    if (!branch->lasting_kind[i]) continue;
+    post_put(out, "%s[", comma);
+    comma = ",";
+    put_value(out, branch->frequency[i]);
+    post_put(out, ",");
+    put_value(out, wave * branch->lasting_mean[i]);
+    post_put(out, ",");
+    put_value(out, wave * branch->lasting_worst[i]);
+    post_put(out, ",%d]", branch->lasting_kind[i]);
+  }
+  post_put(out, "]");
+}
+
 static void put_branches(const post_analysis *analysis, int rows, const sheet *sheets,
                          post_buffer *out) {
   for (int b = 0; b < analysis->response->n_branches; b++) {
@@ -288,6 +326,7 @@ static void put_branches(const post_analysis *analysis, int rows, const sheet *s
     post_put_json(out, branch->reason ? branch->reason : "");
     post_put(out, ",\"order\":%d,\"note\":", branch->order);
     post_put_json(out, note);
+    put_lasting(analysis, b, out);
     post_put(out, ",\"data\":\"");
     post_put_base64(out, (size_t)rows * (size_t)sheets[b].n, sheets[b].data);
     post_put(out, "\"}");

@@ -1,4 +1,5 @@
 #include "postproc/report/picture.h"
+#include "postproc/analysis/stability_findings.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -18,7 +19,10 @@ static void put_style(const post_analysis *analysis, post_buffer *out) {
       ".line{fill:none;stroke:currentColor;stroke-width:1.8;stroke-linejoin:round;stroke-linecap:"
       "round}"
       ".grid{stroke:#e4e7ea}.base{stroke:#8c959f;fill:none}"
-      ".unstable{stroke-dasharray:.1 4.5}.limit{color:#6b7480;stroke-width:1.5;stroke-linecap:butt}"
+      ".unstable{stroke-dasharray:.1 4.5}.modulated{stroke-dasharray:5 3.2;stroke-linecap:butt}"
+      ".unjudged{stroke-width:.9;opacity:.75}.lasting{stroke-width:1.4}"
+      ".swing{fill:currentColor;opacity:.18;stroke:none}.limit{color:#6b7480;stroke-width:1.5;"
+      "stroke-linecap:butt}"
       ".line.open{stroke-dasharray:9 5}.line.stuck{stroke-dasharray:4 4}"
       ".dot{fill:currentColor}.fold{fill:#fff;stroke:currentColor;stroke-width:1.4}"
       ".bifurcation{fill:currentColor;stroke:#fff;stroke-width:.8}"
@@ -37,12 +41,16 @@ static void put_entry(post_buffer *out, double y, const char *classes, const cha
 }
 
 static void put_legend(const post_analysis *analysis, post_buffer *out) {
-  double step = fmin(21, 430.0 / (analysis->n_groups + 1)), y = 84;
-  bool   unstable = false, integration = false;
+  double step = fmin(21, 430.0 / (analysis->n_groups + 5)), y = 84;
+  bool   seen[POST_N_VERDICTS] = {false}, integration = false, lasting = false;
   for (int b = 0; b < analysis->response->n_branches; b++) {
     const mhb_branch *branch = &analysis->response->branch[b];
     integration = integration || (branch->kind == MHB_BRANCH_INTEGRATION && branch->n_points > 0);
-    for (int p = 0; p < branch->n_points; p++) unstable = unstable || branch->stable[p] == 0;
+    if (branch->kind != MHB_BRANCH_NONLINEAR) continue;
+    for (int p = 0; p < branch->n_points; p++) {
+      seen[post_verdict_of(branch, p)] = true;
+      lasting                          = lasting || branch->lasting_kind[p] > MHB_LASTING_WAVE;
+    }
   }
   if (analysis->n_ranks > 0) {
     post_put(out, "<text class=\"axis\" x=\"%d\" y=\"%.1f\">preload n₀</text>\n", LEGEND, y);
@@ -62,12 +70,27 @@ static void put_legend(const post_analysis *analysis, post_buffer *out) {
     put_entry(out, y, classes, text);
     y += step;
   }
-  if (unstable) put_entry(out, y, "unstable plain", "unstable");
+  static const char *const entry[POST_N_VERDICTS][2] = {
+      [POST_VERDICT_NOT_JUDGED] = {"unjudged plain", "not judged"},
+      [POST_VERDICT_MODULATED]  = {"modulated plain", "modulated"},
+      [POST_VERDICT_NEVER_SEEN] = {"unstable plain", "never seen"}};
+  for (int v = 0; v < POST_N_VERDICTS; v++) {
+    if (!seen[v] || !entry[v][0]) continue;
+    put_entry(out, y, entry[v][0], entry[v][1]);
+    y += step;
+  }
+  if (lasting) {
+    post_put(out,
+             "<rect class=\"swing plain\" x=\"%d\" y=\"%.1f\" width=\"28\" height=\"9\"/>"
+             "<text x=\"%d\" y=\"%.1f\">ring: mean to worst</text>\n",
+             LEGEND, y - 9, LEGEND + 38, y);
+    y += step;
+  }
   if (integration)
     post_put(out,
              "<circle class=\"integration plain\" cx=\"%d\" cy=\"%.1f\" r=\"2.4\"/>"
              "<text x=\"%d\" y=\"%.1f\">time integration</text>\n",
-             LEGEND + 14, y + (unstable ? step : 0) - 4, LEGEND + 38, y + (unstable ? step : 0));
+             LEGEND + 14, y - 4, LEGEND + 38, y);
 }
 
 void post_picture(const post_analysis *analysis, const char *case_name, post_buffer *out) {

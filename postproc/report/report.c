@@ -139,9 +139,11 @@ static void put_main(const post_analysis *analysis, const char *case_name, post_
   put_keys(analysis, out);
   post_put(
       out,
-      "<figcaption class=\"note\">Solid: stable, or stability not known. Dotted: unstable. Small "
-      "circles: folds; full ones: flips (period doubling) and Neimark-Sacker points. "
-      "Dashed: the linear limits, contact open (long) and stuck (short). Amplitude of the first "
+      "<figcaption class=\"note\">Solid: stable. Dashed: modulated. Dotted: beyond a fold, never "
+      "seen. Thin: not judged. Bands and bars: the whole ring, from the mean to the worst blade. "
+      "Small circles: folds; full ones: flips (period doubling) and Neimark-Sacker points. "
+      "Dashed grey: the linear limits, contact open (long) and stuck (short). Amplitude of the "
+      "first "
       "harmonic: the largest displacement it reaches in a cycle.</figcaption>\n"
       "<p class=\"hint\">Point at a curve to read it, click it to see its contact and harmonics "
       "below, drag across "

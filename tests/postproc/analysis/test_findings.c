@@ -29,7 +29,8 @@ static void response_is_told(void **state) {
   assert_has(text, "below open, ");
   assert_has(text, "The optimum lies between 50 and 200\u00a0N");
   assert_has(text, "<b>Jumps.</b> Folds on n₀ = ");
-  assert_has(text, "points are unstable (dotted)");
+  assert_has(text, "<b>Never seen</b> (dotted): ");
+  assert_has(text, "were <b>not searched</b> for");
   assert_has(text, "<b>Not complete:</b> n₀ = 1000\u00a0N (curve 8) stopped at ");
   assert_has(text, "Estimated error of the harmonic balance: at most ");
   free(text);

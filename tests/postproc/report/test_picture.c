@@ -27,7 +27,7 @@ static void groups_are_named(void **state) {
   assert_has(svg, ">100\u00a0N</text>");
   assert_has(svg, ">fully open</text>");
   assert_has(svg, ">fully stuck</text>");
-  assert_has(svg, ">unstable</text>");
+  assert_has(svg, ">never seen</text>");
   for (int i = 0; i < o.n_preloads; i++) {
     char rule[32];
     snprintf(rule, sizeof rule, ".c%d{color:#", i);
