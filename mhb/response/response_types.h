@@ -46,6 +46,14 @@ enum { MHB_NO_LOSS, MHB_LOSS_FOLD, MHB_LOSS_FLIP, MHB_LOSS_NEIMARK_SACKER, MHB_N
 /* Multipliers stored a point. */
 enum { MHB_KEPT_MULTIPLIERS = 8 };
 
+/* A search for other branches at one value of the parameter: random starts of the Newton method. */
+typedef struct {
+  double value;  /* as mhb_branch.value */
+  int    order;  /* of the motions searched for */
+  int    starts; /* that were made */
+  int    found;  /* branches that they led to and that were not known */
+} mhb_search;
+
 /* One curve. Array layouts:
  *   motion, force  [point][pair][3 (v, u, w)][k = 0..m]
  *   probe          [point][probe][3 (tangential, axial, radial)][k]
@@ -57,7 +65,9 @@ typedef struct {
   mhb_origin      origin;
   int             order, n_harmonics; /* nu, m; the response's unless set before the first point */
   int             main;               /* index of the main branch of the same preload */
-  bool            searched;           /* main branch: the search beside it is done */
+  bool            searched;           /* main branch: the search beside it is done, if wanted */
+  int             n_searches;         /* main branch; 0: none was made */
+  mhb_search     *search;             /* [n_searches] */
   char           *reason;   /* end of the branch: "end of range", or why it ended before */
   bool            complete; /* the range was covered */
   int             n_points, capacity;

@@ -176,7 +176,7 @@ static void a_modal_file_needs_little(void **state) {
   assert_true(f.mhb.harmonics == 3 && f.mhb.subharmonics == 1 && f.mhb.scale == 1);
   assert_true(f.mhb.tolerance == 1e-8 && f.mhb.max_points == 2000 && f.points == 1);
   assert_int_equal(f.mhb.stability, MHB_STABILITY_AUTO);
-  assert_true(f.mhb.flips && f.mhb.search.starts == 0 && f.mhb.search.n_at == 0);
+  assert_true(f.mhb.flips && f.mhb.search.starts == MHB_SEARCH_PEAKS && f.mhb.search.n_at == 0);
   assert_true(f.mhb.search.n_orders == 3 && f.mhb.search.order[2] == 3);
   assert_true(f.mhb.preload == MHB_EQUILIBRIUM && f.load.factor[1] == 1 && f.load.n_harmonics == 1);
   case_free(&f);
