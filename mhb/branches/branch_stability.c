@@ -12,15 +12,23 @@
 #include "mhb/floquet/floquet.h"
 
 /* Up to CHEAP states every point is judged, above if the expected cost of all is within BUDGET. At
- * least LEAST_POINTS slipping points are judged in any case. */
-enum { CHEAP = 60, MAX_STATES = 600, SUBSTEPS = 256, LEAST_POINTS = 7 };
+ * least LEAST_POINTS slipping points are judged in any case. SUBSTEPS: to begin with; fewer above DEAR states. With 256 instead
+ * of 128 multipliers of the example of 40 blades change by 5e-4 of themselves at most. */
+enum {
+  CHEAP         = 60,
+  DEAR          = 120,
+  MAX_STATES    = 600,
+  SUBSTEPS      = 256,
+  SUBSTEPS_DEAR = 128,
+  LEAST_POINTS  = 7
+};
 static const double BUDGET = 1, SECONDS_A_CUBE = 1.5e-9, SECONDS_A_STATE = 1e-5;
 
 /* Distances of a modulus from 1: the margin outside that counts as unstable, the accuracy of a
- * located bifurcation, and the end of the search. It is COARSE above CHEAP states. A search takes
+ * located bifurcation, and the end of the search. It is COARSE above DEAR states. A search takes
  * MOST_TRIALS multipliers at most: a test function that jumps is not followed further. */
 static const double MARGIN = 1e-3, ON_CIRCLE = 1e-3, NEAR_ENOUGH = 1e-6, COARSE = 5e-4;
-enum { MAX_LOCATED = 32, MOST_TRIALS = 24, MOST_TRIALS_DEAR = 6 };
+enum { MAX_LOCATED = 32, MOST_TRIALS = 24, MOST_TRIALS_DEAR = 4 };
 
 /* The multipliers' verdict on a point. */
 typedef struct {
@@ -66,7 +74,9 @@ shb_status mhb_branch_stability_create(mhb_balance *b, mhb_branch_stability **ou
   shb_status status =
       w->x && w->r ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   if (status == SHB_OK)
-    status = mhb_floquet_create(b->receptance, b->settings, SUBSTEPS, MAX_STATES, &w->floquet);
+    status =
+        mhb_floquet_create(b->receptance, b->settings, w->states > DEAR ? SUBSTEPS_DEAR : SUBSTEPS,
+                           MAX_STATES, &w->floquet);
   if (status != SHB_OK) {
     mhb_branch_stability_destroy(w);
     return status;
@@ -284,7 +294,7 @@ static void set_point(mhb_branch_stability *w, int i, mhb_curve_point *point) {
  * jump across 0 is not marked. */
 static shb_status locate(mhb_branch_stability *w, int i) {
   mhb_arclength *curve = mhb_tracer_curve(w->tracer);
-  bool           dear  = w->states > CHEAP;
+  bool           dear  = w->states > DEAR;
   search         s     = {.stability = w,
                           .trials    = dear ? MOST_TRIALS_DEAR : MOST_TRIALS,
                           .enough    = dear ? COARSE : NEAR_ENOUGH};
