@@ -15,17 +15,20 @@ static const double REAL = 1e-11;
 static const double BESIDE = 1e-9, SETTLED = 1e-7;
 enum { INVERSE_STEPS = 12 };
 
+static const double ROOT_TWO = 1.4142135623730952; /* rounded up */
+
 shb_status mhb_bloch_create(int cells, int capacity, mhb_bloch *b) {
   size_t n = (size_t)capacity, square = n * n;
-  *b        = (mhb_bloch){.cells = cells, .capacity = capacity, .size = 34 * capacity};
-  b->real   = shb_arena_take(&b->arena, square + 1, sizeof *b->real);
-  b->re     = shb_arena_take(&b->arena, n + 1, sizeof *b->re);
-  b->im     = shb_arena_take(&b->arena, n + 1, sizeof *b->im);
-  b->work   = shb_arena_take(&b->arena, (size_t)b->size + 2 * n + 1, sizeof *b->work);
-  b->matrix = shb_arena_take(&b->arena, square + 1, sizeof *b->matrix);
-  b->value  = shb_arena_take(&b->arena, 2 * n + 1, sizeof *b->value);
-  b->pivot  = shb_arena_take(&b->arena, n + 1, sizeof *b->pivot);
-  int ok    = cells <= 2 || mhb_hessenberg_qr_create(capacity, &b->qr);
+  *b         = (mhb_bloch){.cells = cells, .capacity = capacity, .size = 34 * capacity};
+  b->real    = shb_arena_take(&b->arena, square + 1, sizeof *b->real);
+  b->re      = shb_arena_take(&b->arena, n + 1, sizeof *b->re);
+  b->im      = shb_arena_take(&b->arena, n + 1, sizeof *b->im);
+  b->work    = shb_arena_take(&b->arena, (size_t)b->size + 2 * n + 1, sizeof *b->work);
+  b->matrix  = shb_arena_take(&b->arena, square + 1, sizeof *b->matrix);
+  b->value   = shb_arena_take(&b->arena, 2 * n + 1, sizeof *b->value);
+  b->aligned = shb_arena_take(&b->arena, n + 1, sizeof *b->aligned);
+  b->pivot   = shb_arena_take(&b->arena, n + 1, sizeof *b->pivot);
+  int ok     = cells <= 2 || mhb_hessenberg_qr_create(capacity, &b->qr);
   if (ok && !b->arena.failed) return SHB_OK;
   mhb_bloch_destroy(b);
   SHB_FAIL(SHB_ERR_IO, "out of memory for the multipliers of %d states", capacity);
@@ -71,18 +74,29 @@ static void set_matrix(mhb_bloch *b, int n, const double *S, double kappa) {
 
 /* Note lambda[n] of wave l if the largest is among them. */
 static void note_largest(mhb_bloch *b, int n, int l, const double complex *lambda) {
+  double most = cabs(b->largest);
   for (int i = 0; i < n; i++) {
-    if (cabs(lambda[i]) <= cabs(b->largest)) continue;
+    if (fmax(fabs(creal(lambda[i])), fabs(cimag(lambda[i]))) * ROOT_TWO < most ||
+        cabs(lambda[i]) <= most)
+      continue;
+    most       = cabs(lambda[i]);
     b->largest = lambda[i];
     b->wave    = l;
   }
 }
 
+static void note_aligned(mhb_bloch *b, int n, const double complex *lambda, int n_segments) {
+  for (int i = 0; i < n; i++)
+    if (cimag(lambda[i]) == 0 && creal(lambda[i]) > 0)
+      b->aligned[b->n_aligned++] = pow(creal(lambda[i]), n_segments);
+}
+
 int mhb_bloch_multipliers(mhb_bloch *b, int n, const double *S, int n_segments, int cell_shift,
                           double complex *multiplier) {
   int g = b->cells, done = 0;
-  b->wave    = 0;
-  b->largest = 0;
+  b->wave      = 0;
+  b->largest   = 0;
+  b->n_aligned = 0;
   for (int l = 0; 2 * l <= g && n > 0; l++) {
     double          kappa  = SHB_TWO_PI * l / g;
     int             own    = l == 0 || 2 * l == g; /* its own conjugate */
@@ -92,6 +106,7 @@ int mhb_bloch_multipliers(mhb_bloch *b, int n, const double *S, int n_segments, 
               : mhb_hessenberg_qr_eigenvalues(&b->qr, n, b->matrix, lambda)))
       return 0;
     note_largest(b, n, l, lambda);
+    if (l == 0) note_aligned(b, n, lambda, n_segments);
     double complex turn = own ? (l > 0 && cell_shift % 2 ? -1 : 1) : cexp(-I * kappa * cell_shift);
     for (int i = 0; i < n && own; i++, done++)
       multiplier[done] = turn * power(multiplier[done], n_segments);

@@ -28,6 +28,8 @@ typedef struct {
   int              *pivot;           /* [capacity] */
   int               size;
   mhb_hessenberg_qr qr;      /* with three cells or more */
+  double           *aligned; /* [n_aligned] multipliers with the symmetry of the wave, above 0 */
+  int               n_aligned;
   int               wave;    /* l of the largest multiplier of the last call */
   double complex    largest; /* its lambda */
   shb_arena         arena;
@@ -37,7 +39,9 @@ typedef struct {
 shb_status mhb_bloch_create(int cells, int capacity, mhb_bloch *bloch);
 void       mhb_bloch_destroy(mhb_bloch *bloch);
 
-/* Multipliers of S [cells][n][n], column-major.
+/* Multipliers of S [cells][n][n], column-major. Those of kappa = 0 with a positive lambda are listed
+ * as aligned: their disturbance repeats from segment to segment as the wave does, without change of
+ * sign. Only such a multiplier passes 1 at a fold of the wave.
  *   cell_shift  in   k
  *   multiplier  out  [cells n], conjugates side by side
  * Returns 0 if the eigensolver failed. */

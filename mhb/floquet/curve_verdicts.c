@@ -3,6 +3,7 @@
 #include <math.h>
 
 static const double STEEPER = 2;
+enum { FARTHEST = 8 }; /* points from first to last: an excursion may begin and end between */
 
 /* Judged points of a stretch around a pair, and what is between. */
 typedef struct {
@@ -34,12 +35,17 @@ static bool same_kind(const mhb_curve_verdict *v, const neighbours *at) {
   return v[at->first].kind == v[at->last].kind;
 }
 
-/* Whether the points between first and last have their kind. */
-static bool is_decided(const mhb_curve_verdict *v, const neighbours *at) {
+/* L (j - i)/(|f_i| + |f_j|) */
+static double doubt(const mhb_curve_verdict *v, const neighbours *at) {
   double steepest = fmax(slope(v, at->first, at->last),
                          fmax(slope(v, at->before, at->first), slope(v, at->last, at->after)));
-  return same_kind(v, at) && STEEPER * steepest * (at->last - at->first) <
-                                 fabs(v[at->first].excess) + fabs(v[at->last].excess);
+  double sum      = fabs(v[at->first].excess) + fabs(v[at->last].excess);
+  return STEEPER * steepest * (at->last - at->first) / fmax(sum, 1e-12);
+}
+
+/* Whether the points between first and last have their kind. */
+static bool is_decided(const mhb_curve_verdict *v, const neighbours *at) {
+  return same_kind(v, at) && at->last - at->first <= FARTHEST && doubt(v, at) < 1;
 }
 
 /* The pair that begins at a judged point; last is -1 if there is none. */
@@ -58,21 +64,33 @@ static bool is_end(int n, const mhb_curve_verdict *v, int i) {
          ends_at(&v[i + 1]);
 }
 
-int mhb_curve_verdicts_next(int n, const mhb_curve_verdict *v) {
-  int longest[2] = {1, 1}, middle[2] = {-1, -1}; /* between different kinds; undecided pairs */
+/* A wanted point that is not judged, or an end of a stretch; -1: none. */
+static int first_points(int n, const mhb_curve_verdict *v) {
   for (int i = 0; i < n; i++)
     if (is_open(&v[i]) && v[i].wanted) return i;
   for (int i = 0; i < n; i++)
     if (is_open(&v[i]) && is_end(n, v, i)) return i;
+  return -1;
+}
+
+int mhb_curve_verdicts_next(int n, const mhb_curve_verdict *v) {
+  int    next = first_points(n, v), longest = 1, between = -1, middle = -1;
+  double least = INFINITY;
+  if (next >= 0) return next;
   for (int i = 0; i < n; i++) {
-    neighbours at = pair_from(n, v, i);
-    if (at.last < 0 || is_decided(v, &at)) continue;
-    int which = same_kind(v, &at);
-    if (at.last - i <= longest[which]) continue;
-    longest[which] = at.last - i;
-    middle[which]  = i + (at.last - i) / 2;
+    neighbours at  = pair_from(n, v, i);
+    int        gap = at.last - i;
+    if (at.last < 0 || gap < 2 || is_decided(v, &at)) continue;
+    if (!same_kind(v, &at) && gap > longest) {
+      longest = gap;
+      between = i + gap / 2;
+    }
+    if (same_kind(v, &at) && doubt(v, &at) < least) {
+      least  = doubt(v, &at);
+      middle = i + gap / 2;
+    }
   }
-  return middle[0] >= 0 ? middle[0] : middle[1];
+  return between >= 0 ? between : middle;
 }
 
 void mhb_curve_verdicts_decided(int n, const mhb_curve_verdict *v, int *decided) {

@@ -7,8 +7,8 @@
  *   min |f| >= (|f_i| + |f_j| - L (j - i))/2,
  * and f has one sign if L (j - i) < |f_i| + |f_j|. L is STEEPER times the steepest difference
  * quotient of f between judged points from the one before i to the one after j. Points between are
- * decided by their neighbours if this holds and both have the same kind. The estimate of L is no
- * bound, so the verdict is likely, not certain.
+ * decided by their neighbours if this holds, both have the same kind, and j - i is at most eight. The
+ * estimate of L is no bound, so the verdict is likely, not certain.
  *
  * Nothing is concluded across a change of the equations: slip onset, a fold, a gap. */
 #ifndef MHB_FLOQUET_CURVE_VERDICTS_H
@@ -30,8 +30,9 @@ typedef struct {
   double             excess; /* f */
 } mhb_curve_verdict;
 
-/* The next point to judge: a wanted one, the end of a stretch, the middle between points of
- * different kind, the middle between points that do not decide those between them. -1: none. */
+/* The next point to judge: a wanted one, the end of a stretch, the middle of the longest gap between
+ * points of different kind, or the middle between points of one kind that nearly decide those
+ * between them: L (j - i)/(|f_i| + |f_j|) is least. -1: none. */
 int mhb_curve_verdicts_next(int n, const mhb_curve_verdict *verdict);
 
 /* decided[n] <- the judged point before a point that its neighbours decide; -1 for all others. */

@@ -112,13 +112,17 @@ int mhb_floquet_cells(const mhb_floquet *s) {
   return s->structure.blades / s->schedule.n_segments;
 }
 
+static double square(double complex z) {
+  return creal(z) * creal(z) + cimag(z) * cimag(z);
+}
+
 /* By falling modulus. Insertion sort is stable: conjugates, of equal modulus, stay side by side. */
 static void sort(int n, double complex *x) {
   for (int i = 1; i < n; i++) {
     double complex z    = x[i];
-    double         size = cabs(z);
+    double         size = square(z);
     int            j    = i;
-    for (; j > 0 && cabs(x[j - 1]) < size; j--) x[j] = x[j - 1];
+    for (; j > 0 && square(x[j - 1]) < size; j--) x[j] = x[j - 1];
     x[j] = z;
   }
 }
@@ -150,7 +154,8 @@ static const char *linear(mhb_floquet *s, const mhb_solution *solution, double p
   for (int a = 0; a < s->structure.pairs; a++) s->state[a] = s->schedule.state[a];
   if (!mhb_linear_exponents_set(x, s->state, solution->law)) return "the eigensolver failed";
   for (int i = 0; i < x->n; i++) s->multiplier[i] = cexp(x->exponent[i] * period);
-  out->modes = s->structure.modes;
+  out->modes         = s->structure.modes;
+  s->bloch.n_aligned = 0;
   set_multipliers(s, x->n, out);
   return NULL;
 }
@@ -212,13 +217,13 @@ static double stiffening(const mhb_modal_structure *structure, const mhb_law *la
 /* First refinement: CYCLE sub-steps a cycle of the fastest mode that the contacts stiffen. */
 static int first_refinement(const mhb_floquet *s, const mhb_law *law, double omega) {
   const mhb_modal_structure *structure  = &s->reduced;
-  double                     square     = 0;
+  double                     fastest    = 0; /* squared */
   int                        refinement = 1;
   for (int i = 0; i < structure->modes; i++) {
     double own = structure->omega[i] * structure->omega[i], more = stiffening(structure, law, i);
-    if (more > SHIFTED * own) square = fmax(square, own + more);
+    if (more > SHIFTED * own) fastest = fmax(fastest, own + more);
   }
-  while (s->monodromy->substeps * refinement * omega < CYCLE * sqrt(square) &&
+  while (s->monodromy->substeps * refinement * omega < CYCLE * sqrt(fastest) &&
          4 * refinement < FINEST)
     refinement *= 2;
   return refinement;
@@ -290,4 +295,6 @@ void mhb_floquet_evaluate(mhb_floquet *s, const mhb_solution *solution, mhb_mult
   }
   if (!out->reason) count_left_out(s, solution, out);
   set_verdict(out);
+  for (int i = 0; out->verdict == MHB_UNSTABLE && i < s->bloch.n_aligned; i++)
+    out->n_fold += s->bloch.aligned[i] > 1 + fmax(MARGIN, out->change);
 }

@@ -34,6 +34,7 @@ typedef struct {
   int                   n_stuck;    /* multipliers 1 left out */
   int                   n_zero;     /* exact zeros left out */
   int                   n_unstable; /* modulus above the margin */
+  int                   n_fold; /* of these: positive, with the symmetry of the wave (bloch.h) */
   int                   modes; /* with dynamics; fewer than the model's if max_states was reached */
   double                largest; /* modulus of the first */
   double                change;  /* of largest by the last halving of the sub-steps; -1: none */

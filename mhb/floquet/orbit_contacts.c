@@ -8,7 +8,6 @@
 #include "mesh/base/constants.h"
 #include "mhb/contact/slip.h"
 #include "mhb/numerics/fourier.h"
-#include "mhb/numerics/lu.h"
 
 /* Distance from an opening, in periods, at which the direction of friction is sampled. */
 static const double NEAR = 1e-8;
@@ -28,16 +27,15 @@ shb_status mhb_orbit_contacts_create(const mhb_modal_structure     *s,
   d->capacity      = s->blades * n_samples;
   shb_arena *arena = &d->arena;
   d->motion        = shb_arena_take(arena, n * (size_t)d->nb, sizeof(double));
-  d->sample     = shb_arena_take(arena, (size_t)s->pairs * (size_t)d->capacity, sizeof *d->sample);
-  d->n_taken    = shb_arena_take(arena, (size_t)s->pairs, sizeof(int));
-  d->point      = shb_arena_take(arena, contacts, sizeof *d->point);
-  d->matrix     = shb_arena_take(arena, n * n, sizeof(double));
-  d->pivot      = shb_arena_take(arena, n, sizeof(int));
-  d->force_rate = shb_arena_take(arena, n, sizeof(double));
-  d->force_jump = shb_arena_take(arena, n, sizeof(double));
+  d->sample  = shb_arena_take(arena, (size_t)s->pairs * (size_t)d->capacity, sizeof *d->sample);
+  d->n_taken = shb_arena_take(arena, (size_t)s->pairs, sizeof(int));
+  d->point   = shb_arena_take(arena, contacts, sizeof *d->point);
+  d->solution_columns = shb_arena_take(arena, 2 * n, sizeof(mhb_columns));
+  d->force_rate       = shb_arena_take(arena, n, sizeof(double));
+  d->force_jump       = shb_arena_take(arena, n, sizeof(double));
   d->elastic_feedback = shb_arena_take(arena, n, sizeof(double));
   d->basis            = shb_arena_take(arena, 2 * (size_t)d->nb, sizeof(double));
-  if (arena->failed) {
+  if (!mhb_ring_band_create(s->blades, 3 * s->pairs, &d->band) || arena->failed) {
     mhb_orbit_contacts_destroy(d);
     SHB_FAIL(SHB_ERR_IO, "out of memory for the stability of %d contacts", s->contacts);
   }
@@ -47,6 +45,7 @@ shb_status mhb_orbit_contacts_create(const mhb_modal_structure     *s,
 
 void mhb_orbit_contacts_destroy(mhb_orbit_contacts *d) {
   if (!d) return;
+  mhb_ring_band_destroy(&d->band);
   shb_arena_free(&d->arena);
   free(d);
 }
@@ -123,27 +122,39 @@ static int is_slipping(const mhb_contact_state *point) {
 
 /* ---- rates with residual flexibility: p' = (I + G R)^-1 G w', u' = w' - R p' ---- */
 
-/* Rows of contact j of I + G R, and of G w'. */
+/* Rows of contact j of I + G R, and of G w'. R couples the contacts of neighbouring blades. */
 static void rate_rows(mhb_orbit_contacts *d, int j, double at, double *rate) {
-  int    n = 3 * d->structure->contacts;
+  int    n = 3 * d->structure->contacts, block = d->band.block, blade[3];
+  int    n_blades = mhb_ring_band_neighbours(&d->band, j / d->structure->pairs, blade);
   double G[3][3], w[3];
   mhb_linearised_law_rate(&d->point[j], G);
   motion_rate(d, d->motion, j, at, w);
   for (int r = 0; r < 3; r++) {
-    const double *R   = d->structure->flexibility + (size_t)(3 * j) * (size_t)n;
-    double       *row = d->matrix + (size_t)(3 * j + r) * (size_t)n;
-    rate[3 * j + r]   = G[r][0] * w[0] + G[r][1] * w[1] + G[r][2] * w[2];
-    for (int c = 0; c < n; c++)
-      row[c] = (c == 3 * j + r) + G[r][0] * R[c] + G[r][1] * R[n + c] + G[r][2] * R[2 * n + c];
+    const double *R = d->structure->flexibility + (size_t)(3 * j) * (size_t)n;
+    rate[3 * j + r] = G[r][0] * w[0] + G[r][1] * w[1] + G[r][2] * w[2];
+    for (int i = 0; i < n_blades * block; i++) {
+      int c = blade[i / block] * block + i % block;
+      *mhb_ring_band_at(&d->band, 3 * j + r, c) =
+          (c == 3 * j + r) + G[r][0] * R[c] + G[r][1] * R[n + c] + G[r][2] * R[2 * n + c];
+    }
   }
+}
+
+/* x[n] <- (I + G R)^-1 x by the factors of force_rates. */
+static void solve_rates(mhb_orbit_contacts *d, double *x) {
+  int          n       = d->band.n;
+  mhb_columns *columns = d->solution_columns;
+  for (int i = 0; i < n; i++) columns[i] = (mhb_columns){x[i]};
+  mhb_ring_band_solve(&d->band, columns, columns + n);
+  for (int i = 0; i < n; i++) x[i] = columns[i][0];
 }
 
 /* Factors of I + G R, and p' into rate[n]. Returns 0 if singular. */
 static int force_rates(mhb_orbit_contacts *d, double at, double *rate) {
-  int n = 3 * d->structure->contacts;
+  mhb_ring_band_clear(&d->band);
   for (int j = 0; j < d->structure->contacts; j++) rate_rows(d, j, at, rate);
-  if (!mhb_factor_real(n, d->matrix, d->pivot)) return 0;
-  mhb_solve_real(n, d->matrix, d->pivot, rate);
+  if (!mhb_ring_band_factor(&d->band)) return 0;
+  solve_rates(d, rate);
   return 1;
 }
 
@@ -267,7 +278,7 @@ static int elastic_onset(mhb_orbit_contacts *d, double at, mhb_saltation *jump,
   memset(d->force_jump, 0, sizeof(double) * (size_t)n);
   d->force_jump[a + 1] = ku[0] * e[0] + ku[1] * e[1];
   d->force_jump[a + 2] = ku[1] * e[0] + ku[2] * e[1];
-  mhb_solve_real(n, d->matrix, d->pivot, d->force_jump);
+  solve_rates(d, d->force_jump);
   const double *k = d->force_jump + a;
   double        s = e[0] * k[1] + e[1] * k[2] - mu * k[0], across = e[0] * k[2] - e[1] * k[1];
   double measure[3] = {-mu * point->law->kv / s, e[0] / s, e[1] / s}, q[3] = {0, -e[1], e[0]};

@@ -37,10 +37,10 @@ typedef struct {
   int                           *n_taken;    /* [pair] samples collected or used */
   mhb_contact_info               info;       /* of a time history */
   mhb_contact_state             *point;      /* [contact] now */
-  double                        *matrix;     /* [n][n] I + G R, n = 3 contacts */
-  int                           *pivot;      /* [n] */
-  double                        *force_rate; /* [n] p' */
-  double                        *force_jump; /* [n] jump of the forces at a transition */
+  mhb_ring_band                  band;       /* I + G R, n = 3 contacts */
+  mhb_columns                   *solution_columns; /* [2][n] */
+  double                        *force_rate;       /* [n] p' */
+  double                        *force_jump;       /* [n] jump of the forces at a transition */
   double                        *elastic_feedback; /* [n] -R p' */
   double                        *basis;            /* [2][nb] */
   shb_arena                      arena;

@@ -73,9 +73,10 @@ MHB_INLINE void solve(int n, int w, const double *row, const int *pivot, mhb_col
   }
   for (int k = n - 1; k >= 0; k--) {
     const double *top = row + (long)k * (next + 1) + w;
-    mhb_columns   sum = x[k];
-    for (int j = 1; j <= 2 * w && k + j < n; j++) sum -= top[j] * x[k + j];
-    x[k] = sum * top[0];
+    mhb_columns   sum = x[k], odd = {0}; /* two sums: each waits for its last addition */
+    for (int j = 2; j <= 2 * w && k + j < n; j += 2) sum -= top[j] * x[k + j];
+    for (int j = 1; j < 2 * w && k + j < n; j += 2) odd -= top[j] * x[k + j];
+    x[k] = (sum + odd) * top[0];
   }
 }
 
@@ -85,7 +86,11 @@ MHB_HOT static void solve_one(const mhb_ring_band *b, mhb_columns *x) {
 
 MHB_HOT static void solve_folded(const mhb_ring_band *b, mhb_columns *x, mhb_columns *folded) {
   for (int i = 0; i < b->n; i++) folded[b->place[i]] = x[i];
-  solve(b->n, b->width, b->row, b->pivot, folded);
+  if (b->width == 8) { /* blocks of three */
+    solve(b->n, 8, b->row, b->pivot, folded);
+  } else {
+    solve(b->n, b->width, b->row, b->pivot, folded);
+  }
   for (int i = 0; i < b->n; i++) x[i] = folded[b->place[i]];
 }
 

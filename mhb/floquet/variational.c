@@ -256,6 +256,14 @@ MHB_HOT static void step_one_contact(const mhb_variational *v, mhb_columns *Y, m
   step_block(v, (ring_size){1, 1, 1, 1}, Y, P, W, D, df);
 }
 
+/* A ring of blades with one contact each. */
+MHB_HOT static void step_ring(const mhb_variational *v, mhb_columns *Y, mhb_columns *P,
+                              mhb_columns *W) {
+  int n = unknowns(v->structure);
+  memset(W, 0, sizeof *W * (size_t)n);
+  step_block(v, v->structure->blades, 2, 1, 3, Y, P, W, W + n, W + 2 * n);
+}
+
 MHB_HOT static void step_any(const mhb_variational *v, mhb_columns *Y, mhb_columns *P,
                              mhb_columns *W) {
   const mhb_modal_structure *s = v->structure;
@@ -272,6 +280,8 @@ void mhb_variational_step(mhb_variational *v) {
     mhb_columns *Y = v->Y + (long)k * v->rows, *P = v->P + (long)k * n;
     if (n == 3 && s->sides == 1) {
       step_one_contact(v, Y, P);
+    } else if (s->sides == 2 && s->pairs == 1 && v->n_neighbours == 3) {
+      step_ring(v, Y, P, v->work);
     } else {
       step_any(v, Y, P, v->work);
     }

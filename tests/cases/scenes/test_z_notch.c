@@ -128,11 +128,11 @@ static void every_point_balances(void **state) {
   }
 }
 
-/* On a ring of forty blades a few points of each curve have multipliers, and all points without
- * slip; these are stable. */
+/* On a ring of forty blades some points of each curve have multipliers, and all points without
+ * slip; these are stable. What is not judged is said to be not judged, at most a third. */
 static void some_points_are_judged(void **state) {
   (void)state;
-  int slipping = 0;
+  int slipping = 0, unknown = 0, total = 0;
   assert_int_equal(response->n_multipliers, 8);
   for (int i = 2; i < response->n_branches; i++) {
     const mhb_branch *b = &response->branch[i];
@@ -140,13 +140,19 @@ static void some_points_are_judged(void **state) {
       const double *share  = b->state + 3 * p;
       bool          linear = share[0] >= 1 || share[2] >= 1;
       double        size   = cabs(b->multipliers[8 * p]);
-      assert_true(b->stable[p] == 0 || b->stable[p] == 1);
-      assert_true((b->judged[p] == MHB_BY_FOLDS) == (size == 0));
-      if (b->judged[p] == MHB_BY_MULTIPLIERS) assert_int_equal(b->stable[p], size < 1.0005);
-      if (linear) assert_true(b->judged[p] == MHB_BY_MULTIPLIERS && b->stable[p] == 1 && size < 1);
-      slipping += !linear && b->judged[p] != MHB_BY_FOLDS;
+      int           how    = b->judged[p];
+      assert_int_equal(b->stable[p] < 0, how == MHB_NOT_JUDGED);
+      assert_int_equal(size == 0, how != MHB_BY_MULTIPLIERS && how != MHB_JUDGED_MARGINAL);
+      if (how == MHB_BY_MULTIPLIERS) assert_int_equal(b->stable[p], size < 1.0005);
+      if (how == MHB_BY_FOLDS) assert_int_equal(b->stable[p], 0);
+      if (linear) assert_true(how == MHB_BY_MULTIPLIERS && b->stable[p] == 1 && size < 1);
+      total += !linear;
+      slipping += !linear && size > 0;
+      unknown += !linear && b->stable[p] < 0;
     }
   }
+  print_message("%d slipping points, %d judged, %d not known\n", total, slipping, unknown);
+  assert_true(3 * unknown <= total);
   assert_true(slipping >= 16);
 }
 
