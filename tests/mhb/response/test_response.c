@@ -40,6 +40,13 @@ static void fill_point(mhb_response *response, int branch) {
     b->judged[point] = point % 4;
     b->loss[point]   = (point + 1) % 4;
     fill_waves(b->multipliers + point * MULTIPLIERS, MULTIPLIERS, branch, point, 9);
+    b->lasting_mean[point]    = value(branch, point, 11, 0);
+    b->lasting_worst[point]   = value(branch, point, 12, 0);
+    b->lasting_error[point]   = 1e-3 * point;
+    b->lasting_side[point]    = point % 41 - 1;
+    b->lasting_offset[point]  = value(branch, point, 13, 0);
+    b->lasting_periods[point] = 25 * point;
+    b->lasting_kind[point]    = point % MHB_LASTING_KINDS;
   }
   for (int i = 0; i < response->n_pairs * 3; i++)
     b->state[point * response->n_pairs * 3 + i] = fabs(value(branch, point, 7, i));
@@ -80,7 +87,14 @@ static mhb_response *sample(int n_probes, int points) {
     assert_int_equal(branch, i);
     for (int j = 0; j < (i == 1 ? 0 : points); j++) fill_point(response, i); /* the second: empty */
   }
-  response->branch[0].reason   = strdup("end of range");
+  response->branch[0].reason  = strdup("end of range");
+  response->branch[0].lasting = strdup("2 points of 9 modulated, and a sweep");
+  assert_ok(mhb_response_lasting_curve(&response->branch[0], 7));
+  for (int i = 0; i < 7; i++) {
+    response->branch[0].lasting_curve.frequency[i] = 90 + i;
+    response->branch[0].lasting_curve.mean[i]      = value(0, i, 14, 0);
+    response->branch[0].lasting_curve.worst[i]     = value(0, i, 15, 0);
+  }
   response->branch[0].complete = true;
   response->branch[2].reason   = strdup("the step became too small at 98.2 Hz");
   return response;
@@ -96,6 +110,14 @@ static void assert_same_branch(const mhb_response *response, const mhb_branch *a
   assert_int_equal(a->complete, b->complete);
   assert_string_equal(a->reason ? a->reason : "", b->reason);
   assert_int_equal(n, b->n_points);
+  assert_int_equal(!a->lasting, !b->lasting);
+  if (a->lasting) assert_string_equal(a->lasting, b->lasting);
+  assert_int_equal(a->lasting_curve.n, b->lasting_curve.n);
+  if (a->lasting_curve.n > 0) {
+    assert_same(&a->lasting_curve, &b->lasting_curve, frequency, a->lasting_curve.n);
+    assert_same(&a->lasting_curve, &b->lasting_curve, mean, a->lasting_curve.n);
+    assert_same(&a->lasting_curve, &b->lasting_curve, worst, a->lasting_curve.n);
+  }
   if (n == 0) return;
   assert_same(a, b, frequency, n);
   assert_same(a, b, n0, n);
@@ -108,6 +130,13 @@ static void assert_same_branch(const mhb_response *response, const mhb_branch *a
     assert_same(a, b, judged, n);
     assert_same(a, b, loss, n);
     assert_same(a, b, multipliers, n * MULTIPLIERS);
+    assert_same(a, b, lasting_mean, n);
+    assert_same(a, b, lasting_worst, n);
+    assert_same(a, b, lasting_error, n);
+    assert_same(a, b, lasting_side, n);
+    assert_same(a, b, lasting_offset, n);
+    assert_same(a, b, lasting_periods, n);
+    assert_same(a, b, lasting_kind, n);
   } else {
     assert_true(!b->judged && !b->loss && !b->multipliers);
   }
