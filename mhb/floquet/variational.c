@@ -261,7 +261,7 @@ MHB_HOT static void step_ring(const mhb_variational *v, mhb_columns *Y, mhb_colu
                               mhb_columns *W) {
   int n = unknowns(v->structure);
   memset(W, 0, sizeof *W * (size_t)n);
-  step_block(v, v->structure->blades, 2, 1, 3, Y, P, W, W + n, W + 2 * n);
+  step_block(v, (ring_size){v->structure->blades, 2, 1, 3}, Y, P, W, W + n, W + 2 * n);
 }
 
 MHB_HOT static void step_any(const mhb_variational *v, mhb_columns *Y, mhb_columns *P,

@@ -19,7 +19,7 @@ typedef enum {
 
 post_verdict post_verdict_of(const mhb_branch *branch, int point);
 
-/* The largest swing of any blade in the slow sweep of a branch: its index, or -1 without a sweep. */
+/* Index of the largest swing of any blade in the slow sweep of a branch; -1: there is no sweep. */
 int post_largest_swing(const mhb_branch *branch);
 
 /* Write list items: how many points are modulated, never seen and not judged, and what lasts. */

@@ -143,9 +143,8 @@ static void draw_branch(const post_analysis *analysis, const post_plot *plot, in
       plot_dot(plot, classes, x[i], c->amplitude[i], 2.6);
 }
 
-/* The motion that lasts beside a branch: the sweep of the ring as a band from the mean to the worst
- * blade, and the settled points as bars of the same. Over the frequency and for the primary output
- * only. */
+/* The motion that lasts beside a branch. The sweep of the ring is a band from the mean to the worst
+ * blade, and a settled point is a bar of the same. Over another parameter there is none. */
 static void draw_lasting(const post_analysis *analysis, const post_plot *plot, int b) {
   const mhb_branch        *branch = &analysis->response->branch[b];
   const mhb_lasting_curve *sweep  = &branch->lasting_curve;
