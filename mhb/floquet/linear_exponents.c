@@ -117,6 +117,14 @@ static int nodal_diameter(mhb_linear_exponents *x, int d) {
                             x->rwork) == 0;
 }
 
+/* The structure is real: N - d has the conjugates of d. */
+static void copy_conjugate(mhb_linear_exponents *x, int d) {
+  size_t                n    = 2 * (size_t)x->structure->modes;
+  const double complex *from = x->exponent + (size_t)(x->structure->blades - d) * n;
+  double complex       *to   = x->exponent + (size_t)d * n;
+  for (size_t i = 0; i < n; i++) to[i] = conj(from[i]);
+}
+
 static int same(const mhb_linear_exponents *x, const int *state, const mhb_law *law) {
   for (int a = 0; a < x->structure->pairs; a++) {
     const mhb_law *old = &x->law[a];
@@ -139,7 +147,13 @@ int mhb_linear_exponents_set(mhb_linear_exponents *x, const int *state, const mh
   memcpy(x->state, state, sizeof *state * (size_t)s->pairs);
   memcpy(x->law, law, sizeof *law * (size_t)s->pairs);
   x->known = 1;
-  for (int d = 0; d < s->blades; d++) x->known &= nodal_diameter(x, d);
+  for (int d = 0; d < s->blades; d++) {
+    if (2 * d > s->blades) {
+      copy_conjugate(x, d);
+    } else {
+      x->known &= nodal_diameter(x, d);
+    }
+  }
   qsort(x->exponent, (size_t)x->n, sizeof *x->exponent, by_real_part);
   return x->known;
 }
