@@ -21,8 +21,8 @@ static void keep_flexibility(modal_model *model) {
   model->residual_inertia = model->residual_fourth = NULL;
   model->load_inertia = model->probe_load_inertia = NULL;
   model->probe_contact_inertia                    = NULL;
-  for (int i = 0; i < 36 * model->n_pairs * model->n_pairs; i++)
-    model->residual_flexibility[i] *= .2;
+  int dofs                                        = modal_model_contact_dofs(model);
+  for (int i = 0; i < dofs * dofs; i++) model->residual_flexibility[i] *= .2;
 }
 
 /* First harmonic of probe 0 in a solution of the balance. */

@@ -89,10 +89,15 @@ static void whole(void **state) {
   r->n_multipliers            = 2;
   for (int b = 2; b < r->n_branches; b++)
     r->branch[b].multipliers = calloc((size_t)r->branch[b].n_points * 2, sizeof(double complex));
-  r->branch[3].special[5]      = MHB_NEIMARK_SACKER;
-  r->branch[3].judged[5]       = MHB_BY_MULTIPLIERS;
-  r->branch[3].loss[5]         = MHB_LOSS_NEIMARK_SACKER;
-  r->branch[3].multipliers[10] = CMPLX(0.3, 1.4);
+  r->branch[3].special[5]        = MHB_NEIMARK_SACKER;
+  r->branch[3].judged[5]         = MHB_BY_MULTIPLIERS;
+  r->branch[3].loss[5]           = MHB_LOSS_NEIMARK_SACKER;
+  r->branch[3].multipliers[10]   = CMPLX(0.3, 1.4);
+  r->branch[3].lasting_kind[5]   = MHB_LASTING_MODULATED;
+  r->branch[3].lasting_mean[5]   = 0.93;
+  r->branch[3].lasting_worst[5]  = 1.27;
+  r->branch[3].lasting_side[5]   = 34;
+  r->branch[3].lasting_offset[5] = -0.041;
   post_csv(r, &text);
   const char *at = record(text.text, names, name, &n);
   assert_int_equal(n, 4 + 2 * 11 + 15 + 18);
@@ -119,7 +124,12 @@ static void whole(void **state) {
                                                            : turn     ? "multipliers"
                                                                       : "no");
       assert_string_equal(cell[column(name, n, "loss")], turn ? "Neimark-Sacker" : "");
+      assert_string_equal(cell[column(name, n, "lasting_kind")], turn ? "modulated" : "");
       if (turn) {
+        assert_near(value(cell[column(name, n, "lasting_mean")]), 0.93, 1e-11);
+        assert_near(value(cell[column(name, n, "lasting_worst")]), 1.27, 1e-11);
+        assert_near(value(cell[column(name, n, "lasting_side")]), 34, 0);
+        assert_near(value(cell[column(name, n, "lasting_offset")]), -0.041, 1e-11);
         assert_string_equal(cell[column(name, n, "special")], "Neimark-Sacker");
         assert_near(value(cell[column(name, n, "largest_multiplier")]), hypot(0.3, 1.4), 1e-11);
       } else {
