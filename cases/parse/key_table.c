@@ -345,17 +345,18 @@ static const case_key table[] = {
      .help = "points after which a branch ends"},
     {"mhb.stability", CASE_CHOICE, "", .words = "auto always never", .fallback = "auto",
      AT(mhb.stability), .stages = CASE_MHB,
-     .help = "Floquet multipliers: at every point where that is cheap, else at some of a curve (the "
-             "others follow from near ones of one kind, or are not judged); at "
-             "every point; at none"},
+     .help = "Floquet multipliers: at every point where that is cheap, else at some of a curve "
+             "(the others follow from near ones of one kind, or are not judged); at every point; at "
+             "none"},
     {"mhb.flips", CASE_SWITCH, "", .words = "mark follow", .fallback = "follow", AT(mhb.flips),
      .stages = CASE_MHB, .when = CASE_IF_STABILITY,
      .help = "where a curve loses stability by period doubling, the motion of two periods is "
              "followed from there, or not"},
-    {"mhb.search.starts", CASE_INTEGER, "", 0, 100000, .fallback = "0", AT(mhb.search.starts),
+    {"mhb.search.starts", CASE_AUTO, "", 0, 100000, .fallback = "auto", AT(mhb.search.starts),
      .stages = CASE_MHB,
-     .help = "random starts at each frequency and order, to find curves that nothing leads to; 0: "
-             "no search, 40: a good first look"},
+     .help = "random starts at each frequency and order, to find curves that nothing leads to; "
+             "auto: a few at the lowest and the highest peak of all preloads, 0: no search, 40: a "
+             "good first look"},
     {"mhb.search.at", CASE_PLACES, "Hz", 0, 1e9, true, AT(mhb.search.at), .stages = CASE_MHB,
      .when = CASE_IF_SEARCH_AT,
      .help = "frequencies at which to search, at most 64; default: six, evenly over the range"},

@@ -36,6 +36,17 @@ mhb_response *mhb_response_like(const mhb_response *response) {
 static void free_branch(mhb_branch *branch) {
   for (int i = 0; i < MHB_N_FIELDS; i++) free(mhb_field_get(branch, &mhb_fields[i]));
   free(branch->reason);
+  free(branch->search);
+}
+
+shb_status mhb_response_note_search(mhb_branch *branch, const mhb_search *search) {
+  size_t      n    = (size_t)branch->n_searches;
+  mhb_search *more = realloc(branch->search, (n + 1) * sizeof *more);
+  SHB_CHECK(more, SHB_ERR_IO, "no memory for %zu searches", n + 1);
+  more[n]        = *search;
+  branch->search = more;
+  branch->n_searches++;
+  return SHB_OK;
 }
 
 void mhb_response_destroy(mhb_response *response) {
@@ -187,7 +198,7 @@ shb_status mhb_response_merge(mhb_response *response, mhb_response *other) {
             "one case",
             other->n_pairs, other->n_probes, other->subharmonics, response->n_pairs,
             response->n_probes, response->subharmonics);
-  int before = response->n_branches, index;
+  int before = response->n_branches, index = 0;
   for (int i = 0; i < other->n_branches; i++) {
     mhb_branch *branch = &other->branch[i];
     SHB_TRY(mhb_response_branch(response, branch->kind, &index));

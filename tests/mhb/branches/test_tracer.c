@@ -101,7 +101,7 @@ static void peaks_are_local_maxima(void **state) {
   tear_down(&f);
 }
 
-/* A motion of twice the period whose odd harmonics are round-off has the period itself: the segment
+/* A motion of twice the period whose odd harmonics are round-off has the period itself. The segment
  * joins the curve of lower order at once, whatever sign the rate of the round-off has. */
 static void round_off_is_no_part_of_higher_order(void **state) {
   (void)state;
