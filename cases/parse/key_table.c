@@ -346,8 +346,8 @@ static const case_key table[] = {
     {"mhb.stability", CASE_CHOICE, "", .words = "auto always never", .fallback = "auto",
      AT(mhb.stability), .stages = CASE_MHB,
      .help = "Floquet multipliers: at every point where that is cheap, else at some of a curve "
-             "(the others follow from near ones of one kind, or are not judged); at every point; at "
-             "none"},
+             "(the others follow from near ones of one kind, or are not judged); at every "
+             "point; at none"},
     {"mhb.flips", CASE_SWITCH, "", .words = "mark follow", .fallback = "follow", AT(mhb.flips),
      .stages = CASE_MHB, .when = CASE_IF_STABILITY,
      .help = "where a curve loses stability by period doubling, the motion of two periods is "

@@ -7,8 +7,8 @@
  *   min |f| >= (|f_i| + |f_j| - L (j - i))/2,
  * and f has one sign if L (j - i) < |f_i| + |f_j|. L is STEEPER times the steepest difference
  * quotient of f between judged points from the one before i to the one after j. Points between are
- * decided by their neighbours if this holds, both have the same kind, and j - i is at most eight. The
- * estimate of L is no bound, so the verdict is likely, not certain.
+ * decided by their neighbours if this holds, both have the same kind, and j - i is at most
+ * eight. The estimate of L is no bound, so the verdict is likely, not certain.
  *
  * Nothing is concluded across a change of the equations: slip onset, a fold, a gap. */
 #ifndef MHB_FLOQUET_CURVE_VERDICTS_H
