@@ -21,9 +21,11 @@ set(INTEGRATION_TESTS
   cases.scenes.paper_fig8 cases.scenes.paper_fig9 cases.scenes.paper_fig10
   cases.scenes.paper_fig8_direct cases.scenes.lost_curves cases.scenes.snubber_blade
   hard.three_degree hard.jumps hard.ends hard.friction hard.resonance hard.balance hard.pairs
-  hard.peaks hard.isolas hard.parameters bench.modal bench.contact bench.integrate docs.first_case)
+  hard.peaks hard.isolas hard.parameters bench.stability bench.modal bench.contact
+  bench.integrate docs.first_case)
 set(SLOW_TESTS
-  mesh.blade.blade mhb.floquet.monodromy cases.converge.converge hard.gaps bench.elements)
+  mesh.blade.blade mhb.floquet.monodromy mhb.branches.verdicts cases.converge.converge hard.gaps
+  bench.elements)
 
 set(TIMEOUT_unit 100)
 set(TIMEOUT_integration 600)

@@ -345,9 +345,9 @@ static const case_key table[] = {
      .help = "points after which a branch ends"},
     {"mhb.stability", CASE_CHOICE, "", .words = "auto always never", .fallback = "auto",
      AT(mhb.stability), .stages = CASE_MHB,
-     .help = "Floquet multipliers: at every point where that is cheap, else at some of a curve (the "
-             "others follow from near ones of one kind, or are not judged); at "
-             "every point; at none"},
+     .help = "Floquet multipliers: at every point where that is cheap, else at some of a curve "
+             "(the others follow from near ones of one kind, or are not judged); at every "
+             "point; at none"},
     {"mhb.lasting", CASE_CHOICE, "", .words = "auto always never", .fallback = "auto",
      AT(mhb.lasting), .stages = CASE_MHB, .when = CASE_IF_STABILITY,
      .help = "the motion that takes over where the wave is modulated, by integration of the whole "

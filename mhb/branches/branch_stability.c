@@ -12,8 +12,10 @@
 #include "mhb/floquet/floquet.h"
 
 /* Up to CHEAP states every point is judged, above if the expected cost of all is within BUDGET. At
- * least LEAST_POINTS slipping points are judged in any case. SUBSTEPS: to begin with; fewer above DEAR states. With 256 instead
- * of 128 multipliers of the example of 40 blades change by 5e-4 of themselves at most. */
+ * least LEAST_POINTS slipping points are judged in any case.
+ *
+ * SUBSTEPS are those to begin with; there are fewer above DEAR states. With 256 instead of 128 the
+ * multipliers of the example of 40 blades change by 9e-4 of themselves at most. */
 enum {
   CHEAP         = 60,
   DEAR          = 120,
@@ -223,9 +225,10 @@ static void set_verdicts(const mhb_branch_stability *w, mhb_curve_verdict *verdi
   for (int i = 0; i < w->n; i++) {
     const point_stability *at   = &w->at[i];
     bool                   fail = at->computed && at->verdict == MHB_UNDECIDED;
+    bool                   fold = special[i] == MHB_FOLD;
     verdict[i]                  = (mhb_curve_verdict){.judged    = at->computed && !fail,
                                                       .undecided = fail,
-                                                      .divides   = special[i] == MHB_FOLD || is_linear_point(w, i),
+                                                      .divides   = fold || is_linear_point(w, i),
                                                       .begins    = w->begins[i],
                                                       .wanted    = special[i] == MHB_PEAK,
                                                       .kind      = kind_of(at),

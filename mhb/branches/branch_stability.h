@@ -1,5 +1,5 @@
-/* Stability of the points of a branch by their Floquet multipliers. Points where a multiplier crosses
- * the unit circle other than at +1 are located between judged points.
+/* Stability of the points of a branch by their Floquet multipliers. Points where a multiplier
+ * crosses the unit circle other than at +1 are located between judged points.
  *
  * With stability: auto the expected cost decides which points are judged.
  *   up to 60 states      every point
@@ -43,10 +43,11 @@ shb_status mhb_branch_stability_judge(mhb_branch_stability *stability, mhb_trace
                                       mhb_response *response, int branch, const int *begins,
                                       int n_begins, bool *finished);
 
-/* Set stable and loss by the parity of folds alone. At stable_at no multiplier is taken to be beyond
- * +1. Points behind an odd number of folds are unstable, all others are not judged. Two points in a
- * row at one value tell that the curve left the range and came back to the same end. It passed
- * another fold there. SHB_ERR_IO: no memory. */
+/* Set stable and loss by the parity of folds alone. At stable_at no multiplier is taken to be
+ * beyond +1. Points behind an odd number of folds are unstable, all others are not judged.
+ *
+ * Two points in a row at one value tell that the curve left the range and came back to the same
+ * end. It passed another fold there. SHB_ERR_IO: no memory. */
 shb_status mhb_branch_stability_by_folds(mhb_branch *branch, const int *begins, int n_begins,
                                          int stable_at);
 

@@ -39,8 +39,8 @@ typedef struct {
 shb_status mhb_bloch_create(int cells, int capacity, mhb_bloch *bloch);
 void       mhb_bloch_destroy(mhb_bloch *bloch);
 
-/* Multipliers of S [cells][n][n], column-major. Those of kappa = 0 with a positive lambda are listed
- * as aligned: their disturbance repeats from segment to segment as the wave does, without change of
+/* Multipliers of S [cells][n][n], column-major. Those of kappa = 0 with a positive lambda are
+ * aligned. Their disturbance repeats from segment to segment as the wave does, without change of
  * sign. Only such a multiplier passes 1 at a fold of the wave.
  *   cell_shift  in   k
  *   multiplier  out  [cells n], conjugates side by side
@@ -48,8 +48,9 @@ void       mhb_bloch_destroy(mhb_bloch *bloch);
 int mhb_bloch_multipliers(mhb_bloch *bloch, int n, const double *S, int n_segments, int cell_shift,
                           double complex *multiplier);
 
-/* Modulus of the multiplier of another S, near the one of the last call, that continues the largest
- * multiplier: lambda of the same kappa that is nearest, by inverse iteration. NAN: it failed. */
+/* Modulus of a multiplier of another S, near the S of the last call. It continues the largest
+ * multiplier of that call: lambda is the nearest of the same kappa. By inverse iteration. NAN: it
+ * failed. */
 double mhb_bloch_continued(mhb_bloch *bloch, int n, const double *S, int n_segments);
 
 #endif

@@ -1,5 +1,5 @@
-/* Stability along a curve of which only some points have multipliers: which point to judge next, and
- * which of the others their neighbours decide.
+/* Stability along a curve of which only some points have multipliers: which point to judge next,
+ * and which of the others their neighbours decide.
  *
  * Let f be the largest modulus less 1, a function of the place s along the curve. s counts points,
  * since the steps of the continuation are short where the solution changes quickly. Between judged
@@ -7,8 +7,8 @@
  *   min |f| >= (|f_i| + |f_j| - L (j - i))/2,
  * and f has one sign if L (j - i) < |f_i| + |f_j|. L is STEEPER times the steepest difference
  * quotient of f between judged points from the one before i to the one after j. Points between are
- * decided by their neighbours if this holds, both have the same kind, and j - i is at most eight. The
- * estimate of L is no bound, so the verdict is likely, not certain.
+ * decided by their neighbours if this holds, both have the same kind, and j - i is at most
+ * eight. The estimate of L is no bound, so the verdict is likely, not certain.
  *
  * Nothing is concluded across a change of the equations: slip onset, a fold, a gap. */
 #ifndef MHB_FLOQUET_CURVE_VERDICTS_H
@@ -30,9 +30,11 @@ typedef struct {
   double             excess; /* f */
 } mhb_curve_verdict;
 
-/* The next point to judge: a wanted one, the end of a stretch, the middle of the longest gap between
- * points of different kind, or the middle between points of one kind that nearly decide those
- * between them: L (j - i)/(|f_i| + |f_j|) is least. -1: none. */
+/* The next point to judge; -1: none. In this order:
+ *   a wanted point; the end of a stretch;
+ *   the middle of the longest gap between points of different kind;
+ *   the middle between points of one kind that nearly decide those between them.
+ * For the last L (j - i)/(|f_i| + |f_j|) is least. */
 int mhb_curve_verdicts_next(int n, const mhb_curve_verdict *verdict);
 
 /* decided[n] <- the judged point before a point that its neighbours decide; -1 for all others. */

@@ -11,8 +11,8 @@
  *   W = B (free change of dq over h),
  *   (I + C mean_du/2 + R df_du) D = W - C mean_y y - R df_y y,   P = mean_y y + mean_du D/2.
  *
- * All columns (initial disturbances) are integrated together, MHB_COLUMNS of them a block. Rows of a
- * block, contact j = blade * pairs + pair:
+ * All columns (initial disturbances) are integrated together, MHB_COLUMNS of them a block. Rows of
+ * a block, contact j = blade * pairs + pair:
  *   q [blade][mode] | v = q' [blade][mode] | u [3 j + (v, u, w)] | sigma [2 j + i]
  * sigma of a sticking contact: friction (fu, fw); slipping: (tau, -), the friction across the slip
  * direction; open: none. */

@@ -41,9 +41,9 @@ enum {
   MHB_N_JUDGED
 };
 
-/* loss of mhb_branch: the cause of instability. Fold: a multiplier is beyond +1, whatever the others
- * do. Such a motion is never seen. Flip and Neimark-Sacker: none is, but others are outside the unit
- * circle. The motion is modulated. */
+/* loss of mhb_branch: the cause of instability. Fold: a multiplier is beyond +1, whatever the
+ * others do. Such a motion is never seen. Flip and Neimark-Sacker: none is, but others are outside
+ * the unit circle. The motion is modulated. */
 enum { MHB_NO_LOSS, MHB_LOSS_FOLD, MHB_LOSS_FLIP, MHB_LOSS_NEIMARK_SACKER, MHB_N_LOSSES };
 
 /* Multipliers stored a point. */

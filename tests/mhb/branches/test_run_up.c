@@ -124,6 +124,19 @@ static void what_does_not_change_gives_the_plain_curve(void **state) {
   mhb_speed_table_destroy(run_up);
 }
 
+/* Points that stick or are open throughout are judged, each at its speed. A passive structure is
+ * stable. Returns their number. */
+static int linear_points_are_stable(const mhb_branch *b) {
+  int n = 0;
+  for (int i = 0; i < b->n_points; i++) {
+    if (b->state[3 * i] < 1 && b->state[3 * i + 2] < 1) continue;
+    assert_int_equal(b->judged[i], MHB_BY_MULTIPLIERS);
+    assert_int_equal(b->stable[i], 1);
+    n++;
+  }
+  return n;
+}
+
 static void points_are_solutions_at_their_speed(void **state) {
   (void)state;
   static const struct {
@@ -131,9 +144,10 @@ static void points_are_solutions_at_their_speed(void **state) {
     int           n, harmonics, subharmonics;
     bool          to_ground;
     double        bound;
-  } all[] = {{SPINNING_TURNING, 17, 3, 1, false, 2e-6},
-             {SPINNING_VEERING, 17, 5, 1, true, 2e-7},
-             {SPINNING_STRAIGHT, 3, 4, 2, false, 1e-9}};
+  } all[]      = {{SPINNING_TURNING, 17, 3, 1, false, 2e-6},
+                  {SPINNING_VEERING, 17, 5, 1, true, 2e-7},
+                  {SPINNING_STRAIGHT, 3, 4, 2, false, 1e-9}};
+  int n_linear = 0;
   for (int c = 0; c < 3; c++) {
     mhb_settings plain         = spinning_settings(), s;
     plain.harmonics            = all[c].harmonics;
@@ -151,11 +165,14 @@ static void points_are_solutions_at_their_speed(void **state) {
     print_message("%d points of %d: motions differ by %.1e, multipliers at %d of them by %.1e\n",
                   looked, b->n_points, worst[0], judged, worst[1]);
     assert_true(judged > 0);
+    n_linear += linear_points_are_stable(b);
     assert_below(worst[0], all[c].bound);
     assert_below(worst[1], 1e-3);
     mhb_response_destroy(response);
     mhb_speed_table_destroy(run_up);
   }
+  print_message("%d linear points\n", n_linear);
+  assert_true(n_linear > 20);
 }
 
 /* Another parameter, at one frequency: the structure is that of its speed. */

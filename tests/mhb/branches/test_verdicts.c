@@ -53,9 +53,9 @@ static double apart(const mhb_integrator *a, const mhb_integrator *b) {
   return sqrt(sum);
 }
 
-/* Growth a period of a small disturbance: the slope of the logarithm of the distance of two motions,
- * one disturbed at the start, by least squares over the periods after the first ones, that are left to modes
- * which decay faster. */
+/* Growth a period of a small disturbance. Two motions start together, one of them disturbed. The
+ * slope of the logarithm of their distance is found by least squares. The first periods are left
+ * out: modes that decay faster die out then. */
 static double growth(const modal_model *model, const mhb_settings *s, const mhb_response *r,
                      const mhb_branch *b, int point, int settling) {
   mhb_integrator    *g[2];
@@ -76,13 +76,13 @@ static double growth(const modal_model *model, const mhb_settings *s, const mhb_
   return exp(sums[0] / sums[1]);
 }
 
-/* Points of one kind of a model, until there are enough. Where a disturbance grows by more than 3.5 %
- * a period, the motion leaves the solution before the growth can be measured. */
+/* Points of one kind of a model, until there are enough. Where a disturbance grows by more than
+ * 3.5 % a period, the motion leaves the solution before the growth can be measured. */
 static void compare(const modal_model *model, const mhb_settings *s, const mhb_response *r, kind of,
                     int most, int *found, double *worst) {
   for (int i = 2; i < r->n_branches; i++) {
     const mhb_branch *b    = &r->branch[i];
-    int               step = 1 + b->n_points / 25;
+    int               step = of == BEYOND_FOLD ? 2 : 1 + b->n_points / 25;
     for (int p = 0; p < b->n_points && *found < most; p += step) {
       double largest = cabs(b->multipliers[(size_t)p * (size_t)r->n_multipliers]);
       if (b->judged[p] != MHB_BY_MULTIPLIERS || kind_at(b, p) != of || b->special[p]) continue;

@@ -1,5 +1,5 @@
-/* Which points of a curve are judged, and what follows for the others: functions f in closed form in
- * place of multipliers. */
+/* Which points of a curve are judged, and what follows for the others. Functions f in closed form
+ * stand in place of multipliers. */
 #include "mhb/floquet/curve_verdicts.h"
 
 #include <math.h>
