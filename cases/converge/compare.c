@@ -91,10 +91,11 @@ static double from_rung(const comparison *c, int i) {
   return d > fmax(FAR, SAGS * sag) ? d : 0;
 }
 
-static shb_status compare_branch(comparison *c, int b) {
+/* Add the distance of branch b of the rung from branch d of the reference to the error. */
+static shb_status compare_branches(comparison *c, int b, int d) {
   double distance;
   SHB_TRY(choose(c->output, b, &c->rung));
-  SHB_TRY(choose(c->output, b, &c->reference));
+  SHB_TRY(choose(c->output, d, &c->reference));
   c->unit = 0;
   for (int i = 0; i < c->reference.line.n; i++) c->unit = fmax(c->unit, c->reference.amplitude[i]);
   SHB_CHECK(c->unit > 0 && c->rung.line.n > 0, SHB_ERR_INPUT,
@@ -108,14 +109,53 @@ static shb_status compare_branch(comparison *c, int b) {
   return SHB_OK;
 }
 
+static bool is_secondary(const mhb_response *response, int b) {
+  const mhb_branch *branch = &response->branch[b];
+  return branch->kind == MHB_BRANCH_NONLINEAR && branch->main != b && branch->n_points > 0;
+}
+
+/* A secondary branch, b of one of the sides, counts with its distance from the nearest branch of
+ * the same preload on the other side. */
+static shb_status compare_secondary(comparison *c, int b, bool of_rung) {
+  const mhb_response *own   = of_rung ? c->rung.response : c->reference.response;
+  const mhb_response *other = of_rung ? c->reference.response : c->rung.response;
+  rung_error         *all = c->error, nearest = {.curve = INFINITY};
+  shb_status          status = SHB_OK;
+  for (int d = 0; d < other->n_branches && status == SHB_OK; d++) {
+    if (other->branch[d].main != own->branch[b].main) continue;
+    if (d != own->branch[b].main && !is_secondary(other, d)) continue;
+    rung_error error = {0};
+    c->error         = &error;
+    status           = compare_branches(c, of_rung ? b : d, of_rung ? d : b);
+    if (error.curve < nearest.curve) nearest = error;
+  }
+  c->error   = all;
+  all->curve = fmax(all->curve, nearest.curve);
+  all->n += nearest.n;
+  all->lost += nearest.lost;
+  return status;
+}
+
+static int main_branches(const mhb_response *response) {
+  int n = 0;
+  for (int b = 0; b < response->n_branches; b++)
+    n += response->branch[b].kind == MHB_BRANCH_NONLINEAR && response->branch[b].main == b;
+  return n;
+}
+
 static shb_status compare_all(comparison *c, const char *stem, const char *reference) {
   SHB_TRY(load_curves(stem, &c->rung));
   SHB_TRY(load_curves(reference, &c->reference));
-  int n = c->rung.response->n_branches;
-  SHB_CHECK(n == c->reference.response->n_branches, SHB_ERR_INPUT,
+  const mhb_response *rung = c->rung.response, *finer = c->reference.response;
+  SHB_CHECK(main_branches(rung) == main_branches(finer), SHB_ERR_INPUT,
             "%s and %s hold different preloads", stem, reference);
-  for (int b = 0; b < n; b++)
-    if (c->rung.response->branch[b].kind == MHB_BRANCH_NONLINEAR) SHB_TRY(compare_branch(c, b));
+  for (int b = 0; b < finer->n_branches; b++) {
+    if (is_secondary(finer, b)) SHB_TRY(compare_secondary(c, b, false));
+    if (finer->branch[b].kind == MHB_BRANCH_NONLINEAR && finer->branch[b].main == b)
+      SHB_TRY(compare_branches(c, b, b));
+  }
+  for (int b = 0; b < rung->n_branches; b++)
+    if (is_secondary(rung, b)) SHB_TRY(compare_secondary(c, b, true));
   return SHB_OK;
 }
 

@@ -17,6 +17,9 @@
  * Conversely, a point of the rung counts with its distance from the reference polyline, if that
  * exceeds four times the polyline's sag. Loops that the reference lacks are found in this way.
  *
+ * A secondary branch that only one of them has counts with its distance from the nearest branch of
+ * the same preload in the other file.
+ *
  *   model, settings  in  of the rung
  *
  * Errors: SHB_ERR_INPUT the files do not hold the same preloads; SHB_ERR_IO; SHB_INTERRUPTED. */

@@ -4,9 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/continuation/nearest_solution.h"
-
-static const double PI = 3.14159265358979323846;
 
 struct point_matcher {
   mhb_settings    settings;
@@ -93,7 +92,7 @@ int point_matcher_solve(point_matcher *matcher, const curve_place *place, bool s
   mhb_balance        *b    = matcher->balance;
   const double       *f    = place->branch->frequency;
   size_t              n    = (size_t)b->n;
-  double              span = 2 * PI * (s->frequency[1] - s->frequency[0]);
+  double              span = SHB_TWO_PI * (s->frequency[1] - s->frequency[0]);
   memset(matcher->x, 0, n * sizeof *matcher->x);
   memset(matcher->normal, 0, (n + 1) * sizeof *matcher->normal);
   add_motion(matcher, place, place->from, 1 - place->part, matcher->x);
@@ -102,14 +101,14 @@ int point_matcher_solve(point_matcher *matcher, const curve_place *place, bool s
     add_motion(matcher, place, place->low, -1, matcher->normal);
     add_motion(matcher, place, place->high, 1, matcher->normal);
   }
-  matcher->normal[n] = same_frequency ? span : 2 * PI * (f[place->high] - f[place->low]);
-  double omega       = 2 * PI * ((1 - place->part) * f[place->from] + place->part * f[place->to]);
-  double scale       = mhb_norm(matcher->x, b->n);
+  matcher->normal[n] = same_frequency ? span : SHB_TWO_PI * (f[place->high] - f[place->low]);
+  double omega = SHB_TWO_PI * ((1 - place->part) * f[place->from] + place->part * f[place->to]);
+  double scale = mhb_norm(matcher->x, b->n);
   mhb_balance_set_preload(b, place->branch->n0[place->from]);
   if (!(scale > 0) ||
       !mhb_nearest_solution(matcher->newton, b, matcher->normal, scale, span, matcher->x, &omega))
     return 0;
-  found[0] = omega / (2 * PI);
+  found[0] = omega / SHB_TWO_PI;
   found[1] = amplitude(matcher);
   return 1;
 }

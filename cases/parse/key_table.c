@@ -355,10 +355,11 @@ static const case_key table[] = {
      .stages = CASE_MHB, .when = CASE_IF_STABILITY,
      .help = "where a curve loses stability by period doubling, the motion of two periods is "
              "followed from there, or not"},
-    {"mhb.search.starts", CASE_INTEGER, "", 0, 100000, .fallback = "0", AT(mhb.search.starts),
+    {"mhb.search.starts", CASE_AUTO, "", 0, 100000, .fallback = "auto", AT(mhb.search.starts),
      .stages = CASE_MHB,
-     .help = "random starts at each frequency and order, to find curves that nothing leads to; 0: "
-             "no search, 40: a good first look"},
+     .help = "random starts at each frequency and order, to find curves that nothing leads to; "
+             "auto: a few at the lowest and the highest peak of all preloads, 0: no search, 40: a "
+             "good first look"},
     {"mhb.search.at", CASE_PLACES, "Hz", 0, 1e9, true, AT(mhb.search.at), .stages = CASE_MHB,
      .when = CASE_IF_SEARCH_AT,
      .help = "frequencies at which to search, at most 64; default: six, evenly over the range"},

@@ -13,7 +13,7 @@ typedef enum {
   CASE_NUMBER,    /* number with a unit: double */
   CASE_INTEGER,   /* int */
   CASE_COUNT,     /* integer or "all": int, 0 for all */
-  CASE_AUTO,      /* integer or "auto": int, 0 for auto */
+  CASE_AUTO,      /* integer or "auto": int, for auto one less than the least */
   CASE_CHOICE,    /* one of words: enum of int size, the place in words */
   CASE_SWITCH,    /* one of two words: bool, true for the second */
   CASE_ACCURACY,  /* one of words, or a number: double */

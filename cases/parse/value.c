@@ -15,12 +15,12 @@ static bool read_number(const case_value_context *c, const case_node *node, void
   return case_value_number(c, c->path, node, slot);
 }
 
-/* Reads a whole number, or the word that stands for 0. */
+/* Reads a whole number, or the word: "all" stands for 0, "auto" for one less than the least. */
 static bool read_count(const case_value_context *c, const case_node *node, void *slot) {
-  const char *word = c->key->type == CASE_AUTO ? "auto" : "all";
-  bool        zero = node->kind == CASE_SCALAR && strcmp(node->text, word) == 0;
-  if (zero) *(int *)slot = 0;
-  return zero || case_value_integer(c, node, slot);
+  bool automatic = c->key->type == CASE_AUTO;
+  bool is_word   = node->kind == CASE_SCALAR && strcmp(node->text, automatic ? "auto" : "all") == 0;
+  if (is_word) *(int *)slot = automatic ? (int)c->key->least - 1 : 0;
+  return is_word || case_value_integer(c, node, slot);
 }
 
 /* Index of text in words separated by spaces, or -1. */

@@ -52,8 +52,10 @@ static void print_scalar(FILE *out, const case_key *key, const case_file *file, 
       fprintf(out, "%d", *(const int *)slot);
       break;
     case CASE_AUTO:
-      if (*(const int *)slot == 0) fputs("auto", out);
-      if (*(const int *)slot != 0) fprintf(out, "%d", *(const int *)slot);
+      if (*(const int *)slot < key->least)
+        fputs("auto", out);
+      else
+        fprintf(out, "%d", *(const int *)slot);
       break;
     case CASE_CHOICE:
       print_word(out, key->words, *(const int *)slot);

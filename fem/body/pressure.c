@@ -30,6 +30,21 @@ void fem_face_pressure(const fem_face_rule *rule, double p, const double x[][3],
   }
 }
 
+/* Add a skew block by v to nodes (i, j), and its transpose to nodes (j, i). Column b of the block
+ * is e_b x v. Its element (a, b) is v_d, or -v_d if (a, b, d) is odd. */
+static void add_skew_block(int order, int i, int j, const double v[3], double *K) {
+  for (int d = 0; d < 3; d++) {
+    int    b = (d + 1) % 3, c = (d + 2) % 3;
+    double sign[2]  = {v[d], -v[d]};
+    int    at[2][2] = {{b, c}, {c, b}};
+    for (int k = 0; k < 2; k++) {
+      int row = 3 * i + at[k][0], column = 3 * j + at[k][1];
+      K[row * order + column] += sign[k];
+      K[column * order + row] += sign[k];
+    }
+  }
+}
+
 void fem_face_pressure_stiffness(const fem_face_rule *rule, double p, const double x[][3],
                                  double *K) {
   const int n = rule->nodes, order = 3 * n;
@@ -42,16 +57,7 @@ void fem_face_pressure_stiffness(const fem_face_rule *rule, double p, const doub
         double half = p * rule->weight[q] * rule->shape[q][i] / 2, v[3];
         for (int d = 0; d < 3; d++)
           v[d] = half * (rule->gradient[q][j][0] * s[d] - rule->gradient[q][j][1] * r[d]);
-        for (int d = 0; d < 3; d++) { /* (e_b x v)_a is v_d, or -v_d if (a, b, d) is odd */
-          int    b = (d + 1) % 3, c = (d + 2) % 3;
-          double sign[2]  = {v[d], -v[d]};
-          int    at[2][2] = {{b, c}, {c, b}};
-          for (int k = 0; k < 2; k++) {
-            int row = 3 * i + at[k][0], column = 3 * j + at[k][1];
-            K[row * order + column] += sign[k];
-            K[column * order + row] += sign[k];
-          }
-        }
+        add_skew_block(order, i, j, v, K);
       }
   }
 }

@@ -12,6 +12,8 @@ static const double tet_place[10][3] = {{0, 0, 0},   {1, 0, 0},   {0, 1, 0},  {0
                                         {.5, 0, 0},  {.5, .5, 0}, {0, .5, 0}, {0, 0, .5},
                                         {0, .5, .5}, {.5, 0, .5}};
 
+static const double triangle_place[6][2] = {{0, 0}, {1, 0}, {0, 1}, {.5, 0}, {.5, .5}, {0, .5}};
+
 /* gmsh orders the edges by their lower corner, VTK ring by ring. */
 static const int hex_edge[12][2] = {{0, 1}, {0, 3}, {0, 4}, {1, 2}, {1, 5}, {2, 3},
                                     {2, 6}, {3, 7}, {4, 5}, {4, 7}, {5, 6}, {6, 7}};
@@ -28,6 +30,9 @@ static const double hex_place[20][3] = {{0, 0, 0},  {1, 0, 0},  {1, 1, 0},  {0, 
                                         {0, 0, .5}, {1, .5, 0}, {1, 0, .5}, {.5, 1, 0}, {1, 1, .5},
                                         {0, 1, .5}, {.5, 0, 1}, {0, .5, 1}, {1, .5, 1}, {.5, 1, 1}};
 
+static const double quadrangle_place[8][2] = {{0, 0},  {1, 0},  {1, 1},  {0, 1},
+                                              {.5, 0}, {1, .5}, {.5, 1}, {0, .5}};
+
 static const mesh_topology tet10 = {.name         = "ten-node tetrahedron",
                                     .face_name    = "six-node triangle",
                                     .nodes        = 10,
@@ -43,7 +48,8 @@ static const mesh_topology tet10 = {.name         = "ten-node tetrahedron",
                                     .edge         = tet_edge,
                                     .face         = tet_face,
                                     .vtk_order    = tet_vtk,
-                                    .place        = tet_place};
+                                    .place        = tet_place,
+                                    .face_place   = triangle_place};
 
 static const mesh_topology hex20 = {.name         = "twenty-node hexahedron",
                                     .face_name    = "eight-node quadrangle",
@@ -60,7 +66,8 @@ static const mesh_topology hex20 = {.name         = "twenty-node hexahedron",
                                     .edge         = hex_edge,
                                     .face         = hex_face,
                                     .vtk_order    = hex_vtk,
-                                    .place        = hex_place};
+                                    .place        = hex_place,
+                                    .face_place   = quadrangle_place};
 
 const mesh_topology *mesh_topology_of(mesh_kind kind) {
   return kind == MESH_HEX20 ? &hex20 : &tet10;
@@ -126,11 +133,9 @@ void mesh_shape(mesh_kind kind, const double at[3], double *shape, double (*grad
 }
 
 void mesh_face_shape(mesh_kind kind, const double at[2], double *shape, double (*gradient)[2]) {
-  static const double place[8][2] = {{0, 0},  {1, 0},  {1, 1},  {0, 1},
-                                     {.5, 0}, {1, .5}, {.5, 1}, {0, .5}};
   if (kind == MESH_TET10) {
     simplex(2, at, shape, &gradient[0][0]);
     return;
   }
-  for (int i = 0; i < 8; i++) serendipity(2, at, place[i], &shape[i], gradient[i]);
+  for (int i = 0; i < 8; i++) serendipity(2, at, quadrangle_place[i], &shape[i], gradient[i]);
 }

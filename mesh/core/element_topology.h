@@ -23,6 +23,7 @@ typedef struct {
   const int (*face)[MESH_FACE_NODES]; /* [faces] local nodes */
   const int *vtk_order;     /* [nodes] our node at each place of the cell of VTK and CalculiX */
   const double (*place)[3]; /* [nodes] reference coordinates */
+  const double (*face_place)[2]; /* [face_nodes] the same on a face */
 } mesh_topology;
 
 const mesh_topology *mesh_topology_of(mesh_kind kind);

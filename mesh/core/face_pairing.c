@@ -40,12 +40,12 @@ static void bounding_ball(const left_face *t, int face) {
     ball[3] = fmax(ball[3], vec3_distance(ball, t->mesh->coordinates + 3 * (size_t)node[i]));
 }
 
-/* Reference coordinates of a local node of a face. */
-static void reference(const left_face *t, int local, double at[2]) {
-  static const double six[6][2]   = {{0, 0}, {1, 0}, {0, 1}, {.5, 0}, {.5, .5}, {0, .5}};
-  static const double eight[8][2] = {{0, 0},  {1, 0},  {1, 1},  {0, 1},
-                                     {.5, 0}, {1, .5}, {.5, 1}, {0, .5}};
-  memcpy(at, t->mesh->kind == MESH_HEX20 ? eight[local] : six[local], 2 * sizeof *at);
+/* Reference coordinates of a point of a triangle of a face, given by its barycentric weights. */
+static void reference(const left_face *t, const mesh_triangle *part, const double weight[3],
+                      double at[2]) {
+  at[0] = at[1] = 0;
+  for (int c = 0; c < 3; c++)
+    for (int d = 0; d < 2; d++) at[d] += weight[c] * t->topology->face_place[part->local[c]][d];
 }
 
 /* Nearest point of the flat triangles of all faces: the start of project_to_face. */
@@ -56,16 +56,12 @@ static void nearest_triangle(const left_face *t, const double x[3], contact_plac
     if (vec3_distance(t->ball[f], x) - t->ball[f][3] >= best->distance) continue;
     int n = mesh_triangles(t->mesh, face_nodes(t, f), part);
     for (int p = 0; p < n; p++) {
-      double foot[3], weight[3], corner[2];
+      double foot[3], weight[3];
       double here = mesh_triangle_closest(&part[p], x, foot, weight);
       if (here >= best->distance) continue;
       best->distance = here;
       best->face     = f;
-      best->at[0] = best->at[1] = 0;
-      for (int c = 0; c < 3; c++) {
-        reference(t, part[p].local[c], corner);
-        for (int d = 0; d < 2; d++) best->at[d] += weight[c] * corner[d];
-      }
+      reference(t, &part[p], weight, best->at);
     }
   }
 }

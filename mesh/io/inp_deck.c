@@ -76,13 +76,17 @@ static shb_status next_line(mesh_deck *deck, bool *found) {
   return SHB_OK;
 }
 
+static char capital(char c) {
+  return (char)toupper((unsigned char)c);
+}
+
 /* Copy a keyword in capitals, runs of spaces as one. */
 static void take_word(const char *text, size_t n, char word[MESH_DECK_NAME]) {
   size_t used = 0;
   for (size_t i = 0; i < n && used + 1 < MESH_DECK_NAME; i++) {
     bool space = isspace((unsigned char)text[i]);
     if (space && (used == 0 || word[used - 1] == ' ')) continue;
-    word[used++] = space ? ' ' : (char)toupper((unsigned char)text[i]);
+    word[used++] = space ? ' ' : capital(text[i]);
   }
   while (used > 0 && word[used - 1] == ' ') used--;
   word[used] = '\0';

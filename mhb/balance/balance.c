@@ -3,7 +3,6 @@
 #include <lapacke.h>
 #include <math.h>
 #include <omp.h>
-#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -16,7 +15,7 @@ enum { WORTH_THREADS = 24 };
 /* One evaluator a thread. Inside a parallel region, where a thread traces a branch, just one. */
 static shb_status create_contacts(mhb_balance *b) {
   int threads  = omp_in_parallel() || b->n_pairs < WORTH_THREADS ? 1 : omp_get_max_threads();
-  b->contacts  = shb_arena_take(&b->arena, (size_t)threads, sizeof *b->contacts);
+  b->contacts  = shb_arena_take(&b->arena, (size_t)threads, sizeof(mhb_contact_evaluator *));
   b->n_threads = threads;
   SHB_CHECK(b->contacts, SHB_ERR_IO, "out of memory");
   for (int i = 0; i < threads; i++)
@@ -123,14 +122,15 @@ void mhb_evaluation_destroy(mhb_evaluation *e) {
   free(e);
 }
 
+static bool same_law(const mhb_operating_point *p, const mhb_operating_point *q) {
+  return p->n0 == q->n0 && p->mu == q->mu && p->kv == q->kv && p->ku[0] == q->ku[0] &&
+         p->ku[1] == q->ku[1] && p->ku[2] == q->ku[2];
+}
+
 /* The laws depend on the interfaces' operating points, but for frequency and scale. */
 static bool same_laws(const mhb_balance *b, const mhb_evaluation *x, const mhb_evaluation *y) {
-  for (int i = 0; i < b->n_interfaces; i++) {
-    const mhb_operating_point *p = &x->own[i], *q = &y->own[i];
-    if (p->n0 != q->n0 || p->mu != q->mu || p->kv != q->kv ||
-        memcmp(p->ku, q->ku, sizeof p->ku) != 0)
-      return false;
-  }
+  for (int i = 0; i < b->n_interfaces; i++)
+    if (!same_law(&x->own[i], &y->own[i])) return false;
   return true;
 }
 
@@ -357,11 +357,11 @@ static void set_slope(mhb_balance *b, int k, int unloaded) {
 static void set_force_by_parameter(mhb_balance *b, const double *x) {
   size_t block = 3 * (size_t)b->nb;
   for (int a = 0; a < b->n_pairs; a++) {
-    size_t at   = (size_t)a * block;
-    int    i    = b->receptance->interface[a];
-    double rate = mhb_interface_rate(&b->eval->at, b->settings, i, b->parameter);
-    mhb_parameter_force(&b->eval->own[i], b->parameter, &b->law[a], b->receptance->share[a], b->nb,
-                        x + at, b->eval->p + at, b->eval->dp + at * block,
+    size_t         at   = (size_t)a * block;
+    int            i    = b->receptance->interface[a];
+    double         rate = mhb_interface_rate(&b->eval->at, b->settings, i, b->parameter);
+    mhb_pair_force pair = {b->nb, x + at, b->eval->p + at, b->eval->dp + at * block};
+    mhb_parameter_force(&b->eval->own[i], b->parameter, &b->law[a], b->receptance->share[a], &pair,
                         b->eval->by_parameter + at);
     for (size_t j = at; j < at + block && rate != 1; j++) b->eval->by_parameter[j] *= rate;
   }
@@ -404,9 +404,22 @@ static int is_stuck(const mhb_balance *b, int pair, int stuck) {
   return stuck == MHB_BY_PRELOAD ? b->law[pair].n0 > 0 : stuck;
 }
 
-/* Stuck: (I + R_k S) u_k = free_k - R_k s0, S = diag(kv, Ku); s0: preload at k = 0 that the
- * equilibrium does not contain. The mean friction is zero, the smallest admissible one
- * (contact/static_friction.h): S_0 = diag(kv, 0). */
+/* The preload s0 of a stuck pair that the equilibrium does not contain. */
+static double own_preload(const mhb_law *law) {
+  return fmax(law->n0, 0) - law->mean_offset;
+}
+
+/* u_0 -= R_0 s0 of the stuck pairs. */
+static void subtract_preload(const mhb_balance *b, const mhb_pair_kind *kind,
+                             const double complex *R, double complex *u) {
+  const int n = 3 * b->n_pairs;
+  for (int i = 0; i < n; i++, R += n)
+    for (int a = 0; a < b->n_pairs; a++)
+      if (kind[a] == MHB_PAIR_STUCK) u[i] -= R[3 * a] * own_preload(&b->law[a]);
+}
+
+/* Stuck: (I + R_k S) u_k = free_k - R_k s0, with s0 at k = 0 only. The mean friction is zero, the
+ * smallest admissible one (contact/static_friction.h). */
 static shb_status linear_harmonic(const mhb_balance *b, int k, int stuck, double complex *u) {
   int                   n = 3 * b->n_pairs;
   const double complex *R = b->receptance->R + (size_t)k * (size_t)n * (size_t)n;
@@ -414,20 +427,15 @@ static shb_status linear_harmonic(const mhb_balance *b, int k, int stuck, double
   if (!stuck) return SHB_OK;
   lapack_complex_double *A    = calloc((size_t)n * (size_t)n, sizeof *A);
   lapack_int            *ipiv = calloc((size_t)n, sizeof *ipiv);
-  for (int i = 0; A && ipiv && i < n; i++) {
-    for (int pair = 0; pair < b->n_pairs; pair++) {
-      const mhb_law        *law  = &b->law[pair];
-      double                on   = is_stuck(b, pair, stuck);
-      const double complex *r    = R + (size_t)i * (size_t)n + 3 * pair;
-      double complex        s[3] = {r[0] * law->kv, k ? r[1] * law->ku[0] + r[2] * law->ku[1] : 0,
-                             k ? r[1] * law->ku[1] + r[2] * law->ku[2] : 0};
-      for (int c = 0; c < 3; c++)
-        A[(size_t)(3 * pair + c) * (size_t)n + (size_t)i] = on * s[c] + (i == 3 * pair + c);
-      if (k == 0 && on > 0) u[i] -= r[0] * (fmax(law->n0, 0) - law->mean_offset);
-    }
+  lapack_int             bad  = 1;
+  mhb_pair_kind          kind[b->n_pairs];
+  for (int a = 0; a < b->n_pairs; a++)
+    kind[a] = is_stuck(b, a, stuck) ? MHB_PAIR_STUCK : MHB_PAIR_OPEN;
+  if (k == 0) subtract_preload(b, kind, R, u);
+  if (A && ipiv) {
+    mhb_stick_matrix(b->n_pairs, b->law, kind, k, R, A);
+    bad = LAPACKE_zgesv(LAPACK_COL_MAJOR, n, 1, A, n, ipiv, u, n);
   }
-  lapack_int bad = 1;
-  if (A && ipiv) bad = LAPACKE_zgesv(LAPACK_COL_MAJOR, n, 1, A, n, ipiv, u, n);
   free(A);
   free(ipiv);
   SHB_CHECK(bad == 0, SHB_ERR_INPUT, "the stuck system is singular at harmonic %d", k);
@@ -445,10 +453,8 @@ shb_status mhb_balance_linear_limit(mhb_balance *b, double value, int stuck, dou
       if (!is_stuck(b, a, stuck)) continue;
       const mhb_law        *law = &b->law[a];
       const double complex *u   = b->motion_k + 3 * a;
-      b->force_k[3 * a] = law->kv * u[0] + (k == 0 ? fmax(law->n0, 0) - law->mean_offset : 0);
-      if (k == 0) continue;
-      b->force_k[3 * a + 1] = law->ku[0] * u[1] + law->ku[1] * u[2];
-      b->force_k[3 * a + 2] = law->ku[1] * u[1] + law->ku[2] * u[2];
+      mhb_stick_force(law, k, u, b->force_k + 3 * a);
+      if (k == 0) b->force_k[3 * a] += own_preload(law);
     }
     put_harmonic(b, b->eval->p, k, b->force_k);
   }
@@ -457,6 +463,13 @@ shb_status mhb_balance_linear_limit(mhb_balance *b, double value, int stuck, dou
 
 void mhb_balance_contact_force(const mhb_balance *b, int k, double complex *p) {
   get_harmonic(b, b->eval->p, k, p);
+}
+
+bool mhb_balance_is_linear(const mhb_balance *b) {
+  for (int a = 0; a < b->n_pairs; a++)
+    if (b->eval->info[a].share[MHB_STICK] < 1 && b->eval->info[a].share[MHB_SEPARATE] < 1)
+      return false;
+  return true;
 }
 
 double mhb_balance_vibration(const mhb_balance *b, const double *x) {

@@ -8,19 +8,14 @@
 #ifndef MHB_BALANCE_BALANCE_H
 #define MHB_BALANCE_BALANCE_H
 
+#include <stdbool.h>
+
 #include "mesh/base/arena.h"
+#include "mhb/balance/stick_stiffness.h"
 #include "mhb/contact/contact.h"
 #include "mhb/problem/interfaces.h"
 #include "mhb/problem/settings.h"
 #include "mhb/structure/receptance.h"
-
-/* Class of a pair's Jacobian dp/du. */
-typedef enum {
-  MHB_PAIR_NONLINEAR, /* the pair slips or opens for a part of the period */
-  MHB_PAIR_STUCK,     /* diag(kv, Ku) at each harmonic k > 0, diag(kv, 0) at k = 0 */
-  MHB_PAIR_AT_LIMIT,  /* as stuck, but the mean friction depends on all harmonics of u */
-  MHB_PAIR_OPEN       /* 0 */
-} mhb_pair_kind;
 
 /* mhb_balance_linear_limit: pairs with a positive preload stick, the others are open. */
 enum { MHB_BY_PRELOAD = 2 };
@@ -124,6 +119,10 @@ shb_status mhb_balance_linear_limit(mhb_balance *balance, double value, int stuc
 
 /* Forces of the evaluation in use: complex harmonic k of all pairs, p[3 pairs] N. */
 void mhb_balance_contact_force(const mhb_balance *balance, int k, double complex *p);
+
+/* Whether every pair of the evaluation in use is stuck or open over the whole period. The forces
+ * then have the harmonics of the motion and no others. */
+bool mhb_balance_is_linear(const mhb_balance *balance);
 
 /* Size of the vibration, by which errors are measured: |x| of harmonics 1..m, or |x| if these are
  * 0. */

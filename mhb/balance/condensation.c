@@ -295,7 +295,7 @@ static int eliminate_stuck(mhb_condensation *s, int k, double complex *x, double
   if (!solve_stuck(s, k, x)) return 0;
   for (int i = 0; i < 3 * s->n_nonlinear; i++) {
     int            row = axis_of(s->nonlinear, i);
-    size_t         at  = (size_t)(i * s->balance->nb + place(k));
+    size_t         at  = (size_t)i * (size_t)s->balance->nb + (size_t)place(k);
     double complex y   = x[row] - response(receptance_row(s, k, row), s->n_stuck, s->stuck, force);
     to[at * stride]    = creal(y);
     if (k) to[(at + 1) * stride] = cimag(y);

@@ -13,7 +13,7 @@ static int most(int a, int b) {
 }
 
 static int allocate(mhb_higher_harmonics *h) {
-  size_t K = (size_t)(h->last - h->first + 1), n = (size_t)h->n, m = (size_t)h->n_modes;
+  size_t K = (size_t)h->last - (size_t)h->first + 1, n = (size_t)h->n, m = (size_t)h->n_modes;
   size_t row = 3 * (size_t)mhb_real_size(h->last);
   h->x       = shb_arena_take(&h->arena, row, sizeof(double));
   h->p       = shb_arena_take(&h->arena, row, sizeof(double));
@@ -160,7 +160,7 @@ static void set_W(mhb_higher_harmonics *h, int k, int pair, double complex W[3][
 /* 1/(w_i^2 - w^2 + 2 j zeta_i w_i w) */
 static double complex modal_receptance(const mhb_receptance *r, int k, int i) {
   double w = k * r->omega / r->nu, wi = SHB_TWO_PI * r->model->frequency[i];
-  return 1 / CMPLX(wi * wi - w * w, 2 * r->model->damping_ratio[i] * wi * w);
+  return 1.0 / CMPLX(wi * wi - w * w, 2 * r->model->damping_ratio[i] * wi * w);
 }
 
 /* A += B^H D W B, y += B^H D W c of a pair. */

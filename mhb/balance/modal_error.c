@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
-#include "mhb/balance/stick_stiffness.h"
 #include "mhb/numerics/lu.h"
 #include "mhb/numerics/vector.h"
 
@@ -92,7 +91,8 @@ static void solve_by_harmonic(const mhb_balance *b, double complex *A, int *pivo
   for (int k = 1; k <= b->m; k++) {
     if (!(norm_of(n, e + k * n) > 0)) continue;
     mhb_receptance_update(b->receptance, k);
-    mhb_stick_matrix(b, k, kind, A);
+    mhb_stick_matrix(b->n_pairs, b->law, kind, k,
+                     b->receptance->R + (size_t)k * (size_t)n * (size_t)n, A);
     if (mhb_factor_complex(n, A, pivot)) mhb_solve_complex(n, A, pivot, 1, e + k * n);
   }
 }
@@ -100,7 +100,7 @@ static void solve_by_harmonic(const mhb_balance *b, double complex *A, int *pivo
 double mhb_modal_error(const mhb_balance *b, const double *x, mhb_condensation *system) {
   const mhb_receptance *r = b->receptance;
   const int             n = r->n, all = (b->m + 1) * n;
-  const bool            linear = !system && n <= MOST_SOLVED && mhb_all_pairs_linear(b);
+  const bool            linear = !system && n <= MOST_SOLVED && mhb_balance_is_linear(b);
   const double          size   = mhb_balance_vibration(b, x);
   double                ratio[b->m + 1], sum = 0;
   int                   pivot[n];

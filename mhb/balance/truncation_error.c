@@ -4,7 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "mhb/balance/stick_stiffness.h"
 #include "mhb/numerics/fourier.h"
 #include "mhb/numerics/vector.h"
 
@@ -128,7 +127,7 @@ double mhb_truncation_error(mhb_truncation *t, const double *x) {
   memset(t->step, 0, sizeof(double) * (size_t)b->n);
   t->higher_size = 0;
   t->kind        = MHB_TRUNCATION_NONE;
-  if (mhb_all_pairs_linear(t->balance)) return 0;
+  if (mhb_balance_is_linear(t->balance)) return 0;
   mhb_balance_set_operating_point(b, &t->balance->eval->at);
   t->kind = set_step(t, size);
   return size > 0 ? hypot(mhb_norm(t->step, b->n), t->higher_size) / size : 0;

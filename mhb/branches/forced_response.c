@@ -9,6 +9,7 @@
 #include "mhb/branches/lasting_motion.h"
 #include "mhb/branches/linear_limits.h"
 #include "mhb/branches/main_branch.h"
+#include "mhb/branches/peak_search.h"
 #include "mhb/branches/secondary_branches.h"
 #include "mhb/response/describe.h"
 #include "mhb/response/publisher.h"
@@ -100,8 +101,10 @@ static shb_status copy_curves(const mhb_response *own, mhb_response **out) {
     to->main        = from->main;
     to->searched    = from->searched;
     to->complete    = from->complete;
-    to->reason      = from->reason ? strdup(from->reason) : NULL;
-    status          = mhb_response_copy_lasting(to, from);
+    for (int i = 0; i < from->n_searches && status == SHB_OK; i++)
+      status = mhb_response_note_search(to, &from->search[i]);
+    to->reason = from->reason ? strdup(from->reason) : NULL;
+    if (status == SHB_OK) status = mhb_response_copy_lasting(to, from);
     if (status == SHB_OK && from->n_points > 0)
       status = mhb_response_copy_points(copy, index, own, k, 0, from->n_points - 1);
   }
@@ -249,6 +252,27 @@ static shb_status one_preload(sweep *s, const modal_model *model, int i) {
   return status;
 }
 
+/* The small search at the lowest and highest peaks, unless an earlier run made it. */
+static shb_status search_peaks(sweep *s, const modal_model *model) {
+  int                 n = s->settings->n_preloads;
+  const mhb_response *own[n];
+  mhb_peak_places     places[n];
+  for (int i = 0; i < n; i++) own[i] = s->preload[i].handed;
+  mhb_peak_places_choose(s->response, own, n, places);
+#pragma omp parallel for schedule(dynamic, 1) if (n > 1)
+  for (int i = 0; i < n; i++) {
+    if (places[i].n == 0 || own[i]->branch[0].n_searches > 0 || shb_interrupted()) continue;
+    shb_status status =
+        mhb_secondary_branches_at(model, s->settings, s->preload[i].handed, places[i].n,
+                                  places[i].value, places[i].starts, &s->base);
+    drop_empty(s->preload[i].handed);
+    mhb_publisher_lock(&s->publisher, true);
+    mhb_publisher_note(&s->publisher, status);
+    mhb_publisher_lock(&s->publisher, false);
+  }
+  return mhb_publisher_status(&s->publisher);
+}
+
 /* Take over the branches that an interrupted run of the same settings finished. */
 static shb_status resume(sweep *s) {
   const char   *path = s->publisher.path;
@@ -314,7 +338,8 @@ static shb_status all_preloads(sweep *s, const modal_model *model) {
     s->preload[i].handed = s->preload[i].own;
     s->preload[i].own    = NULL;
   }
-  return SHB_OK;
+  bool searches = s->settings->search.starts == MHB_SEARCH_PEAKS && !shb_interrupted();
+  return searches ? search_peaks(s, model) : SHB_OK;
 }
 
 /* ---- the motion that lasts ---- */

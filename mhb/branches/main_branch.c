@@ -49,7 +49,9 @@ static void note_gap(main_branch *m, const char *why, double value) {
 }
 
 static shb_status trace(main_branch *m, const mhb_segment_plan *plan, int *segment, mhb_end *end) {
-  SHB_TRY(mhb_tracer_trace(m->tracer, plan, segment, end));
+  mhb_segment_plan next = *plan;
+  next.recorded         = n_points(m);
+  SHB_TRY(mhb_tracer_trace(m->tracer, &next, segment, end));
   if (*end == MHB_END_INTERRUPTED) m->stopped = true;
   return SHB_OK;
 }
@@ -290,7 +292,7 @@ static shb_status complete(main_branch *m, mhb_end end, int stable_at) {
                         .other_reason = m->other_reason};
   SHB_TRY(mhb_branch_complete(m->tracer, &m->chain, m->response, 0, &own));
   bool covers = m->response->branch[0].complete;
-  /* published as complete, a main branch is not traced again: only once those beside it are there */
+  /* a resumed run traces a complete one no more, nor those beside it: they come first */
   m->response->branch[0].complete = false;
   for (int i = 0; i < m->n_detached; i++) {
     int            index;

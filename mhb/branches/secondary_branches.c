@@ -4,9 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mhb/balance/multistart.h"
 #include "mhb/balance/subharmonics.h"
 #include "mhb/branches/branch_completion.h"
-#include "mhb/branches/multistart.h"
 #include "mhb/branches/period_doubling.h"
 #include "mhb/numerics/fourier.h"
 
@@ -197,6 +197,7 @@ static shb_status trace_both_ways(mhb_tracer *tracer, const mhb_seed *seed, mhb_
     plan.seed.direction  = -seed->direction;
     plan.seed.skip_first = true;
     plan.closes          = false;
+    plan.recorded        = mhb_chain_points(&chain, tracer->store);
     status               = mhb_tracer_trace(tracer, &plan, &down, &other);
     if (status == SHB_OK && other != MHB_END_NO_START)
       status = mhb_chain_insert(&chain, 1, (mhb_link){.segment = down, .joins = true});
@@ -334,25 +335,36 @@ static bool go_on_searching(branch_search *h, double value, double share) {
   return h->go_on;
 }
 
-static shb_status search_at(branch_search *h, subharmonic_problem *s, double value,
-                            unsigned long long seed, double share) {
+static int n_branches(const branch_search *h) {
+  int n = 0;
+  for (int i = 0; i < h->response->n_branches; i++) n += branch_at(h, i)->n_points > 0;
+  return n;
+}
+
+/* Make random starts at a value, trace what they lead to, and note the search.
+ *   size   of the motions, m; 0: nothing is to be expected
+ *   share  of the work that is done */
+static shb_status search_at(branch_search *h, subharmonic_problem *s, double value, double size,
+                            int starts, unsigned long long seed, double share) {
   static const double sizes[] = {1, 2, 4, 0.5};
+  int                 before = n_branches(h), done = 0;
   double              x[s->balance->n];
-  SHB_TRY(collect_known(h, s, value, -1));
-  double size = expected_size(h, s);
-  if (!(size > 0)) return SHB_OK;
-  for (int i = 0; i < h->settings->search.starts && go_on_searching(h, value, share); i++) {
+  for (; size > 0 && done < starts && go_on_searching(h, value, share); done++) {
     bool is_new;
     SHB_TRY(publish(h));
-    SHB_TRY(mhb_multistart_once(s->newton, s->balance, value, size * sizes[i % 4], &seed, &s->known,
-                                x, &is_new));
+    SHB_TRY(mhb_multistart_once(s->newton, s->balance, value, size * sizes[done % 4], &seed,
+                                &s->known, x, &is_new));
     if (!is_new) continue;
     SHB_TRY(trace_found(h, s, x, value));
     SHB_TRY(collect_known(h, s, value, -1));
-    SHB_TRY(mhb_solution_set_add_shifts(&s->known, s->balance, x)); /* whether it was traced or not
-                                                                     */
+    /* whether it was traced or not */
+    SHB_TRY(mhb_solution_set_add_shifts(&s->known, s->balance, x));
   }
-  return SHB_OK;
+  mhb_search made = {.value  = mhb_parameter_shown(h->settings->parameter, value),
+                     .order  = s->order,
+                     .starts = done,
+                     .found  = n_branches(h) - before};
+  return mhb_response_note_search(branch_at(h, 0), &made);
 }
 
 /* Value number i of the search: given, or even over the range. */
@@ -368,10 +380,35 @@ static shb_status search_everywhere(branch_search *h) {
   for (int o = 0; c->starts > 0 && o < c->n_orders && h->go_on; o++) {
     subharmonic_problem *s;
     SHB_TRY(problem_of(h, c->order[o] * h->settings->subharmonics, &s));
-    for (int i = 0; s && i < n && h->go_on; i++)
-      SHB_TRY(search_at(h, s, value_of_search(h->settings, i),
+    for (int i = 0; s && i < n && h->go_on; i++) {
+      double value = value_of_search(h->settings, i);
+      SHB_TRY(collect_known(h, s, value, -1));
+      SHB_TRY(search_at(h, s, value, expected_size(h, s), c->starts,
                         (unsigned long long)(1000 * c->order[o] + i + 1),
                         (double)(o * n + i) / (c->n_orders * n)));
+    }
+  }
+  return SHB_OK;
+}
+
+/* The size of motions at a value: that of the open limit counts too. A branch beside the main one
+ * is often near it. */
+static double size_at(const branch_search *h, subharmonic_problem *s, double value) {
+  double x[s->balance->n], top = expected_size(h, s);
+  if (mhb_balance_linear_limit(s->balance, value, 0, x) != SHB_OK) return top;
+  for (int i = 0; i < s->balance->n; i++)
+    if (isfinite(x[i])) top = fmax(top, fabs(x[i]));
+  return top;
+}
+
+static shb_status search_values(branch_search *h, int n, const double *value, int starts) {
+  subharmonic_problem *s;
+  SHB_TRY(problem_of(h, h->settings->subharmonics, &s));
+  for (int i = 0; s && i < n && h->go_on; i++) {
+    double at = mhb_parameter_value(h->settings->parameter, value[i]);
+    SHB_TRY(collect_known(h, s, at, -1));
+    SHB_TRY(
+        search_at(h, s, at, size_at(h, s, at), starts, (unsigned long long)(i + 1), (double)i / n));
   }
   return SHB_OK;
 }
@@ -389,6 +426,29 @@ shb_status mhb_secondary_branches(const modal_model *model, const mhb_settings *
     if (status == SHB_OK) status = search_everywhere(&h);
   }
   if (status == SHB_OK && h.go_on) branch_at(&h, 0)->searched = true;
+  for (int i = 0; i < h.n_problems; i++) problem_destroy(h.problem[i]);
+  return status;
+}
+
+/* An interrupted search leaves nothing: a resumed run makes it anew. */
+static void drop_from(mhb_response *response, int first, int n_searches) {
+  bool drop[response->n_branches];
+  for (int i = 0; i < response->n_branches; i++) drop[i] = i >= first;
+  mhb_response_drop(response, drop);
+  response->branch[0].n_searches = n_searches;
+}
+
+shb_status mhb_secondary_branches_at(const modal_model *model, const mhb_settings *settings,
+                                     mhb_response *response, int n, const double *value, int starts,
+                                     mhb_monitor *monitor) {
+  branch_search h      = {.model    = model,
+                          .settings = settings,
+                          .response = response,
+                          .monitor  = monitor,
+                          .go_on    = true};
+  int           before = response->n_branches, searches = response->branch[0].n_searches;
+  shb_status    status = search_values(&h, n, value, starts);
+  if (!h.go_on) drop_from(response, before, searches);
   for (int i = 0; i < h.n_problems; i++) problem_destroy(h.problem[i]);
   return status;
 }

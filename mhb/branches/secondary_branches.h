@@ -16,4 +16,11 @@ bool mhb_secondary_branches_wanted(const mhb_settings *settings);
 shb_status mhb_secondary_branches(const modal_model *model, const mhb_settings *settings,
                                   mhb_response *response, mhb_monitor *monitor);
 
+/* Search for motions of the main branch's own period at n values of the parameter, as in
+ * mhb_branch.value, with some random starts at each. Branches found are appended, and the searches
+ * are noted in branch 0; none of it if the monitor stops the search. Errors: as above. */
+shb_status mhb_secondary_branches_at(const modal_model *model, const mhb_settings *settings,
+                                     mhb_response *response, int n, const double *value, int starts,
+                                     mhb_monitor *monitor);
+
 #endif

@@ -18,6 +18,9 @@ static const double KNOWN = 10;
 /* Of the motion: the part of higher order where the curve meets another. */
 static const double VANISHED = 2e-3;
 
+/* Of the motion: a part of higher order that is round-off. Its rate has no sign. */
+static const double ROUND_OFF = 1e-9;
+
 static mhb_tracer *of(mhb_segment_host *host) {
   return (mhb_tracer *)host;
 }
@@ -192,15 +195,17 @@ static double part_of_order(const mhb_balance *b, const mhb_curve_point *point, 
 }
 
 /* Where its subharmonic part vanishes the curve meets one of lower order, or its own time-shifted
- * copy. The test function is VANISHED less the smallest falling part, relative to the motion. */
+ * copy. The test function is VANISHED less the smallest part that falls or is 0, relative to the
+ * motion. */
 static double vanished(mhb_arclength *curve, const mhb_curve_point *point, void *context) {
   const mhb_balance *b    = mhb_curve_balance(curve);
   int                nu   = b->receptance->nu;
   double             size = mhb_norm(point->x, b->n), most = -1;
   (void)context;
   for (int d = 1; d < nu; d++) {
-    double rate, part = nu % d == 0 ? part_of_order(b, point, d, &rate) : INFINITY;
-    if (nu % d == 0 && rate < 0) most = fmax(most, VANISHED - part / size);
+    double rate = 0, part = nu % d == 0 ? part_of_order(b, point, d, &rate) : INFINITY;
+    if (nu % d == 0 && (rate < 0 || part <= ROUND_OFF * size))
+      most = fmax(most, VANISHED - part / size);
   }
   return most;
 }
@@ -210,9 +215,11 @@ static void limit_step(mhb_segment_host *host) {
   const mhb_balance     *b     = mhb_curve_balance(host->curve);
   const mhb_curve_point *point = &host->curve->current;
   int                    nu    = b->receptance->nu;
+  double                 least = ROUND_OFF * mhb_norm(point->x, b->n);
   for (int d = 1; d < nu; d++) {
     double rate = 0, part = nu % d == 0 ? part_of_order(b, point, d, &rate) : 0;
-    if (rate < 0 && part / -rate < 2 * host->curve->step) host->curve->step = 0.5 * part / -rate;
+    if (rate < 0 && part > least && part / -rate < 2 * host->curve->step)
+      host->curve->step = 0.5 * part / -rate;
   }
 }
 
@@ -305,14 +312,12 @@ void mhb_tracer_destroy(mhb_tracer *t) {
 shb_status mhb_tracer_trace(mhb_tracer *t, const mhb_segment_plan *plan, int *segment,
                             mhb_end *end) {
   const mhb_settings *settings = t->levels->settings;
-  int                 recorded = 0;
-  for (int i = 0; i < t->store->n_branches; i++) recorded += t->store->branch[i].n_points;
   SHB_TRY(mhb_response_branch(t->store, MHB_BRANCH_NONLINEAR, segment));
   SHB_TRY(mhb_harmonic_levels_use(t->levels, mhb_harmonic_levels_of(t->levels, plan->m)));
   use_level(t);
   t->plan            = *plan;
   t->segment         = *segment;
-  t->host.max_points = settings->max_points - recorded;
+  t->host.max_points = settings->max_points - plan->recorded;
   return mhb_trace_segment(&t->host, &t->plan.seed, end);
 }
 

@@ -14,11 +14,12 @@ typedef struct mhb_tracer mhb_tracer;
 
 /* The plan of a segment: its seed, and where it ends. */
 typedef struct {
-  mhb_seed seed;   /* x of a balance of m harmonics */
-  int      m;      /* harmonics to start with */
-  bool     closes; /* it ends where it comes back to its start */
-  bool     known;  /* EXCURSION: it may come back to a point that is recorded already; else that
+  mhb_seed seed;     /* x of a balance of m harmonics */
+  int      m;        /* harmonics to start with */
+  bool     closes;   /* it ends where it comes back to its start */
+  bool     known;    /* EXCURSION: it may come back to a point that is recorded already; else that
                       * counts as no start */
+  int      recorded; /* points that its branch has already: max_points counts them */
   const mhb_curve_place *target; /* it ends where it arrives there (closes: false); or NULL */
 } mhb_segment_plan;
 

@@ -76,8 +76,8 @@ static double direction_at(const mhb_dense_output *output, const mhb_dense_piece
   return piece->theta[0] + sum / total;
 }
 
-/* The last piece that has begun at t. t is lifted by periods to the first piece: the lap of a
- * contact that opens begins at a closing, which may be one period on. */
+/* The last piece that has begun at t. Whole periods are added to t until the first piece has begun.
+ * The lap of a contact that opens begins at a closing, which may be one period on. */
 static const mhb_dense_piece *find(const mhb_dense_output *output, double *t) {
   while (*t < output->piece[0].t0) *t += SHB_TWO_PI;
   int low = 0, high = output->n;

@@ -13,8 +13,8 @@ void mhb_force_integrals_clear(mhb_contact_evaluator *contact);
 /* The lanes of the slip panels are added into f and f_slider. */
 void mhb_force_integrals_collect(mhb_contact_evaluator *contact);
 
-/* f [2][nf] and J [2][nf][stride] <- Fourier coefficients of friction and of its derivative, in
- * units of the force scale: the stick pieces are added, and all is normalised. */
+/* The stick pieces are added, and all is normalised. f [2][nf] and J [2][nf][stride] are then the
+ * Fourier coefficients of friction and of its derivative, in units of the force scale. */
 void mhb_force_integrals_finish(mhb_contact_evaluator *contact);
 
 /* Factor from the integral of b_i x over a period to the Fourier coefficient i of x. */

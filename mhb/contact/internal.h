@@ -2,8 +2,8 @@
  * (one period), sensitivity (the derivative), force_integrals, time_history.
  *
  * Derivative columns are the coefficients of v, u, w, nb = 2m+1 each, then one for the slider at
- * the start of a lap. One is enough: where slip begins, the slider's change (dz_1, dz_2) enters by
- * one number, v.dz, and all that follows in the lap is proportional to it. */
+ * the start of a lap. One is enough. Where slip begins, the slider's change (dz_1, dz_2) enters by
+ * one number, v.dz. All that follows in the lap is proportional to it. */
 #ifndef MHB_CONTACT_INTERNAL_H
 #define MHB_CONTACT_INTERNAL_H
 

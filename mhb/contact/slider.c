@@ -47,9 +47,9 @@ static double stored_energy(const mhb_contact_evaluator *c, const slider *s) {
 /* Work of slip over the panel, in units of force scale times m. The power is lambda |f|^2 = gamma
  * mu n/eKe.
  *
- * In the last stretch before an opening, whose direction is held, the work is that of the motion
- * plus the spring's energy: the integral of f.s' plus f K^-1 f/2 at its start, f = 0 at its end. If
- * the contact has stuck until then f is x - z, for mu n may be all rounding. */
+ * The direction is held in the last stretch before an opening. The work there is that of the
+ * motion, the integral of f.s', plus the spring's energy f K^-1 f/2 at its start. At its end f = 0.
+ * If the contact has stuck until then, f is x - z, for mu n may be all rounding. */
 static double panel_work(const mhb_contact_evaluator *c, const slider *s) {
   const mhb_panel *p      = &c->panel;
   mhb_lanes        weight = p->h * c->slip.mu * c->rule.weight * p->y[0];

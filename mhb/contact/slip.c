@@ -142,8 +142,8 @@ static const mhb_lanes UNIT[MHB_NODES] = {{1, 0, 0, 0, 0, 0, 0, 0}, {0, 1, 0, 0,
                                           {0, 0, 0, 0, 0, 0, 1, 0}, {0, 0, 0, 0, 0, 0, 0, 1}};
 
 /* The inverse of M = I - h A diag(F_theta), by columns. Gauss-Jordan in place on the transpose,
- * whose rows are columns of M. Pivoting is not needed: A of Gauss is positive on the diagonal, and
- * F_theta <= 0 where slip is stiff. 0: a pivot vanishes. */
+ * whose rows are the columns that it wants. Pivoting is not needed: the diagonal of Gauss' matrix
+ * rule->A is positive, and F_theta <= 0 where slip is stiff. Returns 0 if a pivot vanishes. */
 MHB_INLINE int invert(const mhb_collocation *rule, mhb_panel *p) {
   mhb_lanes M[MHB_NODES], scale = -p->h * p->F_theta, pivots = lanes_all(0);
 #pragma GCC unroll 8

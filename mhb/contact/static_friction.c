@@ -112,8 +112,9 @@ MHB_HOT static int worst_on_grid(const discs *set, const double c[2], double *si
   return at;
 }
 
-/* How far |c + f| - mu n can rise above its values at both ends of a cell: |c + f| is convex along
- * a line, and h^2/8 times the second derivatives bounds the distance of f and n from theirs. */
+/* How far |c + f| - mu n can rise above its values at both ends of a cell. Along a straight line
+ * |c + f| is convex. The second derivatives times h^2/8 bound the distance of f and n from the
+ * straight lines between the ends. */
 static double rise_in_cell(const discs *set) {
   const mhb_signals *s = set->signals;
   double             h = SHB_TWO_PI / s->n_grid;

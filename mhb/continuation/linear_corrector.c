@@ -40,7 +40,8 @@ void mhb_linear_corrector_destroy(mhb_linear_corrector *s) {
 }
 
 static int factor(mhb_linear_corrector *s, const mhb_balance *b, int k) {
-  mhb_stick_matrix(b, k, s->kind, s->A);
+  const size_t n = (size_t)s->n;
+  mhb_stick_matrix(b->n_pairs, b->law, s->kind, k, b->receptance->R + (size_t)k * n * n, s->A);
   return mhb_factor_complex(s->n, s->A, s->pivot);
 }
 

@@ -31,24 +31,24 @@ static void set_motion(const double *matrix, const double *y, mhb_contact_step *
 
 /* ---- stick: (I + K S) p = K y + offset ---- */
 
-static void factor_stick(const mhb_law *law, const double *matrix, double *stick, int *pivot) {
+static void factor_stick(const mhb_law *law, const double *matrix, mhb_stuck_factor *stuck) {
   for (int i = 0; i < S; i++)
     for (int k = 0; k < F; k++) {
       double column[3];
       for (int c = 0; c < 3; c++) column[c] = matrix[(3 * i + c) * F + k];
-      double *row = stick + 3 * i * F + k, x[2];
+      double *row = stuck->matrix + 3 * i * F + k, x[2];
       times_ku(law, column + 1, x);
       row[0]     = law->kv * column[0];
       row[F]     = x[0];
       row[2 * F] = x[1];
     }
-  for (int i = 0; i < F; i++) stick[i * F + i] += 1;
-  mhb_factor_real(F, stick, pivot);
+  for (int i = 0; i < F; i++) stuck->matrix[i * F + i] += 1;
+  mhb_factor_real(F, stuck->matrix, stuck->pivot);
 }
 
 static void solve_stick(const mhb_law *law, const mhb_contact_point *point, const double *matrix,
-                        double *stick, int *pivot, const double *y, mhb_contact_step *step) {
-  if (pivot[0] < 0) factor_stick(law, matrix, stick, pivot);
+                        mhb_stuck_factor *stuck, const double *y, mhb_contact_step *step) {
+  if (stuck->pivot[0] < 0) factor_stick(law, matrix, stuck);
   for (int i = 0; i < S; i++) {
     const double *at = y + 3 * i;
     double        x[2];
@@ -57,7 +57,7 @@ static void solve_stick(const mhb_law *law, const mhb_contact_point *point, cons
     step->p[3 * i + 1] = x[0] - point->zeta[0];
     step->p[3 * i + 2] = x[1] - point->zeta[1];
   }
-  mhb_solve_real(F, stick, pivot, step->p);
+  mhb_solve_real(F, stuck->matrix, stuck->pivot, step->p);
   set_motion(matrix, y, step);
 }
 
@@ -206,11 +206,12 @@ void mhb_contact_step_guess(const mhb_law *law, const mhb_contact_point *point, 
 }
 
 int mhb_contact_step_solve(const mhb_radau *rule, const mhb_law *law,
-                           const mhb_contact_point *point, const double *S_, double *stick,
-                           int *pivot, const double *y, double scale, mhb_contact_step *step) {
+                           const mhb_contact_point *point, const double *S_,
+                           mhb_stuck_factor *stuck, const double *y, double scale,
+                           mhb_contact_step *step) {
   switch (point->state) {
     case MHB_STICK:
-      solve_stick(law, point, S_, stick, pivot, y, step);
+      solve_stick(law, point, S_, stuck, y, step);
       return 1;
     case MHB_SLIDE:
       return solve_slip(rule, law, point, S_, y, scale, step);

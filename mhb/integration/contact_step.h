@@ -45,13 +45,13 @@ mhb_law mhb_contact_step_law(const mhb_law *law);
 
 /* Forces of a step that starts at point: u = y - S p, y the motion without own forces.
  *   S      in      [9][9] m/N
- *   stick  in out  [9][9], pivot [9]: factors for the stuck contact, made where pivot[0] < 0
+ *   stuck  in out  made where it is not factored yet
  *   scale  in      N; forces are solved to 1e-13 of it
  *   step   in out  a guess of p, n, theta, kappa; the result
  * Returns 0 if no solution was found. */
 int mhb_contact_step_solve(const mhb_radau *rule, const mhb_law *law,
-                           const mhb_contact_point *point, const double *S, double *stick,
-                           int *pivot, const double *y, double scale, mhb_contact_step *step);
+                           const mhb_contact_point *point, const double *S, mhb_stuck_factor *stuck,
+                           const double *y, double scale, mhb_contact_step *step);
 
 /* A guess for a step of h seconds, from the contact's state before it. */
 void mhb_contact_step_guess(const mhb_law *law, const mhb_contact_point *point, double h,

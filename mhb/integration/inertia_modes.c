@@ -71,7 +71,7 @@ static shb_status find(const modal_model *model, search *s) {
 
 /* [rows][m] -> [rows][m + kept], zeros at the end of each row. */
 static double *widen(const double *x, size_t rows, int m, int kept) {
-  size_t  wide = (size_t)(m + kept);
+  size_t  wide = (size_t)m + (size_t)kept;
   double *out  = calloc(rows * wide + 1, sizeof *out);
   for (size_t r = 0; out && x && r < rows; r++)
     memcpy(out + r * wide, x + r * (size_t)m, sizeof *out * (size_t)m);

@@ -136,25 +136,28 @@ static shb_status plan_from_state(sweep *s, int branch, double n0, bool down) {
   return SHB_OK;
 }
 
+static shb_status plan_preload(sweep *s, double n0) {
+  const mhb_integration_settings *a = s->request;
+  if (a->start == MHB_START_FROM_STATE) {
+    if (a->direction != MHB_SWEEP_DOWN) SHB_TRY(plan_from_state(s, s->n_branches++, n0, false));
+    if (a->direction != MHB_SWEEP_UP) SHB_TRY(plan_from_state(s, s->n_branches++, n0, true));
+    return SHB_OK;
+  }
+  for (int k = 0; k < a->n_frequencies; k++) {
+    sweep_point *c;
+    if (a->start == MHB_START_FROM_BALANCE) {
+      SHB_TRY(plan_from_balance(s, s->n_branches, n0, frequency_of(s, k)));
+    } else {
+      SHB_TRY(add_point(s, s->n_branches, n0, frequency_of(s, k), &c));
+    }
+  }
+  s->n_branches++;
+  return SHB_OK;
+}
+
 static shb_status plan(sweep *s) {
   const mhb_integration_settings *a = s->request;
-  for (int i = 0; i < s->settings->n_preloads; i++) {
-    double n0 = s->settings->n0[i];
-    if (a->start == MHB_START_FROM_STATE) {
-      if (a->direction != MHB_SWEEP_DOWN) SHB_TRY(plan_from_state(s, s->n_branches++, n0, false));
-      if (a->direction != MHB_SWEEP_UP) SHB_TRY(plan_from_state(s, s->n_branches++, n0, true));
-      continue;
-    }
-    for (int k = 0; k < a->n_frequencies; k++) {
-      sweep_point *c;
-      if (a->start == MHB_START_FROM_BALANCE) {
-        SHB_TRY(plan_from_balance(s, s->n_branches, n0, frequency_of(s, k)));
-      } else {
-        SHB_TRY(add_point(s, s->n_branches, n0, frequency_of(s, k), &c));
-      }
-    }
-    s->n_branches++;
-  }
+  for (int i = 0; i < s->settings->n_preloads; i++) SHB_TRY(plan_preload(s, s->settings->n0[i]));
   s->sequence = calloc((size_t)s->n + 1, sizeof(int));
   SHB_CHECK(s->sequence, SHB_ERR_IO, "out of memory");
   for (int i = 0; i < s->n; i++)

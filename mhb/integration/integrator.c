@@ -99,8 +99,7 @@ static double solve_contact(mhb_integrator *g, mhb_modal_step *modal, int contac
   memcpy(before, step->p, sizeof before);
   if (!mhb_contact_step_solve(&g->ring.rule, &g->law[pair], &g->point[contact],
                               modal->compliance + (size_t)(pair * g->pairs + pair) * F * F,
-                              modal->stick + pair * F * F, modal->pivot + pair * F, y, g->scale,
-                              step))
+                              &modal->stuck[pair], y, g->scale, step))
     return -1;
   for (int i = 0; i < F; i++) change = fmax(change, fabs(step->p[i] - before[i]));
   return change;
@@ -319,7 +318,7 @@ int mhb_integrator_period(mhb_integrator *g) {
 /* ---- life cycle ---- */
 
 static int allocate(mhb_integrator *g) {
-  size_t modal = (size_t)(g->blades * g->modes), contacts = (size_t)g->contacts;
+  size_t modal = (size_t)g->blades * (size_t)g->modes, contacts = (size_t)g->contacts;
   g->law        = shb_arena_take(&g->arena, (size_t)g->pairs, sizeof *g->law);
   g->z          = shb_arena_take(&g->arena, 2 * modal, sizeof(double));
   g->point      = shb_arena_take(&g->arena, contacts, sizeof *g->point);

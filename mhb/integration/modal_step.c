@@ -200,7 +200,7 @@ void mhb_modal_step_length(const mhb_ring_step *ring, double h, mhb_modal_step *
   for (int i = 0; i < ring->s.modes; i++) set_mode(ring, h, i, step);
   set_moments(ring, step);
   set_compliance(ring, step);
-  for (int a = 0; a < ring->s.pairs; a++) step->pivot[a * MHB_STAGE_FORCES] = -1;
+  for (int a = 0; a < ring->s.pairs; a++) step->stuck[a].pivot[0] = -1;
 }
 
 /* ---- life cycle ---- */
@@ -213,9 +213,10 @@ shb_status mhb_ring_step_create(const mhb_receptance *receptance, const mhb_sett
   const mhb_modal_structure *s  = &ring->s;
   int                        n3 = 3 * s->pairs, m = s->modes;
   if (s->sides == 2) ring->n_neighbours = s->blades < 3 ? s->blades : 3;
-  ring->shape  = shb_arena_take(&ring->arena, (size_t)(s->sides * n3 * m), sizeof(double));
-  ring->moment = shb_arena_take(&ring->arena, (size_t)(ring->n_neighbours * n3 * n3 * MOMENTS),
-                                sizeof(double));
+  size_t block = (size_t)n3 * (size_t)n3 * MOMENTS;
+  ring->shape =
+      shb_arena_take(&ring->arena, (size_t)s->sides * (size_t)n3 * (size_t)m, sizeof(double));
+  ring->moment = shb_arena_take(&ring->arena, (size_t)ring->n_neighbours * block, sizeof(double));
   if (ring->arena.failed) {
     mhb_ring_step_destroy(ring);
     SHB_FAIL(SHB_ERR_IO, "out of memory");
@@ -238,8 +239,7 @@ shb_status mhb_modal_step_create(const mhb_ring_step *c, mhb_modal_step *step) {
       shb_arena_take(&step->arena, MHB_MODAL_STEP_ROWS * (size_t)c->s.modes, sizeof(double));
   step->compliance = shb_arena_take(&step->arena, (size_t)c->n_neighbours * pairs * pairs * square,
                                     sizeof(double));
-  step->stick      = shb_arena_take(&step->arena, pairs * square, sizeof(double));
-  step->pivot      = shb_arena_take(&step->arena, pairs * MHB_STAGE_FORCES, sizeof(int));
+  step->stuck      = shb_arena_take(&step->arena, pairs, sizeof *step->stuck);
   if (!step->arena.failed) return SHB_OK;
   mhb_modal_step_destroy(step);
   SHB_FAIL(SHB_ERR_IO, "out of memory");

@@ -66,13 +66,19 @@ static inline int mhb_ring_step_sector(const mhb_ring_step *c, int sector, int n
   return neighbour == 0 ? sector : neighbour == 1 ? (sector + n - 1) % n : (sector + 1) % n;
 }
 
+/* The factored matrix of a stuck contact over a step. */
 typedef struct {
-  double  h;          /* s */
-  double *mode;       /* [MHB_MODAL_STEP_ROWS][modes] */
-  double *compliance; /* [neighbour][pair][pair by][9 (stage, axis)][9 by]: w_i - R p_i by p, m/N */
-  double *stick;      /* [pair][9][9] factored matrix of a stuck contact */
-  int    *pivot;      /* [pair][9]; pivot[9 pair] < 0: not factored yet */
-  shb_arena arena;
+  double matrix[MHB_STAGE_FORCES * MHB_STAGE_FORCES];
+  int    pivot[MHB_STAGE_FORCES]; /* pivot[0] < 0: not factored yet */
+} mhb_stuck_factor;
+
+typedef struct {
+  double  h;    /* s */
+  double *mode; /* [MHB_MODAL_STEP_ROWS][modes] */
+  /* [neighbour][pair][pair by][9 (stage, axis)][9 by]: w_i - R p_i by p, m/N */
+  double           *compliance;
+  mhb_stuck_factor *stuck; /* [pair] */
+  shb_arena         arena;
 } mhb_modal_step;
 
 shb_status mhb_modal_step_create(const mhb_ring_step *ring, mhb_modal_step *step);

@@ -80,8 +80,8 @@ MHB_INLINE double lanes_bottom(mhb_lanes x) {
   return -lanes_top(-x);
 }
 
-/* cos x and sin x to rounding for |x| < 1e5: reduction by multiples of pi/2 in two parts, minimax
- * polynomials on [-pi/4, pi/4] (coefficients of the fdlibm kernels). */
+/* cos x and sin x to rounding for |x| < 1e5. The argument is reduced by multiples of pi/2, which is
+ * held in two parts. Minimax polynomials on [-pi/4, pi/4] follow, with coefficients of fdlibm. */
 MHB_INLINE void lanes_cos_sin(mhb_lanes x, mhb_lanes *cosine, mhb_lanes *sine) {
   const double   magic = 6755399441055744.0; /* 1.5 2^52: adding it rounds to an integer */
   mhb_lanes      turns = x * 0.63661977236758134308 + magic;

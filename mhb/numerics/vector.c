@@ -11,9 +11,3 @@ double mhb_norm(const double *x, int n) {
   for (int i = 0; i < n; i++) sum += (x[i] / top) * (x[i] / top);
   return top * sqrt(sum);
 }
-
-double mhb_dot(const double *a, const double *b, int n) {
-  double sum = 0;
-  for (int i = 0; i < n; i++) sum += a[i] * b[i];
-  return sum;
-}

@@ -1,12 +1,9 @@
-/* Euclidean norm and inner product of real vectors. */
+/* Euclidean norm of real vectors. */
 #ifndef MHB_NUMERICS_VECTOR_H
 #define MHB_NUMERICS_VECTOR_H
 
 /* |x| of x[n], scaled by the largest element: no overflow, no underflow. NAN if all elements are
  * NAN or zero and one of them is NAN. */
 double mhb_norm(const double *x, int n);
-
-/* sum_i a_i b_i, in ascending order of i. */
-double mhb_dot(const double *a, const double *b, int n);
 
 #endif

@@ -66,44 +66,42 @@ mhb_law mhb_operating_point_law(const mhb_operating_point *c, mhb_preload preloa
   return law;
 }
 
-/* y <- factor (dp/du) x over the axes from..to */
-static void times(int nb, const double *dp, const double *x, int from, int to, double factor,
-                  double *y) {
-  int block = 3 * nb;
+/* y <- factor (dp/du) u over the axes from..to */
+static void times(const mhb_pair_force *pair, int from, int to, double factor, double *y) {
+  int           nb = pair->nb, block = 3 * nb;
+  const double *dp = pair->dp, *u = pair->u;
   for (int i = 0; i < block; i++) {
     double sum = 0;
-    for (int j = from * nb; j < to * nb; j++) sum += dp[i * block + j] * x[j];
+    for (int j = from * nb; j < to * nb; j++) sum += dp[i * block + j] * u[j];
     y[i] = factor * sum;
   }
 }
 
 /* Constant normal load (kv = 0): all is homogeneous in (u, n0). */
-static void by_constant_load(const mhb_law *law, int nb, const double *u, const double *p,
-                             const double *dp, double *change) {
-  memset(change, 0, sizeof(double) * 3 * (size_t)nb);
+static void by_constant_load(const mhb_law *law, const mhb_pair_force *pair, double *change) {
+  memset(change, 0, sizeof(double) * 3 * (size_t)pair->nb);
   if (law->n0 <= 0) return;
-  times(nb, dp, u, 0, 3, -1 / law->n0, change);
-  for (int i = 0; i < 3 * nb; i++) change[i] += p[i] / law->n0;
+  times(pair, 0, 3, -1 / law->n0, change);
+  for (int i = 0; i < 3 * pair->nb; i++) change[i] += pair->p[i] / law->n0;
   change[0] += law->mean_offset / law->n0; /* of n, not of n - mean_offset */
 }
 
 void mhb_parameter_force(const mhb_operating_point *c, mhb_parameter parameter, const mhb_law *law,
-                         double share, int nb, const double *u, const double *p, const double *dp,
-                         double *change) {
-  int block = 3 * nb;
+                         double share, const mhb_pair_force *pair, double *change) {
+  int nb = pair->nb, block = 3 * nb;
   memset(change, 0, sizeof(double) * (size_t)block);
-  if (parameter == MHB_IN_KV && c->kv > 0) times(nb, dp, u, 0, 1, 1 / c->kv, change);
-  if (parameter == MHB_IN_KU) times(nb, dp, u, 1, 3, 1 / c->ku[0], change);
+  if (parameter == MHB_IN_KV && c->kv > 0) times(pair, 0, 1, 1 / c->kv, change);
+  if (parameter == MHB_IN_KU) times(pair, 1, 3, 1 / c->ku[0], change);
   if (parameter == MHB_IN_MU && c->mu > 0) {
-    times(nb, dp, u, 1, 3, -1 / c->mu, change);
+    times(pair, 1, 3, -1 / c->mu, change);
     for (int i = 0; i < nb; i++) change[i] = 0;
-    for (int i = nb; i < block; i++) change[i] += p[i] / c->mu;
+    for (int i = nb; i < block; i++) change[i] += pair->p[i] / c->mu;
   }
   if (parameter != MHB_IN_N0) return;
   if (law->kv > 0) {
-    for (int i = 0; i < block; i++) change[i] = dp[i * block] / law->kv;
+    for (int i = 0; i < block; i++) change[i] = pair->dp[i * block] / law->kv;
   } else {
-    by_constant_load(law, nb, u, p, dp, change);
+    by_constant_load(law, pair, change);
   }
   if (law->mean_offset > 0) change[0] -= 1;
   for (int i = 0; i < block; i++) change[i] *= share;

@@ -49,11 +49,19 @@ double mhb_parameter_least(mhb_parameter parameter);
 mhb_law mhb_operating_point_law(const mhb_operating_point *condition, mhb_preload preload,
                                 double share);
 
+/* Motion of a pair and the force on it, in real form. */
+typedef struct {
+  int           nb; /* coefficients an axis */
+  const double *u;  /* [3 (v, u, w)][nb] motion, m */
+  const double *p;  /* [3][nb] force, N */
+  const double *dp; /* [3 nb][3 nb] its derivative by the motion, N/m */
+} mhb_pair_force;
+
 /* Derivative of the force on a pair by the parameter, at fixed motion; 0 for frequency and scale.
- *   u, p    in   [3 (v, u, w)][nb] motion and force in real form; dp [3 nb][3 nb] its derivative
+ *   share   in   of the interface
  *   change  out  [3][nb] N per unit */
 void mhb_parameter_force(const mhb_operating_point *condition, mhb_parameter parameter,
-                         const mhb_law *law, double share, int nb, const double *u, const double *p,
-                         const double *dp, double *change);
+                         const mhb_law *law, double share, const mhb_pair_force *pair,
+                         double *change);
 
 #endif

@@ -41,11 +41,14 @@ typedef struct {
   double n0[MHB_MAX_PRELOADS];
 } mhb_interface;
 
+/* A few starts at the lowest and highest peaks of all preloads, as a share of the work. */
+enum { MHB_SEARCH_PEAKS = -1 };
+
 /* Search for branches without a connection to the main one, beside each main branch. */
 typedef struct {
-  int    starts;                /* random starts a frequency and order; 0: no search */
-  int    n_at;                  /* 0: the program chooses */
-  double at[MHB_MAX_SEARCH_AT]; /* as range: Hz for the frequency */
+  int    starts; /* random starts a frequency and order; 0: no search; MHB_SEARCH_PEAKS */
+  int    n_at;   /* 0: the program chooses */
+  double at[MHB_MAX_SEARCH_AT];                  /* as range: Hz for the frequency */
   int    n_orders, order[MHB_MAX_SEARCH_ORDERS]; /* ascending, times subharmonics */
 } mhb_search_settings;
 

@@ -1,5 +1,5 @@
-/* Guard of what the threads of a stage share, and of its response file: one lock, the file written
- * from time to time, the first failure of any thread kept with its text. */
+/* Guard of what the threads of a stage share, and of its response file. There is one lock. The file
+ * is written from time to time. The first failure of any thread is kept with its text. */
 #ifndef MHB_RESPONSE_PUBLISHER_H
 #define MHB_RESPONSE_PUBLISHER_H
 

@@ -43,8 +43,19 @@ static void free_curve(mhb_lasting_curve *curve) {
 static void free_branch(mhb_branch *branch) {
   for (int i = 0; i < MHB_N_FIELDS; i++) free(mhb_field_get(branch, &mhb_fields[i]));
   free(branch->reason);
+  free(branch->search);
   free(branch->lasting);
   free_curve(&branch->lasting_curve);
+}
+
+shb_status mhb_response_note_search(mhb_branch *branch, const mhb_search *search) {
+  size_t      n    = (size_t)branch->n_searches;
+  mhb_search *more = realloc(branch->search, (n + 1) * sizeof *more);
+  SHB_CHECK(more, SHB_ERR_IO, "no memory for %zu searches", n + 1);
+  more[n]        = *search;
+  branch->search = more;
+  branch->n_searches++;
+  return SHB_OK;
 }
 
 void mhb_response_destroy(mhb_response *response) {

@@ -31,6 +31,8 @@ shb_status mhb_response_copy_points(mhb_response *to, int to_branch, const mhb_r
 shb_status mhb_response_copy_lasting(mhb_branch *to, const mhb_branch *from);
 /* Room for n windows of a sweep; an earlier one is freed. SHB_ERR_IO: no memory. */
 shb_status mhb_response_lasting_curve(mhb_branch *branch, int n);
+/* Appends a search to the records of a branch. SHB_ERR_IO: no memory. */
+shb_status mhb_response_note_search(mhb_branch *branch, const mhb_search *search);
 /* Removes the branches for which drop[n_branches] is true; main is adjusted. */
 void mhb_response_drop(mhb_response *response, const bool *drop);
 /* Puts secondary branches behind all main ones, those of one main branch together, in the order in

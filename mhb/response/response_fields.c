@@ -13,9 +13,9 @@ const mhb_field mhb_fields[] = {
     {"motion", "p3k", MHB_COMPLEX, AT(motion), "m",
      "relative motion at the contact along v, u, w; harmonics"},
     {"force", "p3k", MHB_COMPLEX, AT(force), "N",
-     "contact force on the blade along v, u, w; harmonics. Where the contact neither slips nor "
-     "opens "
-     "the mean friction is not determined by the physics: by convention the smallest admissible"},
+     "contact force on the right neighbour, or on the ground, along +v, +u, +w; harmonics. Where "
+     "the contact neither slips nor opens the mean friction is not determined by the physics: by "
+     "convention the smallest admissible"},
     {"probe", "qxk", MHB_COMPLEX, AT(probe), "m",
      "displacement of the probes, tangential, axial, radial; harmonics"},
     {"stable", "", MHB_INT, AT(stable), "-", "stability: 1 stable, 0 unstable, -1 not known"},

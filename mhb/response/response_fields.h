@@ -9,9 +9,11 @@
 
 typedef enum { MHB_DOUBLE, MHB_COMPLEX, MHB_INT } mhb_number;
 
-/* dims: the dimensions after [point], one letter each: p pair, q probe, 3 shroud axes, x
- * cylindrical axes, s contact state, k harmonic 0..m, f multiplier, l spectral line, i contact
- * interface. */
+/* A dataset of a branch. dims has one letter for each dimension after [point]:
+ *
+ *   p  pair           q  probe             i  contact interface   s  contact state
+ *   3  shroud axes    x  cylindrical axes  k  harmonic 0..m       f  multiplier
+ *   l  spectral line */
 typedef struct {
   const char *name, *dims;
   mhb_number  kind;

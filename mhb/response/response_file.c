@@ -141,6 +141,29 @@ static shb_status write_field(hid_t group, const mhb_response *response, const m
   return SHB_OK;
 }
 
+/* The searches of a main branch. */
+static shb_status write_searches(hid_t group, const mhb_response *response,
+                                 const mhb_branch *branch) {
+  int            n     = branch->n_searches;
+  const h5_shape shape = H5_SHAPE((hsize_t)n);
+  const char    *units = mhb_parameter_unit(response->parameter);
+  double         value[n + 1];
+  int            order[n + 1], starts[n + 1], found[n + 1];
+  if (n == 0) return SHB_OK;
+  for (int i = 0; i < n; i++) {
+    value[i]  = branch->search[i].value;
+    order[i]  = branch->search[i].order;
+    starts[i] = branch->search[i].starts;
+    found[i]  = branch->search[i].found;
+  }
+  SHB_TRY(h5_write_double(group, "search/parameter", shape, value, *units ? units : "-",
+                          "value of the parameter at which other curves were searched for"));
+  SHB_TRY(h5_write_int(group, "search/order", shape, order, "-",
+                       "periods of the excitation after which the motions searched for repeat"));
+  SHB_TRY(h5_write_int(group, "search/starts", shape, starts, "-", "random starts made"));
+  return h5_write_int(group, "search/found", shape, found, "-", "curves found");
+}
+
 /* Speed of the rotor in a run-up; not read back. */
 static shb_status write_speed(hid_t group, const mhb_response *response, const mhb_branch *branch) {
   if (!response->run_up) return SHB_OK;
@@ -189,6 +212,7 @@ static shb_status fill_branch(hid_t group, const mhb_response *response, const m
     if (mhb_field_kept(response, branch, &mhb_fields[i]))
       SHB_TRY(write_field(group, response, branch, &mhb_fields[i]));
   SHB_TRY(write_lasting(group, branch));
+  SHB_TRY(write_searches(group, response, branch));
   return write_speed(group, response, branch);
 }
 
@@ -406,6 +430,27 @@ static shb_status read_descent(hid_t group, const char *path, int index, mhb_bra
   return SHB_OK;
 }
 
+/* Files of earlier versions have none. */
+static shb_status read_searches(hid_t group, const char *path, int index, mhb_branch *branch) {
+  h5_shape shape;
+  double  *value    = NULL;
+  int     *count[3] = {NULL};
+  if (!h5_exists(group, "search")) return SHB_OK;
+  SHB_TRY(h5_shape_of(group, "search/parameter", &shape));
+  SHB_CHECK(shape.rank == 1 && shape.dim[0] <= MAX_COUNT, SHB_ERR_INPUT,
+            "%s: /branch_%d/search/parameter must be a list of at most %d", path, index, MAX_COUNT);
+  static const char *const name[] = {"search/order", "search/starts", "search/found"};
+  shb_status               status = h5_read_double(group, "search/parameter", &shape, &value);
+  for (int k = 0; k < 3 && status == SHB_OK; k++)
+    status = h5_read_int(group, name[k], &shape, &count[k]);
+  for (hsize_t i = 0; i < shape.dim[0] && status == SHB_OK; i++)
+    status = mhb_response_note_search(
+        branch, &(mhb_search){value[i], count[0][i], count[1][i], count[2][i]});
+  free(value);
+  for (int k = 0; k < 3; k++) free(count[k]);
+  return status;
+}
+
 /* Checks that all codes of a list are in their range. */
 static shb_status check_codes(const char *path, int index, const char *name, int n, const int *code,
                               int least, int most, const char *wanted) {
@@ -461,6 +506,7 @@ static shb_status fill_from(hid_t group, const char *path, int index, mhb_respon
     if (mhb_field_kept(response, branch, &mhb_fields[i]))
       SHB_TRY(read_field(group, response, branch, &mhb_fields[i]));
   SHB_TRY(read_lasting(group, branch));
+  SHB_TRY(read_searches(group, path, index, branch));
   return check_points(path, index, branch);
 }
 

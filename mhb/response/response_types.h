@@ -18,10 +18,13 @@ typedef enum {
   MHB_N_BRANCH_KINDS
 } mhb_branch_kind;
 
-/* Origin of a branch: traced from the low end of the range, from a solution found by search, from a
- * flip; detached: a closed curve, or one that leaves by the low end, met on the way of the main
- * branch. */
-typedef enum { MHB_FROM_END, MHB_FROM_SEARCH, MHB_FROM_FLIP, MHB_FROM_DETACHED } mhb_origin;
+/* Origin of a branch: where its trace began. */
+typedef enum {
+  MHB_FROM_END,      /* the low end of the range */
+  MHB_FROM_SEARCH,   /* a solution found by search */
+  MHB_FROM_FLIP,     /* a flip */
+  MHB_FROM_DETACHED, /* met on the way of the main branch: closed, or leaves by the low end */
+} mhb_origin;
 
 /* special of mhb_branch. Flip and Neimark-Sacker: a multiplier crosses the unit circle at -1, or a
  * complex pair does. */
@@ -61,6 +64,14 @@ typedef struct {
   double *mean, *worst; /* [n] m: a period's peak of the output, mean and 99.9 percentile */
 } mhb_lasting_curve;
 
+/* A search for other branches at one value of the parameter: random starts of the Newton method. */
+typedef struct {
+  double value;  /* as mhb_branch.value */
+  int    order;  /* of the motions searched for */
+  int    starts; /* that were made */
+  int    found;  /* branches that they led to and that were not known */
+} mhb_search;
+
 /* One curve. Array layouts:
  *   motion, force  [point][pair][3 (v, u, w)][k = 0..m]
  *   probe          [point][probe][3 (tangential, axial, radial)][k]
@@ -72,7 +83,9 @@ typedef struct {
   mhb_origin      origin;
   int             order, n_harmonics; /* nu, m; the response's unless set before the first point */
   int             main;               /* index of the main branch of the same preload */
-  bool            searched;           /* main branch: the search beside it is done */
+  bool            searched;           /* main branch: the search beside it is done, if wanted */
+  int             n_searches;         /* main branch; 0: none was made */
+  mhb_search     *search;             /* [n_searches] */
   char           *reason;   /* end of the branch: "end of range", or why it ended before */
   bool            complete; /* the range was covered */
   int             n_points, capacity;

@@ -169,7 +169,7 @@ void mhb_receptance_destroy(mhb_receptance *r) {
 }
 
 /* L_i = 1/(w_i^2 - w^2 + 2 j zeta_i w_i w). At a resonance without damping w is moved by half of
- * NUDGE: far enough that the other modes keep half of their digits in the sums. */
+ * NUDGE. That is far enough for the other modes to keep half of their digits in the sums. */
 MHB_HOT static void set_lambda(const mhb_receptance *r, double w, double *restrict re,
                                double *restrict im) {
   const double *restrict hz = r->model->frequency, *restrict zeta = r->model->damping_ratio;
@@ -352,8 +352,9 @@ void mhb_receptance_probe_change(const mhb_receptance *r, int k, const double co
   int    q = 3 * r->model->n_probes, m = r->n_modes;
   double kk = (double)k / r->nu, dw2 = 2 * kk * kk * r->omega * d_omega;
   memset(change, 0, sizeof *change * (size_t)q);
-  mhb_residual_terms_probe_change(r->residual_terms, k, kk * r->omega, r->scale, p, dp, dw2,
-                                  d_scale, change);
+  mhb_residual_terms_probe_change(r->residual_terms, k, kk * r->omega,
+                                  (mhb_structure_forces){r->scale, p},
+                                  (mhb_structure_forces){d_scale, dp}, dw2, change);
   for (int i = 0; i < m; i++) {
     double complex a = r->lambda[k * m + i] * mhb_modal_part_force(r->part, k, dp, i, d_scale);
     if (d_omega != 0)

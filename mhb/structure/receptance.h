@@ -51,9 +51,11 @@ typedef struct {
   shb_arena             arena;
 } mhb_receptance;
 
-/* Load harmonics above n_harmonics are ignored. The model must outlive the receptance.
- * Errors: SHB_ERR_INPUT psi or phi differs from the file's normals by more than a degree; neighbour
- * without /contact/left; subharmonics that do not close around the ring. SHB_ERR_IO no memory. */
+/* Load harmonics above n_harmonics are ignored. The model must outlive the receptance. Errors:
+ *
+ *   SHB_ERR_INPUT  psi or phi differs from the file's normals by more than a degree; neighbour
+ *                  without /contact/left; subharmonics that do not close around the ring
+ *   SHB_ERR_IO     no memory */
 shb_status mhb_receptance_create(const modal_model *model, const mhb_settings *settings,
                                  int n_harmonics, mhb_receptance **receptance);
 void       mhb_receptance_destroy(mhb_receptance *receptance);

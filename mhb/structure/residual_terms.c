@@ -288,14 +288,14 @@ void mhb_residual_terms_slope(const mhb_residual_terms *l, int k, double w, doub
 }
 
 /* change[3 q] += P_i (g F(change) + dw2 g' F), F the force on residual mode i of shape P_i. */
-static void add_probe_modes(const mhb_residual_terms *l, int k, const modal_series *s, double scale,
-                            const double complex *p, const double complex *dp, double dw2,
-                            double d_scale, double complex *change) {
+static void add_probe_modes(const mhb_residual_terms *l, int k, const modal_series *s,
+                            mhb_structure_forces at, mhb_structure_forces by, double dw2,
+                            double complex *change) {
   const int q = 3 * l->model->n_probes, r = l->model->n_residual;
   for (int i = 0; i < r; i++) {
     double         slope, g = modal_series_mode(l->model, i, s, &slope);
-    double complex f = g * drive(l, k, i, d_scale, dp);
-    if (dw2 != 0) f += dw2 * slope * drive(l, k, i, scale, p);
+    double complex f = g * drive(l, k, i, by.scale, by.p);
+    if (dw2 != 0) f += dw2 * slope * drive(l, k, i, at.scale, at.p);
     for (int c = 0; c < q; c++) change[c] += l->model->residual_probe[c * r + i] * f;
   }
 }
@@ -316,12 +316,12 @@ void mhb_residual_terms_probe_by(const mhb_residual_terms *l, int k, const modal
   add_probe_terms(l, k, s->load_weight, scale, p, motion);
 }
 
-void mhb_residual_terms_probe_change(const mhb_residual_terms *l, int k, double w, double scale,
-                                     const double complex *p, const double complex *dp, double dw2,
-                                     double d_scale, double complex *change) {
+void mhb_residual_terms_probe_change(const mhb_residual_terms *l, int k, double w,
+                                     mhb_structure_forces at, mhb_structure_forces by, double dw2,
+                                     double complex *change) {
   modal_series s = modal_series_at(l->model, w);
-  add_probe_terms(l, k, s.load_weight, d_scale, dp, change);
+  add_probe_terms(l, k, s.load_weight, by.scale, by.p, change);
   for (int t = 0; t < MODAL_TERMS; t++) s.load_slope[t] *= dw2;
-  if (dw2 != 0) add_probe_terms(l, k, s.load_slope, scale, p, change);
-  add_probe_modes(l, k, &s, scale, p, dp, dw2, d_scale, change);
+  if (dw2 != 0) add_probe_terms(l, k, s.load_slope, at.scale, at.p, change);
+  add_probe_modes(l, k, &s, at, by, dw2, change);
 }

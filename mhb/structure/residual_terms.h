@@ -70,11 +70,17 @@ void mhb_residual_terms_motion_by(const mhb_residual_terms *terms, int k,
 void mhb_residual_terms_slope(const mhb_residual_terms *terms, int k, double w, double dw2,
                               double scale, const double complex *p, double complex *slope);
 
-/* change[3 q] += the change of the probes' motion with p by dp, w^2 by dw2, the scale by
- * d_scale. */
-void mhb_residual_terms_probe_change(const mhb_residual_terms *terms, int k, double w, double scale,
-                                     const double complex *p, const double complex *dp, double dw2,
-                                     double d_scale, double complex *change);
+/* Forces of a harmonic on the structure, or a change of them. */
+typedef struct {
+  double                scale; /* of the load */
+  const double complex *p;     /* [n] contact forces, N */
+} mhb_structure_forces;
+
+/* change[3 q] += the change of the probes' motion with the forces at by those of by, and with w^2
+ * by dw2. */
+void mhb_residual_terms_probe_change(const mhb_residual_terms *terms, int k, double w,
+                                     mhb_structure_forces at, mhb_structure_forces by, double dw2,
+                                     double complex *change);
 
 /* motion[3 q] += the motion of the probes with given weights, without residual modes. */
 void mhb_residual_terms_probe_by(const mhb_residual_terms *terms, int k, const modal_series *series,

@@ -105,8 +105,8 @@ static void congruent(const mhb_speed_model *a, const double *X, double *work, d
 /* Rows of U <- eigenvectors of K[m][m], square[m] <- eigenvalues, ascending. 0: K is not positive
  * definite. work: 2 m^2 + 3 m + 6.
  *
- * K is graded: by one-sided Jacobi on its Cholesky factor the low eigenvalues are good to their own
- * rounding, not to that of the highest (Demmel and Veselic 1992). */
+ * The entries of K differ by orders of magnitude. One-sided Jacobi on its Cholesky factor gives the
+ * low eigenvalues to their own rounding, not to that of the highest (Demmel and Veselic 1992). */
 static int find_modes(int m, const double *K, double *work, double *square, double *U) {
   double *A = work, *V = A + m * m, *sigma = V + m * m, *rest = sigma + m;
   memcpy(A, K, (size_t)(m * m) * sizeof *A);

@@ -10,10 +10,11 @@
 
 static const double HAIR = 1e-9;
 
-/* Speeds used beyond the range on each side, for the splines; least part of the mass of a mode,
- * squared cosine, in the space of the modes kept. */
+/* Speeds used beyond the range on each side, for the splines. */
 enum { BESIDE = 2 };
-static const double STAYS = .8;
+
+/* Least part of the mass of a mode in the space of the modes kept: a squared cosine. */
+static const double STAYS = 0.8;
 
 static double rpm(double speed) {
   return speed * 60 / SHB_TWO_PI;

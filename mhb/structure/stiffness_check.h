@@ -7,11 +7,12 @@
 /* Largest ratio of contact stiffness to that of the blade at the contact. */
 #define MHB_STIFFNESS_LIMIT 1e7
 
-/* Compares a pair's share of kuu, kww and kv (or of the end of the range followed) with the blade's
- * own static stiffness there, 1/R. The law is as exact and as fast at any stiffness: its force
- * tends to that of a rigid contact, with an error of 1/(k R). But a curve then bends within motions
- * of mu n/k and has to be followed through them: from a second (1e3 times as stiff) to minutes (1e9
- * times).
+/* Compares a pair's share of kuu, kww and kv with the blade's own static stiffness 1/R there. A
+ * stiffness that is followed counts with the highest value of its range.
+ *
+ * The law is as exact and as fast at any stiffness. Its force tends to that of a rigid contact,
+ * with an error of 1/(k R). But a curve then bends within motions of mu n/k. It has to be followed
+ * through them. This takes a second at 1e3 times the blade's stiffness, and minutes at 1e9 times.
  *
  * Sets the frequency of the receptance. SHB_ERR_INPUT: beyond MHB_STIFFNESS_LIMIT. */
 shb_status mhb_stiffness_check(mhb_receptance *receptance, const mhb_settings *settings);

@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "mesh/base/constants.h"
+
 double modal_check_frequency(const modal_check *check) {
-  return sqrt(fmax(check->limit, 0)) / (2 * acos(-1));
+  return sqrt(fmax(check->limit, 0)) / SHB_TWO_PI;
 }

@@ -1,5 +1,5 @@
-/* Condensation of the body to its contact, probe and load dofs: mode shapes there, and the residual
- * terms and residual modes of the modes left out. */
+/* Condensation of the body to its contact, probe and load dofs. The mode shapes are sampled there.
+ * Residual terms and residual modes stand for the modes left out. */
 #ifndef MODAL_CONDENSE_CONDENSE_H
 #define MODAL_CONDENSE_CONDENSE_H
 
@@ -21,8 +21,8 @@ typedef struct {
 
 /* Fill the model, zeroed first, except probe names, interfaces, normals and areas.
  *
- * Let P = I - phi phi^T M. Let b be a column of the contact dofs or the load, and a a column of the
- * contact or probe dofs. The modes left out, undamped, contribute
+ * P is the projector I - phi phi^T M. Column b belongs to a contact dof or to the load. Column a
+ * belongs to a contact or probe dof. The modes left out, undamped, contribute
  *
  *   sum (a phi)(phi b)/(lambda - w^2) = a^T P [K^-1 + w^2 K^-1 M P K^-1 + O(w^4)] b,
  *   residual = a^T P K^-1 b                    = a^T [K^-1 - sum phi phi^T / lambda] b,

@@ -1,9 +1,9 @@
 /* Contact patches: the nodes of each contact point, their weights and axes.
  *
- * A patch moves as the mean displacement of its face, integral of u dA / A. With the shape
- * functions of the faces this is sum_e weight[e] u(node[e]). On flat straight-sided six-node
- * triangles only mid-side nodes carry weight; corners of eight-node quadrangles carry a negative
- * one.
+ * A patch moves as the mean displacement of its face, the integral of u dA divided by the area.
+ * The shape functions of the faces turn it into sum_e weight[e] u(node[e]). On flat straight-sided
+ * six-node triangles only mid-side nodes carry weight. Corners of eight-node quadrangles carry a
+ * negative one.
  *
  * The paper's eq. 2 defines psi and phi by v = (cos psi cos phi, sin psi cos phi, -sin phi).
  *

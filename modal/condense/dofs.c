@@ -95,6 +95,12 @@ static double inner(const modal_dofs *dofs, const fem_system *system, int c, con
   return sum;
 }
 
+static PetscErrorCode sum_over_ranks(MPI_Comm comm, int n, double *value) {
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, value, n, MPI_DOUBLE, MPI_SUM, comm));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode modal_dofs_sample(const modal_dofs *dofs, const fem_system *system, Mat X,
                                  int n_columns, int stride, double *value) {
   const PetscScalar *x;
@@ -106,7 +112,7 @@ PetscErrorCode modal_dofs_sample(const modal_dofs *dofs, const fem_system *syste
   for (int c = 0; c < dofs->n; c++) {
     double *row = value + (size_t)c * (size_t)stride;
     for (int k = 0; k < n_columns; k++) row[k] = inner(dofs, system, c, x + k * lda);
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, row, n_columns, MPI_DOUBLE, MPI_SUM, system->comm));
+    PetscCall(sum_over_ranks(system->comm, n_columns, row));
   }
   PetscCall(MatDenseRestoreArrayRead(X, &x));
   PetscFunctionReturn(0);

@@ -16,10 +16,14 @@ typedef struct {
 /* Create the patterns of n loads that act together. A load of the case gives one pattern. A field
  * gives the real and the imaginary part of every harmonic.
  *
- * A field file (HDF5) holds /node [n], numbers of nodes in the mesh file; /harmonic [m], whole
- * numbers from 0 to 64, each once; and either /force [m, n, 3] N in mesh axes or /pressure [m, n]
- * Pa, positive into the surface of group load, complex or real. Pressure between the nodes follows
- * the shape functions; every node of the group needs one.
+ * A field file (HDF5) holds
+ *
+ *   /node      [n]       numbers of nodes in the mesh file
+ *   /harmonic  [m]       whole numbers from 0 to 64, each once
+ *   /force     [m, n, 3] N in mesh axes, complex or real; or
+ *   /pressure  [m, n]    Pa, positive into the surface of group load, complex or real
+ *
+ * Pressure between the nodes follows the shape functions; every node of the group needs one.
  *
  *   fallback  in  where a force without a place of its own acts; NULL: none
  *

@@ -143,10 +143,15 @@ static PetscErrorCode solve(EPS eps) {
 
 /* eps->V gets memory for the modes only; the solver owns its basis. */
 static PetscErrorCode set_up(EPS eps) {
-  method *own = eps->data;
+  method   *own = eps->data;
+  PetscBool inverts;
   PetscFunctionBeginUser;
-  EPSCheckHermitianDefinite(eps);
-  EPSCheckSinvert(eps);
+  PetscCheck(eps->ishermitian && (!eps->isgeneralized || eps->ispositive),
+             PetscObjectComm((PetscObject)eps), PETSC_ERR_SUP,
+             "block Lanczos needs symmetric matrices and a positive definite mass matrix");
+  PetscCall(PetscObjectTypeCompare((PetscObject)eps->st, STSINVERT, &inverts));
+  PetscCheck(inverts, PetscObjectComm((PetscObject)eps), PETSC_ERR_SUP,
+             "block Lanczos needs the spectral transform sinvert");
   PetscCheck(own->size >= 1 && own->size <= eps->n, PetscObjectComm((PetscObject)eps),
              PETSC_ERR_USER_INPUT, "-eps_block_size %d: one or more", (int)own->size);
   own->limit  = eps->ncv > eps->nev ? eps->ncv : 8 * eps->nev + 30 * own->size;

@@ -1,9 +1,10 @@
-/* Search for eigenvalues that a block Lanczos run has missed: block Lanczos from a random block on
- * the part of T = (K - shift M)^-1 M outside the basis.
+/* Search for eigenvalues that a block Lanczos run has missed. A second block Lanczos run starts
+ * from a random block. It works on the part of T = (K - shift M)^-1 M outside the basis.
  *
- * Let Q be the basis, P = 1 - Q Q^T M, T Q = Q H + R B E^T (R the next block, E the last block of
- * the identity), and t no eigenvalue of H. With N counting eigenvalues, the Schur complement of H -
- * t in T - t (Haynsworth 1968) gives
+ * Q is the basis, and P = 1 - Q Q^T M projects onto the rest. The first run leaves the relation
+ * T Q = Q H + R B E^T with the next block R and the last block E of the identity. N counts
+ * eigenvalues, and t is no eigenvalue of H. The Schur complement of H - t in T - t (Haynsworth
+ * 1968) gives
  *
  *   N(T > t) = N(H > t) + N(G' > t),   G' = P T P - R F' R^T M,   F' = B E^T (H - t)^-1 E B^T.
  *

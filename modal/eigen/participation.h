@@ -2,9 +2,9 @@
  *
  *   gamma_ir = phi_i^T M r,   effective mass gamma_ir^2   (mass-normalised modes)
  *
- * r: translation along x, y, z, or rotation about the engine axis, clamped nodes included. Over all
- * modes of the mesh the effective masses sum to the mass (moment of inertia) of the body, less a
- * part of the clamped nodes. That part, r_c^T (M_cc - M_cf M_ff^-1 M_fc) r_c, vanishes as the mesh
+ * r: translation along x, y, z, or rotation about the engine axis, clamped nodes included. The
+ * effective masses of all modes sum to the mass (moment of inertia) of the body, less a part of the
+ * clamped nodes. That part, r_c^T (M_cc - M_cf M_ff^-1 M_fc) r_c, vanishes as the mesh
  * is refined. At speed the modes are those about the equilibrium, and the rotation is that of the
  * deformed blade. */
 #ifndef MODAL_EIGEN_PARTICIPATION_H

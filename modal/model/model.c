@@ -22,8 +22,10 @@ int modal_model_contact_dofs(const modal_model *model) {
 
 /* ---------------------------------------------------------------- writing */
 
-/* A dataset of the table below. Each letter of dims names one dimension: m modes, p pairs, 2, 3, c
- * contact dofs, k load harmonics, q probes, Q probe dofs (3 q), r residual modes. */
+/* A dataset of the table below. Each letter of dims names one dimension:
+ *
+ *   m  modes             p  pairs             2, 3  that number   c  contact dofs
+ *   k  load harmonics    q  probes            Q  probe dofs, 3 q  r  residual modes */
 typedef struct {
   const char *path, *dims, *units, *long_name;
   bool        is_complex;

@@ -15,8 +15,8 @@
 void modal_receptance(const modal_model *model, double omega, double complex *receptance);
 
 /* Estimated error of the contact receptance by the modes left out, relative to its largest diagonal
- * value; -1 if the model lacks the data for it (modal_series_error). receptance: modal_receptance
- * at omega. */
+ * value. It is -1 if the model lacks the data for it (modal_series_error). receptance:
+ * modal_receptance at omega. */
 double modal_receptance_error(const modal_model *model, double omega,
                               const double complex *receptance);
 

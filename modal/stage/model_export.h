@@ -1,5 +1,5 @@
-/* Data that the modal stage adds to the model in the modal file: mesh, full mode shapes, contact
- * patches, a sampled receptance, and a VTKHDF group for ParaView. */
+/* What the modal stage adds to the model in the modal file. This is the mesh, the full mode shapes,
+ * the contact patches, a sampled receptance, and a VTKHDF group for ParaView. */
 #ifndef MODAL_STAGE_MODEL_EXPORT_H
 #define MODAL_STAGE_MODEL_EXPORT_H
 

@@ -75,9 +75,14 @@ typedef struct {
  * undeformed mesh. Collective; the mesh is the same on every rank, its sets oriented
  * (mesh_fe_orient).
  *
- * Errors: SHB_ERR_INPUT missing groups, wrong angles, too many modes or patches, a part without
- * clamp, a single column of hexahedra without full_integration, a speed without stable equilibrium;
- * SHB_NOT_CONVERGED modes; SHB_ERR_IO no memory; SHB_INTERRUPTED. */
+ * Errors:
+ *
+ *   SHB_ERR_INPUT      missing groups, wrong angles, too many modes or patches, a part without
+ *                      clamp, a single column of hexahedra without full_integration, a speed
+ *                      without stable equilibrium
+ *   SHB_NOT_CONVERGED  modes
+ *   SHB_ERR_IO         no memory
+ *   SHB_INTERRUPTED */
 shb_status modal_solve(MPI_Comm comm, const mesh_fe *mesh, const modal_settings *settings,
                        shb_progress *progress, modal_result *result);
 

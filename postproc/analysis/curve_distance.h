@@ -20,8 +20,8 @@ double post_point_distance(const double one[2], const double other[2], double un
 double post_curve_distance(const double point[2], const post_polyline *line, double unit,
                            int *nearest);
 
-/* Estimated deviation of the curve from the chord between points i and i + 1: the larger deviation,
- * at the middle, of the parabolas through a third point on either side. */
+/* Estimated deviation of the curve from the chord between points i and i + 1. On either side a
+ * parabola runs through a third point. The larger deviation of the two at the middle is taken. */
 double post_chord_deviation(const post_polyline *line, int i, double unit);
 
 #endif

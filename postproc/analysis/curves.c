@@ -73,8 +73,8 @@ static double vertex(const double s[3], const double y[3]) {
 }
 
 /* Abscissa s of the parabola through i - 1, i, i + 1, with s[1] = 0. It is the coordinate x where x
- * is monotone and not too unevenly spaced: this is exact to third order near a resonance or a
- * smooth fold. Else it is arclength. False at an end of the curve or where points coincide. */
+ * is monotone and not too unevenly spaced. Near a resonance or a smooth fold this is exact to third
+ * order. Else it is arclength. False at an end of the curve or where points coincide. */
 static bool parabola_abscissa(const curve *c, int i, const double *x, double s[3]) {
   if (i <= 0 || i >= c->n - 1) return false;
   double before = x[i] - x[i - 1], after = x[i + 1] - x[i], ratio = after / before;

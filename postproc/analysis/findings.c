@@ -289,10 +289,7 @@ static void put_folds(const post_analysis *analysis, post_buffer *out) {
              analysis->abscissa.symbol,
              outside ? " Where one of these is an end of the range, the fold lies beyond it." : "");
   else if (analysis->tracking.n > 0)
-    post_put(
-        out,
-        "<li>No curve folds visibly: no jumps on the curves that were followed. Curves that do "
-        "not hang together with them are found by <code>mhb.search</code> only.</li>\n");
+    post_put(out, "<li>No curve folds visibly: no jumps on the curves that were followed.</li>\n");
 }
 
 /* Instabilities other than folds, from the multipliers. */
@@ -411,6 +408,49 @@ static void put_other_curves(const post_analysis *analysis, post_buffer *out) {
              "repeats after n periods of the excitation.</li>\n");
 }
 
+/* "at 115.7, 215.2 and 243.6 Hz" */
+static void put_search_places(const post_analysis *analysis, const mhb_branch *branch,
+                              post_buffer *out) {
+  const post_abscissa *x = &analysis->abscissa;
+  for (int i = 0; i < branch->n_searches; i++) {
+    char at[POST_NUMBER];
+    bool last = i + 1 == branch->n_searches;
+    post_put(out, "%s%s",
+             i == 0 ? "at "
+             : last ? " and "
+                    : ", ",
+             post_abscissa_number(x, branch->search[i].value, 5, at));
+  }
+  post_put(out, "%s%s", *x->unit.name ? "\u00a0" : "", x->unit.name);
+}
+
+/* Where random starts looked for other curves, and what they found. */
+static void put_searches(const post_analysis *analysis, post_buffer *out) {
+  int starts = 0, found = 0, places = 0;
+  for (int b = 0; b < analysis->response->n_branches; b++) {
+    const mhb_branch *branch = &analysis->response->branch[b];
+    for (int i = 0; i < branch->n_searches; i++) {
+      starts += branch->search[i].starts;
+      found += branch->search[i].found;
+    }
+    if (branch->n_searches == 0 || ++places > 4) continue;
+    char name[64];
+    post_group_name(&analysis->group[analysis->curve[b].group], name);
+    post_put(out, "%s%s ", places > 1 ? "; " : "<li><b>Searched for other curves</b>: ", name);
+    put_search_places(analysis, branch, out);
+  }
+  if (places > 4) post_put(out, "; and at %d more preloads", places - 4);
+  if (places > 0)
+    post_put(out,
+             ". Of %d random starts there %d led to a curve that was not known. Nowhere else was "
+             "any looked for (<code>mhb.search</code>).</li>\n",
+             starts, found);
+  else if (analysis->tracking.n > 0)
+    post_put(out,
+             "<li>Other curves, which no sweep comes to, were <b>not searched</b> for: "
+             "<code>mhb.search</code> does.</li>\n");
+}
+
 static void put_accuracy(const post_analysis *analysis, post_buffer *out) {
   double worst = NAN, at_peak = NAN;
   for (int b = 0; b < analysis->response->n_branches; b++)
@@ -437,6 +477,7 @@ void post_findings(const post_analysis *analysis, post_buffer *out) {
   put_shift(analysis, out);
   put_folds(analysis, out);
   put_other_curves(analysis, out);
+  put_searches(analysis, out);
   put_stability(analysis, out);
   put_accuracy(analysis, out);
   post_put(out, "</ul>\n");

@@ -60,7 +60,8 @@ static int signed_ticks(const plot_axis *axis, int wanted, double ticks[PLOT_MAX
   for (int sign = 1; sign >= -1; sign -= 2) {
     double last = place(axis, 0);
     for (int i = 0; i < 3 * (highest - lowest + 1) && n < PLOT_MAX_TICKS; i++) {
-      double t = sign * step[i % 3] * pow(10, lowest + i / 3), at = place(axis, t * axis->unit);
+      int    decade = lowest + i / 3;
+      double t = sign * step[i % 3] * pow(10, decade), at = place(axis, t * axis->unit);
       if (at < 0 || at > 1 || fabs(at - last) < 0.7 / wanted) continue;
       ticks[n++] = t;
       last       = at;

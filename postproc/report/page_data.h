@@ -1,9 +1,12 @@
 /* Numbers of the page's interactive charts, as JSON for its script.
  *
- * Members: groups [{name, kind, n0, rank}], branches [{group, n, complete, reason, data}], outputs
- * [{place, axis, quantity, row, track, peaks, folds}], spectra [{place, row, n}], rows, chosen,
- * log, abscissa {parameter (as in a case file), name, unit, scale (shown is value in SI / scale),
- * log, range [lo, hi]}.
+ *   groups    [{name, kind, n0, rank}]
+ *   branches  [{group, n, complete, reason, data}]
+ *   outputs   [{place, axis, quantity, row, track, peaks, folds}]
+ *   spectra   [{place, row, n}]
+ *   rows, chosen, log
+ *   abscissa  {parameter (as in a case file), name, unit, scale (shown is value in SI / scale),
+ *             log, range [lo, hi]}
  *
  *   data   base64 of float32 [rows][n]. Rows 0 .. 7: abscissa in SI, shares stuck, slipping, open,
  *          dissipation in J, error estimate, stable, special. Further rows, in m, belong to

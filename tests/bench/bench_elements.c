@@ -20,6 +20,7 @@
 #include <string.h>
 #include <sys/resource.h>
 
+#include "mesh/base/constants.h"
 #include "modal/eigen/eigen.h"
 #include "tests/bench/z_notch.h"
 
@@ -87,7 +88,7 @@ static PetscErrorCode find_modes(const mesh_fe *mesh, fem_rules rules, double fr
   PetscFunctionBeginUser;
   PetscCall(fem_system_create(PETSC_COMM_SELF, mesh, &steel, rules, &system));
   PetscCall(modal_eigen_solve(&system, &wanted, &eigen));
-  for (int i = 0; i < MODES; i++) frequency[i] = sqrt(eigen.lambda[i]) / (2 * acos(-1));
+  for (int i = 0; i < MODES; i++) frequency[i] = sqrt(eigen.lambda[i]) / SHB_TWO_PI;
   PetscCall(modal_eigen_destroy(&eigen));
   PetscCall(fem_system_destroy(&system));
   PetscFunctionReturn(0);

@@ -20,6 +20,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "mesh/base/constants.h"
 #include "mesh/io/inp_write.h"
 #include "modal/common/session.h"
 #include "modal/eigen/eigen.h"
@@ -98,7 +99,7 @@ static PetscErrorCode find_modes(const mesh_fe *mesh, figures *out) {
   PetscCall(fem_system_create(PETSC_COMM_SELF, mesh, &steel, FEM_CALCULIX, &system));
   PetscCall(modal_eigen_solve(&system, &wanted, &eigen));
   out->seconds = processor_time() - began;
-  for (int i = 0; i < MODES; i++) out->frequency[i] = sqrt(eigen.lambda[i]) / (2 * acos(-1));
+  for (int i = 0; i < MODES; i++) out->frequency[i] = sqrt(eigen.lambda[i]) / SHB_TWO_PI;
   PetscCall(modal_eigen_destroy(&eigen));
   PetscCall(fem_system_destroy(&system));
   PetscFunctionReturn(0);
@@ -147,7 +148,7 @@ static int read_frequencies(double frequency[MODES]) {
   if (file && fread(head, sizeof *head, 4, file) == 4 && head[3] == MODES)
     found = (int)fread(frequency, sizeof *frequency, MODES, file);
   if (file) fclose(file);
-  for (int i = 0; i < found; i++) frequency[i] = sqrt(frequency[i]) / (2 * acos(-1));
+  for (int i = 0; i < found; i++) frequency[i] = sqrt(frequency[i]) / SHB_TWO_PI;
   return found;
 }
 

@@ -5,11 +5,12 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "mesh/base/constants.h"
 #include "mesh/blade/blade.h"
 #include "tests/support/read_mesh.h"
 
 static mesh_blade make_blade(mesh_kind kind, const z_notch_sizes *s) {
-  const double       degree     = acos(-1) / 180;
+  const double       degree     = SHB_PI / 180;
   const mesh_section section[5] = {{.25, .058, .009, .011, -10 * degree},
                                    {.3, .054, .0076, .009, -19 * degree},
                                    {.35, .05, .0062, .007, -28 * degree},

@@ -26,6 +26,7 @@ target_compile_definitions(test_cases_converge_converge PRIVATE
   SHROUDHB="$<TARGET_FILE:shroudhb>")
 add_dependencies(test_cases_converge_converge programs)
 shb_test(cases/converge resized_case shb_cases_converge)
+shb_test(cases/converge compare shb_cases_converge tests_models)
 
 # shb_scene_test(noun scene libraries...): a shipped scene from mesh to curves.
 function(shb_scene_test noun scene)

@@ -11,6 +11,7 @@
 
 #include <cmocka.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/balance/newton.h"
 #include "mhb/balance/truncation_error.h"
 #include "mhb/numerics/fourier.h"
@@ -97,8 +98,6 @@ static void curve(void **state) {
   verdict_all();
 }
 
-static const double PI = 3.14159265358979323846;
-
 /* Shroud faces of 20 modes near the peak of their resonance: the motion with 3 harmonics against
  * the one with `fine`. */
 typedef struct {
@@ -145,7 +144,7 @@ static void estimates(void **state) {
     periodic        p;
     int             moving = 0;
     shroud_face_model(row->pairs, row->force, &model);
-    periodic_create(&model, &s, 2 * PI * row->frequency, NULL, &p);
+    periodic_create(&model, &s, SHB_TWO_PI * row->frequency, NULL, &p);
     assert_int_equal(mhb_truncation_create(p.residual, &t), SHB_OK);
     double estimate = mhb_truncation_error(t, p.x);
     for (int a = 0; a < row->pairs; a++) moving += t->doubled->eval->kind[a] == MHB_PAIR_NONLINEAR;

@@ -23,7 +23,8 @@ foreach(noun receptance speed_model)
 endforeach()
 shb_test(mhb/response response shb_mhb_response)
 shb_test(mhb/response publisher shb_mhb_response)
-foreach(noun balance stick_stiffness condensation newton subharmonics truncation_error modal_error)
+foreach(noun balance stick_stiffness condensation multistart newton subharmonics truncation_error
+    modal_error)
   shb_test(mhb/balance ${noun} tests_models)
 endforeach()
 target_sources(test_mhb_balance_condensation PRIVATE bench/shroud_face.c)
@@ -48,6 +49,6 @@ foreach(noun arclength arclength_scalar balance_curve closed_curve corrector cur
   shb_test(mhb/continuation ${noun} tests_models)
 endforeach()
 foreach(noun branch_completion branch_stability chain forced_response harmonic_selection
-    lasting_motion multistart main_branch period_doubling record run_up secondary_branches tracer)
+    lasting_motion main_branch peak_search period_doubling record run_up secondary_branches tracer)
   shb_test(mhb/branches ${noun} tests_models)
 endforeach()

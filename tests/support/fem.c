@@ -11,6 +11,7 @@
 #include <cmocka.h>
 
 #include "fem/body/energy.h"
+#include "mesh/base/constants.h"
 #include "tests/support/box.h"
 
 const fem_material steel = {.E = 2.1e11, .nu = 0.3, .rho = 7850};
@@ -68,7 +69,7 @@ mesh_fe make_sector(const double size[3], double inner, int blades, const int n[
   assert_int_equal(box_set(&mesh, MESH_ROOT, 2, 0), SHB_OK);
   assert_int_equal(box_set(&mesh, MESH_CONTACT_RIGHT, 1, 0), SHB_OK);
   assert_int_equal(box_set(&mesh, MESH_CONTACT_LEFT, 1, size[1]), SHB_OK);
-  const double sector = 2 * acos(-1) / blades;
+  const double sector = SHB_TWO_PI / blades;
   for (int i = 0; i < mesh.n_nodes; i++) {
     double *x = mesh.coordinates + 3 * i, radius = inner + x[2];
     /* tangential is axial x radial: at z > 0, -y; the angle about x grows from z towards -y */

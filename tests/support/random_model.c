@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double PI = 3.14159265358979323846;
+#include "mesh/base/constants.h"
 
 double random_unit(unsigned long long *seed) {
   *seed = *seed * 6364136223846793005ULL + 1442695040888963407ULL;
@@ -39,8 +39,8 @@ static double *symmetric(int n, double size, unsigned long long *seed) {
 static void add_normals(modal_model *model, unsigned long long *seed) {
   model->normal = malloc(sizeof(double) * 3 * (size_t)model->n_pairs);
   for (int a = 0; a < model->n_pairs; a++) {
-    double psi = (35 + 3 * random_unit(seed)) * PI / 180,
-           phi = (10 + 3 * random_unit(seed)) * PI / 180, *v = model->normal + 3 * a;
+    double psi = (35 + 3 * random_unit(seed)) * SHB_PI / 180,
+           phi = (10 + 3 * random_unit(seed)) * SHB_PI / 180, *v = model->normal + 3 * a;
     v[0] = cos(psi) * cos(phi);
     v[1] = sin(psi) * cos(phi);
     v[2] = -sin(phi);
@@ -70,19 +70,19 @@ static void add_residual_modes(modal_model *model, unsigned long long seed) {
   model->probe_contact_fourth = list((size_t)(q * nc), .001, &seed);
   model->probe_load_fourth    = complex_list(loads * (size_t)q, .0005, &seed);
   for (size_t i = 0; i < r; i++)
-    model->residual_frequency[i] = (2.8 + .6 * (double)i + .2 * random_unit(&seed)) / (2 * PI);
+    model->residual_frequency[i] = (2.8 + .6 * (double)i + .2 * random_unit(&seed)) / SHB_TWO_PI;
 }
 
 /* s = w^2, bounded so that the residual modes stay bounded. */
 static double bounded(const modal_model *model, double w) {
   if (model->n_residual == 0) return w * w;
-  double c = .9 * pow(2 * PI * model->residual_frequency[0], 2);
+  double c = .9 * pow(SHB_TWO_PI * model->residual_frequency[0], 2);
   return w * w / pow(1 + pow(w * w / c, 32), 1. / 32);
 }
 
 /* 1/(theta - x) without the terms that the model holds itself. */
 static double rest(const modal_model *model, int i, double x) {
-  double theta = pow(2 * PI * model->residual_frequency[i], 2);
+  double theta = pow(SHB_TWO_PI * model->residual_frequency[i], 2);
   return 1 / (theta - x) - 1 / theta - x / (theta * theta) - x * x / (theta * theta * theta);
 }
 
@@ -96,7 +96,7 @@ double complex loaded_by_hand(const modal_model *model, double w, double complex
 }
 
 double residual_by_hand(const modal_model *model, double w, int a, int b) {
-  double top = 4 * PI * model->frequency[model->n_modes - 1], x = w * w / (top * top + w * w);
+  double top = 4 * SHB_PI * model->frequency[model->n_modes - 1], x = w * w / (top * top + w * w);
   int    at = a * 3 * model->n_pairs * (model->has_left ? 2 : 1) + b, r = model->n_residual;
   if (r > 0) {
     double sum = model->residual_flexibility[at];
@@ -137,7 +137,7 @@ void random_model(int n_pairs, int parts, unsigned long long seed, modal_model *
   model->frequency     = malloc(sizeof(double) * m);
   model->damping_ratio = malloc(sizeof(double) * m);
   for (int i = 0; i < 6; i++) {
-    model->frequency[i]     = (.8 + .3 * i + .05 * random_unit(&seed)) / (2 * PI);
+    model->frequency[i]     = (.8 + .3 * i + .05 * random_unit(&seed)) / SHB_TWO_PI;
     model->damping_ratio[i] = .02 + .01 * random_unit(&seed);
   }
   model->right       = list(3 * pairs * m, .7, &seed);

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-static const double PI = 3.14159265358979323846;
+#include "mesh/base/constants.h"
 
 const int random_size[RANDOM_SIZES] = {1, 3, 7, RANDOM_HARMONICS};
 
@@ -34,8 +34,8 @@ static void draw_signal(int m, int top, int aligned, double *a, unsigned long *s
   a[0] = one_in(2, state) ? between(-1, 1, state) : 0;
   for (int k = 1; k <= top; k++) {
     if (k > 1 && sparse && one_in(2, state)) continue;
-    double size = between(.1, 1, state) / pow(k, decay), phase = between(0, 2 * PI, state);
-    if (aligned) phase = .5 * PI * floor(between(0, 4, state));
+    double size = between(.1, 1, state) / pow(k, decay), phase = between(0, SHB_TWO_PI, state);
+    if (aligned) phase = .5 * SHB_PI * floor(between(0, 4, state));
     a[2 * k - 1] = size * cos(phase);
     a[2 * k]     = size * sin(phase);
   }

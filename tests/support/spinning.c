@@ -5,11 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
 #include "tests/support/random_model.h"
 
 enum { N = SPINNING_DOFS, M = SPINNING_MODES, CONTACT = 6, PROBE = 6, PROBE_DOFS = 3, LOADS = 3 };
-
-static const double PI = 3.14159265358979323846;
 
 /* Orthogonal columns. */
 static void random_basis(double W[N][N]) {
@@ -96,7 +95,7 @@ static void make_room(modal_model *m) {
 
 static void add_kept(modal_model *m, int mode, double lambda, const double phi[N],
                      const double complex f[LOADS]) {
-  m->frequency[mode]     = sqrt(lambda) / (2 * PI);
+  m->frequency[mode]     = sqrt(lambda) / SHB_TWO_PI;
   m->damping_ratio[mode] = .004 + .002 * sqrt(lambda); /* Rayleigh's beta, and a constant */
   for (int i = 0; i < 3; i++) {
     m->right[i * M + mode] = phi[i];
@@ -211,7 +210,7 @@ mhb_settings spinning_settings(void) {
   mhb_settings s = random_settings(3);
   s.blades       = 7;
   s.engine_order = 2;
-  s.frequency[0] = .4 / (2 * PI);
-  s.frequency[1] = 1.9 / (2 * PI);
+  s.frequency[0] = .4 / SHB_TWO_PI;
+  s.frequency[1] = 1.9 / SHB_TWO_PI;
   return s;
 }

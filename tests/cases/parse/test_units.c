@@ -8,10 +8,9 @@
 #include <cmocka.h>
 
 #include "cases/parse/units.h"
+#include "mesh/base/constants.h"
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
-
-static const double pi = 3.14159265358979323846;
 
 /* Powers of ten do not round: the value is the double that the plain number gives. */
 static void powers_of_ten_are_exact(void **state) {
@@ -74,9 +73,9 @@ static void angles_and_turns(void **state) {
   const struct {
     const char *text, *unit;
     double      value;
-  } rows[] = {{"35 deg", "rad", 35 * pi / 180}, {"35\u00B0", "rad", 35 * pi / 180},
-              {"-90 deg", "rad", -pi / 2},      {"6000 rpm", "rad/s", 200 * pi},
-              {"50 rev/s", "rad/s", 100 * pi},  {"360 deg/s", "rad/s", 2 * pi}};
+  } rows[] = {{"35 deg", "rad", 35 * SHB_PI / 180}, {"35\u00B0", "rad", 35 * SHB_PI / 180},
+              {"-90 deg", "rad", -SHB_PI / 2},      {"6000 rpm", "rad/s", 200 * SHB_PI},
+              {"50 rev/s", "rad/s", 100 * SHB_PI},  {"360 deg/s", "rad/s", SHB_TWO_PI}};
   for (size_t i = 0; i < COUNT(rows); i++) {
     double value = -1;
     char   why[CASE_WHY];

@@ -15,11 +15,12 @@
 #include "cases/schema/case.h"
 #include "cases/schema/case_paths.h"
 #include "cases/schema/stage_settings.h"
+#include "mesh/base/constants.h"
 #include "tests/support/scratch.h"
 
 enum { ALL = CASE_MESH | CASE_MODAL | CASE_MHB | CASE_POST };
 
-static const double degree = 3.14159265358979323846 / 180;
+static const double degree = SHB_PI / 180;
 
 static bool near(double a, double b) {
   return fabs(a - b) <= 1e-15 * fabs(b);
@@ -175,7 +176,7 @@ static void a_modal_file_needs_little(void **state) {
   assert_true(f.mhb.harmonics == 3 && f.mhb.subharmonics == 1 && f.mhb.scale == 1);
   assert_true(f.mhb.tolerance == 1e-8 && f.mhb.max_points == 2000 && f.points == 1);
   assert_int_equal(f.mhb.stability, MHB_STABILITY_AUTO);
-  assert_true(f.mhb.flips && f.mhb.search.starts == 0 && f.mhb.search.n_at == 0);
+  assert_true(f.mhb.flips && f.mhb.search.starts == MHB_SEARCH_PEAKS && f.mhb.search.n_at == 0);
   assert_true(f.mhb.search.n_orders == 3 && f.mhb.search.order[2] == 3);
   assert_true(f.mhb.preload == MHB_EQUILIBRIUM && f.load.factor[1] == 1 && f.load.n_harmonics == 1);
   case_free(&f);

@@ -11,6 +11,7 @@
 
 #include <cmocka.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/balance/balance.h"
 #include "mhb/branches/main_branch.h"
 #include "mhb/continuation/first_solution.h"
@@ -18,8 +19,6 @@
 #include "tests/support/check.h"
 #include "tests/support/complex_form.h"
 #include "tests/support/random_model.h"
-
-static const double PI = 3.14159265358979323846;
 
 static mhb_balance *residual_of(const modal_model *model, const mhb_settings *s) {
   mhb_balance *b;
@@ -265,7 +264,7 @@ static void blade_at(const modal_model *model, int k, double omega, int nu, blad
     for (int b = 0; b < DOFS; b++) out->H[a][b] = residual_by_hand(model, w, a, b);
   }
   for (int i = 0; i < m; i++) {
-    double         wi = 2 * PI * model->frequency[i], shape[DOFS];
+    double         wi = SHB_TWO_PI * model->frequency[i], shape[DOFS];
     double complex L  = 1 / CMPLX(wi * wi - w * w, 2 * model->damping_ratio[i] * wi * w);
     for (int a = 0; a < DOFS; a++)
       shape[a] = a < SIDE ? model->right[a * m + i] : model->left[(a - SIDE) * m + i];
@@ -373,7 +372,7 @@ static void stuck_ring_is_the_sector(void **state) {
       for (int k = 0; k <= 2; k++) {
         blade          one;
         double complex motion[BLADES][DOFS], u[SIDE];
-        double         phase = 2 * PI * order[e] / BLADES * k;
+        double         phase = SHB_TWO_PI * order[e] / BLADES * k;
         blade_at(&model, k, 1.17, 1, &one);
         solve_stuck_ring(&one, b->law, phase, k == 0, motion);
         for (int blade_no = 0; blade_no < BLADES; blade_no++) {
@@ -414,7 +413,7 @@ static void force_at_interface(const mhb_balance *b, const double *x, double pha
 static void ring_errors(mhb_balance *b, const modal_model *model, const double *x, double omega,
                         double error[2]) {
   const mhb_settings *s     = b->settings;
-  double              phase = 2 * PI * s->engine_order / s->blades / s->subharmonics;
+  double              phase = SHB_TWO_PI * s->engine_order / s->blades / s->subharmonics;
   double              r[b->n], moved[BLADES][b->n], p[BLADES][b->n];
   mhb_balance_evaluate(b, x, omega, r, NULL, NULL);
   for (int i = 0; i < BLADES; i++) force_at_interface(b, x, phase, i, moved[i], p[i]);
@@ -482,7 +481,7 @@ static double power_imbalance(const mhb_balance *b, double omega) {
     double complex p[r->n], residual = 0;
     mhb_balance_contact_force(b, k, p);
     for (int i = 0; i < m; i++) {
-      double         wi = 2 * PI * model->frequency[i];
+      double         wi = SHB_TWO_PI * model->frequency[i];
       double complex F = r->F[k * m + i], drive = F;
       for (int row = 0; row < r->n; row++) drive -= conj(r->B[(k * r->n + row) * m + i]) * p[row];
       double complex q = drive / CMPLX(wi * wi - w * w, 2 * model->damping_ratio[i] * wi * w);
@@ -496,7 +495,7 @@ static double power_imbalance(const mhb_balance *b, double omega) {
     in -= .5 * creal(I * w * residual);
   }
   for (int a = 0; a < b->n_pairs; a++)
-    friction += b->eval->info[a].dissipation * omega / (2 * PI * r->nu);
+    friction += b->eval->info[a].dissipation * omega / (SHB_TWO_PI * r->nu);
   assert_true(friction > 1e-3 * in);
   return fabs(in - damping - friction) / in;
 }

@@ -12,6 +12,7 @@
 
 #include <cmocka.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/balance/newton.h"
 #include "mhb/branches/main_branch.h"
 #include "mhb/continuation/balance_curve.h"
@@ -21,8 +22,6 @@
 #include "tests/support/check.h"
 #include "tests/support/random_model.h"
 #include "tests/support/three_degree.h"
-
-static const double PI = 3.14159265358979323846;
 
 /* ---------------------------------------------------------------- the same solution */
 
@@ -248,9 +247,9 @@ static void walk(const modal_model *model, const mhb_settings *s, double start, 
   int            iterations, moved = 0;
   assert_int_equal(mhb_balance_create(model, s, &b), SHB_OK);
   mhb_balance_set_preload(b, s->n0[0]);
-  assert_int_equal(
-      mhb_balance_curve_create(b, 2 * PI * s->frequency[0], 2 * PI * s->frequency[1], &path),
-      SHB_OK);
+  assert_int_equal(mhb_balance_curve_create(b, SHB_TWO_PI * s->frequency[0],
+                                            SHB_TWO_PI * s->frequency[1], &path),
+                   SHB_OK);
   double *x = calloc((size_t)b->n, sizeof(double));
   assert_int_equal(mhb_first_solution(mhb_balance_curve_of(path)->newton, b, start, path->tolerance,
                                       x, &iterations),
@@ -278,11 +277,11 @@ static void the_loop_allocates_nothing(void **state) {
   mhb_settings s = shroud_face_settings(5);
   s.n0[0]        = 100;
   tip_contact_beam_model(20, &model);
-  walk(&model, &s, 2 * PI * 215, 40);
+  walk(&model, &s, SHB_TWO_PI * 215, 40);
   modal_model_free(&model);
   s = shroud_face_settings(3);
   shroud_face_model(10, 150, &model);
-  walk(&model, &s, 2 * PI * 255, 8);
+  walk(&model, &s, SHB_TWO_PI * 255, 8);
   modal_model_free(&model);
 }
 

@@ -9,6 +9,7 @@
 
 #include <cmocka.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/branches/forced_response.h"
 #include "mhb/branches/main_branch.h"
 #include "mhb/numerics/fourier.h"
@@ -17,8 +18,6 @@
 #include "tests/support/settings.h"
 #include "tests/support/solution.h"
 #include "tests/support/three_degree.h"
-
-static const double PI = 3.14159265358979323846;
 
 /* First harmonics of v, u, w at w rad/s. */
 static void solve_at(const modal_model *model, const mhb_settings *s, double w,
@@ -62,8 +61,8 @@ static void amplitudes_of_time_integration(void **state) {
 
 static mhb_response *sweep(const modal_model *model, mhb_settings *s, double from, double to) {
   mhb_response *response;
-  s->frequency[0]   = from / (2 * PI);
-  s->frequency[1]   = to / (2 * PI);
+  s->frequency[0]   = from / SHB_TWO_PI;
+  s->frequency[1]   = to / SHB_TWO_PI;
   shb_status status = mhb_forced_response(model, s, NULL, NULL, NULL, &response);
   if (status != SHB_OK) fail_msg("%s", shb_message());
   return response;
@@ -78,7 +77,7 @@ static double amplitude(const mhb_response *r, const mhb_branch *b, int point, i
 static double fold_near(const mhb_branch *b, double w) {
   double best = NAN;
   for (int i = 0; i < b->n_points; i++) {
-    double at = 2 * PI * b->frequency[i];
+    double at = SHB_TWO_PI * b->frequency[i];
     if (b->special[i] == MHB_FOLD && fabs(at - w) < 0.05 && !(fabs(best - w) < fabs(at - w)))
       best = at;
   }
@@ -98,7 +97,8 @@ static int peak_near(const mhb_response *r, const mhb_branch *b, int component, 
     double here = amplitude(r, b, i, component);
     if (here < amplitude(r, b, i - 1, component) || here < amplitude(r, b, i + 1, component))
       continue;
-    if (best < 0 || fabs(2 * PI * b->frequency[i] - w) < fabs(2 * PI * b->frequency[best] - w))
+    if (best < 0 ||
+        fabs(SHB_TWO_PI * b->frequency[i] - w) < fabs(SHB_TWO_PI * b->frequency[best] - w))
       best = i;
   }
   return best;
@@ -132,9 +132,9 @@ static void three_degree_peaks_and_folds(void **state) {
       int at = peak_near(r, b, 1, rows[i].peak[p][1]);
       assert_true(at > 0);
       print_message("  peak %.6f at %.6f (%.6f at %.6f)\n", amplitude(r, b, at, 1),
-                    2 * PI * b->frequency[at], rows[i].peak[p][0], rows[i].peak[p][1]);
+                    SHB_TWO_PI * b->frequency[at], rows[i].peak[p][0], rows[i].peak[p][1]);
       assert_near(amplitude(r, b, at, 1), rows[i].peak[p][0], 1e-4);
-      assert_near(2 * PI * b->frequency[at], rows[i].peak[p][1], 4e-4);
+      assert_near(SHB_TWO_PI * b->frequency[at], rows[i].peak[p][1], 4e-4);
     }
     for (int k = 0; k < rows[i].folds; k++)
       assert_near(fold_near(b, rows[i].fold[k]), rows[i].fold[k], 4e-4);
@@ -147,7 +147,7 @@ static void three_degree_peaks_and_folds(void **state) {
 static int crossings(const mhb_response *r, const mhb_branch *b, double w, double *found) {
   int n = 0;
   for (int i = 1; i < b->n_points && n < 8; i++) {
-    double f0 = 2 * PI * b->frequency[i - 1] - w, f1 = 2 * PI * b->frequency[i] - w;
+    double f0 = SHB_TWO_PI * b->frequency[i - 1] - w, f1 = SHB_TWO_PI * b->frequency[i] - w;
     if ((f0 < 0) == (f1 < 0)) continue;
     double s   = f0 / (f0 - f1);
     found[n++] = (1 - s) * amplitude(r, b, i - 1, 0) + s * amplitude(r, b, i, 0);
@@ -172,7 +172,7 @@ static void one_degree_with_jumps(void **state) {
     for (int p = 0; p < b->n_points; p++) {
       if (amplitude(r, b, p, 0) <= top) continue;
       top = amplitude(r, b, p, 0);
-      at  = 2 * PI * b->frequency[p];
+      at  = SHB_TWO_PI * b->frequency[p];
     }
     print_message("%c: %d points, %d folds, peak %.6f at %.6f, folds %.6f %.6f\n", 'A' + i,
                   b->n_points, count_folds(b), top, at, fold_near(b, rows[i].fold[0]),
@@ -200,7 +200,7 @@ static double peak_amplitude(const mhb_settings *s, const modal_model *model, do
   cold_solution(model, s, w, 1e-11, x);
   for (int i = 0; i < 20000; i++) {
     double sum = 0;
-    mhb_basis(s->harmonics, 2 * PI * i / 20000, basis, NULL);
+    mhb_basis(s->harmonics, SHB_TWO_PI * i / 20000, basis, NULL);
     for (int j = 0; j < nb; j++) sum += basis[j] * x[nb + j];
     top = fmax(top, fabs(sum));
   }
@@ -232,7 +232,7 @@ static void tip_contact_beam(void **state) {
   for (int i = 0; i < 2; i++) {
     mhb_settings s        = ground_settings(0.3, 2e5, 2e5, 100, 7);
     s.preload             = i ? MHB_INTERFERENCE : MHB_EQUILIBRIUM;
-    mhb_response     *r   = sweep(&model, &s, 2 * PI * 215, 2 * PI * 320);
+    mhb_response     *r   = sweep(&model, &s, SHB_TWO_PI * 215, SHB_TWO_PI * 320);
     const mhb_branch *b   = &r->branch[2];
     double            top = 0, at = 0;
     for (int p = 0; p < b->n_points; p++) {
@@ -247,7 +247,7 @@ static void tip_contact_beam(void **state) {
      * by 1e-3 */
     assert_near(at, rows[i][1], 1e-3 * rows[i][1]);
     double there[3];
-    solve_at(&model, &s, 2 * PI * rows[i][1], there);
+    solve_at(&model, &s, SHB_TWO_PI * rows[i][1], there);
     assert_near(there[1], rows[i][0], 4e-4 * rows[i][0]);
     mhb_response_destroy(r);
   }
@@ -289,8 +289,8 @@ static void curves_go_on_beyond_a_gap(void **state) {
   mhb_settings s = ground_settings(8, 0.8, 0.5, 0.05, 5);
   s.n_preloads   = 4;
   memcpy(s.n0, (double[4]){0.05, 0.1, 0.2, 0.4}, 4 * sizeof(double));
-  s.frequency[0] = 0.8 / (2 * PI);
-  s.frequency[1] = 1.7 / (2 * PI);
+  s.frequency[0] = 0.8 / SHB_TWO_PI;
+  s.frequency[1] = 1.7 / SHB_TWO_PI;
   mhb_response *r;
   shb_status    status = mhb_forced_response(&model, &s, NULL, NULL, NULL, &r);
   int           gaps   = 0;

@@ -8,8 +8,8 @@
 #include "tests/support/settings.h"
 #include "tests/support/three_degree.h"
 
-/* Every point is published twice: when it is recorded and when it is judged. A killed run then loses
- * little. A branch that is not judged to its end is not complete. */
+/* Every point is published twice: when it is recorded and when it is judged. A killed run then
+ * loses little. A branch that is not judged to its end is not complete. */
 static void points_are_published_twice(void **state) {
   (void)state;
   modal_model model;

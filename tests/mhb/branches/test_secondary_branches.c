@@ -15,6 +15,7 @@
 
 #include <cmocka.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/branches/forced_response.h"
 #include "mhb/branches/secondary_branches.h"
 #include "tests/support/check.h"
@@ -23,13 +24,11 @@
 #include "tests/support/settings.h"
 #include "tests/support/three_degree.h"
 
-static const double PI = 3.14159265358979323846;
-
 static mhb_settings settings(double mu, double kv, double n0, int harmonics, double from,
                              double to) {
   mhb_settings s = ground_settings(mu, kv, 0.5, n0, harmonics);
-  s.frequency[0] = from / (2 * PI);
-  s.frequency[1] = to / (2 * PI);
+  s.frequency[0] = from / SHB_TWO_PI;
+  s.frequency[1] = to / SHB_TWO_PI;
   s.max_points   = 3000;
   s.search       = (mhb_search_settings){.n_orders = 3, .order = {1, 2, 3}};
   return s;
@@ -67,7 +66,7 @@ static void runge_kutta(const oscillator *o, double t, double h, double y[2]) {
 /* Amplitudes of harmonics 1 and 2 of omega/2 that the motion from y settles on. */
 static void settled(const oscillator *o, double y[2], double amplitude[2]) {
   enum { STEPS = 8000, PERIODS = 400 };
-  double         h      = 4 * PI / o->omega / STEPS;
+  double         h      = 4 * SHB_PI / o->omega / STEPS;
   double complex sum[2] = {0, 0};
   for (int p = 0; p <= PERIODS; p++)
     for (int i = 0; i < STEPS; i++) {
@@ -82,8 +81,8 @@ static void settled(const oscillator *o, double y[2], double amplitude[2]) {
 static int stable_near(const mhb_branch *b, double omega) {
   int best = -1;
   for (int i = 0; i < b->n_points; i++)
-    if (b->stable[i] == 1 && (best < 0 || fabs(2 * PI * b->frequency[i] - omega) <
-                                              fabs(2 * PI * b->frequency[best] - omega)))
+    if (b->stable[i] == 1 && (best < 0 || fabs(SHB_TWO_PI * b->frequency[i] - omega) <
+                                              fabs(SHB_TWO_PI * b->frequency[best] - omega)))
       best = i;
   return best;
 }
@@ -94,7 +93,7 @@ static void state_of(const mhb_branch *b, int i, double y[2]) {
   y[0] = y[1] = 0;
   for (int k = 0; k <= b->n_harmonics; k++) {
     y[0] += creal(a[k]);
-    y[1] -= k * PI * b->frequency[i] * cimag(a[k]);
+    y[1] -= k * SHB_PI * b->frequency[i] * cimag(a[k]);
   }
 }
 
@@ -125,8 +124,9 @@ static void doubled_periods(void **state) {
   double flip[2] = {0, 0};
   for (int i = 0, k = 0; i < main->n_points; i++)
     if (main->special[i] == MHB_FLIP) flip[k++] = main->frequency[i];
-  print_message("flips at %.6f, %.6f; the branch from %.6f to %.6f\n", 2 * PI * flip[0],
-                2 * PI * flip[1], 2 * PI * b->frequency[0], 2 * PI * b->frequency[b->n_points - 1]);
+  print_message("flips at %.6f, %.6f; the branch from %.6f to %.6f\n", SHB_TWO_PI * flip[0],
+                SHB_TWO_PI * flip[1], SHB_TWO_PI * b->frequency[0],
+                SHB_TWO_PI * b->frequency[b->n_points - 1]);
   assert_true(b->frequency[0] == flip[0]);
   assert_below(fabs(b->frequency[b->n_points - 1] / flip[1] - 1), 1e-4);
   static const double at[] = {2.3, 2.7, 2.9};
@@ -135,7 +135,7 @@ static void doubled_periods(void **state) {
     double y[2], a[2];
     state_of(b, i, y);
     y[0] *= 1 + 1e-3; /* forgotten, since it is stable */
-    oscillator o = {0.02, 9, -1, 1, 2 * PI * b->frequency[i]};
+    oscillator o = {0.02, 9, -1, 1, SHB_TWO_PI * b->frequency[i]};
     settled(&o, y, a);
     const double complex *u = b->motion + (size_t)(i * 3 * K);
     print_message("W %.4f: half order %.6f (%.6f), first %.6f (%.6f)\n", o.omega, cabs(u[1]), a[0],
@@ -187,8 +187,8 @@ static mhb_settings rich(void) {
   s.flips         = true;
   s.search.starts = 12;
   s.search.n_at   = 2;
-  s.search.at[0]  = 2.5 / (2 * PI);
-  s.search.at[1]  = 3.6 / (2 * PI);
+  s.search.at[0]  = 2.5 / SHB_TWO_PI;
+  s.search.at[1]  = 3.6 / SHB_TWO_PI;
   return s;
 }
 

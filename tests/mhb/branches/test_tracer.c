@@ -101,6 +101,37 @@ static void peaks_are_local_maxima(void **state) {
   tear_down(&f);
 }
 
+/* A motion of twice the period whose odd harmonics are round-off has the period itself. The segment
+ * joins the curve of lower order at once, whatever sign the rate of the round-off has. */
+static void round_off_is_no_part_of_higher_order(void **state) {
+  (void)state;
+  double x[3 * (4 * H + 1)];
+  for (int sign = -1; sign <= 1; sign++) {
+    fixture f;
+    int     segment, index;
+    mhb_end end;
+    set_up(&f, 0);
+    mhb_tracer_destroy(f.tracer);
+    mhb_balance_destroy(f.balance);
+    mhb_response_destroy(f.response);
+    f.settings.subharmonics = 2;
+    f.settings.harmonics    = 2 * H;
+    assert_ok(mhb_balance_create(&f.model, &f.settings, &f.balance));
+    mhb_balance_set_preload(f.balance, 0.3);
+    f.response = mhb_response_create(1, 1, 2 * H);
+    assert_non_null(f.response);
+    assert_ok(mhb_response_branch(f.response, MHB_BRANCH_NONLINEAR, &index));
+    assert_ok(mhb_tracer_create(f.balance, f.response, 0, true, &f.monitor.base, &f.tracer));
+    assert_ok(mhb_balance_linear_limit(f.balance, f.low, 1, x));
+    x[1] = x[2]           = sign * 1e-16 * x[4];
+    mhb_segment_plan plan = {.seed = {.x = x, .value = f.low, .direction = 1}, .m = 2 * H};
+    assert_ok(mhb_tracer_trace(f.tracer, &plan, &segment, &end));
+    assert_int_equal(end, MHB_END_JOINED);
+    assert_int_equal(f.tracer->store->branch[segment].n_points, 2);
+    tear_down(&f);
+  }
+}
+
 /* Every recorded point solves the balance that recorded it. */
 static void recorded_points_are_solutions(void **state) {
   (void)state;
@@ -161,8 +192,9 @@ static void the_monitor_stops_it(void **state) {
   tear_down(&f);
 }
 
-/* All segments of a tracer count. */
-static void points_are_limited_in_all(void **state) {
+/* The points of a branch are limited, those of its earlier segments included. Segments of other
+ * branches do not count. */
+static void points_of_a_branch_are_limited(void **state) {
   (void)state;
   fixture f;
   int     segment;
@@ -174,6 +206,9 @@ static void points_are_limited_in_all(void **state) {
   assert_int_equal(end, MHB_END_MAX_POINTS);
   int n = f.tracer->store->branch[segment].n_points;
   assert_true(n >= 10 && n < 10 + 4);
+  assert_ok(mhb_tracer_trace(f.tracer, &plan, &segment, &end));
+  assert_int_equal(f.tracer->store->branch[segment].n_points, n);
+  plan.recorded = n;
   assert_ok(mhb_tracer_trace(f.tracer, &plan, &segment, &end));
   assert_int_equal(end, MHB_END_MAX_POINTS);
   assert_int_equal(f.tracer->store->branch[segment].n_points, 1);
@@ -257,10 +292,11 @@ static void the_distance_that_counts_as_none(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(a_segment_runs_from_end_to_end),
                                      cmocka_unit_test(peaks_are_local_maxima),
+                                     cmocka_unit_test(round_off_is_no_part_of_higher_order),
                                      cmocka_unit_test(recorded_points_are_solutions),
                                      cmocka_unit_test(a_segment_may_be_traced_back),
                                      cmocka_unit_test(the_monitor_stops_it),
-                                     cmocka_unit_test(points_are_limited_in_all),
+                                     cmocka_unit_test(points_of_a_branch_are_limited),
                                      cmocka_unit_test(without_a_solution_there_is_no_segment),
                                      cmocka_unit_test(a_segment_ends_at_its_target),
                                      cmocka_unit_test(a_failed_publication_ends_it),

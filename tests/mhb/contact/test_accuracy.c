@@ -96,8 +96,8 @@ static void tolerance_is_met(void **state) {
 }
 
 /* The estimate is within a factor of ten of the true error. It may be smaller only below 1e-12,
- * where rounding decides. It may be larger only if both are below a twentieth of the tolerance:
- * where errors of panels cancel, as on a circle, the true error may be anything. */
+ * where rounding decides. It may be larger only if both are below a twentieth of the tolerance.
+ * Errors of panels may cancel, as on a circle, and the true error then has no lower bound. */
 static void estimate_is_honest(void **state) {
   (void)state;
   int failed = 0;

@@ -1,5 +1,5 @@
-/* Continuity: along straight paths of motions and laws through every kind of switching, the change
- * of the force harmonics a step is bounded, and the bound shrinks with the step.
+/* Continuity along straight paths of motions and laws through every kind of switching. The change
+ * of the force harmonics in a step is bounded, and the bound shrinks with the step.
  *
  * Away from the onset of slip the force is Lipschitz: steps eight times as short change it by an
  * eighth. Where slip just begins under a varying load, the mean friction goes like the square root

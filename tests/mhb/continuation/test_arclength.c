@@ -14,6 +14,7 @@
 
 #include <cmocka.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/balance/newton.h"
 #include "mhb/branches/forced_response.h"
 #include "mhb/branches/main_branch.h"
@@ -25,16 +26,14 @@
 #include "tests/support/solution.h"
 #include "tests/support/three_degree.h"
 
-static const double PI = 3.14159265358979323846;
-
 static mhb_settings ground(double n0, int harmonics, double from, double to) {
   mhb_settings s = random_settings(harmonics);
   s.to_ground    = true;
   s.ku[0] = s.ku[2] = 0.5;
   s.ku[1]           = 0;
   s.n0[0]           = n0;
-  s.frequency[0]    = from / (2 * PI);
-  s.frequency[1]    = to / (2 * PI);
+  s.frequency[0]    = from / SHB_TWO_PI;
+  s.frequency[1]    = to / SHB_TWO_PI;
   return s;
 }
 
@@ -152,7 +151,7 @@ static void at_a_resonance_is_as_beside(void **state) {
   mhb_balance_set_preload(residual, -1);
   double x[3][residual->n];
   for (int i = 0; i < 3; i++) {
-    assert_int_equal(mhb_first_solution(newton, residual, 2 * PI * 0.25 * (1 + aside[i]), 1e-10,
+    assert_int_equal(mhb_first_solution(newton, residual, SHB_TWO_PI * 0.25 * (1 + aside[i]), 1e-10,
                                         x[i], &iterations),
                      MHB_CONVERGED);
     for (int j = 0; j < residual->n; j++) assert_below(fabs(x[i][j] - x[0][j]), 1e-5);
@@ -177,11 +176,11 @@ static void undamped_resonances_are_passed(void **state) {
   s.frequency[1]          = 0.375;
   mhb_response     *r     = sweep(&model, &s, SHB_OK);
   const mhb_branch *stuck = &r->branch[1], *open = &r->branch[0], *curve = &r->branch[2];
-  double            top = 0, k = 0.25 * PI * PI;
+  double            top = 0, k = 0.25 * SHB_PI * SHB_PI;
   int               K = curve->n_harmonics + 1, seen = 0;
   for (int p = 0; p < open->n_points; p++) top = fmax(top, cabs(open->motion[(p * 3 + 1) * K + 1]));
   for (int p = 0; p < stuck->n_points; p++) {
-    double w = 2 * PI * stuck->frequency[p], u = cabs(stuck->motion[(p * 3 + 1) * K + 1]);
+    double w = SHB_TWO_PI * stuck->frequency[p], u = cabs(stuck->motion[(p * 3 + 1) * K + 1]);
     assert_below(fabs(u * fabs(k + 0.5 - w * w) / 0.1 - 1), 1e-6);
     seen += stuck->frequency[p] == 0.25;
   }
@@ -356,8 +355,8 @@ static void units_do_not_matter(void **state) {
     mhb_settings  s = random_settings(4);
     s.engine_order  = 2;
     s.n0[0]         = 0.1;
-    s.frequency[0]  = 0.9 / (2 * PI);
-    s.frequency[1]  = (from_rest ? 0.9 : 1.2) / (2 * PI);
+    s.frequency[0]  = 0.9 / SHB_TWO_PI;
+    s.frequency[1]  = (from_rest ? 0.9 : 1.2) / SHB_TWO_PI;
     s.parameter     = from_rest ? MHB_IN_SCALE : MHB_IN_FREQUENCY;
     s.range[1]      = 3;
     modal_model model;

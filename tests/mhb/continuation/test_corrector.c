@@ -1,6 +1,7 @@
 /* Newton's method in a plane across a curve: its plane, order, damping and failures; tangents. */
 #include "mhb/continuation/corrector.h"
 
+#include "mesh/base/constants.h"
 #include "tests/support/check.h"
 #include "tests/support/scalar_curve.h"
 
@@ -228,7 +229,7 @@ static void failures_are_told(void **state) {
 static void the_tangent_touches_the_curve(void **state) {
   (void)state;
   for (int i = 0; i < 12; i++) {
-    double         a     = 0.1 + i * 3.141592653589793 / 6;
+    double         a     = 0.1 + i * SHB_PI / 6;
     mhb_arclength *curve = scalar_curve(scalar_circle, -2, 2);
     curve->current.x[0]  = 3 + cos(a);
     scalar_point(curve, 3 + cos(a), sin(a), -sin(a), cos(a), &curve->current);
@@ -250,7 +251,7 @@ static void the_orientation_is_constant(void **state) {
   mhb_arclength *curve = scalar_curve(scalar_circle, -2, 2);
   int            first = 0;
   for (int i = 0; i < 40; i++) {
-    double a = i * 3.141592653589793 / 20;
+    double a = i * SHB_PI / 20;
     scalar_point(curve, 3 + cos(a), sin(a), -sin(a), cos(a), &curve->next);
     if (i == 0) first = curve->next.orientation;
     assert_int_equal(curve->next.orientation, first);

@@ -287,33 +287,23 @@ static void limits(void **state) {
 /* 20 modes, a contact that sticks and slips; and stuck, where the exponents are kept. */
 static void nothing_is_allocated(void **state) {
   (void)state;
-  static const struct {
-    double hertz, most; /* seconds, a generous bound */
-  } rows[] = {{266, 5e-3}, {300, 1e-4}};
-  modal_model model;
+  static const double hertz[] = {266, 300};
+  modal_model         model;
   tip_contact_beam_model(8, &model);
   mhb_settings s = ground_settings(.3, 2e5, 2e5, 100, 7);
   for (int i = 0; i < 2; i++) {
     periodic        p;
     mhb_floquet    *stability;
     mhb_multipliers out;
-    double          best = INFINITY;
-    periodic_create(&model, &s, SHB_TWO_PI * rows[i].hertz, NULL, &p);
+    periodic_create(&model, &s, SHB_TWO_PI * hertz[i], NULL, &p);
     assert_int_equal(mhb_floquet_create(p.residual->receptance, &s, N, 0, &stability), SHB_OK);
     mhb_floquet_evaluate(stability, &p.solution, &out);
     long before = allocations;
-    for (int k = 0; k < 20; k++) {
-      double start = shb_seconds();
-      mhb_floquet_evaluate(stability, &p.solution, &out);
-      best = fmin(best, shb_seconds() - start);
-    }
+    for (int k = 0; k < 5; k++) mhb_floquet_evaluate(stability, &p.solution, &out);
     assert_int_equal(allocations, before);
     assert_true(before > 0);
-    print_message("%.0f Hz, %d multipliers, slip %.2f: %.0f us\n", rows[i].hertz, out.n,
-                  p.residual->eval->info[0].share[MHB_SLIDE], 1e6 * best);
-#ifdef NDEBUG /* an optimised build */
-    assert_true(best < rows[i].most);
-#endif
+    print_message("%.0f Hz, %d multipliers, slip %.2f\n", hertz[i], out.n,
+                  p.residual->eval->info[0].share[MHB_SLIDE]);
     mhb_floquet_destroy(stability);
     periodic_destroy(&p);
   }

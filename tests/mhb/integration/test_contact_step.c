@@ -14,14 +14,13 @@ typedef struct {
   mhb_radau         rule;
   mhb_contact_point point;
   mhb_contact_step  step;
-  double            stick[F * F];
-  int               pivot[F];
+  mhb_stuck_factor  stuck;
 } problem;
 
 /* A stuck contact at rest, u = 0, without friction. */
 static void begin(problem *p) {
-  *p          = (problem){.law = LAW, .point = {.state = MHB_STICK, .p = {LAW.n0, 0, 0}}};
-  p->pivot[0] = -1;
+  *p                = (problem){.law = LAW, .point = {.state = MHB_STICK, .p = {LAW.n0, 0, 0}}};
+  p->stuck.pivot[0] = -1;
   mhb_radau_create(&p->rule);
 }
 
@@ -31,8 +30,8 @@ static int move(problem *p, const double end[3]) {
   for (int i = 0; i < F; i++)
     y[i] = p->point.u[i % 3] + p->rule.c[i / 3] * (end[i % 3] - p->point.u[i % 3]);
   mhb_contact_step_guess(&p->law, &p->point, 1, &p->step);
-  return mhb_contact_step_solve(&p->rule, &p->law, &p->point, NO_COMPLIANCE, p->stick, p->pivot, y,
-                                LAW.n0, &p->step);
+  return mhb_contact_step_solve(&p->rule, &p->law, &p->point, NO_COMPLIANCE, &p->stuck, y, LAW.n0,
+                                &p->step);
 }
 
 /* Stick is a spring; it ends where the spring's force reaches the friction limit. */

@@ -1,4 +1,5 @@
-/* Several contact interfaces: against one where they are one, against time integration, derivatives against differences, files. */
+/* Several contact interfaces: against one where they are one, against time integration, derivatives
+ * against differences, files. */
 #include "mhb/problem/interfaces.h"
 
 #include <math.h>
@@ -20,7 +21,8 @@
 #include "tests/support/periodic.h"
 #include "tests/support/random_model.h"
 
-/* A random model whose pair a belongs to interface a % 2: "mid" is the first of the settings, the second of the model. */
+/* A random model whose pair a belongs to interface a % 2. "mid" is the first interface of the
+ * settings and the second of the model. */
 static void two_faced_model(int n_pairs, int parts, unsigned long long seed, modal_model *model) {
   random_model(n_pairs, parts, seed, model);
   model->n_interfaces   = 2;
@@ -260,7 +262,8 @@ static void laws_are_their_own(void **state) {
   modal_model_free(&model);
 }
 
-/* Different friction, preload (one gap) and stiffness against a march in time, to ground and around a ring. */
+/* Different friction, preload (one gap) and stiffness against a march in time, to ground and around
+ * a ring. */
 static void time_integration_agrees(void **state) {
   (void)state;
   for (int ring = 0; ring < 2; ring++) {

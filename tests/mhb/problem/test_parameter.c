@@ -193,8 +193,8 @@ static double fold_in_frequency(const modal_model *model, mhb_settings s, double
   return best;
 }
 
-/* A fold of the curve in the scale lies on the same edge of the folded surface as one in frequency;
- * the middle part is unstable. */
+/* A fold of the curve in the scale lies on the same edge of the folded surface as one in frequency.
+ * The middle part is unstable. */
 static void folds_are_those_in_frequency(void **state) {
   (void)state;
   modal_model model;

@@ -206,8 +206,8 @@ static void test_round_trip(void **state) {
   round_trip(PROBES, 0);
 }
 
-/* A branch of order 6 with 9 harmonics in a response of order 2 with M: its arrays are as wide as
- * its harmonics, in the file too. */
+/* Branches of order 6 have 9 harmonics in a response of order 2 with M harmonics. Their arrays are
+ * as wide as their harmonics, in the file too. */
 static mhb_response *with_further(void) {
   mhb_response *response = sample(PROBES, 5);
   for (int i = 0; i < 3; i++) { /* main branches 2, 3; then of 3, of 2, of 2 */

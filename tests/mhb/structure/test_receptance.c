@@ -1,4 +1,5 @@
-/* The condensed receptance against dense sums over the contact dofs of one blade (eqs. 19-27, 34-35). */
+/* The condensed receptance against dense sums over the contact dofs of one blade (eqs. 19-27,
+ * 34-35). */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,11 +10,10 @@
 
 #include <cmocka.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/structure/receptance.h"
 #include "tests/support/check.h"
 #include "tests/support/random_model.h"
-
-static const double PI = 3.14159265358979323846;
 
 enum { MAX_N = 12, MAX_C = 24, MODES = 6, PROBE_DOFS = 6 };
 
@@ -46,7 +46,8 @@ static void axes_of(const modal_model *model, const mhb_settings *s, int pair, d
 }
 
 static void set_transform(const modal_model *model, const mhb_settings *s, int k, dense *d) {
-  double complex phase = cexp(-I * (2 * PI * s->engine_order / s->blades * k / s->subharmonics));
+  double complex phase =
+      cexp(-I * (SHB_TWO_PI * s->engine_order / s->blades * k / s->subharmonics));
   memset(d, 0, sizeof *d);
   d->n  = 3 * model->n_pairs;
   d->nc = d->n * (model->has_left ? 2 : 1);
@@ -68,7 +69,7 @@ static double shape(const modal_model *model, int c, int i) {
 }
 
 static double complex modal_receptance(const modal_model *model, int i, double w) {
-  double wi = 2 * PI * model->frequency[i];
+  double wi = SHB_TWO_PI * model->frequency[i];
   return 1 / CMPLX(wi * wi - w * w, 2 * model->damping_ratio[i] * wi * w);
 }
 
@@ -200,7 +201,8 @@ static void condensation_is_the_dense_sum(void **state) {
   }
 }
 
-/* r_cc is complex symmetric, so that reversing the wave transposes R; and it takes energy out: Im p^H R p <= 0. */
+/* r_cc is complex symmetric, so that reversing the wave transposes R. It takes energy out:
+ * Im p^H R p <= 0. */
 static void receptance_is_reciprocal_and_passive(void **state) {
   (void)state;
   const char     *where = "reciprocity";
@@ -317,8 +319,8 @@ static void slopes_are_derivatives(void **state) {
   }
 }
 
-/* Subharmonics of order 2 at engine order 1: on 5 blades the neighbour lags by phi + 2 pi, so that 5 blades make 12 pi, on
- * 6 blades no lag closes. */
+/* Subharmonics of order 2 at engine order 1. On 5 blades the neighbour lags by phi + 2 pi, so that
+ * the lags of 5 blades add up to 12 pi. On 6 blades no lag closes. */
 static void subharmonics_close_around_the_ring(void **state) {
   (void)state;
   modal_model     model;
@@ -337,7 +339,7 @@ static void subharmonics_close_around_the_ring(void **state) {
   for (int k = 0; k <= 3; k++) { /* v of mode 0: right - e_k left, psi = phi = 0 */
     double complex e = (model.right[0] - r->B[k * r->n * r->n_modes]) / model.left[0];
     assert_true(cabs(cpow(e, 5) - 1) < 1e-12);
-    if (k == 2) assert_true(cabs(e - cexp(-I * 2 * PI / 5)) < 1e-12); /* eq. 25 */
+    if (k == 2) assert_true(cabs(e - cexp(-I * SHB_TWO_PI / 5)) < 1e-12); /* eq. 25 */
   }
   mhb_receptance_destroy(r);
   modal_model_free(&model);
@@ -357,11 +359,11 @@ static void faults_are_named(void **state) {
   mhb_settings    s = random_settings(3);
   random_model(2, WITH_LEFT | WITH_NORMALS, 8, &model);
   assert_int_equal(mhb_receptance_create(&model, &s, 3, &r), SHB_OK);
-  double psi = r->psi, phi = r->phi, degree = PI / 180;
+  double psi = r->psi, phi = r->phi, degree = SHB_PI / 180;
   mhb_receptance_destroy(r);
   assert_true(fabs(psi - 35 * degree) < 4 * degree && fabs(phi - 10 * degree) < 4 * degree);
   s.has_psi = s.has_phi = true;
-  s.psi                 = psi + .9 * degree + 2 * PI;
+  s.psi                 = psi + .9 * degree + SHB_TWO_PI;
   s.phi                 = phi - .9 * degree;
   assert_int_equal(mhb_receptance_create(&model, &s, 3, &r), SHB_OK);
   mhb_receptance_destroy(r);

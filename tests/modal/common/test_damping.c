@@ -10,6 +10,8 @@
 
 #include <cmocka.h>
 
+#include "mesh/base/constants.h"
+
 static double ratio(const modal_damping *damping, int i, double omega) {
   double zeta = NAN;
   assert_int_equal(modal_damping_ratio(damping, i, omega, &zeta), SHB_OK);
@@ -38,7 +40,7 @@ static void loss_factor(void **state) {
   (void)state;
   const modal_damping loss = {.kind = MODAL_DAMPING_LOSS, .loss = 0.006};
   double              K = 3.7, q = 0.9;
-  assert_same(2 * acos(-1) * ratio(&loss, 4, 1234) * K * q * q, acos(-1) * 0.006 * K * q * q);
+  assert_same(SHB_TWO_PI * ratio(&loss, 4, 1234) * K * q * q, SHB_PI * 0.006 * K * q * q);
 }
 
 /* phi^T (alpha M + beta K) phi = alpha + beta omega^2 = 2 zeta omega. */

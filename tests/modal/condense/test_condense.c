@@ -325,8 +325,8 @@ static void every_receptance_errs_by_the_first_term_left_out(void **state) {
   mesh_fe_free(&mesh);
 }
 
-/* With residual modes, built from the contact and load columns: at a third of the last kept mode
- * the contact receptances are accurate to 1e-10, with an error of order 12 in omega. That is twice
+/* Residual modes are built from the contact and load columns. At a third of the last kept mode they
+ * make the contact receptances accurate to 1e-10, with an error of order 12 in omega. That is twice
  * the order of the three terms. The probes have the order of the terms. */
 static void residual_modes_double_the_order(void **state) {
   (void)state;

@@ -8,6 +8,7 @@
 
 #include <cmocka.h>
 
+#include "mesh/base/constants.h"
 #include "modal/common/session.h"
 #include "modal/condense/contact_patches.h"
 #include "tests/support/fem.h"
@@ -35,7 +36,7 @@ static void check_totals(const modal_patches *face) {
     area += face->area[p];
     for (int d = 0; d < 3; d++) centroid[d] += face->area[p] * face->centroid[0][3 * p + d];
   }
-  const double radius = inner + size[2] / 2, half = acos(-1) / BLADES;
+  const double radius = inner + size[2] / 2, half = SHB_PI / BLADES;
   check_close(area, size[0] * size[2], 1e-12, "sum of the areas");
   check_close(face->total_area, size[0] * size[2], 1e-12, "area of the face");
   check_close(centroid[0] / area, size[0] / 2, 1e-12, "centroid");
@@ -46,7 +47,7 @@ static void check_totals(const modal_patches *face) {
 /* The sides are planes of constant angle: their normals are tangential. The left image lies one
  * sector back. */
 static void check_pairs(const mesh_fe *mesh, const modal_patches *face) {
-  const double sector = 2 * acos(-1) / BLADES;
+  const double sector = SHB_TWO_PI / BLADES;
   for (int p = 0; p < face->n_pairs; p++) {
     double image[3];
     check_close(face->normal[3 * p], 1, 1e-12, "normal is tangential");
@@ -203,8 +204,8 @@ static void faces_that_do_not_match_are_projected(void **state) {
   mesh_fe mesh = make_sector(size, inner, BLADES, cells);
   for (int i = 0; i < mesh.n_nodes; i++) {
     double *x = mesh.coordinates + 3 * i, r = hypot(x[1], x[2]), high = (r - inner) / size[2];
-    double  bump = 0.05 * sin(acos(-1) * x[0] / size[0]) * sin(acos(-1) * high);
-    if (x[1] / x[2] < tan(acos(-1) / BLADES) * (1 - 1e-9)) continue; /* not on the left side */
+    double  bump = 0.05 * sin(SHB_PI * x[0] / size[0]) * sin(SHB_PI * high);
+    if (x[1] / x[2] < tan(SHB_PI / BLADES) * (1 - 1e-9)) continue; /* not on the left side */
     x[0] += bump * size[0];
     for (int d = 1; d < 3; d++) x[d] *= 1 + bump * size[2] / r;
   }
@@ -223,7 +224,7 @@ static void faces_that_do_not_match_are_projected(void **state) {
       }
       check_close(sum[0], 1, 1e-12, "weights of the right");
       check_close(sum[1], 1, 1e-12, "weights of the left");
-      mesh_axis_rotate(MESH_AXIS_X, 2 * acos(-1) / BLADES, centroid, image);
+      mesh_axis_rotate(MESH_AXIS_X, SHB_TWO_PI / BLADES, centroid, image);
       for (int d = 0; d < 3; d++)
         check_below(image[d] - face.centroid[0][3 * p + d], 1e-12, "image of a patch");
     }

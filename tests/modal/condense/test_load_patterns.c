@@ -4,6 +4,7 @@
 #include <complex.h>
 #include <math.h>
 
+#include "mesh/base/constants.h"
 #include "modal/common/session.h"
 #include "modal/stage/stage.h"
 #include "tests/support/box.h"
@@ -285,7 +286,7 @@ static void loads_have_groups(void **state) {
     modal_load_free(&made[i]);
   }
   /* resultant of a pressure: radial on the outer face, tangential on the flat side */
-  double half = acos(-1) / BLADES, outer = inner + size[2];
+  double half = SHB_PI / BLADES, outer = inner + size[2];
   check_close(sum[1][2], -210 * size[0] * 2 * outer * sin(half), 1e-6,
               "resultant on the outer face");
   check_close(hypot(sum[0][1], sum[0][2]), 210 * size[0] * size[2], 1e-9, "resultant on the side");

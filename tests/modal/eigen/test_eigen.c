@@ -138,7 +138,7 @@ static double axial_frequency(const double size[3], const int cells[3]) {
     frequency = sqrt(eigen.lambda[i]) / SHB_TWO_PI;
   }
   /* its effective mass is 8/pi^2 of the bar's */
-  check_close(best / (7850 * size[0] * size[1] * size[2]), 8 / (acos(-1) * acos(-1)), 1e-2,
+  check_close(best / (7850 * size[0] * size[1] * size[2]), 8 / (SHB_PI * SHB_PI), 1e-2,
               "effective mass");
   VecDestroy(&ones);
   release(&system, &eigen);

@@ -9,6 +9,7 @@
 #include <cmocka.h>
 #include <petscksp.h>
 
+#include "mesh/base/constants.h"
 #include "modal/common/session.h"
 #include "modal/eigen/participation.h"
 #include "tests/support/fem.h"
@@ -76,7 +77,7 @@ static void slender_bar(void **state) {
       check_close(found[r - 1][i], bending[i], 5e-3, "effective mass in bending");
   }
   greatest(m, 0, 1, axial);
-  check_close(axial[0], 8 / (acos(-1) * acos(-1)), 1e-4, "effective mass of the axial mode");
+  check_close(axial[0], 8 / (SHB_PI * SHB_PI), 1e-4, "effective mass of the axial mode");
   release(m);
   mesh_fe_free(&mesh);
 }

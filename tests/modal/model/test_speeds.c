@@ -1,6 +1,7 @@
 /* Modes at several speeds: tracked through a crossing, written and read. */
 #include <math.h>
 
+#include "mesh/base/constants.h"
 #include "modal/common/session.h"
 #include "modal/stage/speed_range.h"
 #include "modal/stage/stage.h"
@@ -57,7 +58,7 @@ static modal_settings make_settings(void) {
 }
 
 static double eigenvalue(const modal_speeds *s, int i, int track) {
-  double w = 2 * acos(-1) * modal_speeds_frequency(s, i, track);
+  double w = SHB_TWO_PI * modal_speeds_frequency(s, i, track);
   return w * w;
 }
 

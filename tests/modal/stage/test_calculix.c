@@ -131,8 +131,8 @@ static void write_deck(const element_kind *element, const mesh_fe *mesh,
   fclose(deck);
 }
 
-/* blade.eig holds three integers, the last 1 after a static step; then four numbers for each node
- * of that step; then the number of modes and their eigenvalues. blade.dat prints seven digits
+/* blade.eig holds three integers; the last is 1 after a static step. Four numbers for each node of
+ * that step follow, then the number of modes and their eigenvalues. blade.dat prints seven digits
  * only. */
 static void read_frequencies(const mesh_fe *mesh, double frequency[MODES]) {
   char    path[128];

@@ -150,7 +150,7 @@ static void damping_follows_its_law(void **state) {
   assert_ok(modal_stage(PETSC_COMM_WORLD, mesh, out, &settings, &provenance, NULL));
   assert_ok(modal_model_read(out, &model));
   for (int i = 0; i < model.n_modes; i++) {
-    double omega = 2 * acos(-1) * model.frequency[i];
+    double omega = SHB_TWO_PI * model.frequency[i];
     check_close(2 * model.damping_ratio[i] * omega, 20 + 1e-7 * omega * omega, 1e-12, "damping");
   }
   modal_model_free(&model);

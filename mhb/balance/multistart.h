@@ -4,8 +4,8 @@
  * A start that ends at a known solution takes some six evaluations. Deflation (Farrell, Birkisson
  * and Funke 2015) was tried. As many of the starts end at new solutions, but all others go on to
  * the last step. They take 130 to 340 evaluations a start, against 17 to 30 without. */
-#ifndef MHB_BRANCHES_MULTISTART_H
-#define MHB_BRANCHES_MULTISTART_H
+#ifndef MHB_BALANCE_MULTISTART_H
+#define MHB_BALANCE_MULTISTART_H
 
 #include <stdbool.h>
 

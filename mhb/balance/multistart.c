@@ -1,4 +1,4 @@
-#include "mhb/branches/multistart.h"
+#include "mhb/balance/multistart.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* Sets of solutions, and Newton's method from random starts. */
-#include "mhb/branches/multistart.h"
+#include "mhb/balance/multistart.h"
 
 #include "mhb/balance/subharmonics.h"
 #include "tests/support/check.h"
