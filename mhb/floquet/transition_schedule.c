@@ -28,7 +28,7 @@ shb_status mhb_transition_schedule_create(int blades, int pairs, int wave,
   t->span = 1. / t->n_segments;
   while (((long)t->blade_shift * E - g) % blades) t->blade_shift++;
   t->capacity       = 64 + 64 * pairs * g;
-  size_t n          = (size_t)(blades * pairs);
+  size_t n          = (size_t)blades * (size_t)pairs;
   t->event          = shb_arena_take(&t->arena, (size_t)t->capacity, sizeof *t->event);
   t->state          = shb_arena_take(&t->arena, n, sizeof *t->state);
   t->constant_state = shb_arena_take(&t->arena, n, sizeof *t->constant_state);

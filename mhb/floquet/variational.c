@@ -206,14 +206,18 @@ MHB_INLINE void subtract_product(const mhb_variational *v, int n, int block, int
   }
 }
 
+typedef struct {
+  int blades, sides, pairs, neighbours;
+} ring_size;
+
 /* One block of columns over the sub-step: rows Y, mean force P; W [n] zero, D [n] and df [n] are
- * scratch. The sizes are arguments so that the common case, one contact, is compiled with
+ * scratch. The size is an argument so that the common case, one contact, is compiled with
  * constants. */
-MHB_INLINE void step_block(const mhb_variational *v, int blades, int sides, int pairs,
-                           int n_neighbours, mhb_lanes *Y, mhb_lanes *P, mhb_lanes *W, mhb_lanes *D,
-                           mhb_lanes *df) {
-  const mhb_modal_structure *s  = v->structure;
-  int                        n3 = 3 * pairs, n = blades * n3, m = s->modes;
+MHB_INLINE void step_block(const mhb_variational *v, ring_size size, mhb_lanes *Y, mhb_lanes *P,
+                           mhb_lanes *W, mhb_lanes *D, mhb_lanes *df) {
+  const mhb_modal_structure *s      = v->structure;
+  const int                  blades = size.blades, sides = size.sides;
+  int                        n3 = 3 * size.pairs, n = blades * n3, m = s->modes;
   mhb_lanes                 *u = Y + 2 * blades * m, *sigma = u + n, y[3];
   for (int b = 0; b < blades; b++) { /* W, the modes propagating freely */
     int right = 3 * mhb_modal_structure_contact(s, b, 0);
@@ -232,8 +236,8 @@ MHB_INLINE void step_block(const mhb_variational *v, int blades, int sides, int 
       df[3 * j + r] = dot3(law->df_y[r], y);
     }
   }
-  subtract_product(v, n, n3, n_neighbours, v->compliance, P, W, D);
-  if (s->flexibility) subtract_product(v, n, n3, n_neighbours, s->flexibility, df, D, D);
+  subtract_product(v, n, n3, size.neighbours, v->compliance, P, W, D);
+  if (s->flexibility) subtract_product(v, n, n3, size.neighbours, s->flexibility, df, D, D);
   mhb_ring_band_solve(&v->band, D, df); /* D is the change of u; df serves as scratch */
   for (int j = 0; j < n / 3; j++) {
     const mhb_linearised_law *law = &v->linearised[j];
@@ -248,14 +252,15 @@ MHB_INLINE void step_block(const mhb_variational *v, int blades, int sides, int 
 /* A blade on the ground with one contact. */
 MHB_HOT static void step_one_contact(const mhb_variational *v, mhb_lanes *Y, mhb_lanes *P) {
   mhb_lanes W[3] = {{0}}, D[3], df[3]; /* W stays in registers */
-  step_block(v, 1, 1, 1, 1, Y, P, W, D, df);
+  step_block(v, (ring_size){1, 1, 1, 1}, Y, P, W, D, df);
 }
 
 MHB_HOT static void step_any(const mhb_variational *v, mhb_lanes *Y, mhb_lanes *P, mhb_lanes *W) {
   const mhb_modal_structure *s = v->structure;
   int                        n = unknowns(s);
   memset(W, 0, sizeof *W * (size_t)n);
-  step_block(v, s->blades, s->sides, s->pairs, v->n_neighbours, Y, P, W, W + n, W + 2 * n);
+  const ring_size size = {s->blades, s->sides, s->pairs, v->n_neighbours};
+  step_block(v, size, Y, P, W, W + n, W + 2 * n);
 }
 
 void mhb_variational_step(mhb_variational *v) {

@@ -57,6 +57,30 @@ mesh_kind used_elements(void) {
   return kind;
 }
 
+int use_hexahedra(void **state) {
+  (void)state;
+  use_elements(MESH_HEX20);
+  return 0;
+}
+
+fem_element *make_element_tables(fem_rules rules) {
+  fem_element *element = malloc(sizeof *element);
+  if (element && fem_element_create(kind, rules, element) == 0) return element;
+  free(element);
+  return NULL;
+}
+
+int run_groups_of_elements(const struct CMUnitTest *tests, size_t n, CMFixtureFunction set_up,
+                           CMFixtureFunction tear_down) {
+  static const char *const name[] = {"tet10", "hex20"};
+  int                      failed = 0;
+  for (int i = 0; i < 2; i++) {
+    use_elements(i ? MESH_HEX20 : MESH_TET10);
+    failed += _cmocka_run_group_tests(name[i], tests, n, set_up, tear_down);
+  }
+  return failed;
+}
+
 mesh_fe make_box(const double size[3], const int n[3]) {
   mesh_fe    mesh;
   shb_status status = kind == MESH_HEX20 ? box_hex(size, n, &mesh) : box_mesh(size, n, &mesh);

@@ -3,6 +3,7 @@
 #define TESTS_SUPPORT_FEM_H
 
 #include "fem/body/rotating_body.h"
+#include "tests/support/check.h"
 
 extern const fem_material steel; /* 210 GPa, 0.3, 7850 kg/m3 */
 
@@ -22,6 +23,17 @@ void isotropic_stiffness(const fem_material *material, double C[6][6]);
 /* The kind of elements of the meshes made from here on; initially tetrahedra. */
 void      use_elements(mesh_kind kind);
 mesh_kind used_elements(void);
+int       use_hexahedra(void **state); /* the same as set-up of a group; 0 */
+
+/* Tables of the elements in use, malloc'ed; NULL if they cannot be made. */
+fem_element *make_element_tables(fem_rules rules);
+
+/* An array of tests with tetrahedra, then with hexahedra, as groups tet10 and hex20. Returns the
+ * number of failures. */
+#define run_with_both_elements(tests, set_up, tear_down) \
+  run_groups_of_elements((tests), sizeof(tests) / sizeof *(tests), (set_up), (tear_down))
+int run_groups_of_elements(const struct CMUnitTest *tests, size_t n, CMFixtureFunction set_up,
+                           CMFixtureFunction tear_down);
 
 /* A box; fails the test if it cannot be made. */
 mesh_fe make_box(const double size[3], const int n[3]);

@@ -16,31 +16,7 @@
 
 #include "modal/hdf5/h5.h"
 #include "tests/support/check.h"
-
-static char scratch_folder[256];
-
-static inline int scratch_make(void **state) {
-  (void)state;
-  const char *root = getenv("TMPDIR");
-  snprintf(scratch_folder, sizeof scratch_folder, "%s/shroudhb.XXXXXX", root ? root : "/tmp");
-  return mkdtemp(scratch_folder) == NULL;
-}
-
-static inline int scratch_remove(void **state) {
-  (void)state;
-  char command[300];
-  snprintf(command, sizeof command, "rm -r '%s'", scratch_folder);
-  return system(command);
-}
-
-/* Path of a file in the scratch folder. Up to four paths are valid at a time. */
-static inline const char *scratch(const char *name) {
-  static char path[4][512];
-  static int  turn;
-  turn = (turn + 1) % 4;
-  snprintf(path[turn], sizeof path[turn], "%s/%s", scratch_folder, name);
-  return path[turn];
-}
+#include "tests/support/scratch_folder.h"
 
 static inline char *slurp(const char *path, size_t *size) {
   FILE *file = fopen(path, "rb");

@@ -255,12 +255,6 @@ static void floating_part_is_named(void **state) {
   mesh_fe_free(&two);
 }
 
-static int hexahedra(void **state) {
-  (void)state;
-  use_elements(MESH_HEX20);
-  return 0;
-}
-
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(patch_test),
@@ -272,8 +266,7 @@ int main(void) {
       cmocka_unit_test(floating_part_is_named),
   };
   if (PetscInitialize(NULL, NULL, NULL, NULL) != 0) return 1;
-  int failures = cmocka_run_group_tests_name("tet10", tests, NULL, NULL);
-  failures += cmocka_run_group_tests_name("hex20", tests, hexahedra, NULL);
+  int failures = run_with_both_elements(tests, NULL, NULL);
   PetscFinalize();
   return failures;
 }

@@ -318,13 +318,8 @@ static void what_is_left_out_counts_twice(void **state) {
 
 static int tables(void **state) {
   (void)state;
-  element = malloc(sizeof *element);
-  return !element || fem_element_create(used_elements(), FEM_FULL, element) != 0;
-}
-
-static int hexahedra(void **state) {
-  use_elements(MESH_HEX20);
-  return tables(state);
+  element = make_element_tables(FEM_FULL);
+  return element == NULL;
 }
 
 static int free_tables(void **state) {
@@ -339,8 +334,7 @@ int main(void) {
                                      cmocka_unit_test(strip_bends_as_the_elastica),
                                      cmocka_unit_test(what_is_left_out_counts_twice)};
   if (PetscInitialize(NULL, NULL, NULL, NULL)) return 1;
-  int failures = cmocka_run_group_tests_name("tet10", tests, tables, free_tables);
-  failures += cmocka_run_group_tests_name("hex20", tests, hexahedra, free_tables);
+  int failures = run_with_both_elements(tests, tables, free_tables);
   PetscFinalize();
   return failures;
 }

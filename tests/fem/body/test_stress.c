@@ -157,13 +157,8 @@ static void reactions_add_up_to_the_load(void **state) {
 
 static int tables(void **state) {
   (void)state;
-  element = malloc(sizeof *element);
-  return !element || fem_element_create(used_elements(), FEM_STANDARD, element) != 0;
-}
-
-static int hexahedra(void **state) {
-  use_elements(MESH_HEX20);
-  return tables(state);
+  element = make_element_tables(FEM_STANDARD);
+  return element == NULL;
 }
 
 static int free_tables(void **state) {
@@ -177,8 +172,7 @@ int main(void) {
       cmocka_unit_test(constant_stress_is_exact), cmocka_unit_test(linear_stress_is_exact),
       cmocka_unit_test(error_is_of_second_order), cmocka_unit_test(reactions_add_up_to_the_load)};
   if (PetscInitialize(NULL, NULL, NULL, NULL)) return 1;
-  int failures = cmocka_run_group_tests_name("tet10", tests, tables, free_tables);
-  failures += cmocka_run_group_tests_name("hex20", tests, hexahedra, free_tables);
+  int failures = run_with_both_elements(tests, tables, free_tables);
   PetscFinalize();
   return failures;
 }

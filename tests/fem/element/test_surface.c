@@ -154,12 +154,6 @@ static void quadrangle_has_its_known_weights(void **state) {
   }
 }
 
-static int hexahedra(void **state) {
-  (void)state;
-  use_elements(MESH_HEX20);
-  return 0;
-}
-
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(pressure_pushes_into_a_flat_face),
@@ -168,8 +162,7 @@ int main(void) {
       cmocka_unit_test(quadrangle_has_its_known_weights),
   };
   if (PetscInitialize(NULL, NULL, NULL, NULL) != 0) return 1;
-  int failures = cmocka_run_group_tests_name("tet10", tests, NULL, NULL);
-  failures += cmocka_run_group_tests_name("hex20", tests, hexahedra, NULL);
+  int failures = run_with_both_elements(tests, NULL, NULL);
   PetscFinalize();
   return failures;
 }

@@ -4,24 +4,10 @@
 #include <unistd.h>
 
 #include "tests/support/check.h"
-#include "tests/support/scratch.h"
+#include "tests/support/scratch_folder.h"
 
-static char folder[SCRATCH_PATH];
-
-static int create(void **state) {
-  (void)state;
-  scratch_create(folder);
-  return 0;
-}
-
-static int destroy(void **state) {
-  (void)state;
-  scratch_remove(folder);
-  return 0;
-}
-
-static void path_of(const char *name, char path[SCRATCH_PATH + 64]) {
-  snprintf(path, SCRATCH_PATH + 64, "%s/%s", folder, name);
+static void path_of(const char *name, char path[sizeof scratch_folder + 64]) {
+  snprintf(path, sizeof scratch_folder + 64, "%s/%s", scratch_folder, name);
 }
 
 static void write_text(const char *path, const char *text) {
@@ -42,7 +28,7 @@ static void assert_holds(const char *path, const char *wanted) {
 
 static void renames_over_an_earlier_file(void **state) {
   (void)state;
-  char path[SCRATCH_PATH + 64];
+  char path[sizeof scratch_folder + 64];
   path_of("result", path);
   write_text(path, "earlier");
   char *temporary = shb_publish_temporary(path);
@@ -57,7 +43,7 @@ static void renames_over_an_earlier_file(void **state) {
 
 static void a_link_is_not_replaced(void **state) {
   (void)state;
-  char path[SCRATCH_PATH + 64], target[SCRATCH_PATH + 64];
+  char path[sizeof scratch_folder + 64], target[sizeof scratch_folder + 64];
   path_of("link", path);
   path_of("target", target);
   write_text(target, "target");
@@ -73,7 +59,7 @@ static void a_link_is_not_replaced(void **state) {
 
 static void a_folder_that_is_absent_is_told(void **state) {
   (void)state;
-  char path[SCRATCH_PATH + 64];
+  char path[sizeof scratch_folder + 64];
   path_of("absent/result", path);
   char *temporary = shb_publish_temporary(path);
   assert_int_equal(shb_publish(temporary, path), SHB_ERR_IO);
@@ -83,7 +69,7 @@ static void a_folder_that_is_absent_is_told(void **state) {
 
 static void abandoned_files_are_removed(void **state) {
   (void)state;
-  char path[SCRATCH_PATH + 64];
+  char path[sizeof scratch_folder + 64];
   path_of("unfinished", path);
   char *temporary = shb_publish_temporary(path);
   write_text(temporary, "half");
@@ -95,7 +81,7 @@ static void abandoned_files_are_removed(void **state) {
 /* FNV-1a of the empty text and of "a", from the definition of the hash. */
 static void fingerprints_are_fnv_1a(void **state) {
   (void)state;
-  char path[SCRATCH_PATH + 64], hash[17];
+  char path[sizeof scratch_folder + 64], hash[17];
   path_of("hashed", path);
   write_text(path, "");
   assert_ok(shb_fingerprint(path, hash));
@@ -112,5 +98,5 @@ int main(void) {
       cmocka_unit_test(renames_over_an_earlier_file), cmocka_unit_test(a_link_is_not_replaced),
       cmocka_unit_test(a_folder_that_is_absent_is_told),
       cmocka_unit_test(abandoned_files_are_removed), cmocka_unit_test(fingerprints_are_fnv_1a)};
-  return cmocka_run_group_tests(tests, create, destroy);
+  return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

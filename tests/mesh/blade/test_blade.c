@@ -19,19 +19,19 @@
 #include "mesh/core/jacobian.h"
 #include "mesh/gmsh/provenance.h"
 #include "tests/support/check.h"
+#include "tests/support/odd_blade.h"
 #include "tests/support/read_mesh.h"
+#include "tests/support/scratch_folder.h"
 
 static const double degree = SHB_PI / 180;
 
-static char folder[] = "/tmp/shb_blade_XXXXXX";
-static char path[64], other[64];
+static char path[300], other[300];
 
 static int set_up(void **state) {
-  (void)state;
-  if (!mkdtemp(folder)) return -1;
-  snprintf(path, sizeof path, "%s/blade.msh", folder);
-  snprintf(other, sizeof other, "%s/other.msh", folder);
-  return 0;
+  int failed = scratch_make(state);
+  snprintf(path, sizeof path, "%s/blade.msh", scratch_folder);
+  snprintf(other, sizeof other, "%s/other.msh", scratch_folder);
+  return failed;
 }
 
 /* Fails if a test left a temporary file behind. */
@@ -39,27 +39,7 @@ static int tear_down(void **state) {
   (void)state;
   unlink(path);
   unlink(other);
-  return rmdir(folder);
-}
-
-static mesh_blade sample(void) {
-  mesh_blade blade = {.blades           = 43,
-                      .axis             = MESH_AXIS_X,
-                      .psi              = 35 * degree,
-                      .phi              = 0,
-                      .root_length      = 0.066,
-                      .root_width       = 0.033,
-                      .root_height      = 0.017,
-                      .n_sections       = 3,
-                      .section          = {{0.25, 0.058, 0.0092, 0.0103, -11 * degree},
-                                           {0.34, 0.051, 0.0071, 0.0071, -24 * degree},
-                                           {0.43, 0.044, 0.0052, 0.0042, -38 * degree}},
-                      .shroud_length    = 0.045,
-                      .shroud_thickness = 0.0081,
-                      .shroud_contact   = 0.021,
-                      .size             = 0.011,
-                      .shroud_size      = 0.007};
-  return blade;
+  return rmdir(scratch_folder);
 }
 
 static const shb_provenance origin = {.case_path = "case.yaml",
@@ -160,7 +140,7 @@ static void contact_planes_are_as_asked(void **state) {
   (void)state;
   const double angle[][2] = {{35, 0}, {0, 0}, {-48, 13}, {70, -45}, {21, 45}, {-70, 7}, {0, -30}};
   for (size_t i = 0; i < sizeof angle / sizeof *angle; i++) {
-    mesh_blade blade = sample();
+    mesh_blade blade = odd_blade();
     mesh_fe    mesh;
     blade.psi = angle[i][0] * degree;
     blade.phi = angle[i][1] * degree;
@@ -174,7 +154,7 @@ static void contact_planes_are_as_asked(void **state) {
 static void every_engine_axis_works(void **state) {
   (void)state;
   for (int axis = MESH_AXIS_X; axis <= MESH_AXIS_MZ; axis++) {
-    mesh_blade blade = sample();
+    mesh_blade blade = odd_blade();
     mesh_fe    mesh;
     blade.axis   = (mesh_axis)axis;
     blade.blades = 37 + axis;
@@ -249,7 +229,7 @@ static double expected_volume(const mesh_blade *blade) {
 
 static void one_solid_of_the_right_volume(void **state) {
   (void)state;
-  mesh_blade blade = sample();
+  mesh_blade blade = odd_blade();
   mesh_fe    mesh;
   blade.size        = 0.007;
   blade.shroud_size = 0;
@@ -262,7 +242,7 @@ static void one_solid_of_the_right_volume(void **state) {
 
 static void groups_lie_where_they_should(void **state) {
   (void)state;
-  mesh_blade blade = sample();
+  mesh_blade blade = odd_blade();
   mesh_fe    mesh;
   make(&blade, &mesh);
   double area = 0;
@@ -309,7 +289,7 @@ static void check_hollow(const mesh_blade *blade, const mesh_fe *mesh, double bu
 
 static void load_is_on_the_concave_side(void **state) {
   (void)state;
-  mesh_blade blade = sample();
+  mesh_blade blade = odd_blade();
   mesh_fe    mesh;
   blade.axis = MESH_AXIS_MY;
   make(&blade, &mesh);
@@ -326,7 +306,7 @@ static void load_is_on_the_concave_side(void **state) {
 
 static void smaller_sizes_refine(void **state) {
   (void)state;
-  mesh_blade blade = sample();
+  mesh_blade blade = odd_blade();
   int        nodes[4], faces[4];
   for (int i = 0; i < 4; i++) {
     mesh_fe mesh;
@@ -356,7 +336,7 @@ static char *whole(const char *name) {
 
 static void same_case_same_mesh(void **state) {
   (void)state;
-  mesh_blade blade = sample();
+  mesh_blade blade = odd_blade();
   assert_int_equal(mesh_blade_write(&blade, path, &origin, NULL), SHB_OK);
   assert_int_equal(mesh_blade_write(&blade, other, &origin, NULL), SHB_OK);
   char *a = whole(path), *b = whole(other);
@@ -367,7 +347,7 @@ static void same_case_same_mesh(void **state) {
 
 static void provenance_comes_back(void **state) {
   (void)state;
-  mesh_blade blade = sample();
+  mesh_blade blade = odd_blade();
   mesh_fe    mesh;
   char      *settings = NULL;
   make(&blade, &mesh);
@@ -389,7 +369,7 @@ static void provenance_comes_back(void **state) {
 
 /* A thin, strongly cambered airfoil: a few elements are straightened, the mesh is good. */
 static mesh_blade thin(double thickness, double camber, double size) {
-  mesh_blade blade  = sample();
+  mesh_blade blade  = odd_blade();
   blade.blades      = 20;
   blade.root_length = 0.08;
   blade.root_width  = 0.07;
@@ -485,31 +465,31 @@ static void wrong_numbers_are_named(void **state) {
       FAULT(shroud_size, 1e-5, "mesh.blade.shroud_size: 0.01 mm would give"),
   };
   for (size_t i = 0; i < sizeof faults / sizeof *faults; i++) {
-    mesh_blade blade                               = sample();
+    mesh_blade blade                               = odd_blade();
     *(double *)((char *)&blade + faults[i].offset) = faults[i].value;
     assert_blade_refused(&blade, faults[i].words);
   }
-  mesh_blade blade = sample();
+  mesh_blade blade = odd_blade();
   blade.blades     = 2;
   assert_blade_refused(&blade, "rotor.blades: 2");
   blade.blades = 90;
   assert_blade_refused(&blade, "rotor.blades");
-  blade                  = sample();
+  blade                  = odd_blade();
   blade.blades           = 60;
   blade.section[2].twist = 60 * degree;
   assert_blade_refused(&blade, "mesh.blade.sections[2]: the last section reaches");
-  blade                      = sample();
+  blade                      = odd_blade();
   blade.shroud_thickness     = 0.02;
   blade.section[2].thickness = 0.0005;
   assert_blade_refused(&blade, "mesh.blade.sections[2]: the airfoil tapers to nothing");
-  blade            = sample();
+  blade            = odd_blade();
   blade.n_sections = 1;
   assert_blade_refused(&blade, "mesh.blade.sections: 1 given");
 }
 
 static void unwritable_folder_is_an_io_error(void **state) {
   (void)state;
-  mesh_blade blade = sample();
+  mesh_blade blade = odd_blade();
   assert_int_equal(mesh_blade_write(&blade, "/nowhere/blade.msh", &origin, NULL), SHB_ERR_IO);
   assert_non_null(strstr(shb_message(), "/nowhere/blade.msh: cannot be written: No such file"));
 }
@@ -517,7 +497,7 @@ static void unwritable_folder_is_an_io_error(void **state) {
 /* A failure leaves the earlier mesh unchanged. */
 static void earlier_mesh_survives_a_failure(void **state) {
   (void)state;
-  mesh_blade blade = sample();
+  mesh_blade blade = odd_blade();
   assert_int_equal(write_blade(&blade), SHB_OK);
   char *before = whole(path);
   blade        = thin(0.001, 0.011, 0.009);

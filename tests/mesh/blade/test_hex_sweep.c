@@ -21,45 +21,34 @@
 #include "mesh/core/fe_mesh.h"
 #include "mesh/core/jacobian.h"
 #include "tests/support/check.h"
+#include "tests/support/odd_blade.h"
 #include "tests/support/read_mesh.h"
+#include "tests/support/scratch_folder.h"
 
 static const double degree = SHB_PI / 180;
 
-static char folder[] = "/tmp/shb_sweep_XXXXXX";
-static char path[64], other[64];
+static char path[300], other[300];
 
 static int set_up(void **state) {
-  (void)state;
-  if (!mkdtemp(folder)) return -1;
-  snprintf(path, sizeof path, "%s/blade.msh", folder);
-  snprintf(other, sizeof other, "%s/other.msh", folder);
-  return 0;
+  int failed = scratch_make(state);
+  snprintf(path, sizeof path, "%s/blade.msh", scratch_folder);
+  snprintf(other, sizeof other, "%s/other.msh", scratch_folder);
+  return failed;
 }
 
+/* Fails if a test left a temporary file behind. */
 static int tear_down(void **state) {
   (void)state;
   unlink(path);
   unlink(other);
-  return rmdir(folder);
+  return rmdir(scratch_folder);
 }
 
 static mesh_blade sample(void) {
-  return (mesh_blade){.blades           = 43,
-                      .axis             = MESH_AXIS_X,
-                      .psi              = 35 * degree,
-                      .root_length      = 0.066,
-                      .root_width       = 0.033,
-                      .root_height      = 0.017,
-                      .n_sections       = 3,
-                      .section          = {{0.25, 0.058, 0.0092, 0.0103, -11 * degree},
-                                           {0.34, 0.051, 0.0071, 0.0071, -24 * degree},
-                                           {0.43, 0.044, 0.0052, 0.0042, -38 * degree}},
-                      .shroud_length    = 0.045,
-                      .shroud_thickness = 0.0081,
-                      .shroud_contact   = 0.021,
-                      .size             = 0.011,
-                      .shroud_size      = 0.008,
-                      .elements         = MESH_HEX20};
+  mesh_blade blade  = odd_blade();
+  blade.shroud_size = 0.008;
+  blade.elements    = MESH_HEX20;
+  return blade;
 }
 
 static const shb_provenance origin = {.case_path = "case.yaml",

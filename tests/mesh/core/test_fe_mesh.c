@@ -22,24 +22,24 @@
 #include "tests/support/box.h"
 #include "tests/support/check.h"
 #include "tests/support/read_mesh.h"
+#include "tests/support/scratch_folder.h"
 
 static const double size[3]  = {0.237, 0.041, 0.023};
 static const int    cells[3] = {5, 3, 2};
 
-static char folder[] = "/tmp/shb_mesh_XXXXXX";
-static char path[64];
+static char path[300];
 
 static int set_up(void **state) {
-  (void)state;
-  if (!mkdtemp(folder)) return -1;
-  snprintf(path, sizeof path, "%s/bar.msh", folder);
-  return 0;
+  int failed = scratch_make(state);
+  snprintf(path, sizeof path, "%s/bar.msh", scratch_folder);
+  return failed;
 }
 
+/* Fails if a test left another file behind. */
 static int tear_down(void **state) {
   (void)state;
   unlink(path);
-  return rmdir(folder);
+  return rmdir(scratch_folder);
 }
 
 /* Volume by the four-point rule, exact for straight elements. */

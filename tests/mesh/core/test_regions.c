@@ -22,6 +22,8 @@
 #include "tests/support/box.h"
 #include "tests/support/check.h"
 #include "tests/support/read_mesh.h"
+#include "tests/support/read_source.h"
+#include "tests/support/scratch_folder.h"
 
 /* Three blocks along x, cut at these places, of which the middle one is "shank". */
 static const double cut[4] = {0, .013, .029, .037};
@@ -31,43 +33,12 @@ static const char blocks[] =
     "Box(1) = {0, 0, 0, .013, .01, .006};\nBox(2) = {.013, 0, 0, .016, .01, .006};\n"
     "Box(3) = {.029, 0, 0, .008, .01, .006};\nCoherence;\nMesh.MeshSizeMax = .004;\n";
 
-static char folder[] = "/tmp/shb_regions_XXXXXX";
-
-static const char *scratch(const char *name) {
-  static char path[4][96];
-  static int  turn;
-  turn = (turn + 1) % 4;
-  snprintf(path[turn], sizeof path[turn], "%s/%s", folder, name);
-  return path[turn];
-}
-
-static int set_up(void **state) {
-  (void)state;
-  return mkdtemp(folder) ? 0 : -1;
-}
-
-static int tear_down(void **state) {
-  char command[64];
-  (void)state;
-  snprintf(command, sizeof command, "rm -r %s", folder);
-  return system(command);
-}
-
 static void put(const char *path, const char *text, const char *more) {
   FILE *file = fopen(path, "w");
   assert_non_null(file);
   fputs(text, file);
   fputs(more, file);
   fclose(file);
-}
-
-static void refused(const mesh_source *source, const char *words) {
-  mesh_fe    mesh;
-  shb_status status = mesh_source_read(source, NULL, &mesh);
-  if (status != SHB_ERR_INPUT || !strstr(shb_message(), words))
-    fail_msg("status %d, text '%s'; wanted '%s'", status, shb_message(), words);
-  assert_null(strchr(shb_message(), '\n'));
-  assert_null(mesh.region);
 }
 
 static double middle(const mesh_fe *mesh, int e) {
@@ -158,7 +129,7 @@ static void volumes_by_point(void **state) {
     check_blocks(&mesh, (const int[]){0, 1, 2});
     mesh_fe_free(&mesh);
     source.rules.volume[2].rule.at[0] = cut[1] / 2; /* the first once more */
-    refused(&source, "in two volumes of materials");
+    assert_source_refused(&source, "in two volumes of materials");
   }
 }
 
@@ -166,13 +137,13 @@ static void faults_are_told(void **state) {
   (void)state;
   mesh_source source = source_of(scratch("bad.geo"), 1);
   put(source.path, blocks, "Physical Volume(\"ends\") = {1};\nPhysical Volume(\"shank\") = {2};\n");
-  refused(&source, "are in no volume of materials, such as element ");
+  assert_source_refused(&source, "are in no volume of materials, such as element ");
   put(source.path, blocks,
       "Physical Volume(\"ends\") = {1, 2, 3};\nPhysical Volume(\"shank\") = {2};\n");
-  refused(&source, "are in two volumes of materials, such as element ");
+  assert_source_refused(&source, "are in two volumes of materials, such as element ");
   put(source.path, blocks,
       "Physical Volume(\"end\") = {1, 3};\nPhysical Volume(\"shank\") = {2};\n");
-  refused(&source, "no physical volume 'ends' (there: end, shank)");
+  assert_source_refused(&source, "no physical volume 'ends' (there: end, shank)");
   source.rules.volume[0].rule = (mesh_rule){.kind = MESH_RULE_NAME, .name = "end"};
   mesh_fe mesh;
   assert_ok(mesh_source_read(&source, NULL, &mesh));
@@ -215,5 +186,5 @@ int main(void) {
       cmocka_unit_test(faults_are_told),
       cmocka_unit_test(element_sets),
   };
-  return cmocka_run_group_tests_name("mesh.regions", tests, set_up, tear_down);
+  return cmocka_run_group_tests_name("mesh.regions", tests, scratch_make, scratch_remove);
 }

@@ -16,24 +16,24 @@
 #include "mesh/io/inp_write.h"
 #include "tests/support/box.h"
 #include "tests/support/read_mesh.h"
+#include "tests/support/scratch_folder.h"
 
 static const double size[3]  = {0.237, 0.041, 0.023};
 static const int    cells[3] = {3, 2, 1};
 
-static char folder[] = "/tmp/shb_inp_XXXXXX";
-static char path[64];
+static char path[300];
 
 static int set_up(void **state) {
-  (void)state;
-  if (!mkdtemp(folder)) return -1;
-  snprintf(path, sizeof path, "%s/bar.inp", folder);
-  return 0;
+  int failed = scratch_make(state);
+  snprintf(path, sizeof path, "%s/bar.inp", scratch_folder);
+  return failed;
 }
 
+/* Fails if a test left another file behind. */
 static int tear_down(void **state) {
   (void)state;
   unlink(path);
-  return rmdir(folder);
+  return rmdir(scratch_folder);
 }
 
 static void put(const char *text) {
@@ -47,7 +47,7 @@ static void put(const char *text) {
  * line. */
 static void refused(int line, const char *words) {
   mesh_fe    mesh;
-  char       head[96];
+  char       head[320];
   shb_status status = read_mesh(path, &mesh);
   snprintf(head, sizeof head, line ? "%s:%d: " : "%s: ", path, line);
   if (status != SHB_ERR_INPUT || !strstr(shb_message(), words) ||
@@ -285,7 +285,7 @@ static void every_label_of_a_hexahedron_is_right(void **state) {
     char    line[256];
     assert_int_equal(box_hex(unit, one, &box), SHB_OK);
     assert_int_equal(mesh_inp_write(&box, path), SHB_OK);
-    char other[80];
+    char other[310];
     snprintf(other, sizeof other, "%s.other", path);
     FILE *from = fopen(path, "r"), *to = fopen(other, "w");
     assert_true(from && to);

@@ -24,42 +24,13 @@
 #include "tests/support/box.h"
 #include "tests/support/check.h"
 #include "tests/support/read_mesh.h"
+#include "tests/support/read_source.h"
+#include "tests/support/scratch_folder.h"
 
 enum { BLADES = 23 };
 
 static const double size[3]  = {0.237, 0.041, 0.023};
 static const int    cells[3] = {3, 2, 2};
-
-static char folder[] = "/tmp/shb_source_XXXXXX";
-
-static const char *scratch(const char *name) {
-  static char path[4][96];
-  static int  turn;
-  turn = (turn + 1) % 4;
-  snprintf(path[turn], sizeof path[turn], "%s/%s", folder, name);
-  return path[turn];
-}
-
-static int set_up(void **state) {
-  (void)state;
-  return mkdtemp(folder) ? 0 : -1;
-}
-
-static int tear_down(void **state) {
-  char command[64];
-  (void)state;
-  snprintf(command, sizeof command, "rm -r %s", folder);
-  return system(command);
-}
-
-static void refused(const mesh_source *source, const char *words) {
-  mesh_fe    mesh;
-  shb_status status = mesh_source_read(source, NULL, &mesh);
-  if (status != SHB_ERR_INPUT || !strstr(shb_message(), words))
-    fail_msg("status %d, text '%s'; wanted '%s'", status, shb_message(), words);
-  assert_null(strchr(shb_message(), '\n'));
-  assert_null(mesh.coordinates);
-}
 
 /* Summed area vector of a group's corners, m2. */
 static void area(const mesh_fe *mesh, mesh_set_id id, double sum[3]) {
@@ -171,7 +142,7 @@ static void rules_find_the_faces(void **state) {
       box.set[MESH_ROOT].n = box.set[MESH_LOAD].n = 0;
       assert_ok(format ? mesh_inp_write(&box, source.path) : box_write(&box, source.path));
       mesh_fe_free(&box);
-      refused(&source, "group root is absent");
+      assert_source_refused(&source, "group root is absent");
       source.rules.usual[MESH_ROOT] = (mesh_rule){
           .kind = MESH_RULE_PLANE, .at = {0, 9, 9}, .normal = {-3, 0, 0}, .tolerance = 1e-6};
       source.rules.usual[MESH_LOAD] = (mesh_rule){.kind = MESH_RULE_NEAREST, .at = {.1, .02, .03}};
@@ -184,10 +155,10 @@ static void rules_find_the_faces(void **state) {
       assert_int_equal(mesh.set[MESH_CONTACT_LEFT].n, 0);
       mesh_fe_free(&mesh);
       source.rules.usual[MESH_ROOT].at[0] = -.001;
-      refused(&source, "mesh.groups.root: ");
-      refused(&source, "the nearest is 0.001 m off");
+      assert_source_refused(&source, "mesh.groups.root: ");
+      assert_source_refused(&source, "the nearest is 0.001 m off");
       source.rules.usual[MESH_ROOT].normal[0] = 0;
-      refused(&source, "has no direction");
+      assert_source_refused(&source, "has no direction");
     }
 }
 
@@ -210,8 +181,8 @@ static void curved_faces_are_found(void **state) {
   source.rules.usual[MESH_ROOT] =
       (mesh_rule){.kind = MESH_RULE_RADIUS, .radius = .31, .tolerance = 1e-9};
   source.rules.usual[MESH_LOAD] = (mesh_rule){.kind = MESH_RULE_NEAREST, .at = {.1, 0, .2}};
-  refused(&source, "ring.msh: groups load and root share 24 of 24 faces, one at (");
-  refused(&source, "what is clamped does not move");
+  assert_source_refused(&source, "ring.msh: groups load and root share 24 of 24 faces, one at (");
+  assert_source_refused(&source, "what is clamped does not move");
   source.rules.usual[MESH_ROOT].kind = MESH_RULE_NONE;
   mesh_fe other;
   source.rules.usual[MESH_ROOT]      = (mesh_rule){.kind = MESH_RULE_NEAREST, .at = {.1, 0, .2}};
@@ -227,7 +198,7 @@ static void curved_faces_are_found(void **state) {
   mesh_fe_free(&other);
   mesh_fe_free(&mesh);
   source.rules.usual[MESH_ROOT].radius = .32;
-  refused(&source, "no face at radius 0.32 m; the nearest is 0.01 m off");
+  assert_source_refused(&source, "no face at radius 0.32 m; the nearest is 0.01 m off");
   mesh_fe_free(&box);
 }
 
@@ -263,21 +234,24 @@ static void groups_that_cannot_be_right(void **state) {
   assert_ok(box_write(&box, source.path));
   mesh_fe_free(&box);
   source.rules.usual[MESH_CONTACT_RIGHT] = clamp;
-  refused(&source, "groups contact_right and root share 8 of 8 faces, one at (0, ");
+  assert_source_refused(&source, "groups contact_right and root share 8 of 8 faces, one at (0, ");
   source.rules.usual[MESH_CONTACT_RIGHT].normal[0] = 0;
   source.rules.usual[MESH_CONTACT_RIGHT].normal[1] =
       1; /* it meets the clamp along an edge, which is allowed */
   assert_ok(mesh_source_read(&source, NULL, &mesh));
   mesh_fe_free(&mesh);
   source.rules.usual[MESH_CONTACT_LEFT] = source.rules.usual[MESH_CONTACT_RIGHT];
-  refused(&source, "groups contact_right and contact_left share 12 of 12 faces");
+  assert_source_refused(&source, "groups contact_right and contact_left share 12 of 12 faces");
   source.rules.usual[MESH_CONTACT_LEFT].kind       = MESH_RULE_NONE;
   source.rules.usual[MESH_CONTACT_RIGHT].tolerance = 1;
-  refused(&source, "mesh.groups.contact_right.tolerance: 1 m is too wide for the body of");
-  refused(&source, "which measures 0.242 m: other faces would be taken too; give at most 0.0024 m");
+  assert_source_refused(&source,
+                        "mesh.groups.contact_right.tolerance: 1 m is too wide for the body of");
+  assert_source_refused(
+      &source, "which measures 0.242 m: other faces would be taken too; give at most 0.0024 m");
   source.rules.usual[MESH_CONTACT_RIGHT] =
       (mesh_rule){.kind = MESH_RULE_NEAREST, .at = {.1, .01, far}};
-  refused(&source, "mesh.groups.contact_right.nearest: (0.1, 0.01, 900) m is 900 m off the body");
+  assert_source_refused(
+      &source, "mesh.groups.contact_right.nearest: (0.1, 0.01, 900) m is 900 m off the body");
 }
 
 static void put(const char *path, const char *text) {
@@ -387,13 +361,15 @@ static void nodes_are_foreseen(void **state) {
   double least = mesh_estimate_size(&block, 1e5);
   assert_near(mesh_estimate_nodes(&block, least), 1e5, 500);
   source.size = 1e-9;
-  refused(&source, "many.geo: mesh.size 1e-09 m would give about 2.5e+16 nodes; with ");
+  assert_source_refused(&source,
+                        "many.geo: mesh.size 1e-09 m would give about 2.5e+16 nodes; with ");
   source.size = 0;
   put_block(source.path, 1e-7);
-  refused(&source, "many.geo: its own element size of 4e-07 m would give about 1.6e+11 nodes");
+  assert_source_refused(&source,
+                        "many.geo: its own element size of 4e-07 m would give about 1.6e+11 nodes");
   put(source.path, "SetFactory(\"OpenCASCADE\");\nBox(1) = {0, 0, 100, 40, 10, 100};\n");
   source.size = 1e-6;
-  refused(&source, "many.geo: mesh.size 1e-06 m would give about 2.4e+14 nodes");
+  assert_source_refused(&source, "many.geo: mesh.size 1e-06 m would give about 2.4e+14 nodes");
 }
 
 static void bad_solids_are_refused(void **state) {
@@ -401,17 +377,17 @@ static void bad_solids_are_refused(void **state) {
   mesh_source source = {.path = scratch("bad.step"), .unit = 1, .size = .01};
   mesh_fe     mesh;
   put(source.path, "ISO-10303-21;\nnothing\n");
-  refused(&source, "bad.step: ");
+  assert_source_refused(&source, "bad.step: ");
   source.path = scratch("bad.geo");
   put(source.path, "Point(1) = {0, 0, 0};\n");
-  refused(&source, "bad.geo: holds no solid");
+  assert_source_refused(&source, "bad.geo: holds no solid");
   put(source.path, "Point(1) = {0, 0;\n");
-  refused(&source, "bad.geo: ");
+  assert_source_refused(&source, "bad.geo: ");
   put(source.path, "SetFactory(\"OpenCASCADE\");\nBox(1) = {0, 0, 0, 1, 1, 1};\nFoo(3) = {;\n");
-  refused(&source, "line 3: syntax error");
+  assert_source_refused(&source, "line 3: syntax error");
   put(source.path, "SetFactory(\"OpenCASCADE\");\nBox(1) = {0, 0, 0, 1, 1, 1};\n");
   source.size = .5;
-  refused(&source, "group root is absent");
+  assert_source_refused(&source, "group root is absent");
   source.path = scratch("none.brep");
   assert_int_equal(mesh_source_read(&source, NULL, &mesh), SHB_ERR_IO);
 }
@@ -424,5 +400,5 @@ int main(void) {
       cmocka_unit_test(sides_are_made_to_match),     cmocka_unit_test(bad_solids_are_refused),
       cmocka_unit_test(groups_that_cannot_be_right), cmocka_unit_test(nodes_are_foreseen),
   };
-  return cmocka_run_group_tests_name("mesh.source", tests, set_up, tear_down);
+  return cmocka_run_group_tests_name("mesh.source", tests, scratch_make, scratch_remove);
 }

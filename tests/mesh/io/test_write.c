@@ -5,21 +5,7 @@
 #include "mesh/io/read.h"
 #include "tests/support/box.h"
 #include "tests/support/check.h"
-#include "tests/support/scratch.h"
-
-static char folder[SCRATCH_PATH];
-
-static int create(void **state) {
-  (void)state;
-  scratch_create(folder);
-  return 0;
-}
-
-static int destroy(void **state) {
-  (void)state;
-  scratch_remove(folder);
-  return 0;
-}
+#include "tests/support/scratch_folder.h"
 
 /* A box with odd coordinates, a fifth group on the face x = size and two volumes. */
 static mesh_fe make_mesh(mesh_kind kind) {
@@ -95,8 +81,8 @@ static void meshes_come_back(void **state) {
   for (int kind = MESH_TET10; kind <= MESH_HEX20; kind++)
     for (int inp = 0; inp < 2; inp++) {
       mesh_fe mesh = make_mesh((mesh_kind)kind), again;
-      char    path[SCRATCH_PATH + 16];
-      snprintf(path, sizeof path, "%s/box.%s", folder, inp ? "inp" : "msh");
+      char    path[sizeof scratch_folder + 16];
+      snprintf(path, sizeof path, "%s/box.%s", scratch_folder, inp ? "inp" : "msh");
       assert_ok(inp ? mesh_inp_write(&mesh, path) : mesh_msh_write(&mesh, path, &none));
       assert_ok(mesh_fe_read(path, &names, &again));
       assert_same(&again, &mesh, inp ? 1e-14 : 0);
@@ -109,8 +95,8 @@ static void a_folder_that_is_absent_is_told(void **state) {
   (void)state;
   const shb_provenance none = {0};
   mesh_fe              mesh = make_mesh(MESH_TET10);
-  char                 path[SCRATCH_PATH + 16];
-  snprintf(path, sizeof path, "%s/no/box", folder);
+  char                 path[sizeof scratch_folder + 16];
+  snprintf(path, sizeof path, "%s/no/box", scratch_folder);
   assert_int_equal(mesh_msh_write(&mesh, path, &none), SHB_ERR_IO);
   assert_has(shb_message(), "cannot be written");
   assert_int_equal(mesh_inp_write(&mesh, path), SHB_ERR_IO);
@@ -121,5 +107,5 @@ static void a_folder_that_is_absent_is_told(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(meshes_come_back),
                                      cmocka_unit_test(a_folder_that_is_absent_is_told)};
-  return cmocka_run_group_tests(tests, create, destroy);
+  return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

@@ -22,6 +22,7 @@
 #include "mhb/continuation/event_location.h"
 #include "mhb/continuation/first_solution.h"
 #include "tests/support/check.h"
+#include "tests/support/micrometres.h"
 #include "tests/support/random_model.h"
 #include "tests/support/solution.h"
 #include "tests/support/three_degree.h"
@@ -323,30 +324,6 @@ static void extreme_friction(void **state) {
   modal_model_free(&model);
 }
 
-static void times(double *x, int n, double factor) {
-  for (int i = 0; i < n; i++) x[i] *= factor;
-}
-
-/* The same model in um and MN: lengths x 1e6, forces / 1e6. */
-static void to_micrometres(modal_model *model, mhb_settings *s) {
-  int n = 3 * model->n_pairs, nc = 2 * n, m = model->n_modes, q = 3 * model->n_probes;
-  times(model->right, n * m, 1e6);
-  times(model->left, n * m, 1e6);
-  times(model->probe, q * m, 1e6);
-  times(model->residual_flexibility, nc * nc, 1e12);
-  times(model->residual_inertia, nc * nc, 1e12);
-  times(model->residual_fourth, nc * nc, 1e12);
-  times(model->probe_contact_residual, q * nc, 1e12);
-  times(model->probe_contact_inertia, q * nc, 1e12);
-  times((double *)model->load_residual, 2 * 3 * nc, 1e6);
-  times((double *)model->load_inertia, 2 * 3 * nc, 1e6);
-  times((double *)model->probe_load_residual, 2 * 3 * q, 1e6);
-  times((double *)model->probe_load_inertia, 2 * 3 * q, 1e6);
-  s->kv *= 1e-12;
-  times(s->ku, 3, 1e-12);
-  times(s->n0, 1, 1e-6);
-}
-
 /* In the frequency, and in the excitation from rest, where no motion gives a unit. */
 static void units_do_not_matter(void **state) {
   (void)state;
@@ -362,7 +339,7 @@ static void units_do_not_matter(void **state) {
     modal_model model;
     random_model(2, WITH_LEFT | WITH_RESIDUAL | WITH_NORMALS | WITH_AREAS, 55, &model);
     r[0] = sweep(&model, &s, SHB_OK);
-    to_micrometres(&model, &s);
+    model_in_micrometres(&model, &s);
     r[1]                = sweep(&model, &s, SHB_OK);
     const mhb_branch *a = &r[0]->branch[2], *b = &r[1]->branch[2];
     print_message("m and um: %d and %d points", a->n_points, b->n_points);

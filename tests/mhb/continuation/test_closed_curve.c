@@ -24,6 +24,28 @@ static mhb_curve_system rows_of(int rows, int length, int copies) {
                             .copy       = shifted};
 }
 
+/* A curve and a place of it. */
+typedef struct {
+  mhb_curve_system system; /* of rows */
+  mhb_arclength   *curve;
+  mhb_curve_place  place;
+} scene;
+
+/* A curve of rows in the range 0..high, at rest. */
+static void begin(scene *s, mhb_curve_system system, double high) {
+  *s = (scene){.system = system};
+  assert_ok(mhb_arclength_create(&s->system, 0, high, &s->curve));
+}
+
+static void note(scene *s, const mhb_curve_point *point, double tolerance) {
+  assert_ok(mhb_curve_place_note(&s->place, s->curve->system, point, tolerance));
+}
+
+static void end(scene *s) {
+  mhb_curve_place_free(&s->place);
+  mhb_arclength_destroy(s->curve);
+}
+
 /* A point of 2 rows: x = 1 + i and tangent = 0.1 (1 + i) over the first three of each row. */
 static void fill(const mhb_curve_system *s, mhb_curve_point *point) {
   for (int i = 0; i < s->n; i++) {
@@ -37,20 +59,20 @@ static void fill(const mhb_curve_system *s, mhb_curve_point *point) {
 
 static void a_place_knows_its_copies(void **state) {
   (void)state;
-  mhb_curve_system system = rows_of(2, 3, 3);
-  mhb_arclength   *curve;
-  mhb_curve_place  place = {0};
-  assert_ok(mhb_arclength_create(&system, 0, 10, &curve));
-  fill(&system, &curve->current);
-  assert_ok(mhb_curve_place_note(&place, &system, &curve->current, 1e-3));
-  assert_int_equal(place.copies, 3);
-  assert_true(place.value == 7 && place.rate == 0.2);
-  assert_near(place.size, sqrt(1 + 4 + 9 + 16 + 25 + 36), 1e-12);
-  fill(&system, &curve->next);
+  scene s;
+  begin(&s, rows_of(2, 3, 3), 10);
+  mhb_arclength   *curve = s.curve;
+  mhb_curve_place *place = &s.place;
+  fill(&s.system, &curve->current);
+  note(&s, &curve->current, 1e-3);
+  assert_int_equal(place->copies, 3);
+  assert_true(place->value == 7 && place->rate == 0.2);
+  assert_near(place->size, sqrt(1 + 4 + 9 + 16 + 25 + 36), 1e-12);
+  fill(&s.system, &curve->next);
   for (int j = 0; j < 3; j++) {
-    mhb_curve_return at = {&place, j};
+    mhb_curve_return at = {place, j};
     for (int row = 0; row < 2; row++) curve->next.x[3 * row + 2] = 3 + 3 * row + j;
-    assert_small(mhb_curve_place_distance(&place, curve, &curve->next), 0);
+    assert_small(mhb_curve_place_distance(place, curve, &curve->next), 0);
     assert_true(mhb_curve_return_arrived(curve, &curve->next, &at));
     at.copy = (j + 1) % 3;
     assert_false(mhb_curve_return_arrived(curve, &curve->next, &at));
@@ -59,32 +81,30 @@ static void a_place_knows_its_copies(void **state) {
   for (int row = 0; row < 2; row++) curve->next.x[3 * row + 2] = 3 + 3 * row + 1.3;
   curve->next.value = 8;
   double unit       = mhb_norm(curve->current.x, 6);
-  assert_near(mhb_curve_place_distance(&place, curve, &curve->next),
+  assert_near(mhb_curve_place_distance(place, curve, &curve->next),
               sqrt(2 * 0.09 / (unit * unit) + 0.01), 1e-12);
-  mhb_curve_place_free(&place);
-  assert_null(place.x);
-  mhb_arclength_destroy(curve);
+  end(&s);
+  assert_null(place->x);
 }
 
 /* Copies of a motion that repeats early are the motion itself; copy 0 does not count. */
 static void a_copy_may_be_the_place(void **state) {
   (void)state;
-  mhb_curve_system system = rows_of(2, 3, 3);
-  mhb_arclength   *curve;
-  mhb_curve_place  place = {0};
-  assert_ok(mhb_arclength_create(&system, 0, 10, &curve));
-  fill(&system, &curve->current);
-  assert_ok(mhb_curve_place_note(&place, &system, &curve->current, 1e-3));
+  scene s;
+  begin(&s, rows_of(2, 3, 3), 10);
+  mhb_arclength   *curve = s.curve;
+  mhb_curve_place *place = &s.place;
+  fill(&s.system, &curve->current);
+  note(&s, &curve->current, 1e-3);
   for (int early = 0; early < 2; early++) {
     for (int j = 0; j < 3; j++) {
-      mhb_curve_return at = {&place, j};
+      mhb_curve_return at = {place, j};
       assert_true(mhb_curve_return_repeats(&at) == (early && j == 2));
     }
-    memcpy(place.x + 12, place.x, sizeof(double) * 6);
-    place.x[12] += 0.9e-3 * place.size; /* within the tolerance */
+    memcpy(place->x + 12, place->x, sizeof(double) * 6);
+    place->x[12] += 0.9e-3 * place->size; /* within the tolerance */
   }
-  mhb_curve_place_free(&place);
-  mhb_arclength_destroy(curve);
+  end(&s);
 }
 
 /* A place of fewer harmonics, and one of more, mean the same motion. */
@@ -122,13 +142,14 @@ static void set_angle(mhb_arclength *curve, double angle, mhb_curve_point *point
 
 static void ahead_changes_its_sign_at_the_place(void **state) {
   (void)state;
-  mhb_arclength  *curve = scalar_curve(scalar_circle, -2, 2);
-  mhb_curve_place place = {0};
-  curve->current.x[0]   = 3.5;
+  scene            s     = {.curve = scalar_curve(scalar_circle, -2, 2)};
+  mhb_arclength   *curve = s.curve;
+  mhb_curve_place *place = &s.place;
+  curve->current.x[0]    = 3.5;
   set_angle(curve, 0.7, &curve->current);
-  assert_ok(mhb_curve_place_note(&place, curve->system, &curve->current, 1e-6));
-  mhb_curve_return at = {&place, 0};
-  for (int turned = 0; turned < 2; turned++, mhb_curve_place_turn(&place))
+  note(&s, &curve->current, 1e-6);
+  mhb_curve_return at = {place, 0};
+  for (int turned = 0; turned < 2; turned++, mhb_curve_place_turn(place))
     for (double away = -0.3; away < 0.31; away += 0.1) {
       set_angle(curve, 0.7 + away, &curve->next);
       double ahead = mhb_curve_return_ahead(curve, &curve->next, &at);
@@ -143,63 +164,61 @@ static void ahead_changes_its_sign_at_the_place(void **state) {
   curve->next.value = curve->current.value + h * curve->current.tangent[1];
   rate              = mhb_curve_return_ahead(curve, &curve->next, &at) / h;
   assert_near(rate, 1, 1e-9);
-  mhb_curve_place_free(&place);
-  mhb_arclength_destroy(curve);
+  end(&s);
 }
 
 /* A chord passes the place if it crosses its plane within 0.3 of the chord's length. */
 static void a_chord_is_near_or_not(void **state) {
   (void)state;
-  mhb_arclength  *curve = scalar_curve(scalar_line, -1, 1);
-  mhb_curve_place place = {0};
-  curve->current.x[0]   = 2;
+  scene            s     = {.curve = scalar_curve(scalar_line, -1, 1)};
+  mhb_arclength   *curve = s.curve;
+  mhb_curve_place *place = &s.place;
+  curve->current.x[0]    = 2;
   scalar_step(curve, 2, 0, 2.2, 0.2);
   scalar_point(curve, 2.1, 0.1, 1, 1, &curve->trial);
-  assert_ok(mhb_curve_place_note(&place, curve->system, &curve->trial, 1e-6));
-  mhb_curve_return at   = {&place, 0};
+  note(&s, &curve->trial, 1e-6);
+  mhb_curve_return at   = {place, 0};
   double           g[2] = {mhb_curve_return_ahead(curve, &curve->current, &at),
                            mhb_curve_return_ahead(curve, &curve->next, &at)};
   assert_true(g[0] < 0 && g[1] > 0);
   assert_true(mhb_curve_return_is_near(curve, g[0], g[1], &at));
-  place.x[0] += 0.1; /* about 0.05 in y; the chord is 0.14 long */
+  place->x[0] += 0.1; /* about 0.05 in y; the chord is 0.14 long */
   assert_false(mhb_curve_return_is_near(curve, g[0], g[1], &at));
-  place.x[0] -= 0.08;
+  place->x[0] -= 0.08;
   assert_true(mhb_curve_return_is_near(curve, g[0], g[1], &at));
-  mhb_curve_place_free(&place);
-  mhb_arclength_destroy(curve);
+  end(&s);
 }
 
 static void arrival_is_to_the_tolerance_of_the_place(void **state) {
   (void)state;
-  mhb_arclength  *curve = scalar_curve(scalar_circle, -2, 2);
-  mhb_curve_place place = {0};
-  curve->current.x[0]   = 4;
+  scene            s     = {.curve = scalar_curve(scalar_circle, -2, 2)};
+  mhb_arclength   *curve = s.curve;
+  mhb_curve_place *place = &s.place;
+  curve->current.x[0]    = 4;
   set_angle(curve, 0, &curve->current);
   for (double tolerance = 1e-2; tolerance > 1e-6; tolerance *= 0.1) {
-    assert_ok(mhb_curve_place_note(&place, curve->system, &curve->current, tolerance));
-    mhb_curve_return at = {&place, 0};
+    note(&s, &curve->current, tolerance);
+    mhb_curve_return at = {place, 0};
     set_angle(curve, 4 * 0.9 * tolerance, &curve->next); /* the range is 4 wide */
     assert_true(mhb_curve_return_arrived(curve, &curve->next, &at));
     set_angle(curve, 4 * 1.1 * tolerance, &curve->next);
     assert_false(mhb_curve_return_arrived(curve, &curve->next, &at));
   }
-  mhb_curve_place_free(&place);
-  mhb_arclength_destroy(curve);
+  end(&s);
 }
 
 /* At rest the unit is 1. */
 static void a_place_at_rest(void **state) {
   (void)state;
-  mhb_curve_system system = rows_of(1, 2, 1);
-  mhb_arclength   *curve;
-  mhb_curve_place  place = {0};
-  assert_ok(mhb_arclength_create(&system, 0, 2, &curve));
-  assert_ok(mhb_curve_place_note(&place, &system, &curve->current, 1e-6));
-  assert_true(place.size == 1);
+  scene s;
+  begin(&s, rows_of(1, 2, 1), 2);
+  mhb_arclength   *curve = s.curve;
+  mhb_curve_place *place = &s.place;
+  note(&s, &curve->current, 1e-6);
+  assert_true(place->size == 1);
   curve->next.x[1] = 0.25;
-  assert_near(mhb_curve_place_distance(&place, curve, &curve->next), 0.25, 1e-15);
-  mhb_curve_place_free(&place);
-  mhb_arclength_destroy(curve);
+  assert_near(mhb_curve_place_distance(place, curve, &curve->next), 0.25, 1e-15);
+  end(&s);
 }
 
 int main(void) {

@@ -233,12 +233,6 @@ static void faces_that_do_not_match_are_projected(void **state) {
   mesh_fe_free(&mesh);
 }
 
-static int hexahedra(void **state) {
-  (void)state;
-  use_elements(MESH_HEX20);
-  return 0;
-}
-
 int main(int argc, char **argv) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(any_division_keeps_the_totals),
@@ -251,8 +245,7 @@ int main(int argc, char **argv) {
   };
   modal_session session;
   if (modal_session_start(&argc, &argv, &session) != SHB_OK) return 1;
-  int failures = cmocka_run_group_tests_name("tet10", tests, NULL, NULL);
-  failures += cmocka_run_group_tests_name("hex20", tests, hexahedra, NULL);
+  int failures = run_with_both_elements(tests, NULL, NULL);
   modal_session_end(&session, SHB_OK);
   return failures;
 }

@@ -269,12 +269,6 @@ static void four_points_stiffen_curved_tetrahedra_less(void **state) {
   }
 }
 
-static int hexahedra(void **state) {
-  (void)state;
-  use_elements(MESH_HEX20);
-  return 0;
-}
-
 int main(int argc, char **argv) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(steel_bar),
@@ -290,7 +284,7 @@ int main(int argc, char **argv) {
   modal_session session;
   if (modal_session_start(&argc, &argv, &session) != SHB_OK) return 1;
   int failures = cmocka_run_group_tests_name("tet10", tests, NULL, NULL);
-  failures += cmocka_run_group_tests_name("hex20", of_hexahedra, hexahedra, NULL);
+  failures += cmocka_run_group_tests_name("hex20", of_hexahedra, use_hexahedra, NULL);
   session.fault = false;
   modal_session_end(&session, SHB_OK);
   return failures;

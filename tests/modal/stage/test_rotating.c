@@ -180,12 +180,6 @@ static void buckling_is_refused(void **state) {
   assert_non_null(strstr(shb_message(), "rotor.speed"));
 }
 
-static int hexahedra(void **state) {
-  (void)state;
-  use_elements(MESH_HEX20);
-  return 0;
-}
-
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(stiffening_is_southwells),
@@ -194,8 +188,7 @@ int main(void) {
   };
   if (SlepcInitialize(NULL, NULL, NULL, NULL)) return 1;
   PetscPushErrorHandler(fem_petsc_error_handler, NULL);
-  int failures = cmocka_run_group_tests_name("tet10", tests, NULL, NULL);
-  failures += cmocka_run_group_tests_name("hex20", tests, hexahedra, NULL);
+  int failures = run_with_both_elements(tests, NULL, NULL);
   PetscPopErrorHandler();
   SlepcFinalize();
   return failures;

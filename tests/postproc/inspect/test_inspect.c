@@ -4,35 +4,16 @@
 #include "postproc/inspect/inspect.h"
 #include "tests/support/check.h"
 #include "tests/support/fixture.h"
+#include "tests/support/scratch_folder.h"
 
 static const post_tree_style PLAIN = {false, false}, FULL = {false, true}, COLOUR = {true, false};
-
-static char folder[] = "/tmp/shroudhb-inspect-XXXXXX";
-static char path[256];
-
-static const char *at(const char *name) {
-  snprintf(path, sizeof path, "%s/%s", folder, name);
-  return path;
-}
-
-static int make_folder(void **state) {
-  (void)state;
-  return mkdtemp(folder) ? 0 : -1;
-}
-
-static int remove_folder(void **state) {
-  (void)state;
-  char command[300];
-  snprintf(command, sizeof command, "rm -r %s", folder);
-  return system(command);
-}
 
 static const shb_provenance PROVENANCE = {"cases/x/case.yaml", fixture_hostile, "a = 1\nb = 2\n",
                                           "shroudhb-mhb"};
 
 static char *inspect(const char *name, post_tree_style style, shb_status wanted) {
   post_buffer text = {0};
-  assert_int_equal(post_inspect(at(name), style, &text), wanted);
+  assert_int_equal(post_inspect(scratch(name), style, &text), wanted);
   for (const char *c = text.text; c && *c && !style.colour; c++)
     assert_true((unsigned char)*c >= 0x20 || *c == '\n' ||
                 *c == '\t'); /* no escape sequences from the file */
@@ -43,7 +24,7 @@ static void response(void **state) {
   (void)state;
   fixture_options o = fixture_usual();
   mhb_response   *r = fixture_response(&o);
-  assert_ok(mhb_response_write(r, at("x.response.h5"), &PROVENANCE));
+  assert_ok(mhb_response_write(r, scratch("x.response.h5"), &PROVENANCE));
   char                    *text    = inspect("x.response.h5", PLAIN, SHB_OK);
   static const char *const parts[] = {
       "shroudhb response, version 1",
@@ -83,7 +64,7 @@ static void largest_at_the_end(void **state) {
   mhb_response   *r     = fixture_response(&o);
   r->branch[0].n_points = 12;
   assert_int_equal(r->branch[0].kind, MHB_BRANCH_OPEN);
-  assert_ok(mhb_response_write(r, at("e.response.h5"), &PROVENANCE));
+  assert_ok(mhb_response_write(r, scratch("e.response.h5"), &PROVENANCE));
   char *text = inspect("e.response.h5", PLAIN, SHB_OK);
   assert_has(text, "open, largest ");
   assert_has(text, ", the end of the range; stuck peak ");
@@ -96,7 +77,7 @@ static void run_up(void **state) {
   fixture_options o = fixture_usual();
   mhb_response   *r = fixture_response(&o);
   r->run_up         = true;
-  assert_ok(mhb_response_write(r, at("r.response.h5"), &PROVENANCE));
+  assert_ok(mhb_response_write(r, scratch("r.response.h5"), &PROVENANCE));
   char *text = inspect("r.response.h5", PLAIN, SHB_OK);
   assert_has(text, "run-up: speed 1102.76 to 1656 rpm along E = 5");
   assert_has(text, "speed of the rotor, frequency/engine_order");
@@ -111,7 +92,7 @@ static void parameter(void **state) {
     fixture_options o = fixture_usual();
     o.parameter       = k ? MHB_IN_SCALE : MHB_IN_N0;
     mhb_response *r   = fixture_response(&o);
-    assert_ok(mhb_response_write(r, at("p.response.h5"), &PROVENANCE));
+    assert_ok(mhb_response_write(r, scratch("p.response.h5"), &PROVENANCE));
     char *text = inspect("p.response.h5", PLAIN, SHB_OK);
     assert_has(text, range[k]);
     assert_has(text,
@@ -140,7 +121,7 @@ static void modal(void **state) {
                    .probe_name    = name,
                    .probe         = shape};
   hid_t       file;
-  assert_ok(h5_create(at("x.modal.h5"), &file));
+  assert_ok(h5_create(scratch("x.modal.h5"), &file));
   assert_ok(modal_model_write(file, &m, &PROVENANCE));
   assert_ok(h5_close(file));
   char *text = inspect("x.modal.h5", PLAIN, SHB_OK);
@@ -162,7 +143,7 @@ static void modal(void **state) {
   m.load_residual                             = moved;
   for (int i = 0; i < 2; i++) {
     m.load_inertia = i ? moved : NULL;
-    assert_ok(h5_create(at("x.modal.h5"), &file));
+    assert_ok(h5_create(scratch("x.modal.h5"), &file));
     assert_ok(modal_model_write(file, &m, &PROVENANCE));
     assert_ok(h5_close(file));
     text = inspect("x.modal.h5", PLAIN, SHB_OK);
@@ -198,7 +179,7 @@ static void phases(void **state) {
                               .modal_force   = force};
   for (int i = 0; i < 3; i++) {
     hid_t file;
-    assert_ok(h5_create(at("x.modal.h5"), &file));
+    assert_ok(h5_create(scratch("x.modal.h5"), &file));
     assert_ok(modal_model_write(file, &m, &PROVENANCE));
     assert_ok(h5_write_attribute_text(file, "/modes", "checked", i == 0 ? "restart" : "no"));
     assert_ok(h5_write_attribute_int(file, "/modes", "checked_count", 19));
@@ -228,7 +209,7 @@ static void phases(void **state) {
 static void pretender(void **state) {
   (void)state;
   hid_t file;
-  assert_ok(h5_create(at("p.h5"), &file));
+  assert_ok(h5_create(scratch("p.h5"), &file));
   assert_ok(h5_write_provenance(file, "shroudhb modal model", 1, &PROVENANCE));
   assert_ok(
       h5_write_double(file, "/modes/frequency", H5_SHAPE(2), (const double[]){3, 1}, "Hz", "f"));
@@ -252,7 +233,7 @@ static void write_raw(hid_t file, const char *name, hid_t type, int rank, const 
 
 static void foreign(void **state) {
   (void)state;
-  hid_t        file      = H5Fcreate(at("f.h5"), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  hid_t        file      = H5Fcreate(scratch("f.h5"), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
   const double odd[]     = {2.385, NAN, -7, INFINITY};
   const int    whole[]   = {-3, 12};
   hid_t        text_type = H5Tcopy(H5T_C_S1);
@@ -302,7 +283,7 @@ static void large(void **state) {
   (void)state;
   enum { ROWS = 700, COLUMNS = 901 };
   double *x    = calloc(ROWS * COLUMNS, sizeof *x);
-  hid_t   file = H5Fcreate(at("l.h5"), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  hid_t   file = H5Fcreate(scratch("l.h5"), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
   x[3] = -2.385, x[ROWS * COLUMNS - 1] = 9.5;
   write_raw(file, "wide", H5T_NATIVE_DOUBLE, 2, (const hsize_t[]){ROWS, COLUMNS}, x);
   write_raw(file, "flat", H5T_NATIVE_DOUBLE, 2, (const hsize_t[]){1, ROWS * COLUMNS}, x);
@@ -321,7 +302,7 @@ static void write_text(const char *name, const char *from, size_t n) {
     assert_int_equal(fread(data, 1, n, in), n);
     fclose(in);
   }
-  FILE *out = fopen(at(name), "wb");
+  FILE *out = fopen(scratch(name), "wb");
   assert_int_equal(fwrite(data, 1, n, out), n);
   fclose(out);
   free(data);
@@ -333,9 +314,7 @@ static void errors(void **state) {
   assert_has(shb_message(), "missing.h5");
   write_text("zero.h5", NULL, 4000);
   assert_null(inspect("zero.h5", PLAIN, SHB_ERR_IO));
-  char whole[256];
-  snprintf(whole, sizeof whole, "%s/x.response.h5", folder);
-  write_text("cut.h5", whole, 30000);
+  write_text("cut.h5", scratch("x.response.h5"), 30000);
   assert_null(inspect("cut.h5", PLAIN, SHB_ERR_IO));
   assert_has(shb_message(), "truncated");
   assert_null(strchr(shb_message(), '\n'));
@@ -348,5 +327,5 @@ int main(void) {
       cmocka_unit_test(modal),     cmocka_unit_test(phases),
       cmocka_unit_test(pretender), cmocka_unit_test(foreign),
       cmocka_unit_test(large),     cmocka_unit_test(errors)};
-  return cmocka_run_group_tests(tests, make_folder, remove_folder);
+  return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

@@ -4,24 +4,11 @@
 #include "modal/model/model.h"
 #include "postproc/inspect/mac.h"
 #include "tests/support/check.h"
+#include "tests/support/scratch_folder.h"
 
 enum { MODES = 3, NODES = 5 };
 
-static char folder[] = "/tmp/shroudhb-mac-XXXXXX";
-
 static const shb_provenance PROVENANCE = {"case.yaml", "name: x\n", "a = 1\n", "shroudhb-modal"};
-
-static int make_folder(void **state) {
-  (void)state;
-  return mkdtemp(folder) ? 0 : -1;
-}
-
-static int remove_folder(void **state) {
-  (void)state;
-  char command[300];
-  snprintf(command, sizeof command, "rm -r %s", folder);
-  return system(command);
-}
 
 typedef struct {
   double factor;  /* of the frequencies */
@@ -46,16 +33,14 @@ static void shapes(const variant *v, size_t n, double *to) {
   to[2 * n + 1] = s;
 }
 
-static char *write_file(const variant *v, const char *name) {
-  static char path[2][256];
-  static int  turn;
-  double      frequency[MODES] = {107.5 * v->factor, 210.25 * v->factor, 499 * v->factor};
-  double      damping[MODES]   = {0.001, 0.002, 0.003}, right[6 * MODES], side[MODES * 6];
-  double      probe[3 * MODES], nodal[MODES * 3 * 8], nodes[3 * 8];
+static const char *write_file(const variant *v, const char *name) {
+  double frequency[MODES] = {107.5 * v->factor, 210.25 * v->factor, 499 * v->factor};
+  double damping[MODES]   = {0.001, 0.002, 0.003}, right[6 * MODES], side[MODES * 6];
+  double probe[3 * MODES], nodal[MODES * 3 * 8], nodes[3 * 8];
   double _Complex force[MODES] = {1, 2, 3};
   char        *names[1]        = {(char *)v->probe};
   const size_t n               = 3 * (size_t)v->pairs;
-  char        *out             = path[turn = !turn];
+  const char  *out             = scratch(name);
   shapes(v, n, side);
   for (size_t i = 0; i < MODES * n; i++) right[(i % n) * MODES + i / n] = side[i];
   memset(probe, 0, sizeof probe);
@@ -71,7 +56,6 @@ static char *write_file(const variant *v, const char *name) {
                    .probe_name    = names,
                    .probe         = probe};
   hid_t       file;
-  snprintf(out, sizeof path[0], "%s/%s", folder, name);
   assert_ok(h5_create(out, &file));
   assert_ok(modal_model_write(file, &m, &PROVENANCE));
   assert_ok(h5_write_double(file, "/mesh/nodes", H5_SHAPE((hsize_t)v->nodes, 3), nodes, "m", "x"));
@@ -160,5 +144,5 @@ int main(void) {
                                      cmocka_unit_test(modes_are_found_again),
                                      cmocka_unit_test(other_meshes_compare_what_is_condensed),
                                      cmocka_unit_test(nothing_in_common_is_refused)};
-  return cmocka_run_group_tests(tests, make_folder, remove_folder);
+  return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }
