@@ -1,12 +1,12 @@
-/* The motion that lasts, on main branches: where a wave is called unstable other than by a fold, the
- * whole ring is integrated (mhb/ring).
+/* The motion that lasts, on main branches. Where a wave is unstable other than by a fold, the whole
+ * ring is integrated (mhb/ring).
  *
  *   auto    a slow sweep over the modulated part of the branch, where the wave exceeds 0.4 of its
  *           peak; then points: of the wave's largest output, at the sweep's largest, two between
  *   always  the sweep, and every modulated point
  *   never   nothing
- * A point is modulated if it slips or opens, is unstable, and lost its stability by a flip or a pair
- * of multipliers. Each branch gets a text that says what was computed, or why not. Threads share
+ * A point is modulated if it slips or opens, is unstable, and lost stability by a flip or a pair of
+ * multipliers. Each branch gets a text that says what was computed, or why not. Threads share
  * the branches and then the points. No result depends on their number. */
 #ifndef MHB_BRANCHES_LASTING_MOTION_H
 #define MHB_BRANCHES_LASTING_MOTION_H

@@ -34,10 +34,10 @@ static mhb_block_mean second_half(const mhb_lasting_series *s) {
 
 /* Whether a start is on a wave, or comes back to one. */
 static bool is_wave(const mhb_lasting_series *s) {
-  int    n    = s->blocks;
-  double last = s->spread[n - 1], middle = s->spread[n / 2];
+  int    n = s->blocks, half = n / 2;
+  double last = s->spread[n - 1], middle = s->spread[half];
   return last < ON_WAVE ||
-         (n >= 16 && last < NEAR_WAVE && last < middle * pow(FALLS, n - 1 - n / 2));
+         (n >= 16 && last < NEAR_WAVE && last < middle * pow(FALLS, n - 1 - half));
 }
 
 mhb_lasting_verdict mhb_lasting_judge(mhb_lasting_series s[STARTS], bool last) {
@@ -109,7 +109,7 @@ static void destroy(start *s) {
   shb_arena_free(&s->arena);
 }
 
-/* Keep samples of the last period, for the lines. A fundamental of several periods counts as one. */
+/* Keep samples of the last period of the fundamental, for the lines. */
 static void keep_samples(start *s) {
   const mhb_ring_model *m     = s->ring.model;
   int                   every = s->ring.n_samples / MHB_SIDE_SAMPLES;

@@ -50,8 +50,8 @@ shb_status mhb_lasting_settle(const modal_model *modal, const mhb_settings *sett
 
 /* ---- the decision, from the series of both starts ---- */
 
-/* One start: [blocks] mean of the peaks and spread of each block, over the wave's; [n_peaks] peaks
- * of the half that counts, sorted by the call. */
+/* One start: mean of the peaks and spread of each block [blocks], over the wave's, and the peaks
+ * [n_peaks] of the half that counts. The call sorts them. */
 typedef struct {
   int           blocks, n_peaks;
   const double *mean, *spread;

@@ -1,9 +1,10 @@
 /* The fast modes of a blade and its residual flexibility as few modes.
  *
- * The contact sees the modes from one on, and residual terms, as R + w^2 R2 + O(w^4). With R = Q
- * Q^T and Q^-1 R2 Q^-T = U diag(1/w_i^2) U^T, the modes of frequency w_i and shape w_i Q u_i have
- * the same R and R2 (MacNeal 1971, Rubin 1975). The output of mode i is w_i G Q^-T u_i. G is its
- * static response to contact forces by what is merged. They are at most as many as contact dofs. */
+ * The contact sees the modes from one on, and residual terms, as R + w^2 R2 + O(w^4). With
+ *   R = Q Q^T,  Q^-1 R2 Q^-T = U diag(1/w_i^2) U^T
+ * modes of frequency w_i and shape w_i Q u_i have the same R and R2 (MacNeal 1971, Rubin 1975). The
+ * output of mode i is w_i G Q^-T u_i. G is its static response to contact forces by what is merged.
+ * They are at most as many as contact dofs. */
 #ifndef MHB_RING_MERGED_MODES_H
 #define MHB_RING_MERGED_MODES_H
 

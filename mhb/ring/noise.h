@@ -1,5 +1,5 @@
-/* Normal random numbers that are the same on every machine: splitmix64 (Steele, Lea, Flood 2014) and
- * the transform of Box and Muller (1958). */
+/* Normal random numbers that are the same on every machine: splitmix64 (Steele, Lea, Flood 2014)
+ * and the transform of Box and Muller (1958). */
 #ifndef MHB_RING_NOISE_H
 #define MHB_RING_NOISE_H
 

@@ -3,8 +3,8 @@
  *   z(t + h) = trace z(t) - det z(t - h) - sum of rows times forces, for every mode and blade
  *   right, left = sums of rows times z(t + h);  output likewise, if asked for
  * No include guard: ring_step.c defines WIDTH, TARGET and NAME(x) and includes it for each
- * instruction set. Vectors wider than the set are slow with GCC 12, and plain loops keep the sums in
- * memory. */
+ * instruction set. Vectors wider than the set are slow with GCC 12. Plain loops would keep the sums
+ * in memory. */
 
 typedef double NAME(vector) __attribute__((vector_size(8 * WIDTH)));
 typedef double NAME(loose) __attribute__((vector_size(8 * WIDTH), aligned(8)));

@@ -228,7 +228,7 @@ static shb_status set_merged_modes(mhb_ring_model *m) {
 
 static shb_status allocate(mhb_ring_model *m) {
   shb_arena *a    = &m->arena;
-  size_t     most = (size_t)(m->kept + 6 * m->pairs), pairs = (size_t)m->pairs;
+  size_t     most = (size_t)m->kept + 6 * (size_t)m->pairs, pairs = (size_t)m->pairs;
   size_t     frees = (size_t)m->n_free * 6 * (size_t)m->lanes;
   m->stride        = MHB_RING_ROWS + 6 * m->pairs + 3;
   m->w             = shb_arena_take(a, most, sizeof(double));

@@ -6,14 +6,14 @@
  * splitting gives the modes kicks h times the force once a step and their exact free motion in
  * between. Without the velocities that is the recurrence
  *   z(t + h) = trace z(t) - det z(t - h) + M_01 (h/w) force(t),
- * M the exact map of (z, z'/w) over h, trace and determinant those of M. z is scaled such that the
- * rows of the motion are also those of the force. Rows hold the factor sqrt(s),
- *   s = sinc((w + W)h/2) sinc((w - W)h/2)/sinc(w h),
- * which makes the receptance exact at the frequency W of the excitation.
+ * with M the exact map of (z, z'/w) over h. z is scaled such that the rows of the motion are also
+ * those of the force. Rows hold the factor sqrt(s), by which the receptance is exact at the
+ * frequency W of the excitation:
+ *   s = sinc((w + W)h/2) sinc((w - W)h/2)/sinc(w h)
  *
- * Modes above LAST_MODE times W and the residual flexibility R_r become at most 6 modes for each
- * pair, with the same static flexibility and the same coefficient of w^2. Faster modes than wh =
- * FASTEST are slowed to that, with their receptance at W kept: the step needs no implicit solution.
+ * Modes above LAST_MODE times W and the residual flexibility become at most 6 modes for each pair
+ * (merged_modes.h). Modes faster than wh = FASTEST are slowed to that, with their receptance at W
+ * kept. The step needs no implicit solution.
  *
  * Lanes are blades, their number rounded up to eight. Derivation: docs/theory/lasting.md. */
 #ifndef MHB_RING_RING_MODEL_H

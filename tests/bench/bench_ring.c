@@ -3,7 +3,7 @@
  *   bench_ring            the table
  *   bench_ring --quick    few repetitions
  *
- * Scene: 40 blades, 20 modes of 1 to 100 rad/s, one contact a blade that slips and opens, from rest.
+ * Scene: 40 blades, 20 modes of 1 to 100 rad/s, one contact a blade, from rest.
  * Error: of the positions of all modes after three periods, against 8192 steps, relative. The
  * baseline is mhb/integration in the same run. The exit code depends on errors only, because times
  * depend on the machine. */

@@ -190,8 +190,8 @@ static void a_modulated_ring_has_the_statistics_of_slow_integration(void **state
   destroy(&c);
 }
 
-/* Side waves of the same ring after 200 periods from a disturbed start: the partner of the strongest
- * is among the next four. */
+/* Side waves of the same ring after 200 periods from a disturbed start. The partner of the
+ * strongest is among the next four. */
 static void side_waves_come_in_pairs(void **state) {
   (void)state;
   enum { PERIODS = 64, N = 6 };
