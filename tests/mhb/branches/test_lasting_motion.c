@@ -26,6 +26,7 @@ static mhb_settings settings_of(void) {
   s.frequency[0] = .88 / SHB_TWO_PI;
   s.frequency[1] = .94 / SHB_TWO_PI;
   s.stability    = MHB_STABILITY_ALWAYS;
+  s.lasting      = MHB_LASTING_AUTO;
   return s;
 }
 
