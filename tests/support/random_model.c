@@ -171,6 +171,7 @@ mhb_settings random_settings(int harmonics) {
                     .subharmonics = 1,
                     .scale        = 1,
                     .tolerance    = 1e-12, /* differences amplify the error of Newton's method */
-                    .max_points   = 2000};
+                    .max_points   = 2000,
+                    .lasting      = MHB_LASTING_NEVER};
   return s;
 }

@@ -34,7 +34,7 @@ double complex loaded_by_hand(const modal_model *model, double w, double complex
                               const double complex *by);
 
 /* Settings: contact to the neighbour, 6 blades, engine order 1, mu 0.4, kv 0.8, skew ku, preload at
- * equilibrium, n0 0.3. */
+ * equilibrium, n0 0.3, no lasting motion. */
 mhb_settings random_settings(int harmonics);
 
 #endif

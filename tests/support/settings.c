@@ -12,5 +12,6 @@ mhb_settings ground_settings(double mu, double kv, double ku, double n0, int har
                         .subharmonics = 1,
                         .scale        = 1,
                         .tolerance    = 1e-8,
-                        .max_points   = 5000};
+                        .max_points   = 5000,
+                        .lasting      = MHB_LASTING_NEVER};
 }

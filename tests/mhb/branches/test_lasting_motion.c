@@ -6,8 +6,8 @@
 #include "mhb/branches/forced_response.h"
 #include "mhb/branches/lasting_motion.h"
 #include "tests/support/check.h"
-#include "tests/support/random_model.h"
 #include "tests/support/files.h"
+#include "tests/support/random_model.h"
 
 static const shb_provenance from = {"case.yaml", "name: x\n", "mu = 0.4\n", "shroudhb-mhb"};
 
@@ -26,6 +26,7 @@ static mhb_settings settings_of(void) {
   s.frequency[0] = .88 / SHB_TWO_PI;
   s.frequency[1] = .94 / SHB_TWO_PI;
   s.stability    = MHB_STABILITY_ALWAYS;
+  s.lasting      = MHB_LASTING_AUTO;
   return s;
 }
 
