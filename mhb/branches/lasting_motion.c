@@ -13,8 +13,8 @@
  * modulated point, relative. */
 static const double PART_OF_PEAK = 0.4, BEYOND = 1e-3;
 
-/* Points settled between the ends of the modulated part, beside the peaks. */
-enum { BETWEEN = 2 };
+/* Points settled inside the modulated part, beside the peaks. */
+enum { BETWEEN = 1 };
 
 /* Operations a period of 256 steps that auto allows: some 10 ms. */
 static const double MOST_WORK = 2e8;
