@@ -2,7 +2,7 @@
  * ring is integrated (mhb/ring).
  *
  *   auto    a slow sweep over the modulated part of the branch, where the wave exceeds 0.4 of its
- *           peak; then points: of the wave's largest output, at the sweep's largest, two between
+ *           peak; then points: of the wave's largest output, at the sweep's largest, one between
  *   always  the sweep, and every modulated point
  *   never   nothing
  * A point is modulated if it slips or opens, is unstable, and lost stability by a flip or a pair of

@@ -23,7 +23,7 @@ static void bands_give_the_ring(void **state) {
     for (int block = 3; block <= 6; block += 3) {
       int           n          = blades * block, near[3], pivot[72];
       double        A[72 * 72] = {0}, x[72], most = 0;
-      mhb_columns     y[72], folded[72];
+      mhb_columns   y[72], folded[72];
       mhb_ring_band band;
       assert_true(mhb_ring_band_create(blades, block, &band));
       mhb_ring_band_clear(&band);
