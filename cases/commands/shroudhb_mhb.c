@@ -31,6 +31,7 @@ static bool up_to_date(const char *path, const char *settings) {
   bool          same     = up_to_date_with(path, settings);
   mhb_response *response = NULL;
   same                   = same && mhb_response_read(path, &response) == SHB_OK;
+  same                   = same && !response->unfinished;
   for (int i = 0; same && i < response->n_branches; i++) {
     const mhb_branch *branch = &response->branch[i];
     same                     = branch->main != i || (branch->complete && branch->searched);

@@ -359,8 +359,8 @@ static const case_key table[] = {
     {"mhb.search.starts", CASE_AUTO, "", 0, 100000, .fallback = "auto", AT(mhb.search.starts),
      .stages = CASE_MHB,
      .help = "random starts at each frequency and order, to find curves that nothing leads to; "
-             "auto: a few at the lowest and the highest peak of all preloads, 0: no search, 40: a "
-             "good first look"},
+             "auto: one or more of order 1 at the lowest and the highest peak of all preloads, 0: "
+             "no search, 40: a good first look"},
     {"mhb.search.at", CASE_PLACES, "Hz", 0, 1e9, true, AT(mhb.search.at), .stages = CASE_MHB,
      .when = CASE_IF_SEARCH_AT,
      .help = "frequencies at which to search, at most 64; default: six, evenly over the range"},

@@ -55,7 +55,7 @@ static void whole(const case_reader *r, const case_key *key, char path[CASE_PATH
 static bool told(const case_reader *r, const case_key *key) {
   if (key->when == CASE_IF_SIZE) return r->file->mesh_file != NULL;
   if (key->when == CASE_IF_SEARCH || key->when == CASE_IF_SEARCH_AT)
-    return case_reader_given(r, "mhb.search.starts") != NULL;
+    return case_reader_given(r, "mhb.search.starts") != NULL && r->file->mhb.search.starts == 0;
   return false;
 }
 

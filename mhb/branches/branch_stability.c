@@ -37,7 +37,6 @@ typedef struct {
   int    computed;       /* 0: not computed */
   int    verdict;        /* mhb_verdict */
   int    loss;           /* MHB_LOSS_FOLD ... */
-  int    n_fold;         /* multipliers beyond +1 with the symmetry of the wave */
   double excess;         /* of the largest modulus over 1 */
   int    leaves_complex; /* the largest that is not on the positive axis is outside by the margin */
   double complex_excess; /* its modulus, less 1; NAN: undecided */
@@ -126,7 +125,6 @@ static point_stability stability_of(const mhb_multipliers *m) {
   point_stability  out    = {.computed       = 1,
                              .verdict        = (int)m->verdict,
                              .loss           = loss[m->crossing],
-                             .n_fold         = m->n_fold,
                              .excess         = m->largest - 1,
                              .complex_excess = NAN};
   int              i      = largest_complex(m);
@@ -420,26 +418,52 @@ static bool comes_back(const mhb_branch *branch, int i) {
          branch->special[i - 1] == MHB_ORDINARY;
 }
 
-/* Points not judged, from a reference on in direction step, up to the next one: unstable where the
- * number of multipliers beyond +1 is odd. */
-static void count_folds(mhb_branch *branch, const bool *gap, const bool *reference, int from,
-                        int step, bool odd) {
-  for (int i = from + step; i >= 0 && i < branch->n_points && !reference[i]; i += step) {
-    int later = step > 0 ? i : i + 1;
-    if (gap[later]) return;
-    odd ^= comes_back(branch, later) ^ (branch->special[i - step] == MHB_FOLD);
-    if (odd && branch->stable[i] < 0 && branch->special[i] != MHB_FOLD)
-      set(branch, i, false, MHB_LOSS_FOLD, MHB_BY_FOLDS);
+/* One point further from `i` in direction step: whether the number of folds passed changes. */
+static bool passes_fold(const mhb_branch *branch, int i, int step) {
+  return comes_back(branch, step > 0 ? i : i + 1) ^ (branch->special[i - step] == MHB_FOLD);
+}
+
+/* Whether nothing is known of the folds between `i` and the point before it. Of a curve that left
+ * the range and came back it is. */
+static bool is_cut(const mhb_branch *branch, const bool *gap, int i, int step) {
+  int later = step > 0 ? i : i + 1;
+  return gap[later] && !comes_back(branch, later);
+}
+
+/* Whether the next stable point in direction step is an odd number of folds away: a fold is not
+ * known, and nothing follows. */
+static bool contradicts(const mhb_branch *branch, const bool *gap, const bool *stable, int from,
+                        int step) {
+  bool odd = false;
+  for (int i = from + step; i >= 0 && i < branch->n_points; i += step) {
+    if (is_cut(branch, gap, i, step)) return false;
+    odd ^= passes_fold(branch, i, step);
+    if (stable[i]) return odd;
+  }
+  return false;
+}
+
+/* Points from a stable one on in direction step, up to the next. Beyond an odd number of folds a
+ * multiplier is beyond +1: the point is unstable, judged or not. Beyond an even number none need
+ * be: real multipliers that grew out of a pair are no fold. */
+static void count_folds(mhb_branch *branch, const bool *gap, const bool *stable, int from,
+                        int step) {
+  bool odd = false;
+  if (contradicts(branch, gap, stable, from, step)) return;
+  for (int i = from + step; i >= 0 && i < branch->n_points && !stable[i]; i += step) {
+    if (is_cut(branch, gap, i, step)) return;
+    odd ^= passes_fold(branch, i, step);
+    if (branch->special[i] == MHB_FOLD) continue;
+    if (odd && branch->stable[i] < 0) set(branch, i, false, MHB_LOSS_FOLD, MHB_BY_FOLDS);
+    if (odd && branch->stable[i] == 0) branch->loss[i] = MHB_LOSS_FOLD;
+    if (!odd && branch->loss[i] == MHB_LOSS_FOLD) branch->loss[i] = MHB_LOSS_FLIP;
   }
 }
 
-/* Folds on both sides of every reference [point]; odd [point]: it has an odd number of multipliers
- * beyond +1. */
-static void decide_by_folds(mhb_branch *branch, const bool *begins, const bool *reference,
-                            const bool *odd) {
+/* Folds on both sides of every stable point [point]. */
+static void decide_by_folds(mhb_branch *branch, const bool *gap, const bool *stable) {
   for (int i = 0; i < branch->n_points; i++)
-    for (int step = -1; step < 2 && reference[i]; step += 2)
-      count_folds(branch, begins, reference, i, step, odd[i]);
+    for (int step = -1; step < 2 && stable[i]; step += 2) count_folds(branch, gap, stable, i, step);
 }
 
 /* A fold whose multipliers were not computed, between two sides of one verdict. */
@@ -460,10 +484,10 @@ static void forget(mhb_branch *branch) {
   }
 }
 
-/* begins[point] and two further arrays of flags, all false but for the beginnings; NULL: no memory.
+/* begins[point] and a further array of flags, all false but for the beginnings; NULL: no memory.
  * room: points. */
 static bool *flags(const int *begins, int n_begins, size_t room) {
-  bool *flag = calloc(3 * room + 1, sizeof *flag);
+  bool *flag = calloc(2 * room + 1, sizeof *flag);
   for (int k = 0; flag && k < n_begins; k++) flag[begins[k]] = begins[k] > 0;
   return flag;
 }
@@ -475,24 +499,20 @@ shb_status mhb_branch_stability_by_folds(mhb_branch *branch, const int *begins, 
   SHB_CHECK(flag, SHB_ERR_IO, "out of memory");
   flag[n + 1 + (size_t)stable_at] = true;
   forget(branch);
-  decide_by_folds(branch, flag, flag + n + 1, flag + 2 * (n + 1));
+  decide_by_folds(branch, flag, flag + n + 1);
   free(flag);
   return SHB_OK;
 }
 
-/* Verdicts of the points judged, of those that their neighbours decide, and by folds. flag: two
- * arrays of room flags. */
-static void decide_all(mhb_branch_stability *w, bool *flag, size_t room) {
-  mhb_branch *branch    = branch_of(w);
-  bool       *reference = flag, *odd = flag + room;
+/* Verdicts of the points judged, of those that their neighbours decide, and by folds. stable: an
+ * array of flags. */
+static void decide_all(mhb_branch_stability *w, bool *stable) {
+  mhb_branch *branch = branch_of(w);
   decide(w);
-  for (int i = 0; i < w->n; i++) {
-    const point_stability *at = &w->at[i];
-    reference[i]              = at->computed && branch->special[i] != MHB_FOLD &&
-                   (at->verdict == MHB_STABLE || at->verdict == MHB_UNSTABLE);
-    odd[i] = at->n_fold % 2;
-  }
-  decide_by_folds(branch, w->begins, reference, odd);
+  for (int i = 0; i < w->n; i++)
+    stable[i] =
+        w->at[i].computed && w->at[i].verdict == MHB_STABLE && branch->special[i] != MHB_FOLD;
+  decide_by_folds(branch, w->begins, stable);
   decide_folds(branch);
 }
 
@@ -514,7 +534,7 @@ shb_status mhb_branch_stability_judge(mhb_branch_stability *w, mhb_tracer *trace
                           : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   if (status == SHB_OK) status = judge_points(w, finished);
   if (status == SHB_OK && *finished) status = mark_bifurcations(w);
-  if (status == SHB_OK) decide_all(w, w->begins + room, room);
+  if (status == SHB_OK) decide_all(w, w->begins + room);
   free(w->at);
   free(w->decided);
   free(w->begins);

@@ -434,10 +434,12 @@ shb_status mhb_forced_response(const modal_model *model, const mhb_settings *ask
   s.preload  = calloc((size_t)settings->n_preloads, sizeof *s.preload);
   shb_status status =
       s.response && s.preload ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  if (status == SHB_OK) s.response->unfinished = true;
   if (status == SHB_OK) status = mhb_response_describe(s.response, model, settings);
   if (status == SHB_OK) status = linear_limits(model, settings, s.response);
   if (status == SHB_OK) status = all_preloads(&s, model);
   if (status == SHB_OK) status = lasting_motion(&s, model);
+  if (status == SHB_OK) s.response->unfinished = shb_interrupted();
   if (status == SHB_OK) status = publish(&s);
   if (status == SHB_OK) status = take_curves(&s);
   mhb_publisher_stop(&s.publisher);

@@ -92,6 +92,7 @@ static shb_status write_root(hid_t file, const mhb_response *response) {
   SHB_TRY(h5_write_attribute_int(file, "/", "blades", response->blades));
   SHB_TRY(h5_write_attribute_int(file, "/", "subharmonics", response->subharmonics));
   if (response->run_up) SHB_TRY(h5_write_attribute_int(file, "/", "run_up", 1));
+  if (response->unfinished) SHB_TRY(h5_write_attribute_int(file, "/", "finished", 0));
   SHB_TRY(h5_write_attribute_text(file, "/", "parameter", mhb_parameter_name(response->parameter)));
   SHB_TRY(h5_write_attribute_double(file, "/", "psi", response->psi));
   SHB_TRY(h5_write_attribute_double(file, "/", "phi", response->phi));
@@ -335,8 +336,10 @@ static shb_status read_root(hid_t file, const char *path, mhb_response **out) {
   SHB_TRY(h5_read_attribute_int(file, "/", "engine_order", 0, &response->engine_order));
   SHB_TRY(h5_read_attribute_int(file, "/", "blades", 0, &response->blades));
   SHB_TRY(h5_read_attribute_int(file, "/", "subharmonics", 1, &response->subharmonics));
-  int run_up = 0;
+  int run_up = 0, finished = 1;
   SHB_TRY(h5_read_attribute_int(file, "/", "run_up", 0, &run_up));
+  SHB_TRY(h5_read_attribute_int(file, "/", "finished", 1, &finished));
+  response->unfinished = finished == 0;
   response->run_up = run_up != 0 && response->engine_order >= 1;
   SHB_TRY(h5_read_attribute_double(file, "/", "psi", 0, &response->psi));
   SHB_TRY(h5_read_attribute_double(file, "/", "phi", 0, &response->phi));

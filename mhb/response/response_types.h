@@ -142,6 +142,7 @@ typedef struct {
   int     n_modes;
   double *mode_frequency, *mode_damping, *eigen_residual; /* [m]; eigen_residual may be NULL */
   int     engine_order, blades;
+  bool    unfinished; /* the run that makes it has more to do */
   bool    run_up; /* the speed follows the frequency on the engine order; modes of the top speed */
   double  psi, phi; /* rad, mean of the pairs */
 } mhb_response;

@@ -134,9 +134,10 @@ static void put_optimum(const post_analysis *analysis, post_buffer *out) {
                         "excitation.</li>\n");
     return;
   }
-  const post_track_point *best = &t->point[t->best];
-  post_put(out, "<li><b>%s</b> of the %d preloads computed gives the lowest peak, %s at %s",
-           preload(n0, best->n0), t->n,
+  const post_track_point *best   = &t->point[t->best];
+  char                    of[96] = ", the only preload computed, has its highest peak";
+  if (t->n > 1) snprintf(of, sizeof of, " of the %d preloads computed gives the lowest peak", t->n);
+  post_put(out, "<li><b>%s</b>%s, %s at %s", preload(n0, best->n0), of,
            post_measure(a, best->amplitude, post_unit_length(best->amplitude), 3),
            place(analysis, best, at));
   const char *joint = ": ";

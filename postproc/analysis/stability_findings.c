@@ -16,11 +16,19 @@ post_verdict post_verdict_of(const mhb_branch *branch, int point) {
                                                                   : POST_VERDICT_NEVER_SEEN;
 }
 
+bool post_swing_lasts(const mhb_branch *branch, int window) {
+  double f    = branch->lasting_curve.frequency[window];
+  int    near = 0;
+  for (int i = 1; i < branch->n_points; i++)
+    if (fabs(branch->frequency[i] - f) < fabs(branch->frequency[near] - f)) near = i;
+  return branch->n_points > 0 && branch->stable[near] != 1;
+}
+
 int post_largest_swing(const mhb_branch *branch) {
   const mhb_lasting_curve *curve = &branch->lasting_curve;
   int                      best  = -1;
   for (int i = 0; i < curve->n; i++)
-    if (best < 0 || curve->worst[i] > curve->worst[best]) best = i;
+    if (post_swing_lasts(branch, i) && (best < 0 || curve->worst[i] > curve->worst[best])) best = i;
   return best;
 }
 
@@ -87,15 +95,16 @@ static bool is_known(const post_analysis *analysis, const post_track_point *p) {
   return branch->kind == MHB_BRANCH_NONLINEAR && branch->lasting_kind[p->point] > 0;
 }
 
-/* " Elsewhere up to 1.52 times the peak, at 213.2 Hz." */
+/* "; over the range up to 53.9 µm, at 213.2 Hz", if that is more than at the peak. */
 static void put_largest_swing(const post_analysis *analysis, const post_track_point *p,
                               post_buffer *out) {
   const mhb_branch *branch = &analysis->response->branch[p->branch];
-  char              at[POST_PLACE], ratio[POST_NUMBER];
-  int               i = post_largest_swing(branch);
-  if (i < 0) return;
-  post_put(out, "; over the range up to %s times this peak, at %s",
-           post_plain(ratio, branch->lasting_curve.worst[i] / p->amplitude, 3),
+  char              at[POST_PLACE], size[POST_NUMBER];
+  int               i     = post_largest_swing(branch);
+  double            worst = i < 0 ? 0 : branch->lasting_curve.worst[i];
+  if (!(worst > p->amplitude * branch->lasting_worst[p->point])) return;
+  post_put(out, "; over the range up to %s, at %s",
+           post_measure(size, worst, post_unit_length(worst), 3),
            post_abscissa_place(&analysis->abscissa, branch->lasting_curve.frequency[i], 4, at));
 }
 
@@ -133,8 +142,13 @@ static void put_not_computed(const post_analysis *analysis, post_buffer *out) {
       known     = known || branch->lasting_kind[p] > 0;
     }
     if (!modulated || known) continue;
+    static const char not_computed[] = "not computed: ";
+    const char       *why            = branch->lasting                  ? branch->lasting
+                                       : analysis->response->unfinished ? "the run was interrupted"
+                                                                        : "mhb.lasting is never";
+    if (strncmp(why, not_computed, strlen(not_computed)) == 0) why += strlen(not_computed);
     post_put(out, "<li>What lasts where the wave is modulated was <b>not computed</b>: ");
-    post_put_escaped(out, branch->lasting ? branch->lasting : "mhb.lasting is never");
+    post_put_escaped(out, why);
     post_put(out, ".</li>\n");
     return;
   }

@@ -19,7 +19,11 @@ typedef enum {
 
 post_verdict post_verdict_of(const mhb_branch *branch, int point);
 
-/* Index of the largest swing of any blade in the slow sweep of a branch; -1: there is no sweep. */
+/* Whether a window of the slow sweep shows what lasts. Where the wave is stable it need not: the
+ * motion of an unstable stretch rings on there. */
+bool post_swing_lasts(const mhb_branch *branch, int window);
+
+/* Window of the largest swing of any blade in the slow sweep of a branch; -1: none. */
 int post_largest_swing(const mhb_branch *branch);
 
 /* Write list items: how many points are modulated, never seen and not judged, and what lasts. */

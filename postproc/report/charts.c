@@ -152,7 +152,10 @@ static void draw_lasting(const post_analysis *analysis, const post_plot *plot, i
   if (analysis->abscissa.parameter != MHB_IN_FREQUENCY) return;
   post_group_class(&analysis->group[analysis->curve[b].group], group);
   snprintf(classes, sizeof classes, "swing %s", group);
-  plot_band(plot, classes, sweep->n, sweep->frequency, sweep->mean, sweep->worst);
+  for (int i = 0, n; i < sweep->n; i += n + 1) { /* stretches that last, one by one */
+    for (n = 0; i + n < sweep->n && post_swing_lasts(branch, i + n);) n++;
+    plot_band(plot, classes, n, sweep->frequency + i, sweep->mean + i, sweep->worst + i);
+  }
   for (int i = 0; i < branch->n_points; i++) {
     if (branch->lasting_kind[i] <= MHB_LASTING_WAVE) continue;
     double wave = analysis->curve[b].amplitude[i];

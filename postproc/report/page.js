@@ -292,7 +292,12 @@
       kinds.forEach((kind, v) =>
           main.line(kind + classes, b.f, a, k => verdict(k) === v && !left(k)));
       if (o === outputs[0] && sweep && b.ringAt)
-        main.band("swing " + classOf(g), b.ringAt, b.ringMean, b.ringWorst);
+        for (let i = 0, n = 0; i < b.ringAt.length; i += n + 1) {
+          for (n = 0; b.ringLasts[i + n]; n++);
+          const part = list => list.slice(i, i + n);
+          main.band(
+              "swing " + classOf(g), part(b.ringAt), part(b.ringMean), part(b.ringWorst));
+        }
       for (const [f, mean, worst, kind] of o === outputs[0] && sweep && b.lasting || []) {
         if (kind < 2) continue;
         main.line("line lasting " + classOf(g), [f, f], [mean, worst], () => true);

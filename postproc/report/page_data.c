@@ -296,6 +296,10 @@ static void put_lasting(const post_analysis *analysis, int b, post_buffer *out) 
     put_list(out, "ringAt", sweep->n, sweep->frequency);
     put_list(out, "ringMean", sweep->n, sweep->mean);
     put_list(out, "ringWorst", sweep->n, sweep->worst);
+    post_put(out, ",\"ringLasts\":[");
+    for (int i = 0; i < sweep->n; i++)
+      post_put(out, "%s%d", i ? "," : "", post_swing_lasts(branch, i));
+    post_put(out, "]");
   }
   post_put(out, ",\"lasting\":[");
   for (int i = 0; i < branch->n_points; i++) {

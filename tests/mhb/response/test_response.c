@@ -521,6 +521,20 @@ static void test_large(void **state) {
   mhb_response_destroy(many);
 }
 
+/* A file of a run that has more to do says so; one without the word is finished. */
+static void unfinished_runs_are_told(void **state) {
+  (void)state;
+  mhb_response *r = sample(PROBES, 3), *read;
+  for (int unfinished = 0; unfinished < 2; unfinished++) {
+    r->unfinished = unfinished;
+    assert_ok(mhb_response_write(r, scratch("part.h5"), &from));
+    assert_ok(mhb_response_read(scratch("part.h5"), &read));
+    assert_int_equal(read->unfinished, unfinished);
+    mhb_response_destroy(read);
+  }
+  mhb_response_destroy(r);
+}
+
 static void test_create(void **state) {
   (void)state;
   assert_null(mhb_response_create(-1, 0, 1));
@@ -532,6 +546,7 @@ static void test_create(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_round_trip),
+      cmocka_unit_test(unfinished_runs_are_told),
       cmocka_unit_test(run_up_tells_its_speeds),
       cmocka_unit_test(test_further_branches),
       cmocka_unit_test(test_growth),

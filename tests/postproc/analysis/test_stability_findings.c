@@ -121,9 +121,18 @@ static void the_headline_says_what_lasts(void **state) {
     f.branch->lasting_curve.mean[i]      = amplitude;
     f.branch->lasting_curve.worst[i]     = amplitude * (i == 1 ? 1.5 : 1.2);
   }
+  /* where the wave is stable a sweep shows what rings on, not what lasts */
+  assert_int_equal(post_largest_swing(f.branch), -1);
+  for (int p = 0; p < f.branch->n_points; p++) f.branch->stable[p] = 0;
   assert_int_equal(post_largest_swing(f.branch), 1);
   text = headline(&f);
-  assert_has(text, "over the range up to 1.5 times this peak, at 101.0\u00a0Hz");
+  assert_has(text, "over the range up to ");
+  assert_has(text, ", at 101.0\u00a0Hz");
+  free(text);
+  /* less than at the peak: nothing to add */
+  f.branch->lasting_curve.worst[1] = 1.25 * amplitude;
+  text                             = headline(&f);
+  assert_has_not(text, "over the range");
   free(text);
   tear_down(&f);
 }
@@ -140,6 +149,12 @@ static void what_is_missing_is_said(void **state) {
   free(text);
   text = findings(&f);
   assert_has(text, "<b>not computed</b>: the speed changes along the curve.");
+  free(text);
+  free(f.branch->lasting);
+  f.branch->lasting      = NULL;
+  f.response->unfinished = true;
+  text                   = findings(&f);
+  assert_has(text, "<b>not computed</b>: the run was interrupted.");
   free(text);
   f.branch->stable[f.point] = -1;
   text                      = headline(&f);
