@@ -6,8 +6,9 @@
  *
  * A row gives processor seconds without verdicts, with auto, and with always. Then follow the
  * slipping points and how many of them have opposite verdicts, are not judged, are judged by
- * multipliers. The last figure is the largest difference of a multiplier. Goals: opposite below 1 %, not judged at most a
- * third, multipliers within 5e-3. The exit code depends on these, not on seconds.
+ * multipliers. The last figure is the largest difference of a multiplier. Goals: opposite below
+ * 1 %, not judged at most a third, multipliers within 5e-3. The exit code depends on these, not on
+ * seconds.
  */
 #include <math.h>
 #include <omp.h>
