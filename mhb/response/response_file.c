@@ -340,7 +340,7 @@ static shb_status read_root(hid_t file, const char *path, mhb_response **out) {
   SHB_TRY(h5_read_attribute_int(file, "/", "run_up", 0, &run_up));
   SHB_TRY(h5_read_attribute_int(file, "/", "finished", 1, &finished));
   response->unfinished = finished == 0;
-  response->run_up = run_up != 0 && response->engine_order >= 1;
+  response->run_up     = run_up != 0 && response->engine_order >= 1;
   SHB_TRY(h5_read_attribute_double(file, "/", "psi", 0, &response->psi));
   SHB_TRY(h5_read_attribute_double(file, "/", "phi", 0, &response->phi));
   SHB_CHECK(response->subharmonics >= 1, SHB_ERR_INPUT,
