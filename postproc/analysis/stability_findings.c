@@ -194,15 +194,17 @@ void post_lasting_summary(const post_analysis *analysis, const post_track_point 
   const mhb_branch *branch  = &analysis->response->branch[p->branch];
   post_verdict      verdict = post_verdict_of(branch, p->point);
   char              worst[POST_NUMBER];
-  if (is_known(analysis, p))
+  if (is_known(analysis, p)) {
     post_put(out, ", %s: blades swing up to %s times the wave",
              branch->lasting_kind[p->point] == MHB_LASTING_WAVE
                  ? "where the wave lasts"
                  : kind_name(branch->lasting_kind[p->point]),
              post_plain(worst, branch->lasting_worst[p->point], 3));
-  else if (verdict != POST_VERDICT_STABLE)
+    put_largest_swing(analysis, p, out);
+  } else if (verdict != POST_VERDICT_STABLE) {
     post_put(out, ", %s",
              verdict == POST_VERDICT_NOT_JUDGED   ? "stability not judged"
              : verdict == POST_VERDICT_NEVER_SEEN ? "beyond a fold: never seen"
                                                   : "modulated: what lasts was not computed");
+  }
 }
