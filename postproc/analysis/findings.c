@@ -386,11 +386,12 @@ static void put_searches(const post_analysis *analysis, post_buffer *out) {
     put_search_places(analysis, branch, out);
   }
   if (places > 4) post_put(out, "; and at %d more preloads", places - 4);
+  if (places > 0 && found > 0)
+    post_put(out, ". %d random starts there found %d.", starts, found);
+  else if (places > 0)
+    post_put(out, ". %d random starts there found none.", starts);
   if (places > 0)
-    post_put(out,
-             ". Of %d random starts there %d led to a curve that was not known. Nowhere else was "
-             "any looked for (<code>mhb.search</code>).</li>\n",
-             starts, found);
+    post_put(out, " None was looked for elsewhere (<code>mhb.search</code>).</li>\n");
   else if (analysis->tracking.n > 0)
     post_put(out,
              "<li>Other curves, which no sweep comes to, were <b>not searched</b> for: "
