@@ -22,7 +22,8 @@ set(INTEGRATION_TESTS
   cases.scenes.paper_fig8_direct cases.scenes.lost_curves cases.scenes.snubber_blade
   hard.three_degree hard.jumps hard.ends hard.friction hard.resonance hard.balance hard.pairs
   hard.peaks hard.isolas hard.parameters bench.stability bench.modal bench.contact
-  bench.integrate docs.first_case)
+  bench.integrate docs.first_case
+  mhb.ring.neimark_sacker)
 set(SLOW_TESTS
   mesh.blade.blade mhb.floquet.monodromy mhb.branches.verdicts cases.converge.converge hard.gaps
   bench.elements)
