@@ -1,5 +1,5 @@
-/* A motion followed through its Neimark-Sacker point by time integration: the blade of three degrees
- * on the ground, its multipliers and the integrator share no code. */
+/* A motion followed through its Neimark-Sacker point by time integration. The blade has three
+ * degrees of freedom and rubs on the ground. Its multipliers and the integrator share no code. */
 #include "mesh/base/constants.h"
 #include "mhb/ring/ring_output.h"
 #include "tests/support/check.h"
