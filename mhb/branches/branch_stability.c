@@ -167,15 +167,8 @@ static bool judge_point(mhb_branch_stability *w, int point) {
 
 /* Whether all contacts stick or are open throughout. The exponents of the last point are used again
  * then, at little cost. In a run-up they change with the speed. */
-static bool is_linear(const mhb_branch *branch, size_t pairs, int point) {
-  const double *share = branch->state + 3 * (size_t)point * pairs;
-  for (size_t a = 0; a < pairs; a++)
-    if (share[3 * a] < 1 && share[3 * a + 2] < 1) return false;
-  return true;
-}
-
 static bool is_linear_point(const mhb_branch_stability *w, int point) {
-  return is_linear(branch_of(w), (size_t)w->response->n_pairs, point);
+  return mhb_response_is_linear(w->response, branch_of(w), point);
 }
 
 /* The point of the largest motion that is not judged yet; -1: none. */

@@ -49,27 +49,9 @@ typedef struct {
 
 /* ---- choice ---- */
 
-static bool is_linear(const mhb_response *r, const mhb_branch *b, int point) {
-  const double *share = b->state + 3 * (size_t)point * (size_t)r->n_pairs;
-  for (int a = 0; a < r->n_pairs; a++)
-    if (share[3 * a] < 1 && share[3 * a + 2] < 1) return false;
-  return true;
-}
-
 static bool is_modulated(const mhb_response *r, const mhb_branch *b, int point) {
   bool pair = b->loss[point] == MHB_LOSS_FLIP || b->loss[point] == MHB_LOSS_NEIMARK_SACKER;
-  return b->stable[point] == 0 && pair && !is_linear(r, b, point);
-}
-
-/* First harmonic of the output: the first probe, else the contact motion of pair 0. */
-static double output_of(const mhb_response *r, const mhb_branch *b, int point) {
-  size_t                K = (size_t)b->n_harmonics + 1, at = (size_t)point * 3 * K;
-  const double complex *x =
-      r->n_probes > 0 ? b->probe + at * (size_t)r->n_probes : b->motion + at * (size_t)r->n_pairs;
-  size_t first  = (size_t)b->order < K ? (size_t)b->order : K - 1;
-  double square = 0;
-  for (size_t axis = 0; axis < 3; axis++) square += pow(cabs(x[axis * K + first]), 2);
-  return sqrt(square);
+  return b->stable[point] == 0 && pair && !mhb_response_is_linear(r, b, point);
 }
 
 /* Why nothing is computed for the whole case; NULL: it is. */
@@ -93,7 +75,7 @@ static shb_status choose(const lasting *l, work *w) {
   w->modulated = calloc((size_t)b->n_points + 1, sizeof *w->modulated);
   SHB_CHECK(w->size && w->asked && w->modulated, SHB_ERR_IO, "out of memory");
   for (int i = 0; i < b->n_points; i++) {
-    w->size[i] = output_of(w->curves, b, i);
+    w->size[i] = mhb_response_output(w->curves, b, i);
     peak       = fmax(peak, w->size[i]);
   }
   for (int i = 0; i < b->n_points; i++) {

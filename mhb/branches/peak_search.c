@@ -1,7 +1,6 @@
 #include "mhb/branches/peak_search.h"
 
 #include <math.h>
-#include <stddef.h>
 
 /* One start for so many Newton iterations of the run. A start takes some 25 (multistart.h). The
  * estimates, events and verdicts of the run are not counted, so its share is below a tenth. */
@@ -13,23 +12,12 @@ enum { ITERATIONS_A_START = 50, LEAST_STARTS = 1, MOST_STARTS = 20 };
 /* Places nearer than this, relative to the range of the branch, are one. */
 static const double SAME_PLACE = 0.01;
 
-/* Square of the amplitude of the first probe at the excitation's frequency, or, without probes, of
- * the motion of the first pair. */
-static double output(const mhb_response *r, const mhb_branch *b, int point) {
-  size_t                K = (size_t)b->n_harmonics + 1, first = (size_t)b->order;
-  int                   rows = 3 * (r->n_probes > 0 ? r->n_probes : r->n_pairs);
-  const double complex *a =
-      (r->n_probes > 0 ? b->probe : b->motion) + (size_t)point * (size_t)rows * K;
-  double sum = 0;
-  for (size_t axis = 0; axis < 3 && first < K; axis++) sum += pow(cabs(a[axis * K + first]), 2);
-  return sum;
-}
-
 /* The point of the largest output (sign 1) or the least one (-1); -1: there are no points. */
 static int extreme(const mhb_response *r, const mhb_branch *b, int sign) {
   int best = -1;
   for (int i = 0; i < b->n_points; i++)
-    if (best < 0 || sign * output(r, b, i) > sign * output(r, b, best)) best = i;
+    if (best < 0 || sign * mhb_response_output(r, b, i) > sign * mhb_response_output(r, b, best))
+      best = i;
   return best;
 }
 
@@ -78,7 +66,7 @@ void mhb_peak_places_choose(const mhb_response *limits, const mhb_response *cons
     places[i] = (mhb_peak_places){0};
     int top   = own[i] ? extreme(own[i], &own[i]->branch[0], 1) : -1;
     if (top < 0) continue;
-    peak[i] = output(own[i], &own[i]->branch[0], top);
+    peak[i] = mhb_response_output(own[i], &own[i]->branch[0], top);
     if (lowest < 0 || peak[i] < peak[lowest]) lowest = i;
     if (highest < 0 || peak[i] > peak[highest]) highest = i;
     work += iterations(own[i]);

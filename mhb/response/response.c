@@ -1,5 +1,6 @@
 #include "mhb/response/response.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -46,6 +47,23 @@ static void free_branch(mhb_branch *branch) {
   free(branch->search);
   free(branch->lasting);
   free_curve(&branch->lasting_curve);
+}
+
+bool mhb_response_is_linear(const mhb_response *r, const mhb_branch *b, int point) {
+  const double *share = b->state + 3 * (size_t)point * (size_t)r->n_pairs;
+  for (int a = 0; a < r->n_pairs; a++)
+    if (share[3 * a] < 1 && share[3 * a + 2] < 1) return false;
+  return true;
+}
+
+double mhb_response_output(const mhb_response *r, const mhb_branch *b, int point) {
+  size_t                K = (size_t)b->n_harmonics + 1, at = (size_t)point * 3 * K;
+  const double complex *x =
+      r->n_probes > 0 ? b->probe + at * (size_t)r->n_probes : b->motion + at * (size_t)r->n_pairs;
+  size_t first  = (size_t)b->order < K ? (size_t)b->order : K - 1;
+  double square = 0;
+  for (size_t axis = 0; axis < 3; axis++) square += pow(cabs(x[axis * K + first]), 2);
+  return sqrt(square);
 }
 
 shb_status mhb_response_note_search(mhb_branch *branch, const mhb_search *search) {

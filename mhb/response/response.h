@@ -15,6 +15,12 @@ mhb_response *mhb_response_like(const mhb_response *response);
 shb_status mhb_response_interfaces(mhb_response *response, int n, char *const *name,
                                    const int *interface, int lead);
 
+/* Whether all contacts stick or are open throughout, at a point. */
+bool mhb_response_is_linear(const mhb_response *response, const mhb_branch *branch, int point);
+/* Amplitude of the first probe at the excitation's frequency, m. Without probes it is that of the
+ * first pair's motion. Its square is the sum over the three components. */
+double mhb_response_output(const mhb_response *response, const mhb_branch *branch, int point);
+
 /* Appends an empty branch, its own main one, with index *index. */
 shb_status mhb_response_branch(mhb_response *response, mhb_branch_kind kind, int *index);
 /* Appends a point of zeros with index *point; the arrays of the branch may move. */
