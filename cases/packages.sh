@@ -7,8 +7,10 @@ libgmsh-dev libpetsc-real-dev libslepc-real-dev libhdf5-openmpi-dev libfftw3-dev
 liblapacke-dev libopenblas-dev libsuitesparse-dev libmumps-dev libyaml-dev libcmocka-dev
 openmpi-bin"
 
-# the tests also read files with h5dump and python3, and compare frequencies with CalculiX
-packages_test="hdf5-tools python3 python3-h5py calculix-ccx"
+# The tests also read files with h5dump and python3, compare frequencies with CalculiX, check case
+# files by the JSON Schema, and make a Debian package.
+packages_test="hdf5-tools python3 python3-h5py python3-jsonschema python3-yaml calculix-ccx
+dpkg-dev"
 
 # continuous integration also checks the sources
 packages_check="clang-format clang-tidy python3"

@@ -12,6 +12,7 @@
 #include "cases/parse/key_listing.h"
 #include "cases/parse/keys.h"
 #include "cases/schema/case.h"
+#include "cases/schema/key_schema.h"
 
 static const char usage[] =
     "usage: shroudhb COMMAND [OPTION]... [FILE]\n"
@@ -27,7 +28,7 @@ static const char usage[] =
     "  converge CASE.yaml error against time, setting by setting; `shroudhb converge --help`\n"
     "  check CASE.yaml    check a case file, run nothing\n"
     "  keys               every key of a case file: unit, range, default, meaning; --markdown\n"
-    "                     prints the page docs/user/case_reference.md\n"
+    "                     prints the page docs/user/case_reference.md, --schema a JSON Schema\n"
     "  inspect FILE.h5    what a modal or response file holds; of two modal files: A.h5 B.h5\n"
     "  contact FILE.yaml  contact forces for a prescribed motion; --svg OUT.svg draws the loops\n"
     "\n"
@@ -104,14 +105,16 @@ static int keys_main(const char *name, int argc, char **argv) {
     fputs(usage, stdout);
     return command_finish(SHB_OK);
   }
-  bool page = argc > 1 && strcmp(argv[1], "--markdown") == 0;
-  if (argc > 1 + page) {
-    fprintf(stderr, "shroudhb: error: keys takes --markdown only; unexpected '%s'\n",
-            argv[1 + page]);
+  void (*print)(FILE *) = case_print_keys;
+  if (argc > 1 && strcmp(argv[1], "--markdown") == 0) print = case_print_reference;
+  if (argc > 1 && strcmp(argv[1], "--schema") == 0) print = case_print_schema;
+  int taken = print == case_print_keys ? 1 : 2;
+  if (argc > taken) {
+    fprintf(stderr, "shroudhb: error: keys takes --markdown or --schema; unexpected '%s'\n",
+            argv[taken]);
     return SHB_ERR_INPUT;
   }
-  if (page) case_print_reference(stdout);
-  if (!page) case_print_keys(stdout);
+  print(stdout);
   return command_finish(SHB_OK);
 }
 

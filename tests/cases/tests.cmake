@@ -1,6 +1,14 @@
 foreach(noun units keys lists)
   shb_test(cases/parse ${noun} shb_case)
 endforeach()
+
+if(SHROUDHB_PYTHON)
+  add_test(NAME cases.schema.key_schema
+    COMMAND ${SHROUDHB_PYTHON} -B ${CMAKE_CURRENT_SOURCE_DIR}/cases/schema/test_key_schema.py
+            $<TARGET_FILE:shroudhb> ${PROJECT_SOURCE_DIR}/cases)
+  set_tests_properties(cases.schema.key_schema PROPERTIES SKIP_RETURN_CODE 77)
+endif()
+
 foreach(noun case faults stage_settings motion)
   shb_test(cases/schema ${noun} shb_case)
 endforeach()
@@ -19,6 +27,12 @@ if(SHROUDHB_PYTHON)
             ${SHROUDHB_PYTHON})
   set_tests_properties(cases.commands.integrate PROPERTIES SKIP_RETURN_CODE 77)
 endif()
+
+# What is installed, by `cmake --install` and as a Debian package, works on its own.
+add_test(NAME cases.install.install
+  COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/cases/install/test_install.sh ${CMAKE_COMMAND}
+          ${PROJECT_BINARY_DIR} ${CMAKE_CURRENT_BINARY_DIR}/cases_install)
+set_tests_properties(cases.install.install PROPERTIES SKIP_RETURN_CODE 77)
 
 # Speed against error, from end to end.
 shb_test(cases/converge converge shb_post tests_models)

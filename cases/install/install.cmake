@@ -1,0 +1,72 @@
+# What `cmake --install` copies, and the Debian package that CPack makes of it.
+#   bin                   the programs
+#   share/shroudhb        examples and pages, in the folders of the sources: their links hold
+#   share/man             pages made from --help and the key table
+#   share/bash-completion, share/zsh
+include(GNUInstallDirs)
+set(SHARED ${CMAKE_INSTALL_DATADIR}/shroudhb)
+
+get_target_property(PROGRAMS programs MANUALLY_ADDED_DEPENDENCIES)
+install(TARGETS ${PROGRAMS} RUNTIME)
+
+# ---------------------------------------------------------------- pages made by the programs
+set(PAGES)
+# manual_page(page program argument brief): makes manual/page from what the program prints.
+function(manual_page page program argument brief)
+  get_filename_component(name ${page} NAME_WE)
+  get_filename_component(section ${page} LAST_EXT)
+  string(SUBSTRING ${section} 1 -1 section)
+  set(out ${PROJECT_BINARY_DIR}/manual/${page})
+  add_custom_command(OUTPUT ${out} VERBATIM
+    COMMAND ${CMAKE_COMMAND} -DPROGRAM=$<TARGET_FILE:${program}> -DARGUMENT=${argument}
+      -DNAME=${name} -DSECTION=${section} -DBRIEF=${brief} -DVERSION=${PROJECT_VERSION}
+      -DOUT=${out} -P ${PROJECT_SOURCE_DIR}/cases/install/man_page.cmake
+    DEPENDS ${program} ${PROJECT_SOURCE_DIR}/cases/install/man_page.cmake)
+  install(FILES ${out} DESTINATION ${CMAKE_INSTALL_MANDIR}/man${section})
+  set(PAGES ${PAGES} ${out} PARENT_SCOPE)
+endfunction()
+
+foreach(program ${PROGRAMS})
+  manual_page(${program}.1 ${program} --help "forced response of blades with shroud contact")
+endforeach()
+manual_page(shroudhb-case.5 shroudhb keys "the keys of a case file")
+
+set(SCHEMA ${PROJECT_BINARY_DIR}/manual/case.schema.json)
+add_custom_command(OUTPUT ${SCHEMA} COMMAND shroudhb keys --schema > ${SCHEMA}
+  DEPENDS shroudhb VERBATIM)
+install(FILES ${SCHEMA} DESTINATION ${SHARED})
+
+add_custom_target(manual DEPENDS ${PAGES} ${SCHEMA})
+add_dependencies(programs manual)
+
+# ---------------------------------------------------------------- examples, pages, completion
+install(DIRECTORY docs DESTINATION ${SHARED} PATTERN figures EXCLUDE)
+file(GLOB SCENES CONFIGURE_DEPENDS cases/*/README.md)
+foreach(readme ${SCENES}) # a room has sources, a scene has none
+  get_filename_component(folder ${readme} DIRECTORY)
+  file(GLOB sources ${folder}/*.[ch] ${folder}/*.cmake)
+  if(NOT sources)
+    install(DIRECTORY ${folder} DESTINATION ${SHARED}/cases FILES_MATCHING
+      PATTERN README.md PATTERN *.yaml PATTERN *.py PATTERN *.geo PATTERN picture*.svg)
+  endif()
+endforeach()
+install(FILES cases/README.md DESTINATION ${SHARED}/cases)
+install(FILES README.md CHANGELOG.md LICENSE DESTINATION ${SHARED})
+install(FILES cases/install/completion.bash RENAME shroudhb
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+install(FILES cases/install/completion.zsh RENAME _shroudhb
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
+install(FILES cases/install/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+# ---------------------------------------------------------------- the package
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME shroudhb)
+set(CPACK_PACKAGE_CONTACT "the shroudhb team <shroudhb@localhost>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "forced response of turbine blades with shroud contact")
+set(CPACK_STRIP_FILES ON)
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON) # Depends: comes from the libraries that are linked
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS openmpi-bin)
+include(CPack)

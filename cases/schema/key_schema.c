@@ -1,0 +1,225 @@
+#include "cases/schema/key_schema.h"
+
+#include <string.h>
+
+#include "cases/parse/key_table.h"
+
+/* ---------------------------------------------------------------- JSON */
+
+static void print_string(const char *text, FILE *out) {
+  fputc('"', out);
+  for (; *text; text++) {
+    if (*text == '"' || *text == '\\') fputc('\\', out);
+    fputc(*text, out);
+  }
+  fputc('"', out);
+}
+
+/* The words of a key as the items of a JSON list. */
+static void print_words(const char *words, FILE *out) {
+  for (const char *c = words; *c;) {
+    size_t n = strcspn(c, " ");
+    fprintf(out, "%s\"%.*s\"", c == words ? "" : ", ", (int)n, c);
+    c += n + (c[n] == ' ');
+  }
+}
+
+/* ---------------------------------------------------------------- values */
+
+/* The bounds of a bare number, in SI. */
+static void print_bounds(const case_key *key, FILE *out) {
+  if (key->least == 0 && key->most == 0) return;
+  fprintf(out, ", \"%s\": %.15g, \"%s\": %.15g", key->above ? "exclusiveMinimum" : "minimum",
+          key->least, key->below ? "exclusiveMaximum" : "maximum", key->most);
+}
+
+/* A bare number, or a number with its unit. */
+static void print_number(const case_key *key, FILE *out) {
+  fputs("{\"anyOf\": [{\"type\": \"number\"", out);
+  print_bounds(key, out);
+  fputs("}, {\"$ref\": \"#/definitions/quantity\"}]}", out);
+}
+
+static void print_integer(const case_key *key, FILE *out) {
+  fputs("{\"type\": \"integer\"", out);
+  print_bounds(key, out);
+  fputc('}', out);
+}
+
+/* A list of numbers. most = 0: as many as one likes. */
+static void print_numbers(const case_key *key, int least, int most, FILE *out) {
+  fputs("{\"type\": \"array\", \"items\": ", out);
+  print_number(key, out);
+  fprintf(out, ", \"minItems\": %d", least);
+  if (most > 0) fprintf(out, ", \"maxItems\": %d", most);
+  fputc('}', out);
+}
+
+static void print_number_or_numbers(const case_key *key, int least, int most, FILE *out) {
+  print_number(key, out);
+  fputs(", ", out);
+  print_numbers(key, least, most, out);
+}
+
+static void print_integers(const case_key *key, FILE *out) {
+  fputs("{\"type\": \"array\", \"minItems\": 1, \"items\": ", out);
+  print_integer(key, out);
+  fputc('}', out);
+}
+
+/* A mapping whose keys are names of the user's choice. */
+static void print_mapping(const char *keys, FILE *out) {
+  fprintf(out, "{\"type\": \"object\", \"propertyNames\": {\"pattern\": \"%s\"}}", keys);
+}
+
+static void print_words_or(const case_key *key, FILE *out) {
+  fputs("{\"enum\": [", out);
+  print_words(key->words, out);
+  /* YAML 1.1 reads yes and no as true and false */
+  if (strcmp(key->words, "no yes") == 0) fputs(", true, false", out);
+  fputs("]}", out);
+}
+
+/* The forms that a value may take, separated by commas. */
+static void print_forms(const case_key *key, FILE *out) {
+  switch (key->type) {
+    case CASE_NUMBER:
+      print_number(key, out);
+      break;
+    case CASE_INTEGER:
+      print_integer(key, out);
+      break;
+    case CASE_COUNT:
+      print_integer(key, out);
+      fputs(", {\"const\": \"all\"}", out);
+      break;
+    case CASE_AUTO:
+      print_integer(key, out);
+      fputs(", {\"const\": \"auto\"}", out);
+      break;
+    case CASE_CHOICE:
+    case CASE_SWITCH:
+      print_words_or(key, out);
+      break;
+    case CASE_ACCURACY:
+      print_words_or(key, out);
+      fputs(", ", out);
+      print_number(key, out);
+      break;
+    case CASE_WORD:
+    case CASE_LABEL:
+    case CASE_FILE_NAME:
+      fputs("{\"type\": [\"string\", \"number\"]}", out);
+      break;
+    case CASE_VECTOR:
+      print_numbers(key, 3, 3, out);
+      break;
+    case CASE_INTERVAL:
+      print_numbers(key, 2, 2, out);
+      break;
+    case CASE_TRIPLE:
+    case CASE_STIFFNESS:
+      print_number_or_numbers(key, 3, 3, out);
+      break;
+    case CASE_SWEEP:
+      print_number_or_numbers(key, 2, 2, out);
+      break;
+    case CASE_PLACES:
+      print_numbers(key, 1, 0, out);
+      break;
+    case CASE_PRELOADS:
+      print_number_or_numbers(key, 1, 0, out);
+      fputs(", ", out);
+      print_mapping("^(from|to|points)$", out);
+      break;
+    case CASE_ORDERS:
+      print_integers(key, out);
+      break;
+    case CASE_POINTS:
+      fputs("{\"type\": \"integer\", \"minimum\": 1}, ", out);
+      print_numbers(key, 1, 0, out);
+      break;
+    case CASE_FACTORS:
+      print_mapping("^[0-9]+$", out);
+      break;
+    case CASE_PROBES:
+    case CASE_GROUPS:
+      print_mapping("", out);
+      break;
+    case CASE_DAMPING:
+      print_number_or_numbers(key, 1, 0, out);
+      fputs(", ", out);
+      print_mapping("^(loss_factor|rayleigh)$", out);
+      break;
+    case CASE_SIGNAL:
+    case CASE_LIST:
+    case CASE_N_TYPES:
+      fputs("{\"type\": \"array\"}", out);
+      break;
+  }
+}
+
+/* ---------------------------------------------------------------- blocks */
+
+static void print_block(case_keys keys, const char *block, int depth, FILE *out);
+
+static void print_key(const case_key *key, case_keys keys, int depth, FILE *out) {
+  fputs("{\"description\": ", out);
+  print_string(key->help, out);
+  if (key->type == CASE_LIST) {
+    char items[2 * CASE_LONGEST_WORD];
+    snprintf(items, sizeof items, "%s[]", key->path);
+    fprintf(out,
+            ", \"type\": \"array\", \"minItems\": %g, \"maxItems\": %g, \"items\": ", key->least,
+            key->most);
+    print_block(keys, items, depth, out);
+  } else {
+    fputs(", \"anyOf\": [", out);
+    print_forms(key, out);
+    fputc(']', out);
+  }
+  fputc('}', out);
+}
+
+/* The keys that every mapping of this block must have. */
+static void print_required(case_keys keys, const char *block, FILE *out) {
+  bool first = true;
+  for (int i = 0; i < keys.n; i++) {
+    const char *rest = case_key_below(keys.key[i].path, block);
+    if (!rest || strpbrk(rest, ".[") || !keys.key[i].required || keys.key[i].when != CASE_ALWAYS)
+      continue;
+    fprintf(out, "%s\"%s\"", first ? ", \"required\": [" : ", ", rest);
+    first = false;
+  }
+  if (!first) fputc(']', out);
+}
+
+static void print_block(case_keys keys, const char *block, int depth, FILE *out) {
+  char part[CASE_LONGEST_WORD], last[CASE_LONGEST_WORD] = "", path[4 * CASE_LONGEST_WORD];
+  fputs("{\"type\": \"object\", \"additionalProperties\": false", out);
+  if (block[0]) print_required(keys, block, out);
+  fputs(", \"properties\": {", out);
+  for (int i = 0; i < keys.n; i++) {
+    if (!case_key_part(keys.key[i].path, block, part) || strcmp(part, last) == 0) continue;
+    fprintf(out, "%s\n%*s\"%s\": ", last[0] ? "," : "", 2 * depth, "", part);
+    strcpy(last, part);
+    snprintf(path, sizeof path, "%s%s%s", block, block[0] ? "." : "", part);
+    const case_key *key = case_key_find(keys, path);
+    if (key) print_key(key, keys, depth + 1, out);
+    if (!key) print_block(keys, path, depth + 1, out);
+  }
+  fputs("}}", out);
+}
+
+void case_print_schema(FILE *out) {
+  fputs(
+      "{\"$schema\": \"http://json-schema.org/draft-07/schema#\",\n"
+      "\"title\": \"shroudhb case file\",\n"
+      "\"definitions\": {\"quantity\": {\"type\": \"string\", \"description\": \"a number with its "
+      "unit\",\n"
+      "  \"pattern\": \"^[-+]?([0-9]+[.]?[0-9]*|[.][0-9]+)([eE][-+]?[0-9]+)? *[^ 0-9].*$\"}},\n"
+      "\"allOf\": [",
+      out);
+  print_block(case_key_table(), "", 1, out);
+  fputs("]}\n", out);
+}

@@ -1,0 +1,46 @@
+"""test_key_schema.py SHROUDHB CASES: the schema accepts every shipped case, finds faults."""
+import copy
+import json
+import pathlib
+import subprocess
+import sys
+
+try:
+    import jsonschema
+    import yaml
+except ImportError:
+    sys.exit(77)
+
+program, cases = sys.argv[1], pathlib.Path(sys.argv[2])
+schema = json.loads(subprocess.run([program, "keys", "--schema"], check=True,
+                                   capture_output=True).stdout)
+jsonschema.Draft7Validator.check_schema(schema)
+validator = jsonschema.Draft7Validator(schema)
+
+files = sorted(cases.glob("*/case.yaml"))
+assert len(files) > 5, files
+for file in files:
+    for error in validator.iter_errors(yaml.safe_load(file.read_text())):
+        sys.exit(f"{file}: {error.json_path}: {error.message}")
+
+good = yaml.safe_load((cases / "z_notch_blade/case.yaml").read_text())
+
+
+def faults(change):
+    case = copy.deepcopy(good)
+    change(case)
+    return len(list(validator.iter_errors(case)))
+
+
+for name, change in {
+    "misspelt key": lambda c: c["contact"].update(muu=0.3),
+    "unknown block": lambda c: c.update(contacts={}),
+    "unknown word": lambda c: c["contact"].update(preload="equal"),
+    "below its range": lambda c: c["contact"].update(mu=-1),
+    "text for a count": lambda c: c["rotor"].update(blades="forty"),
+    "key of a list": lambda c: c["mesh"]["blade"]["sections"][0].update(cord=1),
+    "key that a list needs": lambda c: c["mesh"]["blade"]["sections"][0].pop("chord"),
+    "two numbers for three": lambda c: c["excitation"].update(traction=[1, 2]),
+}.items():
+    assert faults(change) > 0, name
+print(f"{len(files)} case files, 8 faults")
