@@ -11,6 +11,7 @@ endforeach()
 foreach(noun inspect mac mode_table phase_table)
   shb_test(postproc/inspect ${noun} tests_responses)
 endforeach()
+shb_test(postproc/study study_file shb_post)
 
 # The program itself: exit codes and the one line of an error.
 shb_test(postproc/report command tests_responses)
