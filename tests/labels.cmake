@@ -23,7 +23,8 @@ set(INTEGRATION_TESTS
   hard.three_degree hard.jumps hard.ends hard.friction hard.resonance hard.balance hard.pairs
   hard.peaks hard.isolas hard.parameters bench.stability bench.modal bench.contact
   bench.integrate docs.first_case
-  mhb.ring.neimark_sacker cases.install.install)
+  mhb.ring.neimark_sacker cases.install.install
+  mesh.blade.shroud_angle)
 set(SLOW_TESTS
   mesh.blade.blade mhb.floquet.monodromy mhb.branches.verdicts cases.converge.converge hard.gaps
   bench.elements)

@@ -34,10 +34,12 @@ static void check_blade(case_reader *r, int stages) {
   double            degree = 180 / SHB_PI;
   if (r->file->modal_file || !(stages & CASE_MESH) || !case_reader_has_block(r, "mesh.blade"))
     return;
-  if (case_reader_good(r, "contact.psi") && fabs(blade->psi) * degree > 70)
-    case_reader_issue(r, "contact.psi", "a parametric blade needs -70 to 70 deg");
-  if (case_reader_good(r, "contact.phi") && fabs(blade->phi) * degree > 45)
-    case_reader_issue(r, "contact.phi", "a parametric blade needs -45 to 45 deg");
+  if (case_reader_good(r, "contact.psi") && fabs(blade->psi) * degree > MESH_MAX_PSI)
+    case_reader_issue(r, "contact.psi", "a parametric blade needs -%d to %d deg", MESH_MAX_PSI,
+                      MESH_MAX_PSI);
+  if (case_reader_good(r, "contact.phi") && fabs(blade->phi) * degree > MESH_MAX_PHI)
+    case_reader_issue(r, "contact.phi", "a parametric blade needs -%d to %d deg", MESH_MAX_PHI,
+                      MESH_MAX_PHI);
   if (case_reader_good(r, "rotor.blades") && blade->blades == 2)
     case_reader_issue(r, "rotor.blades", "a parametric blade needs 3 or more");
 }

@@ -5,13 +5,16 @@
 #include "mesh/base/axes.h"
 #include "mesh/core/element_topology.h"
 
-/* Limits of a section: thickness and camber in per cent of the chord, twist in degrees. */
+/* Limits of a section: thickness and camber in per cent of the chord, twist in degrees. Limits of
+ * the contact plane, either way, in degrees. */
 enum {
   MESH_MAX_SECTIONS  = 16,
   MESH_MIN_THICKNESS = 1,
   MESH_MAX_THICKNESS = 50,
   MESH_MAX_CAMBER    = 40,
-  MESH_MAX_TWIST     = 80
+  MESH_MAX_TWIST     = 80,
+  MESH_MAX_PSI       = 70,
+  MESH_MAX_PHI       = 45
 };
 
 /* Airfoil section at a radius; lengths in m, twist in rad. Twist is the stagger of the chord from

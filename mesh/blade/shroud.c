@@ -2,6 +2,8 @@
 
 #include <gmshc.h>
 #include <math.h>
+#include <stdio.h>
+#include <string.h>
 
 #include "mesh/base/constants.h"
 #include "mesh/blade/airfoil.h"
@@ -117,10 +119,12 @@ static shb_status check_sizes(const mesh_blade *blade) {
   SHB_CHECK(blade->blades >= 3, SHB_ERR_INPUT,
             "rotor.blades: %d; the shroud of the parametric blade spans one sector of at least 3",
             blade->blades);
-  SHB_CHECK(fabs(blade->psi) <= 70.001 * degree, SHB_ERR_INPUT,
-            "contact.psi: %g deg; the parametric blade takes -70 to 70 deg", blade->psi / degree);
-  SHB_CHECK(fabs(blade->phi) <= 45.001 * degree, SHB_ERR_INPUT,
-            "contact.phi: %g deg; the parametric blade takes -45 to 45 deg", blade->phi / degree);
+  SHB_CHECK(fabs(blade->psi) <= (MESH_MAX_PSI + 1e-3) * degree, SHB_ERR_INPUT,
+            "contact.psi: %g deg; the parametric blade takes -%d to %d deg", blade->psi / degree,
+            MESH_MAX_PSI, MESH_MAX_PSI);
+  SHB_CHECK(fabs(blade->phi) <= (MESH_MAX_PHI + 1e-3) * degree, SHB_ERR_INPUT,
+            "contact.phi: %g deg; the parametric blade takes -%d to %d deg", blade->phi / degree,
+            MESH_MAX_PHI, MESH_MAX_PHI);
   SHB_CHECK(blade->shroud_length > 0 && isfinite(blade->shroud_length), SHB_ERR_INPUT,
             "mesh.blade.shroud.length: %g mm; it must be positive", 1e3 * blade->shroud_length);
   SHB_CHECK(blade->shroud_thickness > 0 && blade->shroud_thickness <= 0.2 * r, SHB_ERR_INPUT,
@@ -137,26 +141,88 @@ static shb_status check_sizes(const mesh_blade *blade) {
   return SHB_OK;
 }
 
-/* Check that a point of the airfoil lies under the shroud, with the margin on all four sides. */
-static shb_status check_cover(const mesh_blade *blade, const double own[3]) {
-  double margin = margin_share * blade->shroud_length;
-  SHB_CHECK(fabs(own[1]) <= blade->shroud_length / 2 - margin, SHB_ERR_INPUT,
+/* Points of the airfoil's outline at the underside, then at the end inside the shroud. */
+enum { AROUND = 2 * MESH_AIRFOIL_POINTS, POINTS = 2 * AROUND };
+
+static void airfoil_points(const mesh_blade *blade, double own[POINTS][3]) {
+  const double radius[2] = {underside(blade), mesh_airfoil_high_radius(blade)};
+  for (int k = 0; k < 2; k++) {
+    mesh_outline outline;
+    mesh_section section = mesh_airfoil_at(blade, radius[k]);
+    mesh_airfoil_outline(blade, &section, &outline);
+    memcpy(own[k * AROUND], outline.suction, sizeof outline.suction);
+    memcpy(own[k * AROUND + MESH_AIRFOIL_POINTS], outline.pressure, sizeof outline.pressure);
+  }
+}
+
+static double margin(const mesh_blade *blade) {
+  return margin_share * blade->shroud_length;
+}
+
+static shb_status check_length(const mesh_blade *blade, const double own[3]) {
+  SHB_CHECK(fabs(own[1]) <= blade->shroud_length / 2 - margin(blade), SHB_ERR_INPUT,
             "mesh.blade.shroud.length: %g mm does not cover the last section, which reaches %g mm "
             "from its stacking line; give at least %.4g mm",
             1e3 * blade->shroud_length, 1e3 * fabs(own[1]),
             2e3 * fabs(own[1]) / (1 - 2 * margin_share));
-  for (int s = -1; s <= 1; s += 2) { /* s = -1 left, 1 right, in the radial plane of the side */
-    double seen[3];
-    mesh_frame_rotate(-s * half_sector(blade), own, seen);
-    double inside = s * (side_at(blade, seen[1], seen[2]) - seen[0]);
-    SHB_CHECK(inside >= margin, SHB_ERR_INPUT,
-              "mesh.blade.sections[%d]: the last section reaches %s the shroud's %s side (at %g mm "
-              "tangential, %g mm axial); less chord, camber or twist there, fewer rotor.blades, or "
-              "another contact.psi or phi",
-              blade->n_sections - 1, inside > 0 ? "too near to" : "past", s > 0 ? "right" : "left",
-              1e3 * own[0], 1e3 * own[1]);
-  }
   return SHB_OK;
+}
+
+/* The point nearest to a side of the shroud. */
+typedef struct {
+  double inside; /* distance from the side along the tangent, m; negative: outside */
+  bool   right;  /* the side */
+  int    point;
+} clearance;
+
+static clearance least_clearance(const mesh_blade *blade, const double own[POINTS][3]) {
+  clearance least = {.inside = INFINITY};
+  for (int i = 0; i < POINTS; i++)
+    for (int s = -1; s <= 1; s += 2) { /* s = -1 left, 1 right, in the radial plane of the side */
+      double seen[3];
+      mesh_frame_rotate(-s * half_sector(blade), own[i], seen);
+      const double inside = s * (side_at(blade, seen[1], seen[2]) - seen[0]);
+      if (inside < least.inside) least = (clearance){inside, s > 0, i};
+    }
+  return least;
+}
+
+/* The angles psi nearest to the blade's own at which the shroud covers the airfoil, in whole
+ * degrees. */
+static bool covering_angles(const mesh_blade *blade, const double own[POINTS][3], int range[2]) {
+  mesh_blade turned = *blade;
+  double     best   = INFINITY;
+  bool       inside = false;
+  int        start  = 0;
+  for (int psi = -MESH_MAX_PSI; psi <= MESH_MAX_PSI + 1; psi++) {
+    turned.psi      = psi * degree;
+    const bool fits = psi <= MESH_MAX_PSI && least_clearance(&turned, own).inside >= margin(blade);
+    if (fits && !inside) start = psi;
+    const double away = fmax(start * degree - blade->psi, blade->psi - (psi - 1) * degree);
+    if (!fits && inside && away < best) {
+      best     = away;
+      range[0] = start;
+      range[1] = psi - 1;
+    }
+    inside = fits;
+  }
+  return best < INFINITY;
+}
+
+static shb_status check_sides(const mesh_blade *blade, const double own[POINTS][3]) {
+  const clearance least = least_clearance(blade, own);
+  if (least.inside >= margin(blade)) return SHB_OK;
+  int  range[2] = {0, 0};
+  char turn[60] = "";
+  if (covering_angles(blade, own, range))
+    snprintf(turn, sizeof turn, ", or a contact.psi from %d to %d deg", range[0], range[1]);
+  SHB_FAIL(SHB_ERR_INPUT,
+           "mesh.blade.sections[%d]: the last section reaches %s the shroud's %s side (at %g mm "
+           "tangential, %g mm axial) at contact.psi %g deg; less chord, camber or twist there, "
+           "fewer rotor.blades%s",
+           blade->n_sections - 1, least.inside > 0 ? "too near to" : "past",
+           least.right ? "right" : "left", 1e3 * own[least.point][0], 1e3 * own[least.point][1],
+           blade->psi / degree, turn);
 }
 
 /* The end of the airfoil must lie within the thickness; the ring is curved, the end is flat. */
@@ -172,19 +238,12 @@ static shb_status check_depth(const mesh_blade *blade, const double own[3]) {
 }
 
 shb_status mesh_shroud_check(const mesh_blade *blade) {
+  double own[POINTS][3];
   SHB_TRY(check_sizes(blade));
-  double       radius[2] = {underside(blade), mesh_airfoil_high_radius(blade)};
-  mesh_outline outline;
-  for (int k = 0; k < 2; k++) {
-    mesh_section section = mesh_airfoil_at(blade, radius[k]);
-    mesh_airfoil_outline(blade, &section, &outline);
-    for (int i = 0; i < 2 * MESH_AIRFOIL_POINTS; i++) {
-      const double *own =
-          i < MESH_AIRFOIL_POINTS ? outline.suction[i] : outline.pressure[i - MESH_AIRFOIL_POINTS];
-      SHB_TRY(check_cover(blade, own));
-      if (k == 1) SHB_TRY(check_depth(blade, own));
-    }
-  }
+  airfoil_points(blade, own);
+  for (int i = 0; i < POINTS; i++) SHB_TRY(check_length(blade, own[i]));
+  SHB_TRY(check_sides(blade, (const double(*)[3])own));
+  for (int i = AROUND; i < POINTS; i++) SHB_TRY(check_depth(blade, own[i]));
   return SHB_OK;
 }
 

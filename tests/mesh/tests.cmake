@@ -19,6 +19,7 @@ foreach(noun airfoil section_smoothing)
 endforeach()
 shb_test(mesh/blade blade tests_box)
 shb_test(mesh/blade hex_sweep tests_box)
+shb_test(mesh/blade shroud_angle tests_box)
 shb_test(mesh/blade scene shb_case shb_mesh)
 target_compile_definitions(test_mesh_blade_scene PRIVATE
   SCENE="${PROJECT_SOURCE_DIR}/cases/z_notch_blade/case.yaml")
