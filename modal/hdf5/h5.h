@@ -2,7 +2,7 @@
  * stack is not printed.
  *
  * Complex numbers are compounds {r, i} of doubles. Every dataset gets the attributes units and
- * long_name. Datasets are contiguous, the smallest layout that HDF5 offers. */
+ * long_name. Datasets are contiguous; large ones that are mostly zero are compressed. */
 #ifndef MODAL_HDF5_H5_H
 #define MODAL_HDF5_H5_H
 

@@ -4,13 +4,33 @@
 
 #include "modal/hdf5/h5_internal.h"
 
-/* Contiguous layout. No time stamps: equal contents give equal bytes. Groups in between are
- * created. */
-static shb_status create_dataset(hid_t at, const char *path, hid_t type, hid_t space, hid_t *set) {
+enum { COMPRESSED_FROM = 1 << 16, CHUNK = 1 << 20 }; /* bytes */
+
+/* Whether at least half of the 8-byte words are zero, as harmonics that a point leaves out are. */
+static bool mostly_zero(const void *data, size_t bytes) {
+  const uint64_t *word = data;
+  size_t          n = bytes / sizeof *word, zero = 0;
+  for (size_t i = 0; i < n; i++) zero += word[i] == 0;
+  return 2 * zero >= n;
+}
+
+/* Chunks of whole rows, about CHUNK bytes each, compressed. */
+static herr_t compress(hid_t layout, h5_shape shape, size_t bytes) {
+  hsize_t rows = 1 + (hsize_t)(CHUNK / (bytes / shape.dim[0] + 1));
+  if (shape.dim[0] > rows) shape.dim[0] = rows;
+  return H5Pset_chunk(layout, shape.rank, shape.dim) < 0 ? -1 : H5Pset_deflate(layout, 1);
+}
+
+/* Contiguous, but compressed where a large dataset holds mostly zeros. No time stamps: equal
+ * contents give equal bytes. Groups in between are created. */
+static shb_status create_dataset(hid_t at, const char *path, h5_shape shape, hid_t type,
+                                 const void *data, hid_t space, hid_t *set) {
   shb_status status = SHB_OK;
+  size_t     bytes  = h5_count(shape) * H5Tget_size(type);
+  bool       sparse = shape.rank > 0 && bytes >= COMPRESSED_FROM && mostly_zero(data, bytes);
   hid_t      links = H5Pcreate(H5P_LINK_CREATE), layout = H5Pcreate(H5P_DATASET_CREATE);
   if (links < 0 || layout < 0 || H5Pset_create_intermediate_group(links, 1) < 0 ||
-      H5Pset_obj_track_times(layout, 0) < 0 ||
+      H5Pset_obj_track_times(layout, 0) < 0 || (sparse && compress(layout, shape, bytes) < 0) ||
       (*set = H5Dcreate2(at, path, type, space, links, layout, H5P_DEFAULT)) < 0)
     status = h5_failed(SHB_ERR_IO, at, path, "cannot be written");
   if (links >= 0) H5Pclose(links);
@@ -23,7 +43,7 @@ static shb_status write_dataset(hid_t at, const char *path, h5_shape shape, hid_
   hid_t space = shape.rank ? H5Screate_simple(shape.rank, shape.dim, NULL) : H5Screate(H5S_SCALAR);
   if (space < 0) return h5_failed(SHB_ERR_IO, at, path, "cannot be written");
   hid_t      set    = -1;
-  shb_status status = create_dataset(at, path, type, space, &set);
+  shb_status status = create_dataset(at, path, shape, type, data, space, &set);
   if (status == SHB_OK) {
     if (h5_count(shape) > 0 && H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0)
       status = h5_failed(SHB_ERR_IO, at, path, "cannot be written");

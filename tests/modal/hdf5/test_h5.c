@@ -76,6 +76,38 @@ static void test_round_trip(void **state) {
   assert_int_equal(assert_described(scratch("trip.h5")), 6);
 }
 
+/* Large datasets with many zeros are compressed, others are not; both are read unchanged. */
+static void test_compression(void **state) {
+  (void)state;
+  enum { ROWS = 50021, COLUMNS = 7 };
+  double *sparse = calloc(ROWS * COLUMNS, sizeof *sparse), *back;
+  double *dense  = calloc(ROWS * COLUMNS, sizeof *dense);
+  for (int i = 0; i < ROWS * COLUMNS; i++) dense[i] = sin(i + 0.1);
+  for (int i = 0; i < ROWS * COLUMNS; i += 6) sparse[i] = dense[i];
+  hid_t    file  = create("zeros.h5");
+  h5_shape shape = H5_SHAPE(ROWS, COLUMNS);
+  assert_ok(h5_write_double(file, "sparse", shape, sparse, "m", long_label));
+  assert_ok(h5_write_double(file, "dense", shape, dense, "m", long_label));
+  assert_ok(h5_close(file));
+  file = reopen("zeros.h5");
+  assert_ok(h5_read_double(file, "sparse", &shape, &back));
+  assert_memory_equal(back, sparse, ROWS * COLUMNS * sizeof *back);
+  free(back);
+  hsize_t bytes[2];
+  for (int i = 0; i < 2; i++) {
+    hid_t set = H5Dopen2(file, i ? "dense" : "sparse", H5P_DEFAULT);
+    bytes[i]  = H5Dget_storage_size(set);
+    H5Dclose(set);
+  }
+  printf("sparse %llu bytes, dense %llu\n", (unsigned long long)bytes[0],
+         (unsigned long long)bytes[1]);
+  assert_true(bytes[0] < bytes[1] / 3);
+  assert_int_equal(bytes[1], ROWS * COLUMNS * sizeof *dense);
+  assert_ok(h5_close(file));
+  free(sparse);
+  free(dense);
+}
+
 static void test_exists(void **state) {
   (void)state;
   write_sample("exists.h5");
@@ -422,8 +454,9 @@ static void test_disk_full(void **state) {
   (void)state;
   struct rlimit before, tight;
   hid_t         file = create("limit.h5.tmp.34");
-  double       *zero = calloc(100000, sizeof *zero);
-  assert_ok(h5_write_double(file, "/x", H5_SHAPE(100000), zero, "m", long_label));
+  double       *ones = malloc(100000 * sizeof *ones);
+  for (int i = 0; i < 100000; i++) ones[i] = 1; /* zeros would be compressed */
+  assert_ok(h5_write_double(file, "/x", H5_SHAPE(100000), ones, "m", long_label));
   void (*handler)(int) = signal(SIGXFSZ, SIG_IGN);
   getrlimit(RLIMIT_FSIZE, &before);
   tight          = before;
@@ -435,7 +468,7 @@ static void test_disk_full(void **state) {
   assert_int_equal(status, SHB_ERR_IO);
   assert_non_null(strstr(shb_message(), "limit.h5: cannot be written: File too large"));
   assert_int_not_equal(access(scratch("limit.h5.tmp.34"), F_OK), 0);
-  free(zero);
+  free(ones);
   if (access("/dev/full", W_OK) == 0) {
     assert_ok(h5_create("/dev/full", &file));
     assert_refused(h5_close(file), SHB_ERR_IO, "/dev/full: cannot be written: No space left");
@@ -472,14 +505,23 @@ static void test_no_open_handles(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_round_trip),      cmocka_unit_test(test_exists),
-      cmocka_unit_test(test_attributes),      cmocka_unit_test(test_provenance_and_format),
-      cmocka_unit_test(test_scales),          cmocka_unit_test(test_many_attachments),
-      cmocka_unit_test(test_foreign_numbers), cmocka_unit_test(test_foreign_texts),
-      cmocka_unit_test(test_bad_datasets),    cmocka_unit_test(test_huge_claims),
-      cmocka_unit_test(test_bad_files),       cmocka_unit_test(test_no_permission),
-      cmocka_unit_test(test_truncated),       cmocka_unit_test(test_no_folder),
-      cmocka_unit_test(test_disk_full),       cmocka_unit_test(test_abandoned),
+      cmocka_unit_test(test_round_trip),
+      cmocka_unit_test(test_compression),
+      cmocka_unit_test(test_exists),
+      cmocka_unit_test(test_attributes),
+      cmocka_unit_test(test_provenance_and_format),
+      cmocka_unit_test(test_scales),
+      cmocka_unit_test(test_many_attachments),
+      cmocka_unit_test(test_foreign_numbers),
+      cmocka_unit_test(test_foreign_texts),
+      cmocka_unit_test(test_bad_datasets),
+      cmocka_unit_test(test_huge_claims),
+      cmocka_unit_test(test_bad_files),
+      cmocka_unit_test(test_no_permission),
+      cmocka_unit_test(test_truncated),
+      cmocka_unit_test(test_no_folder),
+      cmocka_unit_test(test_disk_full),
+      cmocka_unit_test(test_abandoned),
       cmocka_unit_test(test_no_open_handles),
   };
   return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
