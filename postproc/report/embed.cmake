@@ -1,6 +1,6 @@
 # Write OUT, a C source with the files of FOLDER named in FILES ("page.css,page.js") as
-# null-terminated arrays post_page_css, post_page_js.
-set(text "/* Made by embed.cmake. */\n#include \"postproc/report/page.h\"\n")
+# null-terminated arrays post_page_css, post_page_js. HEADER declares them.
+set(text "/* Made by embed.cmake. */\n#include \"${HEADER}\"\n")
 string(REPLACE "," ";" FILES "${FILES}")
 foreach(file IN LISTS FILES)
   string(REPLACE "." "_" name ${file})

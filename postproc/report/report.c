@@ -18,16 +18,8 @@
 
 /* ---------------------------------------------------------------- head */
 
-/* The content security policy forbids every load from elsewhere. */
 static void put_head(const post_analysis *analysis, const char *case_name, post_buffer *out) {
-  post_put(out,
-           "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-           "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-           "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src "
-           "'unsafe-inline'; script-src 'unsafe-inline'; img-src data:\">\n<title>");
-  post_put_escaped(out, case_name);
-  post_put(out, " · forced response</title>\n<style>\n");
-  post_put_bytes(out, post_page_css, strlen(post_page_css));
+  post_page_open(case_name, "forced response", out);
   post_put_ramp(analysis->n_ranks, false, out);
   post_put(out, "\n@media screen and (prefers-color-scheme: dark){");
   post_put_ramp(analysis->n_ranks, true, out);
@@ -266,6 +258,7 @@ shb_status post_report(const post_analysis *analysis, const post_origin *source,
   post_put(out,
            "Displacements in SI in the CSV beside this page. Works without "
            "network.</footer>\n<script>\n");
+  post_put_bytes(out, post_plot_js, strlen(post_plot_js));
   post_put_bytes(out, post_page_js, strlen(post_page_js));
   post_put(out, "</script>\n</body>\n</html>\n");
   SHB_CHECK(!out->failed, SHB_ERR_IO, "not enough memory for the report");
