@@ -46,6 +46,8 @@ int command_parse(int argc, char **argv, const char *usage, command_options *out
       return command_finish(SHB_OK);
     } else if (options && set_flag(word, out)) {
       continue;
+    } else if (options && strcmp(word, "--csv") == 0 && mentions(usage, word)) {
+      out->csv = true;
     } else if (options && strcmp(word, "--svg") == 0 && mentions(usage, word)) {
       if (i + 1 == argc || argv[i + 1][0] == '-' || argv[i + 1][0] == '\0')
         return refuse("--svg needs the name of a file to write", NULL);

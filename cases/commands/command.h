@@ -13,6 +13,7 @@ typedef struct {
   const char *mode;  /* "inspect" for --inspect, or NULL; see command_parse */
   const char *path;  /* the FILE argument */
   const char *other; /* a second FILE, or NULL; known where the usage mentions OTHER */
+  bool        csv;   /* --csv; known where the usage mentions it */
   const char *svg;   /* argument of --svg, or NULL; known where the usage mentions --svg */
 } command_options;
 

@@ -13,11 +13,13 @@
 #include "mesh/base/progress.h"
 #include "postproc/inspect/inspect.h"
 #include "postproc/inspect/mac.h"
+#include "postproc/inspect/value_table.h"
 #include "postproc/report/publish.h"
 
 static const char usage[] =
     "usage: shroudhb-post [--quiet] [--verbose] CASE.yaml\n"
     "       shroudhb-post --inspect [--verbose] FILE.h5 [OTHER.h5]\n"
+    "       shroudhb-post --inspect [--csv] FILE.h5 PATH[SELECTION]\n"
     "\n"
     "Makes NAME.html (report), NAME.csv (every point) and NAME.svg (picture) from "
     "NAME.response.h5;\n"
@@ -25,13 +27,18 @@ static const char usage[] =
     "the report has the section Speed against error if NAME.converge.h5 belongs to the case.\n"
     "With --inspect: what an HDF5 file holds; --verbose unfolds everything, case text and settings "
     "too.\n"
-    "Of two modal files: frequencies side by side, and which mode shapes are alike (MAC).\n";
+    "Of two modal files: frequencies side by side, and which mode shapes are alike (MAC).\n"
+    "With a PATH in the file: its values; 'branch_2/motion[peak,0,:,1]' selects; a branch gives a\n"
+    "table of its points; --csv prints all digits.\n";
 
 static shb_status inspect(const command_options *options) {
   bool        terminal = isatty(STDOUT_FILENO) && !getenv("NO_COLOR");
   post_buffer text     = {0};
   shb_status  status   = SHB_OK;
-  if (options->other)
+  bool        another  = options->other && access(options->other, F_OK) == 0;
+  if (options->other && !another)
+    status = post_value_table(options->path, options->other, options->csv, &text);
+  else if (options->other)
     status = post_compare((const char *[]){options->path, options->other}, options->verbose, &text);
   else
     status = post_inspect(
