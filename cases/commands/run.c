@@ -126,6 +126,26 @@ static void describe_source(const case_file *file, FILE *out) {
   fputc('\n', out);
 }
 
+/* The physical input in engineers' units, so that a number in the wrong unit is seen. */
+static void describe_body(const case_file *file, FILE *out) {
+  if (file->modal_file) return;
+  if (!file->has_materials) {
+    const fem_material *m = &file->material;
+    fprintf(out, "  material  E %.4g GPa, ", m->E / 1e9);
+    if (!m->anisotropic) fprintf(out, "nu %.4g, ", m->nu);
+    fprintf(out, "%.5g kg/m3\n", m->rho);
+  }
+  const double rpm = 30 / M_PI, *speed = file->speed;
+  if (file->n_speeds == 1) fprintf(out, "  rotor     %.5g rpm\n", speed[0] * rpm);
+  if (file->n_speeds > 1)
+    fprintf(out, "  rotor     %d speeds, %.5g to %.5g rpm\n", file->n_speeds, speed[0] * rpm,
+            speed[file->n_speeds - 1] * rpm);
+}
+
+static void describe_angle(const char *name, bool given, double angle, FILE *out) {
+  if (given) fprintf(out, ", %s %.4g deg", name, angle * 180 / M_PI);
+}
+
 static void describe_preloads(int n, const double *n0, FILE *out) {
   double low = n0[0], high = n0[0];
   for (int i = 1; i < n; i++) {
@@ -143,6 +163,7 @@ void run_describe(const case_file *file, FILE *out) {
   const mhb_settings *mhb = &file->mhb;
   fprintf(out, "%s: ok\n", file->path);
   describe_source(file, out);
+  describe_body(file, out);
   if (mhb->to_ground) {
     fputs("  contact   to ground", out);
   } else {
@@ -157,7 +178,10 @@ void run_describe(const case_file *file, FILE *out) {
       describe_preloads(own->n_preloads, own->n0, out);
     }
   } else {
+    describe_angle("psi", mhb->has_psi, mhb->psi, out);
+    describe_angle("phi", mhb->has_phi, mhb->phi, out);
     fprintf(out, ", mu %g\n", mhb->mu);
+    fprintf(out, "  stiffness ku %.4g kN/m, kv %.4g kN/m\n", mhb->ku[0] / 1e3, mhb->kv / 1e3);
     describe_preloads(mhb->n_preloads, mhb->n0, out);
   }
   fprintf(out, "  sweep     %g to %g Hz, ", mhb->frequency[0], mhb->frequency[1]);

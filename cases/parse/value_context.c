@@ -1,5 +1,6 @@
 #include "cases/parse/value_context.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #include "cases/parse/units.h"
@@ -66,14 +67,41 @@ static bool in_range(const case_key *key, double value) {
   return !low && !high;
 }
 
+/* Customary units for bare numbers that do not fit their range in SI. */
+static const struct {
+  const char *si, *unit[3];
+} customary[] = {{"Pa", {"GPa", "MPa", "kPa"}},
+                 {"m", {"mm"}},
+                 {"rad", {"deg"}},
+                 {"rad/s", {"rpm"}},
+                 {"kg/m3", {"g/cm3"}}};
+
+/* "; did you mean 210 GPa?" for a bare number that fits the range with a customary unit; else "".
+ */
+static void guess_unit(const case_key *key, const char *number, char *text, size_t size) {
+  text[0] = '\0';
+  if (number[strspn(number, "+-.0123456789eE")] != '\0') return;
+  for (size_t i = 0; i < sizeof customary / sizeof *customary; i++) {
+    for (int u = 0; u < 3 && strcmp(key->unit, customary[i].si) == 0 && customary[i].unit[u]; u++) {
+      char   with_unit[64], why[CASE_WHY];
+      double value;
+      snprintf(with_unit, sizeof with_unit, "%.40s %s", number, customary[i].unit[u]);
+      if (!case_quantity(with_unit, key->unit, &value, why) || !in_range(key, value)) continue;
+      snprintf(text, size, "; did you mean %s?", with_unit);
+      return;
+    }
+  }
+}
+
 static bool check_range(const case_value_context *c, const char *path, const case_node *node,
                         double value) {
   if (in_range(c->key, value)) return true;
-  char range[128];
+  char range[128], guess[96];
   case_key_range(c->key, range, sizeof range);
-  case_issue_add(c->issues, node->line, node->column, path, "is %g%s%s, must be %s%s%s", value,
+  guess_unit(c->key, node->text, guess, sizeof guess);
+  case_issue_add(c->issues, node->line, node->column, path, "is %g%s%s, must be %s%s%s%s", value,
                  c->key->unit[0] ? " " : "", c->key->unit, range, c->key->unit[0] ? " " : "",
-                 c->key->unit);
+                 c->key->unit, guess);
   return false;
 }
 

@@ -151,7 +151,7 @@ static void numbers_and_ranges(void **state) {
        "c.yaml:26:7: error: contact.kv: '100 Hz' has unit Hz, expected N/m", 1},
       {"psi: 35 deg", "psi: 35",
        "c.yaml:21:8: error: contact.psi: is 35 rad, must be above -1.5708 and below "
-       "1.5708 rad",
+       "1.5708 rad; did you mean 35 deg?",
        1},
       {"nu: 0.29", "nu: 0.5",
        "c.yaml:11:28: error: material.nu: is 0.5, must be above -1 and below 0.5", 1},
@@ -185,7 +185,9 @@ static void numbers_and_ranges(void **state) {
        "axes",
        1},
       {"E: 207 GPa", "E: 207",
-       "c.yaml:11:15: error: material.E: is 207 Pa, must be 1e+06 to 1e+14 Pa", 1},
+       "c.yaml:11:15: error: material.E: is 207 Pa, must be 1e+06 to 1e+14 Pa; did you mean 207 "
+       "GPa?",
+       1},
       {"blades: 37", "blades: 37.5",
        "c.yaml:12:17: error: rotor.blades: '37.5' is not a whole number", 1},
       {"blades: 37", "blades: 1", "c.yaml:12:17: error: rotor.blades: is 1, must be 2 to 1000", 1},
