@@ -155,6 +155,9 @@ bool case_list_frequencies(const case_value_context *c, const case_node *node, v
   return true;
 }
 
+/* Of a load, as mhb.scale. */
+static const double LARGEST_FACTOR = 1e12;
+
 bool case_list_factors(const case_value_context *c, const case_node *node, void *slot) {
   fem_load *load = slot;
   if (node->kind != CASE_MAPPING) return case_value_refuse(c, node);
@@ -177,7 +180,7 @@ bool case_list_factors(const case_value_context *c, const case_node *node, void 
     }
     given[k] = true;
     if (k > load->n_harmonics) load->n_harmonics = k;
-    good            = case_value_polar(c->issues, path, child, "", polar) && good;
+    good            = case_value_polar(c->issues, path, child, "", LARGEST_FACTOR, polar) && good;
     load->factor[k] = polar[0] * cexp(I * polar[1]);
   }
   bool any = false;

@@ -148,10 +148,10 @@ bool case_value_numbers(const case_value_context *c, const char *path, const cas
 }
 
 bool case_value_polar(case_issues *issues, const char *path, const case_node *node,
-                      const char *unit, double polar[2]) {
-  case_key                 keys[2] = {{.unit = unit}, {.unit = "rad"}};
-  const case_value_context c       = {.issues = issues, .key = &keys[0], .path = path};
-  const case_value_context phase   = {.issues = issues, .key = &keys[1], .path = path};
+                      const char *unit, double most, double polar[2]) {
+  case_key keys[2]               = {{.unit = unit, .least = -most, .most = most}, {.unit = "rad"}};
+  const case_value_context c     = {.issues = issues, .key = &keys[0], .path = path};
+  const case_value_context phase = {.issues = issues, .key = &keys[1], .path = path};
   char                     inner[CASE_PATH];
   polar[0] = polar[1] = 0;
   if (node->kind == CASE_SCALAR) return case_value_number(&c, path, node, &polar[0]);

@@ -35,9 +35,9 @@ bool case_value_integer(const case_value_context *c, const case_node *node, void
 /* Text for messages: "a number in N/m", "one of neighbour, ground", "[x, y, z] in m". */
 void case_value_expected(const case_key *key, char *text, size_t size);
 
-/* Read a pair [number in unit, phase] for load factors and signals. The phase is optional, in
- * rad. */
+/* Read a pair [number in unit, phase] for load factors and signals. The number is at most `most`
+ * either way. The phase is optional, in rad. */
 bool case_value_polar(case_issues *issues, const char *path, const case_node *node,
-                      const char *unit, double polar[2]);
+                      const char *unit, double most, double polar[2]);
 
 #endif

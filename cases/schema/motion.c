@@ -44,12 +44,8 @@ static void read_signal(case_reader *r, const char *path, double complex *signal
     char   inner[CASE_PATH];
     double polar[2];
     case_path(inner, "%s[%d]", path, k);
-    if (!case_value_polar(r->issues, inner, &list->child[k], "m", polar)) continue;
-    if (fabs(polar[0]) <= LARGEST) {
+    if (case_value_polar(r->issues, inner, &list->child[k], "m", LARGEST, polar))
       signal[k] = polar[0] * cexp(I * polar[1]);
-    } else {
-      case_reader_issue(r, inner, "is %g m; amplitudes go up to %g m", polar[0], LARGEST);
-    }
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -62,6 +63,37 @@ shb_status h5_failed(shb_status code, hid_t at, const char *path, const char *ve
   h5_reason(reason, sizeof reason);
   h5_label(at, path, label);
   SHB_FAIL(code, "%s %s: %s", label, verb, reason);
+}
+
+const char *h5_shape_text(h5_shape shape, bool wanted, char out[128]) {
+  size_t n = 0;
+  out[n++] = '[';
+  for (int i = 0; i < shape.rank; i++) {
+    const char *comma = i ? ", " : "";
+    if (wanted && shape.dim[i] == 0) {
+      n += (size_t)snprintf(out + n, 128 - n, "%sany", comma);
+    } else {
+      n += (size_t)snprintf(out + n, 128 - n, "%s%llu", comma, (unsigned long long)shape.dim[i]);
+    }
+  }
+  snprintf(out + n, 128 - n, "]");
+  return out;
+}
+
+shb_status h5_check_finite(const char *label, h5_shape shape, const double *data, size_t per,
+                           const char *rule) {
+  size_t count = h5_count(shape) * per, bad = 0;
+  while (bad < count && isfinite(data[bad])) bad++;
+  if (bad == count) return SHB_OK;
+  h5_shape at   = shape;
+  size_t   rest = bad / per;
+  for (int i = shape.rank - 1; i >= 0; i--) {
+    at.dim[i] = rest % shape.dim[i];
+    rest /= shape.dim[i];
+  }
+  char index[128];
+  SHB_FAIL(SHB_ERR_INPUT, "%s: the value at %s (from 0) is %s; %s", label,
+           h5_shape_text(at, false, index), isnan(data[bad]) ? "not a number" : "infinite", rule);
 }
 
 hid_t h5_complex_type(const char *real, const char *imaginary) {

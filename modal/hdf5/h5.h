@@ -40,7 +40,8 @@ shb_status h5_close(hid_t file);
 void h5_abandon(hid_t file);
 
 /* Write dataset path below at. Groups in between are created. data: row-major, of the given shape.
- * Errors: SHB_ERR_IO. */
+ * Errors: SHB_ERR_IO; SHB_ERR_INPUT if a value is not finite, since results that overflow come from
+ * inputs that are too large. The text names the file, the dataset and the place. */
 shb_status h5_write_double(hid_t at, const char *path, h5_shape shape, const double *data,
                            const char *units, const char *long_name);
 shb_status h5_write_complex(hid_t at, const char *path, h5_shape shape, const double complex *data,

@@ -1,3 +1,4 @@
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -32,6 +33,9 @@ shb_status h5_write_attribute_text(hid_t at, const char *path, const char *name,
 }
 
 shb_status h5_write_attribute_double(hid_t at, const char *path, const char *name, double value) {
+  char label[H5_LABEL];
+  SHB_CHECK(isfinite(value), SHB_ERR_INPUT, "%s: attribute %s is %s; it must be finite",
+            h5_label(at, path, label), name, isnan(value) ? "not a number" : "infinite");
   return write_attribute(at, path, name, H5T_NATIVE_DOUBLE, &value);
 }
 

@@ -16,6 +16,15 @@ shb_status h5_failed(shb_status code, hid_t at, const char *path, const char *ve
 /* Innermost text of HDF5's error stack, at most size characters. */
 void h5_reason(char *out, size_t size);
 
+/* Text such as "[2, 3, any]"; zeros read "any" where wanted is true. Returns out. */
+const char *h5_shape_text(h5_shape shape, bool wanted, char out[128]);
+
+/* SHB_ERR_INPUT if a value is infinite or not a number. The text names its place.
+ *   per   in  doubles of a value, 2 for complex ones
+ *   rule  in  ends the text */
+shb_status h5_check_finite(const char *label, h5_shape shape, const double *data, size_t per,
+                           const char *rule);
+
 /* Compound of two native doubles (member names differ between writers); variable-length UTF-8 text.
  * The caller closes the type. */
 hid_t h5_complex_type(const char *real, const char *imaginary);

@@ -66,29 +66,13 @@ shb_status h5_shape_of(hid_t at, const char *path, h5_shape *shape) {
   return status;
 }
 
-/* Text such as "[2, 3, any]"; zeros read "any" where wanted is true. */
-static const char *shape_text(h5_shape shape, bool wanted, char out[128]) {
-  size_t n = 0;
-  out[n++] = '[';
-  for (int i = 0; i < shape.rank; i++) {
-    const char *comma = i ? ", " : "";
-    if (wanted && shape.dim[i] == 0) {
-      n += (size_t)snprintf(out + n, 128 - n, "%sany", comma);
-    } else {
-      n += (size_t)snprintf(out + n, 128 - n, "%s%llu", comma, (unsigned long long)shape.dim[i]);
-    }
-  }
-  snprintf(out + n, 128 - n, "]");
-  return out;
-}
-
 static shb_status check_shape(const char *label, h5_shape found, h5_shape wanted) {
   bool same = found.rank == wanted.rank;
   for (int i = 0; same && i < wanted.rank; i++)
     same = wanted.dim[i] == 0 || wanted.dim[i] == found.dim[i];
   char have[128], want[128];
   SHB_CHECK(same, SHB_ERR_INPUT, "%s has shape %s where %s is wanted", label,
-            shape_text(found, false, have), shape_text(wanted, true, want));
+            h5_shape_text(found, false, have), h5_shape_text(wanted, true, want));
   return SHB_OK;
 }
 
@@ -161,22 +145,6 @@ static shb_status wrong_kind(const char *label, stored_kind found, const char *w
   SHB_FAIL(SHB_ERR_INPUT, "%s holds %s where %s are wanted", label, name[found], wanted);
 }
 
-/* Check that all values are finite. per: doubles per value (2 for complex). */
-static shb_status check_finite(const char *label, h5_shape shape, const double *data, size_t per) {
-  size_t count = h5_count(shape) * per, bad = 0;
-  while (bad < count && isfinite(data[bad])) bad++;
-  if (bad == count) return SHB_OK;
-  h5_shape at   = shape;
-  size_t   rest = bad / per;
-  for (int i = shape.rank - 1; i >= 0; i--) {
-    at.dim[i] = rest % shape.dim[i];
-    rest /= shape.dim[i];
-  }
-  char index[128];
-  SHB_FAIL(SHB_ERR_INPUT, "%s: the value at %s (from 0) is %s; all must be finite", label,
-           shape_text(at, false, index), isnan(data[bad]) ? "not a number" : "infinite");
-}
-
 typedef struct {
   hid_t    set;
   char     label[H5_LABEL];
@@ -197,6 +165,8 @@ static shb_status open_source(hid_t at, const char *path, h5_shape *expected, so
   return status;
 }
 
+static const char all_finite[] = "all must be finite";
+
 static shb_status read_real(const source *from, double **data) {
   hid_t       type;
   stored_kind kind = kind_of(from->set, &type);
@@ -204,7 +174,7 @@ static shb_status read_real(const source *from, double **data) {
   if (kind != REAL) return wrong_kind(from->label, kind, "real numbers");
   void *raw;
   SHB_TRY(read_all(from->set, from->label, H5T_NATIVE_DOUBLE, h5_count(from->shape), &raw));
-  shb_status status = check_finite(from->label, from->shape, raw, 1);
+  shb_status status = h5_check_finite(from->label, from->shape, raw, 1, all_finite);
   if (status != SHB_OK) {
     free(raw);
     return status;
@@ -244,7 +214,7 @@ static shb_status read_complex(const source *from, double complex **data) {
   void      *raw    = NULL;
   shb_status status = read_all(from->set, from->label, type, h5_count(from->shape), &raw);
   H5Tclose(type);
-  if (status == SHB_OK) status = check_finite(from->label, from->shape, raw, 2);
+  if (status == SHB_OK) status = h5_check_finite(from->label, from->shape, raw, 2, all_finite);
   if (status != SHB_OK) {
     free(raw);
     return status;

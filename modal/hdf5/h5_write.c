@@ -58,8 +58,17 @@ static shb_status describe(hid_t at, const char *path, const char *units, const 
   return h5_write_attribute_text(at, path, "long_name", long_name ? long_name : path);
 }
 
+/* Inputs near the limits of double precision can give values beyond them. */
+static shb_status check_values(hid_t at, const char *path, h5_shape shape, const void *data,
+                               size_t per) {
+  char label[H5_LABEL];
+  return h5_check_finite(h5_label(at, path, label), shape, data, per,
+                         "a number of the input is too large");
+}
+
 shb_status h5_write_double(hid_t at, const char *path, h5_shape shape, const double *data,
                            const char *units, const char *long_name) {
+  SHB_TRY(check_values(at, path, shape, data, 1));
   SHB_TRY(write_dataset(at, path, shape, H5T_NATIVE_DOUBLE, data));
   return describe(at, path, units, long_name);
 }
@@ -72,6 +81,7 @@ shb_status h5_write_int(hid_t at, const char *path, h5_shape shape, const int *d
 
 shb_status h5_write_complex(hid_t at, const char *path, h5_shape shape, const double complex *data,
                             const char *units, const char *long_name) {
+  SHB_TRY(check_values(at, path, shape, data, 2));
   hid_t type = h5_complex_type("r", "i");
   if (type < 0) return h5_failed(SHB_ERR_IO, at, path, "cannot be written");
   shb_status status = write_dataset(at, path, shape, type, data);

@@ -300,6 +300,8 @@ static void numbers_and_ranges(void **state) {
        "c.yaml:17:40: error: excitation.harmonics.3[1]: '90 Hz' has unit "
        "Hz, expected rad",
        1},
+      {"[0.21, 90 deg]", "[-1e300, 90 deg]",
+       "c.yaml:17:34: error: excitation.harmonics.3[0]: is -1e+300, must be -1e+12 to 1e+12", 1},
       {"tip: [1 mm, 2 mm, 0.47 m]", "tip: 3",
        "c.yaml:18:14: error: probe.tip: is a single value; expected 3 "
        "numbers in m",

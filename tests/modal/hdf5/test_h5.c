@@ -228,6 +228,13 @@ static void test_many_attachments(void **state) {
 
 /* ------------------------------------------------------------ other writers */
 
+static hid_t native_complex(void) {
+  hid_t type = H5Tcreate(H5T_COMPOUND, 2 * sizeof(double));
+  H5Tinsert(type, "r", 0, H5T_NATIVE_DOUBLE);
+  H5Tinsert(type, "i", sizeof(double), H5T_NATIVE_DOUBLE);
+  return type;
+}
+
 static void put(hid_t file, const char *name, hid_t stored, hid_t memory, h5_shape shape,
                 const void *data) {
   hid_t space = shape.rank ? H5Screate_simple(shape.rank, shape.dim, NULL) : H5Screate(H5S_SCALAR);
@@ -336,8 +343,11 @@ static void test_bad_datasets(void **state) {
   double              *real;
   double complex      *wave;
   h5_shape             two = H5_SHAPE(2, 2), any = H5_SHAPE(0), wide = H5_SHAPE(3, 0);
-  assert_ok(h5_write_double(file, "/g/bad", two, bad, "m", long_label));
-  assert_ok(h5_write_complex(file, "odd", H5_SHAPE(2), odd, "m", long_label));
+  hid_t                type = native_complex(), group = H5Gcreate2(file, "g", 0, 0, 0);
+  put(group, "bad", H5T_NATIVE_DOUBLE, H5T_NATIVE_DOUBLE, two, bad);
+  put(file, "odd", type, type, H5_SHAPE(2), odd);
+  H5Tclose(type);
+  H5Gclose(group);
   assert_refused(h5_read_double(file, "/g/bad", &two, &real), SHB_ERR_INPUT,
                  "bad.h5: /g/bad: the value at [1, 0] (from 0) is not a number");
   assert_null(real);
@@ -360,6 +370,24 @@ static void test_bad_datasets(void **state) {
   H5Dclose(H5Dcreate2(file, "six", H5T_NATIVE_DOUBLE, space, 0, 0, 0));
   H5Sclose(space);
   assert_refused(h5_read_double(file, "six", &any, &real), SHB_ERR_INPUT, "6 dimensions");
+  h5_abandon(file);
+}
+
+/* What no reader would take is not written either. */
+static void test_only_finite_values_are_written(void **state) {
+  (void)state;
+  const double         bad[3] = {1, 2, -INFINITY};
+  const double complex odd[2] = {1, CMPLX(0, NAN)};
+  hid_t                file   = create("finite.h5");
+  assert_refused(
+      h5_write_double(file, "/g/bad", H5_SHAPE(3), bad, "m", long_label), SHB_ERR_INPUT,
+      "finite.h5: /g/bad: the value at [2] (from 0) is infinite; a number of the input is ");
+  assert_refused(h5_write_complex(file, "/g/odd", H5_SHAPE(2), odd, "m", long_label), SHB_ERR_INPUT,
+                 "finite.h5: /g/odd: the value at [1] (from 0) is not a number");
+  assert_refused(h5_write_attribute_double(file, "/", "psi", NAN), SHB_ERR_INPUT,
+                 "finite.h5: /: attribute psi is not a number; it must be finite");
+  assert_false(h5_exists(file, "/g/bad") || h5_exists(file, "/g/odd"));
+  assert_ok(h5_write_double(file, "/g/bad", H5_SHAPE(2), bad, "m", long_label));
   h5_abandon(file);
 }
 
@@ -516,6 +544,7 @@ int main(void) {
       cmocka_unit_test(test_foreign_texts),
       cmocka_unit_test(test_bad_datasets),
       cmocka_unit_test(test_huge_claims),
+      cmocka_unit_test(test_only_finite_values_are_written),
       cmocka_unit_test(test_bad_files),
       cmocka_unit_test(test_no_permission),
       cmocka_unit_test(test_truncated),
