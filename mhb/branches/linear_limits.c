@@ -6,9 +6,12 @@
 #include "mhb/balance/modal_error.h"
 #include "mhb/branches/linear_limits.h"
 #include "mhb/branches/record.h"
+#include "mhb/continuation/linear_resonances.h"
 #include "mhb/continuation/outputs.h"
 
 static const double TOLERANCE = 2e-3;
+
+enum { LEAST_DEPTH = 8, MOST_DEPTH = 30 }; /* of the halvings of an interval */
 
 typedef struct {
   mhb_balance  *balance;
@@ -84,23 +87,74 @@ static int first_grid(const mhb_balance *b) {
   return (int)fmax(32, fmin(800, wanted));
 }
 
-static shb_status sample(sampler *s) {
+/* Values at which the limit is computed in any case, ascending. */
+typedef struct {
+  double *at;
+  int     n;
+} grid;
+
+static int by_value(const void *a, const void *b) {
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+/* A uniform grid, the natural frequencies, and the ends of their half-power widths.
+ *   narrowest  out  the least half width, INFINITY without resonances */
+static shb_status make_grid(const sampler *s, grid *g, double *narrowest) {
   const mhb_balance *b    = s->balance;
-  int                grid = first_grid(b);
-  double             from = mhb_parameter_end(b->settings, b->parameter, 0), lo = from;
-  double             to = mhb_parameter_end(b->settings, b->parameter, 1);
-  double             at_lo[s->n_outputs + 1], at_hi[s->n_outputs + 1];
-  SHB_TRY(amplitudes(s, lo, at_lo));
-  SHB_TRY(record(s, lo));
-  for (int i = 1; i <= grid; i++) {
-    double hi = i == grid ? to : from + i * ((to - from) / grid);
+  const double       from = mhb_parameter_end(b->settings, b->parameter, 0);
+  const double       to   = mhb_parameter_end(b->settings, b->parameter, 1);
+  const int          n    = first_grid(b);
+  mhb_resonances     all;
+  *narrowest = INFINITY;
+  SHB_TRY(mhb_resonances_of_limit(b, s->stuck, from, to, &all));
+  g->at = malloc((size_t)(n + 1 + 3 * all.n) * sizeof *g->at);
+  g->n  = 0;
+  for (int i = 0; g->at && i <= n; i++) g->at[g->n++] = i == n ? to : from + i * ((to - from) / n);
+  for (int i = 0; g->at && i < all.n; i++) {
+    *narrowest = fmin(*narrowest, all.at[i].half_width);
+    for (int side = -1; side <= 1; side++) {
+      const double value = all.at[i].value + side * all.at[i].half_width;
+      if (value > from && value < to) g->at[g->n++] = value;
+    }
+  }
+  mhb_resonances_destroy(&all);
+  SHB_CHECK(g->at, SHB_ERR_IO, "out of memory");
+  qsort(g->at, (size_t)g->n, sizeof *g->at, by_value);
+  int kept = 1;
+  for (int i = 1; i < g->n; i++)
+    if (g->at[i] - g->at[kept - 1] > 1e-12 * fabs(to)) g->at[kept++] = g->at[i];
+  g->at[kept - 1] = to;
+  g->n            = kept;
+  return SHB_OK;
+}
+
+/* Halvings of an interval: to a small part of the narrowest resonance. */
+static int depth_of(double length, double narrowest) {
+  return (int)fmin(MOST_DEPTH, fmax(LEAST_DEPTH, ceil(log2(length / (0.05 * narrowest)))));
+}
+
+static shb_status sample_grid(sampler *s, const grid *g, double narrowest) {
+  double at_lo[s->n_outputs + 1], at_hi[s->n_outputs + 1];
+  SHB_TRY(amplitudes(s, g->at[0], at_lo));
+  SHB_TRY(record(s, g->at[0]));
+  for (int i = 1; i < g->n; i++) {
+    const double lo = g->at[i - 1], hi = g->at[i];
     SHB_TRY(amplitudes(s, hi, at_hi));
-    SHB_TRY(refine(s, lo, at_lo, hi, at_hi, 8));
+    SHB_TRY(refine(s, lo, at_lo, hi, at_hi, depth_of(hi - lo, narrowest)));
     SHB_TRY(record(s, hi));
     memcpy(at_lo, at_hi, sizeof at_lo);
-    lo = hi;
   }
   return SHB_OK;
+}
+
+static shb_status sample(sampler *s) {
+  grid       g = {0};
+  double     narrowest;
+  shb_status status = make_grid(s, &g, &narrowest);
+  if (status == SHB_OK) status = sample_grid(s, &g, narrowest);
+  free(g.at);
+  return status;
 }
 
 /* Mark peaks for the report: a grid point at which an output is larger than at both neighbours. */

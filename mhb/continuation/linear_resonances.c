@@ -12,6 +12,9 @@
  * places between: the contact motion resolves that change. */
 static const double WINDOW = 4, SHORTEST = 0.5, APART = 2, FARTHEST = 32;
 
+/* Longest ratio of two frequencies with one R for the stuck modes of a limit. */
+static const double SECTION = 4;
+
 /* Samples of a run-up. A mode that follows the excitation is no wider than by this rate. */
 enum { N_SAMPLES = 16 };
 static const double LEAST_RATE = 0.1;
@@ -238,27 +241,81 @@ static shb_status add_all(const stuck_modes *w, mhb_resonances *s) {
   return SHB_OK;
 }
 
+static shb_status open_work(const mhb_balance *b, double low, double high, stuck_modes *w) {
+  size_t n = (size_t)b->receptance->n, m = (size_t)b->receptance->n_modes;
+  *w        = (stuck_modes){.b = b, .low = low, .high = high};
+  w->R      = calloc(n * n, sizeof *w->R);
+  w->A      = calloc(n * n, sizeof *w->A);
+  w->X      = calloc(n * m, sizeof *w->X);
+  w->M      = calloc(m * m, sizeof *w->M);
+  w->square = calloc(m, sizeof *w->square);
+  w->pivot  = calloc(n, sizeof *w->pivot);
+  SHB_CHECK(w->R && w->A && w->X && w->M && w->square && w->pivot, SHB_ERR_IO,
+            "out of memory for the resonances of %zu modes", m);
+  return SHB_OK;
+}
+
+static void close_work(stuck_modes *w) {
+  free(w->R);
+  free(w->A);
+  free(w->X);
+  free(w->M);
+  free(w->square);
+  free(w->pivot);
+}
+
 shb_status mhb_resonances_create(const mhb_balance *b, double low, double high,
                                  mhb_resonances *out) {
   *out = (mhb_resonances){0};
   if (b->parameter != MHB_IN_FREQUENCY) return SHB_OK;
-  size_t      n = (size_t)b->receptance->n, m = (size_t)b->receptance->n_modes;
-  stuck_modes w     = {.b = b, .low = low, .high = high};
-  w.R               = calloc(n * n, sizeof *w.R);
-  w.A               = calloc(n * n, sizeof *w.A);
-  w.X               = calloc(n * m, sizeof *w.X);
-  w.M               = calloc(m * m, sizeof *w.M);
-  w.square          = calloc(m, sizeof *w.square);
-  w.pivot           = calloc(n, sizeof *w.pivot);
-  int        ok     = w.R && w.A && w.X && w.M && w.square && w.pivot;
-  shb_status status = ok ? add_all(&w, out) : SHB_ERR_IO;
-  free(w.R);
-  free(w.A);
-  free(w.X);
-  free(w.M);
-  free(w.square);
-  free(w.pivot);
-  SHB_CHECK(ok, SHB_ERR_IO, "out of memory for the resonances of %zu modes", m);
+  stuck_modes w;
+  shb_status  status = open_work(b, low, high, &w);
+  if (status == SHB_OK) status = add_all(&w, out);
+  close_work(&w);
+  if (status != SHB_OK) mhb_resonances_destroy(out);
+  return status;
+}
+
+/* ---- of one linear limit ---- */
+
+/* The stuck resonances of harmonic k in sections of the range. R changes little over each. */
+static shb_status add_stuck_sections(stuck_modes *w, mhb_resonances *s, int k) {
+  const mhb_receptance *r     = w->b->receptance;
+  const double         *f     = r->model->frequency;
+  const double          turns = SHB_TWO_PI * r->nu / k, low = w->low, high = w->high;
+  const double          first = fmax(low, 0.5 * turns * f[0]);
+  const double          last  = fmin(high, 2 * turns * f[r->n_modes - 1]);
+  for (double at = first; at < last; at = w->high) {
+    w->low  = at;
+    w->high = fmin(last, SECTION * at);
+    if (!solve(w, k)) continue;
+    for (int j = 0; j < r->n_modes; j++) SHB_TRY(add_inside(w, s, stuck_one(w, k, j)));
+  }
+  w->low  = low;
+  w->high = high;
+  return SHB_OK;
+}
+
+static shb_status add_limit(stuck_modes *w, bool stuck, mhb_resonances *s) {
+  const mhb_receptance *r = w->b->receptance;
+  for (int k = 1; k <= w->b->m; k++) {
+    if (!r->driven[k]) continue;
+    if (stuck) SHB_TRY(add_stuck_sections(w, s, k));
+    for (int i = 0; i < r->n_modes && !stuck; i++) SHB_TRY(add_inside(w, s, free_one(r, k, i)));
+  }
+  if (s->n > 0) qsort(s->at, (size_t)s->n, sizeof *s->at, by_value);
+  return SHB_OK;
+}
+
+shb_status mhb_resonances_of_limit(const mhb_balance *b, bool stuck, double low, double high,
+                                   mhb_resonances *out) {
+  if (b->parameter != MHB_IN_FREQUENCY || b->receptance->at)
+    return mhb_resonances_create(b, low, high, out);
+  *out = (mhb_resonances){0};
+  stuck_modes w;
+  shb_status  status = open_work(b, low, high, &w);
+  if (status == SHB_OK) status = add_limit(&w, stuck, out);
+  close_work(&w);
   if (status != SHB_OK) mhb_resonances_destroy(out);
   return status;
 }

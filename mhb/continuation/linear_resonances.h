@@ -32,6 +32,10 @@ typedef struct {
  * SHB_ERR_IO: no memory. */
 shb_status mhb_resonances_create(const mhb_balance *balance, double low, double high,
                                  mhb_resonances *resonances);
+/* Those of one linear limit at the harmonics of the load: free modes, or stuck ones with R near
+ * each frequency. In a run-up all places of mhb_resonances_create. */
+shb_status mhb_resonances_of_limit(const mhb_balance *balance, bool stuck, double low, double high,
+                                   mhb_resonances *resonances);
 void       mhb_resonances_destroy(mhb_resonances *resonances);
 
 /* The longest change of a value, in sense +1 or -1, that resolves the significant resonances. It

@@ -51,7 +51,7 @@ foreach(noun arclength arclength_scalar balance_curve closed_curve corrector cur
   shb_test(mhb/continuation ${noun} tests_models)
 endforeach()
 foreach(noun branch_completion branch_stability chain forced_response harmonic_selection
-    lasting_motion main_branch peak_search period_doubling record run_up secondary_branches tracer
-    verdicts)
+    lasting_motion linear_limits main_branch peak_search period_doubling record run_up
+    secondary_branches tracer verdicts)
   shb_test(mhb/branches ${noun} tests_models)
 endforeach()
