@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/base/crash_guard.h"
 #include "mesh/base/vec3.h"
 #include "mesh/core/face_match.h"
 #include "mesh/core/file_format.h"
@@ -53,7 +54,9 @@ shb_status mesh_solid_open(const mesh_source *source, shb_progress *progress, me
   *solid = (mesh_solid){.source = source, .progress = progress};
   SHB_TRY(mesh_session_open(&solid->session));
   shb_progress_show(progress, 0, "loading the solid");
+  shb_guard_begin(source->path, "is damaged: gmsh crashed while it was read", false);
   shb_status status = load(source);
+  shb_guard_end();
   if (status != SHB_OK) mesh_session_close(&solid->session);
   return status;
 }

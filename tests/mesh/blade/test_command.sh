@@ -4,6 +4,7 @@
 set -u
 program=$1
 scene=$2
+damaged=$(dirname "$0")/../io/damaged
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 failed=0
@@ -202,6 +203,18 @@ for signals in 'INT INT 130 at_once' 'TERM TERM 143 at_once' 'TERM - 143 130'; d
   [ "$4" = at_once ] && says "ended at once"
 done
 rm "$work/dir/sector.geo" "$work/dir/solid.yaml" "$work/dir/solid.msh"
+
+# Damaged meshes over which gmsh crashes: one line.
+for name in segmentation_fault assertion; do
+  cp "$damaged/$name.msh" "$work/dir"
+  sed "s/^mesh:.*/mesh: {file: $name.msh}/; /^  blade:/,/^    size:/d" "$scene" \
+    >"$work/dir/damaged.yaml"
+  run 2 damaged.yaml
+  lines 1
+  says "shroudhb: error: $name.msh: is damaged: gmsh crashed while it was read; mesh or copy it"
+  rm "$work/dir/$name.msh"
+done
+rm "$work/dir/damaged.yaml"
 
 left=$(ls -A "$work/home" | grep -v -e '^.fltk$')
 [ -z "$left" ] || fail "something was written to HOME: $left"

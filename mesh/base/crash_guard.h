@@ -1,0 +1,15 @@
+/* A damaged file can crash the library that reads it. The program then ends with one line and the
+ * exit code SHB_ERR_INPUT. */
+#ifndef MESH_BASE_CRASH_GUARD_H
+#define MESH_BASE_CRASH_GUARD_H
+
+#include <stdbool.h>
+
+/* From here to the end of the guard a fatal signal prints "shroudhb: error: PATH: WHY" and ends the
+ * process. Temporary files of results are removed. Guards do not nest: a second one replaces the
+ * text of the first.
+ *   mute  in  standard error is closed meanwhile, as libraries print there before they abort */
+void shb_guard_begin(const char *path, const char *why, bool mute);
+void shb_guard_end(void);
+
+#endif
