@@ -76,18 +76,60 @@ static double add_element(const fem_body *body, const fem_material *own, const d
   return volume;
 }
 
-PetscErrorCode fem_nodal_stress(const fem_body *body, const double *u,
-                                double (*stress)[FEM_STRESSES]) {
+/* What the mean at a node is taken over. */
+typedef struct {
+  extrapolation to[2];  /* from the rule of straight and of curved elements */
+  int          *owner;  /* [n_nodes] region whose elements count; NULL: all elements do */
+  double       *volume; /* [n_nodes] of the elements that count */
+} recovery;
+
+/* The stiffest of the materials at each node; of equal ones the first. */
+static void find_owners(const fem_body *body, int *owner) {
+  const mesh_fe *mesh = body->mesh;
+  const int      n    = body->element->n;
+  for (int i = 0; i < mesh->n_nodes; i++) owner[i] = -1;
+  for (int i = 0; i < n * mesh->n_elements; i++) {
+    int *own = &owner[mesh->connectivity[i]], here = mesh->region[i / n];
+    if (*own < 0 || body->material[here].E > body->material[*own].E ||
+        (body->material[here].E == body->material[*own].E && here < *own))
+      *own = here;
+  }
+}
+
+static PetscErrorCode recovery_create(const fem_body *body, recovery **out) {
   const mesh_fe       *mesh     = body->mesh;
   const mesh_topology *topology = mesh_topology_of(mesh->kind);
-  extrapolation       *to;
-  double              *volume;
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(1, out));
+  PetscCall(PetscCalloc1(mesh->n_nodes, &(*out)->volume));
+  fit(topology, &body->element->straight, &(*out)->to[0]);
+  fit(topology, &body->element->curved, &(*out)->to[1]);
+  if (mesh->region) {
+    PetscCall(PetscMalloc1(mesh->n_nodes, &(*out)->owner));
+    find_owners(body, (*out)->owner);
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode recovery_destroy(recovery *r) {
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(r->volume));
+  PetscCall(PetscFree(r->owner));
+  PetscCall(PetscFree(r));
+  PetscFunctionReturn(0);
+}
+
+static bool counts(const recovery *r, const mesh_fe *mesh, int element, int node) {
+  return !r->owner || r->owner[node] == mesh->region[element];
+}
+
+PetscErrorCode fem_nodal_stress(const fem_body *body, const double *u,
+                                double (*stress)[FEM_STRESSES]) {
+  const mesh_fe *mesh = body->mesh;
+  recovery      *r;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(mesh->n_nodes, &volume));
-  PetscCall(PetscMalloc1(2, &to));
-  fit(topology, &body->element->straight, &to[0]);
-  fit(topology, &body->element->curved, &to[1]);
+  PetscCall(recovery_create(body, &r));
   memset(stress, 0, (size_t)mesh->n_nodes * sizeof *stress);
   for (int e = 0; e < mesh->n_elements; e++) {
     const int *node = mesh->connectivity + body->element->n * (size_t)e;
@@ -96,16 +138,107 @@ PetscErrorCode fem_nodal_stress(const fem_body *body, const double *u,
     const fem_rule *rule = fem_element_stiffness_rule(body->element, (const double(*)[3])x);
     double          here =
         add_element(body, fem_material_at(body->material, mesh, e), (const double(*)[3])x,
-                    (const double(*)[3])v, rule, &to[rule == &body->element->curved], nodal);
+                    (const double(*)[3])v, rule, &r->to[rule == &body->element->curved], nodal);
     for (int i = 0; i < body->element->n; i++) {
-      volume[node[i]] += here;
+      if (!counts(r, mesh, e, node[i])) continue;
+      r->volume[node[i]] += here;
       for (int c = 0; c < FEM_STRESSES; c++) stress[node[i]][c] += nodal[i][c];
     }
   }
   for (int i = 0; i < mesh->n_nodes; i++)
-    for (int c = 0; c < FEM_STRESSES; c++) stress[i][c] /= volume[i];
-  PetscCall(PetscFree(volume));
-  PetscCall(PetscFree(to));
+    for (int c = 0; c < FEM_STRESSES; c++) stress[i][c] /= r->volume[i];
+  PetscCall(recovery_destroy(r));
+  PetscFunctionReturn(0);
+}
+
+/* Motions at work on together. */
+enum { LANES = 8 };
+
+typedef double lanes[LANES];
+
+/* Displacements of the nodes of an element in up to LANES motions, less those of its first node. */
+static void gather(const fem_body *body, const int *node, int n, const double *motion,
+                   lanes v[][3]) {
+  const size_t stride = 3 * (size_t)body->mesh->n_nodes;
+  memset(v, 0, (size_t)body->element->n * sizeof *v);
+  for (int l = 0; l < n; l++) {
+    const double *all = motion + (size_t)l * stride, *first = all + 3 * (size_t)node[0];
+    for (int i = 1; i < body->element->n; i++)
+      for (int a = 0; a < 3; a++) v[i][a][l] = all[3 * (size_t)node[i] + (size_t)a] - first[a];
+  }
+}
+
+/* Changes of stress at a point of the rule. */
+static void change_at(int n, const double D[6][9], const double g[][3], const lanes v[][3],
+                      lanes stress[FEM_STRESSES]) {
+  lanes H[9] = {{0}};
+  for (int i = 1; i < n; i++)
+    for (int a = 0; a < 3; a++)
+      for (int d = 0; d < 3; d++)
+        for (int l = 0; l < LANES; l++) H[3 * a + d][l] += v[i][a][l] * g[i][d];
+  memset(stress, 0, FEM_STRESSES * sizeof *stress);
+  for (int c = 0; c < FEM_STRESSES; c++)
+    for (int h = 0; h < 9; h++)
+      for (int l = 0; l < LANES; l++) stress[c][l] += D[c][h] * H[h][l];
+}
+
+/* Add an element's volume times its nodal stresses to the sums of the nodes. */
+static void add_changes(const fem_body *body, int e, const double *u, int n, const double *motion,
+                        recovery *r, lanes (*sum)[FEM_STRESSES]) {
+  const mesh_fe      *mesh  = body->mesh;
+  const fem_material *own   = fem_material_at(body->material, mesh, e);
+  const int           nodes = body->element->n, *node = mesh->connectivity + nodes * (size_t)e;
+  double              x[MESH_NODES][3], at_rest[MESH_NODES][3], volume = 0;
+  lanes               v[MESH_NODES][3], stress[FEM_POINTS][FEM_STRESSES];
+  fem_body_element(body, e, u, x, at_rest);
+  gather(body, node, n, motion, v);
+  const fem_rule      *rule = fem_element_stiffness_rule(body->element, (const double(*)[3])x);
+  const extrapolation *to   = &r->to[rule == &body->element->curved];
+  for (int p = 0; p < rule->n; p++) {
+    fem_deformation at;
+    double          g[MESH_NODES][3], H[3][3], D[6][9];
+    volume +=
+        rule->weight[p] * fem_element_gradient(body->element, rule, p, (const double(*)[3])x, g);
+    fem_displacement_gradient(nodes, (const double(*)[3])g, (const double(*)[3])at_rest, H);
+    fem_deformation_at(own, (const double(*)[3])H, &at);
+    fem_cauchy_tangent(own, &at, D);
+    change_at(nodes, (const double(*)[9])D, (const double(*)[3])g, (const lanes(*)[3])v, stress[p]);
+  }
+  for (int i = 0; i < nodes; i++) {
+    if (!counts(r, mesh, e, node[i])) continue;
+    r->volume[node[i]] += volume;
+    for (int p = 0; p < rule->n; p++) {
+      const double weight = volume * to->at[i][p];
+      for (int c = 0; c < FEM_STRESSES; c++)
+        for (int l = 0; l < LANES; l++) sum[node[i]][c][l] += weight * stress[p][c][l];
+    }
+  }
+}
+
+PetscErrorCode fem_nodal_stress_change(const fem_body *body, const double *u, int n,
+                                       const double *motion, float *stress) {
+  const size_t nodes = (size_t)body->mesh->n_nodes;
+  recovery    *r;
+  lanes(*sum)[FEM_STRESSES];
+
+  PetscFunctionBeginUser;
+  PetscCall(recovery_create(body, &r));
+  PetscCall(PetscMalloc1(nodes, &sum));
+  for (int first = 0; first < n; first += LANES) {
+    const int count = PetscMin(LANES, n - first);
+    memset(sum, 0, nodes * sizeof *sum);
+    memset(r->volume, 0, nodes * sizeof *r->volume);
+    for (int e = 0; e < body->mesh->n_elements; e++)
+      add_changes(body, e, u, count, motion + 3 * nodes * (size_t)first, r, sum);
+    for (int l = 0; l < count; l++) {
+      float *out = stress + FEM_STRESSES * nodes * (size_t)(first + l);
+      for (size_t i = 0; i < nodes; i++)
+        for (int c = 0; c < FEM_STRESSES; c++)
+          out[FEM_STRESSES * i + (size_t)c] = (float)(sum[i][c][l] / r->volume[i]);
+    }
+  }
+  PetscCall(PetscFree(sum));
+  PetscCall(recovery_destroy(r));
   PetscFunctionReturn(0);
 }
 

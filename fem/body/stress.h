@@ -13,12 +13,21 @@ enum { FEM_STRESSES = 6 }; /* xx, yy, zz, xy, yz, xz, as VTK orders a symmetric 
  *
  * In each element a linear function is fitted to the quadrature points by least squares and
  * evaluated at the nodes. A node gets the mean of its elements, weighted by volume. The error is of
- * second order in the element size; linear stress fields are exact. Where materials meet the value
- * is a mean of both.
+ * second order in the element size; linear stress fields are exact. Where materials meet, only the
+ * elements of the stiffest material count (greatest E; of equal ones the first).
  *   u  in  [n_nodes][3] m
  * Errors: PETSC_ERR_MEM. */
 PetscErrorCode fem_nodal_stress(const fem_body *body, const double *u,
                                 double (*stress)[FEM_STRESSES]);
+
+/* Change of these stresses by small motions about a state: their derivative along each motion. It
+ * is rounded to single precision, 6e-8 relative.
+ *   u       in   [n_nodes][3] m, the state; NULL: at rest
+ *   motion  in   [n][n_nodes][3], mode shapes for example
+ *   stress  out  [n][n_nodes][6], Pa for each metre of the motion
+ * Errors: PETSC_ERR_MEM. */
+PetscErrorCode fem_nodal_stress_change(const fem_body *body, const double *u, int n,
+                                       const double *motion, float *stress);
 
 /* Internal forces less loads at every node, clamped ones included, N. They vanish in equilibrium at
  * free nodes. At clamped nodes they are the clamp forces.

@@ -149,6 +149,46 @@ void fem_cauchy(const fem_deformation *at, double stress[6]) {
   for (int c = 0; c < 6; c++) stress[c] = vec3_dot(P[place[c][0]], at->F[place[c][1]]) / J;
 }
 
+/* dS = C dE */
+static void stress_change(const fem_material *material, const fem_lame *lame, const double dE[3][3],
+                          double dS[3][3]) {
+  double trace = dE[0][0] + dE[1][1] + dE[2][2];
+  if (material->anisotropic) {
+    anisotropic_stress(material, dE, dS);
+    return;
+  }
+  for (int a = 0; a < 3; a++)
+    for (int b = 0; b < 3; b++)
+      dS[a][b] = 2 * lame->mu * dE[a][b] + (a == b ? lame->lambda * trace : 0);
+}
+
+void fem_cauchy_tangent(const fem_material *material, const fem_deformation *at, double D[6][9]) {
+  static const int place[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {0, 2}};
+  const fem_lame   lame        = fem_lame_of(material);
+  const double(*F)[3] = at->F, J = determinant(at->F);
+  double P[3][3], sigma[6], cofactor[3][3];
+  multiply(F, at->S, P);
+  fem_cauchy(at, sigma);
+  for (int a = 0; a < 3; a++)
+    for (int d = 0; d < 3; d++) {
+      int a1 = (a + 1) % 3, a2 = (a + 2) % 3, d1 = (d + 1) % 3, d2 = (d + 2) % 3;
+      cofactor[a][d] = F[a1][d1] * F[a2][d2] - F[a1][d2] * F[a2][d1];
+    }
+  for (int a = 0; a < 3; a++)
+    for (int d = 0; d < 3; d++) { /* dF = e_a e_d^T */
+      double dE[3][3], dS[3][3], Q[3][3];
+      for (int p = 0; p < 3; p++)
+        for (int q = 0; q < 3; q++) dE[p][q] = (F[a][p] * (q == d) + F[a][q] * (p == d)) / 2;
+      stress_change(material, &lame, (const double(*)[3])dE, dS);
+      multiply(F, (const double(*)[3])dS, Q);
+      for (int c = 0; c < 6; c++) {
+        int    i = place[c][0], j = place[c][1];
+        double turned   = (i == a) * P[j][d] + (j == a) * P[i][d];
+        D[c][3 * a + d] = (vec3_dot(Q[i], F[j]) + turned - cofactor[a][d] * sigma[c]) / J;
+      }
+    }
+}
+
 double fem_von_mises(const double stress[6]) {
   double square = 0;
   for (int a = 0; a < 3; a++) {

@@ -36,6 +36,11 @@ void fem_element_tangent(const fem_element *element, const fem_material *materia
 void   fem_cauchy(const fem_deformation *at, double stress[6]);
 double fem_von_mises(const double stress[6]);
 
+/* Derivative of the Cauchy stress by the displacement gradient H, Pa: D[stress][3 a + d] belongs to
+ * H[a][d]. With dE = sym(F^T dF), dS = C dE and J = det F,
+ *   d sigma = (dF S F^T + F dS F^T + F S dF^T)/J - tr(dF F^-1) sigma. */
+void fem_cauchy_tangent(const fem_material *material, const fem_deformation *at, double D[6][9]);
+
 /* Largest von Mises stress of the Cauchy stress at the quadrature points of an element, Pa. */
 double fem_element_stress(const fem_element *element, const fem_material *material,
                           const double x[][3], const double u[][3]);

@@ -44,6 +44,9 @@ void h5_abandon(hid_t file);
  * inputs that are too large. The text names the file, the dataset and the place. */
 shb_status h5_write_double(hid_t at, const char *path, h5_shape shape, const double *data,
                            const char *units, const char *long_name);
+/* The same in single precision. */
+shb_status h5_write_single(hid_t at, const char *path, h5_shape shape, const float *data,
+                           const char *units, const char *long_name);
 shb_status h5_write_complex(hid_t at, const char *path, h5_shape shape, const double complex *data,
                             const char *units, const char *long_name);
 shb_status h5_write_int(hid_t at, const char *path, h5_shape shape, const int *data,

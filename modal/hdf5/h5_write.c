@@ -73,6 +73,12 @@ shb_status h5_write_double(hid_t at, const char *path, h5_shape shape, const dou
   return describe(at, path, units, long_name);
 }
 
+shb_status h5_write_single(hid_t at, const char *path, h5_shape shape, const float *data,
+                           const char *units, const char *long_name) {
+  SHB_TRY(write_dataset(at, path, shape, H5T_NATIVE_FLOAT, data));
+  return describe(at, path, units, long_name);
+}
+
 shb_status h5_write_int(hid_t at, const char *path, h5_shape shape, const int *data,
                         const char *units, const char *long_name) {
   SHB_TRY(write_dataset(at, path, shape, H5T_NATIVE_INT, data));

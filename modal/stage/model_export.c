@@ -45,6 +45,14 @@ shb_status modal_export_shapes(hid_t file, int n_modes, int n_nodes, const doubl
   return h5_attach_scale(file, "modes/shape", 0, "modes/frequency");
 }
 
+shb_status modal_export_stress(hid_t file, int n_modes, int n_nodes, const float *stress) {
+  SHB_TRY(h5_write_single(file, "modes/stress", H5_SHAPE((hsize_t)n_modes, (hsize_t)n_nodes, 6),
+                          stress, "Pa kg^-1/2",
+                          "Cauchy stress of the modes at the nodes: xx, yy, zz, xy, yz, xz in mesh "
+                          "axes; to be multiplied by modal amplitudes"));
+  return h5_attach_scale(file, "modes/stress", 0, "modes/frequency");
+}
+
 shb_status modal_export_check(hid_t file, const modal_check *check) {
   SHB_TRY(h5_write_attribute_text(file, "/modes", "checked", check->method));
   SHB_TRY(h5_write_attribute_int(file, "/modes", "checked_count", check->count));

@@ -15,6 +15,9 @@ shb_status modal_export_mesh(hid_t file, const mesh_fe *mesh);
 /* Write /modes/shape [m][n][3] in mesh axes; clamped nodes are zero. */
 shb_status modal_export_shapes(hid_t file, int n_modes, int n_nodes, const double *shape);
 
+/* Write /modes/stress [m][n][6] in single precision: xx, yy, zz, xy, yz, xz in mesh axes. */
+shb_status modal_export_stress(hid_t file, int n_modes, int n_nodes, const float *stress);
+
 /* Write the attributes checked, checked_count, checked_below and missed_chance of /modes. */
 shb_status modal_export_check(hid_t file, const modal_check *check);
 

@@ -232,19 +232,27 @@ static shb_status solve(MPI_Comm comm, const fem_body *body, const modal_setting
   return copy_patches(&result->patches, &result->model);
 }
 
+shb_status modal_body_create(const mesh_fe *mesh, const modal_settings *settings,
+                             modal_body **out) {
+  modal_body *b = calloc(1, sizeof *b);
+  *out          = b;
+  SHB_CHECK(b, SHB_ERR_IO, "out of memory");
+  b->material[0] = settings->material;
+  for (int i = 0; i < settings->n_regions; i++) b->material[i] = settings->region[i].material;
+  b->body = (fem_body){
+      mesh, b->material, &b->element, {settings->axis, settings->speed}, settings->pressure};
+  FEM_PETSC(fem_element_create(mesh->kind, settings->full_integration ? FEM_FULL : FEM_STANDARD,
+                               &b->element));
+  return SHB_OK;
+}
+
 static shb_status solve_body(MPI_Comm comm, const mesh_fe *mesh, const modal_settings *settings,
                              const modal_condensation *to, shb_progress *progress,
                              modal_result *result) {
-  fem_element *element = malloc(sizeof *element);
-  SHB_TRY(modal_agree(
-      comm, element ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory")));
-  fem_material materials[MESH_MAX_VOLUMES] = {settings->material};
-  for (int i = 0; i < settings->n_regions; i++) materials[i] = settings->region[i].material;
-  fem_body body = {mesh, materials, element, {settings->axis, settings->speed}, settings->pressure};
-  fem_rules  rules  = settings->full_integration ? FEM_FULL : FEM_STANDARD;
-  shb_status status = fem_petsc_status(fem_element_create(mesh->kind, rules, element));
-  if (status == SHB_OK) status = solve(comm, &body, settings, to, progress, result);
-  free(element);
+  modal_body *body;
+  shb_status  status = modal_agree(comm, modal_body_create(mesh, settings, &body));
+  if (status == SHB_OK) status = solve(comm, &body->body, settings, to, progress, result);
+  free(body);
   return status;
 }
 

@@ -3,6 +3,7 @@
 #define MODAL_STAGE_SOLVE_H
 
 #include "fem/body/assemble.h"
+#include "fem/body/rotating_body.h"
 #include "fem/element/load.h"
 #include "fem/element/material.h"
 #include "mesh/base/progress.h"
@@ -59,6 +60,17 @@ typedef struct {
   int                  n_contacts; /* 0: one, of contact_right and contact_left */
   const modal_contact *contact;
 } modal_settings;
+
+/* The body of the settings with its materials and element tables. */
+typedef struct {
+  fem_body     body;
+  fem_material material[MESH_MAX_VOLUMES];
+  fem_element  element;
+} modal_body;
+
+/* Free with free, also after an error. The mesh must outlive it. SHB_ERR_IO: no memory. */
+shb_status modal_body_create(const mesh_fe *mesh, const modal_settings *settings,
+                             modal_body **body);
 
 /* Results of the stage. The model is the same on every rank. */
 typedef struct {

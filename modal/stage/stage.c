@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "fem/body/partition.h"
+#include "fem/body/stress.h"
 #include "fem/solver/petsc_error.h"
 #include "mesh/core/group_checks.h"
 #include "mesh/io/read.h"
@@ -30,14 +31,36 @@ static shb_status gather_shapes(const modal_result *result, int rank, double **s
   return SHB_OK;
 }
 
+/* Mode shapes and their stresses, on rank 0. */
+typedef struct {
+  double *shape;  /* [m][n_nodes][3] kg^-1/2 */
+  float  *stress; /* [m][n_nodes][6] Pa kg^-1/2 */
+} fields;
+
+/* Compute the stresses about the static equilibrium, if there is one. */
+static shb_status find_stresses(const mesh_fe *mesh, const modal_settings *settings,
+                                const modal_result *result, fields *of) {
+  const int   modes = result->eigen.n;
+  modal_body *body;
+  of->stress = malloc((size_t)modes * (size_t)mesh->n_nodes * FEM_STRESSES * sizeof *of->stress);
+  SHB_CHECK(of->stress, SHB_ERR_IO, "out of memory for the stresses of %d modes", modes);
+  shb_status status = modal_body_create(mesh, settings, &body);
+  if (status == SHB_OK)
+    status = fem_petsc_status(fem_nodal_stress_change(
+        &body->body, result->deflection.at.displacement, modes, of->shape, of->stress));
+  free(body);
+  return status;
+}
+
 /* speeds: n = 0 for one speed. */
 static shb_status write_all(hid_t file, const mesh_fe *mesh, const modal_result *result,
-                            const modal_speeds *speeds, const double *shape,
+                            const modal_speeds *speeds, const fields *of,
                             const shb_provenance *provenance) {
   SHB_TRY(modal_model_write(file, &result->model, provenance));
   if (speeds->n > 0) SHB_TRY(modal_speeds_write(file, speeds));
   SHB_TRY(modal_export_mesh(file, mesh));
-  SHB_TRY(modal_export_shapes(file, result->model.n_modes, mesh->n_nodes, shape));
+  SHB_TRY(modal_export_shapes(file, result->model.n_modes, mesh->n_nodes, of->shape));
+  SHB_TRY(modal_export_stress(file, result->model.n_modes, mesh->n_nodes, of->stress));
   SHB_TRY(modal_export_check(file, &result->eigen.check));
   SHB_TRY(modal_participation_write(file, &result->participation));
   SHB_TRY(modal_export_contact(file, &result->patches));
@@ -49,7 +72,7 @@ static shb_status write_all(hid_t file, const mesh_fe *mesh, const modal_result 
 
 /* The phases of progress are written to the file. */
 static shb_status publish(const char *path, const mesh_fe *mesh, const modal_result *result,
-                          const modal_speeds *speeds, const double *shape,
+                          const modal_speeds *speeds, const fields *of,
                           const shb_provenance *provenance, const shb_progress *progress) {
   char *temporary = shb_publish_temporary(path);
   SHB_CHECK(temporary, SHB_ERR_IO, "out of memory");
@@ -58,7 +81,7 @@ static shb_status publish(const char *path, const mesh_fe *mesh, const modal_res
   if (status == SHB_OK) {
     int ranks;
     MPI_Comm_size(result->system.comm, &ranks);
-    status = write_all(file, mesh, result, speeds, shape, provenance);
+    status = write_all(file, mesh, result, speeds, of, provenance);
     if (status == SHB_OK) status = modal_phases_write(file, ranks, progress, "write");
     shb_status closed = h5_close(file);
     if (status == SHB_OK) status = closed;
@@ -96,21 +119,26 @@ static shb_status run(MPI_Comm comm, int rank, const char *out_path, const mesh_
                       shb_progress *progress) {
   modal_result result;
   modal_speeds speeds = {0};
-  double      *shape  = NULL;
+  fields       of     = {NULL, NULL};
   shb_status   status;
   if (settings->n_speeds > 1)
     status = modal_speed_range_solve(comm, mesh, settings, progress, &speeds, &result);
   else
     status = modal_solve(comm, mesh, settings, progress, &result);
-  if (status == SHB_OK) status = gather_shapes(&result, rank, &shape);
+  if (status == SHB_OK) status = gather_shapes(&result, rank, &of.shape);
+  if (status == SHB_OK)
+    status = modal_agree(comm, rank == 0 ? find_stresses(mesh, settings, &result, &of) : SHB_OK);
+  if (status == SHB_OK)
+    modal_phase(comm, progress, "stress", "%d modes at %d nodes", result.eigen.n, mesh->n_nodes);
   if (status == SHB_OK) {
     shb_progress_show(progress, 96, "writing %s", out_path);
     shb_status mine =
-        rank != 0 ? SHB_OK : publish(out_path, mesh, &result, &speeds, shape, provenance, progress);
+        rank != 0 ? SHB_OK : publish(out_path, mesh, &result, &speeds, &of, provenance, progress);
     status = modal_agree(comm, mine);
     if (status == SHB_OK) modal_phase(comm, progress, "write", "%s", out_path);
   }
-  free(shape);
+  free(of.shape);
+  free(of.stress);
   modal_speed_range_free(&speeds, &result);
   modal_result_free(&result);
   return status;

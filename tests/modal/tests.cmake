@@ -20,7 +20,7 @@ shb_test(modal/condense static_deflection tests_fem shb_modal)
 shb_test(modal/condense load_patterns tests_fem shb_modal)
 shb_test(modal/condense contact_patches tests_fem shb_modal)
 shb_test(modal/condense condense tests_fem shb_modal PkgConfig::LAPACKE)
-foreach(noun rotating materials stage vtkhdf)
+foreach(noun rotating materials modal_stress stage vtkhdf)
   shb_test(modal/stage ${noun} tests_fem shb_modal)
 endforeach()
 

@@ -114,6 +114,106 @@ static void error_is_of_second_order(void **state) {
   for (int i = 0; i < 2; i++) assert_true(error[i] / error[i + 1] > 3.4);
 }
 
+/* Stretched by 1.1, 0.95, 1.02, rotated, and bent a little. */
+static void large(const double x[3], double u[3]) {
+  stretch(x, u);
+  u[0] += 0.4 * x[1] * x[2];
+  u[2] += 0.3 * x[0] * x[0];
+}
+
+static void small(const double x[3], double u[3]) {
+  u[0] = 0.2 * x[1] - 0.7 * x[0] * x[2];
+  u[1] = 0.9 * x[1] * x[2] + 0.1 * x[0];
+  u[2] = 0.5 * x[0] - 0.4 * x[2] + 0.6 * x[1] * x[1];
+}
+
+/* Differences of the stresses of two states; nine motions need two groups of lanes. */
+static void check_change(const mesh_fe *mesh, const fem_material *material) {
+  enum { MOTIONS = 9 };
+  const fem_body body = {mesh, material, element, {MESH_AXIS_X, 0}, 0};
+  const size_t   n    = (size_t)mesh->n_nodes;
+  const double   step = 1e-6;
+  double        *u = malloc(3 * n * sizeof *u), *shifted = malloc(3 * n * sizeof *u);
+  double        *moves = malloc(3 * n * MOTIONS * sizeof *u), error = 0, most = 0;
+  float         *change = malloc(6 * n * MOTIONS * sizeof *change);
+  double(*stress[2])[FEM_STRESSES];
+  for (int s = 0; s < 2; s++) stress[s] = malloc(n * sizeof *stress[s]);
+  for (size_t i = 0; i < n; i++) {
+    large(mesh->coordinates + 3 * i, u + 3 * i);
+    for (size_t k = 0; k < MOTIONS; k++) {
+      double *v = moves + 3 * (k * n + i);
+      small(mesh->coordinates + 3 * i, v);
+      for (int d = 0; d < 3; d++) v[d] *= (double)k - 3.5;
+    }
+  }
+  assert_int_equal(fem_nodal_stress_change(&body, u, MOTIONS, moves, change), 0);
+  for (size_t k = 0; k < MOTIONS; k += MOTIONS - 1) {
+    for (int s = 0; s < 2; s++) {
+      for (size_t i = 0; i < 3 * n; i++)
+        shifted[i] = u[i] + (s ? step : -step) * moves[3 * k * n + i];
+      assert_int_equal(fem_nodal_stress(&body, shifted, stress[s]), 0);
+    }
+    for (size_t i = 0; i < 6 * n; i++) {
+      double wanted = (stress[1][0][i] - stress[0][0][i]) / (2 * step);
+      error         = fmax(error, fabs(change[6 * k * n + i] - wanted));
+      most          = fmax(most, fabs(wanted));
+    }
+  }
+  check_below(error, 1e-6 * most, "change of stress");
+  for (int s = 0; s < 2; s++) free(stress[s]);
+  free(u), free(shifted), free(moves), free(change);
+}
+
+static void change_is_the_derivative(void **state) {
+  (void)state;
+  const fem_orthotropic crystal = {
+      {127e9, 141e9, 118e9}, {.38, .31, .27}, {120e9, 97e9, 71e9}, {.3, -.8, .52}, {.9, .2, -.4}};
+  const int    cells[3] = {3, 2, 2};
+  fem_material material;
+  mesh_fe      mesh = make_box(size, cells);
+  shake_inside(&mesh, size, .004);
+  check_change(&mesh, &steel);
+  assert_int_equal(fem_material_orthotropic(&crystal, 8500, &material), SHB_OK);
+  check_change(&mesh, &material);
+  mesh_fe_free(&mesh);
+}
+
+/* Equal strain in two materials: the nodes between them have the stress of the stiffer one. */
+static void stiffest_material_counts(void **state) {
+  (void)state;
+  const fem_material   parts[2] = {{.E = 0.7e11, .rho = 1}, {.E = 2.1e11, .rho = 1}};
+  const int            cells[3] = {2, 1, 1};
+  mesh_fe              mesh     = make_box(size, cells);
+  const mesh_topology *topology = mesh_topology_of(mesh.kind);
+  const size_t         n        = (size_t)mesh.n_nodes;
+  const double         strain   = 1e-7;
+  double              *u        = calloc(3 * n, sizeof *u);
+  float               *change   = calloc(6 * n, sizeof *change);
+  double(*stress)[FEM_STRESSES] = calloc(n, sizeof *stress);
+  int between                   = 0;
+  mesh.n_regions                = 2;
+  mesh.region                   = malloc((size_t)mesh.n_elements * sizeof(int));
+  for (int e = 0; e < mesh.n_elements; e++) {
+    double x = 0;
+    for (int i = 0; i < topology->corners; i++)
+      x += mesh.coordinates[3 * mesh.connectivity[topology->nodes * e + i]] / topology->corners;
+    mesh.region[e] = x > size[0] / 2;
+  }
+  const fem_body body = {&mesh, parts, element, {MESH_AXIS_X, 0}, 0};
+  for (size_t i = 0; i < n; i++) u[3 * i] = strain * mesh.coordinates[3 * i];
+  assert_int_equal(fem_nodal_stress(&body, u, stress), 0);
+  assert_int_equal(fem_nodal_stress_change(&body, NULL, 1, u, change), 0);
+  for (size_t i = 0; i < n; i++) {
+    double x = mesh.coordinates[3 * i], E = parts[x > size[0] / 2 - 1e-9].E;
+    check_close(stress[i][0], E * strain, 1e-6, "stress");
+    check_close(change[6 * i], E * strain, 1e-6, "change of stress");
+    between += fabs(x - size[0] / 2) < 1e-9;
+  }
+  assert_true(between >= 8);
+  free(u), free(change), free(stress);
+  mesh_fe_free(&mesh);
+}
+
 /* The clamp bears the centrifugal force of the deformed body, including its moment about the
  * axis. */
 static void reactions_add_up_to_the_load(void **state) {
@@ -170,7 +270,8 @@ static int free_tables(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(constant_stress_is_exact), cmocka_unit_test(linear_stress_is_exact),
-      cmocka_unit_test(error_is_of_second_order), cmocka_unit_test(reactions_add_up_to_the_load)};
+      cmocka_unit_test(error_is_of_second_order), cmocka_unit_test(change_is_the_derivative),
+      cmocka_unit_test(stiffest_material_counts), cmocka_unit_test(reactions_add_up_to_the_load)};
   if (PetscInitialize(NULL, NULL, NULL, NULL)) return 1;
   int failures = run_with_both_elements(tests, tables, free_tables);
   PetscFinalize();

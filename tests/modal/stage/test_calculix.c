@@ -12,6 +12,7 @@
 #include <cmocka.h>
 
 #include "fem/body/equilibrium.h"
+#include "fem/body/stress.h"
 #include "mesh/base/constants.h"
 #include "mesh/io/inp_read.h"
 #include "mesh/io/inp_write.h"
@@ -126,7 +127,7 @@ static void write_deck(const element_kind *element, const mesh_fe *mesh,
             speed * speed);
   if (pressure != 0) fprintf(deck, "*DSLOAD\nload, P, %.13g\n", pressure);
   if (speed != 0) fprintf(deck, "*NODE PRINT, NSET=load\nU\n*END STEP\n");
-  fprintf(deck, "*STEP%s\n*FREQUENCY, STORAGE=YES\n%d\n*NODE FILE\nU\n*END STEP\n",
+  fprintf(deck, "*STEP%s\n*FREQUENCY, STORAGE=YES\n%d\n*NODE FILE\nU\n*EL FILE\nS\n*END STEP\n",
           speed != 0 ? ", PERTURBATION" : "", MODES);
   fclose(deck);
 }
@@ -256,6 +257,70 @@ static void pressure_agrees(void **state) {
   }
 }
 
+/* Nodal stresses of the first mode from blade.frd, six digits: [n_nodes][6]. */
+static void read_stresses(const mesh_fe *mesh, double *stress) {
+  char path[128], line[256], head[16];
+  bool inside = false;
+  int  n      = 0;
+  snprintf(path, sizeof path, "%s/blade.frd", folder);
+  FILE *file = fopen(path, "r");
+  assert_non_null(file);
+  while (n < mesh->n_nodes && fgets(line, sizeof line, file)) {
+    if (sscanf(line, " -4 %15s", head) == 1) inside = strcmp(head, "STRESS") == 0;
+    if (!inside || strncmp(line, " -1", 3) != 0) continue;
+    int tag = 0;
+    assert_int_equal(sscanf(line + 3, "%10d", &tag), 1);
+    for (int c = 0; c < 6; c++) {
+      char number[13] = "";
+      memcpy(number, line + 13 + 12 * c, 12);
+      stress[6 * (tag - 1) + c] = strtod(number, NULL);
+    }
+    n++;
+  }
+  fclose(file);
+  assert_int_equal(n, mesh->n_nodes);
+}
+
+/* Of a straight bar whose tetrahedra have equal volumes: CalculiX takes the plain mean at a node.
+ * Both extrapolate from four points by a linear function. */
+static void stresses_agree(void **state) {
+  (void)state;
+  const element_kind   kind   = {"C3D10", MESH_TET10, FEM_CALCULIX};
+  modal_eigen_settings wanted = {.modes = MODES};
+  use_elements(kind.kind);
+  mesh_fe        mesh    = make_box(size, cells);
+  const size_t   n       = (size_t)mesh.n_nodes;
+  fem_element   *element = make_element_tables(kind.rules);
+  const fem_body body    = {&mesh, &steel, element, {MESH_AXIS_Z, 0}, 0};
+  fem_system     system;
+  modal_eigen    eigen;
+  Vec            phi;
+  double         frequency[MODES], inner = 0, most = 0, plus = 0, minus = 0;
+  double        *shape = malloc(3 * n * sizeof *shape), *other = malloc(6 * n * sizeof *other);
+  float         *own = malloc(6 * n * sizeof *own);
+  run_calculix(&kind, &mesh, &steel, 0, 0, frequency);
+  read_stresses(&mesh, other);
+  assert_int_equal(fem_system_create(PETSC_COMM_SELF, &mesh, &steel, kind.rules, &system), 0);
+  assert_int_equal(modal_eigen_solve(&system, &wanted, &eigen), 0);
+  assert_int_equal(MatDenseGetColumnVecRead(eigen.phi, 0, &phi), 0);
+  assert_int_equal(fem_system_gather(&system, phi, shape), 0);
+  assert_int_equal(MatDenseRestoreColumnVecRead(eigen.phi, 0, &phi), 0);
+  assert_int_equal(fem_nodal_stress_change(&body, NULL, 1, shape, own), 0);
+  for (size_t i = 0; i < 6 * n; i++) {
+    inner += own[i] * other[i];
+    most  = fmax(most, fabs(other[i]));
+    plus  = fmax(plus, fabs(own[i] - other[i]));
+    minus = fmax(minus, fabs(own[i] + other[i]));
+  }
+  print_message("stress of the first mode %.4g Pa kg^-1/2, off by %.1e\n", most,
+                fmin(plus, minus) / most);
+  check_below(inner > 0 ? plus : minus, 1e-5 * most, "stress");
+  free(shape), free(own), free(other), free(element);
+  modal_eigen_destroy(&eigen);
+  fem_system_destroy(&system);
+  mesh_fe_free(&mesh);
+}
+
 static void tetrahedra_agree(void **state) {
   (void)state;
   compare(&(element_kind){"C3D10", MESH_TET10, FEM_CALCULIX}, &steel);
@@ -344,7 +409,7 @@ int main(int argc, char **argv) {
       cmocka_unit_test(tetrahedra_agree),        cmocka_unit_test(curved_tetrahedra_agree),
       cmocka_unit_test(reduced_hexahedra_agree), cmocka_unit_test(full_hexahedra_agree),
       cmocka_unit_test(crystals_agree),          cmocka_unit_test(pressure_agrees),
-      cmocka_unit_test(two_materials_agree)};
+      cmocka_unit_test(two_materials_agree),     cmocka_unit_test(stresses_agree)};
   if (argc < 2) return 77;
   program = argv[1];
   if (SlepcInitialize(NULL, NULL, NULL, NULL)) return 1;

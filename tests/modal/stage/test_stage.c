@@ -1,6 +1,7 @@
 /* The whole stage: a mesh file in, a complete modal file out, nothing written on failure. */
 #include <math.h>
 
+#include "fem/body/stress.h"
 #include "fem/element/surface.h"
 #include "mesh/base/constants.h"
 #include "mesh/io/inp_read.h"
@@ -65,6 +66,32 @@ static void check_is_in_the_file(const char *path) {
   free(by);
 }
 
+/* The stress of the modes in the file is that of the shapes in the file. */
+static void check_stress(const char *path) {
+  modal_settings settings = default_settings();
+  mesh_fe        mesh     = make_sector(size, inner, BLADES, cells);
+  const size_t   n = (size_t)mesh.n_nodes, all = 8 * n;
+  h5_shape       of_shape = H5_SHAPE(8, n, 3), of_stress = H5_SHAPE(8, n, 6);
+  double        *shape, *stress, most = 0, error = 0;
+  float         *wanted = malloc(6 * all * sizeof *wanted);
+  modal_body    *body;
+  hid_t          file;
+  assert_ok(h5_open(path, &file));
+  assert_ok(h5_read_double(file, "/modes/shape", &of_shape, &shape));
+  assert_ok(h5_read_double(file, "/modes/stress", &of_stress, &stress));
+  assert_ok(h5_close(file));
+  assert_ok(modal_body_create(&mesh, &settings, &body));
+  assert_int_equal(fem_nodal_stress_change(&body->body, NULL, 8, shape, wanted), 0);
+  for (size_t i = 0; i < 6 * all; i++) {
+    error = fmax(error, fabs(stress[i] - wanted[i]));
+    most  = fmax(most, fabs(stress[i]));
+  }
+  check_below(error, 1e-6 * most, "stress in the file");
+  assert_true(most > 0);
+  free(body), free(shape), free(stress), free(wanted);
+  mesh_fe_free(&mesh);
+}
+
 static void file_is_complete(void **state) {
   (void)state;
   modal_settings settings = default_settings();
@@ -90,16 +117,17 @@ static void file_is_complete(void **state) {
   modal_model_free(&model);
   assert_true(assert_described(out) >= 30);
   check_is_in_the_file(out);
+  check_stress(out);
 }
 
 /* Every phase occurs once and in order. Peak memory never falls. With two speeds the times add
  * up. */
 static void phases_are_in_the_file(void **state) {
   (void)state;
-  static const char *const wanted[] = {"mesh",       "assembly",  "equilibrium",   "analysis",
-                                       "factor",     "modes",     "check",         "mode residuals",
-                                       "refinement", "residuals", "participation", "write"};
-  static const double      speeds[] = {200, 300};
+  static const char *const wanted[] = {
+      "mesh",           "assembly",   "equilibrium", "analysis",      "factor", "modes", "check",
+      "mode residuals", "refinement", "residuals",   "participation", "stress", "write"};
+  static const double speeds[] = {200, 300};
   enum { PHASES = sizeof wanted / sizeof *wanted };
   modal_settings settings = default_settings();
   h5_shape       shape    = H5_SHAPE(PHASES);
