@@ -24,6 +24,7 @@ static const char *type_name(const case_key *key) {
                                                   [CASE_PLACES]    = "list",
                                                   [CASE_ORDERS]    = "list",
                                                   [CASE_POINTS]    = "integer or list",
+                                                  [CASE_SAVED]     = "word or list",
                                                   [CASE_FACTORS]   = "mapping",
                                                   [CASE_PROBES]    = "mapping",
                                                   [CASE_DAMPING]   = "number(s), mapping",

@@ -352,6 +352,10 @@ static const case_key table[] = {
      AT(mhb.lasting), .stages = CASE_MHB, .when = CASE_IF_STABILITY,
      .help = "the motion that takes over where the wave is modulated, by integration of the whole "
              "ring: a sweep and few points a curve; every modulated point; nothing"},
+    {"mhb.save", CASE_SAVED, "Hz", 0, 1e9, true, .words = "peaks all", .fallback = "peaks",
+     AT(mhb.save), .stages = CASE_MHB,
+     .help = "points of which the amplitude of every mode is kept, for stress and pictures of the "
+             "whole blade: the peaks, all, or those at these frequencies, at most 64"},
     {"mhb.flips", CASE_SWITCH, "", .words = "mark follow", .fallback = "follow", AT(mhb.flips),
      .stages = CASE_MHB, .when = CASE_IF_STABILITY,
      .help = "where a curve loses stability by period doubling, the motion of two periods is "

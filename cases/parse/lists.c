@@ -102,6 +102,14 @@ bool case_list_places(const case_value_context *c, const case_node *node, void *
   return case_value_numbers(c, c->path, node, node->n, slot);
 }
 
+bool case_list_saved(const case_value_context *c, const case_node *node, void *slot) {
+  mhb_save_settings *save = slot;
+  if (!list_room(c, node, MHB_MAX_SAVED)) return false;
+  save->what = MHB_SAVE_LISTED;
+  save->n    = node->n;
+  return case_value_numbers(c, c->path, node, node->n, save->frequency);
+}
+
 bool case_list_orders(const case_value_context *c, const case_node *node, void *slot) {
   mhb_search_settings *search = &c->file->mhb.search;
   int                 *order  = slot;

@@ -71,6 +71,15 @@ static bool read_accuracy(const case_value_context *c, const case_node *node, vo
   return index >= 0;
 }
 
+/* Reads a list of frequencies, or one of the words; they are in the order of mhb_save_when. */
+static bool read_saved(const case_value_context *c, const case_node *node, void *slot) {
+  mhb_save_settings *save = slot;
+  if (node->kind == CASE_SEQUENCE) return case_list_saved(c, node, slot);
+  int index = choose(c, node);
+  if (index >= 0) save->what = (mhb_save_when)index;
+  return index >= 0;
+}
+
 static bool keep_text(const case_value_context *c, const case_node *node, void *slot, char *copy) {
   if (!copy) case_issue_add(c->issues, node->line, node->column, c->path, "out of memory");
   free(*(char **)slot);
@@ -228,7 +237,8 @@ bool case_value_read(case_issues *issues, const case_key *key, const char *path,
                                                         [CASE_AUTO]      = read_count,
                                                         [CASE_PLACES]    = case_list_places,
                                                         [CASE_ORDERS]    = case_list_orders,
-                                                        [CASE_POINTS]    = case_list_frequencies};
+                                                        [CASE_POINTS]    = case_list_frequencies,
+                                                        [CASE_SAVED]     = read_saved};
   const case_value_context c = {.issues = issues, .key = key, .path = path, .file = file};
   return readers[key->type](&c, node, slot);
 }

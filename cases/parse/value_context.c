@@ -26,6 +26,7 @@ void case_value_expected(const case_key *key, char *text, size_t size) {
       [CASE_PLACES]    = "a list of numbers",
       [CASE_ORDERS]    = "a list of whole numbers",
       [CASE_POINTS]    = "a whole number of points or a list",
+      [CASE_SAVED]     = "a list of frequencies or one of",
       [CASE_FACTORS]   = "a mapping {harmonic: [factor, phase]}",
       [CASE_PROBES]    = "a mapping {name: [x, y, z]}",
       [CASE_DAMPING]   = "a number, a list, {loss_factor: ...} or {rayleigh: [alpha, beta]}",

@@ -200,23 +200,23 @@ static void check_run_up(case_reader *r) {
   if (!file->modal_file) check_run_up_speeds(r);
 }
 
-/* Refuses search frequencies outside the range of the sweep, where no curve is traced. */
-static void check_search(case_reader *r) {
+/* Refuses frequencies of a list outside the range of the sweep, where no curve is traced.
+ *   instead  in  what the key does otherwise, for the message */
+static void check_places(case_reader *r, const char *key, int n, const double *frequency,
+                         const char *instead) {
   const mhb_settings *mhb  = &r->file->mhb;
-  const case_node    *node = case_reader_given(r, "mhb.search.at");
-  if (!node || !case_reader_good(r, "mhb.search.at") || !case_reader_good(r, "mhb.frequency"))
-    return;
+  const case_node    *node = case_reader_given(r, key);
+  if (!node || !case_reader_good(r, key) || !case_reader_good(r, "mhb.frequency")) return;
   if (mhb->parameter != MHB_IN_FREQUENCY) {
-    case_reader_issue(r, "mhb.search.at",
-                      "are frequencies, but curves follow mhb.vary; without it places are chosen");
+    case_reader_issue(r, key, "are frequencies, but curves follow mhb.vary; %s", instead);
     return;
   }
-  for (int i = 0; i < mhb->search.n_at; i++) {
+  for (int i = 0; i < n; i++) {
     char path[CASE_PATH];
-    case_path(path, "mhb.search.at[%d]", i);
-    if (mhb->search.at[i] < mhb->frequency[0] || mhb->search.at[i] > mhb->frequency[1])
+    case_path(path, "%s[%d]", key, i);
+    if (frequency[i] < mhb->frequency[0] || frequency[i] > mhb->frequency[1])
       case_issue_add(r->issues, node->child[i].line, node->child[i].column, path,
-                     "is %g Hz, must be within mhb.frequency, %g to %g Hz", mhb->search.at[i],
+                     "is %g Hz, must be within mhb.frequency, %g to %g Hz", frequency[i],
                      mhb->frequency[0], mhb->frequency[1]);
   }
 }
@@ -295,7 +295,10 @@ bool case_check_values(case_reader *r, int stages) {
   if (stages & CASE_MHB) check_followed(r);
   if (stages & CASE_MHB) check_run_up(r);
   case_check_interfaces(r, stages);
-  check_search(r);
+  check_places(r, "mhb.search.at", file->mhb.search.n_at, file->mhb.search.at,
+               "without it places are chosen");
+  if (file->mhb.save.what == MHB_SAVE_LISTED)
+    check_places(r, "mhb.save", file->mhb.save.n, file->mhb.save.frequency, "give peaks or all");
   if (stages & CASE_MHB) check_integrate(r);
   if (own) check_extension(r);
   if (own && stages & (CASE_MESH | CASE_MODAL)) lost = check_file(r, "mesh.file", file->mesh_file);

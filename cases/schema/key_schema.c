@@ -139,6 +139,11 @@ static void print_forms(const case_key *key, FILE *out) {
       fputs("{\"type\": \"integer\", \"minimum\": 1}, ", out);
       print_numbers(key, 1, 0, out);
       break;
+    case CASE_SAVED:
+      print_words_or(key, out);
+      fputs(", ", out);
+      print_numbers(key, 1, 0, out);
+      break;
     case CASE_FACTORS:
       print_mapping("^[0-9]+$", out);
       break;

@@ -45,6 +45,13 @@ static void print_triple(FILE *out, const double v[3]) {
   print_numbers(out, v[0] == v[1] && v[1] == v[2] ? 1 : 3, v);
 }
 
+static void print_saved(FILE *out, const case_key *key, const mhb_save_settings *save) {
+  if (save->what == MHB_SAVE_LISTED)
+    print_numbers(out, save->n, save->frequency);
+  else
+    print_word(out, key->words, (int)save->what);
+}
+
 static void print_scalar(FILE *out, const case_key *key, const case_file *file, const void *slot) {
   switch (key->type) {
     case CASE_INTEGER:
@@ -85,6 +92,9 @@ static void print_scalar(FILE *out, const case_key *key, const case_file *file, 
     case CASE_POINTS:
       if (!file->integrate.listed) fprintf(out, "%d points", file->integrate.n_frequencies);
       if (file->integrate.listed) print_numbers(out, file->integrate.n_frequencies, slot);
+      break;
+    case CASE_SAVED:
+      print_saved(out, key, slot);
       break;
     case CASE_INTERVAL:
     case CASE_SWEEP:

@@ -29,7 +29,8 @@ enum {
   MHB_NAME              = 81,
   MHB_MAX_PRELOADS      = 256,
   MHB_MAX_SEARCH_AT     = 64,
-  MHB_MAX_SEARCH_ORDERS = 8
+  MHB_MAX_SEARCH_ORDERS = 8,
+  MHB_MAX_SAVED         = 64
 };
 
 /* One of several contact interfaces; totals over its pairs. */
@@ -51,6 +52,16 @@ typedef struct {
   double at[MHB_MAX_SEARCH_AT];                  /* as range: Hz for the frequency */
   int    n_orders, order[MHB_MAX_SEARCH_ORDERS]; /* ascending, times subharmonics */
 } mhb_search_settings;
+
+/* Points of which modal amplitudes are kept. Peaks: those of any output, and the highest point of
+ * each curve. Listed: where a curve passes one of the frequencies, the nearer point. */
+typedef enum { MHB_SAVE_PEAKS, MHB_SAVE_ALL, MHB_SAVE_LISTED } mhb_save_when;
+
+typedef struct {
+  mhb_save_when what;
+  int           n;
+  double        frequency[MHB_MAX_SAVED]; /* Hz */
+} mhb_save_settings;
 
 typedef struct {
   bool                to_ground;
@@ -79,6 +90,7 @@ typedef struct {
   bool                flips;     /* branches of doubled period are followed from flips */
   mhb_stability_when  stability; /* points at which multipliers are computed */
   mhb_lasting_when    lasting;   /* points at which the motion that takes over is integrated */
+  mhb_save_settings   save;      /* points of which modal amplitudes are kept */
   const struct mhb_speed_table
       *run_up; /* NULL: one speed. Else the modal model follows the frequency. */
   bool resume; /* take over the finished branches of an interrupted run of equal settings */

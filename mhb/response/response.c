@@ -41,12 +41,19 @@ static void free_curve(mhb_lasting_curve *curve) {
   *curve = (mhb_lasting_curve){0};
 }
 
+static void free_modal(mhb_modal_motion *modal) {
+  free(modal->point);
+  free(modal->amplitude);
+  *modal = (mhb_modal_motion){0};
+}
+
 static void free_branch(mhb_branch *branch) {
   for (int i = 0; i < MHB_N_FIELDS; i++) free(mhb_field_get(branch, &mhb_fields[i]));
   free(branch->reason);
   free(branch->search);
   free(branch->lasting);
   free_curve(&branch->lasting_curve);
+  free_modal(&branch->modal);
 }
 
 bool mhb_response_is_linear(const mhb_response *r, const mhb_branch *b, int point) {
@@ -216,6 +223,21 @@ shb_status mhb_response_copy_lasting(mhb_branch *to, const mhb_branch *from) {
   memcpy(b->frequency, a->frequency, size);
   memcpy(b->mean, a->mean, size);
   memcpy(b->worst, a->worst, size);
+  return SHB_OK;
+}
+
+shb_status mhb_response_modal(const mhb_response *response, mhb_branch *branch, int n) {
+  mhb_modal_motion *modal = &branch->modal;
+  const size_t      row   = ((size_t)branch->n_harmonics + 1) * (size_t)response->n_modes;
+  free_modal(modal);
+  if (n == 0) return SHB_OK;
+  modal->point     = calloc((size_t)n, sizeof *modal->point);
+  modal->amplitude = calloc((size_t)n * row + 1, sizeof *modal->amplitude);
+  if (!modal->point || !modal->amplitude) {
+    free_modal(modal);
+    SHB_FAIL(SHB_ERR_IO, "no memory for the modal amplitudes of %d points", n);
+  }
+  modal->n = n;
   return SHB_OK;
 }
 

@@ -195,6 +195,23 @@ static shb_status write_lasting(hid_t group, const mhb_branch *branch) {
   return h5_attach_scale(group, "lasting/curve/worst", 0, "lasting/curve/frequency");
 }
 
+/* The modal amplitudes of the points kept. */
+static shb_status write_modal(hid_t group, const mhb_response *response, const mhb_branch *branch) {
+  const mhb_modal_motion *m = &branch->modal;
+  const hsize_t           n = (hsize_t)m->n;
+  const h5_shape shape = H5_SHAPE(n, (hsize_t)branch->n_harmonics + 1, (hsize_t)response->n_modes);
+  if (m->n == 0) return SHB_OK;
+  SHB_TRY(h5_write_int(group, "modal/point", H5_SHAPE(n), m->point, "-",
+                       "points of the branch, from 0, of which modal amplitudes are kept"));
+  SHB_TRY(h5_write_complex(group, "modal/amplitude", shape, m->amplitude, "m kg^1/2",
+                           "amplitudes of the modes, harmonics: the motion is their sum times "
+                           "/modes/shape of the modal file, less that of the modes left out"));
+  SHB_TRY(h5_attach_scale(group, "modal/amplitude", 0, "modal/point"));
+  SHB_TRY(h5_attach_scale(group, "modal/amplitude", 1,
+                          has_own_scale(response, branch) ? "harmonic" : "/harmonic"));
+  return h5_attach_scale(group, "modal/amplitude", 2, "/modes/frequency");
+}
+
 static shb_status fill_branch(hid_t group, const mhb_response *response, const mhb_branch *branch) {
   SHB_TRY(h5_write_attribute_text(group, ".", "kind", kind_name[branch->kind]));
   SHB_TRY(h5_write_attribute_text(group, ".", "reason", branch->reason));
@@ -214,6 +231,7 @@ static shb_status fill_branch(hid_t group, const mhb_response *response, const m
       SHB_TRY(write_field(group, response, branch, &mhb_fields[i]));
   SHB_TRY(write_searches(group, response, branch));
   SHB_TRY(write_lasting(group, branch));
+  SHB_TRY(write_modal(group, response, branch));
   return write_speed(group, response, branch);
 }
 
@@ -492,6 +510,27 @@ static shb_status read_lasting(hid_t group, mhb_branch *branch) {
   return SHB_OK;
 }
 
+/* Files of earlier versions have none. */
+static shb_status read_modal(hid_t group, const char *path, int index, const mhb_response *response,
+                             mhb_branch *branch) {
+  mhb_modal_motion *m      = &branch->modal;
+  h5_shape          points = H5_SHAPE(0);
+  if (!h5_exists(group, "modal") || !h5_exists(group, "modal/point")) return SHB_OK;
+  SHB_TRY(h5_read_int(group, "modal/point", &points, &m->point));
+  for (hsize_t i = 0; i < points.dim[0]; i++)
+    SHB_CHECK(m->point[i] >= 0 && m->point[i] < branch->n_points &&
+                  (i == 0 || m->point[i] > m->point[i - 1]),
+              SHB_ERR_INPUT,
+              "%s: /branch_%d/modal/point: value %d (from 0) is %d; points 0 to %d, ascending, are "
+              "wanted",
+              path, index, (int)i, m->point[i], branch->n_points - 1);
+  h5_shape shape =
+      H5_SHAPE(points.dim[0], (hsize_t)branch->n_harmonics + 1, (hsize_t)response->n_modes);
+  SHB_TRY(h5_read_complex(group, "modal/amplitude", &shape, &m->amplitude));
+  m->n = (int)points.dim[0];
+  return SHB_OK;
+}
+
 static shb_status fill_from(hid_t group, const char *path, int index, mhb_response *response) {
   mhb_branch *branch = &response->branch[index];
   int         complete;
@@ -510,6 +549,7 @@ static shb_status fill_from(hid_t group, const char *path, int index, mhb_respon
       SHB_TRY(read_field(group, response, branch, &mhb_fields[i]));
   SHB_TRY(read_searches(group, path, index, branch));
   SHB_TRY(read_lasting(group, branch));
+  SHB_TRY(read_modal(group, path, index, response, branch));
   return check_points(path, index, branch);
 }
 

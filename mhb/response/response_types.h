@@ -75,6 +75,14 @@ typedef struct {
   double *mean, *worst; /* [n] m: a period's peak of the output, mean and 99.9 percentile */
 } mhb_lasting_curve;
 
+/* Modal amplitudes kept at some points of a branch: the displacement of the blade at any node is
+ * u(t) = Re sum_k sum_i amplitude[k][i] shape_i exp(j k w t/nu), without the modes left out. */
+typedef struct {
+  int             n;
+  int            *point;     /* [n] ascending */
+  double complex *amplitude; /* [n][k = 0..m][mode] m kg^1/2 */
+} mhb_modal_motion;
+
 /* One curve. Array layouts:
  *   motion, force  [point][pair][3 (v, u, w)][k = 0..m]
  *   probe          [point][probe][3 (tangential, axial, radial)][k]
@@ -119,6 +127,7 @@ typedef struct {
   int    *lasting_kind;                   /* [point] MHB_LASTING_UNKNOWN ... */
   char   *lasting;                        /* what was computed, or why not; NULL: not yet */
   mhb_lasting_curve lasting_curve;
+  mhb_modal_motion  modal;
   /* integration branches only */
   int    *multiple; /* [point] periods of the fundamental until the motion repeats; 0: never */
   int    *periods;  /* [point] periods of the fundamental that were integrated */

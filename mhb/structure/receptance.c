@@ -335,6 +335,13 @@ void mhb_receptance_motion(const mhb_receptance *r, int k, const double complex 
   mhb_residual_terms_motion(r->residual_terms, k, w, r->scale, p, motion);
 }
 
+void mhb_receptance_amplitudes(const mhb_receptance *r, int k, const double complex *p,
+                               double complex *amplitude) {
+  double yr[r->n_modes], yi[r->n_modes];
+  motion_drive(r, k, k * r->omega / r->nu, p, yr, yi);
+  for (int i = 0; i < r->n_modes; i++) amplitude[i] = CMPLX(yr[i], yi[i]);
+}
+
 void mhb_receptance_slope(const mhb_receptance *r, int k, const double complex *p,
                           double complex *slope) {
   double kk = (double)k / r->nu, dw2 = 2 * kk * kk * r->omega, yr[r->n_modes], yi[r->n_modes];

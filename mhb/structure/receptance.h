@@ -77,6 +77,11 @@ void mhb_receptance_scale(mhb_receptance *receptance, double scale);
 void mhb_receptance_motion(const mhb_receptance *receptance, int k, const double complex *p,
                            double complex *motion);
 
+/* amplitude[modes] <- of every mode kept at harmonic k under contact force p[n], m kg^1/2:
+ * L (scale F - B^H p). The motion of the modes left out is not in it. */
+void mhb_receptance_amplitudes(const mhb_receptance *receptance, int k, const double complex *p,
+                               double complex *amplitude);
+
 /* slope[n] <- d/d omega of harmonic k of free - R p, at fixed p[n]. */
 void mhb_receptance_slope(const mhb_receptance *receptance, int k, const double complex *p,
                           double complex *slope);

@@ -23,6 +23,7 @@ foreach(noun receptance speed_model)
 endforeach()
 shb_test(mhb/response response shb_mhb_response)
 shb_test(mhb/response publisher shb_mhb_response)
+shb_test(mhb/response modal_motion tests_models)
 foreach(noun balance stick_stiffness condensation multistart newton subharmonics truncation_error
     modal_error)
   shb_test(mhb/balance ${noun} tests_models)

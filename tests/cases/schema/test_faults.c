@@ -77,12 +77,12 @@ static void keys_and_kinds(void **state) {
       {"  scale: 1.3", "  zzzzzz: 1.3",
        "c.yaml:34:3: error: mhb.zzzzzz: unknown key; known here: frequency, "
        "run_up, vary, harmonics, tolerance, subharmonics, scale, max_points, stability, "
-       "lasting, flips, search",
+       "lasting, save, flips, search",
        1},
       {"  scale: 1.3", "  mhb.scale: 1.3",
        "c.yaml:34:3: error: mhb.mhb.scale: unknown key; known here: "
        "frequency, run_up, vary, harmonics, tolerance, subharmonics, scale, max_points, stability, "
-       "lasting, flips, search",
+       "lasting, save, flips, search",
        1},
       {"  scale: 1.3", "  [a, b]: 1.3",
        "c.yaml:34:3: error: mhb.?: a key must be a word, not a list", 1},

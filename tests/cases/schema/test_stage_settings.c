@@ -139,6 +139,7 @@ static void the_text_itself(void **state) {
                       "mhb.max_points = 777\n"
                       "mhb.stability = always\n"
                       "mhb.lasting = auto\n"
+                      "mhb.save = peaks\n"
                       "mhb.flips = follow\n"
                       "mhb.search.starts = auto\n");
   assert_non_null(
