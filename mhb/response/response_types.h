@@ -75,7 +75,7 @@ typedef struct {
   double *mean, *worst; /* [n] m: a period's peak of the output, mean and 99.9 percentile */
 } mhb_lasting_curve;
 
-/* Modal amplitudes kept at some points of a branch: the displacement of the blade at any node is
+/* Modal amplitudes kept at some points of a branch. The displacement of any node is
  * u(t) = Re sum_k sum_i amplitude[k][i] shape_i exp(j k w t/nu), without the modes left out. */
 typedef struct {
   int             n;
