@@ -47,6 +47,10 @@ static char *written(const char *path) {
 }
 
 bool up_to_date_with(const char *path, const char *settings) {
+  if (h5_check_earlier(path) != SHB_OK) {
+    fprintf(stderr, "shroudhb: warning: %s; it is replaced\n", shb_message());
+    return false;
+  }
   char *text = written(path);
   bool  same = text && strcmp(text, settings) == 0;
   free(text);

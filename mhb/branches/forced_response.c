@@ -281,7 +281,7 @@ static shb_status resume(sweep *s) {
   char         *settings = NULL;
   mhb_response *old      = NULL;
   shb_status    status   = SHB_OK;
-  if (!path || h5_open(path, &file) != SHB_OK) return SHB_OK;
+  if (!path || h5_check_earlier(path) != SHB_OK || h5_open(path, &file) != SHB_OK) return SHB_OK;
   bool same = h5_read_attribute_text(file, "/", "settings", &settings) == SHB_OK && settings &&
               strcmp(settings, s->publisher.provenance->settings) == 0;
   h5_close(file);

@@ -7,14 +7,20 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include "mesh/base/crash_guard.h"
 #include "modal/hdf5/h5_internal.h"
+#include "modal/hdf5/stamp.h"
 
 /* HDF5's core driver builds a file in memory, without backing store. h5_close writes it with
  * write(). HDF5 1.10 leaves a file open whose flush failed, and may crash at exit on a full
  * disk. */
 enum { GROWTH = 1 << 20 };
+
+/* s; the longest trial of an earlier file. */
+enum { TRIAL = 60 };
 
 size_t h5_count(h5_shape shape) {
   size_t count = 1;
@@ -192,22 +198,103 @@ static shb_status check_readable(const char *path) {
   return SHB_OK;
 }
 
+/* Number of files open for reading; the guard is up while there are some. */
+static int n_reading;
+
+static void start_reading(const char *path) {
+  n_reading++;
+  shb_guard_begin(path, "is damaged: HDF5 crashed while it was read; write or copy it again",
+                  false);
+}
+
+static void stop_reading(void) {
+  if (n_reading > 0 && --n_reading == 0) shb_guard_end();
+}
+
+/* A file whose stamp does not fit is told once. */
+static void warn_changed(const char *path) {
+  static char told[H5_LABEL];
+  if (strcmp(path, told) == 0) return;
+  snprintf(told, sizeof told, "%s", path);
+  fprintf(
+      stderr,
+      "shroudhb: warning: %s: its checksum does not fit: it was changed or damaged since it was "
+      "written\n",
+      path);
+}
+
 shb_status h5_open(const char *path, hid_t *file) {
   *file = H5I_INVALID_HID;
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
   SHB_TRY(check_readable(path));
+  const h5_stamp_state stamp = h5_stamp_check(path);
+  SHB_CHECK(stamp != H5_SHORT, SHB_ERR_IO, "%s: is truncated; write or copy it again", path);
+  if (stamp == H5_CHANGED) warn_changed(path);
   hid_t list = access_list(false);
   SHB_CHECK(list >= 0, SHB_ERR_IO, "%s: cannot be opened: HDF5 failed to start", path);
+  start_reading(path);
   *file             = H5Fopen(path, H5F_ACC_RDONLY, list);
   shb_status status = *file < 0 ? open_failed(path) : SHB_OK;
   H5Pclose(list);
+  if (status != SHB_OK) stop_reading();
   return status;
 }
 
+/* Read all attributes of an object in a file that may crash HDF5. */
+static herr_t read_attribute(hid_t object, const char *name, const H5A_info_t *info, void *unused) {
+  (void)info;
+  (void)unused;
+  char *text = NULL;
+  h5_read_attribute_text(object, ".", name, &text);
+  free(text);
+  return 0;
+}
+
+static herr_t read_object(hid_t file, const char *name, const H5O_info_t *info, void *unused) {
+  (void)info;
+  (void)unused;
+  const hid_t object = H5Oopen(file, name, H5P_DEFAULT);
+  if (object < 0) return 0;
+  H5Aiterate2(object, H5_INDEX_NAME, H5_ITER_NATIVE, NULL, read_attribute, NULL);
+  H5Oclose(object);
+  return 0;
+}
+
+static void read_everything(const char *path) {
+  hid_t file;
+  if (h5_open(path, &file) != SHB_OK) return;
+  H5Ovisit(file, H5_INDEX_NAME, H5_ITER_NATIVE, read_object, NULL);
+  h5_close(file);
+}
+
+/* Whether a child process that reads the file ends as it should. */
+static bool survives(const char *path) {
+  fflush(NULL);
+  const pid_t child = fork();
+  if (child < 0) return false;
+  if (child == 0) {
+    const int null = open("/dev/null", O_WRONLY);
+    if (null >= 0) dup2(null, STDERR_FILENO);
+    alarm(TRIAL);
+    read_everything(path);
+    _exit(SHB_OK);
+  }
+  int state = 0;
+  while (waitpid(child, &state, 0) < 0 && errno == EINTR) continue;
+  return WIFEXITED(state) && WEXITSTATUS(state) == SHB_OK;
+}
+
+shb_status h5_check_earlier(const char *path) {
+  if (access(path, F_OK) != 0) return SHB_OK;
+  SHB_TRY(check_readable(path));
+  const h5_stamp_state stamp = h5_stamp_check(path);
+  const bool           whole = stamp == H5_INTACT || (stamp == H5_UNSTAMPED && survives(path));
+  SHB_CHECK(whole, SHB_ERR_IO, "%s: is damaged, or was changed since it was written", path);
+  return SHB_OK;
+}
+
 /* Returns 0 or errno. */
-static int write_all(const char *path, const char *data, size_t size) {
-  int fd = open(path, O_WRONLY | O_CREAT | O_TRUNC, 0666);
-  if (fd < 0) return errno;
+static int write_all(int fd, const char *data, size_t size) {
   int why = 0;
   while (size > 0 && !why) {
     ssize_t n = write(fd, data, size);
@@ -220,6 +307,17 @@ static int write_all(const char *path, const char *data, size_t size) {
       why = ENOSPC;
     }
   }
+  return why;
+}
+
+/* Write the stamp and the image. Returns 0 or errno. */
+static int write_stamped(const char *path, const char *image, size_t size) {
+  char stamp[H5_STAMP];
+  int  fd = open(path, O_WRONLY | O_CREAT | O_TRUNC, 0666);
+  if (fd < 0) return errno;
+  h5_stamp_make(image, size, stamp);
+  int why = write_all(fd, stamp, sizeof stamp);
+  if (!why) why = write_all(fd, image, size);
   if (close(fd) != 0 && !why) why = errno;
   if (why) remove_file(path);
   return why;
@@ -233,7 +331,7 @@ static shb_status write_image(hid_t file) {
   ssize_t size = H5Fget_file_image(file, NULL, 0);
   if (size <= 0 || H5Fget_vfd_handle(file, H5P_DEFAULT, &handle) < 0 || !handle)
     return h5_failed(SHB_ERR_IO, file, ".", "cannot be written");
-  int why = write_all(path, *(char **)handle, (size_t)size); /* the core driver's buffer */
+  int why = write_stamped(path, *(char **)handle, (size_t)size); /* the core driver's buffer */
   return why ? write_failed(path, why) : SHB_OK;
 }
 
@@ -241,9 +339,11 @@ shb_status h5_close(hid_t file) {
   if (file < 0) return SHB_OK;
   unsigned   intent = 0;
   shb_status status = SHB_OK;
-  if (H5Fget_intent(file, &intent) >= 0 && (intent & H5F_ACC_RDWR)) status = write_image(file);
-  if (H5Fclose(file) < 0 && status == SHB_OK)
-    SHB_FAIL(SHB_ERR_IO, "an HDF5 file could not be closed");
+  const bool known = H5Fget_intent(file, &intent) >= 0, writing = intent & H5F_ACC_RDWR;
+  if (known && writing) status = write_image(file);
+  const bool closed = H5Fclose(file) >= 0;
+  if (known && !writing) stop_reading();
+  if (!closed && status == SHB_OK) SHB_FAIL(SHB_ERR_IO, "an HDF5 file could not be closed");
   return status;
 }
 
@@ -254,5 +354,6 @@ void h5_abandon(hid_t file) {
   bool     ours   = H5Fget_name(file, path, sizeof path) > 0 && H5Fget_intent(file, &intent) >= 0 &&
               (intent & H5F_ACC_RDWR);
   H5Fclose(file);
+  if (!(intent & H5F_ACC_RDWR)) stop_reading();
   if (ours) remove_file(path);
 }

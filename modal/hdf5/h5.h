@@ -27,11 +27,17 @@ typedef struct {
 
 size_t h5_count(h5_shape shape); /* number of elements */
 
-/* Create a file (truncating an old one), or open one for reading. A created file is built in memory
- * and reaches the disk in h5_close. Errors: SHB_ERR_IO. The text says whether the file is missing,
+/* Create a file (truncating an old one), or open one for reading. A created file is built in
+ * memory. h5_close writes it to the disk, behind a checksum. A file that was changed since is
+ * opened with a warning on standard error. A crash of HDF5 while files are open for reading ends
+ * the process with one line. Errors: SHB_ERR_IO. The text says whether the file is missing,
  * unreadable, not HDF5, or truncated. */
 shb_status h5_create(const char *path, hid_t *file);
 shb_status h5_open(const char *path, hid_t *file);
+/* Whether an earlier result at path can be opened without a crash. It fits its stamp
+ * (modal/hdf5/stamp.h), or has none and a child process could read it. SHB_OK too if there is no
+ * file. SHB_ERR_IO: it is damaged, or was changed. */
+shb_status h5_check_earlier(const char *path);
 /* Write a created file to the disk and close it. Errors: SHB_ERR_IO if the file could not be
  * written whole; it is then removed. The handle is closed in any case. A negative handle does
  * nothing. */

@@ -13,7 +13,9 @@ foreach(noun case faults stage_settings motion)
   shb_test(cases/schema ${noun} shb_case)
 endforeach()
 
-shb_test(cases/commands hysteresis_picture shb_cases_commands)
+foreach(noun hysteresis_picture up_to_date)
+  shb_test(cases/commands ${noun} shb_cases_commands)
+endforeach()
 add_test(NAME cases.commands.commands
   COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/cases/commands/test_commands.sh $<TARGET_FILE:shroudhb>)
 add_test(NAME cases.commands.contact

@@ -75,8 +75,16 @@ static int guarded(void (*act)(void), bool mute, char text[500]) {
   return state;
 }
 
+/* There is no guard then. */
+static void skip_with_sanitizer(void) {
+#ifdef __SANITIZE_ADDRESS__
+  skip();
+#endif
+}
+
 static void a_crash_is_one_line(void **state) {
   (void)state;
+  skip_with_sanitizer();
   void (*const act[])(void) = {segmentation_fault, division, library_aborts, stack_overflow};
   for (size_t i = 0; i < sizeof act / sizeof *act; i++) {
     char      text[500];
@@ -89,6 +97,7 @@ static void a_crash_is_one_line(void **state) {
 
 static void it_ends(void **state) {
   (void)state;
+  skip_with_sanitizer();
   char text[500];
   int  end = guarded(crash_after_the_guard, true, text);
   assert_true(WIFSIGNALED(end) && WTERMSIG(end) == SIGSEGV);
@@ -110,6 +119,7 @@ static void crash_while_writing(void) {
 
 static void temporary_files_are_removed(void **state) {
   (void)state;
+  skip_with_sanitizer();
   char path[400], text[500];
   snprintf(path, sizeof path, "%s/result", scratch_folder);
   unpublished = shb_publish_temporary(path);

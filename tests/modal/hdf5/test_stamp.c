@@ -1,0 +1,120 @@
+/* The stamp of a file: every damaged byte is found, and other programs read past it. An earlier
+ * result that would crash HDF5 is told apart. */
+#include <signal.h>
+#include <sys/wait.h>
+
+#include "modal/hdf5/stamp.h"
+#include "tests/support/files.h"
+
+static const double reals[3] = {2.385, -1e-300, 6.02e23};
+
+static void write_sample(const char *name) {
+  hid_t file;
+  assert_ok(h5_create(scratch(name), &file));
+  assert_ok(h5_write_double(file, "/x", H5_SHAPE(3), reals, "m", "numbers"));
+  assert_ok(h5_write_attribute_text(file, "/", "settings", "a = 1\n"));
+  assert_ok(h5_close(file));
+}
+
+static void every_damaged_byte_is_found(void **state) {
+  (void)state;
+  size_t size;
+  write_sample("a.h5");
+  assert_int_equal(h5_stamp_check(scratch("a.h5")), H5_INTACT);
+  char *data = slurp(scratch("a.h5"), &size);
+  for (size_t i = H5_STAMP; i < size; i += 3) {
+    data[i] ^= (char)(1 << (i % 8));
+    spill(scratch("b.h5"), data, size);
+    assert_int_equal(h5_stamp_check(scratch("b.h5")), H5_CHANGED);
+    data[i] ^= (char)(1 << (i % 8));
+  }
+  data[40] ^= 1; /* of the checksum itself */
+  spill(scratch("b.h5"), data, size);
+  assert_int_equal(h5_stamp_check(scratch("b.h5")), H5_CHANGED);
+  data[40] ^= 1;
+  spill(scratch("b.h5"), data, size - 1);
+  assert_int_equal(h5_stamp_check(scratch("b.h5")), H5_SHORT);
+  data[0] = 'S';
+  spill(scratch("b.h5"), data, size);
+  assert_int_equal(h5_stamp_check(scratch("b.h5")), H5_UNSTAMPED);
+  assert_int_equal(h5_stamp_check(scratch("none.h5")), H5_UNSTAMPED);
+  free(data);
+}
+
+/* Any program that uses HDF5: plain calls of the library. */
+static void other_programs_read_and_edit_it(void **state) {
+  (void)state;
+  double   value[3] = {0, 0, 0}, *read;
+  h5_shape shape    = H5_SHAPE(3);
+  write_sample("a.h5");
+  hid_t file = H5Fopen(scratch("a.h5"), H5F_ACC_RDWR, H5P_DEFAULT);
+  assert_true(file >= 0);
+  hid_t set = H5Dopen2(file, "/x", H5P_DEFAULT);
+  assert_true(H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, value) >= 0);
+  assert_memory_equal(value, reals, sizeof reals);
+  value[1] = 7;
+  assert_true(H5Dwrite(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, value) >= 0);
+  H5Dclose(set);
+  H5Fclose(file);
+  assert_int_equal(h5_stamp_check(scratch("a.h5")), H5_CHANGED);
+  assert_ok(h5_open(scratch("a.h5"), &file)); /* with a warning */
+  assert_ok(h5_read_double(file, "/x", &shape, &read));
+  assert_true(read[1] == 7);
+  free(read);
+  assert_ok(h5_close(file));
+}
+
+static void earlier_results_are_tried(void **state) {
+  (void)state;
+  size_t size;
+  write_sample("a.h5");
+  assert_ok(h5_check_earlier(scratch("none.h5")));
+  assert_ok(h5_check_earlier(scratch("a.h5")));
+  char *data = slurp(scratch("a.h5"), &size);
+  data[size / 2] ^= 16;
+  spill(scratch("b.h5"), data, size);
+  assert_refused(h5_check_earlier(scratch("b.h5")), SHB_ERR_IO,
+                 "b.h5: is damaged, or was changed since it was written");
+  data[size / 2] ^= 16;
+  spill(scratch("b.h5"), data + H5_STAMP, size - H5_STAMP); /* of an earlier version */
+  assert_ok(h5_check_earlier(scratch("b.h5")));
+  free(data);
+  spill(scratch("b.h5"), "text", 4);
+  assert_refused(h5_check_earlier(scratch("b.h5")), SHB_ERR_IO, "is not an HDF5 file");
+  assert_refused(h5_check_earlier(DAMAGED), SHB_ERR_IO, "heap.h5: is damaged");
+}
+
+/* HDF5 crashes over the format of this file. */
+static void a_crash_is_one_line(void **state) {
+  (void)state;
+#ifdef __SANITIZE_ADDRESS__
+  skip(); /* there is no guard */
+#endif
+  int  ends[2], end = 0;
+  char text[600] = "";
+  assert_int_equal(pipe(ends), 0);
+  const pid_t child = fork();
+  if (child == 0) {
+    hid_t file;
+    for (int i = 1; i < 32; i++) signal(i, SIG_DFL); /* those of the test framework */
+    dup2(ends[1], STDERR_FILENO);
+    if (h5_open(DAMAGED, &file) == SHB_OK) h5_check_format(file, "shroudhb modal", 9);
+    _exit(99);
+  }
+  close(ends[1]);
+  assert_true(read(ends[0], text, sizeof text - 1) > 0);
+  close(ends[0]);
+  assert_int_equal(waitpid(child, &end, 0), child);
+  assert_true(WIFEXITED(end) && WEXITSTATUS(end) == SHB_ERR_INPUT);
+  assert_has(text, "heap.h5: is damaged: HDF5 crashed while it was read; write or copy it again\n");
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(every_damaged_byte_is_found),
+      cmocka_unit_test(other_programs_read_and_edit_it),
+      cmocka_unit_test(earlier_results_are_tried),
+      cmocka_unit_test(a_crash_is_one_line),
+  };
+  return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
+}
