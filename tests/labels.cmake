@@ -12,7 +12,8 @@ set(INTEGRATION_TESTS
   modal.stage.ranks_2 modal.stage.ranks_3 modal.stage.calculix mhb.contact.contact
   mhb.contact.reference_law mhb.contact.accuracy mhb.contact.continuity mhb.contact.random
   mhb.problem.interfaces mhb.problem.parameter
-  mhb.response.modal_motion mhb.response.response mhb.balance.condensation
+  mhb.response.modal_motion
+  mhb.response.direct_stress mhb.response.response mhb.balance.condensation
   mhb.balance.truncation_error mhb.floquet.floquet mhb.integration.integrator
   mhb.integration.integration_sweep mhb.ring.lasting mhb.branches.lasting_motion
   mhb.continuation.arclength mhb.continuation.linear_resonances

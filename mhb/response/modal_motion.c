@@ -42,9 +42,22 @@ static int choose(const mhb_response *response, const mhb_branch *b, const mhb_s
   return n;
 }
 
-/* The amplitudes of one point. */
-static void fill_point(const mhb_response *response, const mhb_branch *b, int point,
-                       mhb_receptance *r, double complex *amplitude) {
+/* force[side][pair][axis] <- -T^H p, on the blade. */
+static void contact_force(const mhb_receptance *r, int k, const double complex *p,
+                          double complex *force) {
+  const mhb_relative *t = &r->part->relative;
+  for (int side = 0; side < t->sides; side++)
+    for (int c = 0; c < r->n; c++) {
+      double complex sum = 0;
+      for (int row = c - c % 3; row < c - c % 3 + 3; row++)
+        sum -= conj(mhb_relative_weight(t, row, side, c % 3, r->phase[k])) * p[row];
+      force[side * r->n + c] = sum;
+    }
+}
+
+/* The amplitudes and forces of one point. */
+static void fill_point(const mhb_response *response, mhb_branch *b, int at, mhb_receptance *r) {
+  const int             point = b->modal.point[at];
   const size_t          K = (size_t)b->n_harmonics + 1, n = (size_t)r->n;
   const double complex *force = b->force + (size_t)point * n * K;
   double complex        p[n];
@@ -52,8 +65,11 @@ static void fill_point(const mhb_response *response, const mhb_branch *b, int po
   if (response->parameter == MHB_IN_SCALE) mhb_receptance_scale(r, b->value[point]);
   for (size_t k = 0; k < K; k++) {
     for (size_t row = 0; row < n; row++) p[row] = force[row * K + k];
-    mhb_receptance_amplitudes(r, (int)k, p, amplitude + k * (size_t)response->n_modes);
+    const size_t row = (size_t)at * K + k;
+    mhb_receptance_amplitudes(r, (int)k, p, b->modal.amplitude + row * (size_t)response->n_modes);
+    contact_force(r, (int)k, p, b->modal.force + row * (size_t)b->modal.n_contact);
   }
+  b->modal.scale[at] = r->scale;
 }
 
 /* The receptance of the last branch serves the next one of the same order and harmonics. */
@@ -69,17 +85,17 @@ static shb_status renew(const modal_model *model, const mhb_settings *settings, 
 
 static shb_status keep(const modal_model *model, const mhb_settings *settings,
                        const mhb_response *response, mhb_branch *b, mhb_receptance **r) {
-  const size_t row = ((size_t)b->n_harmonics + 1) * (size_t)response->n_modes;
-  if (b->n_points == 0) return mhb_response_modal(response, b, 0);
+  const int sides = settings->to_ground ? 1 : 2;
+  if (b->n_points == 0) return mhb_response_modal(response, b, 0, 0);
   bool *wanted = calloc((size_t)b->n_points, sizeof *wanted);
   SHB_CHECK(wanted, SHB_ERR_IO, "no memory for %d points", b->n_points);
   int        n = choose(response, b, &settings->save, wanted), at = 0;
-  shb_status status = mhb_response_modal(response, b, n);
+  shb_status status = mhb_response_modal(response, b, n, 3 * response->n_pairs * sides);
   if (status == SHB_OK && n > 0) status = renew(model, settings, b, r);
   for (int i = 0; status == SHB_OK && n > 0 && i < b->n_points; i++) {
     if (!wanted[i]) continue;
     b->modal.point[at] = i;
-    fill_point(response, b, i, *r, b->modal.amplitude + row * (size_t)at++);
+    fill_point(response, b, at++, *r);
   }
   free(wanted);
   return status;

@@ -44,6 +44,8 @@ static void free_curve(mhb_lasting_curve *curve) {
 static void free_modal(mhb_modal_motion *modal) {
   free(modal->point);
   free(modal->amplitude);
+  free(modal->force);
+  free(modal->scale);
   *modal = (mhb_modal_motion){0};
 }
 
@@ -226,18 +228,22 @@ shb_status mhb_response_copy_lasting(mhb_branch *to, const mhb_branch *from) {
   return SHB_OK;
 }
 
-shb_status mhb_response_modal(const mhb_response *response, mhb_branch *branch, int n) {
+shb_status mhb_response_modal(const mhb_response *response, mhb_branch *branch, int n,
+                              int n_contact) {
   mhb_modal_motion *modal = &branch->modal;
-  const size_t      row   = ((size_t)branch->n_harmonics + 1) * (size_t)response->n_modes;
+  const size_t      rows  = (size_t)n * ((size_t)branch->n_harmonics + 1);
   free_modal(modal);
   if (n == 0) return SHB_OK;
   modal->point     = calloc((size_t)n, sizeof *modal->point);
-  modal->amplitude = calloc((size_t)n * row + 1, sizeof *modal->amplitude);
-  if (!modal->point || !modal->amplitude) {
+  modal->amplitude = calloc(rows * (size_t)response->n_modes + 1, sizeof *modal->amplitude);
+  modal->force     = calloc(rows * (size_t)n_contact + 1, sizeof *modal->force);
+  modal->scale     = calloc((size_t)n, sizeof *modal->scale);
+  if (!modal->point || !modal->amplitude || !modal->force || !modal->scale) {
     free_modal(modal);
     SHB_FAIL(SHB_ERR_IO, "no memory for the modal amplitudes of %d points", n);
   }
-  modal->n = n;
+  modal->n         = n;
+  modal->n_contact = n_contact;
   return SHB_OK;
 }
 

@@ -40,7 +40,8 @@ shb_status mhb_response_copy_lasting(mhb_branch *to, const mhb_branch *from);
 /* Room for n windows of a sweep; an earlier one is freed. SHB_ERR_IO: no memory. */
 shb_status mhb_response_lasting_curve(mhb_branch *branch, int n);
 /* Room for the modal amplitudes of n points; earlier ones are freed. SHB_ERR_IO: no memory. */
-shb_status mhb_response_modal(const mhb_response *response, mhb_branch *branch, int n);
+shb_status mhb_response_modal(const mhb_response *response, mhb_branch *branch, int n,
+                              int n_contact);
 /* Removes the branches for which drop[n_branches] is true; main is adjusted. */
 void mhb_response_drop(mhb_response *response, const bool *drop);
 /* Puts secondary branches behind all main ones, those of one main branch together, in the order in

@@ -206,6 +206,14 @@ static shb_status write_modal(hid_t group, const mhb_response *response, const m
   SHB_TRY(h5_write_complex(group, "modal/amplitude", shape, m->amplitude, "m kg^1/2",
                            "amplitudes of the modes, harmonics: the motion is their sum times "
                            "/modes/shape of the modal file, less that of the modes left out"));
+  SHB_TRY(h5_write_complex(
+      group, "modal/force", H5_SHAPE(n, (hsize_t)branch->n_harmonics + 1, (hsize_t)m->n_contact),
+      m->force, "N",
+      "force on the blade at its contact dofs, in the order of /contact/dof of the modal file"));
+  SHB_TRY(
+      h5_write_double(group, "modal/scale", H5_SHAPE(n), m->scale, "-", "scale of the excitation"));
+  SHB_TRY(h5_attach_scale(group, "modal/force", 0, "modal/point"));
+  SHB_TRY(h5_attach_scale(group, "modal/scale", 0, "modal/point"));
   SHB_TRY(h5_attach_scale(group, "modal/amplitude", 0, "modal/point"));
   SHB_TRY(h5_attach_scale(group, "modal/amplitude", 1,
                           has_own_scale(response, branch) ? "harmonic" : "/harmonic"));
@@ -527,7 +535,11 @@ static shb_status read_modal(hid_t group, const char *path, int index, const mhb
   h5_shape shape =
       H5_SHAPE(points.dim[0], (hsize_t)branch->n_harmonics + 1, (hsize_t)response->n_modes);
   SHB_TRY(h5_read_complex(group, "modal/amplitude", &shape, &m->amplitude));
-  m->n = (int)points.dim[0];
+  h5_shape dofs = H5_SHAPE(points.dim[0], (hsize_t)branch->n_harmonics + 1, 0);
+  SHB_TRY(h5_read_complex(group, "modal/force", &dofs, &m->force));
+  SHB_TRY(h5_read_double(group, "modal/scale", &points, &m->scale));
+  m->n_contact = (int)dofs.dim[2];
+  m->n         = (int)points.dim[0];
   return SHB_OK;
 }
 

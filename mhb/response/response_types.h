@@ -76,11 +76,14 @@ typedef struct {
 } mhb_lasting_curve;
 
 /* Modal amplitudes kept at some points of a branch. The displacement of any node is
- * u(t) = Re sum_k sum_i amplitude[k][i] shape_i exp(j k w t/nu), without the modes left out. */
+ * u(t) = Re sum_k sum_i amplitude[k][i] shape_i exp(j k w t/nu), without the modes left out.
+ * These add residual shapes times force, and times scale and the harmonics of the load. */
 typedef struct {
-  int             n;
+  int             n, n_contact;
   int            *point;     /* [n] ascending */
   double complex *amplitude; /* [n][k = 0..m][mode] m kg^1/2 */
+  double complex *force; /* [n][k = 0..m][contact dof] N, on the blade, tangential, axial, radial */
+  double         *scale; /* [n] of the excitation */
 } mhb_modal_motion;
 
 /* One curve. Array layouts:

@@ -227,6 +227,8 @@ static shb_status solve(MPI_Comm comm, const fem_body *body, const modal_setting
   SHB_TRY(modal_participation_create(body, result->deflection.at.displacement, &result->system,
                                      &result->eigen, &result->participation));
   modal_phase(comm, progress, "participation", "effective masses");
+  SHB_TRY(modal_residual_shapes_create(&result->system, &result->eigen, to, &result->residual));
+  modal_phase(comm, progress, "residual shapes", "%d columns", result->residual.n);
   SHB_TRY(name_probes(settings, &result->model));
   SHB_TRY(name_interfaces(settings, &result->patches, &result->model));
   return copy_patches(&result->patches, &result->model);
@@ -273,6 +275,7 @@ void modal_result_free(modal_result *result) {
   modal_patches_free(&result->patches);
   modal_deflection_free(&result->deflection);
   modal_participation_free(&result->participation);
+  modal_residual_shapes_free(&result->residual);
   (void)modal_eigen_destroy(&result->eigen);
   (void)fem_system_destroy(&result->system);
   memset(result, 0, sizeof *result);

@@ -9,6 +9,7 @@
 #include "mesh/base/progress.h"
 #include "modal/common/damping.h"
 #include "modal/condense/contact_patches.h"
+#include "modal/condense/residual_shapes.h"
 #include "modal/condense/static_deflection.h"
 #include "modal/eigen/eigen.h"
 #include "modal/eigen/participation.h"
@@ -74,12 +75,13 @@ shb_status modal_body_create(const mesh_fe *mesh, const modal_settings *settings
 
 /* Results of the stage. The model is the same on every rank. */
 typedef struct {
-  fem_system          system;
-  modal_eigen         eigen;
-  modal_patches       patches; /* all patches, ordered by interface */
-  modal_model         model;
-  modal_deflection    deflection; /* static, under the centrifugal load; zero at rest */
-  modal_participation participation;
+  fem_system            system;
+  modal_eigen           eigen;
+  modal_patches         patches; /* all patches, ordered by interface */
+  modal_model           model;
+  modal_deflection      deflection; /* static, under the centrifugal load; zero at rest */
+  modal_participation   participation;
+  modal_residual_shapes residual;
 } modal_result;
 
 /* Assemble, solve the static equilibrium if the blade rotates, compute the modes, condense. K is

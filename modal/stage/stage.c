@@ -31,23 +31,31 @@ static shb_status gather_shapes(const modal_result *result, int rank, double **s
   return SHB_OK;
 }
 
-/* Mode shapes and their stresses, on rank 0. */
+/* Mode shapes, their stresses, and those of the residual shapes, on rank 0. */
 typedef struct {
-  double *shape;  /* [m][n_nodes][3] kg^-1/2 */
-  float  *stress; /* [m][n_nodes][6] Pa kg^-1/2 */
+  double *shape;           /* [m][n_nodes][3] kg^-1/2 */
+  float  *stress;          /* [m][n_nodes][6] Pa kg^-1/2 */
+  float  *residual_stress; /* [columns][n_nodes][6] Pa/N */
 } fields;
 
 /* Compute the stresses about the static equilibrium, if there is one. */
 static shb_status find_stresses(const mesh_fe *mesh, const modal_settings *settings,
                                 const modal_result *result, fields *of) {
-  const int   modes = result->eigen.n;
-  modal_body *body;
-  of->stress = malloc((size_t)modes * (size_t)mesh->n_nodes * FEM_STRESSES * sizeof *of->stress);
-  SHB_CHECK(of->stress, SHB_ERR_IO, "out of memory for the stresses of %d modes", modes);
+  const int     modes = result->eigen.n, columns = result->residual.n;
+  const size_t  each  = (size_t)mesh->n_nodes * FEM_STRESSES * sizeof(float);
+  const double *state = result->deflection.at.displacement;
+  modal_body   *body;
+  of->stress          = malloc((size_t)modes * each);
+  of->residual_stress = malloc((size_t)columns * each + 1);
+  SHB_CHECK(of->stress && of->residual_stress, SHB_ERR_IO,
+            "out of memory for the stresses of %d modes", modes);
   shb_status status = modal_body_create(mesh, settings, &body);
   if (status == SHB_OK)
-    status = fem_petsc_status(fem_nodal_stress_change(
-        &body->body, result->deflection.at.displacement, modes, of->shape, of->stress));
+    status =
+        fem_petsc_status(fem_nodal_stress_change(&body->body, state, modes, of->shape, of->stress));
+  if (status == SHB_OK && columns > 0)
+    status = fem_petsc_status(fem_nodal_stress_change(&body->body, state, columns,
+                                                      result->residual.shape, of->residual_stress));
   free(body);
   return status;
 }
@@ -61,6 +69,7 @@ static shb_status write_all(hid_t file, const mesh_fe *mesh, const modal_result 
   SHB_TRY(modal_export_mesh(file, mesh));
   SHB_TRY(modal_export_shapes(file, result->model.n_modes, mesh->n_nodes, of->shape));
   SHB_TRY(modal_export_stress(file, result->model.n_modes, mesh->n_nodes, of->stress));
+  SHB_TRY(modal_residual_shapes_write(file, &result->residual, of->residual_stress));
   SHB_TRY(modal_export_check(file, &result->eigen.check));
   SHB_TRY(modal_participation_write(file, &result->participation));
   SHB_TRY(modal_export_contact(file, &result->patches));
@@ -119,7 +128,7 @@ static shb_status run(MPI_Comm comm, int rank, const char *out_path, const mesh_
                       shb_progress *progress) {
   modal_result result;
   modal_speeds speeds = {0};
-  fields       of     = {NULL, NULL};
+  fields       of     = {NULL, NULL, NULL};
   shb_status   status;
   if (settings->n_speeds > 1)
     status = modal_speed_range_solve(comm, mesh, settings, progress, &speeds, &result);
@@ -139,6 +148,7 @@ static shb_status run(MPI_Comm comm, int rank, const char *out_path, const mesh_
   }
   free(of.shape);
   free(of.stress);
+  free(of.residual_stress);
   modal_speed_range_free(&speeds, &result);
   modal_result_free(&result);
   return status;

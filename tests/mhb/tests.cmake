@@ -24,6 +24,7 @@ endforeach()
 shb_test(mhb/response response shb_mhb_response)
 shb_test(mhb/response publisher shb_mhb_response)
 shb_test(mhb/response modal_motion tests_models)
+shb_test(mhb/response direct_stress tests_fem tests_models shb_modal)
 foreach(noun balance stick_stiffness condensation multistart newton subharmonics truncation_error
     modal_error)
   shb_test(mhb/balance ${noun} tests_models)

@@ -129,6 +129,10 @@ static void peaks_are_kept(void **state) {
     assert_memory_equal(b->modal.amplitude, c->modal.amplitude,
                         (size_t)c->modal.n * (size_t)(b->n_harmonics + 1) * (size_t)model.n_modes *
                             sizeof(double complex));
+    const size_t rows = (size_t)c->modal.n * (size_t)(b->n_harmonics + 1);
+    assert_int_equal(c->modal.n_contact, 6);
+    assert_memory_equal(b->modal.force, c->modal.force, 6 * rows * sizeof(double complex));
+    assert_memory_equal(b->modal.scale, c->modal.scale, (size_t)c->modal.n * sizeof(double));
   }
   assert_true(peaks >= 2);
   mhb_response_destroy(r);

@@ -125,8 +125,9 @@ static void file_is_complete(void **state) {
 static void phases_are_in_the_file(void **state) {
   (void)state;
   static const char *const wanted[] = {
-      "mesh",           "assembly",   "equilibrium", "analysis",      "factor", "modes", "check",
-      "mode residuals", "refinement", "residuals",   "participation", "stress", "write"};
+      "mesh",          "assembly",        "equilibrium",    "analysis",   "factor",
+      "modes",         "check",           "mode residuals", "refinement", "residuals",
+      "participation", "residual shapes", "stress",         "write"};
   static const double speeds[] = {200, 300};
   enum { PHASES = sizeof wanted / sizeof *wanted };
   modal_settings settings = default_settings();
