@@ -4,7 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { WIDTH = 120, SHOWN = 50 }; /* columns of a source line, issues of a file that are printed */
+#include "mesh/base/status.h"
+
+enum { WIDTH = 120 }; /* columns of a source line */
 
 case_issues case_issues_start(const char *path, const char *text, size_t length) {
   return (case_issues){.path = path, .text = text, .length = length};
@@ -18,6 +20,7 @@ void case_issue_add(case_issues *issues, int line, int column, const char *key, 
   vsnprintf(text, sizeof text, format, args);
   va_end(args);
   snprintf(full, sizeof full, "%s%s%s", key ? key : "", key && key[0] ? ": " : "", text);
+  shb_plain_text(full);
   int at = issues->n++; /* an issue is counted even if there is no memory for its text */
   if (at >= issues->capacity) {
     int         capacity = issues->capacity ? 2 * issues->capacity : 16;
@@ -96,14 +99,15 @@ void case_issues_print(case_issues *issues, FILE *out) {
   int kept = issues->n < issues->capacity ? issues->n : issues->capacity;
   /* the order of issues at one place does not matter, so qsort may be unstable */
   if (kept > 0) qsort(issues->issue, (size_t)kept, sizeof *issues->issue, by_place);
-  for (int i = 0; i < kept && i < SHOWN; i++) {
+  for (int i = 0; i < kept && i < CASE_ISSUES_SHOWN; i++) {
     const case_issue *issue = &issues->issue[i];
     fprintf(out, "%s:", issues->path);
     if (issue->line > 0) fprintf(out, "%d:%d:", issue->line, issue->column);
     fprintf(out, " error: %s\n", issue->text ? issue->text : "out of memory");
     print_source(issues, issue, out);
   }
-  if (issues->n > SHOWN) fprintf(out, "... and %d more\n", issues->n - SHOWN);
+  if (issues->n > CASE_ISSUES_SHOWN)
+    fprintf(out, "... and %d more\n", issues->n - CASE_ISSUES_SHOWN);
   if (issues->n > 0) fprintf(out, "%d error%s\n", issues->n, issues->n == 1 ? "" : "s");
 }
 

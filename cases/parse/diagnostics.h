@@ -5,6 +5,8 @@
 #include <stddef.h>
 #include <stdio.h>
 
+enum { CASE_ISSUES_SHOWN = 50 }; /* issues of a file that are printed */
+
 typedef struct {
   int   line, column; /* from 1; 0 stands for the whole file */
   char *text;
@@ -20,7 +22,7 @@ typedef struct {
 
 case_issues case_issues_start(const char *path, const char *text, size_t length);
 
-/* Record "KEY: TEXT" at a place; key may be "" or NULL. */
+/* Record "KEY: TEXT" at a place, in plain text; key may be "" or NULL. */
 void case_issue_add(case_issues *issues, int line, int column, const char *key, const char *format,
                     ...) __attribute__((format(printf, 5, 6)));
 

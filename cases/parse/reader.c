@@ -82,8 +82,9 @@ static bool is_section_row(const case_key *key) {
 static void walk(case_reader *r, const case_node *map, const char *path);
 
 static void refuse_key(case_reader *r, const char *block, const char *path, const case_node *node) {
-  char hint[512];
-  case_key_suggest(r->keys, block, node->key, hint, sizeof hint);
+  char hint[512] = "";
+  if (r->issues->n < 2 * CASE_ISSUES_SHOWN) /* a search for each of thousands would take seconds */
+    case_key_suggest(r->keys, block, node->key, hint, sizeof hint);
   case_issue_add(r->issues, node->key_line, node->key_column, path, "unknown key%s", hint);
 }
 

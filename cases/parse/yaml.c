@@ -205,7 +205,13 @@ static bool build_mapping(builder *b, const char *path, int depth, case_node *ou
   }
 }
 
-static bool build_scalar(builder *b, const yaml_event_t *event, case_node *out) {
+static bool build_scalar(builder *b, const yaml_event_t *event, const char *path, case_node *out) {
+  if (strlen((const char *)event->data.scalar.value) != event->data.scalar.length) {
+    out->kind = CASE_BROKEN;
+    case_issue_add(b->issues, out->line, out->column, path,
+                   "holds the character \\0, which ends text");
+    return true;
+  }
   out->kind = is_null(event) ? CASE_NULL : CASE_SCALAR;
   out->text = strdup((const char *)event->data.scalar.value);
   if (!out->text) case_issue_add(b->issues, 0, 0, NULL, "out of memory");
@@ -225,7 +231,7 @@ static bool build(builder *b, const yaml_event_t *event, const char *path, int d
     case_issue_add(b->issues, out->line, out->column, path, "tags (!...) are not supported");
   switch (event->type) {
     case YAML_SCALAR_EVENT:
-      return build_scalar(b, event, out);
+      return build_scalar(b, event, path, out);
     case YAML_SEQUENCE_START_EVENT:
       out->kind = CASE_SEQUENCE;
       return build_sequence(b, path, depth, out);

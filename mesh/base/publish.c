@@ -1,8 +1,10 @@
 #include "mesh/base/publish.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <inttypes.h>
+#include <limits.h>
 #include <signal.h>
 #include <stdatomic.h>
 #include <stdio.h>
@@ -34,8 +36,29 @@ void shb_publish_abandon(void) {
     if (temporaries[i].used) unlink(temporaries[i].name);
 }
 
+/* Remove PATH.tmp.PID of processes that are gone, such as killed ones. */
+static void remove_orphans(const char *path) {
+  const char  *slash  = strrchr(path, '/');
+  const char  *leaf   = slash ? slash + 1 : path;
+  const size_t n      = strlen(leaf);
+  char        *folder = slash ? strndup(path, (size_t)(slash - path) + 1) : strdup(".");
+  DIR         *list   = folder ? opendir(folder) : NULL;
+  for (struct dirent *entry; list && (entry = readdir(list)) != NULL;) {
+    if (strncmp(entry->d_name, leaf, n) != 0 || strncmp(entry->d_name + n, ".tmp.", 5) != 0)
+      continue;
+    char      *end;
+    const long process = strtol(entry->d_name + n + 5, &end, 10);
+    if (process <= 0 || *end || process > INT_MAX || kill((pid_t)process, 0) == 0 || errno != ESRCH)
+      continue;
+    unlinkat(dirfd(list), entry->d_name, 0);
+  }
+  if (list) closedir(list);
+  free(folder);
+}
+
 char *shb_publish_temporary(const char *path) {
   signal(SIGXFSZ, SIG_IGN); /* a write beyond the file size limit is then an error */
+  remove_orphans(path);
   size_t size = strlen(path) + 32;
   char  *name = malloc(size);
   if (name) snprintf(name, size, "%s.tmp.%ld", path, (long)getpid());

@@ -12,7 +12,8 @@ typedef struct {
   const char *command;   /* e.g. "shroudhb-modal" */
 } shb_provenance;
 
-/* Name of a temporary file beside path; malloc'ed, NULL when out of memory. */
+/* Name of a temporary file beside path; malloc'ed, NULL when out of memory. Those of processes that
+ * are gone are removed. */
 char *shb_publish_temporary(const char *path);
 
 /* Remove the temporary files that are not published yet. Safe in a signal handler. */

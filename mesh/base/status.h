@@ -13,7 +13,12 @@ typedef enum {
   SHB_INTERRUPTED   = 130, /* SIGINT or SIGTERM; results so far are published */
 } shb_status;
 
-/* Record a message (printf style) and return code. file and line are those of the caller. */
+/* Replace control characters, which could command a terminal: line ends and tabs by spaces, others
+ * by question marks. text is UTF-8. */
+void shb_plain_text(char *text);
+
+/* Record a message (printf style) in plain text and return code. file and line are those of the
+ * caller. */
 shb_status shb_fail(shb_status code, const char *file, int line, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 

@@ -523,6 +523,12 @@ static void not_yaml(void **state) {
        1},
       {"mu: 0.31", "mu: !!float 0.31",
        "c.yaml:24:7: error: contact.mu: tags (!...) are not supported", 1},
+      {"mu: 0.31", "mu: \"0.31\\0abc\"",
+       "c.yaml:24:7: error: contact.mu: holds the character \\0, which ends text", 1},
+      {"mu: 0.31", "mu: 0.31\n  \"kv\\0x\": 2",
+       "c.yaml:25:3: error: contact: holds the character \\0, which ends text", 1},
+      {"mu: 0.31", "mu: \"\\e[31m\\N\\x9b0.31\"",
+       "c.yaml:24:7: error: contact.mu: '?[31m????0.31' is not a number; expected a number", 1},
       {"  scale: 1.3", "---",
        "c.yaml:34:1: error: a second document begins here; one file holds one case", 1}};
   check_faults(rows, COUNT(rows));

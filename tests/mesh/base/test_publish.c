@@ -1,6 +1,7 @@
 /* Published files are whole or absent; temporary files do not stay. */
 #include "mesh/base/publish.h"
 
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "tests/support/check.h"
@@ -79,6 +80,29 @@ static void abandoned_files_are_removed(void **state) {
 }
 
 /* FNV-1a of the empty text and of "a", from the definition of the hash. */
+/* A killed process leaves its file; one that runs keeps its own. */
+static void orphans_are_removed(void **state) {
+  (void)state;
+  char path[sizeof scratch_folder + 64], orphan[sizeof path + 32], ours[sizeof path + 32];
+  char other[sizeof path + 32];
+  path_of("orphaned", path);
+  const pid_t child = fork();
+  if (child == 0) _exit(0);
+  waitpid(child, NULL, 0);
+  snprintf(orphan, sizeof orphan, "%s.tmp.%d", path, (int)child);
+  snprintf(ours, sizeof ours, "%s.tmp.%d", path, (int)getppid());
+  snprintf(other, sizeof other, "%s.tmp.%d.old", path, (int)child);
+  write_text(orphan, "half");
+  write_text(ours, "half");
+  write_text(other, "half");
+  free(shb_publish_temporary(path));
+  assert_int_not_equal(access(orphan, F_OK), 0);
+  assert_int_equal(access(ours, F_OK), 0);
+  assert_int_equal(access(other, F_OK), 0);
+  unlink(ours);
+  unlink(other);
+}
+
 static void fingerprints_are_fnv_1a(void **state) {
   (void)state;
   char path[sizeof scratch_folder + 64], hash[17];
@@ -94,9 +118,11 @@ static void fingerprints_are_fnv_1a(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(renames_over_an_earlier_file), cmocka_unit_test(a_link_is_not_replaced),
-      cmocka_unit_test(a_folder_that_is_absent_is_told),
-      cmocka_unit_test(abandoned_files_are_removed), cmocka_unit_test(fingerprints_are_fnv_1a)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(renames_over_an_earlier_file),
+                                     cmocka_unit_test(a_link_is_not_replaced),
+                                     cmocka_unit_test(a_folder_that_is_absent_is_told),
+                                     cmocka_unit_test(abandoned_files_are_removed),
+                                     cmocka_unit_test(orphans_are_removed),
+                                     cmocka_unit_test(fingerprints_are_fnv_1a)};
   return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }
