@@ -12,6 +12,9 @@ foreach(noun inspect mac mode_table phase_table value_table)
   shb_test(postproc/inspect ${noun} tests_responses)
 endforeach()
 shb_test(postproc/study study_file shb_post)
+foreach(noun study_effects study_page)
+  shb_test(postproc/study ${noun} tests_studies)
+endforeach()
 
 # The program itself: exit codes and the one line of an error.
 shb_test(postproc/report command tests_responses)
