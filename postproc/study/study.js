@@ -4,7 +4,8 @@
         {show, widthOf, extent} = Plot;
   const D = JSON.parse($("data").textContent);
   const DONE = 1, FAILED = 2, STATES = ["not run", "done", "failed", "not converged"];
-  const CHARTS = [];
+  const CHARTS = [], U = D.uncertainty;
+  const best = U ? -1 : D.best; /* the lowest sample of uncertain keys is no choice */
 
   /* ---------------------------------------------------------------- columns */
   /* The shortest end of a key that tells it from the others; indices keep their list. */
@@ -62,8 +63,15 @@
                                    (v - c.range[0]) / (c.range[1] - c.range[0]);
   const shade = (c, v) => Math.max(0, Math.min(32, Math.round(32 * place(c, v)))) || 0;
   const colourOf = (c, v) => ramp()[shade(c, v)];
+  /* Colour between two of the ramp. */
+  function blend(t) {
+    const at = Math.max(0, Math.min(31.999, 32 * t)) || 0, i = Math.floor(at), w = at - i;
+    const part = (hex, k) => parseInt(hex.slice(1 + 2 * k, 3 + 2 * k), 16), a = ramp()[i],
+          b = ramp()[i + 1];
+    return `rgb(${[0, 1, 2].map(k => Math.round((1 - w) * part(a, k) + w * part(b, k))).join()})`;
+  }
   const scaleBar = (c, lead) => `<div class="scale"><span>${lead} <b>${
-      escape(c.short)}</b></span><span>${escape(c.text(c.range[0]))}</span><i style="background:
+      escape(c.short)}</b>${c.log ? " (logarithmic)" : ""}</span><span>${escape(c.text(c.range[0]))}</span><i style="background:
       linear-gradient(90deg,${ramp().join()})"></i><span>${escape(c.text(c.range[1]))}</span></div>`;
 
   /* ---------------------------------------------------------------- building */
@@ -118,8 +126,10 @@
   const rowsOf = i => [...keys.map(k => [k.short, k.text(k.list[i])]),
                        ...outputs.map(o => [o.name, textOf(o, i)])];
   function textOf(o, i) {
-    const error = o.error[i], text = o.text(o.all[i], 5);
-    return error > 0 ? `${text} ± ${number(error / o.scale, 1, false)}` : text;
+    const error = o.error[i], value = o.all[i];
+    if (!(error > 0) || !Number.isFinite(value)) return o.text(value, 5);
+    return `${number(value / o.scale, 5, false)} ± ${number(error / o.scale, 1, false)}` +
+        (o.unit ? NBSP + o.unit : "");
   }
   function choose(i) {
     state.chosen = i;
@@ -133,7 +143,7 @@
     const path = D.path || D.name + ".yaml",
           command = `shroudhb study ${/^[\w./-]+$/.test(path) ? path : `"${path}"`} --design ${i + 1}`;
     dock.innerHTML = `<div class="row" style="margin:0"><h3>Design ${i + 1}</h3><span>${
-        STATES[D.status[i]]}${i === D.best ? ", the lowest" : ""}</span><button type="button" class="close"
+        STATES[D.status[i]]}${i === best ? ", the lowest" : ""}</span><button type="button" class="close"
         aria-label="Close">Close</button></div><dl>${
         rowsOf(i)
             .map(([k, v]) => `<div><dt>${escape(k)}</dt><dd>${escape(v)}</dd></div>`)
@@ -153,12 +163,12 @@
     const find = e => {
       const r = svg.getBoundingClientRect(), s = widthOf(id) / r.width,
             x = (e.clientX - r.left) * s, y = (e.clientY - r.top) * s;
-      let best = -1, least = 400;
+      let found = -1, least = 400;
       for (const [px, py, i] of svg.spots || []) {
         const d = (px - x) ** 2 + (py - y) ** 2;
-        if (d < least) [best, least] = [i, d];
+        if (d < least) [found, least] = [i, d];
       }
-      return [best, x / s, y / s, r.width];
+      return [found, x / s, y / s, r.width];
     };
     svg.addEventListener("pointermove", e => {
       const [i, x, y, width] = find(e);
@@ -210,7 +220,7 @@
       if (!kind(code & 3)) continue;
       const from = code & 4 ? curves.run[j] : curves.run[j] - 1;
       for (let k = from; k < end; k++) {
-        const x = p.x(curves.f[k]), y = p.y(state.log ? Math.max(curves.a[k], p.ay.lo) : curves.a[k]);
+        const x = p.x(curves.f[k]), y = p.y(Math.max(curves.a[k], 1e-9 * p.ay.hi));
         if (k === from) g.moveTo(x, y);
         else g.lineTo(x, y);
       }
@@ -309,7 +319,7 @@
     }
     g.globalAlpha = 1;
     g.lineWidth = 2;
-    for (const [i, colour] of [[D.best, css("--accent")], [state.chosen, css("--ink")]])
+    for (const [i, colour] of [[best, css("--accent")], [state.chosen, css("--ink")]])
       if (i >= 0 && Number.isFinite(xs(i) + ys(i))) disc(g, p.x(xs(i)), p.y(ys(i)), r + 3.5, null, colour);
     g.restore();
   }
@@ -322,7 +332,7 @@
           id, {left: 60, top: 34, width: widthOf(id) - 76, height: height - 84},
           axis(rangeOf(k), k.scale, k.label), axis(rangeOf(o), o.scale, o.label));
       if (effect.at.length > 1 && !D.optimum) p.line("mean", effect.at, effect.mean);
-      const share = effect.share === null ? "" :
+      const share = effect.share === null || (U && U.total) ? "" :
           `<text class="axis end" x="${widthOf(id) - 16}" y="20" text-anchor="end">${
               percent(effect.share)}</text>`;
       show(id, height, [p], share);
@@ -340,10 +350,10 @@
         (D.optimum ? "Each dot is one design; the search crowds them at the optimum." :
                      "Each dot is one design. Dashed: the mean over the designs of one level or " +
                      "of neighbouring values." +
-             (judged ? " Percent: share of the variance that the variable explains by itself." :
+             (judged && !(U && U.total) ? " Percent: share of the variance that the variable explains by itself." :
                        "")) +
-            " Ring: the lowest.",
-        card(`<div class="small">${
+            (best >= 0 ? " Ring: the lowest." : ""),
+        card(`<div class="small${keys.filter(k => k.many).length === 4 ? " four" : ""}">${
             keys.map((k, j) => k.many ? plot("effect-" + j, "Output over " + k.name) : "")
                 .join("")}</div><div id="effects-scale"></div>`));
     keys.forEach((k, j) => k.many && pointable("effect-" + j));
@@ -396,6 +406,7 @@
   }
   /* Level lines through a field [ny][nx] by marching squares. */
   function contour(g, field, nx, ny, level, X, Y) {
+    let middle = null, least = Infinity;
     const cut = (p, q, a, b) => {
       const t = (level - a) / (b - a);
       return [X(p[0] + t * (q[0] - p[0])), Y(p[1] + t * (q[1] - p[1]))];
@@ -413,8 +424,11 @@
         for (let k = 0; k + 1 < hits.length; k += 2) {
           g.moveTo(...hits[k]);
           g.lineTo(...hits[k + 1]);
+          const d = Math.hypot(i / nx - 0.5, 0.5 * (j / ny - 0.5));
+          if (d < least) [middle, least] = [hits[k], d];
         }
       }
+    return middle;
   }
   function drawMap() {
     const id = "map-chart", width = widthOf(id), height = Math.min(560, Math.max(360, 0.55 * width));
@@ -439,7 +453,7 @@
       for (let i = 0; i < nx; i++) {
         const z = field[j * nx + i];
         if (!Number.isFinite(z)) continue;
-        g.fillStyle = colourOf(c, z);
+        g.fillStyle = blend(place(c, z));
         g.fillRect(X(i) - dx / 2 - 0.4, Y(j) - dy / 2 - 0.4, dx + 0.8, dy + 0.8);
       }
     g.lineWidth = 1;
@@ -448,8 +462,23 @@
     g.beginPath();
     const at0 = range[0] / o.scale, at1 = range[1] / o.scale;
     const lines = c.many ? (c.log ? logTicks : linearTicks)(at0, at1, 9) : [];
-    for (const t of lines) contour(g, field, nx, ny, t * o.scale, X, Y);
+    const labels = lines.map(t => [t, contour(g, field, nx, ny, t * o.scale, X, Y)]);
     g.stroke();
+    g.globalAlpha = 1;
+    g.font = "600 12px " + css("--text");
+    g.textAlign = "center";
+    g.lineWidth = 4;
+    g.strokeStyle = css("--card");
+    g.fillStyle = css("--ink");
+    const used = [];
+    for (const [t, at] of labels) {
+      if (!at || used.some(([x, y]) => Math.abs(x - at[0]) < 44 && Math.abs(y - at[1]) < 16)) continue;
+      used.push(at);
+      const x = Math.max(left + 16, Math.min(right - 16, at[0])),
+            y = Math.max(high + 14, Math.min(low - 6, at[1] + 4));
+      g.strokeText(number(t, 4, false), x, y);
+      g.fillText(number(t, 4, false), x, y);
+    }
     g.restore();
     const spots = [];
     for (const i of slice) {
@@ -470,7 +499,7 @@
       if (active(i)) spots.push([x, y, i]);
     }
     g.globalAlpha = 1;
-    for (const [i, colour] of [[D.best, css("--accent")], [state.chosen, css("--ink")]]) {
+    for (const [i, colour] of [[best, css("--accent")], [state.chosen, css("--ink")]]) {
       if (i < 0 || !slice.includes(i)) continue;
       g.lineWidth = 5;
       disc(g, p.x(a.list[i]), p.y(b.list[i]), 8, null, css("--card"));
@@ -480,14 +509,17 @@
     $(id).spots = spots;
     $("map-scale").innerHTML = scaleBar(c, "Colour:") + (lines.length ? `<p class="note">Lines at ${
         lines.map(t => number(t, 4, false)).join(", ")}${o.unit ? NBSP + escape(o.unit) : ""}.</p>` : "");
-    const cross = slice.some(i => D.status[i] === FAILED) ? " Crosses: designs that failed." : "";
+    const cross = slice.some(i => D.status[i] === FAILED) ? " Crosses: designs that failed." : "",
+          blank = full && slice.some(i => !Number.isFinite(o.list[i])) ?
+              " It is blank beside designs without a result." :
+              "";
     const more = others().length;
     $("map-note").textContent =
         (full ? "Dots are the designs. Between them the map is interpolated bilinearly." :
              more ? "Dots are the designs, the other variables of each differ. The map is the mean " +
                  "of a neighbourhood, not a section." :
                     "Dots are the designs. Between them the map is interpolated by inverse distance.") +
-        (full && more ? " The other variables are held at the chosen values." : "") + cross;
+        (full && more ? " The other variables are held at the chosen values." : "") + blank + cross;
   }
   function mapTools() {
     const varied = keys.map((k, j) => [j, k.short]).filter(([j]) => keys[j].many);
@@ -522,7 +554,7 @@
         varied.slice().sort((i, j) => share(j) - share(i)) :
         varied;
     [state.x, state.y] = ranked;
-    state.fixed = keys.map(k => D.best >= 0 ? k.list[D.best] : levels(k)[0]);
+    state.fixed = keys.map(k => best >= 0 ? k.list[best] : levels(k)[0]);
     section(
         "map", "Map of two variables", "&nbsp;",
         card(`<div class="tools" id="map-tools"></div>` + plot("map-chart", "Map of two variables") +
@@ -537,6 +569,11 @@
   const PAR = {top: 52, height: 290, bottom: 40};
   const parX = j => 46 + (widthOf("parallel-chart") - 110) * (axes.length > 1 ? j / (axes.length - 1) : 0.5);
   const parY = (c, v) => PAR.top + PAR.height * (1 - place(c, v));
+  /* A name as long as the space between two axes. */
+  function cut(name) {
+    const most = Math.max(8, Math.floor((parX(1) - parX(0)) / 7.4));
+    return name.length > most ? "…" + name.slice(1 - most) : name;
+  }
   function drawParallel() {
     const id = "parallel-chart", height = PAR.top + PAR.height + PAR.bottom, c = state.output;
     let svg = "";
@@ -544,7 +581,7 @@
       const x = parX(j).toFixed(1), bottom = PAR.top + PAR.height, brush = state.brush.get(a);
       svg += `<path class="rod" d="M${x} ${PAR.top}V${bottom}"/><text class="axis${
           a === c ? " end" : ""}" x="${x}" y="${PAR.top - 28}" text-anchor="middle">${
-          escape(a.short)}</text><text x="${x}" y="${PAR.top - 11}" text-anchor="middle">${
+          escape(cut(a.short))}</text><text x="${x}" y="${PAR.top - 11}" text-anchor="middle">${
           escape(a.text(a.range[1], 3))}</text><text x="${x}" y="${
           bottom + 18}" text-anchor="middle">${escape(a.text(a.range[0], 3))}</text>`;
       if (brush) {
@@ -586,7 +623,7 @@
     }
     g.setLineDash([]);
     g.globalAlpha = 1;
-    for (const [i, colour] of [[D.best, css("--accent")], [state.chosen, css("--ink")]]) {
+    for (const [i, colour] of [[best, css("--accent")], [state.chosen, css("--ink")]]) {
       if (i < 0) continue;
       for (const [w, s] of [[6, css("--card")], [3, colour]]) {
         g.lineWidth = w;
@@ -601,7 +638,7 @@
     section(
         "parallel", "All designs at once",
         "Each line is one design. Drag along an axis to keep a range: the other charts and the " +
-            "table follow. Click an axis to free it. Thick: the lowest." +
+            "table follow. Click an axis to free it." + (best >= 0 ? " Thick: the lowest." : "") +
             (D.status.includes(FAILED) ? " Dashed red: no result." : ""),
         card(`<div class="wide" style="--axes:${axes.length}">` +
              plot("parallel-chart", "Parallel coordinates of all designs") +
@@ -643,8 +680,8 @@
     const p = new Panel(
         id, {left: 60, top: 34, width: widthOf(id) - 80, height: height - 84},
         axis(around(1, h.length, false), 1, "evaluation"), axis(rangeOf(o), o.scale, o.label));
-    const best = D.best < 0 ? NaN : o.list[D.best];
-    if (best <= o.range[0]) {
+    const lowest = best < 0 ? NaN : o.list[best];
+    if (lowest <= o.range[0]) {
       let least = Infinity;
       const xs = [], ys = [];
       for (const [x, v] of at) {
@@ -657,7 +694,7 @@
         ys.push(least);
       }
       p.line("line best", xs, ys);
-    } else if (Number.isFinite(best)) p.level("line best", best);
+    } else if (Number.isFinite(lowest)) p.level("line best", lowest);
     show(id, height, [p]);
     const g = canvas(id, height), spots = [];
     clip(g, p.box, 6);
@@ -668,7 +705,7 @@
     }
     g.globalAlpha = 1;
     g.lineWidth = 2;
-    for (const [d, colour] of [[D.best, css("--accent")], [state.chosen, css("--ink")]])
+    for (const [d, colour] of [[best, css("--accent")], [state.chosen, css("--ink")]])
       for (const e of at)
         if (e[2] === d) disc(g, p.x(e[0]), p.y(e[1]), 7, null, colour);
     g.restore();
@@ -676,7 +713,7 @@
   }
   function buildHistory() {
     if (!D.optimum || D.objective < 0 || !D.optimum.history.length) return;
-    const o = outputs[D.objective], broken = D.best >= 0 && o.list[D.best] > o.range[0];
+    const o = outputs[D.objective], broken = best >= 0 && o.list[best] > o.range[0];
     section(
         "history", "History of the optimum",
         "Each dot is one evaluation, in their order. " +
@@ -698,8 +735,15 @@
       return {name: d.name, unit: d.unit, value, share: known ? value * key.list[i] / peak.all[i] : NaN};
     });
   }
+  /* Design shown before one is chosen: the lowest, or the median of uncertain keys. */
+  function reference() {
+    const o = outputs[D.objective];
+    if (!U || !o) return best;
+    const list = ids.filter(i => Number.isFinite(o.list[i])).sort((a, b) => o.list[a] - o.list[b]);
+    return list.length ? list[list.length >> 1] : -1;
+  }
   function drawTornado() {
-    const id = "tornado-chart", i = state.chosen >= 0 ? state.chosen : D.best, list = i < 0 ? [] : sensitivities(i),
+    const id = "tornado-chart", i = state.chosen >= 0 ? state.chosen : reference(), list = i < 0 ? [] : sensitivities(i),
           bars = list.filter(s => Number.isFinite(s.share)).sort((a, b) => Math.abs(b.share) - Math.abs(a.share)),
           rest = list.filter(s => !Number.isFinite(s.share) && s.value !== null);
     const width = widthOf(id), height = 60 + 34 * Math.max(1, bars.length), most = Math.max(1e-12, ...bars.map(b => Math.abs(b.share)));
@@ -715,7 +759,7 @@
     });
     show(id, height, [], svg);
     $("tornado-note").textContent = i < 0 ? "No design is chosen." :
-        `Design ${i + 1}${state.chosen < 0 ? ", the lowest; click another to see its own" : ""}. ` +
+        `Design ${i + 1}${state.chosen < 0 ? `, ${U ? "the median" : "the lowest"}; click another to see its own` : ""}. ` +
             "Relative derivative of the peak by each parameter." +
             (rest.length ? ` Not varied, so per unit only: ${
                  rest.map(r => `${r.name} ${number(r.value, 4, false)} ${r.unit}`).join(", ")}.` : "");
@@ -727,7 +771,7 @@
   }
 
   /* ---------------------------------------------------------------- uncertainty */
-  const U = D.uncertainty, confidence = U ? number(100 * U.confidence, 3, false) + NBSP + "%" : "";
+  const confidence = U ? number(100 * U.confidence, 3, false) + NBSP + "%" : "";
   function drawSpread() {
     const id = "spread-chart", o = state.output, height = 340;
     const list = o.list.filter(Number.isFinite).sort((a, b) => a - b);
@@ -743,7 +787,7 @@
       if (lo !== null) svg += `<path class="whisker" d="M${p.x(lo)} ${p.y(level)}H${p.x(hi)}M${
           p.x(lo)} ${p.y(level) - 5}v10M${p.x(hi)} ${p.y(level) - 5}v10"/>`;
       p.dot("dot varying", v, level, 4.5);
-      p.text("mark", v, level, right ? 12 : -12, right ? 16 : -9, right ? "start" : "end",
+      p.text("mark", v, level, right ? 12 : -12, right && level > 0.1 ? 16 : -9, right ? "start" : "end",
              `${number(U.level[q], 3, false)} %: ${o.text(v)}`);
     });
     show(id, height, [p], svg);
@@ -802,8 +846,8 @@
   /* ---------------------------------------------------------------- table */
   const heads = [
     {name: "design", label: "design", list: ids, cell: i => String(i + 1)},
-    ...keys.map(k => ({...k, cell: i => k.text(k.list[i], 5)})),
-    ...outputs.map(o => ({...o, list: o.all, cell: i => o.text(o.all[i], 5)})),
+    ...keys.map(k => ({...k, cell: i => number(k.list[i] / k.scale, 5, false)})),
+    ...outputs.map(o => ({...o, list: o.all, cell: i => number(o.all[i] / o.scale, 5, false)})),
     {name: "status", label: "status", list: D.status, words: true,
      cell: i => STATES[D.status[i]] + (D.reason[i] ? ": " + D.reason[i] : "")}
   ];
@@ -823,7 +867,7 @@
     $("rows").innerHTML = shown.map(i => `<tr data-design="${i}"${i === state.chosen ? " class=\"chosen\"" : ""}>${
         heads.map(h => `<td${h.words ? ` class="words${D.status[i] === DONE ? "" : " bad"}"` : ""}>${
                  h === heads[0] ? `<button type="button" class="key">${h.cell(i)}</button>` :
-                 escape(h.cell(i))}${h === heads[0] && i === D.best ? " ★" : ""}</td>`).join("")}</tr>`).join("");
+                 escape(h.cell(i))}${h === heads[0] && i === best ? " ★" : ""}</td>`).join("")}</tr>`).join("");
     $("all").hidden = shown.length >= list.length;
     $("all").textContent = `Show all ${list.length}`;
   }
@@ -903,11 +947,11 @@
     if (!state.output) return 0;
     const index = U && U.total ? U.total[state.output.index].map(t => t[0]) :
                                  D.effects[state.output.index].map(e => e.share);
-    let best = Math.max(0, keys.findIndex(k => k.many));
+    let chief = Math.max(0, keys.findIndex(k => k.many));
     index.forEach((v, j) => {
-      if (v !== null && v > (index[best] ?? 0)) best = j;
+      if (v !== null && v > (index[chief] ?? 0)) chief = j;
     });
-    return best;
+    return chief;
   }
 
   document.documentElement.classList.add("js");

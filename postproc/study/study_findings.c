@@ -49,10 +49,10 @@ static void put_answer(const design_study *s, put_text put, post_buffer *out) {
   if (is_uncertain(s, objective)) {
     const study_uncertainty *u = &s->uncertainty;
     int                      q = last_percentile(u), i = objective * u->n_percentiles + q;
+    post_put(out, "On average ");
     put(out, s->output[objective].name);
     post_put(out, " is ");
     put_output(s, objective, u->mean[objective], out);
-    post_put(out, " on average");
     if (q >= 0 && isfinite(u->percentile[i])) {
       post_put(out, "; %g\u00a0%% of the samples stay below ", u->level[q]);
       put_output(s, objective, u->percentile[i], out);
@@ -169,7 +169,7 @@ void study_key_figures(const design_study *s, post_buffer *out) {
   else
     put_best_figures(s, objective, best, out);
   if (chief >= 0) {
-    open_figure("Matters most", "", out);
+    post_put(out, "<div class=\"figure\"><dt>Matters most</dt><dd><b class=\"words\">");
     post_put_escaped(out, s->key[chief].name);
     between(out);
     post_put(out, "%s of the variance%s", post_percent(ratio, share),
@@ -371,7 +371,8 @@ void study_findings(const design_study *s, post_buffer *out) {
     put_spread(s, objective, out);
     put_shares(s, objective, out);
   }
-  if (!is_uncertain(s, objective)) put_equals(s, best, out);
+  bool chosen = is_uncertain(s, objective) || s->optimum.n_history > 0;
+  if (!chosen) put_equals(s, best, out);
   put_stability(s, best, out);
   put_search(s, out);
   put_fates(s, out);

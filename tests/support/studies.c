@@ -134,10 +134,10 @@ static void make_scattered(design_study *s, int n, double narrow) {
 
 static void make_search(design_study *s) {
   unsigned seed = 11;
-  double   at[] = {400, 0.22};
+  double   at[] = {30, 0.22};
   assert_int_equal(design_study_take_optimum(s, SEARCH), SHB_OK);
   for (int i = 0; i < SEARCH; i++) {
-    double wide = 1.2 * exp(-i / 12.0), target[] = {100, 0.4};
+    double wide = 1.2 * exp(-i / 12.0), target[] = {110, 0.45};
     for (int k = 0; k < 2; k++) at[k] = target[k] * pow(at[k] / target[k], 0.93);
     add(s, (double[]){fmin(100, at[0] * exp(wide * (uniform(&seed) - 0.5))),
                       fmin(0.4, at[1] * exp(0.5 * wide * (uniform(&seed) - 0.5)))});

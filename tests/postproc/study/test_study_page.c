@@ -110,7 +110,7 @@ static void an_optimum_on_its_bound_is_a_warning(void **state) {
 static void an_uncertain_study_answers_with_mean_and_percentile(void **state) {
   (void)state;
   char *html = page_of(STUDIES_UNCERTAIN);
-  assert_has(html, "on average; 95\u00a0% of the samples stay below ");
+  assert_has(html, "µm; 95\u00a0% of the samples stay below ");
   assert_has(html, "<b>contact.n0</b> matters most for peak: its total Sobol’ index is 0.78");
   assert_has(html, "\"total\":[[[0.78,0.72,0.84]");
   free(html);
