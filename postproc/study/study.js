@@ -464,21 +464,6 @@
     const lines = c.many ? (c.log ? logTicks : linearTicks)(at0, at1, 9) : [];
     const labels = lines.map(t => [t, contour(g, field, nx, ny, t * o.scale, X, Y)]);
     g.stroke();
-    g.globalAlpha = 1;
-    g.font = "600 12px " + css("--text");
-    g.textAlign = "center";
-    g.lineWidth = 4;
-    g.strokeStyle = css("--card");
-    g.fillStyle = css("--ink");
-    const used = [];
-    for (const [t, at] of labels) {
-      if (!at || used.some(([x, y]) => Math.abs(x - at[0]) < 44 && Math.abs(y - at[1]) < 16)) continue;
-      used.push(at);
-      const x = Math.max(left + 16, Math.min(right - 16, at[0])),
-            y = Math.max(high + 14, Math.min(low - 6, at[1] + 4));
-      g.strokeText(number(t, 4, false), x, y);
-      g.fillText(number(t, 4, false), x, y);
-    }
     g.restore();
     const spots = [];
     for (const i of slice) {
@@ -499,6 +484,21 @@
       if (active(i)) spots.push([x, y, i]);
     }
     g.globalAlpha = 1;
+    g.globalAlpha = 1;
+    g.font = "600 12px " + css("--text");
+    g.textAlign = "center";
+    g.lineWidth = 4;
+    g.strokeStyle = css("--card");
+    g.fillStyle = css("--ink");
+    const used = [];
+    for (const [t, at] of labels) {
+      if (!at || used.some(([x, y]) => Math.abs(x - at[0]) < 44 && Math.abs(y - at[1]) < 16)) continue;
+      used.push(at);
+      const x = Math.max(left + 16, Math.min(right - 16, at[0])),
+            y = Math.max(high + 14, Math.min(low - 6, at[1] + 4));
+      g.strokeText(number(t, 4, false), x, y);
+      g.fillText(number(t, 4, false), x, y);
+    }
     for (const [i, colour] of [[best, css("--accent")], [state.chosen, css("--ink")]]) {
       if (i < 0 || !slice.includes(i)) continue;
       g.lineWidth = 5;

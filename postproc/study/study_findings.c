@@ -58,7 +58,7 @@ static void put_answer(const design_study *s, put_text put, post_buffer *out) {
       put_output(s, objective, u->percentile[i], out);
     }
   } else if (best >= 0 && objective >= 0) {
-    post_put(out, "Design %d has the lowest ", best + 1);
+    post_put(out, s->n > 1 ? "Design %d has the lowest " : "Design %d has the ", best + 1);
     put(out, s->output[objective].name);
     post_put(out, ", ");
     put_output(s, objective, s->design[best].value[objective], out);
