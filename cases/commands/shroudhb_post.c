@@ -15,9 +15,10 @@
 #include "postproc/inspect/mac.h"
 #include "postproc/inspect/value_table.h"
 #include "postproc/report/publish.h"
+#include "postproc/study/study_publish.h"
 
 static const char usage[] =
-    "usage: shroudhb-post [--quiet] [--verbose] CASE.yaml\n"
+    "usage: shroudhb-post [--quiet] [--verbose] CASE.yaml | NAME.study.h5\n"
     "       shroudhb-post --inspect [--verbose] FILE.h5 [OTHER.h5]\n"
     "       shroudhb-post --inspect [--csv] FILE.h5 PATH[SELECTION]\n"
     "\n"
@@ -25,6 +26,7 @@ static const char usage[] =
     "NAME.response.h5;\n"
     "points of NAME.integration.h5 are drawn as dots;\n"
     "the report has the section Speed against error if NAME.converge.h5 belongs to the case.\n"
+    "Of a study file: NAME.study.html, NAME.study.csv and NAME.study.svg.\n"
     "With --inspect: what an HDF5 file holds; --verbose unfolds everything, case text and settings "
     "too.\n"
     "Of two modal files: frequencies side by side, and which mode shapes are alike (MAC).\n"
@@ -113,6 +115,14 @@ static shb_status publish(const case_file *file, const command_options *options)
   return status;
 }
 
+static shb_status publish_study(const command_options *options) {
+  char      *summary = NULL;
+  shb_status status  = study_publish_file(options->path, &summary);
+  if (status == SHB_OK && !options->quiet) printf("%s\n", summary ? summary : options->path);
+  free(summary);
+  return status;
+}
+
 int main(int argc, char **argv) {
   command_options options;
   int             code = command_parse(argc, argv, usage, &options);
@@ -124,6 +134,7 @@ int main(int argc, char **argv) {
             options.other);
     return SHB_ERR_INPUT;
   }
+  if (study_publish_takes(options.path)) return command_finish(publish_study(&options));
   case_file  file;
   shb_status status = case_read(options.path, CASE_POST, stderr, &file);
   if (status != SHB_OK) return command_finish(status);

@@ -17,7 +17,7 @@ foreach(noun study_effects study_page)
 endforeach()
 
 # The program itself: exit codes and the one line of an error.
-shb_test(postproc/report command tests_responses)
+shb_test(postproc/report command tests_responses tests_studies)
 add_dependencies(test_postproc_report_command shroudhb-post)
 set_tests_properties(postproc.report.command PROPERTIES ENVIRONMENT
   "SHROUDHB_POST=$<TARGET_FILE:shroudhb-post>")

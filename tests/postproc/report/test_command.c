@@ -2,8 +2,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "postproc/study/study_file.h"
 #include "tests/support/check.h"
 #include "tests/support/fixture.h"
+#include "tests/support/studies.h"
 
 static char folder[] = "/tmp/shroudhb-post-XXXXXX";
 
@@ -68,6 +70,28 @@ static void inspect(void **state) {
   assert_has(error, "truncated");
 }
 
+/* A study file that cannot be read is one line; nothing is written. */
+static void study(void **state) {
+  (void)state;
+  static char out[65536], error[4096];
+  char        path[256];
+  assert_int_equal(run("none.study.h5", out, error), SHB_ERR_IO);
+  assert_int_equal(lines(error), 1);
+  assert_has(error, "none.study.h5");
+  snprintf(path, sizeof path, "%s/none.study.html", folder);
+  assert_int_equal(access(path, F_OK), -1);
+  design_study s;
+  studies_make(STUDIES_PAIR, &s);
+  snprintf(path, sizeof path, "%s/pair.study.h5", folder);
+  assert_ok(study_file_write(&s, path));
+  design_study_free(&s);
+  assert_int_equal(run("pair.study.h5", out, error), SHB_OK);
+  assert_string_equal(error, "");
+  assert_has(out, "pair.study.html: Design 25 has the lowest peak, ");
+  snprintf(path, sizeof path, "%s/pair.study.html", folder);
+  assert_int_equal(access(path, R_OK), 0);
+}
+
 static void usage(void **state) {
   (void)state;
   static char out[65536], error[4096];
@@ -88,6 +112,7 @@ static void usage(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(inspect), cmocka_unit_test(usage)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(inspect), cmocka_unit_test(study),
+                                     cmocka_unit_test(usage)};
   return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }
