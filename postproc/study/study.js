@@ -1,7 +1,10 @@
 (() => {
   "use strict";
-  const {$, NBSP, number, percent, escape, linearTicks, logTicks, around, axis, Panel} = Plot,
-        {show, widthOf, extent} = Plot;
+  const {$, NBSP, number, percent, escape, linearTicks, logTicks, around, axis, Panel} = Plot, {
+    show,
+    widthOf,
+    extent
+  } = Plot;
   const D = JSON.parse($("data").textContent);
   const DONE = 1, FAILED = 2, STATES = ["not run", "done", "failed", "not converged"];
   const CHARTS = [], U = D.uncertainty;
@@ -30,7 +33,13 @@
     const list = values.map(v => v === null ? NaN : v), known = list.filter(Number.isFinite),
           range = known.length ? extent(known) : [0, 1];
     return {
-      ...head, short, kind, list, range, log: inDecades(list), many: range[1] > range[0],
+      ...head,
+      short,
+      kind,
+      list,
+      range,
+      log: inDecades(list),
+      many: range[1] > range[0],
       label: short + (head.unit ? ", " + head.unit : ""),
       text: (v, digits = 4) => number(v / head.scale, digits, false) +
           (head.unit && Number.isFinite(v) ? (head.unit === "°" ? "" : NBSP) + head.unit : "")
@@ -38,14 +47,26 @@
   }
   const keyNames = shortNames(D.keys.map(k => k.name));
   const keys = D.keys.map((k, i) => column(k, D.key[i], keyNames[i], "key"));
-  const outputs = D.outputs.map((o, i) => ({
-    ...column(o, D.value[i].map((v, d) => D.status[d] === DONE ? v : null), o.name, "output"),
-    all: D.value[i].map(v => v === null ? NaN : v), error: D.error[i], index: i
-  }));
+  const outputs = D.outputs.map(
+      (o, i) => ({
+        ...column(o, D.value[i].map((v, d) => D.status[d] === DONE ? v : null), o.name, "output"),
+        all: D.value[i].map(v => v === null ? NaN : v),
+        error: D.error[i],
+        index: i
+      }));
   const known = outputs.filter(o => o.list.some(Number.isFinite));
   const state = {
-    output: known.find(o => o.index === D.objective) || known[0], colour: 0, log: false,
-    brush: new Map(), chosen: -1, x: 0, y: 1, fixed: [], sort: null, down: false, rows: 25
+    output: known.find(o => o.index === D.objective) || known[0],
+    colour: 0,
+    log: false,
+    brush: new Map(),
+    chosen: -1,
+    x: 0,
+    y: 1,
+    fixed: [],
+    sort: null,
+    down: false,
+    rows: 25
   };
   const ids = D.status.map((s, i) => i);
   const active = i => {
@@ -59,8 +80,8 @@
   const ramp = () => D.ramp[dark.matches ? "dark" : "light"];
   const css = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
   const place = (c, v) => !c.many ? 0.5 :
-      c.log                      ? Math.log(v / c.range[0]) / Math.log(c.range[1] / c.range[0]) :
-                                   (v - c.range[0]) / (c.range[1] - c.range[0]);
+      c.log                       ? Math.log(v / c.range[0]) / Math.log(c.range[1] / c.range[0]) :
+                                    (v - c.range[0]) / (c.range[1] - c.range[0]);
   const shade = (c, v) => Math.max(0, Math.min(32, Math.round(32 * place(c, v)))) || 0;
   const colourOf = (c, v) => ramp()[shade(c, v)];
   /* Colour between two of the ramp. */
@@ -70,15 +91,18 @@
           b = ramp()[i + 1];
     return `rgb(${[0, 1, 2].map(k => Math.round((1 - w) * part(a, k) + w * part(b, k))).join()})`;
   }
-  const scaleBar = (c, lead) => `<div class="scale"><span>${lead} <b>${
-      escape(c.short)}</b>${c.log ? " (logarithmic)" : ""}</span><span>${escape(c.text(c.range[0]))}</span><i style="background:
-      linear-gradient(90deg,${ramp().join()})"></i><span>${escape(c.text(c.range[1]))}</span></div>`;
+  const scaleBar = (c, lead) => `<div class="scale"><span>${lead} <b>${escape(c.short)}</b>${
+      c.log ? " (logarithmic)" :
+              ""}</span><span>${escape(c.text(c.range[0]))}</span><i style="background:
+      linear-gradient(90deg,${ramp().join()})"></i><span>${
+      escape(c.text(c.range[1]))}</span></div>`;
 
   /* ---------------------------------------------------------------- building */
   function section(id, title, note, body) {
     $("charts").insertAdjacentHTML(
-        "beforeend", `<section id="${id}"><h2>${title}</h2>${
-                         note ? `<p class="note" id="${id}-note">${note}</p>` : ""}${body}</section>`);
+        "beforeend",
+        `<section id="${id}"><h2>${title}</h2>${
+            note ? `<p class="note" id="${id}-note">${note}</p>` : ""}${body}</section>`);
   }
   const card = inner => `<div class="card">${inner}</div>`;
   const plot = (id, title) =>
@@ -87,8 +111,9 @@
           class="readout" hidden></div></div>`;
   const select = (id, label, options, chosen) => `<label>${label}<select id="${id}">${
       options
-          .map(([v, text]) => `<option value="${v}"${v === chosen ? " selected" : ""}>${
-                   escape(text)}</option>`)
+          .map(
+              ([v, text]) =>
+                  `<option value="${v}"${v === chosen ? " selected" : ""}>${escape(text)}</option>`)
           .join("")}</select></label>`;
 
   /* A canvas over a chart of this height; its units are those of the SVG. */
@@ -123,8 +148,8 @@
   }
 
   /* ---------------------------------------------------------------- one design */
-  const rowsOf = i => [...keys.map(k => [k.short, k.text(k.list[i])]),
-                       ...outputs.map(o => [o.name, textOf(o, i)])];
+  const rowsOf = i =>
+      [...keys.map(k => [k.short, k.text(k.list[i])]), ...outputs.map(o => [o.name, textOf(o, i)])];
   function textOf(o, i) {
     const error = o.error[i], value = o.all[i];
     if (!(error > 0) || !Number.isFinite(value)) return o.text(value, 5);
@@ -141,9 +166,11 @@
     dock.hidden = i < 0;
     if (i < 0) return;
     const path = D.path || D.name + ".yaml",
-          command = `shroudhb study ${/^[\w./-]+$/.test(path) ? path : `"${path}"`} --design ${i + 1}`;
+          file = /^[\w./-]+$/.test(path) ? path : `"${path}"`,
+          command = `shroudhb study ${file} --design ${i + 1}`;
     dock.innerHTML = `<div class="row" style="margin:0"><h3>Design ${i + 1}</h3><span>${
-        STATES[D.status[i]]}${i === best ? ", the lowest" : ""}</span><button type="button" class="close"
+        STATES[D.status[i]]}${i === best ? ", the lowest" : ""}</span><button type="button"
+        class="close"
         aria-label="Close">Close</button></div><dl>${
         rowsOf(i)
             .map(([k, v]) => `<div><dt>${escape(k)}</dt><dd>${escape(v)}</dd></div>`)
@@ -152,7 +179,9 @@
         escape(command)}</code><button type="button" class="copy">Copy</button></div>`;
     dock.querySelector(".close").onclick = () => choose(-1);
     dock.querySelector(".copy").onclick = e => {
-      const done = () => { e.target.textContent = "Copied"; };
+      const done = () => {
+        e.target.textContent = "Copied";
+      };
       if (navigator.clipboard) navigator.clipboard.writeText(command).then(done, () => {});
     };
   }
@@ -221,8 +250,10 @@
       const from = code & 4 ? curves.run[j] : curves.run[j] - 1;
       for (let k = from; k < end; k++) {
         const x = p.x(curves.f[k]), y = p.y(Math.max(curves.a[k], 1e-9 * p.ay.hi));
-        if (k === from) g.moveTo(x, y);
-        else g.lineTo(x, y);
+        if (k === from)
+          g.moveTo(x, y);
+        else
+          g.lineTo(x, y);
       }
     }
   }
@@ -247,9 +278,9 @@
     g.lineJoin = "round";
     g.globalAlpha = Math.max(0.12, Math.min(1, 60 / Math.max(many, 1)));
     const order = shown.slice().sort((a, b) => place(c, c.list[a]) - place(c, c.list[b]));
-    const styles = many > 120 ? [[1.1, [], () => true]] :
-                                [[1.7, [], k => k === 2], [0.9, [], k => k === 0],
-                                 [1.7, [2, 3], k => k === 1]];
+    const styles = many > 120 ?
+        [[1.1, [], () => true]] :
+        [[1.7, [], k => k === 2], [0.9, [], k => k === 0], [1.7, [2, 3], k => k === 1]];
     for (const i of order) {
       g.strokeStyle = colourOf(c, c.list[i]);
       for (const [w, dash, kind] of styles) {
@@ -286,11 +317,12 @@
         "curves", "Response curves",
         "Each curve is one design; its colour is the value of the chosen variable. " +
             (ids.length > 120 ? "" : "Solid: stable. Dotted: not stable. Thin: not judged."),
-        card(`<div class="tools"><fieldset><legend>Amplitude</legend><span class="switch">
+        card(
+            `<div class="tools"><fieldset><legend>Amplitude</legend><span class="switch">
             <button type="button" data-log="0">Linear</button><button type="button"
             data-log="1">Logarithmic</button></span></fieldset></div>` +
-             plot("curves-chart", "Amplitude over frequency for each design") +
-             `<div id="curves-scale"></div>`));
+            plot("curves-chart", "Amplitude over frequency for each design") +
+            `<div id="curves-scale"></div>`));
     const buttons = [...document.querySelectorAll("[data-log]")];
     const press = () => buttons.forEach(
         b => b.setAttribute("aria-pressed", String((b.dataset.log === "1") === state.log)));
@@ -309,7 +341,8 @@
   const rangeOf = c => around(c.range[0], c.range[1], c.log);
   const marks = shown => shown.length > 600 ? 1.8 : shown.length > 150 ? 2.6 : 3.8;
   function dots(g, p, xs, ys, colour, spots) {
-    const shown = ids.filter(i => Number.isFinite(xs(i)) && Number.isFinite(ys(i))), r = marks(shown);
+    const shown = ids.filter(i => Number.isFinite(xs(i)) && Number.isFinite(ys(i))),
+          r = marks(shown);
     clip(g, p.box, 6);
     for (const i of shown) {
       const x = p.x(xs(i)), y = p.y(ys(i));
@@ -320,7 +353,8 @@
     g.globalAlpha = 1;
     g.lineWidth = 2;
     for (const [i, colour] of [[best, css("--accent")], [state.chosen, css("--ink")]])
-      if (i >= 0 && Number.isFinite(xs(i) + ys(i))) disc(g, p.x(xs(i)), p.y(ys(i)), r + 3.5, null, colour);
+      if (i >= 0 && Number.isFinite(xs(i) + ys(i)))
+        disc(g, p.x(xs(i)), p.y(ys(i)), r + 3.5, null, colour);
     g.restore();
   }
   function drawEffects() {
@@ -332,12 +366,15 @@
           id, {left: 60, top: 34, width: widthOf(id) - 76, height: height - 84},
           axis(rangeOf(k), k.scale, k.label), axis(rangeOf(o), o.scale, o.label));
       if (effect.at.length > 1 && !D.optimum) p.line("mean", effect.at, effect.mean);
-      const share = effect.share === null || (U && U.total) ? "" :
+      const share = effect.share === null || (U && U.total) ?
+          "" :
           `<text class="axis end" x="${widthOf(id) - 16}" y="20" text-anchor="end">${
               percent(effect.share)}</text>`;
       show(id, height, [p], share);
       const spots = [];
-      dots(canvas(id, height), p, i => k.list[i], i => o.list[i], i => colourOf(c, c.list[i]), spots);
+      dots(
+          canvas(id, height), p, i => k.list[i], i => o.list[i], i => colourOf(c, c.list[i]),
+          spots);
       $(id).spots = spots;
     });
     $("effects-scale").innerHTML = scaleBar(c, "Colour:");
@@ -349,9 +386,10 @@
         "effects", "Over each variable",
         (D.optimum ? "Each dot is one design; the search crowds them at the optimum." :
                      "Each dot is one design. Dashed: the mean over the designs of one level or " +
-                     "of neighbouring values." +
-             (judged && !(U && U.total) ? " Percent: share of the variance that the variable explains by itself." :
-                       "")) +
+                 "of neighbouring values." +
+                 (judged && !(U && U.total) ?
+                      " Percent: share of the variance that the variable explains by itself." :
+                      "")) +
             (best >= 0 ? " Ring: the lowest." : ""),
         card(`<div class="small${keys.filter(k => k.many).length === 4 ? " four" : ""}">${
             keys.map((k, j) => k.many ? plot("effect-" + j, "Output over " + k.name) : "")
@@ -362,7 +400,8 @@
 
   /* ---------------------------------------------------------------- map of two variables */
   const levels = c => [...new Set(c.list)].filter(Number.isFinite).sort((a, b) => a - b);
-  const others = () => keys.map((k, j) => j).filter(j => j !== state.x && j !== state.y && keys[j].many);
+  const others = () =>
+      keys.map((k, j) => j).filter(j => j !== state.x && j !== state.y && keys[j].many);
   /* Is every combination of levels there, as a grid has them? */
   const isGrid = D.plan.startsWith("grid") &&
       keys.reduce((n, k) => n * Math.max(1, levels(k).length), 1) <= D.n;
@@ -391,7 +430,8 @@
     const pts = slice.filter(i => Number.isFinite(o.list[i]))
                     .map(i => [place(a, a.list[i]), place(b, b.list[i]), o.list[i]]);
     const smooth = keys.filter(k => k.many).length > 2;
-    const width = Math.max(0.06, 0.5 * Math.max(pts.length, 1) ** (-1 / 3)), far = (2.2 * width) ** 2;
+    const width = Math.max(0.06, 0.5 * Math.max(pts.length, 1) ** (-1 / 3)),
+          far = (2.2 * width) ** 2;
     return (u, v) => {
       let sum = 0, weight = 0, least = Infinity;
       for (const [x, y, z] of pts) {
@@ -431,7 +471,8 @@
     return middle;
   }
   function drawMap() {
-    const id = "map-chart", width = widthOf(id), height = Math.min(560, Math.max(360, 0.55 * width));
+    const id = "map-chart", width = widthOf(id),
+          height = Math.min(560, Math.max(360, 0.55 * width));
     const a = keys[state.x], b = keys[state.y], o = state.output, slice = mapSlice();
     const p = new Panel(
         id, {left: 60, top: 34, width: width - 80, height: height - 84},
@@ -443,9 +484,11 @@
     for (let j = 0; j < ny; j++)
       for (let i = 0; i < nx; i++) field[j * nx + i] = at(i / (nx - 1), j / (ny - 1));
     const seen = [...field].filter(Number.isFinite), range = seen.length ? extent(seen) : [0, 1];
-    const c = {...o, range, many: range[1] > range[0], log: range[0] > 0 && range[1] > 20 * range[0]};
+    const c =
+        {...o, range, many: range[1] > range[0], log: range[0] > 0 && range[1] > 20 * range[0]};
     /* the field fills the range of the designs, not the air around it */
-    const left = p.x(a.range[0]), right = p.x(a.range[1]), low = p.y(b.range[0]), high = p.y(b.range[1]);
+    const left = p.x(a.range[0]), right = p.x(a.range[1]), low = p.y(b.range[0]),
+          high = p.y(b.range[1]);
     const X = i => left + (right - left) * i / (nx - 1), Y = j => low + (high - low) * j / (ny - 1);
     const dx = (right - left) / (nx - 1), dy = (low - high) / (ny - 1);
     clip(g, {left, top: high, width: right - left, height: low - high});
@@ -470,7 +513,8 @@
       const x = p.x(a.list[i]), y = p.y(b.list[i]);
       g.globalAlpha = active(i) ? 1 : 0.2;
       g.lineWidth = 1.2;
-      if (Number.isFinite(o.list[i])) disc(g, x, y, marks(slice) - 0.6, colourOf(c, o.list[i]), css("--card"));
+      if (Number.isFinite(o.list[i]))
+        disc(g, x, y, marks(slice) - 0.6, colourOf(c, o.list[i]), css("--card"));
       else if (D.status[i] === FAILED) {
         g.strokeStyle = css("--bad");
         g.lineWidth = 2;
@@ -492,7 +536,8 @@
     g.fillStyle = css("--ink");
     const used = [];
     for (const [t, at] of labels) {
-      if (!at || used.some(([x, y]) => Math.abs(x - at[0]) < 44 && Math.abs(y - at[1]) < 16)) continue;
+      if (!at || used.some(([x, y]) => Math.abs(x - at[0]) < 44 && Math.abs(y - at[1]) < 16))
+        continue;
       used.push(at);
       const x = Math.max(left + 16, Math.min(right - 16, at[0])),
             y = Math.max(high + 14, Math.min(low - 6, at[1] + 4));
@@ -507,18 +552,22 @@
       disc(g, p.x(a.list[i]), p.y(b.list[i]), 8, null, colour);
     }
     $(id).spots = spots;
-    $("map-scale").innerHTML = scaleBar(c, "Colour:") + (lines.length ? `<p class="note">Lines at ${
-        lines.map(t => number(t, 4, false)).join(", ")}${o.unit ? NBSP + escape(o.unit) : ""}.</p>` : "");
+    $("map-scale").innerHTML = scaleBar(c, "Colour:") +
+        (lines.length ?
+             `<p class="note">Lines at ${lines.map(t => number(t, 4, false)).join(", ")}${
+                 o.unit ? NBSP + escape(o.unit) : ""}.</p>` :
+             "");
     const cross = slice.some(i => D.status[i] === FAILED) ? " Crosses: designs that failed." : "",
           blank = full && slice.some(i => !Number.isFinite(o.list[i])) ?
-              " It is blank beside designs without a result." :
-              "";
+        " It is blank beside designs without a result." :
+        "";
     const more = others().length;
     $("map-note").textContent =
         (full ? "Dots are the designs. Between them the map is interpolated bilinearly." :
-             more ? "Dots are the designs, the other variables of each differ. The map is the mean " +
+             more ?
+                "Dots are the designs, the other variables of each differ. The map is the mean " +
                  "of a neighbourhood, not a section." :
-                    "Dots are the designs. Between them the map is interpolated by inverse distance.") +
+                "Dots are the designs. Between them the map is interpolated by inverse distance.") +
         (full && more ? " The other variables are held at the chosen values." : "") + blank + cross;
   }
   function mapTools() {
@@ -527,8 +576,8 @@
     if (isGrid)
       for (const j of others())
         html += select(
-            "map-fix-" + j, keys[j].short,
-            levels(keys[j]).map(v => [v, keys[j].text(v)]), state.fixed[j]);
+            "map-fix-" + j, keys[j].short, levels(keys[j]).map(v => [v, keys[j].text(v)]),
+            state.fixed[j]);
     $("map-tools").innerHTML = html;
     const pick = (mine, other) => e => {
       const to = +e.target.value;
@@ -557,8 +606,9 @@
     state.fixed = keys.map(k => best >= 0 ? k.list[best] : levels(k)[0]);
     section(
         "map", "Map of two variables", "&nbsp;",
-        card(`<div class="tools" id="map-tools"></div>` + plot("map-chart", "Map of two variables") +
-             `<div id="map-scale"></div>`));
+        card(
+            `<div class="tools" id="map-tools"></div>` + plot("map-chart", "Map of two variables") +
+            `<div id="map-scale"></div>`));
     mapTools();
     pointable("map-chart");
     CHARTS.push(drawMap);
@@ -567,7 +617,8 @@
   /* ---------------------------------------------------------------- parallel coordinates */
   const axes = [...keys, ...known].filter(c => c.many).slice(0, 12);
   const PAR = {top: 52, height: 290, bottom: 40};
-  const parX = j => 46 + (widthOf("parallel-chart") - 110) * (axes.length > 1 ? j / (axes.length - 1) : 0.5);
+  const parX = j =>
+      46 + (widthOf("parallel-chart") - 110) * (axes.length > 1 ? j / (axes.length - 1) : 0.5);
   const parY = (c, v) => PAR.top + PAR.height * (1 - place(c, v));
   /* A name as long as the space between two axes. */
   function cut(name) {
@@ -589,8 +640,8 @@
         svg += `<rect class="brush" x="${x - 9}" y="${y.toFixed(1)}" width="18" height="${
             Math.max(2, h).toFixed(1)}"/>`;
       }
-      svg += `<rect class="grip" data-axis="${j}" x="${x - 24}" y="${PAR.top - 6}" width="48" height="${
-          PAR.height + 12}"/>`;
+      svg += `<rect class="grip" data-axis="${j}" x="${x - 24}" y="${
+          PAR.top - 6}" width="48" height="${PAR.height + 12}"/>`;
     });
     show(id, height, [], svg);
     const g = canvas(id, height), shown = ids.filter(active);
@@ -602,8 +653,10 @@
           pen = false;
           return;
         }
-        if (pen) g.lineTo(parX(j), parY(a, a.list[i]));
-        else g.moveTo(parX(j), parY(a, a.list[i]));
+        if (pen)
+          g.lineTo(parX(j), parY(a, a.list[i]));
+        else
+          g.moveTo(parX(j), parY(a, a.list[i]));
         pen = true;
       });
       g.stroke();
@@ -640,13 +693,15 @@
         "Each line is one design. Drag along an axis to keep a range: the other charts and the " +
             "table follow. Click an axis to free it." + (best >= 0 ? " Thick: the lowest." : "") +
             (D.status.includes(FAILED) ? " Dashed red: no result." : ""),
-        card(`<div class="wide" style="--axes:${axes.length}">` +
-             plot("parallel-chart", "Parallel coordinates of all designs") +
-             `</div><div id="parallel-scale"></div>`));
+        card(
+            `<div class="wide" style="--axes:${axes.length}">` +
+            plot("parallel-chart", "Parallel coordinates of all designs") +
+            `</div><div id="parallel-scale"></div>`));
     const svg = $("parallel-chart");
     let from = null;
     const valueAt = (a, e) => {
-      const r = svg.getBoundingClientRect(), y = (e.clientY - r.top) * widthOf("parallel-chart") / r.width;
+      const r = svg.getBoundingClientRect(),
+            y = (e.clientY - r.top) * widthOf("parallel-chart") / r.width;
       const t = Math.max(0, Math.min(1, 1 - (y - PAR.top) / PAR.height)), [lo, hi] = a.range;
       return a.log ? lo * (hi / lo) ** t : lo + t * (hi - lo);
     };
@@ -694,7 +749,8 @@
         ys.push(least);
       }
       p.line("line best", xs, ys);
-    } else if (Number.isFinite(lowest)) p.level("line best", lowest);
+    } else if (Number.isFinite(lowest))
+      p.level("line best", lowest);
     show(id, height, [p]);
     const g = canvas(id, height), spots = [];
     clip(g, p.box, 6);
@@ -717,7 +773,8 @@
     section(
         "history", "History of the optimum",
         "Each dot is one evaluation, in their order. " +
-            (broken ? "Line: the optimum; dots below it break a constraint." : "Line: the best so far."),
+            (broken ? "Line: the optimum; dots below it break a constraint." :
+                      "Line: the best so far."),
         card(plot("history-chart", "Objective over the evaluations")));
     pointable("history-chart");
     CHARTS.push(drawHistory);
@@ -729,10 +786,16 @@
     const peak = outputs.find(o => o.name === "peak");
     return D.derivatives.map((d, j) => {
       const last = d.name.split(".").pop();
-      const key = keys.find(k => k.name === d.name) || keys.find(k => k.name.split(".").pop() === last);
+      const key =
+          keys.find(k => k.name === d.name) || keys.find(k => k.name.split(".").pop() === last);
       const value = D.derivative[j][i];
       const known = value !== null && key && peak && peak.all[i];
-      return {name: d.name, unit: d.unit, value, share: known ? value * key.list[i] / peak.all[i] : NaN};
+      return {
+        name: d.name,
+        unit: d.unit,
+        value,
+        share: known ? value * key.list[i] / peak.all[i] : NaN
+      };
     });
   }
   /* Design shown before one is chosen: the lowest, or the median of uncertain keys. */
@@ -743,30 +806,42 @@
     return list.length ? list[list.length >> 1] : -1;
   }
   function drawTornado() {
-    const id = "tornado-chart", i = state.chosen >= 0 ? state.chosen : reference(), list = i < 0 ? [] : sensitivities(i),
-          bars = list.filter(s => Number.isFinite(s.share)).sort((a, b) => Math.abs(b.share) - Math.abs(a.share)),
+    const id = "tornado-chart", i = state.chosen >= 0 ? state.chosen : reference(),
+          list = i < 0 ? [] : sensitivities(i),
+          bars = list.filter(s => Number.isFinite(s.share))
+                     .sort((a, b) => Math.abs(b.share) - Math.abs(a.share)),
           rest = list.filter(s => !Number.isFinite(s.share) && s.value !== null);
-    const width = widthOf(id), height = 60 + 34 * Math.max(1, bars.length), most = Math.max(1e-12, ...bars.map(b => Math.abs(b.share)));
+    const width = widthOf(id), height = 60 + 34 * Math.max(1, bars.length),
+          most = Math.max(1e-12, ...bars.map(b => Math.abs(b.share)));
     const left = 110, mid = left + (width - left - 30) / 2, half = (width - left - 30) / 2 - 56;
     let svg = `<path class="base" d="M${mid} 16V${height - 34}"/><text class="axis" x="${
         width - 20}" y="${height - 8}" text-anchor="end">change of the peak for 1 % more, %</text>`;
     bars.forEach((b, k) => {
       const w = half * Math.abs(b.share) / most, y = 22 + 34 * k, up = b.share > 0;
-      svg += `<text class="axis" x="${left - 10}" y="${y + 15}" text-anchor="end">${escape(b.name)}</text>
+      svg += `<text class="axis" x="${left - 10}" y="${y + 15}" text-anchor="end">${
+          escape(b.name)}</text>
           <rect class="bar ${up ? "more" : "less"}" x="${up ? mid : mid - w}" y="${y}" width="${
-          Math.max(w, 1)}" height="22"/><text x="${up ? mid + w + 7 : mid - w - 7}" y="${y + 16}" text-anchor="${
-          up ? "start" : "end"}">${number(b.share, 3, false)}</text>`;
+          Math.max(w, 1)}" height="22"/><text x="${up ? mid + w + 7 : mid - w - 7}" y="${
+          y + 16}" text-anchor="${up ? "start" : "end"}">${number(b.share, 3, false)}</text>`;
     });
     show(id, height, [], svg);
-    $("tornado-note").textContent = i < 0 ? "No design is chosen." :
-        `Design ${i + 1}${state.chosen < 0 ? `, ${U ? "the median" : "the lowest"}; click another to see its own` : ""}. ` +
+    $("tornado-note").textContent = i < 0 ?
+        "No design is chosen." :
+        `Design ${i + 1}${
+            state.chosen < 0 ?
+                `, ${U ? "the median" : "the lowest"}; click another to see its own` :
+                ""}. ` +
             "Relative derivative of the peak by each parameter." +
             (rest.length ? ` Not varied, so per unit only: ${
-                 rest.map(r => `${r.name} ${number(r.value, 4, false)} ${r.unit}`).join(", ")}.` : "");
+                               rest.map(r => `${r.name} ${number(r.value, 4, false)} ${r.unit}`)
+                                   .join(", ")}.` :
+                           "");
   }
   function buildTornado() {
     if (!D.derivatives.length || !D.derivative.some(list => list.some(v => v !== null))) return;
-    section("tornado", "What moves the peak", "&nbsp;", card(plot("tornado-chart", "Relative derivatives of the peak")));
+    section(
+        "tornado", "What moves the peak", "&nbsp;",
+        card(plot("tornado-chart", "Relative derivatives of the peak")));
     CHARTS.push(drawTornado);
   }
 
@@ -784,47 +859,62 @@
     U.percentile[o.index].forEach(([v, lo, hi], q) => {
       if (v === null) return;
       const level = U.level[q] / 100, right = p.x(v) < p.box.left + 0.7 * p.box.width;
-      if (lo !== null) svg += `<path class="whisker" d="M${p.x(lo)} ${p.y(level)}H${p.x(hi)}M${
-          p.x(lo)} ${p.y(level) - 5}v10M${p.x(hi)} ${p.y(level) - 5}v10"/>`;
+      if (lo !== null)
+        svg += `<path class="whisker" d="M${p.x(lo)} ${p.y(level)}H${p.x(hi)}M${p.x(lo)} ${
+            p.y(level) - 5}v10M${p.x(hi)} ${p.y(level) - 5}v10"/>`;
       p.dot("dot varying", v, level, 4.5);
-      p.text("mark", v, level, right ? 12 : -12, right && level > 0.1 ? 16 : -9, right ? "start" : "end",
-             `${number(U.level[q], 3, false)} %: ${o.text(v)}`);
+      p.text(
+          "mark", v, level, right ? 12 : -12, right && level > 0.1 ? 16 : -9,
+          right ? "start" : "end", `${number(U.level[q], 3, false)} %: ${o.text(v)}`);
     });
     show(id, height, [p], svg);
   }
   function drawSobol() {
     const id = "sobol-chart", o = state.output, first = U.first[o.index], total = U.total[o.index];
-    const list = keys.map((k, j) => j).filter(j => total[j][0] !== null).sort((a, b) => total[b][0] - total[a][0]);
-    const width = widthOf(id), left = Math.min(150, 0.34 * width), full = width - left - 64, height = 44 + 46 * Math.max(1, list.length);
-    const most = Math.max(1, ...total.map(t => t[2] || 0)), x = v => left + full * Math.max(0, v) / most;
+    const list = keys.map((k, j) => j)
+                     .filter(j => total[j][0] !== null)
+                     .sort((a, b) => total[b][0] - total[a][0]);
+    const width = widthOf(id), left = Math.min(150, 0.34 * width), full = width - left - 64,
+          height = 44 + 46 * Math.max(1, list.length);
+    const most = Math.max(1, ...total.map(t => t[2] || 0)),
+          x = v => left + full * Math.max(0, v) / most;
     let svg = "";
     for (const t of linearTicks(0, most, 5))
       svg += `<path class="grid" d="M${x(t)} 8V${height - 30}"/><text x="${x(t)}" y="${
           height - 12}" text-anchor="middle">${number(t, 3, false)}</text>`;
     list.forEach((j, k) => {
       const y = 14 + 46 * k;
-      svg += `<text class="axis" x="${left - 10}" y="${y + 20}" text-anchor="end">${escape(keys[j].short)}</text>`;
+      svg += `<text class="axis" x="${left - 10}" y="${y + 20}" text-anchor="end">${
+          escape(keys[j].short)}</text>`;
       for (const [kind, [v, lo, hi], dy] of [["total", total[j], 16], ["first", first[j], 0]]) {
         if (v === null) continue;
         svg += `<rect class="bar ${kind}" x="${left}" y="${y + dy}" width="${
             Math.max(0.5, x(v) - left)}" height="13"/>`;
-        if (lo !== null) svg += `<path class="whisker" d="M${x(lo)} ${y + dy + 6.5}H${x(hi)}M${
-            x(lo)} ${y + dy + 3}v7M${x(hi)} ${y + dy + 3}v7"/>`;
-        svg += `<text x="${x(hi === null ? v : Math.max(hi, v)) + 8}" y="${y + dy + 11}">${number(v, 2, false)}</text>`;
+        if (lo !== null)
+          svg += `<path class="whisker" d="M${x(lo)} ${y + dy + 6.5}H${x(hi)}M${x(lo)} ${
+              y + dy + 3}v7M${x(hi)} ${y + dy + 3}v7"/>`;
+        svg += `<text x="${x(hi === null ? v : Math.max(hi, v)) + 8}" y="${y + dy + 11}">${
+            number(v, 2, false)}</text>`;
       }
     });
     show(id, height, [], svg);
   }
   function percentileTable() {
-    const cell = (o, e) => e[0] === null ? "–" : escape(o.text(e[0])) +
-        (e[1] === null ? "" : `<br><span class="note">${escape(o.text(e[1], 3))} to ${escape(o.text(e[2], 3))}</span>`);
-    return `<div class="scroll"><table><caption>Statistics of ${U.samples} samples. Second lines: intervals at ${
+    const cell = (o, e) => e[0] === null ? "–" :
+                                           escape(o.text(e[0])) +
+            (e[1] === null ? "" :
+                             `<br><span class="note">${escape(o.text(e[1], 3))} to ${
+                                 escape(o.text(e[2], 3))}</span>`);
+    return `<div class="scroll"><table><caption>Statistics of ${
+        U.samples} samples. Second lines: intervals at ${
         confidence} confidence.</caption><thead><tr><th>Output</th><th>Mean</th><th>Deviation</th>${
         U.level.map(l => `<th>${number(l, 3, false)} %</th>`).join("")}</tr></thead><tbody>${
         outputs.filter(o => U.mean[o.index] !== null)
-            .map(o => `<tr><th>${escape(o.name)}</th><td>${escape(o.text(U.mean[o.index]))}</td><td>${
-                     escape(o.text(U.deviation[o.index], 3))}</td>${
-                     U.percentile[o.index].map(e => `<td>${cell(o, e)}</td>`).join("")}</tr>`)
+            .map(
+                o =>
+                    `<tr><th>${escape(o.name)}</th><td>${escape(o.text(U.mean[o.index]))}</td><td>${
+                        escape(o.text(U.deviation[o.index], 3))}</td>${
+                        U.percentile[o.index].map(e => `<td>${cell(o, e)}</td>`).join("")}</tr>`)
             .join("")}</tbody></table></div>`;
   }
   function buildUncertainty() {
@@ -832,12 +922,19 @@
     const sobol = U.first && keys.length > 1;
     section(
         "uncertainty", "Uncertainty",
-        `Distribution over the samples, with percentiles and their intervals at ${confidence} confidence.` +
+        `Distribution over the samples, with percentiles and their intervals at ${
+            confidence} confidence.` +
             (sobol ? " Sobol’ indices: share of the variance that a variable explains by itself " +
-                 "(first, dark) and with all its interactions (total, light)." : ""),
+                     "(first, dark) and with all its interactions (total, light)." :
+                     ""),
         `<div class="${sobol ? "pair" : ""}">${
-            card("<h3 style=\"margin-top:0\">Distribution</h3>" + plot("spread-chart", "Distribution of the output"))}${
-            sobol ? card("<h3 style=\"margin-top:0\">Sobol’ indices</h3>" + plot("sobol-chart", "Sobol’ indices")) : ""}</div>` +
+            card(
+                "<h3 style=\"margin-top:0\">Distribution</h3>" +
+                plot("spread-chart", "Distribution of the output"))}${
+            sobol ? card(
+                        "<h3 style=\"margin-top:0\">Sobol’ indices</h3>" +
+                        plot("sobol-chart", "Sobol’ indices")) :
+                    ""}</div>` +
             percentileTable());
     CHARTS.push(drawSpread);
     if (sobol) CHARTS.push(drawSobol);
@@ -847,9 +944,13 @@
   const heads = [
     {name: "design", label: "design", list: ids, cell: i => String(i + 1)},
     ...keys.map(k => ({...k, cell: i => number(k.list[i] / k.scale, 5, false)})),
-    ...outputs.map(o => ({...o, list: o.all, cell: i => number(o.all[i] / o.scale, 5, false)})),
-    {name: "status", label: "status", list: D.status, words: true,
-     cell: i => STATES[D.status[i]] + (D.reason[i] ? ": " + D.reason[i] : "")}
+    ...outputs.map(o => ({...o, list: o.all, cell: i => number(o.all[i] / o.scale, 5, false)})), {
+      name: "status",
+      label: "status",
+      list: D.status,
+      words: true,
+      cell: i => STATES[D.status[i]] + (D.reason[i] ? ": " + D.reason[i] : "")
+    }
   ];
   function sorted() {
     const list = ids.filter(active), h = heads[state.sort ?? 0], sign = state.down ? -1 : 1;
@@ -861,30 +962,54 @@
   }
   function drawTable() {
     const list = sorted(), shown = list.slice(0, state.rows);
-    $("heads").innerHTML = heads.map((h, j) => `<th scope="col"${h.words ? " class=\"words\"" : ""}${
-        state.sort === j ? ` aria-sort="${state.down ? "descending" : "ascending"}"` : ""}
-        title="${escape(h.name)}"><button type="button" data-sort="${j}">${escape(h.label)}</button></th>`).join("");
-    $("rows").innerHTML = shown.map(i => `<tr data-design="${i}"${i === state.chosen ? " class=\"chosen\"" : ""}>${
-        heads.map(h => `<td${h.words ? ` class="words${D.status[i] === DONE ? "" : " bad"}"` : ""}>${
-                 h === heads[0] ? `<button type="button" class="key">${h.cell(i)}</button>` :
-                 escape(h.cell(i))}${h === heads[0] && i === best ? " ★" : ""}</td>`).join("")}</tr>`).join("");
+    $("heads").innerHTML =
+        heads
+            .map(
+                (h, j) => `<th scope="col"${h.words ? " class=\"words\"" : ""}${
+                    state.sort === j ? ` aria-sort="${state.down ? "descending" : "ascending"}"` :
+                                       ""}
+        title="${escape(h.name)}"><button type="button" data-sort="${j}">${
+                    escape(h.label)}</button></th>`)
+            .join("");
+    $("rows").innerHTML =
+        shown
+            .map(
+                i => `<tr data-design="${i}"${i === state.chosen ? " class=\"chosen\"" : ""}>${
+                    heads
+                        .map(
+                            h => `<td${
+                                h.words ? ` class="words${D.status[i] === DONE ? "" : " bad"}"` :
+                                          ""}>${
+                                h === heads[0] ?
+                                    `<button type="button" class="key">${h.cell(i)}</button>` :
+                                    escape(h.cell(
+                                        i))}${h === heads[0] && i === best ? " ★" : ""}</td>`)
+                        .join("")}</tr>`)
+            .join("");
     $("all").hidden = shown.length >= list.length;
     $("all").textContent = `Show all ${list.length}`;
   }
   function csv() {
-    const quote = s => /[",\r\n]/.test(s) ? `"${s.replace(/"/g, "\"\"")}"` : s, put = v => v === null ? "" : String(v);
-    const names = ["design", ...D.keys.map(k => k.name), ...D.outputs.map(o => o.name),
-                   ...D.derivatives.map(d => "d peak/d " + d.name), "status", "reason"];
-    const rows = sorted().map(i => [String(i + 1), ...[...D.key, ...D.value, ...D.derivative].map(c => put(c[i])),
-                                    STATES[D.status[i]], D.reason[i] || ""]);
+    const quote = s => /[",\r\n]/.test(s) ? `"${s.replace(/"/g, "\"\"")}"` : s,
+          put = v => v === null ? "" : String(v);
+    const names = [
+      "design", ...D.keys.map(k => k.name), ...D.outputs.map(o => o.name),
+      ...D.derivatives.map(d => "d peak/d " + d.name), "status", "reason"
+    ];
+    const rows = sorted().map(
+        i =>
+            [String(i + 1), ...[...D.key, ...D.value, ...D.derivative].map(c => put(c[i])),
+             STATES[D.status[i]], D.reason[i] || ""]);
     return [names, ...rows].map(r => r.map(quote).join(",")).join("\r\n") + "\r\n";
   }
   function buildTable() {
     section(
         "designs", "Designs", "Click a heading to sort, a row to see the design in every chart.",
-        `<div class="scroll"><table><thead><tr id="heads"></tr></thead><tbody id="rows"></tbody></table></div>
-        <div class="row"><button type="button" id="all"></button><button type="button" id="csv">Download CSV</button>
-        <span class="note">The download holds the designs that are not filtered out, in SI units.</span></div>`);
+        `<div class="scroll"><table><thead><tr id="heads"></tr></thead>
+        <tbody id="rows"></tbody></table></div>
+        <div class="row"><button type="button" id="all"></button><button type="button"
+        id="csv">Download CSV</button><span class="note">The download holds the designs that are not filtered
+        out, in SI units.</span></div>`);
     $("heads").onclick = e => {
       const j = e.target.dataset.sort;
       if (j === undefined) return;
@@ -907,7 +1032,8 @@
       a.click();
       URL.revokeObjectURL(a.href);
     };
-    if (state.output) state.sort = heads.findIndex(h => h.name === state.output.name && h.kind === "output");
+    if (state.output)
+      state.sort = heads.findIndex(h => h.name === state.output.name && h.kind === "output");
     CHARTS.push(drawTable);
   }
 
@@ -923,10 +1049,16 @@
   }
   function buildPanel() {
     $("charts").insertAdjacentHTML(
-        "beforeend", `<div class="tools panel">${
-            known.length > 1 ? select("output", "Output", known.map(o => [o.index, o.name]), state.output.index) : ""}${
-            keys.length > 1 ? select("colour", "Colour", keys.map((k, j) => [j, k.short]), state.colour) : ""}<button
-            type="button" id="free" hidden>Free all axes</button><p class="count" id="count"></p></div>`);
+        "beforeend",
+        `<div class="tools panel">${
+            known.length > 1 ?
+                select("output", "Output", known.map(o => [o.index, o.name]), state.output.index) :
+                ""}${
+            keys.length > 1 ?
+                select("colour", "Colour", keys.map((k, j) => [j, k.short]), state.colour) :
+                ""}<button
+            type="button" id="free" hidden>Free all axes</button><p class="count"
+            id="count"></p></div>`);
     if ($("output"))
       $("output").onchange = e => {
         state.output = outputs[+e.target.value];
@@ -956,7 +1088,9 @@
 
   document.documentElement.classList.add("js");
   document.body.insertAdjacentHTML(
-      "beforeend", `<aside id="dock" class="dock" hidden aria-live="polite" aria-label="Chosen design"></aside>`);
+      "beforeend",
+      `<aside id="dock" class="dock" hidden aria-live="polite"
+      aria-label="Chosen design"></aside>`);
   if (D.n > 0 && keys.length) {
     state.colour = chiefKey();
     buildPanel();

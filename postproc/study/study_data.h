@@ -6,9 +6,9 @@
  *   status [n] (study_state), reason {design: text}, seconds [n]
  *   objective (output), best (design), both -1 if there is none
  *   effects  [output][key] {share, at, mean}: study_main_effect
- *   curves   {start [n+1], run, code, data}: points of all designs. A run begins at point run[j]. Its
- *            code is stable + 1, and 4 more where a new branch begins. data: base64 of float32
- *            [2][points], frequency in Hz and amplitude in m.
+ *   curves   {start [n+1], run, code, data}: points of all designs. A run begins at point run[j].
+ *            Its code is stable + 1, and 4 more where a new branch begins. data: base64 of
+ *            float32 [2][points], frequency in Hz and amplitude in m.
  *   optimum  {method, history, bound}; uncertainty {samples, failed, confidence, level, mean,
  *            deviation, percentile, first, total}; percentile, first and total are lists of [value,
  *            low, high]
@@ -22,7 +22,7 @@
 #include "postproc/study/design_study.h"
 
 /* Write the numbers. Curves are thinned: no point left out is farther from the chord than 0.1 % of
- * the chart, or more where the curves would take more than 1.5 MB.
+ * the chart. It is more where the curves would take over 1.5 MB.
  *
  *   tolerance  out  the share of the chart that was allowed
  *

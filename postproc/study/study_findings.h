@@ -5,15 +5,15 @@
 #include "postproc/draw/text_buffer.h"
 #include "postproc/study/design_study.h"
 
-/* The sentence that answers the study, escaped for HTML: the lowest objective and its design, or
- * mean and highest percentile of uncertain keys, or that no design is done. */
+/* The sentence that answers the study, escaped for HTML. It names the design with the lowest
+ * objective, or mean and highest percentile of uncertain keys. */
 void study_headline(const design_study *study, post_buffer *out);
 
 /* <dl> of the largest figures. Nothing if no design is done. */
 void study_key_figures(const design_study *study, post_buffer *out);
 
-/* <ul> of what follows from the designs: what matters most, designs that cannot be told apart,
- * bounds that were met, designs that failed with their reasons. */
+/* <ul> of what follows from the designs: what matters most, bounds that were met, designs that
+ * cannot be told apart. Designs that failed stand there with their reasons. */
 void study_findings(const design_study *study, post_buffer *out);
 
 /* One line for a terminal. */
