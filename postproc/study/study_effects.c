@@ -50,13 +50,19 @@ static int end_of_group(const sample *list, int n, int from, bool levels, int g,
   return end;
 }
 
+/* Groups of eight designs at least. */
+static int groups_of(int n) {
+  int groups = n / LEAST_DESIGNS;
+  return groups > STUDY_GROUPS ? STUDY_GROUPS : groups < 1 ? 1 : groups;
+}
+
 study_effect study_main_effect(const design_study *s, int output, int key) {
   study_effect e    = {.share = NAN};
   sample      *list = calloc((size_t)s->n + 1, sizeof *list);
   if (!list) return e;
   int    n = take_samples(s, output, key, list), levels = count_levels(list, n);
   bool   by_levels = levels <= STUDY_GROUPS && (n >= 2 * levels || s->n_keys == 1);
-  int    groups = by_levels ? levels : (int)fmin(STUDY_GROUPS, fmax(1, n / 8)), from = 0;
+  int    groups = by_levels ? levels : groups_of(n), from = 0;
   double mean = 0, within = 0, all = 0;
   for (int i = 0; i < n; i++) mean += list[i].value / n;
   for (int g = 0; g < groups && from < n; g++) {
