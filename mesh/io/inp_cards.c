@@ -106,7 +106,10 @@ static shb_status generate(mesh_deck *deck, const mesh_row *row, mesh_inp_set *s
   MESH_DECK_CHECK(range[1] >= range[0], deck, row->line, "GENERATE: %ld to %ld counts down",
                   range[0], range[1]);
   long last = (range[1] - range[0]) / range[2];
-  MESH_DECK_CHECK(last < 1000000000, deck, row->line, "GENERATE: %ld members are too many", last);
+  /* a node or an element takes several bytes of the file */
+  MESH_DECK_CHECK(last < deck->bytes - set->n, deck, row->line,
+                  "GENERATE: %ld members are too many for a file of %lld bytes", last + 1,
+                  deck->bytes);
   for (long i = 0; i <= last; i++)
     SHB_TRY(mesh_inp_add_member(set, &(mesh_inp_member){range[0] + i * range[2], row->line, 0}));
   return SHB_OK;

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/stat.h>
 
 shb_status mesh_deck_fail(const mesh_deck *deck, long line, const char *source, int at,
                           const char *format, ...) {
@@ -37,6 +38,8 @@ shb_status mesh_deck_open(const char *path, mesh_deck *deck) {
   *deck      = (mesh_deck){.path = path};
   deck->file = fopen(path, "rb");
   SHB_CHECK(deck->file, SHB_ERR_IO, "%s: cannot be read: %s", path, strerror(errno));
+  struct stat about;
+  deck->bytes = fstat(fileno(deck->file), &about) == 0 ? (long long)about.st_size : 0;
   begin(deck);
   return SHB_OK;
 }

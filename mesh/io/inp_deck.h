@@ -14,6 +14,7 @@ typedef struct {
   FILE       *file;
   char       *text; /* current line without its ending */
   size_t      size;
+  long long   bytes;       /* of the file */
   long        line;        /* its number, from 1 */
   bool        pushed_back; /* the current line is to be read again */
   int         end;         /* line ending: LF (also CR LF), or CR */

@@ -336,6 +336,8 @@ static void faults_are_named_with_their_line(void **state) {
       {NODES ELEMENT "*NSET, NSET=root, GENERATE\n5, 1, 1\n", 15, "5 to 1 counts down"},
       {NODES ELEMENT "*NSET, NSET=root, GENERATE\n5\n", 15, "expected first, last, step"},
       {NODES ELEMENT "*NSET, NSET=root, GENERATE\n1, 999999999999\n", 15, "are too many"},
+      {NODES ELEMENT "*NSET, NSET=root, GENERATE\n1, 1000000000\n", 15,
+       "GENERATE: 1000000000 members are too many for a file of "},
       {NODES ELEMENT "*NSET, NSET=root\n", 14, "group root is empty"},
       {NODES ELEMENT "*SURFACE, NAME=root\n1\n", 15, "'1 alone'; expected"},
       {NODES ELEMENT "*SURFACE, NAME=root\n1, S7\n", 15, "expected an element or element set"},
