@@ -76,9 +76,10 @@ static void put_character(const char *text, size_t n, FILE *out) {
 /* The part of the line around column, and a caret under it. */
 static void print_source(const case_issues *issues, const case_issue *issue, FILE *out) {
   size_t      length;
-  const char *at = find_line(issues, issue->line, &length), *end = at + length;
+  const char *at = find_line(issues, issue->line, &length);
   if (length == 0) return;
-  int first = issue->column > WIDTH - 20 ? issue->column - WIDTH / 2 : 1, i = 1;
+  const char *end   = at + length;
+  int         first = issue->column > WIDTH - 20 ? issue->column - WIDTH / 2 : 1, i = 1;
   for (; at < end && i < first; i++) at += character(at, end);
   const char *start = at;
   fputs("    ", out);

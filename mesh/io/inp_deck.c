@@ -125,7 +125,7 @@ shb_status mesh_deck_row(mesh_deck *deck, mesh_row *row, bool *found) {
   row->line         = deck->line;
   deck->pushed_back = deck->text[0] == '*';
   *found            = !deck->pushed_back;
-  for (char *at = deck->text, *end = at; *found && end; at = end + 1) {
+  for (char *at = deck->text, *end; *found && at; at = end ? end + 1 : NULL) {
     end = strchr(at, ',');
     if (end) *end = '\0';
     if (!end && !*trim(at)) break;
