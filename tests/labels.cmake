@@ -40,6 +40,10 @@ if(SHROUDHB_SANITIZE OR CMAKE_BUILD_TYPE STREQUAL "Debug") # no optimisation, ev
   endforeach()
 endif()
 
+if(TARGET shroudhb-study)
+  list(APPEND SLOW_TESTS cases.scenes.shroud_angle)
+endif()
+
 get_property(all_tests DIRECTORY PROPERTY TESTS)
 foreach(name ${INTEGRATION_TESTS} ${SLOW_TESTS})
   if(SHROUDHB_PYTHON AND NOT name IN_LIST all_tests)

@@ -61,6 +61,9 @@ endforeach()
 shb_scene_test(paper_fig8_direct paper_fig8 shb_modal)
 shb_scene_test(lost_curves paper_fig8)
 shb_scene_test(snubber_blade snubber_blade)
+if(TARGET shroudhb-study)
+  shb_scene_test(shroud_angle shroud_angle)
+endif()
 
 # The example of cases/bring_your_own; skipped where python3 has no h5py.
 if(SHROUDHB_PYTHON)
