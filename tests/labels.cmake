@@ -27,6 +27,9 @@ set(INTEGRATION_TESTS
   bench.integrate docs.first_case
   mhb.ring.neimark_sacker cases.install.install
   mesh.blade.shroud_angle)
+if(SHROUDHB_CHROMIUM AND SHROUDHB_PYTHON)
+  list(APPEND INTEGRATION_TESTS postproc.study.page_script)
+endif()
 set(SLOW_TESTS
   mesh.blade.blade mhb.floquet.monodromy mhb.branches.verdicts cases.converge.converge hard.gaps
   bench.elements)

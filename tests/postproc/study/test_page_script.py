@@ -1,0 +1,137 @@
+#!/usr/bin/env python3
+"""The script of a study's page in a browser: no error, every chart drawn, charts follow each other.
+
+    test_page_script.py MAKER CHROMIUM
+
+MAKER keep writes page_KIND.study.html of every kind of study into the folder (test_study_page).
+"""
+import json
+import re
+import subprocess
+import sys
+import tempfile
+from html import unescape
+from pathlib import Path
+
+# Acts on a page as a reader does, then leaves what it saw in the document.
+ACTIONS = """
+<script>
+(() => {
+  const seen = {}, $ = id => document.getElementById(id);
+  const plain = ["spread-chart", "sobol-chart", "tornado-chart"]; /* no canvas is used */
+  const ink = svg => {
+    if (plain.includes(svg.id)) return svg.querySelectorAll("path,rect").length > 1;
+    const c = svg.parentElement.querySelector("canvas");
+    const d = c.getContext("2d").getImageData(0, 0, c.width || 1, c.height || 1).data;
+    return d.some((v, i) => i % 4 === 3 && v > 0);
+  };
+  const send = (target, type, x, y) => target.dispatchEvent(new PointerEvent(
+      type, {clientX: x, clientY: y, button: 0, pointerId: 1, bubbles: true}));
+  const charts = [...document.querySelectorAll("svg.plot")];
+  seen.charts = charts.map(s => s.id).join();
+  seen.blank = charts.filter(s => !ink(s)).map(s => s.id).join();
+  seen.rows = document.querySelectorAll("#rows tr").length;
+  for (const id of ["output", "colour", "map-x", "map-y"])
+    if ($(id))
+      for (const o of [...$(id).options].map(e => e.value)) {
+        if (!$(id)) continue;
+        $(id).value = o;
+        $(id).dispatchEvent(new Event("change"));
+      }
+  for (const b of document.querySelectorAll("[data-log]")) b.click();
+  for (const b of [...document.querySelectorAll("#heads button")].keys())
+    document.querySelectorAll("#heads button")[b].click();
+  for (const svg of charts) {
+    const r = svg.getBoundingClientRect();
+    for (const t of [0.3, 0.5, 0.7]) {
+      send(svg, "pointermove", r.left + t * r.width, r.top + t * r.height);
+      svg.dispatchEvent(new MouseEvent("click", {clientX: r.left + t * r.width,
+                                                 clientY: r.top + t * r.height, bubbles: true}));
+    }
+    send(svg, "pointerleave", r.left, r.top);
+  }
+  const row = document.querySelector("#rows tr");
+  if (row) {
+    if ($("dock").hidden || !row.classList.contains("chosen")) row.click();
+    seen.dock = $("dock").textContent.replace(/\\s+/g, " ");
+  }
+  const grip = document.querySelector(".grip"), par = $("parallel-chart");
+  if (grip) {
+    par.setPointerCapture = () => {};
+    const r = grip.getBoundingClientRect(), x = r.left + r.width / 2;
+    send(grip, "pointerdown", x, r.top + 0.95 * r.height);
+    send(par, "pointermove", x, r.top + 0.5 * r.height);
+    send(par, "pointerup", x, r.top + 0.5 * r.height);
+    seen.brushed = $("count").textContent;
+    $("free").click();
+    seen.free = $("count").textContent;
+  }
+  if ($("all")) $("all").click();
+  seen.all = document.querySelectorAll("#rows tr").length;
+  document.title = "seen " + JSON.stringify(seen);
+})();
+</script></body>"""
+
+USUAL = {'parallel-chart', 'tornado-chart', 'curves-chart', 'map-chart'}
+CHARTS = {
+    'grid': USUAL | {'effect-0', 'effect-1', 'effect-2'},
+    'pair': USUAL | {'effect-0', 'effect-1'},
+    'optimise': USUAL | {'effect-0', 'effect-1', 'history-chart'},
+    'uncertain': USUAL | {'effect-0', 'effect-1', 'spread-chart', 'sobol-chart'},
+    'large': USUAL | {'effect-0', 'effect-1', 'effect-2', 'effect-3'},
+    'one': {'curves-chart', 'tornado-chart'},
+    'failed': set(),
+    'empty': set(),
+}
+DESIGNS = {'grid': 81, 'pair': 40, 'optimise': 60, 'uncertain': 256, 'large': 2000, 'one': 1,
+           'failed': 4, 'empty': 0}
+
+
+def faults(kind, page, chromium, folder):
+    """What is wrong with the page of a kind."""
+    acted = folder / f'acted_{kind}.html'
+    acted.write_text(page.read_text().replace('</body>', ACTIONS))
+    run = subprocess.run(
+        [chromium, '--headless', '--no-sandbox', '--disable-gpu', f'--user-data-dir={folder}/user',
+         '--enable-logging=stderr', '--window-size=1200,900', '--virtual-time-budget=4000',
+         '--dump-dom', acted.as_uri()], capture_output=True, text=True, timeout=120, check=False)
+    found = [line for line in run.stderr.splitlines() if 'CONSOLE' in line]
+    match = re.search(r'<title>seen (\{.*?\})</title>', run.stdout)
+    if not match:
+        return found + ['the actions did not end']
+    seen = json.loads(unescape(match.group(1)))
+    charts = set(filter(None, seen['charts'].split(',')))
+    if charts != CHARTS[kind]:
+        found.append(f'charts {sorted(charts)}')
+    if seen['blank']:
+        found.append(f'nothing drawn in {seen["blank"]}')
+    if seen['all'] != DESIGNS[kind]:
+        found.append(f'{seen["all"]} rows')
+    command = r'shroudhb study STUDY.yaml --design \d+'
+    if seen['rows'] and not re.search(command, seen.get('dock', '')):
+        found.append(f'design: {seen.get("dock")}')
+    if 'brushed' in seen:
+        left = re.match(r'(\d+) of (\d+) designs', seen['brushed'])
+        if not left or not 0 < int(left.group(1)) < DESIGNS[kind]:
+            found.append(f'after a brush: {seen["brushed"]}')
+        if seen['free'] != f'All {DESIGNS[kind]} designs':
+            found.append(f'after it: {seen["free"]}')
+    return found
+
+
+def main():
+    maker, chromium = sys.argv[1:]
+    bad = 0
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        subprocess.run([Path(maker).resolve(), 'keep'], cwd=folder, check=True,
+                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        for kind in CHARTS:
+            found = faults(kind, folder / f'page_{kind}.study.html', chromium, folder)
+            print(f'{kind}: {"; ".join(found) or "good"}')
+            bad += bool(found)
+    return 1 if bad else 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())
