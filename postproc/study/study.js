@@ -6,7 +6,7 @@
     extent
   } = Plot;
   const D = JSON.parse($("data").textContent);
-  const DONE = 1, FAILED = 2, STATES = ["not run", "done", "failed", "not converged"];
+  const WAITING = 0, DONE = 1, FAILED = 2, STATES = ["not run", "done", "failed", "not converged"];
   const CHARTS = [], U = D.uncertainty;
   const best = U ? -1 : D.best; /* the lowest sample of uncertain keys is no choice */
 
@@ -89,7 +89,7 @@
     const at = Math.max(0, Math.min(31.999, 32 * t)) || 0, i = Math.floor(at), w = at - i;
     const part = (hex, k) => parseInt(hex.slice(1 + 2 * k, 3 + 2 * k), 16), a = ramp()[i],
           b = ramp()[i + 1];
-    return `rgb(${[0, 1, 2].map(k => Math.round((1 - w) * part(a, k) + w * part(b, k))).join()})`;
+    return [0, 1, 2].map(k => Math.round((1 - w) * part(a, k) + w * part(b, k)));
   }
   const scaleBar = (c, lead) => `<div class="scale"><span>${lead} <b>${escape(c.short)}</b>${
       c.log ? " (logarithmic)" :
@@ -165,8 +165,7 @@
     const dock = $("dock"), i = state.chosen;
     dock.hidden = i < 0;
     if (i < 0) return;
-    const path = D.path || D.name + ".yaml",
-          file = /^[\w./-]+$/.test(path) ? path : `"${path}"`,
+    const path = D.path || D.name + ".yaml", file = /^[\w./-]+$/.test(path) ? path : `"${path}"`,
           command = `shroudhb study ${file} --design ${i + 1}`;
     dock.innerHTML = `<div class="row" style="margin:0"><h3>Design ${i + 1}</h3><span>${
         STATES[D.status[i]]}${i === best ? ", the lowest" : ""}</span><button type="button"
@@ -412,14 +411,14 @@
   function gridField(a, b, o, slice) {
     const xs = levels(a), ys = levels(b), table = new Map();
     for (const i of slice) table.set(a.list[i] + "|" + b.list[i], o.list[i]);
-    const cell = (list, c, t) => {
-      const at = list.map(v => place(c, v));
+    const places = [xs.map(v => place(a, v)), ys.map(v => place(b, v))];
+    const cell = (at, t) => {
       let i = 0;
-      while (i < list.length - 2 && t > at[i + 1]) i++;
+      while (i < at.length - 2 && t > at[i + 1]) i++;
       return [i, (t - at[i]) / (at[i + 1] - at[i])];
     };
     return (u, v) => {
-      const [i, s] = cell(xs, a, u), [j, t] = cell(ys, b, v);
+      const [i, s] = cell(places[0], u), [j, t] = cell(places[1], v);
       const z = (p, q) => table.get(xs[i + p] + "|" + ys[j + q]) ?? NaN;
       return (1 - s) * ((1 - t) * z(0, 0) + t * z(0, 1)) + s * ((1 - t) * z(1, 0) + t * z(1, 1));
     };
@@ -443,6 +442,43 @@
       }
       return least > far ? NaN : sum / weight;
     };
+  }
+  /* Every other row and column of a field [ny][nx] becomes the mean of its neighbours. */
+  function refine(field, nx, ny) {
+    const fill = (to, p, q) => {
+      field[to] = (field[p] + field[q]) / 2;
+    };
+    for (let j = 0; j < ny; j += 2)
+      for (let i = 1; i < nx; i += 2) fill(j * nx + i, j * nx + i - 1, j * nx + i + 1);
+    for (let j = 1; j < ny; j += 2)
+      for (let i = 0; i < nx; i++) fill(j * nx + i, (j - 1) * nx + i, (j + 1) * nx + i);
+  }
+  /* The output over the map [ny][nx], kept until the map shows something else. */
+  const kept = {};
+  function fieldOf(a, b, o, full, slice, nx, ny) {
+    const name = [state.x, state.y, o.index, full, ...state.fixed].join();
+    if (kept.name === name) return kept.field;
+    const at = (full ? gridField : scatterField)(a, b, o, slice), step = full ? 1 : 2;
+    const field = new Float64Array(nx * ny).fill(NaN);
+    for (let j = 0; j < ny; j += step)
+      for (let i = 0; i < nx; i += step) field[j * nx + i] = at(i / (nx - 1), j / (ny - 1));
+    if (!full) refine(field, nx, ny);
+    Object.assign(kept, {name, field});
+    return field;
+  }
+  /* Image of a field [ny][nx] whose rows go upwards; clear where it is not known. */
+  function painted(field, nx, ny, colour) {
+    const c = document.createElement("canvas");
+    c.width = nx;
+    c.height = ny;
+    const g = c.getContext("2d"), image = g.createImageData(nx, ny);
+    field.forEach((z, k) => {
+      if (!Number.isFinite(z)) return;
+      const to = 4 * ((ny - 1 - Math.floor(k / nx)) * nx + k % nx);
+      image.data.set([...colour(z), 255], to);
+    });
+    g.putImageData(image, 0, 0);
+    return c;
   }
   /* Level lines through a field [ny][nx] by marching squares. */
   function contour(g, field, nx, ny, level, X, Y) {
@@ -478,11 +514,9 @@
         id, {left: 60, top: 34, width: width - 80, height: height - 84},
         axis(rangeOf(a), a.scale, a.label), axis(rangeOf(b), b.scale, b.label));
     show(id, height, [p]);
-    const g = canvas(id, height), nx = 121, ny = 81, field = new Float64Array(nx * ny);
+    const g = canvas(id, height), nx = 121, ny = 81;
     const full = isGrid && levels(a).length > 1 && levels(b).length > 1;
-    const at = (full ? gridField : scatterField)(a, b, o, slice);
-    for (let j = 0; j < ny; j++)
-      for (let i = 0; i < nx; i++) field[j * nx + i] = at(i / (nx - 1), j / (ny - 1));
+    const field = fieldOf(a, b, o, full, slice, nx, ny);
     const seen = [...field].filter(Number.isFinite), range = seen.length ? extent(seen) : [0, 1];
     const c =
         {...o, range, many: range[1] > range[0], log: range[0] > 0 && range[1] > 20 * range[0]};
@@ -492,13 +526,9 @@
     const X = i => left + (right - left) * i / (nx - 1), Y = j => low + (high - low) * j / (ny - 1);
     const dx = (right - left) / (nx - 1), dy = (low - high) / (ny - 1);
     clip(g, {left, top: high, width: right - left, height: low - high});
-    for (let j = 0; j < ny; j++)
-      for (let i = 0; i < nx; i++) {
-        const z = field[j * nx + i];
-        if (!Number.isFinite(z)) continue;
-        g.fillStyle = blend(place(c, z));
-        g.fillRect(X(i) - dx / 2 - 0.4, Y(j) - dy / 2 - 0.4, dx + 0.8, dy + 0.8);
-      }
+    g.drawImage(
+        painted(field, nx, ny, z => blend(place(c, z))), left - dx / 2, high - dy / 2,
+        right - left + dx, low - high + dy);
     g.lineWidth = 1;
     g.strokeStyle = css("--card");
     g.globalAlpha = 0.75;
@@ -644,7 +674,7 @@
           PAR.top - 6}" width="48" height="${PAR.height + 12}"/>`;
     });
     show(id, height, [], svg);
-    const g = canvas(id, height), shown = ids.filter(active);
+    const g = canvas(id, height), shown = ids.filter(i => active(i) && D.status[i] !== WAITING);
     const line = i => {
       let pen = false;
       g.beginPath();
@@ -1008,8 +1038,8 @@
         `<div class="scroll"><table><thead><tr id="heads"></tr></thead>
         <tbody id="rows"></tbody></table></div>
         <div class="row"><button type="button" id="all"></button><button type="button"
-        id="csv">Download CSV</button><span class="note">The download holds the designs that are not filtered
-        out, in SI units.</span></div>`);
+        id="csv">Download CSV</button><span class="note">The download holds the designs that are not
+        filtered out, in SI units.</span></div>`);
     $("heads").onclick = e => {
       const j = e.target.dataset.sort;
       if (j === undefined) return;
@@ -1088,8 +1118,7 @@
 
   document.documentElement.classList.add("js");
   document.body.insertAdjacentHTML(
-      "beforeend",
-      `<aside id="dock" class="dock" hidden aria-live="polite"
+      "beforeend", `<aside id="dock" class="dock" hidden aria-live="polite"
       aria-label="Chosen design"></aside>`);
   if (D.n > 0 && keys.length) {
     state.colour = chiefKey();

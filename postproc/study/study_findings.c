@@ -19,7 +19,7 @@ static void put_measure(double value, post_unit unit, int digits, post_buffer *o
 }
 
 static void put_output(const design_study *s, int output, double value, post_buffer *out) {
-  put_measure(value, study_output_unit(s, output), 4, out);
+  put_measure(value, study_unit(&s->output[output], fabs(value)), 4, out);
 }
 
 /* "contact.n0 = 47.4 N, contact.mu = 0.3" */
