@@ -389,6 +389,18 @@ static void evaluate(mhb_balance *b, const double *x, double value, int derivati
   }
 }
 
+void mhb_balance_slope(mhb_balance *b, const double *x, mhb_parameter parameter, double *slope) {
+  mhb_parameter own = b->parameter;
+  b->parameter      = parameter;
+  if (parameter != MHB_IN_FREQUENCY) set_force_by_parameter(b, x);
+  for (int k = 0; k <= b->m; k++) {
+    get_harmonic(b, b->eval->p, k, b->force_k);
+    set_slope(b, k, is_unloaded(b, k));
+    put_harmonic(b, slope, k, b->motion_k);
+  }
+  b->parameter = own;
+}
+
 void mhb_balance_linearise(mhb_balance *b, const double *x, double value, double *r,
                            double *slope) {
   evaluate(b, x, value, 1, r, slope);

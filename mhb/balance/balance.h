@@ -100,6 +100,12 @@ void mhb_balance_evaluate(mhb_balance *balance, const double *x, double value, d
 void mhb_balance_linearise(mhb_balance *balance, const double *x, double value, double *r,
                            double *slope);
 
+/* slope[n] <- dr/dparameter at x[n], which the evaluation in use was linearised at; no new
+ * evaluation of the law. by_parameter of the evaluation becomes that of this parameter; for the
+ * frequency it stays. */
+void mhb_balance_slope(mhb_balance *balance, const double *x, mhb_parameter parameter,
+                       double *slope);
+
 /* Rows of dp that are the mean friction of a pair, [3 nb]; axis 1 u, 2 w. */
 static inline double *mhb_balance_mean_friction_row(const mhb_balance *balance, int pair,
                                                     int axis) {

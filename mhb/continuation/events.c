@@ -20,6 +20,9 @@ const char *mhb_end_text(mhb_end end) {
       [MHB_END_JOINED]      = "joins a curve of lower order",
       [MHB_END_STALLED]     = "no step converged",
       [MHB_END_TINY_STEPS]  = "the steps stayed tiny",
+      [MHB_END_TURNED]      = "the maximum ends",
+      [MHB_END_CORNER]      = "slip ends",
+      [MHB_END_FREQUENCY]   = "leaves the frequency range",
       [MHB_END_MAX_POINTS]  = "mhb.max_points reached",
       [MHB_END_NO_START]    = "no first solution",
       [MHB_END_INTERRUPTED] = "interrupted"};

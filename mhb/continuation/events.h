@@ -19,6 +19,9 @@ typedef enum {
   MHB_END_JOINED,      /* it meets a curve of lower order */
   MHB_END_STALLED,     /* no step converged */
   MHB_END_TINY_STEPS,  /* the steps stayed tiny */
+  MHB_END_TURNED,      /* a tracked maximum becomes a minimum */
+  MHB_END_CORNER,      /* a tracked peak meets the end of slip */
+  MHB_END_FREQUENCY,   /* a tracked point leaves the frequency range */
   MHB_END_MAX_POINTS,  /* mhb.max_points reached */
   MHB_END_NO_START,    /* no solution where it was to start */
   MHB_END_INTERRUPTED, /* stopped from outside */

@@ -21,7 +21,7 @@ const mhb_field mhb_fields[] = {
     {"stable", "", MHB_INT, AT(stable), "-", "stability: 1 stable, 0 unstable, -1 not judged"},
     {"special", "", MHB_INT, AT(special), "-",
      "0 ordinary point, 1 fold, 2 peak of the first harmonic of a probe or contact motion, 3 flip "
-     "(period doubling), 4 Neimark-Sacker point"},
+     "(period doubling), 4 Neimark-Sacker point, 5 extremum along a tracked branch"},
     {"state", "ps", MHB_DOUBLE, AT(state), "-", "share of the period stuck, slipping, open"},
     {"dissipation", "p", MHB_DOUBLE, AT(dissipation), "J", "energy lost by friction in a period"},
     {"iterations", "", MHB_INT, AT(iterations), "-", "Newton iterations"},

@@ -15,7 +15,7 @@ enum { RESPONSE_VERSION = 1, MAX_COUNT = 100000 };
 static const char *const origin_name[] = {"end", "search", "flip", "aside"};
 enum { N_ORIGINS = sizeof origin_name / sizeof *origin_name };
 
-static const char *const kind_name[] = {"nonlinear", "open", "stuck", "integration"};
+static const char *const kind_name[] = {"nonlinear", "open", "stuck", "integration", "tracked"};
 enum { N_KINDS = sizeof kind_name / sizeof *kind_name };
 
 /* ---- writing ---- */
@@ -497,7 +497,7 @@ static shb_status check_points(const char *path, int index, const mhb_branch *br
               "%s: /branch_%d/frequency: value %d (from 0) is %g Hz; all must be positive", path,
               index, i, branch->frequency[i]);
   SHB_TRY(check_codes(path, index, "stable", n, branch->stable, -1, 1, "1, 0 or -1"));
-  SHB_TRY(check_codes(path, index, "special", n, branch->special, 0, MHB_N_SPECIALS - 1, "0 to 4"));
+  SHB_TRY(check_codes(path, index, "special", n, branch->special, 0, MHB_N_SPECIALS - 1, "0 to 5"));
   SHB_TRY(check_codes(path, index, "judged", n, branch->judged, 0, MHB_N_JUDGED - 1, "0 to 5"));
   SHB_TRY(check_codes(path, index, "lasting/kind", n, branch->lasting_kind, 0,
                       MHB_LASTING_KINDS - 1, "0 to 5"));

@@ -15,6 +15,7 @@ typedef enum {
   MHB_BRANCH_OPEN,
   MHB_BRANCH_STUCK,
   MHB_BRANCH_INTEGRATION,
+  MHB_BRANCH_TRACKED, /* a peak or fold along a parameter */
   MHB_N_BRANCH_KINDS
 } mhb_branch_kind;
 
@@ -28,7 +29,15 @@ typedef enum {
 
 /* special of mhb_branch. Flip and Neimark-Sacker: a multiplier crosses the unit circle at -1, or a
  * complex pair does. */
-enum { MHB_ORDINARY, MHB_FOLD, MHB_PEAK, MHB_FLIP, MHB_NEIMARK_SACKER, MHB_N_SPECIALS };
+enum {
+  MHB_ORDINARY,
+  MHB_FOLD,
+  MHB_PEAK,
+  MHB_FLIP,
+  MHB_NEIMARK_SACKER,
+  MHB_OPTIMUM, /* of a tracked branch: its amplitude, or a fold's frequency, is stationary */
+  MHB_N_SPECIALS
+};
 
 /* judged of mhb_branch: the evidence for stable. */
 enum {

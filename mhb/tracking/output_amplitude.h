@@ -1,0 +1,31 @@
+/* The amplitude of an output at a solution of the balance, and its gradient.
+ *
+ *   A = (sum over the three components of |a_k|^2)^(1/2)
+ *
+ * a_k is the harmonic of the excitation's frequency, of a probe or of the relative motion of a
+ * contact pair. A probe answers the load and the contact forces p(x), so its gradient by x passes
+ * through dp/dx. */
+#ifndef MHB_TRACKING_OUTPUT_AMPLITUDE_H
+#define MHB_TRACKING_OUTPUT_AMPLITUDE_H
+
+#include "mhb/balance/balance.h"
+
+/* Gradient of the amplitude at fixed operating point (by x) and at fixed x (by omega). */
+typedef struct {
+  double  amplitude;       /* m */
+  double *by_x;            /* [n] */
+  double  by_omega;        /* m s/rad */
+  double  by_scale;        /* m */
+  double  complex *weight; /* [3 pairs] of the contact force: dA = Re sum weight dp_k at fixed x */
+} mhb_amplitude;
+
+/* The amplitude and its gradient at x[n], which the evaluation in use was linearised at.
+ *   output  in   a probe, or the number of probes plus a pair
+ *   out     inout  by_x and weight are the caller's arrays */
+void mhb_output_amplitude(mhb_balance *balance, const double *x, int output, mhb_amplitude *out);
+
+/* dA/dparameter at fixed x and omega; by_parameter[n] is the change of the contact force. */
+double mhb_amplitude_by_parameter(const mhb_balance *balance, const mhb_amplitude *amplitude,
+                                  mhb_parameter parameter, const double *by_parameter);
+
+#endif

@@ -1,0 +1,350 @@
+#include "mhb/tracking/peak_system.h"
+
+#include <lapacke.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "mhb/numerics/vector.h"
+
+/* Step of the directional difference, relative to |z|. */
+static const double STEP = 1e-6;
+static const double LEAST_GAIN = 0.99;
+enum { MAX_NEWTON = 25, MAX_HALVINGS = 8 };
+
+struct mhb_peak_system {
+  mhb_curve_system  base; /* first: its functions get it back */
+  mhb_balance      *balance;
+  mhb_tracked_point kind;
+  int               output;
+  mhb_parameter     parameter;
+  double            rate; /* d omega/d xi */
+  int               n;    /* unknowns of the balance; the system has one more */
+
+  /* the point that was linearised last */
+  double         *z; /* [n + 1]; NAN: none */
+  double          value;
+  double         *matrix; /* [n + 1][n + 1] column-major: derivative of (r, G) by z */
+  mhb_peak_report report;
+
+  /* work space of one linearisation */
+  mhb_evaluation *displaced;
+  mhb_amplitude   amplitude;
+  double         *jacobian;        /* [n][n] column-major */
+  double         *by_xi, *by_q;    /* [n] r_xi, r_q */
+  double         *gradient;        /* [n + 1] A_z */
+  double         *bordered;        /* [n + 1][n + 1] B, factored */
+  double         *border;          /* [n + 1] c */
+  double         *tangent, *adjoint; /* [n + 1] T; l, k */
+  double         *moved, *moved_r; /* [n + 1], [n] */
+  lapack_int     *pivot;           /* [n + 2] */
+  /* the bordered matrix of the continuation */
+  double    *step_matrix; /* [n + 2][n + 2] column-major, factored */
+  lapack_int *step_pivot; /* [n + 2] */
+  int         step_sign;
+  shb_arena   arena;
+};
+
+static mhb_peak_system *of(const mhb_curve_system *system) {
+  return (mhb_peak_system *)system;
+}
+
+mhb_curve_system *mhb_peak_system_base(mhb_peak_system *system) {
+  return &system->base;
+}
+
+double mhb_peak_system_omega(const mhb_curve_system *system, const double *z) {
+  return z[of(system)->n] * of(system)->rate;
+}
+
+double mhb_peak_system_rate(const mhb_curve_system *system) {
+  return of(system)->rate;
+}
+
+void mhb_peak_system_pack(const mhb_curve_system *system, const double *x, double omega,
+                          double *z) {
+  const mhb_peak_system *s = of(system);
+  memmove(z, x, sizeof(double) * (size_t)s->n);
+  z[s->n] = omega / s->rate;
+}
+
+/* ---- the Lagrangian A - l^T r and its derivatives by z and q ---- */
+
+/* r, Jacobian, r_xi, r_q of the balance and A_z at (z, q), in the evaluation given.
+ * Returns A_q. */
+static double derivatives(mhb_peak_system *s, mhb_evaluation *evaluation, const double *z,
+                          double value, double *r) {
+  mhb_balance *b = s->balance;
+  mhb_balance_use(b, evaluation);
+  mhb_balance_set_parameter(b, s->parameter);
+  mhb_balance_set_value(b, value);
+  mhb_balance_set_parameter(b, MHB_IN_FREQUENCY);
+  mhb_balance_evaluate(b, z, z[s->n] * s->rate, r, s->jacobian, s->by_xi);
+  mhb_balance_slope(b, z, s->parameter, s->by_q);
+  for (int i = 0; i < s->n; i++) s->by_xi[i] *= s->rate;
+  s->amplitude.by_x = s->gradient;
+  mhb_output_amplitude(b, z, s->output, &s->amplitude);
+  s->gradient[s->n] = s->amplitude.by_omega * s->rate;
+  if (s->kind == MHB_TRACK_PEAK)
+    return mhb_amplitude_by_parameter(b, &s->amplitude, s->parameter, b->eval->by_parameter);
+  memset(s->gradient, 0, sizeof(double) * (size_t)s->n);
+  s->gradient[s->n] = 1;
+  return 0;
+}
+
+static double dot(int n, const double *a, const double *b) {
+  double sum = 0;
+  for (int i = 0; i < n; i++) sum += a[i] * b[i];
+  return sum;
+}
+
+/* row[n + 1] <- A_z - l^T [r_x r_xi] */
+static void lagrangian_gradient(const mhb_peak_system *s, double *row) {
+  for (int i = 0; i < s->n; i++)
+    row[i] =
+        s->gradient[i] - dot(s->n, s->adjoint, s->jacobian + (size_t)i * (size_t)s->n);
+  row[s->n] = s->gradient[s->n] - dot(s->n, s->adjoint, s->by_xi);
+}
+
+/* Factor B = [r_x r_xi; border]. */
+static bool factor_bordered(mhb_peak_system *s) {
+  lapack_int one = s->n + 1;
+  for (int j = 0; j <= s->n; j++) {
+    double       *to   = s->bordered + (size_t)j * (size_t)one;
+    const double *from = j < s->n ? s->jacobian + (size_t)j * (size_t)s->n : s->by_xi;
+    memcpy(to, from, sizeof(double) * (size_t)s->n);
+    to[s->n] = s->border[j];
+  }
+  return LAPACKE_dgetrf_work(LAPACK_COL_MAJOR, one, one, s->bordered, one, s->pivot) == 0;
+}
+
+static void solve_bordered(const mhb_peak_system *s, char transposed, double *rhs) {
+  lapack_int one = s->n + 1;
+  LAPACKE_dgetrs_work(LAPACK_COL_MAJOR, transposed, one, 1, s->bordered, one, s->pivot, rhs, one);
+}
+
+/* Unit tangent T of the response curve and the adjoint; the border turns to T. Returns G. NAN: B is
+ * singular. */
+static double tangent_and_adjoint(mhb_peak_system *s) {
+  if (!factor_bordered(s)) return NAN;
+  memset(s->tangent, 0, sizeof(double) * (size_t)s->n);
+  s->tangent[s->n] = 1;
+  solve_bordered(s, 'N', s->tangent);
+  double length = mhb_norm(s->tangent, s->n + 1);
+  for (int i = 0; i <= s->n; i++) s->tangent[i] /= length;
+  memcpy(s->adjoint, s->gradient, sizeof(double) * ((size_t)s->n + 1));
+  solve_bordered(s, 'T', s->adjoint);
+  return dot(s->n + 1, s->gradient, s->tangent);
+}
+
+/* The smallest share of the period in which a pair that is not linear slips or is open. */
+static double slip_share(const mhb_balance *b) {
+  double least = 1;
+  for (int a = 0; a < b->n_pairs; a++)
+    if (b->eval->kind[a] == MHB_PAIR_NONLINEAR)
+      least = fmin(least, 1 - b->eval->info[a].share[MHB_STICK]);
+  return least;
+}
+
+/* The matrix of (r, G) at the point, its r and slope, and the report. */
+static void linearise(mhb_curve_system *system, mhb_curve_point *point) {
+  mhb_peak_system *s = of(system);
+  size_t           n = (size_t)s->n, one = n + 1;
+  double           by_q = derivatives(s, point->evaluation, point->x, point->value, point->r);
+  double          *matrix = s->matrix;
+  for (size_t j = 0; j < n; j++) memcpy(matrix + j * one, s->jacobian + j * n, sizeof(double) * n);
+  memcpy(matrix + n * one, s->by_xi, sizeof(double) * n);
+  memcpy(point->slope, s->by_q, sizeof(double) * n);
+  s->report.amplitude  = s->amplitude.amplitude;
+  s->report.slip_share = slip_share(s->balance);
+  point->r[n]          = tangent_and_adjoint(s);
+  double k             = s->adjoint[n];
+  by_q -= dot(s->n, s->adjoint, s->by_q);
+  s->report.by_value = by_q;
+
+  double step = STEP * mhb_norm(point->x, s->n + 1);
+  for (size_t i = 0; i < one; i++) s->moved[i] = point->x[i] + step * s->tangent[i];
+  double by_q_moved = derivatives(s, s->displaced, s->moved, point->value, s->moved_r);
+  by_q_moved -= dot(s->n, s->adjoint, s->by_q);
+  lagrangian_gradient(s, s->moved);
+  s->report.curvature = 0;
+  for (size_t j = 0; j < one; j++) {
+    double of_j = (s->moved[j] - k * s->border[j]) / step;
+    matrix[j * one + n] = of_j;
+    s->report.curvature += of_j * s->tangent[j];
+  }
+  point->slope[n] = (by_q_moved - by_q) / step;
+  mhb_balance_use(s->balance, point->evaluation);
+  memcpy(s->border, s->tangent, sizeof(double) * one);
+  memcpy(s->z, point->x, sizeof(double) * one);
+  s->value = point->value;
+}
+
+static void ensure(mhb_curve_system *system, const mhb_curve_point *point) {
+  mhb_peak_system *s = of(system);
+  if (s->value == point->value &&
+      memcmp(s->z, point->x, sizeof(double) * ((size_t)s->n + 1)) == 0)
+    return;
+  mhb_curve_point again = *point; /* its r and slope are written with what they hold already */
+  linearise(system, &again);
+}
+
+mhb_peak_report mhb_peak_system_report(mhb_curve_system *system, const mhb_curve_point *point) {
+  ensure(system, point);
+  return of(system)->report;
+}
+
+static void evaluate(mhb_curve_system *system, mhb_curve_point *point) {
+  linearise(system, point);
+}
+
+/* ---- the bordered system of the continuation ---- */
+
+static int factor(mhb_curve_system *system, const mhb_curve_point *point, const double *column,
+                  const double *row) {
+  mhb_peak_system *s   = of(system);
+  size_t           one = (size_t)s->n + 1, two = one + 1;
+  ensure(system, point);
+  for (size_t j = 0; j < one; j++) {
+    memcpy(s->step_matrix + j * two, s->matrix + j * one, sizeof(double) * one);
+    s->step_matrix[j * two + one] = row[j];
+  }
+  memcpy(s->step_matrix + one * two, column, sizeof(double) * two);
+  lapack_int size = (lapack_int)two;
+  if (LAPACKE_dgetrf_work(LAPACK_COL_MAJOR, size, size, s->step_matrix, size, s->step_pivot) != 0)
+    return 0;
+  s->step_sign = 1;
+  for (size_t i = 0; i < two; i++) {
+    if (s->step_pivot[i] != (lapack_int)i + 1) s->step_sign = -s->step_sign;
+    if (s->step_matrix[i * two + i] < 0) s->step_sign = -s->step_sign;
+  }
+  return 1;
+}
+
+static int solve(mhb_curve_system *system, double *rhs) {
+  const mhb_peak_system *s    = of(system);
+  lapack_int             size = s->n + 2;
+  LAPACKE_dgetrs_work(LAPACK_COL_MAJOR, 'N', size, 1, s->step_matrix, size, s->step_pivot, rhs,
+                      size);
+  return isfinite(mhb_norm(rhs, size));
+}
+
+static int sign(const mhb_curve_system *system) {
+  return of(system)->step_sign;
+}
+
+/* A Newton step at fixed q: delta[n + 1] <- -matrix^-1 r, with the border e_q. */
+static bool newton_step(mhb_curve_system *system, const mhb_curve_point *point, double *delta) {
+  size_t one = (size_t)of(system)->n + 1;
+  double row[one + 1];
+  memset(row, 0, sizeof row);
+  row[one] = 1;
+  if (!factor(system, point, row, row)) return false;
+  for (size_t i = 0; i < one; i++) delta[i] = -point->r[i];
+  delta[one] = 0;
+  return solve(system, delta);
+}
+
+static mhb_reason solve_at_value(mhb_curve_system *system, double tolerance,
+                                 mhb_curve_point *point) {
+  int    one = of(system)->n + 1;
+  double delta[one + 1], from[one];
+  linearise(system, point);
+  double residual = mhb_norm(point->r, one);
+  for (point->iterations = 0; point->iterations < MAX_NEWTON; point->iterations++) {
+    if (residual <= tolerance * mhb_norm(point->x, one)) return MHB_CONVERGED;
+    if (!newton_step(system, point, delta)) return MHB_SINGULAR;
+    memcpy(from, point->x, sizeof from);
+    double before = residual, part = 1;
+    for (int halvings = 0;; halvings++, part *= 0.5) {
+      for (int i = 0; i < one; i++) point->x[i] = from[i] + part * delta[i];
+      linearise(system, point);
+      residual = mhb_norm(point->r, one);
+      if (residual < LEAST_GAIN * before) break;
+      if (halvings == MAX_HALVINGS) return MHB_NO_DESCENT;
+    }
+  }
+  return MHB_MAX_ITERATIONS;
+}
+
+/* ---- creation ---- */
+
+static shb_status evaluation_create(mhb_curve_system *system, mhb_evaluation **evaluation) {
+  return mhb_evaluation_create(of(system)->balance, evaluation);
+}
+
+static void evaluation_destroy(mhb_curve_system *system, mhb_evaluation *evaluation) {
+  mhb_balance *b = of(system)->balance;
+  if (b->eval == evaluation) mhb_balance_use(b, NULL);
+  mhb_evaluation_destroy(evaluation);
+}
+
+static void copy(const mhb_curve_system *system, const double *x, int j, double *to) {
+  (void)j;
+  memcpy(to, x, sizeof(double) * (size_t)system->n);
+}
+
+static void destroy(mhb_curve_system *system) {
+  mhb_peak_system *s = of(system);
+  if (s->displaced) evaluation_destroy(system, s->displaced);
+  shb_arena_free(&s->arena);
+  free(s);
+}
+
+static double unit_of_value(const mhb_curve_system *system, const mhb_curve_point *point) {
+  (void)system;
+  return fabs(point->value);
+}
+
+static shb_status fill(mhb_peak_system *s) {
+  size_t n = (size_t)s->n, one = n + 1, two = n + 2;
+  shb_arena *arena = &s->arena;
+  double   **vectors[] = {&s->z,       &s->by_xi,   &s->by_q,  &s->gradient, &s->border,
+                          &s->tangent, &s->adjoint, &s->moved, &s->moved_r};
+  for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++)
+    *vectors[i] = shb_arena_take(arena, one, sizeof(double));
+  s->jacobian         = shb_arena_take(arena, n * n, sizeof(double));
+  s->matrix           = shb_arena_take(arena, one * one, sizeof(double));
+  s->bordered         = shb_arena_take(arena, one * one, sizeof(double));
+  s->step_matrix      = shb_arena_take(arena, two * two, sizeof(double));
+  s->pivot            = shb_arena_take(arena, one, sizeof *s->pivot);
+  s->step_pivot       = shb_arena_take(arena, two, sizeof *s->step_pivot);
+  s->amplitude.weight = shb_arena_take(arena, 3 * (size_t)s->balance->n_pairs,
+                                       sizeof *s->amplitude.weight);
+  SHB_CHECK(!arena->failed, SHB_ERR_IO, "out of memory to follow peaks of %d unknowns", s->n);
+  s->value     = NAN;
+  s->border[n] = 1;
+  return mhb_evaluation_create(s->balance, &s->displaced);
+}
+
+shb_status mhb_peak_system_create(mhb_balance *balance, mhb_tracked_point kind, int output,
+                                  mhb_parameter parameter, double range, double length,
+                                  mhb_peak_system **out) {
+  mhb_peak_system *s = calloc(1, sizeof *s);
+  SHB_CHECK(s, SHB_ERR_IO, "out of memory");
+  s->balance   = balance;
+  s->kind      = kind;
+  s->output    = output;
+  s->parameter = parameter;
+  s->rate      = range / length;
+  s->n         = balance->n;
+  s->base      = (mhb_curve_system){.n                  = balance->n + 1,
+                                    .least              = mhb_parameter_least(parameter),
+                                    .row_length         = balance->n + 1,
+                                    .copies             = 1,
+                                    .copy               = copy,
+                                    .destroy            = destroy,
+                                    .evaluation_create  = evaluation_create,
+                                    .evaluation_destroy = evaluation_destroy,
+                                    .linearise          = linearise,
+                                    .evaluate           = evaluate,
+                                    .factor             = factor,
+                                    .solve              = solve,
+                                    .sign               = sign,
+                                    .solve_at_value     = solve_at_value,
+                                    .unit_of_value      = unit_of_value};
+  shb_status status = fill(s);
+  if (status != SHB_OK) destroy(&s->base);
+  if (status == SHB_OK) *out = s;
+  return status;
+}

@@ -1,0 +1,59 @@
+/* Peaks and folds of a response curve as solutions with a free frequency, to be followed along a
+ * parameter q (docs/theory/tracking.md).
+ *
+ *   z = (x, xi),  xi = length omega/range       unknowns, m
+ *   r(x, omega, q) = 0                          the balance
+ *   G = dA/ds = A_z T = 0                       A the output's amplitude; for a fold A = xi
+ *   B = [r_x r_xi; c^T],  B [T; .] = [0; 1]     T the unit tangent of the response curve, c a border
+ *
+ * G needs no division by a determinant, so a peak is followed through folds of the curve. With the
+ * adjoint [l; k] = B^-T A_z the gradient of G is that of the Lagrangian A - l^T r along T:
+ *
+ *   dG = T^T (A_zz - l r_zz) dz + (A_zq - l r_zq) T dq
+ *
+ * It is taken as a one-sided difference of the exact first derivatives over a step of 1e-6 |z|: one
+ * more linearisation, with an error of some 1e-6 of the row. This slows Newton, not its limit.
+ *
+ * Sources: Govaerts 2000 (bordered systems); Krack, Gross 2019 (peaks of a response curve). */
+#ifndef MHB_TRACKING_PEAK_SYSTEM_H
+#define MHB_TRACKING_PEAK_SYSTEM_H
+
+#include "mhb/continuation/curve.h"
+#include "mhb/tracking/output_amplitude.h"
+
+typedef enum { MHB_TRACK_PEAK, MHB_TRACK_FOLD } mhb_tracked_point;
+
+/* What a linearised point of the system tells besides G. */
+typedef struct {
+  double amplitude;  /* m, of the output */
+  double curvature;  /* d2A/ds2 along the response curve, 1/m: below 0 at a maximum */
+  double by_value;   /* dA/dq along the peaks; for a fold d xi/dq, m a unit */
+  double slip_share; /* smallest share of the period in which a nonlinear pair slips or is open */
+} mhb_peak_report;
+
+typedef struct mhb_peak_system mhb_peak_system;
+
+/* The system of the peaks of an output (output_amplitude.h), or of the folds. The balance must
+ * outlive it and be used by nothing else meanwhile.
+ *   parameter  in  q, not the frequency
+ *   range      in  rad/s, the width of the frequency range
+ *   length     in  m, the size of the motion
+ * SHB_ERR_IO: no memory. */
+shb_status mhb_peak_system_create(mhb_balance *balance, mhb_tracked_point kind, int output,
+                                  mhb_parameter parameter, double range, double length,
+                                  mhb_peak_system **system);
+
+/* The system for a curve, which takes it over. */
+mhb_curve_system *mhb_peak_system_base(mhb_peak_system *system);
+
+/* Linearise a point and report. */
+mhb_peak_report mhb_peak_system_report(mhb_curve_system *system, const mhb_curve_point *point);
+
+/* Unknowns from a motion x[n] of the balance at omega, and back. */
+void   mhb_peak_system_pack(const mhb_curve_system *system, const double *x, double omega,
+                            double *z);
+double mhb_peak_system_omega(const mhb_curve_system *system, const double *z);
+/* d omega/d xi, rad/(s m) */
+double mhb_peak_system_rate(const mhb_curve_system *system);
+
+#endif

@@ -1,0 +1,223 @@
+#include "mhb/tracking/tracked_curve.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "mesh/base/clock.h"
+#include "mesh/base/progress.h"
+#include "mhb/balance/truncation_error.h"
+#include "mhb/branches/record.h"
+#include "mhb/continuation/segment.h"
+#include "mhb/numerics/vector.h"
+
+/* Below this share of the period slip has as good as ended: the curve of the response has a corner
+ * there, and the derivatives of the law lose their meaning. */
+static const double LEAST_SLIP = 2e-3;
+
+typedef struct {
+  mhb_segment_host    host; /* first: its functions get it back */
+  mhb_balance        *balance;
+  const mhb_tracking *tracking;
+  mhb_truncation     *truncation;
+  mhb_events          events;
+  mhb_curve_place     start;
+  mhb_curve_return    back;
+  mhb_response       *store;
+  int                 segment; /* under way */
+  double              clock;
+} tracer;
+
+/* ---- what segments ask for ---- */
+
+static void estimate_event(mhb_segment_host *host, mhb_curve_point *point) {
+  tracer *t = (tracer *)host;
+  mhb_balance_use(t->balance, point->evaluation);
+  point->truncation      = mhb_truncation_error(t->truncation, point->x);
+  point->truncation_kind = (int)t->truncation->kind;
+}
+
+static shb_status estimate(mhb_segment_host *host, mhb_curve_point *point, bool *raised) {
+  estimate_event(host, point);
+  *raised = false;
+  return SHB_OK;
+}
+
+static shb_status accept(mhb_segment_host *host, bool *moved) {
+  (void)host;
+  *moved = false;
+  return SHB_OK;
+}
+
+static shb_status started(mhb_segment_host *host, const mhb_seed *seed, mhb_end *end) {
+  tracer *t = (tracer *)host;
+  (void)seed;
+  (void)end;
+  mhb_curve_place_free(&t->start);
+  t->back = (mhb_curve_return){&t->start, 0};
+  return mhb_curve_place_note(&t->start, host->curve->system, &host->curve->current, 1e-6);
+}
+
+static shb_status record(mhb_segment_host *host, mhb_curve_point *point, int special, bool *go_on) {
+  tracer *t   = (tracer *)host;
+  double  now = shb_seconds();
+  mhb_balance_use(t->balance, point->evaluation);
+  mhb_balance_set_parameter(t->balance, t->tracking->parameter);
+  SHB_TRY(mhb_record(t->store, t->segment, t->balance, point, special, now - t->clock));
+  t->clock = now;
+  *go_on   = !shb_interrupted();
+  return SHB_OK;
+}
+
+/* ---- the table of events ---- */
+
+static double beyond_high(mhb_arclength *curve, const mhb_curve_point *point, void *context) {
+  (void)context;
+  return point->value - curve->high;
+}
+
+static double beyond_low(mhb_arclength *curve, const mhb_curve_point *point, void *context) {
+  (void)context;
+  return curve->low - point->value;
+}
+
+static double beyond_frequency(mhb_arclength *curve, const mhb_curve_point *point, void *context) {
+  const mhb_tracking *tracking = context;
+  double              omega    = mhb_peak_system_omega(curve->system, point->x);
+  return fmax(tracking->frequency[0] - omega, omega - tracking->frequency[1]);
+}
+
+static double too_little_slip(mhb_arclength *curve, const mhb_curve_point *point, void *context) {
+  (void)context;
+  return LEAST_SLIP - mhb_peak_system_report(curve->system, point).slip_share;
+}
+
+/* Extremum of the amplitude along the peaks; of the frequency along folds. */
+static double amplitude_slope(mhb_arclength *curve, const mhb_curve_point *point, void *context) {
+  (void)context;
+  return mhb_peak_system_report(curve->system, point).by_value;
+}
+
+enum { MOST_TESTS = 8 };
+
+static int make_tests(tracer *t, mhb_event_test test[MOST_TESTS]) {
+  int  n    = 0;
+  bool peak = t->tracking->kind == MHB_TRACK_PEAK;
+  if (!peak)
+    test[n++] = (mhb_event_test){.name      = "closed curve",
+                                 .g         = mhb_curve_return_ahead,
+                                 .context   = &t->back,
+                                 .direction = 1,
+                                 .is_near   = mhb_curve_return_is_near,
+                                 .accept    = mhb_curve_return_arrived,
+                                 .end       = MHB_END_CLOSED};
+  if (peak)
+    test[n++] = (mhb_event_test){
+        .name = "inflection", .g = mhb_fold_test, .special = MHB_FOLD, .end = MHB_END_TURNED};
+  test[n++] = (mhb_event_test){.name      = "corner",
+                               .g         = too_little_slip,
+                               .direction = 1,
+                               .end       = MHB_END_CORNER};
+  test[n++] = (mhb_event_test){.name      = "end of the frequency range",
+                               .g         = beyond_frequency,
+                               .context   = (void *)t->tracking,
+                               .direction = 1,
+                               .end       = MHB_END_FREQUENCY};
+  test[n++] = (mhb_event_test){.name      = "high end of the range",
+                               .g         = beyond_high,
+                               .direction = 1,
+                               .at_next   = true,
+                               .end       = MHB_END_HIGH};
+  test[n++] = (mhb_event_test){.name      = "low end of the range",
+                               .g         = beyond_low,
+                               .direction = 1,
+                               .at_next   = true,
+                               .end       = MHB_END_LOW};
+  if (!peak)
+    test[n++] = (mhb_event_test){.name = "cusp", .g = mhb_fold_test, .special = MHB_FOLD};
+  test[n++] =
+      (mhb_event_test){.name = "optimum", .g = amplitude_slope, .special = MHB_OPTIMUM};
+  return n;
+}
+
+/* ---- both halves of a curve ---- */
+
+static shb_status trace_half(tracer *t, const double *z, double value, int direction, int *segment,
+                             mhb_end *end) {
+  mhb_seed seed = {.kind       = MHB_SEED_SOLUTION,
+                   .x          = z,
+                   .value      = value,
+                   .direction  = direction,
+                   .skip_first = false};
+  SHB_TRY(mhb_response_branch(t->store, MHB_BRANCH_TRACKED, segment));
+  t->segment         = *segment;
+  t->clock           = shb_seconds();
+  t->host.max_points = t->tracking->max_points;
+  return mhb_trace_segment(&t->host, &seed, end);
+}
+
+static int count_optima(const mhb_branch *branch) {
+  int n = 0;
+  for (int i = 0; i < branch->n_points; i++) n += branch->special[i] == MHB_OPTIMUM;
+  return n;
+}
+
+static shb_status trace_both(tracer *t, const mhb_tracking_seed *seed, double *z,
+                             mhb_response *response, int branch, bool *found,
+                             mhb_tracking_end *end) {
+  int down, up;
+  mhb_peak_system_pack(t->host.curve->system, seed->x, seed->omega, z);
+  SHB_TRY(trace_half(t, z, seed->value, -1, &down, &end->low));
+  SHB_TRY(trace_half(t, z, seed->value, 1, &up, &end->high));
+  const mhb_branch *below = &t->store->branch[down], *above = &t->store->branch[up];
+  *found = below->n_points + above->n_points > 0;
+  if (below->n_points > 0)
+    SHB_TRY(mhb_response_copy_points(response, branch, t->store, down, below->n_points - 1, 0));
+  int first = below->n_points > 0 ? 1 : 0;
+  if (above->n_points > first)
+    SHB_TRY(mhb_response_copy_points(response, branch, t->store, up, first, above->n_points - 1));
+  end->n_optima = count_optima(&response->branch[branch]);
+  return SHB_OK;
+}
+
+static shb_status make_curve(tracer *t, double length) {
+  const mhb_tracking *tracking = t->tracking;
+  mhb_peak_system    *system;
+  SHB_TRY(mhb_truncation_create(t->balance, &t->truncation));
+  SHB_TRY(mhb_peak_system_create(t->balance, tracking->kind, tracking->output, tracking->parameter,
+                                 tracking->frequency[1] - tracking->frequency[0], length,
+                                 &system));
+  return mhb_arclength_create(mhb_peak_system_base(system), tracking->low, tracking->high,
+                              &t->host.curve);
+}
+
+shb_status mhb_trace_tracked(mhb_balance *balance, const mhb_tracking *tracking,
+                             const mhb_tracking_seed *seed, mhb_response *response, int branch,
+                             bool *found, mhb_tracking_end *end) {
+  mhb_event_test test[MOST_TESTS];
+  tracer         t = {.balance = balance, .tracking = tracking, .store = NULL};
+  double        *z = calloc((size_t)balance->n + 1, sizeof *z);
+  *end             = (mhb_tracking_end){MHB_END_NO_START, MHB_END_NO_START, 0};
+  *found           = false;
+  t.host           = (mhb_segment_host){.estimate       = estimate,
+                                        .estimate_event = estimate_event,
+                                        .accept         = accept,
+                                        .started        = started,
+                                        .record         = record,
+                                        .test           = test,
+                                        .events         = &t.events};
+  t.host.n_tests   = make_tests(&t, test);
+  t.store          = mhb_response_like(response);
+  shb_status status =
+      z && t.store ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  if (status == SHB_OK) t.store->n_harmonics = response->branch[branch].n_harmonics;
+  if (status == SHB_OK) status = make_curve(&t, mhb_norm(seed->x, balance->n));
+  if (status == SHB_OK) status = trace_both(&t, seed, z, response, branch, found, end);
+  mhb_events_destroy(&t.events);
+  mhb_curve_place_free(&t.start);
+  mhb_arclength_destroy(t.host.curve);
+  mhb_truncation_destroy(t.truncation);
+  mhb_response_destroy(t.store);
+  free(z);
+  return status;
+}

@@ -1,0 +1,44 @@
+/* A peak or a fold, followed along a parameter from a first one, both ways. */
+#ifndef MHB_TRACKING_TRACKED_CURVE_H
+#define MHB_TRACKING_TRACKED_CURVE_H
+
+#include "mhb/continuation/events.h"
+#include "mhb/response/response.h"
+#include "mhb/tracking/peak_system.h"
+
+/* What is followed, and where. */
+typedef struct {
+  mhb_tracked_point kind;
+  int               output;       /* output_amplitude.h */
+  mhb_parameter     parameter;    /* not the frequency */
+  double            low, high;    /* of the parameter */
+  double            frequency[2]; /* rad/s, the range of the peaks */
+  int               max_points;
+} mhb_tracking;
+
+/* A point to start from: an approximate peak or fold. */
+typedef struct {
+  const double *x;     /* [n] motion of the balance */
+  double        omega; /* rad/s */
+  double        value; /* of the parameter */
+} mhb_tracking_seed;
+
+/* Where a curve ends. */
+typedef struct {
+  mhb_end low, high; /* towards small and large values of the parameter */
+  int     n_optima;  /* extrema of the amplitude that were located */
+} mhb_tracking_end;
+
+/* Follow from a seed to both ends of the range, into an empty branch of a response.
+ *
+ * The branch is single-valued in the parameter and ascends in it: it ends where the maximum becomes
+ * a minimum (MHB_END_TURNED), where slip ends or begins (MHB_END_CORNER), or where it leaves the
+ * frequency range (MHB_END_FREQUENCY). A fold may turn: it ends at the ends of the range, or where
+ * it closes. Special points: MHB_OPTIMUM where the amplitude (of a fold: the frequency) is stationary
+ * along the curve.
+ * *found false: no peak near the seed. SHB_ERR_IO: no memory. */
+shb_status mhb_trace_tracked(mhb_balance *balance, const mhb_tracking *tracking,
+                             const mhb_tracking_seed *seed, mhb_response *response, int branch,
+                             bool *found, mhb_tracking_end *end);
+
+#endif

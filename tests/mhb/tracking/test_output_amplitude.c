@@ -1,0 +1,60 @@
+/* Gradient of the amplitude of probes and contacts against central differences. */
+#include "mhb/tracking/output_amplitude.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "tests/support/check.h"
+#include "tests/support/random_model.h"
+#include "tests/support/solution.h"
+
+enum { H = 4, PAIRS = 2, N = 3 * PAIRS * (2 * H + 1) };
+
+static double amplitude_at(mhb_balance *b, const double *x, double omega, int output) {
+  double         r[N], by_x[N];
+  double complex weight[3 * PAIRS];
+  mhb_amplitude  a = {.by_x = by_x, .weight = weight};
+  mhb_balance_linearise(b, x, omega, r, NULL);
+  mhb_output_amplitude(b, x, output, &a);
+  return a.amplitude;
+}
+
+static void the_gradient_is_that_of_differences(void **state) {
+  (void)state;
+  modal_model model;
+  random_model(PAIRS, WITH_LEFT | WITH_RESIDUAL, 7, &model);
+  mhb_settings settings = random_settings(H);
+  mhb_balance *b;
+  double       x[N], r[N], by_x[N], omega = 1.07, worst = 0;
+  cold_solution(&model, &settings, omega, 1e-11, x);
+  assert_ok(mhb_balance_create(&model, &settings, &b));
+  for (int output = 0; output < 2 + PAIRS; output++) {
+    double complex weight[3 * PAIRS];
+    mhb_amplitude  a = {.by_x = by_x, .weight = weight};
+    mhb_balance_linearise(b, x, omega, r, NULL);
+    mhb_output_amplitude(b, x, output, &a);
+    double size = 0;
+    for (int i = 0; i < N; i++) size = fmax(size, fabs(by_x[i]));
+    for (int i = 0; i < N; i++) {
+      double e = 1e-6, y[N];
+      memcpy(y, x, sizeof y);
+      y[i] += e;
+      double up = amplitude_at(b, y, omega, output);
+      y[i] -= 2 * e;
+      double difference = (up - amplitude_at(b, y, omega, output)) / (2 * e);
+      worst             = fmax(worst, fabs(difference - by_x[i]) / size);
+    }
+    double e = 1e-5, up = amplitude_at(b, x, omega + e, output);
+    double difference = (up - amplitude_at(b, x, omega - e, output)) / (2 * e);
+    assert_near(a.by_omega, difference, 1e-7 * (1 + fabs(difference)));
+  }
+  print_message("gradient by x against differences: %.1e\n", worst);
+  assert_below(worst, 1e-6);
+  mhb_balance_destroy(b);
+  modal_model_free(&model);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(the_gradient_is_that_of_differences)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
