@@ -14,6 +14,7 @@
 #include "mesh/base/progress.h"
 #include "mesh/base/publish.h"
 #include "mhb/branches/forced_response.h"
+#include "mhb/tracking/tracked_response.h"
 
 static const char usage[] =
     "usage: shroudhb-mhb [--quiet] [--verbose] [--force] CASE.yaml\n"
@@ -46,7 +47,7 @@ static void summarise(shb_progress *progress, const mhb_response *response) {
   double seconds = 0;
   for (int i = 0; i < response->n_branches; i++) {
     const mhb_branch *b = &response->branch[i];
-    if (b->kind != MHB_BRANCH_NONLINEAR) continue;
+    if (b->kind != MHB_BRANCH_NONLINEAR && b->kind != MHB_BRANCH_TRACKED) continue;
     points += b->n_points;
     further += b->origin != MHB_FROM_END;
     for (int p = 0; p < b->n_points; p++) {
@@ -84,7 +85,10 @@ static shb_status solve(const case_file *file, const char *modal, char *settings
   shb_provenance provenance = command_provenance(file, settings, "shroudhb-mhb");
   shb_status     status     = case_model_read(file, modal, 0, true, &model);
   if (status == SHB_OK && model.run_up) note_run_up(progress, &model);
-  if (status == SHB_OK)
+  if (status == SHB_OK && model.settings.track != MHB_TRACK_NOTHING)
+    status = mhb_tracked_response(&model.model, &model.settings, output, &provenance, progress,
+                                  &response);
+  else if (status == SHB_OK)
     status = mhb_forced_response(&model.model, &model.settings, output, &provenance, progress,
                                  &response);
   shb_progress_clear(progress);

@@ -90,6 +90,7 @@ static const char *applies_text(const case_key *key) {
       [CASE_IF_FORCE_AT]   = "with `force`",
       [CASE_IF_AUTO]       = "`mhb.harmonics: auto`",
       [CASE_IF_FOLLOWED]   = "one of five",
+      [CASE_IF_TRACKED]    = "`mhb.track` not `nothing`",
       [CASE_IF_STABILITY]  = "`mhb.stability` not `never`",
       [CASE_IF_SEARCH]     = "`mhb.search.starts` above 0",
       [CASE_IF_SEARCH_AT]  = "`mhb.search.starts` above 0",

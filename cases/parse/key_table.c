@@ -302,7 +302,7 @@ static const case_key table[] = {
 
     {"mhb.frequency", CASE_SWEEP, "Hz", 0, 1e9, true, .required = true, AT(mhb.frequency),
      .stages = CASE_MHB,
-     .help = "range of the sweep: [from, to]; with mhb.vary one number"},
+     .help = "range of the sweep: [from, to]; with mhb.vary one number, but for mhb.track"},
     {"mhb.run_up", CASE_SWITCH, "", .words = "no yes", .fallback = "no", AT(run_up),
      .stages = CASE_MHB, .when = CASE_IF_RUN_UP,
      .help = "the rotor's speed is the excitation frequency / engine order: modes of the speeds in "
@@ -326,6 +326,13 @@ static const case_key table[] = {
      .when = CASE_IF_VARIED,
      .help = "of several interfaces the one whose n0, mu, ku or kv that is, the others keep theirs "
              "(default: the first); all: in proportion"},
+    {"mhb.track", CASE_CHOICE, "", .words = "nothing peak fold", .fallback = "nothing",
+     AT(mhb.track), .stages = CASE_MHB, .when = CASE_IF_TRACKED,
+     .help = "with mhb.vary: follow the resonance peaks, or the folds, along the parameter; their "
+             "frequency, within mhb.frequency, is unknown too"},
+    {"mhb.output", CASE_LABEL, "", AT(mhb.output), .stages = CASE_MHB, .when = CASE_IF_TRACKED,
+     .help = "whose peak: a probe, or contact for the first contact point; default: the first "
+             "probe"},
     {"mhb.harmonics", CASE_AUTO, "", 1, MOST_HARMONICS, .fallback = "3", AT(mhb.harmonics),
      .stages = CASE_MHB,
      .help = "harmonics of the balance, counted in the fundamental; auto: chosen at each point by "
@@ -478,6 +485,8 @@ bool case_key_applies(const case_key *key, const case_file *file) {
       return file->mhb.harmonics == 0;
     case CASE_IF_FOLLOWED:
       return (const char *)file + key->at == (const char *)file->vary[file->mhb.parameter];
+    case CASE_IF_TRACKED:
+      return file->mhb.track != MHB_TRACK_NOTHING;
     case CASE_IF_STABILITY:
       return file->mhb.stability != MHB_STABILITY_NEVER;
     case CASE_IF_SEARCH:

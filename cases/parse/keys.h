@@ -72,6 +72,7 @@ typedef enum {
   CASE_IF_OUTPUT,    /* converge.output given */
   CASE_IF_AUTO,      /* harmonics: auto */
   CASE_IF_FOLLOWED,  /* the parameter of this row is followed */
+  CASE_IF_TRACKED,   /* peaks or folds are followed */
   CASE_IF_STABILITY, /* multipliers are computed */
   CASE_IF_SEARCH,    /* there are random starts */
   CASE_IF_SEARCH_AT, /* at frequencies that are given */

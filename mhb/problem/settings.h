@@ -13,6 +13,9 @@ typedef enum { MHB_STABILITY_AUTO, MHB_STABILITY_ALWAYS, MHB_STABILITY_NEVER } m
 /* Motion that takes over where the wave is unstable: at few points; at all of them; never. */
 typedef enum { MHB_LASTING_AUTO, MHB_LASTING_ALWAYS, MHB_LASTING_NEVER } mhb_lasting_when;
 
+/* Special points that are followed along a parameter. */
+typedef enum { MHB_TRACK_NOTHING, MHB_TRACK_PEAKS, MHB_TRACK_FOLDS } mhb_track;
+
 /* Continuation parameter. */
 typedef enum {
   MHB_IN_FREQUENCY,
@@ -91,6 +94,8 @@ typedef struct {
   mhb_stability_when  stability; /* points at which multipliers are computed */
   mhb_lasting_when    lasting;   /* points at which the motion that takes over is integrated */
   mhb_save_settings   save;      /* points of which modal amplitudes are kept */
+  mhb_track           track;    /* followed along the parameter over range, within frequency */
+  char                output[MHB_NAME]; /* whose peak: a probe or "contact"; "": the first probe */
   const struct mhb_speed_table
       *run_up; /* NULL: one speed. Else the modal model follows the frequency. */
   bool resume; /* take over the finished branches of an interrupted run of equal settings */

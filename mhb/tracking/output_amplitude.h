@@ -12,11 +12,11 @@
 
 /* Gradient of the amplitude at fixed operating point (by x) and at fixed x (by omega). */
 typedef struct {
-  double  amplitude;       /* m */
-  double *by_x;            /* [n] */
-  double  by_omega;        /* m s/rad */
-  double  by_scale;        /* m */
-  double  complex *weight; /* [3 pairs] of the contact force: dA = Re sum weight dp_k at fixed x */
+  double          amplitude; /* m */
+  double         *by_x;      /* [n] */
+  double          by_omega;  /* m s/rad */
+  double          by_scale;  /* m */
+  double complex *weight; /* [3 pairs] of the contact force: dA = Re sum weight dp_k at fixed x */
 } mhb_amplitude;
 
 /* The amplitude and its gradient at x[n], which the evaluation in use was linearised at.

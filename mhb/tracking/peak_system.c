@@ -8,7 +8,7 @@
 #include "mhb/numerics/vector.h"
 
 /* Step of the directional difference, relative to |z|. */
-static const double STEP = 1e-6;
+static const double STEP       = 1e-6;
 static const double LEAST_GAIN = 0.99;
 enum { MAX_NEWTON = 25, MAX_HALVINGS = 8 };
 
@@ -30,17 +30,17 @@ struct mhb_peak_system {
   /* work space of one linearisation */
   mhb_evaluation *displaced;
   mhb_amplitude   amplitude;
-  double         *jacobian;        /* [n][n] column-major */
-  double         *by_xi, *by_q;    /* [n] r_xi, r_q */
-  double         *gradient;        /* [n + 1] A_z */
-  double         *bordered;        /* [n + 1][n + 1] B, factored */
-  double         *border;          /* [n + 1] c */
+  double         *jacobian;          /* [n][n] column-major */
+  double         *by_xi, *by_q;      /* [n] r_xi, r_q */
+  double         *gradient;          /* [n + 1] A_z */
+  double         *bordered;          /* [n + 1][n + 1] B, factored */
+  double         *border;            /* [n + 1] c */
   double         *tangent, *adjoint; /* [n + 1] T; l, k */
-  double         *moved, *moved_r; /* [n + 1], [n] */
-  lapack_int     *pivot;           /* [n + 2] */
+  double         *moved, *moved_r;   /* [n + 1], [n] */
+  lapack_int     *pivot;             /* [n + 2] */
   /* the bordered matrix of the continuation */
-  double    *step_matrix; /* [n + 2][n + 2] column-major, factored */
-  lapack_int *step_pivot; /* [n + 2] */
+  double     *step_matrix; /* [n + 2][n + 2] column-major, factored */
+  lapack_int *step_pivot;  /* [n + 2] */
   int         step_sign;
   shb_arena   arena;
 };
@@ -101,8 +101,7 @@ static double dot(int n, const double *a, const double *b) {
 /* row[n + 1] <- A_z - l^T [r_x r_xi] */
 static void lagrangian_gradient(const mhb_peak_system *s, double *row) {
   for (int i = 0; i < s->n; i++)
-    row[i] =
-        s->gradient[i] - dot(s->n, s->adjoint, s->jacobian + (size_t)i * (size_t)s->n);
+    row[i] = s->gradient[i] - dot(s->n, s->adjoint, s->jacobian + (size_t)i * (size_t)s->n);
   row[s->n] = s->gradient[s->n] - dot(s->n, s->adjoint, s->by_xi);
 }
 
@@ -150,7 +149,7 @@ static double slip_share(const mhb_balance *b) {
 static void linearise(mhb_curve_system *system, mhb_curve_point *point) {
   mhb_peak_system *s = of(system);
   size_t           n = (size_t)s->n, one = n + 1;
-  double           by_q = derivatives(s, point->evaluation, point->x, point->value, point->r);
+  double           by_q   = derivatives(s, point->evaluation, point->x, point->value, point->r);
   double          *matrix = s->matrix;
   for (size_t j = 0; j < n; j++) memcpy(matrix + j * one, s->jacobian + j * n, sizeof(double) * n);
   memcpy(matrix + n * one, s->by_xi, sizeof(double) * n);
@@ -169,7 +168,7 @@ static void linearise(mhb_curve_system *system, mhb_curve_point *point) {
   lagrangian_gradient(s, s->moved);
   s->report.curvature = 0;
   for (size_t j = 0; j < one; j++) {
-    double of_j = (s->moved[j] - k * s->border[j]) / step;
+    double of_j         = (s->moved[j] - k * s->border[j]) / step;
     matrix[j * one + n] = of_j;
     s->report.curvature += of_j * s->tangent[j];
   }
@@ -182,8 +181,7 @@ static void linearise(mhb_curve_system *system, mhb_curve_point *point) {
 
 static void ensure(mhb_curve_system *system, const mhb_curve_point *point) {
   mhb_peak_system *s = of(system);
-  if (s->value == point->value &&
-      memcmp(s->z, point->x, sizeof(double) * ((size_t)s->n + 1)) == 0)
+  if (s->value == point->value && memcmp(s->z, point->x, sizeof(double) * ((size_t)s->n + 1)) == 0)
     return;
   mhb_curve_point again = *point; /* its r and slope are written with what they hold already */
   linearise(system, &again);
@@ -297,20 +295,20 @@ static double unit_of_value(const mhb_curve_system *system, const mhb_curve_poin
 }
 
 static shb_status fill(mhb_peak_system *s) {
-  size_t n = (size_t)s->n, one = n + 1, two = n + 2;
-  shb_arena *arena = &s->arena;
+  size_t     n = (size_t)s->n, one = n + 1, two = n + 2;
+  shb_arena *arena     = &s->arena;
   double   **vectors[] = {&s->z,       &s->by_xi,   &s->by_q,  &s->gradient, &s->border,
                           &s->tangent, &s->adjoint, &s->moved, &s->moved_r};
   for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++)
     *vectors[i] = shb_arena_take(arena, one, sizeof(double));
-  s->jacobian         = shb_arena_take(arena, n * n, sizeof(double));
-  s->matrix           = shb_arena_take(arena, one * one, sizeof(double));
-  s->bordered         = shb_arena_take(arena, one * one, sizeof(double));
-  s->step_matrix      = shb_arena_take(arena, two * two, sizeof(double));
-  s->pivot            = shb_arena_take(arena, one, sizeof *s->pivot);
-  s->step_pivot       = shb_arena_take(arena, two, sizeof *s->step_pivot);
-  s->amplitude.weight = shb_arena_take(arena, 3 * (size_t)s->balance->n_pairs,
-                                       sizeof *s->amplitude.weight);
+  s->jacobian    = shb_arena_take(arena, n * n, sizeof(double));
+  s->matrix      = shb_arena_take(arena, one * one, sizeof(double));
+  s->bordered    = shb_arena_take(arena, one * one, sizeof(double));
+  s->step_matrix = shb_arena_take(arena, two * two, sizeof(double));
+  s->pivot       = shb_arena_take(arena, one, sizeof *s->pivot);
+  s->step_pivot  = shb_arena_take(arena, two, sizeof *s->step_pivot);
+  s->amplitude.weight =
+      shb_arena_take(arena, 3 * (size_t)s->balance->n_pairs, sizeof *s->amplitude.weight);
   SHB_CHECK(!arena->failed, SHB_ERR_IO, "out of memory to follow peaks of %d unknowns", s->n);
   s->value     = NAN;
   s->border[n] = 1;
@@ -322,27 +320,27 @@ shb_status mhb_peak_system_create(mhb_balance *balance, mhb_tracked_point kind, 
                                   mhb_peak_system **out) {
   mhb_peak_system *s = calloc(1, sizeof *s);
   SHB_CHECK(s, SHB_ERR_IO, "out of memory");
-  s->balance   = balance;
-  s->kind      = kind;
-  s->output    = output;
-  s->parameter = parameter;
-  s->rate      = range / length;
-  s->n         = balance->n;
-  s->base      = (mhb_curve_system){.n                  = balance->n + 1,
-                                    .least              = mhb_parameter_least(parameter),
-                                    .row_length         = balance->n + 1,
-                                    .copies             = 1,
-                                    .copy               = copy,
-                                    .destroy            = destroy,
-                                    .evaluation_create  = evaluation_create,
-                                    .evaluation_destroy = evaluation_destroy,
-                                    .linearise          = linearise,
-                                    .evaluate           = evaluate,
-                                    .factor             = factor,
-                                    .solve              = solve,
-                                    .sign               = sign,
-                                    .solve_at_value     = solve_at_value,
-                                    .unit_of_value      = unit_of_value};
+  s->balance        = balance;
+  s->kind           = kind;
+  s->output         = output;
+  s->parameter      = parameter;
+  s->rate           = range / length;
+  s->n              = balance->n;
+  s->base           = (mhb_curve_system){.n                  = balance->n + 1,
+                                         .least              = mhb_parameter_least(parameter),
+                                         .row_length         = balance->n + 1,
+                                         .copies             = 1,
+                                         .copy               = copy,
+                                         .destroy            = destroy,
+                                         .evaluation_create  = evaluation_create,
+                                         .evaluation_destroy = evaluation_destroy,
+                                         .linearise          = linearise,
+                                         .evaluate           = evaluate,
+                                         .factor             = factor,
+                                         .solve              = solve,
+                                         .sign               = sign,
+                                         .solve_at_value     = solve_at_value,
+                                         .unit_of_value      = unit_of_value};
   shb_status status = fill(s);
   if (status != SHB_OK) destroy(&s->base);
   if (status == SHB_OK) *out = s;

@@ -50,8 +50,7 @@ mhb_curve_system *mhb_peak_system_base(mhb_peak_system *system);
 mhb_peak_report mhb_peak_system_report(mhb_curve_system *system, const mhb_curve_point *point);
 
 /* Unknowns from a motion x[n] of the balance at omega, and back. */
-void   mhb_peak_system_pack(const mhb_curve_system *system, const double *x, double omega,
-                            double *z);
+void mhb_peak_system_pack(const mhb_curve_system *system, const double *x, double omega, double *z);
 double mhb_peak_system_omega(const mhb_curve_system *system, const double *z);
 /* d omega/d xi, rad/(s m) */
 double mhb_peak_system_rate(const mhb_curve_system *system);

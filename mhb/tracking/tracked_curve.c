@@ -114,10 +114,8 @@ static int make_tests(tracer *t, mhb_event_test test[MOST_TESTS]) {
   if (peak)
     test[n++] = (mhb_event_test){
         .name = "inflection", .g = mhb_fold_test, .special = MHB_FOLD, .end = MHB_END_TURNED};
-  test[n++] = (mhb_event_test){.name      = "corner",
-                               .g         = too_little_slip,
-                               .direction = 1,
-                               .end       = MHB_END_CORNER};
+  test[n++] = (mhb_event_test){
+      .name = "corner", .g = too_little_slip, .direction = 1, .end = MHB_END_CORNER};
   test[n++] = (mhb_event_test){.name      = "end of the frequency range",
                                .g         = beyond_frequency,
                                .context   = (void *)t->tracking,
@@ -133,10 +131,8 @@ static int make_tests(tracer *t, mhb_event_test test[MOST_TESTS]) {
                                .direction = 1,
                                .at_next   = true,
                                .end       = MHB_END_LOW};
-  if (!peak)
-    test[n++] = (mhb_event_test){.name = "cusp", .g = mhb_fold_test, .special = MHB_FOLD};
-  test[n++] =
-      (mhb_event_test){.name = "optimum", .g = amplitude_slope, .special = MHB_OPTIMUM};
+  if (!peak) test[n++] = (mhb_event_test){.name = "cusp", .g = mhb_fold_test, .special = MHB_FOLD};
+  test[n++] = (mhb_event_test){.name = "optimum", .g = amplitude_slope, .special = MHB_OPTIMUM};
   return n;
 }
 
@@ -185,8 +181,7 @@ static shb_status make_curve(tracer *t, double length) {
   mhb_peak_system    *system;
   SHB_TRY(mhb_truncation_create(t->balance, &t->truncation));
   SHB_TRY(mhb_peak_system_create(t->balance, tracking->kind, tracking->output, tracking->parameter,
-                                 tracking->frequency[1] - tracking->frequency[0], length,
-                                 &system));
+                                 tracking->frequency[1] - tracking->frequency[0], length, &system));
   return mhb_arclength_create(mhb_peak_system_base(system), tracking->low, tracking->high,
                               &t->host.curve);
 }

@@ -1,0 +1,300 @@
+#include "mhb/tracking/tracked_response.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "mesh/base/constants.h"
+#include "mhb/branches/forced_response.h"
+#include "mhb/branches/record.h"
+#include "mhb/response/describe.h"
+#include "mhb/response/publisher.h"
+#include "mhb/tracking/tracked_curve.h"
+
+/* A seed lies on a curve if its frequency is within this of the curve's, relative. The curve is
+ * interpolated between its points. */
+static const double ON_CURVE = 5e-4;
+
+/* Peaks below this share of the highest at the same value of the parameter are not followed. */
+static const double MINOR = 0.2;
+
+enum { N_SWEEPS = 5, MOST_HARMONICS = 31, LEAST_HARMONICS = 7 };
+
+typedef struct {
+  const modal_model  *model;
+  const mhb_settings *asked;
+  mhb_settings        settings; /* of the tracked balance */
+  mhb_tracking        tracking;
+  mhb_response       *response;
+  mhb_publisher       publisher;
+  shb_progress       *progress;
+  int                 n_lost;  /* seeds that led to no curve */
+  double              lost_at; /* the first one's parameter */
+} tracking_run;
+
+/* ---- what is followed ---- */
+
+shb_status mhb_output_named(const modal_model *model, const char *name, int *output) {
+  *output = model->n_probes > 0 ? 0 : model->n_probes;
+  if (!name[0]) return SHB_OK;
+  *output = model->n_probes;
+  if (strcmp(name, "contact") == 0) return SHB_OK;
+  for (int i = 0; i < model->n_probes; i++) {
+    if (strcmp(name, model->probe_name[i]) != 0) continue;
+    *output = i;
+    return SHB_OK;
+  }
+  char   known[400] = "contact";
+  size_t n          = strlen(known);
+  for (int i = 0; i < model->n_probes && n < sizeof known - 1; i++)
+    n += (size_t)snprintf(known + n, sizeof known - n, ", %.40s", model->probe_name[i]);
+  SHB_FAIL(SHB_ERR_INPUT, "mhb.output: the modal file has no probe '%s'; known: %s", name, known);
+}
+
+static mhb_tracking tracking_of(const mhb_settings *settings, int output) {
+  return (mhb_tracking){
+      .kind       = settings->track == MHB_TRACK_FOLDS ? MHB_TRACK_FOLD : MHB_TRACK_PEAK,
+      .output     = output,
+      .parameter  = settings->parameter,
+      .low        = settings->range[0],
+      .high       = settings->range[1],
+      .frequency  = {SHB_TWO_PI * settings->frequency[0], SHB_TWO_PI * settings->frequency[1]},
+      .max_points = settings->max_points};
+}
+
+/* Values of the parameter at which sweeps give seeds: geometric where the range allows it. */
+static void seed_values(const mhb_tracking *tracking, double value[N_SWEEPS]) {
+  double low = tracking->low, high = tracking->high;
+  bool   ratio = low > 0 && high / low > 3;
+  for (int i = 0; i < N_SWEEPS; i++) {
+    double part = (double)i / (N_SWEEPS - 1);
+    value[i]    = ratio ? low * pow(high / low, part) : low + part * (high - low);
+  }
+}
+
+/* The settings at a value of the parameter. */
+static mhb_settings settings_at(const mhb_settings *settings, mhb_parameter parameter,
+                                double value) {
+  mhb_settings        s  = *settings;
+  mhb_operating_point at = mhb_operating_point_of(&s);
+  mhb_parameter_set(&at, parameter, value);
+  s.scale      = at.scale;
+  s.mu         = at.mu;
+  s.kv         = at.kv;
+  s.n_preloads = 1;
+  s.n0[0]      = at.n0;
+  memcpy(s.ku, at.ku, sizeof s.ku);
+  return s;
+}
+
+/* A frequency sweep at a value of the parameter, curves only. */
+static shb_status sweep_at(const tracking_run *run, double value, mhb_response **response) {
+  mhb_settings s      = settings_at(run->asked, run->tracking.parameter, value);
+  s.parameter         = MHB_IN_FREQUENCY;
+  s.track             = MHB_TRACK_NOTHING;
+  s.stability         = MHB_STABILITY_NEVER;
+  s.lasting           = MHB_LASTING_NEVER;
+  s.search.starts     = 0;
+  s.resume            = false;
+  shb_progress quiet  = shb_progress_start("mhb", true, false);
+  shb_status   status = mhb_forced_response(run->model, &s, NULL, NULL, &quiet, response);
+  /* a curve with a gap still has peaks */
+  return status == SHB_NOT_CONVERGED && *response ? SHB_OK : status;
+}
+
+/* ---- seeds ---- */
+
+/* Amplitude squared of the output at a point of a branch. */
+static double squared_output(const tracking_run *run, const mhb_response *r,
+                             const mhb_branch *branch, int point) {
+  int                   K = branch->n_harmonics + 1, k = branch->order < K ? branch->order : K - 1;
+  int                   probes = r->n_probes, place = run->tracking.output;
+  bool                  probe = place < probes;
+  size_t                rows  = 3 * (size_t)(probe ? probes : r->n_pairs);
+  const double complex *a =
+      (probe ? branch->probe : branch->motion) +
+      ((size_t)point * rows + 3 * (size_t)(probe ? place : place - probes)) * (size_t)K + k;
+  return pow(cabs(a[0]), 2) + pow(cabs(a[K]), 2) + pow(cabs(a[2 * K]), 2);
+}
+
+/* The highest amplitude squared of a sweep. */
+static double highest(const tracking_run *run, const mhb_response *r) {
+  double most = 0;
+  for (int b = 0; b < r->n_branches; b++)
+    for (int i = 0; i < r->branch[b].n_points && r->branch[b].kind == MHB_BRANCH_NONLINEAR; i++)
+      most = fmax(most, squared_output(run, r, &r->branch[b], i));
+  return most;
+}
+
+/* Whether a point is to be followed; most: the highest amplitude squared of its sweep. */
+static bool is_seed(const tracking_run *run, const mhb_response *r, const mhb_branch *branch, int i,
+                    double most) {
+  if (run->tracking.kind == MHB_TRACK_FOLD) return branch->special[i] == MHB_FOLD;
+  if (branch->special[i] != MHB_PEAK || i == 0 || i == branch->n_points - 1) return false;
+  double a = squared_output(run, r, branch, i);
+  return a >= MINOR * MINOR * most && a >= squared_output(run, r, branch, i - 1) &&
+         a >= squared_output(run, r, branch, i + 1);
+}
+
+/* Frequency of a tracked branch at a value of the parameter, linear between its points; NAN beyond
+ * its ends. At a place that a fold's curve passes twice, the one nearest to a frequency. */
+static double frequency_at(const mhb_branch *branch, double value, double near) {
+  double best = NAN;
+  for (int i = 0; i + 1 < branch->n_points; i++) {
+    double from = branch->value[i], to = branch->value[i + 1];
+    if (from == to || (value - from) * (value - to) > 0) continue;
+    double part = (value - from) / (to - from);
+    double f    = branch->frequency[i] + part * (branch->frequency[i + 1] - branch->frequency[i]);
+    if (isnan(best) || fabs(f - near) < fabs(best - near)) best = f;
+  }
+  return best;
+}
+
+static bool is_known(const tracking_run *run, double value, double frequency) {
+  for (int b = 0; b < run->response->n_branches; b++) {
+    double f = frequency_at(&run->response->branch[b], value, frequency);
+    if (fabs(f - frequency) <= ON_CURVE * frequency) return true;
+  }
+  return false;
+}
+
+static void drop_last(mhb_response *response) {
+  bool drop[response->n_branches];
+  for (int b = 0; b < response->n_branches; b++) drop[b] = b == response->n_branches - 1;
+  mhb_response_drop(response, drop);
+}
+
+/* Follow a point of a sweep with m harmonics, into a new branch.
+ *   good  out  whether there is a curve, and its truncation error is within the tolerance */
+static shb_status follow_with(tracking_run *run, const mhb_branch *from, int point, double value,
+                              int m, bool *found, bool *good) {
+  mhb_balance     *balance;
+  mhb_tracking_end end;
+  int              index;
+  mhb_settings     settings = run->settings;
+  settings.harmonics        = m;
+  SHB_TRY(mhb_response_branch(run->response, MHB_BRANCH_TRACKED, &index));
+  run->response->branch[index].n_harmonics = m;
+  SHB_TRY(mhb_balance_create(run->model, &settings, &balance));
+  double    *x      = calloc((size_t)balance->n, sizeof *x);
+  shb_status status = x ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  if (status == SHB_OK) {
+    const mhb_tracking_seed seed = {x, SHB_TWO_PI * from->frequency[point], value};
+    mhb_recorded_motion(from, point, balance, x);
+    status = mhb_trace_tracked(balance, &run->tracking, &seed, run->response, index, found, &end);
+  }
+  free(x);
+  mhb_balance_destroy(balance);
+  if (status != SHB_OK) return status;
+  mhb_branch *branch = &run->response->branch[index];
+  char        reason[200];
+  snprintf(reason, sizeof reason, "%s; %s", mhb_end_text(end.low), mhb_end_text(end.high));
+  branch->reason   = strdup(reason);
+  branch->searched = branch->complete = true;
+  *good                               = *found;
+  for (int i = 0; i < branch->n_points && run->asked->harmonics == 0; i++)
+    *good = *good && branch->error_truncation[i] <= run->asked->motion_tolerance;
+  return SHB_OK;
+}
+
+/* Follow a point of a sweep with the fewest harmonics that suffice along all of its curve. */
+static shb_status follow(tracking_run *run, const mhb_branch *from, int point, double value) {
+  int  fixed = run->asked->harmonics, m = fixed > 0 ? fixed : LEAST_HARMONICS;
+  bool found = false, good = false;
+  for (;; m = 2 * m + 1) {
+    bool last = fixed > 0 || m >= MOST_HARMONICS;
+    SHB_TRY(follow_with(run, from, point, value, m, &found, &good));
+    if (good || (last && found) || shb_interrupted()) return SHB_OK;
+    drop_last(run->response);
+    if (last) break;
+  }
+  if (run->n_lost++ == 0) run->lost_at = value;
+  return SHB_OK;
+}
+
+static shb_status follow_all(tracking_run *run, const mhb_response *sweep, double value) {
+  double most = highest(run, sweep);
+  for (int b = 0; b < sweep->n_branches; b++) {
+    const mhb_branch *branch = &sweep->branch[b];
+    for (int i = 0; i < branch->n_points && branch->kind == MHB_BRANCH_NONLINEAR; i++) {
+      if (!is_seed(run, sweep, branch, i, most) || is_known(run, value, branch->frequency[i]))
+        continue;
+      SHB_TRY(follow(run, branch, i, value));
+      if (shb_interrupted()) return SHB_OK;
+    }
+  }
+  return SHB_OK;
+}
+
+/* ---- the work ---- */
+
+static shb_status make_response(tracking_run *run, mhb_response *const sweep[N_SWEEPS]) {
+  int fixed                      = run->asked->harmonics;
+  run->settings.harmonics        = fixed > 0 ? fixed : MOST_HARMONICS;
+  run->settings.motion_tolerance = 0;
+  run->settings.stability        = MHB_STABILITY_NEVER;
+  run->settings.n_preloads       = 1;
+  run->response =
+      mhb_response_create(run->model->n_pairs, run->model->n_probes, run->settings.harmonics);
+  SHB_CHECK(run->response, SHB_ERR_IO, "out of memory");
+  run->response->unfinished = true;
+  run->response->psi        = sweep[0]->psi;
+  run->response->phi        = sweep[0]->phi;
+  return mhb_response_describe(run->response, run->model, &run->settings);
+}
+
+static shb_status run_all(tracking_run *run, mhb_response *sweep[N_SWEEPS]) {
+  double value[N_SWEEPS];
+  seed_values(&run->tracking, value);
+  shb_progress_show(run->progress, 0, "sweeps at %d values of %s", N_SWEEPS,
+                    mhb_parameter_name(run->tracking.parameter));
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int i = 0; i < N_SWEEPS; i++) {
+    shb_status status = shb_interrupted() ? SHB_OK : sweep_at(run, value[i], &sweep[i]);
+    mhb_publisher_lock(&run->publisher, true);
+    mhb_publisher_note(&run->publisher, status);
+    mhb_publisher_lock(&run->publisher, false);
+  }
+  SHB_TRY(mhb_publisher_status(&run->publisher));
+  if (shb_interrupted()) return SHB_OK;
+  SHB_TRY(make_response(run, sweep));
+  for (int i = 0; i < N_SWEEPS && !shb_interrupted(); i++) {
+    shb_progress_show(run->progress, 20 + 80. * i / N_SWEEPS, "following from %s %.6g %s",
+                      mhb_parameter_name(run->tracking.parameter), value[i],
+                      mhb_parameter_unit(run->tracking.parameter));
+    SHB_TRY(follow_all(run, sweep[i], value[i]));
+  }
+  run->response->unfinished = shb_interrupted();
+  return mhb_publisher_write(&run->publisher, run->response);
+}
+
+shb_status mhb_tracked_response(const modal_model *model, const mhb_settings *settings,
+                                const char *path, const shb_provenance *provenance,
+                                shb_progress *progress, mhb_response **out) {
+  int           output;
+  mhb_response *sweep[N_SWEEPS] = {NULL};
+  *out                          = NULL;
+  SHB_TRY(mhb_output_named(model, settings->output, &output));
+  tracking_run run = {.model    = model,
+                      .asked    = settings,
+                      .settings = *settings,
+                      .tracking = tracking_of(settings, output),
+                      .progress = progress};
+  mhb_publisher_start(&run.publisher, path, provenance);
+  shb_status status = run_all(&run, sweep);
+  mhb_publisher_stop(&run.publisher);
+  for (int i = 0; i < N_SWEEPS; i++) mhb_response_destroy(sweep[i]);
+  if (status != SHB_OK) {
+    mhb_response_destroy(run.response);
+    return status;
+  }
+  *out = run.response;
+  if (shb_interrupted())
+    return shb_fail(SHB_INTERRUPTED, __FILE__, __LINE__,
+                    "interrupted; the curves so far are saved");
+  SHB_CHECK(run.n_lost == 0, SHB_NOT_CONVERGED,
+            "%d peak%s of the sweeps could not be followed, the first at %s %g %s", run.n_lost,
+            run.n_lost == 1 ? "" : "s", mhb_parameter_name(run.tracking.parameter), run.lost_at,
+            mhb_parameter_unit(run.tracking.parameter));
+  return SHB_OK;
+}

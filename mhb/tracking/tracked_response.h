@@ -1,0 +1,25 @@
+/* The response of a case with mhb.track: all peaks, or all folds, of an output along a parameter.
+ *
+ * Frequency sweeps at a few values of the parameter give peaks (folds) to start from. Each that is
+ * not on a curve traced already is followed both ways. */
+#ifndef MHB_TRACKING_TRACKED_RESPONSE_H
+#define MHB_TRACKING_TRACKED_RESPONSE_H
+
+#include "mesh/base/progress.h"
+#include "mesh/base/publish.h"
+#include "mhb/response/response.h"
+#include "modal/model/model.h"
+
+/* The output that the settings name, as in output_amplitude.h. SHB_ERR_INPUT: the model has no such
+ * probe; the message lists those it has. */
+shb_status mhb_output_named(const modal_model *model, const char *name, int *output);
+
+/* Follow, and publish to path unless it is NULL. Branches are of kind tracked, in the order in which
+ * they were found.
+ *   response  out  the caller destroys it (NULL on error)
+ * Returns SHB_OK, SHB_NOT_CONVERGED if a seed led to no curve, SHB_INTERRUPTED, or SHB_ERR_*. */
+shb_status mhb_tracked_response(const modal_model *model, const mhb_settings *settings,
+                                const char *path, const shb_provenance *provenance,
+                                shb_progress *progress, mhb_response **response);
+
+#endif
