@@ -93,6 +93,8 @@ void mhb_response_destroy(mhb_response *response) {
     free(response->interface_name[i]);
   free(response->interface_name);
   free(response->interface);
+  free(response->track);
+  free(response->output);
   free(response->branch);
   free(response->probe_name);
   free(response->mode_frequency);

@@ -86,6 +86,71 @@ static shb_status write_scales(hid_t file, const mhb_response *response) {
   return write_probe_names(file, response);
 }
 
+static const char *const optimum_name[MHB_OPTIMUM_KINDS] = {[MHB_OPTIMUM_NONE]     = "none",
+                                                            [MHB_OPTIMUM_SMOOTH]   = "smooth",
+                                                            [MHB_OPTIMUM_EXCHANGE] = "exchange",
+                                                            [MHB_OPTIMUM_END]      = "end of range",
+                                                            [MHB_OPTIMUM_JUMP]     = "jump"};
+
+/* What mhb.track followed, and where the highest peak is least. */
+static shb_status write_tracking(hid_t file, const mhb_response *response) {
+  const mhb_optimum *o = &response->optimum;
+  if (!response->track) return SHB_OK;
+  SHB_TRY(h5_write_attribute_text(file, "/", "track", response->track));
+  SHB_TRY(h5_write_attribute_text(file, "/", "output", response->output));
+  if (o->kind == MHB_OPTIMUM_NONE) return SHB_OK;
+  const h5_shape one  = {.rank = 0};
+  const char    *unit = mhb_parameter_unit(response->parameter);
+  SHB_TRY(h5_write_double(file, "/optimum/parameter", one, &o->value, unit,
+                          "parameter at which the highest tracked peak is least"));
+  SHB_TRY(h5_write_double(file, "/optimum/error", one, &o->error, unit,
+                          "length of the bracket that the optimum was located in"));
+  SHB_TRY(h5_write_double(file, "/optimum/amplitude", one, &o->amplitude, "m",
+                          "amplitude of the output there"));
+  SHB_TRY(h5_write_double(file, "/optimum/frequency", H5_SHAPE(2), o->frequency, "Hz",
+                          "frequency of the peak; of both peaks of an exchange, else 0"));
+  SHB_TRY(h5_write_attribute_int(file, "/optimum", "verified", o->verified));
+  return h5_write_attribute_text(file, "/optimum", "kind", optimum_name[o->kind]);
+}
+
+/* Files without mhb.track have none of it. */
+static shb_status read_tracking(hid_t file, const char *path, mhb_response *response) {
+  mhb_optimum *o    = &response->optimum;
+  char        *kind = NULL;
+  SHB_TRY(h5_read_attribute_text(file, "/", "track", &response->track));
+  SHB_TRY(h5_read_attribute_text(file, "/", "output", &response->output));
+  if (!response->track || !h5_exists(file, "/optimum")) return SHB_OK;
+  SHB_TRY(h5_read_attribute_text(file, "/optimum", "kind", &kind));
+  int at = 0;
+  while (kind && at < MHB_OPTIMUM_KINDS && strcmp(kind, optimum_name[at]) != 0) at++;
+  bool known = kind && at < MHB_OPTIMUM_KINDS;
+  free(kind);
+  SHB_CHECK(known, SHB_ERR_INPUT,
+            "%s: /optimum: attribute kind is not one of none, smooth, "
+            "exchange, end of range, jump",
+            path);
+  const struct {
+    const char *name;
+    double     *to;
+    int         n;
+  } part[] = {{"/optimum/parameter", &o->value, 1},
+              {"/optimum/error", &o->error, 1},
+              {"/optimum/amplitude", &o->amplitude, 1},
+              {"/optimum/frequency", o->frequency, 2}};
+  for (int i = 0; i < 4; i++) {
+    h5_shape shape = part[i].n == 1 ? (h5_shape){.rank = 0} : H5_SHAPE(2);
+    double  *values;
+    SHB_TRY(h5_read_double(file, part[i].name, &shape, &values));
+    memcpy(part[i].to, values, sizeof(double) * (size_t)part[i].n);
+    free(values);
+  }
+  int verified;
+  SHB_TRY(h5_read_attribute_int(file, "/optimum", "verified", 0, &verified));
+  o->kind     = (mhb_optimum_kind)at;
+  o->verified = verified != 0;
+  return SHB_OK;
+}
+
 static shb_status write_root(hid_t file, const mhb_response *response) {
   SHB_TRY(h5_write_attribute_int(file, "/", "branches", response->n_branches));
   SHB_TRY(h5_write_attribute_int(file, "/", "engine_order", response->engine_order));
@@ -94,6 +159,7 @@ static shb_status write_root(hid_t file, const mhb_response *response) {
   if (response->run_up) SHB_TRY(h5_write_attribute_int(file, "/", "run_up", 1));
   if (response->unfinished) SHB_TRY(h5_write_attribute_int(file, "/", "finished", 0));
   SHB_TRY(h5_write_attribute_text(file, "/", "parameter", mhb_parameter_name(response->parameter)));
+  SHB_TRY(write_tracking(file, response));
   SHB_TRY(h5_write_attribute_double(file, "/", "psi", response->psi));
   SHB_TRY(h5_write_attribute_double(file, "/", "phi", response->phi));
   SHB_TRY(h5_write_attribute_text(file, "/", "angle_units", "rad"));
@@ -367,6 +433,7 @@ static shb_status read_root(hid_t file, const char *path, mhb_response **out) {
   SHB_TRY(h5_read_attribute_int(file, "/", "finished", 1, &finished));
   response->unfinished = finished == 0;
   response->run_up     = run_up != 0 && response->engine_order >= 1;
+  SHB_TRY(read_tracking(file, path, response));
   SHB_TRY(h5_read_attribute_double(file, "/", "psi", 0, &response->psi));
   SHB_TRY(h5_read_attribute_double(file, "/", "phi", 0, &response->phi));
   SHB_CHECK(response->subharmonics >= 1, SHB_ERR_INPUT,
@@ -425,8 +492,8 @@ static shb_status read_kind(hid_t group, const char *path, int index, mhb_branch
   bool known = text && kind < N_KINDS;
   free(text);
   SHB_CHECK(known, SHB_ERR_INPUT,
-            "%s: /branch_%d: attribute kind must be nonlinear, open, stuck or integration", path,
-            index);
+            "%s: /branch_%d: attribute kind must be nonlinear, open, stuck, integration or tracked",
+            path, index);
   branch->kind = (mhb_branch_kind)kind;
   return SHB_OK;
 }

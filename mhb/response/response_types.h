@@ -95,6 +95,25 @@ typedef struct {
   double         *scale; /* [n] of the excitation */
 } mhb_modal_motion;
 
+/* Where the highest tracked peak is least. */
+typedef enum {
+  MHB_OPTIMUM_NONE,     /* not looked for, or no branch */
+  MHB_OPTIMUM_SMOOTH,   /* one peak is stationary */
+  MHB_OPTIMUM_EXCHANGE, /* two peaks of equal height */
+  MHB_OPTIMUM_END,      /* at an end of the range */
+  MHB_OPTIMUM_JUMP,     /* at the end of a branch: the peak beyond was not followed */
+  MHB_OPTIMUM_KINDS
+} mhb_optimum_kind;
+
+typedef struct {
+  mhb_optimum_kind kind;
+  double           value;        /* of the parameter */
+  double           error;        /* bound of the bracket it was located in, same unit */
+  double           frequency[2]; /* Hz; the second of an exchange, else 0 */
+  double           amplitude;    /* m, of the output followed */
+  bool             verified;     /* a sweep at the optimum has no higher peak */
+} mhb_optimum;
+
 /* One curve. Array layouts:
  *   motion, force  [point][pair][3 (v, u, w)][k = 0..m]
  *   probe          [point][probe][3 (tangential, axial, radial)][k]
@@ -166,6 +185,8 @@ typedef struct {
   bool    unfinished; /* the run that makes it has more to do */
   bool    run_up; /* the speed follows the frequency on the engine order; modes of the top speed */
   double  psi, phi; /* rad, mean of the pairs */
+  char       *track, *output; /* with mhb.track: what is followed, of which output; else NULL */
+  mhb_optimum optimum;
 } mhb_response;
 
 #endif

@@ -24,7 +24,8 @@ typedef struct {
   mhb_curve_place     start;
   mhb_curve_return    back;
   mhb_response       *store;
-  int                 segment; /* under way */
+  int                 segment;   /* under way */
+  int                 direction; /* in which it began */
   double              clock;
 } tracer;
 
@@ -87,6 +88,11 @@ static double beyond_frequency(mhb_arclength *curve, const mhb_curve_point *poin
   return fmax(tracking->frequency[0] - omega, omega - tracking->frequency[1]);
 }
 
+/* The curve has turned in the parameter: where the turn could not be located. */
+static double turned(mhb_arclength *curve, const mhb_curve_point *point, void *context) {
+  return -*(const int *)context * point->tangent[curve->n];
+}
+
 static double too_little_slip(mhb_arclength *curve, const mhb_curve_point *point, void *context) {
   (void)context;
   return LEAST_SLIP - mhb_peak_system_report(curve->system, point).slip_share;
@@ -98,7 +104,7 @@ static double amplitude_slope(mhb_arclength *curve, const mhb_curve_point *point
   return mhb_peak_system_report(curve->system, point).by_value;
 }
 
-enum { MOST_TESTS = 8 };
+enum { MOST_TESTS = 9 };
 
 static int make_tests(tracer *t, mhb_event_test test[MOST_TESTS]) {
   int  n    = 0;
@@ -114,6 +120,13 @@ static int make_tests(tracer *t, mhb_event_test test[MOST_TESTS]) {
   if (peak)
     test[n++] = (mhb_event_test){
         .name = "inflection", .g = mhb_fold_test, .special = MHB_FOLD, .end = MHB_END_TURNED};
+  if (peak)
+    test[n++] = (mhb_event_test){.name      = "inflection, not located",
+                                 .g         = turned,
+                                 .context   = &t->direction,
+                                 .direction = 1,
+                                 .at_next   = true,
+                                 .end       = MHB_END_TURNED};
   test[n++] = (mhb_event_test){
       .name = "corner", .g = too_little_slip, .direction = 1, .end = MHB_END_CORNER};
   test[n++] = (mhb_event_test){.name      = "end of the frequency range",
@@ -138,6 +151,13 @@ static int make_tests(tracer *t, mhb_event_test test[MOST_TESTS]) {
 
 /* ---- both halves of a curve ---- */
 
+/* Drop the points from where the parameter turns. */
+static void keep_monotone(mhb_branch *branch, int direction) {
+  int n = 1;
+  while (n < branch->n_points && direction * (branch->value[n] - branch->value[n - 1]) > 0) n++;
+  if (n < branch->n_points) branch->n_points = n;
+}
+
 static shb_status trace_half(tracer *t, const double *z, double value, int direction, int *segment,
                              mhb_end *end) {
   mhb_seed seed = {.kind       = MHB_SEED_SOLUTION,
@@ -147,9 +167,15 @@ static shb_status trace_half(tracer *t, const double *z, double value, int direc
                    .skip_first = false};
   SHB_TRY(mhb_response_branch(t->store, MHB_BRANCH_TRACKED, segment));
   t->segment         = *segment;
+  t->direction       = direction;
   t->clock           = shb_seconds();
   t->host.max_points = t->tracking->max_points;
-  return mhb_trace_segment(&t->host, &seed, end);
+  bool outside       = direction > 0 ? value >= t->tracking->high : value <= t->tracking->low;
+  if (outside) *end = direction > 0 ? MHB_END_HIGH : MHB_END_LOW;
+  if (outside) return SHB_OK;
+  SHB_TRY(mhb_trace_segment(&t->host, &seed, end));
+  if (t->tracking->kind == MHB_TRACK_PEAK) keep_monotone(&t->store->branch[*segment], direction);
+  return SHB_OK;
 }
 
 static int count_optima(const mhb_branch *branch) {

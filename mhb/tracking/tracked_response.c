@@ -9,6 +9,7 @@
 #include "mhb/branches/record.h"
 #include "mhb/response/describe.h"
 #include "mhb/response/publisher.h"
+#include "mhb/tracking/optimum.h"
 #include "mhb/tracking/tracked_curve.h"
 
 /* A seed lies on a curve if its frequency is within this of the curve's, relative. The curve is
@@ -16,9 +17,18 @@
 static const double ON_CURVE = 5e-4;
 
 /* Peaks below this share of the highest at the same value of the parameter are not followed. */
-static const double MINOR = 0.2;
+static const double MINOR = 0.4;
 
-enum { N_SWEEPS = 5, MOST_HARMONICS = 31, LEAST_HARMONICS = 7 };
+/* Sweeps at the ends of branches are this far beyond them, relative to the parameter. */
+static const double BEYOND = 2e-3;
+
+/* Beyond ends of branches below this share of the highest peak there is no sweep. */
+static const double NEARLY_HIGHEST = 0.9;
+
+/* A peak of a sweep is higher than the optimum if it exceeds it by this, relative. */
+static const double HIGHER = 1e-4;
+
+enum { N_SWEEPS = 5, MOST_FURTHER_SWEEPS = 30, MOST_HARMONICS = 31, LEAST_HARMONICS = 7 };
 
 typedef struct {
   const modal_model  *model;
@@ -49,6 +59,11 @@ shb_status mhb_output_named(const modal_model *model, const char *name, int *out
   for (int i = 0; i < model->n_probes && n < sizeof known - 1; i++)
     n += (size_t)snprintf(known + n, sizeof known - n, ", %.40s", model->probe_name[i]);
   SHB_FAIL(SHB_ERR_INPUT, "mhb.output: the modal file has no probe '%s'; known: %s", name, known);
+}
+
+static const char *output_name(const tracking_run *run) {
+  int place = run->tracking.output;
+  return place < run->model->n_probes ? run->model->probe_name[place] : "contact";
 }
 
 static mhb_tracking tracking_of(const mhb_settings *settings, int output) {
@@ -238,9 +253,60 @@ static shb_status make_response(tracking_run *run, mhb_response *const sweep[N_S
       mhb_response_create(run->model->n_pairs, run->model->n_probes, run->settings.harmonics);
   SHB_CHECK(run->response, SHB_ERR_IO, "out of memory");
   run->response->unfinished = true;
-  run->response->psi        = sweep[0]->psi;
-  run->response->phi        = sweep[0]->phi;
+  run->response->track      = strdup(run->tracking.kind == MHB_TRACK_FOLD ? "fold" : "peak");
+  run->response->output     = strdup(output_name(run));
+  SHB_CHECK(run->response->track && run->response->output, SHB_ERR_IO, "out of memory");
+  run->response->psi = sweep[0]->psi;
+  run->response->phi = sweep[0]->phi;
   return mhb_response_describe(run->response, run->model, &run->settings);
+}
+
+/* A sweep at a value, and the curves through its peaks that are not known yet.
+ *   most  out  highest amplitude of the sweep, m */
+static shb_status sweep_and_follow(tracking_run *run, double value, double *most) {
+  mhb_response *sweep = NULL;
+  shb_progress_show(run->progress, 90, "sweep at %s %.6g %s",
+                    mhb_parameter_name(run->tracking.parameter), value,
+                    mhb_parameter_unit(run->tracking.parameter));
+  shb_status status = sweep_at(run, value, &sweep);
+  if (status == SHB_OK) *most = sqrt(highest(run, sweep));
+  if (status == SHB_OK) status = follow_all(run, sweep, value);
+  mhb_response_destroy(sweep);
+  return status;
+}
+
+/* Where a branch ends inside the range another peak takes over: a sweep beyond each such end. */
+static shb_status chain(tracking_run *run, int *budget) {
+  for (int b = 0; b<run->response->n_branches && * budget> 0; b++) {
+    for (int end = 0; end < 2 && *budget > 0 && !shb_interrupted(); end++) {
+      const mhb_branch *branch = &run->response->branch[b]; /* it moves when others are added */
+      int               point  = end ? branch->n_points - 1 : 0;
+      double            most, value = branch->value[point];
+      if (!mhb_is_highest(&run->tracking, run->response, b, point, NEARLY_HIGHEST)) continue;
+      if (value <= run->tracking.low || value >= run->tracking.high) continue;
+      value += (end ? BEYOND : -BEYOND) * fabs(value);
+      if (value <= run->tracking.low || value >= run->tracking.high) continue;
+      --*budget;
+      SHB_TRY(sweep_and_follow(run, value, &most));
+    }
+  }
+  return SHB_OK;
+}
+
+/* The optimum, until a sweep there finds no peak that is higher. */
+static shb_status verified_optimum(tracking_run *run, int *budget) {
+  while (!shb_interrupted()) {
+    double most;
+    int    before = run->response->n_branches;
+    SHB_TRY(mhb_find_optimum(run->model, &run->settings, &run->tracking, run->response));
+    mhb_optimum *optimum = &run->response->optimum;
+    if (optimum->kind == MHB_OPTIMUM_NONE || (*budget)-- <= 0) return SHB_OK;
+    SHB_TRY(sweep_and_follow(run, optimum->value, &most));
+    optimum->verified = most <= optimum->amplitude * (1 + HIGHER);
+    if (optimum->verified || run->response->n_branches == before) return SHB_OK;
+    SHB_TRY(chain(run, budget));
+  }
+  return SHB_OK;
 }
 
 static shb_status run_all(tracking_run *run, mhb_response *sweep[N_SWEEPS]) {
@@ -263,6 +329,11 @@ static shb_status run_all(tracking_run *run, mhb_response *sweep[N_SWEEPS]) {
                       mhb_parameter_name(run->tracking.parameter), value[i],
                       mhb_parameter_unit(run->tracking.parameter));
     SHB_TRY(follow_all(run, sweep[i], value[i]));
+  }
+  int budget = MOST_FURTHER_SWEEPS;
+  if (run->tracking.kind == MHB_TRACK_PEAK) {
+    SHB_TRY(chain(run, &budget));
+    SHB_TRY(verified_optimum(run, &budget));
   }
   run->response->unfinished = shb_interrupted();
   return mhb_publisher_write(&run->publisher, run->response);
