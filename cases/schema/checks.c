@@ -122,12 +122,11 @@ static void check_followed(case_reader *r) {
   bool tracked = mhb->track != MHB_TRACK_NOTHING;
   if (tracked && given == 0)
     case_reader_issue(r, "mhb.track",
-                      "needs a parameter to follow along; give mhb.vary, such as {n0: [5 N, 50 N]}");
+                      "needs a parameter; give mhb.vary, such as {n0: [5 N, 50 N]}");
   if (tracked && given > 0 && single)
     case_reader_issue(r, "mhb.frequency",
                       "is one number; with mhb.track give [from, to], where peaks are looked for");
-  if (tracked && r->file->run_up)
-    case_reader_issue(r, "mhb.track", "does not go with mhb.run_up");
+  if (tracked && r->file->run_up) case_reader_issue(r, "mhb.track", "does not go with mhb.run_up");
   if (tracked && r->file->n_interfaces > 1)
     case_reader_issue(r, "mhb.track", "does not go with several contact interfaces");
   if (given > 0 && !single && !tracked)

@@ -11,8 +11,8 @@
 #include "modal/model/model.h"
 
 /* Find the optimum of the tracked branches of a response, into response->optimum. An exchange is
- * located by solving both peaks. An optimum at an end of a branch that is no end of the range, where
- * a peak was lost, is MHB_OPTIMUM_JUMP: the least value may lie in the gap beside it.
+ * located by solving both peaks. MHB_OPTIMUM_JUMP: a branch ends there inside the range. The least
+ * value may then lie in the gap beside it.
  *   settings  in  of the balance; harmonics are those of the branches
  * SHB_ERR_IO: no memory. */
 shb_status mhb_find_optimum(const modal_model *model, const mhb_settings *settings,

@@ -1,18 +1,20 @@
 /* Peaks and folds of a response curve as solutions with a free frequency, to be followed along a
  * parameter q (docs/theory/tracking.md).
  *
- *   z = (x, xi),  xi = length omega/range       unknowns, m
+ *   z = (x, xi),  xi = length omega/range    unknowns, m
  *   r(x, omega, q) = 0                          the balance
  *   G = dA/ds = A_z T = 0                       A the output's amplitude; for a fold A = xi
- *   B = [r_x r_xi; c^T],  B [T; .] = [0; 1]     T the unit tangent of the response curve, c a border
+ *   B = [r_x r_xi; c^T],  B [T; .] = [0; 1]     T the unit tangent of the response curve
  *
- * G needs no division by a determinant, so a peak is followed through folds of the curve. With the
- * adjoint [l; k] = B^-T A_z the gradient of G is that of the Lagrangian A - l^T r along T:
+ * c is a border. G needs no division by a determinant, so a peak is followed through folds of the
+ * curve. With the adjoint [l; k] = B^-T A_z the gradient of G is that of the Lagrangian A - l^T r
+ * along T:
  *
  *   dG = T^T (A_zz - l r_zz) dz + (A_zq - l r_zq) T dq
  *
- * It is taken as a one-sided difference of the exact first derivatives over a step of 1e-6 |z|: one
- * more linearisation, with an error of some 1e-6 of the row. This slows Newton, not its limit.
+ * It is a one-sided difference of the exact first derivatives over a step of 1e-6 |z|. This takes
+ * one more linearisation. The error of the row is some 1e-6, which slows Newton's method slightly
+ * and leaves its limit as it is.
  *
  * Sources: Govaerts 2000 (bordered systems); Krack, Gross 2019 (peaks of a response curve). */
 #ifndef MHB_TRACKING_PEAK_SYSTEM_H

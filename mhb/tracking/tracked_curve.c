@@ -11,8 +11,8 @@
 #include "mhb/continuation/segment.h"
 #include "mhb/numerics/vector.h"
 
-/* Below this share of the period slip has as good as ended: the curve of the response has a corner
- * there, and the derivatives of the law lose their meaning. */
+/* Below this share of the period slip has as good as ended. The response curve has a corner there,
+ * and the law's derivatives lose their meaning. */
 static const double LEAST_SLIP = 2e-3;
 
 typedef struct {

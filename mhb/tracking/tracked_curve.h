@@ -31,11 +31,10 @@ typedef struct {
 
 /* Follow from a seed to both ends of the range, into an empty branch of a response.
  *
- * The branch is single-valued in the parameter and ascends in it: it ends where the maximum becomes
- * a minimum (MHB_END_TURNED), where slip ends or begins (MHB_END_CORNER), or where it leaves the
- * frequency range (MHB_END_FREQUENCY). A fold may turn: it ends at the ends of the range, or where
- * it closes. Special points: MHB_OPTIMUM where the amplitude (of a fold: the frequency) is stationary
- * along the curve.
+ * A branch of peaks ascends in the parameter and is single-valued in it. Its ends are those of
+ * mhb_end: the ends of the range, MHB_END_TURNED, MHB_END_CORNER, MHB_END_FREQUENCY. A curve of
+ * folds may turn. It ends at the ends of the range, or where it closes. MHB_OPTIMUM marks where the
+ * amplitude is stationary along the curve; of a fold, where the frequency is.
  * *found false: no peak near the seed. SHB_ERR_IO: no memory. */
 shb_status mhb_trace_tracked(mhb_balance *balance, const mhb_tracking *tracking,
                              const mhb_tracking_seed *seed, mhb_response *response, int branch,

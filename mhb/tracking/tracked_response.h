@@ -1,7 +1,8 @@
 /* The response of a case with mhb.track: all peaks, or all folds, of an output along a parameter.
  *
  * Frequency sweeps at a few values of the parameter give peaks (folds) to start from. Each that is
- * not on a curve traced already is followed both ways. */
+ * not on a known curve is followed both ways. Where a high branch ends inside the range, a further
+ * sweep finds the peak that takes over. A sweep at the optimum verifies it. */
 #ifndef MHB_TRACKING_TRACKED_RESPONSE_H
 #define MHB_TRACKING_TRACKED_RESPONSE_H
 
@@ -14,8 +15,8 @@
  * probe; the message lists those it has. */
 shb_status mhb_output_named(const modal_model *model, const char *name, int *output);
 
-/* Follow, and publish to path unless it is NULL. Branches are of kind tracked, in the order in which
- * they were found.
+/* Follow, and publish to path unless it is NULL. Branches are of kind tracked, in the order in
+ * which they were found.
  *   response  out  the caller destroys it (NULL on error)
  * Returns SHB_OK, SHB_NOT_CONVERGED if a seed led to no curve, SHB_INTERRUPTED, or SHB_ERR_*. */
 shb_status mhb_tracked_response(const modal_model *model, const mhb_settings *settings,

@@ -424,7 +424,7 @@ static void test_faults(void **state) {
       {"/branch_0/motion", {4, {5, 2, 3, 4}}, NAN, "/branch_0/motion: the value at [0, 0, 0, 0]"},
       {"/branch_2/stable", {1, {5}}, 2, "/branch_2/stable: value 0 (from 0) is 2; 1, 0 or -1"},
       {"/branch_2/stable", {1, {5}}, .5, "/branch_2/stable holds 0.5 where whole numbers"},
-      {"/branch_2/special", {1, {5}}, 5, "/branch_2/special: value 0 (from 0) is 5; 0 to 4"},
+      {"/branch_2/special", {1, {5}}, 6, "/branch_2/special: value 0 (from 0) is 6; 0 to 5"},
       {"/branch_0/judged", {1, {5}}, 6, "/branch_0/judged: value 0 (from 0) is 6; 0 to 5"},
       {"/branch_0/loss", {1, {5}}, -1, "/branch_0/loss: value 0 (from 0) is -1; 0 to 3"},
       {"/branch_0/multipliers", {2, {5, 3}}, 1, "where [5, 4] is wanted"},
@@ -446,13 +446,13 @@ static void test_attribute_faults(void **state) {
   (void)state;
   static const struct {
     const char *group, *name, *value, *text;
-  } wrong[] = {
-      {"/", "format", "shroudhb modal model", "is a \"shroudhb modal model\" file"},
-      {"/branch_0", "kind", "linear", "kind must be nonlinear, open, stuck or integration"},
-      {"/branch_0", "complete", "yes", "/branch_0: attribute complete must be a number"},
-      {"/", "psi", "35 deg", "attribute psi must be a number"},
-      {"/", "branches", NULL, "attribute branches is missing"},
-      {"/branch_0", "kind", NULL, "kind must be nonlinear"}};
+  } wrong[] = {{"/", "format", "shroudhb modal model", "is a \"shroudhb modal model\" file"},
+               {"/branch_0", "kind", "linear",
+                "kind must be nonlinear, open, stuck, integration or tracked"},
+               {"/branch_0", "complete", "yes", "/branch_0: attribute complete must be a number"},
+               {"/", "psi", "35 deg", "attribute psi must be a number"},
+               {"/", "branches", NULL, "attribute branches is missing"},
+               {"/branch_0", "kind", NULL, "kind must be nonlinear"}};
   mhb_response *response = sample(PROBES, 5);
   for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
     assert_ok(mhb_response_write(response, scratch("wrong.h5"), &from));

@@ -61,11 +61,11 @@ static void each_tracked_peak_is_that_of_a_sweep(void **state) {
                                 .max_points = 2000};
   mhb_tracking_seed seed     = {x, SHB_TWO_PI * f, 0.2};
   mhb_tracking_end  end;
-  r = mhb_response_create(1, model.n_probes, H);
+  r            = mhb_response_create(1, model.n_probes, H);
   r->parameter = MHB_IN_N0;
   assert_ok(mhb_response_branch(r, MHB_BRANCH_TRACKED, &branch));
   assert_ok(mhb_trace_tracked(b, &tracking, &seed, r, branch, &found, &end));
-  const mhb_branch *t = &r->branch[branch];
+  const mhb_branch *t          = &r->branch[branch];
   int               iterations = 0;
   for (int i = 0; i < t->n_points; i++) iterations += t->iterations[i];
   print_message("%d points, n0 %g to %g (%s; %s), %d iterations, %d optima\n", t->n_points,
