@@ -24,7 +24,7 @@ set(INTEGRATION_TESTS
   cases.scenes.paper_fig8_direct cases.scenes.lost_curves cases.scenes.snubber_blade
   hard.three_degree hard.jumps hard.ends hard.friction hard.resonance hard.balance hard.pairs
   hard.peaks hard.isolas hard.parameters bench.stability bench.modal bench.contact
-  bench.integrate docs.first_case
+  bench.integrate bench.lasting mhb.floquet.friction_limit docs.first_case
   mhb.ring.neimark_sacker cases.install.install
   mesh.blade.shroud_angle)
 if(SHROUDHB_CHROMIUM AND SHROUDHB_PYTHON)

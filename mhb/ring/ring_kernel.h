@@ -23,7 +23,11 @@ INSIDE void NAME(one_pair)(const mhb_ring_modes *a, size_t at, size_t block, boo
   const double *c = a->coefficient, *p = a->p + at;
   double       *z = a->z + block;
   NAME(vector) right[3], left[3], out[3];
-  for (int i = 0; i < 3; i++) right[i] = left[i] = out[i] = (NAME(vector)){0};
+  NAME(vector) behind[3]; /* forces of the left neighbour; loads across two cache lines */
+  for (int i = 0; i < 3; i++) {
+    right[i] = left[i] = out[i] = (NAME(vector)){0};
+    behind[i]                   = NAME(load)(p + (size_t)i * a->row - 1);
+  }
   for (int k = 0; k < a->modes; k++, c += a->stride, z += 2 * MHB_LANES) {
     NAME(vector) row[6];
     NAME(vector) kept = c[MHB_RING_TRACE] * NAME(load)(z + a->newest);
@@ -31,7 +35,7 @@ INSIDE void NAME(one_pair)(const mhb_ring_modes *a, size_t at, size_t block, boo
     for (int i = 0; i < 6; i++) row[i] = c[MHB_RING_ROWS + i] - (NAME(vector)){0};
     for (int i = 0; i < 3; i++) {
       kept -= row[i] * NAME(load)(p + (size_t)i * a->row);
-      lost += row[3 + i] * NAME(load)(p + (size_t)i * a->row - 1);
+      lost += row[3 + i] * behind[i];
     }
     NAME(vector) next = kept - lost;
     NAME(store)(z + a->oldest, next);

@@ -20,6 +20,7 @@
 #include "mesh/base/progress.h"
 #include "mhb/branches/forced_response.h"
 #include "modal/model/model.h"
+#include "tests/bench/z_notch_settings.h"
 #include "tests/support/random_model.h"
 
 typedef struct {
@@ -27,29 +28,6 @@ typedef struct {
   int    points, slipping, opposite, unknown, computed;
   double worst;
 } row;
-
-static mhb_settings z_notch_settings(void) {
-  static const double n0[] = {-250, 10, 15, 25, 50, 100, 250, 1000};
-  mhb_settings        s    = {.blades           = 40,
-                              .engine_order     = 5,
-                              .lasting          = MHB_LASTING_NEVER,
-                              .has_psi          = true,
-                              .has_phi          = true,
-                              .psi              = 35 * SHB_TWO_PI / 360,
-                              .mu               = 0.3,
-                              .kv               = 8e5,
-                              .ku               = {5e5, 0, 5e5},
-                              .n_preloads       = 8,
-                              .frequency        = {90, 270},
-                              .harmonics        = 31,
-                              .motion_tolerance = 0.01,
-                              .subharmonics     = 1,
-                              .scale            = 1,
-                              .tolerance        = 1e-4,
-                              .max_points       = 2000};
-  memcpy(s.n0, n0, sizeof n0);
-  return s;
-}
 
 static mhb_settings random_ring(int quick) {
   mhb_settings s = random_settings(3);
