@@ -4,6 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "cases/schema/case.h"
+
 /* Does usage mention option as a whole word? */
 static bool mentions(const char *usage, const char *option) {
   size_t n = strlen(option);
@@ -31,11 +33,63 @@ static int refuse(const char *what, const char *word) {
   return SHB_ERR_INPUT;
 }
 
+/* The argument of an option, or NULL after a message. */
+static const char *argument(int argc, char **argv, int *i, const char *what) {
+  if (*i + 1 < argc && argv[*i + 1][0] != '\0') return argv[++*i];
+  refuse(what, NULL);
+  return NULL;
+}
+
+/* --set and --into. Returns 0 if the word is neither, -1 after a message, else 1. */
+static int set_override(int argc, char **argv, int *i, command_options *out) {
+  bool set = strcmp(argv[*i], "--set") == 0, into = strcmp(argv[*i], "--into") == 0;
+  if (!set && !into) return 0;
+  const char *text = argument(
+      argc, argv, i,
+      set ? "--set needs KEY=VALUE, such as contact.mu=0.4" : "--into needs the name of a folder");
+  if (!text) return -1;
+  if (into) {
+    out->into = text;
+  } else if (out->n_set == COMMAND_SETS) {
+    refuse("more than 64 times --set", NULL);
+    return -1;
+  } else {
+    out->set[out->n_set++] = text;
+  }
+  return 1;
+}
+
+shb_status command_read(const command_options *o, int stages, case_file *out) {
+  const case_overrides overrides = {o->n_set, o->set, o->into};
+  return case_read_with(o->path, &overrides, stages, stderr, out);
+}
+
+int command_forward(const command_options *o, const char **words, int n) {
+  if (o->quiet) words[n++] = "--quiet";
+  if (o->verbose) words[n++] = "--verbose";
+  if (o->force) words[n++] = "--force";
+  for (int i = 0; i < o->n_set; i++) {
+    words[n++] = "--set";
+    words[n++] = o->set[i];
+  }
+  if (o->into) {
+    words[n++] = "--into";
+    words[n++] = o->into;
+  }
+  if (o->path[0] == '-') words[n++] = "--";
+  words[n++] = o->path;
+  words[n]   = NULL;
+  return n;
+}
+
 int command_parse(int argc, char **argv, const char *usage, command_options *out) {
   *out         = (command_options){0};
   bool options = true;
   for (int i = 1; i < argc; i++) {
-    const char *word = argv[i];
+    const char *word  = argv[i];
+    int         taken = options && mentions(usage, "--set") ? set_override(argc, argv, &i, out) : 0;
+    if (taken < 0) return SHB_ERR_INPUT;
+    if (taken > 0) continue;
     if (options && strcmp(word, "--") == 0) {
       options = false;
     } else if (options && strcmp(word, "--help") == 0) {

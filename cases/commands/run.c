@@ -46,24 +46,15 @@ static void print_results(const case_file *file, int code) {
 
 static shb_status run_stage(const char *stage, const command_options *options,
                             subprocess_result *result) {
-  char  name[32];
-  char *words[8] = {NULL};
-  int   n        = 0;
+  char        name[32];
+  const char *words[COMMAND_WORDS];
   snprintf(name, sizeof name, "shroudhb-%s", stage);
-  words[n++] = subprocess_program(name);
-  SHB_CHECK(words[0], SHB_ERR_IO, "out of memory");
-  char quiet[] = "--quiet", verbose[] = "--verbose", force[] = "--force", end[] = "--";
-  if (options->quiet) words[n++] = quiet;
-  if (options->verbose) words[n++] = verbose;
-  if (options->force) words[n++] = force;
-  if (options->path[0] == '-') words[n++] = end;
-  char *path = strdup(options->path);
-  words[n++] = path;
-  shb_status status =
-      path ? subprocess_run(words, result)
-           : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "%s: out of memory", options->path);
-  free(path);
-  free(words[0]);
+  char *program = subprocess_program(name);
+  SHB_CHECK(program, SHB_ERR_IO, "out of memory");
+  words[0] = program;
+  command_forward(options, words, 1);
+  shb_status status = subprocess_run((char *const *)words, result);
+  free(program);
   return status;
 }
 
@@ -90,7 +81,7 @@ static shb_status run_stages(const case_file *file, const command_options *optio
 
 shb_status run_case(const command_options *options) {
   case_file file;
-  SHB_TRY(case_read(options->path, RUN_ALL, stderr, &file));
+  SHB_TRY(command_read(options, RUN_ALL, &file));
   int               code;
   subprocess_result result[N_STAGES] = {{0}};
   shb_status        status           = run_stages(&file, options, &code, result);

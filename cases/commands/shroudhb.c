@@ -35,6 +35,8 @@ static const char usage[] =
     "\n"
     "  --quiet    no progress, no summary       --verbose  time and memory of every stage\n"
     "  --force    run though up to date         --help, --version\n"
+    "  --set KEY=VALUE  instead of what the case says, such as --set contact.mu=0.4; any number\n"
+    "  --into FOLDER    where the output files go; default: beside the case\n"
     "\n"
     "A stage runs again only when what it depends on has changed. The heavy stage on several "
     "processes:\n"
@@ -133,7 +135,7 @@ static int check_main(const char *name, int argc, char **argv) {
   int             code = parse(argc, argv, &options);
   if (code >= 0) return code;
   case_file  file;
-  shb_status status = case_read(options.path, RUN_ALL, stderr, &file);
+  shb_status status = command_read(&options, RUN_ALL, &file);
   if (status == SHB_OK && !options.quiet) run_describe(&file, stdout);
   if (status == SHB_OK) case_free(&file);
   return command_finish(status);

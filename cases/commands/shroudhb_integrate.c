@@ -15,7 +15,8 @@
 #include "mhb/integration/integration_sweep.h"
 
 static const char usage[] =
-    "usage: shroudhb-integrate [--quiet] [--verbose] [--force] CASE.yaml\n"
+    "usage: shroudhb-integrate [--quiet] [--verbose] [--force] [--set KEY=VALUE]... [--into "
+    "FOLDER] CASE.yaml\n"
     "\n"
     "Integrates CASE.yaml in time, at the frequencies of its block integrate and every preload, "
     "until\n"
@@ -148,7 +149,7 @@ int main(int argc, char **argv) {
   int             code = command_parse(argc, argv, usage, &options);
   if (code >= 0) return code;
   case_file  file;
-  shb_status status = case_read(options.path, CASE_MHB | CASE_INTEGRATE, stderr, &file);
+  shb_status status = command_read(&options, CASE_MHB | CASE_INTEGRATE, &file);
   if (status != SHB_OK) return command_finish(status);
   shb_interrupt_catch();
   openblas_set_num_threads(1); /* the points run in parallel, so BLAS uses one thread */

@@ -22,7 +22,8 @@
 #include "mesh/io/source.h"
 
 static const char usage[] =
-    "usage: shroudhb-mesh [--quiet] [--verbose] [--force] [--inp] CASE.yaml\n"
+    "usage: shroudhb-mesh [--quiet] [--verbose] [--force] [--inp] [--set KEY=VALUE]... [--into "
+    "FOLDER] CASE.yaml\n"
     "\n"
     "Meshes the blade of mesh.blade (tetrahedra or hexahedra) and writes NAME.msh with the\n"
     "groups root, contact_right, contact_left and load; does nothing if that file is up to date\n"
@@ -237,7 +238,7 @@ int main(int argc, char **argv) {
   case_file       file;
   int             code = command_parse(argc, argv, usage, &options);
   if (code >= 0) return code;
-  shb_status status = case_read(options.path, CASE_MESH, stderr, &file);
+  shb_status status = command_read(&options, CASE_MESH, &file);
   if (status != SHB_OK) return command_finish(status);
   shb_interrupt_catch();
   shb_interrupt_grace(2);

@@ -17,7 +17,8 @@
 #include "mhb/tracking/tracked_response.h"
 
 static const char usage[] =
-    "usage: shroudhb-mhb [--quiet] [--verbose] [--force] CASE.yaml\n"
+    "usage: shroudhb-mhb [--quiet] [--verbose] [--force] [--set KEY=VALUE]... [--into FOLDER] "
+    "CASE.yaml\n"
     "       shroudhb-mhb --contact MOTION.yaml [--svg OUT.svg]\n"
     "\n"
     "Solves the multi-harmonic balance of CASE.yaml on its modal file and writes "
@@ -131,7 +132,7 @@ int main(int argc, char **argv) {
     return SHB_ERR_INPUT;
   }
   case_file  file;
-  shb_status status = case_read(options.path, CASE_MHB, stderr, &file);
+  shb_status status = command_read(&options, CASE_MHB, &file);
   if (status != SHB_OK) return command_finish(status);
   shb_interrupt_catch();
   /* the preloads run in parallel and their systems are small, so BLAS uses one thread */

@@ -14,7 +14,8 @@
 #include "modal/stage/stage.h"
 
 static const char usage[] =
-    "usage: shroudhb-modal [--quiet] [--verbose] [--force] CASE.yaml [PETSC OPTIONS]\n"
+    "usage: shroudhb-modal [--quiet] [--verbose] [--force] [--set KEY=VALUE]... [--into FOLDER] "
+    "CASE.yaml [PETSC OPTIONS]\n"
     "       mpiexec -n N shroudhb-modal CASE.yaml\n"
     "\n"
     "Assembles mass and stiffness on the mesh of CASE.yaml, finds the lowest modes, condenses them "
@@ -44,8 +45,13 @@ static bool split_words(int argc, char **argv, words *out) {
       continue;
     }
     out->own[out->n_own++] = argv[i];
-    found                  = found || ended || argv[i][0] != '-';
-    ended                  = ended || strcmp(argv[i], "--") == 0;
+    bool takes = !ended && (strcmp(argv[i], "--set") == 0 || strcmp(argv[i], "--into") == 0);
+    if (takes && i + 1 < argc) {
+      out->own[out->n_own++] = argv[++i];
+      continue;
+    }
+    found = found || ended || argv[i][0] != '-';
+    ended = ended || strcmp(argv[i], "--") == 0;
   }
   return true;
 }
@@ -67,7 +73,7 @@ static int parse(const words *line, command_options *options, case_file *file) {
   }
   int code = command_parse(line->n_own, line->own, usage, options);
   if (code < 0) {
-    shb_status status = case_read(options->path, CASE_MODAL, stderr, file);
+    shb_status status = command_read(options, CASE_MODAL, file);
     if (status != SHB_OK) code = (int)status;
   }
   fflush(stderr);

@@ -18,7 +18,8 @@
 #include "postproc/study/study_publish.h"
 
 static const char usage[] =
-    "usage: shroudhb-post [--quiet] [--verbose] CASE.yaml | NAME.study.h5\n"
+    "usage: shroudhb-post [--quiet] [--verbose] [--set KEY=VALUE]... [--into FOLDER] CASE.yaml\n"
+    "       shroudhb-post [--quiet] [--verbose] NAME.study.h5\n"
     "       shroudhb-post --inspect [--verbose] FILE.h5 [OTHER.h5]\n"
     "       shroudhb-post --inspect [--csv] FILE.h5 PATH[SELECTION]\n"
     "\n"
@@ -136,7 +137,7 @@ int main(int argc, char **argv) {
   }
   if (study_publish_takes(options.path)) return command_finish(publish_study(&options));
   case_file  file;
-  shb_status status = case_read(options.path, CASE_POST, stderr, &file);
+  shb_status status = command_read(&options, CASE_POST, &file);
   if (status != SHB_OK) return command_finish(status);
   /* the stage takes a fraction of a second: it finishes and leaves no temporary file */
   shb_interrupt_catch();

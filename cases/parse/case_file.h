@@ -52,6 +52,7 @@ typedef struct {
 typedef struct {
   char *path;   /* as given */
   char *folder; /* of path, "." if none; outputs and relative input files live here */
+  char *output; /* another folder for the outputs, or NULL */
   char *text;   /* verbatim */
   char *name;
 

@@ -102,7 +102,10 @@ void case_issues_print(case_issues *issues, FILE *out) {
   if (kept > 0) qsort(issues->issue, (size_t)kept, sizeof *issues->issue, by_place);
   for (int i = 0; i < kept && i < CASE_ISSUES_SHOWN; i++) {
     const case_issue *issue = &issues->issue[i];
-    fprintf(out, "%s:", issues->path);
+    if (issue->line < 0)
+      fprintf(out, "%s: --set %s:", issues->path, issues->override[-1 - issue->line]);
+    else
+      fprintf(out, "%s:", issues->path);
     if (issue->line > 0) fprintf(out, "%d:%d:", issue->line, issue->column);
     fprintf(out, " error: %s\n", issue->text ? issue->text : "out of memory");
     print_source(issues, issue, out);

@@ -8,7 +8,7 @@
 enum { CASE_ISSUES_SHOWN = 50 }; /* issues of a file that are printed */
 
 typedef struct {
-  int   line, column; /* from 1; 0 stands for the whole file */
+  int   line, column; /* from 1; 0 stands for the whole file, -1 - i for override i */
   char *text;
 } case_issue;
 
@@ -16,6 +16,8 @@ typedef struct {
   const char *path;   /* as the user gave it */
   const char *text;   /* contents of the file, not NUL-terminated */
   size_t      length; /* bytes */
+  const char *const
+             *override; /* texts of the overrides: an issue at the line -1 - i is shown with i */
   int         n, capacity;
   case_issue *issue; /* [capacity]; the first min(n, capacity) hold a text */
 } case_issues;

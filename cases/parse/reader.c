@@ -56,13 +56,13 @@ void case_reader_issue(const case_reader *r, const char *path, const char *forma
   case_path(around, "%s", path);
   while (line == 0 && around[0]) {
     const case_block *block = find_block(r, around);
-    if (block && block->node->key_line > 0) {
+    if (block && block->node->key_line != 0) {
       line   = block->node->key_line;
       column = block->node->key_column;
     }
     if (!parent_of(around)) break;
   }
-  case_issue_add(r->issues, line > 0 ? line : 1, line > 0 ? column : 1, path, "%s", text);
+  case_issue_add(r->issues, line ? line : 1, line ? column : 1, path, "%s", text);
 }
 
 static void read_default(case_reader *r, const case_key *key, char *base) {

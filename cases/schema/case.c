@@ -79,9 +79,11 @@ static void share(case_reader *r) {
 }
 
 /* Returns true if an input file named in the case cannot be read. */
-static bool read_document(case_issues *issues, int stages, case_file *out) {
+static bool read_document(case_issues *issues, const case_overrides *overrides, int stages,
+                          case_file *out) {
   case_node *root = case_document_parse(issues);
   if (!root && issues->n > 0) return false; /* not YAML, so there is nothing to check */
+  case_overrides_apply(issues, overrides, &root);
   case_reader reader = {.issues = issues, .keys = case_key_table(), .file = out};
   case_reader_walk(&reader, root);
   bool lost = false;
@@ -98,7 +100,24 @@ static bool read_document(case_issues *issues, int stages, case_file *out) {
   return lost;
 }
 
+/* The overrides as comments in the text; the folder of the outputs. */
+static shb_status note_overrides(const case_overrides *overrides, case_file *out) {
+  char *text  = case_overrides_text(overrides, out->text);
+  out->output = overrides->into ? strdup(overrides->into) : NULL;
+  SHB_CHECK(text && (out->output || !overrides->into), SHB_ERR_IO, "%s: out of memory", out->path);
+  free(out->text);
+  out->text = text;
+  return SHB_OK;
+}
+
 shb_status case_read(const char *path, int stages, FILE *errors, case_file *out) {
+  return case_read_with(path, NULL, stages, errors, out);
+}
+
+shb_status case_read_with(const char *path, const case_overrides *overrides, int stages,
+                          FILE *errors, case_file *out) {
+  static const case_overrides none = {0};
+  if (!overrides) overrides = &none;
   *out          = (case_file){0};
   size_t length = 0;
   SHB_TRY(case_text_read(path, &out->text, &length));
@@ -110,11 +129,11 @@ shb_status case_read(const char *path, int stages, FILE *errors, case_file *out)
     SHB_FAIL(SHB_ERR_IO, "%s: out of memory", path);
   }
   case_issues issues = case_issues_start(path, out->text, length);
-  bool        lost   = read_document(&issues, stages, out);
+  bool        lost   = read_document(&issues, overrides, stages, out);
   int         n      = issues.n;
   case_issues_print(&issues, errors);
   case_issues_free(&issues);
-  if (n == 0) return SHB_OK;
+  if (n == 0) return note_overrides(overrides, out);
   case_free(out);
   /* The errors are printed, so the closing line has no text. If the only error is an input file
    * that cannot be read, the case file itself is in order: SHB_ERR_IO. */
@@ -124,6 +143,7 @@ shb_status case_read(const char *path, int stages, FILE *errors, case_file *out)
 void case_free(case_file *file) {
   free(file->path);
   free(file->folder);
+  free(file->output);
   free(file->text);
   free(file->name);
   free(file->mesh_file);

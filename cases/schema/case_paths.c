@@ -7,11 +7,12 @@
 #include "mesh/core/file_format.h"
 
 char *case_output(const case_file *file, const char *suffix) {
-  bool   here = strcmp(file->folder, ".") == 0;
-  size_t size = strlen(file->folder) + strlen(file->name) + strlen(suffix) + 2;
-  char  *path = malloc(size);
+  const char *folder = file->output ? file->output : file->folder;
+  bool        here   = strcmp(folder, ".") == 0;
+  size_t      size   = strlen(folder) + strlen(file->name) + strlen(suffix) + 2;
+  char       *path   = malloc(size);
   if (path)
-    snprintf(path, size, "%s%s%s%s", here ? "" : file->folder, here ? "" : "/", file->name, suffix);
+    snprintf(path, size, "%s%s%s%s", here ? "" : folder, here ? "" : "/", file->name, suffix);
   return path;
 }
 
