@@ -1,6 +1,8 @@
+#define _GNU_SOURCE /* sched_getaffinity */
 /* The front command: checks the case, runs the stages as programs of their own. */
 #include <errno.h>
 #include <limits.h>
+#include <sched.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,6 +13,7 @@
 #include "cases/commands/subprocess.h"
 #include "cases/parse/key_listing.h"
 #include "cases/parse/keys.h"
+#include "cases/parse/yaml.h"
 #include "cases/schema/case.h"
 #include "cases/schema/key_schema.h"
 
@@ -26,7 +29,8 @@ static const char usage[] =
     "  integrate CASE.yaml  points by time integration      -> NAME.integration.h5, drawn by post\n"
     "  post CASE.yaml     report, curves                    -> NAME.html, NAME.csv, NAME.svg\n"
     "  converge CASE.yaml error against time, setting by setting; `shroudhb converge --help`\n"
-    "  check CASE.yaml    check a case file, run nothing\n"
+    "  study STUDY.yaml   many designs of a case on all cores; `shroudhb study --help`\n"
+    "  check FILE.yaml    check a case file or a study file, run nothing\n"
     "  keys               every key of a case file: unit, range, default, meaning; --markdown\n"
     "                     prints the page docs/user/case_reference.md, --schema a JSON Schema\n"
     "  inspect FILE.h5    what a modal or response file holds; of two modal files: A.h5 B.h5;\n"
@@ -129,11 +133,91 @@ static int parse(int argc, char **argv, command_options *options) {
   return SHB_ERR_INPUT;
 }
 
+/* Cores that this process may use. */
+static int n_cores(void) {
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  int n = sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set) : 1;
+  return n > 0 ? n : 1;
+}
+
+/* Is there a program of this name in PATH? */
+static bool in_path(const char *name) {
+  const char *at = getenv("PATH");
+  while (at && *at) {
+    char   path[PATH_MAX];
+    size_t n = strcspn(at, ":");
+    snprintf(path, sizeof path, "%.*s/%s", (int)n, at, name);
+    if (access(path, X_OK) == 0) return true;
+    at += n + (at[n] == ':');
+  }
+  return false;
+}
+
+/* mpiexec of Open MPI refuses root unless two variables allow it. That is the user's choice. */
+static bool refuses_root(void) {
+  if (geteuid() != 0 || getenv("OMPI_ALLOW_RUN_AS_ROOT")) return false;
+  fputs(
+      "shroudhb: warning: mpiexec refuses to run as root, so one core computes; set "
+      "OMPI_ALLOW_RUN_AS_ROOT=1\nand OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 to use all\n",
+      stderr);
+  return true;
+}
+
+/* Does a word ask for something that needs no workers? */
+static bool runs_alone(int argc, char **argv) {
+  for (int i = 1; i < argc; i++)
+    if (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "--check") == 0 ||
+        strcmp(argv[i], "--version") == 0 || strncmp(argv[i], "--design", 8) == 0)
+      return true;
+  return argc < 2 || !in_path("mpiexec") || refuses_root();
+}
+
+/* shroudhb-study with a worker a core and a manager, which sleeps. The processes are not bound to
+ * cores: those that compute are children of the ranks. */
+static int study_main(const char *name, int argc, char **argv) {
+  if (runs_alone(argc, argv)) return become("study", NULL, argc, argv, replace_by);
+  static char *const start[] = {"mpiexec", "--bind-to", "none", "--oversubscribe", "-n"};
+  enum { STARTS = sizeof start / sizeof *start };
+  char   ranks[16];
+  char **words = calloc((size_t)argc + STARTS + 3, sizeof *words);
+  char  *path  = subprocess_program("shroudhb-study");
+  (void)name;
+  snprintf(ranks, sizeof ranks, "%d", n_cores() + 1);
+  if (!words || !path) {
+    fputs("shroudhb: error: out of memory\n", stderr);
+    return SHB_ERR_IO;
+  }
+  int n = 0;
+  for (; n < STARTS; n++) words[n] = start[n];
+  words[n++] = ranks;
+  words[n++] = path;
+  for (int i = 1; i < argc; i++) words[n++] = argv[i];
+  return replace_by(words);
+}
+
+/* A study file has the keys case and vary or plan. */
+static bool is_study(const char *path) {
+  char  *text;
+  size_t length;
+  if (case_text_read(path, &text, &length) != SHB_OK) return false;
+  case_issues issues = case_issues_start(path, text, length);
+  case_node  *root   = case_document_parse(&issues);
+  bool        study  = case_node_find(root, "case") &&
+               (case_node_find(root, "vary") || case_node_find(root, "plan"));
+  case_document_free(root);
+  case_issues_free(&issues);
+  free(text);
+  return study;
+}
+
 static int check_main(const char *name, int argc, char **argv) {
   (void)name;
   command_options options;
   int             code = parse(argc, argv, &options);
   if (code >= 0) return code;
+  char study[] = "--check";
+  if (is_study(options.path)) return become("study", study, argc, argv, replace_by);
   case_file  file;
   shb_status status = command_read(&options, RUN_ALL, &file);
   if (status == SHB_OK && !options.quiet) run_describe(&file, stdout);
@@ -152,10 +236,10 @@ static int run_main(const char *name, int argc, char **argv) {
 static const struct {
   const char  *name;
   command_main main;
-} commands[] = {{"run", run_main},         {"mesh", stage_main},     {"modal", stage_main},
-                {"mhb", stage_main},       {"post", stage_main},     {"converge", stage_main},
-                {"check", check_main},     {"keys", keys_main},      {"inspect", inspect_main},
-                {"contact", contact_main}, {"integrate", stage_main}};
+} commands[] = {{"run", run_main},         {"mesh", stage_main},  {"modal", stage_main},
+                {"mhb", stage_main},       {"post", stage_main},  {"converge", stage_main},
+                {"check", check_main},     {"keys", keys_main},   {"inspect", inspect_main},
+                {"contact", contact_main}, {"study", study_main}, {"integrate", stage_main}};
 
 enum { N_COMMANDS = sizeof commands / sizeof *commands };
 

@@ -5,7 +5,9 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mhb/branches/record.h"
 #include "mhb/continuation/nearest_solution.h"
+#include "mhb/floquet/floquet.h"
 
 struct point_matcher {
   mhb_settings    settings;
@@ -13,6 +15,7 @@ struct point_matcher {
   mhb_newton     *newton;
   post_output     output;
   double         *x, *normal;     /* [n], [n+1] */
+  double          omega;          /* rad/s, of the solution in x */
   double complex *force, *motion; /* [3 pairs], [3 probes] of one harmonic */
 };
 
@@ -108,7 +111,28 @@ int point_matcher_solve(point_matcher *matcher, const curve_place *place, bool s
   if (!(scale > 0) ||
       !mhb_nearest_solution(matcher->newton, b, matcher->normal, scale, span, matcher->x, &omega))
     return 0;
-  found[0] = omega / SHB_TWO_PI;
-  found[1] = amplitude(matcher);
+  matcher->omega = omega;
+  found[0]       = omega / SHB_TWO_PI;
+  found[1]       = amplitude(matcher);
   return 1;
+}
+
+shb_status point_matcher_record(point_matcher *matcher, mhb_response *response, int branch) {
+  mhb_curve_point point = {
+      .x = matcher->x, .value = matcher->omega, .evaluation = matcher->balance->eval};
+  return mhb_record(response, branch, matcher->balance, &point, MHB_PEAK, 0);
+}
+
+shb_status point_matcher_judge(point_matcher *matcher, int *stable) {
+  enum { SUBSTEPS = 128, MAX_STATES = 600 }; /* as of curves with many states (branch_stability) */
+  const mhb_balance    *b        = matcher->balance;
+  const mhb_evaluation *e        = b->eval;
+  mhb_solution          solution = {e->at.omega, b->law, e->info, matcher->x, e->p};
+  mhb_floquet          *floquet  = NULL;
+  mhb_multipliers       multipliers;
+  SHB_TRY(mhb_floquet_create(b->receptance, &matcher->settings, SUBSTEPS, MAX_STATES, &floquet));
+  mhb_floquet_evaluate(floquet, &solution, &multipliers);
+  *stable = multipliers.verdict == MHB_UNSTABLE ? 0 : multipliers.verdict == MHB_STABLE ? 1 : -1;
+  mhb_floquet_destroy(floquet);
+  return SHB_OK;
 }

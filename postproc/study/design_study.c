@@ -87,7 +87,7 @@ study_design *design_study_add(design_study *s, const double *key) {
     free_design(&d);
     return NULL;
   }
-  memcpy(d.key, key, (size_t)s->n_keys * sizeof *key);
+  if (s->n_keys > 0) memcpy(d.key, key, (size_t)s->n_keys * sizeof *key);
   s->design[s->n] = d;
   return &s->design[s->n++];
 }

@@ -1,0 +1,194 @@
+#include "cases/study/design_run.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cases/study/exact_peak.h"
+#include "mhb/branches/forced_response.h"
+
+/* Harmonics of the sweep. On z_notch_blade the peaks of three are within 8 % of those of 31. */
+enum { FEW = 3 };
+
+typedef struct {
+  const case_file    *file;
+  const case_model   *model;
+  int                 n;
+  const study_output *output;
+  study_design       *design;
+  mhb_response       *response;
+} job;
+
+static bool wants(const job *j, study_quantity quantity) {
+  for (int i = 0; i < j->n; i++)
+    if (j->output[i].quantity == quantity) return true;
+  return false;
+}
+
+static void fail(study_design *design, const char *reason) {
+  design->state = STUDY_FAILED;
+  study_design_set_reason(design, reason);
+}
+
+/* The sweep, with the case's own harmonics if few do not carry its load. */
+static shb_status sweep(job *j) {
+  mhb_settings few = j->model->settings;
+  few.stability    = MHB_STABILITY_NEVER;
+  few.lasting      = MHB_LASTING_NEVER;
+  few.flips        = false;
+  few.resume       = false;
+  if (few.search.starts == MHB_SEARCH_PEAKS) few.search.starts = 0;
+  if (few.motion_tolerance > 0 || few.harmonics > FEW * few.subharmonics) {
+    few.motion_tolerance = 0;
+    few.harmonics        = FEW * few.subharmonics;
+  }
+  shb_status status = mhb_forced_response(&j->model->model, &few, NULL, NULL, NULL, &j->response);
+  if (status != SHB_ERR_INPUT) return status;
+  few.harmonics        = j->model->settings.harmonics;
+  few.motion_tolerance = j->model->settings.motion_tolerance;
+  return mhb_forced_response(&j->model->model, &few, NULL, NULL, NULL, &j->response);
+}
+
+/* ---------------------------------------------------------------- outputs */
+
+static void put(job *j, int i, double value, double error) {
+  j->design->value[i] = value;
+  j->design->error[i] = error;
+}
+
+/* The numbers at the highest peak of the first output. */
+static void put_peak(job *j, const exact_peak *peak) {
+  for (int i = 0; i < j->n; i++) switch (j->output[i].quantity) {
+      case STUDY_PEAK:
+        put(j, i, peak->amplitude, peak->amplitude_error);
+        break;
+      case STUDY_FREQUENCY:
+        put(j, i, peak->frequency, peak->frequency_error);
+        break;
+      case STUDY_PEAK_TO_PEAK:
+        put(j, i, peak->peak_to_peak, peak->peak_to_peak_error);
+        break;
+      case STUDY_DISSIPATION:
+        put(j, i, peak->dissipation, peak->dissipation_error);
+        break;
+      case STUDY_STABLE:
+        put(j, i, peak->stable, NAN);
+        break;
+      default:
+        break;
+    }
+}
+
+static shb_status find_peak(job *j, post_output output, bool judge, exact_peak *peak) {
+  return exact_peak_find(&j->model->model, &j->model->settings, j->response, output, judge, peak);
+}
+
+/* The peaks of other probes than the first output. */
+static shb_status put_probes(job *j, post_output first, const exact_peak *peak) {
+  for (int i = 0; i < j->n; i++) {
+    const study_output *o     = &j->output[i];
+    post_output         probe = {POST_PLACE_PROBE, o->index, POST_WHOLE};
+    exact_peak          own   = *peak;
+    if (o->quantity != STUDY_PROBE || o->index >= j->response->n_probes) continue;
+    if (first.place != probe.place || first.index != probe.index)
+      SHB_TRY(find_peak(j, probe, false, &own));
+    put(j, i, own.amplitude, own.amplitude_error);
+  }
+  return SHB_OK;
+}
+
+static void put_modes(job *j) {
+  for (int i = 0; i < j->n; i++) {
+    const study_output *o = &j->output[i];
+    if (o->quantity == STUDY_MODE_FREQUENCY && o->index < j->response->n_modes)
+      put(j, i, j->response->mode_frequency[o->index], NAN);
+  }
+}
+
+/* ---------------------------------------------------------------- curve and reason */
+
+/* Whether a point of a branch must stay when a curve is thinned: ends, peaks, folds. */
+static bool stays(const mhb_branch *b, int i) {
+  return i == 0 || i == b->n_points - 1 || b->special[i] == MHB_PEAK || b->special[i] == MHB_FOLD;
+}
+
+static bool is_kept(const mhb_branch *b, int i, int every) {
+  return b->kind == MHB_BRANCH_NONLINEAR && (i % every == 0 || stays(b, i));
+}
+
+static int count_points(const mhb_response *r, int every) {
+  int n = 0;
+  for (int k = 0; k < r->n_branches; k++)
+    for (int i = 0; i < r->branch[k].n_points; i++) n += is_kept(&r->branch[k], i, every);
+  return n;
+}
+
+static shb_status thin_curves(job *j, post_output output) {
+  const mhb_response *r     = j->response;
+  study_curve        *curve = &j->design->curve;
+  int                 every = 1, at = 0;
+  while (every < 4096 && count_points(r, every) > STUDY_CURVE) every++;
+  int n = count_points(r, every);
+  SHB_TRY(study_curve_take(curve, n < STUDY_CURVE ? n : STUDY_CURVE));
+  for (int k = 0; k < r->n_branches; k++)
+    for (int i = 0; i < r->branch[k].n_points && at < curve->n; i++) {
+      const mhb_branch *b = &r->branch[k];
+      if (!is_kept(b, i, every)) continue;
+      curve->branch[at]    = k;
+      curve->frequency[at] = b->frequency[i];
+      curve->amplitude[at] = post_amplitude(r, b, i, output, post_first_harmonic(b));
+      curve->stable[at++]  = b->stable[i];
+    }
+  return SHB_OK;
+}
+
+/* State and reason: the peak's quality, and the first curve that did not cover the range. */
+static void judge(job *j, const exact_peak *peak) {
+  char text[512]   = "";
+  j->design->state = STUDY_DONE;
+  for (int k = 0; k < j->response->n_branches; k++) {
+    const mhb_branch *b = &j->response->branch[k];
+    if (b->kind != MHB_BRANCH_NONLINEAR || b->main != k || b->complete) continue;
+    snprintf(text, sizeof text, "a curve does not cover mhb.frequency: %s",
+             b->reason ? b->reason : "no reason is known");
+    j->design->state = STUDY_NOT_CONVERGED;
+  }
+  if (!text[0] && peak->edge)
+    snprintf(text, sizeof text,
+             "the highest point is at an end of mhb.frequency; the peak may lie beyond");
+  if (!text[0] && !peak->exact) {
+    snprintf(text, sizeof text, "the peak could not be solved again with more harmonics");
+    j->design->state = STUDY_NOT_CONVERGED;
+  }
+  study_design_set_reason(j->design, text);
+}
+
+static shb_status fill(job *j) {
+  post_output first = post_output_primary(j->response);
+  exact_peak  peak;
+  SHB_TRY(find_peak(j, first, wants(j, STUDY_STABLE), &peak));
+  if (!peak.found) {
+    fail(j->design, "the balance has no solution in mhb.frequency");
+    return SHB_OK;
+  }
+  put_peak(j, &peak);
+  put_modes(j);
+  SHB_TRY(put_probes(j, first, &peak));
+  SHB_TRY(thin_curves(j, first));
+  judge(j, &peak);
+  return SHB_OK;
+}
+
+shb_status design_run(const case_file *file, const case_model *model, int n_outputs,
+                      const study_output *output, study_design *design) {
+  job        j      = {file, model, n_outputs, output, design, NULL};
+  shb_status status = sweep(&j);
+  if (status == SHB_OK || status == SHB_NOT_CONVERGED) {
+    status = fill(&j);
+  } else if (status == SHB_ERR_INPUT) {
+    fail(design, shb_message());
+    status = SHB_OK;
+  }
+  mhb_response_destroy(j.response);
+  return status;
+}

@@ -1,0 +1,34 @@
+/* The highest peak of an output: found on a coarse curve, then solved with enough harmonics.
+ *
+ * A sweep with few harmonics shows where the peaks are. Beside each that may be the highest the
+ * balance is solved with more harmonics in planes across the coarse curve. The maximum over these
+ * planes is the peak of the fine curve. The error is the change by about twice the harmonics. */
+#ifndef CASES_STUDY_EXACT_PEAK_H
+#define CASES_STUDY_EXACT_PEAK_H
+
+#include "mhb/problem/settings.h"
+#include "mhb/response/response.h"
+#include "modal/model/model.h"
+#include "postproc/analysis/outputs.h"
+
+/* Numbers at a peak, and their changes by more harmonics (NAN: not known). */
+typedef struct {
+  bool   found;
+  bool   edge;  /* the highest point is an end of a curve: the peak may lie outside the range */
+  bool   exact; /* solved again; false: a point of the coarse curve */
+  double frequency, amplitude, peak_to_peak, dissipation; /* Hz, m, m, J */
+  double frequency_error, amplitude_error, peak_to_peak_error, dissipation_error;
+  int    stable; /* 1, 0; -1: not judged or undecided */
+} exact_peak;
+
+/* Find the highest peak of an output over all nonlinear branches of a response.
+ *
+ *   settings  in  of the case: harmonics, or those that the tolerance of the motion asks for
+ *   judge     in  compute the multipliers there
+ *
+ * Errors: SHB_ERR_IO no memory; those of mhb_balance_create. */
+shb_status exact_peak_find(const modal_model *model, const mhb_settings *settings,
+                           const mhb_response *response, post_output output, bool judge,
+                           exact_peak *peak);
+
+#endif

@@ -1,0 +1,187 @@
+#include "cases/study/modal_store.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <glob.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "cases/commands/subprocess.h"
+#include "cases/schema/case_paths.h"
+#include "cases/study/digest.h"
+
+enum { MORE_WORDS = 12 };
+
+static char *text3(const char *a, const char *b, const char *c) {
+  size_t size = strlen(a) + strlen(b) + strlen(c) + 1;
+  char  *out  = malloc(size);
+  if (out) snprintf(out, size, "%s%s%s", a, b, c);
+  return out;
+}
+
+shb_status modal_store_open(const study_spec *spec, modal_store *s) {
+  char *stem = text3(spec->folder, "/", spec->name), number[32];
+  *s         = (modal_store){.spec = spec};
+  s->folder  = stem ? text3(stem, ".study.d", "") : NULL;
+  free(stem);
+  snprintf(number, sizeof number, "/log.%ld", (long)getpid());
+  s->log = s->folder ? text3(s->folder, number, "") : NULL;
+  SHB_CHECK(s->log, SHB_ERR_IO, "out of memory");
+  SHB_CHECK(mkdir(s->folder, 0777) == 0 || errno == EEXIST, SHB_ERR_IO, "%s: cannot be made: %s",
+            s->folder, strerror(errno));
+  return SHB_OK;
+}
+
+void modal_store_close(modal_store *s) {
+  for (int i = 0; i < STORE_MODELS; i++)
+    if (s->entry[i].digest[0]) case_model_free(&s->entry[i].model);
+  if (s->log) unlink(s->log);
+  free(s->folder);
+  free(s->log);
+  *s = (modal_store){0};
+}
+
+/* ---------------------------------------------------------------- making a file */
+
+/* The last error line in the log of the stages. */
+static void last_error(const char *path, char *out, size_t size) {
+  char  line[1024];
+  FILE *in = fopen(path, "r");
+  out[0]   = '\0';
+  while (in && fgets(line, sizeof line, in)) {
+    const char *error = strstr(line, "error: ");
+    if (error) snprintf(out, size, "%.*s", (int)strcspn(error + 7, "\n"), error + 7);
+  }
+  if (in) fclose(in);
+}
+
+/* Run a stage with its messages in the log. */
+static shb_status run_logged(const modal_store *s, char *const words[], subprocess_result *result) {
+  int log = open(s->log, O_WRONLY | O_CREAT | O_TRUNC, 0666), before = dup(STDERR_FILENO);
+  if (log >= 0) dup2(log, STDERR_FILENO);
+  if (log >= 0) close(log);
+  shb_status status = subprocess_run(words, result);
+  if (before >= 0) dup2(before, STDERR_FILENO);
+  if (before >= 0) close(before);
+  return status;
+}
+
+/* Run "mesh" or "modal" for a design; the output is FOLDER/DIGEST. */
+static shb_status run_stage(const modal_store *s, const char *stage, const double *value,
+                            const char *digest) {
+  char *words[2 * STUDY_MAX_KEYS + MORE_WORDS] = {NULL};
+  char  program[32], name[64], quiet[] = "--quiet", into[] = "--into", set[] = "--set";
+  int   n = 0, keys = 2 * s->spec->n_keys;
+  snprintf(program, sizeof program, "shroudhb-%s", stage);
+  snprintf(name, sizeof name, "name=%s", digest);
+  char *path               = subprocess_program(program);
+  words[n++]               = path;
+  words[n++]               = quiet;
+  words[n++]               = into;
+  words[n++]               = s->folder;
+  words[n++]               = set;
+  words[n++]               = name;
+  bool              good   = study_spec_words(s->spec, value, words + n) && path;
+  subprocess_result result = {0};
+  words[n + keys]          = s->spec->case_path;
+  shb_status status        = good ? run_logged(s, words, &result)
+                                  : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  for (int i = 0; i < keys; i++) free(words[n + i]);
+  free(path);
+  if (status != SHB_OK)
+    return shb_fail(SHB_ERR_INPUT, __FILE__, __LINE__, "%s: %s", stage, shb_message());
+  char reason[512];
+  last_error(s->log, reason, sizeof reason);
+  SHB_CHECK(result.code != SHB_INTERRUPTED, SHB_INTERRUPTED, "interrupted");
+  SHB_CHECK(result.code == SHB_OK, SHB_ERR_INPUT, "%s: %s", stage,
+            reason[0] ? reason : "failed without a message");
+  return SHB_OK;
+}
+
+/* A modal file of this digest, of this study or of one beside it; malloc'ed, else NULL. */
+static char *find_file(const modal_store *s, const char *digest) {
+  glob_t found   = {0};
+  char  *pattern = text3(s->spec->folder, "/*.study.d/", digest), *path = NULL;
+  char  *whole = pattern ? text3(pattern, ".modal.h5", "") : NULL;
+  if (whole && glob(whole, 0, NULL, &found) == 0 && found.gl_pathc > 0)
+    path = strdup(found.gl_pathv[0]);
+  globfree(&found);
+  free(pattern);
+  free(whole);
+  return path;
+}
+
+/* The same, made if it is not there, under the lock of its digest. */
+static shb_status make_file(const modal_store *s, const double *value, const char *digest,
+                            char **path) {
+  char *stem = text3(s->folder, "/", digest), *lock = stem ? text3(stem, ".lock", "") : NULL;
+  int   held = lock ? open(lock, O_RDWR | O_CREAT, 0666) : -1;
+  if (held >= 0) flock(held, LOCK_EX); /* a dead process holds none */
+  shb_status status = SHB_OK;
+  *path             = find_file(s, digest);
+  if (!*path) {
+    status = run_stage(s, "mesh", value, digest);
+    if (status == SHB_OK) status = run_stage(s, "modal", value, digest);
+    if (status == SHB_OK) *path = find_file(s, digest);
+    if (status == SHB_OK && !*path)
+      status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "modal: left no file");
+  }
+  if (lock) unlink(lock);
+  if (held >= 0) close(held);
+  free(stem);
+  free(lock);
+  return status;
+}
+
+/* ---------------------------------------------------------------- models in memory */
+
+static int entry_of(const modal_store *s, const char *digest) {
+  for (int i = 0; i < STORE_MODELS; i++)
+    if (strcmp(s->entry[i].digest, digest) == 0) return i;
+  return -1;
+}
+
+static int oldest(const modal_store *s) {
+  int at = 0;
+  for (int i = 1; i < STORE_MODELS; i++)
+    if (s->entry[i].used < s->entry[at].used) at = i;
+  return at;
+}
+
+static shb_status load(modal_store *s, const double *value, const case_file *file,
+                       const char *digest, int at) {
+  char      *path   = NULL;
+  shb_status status = SHB_OK;
+  if (s->entry[at].digest[0]) case_model_free(&s->entry[at].model);
+  s->entry[at].digest[0] = '\0';
+  if (file->modal_file) path = case_modal_path(file);
+  if (!file->modal_file) path = find_file(s, digest);
+  if (!path) status = make_file(s, value, digest, &path);
+  if (status == SHB_OK) {
+    status = case_model_read(file, path, 0, true, &s->entry[at].model);
+    if (status != SHB_OK) case_model_free(&s->entry[at].model);
+  }
+  if (status == SHB_OK) snprintf(s->entry[at].digest, DIGEST_TEXT, "%s", digest);
+  free(path);
+  return status;
+}
+
+shb_status modal_store_get(modal_store *s, const double *value, const case_file *file,
+                           case_model *model) {
+  char digest[DIGEST_TEXT];
+  digest_modes(file, s->spec->inputs, digest);
+  int at = entry_of(s, digest);
+  if (at < 0 || file->run_up) { /* the models of a run-up depend on the sweep */
+    if (at < 0) at = oldest(s);
+    SHB_TRY(load(s, value, file, digest, at));
+  }
+  s->entry[at].used      = ++s->clock;
+  *model                 = s->entry[at].model;
+  model->settings        = file->mhb;
+  model->settings.run_up = s->entry[at].model.run_up;
+  return SHB_OK;
+}

@@ -1,0 +1,83 @@
+/* shroudhb-design: computes designs of a study, one after another, for a worker of shroudhb-study.
+ * No MPI. */
+#include <cblas.h>
+#include <omp.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <time.h>
+
+#include "cases/commands/command.h"
+#include "cases/schema/case.h"
+#include "cases/study/design_message.h"
+#include "cases/study/design_process.h"
+#include "cases/study/design_run.h"
+#include "cases/study/modal_store.h"
+#include "mesh/base/progress.h"
+
+static const char usage[] =
+    "usage: shroudhb-design STUDY.yaml\n"
+    "\n"
+    "Computes designs for `shroudhb study`, which starts it. Values of the varied keys come from\n"
+    "standard input, results go to standard output, both in binary.\n";
+
+typedef struct {
+  study_spec  spec;
+  modal_store store;
+} server;
+
+static double cpu_seconds(void) {
+  struct timespec t = {0};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* The outputs of a design. What is wrong with a design becomes its reason. */
+static shb_status evaluate(server *s, const double *value, study_design *design) {
+  case_file  file;
+  case_model model;
+  shb_status status = study_spec_design(&s->spec, value, NULL, NULL, stderr, &file);
+  if (status == SHB_OK) {
+    status = modal_store_get(&s->store, value, &file, &model);
+    if (status == SHB_OK)
+      status = design_run(&file, &model, s->spec.n_outputs, s->spec.output, design);
+    case_free(&file);
+  }
+  if (status == SHB_OK || status == SHB_INTERRUPTED) return status;
+  design->state = STUDY_FAILED;
+  study_design_set_reason(design, shb_message()[0] ? shb_message() : "the case is refused");
+  return SHB_OK;
+}
+
+static shb_status compute(void *context, const double *value, char **bytes, size_t *size) {
+  server       *s = context;
+  design_study  one;
+  double        began  = cpu_seconds();
+  shb_status    status = design_study_create(s->spec.n_keys, s->spec.n_outputs, 0, &one);
+  study_design *design = status == SHB_OK ? design_study_add(&one, value) : NULL;
+  if (status == SHB_OK && !design)
+    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  if (status == SHB_OK) status = evaluate(s, value, design);
+  if (status == SHB_OK) {
+    design->seconds = cpu_seconds() - began;
+    status          = design_message_pack(design, s->spec.n_outputs, bytes, size);
+  }
+  design_study_free(&one);
+  return status;
+}
+
+int main(int argc, char **argv) {
+  command_options options;
+  server          s;
+  int             code = command_parse(argc, argv, usage, &options);
+  if (code >= 0) return code;
+  shb_status status = study_spec_read(options.path, false, stderr, &s.spec);
+  if (status == SHB_OK) status = modal_store_open(&s.spec, &s.store);
+  if (status != SHB_OK) return command_finish(status);
+  shb_interrupt_catch();
+  openblas_set_num_threads(1);
+  omp_set_num_threads(1); /* the designs run side by side */
+  status = design_process_serve(s.spec.n_keys, compute, &s);
+  modal_store_close(&s.store);
+  study_spec_free(&s.spec);
+  return command_finish(status);
+}

@@ -1,0 +1,147 @@
+/* shroudhb-study: a design study over MPI, one manager and workers; or one design of it in full. */
+#include <errno.h>
+#include <mpi.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cases/commands/command.h"
+#include "cases/commands/subprocess.h"
+#include "cases/parse/units.h"
+#include "cases/study/study_run.h"
+#include "mesh/base/progress.h"
+
+static const char usage[] =
+    "usage: shroudhb-study [--quiet] [--verbose] [--force] STUDY.yaml\n"
+    "       mpiexec -n N shroudhb-study STUDY.yaml\n"
+    "       shroudhb-study --design=I STUDY.yaml\n"
+    "       shroudhb-study --check STUDY.yaml\n"
+    "\n"
+    "Runs the designs of STUDY.yaml and writes NAME.study.h5 and NAME.study.csv. Of N processes\n"
+    "one manages and the others compute; `shroudhb study` starts one for every core.\n"
+    "A study that was stopped goes on where it was. Modal files stay in NAME.study.d.\n"
+    "\n"
+    "  --design=I  run design I alone, all stages, with a report of its own\n"
+    "  --check     check the study and all its designs, run nothing\n"
+    "  --force     compute all designs anew\n"
+    "\n"
+    "Exit codes: 0 done, 2 bad input, 3 some designs failed or did not converge, 4 input/output,\n"
+    "130 interrupted (results so far kept).\n";
+
+/* Replace this program by `shroudhb run` for one design, counted from 1. */
+static shb_status run_design(const study_spec *spec, int design, const command_options *options) {
+  enum { MORE = 10 };
+  char *words[2 * STUDY_MAX_KEYS + MORE] = {NULL}, name[3 * CASE_NAME], run[] = "run";
+  char  set[] = "--set", into[] = "--into", quiet[] = "--quiet";
+  int   n     = 0;
+  char *store = study_path(spec, ".study.d");
+  SHB_CHECK(design >= 1 && design <= spec->n_designs, SHB_ERR_INPUT,
+            "--design=%d: the study has the designs 1 to %d", design, spec->n_designs);
+  snprintf(name, sizeof name, "name=%s_%d", spec->name, design);
+  words[n++] = subprocess_program("shroudhb");
+  words[n++] = run;
+  if (options->quiet) words[n++] = quiet;
+  words[n++] = set;
+  words[n++] = name;
+  words[n++] = into;
+  words[n++] = spec->folder;
+  bool good =
+      study_spec_words(spec, spec->design + (size_t)(design - 1) * (size_t)spec->n_keys, words + n);
+  n += 2 * spec->n_keys;
+  words[n] = spec->case_path;
+  free(store);
+  SHB_CHECK(good && words[0], SHB_ERR_IO, "out of memory");
+  execvp(words[0], words);
+  SHB_FAIL(SHB_ERR_IO, "%s: cannot be started: %s", words[0], strerror(errno));
+}
+
+static shb_status check(const study_spec *spec, const command_options *options) {
+  if (options->quiet) return SHB_OK;
+  printf("%s: ok\n  case      %s\n  designs   %d\n", spec->path, spec->case_path, spec->n_designs);
+  for (int k = 0; k < spec->n_keys; k++)
+    printf("  vary      %s%s%s\n", spec->key[k].path, spec->key[k].unit[0] == '-' ? "" : ", ",
+           spec->key[k].unit[0] == '-' ? "" : spec->key[k].unit);
+  return SHB_OK;
+}
+
+/* The study on the manager. */
+static shb_status manage(const study_spec *spec, const command_options *options,
+                         design_process *process) {
+  shb_progress progress = shb_progress_start("study", options->quiet, options->verbose);
+  design_study study    = {0};
+  shb_status   status   = study_run(spec, options->force, process, &progress, &study);
+  bool         whole    = status == SHB_OK || status == SHB_NOT_CONVERGED;
+  if (whole && !options->quiet) study_summary(spec, &study, stdout);
+  shb_progress_note(&progress, "%.2f s in all", shb_seconds() - progress.started);
+  design_study_free(&study);
+  return status;
+}
+
+/* All ranks: the manager reads and checks, the workers need the numbers of keys and outputs. */
+static int work(const command_options *options) {
+  study_spec spec = {0};
+  int        rank, go[3] = {SHB_OK, 0, 0};
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  shb_status status = SHB_OK;
+  if (rank == 0) status = study_spec_read(options->path, true, stderr, &spec);
+  go[0] = (int)status;
+  go[1] = spec.n_keys;
+  go[2] = spec.n_outputs;
+  MPI_Bcast(go, 3, MPI_INT, 0, MPI_COMM_WORLD);
+  design_process process = {.study = options->path, .n_keys = go[1], .n_outputs = go[2]};
+  if (go[0] == SHB_OK) status = rank == 0 ? manage(&spec, options, &process) : crew_serve(&process);
+  int code = rank == 0 ? command_finish(status) : SHB_OK;
+  study_spec_free(&spec);
+  return code;
+}
+
+/* --design=I and --check: without MPI. */
+static int work_alone(const command_options *options, int design) {
+  study_spec spec;
+  shb_status status = study_spec_read(options->path, design == 0, stderr, &spec);
+  if (status == SHB_OK)
+    status = design > 0 ? run_design(&spec, design, options) : check(&spec, options);
+  study_spec_free(&spec);
+  return command_finish(status);
+}
+
+/* Take --design=I or "--design I" out of the words. Returns the design, 0 without one, -1 if it is
+ * wrong. */
+static int take_design(int *argc, char **argv) {
+  static const char option[] = "--design";
+  size_t            length   = strlen(option);
+  int               design   = 0;
+  for (int i = 1; i < *argc; i++) {
+    char why[CASE_WHY];
+    if (strncmp(argv[i], option, length) != 0) continue;
+    bool        joined = argv[i][length] == '=';
+    const char *text   = joined ? argv[i] + length + 1 : i + 1 < *argc ? argv[i + 1] : "";
+    if (!case_integer(text, &design, why) || design < 1) return -1;
+    int taken = joined ? 1 : 2;
+    for (int k = i; k + taken <= *argc; k++) argv[k] = argv[k + taken];
+    *argc -= taken;
+    i--;
+  }
+  return design;
+}
+
+int main(int argc, char **argv) {
+  command_options options;
+  int             design = take_design(&argc, argv);
+  if (design < 0) {
+    fputs("shroudhb: error: --design takes the number of a design, from 1\n", stderr);
+    return SHB_ERR_INPUT;
+  }
+  int code = command_parse(argc, argv, usage, &options);
+  if (code >= 0) return code;
+  if (design > 0 || options.mode) return work_alone(&options, design);
+  if (MPI_Init(&argc, &argv) != MPI_SUCCESS) {
+    fputs("shroudhb: error: MPI cannot be started\n", stderr);
+    return SHB_ERR_IO;
+  }
+  shb_interrupt_catch(); /* after MPI_Init, because the launcher sets handlers of its own */
+  code = work(&options);
+  MPI_Finalize();
+  return code;
+}

@@ -1,0 +1,315 @@
+#include "cases/study/study_run.h"
+
+#include <glob.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cases/study/design_message.h"
+#include "postproc/draw/text_buffer.h"
+#include "postproc/study/study_csv.h"
+#include "postproc/study/study_file.h"
+
+static const double PUBLISH_EVERY = 10; /* s */
+
+typedef struct {
+  const study_spec *spec;
+  design_study     *study;
+  shb_progress     *progress;
+  char             *path;  /* NAME.study.h5 */
+  int               next;  /* first design that was not looked at */
+  int              *twin;  /* [n] an earlier design of the same digest, or -1 */
+  bool             *given; /* [n] handed out, or taken from a file */
+  int               n_done, n_computed, n_to_compute;
+  double            started, published;
+  bool              changed; /* since the last publication */
+} running;
+
+char *study_path(const study_spec *spec, const char *suffix) {
+  size_t size = strlen(spec->folder) + strlen(spec->name) + strlen(suffix) + 2;
+  char  *path = malloc(size);
+  bool   here = strcmp(spec->folder, ".") == 0;
+  if (path)
+    snprintf(path, size, "%s%s%s%s", here ? "" : spec->folder, here ? "" : "/", spec->name, suffix);
+  return path;
+}
+
+/* ---------------------------------------------------------------- the study before any run */
+
+static void name_columns(const study_spec *spec, design_study *s) {
+  for (int k = 0; k < spec->n_keys; k++) {
+    snprintf(s->key[k].name, STUDY_NAME, "%s", spec->key[k].path);
+    snprintf(s->key[k].unit, STUDY_UNIT, "%s", spec->key[k].unit);
+  }
+  for (int i = 0; i < spec->n_outputs; i++) {
+    snprintf(s->output[i].name, STUDY_NAME, "%s", spec->output[i].name);
+    snprintf(s->output[i].unit, STUDY_UNIT, "%s", spec->output[i].unit);
+  }
+}
+
+static shb_status set_up(const study_spec *spec, design_study *s) {
+  static const char *const plans[] = {"grid", "table"};
+  SHB_TRY(design_study_create(spec->n_keys, spec->n_outputs, 0, s));
+  s->name      = strdup(spec->name);
+  s->text      = strdup(spec->text);
+  s->path      = strdup(spec->path);
+  s->case_path = strdup(spec->case_path);
+  s->case_text = strdup(spec->base.text);
+  snprintf(s->plan, sizeof s->plan, "%s", plans[spec->plan]);
+  name_columns(spec, s);
+  bool good = s->name && s->text && s->path && s->case_path && s->case_text;
+  for (int d = 0; d < spec->n_designs && good; d++) {
+    study_design *one = design_study_add(s, spec->design + (size_t)d * (size_t)spec->n_keys);
+    good              = one != NULL;
+    if (one) snprintf(one->digest, STUDY_DIGEST, "%s", spec->digest[d]);
+  }
+  SHB_CHECK(good, SHB_ERR_IO, "no memory for %d designs", spec->n_designs);
+  return SHB_OK;
+}
+
+/* ---------------------------------------------------------------- known results */
+
+typedef struct {
+  const char *digest;
+  int         design;
+} digest_place;
+
+static int by_digest(const void *left, const void *right) {
+  const digest_place *a = left, *b = right;
+  int                 order = strcmp(a->digest, b->digest);
+  return order ? order : (a->design > b->design) - (a->design < b->design);
+}
+
+/* The digests of a study, sorted, equal ones by rising design; malloc'ed. */
+static digest_place *sorted(const design_study *s) {
+  digest_place *list = calloc((size_t)s->n + 1, sizeof *list);
+  for (int i = 0; list && i < s->n; i++) list[i] = (digest_place){s->design[i].digest, i};
+  if (list) qsort(list, (size_t)s->n, sizeof *list, by_digest);
+  return list;
+}
+
+static shb_status find_twins(running *r) {
+  digest_place *list = sorted(r->study);
+  SHB_CHECK(list, SHB_ERR_IO, "out of memory");
+  for (int i = 0; i < r->study->n; i++) {
+    bool same               = i > 0 && strcmp(list[i].digest, list[i - 1].digest) == 0;
+    int  first              = same ? list[i - 1].design : -1;
+    r->twin[list[i].design] = same && r->twin[first] >= 0 ? r->twin[first] : first;
+  }
+  free(list);
+  return SHB_OK;
+}
+
+/* Copy the result of a design with equal inputs. */
+static shb_status copy_result(const design_study *from_study, const study_design *from,
+                              design_study *to_study, study_design *to) {
+  char  *bytes;
+  size_t size;
+  (void)from_study;
+  SHB_TRY(design_message_pack(from, to_study->n_outputs, &bytes, &size));
+  shb_status status = design_message_unpack(bytes, size, to_study->n_outputs, to);
+  to->seconds       = 0;
+  free(bytes);
+  return status;
+}
+
+/* Take over the results that another file has. A failure of a process is tried again. */
+static shb_status take_known(running *r, const design_study *known) {
+  design_study *s = r->study;
+  if (known->n_outputs != s->n_outputs) return SHB_OK; /* other outputs, other digests */
+  digest_place *list   = sorted(known);
+  shb_status    status = list ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  for (int i = 0; i < s->n && status == SHB_OK; i++) {
+    const digest_place wanted = {s->design[i].digest, 0};
+    size_t             low = 0, high = (size_t)known->n;
+    while (low < high) { /* the first that is not before it */
+      size_t middle = (low + high) / 2;
+      if (by_digest(&list[middle], &wanted) < 0)
+        low = middle + 1;
+      else
+        high = middle;
+    }
+    if (r->given[i] || low == (size_t)known->n || strcmp(list[low].digest, wanted.digest) != 0)
+      continue;
+    const study_design *from = &known->design[list[low].design];
+    if (from->state == STUDY_WAITING || from->state == STUDY_FAILED) continue;
+    status      = copy_result(known, from, s, &s->design[i]);
+    r->given[i] = true;
+    r->n_done++;
+  }
+  free(list);
+  return status;
+}
+
+/* This study's own file and all others beside it. Files that cannot be read hold nothing. */
+static shb_status take_all_known(running *r) {
+  char      *pattern = malloc(strlen(r->spec->folder) + 32);
+  glob_t     found   = {0};
+  shb_status status  = SHB_OK;
+  SHB_CHECK(pattern, SHB_ERR_IO, "out of memory");
+  sprintf(pattern, "%s/*.study.h5", r->spec->folder);
+  if (glob(pattern, 0, NULL, &found) != 0) found.gl_pathc = 0;
+  for (size_t i = 0; i < found.gl_pathc && status == SHB_OK; i++) {
+    design_study known;
+    if (study_file_read(found.gl_pathv[i], &known) != SHB_OK) continue;
+    status = take_known(r, &known);
+    design_study_free(&known);
+  }
+  globfree(&found);
+  free(pattern);
+  return status;
+}
+
+/* ---------------------------------------------------------------- while it runs */
+
+static shb_status publish(running *r, bool finished) {
+  post_buffer table  = {0};
+  char       *csv    = study_path(r->spec, ".study.csv");
+  r->study->finished = finished;
+  shb_status status  = csv ? study_file_write(r->study, r->path)
+                           : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  if (status == SHB_OK) {
+    study_csv(r->study, &table);
+    status = post_buffer_publish(&table, csv);
+  }
+  post_buffer_free(&table);
+  free(csv);
+  r->published = shb_seconds();
+  r->changed   = false;
+  return status;
+}
+
+static int next_design(void *context, const double **value) {
+  running *r = context;
+  if (shb_interrupted()) return -1;
+  while (r->next < r->study->n && (r->given[r->next] || r->twin[r->next] >= 0)) r->next++;
+  if (r->next == r->study->n) return -1;
+  r->given[r->next] = true;
+  *value            = r->study->design[r->next].key;
+  return r->next++;
+}
+
+/* "2 min 5 s" */
+static void put_time(double seconds, char out[32]) {
+  int s = (int)(seconds + 0.5);
+  if (s >= 3600) {
+    snprintf(out, 32, "%d h %d min", s / 3600, s / 60 % 60);
+  } else if (s >= 60) {
+    snprintf(out, 32, "%d min %d s", s / 60, s % 60);
+  } else {
+    snprintf(out, 32, "%d s", s);
+  }
+}
+
+static void show(running *r) {
+  char   left[32] = "";
+  double passed   = shb_seconds() - r->started;
+  int    rest     = r->n_to_compute - r->n_computed;
+  if (r->n_computed > 0) put_time(passed / r->n_computed * rest, left);
+  shb_progress_show(r->progress, 100. * r->n_done / r->study->n, "design %d of %d  %d failed  %s%s",
+                    r->n_done, r->study->n, design_study_count(r->study, STUDY_FAILED), left,
+                    left[0] ? " left" : "");
+}
+
+static shb_status done(void *context, int design, const char *bytes, size_t size) {
+  running *r = context;
+  SHB_TRY(design_message_unpack(bytes, size, r->study->n_outputs, &r->study->design[design]));
+  r->n_done++;
+  r->n_computed++;
+  r->changed = true;
+  show(r);
+  return SHB_OK;
+}
+
+static shb_status tick(void *context) {
+  running *r   = context;
+  bool     due = r->changed && shb_seconds() - r->published > PUBLISH_EVERY;
+  return due ? publish(r, false) : SHB_OK;
+}
+
+/* Give the twins the results of the designs that were computed. */
+static shb_status copy_twins(running *r) {
+  for (int i = 0; i < r->study->n; i++) {
+    const study_design *from = r->twin[i] >= 0 ? &r->study->design[r->twin[i]] : NULL;
+    if (r->given[i] || !from || from->state == STUDY_WAITING) continue;
+    SHB_TRY(copy_result(r->study, from, r->study, &r->study->design[i]));
+    r->n_done++;
+  }
+  return SHB_OK;
+}
+
+static int count_work(const running *r) {
+  int n = 0;
+  for (int i = 0; i < r->study->n; i++) n += !r->given[i] && r->twin[i] < 0;
+  return n;
+}
+
+static shb_status run_all(running *r, bool force, design_process *process) {
+  SHB_TRY(find_twins(r));
+  if (!force) SHB_TRY(take_all_known(r));
+  r->n_to_compute = count_work(r);
+  shb_progress_note(r->progress, "%d designs, %d to compute, %d at a time", r->study->n,
+                    r->n_to_compute, crew_workers());
+  r->started = r->published = shb_seconds();
+  const crew_work work      = {r, next_design, done, tick};
+  SHB_TRY(crew_manage(&work, process));
+  SHB_TRY(copy_twins(r));
+  shb_progress_clear(r->progress);
+  return publish(r, !shb_interrupted());
+}
+
+shb_status study_run(const study_spec *spec, bool force, design_process *process,
+                     shb_progress *progress, design_study *s) {
+  shb_status status = set_up(spec, s);
+  running    r      = {.spec = spec, .study = s, .progress = progress};
+  size_t     n      = (size_t)s->n + 1;
+  r.path            = study_path(spec, ".study.h5");
+  r.twin            = malloc(n * sizeof *r.twin);
+  r.given           = calloc(n, sizeof *r.given);
+  if (status == SHB_OK && !(r.path && r.twin && r.given))
+    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  if (status == SHB_OK)
+    status = run_all(&r, force, process);
+  else
+    crew_dismiss();
+  free(r.path);
+  free(r.twin);
+  free(r.given);
+  SHB_TRY(status);
+  if (shb_interrupted())
+    SHB_FAIL(SHB_INTERRUPTED, "interrupted; the same command goes on where it stopped");
+  int failed = design_study_count(s, STUDY_FAILED),
+      not    = design_study_count(s, STUDY_NOT_CONVERGED);
+  SHB_CHECK(failed + not == 0, SHB_NOT_CONVERGED,
+            "%d designs failed, %d did not converge; their rows say why", failed, not );
+  return SHB_OK;
+}
+
+/* ---------------------------------------------------------------- what came out */
+
+/* The design with the least (or largest) value of an output; -1: none has one. */
+static int extreme(const design_study *s, int output, bool largest) {
+  int best = -1;
+  for (int i = 0; i < s->n; i++) {
+    double value = s->design[i].value[output];
+    if (!isfinite(value)) continue;
+    if (best < 0 || (value > s->design[best].value[output]) == largest) best = i;
+  }
+  return best;
+}
+
+void study_summary(const study_spec *spec, const design_study *s, FILE *out) {
+  char *h5 = study_path(spec, ".study.h5"), *csv = study_path(spec, ".study.csv");
+  fprintf(out, "%s: %d designs, %d failed, %d not converged\n", s->name, s->n,
+          design_study_count(s, STUDY_FAILED), design_study_count(s, STUDY_NOT_CONVERGED));
+  for (int i = 0; i < s->n_outputs; i++) {
+    int low = extreme(s, i, false), high = extreme(s, i, true);
+    if (low < 0) continue;
+    fprintf(out, "  %-20s %.6g to %.6g %s, designs %d and %d\n", s->output[i].name,
+            s->design[low].value[i], s->design[high].value[i],
+            strcmp(s->output[i].unit, "-") == 0 ? "" : s->output[i].unit, low + 1, high + 1);
+  }
+  fprintf(out, "table     %s\nstudy     %s\n", csv ? csv : "", h5 ? h5 : "");
+  free(h5);
+  free(csv);
+}
