@@ -177,7 +177,7 @@ static bool runs_alone(int argc, char **argv) {
  * cores: those that compute are children of the ranks. */
 static int study_main(const char *name, int argc, char **argv) {
   if (runs_alone(argc, argv)) return become("study", NULL, argc, argv, replace_by);
-  static char *const start[] = {"mpiexec", "--bind-to", "none", "--oversubscribe", "-n"};
+  static char *const start[] = {"mpiexec", "--quiet", "--bind-to", "none", "--oversubscribe", "-n"};
   enum { STARTS = sizeof start / sizeof *start };
   char   ranks[16];
   char **words = calloc((size_t)argc + STARTS + 3, sizeof *words);

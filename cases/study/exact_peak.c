@@ -31,6 +31,7 @@ typedef struct {
   const mhb_branch *branch;
   int               low, middle, high;
   double            t, found[2]; /* of the best solution so far; found: Hz, m */
+  double            drop;        /* m, from the maximum to the lower end of the last bracket */
 } maximum;
 
 /* ---------------------------------------------------------------- candidates */
@@ -132,25 +133,50 @@ static void shrink(double t[3], double a[3], double at, double value) {
   }
 }
 
+/* Solve at an end of the bracket, 0 or 2; if there is no solution, nearer to the middle. */
+static void solve_end(maximum *m, double end, double *t, double *a) {
+  enum { MOST_PULLS = 6 };
+  *t = end;
+  *a = solve(m, *t);
+  for (int i = 0; i < MOST_PULLS && *a < 0; i++) {
+    *t = 1 + 0.5 * (*t - 1);
+    *a = solve(m, *t);
+  }
+}
+
+/* Solve at a place, or at one nearer to the best so far: Newton's method may fail at a kink. */
+static double solve_near(maximum *m, double best, double *at) {
+  enum { MOST_TRIALS = 5 };
+  double value = solve(m, *at);
+  for (int i = 0; i < MOST_TRIALS && value < 0; i++) {
+    *at   = best + 0.6 * (*at - best);
+    value = solve(m, *at);
+  }
+  return value;
+}
+
 /* Maximise over the bracket. Returns -1 or 1 if the maximum is beyond low or high, 0 if it was
  * found, 2 if a solution is missing. */
 static int maximise(maximum *m) {
   double t[3] = {0, 1, 2}, a[3];
   m->found[1] = -1;
-  for (int i = 0; i < 3; i++)
-    if ((a[i] = solve(m, t[i])) < 0) return 2;
+  if ((a[1] = solve(m, t[1])) < 0) return 2;
+  solve_end(m, 0, &t[0], &a[0]);
+  solve_end(m, 2, &t[2], &a[2]);
+  if (a[0] < 0 || a[2] < 0) return 2;
   if (a[1] < a[0] || a[1] < a[2]) return a[0] > a[2] ? -1 : 1;
   double before = 2;
   for (int n = 3; n < MOST_SOLUTIONS && t[2] - t[0] > WIDTH; n++) {
     double width = t[2] - t[0];
     double at    = next_place(t, a, width > 0.7 * before);
     before       = width;
-    double value = solve(m, at);
-    if (value < 0) return 2;
+    double value = solve_near(m, t[1], &at);
+    if (value < 0) break;
     shrink(t, a, at, value);
     /* A smooth maximum is known before its bracket is closed. */
     if (a[1] - fmin(a[0], a[2]) < 1e-9 * a[1]) break;
   }
+  m->drop = a[1] - fmin(a[0], a[2]);
   return 0;
 }
 
@@ -241,7 +267,8 @@ static shb_status refine(const work *w, const candidate *c, bool judge, exact_pe
   if (fixed) {
     SHB_TRY(solve_peak(w, fixed / c->branch->order > 0 ? fixed / c->branch->order : 1, NAN, judge,
                        &m, &other));
-    other.exact = other.found;
+    other.exact           = other.found;
+    other.amplitude_error = m.drop; /* that of the harmonics is not known */
     if (other.found) *peak = other;
     return SHB_OK;
   }
@@ -250,9 +277,10 @@ static shb_status refine(const work *w, const candidate *c, bool judge, exact_pe
     m.middle        = c->point;
     SHB_TRY(solve_peak(w, levels[level], NAN, judge, &m, &other));
     if (!other.found) return SHB_OK;
-    double t = m.t;
+    double t = m.t, drop = m.drop;
     SHB_TRY(solve_peak(w, levels[level + 1], t, false, &m, &more));
     if (more.found) set_errors(&other, &more);
+    other.amplitude_error += drop;
     other.exact = true;
     *peak       = other;
     settled = more.found && other.amplitude_error < w->settings->motion_tolerance * peak->amplitude;
