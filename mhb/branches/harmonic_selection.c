@@ -174,6 +174,11 @@ static bool is_nearly_linear(const mhb_evaluation *e, int n_pairs) {
 }
 
 void mhb_harmonic_levels_errors(mhb_harmonic_levels *h, mhb_curve_point *point) {
+  if (h->settings->outline && h->n == 1) {
+    point->truncation_kind = MHB_TRUNCATION_NONE;
+    point->truncation = point->modal = NAN;
+    return;
+  }
   mhb_harmonic_level *level = mhb_harmonic_levels_current(h);
   mhb_balance_use(level->balance, point->evaluation);
   point->truncation      = mhb_truncation_error(level->truncation, point->x);

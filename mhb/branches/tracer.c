@@ -224,7 +224,8 @@ static void limit_step(mhb_segment_host *host) {
 }
 
 static shb_status make_tests(mhb_tracer *t, const mhb_balance *b) {
-  int copies = b->receptance->nu, outputs = mhb_outputs(b), n = 0;
+  int copies = b->receptance->nu, n = 0;
+  int outputs  = b->settings->outline ? 0 : mhb_outputs(b);
   t->returns   = calloc((size_t)copies, sizeof *t->returns);
   t->output    = calloc((size_t)outputs + 1, sizeof *t->output);
   t->host.test = calloc((size_t)(copies + outputs) + 4, sizeof *t->host.test);
