@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "cases/parse/keys.h"
+#include "modal/hdf5/h5.h"
 
 static const struct {
   const char *name, *unit;
@@ -22,9 +23,46 @@ static void set(study_output *out, study_quantity quantity, int index, const cha
   snprintf(out->unit, sizeof out->unit, "%s", unit);
 }
 
+/* What a case offers: the probes of the case, or of its modal file. */
+typedef struct {
+  int    n_modes; /* 0: not known before the modes are computed */
+  int    n_probes;
+  char **probe; /* [n_probes] of a modal file, else NULL */
+} offer;
+
+static void read_modal_file(const char *path, offer *o) {
+  hid_t    file;
+  h5_shape shape;
+  if (h5_open(path, &file) != SHB_OK) return; /* the run says why */
+  if (h5_exists(file, "/probe/name") &&
+      h5_read_strings(file, "/probe/name", &o->n_probes, &o->probe) != SHB_OK)
+    o->n_probes = 0;
+  if (h5_exists(file, "/modes/frequency") &&
+      h5_shape_of(file, "/modes/frequency", &shape) == SHB_OK && shape.rank == 1)
+    o->n_modes = (int)shape.dim[0];
+  h5_close(file);
+}
+
+static offer offer_of(const case_file *file) {
+  offer o = {.n_modes = file->modes, .n_probes = file->n_probes};
+  if (file->modal_file) {
+    o = (offer){0};
+    read_modal_file(file->modal_file, &o);
+  }
+  return o;
+}
+
+static void free_offer(offer *o) {
+  for (int i = 0; o->probe && i < o->n_probes; i++) free(o->probe[i]);
+  free(o->probe);
+}
+
+static const char *probe_of(const offer *o, const case_file *file, int i) {
+  return o->probe ? o->probe[i] : file->probe[i].name;
+}
+
 /* Read "modes[I].frequency". Returns 1 if it is one, 0 if not, -1 with a reason if it is wrong. */
-static int parse_mode(const char *name, const case_file *file, study_output *out, char *why,
-                      size_t size) {
+static int parse_mode(const char *name, const offer *o, study_output *out, char *why, size_t size) {
   char *end;
   if (strncmp(name, "modes[", 6) != 0) return 0;
   long i = strtol(name + 6, &end, 10);
@@ -32,32 +70,41 @@ static int parse_mode(const char *name, const case_file *file, study_output *out
     snprintf(why, size, "'%s': expected modes[I].frequency, I from 1", name);
     return -1;
   }
-  if (i < 1 || (file->modes > 0 && !file->modal_file && i > file->modes)) {
-    snprintf(why, size, "'%s': the modes of the case are 1 to %d", name, file->modes);
+  if (i < 1 || (o->n_modes > 0 && i > o->n_modes)) {
+    snprintf(why, size, "'%s': the modes of the case are 1 to %d", name, o->n_modes);
     return -1;
   }
   set(out, STUDY_MODE_FREQUENCY, (int)i - 1, name, "Hz");
   return 1;
 }
 
-bool study_output_parse(const char *name, const case_file *file, study_output *out, char *why,
-                        size_t size) {
+/* Returns 1 if the name is an output, -1 with a reason if it is a wrong one, 0 if it is none. */
+static int parse(const char *name, const case_file *file, const offer *o, study_output *out,
+                 char *why, size_t size) {
   for (int i = 0; i < N_WORDS; i++)
     if (strcmp(name, words[i].name) == 0) {
       set(out, (study_quantity)i, 0, name, words[i].unit);
-      return true;
+      return 1;
     }
-  int mode = parse_mode(name, file, out, why, size);
-  if (mode) return mode > 0;
-  for (int i = 0; i < file->n_probes; i++)
-    if (strcmp(name, file->probe[i].name) == 0) {
+  for (int i = 0; i < o->n_probes; i++)
+    if (strcmp(name, probe_of(o, file, i)) == 0) {
       set(out, STUDY_PROBE, i, name, "m");
-      return true;
+      return 1;
     }
-  why[0] = '\0';
-  case_append(why, size, "'%s' is no output of this case; known: ", name);
-  for (int i = 0; i < N_WORDS; i++) case_append(why, size, "%s, ", words[i].name);
-  for (int i = 0; i < file->n_probes; i++) case_append(why, size, "%s, ", file->probe[i].name);
-  case_append(why, size, "modes[I].frequency");
-  return false;
+  return parse_mode(name, o, out, why, size);
+}
+
+bool study_output_parse(const char *name, const case_file *file, study_output *out, char *why,
+                        size_t size) {
+  offer o    = offer_of(file);
+  int   what = parse(name, file, &o, out, why, size);
+  if (what == 0) {
+    why[0] = '\0';
+    case_append(why, size, "'%s' is no output of this case; known: ", name);
+    for (int i = 0; i < N_WORDS; i++) case_append(why, size, "%s, ", words[i].name);
+    for (int i = 0; i < o.n_probes; i++) case_append(why, size, "%s, ", probe_of(&o, file, i));
+    case_append(why, size, "modes[I].frequency");
+  }
+  free_offer(&o);
+  return what > 0;
 }

@@ -44,6 +44,14 @@ add_dependencies(test_cases_converge_converge programs)
 shb_test(cases/converge resized_case shb_cases_converge)
 shb_test(cases/converge compare shb_cases_converge tests_models)
 
+# A study over its programs, with one and with three ranks.
+if(SHROUDHB_PYTHON)
+  add_test(NAME cases.study.study
+    COMMAND ${SHROUDHB_PYTHON} -B ${CMAKE_CURRENT_SOURCE_DIR}/cases/study/test_study.py
+            $<TARGET_FILE_DIR:shroudhb-study> ${PROJECT_SOURCE_DIR}/cases/bring_your_own)
+  set_tests_properties(cases.study.study PROPERTIES SKIP_RETURN_CODE 77)
+endif()
+
 # shb_scene_test(noun scene libraries...): a shipped scene from mesh to curves.
 function(shb_scene_test noun scene)
   shb_test(cases/scenes ${noun} shb_case shb_mhb tests_responses ${ARGN})

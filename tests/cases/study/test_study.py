@@ -1,0 +1,265 @@
+"""cases.study.study: a study on the programs: results, ranks, resumption, crashes, faults.
+
+Usage: test_study.py BIN CASE_FOLDER, with the programs in BIN. Exit code 77: h5py is missing.
+"""
+import csv
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+try:
+    import h5py
+except ImportError:
+    sys.exit(77)
+
+BIN, SCENE = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
+ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT='1', OMPI_ALLOW_RUN_AS_ROOT_CONFIRM='1')
+
+GRID = """name: grid
+case: case.yaml
+vary:
+  contact.n0: {from: 0.1 N, to: 0.5 N, points: 5}
+  contact.mu: [0.3, 0.4]
+plan: grid
+outputs: [peak, frequency, peak_to_peak, stable, dissipation, mass, 'modes[1].frequency']
+"""
+
+
+def program(name):
+    return os.path.join(BIN, name)
+
+
+def run(*words, code=0):
+    done = subprocess.run(words, capture_output=True, text=True, env=ENVIRONMENT, timeout=300)
+    if done.returncode != code:
+        raise AssertionError(f'{words}: code {done.returncode}, not {code}\n{done.stdout}'
+                             f'{done.stderr}')
+    return done.stdout + done.stderr
+
+
+def write(name, text):
+    with open(name, 'w') as out:
+        out.write(text)
+    return name
+
+
+def read(name):
+    with open(name, 'rb') as source:
+        return source.read()
+
+
+def rows(name):
+    with open(name, newline='') as source:
+        return list(csv.DictReader(source))
+
+
+def near(value, expected, tolerance):
+    if abs(value - expected) > tolerance * abs(expected):
+        raise AssertionError(f'{value} is not {expected} within {tolerance}')
+
+
+def largest(a):
+    """Largest length of Re(a exp(jt)) in a cycle."""
+    return float(((abs(a) ** 2).sum() + abs((a ** 2).sum())) / 2) ** 0.5
+
+
+def check_values():
+    """The peak at n0 = 0.3 N, mu = 0.4 is the located one of a whole run."""
+    table = rows('grid.study.csv')
+    assert len(table) == 10 and all(row['status'] == 'done' for row in table), table
+    row = table[5]
+    assert float(row['contact.n0']) == 0.3 and float(row['contact.mu']) == 0.4, row
+    run(program('shroudhb'), 'run', '--quiet', 'case.yaml')
+    with h5py.File('three_degree.response.h5') as source:
+        branches = [source[name] for name in source if name.startswith('branch_')]
+        peak, place = max(
+            (largest(b['probe'][p, 0, :, 1]), float(b['frequency'][p]))
+            for b in branches if 'harmonics' in b
+            for p in range(len(b['frequency'])) if b['n0'][p] == 0.3)
+    assert float(row['peak']) >= peak # the run locates the peak of the sum of squares
+    near(float(row['peak']), peak, 1e-4)
+    near(float(row['frequency']), place, 1e-3)
+    assert row['mass'] == row['peak'], row
+    near(6.283185307179586 * float(row['modes[1].frequency']), 0.94827, 1e-5)
+    assert row['stable'] in ('1', '0'), row
+    assert float(row['peak_to_peak']) > 1.9 * float(row['peak'])
+    assert float(row['dissipation']) > 0
+    with h5py.File('grid.study.h5') as source:
+        assert source.attrs['kind'] in (b'study', 'study') and source.attrs['finished'] == 1
+        assert source['design/value'].shape == (10, 2)
+        assert list(source['design/status'][:]) == [1] * 10
+        start = source['curve/start'][:]
+        assert start[0] == 0 and all(0 < b - a <= 200 for a, b in zip(start, start[1:]))
+
+
+def check_ranks():
+    """Three ranks give the bytes of one."""
+    alone = read('grid.study.csv')
+    run('mpiexec', '-n', '3', '--oversubscribe', program('shroudhb-study'), '--quiet', '--force',
+        'grid.yaml')
+    assert read('grid.study.csv') == alone
+    run(program('shroudhb'), 'study', '--quiet', '--force', 'grid.yaml')
+    assert read('grid.study.csv') == alone
+
+
+def check_reuse():
+    """A longer study takes what a shorter one has, and equals a study from nothing."""
+    head = 'contact.n0, contact.mu\n'
+    lines = ['0.1 N, 0.3\n', '0.45, 0.35\n', '0.1, 0.3\n', '0.2 N, 0.35\n']
+    write('table.yaml', 'case: case.yaml\nplan: {table: t.csv}\noutputs: [peak, frequency]\n')
+    write('t.csv', head + ''.join(lines[:2]))
+    run(program('shroudhb-study'), '--quiet', 'table.yaml')
+    write('t.csv', head + ''.join(lines))
+    said = run(program('shroudhb-study'), '--verbose', 'table.yaml')
+    assert '4 designs, 1 to compute' in said, said # two are known, two are equal
+    resumed = read('table.study.csv')
+    assert rows('table.study.csv')[0]['peak'] == rows('table.study.csv')[2]['peak']
+    run(program('shroudhb-study'), '--quiet', '--force', 'table.yaml')
+    assert read('table.study.csv') == resumed
+    write('other.yaml', 'case: case.yaml\nvary: {contact.n0: [0.45 N, 0.1 N], contact.mu: 0.35}\n'
+          'outputs: [peak, frequency]\n')
+    said = run(program('shroudhb-study'), '--verbose', 'other.yaml')
+    assert '2 designs, 1 to compute' in said, said # the other file is known too
+
+
+def child_of(parent, name):
+    """A process of this name below parent; 0: none yet."""
+    for entry in filter(str.isdigit, os.listdir('/proc')):
+        try:
+            with open(f'/proc/{entry}/stat') as source:
+                text = source.read()
+        except OSError:
+            continue
+        own, state = text[text.index('(') + 1:text.rindex(')')], text[text.rindex(')') + 2:].split()
+        if own == name[:15] and int(state[1]) == parent:
+            return int(entry)
+    return 0
+
+
+def many(name):
+    return write(f'{name}.yaml', f'name: {name}\ncase: case.yaml\nvary:\n'
+                 '  contact.n0: {from: 0.11 N, to: 0.41 N, points: 12}\noutputs: [peak]\n')
+
+
+def check_crash():
+    """A design whose process dies is a row; the next run computes it, and only it."""
+    many('whole')
+    many('crash')
+    run(program('shroudhb-study'), '--quiet', '--force', 'whole.yaml')
+    os.rename('whole.study.h5', 'whole.h5') # not to be found by the next study
+    study = subprocess.Popen([program('shroudhb-study'), '--quiet', '--force', 'crash.yaml'],
+                             stderr=subprocess.PIPE, env=ENVIRONMENT)
+    child, waited = 0, time.time()
+    while not child and time.time() < waited + 60:
+        child = child_of(study.pid, 'shroudhb-design')
+    os.kill(child, signal.SIGKILL)
+    study.communicate(timeout=300)
+    assert study.returncode == 3, study.returncode
+    failed = [row for row in rows('crash.study.csv') if row['status'] == 'failed']
+    assert len(failed) == 1 and 'signal 9' in failed[0]['reason'], failed
+    said = run(program('shroudhb-study'), '--verbose', 'crash.yaml')
+    assert '12 designs, 1 to compute' in said, said
+    assert read('crash.study.csv') == read('whole.study.csv')
+
+
+def check_kill():
+    """A study killed on the way leaves files that are whole, and goes on."""
+    many('killed')
+    os.remove('crash.study.h5')
+    study = subprocess.Popen([program('shroudhb-study'), '--quiet', '--force', 'killed.yaml'],
+                             env=ENVIRONMENT, start_new_session=True)
+    while not child_of(study.pid, 'shroudhb-design'):
+        time.sleep(0.01)
+    time.sleep(0.3)
+    os.killpg(study.pid, signal.SIGKILL)
+    study.wait()
+    run(program('shroudhb-study'), '--quiet', 'killed.yaml')
+    assert read('killed.study.csv') == read('whole.study.csv')
+
+
+FAULTS = [
+    ('vary: {contact.mv: [1, 2]}', "contact.mv: is no key of a case; did you mean 'mu'?"),
+    ('vary: {contct.mu: [1, 2]}', "contct.mu: is no key of a case; did you mean 'contact'?"),
+    ('vary: {contact.to: [1, 2]}', 'contact.to: is not a number'),
+    ('vary: {contact.mu: [0.3, -1]}', 'design 2: contact.mu: is -1, must be 0 to'),
+    ('vary: {contact.mu: []}', 'contact.mu: the list is empty'),
+    ('vary: {contact.n0: [1 m]}', 'contact.n0:'),
+    ('vary: {contact.n0: {from: 1 N, to: 2 N}}', 'a grid needs the number of points'),
+    ('vary: {contact.n0: {from: 2 N, to: 1 N, points: 3}}', 'from below to'),
+    ('vary: {contact.n0: {from: 0 N, to: 1 N, points: 3, scale: log}}', 'a range above 0'),
+    ('vary: {contact.n0: {form: 0 N, to: 1 N, points: 3}}', "did you mean 'from'?"),
+    ('vary: {contact.mu: [0.3]}\noutputs: [peek]', "'peek' is no output of this case"),
+    ('vary: {contact.mu: [0.3]}\noutputs: [modes[0].frequency]', 'outputs'),
+    ("vary: {contact.mu: [0.3]}\noutputs: ['modes[0].frequency']", 'the modes of the case'),
+    ('vary: {contact.mu: [0.3]}\nplan: gird', 'plan: expected grid'),
+    ('vray: {contact.mu: [0.3]}', "did you mean 'vary'?"),
+    ('plan: {table: none.csv}', 'none.csv: cannot be opened'),
+    ('plan: {table: short.csv}', 'row 1 has 1 columns, the header has 2'),
+    ('plan: {table: wrong.csv}', 'contact.nu: is no key of a case'),
+    ('plan: {table: empty.csv}', 'holds no design'),
+]
+
+
+def check_faults():
+    """Every fault is refused by one line, by check and before anything runs."""
+    write('short.csv', 'contact.mu,contact.n0\n0.3\n')
+    write('wrong.csv', 'contact.mu,contact.nu\n0.3,1\n')
+    write('empty.csv', 'contact.mu\n')
+    for text, message in FAULTS:
+        write('fault.yaml', f'case: case.yaml\n{text}\n')
+        said = run(program('shroudhb-study'), 'fault.yaml', code=2)
+        assert message in said, f'{text}: {said}'
+        assert not os.path.exists('fault.study.h5'), text
+        said = run(program('shroudhb-study'), '--check', 'fault.yaml', code=2)
+        assert message in said, f'{text}: {said}'
+    assert 'designs   10' in run(program('shroudhb'), 'check', 'grid.yaml')
+
+
+def check_overrides():
+    """--set changes a key as the file would; --into moves the output."""
+    os.mkdir('elsewhere')
+    run(program('shroudhb'), 'mhb', '--quiet', '--set', 'contact.n0=0.3 N', '--set', 'mhb.harmonics=3',
+        '--into', 'elsewhere', 'case.yaml')
+    with h5py.File('elsewhere/three_degree.response.h5') as source:
+        settings, text = source.attrs['settings'], source.attrs['case_text']
+    settings, text = (t.decode() if isinstance(t, bytes) else t for t in (settings, text))
+    assert 'contact.n0 = 0.3' in settings.replace('0.29999999999999999', '0.3'), settings
+    assert '# --set contact.n0=0.3 N' in text
+    for word, message in [('contact.mv=1', "unknown key; did you mean 'mu'?"),
+                          ('contact.n0[7]=1', 'has the entries 0 to 3'),
+                          ('contact.mu', 'expected KEY=VALUE'),
+                          ('contact.mu=-1', 'contact.mu: is -1')]:
+        said = run(program('shroudhb'), 'check', '--set', word, 'case.yaml', code=2)
+        assert f'--set {word}: error:' in said and message in said, said
+
+
+def check_one_design():
+    """--design=I is the run of that design, with a report of its own."""
+    run(program('shroudhb'), 'study', '--design', '6', 'grid.yaml')
+    assert os.path.exists('grid_6.html') and os.path.exists('grid_6.response.h5')
+    said = run(program('shroudhb'), 'study', '--design=11', 'grid.yaml', code=2)
+    assert 'the study has the designs 1 to 10' in said, said
+
+
+def main():
+    folder = tempfile.mkdtemp()
+    try:
+        for name in ('case.yaml', 'write_modal.py'):
+            shutil.copy(os.path.join(SCENE, name), folder)
+        os.chdir(folder)
+        run(sys.executable, 'write_modal.py')
+        write('grid.yaml', GRID)
+        run(program('shroudhb-study'), '--quiet', 'grid.yaml')
+        for check in (check_values, check_ranks, check_reuse, check_crash, check_kill, check_faults,
+                      check_overrides, check_one_design):
+            check()
+            print(check.__name__, 'passed')
+    finally:
+        shutil.rmtree(folder)
+
+
+main()
