@@ -34,12 +34,12 @@ void       point_matcher_destroy(point_matcher *matcher);
 int point_matcher_solve(point_matcher *matcher, const curve_place *place, bool same_frequency,
                         double found[2]);
 
-/* Append the solution found last to a branch of a response with as many pairs and probes. The branch
- * has the harmonics of the matcher. Errors: SHB_ERR_IO no memory. */
+/* Append the solution found last to a branch of a response with as many pairs and probes. The
+ * branch has the harmonics of the matcher. Errors: SHB_ERR_IO no memory. */
 shb_status point_matcher_record(point_matcher *matcher, mhb_response *response, int branch);
 
-/* Verdict of the multipliers on the solution found last: 1 stable, 0 unstable, -1 undecided. Errors:
- * SHB_ERR_IO no memory. */
+/* Verdict of the multipliers on the solution found last: 1 stable, 0 unstable, -1 undecided.
+ * Errors: SHB_ERR_IO no memory. */
 shb_status point_matcher_judge(point_matcher *matcher, int *stable);
 
 #endif

@@ -15,8 +15,8 @@
  *
  * Errors: SHB_ERR_INPUT a fault in the file; SHB_ERR_IO the file cannot be opened. */
 shb_status case_read(const char *path, int stages, FILE *errors, case_file *out);
-/* The same with overrides, which may be NULL. The text of the case then ends with a comment line for
- * each. */
+/* The same with overrides, which may be NULL. The text of the case then ends with a comment line
+ * for each. */
 shb_status case_read_with(const char *path, const case_overrides *overrides, int stages,
                           FILE *errors, case_file *out);
 void       case_free(case_file *file);

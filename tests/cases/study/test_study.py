@@ -222,8 +222,8 @@ def check_faults():
 def check_overrides():
     """--set changes a key as the file would; --into moves the output."""
     os.mkdir('elsewhere')
-    run(program('shroudhb'), 'mhb', '--quiet', '--set', 'contact.n0=0.3 N', '--set', 'mhb.harmonics=3',
-        '--into', 'elsewhere', 'case.yaml')
+    run(program('shroudhb'), 'mhb', '--quiet', '--set', 'contact.n0=0.3 N',
+        '--set', 'mhb.harmonics=3', '--into', 'elsewhere', 'case.yaml')
     with h5py.File('elsewhere/three_degree.response.h5') as source:
         settings, text = source.attrs['settings'], source.attrs['case_text']
     settings, text = (t.decode() if isinstance(t, bytes) else t for t in (settings, text))
