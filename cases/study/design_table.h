@@ -12,7 +12,8 @@ typedef struct {
   char  *text;
 } design_table;
 
-/* Read a CSV file with commas. Empty lines are left out; cells are not quoted. False with a reason, one line. Free it after success. */
+/* Read a CSV file with commas. Empty lines are left out; cells are not quoted. False with a reason,
+ * one line. Free it after success. */
 bool design_table_read(const char *path, design_table *table, char *why, size_t size);
 void design_table_free(design_table *table);
 

@@ -72,7 +72,7 @@ static shb_status manage(const study_spec *spec, const command_options *options,
   design_study study    = {0};
   shb_status   status   = study_run(spec, options->force, process, &progress, &study);
   bool         whole    = status == SHB_OK || status == SHB_NOT_CONVERGED;
-  if (whole && !options->quiet) study_summary(spec, &study, stdout);
+  if (whole && !options->quiet) study_run_summary(spec, &study, stdout);
   shb_progress_note(&progress, "%.2f s in all", shb_seconds() - progress.started);
   design_study_free(&study);
   return status;

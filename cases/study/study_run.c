@@ -9,6 +9,7 @@
 #include "postproc/draw/text_buffer.h"
 #include "postproc/study/study_csv.h"
 #include "postproc/study/study_file.h"
+#include "postproc/study/study_publish.h"
 
 static const double PUBLISH_EVERY = 10; /* s */
 
@@ -255,7 +256,8 @@ static shb_status run_all(running *r, bool force, design_process *process) {
   SHB_TRY(crew_manage(&work, process));
   SHB_TRY(copy_twins(r));
   shb_progress_clear(r->progress);
-  return publish(r, !shb_interrupted());
+  SHB_TRY(publish(r, !shb_interrupted()));
+  return study_publish(r->study, r->path); /* the page */
 }
 
 shb_status study_run(const study_spec *spec, bool force, design_process *process,
@@ -298,7 +300,7 @@ static int extreme(const design_study *s, int output, bool largest) {
   return best;
 }
 
-void study_summary(const study_spec *spec, const design_study *s, FILE *out) {
+void study_run_summary(const study_spec *spec, const design_study *s, FILE *out) {
   char *h5 = study_path(spec, ".study.h5"), *csv = study_path(spec, ".study.csv");
   fprintf(out, "%s: %d designs, %d failed, %d not converged\n", s->name, s->n,
           design_study_count(s, STUDY_FAILED), design_study_count(s, STUDY_NOT_CONVERGED));

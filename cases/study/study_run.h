@@ -24,6 +24,6 @@ shb_status study_run(const study_spec *spec, bool force, design_process *process
 char *study_path(const study_spec *spec, const char *suffix);
 
 /* Print what came out: the number of designs, the range of each output, the files. */
-void study_summary(const study_spec *spec, const design_study *study, FILE *out);
+void study_run_summary(const study_spec *spec, const design_study *study, FILE *out);
 
 #endif

@@ -94,7 +94,7 @@ typedef struct {
   mhb_stability_when  stability; /* points at which multipliers are computed */
   mhb_lasting_when    lasting;   /* points at which the motion that takes over is integrated */
   mhb_save_settings   save;      /* points of which modal amplitudes are kept */
-  mhb_track           track;    /* followed along the parameter over range, within frequency */
+  mhb_track           track;     /* followed along the parameter over range, within frequency */
   char                output[MHB_NAME]; /* whose peak: a probe or "contact"; "": the first probe */
   const struct mhb_speed_table
       *run_up; /* NULL: one speed. Else the modal model follows the frequency. */
