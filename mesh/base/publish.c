@@ -36,8 +36,16 @@ void shb_publish_abandon(void) {
     if (temporaries[i].used) unlink(temporaries[i].name);
 }
 
+/* A run over several machines: the processes of the others are not known here. */
+static int is_distributed(void) {
+  const char *all = getenv("OMPI_COMM_WORLD_SIZE"), *here = getenv("OMPI_COMM_WORLD_LOCAL_SIZE");
+  const char *nodes = getenv("SLURM_NNODES");
+  return (all && here && strcmp(all, here) != 0) || (nodes && strcmp(nodes, "1") != 0);
+}
+
 /* Remove PATH.tmp.PID of processes that are gone, such as killed ones. */
 static void remove_orphans(const char *path) {
+  if (is_distributed()) return;
   const char  *slash  = strrchr(path, '/');
   const char  *leaf   = slash ? slash + 1 : path;
   const size_t n      = strlen(leaf);

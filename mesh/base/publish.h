@@ -13,7 +13,7 @@ typedef struct {
 } shb_provenance;
 
 /* Name of a temporary file beside path; malloc'ed, NULL when out of memory. Those of processes that
- * are gone are removed. */
+ * are gone are removed, unless the run is spread over several machines. */
 char *shb_publish_temporary(const char *path);
 
 /* Remove the temporary files that are not published yet. Safe in a signal handler. */

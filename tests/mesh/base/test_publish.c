@@ -95,6 +95,10 @@ static void orphans_are_removed(void **state) {
   write_text(orphan, "half");
   write_text(ours, "half");
   write_text(other, "half");
+  setenv("SLURM_NNODES", "2", 1);
+  free(shb_publish_temporary(path));
+  assert_int_equal(access(orphan, F_OK), 0);
+  unsetenv("SLURM_NNODES");
   free(shb_publish_temporary(path));
   assert_int_not_equal(access(orphan, F_OK), 0);
   assert_int_equal(access(ours, F_OK), 0);
