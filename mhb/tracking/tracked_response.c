@@ -38,7 +38,7 @@ typedef struct {
   mhb_response       *response;
   mhb_publisher       publisher;
   shb_progress       *progress;
-  int                 n_lost;  /* seeds that led to no curve */
+  int                 n_lost;  /* nearly highest peaks of sweeps that led to no curve */
   double              lost_at; /* the first one's parameter */
 } tracking_run;
 
@@ -364,7 +364,7 @@ shb_status mhb_tracked_response(const modal_model *model, const mhb_settings *se
     return shb_fail(SHB_INTERRUPTED, __FILE__, __LINE__,
                     "interrupted; the curves so far are saved");
   SHB_CHECK(run.n_lost == 0, SHB_NOT_CONVERGED,
-            "%d peak%s of the sweeps could not be followed, the first at %s %g %s", run.n_lost,
+            "%d high peak%s of the sweeps could not be followed, the first at %s %g %s", run.n_lost,
             run.n_lost == 1 ? "" : "s", mhb_parameter_name(run.tracking.parameter), run.lost_at,
             mhb_parameter_unit(run.tracking.parameter));
   return SHB_OK;

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "postproc/analysis/stability_findings.h"
+#include "postproc/analysis/tracked_findings.h"
 #include "postproc/draw/number_format.h"
 
 static const post_unit NEWTON = {"N", 1};
@@ -88,6 +89,11 @@ void post_key_figures(const post_analysis *analysis, post_buffer *out) {
   const post_tracking *t = &analysis->tracking;
   const bool one = post_at_one_frequency(analysis); /* there the largest need not be a peak */
   post_put(out, "<dl class=\"figures\">\n");
+  if (analysis->response->track) {
+    post_tracked_figure(analysis, out);
+    post_put(out, "</dl>\n");
+    return;
+  }
   put_peak_figure(analysis, out,
                   one || at_end(&t->open) ? "Largest, shrouds open" : "Peak, shrouds open",
                   &t->open);
@@ -418,6 +424,12 @@ static void put_accuracy(const post_analysis *analysis, post_buffer *out) {
 void post_findings(const post_analysis *analysis, post_buffer *out) {
   post_put(out, "<ul class=\"findings\">\n");
   put_incomplete(analysis, out);
+  if (analysis->response->track) {
+    post_tracked_findings(analysis, out);
+    put_accuracy(analysis, out);
+    post_put(out, "</ul>\n");
+    return;
+  }
   put_edges(analysis, out);
   put_optimum(analysis, out);
   put_extremes(analysis, out);
@@ -443,6 +455,10 @@ static void put_brief(const post_analysis *analysis, post_buffer *out, const cha
 
 void post_summary(const post_analysis *analysis, post_buffer *out) {
   const post_tracking *t = &analysis->tracking;
+  if (analysis->response->track) {
+    post_tracked_summary(analysis, out);
+    return;
+  }
   put_brief(analysis, out, at_end(&t->open) ? "open, largest" : "open peak", &t->open);
   put_brief(analysis, out, at_end(&t->stuck) ? "stuck, largest" : "stuck peak", &t->stuck);
   if (analysis->abscissa.parameter == MHB_IN_N0) {

@@ -52,9 +52,10 @@ void post_branch_note(const mhb_response *response, const mhb_branch *branch, ch
   snprintf(out + used, (size_t)(64 - used), "%s", origin[branch->origin]);
 }
 
-/* Points by time integration belong to the curves of their preload. */
+/* Points by time integration belong to the curves of their preload; tracked peaks are curves. */
 static mhb_branch_kind group_kind(const mhb_branch *branch) {
-  return branch->kind == MHB_BRANCH_INTEGRATION ? MHB_BRANCH_NONLINEAR : branch->kind;
+  bool own = branch->kind == MHB_BRANCH_OPEN || branch->kind == MHB_BRANCH_STUCK;
+  return own ? branch->kind : MHB_BRANCH_NONLINEAR;
 }
 
 bool post_at_one_frequency(const post_analysis *analysis) {
@@ -64,7 +65,7 @@ bool post_at_one_frequency(const post_analysis *analysis) {
 char *post_frequency_text(const post_analysis *analysis, char out[POST_PLACE]) {
   char number[POST_NUMBER];
   out[0] = '\0';
-  if (post_at_one_frequency(analysis))
+  if (post_at_one_frequency(analysis) && !analysis->response->track)
     snprintf(out, POST_PLACE, " at %s\u00a0Hz", post_plain(number, analysis->frequency[0], 6));
   return out;
 }

@@ -89,7 +89,7 @@ static void put_stability(const mhb_response *response, const mhb_branch *branch
                           post_buffer *out) {
   static const char *const judged[] = {"no",        "multipliers", "marginal",
                                        "undecided", "neighbours",  "folds"};
-  static const char *const loss[]   = {"", "fold", "flip", "Neimark-Sacker"};
+  static const char *const loss[]   = {"", "fold", "flip", "Neimark-Sacker", "optimum"};
   int                      kept     = response->n_multipliers;
   if (branch->kind != MHB_BRANCH_NONLINEAR) {
     post_put(out, ",,,");
@@ -136,12 +136,12 @@ static void put_quality(const mhb_response *response, const mhb_branch *branch, 
 }
 
 static void put_point(const mhb_response *response, int b, int point, post_buffer *out) {
-  static const char *const kind[] = {"nonlinear", "open", "stuck", "integration"};
+  static const char *const kind[] = {"nonlinear", "open", "stuck", "integration", "tracked"};
   const mhb_branch        *branch = &response->branch[b];
   size_t                   m1 = (size_t)branch->n_harmonics + 1, i = (size_t)point;
   size_t                   pairs = (size_t)response->n_pairs, probes = (size_t)response->n_probes;
   post_put(out, "%d,%s", b, kind[branch->kind]);
-  bool nonlinear = branch->kind == MHB_BRANCH_NONLINEAR || branch->kind == MHB_BRANCH_INTEGRATION;
+  bool nonlinear = branch->kind != MHB_BRANCH_OPEN && branch->kind != MHB_BRANCH_STUCK;
   put_number(out, nonlinear || response->parameter == MHB_IN_N0 ? branch->n0[point] : NAN);
   put_number(out, branch->frequency[point]);
   if (response->run_up) put_number(out, 60 * branch->frequency[point] / response->engine_order);

@@ -121,8 +121,8 @@ static void put_keys(const post_analysis *analysis, post_buffer *out) {
 
 static void put_main(const post_analysis *analysis, const char *case_name, post_buffer *out) {
   char frequency[POST_PLACE];
-  post_put(out,
-           "<section id=\"chart\">\n<h2>Forced response%s</h2>\n<div class=\"card\"><figure>\n",
+  post_put(out, "<section id=\"chart\">\n<h2>%s%s</h2>\n<div class=\"card\"><figure>\n",
+           analysis->response->track ? "Tracked peaks" : "Forced response",
            post_frequency_text(analysis, frequency));
   put_tools(out);
   post_put(out, "<div class=\"chart\">\n");

@@ -1,0 +1,89 @@
+#include "postproc/analysis/tracked_findings.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "mhb/problem/parameter.h"
+#include "postproc/draw/number_format.h"
+
+/* "n₀ = 11.842285 N", with the digits that the bracket allows. */
+static void put_value(const post_analysis *analysis, const char *name, post_buffer *out) {
+  const mhb_response *r = analysis->response;
+  const mhb_optimum  *o = &r->optimum;
+  char                number[POST_NUMBER];
+  const char         *unit   = mhb_parameter_unit(r->parameter);
+  double              ratio  = o->error > 0 ? fabs(o->value) / o->error : 1e8;
+  int                 digits = (int)fmax(3, fmin(8, floor(log10(ratio))));
+  post_put(out, "%s = %s%s%s", name, post_plain(number, o->value, digits), unit[0] ? "\u00a0" : "",
+           unit);
+}
+
+static char *amplitude(const mhb_optimum *o, char out[POST_NUMBER]) {
+  return post_measure(out, o->amplitude, post_unit_length(o->amplitude), 4);
+}
+
+void post_tracked_figure(const post_analysis *analysis, post_buffer *out) {
+  const mhb_optimum *o = &analysis->response->optimum;
+  char               a[POST_NUMBER], f[POST_NUMBER];
+  if (o->kind == MHB_OPTIMUM_NONE) return;
+  post_put(out, "<div class=\"figure\"><dt>Least highest peak, ");
+  put_value(analysis, analysis->abscissa.name, out);
+  post_put(out, "</dt><dd><b>%s</b><span>at %s\u00a0Hz</span></dd></div>\n", amplitude(o, a),
+           post_plain(f, o->frequency[0], 6));
+}
+
+static void put_kind(const post_analysis *analysis, post_buffer *out) {
+  const mhb_optimum *o = &analysis->response->optimum;
+  char               f[2][POST_NUMBER];
+  switch (o->kind) {
+    case MHB_OPTIMUM_EXCHANGE:
+      post_put(out, "Two peaks are equally high there, at %s and %s\u00a0Hz: a kink. ",
+               post_plain(f[0], o->frequency[0], 6), post_plain(f[1], o->frequency[1], 6));
+      break;
+    case MHB_OPTIMUM_END:
+      post_put(out, "This is an end of the range: a wider one may hold a lower peak. ");
+      break;
+    case MHB_OPTIMUM_JUMP:
+      post_put(out, "A curve of peaks ends there, and the peak beyond was not followed. ");
+      break;
+    default:
+      break;
+  }
+}
+
+void post_tracked_findings(const post_analysis *analysis, post_buffer *out) {
+  const mhb_response *r = analysis->response;
+  const mhb_optimum  *o = &r->optimum;
+  char                a[POST_NUMBER], error[POST_NUMBER];
+  if (!r->track) return;
+  if (o->kind != MHB_OPTIMUM_NONE) {
+    post_put(out, "<li>The highest peak is least at ");
+    put_value(analysis, analysis->abscissa.name, out);
+    post_put(out, ": %s", amplitude(o, a));
+    if (o->error > 0)
+      post_put(out, ". It lies in a bracket of %s%s%s", post_number(error, o->error, 1),
+               mhb_parameter_unit(r->parameter)[0] ? "\u00a0" : "",
+               mhb_parameter_unit(r->parameter));
+    post_put(out, ". ");
+    put_kind(analysis, out);
+    post_put(out, "%s</li>\n",
+             o->verified ? "A frequency sweep there finds no higher peak."
+                         : "No frequency sweep has confirmed that no higher peak exists there.");
+  }
+  post_put(out,
+           "<li>Each point is a %s of the frequency response; its frequency is an unknown. "
+           "Stability is not judged on these curves.</li>\n",
+           r->track);
+}
+
+void post_tracked_summary(const post_analysis *analysis, post_buffer *out) {
+  const mhb_response *r = analysis->response;
+  const mhb_optimum  *o = &r->optimum;
+  char                a[POST_NUMBER], f[POST_NUMBER];
+  if (o->kind == MHB_OPTIMUM_NONE) return;
+  post_put(out, "%soptimum ", out->length ? "; " : "");
+  put_value(analysis, mhb_parameter_name(r->parameter), out);
+  post_put(out, ": %s at %s Hz%s", amplitude(o, a), post_plain(f, o->frequency[0], 6),
+           o->verified ? "" : ", not verified");
+}
