@@ -80,7 +80,7 @@ study_effect study_main_effect(const design_study *s, int output, int key) {
   }
   free(list);
   bool judged = n >= LEAST_DESIGNS && groups > 1 && n > groups && all > 0 && s->n_keys > 1 &&
-                s->optimum.n_history == 0;
+                s->optimum.n_history == 0 && design_study_count(s, STUDY_WAITING) == 0;
   if (!judged) return e;
   double chance = by_levels ? 1 : (n - 1.0) / (n - groups);
   e.share       = fmin(1, fmax(0, 1 - chance * within / all));

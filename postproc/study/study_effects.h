@@ -20,8 +20,8 @@ typedef struct {
  * Groups are the levels of the key where there are at most STUDY_GROUPS with two designs each on
  * average, else groups of equally many designs. The share is the correlation ratio eta squared.
  * For groups of many levels it is corrected for chance (epsilon squared; Kelley, An unbiased
- * correlation ratio measure, 1935). It is NAN with fewer than 8 designs, with a single key, and
- * after an optimisation, whose designs are no sample. */
+ * correlation ratio measure, 1935). It is NAN with fewer than 8 designs, with a single key, while
+ * designs wait, and after an optimisation, whose designs are no sample. */
 study_effect study_main_effect(const design_study *study, int output, int key);
 
 /* Output that the page compares: the objective of an optimisation, else "peak", else the first.

@@ -59,6 +59,12 @@ static void no_share_where_it_means_nothing(void **state) {
   additive(&s, 2, 3);
   assert_true(isnan(study_main_effect(&s, 0, 0).share)); /* six designs are too few */
   design_study_free(&s);
+  additive(&s, 5, 4);
+  s.design[19].state = STUDY_WAITING;
+  assert_true(isnan(study_main_effect(&s, 0, 0).share)); /* part of a grid is no sample either */
+  s.design[19].state = STUDY_FAILED;
+  assert_false(isnan(study_main_effect(&s, 0, 0).share));
+  design_study_free(&s);
   studies_make(STUDIES_OPTIMISE, &s);
   assert_true(isnan(study_main_effect(&s, 0, 0).share)); /* a search is no sample */
   assert_int_equal(study_chief_key(&s, &share), -1);
