@@ -426,18 +426,20 @@
   /* Scattered designs of two variables: inverse distance to the fourth power. More variables: a
      mean of the neighbourhood, as the others differ from dot to dot. */
   function scatterField(a, b, o, slice) {
-    const pts = slice.filter(i => Number.isFinite(o.list[i]))
-                    .map(i => [place(a, a.list[i]), place(b, b.list[i]), o.list[i]]);
+    const use = slice.filter(i => Number.isFinite(o.list[i])), n = use.length;
+    const xs = Float64Array.from(use, i => place(a, a.list[i])),
+          ys = Float64Array.from(use, i => place(b, b.list[i])),
+          zs = Float64Array.from(use, i => o.list[i]);
     const smooth = keys.filter(k => k.many).length > 2;
-    const width = Math.max(0.06, 0.5 * Math.max(pts.length, 1) ** (-1 / 3)),
-          far = (2.2 * width) ** 2;
+    const width = Math.max(0.06, 0.5 * Math.max(n, 1) ** (-1 / 3)), far = (2.2 * width) ** 2;
     return (u, v) => {
       let sum = 0, weight = 0, least = Infinity;
-      for (const [x, y, z] of pts) {
-        const d = (x - u) ** 2 + (y - v) ** 2;
+      for (let k = 0; k < n; k++) {
+        const d = (xs[k] - u) ** 2 + (ys[k] - v) ** 2;
         if (d < least) least = d;
+        if (smooth && d > 4 * far) continue; /* a weight below 1e-4 */
         const w = smooth ? Math.exp(-d / (2 * width * width)) : 1 / (d * d + 1e-12);
-        sum += w * z;
+        sum += w * zs[k];
         weight += w;
       }
       return least > far ? NaN : sum / weight;
@@ -538,13 +540,13 @@
     const labels = lines.map(t => [t, contour(g, field, nx, ny, t * o.scale, X, Y)]);
     g.stroke();
     g.restore();
-    const spots = [];
+    const spots = [], ring = css("--card"), size = marks(slice) - 0.6;
     for (const i of slice) {
       const x = p.x(a.list[i]), y = p.y(b.list[i]);
       g.globalAlpha = active(i) ? 1 : 0.2;
       g.lineWidth = 1.2;
       if (Number.isFinite(o.list[i]))
-        disc(g, x, y, marks(slice) - 0.6, colourOf(c, o.list[i]), css("--card"));
+        disc(g, x, y, size, colourOf(c, o.list[i]), ring);
       else if (D.status[i] === FAILED) {
         g.strokeStyle = css("--bad");
         g.lineWidth = 2;
@@ -557,7 +559,6 @@
       }
       if (active(i)) spots.push([x, y, i]);
     }
-    g.globalAlpha = 1;
     g.globalAlpha = 1;
     g.font = "600 12px " + css("--text");
     g.textAlign = "center";

@@ -132,7 +132,7 @@ static void draw_history(const design_study *s, int objective, series *list, pos
   label(list->y_label, "", s->output[objective].name, unit);
   post_plot plot = open_plot(list, (post_unit){"", 1}, unit, false, out);
   for (int i = 0; i < list->n; i++) plot_dot(&plot, "dot far", list->x[i], list->y[i], 3);
-  if (o->best < 0) return;
+  if (o->best < 0 || list->n == 0) return;
   double best = s->design[o->best].value[objective];
   if (best <= list->third[list->n - 1]) /* else lower designs break a constraint */
     plot_line(&plot, "line", list->n, list->x, list->third, NULL);
