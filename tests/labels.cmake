@@ -25,7 +25,7 @@ set(INTEGRATION_TESTS cases.study.study
   hard.three_degree hard.jumps hard.ends hard.friction hard.resonance hard.balance hard.pairs
   hard.peaks hard.isolas hard.parameters bench.stability bench.modal bench.contact
   bench.integrate bench.lasting mhb.floquet.friction_limit docs.first_case
-  mhb.ring.neimark_sacker cases.install.install
+  mhb.ring.ring_step mhb.ring.neimark_sacker cases.install.install
   mhb.tracking.tracked_curve cases.scenes.optimum_preload
   mesh.blade.shroud_angle)
 if(SHROUDHB_CHROMIUM AND SHROUDHB_PYTHON)
