@@ -1,5 +1,6 @@
 /* shroudhb-post: the report of a case from its response file, or the contents of an HDF5 file. No
  * MPI. */
+#include <cblas.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,6 +12,7 @@
 #include "cases/schema/case_paths.h"
 #include "cases/schema/converge_settings.h"
 #include "mesh/base/progress.h"
+#include "postproc/field/stress_table.h"
 #include "postproc/inspect/inspect.h"
 #include "postproc/inspect/mac.h"
 #include "postproc/inspect/value_table.h"
@@ -26,6 +28,7 @@ static const char usage[] =
     "Makes NAME.html (report), NAME.csv (every point) and NAME.svg (picture) from "
     "NAME.response.h5;\n"
     "points of NAME.integration.h5 are drawn as dots;\n"
+    "NAME.stress.csv has the worst places at every peak if material.fatigue is given;\n"
     "the report has the section Speed against error if NAME.converge.h5 belongs to the case.\n"
     "Of a study file: NAME.study.html, NAME.study.csv and NAME.study.svg.\n"
     "With --inspect: what an HDF5 file holds; --verbose unfolds everything, case text and settings "
@@ -84,6 +87,32 @@ static char *current_modal(const case_file *file) {
   return NULL;
 }
 
+/* Write NAME.stress.csv, if the modal file has stresses. It is made for cases with material.fatigue
+ * only: a point takes a few hundredths of a second. */
+static shb_status publish_stress(const case_file *file, const char *modal, const char *response,
+                                 shb_progress *progress) {
+  const post_fatigue fatigue = {file->endurance, file->ultimate};
+  post_blade_field   field   = {0};
+  mhb_response      *curves  = NULL;
+  post_buffer        table   = {0};
+  char              *path    = case_output(file, ".stress.csv");
+  shb_status         status = path ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "no memory");
+  shb_progress_show(progress, 90, "stress");
+  if (status == SHB_OK) status = post_blade_field_read(modal, &field);
+  if (status == SHB_OK && field.n_nodes > 0) {
+    status = mhb_response_read(response, &curves);
+    if (status == SHB_OK) status = post_blade_field_match(&field, curves, modal);
+    if (status == SHB_OK) status = post_stress_table(&field, curves, &fatigue, &table);
+    if (status == SHB_OK) status = post_buffer_publish(&table, path);
+  }
+  post_buffer_free(&table);
+  mhb_response_destroy(curves);
+  post_blade_field_free(&field);
+  free(path);
+  shb_progress_clear(progress);
+  return status;
+}
+
 static shb_status publish(const case_file *file, const command_options *options) {
   shb_progress progress = shb_progress_start("post", options->quiet, options->verbose);
   char        *response = case_output(file, ".response.h5"), *html = case_output(file, ".html");
@@ -99,6 +128,8 @@ static shb_status publish(const case_file *file, const command_options *options)
         file->name, response, html, csv, svg, convergence, has_points(file, points) ? points : NULL,
         modal,      diagram};
     status = post_publish(&job, &progress, &summary);
+    if (status == SHB_OK && modal && file->endurance > 0)
+      status = publish_stress(file, modal, response, &progress);
   } else {
     status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   }
@@ -139,6 +170,7 @@ int main(int argc, char **argv) {
   case_file  file;
   shb_status status = command_read(&options, CASE_POST, &file);
   if (status != SHB_OK) return command_finish(status);
+  openblas_set_num_threads(1); /* small products: threads would only wait for each other */
   /* the stage takes a fraction of a second: it finishes and leaves no temporary file */
   shb_interrupt_catch();
   status = publish(&file, &options);

@@ -62,8 +62,9 @@ typedef struct {
   mesh_source source;    /* mesh.file and the keys that belong to it */
   mesh_blade  blade;
 
-  fem_orthotropic constants; /* material.E, nu, G, axes */
-  fem_material    material;  /* stiffness and density in mesh axes */
+  fem_orthotropic constants;           /* material.E, nu, G, axes */
+  double          endurance, ultimate; /* material.fatigue, Pa; 0: not given */
+  fem_material    material;            /* stiffness and density in mesh axes */
   bool            has_materials;
   int             n_materials; /* with materials, instead of material */
   case_material   materials[MESH_MAX_VOLUMES];

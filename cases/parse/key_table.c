@@ -107,6 +107,13 @@ static const case_key table[] = {
      .stages = CASE_MODAL, .when = CASE_IF_MATERIAL,
      .help = "density"},
 
+    {"material.fatigue.endurance", CASE_NUMBER, "Pa", 0, 1e12, true, AT(endurance),
+     .stages = CASE_POST, .when = CASE_IF_MATERIAL,
+     .help = "stress amplitude borne without mean stress, for the safety at every peak"},
+    {"material.fatigue.ultimate", CASE_NUMBER, "Pa", 0, 1e12, true, AT(ultimate),
+     .stages = CASE_POST, .when = CASE_IF_MATERIAL,
+     .help = "tensile strength, the mean stress borne without vibration (Goodman's line)"},
+
     {"materials", CASE_LIST, "", 1, MESH_MAX_VOLUMES, LIST(materials, n_materials),
      .stages = CASE_MESH | CASE_MODAL, .when = CASE_IF_MATERIALS,
      .help = "instead of material, where mesh.file has several volumes: a list of {group, E, nu, "

@@ -47,6 +47,14 @@ static void check_material(case_reader *r) {
   check_one(&p, &r->file->constants, &r->file->material);
 }
 
+/* Goodman's line needs both of its ends. */
+static void check_fatigue(case_reader *r) {
+  static const char *const end[2] = {"material.fatigue.endurance", "material.fatigue.ultimate"};
+  for (int i = 0; i < 2; i++)
+    if (case_reader_given(r, end[i]) && !case_reader_given(r, end[1 - i]))
+      case_reader_issue(r, end[1 - i], "missing; material.fatigue is {endurance, ultimate}");
+}
+
 static void check_groups(case_reader *r, const case_node *list) {
   const case_file *file = r->file;
   for (int i = 1; i < file->n_materials; i++)
@@ -66,6 +74,7 @@ void case_check_materials(case_reader *r) {
   if (file->modal_file) return;
   if (!list) {
     check_material(r);
+    check_fatigue(r);
     return;
   }
   if (case_reader_given(r, "material.E"))

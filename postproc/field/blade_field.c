@@ -1,0 +1,124 @@
+#include "postproc/field/blade_field.h"
+
+#include <cblas.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "modal/hdf5/h5.h"
+
+static shb_status read_residual(hid_t file, post_blade_field *f) {
+  h5_shape stress = H5_SHAPE(0, (hsize_t)f->n_nodes, POST_STRESSES), weight = H5_SHAPE(0, 0);
+  if (!h5_exists(file, "/residual") || !h5_exists(file, "/residual/stress")) return SHB_OK;
+  SHB_TRY(h5_read_double(file, "/residual/stress", &stress, &f->residual));
+  SHB_TRY(h5_read_complex(file, "/residual/load_weight", &weight, &f->load_weight));
+  f->n_column  = (int)stress.dim[0];
+  f->n_contact = f->n_column - (int)weight.dim[1];
+  f->n_load    = (int)weight.dim[0] - 1;
+  SHB_CHECK(f->n_contact >= 0 && f->n_load >= 0, SHB_ERR_INPUT,
+            "/residual/load_weight has %d columns, /residual/stress %d; make the file again",
+            (int)weight.dim[1], f->n_column);
+  return SHB_OK;
+}
+
+static shb_status read_all(hid_t file, post_blade_field *f) {
+  h5_shape nodes = H5_SHAPE(0, 3);
+  if (!h5_exists(file, "/mesh") || !h5_exists(file, "/modes/stress")) return SHB_OK;
+  SHB_TRY(h5_read_double(file, "/mesh/nodes", &nodes, &f->nodes));
+  f->n_nodes      = (int)nodes.dim[0];
+  h5_shape stress = H5_SHAPE(0, nodes.dim[0], POST_STRESSES);
+  SHB_TRY(h5_read_double(file, "/modes/stress", &stress, &f->stress));
+  f->n_modes = (int)stress.dim[0];
+  SHB_TRY(read_residual(file, f));
+  h5_shape at_speed = H5_SHAPE(nodes.dim[0], POST_STRESSES);
+  if (!h5_exists(file, "/static") || !h5_exists(file, "/static/nodal_stress")) return SHB_OK;
+  return h5_read_double(file, "/static/nodal_stress", &at_speed, &f->static_stress);
+}
+
+shb_status post_blade_field_read(const char *path, post_blade_field *field) {
+  hid_t file;
+  memset(field, 0, sizeof *field);
+  SHB_TRY(h5_open(path, &file));
+  shb_status status = read_all(file, field);
+  h5_close(file);
+  return status;
+}
+
+void post_blade_field_free(post_blade_field *f) {
+  free(f->nodes);
+  free(f->stress);
+  free(f->residual);
+  free(f->load_weight);
+  free(f->static_stress);
+  memset(f, 0, sizeof *f);
+}
+
+shb_status post_blade_field_match(const post_blade_field *f, const mhb_response *response,
+                                  const char *path) {
+  SHB_CHECK(f->n_modes == response->n_modes, SHB_ERR_INPUT,
+            "%s: has the stress of %d modes, but the response %d modes; run shroudhb mhb again",
+            path, f->n_modes, response->n_modes);
+  for (int i = 0; i < response->n_branches; i++) {
+    const mhb_modal_motion *m = &response->branch[i].modal;
+    SHB_CHECK(m->n == 0 || f->n_column == 0 || m->n_contact == f->n_contact, SHB_ERR_INPUT,
+              "%s: /residual has %d contact dofs, but the response %d; run shroudhb mhb again",
+              path, f->n_contact, m->n_contact);
+  }
+  return SHB_OK;
+}
+
+int post_blade_harmonics(const mhb_branch *b, int n_modes, int kept) {
+  const size_t          m = (size_t)n_modes, K = (size_t)b->n_harmonics + 1;
+  const double complex *q = b->modal.amplitude + (size_t)kept * K * m;
+  for (size_t i = K * m; i-- > 0;)
+    if (q[i] != 0) return (int)(i / m);
+  return 0;
+}
+
+/* weight[2 k + part][column] of the residual columns. */
+static void set_forces(const post_blade_field *f, const mhb_branch *b, int kept, double *weight) {
+  const int               K = b->n_harmonics + 1, patterns = f->n_column - f->n_contact;
+  const mhb_modal_motion *m = &b->modal;
+  for (int k = 0; k < K; k++)
+    for (int c = 0; c < f->n_column; c++) {
+      double complex by = 0;
+      if (c < f->n_contact)
+        by = m->force[((size_t)kept * (size_t)K + (size_t)k) * (size_t)f->n_contact + (size_t)c];
+      else if (k % b->order == 0 && k / b->order <= f->n_load)
+        by = m->scale[kept] * f->load_weight[k / b->order * patterns + c - f->n_contact];
+      weight[(2 * k) * f->n_column + c]     = creal(by);
+      weight[(2 * k + 1) * f->n_column + c] = cimag(by);
+    }
+}
+
+static void set_amplitudes(const post_blade_field *f, const mhb_branch *b, int kept,
+                           double *weight) {
+  const size_t          K = (size_t)b->n_harmonics + 1, m = (size_t)f->n_modes;
+  const double complex *q = b->modal.amplitude + (size_t)kept * K * m;
+  for (size_t k = 0; k < K; k++)
+    for (size_t i = 0; i < m; i++) {
+      weight[2 * k * m + i]       = creal(q[k * m + i]);
+      weight[(2 * k + 1) * m + i] = cimag(q[k * m + i]);
+    }
+}
+
+/* out[rows][6 n] = weight[rows][columns] stress[columns][6 n], or added to it. */
+static void combine(int rows, int columns, int n, const double *weight, const double *stress,
+                    bool add, double *out) {
+  cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, rows, POST_STRESSES * n, columns, 1,
+              weight, columns, stress, POST_STRESSES * n, add, out, POST_STRESSES * n);
+}
+
+shb_status post_blade_stress(const post_blade_field *f, const mhb_branch *b, int kept,
+                             double *out) {
+  const int rows = 2 * (b->n_harmonics + 1), most = f->n_modes + f->n_column;
+  double   *weight = malloc(2 * ((size_t)b->n_harmonics + 1) * (size_t)most * sizeof *weight + 1);
+  SHB_CHECK(weight, SHB_ERR_IO, "out of memory for the stress of a point");
+  set_amplitudes(f, b, kept, weight);
+  combine(rows, f->n_modes, f->n_nodes, weight, f->stress, false, out);
+  if (f->n_column > 0) {
+    set_forces(f, b, kept, weight);
+    combine(rows, f->n_column, f->n_nodes, weight, f->residual, true, out);
+  }
+  free(weight);
+  return SHB_OK;
+}

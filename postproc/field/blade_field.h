@@ -1,0 +1,41 @@
+/* Stress of the blade at every node, from the modal file and the amplitudes of a response. */
+#ifndef POSTPROC_FIELD_BLADE_FIELD_H
+#define POSTPROC_FIELD_BLADE_FIELD_H
+
+#include <complex.h>
+
+#include "mhb/response/response.h"
+
+/* Components xx, yy, zz, xy, yz, xz. */
+enum { POST_STRESSES = 6 };
+
+typedef struct {
+  int             n_nodes, n_modes;    /* n_nodes = 0: the file has no stresses */
+  int             n_contact, n_column; /* columns of /residual: contact dofs, load patterns */
+  int             n_load;              /* K: load harmonics 0..K */
+  double         *nodes;               /* [n][3] m */
+  double         *stress;              /* [n_modes][n][6] Pa kg^-1/2 */
+  double         *residual;            /* [n_column][n][6] Pa/N */
+  double complex *load_weight;         /* [K + 1][n_column - n_contact] */
+  double         *static_stress;       /* [n][6] Pa; NULL at rest */
+} post_blade_field;
+
+/* Read the modal file. Files of other programs have no stresses: n_nodes is 0. Errors: those of
+ * h5_open and h5_read_double. To be freed in any case. */
+shb_status post_blade_field_read(const char *path, post_blade_field *field);
+void       post_blade_field_free(post_blade_field *field); /* also on a zeroed struct */
+
+/* SHB_ERR_INPUT unless the response has as many modes and contact dofs as the field; path of the
+ * modal file, for the message. */
+shb_status post_blade_field_match(const post_blade_field *field, const mhb_response *response,
+                                  const char *path);
+
+/* The highest harmonic in which anything moves at a kept point. */
+int post_blade_harmonics(const mhb_branch *branch, int n_modes, int kept);
+
+/* Harmonics 0..m of the stress at a kept point: out[2 k + (0 real, 1 imaginary)][n][6] Pa, without
+ * the static stress; m as of post_blade_harmonics. Errors: SHB_ERR_IO no memory. */
+shb_status post_blade_stress(const post_blade_field *field, const mhb_branch *branch, int kept,
+                             double *out);
+
+#endif

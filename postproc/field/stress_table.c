@@ -1,0 +1,72 @@
+#include "postproc/field/stress_table.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static void put_number(post_buffer *out, double value) {
+  post_put(out, isfinite(value) ? ",%.12g" : ",", value);
+}
+
+static void put_place(const mhb_branch *b, int branch, int point, const post_blade_field *field,
+                      int index, const post_place *place, post_buffer *out) {
+  static const char *const kinds[MHB_N_BRANCH_KINDS] = {"nonlinear", "open", "stuck",
+                                                        "integration"};
+  static const char *const specials[MHB_N_SPECIALS]  = {"", "fold", "peak", "flip",
+                                                        "Neimark-Sacker"};
+  const double            *x                         = field->nodes + 3 * (size_t)place->node;
+  post_put(out, "%d,%s", branch, kinds[b->kind]);
+  put_number(out, b->kind == MHB_BRANCH_NONLINEAR ? b->n0[point] : NAN);
+  put_number(out, b->frequency[point]);
+  post_put(out, ",%d,%s,", point, specials[b->special[point]]);
+  if (b->stable[point] >= 0) post_put(out, "%d", b->stable[point]);
+  post_put(out, ",%d,%d", index + 1, place->node);
+  for (int d = 0; d < 3; d++) put_number(out, x[d]);
+  put_number(out, place->amplitude);
+  put_number(out, place->principal);
+  put_number(out, place->mean);
+  put_number(out, place->safety);
+  post_put(out, "\r\n");
+}
+
+static shb_status put_point(const post_blade_field *field, const mhb_branch *b, int branch,
+                            int kept, const post_fatigue *fatigue, double *stress,
+                            post_buffer *out) {
+  const int  point = b->modal.point[kept];
+  post_place place[POST_PLACES];
+  int        n;
+  SHB_TRY(post_blade_stress(field, b, kept, stress));
+  SHB_TRY(post_peak_stress(field, post_blade_harmonics(b, field->n_modes, kept), stress, fatigue,
+                           place, &n));
+  for (int i = 0; i < n; i++) put_place(b, branch, point, field, i, &place[i], out);
+  return SHB_OK;
+}
+
+static int highest_point(const mhb_response *response, const mhb_branch *b) {
+  int at = 0;
+  for (int i = 1; i < b->n_points; i++)
+    if (mhb_response_output(response, b, i) > mhb_response_output(response, b, at)) at = i;
+  return at;
+}
+
+shb_status post_stress_table(const post_blade_field *field, const mhb_response *response,
+                             const post_fatigue *fatigue, post_buffer *out) {
+  shb_status status = SHB_OK;
+  post_put(out,
+           "branch,kind,n0_N,frequency_Hz,point,special,stable,place,node,x_m,y_m,z_m,"
+           "amplitude_Pa,principal_Pa,mean_Pa,safety\r\n");
+  for (int i = 0; i < response->n_branches && status == SHB_OK; i++) {
+    const mhb_branch *b = &response->branch[i];
+    if (b->modal.n == 0) continue;
+    const size_t rows    = 2 * ((size_t)b->n_harmonics + 1);
+    const int    highest = highest_point(response, b);
+    double *stress = malloc(rows * POST_STRESSES * (size_t)field->n_nodes * sizeof *stress + 1);
+    SHB_CHECK(stress, SHB_ERR_IO, "out of memory for the stress of %d nodes", field->n_nodes);
+    for (int a = 0; a < b->modal.n && status == SHB_OK; a++) {
+      int point = b->modal.point[a];
+      if (b->modal.n < b->n_points || b->special[point] == MHB_PEAK || point == highest)
+        status = put_point(field, b, i, a, fatigue, stress, out);
+    }
+    free(stress);
+  }
+  return status;
+}
