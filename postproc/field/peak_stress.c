@@ -149,9 +149,9 @@ static double mean_of(const post_blade_field *f, const double *stress, int node)
   return post_signed_mises(s);
 }
 
-/* Greatest von Mises stress of a cos - b sin over a period: the square root of the larger eigenvalue
- * of the products of a and b. The von Mises stress is a norm, so a sum of harmonics stays below the
- * sum of theirs. */
+/* Greatest von Mises stress of a cos - b sin over a period: the square root of the larger
+ * eigenvalue of the products of a and b. The von Mises stress is a norm, so a sum of harmonics
+ * stays below the sum of theirs. */
 static double bound_of(const double *a, size_t stride) {
   const double *b = a + stride, aa = square_of_mises(a), bb = square_of_mises(b);
   return sqrt((aa + bb) / 2 + hypot((aa - bb) / 2, mises_product(a, b)));
