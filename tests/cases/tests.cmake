@@ -30,6 +30,11 @@ if(SHROUDHB_PYTHON)
   set_tests_properties(cases.commands.integrate PROPERTIES SKIP_RETURN_CODE 77)
 endif()
 
+# Sampling and statistics.
+shb_test(cases/plan sampling shb_cases_plan m)
+shb_test(cases/plan statistics shb_cases_plan PkgConfig::GSL m)
+shb_test(cases/plan sobol_indices shb_cases_plan m)
+
 # What is installed, by `cmake --install` and as a Debian package, works on its own.
 add_test(NAME cases.install.install
   COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/cases/install/test_install.sh ${CMAKE_COMMAND}
