@@ -18,7 +18,7 @@ static const double OMEGA_STEP = 1e-5, VALUE_STEP = 1e-3;
 static const double EXACT_OMEGA = 1e-14, EXACT_PEAK = 1e-11, EXACT_VALUE = 1e-9;
 
 /* How far a root is sought from its guess, and how near to it a seed lies, relative. */
-static const double REACH = 0.02, AT_SEED = 1e-6;
+static const double REACH = 0.02, AT_SEED = 1e-5;
 
 /* The slipping side is judged at the first of these distances from the corner, relative, at which
  * Newton's method converges to SETTLED. There the amplitude differs from that of the corner by no
@@ -29,10 +29,12 @@ static const double BESIDE[N_BESIDE] = {1e-5, 1e-4, 3e-4, 1e-3}, SETTLED = 1e-8,
 /* The amplitude between two points of a branch is linear to within this. */
 static const double STRAIGHT = 3e-5;
 
-/* A point whose residual is larger is none: more than two discs touch. */
-static const double BALANCED = 1e-6;
+/* A point whose residual is larger is none: more than two discs touch. At a corner the residual is
+ * of the order of the root of round-off, for two circles touch. The means of a stuck motion
+ * are iterated to SETTLED_MEANS. */
+static const double BALANCED = 1e-5, SETTLED_MEANS = 1e-12;
 
-enum { GRID = 96, MOST_MEANS = 60, LEAST_PARTS = 32 };
+enum { GRID = 96, MOST_MEANS = 100, LEAST_PARTS = 32 };
 
 /* ---- two discs that touch ---- */
 
@@ -308,20 +310,27 @@ static bool is_peak(tracer *t, place *at, mhb_end *why) {
   return aside < at->amplitude;
 }
 
-/* x of the point <- the motion at a place; r and the evaluation follow. */
+static void linearise(tracer *t, const place *at) {
+  mhb_balance *b = t->s.balance;
+  mhb_balance_linearise(b, t->point.x, at->omega, t->point.r, NULL);
+  t->point.residual = mhb_norm(t->point.r, b->n) / mhb_balance_vibration(b, t->point.x);
+}
+
+/* x of the point <- the motion at a place; r and the evaluation follow. Off the corner the mean
+ * friction is the least admissible one, a function with kinks, and the means are iterated. */
 static bool balance_at(tracer *t, const place *at) {
   mhb_balance *b = t->s.balance;
   state_at(&t->s, at->omega, at->value);
   memcpy(t->point.x, t->s.x, sizeof(double) * (size_t)b->n);
   go_to(b, t->s.tracking, at->value);
-  t->point.iterations = 0;
-  if (t->s.stuck && /* the mean friction is another one */
-      mhb_newton_solve(t->newton, b, at->omega, 1e-10, t->point.x, &t->point.iterations) !=
-          MHB_CONVERGED)
-    return false;
-  mhb_balance_linearise(b, t->point.x, at->omega, t->point.r, NULL);
-  t->point.value    = at->value;
-  t->point.residual = mhb_norm(t->point.r, b->n) / mhb_balance_vibration(b, t->point.x);
+  t->point.value = at->value;
+  linearise(t, at);
+  int i = 0;
+  for (; t->s.stuck && i < MOST_MEANS && t->point.residual > SETTLED_MEANS; i++) {
+    for (int axis = 0; axis < 3; axis++) t->point.x[axis * b->nb] -= 0.5 * t->point.r[axis * b->nb];
+    linearise(t, at);
+  }
+  t->point.iterations = i;
   return t->point.residual <= BALANCED;
 }
 

@@ -1,5 +1,5 @@
-/* Peaks of a response curve without slip, followed along a parameter q: the corner between the
- * stuck and the slipping side, and the peak of the stuck side (docs/theory/tracking.md).
+/* Peaks without slip, followed along a parameter q (docs/theory/tracking.md). They are the corner
+ * between the stuck and the slipping side, and the peak of the stuck side.
  *
  * While the pair sticks, its response is linear, and omega and q give it without iteration. Slip is
  * possible where the friction forces f (without their mean) of two phases t_1, t_2 lie further

@@ -7,9 +7,14 @@
 #include "mesh/base/root.h"
 #include "mhb/branches/record.h"
 #include "mhb/numerics/vector.h"
+#include "mhb/tracking/corner.h"
 
 /* Brackets of exchanges end at this length, relative to the parameter. */
 static const double EXACT = 1e-9;
+
+/* A corner or stuck peak sticks for this share of the period at least. Its frequency is near to the
+ * one interpolated between points, relative. */
+static const double NO_SLIP = 0.998, INTERPOLATED = 1e-3;
 
 typedef struct {
   const modal_model  *model;
@@ -78,6 +83,23 @@ static double *all_values(const mhb_response *r, int *n) {
 
 /* ---- one peak, solved at a value ---- */
 
+/* The same of a corner or stuck peak. False: neither of them is where the branch is. */
+static bool corner_at(const search *s, mhb_balance *balance, const mhb_branch *branch, int i,
+                      double value, double *x, double *amplitude, double *frequency) {
+  if (balance->n_pairs != 1) return false;
+  for (int j = i; j < i + 2; j++)
+    if (branch->state[3 * j + MHB_STICK] < NO_SLIP) return false;
+  for (int stuck = 0; stuck < 2; stuck++) {
+    double omega = SHB_TWO_PI * *frequency, a;
+    if (!mhb_corner_at(balance, s->tracking, stuck, value, &omega, x, &a)) continue;
+    if (fabs(omega / (SHB_TWO_PI * *frequency) - 1) > INTERPOLATED) continue;
+    *amplitude = a;
+    *frequency = omega / SHB_TWO_PI;
+    return true;
+  }
+  return false;
+}
+
 /* Amplitude and frequency (Hz) of the peak of a branch at a value inside it. NAN: not found. */
 static shb_status peak_at(const search *s, int b, double value, double *amplitude,
                           double *frequency) {
@@ -100,11 +122,14 @@ static shb_status peak_at(const search *s, int b, double value, double *amplitud
     mhb_recorded_motion(branch, i + 1, balance, x + n);
     for (size_t j = 0; j < n; j++) x[j] += part * (x[n + j] - x[j]);
     *frequency = branch->frequency[i] + part * (branch->frequency[i + 1] - branch->frequency[i]);
-    status     = mhb_peak_system_create(
-            balance, s->tracking->kind, s->tracking->output, s->tracking->parameter,
-            s->tracking->frequency[1] - s->tracking->frequency[0], mhb_norm(x, (int)n), &system);
   }
-  if (status == SHB_OK) {
+  bool corner =
+      status == SHB_OK && corner_at(s, balance, branch, i, value, x + n, amplitude, frequency);
+  if (status == SHB_OK && !corner)
+    status = mhb_peak_system_create(
+        balance, s->tracking->kind, s->tracking->output, s->tracking->parameter,
+        s->tracking->frequency[1] - s->tracking->frequency[0], mhb_norm(x, (int)n), &system);
+  if (status == SHB_OK && !corner) {
     mhb_curve_system *base = mhb_peak_system_base(system);
     status                 = mhb_curve_point_create(base, &point);
     if (status == SHB_OK) {

@@ -9,6 +9,7 @@
 #include "mhb/branches/record.h"
 #include "mhb/response/describe.h"
 #include "mhb/response/publisher.h"
+#include "mhb/tracking/corner.h"
 #include "mhb/tracking/optimum.h"
 #include "mhb/tracking/tracked_curve.h"
 
@@ -196,7 +197,9 @@ static shb_status follow_with(tracking_run *run, const mhb_branch *from, int poi
   if (status == SHB_OK) {
     const mhb_tracking_seed seed = {x, SHB_TWO_PI * from->frequency[point], value};
     mhb_recorded_motion(from, point, balance, x);
-    status = mhb_trace_tracked(balance, &run->tracking, &seed, run->response, index, found, &end);
+    status = mhb_trace_corner(balance, &run->tracking, &seed, run->response, index, found, &end);
+    if (status == SHB_OK && !*found)
+      status = mhb_trace_tracked(balance, &run->tracking, &seed, run->response, index, found, &end);
   }
   free(x);
   mhb_balance_destroy(balance);

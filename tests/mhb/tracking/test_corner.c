@@ -77,7 +77,25 @@ static void follow(fixture *f, double n0, mhb_tracking_end *end) {
   assert_true(found);
 }
 
-/* Follow from n0 and compare every fifth point with the highest point of a sweep. */
+/* Frequency and amplitude of the marked peak of a sweep that is nearest to *frequency. */
+static double peak_near(const fixture *f, double n0, double *frequency) {
+  mhb_response *r;
+  double        near = INFINITY, wanted = *frequency, amplitude = 0;
+  mhb_settings  settings = f->settings;
+  settings.n0[0]         = n0;
+  assert_ok(main_curve(&f->model, &settings, H, NULL, &r));
+  for (int i = 0; i < r->branch[0].n_points; i++) {
+    double away = fabs(r->branch[0].frequency[i] - wanted);
+    if (r->branch[0].special[i] != MHB_PEAK || away >= near) continue;
+    near       = away;
+    *frequency = r->branch[0].frequency[i];
+    amplitude  = mhb_response_output(r, &r->branch[0], i);
+  }
+  mhb_response_destroy(r);
+  return amplitude;
+}
+
+/* Follow from n0 and compare every fifth point with the peak of a sweep. */
 static void compare(fixture *f, double n0, mhb_tracking_end *end) {
   double worst = 0, worst_f = 0;
   follow(f, n0, end);
@@ -85,10 +103,10 @@ static void compare(fixture *f, double n0, mhb_tracking_end *end) {
   print_message("%d points, n0 %.9g to %.9g (%s; %s)\n", t->n_points, t->value[0],
                 t->value[t->n_points - 1], mhb_end_text(end->low), mhb_end_text(end->high));
   for (int i = 0; i < t->n_points; i++) {
-    assert_below(t->error_newton[i], 1e-6);
+    assert_below(t->error_newton[i], 1e-5);
     if (i > 0) assert_true(t->value[i] > t->value[i - 1]);
     if (i % 5) continue;
-    double fs = 0, as = highest_point(f, t->n0[i], &fs, NULL);
+    double fs = t->frequency[i], as = peak_near(f, t->n0[i], &fs);
     worst   = fmax(worst, fabs(mhb_response_output(f->response, t, i) / as - 1));
     worst_f = fmax(worst_f, fabs(t->frequency[i] / fs - 1));
   }
@@ -124,8 +142,8 @@ static void a_stuck_peak_goes_on_where_the_corner_ends(void **state) {
   int               last  = c->n_points - 1;
   double            above = mhb_response_output(stuck.response, s, 0);
   assert_int_equal(end.high, MHB_END_HIGH);
-  assert_double_equal(s->value[0], c->value[last], 1e-6);
-  assert_double_equal(mhb_response_output(corner.response, c, last) / above, 1, 1e-9);
+  assert_small(s->value[0] - c->value[last], 1e-6);
+  assert_small(mhb_response_output(corner.response, c, last) / above - 1, 1e-8);
   tear_down(&corner);
   tear_down(&stuck);
 }
