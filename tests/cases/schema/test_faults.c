@@ -76,12 +76,14 @@ static void keys_and_kinds(void **state) {
        1},
       {"  scale: 1.3", "  zzzzzz: 1.3",
        "c.yaml:34:3: error: mhb.zzzzzz: unknown key; known here: frequency, "
-       "run_up, vary, harmonics, tolerance, subharmonics, scale, max_points, stability, "
+       "run_up, vary, track, output, harmonics, tolerance, subharmonics, scale, max_points, "
+       "stability, "
        "lasting, save, flips, search",
        1},
       {"  scale: 1.3", "  mhb.scale: 1.3",
        "c.yaml:34:3: error: mhb.mhb.scale: unknown key; known here: "
-       "frequency, run_up, vary, harmonics, tolerance, subharmonics, scale, max_points, stability, "
+       "frequency, run_up, vary, track, output, harmonics, tolerance, subharmonics, scale, "
+       "max_points, stability, "
        "lasting, save, flips, search",
        1},
       {"  scale: 1.3", "  [a, b]: 1.3",
@@ -108,11 +110,11 @@ static void keys_and_kinds(void **state) {
       {"0.31\n", "{a: 1}\n", "c.yaml:24:7: error: contact.mu: is a mapping; expected a number", 1},
       {"material: {E: 207 GPa, nu: 0.29, rho: 7.85 g/cm3}", "material: steel",
        "c.yaml:11:11: error: material: "
-       "is a single value; expected a mapping; known here: E, nu, G, axis_1, axis_2, rho",
+       "is a single value; expected a mapping; known here: E, nu, G, axis_1, axis_2, rho, fatigue",
        1},
       {"material: {E: 207 GPa, nu: 0.29, rho: 7.85 g/cm3}", "material:",
        "c.yaml:11:10: error: material: "
-       "is nothing; expected a mapping; known here: E, nu, G, axis_1, axis_2, rho",
+       "is nothing; expected a mapping; known here: E, nu, G, axis_1, axis_2, rho, fatigue",
        1},
       {"material: {E: 207 GPa, nu: 0.29, rho: 7.85 g/cm3}\n", "",
        "c.yaml:1:1: error: material: missing; "
