@@ -215,8 +215,10 @@ static shb_status follow_with(tracking_run *run, const mhb_branch *from, int poi
   return SHB_OK;
 }
 
-/* Follow a point of a sweep with the fewest harmonics that suffice along all of its curve. */
-static shb_status follow(tracking_run *run, const mhb_branch *from, int point, double value) {
+/* Follow a point of a sweep with the fewest harmonics that suffice along all of its curve. One that
+ * cannot be followed is lost; it counts if it is nearly the highest of its sweep. */
+static shb_status follow(tracking_run *run, const mhb_branch *from, int point, double value,
+                         bool high) {
   int  fixed = run->asked->harmonics, m = fixed > 0 ? fixed : LEAST_HARMONICS;
   bool found = false, good = false;
   for (;; m = 2 * m + 1) {
@@ -226,7 +228,7 @@ static shb_status follow(tracking_run *run, const mhb_branch *from, int point, d
     drop_last(run->response);
     if (last) break;
   }
-  if (run->n_lost++ == 0) run->lost_at = value;
+  if (high && run->n_lost++ == 0) run->lost_at = value;
   return SHB_OK;
 }
 
@@ -237,7 +239,8 @@ static shb_status follow_all(tracking_run *run, const mhb_response *sweep, doubl
     for (int i = 0; i < branch->n_points && branch->kind == MHB_BRANCH_NONLINEAR; i++) {
       if (!is_seed(run, sweep, branch, i, most) || is_known(run, value, branch->frequency[i]))
         continue;
-      SHB_TRY(follow(run, branch, i, value));
+      bool high = squared_output(run, sweep, branch, i) >= NEARLY_HIGHEST * NEARLY_HIGHEST * most;
+      SHB_TRY(follow(run, branch, i, value, high));
       if (shb_interrupted()) return SHB_OK;
     }
   }
