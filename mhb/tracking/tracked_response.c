@@ -26,6 +26,9 @@ static const double BEYOND = 2e-3;
 /* Beyond ends of branches below this share of the highest peak there is no sweep. */
 static const double NEARLY_HIGHEST = 0.9;
 
+/* A peak is the highest of its sweep from this share of the largest amplitude on. */
+static const double HIGHEST = 0.999;
+
 /* A peak of a sweep is higher than the optimum if it exceeds it by this, relative. */
 static const double HIGHER = 1e-4;
 
@@ -39,7 +42,7 @@ typedef struct {
   mhb_response       *response;
   mhb_publisher       publisher;
   shb_progress       *progress;
-  int                 n_lost;  /* nearly highest peaks of sweeps that led to no curve */
+  int                 n_lost;  /* highest peaks of sweeps that led to no curve */
   double              lost_at; /* the first one's parameter */
 } tracking_run;
 
@@ -216,7 +219,7 @@ static shb_status follow_with(tracking_run *run, const mhb_branch *from, int poi
 }
 
 /* Follow a point of a sweep with the fewest harmonics that suffice along all of its curve. One that
- * cannot be followed is lost; it counts if it is nearly the highest of its sweep. */
+ * cannot be followed is lost; it counts if it is the highest of its sweep. */
 static shb_status follow(tracking_run *run, const mhb_branch *from, int point, double value,
                          bool high) {
   int  fixed = run->asked->harmonics, m = fixed > 0 ? fixed : LEAST_HARMONICS;
@@ -239,7 +242,7 @@ static shb_status follow_all(tracking_run *run, const mhb_response *sweep, doubl
     for (int i = 0; i < branch->n_points && branch->kind == MHB_BRANCH_NONLINEAR; i++) {
       if (!is_seed(run, sweep, branch, i, most) || is_known(run, value, branch->frequency[i]))
         continue;
-      bool high = squared_output(run, sweep, branch, i) >= NEARLY_HIGHEST * NEARLY_HIGHEST * most;
+      bool high = squared_output(run, sweep, branch, i) >= HIGHEST * HIGHEST * most;
       SHB_TRY(follow(run, branch, i, value, high));
       if (shb_interrupted()) return SHB_OK;
     }
@@ -370,8 +373,8 @@ shb_status mhb_tracked_response(const modal_model *model, const mhb_settings *se
     return shb_fail(SHB_INTERRUPTED, __FILE__, __LINE__,
                     "interrupted; the curves so far are saved");
   SHB_CHECK(run.n_lost == 0, SHB_NOT_CONVERGED,
-            "%d high peak%s of the sweeps could not be followed, the first at %s %g %s", run.n_lost,
-            run.n_lost == 1 ? "" : "s", mhb_parameter_name(run.tracking.parameter), run.lost_at,
-            mhb_parameter_unit(run.tracking.parameter));
+            "the highest peak of %d sweep%s could not be followed, the first at %s %g %s",
+            run.n_lost, run.n_lost == 1 ? "" : "s", mhb_parameter_name(run.tracking.parameter),
+            run.lost_at, mhb_parameter_unit(run.tracking.parameter));
   return SHB_OK;
 }

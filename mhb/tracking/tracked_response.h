@@ -18,7 +18,8 @@ shb_status mhb_output_named(const modal_model *model, const char *name, int *out
 /* Follow, and publish to path unless it is NULL. Branches are of kind tracked, in the order in
  * which they were found.
  *   response  out  the caller destroys it (NULL on error)
- * Returns SHB_OK, SHB_NOT_CONVERGED if a seed led to no curve, SHB_INTERRUPTED, or SHB_ERR_*. */
+ * Returns SHB_OK, SHB_NOT_CONVERGED if the highest peak of a sweep led to no curve,
+ * SHB_INTERRUPTED, or SHB_ERR_*. */
 shb_status mhb_tracked_response(const modal_model *model, const mhb_settings *settings,
                                 const char *path, const shb_provenance *provenance,
                                 shb_progress *progress, mhb_response **response);
