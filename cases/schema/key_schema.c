@@ -80,69 +80,20 @@ static void print_words_or(const case_key *key, FILE *out) {
   fputs("]}", out);
 }
 
-/* The forms that a value may take, separated by commas. */
-static void print_forms(const case_key *key, FILE *out) {
+/* Forms of the types that hold several numbers, or mappings. */
+static void print_composite(const case_key *key, FILE *out) {
   switch (key->type) {
-    case CASE_NUMBER:
-      print_number(key, out);
-      break;
-    case CASE_INTEGER:
-      print_integer(key, out);
-      break;
-    case CASE_COUNT:
-      print_integer(key, out);
-      fputs(", {\"const\": \"all\"}", out);
-      break;
-    case CASE_AUTO:
-      print_integer(key, out);
-      fputs(", {\"const\": \"auto\"}", out);
-      break;
-    case CASE_CHOICE:
-    case CASE_SWITCH:
-      print_words_or(key, out);
-      break;
-    case CASE_ACCURACY:
-      print_words_or(key, out);
-      fputs(", ", out);
-      print_number(key, out);
-      break;
-    case CASE_WORD:
-    case CASE_LABEL:
-    case CASE_FILE_NAME:
-      fputs("{\"type\": [\"string\", \"number\"]}", out);
-      break;
     case CASE_VECTOR:
       print_numbers(key, 3, 3, out);
       break;
     case CASE_INTERVAL:
       print_numbers(key, 2, 2, out);
       break;
-    case CASE_TRIPLE:
-    case CASE_STIFFNESS:
-      print_number_or_numbers(key, 3, 3, out);
-      break;
-    case CASE_SWEEP:
-      print_number_or_numbers(key, 2, 2, out);
-      break;
     case CASE_PLACES:
       print_numbers(key, 1, 0, out);
       break;
-    case CASE_PRELOADS:
-      print_number_or_numbers(key, 1, 0, out);
-      fputs(", ", out);
-      print_mapping("^(from|to|points)$", out);
-      break;
     case CASE_ORDERS:
       print_integers(key, out);
-      break;
-    case CASE_POINTS:
-      fputs("{\"type\": \"integer\", \"minimum\": 1}, ", out);
-      print_numbers(key, 1, 0, out);
-      break;
-    case CASE_SAVED:
-      print_words_or(key, out);
-      fputs(", ", out);
-      print_numbers(key, 1, 0, out);
       break;
     case CASE_FACTORS:
       print_mapping("^[0-9]+$", out);
@@ -151,17 +102,82 @@ static void print_forms(const case_key *key, FILE *out) {
     case CASE_GROUPS:
       print_mapping("", out);
       break;
-    case CASE_DAMPING:
-      print_number_or_numbers(key, 1, 0, out);
-      fputs(", ", out);
-      print_mapping("^(loss_factor|rayleigh)$", out);
-      break;
-    case CASE_SIGNAL:
-    case CASE_LIST:
-    case CASE_N_TYPES:
+    default:
       fputs("{\"type\": \"array\"}", out);
       break;
   }
+}
+
+/* What may stand in place of the first form, after a comma; nothing for most types. */
+static void print_alternative(const case_key *key, FILE *out) {
+  switch (key->type) {
+    case CASE_COUNT:
+      fputs(", {\"const\": \"all\"}", out);
+      break;
+    case CASE_AUTO:
+      fputs(", {\"const\": \"auto\"}", out);
+      break;
+    case CASE_ACCURACY:
+      fputs(", ", out);
+      print_number(key, out);
+      break;
+    case CASE_PRELOADS:
+      fputs(", ", out);
+      print_mapping("^(from|to|points)$", out);
+      break;
+    case CASE_POINTS:
+    case CASE_SAVED:
+      fputs(", ", out);
+      print_numbers(key, 1, 0, out);
+      break;
+    case CASE_DAMPING:
+      fputs(", ", out);
+      print_mapping("^(loss_factor|rayleigh)$", out);
+      break;
+    default:
+      break;
+  }
+}
+
+/* The forms that a value may take, separated by commas. */
+static void print_forms(const case_key *key, FILE *out) {
+  switch (key->type) {
+    case CASE_NUMBER:
+      print_number(key, out);
+      break;
+    case CASE_INTEGER:
+    case CASE_COUNT:
+    case CASE_AUTO:
+    case CASE_POINTS:
+      print_integer(key, out);
+      break;
+    case CASE_CHOICE:
+    case CASE_SWITCH:
+    case CASE_ACCURACY:
+    case CASE_SAVED:
+      print_words_or(key, out);
+      break;
+    case CASE_WORD:
+    case CASE_LABEL:
+    case CASE_FILE_NAME:
+      fputs("{\"type\": [\"string\", \"number\"]}", out);
+      break;
+    case CASE_TRIPLE:
+    case CASE_STIFFNESS:
+      print_number_or_numbers(key, 3, 3, out);
+      break;
+    case CASE_SWEEP:
+      print_number_or_numbers(key, 2, 2, out);
+      break;
+    case CASE_PRELOADS:
+    case CASE_DAMPING:
+      print_number_or_numbers(key, 1, 0, out);
+      break;
+    default:
+      print_composite(key, out);
+      break;
+  }
+  print_alternative(key, out);
 }
 
 /* ---------------------------------------------------------------- blocks */

@@ -184,8 +184,8 @@ typedef struct {
   int     engine_order, blades;
   bool    unfinished; /* the run that makes it has more to do */
   bool    run_up; /* the speed follows the frequency on the engine order; modes of the top speed */
-  double  psi, phi; /* rad, mean of the pairs */
-  char       *track, *output; /* with mhb.track: what is followed, of which output; else NULL */
+  double  psi, phi;       /* rad, mean of the pairs */
+  char   *track, *output; /* with mhb.track: what is followed, of which output; else NULL */
   mhb_optimum optimum;
 } mhb_response;
 
