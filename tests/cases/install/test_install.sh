@@ -50,7 +50,7 @@ if command -v bash >/dev/null; then
       "$work/tree/share/bash-completion/completions/shroudhb" "$@"
   }
   [ "$(complete shroudhb insp)" = 'inspect ' ] || fail "command: $(complete shroudhb insp)"
-  [ "$(complete shroudhb mesh --in)" = '--inp ' ] || fail "option: $(complete shroudhb mesh --in)"
+  [ "$(complete shroudhb mesh --inp)" = '--inp ' ] || fail "option: $(complete shroudhb mesh --inp)"
   [ "$(complete shroudhb run o)" = 'one.yaml ' ] || fail "file: $(complete shroudhb run o)"
 fi
 

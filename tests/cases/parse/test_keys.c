@@ -32,8 +32,8 @@ static void rows_are_sound(void **state) {
     if (!case_quantity(text, key->unit, &value, why)) fail_msg("%s: %s", key->path, why);
     assert_true(value == 1);
     /* the key's block stays together */
-    bool worded =
-        key->type == CASE_CHOICE || key->type == CASE_SWITCH || key->type == CASE_ACCURACY;
+    bool worded = key->type == CASE_CHOICE || key->type == CASE_SWITCH ||
+                  key->type == CASE_ACCURACY || key->type == CASE_SAVED;
     assert_true(worded == (key->words != NULL));
   }
 }
