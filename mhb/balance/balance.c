@@ -143,6 +143,11 @@ void mhb_balance_use(mhb_balance *b, mhb_evaluation *evaluation) {
   mhb_receptance_set_frequency(b->receptance, b->eval->at.omega);
 }
 
+void mhb_balance_discard(mhb_balance *b, mhb_evaluation *evaluation) {
+  if (b->eval == evaluation) mhb_balance_use(b, NULL);
+  mhb_evaluation_destroy(evaluation);
+}
+
 void mhb_balance_set_operating_point(mhb_balance *b, const mhb_operating_point *at) {
   b->eval->at = *at;
   operating_point_changed(b);

@@ -72,6 +72,9 @@ void       mhb_evaluation_destroy(mhb_evaluation *evaluation);
  * while another evaluation was in use is not known to this one. */
 void mhb_balance_use(mhb_balance *balance, mhb_evaluation *evaluation);
 
+/* Destroy an evaluation; if it is in use, the balance's own takes its place. */
+void mhb_balance_discard(mhb_balance *balance, mhb_evaluation *evaluation);
+
 /* Set the operating point of the evaluation in use. */
 void mhb_balance_set_operating_point(mhb_balance *balance, const mhb_operating_point *at);
 

@@ -161,16 +161,6 @@ static shb_status record(mhb_segment_host *host, mhb_curve_point *point, int spe
 
 /* ---- the table of events ---- */
 
-static double beyond_high(mhb_arclength *curve, const mhb_curve_point *point, void *context) {
-  (void)context;
-  return point->value - curve->high;
-}
-
-static double beyond_low(mhb_arclength *curve, const mhb_curve_point *point, void *context) {
-  (void)context;
-  return curve->low - point->value;
-}
-
 /* Without a place the curve is ahead of it. */
 static double ahead_of_place(mhb_arclength *curve, const mhb_curve_point *point, void *context) {
   const mhb_curve_return *at = context;
@@ -239,16 +229,8 @@ static shb_status make_tests(mhb_tracer *t, const mhb_balance *b) {
                                  .is_near   = mhb_curve_return_is_near,
                                  .accept    = mhb_curve_return_arrived,
                                  .end       = MHB_END_CLOSED};
-  test[n++] = (mhb_event_test){.name      = "high end of the range",
-                               .g         = beyond_high,
-                               .direction = 1,
-                               .at_next   = true,
-                               .end       = MHB_END_HIGH};
-  test[n++] = (mhb_event_test){.name      = "low end of the range",
-                               .g         = beyond_low,
-                               .direction = 1,
-                               .at_next   = true,
-                               .end       = MHB_END_LOW};
+  mhb_events_range_ends(test + n);
+  n += 2;
   if (t->joins)
     test[n++] = (mhb_event_test){.name      = "curve of lower order",
                                  .g         = vanished,

@@ -33,9 +33,7 @@ static shb_status evaluation_create(mhb_curve_system *system, mhb_evaluation **e
 }
 
 static void evaluation_destroy(mhb_curve_system *system, mhb_evaluation *evaluation) {
-  mhb_balance *b = of(system)->balance;
-  if (b->eval == evaluation) mhb_balance_use(b, NULL);
-  mhb_evaluation_destroy(evaluation);
+  mhb_balance_discard(of(system)->balance, evaluation);
 }
 
 static void linearise(mhb_curve_system *system, mhb_curve_point *point) {

@@ -44,6 +44,29 @@ void mhb_events_advance(int n_tests, mhb_event_test *test) {
   for (int i = 0; i < n_tests; i++) test[i].value_current = test[i].value_next;
 }
 
+static double beyond_high(mhb_arclength *curve, const mhb_curve_point *point, void *context) {
+  (void)context;
+  return point->value - curve->high;
+}
+
+static double beyond_low(mhb_arclength *curve, const mhb_curve_point *point, void *context) {
+  (void)context;
+  return curve->low - point->value;
+}
+
+void mhb_events_range_ends(mhb_event_test test[2]) {
+  test[0] = (mhb_event_test){.name      = "high end of the range",
+                             .g         = beyond_high,
+                             .direction = 1,
+                             .at_next   = true,
+                             .end       = MHB_END_HIGH};
+  test[1] = (mhb_event_test){.name      = "low end of the range",
+                             .g         = beyond_low,
+                             .direction = 1,
+                             .at_next   = true,
+                             .end       = MHB_END_LOW};
+}
+
 double mhb_fold_test(mhb_arclength *curve, const mhb_curve_point *point, void *context) {
   (void)context;
   return point->tangent[curve->n];

@@ -78,6 +78,9 @@ bool mhb_events_miss_fold(const mhb_arclength *curve, const mhb_events *events);
 /* The step is accepted: next becomes current, and so do the tests' values. */
 void mhb_events_advance(int n_tests, mhb_event_test *test);
 
+/* The tests that end a segment at the high and the low end of the range. */
+void mhb_events_range_ends(mhb_event_test test[2]);
+
 /* Test function of folds: the tangent's component of the parameter. */
 double mhb_fold_test(mhb_arclength *curve, const mhb_curve_point *point, void *context);
 

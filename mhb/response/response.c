@@ -65,14 +65,20 @@ bool mhb_response_is_linear(const mhb_response *r, const mhb_branch *b, int poin
   return true;
 }
 
-double mhb_response_output(const mhb_response *r, const mhb_branch *b, int point) {
-  size_t                K = (size_t)b->n_harmonics + 1, at = (size_t)point * 3 * K;
-  const double complex *x =
-      r->n_probes > 0 ? b->probe + at * (size_t)r->n_probes : b->motion + at * (size_t)r->n_pairs;
-  size_t first  = (size_t)b->order < K ? (size_t)b->order : K - 1;
-  double square = 0;
-  for (size_t axis = 0; axis < 3; axis++) square += pow(cabs(x[axis * K + first]), 2);
+double mhb_response_amplitude(const mhb_response *r, const mhb_branch *b, int point, int place) {
+  const size_t          K     = (size_t)b->n_harmonics + 1;
+  const bool            probe = place < r->n_probes;
+  const size_t          rows  = (size_t)(probe ? r->n_probes : r->n_pairs);
+  const size_t          row = (size_t)point * rows + (size_t)(probe ? place : place - r->n_probes);
+  const double complex *x   = (probe ? b->probe : b->motion) + row * 3 * K;
+  const size_t          driven = (size_t)b->order < K ? (size_t)b->order : K - 1;
+  double                square = 0;
+  for (size_t axis = 0; axis < 3; axis++) square += pow(cabs(x[axis * K + driven]), 2);
   return sqrt(square);
+}
+
+double mhb_response_output(const mhb_response *r, const mhb_branch *b, int point) {
+  return mhb_response_amplitude(r, b, point, 0);
 }
 
 shb_status mhb_response_note_search(mhb_branch *branch, const mhb_search *search) {

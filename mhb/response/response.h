@@ -17,8 +17,11 @@ shb_status mhb_response_interfaces(mhb_response *response, int n, char *const *n
 
 /* Whether all contacts stick or are open throughout, at a point. */
 bool mhb_response_is_linear(const mhb_response *response, const mhb_branch *branch, int point);
-/* Amplitude of the first probe at the excitation's frequency, m. Without probes it is that of the
- * first pair's motion. Its square is the sum over the three components. */
+/* Amplitude at the excitation's frequency, m; its square is the sum over the three components.
+ *   place  in  a probe, or the number of probes plus a pair, whose motion it is */
+double mhb_response_amplitude(const mhb_response *response, const mhb_branch *branch, int point,
+                              int place);
+/* That of the first probe. Without probes it is that of the first pair's motion. */
 double mhb_response_output(const mhb_response *response, const mhb_branch *branch, int point);
 
 /* Appends an empty branch, its own main one, with index *index. */

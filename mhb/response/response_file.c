@@ -319,32 +319,23 @@ static shb_status write_branch(hid_t file, const mhb_response *response, int ind
   return status;
 }
 
-static shb_status write_parts(hid_t file, const mhb_response *response,
-                              const shb_provenance *provenance) {
-  SHB_TRY(h5_write_provenance(file, response_format, RESPONSE_VERSION, provenance));
+typedef struct {
+  const mhb_response   *response;
+  const shb_provenance *provenance;
+} contents;
+
+static shb_status write_parts(hid_t file, const void *context) {
+  const contents     *c        = context;
+  const mhb_response *response = c->response;
+  SHB_TRY(h5_write_provenance(file, response_format, RESPONSE_VERSION, c->provenance));
   SHB_TRY(write_root(file, response));
   for (int i = 0; i < response->n_branches; i++) SHB_TRY(write_branch(file, response, i));
   return SHB_OK;
 }
 
-static shb_status write_file(const mhb_response *response, const char *temporary,
-                             const shb_provenance *provenance) {
-  hid_t file;
-  SHB_TRY(h5_create(temporary, &file));
-  shb_status status = write_parts(file, response, provenance);
-  if (status == SHB_OK) return h5_close(file);
-  h5_abandon(file);
-  return status;
-}
-
 shb_status mhb_response_write(const mhb_response *response, const char *path,
                               const shb_provenance *provenance) {
-  char *temporary = shb_publish_temporary(path);
-  SHB_CHECK(temporary, SHB_ERR_IO, "%s: no memory", path);
-  shb_status status = write_file(response, temporary, provenance);
-  if (status == SHB_OK) status = shb_publish(temporary, path);
-  free(temporary);
-  return status;
+  return h5_publish(path, write_parts, &(contents){response, provenance});
 }
 
 /* ---- reading ---- */

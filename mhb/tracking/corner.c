@@ -446,16 +446,8 @@ static shb_status trace_both(tracer *t, const place *at, mhb_response *response,
   SHB_TRY(trace_half(t, *at, -1, &end->low));
   int down = t->segment;
   SHB_TRY(trace_half(t, *at, 1, &end->high));
-  const mhb_branch *below = &t->store->branch[down], *above = &t->store->branch[t->segment];
-  *found = below->n_points > 0;
-  if (!*found) return SHB_OK;
-  SHB_TRY(mhb_response_copy_points(response, branch, t->store, down, below->n_points - 1, 0));
-  if (above->n_points > 1)
-    SHB_TRY(
-        mhb_response_copy_points(response, branch, t->store, t->segment, 1, above->n_points - 1));
-  for (int i = 0; i < response->branch[branch].n_points; i++)
-    end->n_optima += response->branch[branch].special[i] == MHB_OPTIMUM;
-  return SHB_OK;
+  *found = t->store->branch[down].n_points > 0;
+  return *found ? mhb_join_halves(response, branch, t->store, down, t->segment) : SHB_OK;
 }
 
 static shb_status make(tracer *t, const mhb_response *response, int branch) {
@@ -478,7 +470,7 @@ shb_status mhb_trace_corner(mhb_balance *balance, const mhb_tracking *tracking,
   tracer t = {.s = {.balance = balance, .tracking = tracking}};
   place  at;
   *found = false;
-  *end   = (mhb_tracking_end){MHB_END_NO_START, MHB_END_NO_START, 0};
+  *end   = (mhb_tracking_end){MHB_END_NO_START, MHB_END_NO_START};
   if (balance->n_pairs != 1 || tracking->kind != MHB_TRACK_PEAK) return SHB_OK;
   shb_status status = make(&t, response, branch);
   if (status == SHB_OK) {

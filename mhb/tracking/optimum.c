@@ -25,14 +25,7 @@ typedef struct {
 
 /* Amplitude of the tracked output at a recorded point. */
 static double amplitude_of(const search *s, const mhb_branch *branch, int point) {
-  const mhb_response   *r = s->response;
-  int                   K = branch->n_harmonics + 1, k = branch->order < K ? branch->order : K - 1;
-  int                   probes = r->n_probes, place = s->tracking->output;
-  size_t                rows  = 3 * (size_t)(place < probes ? probes : r->n_pairs);
-  size_t                first = 3 * (size_t)(place < probes ? place : place - probes);
-  const double complex *a     = (place < probes ? branch->probe : branch->motion) +
-                            ((size_t)point * rows + first) * (size_t)K + k;
-  return sqrt(pow(cabs(a[0]), 2) + pow(cabs(a[K]), 2) + pow(cabs(a[2 * K]), 2));
+  return mhb_response_amplitude(s->response, branch, point, s->tracking->output);
 }
 
 /* The segment [i, i + 1] of a branch that holds a value, or -1. Branches of peaks ascend. */

@@ -272,9 +272,7 @@ static shb_status evaluation_create(mhb_curve_system *system, mhb_evaluation **e
 }
 
 static void evaluation_destroy(mhb_curve_system *system, mhb_evaluation *evaluation) {
-  mhb_balance *b = of(system)->balance;
-  if (b->eval == evaluation) mhb_balance_use(b, NULL);
-  mhb_evaluation_destroy(evaluation);
+  mhb_balance_discard(of(system)->balance, evaluation);
 }
 
 static void copy(const mhb_curve_system *system, const double *x, int j, double *to) {

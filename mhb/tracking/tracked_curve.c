@@ -72,16 +72,6 @@ static shb_status record(mhb_segment_host *host, mhb_curve_point *point, int spe
 
 /* ---- the table of events ---- */
 
-static double beyond_high(mhb_arclength *curve, const mhb_curve_point *point, void *context) {
-  (void)context;
-  return point->value - curve->high;
-}
-
-static double beyond_low(mhb_arclength *curve, const mhb_curve_point *point, void *context) {
-  (void)context;
-  return curve->low - point->value;
-}
-
 static double beyond_frequency(mhb_arclength *curve, const mhb_curve_point *point, void *context) {
   const mhb_tracking *tracking = context;
   double              omega    = mhb_peak_system_omega(curve->system, point->x);
@@ -134,16 +124,8 @@ static int make_tests(tracer *t, mhb_event_test test[MOST_TESTS]) {
                                .context   = (void *)t->tracking,
                                .direction = 1,
                                .end       = MHB_END_FREQUENCY};
-  test[n++] = (mhb_event_test){.name      = "high end of the range",
-                               .g         = beyond_high,
-                               .direction = 1,
-                               .at_next   = true,
-                               .end       = MHB_END_HIGH};
-  test[n++] = (mhb_event_test){.name      = "low end of the range",
-                               .g         = beyond_low,
-                               .direction = 1,
-                               .at_next   = true,
-                               .end       = MHB_END_LOW};
+  mhb_events_range_ends(test + n);
+  n += 2;
   if (!peak) test[n++] = (mhb_event_test){.name = "cusp", .g = mhb_fold_test, .special = MHB_FOLD};
   test[n++] = (mhb_event_test){.name = "optimum", .g = amplitude_slope, .special = MHB_OPTIMUM};
   return n;
@@ -178,10 +160,14 @@ static shb_status trace_half(tracer *t, const double *z, double value, int direc
   return SHB_OK;
 }
 
-static int count_optima(const mhb_branch *branch) {
-  int n = 0;
-  for (int i = 0; i < branch->n_points; i++) n += branch->special[i] == MHB_OPTIMUM;
-  return n;
+shb_status mhb_join_halves(mhb_response *response, int branch, const mhb_response *store, int low,
+                           int high) {
+  const int below = store->branch[low].n_points, above = store->branch[high].n_points;
+  const int first = below > 0 ? 1 : 0;
+  if (below > 0) SHB_TRY(mhb_response_copy_points(response, branch, store, low, below - 1, 0));
+  if (above > first)
+    SHB_TRY(mhb_response_copy_points(response, branch, store, high, first, above - 1));
+  return SHB_OK;
 }
 
 static shb_status trace_both(tracer *t, const mhb_tracking_seed *seed, double *z,
@@ -191,14 +177,8 @@ static shb_status trace_both(tracer *t, const mhb_tracking_seed *seed, double *z
   mhb_peak_system_pack(t->host.curve->system, seed->x, seed->omega, z);
   SHB_TRY(trace_half(t, z, seed->value, -1, &down, &end->low));
   SHB_TRY(trace_half(t, z, seed->value, 1, &up, &end->high));
-  const mhb_branch *below = &t->store->branch[down], *above = &t->store->branch[up];
-  *found = below->n_points + above->n_points > 0;
-  if (below->n_points > 0)
-    SHB_TRY(mhb_response_copy_points(response, branch, t->store, down, below->n_points - 1, 0));
-  int first = below->n_points > 0 ? 1 : 0;
-  if (above->n_points > first)
-    SHB_TRY(mhb_response_copy_points(response, branch, t->store, up, first, above->n_points - 1));
-  end->n_optima = count_optima(&response->branch[branch]);
+  SHB_TRY(mhb_join_halves(response, branch, t->store, down, up));
+  *found = response->branch[branch].n_points > 0;
   return SHB_OK;
 }
 
@@ -218,7 +198,7 @@ shb_status mhb_trace_tracked(mhb_balance *balance, const mhb_tracking *tracking,
   mhb_event_test test[MOST_TESTS];
   tracer         t = {.balance = balance, .tracking = tracking, .store = NULL};
   double        *z = calloc((size_t)balance->n + 1, sizeof *z);
-  *end             = (mhb_tracking_end){MHB_END_NO_START, MHB_END_NO_START, 0};
+  *end             = (mhb_tracking_end){MHB_END_NO_START, MHB_END_NO_START};
   *found           = false;
   t.host           = (mhb_segment_host){.estimate       = estimate,
                                         .estimate_event = estimate_event,

@@ -26,7 +26,6 @@ typedef struct {
 /* Where a curve ends. */
 typedef struct {
   mhb_end low, high; /* towards small and large values of the parameter */
-  int     n_optima;  /* extrema of the amplitude that were located */
 } mhb_tracking_end;
 
 /* Follow from a seed to both ends of the range, into an empty branch of a response.
@@ -39,5 +38,10 @@ typedef struct {
 shb_status mhb_trace_tracked(mhb_balance *balance, const mhb_tracking *tracking,
                              const mhb_tracking_seed *seed, mhb_response *response, int branch,
                              bool *found, mhb_tracking_end *end);
+
+/* Append both halves of a curve, each from the seed on, to a branch: the low one from its end, then
+ * the high one. The seed's point is in both and is appended once. SHB_ERR_IO: no memory. */
+shb_status mhb_join_halves(mhb_response *response, int branch, const mhb_response *store, int low,
+                           int high);
 
 #endif

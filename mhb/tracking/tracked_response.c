@@ -123,36 +123,24 @@ static shb_status sweep_at(const tracking_run *run, double value, mhb_response *
 
 /* ---- seeds ---- */
 
-/* Amplitude squared of the output at a point of a branch. */
-static double squared_output(const tracking_run *run, const mhb_response *r,
-                             const mhb_branch *branch, int point) {
-  int                   K = branch->n_harmonics + 1, k = branch->order < K ? branch->order : K - 1;
-  int                   probes = r->n_probes, place = run->tracking.output;
-  bool                  probe = place < probes;
-  size_t                rows  = 3 * (size_t)(probe ? probes : r->n_pairs);
-  const double complex *a =
-      (probe ? branch->probe : branch->motion) +
-      ((size_t)point * rows + 3 * (size_t)(probe ? place : place - probes)) * (size_t)K + k;
-  return pow(cabs(a[0]), 2) + pow(cabs(a[K]), 2) + pow(cabs(a[2 * K]), 2);
-}
-
-/* The highest amplitude squared of a sweep. */
+/* The highest amplitude of the output in a sweep. */
 static double highest(const tracking_run *run, const mhb_response *r) {
   double most = 0;
   for (int b = 0; b < r->n_branches; b++)
     for (int i = 0; i < r->branch[b].n_points && r->branch[b].kind == MHB_BRANCH_NONLINEAR; i++)
-      most = fmax(most, squared_output(run, r, &r->branch[b], i));
+      most = fmax(most, mhb_response_amplitude(r, &r->branch[b], i, run->tracking.output));
   return most;
 }
 
-/* Whether a point is to be followed; most: the highest amplitude squared of its sweep. */
+/* Whether a point is to be followed; most: the highest amplitude of its sweep. */
 static bool is_seed(const tracking_run *run, const mhb_response *r, const mhb_branch *branch, int i,
                     double most) {
+  const int output = run->tracking.output;
   if (run->tracking.kind == MHB_TRACK_FOLD) return branch->special[i] == MHB_FOLD;
   if (branch->special[i] != MHB_PEAK || i == 0 || i == branch->n_points - 1) return false;
-  double a = squared_output(run, r, branch, i);
-  return a >= MINOR * MINOR * most && a >= squared_output(run, r, branch, i - 1) &&
-         a >= squared_output(run, r, branch, i + 1);
+  double a = mhb_response_amplitude(r, branch, i, output);
+  return a >= MINOR * most && a >= mhb_response_amplitude(r, branch, i - 1, output) &&
+         a >= mhb_response_amplitude(r, branch, i + 1, output);
 }
 
 /* Frequency of a tracked branch at a value of the parameter, linear between its points; NAN beyond
@@ -235,14 +223,15 @@ static shb_status follow(tracking_run *run, const mhb_branch *from, int point, d
   return SHB_OK;
 }
 
-static shb_status follow_all(tracking_run *run, const mhb_response *sweep, double value) {
-  double most = highest(run, sweep);
+/* Follow the peaks of a sweep that are not known; most: its highest amplitude. */
+static shb_status follow_all(tracking_run *run, const mhb_response *sweep, double value,
+                             double most) {
   for (int b = 0; b < sweep->n_branches; b++) {
     const mhb_branch *branch = &sweep->branch[b];
     for (int i = 0; i < branch->n_points && branch->kind == MHB_BRANCH_NONLINEAR; i++) {
       if (!is_seed(run, sweep, branch, i, most) || is_known(run, value, branch->frequency[i]))
         continue;
-      bool high = squared_output(run, sweep, branch, i) >= HIGHEST * HIGHEST * most;
+      bool high = mhb_response_amplitude(sweep, branch, i, run->tracking.output) >= HIGHEST * most;
       SHB_TRY(follow(run, branch, i, value, high));
       if (shb_interrupted()) return SHB_OK;
     }
@@ -278,15 +267,15 @@ static shb_status sweep_and_follow(tracking_run *run, double value, double *most
                     mhb_parameter_name(run->tracking.parameter), value,
                     mhb_parameter_unit(run->tracking.parameter));
   shb_status status = sweep_at(run, value, &sweep);
-  if (status == SHB_OK) *most = sqrt(highest(run, sweep));
-  if (status == SHB_OK) status = follow_all(run, sweep, value);
+  if (status == SHB_OK) *most = highest(run, sweep);
+  if (status == SHB_OK) status = follow_all(run, sweep, value, *most);
   mhb_response_destroy(sweep);
   return status;
 }
 
 /* Where a branch ends inside the range another peak takes over: a sweep beyond each such end. */
 static shb_status chain(tracking_run *run, int *budget) {
-  for (int b = 0; b<run->response->n_branches && * budget> 0; b++) {
+  for (int b = 0; b < run->response->n_branches; b++) {
     for (int end = 0; end < 2 && *budget > 0 && !shb_interrupted(); end++) {
       const mhb_branch *branch = &run->response->branch[b]; /* it moves when others are added */
       int               point  = end ? branch->n_points - 1 : 0;
@@ -337,7 +326,7 @@ static shb_status run_all(tracking_run *run, mhb_response *sweep[N_SWEEPS]) {
     shb_progress_show(run->progress, 20 + 80. * i / N_SWEEPS, "following from %s %.6g %s",
                       mhb_parameter_name(run->tracking.parameter), value[i],
                       mhb_parameter_unit(run->tracking.parameter));
-    SHB_TRY(follow_all(run, sweep[i], value[i]));
+    SHB_TRY(follow_all(run, sweep[i], value[i], highest(run, sweep[i])));
   }
   int budget = MOST_FURTHER_SWEEPS;
   if (run->tracking.kind == MHB_TRACK_PEAK) {

@@ -45,6 +45,11 @@ shb_status h5_close(hid_t file);
 /* Close without writing and remove a created file, after an error. */
 void h5_abandon(hid_t file);
 
+/* Create the file beside path, let fill write it, and publish it whole (mesh/base/publish.h). An
+ * earlier file stays as it is after an error. Errors: of fill, h5_create, h5_close, shb_publish. */
+typedef shb_status (*h5_fill)(hid_t file, const void *context);
+shb_status h5_publish(const char *path, h5_fill fill, const void *context);
+
 /* Write dataset path below at. Groups in between are created. data: row-major, of the given shape.
  * Errors: SHB_ERR_IO; SHB_ERR_INPUT if a value is not finite, since results that overflow come from
  * inputs that are too large. The text names the file, the dataset and the place. */

@@ -81,9 +81,15 @@ static shb_status write_lists(hid_t file, const post_convergence *s, const char 
   return SHB_OK;
 }
 
-static shb_status write_parts(hid_t file, const post_convergence *s,
-                              const shb_provenance *provenance) {
-  SHB_TRY(h5_write_provenance(file, format, VERSION, provenance));
+typedef struct {
+  const post_convergence *convergence;
+  const shb_provenance   *provenance;
+} contents;
+
+static shb_status write_parts(hid_t file, const void *context) {
+  const contents         *c = context;
+  const post_convergence *s = c->convergence;
+  SHB_TRY(h5_write_provenance(file, format, VERSION, c->provenance));
   SHB_TRY(h5_write_attribute_text(file, "/", "output", s->output));
   SHB_TRY(h5_write_attribute_text(file, "/", "note", s->note ? s->note : ""));
   SHB_TRY(h5_write_attribute_double(file, "/", "tolerance", s->tolerance));
@@ -104,20 +110,7 @@ static shb_status write_parts(hid_t file, const post_convergence *s,
 
 shb_status post_convergence_write(const post_convergence *s, const char *path,
                                   const shb_provenance *provenance) {
-  char *temporary = shb_publish_temporary(path);
-  hid_t file;
-  SHB_CHECK(temporary, SHB_ERR_IO, "%s: no memory", path);
-  shb_status status = h5_create(temporary, &file);
-  if (status == SHB_OK) {
-    status = write_parts(file, s, provenance);
-    if (status == SHB_OK)
-      status = h5_close(file);
-    else
-      h5_abandon(file);
-  }
-  if (status == SHB_OK) status = shb_publish(temporary, path);
-  free(temporary);
-  return status;
+  return h5_publish(path, write_parts, &(contents){s, provenance});
 }
 
 /* ---------------------------------------------------------------- reading */

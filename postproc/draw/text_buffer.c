@@ -103,6 +103,13 @@ void post_put_printable(post_buffer *buffer, const char *text) {
   for (; *text; text++) post_put_bytes(buffer, is_control(*text) ? "?" : text, 1);
 }
 
+void post_put_csv(post_buffer *buffer, const char *text) {
+  bool quoted = strpbrk(text, ",\"\r\n") != NULL;
+  if (quoted) post_put(buffer, "\"");
+  for (const char *c = text; *c; c++) post_put(buffer, *c == '"' ? "\"\"" : "%c", *c);
+  if (quoted) post_put(buffer, "\"");
+}
+
 void post_put_json(post_buffer *buffer, const char *text) {
   post_put(buffer, "\"");
   while (*text) {

@@ -26,6 +26,9 @@ void post_put_escaped(post_buffer *buffer, const char *text);
 /* Text for a terminal; control characters but newline and tab become '?'. */
 void post_put_printable(post_buffer *buffer, const char *text);
 
+/* A field of a CSV file, in quotes if it needs them. */
+void post_put_csv(post_buffer *buffer, const char *text);
+
 /* A JSON string with its quotes. '<' is written \u003c, so it may stand inside <script>. */
 void post_put_json(post_buffer *buffer, const char *text);
 

@@ -344,19 +344,11 @@ static void format_cell(const column *c, int row, bool csv, char out[DIGITS]) {
   }
 }
 
-/* A field of a CSV file, with quotes where they are needed. */
-static void put_field(post_buffer *out, const char *text) {
-  bool quoted = strpbrk(text, ",\"\n") != NULL;
-  if (quoted) post_put(out, "\"");
-  for (; *text; text++) post_put(out, *text == '"' ? "\"\"" : "%c", *text);
-  if (quoted) post_put(out, "\"");
-}
-
 static void put_csv(const table *t, post_buffer *out) {
   post_put(out, "index");
   for (int c = 0; c < t->n; c++) {
     post_put(out, ",");
-    put_field(out, t->column[c].label);
+    post_put_csv(out, t->column[c].label);
   }
   post_put(out, "\n");
   for (int i = 0; i < t->n_rows; i++) {
@@ -364,7 +356,7 @@ static void put_csv(const table *t, post_buffer *out) {
     for (int c = 0; c < t->n; c++) {
       char cell[DIGITS];
       post_put(out, ",");
-      if (t->column[c].text) put_field(out, t->column[c].text[i]);
+      if (t->column[c].text) post_put_csv(out, t->column[c].text[i]);
       if (t->column[c].value) format_cell(&t->column[c], i, true, cell);
       if (t->column[c].value) post_put(out, "%s", cell);
     }

@@ -7,16 +7,6 @@
 #include "mesh/base/constants.h"
 #include "postproc/analysis/outputs.h"
 
-static void put_text(post_buffer *out, const char *text) {
-  if (!strpbrk(text, ",\"\r\n")) {
-    post_put(out, "%s", text);
-    return;
-  }
-  post_put(out, "\"");
-  for (const char *c = text; *c; c++) post_put(out, *c == '"' ? "\"\"" : "%c", *c);
-  post_put(out, "\"");
-}
-
 static void put_number(post_buffer *out, double value) {
   post_put(out, isfinite(value) ? ",%.12g" : ",", value);
 }
@@ -26,7 +16,7 @@ static void put_name(post_buffer *out, const char *place, const char *part, cons
   char name[256];
   snprintf(name, sizeof name, "%s%s%s", place, part, suffix);
   post_put(out, ",");
-  put_text(out, name);
+  post_put_csv(out, name);
 }
 
 static void place_names(post_buffer *out, const char *place, const char *const axis[3]) {

@@ -2,22 +2,15 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 static void put_number(double value, post_buffer *out) {
   if (isfinite(value)) post_put(out, ",%.12g", value);
   if (!isfinite(value)) post_put(out, ",");
 }
 
-/* Put a text in quotes if it needs them. */
 static void put_text(const char *text, post_buffer *out) {
-  if (!strpbrk(text, ",\"\r\n")) {
-    post_put(out, ",%s", text);
-    return;
-  }
-  post_put(out, ",\"");
-  for (; *text; text++) post_put(out, "%s%c", *text == '"' ? "\"" : "", *text);
-  post_put(out, "\"");
+  post_put(out, ",");
+  post_put_csv(out, text);
 }
 
 static bool has_error(const design_study *s, int output) {

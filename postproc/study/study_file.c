@@ -240,7 +240,8 @@ static shb_status put_origin(hid_t file, const design_study *s) {
   return h5_write_attribute_int(file, "/", "finished", s->finished);
 }
 
-static shb_status put_all(hid_t file, const design_study *s) {
+static shb_status put_all(hid_t file, const void *context) {
+  const design_study *s = context;
   SHB_TRY(put_origin(file, s));
   SHB_TRY(put_columns(file, "/design/key", "/design/unit", s->n_keys, s->key));
   SHB_TRY(put_columns(file, "/output/name", "/output/unit", s->n_outputs, s->output));
@@ -261,20 +262,7 @@ static shb_status put_all(hid_t file, const design_study *s) {
 }
 
 shb_status study_file_write(const design_study *s, const char *path) {
-  char *temporary = shb_publish_temporary(path);
-  hid_t file;
-  SHB_CHECK(temporary, SHB_ERR_IO, "%s: no memory", path);
-  shb_status status = h5_create(temporary, &file);
-  if (status == SHB_OK) {
-    status = put_all(file, s);
-    if (status == SHB_OK)
-      status = h5_close(file);
-    else
-      h5_abandon(file);
-  }
-  if (status == SHB_OK) status = shb_publish(temporary, path);
-  free(temporary);
-  return status;
+  return h5_publish(path, put_all, s);
 }
 
 /* ---------------------------------------------------------------- reading */

@@ -68,9 +68,9 @@ static void each_tracked_peak_is_that_of_a_sweep(void **state) {
   const mhb_branch *t          = &r->branch[branch];
   int               iterations = 0;
   for (int i = 0; i < t->n_points; i++) iterations += t->iterations[i];
-  print_message("%d points, n0 %g to %g (%s; %s), %d iterations, %d optima\n", t->n_points,
-                t->value[0], t->value[t->n_points - 1], mhb_end_text(end.low),
-                mhb_end_text(end.high), iterations, end.n_optima);
+  print_message("%d points, n0 %g to %g (%s; %s), %d iterations\n", t->n_points, t->value[0],
+                t->value[t->n_points - 1], mhb_end_text(end.low), mhb_end_text(end.high),
+                iterations);
   assert_true(found);
   double worst = 0, worst_f = 0;
   for (int i = 0; i < t->n_points; i++) {
