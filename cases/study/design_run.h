@@ -3,7 +3,7 @@
 #define CASES_STUDY_DESIGN_RUN_H
 
 #include "cases/commands/load_model.h"
-#include "cases/study/output_names.h"
+#include "cases/designs/output_names.h"
 #include "postproc/study/design_study.h"
 
 /* Compute the outputs on a modal model. Sets state, value, error, reason and curve of the design.

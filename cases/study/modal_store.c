@@ -11,8 +11,8 @@
 #include <unistd.h>
 
 #include "cases/commands/subprocess.h"
+#include "cases/designs/digest.h"
 #include "cases/schema/case_paths.h"
-#include "cases/study/digest.h"
 
 enum { MORE_WORDS = 12 };
 

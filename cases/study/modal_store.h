@@ -6,7 +6,7 @@
 #define CASES_STUDY_MODAL_STORE_H
 
 #include "cases/commands/load_model.h"
-#include "cases/study/study_spec.h"
+#include "cases/designs/study_spec.h"
 
 enum { STORE_MODELS = 4 };
 

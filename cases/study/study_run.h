@@ -2,8 +2,8 @@
 #ifndef CASES_STUDY_STUDY_RUN_H
 #define CASES_STUDY_STUDY_RUN_H
 
+#include "cases/designs/study_spec.h"
 #include "cases/study/crew.h"
-#include "cases/study/study_spec.h"
 #include "mesh/base/progress.h"
 #include "postproc/study/design_study.h"
 

@@ -1,15 +1,15 @@
-#include "cases/study/study_spec.h"
+#include "cases/designs/study_spec.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "cases/designs/design_table.h"
+#include "cases/designs/digest.h"
 #include "cases/parse/diagnostics.h"
 #include "cases/parse/key_table.h"
 #include "cases/parse/units.h"
 #include "cases/schema/case.h"
-#include "cases/study/design_table.h"
-#include "cases/study/digest.h"
 
 enum { STAGES = CASE_MESH | CASE_MODAL | CASE_MHB, TOLD = 5 };
 

@@ -1,14 +1,14 @@
 /* STUDY.yaml in memory: which keys of a case are varied, by which plan, and which outputs are
  * wanted. */
-#ifndef CASES_STUDY_STUDY_SPEC_H
-#define CASES_STUDY_STUDY_SPEC_H
+#ifndef CASES_DESIGNS_STUDY_SPEC_H
+#define CASES_DESIGNS_STUDY_SPEC_H
 
 #include <stdbool.h>
 #include <stdio.h>
 
+#include "cases/designs/output_names.h"
 #include "cases/parse/case_file.h"
 #include "cases/parse/yaml.h"
-#include "cases/study/output_names.h"
 #include "mesh/base/status.h"
 
 enum { STUDY_MAX_KEYS = 32, STUDY_MAX_OUTPUTS = 64, STUDY_MOST_DESIGNS = 100000 };

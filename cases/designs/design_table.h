@@ -1,6 +1,6 @@
 /* A table of designs: a CSV file whose header names the varied keys. */
-#ifndef CASES_STUDY_DESIGN_TABLE_H
-#define CASES_STUDY_DESIGN_TABLE_H
+#ifndef CASES_DESIGNS_DESIGN_TABLE_H
+#define CASES_DESIGNS_DESIGN_TABLE_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,4 +1,4 @@
-#include "cases/study/digest.h"
+#include "cases/designs/digest.h"
 
 #include <inttypes.h>
 #include <stdint.h>

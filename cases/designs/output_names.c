@@ -1,4 +1,4 @@
-#include "cases/study/output_names.h"
+#include "cases/designs/output_names.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 /* The outputs of a design by name: what a study, an optimiser or another program may ask for. */
-#ifndef CASES_STUDY_OUTPUT_NAMES_H
-#define CASES_STUDY_OUTPUT_NAMES_H
+#ifndef CASES_DESIGNS_OUTPUT_NAMES_H
+#define CASES_DESIGNS_OUTPUT_NAMES_H
 
 #include <stddef.h>
 

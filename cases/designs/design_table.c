@@ -1,4 +1,4 @@
-#include "cases/study/design_table.h"
+#include "cases/designs/design_table.h"
 
 #include <stdio.h>
 #include <stdlib.h>

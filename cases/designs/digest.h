@@ -1,9 +1,9 @@
 /* Digests: two inputs with equal digests give equal results, so they are computed once. */
-#ifndef CASES_STUDY_DIGEST_H
-#define CASES_STUDY_DIGEST_H
+#ifndef CASES_DESIGNS_DIGEST_H
+#define CASES_DESIGNS_DIGEST_H
 
+#include "cases/designs/output_names.h"
 #include "cases/parse/case_file.h"
-#include "cases/study/output_names.h"
 #include "mesh/base/status.h"
 
 enum { DIGEST_TEXT = 17 };
