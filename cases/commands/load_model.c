@@ -1,5 +1,7 @@
 #include "cases/commands/load_model.h"
 
+#include <complex.h>
+
 #include "mesh/base/constants.h"
 #include "modal/model/reduce.h"
 
@@ -22,11 +24,29 @@ static shb_status read_speeds(const char *path, int modes, bool residuals, case_
   return SHB_OK;
 }
 
+/* The balance needs contact and a load, which modes alone do without. */
+static shb_status check_use(const char *path, const modal_model *model) {
+  double force = 0;
+  SHB_CHECK(model->n_pairs > 0, SHB_ERR_INPUT,
+            "%s: has no /contact, as the case had no block contact or its mesh no contact faces; "
+            "the balance needs one",
+            path);
+  for (int i = 0; i < (model->n_load + 1) * model->n_modes; i++)
+    force += cabs(model->modal_force[i]);
+  SHB_CHECK(
+      force > 0, SHB_ERR_INPUT,
+      "%s: its load is 0, as of a case without a load; give excitation.pressure, or traction, "
+      "force, field or loads, and run `shroudhb modal` again",
+      path);
+  return SHB_OK;
+}
+
 shb_status case_model_read(const case_file *file, const char *path, int modes, bool residuals,
                            case_model *m) {
   *m = (case_model){.settings = file->mhb};
   if (file->run_up) return read_speeds(path, modes, residuals, m);
   SHB_TRY(modal_model_read(path, &m->model));
+  SHB_TRY(check_use(path, &m->model));
   return modes > 0 ? modal_model_reduce(&m->model, modes, residuals) : SHB_OK;
 }
 

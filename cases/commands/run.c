@@ -155,6 +155,10 @@ void run_describe(const case_file *file, FILE *out) {
   fprintf(out, "%s: ok\n", file->path);
   describe_source(file, out);
   describe_body(file, out);
+  if (file->only_modes) {
+    fputs("  modes alone, by `shroudhb modal`: no contact, no mhb\n", out);
+    return;
+  }
   if (mhb->to_ground) {
     fputs("  contact   to ground", out);
   } else {

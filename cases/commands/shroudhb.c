@@ -219,7 +219,7 @@ static int check_main(const char *name, int argc, char **argv) {
   char study[] = "--check";
   if (is_study(options.path)) return become("study", study, argc, argv, replace_by);
   case_file  file;
-  shb_status status = command_read(&options, RUN_ALL, &file);
+  shb_status status = command_read(&options, RUN_ALL | CASE_OR_MODES, &file);
   if (status == SHB_OK && !options.quiet) run_describe(&file, stdout);
   if (status == SHB_OK) case_free(&file);
   return command_finish(status);

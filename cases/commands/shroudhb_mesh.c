@@ -53,6 +53,9 @@ static shb_status check_faces(const case_file *file, const char *right, const ch
 
 /* Checks all interfaces; pairing is that of the first. */
 static shb_status check_contact(const case_file *file, mesh_fe *mesh, mesh_pairing *pairing) {
+  *pairing  = (mesh_pairing){0};
+  bool both = mesh->set[MESH_CONTACT_RIGHT].n > 0 && mesh->set[MESH_CONTACT_LEFT].n > 0;
+  if (!file->has_contact && !(both && file->blades > 1)) return SHB_OK; /* touches nothing */
   if (file->n_interfaces == 0)
     return check_faces(file, "contact_right", "contact_left", mesh, pairing);
   *pairing = (mesh_pairing){0};

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "cases/commands/command.h"
+#include "cases/commands/subprocess.h"
 #include "cases/commands/up_to_date.h"
 #include "cases/schema/case.h"
 #include "cases/schema/case_paths.h"
@@ -22,7 +23,10 @@ static const char usage[] =
     "to the\n"
     "contact, load and probe points and writes NAME.modal.h5; does nothing if that file is up to "
     "date\n"
-    "(unless --force). Options after the case go to PETSc and SLEPc, such as -eps_view,\n"
+    "(unless --force). Needs mesh, material and clamp only: without contact, load and damping the "
+    "file\n"
+    "holds the modes alone. Meshes first if the mesh is missing. Options after the case go to "
+    "PETSc and SLEPc, such as -eps_view,\n"
     "-eps_block_size 8, -eps_type krylovschur, -st_pc_factor_mat_solver_type mumps,\n"
     "-st_mat_mumps_icntl_14 50.\n";
 
@@ -128,6 +132,8 @@ static modal_settings stage_settings(const case_file *file, modal_probe probe[CA
       .points           = file->points,
       .psi              = mhb->has_psi ? &mhb->psi : NULL,
       .phi              = mhb->has_phi ? &mhb->phi : NULL,
+      .may_be_free      = !file->has_contact,
+      .unloaded         = !file->has_load,
       .n_loads          = file->n_loads,
       .loads            = loads,
       .n_contacts       = file->n_interfaces,
@@ -197,12 +203,33 @@ static void warn(const case_file *file) {
   }
 }
 
+/* Makes the mesh of the case with shroudhb-mesh if there is none, on rank 0 before MPI starts. The
+ * others wait in MPI_Init. Returns the exit code. */
+static int make_mesh(const case_file *file, const command_options *options) {
+  if (launch_rank() != 0 || (file->mesh_file && !case_mesh_is_made(file))) return SHB_OK;
+  const char       *list[COMMAND_WORDS];
+  char             *mesh = case_mesh_path(file), *program = subprocess_program("shroudhb-mesh");
+  subprocess_result result = {.code = SHB_OK};
+  shb_status        status = SHB_OK;
+  if (!mesh || !program) status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  if (status == SHB_OK && access(mesh, F_OK) != 0) {
+    list[0] = program;
+    command_forward(options, list, 1);
+    status = subprocess_run((char *const *)list, &result);
+  }
+  free(mesh);
+  free(program);
+  return status == SHB_OK ? result.code : command_finish(status);
+}
+
 static int work(words *line, const case_file *file, const command_options *options) {
   modal_session session;
   if (file->modal_file) {
     fprintf(stderr, "shroudhb: modal.file is given: nothing to compute\n");
     return SHB_OK;
   }
+  int meshed = make_mesh(file, options);
+  if (meshed != SHB_OK) return meshed;
   shb_status status = modal_session_start(&line->n_petsc, &line->petsc, &session);
   if (status != SHB_OK) return command_finish(status);
   shb_interrupt_catch(); /* after MPI_Init, because the launcher sets handlers of its own */

@@ -20,7 +20,9 @@ typedef enum {
   CASE_MHB       = 4,
   CASE_POST      = 8,
   CASE_CONVERGE  = 16,
-  CASE_INTEGRATE = 32
+  CASE_INTEGRATE = 32,
+  /* beside the others: a file of modes alone is in order, and read as one for CASE_MODAL */
+  CASE_OR_MODES = 64
 } case_stage;
 
 typedef struct {
@@ -55,6 +57,7 @@ typedef struct {
   char *output; /* another folder for the outputs, or NULL */
   char *text;   /* verbatim */
   char *name;
+  bool  only_modes; /* neither modal.file nor the blocks contact and mhb: for CASE_MODAL alone */
 
   bool        has_mesh;  /* block mesh present (needed unless modal.file) */
   char       *mesh_file; /* resolved path of mesh.file, or NULL: parametric blade */
@@ -85,13 +88,15 @@ typedef struct {
   int        engine_order;
   fem_load   load;
   char      *field_file; /* resolved path of excitation.field, or NULL */
+  bool       has_load;   /* any load is given */
   bool       has_loads;
   int        n_loads; /* with excitation.loads, instead of load */
   case_load  loads[CASE_MAX_LOADS];
   int        n_probes;
   case_probe probe[CASE_MAX_PROBES];
 
-  int            points; /* contact patches; 0 = all */
+  bool           has_contact; /* block contact present */
+  int            points;      /* contact patches; 0 = all */
   bool           has_interfaces;
   int            n_interfaces; /* with contact.interfaces */
   case_interface interfaces[MHB_MAX_INTERFACES];

@@ -143,7 +143,7 @@ static const case_key table[] = {
      .stages = CASE_MODAL,
      .help = "density"},
 
-    {"rotor.blades", CASE_INTEGER, "", 2, 1000, .required = true, AT(blades),
+    {"rotor.blades", CASE_INTEGER, "", 2, 1000, .required = true, .spare = true, AT(blades),
      .stages = CASE_MESH | CASE_MODAL | CASE_MHB, .when = CASE_IF_SECTOR,
      .help = "number of blades; the sector angle is 360 deg / blades"},
     {"rotor.speed", CASE_PRELOADS, "rad/s", 0, 1e5, .fallback = "0 rpm", AT(speed),
@@ -171,8 +171,8 @@ static const case_key table[] = {
      .when = CASE_IF_AUTO_MODES,
      .help = "with modes: auto; 0: the upper end of mhb.frequency times mhb.harmonics (times 5 "
              "where they are auto)"},
-    {"modal.damping", CASE_DAMPING, "", 0, 1, .below = true, .required = true, AT(damping),
-     .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
+    {"modal.damping", CASE_DAMPING, "", 0, 1, .below = true, .required = true, .spare = true,
+     AT(damping), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
      .help = "damping ratio of every mode; [ratio of each], the last for those beyond; "
              "{loss_factor: eta}; {rayleigh: [alpha 1/s, beta s]}"},
     {"modal.check", CASE_CHOICE, "", .words = "auto inertia never", .fallback = "auto", AT(check),
@@ -190,7 +190,7 @@ static const case_key table[] = {
      .stages = CASE_MHB, .when = CASE_IF_ORDER,
      .help = "engine order E; the right neighbour lags by 2 pi E / blades (rotor turning towards "
              "+tangential: give blades - E)"},
-    {"excitation.pressure", CASE_NUMBER, "Pa", -1e12, 1e12, .required = true,
+    {"excitation.pressure", CASE_NUMBER, "Pa", -1e12, 1e12, .required = true, .spare = true,
      .instead = "traction, force, field or loads", AT(load.pressure), .stages = CASE_MODAL,
      .when = CASE_IF_PRESSURE,
      .help = "on the group load, into the surface; one of pressure, traction, force, field"},

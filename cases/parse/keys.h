@@ -89,6 +89,7 @@ typedef struct {
   const char    *words;        /* CASE_CHOICE, CASE_SWITCH, CASE_ACCURACY: separated by spaces */
   const char    *fallback;     /* default, as YAML text; NULL: none */
   bool           required;     /* whether its stages require it when the condition holds */
+  bool           spare;        /* the modes alone do not require it */
   int            stages;       /* mask of the stages whose result depends on the key */
   case_condition when;
   size_t         at;       /* offset in case_file, or in the element for "[]" rows */

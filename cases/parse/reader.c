@@ -277,12 +277,20 @@ void case_reader_walk(case_reader *r, const case_node *root) {
   }
 }
 
+/* Modes alone need no damping and no load. They need the number of blades only for contact to the
+ * neighbour, or to make the blade. */
+static bool is_spared(const case_reader *r, const case_key *key, int stages) {
+  bool sector = strcmp(key->path, "rotor.blades") == 0 &&
+                (find_block(r, "mesh.blade") || find_block(r, "contact"));
+  return key->spare && !(stages & CASE_MHB) && !sector;
+}
+
 static bool is_missing(const case_reader *r, int index, int stages) {
   const case_key *key = &r->keys.key[index];
   /* case_check_alternatives reports that both mesh.blade and mesh.file are missing */
   bool told = key->when == CASE_IF_BLADE && !find_block(r, "mesh.blade");
   return key->required && (key->stages & stages) && !r->given[index] && !is_section_row(key) &&
-         !told && case_key_applies(key, r->file);
+         !told && !is_spared(r, key, stages) && case_key_applies(key, r->file);
 }
 
 /* The outermost block around key that is not in the file. False if the block of the key is there.

@@ -67,8 +67,10 @@ static void share(case_reader *r) {
     one->material.E    = one->constants.E[0];
     one->material.nu   = one->constants.nu[0];
   }
-  file->load.field = file->field_file;
-  file->has_loads  = case_reader_given(r, "excitation.loads") != NULL;
+  file->has_contact = case_reader_has_block(r, "contact");
+  file->only_modes  = !file->modal_file && !file->has_contact && !case_reader_has_block(r, "mhb");
+  file->load.field  = file->field_file;
+  file->has_loads   = case_reader_given(r, "excitation.loads") != NULL;
   for (int i = 0; i < file->n_loads; i++) {
     case_load *one  = &file->loads[i];
     one->load.field = one->field;
@@ -76,6 +78,17 @@ static void share(case_reader *r) {
   }
   file->blade.psi = file->mhb.has_psi ? file->mhb.psi : 0;
   file->blade.phi = file->mhb.has_phi ? file->mhb.phi : 0;
+}
+
+/* The stages for which the file is checked. A file of modes alone has one issue if the balance is
+ * to run. */
+static int stages_of(case_reader *r, int stages) {
+  if (!r->file->only_modes || !(stages & CASE_MHB)) return stages;
+  if (!(stages & CASE_OR_MODES))
+    case_issue_add(r->issues, 1, 1, NULL,
+                   "describes modes alone, for `shroudhb modal`; the balance needs contact {mu, "
+                   "ku, kv, n0}, excitation {engine_order, and a load} and mhb {frequency} too");
+  return CASE_MESH | CASE_MODAL;
 }
 
 /* Returns true if an input file named in the case cannot be read. */
@@ -92,6 +105,7 @@ static bool read_document(case_issues *issues, const case_overrides *overrides, 
     share_parameter(&reader);
     case_share_interfaces(&reader);
     case_assign_groups(&reader);
+    stages = stages_of(&reader, stages);
     case_check_alternatives(&reader, stages);
     case_reader_require(&reader, stages);
     lost = case_check_values(&reader, stages);

@@ -32,10 +32,11 @@ static void check_single(case_reader *r) {
       case_reader_issue(r, path, "give only one of pressure, traction, force and field");
     }
   }
-  bool own     = !r->file->modal_file && !r->file->has_loads;
-  bool vector  = case_reader_given(r, "excitation.force.vector") != NULL;
-  load->has_at = case_reader_given(r, "excitation.force.at") != NULL;
-  bool lost    = own && load->kind == FEM_LOAD_FORCE && vector && !load->has_at;
+  r->file->has_load = given > 0 || r->file->has_loads;
+  bool own          = !r->file->modal_file && !r->file->has_loads;
+  bool vector       = case_reader_given(r, "excitation.force.vector") != NULL;
+  load->has_at      = case_reader_given(r, "excitation.force.at") != NULL;
+  bool lost         = own && load->kind == FEM_LOAD_FORCE && vector && !load->has_at;
   if (lost && r->file->n_probes == 0 && case_reader_good(r, "probe"))
     case_reader_issue(r, "excitation.force.vector",
                       "has no place to act: give excitation.force.at, or a probe");

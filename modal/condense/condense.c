@@ -68,9 +68,9 @@ static shb_status allocate(const modal_condensation *to, int n_modes, modal_mode
   for (size_t i = 0; i < sizeof real / sizeof *real; i++)
     if (real[i].n > 0) made = (*real[i].array = calloc(real[i].n, sizeof(double))) && made;
   for (size_t i = 0; i < sizeof complexes / sizeof *complexes; i++) {
-    size_t n      = i == 0 ? m : i < 4 ? nc : q3;
-    *complexes[i] = calloc(k * n + 1, sizeof(double complex));
-    made          = *complexes[i] && made;
+    const size_t n = i == 0 ? m : i < 4 ? nc : q3;
+    *complexes[i]  = calloc(k * n + 1, sizeof(double complex));
+    made           = *complexes[i] && made;
   }
   SHB_CHECK(made, SHB_ERR_IO, "out of memory for a modal model of %zu contact dofs", nc);
   return SHB_OK;
@@ -83,12 +83,12 @@ static PetscErrorCode fill_shapes(const workspace *w, modal_model *model) {
 
   PetscFunctionBeginUser;
   const modal_load *load = &to->load;
-  PetscCall(PetscMalloc2((size_t)nc * (size_t)m, &shape, load->dofs.n * (size_t)m, &force));
+  PetscCall(PetscMalloc2((size_t)nc * (size_t)m + 1, &shape, load->dofs.n * (size_t)m + 1, &force));
   PetscCall(modal_dofs_sample(&to->contact, w->system, w->eigen->phi, m, m, shape));
   PetscCall(modal_dofs_sample(&to->probe, w->system, w->eigen->phi, m, m, model->probe));
   PetscCall(modal_dofs_sample(&load->dofs, w->system, w->eigen->phi, m, m, force));
   size_t side = 3 * (size_t)to->n_pairs * (size_t)m;
-  memcpy(model->right, shape, side * sizeof(double));
+  if (side > 0) memcpy(model->right, shape, side * sizeof(double));
   if (to->has_left) memcpy(model->left, shape + side, side * sizeof(double));
   for (int k = 0; k <= model->n_load; k++)
     for (int c = 0; c < load->dofs.n; c++)
@@ -336,7 +336,7 @@ static shb_status create_columns(workspace *w) {
   SHB_TRY(modal_dofs_append(&w->column, &w->to->contact));
   SHB_TRY(modal_dofs_append(&w->column, &w->to->load.dofs));
   for (int i = 0; i < 2; i++) {
-    w->tail[i] = calloc((size_t)w->n_column, sizeof(double));
+    w->tail[i] = calloc((size_t)w->n_column + 1, sizeof(double));
     SHB_CHECK(w->tail[i], SHB_ERR_IO, "out of memory for the condensation");
   }
   return SHB_OK;
@@ -379,16 +379,35 @@ static bool fits_single_batch(const workspace *w) {
   return w->n_column <= MAX_COLUMNS && w->n_column <= room;
 }
 
-static shb_status fill(workspace *w, shb_progress *progress, modal_model *model) {
-  SHB_TRY(create_columns(w));
-  const int  n = w->n_column, nc = w->n_contact;
-  const bool single_batch = fits_single_batch(w);
-  const int  batch        = single_batch || n < BATCH ? n : BATCH;
-  FEM_PETSC(create_batch(w, batch));
+/* Residual terms belong to contact dofs: without contact there are none. */
+static void drop_residual_terms(modal_model *model) {
+  free(model->load_tail);
+  free(model->probe_load_residual);
+  free(model->probe_load_inertia);
+  free(model->probe_load_fourth);
+  model->load_tail           = NULL;
+  model->probe_load_residual = model->probe_load_inertia = model->probe_load_fourth = NULL;
+}
+
+static shb_status fill_modes(workspace *w, modal_model *model) {
   FEM_PETSC(fill_shapes(w, model));
   for (int i = 0; i < w->eigen->n; i++)
     SHB_TRY(modal_damping_ratio(&w->to->damping, i, sqrt(w->eigen->lambda[i]),
                                 &model->damping_ratio[i]));
+  return SHB_OK;
+}
+
+static shb_status fill(workspace *w, shb_progress *progress, modal_model *model) {
+  SHB_TRY(create_columns(w));
+  SHB_TRY(fill_modes(w, model));
+  const int n = w->n_column, nc = w->n_contact;
+  if (nc == 0) {
+    drop_residual_terms(model);
+    return SHB_OK;
+  }
+  const bool single_batch = fits_single_batch(w);
+  const int  batch        = single_batch || n < BATCH ? n : BATCH;
+  FEM_PETSC(create_batch(w, batch));
   for (int first = 0; first < n; first += batch) {
     int count = n - first < batch ? n - first : batch, stop = shb_interrupted();
     MPI_Allreduce(MPI_IN_PLACE, &stop, 1, MPI_INT, MPI_MAX, w->system->comm);

@@ -233,6 +233,10 @@ static shb_status append(modal_load *out, const modal_load *one) {
 shb_status modal_load_create(const mesh_fe *mesh, int n, const fem_load *loads,
                              const double *fallback, modal_load *out) {
   memset(out, 0, sizeof *out);
+  if (n == 0) {
+    out->n_harmonics = 1;
+    return SHB_OK;
+  }
   double    *force  = malloc(3 * (size_t)mesh->n_nodes * sizeof *force + 1);
   shb_status status = SHB_OK;
   if (!force) status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for the load");

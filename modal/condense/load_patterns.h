@@ -14,7 +14,7 @@ typedef struct {
 } modal_load;
 
 /* Create the patterns of n loads that act together. A load of the case gives one pattern. A field
- * gives the real and the imaginary part of every harmonic.
+ * gives the real and the imaginary part of every harmonic. n = 0: no pattern, one harmonic.
  *
  * A field file (HDF5) holds
  *

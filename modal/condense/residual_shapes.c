@@ -48,7 +48,7 @@ shb_status modal_residual_shapes_create(const fem_system *system, const modal_ei
   modal_dofs column = {0};
   int        rank;
   memset(out, 0, sizeof *out);
-  if (n > MOST_COLUMNS || (double)n * system->n_nodes * BYTES > MOST_BYTES) return SHB_OK;
+  if (n == 0 || n > MOST_COLUMNS || (double)n * system->n_nodes * BYTES > MOST_BYTES) return SHB_OK;
   MPI_Comm_rank(system->comm, &rank);
   out->n            = n;
   out->n_contact    = to->contact.n;

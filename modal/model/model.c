@@ -89,10 +89,12 @@ static h5_shape shape_from(const modal_model *model, const char *dims) {
 static shb_status write_scales(hid_t at, const modal_model *model) {
   static const char *const axis[] = {"tangential", "axial", "radial"};
   SHB_TRY(h5_write_strings(at, "axis", 3, axis, "cylindrical axes about the engine axis"));
-  SHB_TRY(h5_write_counter(at, "contact/pair", size_of(model, 'p'), "contact pair, from 0"));
-  SHB_TRY(h5_write_counter(at, "contact/dof", size_of(model, 'c'),
-                           "contact degree of freedom: (side * pairs + pair) * 3 + axis, side 0 "
-                           "right, 1 left"));
+  if (model->n_pairs > 0) {
+    SHB_TRY(h5_write_counter(at, "contact/pair", size_of(model, 'p'), "contact pair, from 0"));
+    SHB_TRY(h5_write_counter(at, "contact/dof", size_of(model, 'c'),
+                             "contact degree of freedom: (side * pairs + pair) * 3 + axis, side 0 "
+                             "right, 1 left"));
+  }
   SHB_TRY(h5_write_counter(at, "load/harmonic", size_of(model, 'k'),
                            "harmonic of the excitation, from 0"));
   if (model->n_probes == 0) return SHB_OK;
@@ -105,6 +107,7 @@ static shb_status write_scales(hid_t at, const modal_model *model) {
 static shb_status write_entry(hid_t at, const modal_model *model, const entry *e) {
   if (!e->data) return SHB_OK;
   h5_shape shape = shape_from(model, e->dims);
+  if (h5_count(shape) == 0) return SHB_OK; /* nothing at the contact where there is none */
   if (e->is_complex) {
     SHB_TRY(h5_write_complex(at, e->path, shape, e->data, e->units, e->long_name));
   } else {
@@ -194,7 +197,7 @@ shb_status modal_model_write_at(hid_t at, const modal_model *model) {
   SHB_TRY(write_scales(at, model));
   for (size_t i = 0; i < sizeof table / sizeof *table; i++)
     SHB_TRY(write_entry(at, model, &table[i]));
-  if (model->contact_tail)
+  if (model->contact_tail && model->n_pairs > 0)
     SHB_TRY(h5_write_attribute_int(at, "contact/residual_tail", "order", model->tail_order));
   return write_interfaces(at, model);
 }
@@ -327,6 +330,7 @@ static shb_status check_patches(const char *path, const modal_model *model) {
 
 static shb_status read_contact(hid_t at, const char *path, modal_model *model) {
   h5_shape shape = H5_SHAPE(0, 3, (hsize_t)model->n_modes);
+  if (!h5_exists(at, "contact")) return SHB_OK; /* a body that touches nothing */
   SHB_TRY(h5_read_double(at, "contact/right/shape", &shape, &model->right));
   SHB_CHECK(shape.dim[0] > 0 && shape.dim[0] <= MAX_PAIRS, SHB_ERR_INPUT,
             "%s: /contact/right/shape holds %llu contact pairs; 1 to %d are wanted", path,
@@ -369,7 +373,8 @@ static shb_status read_load(hid_t at, const char *path, modal_model *model) {
             "%s: /load/modal_force holds %llu harmonics; 1 to %d are wanted, the first being the "
             "mean (k = 0)",
             path, (unsigned long long)shape.dim[0], MAX_HARMONICS);
-  model->n_load     = (int)shape.dim[0] - 1;
+  model->n_load = (int)shape.dim[0] - 1;
+  if (model->n_pairs == 0) return SHB_OK;
   h5_shape residual = H5_SHAPE(shape.dim[0], (hsize_t)modal_model_contact_dofs(model));
   SHB_TRY(read_optional_complex(at, "load/residual_response", residual, &model->load_residual));
   SHB_TRY(read_optional_complex(at, "load/residual_inertia", residual, &model->load_inertia));

@@ -61,6 +61,7 @@ shb_status modal_export_check(hid_t file, const modal_check *check) {
 }
 
 shb_status modal_export_contact(hid_t file, const modal_patches *patches) {
+  if (patches->n_pairs == 0) return SHB_OK;
   const size_t pairs = (size_t)patches->n_pairs;
   const int    n = patches->start[patches->n_pairs], sides = patches->has_left ? 2 : 1;
   int         *nodes       = malloc(3 * (size_t)n * sizeof *nodes + 1);
@@ -142,7 +143,7 @@ static shb_status write_receptance(hid_t file, const modal_model *model, int n, 
 shb_status modal_export_receptance(hid_t file, const modal_model *model) {
   const int    n     = modal_model_contact_dofs(model);
   const size_t steps = SAMPLES + (size_t)model->n_modes, count = steps * (size_t)n * (size_t)n;
-  if (count * sizeof(double complex) > MAX_BYTES) return SHB_OK;
+  if (n == 0 || count * sizeof(double complex) > MAX_BYTES) return SHB_OK;
   double         *frequency = malloc(steps * sizeof *frequency);
   double complex *value     = malloc(count * sizeof *value + 1);
   shb_status      status    = SHB_OK;

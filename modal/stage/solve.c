@@ -47,8 +47,9 @@ static shb_status name_probes(const modal_settings *settings, modal_model *model
 
 static shb_status copy_patches(const modal_patches *patches, modal_model *model) {
   const size_t n = (size_t)patches->n_pairs;
-  model->normal  = malloc(3 * n * sizeof(double));
-  model->area    = malloc(n * sizeof(double));
+  if (n == 0) return SHB_OK;
+  model->normal = malloc(3 * n * sizeof(double));
+  model->area   = malloc(n * sizeof(double));
   SHB_CHECK(model->normal && model->area, SHB_ERR_IO, "out of memory for the contact patches");
   memcpy(model->normal, patches->normal, 3 * n * sizeof(double));
   memcpy(model->area, patches->area, n * sizeof(double));
@@ -74,11 +75,18 @@ static shb_status create_contact(const mesh_fe *mesh, const modal_settings *sett
                   shb_message());
 }
 
+/* Is a body meant that touches nothing? Contact to the neighbour needs the number of blades. */
+static bool is_free(const mesh_fe *mesh, const modal_settings *settings) {
+  return settings->may_be_free && (mesh->set[MESH_CONTACT_RIGHT].n == 0 ||
+                                   mesh->set[MESH_CONTACT_LEFT].n == 0 || settings->blades < 2);
+}
+
 static shb_status create_interfaces(const mesh_fe *mesh, const modal_settings *settings,
                                     modal_patches *out) {
   const int     n                          = settings->n_contacts;
   modal_patches part[MODAL_MAX_INTERFACES] = {{0}};
   shb_status    status                     = SHB_OK;
+  if (is_free(mesh, settings)) return SHB_OK;
   if (n == 0) {
     SHB_TRY(modal_patches_create(mesh, settings->axis, settings->blades, settings->to_ground,
                                  settings->points, out));
@@ -95,7 +103,7 @@ static shb_status create_interfaces(const mesh_fe *mesh, const modal_settings *s
 static shb_status name_interfaces(const modal_settings *settings, const modal_patches *patches,
                                   modal_model *model) {
   const int n = settings->n_contacts;
-  if (n < 2) return SHB_OK;
+  if (n < 2 || patches->n_pairs == 0) return SHB_OK;
   model->interface      = malloc((size_t)patches->n_pairs * sizeof *model->interface);
   model->interface_name = calloc((size_t)n, sizeof *model->interface_name);
   SHB_CHECK(model->interface && model->interface_name, SHB_ERR_IO,
@@ -124,6 +132,7 @@ static shb_status prepare(const mesh_fe *mesh, const modal_settings *settings,
   to->damping  = settings->damping;
   SHB_TRY(modal_patches_dofs(patches, &to->contact));
   SHB_TRY(probe_dofs(mesh, settings, &to->probe));
+  if (settings->unloaded) return modal_load_create(mesh, 0, NULL, NULL, &to->load);
   const double *fallback = settings->n_probes > 0 ? settings->probe[0].at : NULL;
   return modal_load_create(mesh, settings->n_loads ? settings->n_loads : 1,
                            settings->n_loads ? settings->loads : &settings->load, fallback,
@@ -219,6 +228,9 @@ static shb_status find_enough(const fem_body *body, const modal_settings *settin
 static shb_status solve(MPI_Comm comm, const fem_body *body, const modal_settings *settings,
                         const modal_condensation *to, shb_progress *progress,
                         modal_result *result) {
+  SHB_CHECK(settings->modes > 0 || to->n_pairs > 0, SHB_ERR_INPUT,
+            "modal.modes: auto goes by the receptance at the contact, and there is no contact; "
+            "give a number");
   SHB_TRY(assemble(comm, body, to, progress, result));
   if (settings->modes > 0)
     SHB_TRY(find_modes(body, settings, to, settings->modes, progress, result));

@@ -49,12 +49,14 @@ typedef struct {
   modal_check_kind     check;            /* that no mode is missing */
   bool                 full_integration; /* stiffness with FEM_FULL, not FEM_STANDARD */
   fem_load             load;
+  bool                 unloaded; /* no load at all */
   int                  n_loads;  /* 0: load only */
   const fem_load      *loads;    /* loads that act together */
   int                  n_groups; /* further face groups that loads name */
   const char          *group[MESH_MAX_MORE];
   int                  n_probes;
   const modal_probe   *probe;
+  bool                 may_be_free; /* without the groups of contact there is no contact */
   bool                 to_ground;
   int                  points;     /* contact patches; 0: one for each node */
   const double        *psi, *phi;  /* rad, checked against the faces; NULL: not given */

@@ -117,7 +117,8 @@ static shb_status read_mesh(const char *path, const modal_settings *settings, me
     if (right < 0 || left < 0 || !mesh->set[right].n || !mesh->set[left].n) continue;
     SHB_TRY(mesh_fe_orient_groups(mesh, settings->axis, right, left));
   }
-  if (settings->n_contacts || mesh->set[MESH_CONTACT_RIGHT].n == 0 ||
+  bool free = settings->may_be_free && settings->blades < 2;
+  if (free || settings->n_contacts || mesh->set[MESH_CONTACT_RIGHT].n == 0 ||
       mesh->set[MESH_CONTACT_LEFT].n == 0)
     return SHB_OK;
   return mesh_fe_orient(mesh, settings->axis);

@@ -73,9 +73,14 @@ static shb_status sum_up_modal(hid_t file, const char *path, bool verbose, post_
     put_span(out, m.frequency[0], m.frequency[m.n_modes - 1], "Hz");
   }
   post_put(out, "; ");
-  put_count(out, m.n_pairs, "pair");
-  put_interfaces(out, m.n_pairs, m.interface, m.n_interfaces, m.interface_name);
-  post_put(out, ", %s; load harmonics 0..%d; ", m.has_left ? "neighbour" : "ground", m.n_load);
+  if (m.n_pairs > 0) {
+    put_count(out, m.n_pairs, "pair");
+    put_interfaces(out, m.n_pairs, m.interface, m.n_interfaces, m.interface_name);
+    post_put(out, ", %s", m.has_left ? "neighbour" : "ground");
+  } else {
+    post_put(out, "no contact");
+  }
+  post_put(out, "; load harmonics 0..%d; ", m.n_load);
   put_names(out, m.n_probes, m.probe_name);
   post_put(out, "; residual flexibility %s, inertia %s", m.residual_flexibility ? "yes" : "no",
            inertia_of(&m));

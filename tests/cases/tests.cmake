@@ -18,6 +18,9 @@ foreach(noun hysteresis_picture up_to_date)
 endforeach()
 add_test(NAME cases.commands.commands
   COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/cases/commands/test_commands.sh $<TARGET_FILE:shroudhb>)
+add_test(NAME cases.commands.modes_alone
+  COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/cases/commands/test_modes_alone.sh $<TARGET_FILE:shroudhb>
+          ${PROJECT_SOURCE_DIR}/cases/z_notch_blade/case.yaml)
 add_test(NAME cases.commands.contact
   COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/cases/commands/test_contact.sh
           $<TARGET_FILE:shroudhb-mhb> ${PROJECT_SOURCE_DIR}/cases/prescribed_motion
