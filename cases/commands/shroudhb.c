@@ -196,7 +196,7 @@ static int study_main(const char *name, int argc, char **argv) {
   return replace_by(words);
 }
 
-/* A study file has the keys case and vary or plan. */
+/* A study file has the keys case and vary, plan or uncertain. */
 static bool is_study(const char *path) {
   char  *text;
   size_t length;
@@ -204,7 +204,8 @@ static bool is_study(const char *path) {
   case_issues issues = case_issues_start(path, text, length);
   case_node  *root   = case_document_parse(&issues);
   bool        study  = case_node_find(root, "case") &&
-               (case_node_find(root, "vary") || case_node_find(root, "plan"));
+               (case_node_find(root, "vary") || case_node_find(root, "plan") ||
+                case_node_find(root, "uncertain"));
   case_document_free(root);
   case_issues_free(&issues);
   free(text);

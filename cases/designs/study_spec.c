@@ -4,22 +4,21 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cases/designs/design_table.h"
 #include "cases/designs/digest.h"
+#include "cases/designs/uncertain_keys.h"
 #include "cases/parse/diagnostics.h"
-#include "cases/parse/key_table.h"
-#include "cases/parse/units.h"
+#include "cases/parse/keys.h"
 #include "cases/schema/case.h"
 
 enum { STAGES = CASE_MESH | CASE_MODAL | CASE_MHB, TOLD = 5 };
 
 /* The keys of a study file. Only their names are used, for suggestions. */
-static const case_key  rows[] = {{"name", CASE_WORD, .help = ""},
-                                 {"case", CASE_FILE_NAME, .help = ""},
-                                 {"vary", CASE_NUMBER, .help = ""},
-                                 {"plan", CASE_WORD, .help = ""},
-                                 {"outputs", CASE_WORD, .help = ""}};
-static const case_keys known  = {sizeof rows / sizeof *rows, rows};
+static const case_key rows[] = {
+    {"name", CASE_WORD, .help = ""},        {"case", CASE_FILE_NAME, .help = ""},
+    {"vary", CASE_NUMBER, .help = ""},      {"plan", CASE_WORD, .help = ""},
+    {"uncertain", CASE_NUMBER, .help = ""}, {"samples", CASE_NUMBER, .help = ""},
+    {"seed", CASE_NUMBER, .help = ""},      {"outputs", CASE_WORD, .help = ""}};
+static const case_keys known = {sizeof rows / sizeof *rows, rows};
 
 typedef struct {
   case_issues issues;
@@ -38,221 +37,7 @@ static char *beside(const char *folder, const char *path) {
   return out;
 }
 
-/* ---------------------------------------------------------------- varied keys */
-
-/* The row of a path: indices become "[]", and an index at the end may choose a number of a list. */
-static const case_key *row_of(const char *path) {
-  char   pattern[CASE_PATH];
-  size_t n = 0;
-  for (const char *at = path; *at && n + 3 < sizeof pattern; at++) {
-    pattern[n++] = *at;
-    if (*at != '[') continue;
-    at += strcspn(at, "]");
-    pattern[n++] = ']';
-    if (!*at) break;
-  }
-  pattern[n]          = '\0';
-  const case_key *key = case_key_find(case_key_table(), pattern);
-  if (!key && n > 2 && strcmp(pattern + n - 2, "[]") == 0) {
-    pattern[n - 2] = '\0';
-    key            = case_key_find(case_key_table(), pattern);
-  }
-  return key;
-}
-
-static bool is_number(const case_key *key) {
-  switch (key->type) {
-    case CASE_NUMBER:
-    case CASE_INTEGER:
-    case CASE_COUNT:
-    case CASE_AUTO:
-    case CASE_ACCURACY:
-    case CASE_VECTOR:
-    case CASE_TRIPLE:
-    case CASE_INTERVAL:
-    case CASE_SWEEP:
-    case CASE_STIFFNESS:
-    case CASE_PRELOADS:
-    case CASE_DAMPING:
-      return true;
-    default:
-      return false;
-  }
-}
-
-/* The message about a path that is no key: the nearest one of its block. */
-static void refuse_path(reading *r, const case_node *node, const char *path) {
-  char block[CASE_PATH], hint[512];
-  case_path(block, "%s", path);
-  char *dot  = strrchr(block, '.');
-  char *leaf = dot ? dot + 1 : block;
-  char  word[CASE_PATH];
-  case_path(word, "%.*s", (int)strcspn(leaf, "["), leaf);
-  if (dot) *dot = '\0';
-  if (!dot) block[0] = '\0';
-  for (char *at = block; *at; at++) /* "sections[4]" is the block "sections[]" */
-    if (*at == '[')
-      memmove(at + 1, at + 1 + strcspn(at + 1, "]"), strlen(at + 1 + strcspn(at + 1, "]")) + 1);
-  if (!dot || case_key_is_block(case_key_table(), block)) {
-    case_key_suggest(case_key_table(), block, word, hint, sizeof hint);
-  } else { /* the first part is wrong */
-    case_path(word, "%.*s", (int)strcspn(path, ".["), path);
-    case_key_suggest(case_key_table(), "", word, hint, sizeof hint);
-  }
-  case_issue_add(&r->issues, node->key_line, node->key_column, path, "is no key of a case%s", hint);
-}
-
-static bool read_number(reading *r, const study_key *key, const case_node *node, double *value) {
-  char why[CASE_WHY];
-  if (node->kind != CASE_SCALAR) {
-    case_issue_add(&r->issues, node->line, node->column, key->path, "is %s; expected a number",
-                   case_kind_name(node->kind));
-    return false;
-  }
-  if (!case_quantity(node->text, strcmp(key->unit, "-") == 0 ? "" : key->unit, value, why)) {
-    case_issue_add(&r->issues, node->line, node->column, key->path, "%s", why);
-    return false;
-  }
-  if (key->whole && *value != rint(*value)) {
-    case_issue_add(&r->issues, node->line, node->column, key->path, "takes whole numbers");
-    return false;
-  }
-  return true;
-}
-
-static bool take_values(reading *r, const case_node *node, study_key *key, int n) {
-  key->n     = n;
-  key->value = calloc((size_t)n + 1, sizeof *key->value);
-  if (!key->value) fault(r, node, key->path, "out of memory");
-  return key->value != NULL;
-}
-
-static void read_list(reading *r, const case_node *node, study_key *key) {
-  if (node->n == 0) fault(r, node, key->path, "the list is empty; expected at least one number");
-  if (node->n == 0 || !take_values(r, node, key, node->n)) return;
-  for (int i = 0; i < node->n; i++) read_number(r, key, &node->child[i], &key->value[i]);
-}
-
-/* Read the members of {from, to, points, scale}; false after a fault. */
-static bool read_members(reading *r, const case_node *node, study_key *key) {
-  static const case_key members[] = {
-      {.path = "from"}, {.path = "to"}, {.path = "points"}, {.path = "scale"}};
-  const case_keys all  = {4, members};
-  bool            good = true;
-  for (int i = 0; i < node->n; i++) {
-    const case_node *one = &node->child[i];
-    char             hint[256], why[CASE_WHY];
-    if (strcmp(one->key, "from") == 0) {
-      good = read_number(r, key, one, &key->from) && good;
-    } else if (strcmp(one->key, "to") == 0) {
-      good = read_number(r, key, one, &key->to) && good;
-    } else if (strcmp(one->key, "points") == 0) {
-      if (one->kind != CASE_SCALAR || !case_integer(one->text, &key->n, why) || key->n < 1 ||
-          key->n > STUDY_MOST_DESIGNS) {
-        fault(r, one, key->path, "points: expected a whole number from 1");
-        good = false;
-      }
-    } else if (strcmp(one->key, "scale") == 0) {
-      key->log = one->kind == CASE_SCALAR && strcmp(one->text, "log") == 0;
-      if (!key->log && (one->kind != CASE_SCALAR || strcmp(one->text, "linear") != 0)) {
-        fault(r, one, key->path, "scale: expected linear or log");
-        good = false;
-      }
-    } else {
-      case_key_suggest(all, "", one->key, hint, sizeof hint);
-      case_issue_add(&r->issues, one->key_line, one->key_column, key->path, "%s: unknown key%s",
-                     one->key, hint);
-      good = false;
-    }
-  }
-  return good;
-}
-
-static void read_range(reading *r, const case_node *node, study_key *key) {
-  key->is_range = true;
-  key->n        = 0;
-  if (!read_members(r, node, key)) return;
-  bool ends = case_node_find(node, "from") && case_node_find(node, "to");
-  if (!ends || !(key->from < key->to)) {
-    fault(r, node, key->path, "expected from and to, from below to");
-    return;
-  }
-  if (key->log && !(key->from > 0)) {
-    fault(r, node, key->path, "scale: log needs a range above 0");
-    return;
-  }
-  int n = key->n;
-  if (n == 1) fault(r, node, key->path, "points: a range has 2 points or more");
-  if (!take_values(r, node, key, n)) return;
-  for (int i = 0; i < n; i++) {
-    double t = n > 1 ? (double)i / (n - 1) : 0;
-    key->value[i] =
-        key->log ? key->from * pow(key->to / key->from, t) : key->from + (key->to - key->from) * t;
-    if (i == n - 1) key->value[i] = key->to;
-    if (key->whole) key->value[i] = rint(key->value[i]);
-  }
-}
-
-/* Set path, unit and kind of a varied key. False if the path is no number of a case. */
-static bool start_key(reading *r, const case_node *node, const char *path, study_key *key) {
-  const case_key *row = row_of(path);
-  *key                = (study_key){0};
-  case_path(key->path, "%s", path);
-  if (!row) {
-    refuse_path(r, node, path);
-    return false;
-  }
-  if (!is_number(row)) {
-    case_issue_add(&r->issues, node->key_line, node->key_column, path,
-                   "is not a number; a study varies numbers");
-    return false;
-  }
-  key->whole = row->type == CASE_INTEGER || row->type == CASE_COUNT || row->type == CASE_AUTO;
-  snprintf(key->unit, sizeof key->unit, "%s", row->unit[0] ? row->unit : "-");
-  return true;
-}
-
-static void read_vary(reading *r, const case_node *node) {
-  study_spec *s = r->spec;
-  if (node->kind != CASE_MAPPING || node->n == 0) {
-    fault(r, node, "vary",
-          "expected a mapping of keys of the case, such as contact.n0: [5 N, 9 N]");
-    return;
-  }
-  for (int i = 0; i < node->n; i++) {
-    const case_node *one = &node->child[i];
-    if (s->n_keys == STUDY_MAX_KEYS) {
-      fault(r, one, "vary", "more than 32 keys");
-      return;
-    }
-    study_key *key = &s->key[s->n_keys];
-    if (!start_key(r, one, one->key, key)) continue;
-    s->n_keys++;
-    if (one->kind == CASE_SEQUENCE) {
-      read_list(r, one, key);
-    } else if (one->kind == CASE_MAPPING) {
-      read_range(r, one, key);
-    } else if (one->kind == CASE_SCALAR && take_values(r, one, key, 1)) {
-      read_number(r, key, one, &key->value[0]);
-    } else if (one->kind == CASE_NULL) {
-      fault(r, one, one->key, "expected a list of values or {from, to, points}");
-    }
-  }
-}
-
-/* ---------------------------------------------------------------- plan and outputs */
-
-static void read_plan(reading *r, const case_node *node) {
-  const case_node *table = case_node_find(node, "table");
-  if (node->kind == CASE_SCALAR && strcmp(node->text, "grid") == 0) {
-    r->spec->plan = STUDY_GRID;
-  } else if (table && node->n == 1 && table->kind == CASE_SCALAR) {
-    r->spec->plan  = STUDY_TABLE;
-    r->spec->table = beside(r->spec->folder, table->text);
-  } else {
-    fault(r, node, "plan", "expected grid or {table: FILE.csv}");
-  }
-}
+/* ---------------------------------------------------------------- outputs */
 
 static void add_output(reading *r, const case_node *node, const char *name) {
   study_spec *s = r->spec;
@@ -285,71 +70,43 @@ static void read_outputs(reading *r, const case_node *node, const case_node *roo
 
 /* ---------------------------------------------------------------- designs */
 
-static void make_grid(reading *r, const case_node *at) {
-  study_spec *s = r->spec;
-  double      n = 1;
-  for (int k = 0; k < s->n_keys; k++) {
-    if (s->key[k].n == 0)
-      case_issue_add(&r->issues, at->line, at->column, s->key[k].path,
-                     "a grid needs the number of points of the range");
-    n *= s->key[k].n;
-  }
-  if (n > STUDY_MOST_DESIGNS)
-    case_issue_add(&r->issues, at->line, at->column, "vary", "%.0f designs; at most %d", n,
-                   STUDY_MOST_DESIGNS);
-  if (r->issues.n > 0) return;
-  s->n_designs = (int)n;
-  s->design    = calloc((size_t)n * (size_t)s->n_keys + 1, sizeof *s->design);
-  for (int d = 0; s->design && d < s->n_designs; d++)
-    for (int k = s->n_keys - 1, rest = d; k >= 0; k--) { /* the last key runs fastest */
-      s->design[d * s->n_keys + k] = s->key[k].value[rest % s->key[k].n];
-      rest /= s->key[k].n;
-    }
-  if (!s->design) fault(r, at, "vary", "out of memory");
-}
-
-/* Take the columns of a table as varied keys, and its rows as designs. */
-static void use_table(reading *r, const case_node *at) {
-  study_spec  *s = r->spec;
-  design_table table;
-  char         why[512];
-  if (!design_table_read(s->table, &table, why, sizeof why)) {
-    fault(r, at, "plan", why);
-    return;
-  }
-  for (int k = 0; k < table.n_columns && r->issues.n == 0; k++) {
-    case_node column  = *at;
-    column.key_line   = at->line;
-    column.key_column = at->column;
-    if (s->n_keys == STUDY_MAX_KEYS) fault(r, at, "plan", "the table has more than 32 columns");
-    if (r->issues.n == 0 && start_key(r, &column, table.column[k], &s->key[s->n_keys])) s->n_keys++;
-  }
-  s->n_designs = table.n_rows;
-  s->design    = calloc((size_t)table.n_rows * (size_t)table.n_columns + 1, sizeof *s->design);
-  for (int i = 0; s->design && r->issues.n == 0 && i < table.n_rows * s->n_keys; i++) {
-    int             k    = i % s->n_keys;
-    const case_node cell = {
-        .kind = CASE_SCALAR, .line = at->line, .column = at->column, .text = table.cell[i]};
-    if (!read_number(r, &s->key[k], &cell, &s->design[i]))
-      case_issue_add(&r->issues, at->line, at->column, "plan", "%s: row %d", s->table,
-                     i / s->n_keys + 1);
-  }
-  design_table_free(&table);
-}
-
-static void make_designs(reading *r, const case_node *root) {
-  study_spec      *s    = r->spec;
-  const case_node *vary = case_node_find(root, "vary"), *plan = case_node_find(root, "plan");
-  if (s->plan == STUDY_TABLE && vary) {
+/* What belongs together: plan and vary, uncertain and samples. */
+static void check_parts(reading *r, const case_node *root) {
+  const study_spec *s    = r->spec;
+  const case_node  *vary = case_node_find(root, "vary"), *plan = case_node_find(root, "plan"),
+                  *uncertain = case_node_find(root, "uncertain"),
+                  *samples = case_node_find(root, "samples"), *seed = case_node_find(root, "seed");
+  if (s->plan.kind == STUDY_TABLE && vary)
     fault(r, vary, "vary", "the columns of the table are the varied keys; leave vary out");
-  } else if (s->plan == STUDY_TABLE) {
-    use_table(r, plan);
-  } else if (!vary) {
+  if (s->plan.kind != STUDY_TABLE && !vary && (plan || !uncertain))
     fault(r, root, "vary", "missing; expected a mapping of keys of the case");
-  } else if (r->issues.n == 0) {
-    make_grid(r, vary);
-  }
+  if (uncertain && !samples)
+    fault(r, uncertain, "uncertain", "needs samples, their number, such as samples: 512");
+  if (samples && !uncertain)
+    fault(r, samples, "samples", "needs uncertain, a mapping of keys to distributions");
+  if (seed && !uncertain)
+    fault(r, seed, "seed",
+          "is that of uncertain keys; that of a plan is plan: {sobol: 256, seed: 1}");
+}
+
+/* Read the keys and make the designs. Returns the node for messages about them. */
+static const case_node *make_designs(reading *r, const case_node *root) {
+  study_spec      *s    = r->spec;
+  const case_node *vary = case_node_find(root, "vary"), *plan = case_node_find(root, "plan"),
+                  *uncertain = case_node_find(root, "uncertain"), *at = vary ? vary : root;
+  if (plan) study_plan_read(&r->issues, plan, s->folder, &s->plan);
+  study_plan_read_samples(&r->issues, case_node_find(root, "samples"), case_node_find(root, "seed"),
+                          &s->plan);
+  check_parts(r, root);
+  if (vary) study_keys_read(&r->issues, vary, &s->keys);
+  if (r->issues.n == 0)
+    study_plan_make(&r->issues, plan && !vary ? plan : at, &s->plan, &s->keys, &s->n_designs,
+                    &s->design);
   if (r->issues.n == 0 && s->n_designs == 0) fault(r, root, "plan", "holds no design");
+  if (uncertain) uncertain_keys_read(&r->issues, uncertain, &s->keys);
+  if (r->issues.n == 0 && uncertain)
+    study_plan_add_samples(&r->issues, uncertain, &s->plan, &s->keys, &s->n_designs, &s->design);
+  return vary || !uncertain ? at : uncertain;
 }
 
 /* The first line of the messages of a case, without the name of its file. */
@@ -373,7 +130,7 @@ static void check_designs(reading *r, const case_node *at) {
     case_file file;
     if (!out) return;
     shb_status status =
-        study_spec_design(s, s->design + (size_t)d * (size_t)s->n_keys, NULL, NULL, out, &file);
+        study_spec_design(s, s->design + (size_t)d * (size_t)s->keys.n, NULL, NULL, out, &file);
     if (status == SHB_OK) {
       digest_design(&file, s->inputs, s->n_outputs, s->output, s->digest[d]);
       case_free(&file);
@@ -442,12 +199,9 @@ static void read_document(reading *r, bool check, FILE *errors) {
   refuse_unknown(r, root);
   read_name(r, case_node_find(root, "name"));
   if (read_case(r, root, errors)) {
-    if (case_node_find(root, "plan")) read_plan(r, case_node_find(root, "plan"));
-    if (case_node_find(root, "vary")) read_vary(r, case_node_find(root, "vary"));
     read_outputs(r, case_node_find(root, "outputs"), root);
-    make_designs(r, root);
-    const case_node *place = case_node_find(root, "vary");
-    if (r->issues.n == 0 && check) check_designs(r, place ? place : root);
+    const case_node *place = make_designs(r, root);
+    if (r->issues.n == 0 && check) check_designs(r, place);
   }
   case_document_free(root);
 }
@@ -474,8 +228,8 @@ void study_spec_free(study_spec *s) {
   free(s->folder);
   free(s->name);
   free(s->case_path);
-  free(s->table);
-  for (int i = 0; i < s->n_keys; i++) free(s->key[i].value);
+  free(s->plan.table);
+  study_keys_free(&s->keys);
   free(s->design);
   free(s->digest);
   free(s->inputs);
@@ -483,30 +237,42 @@ void study_spec_free(study_spec *s) {
   *s = (study_spec){0};
 }
 
-bool study_spec_words(const study_spec *s, const double *value, char **words) {
+/* The value of a key with its ratio, if it has one. */
+static double value_of(const study_keys *keys, const double *value, int key) {
+  double out = value[key];
+  for (int k = 0; k < keys->n; k++)
+    if (keys->key[k].is_ratio && keys->key[k].nominal == key) out *= value[k];
+  return keys->key[key].whole ? rint(out) : out;
+}
+
+int study_spec_words(const study_spec *s, const double *value, char **words) {
+  int  n    = 0;
   bool good = true;
-  for (int k = 0; k < s->n_keys; k++) {
-    size_t size      = strlen(s->key[k].path) + 40;
-    words[2 * k]     = strdup("--set");
-    words[2 * k + 1] = malloc(size);
-    good             = good && words[2 * k] && words[2 * k + 1];
-    if (words[2 * k + 1]) snprintf(words[2 * k + 1], size, "%s=%.17g", s->key[k].path, value[k]);
+  for (int k = 0; k < s->keys.n; k++) {
+    const study_key *key  = &s->keys.key[k];
+    size_t           size = strlen(key->path) + 40;
+    if (key->is_ratio) continue;
+    words[n]     = strdup("--set");
+    words[n + 1] = malloc(size);
+    good         = good && words[n] && words[n + 1];
+    if (words[n + 1])
+      snprintf(words[n + 1], size, "%s=%.17g", key->path, value_of(&s->keys, value, k));
+    n += 2;
   }
-  return good;
+  return good ? n : -1;
 }
 
 shb_status study_spec_design(const study_spec *s, const double *value, const char *name,
                              const char *into, FILE *errors, case_file *file) {
   char       *words[2 * STUDY_MAX_KEYS] = {NULL}, named[CASE_NAME * 2];
   const char *text[STUDY_MAX_KEYS + 1];
-  int         n      = 0;
-  bool        good   = study_spec_words(s, value, words);
-  shb_status  status = good ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  for (; n < s->n_keys; n++) text[n] = words[2 * n + 1];
+  int         n = study_spec_words(s, value, words), sets = 0;
+  shb_status  status = n >= 0 ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  for (; 2 * sets < n; sets++) text[sets] = words[2 * sets + 1];
   snprintf(named, sizeof named, "name=%s", name ? name : "");
-  if (name) text[n++] = named;
-  const case_overrides overrides = {n, text, into};
+  if (name) text[sets++] = named;
+  const case_overrides overrides = {sets, text, into};
   if (status == SHB_OK) status = case_read_with(s->case_path, &overrides, STAGES, errors, file);
-  for (int i = 0; i < 2 * s->n_keys; i++) free(words[i]);
+  for (int i = 0; i < 2 * STUDY_MAX_KEYS; i++) free(words[i]);
   return status;
 }

@@ -7,38 +7,22 @@
 #include <stdio.h>
 
 #include "cases/designs/output_names.h"
+#include "cases/designs/study_plan.h"
 #include "cases/parse/case_file.h"
-#include "cases/parse/yaml.h"
 #include "mesh/base/status.h"
 
-enum { STUDY_MAX_KEYS = 32, STUDY_MAX_OUTPUTS = 64, STUDY_MOST_DESIGNS = 100000 };
-
-typedef enum { STUDY_GRID, STUDY_TABLE } study_plan;
-
-/* A varied key. Values are SI. */
-typedef struct {
-  char    path[CASE_PATH]; /* "mesh.blade.sections[4].thickness" */
-  char    unit[STUDY_UNIT_TEXT];
-  bool    whole;    /* takes whole numbers only */
-  bool    is_range; /* from, to instead of a list */
-  bool    log;      /* a range in steps of equal ratio */
-  double  from, to;
-  int     n;     /* values of the list, or points of the range */
-  double *value; /* [n] */
-} study_key;
+enum { STUDY_MAX_OUTPUTS = 64 };
 
 typedef struct {
   char        *path, *text, *folder; /* of the study file */
   char        *name;                 /* of the output files */
   char        *case_path;            /* resolved */
   study_plan   plan;
-  char        *table; /* resolved path of the CSV file of STUDY_TABLE, else NULL */
-  int          n_keys;
-  study_key    key[STUDY_MAX_KEYS];
+  study_keys   keys;
   int          n_outputs;
   study_output output[STUDY_MAX_OUTPUTS];
   int          n_designs;
-  double      *design; /* [n_designs][n_keys] */
+  double      *design; /* [n_designs][keys.n] */
   char (*digest)[17];  /* [n_designs] of everything the outputs depend on, if checked */
   char     *inputs;    /* fingerprints of the files that the case reads */
   case_file base;      /* the case as it is */
@@ -58,7 +42,8 @@ void       study_spec_free(study_spec *spec);
 shb_status study_spec_design(const study_spec *spec, const double *value, const char *name,
                              const char *into, FILE *errors, case_file *file);
 
-/* Words "--set", "PATH=VALUE", ... of a design; malloc'ed texts, [2 n_keys]. False: no memory. */
-bool study_spec_words(const study_spec *spec, const double *value, char **words);
+/* Words "--set", "PATH=VALUE", ... of a design; malloc'ed texts, at most [2 keys.n]. Returns their
+ * number; -1: no memory. */
+int study_spec_words(const study_spec *spec, const double *value, char **words);
 
 #endif

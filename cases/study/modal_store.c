@@ -75,7 +75,7 @@ static shb_status run_stage(const modal_store *s, const char *stage, const doubl
                             const char *digest) {
   char *words[2 * STUDY_MAX_KEYS + MORE_WORDS] = {NULL};
   char  program[32], name[64], quiet[] = "--quiet", into[] = "--into", set[] = "--set";
-  int   n = 0, keys = 2 * s->spec->n_keys;
+  int   n = 0;
   snprintf(program, sizeof program, "shroudhb-%s", stage);
   snprintf(name, sizeof name, "name=%s", digest);
   char *path               = subprocess_program(program);
@@ -85,12 +85,13 @@ static shb_status run_stage(const modal_store *s, const char *stage, const doubl
   words[n++]               = s->folder;
   words[n++]               = set;
   words[n++]               = name;
-  bool              good   = study_spec_words(s->spec, value, words + n) && path;
+  int               sets   = study_spec_words(s->spec, value, words + n);
+  bool              good   = sets >= 0 && path;
   subprocess_result result = {0};
-  words[n + keys]          = s->spec->case_path;
-  shb_status status        = good ? run_logged(s, words, &result)
-                                  : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  for (int i = 0; i < keys; i++) free(words[n + i]);
+  if (good) words[n + sets] = s->spec->case_path;
+  shb_status status = good ? run_logged(s, words, &result)
+                           : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  for (int i = 0; i < sets; i++) free(words[n + i]);
   free(path);
   if (status != SHB_OK)
     return shb_fail(SHB_ERR_INPUT, __FILE__, __LINE__, "%s: %s", stage, shb_message());

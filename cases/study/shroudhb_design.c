@@ -52,7 +52,7 @@ static shb_status compute(void *context, const double *value, char **bytes, size
   server       *s = context;
   design_study  one;
   double        began  = cpu_seconds();
-  shb_status    status = design_study_create(s->spec.n_keys, s->spec.n_outputs, 0, &one);
+  shb_status    status = design_study_create(s->spec.keys.n, s->spec.n_outputs, 0, &one);
   study_design *design = status == SHB_OK ? design_study_add(&one, value) : NULL;
   if (status == SHB_OK && !design)
     status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
@@ -76,7 +76,7 @@ int main(int argc, char **argv) {
   shb_interrupt_catch();
   openblas_set_num_threads(1);
   omp_set_num_threads(1); /* the designs run side by side */
-  status = design_process_serve(s.spec.n_keys, compute, &s);
+  status = design_process_serve(s.spec.keys.n, compute, &s);
   modal_store_close(&s.store);
   study_spec_free(&s.spec);
   return command_finish(status);

@@ -42,26 +42,40 @@ static shb_status run_design(const study_spec *spec, int design, const command_o
   words[n++] = subprocess_program("shroudhb");
   words[n++] = run;
   if (options->quiet) words[n++] = quiet;
-  words[n++] = set;
-  words[n++] = name;
-  words[n++] = into;
-  words[n++] = spec->folder;
-  bool good =
-      study_spec_words(spec, spec->design + (size_t)(design - 1) * (size_t)spec->n_keys, words + n);
-  n += 2 * spec->n_keys;
-  words[n] = spec->case_path;
+  words[n++]          = set;
+  words[n++]          = name;
+  words[n++]          = into;
+  words[n++]          = spec->folder;
+  const double *value = spec->design + (size_t)(design - 1) * (size_t)spec->keys.n;
+  int           sets  = study_spec_words(spec, value, words + n);
+  if (sets >= 0) words[n + sets] = spec->case_path;
   free(store);
-  SHB_CHECK(good && words[0], SHB_ERR_IO, "out of memory");
+  SHB_CHECK(sets >= 0 && words[0], SHB_ERR_IO, "out of memory");
   execvp(words[0], words);
   SHB_FAIL(SHB_ERR_IO, "%s: cannot be started: %s", words[0], strerror(errno));
 }
 
+static void print_key(const study_key *key) {
+  char name[STUDY_KEY_TEXT];
+  bool pure = key->unit[0] == '-';
+  study_key_name(key, name);
+  printf("  %-9s %s%s%s", key->is_uncertain ? "uncertain" : "vary", name, pure ? "" : ", ",
+         pure ? "" : key->unit);
+  if (key->is_uncertain) printf(", %s", plan_distribution_name(key->distribution.kind));
+  printf("\n");
+}
+
 static shb_status check(const study_spec *spec, const command_options *options) {
+  char plan[STUDY_NAME];
+  int  group = study_plan_group(&spec->plan, &spec->keys);
   if (options->quiet) return SHB_OK;
-  printf("%s: ok\n  case      %s\n  designs   %d\n", spec->path, spec->case_path, spec->n_designs);
-  for (int k = 0; k < spec->n_keys; k++)
-    printf("  vary      %s%s%s\n", spec->key[k].path, spec->key[k].unit[0] == '-' ? "" : ", ",
-           spec->key[k].unit[0] == '-' ? "" : spec->key[k].unit);
+  study_plan_text(&spec->plan, &spec->keys, plan, sizeof plan);
+  printf("%s: ok\n  case      %s\n  plan      %s\n  designs   %d\n", spec->path, spec->case_path,
+         plan, spec->n_designs);
+  if (study_plan_has_blocks(&spec->plan, &spec->keys))
+    printf("  samples   %d; the other designs are for the Sobol' indices\n",
+           2 * group / (spec->keys.n + 2));
+  for (int k = 0; k < spec->keys.n; k++) print_key(&spec->keys.key[k]);
   return SHB_OK;
 }
 
@@ -86,7 +100,7 @@ static int work(const command_options *options) {
   shb_status status = SHB_OK;
   if (rank == 0) status = study_spec_read(options->path, true, stderr, &spec);
   go[0] = (int)status;
-  go[1] = spec.n_keys;
+  go[1] = spec.keys.n;
   go[2] = spec.n_outputs;
   MPI_Bcast(go, 3, MPI_INT, 0, MPI_COMM_WORLD);
   design_process process = {.study = options->path, .n_keys = go[1], .n_outputs = go[2]};

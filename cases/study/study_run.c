@@ -38,9 +38,11 @@ char *study_path(const study_spec *spec, const char *suffix) {
 /* ---------------------------------------------------------------- the study before any run */
 
 static void name_columns(const study_spec *spec, design_study *s) {
-  for (int k = 0; k < spec->n_keys; k++) {
-    snprintf(s->key[k].name, STUDY_NAME, "%s", spec->key[k].path);
-    snprintf(s->key[k].unit, STUDY_UNIT, "%s", spec->key[k].unit);
+  for (int k = 0; k < spec->keys.n; k++) {
+    char name[STUDY_KEY_TEXT];
+    study_key_name(&spec->keys.key[k], name);
+    snprintf(s->key[k].name, STUDY_NAME, "%.*s", STUDY_NAME - 1, name);
+    snprintf(s->key[k].unit, STUDY_UNIT, "%s", spec->keys.key[k].unit);
   }
   for (int i = 0; i < spec->n_outputs; i++) {
     snprintf(s->output[i].name, STUDY_NAME, "%s", spec->output[i].name);
@@ -49,18 +51,17 @@ static void name_columns(const study_spec *spec, design_study *s) {
 }
 
 static shb_status set_up(const study_spec *spec, design_study *s) {
-  static const char *const plans[] = {"grid", "table"};
-  SHB_TRY(design_study_create(spec->n_keys, spec->n_outputs, 0, s));
+  SHB_TRY(design_study_create(spec->keys.n, spec->n_outputs, 0, s));
   s->name      = strdup(spec->name);
   s->text      = strdup(spec->text);
   s->path      = strdup(spec->path);
   s->case_path = strdup(spec->case_path);
   s->case_text = strdup(spec->base.text);
-  snprintf(s->plan, sizeof s->plan, "%s", plans[spec->plan]);
+  study_plan_text(&spec->plan, &spec->keys, s->plan, sizeof s->plan);
   name_columns(spec, s);
   bool good = s->name && s->text && s->path && s->case_path && s->case_text;
   for (int d = 0; d < spec->n_designs && good; d++) {
-    study_design *one = design_study_add(s, spec->design + (size_t)d * (size_t)spec->n_keys);
+    study_design *one = design_study_add(s, spec->design + (size_t)d * (size_t)spec->keys.n);
     good              = one != NULL;
     if (one) snprintf(one->digest, STUDY_DIGEST, "%s", spec->digest[d]);
   }

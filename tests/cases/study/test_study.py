@@ -181,7 +181,65 @@ def check_kill():
     assert read('killed.study.csv') == read('whole.study.csv')
 
 
+SAMPLED = '''name: sampled
+case: case.yaml
+vary:
+  contact.n0: {from: 0.1 N, to: 1.6 N, scale: log}
+  contact.mu: [0.3, 0.35, 0.4, 0.45]
+  mhb.harmonics: {from: 3, to: 6}
+plan: {PLAN}
+outputs: [peak]
+'''
+
+
+def sampled(plan):
+    write('sampled.yaml', SAMPLED.replace('PLAN', plan))
+    run(program('shroudhb-study'), '--quiet', '--force', 'sampled.yaml')
+    return rows('sampled.study.csv')
+
+
+def check_sampled_plans():
+    """Samples fill ranges and lists evenly, and a seed fixes them, also over ranks."""
+    for kind in 'sobol', 'latin_hypercube':
+        table = sampled(f'{kind}: 16, seed: 3')
+        n0 = sorted(float(row['contact.n0']) for row in table)
+        for i, value in enumerate(n0): # a sixteenth of the logarithmic range each
+            assert 0.1 * 2 ** (i / 4) <= value <= 0.1 * 2 ** ((i + 1) / 4), (kind, n0)
+        for key, values in ('contact.mu', (0.3, 0.35, 0.4, 0.45)), ('mhb.harmonics', (3, 4, 5, 6)):
+            found = [float(row[key]) for row in table]
+            assert all(found.count(value) == 4 for value in values), (kind, key, found)
+        bytes_of_one = read('sampled.study.csv')
+        run('mpiexec', '-n', '3', '--oversubscribe', program('shroudhb-study'), '--quiet',
+            '--force', 'sampled.yaml')
+        assert read('sampled.study.csv') == bytes_of_one, kind
+        assert sampled(f'{kind}: 16, seed: 4') != table, kind
+    said = run(program('shroudhb'), 'check', 'sampled.yaml')
+    assert 'plan      latin_hypercube\n  designs   16\n' in said, said
+
+
 FAULTS = [
+    ('vary: {contact.mu: [0.3]}\nplan: {sobl: 12}', "sobl: unknown key; did you mean 'sobol'?"),
+    ('vary: {contact.mu: [0.3]}\nplan: {sobol: 0}', 'plan.sobol: expected a whole number from 1'),
+    ('vary: {contact.mu: [0.3]}\nplan: {sobol: 8, latin_hypercube: 8}', 'plan: expected one of'),
+    ('plan: {sobol: 12}', 'vary: missing'),
+    ('vary: {contact.mu: [0.3]}\nseed: 3', 'seed: is that of uncertain keys'),
+    ('vary: {contact.mu: [0.3]}\nsamples: 32', 'samples: needs uncertain'),
+    ('uncertain: {contact.mu: {normal: [0.3, 0.1]}}', 'uncertain: needs samples'),
+    ('samples: 3\nuncertain: {contact.mu: {normal: [0.3, 0.1]}}', 'a whole number from 8'),
+    ('samples: 32\nuncertain: {contact.mu: {normall: [0.3, 0.1]}}',
+     "normall: unknown distribution; did you mean 'normal'?"),
+    ('samples: 32\nuncertain: {contact.mu: {normal: [0.3, -0.1]}}', 'deviation must be above 0'),
+    ('samples: 32\nuncertain: {contact.mu: {normal: [0.3]}}', 'expected 2 numbers'),
+    ('samples: 32\nuncertain: {contact.mu: {normal: [0.3, 1 mm]}}', 'has unit mm'),
+    ('samples: 32\nuncertain: {contact.mu: 0.3}', 'expected a distribution'),
+    ('samples: 32\nuncertain: {contact.to: {normal: [0.3, 0.1]}}', 'is not a number'),
+    ('samples: 32\nuncertain: {contact.mv: {normal: [0.3, 0.1]}}', "did you mean 'mu'?"),
+    ('samples: 32\nuncertain: {contact.mu: {triangular: [0.3, 0.2, 0.4]}}', 'mode <= upper end'),
+    ('samples: 32\nuncertain: {contact.mu: {normal: [1, 0.1], relative: true}}',
+     'relative: true needs the key in vary'),
+    ('samples: 32\nvary: {contact.mu: 0.3}\nuncertain: {contact.mu: {normal: [1, 0.1]}}',
+     'add relative: true'),
+    ('samples: 32\nuncertain: {contact.mu: {normal: [0, 0.1]}}', 'contact.mu: is -'),
     ('vary: {contact.mv: [1, 2]}', "contact.mv: is no key of a case; did you mean 'mu'?"),
     ('vary: {contct.mu: [1, 2]}', "contct.mu: is no key of a case; did you mean 'contact'?"),
     ('vary: {contact.to: [1, 2]}', 'contact.to: is not a number'),
@@ -254,7 +312,8 @@ def main():
         run(sys.executable, 'write_modal.py')
         write('grid.yaml', GRID)
         run(program('shroudhb-study'), '--quiet', 'grid.yaml')
-        for check in (check_values, check_ranks, check_reuse, check_crash, check_kill, check_faults,
+        for check in (check_values, check_ranks, check_reuse, check_sampled_plans,
+                      check_crash, check_kill, check_faults,
                       check_overrides, check_one_design):
             check()
             print(check.__name__, 'passed')

@@ -1,0 +1,239 @@
+#include "cases/designs/study_keys.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cases/parse/key_table.h"
+#include "cases/parse/units.h"
+
+static void fault(case_issues *issues, const case_node *node, const char *key, const char *text) {
+  case_issue_add(issues, node->line, node->column, key, "%s", text);
+}
+
+/* The row of a path: indices become "[]", and an index at the end may choose a number of a list. */
+static const case_key *row_of(const char *path) {
+  char   pattern[CASE_PATH];
+  size_t n = 0;
+  for (const char *at = path; *at && n + 3 < sizeof pattern; at++) {
+    pattern[n++] = *at;
+    if (*at != '[') continue;
+    at += strcspn(at, "]");
+    pattern[n++] = ']';
+    if (!*at) break;
+  }
+  pattern[n]          = '\0';
+  const case_key *key = case_key_find(case_key_table(), pattern);
+  if (!key && n > 2 && strcmp(pattern + n - 2, "[]") == 0) {
+    pattern[n - 2] = '\0';
+    key            = case_key_find(case_key_table(), pattern);
+  }
+  return key;
+}
+
+static bool is_number(const case_key *key) {
+  switch (key->type) {
+    case CASE_NUMBER:
+    case CASE_INTEGER:
+    case CASE_COUNT:
+    case CASE_AUTO:
+    case CASE_ACCURACY:
+    case CASE_VECTOR:
+    case CASE_TRIPLE:
+    case CASE_INTERVAL:
+    case CASE_SWEEP:
+    case CASE_STIFFNESS:
+    case CASE_PRELOADS:
+    case CASE_DAMPING:
+      return true;
+    default:
+      return false;
+  }
+}
+
+/* The message about a path that is no key: the nearest one of its block. */
+static void refuse_path(case_issues *issues, const case_node *node, const char *path) {
+  char block[CASE_PATH], hint[512];
+  case_path(block, "%s", path);
+  char *dot  = strrchr(block, '.');
+  char *leaf = dot ? dot + 1 : block;
+  char  word[CASE_PATH];
+  case_path(word, "%.*s", (int)strcspn(leaf, "["), leaf);
+  if (dot) *dot = '\0';
+  if (!dot) block[0] = '\0';
+  for (char *at = block; *at; at++) /* "sections[4]" is the block "sections[]" */
+    if (*at == '[')
+      memmove(at + 1, at + 1 + strcspn(at + 1, "]"), strlen(at + 1 + strcspn(at + 1, "]")) + 1);
+  if (!dot || case_key_is_block(case_key_table(), block)) {
+    case_key_suggest(case_key_table(), block, word, hint, sizeof hint);
+  } else { /* the first part is wrong */
+    case_path(word, "%.*s", (int)strcspn(path, ".["), path);
+    case_key_suggest(case_key_table(), "", word, hint, sizeof hint);
+  }
+  case_issue_add(issues, node->key_line, node->key_column, path, "is no key of a case%s", hint);
+}
+
+bool study_key_number(case_issues *issues, const study_key *key, const case_node *node,
+                      double *value) {
+  char why[CASE_WHY];
+  if (node->kind != CASE_SCALAR) {
+    case_issue_add(issues, node->line, node->column, key->path, "is %s; expected a number",
+                   case_kind_name(node->kind));
+    return false;
+  }
+  if (!case_quantity(node->text, strcmp(key->unit, "-") == 0 ? "" : key->unit, value, why)) {
+    case_issue_add(issues, node->line, node->column, key->path, "%s", why);
+    return false;
+  }
+  if (key->whole && *value != rint(*value)) {
+    case_issue_add(issues, node->line, node->column, key->path, "takes whole numbers");
+    return false;
+  }
+  return true;
+}
+
+static bool take_values(case_issues *issues, const case_node *node, study_key *key, int n) {
+  key->n     = n;
+  key->value = calloc((size_t)n + 1, sizeof *key->value);
+  if (!key->value) fault(issues, node, key->path, "out of memory");
+  return key->value != NULL;
+}
+
+static void read_list(case_issues *issues, const case_node *node, study_key *key) {
+  if (node->n == 0)
+    fault(issues, node, key->path, "the list is empty; expected at least one number");
+  if (node->n == 0 || !take_values(issues, node, key, node->n)) return;
+  for (int i = 0; i < node->n; i++) study_key_number(issues, key, &node->child[i], &key->value[i]);
+}
+
+/* Read the members of {from, to, points, scale}; false after a fault. */
+static bool read_members(case_issues *issues, const case_node *node, study_key *key) {
+  static const case_key members[] = {
+      {.path = "from"}, {.path = "to"}, {.path = "points"}, {.path = "scale"}};
+  const case_keys all  = {4, members};
+  bool            good = true;
+  for (int i = 0; i < node->n; i++) {
+    const case_node *one = &node->child[i];
+    char             hint[256], why[CASE_WHY];
+    if (strcmp(one->key, "from") == 0) {
+      good = study_key_number(issues, key, one, &key->from) && good;
+    } else if (strcmp(one->key, "to") == 0) {
+      good = study_key_number(issues, key, one, &key->to) && good;
+    } else if (strcmp(one->key, "points") == 0) {
+      if (one->kind != CASE_SCALAR || !case_integer(one->text, &key->n, why) || key->n < 1 ||
+          key->n > STUDY_MOST_DESIGNS) {
+        fault(issues, one, key->path, "points: expected a whole number from 1");
+        good = false;
+      }
+    } else if (strcmp(one->key, "scale") == 0) {
+      key->log = one->kind == CASE_SCALAR && strcmp(one->text, "log") == 0;
+      if (!key->log && (one->kind != CASE_SCALAR || strcmp(one->text, "linear") != 0)) {
+        fault(issues, one, key->path, "scale: expected linear or log");
+        good = false;
+      }
+    } else {
+      case_key_suggest(all, "", one->key, hint, sizeof hint);
+      case_issue_add(issues, one->key_line, one->key_column, key->path, "%s: unknown key%s",
+                     one->key, hint);
+      good = false;
+    }
+  }
+  return good;
+}
+
+static void read_range(case_issues *issues, const case_node *node, study_key *key) {
+  key->is_range = true;
+  key->n        = 0;
+  if (!read_members(issues, node, key)) return;
+  bool ends = case_node_find(node, "from") && case_node_find(node, "to");
+  if (!ends || !(key->from < key->to)) {
+    fault(issues, node, key->path, "expected from and to, from below to");
+    return;
+  }
+  if (key->log && !(key->from > 0)) {
+    fault(issues, node, key->path, "scale: log needs a range above 0");
+    return;
+  }
+  int n = key->n;
+  if (n == 1) fault(issues, node, key->path, "points: a range has 2 points or more");
+  if (!take_values(issues, node, key, n)) return;
+  for (int i = 0; i < n; i++) {
+    double t = n > 1 ? (double)i / (n - 1) : 0;
+    key->value[i] =
+        key->log ? key->from * pow(key->to / key->from, t) : key->from + (key->to - key->from) * t;
+    if (i == n - 1) key->value[i] = key->to;
+    if (key->whole) key->value[i] = rint(key->value[i]);
+  }
+}
+
+/* Set path, unit and kind of a varied key. False if the path is no number of a case. */
+bool study_key_start(case_issues *issues, const case_node *node, const char *path, study_key *key) {
+  const case_key *row = row_of(path);
+  *key                = (study_key){0};
+  case_path(key->path, "%s", path);
+  if (!row) {
+    refuse_path(issues, node, path);
+    return false;
+  }
+  if (!is_number(row)) {
+    case_issue_add(issues, node->key_line, node->key_column, path,
+                   "is not a number; a study varies numbers");
+    return false;
+  }
+  key->whole = row->type == CASE_INTEGER || row->type == CASE_COUNT || row->type == CASE_AUTO;
+  snprintf(key->unit, sizeof key->unit, "%s", row->unit[0] ? row->unit : "-");
+  return true;
+}
+
+static void read_values(case_issues *issues, const case_node *node, study_key *key) {
+  if (node->kind == CASE_SEQUENCE) {
+    read_list(issues, node, key);
+  } else if (node->kind == CASE_MAPPING) {
+    read_range(issues, node, key);
+  } else if (node->kind == CASE_SCALAR && take_values(issues, node, key, 1)) {
+    study_key_number(issues, key, node, &key->value[0]);
+  } else if (node->kind == CASE_NULL) {
+    fault(issues, node, node->key, "expected a list of values or {from, to, points}");
+  }
+}
+
+void study_keys_read(case_issues *issues, const case_node *node, study_keys *keys) {
+  if (node->kind != CASE_MAPPING || node->n == 0) {
+    fault(issues, node, "vary",
+          "expected a mapping of keys of the case, such as contact.n0: [5 N, 9 N]");
+    return;
+  }
+  for (int i = 0; i < node->n; i++) {
+    const case_node *one = &node->child[i];
+    if (keys->n == STUDY_MAX_KEYS) {
+      fault(issues, one, "vary", "more than 32 keys");
+      return;
+    }
+    study_key *key = &keys->key[keys->n];
+    if (!study_key_start(issues, one, one->key, key)) continue;
+    keys->n++;
+    read_values(issues, one, key);
+  }
+}
+
+void study_keys_free(study_keys *keys) {
+  for (int i = 0; i < keys->n; i++) free(keys->key[i].value);
+  *keys = (study_keys){0};
+}
+
+void study_key_name(const study_key *key, char out[STUDY_KEY_TEXT]) {
+  snprintf(out, STUDY_KEY_TEXT, "%s%s", key->path, key->is_ratio ? " (ratio)" : "");
+}
+
+double study_key_at(const study_key *key, double u) {
+  double low = key->from, high = key->to;
+  if (key->is_uncertain) {
+    double value = plan_quantile(&key->distribution, u);
+    return key->whole ? rint(value) : value;
+  }
+  if (!key->is_range) return key->value[(int)fmin(floor(u * key->n), key->n - 1)];
+  if (key->log) return key->whole ? rint(low * pow(high / low, u)) : low * pow(high / low, u);
+  if (key->whole) return fmin(floor(low + u * (high - low + 1)), high);
+  return low + u * (high - low);
+}
