@@ -8,9 +8,9 @@ liblapacke-dev libopenblas-dev libsuitesparse-dev libmumps-dev libyaml-dev libgs
 libcmocka-dev openmpi-bin"
 
 # The tests also read files with h5dump and python3, compare frequencies with CalculiX, check case
-# files by the JSON Schema, and make a Debian package.
+# files by the JSON Schema, make a Debian package, and open the pages in a browser.
 packages_test="hdf5-tools python3 python3-h5py python3-jsonschema python3-yaml calculix-ccx
-dpkg-dev"
+dpkg-dev chromium"
 
 # continuous integration also checks the sources
 packages_check="clang-format clang-tidy python3"

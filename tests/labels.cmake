@@ -29,7 +29,7 @@ set(INTEGRATION_TESTS cases.study.study
   mhb.tracking.corner mhb.tracking.tracked_curve
   mesh.blade.shroud_angle)
 if(SHROUDHB_CHROMIUM AND SHROUDHB_PYTHON)
-  list(APPEND INTEGRATION_TESTS postproc.study.page_script)
+  list(APPEND INTEGRATION_TESTS postproc.study.page_script postproc.report.page_script)
 endif()
 set(SLOW_TESTS
   mesh.blade.blade mhb.floquet.monodromy mhb.branches.verdicts cases.converge.converge hard.gaps

@@ -126,7 +126,7 @@ static shb_status publish(const case_file *file, const command_options *options)
     up_to_date_warn(file, CASE_MHB, response);
     const post_job job = {
         file->name, response, html, csv, svg, convergence, has_points(file, points) ? points : NULL,
-        modal,      diagram};
+        modal,      diagram,  up_to_date_keys(file, CASE_MHB, response) ? &file->mhb : NULL};
     status = post_publish(&job, &progress, &summary);
     if (status == SHB_OK && modal && file->endurance > 0)
       status = publish_stress(file, modal, response, &progress);

@@ -71,6 +71,10 @@ typedef struct {
   int                 n_points;
   /* Convergence study of the case, if there is one; set by the caller. */
   const post_convergence *convergence;
+  /* Settings of the response, and the area of each contact, m2; NULL: not known. Set by the
+   * caller. */
+  const mhb_settings *settings;
+  const double       *area;
   const post_campbell *campbell; /* modes over the speed, if there are several; set by the caller */
 } post_analysis;
 

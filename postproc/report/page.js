@@ -16,7 +16,15 @@
   }
   const outputs = D.outputs, hidden = new Set();
   const unique = list => [...new Set(list)];
-  const state = {output: outputs[0], log: D.log, zoom: null, branch: D.chosen, at: null};
+  const state = {
+    output: outputs[0],
+    log: D.log,
+    zoom: null,
+    branch: D.chosen,
+    point: 0, /* of the chosen branch */
+    pair: 0,  /* index into D.contacts */
+    at: null
+  };
 
   /* ---------------------------------------------------------------- abscissa */
   const X = D.abscissa, sweep = X.parameter === "frequency";
@@ -93,6 +101,11 @@
     for (const [g, f, a] of o.limits)
       if (!hidden.has(g))
         main.text("mark " + D.groups[g].kind, f, a, 0, -7, anchor(f), D.groups[g].kind);
+    if (state.branch >= 0) {
+      const b = D.branches[state.branch];
+      if (!hidden.has(b.group))
+        main.dot("here", b.f[state.point], b.row(o.row)[state.point], 4.5);
+    }
     show("response", height, [main], `<g id="hover"></g>`);
     $("whole").disabled = !state.zoom;
     drawHover();
@@ -368,6 +381,147 @@
     show("harmonics", 360, [p]);
   }
 
+  /* ---------------------------------------------------------------- the chosen point */
+  const FORCE = [["MN", 1e6], ["kN", 1e3], ["N", 1], ["mN", 1e-3], ["µN", 1e-6]];
+  const forceUnit = largest =>
+      largest >= 1e4 ? unit(FORCE, largest) : largest >= 1 ? FORCE[2] : unit(FORCE, largest);
+  const STATES = ["stick", "slip", "gap"];
+  /* The highest point of a branch. */
+  function topOf(b) {
+    const a = D.branches[b].row(state.output.row);
+    let top = 0;
+    for (let i = 1; i < a.length; i++)
+      if (a[i] > a[top]) top = i;
+    return top;
+  }
+  /* Index into contact.at of the stored point nearest along the curve. */
+  function storedAt(contact, i) {
+    let best = 0;
+    contact.at.forEach((p, j) => {
+      if (Math.abs(p - i) < Math.abs(contact.at[best] - i)) best = j;
+    });
+    return best;
+  }
+  function period() {
+    const b = D.branches[state.branch];
+    if (!b || !b.contact || !b.contact.at.length) return null;
+    if (!b.unpacked) b.unpacked = Contact.unpack(b.contact, D.contacts.length);
+    const j = storedAt(b.contact, state.point);
+    return {...b.unpacked.period(j, state.pair), index: b.contact.at[j], order: b.order};
+  }
+  function states(p, xs, ys, s) {
+    STATES.forEach((name, k) => p.line("line " + name, xs, ys, i => s[i] === k));
+  }
+  /* Arrowhead along a path, at a share of the period. */
+  function arrow(p, xs, ys, share) {
+    const i = Math.round(share * (xs.length - 1)), x = p.x(xs[i]), y = p.y(ys[i]);
+    for (let j = i + 1; j < xs.length; j++) {
+      const dx = p.x(xs[j]) - x, dy = p.y(ys[j]) - y, size = Math.hypot(dx, dy);
+      if (size < 4) continue;
+      const c = dx / size, s = dy / size, f = v => v.toFixed(1);
+      p.svg += `<path class="arrow" d="M${f(x + 7 * c)} ${f(y + 7 * s)}L${f(x - 4 * c - 4.5 * s)} ${
+          f(y - 4 * s + 4.5 * c)}L${f(x - 4 * c + 4.5 * s)} ${f(y - 4 * s - 4.5 * c)}Z"/>`;
+      return;
+    }
+  }
+  const moderate = ([lo, hi], least) =>
+      hi - lo > least ? around(lo, hi, false) : {lo: lo - least, hi: hi + least, log: false};
+  function drawLoop(id, x, f, q, name, force) {
+    const span = extent(x), u = unit(LENGTH, Math.max(Math.abs(span[0]), Math.abs(span[1])));
+    const width = widthOf(id), most = Math.max(...q.load) * q.law.mu || 1;
+    const p = new Panel(
+        id, {left: 60, top: 34, width: width - 80, height: 290},
+        axis(moderate(span, 1e-3 * u[1]), u[1], `relative motion ${name}, ${u[0]}`),
+        axis(moderate(extent(f), 1e-3 * most), force[1], `friction along ${name}, ${force[0]}`));
+    states(p, x, f, q.state);
+    for (const share of [0.12, 0.62]) arrow(p, x, f, share);
+    show(id, 380, [p]);
+  }
+  function drawPath(q, force) {
+    const width = widthOf("path"), box = {left: 60, top: 34, width: width - 80, height: 290};
+    const radii = extent(q.load).map(n => n * q.law.mu), most = 1.08 * (radii[1] || force[1]),
+          wide = most * box.width / box.height;
+    const p = new Panel(
+        "path", box, axis({lo: -wide, hi: wide, log: false}, force[1], "friction along u, " + force[0]),
+        axis({lo: -most, hi: most, log: false}, force[1], "friction along w, " + force[0]));
+    for (const r of radii)
+      if (r > 0)
+        p.svg += `<circle class="circle" cx="${p.x(0)}" cy="${p.y(0)}" r="${
+            (p.x(r) - p.x(0)).toFixed(1)}"/>`;
+    states(p, q.fu, q.fw, q.state);
+    for (const share of [0.12, 0.62]) arrow(p, q.fu, q.fw, share);
+    show("path", 380, [p]);
+  }
+  function drawPeriod(q, force) {
+    const width = widthOf("period"), time = q.u.map((_, i) => i / q.n * q.order);
+    const size = q.fu.map((f, i) => Math.hypot(f, q.fw[i])), limit = q.load.map(n => n * q.law.mu),
+          most = Math.max(...q.load);
+    const x = {lo: 0, hi: q.order, log: false}, u = forceUnit(most), box = {left: 60, width: width - 80};
+    const above = new Panel(
+        "period-n", {...box, top: 34, height: 95}, axis(x, 1, null),
+        axis({lo: 0, hi: 1.08 * most || 1, log: false}, u[1], "normal load, " + u[0]));
+    const below = new Panel(
+        "period-f", {...box, top: 172, height: 118}, axis(x, 1, null),
+        axis({lo: 0, hi: 1.08 * Math.max(...limit) || 1, log: false}, force[1],
+             `friction and its limit μn (dashed), ${force[0]}`));
+    const bar = new Panel(
+        "period-s", {...box, top: 298, height: 22},
+        axis(x, 1, "time, periods of the excitation"), axis({lo: 0, hi: 1, log: false}, 0, null));
+    above.line("line load", time, q.load);
+    below.line("line bound", time, limit);
+    states(below, time, size, q.state);
+    for (let i = 1, from = 0; i <= q.n; i++)
+      if (i === q.n || q.state[i + 1] !== q.state[i]) {
+        bar.bar("state " + STATES[q.state[i]], time[from], time[i], 0, 1);
+        from = i;
+      }
+    show("period", 380, [above, below, bar]);
+  }
+  function drawSpectrum() {
+    const b = D.branches[state.branch], s = D.spectra.find(e => e.place === state.output.place);
+    if (!s) {
+      show("spectrum", 60, [], `<text x="0" y="30">The harmonics of ${
+          escape(state.output.place)} are not in this page; the response file has them.</text>`);
+      return;
+    }
+    const a = [...Array(s.n).keys()].map(k => b.row(s.row + k)[state.point]);
+    const most = Math.max(...a) || 1e-6, u = unit(LENGTH, most), width = widthOf("spectrum");
+    const p = new Panel(
+        "spectrum", {left: 60, top: 34, width: width - 80, height: 190},
+        axis({lo: -0.6, hi: s.n - 0.4, log: false}, 0, null),
+        axis({lo: 1e-6 * most, hi: 2 * most, log: true}, u[1], `${s.place}, amplitude, ${u[0]}`));
+    a.forEach((v, k) => {
+      if (v > p.ay.lo) p.bar("bar h" + Math.min(k, 7), k - 0.36, k + 0.36, p.ay.lo, v);
+      p.svg += `<text class="tick" x="${p.x(k).toFixed(1)}" y="241" text-anchor="middle">${k}${
+          b.order > 1 && k ? "/" + b.order : ""}</text>`;
+    });
+    p.svg += `<text class="axis" x="${width - 20}" y="260" text-anchor="end">harmonic k</text>`;
+    show("spectrum", 270, [p]);
+  }
+  function drawPoint() {
+    if (!$("point") || state.branch < 0) return;
+    const b = D.branches[state.branch], g = groupOf(b), r = readout(b, state.point);
+    $("point-where").textContent = r.title + ": " +
+        r.rows.map(([k, v]) => k + " " + v).join(", ") +
+        ". Click the curves above to choose another.";
+    drawSpectrum();
+    if (!$("loop-u")) return;
+    const q = period();
+    $("pair-label").hidden = D.contacts.length < 2;
+    if (!q) return;
+    const force = forceUnit(Math.max(...q.load) * q.law.mu), e = unit(ENERGY, Math.abs(q.work[0] + q.work[1]));
+    if (q.index !== state.point)
+      $("point-where").textContent += ` Contact drawn at the nearest point kept in this page, ${
+          xText(b.f[q.index])}.`;
+    drawLoop("loop-u", q.u, q.fu, q, "u", force);
+    drawLoop("loop-w", q.w, q.fw, q, "w", force);
+    drawPath(q, force);
+    drawPeriod(q, force);
+    $("point").dataset.work = q.work[0] + q.work[1];
+    $("point").dataset.stored = b.row(ROW.energy)[q.index];
+    $("point").dataset.share = q.share.join();
+  }
+
   /* ---------------------------------------------------------------- controls */
   function fill(select, options, chosen) {
     select.innerHTML =
@@ -394,18 +548,21 @@
         match(ax, quantity) || match(ax, null) || match(null, quantity) || match(null, null);
     drawAll();
   }
-  function select(index) {
+  function select(index, point) {
     if (index < 0 || D.branches[index].dots || groupOf(D.branches[index]).kind !== "nonlinear")
       return;
     state.branch = index;
+    state.point = point === undefined ? topOf(index) : point;
     if ($("curve")) $("curve").value = String(index);
     drawResponse();
+    drawPoint();
     drawAlong();
     drawHarmonics();
   }
   function drawAll() {
     choices();
     drawResponse();
+    drawPoint();
     drawTracking();
     drawState();
     drawAlong();
@@ -429,6 +586,13 @@
         drawAll();
       };
     $("whole").onclick = () => setZoom(null);
+    if ($("pair")) {
+      fill($("pair"), D.contacts.map((name, i) => [i, name]), 0);
+      $("pair").onchange = e => {
+        state.pair = +e.target.value;
+        drawPoint();
+      };
+    }
     if ($("curve")) {
       const list = D.branches.map((b, i) => i)
                        .filter(
@@ -500,7 +664,7 @@
       if (Math.abs(to - start) > 6)
         setZoom([main.value(Math.min(start, to)), main.value(Math.max(start, to))]);
       else if (state.at)
-        select(state.at.b);
+        select(state.at.b, state.at.i);
     });
     svg.addEventListener("pointerleave", () => {
       if (from === null) {
@@ -531,7 +695,7 @@
                 });
                 state.at = {b: j, i};
               } else if (e.key === "Enter" && state.at) {
-                select(state.at.b);
+                select(state.at.b, state.at.i);
               } else if (e.key === "Escape") {
                 state.at = null;
                 if (state.zoom) setZoom(null);
@@ -544,6 +708,7 @@
   }
 
   document.documentElement.classList.add("js");
+  if (state.branch >= 0) state.point = topOf(state.branch);
   wireControls();
   wireChart();
   drawAll();

@@ -6,6 +6,7 @@
 
 #include "mhb/problem/parameter.h"
 #include "postproc/report/charts.h"
+#include "postproc/report/contact_points.h"
 
 enum {
   BUDGET        = 400000,
@@ -318,7 +319,7 @@ static void put_lasting(const post_analysis *analysis, int b, post_buffer *out) 
 }
 
 static void put_branches(const post_analysis *analysis, int rows, const sheet *sheets,
-                         post_buffer *out) {
+                         const post_contact_plan *contacts, post_buffer *out) {
   for (int b = 0; b < analysis->response->n_branches; b++) {
     const mhb_branch *branch = &analysis->response->branch[b];
     char              note[64];
@@ -331,6 +332,7 @@ static void put_branches(const post_analysis *analysis, int rows, const sheet *s
     post_put(out, ",\"order\":%d,\"note\":", branch->order);
     post_put_json(out, note);
     put_lasting(analysis, b, out);
+    post_put_contact_points(analysis, contacts, b, sheets[b].n, sheets[b].kept, out);
     post_put(out, ",\"data\":\"");
     post_put_base64(out, (size_t)rows * (size_t)sheets[b].n, sheets[b].data);
     post_put(out, "\"}");
@@ -362,9 +364,10 @@ static void put_abscissa(const post_abscissa *x, post_buffer *out) {
 
 static shb_status put_all(const post_analysis *analysis, int chosen, sheet *sheets,
                           post_buffer *out, int *left_out) {
-  int  stride = 1 + LEAST_ROWS * analysis->n_points / (BUDGET + 1);
-  plan p      = make_plan(analysis->response, analysis->n_points / stride);
-  *left_out   = p.left_out;
+  int               stride   = 1 + LEAST_ROWS * analysis->n_points / (BUDGET + 1);
+  plan              p        = make_plan(analysis->response, analysis->n_points / stride);
+  post_contact_plan contacts = post_contact_points(analysis);
+  *left_out                  = p.left_out;
   for (int b = 0; b < analysis->response->n_branches; b++)
     SHB_TRY(make_sheet(analysis, b, p.rows, stride, &sheets[b]));
   post_put(out, "{\"rows\":%d,\"chosen\":%d,\"log\":%s,\"abscissa\":", p.rows, chosen,
@@ -376,8 +379,10 @@ static shb_status put_all(const post_analysis *analysis, int chosen, sheet *shee
   SHB_TRY(put_columns(analysis, &p, false, sheets, out));
   post_put(out, "],\"spectra\":[");
   SHB_TRY(put_columns(analysis, &p, true, sheets, out));
-  post_put(out, "],\"branches\":[");
-  put_branches(analysis, p.rows, sheets, out);
+  post_put(out, "],\"contacts\":");
+  post_put_contact_names(analysis, &contacts, out);
+  post_put(out, ",\"branches\":[");
+  put_branches(analysis, p.rows, sheets, &contacts, out);
   post_put(out, "]}");
   return SHB_OK;
 }

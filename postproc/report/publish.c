@@ -14,6 +14,7 @@ typedef struct {
   post_analysis   *analysis;
   post_convergence convergence;
   modal_speeds     speeds;
+  modal_model      model;
   post_campbell    campbell;
   post_buffer      html, csv, svg, diagram;
 } work;
@@ -40,6 +41,15 @@ static shb_status add_integration(const post_job *job, work *w) {
   SHB_FAIL(status, "%s: %s", job->integration, why);
 }
 
+/* Areas of the contacts, of the model that the response was made from. */
+static shb_status add_contacts(const post_job *job, work *w) {
+  w->analysis->settings = job->settings;
+  if (!job->modal) return SHB_OK;
+  SHB_TRY(modal_model_read(job->modal, &w->model));
+  if (w->model.n_pairs == w->response->n_pairs) w->analysis->area = w->model.area;
+  return SHB_OK;
+}
+
 static shb_status add_campbell(const post_job *job, work *w) {
   if (!job->modal) return SHB_OK;
   SHB_TRY(modal_speeds_read(job->modal, &w->speeds));
@@ -61,6 +71,7 @@ static shb_status compose(const post_job *job, shb_progress *progress, work *w) 
     SHB_TRY(post_convergence_read(job->convergence, &w->convergence));
     w->analysis->convergence = &w->convergence;
   }
+  SHB_TRY(add_contacts(job, w));
   SHB_TRY(add_campbell(job, w));
   shb_progress_note(progress, "read %d points on %d curves in %.2f s", w->analysis->n_points,
                     w->response->n_branches, shb_seconds() - started);
@@ -107,5 +118,6 @@ shb_status post_publish(const post_job *job, shb_progress *progress, char **summ
   post_buffer_free(&w.svg);
   post_buffer_free(&w.diagram);
   modal_speeds_free(&w.speeds);
+  modal_model_free(&w.model);
   return status;
 }

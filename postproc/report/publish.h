@@ -5,15 +5,17 @@
 
 #include "mesh/base/progress.h"
 #include "mesh/base/status.h"
+#include "mhb/problem/settings.h"
 
 typedef struct {
-  const char *case_name;        /* title of the page */
-  const char *response;         /* file to read */
-  const char *html, *csv, *svg; /* files to write, each whole or not at all */
-  const char *convergence;      /* NAME.converge.h5 for the page, or NULL */
-  const char *integration;      /* file of points by time integration, or NULL */
-  const char *modal;            /* modal file, for its modes at several speeds, or NULL */
-  const char *campbell;         /* picture of these modes to write, or NULL */
+  const char         *case_name;        /* title of the page */
+  const char         *response;         /* file to read */
+  const char         *html, *csv, *svg; /* files to write, each whole or not at all */
+  const char         *convergence;      /* NAME.converge.h5 for the page, or NULL */
+  const char         *integration;      /* file of points by time integration, or NULL */
+  const char         *modal;            /* modal file, for its modes at several speeds, or NULL */
+  const char         *campbell;         /* picture of these modes to write, or NULL */
+  const mhb_settings *settings;         /* of the response; NULL: not known, no loops are drawn */
 } post_job;
 
 /* Nothing is written unless everything could be composed. summary: malloc'ed line for the terminal,

@@ -10,6 +10,7 @@
 #include "postproc/analysis/findings.h"
 #include "postproc/draw/colour.h"
 #include "postproc/draw/number_format.h"
+#include "postproc/draw/plot.h"
 #include "postproc/report/charts.h"
 #include "postproc/report/convergence_chart.h"
 #include "postproc/report/page.h"
@@ -145,6 +146,48 @@ static void put_main(const post_analysis *analysis, const char *case_name, post_
       "</figure></div>\n</section>\n");
 }
 
+/* ---------------------------------------------------------------- chosen point */
+
+/* A chart that the script draws. */
+static void put_scripted(const char *id, const char *heading, const char *text, post_buffer *out) {
+  post_put(out, "<div class=\"card\"><figure><h3>%s</h3><div class=\"chart\">\n", heading);
+  plot_svg_open(out, id, 540, 380, heading, text);
+  plot_svg_close(out);
+  post_put(out, "</div></figure></div>\n");
+}
+
+/* Loops, friction path, load and spectrum at the point that was clicked. */
+static void put_point(const post_analysis *analysis, post_buffer *out) {
+  bool contact = analysis->settings && analysis->response->n_pairs > 0;
+  post_put(out,
+           "<section id=\"point\" class=\"scripted\">\n<h2>At the chosen point</h2>\n"
+           "<p id=\"point-where\" class=\"note\"></p>\n"
+           "<div class=\"tools\"><label id=\"pair-label\">Contact<select id=\"pair\"></select>"
+           "</label></div>\n");
+  if (contact) {
+    post_put(out, "<div class=\"pair\">\n");
+    put_scripted("loop-u", "Hysteresis loop along u",
+                 "Friction along the sliding axis u over the relative motion along it.", out);
+    put_scripted("loop-w", "Hysteresis loop along w",
+                 "Friction along the axis w over the relative motion along it.", out);
+    put_scripted("path", "Friction within its limit",
+                 "Path of the friction force in a period; circles: its limit at the least and the "
+                 "greatest normal load.",
+                 out);
+    put_scripted("period", "Load and friction over the period",
+                 "Normal load, friction and its limit over one period, and the contact state.",
+                 out);
+    post_put(out,
+             "</div>\n<ul class=\"legend\"><li class=\"stick\"><i></i><span>stuck</span></li>"
+             "<li class=\"slip\"><i></i><span>slipping</span></li>"
+             "<li class=\"gap\"><i></i><span>open</span></li><li>Computed in this page from the "
+             "motion at the point and the contact law.</li></ul>\n");
+  }
+  put_scripted("spectrum", "Harmonics at the point",
+               "Amplitude of each harmonic of the motion at the chosen point.", out);
+  post_put(out, "</section>\n");
+}
+
 /* ---------------------------------------------------------------- the other charts */
 
 static void put_tracking(const post_analysis *analysis, post_buffer *out) {
@@ -241,6 +284,7 @@ shb_status post_report(const post_analysis *analysis, const post_origin *source,
   put_head(analysis, case_name, out);
   put_header(analysis, source, case_name, out);
   put_main(analysis, case_name, out);
+  if (chosen >= 0) put_point(analysis, out);
   put_tracking(analysis, out);
   put_details(analysis, chosen, out);
   if (analysis->campbell) post_campbell_section(analysis->campbell, out);
@@ -259,6 +303,7 @@ shb_status post_report(const post_analysis *analysis, const post_origin *source,
            "Displacements in SI in the CSV beside this page. Works without "
            "network.</footer>\n<script>\n");
   post_put_bytes(out, post_plot_js, strlen(post_plot_js));
+  post_put_bytes(out, post_contact_js, strlen(post_contact_js));
   post_put_bytes(out, post_page_js, strlen(post_page_js));
   post_put(out, "</script>\n</body>\n</html>\n");
   SHB_CHECK(!out->failed, SHB_ERR_IO, "not enough memory for the report");

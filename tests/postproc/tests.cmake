@@ -17,13 +17,19 @@ foreach(noun study_effects study_page)
   shb_test(postproc/study ${noun} tests_studies)
 endforeach()
 
-# The page of a study in a browser, where there is one.
+shb_test(postproc/report contact_points tests_responses tests_motions)
+
+# The pages in a browser, where there is one.
 find_program(SHROUDHB_CHROMIUM NAMES chromium chromium-browser google-chrome)
 if(SHROUDHB_CHROMIUM AND SHROUDHB_PYTHON)
   add_test(NAME postproc.study.page_script
     COMMAND ${SHROUDHB_PYTHON} -B
       ${CMAKE_CURRENT_SOURCE_DIR}/postproc/study/test_page_script.py
       $<TARGET_FILE:test_postproc_study_study_page> ${SHROUDHB_CHROMIUM})
+  add_test(NAME postproc.report.page_script
+    COMMAND ${SHROUDHB_PYTHON} -B
+      ${CMAKE_CURRENT_SOURCE_DIR}/postproc/report/test_page_script.py
+      $<TARGET_FILE:test_postproc_report_contact_points> ${SHROUDHB_CHROMIUM})
 endif()
 
 # The program itself: exit codes and the one line of an error.

@@ -1,0 +1,94 @@
+#!/usr/bin/env python3
+"""The script of the report page in a browser: the contact law, every control, no error.
+
+    test_page_script.py MAKER CHROMIUM
+
+MAKER keep writes law.html and page_KIND.html into the folder (test_contact_points).
+"""
+import json
+import re
+import subprocess
+import sys
+import tempfile
+from html import unescape
+from pathlib import Path
+
+# Work and shares of every motion of the suite by the script's law.
+LAW = """
+<script>
+(() => {
+  const all = motions.map(m => {
+    const bytes = Uint8Array.from(atob(m.data), c => c.charCodeAt(0));
+    const q = Contact.period(m.law, m.top, new Float32Array(bytes.buffer), 0);
+    const size = Math.max(...q.load) * m.law.mu *
+        Math.max(...[q.u, q.w].map(x => Math.max(...x) - Math.min(...x)));
+    return {
+      name: m.name,
+      work: Math.abs(q.work[0] + q.work[1] - m.work) / (size || 1),
+      share: Math.max(...q.share.map((s, i) => Math.abs(s - m.share[i])))
+    };
+  });
+  document.title = "seen " + JSON.stringify(all);
+})();
+</script></body>"""
+
+# Acts on a page as a reader does, then leaves what it saw in the document.
+ACTIONS = (Path(__file__).parent / 'page_actions.js').read_text()
+
+KINDS = ('usual', 'contacts', 'friction', 'free', 'many')
+LOOPS = {'loop-u', 'loop-w', 'path', 'period'}
+
+
+def visit(chromium, folder, name, page, script):
+    """What the script saw on a page, and the console's lines."""
+    acted = folder / f'acted_{name}.html'
+    acted.write_text(page.replace('</body>', script))
+    run = subprocess.run(
+        [chromium, '--headless', '--no-sandbox', '--disable-gpu', '--use-angle=swiftshader',
+         '--enable-unsafe-swiftshader', f'--user-data-dir={folder}/user',
+         '--enable-logging=stderr', '--window-size=1200,900', '--virtual-time-budget=6000',
+         '--dump-dom', acted.as_uri()], capture_output=True, text=True, timeout=120, check=False)
+    console = [line for line in run.stderr.splitlines() if 'CONSOLE' in line]
+    match = re.search(r'<title>seen (.*?)</title>', run.stdout, re.S)
+    return console, json.loads(unescape(match.group(1))) if match else None
+
+
+def law_faults(chromium, folder):
+    """The script's law against that in C."""
+    console, seen = visit(chromium, folder, 'law', (folder / 'law.html').read_text(), LAW)
+    if not seen:
+        return console + ['the law did not end']
+    for m in sorted(seen, key=lambda m: -m['work'])[:3]:
+        print(f'  {m["name"]}: work {m["work"]:.1e} of the largest, shares {m["share"]:.1e}')
+    return console + [f'{m["name"]}: {m["work"]:.1e}' for m in seen if m['work'] > 5e-3]
+
+
+def faults(kind, chromium, folder):
+    """What is wrong with the page of a kind."""
+    page = (folder / f'page_{kind}.html').read_text()
+    found, seen = visit(chromium, folder, kind, page, f'<script>{ACTIONS}</script></body>')
+    if not seen:
+        return found + ['the actions did not end']
+    found += seen['faults']
+    if LOOPS <= set(seen['charts']) == (kind == 'free'):
+        found.append(f'charts {seen["charts"]}')
+    return found
+
+
+def main():
+    maker, chromium = sys.argv[1:]
+    bad = 0
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        subprocess.run([Path(maker).resolve(), 'keep'], cwd=folder, check=True)
+        wrong = law_faults(chromium, folder)
+        print(f'law: {"; ".join(wrong) or "good"}')
+        for kind in KINDS:
+            found = faults(kind, chromium, folder)
+            print(f'{kind}: {"; ".join(found) or "good"}')
+            bad += bool(found)
+    return 1 if bad or wrong else 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())
