@@ -35,6 +35,8 @@ static const char usage[] =
     "                     prints the page docs/user/case_reference.md, --schema a JSON Schema\n"
     "  inspect FILE.h5    what a modal or response file holds; of two modal files: A.h5 B.h5;\n"
     "                     FILE.h5 PATH prints values, 'branch_2/motion[peak,0,:,1]'; --csv\n"
+    "  field NAME.response.h5  the moving blade: motion and stress everywhere over a period, for\n"
+    "                     ParaView and viewers of glTF; `shroudhb field --help`\n"
     "  contact FILE.yaml  contact forces for a prescribed motion; --svg OUT.svg draws the loops\n"
     "\n"
     "  --quiet    no progress, no summary       --verbose  time and memory of every stage\n"
@@ -240,7 +242,8 @@ static const struct {
 } commands[] = {{"run", run_main},         {"mesh", stage_main},  {"modal", stage_main},
                 {"mhb", stage_main},       {"post", stage_main},  {"converge", stage_main},
                 {"check", check_main},     {"keys", keys_main},   {"inspect", inspect_main},
-                {"contact", contact_main}, {"study", study_main}, {"integrate", stage_main}};
+                {"contact", contact_main}, {"study", study_main}, {"integrate", stage_main},
+                {"field", stage_main}};
 
 enum { N_COMMANDS = sizeof commands / sizeof *commands };
 

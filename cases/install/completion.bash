@@ -14,7 +14,7 @@ _shroudhb() {
     return
   fi
   local ending='@(yaml|yml)'
-  [ "$command" != inspect ] || ending='h5'
+  [[ $command != inspect && $command != field ]] || ending='h5'
   local extglob_was
   extglob_was=$(shopt -p extglob)
   shopt -s extglob

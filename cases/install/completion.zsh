@@ -14,7 +14,7 @@ _shroudhb() {
     compadd -a found
     return
   fi
-  if [[ $command == inspect ]]; then
+  if [[ $command == inspect || $command == field ]]; then
     _files -g '*.h5'
   else
     _files -g '*.(yaml|yml)'

@@ -34,13 +34,55 @@ static shb_status read_all(hid_t file, post_blade_field *f) {
   return h5_read_double(file, "/static/nodal_stress", &at_speed, &f->static_stress);
 }
 
-shb_status post_blade_field_read(const char *path, post_blade_field *field) {
+static shb_status read_mesh(hid_t file, post_blade_field *f) {
+  h5_shape  elements = H5_SHAPE(0, 0);
+  mesh_kind kind     = MESH_TET10;
+  SHB_TRY(h5_read_int(file, "/mesh/connectivity", &elements, &f->mesh.connectivity));
+  if ((int)elements.dim[1] == mesh_topology_of(MESH_HEX20)->nodes) kind = MESH_HEX20;
+  f->mesh.kind        = kind;
+  f->mesh.n_nodes     = f->n_nodes;
+  f->mesh.coordinates = f->nodes;
+  f->mesh.n_elements  = (int)elements.dim[0];
+  const int each      = mesh_topology_of(kind)->nodes;
+  SHB_CHECK((int)elements.dim[1] == each, SHB_ERR_INPUT,
+            "/mesh/connectivity has elements of %d nodes; it must be 10 or 20",
+            (int)elements.dim[1]);
+  for (int i = 0; i < each * f->mesh.n_elements; i++) {
+    const int node = f->mesh.connectivity[i];
+    SHB_CHECK(node >= 0 && node < f->n_nodes, SHB_ERR_INPUT,
+              "/mesh/connectivity names the node %d, but there are %d nodes", node, f->n_nodes);
+  }
+  return SHB_OK;
+}
+
+static shb_status read_motion(hid_t file, post_blade_field *f) {
+  const hsize_t n       = (hsize_t)f->n_nodes;
+  h5_shape      shape   = H5_SHAPE((hsize_t)f->n_modes, n, 3);
+  h5_shape      columns = H5_SHAPE((hsize_t)f->n_column, n, 3), at_speed = H5_SHAPE(n, 3);
+  SHB_TRY(read_mesh(file, f));
+  SHB_TRY(h5_read_double(file, "/modes/shape", &shape, &f->shape));
+  if (f->n_column > 0)
+    SHB_TRY(h5_read_double(file, "/residual/shape", &columns, &f->residual_shape));
+  if (!h5_exists(file, "/static") || !h5_exists(file, "/static/displacement")) return SHB_OK;
+  return h5_read_double(file, "/static/displacement", &at_speed, &f->static_displacement);
+}
+
+static shb_status read_file(const char *path, bool motion, post_blade_field *field) {
   hid_t file;
   memset(field, 0, sizeof *field);
   SHB_TRY(h5_open(path, &file));
   shb_status status = read_all(file, field);
+  if (status == SHB_OK && motion && field->n_nodes > 0) status = read_motion(file, field);
   h5_close(file);
   return status;
+}
+
+shb_status post_blade_field_read(const char *path, post_blade_field *field) {
+  return read_file(path, false, field);
+}
+
+shb_status post_blade_field_read_motion(const char *path, post_blade_field *field) {
+  return read_file(path, true, field);
 }
 
 void post_blade_field_free(post_blade_field *f) {
@@ -49,6 +91,10 @@ void post_blade_field_free(post_blade_field *f) {
   free(f->residual);
   free(f->load_weight);
   free(f->static_stress);
+  free(f->mesh.connectivity);
+  free(f->shape);
+  free(f->residual_shape);
+  free(f->static_displacement);
   memset(f, 0, sizeof *f);
 }
 
@@ -101,24 +147,35 @@ static void set_amplitudes(const post_blade_field *f, const mhb_branch *b, int k
     }
 }
 
-/* out[rows][6 n] = weight[rows][columns] stress[columns][6 n], or added to it. */
-static void combine(int rows, int columns, int n, const double *weight, const double *stress,
+/* out[rows][width] = weight[rows][columns] field[columns][width], or added to it. */
+static void combine(int rows, int columns, int width, const double *weight, const double *field,
                     bool add, double *out) {
-  cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, rows, POST_STRESSES * n, columns, 1,
-              weight, columns, stress, POST_STRESSES * n, add, out, POST_STRESSES * n);
+  cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, rows, width, columns, 1, weight, columns,
+              field, width, add, out, width);
+}
+
+/* Harmonics of a field with so many components a node, of every mode and residual column. */
+static shb_status sum_up(const post_blade_field *f, const mhb_branch *b, int kept, int components,
+                         const double *mode, const double *residual, double *out) {
+  const int rows = 2 * (b->n_harmonics + 1), most = f->n_modes + f->n_column;
+  double   *weight = malloc(2 * ((size_t)b->n_harmonics + 1) * (size_t)most * sizeof *weight + 1);
+  SHB_CHECK(weight, SHB_ERR_IO, "out of memory for the field of a point");
+  set_amplitudes(f, b, kept, weight);
+  combine(rows, f->n_modes, components * f->n_nodes, weight, mode, false, out);
+  if (f->n_column > 0) {
+    set_forces(f, b, kept, weight);
+    combine(rows, f->n_column, components * f->n_nodes, weight, residual, true, out);
+  }
+  free(weight);
+  return SHB_OK;
 }
 
 shb_status post_blade_stress(const post_blade_field *f, const mhb_branch *b, int kept,
                              double *out) {
-  const int rows = 2 * (b->n_harmonics + 1), most = f->n_modes + f->n_column;
-  double   *weight = malloc(2 * ((size_t)b->n_harmonics + 1) * (size_t)most * sizeof *weight + 1);
-  SHB_CHECK(weight, SHB_ERR_IO, "out of memory for the stress of a point");
-  set_amplitudes(f, b, kept, weight);
-  combine(rows, f->n_modes, f->n_nodes, weight, f->stress, false, out);
-  if (f->n_column > 0) {
-    set_forces(f, b, kept, weight);
-    combine(rows, f->n_column, f->n_nodes, weight, f->residual, true, out);
-  }
-  free(weight);
-  return SHB_OK;
+  return sum_up(f, b, kept, POST_STRESSES, f->stress, f->residual, out);
+}
+
+shb_status post_blade_displacement(const post_blade_field *f, const mhb_branch *b, int kept,
+                                   double *out) {
+  return sum_up(f, b, kept, 3, f->shape, f->residual_shape, out);
 }

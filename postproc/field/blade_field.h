@@ -1,9 +1,11 @@
-/* Stress of the blade at every node, from the modal file and the amplitudes of a response. */
+/* Stress and motion of the blade at every node, from the modal file and the amplitudes of a
+ * response. */
 #ifndef POSTPROC_FIELD_BLADE_FIELD_H
 #define POSTPROC_FIELD_BLADE_FIELD_H
 
 #include <complex.h>
 
+#include "mesh/core/fe_mesh.h"
 #include "mhb/response/response.h"
 
 /* Components xx, yy, zz, xy, yz, xz. */
@@ -18,11 +20,18 @@ typedef struct {
   double         *residual;            /* [n_column][n][6] Pa/N */
   double complex *load_weight;         /* [K + 1][n_column - n_contact] */
   double         *static_stress;       /* [n][6] Pa; NULL at rest */
+  /* only of post_blade_field_read_motion */
+  mesh_fe mesh;                /* kind, elements and nodes; owns the connectivity only */
+  double *shape;               /* [n_modes][n][3] kg^-1/2 */
+  double *residual_shape;      /* [n_column][n][3] m/N */
+  double *static_displacement; /* [n][3] m; NULL at rest */
 } post_blade_field;
 
 /* Read the modal file. Files of other programs have no stresses: n_nodes is 0. Errors: those of
  * h5_open and h5_read_double. To be freed in any case. */
 shb_status post_blade_field_read(const char *path, post_blade_field *field);
+/* The same with shapes and elements. */
+shb_status post_blade_field_read_motion(const char *path, post_blade_field *field);
 void       post_blade_field_free(post_blade_field *field); /* also on a zeroed struct */
 
 /* SHB_ERR_INPUT unless the response has as many modes and contact dofs as the field; path of the
@@ -37,5 +46,8 @@ int post_blade_harmonics(const mhb_branch *branch, int n_modes, int kept);
  * the static stress; m as of post_blade_harmonics. Errors: SHB_ERR_IO no memory. */
 shb_status post_blade_stress(const post_blade_field *field, const mhb_branch *branch, int kept,
                              double *out);
+/* The same of the displacement, [..][n][3] m in mesh axes; needs post_blade_field_read_motion. */
+shb_status post_blade_displacement(const post_blade_field *field, const mhb_branch *branch,
+                                   int kept, double *out);
 
 #endif

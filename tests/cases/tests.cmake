@@ -52,6 +52,14 @@ add_dependencies(test_cases_converge_converge programs)
 shb_test(cases/converge resized_case shb_cases_converge)
 shb_test(cases/converge compare shb_cases_converge tests_models)
 
+# The moving blade; skipped where python3 has no h5py.
+if(SHROUDHB_PYTHON)
+  add_test(NAME cases.commands.field
+    COMMAND ${SHROUDHB_PYTHON} -B ${CMAKE_CURRENT_SOURCE_DIR}/cases/commands/test_field.py
+            $<TARGET_FILE_DIR:shroudhb-field>)
+  set_tests_properties(cases.commands.field PROPERTIES SKIP_RETURN_CODE 77)
+endif()
+
 # A study over its programs, with one and with three ranks.
 if(SHROUDHB_PYTHON)
   add_test(NAME cases.study.study

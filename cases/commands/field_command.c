@@ -1,0 +1,206 @@
+#include "cases/commands/field_command.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "postproc/analysis/file_origin.h"
+#include "postproc/field/field_grid.h"
+#include "postproc/field/field_scene.h"
+
+enum { STEPS = 24, PATH = 4096 };
+
+/* A kept point with the amplitude of the output. */
+typedef struct {
+  int    branch, kept;
+  double height;
+} candidate;
+
+static int falling(const void *a, const void *b) {
+  const candidate *p = a, *q = b;
+  if (p->height != q->height) return p->height < q->height ? 1 : -1;
+  return p->branch != q->branch ? p->branch - q->branch : p->kept - q->kept;
+}
+
+static bool is_open_or_stuck(const mhb_branch *b) {
+  return b->kind == MHB_BRANCH_OPEN || b->kind == MHB_BRANCH_STUCK;
+}
+
+static int highest_kept(const mhb_response *response, const mhb_branch *b) {
+  int at = 0;
+  for (int i = 1; i < b->modal.n; i++)
+    if (mhb_response_output(response, b, b->modal.point[i]) >
+        mhb_response_output(response, b, b->modal.point[at]))
+      at = i;
+  return at;
+}
+
+/* Kept peaks, and the highest kept point of each curve, highest first. */
+static int list_peaks(const mhb_response *response, const field_options *o, bool limits,
+                      candidate *list) {
+  int n = 0;
+  for (int i = 0; i < response->n_branches; i++) {
+    const mhb_branch *b = &response->branch[i];
+    if (o->branch >= 0 ? o->branch != i : is_open_or_stuck(b) != limits) continue;
+    const int highest = b->modal.n > 0 ? highest_kept(response, b) : -1;
+    for (int a = 0; a < b->modal.n; a++) {
+      const int point = b->modal.point[a];
+      if (a == highest || b->special[point] == MHB_PEAK)
+        list[n++] = (candidate){i, a, mhb_response_output(response, b, point)};
+    }
+  }
+  qsort(list, (size_t)n, sizeof *list, falling);
+  return n;
+}
+
+static shb_status choose_peak(const mhb_response *response, const field_options *o,
+                              candidate *chosen) {
+  size_t total = 1;
+  for (int i = 0; i < response->n_branches; i++) total += (size_t)response->branch[i].modal.n;
+  candidate *list = malloc(total * sizeof *list);
+  SHB_CHECK(list, SHB_ERR_IO, "out of memory for the peaks");
+  int n = list_peaks(response, o, false, list);
+  if (n == 0 && o->branch < 0) n = list_peaks(response, o, true, list);
+  const int rank = o->peak > 0 ? o->peak : 1;
+  if (rank <= n) *chosen = list[rank - 1];
+  free(list);
+  SHB_CHECK(n > 0, SHB_ERR_INPUT,
+            "%s: no motion of the blade was kept%s; see mhb.save, and run shroudhb mhb again",
+            o->response, o->branch >= 0 ? " on this branch" : "");
+  SHB_CHECK(rank <= n, SHB_ERR_INPUT, "--peak %d: there are %d", rank, n);
+  return SHB_OK;
+}
+
+static shb_status choose_point(const mhb_branch *b, const field_options *o, candidate *chosen) {
+  int nearest = -1;
+  for (int a = 0; a < b->modal.n; a++) {
+    const int distance = abs(b->modal.point[a] - o->point);
+    if (nearest < 0 || distance < abs(b->modal.point[nearest] - o->point)) nearest = a;
+  }
+  SHB_CHECK(o->point < b->n_points, SHB_ERR_INPUT, "--point %d: branch %d has the points 0 to %d",
+            o->point, o->branch, b->n_points - 1);
+  SHB_CHECK(nearest >= 0, SHB_ERR_INPUT,
+            "branch %d: no point was kept; see mhb.save, and run shroudhb mhb again", o->branch);
+  SHB_CHECK(
+      b->modal.point[nearest] == o->point, SHB_ERR_INPUT,
+      "point %d of branch %d was not kept, the nearest is %d; mhb.save: all keeps every point",
+      o->point, o->branch, b->modal.point[nearest]);
+  *chosen = (candidate){o->branch, nearest, 0};
+  return SHB_OK;
+}
+
+static shb_status choose(const mhb_response *response, const field_options *o, candidate *chosen) {
+  SHB_CHECK(o->branch < response->n_branches, SHB_ERR_INPUT,
+            "--branch %d: the response has the branches 0 to %d", o->branch,
+            response->n_branches - 1);
+  SHB_CHECK(!o->ring || response->blades > 1, SHB_ERR_INPUT,
+            "--ring: the response is that of a blade without neighbours");
+  if (o->point >= 0) return choose_point(&response->branch[o->branch], o, chosen);
+  return choose_peak(response, o, chosen);
+}
+
+/* rotor.axis among the settings of the modal file; x, the default, if it has none. */
+static mesh_axis axis_of(const char *settings) {
+  static const char *const word[] = {"x", "y", "z", "-x", "-y", "-z"};
+  const char              *line   = strstr(settings, "rotor.axis = ");
+  if (!line) return MESH_AXIS_X;
+  line += strlen("rotor.axis = ");
+  for (int i = MESH_AXIS_X; i <= MESH_AXIS_MZ; i++) {
+    const size_t n = strlen(word[i]);
+    if (strncmp(line, word[i], n) == 0 && (line[n] == '\n' || line[n] == '\0')) return i;
+  }
+  return MESH_AXIS_X;
+}
+
+/* Everything that is read. */
+typedef struct {
+  mhb_response    *response;
+  post_blade_field field;
+  post_origin      modal, origin; /* of the modal file, of the response */
+  post_period      period;
+} material;
+
+static void release(material *m) {
+  post_period_free(&m->period);
+  post_blade_field_free(&m->field);
+  mhb_response_destroy(m->response);
+  post_origin_free(&m->modal);
+  post_origin_free(&m->origin);
+}
+
+static shb_status gather(const field_options *o, const char *modal, material *m) {
+  candidate chosen = {0};
+  SHB_TRY(mhb_response_read(o->response, &m->response));
+  SHB_TRY(choose(m->response, o, &chosen));
+  SHB_TRY(post_blade_field_read_motion(modal, &m->field));
+  SHB_CHECK(m->field.n_nodes > 0, SHB_ERR_INPUT,
+            "%s has no /mesh or no /modes/stress; make it with shroudhb modal", modal);
+  SHB_TRY(post_blade_field_match(&m->field, m->response, modal));
+  SHB_TRY(post_origin_open(modal, &m->modal));
+  SHB_TRY(post_origin_open(o->response, &m->origin));
+  SHB_TRY(post_period_create(&m->field, m->response, chosen.branch, chosen.kept,
+                             axis_of(m->modal.settings), &m->period));
+  SHB_CHECK(!o->ring || m->period.closes, SHB_ERR_INPUT,
+            "--ring: a wave of %d periods does not close around %d blades", m->period.order,
+            m->period.blades);
+  return SHB_OK;
+}
+
+/* Length of NAME in NAME.response.h5 or NAME.h5. */
+static int stem_of(const char *path) {
+  static const char *const ending[] = {".response.h5", ".h5"};
+  const size_t             n        = strlen(path);
+  for (int i = 0; i < 2; i++) {
+    const size_t m = strlen(ending[i]);
+    if (n > m && strcmp(path + n - m, ending[i]) == 0) return (int)(n - m);
+  }
+  return (int)n;
+}
+
+static void output_path(const field_options *o, const post_period *p, const char *ending,
+                        char out[PATH]) {
+  const int stem      = stem_of(o->response);
+  char      point[40] = "";
+  if (o->point >= 0 || o->peak > 0 || o->branch >= 0)
+    snprintf(point, sizeof point, "_%d_%d", p->branch, p->point);
+  snprintf(out, PATH, "%.*s.%s%s.%s", stem, o->response, o->ring ? "ring" : "field", point, ending);
+}
+
+static void print_note(const post_period *p, const post_scene_note *note, FILE *out) {
+  fprintf(out, "branch %d, point %d: %.6g Hz, greatest displacement %.4g mm, von Mises %.4g MPa\n",
+          p->branch, p->point, p->frequency, 1e3 * note->greatest_displacement,
+          note->greatest_stress / 1e6);
+  if (p->field->static_stress)
+    fputs("the static part at speed is in arrays of its own, not in these numbers\n", out);
+}
+
+static shb_status publish(const field_options *o, const material *m, FILE *out) {
+  char            grid[PATH], picture[PATH], settings[128];
+  const int       steps = o->steps > 0 ? o->steps : STEPS;
+  post_buffer     glb   = {0};
+  post_scene_note note;
+  snprintf(settings, sizeof settings, "branch = %d\npoint = %d\nsteps = %d\nring = %d\n",
+           m->period.branch, m->period.point, steps, o->ring);
+  const shb_provenance provenance = {m->origin.case_path, m->origin.case_text, settings,
+                                     "shroudhb-field"};
+  output_path(o, &m->period, "vtkhdf", grid);
+  output_path(o, &m->period, "glb", picture);
+  shb_status status = post_field_scene(&m->period, steps, o->ring, o->scale, &note, &glb);
+  if (status == SHB_OK) status = post_field_grid(&m->period, steps, o->ring, &provenance, grid);
+  if (status == SHB_OK) status = post_buffer_publish(&glb, picture);
+  post_buffer_free(&glb);
+  SHB_TRY(status);
+  if (!out) return SHB_OK;
+  print_note(&m->period, &note, out);
+  fprintf(out, "%s\n%s  displacement times %.4g\n", grid, picture, note.scale);
+  return SHB_OK;
+}
+
+shb_status field_command(const field_options *options, FILE *out) {
+  char     beside[PATH];
+  material m = {0};
+  snprintf(beside, sizeof beside, "%.*s.modal.h5", stem_of(options->response), options->response);
+  shb_status status = gather(options, options->modal ? options->modal : beside, &m);
+  if (status == SHB_OK) status = publish(options, &m, out);
+  release(&m);
+  return status;
+}

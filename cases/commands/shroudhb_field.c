@@ -1,0 +1,113 @@
+/* shroudhb-field: the moving blade of a response, for ParaView and for viewers of glTF. No MPI. */
+#include <cblas.h>
+#include <errno.h>
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cases/commands/command.h"
+#include "cases/commands/field_command.h"
+#include "mesh/base/progress.h"
+#include "postproc/field/field_grid.h"
+
+static const char usage[] =
+    "usage: shroudhb-field [--quiet] [--branch B [--point P]] [--peak N] [--ring] [--steps N]\n"
+    "                      [--scale S] [--modal FILE] NAME.response.h5\n"
+    "\n"
+    "Writes one period of the motion and stress of the whole blade at a point of the response:\n"
+    "NAME.field.vtkhdf  for ParaView 5.12 and VTK 9.3 or later\n"
+    "NAME.field.glb     the surface, moving, coloured by stress, for any viewer of glTF\n"
+    "\n"
+    "  --branch B    a curve, as inspect counts them; default: the nonlinear ones\n"
+    "  --point P     a kept point of it; default: the highest peak\n"
+    "  --peak N      the N-th highest of the kept peaks, from 1\n"
+    "  --ring        all blades at their phases: NAME.ring.vtkhdf, NAME.ring.glb\n"
+    "  --steps N     instants of the period, 2 to 1000; default: 24\n"
+    "  --scale S     of the displacement in the .glb; default: the greatest is 5 % of the blade\n"
+    "  --modal FILE  default: NAME.modal.h5 beside the response\n"
+    "\n"
+    "A chosen point is added to the names: NAME.field_B_P. Which points are kept: mhb.save.\n"
+    "The whole blade stands in the modal file of shroudhb modal; one from elsewhere may lack it.\n";
+
+static int refuse(const char *option, const char *text) {
+  fprintf(stderr, "shroudhb: error: %s needs %s; see --help\n", option, text);
+  return SHB_ERR_INPUT;
+}
+
+/* A whole number from low to high; false after a message. */
+static bool read_number(const char *option, const char *word, int low, int high, int *out) {
+  char *end;
+  errno           = 0;
+  const long read = word ? strtol(word, &end, 10) : 0;
+  if (!word || end == word || *end != '\0' || errno || read < low || read > high) {
+    char text[64];
+    snprintf(text, sizeof text,
+             high == INT_MAX ? "a whole number from %d" : "a number from %d to %d", low, high);
+    refuse(option, text);
+    return false;
+  }
+  *out = (int)read;
+  return true;
+}
+
+/* Take an option with a value. 1: taken, 0: another word, -1: after a message. */
+static int take(const char *word, const char *value, field_options *out) {
+  const struct {
+    const char *option;
+    int         low, high, *to;
+  } numbers[] = {{"--branch", 0, INT_MAX, &out->branch},
+                 {"--point", 0, INT_MAX, &out->point},
+                 {"--peak", 1, INT_MAX, &out->peak},
+                 {"--steps", POST_LEAST_STEPS, POST_MOST_STEPS, &out->steps}};
+  for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
+    if (strcmp(word, numbers[i].option) == 0)
+      return read_number(word, value, numbers[i].low, numbers[i].high, numbers[i].to) ? 1 : -1;
+  if (strcmp(word, "--modal") == 0) {
+    out->modal = value;
+    return value ? 1 : (refuse(word, "the name of a file"), -1);
+  }
+  if (strcmp(word, "--scale") != 0) return 0;
+  char *end  = NULL;
+  out->scale = value ? strtod(value, &end) : 0;
+  return end && end != value && *end == '\0' && out->scale > 0 && out->scale < 1e12
+             ? 1
+             : (refuse(word, "a number above 0"), -1);
+}
+
+/* --peak alone is the default. */
+static bool is_bare_peak(const char *word, const char *value) {
+  return strcmp(word, "--peak") == 0 && (!value || strspn(value, "0123456789") != strlen(value));
+}
+
+/* Options of this program are taken out of argv; *argc is what is left. Below 0 to go on. */
+static int take_options(int *argc, char **argv, field_options *out) {
+  int n = 1;
+  for (int i = 1; i < *argc; i++) {
+    const char *value = i + 1 < *argc ? argv[i + 1] : NULL;
+    if (strcmp(argv[i], "--ring") == 0) {
+      out->ring = true;
+    } else if (!is_bare_peak(argv[i], value)) {
+      const int taken = take(argv[i], value, out);
+      if (taken < 0) return SHB_ERR_INPUT;
+      if (taken == 0) argv[n++] = argv[i];
+      i += taken;
+    }
+  }
+  *argc = n;
+  if (out->point >= 0 && out->branch < 0) return refuse("--point", "--branch");
+  if (out->point >= 0 && out->peak >= 0) return refuse("--peak", "no --point");
+  return -1;
+}
+
+int main(int argc, char **argv) {
+  field_options   field = {.branch = -1, .point = -1, .peak = -1, .steps = -1, .scale = -1};
+  command_options options;
+  int             code = take_options(&argc, argv, &field);
+  if (code < 0) code = command_parse(argc, argv, usage, &options);
+  if (code >= 0) return code;
+  if (options.mode) return refuse("field", "no such option");
+  field.response = options.path;
+  openblas_set_num_threads(1);
+  shb_interrupt_catch();
+  return command_finish(field_command(&field, options.quiet ? NULL : stdout));
+}

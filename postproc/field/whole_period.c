@@ -1,0 +1,138 @@
+#include "postproc/field/whole_period.h"
+
+#include <cblas.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "mesh/base/constants.h"
+#include "mesh/base/vec3.h"
+#include "mhb/structure/relative_motion.h"
+#include "postproc/field/peak_stress.h"
+
+/* rad, phi/nu, as the balance has it. */
+static void set_lag(post_period *p) {
+  const mhb_settings wave = {
+      .engine_order = p->engine_order, .blades = p->blades, .subharmonics = p->order};
+  const int shift = p->blades > 0 ? mhb_wave_shift(&wave) : -1;
+  p->closes       = shift >= 0;
+  if (p->closes) p->lag = SHB_TWO_PI / p->order * ((double)p->engine_order / p->blades + shift);
+}
+
+shb_status post_period_create(const post_blade_field *field, const mhb_response *response,
+                              int branch, int kept, mesh_axis axis, post_period *p) {
+  const mhb_branch *b    = &response->branch[branch];
+  const size_t      rows = 2 * ((size_t)b->n_harmonics + 1), n = (size_t)field->n_nodes;
+  *p = (post_period){.field        = field,
+                     .branch       = branch,
+                     .point        = b->modal.point[kept],
+                     .n_harmonics  = post_blade_harmonics(b, field->n_modes, kept),
+                     .order        = b->order,
+                     .frequency    = b->frequency[b->modal.point[kept]],
+                     .engine_order = response->engine_order,
+                     .blades       = response->blades,
+                     .axis         = axis};
+  set_lag(p);
+  p->displacement = malloc(rows * 3 * n * sizeof *p->displacement + 1);
+  p->stress       = malloc(rows * POST_STRESSES * n * sizeof *p->stress + 1);
+  SHB_CHECK(p->displacement && p->stress, SHB_ERR_IO, "out of memory for the field of %zu nodes",
+            n);
+  SHB_TRY(post_blade_displacement(field, b, kept, p->displacement));
+  return post_blade_stress(field, b, kept, p->stress);
+}
+
+void post_period_free(post_period *p) {
+  free(p->displacement);
+  free(p->stress);
+  memset(p, 0, sizeof *p);
+}
+
+double post_period_seconds(const post_period *p) {
+  return p->order / p->frequency;
+}
+
+double post_period_lag(const post_period *p, int blade, int k) {
+  return fmod(k * fmod(blade * p->lag, SHB_TWO_PI), SHB_TWO_PI);
+}
+
+/* out[width] = sum over the harmonics of rows [2 k + part][width]. */
+static void sum_harmonics(const post_period *p, int blade, double instant, const double *rows,
+                          int width, double *out) {
+  memset(out, 0, (size_t)width * sizeof *out);
+  for (int k = 0; k <= p->n_harmonics; k++) {
+    const double  angle = SHB_TWO_PI * k * instant - post_period_lag(p, blade, k);
+    const double *real  = rows + 2 * (size_t)k * (size_t)width;
+    cblas_daxpy(width, cos(angle), real, 1, out, 1);
+    cblas_daxpy(width, -sin(angle), real + width, 1, out, 1);
+  }
+}
+
+/* Rows of the rotation that takes blade 0 to a blade. */
+static void rotation(const post_period *p, int blade, double row[3][3]) {
+  const double angle = SHB_TWO_PI * blade / p->blades;
+  for (int d = 0; d < 3; d++) {
+    double column[3] = {d == 0, d == 1, d == 2};
+    mesh_axis_rotate(p->axis, angle, column, column);
+    for (int i = 0; i < 3; i++) row[i][d] = column[i];
+  }
+}
+
+void post_period_turn_vectors(const post_period *p, int blade, int n, double *vectors) {
+  double row[3][3];
+  if (blade == 0) return;
+  rotation(p, blade, row);
+  for (int i = 0; i < n; i++) {
+    double *v = vectors + 3 * (size_t)i, old[3] = {v[0], v[1], v[2]};
+    for (int d = 0; d < 3; d++) v[d] = vec3_dot(row[d], old);
+  }
+}
+
+/* s <- R s R^T; components xx, yy, zz, xy, yz, xz. */
+static void turn_stress(double row[3][3], double s[POST_STRESSES]) {
+  static const int place[POST_STRESSES][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {0, 2}};
+  const double     matrix[3][3] = {{s[0], s[3], s[5]}, {s[3], s[1], s[4]}, {s[5], s[4], s[2]}};
+  for (int c = 0; c < POST_STRESSES; c++) {
+    double half[3];
+    for (int d = 0; d < 3; d++) half[d] = vec3_dot(matrix[d], row[place[c][1]]);
+    s[c] = vec3_dot(row[place[c][0]], half);
+  }
+}
+
+void post_period_turn_stresses(const post_period *p, int blade, int n, double *stresses) {
+  double row[3][3];
+  if (blade == 0) return;
+  rotation(p, blade, row);
+  for (int i = 0; i < n; i++) turn_stress(row, stresses + POST_STRESSES * (size_t)i);
+}
+
+void post_period_at(const post_period *p, int blade, double instant, double *displacement,
+                    double *stress) {
+  const int n = p->field->n_nodes;
+  sum_harmonics(p, blade, instant, p->displacement, 3 * n, displacement);
+  post_period_turn_vectors(p, blade, n, displacement);
+  if (!stress) return;
+  sum_harmonics(p, blade, instant, p->stress, POST_STRESSES * n, stress);
+  post_period_turn_stresses(p, blade, n, stress);
+}
+
+shb_status post_period_extremes(const post_period *p, int instants, double *largest,
+                                double *greatest) {
+  const int n            = p->field->n_nodes;
+  double   *displacement = malloc(3 * (size_t)n * sizeof *displacement + 1);
+  double   *stress       = malloc(POST_STRESSES * (size_t)n * sizeof *stress + 1);
+  *greatest              = 0;
+  for (int i = 0; i < n; i++) largest[i] = 0;
+  for (int t = 0; displacement && stress && t < instants; t++) {
+    post_period_at(p, 0, (double)t / instants, displacement, stress);
+    cblas_daxpy(3 * n, -1, p->displacement, 1, displacement, 1);
+    for (int i = 0; i < n; i++) {
+      *greatest  = fmax(*greatest, vec3_norm(displacement + 3 * (size_t)i));
+      largest[i] = fmax(largest[i], fabs(post_signed_mises(stress + POST_STRESSES * (size_t)i)));
+    }
+  }
+  const bool whole = displacement && stress;
+  free(displacement);
+  free(stress);
+  SHB_CHECK(whole, SHB_ERR_IO, "out of memory for the field of %d nodes", n);
+  return SHB_OK;
+}
