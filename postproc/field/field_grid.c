@@ -96,7 +96,7 @@ static void set_cells(const writer *w, const cells *c) {
   for (size_t e = 0; e < n * (size_t)w->copies; e++) {
     const size_t     copy = e / n;
     const int *const node = mesh->connectivity + each * (e % n);
-    c->offset[e + 1]      = (long long)(each * (e + 1));
+    c->offset[e + 1]      = (long long)each * (long long)(e + 1);
     c->type[e]            = (unsigned char)topology->vtk;
     c->blade[e]           = (int)copy;
     for (size_t i = 0; i < each; i++)

@@ -198,7 +198,7 @@ static int add_weights(scene *s, int blade) {
           SHB_TWO_PI * k * (i % s->steps) / s->steps - post_period_lag(s->period, blade, k);
       s->values[targets * i + t] = (float)(t % 2 ? sin(angle) : cos(angle));
     }
-  return add(s, s->values, (size_t)(targets * (s->steps + 1)), 1, FLOAT, 0, false);
+  return add(s, s->values, (size_t)targets * ((size_t)s->steps + 1), 1, FLOAT, 0, false);
 }
 
 static void put_quaternion(post_buffer *out, const double axis[3], double angle) {
@@ -293,7 +293,7 @@ static void free_scene(scene *s) {
   free(s->values);
   post_buffer *const all[] = {&s->binary,   &s->views,    &s->accessors,
                               &s->samplers, &s->channels, &s->nodes};
-  for (size_t i = 0; i < sizeof all / sizeof *all; i++) post_buffer_free(all[i]);
+  for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) post_buffer_free(all[i]);
 }
 
 shb_status post_field_scene(const post_period *period, int steps, bool ring, double scale,

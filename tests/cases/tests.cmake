@@ -54,10 +54,10 @@ shb_test(cases/converge compare shb_cases_converge tests_models)
 
 # The moving blade; skipped where python3 has no h5py.
 if(SHROUDHB_PYTHON)
-  add_test(NAME cases.commands.field
-    COMMAND ${SHROUDHB_PYTHON} -B ${CMAKE_CURRENT_SOURCE_DIR}/cases/commands/test_field.py
+  add_test(NAME cases.field.field
+    COMMAND ${SHROUDHB_PYTHON} -B ${CMAKE_CURRENT_SOURCE_DIR}/cases/field/test_field.py
             $<TARGET_FILE_DIR:shroudhb-field>)
-  set_tests_properties(cases.commands.field PROPERTIES SKIP_RETURN_CODE 77)
+  set_tests_properties(cases.field.field PROPERTIES SKIP_RETURN_CODE 77)
 endif()
 
 # A study over its programs, with one and with three ranks.

@@ -42,8 +42,9 @@ static post_blade_field make(example *e, int order) {
   e->branch =
       (mhb_branch){.order = order, .n_harmonics = M, .n_points = 1, .frequency = &e->frequency};
   e->branch.modal = (mhb_modal_motion){1, 0, &e->point, e->amplitude, NULL, &e->scale};
-  e->response     = (mhb_response){
-          .n_branches = 1, .branch = &e->branch, .n_modes = MODES, .engine_order = E, .blades = BLADES};
+  e->response     = (mhb_response){.n_branches = 1, .branch = &e->branch, .n_modes = MODES};
+  e->response.engine_order = E;
+  e->response.blades       = BLADES;
   return (post_blade_field){.n_nodes = NODES,
                             .n_modes = MODES,
                             .nodes   = e->nodes,
@@ -55,6 +56,10 @@ static double distance(int n, const double *a, const double *b) {
   double most = 0;
   for (int i = 0; i < n; i++) most = fmax(most, fabs(a[i] - b[i]));
   return most;
+}
+
+static double size_of(const double stress[6]) {
+  return fabs(post_signed_mises(stress));
 }
 
 /* The same time later in the ring: blade b at t is blade 0 at t less its lag, turned. */
@@ -71,7 +76,7 @@ static void check_blades(int order, mesh_axis axis) {
     post_period_at(&p, b, t, u, s);
     post_period_at(&p, 0, t - b * p.lag / SHB_TWO_PI, v, w);
     for (int i = 0; i < NODES; i++) {
-      assert_near(fabs(post_signed_mises(s + 6 * i)), fabs(post_signed_mises(w + 6 * i)), 1e-12);
+      off = fmax(off, fabs(size_of(s + 6 * i) - size_of(w + 6 * i)));
       mesh_axis_rotate(axis, angle, v + 3 * i, v + 3 * i);
     }
     off = fmax(off, distance(3 * NODES, u, v));
@@ -120,7 +125,8 @@ static void extremes_are_those_of_the_instants(void **state) {
   example          e;
   post_blade_field field = make(&e, 1);
   post_period      p;
-  double largest[NODES], moved, most = 0, greatest[NODES] = {0}, u[3 * NODES], s[6 * NODES];
+  double           largest[NODES], moved, most = 0, greatest[NODES] = {0};
+  double           u[3 * NODES], s[6 * NODES];
   assert_ok(post_period_create(&field, &e.response, 0, 0, MESH_AXIS_X, &p));
   assert_ok(post_period_extremes(&p, 16, largest, &moved));
   for (int t = 0; t < 16; t++) {

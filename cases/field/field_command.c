@@ -1,4 +1,4 @@
-#include "cases/commands/field_command.h"
+#include "cases/field/field_command.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,33 +1,13 @@
-/* shroudhb-field: the moving blade of a response, for ParaView and for viewers of glTF. No MPI. */
-#include <cblas.h>
+#include "cases/field/field_options.h"
+
 #include <errno.h>
 #include <limits.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "cases/commands/command.h"
-#include "cases/commands/field_command.h"
-#include "mesh/base/progress.h"
+#include "mesh/base/status.h"
 #include "postproc/field/field_grid.h"
-
-static const char usage[] =
-    "usage: shroudhb-field [--quiet] [--branch B [--point P]] [--peak N] [--ring] [--steps N]\n"
-    "                      [--scale S] [--modal FILE] NAME.response.h5\n"
-    "\n"
-    "Writes one period of the motion and stress of the whole blade at a point of the response:\n"
-    "NAME.field.vtkhdf  for ParaView 5.12 and VTK 9.3 or later\n"
-    "NAME.field.glb     the surface, moving, coloured by stress, for any viewer of glTF\n"
-    "\n"
-    "  --branch B    a curve, as inspect counts them; default: the nonlinear ones\n"
-    "  --point P     a kept point of it; default: the highest peak\n"
-    "  --peak N      the N-th highest of the kept peaks, from 1\n"
-    "  --ring        all blades at their phases: NAME.ring.vtkhdf, NAME.ring.glb\n"
-    "  --steps N     instants of the period, 2 to 1000; default: 24\n"
-    "  --scale S     of the displacement in the .glb; default: the greatest is 5 % of the blade\n"
-    "  --modal FILE  default: NAME.modal.h5 beside the response\n"
-    "\n"
-    "A chosen point is added to the names: NAME.field_B_P. Which points are kept: mhb.save.\n"
-    "The whole blade stands in the modal file of shroudhb modal; one from elsewhere may lack it.\n";
 
 static int refuse(const char *option, const char *text) {
   fprintf(stderr, "shroudhb: error: %s needs %s; see --help\n", option, text);
@@ -79,8 +59,8 @@ static bool is_bare_peak(const char *word, const char *value) {
   return strcmp(word, "--peak") == 0 && (!value || strspn(value, "0123456789") != strlen(value));
 }
 
-/* Options of this program are taken out of argv; *argc is what is left. Below 0 to go on. */
-static int take_options(int *argc, char **argv, field_options *out) {
+int field_options_take(int *argc, char **argv, field_options *out) {
+  *out  = (field_options){.branch = -1, .point = -1, .peak = -1, .steps = -1, .scale = -1};
   int n = 1;
   for (int i = 1; i < *argc; i++) {
     const char *value = i + 1 < *argc ? argv[i + 1] : NULL;
@@ -97,17 +77,4 @@ static int take_options(int *argc, char **argv, field_options *out) {
   if (out->point >= 0 && out->branch < 0) return refuse("--point", "--branch");
   if (out->point >= 0 && out->peak >= 0) return refuse("--peak", "no --point");
   return -1;
-}
-
-int main(int argc, char **argv) {
-  field_options   field = {.branch = -1, .point = -1, .peak = -1, .steps = -1, .scale = -1};
-  command_options options;
-  int             code = take_options(&argc, argv, &field);
-  if (code < 0) code = command_parse(argc, argv, usage, &options);
-  if (code >= 0) return code;
-  if (options.mode) return refuse("field", "no such option");
-  field.response = options.path;
-  openblas_set_num_threads(1);
-  shb_interrupt_catch();
-  return command_finish(field_command(&field, options.quiet ? NULL : stdout));
 }

@@ -1,4 +1,4 @@
-"""cases.commands.field: the moving blade against sums of its own, VTK, and the rules of glTF.
+"""cases.field.field: the moving blade against sums of its own, VTK, and the rules of glTF.
 
 Usage: test_field.py BIN, with the programs in BIN. Exit code 77: h5py is missing.
 """
