@@ -7,6 +7,7 @@ static const double RIPPLE         = 0.02; /* relative to the peak's height */
 static const double LARGEST_GAIN   = 1.05; /* of a refined peak relative to its highest point */
 static const double LEAST_FOLD_GAP = 1e-5; /* relative to x, as in the solver */
 static const double ROUNDING       = 1e-9; /* relative to x: no reversal */
+static const double HAIR           = 0.01; /* of the distance from the peak: no real fold between */
 static const double LEVEL          = 1e-6; /* relative to the amplitude: no visible difference */
 
 /* A curve with the scales of its dimensionless arclength. */
@@ -112,9 +113,10 @@ static void refine_peak(const curve *c, int i, post_peak *peak) {
 }
 
 /* x where the amplitude falls to level, from the peak in direction step; linear in 1/a^2 between
- * points. NAN if the curve first ends, rises above the peak, or turns back in x. */
+ * points. NAN if the curve first ends, rises above the peak, or turns back in x by more than a
+ * hair. */
 static double crossing(const curve *c, const post_peak *peak, int step, double level) {
-  double from = peak->at, sign = 0;
+  double from = peak->at, sign = 0, far = from;
   for (int i = peak->point; i + step >= 0 && i + step < c->n; i += step) {
     double f0 = c->x[i], f1 = c->x[i + step], a0 = c->a[i], a1 = c->a[i + step];
     if (is_interrupted_to(c, i, step)) return NAN;
@@ -124,7 +126,8 @@ static double crossing(const curve *c, const post_peak *peak, int step, double l
       if (a1 >= a0) return NAN;
     }
     if (sign == 0) sign = f1 > from ? 1 : -1;
-    if (sign * (f1 - f0) < 0) return NAN;
+    far = sign > 0 ? fmax(far, f1) : fmin(far, f1);
+    if (sign * (far - f1) > HAIR * fabs(far - from)) return NAN;
     if (a1 > peak->amplitude) return NAN;
     if (a1 <= level) {
       if (a1 <= 0 || a0 <= 0) return f1;

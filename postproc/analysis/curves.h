@@ -10,7 +10,7 @@
 typedef struct {
   double at, amplitude; /* refined between points: x, and the curve's unit */
   /* Width in x between the half-power points (amplitude / sqrt 2). NAN if either side ends,
-   * rises again or turns back before. */
+   * rises again, or turns back before by more than 1 % of its distance from the peak. */
   double bandwidth;
   /* bandwidth / (2 at): over frequency, the damping ratio of a linear resonance of that
    * width. */

@@ -349,7 +349,8 @@ static void put_other_curves(const post_analysis *analysis, post_buffer *out) {
     }
     post_group_name(&analysis->group[analysis->curve[b].group], name);
     post_branch_note(analysis->response, branch, note);
-    post_put(out, "%s%s%s (%s to %s)", n > 1 ? "; " : "<li><b>Further curves</b>: ", name, note,
+    post_put(out, "%s%s%s (%s to %s)",
+             n > 1 ? "; " : "<li><b>Isolated and branching curves</b>: ", name, note,
              post_abscissa_number(&analysis->abscissa, lo, 6, from),
              post_abscissa_value(&analysis->abscissa, hi, 6, to));
   }
@@ -388,7 +389,8 @@ static void put_searches(const post_analysis *analysis, post_buffer *out) {
     if (branch->n_searches == 0 || ++places > 4) continue;
     char name[64];
     post_group_name(&analysis->group[analysis->curve[b].group], name);
-    post_put(out, "%s%s ", places > 1 ? "; " : "<li><b>Searched for other curves</b>: ", name);
+    post_put(out, "%s%s ",
+             places > 1 ? "; " : "<li><b>Isolated curves were searched for</b>: ", name);
     put_search_places(analysis, branch, out);
   }
   if (places > 4) post_put(out, "; and at %d more preloads", places - 4);
@@ -400,15 +402,21 @@ static void put_searches(const post_analysis *analysis, post_buffer *out) {
     post_put(out, " None was looked for elsewhere (<code>mhb.search</code>).</li>\n");
   else if (analysis->tracking.n > 0)
     post_put(out,
-             "<li>Other curves, which no sweep comes to, were <b>not searched</b> for: "
+             "<li>Isolated curves, which no sweep comes to, were <b>not searched</b> for: "
              "<code>mhb.search</code> does.</li>\n");
 }
 
 static void put_accuracy(const post_analysis *analysis, post_buffer *out) {
   double worst = NAN, at_peak = NAN;
+  int    unknown = 0; /* points whose estimate is no number below 1 */
   for (int b = 0; b < analysis->response->n_branches; b++)
-    for (int p = 0; p < analysis->response->branch[b].n_points; p++)
-      worst = fmax(worst, post_error(&analysis->response->branch[b], p));
+    for (int p = 0; p < analysis->response->branch[b].n_points; p++) {
+      double error = post_error(&analysis->response->branch[b], p);
+      if (error > 1)
+        unknown++;
+      else
+        worst = fmax(worst, error);
+    }
   for (int i = 0; i < analysis->tracking.n; i++) {
     const post_track_point *p = &analysis->tracking.point[i];
     at_peak = fmax(at_peak, post_error(&analysis->response->branch[p->branch], p->point));
@@ -417,8 +425,17 @@ static void put_accuracy(const post_analysis *analysis, post_buffer *out) {
   char a[POST_NUMBER], b[POST_NUMBER];
   post_put(out, "<li>Estimated error of the harmonic balance: at most %s anywhere",
            post_percent(a, worst));
-  if (at_peak > 0) post_put(out, ", %s at the peaks", post_percent(b, at_peak));
-  post_put(out, ".</li>\n");
+  if (at_peak > 1)
+    post_put(out, ", not known at a peak");
+  else if (at_peak > 0)
+    post_put(out, ", %s at the peaks", post_percent(b, at_peak));
+  post_put(out, ".");
+  if (unknown > 0)
+    post_put(out,
+             " At %d point%s the estimate has no bound, as beside a fold; there the error is not "
+             "known.",
+             unknown, unknown > 1 ? "s" : "");
+  post_put(out, "</li>\n");
 }
 
 void post_findings(const post_analysis *analysis, post_buffer *out) {

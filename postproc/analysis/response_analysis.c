@@ -44,8 +44,8 @@ void post_group_name(const post_group *group, char out[64]) {
 }
 
 void post_branch_note(const mhb_response *response, const mhb_branch *branch, char out[64]) {
-  static const char *const origin[] = {"", ", found by search", ", from a flip",
-                                       ", beside the main curve"};
+  static const char *const origin[] = {"", ", isolated curve found by search", ", from a flip",
+                                       ", isolated curve"};
   int                      order = branch->order / response->subharmonics, used = 0;
   out[0] = '\0';
   if (branch->origin != MHB_FROM_END && order > 1) used = snprintf(out, 64, ", order %d", order);

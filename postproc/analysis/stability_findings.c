@@ -64,8 +64,8 @@ static void put_verdicts(const tally *t, post_buffer *out) {
   if (t->points[POST_VERDICT_MODULATED] > 0)
     post_put(out,
              "<li><b>Modulated</b> (dashed): at %d of %d points, on %d curve%s, the wave loses "
-             "its stability without a fold. Side waves or a doubled period grow on it, and the "
-             "blades no longer swing alike.</li>\n",
+             "its stability without a fold. Side waves make it quasi-periodic, or its period "
+             "doubles; the blades no longer swing alike.</li>\n",
              t->points[POST_VERDICT_MODULATED], t->total, t->curves[POST_VERDICT_MODULATED],
              t->curves[POST_VERDICT_MODULATED] > 1 ? "s" : "");
   if (t->points[POST_VERDICT_NEVER_SEEN] > 0)
@@ -75,7 +75,7 @@ static void put_verdicts(const tally *t, post_buffer *out) {
              t->points[POST_VERDICT_NEVER_SEEN], t->total);
   if (t->points[POST_VERDICT_NOT_JUDGED] > 0)
     post_put(out,
-             "<li><b>Not judged</b> (thin): %d of %d points have no verdict on their stability. "
+             "<li><b>Not judged</b> (thin): %d of %d points, where no multipliers were computed. "
              "<code>mhb.stability: always</code> judges all.</li>\n",
              t->points[POST_VERDICT_NOT_JUDGED], t->total);
 }

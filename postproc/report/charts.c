@@ -398,6 +398,7 @@ typedef struct {
 
 static void open_panels(contact_panels *p, const char *id, const char *title, const char *text,
                         double most, post_buffer *out) {
+  if (most < 1e-16) most = 0; /* rounding errors of contacts that stick throughout */
   post_unit unit = post_unit_energy(most);
   snprintf(p->id[0], sizeof p->id[0], "%s-s", id);
   snprintf(p->id[1], sizeof p->id[1], "%s-d", id);

@@ -14,6 +14,15 @@
     b.f = b.row(ROW.f);
     delete b.data;
   }
+  /* work that is only rounding error is none */
+  const rounding = 1e-9 *
+      D.branches.reduce((most, b) => Math.max(most, b.n ? Math.max(...b.row(ROW.energy)) : 0), 0);
+  for (const b of D.branches) {
+    const e = b.row(ROW.energy);
+    e.forEach((v, i) => {
+      if (Math.abs(v) < Math.max(rounding, 1e-16)) e[i] = 0;
+    });
+  }
   const outputs = D.outputs, hidden = new Set();
   const unique = list => [...new Set(list)];
   const state = {
@@ -138,14 +147,14 @@
                   "%"
             ],
             ["dissipated", number(energy / e[1], 3) + NBSP + e[0]]);
-      rows.push(b.dots ? ["repeats itself", stable === 1 ? "yes" : "no"] : [
+      rows.push(b.dots ? ["motion", stable === 1 ? "periodic" : "not periodic"] : [
         "stability",
         stable === 1     ? "stable" :
             stable === 2 ? "modulated" :
             stable === 0 ? "beyond a fold: never seen" :
                            "not judged"
       ]);
-      if (error > 0) rows.push(["error estimate", percent(error)]);
+      if (error > 0) rows.push(["error estimate", error > 1 ? "no bound" : percent(error)]);
     }
     const special = b.row(ROW.special)[i],
           what =

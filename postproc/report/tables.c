@@ -3,6 +3,7 @@
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "postproc/draw/number_format.h"
@@ -141,7 +142,7 @@ static void put_quality_row(const post_analysis *analysis, int b, post_buffer *o
   for (int e = 0; e < 4; e++) {
     double most = largest(n, part[e]);
     worst       = fmax(worst, most);
-    put_cell(out, post_number(number, most, 2));
+    put_cell(out, most > 1 ? "no bound" : post_number(number, most, 2));
   }
   post_put(out, "%s<td class=\"words\">", verdict(branch, worst));
   post_put_escaped(out, branch->reason ? branch->reason : "");
@@ -156,7 +157,8 @@ void post_table_quality(const post_analysis *analysis, post_buffer *out) {
       "motion. Time integration: periods for iterations, the return map for Newton, steps for "
       "sampling. Fine: all at most 0.1&nbsp;%%; usable: at most 1&nbsp;%%; coarse: above (more "
       "harmonics or "
-      "modes are needed); &ldquo;–&rdquo;: not estimated.</caption>\n<thead><tr><th "
+      "modes are needed); no bound: above 100&nbsp;%%, as beside a fold; &ldquo;–&rdquo;: not "
+      "estimated.</caption>\n<thead><tr><th "
       "scope=\"col\">Curve</th>"
       "<th scope=\"col\">Points</th><th scope=\"col\">Iterations</th><th scope=\"col\">Time, s</th>"
       "<th scope=\"col\">Newton</th><th scope=\"col\">Truncation</th><th "
@@ -194,6 +196,31 @@ void post_table_modes(const mhb_response *response, post_buffer *out) {
   post_put(out, "</tbody></table></div>\n");
 }
 
+/* A number with the fewest digits that give it back: 0.3, not 0.29999999999999999. Other words are
+ * unchanged. */
+static void put_word(const char *word, size_t n, post_buffer *out) {
+  char text[512], shortest[40], *end;
+  snprintf(text, sizeof text, "%.*s", (int)n, word);
+  double value = strtod(text, &end);
+  if (n > 15 && *end == '\0' && isfinite(value)) {
+    for (int digits = 15; digits <= 17; digits++) {
+      snprintf(shortest, sizeof shortest, "%.*g", digits, value);
+      if (strtod(shortest, NULL) == value) break;
+    }
+    snprintf(text, sizeof text, "%s", shortest);
+  }
+  post_put_escaped(out, text);
+}
+
+static void put_words(const char *text, post_buffer *out) {
+  while (*text) {
+    size_t n = strcspn(text, " ");
+    if (n > 0) put_word(text, n, out);
+    text += n;
+    if (*text) post_put(out, "%c", *text++);
+  }
+}
+
 static void put_setting(const char *line, size_t n, post_buffer *out) {
   char text[512];
   snprintf(text, sizeof text, "%.*s", (int)(n < 500 ? n : 500), line);
@@ -202,7 +229,7 @@ static void put_setting(const char *line, size_t n, post_buffer *out) {
   if (equal) *equal = '\0';
   post_put_escaped(out, text);
   post_put(out, "</code></th><td class=\"words\">");
-  if (equal) post_put_escaped(out, equal + 3);
+  if (equal) put_words(equal + 3, out);
   post_put(out, "</td></tr>\n");
 }
 

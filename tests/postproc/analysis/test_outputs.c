@@ -104,7 +104,7 @@ static void orders(void **state) {
   post_branch_note(r, &r->branch[0], note);
   assert_string_equal(note, "");
   post_branch_note(r, &r->branch[1], note);
-  assert_string_equal(note, ", order 2, found by search");
+  assert_string_equal(note, ", order 2, isolated curve found by search");
   mhb_response_destroy(r);
 }
 

@@ -18,6 +18,10 @@ static void settings_are_escaped(void **state) {
   assert_has(out.text, "<code>name</code></th><td class=\"words\">a = b</td>");
   assert_int_equal(count(out.text, "<tr>"), 2);
   post_buffer_free(&out);
+  out = (post_buffer){0};
+  post_table_settings("contact.mu = 0.29999999999999999 12345678901234567\n", &out);
+  assert_has(out.text, ">0.3 12345678901234568<");
+  post_buffer_free(&out);
   post_table_settings("", &out);
   assert_string_equal(out.text, "<p>The response file holds no settings.</p>\n");
   post_buffer_free(&out);
