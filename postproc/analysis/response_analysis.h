@@ -107,8 +107,8 @@ bool post_at_one_frequency(const post_analysis *analysis);
 /* " at 240 Hz" in that case, else "". */
 char *post_frequency_text(const post_analysis *analysis, char out[POST_PLACE]);
 
-/* Text that distinguishes a curve from the main one: "", ", isolated curve found by search", ", order 2, from a
- * flip". */
+/* Text that distinguishes a curve from the main one: "", ", isolated curve found by search",
+ * ", order 2, from a flip". */
 void post_branch_note(const mhb_response *response, const mhb_branch *branch, char out[64]);
 
 /* "open", "stuck", "n₀ = 50 N", "n₀ varying". */

@@ -48,8 +48,8 @@ static void resonance(void **state) {
   assert_false(peak.edge);
 }
 
-/* Between peak and half power the curve turns back by 0.1 % of the width: the width is known. By 5 %:
- * it is not. */
+/* Between peak and half power the curve turns back: by 0.1 % of the width, which is then known; by
+ * 5 %, then it is not. */
 static void turning_back_by_a_hair(void **state) {
   (void)state;
   static points p;
