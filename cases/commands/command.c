@@ -27,6 +27,20 @@ static bool set_flag(const char *word, command_options *out) {
   return true;
 }
 
+/* Flags that are known where the usage mentions them. */
+static bool set_own_flag(const char *word, const char *usage, command_options *out) {
+  const struct {
+    const char *word;
+    bool       *flag;
+  } own[] = {{"--csv", &out->csv}, {"--json", &out->json}, {"--no-report", &out->no_report}};
+  for (size_t i = 0; i < sizeof own / sizeof *own; i++) {
+    if (strcmp(word, own[i].word) != 0 || !mentions(usage, word)) continue;
+    *own[i].flag = true;
+    return true;
+  }
+  return false;
+}
+
 static int refuse(const char *what, const char *word) {
   fprintf(stderr, "shroudhb: error: %s%s%s%s; see --help\n", what, word ? " '" : "",
           word ? word : "", word ? "'" : "");
@@ -100,8 +114,8 @@ int command_parse(int argc, char **argv, const char *usage, command_options *out
       return command_finish(SHB_OK);
     } else if (options && set_flag(word, out)) {
       continue;
-    } else if (options && strcmp(word, "--csv") == 0 && mentions(usage, word)) {
-      out->csv = true;
+    } else if (options && set_own_flag(word, usage, out)) {
+      continue;
     } else if (options && strcmp(word, "--svg") == 0 && mentions(usage, word)) {
       if (i + 1 == argc || argv[i + 1][0] == '-' || argv[i + 1][0] == '\0')
         return refuse("--svg needs the name of a file to write", NULL);

@@ -8,15 +8,16 @@
 #include "mesh/base/publish.h"
 #include "mesh/base/status.h"
 
-enum { COMMAND_SETS = 64, COMMAND_WORDS = 2 * COMMAND_SETS + 16 };
+enum { COMMAND_SETS = 64, COMMAND_WORDS = 2 * COMMAND_SETS + 20 };
 
 typedef struct {
   bool        quiet, verbose, force;
   const char *mode;  /* "inspect" for --inspect, or NULL; see command_parse */
   const char *path;  /* the FILE argument */
   const char *other; /* a second FILE, or NULL; known where the usage mentions OTHER */
-  bool        csv;   /* --csv; known where the usage mentions it */
-  const char *svg;   /* argument of --svg, or NULL; known where the usage mentions --svg */
+  bool        csv;   /* --csv; known where the usage mentions it, as the next two */
+  bool        json, no_report;
+  const char *svg; /* argument of --svg, or NULL; known where the usage mentions --svg */
   int         n_set;
   const char *set[COMMAND_SETS]; /* arguments of --set */
   const char *into;              /* argument of --into, or NULL */

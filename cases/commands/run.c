@@ -35,10 +35,11 @@ static void print_result(const case_file *file, const char *what, const char *su
   free(path);
 }
 
-static void print_results(const case_file *file, int code) {
+static void print_results(const case_file *file, bool no_report, int code) {
   if (code == SHB_NOT_CONVERGED) puts("not converged everywhere: the report says where and why");
-  print_result(file, "report", ".html");
+  if (!no_report) print_result(file, "report", ".html");
   print_result(file, "curves", ".csv");
+  print_result(file, "summary", ".summary.json");
   if (!file->modal_file) print_result(file, "modes", ".modal.h5");
   print_result(file, "response", ".response.h5");
   fflush(stdout);
@@ -52,7 +53,9 @@ static shb_status run_stage(const char *stage, const command_options *options,
   char *program = subprocess_program(name);
   SHB_CHECK(program, SHB_ERR_IO, "out of memory");
   words[0] = program;
-  command_forward(options, words, 1);
+  int n    = 1;
+  if (options->no_report && strcmp(stage, "post") == 0) words[n++] = "--no-report";
+  command_forward(options, words, n);
   shb_status status = subprocess_run((char *const *)words, result);
   free(program);
   return status;
@@ -88,7 +91,7 @@ shb_status run_case(const command_options *options) {
   if (options->verbose && !options->quiet) print_times(result);
   bool done = status == SHB_OK && result[N_STAGES - 1].seconds > 0 &&
               (code == SHB_OK || code == SHB_NOT_CONVERGED);
-  if (done && !options->quiet) print_results(&file, code);
+  if (done && !options->quiet) print_results(&file, options->no_report, code);
   case_free(&file);
   if (status != SHB_OK) return status;
   return code == SHB_OK ? SHB_OK : shb_fail((shb_status)code, __FILE__, __LINE__, "%s", "");

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "cases/commands/command.h"
+#include "cases/commands/json_command.h"
 #include "cases/commands/run.h"
 #include "cases/commands/subprocess.h"
 #include "cases/parse/key_listing.h"
@@ -41,6 +42,8 @@ static const char usage[] =
     "\n"
     "  --quiet    no progress, no summary       --verbose  time and memory of every stage\n"
     "  --force    run though up to date         --help, --version\n"
+    "  --json     the result on standard output as JSON: docs/user/summary.md\n"
+    "  --no-report  with run and post: no page, no picture; NAME.csv and NAME.summary.json only\n"
     "  --set KEY=VALUE  instead of what the case says, such as --set contact.mu=0.4; any number\n"
     "  --into FOLDER    where the output files go; default: beside the case\n"
     "\n"
@@ -51,7 +54,10 @@ static const char usage[] =
     "Exit codes: 0 done, 2 bad input, 3 not converged everywhere (results kept), 4 input/output,\n"
     "130 interrupted (results so far kept).\n";
 
-typedef int (*command_main)(const char *name, int argc, char **argv);
+/* A way of running a program: words[0] is its path, a NULL ends them. Returns the exit code. */
+typedef int (*run_words)(char **words);
+
+typedef int (*command_main)(const char *name, int argc, char **argv, run_words end);
 
 static int replace_by(char **argv) {
   execvp(argv[0], argv);
@@ -69,7 +75,7 @@ static int watch(char **argv) {
 
 /* Runs the program "shroudhb-STAGE [mode]" with the rest of argv. argv[0] is the command; end is
  * the way of running it. */
-static int become(const char *stage, char *mode, int argc, char **argv, int (*end)(char **)) {
+static int become(const char *stage, char *mode, int argc, char **argv, run_words end) {
   char name[64];
   snprintf(name, sizeof name, "shroudhb-%s", stage);
   char **words = calloc((size_t)argc + 2, sizeof *words);
@@ -88,28 +94,29 @@ static int become(const char *stage, char *mode, int argc, char **argv, int (*en
   return code;
 }
 
-static int stage_main(const char *name, int argc, char **argv) {
-  return become(name, NULL, argc, argv, replace_by);
+static int stage_main(const char *name, int argc, char **argv, run_words end) {
+  return become(name, NULL, argc, argv, end);
 }
 
-static int inspect_main(const char *name, int argc, char **argv) {
+static int inspect_main(const char *name, int argc, char **argv, run_words end) {
   (void)name;
   char mode[] = "--inspect";
-  return become("post", mode, argc, argv, watch);
+  return become("post", mode, argc, argv, end == replace_by ? watch : end);
 }
 
-static int contact_main(const char *name, int argc, char **argv) {
+static int contact_main(const char *name, int argc, char **argv, run_words end) {
   (void)name;
   char mode[] = "--contact";
   if (argc > 1 && strcmp(argv[1], "--help") == 0) {
     fputs(usage, stdout);
     return command_finish(SHB_OK);
   }
-  return become("mhb", mode, argc, argv, replace_by);
+  return become("mhb", mode, argc, argv, end);
 }
 
-static int keys_main(const char *name, int argc, char **argv) {
+static int keys_main(const char *name, int argc, char **argv, run_words end) {
   (void)name;
+  (void)end;
   if (argc > 1 && strcmp(argv[1], "--help") == 0) {
     fputs(usage, stdout);
     return command_finish(SHB_OK);
@@ -177,8 +184,8 @@ static bool runs_alone(int argc, char **argv) {
 
 /* shroudhb-study with a worker a core and a manager, which sleeps. The processes are not bound to
  * cores: those that compute are children of the ranks. */
-static int study_main(const char *name, int argc, char **argv) {
-  if (runs_alone(argc, argv)) return become("study", NULL, argc, argv, replace_by);
+static int study_main(const char *name, int argc, char **argv, run_words end) {
+  if (runs_alone(argc, argv)) return become("study", NULL, argc, argv, end);
   static char *const start[] = {"mpiexec", "--quiet", "--bind-to", "none", "--oversubscribe", "-n"};
   enum { STARTS = sizeof start / sizeof *start };
   char   ranks[16];
@@ -195,7 +202,7 @@ static int study_main(const char *name, int argc, char **argv) {
   words[n++] = ranks;
   words[n++] = path;
   for (int i = 1; i < argc; i++) words[n++] = argv[i];
-  return replace_by(words);
+  return end(words);
 }
 
 /* A study file has the keys case and vary, plan or uncertain. */
@@ -214,13 +221,13 @@ static bool is_study(const char *path) {
   return study;
 }
 
-static int check_main(const char *name, int argc, char **argv) {
+static int check_main(const char *name, int argc, char **argv, run_words end) {
   (void)name;
   command_options options;
   int             code = parse(argc, argv, &options);
   if (code >= 0) return code;
   char study[] = "--check";
-  if (is_study(options.path)) return become("study", study, argc, argv, replace_by);
+  if (is_study(options.path)) return become("study", study, argc, argv, end);
   case_file  file;
   shb_status status = command_read(&options, RUN_ALL | CASE_OR_MODES, &file);
   if (status == SHB_OK && !options.quiet) run_describe(&file, stdout);
@@ -228,22 +235,35 @@ static int check_main(const char *name, int argc, char **argv) {
   return command_finish(status);
 }
 
-static int run_main(const char *name, int argc, char **argv) {
+static int run_main(const char *name, int argc, char **argv, run_words end) {
   (void)name;
+  (void)end;
   command_options options;
   int             code = parse(argc, argv, &options);
   if (code >= 0) return code;
   return command_finish(run_case(&options));
 }
 
+/* Where the document of --json comes from. */
+typedef enum {
+  JSON_NONE,    /* the command has none */
+  JSON_OWN,     /* the program of the command prints it */
+  JSON_MODES,   /* shroudhb-post makes it of the modal file */
+  JSON_SUMMARY, /* shroudhb-post makes it of all results of the case */
+  JSON_CHECK    /* it says that the file is in order */
+} json_source;
+
 static const struct {
   const char  *name;
   command_main main;
-} commands[] = {{"run", run_main},         {"mesh", stage_main},  {"modal", stage_main},
-                {"mhb", stage_main},       {"post", stage_main},  {"converge", stage_main},
-                {"check", check_main},     {"keys", keys_main},   {"inspect", inspect_main},
-                {"contact", contact_main}, {"study", study_main}, {"integrate", stage_main},
-                {"field", stage_main}};
+  json_source  json;
+} commands[] = {{"run", run_main, JSON_SUMMARY},     {"mesh", stage_main, JSON_CHECK},
+                {"modal", stage_main, JSON_MODES},   {"mhb", stage_main, JSON_SUMMARY},
+                {"post", stage_main, JSON_OWN},      {"converge", stage_main, JSON_OWN},
+                {"check", check_main, JSON_CHECK},   {"keys", keys_main, JSON_NONE},
+                {"inspect", inspect_main, JSON_OWN}, {"contact", contact_main, JSON_NONE},
+                {"study", study_main, JSON_OWN},     {"integrate", stage_main, JSON_SUMMARY},
+                {"field", stage_main, JSON_NONE}};
 
 enum { N_COMMANDS = sizeof commands / sizeof *commands };
 
@@ -261,6 +281,76 @@ static int unknown_command(const char *word) {
   return SHB_ERR_INPUT;
 }
 
+/* ---------------------------------------------------------------- --json */
+
+/* For commands whose program prints the document. */
+static int capture(char **words) {
+  return json_command(words, NULL);
+}
+
+/* Takes --json out of the words. */
+static void take_json(int *argc, char **argv) {
+  int n = 1;
+  for (int i = 1; i < *argc; i++)
+    if (strcmp(argv[i], "--json") != 0) argv[n++] = argv[i];
+  argv[n] = NULL;
+  *argc   = n;
+}
+
+/* Runs this program without --json, then what makes the document. argv: the command and its
+ * words. */
+static int run_json(json_source source, int argc, char **argv) {
+  static const char *const mode[] = {
+      [JSON_MODES] = "--modes", [JSON_SUMMARY] = "--summary", [JSON_CHECK] = "--check"};
+  char **first = calloc((size_t)argc + 2, sizeof *first),
+       **then  = calloc((size_t)argc + 3, sizeof *then);
+  char *self = subprocess_program("shroudhb"), *post = subprocess_program("shroudhb-post");
+  char  kind[16], quiet[]                            = "--quiet";
+  int   code = SHB_ERR_IO;
+  snprintf(kind, sizeof kind, "%s", mode[source]);
+  if (first && then && self && post) {
+    int n    = 0;
+    first[0] = self;
+    for (int i = 0; i < argc; i++) first[i + 1] = argv[i];
+    then[n++] = post;
+    then[n++] = kind;
+    then[n++] = quiet;
+    for (int i = 1; i < argc; i++) {
+      bool ours = strcmp(argv[i], "--force") == 0 || strcmp(argv[i], "--no-report") == 0 ||
+                  strcmp(argv[i], "--inp") == 0 || strcmp(argv[i], "--verbose") == 0;
+      if (!ours) then[n++] = argv[i];
+    }
+    code = json_command(first, then);
+  } else {
+    fputs("shroudhb: error: out of memory\n", stderr);
+  }
+  free(first);
+  free(then);
+  free(self);
+  free(post);
+  return code;
+}
+
+/* A study is checked by the program of studies, which prints its own document. */
+static bool prints_its_own(json_source source, int argc, char **argv) {
+  bool own = source == JSON_OWN;
+  for (int i = 1; i < argc && source == JSON_CHECK; i++)
+    own = own || (argv[i][0] != '-' && access(argv[i], R_OK) == 0 && is_study(argv[i]));
+  return own;
+}
+
+static int run_command(int index, int argc, char **argv) {
+  const json_source json  = commands[index].json;
+  const char       *name  = commands[index].name;
+  bool              asked = false;
+  for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++)
+    asked = asked || strcmp(argv[i], "--json") == 0;
+  if (!asked || json == JSON_NONE) return commands[index].main(name, argc, argv, replace_by);
+  if (prints_its_own(json, argc, argv)) return commands[index].main(name, argc, argv, capture);
+  take_json(&argc, argv);
+  return run_json(json, argc, argv);
+}
+
 int main(int argc, char **argv) {
   if (argc < 2) {
     fputs(usage, stderr);
@@ -268,7 +358,7 @@ int main(int argc, char **argv) {
   }
   const char *word = argv[1];
   for (int i = 0; i < N_COMMANDS; i++)
-    if (strcmp(word, commands[i].name) == 0) return commands[i].main(word, argc - 1, argv + 1);
+    if (strcmp(word, commands[i].name) == 0) return run_command(i, argc - 1, argv + 1);
   command_options options;
   if (word[0] == '-') return command_parse(2, argv, usage, &options);
   return unknown_command(word);

@@ -18,18 +18,28 @@
 #include "postproc/inspect/value_table.h"
 #include "postproc/report/publish.h"
 #include "postproc/study/study_publish.h"
+#include "postproc/summary/json.h"
+#include "postproc/summary/summary.h"
+#include "postproc/summary/table_json.h"
 
 static const char usage[] =
-    "usage: shroudhb-post [--quiet] [--verbose] [--set KEY=VALUE]... [--into FOLDER] CASE.yaml\n"
+    "usage: shroudhb-post [--quiet] [--verbose] [--json] [--no-report] [--set KEY=VALUE]...\n"
+    "                     [--into FOLDER] CASE.yaml\n"
+    "       shroudhb-post --summary | --modes | --check CASE.yaml\n"
     "       shroudhb-post [--quiet] [--verbose] NAME.study.h5\n"
     "       shroudhb-post --inspect [--verbose] FILE.h5 [OTHER.h5]\n"
-    "       shroudhb-post --inspect [--csv] FILE.h5 PATH[SELECTION]\n"
+    "       shroudhb-post --inspect [--csv | --json] FILE.h5 PATH[SELECTION]\n"
     "\n"
     "Makes NAME.html (report), NAME.csv (every point) and NAME.svg (picture) from "
     "NAME.response.h5;\n"
     "points of NAME.integration.h5 are drawn as dots;\n"
     "NAME.stress.csv has the worst places at every peak if material.fatigue is given;\n"
     "the report has the section Speed against error if NAME.converge.h5 belongs to the case.\n"
+    "NAME.summary.json has the results for scripts; --json prints it, and prints it too with "
+    "--summary\n"
+    "(nothing is written), --modes (of the modal file alone) and --check (name and parts of the "
+    "case).\n"
+    "--no-report leaves out page and picture.\n"
     "Of a study file: NAME.study.html, NAME.study.csv and NAME.study.svg.\n"
     "With --inspect: what an HDF5 file holds; --verbose unfolds everything, case text and settings "
     "too.\n"
@@ -37,23 +47,39 @@ static const char usage[] =
     "With a PATH in the file: its values; 'branch_2/motion[peak,0,:,1]' selects; a branch gives a\n"
     "table of its points; --csv prints all digits.\n";
 
+static shb_status print(const post_buffer *text) {
+  bool written = !text->text || fwrite(text->text, 1, text->length, stdout) == text->length;
+  SHB_CHECK(fflush(stdout) == 0 && written, SHB_ERR_IO, "standard output cannot be written");
+  return SHB_OK;
+}
+
+/* A summary of a file, or the values at a path in it. */
+static shb_status inspect_json(const command_options *options, post_buffer *text) {
+  if (!options->other) return post_summary_of_file(options->path, text);
+  post_buffer table  = {0};
+  shb_status  status = post_value_table(options->path, options->other, true, &table);
+  if (status == SHB_OK) status = post_table_json(table.text, text);
+  post_buffer_free(&table);
+  return status;
+}
+
 static shb_status inspect(const command_options *options) {
   bool        terminal = isatty(STDOUT_FILENO) && !getenv("NO_COLOR");
   post_buffer text     = {0};
   shb_status  status   = SHB_OK;
   bool        another  = options->other && access(options->other, F_OK) == 0;
-  if (options->other && !another)
+  if (options->json)
+    status = inspect_json(options, &text);
+  else if (options->other && !another)
     status = post_value_table(options->path, options->other, options->csv, &text);
   else if (options->other)
     status = post_compare((const char *[]){options->path, options->other}, options->verbose, &text);
   else
     status = post_inspect(
         options->path, (post_tree_style){.colour = terminal, .verbose = options->verbose}, &text);
-  bool written = !text.text || fwrite(text.text, 1, text.length, stdout) == text.length;
-  written      = fflush(stdout) == 0 && written;
+  shb_status printed = print(&text);
   post_buffer_free(&text);
-  if (status == SHB_OK && !written) SHB_FAIL(SHB_ERR_IO, "standard output cannot be written");
-  return status;
+  return status == SHB_OK ? printed : status;
 }
 
 /* NAME.converge.h5 if it belongs to the present case; malloc'ed, else NULL. */
@@ -113,6 +139,60 @@ static shb_status publish_stress(const case_file *file, const char *modal, const
   return status;
 }
 
+/* The summary of the case: with a response, that of its curves; of its modes, if they are current. */
+static shb_status summarise(const case_file *file, const char *response, const char *modal,
+                            post_buffer *out) {
+  const post_summary_job job = {.name      = file->name,
+                                .case_path = file->path,
+                                .response  = response,
+                                .modal     = modal,
+                                .endurance = file->endurance,
+                                .ultimate  = file->ultimate};
+  return post_summary_compose(&job, out);
+}
+
+/* Publish NAME.summary.json, and print it if that is wanted. */
+static shb_status publish_summary(const case_file *file, const char *response, const char *modal,
+                                  bool shown) {
+  post_buffer text   = {0};
+  char       *path   = case_output(file, ".summary.json");
+  shb_status  status = path ? summarise(file, response, modal, &text)
+                            : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  if (status == SHB_OK) status = post_buffer_publish(&text, path);
+  if (status == SHB_OK && shown) status = print(&text);
+  post_buffer_free(&text);
+  free(path);
+  return status;
+}
+
+/* --summary, --modes: print and write nothing. */
+static shb_status print_summary(const case_file *file, bool curves) {
+  post_buffer text     = {0};
+  char       *response = curves ? case_output(file, ".response.h5") : NULL;
+  char       *modal    = current_modal(file);
+  shb_status  status   = summarise(file, response, modal, &text);
+  if (status == SHB_OK) status = print(&text);
+  post_buffer_free(&text);
+  free(response);
+  free(modal);
+  return status;
+}
+
+/* --check: what a case in order is called. */
+static shb_status print_check(const case_file *file) {
+  post_buffer text = {0};
+  post_json   json = {.out = &text};
+  post_json_object(&json, NULL);
+  post_json_bool(&json, "ok", true);
+  post_json_text(&json, "name", file->name);
+  post_json_text(&json, "case", file->path);
+  post_json_bool(&json, "modes_only", file->only_modes);
+  post_json_end(&json);
+  shb_status status = print(&text);
+  post_buffer_free(&text);
+  return status;
+}
+
 static shb_status publish(const case_file *file, const command_options *options) {
   shb_progress progress = shb_progress_start("post", options->quiet, options->verbose);
   char        *response = case_output(file, ".response.h5"), *html = case_output(file, ".html");
@@ -124,17 +204,26 @@ static shb_status publish(const case_file *file, const command_options *options)
   shb_status   status;
   if (response && html && csv && svg && points && diagram) {
     up_to_date_warn(file, CASE_MHB, response);
-    const post_job job = {
-        file->name, response, html, csv, svg, convergence, has_points(file, points) ? points : NULL,
-        modal,      diagram,  up_to_date_keys(file, CASE_MHB, response) ? &file->mhb : NULL};
-    status = post_publish(&job, &progress, &summary);
+    const post_job job = {file->name,
+                          response,
+                          options->no_report ? NULL : html,
+                          csv,
+                          svg,
+                          convergence,
+                          has_points(file, points) ? points : NULL,
+                          modal,
+                          diagram,
+                          up_to_date_keys(file, CASE_MHB, response) ? &file->mhb : NULL};
+    status             = post_publish(&job, &progress, &summary);
     if (status == SHB_OK && modal && file->endurance > 0)
       status = publish_stress(file, modal, response, &progress);
+    if (status == SHB_OK) status = publish_summary(file, response, modal, options->json);
   } else {
     status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   }
-  if (status == SHB_OK && !options->quiet)
-    printf("%s%s%s\n", html, summary ? ": " : "", summary ? summary : "");
+  if (status == SHB_OK && !options->quiet && !options->json)
+    printf("%s%s%s\n", options->no_report ? csv : html, summary ? ": " : "",
+           summary ? summary : "");
   free(summary);
   free(convergence);
   free(response);
@@ -150,9 +239,25 @@ static shb_status publish(const case_file *file, const command_options *options)
 static shb_status publish_study(const command_options *options) {
   char      *summary = NULL;
   shb_status status  = study_publish_file(options->path, &summary);
-  if (status == SHB_OK && !options->quiet) printf("%s\n", summary ? summary : options->path);
+  if (status == SHB_OK && options->json) {
+    post_buffer text = {0};
+    status           = post_summary_of_file(options->path, &text);
+    if (status == SHB_OK) status = print(&text);
+    post_buffer_free(&text);
+  } else if (status == SHB_OK && !options->quiet) {
+    printf("%s\n", summary ? summary : options->path);
+  }
   free(summary);
   return status;
+}
+
+/* What is done with a case. */
+static shb_status work(const case_file *file, const command_options *options) {
+  const char *mode = options->mode ? options->mode : "";
+  if (strcmp(mode, "summary") == 0) return print_summary(file, true);
+  if (strcmp(mode, "modes") == 0) return print_summary(file, false);
+  if (strcmp(mode, "check") == 0) return print_check(file);
+  return publish(file, options);
 }
 
 int main(int argc, char **argv) {
@@ -173,7 +278,7 @@ int main(int argc, char **argv) {
   openblas_set_num_threads(1); /* small products: threads would only wait for each other */
   /* the stage takes a fraction of a second: it finishes and leaves no temporary file */
   shb_interrupt_catch();
-  status = publish(&file, &options);
+  status = work(&file, &options);
   case_free(&file);
   return command_finish(status);
 }

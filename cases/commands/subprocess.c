@@ -40,13 +40,21 @@ static sigset_t waited_signals(void) {
   return set;
 }
 
-static int spawn(char *const argv[], const sigset_t *mask, pid_t *child) {
-  posix_spawnattr_t attributes;
-  int               why = posix_spawnattr_init(&attributes);
+/* out and err replace standard output and error unless they are negative. */
+static int spawn(char *const argv[], const sigset_t *mask, int out, int err, pid_t *child) {
+  posix_spawnattr_t          attributes;
+  posix_spawn_file_actions_t files;
+  int                        why = posix_spawnattr_init(&attributes);
   if (why) return why;
-  posix_spawnattr_setsigmask(&attributes, mask);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
-  why = posix_spawnp(child, argv[0], NULL, &attributes, argv, environ);
+  why = posix_spawn_file_actions_init(&files);
+  if (why == 0) {
+    posix_spawnattr_setsigmask(&attributes, mask);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
+    if (out >= 0) why = posix_spawn_file_actions_adddup2(&files, out, STDOUT_FILENO);
+    if (err >= 0 && why == 0) why = posix_spawn_file_actions_adddup2(&files, err, STDERR_FILENO);
+    if (why == 0) why = posix_spawnp(child, argv[0], &files, &attributes, argv, environ);
+    posix_spawn_file_actions_destroy(&files);
+  }
   posix_spawnattr_destroy(&attributes);
   return why;
 }
@@ -77,13 +85,17 @@ static const char *leaf(const char *path) {
 }
 
 shb_status subprocess_run(char *const argv[], subprocess_result *result) {
+  return subprocess_run_to(argv, -1, -1, result);
+}
+
+shb_status subprocess_run_to(char *const argv[], int out, int err, subprocess_result *result) {
   *result          = (subprocess_result){.code = SHB_ERR_IO};
   sigset_t signals = waited_signals(), before;
   signal(SIGCHLD, SIG_DFL); /* if SIGCHLD is inherited as ignored, the kernel reaps the child */
   sigprocmask(SIG_BLOCK, &signals, &before);
   double        started = shb_seconds();
   pid_t         child   = 0;
-  int           why = spawn(argv, &before, &child), status = 0;
+  int           why = spawn(argv, &before, out, err, &child), status = 0;
   struct rusage usage       = {0};
   bool          interrupted = !why && wait_for(child, &signals, &status, &usage);
   sigprocmask(SIG_SETMASK, &before, NULL);

@@ -19,5 +19,7 @@ char *subprocess_program(const char *name);
  *
  * Errors: SHB_ERR_IO if the child cannot be started, or was killed by a signal. */
 shb_status subprocess_run(char *const argv[], subprocess_result *result);
+/* The same with descriptors for its standard output and error; negative: those of this program. */
+shb_status subprocess_run_to(char *const argv[], int out, int err, subprocess_result *result);
 
 #endif

@@ -13,6 +13,7 @@
 #include "cases/schema/converge_settings.h"
 #include "mesh/base/publish.h"
 #include "postproc/report/convergence_chart.h"
+#include "postproc/summary/summary.h"
 
 static bool has_mode(const convergence_study *s, const char *mode) {
   return s->options->mode && strcmp(s->options->mode, mode) == 0;
@@ -92,6 +93,14 @@ static shb_status prepare(convergence_study *s) {
   return SHB_OK;
 }
 
+static shb_status print_json(const char *path) {
+  post_buffer text   = {0};
+  shb_status  status = post_summary_of_file(path, &text);
+  if (status == SHB_OK) fwrite(text.text, 1, text.length, stdout);
+  post_buffer_free(&text);
+  return status;
+}
+
 static shb_status publish(convergence_study *s) {
   char *h5 = case_output(s->file, ".converge.h5"), *csv = case_output(s->file, ".converge.csv");
   char *svg = case_output(s->file, ".converge.svg"), *settings = NULL;
@@ -105,7 +114,10 @@ static shb_status publish(convergence_study *s) {
   post_convergence_picture(&s->result, s->file->name, &picture);
   if (status == SHB_OK) status = post_buffer_publish(&table, csv);
   if (status == SHB_OK) status = post_buffer_publish(&picture, svg);
-  if (status == SHB_OK && !s->options->quiet) printf("\n%s\n%s\n%s\n", csv, svg, h5);
+  if (status == SHB_OK && s->options->json)
+    status = print_json(h5);
+  else if (status == SHB_OK && !s->options->quiet)
+    printf("\n%s\n%s\n%s\n", csv, svg, h5);
   post_buffer_free(&table);
   post_buffer_free(&picture);
   free(settings);
@@ -121,7 +133,8 @@ static void print_report(const convergence_study *s) {
   post_put(&text, "\n");
   post_convergence_conclusion(&s->result, &text);
   if (s->result.note) post_put(&text, "%s", s->result.note);
-  if (text.text && !s->options->quiet) fwrite(text.text, 1, text.length, stdout);
+  if (text.text && !s->options->quiet && !s->options->json)
+    fwrite(text.text, 1, text.length, stdout);
   fflush(stdout);
   post_buffer_free(&text);
 }

@@ -10,7 +10,8 @@
 #include "mesh/base/progress.h"
 
 static const char usage[] =
-    "usage: shroudhb-converge [--no-mesh | --finer] [--quiet] [--verbose] [--force] CASE.yaml\n"
+    "usage: shroudhb-converge [--no-mesh | --finer] [--quiet] [--verbose] [--force] [--json]\n"
+    "                         CASE.yaml\n"
     "\n"
     "What accuracy costs on CASE.yaml: ladders of harmonics (fixed and auto), contact accuracy, "
     "modes (with\n"

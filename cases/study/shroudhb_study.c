@@ -11,12 +11,13 @@
 #include "cases/parse/units.h"
 #include "cases/study/study_run.h"
 #include "mesh/base/progress.h"
+#include "postproc/summary/summary.h"
 
 static const char usage[] =
-    "usage: shroudhb-study [--quiet] [--verbose] [--force] STUDY.yaml\n"
+    "usage: shroudhb-study [--quiet] [--verbose] [--force] [--json] STUDY.yaml\n"
     "       mpiexec -n N shroudhb-study STUDY.yaml\n"
     "       shroudhb-study --design=I STUDY.yaml\n"
-    "       shroudhb-study --check STUDY.yaml\n"
+    "       shroudhb-study --check [--json] STUDY.yaml\n"
     "\n"
     "Runs the designs of STUDY.yaml and writes NAME.study.h5 and NAME.study.csv. Of N processes\n"
     "one manages and the others compute; `shroudhb study` starts one for every core.\n"
@@ -68,6 +69,17 @@ static void print_key(const study_key *key) {
 static shb_status check(const study_spec *spec, const command_options *options) {
   char plan[STUDY_NAME];
   int  group = study_plan_group(&spec->plan, &spec->keys);
+  if (options->json) {
+    post_buffer text = {0};
+    post_put(&text, "{\"ok\": true, \"name\": ");
+    post_put_json(&text, spec->name);
+    post_put(&text, ", \"case\": ");
+    post_put_json(&text, spec->case_path);
+    post_put(&text, ", \"designs\": %d}\n", spec->n_designs);
+    if (text.text) fputs(text.text, stdout);
+    post_buffer_free(&text);
+    return SHB_OK;
+  }
   if (options->quiet) return SHB_OK;
   study_plan_text(&spec->plan, &spec->keys, plan, sizeof plan);
   printf("%s: ok\n  case      %s\n  plan      %s\n  designs   %d\n", spec->path, spec->case_path,
@@ -79,6 +91,17 @@ static shb_status check(const study_spec *spec, const command_options *options) 
   return SHB_OK;
 }
 
+static shb_status print_json(const study_spec *spec) {
+  post_buffer text   = {0};
+  char       *path   = study_path(spec, ".study.h5");
+  shb_status  status = path ? post_summary_of_file(path, &text)
+                            : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  if (status == SHB_OK) fwrite(text.text, 1, text.length, stdout);
+  post_buffer_free(&text);
+  free(path);
+  return status;
+}
+
 /* The study on the manager. */
 static shb_status manage(const study_spec *spec, const command_options *options,
                          design_process *process) {
@@ -86,7 +109,12 @@ static shb_status manage(const study_spec *spec, const command_options *options,
   design_study study    = {0};
   shb_status   status   = study_run(spec, options->force, process, &progress, &study);
   bool         whole    = status == SHB_OK || status == SHB_NOT_CONVERGED;
-  if (whole && !options->quiet) study_run_summary(spec, &study, stdout);
+  if (whole && options->json) {
+    shb_status printed = print_json(spec);
+    if (printed != SHB_OK) status = printed;
+  } else if (whole && !options->quiet) {
+    study_run_summary(spec, &study, stdout);
+  }
   shb_progress_note(&progress, "%.2f s in all", shb_seconds() - progress.started);
   design_study_free(&study);
   return status;

@@ -77,13 +77,15 @@ static shb_status compose(const post_job *job, shb_progress *progress, work *w) 
                     w->response->n_branches, shb_seconds() - started);
   started = shb_seconds();
   shb_progress_show(progress, 30, "page");
-  SHB_TRY(post_report(w->analysis, &w->source, job->case_name, &w->html));
-  shb_progress_note(progress, "page, %.1f MB, in %.2f s", 1e-6 * (double)w->html.length,
-                    shb_seconds() - started);
+  if (job->html) {
+    SHB_TRY(post_report(w->analysis, &w->source, job->case_name, &w->html));
+    shb_progress_note(progress, "page, %.1f MB, in %.2f s", 1e-6 * (double)w->html.length,
+                      shb_seconds() - started);
+  }
   started = shb_seconds();
   shb_progress_show(progress, 70, "table");
   post_csv(w->response, &w->csv);
-  post_picture(w->analysis, job->case_name, &w->svg);
+  if (job->html) post_picture(w->analysis, job->case_name, &w->svg);
   shb_progress_note(progress, "table, %.1f MB, and picture in %.2f s", 1e-6 * (double)w->csv.length,
                     shb_seconds() - started);
   bool failed = w->html.failed || w->csv.failed || w->svg.failed || w->diagram.failed;
@@ -93,6 +95,7 @@ static shb_status compose(const post_job *job, shb_progress *progress, work *w) 
 
 static shb_status write_all(const post_job *job, const work *w) {
   SHB_TRY(post_buffer_publish(&w->csv, job->csv));
+  if (!job->html) return SHB_OK;
   SHB_TRY(post_buffer_publish(&w->svg, job->svg));
   if (job->campbell && w->analysis->campbell)
     SHB_TRY(post_buffer_publish(&w->diagram, job->campbell));

@@ -10,7 +10,7 @@
 typedef struct {
   const char         *case_name;        /* title of the page */
   const char         *response;         /* file to read */
-  const char         *html, *csv, *svg; /* files to write, each whole or not at all */
+  const char         *html, *csv, *svg; /* files to write, each whole; html NULL: the table only */
   const char         *convergence;      /* NAME.converge.h5 for the page, or NULL */
   const char         *integration;      /* file of points by time integration, or NULL */
   const char         *modal;            /* modal file, for its modes at several speeds, or NULL */

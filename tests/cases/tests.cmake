@@ -26,6 +26,11 @@ add_test(NAME cases.commands.contact
           $<TARGET_FILE:shroudhb-mhb> ${PROJECT_SOURCE_DIR}/cases/prescribed_motion
           "${SHROUDHB_PYTHON}")
 if(SHROUDHB_PYTHON)
+  add_test(NAME cases.commands.json
+    COMMAND ${SHROUDHB_PYTHON} -B ${CMAKE_CURRENT_SOURCE_DIR}/cases/commands/test_json.py
+            $<TARGET_FILE:shroudhb> ${PROJECT_SOURCE_DIR}/cases/bring_your_own
+            ${PROJECT_SOURCE_DIR}/docs/user/summary.md)
+  set_tests_properties(cases.commands.json PROPERTIES SKIP_RETURN_CODE 77)
   add_test(NAME cases.commands.integrate
     COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/cases/commands/test_integrate.sh
             $<TARGET_FILE_DIR:shroudhb-integrate> ${PROJECT_SOURCE_DIR}/cases/bring_your_own

@@ -1,0 +1,171 @@
+#include "postproc/summary/response_summary.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "mhb/problem/parameter.h"
+#include "postproc/analysis/stability_findings.h"
+
+/* What all curves need. */
+typedef struct {
+  const post_analysis      *analysis;
+  const post_stress_source *stress;
+  post_json                *json;
+} work;
+
+static const char *kind_name(mhb_branch_kind kind) {
+  static const char *const name[MHB_N_BRANCH_KINDS] = {"nonlinear", "open", "stuck", "integration",
+                                                       "tracked"};
+  return name[kind];
+}
+
+static const char *verdict_name(const mhb_branch *branch, int point) {
+  static const char *const name[POST_N_VERDICTS] = {"stable", "not judged", "modulated",
+                                                    "unstable"};
+  return name[post_verdict_of(branch, point)];
+}
+
+static const char *lasting_name(int kind) {
+  static const char *const name[MHB_LASTING_KINDS] = {NULL,        "wave",      "mildly modulated",
+                                                      "modulated", "irregular", "several"};
+  return name[kind];
+}
+
+/* ---- one curve ---- */
+
+static void put_lasting(const work *w, const mhb_branch *b, int point) {
+  const char *name = b->lasting_kind ? lasting_name(b->lasting_kind[point]) : NULL;
+  if (!name) {
+    post_json_null(w->json, "lasting");
+    return;
+  }
+  post_json_object(w->json, "lasting");
+  post_json_text(w->json, "kind", name);
+  post_json_number(w->json, "mean", b->lasting_mean[point]);
+  post_json_number(w->json, "worst", b->lasting_worst[point]);
+  post_json_end(w->json);
+}
+
+static shb_status put_peak(const work *w, int branch, const post_peak *peak) {
+  const mhb_response *r = w->analysis->response;
+  const mhb_branch   *b = &r->branch[branch];
+  const int           p = peak->point;
+  const bool in_hertz   = !post_at_one_frequency(w->analysis) && b->kind != MHB_BRANCH_TRACKED;
+  post_json_object(w->json, "peak");
+  post_json_number(w->json, "amplitude", peak->amplitude);
+  post_json_number(w->json, "frequency", in_hertz ? peak->at : b->frequency[p]);
+  post_json_number(w->json, "parameter", in_hertz ? NAN : peak->at);
+  post_json_bool(w->json, "at_end", peak->edge);
+  post_json_text(w->json, "stability", verdict_name(b, p));
+  post_json_number(w->json, "bandwidth", in_hertz ? peak->bandwidth : NAN);
+  post_json_number(w->json, "damping", in_hertz ? peak->damping : NAN);
+  post_json_number(w->json, "dissipation", post_dissipation(r, b, p));
+  post_json_number(w->json, "sticking", post_state(r, b, p, 0));
+  post_json_number(w->json, "slipping", post_state(r, b, p, 1));
+  post_json_number(w->json, "open", post_state(r, b, p, 2));
+  post_json_number(w->json, "error", post_error(b, p));
+  put_lasting(w, b, p);
+  SHB_TRY(post_stress_put(w->stress, b, p, w->json));
+  post_json_integer(w->json, "branch", branch);
+  post_json_integer(w->json, "point", p);
+  post_json_end(w->json);
+  return SHB_OK;
+}
+
+/* Highest peak of the branches of a group; -1 if they hold no point. */
+static int highest(const post_analysis *analysis, int group, const post_peak **peak) {
+  int best = -1;
+  *peak    = NULL;
+  for (int b = 0; b < analysis->response->n_branches; b++) {
+    const post_curve *c = &analysis->curve[b];
+    int               i = c->group == group ? post_highest_peak(c->n_peaks, c->peak) : -1;
+    if (i < 0 || (*peak && c->peak[i].amplitude <= (*peak)->amplitude)) continue;
+    *peak = &c->peak[i];
+    best  = b;
+  }
+  return best;
+}
+
+static shb_status put_curve(const work *w, int group) {
+  const post_analysis *analysis = w->analysis;
+  const post_group    *g        = &analysis->group[group];
+  const post_peak     *peak;
+  int                  branch = highest(analysis, group, &peak), folds = 0, points = 0;
+  bool                 complete = true;
+  const char          *reason   = NULL;
+  for (int b = 0; b < analysis->response->n_branches; b++) {
+    const mhb_branch *one = &analysis->response->branch[b];
+    if (analysis->curve[b].group != group) continue;
+    folds += analysis->curve[b].n_folds;
+    points += one->n_points;
+    if (complete && !one->complete) reason = one->reason;
+    complete = complete && one->complete;
+  }
+  post_json_object(w->json, NULL);
+  post_json_text(w->json, "kind", kind_name(g->kind));
+  post_json_number(w->json, "n0", g->n0);
+  post_json_bool(w->json, "complete", complete);
+  post_json_text(w->json, "reason", reason);
+  if (branch >= 0)
+    SHB_TRY(put_peak(w, branch, peak));
+  else
+    post_json_null(w->json, "peak");
+  post_json_integer(w->json, "folds", folds);
+  post_json_integer(w->json, "points", points);
+  post_json_end(w->json);
+  return SHB_OK;
+}
+
+/* ---- the best preload ---- */
+
+static void put_tracked(const work *w, const mhb_optimum *o) {
+  post_json_object(w->json, "optimum");
+  post_json_number(w->json, "parameter", o->value);
+  post_json_number(w->json, "error", o->error);
+  post_json_number(w->json, "amplitude", o->amplitude);
+  post_json_number(w->json, "frequency", o->frequency[0]);
+  post_json_bool(w->json, "verified", o->verified);
+  post_json_end(w->json);
+}
+
+static void put_optimum(const work *w) {
+  const post_tracking *t = &w->analysis->tracking;
+  if (w->analysis->response->optimum.kind != MHB_OPTIMUM_NONE) {
+    put_tracked(w, &w->analysis->response->optimum);
+    return;
+  }
+  if (t->best < 0) {
+    post_json_null(w->json, "optimum");
+    return;
+  }
+  const post_track_point *best = &t->point[t->best];
+  post_json_object(w->json, "optimum");
+  post_json_number(w->json, "n0", best->n0);
+  post_json_number(w->json, "amplitude", best->amplitude);
+  post_json_number(w->json, "frequency", best->at);
+  post_json_numbers(w->json, "bracket", 2, t->bracket);
+  post_json_number(w->json, "vertex_n0", t->optimum_n0);
+  post_json_number(w->json, "vertex_amplitude", t->optimum_amplitude);
+  post_json_end(w->json);
+}
+
+shb_status post_response_put(const post_analysis *analysis, const post_stress_source *stress,
+                             post_json *json) {
+  const mhb_response *r = analysis->response;
+  const work          w = {analysis, stress, json};
+  char                place[128];
+  bool                complete = true;
+  for (int b = 0; b < r->n_branches; b++) complete = complete && r->branch[b].complete;
+  post_place_name(r, analysis->primary, place);
+  post_json_bool(json, "finished", !r->unfinished);
+  post_json_bool(json, "complete", complete);
+  post_json_integer(json, "engine_order", r->engine_order);
+  post_json_integer(json, "blades", r->blades);
+  post_json_text(json, "output", place);
+  post_json_text(json, "parameter", mhb_parameter_name(r->parameter));
+  post_json_list(json, "curves");
+  for (int g = 0; g < analysis->n_groups; g++) SHB_TRY(put_curve(&w, g));
+  post_json_end(json);
+  put_optimum(&w);
+  return SHB_OK;
+}

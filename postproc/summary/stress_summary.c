@@ -1,0 +1,54 @@
+#include "postproc/summary/stress_summary.h"
+
+#include <stdlib.h>
+
+#include "postproc/field/peak_stress.h"
+
+/* Place of a kept point at a peak: the point itself, or the peak beside it. -1: none. */
+static int kept_at(const mhb_branch *b, int point) {
+  int beside = -1;
+  for (int a = 0; a < b->modal.n; a++) {
+    int p = b->modal.point[a];
+    if (p == point) return a;
+    if (abs(p - point) == 1 && b->special[p] == MHB_PEAK) beside = a;
+  }
+  return beside;
+}
+
+static void put_place(const post_blade_field *field, const post_place *place, post_json *json) {
+  post_json_object(json, "stress");
+  post_json_number(json, "amplitude", place->amplitude);
+  post_json_number(json, "principal", place->principal);
+  post_json_number(json, "mean", place->mean);
+  post_json_number(json, "safety", place->safety);
+  post_json_numbers(json, "at", 3, field->nodes + 3 * (size_t)place->node);
+  post_json_integer(json, "node", place->node);
+  post_json_end(json);
+}
+
+shb_status post_stress_put(const post_stress_source *source, const mhb_branch *branch, int point,
+                           post_json *json) {
+  const post_blade_field *field   = source->field;
+  const post_fatigue      fatigue = {source->endurance, source->ultimate};
+  const int               kept    = field->n_nodes > 0 ? kept_at(branch, point) : -1;
+  post_place              place[POST_PLACES];
+  int                     n = 0;
+  if (kept < 0) {
+    post_json_null(json, "stress");
+    return SHB_OK;
+  }
+  const size_t rows   = 2 * ((size_t)branch->n_harmonics + 1);
+  double      *stress = malloc(rows * POST_STRESSES * (size_t)field->n_nodes * sizeof *stress + 1);
+  SHB_CHECK(stress, SHB_ERR_IO, "out of memory for the stress of %d nodes", field->n_nodes);
+  shb_status status = post_blade_stress(field, branch, kept, stress);
+  if (status == SHB_OK)
+    status = post_peak_stress(field, post_blade_harmonics(branch, field->n_modes, kept), stress,
+                              &fatigue, place, &n);
+  free(stress);
+  SHB_TRY(status);
+  if (n > 0)
+    put_place(field, &place[0], json);
+  else
+    post_json_null(json, "stress");
+  return SHB_OK;
+}
