@@ -112,9 +112,7 @@ int command_parse(int argc, char **argv, const char *usage, command_options *out
     } else if (options && strcmp(word, "--version") == 0) {
       printf("shroudhb %s\n", shb_revision());
       return command_finish(SHB_OK);
-    } else if (options && set_flag(word, out)) {
-      continue;
-    } else if (options && set_own_flag(word, usage, out)) {
+    } else if (options && (set_flag(word, out) || set_own_flag(word, usage, out))) {
       continue;
     } else if (options && strcmp(word, "--svg") == 0 && mentions(usage, word)) {
       if (i + 1 == argc || argv[i + 1][0] == '-' || argv[i + 1][0] == '\0')

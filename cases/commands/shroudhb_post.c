@@ -139,7 +139,7 @@ static shb_status publish_stress(const case_file *file, const char *modal, const
   return status;
 }
 
-/* The summary of the case: with a response, that of its curves; of its modes, if they are current. */
+/* The summary of the case: of its curves with a response, and of its modes if they are current. */
 static shb_status summarise(const case_file *file, const char *response, const char *modal,
                             post_buffer *out) {
   const post_summary_job job = {.name      = file->name,

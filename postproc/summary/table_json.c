@@ -22,15 +22,17 @@ static const char *take_field(const char *at, post_buffer *word) {
   return at;
 }
 
-static void put_field(const char *word, bool head, post_buffer *out) {
+static bool is_number(const char *word) {
   char  *end   = NULL;
   double value = strtod(word, &end);
-  bool   plain = *word && strspn(word, "+-0123456789.eE") == strlen(word);
-  if (head)
-    post_put_json(out, word);
-  else if (!*word || strcmp(word, "nan") == 0)
+  bool   plain = strspn(word, "-0123456789.eE+") == strlen(word);
+  return plain && *end == '\0' && isfinite(value) && word[0] != '+' && word[0] != '.';
+}
+
+static void put_field(const char *word, bool head, post_buffer *out) {
+  if (!head && (!*word || strcmp(word, "nan") == 0))
     post_put(out, "null");
-  else if (plain && *end == '\0' && isfinite(value) && word[0] != '+' && word[0] != '.')
+  else if (!head && is_number(word))
     post_put(out, "%s", word);
   else
     post_put_json(out, word);

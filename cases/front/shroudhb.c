@@ -9,9 +9,9 @@
 #include <unistd.h>
 
 #include "cases/commands/command.h"
-#include "cases/commands/json_command.h"
-#include "cases/commands/run.h"
 #include "cases/commands/subprocess.h"
+#include "cases/front/json_command.h"
+#include "cases/front/run.h"
 #include "cases/parse/key_listing.h"
 #include "cases/parse/keys.h"
 #include "cases/parse/yaml.h"

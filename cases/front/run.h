@@ -1,6 +1,6 @@
 /* "shroudhb run": all stages of a case in turn. */
-#ifndef CASES_COMMANDS_RUN_H
-#define CASES_COMMANDS_RUN_H
+#ifndef CASES_FRONT_RUN_H
+#define CASES_FRONT_RUN_H
 
 #include <stdio.h>
 

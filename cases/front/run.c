@@ -1,4 +1,4 @@
-#include "cases/commands/run.h"
+#include "cases/front/run.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "cases/commands/json_command.h"
+#include "cases/front/json_command.h"
 
 #include <stdio.h>
 #include <stdlib.h>
