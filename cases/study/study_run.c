@@ -5,7 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cases/plan/design_statistics.h"
 #include "cases/study/design_message.h"
+#include "cases/study/study_summary.h"
 #include "postproc/draw/text_buffer.h"
 #include "postproc/study/study_csv.h"
 #include "postproc/study/study_file.h"
@@ -246,6 +248,14 @@ static int count_work(const running *r) {
   return n;
 }
 
+static shb_status put_statistics(running *r) {
+  const study_spec    *spec    = r->spec;
+  const design_samples samples = {
+      spec->keys.n - spec->keys.n_uncertain, study_plan_group(&spec->plan, &spec->keys),
+      study_plan_has_blocks(&spec->plan, &spec->keys), spec->plan.sample_seed};
+  return spec->keys.n_uncertain > 0 ? design_statistics(&samples, r->study) : SHB_OK;
+}
+
 static shb_status run_all(running *r, bool force, design_process *process) {
   SHB_TRY(find_twins(r));
   if (!force) SHB_TRY(take_all_known(r));
@@ -257,6 +267,7 @@ static shb_status run_all(running *r, bool force, design_process *process) {
   SHB_TRY(crew_manage(&work, process));
   SHB_TRY(copy_twins(r));
   shb_progress_clear(r->progress);
+  if (!shb_interrupted()) SHB_TRY(put_statistics(r));
   SHB_TRY(publish(r, !shb_interrupted()));
   return study_publish(r->study, r->path); /* the page */
 }
@@ -312,6 +323,7 @@ void study_run_summary(const study_spec *spec, const design_study *s, FILE *out)
             s->design[low].value[i], s->design[high].value[i],
             strcmp(s->output[i].unit, "-") == 0 ? "" : s->output[i].unit, low + 1, high + 1);
   }
+  study_summary_statistics(s, out);
   fprintf(out, "table     %s\nstudy     %s\n", csv ? csv : "", h5 ? h5 : "");
   free(h5);
   free(csv);

@@ -51,6 +51,15 @@ static void free_uncertainty(study_uncertainty *u) {
   for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
 }
 
+static void free_robust(study_robust *r) {
+  double *all[] = {r->level,          r->key,        r->mean,
+                   r->deviation,      r->percentile, r->percentile_low,
+                   r->percentile_high};
+  for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
+  free(r->n_samples);
+  free(r->n_failed);
+}
+
 void design_study_free(design_study *s) {
   free(s->name);
   free(s->text);
@@ -64,6 +73,7 @@ void design_study_free(design_study *s) {
   free(s->design);
   free_optimum(&s->optimum);
   free_uncertainty(&s->uncertainty);
+  free_robust(&s->robust);
   *s = (design_study){0};
 }
 
@@ -120,6 +130,25 @@ shb_status design_study_take_uncertainty(design_study *s, int n_percentiles, boo
   for (size_t i = 0; i < 3; i++) good = (*per[i] = unknowns(wide)) && good;
   for (size_t i = 0; i < 6; i++) good = (*six[i] = unknowns(index)) && good;
   SHB_CHECK(good, SHB_ERR_IO, "no memory for the statistics of %d outputs", s->n_outputs);
+  return SHB_OK;
+}
+
+shb_status design_study_take_robust(design_study *s, int n_groups, int n_varied,
+                                    int n_percentiles) {
+  study_robust *r = &s->robust;
+  free_robust(r);
+  *r = (study_robust){.n_groups = n_groups, .n_varied = n_varied, .n_percentiles = n_percentiles};
+  size_t   n      = (size_t)n_groups * (size_t)s->n_outputs;
+  double **flat[] = {&r->mean, &r->deviation};
+  double **per[]  = {&r->percentile, &r->percentile_low, &r->percentile_high};
+  bool     good   = (r->level = unknowns((size_t)n_percentiles)) != NULL;
+  good            = (r->key = unknowns((size_t)n_groups * (size_t)n_varied)) && good;
+  for (size_t i = 0; i < 2; i++) good = (*flat[i] = unknowns(n)) && good;
+  for (size_t i = 0; i < 3; i++) good = (*per[i] = unknowns(n * (size_t)n_percentiles)) && good;
+  r->n_samples = calloc((size_t)n_groups + 1, sizeof *r->n_samples);
+  r->n_failed  = calloc((size_t)n_groups + 1, sizeof *r->n_failed);
+  SHB_CHECK(good && r->n_samples && r->n_failed, SHB_ERR_IO,
+            "no memory for the statistics of %d designs", n_groups);
   return SHB_OK;
 }
 

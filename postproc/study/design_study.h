@@ -68,6 +68,19 @@ typedef struct {
   double *total, *total_low, *total_high; /* the same, total */
 } study_uncertainty;
 
+/* Statistics over the samples of uncertain keys at each design of varied keys, a group; all empty
+ * without both. */
+typedef struct {
+  int     n_groups, n_varied; /* the varied keys are the first keys of the study */
+  int     n_percentiles;
+  int    *n_samples, *n_failed;                          /* [n_groups] */
+  double *level;                                         /* [n_percentiles] in percent */
+  double *key;                                           /* [n_groups][n_varied] */
+  double *mean, *deviation;                              /* [n_groups][n_outputs] */
+  double *percentile, *percentile_low, *percentile_high; /* [n_groups][n_outputs][n_percentiles] */
+  double  confidence;                                    /* of the intervals */
+} study_robust;
+
 typedef struct {
   char             *name, *text, *case_text; /* text of the study file and of its case */
   char             *path, *case_path;        /* as given */
@@ -79,6 +92,7 @@ typedef struct {
   study_design     *design; /* [n] */
   study_optimum     optimum;
   study_uncertainty uncertainty;
+  study_robust      robust;
 } design_study;
 
 /* Set up a study without designs; all columns are empty. Free it in any case. Errors: SHB_ERR_IO
@@ -94,6 +108,8 @@ study_design *design_study_add(design_study *study, const double *key);
  * Errors: SHB_ERR_IO no memory. */
 shb_status design_study_take_optimum(design_study *study, int n_history);
 shb_status design_study_take_uncertainty(design_study *study, int n_percentiles, bool sobol);
+shb_status design_study_take_robust(design_study *study, int n_groups, int n_varied,
+                                    int n_percentiles);
 
 /* Replace the reason of a design. */
 void study_design_set_reason(study_design *design, const char *text);

@@ -7,8 +7,8 @@
   } = Plot;
   const D = JSON.parse($("data").textContent);
   const WAITING = 0, DONE = 1, FAILED = 2, STATES = ["not run", "done", "failed", "not converged"];
-  const CHARTS = [], U = D.uncertainty;
-  const best = U ? -1 : D.best; /* the lowest sample of uncertain keys is no choice */
+  const CHARTS = [], U = D.uncertainty, R = D.robust;
+  const best = U || R ? -1 : D.best; /* the lowest sample of uncertain keys is no choice */
 
   /* ---------------------------------------------------------------- columns */
   /* The shortest end of a key that tells it from the others; indices keep their list. */
@@ -832,7 +832,7 @@
   /* Design shown before one is chosen: the lowest, or the median of uncertain keys. */
   function reference() {
     const o = outputs[D.objective];
-    if (!U || !o) return best;
+    if (!(U || R) || !o) return best;
     const list = ids.filter(i => Number.isFinite(o.list[i])).sort((a, b) => o.list[a] - o.list[b]);
     return list.length ? list[list.length >> 1] : -1;
   }
@@ -969,6 +969,86 @@
             percentileTable());
     CHARTS.push(drawSpread);
     if (sobol) CHARTS.push(drawSobol);
+  }
+
+  /* ---------------------------------------------------------------- robust designs */
+  const robustAt = (g, o) => R.percentile[g * D.outputs.length + o.index];
+  /* Groups in the order of the chosen varied key. */
+  const groups = k => R.key.map((v, g) => g).sort((a, b) => R.key[a][k] - R.key[b][k]);
+  const varied = R ? R.key[0].map((v, k) => k).filter(k => keys[k].many) : [];
+  function drawRobust() {
+    const id = "robust-chart", o = state.output, height = 380, k = state.robust, c = keys[k];
+    const ends = R.key.flatMap((v, g) => robustAt(g, o).flat()).filter(v => v !== null);
+    const y = ends.length ? around(...extent(ends), o.log) : {lo: 0, hi: 1, log: false};
+    const p = new Panel(
+        id, {left: 60, top: 34, width: widthOf(id) - 90, height: height - 84},
+        axis(rangeOf(c), c.scale, c.label), axis(y, o.scale, o.label));
+    let svg = "";
+    R.level.forEach((level, q) => {
+      const shown = groups(k).filter(g => robustAt(g, o)[q][0] !== null);
+      if (varied.length === 1)
+        p.line("line whole", shown.map(g => R.key[g][k]), shown.map(g => robustAt(g, o)[q][0]));
+      for (const g of shown) {
+        const [v, lo, hi] = robustAt(g, o)[q], x = p.x(R.key[g][k]);
+        if (lo !== null && hi !== null)
+          svg += `<path class="whisker" d="M${x} ${p.y(lo)}V${p.y(hi)}M${x - 4} ${p.y(lo)}h8M${
+              x - 4} ${p.y(hi)}h8"/>`;
+        p.dot("dot varying", R.key[g][k], v, 4);
+      }
+      const last = shown[shown.length - 1];
+      if (last !== undefined)
+        p.text(
+            "mark", R.key[last][k], robustAt(last, o)[q][0], 8, 4, "start",
+            `${number(level, 3, false)} %`);
+    });
+    show(id, height, [p], svg);
+    $("robust-table").innerHTML = robustTable();
+  }
+  function robustTable() {
+    const o = state.output;
+    const cell = e => e[0] === null ? "–" :
+                                      escape(o.text(e[0])) +
+            (e[1] === null && e[2] === null ? "" :
+                                              `<br><span class="note">${
+                                                  e[1] === null ? "–" : escape(o.text(e[1], 3))} to ${
+                                                  e[2] === null ? "–" : escape(o.text(e[2], 3))}</span>`);
+    const text = v => v === null ? "–" : escape(o.text(v, 4));
+    return `<caption>${escape(o.name)} at each design of the varied keys. Second lines: intervals
+        at ${number(100 * R.confidence, 3, false)} % confidence.</caption><thead><tr>${
+        R.key[0].map((v, k) => `<th>${escape(keys[k].label)}</th>`).join("")}<th>Samples</th>
+        <th>Mean</th><th>Deviation</th>${
+        R.level.map(l => `<th>${number(l, 3, false)} %</th>`).join("")}</tr></thead><tbody>${
+        groups(state.robust)
+            .map(
+                g => `<tr>${
+                    R.key[g].map((v, k) => `<td>${number(v / keys[k].scale, 5, false)}</td>`)
+                        .join("")}<td>${R.samples[g]}${
+                    R.failed[g] ? ` (${R.failed[g]} failed)` : ""}</td><td>${
+                    text(R.mean[g][o.index])}</td><td>${text(R.deviation[g][o.index])}</td>${
+                    robustAt(g, o).map(e => `<td>${cell(e)}</td>`).join("")}</tr>`)
+            .join("")}</tbody>`;
+  }
+  function buildRobust() {
+    if (!R || !known.length) return;
+    state.robust = varied.length ? varied[0] : 0;
+    section(
+        "robust", "Robust design",
+        `At each design of the varied keys: percentiles over the samples of the uncertain ones, ` +
+            `with intervals at ${number(100 * R.confidence, 3, false)} % confidence.`,
+        card(
+            (varied.length > 1 ? `<div class="tools">${
+                                     select(
+                                         "robust-key", "Over", varied.map(k => [k, keys[k].short]),
+                                         state.robust)}</div>` :
+                                 "") +
+            plot("robust-chart", "Percentiles over a varied key")) +
+            `<div class="scroll"><table id="robust-table"></table></div>`);
+    if ($("robust-key"))
+      $("robust-key").onchange = e => {
+        state.robust = +e.target.value;
+        drawRobust();
+      };
+    CHARTS.push(drawRobust);
   }
 
   /* ---------------------------------------------------------------- table */
@@ -1126,6 +1206,7 @@
     buildPanel();
     buildHistory();
     buildUncertainty();
+    buildRobust();
     buildEffects();
     buildCurves();
     buildMap();

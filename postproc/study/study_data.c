@@ -172,6 +172,39 @@ static void put_uncertainty(const design_study *s, post_buffer *out) {
   post_put(out, "}");
 }
 
+static void put_rows(const char *name, const double *list, int rows, int columns,
+                     post_buffer *out) {
+  post_put(out, ",\"%s\":[", name);
+  for (int r = 0; r < rows; r++) {
+    post_put(out, r ? "," : "");
+    put_list(list + r * columns, columns, out);
+  }
+  post_put(out, "]");
+}
+
+static void put_counts(const char *name, const int *list, int n, post_buffer *out) {
+  post_put(out, ",\"%s\":[", name);
+  for (int i = 0; i < n; i++) post_put(out, "%s%d", i ? "," : "", list[i]);
+  post_put(out, "]");
+}
+
+static void put_robust(const design_study *s, post_buffer *out) {
+  const study_robust *r = &s->robust;
+  int                 n = r->n_groups, m = s->n_outputs, q = r->n_percentiles;
+  if (n < 1) return;
+  post_put(out, ",\"robust\":{\"confidence\":");
+  put_number(r->confidence, 4, out);
+  put_rows("key", r->key, n, r->n_varied, out);
+  put_counts("samples", r->n_samples, n, out);
+  put_counts("failed", r->n_failed, n, out);
+  post_put(out, ",\"level\":");
+  put_list(r->level, q, out);
+  put_rows("mean", r->mean, n, m, out);
+  put_rows("deviation", r->deviation, n, m, out);
+  put_intervals("percentile", r->percentile, r->percentile_low, r->percentile_high, n * m, q, out);
+  post_put(out, "}");
+}
+
 static void put_colours(post_buffer *out) {
   post_put(out, ",\"ramp\":{");
   for (int dark = 0; dark < 2; dark++) {
@@ -361,6 +394,7 @@ shb_status study_data(const design_study *s, post_buffer *out, double *tolerance
   put_effects(s, out);
   put_optimum(s, out);
   put_uncertainty(s, out);
+  put_robust(s, out);
   put_colours(out);
   SHB_TRY(put_curves(s, out, tolerance));
   post_put(out, "}");

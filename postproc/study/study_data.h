@@ -12,6 +12,8 @@
  *   optimum  {method, history, bound}; uncertainty {samples, failed, confidence, level, mean,
  *            deviation, percentile, first, total}; percentile, first and total are lists of [value,
  *            low, high]
+ *   robust   {key [group][k], samples, failed [group], confidence, level, mean, deviation 
+ *            [group][output], percentile [group * outputs + output][level] of [value, low, high]}
  *   ramp     {light, dark}: colours from low to high
  *
  * Designs are counted from 0. */

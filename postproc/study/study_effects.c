@@ -96,11 +96,42 @@ int study_objective(const design_study *s) {
 int study_best(const design_study *s) {
   int best = -1, objective = study_objective(s);
   if (s->optimum.n_history > 0) return s->optimum.best;
+  if (s->robust.n_groups > 0) return -1;
   for (int i = 0; i < s->n; i++) {
     double value = study_done_value(&s->design[i], objective);
     if (isfinite(value) && (best < 0 || value < s->design[best].value[objective])) best = i;
   }
   return best;
+}
+
+static int at_group(const design_study *s, int group, int level) {
+  return (group * s->n_outputs + study_objective(s)) * s->robust.n_percentiles + level;
+}
+
+int study_best_group(const design_study *s, int *level) {
+  const study_robust *r    = &s->robust;
+  int                 best = -1;
+  *level                   = -1;
+  for (int q = 0; q < r->n_percentiles; q++)
+    if (*level < 0 || r->level[q] > r->level[*level]) *level = q;
+  if (*level < 0 || study_objective(s) < 0) return -1;
+  for (int g = 0; g < r->n_groups; g++) {
+    double value = r->percentile[at_group(s, g, *level)];
+    if (isfinite(value) && (best < 0 || value < r->percentile[at_group(s, best, *level)])) best = g;
+  }
+  return best;
+}
+
+int study_count_equal_groups(const design_study *s, int best, int level) {
+  const study_robust *r = &s->robust;
+  int                 n = 0;
+  if (best < 0) return 0;
+  double high = r->percentile_high[at_group(s, best, level)];
+  for (int g = 0; g < r->n_groups; g++) {
+    double low = r->percentile_low[at_group(s, g, level)];
+    n += g != best && isfinite(r->percentile[at_group(s, g, level)]) && !(low > high);
+  }
+  return n;
 }
 
 /* Error of an output; 0 if it is not known. */

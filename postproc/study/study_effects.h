@@ -29,8 +29,16 @@ study_effect study_main_effect(const design_study *study, int output, int key);
 int study_objective(const design_study *study);
 
 /* Design that is done with the lowest value of the objective, or the one an optimisation chose. -1:
- * none. */
+ * none, or a robust study, whose samples are no choice. */
 int study_best(const design_study *study);
+
+/* Of a robust study: the group with the least highest percentile of the objective; -1: none.
+ *
+ *   level  out  which percentile */
+int study_best_group(const design_study *study, int *level);
+
+/* Number of other groups whose interval of that percentile reaches down to it. */
+int study_count_equal_groups(const design_study *study, int best, int level);
 
 /* Number of other designs whose objective differs from the best by no more than both errors. */
 int study_count_equals(const design_study *study, int best);

@@ -222,6 +222,48 @@ static shb_status put_uncertainty(hid_t file, const design_study *s) {
   return h5_write_attribute_double(file, "/uncertainty", "confidence", u->confidence);
 }
 
+/* The arrays of a robust study. */
+typedef struct {
+  const char *path, *long_name;
+  size_t      at;
+  bool        per_output, per_level; /* or per varied key without both */
+} group_statistic;
+
+#define ROBUST(member) offsetof(study_robust, member)
+static const group_statistic group_statistics[] = {
+    {"/robust/key", "values of the varied keys of each group", ROBUST(key), false, false},
+    {"/robust/level", "levels of the percentiles, percent", ROBUST(level), false, true},
+    {"/robust/mean", "mean of each output", ROBUST(mean), true, false},
+    {"/robust/deviation", "standard deviation", ROBUST(deviation), true, false},
+    {"/robust/percentile", "percentiles", ROBUST(percentile), true, true},
+    {"/robust/percentile_low", "lower ends of their intervals", ROBUST(percentile_low), true, true},
+    {"/robust/percentile_high", "upper ends of their intervals", ROBUST(percentile_high), true,
+     true}};
+enum { N_GROUP_STATISTICS = sizeof group_statistics / sizeof *group_statistics };
+
+static h5_shape group_shape(const design_study *s, const group_statistic *one) {
+  hsize_t g = (hsize_t)s->robust.n_groups, m = (hsize_t)s->n_outputs,
+          q = (hsize_t)s->robust.n_percentiles;
+  if (one->per_output) return one->per_level ? H5_SHAPE(g, m, q) : H5_SHAPE(g, m);
+  return one->per_level ? H5_SHAPE(q) : H5_SHAPE(g, (hsize_t)s->robust.n_varied);
+}
+
+static shb_status put_robust(hid_t file, const design_study *s) {
+  const study_robust *r = &s->robust;
+  if (r->n_groups == 0) return SHB_OK;
+  for (int i = 0; i < N_GROUP_STATISTICS; i++) {
+    const group_statistic *one  = &group_statistics[i];
+    const double          *data = *(double *const *)((const char *)r + one->at);
+    SHB_TRY(put(file, one->path, group_shape(s, one), data, "SI; see the column's unit",
+                one->long_name));
+  }
+  h5_shape groups = H5_SHAPE((hsize_t)r->n_groups);
+  SHB_TRY(
+      h5_write_int(file, "/robust/samples", groups, r->n_samples, "-", "samples of each group"));
+  SHB_TRY(h5_write_int(file, "/robust/failed", groups, r->n_failed, "-", "samples left out"));
+  return h5_write_attribute_double(file, "/robust", "confidence", r->confidence);
+}
+
 static const char *text_of(const char *text) {
   return text ? text : "";
 }
@@ -258,7 +300,8 @@ static shb_status put_all(hid_t file, const void *context) {
                      offsetof(study_design, derivative), "d peak / d parameter"));
   SHB_TRY(put_curves(file, s));
   SHB_TRY(put_optimum(file, s));
-  return put_uncertainty(file, s);
+  SHB_TRY(put_uncertainty(file, s));
+  return put_robust(file, s);
 }
 
 shb_status study_file_write(const design_study *s, const char *path) {
@@ -488,6 +531,38 @@ static shb_status get_uncertainty(hid_t file, design_study *s) {
   return h5_read_attribute_double(file, "/uncertainty", "confidence", NAN, &u->confidence);
 }
 
+static shb_status get_group_counts(hid_t file, const char *path, const design_study *s, int *out) {
+  h5_shape groups = H5_SHAPE((hsize_t)s->robust.n_groups);
+  int     *found  = NULL;
+  SHB_TRY(h5_read_int(file, path, &groups, &found));
+  memcpy(out, found, (size_t)s->robust.n_groups * sizeof *out);
+  free(found);
+  return SHB_OK;
+}
+
+static shb_status get_robust(hid_t file, design_study *s) {
+  h5_shape keys = {0}, levels = {0};
+  if (!h5_exists(file, "/robust")) return SHB_OK;
+  SHB_TRY(h5_shape_of(file, "/robust/key", &keys));
+  SHB_TRY(h5_shape_of(file, "/robust/level", &levels));
+  bool fits = keys.rank == 2 && keys.dim[0] <= (hsize_t)s->n && keys.dim[0] > 0 &&
+              keys.dim[1] > 0 && keys.dim[1] <= (hsize_t)s->n_keys && levels.rank == 1 &&
+              levels.dim[0] <= MOST_COLUMNS;
+  SHB_CHECK(fits, SHB_ERR_INPUT, "/robust does not fit to the designs");
+  SHB_TRY(design_study_take_robust(s, (int)keys.dim[0], (int)keys.dim[1], (int)levels.dim[0]));
+  for (int i = 0; i < N_GROUP_STATISTICS; i++) {
+    const group_statistic *one   = &group_statistics[i];
+    double                *found = NULL, *data = *(double **)((char *)&s->robust + one->at);
+    h5_shape               shape = group_shape(s, one);
+    SHB_TRY(h5_read_double(file, one->path, &shape, &found));
+    for (size_t k = 0; k < h5_count(shape); k++) data[k] = decoded(found[k]);
+    free(found);
+  }
+  SHB_TRY(get_group_counts(file, "/robust/samples", s, s->robust.n_samples));
+  SHB_TRY(get_group_counts(file, "/robust/failed", s, s->robust.n_failed));
+  return h5_read_attribute_double(file, "/robust", "confidence", NAN, &s->robust.confidence);
+}
+
 static shb_status get_origin(hid_t file, design_study *s) {
   int finished = 0;
   SHB_TRY(h5_read_attribute_text(file, "/", "name", &s->name));
@@ -522,7 +597,8 @@ static shb_status get_all(hid_t file, design_study *s) {
       get_matrix(file, "/derivative/value", s, n_derivatives, offsetof(study_design, derivative)));
   SHB_TRY(get_curves(file, s));
   SHB_TRY(get_optimum(file, s));
-  return get_uncertainty(file, s);
+  SHB_TRY(get_uncertainty(file, s));
+  return get_robust(file, s);
 }
 
 shb_status study_file_read(const char *path, design_study *s) {

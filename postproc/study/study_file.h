@@ -13,6 +13,9 @@
  *   /uncertainty      attributes samples, failed, confidence; level [q], mean [m], deviation [m],
  *                     percentile, percentile_low, percentile_high [m,q]; sobol_first, sobol_total
  *                     and their _low, _high [m,k]; only with uncertain keys
+ *   /robust           attributes confidence; key [g,v], samples, failed [g]; level [q], mean,
+ *                     deviation [g,m], percentile, percentile_low, percentile_high [g,m,q]: at each
+ *                     design of the first v keys, over the samples of the others; only with both
  *
  * Our HDF5 files hold finite numbers only: an unknown number is STUDY_UNKNOWN. Designs are counted
  * from 0 here, and from 1 for users (NAME.study.csv, --design). */

@@ -44,9 +44,40 @@ static bool is_uncertain(const design_study *s, int objective) {
   return s->uncertainty.n_samples > 0 && objective >= 0 && isfinite(s->uncertainty.mean[objective]);
 }
 
+/* "contact.n0 = 47.4 N" of a group */
+static void put_group_place(const design_study *s, int group, put_text put, post_buffer *out) {
+  const study_robust *r = &s->robust;
+  for (int k = 0; k < r->n_varied; k++) {
+    post_put(out, k ? ", " : "");
+    put(out, s->key[k].name);
+    post_put(out, "\u00a0=\u00a0");
+    put_measure(r->key[group * r->n_varied + k], study_key_unit(s, k), 4, out);
+  }
+}
+
+static int objective_at(const design_study *s, int group, int level) {
+  return (group * s->n_outputs + study_objective(s)) * s->robust.n_percentiles + level;
+}
+
+/* The varied keys at which the highest percentile is least. */
+static void put_robust_answer(const design_study *s, int group, int level, put_text put,
+                              post_buffer *out) {
+  const study_robust *r = &s->robust;
+  post_put(out, "%g\u00a0%% of the samples of ", r->level[level]);
+  put(out, s->output[study_objective(s)].name);
+  post_put(out, " stay below ");
+  put_output(s, study_objective(s), r->percentile[objective_at(s, group, level)], out);
+  post_put(out, " at ");
+  put_group_place(s, group, put, out);
+  post_put(out, r->n_groups > 1 ? ", the least of %d" : "", r->n_groups);
+}
+
 static void put_answer(const design_study *s, put_text put, post_buffer *out) {
-  int objective = study_objective(s), best = study_best(s);
-  if (is_uncertain(s, objective)) {
+  int objective = study_objective(s), best = study_best(s), level;
+  int group = study_best_group(s, &level);
+  if (group >= 0) {
+    put_robust_answer(s, group, level, put, out);
+  } else if (is_uncertain(s, objective)) {
     const study_uncertainty *u = &s->uncertainty;
     int                      q = last_percentile(u), i = objective * u->n_percentiles + q;
     post_put(out, "On average ");
@@ -156,19 +187,45 @@ static void put_best_figures(const design_study *s, int objective, int best, pos
   close_figure(out);
 }
 
+static void put_robust_figures(const design_study *s, int group, int level, post_buffer *out) {
+  const study_robust *r = &s->robust;
+  int                 i = objective_at(s, group, level);
+  post_put(out, "<div class=\"figure\"><dt>%g %% stay below</dt><dd><b>", r->level[level]);
+  put_output(s, study_objective(s), r->percentile[i], out);
+  between(out);
+  if (isfinite(r->percentile_low[i]) && isfinite(r->percentile_high[i])) {
+    put_output(s, study_objective(s), r->percentile_low[i], out);
+    post_put(out, " to ");
+    put_output(s, study_objective(s), r->percentile_high[i], out);
+    post_put(out, " at %g\u00a0%% confidence", 100 * r->confidence);
+  } else {
+    post_put(out, "%d samples are too few for an interval", r->n_samples[group]);
+  }
+  close_figure(out);
+  for (int k = 0; k < r->n_varied && k < 2; k++) {
+    open_figure("at ", s->key[k].name, out);
+    put_measure(r->key[group * r->n_varied + k], study_key_unit(s, k), 4, out);
+    between(out);
+    close_figure(out);
+  }
+}
+
 void study_key_figures(const design_study *s, post_buffer *out) {
-  int    objective = study_objective(s), best = study_best(s);
+  int    objective = study_objective(s), best = study_best(s), level;
+  int    group     = study_best_group(s, &level);
   bool   uncertain = is_uncertain(s, objective);
   double share;
   int    chief = study_chief_key(s, &share);
   char   ratio[POST_NUMBER];
-  if (objective < 0 || (best < 0 && !uncertain)) return;
+  if (objective < 0 || (best < 0 && !uncertain && group < 0)) return;
   post_put(out, "<dl class=\"figures\">\n");
-  if (uncertain)
+  if (group >= 0)
+    put_robust_figures(s, group, level, out);
+  else if (uncertain)
     put_uncertain_figures(s, objective, out);
   else
     put_best_figures(s, objective, best, out);
-  if (chief >= 0) {
+  if (chief >= 0 && group < 0) {
     post_put(out, "<div class=\"figure\"><dt>Matters most</dt><dd><b class=\"words\">");
     post_put_escaped(out, s->key[chief].name);
     between(out);
@@ -306,6 +363,27 @@ static void put_spread(const design_study *s, int objective, post_buffer *out) {
   close_item(out);
 }
 
+static void put_robust(const design_study *s, post_buffer *out) {
+  const study_robust *r = &s->robust;
+  int                 level, best = study_best_group(s, &level), failed = 0;
+  int                 equals = study_count_equal_groups(s, best, level);
+  for (int g = 0; g < r->n_groups; g++) failed += r->n_failed[g];
+  if (best < 0) return;
+  open_item(false, out);
+  post_put(out, "Percentiles of %d samples at each of %d designs of the varied keys",
+           r->n_samples[best] + r->n_failed[best], r->n_groups);
+  if (failed > 0) post_put(out, "; %d failed ones are left out", failed);
+  post_put(out, ".");
+  close_item(out);
+  if (equals < 1) return;
+  open_item(true, out);
+  post_put(out,
+           "The interval of the percentile at %d other design%s overlaps with that of the least: "
+           "more samples would tell them apart.",
+           equals, equals > 1 ? "s" : "");
+  close_item(out);
+}
+
 static const char *reason_of(const study_design *design) {
   return design->reason ? design->reason : "no reason was recorded";
 }
@@ -368,8 +446,9 @@ void study_findings(const design_study *s, post_buffer *out) {
   int objective = study_objective(s), best = study_best(s);
   post_put(out, "<ul class=\"findings\">\n");
   if (objective >= 0) {
+    put_robust(s, out);
     put_spread(s, objective, out);
-    put_shares(s, objective, out);
+    if (s->robust.n_groups == 0) put_shares(s, objective, out); /* else choice and chance mix */
   }
   bool chosen = is_uncertain(s, objective) || s->optimum.n_history > 0;
   if (!chosen) put_equals(s, best, out);

@@ -116,6 +116,66 @@ static void draw_distribution(const design_study *s, int objective, series *list
   draw_percentiles(s, objective, &plot);
 }
 
+/* ---------------------------------------------------------------- robust designs */
+
+/* The varied key with the most values; the others spread its dots. */
+static int widest_key(const design_study *s) {
+  const study_robust *r      = &s->robust;
+  int                 widest = 0, most = 0;
+  for (int k = 0; k < r->n_varied; k++) {
+    int levels = 0;
+    for (int g = 0; g < r->n_groups; g++) {
+      int first = 0;
+      while (r->key[first * r->n_varied + k] != r->key[g * r->n_varied + k]) first++;
+      levels += first == g;
+    }
+    if (levels > most) widest = k;
+    if (levels > most) most = levels;
+  }
+  return widest;
+}
+
+static void draw_robust_level(const design_study *s, int objective, int key, int q,
+                              const post_plot *plot, series *list) {
+  const study_robust *r = &s->robust;
+  list->n               = 0;
+  for (int g = 0; g < r->n_groups; g++) {
+    int i = (g * s->n_outputs + objective) * r->n_percentiles + q;
+    if (!isfinite(r->percentile[i])) continue;
+    list->x[list->n]   = r->key[g * r->n_varied + key];
+    list->y[list->n++] = r->percentile[i];
+    if (isfinite(r->percentile_low[i]) && isfinite(r->percentile_high[i]))
+      plot_line(plot, "range", 2, (double[]){list->x[list->n - 1], list->x[list->n - 1]},
+                (double[]){r->percentile_low[i], r->percentile_high[i]}, NULL);
+    plot_dot(plot, "best dot", list->x[list->n - 1], r->percentile[i], 4);
+  }
+  if (r->n_varied == 1) plot_line(plot, "line", list->n, list->x, list->y, NULL);
+  if (list->n == 0) return;
+  char text[32];
+  snprintf(text, sizeof text, "%g %%", r->level[q]);
+  plot_text(plot, "mark", list->x[list->n - 1], list->y[list->n - 1], (double[2]){0, -10}, "end",
+            text);
+}
+
+/* Percentiles with their intervals over a varied key. */
+static void draw_robust(const design_study *s, int objective, series *list, post_buffer *out) {
+  const study_robust *r   = &s->robust;
+  int                 key = widest_key(s);
+  for (int i = 0; i < r->n_groups * r->n_percentiles && list->n < s->n; i++) {
+    int g = i / r->n_percentiles, q = i % r->n_percentiles;
+    int at = (g * s->n_outputs + objective) * r->n_percentiles + q;
+    if (!isfinite(r->percentile[at])) continue;
+    list->x[list->n] = r->key[g * r->n_varied + key];
+    list->y[list->n++] =
+        isfinite(r->percentile_high[at]) ? r->percentile_high[at] : r->percentile[at];
+  }
+  post_unit unit = study_output_unit(s, objective), x_unit = study_key_unit(s, key);
+  label(list->x_label, "", s->key[key].name, x_unit);
+  label(list->y_label, "percentiles of ", s->output[objective].name, unit);
+  post_plot plot = open_plot(list, x_unit, unit, true, out);
+  for (int q = 0; q < r->n_percentiles; q++) draw_robust_level(s, objective, key, q, &plot, list);
+}
+
 /* ---------------------------------------------------------------- optimisation */
 
 static void draw_history(const design_study *s, int objective, series *list, post_buffer *out) {
@@ -204,7 +264,9 @@ shb_status study_picture(const design_study *s, post_buffer *out) {
     post_put(out, "@media screen and (prefers-color-scheme:dark){");
     post_put_ramp(RAMP, true, out);
     post_put(out, "}</style>\n");
-    if (s->uncertainty.n_samples > 0)
+    if (s->robust.n_groups > 0)
+      draw_robust(s, objective, &list, out);
+    else if (s->uncertainty.n_samples > 0)
       draw_distribution(s, objective, &list, out);
     else if (s->optimum.n_history > 0)
       draw_history(s, objective, &list, out);

@@ -1,6 +1,7 @@
 /* NAME.study.svg: the chief chart of a study.
  *
- * Uncertain keys: share of the samples below a value, with the percentiles and their intervals. An
+ * Uncertain keys: share of the samples below a value, with the percentiles and their intervals;
+ * beside varied keys: the percentiles over one of these. An
  * optimisation: each evaluation and the best so far. Else: the objective over the key that matters
  * most, coloured by a second key. */
 #ifndef POSTPROC_STUDY_STUDY_PICTURE_H

@@ -11,7 +11,7 @@ enum { POINTS = 160, LARGE = 2000, SAMPLES = 256, SEARCH = 60 };
 static const double NOMINAL[] = {100, 0.3, 5e-3, 0};
 
 const char *studies_name(studies_kind kind) {
-  static const char *const names[STUDIES_N] = {"grid",  "pair", "optimise", "uncertain",
+  static const char *const names[STUDIES_N] = {"grid",  "pair", "optimise", "uncertain", "robust",
                                                "large", "one",  "empty",    "failed"};
   return names[kind];
 }
@@ -190,6 +190,31 @@ static void make_statistics(design_study *s) {
   }
 }
 
+/* Five preloads, at each of them 40 samples of mu; the percentiles are set, not estimated. */
+static void make_robust(design_study *s) {
+  enum { GROUPS = 5, EACH = 40 };
+  for (int i = 0; i < GROUPS * EACH; i++)
+    add(s, (double[]){60. + 30 * (i / EACH), 0.2 + 0.005 * (i % EACH)});
+  assert_int_equal(design_study_take_robust(s, GROUPS, 1, 2), SHB_OK);
+  study_robust *r = &s->robust;
+  r->confidence   = 0.95;
+  r->level[0]     = 50;
+  r->level[1]     = 95;
+  for (int g = 0; g < GROUPS; g++) {
+    r->key[g]           = 60. + 30 * g;
+    r->n_samples[g]     = EACH - g;
+    r->n_failed[g]      = g;
+    r->mean[g * 3]      = studies_peak(r->key[g], 0.3, 5e-3);
+    r->deviation[g * 3] = 1e-6;
+    for (int q = 0; q < 2; q++) {
+      int i                = g * 6 + q;
+      r->percentile[i]     = (1 + 0.2 * q) * r->mean[g * 3];
+      r->percentile_low[i] = 0.95 * r->percentile[i];
+      if (q == 0) r->percentile_high[i] = 1.05 * r->percentile[i];
+    }
+  }
+}
+
 void studies_make(studies_kind kind, design_study *s) {
   switch (kind) {
     case STUDIES_GRID:
@@ -211,6 +236,10 @@ void studies_make(studies_kind kind, design_study *s) {
       start(kind, 2, "uncertain", s);
       make_scattered(s, SAMPLES, 0.3);
       make_statistics(s);
+      break;
+    case STUDIES_ROBUST:
+      start(kind, 2, "grid, 40 samples each", s);
+      make_robust(s);
       break;
     case STUDIES_LARGE:
       start(kind, 4, "sobol", s);

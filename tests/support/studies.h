@@ -9,6 +9,7 @@ typedef enum {
   STUDIES_PAIR,      /* 8 x 5 designs of two keys, all done */
   STUDIES_OPTIMISE,  /* 60 evaluations of n0 and mu, the best on both upper bounds */
   STUDIES_UNCERTAIN, /* 256 samples, percentiles and Sobol' indices */
+  STUDIES_ROBUST,    /* 5 preloads with 40 samples each */
   STUDIES_LARGE,     /* 2000 scattered designs of four keys with curves */
   STUDIES_ONE,       /* one design of one key */
   STUDIES_EMPTY,     /* no design */

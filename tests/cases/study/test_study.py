@@ -217,6 +217,77 @@ def check_sampled_plans():
     assert 'plan      latin_hypercube\n  designs   16\n' in said, said
 
 
+UNCERTAIN = """name: {name}
+case: case.yaml
+{vary}uncertain:
+  contact.n0: {n0}
+  contact.mu: {{truncated_normal: [0.3, 0.03, 0.2, 0.4]}}
+samples: {samples}
+outputs: [peak, frequency]
+"""
+
+
+def percentile_rank(values, value):
+    """Share of the values below."""
+    return sum(v < value for v in values) / len(values)
+
+
+def check_uncertain():
+    """Saltelli's plan; the statistics are those of the rows, failed ones left out."""
+    write('unc.yaml', UNCERTAIN.format(name='unc', vary='', n0='{uniform: [0.15 N, 0.45 N]}',
+                                       samples=16))
+    said = run(program('shroudhb'), 'check', 'unc.yaml')
+    assert 'designs   32' in said and 'samples   16' in said, said
+    said = run(program('shroudhb-study'), 'unc.yaml')
+    assert 'matters most for peak' in said and '16 samples' in said, said
+    table = rows('unc.study.csv')
+    assert len(table) == 32 and all(row['status'] == 'done' for row in table)
+    n0, mu = ([float(row[key]) for row in table] for key in ('contact.n0', 'contact.mu'))
+    for a in range(0, 32, 4): # A, B, A with n0 of B, A with mu of B
+        assert (n0[a + 2], mu[a + 2], n0[a + 3], mu[a + 3]) == (n0[a + 1], mu[a], n0[a], mu[a + 1])
+    peak = [float(row['peak']) for i, row in enumerate(table) if i % 4 < 2]
+    mean = sum(peak) / 16
+    with h5py.File('unc.study.h5') as source:
+        group = source['uncertainty']
+        near(group['mean'][0], mean, 1e-12)
+        near(group['deviation'][0], (sum((p - mean) ** 2 for p in peak) / 15) ** 0.5, 1e-9)
+        assert abs(percentile_rank(peak, group['percentile'][0, 1]) - 0.5) <= 0.07
+        assert group['percentile'].shape == (2, 3) and group.attrs['samples'] == 16
+        total, first = group['sobol_total'][0], group['sobol_first'][0]
+        assert total[0] > 0.6 > 0.2 > total[1] and first[0] > first[1], (first, total)
+        assert group['sobol_total_low'][0, 0] < total[0] < group['sobol_total_high'][0, 0]
+    resumed = read('unc.study.csv')
+    run(program('shroudhb-study'), '--quiet', '--force', 'unc.yaml')
+    assert read('unc.study.csv') == resumed
+
+
+def check_robust():
+    """Each design of the varied keys has statistics of its own; a ratio scales the varied key."""
+    text = UNCERTAIN.format(name='robust', vary='vary: {contact.n0: [0.2 N, 0.4 N]}\n',
+                            n0='{lognormal: [1, 0.1], relative: true}', samples=8)
+    write('robust.yaml', text)
+    run('mpiexec', '-n', '3', '--oversubscribe', program('shroudhb-study'), '--quiet', '--force',
+        'robust.yaml')
+    table = rows('robust.study.csv')
+    assert [float(row['contact.n0']) for row in table] == [0.2] * 8 + [0.4] * 8
+    ratio = [row['contact.n0 (ratio)'] for row in table]
+    assert ratio[:8] == ratio[8:] and len(set(ratio)) == 8, ratio
+    with h5py.File('robust.study.h5') as source:
+        group = source['robust']
+        assert list(group['key'][:, 0]) == [0.2, 0.4] and list(group['samples'][:]) == [8, 8]
+        for g in range(2):
+            peak = [float(row['peak']) for row in table[8 * g:8 * g + 8]]
+            near(group['mean'][g, 0], sum(peak) / 8, 1e-12)
+            assert min(peak) <= group['percentile'][g, 0, 0] < group['percentile'][g, 0, 2]
+            assert group['percentile'][g, 0, 2] <= max(peak)
+    row = table[3] # the same preload and friction without a ratio
+    n0 = float(row['contact.n0']) * float(row['contact.n0 (ratio)'])
+    write('plain.yaml', f'case: case.yaml\nvary: {{contact.n0: {n0!r}, contact.mu: '
+          f'{row["contact.mu"]}}}\noutputs: [peak]\n')
+    run(program('shroudhb-study'), '--quiet', 'plain.yaml')
+    near(float(rows('plain.study.csv')[0]['peak']), float(row['peak']), 1e-8)
+
+
 FAULTS = [
     ('vary: {contact.mu: [0.3]}\nplan: {sobl: 12}', "sobl: unknown key; did you mean 'sobol'?"),
     ('vary: {contact.mu: [0.3]}\nplan: {sobol: 0}', 'plan.sobol: expected a whole number from 1'),
@@ -313,6 +384,7 @@ def main():
         write('grid.yaml', GRID)
         run(program('shroudhb-study'), '--quiet', 'grid.yaml')
         for check in (check_values, check_ranks, check_reuse, check_sampled_plans,
+                      check_uncertain, check_robust,
                       check_crash, check_kill, check_faults,
                       check_overrides, check_one_design):
             check()

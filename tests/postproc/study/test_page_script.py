@@ -18,7 +18,8 @@ ACTIONS = """
 <script>
 (() => {
   const seen = {}, $ = id => document.getElementById(id);
-  const plain = ["spread-chart", "sobol-chart", "tornado-chart"]; /* no canvas is used */
+  /* no canvas is used */
+  const plain = ["spread-chart", "sobol-chart", "tornado-chart", "robust-chart"];
   const ink = svg => {
     if (plain.includes(svg.id)) return svg.querySelectorAll("path,rect").length > 1;
     const c = svg.parentElement.querySelector("canvas");
@@ -78,13 +79,14 @@ CHARTS = {
     'pair': USUAL | {'effect-0', 'effect-1'},
     'optimise': USUAL | {'effect-0', 'effect-1', 'history-chart'},
     'uncertain': USUAL | {'effect-0', 'effect-1', 'spread-chart', 'sobol-chart'},
+    'robust': USUAL | {'effect-0', 'effect-1', 'robust-chart'},
     'large': USUAL | {'effect-0', 'effect-1', 'effect-2', 'effect-3'},
     'one': {'curves-chart', 'tornado-chart'},
     'failed': set(),
     'empty': set(),
 }
-DESIGNS = {'grid': 81, 'pair': 40, 'optimise': 60, 'uncertain': 256, 'large': 2000, 'one': 1,
-           'failed': 4, 'empty': 0}
+DESIGNS = {'grid': 81, 'pair': 40, 'optimise': 60, 'uncertain': 256, 'robust': 200, 'large': 2000,
+           'one': 1, 'failed': 4, 'empty': 0}
 
 
 def faults(kind, page, chromium, folder):

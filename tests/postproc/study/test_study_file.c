@@ -56,6 +56,12 @@ static void round_trip(void **state) {
   assert_int_equal(design_study_take_uncertainty(&s, 1, true), SHB_OK);
   s.uncertainty.percentile[1] = 7;
   s.uncertainty.total[3]      = 0.25;
+  assert_int_equal(design_study_take_robust(&s, 3, 1, 2), SHB_OK);
+  s.robust.key[2]        = 30;
+  s.robust.n_failed[1]   = 4;
+  s.robust.percentile[7] = 9;
+  s.robust.confidence    = 0.9;
+  s.robust.percentile[2] = NAN;
   assert_int_equal(study_file_write(&s, path), SHB_OK);
   assert_int_equal(study_file_read(path, &t), SHB_OK);
   assert_int_equal(t.n, 3);
@@ -81,6 +87,12 @@ static void round_trip(void **state) {
   assert_near(t.uncertainty.percentile[1], 7, 0);
   assert_near(t.uncertainty.total[3], 0.25, 0);
   assert_true(isnan(t.uncertainty.mean[0]));
+  assert_int_equal(t.robust.n_groups, 3);
+  assert_int_equal(t.robust.n_failed[1], 4);
+  assert_near(t.robust.key[2], 30, 0);
+  assert_near(t.robust.percentile[7], 9, 0);
+  assert_near(t.robust.confidence, 0.9, 0);
+  assert_true(isnan(t.robust.percentile[2]));
   design_study_free(&s);
   design_study_free(&t);
   unlink(path);

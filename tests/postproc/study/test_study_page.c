@@ -116,6 +116,23 @@ static void an_uncertain_study_answers_with_mean_and_percentile(void **state) {
   free(html);
 }
 
+/* 60 um (0.25 + 0.6 ln^2(150 N 0.3 / 45 N)) at 150 N, 1.2 times that */
+static void a_robust_study_answers_with_the_least_percentile(void **state) {
+  (void)state;
+  char *html = page_of(STUDIES_ROBUST);
+  assert_has(html,
+             "95\u00a0% of the samples of peak stay below 18\u00a0µm at "
+             "contact.n0\u00a0=\u00a0150\u00a0N, the least of 5.");
+  assert_has(html, "37 samples are too few for an interval");
+  assert_has(html,
+             "Percentiles of 40 samples at each of 5 designs of the varied keys; 10 failed "
+             "ones are left out.");
+  assert_has(html, "The interval of the percentile at 4 other designs overlaps");
+  assert_has(html, "\"robust\":{\"confidence\":0.95,\"key\":[[60],[90],[120],[150],[180]]");
+  assert_null(strstr(html, "matters most for"));
+  free(html);
+}
+
 /* A thinned curve keeps its highest point: the resonance is a point of the closed form. */
 static void thinned_curves_keep_the_resonance(void **state) {
   (void)state;
@@ -182,6 +199,7 @@ int main(int argc, char **argv) {
       cmocka_unit_test(designs_without_result_are_told_with_their_reason),
       cmocka_unit_test(an_optimum_on_its_bound_is_a_warning),
       cmocka_unit_test(an_uncertain_study_answers_with_mean_and_percentile),
+      cmocka_unit_test(a_robust_study_answers_with_the_least_percentile),
       cmocka_unit_test(thinned_curves_keep_the_resonance),
       cmocka_unit_test_prestate(page_table_and_picture_stand_beside_the_file,
                                 keep ? argv[1] : NULL),
