@@ -193,8 +193,10 @@ static void make_statistics(design_study *s) {
 /* Five preloads, at each of them 40 samples of mu; the percentiles are set, not estimated. */
 static void make_robust(design_study *s) {
   enum { GROUPS = 5, EACH = 40 };
-  for (int i = 0; i < GROUPS * EACH; i++)
-    add(s, (double[]){60. + 30 * (i / EACH), 0.2 + 0.005 * (i % EACH)});
+  for (int i = 0; i < GROUPS * EACH; i++) {
+    const int group = i / EACH, sample = i % EACH;
+    add(s, (double[]){60. + 30 * group, 0.2 + 0.005 * sample});
+  }
   assert_int_equal(design_study_take_robust(s, GROUPS, 1, 2), SHB_OK);
   study_robust *r = &s->robust;
   r->confidence   = 0.95;

@@ -68,9 +68,10 @@ static void each_group_has_its_own(void **state) {
   assert_int_equal(plan_sobol(EACH, 1, 1, u), SHB_OK);
   assert_int_equal(design_study_create(2, 1, 0, &s), SHB_OK);
   for (int i = 0; i < 3 * EACH; i++) {
-    const double v = 10 * (i / EACH), z = plan_quantile(&normal, u[i % EACH]);
+    const int    group = i / EACH;
+    const double v = 10 * group, z = plan_quantile(&normal, u[i % EACH]);
     put(&s, (double[]){v, z}, v + z);
-    if (i / EACH == 1) s.design[i].state = STUDY_FAILED;
+    if (group == 1) s.design[i].state = STUDY_FAILED;
   }
   const design_samples samples = {1, EACH, false, 1};
   assert_int_equal(design_statistics(&samples, &s), SHB_OK);
