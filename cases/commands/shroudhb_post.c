@@ -12,6 +12,7 @@
 #include "cases/schema/case_paths.h"
 #include "cases/schema/converge_settings.h"
 #include "mesh/base/progress.h"
+#include "postproc/field/stress_section.h"
 #include "postproc/field/stress_table.h"
 #include "postproc/inspect/inspect.h"
 #include "postproc/inspect/mac.h"
@@ -113,27 +114,46 @@ static char *current_modal(const case_file *file) {
   return NULL;
 }
 
-/* Write NAME.stress.csv, if the modal file has stresses. It is made for cases with material.fatigue
- * only: a point takes a few hundredths of a second. */
-static shb_status publish_stress(const case_file *file, const char *modal, const char *response,
+/* The stress of the whole blade, where the modal file has it. */
+typedef struct {
+  post_blade_field field;
+  post_fatigue     fatigue;
+  mhb_response    *response; /* NULL: there is no stress */
+  post_buffer      section;  /* of the report */
+} stress_work;
+
+static void stress_free(stress_work *s) {
+  post_blade_field_free(&s->field);
+  mhb_response_destroy(s->response);
+  post_buffer_free(&s->section);
+}
+
+/* Both files must be of the present case.
+ *   page  in  whether there is a report for the section */
+static shb_status stress_read(const case_file *file, const char *modal, const char *response,
+                              bool page, stress_work *s) {
+  s->fatigue = (post_fatigue){file->endurance, file->ultimate};
+  if (!modal || !up_to_date_keys(file, CASE_MHB, response)) return SHB_OK;
+  if (!page && file->endurance == 0) return SHB_OK;
+  SHB_TRY(post_blade_field_read(modal, &s->field));
+  if (s->field.n_nodes == 0) return SHB_OK;
+  SHB_TRY(mhb_response_read(response, &s->response));
+  SHB_TRY(post_blade_field_match(&s->field, s->response, modal));
+  if (!page) return SHB_OK;
+  return post_stress_section(&s->field, s->response, &s->fatigue, &s->section);
+}
+
+/* Write NAME.stress.csv. It is made for cases with material.fatigue only: a point takes a few
+ * hundredths of a second. */
+static shb_status stress_publish(const case_file *file, const stress_work *s,
                                  shb_progress *progress) {
-  const post_fatigue fatigue = {file->endurance, file->ultimate};
-  post_blade_field   field   = {0};
-  mhb_response      *curves  = NULL;
-  post_buffer        table   = {0};
-  char              *path    = case_output(file, ".stress.csv");
-  shb_status         status = path ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "no memory");
+  post_buffer table  = {0};
+  char       *path   = case_output(file, ".stress.csv");
+  shb_status  status = path ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "no memory");
   shb_progress_show(progress, 90, "stress");
-  if (status == SHB_OK) status = post_blade_field_read(modal, &field);
-  if (status == SHB_OK && field.n_nodes > 0) {
-    status = mhb_response_read(response, &curves);
-    if (status == SHB_OK) status = post_blade_field_match(&field, curves, modal);
-    if (status == SHB_OK) status = post_stress_table(&field, curves, &fatigue, &table);
-    if (status == SHB_OK) status = post_buffer_publish(&table, path);
-  }
+  if (status == SHB_OK) status = post_stress_table(&s->field, s->response, &s->fatigue, &table);
+  if (status == SHB_OK) status = post_buffer_publish(&table, path);
   post_buffer_free(&table);
-  mhb_response_destroy(curves);
-  post_blade_field_free(&field);
   free(path);
   shb_progress_clear(progress);
   return status;
@@ -201,9 +221,11 @@ static shb_status publish(const case_file *file, const command_options *options)
   char        *points      = case_output(file, ".integration.h5");
   char        *diagram     = case_output(file, ".campbell.svg");
   char        *modal       = current_modal(file);
+  stress_work  stress      = {0};
   shb_status   status;
   if (response && html && csv && svg && points && diagram) {
     up_to_date_warn(file, CASE_MHB, response);
+    status             = stress_read(file, modal, response, !options->no_report, &stress);
     const post_job job = {file->name,
                           response,
                           options->no_report ? NULL : html,
@@ -213,10 +235,11 @@ static shb_status publish(const case_file *file, const command_options *options)
                           has_points(file, points) ? points : NULL,
                           modal,
                           diagram,
-                          up_to_date_keys(file, CASE_MHB, response) ? &file->mhb : NULL};
-    status             = post_publish(&job, &progress, &summary);
-    if (status == SHB_OK && modal && file->endurance > 0)
-      status = publish_stress(file, modal, response, &progress);
+                          up_to_date_keys(file, CASE_MHB, response) ? &file->mhb : NULL,
+                          stress.section.text};
+    if (status == SHB_OK) status = post_publish(&job, &progress, &summary);
+    if (status == SHB_OK && stress.response && file->endurance > 0)
+      status = stress_publish(file, &stress, &progress);
     if (status == SHB_OK) status = publish_summary(file, response, modal, options->json);
   } else {
     status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
@@ -224,6 +247,7 @@ static shb_status publish(const case_file *file, const command_options *options)
   if (status == SHB_OK && !options->quiet && !options->json)
     printf("%s%s%s\n", options->no_report ? csv : html, summary ? ": " : "",
            summary ? summary : "");
+  stress_free(&stress);
   free(summary);
   free(convergence);
   free(response);

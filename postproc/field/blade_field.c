@@ -157,7 +157,8 @@ static void combine(int rows, int columns, int width, const double *weight, cons
 /* Harmonics of a field with so many components a node, of every mode and residual column. */
 static shb_status sum_up(const post_blade_field *f, const mhb_branch *b, int kept, int components,
                          const double *mode, const double *residual, double *out) {
-  const int rows = 2 * (b->n_harmonics + 1), most = f->n_modes + f->n_column;
+  const int rows   = 2 * (post_blade_harmonics(b, f->n_modes, kept) + 1);
+  const int most   = f->n_modes + f->n_column;
   double   *weight = malloc(2 * ((size_t)b->n_harmonics + 1) * (size_t)most * sizeof *weight + 1);
   SHB_CHECK(weight, SHB_ERR_IO, "out of memory for the field of a point");
   set_amplitudes(f, b, kept, weight);

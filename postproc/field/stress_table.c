@@ -9,10 +9,10 @@ static void put_number(post_buffer *out, double value) {
 
 static void put_place(const mhb_branch *b, int branch, int point, const post_blade_field *field,
                       int index, const post_place *place, post_buffer *out) {
-  static const char *const kinds[MHB_N_BRANCH_KINDS] = {"nonlinear", "open", "stuck",
-                                                        "integration"};
-  static const char *const specials[MHB_N_SPECIALS]  = {"", "fold", "peak", "flip",
-                                                        "Neimark-Sacker"};
+  static const char *const kinds[MHB_N_BRANCH_KINDS] = {"nonlinear", "open", "stuck", "integration",
+                                                        "tracked"};
+  static const char *const specials[MHB_N_SPECIALS]  = {"",     "fold",           "peak",
+                                                        "flip", "Neimark-Sacker", "optimum"};
   const double            *x                         = field->nodes + 3 * (size_t)place->node;
   post_put(out, "%d,%s", branch, kinds[b->kind]);
   put_number(out, b->kind == MHB_BRANCH_NONLINEAR ? b->n0[point] : NAN);

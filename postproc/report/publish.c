@@ -44,6 +44,7 @@ static shb_status add_integration(const post_job *job, work *w) {
 /* Areas of the contacts, of the model that the response was made from. */
 static shb_status add_contacts(const post_job *job, work *w) {
   w->analysis->settings = job->settings;
+  w->analysis->stress   = job->stress;
   if (!job->modal) return SHB_OK;
   SHB_TRY(modal_model_read(job->modal, &w->model));
   if (w->model.n_pairs == w->response->n_pairs) w->analysis->area = w->model.area;

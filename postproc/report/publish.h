@@ -16,6 +16,7 @@ typedef struct {
   const char         *modal;            /* modal file, for its modes at several speeds, or NULL */
   const char         *campbell;         /* picture of these modes to write, or NULL */
   const mhb_settings *settings;         /* of the response; NULL: not known, no loops are drawn */
+  const char         *stress;           /* section of the page on stress, HTML, or NULL */
 } post_job;
 
 /* Nothing is written unless everything could be composed. summary: malloc'ed line for the terminal,

@@ -287,6 +287,7 @@ shb_status post_report(const post_analysis *analysis, const post_origin *source,
   if (chosen >= 0) put_point(analysis, out);
   put_tracking(analysis, out);
   put_details(analysis, chosen, out);
+  if (analysis->stress) post_put_bytes(out, analysis->stress, strlen(analysis->stress));
   if (analysis->campbell) post_campbell_section(analysis->campbell, out);
   if (analysis->convergence) post_convergence_section(analysis->convergence, out);
   put_tables(analysis, out);

@@ -1,0 +1,168 @@
+#include "postproc/field/stress_section.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "postproc/draw/number_format.h"
+
+enum { DIGITS = 4, MOST_CURVES = 40 };
+
+/* The highest kept point of a curve with its worst places. */
+typedef struct {
+  const mhb_branch *branch;
+  int               index, kept, n;
+  post_place        place[POST_PLACES];
+} worst;
+
+static void put_cell(post_buffer *out, double value) {
+  char text[POST_NUMBER];
+  post_put(out, "<td class=\"num\">%s</td>", post_plain(text, value, DIGITS));
+}
+
+/* Coordinates in mm. */
+static void put_where(const post_blade_field *field, int node, post_buffer *out) {
+  char text[POST_NUMBER];
+  for (int d = 0; d < 3; d++) {
+    const double x = round(1e4 * field->nodes[3 * (size_t)node + (size_t)d]) / 10;
+    post_put(out, "%s%s", d ? ", " : "", post_plain(text, x, DIGITS));
+  }
+}
+
+static void put_place(const post_blade_field *field, const post_place *place, bool judged,
+                      post_buffer *out) {
+  put_cell(out, place->amplitude / 1e6);
+  put_cell(out, place->principal / 1e6);
+  put_cell(out, place->mean / 1e6);
+  post_put(out, "<td class=\"num\">");
+  put_where(field, place->node, out);
+  post_put(out, "</td>");
+  if (judged) put_cell(out, place->safety);
+}
+
+static void put_name(const worst *w, post_buffer *out) {
+  static const char *const name[MHB_N_BRANCH_KINDS] = {"", "open", "stuck", "time integration",
+                                                       "tracked"};
+  char                     n0[POST_NUMBER];
+  const int                point = w->branch->modal.point[w->kept];
+  if (w->branch->kind != MHB_BRANCH_NONLINEAR) {
+    post_put(out, "%s", name[w->branch->kind]);
+  } else {
+    post_put(out, "%s\u00a0N", post_plain(n0, w->branch->n0[point], DIGITS));
+  }
+  if (w->branch->main != w->index) post_put(out, ", secondary");
+}
+
+static void put_columns(bool judged, post_buffer *out) {
+  post_put(out,
+           "<th scope=\"col\">Amplitude, MPa</th><th scope=\"col\">Greatest principal, MPa</th>"
+           "<th scope=\"col\">Mean, MPa</th><th scope=\"col\">At x, y, z, mm</th>%s</tr></thead>\n"
+           "<tbody>\n",
+           judged ? "<th scope=\"col\">Safety</th>" : "");
+}
+
+static void put_row(const post_blade_field *field, const worst *w, bool judged, post_buffer *out) {
+  static const char *const verdict[] = {"not judged", "unstable", "stable"};
+  const int                point     = w->branch->modal.point[w->kept];
+  char                     frequency[POST_NUMBER];
+  post_put(out, "<tr><td>");
+  put_name(w, out);
+  post_put(out, "</td><td class=\"num\">%s</td><td>%s</td>",
+           post_number(frequency, w->branch->frequency[point], 5),
+           verdict[w->branch->stable[point] + 1]);
+  put_place(field, &w->place[0], judged, out);
+  post_put(out, "</tr>\n");
+}
+
+static void put_list(const post_blade_field *field, const worst *w, bool judged, post_buffer *out) {
+  post_put(out, "<details><summary>The %d worst places of ", w->n);
+  put_name(w, out);
+  post_put(out,
+           "</summary><div class=\"scroll\"><table><thead><tr><th scope=\"col\">Place</th>"
+           "<th scope=\"col\">Node</th>");
+  put_columns(judged, out);
+  for (int i = 0; i < w->n; i++) {
+    post_put(out, "<tr><td class=\"num\">%d</td><td class=\"num\">%d</td>", i + 1,
+             w->place[i].node);
+    put_place(field, &w->place[i], judged, out);
+    post_put(out, "</tr>\n");
+  }
+  post_put(out, "</tbody></table></div></details>\n");
+}
+
+static void put_static(const post_blade_field *field, post_buffer *out) {
+  double most = -1;
+  int    node = 0;
+  if (!field->static_stress) return;
+  for (int i = 0; i < field->n_nodes; i++) {
+    const double mises = fabs(post_signed_mises(field->static_stress + POST_STRESSES * (size_t)i));
+    if (mises > most) most = mises, node = i;
+  }
+  char text[POST_NUMBER];
+  post_put(out, "<p>Static stress at speed: at most %s\u00a0MPa (von Mises) at ",
+           post_plain(text, most / 1e6, DIGITS));
+  put_where(field, node, out);
+  post_put(out, "\u00a0mm.</p>\n");
+}
+
+static void put_all(const post_blade_field *field, const worst *list, int n, bool judged,
+                    post_buffer *out) {
+  post_put(out,
+           "<section id=\"stress\">\n<h2>Stress at the peaks</h2>\n"
+           "<p class=\"note\">The highest point of each curve, the worst place of the blade. "
+           "Amplitude: half the range of the signed von Mises stress over a period, of the "
+           "vibration alone. Mean: signed von Mises stress of static stress and the vibration's "
+           "mean.%s</p>\n",
+           judged ? " Safety: against Goodman's line; above 1 is safe." : "");
+  put_static(field, out);
+  post_put(out,
+           "<div class=\"scroll\"><table><caption>Worst place of each curve</caption><thead><tr>"
+           "<th scope=\"col\">Curve</th><th scope=\"col\">Hz</th><th scope=\"col\">Motion</th>");
+  put_columns(judged, out);
+  for (int i = 0; i < n; i++) put_row(field, &list[i], judged, out);
+  post_put(out, "</tbody></table></div>\n");
+  for (int i = 0; i < n; i++) put_list(field, &list[i], judged, out);
+  post_put(out, "</section>\n");
+}
+
+static int highest_kept(const mhb_response *response, const mhb_branch *b) {
+  int at = 0;
+  for (int i = 1; i < b->modal.n; i++)
+    if (mhb_response_output(response, b, b->modal.point[i]) >
+        mhb_response_output(response, b, b->modal.point[at]))
+      at = i;
+  return at;
+}
+
+/* Curves with kept points: nonlinear ones, or the others. */
+static int choose(const mhb_response *response, bool nonlinear, worst *list) {
+  int n = 0;
+  for (int i = 0; i < response->n_branches && n < MOST_CURVES; i++) {
+    const mhb_branch *b = &response->branch[i];
+    if (b->modal.n == 0 || (b->kind == MHB_BRANCH_NONLINEAR) != nonlinear) continue;
+    list[n++] = (worst){.branch = b, .index = i, .kept = highest_kept(response, b)};
+  }
+  return n;
+}
+
+static shb_status evaluate(const post_blade_field *field, const post_fatigue *fatigue, worst *w) {
+  const size_t rows = 2 * ((size_t)w->branch->n_harmonics + 1), n = (size_t)field->n_nodes;
+  double      *stress = malloc(rows * POST_STRESSES * n * sizeof *stress + 1);
+  SHB_CHECK(stress, SHB_ERR_IO, "out of memory for the stress of %zu nodes", n);
+  shb_status status = post_blade_stress(field, w->branch, w->kept, stress);
+  if (status == SHB_OK)
+    status = post_peak_stress(field, post_blade_harmonics(w->branch, field->n_modes, w->kept),
+                              stress, fatigue, w->place, &w->n);
+  free(stress);
+  return status;
+}
+
+shb_status post_stress_section(const post_blade_field *field, const mhb_response *response,
+                               const post_fatigue *fatigue, post_buffer *out) {
+  worst list[MOST_CURVES];
+  int   n = choose(response, true, list);
+  if (n == 0) n = choose(response, false, list);
+  for (int i = 0; i < n; i++) SHB_TRY(evaluate(field, fatigue, &list[i]));
+  if (n > 0) put_all(field, list, n, fatigue->endurance > 0, out);
+  SHB_CHECK(!out->failed, SHB_ERR_IO, "out of memory for the stress at the peaks");
+  return SHB_OK;
+}
