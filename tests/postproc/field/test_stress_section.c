@@ -45,17 +45,14 @@ static void make(example *e) {
   e->probe[1]               = 1e-3; /* point 0, tangential, harmonic 1 */
   e->probe[6 + 1]           = 3e-3;
   for (int i = 0; i < BRANCHES; i++) {
-    e->branch[i]         = (mhb_branch){.kind        = i == LIMIT ? MHB_BRANCH_OPEN : MHB_BRANCH_NONLINEAR,
-                                        .order       = 1,
-                                        .n_harmonics = 1,
-                                        .main        = i,
-                                        .n_points    = 2,
-                                        .frequency   = e->frequency};
-    e->branch[i].n0      = e->n0;
-    e->branch[i].probe   = e->probe;
-    e->branch[i].stable  = e->stable;
-    e->branch[i].special = e->special;
-    e->branch[i].modal   = (mhb_modal_motion){2, 0, e->point, e->amplitude, NULL, e->scale};
+    e->branch[i]           = (mhb_branch){.order = 1, .n_harmonics = 1, .main = i, .n_points = 2};
+    e->branch[i].kind      = i == LIMIT ? MHB_BRANCH_OPEN : MHB_BRANCH_NONLINEAR;
+    e->branch[i].frequency = e->frequency;
+    e->branch[i].n0        = e->n0;
+    e->branch[i].probe     = e->probe;
+    e->branch[i].stable    = e->stable;
+    e->branch[i].special   = e->special;
+    e->branch[i].modal     = (mhb_modal_motion){2, 0, e->point, e->amplitude, NULL, e->scale};
   }
   e->response = (mhb_response){
       .n_branches = BRANCHES, .branch = e->branch, .n_modes = 1, .n_probes = 1, .n_harmonics = 1};
