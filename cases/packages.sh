@@ -12,8 +12,8 @@ libcmocka-dev openmpi-bin"
 packages_test="hdf5-tools python3 python3-h5py python3-jsonschema python3-yaml calculix-ccx
 dpkg-dev chromium"
 
-# continuous integration also checks the sources
-packages_check="clang-format clang-tidy python3"
+# continuous integration also checks the sources, and tries random inputs
+packages_check="clang-format clang-tidy clang-14 libclang-rt-14-dev python3"
 
 # packages_missing NAME...: those that are not installed, on one line
 packages_missing() {

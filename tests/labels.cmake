@@ -33,7 +33,7 @@ if(SHROUDHB_CHROMIUM AND SHROUDHB_PYTHON)
 endif()
 set(SLOW_TESTS
   mesh.blade.blade mhb.floquet.monodromy mhb.branches.verdicts cases.converge.converge hard.gaps
-  bench.elements cases.scenes.optimum_preload)
+  bench.elements cases.scenes.optimum_preload fuzz.libfuzzer)
 
 set(TIMEOUT_unit 100)
 set(TIMEOUT_integration 600)

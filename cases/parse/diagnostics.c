@@ -1,6 +1,7 @@
 #include "cases/parse/diagnostics.h"
 
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -65,8 +66,9 @@ static size_t character(const char *text, const char *end) {
 }
 
 static void put_character(const char *text, size_t n, FILE *out) {
-  unsigned char c = (unsigned char)text[0];
-  if ((c < 0x20 && c != '\t') || c == 0x7F || (n == 1 && c >= 0x80)) {
+  unsigned char c  = (unsigned char)text[0];
+  bool          c1 = n == 2 && c == 0xC2 && (unsigned char)text[1] < 0xA0; /* U+0080 to U+009F */
+  if ((c < 0x20 && c != '\t') || c == 0x7F || (n == 1 && c >= 0x80) || c1) {
     fputc('?', out); /* a broken file must not send control characters to the terminal */
   } else {
     fwrite(text, 1, n, out);
@@ -96,16 +98,24 @@ static void print_source(const case_issues *issues, const case_issue *issue, FIL
   fputs("^\n", out);
 }
 
+static void print_override(const char *text, FILE *out) {
+  const char *end = text + strlen(text);
+  fputs(" --set ", out);
+  for (size_t n; text < end; text += n) {
+    n = character(text, end);
+    put_character(*text == '\n' ? " " : text, n, out);
+  }
+  fputc(':', out);
+}
+
 void case_issues_print(case_issues *issues, FILE *out) {
   int kept = issues->n < issues->capacity ? issues->n : issues->capacity;
   /* the order of issues at one place does not matter, so qsort may be unstable */
   if (kept > 0) qsort(issues->issue, (size_t)kept, sizeof *issues->issue, by_place);
   for (int i = 0; i < kept && i < CASE_ISSUES_SHOWN; i++) {
     const case_issue *issue = &issues->issue[i];
-    if (issue->line < 0)
-      fprintf(out, "%s: --set %s:", issues->path, issues->override[-1 - issue->line]);
-    else
-      fprintf(out, "%s:", issues->path);
+    fprintf(out, "%s:", issues->path);
+    if (issue->line < 0) print_override(issues->override[-1 - issue->line], out);
     if (issue->line > 0) fprintf(out, "%d:%d:", issue->line, issue->column);
     fprintf(out, " error: %s\n", issue->text ? issue->text : "out of memory");
     print_source(issues, issue, out);

@@ -1,0 +1,28 @@
+/* Bytes of a fuzzer as a file that the program opens by its path. */
+#ifndef TESTS_FUZZ_FUZZ_FILE_H
+#define TESTS_FUZZ_FUZZ_FILE_H
+
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+/* The entry of libFuzzer, which every target defines. Returns 0. A fault ends the process. */
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+/* Where a target wants more than single bytes of its input. */
+enum { FUZZ_MOST = 1 << 16 };
+
+/* Write the bytes to the file of that name in a folder of this process, and return its path. The
+ * text lives until the next call. The folder is removed at the end of the process. */
+const char *fuzz_file(const char *name, const void *data, size_t size);
+
+/* Begin a stream for messages. */
+FILE *fuzz_messages(void);
+
+/* End it: no message may hold a control character, and a refusal has at least one line. */
+void fuzz_messages_end(int refused);
+
+/* End the process with the text, unless the condition holds. */
+void fuzz_assert(int holds, const char *text);
+
+#endif

@@ -1,0 +1,34 @@
+# Random inputs. Each target is replayed over its seeds and regressions in every build; the test
+# fuzz.libfuzzer builds the targets with clang and lets its fuzzer look for new inputs.
+set(FUZZ ${CMAKE_CURRENT_SOURCE_DIR}/fuzz)
+set(FUZZ_TARGETS units case override motion study inp stamp)
+add_custom_target(fuzzers)
+function(shb_fuzz noun)
+  add_executable(fuzz_${noun} fuzz/fuzz_${noun}.c fuzz/fuzz_file.c)
+  target_link_libraries(fuzz_${noun} PRIVATE ${ARGN} shb_base)
+  target_compile_definitions(fuzz_${noun} PRIVATE
+    SHROUDHB_EXAMPLE="${PROJECT_SOURCE_DIR}/cases/z_notch_blade/case.yaml")
+  add_dependencies(fuzzers fuzz_${noun})
+  if(SHROUDHB_FUZZ)
+    target_link_options(fuzz_${noun} PRIVATE -fsanitize=fuzzer)
+    return()
+  endif()
+  target_sources(fuzz_${noun} PRIVATE fuzz/replay.c)
+  set(inputs ${FUZZ}/seeds/${noun})
+  if(EXISTS ${FUZZ}/regressions/${noun})
+    list(APPEND inputs ${FUZZ}/regressions/${noun})
+  endif()
+  add_test(NAME fuzz.${noun} COMMAND fuzz_${noun} -runs=200 ${inputs})
+endfunction()
+
+shb_fuzz(units shb_case m)
+shb_fuzz(case shb_case m)
+shb_fuzz(override shb_case m)
+shb_fuzz(motion shb_case m)
+shb_fuzz(study shb_cases_designs m)
+shb_fuzz(inp shb_mesh_io m)
+shb_fuzz(stamp shb_modal_hdf5 m)
+
+add_test(NAME fuzz.libfuzzer
+  COMMAND sh ${FUZZ}/run.sh ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_BINARY_DIR}/fuzz_clang 8)
+set_tests_properties(fuzz.libfuzzer PROPERTIES SKIP_RETURN_CODE 77)
