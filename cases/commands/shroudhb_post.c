@@ -236,7 +236,8 @@ static shb_status publish(const case_file *file, const command_options *options)
                           modal,
                           diagram,
                           up_to_date_keys(file, CASE_MHB, response) ? &file->mhb : NULL,
-                          stress.section.text};
+                          stress.section.text,
+                          file->axis};
     if (status == SHB_OK) status = post_publish(&job, &progress, &summary);
     if (status == SHB_OK && stress.response && file->endurance > 0)
       status = stress_publish(file, &stress, &progress);

@@ -507,6 +507,13 @@
     p.svg += `<text class="axis" x="${width - 20}" y="260" text-anchor="end">harmonic k</text>`;
     show("spectrum", 270, [p]);
   }
+  function showBlade() {
+    if (typeof Blade === "undefined" || !Blade || state.branch < 0) return;
+    const b = D.branches[state.branch], i = state.point;
+    Blade.choose(
+        state.branch, b.f[i], b.row(outputs[0].row)[i],
+        x => `${groupOf(b).name}${b.note}, ${xText(x)}`);
+  }
   function drawPoint() {
     if (!$("point") || state.branch < 0) return;
     const b = D.branches[state.branch], g = groupOf(b), r = readout(b, state.point);
@@ -562,6 +569,7 @@
       return;
     state.branch = index;
     state.point = point === undefined ? topOf(index) : point;
+    showBlade();
     if ($("curve")) $("curve").value = String(index);
     drawResponse();
     drawPoint();
@@ -721,6 +729,7 @@
   wireControls();
   wireChart();
   drawAll();
+  showBlade();
   let timer;
   window.addEventListener("resize", () => {
     clearTimeout(timer);

@@ -15,6 +15,7 @@ typedef struct {
   post_convergence convergence;
   modal_speeds     speeds;
   modal_model      model;
+  post_blade_field field;
   post_campbell    campbell;
   post_buffer      html, csv, svg, diagram;
 } work;
@@ -41,14 +42,14 @@ static shb_status add_integration(const post_job *job, work *w) {
   SHB_FAIL(status, "%s: %s", job->integration, why);
 }
 
-/* Areas of the contacts, of the model that the response was made from. */
-static shb_status add_contacts(const post_job *job, work *w) {
+/* Areas of the contacts and the mesh, of the model that the response was made from. */
+static shb_status add_model(const post_job *job, work *w) {
   w->analysis->settings = job->settings;
   w->analysis->stress   = job->stress;
   if (!job->modal) return SHB_OK;
   SHB_TRY(modal_model_read(job->modal, &w->model));
   if (w->model.n_pairs == w->response->n_pairs) w->analysis->area = w->model.area;
-  return SHB_OK;
+  return job->html ? post_blade_field_read_motion(job->modal, &w->field) : SHB_OK;
 }
 
 static shb_status add_campbell(const post_job *job, work *w) {
@@ -72,14 +73,15 @@ static shb_status compose(const post_job *job, shb_progress *progress, work *w) 
     SHB_TRY(post_convergence_read(job->convergence, &w->convergence));
     w->analysis->convergence = &w->convergence;
   }
-  SHB_TRY(add_contacts(job, w));
+  SHB_TRY(add_model(job, w));
   SHB_TRY(add_campbell(job, w));
   shb_progress_note(progress, "read %d points on %d curves in %.2f s", w->analysis->n_points,
                     w->response->n_branches, shb_seconds() - started);
   started = shb_seconds();
   shb_progress_show(progress, 30, "page");
   if (job->html) {
-    SHB_TRY(post_report(w->analysis, &w->source, job->case_name, &w->html));
+    const post_blade_view view = {&w->field, job->axis};
+    SHB_TRY(post_report(w->analysis, &w->source, job->case_name, &view, &w->html));
     shb_progress_note(progress, "page, %.1f MB, in %.2f s", 1e-6 * (double)w->html.length,
                       shb_seconds() - started);
   }
@@ -123,5 +125,6 @@ shb_status post_publish(const post_job *job, shb_progress *progress, char **summ
   post_buffer_free(&w.diagram);
   modal_speeds_free(&w.speeds);
   modal_model_free(&w.model);
+  post_blade_field_free(&w.field);
   return status;
 }

@@ -3,6 +3,7 @@
 #ifndef POSTPROC_REPORT_PUBLISH_H
 #define POSTPROC_REPORT_PUBLISH_H
 
+#include "mesh/base/axes.h"
 #include "mesh/base/progress.h"
 #include "mesh/base/status.h"
 #include "mhb/problem/settings.h"
@@ -13,10 +14,11 @@ typedef struct {
   const char         *html, *csv, *svg; /* files to write, each whole; html NULL: the table only */
   const char         *convergence;      /* NAME.converge.h5 for the page, or NULL */
   const char         *integration;      /* file of points by time integration, or NULL */
-  const char         *modal;            /* modal file, for its modes at several speeds, or NULL */
+  const char         *modal;            /* modal file, for blade and modes over speed, or NULL */
   const char         *campbell;         /* picture of these modes to write, or NULL */
   const mhb_settings *settings;         /* of the response; NULL: not known, no loops are drawn */
   const char         *stress;           /* section of the page on stress, HTML, or NULL */
+  mesh_axis           axis;             /* of the engine */
 } post_job;
 
 /* Nothing is written unless everything could be composed. summary: malloc'ed line for the terminal,

@@ -15,6 +15,7 @@
 #include "postproc/report/convergence_chart.h"
 #include "postproc/report/page.h"
 #include "postproc/report/page_data.h"
+#include "postproc/report/still_blade.h"
 #include "postproc/report/tables.h"
 
 /* ---------------------------------------------------------------- head */
@@ -241,6 +242,19 @@ static void put_details(const post_analysis *analysis, int chosen, post_buffer *
   post_put(out, "</div></figure></div>\n</section>\n");
 }
 
+static void put_axes(const post_analysis *analysis, post_buffer *out) {
+  if (analysis->response->n_pairs < 1) return;
+  post_put(out,
+           "<section>\n<h2>Axes of the contact</h2>\n<div class=\"card\"><figure><div "
+           "class=\"chart\">\n");
+  post_contact_axes(analysis->response->psi, analysis->response->phi, out);
+  post_put(out,
+           "</div><figcaption class=\"note\">v is normal to the right face and positive where the "
+           "motion presses the faces together, u and w lie in it. Red: the contact face.%s"
+           "</figcaption></figure></div>\n</section>\n",
+           analysis->response->n_pairs > 1 ? " Angles: mean of the contacts." : "");
+}
+
 /* ---------------------------------------------------------------- tables and provenance */
 
 static void put_source_row(const char *label, const char *text, post_buffer *out) {
@@ -279,21 +293,28 @@ static void put_tables(const post_analysis *analysis, post_buffer *out) {
 }
 
 shb_status post_report(const post_analysis *analysis, const post_origin *source,
-                       const char *case_name, post_buffer *out) {
-  int chosen = post_chosen_branch(analysis), left_out = 0;
+                       const char *case_name, const post_blade_view *blade, post_buffer *out) {
+  bool moving = blade && post_blade_view_fits(blade, analysis->response);
+  int  chosen = post_chosen_branch(analysis), left_out = 0;
   put_head(analysis, case_name, out);
   put_header(analysis, source, case_name, out);
   put_main(analysis, case_name, out);
   if (chosen >= 0) put_point(analysis, out);
+  if (moving) post_blade_section(analysis, blade, out);
   put_tracking(analysis, out);
   put_details(analysis, chosen, out);
   if (analysis->stress) post_put_bytes(out, analysis->stress, strlen(analysis->stress));
+  put_axes(analysis, out);
   if (analysis->campbell) post_campbell_section(analysis->campbell, out);
   if (analysis->convergence) post_convergence_section(analysis->convergence, out);
   put_tables(analysis, out);
   put_source(source, out);
   post_put(out, "</main>\n<script type=\"application/json\" id=\"data\">\n");
   SHB_TRY(post_page_data(analysis, chosen, out, &left_out));
+  if (moving) {
+    post_put(out, "\n</script>\n<script type=\"application/json\" id=\"blade-data\">\n");
+    SHB_TRY(post_blade_data(analysis, blade, out));
+  }
   post_put(out, "\n</script>\n<footer>");
   if (left_out > 0)
     post_put(out,
@@ -305,6 +326,7 @@ shb_status post_report(const post_analysis *analysis, const post_origin *source,
            "network.</footer>\n<script>\n");
   post_put_bytes(out, post_plot_js, strlen(post_plot_js));
   post_put_bytes(out, post_contact_js, strlen(post_contact_js));
+  if (moving) post_put_bytes(out, post_blade_js, strlen(post_blade_js));
   post_put_bytes(out, post_page_js, strlen(post_page_js));
   post_put(out, "</script>\n</body>\n</html>\n");
   SHB_CHECK(!out->failed, SHB_ERR_IO, "not enough memory for the report");

@@ -20,6 +20,7 @@ foreach(noun study_effects study_page)
 endforeach()
 
 shb_test(postproc/report contact_points tests_responses tests_motions)
+shb_test(postproc/report blade_view tests_responses tests_box)
 
 # The pages in a browser, where there is one.
 find_program(SHROUDHB_CHROMIUM NAMES chromium chromium-browser google-chrome)
@@ -31,7 +32,8 @@ if(SHROUDHB_CHROMIUM AND SHROUDHB_PYTHON)
   add_test(NAME postproc.report.page_script
     COMMAND ${SHROUDHB_PYTHON} -B
       ${CMAKE_CURRENT_SOURCE_DIR}/postproc/report/test_page_script.py
-      $<TARGET_FILE:test_postproc_report_contact_points> ${SHROUDHB_CHROMIUM})
+      $<TARGET_FILE:test_postproc_report_contact_points>
+      $<TARGET_FILE:test_postproc_report_blade_view> ${SHROUDHB_CHROMIUM})
 endif()
 
 # The program itself: exit codes and the one line of an error.

@@ -12,7 +12,7 @@
   };
   const charts = [...document.querySelectorAll("svg.plot")].map(s => s.id);
   for (const id of charts)
-    if (!drawn(id) && !/not in this page/.test($(id).textContent))
+    if (!["still", "contact-axes"].includes(id) && !drawn(id) && !/not in this page/.test($(id).textContent))
       faults.push(`nothing drawn in ${id}`);
   for (const svg of document.querySelectorAll("svg.plot"))
     if (/NaN|undefined|Infinity/.test(svg.innerHTML)) faults.push(`NaN in ${svg.id}`);
@@ -59,7 +59,52 @@
     svg.dispatchEvent(new KeyboardEvent("keydown", {key, bubbles: true}));
   if (!$("spoken").textContent) faults.push("the keyboard says nothing");
   window.dispatchEvent(new Event("resize"));
+  /* the blade: every control changes the picture, which is neither empty nor full */
+  let pictures;
+  if ($("blade-canvas") && typeof Blade !== "undefined" && Blade) {
+    const gl = $("blade-canvas").getContext("webgl2"), seen = new Set();
+    const look = what => {
+      const {width, height} = $("blade-canvas"), data = new Uint8Array(4 * width * height);
+      Blade.draw();
+      gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, data);
+      let drawn = 0, sum = 0;
+      for (let i = 0; i < data.length; i += 4) {
+        drawn += data[i + 3] > 0;
+        sum = (sum * 31 + data[i] + 7 * data[i + 1] + 13 * data[i + 2]) % 4294967291;
+      }
+      const share = 4 * drawn / data.length;
+      if (!(share > 0.01 && share < 0.9)) faults.push(`${what}: ${share} of the picture drawn`);
+      if (seen.has(sum)) faults.push(`${what} changes nothing in the picture`);
+      seen.add(sum);
+    };
+    const set = (id, value, type = "change") => {
+      $(id).value = value;
+      $(id).dispatchEvent(new Event(type));
+      look(`${id} = ${value}`);
+    };
+    look("at first");
+    set("blade-shown", "0");
+    set("blade-shown", "3");
+    set("blade-colour", "motion");
+    set("blade-scale", "90", "input");
+    set("blade-ring", "1");
+    const c = $("blade-canvas"), b = c.getBoundingClientRect();
+    send(c, "pointerdown", b.left + 100, b.top + 100);
+    send(c, "pointermove", b.left + 180, b.top + 130);
+    send(c, "pointerup", b.left + 180, b.top + 130);
+    look("a turn");
+    c.dispatchEvent(new WheelEvent("wheel", {deltaY: -300, bubbles: true, cancelable: true}));
+    look("the wheel");
+    c.dispatchEvent(new KeyboardEvent("keydown", {key: "ArrowUp", bubbles: true}));
+    look("a key");
+    const word = $("blade-play").textContent;
+    $("blade-play").click();
+    if ($("blade-play").textContent === word) faults.push("the motion cannot be stopped");
+    if (!Blade.picture().startsWith("data:image/png")) faults.push("no picture of the blade");
+    $("blade-home").click();
+    pictures = seen.size;
+  }
   for (const e of document.querySelectorAll("svg.plot"))
     if (/NaN|undefined|Infinity/.test(e.innerHTML)) faults.push(`NaN in ${e.id} at the end`);
-  document.title = "seen " + JSON.stringify({charts, faults});
+  document.title = "seen " + JSON.stringify({charts, faults, pictures});
 })();

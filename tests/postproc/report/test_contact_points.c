@@ -143,7 +143,7 @@ static void write_page(const char *name, const fixture_options *o) {
   post_analysis *a;
   assert_ok(post_analysis_create(r, &a));
   a->settings = &s;
-  assert_ok(post_report(a, &source, name, &out));
+  assert_ok(post_report(a, &source, name, NULL, &out));
   snprintf(path, sizeof path, "page_%s.html", name);
   write_text(path, &out);
   post_buffer_free(&out);

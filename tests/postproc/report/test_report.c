@@ -101,7 +101,7 @@ static char *page_of(mhb_response *r, const char *name) {
   post_origin    s    = source();
   assert_non_null(r);
   assert_ok(post_analysis_create(r, &analysis));
-  assert_ok(post_report(analysis, &s, name, &html));
+  assert_ok(post_report(analysis, &s, name, NULL, &html));
   post_analysis_destroy(analysis);
   mhb_response_destroy(r);
   return html.text;
@@ -167,7 +167,7 @@ static void turns(void **state) {
   r->branch[3].special[10] = MHB_FLIP;
   r->branch[3].special[14] = MHB_NEIMARK_SACKER;
   assert_ok(post_analysis_create(r, &analysis));
-  assert_ok(post_report(analysis, &s, "scene", &html));
+  assert_ok(post_report(analysis, &s, "scene", NULL, &html));
   check_tags(html.text);
   assert_has(html.text, "<b>Modulated</b> (dashed): at 5 of 1560 points, on 1 curve,");
   assert_int_equal(count(html.text, "class=\"bifurcation"), 2);
@@ -338,7 +338,7 @@ static void not_estimated(void **state) {
       r->branch[b].error_newton[p]       = r->branch[b].error_truncation[p] =
           r->branch[b].error_sampling[p] = r->branch[b].error_modal[p] = NAN;
   assert_ok(post_analysis_create(r, &analysis));
-  assert_ok(post_report(analysis, &s, "x", &html));
+  assert_ok(post_report(analysis, &s, "x", NULL, &html));
   check_tags(html.text);
   assert_int_equal(count(html.text, "<td>not estimated</td>"), 6); /* the seventh is incomplete */
   assert_has_not(html.text, "Estimated error");
