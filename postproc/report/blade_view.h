@@ -1,6 +1,6 @@
-/* The blade in motion on the page: its surface, the shapes and stresses of its modes, and the modal
- * amplitudes of the points of which the response keeps them. The page's script (blade.js) draws them
- * with WebGL; without it the still picture remains. */
+/* The blade in motion on the page: its surface, shapes and stresses of its modes, and modal
+ * amplitudes of the points that the response keeps. The page's script (blade.js) draws them with
+ * WebGL; without it the still picture remains. */
 #ifndef POSTPROC_REPORT_BLADE_VIEW_H
 #define POSTPROC_REPORT_BLADE_VIEW_H
 
@@ -24,11 +24,12 @@ void post_blade_section(const post_analysis *analysis, const post_blade_view *vi
 /* Numbers for the script, at most 3 MB as text:
  *
  *   nodes, triangles  numbers;  lo, size  [3] box of the surface, m;  modesLeftOut
- *   position  [nodes][3] uint16 in the box;  index  [triangles][3] uint16, or uint32 from 65536 nodes
+ *   position  [nodes][3] uint16 in the box
+ *   index     [triangles][3] uint16, or uint32 from 65536 nodes
  *   modes     [{f Hz, d, s, data}]: int8 [nodes][9], displacement x d kg^-1/2 and Cauchy stress
  *             xx, yy, zz, xy, yz, xz times s Pa kg^-1/2, in 1/127
- *   points    [{b, x, a, order, k, q}]: branch, abscissa and amplitude of the point, harmonics kept;
- *             q: float32 [k][mode][re, im] m kg^1/2
+ *   points    [{b, x, a, order, k, q}]: branch, abscissa and amplitude of the point, harmonics
+ *             kept; q: float32 [k][mode][re, im] m kg^1/2
  *   axis [3], blades, lag (rad, of the right neighbour at the excitation's first harmonic)
  *
  * Where the surface has too many nodes, those of a cell of a grid are merged. Errors: SHB_ERR_IO no

@@ -1,4 +1,5 @@
-/* Surface, modes and kept points of the page's blade. With "keep": pages for test_page_script.py. */
+/* Surface, modes and kept points of the page's blade.
+ * With "keep": pages for test_page_script.py. */
 #include "postproc/report/blade_view.h"
 
 #include "mesh/base/constants.h"
