@@ -60,9 +60,12 @@ static const char *find_line(const case_issues *issues, int line, size_t *length
 
 /* Bytes of the UTF-8 character at text (1 for a stray byte). */
 static size_t character(const char *text, const char *end) {
-  size_t n = 1;
-  while (text + n < end && n < 4 && ((unsigned char)text[n] & 0xC0) == 0x80) n++;
-  return n;
+  unsigned char first = (unsigned char)text[0];
+  size_t whole = first < 0xC2 ? 1 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : first < 0xF5 ? 4 : 1;
+  if (text + whole > end) return 1;
+  for (size_t n = 1; n < whole; n++)
+    if (((unsigned char)text[n] & 0xC0) != 0x80) return 1;
+  return whole;
 }
 
 static void put_character(const char *text, size_t n, FILE *out) {
