@@ -12,6 +12,7 @@
 #include "cases/schema/case_paths.h"
 #include "cases/schema/converge_settings.h"
 #include "mesh/base/progress.h"
+#include "postproc/field/strain_gauge.h"
 #include "postproc/field/stress_section.h"
 #include "postproc/field/stress_table.h"
 #include "postproc/inspect/inspect.h"
@@ -35,6 +36,7 @@ static const char usage[] =
     "NAME.response.h5;\n"
     "points of NAME.integration.h5 are drawn as dots;\n"
     "NAME.stress.csv has the worst places at every peak if material.fatigue is given;\n"
+    "NAME.gauge.csv has the strain at the gauges of the case;\n"
     "the report has the section Speed against error if NAME.converge.h5 belongs to the case.\n"
     "NAME.summary.json has the results for scripts; --json prints it, and prints it too with "
     "--summary\n"
@@ -134,7 +136,7 @@ static shb_status stress_read(const case_file *file, const char *modal, const ch
                               bool page, stress_work *s) {
   s->fatigue = (post_fatigue){file->endurance, file->ultimate};
   if (!modal || !up_to_date_keys(file, CASE_MHB, response)) return SHB_OK;
-  if (!page && file->endurance == 0) return SHB_OK;
+  if (!page && file->endurance == 0 && file->n_gauges == 0) return SHB_OK;
   SHB_TRY(post_blade_field_read(modal, &s->field));
   if (s->field.n_nodes == 0) return SHB_OK;
   SHB_TRY(mhb_response_read(response, &s->response));
@@ -156,6 +158,37 @@ static shb_status stress_publish(const case_file *file, const stress_work *s,
   post_buffer_free(&table);
   free(path);
   shb_progress_clear(progress);
+  return status;
+}
+
+static shb_status gauge_rows(const case_file *file, const post_blade_field *field,
+                             const mhb_response *response, post_buffer *table) {
+  post_gauge gauge[CASE_MAX_PROBES] = {0};
+  shb_status status                 = SHB_OK;
+  for (int i = 0; i < file->n_gauges && status == SHB_OK; i++) {
+    gauge[i].name = file->gauge[i].name;
+    memcpy(gauge[i].at, file->gauge[i].at, sizeof gauge[i].at);
+    memcpy(gauge[i].direction, file->gauge[i].direction, sizeof gauge[i].direction);
+    status = post_gauge_place(field, &gauge[i]);
+  }
+  if (status == SHB_OK) status = post_gauge_table(field, response, file->n_gauges, gauge, table);
+  for (int i = 0; i < file->n_gauges; i++) post_gauge_free(&gauge[i]);
+  return status;
+}
+
+/* Write NAME.gauge.csv: the strain at the gauges of the case. */
+static shb_status gauge_publish(const case_file *file, const char *modal,
+                                const mhb_response *response) {
+  post_blade_field field = {0};
+  post_buffer      table = {0};
+  char            *path  = case_output(file, ".gauge.csv");
+  shb_status status = path ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  if (status == SHB_OK) status = post_blade_field_read_motion(modal, &field);
+  if (status == SHB_OK) status = gauge_rows(file, &field, response, &table);
+  if (status == SHB_OK) status = post_buffer_publish(&table, path);
+  post_blade_field_free(&field);
+  post_buffer_free(&table);
+  free(path);
   return status;
 }
 
@@ -241,6 +274,8 @@ static shb_status publish(const case_file *file, const command_options *options)
     if (status == SHB_OK) status = post_publish(&job, &progress, &summary);
     if (status == SHB_OK && stress.response && file->endurance > 0)
       status = stress_publish(file, &stress, &progress);
+    if (status == SHB_OK && stress.response && file->n_gauges > 0)
+      status = gauge_publish(file, modal, stress.response);
     if (status == SHB_OK) status = publish_summary(file, response, modal, options->json);
   } else {
     status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");

@@ -30,6 +30,11 @@ typedef struct {
   double at[3]; /* m, mesh axes */
 } case_probe;
 
+typedef struct {
+  char   name[CASE_NAME];
+  double at[3], direction[3]; /* m; of any length; mesh axes */
+} case_gauge;
+
 /* One of several contact interfaces. */
 typedef struct {
   mhb_interface mhb;
@@ -94,6 +99,8 @@ typedef struct {
   case_load  loads[CASE_MAX_LOADS];
   int        n_probes;
   case_probe probe[CASE_MAX_PROBES];
+  int        n_gauges;
+  case_gauge gauge[CASE_MAX_PROBES];
 
   bool           has_contact; /* block contact present */
   int            points;      /* contact patches; 0 = all */

@@ -27,6 +27,7 @@ static const char *type_name(const case_key *key) {
                                                   [CASE_SAVED]     = "word or list",
                                                   [CASE_FACTORS]   = "mapping",
                                                   [CASE_PROBES]    = "mapping",
+                                                  [CASE_GAUGES]    = "mapping",
                                                   [CASE_DAMPING]   = "number(s), mapping",
                                                   [CASE_GROUPS]    = "mapping",
                                                   [CASE_LIST]      = "list",

@@ -239,6 +239,11 @@ static const case_key table[] = {
      .when = CASE_IF_OWN_MODES,
      .help = "nodes to watch, at most 32: {name: [x, y, z]}, the nearest node to each"},
 
+    {"gauge", CASE_GAUGES, "m", -1e3, 1e3, .fallback = "{}", AT(gauge), .stages = CASE_POST,
+     .when = CASE_IF_OWN_MODES,
+     .help = "strain gauges, at most 32: {name: {at: [x, y, z], direction: [x, y, z]}}, on the "
+             "nearest point of the surface, mesh axes"},
+
     {"contact.to", CASE_SWITCH, "", .words = "neighbour ground", .fallback = "neighbour",
      AT(mhb.to_ground), .stages = CASE_MODAL | CASE_MHB,
      .help = "what the right contact face meets"},

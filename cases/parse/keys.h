@@ -32,6 +32,7 @@ typedef enum {
   CASE_SAVED,     /* one of words, or list of frequencies: the case_file's mhb.save */
   CASE_FACTORS,   /* {k: [factor, phase]}: fem_load, its factors */
   CASE_PROBES,    /* {name: [x, y, z]}: the case_file's probe */
+  CASE_GAUGES,    /* {name: {at: [x, y, z], direction: [x, y, z]}}: the case_file's gauge */
   CASE_DAMPING,   /* ratio, list of ratios, {loss_factor: } or {rayleigh: }: damping */
   CASE_GROUPS,    /* {group: rule}: the case_file's source.rules */
   /* list of mappings, whose keys are rows "LIST[].KEY"; elements of size each, counted at

@@ -205,30 +205,91 @@ static bool probe_name(const char *name) {
   return name[0] && strlen(name) < CASE_NAME;
 }
 
+/* The name of entry i of probes or gauges. */
+static bool take_name(const case_value_context *c, const case_node *child, const char *kind,
+                      char *name) {
+  if (probe_name(child->key)) {
+    strcpy(name, child->key);
+    return true;
+  }
+  case_issue_add(c->issues, child->key_line, child->key_column, c->path,
+                 "'%.60s' cannot be a %s's name: 1 to %d letters, digits, _ - . +", child->key,
+                 kind, CASE_NAME - 1);
+  return false;
+}
+
+static bool mapping_room(const case_value_context *c, const case_node *node, const char *kind) {
+  if (node->kind != CASE_MAPPING) return case_value_refuse(c, node);
+  if (node->n <= CASE_MAX_PROBES) return true;
+  case_issue_add(c->issues, node->line, node->column, c->path, "%d %ss; at most %d", node->n, kind,
+                 CASE_MAX_PROBES);
+  return false;
+}
+
 bool case_list_probes(const case_value_context *c, const case_node *node, void *slot) {
   (void)slot;
-  if (node->kind != CASE_MAPPING) return case_value_refuse(c, node);
-  if (node->n > CASE_MAX_PROBES) {
-    case_issue_add(c->issues, node->line, node->column, c->path, "%d probes; at most %d", node->n,
-                   CASE_MAX_PROBES);
-    return false;
-  }
+  if (!mapping_room(c, node, "probe")) return false;
   bool good = true;
   for (int i = 0; i < node->n; i++) {
     const case_node *child = &node->child[i];
     char             path[CASE_PATH];
     case_path(path, "%s.%s", c->path, child->key);
     case_probe *probe = &c->file->probe[i];
-    if (!probe_name(child->key)) {
-      case_issue_add(c->issues, child->key_line, child->key_column, c->path,
-                     "'%.60s' cannot be a probe's name: 1 to %d letters, digits, _ - . +",
-                     child->key, CASE_NAME - 1);
-      good = false;
-      continue;
-    }
-    strcpy(probe->name, child->key);
-    good = case_value_numbers(c, path, child, 3, probe->at) && good;
+    good              = take_name(c, child, "probe", probe->name) &&
+           case_value_numbers(c, path, child, 3, probe->at) && good;
   }
   c->file->n_probes = node->n;
+  return good;
+}
+
+static bool gauge_vector(const case_value_context *c, const case_node *gauge, const char *leaf,
+                         double vector[3]) {
+  const case_node *node = case_node_find(gauge, leaf);
+  char             path[CASE_PATH];
+  case_path(path, "%s.%s", c->path, leaf);
+  if (node) return case_value_numbers(c, path, node, 3, vector);
+  case_issue_add(c->issues, gauge->line, gauge->column, path,
+                 "missing; expected {at: [x, y, z], direction: [x, y, z]}");
+  return false;
+}
+
+static bool read_gauge(const case_value_context *c, const case_node *node, case_gauge *gauge) {
+  if (node->kind != CASE_MAPPING)
+    return case_value_refuse_kind(c, c->path, node, "{at, direction}");
+  for (int i = 0; i < node->n; i++) {
+    const case_node *child = &node->child[i];
+    char             path[CASE_PATH];
+    if (strcmp(child->key, "at") == 0 || strcmp(child->key, "direction") == 0) continue;
+    case_path(path, "%s.%s", c->path, child->key);
+    case_issue_add(c->issues, child->key_line, child->key_column, path,
+                   "unknown key; a gauge has at and direction");
+    return false;
+  }
+  case_key           plain = *c->key; /* a direction has no unit */
+  case_value_context along = *c;
+  plain.unit               = "";
+  along.key                = &plain;
+  if (!gauge_vector(c, node, "at", gauge->at)) return false;
+  if (!gauge_vector(&along, node, "direction", gauge->direction)) return false;
+  const double *d = gauge->direction;
+  if (d[0] != 0 || d[1] != 0 || d[2] != 0) return true;
+  case_issue_add(c->issues, node->line, node->column, c->path, "direction is [0, 0, 0]");
+  return false;
+}
+
+bool case_list_gauges(const case_value_context *c, const case_node *node, void *slot) {
+  (void)slot;
+  if (!mapping_room(c, node, "gauge")) return false;
+  bool good = true;
+  for (int i = 0; i < node->n; i++) {
+    const case_node   *child = &node->child[i];
+    case_value_context one   = *c;
+    char               path[CASE_PATH];
+    case_path(path, "%s.%s", c->path, child->key);
+    one.path = path;
+    good     = take_name(c, child, "gauge", c->file->gauge[i].name) &&
+           read_gauge(&one, child, &c->file->gauge[i]) && good;
+  }
+  c->file->n_gauges = node->n;
   return good;
 }

@@ -4,8 +4,8 @@
 
 #include "cases/parse/value_context.h"
 
-/* The types CASE_PRELOADS, CASE_PLACES, CASE_ORDERS, CASE_POINTS, CASE_FACTORS and CASE_PROBES of
- * keys.h, and the list of CASE_SAVED. */
+/* The types CASE_PRELOADS, CASE_PLACES, CASE_ORDERS, CASE_POINTS, CASE_FACTORS, CASE_PROBES and
+ * CASE_GAUGES of keys.h, and the list of CASE_SAVED. */
 bool case_list_preloads(const case_value_context *c, const case_node *node, void *slot);
 bool case_list_places(const case_value_context *c, const case_node *node, void *slot);
 bool case_list_orders(const case_value_context *c, const case_node *node, void *slot);
@@ -13,5 +13,6 @@ bool case_list_frequencies(const case_value_context *c, const case_node *node, v
 bool case_list_saved(const case_value_context *c, const case_node *node, void *slot);
 bool case_list_factors(const case_value_context *c, const case_node *node, void *slot);
 bool case_list_probes(const case_value_context *c, const case_node *node, void *slot);
+bool case_list_gauges(const case_value_context *c, const case_node *node, void *slot);
 
 #endif

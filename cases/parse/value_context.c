@@ -29,6 +29,7 @@ void case_value_expected(const case_key *key, char *text, size_t size) {
       [CASE_SAVED]     = "a list of frequencies or one of",
       [CASE_FACTORS]   = "a mapping {harmonic: [factor, phase]}",
       [CASE_PROBES]    = "a mapping {name: [x, y, z]}",
+      [CASE_GAUGES]    = "a mapping {name: {at: [x, y, z], direction: [x, y, z]}}",
       [CASE_DAMPING]   = "a number, a list, {loss_factor: ...} or {rayleigh: [alpha, beta]}",
       [CASE_GROUPS]    = "a mapping {group: rule}",
       [CASE_LIST]      = "a list of mappings",

@@ -99,6 +99,7 @@ static void print_composite(const case_key *key, FILE *out) {
       print_mapping("^[0-9]+$", out);
       break;
     case CASE_PROBES:
+    case CASE_GAUGES:
     case CASE_GROUPS:
       print_mapping("", out);
       break;

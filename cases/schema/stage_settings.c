@@ -40,6 +40,16 @@ static void print_probes(FILE *out, const char *path, const case_file *file) {
   }
 }
 
+static void print_gauges(FILE *out, const char *path, const case_file *file) {
+  for (int i = 0; i < file->n_gauges; i++) {
+    fprintf(out, "%s.%s = ", path, file->gauge[i].name);
+    print_numbers(out, 3, file->gauge[i].at);
+    fputs("; ", out);
+    print_numbers(out, 3, file->gauge[i].direction);
+    fputc('\n', out);
+  }
+}
+
 /* Prints one number if the three are equal. */
 static void print_triple(FILE *out, const double v[3]) {
   print_numbers(out, v[0] == v[1] && v[1] == v[2] ? 1 : 3, v);
@@ -125,6 +135,8 @@ static void print_value(FILE *out, const case_key *key, const char *path, const 
     case_groups_print(out, path, slot);
   } else if (key->type == CASE_PROBES) {
     print_probes(out, path, file);
+  } else if (key->type == CASE_GAUGES) {
+    print_gauges(out, path, file);
   } else {
     fprintf(out, "%s = ", path);
     print_scalar(out, key, file, slot);

@@ -120,20 +120,32 @@ int post_blade_harmonics(const mhb_branch *b, int n_modes, int kept) {
   return 0;
 }
 
-/* weight[2 k + part][column] of the residual columns. */
-static void set_forces(const post_blade_field *f, const mhb_branch *b, int kept, double *weight) {
-  const int               K = b->n_harmonics + 1, patterns = f->n_column - f->n_contact;
-  const mhb_modal_motion *m = &b->modal;
-  for (int k = 0; k < K; k++)
+void post_blade_forces(const post_blade_field *f, const mhb_branch *b, int kept, int k,
+                       double complex *force) {
+  const size_t            at       = (size_t)kept * ((size_t)b->n_harmonics + 1) + (size_t)k;
+  const int               patterns = f->n_column - f->n_contact;
+  const mhb_modal_motion *m        = &b->modal;
+  const bool              driven   = k % b->order == 0 && k / b->order <= f->n_load;
+  for (int c = 0; c < f->n_contact; c++) force[c] = m->force[at * (size_t)f->n_contact + (size_t)c];
+  for (int c = 0; c < patterns; c++)
+    force[f->n_contact + c] =
+        driven ? m->scale[kept] * f->load_weight[k / b->order * patterns + c] : 0;
+}
+
+/* weight[2 k + part][column] of the residual columns, harmonics below rows/2. */
+static shb_status set_forces(const post_blade_field *f, const mhb_branch *b, int kept, int rows,
+                             double *weight) {
+  double complex *force = malloc((size_t)f->n_column * sizeof *force + 1);
+  SHB_CHECK(force, SHB_ERR_IO, "out of memory for the field of a point");
+  for (int k = 0; k < rows / 2; k++) {
+    post_blade_forces(f, b, kept, k, force);
     for (int c = 0; c < f->n_column; c++) {
-      double complex by = 0;
-      if (c < f->n_contact)
-        by = m->force[((size_t)kept * (size_t)K + (size_t)k) * (size_t)f->n_contact + (size_t)c];
-      else if (k % b->order == 0 && k / b->order <= f->n_load)
-        by = m->scale[kept] * f->load_weight[k / b->order * patterns + c - f->n_contact];
-      weight[(2 * k) * f->n_column + c]     = creal(by);
-      weight[(2 * k + 1) * f->n_column + c] = cimag(by);
+      weight[(2 * k) * f->n_column + c]     = creal(force[c]);
+      weight[(2 * k + 1) * f->n_column + c] = cimag(force[c]);
     }
+  }
+  free(force);
+  return SHB_OK;
 }
 
 static void set_amplitudes(const post_blade_field *f, const mhb_branch *b, int kept,
@@ -163,12 +175,12 @@ static shb_status sum_up(const post_blade_field *f, const mhb_branch *b, int kep
   SHB_CHECK(weight, SHB_ERR_IO, "out of memory for the field of a point");
   set_amplitudes(f, b, kept, weight);
   combine(rows, f->n_modes, components * f->n_nodes, weight, mode, false, out);
-  if (f->n_column > 0) {
-    set_forces(f, b, kept, weight);
+  shb_status status = SHB_OK;
+  if (f->n_column > 0) status = set_forces(f, b, kept, rows, weight);
+  if (f->n_column > 0 && status == SHB_OK)
     combine(rows, f->n_column, components * f->n_nodes, weight, residual, true, out);
-  }
   free(weight);
-  return SHB_OK;
+  return status;
 }
 
 shb_status post_blade_stress(const post_blade_field *f, const mhb_branch *b, int kept,

@@ -50,4 +50,8 @@ shb_status post_blade_stress(const post_blade_field *field, const mhb_branch *br
 shb_status post_blade_displacement(const post_blade_field *field, const mhb_branch *branch,
                                    int kept, double *out);
 
+/* force[n_column] <- what the residual columns are multiplied by at harmonic k, N. */
+void post_blade_forces(const post_blade_field *field, const mhb_branch *branch, int kept, int k,
+                       double complex *force);
+
 #endif

@@ -1,30 +1,19 @@
 #include "postproc/field/stress_table.h"
 
-#include <math.h>
 #include <stdlib.h>
 
-static void put_number(post_buffer *out, double value) {
-  post_put(out, isfinite(value) ? ",%.12g" : ",", value);
-}
+#include "postproc/field/kept_point.h"
 
 static void put_place(const mhb_branch *b, int branch, int point, const post_blade_field *field,
                       int index, const post_place *place, post_buffer *out) {
-  static const char *const kinds[MHB_N_BRANCH_KINDS] = {"nonlinear", "open", "stuck", "integration",
-                                                        "tracked"};
-  static const char *const specials[MHB_N_SPECIALS]  = {"",     "fold",           "peak",
-                                                        "flip", "Neimark-Sacker", "optimum"};
-  const double            *x                         = field->nodes + 3 * (size_t)place->node;
-  post_put(out, "%d,%s", branch, kinds[b->kind]);
-  put_number(out, b->kind == MHB_BRANCH_NONLINEAR ? b->n0[point] : NAN);
-  put_number(out, b->frequency[point]);
-  post_put(out, ",%d,%s,", point, specials[b->special[point]]);
-  if (b->stable[point] >= 0) post_put(out, "%d", b->stable[point]);
+  const double *x = field->nodes + 3 * (size_t)place->node;
+  post_put_kept_point(b, branch, point, out);
   post_put(out, ",%d,%d", index + 1, place->node);
-  for (int d = 0; d < 3; d++) put_number(out, x[d]);
-  put_number(out, place->amplitude);
-  put_number(out, place->principal);
-  put_number(out, place->mean);
-  put_number(out, place->safety);
+  for (int d = 0; d < 3; d++) post_put_cell(out, x[d]);
+  post_put_cell(out, place->amplitude);
+  post_put_cell(out, place->principal);
+  post_put_cell(out, place->mean);
+  post_put_cell(out, place->safety);
   post_put(out, "\r\n");
 }
 

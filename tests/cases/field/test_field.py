@@ -2,6 +2,7 @@
 
 Usage: test_field.py BIN, with the programs in BIN. Exit code 77: h5py is missing.
 """
+import csv
 import json
 import os
 import struct
@@ -34,6 +35,7 @@ modal: {{modes: 6, damping: 0.003}}
 excitation: {{engine_order: 56, pressure: 2 kPa}}
 probe: {{tip: [0 mm, 0 mm, 466 mm]}}
 contact: {{to: neighbour, psi: 30 deg, mu: 0.3, ku: 1 MN/m, kv: 1.5 MN/m, n0: 60 N}}
+gauge: {{g1: {{at: [-18 mm, 3 mm, 380 mm], direction: [0.2, 0, 1]}}}}
 mhb: {{frequency: [230 Hz, 330 Hz], harmonics: 3}}
 """
 OWN = f"""name: own
@@ -316,10 +318,31 @@ def without_residuals():
                     del out[group][name]
 
 
+def check_gauge():
+    """Against Hooke's law for the nodal stress at the nearest node: both err by the mesh size."""
+    with open('blade.gauge.csv', newline='') as source:
+        rows = list(csv.DictReader(source))
+    assert all(row['gauge'] == 'g1' for row in rows)
+    row = max(rows, key=lambda row: float(row['amplitude']))
+    p = Point('blade', int(row['branch']), int(row['point']))
+    node = int(np.argmin(np.linalg.norm(p.nodes - [-0.018, 0.003, 0.38], axis=1)))
+    along = np.array([0.2, 0, 1]) / np.hypot(0.2, 1)
+    xx, yy, zz, xy, yz, xz = p.s[1, node]
+    pull = along @ np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]) @ along
+    strain = abs((1.3 * pull - 0.3 * (xx + yy + zz)) / 205e9)
+    check('gauge against Hooke', abs(float(row['amplitude']) / strain - 1), 0.1)
+    with h5py.File('blade.modal.h5') as modal:
+        xx, yy, zz, xy, yz, xz = modal['static/nodal_stress'][node]
+    pull = along @ np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]) @ along
+    check('static strain against Hooke',
+          abs(float(row['static']) / ((1.3 * pull - 0.3 * (xx + yy + zz)) / 205e9) - 1), 0.1)
+
+
 def main():
     write('blade.yaml', CASE)
     write('own.yaml', OWN)
     run('shroudhb', 'run', '--quiet', 'blade.yaml')
+    check_gauge()
     with h5py.File('blade.response.h5') as r:
         points = r['branch_2/modal/point'][:]
     point = int(points[-1])

@@ -128,6 +128,18 @@ static void keys_and_kinds(void **state) {
        "c.yaml:20:7: error: contact.to: 'nobody' is not known; expected one of "
        "neighbour, ground",
        1},
+      {"probe: {tip:", "gauge: {g1: {at: [0, 0, 0.47]}}\nprobe: {tip:",
+       "c.yaml:18:13: error: gauge.g1.direction: missing; expected "
+       "{at: [x, y, z], direction: [x, y, z]}",
+       1},
+      {"probe: {tip:", "gauge: {g1: {at: [0, 0, 0.47], direction: [0, 0, 0]}}\nprobe: {tip:",
+       "c.yaml:18:13: error: gauge.g1: direction is [0, 0, 0]", 1},
+      {"probe: {tip:", "gauge: {g1: {at: [0, 0, 0.47], along: [0, 0, 1]}}\nprobe: {tip:",
+       "c.yaml:18:32: error: gauge.g1.along: unknown key; a gauge has at and direction", 1},
+      {"probe: {tip:", "gauge: {'g 1': {at: [0, 0, 0.47], direction: [0, 0, 1]}}\nprobe: {tip:",
+       "c.yaml:18:9: error: gauge: 'g 1' cannot be a gauge's name: 1 to 63 letters, digits, _ - . "
+       "+",
+       1},
       {"probe: {tip:", "probe: {'tip, 1':",
        "c.yaml:18:9: error: probe: 'tip, 1' cannot be a probe's name: 1 "
        "to 63 letters, digits, _ - . +",
