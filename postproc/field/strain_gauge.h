@@ -1,5 +1,5 @@
-/* Strain gauges: the strain along a direction at a point of the surface, for each mode and residual
- * column, and at the kept points of a response. */
+/* Strain gauges: the strain along a direction at a point of the surface. It is evaluated for each
+ * mode and residual column, and at the kept points of a response. */
 #ifndef POSTPROC_FIELD_STRAIN_GAUGE_H
 #define POSTPROC_FIELD_STRAIN_GAUGE_H
 
@@ -20,8 +20,8 @@ typedef struct {
 
 /* Place a gauge and evaluate its modes. The strain is along . sym(grad u) along of the element's
  * shape functions at the foot; nothing is averaged over elements. The field is one of
- * post_blade_field_read_motion. Errors: SHB_ERR_INPUT the point is farther from the surface than
- * MESH_FE_NEAR times the size of the blade, or the direction is normal to the surface; SHB_ERR_IO
+ * post_blade_field_read_motion. SHB_ERR_INPUT: the point is farther from the surface than
+ * MESH_FE_NEAR times the size of the blade, or the direction is normal to the surface. SHB_ERR_IO:
  * no memory. */
 shb_status post_gauge_place(const post_blade_field *field, post_gauge *gauge);
 void       post_gauge_free(post_gauge *gauge);
