@@ -72,15 +72,24 @@ static const char *points_for(const convergence_study *s, const post_rung *row) 
 static shb_status start_rung(convergence_study *s, const study_row *p, const char *reference,
                              const char *points, subprocess_result *result) {
   char  setting[RUNG_SETTING_WORDS][RUNG_WORD], none[] = "-";
-  char *words[RUNG_SETTING_WORDS + 7] = {subprocess_program("shroudhb-rung"), s->file->path,
-                                         s->variant[p->variant].modal, p->stem};
-  int   n                             = 4;
+  char  set[] = "--set", into[] = "--into";
+  char *words[RUNG_SETTING_WORDS + 7 + 2 * COMMAND_SETS + 2] = {
+      subprocess_program("shroudhb-rung"), s->file->path, s->variant[p->variant].modal, p->stem};
+  int n = 4;
   rung_words(&p->setting, setting);
   for (int i = 0; i < RUNG_SETTING_WORDS; i++) words[n++] = setting[i];
   char *stem = reference ? strdup(reference) : NULL, *path = points ? strdup(points) : NULL;
-  bool  made        = words[0] && (stem || !reference) && (path || !points);
-  words[n++]        = stem ? stem : none;
-  words[n++]        = path;
+  bool  made = words[0] && (stem || !reference) && (path || !points);
+  words[n++] = stem ? stem : none;
+  words[n++] = path ? path : none;
+  for (int i = 0; i < s->options->n_set; i++) {
+    words[n++] = set;
+    words[n++] = (char *)s->options->set[i];
+  }
+  if (s->options->into) {
+    words[n++] = into;
+    words[n++] = (char *)s->options->into;
+  }
   shb_status status = made ? subprocess_run(words, result)
                            : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   free(words[0]);

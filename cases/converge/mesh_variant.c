@@ -29,22 +29,17 @@ static char *join(const char *folder, const char *leaf) {
 }
 
 /* Runs one stage of a case file, which prints its own messages on stderr. */
-static shb_status run_stage(const char *stage, const char *path, bool force,
+static shb_status run_stage(const char *stage, const command_options *options,
                             subprocess_result *result) {
-  char  quiet[] = "--quiet", forced[] = "--force", end[] = "--", name[32];
-  char *words[6] = {NULL};
-  int   n        = 0;
+  char        name[32];
+  const char *words[COMMAND_WORDS];
   snprintf(name, sizeof name, "shroudhb-%s", stage);
-  words[n++] = subprocess_program(name);
-  words[n++] = quiet;
-  if (force) words[n++] = forced;
-  if (path[0] == '-') words[n++] = end;
-  words[n++]        = strdup(path);
-  shb_status status = words[0] && words[n - 1]
-                          ? subprocess_run(words, result)
-                          : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  free(words[n - 1]);
-  free(words[0]);
+  char *program = subprocess_program(name);
+  SHB_CHECK(program, SHB_ERR_IO, "out of memory");
+  words[0] = program;
+  command_forward(options, words, 1);
+  shb_status status = subprocess_run((char *const *)words, result);
+  free(program);
   if (status == SHB_OK && result->code != 0)
     return shb_fail((shb_status)result->code, __FILE__, __LINE__, "%s", "");
   return status;
@@ -93,12 +88,13 @@ static struct timespec changed(const char *path) {
   return stat(path, &info) == 0 ? info.st_mtim : (struct timespec){0};
 }
 
-/* Makes mesh and modes of the case at path, and measures their cost if both had to be made. */
-static shb_status run_stages(const char *path, bool force, mesh_variant *v) {
+/* Makes mesh and modes of a case, and measures their cost if both had to be made.
+ *   options  in  of the stages, with the path of the case */
+static shb_status run_stages(const command_options *options, mesh_variant *v) {
   subprocess_result mesh, modal;
   struct timespec   before = changed(v->modal), after;
-  SHB_TRY(run_stage("mesh", path, force, &mesh));
-  SHB_TRY(run_stage("modal", path, force, &modal));
+  SHB_TRY(run_stage("mesh", options, &mesh));
+  SHB_TRY(run_stage("modal", options, &modal));
   after       = changed(v->modal);
   bool made   = after.tv_sec != before.tv_sec || after.tv_nsec != before.tv_nsec;
   v->unknowns = unknowns_of(v->modal);
@@ -115,17 +111,46 @@ shb_status mesh_variant_own(const case_file *file, const command_options *option
   *out       = (mesh_variant){.factor = 1, .seconds = NAN, .memory = NAN, .unknowns = NAN};
   out->modal = case_modal_path(file);
   SHB_CHECK(out->modal, SHB_ERR_IO, "out of memory");
-  return file->modal_file ? SHB_OK : run_stages(file->path, options->force, out);
+  command_options own = *options;
+  own.quiet           = true;
+  own.verbose         = false;
+  return file->modal_file ? SHB_OK : run_stages(&own, out);
 }
 
-static shb_status derive(const case_file *file, mesh_variant *v, char **path) {
+/* Options of the stages of a derived case: its outputs lie beside it, its element sizes are its
+ * own. */
+typedef struct {
+  command_options options;
+  char            size[2][64]; /* overrides of the sizes, if the case has overrides */
+  char           *path;
+} derived_case;
+
+static void set_sizes(const case_file *file, double factor, derived_case *d) {
+  const double      value[] = {file->blade.size, file->blade.shroud_size};
+  const char *const key[]   = {"size", "shroud_size"};
+  command_options  *o       = &d->options;
+  for (int i = 0; i < 2; i++) {
+    if (o->n_set == 0 || o->n_set == COMMAND_SETS || value[i] == 0) continue;
+    snprintf(d->size[i], sizeof d->size[i], "mesh.blade.%s=%.9g m", key[i], factor * value[i]);
+    o->set[o->n_set++] = d->size[i];
+  }
+}
+
+static shb_status derive(const case_file *file, const command_options *options, mesh_variant *v,
+                         derived_case *d) {
   char leaf[CASE_NAME * 4];
   snprintf(leaf, sizeof leaf, "%s.yaml", file->name);
-  *path = join(v->folder, leaf);
-  SHB_CHECK(*path, SHB_ERR_IO, "out of memory");
-  SHB_TRY(case_resize_mesh(file, v->factor, *path));
+  d->path = join(v->folder, leaf);
+  SHB_CHECK(d->path, SHB_ERR_IO, "out of memory");
+  SHB_TRY(case_resize_mesh(file, v->factor, d->path));
+  d->options         = *options;
+  d->options.into    = NULL;
+  d->options.quiet   = true;
+  d->options.verbose = false;
+  d->options.path    = d->path;
+  set_sizes(file, v->factor, d);
   case_file derived;
-  SHB_TRY(case_read(*path, CASE_MESH | CASE_MODAL, stderr, &derived));
+  SHB_TRY(command_read(&d->options, CASE_MESH | CASE_MODAL, &derived));
   v->modal = case_modal_path(&derived);
   case_free(&derived);
   SHB_CHECK(v->modal, SHB_ERR_IO, "out of memory");
@@ -134,15 +159,16 @@ static shb_status derive(const case_file *file, mesh_variant *v, char **path) {
 
 shb_status mesh_variant_make(const case_file *file, const command_options *options,
                              const char *parent, double factor, mesh_variant *out) {
-  char leaf[40], *path = NULL;
-  *out = (mesh_variant){.factor = factor, .seconds = NAN, .memory = NAN, .unknowns = NAN};
+  char         leaf[40];
+  derived_case d = {.path = NULL};
+  *out           = (mesh_variant){.factor = factor, .seconds = NAN, .memory = NAN, .unknowns = NAN};
   snprintf(leaf, sizeof leaf, "mesh_%.4g", factor);
   out->folder = join(parent, leaf);
   SHB_CHECK(out->folder, SHB_ERR_IO, "out of memory");
   SHB_TRY(mesh_variant_folder(out->folder));
-  shb_status status = derive(file, out, &path);
-  if (status == SHB_OK) status = run_stages(path, options->force, out);
-  free(path);
+  shb_status status = derive(file, options, out, &d);
+  if (status == SHB_OK) status = run_stages(&d.options, out);
+  free(d.path);
   return status;
 }
 

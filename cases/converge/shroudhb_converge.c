@@ -11,7 +11,7 @@
 
 static const char usage[] =
     "usage: shroudhb-converge [--no-mesh | --finer] [--quiet] [--verbose] [--force] [--json]\n"
-    "                         CASE.yaml\n"
+    "                         [--set KEY=VALUE]... [--into FOLDER] CASE.yaml\n"
     "\n"
     "What accuracy costs on CASE.yaml: ladders of harmonics (fixed and auto), contact accuracy, "
     "modes (with\n"
@@ -37,7 +37,7 @@ int main(int argc, char **argv) {
   case_file       file;
   int             code = command_parse(argc, argv, usage, &options);
   if (code >= 0) return code;
-  shb_status status = case_read(options.path, CONVERGE_STAGES, stderr, &file);
+  shb_status status = command_read(&options, CONVERGE_STAGES, &file);
   if (status != SHB_OK) return command_finish(status);
   shb_interrupt_catch();
   status = converge_case(&file, &options);

@@ -231,13 +231,32 @@ static shb_status prepare(job *j) {
   return rung_output(&j->file, j->source.model.n_probes, j->source.model.probe_name, &j->output);
 }
 
+/* The words behind reference and points: pairs "--set" KEY=VALUE, "--into" FOLDER. False if they
+ * are not. */
+static bool take_overrides(int n, char **words, const char *set[COMMAND_SETS],
+                           case_overrides *out) {
+  for (int i = 2; i < n; i += 2) {
+    bool into = strcmp(words[i], "--into") == 0;
+    if (i + 1 == n || (!into && strcmp(words[i], "--set") != 0) || out->n == COMMAND_SETS)
+      return false;
+    if (into)
+      out->into = words[i + 1];
+    else
+      set[out->n++] = words[i + 1];
+  }
+  return true;
+}
+
 int main(int argc, char **argv) {
   job j = {0};
   if (argc == 2 && strcmp(argv[1], "--help") == 0) {
     fputs(usage, stdout);
     return SHB_OK;
   }
-  if (argc < LEAST_WORDS || argc > LEAST_WORDS + 2 ||
+  const char    *set[COMMAND_SETS];
+  case_overrides overrides = {.text = set};
+  if (argc < LEAST_WORDS ||
+      !take_overrides(argc - LEAST_WORDS, argv + LEAST_WORDS, set, &overrides) ||
       !rung_from_words(argv + FIRST_WORD, &j.setting)) {
     fputs("shroudhb: error: shroudhb-rung is started by shroudhb converge; see --help\n", stderr);
     return SHB_ERR_INPUT;
@@ -246,8 +265,11 @@ int main(int argc, char **argv) {
   j.stem  = argv[3];
   j.reference =
       argc > LEAST_WORDS && strcmp(argv[LEAST_WORDS], "-") != 0 ? argv[LEAST_WORDS] : NULL;
-  j.points          = argc > LEAST_WORDS + 1 ? argv[LEAST_WORDS + 1] : NULL;
-  shb_status status = case_read(argv[1], CASE_MHB | CASE_CONVERGE, stderr, &j.file);
+  j.points = argc > LEAST_WORDS + 1 && strcmp(argv[LEAST_WORDS + 1], "-") != 0
+                 ? argv[LEAST_WORDS + 1]
+                 : NULL;
+  shb_status status =
+      case_read_with(argv[1], &overrides, CASE_MHB | CASE_CONVERGE, stderr, &j.file);
   if (status != SHB_OK) return command_finish(status);
   shb_interrupt_catch();
   openblas_set_num_threads(1);

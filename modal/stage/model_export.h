@@ -31,8 +31,12 @@ shb_status modal_export_contact(hid_t file, const modal_patches *patches);
 shb_status modal_export_receptance(hid_t file, const modal_model *model);
 
 /* Write /VTKHDF, an UnstructuredGrid of quadratic cells. Its points link to /mesh/nodes. Point data
- * mode_001, ... are views of /modes/shape, which must exist. static_displacement and
+ * "mode_001 116.684 Hz", ... are views of /modes/shape, which must exist. static_displacement and
  * static_von_mises link to /static where that exists. Source: VTKHDF file format, version 1.0. */
-shb_status modal_export_vtk(hid_t file, const mesh_fe *mesh, int n_modes);
+shb_status modal_export_vtk(hid_t file, const mesh_fe *mesh, int n_modes, const double *frequency);
+
+/* Name of a mode's array, from 0: "mode_001 116.684 Hz". */
+enum { MODAL_VTK_NAME = 40 };
+void modal_vtk_name(int mode, double frequency, char name[MODAL_VTK_NAME]);
 
 #endif

@@ -76,7 +76,7 @@ static shb_status write_all(hid_t file, const mesh_fe *mesh, const modal_result 
   SHB_TRY(modal_export_receptance(file, &result->model));
   SHB_TRY(modal_deflection_write(file, &result->deflection, mesh->n_nodes, mesh->n_elements,
                                  &result->model));
-  return modal_export_vtk(file, mesh, result->model.n_modes);
+  return modal_export_vtk(file, mesh, result->model.n_modes, result->model.frequency);
 }
 
 /* The phases of progress are written to the file. */

@@ -3,6 +3,7 @@
 #include <hdf5.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "modal/stage/model_export.h"
 
@@ -70,13 +71,14 @@ static shb_status write_cells(hid_t group, const mesh_fe *mesh) {
 }
 
 /* View of /modes/shape[mode] in the same file as [n][3], without a copy of the data. */
-static shb_status write_view(hid_t data, int mode, hsize_t n_modes, hsize_t n_nodes) {
-  char    name[32];
+static shb_status write_view(hid_t data, int mode, double frequency, hsize_t n_modes,
+                             hsize_t n_nodes) {
+  char    name[MODAL_VTK_NAME];
   hsize_t view[2] = {n_nodes, 3}, source[3] = {n_modes, n_nodes, 3};
   hsize_t start[3] = {(hsize_t)mode, 0, 0}, count[3] = {1, n_nodes, 3};
   hid_t   to = H5Screate_simple(2, view, NULL), from = H5Screate_simple(3, source, NULL);
   hid_t   layout = H5Pcreate(H5P_DATASET_CREATE), set = -1;
-  snprintf(name, sizeof name, "mode_%03d", mode + 1);
+  modal_vtk_name(mode, frequency, name);
   if (H5Sselect_hyperslab(from, H5S_SELECT_SET, start, NULL, count, NULL) >= 0 &&
       H5Pset_virtual(layout, to, ".", "/modes/shape", from) >= 0)
     set = H5Dcreate2(data, name, H5T_NATIVE_DOUBLE, to, H5P_DEFAULT, layout, H5P_DEFAULT);
@@ -88,14 +90,14 @@ static shb_status write_view(hid_t data, int mode, hsize_t n_modes, hsize_t n_no
   return status;
 }
 
-static shb_status write_point_data(hid_t file, int n_modes, int n_nodes) {
+static shb_status write_point_data(hid_t file, int n_modes, const double *frequency, int n_nodes) {
   /* views need the format of HDF5 1.10; files otherwise have that of 1.8 */
   if (H5Fset_libver_bounds(file, H5F_LIBVER_V18, H5F_LIBVER_LATEST) < 0) return failed("PointData");
   hid_t data = H5Gcreate2(file, "VTKHDF/PointData", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
   if (data < 0) return failed("PointData");
   shb_status status = SHB_OK;
   for (int i = 0; status == SHB_OK && i < n_modes; i++)
-    status = write_view(data, i, (hsize_t)n_modes, (hsize_t)n_nodes);
+    status = write_view(data, i, frequency[i], (hsize_t)n_modes, (hsize_t)n_nodes);
   H5Gclose(data);
   return status;
 }
@@ -126,7 +128,7 @@ static shb_status describe_one(hid_t group, const char *path, const char *units,
 }
 
 /* Describe the datasets. Points is a link: /mesh/nodes has its own attributes. */
-static shb_status describe(hid_t group, int n_modes) {
+static shb_status describe(hid_t group, int n_modes, const double *frequency) {
   static const char *const text[][2] = {
       {"NumberOfPoints", "nodes"},
       {"NumberOfCells", "elements"},
@@ -138,8 +140,8 @@ static shb_status describe(hid_t group, int n_modes) {
   for (size_t i = 0; i < sizeof text / sizeof *text; i++)
     SHB_TRY(describe_one(group, text[i][0], "-", text[i][1]));
   for (int i = 0; i < n_modes; i++) {
-    char path[48];
-    snprintf(path, sizeof path, "PointData/mode_%03d", i + 1);
+    char path[MODAL_VTK_NAME + 16] = "PointData/";
+    modal_vtk_name(i, frequency[i], path + strlen(path));
     SHB_TRY(describe_one(group, path, "kg^-1/2", "mode shape, a view of /modes/shape"));
   }
   return SHB_OK;
@@ -156,13 +158,17 @@ static shb_status write_group(hid_t group, const mesh_fe *mesh) {
   return write_cells(group, mesh);
 }
 
-shb_status modal_export_vtk(hid_t file, const mesh_fe *mesh, int n_modes) {
+void modal_vtk_name(int mode, double frequency, char name[MODAL_VTK_NAME]) {
+  snprintf(name, MODAL_VTK_NAME, "mode_%03d %.6g Hz", mode + 1, frequency);
+}
+
+shb_status modal_export_vtk(hid_t file, const mesh_fe *mesh, int n_modes, const double *frequency) {
   hid_t group = H5Gcreate2(file, "VTKHDF", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
   if (group < 0) return failed("");
   shb_status status = write_group(group, mesh);
-  if (status == SHB_OK) status = write_point_data(file, n_modes, mesh->n_nodes);
+  if (status == SHB_OK) status = write_point_data(file, n_modes, frequency, mesh->n_nodes);
   if (status == SHB_OK) status = write_static(file, group);
-  if (status == SHB_OK) status = describe(group, n_modes);
+  if (status == SHB_OK) status = describe(group, n_modes, frequency);
   H5Gclose(group);
   return status;
 }

@@ -96,6 +96,14 @@ if(TARGET shroudhb-study)
   shb_scene_test(shroud_angle shroud_angle)
 endif()
 
+if(SHROUDHB_PYTHON)
+  add_test(NAME cases.scenes.read_results
+    COMMAND ${SHROUDHB_PYTHON} -B ${CMAKE_CURRENT_SOURCE_DIR}/cases/scenes/test_read_results.py
+            $<TARGET_FILE:shroudhb> ${PROJECT_SOURCE_DIR}/cases/first_case/case.yaml
+            ${PROJECT_SOURCE_DIR}/cases/read_results)
+  set_tests_properties(cases.scenes.read_results PROPERTIES SKIP_RETURN_CODE 77)
+endif()
+
 # The example of cases/bring_your_own; skipped where python3 has no h5py.
 if(SHROUDHB_PYTHON)
   add_executable(test_cases_scenes_bring_your_own cases/scenes/test_bring_your_own.c)

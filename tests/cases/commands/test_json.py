@@ -115,6 +115,12 @@ def scene():
     study = run('study', '--json', '--quiet', 'study.yaml')
     assert [d['keys']['contact.mu'] for d in study['designs']] == [0.3, 0.4], study
     assert study['designs'][0]['outputs']['peak'] > 0 and study['designs_done'] == 2
+    ladder = run('converge', '--json', '--set', 'contact.n0=0.3', '--set', 'contact.mu=0.5',
+                 '--set', 'mhb.frequency=[0.2 Hz, 0.24 Hz]', '--set', 'converge.tolerance=0.5',
+                 'case.yaml')
+    assert ladder['rungs'] and all(rung['status'] == 'done' for rung in ladder['rungs'])
+    with h5py.File('three_degree.converge.h5') as file:
+        assert 'contact.mu = 0.5' in file.attrs['settings'].replace('0.50000000000000000', '0.5')
     return paths(result) | paths(tracked)
 
 

@@ -8,6 +8,7 @@
 #include "mesh/io/inp_write.h"
 #include "modal/common/session.h"
 #include "modal/model/receptance.h"
+#include "modal/stage/model_export.h"
 #include "modal/stage/stage.h"
 #include "tests/support/box.h"
 #include "tests/support/fem.h"
@@ -215,18 +216,23 @@ static void abaqus_mesh_gives_the_same(void **state) {
   remove(out);
 }
 
-/* /VTKHDF as ParaView reads it; mode_00i is /modes/shape[i]. */
+/* /VTKHDF as ParaView reads it; "mode_00i f Hz" is /modes/shape[i]. */
 static void vtk_group_shows_the_modes(void **state) {
   (void)state;
   hid_t    file;
   h5_shape all = {3, {8, 0, 3}}, one = {2, {0, 3}}, nodes = {2, {0, 3}}, points = {2, {0, 3}};
   h5_shape cells_shape = {2, {0, 10}}, flat = {1, {0}}, types = {1, {0}};
-  double  *shape, *mode, *coordinates, *linked;
+  h5_shape modes = {1, {0}};
+  double  *shape, *mode, *coordinates, *linked, *frequency;
   int     *gmsh, *vtk, *type;
   char    *text;
   assert_ok(h5_open(scratch("sector.modal.h5"), &file));
   assert_ok(h5_read_double(file, "/modes/shape", &all, &shape));
-  assert_ok(h5_read_double(file, "/VTKHDF/PointData/mode_003", &one, &mode));
+  char third[32 + MODAL_VTK_NAME] = "/VTKHDF/PointData/";
+  assert_ok(h5_read_double(file, "/modes/frequency", &modes, &frequency));
+  modal_vtk_name(2, frequency[2], third + strlen(third));
+  assert_ok(h5_read_double(file, third, &one, &mode));
+  free(frequency);
   assert_ok(h5_read_double(file, "/mesh/nodes", &nodes, &coordinates));
   assert_ok(h5_read_double(file, "/VTKHDF/Points", &points, &linked));
   assert_int_equal(one.dim[0], all.dim[1]);

@@ -28,7 +28,7 @@ static void write(const mesh_fe *mesh) {
       h5_write_double(file, "modes/frequency", H5_SHAPE(MODES), frequency, "Hz", "frequency"));
   assert_ok(modal_export_mesh(file, mesh));
   assert_ok(modal_export_shapes(file, MODES, mesh->n_nodes, shape));
-  assert_ok(modal_export_vtk(file, mesh, MODES));
+  assert_ok(modal_export_vtk(file, mesh, MODES, frequency));
   assert_ok(h5_close(file));
   free(shape);
 }
@@ -88,11 +88,12 @@ static void check_cells(hid_t file, const mesh_fe *mesh) {
 }
 
 static void check_views(hid_t file, const mesh_fe *mesh) {
+  static const char *const names[MODES] = {"mode_001 10 Hz", "mode_002 20 Hz"};
   for (int i = 0; i < MODES; i++) {
-    char     name[48];
+    char     name[64];
     double  *u;
     h5_shape shape = H5_SHAPE((hsize_t)mesh->n_nodes, 3);
-    snprintf(name, sizeof name, "VTKHDF/PointData/mode_%03d", i + 1);
+    snprintf(name, sizeof name, "VTKHDF/PointData/%s", names[i]);
     hid_t set    = H5Dopen2(file, name, H5P_DEFAULT);
     hid_t memory = H5Screate_simple(2, shape.dim, NULL);
     assert_true(set >= 0);
