@@ -36,9 +36,8 @@ def main(folder):
     os.chdir(folder)
     summary = json.loads(run(
         SHROUDHB, 'run', '--json', '--no-report', '--set', 'name=blade', '--set',
-        'mesh.blade.size=14 mm', '--set', 'contact.n0=[40 N, 80 N]', '--set',
-        'mhb.frequency=[220 Hz, 300 Hz]', '--set', 'mhb.tolerance=0.05', '--set',
-        'mhb.stability=never', 'blade.yaml'))
+        'mesh.blade.size=14 mm', '--set', 'contact.n0=[60 N, 80 N]', '--set',
+        'mhb.frequency=[255 Hz, 280 Hz]', '--set', 'mhb.stability=never', 'blade.yaml'))
     said = run(sys.executable, os.path.join(SCRIPTS, 'read_results.py'), 'blade')
     print(said)
     for i, mode in enumerate(summary['modes'][:6]):
@@ -49,7 +48,6 @@ def main(folder):
     curves = [c for c in summary['curves'] if c['kind'] == 'nonlinear']
     assert len(curves) == 2
     for curve in curves:  # that of the summary is refined between points
-        print(curve['n0'], curve['peak']['amplitude'], peaks[curve['n0']])
         assert abs(peaks[curve['n0']] / curve['peak']['amplitude'] - 1) < 1e-2
     for picture in ('blade.modes.png', 'blade.response.png'):
         assert open(picture, 'rb').read(8) == b'\x89PNG\r\n\x1a\n'
