@@ -248,6 +248,10 @@ static void numbers_and_ranges(void **state) {
        "c.yaml:25:7: error: contact.ku: [500000, 600000, 600000] N/m is not positive "
        "definite: kuu and kww must be above 0 and kuu kww above kuw^2",
        1},
+      {"[0.5 MN/m, -70 kN/m, 0.6 MN/m]", "[1 MN/m, 999999.9999, 1 MN/m]",
+       "c.yaml:25:7: error: contact.ku: [1000000, 999999.9999, 1000000] N/m is 2e+10 times "
+       "stiffer in one direction than in the other; at most 1e+07 times are allowed",
+       1},
       {"[0.5 MN/m, -70 kN/m, 0.6 MN/m]", "0",
        "c.yaml:25:7: error: contact.ku: is 0 N/m, must be above 0 to "
        "1e+15 N/m",
