@@ -284,7 +284,8 @@ void post_blade_section(const post_analysis *analysis, const post_blade_view *vi
       "<option value=\"1\">one on each side</option><option value=\"3\">three on each side"
       "</option></select></label>\n"
       "<button type=\"button\" id=\"blade-play\">Pause</button>\n"
-      "<button type=\"button\" id=\"blade-home\">Whole blade</button>\n</div>\n"
+      "<button type=\"button\" id=\"blade-home\">Whole blade</button>\n"
+      "<button type=\"button\" id=\"blade-save\">PNG</button>\n</div>\n"
       "<div id=\"blade-still\">\n");
   post_still_blade(view->field, view->axis, out);
   post_put(out,

@@ -28,7 +28,8 @@
   const state = {
     output: outputs[0],
     log: D.log,
-    zoom: null,
+    zoom: null,  /* abscissa [lo, hi] */
+    zoomY: null, /* amplitude [lo, hi], m */
     branch: D.chosen,
     point: 0, /* of the chosen branch */
     pair: 0,  /* index into D.contacts */
@@ -61,6 +62,7 @@
     const y = !(most > 0) ? {lo: 0, hi: u[1], log: false} :
         state.log         ? {lo: Math.max(least / 1.2, 1e-4 * most), hi: 1.4 * most, log: true} :
                             {lo: 0, hi: 1.06 * most, log: false};
+    if (state.zoomY) Object.assign(y, {lo: state.zoomY[0], hi: state.zoomY[1]});
     const x = fullRange();
     const label = `${o.place} ${o.axis}, ${o.quantity}, ${u[0]}`;
     main = new Panel(
@@ -116,7 +118,7 @@
         main.dot("here", b.f[state.point], b.row(o.row)[state.point], 4.5);
     }
     show("response", height, [main], `<g id="hover"></g>`);
-    $("whole").disabled = !state.zoom;
+    $("whole").disabled = !state.zoom && !state.zoomY;
     drawHover();
   }
   /* Text anchor that keeps the label of a limit inside the parameter's range. */
@@ -558,6 +560,7 @@
       button.setAttribute("aria-pressed", String((button.dataset.scale === "log") === state.log));
   }
   function choose(place, ax, quantity) {
+    state.zoomY = null;
     const match = (a, q) => outputs.find(
         e => e.place === place && (a === null || e.axis === a) && (q === null || e.quantity === q));
     state.output =
@@ -585,8 +588,9 @@
     drawAlong();
     drawHarmonics();
   }
-  function setZoom(range) {
+  function setZoom(range, rangeY = null) {
     state.zoom = range;
+    state.zoomY = rangeY;
     drawResponse();
     drawAlong();
     drawHarmonics();
@@ -600,6 +604,7 @@
     for (const b of document.querySelectorAll("[data-scale]"))
       b.onclick = () => {
         state.log = b.dataset.scale === "log";
+        state.zoomY = null;
         drawAll();
       };
     $("whole").onclick = () => setZoom(null);
@@ -652,37 +657,101 @@
       const r = svg.getBoundingClientRect(), s = widthOf("response") / r.width;
       return [(e.clientX - r.left) * s, (e.clientY - r.top) * s];
     };
-    const clamp = x => Math.max(main.box.left, Math.min(main.box.left + main.box.width, x));
+    const clamp = ([x, y]) => [
+      Math.max(main.box.left, Math.min(main.box.left + main.box.width, x)),
+      Math.max(main.box.top, Math.min(main.box.top + main.box.height, y))
+    ];
+    const ENOUGH = 6, TALL = 14; /* px of a drag: along x, and for the amplitude too */
+    /* Zoom from corner to corner, px; a flat rectangle keeps the amplitudes, a narrow one the
+     * abscissa. */
+    function zoomTo([x0, y0], [x1, y1]) {
+      const flat = Math.abs(y1 - y0) < TALL, narrow = Math.abs(x1 - x0) <= ENOUGH;
+      setZoom(
+          narrow ? state.zoom : [main.value(Math.min(x0, x1)), main.value(Math.max(x0, x1))],
+          flat ? state.zoomY : [main.valueY(Math.max(y0, y1)), main.valueY(Math.min(y0, y1))]);
+    }
+    /* Both ranges by factors about a place, px. */
+    function zoomBy(place, factorX, factorY) {
+      const [x, y] = clamp(place), b = main.box;
+      const low = [x - (x - b.left) * factorX, y - (y - b.top) * factorY],
+            high = [x + (b.left + b.width - x) * factorX, y + (b.top + b.height - y) * factorY];
+      const xs = [main.value(low[0]), main.value(high[0])],
+            ys = [main.valueY(high[1]), main.valueY(low[1])];
+      const range = [Math.max(xs[0], X.range[0]), Math.min(xs[1], X.range[1])];
+      const whole = range[0] <= X.range[0] && range[1] >= X.range[1];
+      if (whole && factorX > 1) setZoom(null);
+      else if (range[1] - range[0] > 1e-7 * (X.range[1] - X.range[0]))
+        setZoom(whole ? null : range, main.ay.log || ys[0] >= 0 ? ys : [0, ys[1]]);
+    }
+    const fingers = new Map();
+    let spread = 0, tapped = null;
+    function pinch() {
+      const [p, q] = [...fingers.values()], size = Math.hypot(p[0] - q[0], p[1] - q[1]);
+      if (spread > 0 && size > 0)
+        zoomBy([(p[0] + q[0]) / 2, (p[1] + q[1]) / 2], spread / size, spread / size);
+      spread = size;
+    }
     svg.setAttribute("tabindex", "0");
     svg.addEventListener("pointerdown", e => {
-      if (e.button === 0 && e.pointerType !== "touch") {
-        from = clamp(local(e)[0]);
+      if (e.pointerType === "touch") {
+        fingers.set(e.pointerId, local(e));
+        tapped = fingers.size === 1 ? local(e) : null;
+        spread = 0;
+      } else if (e.button === 0) {
+        from = clamp(local(e));
         e.preventDefault();
         svg.focus({preventScroll: true});
       }
     });
     svg.addEventListener("pointermove", e => {
       const [x, y] = local(e);
-      if (from !== null && Math.abs(x - from) > 6) {
-        const to = clamp(x);
+      if (fingers.has(e.pointerId)) {
+        fingers.set(e.pointerId, [x, y]);
+        if (tapped && Math.hypot(x - tapped[0], y - tapped[1]) > 12) tapped = null;
+        if (fingers.size === 2) pinch();
+      }
+      if (from !== null && Math.hypot(x - from[0], y - from[1]) > ENOUGH) {
+        const to = clamp([x, y]), b = main.box, flat = Math.abs(to[1] - from[1]) < TALL,
+              narrow = Math.abs(to[0] - from[0]) <= ENOUGH;
+        const left = narrow ? b.left : Math.min(from[0], to[0]),
+              top = flat ? b.top : Math.min(from[1], to[1]);
         $("readout").hidden = true;
-        $("hover").innerHTML = `<rect class="band" x="${Math.min(from, to)}" y="${
-            main.box.top}" width="${Math.abs(to - from)}" height="${main.box.height}"/>`;
+        $("hover").innerHTML = `<rect class="band" x="${left}" y="${top}" width="${
+            narrow ? b.width : Math.abs(to[0] - from[0])}" height="${
+            flat ? b.height : Math.abs(to[1] - from[1])}"/>`;
         return;
       }
+      if (fingers.size > 1) return;
       state.at = nearest(x, y);
       svg.style.cursor = state.at ? "pointer" : "crosshair";
       drawHover();
     });
+    const lift = e => {
+      if (!fingers.delete(e.pointerId)) return false;
+      spread = 0;
+      if (e.type === "pointerup" && tapped) {
+        state.at = nearest(...tapped);
+        if (state.at) select(state.at.b, state.at.i);
+        drawHover();
+      }
+      tapped = null;
+      return true;
+    };
     window.addEventListener("pointerup", e => {
-      if (from === null) return;
-      const to = clamp(local(e)[0]), start = from;
+      if (lift(e) || from === null) return;
+      const to = clamp(local(e)), start = from;
       from = null;
-      if (Math.abs(to - start) > 6)
-        setZoom([main.value(Math.min(start, to)), main.value(Math.max(start, to))]);
+      if (Math.hypot(to[0] - start[0], to[1] - start[1]) > ENOUGH) zoomTo(start, to);
       else if (state.at)
         select(state.at.b, state.at.i);
     });
+    window.addEventListener("pointercancel", lift);
+    svg.addEventListener("wheel", e => {
+      if (document.activeElement !== svg && !e.ctrlKey) return; /* else the page scrolls */
+      e.preventDefault();
+      const factor = Math.exp(0.0015 * e.deltaY);
+      zoomBy(local(e), factor, e.shiftKey ? 1 : factor);
+    }, {passive: false});
     svg.addEventListener("pointerleave", () => {
       if (from === null) {
         state.at = null;
@@ -715,7 +784,7 @@
                 select(state.at.b, state.at.i);
               } else if (e.key === "Escape") {
                 state.at = null;
-                if (state.zoom) setZoom(null);
+                if (state.zoom || state.zoomY) setZoom(null);
               } else
                 return;
               e.preventDefault();
@@ -730,6 +799,10 @@
   wireChart();
   drawAll();
   showBlade();
+  const name = document.querySelector("h1").textContent.replace(/[^\w.-]+/g, "_");
+  Plot.offer(name);
+  if (typeof Blade !== "undefined" && Blade && $("blade-save"))
+    $("blade-save").onclick = () => Plot.save(name + "_blade.png", Blade.picture());
   let timer;
   window.addEventListener("resize", () => {
     clearTimeout(timer);

@@ -93,7 +93,7 @@ const Plot = (() => {
   /* One data area: box {left, top, width, height} in px, axes {lo, hi, log, unit, label}. */
   class Panel {
     constructor(id, box, x, y) {
-      Object.assign(this, {id, box, ax: x, ay: y, svg: ""});
+      Object.assign(this, {id, box, ax: x, ay: y, svg: "", series: []});
       this.frame();
     }
     static place(a, v) {
@@ -112,6 +112,12 @@ const Plot = (() => {
       const a = this.ax, t = (px - this.box.left) / this.box.width;
       return a.log ? a.lo * (a.hi / a.lo) ** t : a.lo + t * (a.hi - a.lo);
     }
+    valueY(py) {
+      const a = this.ay, t = 1 - (py - this.box.top) / this.box.height;
+      return a.log ? a.lo * (a.hi / a.lo) ** t : a.lo + t * (a.hi - a.lo);
+    }
+    /* What is drawn, for the table of the chart. */
+    note(classes, xs, ys, piece) { this.series.push({classes, xs, ys, piece}); }
     ticks(a, wanted) {
       return a.knee  ? signedTicks(a, wanted) :
           a.unit > 0 ? (a.log ? logTicks : linearTicks)(a.lo / a.unit, a.hi / a.unit, wanted) :
@@ -154,6 +160,7 @@ const Plot = (() => {
         this.svg += `<path class="${classes}" clip-path="url(#${this.id}-clip)" d="${d.join("")}Z"/>`;
     }
     line(classes, xs, ys, piece) {
+      this.note(classes, xs, ys, piece);
       if (xs.length === 1 && !piece) this.dot(classes, xs[0], ys[0], 2);
       let d = "", at = -1, px = NaN, py = NaN, lastX = NaN, lastY = NaN;
       for (let i = 0; i < xs.length; i++) {
@@ -181,12 +188,14 @@ const Plot = (() => {
           y <= b.top + b.height + 1;
     }
     dot(classes, vx, vy, r) {
+      this.note(classes, [vx], [vy]);
       const x = this.x(vx), y = this.y(vy);
       if (this.inside(x, y))
         this.svg +=
             `<circle class="${classes}" cx="${x.toFixed(2)}" cy="${y.toFixed(2)}" r="${r}"/>`;
     }
     bar(classes, x0, x1, y0, y1) {
+      this.note(classes, [(x0 + x1) / 2], [y1 - y0]);
       const low = this.y(y0), high = this.y(y1);
       if (low - high >= 0.01)
         this.svg +=
@@ -207,8 +216,79 @@ const Plot = (() => {
     }
   }
 
+  /* ---------------------------------------------------------------- export */
+  const shown = {}; /* panels of the charts drawn last */
+  const inside = (a, v) => Number.isFinite(v) && v >= Math.min(a.lo, a.hi) && v <= Math.max(a.lo, a.hi);
+  /* The numbers of what is seen of a chart: a row a point, in SI units. */
+  function table(id) {
+    const rows = [["panel", "series", "x", "y"]];
+    shown[id].forEach((p, k) => {
+      rows.push([k + 1, "axes", p.ax.label || "", p.ay.label || ""]);
+      for (const s of p.series)
+        for (let i = 0; i < s.xs.length; i++)
+          if ((!s.piece || s.piece(i)) && inside(p.ax, s.xs[i]) && inside(p.ay, s.ys[i]))
+            rows.push([k + 1, s.classes.trim(), s.xs[i], s.ys[i]]);
+    });
+    const field = v => /[",\n]/.test(v) ? `"${String(v).replaceAll('"', '""')}"` : v;
+    return rows.map(r => r.map(field).join()).join("\n") + "\n";
+  }
+  /* A chart as a picture of its own, with the style of the page. */
+  function picture(id) {
+    const svg = $(id), copy = svg.cloneNode(true), [, , w, h] = svg.getAttribute("viewBox").split(" ");
+    for (const e of copy.querySelectorAll("#hover")) e.remove();
+    copy.setAttribute("width", w);
+    copy.setAttribute("height", h);
+    const style = document.createElementNS(svg.namespaceURI, "style");
+    style.textContent = [...document.querySelectorAll("style")].map(e => e.textContent).join("");
+    const paper = document.createElementNS(svg.namespaceURI, "rect");
+    paper.setAttribute("width", "100%");
+    paper.setAttribute("height", "100%");
+    paper.setAttribute("style", "fill:var(--card)");
+    copy.prepend(style, paper);
+    return new XMLSerializer().serializeToString(copy);
+  }
+  function save(name, data, type) {
+    const link = document.createElement("a");
+    link.download = name;
+    link.href = type ? URL.createObjectURL(new Blob([data], {type})) : data;
+    link.click();
+    if (type) setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+  }
+  /* Twice the size in the page, as a data URL. */
+  async function raster(id) {
+    const image = new Image(), text = picture(id);
+    image.src = "data:image/svg+xml;charset=utf-8," + encodeURIComponent(text);
+    await image.decode();
+    const canvas = document.createElement("canvas");
+    canvas.width = 2 * image.width;
+    canvas.height = 2 * image.height;
+    canvas.getContext("2d").drawImage(image, 0, 0, canvas.width, canvas.height);
+    return canvas.toDataURL("image/png");
+  }
+  /* Buttons below every chart of the page. name: of the files. */
+  function offer(name) {
+    for (const svg of document.querySelectorAll(".chart > svg.plot")) {
+      const id = svg.id, box = document.createElement("div"), file = `${name}_${id}`;
+      box.className = "export";
+      const add = (word, act) => {
+        const button = document.createElement("button");
+        button.type = "button";
+        button.textContent = word;
+        button.title = `Save this chart as ${word}`;
+        button.dataset.save = word;
+        button.onclick = act;
+        box.append(button);
+      };
+      add("SVG", () => save(file + ".svg", picture(id), "image/svg+xml"));
+      add("PNG", async () => save(file + ".png", await raster(id)));
+      if (shown[id]) add("CSV", () => save(file + ".csv", table(id), "text/csv"));
+      svg.parentElement.append(box);
+    }
+  }
+
   /* Replace a chart's SVG by panels; its title and description remain. */
   function show(id, height, panels, extra = "") {
+    shown[id] = panels;
     const svg = $(id),
           keep = [...svg.querySelectorAll("title, desc")].map(e => e.outerHTML).join("");
     svg.setAttribute("viewBox", `0 0 ${widthOf(id)} ${height}`);
@@ -227,6 +307,6 @@ const Plot = (() => {
 
   return {
     $, NBSP, number, LENGTH, ENERGY, unit, percent, escape, linearTicks, logTicks, signed, around,
-    axis, Panel, show, widthOf, extent
+    axis, Panel, show, widthOf, extent, offer, save, table, picture, raster
   };
 })();

@@ -139,11 +139,14 @@ static void put_main(const post_analysis *analysis, const char *case_name, post_
       "Dashed grey: the linear limits, contact open (long) and stuck (short). Amplitude of the "
       "first "
       "harmonic: the largest displacement it reaches in a cycle.</figcaption>\n"
-      "<p class=\"hint\">Point at a curve to read it, click it to see its contact and harmonics "
-      "below, drag across "
-      "to zoom, double-click for the whole range. Keyboard: arrows move along and between curves, "
-      "Enter "
-      "chooses, Escape resets.</p>\n<p id=\"spoken\" class=\"hidden\" aria-live=\"polite\"></p>\n"
+      "<p class=\"hint\">Point at a curve to read it, click or tap it to see its contact, "
+      "harmonics and "
+      "motion below. Drag a rectangle, turn the wheel (after a click into the chart, or with Ctrl) "
+      "or "
+      "spread two fingers to zoom; double-click for the whole range. Keyboard: arrows move along "
+      "and "
+      "between curves, Enter chooses, Escape resets.</p>\n<p id=\"spoken\" class=\"hidden\" "
+      "aria-live=\"polite\"></p>\n"
       "</figure></div>\n</section>\n");
 }
 
@@ -292,6 +295,14 @@ static void put_tables(const post_analysis *analysis, post_buffer *out) {
   post_put(out, "</section>\n");
 }
 
+/* A file name as a relative address. */
+static void put_address(const char *name, post_buffer *out) {
+  for (const char *c = name; *c; c++) {
+    bool plain = isalnum((unsigned char)*c) || strchr("-_.~", *c);
+    post_put(out, plain ? "%c" : "%%%02X", (unsigned char)*c);
+  }
+}
+
 shb_status post_report(const post_analysis *analysis, const post_origin *source,
                        const char *case_name, const post_blade_view *blade, post_buffer *out) {
   bool moving = blade && post_blade_view_fits(blade, analysis->response);
@@ -321,8 +332,10 @@ shb_status post_report(const post_analysis *analysis, const post_origin *source,
              "To keep this page small its charts leave out %d outputs; the response file and the "
              "CSV have all. ",
              left_out);
+  post_put(out, "Displacements in SI: <a href=\"");
+  put_address(case_name, out);
   post_put(out,
-           "Displacements in SI in the CSV beside this page. Works without "
+           ".csv\">the table of every point</a>, beside this page. Works without "
            "network.</footer>\n<script>\n");
   post_put_bytes(out, post_plot_js, strlen(post_plot_js));
   post_put_bytes(out, post_contact_js, strlen(post_contact_js));

@@ -54,6 +54,44 @@
   changes("double click", "response", () => svg.dispatchEvent(new MouseEvent("dblclick")));
   zoom();
   changes("Whole range", "response", () => $("whole").click());
+  /* a wide flat rectangle keeps the amplitudes, a tall one does not; the wheel in the chart */
+  const ticks = () => [...svg.querySelectorAll("text.tick")].map(t => t.textContent).join();
+  const wheel = deltaY => svg.dispatchEvent(new WheelEvent("wheel", {
+    deltaY, clientX: r.left + 0.5 * r.width, clientY: r.top + 0.5 * r.height, bubbles: true,
+    cancelable: true, ctrlKey: true
+  }));
+  const before = ticks();
+  zoom();
+  const sides = ticks();
+  if (sides === before) faults.push("a rectangle does not zoom");
+  wheel(-400);
+  if (ticks() === sides) faults.push("the wheel does not zoom");
+  for (let i = 0; i < 12; i++) wheel(800);
+  if (ticks() !== before) faults.push("the wheel does not come back to the whole range");
+  /* touch: a tap chooses, two fingers zoom */
+  const touch = (type, id, x, y) => svg.dispatchEvent(new PointerEvent(type, {
+    pointerType: "touch", pointerId: id, clientX: r.left + x * r.width,
+    clientY: r.top + y * r.height, bubbles: true
+  }));
+  touch("pointerdown", 11, 0.4, 0.5);
+  touch("pointerdown", 12, 0.6, 0.5);
+  touch("pointermove", 12, 0.62, 0.5);
+  touch("pointermove", 12, 0.8, 0.5);
+  if (ticks() === before) faults.push("two fingers do not zoom");
+  touch("pointerup", 11, 0.4, 0.5);
+  touch("pointerup", 12, 0.8, 0.5);
+  $("whole").click();
+  /* every chart can be saved */
+  const saved = [];
+  HTMLAnchorElement.prototype.click = function() { saved.push(this.download); };
+  for (const b of document.querySelectorAll("[data-save]"))
+    if (b.dataset.save !== "PNG") b.click();
+  const wanted = document.querySelectorAll('[data-save="SVG"],[data-save="CSV"]').length;
+  if (!wanted || saved.length !== wanted) faults.push(`${saved.length} of ${wanted} files saved`);
+  const rows = Plot.table("response").split("\n");
+  if (rows.length < 50 || rows.some(l => l && l.split(",").length < 4))
+    faults.push(`table of ${rows.length} rows`);
+  if (!/^<svg[^>]*xmlns=/.test(Plot.picture("response"))) faults.push("no picture of the chart");
   /* keyboard */
   for (const key of ["ArrowRight", "ArrowUp", "ArrowDown", "ArrowLeft", "Enter", "Escape"])
     svg.dispatchEvent(new KeyboardEvent("keydown", {key, bubbles: true}));
