@@ -120,27 +120,54 @@ static char *current_modal(const case_file *file) {
 typedef struct {
   post_blade_field field;
   post_fatigue     fatigue;
+  int             *region; /* [node] with several materials, else NULL */
+  post_goodman     line[MESH_MAX_VOLUMES];
   mhb_response    *response; /* NULL: there is no stress */
   post_buffer      section;  /* of the report */
 } stress_work;
 
 static void stress_free(stress_work *s) {
+  free(s->region);
   post_blade_field_free(&s->field);
   mhb_response_destroy(s->response);
   post_buffer_free(&s->section);
+}
+
+/* Whether a material of the case has Goodman's line. */
+static bool has_fatigue(const case_file *file) {
+  for (int i = 0; i < file->n_materials; i++)
+    if (file->materials[i].endurance > 0) return true;
+  return file->endurance > 0;
+}
+
+/* Each material has its own line. */
+static shb_status set_fatigue(const case_file *file, const char *modal, stress_work *s) {
+  const char *name[MESH_MAX_VOLUMES];
+  double      stiffness[MESH_MAX_VOLUMES];
+  s->fatigue = (post_fatigue){.endurance = file->endurance, .ultimate = file->ultimate};
+  if (file->n_materials == 0 || !has_fatigue(file)) return SHB_OK;
+  for (int i = 0; i < file->n_materials; i++) {
+    name[i]      = file->materials[i].group;
+    stiffness[i] = file->materials[i].material.E;
+    s->line[i]   = (post_goodman){file->materials[i].endurance, file->materials[i].ultimate};
+  }
+  SHB_TRY(
+      post_blade_regions(modal, s->field.n_nodes, file->n_materials, name, stiffness, &s->region));
+  s->fatigue = (post_fatigue){.region = s->region, .n_regions = file->n_materials, .of = s->line};
+  return SHB_OK;
 }
 
 /* Both files must be of the present case.
  *   page  in  whether there is a report for the section */
 static shb_status stress_read(const case_file *file, const char *modal, const char *response,
                               bool page, stress_work *s) {
-  s->fatigue = (post_fatigue){file->endurance, file->ultimate};
   if (!modal || !up_to_date_keys(file, CASE_MHB, response)) return SHB_OK;
-  if (!page && file->endurance == 0 && file->n_gauges == 0) return SHB_OK;
+  if (!page && !has_fatigue(file) && file->n_gauges == 0) return SHB_OK;
   SHB_TRY(post_blade_field_read(modal, &s->field));
   if (s->field.n_nodes == 0) return SHB_OK;
   SHB_TRY(mhb_response_read(response, &s->response));
   SHB_TRY(post_blade_field_match(&s->field, s->response, modal));
+  SHB_TRY(set_fatigue(file, modal, s));
   if (!page) return SHB_OK;
   return post_stress_section(&s->field, s->response, &s->fatigue, &s->section);
 }
@@ -272,7 +299,7 @@ static shb_status publish(const case_file *file, const command_options *options)
                           stress.section.text,
                           file->axis};
     if (status == SHB_OK) status = post_publish(&job, &progress, &summary);
-    if (status == SHB_OK && stress.response && file->endurance > 0)
+    if (status == SHB_OK && stress.response && has_fatigue(file))
       status = stress_publish(file, &stress, &progress);
     if (status == SHB_OK && stress.response && file->n_gauges > 0)
       status = gauge_publish(file, modal, stress.response);

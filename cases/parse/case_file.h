@@ -52,8 +52,9 @@ typedef struct {
 /* A volume of the mesh and what it is made of. */
 typedef struct {
   char            group[MESH_WORD];
-  fem_orthotropic constants; /* as given: E, nu, G, axes */
-  fem_material    material;  /* stiffness and density in mesh axes */
+  fem_orthotropic constants;           /* as given: E, nu, G, axes */
+  fem_material    material;            /* stiffness and density in mesh axes */
+  double          endurance, ultimate; /* Pa; 0: not given */
 } case_material;
 
 typedef struct {

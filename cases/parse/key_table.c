@@ -142,6 +142,12 @@ static const case_key table[] = {
     {"materials[].rho", CASE_NUMBER, "kg/m3", 10, 1e5, .required = true, MATERIAL(material.rho),
      .stages = CASE_MODAL,
      .help = "density"},
+    {"materials[].endurance", CASE_NUMBER, "Pa", 0, 1e12, true, MATERIAL(endurance),
+     .stages = CASE_POST,
+     .help = "as material.fatigue.endurance, of this material"},
+    {"materials[].ultimate", CASE_NUMBER, "Pa", 0, 1e12, true, MATERIAL(ultimate),
+     .stages = CASE_POST,
+     .help = "as material.fatigue.ultimate, of this material"},
 
     {"rotor.blades", CASE_INTEGER, "", 2, 1000, .required = true, .spare = true, AT(blades),
      .stages = CASE_MESH | CASE_MODAL | CASE_MHB, .when = CASE_IF_SECTOR,

@@ -55,6 +55,17 @@ static void check_fatigue(case_reader *r) {
       case_reader_issue(r, end[1 - i], "missing; material.fatigue is {endurance, ultimate}");
 }
 
+static void check_element_fatigue(case_reader *r, const case_node *element, int index) {
+  static const char *const end[2] = {"endurance", "ultimate"};
+  for (int i = 0; i < 2; i++) {
+    char path[CASE_PATH];
+    if (!case_node_find(element, end[i]) || case_node_find(element, end[1 - i])) continue;
+    case_path(path, "materials[%d].%s", index, end[1 - i]);
+    case_issue_add(r->issues, element->line, element->column, path,
+                   "missing; Goodman's line needs endurance and ultimate");
+  }
+}
+
 static void check_groups(case_reader *r, const case_node *list) {
   const case_file *file = r->file;
   for (int i = 1; i < file->n_materials; i++)
@@ -85,7 +96,9 @@ void case_check_materials(case_reader *r) {
         "mesh.blade is one volume: give material, or a mesh.file with several volumes");
   if (!case_reader_good(r, "materials")) return;
   check_groups(r, list);
-  for (int i = 0; i < file->n_materials; i++)
+  for (int i = 0; i < file->n_materials; i++) {
     check_one(&(place){r, &list->child[i], i}, &file->materials[i].constants,
               &file->materials[i].material);
+    check_element_fatigue(r, &list->child[i], i);
+  }
 }

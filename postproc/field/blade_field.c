@@ -98,6 +98,65 @@ void post_blade_field_free(post_blade_field *f) {
   memset(f, 0, sizeof *f);
 }
 
+/* place[volume of the file] <- index of its name, or false. */
+static shb_status match_names(hid_t file, int n, const char *const *name, int *place, bool *all) {
+  int    found;
+  char **text;
+  SHB_TRY(h5_read_strings(file, "/mesh/volume", &found, &text));
+  *all = found <= n;
+  for (int i = 0; i < found; i++) {
+    int at = -1;
+    for (int j = 0; j < n; j++)
+      if (strcmp(text[i], name[j]) == 0) at = j;
+    *all = *all && at >= 0;
+    if (*all) place[i] = at;
+    free(text[i]);
+  }
+  free(text);
+  return SHB_OK;
+}
+
+/* The rule of fem/body/stress: the greatest E, of equal ones the first. */
+static shb_status find_regions(hid_t file, int n_nodes, const int *place, const double *stiffness,
+                               int *region) {
+  h5_shape   elements = H5_SHAPE(0, 0), one = H5_SHAPE(0);
+  int       *node = NULL, *volume = NULL;
+  shb_status status = h5_read_int(file, "/mesh/connectivity", &elements, &node);
+  one.dim[0]        = elements.dim[0];
+  if (status == SHB_OK) status = h5_read_int(file, "/mesh/material", &one, &volume);
+  for (int i = 0; i < n_nodes; i++) region[i] = -1;
+  for (size_t i = 0; status == SHB_OK && i < (size_t)(elements.dim[0] * elements.dim[1]); i++) {
+    int      *own  = &region[node[i]];
+    const int here = place[volume[i / elements.dim[1]]];
+    if (*own < 0 || stiffness[here] > stiffness[*own] ||
+        (stiffness[here] == stiffness[*own] && here < *own))
+      *own = here;
+  }
+  for (int i = 0; i < n_nodes; i++)
+    if (region[i] < 0) region[i] = 0; /* a node of no element */
+  free(node);
+  free(volume);
+  return status;
+}
+
+shb_status post_blade_regions(const char *path, int n_nodes, int n, const char *const *name,
+                              const double *stiffness, int **region) {
+  hid_t file;
+  bool  all       = false;
+  int   place[64] = {0};
+  *region         = NULL;
+  SHB_TRY(h5_open(path, &file));
+  shb_status status = SHB_OK;
+  if (h5_exists(file, "/mesh/volume") && n <= 64) status = match_names(file, n, name, place, &all);
+  if (status == SHB_OK && all) {
+    *region = malloc((size_t)n_nodes * sizeof **region + 1);
+    status  = *region ? find_regions(file, n_nodes, place, stiffness, *region)
+                      : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for the materials");
+  }
+  h5_close(file);
+  return status;
+}
+
 shb_status post_blade_field_match(const post_blade_field *f, const mhb_response *response,
                                   const char *path) {
   SHB_CHECK(f->n_modes == response->n_modes, SHB_ERR_INPUT,

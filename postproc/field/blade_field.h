@@ -54,4 +54,11 @@ shb_status post_blade_displacement(const post_blade_field *field, const mhb_bran
 void post_blade_forces(const post_blade_field *field, const mhb_branch *branch, int kept, int k,
                        double complex *force);
 
+/* Which of n volumes by name each node belongs to; of several the stiffest, whose stress the node
+ * has.
+ *   region  out  [n_nodes] malloc'ed; NULL if the file has one material, or not these volumes
+ * Errors: those of h5_read_int. */
+shb_status post_blade_regions(const char *path, int n_nodes, int n, const char *const *name,
+                              const double *stiffness, int **region);
+
 #endif

@@ -132,7 +132,7 @@ static void search_period(const history *h, double found[SOUGHT]) {
 /* A node with what it bears at most, or bears. */
 typedef struct {
   int    node;
-  double load; /* amplitude + ratio max(mean, 0), Pa; at first a bound of it */
+  double load; /* weight (amplitude + ratio max(mean, 0)), Pa; at first a bound of it */
 } candidate;
 
 static int descending(const void *a, const void *b) {
@@ -161,9 +161,38 @@ typedef struct {
   const post_blade_field *field;
   const double           *stress;
   int                     n_harmonics;
-  double                  ratio; /* endurance / ultimate; 0 without fatigue */
-  double                  apart; /* m */
+  const post_fatigue     *fatigue;
+  double                  reference; /* Pa, the greatest endurance; 0 without fatigue */
+  double                  apart;     /* m */
 } search;
+
+bool post_fatigue_given(const post_fatigue *fatigue) {
+  for (int i = 0; fatigue->region && i < fatigue->n_regions; i++)
+    if (fatigue->of[i].endurance > 0) return true;
+  return !fatigue->region && fatigue->endurance > 0;
+}
+
+static double greatest_endurance(const post_fatigue *fatigue) {
+  double most = 0;
+  if (!fatigue->region) return fatigue->endurance;
+  for (int i = 0; i < fatigue->n_regions; i++) most = fmax(most, fatigue->of[i].endurance);
+  return most;
+}
+
+static post_goodman line_of(const search *s, int node) {
+  const post_fatigue *f = s->fatigue;
+  return f->region ? f->of[f->region[node]] : (post_goodman){f->endurance, f->ultimate};
+}
+
+/* Load of a node in terms of the reference: reference/load is its safety. A node without a line
+ * bears none; without any line the load is the amplitude. */
+static double load_from(const search *s, int node, double amplitude, double mean) {
+  const post_goodman line = line_of(s, node);
+  if (s->reference == 0) return amplitude;
+  if (line.endurance == 0) return 0;
+  return s->reference / line.endurance *
+         (amplitude + line.endurance / line.ultimate * fmax(mean, 0));
+}
 
 static double bound_of_node(const search *s, int node) {
   const size_t stride = POST_STRESSES * (size_t)s->field->n_nodes;
@@ -200,7 +229,7 @@ static post_place evaluate(const search *s, int node) {
 }
 
 static double load_of(const search *s, const post_place *place) {
-  return place->amplitude + s->ratio * fmax(place->mean, 0);
+  return load_from(s, place->node, place->amplitude, place->mean);
 }
 
 static bool is_apart(const search *s, int a, int b) {
@@ -252,9 +281,12 @@ static double greatest_dimension(const post_blade_field *f) {
 
 shb_status post_peak_stress(const post_blade_field *field, int n_harmonics, const double *stress,
                             const post_fatigue *fatigue, post_place place[POST_PLACES], int *n) {
-  const bool   judged = fatigue->endurance > 0;
-  const search s = {field, stress, n_harmonics, judged ? fatigue->endurance / fatigue->ultimate : 0,
-                    APART * greatest_dimension(field)};
+  const search s       = {field,
+                          stress,
+                          n_harmonics,
+                          fatigue,
+                          greatest_endurance(fatigue),
+                          APART * greatest_dimension(field)};
   const size_t nodes   = (size_t)field->n_nodes;
   candidate   *bound   = malloc(nodes * sizeof *bound + 1);
   candidate   *pending = malloc(nodes * sizeof *pending + 1);
@@ -264,11 +296,12 @@ shb_status post_peak_stress(const post_blade_field *field, int n_harmonics, cons
     SHB_FAIL(SHB_ERR_IO, "out of memory for the worst places of %zu nodes", nodes);
   }
   for (int i = 0; i < field->n_nodes; i++)
-    bound[i] = (candidate){i, bound_of_node(&s, i) + s.ratio * fmax(mean_of(field, stress, i), 0)};
+    bound[i] = (candidate){i, load_from(&s, i, bound_of_node(&s, i), mean_of(field, stress, i))};
   qsort(bound, nodes, sizeof *bound, descending);
   *n = find(&s, bound, pending, place);
   for (int i = 0; i < *n; i++)
-    place[i].safety = judged ? fatigue->endurance / load_of(&s, &place[i]) : NAN;
+    place[i].safety =
+        line_of(&s, place[i].node).endurance > 0 ? s.reference / load_of(&s, &place[i]) : NAN;
   free(bound);
   free(pending);
   return SHB_OK;

@@ -9,7 +9,18 @@ enum { POST_PLACES = 10 };
 /* Goodman's line in the diagram of Haigh; endurance 0: not given. */
 typedef struct {
   double endurance, ultimate; /* Pa: amplitude borne without mean stress; tensile strength */
+} post_goodman;
+
+/* Of the whole body, or with several materials of each node. */
+typedef struct {
+  double              endurance, ultimate; /* of the body; not used with regions */
+  const int          *region;              /* [node] its material, or NULL */
+  int                 n_regions;
+  const post_goodman *of; /* [n_regions] */
 } post_fatigue;
+
+/* Whether any material has a line. */
+bool post_fatigue_given(const post_fatigue *fatigue);
 
 /* Of the vibration alone (harmonics from 1 on) but for mean. The signed von Mises stress has the
  * sign of the principal stress of greatest modulus. */
@@ -18,11 +29,11 @@ typedef struct {
   double amplitude; /* Pa, half the range of the signed von Mises stress over a period */
   double principal; /* Pa, greatest modulus of a principal stress in a period */
   double mean;      /* Pa, signed von Mises stress of static stress and harmonic 0 */
-  double safety;    /* 1/(amplitude/endurance + max(mean, 0)/ultimate); NAN without fatigue */
+  double safety;    /* 1/(amplitude/endurance + max(mean, 0)/ultimate); NAN without a line there */
 } post_place;
 
-/* The worst places, by safety, or by amplitude without fatigue; *n at most POST_PLACES. A place is
- * no nearer to a worse one than 5 % of the greatest dimension of the blade.
+/* The worst places, by safety, or by amplitude where no material has a line. *n is at most
+ * POST_PLACES. A place is no nearer to a worse one than 5 % of the greatest dimension of the blade.
  *
  * A bound of each node's amplitude decides which nodes are looked at, so no node is missed. A
  * period is sampled at 24 instants of the highest harmonic above 1e-3 of the node's largest, at

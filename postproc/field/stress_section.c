@@ -162,7 +162,7 @@ shb_status post_stress_section(const post_blade_field *field, const mhb_response
   int   n = choose(response, true, list);
   if (n == 0) n = choose(response, false, list);
   for (int i = 0; i < n; i++) SHB_TRY(evaluate(field, fatigue, &list[i]));
-  if (n > 0) put_all(field, list, n, fatigue->endurance > 0, out);
+  if (n > 0) put_all(field, list, n, post_fatigue_given(fatigue), out);
   SHB_CHECK(!out->failed, SHB_ERR_IO, "out of memory for the stress at the peaks");
   return SHB_OK;
 }

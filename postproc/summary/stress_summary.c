@@ -29,7 +29,7 @@ static void put_place(const post_blade_field *field, const post_place *place, po
 shb_status post_stress_put(const post_stress_source *source, const mhb_branch *branch, int point,
                            post_json *json) {
   const post_blade_field *field   = source->field;
-  const post_fatigue      fatigue = {source->endurance, source->ultimate};
+  const post_fatigue      fatigue = {.endurance = source->endurance, .ultimate = source->ultimate};
   const int               kept    = field->n_nodes > 0 ? kept_at(branch, point) : -1;
   post_place              place[POST_PLACES];
   int                     n = 0;

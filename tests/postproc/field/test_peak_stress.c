@@ -10,9 +10,11 @@
 #include <cmocka.h>
 
 #include "mesh/base/constants.h"
+#include "modal/hdf5/h5.h"
 #include "postproc/field/stress_table.h"
 #include "tests/support/check.h"
 #include "tests/support/random_model.h"
+#include "tests/support/scratch_folder.h"
 
 static void invariants_are_right(void **state) {
   (void)state;
@@ -76,7 +78,7 @@ static void worst_places_are_found(void **state) {
   (void)state;
   double             *stress = malloc(sizeof(double) * ROWS * 6 * NODES);
   post_blade_field    f      = make_field(stress);
-  const post_fatigue  none = {0, 0}, goodman = {3e8, 9e8};
+  const post_fatigue  none = {0}, goodman = {.endurance = 3e8, .ultimate = 9e8};
   const post_fatigue *fatigue[] = {&none, &goodman};
   for (int given = 0; given < 2; given++) {
     post_place place[POST_PLACES];
@@ -140,6 +142,68 @@ static void stress_is_the_sum(void **state) {
     }
 }
 
+/* Odd nodes are of a weaker material, every tenth of one without a line. The worst place is that of
+ * least safety, each by its own line. */
+static void each_node_has_its_own_material(void **state) {
+  (void)state;
+  double            *stress = malloc(sizeof(double) * ROWS * 6 * NODES);
+  post_blade_field   f      = make_field(stress);
+  const post_goodman line[] = {{3e8, 9e8}, {1.2e8, 4e8}, {0, 0}};
+  int                region[NODES], n;
+  post_place         place[POST_PLACES];
+  double             least = INFINITY;
+  for (int i = 0; i < NODES; i++) region[i] = i % 10 == 0 ? 2 : i % 2;
+  const post_fatigue fatigue = {.region = region, .n_regions = 3, .of = line};
+  assert_true(post_fatigue_given(&fatigue));
+  assert_ok(post_peak_stress(&f, M, stress, &fatigue, place, &n));
+  for (int node = 0; node < NODES; node++) {
+    const post_goodman *own = &line[region[node]];
+    double              a, p;
+    if (own->endurance == 0) continue;
+    sample(stress, node, &a, &p);
+    least =
+        fmin(least, 1 / (a / own->endurance + fmax(mean_at(&f, stress, node), 0) / own->ultimate));
+  }
+  assert_near(place[0].safety / least, 1, 2e-3);
+  for (int i = 0; i < n; i++) {
+    const post_goodman *own = &line[region[place[i].node]];
+    assert_true(own->endurance > 0);
+    assert_near(place[i].safety *
+                    (place[i].amplitude / own->endurance + fmax(place[i].mean, 0) / own->ultimate),
+                1, 1e-12);
+    if (i > 0) assert_true(place[i].safety >= place[i - 1].safety);
+  }
+  free(stress);
+  post_blade_field_free(&f);
+}
+
+/* Two elements of two volumes share the nodes 8 and 9: the stiffer one counts there. */
+static shb_status fill_volumes(hid_t file, const void *context) {
+  const char *const name[] = {"foot", "airfoil"};
+  const int element[]      = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17};
+  const int volume[]       = {0, 1};
+  (void)context;
+  SHB_TRY(h5_write_strings(file, "mesh/volume", 2, name, "volumes"));
+  SHB_TRY(h5_write_int(file, "mesh/connectivity", H5_SHAPE(2, 10), element, "-", "elements"));
+  return h5_write_int(file, "mesh/material", H5_SHAPE(2), volume, "-", "volume of each");
+}
+
+static void the_stiffer_material_counts_where_two_meet(void **state) {
+  (void)state;
+  const char *const names[] = {"airfoil", "root part", "foot"}, *const others[] = {"a", "b", "c"};
+  const double E[] = {127e9, 1e9, 210e9};
+  char         path[300];
+  int         *region;
+  snprintf(path, sizeof path, "%s/volumes.h5", scratch_folder);
+  assert_ok(h5_publish(path, fill_volumes, NULL));
+  assert_ok(post_blade_regions(path, 18, 3, names, E, &region));
+  assert_non_null(region);
+  for (int i = 0; i < 18; i++) assert_int_equal(region[i], i < 10 ? 2 : 0);
+  free(region);
+  assert_ok(post_blade_regions(path, 18, 3, others, E, &region));
+  assert_null(region);
+}
+
 static void other_modes_are_refused(void **state) {
   (void)state;
   const post_blade_field f        = {.n_nodes = 1, .n_modes = 3};
@@ -151,8 +215,11 @@ static void other_modes_are_refused(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(invariants_are_right), cmocka_unit_test(worst_places_are_found),
-      cmocka_unit_test(stress_is_the_sum), cmocka_unit_test(other_modes_are_refused)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  const struct CMUnitTest tests[] = {cmocka_unit_test(invariants_are_right),
+                                     cmocka_unit_test(worst_places_are_found),
+                                     cmocka_unit_test(stress_is_the_sum),
+                                     cmocka_unit_test(each_node_has_its_own_material),
+                                     cmocka_unit_test(the_stiffer_material_counts_where_two_meet),
+                                     cmocka_unit_test(other_modes_are_refused)};
+  return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

@@ -72,7 +72,7 @@ static void the_highest_point_of_a_curve_is_told(void **state) {
   (void)state;
   example            e;
   post_buffer        page    = {0};
-  const post_fatigue goodman = {300e6, 900e6};
+  const post_fatigue goodman = {.endurance = 300e6, .ultimate = 900e6};
   make(&e);
   assert_ok(post_stress_section(&e.field, &e.response, &goodman, &page));
   has(&page, "<td>25\u00a0N</td><td class=\"num\">123.25</td><td>stable</td>");
@@ -94,7 +94,7 @@ static void without_fatigue_there_is_no_safety(void **state) {
   (void)state;
   example            e;
   post_buffer        page = {0};
-  const post_fatigue none = {0, 0};
+  const post_fatigue none = {0};
   make(&e);
   e.branch[CURVE].modal.n = 0;
   e.field.static_stress   = NULL;
@@ -109,7 +109,7 @@ static void nothing_kept_gives_no_section(void **state) {
   (void)state;
   example            e;
   post_buffer        page = {0};
-  const post_fatigue none = {0, 0};
+  const post_fatigue none = {0};
   make(&e);
   e.branch[LIMIT].modal.n = e.branch[CURVE].modal.n = 0;
   assert_ok(post_stress_section(&e.field, &e.response, &none, &page));
